@@ -1,0 +1,179 @@
+//! Model problems for feti-contact: the decks its tests, benchmarks and examples share.
+//!
+//! A deck is the problem min 1/2 u'Ku - f'u over { B u <= c, H u = h }, with K = diag(K_1, ..., K_s) over
+//! the bodies. Nothing here solves anything and nothing depends on the solver.
+//!
+//! | module | problem |
+//! |---|---|
+//! | [`membrane`] | two membranes on an edge, one floating (Problem 1 of the paper) |
+//! | [`blocks`] | two stacked elastic blocks, matching grids: the benchmark |
+//! | [`stack`] | stacked bodies on non-matching grids, node-to-segment rows |
+//! | [`cube`] | an elastic body cut into subdomains, glued by equalities, on an obstacle |
+//! | [`small`] | one to three unknowns, solved by hand |
+//! | [`battery`] | random small hard problems whose outcome is known by construction |
+
+pub mod battery;
+#[cfg(test)]
+mod battery_tests;
+pub mod block;
+pub mod blocks;
+pub mod cube;
+#[cfg(test)]
+mod cube_tests;
+pub mod elements;
+pub mod membrane;
+pub mod random;
+pub mod small;
+pub mod sparse;
+pub mod stack;
+mod vector;
+
+pub use block::Block;
+pub use blocks::Blocks;
+pub use cube::{Cube, Glue, Moduli};
+pub use membrane::Membrane;
+pub use sparse::Csr;
+pub use stack::Stack;
+
+/// One body: K_p u_p = f_p - (contact and gluing forces).
+#[derive(Clone, Debug)]
+pub struct Body {
+    /// K_p, n x n, force per length: both triangles, columns sorted.
+    pub stiffness: Csr,
+    /// Basis of ker K_p, one vector of length n per mode; `None` when K_p is non-singular.
+    pub null_space: Option<Vec<Vec<f64>>>,
+    /// f_p, n, force.
+    pub load: Vec<f64>,
+    /// Position of the node each dof belongs to, n x 3, length.
+    pub coordinates: Vec<[f64; 3]>,
+    /// Label of the node each dof belongs to, from 1; eliminated nodes leave holes.
+    pub node: Vec<i32>,
+    /// Direction of each dof: 1, 2, 3 = displacement along x, y, z.
+    pub direction: Vec<i32>,
+}
+
+impl Body {
+    /// n, the number of dofs.
+    pub fn dofs(&self) -> usize {
+        self.stiffness.rows
+    }
+
+    /// The modes of ker K_p, none when K_p is non-singular.
+    pub fn modes(&self) -> &[Vec<f64>] {
+        self.null_space.as_deref().unwrap_or(&[])
+    }
+}
+
+/// Rows B u <= c (contact) or H u = h (equalities) over the concatenated dofs of all bodies.
+#[derive(Clone, Debug)]
+pub struct Rows {
+    /// B or H: rows x dofs, columns sorted, no repeated entry.
+    pub matrix: Csr,
+    /// c or h, one per row, length times the unit of the row.
+    pub rhs: Vec<f64>,
+}
+
+impl Rows {
+    /// No rows over `dofs` unknowns.
+    pub fn none(dofs: usize) -> Rows {
+        Rows { matrix: Csr::empty(dofs), rhs: Vec::new() }
+    }
+
+    /// Appends sum_k value_k u_(dof_k) <= (or =) `rhs`; repeated dofs are summed, exact zeros left out.
+    pub fn push(&mut self, entries: &[(usize, f64)], rhs: f64) {
+        self.matrix.push_row(entries);
+        self.rhs.push(rhs);
+    }
+
+    /// Number of rows.
+    pub fn len(&self) -> usize {
+        self.rhs.len()
+    }
+
+    /// True without a row.
+    pub fn is_empty(&self) -> bool {
+        self.rhs.is_empty()
+    }
+}
+
+/// A whole problem.
+#[derive(Clone, Debug)]
+pub struct Deck {
+    pub name: String,
+    pub bodies: Vec<Body>,
+    /// B u <= c.
+    pub contact: Rows,
+    /// H u = h.
+    pub equalities: Rows,
+}
+
+impl Deck {
+    /// `bodies` with no rows yet.
+    pub fn new(name: impl Into<String>, bodies: Vec<Body>) -> Deck {
+        let dofs = bodies.iter().map(Body::dofs).sum();
+        Deck { name: name.into(), bodies, contact: Rows::none(dofs), equalities: Rows::none(dofs) }
+    }
+
+    /// Unknowns of all bodies together.
+    pub fn dofs(&self) -> usize {
+        self.contact.matrix.cols
+    }
+
+    /// First concatenated dof of `body` (0-based); `offset(bodies.len())` is `dofs()`.
+    pub fn offset(&self, body: usize) -> usize {
+        self.bodies[..body].iter().map(Body::dofs).sum()
+    }
+
+    /// f, the loads of all bodies one after the other.
+    pub fn load(&self) -> Vec<f64> {
+        let loads = self.bodies.iter().flat_map(|body| &body.load);
+        loads.copied().collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Blocks, Cube, Deck, Membrane, Stack};
+
+    /// Shapes, sorted columns and finite numbers: what every consumer may rely on.
+    fn assert_well_formed(deck: &Deck) {
+        assert_eq!(deck.offset(deck.bodies.len()), deck.dofs());
+        for body in &deck.bodies {
+            let n = body.dofs();
+            assert_eq!(body.stiffness.cols, n);
+            assert_eq!(body.load.len(), n);
+            assert_eq!(body.coordinates.len(), n);
+            assert_eq!(body.node.len(), n);
+            assert_eq!(body.direction.len(), n);
+            assert!(body.modes().iter().all(|mode| mode.len() == n));
+            assert!(body.stiffness.is_sorted() && body.stiffness.asymmetry() == 0.0);
+        }
+        for rows in [&deck.contact, &deck.equalities] {
+            assert_eq!(rows.matrix.rows, rows.len());
+            assert_eq!(rows.matrix.cols, deck.dofs());
+            assert!(rows.matrix.is_sorted());
+            assert!(rows.rhs.iter().all(|value| value.is_finite()));
+        }
+    }
+
+    #[test]
+    fn every_default_deck_is_well_formed() {
+        let decks = [
+            Membrane::p1_p3().build(),
+            Blocks::default().build(),
+            Stack::default().build(),
+            Cube::default().build(),
+        ];
+        for deck in &decks {
+            assert_well_formed(deck);
+            assert!(!deck.contact.is_empty());
+        }
+    }
+
+    #[test]
+    fn every_battery_deck_is_well_formed() {
+        for case in crate::battery::cases(0..40) {
+            assert_well_formed(&case.deck);
+        }
+    }
+}

@@ -1,0 +1,114 @@
+#include <math.h>
+#include <stdio.h>
+
+#include "picture.h"
+
+enum { WIDTH = 720, HEIGHT = 480, LEFT = 80, RIGHT = 20, TOP = 48, BOTTOM = 64, TICKS = 6 };
+
+/* The plotted range: x from low to high over the width, y from 0 to top over the height. */
+typedef struct {
+    double low, high, top;
+} frame;
+
+static double place_x(const frame *range, double x)
+{
+    return LEFT + (x - range->low) / (range->high - range->low) * (WIDTH - LEFT - RIGHT);
+}
+
+static double place_y(const frame *range, double y)
+{
+    return HEIGHT - BOTTOM - y / range->top * (HEIGHT - TOP - BOTTOM);
+}
+
+/* A round step (1, 2 or 5 times a power of ten) that divides the length into at most TICKS parts. */
+static double round_step(double length)
+{
+    const double step = pow(10.0, floor(log10(length / TICKS)));
+    const double parts = length / (TICKS * step);
+    return step * (parts <= 1.0 ? 1.0 : parts <= 2.0 ? 2.0 : parts <= 5.0 ? 5.0 : 10.0);
+}
+
+static frame range_of(const picture *plot)
+{
+    frame range = { plot->curve_x[0], plot->curve_x[0], 0.0 };
+    double step;
+
+    for (int64_t i = 0; i < plot->samples; i++) {
+        range.low = fmin(range.low, plot->curve_x[i]);
+        range.high = fmax(range.high, plot->curve_x[i]);
+        range.top = fmax(range.top, plot->curve_y[i]);
+    }
+    for (int64_t i = 0; i < plot->points; i++) {
+        range.low = fmin(range.low, plot->x[i]);
+        range.high = fmax(range.high, plot->x[i]);
+        range.top = fmax(range.top, plot->y[i]);
+    }
+    step = round_step(range.top);
+    range.top = step * ceil(1.02 * range.top / step);
+    return range;
+}
+
+static void draw_axes(FILE *file, const picture *plot, const frame *range)
+{
+    const double step_x = round_step(range->high - range->low), step_y = round_step(range->top);
+    const double bottom = place_y(range, 0.0);
+
+    fprintf(file, "<g stroke=\"#ccc\" font-size=\"13\">\n");
+    for (double x = step_x * ceil(range->low / step_x); x <= range->high + 1e-9 * step_x; x += step_x)
+        fprintf(file, "<line x1=\"%.1f\" y1=\"%d\" x2=\"%.1f\" y2=\"%.1f\"/><text x=\"%.1f\" y=\"%.1f\" "
+                "text-anchor=\"middle\" stroke=\"none\">%g</text>\n", place_x(range, x), TOP, place_x(range, x), bottom,
+                place_x(range, x), bottom + 18.0, fabs(x) < 1e-9 * step_x ? 0.0 : x);
+    for (double y = 0.0; y <= range->top + 1e-9 * step_y; y += step_y)
+        fprintf(file, "<line x1=\"%d\" y1=\"%.1f\" x2=\"%d\" y2=\"%.1f\"/><text x=\"%d\" y=\"%.1f\" "
+                "text-anchor=\"end\" stroke=\"none\">%g</text>\n", LEFT, place_y(range, y), WIDTH - RIGHT,
+                place_y(range, y), LEFT - 6, place_y(range, y) + 4.0, y);
+    fprintf(file, "</g>\n<text x=\"%d\" y=\"28\" font-size=\"17\" text-anchor=\"middle\">%s</text>\n", WIDTH / 2,
+            plot->title);
+    fprintf(file, "<text x=\"%d\" y=\"%d\" text-anchor=\"middle\">%s</text>\n", (LEFT + WIDTH - RIGHT) / 2,
+            HEIGHT - 18, plot->x_name);
+    fprintf(file, "<text transform=\"translate(20 %d) rotate(-90)\" text-anchor=\"middle\">%s</text>\n",
+            (TOP + HEIGHT - BOTTOM) / 2, plot->y_name);
+}
+
+static void draw_data(FILE *file, const picture *plot, const frame *range)
+{
+    fprintf(file, "<polyline fill=\"none\" stroke=\"#1f5fa8\" stroke-width=\"2\" points=\"");
+    for (int64_t i = 0; i < plot->samples; i++)
+        fprintf(file, "%.2f,%.2f ", place_x(range, plot->curve_x[i]), place_y(range, plot->curve_y[i]));
+    fprintf(file, "\"/>\n<g fill=\"#c03a1d\">\n");
+    for (int64_t i = 0; i < plot->points; i++)
+        fprintf(file, "<circle cx=\"%.2f\" cy=\"%.2f\" r=\"3.2\"/>\n", place_x(range, plot->x[i]),
+                place_y(range, plot->y[i]));
+    fprintf(file, "</g>\n");
+}
+
+static void draw_legend(FILE *file, const picture *plot)
+{
+    const int x = LEFT + 14, y = TOP + 12;
+    fprintf(file, "<rect x=\"%d\" y=\"%d\" width=\"180\" height=\"44\" fill=\"#fff\" stroke=\"#999\"/>\n", x, y);
+    fprintf(file, "<circle cx=\"%d\" cy=\"%d\" r=\"3.2\" fill=\"#c03a1d\"/><text x=\"%d\" y=\"%d\">%s</text>\n",
+            x + 18, y + 14, x + 38, y + 18, plot->points_name);
+    fprintf(file, "<line x1=\"%d\" y1=\"%d\" x2=\"%d\" y2=\"%d\" stroke=\"#1f5fa8\" stroke-width=\"2\"/>"
+            "<text x=\"%d\" y=\"%d\">%s</text>\n", x + 6, y + 32, x + 30, y + 32, x + 38, y + 36, plot->curve_name);
+}
+
+int picture_svg(const char *folder, const char *name, const picture *plot)
+{
+    char path[1024];
+    FILE *file;
+    frame range = range_of(plot);
+
+    snprintf(path, sizeof path, "%s/%s", folder, name);
+    file = fopen(path, "w");
+    if (!file) return -1;
+    fprintf(file, "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"%d\" height=\"%d\" viewBox=\"0 0 %d %d\" "
+            "font-family=\"sans-serif\" font-size=\"14\">\n<rect width=\"100%%\" height=\"100%%\" fill=\"#fff\"/>\n",
+            WIDTH, HEIGHT, WIDTH, HEIGHT);
+    draw_axes(file, plot, &range);
+    draw_data(file, plot, &range);
+    draw_legend(file, plot);
+    fprintf(file, "</svg>\n");
+    if (fclose(file) != 0) return -1;
+    printf("picture %s\n", path);
+    return 0;
+}

@@ -1,0 +1,228 @@
+!> Pictures of the answer: an SVG plot of points against a curve, and a VTK file that ParaView opens.
+module picture
+  use case_reader, only: contact_case, dp
+  implicit none
+  private
+  public :: picture_svg, picture_vtk
+
+  ! The sheet and its margins, in SVG units.
+  real(dp), parameter :: width = 720, height = 480, left = 80, right = 20, top = 48, bottom = 64
+
+  !> The plotted range: x from low to high over the width, y from 0 to ceiling over the height.
+  type :: frame
+    real(dp) :: low, high, ceiling
+  end type
+
+contains
+
+  !> Writes folder/name: points (x, y), the curve (curve_x, curve_y) called theory, title, names of the axes with units.
+  subroutine picture_svg(folder, name, title, x_name, y_name, theory, x, y, curve_x, curve_y)
+    character(len=*), intent(in) :: folder, name, title, x_name, y_name, theory
+    real(dp), intent(in) :: x(:), y(:), curve_x(:), curve_y(:)
+    type(frame) :: range
+    integer :: unit, i
+
+    range = frame(min(minval(x), minval(curve_x)), max(maxval(x), maxval(curve_x)), &
+      max(maxval(y), maxval(curve_y)))
+    range%ceiling = round_step(range%ceiling) * ceiling(1.02_dp * range%ceiling / round_step(range%ceiling))
+    call open_picture(folder, name, unit)
+    write (unit, '(a)') '<svg xmlns="http://www.w3.org/2000/svg" width="720" height="480" viewBox="0 0 720 480" ' // &
+      'font-family="sans-serif" font-size="14">', '<rect width="100%" height="100%" fill="#fff"/>'
+    call write_text(unit, width / 2, 28.0_dp, title)
+    call write_text(unit, (left + width - right) / 2, height - 18, x_name)
+    write (unit, '(3a)') '<text transform="translate(20 232) rotate(-90)" text-anchor="middle">', y_name, '</text>'
+    call draw_axes(unit, range)
+    write (unit, '(a)') '<polyline fill="none" stroke="#1f5fa8" stroke-width="2" points="'
+    do i = 1, size(curve_x)
+      write (unit, '(f0.2, a, f0.2)') place_x(range, curve_x(i)), ',', place_y(range, curve_y(i))
+    end do
+    write (unit, '(a)') '"/>'
+    do i = 1, size(x)
+      write (unit, '(a, f0.2, a, f0.2, a)') '<circle fill="#c03a1d" r="3.2" cx="', place_x(range, x(i)), &
+        '" cy="', place_y(range, y(i)), '"/>'
+    end do
+    write (unit, '(a)') '<text x="94" y="70" fill="#c03a1d">points: computed</text>', &
+      '<text x="94" y="90" fill="#1f5fa8">curve: ' // theory // '</text>', '</svg>'
+    close (unit)
+  end subroutine
+
+  !> Writes folder/name as legacy VTK: nodes at xyz + u, displacement u (length) and force (force) as vectors.
+  !> A body whose nodes run line after line in the plane is drawn by quadrilaterals, any other by its nodes.
+  subroutine picture_vtk(folder, name, host, u, force)
+    character(len=*), intent(in) :: folder, name
+    type(contact_case), intent(in) :: host
+    real(dp), intent(in) :: u(:), force(:)
+    integer, allocatable :: cell(:, :)
+    integer :: unit, dims, nodes, i, b
+
+    dims = maxval(host%dir)
+    nodes = host%n / dims
+    allocate (cell(4, 0))
+    do b = 1, size(host%body)
+      call append_cells(host, b, dims, cell)
+    end do
+    call open_picture(folder, name, unit)
+    write (unit, '(a)') '# vtk DataFile Version 3.0', 'deformed bodies in contact', 'ASCII', &
+      'DATASET UNSTRUCTURED_GRID'
+    write (unit, '(a, i0, a)') 'POINTS ', nodes, ' double'
+    write (unit, '(3es17.8e3)') (host%xyz(:, dims * i) + vector(dims, i, u), i = 1, nodes)
+    write (unit, '(a, 2(1x, i0))') 'CELLS', size(cell, 2), sum(corners(cell) + 1)
+    do i = 1, size(cell, 2)
+      write (unit, '(5(i0, 1x))') corners(cell(:, i:i)), pack(cell(:, i), cell(:, i) >= 0)
+    end do
+    write (unit, '(a, i0)') 'CELL_TYPES ', size(cell, 2)
+    write (unit, '(i0)') merge(9, 1, corners(cell) == 4)
+    write (unit, '(a, i0)') 'POINT_DATA ', nodes
+    write (unit, '(a)') 'VECTORS displacement double'
+    write (unit, '(3es17.8e3)') (vector(dims, i, u), i = 1, nodes)
+    write (unit, '(a)') 'VECTORS contact_force double'
+    write (unit, '(3es17.8e3)') (vector(dims, i, force), i = 1, nodes)
+    close (unit)
+  end subroutine
+
+  !> Three components of node i, the third 0 in the plane.
+  pure function vector(dims, i, from) result(v)
+    integer, intent(in) :: dims, i
+    real(dp), intent(in) :: from(:)
+    real(dp) :: v(3)
+
+    v = 0
+    v(:dims) = from(dims * (i - 1) + 1:dims * i)
+  end function
+
+  !> Adds the cells of body b, nodes counted from 0 through all bodies as VTK does; -1: no more corners.
+  subroutine append_cells(host, b, dims, cell)
+    type(contact_case), intent(in) :: host
+    integer, intent(in) :: b, dims
+    integer, allocatable, intent(inout) :: cell(:, :)
+    integer, allocatable :: more(:, :)
+    integer :: before, nodes, line, i, j
+
+    before = host%body(b)%offset / dims
+    nodes = host%body(b)%n / dims
+    line = count_line(host%xyz(1, host%body(b)%offset + 1:host%body(b)%offset + host%body(b)%n:dims))
+    if (dims == 2 .and. line > 1 .and. mod(nodes, line) == 0) then
+      allocate (more(4, (nodes / line - 1) * (line - 1)))
+      do i = 1, nodes / line - 1
+        do j = 1, line - 1
+          more(:, (i - 1) * (line - 1) + j) = before + line * (i - 1) + j - 1 + [0, line, line + 1, 1]
+        end do
+      end do
+    else
+      allocate (more(4, nodes), source=-1)
+      more(1, :) = [(before + i - 1, i = 1, nodes)]
+    end if
+    cell = reshape([cell, more], [4, size(cell, 2) + size(more, 2)])
+  end subroutine
+
+  !> Nodes with the x of the first one, up to the first that differs.
+  pure integer function count_line(x)
+    real(dp), intent(in) :: x(:)
+
+    count_line = 1
+    do while (count_line < size(x))
+      if (abs(x(count_line + 1) - x(1)) > 0) exit
+      count_line = count_line + 1
+    end do
+  end function
+
+  !> Number of corners of each cell.
+  pure function corners(cell) result(number)
+    integer, intent(in) :: cell(:, :)
+    integer :: number(size(cell, 2))
+
+    number = count(cell >= 0, dim=1)
+  end function
+
+  !> Grid lines at round steps, with their numbers.
+  subroutine draw_axes(unit, range)
+    integer, intent(in) :: unit
+    type(frame), intent(in) :: range
+    real(dp) :: step
+    integer :: i
+
+    step = round_step(range%high - range%low)
+    do i = ceiling(range%low / step), floor(range%high / step)
+      call draw_line(unit, place_x(range, i * step), top, place_x(range, i * step), height - bottom)
+      call write_text(unit, place_x(range, i * step), height - bottom + 18, figure(i * step))
+    end do
+    step = round_step(range%ceiling)
+    do i = 0, nint(range%ceiling / step)
+      call draw_line(unit, left, place_y(range, i * step), width - right, place_y(range, i * step))
+      call write_text(unit, left - 28, place_y(range, i * step) + 4, figure(i * step))
+    end do
+  end subroutine
+
+  subroutine draw_line(unit, x1, y1, x2, y2)
+    integer, intent(in) :: unit
+    real(dp), intent(in) :: x1, y1, x2, y2
+
+    write (unit, '(4(a, f0.1), a)') '<line stroke="#ccc" x1="', x1, '" y1="', y1, '" x2="', x2, '" y2="', y2, '"/>'
+  end subroutine
+
+  subroutine write_text(unit, x, y, text)
+    integer, intent(in) :: unit
+    real(dp), intent(in) :: x, y
+    character(len=*), intent(in) :: text
+
+    write (unit, '(2(a, f0.1), 3a)') '<text text-anchor="middle" x="', x, '" y="', y, '">', trim(text), '</text>'
+  end subroutine
+
+  !> A number of an axis: whole where it is whole, two decimals otherwise.
+  function figure(x) result(text)
+    real(dp), intent(in) :: x
+    character(len=12) :: text
+
+    if (abs(x - nint(x)) < 1e-9_dp) then
+      write (text, '(i0)') nint(x)
+    else
+      write (text, '(f12.2)') x
+      text = adjustl(text)
+    end if
+  end function
+
+  !> A round step (1, 2 or 5 times a power of ten) that divides the length into at most six parts.
+  pure real(dp) function round_step(length)
+    real(dp), intent(in) :: length
+    real(dp) :: parts
+
+    round_step = 10.0_dp**floor(log10(length / 6))
+    parts = length / (6 * round_step)
+    if (parts > 5) then
+      round_step = 10 * round_step
+    else if (parts > 2) then
+      round_step = 5 * round_step
+    else if (parts > 1) then
+      round_step = 2 * round_step
+    end if
+  end function
+
+  pure real(dp) function place_x(range, x)
+    type(frame), intent(in) :: range
+    real(dp), intent(in) :: x
+
+    place_x = left + (x - range%low) / (range%high - range%low) * (width - left - right)
+  end function
+
+  pure real(dp) function place_y(range, y)
+    type(frame), intent(in) :: range
+    real(dp), intent(in) :: y
+
+    place_y = height - bottom - y / range%ceiling * (height - top - bottom)
+  end function
+
+  !> Opens folder/name for writing and prints its name.
+  subroutine open_picture(folder, name, unit)
+    character(len=*), intent(in) :: folder, name
+    integer, intent(out) :: unit
+    integer :: status
+
+    open (newunit=unit, file=folder // '/' // name, action='write', status='replace', iostat=status)
+    if (status /= 0) then
+      print '(4a)', folder, '/', name, ' cannot be written'
+      error stop 1
+    end if
+    print '(4a)', 'picture ', folder, '/', name
+  end subroutine
+
+end module

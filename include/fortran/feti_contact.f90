@@ -1,0 +1,80 @@
+!> Contact problems by FETI duality, for Fortran hosts: the typed face of libfeti_contact.
+!>
+!>   minimise 1/2 u'Ku - f'u  over all u with  B u <= c  and  H u = h
+!>
+!> K is the stiffness of several bodies, floating ones included; lambda >= 0 are the forces of the contact rows.
+!>
+!>   use feti_contact
+!>   type(feti_problem) :: p
+!>   call feti_problem_create(p)
+!>   call feti_set(p, 'tolerance', 1d-10)
+!>   call feti_body_add(p, n, body)                                        ! for each body
+!>   call feti_body_stiffness(p, body, row_ptr, col, val, FETI_LOWER)
+!>   call feti_body_null_space(p, body, R, FETI_EXACT)
+!>   call feti_body_load(p, body, f)
+!>   call feti_rows_add(p, FETI_INEQUALITY, row_ptr, dof, val, c)
+!>   call feti_solve(p)
+!>   call feti_displacement(p, body, u)
+!>   call feti_multipliers(p, FETI_INEQUALITY, lambda)
+!>   call feti_problem_destroy(p)
+!>
+!> Names and meaning are those of the C functions in feti_contact.h. Every number counts from 1: bodies, unknowns,
+!> rows, the indices inside the arrays, the places in errors. Sizes come from the arrays. Everything is copied.
+!> Every subroutine ends with the optional arguments stat and errmsg: with stat the host decides what a failure
+!> means (call feti_last_error_detail tells the place); without it a failure prints its text and stops the program.
+!> Where a procedure is described, with shapes and units: the module it comes from, named below.
+module feti_contact
+  use feti_contact_c, only: &
+    ! kinds of rows, storage of K, null spaces, states of contact rows, types of options
+    FETI_INEQUALITY, FETI_EQUALITY, FETI_FULL, FETI_LOWER, FETI_UPPER, FETI_EXACT, FETI_CANDIDATES, FETI_COPY, &
+    FETI_ROW_OPEN, FETI_ROW_CLOSED, FETI_ROW_WEAK, FETI_OPTION_F64, FETI_OPTION_I64, FETI_OPTION_STR, &
+    ! status: solved; usable but incomplete; failed
+    FETI_OK, &
+    FETI_ITERATIONS, FETI_TIME, FETI_CANCELLED, FETI_STALLED, FETI_INACCURATE, FETI_MARGINAL, &
+    FETI_MEMORY, FETI_HANDLE, FETI_BUSY, FETI_CALLBACK, FETI_STATE, FETI_LOAD_NOT_HELD, FETI_GAPS_CONTRADICT, &
+    FETI_NULL_SPACE, FETI_INDEFINITE, FETI_IO, FETI_INTERNAL, FETI_UNSUPPORTED, FETI_OVERFLOW, FETI_ARGUMENT, &
+    FETI_CONTACT_VERSION_MAJOR, FETI_CONTACT_VERSION_MINOR, FETI_CONTACT_VERSION_PATCH
+  use feti_contact_base, only: feti_problem, feti_error_detail, &
+    feti_problem_create => problem_create, &
+    feti_problem_destroy => problem_destroy, &
+    feti_problem_error => problem_error, &
+    feti_last_error => last_error, &
+    feti_last_error_detail => last_error_detail, &
+    feti_status_name => status_name, &
+    feti_status_text => status_text, &
+    feti_version => version, &
+    feti_version_number => version_number
+  use feti_contact_options, only: feti_option, &
+    feti_set => set_option, &
+    feti_get => get_option, &
+    feti_option_count => option_count, &
+    feti_option_at => option_at
+  use feti_contact_bodies, only: &
+    feti_body_add => body_add, &
+    feti_body_stiffness => body_stiffness, &
+    feti_body_null_space => body_null_space, &
+    feti_body_null_space_get => body_null_space_get, &
+    feti_body_coordinates => body_coordinates, &
+    feti_body_load => body_load
+  use feti_contact_rows, only: &
+    feti_rows_add => rows_add, &
+    feti_rows_rhs => rows_rhs, &
+    feti_rows_clear => rows_clear
+  use feti_contact_results, only: feti_info, feti_certificate, &
+    feti_setup => setup, &
+    feti_solve => solve, &
+    feti_check => check, &
+    feti_counts => counts, &
+    feti_displacement => displacement, &
+    feti_reaction => reaction, &
+    feti_amplitudes => amplitudes, &
+    feti_multipliers => multipliers, &
+    feti_gaps => gaps, &
+    feti_active => active, &
+    feti_body_fixing => body_fixing, &
+    feti_body_kplus => body_kplus, &
+    feti_dual_apply => dual_apply, &
+    feti_dual_rhs => dual_rhs
+  implicit none
+  public
+end module

@@ -1,0 +1,247 @@
+!> The handle, the errors and the texts of module feti_contact. A host uses feti_contact, not this module.
+!>
+!> Every procedure of the face ends with `stat` and `errmsg`, both optional:
+!>   stat present: it gets the status (0 is FETI_OK); a failed call changes nothing and can be repeated corrected.
+!>   stat absent:  any status but FETI_OK prints the text on error_unit and ends the program with error stop 1.
+!>   errmsg:       gets the text when the status is not FETI_OK, cut or padded to its length; untouched otherwise.
+!> Arrays that do not fit each other (a row pointer that points behind the entries) are refused by the face itself:
+!> status and errmsg tell it, feti_last_error and feti_last_error_detail do not.
+module feti_contact_base
+  use, intrinsic :: iso_c_binding, only: c_char, c_double, c_f_pointer, c_int32_t, c_int64_t, c_loc, &
+    c_null_char, c_null_ptr, c_ptr, c_sizeof, c_associated
+  use, intrinsic :: iso_fortran_env, only: error_unit
+  use feti_contact_c, only: FETI_ARGUMENT, FETI_OK, &
+    c_error_detail => feti_error_detail, &
+    c_last_error => feti_last_error, &
+    c_last_error_detail => feti_last_error_detail, &
+    c_problem_create => feti_problem_create, &
+    c_problem_destroy => feti_problem_destroy, &
+    c_problem_error => feti_problem_error, &
+    c_set_i64 => feti_set_i64, &
+    c_status_name => feti_status_name, &
+    c_status_text => feti_status_text, &
+    c_version => feti_version, &
+    c_version_number => feti_version_number
+  implicit none
+  private
+  public :: feti_problem, feti_error_detail
+  public :: problem_create, problem_destroy, problem_error
+  public :: last_error, last_error_detail, status_name, status_text
+  public :: version, version_number
+  public :: handle_of, finish, refuse, c_text, f_text, static_text
+
+  !> One contact problem. Copies are other names of the same problem; it lives until feti_problem_destroy.
+  type :: feti_problem
+    private
+    type(c_ptr) :: handle = c_null_ptr
+  end type
+
+  !> What the last failed call of this thread found, and where. Everything counts from 1.
+  type :: feti_error_detail
+    !> Status of that call.
+    integer :: status = 0
+    !> Number of the refused argument in the C function of that name (the handle is 1), 0: none.
+    integer :: argument = 0
+    !> Body, component of the body, unknown of the body, row, position in the array; 0: does not apply.
+    integer(c_int64_t) :: body = 0, component = 0, dof = 0, row = 0, entry = 0
+    !> The figure found and the figure allowed; NaN: does not apply.
+    real(c_double) :: value = 0, limit = 0
+    !> Name of the C function, blank padded.
+    character(len=40) :: function = ''
+  end type
+
+contains
+
+  !> Creates an empty problem; texts and positions count from 1. On failure p is not a problem.
+  subroutine problem_create(p, stat, errmsg)
+    type(feti_problem), intent(out) :: p
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+    integer(c_int32_t) :: status
+
+    status = c_problem_create(p%handle)
+    if (status == FETI_OK) status = c_set_i64(p%handle, c_text('index_base'), 1_c_int64_t)
+    call finish(status, stat, errmsg)
+  end subroutine
+
+  !> Gives back everything the problem holds. p is no problem afterwards; its copies are refused with FETI_HANDLE.
+  subroutine problem_destroy(p, stat, errmsg)
+    type(feti_problem), intent(inout) :: p
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+
+    call finish(c_problem_destroy(p%handle), stat, errmsg)
+  end subroutine
+
+  !> Text of the last failed call of this problem; empty when none failed. May be called while another thread solves.
+  subroutine problem_error(p, text, stat, errmsg)
+    type(feti_problem), intent(in) :: p
+    character(len=:), allocatable, intent(out) :: text
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+    character(kind=c_char), allocatable, target :: buffer(:)
+    integer(c_int64_t) :: length
+    integer(c_int32_t) :: status
+
+    text = ''
+    length = 0
+    status = c_problem_error(p%handle, c_null_ptr, 0_c_int64_t, length)
+    if (status == FETI_OK) then
+      allocate (buffer(length + 1))
+      status = c_problem_error(p%handle, c_loc(buffer), size(buffer, kind=c_int64_t), length)
+      if (status == FETI_OK) text = f_text(buffer)
+    end if
+    call finish(status, stat, errmsg)
+  end subroutine
+
+  !> Text of the last failed call of this thread; empty when none failed.
+  subroutine last_error(text)
+    character(len=:), allocatable, intent(out) :: text
+    character(kind=c_char), allocatable, target :: buffer(:)
+    integer(c_int64_t) :: length
+
+    length = c_last_error(c_null_ptr, 0_c_int64_t)
+    allocate (buffer(length + 1))
+    length = c_last_error(c_loc(buffer), length + 1)
+    text = f_text(buffer)
+  end subroutine
+
+  !> Facts of the last failed call of this thread.
+  subroutine last_error_detail(detail, stat, errmsg)
+    type(feti_error_detail), intent(out) :: detail
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+    type(c_error_detail) :: found
+    integer(c_int32_t) :: status
+
+    found%struct_size = c_sizeof(found)
+    status = c_last_error_detail(found)
+    if (status == FETI_OK) then
+      detail%status = found%status
+      detail%argument = found%argument
+      detail%body = found%body + 1
+      detail%component = found%component + 1
+      detail%dof = found%dof + 1
+      detail%row = found%row + 1
+      detail%entry = found%entry + 1
+      detail%value = found%value
+      detail%limit = found%limit
+      detail%function = f_text(found%function)
+    end if
+    call finish(status, stat, errmsg)
+  end subroutine
+
+  !> Name of a status, such as FETI_LOAD_NOT_HELD.
+  function status_name(status) result(name)
+    integer, intent(in) :: status
+    character(len=:), allocatable :: name
+
+    name = static_text(c_status_name(int(status, c_int32_t)))
+  end function
+
+  !> One sentence on a status.
+  function status_text(status) result(text)
+    integer, intent(in) :: status
+    character(len=:), allocatable :: text
+
+    text = static_text(c_status_text(int(status, c_int32_t)))
+  end function
+
+  !> Version of the library, such as 0.1.0.
+  function version() result(text)
+    character(len=:), allocatable :: text
+
+    text = static_text(c_version())
+  end function
+
+  !> 10000 major + 100 minor + patch.
+  integer function version_number()
+    version_number = int(c_version_number())
+  end function
+
+  !> The handle for a C function.
+  type(c_ptr) function handle_of(p)
+    type(feti_problem), intent(in) :: p
+
+    handle_of = p%handle
+  end function
+
+  !> Reports a status as the head of this module says. text: what the face itself found; absent: the library's words.
+  subroutine finish(status, stat, errmsg, text)
+    integer(c_int32_t), intent(in) :: status
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+    character(len=*), intent(in), optional :: text
+    character(len=:), allocatable :: words
+
+    if (present(stat)) stat = int(status)
+    if (status == FETI_OK) return
+    if (present(text)) then
+      words = text
+    else
+      call last_error(words)
+      if (len(words) == 0) words = status_text(int(status))
+    end if
+    if (present(errmsg)) errmsg = words
+    if (present(stat)) return
+    write (error_unit, '(3a)') status_name(int(status)), ': ', words
+    error stop 1
+  end subroutine
+
+  !> Refuses argument k of the C function (the handle is 1) before the library is called; text names the array.
+  subroutine refuse(k, text, stat, errmsg)
+    integer, intent(in) :: k
+    character(len=*), intent(in) :: text
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+
+    call finish(int(FETI_ARGUMENT - k, c_int32_t), stat, errmsg, text)
+  end subroutine
+
+  !> A C string: the text without trailing blanks and the NUL.
+  pure function c_text(text) result(string)
+    character(len=*), intent(in) :: text
+    character(kind=c_char, len=len_trim(text) + 1) :: string
+
+    string = trim(text) // c_null_char
+  end function
+
+  !> The characters before the first NUL.
+  pure function f_text(string) result(text)
+    character(kind=c_char), intent(in) :: string(:)
+    character(len=:), allocatable :: text
+    integer :: i, length
+
+    length = size(string)
+    do i = 1, size(string)
+      if (string(i) == c_null_char) then
+        length = i - 1
+        exit
+      end if
+    end do
+    allocate (character(len=length) :: text)
+    do i = 1, length
+      text(i:i) = string(i)
+    end do
+  end function
+
+  !> The text of a static C string.
+  function static_text(address) result(text)
+    type(c_ptr), intent(in) :: address
+    character(len=:), allocatable :: text
+    character(kind=c_char), pointer :: string(:)
+    integer, parameter :: longest = 1000
+    integer :: length
+
+    text = ''
+    if (.not. c_associated(address)) return
+    call c_f_pointer(address, string, [longest])
+    length = 0
+    do while (length < longest)
+      if (string(length + 1) == c_null_char) exit
+      length = length + 1
+    end do
+    text = f_text(string(:length))
+  end function
+
+end module

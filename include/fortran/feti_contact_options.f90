@@ -1,0 +1,184 @@
+!> Settings of module feti_contact: by name, typed, listed. A host uses feti_contact, not this module.
+!> A refused name or value leaves the setting as it was. `stat` and `errmsg`: see feti_contact_base.
+module feti_contact_options
+  use, intrinsic :: iso_c_binding, only: c_char, c_int32_t, c_int64_t, c_loc, c_null_ptr, c_sizeof
+  use, intrinsic :: iso_fortran_env, only: int32, int64, real64
+  use feti_contact_base, only: c_text, f_text, feti_problem, finish, handle_of, static_text
+  use feti_contact_c, only: FETI_OK, FETI_OVERFLOW, &
+    c_get_f64 => feti_get_f64, &
+    c_get_i64 => feti_get_i64, &
+    c_get_str => feti_get_str, &
+    c_option => feti_option, &
+    c_option_at => feti_option_at, &
+    c_option_count => feti_option_count, &
+    c_set_f64 => feti_set_f64, &
+    c_set_i64 => feti_set_i64, &
+    c_set_str => feti_set_str
+  implicit none
+  private
+  public :: set_option, get_option, feti_option, option_at, option_count
+
+  !> Sets the option `name`: call feti_set(p, 'tolerance', 1d-10).
+  interface set_option
+    module procedure set_real, set_int32, set_int64, set_text
+  end interface
+
+  !> Value of the option `name`; the variable has the type of the option and is untouched by a failed call.
+  interface get_option
+    module procedure get_real, get_int32, get_int64, get_text
+  end interface
+
+  !> One setting as the library describes it.
+  type :: feti_option
+    character(len=:), allocatable :: name, doc
+    !> FETI_OPTION_F64, FETI_OPTION_I64 or FETI_OPTION_STR.
+    integer :: type = 0
+    !> Range of a number.
+    real(real64) :: minimum = 0, maximum = 0
+    !> Default, in the field of its type.
+    real(real64) :: default_real = 0
+    integer(int64) :: default_integer = 0
+    character(len=:), allocatable :: default_text
+  end type
+
+contains
+
+  subroutine set_real(p, name, value, stat, errmsg)
+    type(feti_problem), intent(in) :: p
+    character(len=*), intent(in) :: name
+    real(real64), intent(in) :: value
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+
+    call finish(c_set_f64(handle_of(p), c_text(name), value), stat, errmsg)
+  end subroutine
+
+  subroutine set_int32(p, name, value, stat, errmsg)
+    type(feti_problem), intent(in) :: p
+    character(len=*), intent(in) :: name
+    integer(int32), intent(in) :: value
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+
+    call set_int64(p, name, int(value, int64), stat, errmsg)
+  end subroutine
+
+  subroutine set_int64(p, name, value, stat, errmsg)
+    type(feti_problem), intent(in) :: p
+    character(len=*), intent(in) :: name
+    integer(int64), intent(in) :: value
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+
+    call finish(c_set_i64(handle_of(p), c_text(name), value), stat, errmsg)
+  end subroutine
+
+  subroutine set_text(p, name, value, stat, errmsg)
+    type(feti_problem), intent(in) :: p
+    character(len=*), intent(in) :: name, value
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+
+    call finish(c_set_str(handle_of(p), c_text(name), c_text(value)), stat, errmsg)
+  end subroutine
+
+  subroutine get_real(p, name, value, stat, errmsg)
+    type(feti_problem), intent(in) :: p
+    character(len=*), intent(in) :: name
+    real(real64), intent(inout) :: value
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+    real(real64) :: found
+    integer(c_int32_t) :: status
+
+    status = c_get_f64(handle_of(p), c_text(name), found)
+    if (status == FETI_OK) value = found
+    call finish(status, stat, errmsg)
+  end subroutine
+
+  !> FETI_OVERFLOW, and value untouched, when the setting needs a larger integer.
+  subroutine get_int32(p, name, value, stat, errmsg)
+    type(feti_problem), intent(in) :: p
+    character(len=*), intent(in) :: name
+    integer(int32), intent(inout) :: value
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+    integer(c_int64_t) :: wide
+    integer(c_int32_t) :: status
+
+    status = c_get_i64(handle_of(p), c_text(name), wide)
+    if (status /= FETI_OK) then
+      call finish(status, stat, errmsg)
+    else if (abs(wide) > huge(value)) then
+      call finish(FETI_OVERFLOW, stat, errmsg, 'feti_get: ' // name // ' needs an integer(int64)')
+    else
+      value = int(wide, int32)
+      call finish(FETI_OK, stat, errmsg)
+    end if
+  end subroutine
+
+  subroutine get_int64(p, name, value, stat, errmsg)
+    type(feti_problem), intent(in) :: p
+    character(len=*), intent(in) :: name
+    integer(int64), intent(inout) :: value
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+    integer(int64) :: found
+    integer(c_int32_t) :: status
+
+    status = c_get_i64(handle_of(p), c_text(name), found)
+    if (status == FETI_OK) value = found
+    call finish(status, stat, errmsg)
+  end subroutine
+
+  !> value gets the length of the text.
+  subroutine get_text(p, name, value, stat, errmsg)
+    type(feti_problem), intent(in) :: p
+    character(len=*), intent(in) :: name
+    character(len=:), allocatable, intent(inout) :: value
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+    character(kind=c_char), allocatable, target :: buffer(:)
+    integer(c_int64_t) :: length
+    integer(c_int32_t) :: status
+
+    length = 0
+    status = c_get_str(handle_of(p), c_text(name), c_null_ptr, 0_c_int64_t, length)
+    if (status == FETI_OK) then
+      allocate (buffer(length + 1))
+      status = c_get_str(handle_of(p), c_text(name), c_loc(buffer), size(buffer, kind=c_int64_t), length)
+      if (status == FETI_OK) value = f_text(buffer)
+    end if
+    call finish(status, stat, errmsg)
+  end subroutine
+
+  !> Number of settings.
+  integer function option_count()
+    option_count = int(c_option_count())
+  end function
+
+  !> Setting k, from 1 to feti_option_count().
+  subroutine option_at(k, option, stat, errmsg)
+    integer, intent(in) :: k
+    type(feti_option), intent(out) :: option
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+    type(c_option) :: found
+    integer(c_int32_t) :: status
+
+    found%struct_size = c_sizeof(found)
+    status = c_option_at(int(k - 1, c_int64_t), found)
+    if (status == FETI_OK) then
+      option%name = static_text(found%name)
+      option%doc = static_text(found%doc)
+      option%type = found%type
+      option%minimum = found%minimum
+      option%maximum = found%maximum
+      option%default_real = found%default_f64
+      option%default_integer = found%default_i64
+      option%default_text = static_text(found%default_str)
+    end if
+    call finish(status, stat, errmsg)
+  end subroutine
+
+end module

@@ -1,0 +1,229 @@
+!> Solution and answers of module feti_contact. A host uses feti_contact, not this module.
+!>
+!> Sizes come from the arrays and are compared with the problem. Bodies, unknowns and rows count from 1. Answers are
+!> written when the status is not negative; a failed call leaves the host's arrays as they were.
+!> `stat` and `errmsg`: see feti_contact_base.
+module feti_contact_results
+  use, intrinsic :: iso_c_binding, only: c_int32_t, c_int64_t, c_loc, c_null_ptr, c_ptr, c_sizeof
+  use, intrinsic :: iso_fortran_env, only: real64
+  use feti_contact_base, only: feti_problem, finish, handle_of, refuse
+  use feti_contact_c, only: FETI_OK, feti_certificate, feti_info, &
+    c_active => feti_active, &
+    c_amplitudes => feti_amplitudes, &
+    c_body_fixing => feti_body_fixing, &
+    c_body_kplus => feti_body_kplus, &
+    c_check => feti_check, &
+    c_counts => feti_counts, &
+    c_displacement => feti_displacement, &
+    c_dual_apply => feti_dual_apply, &
+    c_dual_rhs => feti_dual_rhs, &
+    c_gaps => feti_gaps, &
+    c_multipliers => feti_multipliers, &
+    c_reaction => feti_reaction, &
+    c_setup => feti_setup, &
+    c_solve => feti_solve
+  implicit none
+  private
+  public :: feti_info, feti_certificate
+  public :: setup, solve, check, counts
+  public :: displacement, reaction, amplitudes, multipliers, gaps, active
+  public :: body_fixing, body_kplus, dual_apply, dual_rhs
+
+contains
+
+  !> Null spaces, factors and dual operator ahead of feti_solve, which does it otherwise when needed.
+  subroutine setup(p, stat, errmsg)
+    type(feti_problem), intent(in) :: p
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+
+    call finish(c_setup(handle_of(p)), stat, errmsg)
+  end subroutine
+
+  !> Solves the contact problem. info: what was done and how well the answer satisfies the conditions of contact;
+  !> it is written whatever the status. A positive status leaves a usable but incomplete answer.
+  subroutine solve(p, info, stat, errmsg)
+    type(feti_problem), intent(in) :: p
+    type(feti_info), intent(inout), optional, target :: info
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+    type(c_ptr) :: address
+
+    address = c_null_ptr
+    if (present(info)) then
+      info%struct_size = c_sizeof(info)
+      address = c_loc(info)
+    end if
+    call finish(c_solve(handle_of(p), address), stat, errmsg)
+  end subroutine
+
+  !> Verifies any answer, also another code's: u (all bodies one after the other, length), lambda (force, one per
+  !> contact row), mu (force, one per equality row; may have size 0). Rows and bodies in the certificate count from
+  !> 1, 0: none.
+  subroutine check(p, u, lambda, mu, certificate, stat, errmsg)
+    type(feti_problem), intent(in) :: p
+    real(real64), intent(in), contiguous :: u(:), lambda(:), mu(:)
+    type(feti_certificate), intent(inout) :: certificate
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+    integer(c_int32_t) :: status
+
+    certificate%struct_size = c_sizeof(certificate)
+    status = c_check(handle_of(p), size(u, kind=c_int64_t), u, size(lambda, kind=c_int64_t), lambda, &
+      size(mu, kind=c_int64_t), mu, certificate)
+    if (status >= FETI_OK) then
+      certificate%equilibrium_body = certificate%equilibrium_body + 1
+      certificate%balance_body = certificate%balance_body + 1
+      certificate%penetration_row = certificate%penetration_row + 1
+      certificate%equality_row = certificate%equality_row + 1
+      certificate%force_row = certificate%force_row + 1
+      certificate%complementarity_row = certificate%complementarity_row + 1
+    end if
+    call finish(status, stat, errmsg)
+  end subroutine
+
+  !> Numbers of bodies, of unknowns of all bodies, of contact rows and of equality rows.
+  subroutine counts(p, bodies, dofs, rows, eqs, stat, errmsg)
+    type(feti_problem), intent(in) :: p
+    integer, intent(out), optional :: bodies, dofs, rows, eqs
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+    integer(c_int64_t), target :: count(4)
+    integer(c_int32_t) :: status
+
+    count = 0
+    status = c_counts(handle_of(p), c_loc(count(1)), c_loc(count(2)), c_loc(count(3)), c_loc(count(4)))
+    if (present(bodies)) bodies = int(count(1))
+    if (present(dofs)) dofs = int(count(2))
+    if (present(rows)) rows = int(count(3))
+    if (present(eqs)) eqs = int(count(4))
+    call finish(status, stat, errmsg)
+  end subroutine
+
+  !> Displacement of a body, u(n), length.
+  subroutine displacement(p, body, u, stat, errmsg)
+    type(feti_problem), intent(in) :: p
+    integer, intent(in) :: body
+    real(real64), intent(inout), contiguous :: u(:)
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+
+    call finish(c_displacement(handle_of(p), int(body - 1, c_int64_t), size(u, kind=c_int64_t), u), stat, errmsg)
+  end subroutine
+
+  !> Force of the rows on a body, r(n) = -B'lambda (kind FETI_INEQUALITY), -H'mu (FETI_EQUALITY) or both (0):
+  !> K u = f + r.
+  subroutine reaction(p, kind, body, r, stat, errmsg)
+    type(feti_problem), intent(in) :: p
+    integer(c_int32_t), intent(in) :: kind
+    integer, intent(in) :: body
+    real(real64), intent(inout), contiguous :: r(:)
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+
+    call finish(c_reaction(handle_of(p), kind, int(body - 1, c_int64_t), &
+      size(r, kind=c_int64_t), r), stat, errmsg)
+  end subroutine
+
+  !> Amplitudes alpha(r) of the motions R in the displacement of a body, u = K+(f - B'lambda - H'mu) + R alpha.
+  subroutine amplitudes(p, body, alpha, stat, errmsg)
+    type(feti_problem), intent(in) :: p
+    integer, intent(in) :: body
+    real(real64), intent(inout), contiguous :: alpha(:)
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+
+    call finish(c_amplitudes(handle_of(p), int(body - 1, c_int64_t), size(alpha, kind=c_int64_t), alpha), &
+      stat, errmsg)
+  end subroutine
+
+  !> Contact forces lambda >= 0 (kind FETI_INEQUALITY) or forces mu of the equality rows (FETI_EQUALITY), force.
+  subroutine multipliers(p, kind, lambda, stat, errmsg)
+    type(feti_problem), intent(in) :: p
+    integer(c_int32_t), intent(in) :: kind
+    real(real64), intent(inout), contiguous :: lambda(:)
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+
+    call finish(c_multipliers(handle_of(p), kind, size(lambda, kind=c_int64_t), lambda), &
+      stat, errmsg)
+  end subroutine
+
+  !> Open gaps c - B u of the contact rows, length.
+  subroutine gaps(p, slack, stat, errmsg)
+    type(feti_problem), intent(in) :: p
+    real(real64), intent(inout), contiguous :: slack(:)
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+
+    call finish(c_gaps(handle_of(p), size(slack, kind=c_int64_t), slack), stat, errmsg)
+  end subroutine
+
+  !> State of each contact row: FETI_ROW_OPEN, FETI_ROW_CLOSED or FETI_ROW_WEAK (closed without a clear force).
+  subroutine active(p, state, stat, errmsg)
+    type(feti_problem), intent(in) :: p
+    integer(c_int32_t), intent(inout), contiguous :: state(:)
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+
+    call finish(c_active(handle_of(p), size(state, kind=c_int64_t), state), stat, errmsg)
+  end subroutine
+
+  !> The unknowns that K+ holds, dof(r), r the dimension of the null space. For validation.
+  subroutine body_fixing(p, body, dof, stat, errmsg)
+    type(feti_problem), intent(in) :: p
+    integer, intent(in) :: body
+    integer, intent(inout) :: dof(:)
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+    integer(c_int64_t) :: found(size(dof))
+    integer(c_int32_t) :: status
+
+    status = c_body_fixing(handle_of(p), int(body - 1, c_int64_t), size(dof, kind=c_int64_t), found)
+    if (status >= FETI_OK) dof = int(found) + 1
+    call finish(status, stat, errmsg)
+  end subroutine
+
+  !> y(n,nrhs) = K+ x(n,nrhs), the generalised inverse (14)-(15) of a body. For validation.
+  subroutine body_kplus(p, body, x, y, stat, errmsg)
+    type(feti_problem), intent(in) :: p
+    integer, intent(in) :: body
+    real(real64), intent(in), contiguous :: x(:, :)
+    real(real64), intent(inout), contiguous :: y(:, :)
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+
+    if (any(shape(y) /= shape(x))) then
+      call refuse(7, 'feti_body_kplus: x and y differ in shape', stat, errmsg)
+    else
+      call finish(c_body_kplus(handle_of(p), int(body - 1, c_int64_t), size(x, 1, c_int64_t), &
+        size(x, 2, c_int64_t), x, size(x, 1, c_int64_t), y, size(y, 1, c_int64_t)), stat, errmsg)
+    end if
+  end subroutine
+
+  !> y = F x, F = [B; H] K+ [B; H]', contact rows first, in the host's order and scaling. For validation.
+  subroutine dual_apply(p, x, y, stat, errmsg)
+    type(feti_problem), intent(in) :: p
+    real(real64), intent(in), contiguous :: x(:)
+    real(real64), intent(inout), contiguous :: y(:)
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+
+    if (size(y) /= size(x)) then
+      call refuse(4, 'feti_dual_apply: x and y differ in size', stat, errmsg)
+    else
+      call finish(c_dual_apply(handle_of(p), size(x, kind=c_int64_t), x, y), stat, errmsg)
+    end if
+  end subroutine
+
+  !> d = [B K+ f - c; H K+ f - h], contact rows first, length. For validation.
+  subroutine dual_rhs(p, d, stat, errmsg)
+    type(feti_problem), intent(in) :: p
+    real(real64), intent(inout), contiguous :: d(:)
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+
+    call finish(c_dual_rhs(handle_of(p), size(d, kind=c_int64_t), d), stat, errmsg)
+  end subroutine
+
+end module

@@ -1,0 +1,30 @@
+//! One body: stiffness `K_p`, load `f_p`, null space `R_p`, fixing dofs and the generalised inverse `K_p+`
+//! of (14)-(15).
+
+mod fixing;
+mod generalized_inverse;
+mod null_space;
+mod rigid_modes;
+mod stiffness;
+
+pub use generalized_inverse::{GeneralizedInverse, Plan};
+pub use null_space::{Modes, NullSpaceInput};
+pub use rigid_modes::Coordinates;
+pub use stiffness::{from_dense, from_sparse, SparseInput, Storage};
+
+use crate::linalg::Symmetric;
+
+/// What the host has said about one body; units are the host's own.
+#[derive(Debug, Default)]
+pub struct Body {
+    /// Number of unknowns n.
+    pub order: usize,
+    /// `K_p`, n x n, force / length.
+    pub stiffness: Option<Symmetric>,
+    /// `R_p` or vectors that may span it.
+    pub null_space: Option<NullSpaceInput>,
+    /// Places of the dofs: candidates for the null space when none is given.
+    pub coordinates: Option<Coordinates>,
+    /// `f_p`, length n, force; zero until given.
+    pub load: Option<Vec<f64>>,
+}

@@ -1,0 +1,176 @@
+//! The null space `R_p` of a stiffness matrix: given and verified, or picked out of candidates.
+//! All tests act on `A = D^-1/2 K D^-1/2`, D = diag K: no unit, and supports written as 1e30 on the
+//! diagonal count as supports. K is scaled to a largest diagonal entry in [1, 2); a dof without any
+//! stiffness has `D_ii = 1`.
+
+use crate::error::{Error, Kind, Result};
+use crate::linalg::spd::right_singular;
+use crate::linalg::vector::{norm, norm_max, ratio, weighted_norm};
+use crate::linalg::{Matrix, Symmetric};
+
+/// What the host says about the vectors it hands over.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Modes {
+    /// They span the null space.
+    Exact,
+    /// The null space lies in their span.
+    Candidates,
+}
+
+/// n x r, any scaling of the columns.
+#[derive(Debug, Clone)]
+pub struct NullSpaceInput {
+    pub vectors: Matrix,
+    pub modes: Modes,
+}
+
+/// Columns that keep less of their length than this after orthogonalisation are dependent.
+const DEPENDENT: f64 = 1e-10;
+/// A candidate motion belongs to the null space when `|D^-1 K v|` is this small against `|v|`.
+const CANDIDATE: f64 = 1e-11;
+/// Entries that cancelled to this fraction of their terms are zero (supports of 1e30 would multiply them).
+const CANCELLED: f64 = 1e-12;
+
+/// Basis of the null space with `R'DR = I`.
+pub fn verified(k: &Symmetric, input: &NullSpaceInput, tolerance: f64) -> Result<Matrix> {
+    match input.modes {
+        Modes::Exact => exact(k, &input.vectors, tolerance),
+        Modes::Candidates => {
+            let kernel = kernel_within(k, &input.vectors)?;
+            exact(k, &kernel, tolerance)
+        }
+    }
+}
+
+/// `|A z| <= tolerance | |A| |z| |` for an orthonormal basis z of the span of `D^1/2 R`.
+fn exact(k: &Symmetric, vectors: &Matrix, tolerance: f64) -> Result<Matrix> {
+    let n = k.order();
+    let root: Vec<f64> = (0..n).map(|i| k.metric(i, 1.0).sqrt()).collect();
+    let mut basis = vectors.clone();
+    for j in 0..basis.cols {
+        basis.col_mut(j).iter_mut().zip(&root).for_each(|(v, d)| *v *= d);
+    }
+    let mut basis = basis.orthonormalised(DEPENDENT);
+    if basis.cols < vectors.cols {
+        let what = format!("the {} vectors span {} dimensions only", vectors.cols, basis.cols);
+        return Err(Error::new(Kind::NullSpace, what).value(basis.cols as f64).limit(vectors.cols as f64));
+    }
+    let (mut image, mut terms) = (vec![0.0; n], vec![0.0; n]);
+    for j in 0..basis.cols {
+        basis.col_mut(j).iter_mut().zip(&root).for_each(|(v, d)| *v /= d);
+        k.mul(basis.col(j), &mut image);
+        k.mul_abs(basis.col(j), &mut terms);
+        let weight = |i: usize| 1.0 / k.metric(i, 1.0);
+        let found = ratio(weighted_norm(&image, weight), weighted_norm(&terms, weight));
+        if found.is_nan() || found > tolerance {
+            let what = format!("not a null space: |K R| = {found:.1e} |K||R| exceeds {tolerance:.1e}");
+            return Err(Error::new(Kind::NullSpace, what)
+                .dof(largest(&image, weight))
+                .value(found)
+                .limit(tolerance));
+        }
+    }
+    Ok(basis)
+}
+
+/// The part of the span of the candidates that `D^-1 K` maps to zero: from the singular values of
+/// `D^-1 K Q`, Q an orthonormal basis of the span.
+fn kernel_within(k: &Symmetric, candidates: &Matrix) -> Result<Matrix> {
+    let span = candidates.clone().orthonormalised(DEPENDENT);
+    let n = k.order();
+    let mut image = Matrix::zeros(n, span.cols)?;
+    for j in 0..span.cols {
+        k.mul(span.col(j), image.col_mut(j));
+        image.col_mut(j).iter_mut().enumerate().for_each(|(i, v)| *v /= k.metric(i, 1.0));
+    }
+    let mut kernel = Matrix::zeros(n, 0)?;
+    if span.cols == 0 || n < span.cols {
+        return Ok(kernel);
+    }
+    let (values, vectors) = right_singular(&image)?;
+    let (mut motion, mut terms) = (vec![0.0; n], vec![0.0; n]);
+    for (j, _) in values.iter().enumerate().filter(|(_, value)| **value <= CANDIDATE) {
+        motion.fill(0.0);
+        terms.fill(0.0);
+        span.mul_add(1.0, vectors.col(j), &mut motion);
+        for q in 0..span.cols {
+            let share = vectors.get(q, j).abs();
+            terms.iter_mut().zip(span.col(q)).for_each(|(t, v)| *t += share * v.abs());
+        }
+        let floor = CANCELLED * norm_max(&motion);
+        for (v, t) in motion.iter_mut().zip(&terms) {
+            if v.abs() <= CANCELLED * t || v.abs() <= floor {
+                *v = 0.0;
+            }
+        }
+        if norm(&motion) > 0.0 {
+            kernel.push_col(&motion);
+        }
+    }
+    Ok(kernel)
+}
+
+/// Position of the largest `w_i x_i^2`.
+pub fn largest(x: &[f64], weight: impl Fn(usize) -> f64) -> usize {
+    (0..x.len()).fold(0, |best, i| {
+        let size = |i: usize| weight(i) * x[i] * x[i];
+        if size(i) > size(best) { i } else { best }
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Chain of `n` unit springs, free at both ends, `support` added at dof 0.
+    fn chain(n: usize, support: f64) -> Symmetric {
+        let (mut ptr, mut col, mut val) = (vec![0], Vec::new(), Vec::new());
+        for i in 0..n {
+            if i > 0 {
+                col.push(i - 1);
+                val.push(-1.0);
+            }
+            col.push(i);
+            let ends = f64::from(u8::from(i == 0) + u8::from(i + 1 == n));
+            val.push(2.0 - ends + if i == 0 { support } else { 0.0 });
+            ptr.push(col.len());
+        }
+        Symmetric { ptr, col, val }
+    }
+
+    fn translation(n: usize, modes: Modes) -> NullSpaceInput {
+        NullSpaceInput { vectors: Matrix { rows: n, cols: 1, data: vec![3.0; n] }, modes }
+    }
+
+    #[test]
+    fn a_true_null_space_is_accepted_and_normalised_in_the_metric_of_the_diagonal() {
+        let k = chain(50, 0.0);
+        let r = verified(&k, &translation(50, Modes::Exact), 1e-8).unwrap();
+        let length: f64 = (0..50).map(|i| k.diagonal(i) * r.get(i, 0) * r.get(i, 0)).sum();
+        assert!((length - 1.0).abs() < 1e-14);
+    }
+
+    #[test]
+    fn a_support_of_any_stiffness_makes_an_exact_null_space_false() {
+        for support in [1e-3, 1.0, 1e30] {
+            let error = verified(&chain(50, support), &translation(50, Modes::Exact), 1e-8).unwrap_err();
+            assert_eq!(error.kind, Kind::NullSpace, "support {support:e}");
+        }
+    }
+
+    #[test]
+    fn a_supported_candidate_is_dropped_and_a_free_one_kept() {
+        for support in [1e-3, 1.0, 1e30] {
+            let r = verified(&chain(50, support), &translation(50, Modes::Candidates), 1e-8).unwrap();
+            assert_eq!(r.cols, 0, "support {support:e}");
+        }
+        assert_eq!(verified(&chain(50, 0.0), &translation(50, Modes::Candidates), 1e-8).unwrap().cols, 1);
+    }
+
+    #[test]
+    fn dependent_vectors_are_refused() {
+        let vectors = Matrix { rows: 5, cols: 2, data: [vec![1.0; 5], vec![2.0; 5]].concat() };
+        let error = verified(&chain(5, 0.0), &NullSpaceInput { vectors, modes: Modes::Exact }, 1e-8).unwrap_err();
+        assert_eq!((error.kind, error.place.value), (Kind::NullSpace, Some(1.0)));
+    }
+}

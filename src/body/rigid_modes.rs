@@ -1,0 +1,121 @@
+//! Rigid-body modes from the places of the dofs: candidates for the null space.
+
+use crate::error::{Error, Result};
+use crate::linalg::graph::components;
+use crate::linalg::memory::copied;
+use crate::linalg::vector::first_non_finite;
+use crate::linalg::{Matrix, Symmetric};
+
+/// Per dof: what it moves and where it sits.
+#[derive(Debug, Clone)]
+pub struct Coordinates {
+    /// 1-3: displacement along axis x, y, z; 4-6: rotation about it.
+    direction: Vec<i32>,
+    /// Position, length; coordinates beyond the given dimension are 0.
+    place: Vec<[f64; 3]>,
+}
+
+impl Coordinates {
+    /// `place(i, k)` is coordinate k of dof i at `xyz[k + ld i]`, k < dim.
+    pub fn new(dim: usize, direction: &[i32], xyz: &[f64], ld: usize) -> Result<Self> {
+        if let Some(at) = direction.iter().position(|d| !(1..=6).contains(d)) {
+            let found = direction[at];
+            return Err(Error::argument("dir", format!("direction {found} is not one of 1 to 6")).dof(at));
+        }
+        let place: Vec<[f64; 3]> = (0..direction.len())
+            .map(|i| std::array::from_fn(|k| if k < dim { xyz[k + ld * i] } else { 0.0 }))
+            .collect();
+        if let Some(at) = place.iter().position(|p| first_non_finite(p).is_some()) {
+            return Err(Error::argument("xyz", "a coordinate is not a finite number").dof(at));
+        }
+        Ok(Self { direction: copied(direction, "the coordinates of a body")?, place })
+    }
+
+    pub fn len(&self) -> usize {
+        self.direction.len()
+    }
+
+    /// The six rigid modes of every connected part with more than one dof, n x (up to 6 parts). Modes that
+    /// move nothing are left out.
+    pub fn rigid_modes(&self, stiffness: &Symmetric) -> Result<Matrix> {
+        let (part_of, parts) = components(stiffness);
+        let mut members = vec![Vec::new(); parts];
+        part_of.iter().enumerate().for_each(|(dof, &part)| members[part].push(dof));
+        let mut modes = Matrix::zeros(self.len(), 0)?;
+        let mut column = vec![0.0; self.len()];
+        for dofs in members.iter().filter(|dofs| dofs.len() > 1) {
+            let (centre, size) = self.extent(dofs);
+            for mode in 0..6 {
+                column.fill(0.0);
+                dofs.iter().for_each(|&i| column[i] = self.motion(i, mode, centre, size));
+                if column.iter().any(|v| *v != 0.0) {
+                    modes.push_col(&column);
+                }
+            }
+        }
+        Ok(modes)
+    }
+
+    /// Centre and half the largest edge of the box around the dofs (1 for a point).
+    fn extent(&self, dofs: &[usize]) -> ([f64; 3], f64) {
+        let mut low = self.place[dofs[0]];
+        let mut high = low;
+        for &i in dofs {
+            for k in 0..3 {
+                low[k] = low[k].min(self.place[i][k]);
+                high[k] = high[k].max(self.place[i][k]);
+            }
+        }
+        let size = (0..3).map(|k| 0.5 * (high[k] - low[k])).fold(0.0, f64::max);
+        (std::array::from_fn(|k| 0.5 * (low[k] + high[k])), if size > 0.0 { size } else { 1.0 })
+    }
+
+    /// Movement of dof `i` in mode 0-2 (translation along an axis) or 3-5 (rotation about it by `1 / size`,
+    /// so that translations and rotations move points of the boundary equally far).
+    fn motion(&self, i: usize, mode: usize, centre: [f64; 3], size: f64) -> f64 {
+        let direction = self.direction[i] as usize - 1;
+        if mode < 3 {
+            return f64::from(u8::from(direction == mode));
+        }
+        let axis = mode - 3;
+        if direction >= 3 {
+            return if direction - 3 == axis { 1.0 / size } else { 0.0 };
+        }
+        // e_axis x (x - centre), component `direction`
+        let arm = |k: usize| (self.place[i][k] - centre[k]) / size;
+        if direction == (axis + 1) % 3 {
+            -arm((axis + 2) % 3)
+        } else if direction == (axis + 2) % 3 {
+            arm((axis + 1) % 3)
+        } else {
+            0.0
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_modes_of_a_truss_bar_do_not_stretch_it() {
+        // a bar from (0,0) to (3,4): K = t t' with t = (-.6, -.8, .6, .8)
+        let t = [-0.6, -0.8, 0.6, 0.8];
+        let (mut ptr, mut col, mut val) = (vec![0], Vec::new(), Vec::new());
+        for i in 0..4 {
+            for j in 0..=i {
+                col.push(j);
+                val.push(t[i] * t[j]);
+            }
+            ptr.push(col.len());
+        }
+        let xyz = [0.0, 0.0, 0.0, 0.0, 3.0, 4.0, 3.0, 4.0];
+        let coordinates = Coordinates::new(2, &[1, 2, 1, 2], &xyz, 2).unwrap();
+        let modes = coordinates.rigid_modes(&Symmetric { ptr, col, val }).unwrap();
+        assert_eq!(modes.cols, 3);
+        for j in 0..3 {
+            let stretch: f64 = (0..4).map(|i| t[i] * modes.get(i, j)).sum();
+            assert!(stretch.abs() < 1e-15);
+        }
+    }
+}

@@ -1,0 +1,250 @@
+//! The host's stiffness matrix, checked and brought into one form: the lower triangle by sorted rows.
+
+use crate::error::{Error, Kind, Result};
+use crate::linalg::memory::reserved;
+use crate::linalg::vector::first_non_finite;
+use crate::linalg::{Csr, Symmetric};
+
+/// Which entries the host hands over.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Storage {
+    Full,
+    Lower,
+    Upper,
+}
+
+/// A matrix by rows as it arrived: `ptr` has n + 1 nondecreasing entries from 0, columns count from 0 in any
+/// order within a row.
+#[derive(Debug, Clone, Copy)]
+pub struct SparseInput<'a> {
+    pub ptr: &'a [usize],
+    pub col: &'a [i64],
+    pub val: &'a [f64],
+    pub storage: Storage,
+}
+
+/// Checks and converts a sparse matrix. Full storage is accepted when
+/// `|K_ij - K_ji| <= tolerance sqrt(K_ii K_jj)`, and averaged.
+pub fn from_sparse(input: SparseInput<'_>, tolerance: f64) -> Result<Symmetric> {
+    let rows = sorted(input)?;
+    match input.storage {
+        Storage::Lower => {
+            check_triangle(&rows, |row, col| col <= row, "above the diagonal, in a matrix announced as lower")?;
+            symmetric(rows)
+        }
+        Storage::Upper => {
+            check_triangle(&rows, |row, col| col >= row, "below the diagonal, in a matrix announced as upper")?;
+            symmetric(rows.transposed()?)
+        }
+        Storage::Full => symmetric(averaged(&rows, tolerance)?),
+    }
+}
+
+/// Checks and converts a column-major n x n matrix with leading dimension `ld`; zeros are not stored.
+pub fn from_dense(n: usize, k: &[f64], ld: usize, storage: Storage, tolerance: f64) -> Result<Symmetric> {
+    let mut rows = Csr::empty(n);
+    for i in 0..n {
+        let range = match storage {
+            Storage::Full => 0..n,
+            Storage::Lower => 0..i + 1,
+            Storage::Upper => i..n,
+        };
+        for j in range.clone() {
+            let value = k[i + ld * j];
+            if !value.is_finite() {
+                return Err(Error::argument("k", "the entry is not a finite number").row(i).entry(i + ld * j));
+            }
+        }
+        let kept = range.map(|j| (j, k[i + ld * j])).filter(|&(j, v)| v != 0.0 || i == j);
+        rows.push_row(kept);
+    }
+    symmetric(match storage {
+        Storage::Full => averaged(&rows, tolerance).map_err(|e| rename(e, "k"))?,
+        Storage::Lower => rows,
+        Storage::Upper => rows.transposed()?,
+    })
+}
+
+fn rename(mut error: Error, argument: &'static str) -> Error {
+    if matches!(error.kind, Kind::Argument(_)) {
+        error.kind = Kind::Argument(argument);
+    }
+    error
+}
+
+/// The rows with ascending columns; refuses columns out of range, repeated entries and values not finite.
+fn sorted(input: SparseInput<'_>) -> Result<Csr> {
+    let n = input.ptr.len() - 1;
+    if let Some(at) = first_non_finite(input.val) {
+        let row = input.ptr.partition_point(|&p| p <= at) - 1;
+        return Err(Error::argument("val", "the entry is not a finite number").row(row).entry(at));
+    }
+    let mut rows = Csr::empty(n);
+    rows.col = reserved(input.col.len(), "a stiffness matrix")?;
+    rows.val = reserved(input.col.len(), "a stiffness matrix")?;
+    let mut row = Vec::new();
+    for i in 0..n {
+        row.clear();
+        for at in input.ptr[i]..input.ptr[i + 1] {
+            let col = usize::try_from(input.col[at]).ok().filter(|&col| col < n).ok_or_else(|| {
+                Error::argument("col", format!("the column is outside the {n} unknowns of the body"))
+                    .row(i)
+                    .entry(at)
+                    .value(input.col[at] as f64)
+            })?;
+            row.push((col, input.val[at], at));
+        }
+        row.sort_unstable_by_key(|entry| entry.0);
+        if let Some(pair) = row.windows(2).find(|pair| pair[0].0 == pair[1].0) {
+            let at = pair[0].2.max(pair[1].2);
+            return Err(Error::argument("col", "the row holds this column twice").row(i).entry(at));
+        }
+        rows.push_row(row.iter().map(|entry| (entry.0, entry.1)));
+    }
+    Ok(rows)
+}
+
+/// `entry` counts within the sorted row structure, so the row and the column name the place.
+fn check_triangle(rows: &Csr, inside: fn(usize, usize) -> bool, where_it_is: &str) -> Result<()> {
+    for i in 0..rows.rows() {
+        if let Some((j, _)) = rows.row(i).find(|&(j, _)| !inside(i, j)) {
+            return Err(Error::argument("col", format!("the entry of this dof's column lies {where_it_is}"))
+                .row(i)
+                .dof(j));
+        }
+    }
+    Ok(())
+}
+
+/// Lower triangle of `(K + K') / 2`, after the check of symmetry.
+fn averaged(rows: &Csr, tolerance: f64) -> Result<Csr> {
+    let transposed = rows.transposed()?;
+    let n = rows.rows();
+    let diagonal: Vec<f64> = (0..n).map(|i| entry(rows, i, i)).collect();
+    let mut lower = Csr::empty(n);
+    for i in 0..n {
+        let mut mates = transposed.row(i).take_while(|&(j, _)| j <= i).peekable();
+        let mut own = rows.row(i).take_while(|&(j, _)| j <= i).peekable();
+        loop {
+            let column = match (own.peek(), mates.peek()) {
+                (None, None) => break,
+                (a, b) => a.map_or(usize::MAX, |a| a.0).min(b.map_or(usize::MAX, |b| b.0)),
+            };
+            let k_ij = own.next_if(|e| e.0 == column).map_or(0.0, |e| e.1);
+            let k_ji = mates.next_if(|e| e.0 == column).map_or(0.0, |e| e.1);
+            let limit = tolerance * (diagonal[i].abs() * diagonal[column].abs()).sqrt();
+            if (k_ij - k_ji).abs() > limit {
+                return Err(unsymmetric(rows, i, column, k_ij - k_ji, limit));
+            }
+            lower.col.push(column);
+            lower.val.push(if k_ij == k_ji { k_ij } else { 0.5 * k_ij + 0.5 * k_ji });
+        }
+        lower.ptr.push(lower.col.len());
+    }
+    Ok(lower)
+}
+
+fn entry(rows: &Csr, i: usize, j: usize) -> f64 {
+    rows.row(i).find(|e| e.0 == j).map_or(0.0, |e| e.1)
+}
+
+fn unsymmetric(rows: &Csr, i: usize, j: usize, difference: f64, limit: f64) -> Error {
+    let lonely = |row: usize| rows.row(row).all(|(col, v)| col == row || v == 0.0);
+    let what = if lonely(i) || lonely(j) {
+        "an identity row meets a full column: eliminate supports symmetrically".to_owned()
+    } else {
+        format!("|K_ij - K_ji| = {:.1e} exceeds {limit:.1e}: the matrix is not symmetric", difference.abs())
+    };
+    Error::argument("val", what).row(i).dof(j).value(difference.abs()).limit(limit)
+}
+
+/// The lower triangle with every diagonal entry stored. A dof may have no stiffness at all (a rigid body);
+/// a diagonal entry that is negative, or zero in a row that is not, makes K indefinite.
+fn symmetric(lower: Csr) -> Result<Symmetric> {
+    let n = lower.rows();
+    let mut k = Symmetric {
+        ptr: reserved(n + 1, "a stiffness matrix")?,
+        col: reserved(lower.col.len() + n, "a stiffness matrix")?,
+        val: reserved(lower.col.len() + n, "a stiffness matrix")?,
+    };
+    k.ptr.push(0);
+    for i in 0..n {
+        for (j, v) in lower.row(i) {
+            k.col.push(j);
+            k.val.push(v);
+        }
+        if lower.row(i).last().is_none_or(|e| e.0 != i) {
+            k.col.push(i);
+            k.val.push(0.0);
+        }
+        k.ptr.push(k.col.len());
+    }
+    let coupled = |i: usize, j: usize, v: f64| i != j && v != 0.0;
+    for i in 0..n {
+        let lost = k.lower_row(i).find(|&(j, v)| coupled(i, j, v) && k.diagonal(i).min(k.diagonal(j)) <= 0.0);
+        let dof = lost.map_or(i, |(j, _)| if k.diagonal(i) <= 0.0 { i } else { j });
+        if lost.is_some() || k.diagonal(i) < 0.0 {
+            let what = format!("the diagonal entry is {:.3e}: the stiffness matrix is indefinite", k.diagonal(dof));
+            return Err(Error::new(Kind::Indefinite, what).dof(dof).value(k.diagonal(dof)).limit(0.0));
+        }
+    }
+    Ok(k)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const PTR: [usize; 3] = [0, 2, 4];
+
+    fn full(val: &[f64]) -> Result<Symmetric> {
+        from_sparse(SparseInput { ptr: &PTR, col: &[1, 0, 0, 1], val, storage: Storage::Full }, 1e-10)
+    }
+
+    #[test]
+    fn the_three_storages_give_the_same_matrix() {
+        let expected = Symmetric { ptr: vec![0, 1, 3], col: vec![0, 0, 1], val: vec![2.0, -1.0, 3.0] };
+        assert_eq!(full(&[-1.0, 2.0, -1.0, 3.0]).unwrap(), expected);
+        let lower = SparseInput { ptr: &[0, 1, 3], col: &[0, 1, 0], val: &[2.0, 3.0, -1.0], storage: Storage::Lower };
+        assert_eq!(from_sparse(lower, 0.0).unwrap(), expected);
+        let upper = SparseInput { ptr: &[0, 2, 3], col: &[1, 0, 1], val: &[-1.0, 2.0, 3.0], storage: Storage::Upper };
+        assert_eq!(from_sparse(upper, 0.0).unwrap(), expected);
+        for storage in [Storage::Full, Storage::Lower, Storage::Upper] {
+            let dense = from_dense(2, &[2.0, -1.0, 9.0, -1.0, 3.0], 3, storage, 0.0).unwrap();
+            assert_eq!(dense, expected);
+        }
+    }
+
+    #[test]
+    fn an_unsymmetric_matrix_is_refused_with_row_and_column() {
+        let error = full(&[-1.0, 2.0, -1.1, 3.0]).unwrap_err();
+        assert_eq!(error.kind, Kind::Argument("val"));
+        assert_eq!((error.place.row, error.place.dof), (Some(1), Some(0)));
+    }
+
+    #[test]
+    fn an_identity_row_with_a_full_column_gets_its_own_advice() {
+        let error = full(&[-1.0, 2.0, 0.0, 1.0]).unwrap_err();
+        assert!(error.what.contains("eliminate supports symmetrically"), "{error}");
+    }
+
+    #[test]
+    fn a_dof_may_lack_stiffness_but_not_couple_without_it() {
+        let rigid = SparseInput { ptr: &[0, 0], col: &[], val: &[], storage: Storage::Full };
+        assert_eq!(from_sparse(rigid, 0.0).unwrap().diagonal(0), 0.0);
+        let error = full(&[-1.0, 2.0, -1.0, 0.0]).unwrap_err();
+        assert_eq!((error.kind, error.place.dof), (Kind::Indefinite, Some(1)));
+    }
+
+    #[test]
+    fn entries_out_of_range_twice_or_not_finite_are_refused_with_their_position() {
+        let refuse = |col: &[i64], val: &[f64]| {
+            from_sparse(SparseInput { ptr: &PTR, col, val, storage: Storage::Full }, 0.0).unwrap_err()
+        };
+        assert_eq!(refuse(&[0, 1, 0, 2], &[1.0; 4]).place.entry, Some(3));
+        assert_eq!(refuse(&[0, -1, 0, 1], &[1.0; 4]).place.entry, Some(1));
+        assert_eq!(refuse(&[0, 0, 0, 1], &[1.0; 4]).place.entry, Some(1));
+        let nan = refuse(&[0, 1, 0, 1], &[1.0, 1.0, f64::NAN, 1.0]);
+        assert_eq!((nan.kind, nan.place.row, nan.place.entry), (Kind::Argument("val"), Some(1), Some(2)));
+    }
+}

@@ -1,0 +1,180 @@
+//! From the primal problem (10)-(11) to the dual (12)-(13) and back:
+//!
+//! ```text
+//! F = B K+ B',  d = B K+ f - c,  G = R'B',  e = R'f,   u = K+ (f - B'lambda) + R alpha   (17)
+//! ```
+//!
+//! B holds the contact rows, then the equality rows, each divided by its length in the metric `D^-1`; forces
+//! are in units of 2^p, the size of the largest diagonal entry of K.
+
+use std::ops::Range;
+use std::sync::Arc;
+
+use crate::body::GeneralizedInverse;
+use crate::error::Result;
+use crate::linalg::memory::zeros;
+use crate::linalg::{Csr, Operator, Packed};
+
+/// One body as the dual sees it.
+struct Subdomain {
+    /// Unknowns of the body among all unknowns.
+    range: Range<usize>,
+    /// Rigid modes of the body among all modes.
+    modes: Range<usize>,
+    kplus: Arc<GeneralizedInverse>,
+    /// Rows of B that touch the body, ascending.
+    rows: Vec<usize>,
+    /// Those rows, over the unknowns of the body.
+    matrix: Csr,
+    /// `F_p = B_p K_p+ B_p'`
+    operator: Packed,
+}
+
+pub struct Dual {
+    subdomains: Vec<Subdomain>,
+    /// Number of rows m of B.
+    rows: usize,
+    /// `G'` = B R, m x r.
+    pub coarse: Csr,
+}
+
+/// A body and its place among all unknowns.
+pub struct Part {
+    pub range: Range<usize>,
+    pub kplus: Arc<GeneralizedInverse>,
+}
+
+impl Dual {
+    /// `matrix` is B, m x n; `in_parallel` runs independent tasks, each with its number, in any order.
+    pub fn new(parts: Vec<Part>, matrix: &Csr, in_parallel: &InParallel) -> Result<Self> {
+        let local = split(&parts, matrix);
+        let assemble = |p: usize| parts[p].kplus.inverse_form(&local[p].1);
+        let operators = in_parallel(parts.len(), &assemble)?;
+        let mut first = 0;
+        let mut subdomains = Vec::with_capacity(parts.len());
+        for ((part, (rows, matrix)), operator) in parts.into_iter().zip(local).zip(operators) {
+            let modes = first..first + part.kplus.null_space.cols;
+            first = modes.end;
+            subdomains.push(Subdomain { range: part.range, modes, kplus: part.kplus, rows, matrix, operator });
+        }
+        let coarse = coarse(&subdomains, matrix.rows(), first);
+        Ok(Self { subdomains, rows: matrix.rows(), coarse })
+    }
+
+    /// Bytes that explicit operators take for these bodies and rows.
+    pub fn bytes(ranges: impl Iterator<Item = Range<usize>>, matrix: &Csr) -> usize {
+        ranges.map(|range| Packed::bytes(touching(&range, matrix).len())).sum()
+    }
+
+    /// Dimension r of the null space of all bodies.
+    pub fn modes(&self) -> usize {
+        self.coarse.cols
+    }
+
+    /// Modes of body p among all modes.
+    pub fn modes_of(&self, p: usize) -> Range<usize> {
+        self.subdomains[p].modes.clone()
+    }
+
+    /// `d = B K+ f - c` of (13).
+    pub fn rhs(&self, f: &[f64], c: &[f64]) -> Result<Vec<f64>> {
+        let mut d: Vec<f64> = c.iter().map(|c| -c).collect();
+        for s in &self.subdomains {
+            let mut x = zeros(s.range.len(), "a displacement")?;
+            s.kplus.apply(&f[s.range.clone()], &mut x)?;
+            s.rows.iter().enumerate().for_each(|(k, &i)| d[i] += s.matrix.row_dot(k, &x));
+        }
+        Ok(d)
+    }
+
+    /// `e = R'f`; what rounding alone would leave of a load in balance is zero.
+    pub fn resultants(&self, f: &[f64]) -> Vec<f64> {
+        let mut e = vec![0.0; self.modes()];
+        for s in &self.subdomains {
+            for (k, mode) in s.modes.clone().enumerate() {
+                let terms = || s.kplus.null_space.col(k).iter().zip(&f[s.range.clone()]).map(|(r, f)| r * f);
+                let (sum, size): (f64, f64) = (terms().sum(), terms().map(f64::abs).sum());
+                e[mode] = if sum.abs() <= 64.0 * f64::EPSILON * size { 0.0 } else { sum };
+            }
+        }
+        e
+    }
+
+    /// (17): `u = K+ (f - B'lambda) + R alpha`, over all unknowns.
+    pub fn displacement(&self, f: &[f64], lambda: &[f64], alpha: &[f64]) -> Result<Vec<f64>> {
+        let mut u = zeros(f.len(), "a displacement")?;
+        for s in &self.subdomains {
+            let mut load = f[s.range.clone()].to_vec();
+            let local: Vec<f64> = s.rows.iter().map(|&i| lambda[i]).collect();
+            s.matrix.mul_transposed_add(-1.0, &local, &mut load);
+            let u = &mut u[s.range.clone()];
+            s.kplus.apply(&load, u)?;
+            s.kplus.null_space.mul_add(1.0, &alpha[s.modes.clone()], u);
+        }
+        Ok(u)
+    }
+
+    /// `v = R a`, over all unknowns.
+    pub fn rigid_motion(&self, a: &[f64], unknowns: usize) -> Vec<f64> {
+        let mut v = vec![0.0; unknowns];
+        for s in &self.subdomains {
+            s.kplus.null_space.mul_add(1.0, &a[s.modes.clone()], &mut v[s.range.clone()]);
+        }
+        v
+    }
+}
+
+/// Runs tasks 0..count and collects their results in order, or the first error in order.
+pub type InParallel<'a> = dyn Fn(usize, &(dyn Fn(usize) -> Result<Packed> + Sync)) -> Result<Vec<Packed>> + 'a;
+
+impl Operator for Dual {
+    fn order(&self) -> usize {
+        self.rows
+    }
+
+    /// `y = F x = sum_p B_p K_p+ B_p' x`, body after body.
+    fn apply(&self, x: &[f64], y: &mut [f64]) {
+        y.fill(0.0);
+        let (mut local, mut image) = (Vec::new(), Vec::new());
+        for s in &self.subdomains {
+            local.clear();
+            local.extend(s.rows.iter().map(|&i| x[i]));
+            image.resize(local.len(), 0.0);
+            s.operator.apply(&local, &mut image);
+            s.rows.iter().zip(&image).for_each(|(&i, v)| y[i] += v);
+        }
+    }
+}
+
+/// Rows of B with an entry in the range.
+fn touching(range: &Range<usize>, matrix: &Csr) -> Vec<usize> {
+    (0..matrix.rows()).filter(|&i| matrix.row(i).any(|(j, _)| range.contains(&j))).collect()
+}
+
+/// Per body: the rows of B that touch it and their entries over its own unknowns.
+fn split(parts: &[Part], matrix: &Csr) -> Vec<(Vec<usize>, Csr)> {
+    let cut = |range: &Range<usize>| {
+        let rows = touching(range, matrix);
+        let mut local = Csr::empty(range.len());
+        for &i in &rows {
+            let inside = matrix.row(i).filter(|(j, _)| range.contains(j));
+            local.push_row(inside.map(|(j, v)| (j - range.start, v)));
+        }
+        (rows, local)
+    };
+    parts.iter().map(|part| cut(&part.range)).collect()
+}
+
+/// `G' = B R`, m x r.
+fn coarse(subdomains: &[Subdomain], m: usize, modes: usize) -> Csr {
+    let mut rows: Vec<Vec<(usize, f64)>> = vec![Vec::new(); m];
+    for s in subdomains {
+        for (k, &i) in s.rows.iter().enumerate() {
+            let entries = s.modes.clone().enumerate().map(|(j, mode)| (mode, s.matrix.row_dot(k, s.kplus.null_space.col(j))));
+            rows[i].extend(entries.filter(|entry| entry.1 != 0.0));
+        }
+    }
+    let mut coarse = Csr::empty(modes);
+    rows.into_iter().for_each(|row| coarse.push_row(row));
+    coarse
+}

@@ -1,0 +1,136 @@
+//! The one error type: what was wrong, where, and by how much.
+
+use std::fmt;
+
+/// What kind of failure; the C ABI gives every kind its own status.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Kind {
+    /// The named argument of the called function was refused.
+    Argument(&'static str),
+    /// Memory could not be reserved, or the memory limit would be exceeded.
+    Memory,
+    /// Something the call needs has not been given yet.
+    State,
+    /// The load has a component that no contact force can balance: the dual (12) is infeasible.
+    LoadNotHeld,
+    /// Rows of `B u <= c`, `H u = h` contradict each other.
+    GapsContradict,
+    /// A given null space is not one, or is incomplete.
+    NullSpace,
+    /// A stiffness matrix is not positive definite on its range.
+    Indefinite,
+    /// A number does not fit the index type.
+    Overflow,
+    /// A result of the library contradicts itself; never the host's fault.
+    Internal,
+    /// The request is valid but not available.
+    Unsupported,
+}
+
+/// Where it happened. Numbers count from 0 inside the library; `base` is what texts count from.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Place {
+    pub base: i64,
+    pub body: Option<usize>,
+    pub component: Option<usize>,
+    pub dof: Option<usize>,
+    pub row: Option<usize>,
+    pub entry: Option<usize>,
+    /// The number found ...
+    pub value: Option<f64>,
+    /// ... and the number it had to stay within.
+    pub limit: Option<f64>,
+}
+
+impl fmt::Display for Place {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let parts = [
+            ("body", self.body),
+            ("component", self.component),
+            ("dof", self.dof),
+            ("row", self.row),
+            ("entry", self.entry),
+        ];
+        let mut separator = "";
+        for (name, number) in parts.iter().filter_map(|(name, n)| n.map(|n| (name, n))) {
+            write!(out, "{separator}{name} {}", number as i64 + self.base)?;
+            separator = ", ";
+        }
+        if separator.is_empty() {
+            Ok(())
+        } else {
+            out.write_str(": ")
+        }
+    }
+}
+
+/// A failure with its place. `Display` reads "body 3, row 7: the text of what was wrong".
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[error("{place}{what}")]
+pub struct Error {
+    pub kind: Kind,
+    pub what: String,
+    pub place: Box<Place>,
+}
+
+pub type Result<T> = std::result::Result<T, Error>;
+
+impl Error {
+    pub fn new(kind: Kind, what: impl Into<String>) -> Self {
+        Self { kind, what: what.into(), place: Box::default() }
+    }
+
+    /// `argument` is the name the argument has in the C signature.
+    pub fn argument(argument: &'static str, what: impl Into<String>) -> Self {
+        Self::new(Kind::Argument(argument), what)
+    }
+
+    pub fn body(mut self, body: usize) -> Self {
+        self.place.body = Some(body);
+        self
+    }
+
+    pub fn dof(mut self, dof: usize) -> Self {
+        self.place.dof = Some(dof);
+        self
+    }
+
+    pub fn row(mut self, row: usize) -> Self {
+        self.place.row = Some(row);
+        self
+    }
+
+    pub fn entry(mut self, entry: usize) -> Self {
+        self.place.entry = Some(entry);
+        self
+    }
+
+    pub fn value(mut self, value: f64) -> Self {
+        self.place.value = Some(value);
+        self
+    }
+
+    pub fn limit(mut self, limit: f64) -> Self {
+        self.place.limit = Some(limit);
+        self
+    }
+
+    /// The same error with its text counting from `base` (1 for Fortran hosts).
+    pub fn counted_from(mut self, base: i64) -> Self {
+        self.place.base = base;
+        self
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_text_names_the_place_in_the_numbering_of_the_host() {
+        let error = Error::argument("val", "not a number").body(2).row(7);
+        assert_eq!(error.to_string(), "body 2, row 7: not a number");
+        assert_eq!(error.counted_from(1).to_string(), "body 3, row 8: not a number");
+        assert_eq!(Error::new(Kind::State, "no load").to_string(), "no load");
+    }
+}

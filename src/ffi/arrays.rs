@@ -1,0 +1,268 @@
+//! Host pointers to slices and back, checked: sizes, NULL, alignment, texts. Results are written at the end of a call, by
+//! copying, so that a failure leaves the host's arrays as they are and arrays that overlap do no harm.
+
+use std::ffi::{c_char, CStr};
+
+use crate::error::{Error, Kind, Result};
+
+/// A size: not negative, and an array of as many 8-byte numbers can exist.
+pub(super) fn count(value: i64, name: &'static str) -> Result<usize> {
+    let largest = isize::MAX as usize / 8;
+    match usize::try_from(value) {
+        Ok(count) if count <= largest => Ok(count),
+        Ok(_) => {
+            Err(Error::argument(name, format!("{value}: no array has so many entries")).value(value as f64))
+        }
+        Err(_) => Err(Error::argument(name, format!("{value}: negative")).value(value as f64)),
+    }
+}
+
+/// A number of a body or row, counted from 0.
+pub(super) fn id(value: i64, name: &'static str) -> Result<usize> {
+    usize::try_from(value)
+        .map_err(|_| Error::argument(name, format!("{value}: negative")).value(value as f64))
+}
+
+/// A size that is known: "n is 5, the body has 7".
+pub(super) fn same(value: i64, expected: usize, name: &'static str, what: &str) -> Result<usize> {
+    if usize::try_from(value) == Ok(expected) {
+        return Ok(expected);
+    }
+    let text = format!("{name} is {value}, {what} {expected}");
+    Err(Error::argument(name, text).value(value as f64).limit(expected as f64))
+}
+
+/// Entries of a column-major array of `rows` x `columns` with leading dimension `ld`: ld (columns - 1) + rows.
+pub(super) fn column_major(
+    rows: usize,
+    columns: usize,
+    ld: i64,
+    name: &'static str,
+) -> Result<(usize, usize)> {
+    let ld = count(ld, name)?;
+    if ld < rows {
+        let text = format!("leading dimension {ld} is less than the {rows} rows");
+        return Err(Error::argument(name, text).value(ld as f64).limit(rows as f64));
+    }
+    let Some(before) = columns.checked_sub(1) else {
+        return Ok((0, ld));
+    };
+    let entries = ld.checked_mul(before).and_then(|entries| entries.checked_add(rows));
+    match entries.filter(|entries| *entries <= isize::MAX as usize / 8) {
+        Some(entries) => Ok((entries, ld)),
+        None => {
+            Err(Error::argument(name, format!("{columns} columns of {ld} entries: no array has so many")))
+        }
+    }
+}
+
+/// An empty vector with room for `len` entries.
+pub(super) fn reserved<T>(len: usize) -> Result<Vec<T>> {
+    let mut room = Vec::new();
+    room.try_reserve_exact(len).map_err(|_| {
+        let bytes = len.saturating_mul(size_of::<T>());
+        Error::new(Kind::Memory, format!("{bytes} bytes could not be reserved")).value(bytes as f64)
+    })?;
+    Ok(room)
+}
+
+/// `len` zeros.
+pub(super) fn zeros(len: usize) -> Result<Vec<f64>> {
+    let mut zeros = reserved(len)?;
+    zeros.resize(len, 0.0);
+    Ok(zeros)
+}
+
+fn check_pointer<T>(from: *const T, name: &'static str) -> Result<()> {
+    if from.is_null() {
+        return Err(Error::argument(name, "NULL"));
+    }
+    if !from.is_aligned() {
+        return Err(Error::argument(name, format!("not aligned to {} bytes", align_of::<T>())));
+    }
+    Ok(())
+}
+
+/// The host's array of `len` numbers; with `len` = 0 the pointer is not looked at.
+///
+/// # Safety
+/// `from` leads to `len` numbers that nobody writes to during the call.
+pub(super) unsafe fn input<'a, T>(from: *const T, len: usize, name: &'static str) -> Result<&'a [T]> {
+    if len == 0 {
+        return Ok(&[]);
+    }
+    check_pointer(from, name)?;
+    // SAFETY: not NULL, aligned, and `len` numbers by the caller's word; `count` has bounded the bytes.
+    Ok(unsafe { std::slice::from_raw_parts(from, len) })
+}
+
+/// As [`input`]; NULL stands for an array that is not given.
+///
+/// # Safety
+/// As for [`input`].
+pub(super) unsafe fn input_or_none<'a, T>(
+    from: *const T,
+    len: usize,
+    name: &'static str,
+) -> Result<Option<&'a [T]>> {
+    if from.is_null() {
+        return Ok(None);
+    }
+    // SAFETY: by the caller's word.
+    unsafe { input(from, len, name) }.map(Some)
+}
+
+/// Where the host wants a result; NULL-able outputs drop it.
+pub(super) struct Output<T> {
+    to: *mut T,
+    len: usize,
+}
+
+impl<T: Copy> Output<T> {
+    /// # Safety
+    /// `to` has room for `len` numbers until the call returns.
+    pub unsafe fn new(to: *mut T, len: usize, name: &'static str) -> Result<Self> {
+        if len > 0 {
+            check_pointer(to, name)?;
+        }
+        Ok(Self { to, len })
+    }
+
+    /// # Safety
+    /// `to` is NULL or has room for one number until the call returns.
+    pub unsafe fn optional(to: *mut T, name: &'static str) -> Result<Self> {
+        // SAFETY: by the caller's word; NULL has room for none.
+        unsafe { Self::new(to, usize::from(!to.is_null()), name) }
+    }
+
+    /// Writes from `values` what there is room for, from entry `at` on.
+    pub fn write_at(&self, at: usize, values: &[T]) {
+        let len = values.len().min(self.len.saturating_sub(at));
+        if len > 0 {
+            // SAFETY: at + len <= self.len numbers lie behind `to`; the library's own `values` do not overlap them.
+            unsafe { std::ptr::copy_nonoverlapping(values.as_ptr(), self.to.add(at), len) };
+        }
+    }
+
+    pub fn write(&self, values: &[T]) {
+        self.write_at(0, values);
+    }
+
+    pub fn set(&self, value: T) {
+        self.write_at(0, &[value]);
+    }
+}
+
+/// A text of the host.
+///
+/// # Safety
+/// `from` is NULL or NUL terminated.
+pub(super) unsafe fn text<'a>(from: *const c_char, name: &'static str) -> Result<&'a str> {
+    if from.is_null() {
+        return Err(Error::argument(name, "NULL"));
+    }
+    // SAFETY: NUL terminated by the caller's word.
+    let bytes = unsafe { CStr::from_ptr(from) };
+    bytes.to_str().map_err(|error| {
+        let at = error.valid_up_to();
+        Error::argument(name, format!("byte {at} of the text is not UTF-8")).entry(at)
+    })
+}
+
+/// Room for a text: `cap` >= 0 characters, NULL only with 0.
+pub(super) fn check_text_room(buf: *const c_char, cap: i64) -> Result<()> {
+    if cap < 0 {
+        return Err(Error::argument("cap", format!("{cap}: negative")).value(cap as f64));
+    }
+    if buf.is_null() && cap > 0 {
+        return Err(Error::argument("buf", "NULL with room for characters"));
+    }
+    Ok(())
+}
+
+/// Copies what fits of `text`, whole characters, and a NUL; returns the full length. Nothing is written without room.
+///
+/// # Safety
+/// `buf` is NULL or has room for `cap` characters.
+pub(super) unsafe fn copy_text(text: &str, buf: *mut c_char, cap: i64) -> i64 {
+    let room = usize::try_from(cap).unwrap_or(0);
+    if !buf.is_null() && room > 0 {
+        let len = text.floor_char_boundary(room - 1);
+        // SAFETY: len < cap characters and the NUL fit.
+        unsafe {
+            std::ptr::copy_nonoverlapping(text.as_ptr(), buf.cast(), len);
+            buf.add(len).write(0);
+        }
+    }
+    text.len() as i64
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn kind<T>(result: Result<T>) -> Kind {
+        result.err().map_or(Kind::Internal, |error| error.kind)
+    }
+
+    #[test]
+    fn sizes_that_no_array_has_are_refused() {
+        assert_eq!(count(0, "n").unwrap(), 0);
+        for bad in [-1, i64::MIN, i64::MAX, isize::MAX as i64 / 8 + 1] {
+            assert_eq!(kind(count(bad, "n")), Kind::Argument("n"));
+        }
+        assert_eq!(column_major(3, 4, 5, "ld").unwrap(), (18, 5));
+        assert_eq!(column_major(3, 0, 5, "ld").unwrap(), (0, 5));
+        assert_eq!(kind(column_major(3, 4, 2, "ld")), Kind::Argument("ld"));
+        assert_eq!(kind(column_major(3, usize::MAX / 2, 1 << 40, "ld")), Kind::Argument("ld"));
+    }
+
+    #[test]
+    fn null_and_misaligned_arrays_are_refused_unless_they_are_empty() {
+        let numbers = [1.0, 2.0];
+        let shifted = numbers.as_ptr().wrapping_byte_add(4);
+        // SAFETY: the bad pointers are refused before they are followed.
+        unsafe {
+            assert_eq!(input(numbers.as_ptr(), 2, "f").unwrap(), numbers);
+            assert_eq!(kind(input::<f64>(std::ptr::null(), 2, "f")), Kind::Argument("f"));
+            assert_eq!(kind(input(shifted, 1, "f")), Kind::Argument("f"));
+            assert!(input::<f64>(std::ptr::null(), 0, "f").unwrap().is_empty());
+            assert!(input_or_none::<f64>(std::ptr::null(), 2, "f").unwrap().is_none());
+            assert_eq!(kind(Output::<f64>::new(std::ptr::null_mut(), 1, "u")), Kind::Argument("u"));
+        }
+    }
+
+    #[test]
+    fn memory_that_cannot_be_had_is_an_error() {
+        assert_eq!(kind(reserved::<u64>(isize::MAX as usize / 8)), Kind::Memory);
+    }
+
+    #[test]
+    fn a_text_is_cut_to_its_room_at_whole_characters() {
+        let cut = |text: &str, cap: i64| {
+            let mut room = [7; 8];
+            // SAFETY: `cap` is at most the room.
+            let full = unsafe { copy_text(text, room.as_mut_ptr(), cap) };
+            let len = room.iter().position(|c| *c == 0);
+            (full, len, room[usize::try_from(cap).unwrap_or(0)..].iter().all(|c| *c == 7))
+        };
+        assert_eq!(cut("abcdef", 8), (6, Some(6), true));
+        assert_eq!(cut("abcdef", 7), (6, Some(6), true));
+        assert_eq!(cut("abcdef", 4), (6, Some(3), true));
+        assert_eq!(cut("ab\u{e9}", 4), (4, Some(2), true));
+        assert_eq!(cut("abcdef", 0), (6, None, true));
+        assert_eq!(cut("abcdef", -3), (6, None, true));
+        // SAFETY: NULL is allowed.
+        assert_eq!(unsafe { copy_text("abc", std::ptr::null_mut(), 5) }, 3);
+    }
+
+    #[test]
+    fn a_text_that_is_null_or_not_utf8_is_refused() {
+        // SAFETY: NULL is allowed, the others are NUL terminated.
+        unsafe {
+            assert_eq!(text(c"gamma".as_ptr(), "name").unwrap(), "gamma");
+            assert_eq!(kind(text(std::ptr::null(), "name")), Kind::Argument("name"));
+            assert_eq!(kind(text(c"a\xff".as_ptr(), "name")), Kind::Argument("name"));
+        }
+    }
+}

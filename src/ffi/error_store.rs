@@ -1,0 +1,115 @@
+//! The last error, per thread; each problem keeps its own in its slot. A call that succeeds clears nothing.
+
+use std::cell::RefCell;
+use std::ffi::c_char;
+
+use super::arrays;
+use super::guard::Call;
+use super::record::Target;
+use super::status::{describe, of_kind, FETI_ARGUMENT, FETI_OK};
+use super::types::feti_error_detail;
+use crate::error::{Error, Place};
+
+/// A failed call.
+#[derive(Debug, Clone)]
+pub(super) struct Record {
+    pub status: i32,
+    /// Position of the refused argument from 1, 0: none.
+    argument: i32,
+    function: &'static str,
+    place: Place,
+    /// "function: what was wrong".
+    pub text: String,
+}
+
+thread_local! {
+    static LAST: RefCell<Option<Record>> = const { RefCell::new(None) };
+}
+
+impl Record {
+    pub fn of_error(call: Call, error: &Error) -> Self {
+        let (status, argument) = of_kind(error.kind, call.arguments);
+        let text = format!("{}: {error}", call.function);
+        Self { status, argument, function: call.function, place: *error.place, text }
+    }
+
+    /// A status that no [`Error`] stands for, with its own text.
+    pub fn of_status(call: Call, status: i32) -> Self {
+        let text = format!("{}: {}", call.function, describe(status).1.to_string_lossy());
+        Self { status, argument: 0, function: call.function, place: Place::default(), text }
+    }
+
+    /// Makes this the last error of the thread.
+    pub fn publish(self) {
+        // A thread that is being torn down has no last error to keep.
+        let _ = LAST.try_with(|last| last.replace(Some(self)));
+    }
+}
+
+/// The struct of the header; without a record its status is FETI_OK and no number applies.
+fn detail(record: Option<&Record>) -> feti_error_detail {
+    let place = record.map(|record| record.place).unwrap_or_default();
+    let number = |value: Option<usize>| value.map_or(-1, |value| value as i64);
+    let mut function = [0; 40];
+    let name = record.map_or("", |record| record.function);
+    for (to, from) in function[..39].iter_mut().zip(name.bytes()) {
+        *to = from as c_char;
+    }
+    feti_error_detail {
+        struct_size: size_of::<feti_error_detail>() as i64,
+        status: record.map_or(FETI_OK, |record| record.status),
+        argument: record.map_or(0, |record| record.argument),
+        body: number(place.body),
+        component: number(place.component),
+        dof: number(place.dof),
+        row: number(place.row),
+        entry: number(place.entry),
+        value: place.value.unwrap_or(f64::NAN),
+        limit: place.limit.unwrap_or(f64::NAN),
+        function,
+    }
+}
+
+/// Text of the calling thread's last error.
+///
+/// The text is cut to fit, always NUL terminated when `cap` > 0. Returns the full length without the NUL, 0 when there
+/// was no error; a successful call does not clear the text. Never fails.
+///
+/// | argument | in/out | shape | rule |
+/// |---|---|---|---|
+/// | `buf` | out | text | room for `cap` characters; NULL asks for the length |
+/// | `cap` | in | scalar | characters in `buf`, 0 with NULL |
+///
+/// # Safety
+/// `buf` has room for `cap` characters or is NULL.
+#[no_mangle]
+pub unsafe extern "C" fn feti_last_error(buf: *mut c_char, cap: i64) -> i64 {
+    let read = |last: &RefCell<Option<Record>>| {
+        let last = last.borrow();
+        let text = last.as_ref().map_or("", |record| record.text.as_str());
+        // SAFETY: the caller gives room for `cap` characters.
+        unsafe { arrays::copy_text(text, buf, cap) }
+    };
+    LAST.try_with(read).unwrap_or(0)
+}
+
+/// Facts of the calling thread's last error: function, argument, place, value and limit.
+///
+/// `struct_size` is set by the caller; no more than that is written. A refusal of `out` leaves the last error as it is.
+///
+/// | argument | in/out | shape | rule |
+/// |---|---|---|---|
+/// | `out` | in/out | scalar | `struct_size` set, at least 16 |
+///
+/// # Safety
+/// `out` leads to `struct_size` writable bytes.
+#[no_mangle]
+pub unsafe extern "C" fn feti_last_error_detail(out: *mut feti_error_detail) -> i32 {
+    // SAFETY: the caller gives `struct_size` bytes.
+    let Ok(target) = (unsafe { Target::new(out, "out") }) else {
+        return FETI_ARGUMENT - 1;
+    };
+    let facts = LAST.try_with(|last| detail(last.borrow().as_ref()));
+    target.write(&facts.unwrap_or_else(|_| detail(None)));
+    FETI_OK
+}

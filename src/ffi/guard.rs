@@ -1,0 +1,207 @@
+//! What surrounds every call: the host's floating-point environment is put aside, the handle looked up, the problem taken
+//! (or BUSY), panics caught and kept silent, and a failure recorded for the thread and for the problem.
+
+use std::any::Any;
+use std::cell::{Cell, RefCell};
+use std::panic::{self, AssertUnwindSafe, PanicHookInfo};
+use std::sync::Once;
+
+use super::error_store::Record;
+use super::fpu;
+use super::handle::{self, Refusal};
+use super::status::{FETI_BUSY, FETI_HANDLE, FETI_INTERNAL, FETI_OK};
+use super::types::feti_problem;
+use crate::error::{Error, Kind, Result};
+use crate::solver::Problem;
+
+/// Names of the library's own threads start with this; a panic in one of them is reported as a status, not printed.
+const THREAD_NAME: &str = "feti-contact";
+
+/// An exported function and the names of its arguments, in order.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Call {
+    pub function: &'static str,
+    pub arguments: &'static [&'static str],
+}
+
+/// `call!(feti_body_load(p, body, n, f))`: the arguments must be names in scope.
+macro_rules! call {
+    ($function:ident($($argument:ident),*)) => {{
+        $(let _ = &$argument;)*
+        $crate::ffi::guard::Call { function: stringify!($function), arguments: &[$(stringify!($argument)),*] }
+    }};
+}
+pub(super) use call;
+
+/// Runs `work` on the problem behind `p` and returns the status of the call.
+pub(super) fn enter(p: *mut feti_problem, call: Call, work: impl FnOnce(&mut Problem) -> Result<()>) -> i32 {
+    enter_with_status(p, call, |problem| work(problem).map(|()| FETI_OK))
+}
+
+/// As [`enter`] for work that has a status of its own; one that is not FETI_OK is recorded like a failure.
+pub(super) fn enter_with_status(
+    p: *mut feti_problem,
+    call: Call,
+    work: impl FnOnce(&mut Problem) -> Result<i32>,
+) -> i32 {
+    fpu::in_default_environment(|| {
+        let Some(slot) = handle::find(p) else {
+            return refuse(call, &Refusal::Gone);
+        };
+        let outcome = slot.with(|problem| {
+            let outcome = caught(|| work(problem));
+            outcome.map_err(|error| match error.kind {
+                Kind::Internal => {
+                    slot.mark_broken();
+                    error
+                }
+                _ => error.counted_from(problem.settings().index_base),
+            })
+        });
+        let record = match outcome {
+            Err(refusal) => return refuse(call, &refusal),
+            Ok(Ok(FETI_OK)) => return FETI_OK,
+            Ok(Ok(status)) => Record::of_status(call, status),
+            Ok(Err(error)) => Record::of_error(call, &error),
+        };
+        slot.keep_error(record.clone());
+        publish(record)
+    })
+}
+
+/// Runs `work`, which needs no problem, and returns the status of the call.
+pub(super) fn without_problem(call: Call, work: impl FnOnce() -> Result<()>) -> i32 {
+    fpu::in_default_environment(|| match caught(work) {
+        Ok(()) => FETI_OK,
+        Err(error) => publish(Record::of_error(call, &error)),
+    })
+}
+
+/// The status of a problem that could not be taken. The problem's own last error stays: it belongs to another call.
+pub(super) fn refuse(call: Call, refusal: &Refusal) -> i32 {
+    let status = match refusal {
+        Refusal::Gone => FETI_HANDLE,
+        Refusal::Busy => FETI_BUSY,
+        Refusal::Broken => FETI_INTERNAL,
+    };
+    publish(Record::of_status(call, status))
+}
+
+fn publish(record: Record) -> i32 {
+    let status = record.status;
+    record.publish();
+    status
+}
+
+thread_local! {
+    /// Depth of [`caught`] on this thread.
+    static DEPTH: Cell<u32> = const { Cell::new(0) };
+    /// Where the last silenced panic of this thread happened.
+    static PANIC_PLACE: RefCell<String> = const { RefCell::new(String::new()) };
+}
+
+/// Counts `caught` up, and down again when it is left in whatever way.
+struct Depth;
+
+impl Depth {
+    fn enter() -> Self {
+        let _ = DEPTH.try_with(|depth| depth.set(depth.get() + 1));
+        Self
+    }
+}
+
+impl Drop for Depth {
+    fn drop(&mut self) {
+        let _ = DEPTH.try_with(|depth| depth.set(depth.get() - 1));
+    }
+}
+
+/// Runs `work`; a panic becomes an error of kind Internal. What `work` had under its hands must not be used afterwards.
+pub(super) fn caught<T>(work: impl FnOnce() -> Result<T>) -> Result<T> {
+    install_hook();
+    let outcome = {
+        let _depth = Depth::enter();
+        panic::catch_unwind(AssertUnwindSafe(work))
+    };
+    outcome.unwrap_or_else(|payload| Err(Error::new(Kind::Internal, panic_text(payload.as_ref()))))
+}
+
+fn panic_text(payload: &(dyn Any + Send)) -> String {
+    let literal = payload.downcast_ref::<&str>().copied();
+    let message =
+        literal.or_else(|| payload.downcast_ref::<String>().map(String::as_str)).unwrap_or("no message");
+    let place = PANIC_PLACE.try_with(RefCell::take).unwrap_or_default();
+    format!("the library contradicts itself, please report this: {message}{place}")
+}
+
+/// True while a panic of this thread is the library's: inside [`caught`], or on one of its own threads.
+fn is_ours() -> bool {
+    let inside = DEPTH.try_with(|depth| depth.get() > 0).unwrap_or(false);
+    inside || std::thread::current().name().is_some_and(|name| name.starts_with(THREAD_NAME))
+}
+
+/// Once: panics of the library print nothing, those of a host written in Rust reach the hook that was there before.
+fn install_hook() {
+    static HOOK: Once = Once::new();
+    // The hook cannot be exchanged during a panic; the next call does it.
+    if HOOK.is_completed() || std::thread::panicking() {
+        return;
+    }
+    HOOK.call_once(|| {
+        let previous = panic::take_hook();
+        panic::set_hook(Box::new(move |info| if is_ours() { note_place(info) } else { previous(info) }));
+    });
+}
+
+fn note_place(info: &PanicHookInfo<'_>) {
+    let place = info.location().map(|at| format!(" ({}:{})", at.file(), at.line())).unwrap_or_default();
+    let _ = PANIC_PLACE.try_with(|kept| kept.replace(place));
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_panic_becomes_an_error_with_its_text_and_place() {
+        let error = caught(|| -> Result<()> { panic!("row {} is nowhere", 7) }).unwrap_err();
+        assert_eq!(error.kind, Kind::Internal);
+        assert!(
+            error.what.contains("row 7 is nowhere (") && error.what.contains("guard.rs:"),
+            "{}",
+            error.what
+        );
+    }
+
+    #[test]
+    fn only_panics_of_the_library_are_silenced() {
+        assert!(!is_ours());
+        let inside = caught(|| Ok((is_ours(), caught(|| Ok(is_ours())), is_ours()))).unwrap();
+        assert!(matches!(inside, (true, Ok(true), true)));
+        assert!(caught(|| -> Result<()> { panic!("again") }).is_err());
+        assert!(!is_ours());
+        let on = |name: &str| std::thread::Builder::new().name(name.to_string()).spawn(is_ours);
+        assert!(on("feti-contact 3").unwrap().join().unwrap());
+        assert!(!on("host").unwrap().join().unwrap());
+    }
+
+    /// What the process prints for a panic of the library and for one of its host.
+    #[test]
+    #[ignore = "run by the test below, in a process of its own"]
+    fn panics_of_library_and_host() {
+        assert!(caught(|| -> Result<()> { panic!("of the library") }).is_err());
+        assert!(panic::catch_unwind(|| panic!("of the host")).is_err());
+    }
+
+    #[test]
+    fn a_panic_of_the_library_prints_nothing_and_one_of_the_host_as_before() {
+        let test = std::env::current_exe().unwrap();
+        let name = format!("{}::panics_of_library_and_host", module_path!().split_once("::").unwrap().1);
+        let mut child = std::process::Command::new(test);
+        let output = child.args([&name, "--exact", "--ignored", "--nocapture"]).output().unwrap();
+        let printed =
+            format!("{}{}", String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr));
+        assert!(output.status.success() && printed.contains("1 passed"), "{printed}");
+        assert!(printed.contains("of the host") && !printed.contains("of the library"), "{printed}");
+    }
+}

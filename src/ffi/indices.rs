@@ -1,0 +1,113 @@
+//! Index arrays of the host, 32 or 64 bits, counted from 0 or 1, converted once.
+
+use super::arrays::{input, reserved};
+use crate::error::{Error, Result};
+
+/// The integer types of index arrays.
+pub(super) trait Index: Copy {
+    fn wide(self) -> i64;
+}
+
+impl Index for i32 {
+    fn wide(self) -> i64 {
+        i64::from(self)
+    }
+}
+
+impl Index for i64 {
+    fn wide(self) -> i64 {
+        self
+    }
+}
+
+/// What the index arrays of a call count from: 0 or 1.
+pub(super) fn base(value: i32) -> Result<i64> {
+    match value {
+        0 | 1 => Ok(i64::from(value)),
+        _ => Err(Error::argument("base", format!("{value} is neither 0 nor 1")).value(f64::from(value))),
+    }
+}
+
+/// Argument `row_ptr`: `rows` + 1 positions, the first one `base`, not decreasing; from 0 in the result.
+///
+/// # Safety
+/// `from` leads to `rows` + 1 numbers that nobody writes to during the call.
+pub(super) unsafe fn pointers<I: Index>(from: *const I, rows: usize, base: i64) -> Result<Vec<usize>> {
+    // SAFETY: by the caller's word; without rows the array is not looked at.
+    let given = unsafe { input(from, if rows == 0 { 0 } else { rows + 1 }, "row_ptr") }?;
+    let mut positions = reserved(rows + 1)?;
+    positions.push(0);
+    if given.first().is_some_and(|first| first.wide() != base) {
+        let text = format!("row_ptr starts with {}, with base {base} it starts with {base}", given[0].wide());
+        return Err(Error::argument("row_ptr", text).row(0).value(given[0].wide() as f64).limit(base as f64));
+    }
+    for (row, pair) in given.windows(2).enumerate() {
+        let (start, end) = (pair[0].wide(), pair[1].wide());
+        let position = usize::try_from(end.saturating_sub(base));
+        match position {
+            Ok(position) if end >= start && position <= isize::MAX as usize / 8 => positions.push(position),
+            _ => {
+                let text = format!("row_ptr goes from {start} to {end}");
+                return Err(Error::argument("row_ptr", text).row(row).value(end as f64).limit(start as f64));
+            }
+        }
+    }
+    Ok(positions)
+}
+
+/// `len` numbers from 0; the layer below checks their range, so those below `base` come out negative.
+///
+/// # Safety
+/// `from` leads to `len` numbers that nobody writes to during the call.
+pub(super) unsafe fn numbers<I: Index>(
+    from: *const I,
+    len: usize,
+    base: i64,
+    name: &'static str,
+) -> Result<Vec<i64>> {
+    // SAFETY: by the caller's word.
+    let given = unsafe { input(from, len, name) }?;
+    let mut numbers = reserved(len)?;
+    numbers.extend(given.iter().map(|number| number.wide().saturating_sub(base)));
+    Ok(numbers)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::error::Kind;
+
+    fn pointers_of(given: &[i32], base: i64) -> Result<Vec<usize>> {
+        // SAFETY: the slice has rows + 1 numbers.
+        unsafe { pointers(given.as_ptr(), given.len() - 1, base) }
+    }
+
+    #[test]
+    fn pointers_count_from_their_base() {
+        assert_eq!(pointers_of(&[0, 2, 2, 5], 0).unwrap(), [0, 2, 2, 5]);
+        assert_eq!(pointers_of(&[1, 3, 3, 6], 1).unwrap(), [0, 2, 2, 5]);
+        // SAFETY: without rows nothing is read.
+        assert_eq!(unsafe { pointers::<i64>(std::ptr::null(), 0, 1) }.unwrap(), [0]);
+    }
+
+    #[test]
+    fn bad_pointers_are_refused_with_their_row() {
+        for (given, base, row) in
+            [(&[1, 3][..], 0, 0), (&[0, 3], 1, 0), (&[0, 3, 2], 0, 1), (&[0, 1, 4, -9], 0, 2)]
+        {
+            let error = pointers_of(given, base).unwrap_err();
+            assert_eq!((error.kind, error.place.row), (Kind::Argument("row_ptr"), Some(row)));
+        }
+        assert_eq!(base(2).unwrap_err().kind, Kind::Argument("base"));
+        assert_eq!(base(-1).unwrap_err().kind, Kind::Argument("base"));
+    }
+
+    #[test]
+    fn numbers_keep_their_sign_after_the_base() {
+        // SAFETY: slices with as many numbers as said.
+        unsafe {
+            assert_eq!(numbers([1_i32, 0, 7].as_ptr(), 3, 1, "col").unwrap(), [0, -1, 6]);
+            assert_eq!(numbers([i64::MIN, 4].as_ptr(), 2, 1, "col").unwrap(), [i64::MIN, 3]);
+        }
+    }
+}

@@ -1,0 +1,50 @@
+//! The C interface. No mathematics: every function converts its arguments once, calls [`crate::solver`], and writes back.
+//!
+//! | file | holds |
+//! |---|---|
+//! | `types`, `status` | structs, constants and status numbers of the header |
+//! | `handle` | the registry: handles are counters, never addresses, never reused |
+//! | `guard` | what surrounds every call: registry, busy, `catch_unwind`, error records |
+//! | `fpu` | the floating-point environment of the host, saved and restored |
+//! | `error_store` | the last error, per thread and per problem |
+//! | `arrays`, `indices`, `record` | host arrays, index arrays and structs with a `struct_size`, checked |
+//! | `problem`, `options`, `body`, `null_space`, `rows`, `solve`, `results`, `validation` | the functions |
+//!
+//! The generator of the header and of the Fortran interfaces reads these files: each exported function has a table of
+//! its arguments, in which the word NULL in the rule says that the pointer may be NULL.
+#![deny(unsafe_op_in_unsafe_fn)]
+#![warn(clippy::undocumented_unsafe_blocks)]
+#![allow(clippy::too_many_arguments)]
+
+mod arrays;
+mod body;
+mod error_store;
+mod fpu;
+mod guard;
+mod handle;
+mod indices;
+mod null_space;
+mod options;
+mod problem;
+mod record;
+mod results;
+mod rows;
+mod solve;
+mod status;
+mod types;
+mod validation;
+
+#[cfg(test)]
+mod tests;
+
+pub use body::*;
+pub use error_store::{feti_last_error, feti_last_error_detail};
+pub use null_space::*;
+pub use options::*;
+pub use problem::*;
+pub use results::*;
+pub use rows::*;
+pub use solve::*;
+pub use status::*;
+pub use types::*;
+pub use validation::*;

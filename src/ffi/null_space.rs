@@ -1,0 +1,131 @@
+//! Null spaces of the bodies: the columns of R span all u with K u = 0.
+
+use super::arrays::{column_major, count, id, input, same, Output};
+use super::body::body_of_order;
+use super::guard::{call, enter};
+use super::types::{feti_problem, FETI_CANDIDATES, FETI_EXACT};
+use crate::error::{Error, Result};
+use crate::solver::Modes;
+
+/// Gives a basis of the null space of a body, or candidates for it.
+///
+/// The basis is copied; calling again replaces it. Without this call the library finds the null space itself. That
+/// `K R = 0` holds is checked in feti_setup. After a failure the body keeps what it had.
+///
+/// | argument | in/out | shape | rule |
+/// |---|---|---|---|
+/// | `p` | in | scalar | the handle |
+/// | `body` | in | scalar | number of the body, from 0 |
+/// | `r` | in | scalar | columns; 0 with FETI_EXACT claims that K is not singular |
+/// | `n` | in | scalar | unknowns of the body |
+/// | `basis` | in | ldr * r | column-major: R_ij is basis[i + ldr j]; may be NULL when r = 0 |
+/// | `ldr` | in | scalar | >= n |
+/// | `flags` | in | scalar | FETI_EXACT or FETI_CANDIDATES |
+///
+/// # Safety
+/// The array has the given shape.
+#[no_mangle]
+pub unsafe extern "C" fn feti_body_null_space(
+    p: *mut feti_problem,
+    body: i64,
+    r: i64,
+    n: i64,
+    basis: *const f64,
+    ldr: i64,
+    flags: i32,
+) -> i32 {
+    enter(p, call!(feti_body_null_space(p, body, r, n, basis, ldr, flags)), |problem| {
+        let (body, n) = body_of_order(problem, body, n)?;
+        let (r, modes) = (count(r, "r")?, modes_of(flags)?);
+        let (entries, ldr) = column_major(n, r, ldr, "ldr")?;
+        // SAFETY: ldr (r - 1) + n entries by the caller's word.
+        problem.set_null_space(body, n, r, unsafe { input(basis, entries, "basis") }?, ldr, modes)
+    })
+}
+
+fn modes_of(flags: i32) -> Result<Modes> {
+    match flags {
+        FETI_EXACT => Ok(Modes::Exact),
+        FETI_CANDIDATES => Ok(Modes::Candidates),
+        _ => {
+            let text = format!("{flags} is neither FETI_EXACT nor FETI_CANDIDATES");
+            Err(Error::argument("flags", text).value(f64::from(flags)))
+        }
+    }
+}
+
+/// Reads the null space of a body that the library works with.
+///
+/// Runs feti_setup when it is due. After a failure nothing is written.
+///
+/// | argument | in/out | shape | rule |
+/// |---|---|---|---|
+/// | `p` | in | scalar | the handle |
+/// | `body` | in | scalar | number of the body, from 0 |
+/// | `n` | in | scalar | unknowns of the body |
+/// | `r` | in/out | scalar | in: columns that fit in `basis`, not read without one; out: dimension of the null space |
+/// | `basis` | out | ldr * r | column-major; NULL: only the dimension is wanted |
+/// | `ldr` | in | scalar | >= n, not looked at without `basis` |
+///
+/// # Safety
+/// The arrays have the given shapes.
+#[no_mangle]
+pub unsafe extern "C" fn feti_body_null_space_get(
+    p: *mut feti_problem,
+    body: i64,
+    n: i64,
+    r: *mut i64,
+    basis: *mut f64,
+    ldr: i64,
+) -> i32 {
+    enter(p, call!(feti_body_null_space_get(p, body, n, r, basis, ldr)), |problem| {
+        let (body, n) = body_of_order(problem, body, n)?;
+        // SAFETY: `r` leads to one number by the caller's word.
+        let dimension = unsafe { Output::new(r, 1, "r") }?;
+        let (found, columns) = problem.null_space(body)?;
+        if !basis.is_null() {
+            // SAFETY: as above; checked by Output::new, and set by the caller where there is a basis.
+            let room = unsafe { r.read() };
+            if room < found as i64 {
+                let text = format!("room for {room} columns, the null space has {found}");
+                return Err(Error::argument("r", text).body(body).value(room as f64).limit(found as f64));
+            }
+            let (entries, ldr) = column_major(n, found, ldr, "ldr")?;
+            // SAFETY: room for as many entries, since at least `found` columns fit.
+            let output = unsafe { Output::new(basis, entries, "basis") }?;
+            for (k, column) in columns.chunks_exact(n.max(1)).enumerate() {
+                output.write_at(k * ldr, column);
+            }
+        }
+        dimension.set(found as i64);
+        Ok(())
+    })
+}
+
+/// Reads the fixing unknowns of a body: with them fixed, K has full rank.
+///
+/// Runs feti_setup when it is due. After a failure nothing is written.
+///
+/// | argument | in/out | shape | rule |
+/// |---|---|---|---|
+/// | `p` | in | scalar | the handle |
+/// | `body` | in | scalar | number of the body, from 0 |
+/// | `r` | in | scalar | dimension of the null space of the body |
+/// | `dof` | out | r | unknowns of the body, from 0 |
+///
+/// # Safety
+/// The array has the given shape.
+#[no_mangle]
+pub unsafe extern "C" fn feti_body_fixing(p: *mut feti_problem, body: i64, r: i64, dof: *mut i64) -> i32 {
+    enter(p, call!(feti_body_fixing(p, body, r, dof)), |problem| {
+        let body = id(body, "body")?;
+        let fixing = problem.fixing_dofs(body)?;
+        same(r, fixing.len(), "r", "the dimension of the null space is").map_err(|error| error.body(body))?;
+        // SAFETY: r numbers by the caller's word.
+        let output = unsafe { Output::new(dof, fixing.len(), "dof") }?;
+        for (k, number) in fixing.iter().enumerate() {
+            output.write_at(k, &[*number as i64]);
+        }
+        Ok(())
+    })
+}

@@ -1,0 +1,107 @@
+//! A problem's life: created, its errors read, destroyed.
+
+use std::ffi::c_char;
+use std::ptr;
+
+use super::arrays::{check_text_room, copy_text, Output};
+use super::fpu;
+use super::guard::{call, caught, refuse, without_problem};
+use super::handle::{self, Refusal};
+use super::status::FETI_OK;
+use super::types::feti_problem;
+use crate::solver::Problem;
+
+/// Creates a problem without bodies and rows.
+///
+/// The handle is valid until feti_problem_destroy; its number is never used again. After a failure `p` is as it was.
+///
+/// | argument | in/out | shape | rule |
+/// |---|---|---|---|
+/// | `p` | out | scalar | the handle |
+///
+/// # Safety
+/// `p` has room for a pointer.
+#[no_mangle]
+pub unsafe extern "C" fn feti_problem_create(p: *mut *mut feti_problem) -> i32 {
+    let call = call!(feti_problem_create(p));
+    if p.is_null() {
+        return refuse(call, &Refusal::Gone);
+    }
+    without_problem(call, || {
+        let handle = handle::register(Problem::new())?;
+        // SAFETY: the caller gives room for a pointer.
+        unsafe { p.write_unaligned(handle) };
+        Ok(())
+    })
+}
+
+/// Destroys a problem with all it holds and sets the caller's handle to NULL.
+///
+/// FETI_BUSY while another call on the problem runs; the problem and the handle are as before then. Every other copy of
+/// the handle gives FETI_HANDLE from now on.
+///
+/// | argument | in/out | shape | rule |
+/// |---|---|---|---|
+/// | `p` | in/out | scalar | the handle |
+///
+/// # Safety
+/// `p` leads to a pointer.
+#[no_mangle]
+pub unsafe extern "C" fn feti_problem_destroy(p: *mut *mut feti_problem) -> i32 {
+    let call = call!(feti_problem_destroy(p));
+    if p.is_null() {
+        return refuse(call, &Refusal::Gone);
+    }
+    fpu::in_default_environment(|| {
+        // SAFETY: the caller's `p` leads to a pointer, which is only compared with the registry.
+        let handle = unsafe { p.read_unaligned() };
+        match handle::remove(handle) {
+            Err(refusal) => refuse(call, &refusal),
+            Ok(problem) => {
+                // SAFETY: as above.
+                unsafe { p.write_unaligned(ptr::null_mut()) };
+                // The problem is gone for the host, whatever giving its memory back may say.
+                let _ = caught(|| {
+                    drop(problem);
+                    Ok(())
+                });
+                FETI_OK
+            }
+        }
+    })
+}
+
+/// Text of the problem's last error.
+///
+/// May be called while another call on the problem runs. The text is cut to fit, always NUL terminated when `cap` > 0;
+/// it is empty when there was no error, and a successful call does not clear it.
+///
+/// | argument | in/out | shape | rule |
+/// |---|---|---|---|
+/// | `p` | in | scalar | the handle |
+/// | `buf` | out | text | room for `cap` characters; NULL with `cap` = 0 asks for the length |
+/// | `cap` | in | scalar | characters in `buf`, >= 0 |
+/// | `len` | out | scalar | full length without the terminating zero |
+///
+/// # Safety
+/// `buf` has room for `cap` characters, `len` for one number.
+#[no_mangle]
+pub unsafe extern "C" fn feti_problem_error(
+    p: *mut feti_problem,
+    buf: *mut c_char,
+    cap: i64,
+    len: *mut i64,
+) -> i32 {
+    let call = call!(feti_problem_error(p, buf, cap, len));
+    let Some(slot) = handle::find(p) else {
+        return refuse(call, &Refusal::Gone);
+    };
+    without_problem(call, || {
+        check_text_room(buf, cap)?;
+        // SAFETY: the caller gives room for one number.
+        let full_length = unsafe { Output::new(len, 1, "len") }?;
+        // SAFETY: the caller gives room for `cap` characters.
+        full_length.set(unsafe { copy_text(&slot.error_text(), buf, cap) });
+        Ok(())
+    })
+}

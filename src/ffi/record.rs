@@ -1,0 +1,108 @@
+//! Result structs that start with `struct_size`: a host compiled against an older header has a shorter one.
+
+use crate::error::{Error, Result};
+
+use super::types::{feti_certificate, feti_error_detail, feti_info, feti_option};
+
+/// The least a struct can hold: `struct_size` and the eight bytes after it.
+const LEAST_BYTES: usize = 16;
+/// Bytes of `struct_size`, which stays as the caller set it.
+const SIZE_BYTES: usize = size_of::<i64>();
+
+/// A `repr(C)` struct whose first field is `struct_size: i64`.
+///
+/// # Safety
+/// The struct has no padding: every byte of it is initialised.
+pub(super) unsafe trait Sized64: Copy {}
+
+// SAFETY: 8 + 2 * 4 + 5 * 8 + 2 * 8 + 40 bytes, without padding.
+unsafe impl Sized64 for feti_error_detail {}
+// SAFETY: 8 + 2 * 4 + 15 * 8 + 11 * 8 bytes, without padding.
+unsafe impl Sized64 for feti_info {}
+// SAFETY: 8 + 2 * 4 + 9 * 8 + 6 * 8 bytes, without padding.
+unsafe impl Sized64 for feti_certificate {}
+// SAFETY: 8 + 2 * 4 + 3 * 8 + 8 bytes and three pointers, without padding.
+unsafe impl Sized64 for feti_option {}
+
+/// The caller's struct, to be written once.
+pub(super) struct Target<T> {
+    to: *mut T,
+    bytes: usize,
+}
+
+impl<T: Sized64> Target<T> {
+    /// # Safety
+    /// `to` is NULL or leads to an i64 that says how many bytes may be written from `to` on.
+    pub unsafe fn new(to: *mut T, name: &'static str) -> Result<Self> {
+        if to.is_null() {
+            return Err(Error::argument(name, "NULL"));
+        }
+        // SAFETY: the first field is readable; it may be anywhere, so it is read unaligned.
+        let size = unsafe { to.cast::<i64>().read_unaligned() };
+        match usize::try_from(size) {
+            Ok(bytes) if bytes >= LEAST_BYTES => Ok(Self { to, bytes: bytes.min(size_of::<T>()) }),
+            _ => {
+                let ours = size_of::<T>();
+                let what =
+                    format!("struct_size is {size}, set it to the size of the struct, {ours} bytes here");
+                Err(Error::argument(name, what))
+            }
+        }
+    }
+
+    /// Writes as much of `value` as the caller's struct holds.
+    pub fn write(&self, value: &T) {
+        let from: *const u8 = std::ptr::from_ref(value).cast();
+        // SAFETY: `bytes` is at least SIZE_BYTES, at most the size of T, and the caller's struct has that many.
+        unsafe {
+            let to = self.to.cast::<u8>().add(SIZE_BYTES);
+            std::ptr::copy_nonoverlapping(from.add(SIZE_BYTES), to, self.bytes - SIZE_BYTES);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::error::Kind;
+
+    const FULL: usize = size_of::<feti_certificate>();
+
+    /// A struct full of ones, 64 bytes longer than ours; returns its bytes after a write with `struct_size`.
+    fn written(struct_size: i64) -> Result<Vec<u8>> {
+        let mut bytes = vec![1_u8; FULL + 64];
+        bytes[..8].copy_from_slice(&struct_size.to_ne_bytes());
+        // SAFETY: all zero is a valid value of numbers.
+        let value: feti_certificate = unsafe { std::mem::zeroed() };
+        // SAFETY: the buffer is as long as the largest size under test.
+        unsafe { Target::<feti_certificate>::new(bytes.as_mut_ptr().cast(), "out") }?.write(&value);
+        Ok(bytes)
+    }
+
+    #[test]
+    fn no_more_is_written_than_the_callers_struct_holds() {
+        for size in [16, 24, 40, FULL, FULL + 64] {
+            let bytes = written(size as i64).unwrap();
+            let end = size.min(FULL);
+            assert_eq!(bytes[..8], (size as i64).to_ne_bytes(), "struct_size stays");
+            assert!(bytes[8..end].iter().all(|byte| *byte == 0));
+            assert!(bytes[end..].iter().all(|byte| *byte == 1));
+        }
+    }
+
+    #[test]
+    fn a_size_that_cannot_be_is_refused() {
+        for size in [i64::MIN, -1, 0, 8, 15] {
+            assert_eq!(written(size).unwrap_err().kind, Kind::Argument("out"));
+        }
+    }
+
+    #[test]
+    fn structs_have_no_padding() {
+        let pointers = 3 * size_of::<usize>();
+        assert_eq!(size_of::<feti_error_detail>(), 8 + 2 * 4 + 5 * 8 + 2 * 8 + 40);
+        assert_eq!(size_of::<feti_info>(), 8 + 2 * 4 + 15 * 8 + 11 * 8);
+        assert_eq!(size_of::<feti_certificate>(), 8 + 2 * 4 + 9 * 8 + 6 * 8);
+        assert_eq!(size_of::<feti_option>(), 8 + 2 * 4 + 3 * 8 + 8 + pointers);
+    }
+}

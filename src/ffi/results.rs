@@ -1,0 +1,222 @@
+//! The answer of the last solve, and the size of the problem.
+
+use super::arrays::{id, reserved, same, zeros, Output};
+use super::body::body_of_order;
+use super::guard::{call, enter};
+use super::rows::row_kind;
+use super::types::{feti_problem, FETI_ROW_CLOSED, FETI_ROW_OPEN, FETI_ROW_WEAK};
+use crate::error::Result;
+use crate::solver::RowState;
+
+/// Reads the displacement of a body.
+///
+/// FETI_STATE before a solve has given an answer. After a failure nothing is written.
+///
+/// | argument | in/out | shape | rule |
+/// |---|---|---|---|
+/// | `p` | in | scalar | the handle |
+/// | `body` | in | scalar | number of the body, from 0 |
+/// | `n` | in | scalar | unknowns of the body |
+/// | `u` | out | n | displacement, length |
+///
+/// # Safety
+/// The array has the given shape.
+#[no_mangle]
+pub unsafe extern "C" fn feti_displacement(p: *mut feti_problem, body: i64, n: i64, u: *mut f64) -> i32 {
+    enter(p, call!(feti_displacement(p, body, n, u)), |problem| {
+        let (body, n) = body_of_order(problem, body, n)?;
+        // SAFETY: room for n numbers by the caller's word.
+        unsafe { Output::new(u, n, "u") }?.write(problem.displacement(body)?);
+        Ok(())
+    })
+}
+
+/// Reads the force of the rows on a body, -B'lambda, -H'mu or both: `K u = f + r`.
+///
+/// FETI_STATE before a solve has given an answer. After a failure nothing is written.
+///
+/// | argument | in/out | shape | rule |
+/// |---|---|---|---|
+/// | `p` | in | scalar | the handle |
+/// | `kind` | in | scalar | FETI_INEQUALITY, FETI_EQUALITY, or 0 for both |
+/// | `body` | in | scalar | number of the body, from 0 |
+/// | `n` | in | scalar | unknowns of the body |
+/// | `r` | out | n | force |
+///
+/// # Safety
+/// The array has the given shape.
+#[no_mangle]
+pub unsafe extern "C" fn feti_reaction(
+    p: *mut feti_problem,
+    kind: i32,
+    body: i64,
+    n: i64,
+    r: *mut f64,
+) -> i32 {
+    enter(p, call!(feti_reaction(p, kind, body, n, r)), |problem| {
+        let kind = if kind == 0 { None } else { Some(row_kind(kind)?) };
+        let (body, n) = body_of_order(problem, body, n)?;
+        // SAFETY: room for n numbers by the caller's word.
+        let output = unsafe { Output::new(r, n, "r") }?;
+        let mut reaction = zeros(n)?;
+        problem.reaction(kind, body, &mut reaction)?;
+        output.write(&reaction);
+        Ok(())
+    })
+}
+
+/// Reads the amplitudes alpha of the null space in the displacement of a body, `u = K+ (f + r) + R alpha`.
+///
+/// FETI_STATE before a solve has given an answer. After a failure nothing is written.
+///
+/// | argument | in/out | shape | rule |
+/// |---|---|---|---|
+/// | `p` | in | scalar | the handle |
+/// | `body` | in | scalar | number of the body, from 0 |
+/// | `r` | in | scalar | dimension of the null space of the body |
+/// | `alpha` | out | r | amplitudes, in the order of the columns of feti_body_null_space_get |
+///
+/// # Safety
+/// The array has the given shape.
+#[no_mangle]
+pub unsafe extern "C" fn feti_amplitudes(p: *mut feti_problem, body: i64, r: i64, alpha: *mut f64) -> i32 {
+    enter(p, call!(feti_amplitudes(p, body, r, alpha)), |problem| {
+        let amplitudes = problem.amplitudes(id(body, "body")?)?;
+        // SAFETY: room for r numbers by the caller's word.
+        unsafe { copy(amplitudes, r, ("r", "the dimension of the null space is"), alpha, "alpha") }
+    })
+}
+
+/// Reads the multipliers: lambda of `B u <= c`, or mu of `H u = h`.
+///
+/// FETI_STATE before a solve has given an answer. After a failure nothing is written.
+///
+/// | argument | in/out | shape | rule |
+/// |---|---|---|---|
+/// | `p` | in | scalar | the handle |
+/// | `kind` | in | scalar | FETI_INEQUALITY or FETI_EQUALITY |
+/// | `rows` | in | scalar | number of rows of the kind |
+/// | `lambda` | out | rows | force, >= 0 for inequalities |
+///
+/// # Safety
+/// The array has the given shape.
+#[no_mangle]
+pub unsafe extern "C" fn feti_multipliers(
+    p: *mut feti_problem,
+    kind: i32,
+    rows: i64,
+    lambda: *mut f64,
+) -> i32 {
+    enter(p, call!(feti_multipliers(p, kind, rows, lambda)), |problem| {
+        let multipliers = problem.multipliers(row_kind(kind)?)?;
+        // SAFETY: room for one number per row by the caller's word.
+        unsafe { copy(multipliers, rows, ("rows", ROWS), lambda, "lambda") }
+    })
+}
+
+/// Reads what is left of the gaps, c - B u.
+///
+/// FETI_STATE before a solve has given an answer. After a failure nothing is written.
+///
+/// | argument | in/out | shape | rule |
+/// |---|---|---|---|
+/// | `p` | in | scalar | the handle |
+/// | `rows` | in | scalar | number of inequality rows |
+/// | `slack` | out | rows | open gap, length; negative: penetration |
+///
+/// # Safety
+/// The array has the given shape.
+#[no_mangle]
+pub unsafe extern "C" fn feti_gaps(p: *mut feti_problem, rows: i64, slack: *mut f64) -> i32 {
+    enter(p, call!(feti_gaps(p, rows, slack)), |problem| {
+        // SAFETY: room for one number per row by the caller's word.
+        unsafe { copy(problem.gaps()?, rows, ("rows", ROWS), slack, "slack") }
+    })
+}
+
+/// Reads the state of the inequality rows.
+///
+/// FETI_STATE before a solve has given an answer. After a failure nothing is written.
+///
+/// | argument | in/out | shape | rule |
+/// |---|---|---|---|
+/// | `p` | in | scalar | the handle |
+/// | `rows` | in | scalar | number of inequality rows |
+/// | `state` | out | rows | FETI_ROW_OPEN, FETI_ROW_CLOSED or FETI_ROW_WEAK |
+///
+/// # Safety
+/// The array has the given shape.
+#[no_mangle]
+pub unsafe extern "C" fn feti_active(p: *mut feti_problem, rows: i64, state: *mut i32) -> i32 {
+    enter(p, call!(feti_active(p, rows, state)), |problem| {
+        let active = problem.active()?;
+        let mut numbers = reserved(active.len())?;
+        numbers.extend(active.iter().map(|state| match state {
+            RowState::Open => FETI_ROW_OPEN,
+            RowState::Closed => FETI_ROW_CLOSED,
+            RowState::Weak => FETI_ROW_WEAK,
+        }));
+        // SAFETY: room for one number per row by the caller's word.
+        unsafe { copy(&numbers, rows, ("rows", ROWS), state, "state") }
+    })
+}
+
+/// Reads the size of the problem as it is given now.
+///
+/// After a failure nothing is written.
+///
+/// | argument | in/out | shape | rule |
+/// |---|---|---|---|
+/// | `p` | in | scalar | the handle |
+/// | `bodies` | out | scalar | bodies; may be NULL |
+/// | `dofs` | out | scalar | unknowns of all bodies; may be NULL |
+/// | `rows` | out | scalar | inequality rows; may be NULL |
+/// | `eqs` | out | scalar | equality rows; may be NULL |
+///
+/// # Safety
+/// Every pointer is NULL or has room for one number.
+#[no_mangle]
+pub unsafe extern "C" fn feti_counts(
+    p: *mut feti_problem,
+    bodies: *mut i64,
+    dofs: *mut i64,
+    rows: *mut i64,
+    eqs: *mut i64,
+) -> i32 {
+    enter(p, call!(feti_counts(p, bodies, dofs, rows, eqs)), |problem| {
+        // SAFETY: NULL or room for one number by the caller's word.
+        let outputs = unsafe {
+            [
+                Output::optional(bodies, "bodies")?,
+                Output::optional(dofs, "dofs")?,
+                Output::optional(rows, "rows")?,
+                Output::optional(eqs, "eqs")?,
+            ]
+        };
+        let counts = problem.counts();
+        let numbers = [counts.bodies, counts.dofs, counts.rows, counts.equalities];
+        for (output, number) in outputs.iter().zip(numbers) {
+            output.set(number as i64);
+        }
+        Ok(())
+    })
+}
+
+const ROWS: &str = "the number of rows is";
+
+/// Copies `values` to the host, whose `size` = (name, text) must be their number.
+///
+/// # Safety
+/// `to` has room for `given` numbers.
+unsafe fn copy<T: Copy>(
+    values: &[T],
+    given: i64,
+    size: (&'static str, &str),
+    to: *mut T,
+    name: &'static str,
+) -> Result<()> {
+    let len = same(given, values.len(), size.0, size.1)?;
+    // SAFETY: by the caller's word.
+    unsafe { Output::new(to, len, name) }?.write(values);
+    Ok(())
+}

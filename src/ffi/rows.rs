@@ -1,0 +1,185 @@
+//! Rows of `B u <= c` and `H u = h`, numbered per kind from 0.
+
+use super::arrays::{count, id, input, input_or_none, Output};
+use super::guard::{call, enter, Call};
+use super::indices::{base, numbers, pointers, Index};
+use super::types::{feti_problem, FETI_EQUALITY, FETI_INEQUALITY};
+use crate::error::{Error, Result};
+use crate::solver::{RowKind, RowsInput};
+
+/// Adds rows of `B u <= c` or `H u = h`, with 32-bit indices.
+///
+/// The rows are copied and numbered behind those of the same kind that are there. A pair of body and unknown that comes
+/// twice in a row is summed. After a failure nothing is added.
+///
+/// | argument | in/out | shape | rule |
+/// |---|---|---|---|
+/// | `p` | in | scalar | the handle |
+/// | `kind` | in | scalar | FETI_INEQUALITY or FETI_EQUALITY |
+/// | `rows` | in | scalar | number of rows, 0 adds none |
+/// | `row_ptr` | in | rows + 1 | row i holds the entries row_ptr[i] to row_ptr[i + 1] - 1; starts with `base` |
+/// | `body` | in | row_ptr[rows] - base | body of each entry, counted from `base`; NULL: `dof` counts through all bodies |
+/// | `dof` | in | row_ptr[rows] - base | unknown of each entry, counted from `base` |
+/// | `val` | in | row_ptr[rows] - base | entries of B or H |
+/// | `base` | in | scalar | 0 or 1: what `row_ptr`, `body` and `dof` count from |
+/// | `rhs` | in | rows | c or h, length; NULL: zeros |
+/// | `first` | out | scalar | number of the first row added, from 0; may be NULL |
+///
+/// # Safety
+/// The arrays have the given shapes.
+#[no_mangle]
+pub unsafe extern "C" fn feti_rows_add_i32(
+    p: *mut feti_problem,
+    kind: i32,
+    rows: i64,
+    row_ptr: *const i32,
+    body: *const i32,
+    dof: *const i32,
+    val: *const f64,
+    base: i32,
+    rhs: *const f64,
+    first: *mut i64,
+) -> i32 {
+    let call = call!(feti_rows_add_i32(p, kind, rows, row_ptr, body, dof, val, base, rhs, first));
+    let given = Rows { kind, rows, row_ptr, body, dof, val, base, rhs, first };
+    // SAFETY: shapes by the caller's word.
+    unsafe { given.add(p, call) }
+}
+
+/// Adds rows of `B u <= c` or `H u = h`, with 64-bit indices.
+///
+/// The rows are copied and numbered behind those of the same kind that are there. A pair of body and unknown that comes
+/// twice in a row is summed. After a failure nothing is added.
+///
+/// | argument | in/out | shape | rule |
+/// |---|---|---|---|
+/// | `p` | in | scalar | the handle |
+/// | `kind` | in | scalar | FETI_INEQUALITY or FETI_EQUALITY |
+/// | `rows` | in | scalar | number of rows, 0 adds none |
+/// | `row_ptr` | in | rows + 1 | row i holds the entries row_ptr[i] to row_ptr[i + 1] - 1; starts with `base` |
+/// | `body` | in | row_ptr[rows] - base | body of each entry, counted from `base`; NULL: `dof` counts through all bodies |
+/// | `dof` | in | row_ptr[rows] - base | unknown of each entry, counted from `base` |
+/// | `val` | in | row_ptr[rows] - base | entries of B or H |
+/// | `base` | in | scalar | 0 or 1: what `row_ptr`, `body` and `dof` count from |
+/// | `rhs` | in | rows | c or h, length; NULL: zeros |
+/// | `first` | out | scalar | number of the first row added, from 0; may be NULL |
+///
+/// # Safety
+/// The arrays have the given shapes.
+#[no_mangle]
+pub unsafe extern "C" fn feti_rows_add_i64(
+    p: *mut feti_problem,
+    kind: i32,
+    rows: i64,
+    row_ptr: *const i64,
+    body: *const i64,
+    dof: *const i64,
+    val: *const f64,
+    base: i32,
+    rhs: *const f64,
+    first: *mut i64,
+) -> i32 {
+    let call = call!(feti_rows_add_i64(p, kind, rows, row_ptr, body, dof, val, base, rhs, first));
+    let given = Rows { kind, rows, row_ptr, body, dof, val, base, rhs, first };
+    // SAFETY: shapes by the caller's word.
+    unsafe { given.add(p, call) }
+}
+
+/// Arguments of the two functions above.
+struct Rows<I> {
+    kind: i32,
+    rows: i64,
+    row_ptr: *const I,
+    body: *const I,
+    dof: *const I,
+    val: *const f64,
+    base: i32,
+    rhs: *const f64,
+    first: *mut i64,
+}
+
+impl<I: Index> Rows<I> {
+    /// # Safety
+    /// The arrays have the documented shapes.
+    unsafe fn add(&self, p: *mut feti_problem, call: Call) -> i32 {
+        enter(p, call, |problem| {
+            let (kind, rows, base) = (row_kind(self.kind)?, count(self.rows, "rows")?, base(self.base)?);
+            // SAFETY: NULL or room for one number by the caller's word.
+            let first = unsafe { Output::optional(self.first, "first") }?;
+            // SAFETY: rows + 1 positions by the caller's word.
+            let ptr = unsafe { pointers(self.row_ptr, rows, base) }?;
+            let entries = ptr.last().copied().unwrap_or(0);
+            let body = if self.body.is_null() {
+                None
+            } else {
+                // SAFETY: the last position is the number of entries.
+                Some(unsafe { numbers(self.body, entries, base, "body") }?)
+            };
+            // SAFETY: the last position is the number of entries.
+            let (dof, val) =
+                unsafe { (numbers(self.dof, entries, base, "dof")?, input(self.val, entries, "val")?) };
+            // SAFETY: NULL or one number per row by the caller's word.
+            let rhs = unsafe { input_or_none(self.rhs, rows, "rhs") }?;
+            let added = problem
+                .add_rows(kind, RowsInput { ptr: &ptr, body: body.as_deref(), dof: &dof, val, rhs })?;
+            first.set(added as i64);
+            Ok(())
+        })
+    }
+}
+
+/// Replaces right-hand sides: c of `B u <= c` or h of `H u = h`.
+///
+/// The numbers are copied. After a failure all right-hand sides are as they were.
+///
+/// | argument | in/out | shape | rule |
+/// |---|---|---|---|
+/// | `p` | in | scalar | the handle |
+/// | `kind` | in | scalar | FETI_INEQUALITY or FETI_EQUALITY |
+/// | `first` | in | scalar | first row to change, from 0 |
+/// | `rows` | in | scalar | number of rows to change |
+/// | `rhs` | in | rows | c or h, length |
+///
+/// # Safety
+/// The array has the given shape.
+#[no_mangle]
+pub unsafe extern "C" fn feti_rows_rhs(
+    p: *mut feti_problem,
+    kind: i32,
+    first: i64,
+    rows: i64,
+    rhs: *const f64,
+) -> i32 {
+    enter(p, call!(feti_rows_rhs(p, kind, first, rows, rhs)), |problem| {
+        let (kind, first, rows) = (row_kind(kind)?, id(first, "first")?, count(rows, "rows")?);
+        // SAFETY: one number per row by the caller's word.
+        problem.set_rhs(kind, first, unsafe { input(rhs, rows, "rhs") }?)
+    })
+}
+
+/// Removes all rows of a kind.
+///
+/// Numbering of that kind starts again at 0. Factors of the bodies stay.
+///
+/// | argument | in/out | shape | rule |
+/// |---|---|---|---|
+/// | `p` | in | scalar | the handle |
+/// | `kind` | in | scalar | FETI_INEQUALITY or FETI_EQUALITY |
+#[no_mangle]
+pub extern "C" fn feti_rows_clear(p: *mut feti_problem, kind: i32) -> i32 {
+    enter(p, call!(feti_rows_clear(p, kind)), |problem| {
+        problem.clear_rows(row_kind(kind)?);
+        Ok(())
+    })
+}
+
+pub(super) fn row_kind(kind: i32) -> Result<RowKind> {
+    match kind {
+        FETI_INEQUALITY => Ok(RowKind::Inequality),
+        FETI_EQUALITY => Ok(RowKind::Equality),
+        _ => {
+            let text = format!("{kind} is neither FETI_INEQUALITY nor FETI_EQUALITY");
+            Err(Error::argument("kind", text).value(f64::from(kind)))
+        }
+    }
+}

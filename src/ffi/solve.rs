@@ -1,0 +1,191 @@
+//! Setup, solve, and the verdict on an answer.
+
+use super::arrays::{input, same};
+use super::guard::{call, enter, enter_with_status};
+use super::record::Target;
+use super::status::of_outcome;
+use super::types::{feti_certificate, feti_info, feti_problem};
+use crate::solver::{Certificate, Counts, Problem, Report};
+
+/// Prepares the solve: null spaces, factors of the bodies, the dual operator.
+///
+/// feti_solve does it when it is due; called alone it shows errors in the bodies early. After a failure all that was
+/// given is kept and can be corrected.
+///
+/// | argument | in/out | shape | rule |
+/// |---|---|---|---|
+/// | `p` | in | scalar | the handle |
+#[no_mangle]
+pub extern "C" fn feti_setup(p: *mut feti_problem) -> i32 {
+    enter(p, call!(feti_setup(p)), Problem::setup)
+}
+
+/// Minimises 1/2 u'Ku - f'u subject to `B u <= c` and `H u = h`.
+///
+/// The answer is kept until the next solve and read with feti_displacement, feti_multipliers and the like; there is one
+/// when the status is not negative. `info` is written in any case, with NaN for figures that a failure left unknown. After
+/// a failure all that was given is kept and can be corrected, except after FETI_INTERNAL.
+///
+/// | argument | in/out | shape | rule |
+/// |---|---|---|---|
+/// | `p` | in | scalar | the handle |
+/// | `info` | in/out | scalar | `struct_size` set, at least 16; may be NULL |
+///
+/// # Safety
+/// `info` is NULL or leads to `struct_size` writable bytes.
+#[no_mangle]
+pub unsafe extern "C" fn feti_solve(p: *mut feti_problem, info: *mut feti_info) -> i32 {
+    // SAFETY: NULL, or `struct_size` bytes by the caller's word.
+    let target = (!info.is_null()).then(|| unsafe { Target::new(info, "info") }).transpose();
+    let mut filled = without_answer();
+    let status = enter_with_status(p, call!(feti_solve(p, info)), |problem| {
+        target.as_ref().map_err(Clone::clone)?;
+        count_in(&mut filled, &problem.counts());
+        if problem.settings().fault_injection == 1 {
+            panic!("fault injected on request");
+        }
+        let report = problem.solve()?;
+        report_in(&mut filled, &report);
+        Ok(of_outcome(&report.outcome))
+    });
+    filled.status = status;
+    if let Ok(Some(target)) = target {
+        target.write(&filled);
+    }
+    status
+}
+
+/// Verifies an answer against the problem as it is given now: any answer, also another code's.
+///
+/// Keeps nothing: the answer of the last solve stays. After a failure nothing is written.
+///
+/// | argument | in/out | shape | rule |
+/// |---|---|---|---|
+/// | `p` | in | scalar | the handle |
+/// | `n` | in | scalar | unknowns of all bodies |
+/// | `u` | in | n | displacement, body after body, length |
+/// | `rows` | in | scalar | number of inequality rows |
+/// | `lambda` | in | rows | multipliers of `B u <= c`, force |
+/// | `eqs` | in | scalar | number of equality rows |
+/// | `mu` | in | eqs | multipliers of `H u = h`, force |
+/// | `out` | in/out | scalar | `struct_size` set, at least 16 |
+///
+/// # Safety
+/// The arrays have the given shapes, `out` leads to `struct_size` writable bytes.
+#[no_mangle]
+pub unsafe extern "C" fn feti_check(
+    p: *mut feti_problem,
+    n: i64,
+    u: *const f64,
+    rows: i64,
+    lambda: *const f64,
+    eqs: i64,
+    mu: *const f64,
+    out: *mut feti_certificate,
+) -> i32 {
+    enter(p, call!(feti_check(p, n, u, rows, lambda, eqs, mu, out)), |problem| {
+        let counts = problem.counts();
+        let n = same(n, counts.dofs, "n", "the number of unknowns of all bodies is")?;
+        let rows = same(rows, counts.rows, "rows", "the number of inequality rows is")?;
+        let eqs = same(eqs, counts.equalities, "eqs", "the number of equality rows is")?;
+        // SAFETY: shapes by the caller's word.
+        let (u, lambda, mu) =
+            unsafe { (input(u, n, "u")?, input(lambda, rows, "lambda")?, input(mu, eqs, "mu")?) };
+        // SAFETY: `struct_size` bytes by the caller's word.
+        let target = unsafe { Target::new(out, "out") }?;
+        target.write(&certificate(&problem.check(u, lambda, mu)?));
+        Ok(())
+    })
+}
+
+/// Counts zero, figures NaN.
+fn without_answer() -> feti_info {
+    feti_info {
+        struct_size: size_of::<feti_info>() as i64,
+        status: 0,
+        reserved: 0,
+        bodies: 0,
+        dofs: 0,
+        rows: 0,
+        equalities: 0,
+        floating_modes: 0,
+        active: 0,
+        undetermined: 0,
+        steps: 0,
+        cg_steps: 0,
+        expansions: 0,
+        releases: 0,
+        dual_applications: 0,
+        coarse_solves: 0,
+        factorisations: 0,
+        analyses: 0,
+        worst: f64::NAN,
+        equilibrium: f64::NAN,
+        balance: f64::NAN,
+        penetration: f64::NAN,
+        equality: f64::NAN,
+        negative_force: f64::NAN,
+        complementarity: f64::NAN,
+        duality_gap: f64::NAN,
+        energy: f64::NAN,
+        seconds_setup: f64::NAN,
+        seconds_solve: f64::NAN,
+    }
+}
+
+fn count_in(info: &mut feti_info, counts: &Counts) {
+    info.bodies = counts.bodies as i64;
+    info.dofs = counts.dofs as i64;
+    info.rows = counts.rows as i64;
+    info.equalities = counts.equalities as i64;
+}
+
+fn report_in(info: &mut feti_info, report: &Report) {
+    count_in(info, &report.counts);
+    info.floating_modes = report.floating_modes as i64;
+    info.active = report.active as i64;
+    info.undetermined = report.undetermined as i64;
+    info.steps = report.steps as i64;
+    info.cg_steps = report.cg_steps as i64;
+    info.expansions = report.expansions as i64;
+    info.releases = report.releases as i64;
+    info.dual_applications = report.dual_applications as i64;
+    info.coarse_solves = report.coarse_solves as i64;
+    info.factorisations = report.factorisations as i64;
+    info.analyses = report.analyses as i64;
+    info.worst = report.certificate.worst();
+    info.equilibrium = report.certificate.equilibrium.figure;
+    info.balance = report.certificate.balance.figure;
+    info.penetration = report.certificate.penetration.figure;
+    info.equality = report.certificate.equality.figure;
+    info.negative_force = report.certificate.negative_force.figure;
+    info.complementarity = report.certificate.complementarity.figure;
+    info.duality_gap = report.certificate.duality_gap.figure;
+    info.energy = report.energy;
+    info.seconds_setup = report.seconds_setup;
+    info.seconds_solve = report.seconds_solve;
+}
+
+fn certificate(from: &Certificate) -> feti_certificate {
+    let place = |place: Option<usize>| place.map_or(-1, |place| place as i64);
+    feti_certificate {
+        struct_size: size_of::<feti_certificate>() as i64,
+        passed: i32::from(from.passed()),
+        reserved: 0,
+        limit: from.limit,
+        worst: from.worst(),
+        equilibrium: from.equilibrium.figure,
+        balance: from.balance.figure,
+        penetration: from.penetration.figure,
+        equality: from.equality.figure,
+        negative_force: from.negative_force.figure,
+        complementarity: from.complementarity.figure,
+        duality_gap: from.duality_gap.figure,
+        equilibrium_body: place(from.equilibrium.place),
+        balance_body: place(from.balance.place),
+        penetration_row: place(from.penetration.place),
+        equality_row: place(from.equality.place),
+        force_row: place(from.negative_force.place),
+        complementarity_row: place(from.complementarity.place),
+    }
+}

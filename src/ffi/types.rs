@@ -1,0 +1,204 @@
+//! Structs and constants of the header. Structs without padding: the record functions copy them by bytes.
+#![allow(non_camel_case_types)]
+
+use std::ffi::c_char;
+
+/// Kind of rows: `B u <= c`.
+pub const FETI_INEQUALITY: i32 = 1;
+/// Kind of rows: `H u = h`.
+pub const FETI_EQUALITY: i32 = 2;
+
+/// Storage: every entry of the symmetric matrix is given.
+pub const FETI_FULL: i32 = 0;
+/// Storage: entries with column <= row are given.
+pub const FETI_LOWER: i32 = 1;
+/// Storage: entries with column >= row are given.
+pub const FETI_UPPER: i32 = 2;
+
+/// Null-space flag: the columns span the null space.
+pub const FETI_EXACT: i32 = 0;
+/// Null-space flag: the null space lies in the span of the columns; the library selects.
+pub const FETI_CANDIDATES: i32 = 1;
+
+/// Stiffness flag: the matrix is copied.
+pub const FETI_COPY: i32 = 0;
+
+/// State of a row: open, its force is zero.
+pub const FETI_ROW_OPEN: i32 = 0;
+/// State of a row: closed, it carries a force.
+pub const FETI_ROW_CLOSED: i32 = 1;
+/// State of a row: closed with a force that is zero to rounding, or with a force without a clear sign.
+pub const FETI_ROW_WEAK: i32 = 2;
+
+/// Type of an option: number.
+pub const FETI_OPTION_F64: i32 = 1;
+/// Type of an option: integer.
+pub const FETI_OPTION_I64: i32 = 2;
+/// Type of an option: text.
+pub const FETI_OPTION_STR: i32 = 3;
+
+/// A problem: bodies, rows, settings, factors and the last answer. The handle is a counter, never an address.
+#[repr(C)]
+pub struct feti_problem {
+    _private: [u8; 0],
+}
+
+/// What went wrong, where and by how much. Numbers count from 0.
+#[repr(C)]
+#[derive(Debug, Clone, Copy)]
+pub struct feti_error_detail {
+    /// Set by the caller: size of the struct in bytes.
+    pub struct_size: i64,
+    /// Status the function returned; 0: there was no error yet.
+    pub status: i32,
+    /// Position of the refused argument, from 1 with the handle as 1; 0: none.
+    pub argument: i32,
+    /// Body, -1: does not apply.
+    pub body: i64,
+    /// Connected part of the body, -1: does not apply.
+    pub component: i64,
+    /// Degree of freedom of the body, -1: does not apply.
+    pub dof: i64,
+    /// Row of the matrix or of the constraints, -1: does not apply.
+    pub row: i64,
+    /// Position in the array, -1: does not apply.
+    pub entry: i64,
+    /// The number found; NaN: does not apply.
+    pub value: f64,
+    /// The number it had to stay within; NaN: does not apply.
+    pub limit: f64,
+    /// Name of the function that failed, NUL terminated.
+    pub function: [c_char; 40],
+}
+
+/// An option: name, text, default and range.
+#[repr(C)]
+#[derive(Debug, Clone, Copy)]
+pub struct feti_option {
+    /// Set by the caller: size of the struct in bytes.
+    pub struct_size: i64,
+    /// FETI_OPTION_F64, FETI_OPTION_I64 or FETI_OPTION_STR.
+    pub r#type: i32,
+    /// Zero.
+    pub reserved: i32,
+    /// Smallest value of a number or an integer.
+    pub minimum: f64,
+    /// Largest value of a number or an integer.
+    pub maximum: f64,
+    /// Default of a number or an integer; NaN for a text.
+    pub default_f64: f64,
+    /// Default of an integer.
+    pub default_i64: i64,
+    /// Name, static.
+    pub name: *const c_char,
+    /// One sentence, static.
+    pub doc: *const c_char,
+    /// Default of a text, static.
+    pub default_str: *const c_char,
+}
+
+/// How a solve went. Counts of a call that failed early are zero, figures NaN.
+#[repr(C)]
+#[derive(Debug, Clone, Copy)]
+pub struct feti_info {
+    /// Set by the caller: size of the struct in bytes.
+    pub struct_size: i64,
+    /// What feti_solve returned.
+    pub status: i32,
+    /// Zero.
+    pub reserved: i32,
+    /// Bodies.
+    pub bodies: i64,
+    /// Unknowns of all bodies.
+    pub dofs: i64,
+    /// Inequality rows.
+    pub rows: i64,
+    /// Equality rows.
+    pub equalities: i64,
+    /// Dimension of the null spaces of all bodies.
+    pub floating_modes: i64,
+    /// Inequality rows that are closed in the answer.
+    pub active: i64,
+    /// Motions that neither loads nor rows determine.
+    pub undetermined: i64,
+    /// Steps of the active-set method.
+    pub steps: i64,
+    /// Steps of conjugate gradients on a face.
+    pub cg_steps: i64,
+    /// Steps that met a bound.
+    pub expansions: i64,
+    /// Steps that left a face.
+    pub releases: i64,
+    /// Products with the dual operator F.
+    pub dual_applications: i64,
+    /// Solutions of the coarse problem.
+    pub coarse_solves: i64,
+    /// Numeric factorisations since the problem was created.
+    pub factorisations: i64,
+    /// Symbolic analyses since the problem was created.
+    pub analyses: i64,
+    /// Largest entry of the certificate over what it is allowed: <= 1 passes.
+    pub worst: f64,
+    /// Relative error of equilibrium, as in feti_certificate.
+    pub equilibrium: f64,
+    /// Relative error of the balance of each floating body.
+    pub balance: f64,
+    /// Relative penetration.
+    pub penetration: f64,
+    /// Relative error of the equality rows.
+    pub equality: f64,
+    /// Relative size of a force of the wrong sign.
+    pub negative_force: f64,
+    /// Relative error of complementarity.
+    pub complementarity: f64,
+    /// Relative gap between primal and dual energy.
+    pub duality_gap: f64,
+    /// Energy 1/2 u'Ku - f'u, force times length.
+    pub energy: f64,
+    /// Seconds for null spaces and factors.
+    pub seconds_setup: f64,
+    /// Seconds for the rest.
+    pub seconds_solve: f64,
+}
+
+/// Verdict on an answer, by relative figures: each passes when it is at most `limit` plus the noise of rounding.
+#[repr(C)]
+#[derive(Debug, Clone, Copy)]
+pub struct feti_certificate {
+    /// Set by the caller: size of the struct in bytes.
+    pub struct_size: i64,
+    /// 1: every entry passes.
+    pub passed: i32,
+    /// Zero.
+    pub reserved: i32,
+    /// Option certificate_tolerance.
+    pub limit: f64,
+    /// Largest entry over what it is allowed: <= 1 passes.
+    pub worst: f64,
+    /// Relative error of equilibrium `K u + B'lambda + H'mu = f`.
+    pub equilibrium: f64,
+    /// Relative error of the balance `R'(f - B'lambda - H'mu) = 0` of each floating body.
+    pub balance: f64,
+    /// Relative penetration: positive part of `B u - c`.
+    pub penetration: f64,
+    /// Relative error of `H u = h`.
+    pub equality: f64,
+    /// Relative size of a negative contact force.
+    pub negative_force: f64,
+    /// Relative size of force times open gap.
+    pub complementarity: f64,
+    /// Relative gap between primal and dual energy.
+    pub duality_gap: f64,
+    /// Body of the worst equilibrium, from 0, -1: none.
+    pub equilibrium_body: i64,
+    /// Body of the worst balance, from 0, -1: none.
+    pub balance_body: i64,
+    /// Row of the deepest penetration, from 0, -1: none.
+    pub penetration_row: i64,
+    /// Equality row with the largest error, from 0, -1: none.
+    pub equality_row: i64,
+    /// Row of the most negative force, from 0, -1: none.
+    pub force_row: i64,
+    /// Row with the worst complementarity, from 0, -1: none.
+    pub complementarity_row: i64,
+}

@@ -1,0 +1,113 @@
+//! The operators of the method, for comparison with other codes: contact rows first, then equality rows, in the host's
+//! order and scaling.
+
+use super::arrays::{column_major, count, input, same, zeros, Output};
+use super::body::body_of_order;
+use super::guard::{call, enter};
+use super::types::feti_problem;
+use crate::error::Result;
+use crate::solver::Problem;
+
+/// Applies the generalised inverse of a body, `Y = K+ X`.
+///
+/// Runs feti_setup when it is due. X and Y may be the same array. After a failure nothing is written.
+///
+/// | argument | in/out | shape | rule |
+/// |---|---|---|---|
+/// | `p` | in | scalar | the handle |
+/// | `body` | in | scalar | number of the body, from 0 |
+/// | `n` | in | scalar | unknowns of the body |
+/// | `nrhs` | in | scalar | columns of X and Y |
+/// | `x` | in | ldx * nrhs | column-major, force |
+/// | `ldx` | in | scalar | >= n |
+/// | `y` | out | ldy * nrhs | column-major, length |
+/// | `ldy` | in | scalar | >= n |
+///
+/// # Safety
+/// The arrays have the given shapes.
+#[no_mangle]
+pub unsafe extern "C" fn feti_body_kplus(
+    p: *mut feti_problem,
+    body: i64,
+    n: i64,
+    nrhs: i64,
+    x: *const f64,
+    ldx: i64,
+    y: *mut f64,
+    ldy: i64,
+) -> i32 {
+    enter(p, call!(feti_body_kplus(p, body, n, nrhs, x, ldx, y, ldy)), |problem| {
+        let (body, n) = body_of_order(problem, body, n)?;
+        let nrhs = count(nrhs, "nrhs")?;
+        let (x_entries, ldx) = column_major(n, nrhs, ldx, "ldx")?;
+        let (y_entries, ldy) = column_major(n, nrhs, ldy, "ldy")?;
+        // SAFETY: shapes by the caller's word.
+        let (x, output) = unsafe { (input(x, x_entries, "x")?, Output::new(y, y_entries, "y")?) };
+        // At most y_entries, which column_major has bounded.
+        let mut columns = zeros(n * nrhs)?;
+        for (k, column) in columns.chunks_exact_mut(n.max(1)).enumerate() {
+            problem.kplus(body, &x[k * ldx..k * ldx + n], column)?;
+        }
+        for (k, column) in columns.chunks_exact(n.max(1)).enumerate() {
+            output.write_at(k * ldy, column);
+        }
+        Ok(())
+    })
+}
+
+/// Applies the dual operator, `y = F x` with `F = [B; H] K+ [B; H]'`.
+///
+/// Runs feti_setup when it is due. `x` and `y` may be the same array. After a failure nothing is written.
+///
+/// | argument | in/out | shape | rule |
+/// |---|---|---|---|
+/// | `p` | in | scalar | the handle |
+/// | `m` | in | scalar | inequality rows + equality rows |
+/// | `x` | in | m | force |
+/// | `y` | out | m | length |
+///
+/// # Safety
+/// The arrays have the given shapes.
+#[no_mangle]
+pub unsafe extern "C" fn feti_dual_apply(p: *mut feti_problem, m: i64, x: *const f64, y: *mut f64) -> i32 {
+    enter(p, call!(feti_dual_apply(p, m, x, y)), |problem| {
+        let m = all_rows(problem, m)?;
+        // SAFETY: shapes by the caller's word.
+        let (x, output) = unsafe { (input(x, m, "x")?, Output::new(y, m, "y")?) };
+        let mut product = zeros(m)?;
+        problem.dual_apply(x, &mut product)?;
+        output.write(&product);
+        Ok(())
+    })
+}
+
+/// Reads the right-hand side of the dual problem, `d = [B; H] K+ f - [c; h]`.
+///
+/// Runs feti_setup when it is due. After a failure nothing is written.
+///
+/// | argument | in/out | shape | rule |
+/// |---|---|---|---|
+/// | `p` | in | scalar | the handle |
+/// | `m` | in | scalar | inequality rows + equality rows |
+/// | `d` | out | m | length |
+///
+/// # Safety
+/// The array has the given shape.
+#[no_mangle]
+pub unsafe extern "C" fn feti_dual_rhs(p: *mut feti_problem, m: i64, d: *mut f64) -> i32 {
+    enter(p, call!(feti_dual_rhs(p, m, d)), |problem| {
+        let m = all_rows(problem, m)?;
+        // SAFETY: room for m numbers by the caller's word.
+        let output = unsafe { Output::new(d, m, "d") }?;
+        let mut rhs = zeros(m)?;
+        problem.dual_rhs(&mut rhs)?;
+        output.write(&rhs);
+        Ok(())
+    })
+}
+
+/// Rows of both kinds, which `m` must be.
+fn all_rows(problem: &Problem, m: i64) -> Result<usize> {
+    let counts = problem.counts();
+    same(m, counts.rows + counts.equalities, "m", "the number of rows of both kinds is")
+}

@@ -1,0 +1,114 @@
+//! Small dense matrices: null spaces (n x r, r a handful) and coarse matrices (r x r).
+
+use crate::error::Result;
+use crate::linalg::memory::zeros;
+use crate::linalg::vector::{axpy, dot, norm};
+
+/// `rows x cols`, column-major.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Matrix {
+    pub rows: usize,
+    pub cols: usize,
+    pub data: Vec<f64>,
+}
+
+impl Matrix {
+    pub fn zeros(rows: usize, cols: usize) -> Result<Self> {
+        Ok(Self { rows, cols, data: zeros(rows.saturating_mul(cols), "a dense matrix")? })
+    }
+
+    pub fn col(&self, j: usize) -> &[f64] {
+        &self.data[j * self.rows..(j + 1) * self.rows]
+    }
+
+    pub fn col_mut(&mut self, j: usize) -> &mut [f64] {
+        &mut self.data[j * self.rows..(j + 1) * self.rows]
+    }
+
+    pub fn get(&self, i: usize, j: usize) -> f64 {
+        self.data[i + j * self.rows]
+    }
+
+    pub fn set(&mut self, i: usize, j: usize, value: f64) {
+        self.data[i + j * self.rows] = value;
+    }
+
+    /// Appends a column.
+    pub fn push_col(&mut self, column: &[f64]) {
+        debug_assert_eq!(column.len(), self.rows);
+        self.data.extend_from_slice(column);
+        self.cols += 1;
+    }
+
+    /// `y += a A x`
+    pub fn mul_add(&self, a: f64, x: &[f64], y: &mut [f64]) {
+        for (j, x) in x.iter().enumerate() {
+            axpy(a * x, self.col(j), y);
+        }
+    }
+
+    /// `A' x`
+    pub fn mul_transposed(&self, x: &[f64]) -> Vec<f64> {
+        (0..self.cols).map(|j| dot(self.col(j), x)).collect()
+    }
+
+    /// Orthonormal basis of the column space: Gram-Schmidt, twice, the longest remaining column first.
+    /// Columns that keep less than `drop` of their length depend on the others and are left out.
+    pub fn orthonormalised(mut self, drop: f64) -> Self {
+        let lengths: Vec<f64> = (0..self.cols).map(|j| norm(self.col(j))).collect();
+        for (j, &length) in lengths.iter().enumerate().filter(|(_, length)| **length > 0.0) {
+            self.col_mut(j).iter_mut().for_each(|v| *v /= length);
+        }
+        let mut basis = Self { rows: self.rows, ..Self::default() };
+        let mut left: Vec<usize> = (0..self.cols).filter(|&j| lengths[j] > 0.0).collect();
+        while let Some(at) = longest(&self, &left) {
+            let j = left.remove(at);
+            let mut column = self.col(j).to_vec();
+            for q in 0..basis.cols {
+                let part = dot(basis.col(q), &column);
+                axpy(-part, basis.col(q), &mut column);
+            }
+            let rest = norm(&column);
+            if rest <= drop {
+                break;
+            }
+            column.iter_mut().for_each(|v| *v /= rest);
+            for &k in &left {
+                let part = dot(&column, self.col(k));
+                axpy(-part, &column, self.col_mut(k));
+            }
+            basis.push_col(&column);
+        }
+        basis
+    }
+}
+
+/// Position in `among` of the longest column; the first of equals.
+fn longest(matrix: &Matrix, among: &[usize]) -> Option<usize> {
+    let mut best = None;
+    for (at, &j) in among.iter().enumerate() {
+        let length = norm(matrix.col(j));
+        if best.is_none_or(|(_, longest)| length > longest) {
+            best = Some((at, length));
+        }
+    }
+    best.map(|(at, _)| at)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_dependent_column_is_left_out_of_the_basis() {
+        let a = Matrix { rows: 3, cols: 3, data: vec![1., 0., 0., 1., 1., 0., 2., 1., 0.] };
+        let q = a.orthonormalised(1e-10);
+        assert_eq!(q.cols, 2);
+        for i in 0..2 {
+            for j in 0..2 {
+                let expected = f64::from(u8::from(i == j));
+                assert!((dot(q.col(i), q.col(j)) - expected).abs() < 1e-15);
+            }
+        }
+    }
+}

@@ -1,0 +1,137 @@
+//! The adjacency graph of a stiffness matrix: connected parts, and dofs of one node.
+
+use std::collections::HashMap;
+
+use crate::error::{Error, Kind, Result};
+use crate::linalg::memory::reserved;
+use crate::linalg::Symmetric;
+
+/// Both triangles with the diagonal: the neighbours of `i` are `adj[ptr[i]..ptr[i+1]]`, ascending.
+pub struct Graph {
+    pub ptr: Vec<usize>,
+    pub adj: Vec<u32>,
+}
+
+impl Graph {
+    pub fn of(matrix: &Symmetric) -> Result<Self> {
+        let n = matrix.order();
+        if u32::try_from(n).is_err() {
+            return Err(Error::new(Kind::Overflow, "a body has more than 2^32 unknowns"));
+        }
+        let mut ptr = reserved(n + 1, "the graph of a body")?;
+        ptr.resize(n + 1, 0);
+        for i in 0..n {
+            for (j, _) in matrix.lower_row(i) {
+                ptr[i + 1] += 1;
+                ptr[j + 1] += usize::from(i != j);
+            }
+        }
+        for i in 0..n {
+            ptr[i + 1] += ptr[i];
+        }
+        let mut next = ptr.clone();
+        let mut adj = reserved(ptr[n], "the graph of a body")?;
+        adj.resize(ptr[n], 0);
+        // Row i writes its lower part before any later row appends to it: ascending without a sort.
+        for i in 0..n {
+            for (j, _) in matrix.lower_row(i) {
+                adj[next[i]] = j as u32;
+                next[i] += 1;
+                if i != j {
+                    adj[next[j]] = i as u32;
+                    next[j] += 1;
+                }
+            }
+        }
+        Ok(Self { ptr, adj })
+    }
+
+    pub fn neighbours(&self, i: usize) -> &[u32] {
+        &self.adj[self.ptr[i]..self.ptr[i + 1]]
+    }
+
+    /// Groups dofs with identical neighbours (the dofs of one node): group of each dof, and the
+    /// first dof of each group.
+    pub fn nodes(&self) -> (Vec<u32>, Vec<usize>) {
+        let n = self.ptr.len() - 1;
+        let (mut group, mut first) = (vec![0u32; n], Vec::new());
+        let mut known: HashMap<u64, Vec<u32>> = HashMap::new();
+        for (i, group_of_i) in group.iter_mut().enumerate() {
+            let same_key = known.entry(self.key(i)).or_default();
+            let found = same_key.iter().find(|&&g| self.neighbours(first[g as usize]) == self.neighbours(i));
+            *group_of_i = match found {
+                Some(&g) => g,
+                None => {
+                    same_key.push(first.len() as u32);
+                    first.push(i);
+                    first.len() as u32 - 1
+                }
+            };
+        }
+        (group, first)
+    }
+
+    /// A hash of the neighbours of `i` (FNV-1a).
+    fn key(&self, i: usize) -> u64 {
+        self.neighbours(i)
+            .iter()
+            .fold(0xcbf2_9ce4_8422_2325, |key, &j| (key ^ u64::from(j)).wrapping_mul(0x0100_0000_01b3))
+    }
+}
+
+/// Connected parts of the matrix: the part of every dof, numbered by their first dof, and their count.
+pub fn components(matrix: &Symmetric) -> (Vec<usize>, usize) {
+    let n = matrix.order();
+    let mut root: Vec<usize> = (0..n).collect();
+    for i in 0..n {
+        for (j, _) in matrix.lower_row(i) {
+            let (a, b) = (find(&mut root, i), find(&mut root, j));
+            root[a.max(b)] = a.min(b);
+        }
+    }
+    let (mut label, mut count) = (vec![usize::MAX; n], 0);
+    for i in 0..n {
+        let r = find(&mut root, i);
+        if r == i {
+            label[i] = count;
+            count += 1;
+        } else {
+            label[i] = label[r];
+        }
+    }
+    (label, count)
+}
+
+/// The smallest dof of the part of `i`, with paths halved on the way.
+fn find(root: &mut [usize], mut i: usize) -> usize {
+    while root[i] != i {
+        root[i] = root[root[i]];
+        i = root[i];
+    }
+    i
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Dofs 0, 1 form one node coupled to dof 2; dof 3 stands alone.
+    fn sample() -> Symmetric {
+        Symmetric {
+            ptr: vec![0, 1, 3, 6, 7],
+            col: vec![0, 0, 1, 0, 1, 2, 3],
+            val: vec![4.0, 1.0, 4.0, 1.0, 1.0, 4.0, 1.0],
+        }
+    }
+
+    #[test]
+    fn unconnected_dofs_are_found_as_parts_of_their_own() {
+        assert_eq!(components(&sample()), (vec![0, 0, 0, 1], 2));
+    }
+
+    #[test]
+    fn dofs_with_the_same_neighbours_form_one_node() {
+        let (group, first) = Graph::of(&sample()).unwrap().nodes();
+        assert_eq!((group, first), (vec![0, 0, 0, 1], vec![0, 3]));
+    }
+}

@@ -1,0 +1,29 @@
+//! Vectors, matrices, ordering and factorisation. The only layer that knows faer.
+
+pub mod cholesky;
+pub mod csr;
+pub mod dense;
+pub mod elimination;
+pub mod graph;
+pub mod memory;
+pub mod ordering;
+pub mod packed;
+pub mod reach;
+pub mod spd;
+pub mod symmetric;
+pub mod vector;
+
+pub use cholesky::{Analysis, Breakdown, Cholesky};
+pub use csr::Csr;
+pub use dense::Matrix;
+pub use packed::Packed;
+pub use spd::SpdSolver;
+pub use symmetric::Symmetric;
+
+/// A symmetric linear map `R^m -> R^m` known by its products only.
+pub trait Operator: Sync {
+    /// Number of unknowns m.
+    fn order(&self) -> usize;
+    /// `y = A x`, both of length m.
+    fn apply(&self, x: &[f64], y: &mut [f64]);
+}

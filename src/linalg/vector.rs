@@ -1,0 +1,38 @@
+//! Loops over vectors, always in the order of the entries: the same bits on any number of threads.
+
+/// `x'y`
+pub fn dot(x: &[f64], y: &[f64]) -> f64 {
+    x.iter().zip(y).map(|(a, b)| a * b).sum()
+}
+
+/// `|x|_2`
+pub fn norm(x: &[f64]) -> f64 {
+    dot(x, x).sqrt()
+}
+
+/// `max |x_i|`
+pub fn norm_max(x: &[f64]) -> f64 {
+    x.iter().fold(0.0, |largest, v| v.abs().max(largest))
+}
+
+/// `y += a x`
+pub fn axpy(a: f64, x: &[f64], y: &mut [f64]) {
+    for (y, x) in y.iter_mut().zip(x) {
+        *y += a * x;
+    }
+}
+
+/// `sqrt(sum w_i x_i^2)`: the norm of `x` in the metric `diag(w)`.
+pub fn weighted_norm(x: &[f64], weight: impl Fn(usize) -> f64) -> f64 {
+    x.iter().enumerate().map(|(i, v)| weight(i) * v * v).sum::<f64>().sqrt()
+}
+
+/// `part / whole`; nothing of nothing is 0.
+pub fn ratio(part: f64, whole: f64) -> f64 {
+    if part == 0.0 { 0.0 } else { part / whole }
+}
+
+/// Position of the first entry that is not a finite number.
+pub fn first_non_finite(x: &[f64]) -> Option<usize> {
+    x.iter().position(|v| !v.is_finite())
+}

@@ -1,0 +1,141 @@
+//! The current point, its gradient and its parts on the face: Section 4 on the feasible set of (12).
+
+use crate::error::Result;
+use crate::linalg::vector::{axpy, dot, norm};
+use crate::qp::coarse::Coarse;
+use crate::qp::{Counts, Qp};
+
+pub struct Iterate<'a> {
+    pub qp: Qp<'a>,
+    pub coarse: Coarse<'a>,
+    /// x, feasible.
+    pub x: Vec<f64>,
+    /// `g = A x - b`
+    pub g: Vec<f64>,
+    /// (21): bounded rows at zero.
+    pub active: Vec<bool>,
+    /// Least-squares multiplier of `G x = e` on the face: `argmin |g_F - G_F'alpha|`.
+    pub alpha: Vec<f64>,
+    /// `r = g - G'alpha`
+    pub r: Vec<f64>,
+    /// (22) r on the free rows, 0 on the active ones.
+    pub free: Vec<f64>,
+    /// (23) min(r, 0) on the active rows, 0 on the free ones.
+    pub chopped: Vec<f64>,
+    /// Search direction of the last conjugate gradient step on this face, with its image: (p, A p).
+    pub conjugate: Option<(Vec<f64>, Vec<f64>)>,
+    /// L: running bound of the curvature of theta, 1.1 max |P A p|^2 / p'A p.
+    pub curvature: f64,
+    pub counts: Counts,
+}
+
+impl<'a> Iterate<'a> {
+    pub fn new(qp: Qp<'a>, coarse: Coarse<'a>, x: Vec<f64>) -> Result<Self> {
+        let m = x.len();
+        let mut iterate = Self {
+            g: vec![0.0; m],
+            active: vec![false; m],
+            alpha: vec![0.0; qp.e.len()],
+            r: vec![0.0; m],
+            free: vec![0.0; m],
+            chopped: vec![0.0; m],
+            conjugate: None,
+            curvature: 0.0,
+            counts: Counts::default(),
+            qp,
+            coarse,
+            x,
+        };
+        iterate.refresh()?;
+        Ok(iterate)
+    }
+
+    /// `A v`, counted.
+    pub fn product(&mut self, v: &[f64]) -> Vec<f64> {
+        let mut image = vec![0.0; v.len()];
+        self.qp.a.apply(v, &mut image);
+        self.counts.products += 1;
+        image
+    }
+
+    /// Recomputes the gradient from x, without the rounding errors of its updates.
+    pub fn refresh(&mut self) -> Result<()> {
+        let x = std::mem::take(&mut self.x);
+        self.g = self.product(&x);
+        self.x = x;
+        axpy(-1.0, self.qp.b, &mut self.g);
+        self.split()
+    }
+
+    /// Takes the point `x` with its gradient; a new face starts with its steepest direction.
+    pub fn move_to(&mut self, x: Vec<f64>, g: Vec<f64>) -> Result<()> {
+        (self.x, self.g) = (x, g);
+        let face = self.active.clone();
+        self.split()?;
+        if face != self.active {
+            self.conjugate = None;
+        }
+        Ok(())
+    }
+
+    /// Active set, multiplier and the two parts (22)-(23) of the projected gradient.
+    fn split(&mut self) -> Result<()> {
+        let m = self.x.len();
+        (0..m).for_each(|i| self.active[i] = self.qp.bounded[i] && self.x[i] <= 0.0);
+        self.r.copy_from_slice(&self.g);
+        if !self.alpha.is_empty() {
+            self.coarse.select(&self.active)?;
+            let on_face: Vec<f64> = (0..m).map(|i| if self.active[i] { 0.0 } else { self.g[i] }).collect();
+            let image = self.coarse.image(&on_face);
+            self.alpha = self.coarse.solve(&image);
+            for i in 0..m {
+                self.r[i] -= self.qp.g_transposed.row_dot(i, &self.alpha);
+            }
+        }
+        for i in 0..m {
+            let (free, chopped) = if self.active[i] { (0.0, self.r[i].min(0.0)) } else { (self.r[i], 0.0) };
+            (self.free[i], self.chopped[i]) = (free, chopped);
+        }
+        Ok(())
+    }
+
+    /// `v <- P_F v`, twice: one projection leaves components that make conjugate gradients diverge below 1e-8.
+    pub fn project_on_face(&mut self, v: &mut [f64]) -> Result<()> {
+        let active = std::mem::take(&mut self.active);
+        let done = self.coarse.project(&active, v).and_then(|()| self.coarse.project(&active, v));
+        self.active = active;
+        done
+    }
+
+    /// x is *proportional* when `|g^C| <= Gamma |g^I|` (Section 4): the error left on the current face still
+    /// outweighs the error of having chosen that face.
+    pub fn is_proportional(&self, gamma: f64) -> bool {
+        norm(&self.chopped) <= gamma * norm(&self.free)
+    }
+
+    /// Norm of the projected gradient `g^P = g^I + g^C`.
+    pub fn residual(&self) -> f64 {
+        (dot(&self.free, &self.free) + dot(&self.chopped, &self.chopped)).sqrt()
+    }
+
+    /// What rounding alone leaves of the residual: 64 eps (|b| + |A x| + |G'alpha|).
+    pub fn noise(&self) -> f64 {
+        let image: f64 = self.g.iter().zip(self.qp.b).map(|(g, b)| (g + b) * (g + b)).sum::<f64>().sqrt();
+        let coarse: f64 = self.g.iter().zip(&self.r).map(|(g, r)| (g - r) * (g - r)).sum::<f64>().sqrt();
+        64.0 * f64::EPSILON * (norm(self.qp.b) + image + coarse)
+    }
+
+    /// `theta(y) - theta(x)` from both gradients, free of the cancellation between the two values.
+    pub fn increase(&self, y: &[f64], g_y: &[f64]) -> f64 {
+        let terms = y.iter().zip(&self.x).zip(g_y.iter().zip(&self.g));
+        0.5 * terms.map(|((y, x), (g_y, g))| (y - x) * (g_y + g)).sum::<f64>()
+    }
+
+    /// Largest t with `x - t p` feasible in the bounds.
+    pub fn feasible_step(&self, p: &[f64]) -> f64 {
+        (0..p.len())
+            .filter(|&i| self.qp.bounded[i] && !self.active[i] && p[i] > 0.0)
+            .map(|i| self.x[i] / p[i])
+            .fold(f64::INFINITY, f64::min)
+    }
+}

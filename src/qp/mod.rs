@@ -1,0 +1,46 @@
+//! Quadratic programming with bounds and equalities, after Sections 4 and 5:
+//!
+//! ```text
+//! theta(x) = 1/2 x'A x - b'x -> min   subject to   x_i >= 0 (i bounded)   and   G x = e
+//! ```
+//!
+//! Knows A by its products only, and no bodies.
+
+mod coarse;
+mod iterate;
+mod nnls;
+mod projection;
+mod proportioning;
+mod steps;
+
+pub use proportioning::{minimise, Judge, Limits, Observer, Solution, Verdict};
+
+use crate::linalg::{Csr, Operator};
+
+/// The problem; `G` is given as `G'`, m x r.
+#[derive(Clone, Copy)]
+pub struct Qp<'a> {
+    pub a: &'a dyn Operator,
+    pub b: &'a [f64],
+    pub g_transposed: &'a Csr,
+    pub e: &'a [f64],
+    pub bounded: &'a [bool],
+}
+
+/// What the method did, counted.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Counts {
+    /// Products with A.
+    pub products: usize,
+    pub conjugate_gradient: usize,
+    pub expansions: usize,
+    pub releases: usize,
+    /// Systems solved with `W_F = G_F G_F'`.
+    pub coarse_solves: usize,
+}
+
+impl Counts {
+    pub fn steps(&self) -> usize {
+        self.conjugate_gradient + self.expansions + self.releases
+    }
+}

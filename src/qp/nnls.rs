@@ -1,0 +1,114 @@
+//! `min |e - G l|` over `l_i >= 0 (i bounded)`: Lawson and Hanson's method. Its residual `a` decides whether
+//! the equalities can be met at all: `G_i'a <= 0` on bounded rows, `= 0` on free ones, `e'a = |a|^2`.
+
+use crate::error::Result;
+use crate::linalg::vector::{dot, norm};
+use crate::qp::coarse::Coarse;
+use crate::qp::Qp;
+
+/// A correlation with the residual below this fraction of its terms counts as zero.
+const ZERO: f64 = 1e-12;
+
+pub struct Nearest {
+    pub point: Vec<f64>,
+    /// `a = e - G l`
+    pub residual: Vec<f64>,
+}
+
+pub fn nearest(qp: &Qp, coarse: &mut Coarse) -> Result<Nearest> {
+    let m = qp.b.len();
+    let mut held: Vec<bool> = qp.bounded.to_vec();
+    let mut point = least_squares(qp, coarse, &held)?;
+    for _ in 0..3 * m + 3 {
+        let residual = residual(qp, &point);
+        let Some(best) = most_correlated(qp, &held, &residual) else {
+            return Ok(Nearest { point, residual });
+        };
+        held[best] = false;
+        loop {
+            let target = least_squares(qp, coarse, &held)?;
+            let negative = |i: &usize| qp.bounded[*i] && !held[*i] && target[*i] <= 0.0;
+            let blocking = (0..m).filter(negative).map(|i| point[i] / (point[i] - target[i]));
+            let t = blocking.fold(1.0, f64::min);
+            let inside = t == 1.0;
+            for i in 0..m {
+                point[i] += t * (target[i] - point[i]);
+                if qp.bounded[i] && !held[i] && (target[i] <= 0.0 && point[i] <= ZERO * target[i].abs()) {
+                    point[i] = 0.0;
+                    held[i] = true;
+                }
+            }
+            if inside {
+                break;
+            }
+        }
+    }
+    let residual = residual(qp, &point);
+    Ok(Nearest { point, residual })
+}
+
+fn residual(qp: &Qp, point: &[f64]) -> Vec<f64> {
+    let mut residual = qp.e.to_vec();
+    qp.g_transposed.mul_transposed_add(-1.0, point, &mut residual);
+    residual
+}
+
+/// The held row that reduces the residual fastest.
+fn most_correlated(qp: &Qp, held: &[bool], residual: &[f64]) -> Option<usize> {
+    let size = norm(residual);
+    if size <= ZERO * norm(qp.e) {
+        return None;
+    }
+    let correlation = |i: usize| {
+        let length = qp.g_transposed.row(i).map(|(_, v)| v * v).sum::<f64>().sqrt();
+        (qp.g_transposed.row_dot(i, residual), length)
+    };
+    (0..held.len())
+        .filter(|&i| held[i])
+        .map(|i| (i, correlation(i)))
+        .filter(|(_, (c, length))| *c > 1e-9 * length * size)
+        .max_by(|(_, (a, la)), (_, (b, lb))| (a / la).total_cmp(&(b / lb)))
+        .map(|(i, _)| i)
+}
+
+/// `G_P' (G_P G_P')+ e` on the rows P that are not held, zero elsewhere.
+fn least_squares(qp: &Qp, coarse: &mut Coarse, held: &[bool]) -> Result<Vec<f64>> {
+    coarse.select(held)?;
+    let alpha = coarse.solve(qp.e);
+    Ok((0..held.len())
+        .map(|i| if held[i] { 0.0 } else { qp.g_transposed.row_dot(i, &alpha) })
+        .collect())
+}
+
+/// `|a| / |e|`: how far the equalities are from being met.
+pub fn margin(qp: &Qp, residual: &[f64]) -> f64 {
+    let size = norm(qp.e);
+    if size > 0.0 { dot(residual, residual).sqrt() / size } else { 0.0 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::linalg::{Csr, Packed};
+
+    fn solve(columns: &[[f64; 2]], e: [f64; 2]) -> Nearest {
+        let mut g_transposed = Csr::empty(2);
+        columns.iter().for_each(|c| g_transposed.push_row([(0, c[0]), (1, c[1])]));
+        let (a, m) = (Packed::zeros(columns.len()).unwrap(), columns.len());
+        let qp = Qp { a: &a, b: &vec![0.0; m], g_transposed: &g_transposed, e: &e, bounded: &vec![true; m] };
+        nearest(&qp, &mut Coarse::new(&g_transposed)).unwrap()
+    }
+
+    #[test]
+    fn a_load_inside_the_cone_of_the_contact_forces_leaves_nothing() {
+        let found = solve(&[[1.0, 0.0], [1.0, 1.0], [0.0, 1.0]], [2.0, 1.0]);
+        assert!(norm(&found.residual) < 1e-14);
+        assert!(found.point.iter().all(|l| *l >= 0.0));
+    }
+
+    #[test]
+    fn a_load_outside_the_cone_leaves_the_direction_in_which_it_pulls_away() {
+        let found = solve(&[[1.0, 0.0], [1.0, 1.0]], [1.0, -2.0]);
+        assert_eq!(found.residual, [0.0, -2.0]);
+    }
+}

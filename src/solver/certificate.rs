@@ -1,0 +1,271 @@
+//! The certificate: how well an answer (u, lambda, mu) satisfies the optimality conditions of (10)-(11),
+//! computed from the host's own matrices. Every figure is relative: the same in any units and for any
+//! scaling of the rows.
+
+use crate::constraints::{row_scales, RowSet};
+use crate::linalg::vector::{dot, ratio, weighted_norm};
+use crate::linalg::{Matrix, Symmetric};
+
+/// One condition: its relative figure, its ratio to what is allowed, and where it is worst.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Entry {
+    pub figure: f64,
+    /// The condition holds when this is at most 1.
+    pub ratio: f64,
+    pub place: Option<usize>,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Certificate {
+    /// Largest figure allowed, before the allowance for rounding.
+    pub limit: f64,
+    /// `|K u - f + B'lambda + H'mu|`, worst body.
+    pub equilibrium: Entry,
+    /// `|R'(f - B'lambda - H'mu)|`, worst body.
+    pub balance: Entry,
+    /// `|(B u - c)_+|`, worst row.
+    pub penetration: Entry,
+    /// `|H u - h|`, worst row.
+    pub equality: Entry,
+    /// `|lambda_-|`, worst row.
+    pub negative_force: Entry,
+    /// `sum |lambda_i| |c_i - b_i u|`, worst row.
+    pub complementarity: Entry,
+    /// `|u'K u - f'u + c'lambda + h'mu|`
+    pub duality_gap: Entry,
+}
+
+impl Certificate {
+    pub fn entries(&self) -> [Entry; 7] {
+        [
+            self.equilibrium,
+            self.balance,
+            self.penetration,
+            self.equality,
+            self.negative_force,
+            self.complementarity,
+            self.duality_gap,
+        ]
+    }
+
+    /// Largest ratio of an entry to what is allowed.
+    pub fn worst(&self) -> f64 {
+        self.entries().iter().fold(0.0, |worst, entry| if entry.ratio > worst || entry.ratio.is_nan() { entry.ratio } else { worst })
+    }
+
+    /// A figure that is not a number fails.
+    pub fn passed(&self) -> bool {
+        self.entries().iter().all(|entry| entry.ratio <= 1.0)
+    }
+}
+
+/// The problem as the host gave it.
+pub struct Data<'a> {
+    /// Per body: stiffness, load, null space.
+    pub bodies: Vec<BodyData<'a>>,
+    pub contact: &'a RowSet,
+    pub equalities: &'a RowSet,
+    /// Metric of dofs without stiffness, force / length.
+    pub without: f64,
+    pub limit: f64,
+}
+
+pub struct BodyData<'a> {
+    pub start: usize,
+    pub stiffness: &'a Symmetric,
+    /// Zero when absent.
+    pub load: Option<&'a [f64]>,
+    /// `R_p` with `R'DR` = `1 / unit`.
+    pub null_space: &'a Matrix,
+    pub unit: f64,
+}
+
+/// An answer over all unknowns, contact rows, equality rows.
+#[derive(Clone, Copy)]
+pub struct Answer<'a> {
+    pub u: &'a [f64],
+    pub lambda: &'a [f64],
+    pub mu: &'a [f64],
+}
+
+/// Rounding errors of a sum of these terms.
+const NOISE: f64 = 64.0 * f64::EPSILON;
+
+/// What the sums over all bodies need besides their own entries.
+#[derive(Default)]
+struct Totals {
+    /// `|f|_{D^-1}^2`, `u'K u`, `f'u`, `|u|'(|K||u| + |f| + |B'||lambda| + |H'||mu|)`
+    load: f64,
+    strain: f64,
+    work: f64,
+    terms: f64,
+}
+
+pub fn certify(data: &Data, answer: Answer) -> Certificate {
+    let mut certificate = Certificate { limit: data.limit, ..Certificate::default() };
+    let metric = metric(data, answer.u.len());
+    let totals = forces(data, answer, &metric, &mut certificate);
+    let gaps = gaps(data, answer, &metric, totals.load.sqrt(), &mut certificate);
+    let size = totals.work.abs() + gaps.constrained_size;
+    let energies = |part: f64, whole: f64, place| entry(part, whole, NOISE * totals.terms, data.limit, place);
+    certificate.complementarity = energies(gaps.complementarity, size, gaps.worst_pair);
+    let gap = totals.strain - totals.work + gaps.constrained;
+    certificate.duality_gap = energies(gap.abs(), totals.strain.abs() + size, None);
+    certificate
+}
+
+fn entry(part: f64, whole: f64, noise: f64, limit: f64, place: Option<usize>) -> Entry {
+    Entry { figure: ratio(part, whole), ratio: ratio(part, limit * whole + noise), place: place.filter(|_| part > 0.0) }
+}
+
+/// `D = diag K` over all unknowns.
+fn metric(data: &Data, unknowns: usize) -> Vec<f64> {
+    let mut metric = vec![data.without; unknowns];
+    for body in &data.bodies {
+        (0..body.stiffness.order()).for_each(|i| metric[body.start + i] = body.stiffness.metric(i, data.without));
+    }
+    metric
+}
+
+/// Equilibrium and rigid balance of every body.
+fn forces(data: &Data, answer: Answer, metric: &[f64], certificate: &mut Certificate) -> Totals {
+    let n = answer.u.len();
+    let (mut reaction, mut reaction_terms) = (vec![0.0; n], vec![0.0; n]);
+    for (rows, multipliers) in [(data.contact, answer.lambda), (data.equalities, answer.mu)] {
+        rows.matrix.mul_transposed_add(1.0, multipliers, &mut reaction);
+        rows.matrix.mul_transposed_abs_add(multipliers, &mut reaction_terms);
+    }
+    let mut totals = Totals::default();
+    for (p, body) in data.bodies.iter().enumerate() {
+        let range = body.start..body.start + body.stiffness.order();
+        let none = vec![0.0; if body.load.is_none() { range.len() } else { 0 }];
+        let (u, f) = (&answer.u[range.clone()], body.load.unwrap_or(&none));
+        let (push, push_terms) = (&reaction[range.clone()], &reaction_terms[range.clone()]);
+        let weight = |i: usize| 1.0 / metric[body.start + i];
+        let size = |v: &[f64]| weighted_norm(v, weight);
+        let (mut strain, mut terms) = (vec![0.0; u.len()], vec![0.0; u.len()]);
+        body.stiffness.mul(u, &mut strain);
+        body.stiffness.mul_abs(u, &mut terms);
+        (0..u.len()).for_each(|i| terms[i] += f[i].abs() + push_terms[i]);
+        totals.strain += dot(u, &strain);
+        totals.work += dot(f, u);
+        totals.load += size(f) * size(f);
+        totals.terms += u.iter().zip(&terms).map(|(u, t)| u.abs() * t).sum::<f64>();
+
+        let loads = size(f) + size(push);
+        let noise = NOISE * size(&terms);
+        let left: Vec<f64> = (0..u.len()).map(|i| strain[i] - f[i] + push[i]).collect();
+        let equilibrium = entry(size(&left), loads + size(&strain), noise, data.limit, Some(p));
+        replace_if_worse(&mut certificate.equilibrium, equilibrium);
+        let rest: Vec<f64> = (0..u.len()).map(|i| f[i] - push[i]).collect();
+        let resultants = body.null_space.mul_transposed(&rest);
+        let resultant = body.unit.sqrt() * dot(&resultants, &resultants).sqrt();
+        replace_if_worse(&mut certificate.balance, entry(resultant, loads, noise, data.limit, Some(p)));
+    }
+    totals
+}
+
+fn replace_if_worse(worst: &mut Entry, entry: Entry) {
+    if worst.place.is_none() || entry.ratio > worst.ratio || entry.ratio.is_nan() {
+        *worst = entry;
+    }
+}
+
+/// What the energies need of the rows.
+struct Gaps {
+    /// `sum |lambda_i| |c_i - b_i u|` and the row with the largest term.
+    complementarity: f64,
+    worst_pair: Option<usize>,
+    /// `c'lambda + h'mu`, and `|c|'|lambda| + |h|'|mu|`.
+    constrained: f64,
+    constrained_size: f64,
+}
+
+/// Penetration, equality, sign of the contact forces; rows weighted by `S = (B D^-1 B')^-1/2`.
+fn gaps(data: &Data, answer: Answer, metric: &[f64], load: f64, certificate: &mut Certificate) -> Gaps {
+    let (contact, equalities) = (Violation::of(data.contact, answer.u, metric, |v| v.max(0.0)), Violation::of(data.equalities, answer.u, metric, f64::abs));
+    certificate.penetration = contact.entry(data.limit);
+    certificate.equality = equalities.entry(data.limit);
+    let scaled = |i: usize, v: f64| if contact.scale[i] > 0.0 { v / contact.scale[i] } else { 0.0 };
+    let force: Vec<f64> = (0..answer.lambda.len()).map(|i| scaled(i, answer.lambda[i])).collect();
+    let negative: Vec<f64> = force.iter().map(|l| (-l).max(0.0)).collect();
+    let whole = dot(&force, &force).sqrt() + load;
+    let place = largest(&negative);
+    certificate.negative_force = entry(dot(&negative, &negative).sqrt(), whole, 0.0, data.limit, place);
+    let pairs: Vec<f64> = (0..answer.lambda.len()).map(|i| (answer.lambda[i] * contact.open[i]).abs()).collect();
+    let size = |l: &[f64], c: &[f64]| l.iter().zip(c).map(|(l, c)| (l * c).abs()).sum::<f64>();
+    Gaps {
+        complementarity: pairs.iter().sum(),
+        worst_pair: largest(&pairs),
+        constrained: dot(answer.lambda, &data.contact.rhs) + dot(answer.mu, &data.equalities.rhs),
+        constrained_size: size(answer.lambda, &data.contact.rhs) + size(answer.mu, &data.equalities.rhs),
+    }
+}
+
+/// By how much rows are violated.
+struct Violation {
+    /// s_i
+    scale: Vec<f64>,
+    /// `c_i - b_i u`
+    open: Vec<f64>,
+    /// `s_i x` the violation of row i.
+    violated: Vec<f64>,
+    /// `|S|B||u|| + |S c|`
+    size: f64,
+}
+
+impl Violation {
+    fn of(rows: &RowSet, u: &[f64], metric: &[f64], excess: fn(f64) -> f64) -> Self {
+        let scale = row_scales(&rows.matrix, metric);
+        let open: Vec<f64> = (0..rows.len()).map(|i| rows.rhs[i] - rows.matrix.row_dot(i, u)).collect();
+        let violated: Vec<f64> = (0..rows.len()).map(|i| scale[i] * excess(-open[i])).collect();
+        let moved = weighted_norm(&scale, |i| rows.matrix.row_dot_abs(i, u).powi(2));
+        let size = moved + weighted_norm(&scale, |i| rows.rhs[i] * rows.rhs[i]);
+        Self { scale, open, violated, size }
+    }
+
+    fn entry(&self, limit: f64) -> Entry {
+        let part = dot(&self.violated, &self.violated).sqrt();
+        entry(part, self.size, NOISE * self.size, limit, largest(&self.violated))
+    }
+}
+
+/// Position of the largest entry, none of nothing.
+fn largest(values: &[f64]) -> Option<usize> {
+    (0..values.len()).reduce(|best, i| if values[i] > values[best] { i } else { best })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::linalg::Csr;
+
+    /// Spring 4 at a wall, loaded by 2 towards an obstacle at 0.25: u = .25, lambda = 1.
+    fn with(u: f64, lambda: f64, unit: f64) -> Certificate {
+        let stiffness = Symmetric { ptr: vec![0, 1], col: vec![0], val: vec![4.0 * unit] };
+        let mut matrix = Csr::empty(1);
+        matrix.push_row([(0, 1.0)]);
+        let contact = RowSet { matrix, rhs: vec![0.25] };
+        let none = Matrix { rows: 1, ..Matrix::default() };
+        let load = [2.0 * unit];
+        let body = BodyData { start: 0, stiffness: &stiffness, load: Some(&load), null_space: &none, unit: 1.0 };
+        let data = Data { bodies: vec![body], contact: &contact, equalities: &RowSet::default(), without: 1.0, limit: 1e-8 };
+        certify(&data, Answer { u: &[u], lambda: &[lambda * unit], mu: &[] })
+    }
+
+    #[test]
+    fn the_exact_answer_passes_in_any_unit_and_each_fault_is_named() {
+        for unit in [1.0, 1e-20, 2.1e11] {
+            assert!(with(0.25, 1.0, unit).passed());
+            let unbalanced = with(0.25, 0.9, unit);
+            assert!(unbalanced.equilibrium.ratio > 1.0 && unbalanced.equilibrium.place == Some(0));
+            assert!((unbalanced.equilibrium.figure - 0.1 / 3.9).abs() < 1e-12);
+            let through = with(0.5, 0.0, unit);
+            assert!(through.equilibrium.ratio <= 1.0 && through.penetration.ratio > 1.0);
+            assert!((through.penetration.figure - 0.25 / 0.75).abs() < 1e-12);
+            assert!(with(0.0, 2.0, unit).complementarity.ratio > 1.0);
+            assert!(with(0.75, -1.0, unit).negative_force.ratio > 1.0);
+            assert!(!with(f64::NAN, 1.0, unit).passed());
+        }
+    }
+}

@@ -1,0 +1,54 @@
+//! Why there is no answer: a load that nothing holds, rows that contradict each other.
+
+use crate::error::{Error, Kind};
+use crate::linalg::vector::{dot, norm, weighted_norm};
+use crate::solver::problem::Problem;
+use crate::solver::setup::Ready;
+
+/// A combination of rows is empty when this little of it is left.
+const EMPTY: f64 = 1e-8;
+
+/// `direction` = e - G l of the nearest contact forces l: the rigid motion `v = R direction` opens every
+/// contact it touches and the load does work on it.
+pub(super) fn load_not_held(problem: &Problem, ready: &Ready, direction: &[f64], margin: f64) -> Error {
+    let share = |p: usize| norm(&direction[ready.dual.modes_of(p)]);
+    let bodies = problem.bodies.len();
+    let body = (0..bodies).fold(0, |best, p| if share(p) > share(best) { p } else { best });
+    let unknowns = problem.counts().dofs;
+    let v = ready.dual.rigid_motion(direction, unknowns);
+    let range = problem.ranges()[body].clone();
+    let fastest = range.clone().fold(range.start, |best, i| if v[i].abs() > v[best].abs() { i } else { best });
+    let sense = if v[fastest] > 0.0 { "positive" } else { "negative" };
+    let what = format!(
+        "the load moves the body and no contact force can hold it ({:.1} % of the resultant is left); \
+         the motion is fastest at this dof, in the {sense} sense",
+        100.0 * margin
+    );
+    Error::new(Kind::LoadNotHeld, what).body(body).dof(fastest - range.start).value(margin).limit(0.0)
+}
+
+/// The weights `w = -p` combine rows to nothing, `B'w = 0`, yet demand a negative gap, `c'w < 0`: no
+/// displacement satisfies them. `None` when p does not prove it. `gaps` = S c.
+pub(super) fn gaps_contradict(problem: &Problem, ready: &Ready, gaps: &[f64], p: &[f64]) -> Option<Error> {
+    let contact = problem.contact.len();
+    let rounding = EMPTY * p[..contact].iter().fold(0.0, |m, v| v.abs().max(m));
+    let w: Vec<f64> =
+        (0..p.len()).map(|i| if i < contact && p[i].abs() <= rounding { 0.0 } else { -p[i] }).collect();
+    let (mut left, mut terms) = (vec![0.0; ready.matrix.cols], vec![0.0; ready.matrix.cols]);
+    ready.matrix.mul_transposed_add(1.0, &w, &mut left);
+    ready.matrix.mul_transposed_abs_add(&w, &mut terms);
+    let size = |x: &[f64]| weighted_norm(x, |_| 1.0);
+    let demanded = dot(gaps, &w);
+    let terms_of_gaps: f64 = gaps.iter().zip(&w).map(|(c, w)| (c * w).abs()).sum();
+    let proves = w[..contact].iter().all(|w| *w >= 0.0)
+        && size(&left) <= EMPTY * size(&terms)
+        && demanded < -EMPTY * terms_of_gaps;
+    if !proves {
+        return None;
+    }
+    let heaviest = (0..w.len()).fold(0, |best, i| if w[i].abs() > w[best].abs() { i } else { best });
+    let involved = w.iter().filter(|v| v.abs() > EMPTY * w[heaviest].abs()).count();
+    let (kind, row) = if heaviest < contact { ("contact", heaviest) } else { ("equality", heaviest - contact) };
+    let what = format!("this {kind} row and {} others contradict each other: no displacement satisfies them", involved - 1);
+    Some(Error::new(Kind::GapsContradict, what).row(row).value(demanded).limit(0.0))
+}

@@ -1,0 +1,19 @@
+//! From what the host registers to the answer it gets: register, set up, solve, certify, report.
+
+mod certificate;
+mod diagnosis;
+mod problem;
+mod report;
+mod results;
+mod settings;
+mod setup;
+mod solve;
+mod threads;
+
+pub use crate::body::{Modes, SparseInput, Storage};
+pub use crate::constraints::{RowKind, RowsInput};
+pub use certificate::{Certificate, Entry};
+pub use problem::Problem;
+pub use report::{Counts, Outcome, Report, RowState};
+pub use settings::{options, OptionInfo, OptionValue, Settings};
+pub use threads::THREAD_NAME;

@@ -1,0 +1,294 @@
+//! What the host has registered. Every call checks first and keeps all or nothing.
+
+use std::sync::Arc;
+
+use crate::body::{
+    from_dense, from_sparse, Body, Coordinates, GeneralizedInverse, Modes, NullSpaceInput, SparseInput, Storage,
+};
+use crate::constraints::{RowKind, RowSet, RowsInput};
+use crate::error::{Error, Result};
+use crate::linalg::memory::{copied, zeros};
+use crate::linalg::vector::first_non_finite;
+use crate::linalg::{Matrix, Symmetric};
+use crate::solver::report::{Counts, Report};
+use crate::solver::results::Answer;
+use crate::solver::setup::Ready;
+use crate::solver::Settings;
+
+/// Bodies, rows and options of one contact problem, its factors, and the answer of its last solve.
+#[derive(Default)]
+pub struct Problem {
+    pub(super) settings: Settings,
+    pub(super) bodies: Vec<BodySlot>,
+    pub(super) contact: RowSet,
+    pub(super) equalities: RowSet,
+    pub(super) ready: Option<Ready>,
+    pub(super) answer: Option<Answer>,
+    pub(super) factorisations: usize,
+    pub(super) seconds_setup: f64,
+}
+
+/// A body with its factors, as long as they belong to its matrix.
+#[derive(Default)]
+pub(super) struct BodySlot {
+    pub body: Body,
+    pub inverse: Option<Inverse>,
+}
+
+/// `K_p+` of the matrix divided by `unit`, and the bytes it takes.
+pub(super) struct Inverse {
+    pub unit: f64,
+    pub kplus: Arc<GeneralizedInverse>,
+    pub bytes: usize,
+}
+
+impl Problem {
+    pub fn new() -> Self {
+        Self { settings: Settings::new(), ..Self::default() }
+    }
+
+    pub fn settings(&self) -> &Settings {
+        &self.settings
+    }
+
+    pub fn set_f64(&mut self, name: &str, value: f64) -> Result<()> {
+        self.settings.set_f64(name, value)
+    }
+
+    pub fn set_i64(&mut self, name: &str, value: i64) -> Result<()> {
+        self.settings.set_i64(name, value)
+    }
+
+    pub fn set_str(&mut self, name: &str, value: &str) -> Result<()> {
+        self.settings.set_str(name, value)
+    }
+
+    pub fn get_f64(&self, name: &str) -> Result<f64> {
+        self.settings.get_f64(name)
+    }
+
+    pub fn get_i64(&self, name: &str) -> Result<i64> {
+        self.settings.get_i64(name)
+    }
+
+    pub fn get_str(&self, name: &str) -> Result<String> {
+        self.settings.get_str(name)
+    }
+
+    /// Adds a body with `n` unknowns and returns its number.
+    pub fn add_body(&mut self, n: usize) -> Result<usize> {
+        if n == 0 {
+            return Err(Error::argument("n", "a body has at least one unknown").value(0.0).limit(1.0));
+        }
+        self.forget_dual();
+        self.bodies.push(BodySlot { body: Body { order: n, ..Body::default() }, inverse: None });
+        Ok(self.bodies.len() - 1)
+    }
+
+    /// Number of unknowns of a body.
+    pub fn order(&self, body: usize) -> Result<usize> {
+        self.slot(body).map(|slot| slot.body.order)
+    }
+
+    /// `K_p` by rows, n x n.
+    pub fn set_stiffness(&mut self, body: usize, k: SparseInput<'_>) -> Result<()> {
+        self.check_length(body, "n", k.ptr.len() - 1)?;
+        let stiffness = from_sparse(k, self.settings.symmetry_tolerance).map_err(|e| e.body(body))?;
+        self.keep_stiffness(body, stiffness)
+    }
+
+    /// `K_p` column-major with leading dimension `ld`, n x n.
+    pub fn set_stiffness_dense(
+        &mut self,
+        body: usize,
+        n: usize,
+        k: &[f64],
+        ld: usize,
+        storage: Storage,
+    ) -> Result<()> {
+        self.check_length(body, "n", n)?;
+        check_ld("ld", ld, n).map_err(|e| e.body(body))?;
+        let tolerance = self.settings.symmetry_tolerance;
+        let stiffness = from_dense(n, k, ld, storage, tolerance).map_err(|e| e.body(body))?;
+        self.keep_stiffness(body, stiffness)
+    }
+
+    fn keep_stiffness(&mut self, body: usize, stiffness: Symmetric) -> Result<()> {
+        self.changed(body)?.stiffness = Some(stiffness);
+        Ok(())
+    }
+
+    /// R, n x r column-major with leading dimension `ldr`; r = 0 and exact claims that K is not singular.
+    pub fn set_null_space(
+        &mut self,
+        body: usize,
+        n: usize,
+        r: usize,
+        basis: &[f64],
+        ldr: usize,
+        modes: Modes,
+    ) -> Result<()> {
+        self.check_length(body, "n", n)?;
+        if r > n {
+            return Err(Error::argument("r", format!("{r} null vectors of {n} unknowns"))
+                .body(body)
+                .value(r as f64)
+                .limit(n as f64));
+        }
+        if r > 0 {
+            check_ld("ldr", ldr, n).map_err(|e| e.body(body))?;
+        }
+        let mut vectors = Matrix::zeros(n, r)?;
+        for j in 0..r {
+            let column = &basis[j * ldr..j * ldr + n];
+            if let Some(dof) = first_non_finite(column) {
+                let what = "the entry is not a finite number";
+                return Err(Error::argument("basis", what).body(body).dof(dof).entry(j * ldr + dof));
+            }
+            vectors.col_mut(j).copy_from_slice(column);
+        }
+        self.changed(body)?.null_space = Some(NullSpaceInput { vectors, modes });
+        Ok(())
+    }
+
+    /// Node, direction and position of every dof; `xyz[k + ld i]` is coordinate k < dim of dof i.
+    pub fn set_coordinates(
+        &mut self,
+        body: usize,
+        dim: usize,
+        node: &[i32],
+        dir: &[i32],
+        xyz: &[f64],
+        ld: usize,
+    ) -> Result<()> {
+        self.check_length(body, "n", node.len())?;
+        if !(1..=3).contains(&dim) {
+            return Err(Error::argument("dim", "space has 1, 2 or 3 dimensions").body(body).value(dim as f64));
+        }
+        check_ld("ld", ld, dim).map_err(|e| e.body(body))?;
+        let coordinates = Coordinates::new(dim, dir, xyz, ld).map_err(|e| e.body(body))?;
+        self.changed(body)?.coordinates = Some(coordinates);
+        Ok(())
+    }
+
+    /// `f_p`, length n, force.
+    pub fn set_load(&mut self, body: usize, f: &[f64]) -> Result<()> {
+        self.check_length(body, "n", f.len())?;
+        if let Some(dof) = first_non_finite(f) {
+            return Err(Error::argument("f", "the entry is not a finite number").body(body).dof(dof).entry(dof));
+        }
+        self.bodies[body].body.load = Some(copied(f, "a load")?);
+        Ok(())
+    }
+
+    /// Adds rows and returns the number of the first among those of its kind.
+    pub fn add_rows(&mut self, kind: RowKind, rows: RowsInput<'_>) -> Result<usize> {
+        let offsets = self.offsets();
+        let first = self.rows_mut(kind).add(rows, &offsets)?;
+        self.forget_dual();
+        Ok(first)
+    }
+
+    /// New right-hand sides c or h, length.
+    pub fn set_rhs(&mut self, kind: RowKind, first: usize, rhs: &[f64]) -> Result<()> {
+        self.rows_mut(kind).set_rhs(first, rhs)
+    }
+
+    /// Drops all rows of one kind.
+    pub fn clear_rows(&mut self, kind: RowKind) {
+        *self.rows_mut(kind) = RowSet::default();
+        self.forget_dual();
+    }
+
+    pub fn counts(&self) -> Counts {
+        Counts {
+            bodies: self.bodies.len(),
+            dofs: self.bodies.iter().map(|slot| slot.body.order).sum(),
+            rows: self.contact.len(),
+            equalities: self.equalities.len(),
+        }
+    }
+
+    /// Report of the last solve that gave an answer.
+    pub fn report(&self) -> Option<&Report> {
+        self.answer.as_ref().map(|answer| &answer.report)
+    }
+
+    pub(super) fn rows(&self, kind: RowKind) -> &RowSet {
+        match kind {
+            RowKind::Inequality => &self.contact,
+            RowKind::Equality => &self.equalities,
+        }
+    }
+
+    fn rows_mut(&mut self, kind: RowKind) -> &mut RowSet {
+        match kind {
+            RowKind::Inequality => &mut self.contact,
+            RowKind::Equality => &mut self.equalities,
+        }
+    }
+
+    pub(super) fn slot(&self, body: usize) -> Result<&BodySlot> {
+        self.bodies.get(body).ok_or_else(|| no_body(body, self.bodies.len()))
+    }
+
+    /// The body, about to change: its factors, the dual and the answer no longer hold.
+    fn changed(&mut self, body: usize) -> Result<&mut Body> {
+        self.forget_dual();
+        let bodies = self.bodies.len();
+        let slot = self.bodies.get_mut(body).ok_or_else(|| no_body(body, bodies))?;
+        slot.inverse = None;
+        Ok(&mut slot.body)
+    }
+
+    fn forget_dual(&mut self) {
+        self.ready = None;
+        self.answer = None;
+    }
+
+    pub(super) fn check_length(&self, body: usize, argument: &'static str, n: usize) -> Result<()> {
+        let order = self.order(body)?;
+        if n == order {
+            return Ok(());
+        }
+        Err(Error::argument(argument, format!("the body has {order} unknowns, not {n}"))
+            .body(body)
+            .value(n as f64)
+            .limit(order as f64))
+    }
+
+    /// First unknown of every body among all, and their end.
+    pub(super) fn offsets(&self) -> Vec<usize> {
+        let mut offsets = vec![0];
+        for slot in &self.bodies {
+            offsets.push(offsets[offsets.len() - 1] + slot.body.order);
+        }
+        offsets
+    }
+
+    /// The loads of all bodies one after the other, force.
+    pub(super) fn loads(&self) -> Result<Vec<f64>> {
+        let mut all = zeros(self.counts().dofs, "the loads")?;
+        let mut start = 0;
+        for slot in &self.bodies {
+            if let Some(load) = &slot.body.load {
+                all[start..start + load.len()].copy_from_slice(load);
+            }
+            start += slot.body.order;
+        }
+        Ok(all)
+    }
+}
+
+fn no_body(body: usize, bodies: usize) -> Error {
+    Error::argument("body", format!("there are {bodies} bodies")).body(body).value(body as f64)
+}
+
+fn check_ld(name: &'static str, ld: usize, least: usize) -> Result<()> {
+    if ld >= least {
+        return Ok(());
+    }
+    Err(Error::argument(name, format!("the leading dimension {ld} is less than {least}"))
+        .value(ld as f64)
+        .limit(least as f64))
+}

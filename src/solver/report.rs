@@ -1,0 +1,68 @@
+//! What a solve tells the host.
+
+use crate::solver::certificate::Certificate;
+
+/// How a solve ended with an answer.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Outcome {
+    /// The certificate holds.
+    Solved,
+    /// The limit of steps was reached first.
+    Iterations,
+    /// The time limit was reached first.
+    Time,
+    Cancelled,
+    /// The method found no way to improve an answer whose certificate does not hold.
+    Stalled,
+    /// The dual is solved as well as rounding allows, and the certificate does not hold.
+    Inaccurate,
+    /// The load is held only up to a part below 1e-7 of itself.
+    Marginal,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum RowState {
+    /// The bodies are apart here, no force.
+    Open,
+    /// In contact, with a force.
+    Closed,
+    /// Touching without a force, to rounding.
+    Weak,
+}
+
+/// Sizes of a problem.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Counts {
+    pub bodies: usize,
+    /// Unknowns of all bodies.
+    pub dofs: usize,
+    pub rows: usize,
+    pub equalities: usize,
+}
+
+#[derive(Debug, Clone, PartialEq)]
+pub struct Report {
+    pub outcome: Outcome,
+    pub certificate: Certificate,
+    pub counts: Counts,
+    /// Dimension of the null spaces of all bodies.
+    pub floating_modes: usize,
+    /// Contact rows that are closed.
+    pub active: usize,
+    /// Rigid motions that no closed row resists: u is one of many.
+    pub undetermined: usize,
+    pub steps: usize,
+    pub cg_steps: usize,
+    pub expansions: usize,
+    pub releases: usize,
+    /// Products with F.
+    pub dual_applications: usize,
+    pub coarse_solves: usize,
+    /// Factorisations and symbolic analyses since the problem was created.
+    pub factorisations: usize,
+    pub analyses: usize,
+    /// `1/2 u'K u - f'u`, force x length.
+    pub energy: f64,
+    pub seconds_setup: f64,
+    pub seconds_solve: f64,
+}

@@ -1,0 +1,220 @@
+//! What the host reads after a solve, and the operators it may validate.
+
+use crate::constraints::RowKind;
+use crate::error::{Error, Kind, Result};
+use crate::linalg::memory::zeros;
+use crate::linalg::vector::{dot, norm_max};
+use crate::linalg::Operator;
+use crate::qp::Solution;
+use crate::solver::certificate::Certificate;
+use crate::solver::problem::{Inverse, Problem};
+use crate::solver::report::{Outcome, Report, RowState};
+use crate::solver::setup::Ready;
+use crate::solver::solve::Recovered;
+
+/// The answer of the last solve, in the units of the host.
+pub(super) struct Answer {
+    pub report: Report,
+    u: Vec<f64>,
+    lambda: Vec<f64>,
+    mu: Vec<f64>,
+    /// Amplitudes of the rigid modes of all bodies.
+    alpha: Vec<f64>,
+    /// c - B u, length.
+    gaps: Vec<f64>,
+    states: Vec<RowState>,
+}
+
+impl Answer {
+    pub fn new(
+        problem: &Problem,
+        ready: &Ready,
+        solution: &Solution,
+        recovered: Recovered,
+        outcome: Outcome,
+        certificate: Certificate,
+    ) -> Result<Self> {
+        let Recovered { u, lambda, mu } = recovered;
+        let rows = &problem.contact;
+        let gaps: Vec<f64> = (0..rows.len()).map(|i| rows.rhs[i] - rows.matrix.row_dot(i, &u)).collect();
+        let states = states(problem, ready, &solution.x, &u, &gaps);
+        let counts = solution.counts;
+        let report = Report {
+            outcome,
+            certificate,
+            counts: problem.counts(),
+            floating_modes: ready.dual.modes(),
+            active: states.iter().filter(|state| **state == RowState::Closed).count(),
+            undetermined: solution.undetermined,
+            steps: counts.steps(),
+            cg_steps: counts.conjugate_gradient,
+            expansions: counts.expansions,
+            releases: counts.releases,
+            dual_applications: counts.products,
+            coarse_solves: counts.coarse_solves,
+            factorisations: problem.factorisations,
+            analyses: problem.factorisations,
+            energy: problem.energy(&u)?,
+            seconds_setup: 0.0,
+            seconds_solve: 0.0,
+        };
+        Ok(Self { report, u, lambda, mu, alpha: solution.alpha.clone(), gaps, states })
+    }
+}
+
+/// A force or a gap is zero when it is below `limit` (that of the certificate) of the largest force, or of
+/// the displacements and gaps of the rows.
+fn states(problem: &Problem, ready: &Ready, forces: &[f64], u: &[f64], gaps: &[f64]) -> Vec<RowState> {
+    let limit = problem.settings.certificate_tolerance;
+    let rows = &problem.contact;
+    let sizes = (0..rows.len()).map(|i| ready.scale[i] * (rows.matrix.row_dot_abs(i, u) + rows.rhs[i].abs()));
+    let small_gap = limit * sizes.fold(0.0, f64::max);
+    let small_force = limit * norm_max(forces);
+    let state = |i: usize| {
+        if forces[i] > small_force {
+            RowState::Closed
+        } else if ready.scale[i] * gaps[i] > small_gap {
+            RowState::Open
+        } else {
+            RowState::Weak
+        }
+    };
+    (0..rows.len()).map(state).collect()
+}
+
+impl Problem {
+    /// `1/2 u'K u - f'u`, force x length.
+    fn energy(&self, u: &[f64]) -> Result<f64> {
+        let mut energy = 0.0;
+        for (slot, range) in self.bodies.iter().zip(self.ranges()) {
+            let u = &u[range];
+            if let Some(k) = &slot.body.stiffness {
+                let mut force = zeros(u.len(), "the energy")?;
+                k.mul(u, &mut force);
+                energy += 0.5 * dot(u, &force);
+            }
+            energy -= slot.body.load.as_ref().map_or(0.0, |f| dot(f, u));
+        }
+        Ok(energy)
+    }
+
+    fn answer(&self) -> Result<&Answer> {
+        let what = "there is no answer yet: solve first (a change of bodies or rows drops the last one)";
+        self.answer.as_ref().ok_or_else(|| Error::new(Kind::State, what))
+    }
+
+    /// u of one body, length.
+    pub fn displacement(&self, body: usize) -> Result<&[f64]> {
+        self.slot(body)?;
+        Ok(&self.answer()?.u[self.ranges()[body].clone()])
+    }
+
+    /// Force of the rows on the body: `-B'lambda`, `-H'mu`, or both, so that `K u = f + r`.
+    pub fn reaction(&self, kind: Option<RowKind>, body: usize, r: &mut [f64]) -> Result<()> {
+        self.check_length(body, "n", r.len())?;
+        let answer = self.answer()?;
+        let mut all = zeros(answer.u.len(), "a reaction")?;
+        for (of, multipliers) in [(RowKind::Inequality, &answer.lambda), (RowKind::Equality, &answer.mu)] {
+            if kind.is_none_or(|kind| kind == of) {
+                self.rows(of).matrix.mul_transposed_add(-1.0, multipliers, &mut all);
+            }
+        }
+        r.copy_from_slice(&all[self.ranges()[body].clone()]);
+        Ok(())
+    }
+
+    /// Amplitudes alpha of the null space of one body, in the basis `null_space` gives.
+    pub fn amplitudes(&self, body: usize) -> Result<&[f64]> {
+        self.slot(body)?;
+        let answer = self.answer()?;
+        Ok(&answer.alpha[self.ready()?.dual.modes_of(body)])
+    }
+
+    /// lambda >= 0 or mu, force.
+    pub fn multipliers(&self, kind: RowKind) -> Result<&[f64]> {
+        let answer = self.answer()?;
+        Ok(match kind {
+            RowKind::Inequality => &answer.lambda,
+            RowKind::Equality => &answer.mu,
+        })
+    }
+
+    /// Open gaps c - B u, length.
+    pub fn gaps(&self) -> Result<&[f64]> {
+        Ok(&self.answer()?.gaps)
+    }
+
+    pub fn active(&self) -> Result<&[RowState]> {
+        Ok(&self.answer()?.states)
+    }
+
+    fn inverse(&mut self, body: usize) -> Result<&Inverse> {
+        self.slot(body)?;
+        self.setup()?;
+        let missing = || Error::new(Kind::Internal, "the setup left a body without factors");
+        self.bodies[body].inverse.as_ref().ok_or_else(missing)
+    }
+
+    /// Dimension r of the null space of a body and its basis as the library uses it: n x r column-major,
+    /// orthonormal in the metric of diag K / 2^p.
+    pub fn null_space(&mut self, body: usize) -> Result<(usize, &[f64])> {
+        let basis = &self.inverse(body)?.kplus.null_space;
+        Ok((basis.cols, &basis.data))
+    }
+
+    /// The r dofs held in K+ of (14)-(15).
+    pub fn fixing_dofs(&mut self, body: usize) -> Result<&[usize]> {
+        Ok(&self.inverse(body)?.kplus.fixing)
+    }
+
+    /// `y = K_p+ x`, x force, y length.
+    pub fn kplus(&mut self, body: usize, x: &[f64], y: &mut [f64]) -> Result<()> {
+        self.check_length(body, "n", x.len())?;
+        self.check_length(body, "n", y.len())?;
+        let inverse = self.inverse(body)?;
+        inverse.kplus.apply(x, y)?;
+        y.iter_mut().for_each(|y| *y /= inverse.unit);
+        Ok(())
+    }
+
+    /// `y = F x` of (12), contact rows first; x force, y length.
+    pub fn dual_apply(&mut self, x: &[f64], y: &mut [f64]) -> Result<()> {
+        self.check_rows(x.len())?;
+        self.check_rows(y.len())?;
+        self.setup()?;
+        let ready = self.ready()?;
+        let scaled: Vec<f64> = x.iter().zip(&ready.scale).map(|(x, s)| unscaled(x / ready.unit, *s)).collect();
+        ready.dual.apply(&scaled, y);
+        y.iter_mut().zip(&ready.scale).for_each(|(y, s)| *y = unscaled(*y, *s));
+        Ok(())
+    }
+
+    /// `d = B K+ f - c` of (13), contact rows first, length.
+    pub fn dual_rhs(&mut self, d: &mut [f64]) -> Result<()> {
+        self.check_rows(d.len())?;
+        self.setup()?;
+        let mut load = self.loads()?;
+        let ready = self.ready()?;
+        load.iter_mut().for_each(|f| *f /= ready.unit);
+        let rhs = ready.dual.rhs(&load, &vec![0.0; d.len()])?;
+        let gaps = self.contact.rhs.iter().chain(&self.equalities.rhs);
+        for (((d, v), s), c) in d.iter_mut().zip(rhs).zip(&ready.scale).zip(gaps) {
+            *d = unscaled(v, *s) - c;
+        }
+        Ok(())
+    }
+
+    fn check_rows(&self, m: usize) -> Result<()> {
+        let expected = self.contact.len() + self.equalities.len();
+        if m == expected {
+            return Ok(());
+        }
+        let what = format!("the problem has {expected} rows, not {m}");
+        Err(Error::argument("m", what).value(m as f64).limit(expected as f64))
+    }
+}
+
+/// `v / s`, 0 for rows without entries.
+fn unscaled(v: f64, s: f64) -> f64 {
+    if s > 0.0 { v / s } else { 0.0 }
+}

@@ -1,0 +1,218 @@
+//! The options: name, meaning, default and range in one table; set and read by name.
+
+use std::ffi::CStr;
+
+use crate::error::{Error, Result};
+
+/// Values of all options; the table says what they mean. `Settings::new` has the defaults.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Settings {
+    pub tolerance: f64,
+    pub certificate_tolerance: f64,
+    pub gamma: f64,
+    pub time_limit: f64,
+    pub symmetry_tolerance: f64,
+    pub null_space_tolerance: f64,
+    pub max_steps: i64,
+    pub memory_limit: i64,
+    pub threads: i64,
+    pub index_base: i64,
+    pub fault_injection: i64,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum OptionValue {
+    F64(f64),
+    I64(i64),
+    Str(&'static CStr),
+}
+
+/// One option as the host may list it. `minimum` and `maximum` bound numbers.
+pub struct OptionInfo {
+    pub name: &'static CStr,
+    pub doc: &'static CStr,
+    pub default: OptionValue,
+    pub minimum: f64,
+    pub maximum: f64,
+    field: Field,
+}
+
+/// Where the value of an option lives.
+enum Field {
+    F64(fn(&mut Settings) -> &mut f64),
+    I64(fn(&mut Settings) -> &mut i64),
+}
+
+type Range = std::ops::RangeInclusive<f64>;
+
+const NO_LIMIT: f64 = 1e300;
+/// 2^53: every whole number up to here is a double.
+const MANY: f64 = 9_007_199_254_740_992.0;
+
+const fn real(
+    name: &'static CStr,
+    default: f64,
+    range: Range,
+    field: fn(&mut Settings) -> &mut f64,
+    doc: &'static CStr,
+) -> OptionInfo {
+    let (minimum, maximum) = (*range.start(), *range.end());
+    OptionInfo { name, doc, default: OptionValue::F64(default), minimum, maximum, field: Field::F64(field) }
+}
+
+const fn whole(
+    name: &'static CStr,
+    default: i64,
+    range: Range,
+    field: fn(&mut Settings) -> &mut i64,
+    doc: &'static CStr,
+) -> OptionInfo {
+    let (minimum, maximum) = (*range.start(), *range.end());
+    OptionInfo { name, doc, default: OptionValue::I64(default), minimum, maximum, field: Field::I64(field) }
+}
+
+static OPTIONS: [OptionInfo; 11] = [
+    real(c"tolerance", 1e-9, 1e-14..=1e-2, |s| &mut s.tolerance,
+        c"The dual is solved until its projected gradient, a gap, is this small against the gaps and displacements of the problem."),
+    real(c"certificate_tolerance", 1e-8, 1e-14..=1e-2, |s| &mut s.certificate_tolerance,
+        c"Every entry of the certificate must be this small for the answer to count as solved."),
+    real(c"gamma", 1.0, 1e-3..=1e3, |s| &mut s.gamma,
+        c"Gamma of the proportionality test: how much larger than the error on the current face the error of having chosen it may be."),
+    real(c"time_limit", NO_LIMIT, 0.0..=NO_LIMIT, |s| &mut s.time_limit,
+        c"Seconds of wall time after which a solve ends with FETI_TIME and the best answer so far."),
+    real(c"symmetry_tolerance", 1e-10, 0.0..=1e-2, |s| &mut s.symmetry_tolerance,
+        c"Full storage: |K_ij - K_ji| may be this large against sqrt(K_ii K_jj); the two are averaged."),
+    real(c"null_space_tolerance", 1e-8, 1e-15..=1e-2, |s| &mut s.null_space_tolerance,
+        c"A given null space R is accepted when |K R| is this small against |K||R| in the metric of diag K."),
+    whole(c"max_steps", 10_000, 1.0..=MANY, |s| &mut s.max_steps,
+        c"Steps of the dual method after which a solve ends with FETI_ITERATIONS and the best answer so far."),
+    whole(c"memory_limit", 0, 0.0..=MANY, |s| &mut s.memory_limit,
+        c"Bytes that factors and dual operators may take; 0: no limit. Exceeding it is FETI_MEMORY before anything is allocated."),
+    whole(c"threads", 0, 0.0..=4096.0, |s| &mut s.threads,
+        c"Threads of the setup; 0: as many as the CPUs this process may use. The answer has the same bits for any number."),
+    whole(c"index_base", 0, 0.0..=1.0, |s| &mut s.index_base,
+        c"What numbers in error texts count from: 0 for C, 1 for Fortran."),
+    whole(c"fault_injection", 0, 0.0..=1.0, |s| &mut s.fault_injection,
+        c"1: the next feti_solve fails inside with FETI_INTERNAL, so that a host can test its own reaction."),
+];
+
+/// All options, in the order of their listing.
+pub fn options() -> &'static [OptionInfo] {
+    &OPTIONS
+}
+
+impl Settings {
+    pub fn new() -> Self {
+        let mut settings = Self::default();
+        for option in options() {
+            match (&option.field, option.default) {
+                (Field::F64(field), OptionValue::F64(value)) => *field(&mut settings) = value,
+                (Field::I64(field), OptionValue::I64(value)) => *field(&mut settings) = value,
+                _ => {}
+            }
+        }
+        settings
+    }
+
+    pub fn set_f64(&mut self, name: &str, value: f64) -> Result<()> {
+        let option = find(name)?;
+        let Field::F64(field) = &option.field else { return Err(wrong_type(option)) };
+        check(option, value)?;
+        *field(self) = value;
+        Ok(())
+    }
+
+    pub fn set_i64(&mut self, name: &str, value: i64) -> Result<()> {
+        let option = find(name)?;
+        let Field::I64(field) = &option.field else { return Err(wrong_type(option)) };
+        check(option, value as f64)?;
+        *field(self) = value;
+        Ok(())
+    }
+
+    /// No option is a text so far.
+    pub fn set_str(&mut self, name: &str, _value: &str) -> Result<()> {
+        Err(wrong_type(find(name)?))
+    }
+
+    pub fn get_f64(&self, name: &str) -> Result<f64> {
+        let option = find(name)?;
+        let Field::F64(field) = &option.field else { return Err(wrong_type(option)) };
+        Ok(*field(&mut self.clone()))
+    }
+
+    pub fn get_i64(&self, name: &str) -> Result<i64> {
+        let option = find(name)?;
+        let Field::I64(field) = &option.field else { return Err(wrong_type(option)) };
+        Ok(*field(&mut self.clone()))
+    }
+
+    pub fn get_str(&self, name: &str) -> Result<String> {
+        Err(wrong_type(find(name)?))
+    }
+}
+
+fn find(name: &str) -> Result<&'static OptionInfo> {
+    options().iter().find(|option| option.name.to_bytes() == name.as_bytes()).ok_or_else(|| {
+        let names: Vec<_> = options().iter().map(|o| o.name.to_string_lossy()).collect();
+        Error::argument("name", format!("there is no option \"{name}\"; there are {}", names.join(", ")))
+    })
+}
+
+fn wrong_type(option: &OptionInfo) -> Error {
+    let kind = match option.default {
+        OptionValue::F64(_) => "a real number (f64)",
+        OptionValue::I64(_) => "a whole number (i64)",
+        OptionValue::Str(_) => "a text (str)",
+    };
+    Error::argument("name", format!("option \"{}\" is {kind}", option.name.to_string_lossy()))
+}
+
+fn check(option: &OptionInfo, value: f64) -> Result<()> {
+    if (option.minimum..=option.maximum).contains(&value) {
+        return Ok(());
+    }
+    let (name, low, high) = (option.name.to_string_lossy(), option.minimum, option.maximum);
+    let limit = if value < low { low } else { high };
+    Err(Error::argument("value", format!("option \"{name}\" takes {low:e} to {high:e}, not {value:e}"))
+        .value(value)
+        .limit(limit))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::error::Kind;
+
+    #[test]
+    fn every_option_starts_with_its_listed_default_inside_its_range() {
+        let settings = Settings::new();
+        for option in options() {
+            let name = option.name.to_str().unwrap();
+            let value = match option.default {
+                OptionValue::F64(value) => {
+                    assert_eq!(settings.get_f64(name).unwrap(), value);
+                    value
+                }
+                OptionValue::I64(value) => {
+                    assert_eq!(settings.get_i64(name).unwrap(), value);
+                    value as f64
+                }
+                OptionValue::Str(_) => continue,
+            };
+            assert!((option.minimum..=option.maximum).contains(&value), "{name}");
+        }
+    }
+
+    #[test]
+    fn unknown_names_wrong_types_and_values_out_of_range_change_nothing() {
+        let mut settings = Settings::new();
+        assert_eq!(settings.set_f64("tolerence", 1e-6).unwrap_err().kind, Kind::Argument("name"));
+        assert_eq!(settings.set_i64("tolerance", 1).unwrap_err().kind, Kind::Argument("name"));
+        assert_eq!(settings.set_f64("tolerance", f64::NAN).unwrap_err().kind, Kind::Argument("value"));
+        assert_eq!(settings.set_i64("threads", -1).unwrap_err().kind, Kind::Argument("value"));
+        assert_eq!(settings, Settings::new());
+        settings.set_f64("tolerance", 1e-6).unwrap();
+        assert_eq!(settings.get_f64("tolerance").unwrap(), 1e-6);
+    }
+}

@@ -1,0 +1,152 @@
+//! Everything that does not depend on loads and gaps: null spaces, factors, scaling, dual operators.
+
+use std::ops::Range;
+use std::sync::Arc;
+use std::time::Instant;
+
+use crate::body::{Body, GeneralizedInverse, Modes, NullSpaceInput};
+use crate::constraints::{row_scales, RowKind};
+use crate::dual::{Dual, Part};
+use crate::error::{Error, Kind, Result};
+use crate::linalg::memory::available;
+use crate::linalg::Csr;
+use crate::solver::problem::{Inverse, Problem};
+use crate::solver::threads;
+
+/// The dual problem, ready for any load and gap.
+pub(super) struct Ready {
+    /// 2^p, p = floor(log2 max K_ii), force / length: K and forces are divided by it.
+    pub unit: f64,
+    pub dual: Dual,
+    /// `S [B; H]`, contact rows first.
+    pub matrix: Csr,
+    /// s_i, `length^-1` in units of 2^p.
+    pub scale: Vec<f64>,
+}
+
+impl Problem {
+    /// Null spaces, factors and dual operators, as far as they are not there yet.
+    pub fn setup(&mut self) -> Result<()> {
+        if self.ready.is_some() {
+            return Ok(());
+        }
+        let started = Instant::now();
+        self.check_complete()?;
+        self.contact.check_empty_rows(RowKind::Inequality)?;
+        self.equalities.check_empty_rows(RowKind::Equality)?;
+        let unit = self.unit();
+        self.factorize(unit)?;
+        self.ready = Some(self.dualize(unit)?);
+        self.seconds_setup = started.elapsed().as_secs_f64();
+        Ok(())
+    }
+
+    fn check_complete(&self) -> Result<()> {
+        if self.bodies.is_empty() {
+            return Err(Error::new(Kind::State, "the problem has no body yet"));
+        }
+        for (p, slot) in self.bodies.iter().enumerate() {
+            let missing = |what: &str| Err(Error::new(Kind::State, format!("{what} has not been given")).body(p));
+            if slot.body.stiffness.is_none() {
+                return missing("the stiffness matrix");
+            }
+            if slot.body.null_space.is_none() && slot.body.coordinates.is_none() {
+                return missing("neither null space nor coordinates");
+            }
+        }
+        Ok(())
+    }
+
+    /// The power of two below the largest diagonal entry of all bodies (1 when there is none): dividing by it
+    /// is exact, so powers of two in the host's units do not change a bit of what follows.
+    pub(super) fn unit(&self) -> f64 {
+        let stiffness = self.bodies.iter().filter_map(|slot| slot.body.stiffness.as_ref());
+        let largest = stiffness.map(|k| k.largest_diagonal()).fold(0.0, f64::max);
+        const EXPONENT: u64 = 0x7ff0_0000_0000_0000;
+        if largest.is_normal() { f64::from_bits(largest.to_bits() & EXPONENT) } else { 1.0 }
+    }
+
+    /// K+ of the bodies that have none for this unit.
+    fn factorize(&mut self, unit: f64) -> Result<()> {
+        for slot in &mut self.bodies {
+            slot.inverse.take_if(|inverse| inverse.unit != unit);
+        }
+        let threads = threads::count(self.settings.threads);
+        let todo: Vec<usize> = (0..self.bodies.len()).filter(|&p| self.bodies[p].inverse.is_none()).collect();
+        let tolerance = self.settings.null_space_tolerance;
+        let plans = threads::run(threads, todo.len(), |k| {
+            plan(&self.bodies[todo[k]].body, unit, tolerance).map_err(|e| e.body(todo[k]))
+        })?;
+        let bytes: Vec<usize> = plans.iter().map(|plan| plan.bytes()).collect();
+        self.check_memory(bytes.iter().sum())?;
+        let plans: Vec<_> = plans.into_iter().map(|plan| std::sync::Mutex::new(Some(plan))).collect();
+        let inverses = threads::run(threads, todo.len(), |k| {
+            let plan = plans[k].lock().ok().and_then(|mut plan| plan.take());
+            let plan = plan.ok_or_else(|| Error::new(Kind::Internal, "a body was factorised twice"))?;
+            plan.execute().map_err(|e| e.body(todo[k]))
+        })?;
+        for ((&p, kplus), bytes) in todo.iter().zip(inverses).zip(bytes) {
+            self.bodies[p].inverse = Some(Inverse { unit, kplus: Arc::new(kplus), bytes });
+            self.factorisations += 1;
+        }
+        Ok(())
+    }
+
+    /// Factors and dual operators against the limit of the host, and against what the system would give.
+    fn check_memory(&self, new_factors: usize) -> Result<()> {
+        let kept: usize = self.bodies.iter().filter_map(|slot| slot.inverse.as_ref()).map(|i| i.bytes).sum();
+        let ranges = || self.ranges().into_iter();
+        let operators = Dual::bytes(ranges(), &self.contact.matrix) + Dual::bytes(ranges(), &self.equalities.matrix);
+        let needed = kept.saturating_add(new_factors).saturating_add(operators);
+        let limit = usize::try_from(self.settings.memory_limit).unwrap_or(0);
+        if limit > 0 && needed > limit {
+            let what = format!("factors and dual operators take {needed} bytes, memory_limit is {limit}");
+            return Err(Error::new(Kind::Memory, what).value(needed as f64).limit(limit as f64));
+        }
+        available(new_factors.saturating_add(operators), "factors and dual operators")
+    }
+
+    /// Unknowns of every body among all.
+    pub(super) fn ranges(&self) -> Vec<Range<usize>> {
+        self.offsets().windows(2).map(|pair| pair[0]..pair[1]).collect()
+    }
+
+    /// Scales the rows and forms F and G.
+    fn dualize(&self, unit: f64) -> Result<Ready> {
+        let metric = self.metric(unit);
+        let mut matrix = Csr::empty(metric.len());
+        let mut scale = Vec::new();
+        for rows in [&self.contact, &self.equalities] {
+            let scales = row_scales(&rows.matrix, &metric);
+            for (i, s) in scales.iter().enumerate() {
+                matrix.push_row(rows.matrix.row(i).map(|(j, v)| (j, s * v)));
+            }
+            scale.extend(scales);
+        }
+        let parts = self.ranges().into_iter().zip(&self.bodies).filter_map(|(range, slot)| {
+            let inverse = slot.inverse.as_ref()?;
+            Some(Part { range, kplus: Arc::clone(&inverse.kplus) })
+        });
+        let threads = threads::count(self.settings.threads);
+        let dual = Dual::new(parts.collect(), &matrix, &|count, task| threads::run(threads, count, task))?;
+        Ok(Ready { unit, dual, matrix, scale })
+    }
+
+    /// `D / unit` over all unknowns, 1 for dofs without stiffness.
+    fn metric(&self, unit: f64) -> Vec<f64> {
+        let stiffness = self.bodies.iter().filter_map(|slot| slot.body.stiffness.as_ref());
+        stiffness.flat_map(|k| (0..k.order()).map(move |i| k.metric(i, unit) / unit)).collect()
+    }
+}
+
+/// What K+ of a body takes, found before it is computed.
+fn plan(body: &Body, unit: f64, tolerance: f64) -> Result<crate::body::Plan> {
+    let state = |what: &str| Error::new(Kind::State, format!("{what} has not been given"));
+    let k = body.stiffness.as_ref().ok_or_else(|| state("the stiffness matrix"))?.scaled(1.0 / unit)?;
+    if let Some(given) = &body.null_space {
+        return GeneralizedInverse::plan(k, given, tolerance);
+    }
+    let coordinates = body.coordinates.as_ref().ok_or_else(|| state("neither null space nor coordinates"))?;
+    let vectors = coordinates.rigid_modes(&k)?;
+    GeneralizedInverse::plan(k, &NullSpaceInput { vectors, modes: Modes::Candidates }, tolerance)
+}

@@ -1,0 +1,190 @@
+//! Set up, solve the dual, recover the displacements, certify: the paper in order.
+
+use std::time::{Duration, Instant};
+
+use crate::error::{Error, Kind, Result};
+use crate::linalg::vector::weighted_norm;
+use crate::qp::{self, minimise, Judge, Limits, Observer, Qp, Solution, Verdict};
+use crate::solver::certificate::{certify, Answer as AnswerView, BodyData, Certificate, Data};
+use crate::solver::diagnosis;
+use crate::solver::problem::Problem;
+use crate::solver::report::{Outcome, Report};
+use crate::solver::results::Answer;
+use crate::solver::setup::Ready;
+
+impl Problem {
+    /// Solves (10)-(11) for the present loads and gaps. An answer is kept even when it is incomplete; the
+    /// report says how good it is.
+    pub fn solve(&mut self) -> Result<Report> {
+        let started = Instant::now();
+        self.answer = None;
+        self.setup()?;
+        let solving = Instant::now();
+        let ready = self.ready()?;
+        let dual = Scaled::new(self, ready)?;
+        let mut judge = Certifier { ready, scaled: &dual, data: self.data()?, rows: self.contact.len() };
+        let mut watch = Watch { started, limit: self.settings.time_limit };
+        let solution = minimise(dual.qp(ready), &dual.start, self.limits(), &mut judge, &mut watch)?;
+        let outcome = self.outcome(ready, &dual, &solution)?;
+        let recovered = judge.recover(&solution.x, &solution.alpha)?;
+        let certificate = certify(&judge.data, recovered.view());
+        let mut answer = Answer::new(self, ready, &solution, recovered, outcome, certificate)?;
+        answer.report.seconds_setup = (solving - started).as_secs_f64();
+        answer.report.seconds_solve = solving.elapsed().as_secs_f64();
+        let report = answer.report.clone();
+        self.answer = Some(answer);
+        Ok(report)
+    }
+
+    pub(super) fn ready(&self) -> Result<&Ready> {
+        self.ready.as_ref().ok_or_else(|| Error::new(Kind::Internal, "the setup left nothing"))
+    }
+
+    fn limits(&self) -> Limits {
+        let steps = usize::try_from(self.settings.max_steps).unwrap_or(usize::MAX);
+        Limits { tolerance: self.settings.tolerance, gamma: self.settings.gamma, steps }
+    }
+
+    /// How the solution ended, or the named reason why there is none.
+    fn outcome(&self, ready: &Ready, dual: &Scaled, solution: &Solution) -> Result<Outcome> {
+        match &solution.verdict {
+            Verdict::Solved => Ok(Outcome::Solved),
+            Verdict::Marginal => Ok(Outcome::Marginal),
+            Verdict::StepLimit => Ok(Outcome::Iterations),
+            Verdict::TimeLimit => Ok(Outcome::Time),
+            Verdict::Stalled => Ok(Outcome::Stalled),
+            Verdict::Inaccurate => Ok(Outcome::Inaccurate),
+            Verdict::Infeasible { direction, margin } => {
+                Err(diagnosis::load_not_held(self, ready, direction, *margin))
+            }
+            Verdict::Unbounded { p } => {
+                diagnosis::gaps_contradict(self, ready, &dual.gaps, p).map_or(Ok(Outcome::Stalled), Err)
+            }
+        }
+    }
+
+    /// The problem as the certificate sees it; null spaces must have been found.
+    pub(super) fn data(&self) -> Result<Data<'_>> {
+        let missing = || Error::new(Kind::State, "a body has not been set up");
+        let mut bodies = Vec::with_capacity(self.bodies.len());
+        for (slot, range) in self.bodies.iter().zip(self.ranges()) {
+            let inverse = slot.inverse.as_ref().ok_or_else(missing)?;
+            bodies.push(BodyData {
+                start: range.start,
+                stiffness: slot.body.stiffness.as_ref().ok_or_else(missing)?,
+                load: slot.body.load.as_deref(),
+                null_space: &inverse.kplus.null_space,
+                unit: inverse.unit,
+            });
+        }
+        let limit = self.settings.certificate_tolerance;
+        Ok(Data { bodies, contact: &self.contact, equalities: &self.equalities, without: self.unit(), limit })
+    }
+}
+
+/// Loads and gaps as the dual takes them.
+struct Scaled {
+    /// f / 2^p
+    load: Vec<f64>,
+    /// S [c; h]
+    gaps: Vec<f64>,
+    d: Vec<f64>,
+    e: Vec<f64>,
+    bounded: Vec<bool>,
+    /// Where the dual starts: no force.
+    start: Vec<f64>,
+}
+
+impl Scaled {
+    fn new(problem: &Problem, ready: &Ready) -> Result<Self> {
+        let mut load = problem.loads()?;
+        load.iter_mut().for_each(|f| *f /= ready.unit);
+        let rhs = problem.contact.rhs.iter().chain(&problem.equalities.rhs);
+        let gaps: Vec<f64> = rhs.zip(&ready.scale).map(|(c, s)| c * s).collect();
+        let d = ready.dual.rhs(&load, &gaps)?;
+        let e = ready.dual.resultants(&load);
+        let bounded = (0..gaps.len()).map(|i| i < problem.contact.len()).collect();
+        Ok(Self { load, start: vec![0.0; gaps.len()], gaps, d, e, bounded })
+    }
+
+    fn qp<'a>(&'a self, ready: &'a Ready) -> Qp<'a> {
+        let (a, g_transposed) = (&ready.dual, &ready.dual.coarse);
+        Qp { a, b: &self.d, g_transposed, e: &self.e, bounded: &self.bounded }
+    }
+}
+
+/// Displacements and multipliers in the units of the host.
+pub(super) struct Recovered {
+    pub u: Vec<f64>,
+    pub lambda: Vec<f64>,
+    pub mu: Vec<f64>,
+}
+
+impl Recovered {
+    pub fn view(&self) -> AnswerView<'_> {
+        AnswerView { u: &self.u, lambda: &self.lambda, mu: &self.mu }
+    }
+}
+
+/// Judges a point of the dual by the certificate of the answer recovered from it.
+struct Certifier<'a> {
+    ready: &'a Ready,
+    scaled: &'a Scaled,
+    data: Data<'a>,
+    /// Number of contact rows.
+    rows: usize,
+}
+
+impl Certifier<'_> {
+    /// (17), and lambda = 2^p S x.
+    fn recover(&self, x: &[f64], alpha: &[f64]) -> Result<Recovered> {
+        let u = self.ready.dual.displacement(&self.scaled.load, x, alpha)?;
+        let mut lambda: Vec<f64> =
+            x.iter().zip(&self.ready.scale).map(|(x, s)| x * s * self.ready.unit).collect();
+        let mu = lambda.split_off(self.rows);
+        Ok(Recovered { u, lambda, mu })
+    }
+}
+
+impl Judge for Certifier<'_> {
+    /// `|S|B||u|| + |S c|`: lengths, whatever the choice of K+.
+    fn scale(&mut self, x: &[f64], alpha: &[f64]) -> Result<f64> {
+        let u = self.ready.dual.displacement(&self.scaled.load, x, alpha)?;
+        let moved: Vec<f64> = (0..x.len()).map(|i| self.ready.matrix.row_dot_abs(i, &u)).collect();
+        Ok(weighted_norm(&moved, |_| 1.0) + weighted_norm(&self.scaled.gaps, |_| 1.0))
+    }
+
+    fn accepts(&mut self, x: &[f64], alpha: &[f64]) -> Result<bool> {
+        Ok(certify(&self.data, self.recover(x, alpha)?.view()).passed())
+    }
+}
+
+/// Ends the run when its time is over.
+struct Watch {
+    started: Instant,
+    limit: f64,
+}
+
+impl Observer for Watch {
+    fn step(&mut self, _: &qp::Counts, _: f64, _: &[bool]) -> Option<Verdict> {
+        let elapsed: Duration = self.started.elapsed();
+        (elapsed.as_secs_f64() > self.limit).then_some(Verdict::TimeLimit)
+    }
+}
+
+impl Problem {
+    /// The certificate of any answer, also another code's: u over all unknowns, multipliers of contact and
+    /// equality rows.
+    pub fn check(&mut self, u: &[f64], lambda: &[f64], mu: &[f64]) -> Result<Certificate> {
+        self.setup()?;
+        let counts = self.counts();
+        let lengths = [("n", u, counts.dofs), ("rows", lambda, counts.rows), ("eqs", mu, counts.equalities)];
+        for (argument, values, expected) in lengths {
+            if values.len() != expected {
+                let what = format!("the problem has {expected}, not {}", values.len());
+                return Err(Error::argument(argument, what).value(values.len() as f64).limit(expected as f64));
+            }
+        }
+        Ok(certify(&self.data()?, AnswerView { u, lambda, mu }))
+    }
+}

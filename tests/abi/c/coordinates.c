@@ -1,0 +1,67 @@
+/* Coordinates instead of null spaces give the same answer, with the supports as equality rows and with the
+   supported unknowns struck out of K; of the rigid motions only those the supports allow survive.
+   coordinates <data folder> */
+#include "handover.h"
+
+/* The dimension of every null space the library found. */
+static void check_dimensions(const char *name, feti_problem *problem, const case_data *data, const int64_t *wanted)
+{
+    MUST(feti_setup(problem));
+    for (int64_t b = 0; b < data->bodies; b++) {
+        const case_body *body = &data->body[b];
+        int64_t r = 0;
+        OK(feti_body_null_space_get(problem, b, body->n, &r, NULL, body->n));
+        CHECK(r == wanted[b], "%s: body %lld has a null space of dimension %lld, expected %lld", name, (long long)b,
+              (long long)r, (long long)wanted[b]);
+        if (r < 1) continue;
+        double *modes = check_array(body->n * r, sizeof *modes), *force = check_array(body->n, sizeof *force);
+        OK(feti_body_null_space_get(problem, b, body->n, &r, modes, body->n));
+        const double stiff = check_max(body->stiffness.entries, body->stiffness.val) * check_max(body->n * r, modes);
+        for (int64_t j = 0; j < r; j++) {
+            multiply(&body->stiffness, modes + j * body->n, force);
+            CHECK(check_max(body->n, force) <= 1e-9 * stiff, "%s: body %lld: |K R| = %g", name, (long long)b,
+                  check_max(body->n, force));
+        }
+        free(modes);
+        free(force);
+    }
+}
+
+static void check_with_coordinates(const char *name, const case_data *data, const int64_t *dimensions)
+{
+    const form how = { .storage = FETI_LOWER, .null_space = NULL_SPACE_COORDINATES };
+    feti_problem *problem = handed_over(data, &how);
+
+    check_dimensions(name, problem, data, dimensions);
+    answer result = solved(problem, data);
+    CHECK(result.info.worst <= 1.0, "%s: certificate %g of its limit", name, result.info.worst);
+    check_forces(name, data, &result);
+    check_displacements(name, data, &result);
+    OK(feti_problem_destroy(&problem));
+    answer_free(&result);
+}
+
+static void check_both(const char *folder, const char *name, const int64_t *free_bodies, const int64_t *struck_out)
+{
+    case_data data, struck;
+    int64_t *kept;
+
+    read_or_stop(folder, name, &data);
+    check_with_coordinates(name, &data, free_bodies);
+    strike_supports(&data, &struck, &kept);
+    check_with_coordinates(name, &struck, struck_out);
+    free(kept);
+    case_free(&struck);
+    case_free(&data);
+}
+
+int main(int argc, char **argv)
+{
+    static const int64_t plane_free[] = { 3, 3 }, plane_held[] = { 1, 0 };
+    static const int64_t space_free[] = { 6, 6, 6 }, space_held[] = { 0, 3, 3 };
+
+    if (argc < 2) return 2;
+    check_both(argv[1], "hertz_cylinder", plane_free, plane_held);
+    check_both(argv[1], "three_bodies", space_free, space_held);
+    return check_result();
+}

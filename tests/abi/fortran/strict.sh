@@ -1,0 +1,19 @@
+#!/bin/sh
+# strict.sh MODULES ROOT: the Fortran sources of the library, the examples and the drivers compile as Fortran 2008 without a
+# warning, with and without run-time checks, and need no trampolines (an executable stack); the C layer is Fortran 2003.
+set -eu
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+cd "$work"
+compiler="${FC:-gfortran} -Wall -Wextra -pedantic -Werror -Werror=trampolines -c"
+face="$1/feti_contact_c.f90"
+for part in base options bodies rows results; do face="$face $1/feti_contact_$part.f90"; done
+examples="$2/examples_fortran/case_reader.f90 $2/examples_fortran/demo.f90 $2/examples_fortran/picture.f90"
+drivers="$2/tests/abi/fortran/support/case_problem.f90"
+
+$compiler -std=f2003 "$1/feti_contact_c.f90"
+for checks in "-O2" "-O0 -fcheck=all"; do
+    for file in $face "$1/feti_contact.f90" $examples $drivers "$2"/examples_fortran/0*.f90 "$2"/tests/abi/fortran/*.f90; do
+        $compiler -std=f2008 $checks "$file"
+    done
+done

@@ -1,0 +1,214 @@
+//! Reads the `extern "C"` items of the given Rust files, once, into an [`Api`].
+
+use quote::ToTokens;
+
+use crate::doc::{Direction, Doc};
+use crate::model::{Api, Argument, Constant, Field, Function, Struct, Type};
+
+/// `sources`: (file name, text), in the order in which the items are printed.
+pub fn parse(sources: &[(String, String)], version: [u32; 3]) -> Result<Api, String> {
+    let mut api = Api { version, ..Api::default() };
+    for (name, text) in sources {
+        let file = syn::parse_file(text).map_err(|e| format!("{name}: {e}"))?;
+        for item in &file.items {
+            add_item(&mut api, item).map_err(|e| format!("{name}: {e}"))?;
+        }
+    }
+    Ok(api)
+}
+
+fn add_item(api: &mut Api, item: &syn::Item) -> Result<(), String> {
+    match item {
+        syn::Item::Const(item) if is_public(&item.vis) && is_interface_name(&item.ident) => {
+            api.constants.push(constant(item)?);
+        }
+        syn::Item::Struct(item) if is_public(&item.vis) && has_word(&item.attrs, "repr", "C") => {
+            api.structs.push(structure(item)?);
+        }
+        syn::Item::Fn(item) => api.functions.extend(function(item)?),
+        syn::Item::Macro(_) | syn::Item::Mod(_) if text(item).contains("no_mangle") => {
+            return Err("an exported function inside a macro or an inner module is not seen".to_string());
+        }
+        _ => {}
+    }
+    Ok(())
+}
+
+fn constant(item: &syn::ItemConst) -> Result<Constant, String> {
+    let name = item.ident.to_string();
+    let ty = read_type(&item.ty).filter(|ty| matches!(ty, Type::I32 | Type::I64));
+    let ty =
+        ty.ok_or_else(|| format!("constant `{name}`: type {} is neither i32 nor i64", text(&item.ty)))?;
+    let value = integer(&item.expr);
+    let value =
+        value.ok_or_else(|| format!("constant `{name}`: {} is not an integer literal", text(&item.expr)))?;
+    let doc = documentation(&item.attrs).map_err(|e| format!("constant `{name}`: {e}"))?;
+    Ok(Constant { name, ty, value, doc })
+}
+
+/// A literal, possibly with a minus sign.
+fn integer(expr: &syn::Expr) -> Option<i64> {
+    match expr {
+        syn::Expr::Lit(syn::ExprLit { lit: syn::Lit::Int(int), .. }) => int.base10_parse().ok(),
+        syn::Expr::Unary(syn::ExprUnary { op: syn::UnOp::Neg(_), expr, .. }) => {
+            integer(expr).map(|value| -value)
+        }
+        _ => None,
+    }
+}
+
+fn structure(item: &syn::ItemStruct) -> Result<Struct, String> {
+    let name = item.ident.to_string();
+    let doc = documentation(&item.attrs).map_err(|e| format!("struct `{name}`: {e}"))?;
+    if item.fields.iter().all(|field| !is_public(&field.vis)) {
+        return Ok(Struct { name, fields: None, doc });
+    }
+    let fields = item.fields.iter().map(|item| field(&name, item)).collect::<Result<_, _>>()?;
+    Ok(Struct { name, fields: Some(fields), doc })
+}
+
+fn field(owner: &str, item: &syn::Field) -> Result<Field, String> {
+    let Some(ident) = &item.ident else {
+        return Err(format!("struct `{owner}`: a field without a name"));
+    };
+    let place = format!("struct `{owner}`, field `{ident}`");
+    if !is_public(&item.vis) {
+        return Err(format!("{place}: private, so hosts cannot know the layout"));
+    }
+    let ty = read_type(&item.ty).ok_or_else(|| format!("{place}: type {} is not allowed", text(&item.ty)))?;
+    let doc = documentation(&item.attrs).map_err(|e| format!("{place}: {e}"))?;
+    Ok(Field { name: name_of(ident), ty, doc })
+}
+
+/// None for a function that is not exported.
+fn function(item: &syn::ItemFn) -> Result<Option<Function>, String> {
+    let name = item.sig.ident.to_string();
+    let exported = has_path(&item.attrs, "no_mangle") || has_word(&item.attrs, "unsafe", "no_mangle");
+    let abi = item.sig.abi.as_ref().map(|abi| abi.name.as_ref().map_or("C".to_string(), syn::LitStr::value));
+    let visible = is_public(&item.vis) && abi.as_deref() == Some("C");
+    match (exported, visible) {
+        (false, true) if is_interface_name(&item.sig.ident) => {
+            return Err(format!("function `{name}`: pub extern \"C\" without #[no_mangle]"));
+        }
+        (false, _) => return Ok(None),
+        (true, false) => return Err(format!("function `{name}`: #[no_mangle] without pub extern \"C\"")),
+        (true, true) => {}
+    }
+    let mut doc = documentation(&item.attrs).map_err(|e| format!("function `{name}`: {e}"))?;
+    let mut arguments = Vec::new();
+    for input in &item.sig.inputs {
+        arguments.push(argument(&name, input, &doc)?);
+    }
+    if let Some(row) = doc.rows.iter().find(|row| arguments.iter().all(|a| a.name != row.argument)) {
+        return Err(format!("function `{name}`: the table lists `{}`, which is no argument", row.argument));
+    }
+    doc.rows = arguments.iter().map(|argument| argument.row.clone()).collect();
+    let result = match &item.sig.output {
+        syn::ReturnType::Type(_, ty) => read_type(ty).ok_or_else(|| text(ty)),
+        syn::ReturnType::Default => Err("()".to_string()),
+    };
+    let result = result.map_err(|ty| format!("function `{name}`: result type {ty} is not allowed"))?;
+    Ok(Some(Function { name, arguments, result, doc }))
+}
+
+fn argument(function: &str, input: &syn::FnArg, doc: &Doc) -> Result<Argument, String> {
+    let named = match input {
+        syn::FnArg::Typed(typed) => match typed.pat.as_ref() {
+            syn::Pat::Ident(ident) => Some((name_of(&ident.ident), typed.ty.as_ref())),
+            _ => None,
+        },
+        syn::FnArg::Receiver(_) => None,
+    };
+    let Some((name, ty)) = named else {
+        return Err(format!("function `{function}`: argument {} has no plain name", text(input)));
+    };
+    let place = format!("function `{function}`, argument `{name}`");
+    let ty = read_type(ty).ok_or_else(|| format!("{place}: type {} is not allowed", text(ty)))?;
+    let row = doc.rows.iter().find(|row| row.argument == name).cloned();
+    let row = row.ok_or_else(|| format!("{place}: no row in the argument table"))?;
+    if row.direction != Direction::In && !ty.is_mutable_pointer() {
+        return Err(format!("{place}: documented as written, but its type is {ty}"));
+    }
+    Ok(Argument { name, ty, row })
+}
+
+/// None for anything that is not i32, i64, f64, c_char, a `feti_` struct, or pointers to and arrays of those.
+fn read_type(ty: &syn::Type) -> Option<Type> {
+    match ty {
+        syn::Type::Path(path) if path.qself.is_none() => named_type(path.path.segments.last()?),
+        syn::Type::Ptr(pointer) => Some(Type::Pointer {
+            mutable: pointer.mutability.is_some(),
+            to: Box::new(read_type(&pointer.elem)?),
+        }),
+        syn::Type::Array(array) => {
+            let length = integer(&array.len).and_then(|n| usize::try_from(n).ok())?;
+            Some(Type::Array(Box::new(read_type(&array.elem)?), length))
+        }
+        _ => None,
+    }
+}
+
+fn named_type(segment: &syn::PathSegment) -> Option<Type> {
+    if !segment.arguments.is_none() {
+        return None;
+    }
+    match segment.ident.to_string().as_str() {
+        "i32" => Some(Type::I32),
+        "i64" => Some(Type::I64),
+        "f64" => Some(Type::F64),
+        "c_char" => Some(Type::Char),
+        name if name.starts_with("feti_") => Some(Type::Struct(name.to_string())),
+        _ => None,
+    }
+}
+
+fn documentation(attrs: &[syn::Attribute]) -> Result<Doc, String> {
+    let mut lines = Vec::new();
+    for attr in attrs.iter().filter(|attr| attr.path().is_ident("doc")) {
+        let syn::Meta::NameValue(pair) = &attr.meta else {
+            continue;
+        };
+        if let syn::Expr::Lit(syn::ExprLit { lit: syn::Lit::Str(line), .. }) = &pair.value {
+            let line = line.value();
+            lines.extend(line.lines().map(|l| l.strip_prefix(' ').unwrap_or(l).trim_end().to_string()));
+            if line.is_empty() {
+                lines.push(String::new());
+            }
+        }
+    }
+    Doc::parse(&lines)
+}
+
+fn is_public(vis: &syn::Visibility) -> bool {
+    matches!(vis, syn::Visibility::Public(_))
+}
+
+fn is_interface_name(ident: &syn::Ident) -> bool {
+    ident.to_string().to_ascii_lowercase().starts_with("feti_")
+}
+
+/// The name in C: `r#type` is `type`.
+fn name_of(ident: &syn::Ident) -> String {
+    let name = ident.to_string();
+    name.strip_prefix("r#").unwrap_or(&name).to_string()
+}
+
+/// `#[path]`
+fn has_path(attrs: &[syn::Attribute], path: &str) -> bool {
+    attrs.iter().any(|attr| attr.path().is_ident(path))
+}
+
+/// `#[path(word, ...)]`
+fn has_word(attrs: &[syn::Attribute], path: &str, word: &str) -> bool {
+    attrs.iter().filter(|attr| attr.path().is_ident(path)).any(|attr| match &attr.meta {
+        syn::Meta::List(list) => {
+            text(&list.tokens).split(|c: char| !c.is_alphanumeric() && c != '_').any(|w| w == word)
+        }
+        _ => false,
+    })
+}
+
+fn text(tokens: &impl ToTokens) -> String {
+    let spaced = tokens.to_token_stream().to_string();
+    format!("`{spaced}`").replace("* ", "*").replace(" :: ", "::").replace(" < ", "<").replace(" >", ">")
+}

@@ -1,0 +1,200 @@
+//! The rules of the generator, each on the smallest source that shows it.
+
+use crate::check::first_difference;
+use crate::{generate, options, package_version, run};
+
+const VERSION: [u32; 3] = [1, 2, 3];
+const HANDLE: &str = "/// A problem.\n#[repr(C)] pub struct feti_problem { _private: [u8; 0] }\n";
+const INFO: &str = "#[repr(C)] pub struct feti_info { pub struct_size: i64, pub r#type: i32, \
+                    pub function: [c_char; 40], pub name: *const c_char }\n";
+
+fn header_and_module(source: &str) -> Result<[String; 2], String> {
+    generate(&[("ffi.rs".to_string(), source.to_string())], VERSION)
+}
+
+fn module(source: &str) -> String {
+    header_and_module(source).unwrap()[1].clone()
+}
+
+fn error(source: &str) -> String {
+    header_and_module(source).unwrap_err()
+}
+
+/// A function with one argument `x` and its table row.
+fn with_argument(ty: &str, direction: &str, shape: &str, rule: &str) -> String {
+    format!(
+        "{HANDLE}{INFO}/// Does it.\n///\n/// | argument | in/out | shape | rule |\n/// |---|---|---|---|\n\
+         /// | `x` | {direction} | {shape} | {rule} |\n\
+         #[no_mangle] pub unsafe extern \"C\" fn feti_do(x: {ty}) -> i32 {{ 0 }}"
+    )
+}
+
+fn assert_dummy(ty: &str, direction: &str, shape: &str, rule: &str, expected: &str) {
+    let text = module(&with_argument(ty, direction, shape, rule));
+    assert!(text.lines().any(|line| line.trim() == expected), "{ty}: no line `{expected}` in\n{text}");
+}
+
+#[test]
+fn public_names_that_differ_by_case_only_are_refused() {
+    let source =
+        "pub const FETI_ACTIVE: i32 = 1;\n#[no_mangle] pub extern \"C\" fn feti_active() -> i32 { 0 }";
+    let message = error(source);
+    assert!(message.contains("`FETI_ACTIVE` and `feti_active`"), "{message}");
+    let with_type = format!("pub const FETI_INFO: i32 = 1;\n{INFO}");
+    assert!(error(&with_type).contains("`FETI_INFO` and `feti_info`"));
+}
+
+#[test]
+fn arguments_that_differ_by_case_only_are_refused() {
+    let source = "/// | argument | in/out | shape | rule |\n/// |---|---|---|---|\n/// | r | in | scalar | |\n\
+                  /// | R | in | scalar | |\n#[no_mangle] pub extern \"C\" fn feti_do(r: i64, R: i64) -> i32 { 0 }";
+    let message = error(source);
+    assert!(message.contains("feti_do") && message.contains("`r` and `R`"), "{message}");
+}
+
+#[test]
+fn a_type_outside_the_list_is_refused_with_function_and_argument() {
+    for ty in [
+        "usize",
+        "bool",
+        "*const u8",
+        "feti_info",
+        "c_char",
+        "&f64",
+        "*mut feti_other",
+        "Option<i32>",
+        "[f64; 3]",
+    ] {
+        let message = error(&with_argument(ty, "in", "scalar", ""));
+        assert!(
+            message.contains("`feti_do`, argument `x`") && message.contains("not allowed"),
+            "{ty}: {message}"
+        );
+    }
+    let message = error("#[no_mangle] pub extern \"C\" fn feti_do() -> *mut f64 { todo!() }");
+    assert!(message.contains("`feti_do`: result type `*mut f64`"), "{message}");
+    let message = error("#[repr(C)] pub struct feti_info { pub ok: bool }");
+    assert!(message.contains("`feti_info`, field `ok`"), "{message}");
+}
+
+#[test]
+fn numbers_go_by_value_and_handles_as_c_ptr() {
+    assert_dummy("i32", "in", "scalar", "", "integer(c_int32_t), value :: x");
+    assert_dummy("f64", "in", "scalar", "", "real(c_double), value :: x");
+    assert_dummy("*mut feti_problem", "in", "scalar", "NULL: HANDLE", "type(c_ptr), value :: x");
+    assert_dummy("*mut *mut feti_problem", "in/out", "scalar", "", "type(c_ptr), intent(inout) :: x");
+}
+
+#[test]
+fn shape_decides_between_a_scalar_and_an_array() {
+    assert_dummy("*mut i64", "out", "scalar", "", "integer(c_int64_t), intent(out) :: x");
+    assert_dummy("*mut i64", "in/out", "scalar", "", "integer(c_int64_t), intent(inout) :: x");
+    assert_dummy("*const f64", "in", "`ld * n`", "", "real(c_double), intent(in) :: x(*)");
+    assert_dummy("*const c_char", "in", "text", "", "character(kind=c_char), intent(in) :: x(*)");
+    assert_dummy("*mut feti_info", "out", "scalar", "", "type(feti_info), intent(inout) :: x");
+}
+
+#[test]
+fn a_pointer_that_may_be_null_is_a_c_ptr() {
+    for ty in ["*const f64", "*mut i64", "*mut feti_info", "*mut c_char"] {
+        let direction = if ty.starts_with("*mut") { "out" } else { "in" };
+        assert_dummy(ty, direction, "scalar", "may be NULL", "type(c_ptr), value :: x");
+        let without = module(&with_argument(ty, direction, "scalar", "FETI_NULL_SPACE"));
+        assert!(!without.contains("type(c_ptr), value :: x"), "{ty}");
+    }
+}
+
+#[test]
+fn an_argument_without_a_row_or_against_its_direction_is_refused() {
+    let missing = with_argument("i32", "in", "scalar", "").replace("`x`", "`y`");
+    assert!(error(&missing).contains("argument `x`: no row"));
+    assert!(error(&with_argument("*const f64", "out", "n", "")).contains("documented as written"));
+    assert!(error(&with_argument("*mut f64", "in", "n", "")).contains("documented as read"));
+}
+
+#[test]
+fn functions_must_be_exported_and_visible() {
+    let hidden = "#[no_mangle] extern \"C\" fn feti_do() -> i32 { 0 }";
+    assert!(error(hidden).contains("without pub extern"));
+    let forgotten = "pub extern \"C\" fn feti_do() -> i32 { 0 }";
+    assert!(error(forgotten).contains("without #[no_mangle]"));
+    for hidden in
+        ["make! { #[no_mangle] pub extern \"C\" fn feti_do() {} }", "mod m { #[no_mangle] fn feti_do() {} }"]
+    {
+        assert!(error(hidden).contains("is not seen"));
+    }
+    let newer = "#[unsafe(no_mangle)] pub extern \"C\" fn feti_do() -> i32 { 0 }";
+    assert!(module(newer).contains("function feti_do() bind(C, name=\"feti_do\")"));
+}
+
+#[test]
+fn handles_are_incomplete_in_c_and_structs_complete() {
+    let [header, module] =
+        header_and_module(&with_argument("*mut feti_problem", "in", "scalar", "")).unwrap();
+    assert!(header.contains("typedef struct feti_problem feti_problem;"), "{header}");
+    assert!(header.contains("int32_t feti_do(struct feti_problem *x);"), "{header}");
+    for field in ["int32_t type;", "char function[40];", "const char *name;"] {
+        assert!(header.contains(field), "{header}");
+    }
+    for field in
+        ["integer(c_int32_t) :: type", "character(kind=c_char) :: function(40)", "type(c_ptr) :: name"]
+    {
+        assert!(module.contains(field), "{module}");
+    }
+    assert!(!module.contains(":: feti_problem"), "{module}");
+}
+
+#[test]
+fn constants_and_version_come_out_in_both_languages() {
+    let [header, module] = header_and_module("/// Refused.\npub const FETI_ARGUMENT: i32 = -100;").unwrap();
+    assert!(
+        header.contains("#define FETI_ARGUMENT -100")
+            && header.contains("#define FETI_CONTACT_VERSION_MINOR 2")
+    );
+    assert!(
+        module.contains("FETI_ARGUMENT = -100_c_int32_t")
+            && module.contains("FETI_CONTACT_VERSION_PATCH = 3_c")
+    );
+    let manifest = "[package]\nname = \"x\"\nversion = \"10.2.3\"\n[dependencies]\nversion = \"9.9.9\"\n";
+    assert_eq!(package_version(manifest), Some([10, 2, 3]));
+    assert_eq!(package_version("[package]\nname = \"x\"\n[dependencies]\nversion = \"9.9.9\"\n"), None);
+}
+
+#[test]
+fn documentation_reaches_both_outputs_within_the_fortran_line() {
+    let rule = "word ".repeat(60);
+    let [header, module] = header_and_module(&with_argument("i32", "in", "scalar", &rule)).unwrap();
+    assert!(header.contains(" * Does it.") && header.contains(" * @param[in] x (scalar) word"), "{header}");
+    assert!(module.contains("!> Does it.") && module.contains("!> @param[in] x (scalar) word"), "{module}");
+    assert!(module.lines().all(|line| line.len() <= 132));
+}
+
+#[test]
+fn drift_is_named_by_file_and_line() {
+    let message = first_difference("a.h", "one\ntwo\n", "one\n2\n").unwrap();
+    assert_eq!(message, "a.h:2: committed \"two\", generated \"2\"");
+    assert!(first_difference("a.h", "one\n", "one\ntwo\n").unwrap().starts_with("a.h:2:"));
+    assert!(first_difference("a.h", "", "one\n").is_some());
+    assert_eq!(first_difference("a.h", "one\n", "one\n"), None);
+}
+
+#[test]
+fn check_passes_after_writing_and_fails_after_an_edit() {
+    let root = std::env::temp_dir().join(format!("feti_bindgen_root_{}", std::process::id()));
+    let source = root.join("src/ffi");
+    std::fs::create_dir_all(&source).unwrap();
+    std::fs::write(root.join("Cargo.toml"), "[package]\nversion = \"0.1.0\"\n").unwrap();
+    std::fs::write(source.join("a.rs"), with_argument("i32", "in", "scalar", "")).unwrap();
+    let call = |check: &[&str]| {
+        let root = ["--root", root.to_str().unwrap()];
+        run(&options(root.iter().chain(check).map(|s| s.to_string())).unwrap())
+    };
+    assert!(call(&["--check"]).unwrap_err().contains("include/feti_contact.h:1:"));
+    call(&[]).unwrap();
+    call(&["--check"]).unwrap();
+    std::fs::write(source.join("a.rs"), with_argument("i64", "in", "scalar", "")).unwrap();
+    let message = call(&["--check"]).unwrap_err();
+    assert!(message.contains("include/feti_contact.h:") && message.contains("int64_t x"), "{message}");
+    assert!(message.contains("include/fortran/feti_contact_c.f90:"), "{message}");
+    std::fs::remove_dir_all(&root).unwrap();
+}
