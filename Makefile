@@ -36,6 +36,7 @@ clean:
 # ---- reference cases as plain text
 DATA := $(patsubst tests/data/%.gz,build/data/%,$(wildcard tests/data/*/*.gz))
 data: $(DATA)
+	@:
 
 build/data/%: tests/data/%.gz
 	@mkdir -p $(@D)

@@ -55,6 +55,7 @@ program hertz_cylinder
   call feti_problem_destroy(problem)
 
   error = max(demo_error(lambda, host%lambda_ref), demo_error(u, host%u_ref))
+  deallocate (u, lambda, force, state)
   call demo_line('03_hertz_cylinder', info, error, agrees)
 
 contains
@@ -92,7 +93,7 @@ contains
   !> Prints the comparison with Hertz and draws it. agrees: width and peak to 2 %, force to 1e-6.
   subroutine compare(agrees)
     logical, intent(out) :: agrees
-    real(dp) :: x(size(lambda)), length(size(lambda)), pressure(size(lambda))
+    real(dp) :: x(size(host%c)), length(size(host%c)), pressure(size(host%c))
     real(dp) :: half_width, applied, modulus, hertz_width, hertz_peak
 
     call contact_places(x)

@@ -41,6 +41,7 @@ program three_bodies
   call feti_problem_destroy(problem)
 
   error = max(demo_error(lambda, host%lambda_ref), demo_error(u, host%u_ref))
+  deallocate (u, lambda, force)
   call demo_line('04_three_bodies', info, error, .true.)
 
 contains

@@ -41,7 +41,7 @@
 #define FETI_INACCURATE 5
 
 /**
- * The answer is usable but incomplete.
+ * The answer is usable but incomplete: a small part of the load is not held.
  */
 #define FETI_MARGINAL 6
 
@@ -269,7 +269,7 @@ typedef struct feti_option {
    */
   double maximum;
   /**
-   * Default of a number.
+   * Default of a number or an integer; NaN for a text.
    */
   double default_f64;
   /**
@@ -694,8 +694,9 @@ int32_t feti_body_null_space(struct feti_problem *p,
  * @param[in]     p     (scalar) the handle
  * @param[in]     body  (scalar) number of the body, from 0
  * @param[in]     n     (scalar) unknowns of the body
- * @param[in,out] r     (scalar) in: columns that fit in `basis`; out: dimension of the null space
- * @param[out]    basis (ldr * r) column-major; NULL: only `r` is wanted, and not read
+ * @param[in,out] r     (scalar) in: columns that fit in `basis`, not read without one; out:
+ *                      dimension of the null space
+ * @param[out]    basis (ldr * r) column-major; NULL: only the dimension is wanted
  * @param[in]     ldr   (scalar) >= n, not looked at without `basis`
  *
  * Safety: The arrays have the given shapes.
@@ -863,6 +864,105 @@ int32_t feti_problem_destroy(struct feti_problem **p);
 int32_t feti_problem_error(struct feti_problem *p, char *buf, int64_t cap, int64_t *len);
 
 /**
+ * Reads the displacement of a body.
+ *
+ * FETI_STATE before a solve has given an answer. After a failure nothing is written.
+ *
+ * @param[in]  p    (scalar) the handle
+ * @param[in]  body (scalar) number of the body, from 0
+ * @param[in]  n    (scalar) unknowns of the body
+ * @param[out] u    (n) displacement, length
+ *
+ * Safety: The array has the given shape.
+ */
+int32_t feti_displacement(struct feti_problem *p, int64_t body, int64_t n, double *u);
+
+/**
+ * Reads the force of the rows on a body, -B'lambda, -H'mu or both: `K u = f + r`.
+ *
+ * FETI_STATE before a solve has given an answer. After a failure nothing is written.
+ *
+ * @param[in]  p    (scalar) the handle
+ * @param[in]  kind (scalar) FETI_INEQUALITY, FETI_EQUALITY, or 0 for both
+ * @param[in]  body (scalar) number of the body, from 0
+ * @param[in]  n    (scalar) unknowns of the body
+ * @param[out] r    (n) force
+ *
+ * Safety: The array has the given shape.
+ */
+int32_t feti_reaction(struct feti_problem *p, int32_t kind, int64_t body, int64_t n, double *r);
+
+/**
+ * Reads the amplitudes alpha of the null space in the displacement of a body, `u = K+ (f + r) + R
+ * alpha`.
+ *
+ * FETI_STATE before a solve has given an answer. After a failure nothing is written.
+ *
+ * @param[in]  p     (scalar) the handle
+ * @param[in]  body  (scalar) number of the body, from 0
+ * @param[in]  r     (scalar) dimension of the null space of the body
+ * @param[out] alpha (r) amplitudes, in the order of the columns of feti_body_null_space_get
+ *
+ * Safety: The array has the given shape.
+ */
+int32_t feti_amplitudes(struct feti_problem *p, int64_t body, int64_t r, double *alpha);
+
+/**
+ * Reads the multipliers: lambda of `B u <= c`, or mu of `H u = h`.
+ *
+ * FETI_STATE before a solve has given an answer. After a failure nothing is written.
+ *
+ * @param[in]  p      (scalar) the handle
+ * @param[in]  kind   (scalar) FETI_INEQUALITY or FETI_EQUALITY
+ * @param[in]  rows   (scalar) number of rows of the kind
+ * @param[out] lambda (rows) force, >= 0 for inequalities
+ *
+ * Safety: The array has the given shape.
+ */
+int32_t feti_multipliers(struct feti_problem *p, int32_t kind, int64_t rows, double *lambda);
+
+/**
+ * Reads what is left of the gaps, c - B u.
+ *
+ * FETI_STATE before a solve has given an answer. After a failure nothing is written.
+ *
+ * @param[in]  p     (scalar) the handle
+ * @param[in]  rows  (scalar) number of inequality rows
+ * @param[out] slack (rows) open gap, length; negative: penetration
+ *
+ * Safety: The array has the given shape.
+ */
+int32_t feti_gaps(struct feti_problem *p, int64_t rows, double *slack);
+
+/**
+ * Reads the state of the inequality rows.
+ *
+ * FETI_STATE before a solve has given an answer. After a failure nothing is written.
+ *
+ * @param[in]  p     (scalar) the handle
+ * @param[in]  rows  (scalar) number of inequality rows
+ * @param[out] state (rows) FETI_ROW_OPEN, FETI_ROW_CLOSED or FETI_ROW_WEAK
+ *
+ * Safety: The array has the given shape.
+ */
+int32_t feti_active(struct feti_problem *p, int64_t rows, int32_t *state);
+
+/**
+ * Reads the size of the problem as it is given now.
+ *
+ * After a failure nothing is written.
+ *
+ * @param[in]  p      (scalar) the handle
+ * @param[out] bodies (scalar) bodies; may be NULL
+ * @param[out] dofs   (scalar) unknowns of all bodies; may be NULL
+ * @param[out] rows   (scalar) inequality rows; may be NULL
+ * @param[out] eqs    (scalar) equality rows; may be NULL
+ *
+ * Safety: Every pointer is NULL or has room for one number.
+ */
+int32_t feti_counts(struct feti_problem *p, int64_t *bodies, int64_t *dofs, int64_t *rows, int64_t *eqs);
+
+/**
  * Adds rows of `B u <= c` or `H u = h`, with 32-bit indices.
  *
  * The rows are copied and numbered behind those of the same kind that are there. A pair of body
@@ -952,6 +1052,56 @@ int32_t feti_rows_rhs(struct feti_problem *p, int32_t kind, int64_t first, int64
 int32_t feti_rows_clear(struct feti_problem *p, int32_t kind);
 
 /**
+ * Prepares the solve: null spaces, factors of the bodies, the dual operator.
+ *
+ * feti_solve does it when it is due; called alone it shows errors in the bodies early. After a
+ * failure all that was given is kept and can be corrected.
+ *
+ * @param[in] p (scalar) the handle
+ */
+int32_t feti_setup(struct feti_problem *p);
+
+/**
+ * Minimises 1/2 u'Ku - f'u subject to `B u <= c` and `H u = h`.
+ *
+ * The answer is kept until the next solve and read with feti_displacement, feti_multipliers and
+ * the like; there is one when the status is not negative. `info` is written in any case, with NaN
+ * for figures that a failure left unknown. After a failure all that was given is kept and can be
+ * corrected, except after FETI_INTERNAL.
+ *
+ * @param[in]     p    (scalar) the handle
+ * @param[in,out] info (scalar) `struct_size` set, at least 16; may be NULL
+ *
+ * Safety: `info` is NULL or leads to `struct_size` writable bytes.
+ */
+int32_t feti_solve(struct feti_problem *p, struct feti_info *info);
+
+/**
+ * Verifies an answer against the problem as it is given now: any answer, also another code's.
+ *
+ * Keeps nothing: the answer of the last solve stays. After a failure nothing is written.
+ *
+ * @param[in]     p      (scalar) the handle
+ * @param[in]     n      (scalar) unknowns of all bodies
+ * @param[in]     u      (n) displacement, body after body, length
+ * @param[in]     rows   (scalar) number of inequality rows
+ * @param[in]     lambda (rows) multipliers of `B u <= c`, force
+ * @param[in]     eqs    (scalar) number of equality rows
+ * @param[in]     mu     (eqs) multipliers of `H u = h`, force
+ * @param[in,out] out    (scalar) `struct_size` set, at least 16
+ *
+ * Safety: The arrays have the given shapes, `out` leads to `struct_size` writable bytes.
+ */
+int32_t feti_check(struct feti_problem *p,
+                   int64_t n,
+                   const double *u,
+                   int64_t rows,
+                   const double *lambda,
+                   int64_t eqs,
+                   const double *mu,
+                   struct feti_certificate *out);
+
+/**
  * Name of a status, such as "FETI_LOAD_NOT_HELD".
  *
  * "FETI_ARGUMENT" for every refused argument, "FETI_UNKNOWN" for a number that is no status. The
@@ -985,144 +1135,21 @@ const char *feti_version(void);
 int32_t feti_version_number(void);
 
 /**
- * Null spaces, factors and F; optional.
+ * Applies the generalised inverse of a body, `Y = K+ X`.
  *
- * @param[in] p (scalar) handle
+ * Runs feti_setup when it is due. X and Y may be the same array. After a failure nothing is
+ * written.
  *
- * Safety: Arrays hold at least the elements of their shape.
- */
-int32_t feti_setup(struct feti_problem *p);
-
-/**
- * Solves the contact problem.
- *
- * @param[in]     p    (scalar) handle
- * @param[in,out] info (scalar) may be NULL; struct_size set by the caller
- *
- * Safety: Arrays hold at least the elements of their shape.
- */
-int32_t feti_solve(struct feti_problem *p, struct feti_info *info);
-
-/**
- * Verifies any answer, also another code's.
- *
- * @param[in]     p      (scalar) handle
- * @param[in]     n      (scalar) all dofs
- * @param[in]     u      (n) length
- * @param[in]     rows   (scalar)
- * @param[in]     lambda (rows) force; may be NULL when rows = 0
- * @param[in]     eqs    (scalar)
- * @param[in]     mu     (eqs) force; may be NULL when eqs = 0
- * @param[in,out] out    (scalar) struct_size set by the caller
- *
- * Safety: Arrays hold at least the elements of their shape.
- */
-int32_t feti_check(struct feti_problem *p,
-                   int64_t n,
-                   const double *u,
-                   int64_t rows,
-                   const double *lambda,
-                   int64_t eqs,
-                   const double *mu,
-                   struct feti_certificate *out);
-
-/**
- * Displacement of a body.
- *
- * @param[in]  p    (scalar) handle
- * @param[in]  body (scalar)
- * @param[in]  n    (scalar)
- * @param[out] u    (n) length
- *
- * Safety: Arrays hold at least the elements of their shape.
- */
-int32_t feti_displacement(struct feti_problem *p, int64_t body, int64_t n, double *u);
-
-/**
- * Force of the rows on a body, -B'lambda or -H'mu.
- *
- * @param[in]  p        (scalar) handle
- * @param[in]  kind     (scalar) 0: both
- * @param[in]  body     (scalar)
- * @param[in]  n        (scalar)
- * @param[out] reaction (n) force
- *
- * Safety: Arrays hold at least the elements of their shape.
- */
-int32_t feti_reaction(struct feti_problem *p, int32_t kind, int64_t body, int64_t n, double *reaction);
-
-/**
- * Amplitudes of the null-space columns.
- *
- * @param[in]  p     (scalar) handle
- * @param[in]  body  (scalar)
- * @param[in]  r     (scalar)
- * @param[out] alpha (r)
- *
- * Safety: Arrays hold at least the elements of their shape.
- */
-int32_t feti_amplitudes(struct feti_problem *p, int64_t body, int64_t r, double *alpha);
-
-/**
- * Multipliers of the rows of a kind.
- *
- * @param[in]  p      (scalar) handle
- * @param[in]  kind   (scalar)
- * @param[in]  rows   (scalar)
- * @param[out] lambda (rows) force
- *
- * Safety: Arrays hold at least the elements of their shape.
- */
-int32_t feti_multipliers(struct feti_problem *p, int32_t kind, int64_t rows, double *lambda);
-
-/**
- * Open gaps c - B u.
- *
- * @param[in]  p     (scalar) handle
- * @param[in]  rows  (scalar)
- * @param[out] slack (rows) length
- *
- * Safety: Arrays hold at least the elements of their shape.
- */
-int32_t feti_gaps(struct feti_problem *p, int64_t rows, double *slack);
-
-/**
- * State of every row.
- *
- * @param[in]  p     (scalar) handle
- * @param[in]  rows  (scalar)
- * @param[out] state (rows) FETI_ROW_OPEN, FETI_ROW_CLOSED or FETI_ROW_WEAK
- *
- * Safety: Arrays hold at least the elements of their shape.
- */
-int32_t feti_active(struct feti_problem *p, int64_t rows, int32_t *state);
-
-/**
- * Sizes of the problem.
- *
- * @param[in]  p      (scalar) handle
- * @param[out] bodies (scalar) may be NULL
- * @param[out] dofs   (scalar) may be NULL
- * @param[out] rows   (scalar) may be NULL
- * @param[out] eqs    (scalar) may be NULL
- *
- * Safety: Arrays hold at least the elements of their shape.
- */
-int32_t feti_counts(struct feti_problem *p, int64_t *bodies, int64_t *dofs, int64_t *rows, int64_t *eqs);
-
-/**
- * Applies K+ of a body to nrhs columns.
- *
- * @param[in]  p    (scalar) handle
- * @param[in]  body (scalar)
- * @param[in]  n    (scalar)
- * @param[in]  nrhs (scalar)
- * @param[in]  x    (ldx * nrhs) force
+ * @param[in]  p    (scalar) the handle
+ * @param[in]  body (scalar) number of the body, from 0
+ * @param[in]  n    (scalar) unknowns of the body
+ * @param[in]  nrhs (scalar) columns of X and Y
+ * @param[in]  x    (ldx * nrhs) column-major, force
  * @param[in]  ldx  (scalar) >= n
- * @param[out] y    (ldy * nrhs) length
+ * @param[out] y    (ldy * nrhs) column-major, length
  * @param[in]  ldy  (scalar) >= n
  *
- * Safety: Arrays hold at least the elements of their shape.
+ * Safety: The arrays have the given shapes.
  */
 int32_t feti_body_kplus(struct feti_problem *p,
                         int64_t body,
@@ -1134,25 +1161,30 @@ int32_t feti_body_kplus(struct feti_problem *p,
                         int64_t ldy);
 
 /**
- * y = F x; contact rows first, then equalities.
+ * Applies the dual operator, `y = F x` with `F = [B; H] K+ [B; H]'`.
  *
- * @param[in]  p (scalar) handle
- * @param[in]  m (scalar) rows + eqs
+ * Runs feti_setup when it is due. `x` and `y` may be the same array. After a failure nothing is
+ * written.
+ *
+ * @param[in]  p (scalar) the handle
+ * @param[in]  m (scalar) inequality rows + equality rows
  * @param[in]  x (m) force
  * @param[out] y (m) length
  *
- * Safety: Arrays hold at least the elements of their shape.
+ * Safety: The arrays have the given shapes.
  */
 int32_t feti_dual_apply(struct feti_problem *p, int64_t m, const double *x, double *y);
 
 /**
- * d = B K+ f - c; contact rows first, then equalities.
+ * Reads the right-hand side of the dual problem, `d = [B; H] K+ f - [c; h]`.
  *
- * @param[in]  p (scalar) handle
- * @param[in]  m (scalar) rows + eqs
+ * Runs feti_setup when it is due. After a failure nothing is written.
+ *
+ * @param[in]  p (scalar) the handle
+ * @param[in]  m (scalar) inequality rows + equality rows
  * @param[out] d (m) length
  *
- * Safety: Arrays hold at least the elements of their shape.
+ * Safety: The array has the given shape.
  */
 int32_t feti_dual_rhs(struct feti_problem *p, int64_t m, double *d);
 

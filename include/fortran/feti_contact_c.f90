@@ -21,7 +21,7 @@ module feti_contact_c
   integer(c_int32_t), parameter, public :: FETI_STALLED = 4_c_int32_t
   !> The certificate does not pass.
   integer(c_int32_t), parameter, public :: FETI_INACCURATE = 5_c_int32_t
-  !> The answer is usable but incomplete.
+  !> The answer is usable but incomplete: a small part of the load is not held.
   integer(c_int32_t), parameter, public :: FETI_MARGINAL = 6_c_int32_t
   !> Memory could not be reserved, or option memory_limit would be exceeded.
   integer(c_int32_t), parameter, public :: FETI_MEMORY = -1_c_int32_t
@@ -119,7 +119,7 @@ module feti_contact_c
     real(c_double) :: minimum
     !> Largest value of a number or an integer.
     real(c_double) :: maximum
-    !> Default of a number.
+    !> Default of a number or an integer; NaN for a text.
     real(c_double) :: default_f64
     !> Default of an integer.
     integer(c_int64_t) :: default_i64
@@ -256,17 +256,6 @@ module feti_contact_c
   public :: feti_problem_create
   public :: feti_problem_destroy
   public :: feti_problem_error
-  public :: feti_rows_add_i32
-  public :: feti_rows_add_i64
-  public :: feti_rows_rhs
-  public :: feti_rows_clear
-  public :: feti_status_name
-  public :: feti_status_text
-  public :: feti_version
-  public :: feti_version_number
-  public :: feti_setup
-  public :: feti_solve
-  public :: feti_check
   public :: feti_displacement
   public :: feti_reaction
   public :: feti_amplitudes
@@ -274,6 +263,17 @@ module feti_contact_c
   public :: feti_gaps
   public :: feti_active
   public :: feti_counts
+  public :: feti_rows_add_i32
+  public :: feti_rows_add_i64
+  public :: feti_rows_rhs
+  public :: feti_rows_clear
+  public :: feti_setup
+  public :: feti_solve
+  public :: feti_check
+  public :: feti_status_name
+  public :: feti_status_text
+  public :: feti_version
+  public :: feti_version_number
   public :: feti_body_kplus
   public :: feti_dual_apply
   public :: feti_dual_rhs
@@ -314,8 +314,8 @@ module feti_contact_c
     !> @param[in] flags   (scalar) FETI_COPY
     !>
     !> Safety: The arrays have the given shapes.
-    function feti_body_stiffness_i32(p, body, n, row_ptr, col, val, base, storage, flags) bind(C, &
-        name="feti_body_stiffness_i32")
+    function feti_body_stiffness_i32(p, body, n, row_ptr, col, val, base, storage, flags) &
+        bind(C, name="feti_body_stiffness_i32")
       import
       type(c_ptr), value :: p
       integer(c_int64_t), value :: body
@@ -346,8 +346,8 @@ module feti_contact_c
     !> @param[in] flags   (scalar) FETI_COPY
     !>
     !> Safety: The arrays have the given shapes.
-    function feti_body_stiffness_i64(p, body, n, row_ptr, col, val, base, storage, flags) bind(C, &
-        name="feti_body_stiffness_i64")
+    function feti_body_stiffness_i64(p, body, n, row_ptr, col, val, base, storage, flags) &
+        bind(C, name="feti_body_stiffness_i64")
       import
       type(c_ptr), value :: p
       integer(c_int64_t), value :: body
@@ -375,8 +375,8 @@ module feti_contact_c
     !> @param[in] flags   (scalar) FETI_COPY
     !>
     !> Safety: The array has the given shape.
-    function feti_body_stiffness_dense(p, body, n, k, ld, storage, flags) bind(C, &
-        name="feti_body_stiffness_dense")
+    function feti_body_stiffness_dense(p, body, n, k, ld, storage, flags) &
+        bind(C, name="feti_body_stiffness_dense")
       import
       type(c_ptr), value :: p
       integer(c_int64_t), value :: body
@@ -500,8 +500,9 @@ module feti_contact_c
     !> @param[in]     p     (scalar) the handle
     !> @param[in]     body  (scalar) number of the body, from 0
     !> @param[in]     n     (scalar) unknowns of the body
-    !> @param[in,out] r     (scalar) in: columns that fit in `basis`; out: dimension of the null space
-    !> @param[out]    basis (ldr * r) column-major; NULL: only `r` is wanted, and not read
+    !> @param[in,out] r     (scalar) in: columns that fit in `basis`, not read without one; out: dimension of
+    !>                      the null space
+    !> @param[out]    basis (ldr * r) column-major; NULL: only the dimension is wanted
     !> @param[in]     ldr   (scalar) >= n, not looked at without `basis`
     !>
     !> Safety: The arrays have the given shapes.
@@ -713,6 +714,139 @@ module feti_contact_c
       integer(c_int32_t) :: feti_problem_error
     end function feti_problem_error
 
+    !> Reads the displacement of a body.
+    !>
+    !> FETI_STATE before a solve has given an answer. After a failure nothing is written.
+    !>
+    !> @param[in]  p    (scalar) the handle
+    !> @param[in]  body (scalar) number of the body, from 0
+    !> @param[in]  n    (scalar) unknowns of the body
+    !> @param[out] u    (n) displacement, length
+    !>
+    !> Safety: The array has the given shape.
+    function feti_displacement(p, body, n, u) bind(C, name="feti_displacement")
+      import
+      type(c_ptr), value :: p
+      integer(c_int64_t), value :: body
+      integer(c_int64_t), value :: n
+      real(c_double), intent(out) :: u(*)
+      integer(c_int32_t) :: feti_displacement
+    end function feti_displacement
+
+    !> Reads the force of the rows on a body, -B'lambda, -H'mu or both: `K u = f + r`.
+    !>
+    !> FETI_STATE before a solve has given an answer. After a failure nothing is written.
+    !>
+    !> @param[in]  p    (scalar) the handle
+    !> @param[in]  kind (scalar) FETI_INEQUALITY, FETI_EQUALITY, or 0 for both
+    !> @param[in]  body (scalar) number of the body, from 0
+    !> @param[in]  n    (scalar) unknowns of the body
+    !> @param[out] r    (n) force
+    !>
+    !> Safety: The array has the given shape.
+    function feti_reaction(p, kind, body, n, r) bind(C, name="feti_reaction")
+      import
+      type(c_ptr), value :: p
+      integer(c_int32_t), value :: kind
+      integer(c_int64_t), value :: body
+      integer(c_int64_t), value :: n
+      real(c_double), intent(out) :: r(*)
+      integer(c_int32_t) :: feti_reaction
+    end function feti_reaction
+
+    !> Reads the amplitudes alpha of the null space in the displacement of a body, `u = K+ (f + r) + R alpha`.
+    !>
+    !> FETI_STATE before a solve has given an answer. After a failure nothing is written.
+    !>
+    !> @param[in]  p     (scalar) the handle
+    !> @param[in]  body  (scalar) number of the body, from 0
+    !> @param[in]  r     (scalar) dimension of the null space of the body
+    !> @param[out] alpha (r) amplitudes, in the order of the columns of feti_body_null_space_get
+    !>
+    !> Safety: The array has the given shape.
+    function feti_amplitudes(p, body, r, alpha) bind(C, name="feti_amplitudes")
+      import
+      type(c_ptr), value :: p
+      integer(c_int64_t), value :: body
+      integer(c_int64_t), value :: r
+      real(c_double), intent(out) :: alpha(*)
+      integer(c_int32_t) :: feti_amplitudes
+    end function feti_amplitudes
+
+    !> Reads the multipliers: lambda of `B u <= c`, or mu of `H u = h`.
+    !>
+    !> FETI_STATE before a solve has given an answer. After a failure nothing is written.
+    !>
+    !> @param[in]  p      (scalar) the handle
+    !> @param[in]  kind   (scalar) FETI_INEQUALITY or FETI_EQUALITY
+    !> @param[in]  rows   (scalar) number of rows of the kind
+    !> @param[out] lambda (rows) force, >= 0 for inequalities
+    !>
+    !> Safety: The array has the given shape.
+    function feti_multipliers(p, kind, rows, lambda) bind(C, name="feti_multipliers")
+      import
+      type(c_ptr), value :: p
+      integer(c_int32_t), value :: kind
+      integer(c_int64_t), value :: rows
+      real(c_double), intent(out) :: lambda(*)
+      integer(c_int32_t) :: feti_multipliers
+    end function feti_multipliers
+
+    !> Reads what is left of the gaps, c - B u.
+    !>
+    !> FETI_STATE before a solve has given an answer. After a failure nothing is written.
+    !>
+    !> @param[in]  p     (scalar) the handle
+    !> @param[in]  rows  (scalar) number of inequality rows
+    !> @param[out] slack (rows) open gap, length; negative: penetration
+    !>
+    !> Safety: The array has the given shape.
+    function feti_gaps(p, rows, slack) bind(C, name="feti_gaps")
+      import
+      type(c_ptr), value :: p
+      integer(c_int64_t), value :: rows
+      real(c_double), intent(out) :: slack(*)
+      integer(c_int32_t) :: feti_gaps
+    end function feti_gaps
+
+    !> Reads the state of the inequality rows.
+    !>
+    !> FETI_STATE before a solve has given an answer. After a failure nothing is written.
+    !>
+    !> @param[in]  p     (scalar) the handle
+    !> @param[in]  rows  (scalar) number of inequality rows
+    !> @param[out] state (rows) FETI_ROW_OPEN, FETI_ROW_CLOSED or FETI_ROW_WEAK
+    !>
+    !> Safety: The array has the given shape.
+    function feti_active(p, rows, state) bind(C, name="feti_active")
+      import
+      type(c_ptr), value :: p
+      integer(c_int64_t), value :: rows
+      integer(c_int32_t), intent(out) :: state(*)
+      integer(c_int32_t) :: feti_active
+    end function feti_active
+
+    !> Reads the size of the problem as it is given now.
+    !>
+    !> After a failure nothing is written.
+    !>
+    !> @param[in]  p      (scalar) the handle
+    !> @param[out] bodies (scalar) bodies; may be NULL
+    !> @param[out] dofs   (scalar) unknowns of all bodies; may be NULL
+    !> @param[out] rows   (scalar) inequality rows; may be NULL
+    !> @param[out] eqs    (scalar) equality rows; may be NULL
+    !>
+    !> Safety: Every pointer is NULL or has room for one number.
+    function feti_counts(p, bodies, dofs, rows, eqs) bind(C, name="feti_counts")
+      import
+      type(c_ptr), value :: p
+      type(c_ptr), value :: bodies
+      type(c_ptr), value :: dofs
+      type(c_ptr), value :: rows
+      type(c_ptr), value :: eqs
+      integer(c_int32_t) :: feti_counts
+    end function feti_counts
+
     !> Adds rows of `B u <= c` or `H u = h`, with 32-bit indices.
     !>
     !> The rows are copied and numbered behind those of the same kind that are there. A pair of body and
@@ -732,8 +866,8 @@ module feti_contact_c
     !> @param[out] first   (scalar) number of the first row added, from 0; may be NULL
     !>
     !> Safety: The arrays have the given shapes.
-    function feti_rows_add_i32(p, kind, rows, row_ptr, body, dof, val, base, rhs, first) bind(C, &
-        name="feti_rows_add_i32")
+    function feti_rows_add_i32(p, kind, rows, row_ptr, body, dof, val, base, rhs, first) &
+        bind(C, name="feti_rows_add_i32")
       import
       type(c_ptr), value :: p
       integer(c_int32_t), value :: kind
@@ -767,8 +901,8 @@ module feti_contact_c
     !> @param[out] first   (scalar) number of the first row added, from 0; may be NULL
     !>
     !> Safety: The arrays have the given shapes.
-    function feti_rows_add_i64(p, kind, rows, row_ptr, body, dof, val, base, rhs, first) bind(C, &
-        name="feti_rows_add_i64")
+    function feti_rows_add_i64(p, kind, rows, row_ptr, body, dof, val, base, rhs, first) &
+        bind(C, name="feti_rows_add_i64")
       import
       type(c_ptr), value :: p
       integer(c_int32_t), value :: kind
@@ -817,6 +951,63 @@ module feti_contact_c
       integer(c_int32_t) :: feti_rows_clear
     end function feti_rows_clear
 
+    !> Prepares the solve: null spaces, factors of the bodies, the dual operator.
+    !>
+    !> feti_solve does it when it is due; called alone it shows errors in the bodies early. After a failure
+    !> all that was given is kept and can be corrected.
+    !>
+    !> @param[in] p (scalar) the handle
+    function feti_setup(p) bind(C, name="feti_setup")
+      import
+      type(c_ptr), value :: p
+      integer(c_int32_t) :: feti_setup
+    end function feti_setup
+
+    !> Minimises 1/2 u'Ku - f'u subject to `B u <= c` and `H u = h`.
+    !>
+    !> The answer is kept until the next solve and read with feti_displacement, feti_multipliers and the like;
+    !> there is one when the status is not negative. `info` is written in any case, with NaN for figures that
+    !> a failure left unknown. After a failure all that was given is kept and can be corrected, except after
+    !> FETI_INTERNAL.
+    !>
+    !> @param[in]     p    (scalar) the handle
+    !> @param[in,out] info (scalar) `struct_size` set, at least 16; may be NULL
+    !>
+    !> Safety: `info` is NULL or leads to `struct_size` writable bytes.
+    function feti_solve(p, info) bind(C, name="feti_solve")
+      import
+      type(c_ptr), value :: p
+      type(c_ptr), value :: info
+      integer(c_int32_t) :: feti_solve
+    end function feti_solve
+
+    !> Verifies an answer against the problem as it is given now: any answer, also another code's.
+    !>
+    !> Keeps nothing: the answer of the last solve stays. After a failure nothing is written.
+    !>
+    !> @param[in]     p      (scalar) the handle
+    !> @param[in]     n      (scalar) unknowns of all bodies
+    !> @param[in]     u      (n) displacement, body after body, length
+    !> @param[in]     rows   (scalar) number of inequality rows
+    !> @param[in]     lambda (rows) multipliers of `B u <= c`, force
+    !> @param[in]     eqs    (scalar) number of equality rows
+    !> @param[in]     mu     (eqs) multipliers of `H u = h`, force
+    !> @param[in,out] out    (scalar) `struct_size` set, at least 16
+    !>
+    !> Safety: The arrays have the given shapes, `out` leads to `struct_size` writable bytes.
+    function feti_check(p, n, u, rows, lambda, eqs, mu, out) bind(C, name="feti_check")
+      import
+      type(c_ptr), value :: p
+      integer(c_int64_t), value :: n
+      real(c_double), intent(in) :: u(*)
+      integer(c_int64_t), value :: rows
+      real(c_double), intent(in) :: lambda(*)
+      integer(c_int64_t), value :: eqs
+      real(c_double), intent(in) :: mu(*)
+      type(feti_certificate), intent(inout) :: out
+      integer(c_int32_t) :: feti_check
+    end function feti_check
+
     !> Name of a status, such as "FETI_LOAD_NOT_HELD".
     !>
     !> "FETI_ARGUMENT" for every refused argument, "FETI_UNKNOWN" for a number that is no status. The text is
@@ -856,186 +1047,20 @@ module feti_contact_c
       integer(c_int32_t) :: feti_version_number
     end function feti_version_number
 
-    !> Null spaces, factors and F; optional.
+    !> Applies the generalised inverse of a body, `Y = K+ X`.
     !>
-    !> @param[in] p (scalar) handle
+    !> Runs feti_setup when it is due. X and Y may be the same array. After a failure nothing is written.
     !>
-    !> Safety: Arrays hold at least the elements of their shape.
-    function feti_setup(p) bind(C, name="feti_setup")
-      import
-      type(c_ptr), value :: p
-      integer(c_int32_t) :: feti_setup
-    end function feti_setup
-
-    !> Solves the contact problem.
-    !>
-    !> @param[in]     p    (scalar) handle
-    !> @param[in,out] info (scalar) may be NULL; struct_size set by the caller
-    !>
-    !> Safety: Arrays hold at least the elements of their shape.
-    function feti_solve(p, info) bind(C, name="feti_solve")
-      import
-      type(c_ptr), value :: p
-      type(c_ptr), value :: info
-      integer(c_int32_t) :: feti_solve
-    end function feti_solve
-
-    !> Verifies any answer, also another code's.
-    !>
-    !> @param[in]     p      (scalar) handle
-    !> @param[in]     n      (scalar) all dofs
-    !> @param[in]     u      (n) length
-    !> @param[in]     rows   (scalar)
-    !> @param[in]     lambda (rows) force; may be NULL when rows = 0
-    !> @param[in]     eqs    (scalar)
-    !> @param[in]     mu     (eqs) force; may be NULL when eqs = 0
-    !> @param[in,out] out    (scalar) struct_size set by the caller
-    !>
-    !> Safety: Arrays hold at least the elements of their shape.
-    function feti_check(p, n, u, rows, lambda, eqs, mu, out) bind(C, name="feti_check")
-      import
-      type(c_ptr), value :: p
-      integer(c_int64_t), value :: n
-      real(c_double), intent(in) :: u(*)
-      integer(c_int64_t), value :: rows
-      type(c_ptr), value :: lambda
-      integer(c_int64_t), value :: eqs
-      type(c_ptr), value :: mu
-      type(feti_certificate), intent(inout) :: out
-      integer(c_int32_t) :: feti_check
-    end function feti_check
-
-    !> Displacement of a body.
-    !>
-    !> @param[in]  p    (scalar) handle
-    !> @param[in]  body (scalar)
-    !> @param[in]  n    (scalar)
-    !> @param[out] u    (n) length
-    !>
-    !> Safety: Arrays hold at least the elements of their shape.
-    function feti_displacement(p, body, n, u) bind(C, name="feti_displacement")
-      import
-      type(c_ptr), value :: p
-      integer(c_int64_t), value :: body
-      integer(c_int64_t), value :: n
-      real(c_double), intent(out) :: u(*)
-      integer(c_int32_t) :: feti_displacement
-    end function feti_displacement
-
-    !> Force of the rows on a body, -B'lambda or -H'mu.
-    !>
-    !> @param[in]  p        (scalar) handle
-    !> @param[in]  kind     (scalar) 0: both
-    !> @param[in]  body     (scalar)
-    !> @param[in]  n        (scalar)
-    !> @param[out] reaction (n) force
-    !>
-    !> Safety: Arrays hold at least the elements of their shape.
-    function feti_reaction(p, kind, body, n, reaction) bind(C, name="feti_reaction")
-      import
-      type(c_ptr), value :: p
-      integer(c_int32_t), value :: kind
-      integer(c_int64_t), value :: body
-      integer(c_int64_t), value :: n
-      real(c_double), intent(out) :: reaction(*)
-      integer(c_int32_t) :: feti_reaction
-    end function feti_reaction
-
-    !> Amplitudes of the null-space columns.
-    !>
-    !> @param[in]  p     (scalar) handle
-    !> @param[in]  body  (scalar)
-    !> @param[in]  r     (scalar)
-    !> @param[out] alpha (r)
-    !>
-    !> Safety: Arrays hold at least the elements of their shape.
-    function feti_amplitudes(p, body, r, alpha) bind(C, name="feti_amplitudes")
-      import
-      type(c_ptr), value :: p
-      integer(c_int64_t), value :: body
-      integer(c_int64_t), value :: r
-      real(c_double), intent(out) :: alpha(*)
-      integer(c_int32_t) :: feti_amplitudes
-    end function feti_amplitudes
-
-    !> Multipliers of the rows of a kind.
-    !>
-    !> @param[in]  p      (scalar) handle
-    !> @param[in]  kind   (scalar)
-    !> @param[in]  rows   (scalar)
-    !> @param[out] lambda (rows) force
-    !>
-    !> Safety: Arrays hold at least the elements of their shape.
-    function feti_multipliers(p, kind, rows, lambda) bind(C, name="feti_multipliers")
-      import
-      type(c_ptr), value :: p
-      integer(c_int32_t), value :: kind
-      integer(c_int64_t), value :: rows
-      real(c_double), intent(out) :: lambda(*)
-      integer(c_int32_t) :: feti_multipliers
-    end function feti_multipliers
-
-    !> Open gaps c - B u.
-    !>
-    !> @param[in]  p     (scalar) handle
-    !> @param[in]  rows  (scalar)
-    !> @param[out] slack (rows) length
-    !>
-    !> Safety: Arrays hold at least the elements of their shape.
-    function feti_gaps(p, rows, slack) bind(C, name="feti_gaps")
-      import
-      type(c_ptr), value :: p
-      integer(c_int64_t), value :: rows
-      real(c_double), intent(out) :: slack(*)
-      integer(c_int32_t) :: feti_gaps
-    end function feti_gaps
-
-    !> State of every row.
-    !>
-    !> @param[in]  p     (scalar) handle
-    !> @param[in]  rows  (scalar)
-    !> @param[out] state (rows) FETI_ROW_OPEN, FETI_ROW_CLOSED or FETI_ROW_WEAK
-    !>
-    !> Safety: Arrays hold at least the elements of their shape.
-    function feti_active(p, rows, state) bind(C, name="feti_active")
-      import
-      type(c_ptr), value :: p
-      integer(c_int64_t), value :: rows
-      integer(c_int32_t), intent(out) :: state(*)
-      integer(c_int32_t) :: feti_active
-    end function feti_active
-
-    !> Sizes of the problem.
-    !>
-    !> @param[in]  p      (scalar) handle
-    !> @param[out] bodies (scalar) may be NULL
-    !> @param[out] dofs   (scalar) may be NULL
-    !> @param[out] rows   (scalar) may be NULL
-    !> @param[out] eqs    (scalar) may be NULL
-    !>
-    !> Safety: Arrays hold at least the elements of their shape.
-    function feti_counts(p, bodies, dofs, rows, eqs) bind(C, name="feti_counts")
-      import
-      type(c_ptr), value :: p
-      type(c_ptr), value :: bodies
-      type(c_ptr), value :: dofs
-      type(c_ptr), value :: rows
-      type(c_ptr), value :: eqs
-      integer(c_int32_t) :: feti_counts
-    end function feti_counts
-
-    !> Applies K+ of a body to nrhs columns.
-    !>
-    !> @param[in]  p    (scalar) handle
-    !> @param[in]  body (scalar)
-    !> @param[in]  n    (scalar)
-    !> @param[in]  nrhs (scalar)
-    !> @param[in]  x    (ldx * nrhs) force
+    !> @param[in]  p    (scalar) the handle
+    !> @param[in]  body (scalar) number of the body, from 0
+    !> @param[in]  n    (scalar) unknowns of the body
+    !> @param[in]  nrhs (scalar) columns of X and Y
+    !> @param[in]  x    (ldx * nrhs) column-major, force
     !> @param[in]  ldx  (scalar) >= n
-    !> @param[out] y    (ldy * nrhs) length
+    !> @param[out] y    (ldy * nrhs) column-major, length
     !> @param[in]  ldy  (scalar) >= n
     !>
-    !> Safety: Arrays hold at least the elements of their shape.
+    !> Safety: The arrays have the given shapes.
     function feti_body_kplus(p, body, n, nrhs, x, ldx, y, ldy) bind(C, name="feti_body_kplus")
       import
       type(c_ptr), value :: p
@@ -1049,14 +1074,16 @@ module feti_contact_c
       integer(c_int32_t) :: feti_body_kplus
     end function feti_body_kplus
 
-    !> y = F x; contact rows first, then equalities.
+    !> Applies the dual operator, `y = F x` with `F = [B; H] K+ [B; H]'`.
     !>
-    !> @param[in]  p (scalar) handle
-    !> @param[in]  m (scalar) rows + eqs
+    !> Runs feti_setup when it is due. `x` and `y` may be the same array. After a failure nothing is written.
+    !>
+    !> @param[in]  p (scalar) the handle
+    !> @param[in]  m (scalar) inequality rows + equality rows
     !> @param[in]  x (m) force
     !> @param[out] y (m) length
     !>
-    !> Safety: Arrays hold at least the elements of their shape.
+    !> Safety: The arrays have the given shapes.
     function feti_dual_apply(p, m, x, y) bind(C, name="feti_dual_apply")
       import
       type(c_ptr), value :: p
@@ -1066,13 +1093,15 @@ module feti_contact_c
       integer(c_int32_t) :: feti_dual_apply
     end function feti_dual_apply
 
-    !> d = B K+ f - c; contact rows first, then equalities.
+    !> Reads the right-hand side of the dual problem, `d = [B; H] K+ f - [c; h]`.
     !>
-    !> @param[in]  p (scalar) handle
-    !> @param[in]  m (scalar) rows + eqs
+    !> Runs feti_setup when it is due. After a failure nothing is written.
+    !>
+    !> @param[in]  p (scalar) the handle
+    !> @param[in]  m (scalar) inequality rows + equality rows
     !> @param[out] d (m) length
     !>
-    !> Safety: Arrays hold at least the elements of their shape.
+    !> Safety: The array has the given shape.
     function feti_dual_rhs(p, m, d) bind(C, name="feti_dual_rhs")
       import
       type(c_ptr), value :: p

@@ -11,9 +11,8 @@ pub fn fixing_dofs(null_space: &Matrix, root: &[f64]) -> Vec<usize> {
     let square = |column: &[f64]| column.iter().map(|v| v * v).sum::<f64>();
     let mut chosen = Vec::with_capacity(r);
     for _ in 0..r {
-        let best = (0..n).fold(0, |best, i| {
-            if square(&columns[i]) > square(&columns[best]) { i } else { best }
-        });
+        let best =
+            (0..n).fold(0, |best, i| if square(&columns[i]) > square(&columns[best]) { i } else { best });
         let length = square(&columns[best]).sqrt();
         let unit: Vec<f64> = columns[best].iter().map(|v| v / length).collect();
         for column in &mut columns {

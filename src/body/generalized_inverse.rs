@@ -69,8 +69,14 @@ impl Plan {
     pub fn execute(self) -> Result<GeneralizedInverse> {
         let factor = self.analysis.factorize(&self.k)?.map_err(|breakdown| {
             if breakdown.relative_pivot < -NEGATIVE_PIVOT {
-                let what = format!("the stiffness matrix is indefinite: pivot {:.1e} K_ii", breakdown.relative_pivot);
-                Error::new(Kind::Indefinite, what).dof(breakdown.dof).value(breakdown.relative_pivot).limit(0.0)
+                let what = format!(
+                    "the stiffness matrix is indefinite: pivot {:.1e} K_ii",
+                    breakdown.relative_pivot
+                );
+                Error::new(Kind::Indefinite, what)
+                    .dof(breakdown.dof)
+                    .value(breakdown.relative_pivot)
+                    .limit(0.0)
             } else {
                 missing_mode(breakdown.dof, breakdown.relative_pivot, self.null_space.cols)
             }
@@ -99,7 +105,8 @@ impl GeneralizedInverse {
         k.mul_abs(&x, &mut terms);
         image.iter_mut().zip(&b).for_each(|(i, b)| *i -= b);
         free(&mut image);
-        let residual = weighted_norm(&image, weight) / (weighted_norm(&terms, weight) + weighted_norm(&b, weight));
+        let residual =
+            weighted_norm(&image, weight) / (weighted_norm(&terms, weight) + weighted_norm(&b, weight));
         if residual.is_nan() || residual > PROBE {
             let what = format!("the factorisation failed its probe: residual {residual:.1e}");
             return Err(Error::new(Kind::Internal, what).value(residual).limit(PROBE));
@@ -193,7 +200,8 @@ mod tests {
         let mut k = grids(6, 1);
         let last = k.ptr[15] - 1;
         k.val[last] = 0.5;
-        let none = NullSpaceInput { vectors: Matrix { rows: 36, cols: 0, data: vec![] }, modes: Modes::Exact };
+        let none =
+            NullSpaceInput { vectors: Matrix { rows: 36, cols: 0, data: vec![] }, modes: Modes::Exact };
         let error = GeneralizedInverse::plan(k, &none, 1e-8).unwrap().execute().err().unwrap();
         assert_eq!(error.kind, Kind::Indefinite);
         assert!(error.place.dof.is_some() && error.place.value.unwrap() < 0.0);

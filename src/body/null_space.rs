@@ -114,7 +114,11 @@ fn kernel_within(k: &Symmetric, candidates: &Matrix) -> Result<Matrix> {
 pub fn largest(x: &[f64], weight: impl Fn(usize) -> f64) -> usize {
     (0..x.len()).fold(0, |best, i| {
         let size = |i: usize| weight(i) * x[i] * x[i];
-        if size(i) > size(best) { i } else { best }
+        if size(i) > size(best) {
+            i
+        } else {
+            best
+        }
     })
 }
 
@@ -170,7 +174,8 @@ mod tests {
     #[test]
     fn dependent_vectors_are_refused() {
         let vectors = Matrix { rows: 5, cols: 2, data: [vec![1.0; 5], vec![2.0; 5]].concat() };
-        let error = verified(&chain(5, 0.0), &NullSpaceInput { vectors, modes: Modes::Exact }, 1e-8).unwrap_err();
+        let error =
+            verified(&chain(5, 0.0), &NullSpaceInput { vectors, modes: Modes::Exact }, 1e-8).unwrap_err();
         assert_eq!((error.kind, error.place.value), (Kind::NullSpace, Some(1.0)));
     }
 }

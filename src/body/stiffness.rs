@@ -29,11 +29,19 @@ pub fn from_sparse(input: SparseInput<'_>, tolerance: f64) -> Result<Symmetric> 
     let rows = sorted(input)?;
     match input.storage {
         Storage::Lower => {
-            check_triangle(&rows, |row, col| col <= row, "above the diagonal, in a matrix announced as lower")?;
+            check_triangle(
+                &rows,
+                |row, col| col <= row,
+                "above the diagonal, in a matrix announced as lower",
+            )?;
             symmetric(rows)
         }
         Storage::Upper => {
-            check_triangle(&rows, |row, col| col >= row, "below the diagonal, in a matrix announced as upper")?;
+            check_triangle(
+                &rows,
+                |row, col| col >= row,
+                "below the diagonal, in a matrix announced as upper",
+            )?;
             symmetric(rows.transposed()?)
         }
         Storage::Full => symmetric(averaged(&rows, tolerance)?),
@@ -52,7 +60,9 @@ pub fn from_dense(n: usize, k: &[f64], ld: usize, storage: Storage, tolerance: f
         for j in range.clone() {
             let value = k[i + ld * j];
             if !value.is_finite() {
-                return Err(Error::argument("k", "the entry is not a finite number").row(i).entry(i + ld * j));
+                return Err(Error::argument("k", "the entry is not a finite number")
+                    .row(i)
+                    .entry(i + ld * j));
             }
         }
         let kept = range.map(|j| (j, k[i + ld * j])).filter(|&(j, v)| v != 0.0 || i == j);
@@ -184,7 +194,8 @@ fn symmetric(lower: Csr) -> Result<Symmetric> {
         let lost = k.lower_row(i).find(|&(j, v)| coupled(i, j, v) && k.diagonal(i).min(k.diagonal(j)) <= 0.0);
         let dof = lost.map_or(i, |(j, _)| if k.diagonal(i) <= 0.0 { i } else { j });
         if lost.is_some() || k.diagonal(i) < 0.0 {
-            let what = format!("the diagonal entry is {:.3e}: the stiffness matrix is indefinite", k.diagonal(dof));
+            let what =
+                format!("the diagonal entry is {:.3e}: the stiffness matrix is indefinite", k.diagonal(dof));
             return Err(Error::new(Kind::Indefinite, what).dof(dof).value(k.diagonal(dof)).limit(0.0));
         }
     }
@@ -205,9 +216,11 @@ mod tests {
     fn the_three_storages_give_the_same_matrix() {
         let expected = Symmetric { ptr: vec![0, 1, 3], col: vec![0, 0, 1], val: vec![2.0, -1.0, 3.0] };
         assert_eq!(full(&[-1.0, 2.0, -1.0, 3.0]).unwrap(), expected);
-        let lower = SparseInput { ptr: &[0, 1, 3], col: &[0, 1, 0], val: &[2.0, 3.0, -1.0], storage: Storage::Lower };
+        let lower =
+            SparseInput { ptr: &[0, 1, 3], col: &[0, 1, 0], val: &[2.0, 3.0, -1.0], storage: Storage::Lower };
         assert_eq!(from_sparse(lower, 0.0).unwrap(), expected);
-        let upper = SparseInput { ptr: &[0, 2, 3], col: &[1, 0, 1], val: &[-1.0, 2.0, 3.0], storage: Storage::Upper };
+        let upper =
+            SparseInput { ptr: &[0, 2, 3], col: &[1, 0, 1], val: &[-1.0, 2.0, 3.0], storage: Storage::Upper };
         assert_eq!(from_sparse(upper, 0.0).unwrap(), expected);
         for storage in [Storage::Full, Storage::Lower, Storage::Upper] {
             let dense = from_dense(2, &[2.0, -1.0, 9.0, -1.0, 3.0], 3, storage, 0.0).unwrap();

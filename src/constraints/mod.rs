@@ -174,7 +174,10 @@ mod tests {
     fn a_refused_row_leaves_nothing_behind() {
         let mut rows = RowSet::default();
         let error = rows.add(input(Some(&[0, 1, 2]), &[0, 0, 0], &[1.0; 3]), &[0, 3, 6]).unwrap_err();
-        assert_eq!((error.kind, error.place.row, error.place.entry), (Kind::Argument("body"), Some(0), Some(2)));
+        assert_eq!(
+            (error.kind, error.place.row, error.place.entry),
+            (Kind::Argument("body"), Some(0), Some(2))
+        );
         let error = rows.add(input(Some(&[0, 1, 1]), &[0, 3, 0], &[1.0; 3]), &[0, 3, 6]).unwrap_err();
         assert_eq!((error.kind, error.place.entry), (Kind::Argument("dof"), Some(1)));
         assert_eq!(rows.len(), 0);

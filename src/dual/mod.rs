@@ -13,6 +13,7 @@ use std::sync::Arc;
 use crate::body::GeneralizedInverse;
 use crate::error::Result;
 use crate::linalg::memory::zeros;
+use crate::linalg::vector::{dot, norm_max};
 use crate::linalg::{Csr, Operator, Packed};
 
 /// One body as the dual sees it.
@@ -55,7 +56,14 @@ impl Dual {
         for ((part, (rows, matrix)), operator) in parts.into_iter().zip(local).zip(operators) {
             let modes = first..first + part.kplus.null_space.cols;
             first = modes.end;
-            subdomains.push(Subdomain { range: part.range, modes, kplus: part.kplus, rows, matrix, operator });
+            subdomains.push(Subdomain {
+                range: part.range,
+                modes,
+                kplus: part.kplus,
+                rows,
+                matrix,
+                operator,
+            });
         }
         let coarse = coarse(&subdomains, matrix.rows(), first);
         Ok(Self { subdomains, rows: matrix.rows(), coarse })
@@ -92,9 +100,9 @@ impl Dual {
         let mut e = vec![0.0; self.modes()];
         for s in &self.subdomains {
             for (k, mode) in s.modes.clone().enumerate() {
-                let terms = || s.kplus.null_space.col(k).iter().zip(&f[s.range.clone()]).map(|(r, f)| r * f);
-                let (sum, size): (f64, f64) = (terms().sum(), terms().map(f64::abs).sum());
-                e[mode] = if sum.abs() <= 64.0 * f64::EPSILON * size { 0.0 } else { sum };
+                let (motion, f) = (s.kplus.null_space.col(k), &f[s.range.clone()]);
+                let size = norm_max(motion) * f.iter().map(|f| f.abs()).sum::<f64>();
+                e[mode] = Some(dot(motion, f)).filter(|e| e.abs() > ROUNDING * size).unwrap_or(0.0);
             }
         }
         e
@@ -125,7 +133,8 @@ impl Dual {
 }
 
 /// Runs tasks 0..count and collects their results in order, or the first error in order.
-pub type InParallel<'a> = dyn Fn(usize, &(dyn Fn(usize) -> Result<Packed> + Sync)) -> Result<Vec<Packed>> + 'a;
+pub type InParallel<'a> =
+    dyn Fn(usize, &(dyn Fn(usize) -> Result<Packed> + Sync)) -> Result<Vec<Packed>> + 'a;
 
 impl Operator for Dual {
     fn order(&self) -> usize {
@@ -165,16 +174,27 @@ fn split(parts: &[Part], matrix: &Csr) -> Vec<(Vec<usize>, Csr)> {
     parts.iter().map(|part| cut(&part.range)).collect()
 }
 
-/// `G' = B R`, m x r.
+/// `G' = B R`, m x r; entries that are nothing but rounding are left out.
 fn coarse(subdomains: &[Subdomain], m: usize, modes: usize) -> Csr {
     let mut rows: Vec<Vec<(usize, f64)>> = vec![Vec::new(); m];
     for s in subdomains {
-        for (k, &i) in s.rows.iter().enumerate() {
-            let entries = s.modes.clone().enumerate().map(|(j, mode)| (mode, s.matrix.row_dot(k, s.kplus.null_space.col(j))));
-            rows[i].extend(entries.filter(|entry| entry.1 != 0.0));
+        for (j, mode) in s.modes.clone().enumerate() {
+            let motion = s.kplus.null_space.col(j);
+            let fastest = norm_max(motion);
+            for (k, &i) in s.rows.iter().enumerate() {
+                let entry = s.matrix.row_dot(k, motion);
+                let size = fastest * s.matrix.row(k).map(|(_, v)| v.abs()).sum::<f64>();
+                if entry.abs() > ROUNDING * size {
+                    rows[i].push((mode, entry));
+                }
+            }
         }
     }
     let mut coarse = Csr::empty(modes);
     rows.into_iter().for_each(|row| coarse.push_row(row));
     coarse
 }
+
+/// A product with a rigid motion is nothing but rounding when it is this small against the product of the
+/// sizes: the motion itself is known to rounding of its fastest dof only.
+const ROUNDING: f64 = 64.0 * f64::EPSILON;

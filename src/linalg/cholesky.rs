@@ -10,8 +10,8 @@ use faer::sparse::linalg::cholesky::simplicial::{
 };
 use faer::sparse::linalg::cholesky::supernodal::{
     factorize_supernodal_numeric_llt, factorize_supernodal_numeric_llt_scratch,
-    factorize_supernodal_symbolic_cholesky, factorize_supernodal_symbolic_cholesky_scratch,
-    SupernodalLltRef, SymbolicSupernodalCholesky,
+    factorize_supernodal_symbolic_cholesky, factorize_supernodal_symbolic_cholesky_scratch, SupernodalLltRef,
+    SymbolicSupernodalCholesky,
 };
 use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
 use faer::{Conj, MatMut, Par, Spec};
@@ -76,7 +76,10 @@ impl Analysis {
     }
 
     /// L of a matrix with the pattern that was analysed; `Ok(Err(_))` where it is not positive definite.
-    pub fn factorize(self: &Arc<Self>, matrix: &Symmetric) -> Result<std::result::Result<Cholesky, Breakdown>> {
+    pub fn factorize(
+        self: &Arc<Self>,
+        matrix: &Symmetric,
+    ) -> Result<std::result::Result<Cholesky, Breakdown>> {
         let mut values = zeros(self.symbolic.len_val(), "a Cholesky factor")?;
         let mut workspace = workspace(self.scratch())?;
         let n = self.order.len();
@@ -113,7 +116,11 @@ impl Analysis {
             Ok(factor) => {
                 factor.solve(&mut x)?;
                 let explained: f64 = (0..x.len()).map(|i| x[i] * column[i]).sum();
-                if diagonal > 0.0 { (diagonal - explained) / diagonal } else { 0.0 }
+                if diagonal > 0.0 {
+                    (diagonal - explained) / diagonal
+                } else {
+                    0.0
+                }
             }
             Err(earlier) => return Ok(earlier),
         };
@@ -180,7 +187,11 @@ fn permuted(matrix: &Symmetric, n: usize, position: &[usize], triangle: Triangle
         (0..matrix.order()).filter(|&i| position[i] != NONE).flat_map(move |i| {
             matrix.lower_row(i).filter(|&(j, _)| position[j] != NONE).map(move |(j, v)| {
                 let (low, high) = (position[i].min(position[j]), position[i].max(position[j]));
-                if triangle == Triangle::Lower { (high, low, v) } else { (low, high, v) }
+                if triangle == Triangle::Lower {
+                    (high, low, v)
+                } else {
+                    (low, high, v)
+                }
             })
         })
     };

@@ -29,6 +29,5 @@ pub fn available(bytes: usize, what: &str) -> Result<()> {
 }
 
 pub fn refusal(bytes: usize, what: &str) -> Error {
-    Error::new(Kind::Memory, format!("{bytes} bytes for {what} could not be reserved"))
-        .value(bytes as f64)
+    Error::new(Kind::Memory, format!("{bytes} bytes for {what} could not be reserved")).value(bytes as f64)
 }

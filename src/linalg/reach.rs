@@ -37,7 +37,8 @@ pub fn inverse_form(cholesky: &Cholesky, rows: &Csr) -> Result<Packed> {
         let node = factor.supernode(s);
         let front_rows = || (begin..end).chain(node.pattern().iter().copied());
         front_rows().enumerate().for_each(|(at, row)| local[row] = at);
-        let mut front = assemble(&local, &columns, std::mem::take(&mut own[s]), updates, front_rows().count());
+        let mut front =
+            assemble(&local, &columns, std::mem::take(&mut own[s]), updates, front_rows().count());
         let width = end - begin;
         let (top, bottom) = node.val().split_at_row(width);
         let (mut y, mut rest) = front.as_mut().split_at_row_mut(width);

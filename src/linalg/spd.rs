@@ -1,7 +1,7 @@
 //! Dense symmetric positive semidefinite systems of the coarse space: W = G_F G_F', r x r.
 
 use faer::linalg::solvers::{Llt, SelfAdjointEigen, Solve};
-use faer::{Mat, MatRef, Side};
+use faer::{Mat, MatMut, MatRef, Side};
 
 use crate::error::{Error, Kind, Result};
 use crate::linalg::Matrix;
@@ -9,63 +9,73 @@ use crate::linalg::Matrix;
 /// Relative size of a pivot or an eigenvalue below which the matrix counts as singular.
 const RANK_TOLERANCE: f64 = 1e-11;
 
-/// Solves `W x = b`: Cholesky where W is safely regular, else the minimum-norm solution.
-pub enum SpdSolver {
+/// Solves `W x = b`: Cholesky where W is safely regular, else the solution of minimum norm. Both act on
+/// `D^-1/2 W D^-1/2` with D = `scale`, so that modes of stiff and of soft bodies count alike.
+pub struct SpdSolver {
+    /// `D^-1/2`
+    inverse_root: Vec<f64>,
+    factor: Factor,
+}
+
+enum Factor {
     Cholesky(Llt<f64>),
     /// Columns `v / sqrt(eigenvalue)` of the eigenvectors kept: `W+ = T T'`.
     Pseudo(Matrix),
 }
 
 impl SpdSolver {
-    /// `scale[i]` is the diagonal entry that W_ii is small or large against (that of the whole W).
+    /// `scale[i]` > 0 is what W_ii is large or small against.
     pub fn new(w: &Matrix, scale: &[f64]) -> Result<Self> {
-        let view = MatRef::from_column_major_slice(&w.data, w.rows, w.cols);
-        if let Ok(llt) = Llt::new(view, Side::Lower) {
-            let l = llt.L();
-            if (0..w.rows).all(|i| l[(i, i)] * l[(i, i)] > RANK_TOLERANCE * scale[i]) {
-                return Ok(Self::Cholesky(llt));
-            }
-        }
-        let largest = scale.iter().copied().fold(0.0, f64::max);
-        Self::pseudo(view, RANK_TOLERANCE * largest)
-    }
-
-    fn pseudo(w: MatRef<'_, f64>, cut: f64) -> Result<Self> {
-        let eigen = SelfAdjointEigen::new(w, Side::Lower)
-            .map_err(|_| Error::new(Kind::Internal, "the eigenvalues of a coarse matrix did not converge"))?;
-        let mut kept = Matrix { rows: w.nrows(), ..Matrix::default() };
-        for j in 0..w.ncols() {
-            let value = eigen.S()[j];
-            if value > cut {
-                let column: Vec<f64> = (0..w.nrows()).map(|i| eigen.U()[(i, j)] / value.sqrt()).collect();
-                kept.push_col(&column);
-            }
-        }
-        Ok(Self::Pseudo(kept))
+        let inverse_root: Vec<f64> = scale.iter().map(|s| s.sqrt().recip()).collect();
+        let scaled = Mat::from_fn(w.rows, w.cols, |i, j| inverse_root[i] * w.get(i, j) * inverse_root[j]);
+        let factor = match Llt::new(scaled.as_ref(), Side::Lower) {
+            Ok(llt) if regular(&llt) => Factor::Cholesky(llt),
+            _ => Factor::Pseudo(kept_eigenvectors(&scaled)?),
+        };
+        Ok(Self { inverse_root, factor })
     }
 
     /// Dimension of the kernel that was cut off.
     pub fn deficiency(&self) -> usize {
-        match self {
-            Self::Cholesky(_) => 0,
-            Self::Pseudo(kept) => kept.rows - kept.cols,
+        match &self.factor {
+            Factor::Cholesky(_) => 0,
+            Factor::Pseudo(kept) => kept.rows - kept.cols,
         }
     }
 
     pub fn solve(&self, b: &[f64]) -> Vec<f64> {
-        match self {
-            Self::Cholesky(llt) => {
-                let mut x = Mat::from_fn(b.len(), 1, |i, _| b[i]);
-                llt.solve_in_place(x.as_mut());
-                (0..b.len()).map(|i| x[(i, 0)]).collect()
+        let scaled =
+            |x: &[f64]| -> Vec<f64> { x.iter().zip(&self.inverse_root).map(|(x, d)| x * d).collect() };
+        let b = scaled(b);
+        let mut x = vec![0.0; b.len()];
+        match &self.factor {
+            Factor::Cholesky(llt) => {
+                x.copy_from_slice(&b);
+                llt.solve_in_place(MatMut::from_column_major_slice_mut(&mut x, b.len(), 1));
             }
-            Self::Pseudo(kept) => {
-                let mut x = vec![0.0; b.len()];
-                kept.mul_add(1.0, &kept.mul_transposed(b), &mut x);
-                x
-            }
+            Factor::Pseudo(kept) => kept.mul_add(1.0, &kept.mul_transposed(&b), &mut x),
+        }
+        scaled(&x)
+    }
+}
+
+fn regular(llt: &Llt<f64>) -> bool {
+    let l = llt.L();
+    (0..l.nrows()).all(|i| l[(i, i)] * l[(i, i)] > RANK_TOLERANCE)
+}
+
+fn kept_eigenvectors(w: &Mat<f64>) -> Result<Matrix> {
+    let eigen = SelfAdjointEigen::new(w.as_ref(), Side::Lower)
+        .map_err(|_| Error::new(Kind::Internal, "the eigenvalues of a coarse matrix did not converge"))?;
+    let mut kept = Matrix { rows: w.nrows(), ..Matrix::default() };
+    for j in 0..w.ncols() {
+        let value = eigen.S()[j];
+        if value > RANK_TOLERANCE {
+            let column: Vec<f64> = (0..w.nrows()).map(|i| eigen.U()[(i, j)] / value.sqrt()).collect();
+            kept.push_col(&column);
         }
     }
+    Ok(kept)
 }
 
 /// Singular values of `a` (rows >= cols), descending, with the right singular vectors as columns.

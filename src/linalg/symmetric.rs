@@ -30,7 +30,11 @@ impl Symmetric {
     /// `D_ii` of the metric in which all of K is measured: `K_ii`, or `without` for a dof that has no stiffness.
     pub fn metric(&self, i: usize, without: f64) -> f64 {
         let diagonal = self.diagonal(i);
-        if diagonal > 0.0 { diagonal } else { without }
+        if diagonal > 0.0 {
+            diagonal
+        } else {
+            without
+        }
     }
 
     /// `a K`
@@ -80,11 +84,7 @@ mod tests {
 
     /// [[2, -1, 0], [-1, 2, -1], [0, -1, 1]]
     fn chain() -> Symmetric {
-        Symmetric {
-            ptr: vec![0, 1, 3, 5],
-            col: vec![0, 0, 1, 1, 2],
-            val: vec![2.0, -1.0, 2.0, -1.0, 1.0],
-        }
+        Symmetric { ptr: vec![0, 1, 3, 5], col: vec![0, 0, 1, 1, 2], val: vec![2.0, -1.0, 2.0, -1.0, 1.0] }
     }
 
     #[test]

@@ -29,7 +29,11 @@ pub fn weighted_norm(x: &[f64], weight: impl Fn(usize) -> f64) -> f64 {
 
 /// `part / whole`; nothing of nothing is 0.
 pub fn ratio(part: f64, whole: f64) -> f64 {
-    if part == 0.0 { 0.0 } else { part / whole }
+    if part == 0.0 {
+        0.0
+    } else {
+        part / whole
+    }
 }
 
 /// Position of the first entry that is not a finite number.

@@ -68,16 +68,15 @@ impl<'a> Coarse<'a> {
         self.face.as_ref().map_or(self.dimension(), |face| face.solver.deficiency())
     }
 
-    /// `(W_F + weight diag(W))^-1 rhs`, or `W_F^-1 rhs` where that exists and `weight` is 0.
-    pub fn solve_regularised(&mut self, rhs: &[f64], weight: f64) -> Result<Vec<f64>> {
-        const LEAST: f64 = 1e-8;
-        let Some(face) = self.face.as_ref() else { return Ok(vec![0.0; rhs.len()]) };
-        if weight == 0.0 && face.solver.deficiency() == 0 {
+    /// `W_F^-1 rhs`, or `(W_F + 1e-8 diag W)^-1 rhs` where W_F is singular.
+    pub fn solve_regularised(&mut self, rhs: &[f64]) -> Result<Vec<f64>> {
+        const WEIGHT: f64 = 1e-8;
+        let Some(face) = self.face.as_ref().filter(|face| face.solver.deficiency() > 0) else {
             return Ok(self.solve(rhs));
-        }
+        };
         let mut w = face.w.clone();
         for (k, s) in self.scale.iter().enumerate() {
-            w.data[k + k * w.rows] += weight.max(LEAST) * s;
+            w.data[k + k * w.rows] += WEIGHT * s;
         }
         self.solves += 1;
         Ok(SpdSolver::new(&w, &self.scale)?.solve(rhs))

@@ -75,15 +75,17 @@ fn most_correlated(qp: &Qp, held: &[bool], residual: &[f64]) -> Option<usize> {
 fn least_squares(qp: &Qp, coarse: &mut Coarse, held: &[bool]) -> Result<Vec<f64>> {
     coarse.select(held)?;
     let alpha = coarse.solve(qp.e);
-    Ok((0..held.len())
-        .map(|i| if held[i] { 0.0 } else { qp.g_transposed.row_dot(i, &alpha) })
-        .collect())
+    Ok((0..held.len()).map(|i| if held[i] { 0.0 } else { qp.g_transposed.row_dot(i, &alpha) }).collect())
 }
 
 /// `|a| / |e|`: how far the equalities are from being met.
 pub fn margin(qp: &Qp, residual: &[f64]) -> f64 {
     let size = norm(qp.e);
-    if size > 0.0 { dot(residual, residual).sqrt() / size } else { 0.0 }
+    if size > 0.0 {
+        dot(residual, residual).sqrt() / size
+    } else {
+        0.0
+    }
 }
 
 #[cfg(test)]

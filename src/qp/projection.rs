@@ -1,5 +1,5 @@
 //! `PROJ(y) = argmin |l - y|` over `l_i >= 0 (i bounded), G l = e`: a semismooth Newton method in the
-//! coarse space, `l(beta) = clip(y + G'beta)`, on `phi(beta) = 1/2 |l|^2 - e'beta`.
+//! coarse space, `l(beta) = clip(y + G'beta)`, on the convex `phi(beta) = 1/2 |l|^2 - e'beta`, with an exact line search.
 
 use crate::error::Result;
 use crate::linalg::vector::{axpy, dot, norm};
@@ -22,7 +22,6 @@ struct Trial {
     point: Vec<f64>,
     /// `e - G l`
     residual: Vec<f64>,
-    phi: f64,
 }
 
 impl Trial {
@@ -30,13 +29,16 @@ impl Trial {
         let point: Vec<f64> = (0..y.len())
             .map(|i| {
                 let value = y[i] + qp.g_transposed.row_dot(i, &beta);
-                if held[i] || (qp.bounded[i] && value < 0.0) { 0.0 } else { value }
+                if held[i] || (qp.bounded[i] && value < 0.0) {
+                    0.0
+                } else {
+                    value
+                }
             })
             .collect();
         let mut residual = qp.e.to_vec();
         qp.g_transposed.mul_transposed_add(-1.0, &point, &mut residual);
-        let phi = 0.5 * dot(&point, &point) - dot(qp.e, &beta);
-        Self { beta, point, residual, phi }
+        Self { beta, point, residual }
     }
 
     /// `|e - G l|` against `|e| + |G||l|`
@@ -44,7 +46,11 @@ impl Trial {
         let mut terms = vec![0.0; qp.e.len()];
         qp.g_transposed.mul_transposed_abs_add(&self.point, &mut terms);
         let size = norm(qp.e) + norm(&terms);
-        if size > 0.0 { norm(&self.residual) / size } else { 0.0 }
+        if size > 0.0 {
+            norm(&self.residual) / size
+        } else {
+            0.0
+        }
     }
 
     fn done(self) -> Projected {
@@ -58,47 +64,55 @@ pub fn project(qp: &Qp, coarse: &mut Coarse, y: &[f64], held: &[bool]) -> Result
     if qp.e.is_empty() {
         return Ok(Some(now.done()));
     }
-    let mut weight = 0.0;
+    let mut error = now.error(qp);
     for _ in 0..NEWTON_STEPS {
-        let error = now.error(qp);
         if error <= ACCURACY {
             return Ok(Some(now.done()));
         }
         let face: Vec<bool> =
             (0..y.len()).map(|i| held[i] || (qp.bounded[i] && now.point[i] <= 0.0)).collect();
         coarse.select(&face)?;
-        let step = coarse.solve_regularised(&now.residual, weight)?;
-        match line_search(qp, y, held, &now, &step) {
-            Some((next, full)) => {
-                weight = if full { 0.0 } else { weight };
-                now = next;
-            }
-            None if error <= STAGNATED => return Ok(Some(now.done())),
-            None if weight > 1e-2 => return Ok(None),
-            None => weight = f64::max(1e-8, 100.0 * weight),
+        let step = coarse.solve_regularised(&now.residual)?;
+        let Some(t) = minimum_along(qp, y, held, &now, &step) else {
+            return Ok((error <= STAGNATED).then(|| now.done()));
+        };
+        let mut beta = now.beta.clone();
+        axpy(t, &step, &mut beta);
+        let next = Trial::new(qp, y, held, beta);
+        let next_error = next.error(qp);
+        if error <= STAGNATED && next_error >= error {
+            return Ok(Some(now.done()));
         }
+        (now, error) = (next, next_error);
     }
     Ok(None)
 }
 
-/// Armijo on phi; near the solution, where phi is flat to rounding, a smaller residual counts as well.
-/// The second result tells whether the full step was taken.
-fn line_search(qp: &Qp, y: &[f64], held: &[bool], now: &Trial, step: &[f64]) -> Option<(Trial, bool)> {
-    let slope = -dot(&now.residual, step);
-    let flat = 1e-12 * (now.phi.abs() + dot(qp.e, &now.beta).abs());
-    let mut t = 1.0;
-    while t > 1e-7 {
-        let mut beta = now.beta.clone();
-        axpy(t, step, &mut beta);
-        let next = Trial::new(qp, y, held, beta);
-        let descends = next.phi <= now.phi + 1e-4 * t * slope;
-        let closer = norm(&next.residual) < 0.9 * norm(&now.residual) && (next.phi - now.phi).abs() <= flat;
-        if descends || closer {
-            return Some((next, t == 1.0));
+/// Exact minimum of phi over `beta + t step`, t > 0: phi' is piecewise linear and does not fall, its slope is
+/// the sum of `(G'step)_i^2` over the rows that are not at their bound. `None`: phi falls without end.
+fn minimum_along(qp: &Qp, y: &[f64], held: &[bool], now: &Trial, step: &[f64]) -> Option<f64> {
+    let (mut slope, mut whole, mut turns) = (0.0, 0.0, Vec::new());
+    for i in (0..y.len()).filter(|&i| !held[i]) {
+        let q = qp.g_transposed.row_dot(i, step);
+        let v = y[i] + qp.g_transposed.row_dot(i, &now.beta);
+        whole += q * q;
+        let inside = !qp.bounded[i] || v > 0.0 || (v == 0.0 && q > 0.0);
+        slope += if inside { q * q } else { 0.0 };
+        if qp.bounded[i] && v != 0.0 && (v < 0.0) == (q > 0.0) && q != 0.0 {
+            turns.push((-v / q, if inside { -q * q } else { q * q }));
         }
-        t *= 0.5;
     }
-    None
+    turns.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let none = 1e-14 * whole;
+    let (mut at, mut derivative) = (0.0, -dot(&now.residual, step));
+    for (t, change) in turns {
+        let there = derivative + slope * (t - at);
+        if there >= 0.0 && slope > none {
+            break;
+        }
+        (at, derivative, slope) = (t, there.min(0.0), slope + change);
+    }
+    (slope > none).then(|| at - derivative / slope)
 }
 
 #[cfg(test)]

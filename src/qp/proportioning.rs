@@ -46,9 +46,14 @@ pub enum Verdict {
     /// The residual is as small as asked, three times over, and the judge does not accept.
     Inaccurate,
     /// No x >= 0 gives `G x = e`: `direction'(e - G x) = |direction|^2` for all of them.
-    Infeasible { direction: Vec<f64>, margin: f64 },
+    Infeasible {
+        direction: Vec<f64>,
+        margin: f64,
+    },
     /// theta falls without end along `-p`.
-    Unbounded { p: Vec<f64> },
+    Unbounded {
+        p: Vec<f64>,
+    },
 }
 
 #[derive(Debug, Clone)]
@@ -63,6 +68,8 @@ pub struct Solution {
 
 /// A part of e below this that no x balances is reported as marginal, not as a load that is not held.
 const MARGINAL: f64 = 1e-7;
+/// ... and a part this small is a rounding error.
+const ROUNDING: f64 = 1e-12;
 /// How often the tolerance is tightened when the judge does not accept.
 const TIGHTENINGS: usize = 3;
 
@@ -87,9 +94,9 @@ pub fn minimise(
         return Ok(Solution { x: found.point, alpha, undetermined: 0, verdict, counts });
     }
     let held = coarse.image(&found.point);
-    let qp = Qp { e: &held, ..qp };
+    let qp = if margin > ROUNDING { Qp { e: &held, ..qp } } else { qp };
     let mut solution = proportioning(Iterate::new(qp, coarse, found.point)?, limits, judge, observer)?;
-    if solution.verdict == Verdict::Solved {
+    if margin > ROUNDING && solution.verdict == Verdict::Solved {
         solution.verdict = Verdict::Marginal;
     }
     Ok(solution)
@@ -133,7 +140,13 @@ fn proportioning(
         }
     };
     it.counts.coarse_solves = it.coarse.solves;
-    Ok(Solution { undetermined: it.coarse.deficiency(), x: it.x, alpha: it.alpha, verdict, counts: it.counts })
+    Ok(Solution {
+        undetermined: it.coarse.deficiency(),
+        x: it.x,
+        alpha: it.alpha,
+        verdict,
+        counts: it.counts,
+    })
 }
 
 /// When the residual is small enough, or no longer worth reducing.

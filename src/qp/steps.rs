@@ -16,9 +16,13 @@ pub enum Step {
     Expansion,
     Release,
     /// The point is optimal with this multiplier of `G x = e`, where the least-squares one is not.
-    Vertex { alpha: Vec<f64> },
+    Vertex {
+        alpha: Vec<f64>,
+    },
     /// theta falls without end along `-p`: no x satisfies the constraints of the primal problem.
-    Unbounded { p: Vec<f64> },
+    Unbounded {
+        p: Vec<f64>,
+    },
     /// No step decreases theta.
     Stuck,
 }
@@ -29,7 +33,8 @@ impl Iterate<'_> {
         let (p, image) = self.direction()?;
         let curvature = dot(&p, &image);
         self.observe_curvature(&p, &image)?;
-        let singular = norm(&self.free) > self.noise() && curvature <= SINGULAR * self.curvature * dot(&p, &p);
+        let singular =
+            norm(&self.free) > self.noise() && curvature <= SINGULAR * self.curvature * dot(&p, &p);
         let t = if singular { f64::INFINITY } else { dot(&self.g, &p) / curvature };
         let bound = self.feasible_step(&p);
         if t <= bound && t.is_finite() {

@@ -50,7 +50,13 @@ impl Certificate {
 
     /// Largest ratio of an entry to what is allowed.
     pub fn worst(&self) -> f64 {
-        self.entries().iter().fold(0.0, |worst, entry| if entry.ratio > worst || entry.ratio.is_nan() { entry.ratio } else { worst })
+        self.entries().iter().fold(0.0, |worst, entry| {
+            if entry.ratio > worst || entry.ratio.is_nan() {
+                entry.ratio
+            } else {
+                worst
+            }
+        })
     }
 
     /// A figure that is not a number fails.
@@ -115,14 +121,19 @@ pub fn certify(data: &Data, answer: Answer) -> Certificate {
 }
 
 fn entry(part: f64, whole: f64, noise: f64, limit: f64, place: Option<usize>) -> Entry {
-    Entry { figure: ratio(part, whole), ratio: ratio(part, limit * whole + noise), place: place.filter(|_| part > 0.0) }
+    Entry {
+        figure: ratio(part, whole),
+        ratio: ratio(part, limit * whole + noise),
+        place: place.filter(|_| part > 0.0),
+    }
 }
 
 /// `D = diag K` over all unknowns.
 fn metric(data: &Data, unknowns: usize) -> Vec<f64> {
     let mut metric = vec![data.without; unknowns];
     for body in &data.bodies {
-        (0..body.stiffness.order()).for_each(|i| metric[body.start + i] = body.stiffness.metric(i, data.without));
+        (0..body.stiffness.order())
+            .for_each(|i| metric[body.start + i] = body.stiffness.metric(i, data.without));
     }
     metric
 }
@@ -183,7 +194,10 @@ struct Gaps {
 
 /// Penetration, equality, sign of the contact forces; rows weighted by `S = (B D^-1 B')^-1/2`.
 fn gaps(data: &Data, answer: Answer, metric: &[f64], load: f64, certificate: &mut Certificate) -> Gaps {
-    let (contact, equalities) = (Violation::of(data.contact, answer.u, metric, |v| v.max(0.0)), Violation::of(data.equalities, answer.u, metric, f64::abs));
+    let (contact, equalities) = (
+        Violation::of(data.contact, answer.u, metric, |v| v.max(0.0)),
+        Violation::of(data.equalities, answer.u, metric, f64::abs),
+    );
     certificate.penetration = contact.entry(data.limit);
     certificate.equality = equalities.entry(data.limit);
     let scaled = |i: usize, v: f64| if contact.scale[i] > 0.0 { v / contact.scale[i] } else { 0.0 };
@@ -192,7 +206,8 @@ fn gaps(data: &Data, answer: Answer, metric: &[f64], load: f64, certificate: &mu
     let whole = dot(&force, &force).sqrt() + load;
     let place = largest(&negative);
     certificate.negative_force = entry(dot(&negative, &negative).sqrt(), whole, 0.0, data.limit, place);
-    let pairs: Vec<f64> = (0..answer.lambda.len()).map(|i| (answer.lambda[i] * contact.open[i]).abs()).collect();
+    let pairs: Vec<f64> =
+        (0..answer.lambda.len()).map(|i| (answer.lambda[i] * contact.open[i]).abs()).collect();
     let size = |l: &[f64], c: &[f64]| l.iter().zip(c).map(|(l, c)| (l * c).abs()).sum::<f64>();
     Gaps {
         complementarity: pairs.iter().sum(),
@@ -210,7 +225,8 @@ struct Violation {
     open: Vec<f64>,
     /// `s_i x` the violation of row i.
     violated: Vec<f64>,
-    /// `|S|B||u|| + |S c|`
+    /// `|S|B||u|| + |S c|`, and what it would be if the rows moved like the mean dof: rows that hold a body
+    /// in place (u = 0, h = 0) are measured against the movement of the bodies.
     size: f64,
 }
 
@@ -220,7 +236,8 @@ impl Violation {
         let open: Vec<f64> = (0..rows.len()).map(|i| rows.rhs[i] - rows.matrix.row_dot(i, u)).collect();
         let violated: Vec<f64> = (0..rows.len()).map(|i| scale[i] * excess(-open[i])).collect();
         let moved = weighted_norm(&scale, |i| rows.matrix.row_dot_abs(i, u).powi(2));
-        let size = moved + weighted_norm(&scale, |i| rows.rhs[i] * rows.rhs[i]);
+        let mean = weighted_norm(u, |i| metric[i]) * (rows.len() as f64 / u.len().max(1) as f64).sqrt();
+        let size = moved + weighted_norm(&scale, |i| rows.rhs[i] * rows.rhs[i]) + mean;
         Self { scale, open, violated, size }
     }
 
@@ -248,8 +265,15 @@ mod tests {
         let contact = RowSet { matrix, rhs: vec![0.25] };
         let none = Matrix { rows: 1, ..Matrix::default() };
         let load = [2.0 * unit];
-        let body = BodyData { start: 0, stiffness: &stiffness, load: Some(&load), null_space: &none, unit: 1.0 };
-        let data = Data { bodies: vec![body], contact: &contact, equalities: &RowSet::default(), without: 1.0, limit: 1e-8 };
+        let body =
+            BodyData { start: 0, stiffness: &stiffness, load: Some(&load), null_space: &none, unit: 1.0 };
+        let data = Data {
+            bodies: vec![body],
+            contact: &contact,
+            equalities: &RowSet::default(),
+            without: 1.0,
+            limit: 1e-8,
+        };
         certify(&data, Answer { u: &[u], lambda: &[lambda * unit], mu: &[] })
     }
 
@@ -262,7 +286,8 @@ mod tests {
             assert!((unbalanced.equilibrium.figure - 0.1 / 3.9).abs() < 1e-12);
             let through = with(0.5, 0.0, unit);
             assert!(through.equilibrium.ratio <= 1.0 && through.penetration.ratio > 1.0);
-            assert!((through.penetration.figure - 0.25 / 0.75).abs() < 1e-12);
+            // s = 2 (K = 4): |S(Bu - c)| = .5 against |S B u| + |S c| + |u|_D = 1 + .5 + 1
+            assert!((through.penetration.figure - 0.5 / 2.5).abs() < 1e-12);
             assert!(with(0.0, 2.0, unit).complementarity.ratio > 1.0);
             assert!(with(0.75, -1.0, unit).negative_force.ratio > 1.0);
             assert!(!with(f64::NAN, 1.0, unit).passed());

@@ -17,7 +17,8 @@ pub(super) fn load_not_held(problem: &Problem, ready: &Ready, direction: &[f64],
     let unknowns = problem.counts().dofs;
     let v = ready.dual.rigid_motion(direction, unknowns);
     let range = problem.ranges()[body].clone();
-    let fastest = range.clone().fold(range.start, |best, i| if v[i].abs() > v[best].abs() { i } else { best });
+    let fastest =
+        range.clone().fold(range.start, |best, i| if v[i].abs() > v[best].abs() { i } else { best });
     let sense = if v[fastest] > 0.0 { "positive" } else { "negative" };
     let what = format!(
         "the load moves the body and no contact force can hold it ({:.1} % of the resultant is left); \
@@ -48,7 +49,11 @@ pub(super) fn gaps_contradict(problem: &Problem, ready: &Ready, gaps: &[f64], p:
     }
     let heaviest = (0..w.len()).fold(0, |best, i| if w[i].abs() > w[best].abs() { i } else { best });
     let involved = w.iter().filter(|v| v.abs() > EMPTY * w[heaviest].abs()).count();
-    let (kind, row) = if heaviest < contact { ("contact", heaviest) } else { ("equality", heaviest - contact) };
-    let what = format!("this {kind} row and {} others contradict each other: no displacement satisfies them", involved - 1);
+    let (kind, row) =
+        if heaviest < contact { ("contact", heaviest) } else { ("equality", heaviest - contact) };
+    let what = format!(
+        "this {kind} row and {} others contradict each other: no displacement satisfies them",
+        involved - 1
+    );
     Some(Error::new(Kind::GapsContradict, what).row(row).value(demanded).limit(0.0))
 }

@@ -3,7 +3,8 @@
 use std::sync::Arc;
 
 use crate::body::{
-    from_dense, from_sparse, Body, Coordinates, GeneralizedInverse, Modes, NullSpaceInput, SparseInput, Storage,
+    from_dense, from_sparse, Body, Coordinates, GeneralizedInverse, Modes, NullSpaceInput, SparseInput,
+    Storage,
 };
 use crate::constraints::{RowKind, RowSet, RowsInput};
 use crate::error::{Error, Result};
@@ -163,7 +164,9 @@ impl Problem {
     ) -> Result<()> {
         self.check_length(body, "n", node.len())?;
         if !(1..=3).contains(&dim) {
-            return Err(Error::argument("dim", "space has 1, 2 or 3 dimensions").body(body).value(dim as f64));
+            return Err(Error::argument("dim", "space has 1, 2 or 3 dimensions")
+                .body(body)
+                .value(dim as f64));
         }
         check_ld("ld", ld, dim).map_err(|e| e.body(body))?;
         let coordinates = Coordinates::new(dim, dir, xyz, ld).map_err(|e| e.body(body))?;
@@ -175,7 +178,7 @@ impl Problem {
     pub fn set_load(&mut self, body: usize, f: &[f64]) -> Result<()> {
         self.check_length(body, "n", f.len())?;
         if let Some(dof) = first_non_finite(f) {
-            return Err(Error::argument("f", "the entry is not a finite number").body(body).dof(dof).entry(dof));
+            return Err(Error::argument("f", "the entry is not a finite number").body(body).entry(dof));
         }
         self.bodies[body].body.load = Some(copied(f, "a load")?);
         Ok(())

@@ -183,7 +183,8 @@ impl Problem {
         self.check_rows(y.len())?;
         self.setup()?;
         let ready = self.ready()?;
-        let scaled: Vec<f64> = x.iter().zip(&ready.scale).map(|(x, s)| unscaled(x / ready.unit, *s)).collect();
+        let scaled: Vec<f64> =
+            x.iter().zip(&ready.scale).map(|(x, s)| unscaled(x / ready.unit, *s)).collect();
         ready.dual.apply(&scaled, y);
         y.iter_mut().zip(&ready.scale).for_each(|(y, s)| *y = unscaled(*y, *s));
         Ok(())
@@ -216,5 +217,9 @@ impl Problem {
 
 /// `v / s`, 0 for rows without entries.
 fn unscaled(v: f64, s: f64) -> f64 {
-    if s > 0.0 { v / s } else { 0.0 }
+    if s > 0.0 {
+        v / s
+    } else {
+        0.0
+    }
 }

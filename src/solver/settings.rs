@@ -72,7 +72,7 @@ const fn whole(
 }
 
 static OPTIONS: [OptionInfo; 11] = [
-    real(c"tolerance", 1e-9, 1e-14..=1e-2, |s| &mut s.tolerance,
+    real(c"tolerance", 1e-12, 1e-14..=1e-2, |s| &mut s.tolerance,
         c"The dual is solved until its projected gradient, a gap, is this small against the gaps and displacements of the problem."),
     real(c"certificate_tolerance", 1e-8, 1e-14..=1e-2, |s| &mut s.certificate_tolerance,
         c"Every entry of the certificate must be this small for the answer to count as solved."),

@@ -46,7 +46,8 @@ impl Problem {
             return Err(Error::new(Kind::State, "the problem has no body yet"));
         }
         for (p, slot) in self.bodies.iter().enumerate() {
-            let missing = |what: &str| Err(Error::new(Kind::State, format!("{what} has not been given")).body(p));
+            let missing =
+                |what: &str| Err(Error::new(Kind::State, format!("{what} has not been given")).body(p));
             if slot.body.stiffness.is_none() {
                 return missing("the stiffness matrix");
             }
@@ -63,7 +64,11 @@ impl Problem {
         let stiffness = self.bodies.iter().filter_map(|slot| slot.body.stiffness.as_ref());
         let largest = stiffness.map(|k| k.largest_diagonal()).fold(0.0, f64::max);
         const EXPONENT: u64 = 0x7ff0_0000_0000_0000;
-        if largest.is_normal() { f64::from_bits(largest.to_bits() & EXPONENT) } else { 1.0 }
+        if largest.is_normal() {
+            f64::from_bits(largest.to_bits() & EXPONENT)
+        } else {
+            1.0
+        }
     }
 
     /// K+ of the bodies that have none for this unit.
@@ -96,7 +101,8 @@ impl Problem {
     fn check_memory(&self, new_factors: usize) -> Result<()> {
         let kept: usize = self.bodies.iter().filter_map(|slot| slot.inverse.as_ref()).map(|i| i.bytes).sum();
         let ranges = || self.ranges().into_iter();
-        let operators = Dual::bytes(ranges(), &self.contact.matrix) + Dual::bytes(ranges(), &self.equalities.matrix);
+        let operators =
+            Dual::bytes(ranges(), &self.contact.matrix) + Dual::bytes(ranges(), &self.equalities.matrix);
         let needed = kept.saturating_add(new_factors).saturating_add(operators);
         let limit = usize::try_from(self.settings.memory_limit).unwrap_or(0);
         if limit > 0 && needed > limit {

@@ -182,7 +182,9 @@ impl Problem {
         for (argument, values, expected) in lengths {
             if values.len() != expected {
                 let what = format!("the problem has {expected}, not {}", values.len());
-                return Err(Error::argument(argument, what).value(values.len() as f64).limit(expected as f64));
+                return Err(Error::argument(argument, what)
+                    .value(values.len() as f64)
+                    .limit(expected as f64));
             }
         }
         Ok(certify(&self.data()?, AnswerView { u, lambda, mu }))

@@ -22,7 +22,11 @@ pub fn count(asked: i64) -> usize {
 }
 
 /// Runs tasks `0..count` and returns their results in order; the first error in order wins.
-pub fn run<T: Send>(threads: usize, count: usize, task: impl Fn(usize) -> Result<T> + Sync) -> Result<Vec<T>> {
+pub fn run<T: Send>(
+    threads: usize,
+    count: usize,
+    task: impl Fn(usize) -> Result<T> + Sync,
+) -> Result<Vec<T>> {
     let results: Vec<Result<T>> = if threads < 2 || count < 2 {
         (0..count).map(&task).collect()
     } else {

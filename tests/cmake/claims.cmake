@@ -11,5 +11,6 @@ endfunction()
 
 # claim_clean: the same under valgrind: no invalid access, nothing lost.
 function(claim_clean name)
-  claim("${name}" "${VALGRIND}" -q --error-exitcode=9 --leak-check=full --errors-for-leak-kinds=definite,indirect ${ARGN})
+  claim("${name}" "${VALGRIND}" -q --error-exitcode=9 --leak-check=full
+        --show-leak-kinds=definite,indirect --errors-for-leak-kinds=definite,indirect ${ARGN})
 endfunction()

@@ -46,6 +46,7 @@ program cholmod_oracle
   do i = 1, size(names)
     call check_case(trim(names(i)))
   end do
+  deallocate (names)
 
 contains
 

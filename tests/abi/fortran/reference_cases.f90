@@ -14,6 +14,7 @@ program reference_cases
   do i = 1, size(names)
     call check_case(trim(names(i)))
   end do
+  deallocate (names)
 
 contains
 

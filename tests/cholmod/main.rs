@@ -21,7 +21,10 @@ fn library() -> PathBuf {
     let here = std::env::current_exe().expect("path of the test");
     let deps = here.parent().expect("folder of the test");
     let found = [deps.join("libfeti_contact.a"), deps.with_file_name("libfeti_contact.a")];
-    found.into_iter().find(|path| path.exists()).unwrap_or_else(|| panic!("no libfeti_contact.a in {}", deps.display()))
+    found
+        .into_iter()
+        .find(|path| path.exists())
+        .unwrap_or_else(|| panic!("no libfeti_contact.a in {}", deps.display()))
 }
 
 /// The reference cases as plain text, unpacked once.
@@ -35,7 +38,8 @@ fn data() -> &'static Path {
             for packed in entries(case).iter().filter(|path| path.extension().is_some_and(|e| e == "gz")) {
                 let mut text = GzDecoder::new(fs::File::open(packed).expect("packed file"));
                 let plain = folder.join(packed.file_stem().expect("name of a file"));
-                std::io::copy(&mut text, &mut fs::File::create(plain).expect("plain file")).expect("whole file");
+                std::io::copy(&mut text, &mut fs::File::create(plain).expect("plain file"))
+                    .expect("whole file");
             }
         }
         out
@@ -54,7 +58,14 @@ fn compiler(name: &str, out: &Path) -> Command {
     fs::create_dir_all(out).expect("folder for objects");
     let triple = format!("{}-unknown-linux-gnu", std::env::consts::ARCH);
     let mut build = cc::Build::new();
-    build.compiler(name).target(&triple).host(&triple).opt_level(2).debug(false).out_dir(out).cargo_metadata(false);
+    build
+        .compiler(name)
+        .target(&triple)
+        .host(&triple)
+        .opt_level(2)
+        .debug(false)
+        .out_dir(out)
+        .cargo_metadata(false);
     let mut command = build.get_compiler().to_command();
     command.current_dir(ROOT);
     command
@@ -63,8 +74,11 @@ fn compiler(name: &str, out: &Path) -> Command {
 /// Runs a command to its end; it must succeed.
 fn run(command: &mut Command) -> String {
     let what = format!("{command:?}");
-    let output = command.output().unwrap_or_else(|error| panic!("{what}: {error} (`make setup` installs what is missing)"));
-    let text = [output.stdout, output.stderr].map(|bytes| String::from_utf8_lossy(&bytes).into_owned()).concat();
+    let output = command
+        .output()
+        .unwrap_or_else(|error| panic!("{what}: {error} (`make setup` installs what is missing)"));
+    let text =
+        [output.stdout, output.stderr].map(|bytes| String::from_utf8_lossy(&bytes).into_owned()).concat();
     assert!(output.status.success(), "{what}: {}\n{text}", output.status);
     text
 }
@@ -77,7 +91,8 @@ fn agrees_with_cholmod(driver: &Path) {
 #[test]
 fn cholmod_gives_the_same_dual_operator_to_a_c_program() {
     let out = Path::new(WORK).join("cholmod_c");
-    let sources = ["cholmod_oracle", "cholmod_shim", "brute_force", "handover", "matrices"].map(|f| format!("tests/abi/c/{f}.c"));
+    let sources = ["cholmod_oracle", "cholmod_shim", "brute_force", "handover", "matrices"]
+        .map(|f| format!("tests/abi/c/{f}.c"));
     let driver = out.join("driver");
     let mut command = compiler("gcc", &out);
     command.args(["-std=c99", "-Iinclude", "-Iexamples_c", "-Itests/abi/c", "examples_c/case_reader.c"]);
@@ -95,7 +110,13 @@ fn cholmod_gives_the_same_dual_operator_to_a_fortran_program() {
     let mut command = compiler("gfortran", &out);
     command.arg("-J").arg(&out).args(modules());
     command.args(["examples_fortran/case_reader.f90", "tests/abi/fortran/support/case_problem.f90"]);
-    command.arg("tests/abi/fortran/cholmod_oracle.f90").arg(&shim).arg(library()).args(SYSTEM).arg("-o").arg(&driver);
+    command
+        .arg("tests/abi/fortran/cholmod_oracle.f90")
+        .arg(&shim)
+        .arg(library())
+        .args(SYSTEM)
+        .arg("-o")
+        .arg(&driver);
     run(&mut command);
     agrees_with_cholmod(&driver);
 }

@@ -1,0 +1,36 @@
+//! The reference cases through the Rust interface: real matrices with solutions known to 1e-12.
+
+mod case;
+
+use case::{difference, Case, CASES};
+use feti_contact::solver::{Outcome, RowKind};
+
+fn assert_reference(name: &str, coordinates: bool) {
+    let case = Case::read(name);
+    let mut problem = case.problem(coordinates);
+    let report = problem.solve().unwrap_or_else(|e| panic!("{name}: {e}"));
+    assert_eq!(report.outcome, Outcome::Solved, "{name}: {:?}", report.certificate);
+    assert!(report.certificate.passed() && report.certificate.limit == 1e-8);
+    let d_lambda = difference(problem.multipliers(RowKind::Inequality).unwrap(), &case.lambda);
+    let d_u = difference(&case.displacement(&problem), &case.u);
+    println!(
+        "{name}: worst {:.1e} dlambda {d_lambda:.1e} du {d_u:.1e} products {} steps {} active {}",
+        report.certificate.worst(),
+        report.dual_applications,
+        report.steps,
+        report.active
+    );
+    assert!(d_lambda <= 1e-7, "{name}: forces differ by {d_lambda:.1e}");
+    assert!(d_u <= 1e-8, "{name}: displacements differ by {d_u:.1e}");
+    assert_eq!(report.active, case.lambda.iter().filter(|l| **l > 0.0).count(), "{name}: active rows");
+}
+
+#[test]
+fn every_reference_case_is_solved_to_its_known_answer() {
+    CASES.iter().for_each(|name| assert_reference(name, false));
+}
+
+#[test]
+fn coordinates_serve_as_well_as_null_spaces() {
+    ["hertz_cylinder", "three_bodies"].iter().for_each(|name| assert_reference(name, true));
+}
