@@ -1,6 +1,10 @@
 //! Contact rows `B u <= c` and equality rows `H u = h`: the host's entries over the unknowns of all bodies
 //! one after the other, and the scaling of the rows.
 
+mod grouping;
+
+pub use grouping::Grouping;
+
 use crate::error::{Error, Kind, Result};
 use crate::linalg::memory::{copied, zeros};
 use crate::linalg::vector::first_non_finite;

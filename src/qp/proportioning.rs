@@ -111,7 +111,7 @@ fn proportioning(
     let scale = judge.scale(&it.x, &it.alpha)?;
     let mut stop = Stop::new(limits.tolerance * scale);
     let verdict = loop {
-        let small = stop.residual + it.noise();
+        let small = stop.residual + stop.noise * it.noise();
         if it.residual() <= small || stop.plateau(&it) {
             it.refresh()?;
             if it.residual() <= small || stop.plateau(&it) {
@@ -124,8 +124,10 @@ fn proportioning(
         let step = if it.is_proportional(limits.gamma) { it.explore()? } else { it.release(small)? };
         match step {
             Step::Vertex { alpha } => {
-                it.alpha = alpha;
-                break if judge.accepts(&it.x, &it.alpha)? { Verdict::Solved } else { Verdict::Inaccurate };
+                if let Some(verdict) = stop.tighten(judge.accepts(&it.x, &alpha)?) {
+                    it.alpha = alpha;
+                    break verdict;
+                }
             }
             Step::Unbounded { p } => break Verdict::Unbounded { p },
             Step::Stuck if judge.accepts(&it.x, &it.alpha)? => break Verdict::Solved,
@@ -152,6 +154,8 @@ fn proportioning(
 /// When the residual is small enough, or no longer worth reducing.
 struct Stop {
     residual: f64,
+    /// Share of the allowance for rounding that counts.
+    noise: f64,
     tightenings: usize,
     /// Smallest residual of the current face, the count of steps when it was met, and that face.
     best: f64,
@@ -161,7 +165,7 @@ struct Stop {
 
 impl Stop {
     fn new(residual: f64) -> Self {
-        Self { residual, tightenings: 0, best: f64::INFINITY, met: 0, face: Vec::new() }
+        Self { residual, noise: 1.0, tightenings: 0, best: f64::INFINITY, met: 0, face: Vec::new() }
     }
 
     /// No conjugate gradient step has halved the residual of this face for longer than exact arithmetic
@@ -185,6 +189,7 @@ impl Stop {
         }
         self.tightenings += 1;
         self.residual *= 0.1;
+        self.noise *= 0.1;
         None
     }
 }

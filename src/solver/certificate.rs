@@ -81,7 +81,7 @@ pub struct BodyData<'a> {
     pub stiffness: &'a Symmetric,
     /// Zero when absent.
     pub load: Option<&'a [f64]>,
-    /// `R_p` with `R'DR` = `1 / unit`.
+    /// `R_p` with `R'DR = unit`, D = diag K.
     pub null_space: &'a Matrix,
     pub unit: f64,
 }
@@ -170,7 +170,7 @@ fn forces(data: &Data, answer: Answer, metric: &[f64], certificate: &mut Certifi
         replace_if_worse(&mut certificate.equilibrium, equilibrium);
         let rest: Vec<f64> = (0..u.len()).map(|i| f[i] - push[i]).collect();
         let resultants = body.null_space.mul_transposed(&rest);
-        let resultant = body.unit.sqrt() * dot(&resultants, &resultants).sqrt();
+        let resultant = (dot(&resultants, &resultants) / body.unit).sqrt();
         replace_if_worse(&mut certificate.balance, entry(resultant, loads, noise, data.limit, Some(p)));
     }
     totals

@@ -1,7 +1,8 @@
 //! Why there is no answer: a load that nothing holds, rows that contradict each other.
 
+use crate::constraints::RowKind;
 use crate::error::{Error, Kind};
-use crate::linalg::vector::{dot, norm, weighted_norm};
+use crate::linalg::vector::{dot, norm, norm_max, weighted_norm};
 use crate::solver::problem::Problem;
 use crate::solver::setup::Ready;
 
@@ -28,32 +29,40 @@ pub(super) fn load_not_held(problem: &Problem, ready: &Ready, direction: &[f64],
     Error::new(Kind::LoadNotHeld, what).body(body).dof(fastest - range.start).value(margin).limit(0.0)
 }
 
-/// The weights `w = -p` combine rows to nothing, `B'w = 0`, yet demand a negative gap, `c'w < 0`: no
-/// displacement satisfies them. `None` when p does not prove it. `gaps` = S c.
-pub(super) fn gaps_contradict(problem: &Problem, ready: &Ready, gaps: &[f64], p: &[f64]) -> Option<Error> {
-    let contact = problem.contact.len();
-    let rounding = EMPTY * p[..contact].iter().fold(0.0, |m, v| v.abs().max(m));
-    let w: Vec<f64> =
-        (0..p.len()).map(|i| if i < contact && p[i].abs() <= rounding { 0.0 } else { -p[i] }).collect();
+/// The weights w combine the dual rows to nothing, `B'w = 0`, yet demand a negative gap, `c'w < 0`: no
+/// displacement satisfies them. `None` when w does not prove it. `gaps` = S c.
+pub(super) fn gaps_contradict(ready: &Ready, gaps: &[f64], w: &[f64]) -> Option<Error> {
+    let leader = |group: usize| ready.grouping.leaders[group];
+    let bounded = |group: usize| leader(group) < ready.contact;
+    let negligible = EMPTY * norm_max(w);
+    let w: Vec<f64> = w.iter().map(|w| if w.abs() <= negligible { 0.0 } else { *w }).collect();
     let (mut left, mut terms) = (vec![0.0; ready.matrix.cols], vec![0.0; ready.matrix.cols]);
     ready.matrix.mul_transposed_add(1.0, &w, &mut left);
     ready.matrix.mul_transposed_abs_add(&w, &mut terms);
-    let size = |x: &[f64]| weighted_norm(x, |_| 1.0);
+    let size = |x: &[f64]| weighted_norm(x, |i| 1.0 / ready.metric[i]);
     let demanded = dot(gaps, &w);
-    let terms_of_gaps: f64 = gaps.iter().zip(&w).map(|(c, w)| (c * w).abs()).sum();
-    let proves = w[..contact].iter().all(|w| *w >= 0.0)
+    let demands: f64 = gaps.iter().zip(&w).map(|(c, w)| (c * w).abs()).sum();
+    let proves = (0..w.len()).all(|group| !bounded(group) || w[group] >= 0.0)
         && size(&left) <= EMPTY * size(&terms)
-        && demanded < -EMPTY * terms_of_gaps;
+        && demanded < -EMPTY * demands;
     if !proves {
         return None;
     }
     let heaviest = (0..w.len()).fold(0, |best, i| if w[i].abs() > w[best].abs() { i } else { best });
-    let involved = w.iter().filter(|v| v.abs() > EMPTY * w[heaviest].abs()).count();
-    let (kind, row) =
-        if heaviest < contact { ("contact", heaviest) } else { ("equality", heaviest - contact) };
+    let others = w.iter().filter(|v| **v != 0.0).count() - 1;
+    let (kind, row) = kind_and_row(leader(heaviest), ready.contact);
     let what = format!(
-        "this {kind} row and {} others contradict each other: no displacement satisfies them",
-        involved - 1
+        "this {} and {others} others contradict each other: no displacement satisfies them",
+        kind.name()
     );
     Some(Error::new(Kind::GapsContradict, what).row(row).value(demanded).limit(0.0))
+}
+
+/// Kind of a row of the stack, and its number among those.
+pub(super) fn kind_and_row(i: usize, contact: usize) -> (RowKind, usize) {
+    if i < contact {
+        (RowKind::Inequality, i)
+    } else {
+        (RowKind::Equality, i - contact)
+    }
 }

@@ -2,6 +2,7 @@
 
 mod certificate;
 mod diagnosis;
+mod presolve;
 mod problem;
 mod report;
 mod results;

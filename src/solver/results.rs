@@ -3,7 +3,7 @@
 use crate::constraints::RowKind;
 use crate::error::{Error, Kind, Result};
 use crate::linalg::memory::zeros;
-use crate::linalg::vector::{dot, norm_max};
+use crate::linalg::vector::dot;
 use crate::linalg::Operator;
 use crate::qp::Solution;
 use crate::solver::certificate::Certificate;
@@ -37,7 +37,7 @@ impl Answer {
         let Recovered { u, lambda, mu } = recovered;
         let rows = &problem.contact;
         let gaps: Vec<f64> = (0..rows.len()).map(|i| rows.rhs[i] - rows.matrix.row_dot(i, &u)).collect();
-        let states = states(problem, ready, &solution.x, &u, &gaps);
+        let states = states(problem, ready, &lambda, &u, &gaps);
         let counts = solution.counts;
         let report = Report {
             outcome,
@@ -64,14 +64,15 @@ impl Answer {
 
 /// A force or a gap is zero when it is below `limit` (that of the certificate) of the largest force, or of
 /// the displacements and gaps of the rows.
-fn states(problem: &Problem, ready: &Ready, forces: &[f64], u: &[f64], gaps: &[f64]) -> Vec<RowState> {
+fn states(problem: &Problem, ready: &Ready, lambda: &[f64], u: &[f64], gaps: &[f64]) -> Vec<RowState> {
     let limit = problem.settings.certificate_tolerance;
     let rows = &problem.contact;
     let sizes = (0..rows.len()).map(|i| ready.scale[i] * (rows.matrix.row_dot_abs(i, u) + rows.rhs[i].abs()));
     let small_gap = limit * sizes.fold(0.0, f64::max);
-    let small_force = limit * norm_max(forces);
+    let force = |i: usize| unscaled(lambda[i], ready.scale[i]);
+    let small_force = limit * (0..rows.len()).map(|i| force(i).abs()).fold(0.0, f64::max);
     let state = |i: usize| {
-        if forces[i] > small_force {
+        if force(i) > small_force {
             RowState::Closed
         } else if ready.scale[i] * gaps[i] > small_gap {
             RowState::Open
@@ -183,10 +184,16 @@ impl Problem {
         self.check_rows(y.len())?;
         self.setup()?;
         let ready = self.ready()?;
-        let scaled: Vec<f64> =
-            x.iter().zip(&ready.scale).map(|(x, s)| unscaled(x / ready.unit, *s)).collect();
-        ready.dual.apply(&scaled, y);
-        y.iter_mut().zip(&ready.scale).for_each(|(y, s)| *y = unscaled(*y, *s));
+        let mut groups = vec![0.0; ready.grouping.leaders.len()];
+        let mut image = groups.clone();
+        for (i, (group, sign)) in ready.grouping.members() {
+            groups[group] += sign * x[i] / (ready.unit * ready.scale[i]);
+        }
+        ready.dual.apply(&groups, &mut image);
+        y.fill(0.0);
+        for (i, (group, sign)) in ready.grouping.members() {
+            y[i] = sign * image[group] / ready.scale[i];
+        }
         Ok(())
     }
 
@@ -197,10 +204,11 @@ impl Problem {
         let mut load = self.loads()?;
         let ready = self.ready()?;
         load.iter_mut().for_each(|f| *f /= ready.unit);
-        let rhs = ready.dual.rhs(&load, &vec![0.0; d.len()])?;
+        let moved = ready.dual.rhs(&load, &vec![0.0; ready.grouping.leaders.len()])?;
         let gaps = self.contact.rhs.iter().chain(&self.equalities.rhs);
-        for (((d, v), s), c) in d.iter_mut().zip(rhs).zip(&ready.scale).zip(gaps) {
-            *d = unscaled(v, *s) - c;
+        d.iter_mut().zip(gaps).for_each(|(d, c)| *d = -c);
+        for (i, (group, sign)) in ready.grouping.members() {
+            d[i] += sign * moved[group] / ready.scale[i];
         }
         Ok(())
     }

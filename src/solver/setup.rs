@@ -5,7 +5,7 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use crate::body::{Body, GeneralizedInverse, Modes, NullSpaceInput};
-use crate::constraints::{row_scales, RowKind};
+use crate::constraints::{row_scales, Grouping, RowKind};
 use crate::dual::{Dual, Part};
 use crate::error::{Error, Kind, Result};
 use crate::linalg::memory::available;
@@ -18,10 +18,15 @@ pub(super) struct Ready {
     /// 2^p, p = floor(log2 max K_ii), force / length: K and forces are divided by it.
     pub unit: f64,
     pub dual: Dual,
-    /// `S [B; H]`, contact rows first.
+    /// One row for each group of parallel rows of `S [B; H]`.
     pub matrix: Csr,
-    /// s_i, `length^-1` in units of 2^p.
+    /// `D / 2^p` over all unknowns.
+    pub metric: Vec<f64>,
+    /// s_i of every row, contact rows first, `length^-1` in units of 2^p; 0 for rows without entries.
     pub scale: Vec<f64>,
+    pub grouping: Grouping,
+    /// Number of contact rows.
+    pub contact: usize,
 }
 
 impl Problem {
@@ -117,25 +122,29 @@ impl Problem {
         self.offsets().windows(2).map(|pair| pair[0]..pair[1]).collect()
     }
 
-    /// Scales the rows and forms F and G.
+    /// Scales the rows, keeps one of those that are parallel, and forms F and G.
     fn dualize(&self, unit: f64) -> Result<Ready> {
         let metric = self.metric(unit);
-        let mut matrix = Csr::empty(metric.len());
+        let mut all = Csr::empty(metric.len());
         let mut scale = Vec::new();
         for rows in [&self.contact, &self.equalities] {
             let scales = row_scales(&rows.matrix, &metric);
             for (i, s) in scales.iter().enumerate() {
-                matrix.push_row(rows.matrix.row(i).map(|(j, v)| (j, s * v)));
+                all.push_row(rows.matrix.row(i).map(|(j, v)| (j, s * v)));
             }
             scale.extend(scales);
         }
+        let contact = self.contact.len();
+        let grouping = Grouping::of(&all, contact, &metric);
+        let mut matrix = Csr::empty(metric.len());
+        grouping.leaders.iter().for_each(|&leader| matrix.push_row(all.row(leader)));
         let parts = self.ranges().into_iter().zip(&self.bodies).filter_map(|(range, slot)| {
             let inverse = slot.inverse.as_ref()?;
             Some(Part { range, kplus: Arc::clone(&inverse.kplus) })
         });
         let threads = threads::count(self.settings.threads);
         let dual = Dual::new(parts.collect(), &matrix, &|count, task| threads::run(threads, count, task))?;
-        Ok(Ready { unit, dual, matrix, scale })
+        Ok(Ready { unit, dual, matrix, metric, scale, grouping, contact })
     }
 
     /// `D / unit` over all unknowns, 1 for dofs without stiffness.

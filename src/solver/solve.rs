@@ -7,6 +7,7 @@ use crate::linalg::vector::weighted_norm;
 use crate::qp::{self, minimise, Judge, Limits, Observer, Qp, Solution, Verdict};
 use crate::solver::certificate::{certify, Answer as AnswerView, BodyData, Certificate, Data};
 use crate::solver::diagnosis;
+use crate::solver::presolve::{presolve, Gaps};
 use crate::solver::problem::Problem;
 use crate::solver::report::{Outcome, Report};
 use crate::solver::results::Answer;
@@ -22,7 +23,7 @@ impl Problem {
         let solving = Instant::now();
         let ready = self.ready()?;
         let dual = Scaled::new(self, ready)?;
-        let mut judge = Certifier { ready, scaled: &dual, data: self.data()?, rows: self.contact.len() };
+        let mut judge = Certifier { ready, scaled: &dual, data: self.data()? };
         let mut watch = Watch { started, limit: self.settings.time_limit };
         let solution = minimise(dual.qp(ready), &dual.start, self.limits(), &mut judge, &mut watch)?;
         let outcome = self.outcome(ready, &dual, &solution)?;
@@ -58,7 +59,8 @@ impl Problem {
                 Err(diagnosis::load_not_held(self, ready, direction, *margin))
             }
             Verdict::Unbounded { p } => {
-                diagnosis::gaps_contradict(self, ready, &dual.gaps, p).map_or(Ok(Outcome::Stalled), Err)
+                let w: Vec<f64> = p.iter().map(|p| -p).collect();
+                diagnosis::gaps_contradict(ready, &dual.gaps.value, &w).map_or(Ok(Outcome::Stalled), Err)
             }
         }
     }
@@ -86,11 +88,9 @@ impl Problem {
 struct Scaled {
     /// f / 2^p
     load: Vec<f64>,
-    /// S [c; h]
-    gaps: Vec<f64>,
+    gaps: Gaps,
     d: Vec<f64>,
     e: Vec<f64>,
-    bounded: Vec<bool>,
     /// Where the dual starts: no force.
     start: Vec<f64>,
 }
@@ -99,17 +99,15 @@ impl Scaled {
     fn new(problem: &Problem, ready: &Ready) -> Result<Self> {
         let mut load = problem.loads()?;
         load.iter_mut().for_each(|f| *f /= ready.unit);
-        let rhs = problem.contact.rhs.iter().chain(&problem.equalities.rhs);
-        let gaps: Vec<f64> = rhs.zip(&ready.scale).map(|(c, s)| c * s).collect();
-        let d = ready.dual.rhs(&load, &gaps)?;
+        let gaps = presolve(problem, ready)?;
+        let d = ready.dual.rhs(&load, &gaps.value)?;
         let e = ready.dual.resultants(&load);
-        let bounded = (0..gaps.len()).map(|i| i < problem.contact.len()).collect();
-        Ok(Self { load, start: vec![0.0; gaps.len()], gaps, d, e, bounded })
+        Ok(Self { load, start: vec![0.0; d.len()], gaps, d, e })
     }
 
     fn qp<'a>(&'a self, ready: &'a Ready) -> Qp<'a> {
         let (a, g_transposed) = (&ready.dual, &ready.dual.coarse);
-        Qp { a, b: &self.d, g_transposed, e: &self.e, bounded: &self.bounded }
+        Qp { a, b: &self.d, g_transposed, e: &self.e, bounded: &self.gaps.bounded }
     }
 }
 
@@ -131,17 +129,18 @@ struct Certifier<'a> {
     ready: &'a Ready,
     scaled: &'a Scaled,
     data: Data<'a>,
-    /// Number of contact rows.
-    rows: usize,
 }
 
 impl Certifier<'_> {
-    /// (17), and lambda = 2^p S x.
+    /// (17), and lambda = 2^p S x on the rows that carry the multipliers of their groups.
     fn recover(&self, x: &[f64], alpha: &[f64]) -> Result<Recovered> {
-        let u = self.ready.dual.displacement(&self.scaled.load, x, alpha)?;
-        let mut lambda: Vec<f64> =
-            x.iter().zip(&self.ready.scale).map(|(x, s)| x * s * self.ready.unit).collect();
-        let mu = lambda.split_off(self.rows);
+        let ready = self.ready;
+        let u = ready.dual.displacement(&self.scaled.load, x, alpha)?;
+        let mut lambda = vec![0.0; ready.scale.len()];
+        for (x, &holder) in x.iter().zip(&self.scaled.gaps.holder) {
+            lambda[holder] = x * ready.scale[holder] * ready.unit;
+        }
+        let mu = lambda.split_off(ready.contact);
         Ok(Recovered { u, lambda, mu })
     }
 }
@@ -151,7 +150,7 @@ impl Judge for Certifier<'_> {
     fn scale(&mut self, x: &[f64], alpha: &[f64]) -> Result<f64> {
         let u = self.ready.dual.displacement(&self.scaled.load, x, alpha)?;
         let moved: Vec<f64> = (0..x.len()).map(|i| self.ready.matrix.row_dot_abs(i, &u)).collect();
-        Ok(weighted_norm(&moved, |_| 1.0) + weighted_norm(&self.scaled.gaps, |_| 1.0))
+        Ok(weighted_norm(&moved, |_| 1.0) + weighted_norm(&self.scaled.gaps.value, |_| 1.0))
     }
 
     fn accepts(&mut self, x: &[f64], alpha: &[f64]) -> Result<bool> {

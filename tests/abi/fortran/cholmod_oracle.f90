@@ -65,7 +65,7 @@ contains
     m = size(this%c) + size(this%h)
     allocate (f(m, m), source=0.0_dp)
     allocate (y(m), source=0.0_dp)
-    d = -[this%c, this%h]
+    allocate (d, source=-[this%c, this%h])
     do b = 1, size(this%body)
       call transpose_rows(this, b, columns)
       call add_body(name, p, this, b, columns, f, y)

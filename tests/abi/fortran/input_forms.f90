@@ -177,8 +177,10 @@ contains
       call require(len(option%doc) > 0, option%name // ' has no description')
       if (option%name == 'tolerance') then
         found = k
-        call require(option%type == FETI_OPTION_F64 .and. abs(option%default_real - 1e-9_dp) < 1e-20_dp, &
-          'wrong type or default of tolerance')
+        call feti_get(p, 'tolerance', tolerance)
+        call require(option%type == FETI_OPTION_F64 .and. abs(option%default_real - tolerance) <= 0, &
+          'a new problem does not have the default of tolerance')
+        call require(option%minimum < tolerance .and. tolerance < option%maximum, 'the default of tolerance is out of range')
       end if
     end do
     call require(found > 0, 'tolerance is not listed')

@@ -36,6 +36,7 @@ contains
 
     call check_sizes(name, p, this, info)
     call check_certificate(name, p, u, lambda, mu)
+    call check_reference(name, p, this)
     call require(largest(lambda - this%lambda_ref) <= 1e-7_dp * largest(this%lambda_ref), &
       name // ': contact forces differ by ' // number(largest(lambda - this%lambda_ref)))
     call require(largest(mu - this%mu_ref) <= 1e-7_dp * largest(this%mu_ref), &
@@ -89,6 +90,18 @@ contains
     call require(certificate%passed == 0 .and. certificate%worst > 1, name // ': a wrong force passes')
   end subroutine
 
+  !> The answer of another code is certified as well: the reference solution passes.
+  subroutine check_reference(name, p, this)
+    character(len=*), intent(in) :: name
+    type(feti_problem), intent(in) :: p
+    type(contact_case), intent(in) :: this
+    type(feti_certificate) :: certificate
+
+    call feti_check(p, this%u_ref, this%lambda_ref, this%mu_ref, certificate)
+    call require(certificate%passed == 1, name // ': the reference solution does not pass, balance ' // &
+      number(certificate%balance) // ', worst entry / limit ' // number(certificate%worst))
+  end subroutine
+
   !> u differs from the reference by rigid motions that no row sees.
   subroutine check_up_to_rigid_motions(name, this, du)
     character(len=*), intent(in) :: name
@@ -100,7 +113,7 @@ contains
     call require(largest(multiply(this%contact, du)) <= 1e-8_dp * largest(this%u_ref), name // ': B u differs')
     do b = 1, size(this%body)
       allocate (q, source=this%body(b)%null_space)
-      rest = body_of(this, b, du)
+      allocate (rest, source=body_of(this, b, du))
       do j = 1, size(q, 2)
         do sweep = 1, 2
           do i = 1, j - 1
@@ -111,7 +124,7 @@ contains
         rest = rest - q(:, j) * dot_product(q(:, j), rest)
       end do
       call require(largest(rest) <= 1e-8_dp * largest(this%u_ref), name // ': u differs beside rigid motions')
-      deallocate (q)
+      deallocate (q, rest)
     end do
   end subroutine
 
@@ -150,7 +163,7 @@ contains
     both = contact - multiply_transposed(this%equality, mu)
     force = this%f + both
     do b = 1, size(this%body)
-      allocate (r(this%body(b)%n))
+      allocate (r(this%body(b)%n), residual(this%body(b)%n))
       call feti_reaction(p, FETI_INEQUALITY, b, r)
       call require(largest(r - body_of(this, b, contact)) <= 1e-12_dp * largest(contact), &
         name // ': the contact reaction is not -B''lambda')
@@ -160,7 +173,7 @@ contains
       residual = stiffness_times(this%body(b)%k, body_of(this, b, u)) - body_of(this, b, force)
       call require(largest(residual) <= 1e-7_dp * largest(force), &
         name // ': K u differs from f + r by ' // number(largest(residual)))
-      deallocate (r)
+      deallocate (r, residual)
     end do
   end subroutine
 

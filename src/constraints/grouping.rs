@@ -1,0 +1,97 @@
+//! Rows in the same direction: one multiplier is enough for all of them.
+
+use std::collections::HashMap;
+
+use crate::constraints::RowKind;
+use crate::linalg::Csr;
+
+/// Two rows are parallel when their unit vectors differ by less than this.
+const PARALLEL: f64 = 1e-12;
+
+/// Rows stacked, contact rows first, and which of them share a direction.
+#[derive(Debug, Clone, Default)]
+pub struct Grouping {
+    /// First row of every group; an equality row where the group has one.
+    pub leaders: Vec<usize>,
+    /// Group of every row and the sign of its direction against that of the leader; none for empty rows.
+    pub member: Vec<Option<(usize, f64)>>,
+}
+
+impl Grouping {
+    /// `matrix` holds unit rows in the metric `D^-1`, D = `metric`; the first `contact` are contact rows.
+    /// Opposite contact rows are two groups: they bound the same gap from two sides.
+    pub fn of(matrix: &Csr, contact: usize, metric: &[f64]) -> Self {
+        let mut grouping = Self { leaders: Vec::new(), member: vec![None; matrix.rows()] };
+        let mut known: HashMap<&[usize], Vec<usize>> = HashMap::new();
+        for i in (contact..matrix.rows()).chain(0..contact) {
+            let columns = &matrix.col[matrix.ptr[i]..matrix.ptr[i + 1]];
+            if columns.is_empty() {
+                continue;
+            }
+            let candidates = known.entry(columns).or_default();
+            let found = candidates.iter().find_map(|&group| {
+                let leader = grouping.leaders[group];
+                let sign = parallel(matrix, i, leader, metric)?;
+                (sign > 0.0 || leader >= contact).then_some((group, sign))
+            });
+            grouping.member[i] = Some(found.unwrap_or_else(|| {
+                candidates.push(grouping.leaders.len());
+                grouping.leaders.push(i);
+                (grouping.leaders.len() - 1, 1.0)
+            }));
+        }
+        grouping
+    }
+
+    /// Rows with entries: number, group and sign.
+    pub fn members(&self) -> impl Iterator<Item = (usize, (usize, f64))> + '_ {
+        self.member.iter().enumerate().filter_map(|(i, member)| member.map(|member| (i, member)))
+    }
+
+    /// Kind of the multiplier of a group.
+    pub fn kind(&self, group: usize, contact: usize) -> RowKind {
+        if self.leaders[group] < contact {
+            RowKind::Inequality
+        } else {
+            RowKind::Equality
+        }
+    }
+}
+
+/// +1 or -1 where unit rows i and j (same columns) are equal or opposite.
+fn parallel(matrix: &Csr, i: usize, j: usize, metric: &[f64]) -> Option<f64> {
+    let distance = |sign: f64| {
+        let terms =
+            matrix.row(i).zip(matrix.row(j)).map(|((k, a), (_, b))| (a - sign * b).powi(2) / metric[k]);
+        terms.sum::<f64>().sqrt()
+    };
+    [1.0, -1.0].into_iter().find(|&sign| distance(sign) <= PARALLEL)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn parallel_rows_share_a_group_and_opposite_contact_rows_do_not() {
+        let mut matrix = Csr::empty(2);
+        matrix.push_row([(0, 0.6), (1, 0.8)]);
+        matrix.push_row([(0, -0.6), (1, -0.8)]);
+        matrix.push_row([(0, 0.6), (1, 0.8)]);
+        matrix.push_row([]);
+        matrix.push_row([(0, 1.0)]);
+        let grouping = Grouping::of(&matrix, 4, &[1.0; 2]);
+        assert_eq!(grouping.leaders, [4, 0, 1]);
+        assert_eq!(grouping.member, [Some((1, 1.0)), Some((2, 1.0)), Some((1, 1.0)), None, Some((0, 1.0))]);
+        assert_eq!(grouping.kind(0, 4), RowKind::Equality);
+    }
+
+    #[test]
+    fn a_contact_row_along_an_equality_row_joins_it_with_either_sign() {
+        let mut matrix = Csr::empty(1);
+        matrix.push_row([(0, -1.0)]);
+        matrix.push_row([(0, 1.0)]);
+        let grouping = Grouping::of(&matrix, 1, &[1.0]);
+        assert_eq!(grouping.member, [Some((0, -1.0)), Some((0, 1.0))]);
+    }
+}

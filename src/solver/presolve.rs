@@ -1,0 +1,128 @@
+//! Before any product with F: the gap of every group of parallel rows, and rows that contradict each other.
+
+use crate::constraints::RowKind;
+use crate::error::{Error, Kind, Result};
+use crate::linalg::vector::{norm, norm_max};
+use crate::linalg::{Csr, Operator};
+use crate::qp::{minimise, Counts, Judge, Limits, Observer, Qp, Verdict};
+use crate::solver::diagnosis;
+use crate::solver::problem::Problem;
+use crate::solver::setup::Ready;
+
+/// Gaps that differ by less than this fraction of the largest are equal.
+const EQUAL: f64 = 1e-10;
+
+/// Multiplications the search for contradictions may take.
+const WORK: usize = 200_000_000;
+
+/// The right-hand sides of the dual rows.
+pub(super) struct Gaps {
+    /// `S c` or `S h` of every group: the tightest gap of its contact rows.
+    pub value: Vec<f64>,
+    /// The row of the group that carries its multiplier.
+    pub holder: Vec<usize>,
+    /// Groups with a multiplier >= 0.
+    pub bounded: Vec<bool>,
+}
+
+/// Gaps of all groups; refuses rows whose gaps no displacement satisfies.
+pub(super) fn presolve(problem: &Problem, ready: &Ready) -> Result<Gaps> {
+    let rhs: Vec<f64> = problem.contact.rhs.iter().chain(&problem.equalities.rhs).copied().collect();
+    let scaled: Vec<f64> = rhs.iter().zip(&ready.scale).map(|(c, s)| c * s).collect();
+    let leaders = &ready.grouping.leaders;
+    let kinds = (0..leaders.len()).map(|group| ready.grouping.kind(group, ready.contact));
+    let mut gaps = Gaps {
+        value: leaders.iter().map(|&i| scaled[i]).collect(),
+        holder: leaders.clone(),
+        bounded: kinds.map(|kind| kind == RowKind::Inequality).collect(),
+    };
+    let slack = EQUAL * norm_max(&scaled);
+    for (i, member) in ready.grouping.member.iter().enumerate() {
+        let Some((group, sign)) = *member else { continue };
+        let gap = sign * gaps.value[group];
+        let contradicts = if i >= ready.contact {
+            (gap - scaled[i]).abs() > slack
+        } else if gaps.bounded[group] {
+            if scaled[i] < gap {
+                (gaps.value[group], gaps.holder[group]) = (scaled[i], i);
+            }
+            false
+        } else {
+            gap > scaled[i] + slack
+        };
+        if contradicts {
+            let (kind, row) = diagnosis::kind_and_row(i, ready.contact);
+            let what = format!("this {} contradicts an equality row in the same direction", kind.name());
+            return Err(Error::new(Kind::GapsContradict, what).row(row).value(gap - scaled[i]).limit(slack));
+        }
+    }
+    match contradiction(ready, &gaps)? {
+        Some(error) => Err(error),
+        None => Ok(gaps),
+    }
+}
+
+/// `min |D^-1/2 B'w|^2 + (1 + c'w)^2` over w >= 0 on contact rows is zero exactly where rows contradict each
+/// other (c scaled to largest entry 1); B has unit rows. No product with F is needed.
+fn contradiction(ready: &Ready, gaps: &Gaps) -> Result<Option<Error>> {
+    let harmless = |(c, bounded): (&f64, &bool)| if *bounded { *c >= 0.0 } else { *c == 0.0 };
+    if gaps.value.iter().zip(&gaps.bounded).all(harmless) {
+        return Ok(None); // u = 0 satisfies them all
+    }
+    let size = norm_max(&gaps.value);
+    let c: Vec<f64> = gaps.value.iter().map(|c| c / size).collect();
+    let a = Alternative { matrix: &ready.matrix, metric: &ready.metric, c: &c };
+    let b: Vec<f64> = c.iter().map(|c| -c).collect();
+    let none = Csr { ptr: vec![0; c.len() + 1], ..Csr::default() };
+    let qp = Qp { a: &a, b: &b, g_transposed: &none, e: &[], bounded: &gaps.bounded };
+    let steps = (WORK / (4 * ready.matrix.val.len() + c.len() + 1)).clamp(1000, 200_000);
+    let limits = Limits { tolerance: 1e-14, gamma: 1.0, steps };
+    let mut judge = Unjudged { scale: norm(&b) };
+    let solution = minimise(qp, &vec![0.0; c.len()], limits, &mut judge, &mut Unobserved)?;
+    Ok(diagnosis::gaps_contradict(ready, &gaps.value, &solution.x))
+}
+
+/// `w -> B D^-1 B'w + c (c'w)`
+struct Alternative<'a> {
+    matrix: &'a Csr,
+    metric: &'a [f64],
+    c: &'a [f64],
+}
+
+impl Operator for Alternative<'_> {
+    fn order(&self) -> usize {
+        self.c.len()
+    }
+
+    fn apply(&self, w: &[f64], y: &mut [f64]) {
+        let mut v = vec![0.0; self.metric.len()];
+        self.matrix.mul_transposed_add(1.0, w, &mut v);
+        v.iter_mut().zip(self.metric).for_each(|(v, d)| *v /= d);
+        self.matrix.mul(&v, y);
+        let demanded = crate::linalg::vector::dot(self.c, w);
+        y.iter_mut().zip(self.c).for_each(|(y, c)| *y += c * demanded);
+    }
+}
+
+/// The combination found is examined afterwards.
+struct Unjudged {
+    scale: f64,
+}
+
+impl Judge for Unjudged {
+    fn scale(&mut self, _: &[f64], _: &[f64]) -> Result<f64> {
+        Ok(self.scale)
+    }
+
+    fn accepts(&mut self, _: &[f64], _: &[f64]) -> Result<bool> {
+        Ok(true)
+    }
+}
+
+struct Unobserved;
+
+impl Observer for Unobserved {
+    fn step(&mut self, _: &Counts, _: f64, _: &[bool]) -> Option<Verdict> {
+        None
+    }
+}
