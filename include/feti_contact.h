@@ -664,9 +664,9 @@ int32_t feti_last_error_detail(struct feti_error_detail *out);
 /**
  * Gives a basis of the null space of a body, or candidates for it.
  *
- * The basis is copied; calling again replaces it. Without this call the library finds the null
- * space itself. That `K R = 0` holds is checked in feti_setup. After a failure the body keeps what
- * it had.
+ * The basis is copied; calling again replaces it. Without it the coordinates of the dofs give the
+ * candidates (feti_body_coordinates). That `K R = 0` holds is checked in feti_setup. After a
+ * failure the body keeps what it had.
  *
  * @param[in] p     (scalar) the handle
  * @param[in] body  (scalar) number of the body, from 0

@@ -27,25 +27,11 @@ pub struct SparseInput<'a> {
 /// `|K_ij - K_ji| <= tolerance sqrt(K_ii K_jj)`, and averaged.
 pub fn from_sparse(input: SparseInput<'_>, tolerance: f64) -> Result<Symmetric> {
     let rows = sorted(input)?;
-    match input.storage {
-        Storage::Lower => {
-            check_triangle(
-                &rows,
-                |row, col| col <= row,
-                "above the diagonal, in a matrix announced as lower",
-            )?;
-            symmetric(rows)
-        }
-        Storage::Upper => {
-            check_triangle(
-                &rows,
-                |row, col| col >= row,
-                "below the diagonal, in a matrix announced as upper",
-            )?;
-            symmetric(rows.transposed()?)
-        }
-        Storage::Full => symmetric(averaged(&rows, tolerance)?),
-    }
+    symmetric(match input.storage {
+        Storage::Lower => rows,
+        Storage::Upper => rows.transposed()?,
+        Storage::Full => averaged(&rows, tolerance)?,
+    })
 }
 
 /// Checks and converts a column-major n x n matrix with leading dimension `ld`; zeros are not stored.
@@ -102,6 +88,10 @@ fn sorted(input: SparseInput<'_>) -> Result<Csr> {
                     .entry(at)
                     .value(input.col[at] as f64)
             })?;
+            if let Some(side) = outside(input.storage, i, col) {
+                let what = format!("column {side} of the diagonal, in a matrix announced as a triangle");
+                return Err(Error::argument("col", what).row(i).dof(col).entry(at));
+            }
             row.push((col, input.val[at], at));
         }
         row.sort_unstable_by_key(|entry| entry.0);
@@ -114,16 +104,13 @@ fn sorted(input: SparseInput<'_>) -> Result<Csr> {
     Ok(rows)
 }
 
-/// `entry` counts within the sorted row structure, so the row and the column name the place.
-fn check_triangle(rows: &Csr, inside: fn(usize, usize) -> bool, where_it_is: &str) -> Result<()> {
-    for i in 0..rows.rows() {
-        if let Some((j, _)) = rows.row(i).find(|&(j, _)| !inside(i, j)) {
-            return Err(Error::argument("col", format!("the entry of this dof's column lies {where_it_is}"))
-                .row(i)
-                .dof(j));
-        }
+/// On which wrong side of the diagonal an entry lies.
+fn outside(storage: Storage, row: usize, col: usize) -> Option<&'static str> {
+    match storage {
+        Storage::Lower if col > row => Some("right"),
+        Storage::Upper if col < row => Some("left"),
+        _ => None,
     }
-    Ok(())
 }
 
 /// Lower triangle of `(K + K') / 2`, after the check of symmetry.
@@ -247,6 +234,15 @@ mod tests {
         assert_eq!(from_sparse(rigid, 0.0).unwrap().diagonal(0), 0.0);
         let error = full(&[-1.0, 2.0, -1.0, 0.0]).unwrap_err();
         assert_eq!((error.kind, error.place.dof), (Kind::Indefinite, Some(1)));
+    }
+
+    #[test]
+    fn an_entry_in_the_wrong_triangle_is_refused_with_its_position() {
+        let input = |storage| SparseInput { ptr: &PTR, col: &[0, 1, 0, 1], val: &[1.0; 4], storage };
+        let above = from_sparse(input(Storage::Lower), 0.0).unwrap_err();
+        assert_eq!((above.kind, above.place.row, above.place.entry), (Kind::Argument("col"), Some(0), Some(1)));
+        let below = from_sparse(input(Storage::Upper), 0.0).unwrap_err();
+        assert_eq!((below.place.row, below.place.entry), (Some(1), Some(2)));
     }
 
     #[test]

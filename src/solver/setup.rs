@@ -54,10 +54,10 @@ impl Problem {
             let missing =
                 |what: &str| Err(Error::new(Kind::State, format!("{what} has not been given")).body(p));
             if slot.body.stiffness.is_none() {
-                return missing("the stiffness matrix");
+                return missing("the stiffness matrix is");
             }
             if slot.body.null_space.is_none() && slot.body.coordinates.is_none() {
-                return missing("neither null space nor coordinates");
+                return missing("the null space is (give it, or coordinates)");
             }
         }
         Ok(())
@@ -156,12 +156,12 @@ impl Problem {
 
 /// What K+ of a body takes, found before it is computed.
 fn plan(body: &Body, unit: f64, tolerance: f64) -> Result<crate::body::Plan> {
-    let state = |what: &str| Error::new(Kind::State, format!("{what} has not been given"));
-    let k = body.stiffness.as_ref().ok_or_else(|| state("the stiffness matrix"))?.scaled(1.0 / unit)?;
+    let missing = |what: &str| Error::new(Kind::Internal, format!("a body without {what} was set up"));
+    let k = body.stiffness.as_ref().ok_or_else(|| missing("stiffness"))?.scaled(1.0 / unit)?;
     if let Some(given) = &body.null_space {
         return GeneralizedInverse::plan(k, given, tolerance);
     }
-    let coordinates = body.coordinates.as_ref().ok_or_else(|| state("neither null space nor coordinates"))?;
+    let coordinates = body.coordinates.as_ref().ok_or_else(|| missing("null space"))?;
     let vectors = coordinates.rigid_modes(&k)?;
     GeneralizedInverse::plan(k, &NullSpaceInput { vectors, modes: Modes::Candidates }, tolerance)
 }
