@@ -6,7 +6,7 @@ use std::sync::Arc;
 use crate::body::fixing::fixing_dofs;
 use crate::body::null_space::{largest, verified, NullSpaceInput};
 use crate::error::{Error, Kind, Result};
-use crate::linalg::memory::zeros;
+use crate::linalg::memory::{room, zeros, PRODUCTS};
 use crate::linalg::reach::inverse_form;
 use crate::linalg::vector::weighted_norm;
 use crate::linalg::{Analysis, Cholesky, Csr, Matrix, Packed, Symmetric};
@@ -38,6 +38,8 @@ impl GeneralizedInverse {
     /// Null space, fixing dofs and symbolic analysis of `k` (scaled so that its largest diagonal entry is in
     /// [1, 2)).
     pub fn plan(k: Symmetric, input: &NullSpaceInput, tolerance: f64) -> Result<Plan> {
+        let per_dof = (8 * input.vectors.cols + 24) * size_of::<f64>();
+        let _room = room(k.order() * per_dof + PRODUCTS, "the null space of a body")?;
         let null_space = verified(&k, input, tolerance)?;
         let root: Vec<f64> = (0..k.order()).map(|i| k.metric(i, 1.0).sqrt()).collect();
         let fixing = fixing_dofs(&null_space, &root);

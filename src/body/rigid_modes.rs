@@ -2,7 +2,7 @@
 
 use crate::error::{Error, Result};
 use crate::linalg::graph::components;
-use crate::linalg::memory::copied;
+use crate::linalg::memory::{copied, reserved, room};
 use crate::linalg::vector::first_non_finite;
 use crate::linalg::{Matrix, Symmetric};
 
@@ -15,6 +15,9 @@ pub struct Coordinates {
     place: Vec<[f64; 3]>,
 }
 
+/// Bytes that the parts of a body and their members take, per dof.
+const PER_DOF: usize = 128;
+
 impl Coordinates {
     /// `place(i, k)` is coordinate k of dof i at `xyz[k + ld i]`, k < dim.
     pub fn new(dim: usize, direction: &[i32], xyz: &[f64], ld: usize) -> Result<Self> {
@@ -22,9 +25,11 @@ impl Coordinates {
             let found = direction[at];
             return Err(Error::argument("dir", format!("direction {found} is not one of 1 to 6")).dof(at));
         }
-        let place: Vec<[f64; 3]> = (0..direction.len())
-            .map(|i| std::array::from_fn(|k| if k < dim { xyz[k + ld * i] } else { 0.0 }))
-            .collect();
+        let mut place: Vec<[f64; 3]> = reserved(direction.len(), "the coordinates of a body")?;
+        place.extend(
+            (0..direction.len())
+                .map(|i| std::array::from_fn(|k| if k < dim { xyz[k + ld * i] } else { 0.0 })),
+        );
         if let Some(at) = place.iter().position(|p| first_non_finite(p).is_some()) {
             return Err(Error::argument("xyz", "a coordinate is not a finite number").dof(at));
         }
@@ -38,10 +43,13 @@ impl Coordinates {
     /// The six rigid modes of every connected part with more than one dof, n x (up to 6 parts). Modes that
     /// move nothing are left out.
     pub fn rigid_modes(&self, stiffness: &Symmetric) -> Result<Matrix> {
+        let _room = room(self.len() * PER_DOF, "the rigid modes of a body")?;
         let (part_of, parts) = components(stiffness);
         let mut members = vec![Vec::new(); parts];
         part_of.iter().enumerate().for_each(|(dof, &part)| members[part].push(dof));
         let mut modes = Matrix::zeros(self.len(), 0)?;
+        let moving = members.iter().filter(|dofs| dofs.len() > 1).count();
+        modes.data = reserved(self.len() * 6 * moving, "the rigid modes of a body")?;
         let mut column = vec![0.0; self.len()];
         for dofs in members.iter().filter(|dofs| dofs.len() > 1) {
             let (centre, size) = self.extent(dofs);

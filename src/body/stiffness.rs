@@ -1,7 +1,7 @@
 //! The host's stiffness matrix, checked and brought into one form: the lower triangle by sorted rows.
 
 use crate::error::{Error, Kind, Result};
-use crate::linalg::memory::reserved;
+use crate::linalg::memory::{reserved, room};
 use crate::linalg::vector::first_non_finite;
 use crate::linalg::{Csr, Symmetric};
 
@@ -23,9 +23,13 @@ pub struct SparseInput<'a> {
     pub storage: Storage,
 }
 
+/// Bytes of row pointers and diagonals that come and go in the conversion of a matrix, per row.
+const PER_ROW: usize = 96;
+
 /// Checks and converts a sparse matrix. Full storage is accepted when
 /// `|K_ij - K_ji| <= tolerance sqrt(K_ii K_jj)`, and averaged.
 pub fn from_sparse(input: SparseInput<'_>, tolerance: f64) -> Result<Symmetric> {
+    let _room = room(input.ptr.len() * PER_ROW, "a stiffness matrix")?;
     let rows = sorted(input)?;
     symmetric(match input.storage {
         Storage::Lower => rows,
@@ -36,13 +40,17 @@ pub fn from_sparse(input: SparseInput<'_>, tolerance: f64) -> Result<Symmetric> 
 
 /// Checks and converts a column-major n x n matrix with leading dimension `ld`; zeros are not stored.
 pub fn from_dense(n: usize, k: &[f64], ld: usize, storage: Storage, tolerance: f64) -> Result<Symmetric> {
+    let _room = room(n * PER_ROW, "a stiffness matrix")?;
     let mut rows = Csr::empty(n);
+    let stored = |i: usize| match storage {
+        Storage::Full => 0..n,
+        Storage::Lower => 0..i + 1,
+        Storage::Upper => i..n,
+    };
+    let used = |i: usize| stored(i).filter(|&j| k[i + ld * j] != 0.0 || i == j).count();
+    reserve(&mut rows, (0..n).map(used).sum())?;
     for i in 0..n {
-        let range = match storage {
-            Storage::Full => 0..n,
-            Storage::Lower => 0..i + 1,
-            Storage::Upper => i..n,
-        };
+        let range = stored(i);
         for j in range.clone() {
             let value = k[i + ld * j];
             if !value.is_finite() {
@@ -61,6 +69,13 @@ pub fn from_dense(n: usize, k: &[f64], ld: usize, storage: Storage, tolerance: f
     })
 }
 
+/// Room for the entries of a matrix that has none yet.
+fn reserve(rows: &mut Csr, entries: usize) -> Result<()> {
+    rows.col = reserved(entries, "a stiffness matrix")?;
+    rows.val = reserved(entries, "a stiffness matrix")?;
+    Ok(())
+}
+
 fn rename(mut error: Error, argument: &'static str) -> Error {
     if matches!(error.kind, Kind::Argument(_)) {
         error.kind = Kind::Argument(argument);
@@ -76,8 +91,7 @@ fn sorted(input: SparseInput<'_>) -> Result<Csr> {
         return Err(Error::argument("val", "the entry is not a finite number").row(row).entry(at));
     }
     let mut rows = Csr::empty(n);
-    rows.col = reserved(input.col.len(), "a stiffness matrix")?;
-    rows.val = reserved(input.col.len(), "a stiffness matrix")?;
+    reserve(&mut rows, input.col.len())?;
     let mut row = Vec::new();
     for i in 0..n {
         row.clear();
@@ -119,6 +133,7 @@ fn averaged(rows: &Csr, tolerance: f64) -> Result<Csr> {
     let n = rows.rows();
     let diagonal: Vec<f64> = (0..n).map(|i| entry(rows, i, i)).collect();
     let mut lower = Csr::empty(n);
+    reserve(&mut lower, rows.col.len())?;
     for i in 0..n {
         let mut mates = transposed.row(i).take_while(|&(j, _)| j <= i).peekable();
         let mut own = rows.row(i).take_while(|&(j, _)| j <= i).peekable();

@@ -18,9 +18,14 @@ use faer::{Conj, MatMut, Par, Spec};
 
 use crate::error::{Error, Kind, Result};
 use crate::linalg::elimination::{elimination_tree, postorder, NONE};
-use crate::linalg::memory::{available, refusal, reserved, zeros};
+use crate::linalg::memory::{refusal, reserved, room, zeros, PRODUCTS};
 use crate::linalg::ordering::nested_dissection;
 use crate::linalg::Symmetric;
+
+/// Bytes that ordering and symbolic analysis take at most, per dof and per entry of the lower triangle: grids of all
+/// dimensions, chains, stars and diagonal matrices take up to 4/5 of it.
+const ANALYSIS_PER_DOF: usize = 256;
+const ANALYSIS_PER_ENTRY: usize = 128;
 
 /// Order of elimination and pattern of L: depends on the pattern of K and the held dofs only.
 pub struct Analysis {
@@ -47,8 +52,8 @@ pub struct Breakdown {
 
 impl Analysis {
     pub fn new(matrix: &Symmetric, held: &[bool]) -> Result<Self> {
-        let entries = matrix.val.len();
-        available(entries * 8 * size_of::<usize>(), "the ordering of a body")?;
+        let bytes = matrix.order() * ANALYSIS_PER_DOF + matrix.val.len() * ANALYSIS_PER_ENTRY;
+        let _room = room(bytes, "the ordering of a body")?;
         Self::in_order(matrix, nested_dissection(matrix, held)?)
     }
 
@@ -80,6 +85,16 @@ impl Analysis {
         self: &Arc<Self>,
         matrix: &Symmetric,
     ) -> Result<std::result::Result<Cholesky, Breakdown>> {
+        match self.attempt(matrix)? {
+            Ok(factor) => Ok(Ok(factor)),
+            Err(at) => self.breakdown(matrix, at).map(Err),
+        }
+    }
+
+    /// As `factorize`, but for a matrix that may well be singular; gives the position where it broke down.
+    pub fn attempt(self: &Arc<Self>, matrix: &Symmetric) -> Result<std::result::Result<Cholesky, usize>> {
+        let positions = 4 * self.order.len() * size_of::<usize>();
+        let _room = room(positions + PRODUCTS, "a factorisation")?;
         let mut values = zeros(self.symbolic.len_val(), "a Cholesky factor")?;
         let mut workspace = workspace(self.scratch())?;
         let n = self.order.len();
@@ -94,16 +109,18 @@ impl Analysis {
             MemStack::new(&mut workspace),
             Spec::default(),
         );
-        match done {
-            Ok(_) => Ok(Ok(Cholesky { analysis: Arc::clone(self), values })),
-            Err(LltError::NonPositivePivot { index }) => self.breakdown(matrix, index).map(Err),
-        }
+        Ok(match done {
+            Ok(_) => Ok(Cholesky { analysis: Arc::clone(self), values }),
+            Err(LltError::NonPositivePivot { index }) => Err(index),
+        })
     }
 
     /// The pivot at position `at`: the Schur complement of the leading block, computed afresh
     /// (faer reports the position only).
     fn breakdown(&self, matrix: &Symmetric, at: usize) -> Result<Breakdown> {
         let dof = self.order[at];
+        let analysis = matrix.order() * ANALYSIS_PER_DOF + matrix.val.len() * ANALYSIS_PER_ENTRY;
+        let _room = room(analysis, "the pivot of a body")?;
         let leading = Arc::new(Self::in_order(matrix, self.order[..at].to_vec())?);
         let mut column = vec![0.0; matrix.order()];
         let mut unit = column.clone();
@@ -133,9 +150,18 @@ impl Cholesky {
         SupernodalLltRef::new(&self.analysis.symbolic, &self.values)
     }
 
+    /// Smallest pivot `L_ii^2`.
+    pub fn smallest_pivot(&self) -> f64 {
+        let factor = self.factor();
+        let nodes = (0..self.analysis.symbolic.n_supernodes()).map(|s| factor.supernode(s).val());
+        let pivots = nodes.flat_map(|l| (0..l.ncols()).map(move |i| l[(i, i)] * l[(i, i)]));
+        pivots.fold(f64::INFINITY, f64::min)
+    }
+
     /// `x <- K_ff^-1 x` on the free dofs; x has the length of the body, held entries become 0.
     pub fn solve(&self, x: &mut [f64]) -> Result<()> {
         let order = &self.analysis.order;
+        let _room = room(PRODUCTS, "a solution")?;
         let mut y = zeros(order.len(), "a right-hand side")?;
         for (y, &dof) in y.iter_mut().zip(order) {
             *y = x[dof];

@@ -1,6 +1,58 @@
 //! Memory is reserved before it is used: Rust ends the process on a failed allocation, a host must not.
+//!
+//! Large arrays are reserved one by one, with [`zeros`], [`reserved`] and [`copied`]. Where many small pieces or foreign
+//! code allocate, [`room`] proves beforehand that there is enough, and keeps the large arrays of other threads from taking it.
+
+use std::hint::black_box;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 use crate::error::{Error, Kind, Result};
+
+/// Bytes that are always left for small pieces: texts, maps, the growth of the heap by the allocator.
+const SPARE: usize = 2 << 20;
+/// Reservations from this size on must leave what is spare.
+const LARGE: usize = 4 << 10;
+/// Work arrays of faer's products, made on the first product of every thread.
+pub const PRODUCTS: usize = 5 << 20;
+
+/// Sum of all rooms in use.
+static PROMISED: AtomicUsize = AtomicUsize::new(0);
+
+/// A part of the memory kept free for small pieces, until dropped.
+#[derive(Debug)]
+pub struct Room {
+    bytes: usize,
+}
+
+/// Room for `bytes` in small pieces, or `Kind::Memory` naming `what` they were for.
+pub fn room(bytes: usize, what: &str) -> Result<Room> {
+    let mut promised = PROMISED.load(Ordering::Relaxed);
+    loop {
+        let with_this = promised.saturating_add(bytes);
+        if !is_free(with_this) {
+            return Err(refusal(bytes, what));
+        }
+        match PROMISED.compare_exchange(promised, with_this, Ordering::Relaxed, Ordering::Relaxed) {
+            Ok(_) => return Ok(Room { bytes }),
+            Err(changed) => promised = changed,
+        }
+    }
+}
+
+impl Drop for Room {
+    fn drop(&mut self) {
+        PROMISED.fetch_sub(self.bytes, Ordering::Relaxed);
+    }
+}
+
+/// True when so many bytes could be had now besides what is spare. The optimiser must see a use: it may leave out an
+/// allocation that has none, and count it as successful.
+fn is_free(bytes: usize) -> bool {
+    let mut block: Vec<u8> = Vec::new();
+    let had = block.try_reserve_exact(bytes.saturating_add(SPARE)).is_ok();
+    black_box(block.as_ptr());
+    had
+}
 
 /// `len` zeros, or `Kind::Memory` naming `what` they were for.
 pub fn zeros(len: usize, what: &str) -> Result<Vec<f64>> {
@@ -11,9 +63,14 @@ pub fn zeros(len: usize, what: &str) -> Result<Vec<f64>> {
 
 /// An empty vector with room for exactly `len` entries.
 pub fn reserved<T>(len: usize, what: &str) -> Result<Vec<T>> {
+    let bytes = len.saturating_mul(size_of::<T>());
     let mut values = Vec::new();
-    values.try_reserve_exact(len).map_err(|_| refusal(len.saturating_mul(size_of::<T>()), what))?;
-    Ok(values)
+    let had = values.try_reserve_exact(len).is_ok();
+    if had && (bytes < LARGE || is_free(PROMISED.load(Ordering::Relaxed))) {
+        return Ok(values);
+    }
+    drop(values);
+    Err(refusal(bytes, what))
 }
 
 /// A copy of the host's array.
@@ -23,11 +80,35 @@ pub fn copied<T: Copy>(values: &[T], what: &str) -> Result<Vec<T>> {
     Ok(copy)
 }
 
-/// Checks that `bytes` could be had now, without keeping them: foreign code is about to ask for them.
+/// Checks that `bytes` could be had now, without keeping them.
 pub fn available(bytes: usize, what: &str) -> Result<()> {
-    reserved::<u8>(bytes, what).map(drop)
+    room(bytes, what).map(drop)
 }
 
 pub fn refusal(bytes: usize, what: &str) -> Error {
     Error::new(Kind::Memory, format!("{bytes} bytes for {what} could not be reserved")).value(bytes as f64)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_no_machine_has_is_refused_with_its_size() {
+        for error in [room(1 << 60, "a body").unwrap_err(), zeros(1 << 57, "a body").unwrap_err()] {
+            assert_eq!((error.kind, error.place.value), (Kind::Memory, Some((1_u64 << 60) as f64)));
+        }
+        assert!(room(usize::MAX, "a body").is_err());
+        assert!(room(1 << 20, "a body").is_ok());
+    }
+
+    #[test]
+    fn a_room_is_promised_until_it_is_dropped_and_a_refused_one_is_not() {
+        let large = 1 << 30;
+        let kept = room(large, "a body").unwrap();
+        assert!(PROMISED.load(Ordering::Relaxed) >= large);
+        assert!(room(1 << 60, "a body").is_err());
+        drop(kept);
+        assert!(PROMISED.load(Ordering::Relaxed) < large);
+    }
 }

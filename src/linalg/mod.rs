@@ -4,6 +4,7 @@ pub mod cholesky;
 pub mod csr;
 pub mod dense;
 pub mod elimination;
+pub mod gram;
 pub mod graph;
 pub mod memory;
 pub mod ordering;

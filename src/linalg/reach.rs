@@ -7,7 +7,7 @@ use faer::{linalg::matmul::matmul, Accum, Mat, Par};
 
 use crate::error::Result;
 use crate::linalg::elimination::NONE;
-use crate::linalg::memory::reserved;
+use crate::linalg::memory::{copied, reserved, room, PRODUCTS};
 use crate::linalg::{Cholesky, Csr, Packed};
 
 /// What a supernode passes on to its parent: update rows for the columns (rows of B) seen so far.
@@ -19,17 +19,20 @@ struct Update {
     values: Mat<f64>,
 }
 
+const WHAT: &str = "the dual operator of a body";
+
 /// `rows` (m x n, over all dofs of the body) gives the m x m matrix.
 pub fn inverse_form(cholesky: &Cholesky, rows: &Csr) -> Result<Packed> {
     let factor = cholesky.factor();
     let symbolic = &cholesky.analysis.symbolic;
+    let _room = room(small_pieces(cholesky, rows) + PRODUCTS, WHAT)?;
     let mut form = Packed::zeros(rows.rows())?;
     let mut own = entries_by_supernode(cholesky, rows)?;
     let mut waiting: Vec<Vec<Update>> = (0..symbolic.n_supernodes()).map(|_| Vec::new()).collect();
     let mut local = vec![NONE; symbolic.nrows()];
     for s in 0..symbolic.n_supernodes() {
         let updates = std::mem::take(&mut waiting[s]);
-        let columns = merged_columns(&own[s], &updates);
+        let columns = merged_columns(&own[s], &updates)?;
         if columns.is_empty() {
             continue;
         }
@@ -38,25 +41,33 @@ pub fn inverse_form(cholesky: &Cholesky, rows: &Csr) -> Result<Packed> {
         let front_rows = || (begin..end).chain(node.pattern().iter().copied());
         front_rows().enumerate().for_each(|(at, row)| local[row] = at);
         let mut front =
-            assemble(&local, &columns, std::mem::take(&mut own[s]), updates, front_rows().count());
+            assemble(&local, &columns, std::mem::take(&mut own[s]), updates, front_rows().count())?;
         let width = end - begin;
         let (top, bottom) = node.val().split_at_row(width);
         let (mut y, mut rest) = front.as_mut().split_at_row_mut(width);
         solve_lower_triangular_in_place(top, y.as_mut(), Par::Seq);
-        add_gram(&mut form, &columns, y.as_ref());
+        add_gram(&mut form, &columns, y.as_ref())?;
         if let Some(&next) = node.pattern().first() {
             matmul(rest.as_mut(), Accum::Add, bottom, y.as_ref(), -1.0, Par::Seq);
             let parent = symbolic.supernode_end().partition_point(|&end| end <= next);
-            waiting[parent].push(Update { rows: node.pattern().to_vec(), columns, values: rest.to_owned() });
+            let mut values = zero_matrix(rest.nrows(), rest.ncols())?;
+            values.copy_from(rest);
+            waiting[parent].push(Update { rows: copied(node.pattern(), WHAT)?, columns, values });
         }
     }
     Ok(form)
 }
 
+/// Bytes of the lists by supernode, by dof and by entry of B, which grow piece by piece.
+fn small_pieces(cholesky: &Cholesky, rows: &Csr) -> usize {
+    let symbolic = &cholesky.analysis.symbolic;
+    96 * symbolic.n_supernodes() + 8 * symbolic.nrows() + 96 * rows.col.len()
+}
+
 /// The entries of P B': per supernode (row of B, position in L, value), rows of B ascending.
 fn entries_by_supernode(cholesky: &Cholesky, rows: &Csr) -> Result<Vec<Vec<(usize, usize, f64)>>> {
     let ends = cholesky.analysis.symbolic.supernode_end();
-    let mut entries = reserved(ends.len(), "the dual operator of a body")?;
+    let mut entries = reserved(ends.len(), WHAT)?;
     entries.resize(ends.len(), Vec::new());
     for i in 0..rows.rows() {
         for (dof, value) in rows.row(i) {
@@ -69,12 +80,14 @@ fn entries_by_supernode(cholesky: &Cholesky, rows: &Csr) -> Result<Vec<Vec<(usiz
     Ok(entries)
 }
 
-fn merged_columns(own: &[(usize, usize, f64)], updates: &[Update]) -> Vec<usize> {
-    let mut columns: Vec<usize> = own.iter().map(|entry| entry.0).collect();
+fn merged_columns(own: &[(usize, usize, f64)], updates: &[Update]) -> Result<Vec<usize>> {
+    let count = own.len() + updates.iter().map(|update| update.columns.len()).sum::<usize>();
+    let mut columns = reserved(count, WHAT)?;
+    columns.extend(own.iter().map(|entry| entry.0));
     updates.iter().for_each(|update| columns.extend(&update.columns));
     columns.sort_unstable();
     columns.dedup();
-    columns
+    Ok(columns)
 }
 
 /// The rows of the front (own columns of the supernode, then its pattern) of the partly eliminated P B'.
@@ -84,8 +97,8 @@ fn assemble(
     own: Vec<(usize, usize, f64)>,
     updates: Vec<Update>,
     rows: usize,
-) -> Mat<f64> {
-    let mut front = Mat::zeros(rows, columns.len());
+) -> Result<Mat<f64>> {
+    let mut front = zero_matrix(rows, columns.len())?;
     let find = |column: usize| columns.partition_point(|&c| c < column);
     for (column, at, value) in own {
         front[(local[at], find(column))] += value;
@@ -98,13 +111,19 @@ fn assemble(
             }
         }
     }
-    front
+    Ok(front)
+}
+
+/// Zeros, rows padded by faer to lines of the cache.
+fn zero_matrix(rows: usize, columns: usize) -> Result<Mat<f64>> {
+    let _room = room((rows + 8) * columns * size_of::<f64>(), WHAT)?;
+    Ok(Mat::zeros(rows, columns))
 }
 
 /// `form += Y'Y` on the given rows of B.
-fn add_gram(form: &mut Packed, columns: &[usize], y: faer::MatRef<'_, f64>) {
+fn add_gram(form: &mut Packed, columns: &[usize], y: faer::MatRef<'_, f64>) -> Result<()> {
     let k = columns.len();
-    let mut gram = Mat::<f64>::zeros(k, k);
+    let mut gram = zero_matrix(k, k)?;
     triangular::matmul(
         gram.as_mut(),
         BlockStructure::TriangularLower,
@@ -121,6 +140,7 @@ fn add_gram(form: &mut Packed, columns: &[usize], y: faer::MatRef<'_, f64>) {
             form.add(columns[i], columns[j], gram[(i, j)]);
         }
     }
+    Ok(())
 }
 
 #[cfg(test)]

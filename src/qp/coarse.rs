@@ -1,85 +1,126 @@
-//! The coarse space of a face: `W_F = G_F G_F'` over the rows F that are not held at their bound.
+//! The coarse space of a face: `W_F = G_F G_F'` over the rows F that are not held at their bound, r x r and
+//! sparse. Its pattern is analysed once for all faces.
+
+use std::sync::Arc;
 
 use crate::error::Result;
-use crate::linalg::{Csr, Matrix, SpdSolver};
+use crate::linalg::gram::Gram;
+use crate::linalg::{Analysis, Cholesky, Csr, Matrix, SpdSolver, Symmetric};
+
+/// A pivot of the matrix scaled to unit diagonal below this means that W_F is singular.
+const SINGULAR: f64 = 1e-11;
 
 pub struct Coarse<'a> {
     /// `G'`, m x r.
     g_transposed: &'a Csr,
-    /// Diagonal of the whole `G G'`, 1 where it vanishes.
-    pub scale: Vec<f64>,
-    face: Option<Face>,
+    /// Square roots of the diagonal of the whole `G G'`, 1 where it vanishes: W is scaled by them, so that
+    /// modes of stiff and of soft bodies count alike.
+    root: Vec<f64>,
+    gram: Option<(Gram, Arc<Analysis>)>,
+    /// The face of all rows, and the last other one.
+    faces: [Option<Face>; 2],
+    selected: usize,
     pub solves: usize,
+    pub factorisations: usize,
 }
 
 struct Face {
     held: Vec<bool>,
-    w: Matrix,
-    solver: SpdSolver,
+    /// `D^-1/2 W_F D^-1/2`
+    w: Symmetric,
+    solver: Solver,
+}
+
+enum Solver {
+    Cholesky(Cholesky),
+    /// Minimum norm.
+    Pseudo(SpdSolver),
 }
 
 impl<'a> Coarse<'a> {
-    pub fn new(g_transposed: &'a Csr) -> Self {
-        let mut scale = vec![0.0; g_transposed.cols];
+    pub fn new(g_transposed: &'a Csr) -> Result<Self> {
+        let mut root = vec![0.0; g_transposed.cols];
         for (&k, v) in g_transposed.col.iter().zip(&g_transposed.val) {
-            scale[k] += v * v;
+            root[k] += v * v;
         }
-        scale.iter_mut().filter(|s| **s == 0.0).for_each(|s| *s = 1.0);
-        Self { g_transposed, scale, face: None, solves: 0 }
+        root.iter_mut().for_each(|s| *s = if *s > 0.0 { s.sqrt() } else { 1.0 });
+        let gram = if root.is_empty() { None } else { Some(analysed(g_transposed)?) };
+        let faces = [None, None];
+        Ok(Self { g_transposed, root, gram, faces, selected: 0, solves: 0, factorisations: 0 })
     }
 
     /// Dimension r of the coarse space.
     pub fn dimension(&self) -> usize {
-        self.g_transposed.cols
+        self.root.len()
     }
 
-    /// Factorises `W_F` of the rows that are not held, unless they are those of the last call.
+    /// Factorises `W_F` of the rows that are not held, unless that has just been done.
     pub fn select(&mut self, held: &[bool]) -> Result<()> {
-        if self.face.as_ref().is_some_and(|face| face.held == held) {
+        let Some((gram, analysis)) = &self.gram else { return Ok(()) };
+        self.selected = usize::from(held.contains(&true));
+        let slot = &mut self.faces[self.selected];
+        if slot.as_ref().is_some_and(|face| face.held == held) {
             return Ok(());
         }
-        let w = self.gram(held)?;
-        let solver = SpdSolver::new(&w, &self.scale)?;
-        self.face = Some(Face { held: held.to_vec(), w, solver });
+        let mut w = gram.sum(self.g_transposed, held)?;
+        for k in 0..w.order() {
+            for at in w.ptr[k]..w.ptr[k + 1] {
+                w.val[at] /= self.root[k] * self.root[w.col[at]];
+            }
+        }
+        let solver = match analysis.attempt(&w)? {
+            Ok(factor) if factor.smallest_pivot() > SINGULAR => Solver::Cholesky(factor),
+            _ => Solver::Pseudo(SpdSolver::new(&dense(&w)?, &vec![1.0; w.order()])?),
+        };
+        self.factorisations += 1;
+        *slot = Some(Face { held: held.to_vec(), w, solver });
         Ok(())
     }
 
-    fn gram(&self, held: &[bool]) -> Result<Matrix> {
-        let r = self.dimension();
-        let mut w = Matrix::zeros(r, r)?;
-        for i in (0..held.len()).filter(|&i| !held[i]) {
-            for (k, a) in self.g_transposed.row(i) {
-                for (l, b) in self.g_transposed.row(i) {
-                    w.data[k + l * r] += a * b;
-                }
-            }
-        }
-        Ok(w)
-    }
-
     /// `W_F+ rhs` on the selected face.
-    pub fn solve(&mut self, rhs: &[f64]) -> Vec<f64> {
+    pub fn solve(&mut self, rhs: &[f64]) -> Result<Vec<f64>> {
         self.solves += 1;
-        self.face.as_ref().map_or_else(|| vec![0.0; rhs.len()], |face| face.solver.solve(rhs))
-    }
-
-    /// Dimension of the kernel of `W_F` on the selected face.
-    pub fn deficiency(&self) -> usize {
-        self.face.as_ref().map_or(self.dimension(), |face| face.solver.deficiency())
+        let Some(face) = &self.faces[self.selected] else { return Ok(vec![0.0; rhs.len()]) };
+        let mut x = self.scaled(rhs);
+        match &face.solver {
+            Solver::Cholesky(factor) => factor.solve(&mut x)?,
+            Solver::Pseudo(solver) => x = solver.solve(&x),
+        }
+        Ok(self.scaled(&x))
     }
 
     /// `W_F^-1 rhs`, or `(W_F + 1e-8 diag W)^-1 rhs` where W_F is singular.
     pub fn solve_regularised(&mut self, rhs: &[f64]) -> Result<Vec<f64>> {
         const WEIGHT: f64 = 1e-8;
-        let Some(face) = self.face.as_ref().filter(|face| face.solver.deficiency() > 0) else {
-            return Ok(self.solve(rhs));
+        let (Some(face), Some((_, analysis))) = (&self.faces[self.selected], &self.gram) else {
+            return Ok(vec![0.0; rhs.len()]);
         };
-        let mut w = face.w.clone();
-        for (k, s) in self.scale.iter().enumerate() {
-            w.data[k + k * w.rows] += WEIGHT * s;
+        if matches!(face.solver, Solver::Cholesky(_)) {
+            return self.solve(rhs);
         }
+        let mut w = face.w.clone();
+        for k in 0..w.order() {
+            w.val[w.ptr[k + 1] - 1] += WEIGHT;
+        }
+        let Ok(factor) = analysis.attempt(&w)? else { return self.solve(rhs) };
+        let mut x = self.scaled(rhs);
+        factor.solve(&mut x)?;
         self.solves += 1;
-        Ok(SpdSolver::new(&w, &self.scale)?.solve(rhs))
+        self.factorisations += 1;
+        Ok(self.scaled(&x))
+    }
+
+    /// `D^-1/2 x`
+    fn scaled(&self, x: &[f64]) -> Vec<f64> {
+        x.iter().zip(&self.root).map(|(x, root)| x / root).collect()
+    }
+
+    /// Dimension of the kernel of `W_F` on the selected face.
+    pub fn deficiency(&self) -> usize {
+        match &self.faces[self.selected] {
+            Some(Face { solver: Solver::Pseudo(solver), .. }) => solver.deficiency(),
+            _ => 0,
+        }
     }
 
     /// `G x`
@@ -97,12 +138,29 @@ impl<'a> Coarse<'a> {
         }
         self.select(held)?;
         let image = self.image(v);
-        let alpha = self.solve(&image);
+        let alpha = self.solve(&image)?;
         for i in (0..v.len()).filter(|&i| !held[i]) {
             v[i] -= self.g_transposed.row_dot(i, &alpha);
         }
         Ok(())
     }
+}
+
+fn analysed(g_transposed: &Csr) -> Result<(Gram, Arc<Analysis>)> {
+    let gram = Gram::of(g_transposed)?;
+    let analysis = Analysis::new(gram.pattern(), &vec![false; g_transposed.cols])?;
+    Ok((gram, Arc::new(analysis)))
+}
+
+fn dense(w: &Symmetric) -> Result<Matrix> {
+    let mut full = Matrix::zeros(w.order(), w.order())?;
+    for i in 0..w.order() {
+        for (j, v) in w.lower_row(i) {
+            full.set(i, j, v);
+            full.set(j, i, v);
+        }
+    }
+    Ok(full)
 }
 
 #[cfg(test)]
@@ -115,7 +173,7 @@ mod tests {
         for v in [1.0, 2.0, -1.0, 3.0] {
             g_transposed.push_row([(0, v)]);
         }
-        let mut coarse = Coarse::new(&g_transposed);
+        let mut coarse = Coarse::new(&g_transposed).unwrap();
         let mut v = [1.0, 1.0, 1.0, 1.0];
         coarse.project(&[false, true, false, false], &mut v).unwrap();
         assert_eq!(v[1], 0.0);
@@ -123,5 +181,17 @@ mod tests {
         let before = v;
         coarse.project(&[false, true, false, false], &mut v).unwrap();
         assert!(v.iter().zip(&before).all(|(a, b)| (a - b).abs() < 1e-15), "a projection repeats itself");
+    }
+
+    #[test]
+    fn a_face_without_a_mode_has_a_kernel_and_its_solution_minimum_norm() {
+        let mut g_transposed = Csr::empty(2);
+        g_transposed.push_row([(0, 1.0), (1, 1.0)]);
+        g_transposed.push_row([(0, 1.0), (1, -1.0)]);
+        let mut coarse = Coarse::new(&g_transposed).unwrap();
+        coarse.select(&[false, true]).unwrap();
+        assert_eq!(coarse.deficiency(), 1);
+        let x = coarse.solve(&[1.0, 1.0]).unwrap();
+        assert!((x[0] - 0.5).abs() < 1e-14 && (x[1] - 0.5).abs() < 1e-14);
     }
 }

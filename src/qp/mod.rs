@@ -37,6 +37,10 @@ pub struct Counts {
     pub releases: usize,
     /// Systems solved with `W_F = G_F G_F'`.
     pub coarse_solves: usize,
+    /// Factorisations of `W_F`.
+    pub coarse_factorisations: usize,
+    /// Applications of the preconditioner.
+    pub preconditioned: usize,
 }
 
 impl Counts {

@@ -74,7 +74,7 @@ fn most_correlated(qp: &Qp, held: &[bool], residual: &[f64]) -> Option<usize> {
 /// `G_P' (G_P G_P')+ e` on the rows P that are not held, zero elsewhere.
 fn least_squares(qp: &Qp, coarse: &mut Coarse, held: &[bool]) -> Result<Vec<f64>> {
     coarse.select(held)?;
-    let alpha = coarse.solve(qp.e);
+    let alpha = coarse.solve(qp.e)?;
     Ok((0..held.len()).map(|i| if held[i] { 0.0 } else { qp.g_transposed.row_dot(i, &alpha) }).collect())
 }
 
@@ -98,7 +98,7 @@ mod tests {
         columns.iter().for_each(|c| g_transposed.push_row([(0, c[0]), (1, c[1])]));
         let (a, m) = (Packed::zeros(columns.len()).unwrap(), columns.len());
         let qp = Qp { a: &a, b: &vec![0.0; m], g_transposed: &g_transposed, e: &e, bounded: &vec![true; m] };
-        nearest(&qp, &mut Coarse::new(&g_transposed)).unwrap()
+        nearest(&qp, &mut Coarse::new(&g_transposed).unwrap()).unwrap()
     }
 
     #[test]

@@ -80,7 +80,7 @@ pub fn minimise(
     judge: &mut dyn Judge,
     observer: &mut dyn Observer,
 ) -> Result<Solution> {
-    let mut coarse = Coarse::new(qp.g_transposed);
+    let mut coarse = Coarse::new(qp.g_transposed)?;
     let none = vec![false; start.len()];
     if let Some(first) = project(&qp, &mut coarse, start, &none)? {
         return proportioning(Iterate::new(qp, coarse, first.point)?, limits, judge, observer);
@@ -88,7 +88,8 @@ pub fn minimise(
     let found = nearest(&qp, &mut coarse)?;
     let margin = margin(&qp, &found.residual);
     if margin >= MARGINAL {
-        let counts = Counts { coarse_solves: coarse.solves, ..Counts::default() };
+        let (coarse_solves, coarse_factorisations) = (coarse.solves, coarse.factorisations);
+        let counts = Counts { coarse_solves, coarse_factorisations, ..Counts::default() };
         let verdict = Verdict::Infeasible { direction: found.residual, margin };
         let alpha = vec![0.0; qp.e.len()];
         return Ok(Solution { x: found.point, alpha, undetermined: 0, verdict, counts });
@@ -142,6 +143,7 @@ fn proportioning(
         }
     };
     it.counts.coarse_solves = it.coarse.solves;
+    it.counts.coarse_factorisations = it.coarse.factorisations;
     Ok(Solution {
         undetermined: it.coarse.deficiency(),
         x: it.x,

@@ -6,9 +6,13 @@ use rayon::prelude::*;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 
 use crate::error::{Error, Kind, Result};
+use crate::linalg::memory::room;
 
 /// Pools by process and size: a forked child has none of its parent's threads and makes its own.
 static POOLS: Mutex<Vec<(u32, usize, Arc<ThreadPool>)>> = Mutex::new(Vec::new());
+
+/// Bytes a thread takes to start: its stack and its first small pieces.
+const STARTING: usize = (2 << 20) + (256 << 10);
 
 /// Name of every thread of a pool.
 pub const THREAD_NAME: &str = "feti-contact";
@@ -41,11 +45,16 @@ fn pool(threads: usize) -> Result<Arc<ThreadPool>> {
     if let Some((_, _, pool)) = pools.iter().find(|(p, size, _)| *p == process && *size == threads) {
         return Ok(Arc::clone(pool));
     }
+    let starting = room(threads * STARTING, "threads")?;
     let pool = ThreadPoolBuilder::new()
         .num_threads(threads)
         .thread_name(|_| THREAD_NAME.to_owned())
         .build()
         .map_err(|e| Error::new(Kind::Memory, format!("{threads} threads could not be started: {e}")))?;
+    // Until every thread runs: then it has the memory that the system gives a thread, and what is left can be judged.
+    pool.broadcast(|_| ());
+    drop(starting);
+    room(0, "threads")?;
     let pool = Arc::new(pool);
     pools.push((process, threads, Arc::clone(&pool)));
     Ok(pool)

@@ -1,0 +1,91 @@
+//! Gram matrices `sum_i w_i g_i' g_i` of sparse rows g_i: the coarse matrix of a face, the coupling of rows.
+
+use crate::error::Result;
+use crate::linalg::memory::{copied, zeros};
+use crate::linalg::{Csr, Symmetric};
+
+/// Where the products of the entries of each row go: the pattern is found once, the values follow the weights.
+pub struct Gram {
+    pattern: Symmetric,
+    /// Per row of the rows given: positions in the values of the pattern of its products (k, l), l <= k.
+    ptr: Vec<usize>,
+    position: Vec<u32>,
+}
+
+impl Gram {
+    /// `rows` is m x r; the Gram matrix is r x r with its whole diagonal stored.
+    pub fn of(rows: &Csr) -> Result<Self> {
+        let pattern = pattern(rows)?;
+        let (mut ptr, mut position) = (vec![0], Vec::new());
+        for i in 0..rows.rows() {
+            for (k, _) in rows.row(i) {
+                let row = &pattern.col[pattern.ptr[k]..pattern.ptr[k + 1]];
+                for (l, _) in rows.row(i).take_while(|(l, _)| *l <= k) {
+                    position.push((pattern.ptr[k] + row.partition_point(|&col| col < l)) as u32);
+                }
+            }
+            ptr.push(position.len());
+        }
+        Ok(Self { pattern, ptr, position })
+    }
+
+    pub fn pattern(&self) -> &Symmetric {
+        &self.pattern
+    }
+
+    /// The sum over the rows that are not left out.
+    pub fn sum(&self, rows: &Csr, leave_out: &[bool]) -> Result<Symmetric> {
+        let mut val = zeros(self.pattern.val.len(), "a Gram matrix")?;
+        for i in (0..rows.rows()).filter(|&i| !leave_out[i]) {
+            let mut at = self.ptr[i];
+            for (k, a) in rows.row(i) {
+                for (_, b) in rows.row(i).take_while(|(l, _)| *l <= k) {
+                    val[self.position[at] as usize] += a * b;
+                    at += 1;
+                }
+            }
+        }
+        let (ptr, col) = (copied(&self.pattern.ptr, "a Gram matrix")?, copied(&self.pattern.col, "a Gram matrix")?);
+        Ok(Symmetric { ptr, col, val })
+    }
+}
+
+/// Lower triangle of the columns that meet in some row, with zeros.
+fn pattern(rows: &Csr) -> Result<Symmetric> {
+    let by_column = rows.transposed()?;
+    let (mut ptr, mut col, mut seen) = (vec![0], Vec::new(), vec![usize::MAX; rows.cols]);
+    for k in 0..rows.cols {
+        let start = col.len();
+        seen[k] = k;
+        for (i, _) in by_column.row(k) {
+            for (l, _) in rows.row(i).take_while(|(l, _)| *l < k) {
+                if seen[l] != k {
+                    seen[l] = k;
+                    col.push(l);
+                }
+            }
+        }
+        col[start..].sort_unstable();
+        col.push(k);
+        ptr.push(col.len());
+    }
+    let val = zeros(col.len(), "a Gram matrix")?;
+    Ok(Symmetric { ptr, col, val })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_gram_matrix_of_some_rows_equals_the_one_by_hand() {
+        let mut rows = Csr::empty(3);
+        rows.push_row([(0, 1.0), (2, 2.0)]);
+        rows.push_row([(1, 3.0)]);
+        rows.push_row([(0, -1.0), (2, 1.0)]);
+        let gram = Gram::of(&rows).unwrap();
+        let sum = gram.sum(&rows, &[false, true, false]).unwrap();
+        assert_eq!((sum.ptr, sum.col), (vec![0, 1, 2, 4], vec![0, 1, 0, 2]));
+        assert_eq!(sum.val, [2.0, 0.0, 1.0, 5.0]);
+    }
+}
