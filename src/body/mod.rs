@@ -1,12 +1,14 @@
 //! One body: stiffness `K_p`, load `f_p`, null space `R_p`, fixing dofs and the generalised inverse `K_p+`
 //! of (14)-(15).
 
+mod boundary;
 mod fixing;
 mod generalized_inverse;
 mod null_space;
 mod rigid_modes;
 mod stiffness;
 
+pub use boundary::{dirichlet, dirichlet_bytes, lumped};
 pub use generalized_inverse::{GeneralizedInverse, Plan};
 pub use null_space::{Modes, NullSpaceInput};
 pub use rigid_modes::Coordinates;

@@ -255,7 +255,10 @@ mod tests {
     fn an_entry_in_the_wrong_triangle_is_refused_with_its_position() {
         let input = |storage| SparseInput { ptr: &PTR, col: &[0, 1, 0, 1], val: &[1.0; 4], storage };
         let above = from_sparse(input(Storage::Lower), 0.0).unwrap_err();
-        assert_eq!((above.kind, above.place.row, above.place.entry), (Kind::Argument("col"), Some(0), Some(1)));
+        assert_eq!(
+            (above.kind, above.place.row, above.place.entry),
+            (Kind::Argument("col"), Some(0), Some(1))
+        );
         let below = from_sparse(input(Storage::Upper), 0.0).unwrap_err();
         assert_eq!((below.place.row, below.place.entry), (Some(1), Some(2)));
     }

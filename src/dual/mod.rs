@@ -7,6 +7,10 @@
 //! B holds the contact rows, then the equality rows, each divided by its length in the metric `D^-1`; forces
 //! are in units of 2^p, the size of the largest diagonal entry of K.
 
+mod preconditioner;
+
+pub use preconditioner::{constrained, Boundary, Preconditioner};
+
 use std::ops::Range;
 use std::sync::Arc;
 

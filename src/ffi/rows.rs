@@ -109,6 +109,7 @@ impl<I: Index> Rows<I> {
             // SAFETY: rows + 1 positions by the caller's word.
             let ptr = unsafe { pointers(self.row_ptr, rows, base) }?;
             let entries = ptr.last().copied().unwrap_or(0);
+            let _room = problem.room_for_rows(rows, entries)?;
             let body = if self.body.is_null() {
                 None
             } else {

@@ -5,7 +5,7 @@ use super::guard::{call, enter, enter_with_status};
 use super::record::Target;
 use super::status::of_outcome;
 use super::types::{feti_certificate, feti_info, feti_problem};
-use crate::solver::{Certificate, Counts, Problem, Report};
+use crate::solver::{Certificate, Counts, Report};
 
 /// Prepares the solve: null spaces, factors of the bodies, the dual operator.
 ///
@@ -17,7 +17,10 @@ use crate::solver::{Certificate, Counts, Problem, Report};
 /// | `p` | in | scalar | the handle |
 #[no_mangle]
 pub extern "C" fn feti_setup(p: *mut feti_problem) -> i32 {
-    enter(p, call!(feti_setup(p)), Problem::setup)
+    enter(p, call!(feti_setup(p)), |problem| {
+        let _room = problem.working_room()?;
+        problem.setup()
+    })
 }
 
 /// Minimises 1/2 u'Ku - f'u subject to `B u <= c` and `H u = h`.
@@ -44,6 +47,7 @@ pub unsafe extern "C" fn feti_solve(p: *mut feti_problem, info: *mut feti_info) 
         if problem.settings().fault_injection == 1 {
             panic!("fault injected on request");
         }
+        let _room = problem.working_room()?;
         let report = problem.solve()?;
         report_in(&mut filled, &report);
         Ok(of_outcome(&report.outcome))
@@ -93,6 +97,7 @@ pub unsafe extern "C" fn feti_check(
             unsafe { (input(u, n, "u")?, input(lambda, rows, "lambda")?, input(mu, eqs, "mu")?) };
         // SAFETY: `struct_size` bytes by the caller's word.
         let target = unsafe { Target::new(out, "out") }?;
+        let _room = problem.working_room()?;
         target.write(&certificate(&problem.check(u, lambda, mu)?));
         Ok(())
     })

@@ -43,6 +43,7 @@ pub unsafe extern "C" fn feti_body_kplus(
         let (y_entries, ldy) = column_major(n, nrhs, ldy, "ldy")?;
         // SAFETY: shapes by the caller's word.
         let (x, output) = unsafe { (input(x, x_entries, "x")?, Output::new(y, y_entries, "y")?) };
+        let _room = problem.working_room()?;
         // At most y_entries, which column_major has bounded.
         let mut columns = zeros(n * nrhs)?;
         for (k, column) in columns.chunks_exact_mut(n.max(1)).enumerate() {
@@ -74,6 +75,7 @@ pub unsafe extern "C" fn feti_dual_apply(p: *mut feti_problem, m: i64, x: *const
         let m = all_rows(problem, m)?;
         // SAFETY: shapes by the caller's word.
         let (x, output) = unsafe { (input(x, m, "x")?, Output::new(y, m, "y")?) };
+        let _room = problem.working_room()?;
         let mut product = zeros(m)?;
         problem.dual_apply(x, &mut product)?;
         output.write(&product);
@@ -99,6 +101,7 @@ pub unsafe extern "C" fn feti_dual_rhs(p: *mut feti_problem, m: i64, d: *mut f64
         let m = all_rows(problem, m)?;
         // SAFETY: room for m numbers by the caller's word.
         let output = unsafe { Output::new(d, m, "d") }?;
+        let _room = problem.working_room()?;
         let mut rhs = zeros(m)?;
         problem.dual_rhs(&mut rhs)?;
         output.write(&rhs);

@@ -45,7 +45,8 @@ impl Gram {
                 }
             }
         }
-        let (ptr, col) = (copied(&self.pattern.ptr, "a Gram matrix")?, copied(&self.pattern.col, "a Gram matrix")?);
+        let (ptr, col) =
+            (copied(&self.pattern.ptr, "a Gram matrix")?, copied(&self.pattern.col, "a Gram matrix")?);
         Ok(Symmetric { ptr, col, val })
     }
 }

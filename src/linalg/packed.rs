@@ -28,6 +28,11 @@ impl Packed {
         self.data[i * (i + 1) / 2 + j] += value;
     }
 
+    /// `A <- -A`
+    pub fn negate(&mut self) {
+        self.data.iter_mut().for_each(|v| *v = -*v);
+    }
+
     pub fn get(&self, i: usize, j: usize) -> f64 {
         let (i, j) = (i.max(j), i.min(j));
         self.data[i * (i + 1) / 2 + j]

@@ -2,6 +2,7 @@
 
 use crate::error::Result;
 use crate::linalg::memory::copied;
+use crate::linalg::Operator;
 
 /// Symmetric `n x n`; row i holds the entries with column <= i, ascending, the diagonal last.
 #[derive(Debug, Clone, PartialEq)]
@@ -75,6 +76,16 @@ impl Symmetric {
     /// `max K_ii`
     pub fn largest_diagonal(&self) -> f64 {
         (0..self.order()).map(|i| self.diagonal(i)).fold(0.0, f64::max)
+    }
+}
+
+impl Operator for Symmetric {
+    fn order(&self) -> usize {
+        self.ptr.len() - 1
+    }
+
+    fn apply(&self, x: &[f64], y: &mut [f64]) {
+        self.mul(x, y);
     }
 }
 

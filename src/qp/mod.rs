@@ -15,6 +15,7 @@ mod steps;
 
 pub use proportioning::{minimise, Judge, Limits, Observer, Solution, Verdict};
 
+use crate::error::Result;
 use crate::linalg::{Csr, Operator};
 
 /// The problem; `G` is given as `G'`, m x r.
@@ -25,6 +26,13 @@ pub struct Qp<'a> {
     pub g_transposed: &'a Csr,
     pub e: &'a [f64],
     pub bounded: &'a [bool],
+    pub preconditioner: Option<&'a dyn Preconditioner>,
+}
+
+/// An approximation of the inverse of A on a face.
+pub trait Preconditioner {
+    /// `z = M_F r` for the rows that are not held; 0 on the others.
+    fn apply(&self, held: &[bool], r: &[f64], z: &mut [f64]) -> Result<()>;
 }
 
 /// What the method did, counted.

@@ -97,7 +97,14 @@ mod tests {
         let mut g_transposed = Csr::empty(2);
         columns.iter().for_each(|c| g_transposed.push_row([(0, c[0]), (1, c[1])]));
         let (a, m) = (Packed::zeros(columns.len()).unwrap(), columns.len());
-        let qp = Qp { a: &a, b: &vec![0.0; m], g_transposed: &g_transposed, e: &e, bounded: &vec![true; m] };
+        let qp = Qp {
+            a: &a,
+            b: &vec![0.0; m],
+            g_transposed: &g_transposed,
+            e: &e,
+            bounded: &vec![true; m],
+            preconditioner: None,
+        };
         nearest(&qp, &mut Coarse::new(&g_transposed).unwrap()).unwrap()
     }
 

@@ -126,7 +126,14 @@ mod tests {
         let mut g_transposed = Csr::empty(1);
         (0..3).for_each(|_| g_transposed.push_row([(0, 1.0)]));
         let a = Packed::zeros(3).unwrap();
-        let qp = Qp { a: &a, b: &[0.0; 3], g_transposed: &g_transposed, e: &[1.0], bounded: &[true; 3] };
+        let qp = Qp {
+            a: &a,
+            b: &[0.0; 3],
+            g_transposed: &g_transposed,
+            e: &[1.0],
+            bounded: &[true; 3],
+            preconditioner: None,
+        };
         let mut coarse = Coarse::new(&g_transposed).unwrap();
         let found = project(&qp, &mut coarse, &[0.8, 0.6, -1.0], &[false; 3]).unwrap().unwrap();
         for (value, expected) in found.point.iter().zip([0.6, 0.4, 0.0]) {

@@ -62,6 +62,8 @@ pub struct Solution {
     pub alpha: Vec<f64>,
     /// Dimension of the part of alpha that the free rows leave undetermined.
     pub undetermined: usize,
+    /// What the judge measured the residual against.
+    pub scale: f64,
     pub verdict: Verdict,
     pub counts: Counts,
 }
@@ -92,7 +94,7 @@ pub fn minimise(
         let counts = Counts { coarse_solves, coarse_factorisations, ..Counts::default() };
         let verdict = Verdict::Infeasible { direction: found.residual, margin };
         let alpha = vec![0.0; qp.e.len()];
-        return Ok(Solution { x: found.point, alpha, undetermined: 0, verdict, counts });
+        return Ok(Solution { x: found.point, alpha, undetermined: 0, scale: 0.0, verdict, counts });
     }
     let held = coarse.image(&found.point);
     let qp = if margin > ROUNDING { Qp { e: &held, ..qp } } else { qp };
@@ -146,6 +148,7 @@ fn proportioning(
     it.counts.coarse_factorisations = it.coarse.factorisations;
     Ok(Solution {
         undetermined: it.coarse.deficiency(),
+        scale,
         x: it.x,
         alpha: it.alpha,
         verdict,

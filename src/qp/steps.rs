@@ -62,9 +62,10 @@ impl Iterate<'_> {
         Ok(Step::Expansion)
     }
 
-    /// `p = z - (z'A p_old / p_old'A p_old) p_old` with `z = P_F phi`, and A p.
+    /// `p = z - (z'A p_old / p_old'A p_old) p_old` with `z = P_F M_F P_F phi`, and A p.
     fn direction(&mut self) -> Result<(Vec<f64>, Vec<f64>)> {
         let mut p = self.free.clone();
+        self.precondition(&mut p)?;
         self.project_on_face(&mut p)?;
         if let Some((old, image)) = self.conjugate.take() {
             let beta = dot(&p, &image) / dot(&old, &image);
@@ -72,6 +73,18 @@ impl Iterate<'_> {
         }
         let image = self.product(&p);
         Ok((p, image))
+    }
+
+    /// `p <- M_F p`, as long as that is a direction of descent.
+    fn precondition(&mut self, p: &mut [f64]) -> Result<()> {
+        let Some(preconditioner) = self.qp.preconditioner else { return Ok(()) };
+        let mut z = vec![0.0; p.len()];
+        preconditioner.apply(&self.active, p, &mut z)?;
+        self.counts.preconditioned += 1;
+        if dot(&z, p) > 0.0 {
+            p.copy_from_slice(&z);
+        }
+        Ok(())
     }
 
     /// `L = max(L, 1.1 |P A p|^2 / p'A p)`, while the gradient is more than rounding.

@@ -6,6 +6,7 @@ mod presolve;
 mod problem;
 mod report;
 mod results;
+mod room;
 mod settings;
 mod setup;
 mod solve;

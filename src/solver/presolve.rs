@@ -74,7 +74,7 @@ fn contradiction(ready: &Ready, gaps: &Gaps) -> Result<Option<Error>> {
     let a = Alternative { matrix: &ready.matrix, metric: &ready.metric, c: &c };
     let b: Vec<f64> = c.iter().map(|c| -c).collect();
     let none = Csr { ptr: vec![0; c.len() + 1], ..Csr::default() };
-    let qp = Qp { a: &a, b: &b, g_transposed: &none, e: &[], bounded: &gaps.bounded };
+    let qp = Qp { a: &a, b: &b, g_transposed: &none, e: &[], bounded: &gaps.bounded, preconditioner: None };
     let steps = (WORK / (4 * ready.matrix.val.len() + c.len() + 1)).clamp(1000, 200_000);
     let limits = Limits { tolerance: 1e-14, gamma: 1.0, steps };
     let mut judge = Unjudged { scale: norm(&b) };

@@ -58,6 +58,12 @@ pub struct Report {
     /// Products with F.
     pub dual_applications: usize,
     pub coarse_solves: usize,
+    pub coarse_factorisations: usize,
+    /// Products with the preconditioner.
+    pub preconditioner_applications: usize,
+    /// `|S|B||u|| + |S c|` at the first feasible forces: what the tolerance of the dual is relative to,
+    /// `(force x length)^1/2`.
+    pub gap_scale: f64,
     /// Factorisations and symbolic analyses since the problem was created.
     pub factorisations: usize,
     pub analyses: usize,

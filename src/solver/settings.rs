@@ -18,6 +18,7 @@ pub struct Settings {
     pub threads: i64,
     pub index_base: i64,
     pub fault_injection: i64,
+    pub preconditioner: &'static CStr,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -41,6 +42,8 @@ pub struct OptionInfo {
 enum Field {
     F64(fn(&mut Settings) -> &mut f64),
     I64(fn(&mut Settings) -> &mut i64),
+    /// One of the words listed.
+    Str(fn(&mut Settings) -> &mut &'static CStr, &'static [&'static CStr]),
 }
 
 type Range = std::ops::RangeInclusive<f64>;
@@ -71,7 +74,18 @@ const fn whole(
     OptionInfo { name, doc, default: OptionValue::I64(default), minimum, maximum, field: Field::I64(field) }
 }
 
-static OPTIONS: [OptionInfo; 11] = [
+/// The first word is the default.
+const fn word(
+    name: &'static CStr,
+    words: &'static [&'static CStr],
+    field: fn(&mut Settings) -> &mut &'static CStr,
+    doc: &'static CStr,
+) -> OptionInfo {
+    let default = OptionValue::Str(words[0]);
+    OptionInfo { name, doc, default, minimum: 0.0, maximum: 0.0, field: Field::Str(field, words) }
+}
+
+static OPTIONS: [OptionInfo; 12] = [
     real(c"tolerance", 1e-12, 1e-14..=1e-2, |s| &mut s.tolerance,
         c"The dual is solved until its projected gradient, a gap, is this small against the gaps and displacements of the problem."),
     real(c"certificate_tolerance", 1e-8, 1e-14..=1e-2, |s| &mut s.certificate_tolerance,
@@ -94,6 +108,8 @@ static OPTIONS: [OptionInfo; 11] = [
         c"What numbers in error texts count from: 0 for C, 1 for Fortran."),
     whole(c"fault_injection", 0, 0.0..=1.0, |s| &mut s.fault_injection,
         c"1: the next feti_solve fails inside with FETI_INTERNAL, so that a host can test its own reaction."),
+    word(c"preconditioner", &[c"none", c"lumped", c"dirichlet"], |s| &mut s.preconditioner,
+        c"Preconditioner of the dual: none; lumped (stiffness of the constrained dofs, the others held); dirichlet (the others free: fewer steps, one more factorisation of each body)."),
 ];
 
 /// All options, in the order of their listing.
@@ -108,6 +124,7 @@ impl Settings {
             match (&option.field, option.default) {
                 (Field::F64(field), OptionValue::F64(value)) => *field(&mut settings) = value,
                 (Field::I64(field), OptionValue::I64(value)) => *field(&mut settings) = value,
+                (Field::Str(field, _), OptionValue::Str(value)) => *field(&mut settings) = value,
                 _ => {}
             }
         }
@@ -130,9 +147,16 @@ impl Settings {
         Ok(())
     }
 
-    /// No option is a text so far.
-    pub fn set_str(&mut self, name: &str, _value: &str) -> Result<()> {
-        Err(wrong_type(find(name)?))
+    pub fn set_str(&mut self, name: &str, value: &str) -> Result<()> {
+        let option = find(name)?;
+        let Field::Str(field, words) = &option.field else { return Err(wrong_type(option)) };
+        let found = words.iter().find(|word| word.to_bytes() == value.as_bytes());
+        *field(self) = found.ok_or_else(|| {
+            let known: Vec<_> = words.iter().map(|word| word.to_string_lossy()).collect();
+            let what = format!("option \"{name}\" is one of {}, not \"{value}\"", known.join(", "));
+            Error::argument("value", what)
+        })?;
+        Ok(())
     }
 
     pub fn get_f64(&self, name: &str) -> Result<f64> {
@@ -148,7 +172,9 @@ impl Settings {
     }
 
     pub fn get_str(&self, name: &str) -> Result<String> {
-        Err(wrong_type(find(name)?))
+        let option = find(name)?;
+        let Field::Str(field, _) = &option.field else { return Err(wrong_type(option)) };
+        Ok(field(&mut self.clone()).to_string_lossy().into_owned())
     }
 }
 
@@ -198,7 +224,10 @@ mod tests {
                     assert_eq!(settings.get_i64(name).unwrap(), value);
                     value as f64
                 }
-                OptionValue::Str(_) => continue,
+                OptionValue::Str(value) => {
+                    assert_eq!(settings.get_str(name).unwrap().as_bytes(), value.to_bytes());
+                    continue;
+                }
             };
             assert!((option.minimum..=option.maximum).contains(&value), "{name}");
         }
@@ -211,6 +240,7 @@ mod tests {
         assert_eq!(settings.set_i64("tolerance", 1).unwrap_err().kind, Kind::Argument("name"));
         assert_eq!(settings.set_f64("tolerance", f64::NAN).unwrap_err().kind, Kind::Argument("value"));
         assert_eq!(settings.set_i64("threads", -1).unwrap_err().kind, Kind::Argument("value"));
+        assert_eq!(settings.set_str("preconditioner", "Lumped").unwrap_err().kind, Kind::Argument("value"));
         assert_eq!(settings, Settings::new());
         settings.set_f64("tolerance", 1e-6).unwrap();
         assert_eq!(settings.get_f64("tolerance").unwrap(), 1e-6);

@@ -1,17 +1,21 @@
 //! Everything that does not depend on loads and gaps: null spaces, factors, scaling, dual operators.
 
+use std::ffi::CStr;
 use std::ops::Range;
 use std::sync::Arc;
 use std::time::Instant;
 
-use crate::body::{Body, GeneralizedInverse, Modes, NullSpaceInput};
+use crate::body::{dirichlet, lumped, Body, GeneralizedInverse, Modes, NullSpaceInput};
 use crate::constraints::{row_scales, Grouping, RowKind};
-use crate::dual::{Dual, Part};
+use crate::dual::{constrained, Boundary, Dual, Part, Preconditioner};
 use crate::error::{Error, Kind, Result};
 use crate::linalg::memory::available;
-use crate::linalg::Csr;
+use crate::linalg::{Csr, Operator, Symmetric};
 use crate::solver::problem::{Inverse, Problem};
 use crate::solver::threads;
+
+/// Stiffness of the constrained dofs of a body.
+type BoundaryStiffness = fn(&Symmetric, &[usize]) -> Result<Box<dyn Operator + Send>>;
 
 /// The dual problem, ready for any load and gap.
 pub(super) struct Ready {
@@ -27,6 +31,8 @@ pub(super) struct Ready {
     pub grouping: Grouping,
     /// Number of contact rows.
     pub contact: usize,
+    /// The preconditioner and its name in the options.
+    pub preconditioner: Option<(&'static CStr, Preconditioner)>,
 }
 
 impl Problem {
@@ -144,7 +150,38 @@ impl Problem {
         });
         let threads = threads::count(self.settings.threads);
         let dual = Dual::new(parts.collect(), &matrix, &|count, task| threads::run(threads, count, task))?;
-        Ok(Ready { unit, dual, matrix, metric, scale, grouping, contact })
+        let preconditioner = None;
+        Ok(Ready { unit, dual, matrix, metric, scale, grouping, contact, preconditioner })
+    }
+
+    /// The preconditioner the options ask for, kept until they ask for another.
+    pub(super) fn set_up_preconditioner(&mut self) -> Result<()> {
+        let asked = self.settings.preconditioner;
+        let Some(ready) = &self.ready else { return Ok(()) };
+        if ready.preconditioner.as_ref().map_or(c"none", |(name, _)| *name) == asked {
+            return Ok(());
+        }
+        let preconditioner = match asked.to_bytes() {
+            b"none" => None,
+            b"lumped" => Some((asked, self.preconditioner(ready, lumped)?)),
+            _ => Some((asked, self.preconditioner(ready, dirichlet)?)),
+        };
+        if let Some(ready) = &mut self.ready {
+            ready.preconditioner = preconditioner;
+        }
+        Ok(())
+    }
+
+    fn preconditioner(&self, ready: &Ready, stiffness: BoundaryStiffness) -> Result<Preconditioner> {
+        let ranges = self.ranges();
+        let boundaries = threads::run(threads::count(self.settings.threads), ranges.len(), |p| {
+            let local = constrained(&ready.matrix, &ranges[p]);
+            let k = self.bodies[p].body.stiffness.as_ref();
+            let k = k.ok_or_else(|| Error::new(Kind::Internal, "a body without stiffness was set up"))?;
+            let stiffness = stiffness(&k.scaled(1.0 / ready.unit)?, &local).map_err(|e| e.body(p))?;
+            Ok(Boundary { dofs: local.iter().map(|j| j + ranges[p].start).collect(), stiffness })
+        })?;
+        Preconditioner::new(&ready.matrix, &ready.metric, boundaries)
     }
 
     /// `D / unit` over all unknowns, 1 for dofs without stiffness.

@@ -2,6 +2,7 @@
 
 use std::time::{Duration, Instant};
 
+use crate::dual::Preconditioner;
 use crate::error::{Error, Kind, Result};
 use crate::linalg::vector::weighted_norm;
 use crate::qp::{self, minimise, Judge, Limits, Observer, Qp, Solution, Verdict};
@@ -20,6 +21,7 @@ impl Problem {
         let started = Instant::now();
         self.answer = None;
         self.setup()?;
+        self.set_up_preconditioner()?;
         let solving = Instant::now();
         let ready = self.ready()?;
         let dual = Scaled::new(self, ready)?;
@@ -107,7 +109,14 @@ impl Scaled {
 
     fn qp<'a>(&'a self, ready: &'a Ready) -> Qp<'a> {
         let (a, g_transposed) = (&ready.dual, &ready.dual.coarse);
-        Qp { a, b: &self.d, g_transposed, e: &self.e, bounded: &self.gaps.bounded }
+        let preconditioner = ready.preconditioner.as_ref().map(|(_, m)| m as &dyn qp::Preconditioner);
+        Qp { a, b: &self.d, g_transposed, e: &self.e, bounded: &self.gaps.bounded, preconditioner }
+    }
+}
+
+impl qp::Preconditioner for Preconditioner {
+    fn apply(&self, held: &[bool], r: &[f64], z: &mut [f64]) -> Result<()> {
+        Preconditioner::apply(self, held, r, z)
     }
 }
 

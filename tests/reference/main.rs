@@ -34,3 +34,18 @@ fn every_reference_case_is_solved_to_its_known_answer() {
 fn coordinates_serve_as_well_as_null_spaces() {
     ["hertz_cylinder", "three_bodies"].iter().for_each(|name| assert_reference(name, true));
 }
+
+#[test]
+fn preconditioners_change_the_number_of_steps_and_not_the_answer() {
+    let case = Case::read("hertz_cylinder");
+    let products = |preconditioner| {
+        let mut problem = case.problem(false);
+        problem.set_str("preconditioner", preconditioner).unwrap();
+        let report = problem.solve().unwrap();
+        assert_eq!(report.outcome, Outcome::Solved, "{preconditioner}");
+        assert!(difference(&case.displacement(&problem), &case.u) <= 1e-8, "{preconditioner}");
+        report.dual_applications
+    };
+    let (none, lumped, dirichlet) = (products("none"), products("lumped"), products("dirichlet"));
+    assert!(lumped < none && 3 * dirichlet < none, "{none}, {lumped}, {dirichlet}");
+}

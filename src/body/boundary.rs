@@ -1,0 +1,92 @@
+//! The stiffness of a body as its constrained dofs b feel it: what the preconditioners of the dual are made of.
+
+use std::sync::Arc;
+
+use crate::error::Result;
+use crate::linalg::reach::inverse_form;
+use crate::linalg::{Analysis, Csr, Operator, Packed, Symmetric};
+
+/// `K_bb`: the other dofs held.
+pub fn lumped(k: &Symmetric, boundary: &[usize]) -> Result<Box<dyn Operator + Send>> {
+    let local = positions(k.order(), boundary);
+    let mut part = Symmetric { ptr: vec![0], col: Vec::new(), val: Vec::new() };
+    for &dof in boundary {
+        for (j, v) in k.lower_row(dof).filter_map(|(j, v)| Some((local[j]?, v))) {
+            part.col.push(j);
+            part.val.push(v);
+        }
+        part.ptr.push(part.col.len());
+    }
+    Ok(Box::new(part))
+}
+
+/// `S = K_bb - K_bi K_ii^-1 K_ib`: the other dofs free.
+pub fn dirichlet(k: &Symmetric, boundary: &[usize]) -> Result<Box<dyn Operator + Send>> {
+    let local = positions(k.order(), boundary);
+    let held: Vec<bool> = local.iter().map(Option::is_some).collect();
+    if !held.contains(&false) {
+        return lumped(k, boundary);
+    }
+    let Ok(interior) = Arc::new(Analysis::new(k, &held)?).attempt(k)? else {
+        return lumped(k, boundary); // a part of the body hangs on no constrained dof
+    };
+    let mut schur = inverse_form(&interior, &coupling(k, boundary, &local))?;
+    schur.negate();
+    for (row, &dof) in boundary.iter().enumerate() {
+        for (j, v) in k.lower_row(dof).filter_map(|(j, v)| Some((local[j]?, v))) {
+            schur.add(row, j, v);
+        }
+    }
+    Ok(Box::new(schur))
+}
+
+fn positions(n: usize, boundary: &[usize]) -> Vec<Option<usize>> {
+    let mut local = vec![None; n];
+    boundary.iter().enumerate().for_each(|(at, &dof)| local[dof] = Some(at));
+    local
+}
+
+/// `K_bi`, over all dofs of the body.
+fn coupling(k: &Symmetric, boundary: &[usize], local: &[Option<usize>]) -> Csr {
+    let mut rows = vec![Vec::new(); boundary.len()];
+    for i in 0..k.order() {
+        for (j, v) in k.lower_row(i) {
+            match (local[i], local[j]) {
+                (Some(row), None) => rows[row].push((j, v)),
+                (None, Some(row)) => rows[row].push((i, v)),
+                _ => {}
+            }
+        }
+    }
+    let mut coupling = Csr::empty(k.order());
+    for mut row in rows {
+        row.sort_unstable_by_key(|entry| entry.0);
+        coupling.push_row(row);
+    }
+    coupling
+}
+
+/// Bytes of the Schur complement of so many dofs.
+pub fn dirichlet_bytes(boundary: usize) -> usize {
+    Packed::bytes(boundary)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_chain_of_two_springs_is_felt_as_both_in_series() {
+        // springs 2 and 3 between dofs 0 - 1 - 2, boundary 0 and 2: series stiffness 6/5
+        let k = Symmetric {
+            ptr: vec![0, 1, 3, 5],
+            col: vec![0, 0, 1, 1, 2],
+            val: vec![2.0, -2.0, 5.0, -3.0, 3.0],
+        };
+        let mut y = [0.0; 2];
+        dirichlet(&k, &[0, 2]).unwrap().apply(&[1.0, 0.0], &mut y);
+        assert!((y[0] - 1.2).abs() < 1e-15 && (y[1] + 1.2).abs() < 1e-15);
+        lumped(&k, &[0, 2]).unwrap().apply(&[1.0, 1.0], &mut y);
+        assert_eq!(y, [2.0, 3.0]);
+    }
+}

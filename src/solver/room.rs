@@ -1,0 +1,49 @@
+//! Room for the vectors that a call makes over unknowns, rows and modes. Factors and dual operators are not among them:
+//! each is reserved when its size is known.
+
+use crate::error::Result;
+use crate::linalg::memory::{self, Room, PRODUCTS};
+use crate::solver::problem::{BodySlot, Problem};
+
+/// Bytes per unknown: loads, displacements, reactions and the certificate, about 16 vectors at a time.
+const PER_DOF: usize = 160;
+/// Bytes per row: multipliers, gradients, directions and the certificate, about 60 vectors at a time.
+const PER_ROW: usize = 640;
+/// Bytes per entry of B and H: the host's rows, the scaled ones and those by bodies, each while it grows.
+const PER_ENTRY: usize = 128;
+/// Bytes per entry of `G' = B R`, while it grows.
+const PER_COARSE_ENTRY: usize = 64;
+/// Dense matrices of the coarse problem at a time.
+const COARSE_MATRICES: usize = 6;
+
+impl Problem {
+    /// Room for setup, solve and check, for as long as the result is kept.
+    pub fn working_room(&self) -> Result<Room> {
+        let rows = self.contact.len() + self.equalities.len();
+        // A body without stiffness is refused before anything is made of its size.
+        let dofs: usize =
+            self.bodies.iter().filter_map(|slot| slot.body.stiffness.as_ref()).map(|k| k.order()).sum();
+        let entries = self.contact.matrix.col.len() + self.equalities.matrix.col.len();
+        let modes: usize = self.bodies.iter().map(modes_of).sum();
+        let most = self.bodies.iter().map(modes_of).max().unwrap_or(0);
+        let coarse_entries = entries.saturating_mul(most).min(rows.saturating_mul(modes));
+        let coarse = COARSE_MATRICES * size_of::<f64>() * modes.saturating_mul(modes);
+        let bytes = dofs * PER_DOF + rows * PER_ROW + entries * PER_ENTRY;
+        let bytes = bytes.saturating_add(coarse_entries * PER_COARSE_ENTRY).saturating_add(coarse + PRODUCTS);
+        memory::room(bytes, "the vectors of a solve")
+    }
+
+    /// Room for so many more rows: those that are there may move while their arrays grow.
+    pub fn room_for_rows(&self, rows: usize, entries: usize) -> Result<Room> {
+        let present = self.contact.matrix.col.len().max(self.equalities.matrix.col.len());
+        let bytes = present.saturating_add(entries).saturating_mul(PER_ENTRY);
+        memory::room(bytes.saturating_add(rows.saturating_mul(PER_ENTRY)), "constraint rows")
+    }
+}
+
+/// Dimension of the null space of a body; six rigid motions where it has not been found yet.
+fn modes_of(slot: &BodySlot) -> usize {
+    let found = slot.inverse.as_ref().map(|inverse| inverse.kplus.null_space.cols);
+    let given = slot.body.null_space.as_ref().map(|given| given.vectors.cols);
+    found.or(given).unwrap_or(6)
+}
