@@ -1,10 +1,10 @@
 //! The adjacency graph of a stiffness matrix: connected parts, and dofs of one node.
 
-use std::collections::HashMap;
-
 use crate::error::{Error, Kind, Result};
 use crate::linalg::memory::reserved;
 use crate::linalg::Symmetric;
+
+const WHAT: &str = "the graph of a body";
 
 /// Both triangles with the diagonal: the neighbours of `i` are `adj[ptr[i]..ptr[i+1]]`, ascending.
 pub struct Graph {
@@ -18,7 +18,7 @@ impl Graph {
         if u32::try_from(n).is_err() {
             return Err(Error::new(Kind::Overflow, "a body has more than 2^32 unknowns"));
         }
-        let mut ptr = reserved(n + 1, "the graph of a body")?;
+        let mut ptr = reserved(n + 1, WHAT)?;
         ptr.resize(n + 1, 0);
         for i in 0..n {
             for (j, _) in matrix.lower_row(i) {
@@ -30,7 +30,7 @@ impl Graph {
             ptr[i + 1] += ptr[i];
         }
         let mut next = ptr.clone();
-        let mut adj = reserved(ptr[n], "the graph of a body")?;
+        let mut adj = reserved(ptr[n], WHAT)?;
         adj.resize(ptr[n], 0);
         // Row i writes its lower part before any later row appends to it: ascending without a sort.
         for i in 0..n {
@@ -51,24 +51,31 @@ impl Graph {
     }
 
     /// Groups dofs with identical neighbours (the dofs of one node): group of each dof, and the
-    /// first dof of each group.
-    pub fn nodes(&self) -> (Vec<u32>, Vec<usize>) {
+    /// first dof of each group. Groups are numbered by their first dof.
+    pub fn nodes(&self) -> Result<(Vec<u32>, Vec<usize>)> {
         let n = self.ptr.len() - 1;
-        let (mut group, mut first) = (vec![0u32; n], Vec::new());
-        let mut known: HashMap<u64, Vec<u32>> = HashMap::new();
-        for (i, group_of_i) in group.iter_mut().enumerate() {
-            let same_key = known.entry(self.key(i)).or_default();
-            let found = same_key.iter().find(|&&g| self.neighbours(first[g as usize]) == self.neighbours(i));
-            *group_of_i = match found {
-                Some(&g) => g,
-                None => {
-                    same_key.push(first.len() as u32);
-                    first.push(i);
-                    first.len() as u32 - 1
-                }
-            };
+        let mut by_key = reserved(n, WHAT)?;
+        by_key.extend((0..n).map(|i| (self.key(i), i as u32)));
+        by_key.sort_unstable();
+        let mut leader: Vec<u32> = reserved(n, WHAT)?;
+        leader.resize(n, 0);
+        for same_key in by_key.chunk_by(|a, b| a.0 == b.0) {
+            for (at, &(_, i)) in same_key.iter().enumerate() {
+                let alike = |j: u32| self.neighbours(j as usize) == self.neighbours(i as usize);
+                let earlier = same_key[..at].iter().map(|&(_, j)| j);
+                leader[i as usize] =
+                    earlier.filter(|&j| leader[j as usize] == j).find(|&j| alike(j)).unwrap_or(i);
+            }
         }
-        (group, first)
+        let (mut group, mut first) = (reserved(n, WHAT)?, reserved(n, WHAT)?);
+        for i in 0..n {
+            let of = leader[i] as usize;
+            group.push(if of == i { first.len() as u32 } else { group[of] });
+            if of == i {
+                first.push(i);
+            }
+        }
+        Ok((group, first))
     }
 
     /// A hash of the neighbours of `i` (FNV-1a).
@@ -131,7 +138,7 @@ mod tests {
 
     #[test]
     fn dofs_with_the_same_neighbours_form_one_node() {
-        let (group, first) = Graph::of(&sample()).unwrap().nodes();
+        let (group, first) = Graph::of(&sample()).unwrap().nodes().unwrap();
         assert_eq!((group, first), (vec![0, 0, 0, 1], vec![0, 3]));
     }
 }

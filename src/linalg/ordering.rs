@@ -4,19 +4,22 @@ use feral_metis::{metis_order, CscPattern};
 
 use crate::error::{Error, Kind, Result};
 use crate::linalg::graph::Graph;
+use crate::linalg::memory::reserved;
 use crate::linalg::Symmetric;
 
 /// The dofs that are not held, in the order of their elimination. The graph of nodes (dofs with
 /// identical neighbours) is dissected instead of that of dofs: 3 x smaller in 3D, and supernodes stay whole.
 pub fn nested_dissection(matrix: &Symmetric, held: &[bool]) -> Result<Vec<usize>> {
     let graph = Graph::of(matrix)?;
-    let (node, first) = graph.nodes();
+    let (node, first) = graph.nodes()?;
     let order = order_nodes(&graph, &node, &first)?;
-    let mut members = vec![Vec::new(); first.len()];
-    for (dof, &node) in node.iter().enumerate().filter(|(dof, _)| !held[*dof]) {
-        members[node as usize].push(dof);
-    }
-    Ok(order.into_iter().flat_map(|node| std::mem::take(&mut members[node])).collect())
+    let mut rank = reserved(order.len(), "the ordering of a body")?;
+    rank.resize(order.len(), 0);
+    order.iter().enumerate().for_each(|(at, &node)| rank[node] = at);
+    let mut dofs = reserved(node.len(), "the ordering of a body")?;
+    dofs.extend((0..node.len()).filter(|&dof| !held[dof]));
+    dofs.sort_unstable_by_key(|&dof| (rank[node[dof] as usize], dof));
+    Ok(dofs)
 }
 
 /// Dissects the quotient graph of the nodes.
@@ -25,12 +28,13 @@ fn order_nodes(graph: &Graph, node: &[u32], first: &[usize]) -> Result<Vec<usize
         return Ok((0..first.len()).collect());
     }
     let too_large = || Error::new(Kind::Overflow, "the graph of a body exceeds 2^31 edges");
-    let (mut ptr, mut adj) = (vec![0i32], Vec::new());
+    let (mut ptr, mut adj, mut row) = (vec![0i32], Vec::new(), Vec::new());
     for (own, &dof) in first.iter().enumerate() {
-        let mut row: Vec<i32> = graph.neighbours(dof).iter().map(|&j| node[j as usize] as i32).collect();
+        row.clear();
+        row.extend(graph.neighbours(dof).iter().map(|&j| node[j as usize] as i32));
         row.sort_unstable();
         row.dedup();
-        adj.extend(row.into_iter().filter(|&other| other as usize != own));
+        adj.extend(row.iter().filter(|&&other| other as usize != own));
         ptr.push(i32::try_from(adj.len()).map_err(|_| too_large())?);
     }
     let pattern = CscPattern::new(first.len(), &ptr, &adj).ok_or_else(too_large)?;

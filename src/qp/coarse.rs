@@ -54,6 +54,11 @@ impl<'a> Coarse<'a> {
         self.root.len()
     }
 
+    /// `D_kk`: diagonal entry of the whole `G G'`, 1 where it vanishes.
+    pub fn weight(&self, k: usize) -> f64 {
+        self.root[k] * self.root[k]
+    }
+
     /// Factorises `W_F` of the rows that are not held, unless that has just been done.
     pub fn select(&mut self, held: &[bool]) -> Result<()> {
         let Some((gram, analysis)) = &self.gram else { return Ok(()) };

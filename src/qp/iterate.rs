@@ -1,7 +1,7 @@
 //! The current point, its gradient and its parts on the face: Section 4 on the feasible set of (12).
 
 use crate::error::Result;
-use crate::linalg::vector::{axpy, dot, norm};
+use crate::linalg::vector::{axpy, dot, norm, norm_max};
 use crate::qp::coarse::Coarse;
 use crate::qp::{Counts, Qp};
 
@@ -131,10 +131,11 @@ impl<'a> Iterate<'a> {
         0.5 * terms.map(|((y, x), (g_y, g))| (y - x) * (g_y + g)).sum::<f64>()
     }
 
-    /// Largest t with `x - t p` feasible in the bounds.
-    pub fn feasible_step(&self, p: &[f64]) -> f64 {
+    /// Largest t with `x - t p` feasible in the bounds, entries of p up to `rounding` |p| taken for zero.
+    pub fn feasible_step(&self, p: &[f64], rounding: f64) -> f64 {
+        let zero = rounding * norm_max(p);
         (0..p.len())
-            .filter(|&i| self.qp.bounded[i] && !self.active[i] && p[i] > 0.0)
+            .filter(|&i| self.qp.bounded[i] && !self.active[i] && p[i] > zero)
             .map(|i| self.x[i] / p[i])
             .fold(f64::INFINITY, f64::min)
     }

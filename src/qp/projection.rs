@@ -17,6 +17,9 @@ const NEWTON_STEPS: usize = 100;
 const ACCURACY: f64 = 1e-12;
 const STAGNATED: f64 = 1e-10;
 
+/// A sum this small against its terms is zero: where the bounds leave one point only, all rows must reach them.
+const ROUNDING: f64 = 8.0 * f64::EPSILON;
+
 struct Trial {
     beta: Vec<f64>,
     point: Vec<f64>,
@@ -29,7 +32,8 @@ impl Trial {
         let point: Vec<f64> = (0..y.len())
             .map(|i| {
                 let value = y[i] + qp.g_transposed.row_dot(i, &beta);
-                if held[i] || (qp.bounded[i] && value < 0.0) {
+                let rounding = ROUNDING * (y[i].abs() + qp.g_transposed.row_dot_abs(i, &beta));
+                if held[i] || (qp.bounded[i] && value <= rounding) {
                     0.0
                 } else {
                     value
@@ -105,6 +109,7 @@ fn minimum_along(qp: &Qp, y: &[f64], held: &[bool], now: &Trial, step: &[f64]) -
     turns.sort_by(|a, b| a.0.total_cmp(&b.0));
     let none = 1e-14 * whole;
     let (mut at, mut derivative) = (0.0, -dot(&now.residual, step));
+    let flat = 1e-12 * derivative;
     for (t, change) in turns {
         let there = derivative + slope * (t - at);
         if there >= 0.0 && slope > none {
@@ -112,7 +117,11 @@ fn minimum_along(qp: &Qp, y: &[f64], held: &[bool], now: &Trial, step: &[f64]) -
         }
         (at, derivative, slope) = (t, there.min(0.0), slope + change);
     }
-    (slope > none).then(|| at - derivative / slope)
+    if slope > none {
+        Some(at - derivative / slope)
+    } else {
+        (at > 0.0 && derivative >= flat).then_some(at)
+    }
 }
 
 #[cfg(test)]

@@ -5,7 +5,7 @@ use crate::error::Result;
 use crate::linalg::vector::norm;
 use crate::qp::coarse::Coarse;
 use crate::qp::iterate::Iterate;
-use crate::qp::nnls::{margin, nearest};
+use crate::qp::nnls::nearest;
 use crate::qp::projection::project;
 use crate::qp::steps::Step;
 use crate::qp::{Counts, Qp};
@@ -88,7 +88,7 @@ pub fn minimise(
         return proportioning(Iterate::new(qp, coarse, first.point)?, limits, judge, observer);
     }
     let found = nearest(&qp, &mut coarse)?;
-    let margin = margin(&qp, &found.residual);
+    let margin = found.margin;
     if margin >= MARGINAL {
         let (coarse_solves, coarse_factorisations) = (coarse.solves, coarse.factorisations);
         let counts = Counts { coarse_solves, coarse_factorisations, ..Counts::default() };

@@ -7,6 +7,9 @@ use crate::qp::projection::project;
 
 /// Curvature below this fraction of L counts as none.
 const SINGULAR: f64 = 1e-11;
+/// An entry of a direction without curvature below this fraction of the largest is rounding: without it, such
+/// a direction would always seem to end somewhere far away.
+const ROUNDING: f64 = 1e-10;
 /// Step of gradient projection in units of 1 / L.
 const GRADIENT_STEP: f64 = 1.5;
 
@@ -36,7 +39,7 @@ impl Iterate<'_> {
         let singular =
             norm(&self.free) > self.noise() && curvature <= SINGULAR * self.curvature * dot(&p, &p);
         let t = if singular { f64::INFINITY } else { dot(&self.g, &p) / curvature };
-        let bound = self.feasible_step(&p);
+        let bound = self.feasible_step(&p, if singular { ROUNDING } else { 0.0 });
         if t <= bound && t.is_finite() {
             let (mut x, mut g) = (std::mem::take(&mut self.x), std::mem::take(&mut self.g));
             axpy(-t, &p, &mut x);
@@ -136,10 +139,8 @@ impl Iterate<'_> {
             let image = self.product(&r);
             self.observe_curvature(&r, &image)?;
         }
-        let step = GRADIENT_STEP / self.curvature;
-        if !step.is_finite() {
-            return Ok(Step::Stuck);
-        }
+        // without curvature any length will do
+        let step = if self.curvature > 0.0 { GRADIENT_STEP / self.curvature } else { 1.0 };
         let mut y = self.x.clone();
         axpy(-step, &self.r, &mut y);
         let none = vec![false; y.len()];

@@ -1,18 +1,22 @@
 //! The library's own threads: as many as the host asks for, made when first needed, never rayon's global pool.
 
+use std::hint::black_box;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use rayon::prelude::*;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 
-use crate::error::{Error, Kind, Result};
+use crate::error::Result;
 use crate::linalg::memory::room;
 
 /// Pools by process and size: a forked child has none of its parent's threads and makes its own.
 static POOLS: Mutex<Vec<(u32, usize, Arc<ThreadPool>)>> = Mutex::new(Vec::new());
 
-/// Bytes a thread takes to start: its stack and its first small pieces.
-const STARTING: usize = (2 << 20) + (256 << 10);
+/// Address space of a thread: its stack, and the heap of 64 MiB that the GNU allocator sets apart for it. Without one
+/// every small piece takes a page.
+const STARTED: usize = 67 << 20;
+/// The heap is cut out of twice its size.
+const STARTING: usize = 64 << 20;
 
 /// Name of every thread of a pool.
 pub const THREAD_NAME: &str = "feti-contact";
@@ -25,44 +29,46 @@ pub fn count(asked: i64) -> usize {
     }
 }
 
-/// Runs tasks `0..count` and returns their results in order; the first error in order wins.
+/// Runs tasks `0..count` and returns their results in order; the first error in order wins. Where the system does not
+/// give so many threads, fewer do the same.
 pub fn run<T: Send>(
     threads: usize,
     count: usize,
     task: impl Fn(usize) -> Result<T> + Sync,
 ) -> Result<Vec<T>> {
-    let results: Vec<Result<T>> = if threads < 2 || count < 2 {
-        (0..count).map(&task).collect()
-    } else {
-        pool(threads)?.install(|| (0..count).into_par_iter().map(&task).collect())
+    let pool = if count < 2 { None } else { largest_pool(threads) };
+    let results: Vec<Result<T>> = match pool {
+        Some(pool) => pool.install(|| (0..count).into_par_iter().map(&task).collect()),
+        None => (0..count).map(&task).collect(),
     };
     results.into_iter().collect()
 }
 
-fn pool(threads: usize) -> Result<Arc<ThreadPool>> {
+/// A pool of so many threads, or of half as many, and so on; none of a single thread.
+fn largest_pool(threads: usize) -> Option<Arc<ThreadPool>> {
+    std::iter::successors(Some(threads), |threads| Some(threads / 2)).take_while(|t| *t > 1).find_map(pool)
+}
+
+fn pool(threads: usize) -> Option<Arc<ThreadPool>> {
     let process = std::process::id();
     let mut pools = POOLS.lock().unwrap_or_else(PoisonError::into_inner);
     if let Some((_, _, pool)) = pools.iter().find(|(p, size, _)| *p == process && *size == threads) {
-        return Ok(Arc::clone(pool));
+        return Some(Arc::clone(pool));
     }
-    let starting = room(threads * STARTING, "threads")?;
-    let pool = ThreadPoolBuilder::new()
-        .num_threads(threads)
-        .thread_name(|_| THREAD_NAME.to_owned())
-        .build()
-        .map_err(|e| Error::new(Kind::Memory, format!("{threads} threads could not be started: {e}")))?;
-    // Until every thread runs: then it has the memory that the system gives a thread, and what is left can be judged.
-    pool.broadcast(|_| ());
+    let starting = room(threads * STARTED + STARTING, "threads").ok()?;
+    let builder = ThreadPoolBuilder::new().num_threads(threads).thread_name(|_| THREAD_NAME.to_owned());
+    let pool = Arc::new(builder.build().ok()?);
+    // Every thread takes its heap now, while there is room for it.
+    pool.broadcast(|_| drop(black_box(Box::new(0_u64))));
     drop(starting);
-    room(0, "threads")?;
-    let pool = Arc::new(pool);
     pools.push((process, threads, Arc::clone(&pool)));
-    Ok(pool)
+    Some(pool)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::error::{Error, Kind};
 
     #[test]
     fn results_and_errors_come_in_the_order_of_the_tasks() {
