@@ -149,6 +149,8 @@ impl Iterate<'_> {
         if norm(&s) <= small * step {
             let mut alpha = self.alpha.clone();
             axpy(1.0 / step, &projected.multiplier, &mut alpha);
+            let g = std::mem::take(&mut self.g);
+            self.move_to(projected.point, g)?; // rows that are zero but for rounding become active
             return Ok(Step::Vertex { alpha });
         }
         self.search_along(s)

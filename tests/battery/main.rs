@@ -1,0 +1,68 @@
+//! Random hard problems whose outcome is known by construction, problems solved by hand, and decks of modest
+//! size: what a whole solve must find.
+
+#[path = "../support/hand_over.rs"]
+mod hand_over;
+mod modest;
+mod small;
+
+use std::fmt::Write;
+
+use decks::battery::{self, Case};
+use feti_contact::error::{Kind, Result};
+use feti_contact::solver::{Outcome, Report};
+
+const SEEDS: std::ops::Range<u64> = 0..400;
+
+fn solve(case: &Case) -> Result<Report> {
+    hand_over::problem(&case.deck)?.solve()
+}
+
+/// Whether the outcome is the one the case was built for.
+fn as_expected(expected: battery::Outcome, got: &Result<Report>) -> bool {
+    match (expected, got) {
+        (battery::Outcome::Solvable, Ok(report)) => {
+            report.outcome == Outcome::Solved && report.certificate.passed()
+        }
+        (battery::Outcome::LoadNotHeld, Err(error)) => error.kind == Kind::LoadNotHeld,
+        (battery::Outcome::GapsContradict, Err(error)) => error.kind == Kind::GapsContradict,
+        _ => false,
+    }
+}
+
+/// One line of the table of failures.
+fn line(seed: u64, case: &Case, got: &Result<Report>) -> String {
+    let deck = &case.deck;
+    let sizes = format!(
+        "{} bodies, {} dofs, {} + {} rows, margin {:.1e}",
+        deck.bodies.len(),
+        deck.dofs(),
+        deck.contact.len(),
+        deck.equalities.len(),
+        case.margin
+    );
+    let found = match got {
+        Ok(report) => format!(
+            "{:?}, certificate {:.1e}, {} steps, {} products",
+            report.outcome,
+            report.certificate.worst(),
+            report.steps,
+            report.dual_applications
+        ),
+        Err(error) => format!("{:?}: {error}", error.kind),
+    };
+    format!("{seed:5}  {:14} {found}  ({sizes})", format!("{:?}", case.outcome()))
+}
+
+#[test]
+fn every_random_problem_ends_as_it_was_built_to_end() {
+    let (mut table, mut failures) = (String::new(), 0);
+    for (seed, case) in SEEDS.zip(battery::cases(SEEDS)) {
+        let got = solve(&case);
+        if !as_expected(case.outcome(), &got) {
+            failures += 1;
+            let _ = writeln!(table, "{}", line(seed, &case, &got));
+        }
+    }
+    assert_eq!(failures, 0, "of {} problems end otherwise:\n{table}", SEEDS.end - SEEDS.start);
+}

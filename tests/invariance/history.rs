@@ -1,0 +1,75 @@
+//! Threads and earlier solves: the same bits every time.
+
+use decks::Deck;
+use feti_contact::solver::{Problem, RowKind};
+
+use crate::answer::{decks, Answer};
+use crate::hand_over;
+
+#[test]
+fn any_number_of_threads_gives_the_same_bits() {
+    for deck in decks() {
+        let with = |threads| {
+            let mut problem = hand_over::problem(&deck).unwrap();
+            problem.set_i64("threads", threads).unwrap();
+            Answer::from(&mut problem, &deck.name)
+        };
+        let expected = with(1);
+        for threads in [2, 4, 0] {
+            with(threads).assert_same(&expected, &format!("{} on {threads} threads", deck.name));
+        }
+    }
+}
+
+#[test]
+fn solving_twice_gives_the_same_bits() {
+    for deck in decks() {
+        let mut problem = hand_over::problem(&deck).unwrap();
+        let first = Answer::from(&mut problem, &deck.name);
+        let factorisations = problem.report().unwrap().factorisations;
+        Answer::from(&mut problem, &deck.name).assert_same(&first, &deck.name);
+        assert_eq!(problem.report().unwrap().factorisations, factorisations, "{}", deck.name);
+    }
+}
+
+/// Loads times `load`, gaps times `gap`.
+fn change(problem: &mut Problem, deck: &Deck, load: f64, gap: f64) {
+    let by = |values: &[f64], factor: f64| -> Vec<f64> { values.iter().map(|v| v * factor).collect() };
+    for (p, body) in deck.bodies.iter().enumerate() {
+        problem.set_load(p, &by(&body.load, load)).unwrap();
+    }
+    problem.set_rhs(RowKind::Inequality, 0, &by(&deck.contact.rhs, gap)).unwrap();
+    problem.set_rhs(RowKind::Equality, 0, &by(&deck.equalities.rhs, gap)).unwrap();
+}
+
+#[test]
+fn an_old_load_after_a_new_one_gives_the_bits_of_the_first_time() {
+    for deck in decks() {
+        let mut problem = hand_over::problem(&deck).unwrap();
+        let first = Answer::from(&mut problem, &deck.name);
+        for (load, gap) in [(0.7, 1.0), (1.0, 1.5), (0.3, 0.0)] {
+            change(&mut problem, &deck, load, gap);
+            let between = Answer::from(&mut problem, &deck.name);
+            let mut fresh = hand_over::problem(&deck).unwrap();
+            change(&mut fresh, &deck, load, gap);
+            between.assert_same(&Answer::from(&mut fresh, &deck.name), &format!("{}, new load", deck.name));
+            change(&mut problem, &deck, 1.0, 1.0);
+            Answer::from(&mut problem, &deck.name).assert_same(&first, &format!("{}, old load", deck.name));
+        }
+    }
+}
+
+#[test]
+fn a_body_that_was_changed_and_changed_back_gives_the_bits_of_the_first_time() {
+    for deck in decks() {
+        let mut problem = hand_over::problem(&deck).unwrap();
+        let first = Answer::from(&mut problem, &deck.name);
+        let mut stiffer = deck.bodies[0].clone();
+        stiffer.stiffness.val.iter_mut().for_each(|k| *k *= 3.0);
+        hand_over::set_body(&mut problem, 0, &stiffer).unwrap();
+        let other = Answer::from(&mut problem, &deck.name);
+        assert_ne!(other.u, first.u, "{}: the new stiffness was not used", deck.name);
+        hand_over::set_body(&mut problem, 0, &deck.bodies[0]).unwrap();
+        Answer::from(&mut problem, &deck.name).assert_same(&first, &deck.name);
+    }
+}

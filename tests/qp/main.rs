@@ -1,0 +1,8 @@
+//! The quadratic programs of the dual on small dense matrices, without a body.
+
+mod certificates;
+mod dense;
+mod enumeration;
+mod program;
+mod scaling;
+mod traps;
