@@ -43,7 +43,7 @@ pub enum Verdict {
     TimeLimit,
     /// theta no longer decreases, and the judge does not accept.
     Stalled,
-    /// The residual is as small as asked, three times over, and the judge does not accept.
+    /// The residual is as small as asked, six times over, and the judge does not accept.
     Inaccurate,
     /// No x >= 0 gives `G x = e`: `direction'(e - G x) = |direction|^2` for all of them.
     Infeasible {
@@ -73,7 +73,7 @@ const MARGINAL: f64 = 1e-7;
 /// ... and a part this small is a rounding error.
 const ROUNDING: f64 = 1e-12;
 /// How often the tolerance is tightened when the judge does not accept.
-const TIGHTENINGS: usize = 3;
+const TIGHTENINGS: usize = 6;
 
 pub fn minimise(
     qp: Qp,
