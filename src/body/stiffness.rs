@@ -103,7 +103,7 @@ fn sorted(input: SparseInput<'_>) -> Result<Csr> {
                     .value(input.col[at] as f64)
             })?;
             if let Some(side) = outside(input.storage, i, col) {
-                let what = format!("column {side} of the diagonal, in a matrix announced as a triangle");
+                let what = format!("the column lies {side}");
                 return Err(Error::argument("col", what).row(i).dof(col).entry(at));
             }
             row.push((col, input.val[at], at));
@@ -121,8 +121,8 @@ fn sorted(input: SparseInput<'_>) -> Result<Csr> {
 /// On which wrong side of the diagonal an entry lies.
 fn outside(storage: Storage, row: usize, col: usize) -> Option<&'static str> {
     match storage {
-        Storage::Lower if col > row => Some("right"),
-        Storage::Upper if col < row => Some("left"),
+        Storage::Lower if col > row => Some("right of the diagonal, in a matrix announced as lower"),
+        Storage::Upper if col < row => Some("left of the diagonal, in a matrix announced as upper"),
         _ => None,
     }
 }

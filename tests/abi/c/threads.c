@@ -19,7 +19,9 @@ static void *solve_job(void *argument)
 {
     job *work = argument;
     work->result.info.struct_size = sizeof work->result.info;
-    work->result.info.status = feti_solve(work->problem, &work->result.info);
+    /* the thread that waits may be asking for the sizes just now */
+    do work->result.info.status = feti_solve(work->problem, &work->result.info);
+    while (work->result.info.status == FETI_BUSY);
     work->over = 1;
     return NULL;
 }
