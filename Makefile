@@ -1,5 +1,6 @@
 # make demo      builds the library and the examples, runs them        make lib        the library alone
 # make test      every test: Rust, then C and Fortran under CMake      make install    PREFIX=/usr/local DESTDIR=
+# make counts    applications of F against a linear solve, deck by deck (some minutes); DECKS="slab two" picks some
 # demo and test install the Debian packages they miss (tools/setup.sh).
 PREFIX  ?= /usr/local
 DESTDIR ?=
@@ -16,7 +17,7 @@ SOVERSION := $(basename $(VERSION))# 0.1 of 0.1.0: before 1.0 each minor version
 RELEASE   := $(or $(CARGO_TARGET_DIR),target)/release
 STAGE     := $(CURDIR)/build/stage
 
-.PHONY: all lib data setup demo test stage install uninstall fmt clean
+.PHONY: all lib data setup demo battery test counts stage install uninstall fmt clean
 .DELETE_ON_ERROR:
 all: lib
 
@@ -96,9 +97,17 @@ demo: setup
 	@tools/demo.sh build/demo build/data build/pictures
 
 # ---- tests
+N ?= 20000
+battery:
+	BATTERY=$(N) $(CARGO) test --release --locked --test battery -- every_random_problem
+
 test: setup
 	$(CARGO) test --release --workspace --locked
 	@$(MAKE) --no-print-directory stage data
 	cmake -S tests -B build/ctest -DCMAKE_PREFIX_PATH=$(STAGE) -DFETI_DATA=$(CURDIR)/build/data
 	cmake --build build/ctest -j 2
 	ctest --test-dir build/ctest --output-on-failure -j 2
+
+# ---- measurements
+counts:
+	$(CARGO) bench --bench counts --locked -- $(DECKS)

@@ -26,7 +26,7 @@
 #define FETI_TIME 2
 
 /**
- * The host cancelled the solve; the results are those of the last step.
+ * The host cancelled; the results are those of the last step, and none before the first.
  */
 #define FETI_CANCELLED 3
 
@@ -174,6 +174,31 @@
 #define FETI_ROW_WEAK 2
 
 /**
+ * Phase of a call that feti_on_progress tells of: a part of the setup is done.
+ */
+#define FETI_PHASE_SETUP 1
+
+/**
+ * Phase of a call that feti_on_progress tells of: a step of the dual method is done.
+ */
+#define FETI_PHASE_SOLVE 2
+
+/**
+ * Kind of a step: conjugate gradients on the face.
+ */
+#define FETI_STEP_CONJUGATE_GRADIENT 1
+
+/**
+ * Kind of a step: rows lost their force.
+ */
+#define FETI_STEP_EXPANSION 2
+
+/**
+ * Kind of a step: rows got a force.
+ */
+#define FETI_STEP_RELEASE 3
+
+/**
  * Type of an option: number.
  */
 #define FETI_OPTION_F64 1
@@ -193,6 +218,73 @@
  * an address.
  */
 typedef struct feti_problem feti_problem;
+
+/**
+ * What the last solve, or the last setup that failed, has found out about the problem. Numbers
+ * count from 0.
+ */
+typedef struct feti_findings {
+  /**
+   * Set by the caller: size of the struct in bytes.
+   */
+  int64_t struct_size;
+  /**
+   * Status it ended with.
+   */
+  int32_t status;
+  /**
+   * FETI_INEQUALITY or FETI_EQUALITY: kind of the contradicting rows' `row`; 0: none.
+   */
+  int32_t kind;
+  /**
+   * Body that escapes or was refused, -1: none.
+   */
+  int64_t body;
+  /**
+   * Connected part of the body that escapes, where it has several, -1: does not apply.
+   */
+  int64_t component;
+  /**
+   * Unknown of the body that moves fastest or was refused, -1: none.
+   */
+  int64_t dof;
+  /**
+   * After FETI_GAPS_CONTRADICT the row with the largest weight, else a row that was refused, -1:
+   * none.
+   */
+  int64_t row;
+  /**
+   * Rows of both kinds that contradict each other; feti_diagnosis_rows lists them.
+   */
+  int64_t rows_involved;
+  /**
+   * Rigid motions that neither loads nor rows determine.
+   */
+  int64_t undetermined;
+  /**
+   * Rows of both kinds that repeat the direction of another one.
+   */
+  int64_t redundant_rows;
+  /**
+   * Bodies that no row touches.
+   */
+  int64_t untouched_bodies;
+  /**
+   * The first of them, -1: none.
+   */
+  int64_t untouched_body;
+  /**
+   * How clearly there is no solution, above 0 and at most 1: after FETI_LOAD_NOT_HELD the share of
+   * the resultant of the load that nothing holds, after FETI_GAPS_CONTRADICT |w'c| over |w|'|c| for
+   * the weights w; else NaN.
+   */
+  double margin;
+  /**
+   * Rigid motion of the body that escapes: velocity of the origin and rotation about the axes; NaN
+   * without coordinates. feti_diagnosis_motion has it for every unknown.
+   */
+  double motion[6];
+} feti_findings;
 
 /**
  * What went wrong, where and by how much. Numbers count from 0.
@@ -289,6 +381,68 @@ typedef struct feti_option {
    */
   const char *default_str;
 } feti_option;
+
+/**
+ * Where a setup or a solve stands.
+ */
+typedef struct feti_progress {
+  /**
+   * Size of the struct in bytes, set by the library.
+   */
+  int64_t struct_size;
+  /**
+   * FETI_PHASE_SETUP (after the factors of the bodies, the dual operator, the preconditioner) or
+   * FETI_PHASE_SOLVE.
+   */
+  int32_t phase;
+  /**
+   * FETI_STEP_CONJUGATE_GRADIENT, FETI_STEP_EXPANSION or FETI_STEP_RELEASE; 0 in the setup.
+   */
+  int32_t step;
+  /**
+   * Steps so far.
+   */
+  int64_t steps;
+  /**
+   * Products with the dual operator F so far.
+   */
+  int64_t products;
+  /**
+   * Inequality rows with a force; parallel rows count once.
+   */
+  int64_t active;
+  /**
+   * Norm of the projected gradient over the one that stops the solve; NaN in the setup, as all that
+   * follow.
+   */
+  double residual;
+  /**
+   * Its part on rows with a force, over the same.
+   */
+  double residual_free;
+  /**
+   * Its part on rows without a force that want one, over the same.
+   */
+  double residual_chopped;
+  /**
+   * Dual functional 1/2 lambda'F lambda - lambda'd, force times length: every step lowers it.
+   */
+  double theta;
+  /**
+   * Seconds since the call began, also in the setup.
+   */
+  double seconds;
+} feti_progress;
+
+/**
+ * A function of the host that hears of every part of a setup and every step of a solve.
+ *
+ * It returns 0 to go on, a number > 0 to cancel, a number < 0 to report a failure of its own.
+ *
+ * @param[in] user (scalar) the host's own, as given to feti_on_progress; may be NULL
+ * @param[in] now  (scalar) valid during the call
+ */
+typedef int32_t (*feti_progress_fn)(void *user, const struct feti_progress *now);
 
 /**
  * How a solve went. Counts of a call that failed early are zero, figures NaN.
@@ -637,6 +791,64 @@ int32_t feti_body_coordinates(struct feti_problem *p,
 int32_t feti_body_load(struct feti_problem *p, int64_t body, int64_t n, const double *f);
 
 /**
+ * What the last solve, or the last setup that failed, has found out about the problem.
+ *
+ * After FETI_LOAD_NOT_HELD: the body that escapes, its motion and the margin. After
+ * FETI_GAPS_CONTRADICT: the rows that contradict each other. After FETI_INDEFINITE,
+ * FETI_NULL_SPACE and the like: the body and the unknown. With an answer: motions left
+ * undetermined, redundant rows, bodies that no row touches. Kept until the next solve or the next
+ * setup that fails; FETI_STATE before the first. After a failure nothing is written.
+ *
+ * @param[in]     p   (scalar) the handle
+ * @param[in,out] out (scalar) `struct_size` set, at least 16
+ *
+ * Safety: `out` leads to `struct_size` writable bytes.
+ */
+int32_t feti_diagnosis(struct feti_problem *p, struct feti_findings *out);
+
+/**
+ * Lists the rows of one kind that contradict each other, with their weights; without a
+ * contradiction the redundant rows.
+ *
+ * Weights w, largest 1, prove a contradiction: with the rows of both kinds the sum of w b is 0 and
+ * the sum of w c is negative, w > 0 for inequalities. The weight of a redundant row is its
+ * multiple of the row that it repeats. FETI_STATE before the first solve. After a failure nothing
+ * is written.
+ *
+ * @param[in]  p      (scalar) the handle
+ * @param[in]  kind   (scalar) FETI_INEQUALITY or FETI_EQUALITY
+ * @param[in]  cap    (scalar) rows that `row` and `weight` have room for
+ * @param[out] count  (scalar) rows there are; those that fit are written
+ * @param[out] row    (cap) numbers from 0, ascending; may be NULL
+ * @param[out] weight (cap) no unit; may be NULL
+ *
+ * Safety: `count` has room for one number, `row` and `weight` are NULL or have room for `cap`
+ * numbers.
+ */
+int32_t feti_diagnosis_rows(struct feti_problem *p,
+                            int32_t kind,
+                            int64_t cap,
+                            int64_t *count,
+                            int64_t *row,
+                            double *weight);
+
+/**
+ * Reads the rigid motion with which a body escapes, unknown by unknown.
+ *
+ * The load does work on it, and no row resists. It is scaled to largest entry 1 over all bodies;
+ * bodies that stay have zeros. FETI_STATE unless the last solve ended with FETI_LOAD_NOT_HELD.
+ * After a failure nothing is written.
+ *
+ * @param[in]  p    (scalar) the handle
+ * @param[in]  body (scalar) number of the body, from 0
+ * @param[in]  n    (scalar) unknowns of the body
+ * @param[out] v    (n) length, up to a factor
+ *
+ * Safety: The array has the given shape.
+ */
+int32_t feti_diagnosis_motion(struct feti_problem *p, int64_t body, int64_t n, double *v);
+
+/**
  * Text of the calling thread's last error.
  *
  * The text is cut to fit, always NUL terminated when `cap` > 0. Returns the full length without
@@ -864,6 +1076,38 @@ int32_t feti_problem_destroy(struct feti_problem **p);
 int32_t feti_problem_error(struct feti_problem *p, char *buf, int64_t cap, int64_t *len);
 
 /**
+ * Cancels the setup or the solve that runs on the problem.
+ *
+ * May be called from any thread and from a progress function, while another call on the problem
+ * runs. That call returns FETI_CANCELLED before the next product with the dual operator (in the
+ * setup: before the next body); the results are those of the last step, and there are none when it
+ * was cancelled before the first one. Without a running call it does nothing: every setup and
+ * every solve begins anew. In a signal handler set a flag instead and let the progress function
+ * look at it.
+ *
+ * @param[in] p (scalar) the handle
+ */
+int32_t feti_cancel(struct feti_problem *p);
+
+/**
+ * Names the function that is told of every part of a setup and every step of a solve.
+ *
+ * It is called on the thread that called the library, in that thread's floating-point environment,
+ * until another one or NULL is given. It returns 0 to go on; a number > 0 ends the call with
+ * FETI_CANCELLED and the results of the last step; a number < 0 ends it with FETI_CALLBACK, the
+ * number in the error detail, and no results. Calls on the same problem from inside return
+ * FETI_BUSY, except feti_cancel and feti_problem_error; other problems may be used. It must not
+ * end by longjmp or an exception.
+ *
+ * @param[in] p        (scalar) the handle
+ * @param[in] callback (scalar) the function; NULL: none
+ * @param[in] user     (scalar) handed to the function unchanged; may be NULL
+ *
+ * Safety: `callback` may be called with `user` until it is replaced or the problem destroyed.
+ */
+int32_t feti_on_progress(struct feti_problem *p, feti_progress_fn callback, void *user);
+
+/**
  * Reads the displacement of a body.
  *
  * FETI_STATE before a solve has given an answer. After a failure nothing is written.
@@ -1065,9 +1309,9 @@ int32_t feti_setup(struct feti_problem *p);
  * Minimises 1/2 u'Ku - f'u subject to `B u <= c` and `H u = h`.
  *
  * The answer is kept until the next solve and read with feti_displacement, feti_multipliers and
- * the like; there is one when the status is not negative. `info` is written in any case, with NaN
- * for figures that a failure left unknown. After a failure all that was given is kept and can be
- * corrected, except after FETI_INTERNAL.
+ * the like; there is one when the status is not negative, unless the call was cancelled before the
+ * first step. `info` is written in any case, with NaN for figures that a failure left unknown.
+ * After a failure all that was given is kept and can be corrected, except after FETI_INTERNAL.
  *
  * @param[in]     p    (scalar) the handle
  * @param[in,out] info (scalar) `struct_size` set, at least 16; may be NULL
@@ -1100,6 +1344,59 @@ int32_t feti_check(struct feti_problem *p,
                    int64_t eqs,
                    const double *mu,
                    struct feti_certificate *out);
+
+/**
+ * Gives start values for the next solve.
+ *
+ * That solve starts from these multipliers, whatever option start says, and uses them up, whatever
+ * it comes to; every other solve starts as the option says. Rows with a zero start without force,
+ * so that the contact state of an earlier answer is carried over. A kind that is not given starts
+ * from zero. A change of rows or bodies drops the values. After a failure earlier values stay.
+ *
+ * @param[in] p      (scalar) the handle
+ * @param[in] kind   (scalar) FETI_INEQUALITY or FETI_EQUALITY
+ * @param[in] rows   (scalar) number of rows of the kind
+ * @param[in] lambda (rows) force; a negative one of an inequality counts as zero
+ *
+ * Safety: The array has the given shape.
+ */
+int32_t feti_start_from(struct feti_problem *p, int32_t kind, int64_t rows, const double *lambda);
+
+/**
+ * Saves loads, gaps, multipliers and the contact state under a number.
+ *
+ * Factors are not copied, so that it costs no more than the vectors. States live until they are
+ * dropped or the problem is destroyed; numbers are never used again. After a failure nothing is
+ * saved.
+ *
+ * @param[in]  p  (scalar) the handle
+ * @param[out] id (scalar) number of the state, from 0
+ *
+ * Safety: `id` has room for one number.
+ */
+int32_t feti_state_save(struct feti_problem *p, int64_t *id);
+
+/**
+ * Goes back to a saved state: after a load step that was rejected.
+ *
+ * Loads and gaps are as they were, and so is the answer unless a matrix has changed since; with
+ * option start = previous the next solve continues from the saved multipliers, with start = cold
+ * it gives the bits it would have given then. Matrices, null spaces and options stay as they are
+ * now; start values that were not used yet are dropped. The state stays saved. FETI_STATE when
+ * bodies were added or rows changed since; after a failure nothing is changed.
+ *
+ * @param[in] p  (scalar) the handle
+ * @param[in] id (scalar) number of the state
+ */
+int32_t feti_state_restore(struct feti_problem *p, int64_t id);
+
+/**
+ * Drops a saved state. After a failure nothing is dropped.
+ *
+ * @param[in] p  (scalar) the handle
+ * @param[in] id (scalar) number of the state
+ */
+int32_t feti_state_drop(struct feti_problem *p, int64_t id);
 
 /**
  * Name of a status, such as "FETI_LOAD_NOT_HELD".

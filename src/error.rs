@@ -25,6 +25,23 @@ pub enum Kind {
     Internal,
     /// The request is valid but not available.
     Unsupported,
+    /// The host cancelled before there was an answer.
+    Cancelled,
+    /// The time was over before there was an answer.
+    TimeOver,
+    /// A function of the host reported a failure.
+    Callback,
+}
+
+/// What proves that there is no solution; `margin`, above 0 and at most 1, says how clearly.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Proof {
+    /// A rigid motion of all bodies that opens or keeps every row while the load does work on it; largest
+    /// entry 1. The margin is the share of the resultant of the load that nothing holds.
+    Motion { margin: f64, v: Vec<f64> },
+    /// Weights w of rows, contact rows before equality rows, w >= 0 on contact rows: `w'[B; H] = 0` and
+    /// `w'[c; h] < 0`. The margin is `|w'c| / |w|'|c|`.
+    Rows { margin: f64, weights: Vec<(usize, f64)>, heaviest: usize },
 }
 
 /// Where it happened. Numbers count from 0 inside the library; `base` is what texts count from.
@@ -71,13 +88,14 @@ pub struct Error {
     pub kind: Kind,
     pub what: String,
     pub place: Box<Place>,
+    pub proof: Option<Box<Proof>>,
 }
 
 pub type Result<T> = std::result::Result<T, Error>;
 
 impl Error {
     pub fn new(kind: Kind, what: impl Into<String>) -> Self {
-        Self { kind, what: what.into(), place: Box::default() }
+        Self { kind, what: what.into(), place: Box::default(), proof: None }
     }
 
     /// `argument` is the name the argument has in the C signature.
@@ -87,6 +105,11 @@ impl Error {
 
     pub fn body(mut self, body: usize) -> Self {
         self.place.body = Some(body);
+        self
+    }
+
+    pub fn component(mut self, component: usize) -> Self {
+        self.place.component = Some(component);
         self
     }
 
@@ -112,6 +135,11 @@ impl Error {
 
     pub fn limit(mut self, limit: f64) -> Self {
         self.place.limit = Some(limit);
+        self
+    }
+
+    pub fn proved_by(mut self, proof: Proof) -> Self {
+        self.proof = Some(Box::new(proof));
         self
     }
 

@@ -28,13 +28,16 @@ module feti_contact
     ! kinds of rows, storage of K, null spaces, states of contact rows, types of options
     FETI_INEQUALITY, FETI_EQUALITY, FETI_FULL, FETI_LOWER, FETI_UPPER, FETI_EXACT, FETI_CANDIDATES, FETI_COPY, &
     FETI_ROW_OPEN, FETI_ROW_CLOSED, FETI_ROW_WEAK, FETI_OPTION_F64, FETI_OPTION_I64, FETI_OPTION_STR, &
+    ! phases and kinds of steps that a progress function hears of
+    FETI_PHASE_SETUP, FETI_PHASE_SOLVE, FETI_STEP_CONJUGATE_GRADIENT, FETI_STEP_EXPANSION, FETI_STEP_RELEASE, &
     ! status: solved; usable but incomplete; failed
     FETI_OK, &
     FETI_ITERATIONS, FETI_TIME, FETI_CANCELLED, FETI_STALLED, FETI_INACCURATE, FETI_MARGINAL, &
     FETI_MEMORY, FETI_HANDLE, FETI_BUSY, FETI_CALLBACK, FETI_STATE, FETI_LOAD_NOT_HELD, FETI_GAPS_CONTRADICT, &
     FETI_NULL_SPACE, FETI_INDEFINITE, FETI_IO, FETI_INTERNAL, FETI_UNSUPPORTED, FETI_OVERFLOW, FETI_ARGUMENT, &
     FETI_CONTACT_VERSION_MAJOR, FETI_CONTACT_VERSION_MINOR, FETI_CONTACT_VERSION_PATCH
-  use feti_contact_base, only: feti_problem, feti_error_detail, &
+  use feti_contact_base, only: feti_problem, feti_error_detail, feti_progress, &
+    feti_progress_procedure => progress_procedure, &
     feti_problem_create => problem_create, &
     feti_problem_destroy => problem_destroy, &
     feti_problem_error => problem_error, &
@@ -60,6 +63,17 @@ module feti_contact
     feti_rows_add => rows_add, &
     feti_rows_rhs => rows_rhs, &
     feti_rows_clear => rows_clear
+  use feti_contact_progress, only: &
+    feti_on_progress => on_progress, &
+    feti_cancel => cancel
+  use feti_contact_states, only: feti_findings, &
+    feti_start_from => start_from, &
+    feti_state_save => state_save, &
+    feti_state_restore => state_restore, &
+    feti_state_drop => state_drop, &
+    feti_diagnosis => diagnosis, &
+    feti_diagnosis_rows => diagnosis_rows, &
+    feti_diagnosis_motion => diagnosis_motion
   use feti_contact_results, only: feti_info, feti_certificate, &
     feti_setup => setup, &
     feti_solve => solve, &

@@ -10,7 +10,7 @@ module feti_contact_base
   use, intrinsic :: iso_c_binding, only: c_char, c_double, c_f_pointer, c_int32_t, c_int64_t, c_loc, &
     c_null_char, c_null_ptr, c_ptr, c_sizeof, c_associated
   use, intrinsic :: iso_fortran_env, only: error_unit
-  use feti_contact_c, only: FETI_ARGUMENT, FETI_OK, &
+  use feti_contact_c, only: FETI_ARGUMENT, FETI_OK, feti_progress, &
     c_error_detail => feti_error_detail, &
     c_last_error => feti_last_error, &
     c_last_error_detail => feti_last_error_detail, &
@@ -24,16 +24,37 @@ module feti_contact_base
     c_version_number => feti_version_number
   implicit none
   private
-  public :: feti_problem, feti_error_detail
+  public :: feti_problem, feti_error_detail, feti_progress
+  public :: listener, progress_procedure, listener_of
   public :: problem_create, problem_destroy, problem_error
   public :: last_error, last_error_detail, status_name, status_text
   public :: version, version_number
   public :: handle_of, finish, refuse, c_text, f_text, static_text
 
+  abstract interface
+    !> A function of the host that hears of every step: 0 goes on, > 0 cancels, < 0 reports a failure of its own.
+    !> data: what was given to feti_on_progress.
+    integer function progress_procedure(now, data)
+      import :: feti_progress
+      type(feti_progress), intent(in) :: now
+      class(*), intent(inout) :: data
+    end function
+  end interface
+
+  !> What feti_on_progress keeps of the host.
+  type :: listener
+    procedure(progress_procedure), pointer, nopass :: hear => null()
+    class(*), pointer :: data => null()
+    !> Stands for data that were not given.
+    integer :: nothing = 0
+  end type
+
   !> One contact problem. Copies are other names of the same problem; it lives until feti_problem_destroy.
   type :: feti_problem
     private
     type(c_ptr) :: handle = c_null_ptr
+    !> Of this problem and all its copies, as long as the handle lives.
+    type(listener), pointer :: listener => null()
   end type
 
   !> What the last failed call of this thread found, and where. Everything counts from 1.
@@ -60,7 +81,10 @@ contains
     integer(c_int32_t) :: status
 
     status = c_problem_create(p%handle)
-    if (status == FETI_OK) status = c_set_i64(p%handle, c_text('index_base'), 1_c_int64_t)
+    if (status == FETI_OK) then
+      allocate (p%listener)
+      status = c_set_i64(p%handle, c_text('index_base'), 1_c_int64_t)
+    end if
     call finish(status, stat, errmsg)
   end subroutine
 
@@ -69,8 +93,11 @@ contains
     type(feti_problem), intent(inout) :: p
     integer, intent(out), optional :: stat
     character(len=*), intent(inout), optional :: errmsg
+    integer(c_int32_t) :: status
 
-    call finish(c_problem_destroy(p%handle), stat, errmsg)
+    status = c_problem_destroy(p%handle)
+    if (status == FETI_OK) deallocate (p%listener)
+    call finish(status, stat, errmsg)
   end subroutine
 
   !> Text of the last failed call of this problem; empty when none failed. May be called while another thread solves.
@@ -164,6 +191,14 @@ contains
     type(feti_problem), intent(in) :: p
 
     handle_of = p%handle
+  end function
+
+  !> The listener of a problem whose handle has just been accepted by the library.
+  function listener_of(p) result(found)
+    type(feti_problem), intent(in) :: p
+    type(listener), pointer :: found
+
+    found => p%listener
   end function
 
   !> Reports a status as the head of this module says. text: what the face itself found; absent: the library's words.

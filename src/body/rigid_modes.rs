@@ -3,8 +3,8 @@
 use crate::error::{Error, Result};
 use crate::linalg::graph::components;
 use crate::linalg::memory::{copied, reserved, room};
-use crate::linalg::vector::first_non_finite;
-use crate::linalg::{Matrix, Symmetric};
+use crate::linalg::vector::{first_non_finite, norm};
+use crate::linalg::{Matrix, SpdSolver, Symmetric};
 
 /// Per dof: what it moves and where it sits.
 #[derive(Debug, Clone)]
@@ -14,6 +14,9 @@ pub struct Coordinates {
     /// Position, length; coordinates beyond the given dimension are 0.
     place: Vec<[f64; 3]>,
 }
+
+/// What may be left of a rigid motion that is taken apart.
+const RIGID: f64 = 1e-6;
 
 /// Bytes that the parts of a body and their members take, per dof.
 const PER_DOF: usize = 128;
@@ -64,6 +67,28 @@ impl Coordinates {
         Ok(modes)
     }
 
+    /// The rigid motion of v, one entry per dof: velocity of the origin (length) and rotation about the axes, of
+    /// least size where v does not determine it. `None` where v is no rigid motion of the whole body.
+    pub fn rigid_motion(&self, v: &[f64]) -> Option<[f64; 6]> {
+        let all: Vec<usize> = (0..self.len()).collect();
+        let (centre, size) = self.extent(&all);
+        let mut modes = Matrix::zeros(self.len(), 6).ok()?;
+        for mode in 0..6 {
+            all.iter().for_each(|&i| modes.col_mut(mode)[i] = self.motion(i, mode, centre, size));
+        }
+        let mut normal = Matrix::zeros(6, 6).ok()?;
+        (0..6).for_each(|j| normal.col_mut(j).copy_from_slice(&modes.mul_transposed(modes.col(j))));
+        let scale: [f64; 6] =
+            std::array::from_fn(|j| Some(normal.get(j, j)).filter(|d| *d > 0.0).unwrap_or(1.0));
+        let part = SpdSolver::new(&normal, &scale).ok()?.solve(&modes.mul_transposed(v));
+        let mut left = v.to_vec();
+        modes.mul_add(-1.0, &part, &mut left);
+        let w = [part[3] / size, part[4] / size, part[5] / size];
+        let arm = |a: usize, b: usize| w[a] * centre[b] - w[b] * centre[a];
+        let origin = [part[0] - arm(1, 2), part[1] - arm(2, 0), part[2] - arm(0, 1)];
+        (norm(&left) <= RIGID * norm(v)).then_some([origin[0], origin[1], origin[2], w[0], w[1], w[2]])
+    }
+
     /// Centre and half the largest edge of the box around the dofs (1 for a point).
     fn extent(&self, dofs: &[usize]) -> ([f64; 3], f64) {
         let mut low = self.place[dofs[0]];
@@ -104,6 +129,21 @@ impl Coordinates {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_motion_is_taken_apart_into_the_velocity_of_the_origin_and_a_rotation() {
+        // four points in the plane, u = (1, 2) + 0.5 e_z x position
+        let xyz = [3.0, 1.0, 3.0, 1.0, 5.0, 1.0, 5.0, 1.0, 3.0, 4.0, 3.0, 4.0];
+        let coordinates = Coordinates::new(2, &[1, 2, 1, 2, 1, 2], &xyz, 2).unwrap();
+        let v: Vec<f64> = (0..3).flat_map(|k| [1.0 - 0.5 * xyz[4 * k + 1], 2.0 + 0.5 * xyz[4 * k]]).collect();
+        let motion = coordinates.rigid_motion(&v).unwrap();
+        for (found, expected) in motion.iter().zip([1.0, 2.0, 0.0, 0.0, 0.0, 0.5]) {
+            assert!((found - expected).abs() < 1e-13, "{motion:?}");
+        }
+        let mut bent = v;
+        bent[0] += 0.1;
+        assert_eq!(coordinates.rigid_motion(&bent), None);
+    }
 
     #[test]
     fn the_modes_of_a_truss_bar_do_not_stretch_it() {

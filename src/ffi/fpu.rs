@@ -1,9 +1,20 @@
 //! The floating-point environment: hosts trap (`-ffpe-trap`) or flush denormal numbers (`-Ofast`); the library computes in
-//! the default environment and gives the host's back, also after a panic. Threads started inside inherit the default.
+//! the default environment and gives the host's back, also after a panic. Threads started inside inherit the default;
+//! functions of the host run in the host's.
+
+#[cfg(target_arch = "x86_64")]
+use std::cell::Cell;
 
 /// Runs `work` with all traps masked, rounding to nearest, denormal numbers kept.
 pub(super) fn in_default_environment<T>(work: impl FnOnce() -> T) -> T {
     let _host = HostEnvironment::replace();
+    apart(work)
+}
+
+/// Inside [`in_default_environment`]: runs a function of the host in the environment of the host. What it changes there
+/// is the host's from then on.
+pub(super) fn in_host_environment<T>(work: impl FnOnce() -> T) -> T {
+    let _ours = DefaultEnvironment::suspend();
     apart(work)
 }
 
@@ -13,24 +24,54 @@ fn apart<T>(work: impl FnOnce() -> T) -> T {
     work()
 }
 
-/// The host's control and status word, put back when dropped.
+#[cfg(target_arch = "x86_64")]
+thread_local! {
+    /// The host's control and status word while the library runs on this thread.
+    static HOST: Cell<u32> = const { Cell::new(mxcsr::DEFAULT) };
+}
+
+/// The host's word is put back when this is dropped; calls may be nested through functions of the host.
 struct HostEnvironment {
+    /// What HOST held before.
     #[cfg(target_arch = "x86_64")]
-    mxcsr: u32,
+    outer: u32,
 }
 
 #[cfg(target_arch = "x86_64")]
 impl HostEnvironment {
     fn replace() -> Self {
-        let host = Self { mxcsr: mxcsr::read() };
+        let outer = HOST.replace(mxcsr::read());
         mxcsr::write(mxcsr::DEFAULT);
-        host
+        Self { outer }
     }
 }
 
 #[cfg(target_arch = "x86_64")]
 impl Drop for HostEnvironment {
     fn drop(&mut self) {
+        mxcsr::write(HOST.replace(self.outer));
+    }
+}
+
+/// The library's word is put back when this is dropped.
+struct DefaultEnvironment {
+    #[cfg(target_arch = "x86_64")]
+    mxcsr: u32,
+}
+
+#[cfg(target_arch = "x86_64")]
+impl DefaultEnvironment {
+    fn suspend() -> Self {
+        let ours = Self { mxcsr: mxcsr::read() };
+        mxcsr::write(HOST.get());
+        ours
+    }
+}
+
+#[cfg(target_arch = "x86_64")]
+impl Drop for DefaultEnvironment {
+    fn drop(&mut self) {
+        HOST.set(mxcsr::read());
         mxcsr::write(self.mxcsr);
     }
 }
@@ -39,6 +80,13 @@ impl Drop for HostEnvironment {
 #[cfg(not(target_arch = "x86_64"))]
 impl HostEnvironment {
     fn replace() -> Self {
+        Self {}
+    }
+}
+
+#[cfg(not(target_arch = "x86_64"))]
+impl DefaultEnvironment {
+    fn suspend() -> Self {
         Self {}
     }
 }
@@ -70,12 +118,12 @@ mod tests {
     use std::panic;
 
     /// Trap on division by zero, flush to zero, denormals are zero, and a sticky flag of an inexact result.
-    const HOST: u32 = (mxcsr::DEFAULT & !0x0200) | 0x8040 | 0x0020;
+    const HOST_WORD: u32 = (mxcsr::DEFAULT & !0x0200) | 0x8040 | 0x0020;
 
     #[test]
     fn traps_are_masked_and_denormals_kept_inside_and_the_host_gets_its_word_back() {
         let before = mxcsr::read();
-        mxcsr::write(HOST);
+        mxcsr::write(HOST_WORD);
         let (inside, infinite, denormal) = in_default_environment(|| {
             (mxcsr::read(), black_box(1.0) / black_box(0.0), black_box(f64::MIN_POSITIVE) / black_box(4.0))
         });
@@ -83,24 +131,44 @@ mod tests {
         mxcsr::write(before);
         assert_eq!(inside, mxcsr::DEFAULT);
         assert!(infinite == f64::INFINITY && denormal > 0.0);
-        assert_eq!(after, HOST);
+        assert_eq!(after, HOST_WORD);
     }
 
     #[test]
     fn the_host_gets_its_word_back_after_a_panic() {
         let before = mxcsr::read();
-        mxcsr::write(HOST);
+        mxcsr::write(HOST_WORD);
         let outcome = panic::catch_unwind(|| in_default_environment(|| panic::resume_unwind(Box::new(7))));
         let after = mxcsr::read();
         mxcsr::write(before);
         assert!(outcome.is_err());
-        assert_eq!(after, HOST);
+        assert_eq!(after, HOST_WORD);
+    }
+
+    #[test]
+    fn a_function_of_the_host_runs_in_its_environment_and_may_change_it() {
+        let before = mxcsr::read();
+        mxcsr::write(HOST_WORD);
+        let changed = HOST_WORD & !0x8000;
+        let seen = in_default_environment(|| {
+            let in_function = in_host_environment(|| {
+                let nested = in_default_environment(mxcsr::read);
+                let own = mxcsr::read();
+                mxcsr::write(changed);
+                (nested, own)
+            });
+            (in_function, mxcsr::read())
+        });
+        let after = mxcsr::read();
+        mxcsr::write(before);
+        assert_eq!(seen, ((mxcsr::DEFAULT, HOST_WORD), mxcsr::DEFAULT));
+        assert_eq!(after, changed);
     }
 
     #[test]
     fn a_thread_started_inside_has_the_default_environment() {
         let before = mxcsr::read();
-        mxcsr::write(HOST);
+        mxcsr::write(HOST_WORD);
         let inside = in_default_environment(|| std::thread::spawn(mxcsr::read).join());
         mxcsr::write(before);
         assert!(matches!(inside, Ok(mxcsr::DEFAULT)));

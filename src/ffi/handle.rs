@@ -18,6 +18,8 @@ static LAST_HANDLE: AtomicUsize = AtomicUsize::new(0);
 pub(super) struct Slot {
     /// None once destroyed.
     problem: Mutex<Option<Problem>>,
+    /// Shared with the problem, so that it can be set while a call runs.
+    cancelled: Arc<AtomicBool>,
     broken: AtomicBool,
     error: Mutex<Option<Record>>,
 }
@@ -53,6 +55,15 @@ impl Slot {
         Ok(work(problem))
     }
 
+    /// Ends the setup or the solve that runs.
+    pub fn cancel(&self) -> std::result::Result<(), Refusal> {
+        if self.broken.load(Ordering::Acquire) {
+            return Err(Refusal::Broken);
+        }
+        self.cancelled.store(true, Ordering::Relaxed);
+        Ok(())
+    }
+
     /// After an internal error the problem can only be destroyed.
     pub fn mark_broken(&self) {
         self.broken.store(true, Ordering::Release);
@@ -73,8 +84,12 @@ impl Slot {
 pub(super) fn register(problem: Problem) -> Result<*mut feti_problem> {
     let next = LAST_HANDLE.fetch_update(Ordering::Relaxed, Ordering::Relaxed, |last| last.checked_add(1));
     let last = next.map_err(|last| Error::new(Kind::Overflow, format!("all {last} handles are used up")))?;
-    let slot =
-        Slot { problem: Mutex::new(Some(problem)), broken: AtomicBool::new(false), error: Mutex::new(None) };
+    let slot = Slot {
+        cancelled: problem.canceller(),
+        problem: Mutex::new(Some(problem)),
+        broken: AtomicBool::new(false),
+        error: Mutex::new(None),
+    };
     PROBLEMS.write().unwrap_or_else(PoisonError::into_inner).insert(last + 1, Arc::new(slot));
     Ok(ptr::without_provenance_mut(last + 1))
 }

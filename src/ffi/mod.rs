@@ -8,7 +8,7 @@
 //! | `fpu` | the floating-point environment of the host, saved and restored |
 //! | `error_store` | the last error, per thread and per problem |
 //! | `arrays`, `indices`, `record` | host arrays, index arrays and structs with a `struct_size`, checked |
-//! | `problem`, `options`, `body`, `null_space`, `rows`, `solve`, `results`, `validation` | the functions |
+//! | `problem`, `options`, `body`, `null_space`, `rows`, `solve`, `progress`, `state`, `diagnosis`, `results`, `validation` | the functions |
 //!
 //! The generator of the header and of the Fortran interfaces reads these files: each exported function has a table of
 //! its arguments, in which the word NULL in the rule says that the pointer may be NULL.
@@ -18,6 +18,7 @@
 
 mod arrays;
 mod body;
+mod diagnosis;
 mod error_store;
 mod fpu;
 mod guard;
@@ -26,10 +27,12 @@ mod indices;
 mod null_space;
 mod options;
 mod problem;
+mod progress;
 mod record;
 mod results;
 mod rows;
 mod solve;
+mod state;
 mod status;
 mod types;
 mod validation;
@@ -38,13 +41,16 @@ mod validation;
 mod tests;
 
 pub use body::*;
+pub use diagnosis::*;
 pub use error_store::{feti_last_error, feti_last_error_detail};
 pub use null_space::*;
 pub use options::*;
 pub use problem::*;
+pub use progress::*;
 pub use results::*;
 pub use rows::*;
 pub use solve::*;
+pub use state::*;
 pub use status::*;
 pub use types::*;
 pub use validation::*;

@@ -2,7 +2,7 @@
 
 use crate::error::{Error, Result};
 
-use super::types::{feti_certificate, feti_error_detail, feti_info, feti_option};
+use super::types::{feti_certificate, feti_error_detail, feti_findings, feti_info, feti_option};
 
 /// The least a struct can hold: `struct_size` and the eight bytes after it.
 const LEAST_BYTES: usize = 16;
@@ -23,6 +23,8 @@ unsafe impl Sized64 for feti_info {}
 unsafe impl Sized64 for feti_certificate {}
 // SAFETY: 8 + 2 * 4 + 3 * 8 + 8 bytes and three pointers, without padding.
 unsafe impl Sized64 for feti_option {}
+// SAFETY: 8 + 2 * 4 + 9 * 8 + 7 * 8 bytes, without padding.
+unsafe impl Sized64 for feti_findings {}
 
 /// The caller's struct, to be written once.
 pub(super) struct Target<T> {
@@ -103,6 +105,7 @@ mod tests {
         assert_eq!(size_of::<feti_error_detail>(), 8 + 2 * 4 + 5 * 8 + 2 * 8 + 40);
         assert_eq!(size_of::<feti_info>(), 8 + 2 * 4 + 15 * 8 + 11 * 8);
         assert_eq!(size_of::<feti_certificate>(), 8 + 2 * 4 + 9 * 8 + 6 * 8);
+        assert_eq!(size_of::<feti_findings>(), 8 + 2 * 4 + 9 * 8 + 7 * 8);
         assert_eq!(size_of::<feti_option>(), 8 + 2 * 4 + 3 * 8 + 8 + pointers);
     }
 }

@@ -26,8 +26,9 @@ pub extern "C" fn feti_setup(p: *mut feti_problem) -> i32 {
 /// Minimises 1/2 u'Ku - f'u subject to `B u <= c` and `H u = h`.
 ///
 /// The answer is kept until the next solve and read with feti_displacement, feti_multipliers and the like; there is one
-/// when the status is not negative. `info` is written in any case, with NaN for figures that a failure left unknown. After
-/// a failure all that was given is kept and can be corrected, except after FETI_INTERNAL.
+/// when the status is not negative, unless the call was cancelled before the first step. `info` is written in any case,
+/// with NaN for figures that a failure left unknown. After a failure all that was given is kept and can be corrected,
+/// except after FETI_INTERNAL.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|

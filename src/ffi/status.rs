@@ -11,7 +11,7 @@ pub const FETI_OK: i32 = 0;
 pub const FETI_ITERATIONS: i32 = 1;
 /// The time limit was reached; the results are those of the last step.
 pub const FETI_TIME: i32 = 2;
-/// The host cancelled the solve; the results are those of the last step.
+/// The host cancelled; the results are those of the last step, and none before the first.
 pub const FETI_CANCELLED: i32 = 3;
 /// Steps no longer reduce the error; the results are those of the last step.
 pub const FETI_STALLED: i32 = 4;
@@ -93,6 +93,9 @@ pub(super) fn of_kind(kind: Kind, arguments: &[&str]) -> (i32, i32) {
         Kind::Overflow => FETI_OVERFLOW,
         Kind::Internal => FETI_INTERNAL,
         Kind::Unsupported => FETI_UNSUPPORTED,
+        Kind::Cancelled => FETI_CANCELLED,
+        Kind::TimeOver => FETI_TIME,
+        Kind::Callback => FETI_CALLBACK,
     };
     (status, 0)
 }

@@ -1,7 +1,7 @@
 //! Structs and constants of the header. Structs without padding: the record functions copy them by bytes.
 #![allow(non_camel_case_types)]
 
-use std::ffi::c_char;
+use std::ffi::{c_char, c_void};
 
 /// Kind of rows: `B u <= c`.
 pub const FETI_INEQUALITY: i32 = 1;
@@ -29,6 +29,18 @@ pub const FETI_ROW_OPEN: i32 = 0;
 pub const FETI_ROW_CLOSED: i32 = 1;
 /// State of a row: closed with a force that is zero to rounding, or with a force without a clear sign.
 pub const FETI_ROW_WEAK: i32 = 2;
+
+/// Phase of a call that feti_on_progress tells of: a part of the setup is done.
+pub const FETI_PHASE_SETUP: i32 = 1;
+/// Phase of a call that feti_on_progress tells of: a step of the dual method is done.
+pub const FETI_PHASE_SOLVE: i32 = 2;
+
+/// Kind of a step: conjugate gradients on the face.
+pub const FETI_STEP_CONJUGATE_GRADIENT: i32 = 1;
+/// Kind of a step: rows lost their force.
+pub const FETI_STEP_EXPANSION: i32 = 2;
+/// Kind of a step: rows got a force.
+pub const FETI_STEP_RELEASE: i32 = 3;
 
 /// Type of an option: number.
 pub const FETI_OPTION_F64: i32 = 1;
@@ -201,4 +213,78 @@ pub struct feti_certificate {
     pub force_row: i64,
     /// Row with the worst complementarity, from 0, -1: none.
     pub complementarity_row: i64,
+}
+
+/// Where a setup or a solve stands.
+#[repr(C)]
+#[derive(Debug, Clone, Copy)]
+pub struct feti_progress {
+    /// Size of the struct in bytes, set by the library.
+    pub struct_size: i64,
+    /// FETI_PHASE_SETUP (after the factors of the bodies, the dual operator, the preconditioner) or FETI_PHASE_SOLVE.
+    pub phase: i32,
+    /// FETI_STEP_CONJUGATE_GRADIENT, FETI_STEP_EXPANSION or FETI_STEP_RELEASE; 0 in the setup.
+    pub step: i32,
+    /// Steps so far.
+    pub steps: i64,
+    /// Products with the dual operator F so far.
+    pub products: i64,
+    /// Inequality rows with a force; parallel rows count once.
+    pub active: i64,
+    /// Norm of the projected gradient over the one that stops the solve; NaN in the setup, as all that follow.
+    pub residual: f64,
+    /// Its part on rows with a force, over the same.
+    pub residual_free: f64,
+    /// Its part on rows without a force that want one, over the same.
+    pub residual_chopped: f64,
+    /// Dual functional 1/2 lambda'F lambda - lambda'd, force times length: every step lowers it.
+    pub theta: f64,
+    /// Seconds since the call began, also in the setup.
+    pub seconds: f64,
+}
+
+/// A function of the host that hears of every part of a setup and every step of a solve.
+///
+/// It returns 0 to go on, a number > 0 to cancel, a number < 0 to report a failure of its own.
+///
+/// | argument | in/out | shape | rule |
+/// |---|---|---|---|
+/// | `user` | in | scalar | the host's own, as given to feti_on_progress; may be NULL |
+/// | `now` | in | scalar | valid during the call |
+pub type feti_progress_fn = Option<unsafe extern "C" fn(user: *mut c_void, now: *const feti_progress) -> i32>;
+
+/// What the last solve, or the last setup that failed, has found out about the problem. Numbers count from 0.
+#[repr(C)]
+#[derive(Debug, Clone, Copy)]
+pub struct feti_findings {
+    /// Set by the caller: size of the struct in bytes.
+    pub struct_size: i64,
+    /// Status it ended with.
+    pub status: i32,
+    /// FETI_INEQUALITY or FETI_EQUALITY: kind of the contradicting rows' `row`; 0: none.
+    pub kind: i32,
+    /// Body that escapes or was refused, -1: none.
+    pub body: i64,
+    /// Connected part of the body that escapes, where it has several, -1: does not apply.
+    pub component: i64,
+    /// Unknown of the body that moves fastest or was refused, -1: none.
+    pub dof: i64,
+    /// After FETI_GAPS_CONTRADICT the row with the largest weight, else a row that was refused, -1: none.
+    pub row: i64,
+    /// Rows of both kinds that contradict each other; feti_diagnosis_rows lists them.
+    pub rows_involved: i64,
+    /// Rigid motions that neither loads nor rows determine.
+    pub undetermined: i64,
+    /// Rows of both kinds that repeat the direction of another one.
+    pub redundant_rows: i64,
+    /// Bodies that no row touches.
+    pub untouched_bodies: i64,
+    /// The first of them, -1: none.
+    pub untouched_body: i64,
+    /// How clearly there is no solution, above 0 and at most 1: after FETI_LOAD_NOT_HELD the share of the resultant of
+    /// the load that nothing holds, after FETI_GAPS_CONTRADICT |w'c| over |w|'|c| for the weights w; else NaN.
+    pub margin: f64,
+    /// Rigid motion of the body that escapes: velocity of the origin and rotation about the axes; NaN without
+    /// coordinates. feti_diagnosis_motion has it for every unknown.
+    pub motion: [f64; 6],
 }

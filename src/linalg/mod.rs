@@ -21,10 +21,17 @@ pub use packed::Packed;
 pub use spd::SpdSolver;
 pub use symmetric::Symmetric;
 
+use crate::error::Result;
+
 /// A symmetric linear map `R^m -> R^m` known by its products only.
 pub trait Operator: Sync {
     /// Number of unknowns m.
     fn order(&self) -> usize;
     /// `y = A x`, both of length m.
     fn apply(&self, x: &[f64], y: &mut [f64]);
+    /// The same for operators that may be told to stop working: an error leaves y as it was.
+    fn try_apply(&self, x: &[f64], y: &mut [f64]) -> Result<()> {
+        self.apply(x, y);
+        Ok(())
+    }
 }

@@ -50,19 +50,20 @@ impl<'a> Iterate<'a> {
         Ok(iterate)
     }
 
-    /// `A v`, counted.
-    pub fn product(&mut self, v: &[f64]) -> Vec<f64> {
+    /// `A v`, counted. Where A refuses it, the iterate is as before: every caller asks for its product first.
+    pub fn product(&mut self, v: &[f64]) -> Result<Vec<f64>> {
         let mut image = vec![0.0; v.len()];
-        self.qp.a.apply(v, &mut image);
+        self.qp.a.try_apply(v, &mut image)?;
         self.counts.products += 1;
-        image
+        Ok(image)
     }
 
     /// Recomputes the gradient from x, without the rounding errors of its updates.
     pub fn refresh(&mut self) -> Result<()> {
         let x = std::mem::take(&mut self.x);
-        self.g = self.product(&x);
+        let image = self.product(&x);
         self.x = x;
+        self.g = image?;
         axpy(-1.0, self.qp.b, &mut self.g);
         self.split()
     }
@@ -123,6 +124,11 @@ impl<'a> Iterate<'a> {
         let image: f64 = self.g.iter().zip(self.qp.b).map(|(g, b)| (g + b) * (g + b)).sum::<f64>().sqrt();
         let coarse: f64 = self.g.iter().zip(&self.r).map(|(g, r)| (g - r) * (g - r)).sum::<f64>().sqrt();
         64.0 * f64::EPSILON * (norm(self.qp.b) + image + coarse)
+    }
+
+    /// `theta(x) = 1/2 x'A x - b'x`
+    pub fn theta(&self) -> f64 {
+        0.5 * self.x.iter().zip(self.g.iter().zip(self.qp.b)).map(|(x, (g, b))| x * (g - b)).sum::<f64>()
     }
 
     /// `theta(y) - theta(x)` from both gradients, free of the cancellation between the two values.

@@ -6,14 +6,18 @@
 //!
 //! Knows A by its products only, and no bodies.
 
+mod augmented;
 mod coarse;
 mod iterate;
+mod mprgp;
 mod nnls;
 mod projection;
 mod proportioning;
+mod smalbe;
 mod steps;
 
-pub use proportioning::{minimise, Judge, Limits, Observer, Solution, Verdict};
+pub use proportioning::{minimise, Judge, Limits, Observer, Progress, Solution, StepKind, Verdict};
+pub use smalbe::smalbe;
 
 use crate::error::Result;
 use crate::linalg::{Csr, Operator};
@@ -49,6 +53,22 @@ pub struct Counts {
     pub coarse_factorisations: usize,
     /// Applications of the preconditioner.
     pub preconditioned: usize,
+}
+
+impl std::ops::Add for Counts {
+    type Output = Self;
+
+    fn add(self, other: Self) -> Self {
+        Self {
+            products: self.products + other.products,
+            conjugate_gradient: self.conjugate_gradient + other.conjugate_gradient,
+            expansions: self.expansions + other.expansions,
+            releases: self.releases + other.releases,
+            coarse_solves: self.coarse_solves + other.coarse_solves,
+            coarse_factorisations: self.coarse_factorisations + other.coarse_factorisations,
+            preconditioned: self.preconditioned + other.preconditioned,
+        }
+    }
 }
 
 impl Counts {

@@ -1,7 +1,7 @@
 //! Proportioning on the dual polyhedron: Algorithm 1 kept on the true feasible set of (12) instead of behind
 //! an augmented Lagrangian. No penalty, no estimate of a norm, no parameter with a unit.
 
-use crate::error::Result;
+use crate::error::{Error, Kind, Result};
 use crate::linalg::vector::norm;
 use crate::qp::coarse::Coarse;
 use crate::qp::iterate::Iterate;
@@ -28,9 +28,29 @@ pub trait Judge {
     fn accepts(&mut self, x: &[f64], alpha: &[f64]) -> Result<bool>;
 }
 
-/// Sees every step; `Some(verdict)` ends the run (out of time).
+/// Sees every step; an error ends the run, with the point reached where it says `Cancelled` or `TimeOver`.
 pub trait Observer {
-    fn step(&mut self, counts: &Counts, residual: f64, active: &[bool]) -> Option<Verdict>;
+    fn step(&mut self, now: &Progress) -> Result<()>;
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum StepKind {
+    ConjugateGradient,
+    Expansion,
+    Release,
+}
+
+/// Where the method stands after a step.
+pub struct Progress<'a> {
+    pub kind: StepKind,
+    pub counts: &'a Counts,
+    pub active: &'a [bool],
+    pub theta: f64,
+    /// Norms of `g^P`, of its parts `g^I` (22) and `g^C` (23), and the norm that counts as zero.
+    pub residual: f64,
+    pub free: f64,
+    pub chopped: f64,
+    pub small: f64,
 }
 
 #[derive(Debug, Clone, PartialEq)]
@@ -41,6 +61,7 @@ pub enum Verdict {
     Marginal,
     StepLimit,
     TimeLimit,
+    Cancelled,
     /// theta no longer decreases, and the judge does not accept.
     Stalled,
     /// The residual is as small as asked, six times over, and the judge does not accept.
@@ -54,6 +75,17 @@ pub enum Verdict {
     Unbounded {
         p: Vec<f64>,
     },
+}
+
+impl Verdict {
+    /// How a run ends that observer or operator would not let go on.
+    pub(super) fn of_refusal(error: Error) -> Result<Self> {
+        match error.kind {
+            Kind::Cancelled => Ok(Self::Cancelled),
+            Kind::TimeOver => Ok(Self::TimeLimit),
+            _ => Err(error),
+        }
+    }
 }
 
 #[derive(Debug, Clone)]
@@ -83,9 +115,8 @@ pub fn minimise(
     observer: &mut dyn Observer,
 ) -> Result<Solution> {
     let mut coarse = Coarse::new(qp.g_transposed)?;
-    let none = vec![false; start.len()];
-    if let Some(first) = project(&qp, &mut coarse, start, &none)? {
-        return proportioning(Iterate::new(qp, coarse, first.point)?, limits, judge, observer);
+    if let Some(first) = first_point(&qp, &mut coarse, start)? {
+        return proportioning(Iterate::new(qp, coarse, first)?, limits, judge, observer);
     }
     let found = nearest(&qp, &mut coarse)?;
     let margin = found.margin;
@@ -105,6 +136,20 @@ pub fn minimise(
     Ok(solution)
 }
 
+/// The feasible point nearest to `start`: on the face of its zeros, the active set it brings along, where that
+/// face has one.
+fn first_point(qp: &Qp, coarse: &mut Coarse, start: &[f64]) -> Result<Option<Vec<f64>>> {
+    if start.iter().any(|x| *x != 0.0) {
+        let zeros: Vec<bool> =
+            start.iter().zip(qp.bounded).map(|(x, bounded)| *bounded && *x <= 0.0).collect();
+        if let Some(first) = project(qp, coarse, start, &zeros)? {
+            return Ok(Some(first.point));
+        }
+    }
+    let none = vec![false; start.len()];
+    Ok(project(qp, coarse, start, &none)?.map(|first| first.point))
+}
+
 fn proportioning(
     mut it: Iterate,
     limits: Limits,
@@ -112,38 +157,8 @@ fn proportioning(
     observer: &mut dyn Observer,
 ) -> Result<Solution> {
     let scale = judge.scale(&it.x, &it.alpha)?;
-    let mut stop = Stop::new(limits.tolerance * scale);
-    let verdict = loop {
-        let small = stop.residual + stop.noise * it.noise();
-        if it.residual() <= small || stop.plateau(&it) {
-            it.refresh()?;
-            if it.residual() <= small || stop.plateau(&it) {
-                match stop.tighten(judge.accepts(&it.x, &it.alpha)?) {
-                    Some(verdict) => break verdict,
-                    None => continue,
-                }
-            }
-        }
-        let step = if it.is_proportional(limits.gamma) { it.explore()? } else { it.release(small)? };
-        match step {
-            Step::Vertex { alpha } => {
-                if let Some(verdict) = stop.tighten(judge.accepts(&it.x, &alpha)?) {
-                    it.alpha = alpha;
-                    break verdict;
-                }
-            }
-            Step::Unbounded { p } => break Verdict::Unbounded { p },
-            Step::Stuck if judge.accepts(&it.x, &it.alpha)? => break Verdict::Solved,
-            Step::Stuck => break Verdict::Stalled,
-            Step::ConjugateGradient | Step::Expansion | Step::Release => {}
-        }
-        if let Some(verdict) = observer.step(&it.counts, it.residual(), &it.active) {
-            break verdict;
-        }
-        if it.counts.steps() >= limits.steps {
-            break Verdict::StepLimit;
-        }
-    };
+    let stop = Stop::new(limits.tolerance * scale);
+    let verdict = run(&mut it, stop, limits, judge, observer).or_else(Verdict::of_refusal)?;
     it.counts.coarse_solves = it.coarse.solves;
     it.counts.coarse_factorisations = it.coarse.factorisations;
     Ok(Solution {
@@ -156,11 +171,70 @@ fn proportioning(
     })
 }
 
+fn run(
+    it: &mut Iterate,
+    mut stop: Stop,
+    limits: Limits,
+    judge: &mut dyn Judge,
+    observer: &mut dyn Observer,
+) -> Result<Verdict> {
+    loop {
+        let small = stop.residual + stop.noise * it.noise();
+        if it.residual() <= small || stop.plateau(it) {
+            if judge.accepts(&it.x, &it.alpha)? {
+                return Ok(Verdict::Solved);
+            }
+            it.refresh()?;
+            if it.residual() <= small || stop.plateau(it) {
+                match stop.tighten(judge.accepts(&it.x, &it.alpha)?) {
+                    Some(verdict) => return Ok(verdict),
+                    None => continue,
+                }
+            }
+        }
+        let step = if it.is_proportional(limits.gamma) { it.explore()? } else { it.release(small)? };
+        let kind = match step {
+            Step::Vertex { alpha } => {
+                if let Some(verdict) = stop.tighten(judge.accepts(&it.x, &alpha)?) {
+                    it.alpha = alpha;
+                    return Ok(verdict);
+                }
+                StepKind::Release
+            }
+            Step::Unbounded { p } => return Ok(Verdict::Unbounded { p }),
+            Step::Stuck if judge.accepts(&it.x, &it.alpha)? => return Ok(Verdict::Solved),
+            Step::Stuck => return Ok(Verdict::Stalled),
+            Step::ConjugateGradient => StepKind::ConjugateGradient,
+            Step::Expansion => StepKind::Expansion,
+            Step::Release => StepKind::Release,
+        };
+        observer.step(&it.progress(kind, small))?;
+        if it.counts.steps() >= limits.steps {
+            return Ok(Verdict::StepLimit);
+        }
+    }
+}
+
+impl Iterate<'_> {
+    fn progress(&self, kind: StepKind, small: f64) -> Progress<'_> {
+        Progress {
+            kind,
+            counts: &self.counts,
+            active: &self.active,
+            theta: self.theta(),
+            residual: self.residual(),
+            free: norm(&self.free),
+            chopped: norm(&self.chopped),
+            small,
+        }
+    }
+}
+
 /// When the residual is small enough, or no longer worth reducing.
-struct Stop {
-    residual: f64,
+pub(super) struct Stop {
+    pub residual: f64,
     /// Share of the allowance for rounding that counts.
-    noise: f64,
+    pub noise: f64,
     tightenings: usize,
     /// Smallest residual of the current face, the count of steps when it was met, and that face.
     best: f64,
@@ -169,7 +243,7 @@ struct Stop {
 }
 
 impl Stop {
-    fn new(residual: f64) -> Self {
+    pub fn new(residual: f64) -> Self {
         Self { residual, noise: 1.0, tightenings: 0, best: f64::INFINITY, met: 0, face: Vec::new() }
     }
 
@@ -185,7 +259,7 @@ impl Stop {
         steps - self.met > 2 * unknowns + 20
     }
 
-    fn tighten(&mut self, accepted: bool) -> Option<Verdict> {
+    pub fn tighten(&mut self, accepted: bool) -> Option<Verdict> {
         if accepted {
             return Some(Verdict::Solved);
         }

@@ -74,7 +74,7 @@ impl Iterate<'_> {
             let beta = dot(&p, &image) / dot(&old, &image);
             axpy(-beta, &old, &mut p);
         }
-        let image = self.product(&p);
+        let image = self.product(&p)?;
         Ok((p, image))
     }
 
@@ -110,8 +110,10 @@ impl Iterate<'_> {
             return Ok(false);
         };
         let y = projected.point;
-        let mut g = self.product(&y);
+        let mut g = self.product(&y)?;
         axpy(-1.0, self.qp.b, &mut g);
+        // accepted or not, the trial tells how curved theta is
+        self.observe_curvature(&difference(&y, &self.x), &difference(&g, &self.g))?;
         let increase = self.increase(&y, &g);
         let accepted = increase < 0.0 || (or_equal && increase == 0.0);
         if accepted {
@@ -136,7 +138,7 @@ impl Iterate<'_> {
     pub fn release(&mut self, small: f64) -> Result<Step> {
         if self.curvature == 0.0 {
             let r = self.r.clone();
-            let image = self.product(&r);
+            let image = self.product(&r)?;
             self.observe_curvature(&r, &image)?;
         }
         // without curvature any length will do
@@ -158,7 +160,7 @@ impl Iterate<'_> {
 
     /// Exact minimum of theta over `x + t s`, t in [0, max(1, first bound)].
     fn search_along(&mut self, s: Vec<f64>) -> Result<Step> {
-        let image = self.product(&s);
+        let image = self.product(&s)?;
         self.observe_curvature(&s, &image)?;
         let (slope, curvature) = (dot(&self.g, &s), dot(&s, &image));
         if slope >= 0.0 {
@@ -188,4 +190,9 @@ impl Iterate<'_> {
         self.move_to(x, g)?;
         Ok(Step::Release)
     }
+}
+
+/// `a - b`
+fn difference(a: &[f64], b: &[f64]) -> Vec<f64> {
+    a.iter().zip(b).map(|(a, b)| a - b).collect()
 }

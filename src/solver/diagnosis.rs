@@ -1,8 +1,10 @@
 //! Why there is no answer: a load that nothing holds, rows that contradict each other.
 
 use crate::constraints::RowKind;
-use crate::error::{Error, Kind};
+use crate::error::{Error, Kind, Proof};
+use crate::linalg::graph::components;
 use crate::linalg::vector::{dot, norm, norm_max, weighted_norm};
+use crate::solver::presolve::Gaps;
 use crate::solver::problem::Problem;
 use crate::solver::setup::Ready;
 
@@ -26,12 +28,21 @@ pub(super) fn load_not_held(problem: &Problem, ready: &Ready, direction: &[f64],
          the motion is fastest at this dof, in the {sense} sense",
         100.0 * margin
     );
-    Error::new(Kind::LoadNotHeld, what).body(body).dof(fastest - range.start).value(margin).limit(0.0)
+    let largest = norm_max(&v);
+    let v = v.iter().map(|v| v / largest).collect();
+    let dof = fastest - range.start;
+    let error = Error::new(Kind::LoadNotHeld, what).body(body).dof(dof).value(margin).limit(0.0);
+    let parts = problem.bodies[body].body.stiffness.as_ref().map(components);
+    let error = match parts {
+        Some((part_of, 2..)) => error.component(part_of[dof]),
+        _ => error,
+    };
+    error.proved_by(Proof::Motion { margin, v })
 }
 
 /// The weights w combine the dual rows to nothing, `B'w = 0`, yet demand a negative gap, `c'w < 0`: no
-/// displacement satisfies them. `None` when w does not prove it. `gaps` = S c.
-pub(super) fn gaps_contradict(ready: &Ready, gaps: &[f64], w: &[f64]) -> Option<Error> {
+/// displacement satisfies them. `None` when w does not prove it.
+pub(super) fn gaps_contradict(ready: &Ready, gaps: &Gaps, w: &[f64]) -> Option<Error> {
     let leader = |group: usize| ready.grouping.leaders[group];
     let bounded = |group: usize| leader(group) < ready.contact;
     let negligible = EMPTY * norm_max(w);
@@ -40,8 +51,8 @@ pub(super) fn gaps_contradict(ready: &Ready, gaps: &[f64], w: &[f64]) -> Option<
     ready.matrix.mul_transposed_add(1.0, &w, &mut left);
     ready.matrix.mul_transposed_abs_add(&w, &mut terms);
     let size = |x: &[f64]| weighted_norm(x, |i| 1.0 / ready.metric[i]);
-    let demanded = dot(gaps, &w);
-    let demands: f64 = gaps.iter().zip(&w).map(|(c, w)| (c * w).abs()).sum();
+    let demanded = dot(&gaps.value, &w);
+    let demands: f64 = gaps.value.iter().zip(&w).map(|(c, w)| (c * w).abs()).sum();
     let proves = (0..w.len()).all(|group| !bounded(group) || w[group] >= 0.0)
         && size(&left) <= EMPTY * size(&terms)
         && demanded < -EMPTY * demands;
@@ -50,12 +61,29 @@ pub(super) fn gaps_contradict(ready: &Ready, gaps: &[f64], w: &[f64]) -> Option<
     }
     let heaviest = (0..w.len()).fold(0, |best, i| if w[i].abs() > w[best].abs() { i } else { best });
     let others = w.iter().filter(|v| **v != 0.0).count() - 1;
-    let (kind, row) = kind_and_row(leader(heaviest), ready.contact);
+    let (kind, row) = kind_and_row(gaps.holder[heaviest], ready.contact);
     let what = format!(
         "this {} and {others} others contradict each other: no displacement satisfies them",
         kind.name()
     );
-    Some(Error::new(Kind::GapsContradict, what).row(row).value(demanded).limit(0.0))
+    let error = Error::new(Kind::GapsContradict, what).row(row).value(demanded).limit(0.0);
+    let involved = (0..w.len()).filter(|&group| w[group] != 0.0);
+    let weights = involved.map(|group| (gaps.holder[group], w[group] * ready.scale[gaps.holder[group]]));
+    Some(error.proved_by(proof_of_rows(-demanded / demands, weights.collect(), gaps.holder[heaviest])))
+}
+
+/// The error of a row without entries, which contradicts itself; `first` is the place of its kind in the stack.
+pub(super) fn empty_row_contradicts(error: Error, first: usize) -> Error {
+    let (Some(row), Some(gap)) = (error.place.row, error.place.value) else { return error };
+    error.proved_by(proof_of_rows(1.0, vec![(first + row, -gap)], first + row))
+}
+
+/// Weights in the scaling of the host, the largest 1, in the order of the rows.
+pub(super) fn proof_of_rows(margin: f64, mut weights: Vec<(usize, f64)>, heaviest: usize) -> Proof {
+    let largest = weights.iter().fold(0.0, |largest: f64, (_, w)| largest.max(w.abs()));
+    weights.iter_mut().for_each(|(_, w)| *w /= largest);
+    weights.sort_by_key(|(row, _)| *row);
+    Proof::Rows { margin, weights, heaviest }
 }
 
 /// Kind of a row of the stack, and its number among those.

@@ -2,6 +2,8 @@
 
 mod certificate;
 mod diagnosis;
+mod fallback;
+mod findings;
 mod presolve;
 mod problem;
 mod report;
@@ -10,12 +12,18 @@ mod room;
 mod settings;
 mod setup;
 mod solve;
+mod state;
 mod threads;
+mod watch;
 
 pub use crate::body::{Modes, SparseInput, Storage};
 pub use crate::constraints::{RowKind, RowsInput};
+pub use crate::error::Proof;
+pub use crate::qp::StepKind;
 pub use certificate::{Certificate, Entry};
+pub use findings::Findings;
 pub use problem::Problem;
 pub use report::{Counts, Outcome, Report, RowState};
 pub use settings::{options, OptionInfo, OptionValue, Settings};
 pub use threads::THREAD_NAME;
+pub use watch::{Listener, Progress, Reply};

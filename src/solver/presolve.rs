@@ -4,7 +4,7 @@ use crate::constraints::RowKind;
 use crate::error::{Error, Kind, Result};
 use crate::linalg::vector::{norm, norm_max};
 use crate::linalg::{Csr, Operator};
-use crate::qp::{minimise, Counts, Judge, Limits, Observer, Qp, Verdict};
+use crate::qp::{minimise, Judge, Limits, Observer, Progress, Qp};
 use crate::solver::diagnosis;
 use crate::solver::problem::Problem;
 use crate::solver::setup::Ready;
@@ -51,15 +51,30 @@ pub(super) fn presolve(problem: &Problem, ready: &Ready) -> Result<Gaps> {
             gap > scaled[i] + slack
         };
         if contradicts {
-            let (kind, row) = diagnosis::kind_and_row(i, ready.contact);
-            let what = format!("this {} contradicts an equality row in the same direction", kind.name());
-            return Err(Error::new(Kind::GapsContradict, what).row(row).value(gap - scaled[i]).limit(slack));
+            return Err(two_rows_contradict(ready, (i, scaled[i]), (leaders[group], gap, sign), slack));
         }
     }
     match contradiction(ready, &gaps)? {
         Some(error) => Err(error),
         None => Ok(gaps),
     }
+}
+
+/// Row i with its gap and a parallel equality row with its own, in the direction of row i: `b_i = sign b_leader`
+/// in the scaling of the dual.
+fn two_rows_contradict(
+    ready: &Ready,
+    (i, gap): (usize, f64),
+    (leader, demanded, sign): (usize, f64, f64),
+    slack: f64,
+) -> Error {
+    let (kind, row) = diagnosis::kind_and_row(i, ready.contact);
+    let what = format!("this {} contradicts an equality row in the same direction", kind.name());
+    let error = Error::new(Kind::GapsContradict, what).row(row).value(demanded - gap).limit(slack);
+    let turned = if demanded > gap { 1.0 } else { -1.0 };
+    let weights = vec![(i, turned * ready.scale[i]), (leader, -turned * sign * ready.scale[leader])];
+    let margin = (demanded - gap).abs() / (demanded.abs() + gap.abs());
+    error.proved_by(diagnosis::proof_of_rows(margin, weights, i))
 }
 
 /// `min |D^-1/2 B'w|^2 + (1 + c'w)^2` over w >= 0 on contact rows is zero exactly where rows contradict each
@@ -79,7 +94,7 @@ fn contradiction(ready: &Ready, gaps: &Gaps) -> Result<Option<Error>> {
     let limits = Limits { tolerance: 1e-14, gamma: 1.0, steps };
     let mut judge = Unjudged { scale: norm(&b) };
     let solution = minimise(qp, &vec![0.0; c.len()], limits, &mut judge, &mut Unobserved)?;
-    Ok(diagnosis::gaps_contradict(ready, &gaps.value, &solution.x))
+    Ok(diagnosis::gaps_contradict(ready, gaps, &solution.x))
 }
 
 /// `w -> B D^-1 B'w + c (c'w)`
@@ -122,7 +137,7 @@ impl Judge for Unjudged {
 struct Unobserved;
 
 impl Observer for Unobserved {
-    fn step(&mut self, _: &Counts, _: f64, _: &[bool]) -> Option<Verdict> {
-        None
+    fn step(&mut self, _: &Progress) -> Result<()> {
+        Ok(())
     }
 }

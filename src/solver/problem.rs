@@ -11,9 +11,12 @@ use crate::error::{Error, Result};
 use crate::linalg::memory::{copied, zeros};
 use crate::linalg::vector::first_non_finite;
 use crate::linalg::{Matrix, Symmetric};
+use crate::solver::findings::Findings;
 use crate::solver::report::{Counts, Report};
 use crate::solver::results::Answer;
 use crate::solver::setup::Ready;
+use crate::solver::state::History;
+use crate::solver::watch::Host;
 use crate::solver::Settings;
 
 /// Bodies, rows and options of one contact problem, its factors, and the answer of its last solve.
@@ -24,7 +27,10 @@ pub struct Problem {
     pub(super) contact: RowSet,
     pub(super) equalities: RowSet,
     pub(super) ready: Option<Ready>,
-    pub(super) answer: Option<Answer>,
+    pub(super) answer: Option<Arc<Answer>>,
+    pub(super) findings: Option<Findings>,
+    pub(super) history: History,
+    pub(super) host: Host,
     pub(super) factorisations: usize,
     pub(super) seconds_setup: f64,
 }
@@ -81,7 +87,7 @@ impl Problem {
         if n == 0 {
             return Err(Error::argument("n", "a body has at least one unknown").value(0.0).limit(1.0));
         }
-        self.forget_dual();
+        self.rows_changed();
         self.bodies.push(BodySlot { body: Body { order: n, ..Body::default() }, inverse: None });
         Ok(self.bodies.len() - 1)
     }
@@ -188,7 +194,7 @@ impl Problem {
     pub fn add_rows(&mut self, kind: RowKind, rows: RowsInput<'_>) -> Result<usize> {
         let offsets = self.offsets();
         let first = self.rows_mut(kind).add(rows, &offsets)?;
-        self.forget_dual();
+        self.rows_changed();
         Ok(first)
     }
 
@@ -200,7 +206,7 @@ impl Problem {
     /// Drops all rows of one kind.
     pub fn clear_rows(&mut self, kind: RowKind) {
         *self.rows_mut(kind) = RowSet::default();
-        self.forget_dual();
+        self.rows_changed();
     }
 
     pub fn counts(&self) -> Counts {
@@ -247,6 +253,12 @@ impl Problem {
     fn forget_dual(&mut self) {
         self.ready = None;
         self.answer = None;
+        self.history.data_changed();
+    }
+
+    fn rows_changed(&mut self) {
+        self.forget_dual();
+        self.history.rows_changed();
     }
 
     pub(super) fn check_length(&self, body: usize, argument: &'static str, n: usize) -> Result<()> {

@@ -16,8 +16,8 @@ use crate::solver::solve::Recovered;
 pub(super) struct Answer {
     pub report: Report,
     u: Vec<f64>,
-    lambda: Vec<f64>,
-    mu: Vec<f64>,
+    pub lambda: Vec<f64>,
+    pub mu: Vec<f64>,
     /// Amplitudes of the rigid modes of all bodies.
     alpha: Vec<f64>,
     /// c - B u, length.
@@ -104,7 +104,7 @@ impl Problem {
 
     fn answer(&self) -> Result<&Answer> {
         let what = "there is no answer yet: solve first (a change of bodies or rows drops the last one)";
-        self.answer.as_ref().ok_or_else(|| Error::new(Kind::State, what))
+        self.answer.as_deref().ok_or_else(|| Error::new(Kind::State, what))
     }
 
     /// u of one body, length.

@@ -19,6 +19,8 @@ pub struct Settings {
     pub index_base: i64,
     pub fault_injection: i64,
     pub preconditioner: &'static CStr,
+    pub method: &'static CStr,
+    pub start: &'static CStr,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -85,7 +87,7 @@ const fn word(
     OptionInfo { name, doc, default, minimum: 0.0, maximum: 0.0, field: Field::Str(field, words) }
 }
 
-static OPTIONS: [OptionInfo; 12] = [
+static OPTIONS: [OptionInfo; 14] = [
     real(c"tolerance", 1e-12, 1e-14..=1e-2, |s| &mut s.tolerance,
         c"The dual is solved until its projected gradient, a gap, is this small against the gaps and displacements of the problem."),
     real(c"certificate_tolerance", 1e-8, 1e-14..=1e-2, |s| &mut s.certificate_tolerance,
@@ -110,6 +112,10 @@ static OPTIONS: [OptionInfo; 12] = [
         c"1: the next feti_solve fails inside with FETI_INTERNAL, so that a host can test its own reaction."),
     word(c"preconditioner", &[c"none", c"lumped", c"dirichlet"], |s| &mut s.preconditioner,
         c"Preconditioner of the dual: none; lumped (stiffness of the constrained dofs, the others held); dirichlet (the others free: fewer steps, one more factorisation of each body)."),
+    word(c"method", &[c"proportioning", c"smalbe"], |s| &mut s.method,
+        c"Method for the dual: proportioning on its feasible set, with smalbe to fall back on; smalbe, an augmented Lagrangian, for comparison."),
+    word(c"start", &[c"cold", c"previous"], |s| &mut s.start,
+        c"Where a solve starts: cold (no forces: the same input gives the same bits) or previous (forces and active set of the last answer for these rows); feti_start_from comes before either."),
 ];
 
 /// All options, in the order of their listing.

@@ -11,8 +11,10 @@ use crate::dual::{constrained, Boundary, Dual, Part, Preconditioner};
 use crate::error::{Error, Kind, Result};
 use crate::linalg::memory::available;
 use crate::linalg::{Csr, Operator, Symmetric};
+use crate::solver::diagnosis::empty_row_contradicts;
 use crate::solver::problem::{Inverse, Problem};
 use crate::solver::threads;
+use crate::solver::watch::{Stops, Watch};
 
 /// Stiffness of the constrained dofs of a body.
 type BoundaryStiffness = fn(&Symmetric, &[usize]) -> Result<Box<dyn Operator + Send>>;
@@ -38,16 +40,23 @@ pub(super) struct Ready {
 impl Problem {
     /// Null spaces, factors and dual operators, as far as they are not there yet.
     pub fn setup(&mut self) -> Result<()> {
+        self.watched(Self::set_up)
+    }
+
+    pub(super) fn set_up(&mut self, watch: &mut Watch) -> Result<()> {
         if self.ready.is_some() {
             return Ok(());
         }
         let started = Instant::now();
         self.check_complete()?;
-        self.contact.check_empty_rows(RowKind::Inequality)?;
-        self.equalities.check_empty_rows(RowKind::Equality)?;
+        self.contact.check_empty_rows(RowKind::Inequality).map_err(|e| empty_row_contradicts(e, 0))?;
+        let first = self.contact.len();
+        self.equalities.check_empty_rows(RowKind::Equality).map_err(|e| empty_row_contradicts(e, first))?;
         let unit = self.unit();
-        self.factorize(unit)?;
-        self.ready = Some(self.dualize(unit)?);
+        self.factorize(unit, &watch.stops)?;
+        watch.part_done()?;
+        self.ready = Some(self.dualize(unit, &watch.stops)?);
+        watch.part_done()?;
         self.seconds_setup = started.elapsed().as_secs_f64();
         Ok(())
     }
@@ -83,7 +92,7 @@ impl Problem {
     }
 
     /// K+ of the bodies that have none for this unit.
-    fn factorize(&mut self, unit: f64) -> Result<()> {
+    fn factorize(&mut self, unit: f64, stops: &Stops) -> Result<()> {
         for slot in &mut self.bodies {
             slot.inverse.take_if(|inverse| inverse.unit != unit);
         }
@@ -97,6 +106,7 @@ impl Problem {
         self.check_memory(bytes.iter().sum())?;
         let plans: Vec<_> = plans.into_iter().map(|plan| std::sync::Mutex::new(Some(plan))).collect();
         let inverses = threads::run(threads, todo.len(), |k| {
+            stops.check_cancelled()?;
             let plan = plans[k].lock().ok().and_then(|mut plan| plan.take());
             let plan = plan.ok_or_else(|| Error::new(Kind::Internal, "a body was factorised twice"))?;
             plan.execute().map_err(|e| e.body(todo[k]))
@@ -129,7 +139,7 @@ impl Problem {
     }
 
     /// Scales the rows, keeps one of those that are parallel, and forms F and G.
-    fn dualize(&self, unit: f64) -> Result<Ready> {
+    fn dualize(&self, unit: f64, stops: &Stops) -> Result<Ready> {
         let metric = self.metric(unit);
         let mut all = Csr::empty(metric.len());
         let mut scale = Vec::new();
@@ -149,13 +159,19 @@ impl Problem {
             Some(Part { range, kplus: Arc::clone(&inverse.kplus) })
         });
         let threads = threads::count(self.settings.threads);
-        let dual = Dual::new(parts.collect(), &matrix, &|count, task| threads::run(threads, count, task))?;
+        let unless_cancelled = |task: &(dyn Fn(usize) -> Result<_> + Sync), p| {
+            stops.check_cancelled()?;
+            task(p)
+        };
+        let dual = Dual::new(parts.collect(), &matrix, &|count, task| {
+            threads::run(threads, count, |p| unless_cancelled(task, p))
+        })?;
         let preconditioner = None;
         Ok(Ready { unit, dual, matrix, metric, scale, grouping, contact, preconditioner })
     }
 
     /// The preconditioner the options ask for, kept until they ask for another.
-    pub(super) fn set_up_preconditioner(&mut self) -> Result<()> {
+    pub(super) fn set_up_preconditioner(&mut self, watch: &mut Watch) -> Result<()> {
         let asked = self.settings.preconditioner;
         let Some(ready) = &self.ready else { return Ok(()) };
         if ready.preconditioner.as_ref().map_or(c"none", |(name, _)| *name) == asked {
@@ -169,7 +185,7 @@ impl Problem {
         if let Some(ready) = &mut self.ready {
             ready.preconditioner = preconditioner;
         }
-        Ok(())
+        watch.part_done()
     }
 
     fn preconditioner(&self, ready: &Ready, stiffness: BoundaryStiffness) -> Result<Preconditioner> {

@@ -1,33 +1,43 @@
 //! Set up, solve the dual, recover the displacements, certify: the paper in order.
 
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 use crate::dual::Preconditioner;
 use crate::error::{Error, Kind, Result};
 use crate::linalg::vector::weighted_norm;
-use crate::qp::{self, minimise, Judge, Limits, Observer, Qp, Solution, Verdict};
+use crate::linalg::Operator;
+use crate::qp::{self, Judge, Qp, Solution, Verdict};
 use crate::solver::certificate::{certify, Answer as AnswerView, BodyData, Certificate, Data};
 use crate::solver::diagnosis;
+use crate::solver::fallback::solve_dual;
+use crate::solver::findings::Findings;
 use crate::solver::presolve::{presolve, Gaps};
 use crate::solver::problem::Problem;
 use crate::solver::report::{Outcome, Report};
 use crate::solver::results::Answer;
 use crate::solver::setup::Ready;
+use crate::solver::watch::Watch;
 
 impl Problem {
     /// Solves (10)-(11) for the present loads and gaps. An answer is kept even when it is incomplete; the
     /// report says how good it is.
     pub fn solve(&mut self) -> Result<Report> {
+        self.watched(Self::solve_watched)
+    }
+
+    fn solve_watched(&mut self, watch: &mut Watch) -> Result<Report> {
         let started = Instant::now();
         self.answer = None;
-        self.setup()?;
-        self.set_up_preconditioner()?;
+        let start = self.take_start();
+        self.set_up(watch)?;
+        self.set_up_preconditioner(watch)?;
         let solving = Instant::now();
         let ready = self.ready()?;
         let dual = Scaled::new(self, ready)?;
         let mut judge = Certifier { ready, scaled: &dual, data: self.data()? };
-        let mut watch = Watch { started, limit: self.settings.time_limit };
-        let solution = minimise(dual.qp(ready), &dual.start, self.limits(), &mut judge, &mut watch)?;
+        let f = watch.operator(ready, &dual.gaps.bounded);
+        let solution =
+            solve_dual(&self.settings, dual.qp(ready, &f), &start.scaled(ready)?, &mut judge, watch)?;
         let outcome = self.outcome(ready, &dual, &solution)?;
         let recovered = judge.recover(&solution.x, &solution.alpha)?;
         let certificate = certify(&judge.data, recovered.view());
@@ -35,17 +45,13 @@ impl Problem {
         answer.report.seconds_setup = (solving - started).as_secs_f64();
         answer.report.seconds_solve = solving.elapsed().as_secs_f64();
         let report = answer.report.clone();
-        self.answer = Some(answer);
+        self.keep(answer);
+        self.findings = Some(Findings::of_report(self, &report));
         Ok(report)
     }
 
     pub(super) fn ready(&self) -> Result<&Ready> {
         self.ready.as_ref().ok_or_else(|| Error::new(Kind::Internal, "the setup left nothing"))
-    }
-
-    fn limits(&self) -> Limits {
-        let steps = usize::try_from(self.settings.max_steps).unwrap_or(usize::MAX);
-        Limits { tolerance: self.settings.tolerance, gamma: self.settings.gamma, steps }
     }
 
     /// How the solution ended, or the named reason why there is none.
@@ -55,6 +61,7 @@ impl Problem {
             Verdict::Marginal => Ok(Outcome::Marginal),
             Verdict::StepLimit => Ok(Outcome::Iterations),
             Verdict::TimeLimit => Ok(Outcome::Time),
+            Verdict::Cancelled => Ok(Outcome::Cancelled),
             Verdict::Stalled => Ok(Outcome::Stalled),
             Verdict::Inaccurate => Ok(Outcome::Inaccurate),
             Verdict::Infeasible { direction, margin } => {
@@ -62,7 +69,7 @@ impl Problem {
             }
             Verdict::Unbounded { p } => {
                 let w: Vec<f64> = p.iter().map(|p| -p).collect();
-                diagnosis::gaps_contradict(ready, &dual.gaps.value, &w).map_or(Ok(Outcome::Stalled), Err)
+                diagnosis::gaps_contradict(ready, &dual.gaps, &w).map_or(Ok(Outcome::Stalled), Err)
             }
         }
     }
@@ -93,8 +100,6 @@ struct Scaled {
     gaps: Gaps,
     d: Vec<f64>,
     e: Vec<f64>,
-    /// Where the dual starts: no force.
-    start: Vec<f64>,
 }
 
 impl Scaled {
@@ -104,11 +109,11 @@ impl Scaled {
         let gaps = presolve(problem, ready)?;
         let d = ready.dual.rhs(&load, &gaps.value)?;
         let e = ready.dual.resultants(&load);
-        Ok(Self { load, start: vec![0.0; d.len()], gaps, d, e })
+        Ok(Self { load, gaps, d, e })
     }
 
-    fn qp<'a>(&'a self, ready: &'a Ready) -> Qp<'a> {
-        let (a, g_transposed) = (&ready.dual, &ready.dual.coarse);
+    fn qp<'a>(&'a self, ready: &'a Ready, a: &'a dyn Operator) -> Qp<'a> {
+        let g_transposed = &ready.dual.coarse;
         let preconditioner = ready.preconditioner.as_ref().map(|(_, m)| m as &dyn qp::Preconditioner);
         Qp { a, b: &self.d, g_transposed, e: &self.e, bounded: &self.gaps.bounded, preconditioner }
     }
@@ -164,19 +169,6 @@ impl Judge for Certifier<'_> {
 
     fn accepts(&mut self, x: &[f64], alpha: &[f64]) -> Result<bool> {
         Ok(certify(&self.data, self.recover(x, alpha)?.view()).passed())
-    }
-}
-
-/// Ends the run when its time is over.
-struct Watch {
-    started: Instant,
-    limit: f64,
-}
-
-impl Observer for Watch {
-    fn step(&mut self, _: &qp::Counts, _: f64, _: &[bool]) -> Option<Verdict> {
-        let elapsed: Duration = self.started.elapsed();
-        (elapsed.as_secs_f64() > self.limit).then_some(Verdict::TimeLimit)
     }
 }
 

@@ -85,10 +85,10 @@ fn not_held(random: &mut Random, pull: f64) -> Program {
     let length2 = dot(&a, &a);
     let bounded: Vec<bool> = (0..m).map(|_| random.chance(0.8)).collect();
     let mut g = Dense::zeros(r, m);
-    for i in 0..m {
+    for (i, bounded) in bounded.iter().enumerate() {
         let column = random.normals(r, 1.0);
         let along = dot(&column, &a) / length2;
-        let kept = if bounded[i] { -along.abs() } else { 0.0 };
+        let kept = if *bounded { -along.abs() } else { 0.0 };
         (0..r).for_each(|k| g.0[k][i] = column[k] + (kept - along) * a[k]);
     }
     let mut e = random.normals(r, 1.0);

@@ -3,6 +3,9 @@
 mod certificates;
 mod dense;
 mod enumeration;
+mod preconditioned;
 mod program;
 mod scaling;
+mod smalbe;
 mod traps;
+mod watched;

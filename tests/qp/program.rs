@@ -3,7 +3,7 @@
 
 use feti_contact::error::Result;
 use feti_contact::linalg::Csr;
-use feti_contact::qp::{minimise, Counts, Judge, Limits, Observer, Qp, Solution, Verdict};
+use feti_contact::qp::{minimise, Judge, Limits, Observer, Preconditioner, Progress, Qp, Solution, Verdict};
 
 use crate::dense::{dot, norm, Dense};
 
@@ -102,6 +102,20 @@ impl Program {
     }
 
     pub fn minimise_from(&self, start: &[f64], tolerance: f64, accepted: f64) -> Solution {
+        self.run(start, tolerance, accepted, None)
+    }
+
+    pub fn minimise_with(&self, preconditioner: Option<&dyn Preconditioner>) -> Solution {
+        self.run(&vec![0.0; self.b.len()], 1e-12, 1e-9, preconditioner)
+    }
+
+    fn run(
+        &self,
+        start: &[f64],
+        tolerance: f64,
+        accepted: f64,
+        preconditioner: Option<&dyn Preconditioner>,
+    ) -> Solution {
         let g_transposed = self.g_transposed();
         let qp = Qp {
             a: &self.a,
@@ -109,7 +123,7 @@ impl Program {
             g_transposed: &g_transposed,
             e: &self.e,
             bounded: &self.bounded,
-            preconditioner: None,
+            preconditioner,
         };
         let limits = Limits { tolerance, gamma: 1.0, steps: 5000 };
         minimise(qp, start, limits, &mut Conditions { program: self, accepted }, &mut Silent).unwrap()
@@ -144,7 +158,7 @@ impl Judge for Conditions<'_> {
 struct Silent;
 
 impl Observer for Silent {
-    fn step(&mut self, _: &Counts, _: f64, _: &[bool]) -> Option<Verdict> {
-        None
+    fn step(&mut self, _: &Progress) -> Result<()> {
+        Ok(())
     }
 }

@@ -12,41 +12,49 @@ typedef struct {
     const case_data *data;
     feti_problem *problem;
     answer result;
-    volatile int over; /* 1: the solve has returned */
+    pthread_mutex_t lock;
+    pthread_cond_t changed;
+    int begun, let_go; /* 1: the solve runs; it may go on */
 } job;
 
 static void *solve_job(void *argument)
 {
     job *work = argument;
     work->result.info.struct_size = sizeof work->result.info;
-    /* the thread that waits may be asking for the sizes just now */
-    do work->result.info.status = feti_solve(work->problem, &work->result.info);
-    while (work->result.info.status == FETI_BUSY);
-    work->over = 1;
+    work->result.info.status = feti_solve(work->problem, &work->result.info);
     return NULL;
 }
 
-/* Asks the problem for its sizes until the solve of the other thread keeps it busy, or is over. */
-static int32_t wait_until_busy(const job *work)
+/* Holds the solve at its first step until it is let go. */
+static int32_t hold(void *user, const feti_progress *now)
 {
-    int32_t status = FETI_OK;
-    int64_t bodies;
-    while (status == FETI_OK && !work->over) status = feti_counts(work->problem, &bodies, NULL, NULL, NULL);
-    return status;
+    job *work = user;
+    (void)now;
+    pthread_mutex_lock(&work->lock);
+    work->begun = 1;
+    pthread_cond_broadcast(&work->changed);
+    while (!work->let_go) pthread_cond_wait(&work->changed, &work->lock);
+    pthread_mutex_unlock(&work->lock);
+    return 0;
 }
 
 /* While a solve runs, other calls return FETI_BUSY; the error text can be read; the solve is not disturbed. */
 static void second_thread_is_busy(const case_data *data, const answer *wanted)
 {
-    job work = { .data = data, .problem = handed_over(data, &LOWER) };
+    job work = { .data = data, .problem = handed_over(data, &LOWER), .lock = PTHREAD_MUTEX_INITIALIZER,
+                 .changed = PTHREAD_COND_INITIALIZER };
     feti_problem *copy = work.problem;
     pthread_t thread;
     int32_t state[1];
     int64_t length;
     double number;
 
+    OK(feti_on_progress(work.problem, hold, &work));
     CHECK(pthread_create(&thread, NULL, solve_job, &work) == 0, "no thread");
-    EXPECT(FETI_BUSY, wait_until_busy(&work));
+    pthread_mutex_lock(&work.lock);
+    while (!work.begun) pthread_cond_wait(&work.changed, &work.lock);
+    pthread_mutex_unlock(&work.lock);
+    EXPECT(FETI_BUSY, feti_counts(work.problem, NULL, NULL, NULL, NULL));
     EXPECT(FETI_BUSY, feti_solve(work.problem, NULL));
     EXPECT(FETI_BUSY, feti_active(work.problem, 1, state));
     EXPECT(FETI_BUSY, feti_get_f64(work.problem, "tolerance", &number));
@@ -55,6 +63,10 @@ static void second_thread_is_busy(const case_data *data, const answer *wanted)
     EXPECT(FETI_BUSY, feti_problem_destroy(&copy));
     CHECK(copy == work.problem, "a refused destroy zeroed the handle");
     OK(feti_problem_error(work.problem, NULL, 0, &length));
+    pthread_mutex_lock(&work.lock);
+    work.let_go = 1;
+    pthread_cond_broadcast(&work.changed);
+    pthread_mutex_unlock(&work.lock);
     pthread_join(thread, NULL);
     CHECK(work.result.info.status == FETI_OK, "the disturbed solve returned %d", (int)work.result.info.status);
 

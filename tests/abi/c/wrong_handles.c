@@ -9,6 +9,7 @@ static void every_function(int32_t expected, feti_problem *h)
     int64_t i = 1, dof[1];
     double x[8] = { 0 };
     feti_certificate certificate = { .struct_size = sizeof certificate };
+    feti_findings findings = { .struct_size = sizeof findings };
     const int64_t ptr64[3] = { 0, 1, 3 }, col64[3] = { 0, 0, 1 };
 
     EXPECT(expected, feti_set_f64(h, "gamma", 1.0));
@@ -44,6 +45,15 @@ static void every_function(int32_t expected, feti_problem *h)
     EXPECT(expected, feti_dual_apply(h, 1, x, x + 1));
     EXPECT(expected, feti_dual_rhs(h, 1, x));
     EXPECT(expected, feti_problem_error(h, NULL, 0, &i));
+    EXPECT(expected, feti_cancel(h));
+    EXPECT(expected, feti_on_progress(h, NULL, NULL));
+    EXPECT(expected, feti_start_from(h, FETI_INEQUALITY, 1, x));
+    EXPECT(expected, feti_state_save(h, &i));
+    EXPECT(expected, feti_state_restore(h, i));
+    EXPECT(expected, feti_state_drop(h, i));
+    EXPECT(expected, feti_diagnosis(h, &findings));
+    EXPECT(expected, feti_diagnosis_rows(h, FETI_INEQUALITY, 0, &i, NULL, NULL));
+    EXPECT(expected, feti_diagnosis_motion(h, BLOCK, 2, x));
 }
 
 static void bad_handles(void)
@@ -90,6 +100,7 @@ static void null_inputs(feti_problem *p)
     EXPECT(FETI_ARGUMENT - 6, feti_rows_add_i32(p, FETI_INEQUALITY, 1, ROW_PTR, ROW_BODY, NULL, ROW_VAL, 0, GAP, NULL));
     EXPECT(FETI_ARGUMENT - 7, feti_rows_add_i32(p, FETI_INEQUALITY, 1, ROW_PTR, ROW_BODY, ROW_DOF, NULL, 0, GAP, NULL));
     EXPECT(FETI_ARGUMENT - 5, feti_rows_rhs(p, FETI_INEQUALITY, 0, 1, NULL));
+    EXPECT(FETI_ARGUMENT - 4, feti_start_from(p, FETI_INEQUALITY, 1, NULL));
 }
 
 static void null_outputs(feti_problem *p)
@@ -112,6 +123,10 @@ static void null_outputs(feti_problem *p)
     EXPECT(FETI_ARGUMENT - 4, feti_dual_apply(p, 1, x, NULL));
     EXPECT(FETI_ARGUMENT - 3, feti_dual_rhs(p, 1, NULL));
     EXPECT(FETI_ARGUMENT - 4, feti_problem_error(p, NULL, 0, NULL));
+    EXPECT(FETI_ARGUMENT - 2, feti_state_save(p, NULL));
+    EXPECT(FETI_ARGUMENT - 2, feti_diagnosis(p, NULL));
+    EXPECT(FETI_ARGUMENT - 4, feti_diagnosis_rows(p, FETI_INEQUALITY, 0, NULL, NULL, NULL));
+    EXPECT(FETI_ARGUMENT - 4, feti_diagnosis_motion(p, BLOCK, 2, NULL));
     EXPECT(FETI_ARGUMENT - 1, feti_last_error_detail(NULL));
     EXPECT(FETI_ARGUMENT - 2, feti_option_at(0, NULL));
 }

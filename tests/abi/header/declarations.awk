@@ -17,6 +17,7 @@ function type_of(text,    suffix) {
     sub(/\*/, " *", text)
     gsub(/^ +| +$/, "", text)
     gsub(/ +$/, "", suffix)
+    if (text ~ /_fn$/) text = "callback"
     return text suffix
 }
 
@@ -39,7 +40,22 @@ function emit_function(text,    open, head, count, arguments, k) {
     for (k = 1; k <= count; k++) print name_of(head) " argument " k "\t" type_of(arguments[k])
 }
 
-{ gsub(/\n/, " ") }
+# `int (*name)()` of gfortran, a pointer to any function, becomes `callback name`; a typedef of a function pointer becomes
+# the declaration of the function, as gfortran prints an abstract interface.
+function plain(text,    name) {
+    while (match(text, /int \(\*[A-Za-z0-9_]+\)\(\)/)) {
+        name = substr(text, RSTART + 6, RLENGTH - 9)
+        text = substr(text, 1, RSTART - 1) "callback " name substr(text, RSTART + RLENGTH)
+    }
+    if (text ~ /^ *typedef [^{]*\(\*/) {
+        sub(/^ *typedef /, "", text)
+        sub(/\(\*/, "", text)
+        sub(/\)/, "", text)
+    }
+    return text
+}
+
+{ gsub(/\n/, " "); $0 = plain($0) }
 /[{]/ && /struct/ {
     structure = $0
     sub(/ *[{].*/, "", structure)

@@ -55,6 +55,33 @@ OFFSET(feti_certificate, duality_gap, 80);
 OFFSET(feti_certificate, equilibrium_body, 88);
 OFFSET(feti_certificate, complementarity_row, 128);
 
+SIZE(feti_progress, 80);
+OFFSET(feti_progress, struct_size, 0);
+OFFSET(feti_progress, phase, 8);
+OFFSET(feti_progress, step, 12);
+OFFSET(feti_progress, steps, 16);
+OFFSET(feti_progress, products, 24);
+OFFSET(feti_progress, active, 32);
+OFFSET(feti_progress, residual, 40);
+OFFSET(feti_progress, theta, 64);
+OFFSET(feti_progress, seconds, 72);
+
+SIZE(feti_findings, 144);
+OFFSET(feti_findings, struct_size, 0);
+OFFSET(feti_findings, status, 8);
+OFFSET(feti_findings, kind, 12);
+OFFSET(feti_findings, body, 16);
+OFFSET(feti_findings, component, 24);
+OFFSET(feti_findings, dof, 32);
+OFFSET(feti_findings, row, 40);
+OFFSET(feti_findings, rows_involved, 48);
+OFFSET(feti_findings, undetermined, 56);
+OFFSET(feti_findings, redundant_rows, 64);
+OFFSET(feti_findings, untouched_bodies, 72);
+OFFSET(feti_findings, untouched_body, 80);
+OFFSET(feti_findings, margin, 88);
+OFFSET(feti_findings, motion, 96);
+
 struct layout {
     const char *type;
     size_t size, last; /* bytes; last: offset of the last member */
@@ -65,6 +92,8 @@ static const struct layout in_c[] = {
     {"feti_option", sizeof(feti_option), offsetof(feti_option, default_str)},
     {"feti_info", sizeof(feti_info), offsetof(feti_info, seconds_solve)},
     {"feti_certificate", sizeof(feti_certificate), offsetof(feti_certificate, complementarity_row)},
+    {"feti_progress", sizeof(feti_progress), offsetof(feti_progress, seconds)},
+    {"feti_findings", sizeof(feti_findings), offsetof(feti_findings, motion)},
 };
 enum { TYPES = sizeof in_c / sizeof in_c[0] };
 

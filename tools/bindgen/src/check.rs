@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 
 use crate::doc::Direction;
-use crate::model::{Api, Argument, Field, Function, Type};
+use crate::model::{Api, Argument, Field, Type};
 
 /// Longest name of Fortran 2003.
 const LONGEST_NAME: usize = 63;
@@ -12,9 +12,20 @@ const LONGEST_NAME: usize = 63;
 pub fn check(api: &Api) -> Result<(), String> {
     public_names(api)?;
     for function in &api.functions {
-        function_types(api, function)?;
-        let names = function.arguments.iter().map(|a| a.name.as_str());
-        distinct_names(names, &format!("function `{}`: arguments", function.name))?;
+        signature(api, &function.name, &function.arguments)?;
+        let is_text = matches!(&function.result, Type::Pointer { mutable: false, to } if **to == Type::Char);
+        if !function.result.is_number() && !is_text {
+            return Err(format!(
+                "function `{}`: result type `{}` is not allowed",
+                function.name, function.result
+            ));
+        }
+    }
+    for callback in &api.callbacks {
+        signature(api, &callback.name, &callback.arguments)?;
+        if callback.result != Type::I32 {
+            return Err(format!("type `{}`: a callback returns i32, not {}", callback.name, callback.result));
+        }
     }
     for structure in &api.structs {
         let fields = structure.fields.as_deref().unwrap_or(&[]);
@@ -33,8 +44,9 @@ fn public_names(api: &Api) -> Result<(), String> {
     let constants = api.constants.iter().map(|c| c.name.as_str());
     let versions = api.version_constants().map(|(name, _)| name);
     let structs = api.structs.iter().map(|s| s.name.as_str());
+    let callbacks = api.callbacks.iter().map(|c| c.name.as_str());
     let functions = api.functions.iter().map(|f| f.name.as_str());
-    let names = constants.chain(versions).chain(structs).chain(functions);
+    let names = constants.chain(versions).chain(structs).chain(callbacks).chain(functions);
     distinct_names(names.chain([crate::fortran::MODULE]), "public names")
 }
 
@@ -56,40 +68,35 @@ fn distinct_names<'a>(names: impl Iterator<Item = &'a str>, what: &str) -> Resul
     Ok(())
 }
 
-fn function_types(api: &Api, function: &Function) -> Result<(), String> {
-    for argument in &function.arguments {
+/// Names and types of the arguments of function or callback `name`.
+fn signature(api: &Api, name: &str, arguments: &[Argument]) -> Result<(), String> {
+    for argument in arguments {
+        let place = format!("function `{name}`, argument `{}`", argument.name);
         if !is_argument_type(api, argument) {
-            return Err(format!(
-                "function `{}`, argument `{}`: type `{}` is not allowed",
-                function.name, argument.name, argument.ty
-            ));
+            return Err(format!("{place}: type `{}` is not allowed", argument.ty));
         }
-        let handle = argument.ty.target().is_some_and(|target| api.is_opaque(target));
-        if argument.direction() == Direction::In && argument.ty.is_mutable_pointer() && !handle {
-            return Err(format!(
-                "function `{}`, argument `{}`: documented as read, but its type is {}",
-                function.name, argument.name, argument.ty
-            ));
+        let target = argument.ty.target();
+        let handed_on = target.is_some_and(|target| api.is_opaque(target) || *target == Type::Void);
+        if argument.direction() == Direction::In && argument.ty.is_mutable_pointer() && !handed_on {
+            return Err(format!("{place}: documented as read, but its type is {}", argument.ty));
         }
     }
-    let result = &function.result;
-    let is_text = matches!(result, Type::Pointer { mutable: false, to } if **to == Type::Char);
-    if result.is_number() || is_text {
-        return Ok(());
-    }
-    Err(format!("function `{}`: result type `{result}` is not allowed", function.name))
+    let names = arguments.iter().map(|a| a.name.as_str());
+    distinct_names(names, &format!("function `{name}`: arguments"))
 }
 
-/// A number by value, or one or two pointers to a number, a character or a declared struct.
+/// A number or a callback by value, a pointer to void, or one or two pointers to a number, a character or a declared
+/// struct.
 fn is_argument_type(api: &Api, argument: &Argument) -> bool {
     let is_target = |ty: &Type| match ty {
-        Type::Struct(name) => api.find_struct(name).is_some(),
-        Type::Pointer { .. } | Type::Array(..) => false,
+        Type::Named(name) => api.find_struct(name).is_some(),
+        Type::Void | Type::Pointer { .. } | Type::Array(..) => false,
         _ => true,
     };
     match &argument.ty {
+        Type::Pointer { mutable: true, to } if **to == Type::Void => true,
         Type::Pointer { to, .. } => is_target(to.target().unwrap_or(to)),
-        ty => ty.is_number(),
+        ty => ty.is_number() || api.is_callback(ty),
     }
 }
 

@@ -12,8 +12,10 @@ pub enum Type {
     F64,
     /// `c_char`: only behind a pointer or inside an array.
     Char,
-    /// A `#[repr(C)]` struct of the interface, by name.
-    Struct(String),
+    /// `c_void`: only behind a pointer.
+    Void,
+    /// A `#[repr(C)]` struct or a callback of the interface, by name.
+    Named(String),
     Array(Box<Type>, usize),
     Pointer {
         mutable: bool,
@@ -46,7 +48,8 @@ impl fmt::Display for Type {
             Type::I64 => write!(f, "i64"),
             Type::F64 => write!(f, "f64"),
             Type::Char => write!(f, "c_char"),
-            Type::Struct(name) => write!(f, "{name}"),
+            Type::Void => write!(f, "c_void"),
+            Type::Named(name) => write!(f, "{name}"),
             Type::Array(of, n) => write!(f, "[{of}; {n}]"),
             Type::Pointer { mutable: true, to } => write!(f, "*mut {to}"),
             Type::Pointer { mutable: false, to } => write!(f, "*const {to}"),
@@ -108,12 +111,22 @@ pub struct Function {
     pub doc: Doc,
 }
 
+/// `pub type feti_x_fn = Option<unsafe extern "C" fn(...) -> i32>`: a function of the host.
+#[derive(Debug)]
+pub struct Callback {
+    pub name: String,
+    pub arguments: Vec<Argument>,
+    pub result: Type,
+    pub doc: Doc,
+}
+
 /// The whole interface, items in the order of the source (files by name).
 #[derive(Debug, Default)]
 pub struct Api {
     pub version: [u32; 3],
     pub constants: Vec<Constant>,
     pub structs: Vec<Struct>,
+    pub callbacks: Vec<Callback>,
     pub functions: Vec<Function>,
 }
 
@@ -122,10 +135,14 @@ impl Api {
         self.structs.iter().find(|s| s.name == name)
     }
 
+    pub fn is_callback(&self, ty: &Type) -> bool {
+        matches!(ty, Type::Named(name) if self.callbacks.iter().any(|callback| callback.name == *name))
+    }
+
     /// True for an opaque handle such as `feti_problem`.
     pub fn is_opaque(&self, ty: &Type) -> bool {
         match ty {
-            Type::Struct(name) => self.find_struct(name).is_some_and(|s| s.fields.is_none()),
+            Type::Named(name) => self.find_struct(name).is_some_and(|s| s.fields.is_none()),
             _ => false,
         }
     }

@@ -3,7 +3,7 @@
 use quote::ToTokens;
 
 use crate::doc::{Direction, Doc};
-use crate::model::{Api, Argument, Constant, Field, Function, Struct, Type};
+use crate::model::{Api, Argument, Callback, Constant, Field, Function, Struct, Type};
 
 /// `sources`: (file name, text), in the order in which the items are printed.
 pub fn parse(sources: &[(String, String)], version: [u32; 3]) -> Result<Api, String> {
@@ -24,6 +24,9 @@ fn add_item(api: &mut Api, item: &syn::Item) -> Result<(), String> {
         }
         syn::Item::Struct(item) if is_public(&item.vis) && has_word(&item.attrs, "repr", "C") => {
             api.structs.push(structure(item)?);
+        }
+        syn::Item::Type(item) if is_public(&item.vis) && is_interface_name(&item.ident) => {
+            api.callbacks.push(callback(item)?);
         }
         syn::Item::Fn(item) => api.functions.extend(function(item)?),
         syn::Item::Macro(_) | syn::Item::Mod(_) if text(item).contains("no_mangle") => {
@@ -94,34 +97,69 @@ fn function(item: &syn::ItemFn) -> Result<Option<Function>, String> {
         (true, false) => return Err(format!("function `{name}`: #[no_mangle] without pub extern \"C\"")),
         (true, true) => {}
     }
-    let mut doc = documentation(&item.attrs).map_err(|e| format!("function `{name}`: {e}"))?;
+    let named = item.sig.inputs.iter().map(|input| match input {
+        syn::FnArg::Typed(typed) => match typed.pat.as_ref() {
+            syn::Pat::Ident(ident) => Ok((name_of(&ident.ident), typed.ty.as_ref())),
+            _ => Err(text(input)),
+        },
+        syn::FnArg::Receiver(_) => Err(text(input)),
+    });
+    let (arguments, result, doc) = signature(&name, named, &item.sig.output, &item.attrs)?;
+    Ok(Some(Function { name, arguments, result, doc }))
+}
+
+/// A type alias of the interface must be a function of the host that may be NULL.
+fn callback(item: &syn::ItemType) -> Result<Callback, String> {
+    let name = item.ident.to_string();
+    let Some(pointer) = optional_function(&item.ty) else {
+        return Err(format!("type `{name}`: {} is not Option<unsafe extern \"C\" fn>", text(&item.ty)));
+    };
+    let named = pointer.inputs.iter().map(|input| {
+        let ident = input.name.as_ref().ok_or_else(|| text(input))?;
+        Ok((name_of(&ident.0), &input.ty))
+    });
+    let (arguments, result, doc) = signature(&name, named, &pointer.output, &item.attrs)?;
+    Ok(Callback { name, arguments, result, doc })
+}
+
+/// The function inside `Option<unsafe extern "C" fn(...) -> ...>`.
+fn optional_function(ty: &syn::Type) -> Option<&syn::TypeBareFn> {
+    let syn::Type::Path(path) = ty else { return None };
+    let option = path.path.segments.last().filter(|segment| segment.ident == "Option")?;
+    let syn::PathArguments::AngleBracketed(inside) = &option.arguments else { return None };
+    let Some(syn::GenericArgument::Type(syn::Type::BareFn(function))) = inside.args.first() else {
+        return None;
+    };
+    let is_c = function.abi.as_ref()?.name.as_ref()?.value() == "C";
+    (is_c && function.unsafety.is_some() && inside.args.len() == 1).then_some(function)
+}
+
+/// Arguments with their rows of the table, result and documentation of a function or callback.
+fn signature<'a>(
+    name: &str,
+    named: impl Iterator<Item = Result<(String, &'a syn::Type), String>>,
+    output: &syn::ReturnType,
+    attrs: &[syn::Attribute],
+) -> Result<(Vec<Argument>, Type, Doc), String> {
+    let mut doc = documentation(attrs).map_err(|e| format!("function `{name}`: {e}"))?;
     let mut arguments = Vec::new();
-    for input in &item.sig.inputs {
-        arguments.push(argument(&name, input, &doc)?);
+    for input in named {
+        let input = input.map_err(|e| format!("function `{name}`: argument {e} has no plain name"))?;
+        arguments.push(argument(name, input, &doc)?);
     }
     if let Some(row) = doc.rows.iter().find(|row| arguments.iter().all(|a| a.name != row.argument)) {
         return Err(format!("function `{name}`: the table lists `{}`, which is no argument", row.argument));
     }
     doc.rows = arguments.iter().map(|argument| argument.row.clone()).collect();
-    let result = match &item.sig.output {
+    let result = match output {
         syn::ReturnType::Type(_, ty) => read_type(ty).ok_or_else(|| text(ty)),
         syn::ReturnType::Default => Err("()".to_string()),
     };
     let result = result.map_err(|ty| format!("function `{name}`: result type {ty} is not allowed"))?;
-    Ok(Some(Function { name, arguments, result, doc }))
+    Ok((arguments, result, doc))
 }
 
-fn argument(function: &str, input: &syn::FnArg, doc: &Doc) -> Result<Argument, String> {
-    let named = match input {
-        syn::FnArg::Typed(typed) => match typed.pat.as_ref() {
-            syn::Pat::Ident(ident) => Some((name_of(&ident.ident), typed.ty.as_ref())),
-            _ => None,
-        },
-        syn::FnArg::Receiver(_) => None,
-    };
-    let Some((name, ty)) = named else {
-        return Err(format!("function `{function}`: argument {} has no plain name", text(input)));
-    };
+fn argument(function: &str, (name, ty): (String, &syn::Type), doc: &Doc) -> Result<Argument, String> {
     let place = format!("function `{function}`, argument `{name}`");
     let ty = read_type(ty).ok_or_else(|| format!("{place}: type {} is not allowed", text(ty)))?;
     let row = doc.rows.iter().find(|row| row.argument == name).cloned();
@@ -132,7 +170,7 @@ fn argument(function: &str, input: &syn::FnArg, doc: &Doc) -> Result<Argument, S
     Ok(Argument { name, ty, row })
 }
 
-/// None for anything that is not i32, i64, f64, c_char, a `feti_` struct, or pointers to and arrays of those.
+/// None for anything that is not i32, i64, f64, c_char, c_void, a `feti_` type, or pointers to and arrays of those.
 fn read_type(ty: &syn::Type) -> Option<Type> {
     match ty {
         syn::Type::Path(path) if path.qself.is_none() => named_type(path.path.segments.last()?),
@@ -157,7 +195,8 @@ fn named_type(segment: &syn::PathSegment) -> Option<Type> {
         "i64" => Some(Type::I64),
         "f64" => Some(Type::F64),
         "c_char" => Some(Type::Char),
-        name if name.starts_with("feti_") => Some(Type::Struct(name.to_string())),
+        "c_void" => Some(Type::Void),
+        name if name.starts_with("feti_") => Some(Type::Named(name.to_string())),
         _ => None,
     }
 }

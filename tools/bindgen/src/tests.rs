@@ -112,6 +112,56 @@ fn an_argument_without_a_row_or_against_its_direction_is_refused() {
     assert!(error(&with_argument("*mut f64", "in", "n", "")).contains("documented as read"));
 }
 
+/// A callback type with this result, and a function that takes it with its user data.
+fn with_callback(ty: &str) -> String {
+    let rows = "/// | argument | in/out | shape | rule |\n/// |---|---|---|---|\n";
+    format!(
+        "{INFO}/// Hears.\n///\n{rows}/// | `user` | in | scalar | may be NULL |\n/// | `now` | in | scalar | valid here |\n\
+         pub type feti_hear_fn = {ty};\n\
+         /// Tells.\n///\n{rows}/// | `callback` | in | scalar | NULL: none |\n/// | `user` | in | scalar | |\n\
+         #[no_mangle] pub unsafe extern \"C\" fn feti_tell(callback: feti_hear_fn, user: *mut c_void) -> i32 {{ 0 }}"
+    )
+}
+
+#[test]
+fn a_callback_is_a_function_pointer_in_c_and_an_abstract_interface_in_fortran() {
+    let ty = "Option<unsafe extern \"C\" fn(user: *mut c_void, now: *const feti_info) -> i32>";
+    let [header, module] = header_and_module(&with_callback(ty)).unwrap();
+    assert!(
+        header.contains("typedef int32_t (*feti_hear_fn)(void *user, const struct feti_info *now);"),
+        "{header}"
+    );
+    assert!(header.contains("int32_t feti_tell(feti_hear_fn callback, void *user);"), "{header}");
+    for line in [
+        "function feti_hear_fn(user, now) bind(C)",
+        "type(c_ptr), value :: user",
+        "type(feti_info), intent(in) :: now",
+        "type(c_funptr), value :: callback",
+    ] {
+        assert!(module.lines().any(|found| found.trim() == line), "no line `{line}` in\n{module}");
+    }
+    assert!(module.contains("only: c_char, c_double, c_funptr, c_int32_t"), "{module}");
+}
+
+#[test]
+fn a_callback_that_hosts_cannot_write_is_refused() {
+    for ty in [
+        "Option<extern \"C\" fn(user: *mut c_void, now: *const feti_info) -> i32>",
+        "Option<unsafe fn(user: *mut c_void, now: *const feti_info) -> i32>",
+        "unsafe extern \"C\" fn(user: *mut c_void, now: *const feti_info) -> i32",
+        "*mut c_void",
+    ] {
+        assert!(error(&with_callback(ty)).contains("type `feti_hear_fn`"), "{ty}");
+    }
+    let of = |arguments: &str, result: &str| {
+        error(&with_callback(&format!("Option<unsafe extern \"C\" fn({arguments}) -> {result}>")))
+    };
+    assert!(of("user: *mut c_void, now: *const feti_info", "f64").contains("a callback returns i32"));
+    assert!(of("*mut c_void, now: *const feti_info", "i32").contains("has no plain name"));
+    assert!(of("user: *mut c_void, now: bool", "i32").contains("argument `now`"));
+    assert!(of("user: *const c_void, now: *const feti_info", "i32").contains("argument `user`"));
+}
+
 #[test]
 fn functions_must_be_exported_and_visible() {
     let hidden = "#[no_mangle] extern \"C\" fn feti_do() -> i32 { 0 }";

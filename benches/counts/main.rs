@@ -1,0 +1,142 @@
+//! Applications of the dual operator F that contact costs, against a linear solve on the contact set it ends
+//! with. One line a deck,
+//!
+//! ```text
+//! count <deck> F <applications> linear <applications> ratio <r> goal <g> ok|short
+//! ```
+//!
+//! then how F grows with the size and with the accuracy, and a closing line with the number short. Arguments:
+//! parts of the names of the decks to run, none for all. Exit code 1 when a deck is not solved; a short one
+//! alone leaves it 0.
+
+#[path = "../../tests/support/hand_over.rs"]
+mod hand_over;
+mod linear;
+mod load_steps;
+mod measure;
+mod table;
+mod verdict;
+
+use std::io::Write;
+use std::process::ExitCode;
+
+use measure::{measure, Measurement, TOLERANCE};
+use table::{Case, Comparison};
+
+/// What the lines so far came to.
+#[derive(Default)]
+struct Tally {
+    lines: usize,
+    short: usize,
+    failed: usize,
+}
+
+fn main() -> ExitCode {
+    let wanted: Vec<String> =
+        std::env::args().skip(1).filter(|argument| !argument.starts_with('-')).collect();
+    let wants = |name: &str| wanted.is_empty() || wanted.iter().any(|part| name.contains(part));
+    let mut tally = Tally::default();
+    let mut measured = Vec::new();
+    for case in table::cases().into_iter().filter(|case| wants(&case.name)) {
+        if let Some(measurement) = tally.case(&case) {
+            measured.push((case.name, measurement));
+        }
+    }
+    for comparison in table::growths() {
+        tally.growth(&comparison, &measured);
+    }
+    if wants("load_step") {
+        tally.load_steps();
+    }
+    if wants(table::TIGHTER) {
+        tally.tighter();
+    }
+    println!("counts: {} lines, {} short, {} failed", tally.lines, tally.short, tally.failed);
+    if tally.failed > 0 {
+        ExitCode::FAILURE
+    } else {
+        ExitCode::SUCCESS
+    }
+}
+
+impl Tally {
+    /// Line and details of one deck.
+    fn case(&mut self, case: &Case) -> Option<Measurement> {
+        self.lines += 1;
+        match measure(case, TOLERANCE) {
+            Ok(measurement) => {
+                self.judge(case, &measurement);
+                Some(measurement)
+            }
+            Err(fault) => {
+                self.fail(&case.name, &fault);
+                None
+            }
+        }
+    }
+
+    fn judge(&mut self, case: &Case, measurement: &Measurement) {
+        let reasons = verdict::reasons(case, measurement);
+        self.short += usize::from(!reasons.is_empty());
+        println!("{}", verdict::line(case, measurement, &reasons));
+        flush();
+    }
+
+    /// Later load steps, started warm.
+    fn load_steps(&mut self) {
+        let first = table::FIRST_STEP;
+        match load_steps::measure(&table::stepped(first), first, TOLERANCE) {
+            Ok(steps) => {
+                self.lines += steps.len();
+                (first..).zip(&steps).for_each(|(step, m)| self.judge(&table::stepped(step), m));
+            }
+            Err(fault) => {
+                self.lines += 1;
+                self.fail("load_steps", &fault);
+            }
+        }
+    }
+
+    /// How F grows from one deck to a larger one; nothing where one of them has not been measured.
+    fn growth(&mut self, comparison: &Comparison, measured: &[(String, Measurement)]) {
+        let products = |name: &str| measured.iter().find(|(n, _)| n == name).map(|(_, m)| m.products);
+        if let (Some(from), Some(to)) = (products(&comparison.from), products(&comparison.to)) {
+            let what = format!("growth {} to {}", comparison.from, comparison.to);
+            self.compare(&what, from, to, comparison.goal);
+        }
+    }
+
+    /// What three more digits cost.
+    fn tighter(&mut self) {
+        let case = table::tighter();
+        let at = |tolerance: f64| measure(&case, tolerance).map(|measurement| measurement.products);
+        match at(TOLERANCE).and_then(|coarse| Ok((coarse, at(1e-3 * TOLERANCE)?))) {
+            Ok((coarse, fine)) => self.compare(table::TIGHTER, coarse, fine, 1.4),
+            Err(fault) => {
+                self.lines += 1;
+                self.fail(table::TIGHTER, &fault);
+            }
+        }
+    }
+
+    fn compare(&mut self, what: &str, from: usize, to: usize, goal: f64) {
+        self.lines += 1;
+        let ratio = to as f64 / from as f64;
+        let short = ratio > goal;
+        self.short += usize::from(short);
+        let word = if short { "short" } else { "ok" };
+        println!("{what} F {from} to {to} ratio {ratio:.2} goal {goal:.2} {word}");
+        flush();
+    }
+
+    fn fail(&mut self, name: &str, fault: &str) {
+        self.failed += 1;
+        println!("count {name} failed: {fault}");
+        flush();
+    }
+}
+
+/// Lines appear as they are found, also in a pipe.
+fn flush() {
+    let _ = std::io::stdout().flush();
+}

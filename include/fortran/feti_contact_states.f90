@@ -1,0 +1,125 @@
+!> Starts, saved states and diagnosis of module feti_contact. A host uses feti_contact, not this module.
+!> `stat` and `errmsg`: see feti_contact_base.
+module feti_contact_states
+  use, intrinsic :: iso_c_binding, only: c_int32_t, c_int64_t, c_loc, c_null_ptr, c_sizeof
+  use, intrinsic :: iso_fortran_env, only: real64
+  use feti_contact_base, only: feti_problem, finish, handle_of
+  use feti_contact_c, only: FETI_OK, feti_findings, &
+    c_diagnosis => feti_diagnosis, &
+    c_diagnosis_motion => feti_diagnosis_motion, &
+    c_diagnosis_rows => feti_diagnosis_rows, &
+    c_start_from => feti_start_from, &
+    c_state_drop => feti_state_drop, &
+    c_state_restore => feti_state_restore, &
+    c_state_save => feti_state_save
+  implicit none
+  private
+  public :: feti_findings
+  public :: start_from, state_save, state_restore, state_drop
+  public :: diagnosis, diagnosis_rows, diagnosis_motion
+
+contains
+
+  !> Start values for the next solve alone: lambda of kind FETI_INEQUALITY or mu of FETI_EQUALITY, force. Rows with a
+  !> zero start without force. A change of rows or bodies drops them.
+  subroutine start_from(p, kind, lambda, stat, errmsg)
+    type(feti_problem), intent(in) :: p
+    integer(c_int32_t), intent(in) :: kind
+    real(real64), intent(in), contiguous :: lambda(:)
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+
+    call finish(c_start_from(handle_of(p), kind, size(lambda, kind=c_int64_t), lambda), stat, errmsg)
+  end subroutine
+
+  !> Saves loads, gaps, multipliers and contact state under the number id (from 1).
+  subroutine state_save(p, id, stat, errmsg)
+    type(feti_problem), intent(in) :: p
+    integer, intent(inout) :: id
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+    integer(c_int64_t) :: number
+    integer(c_int32_t) :: status
+
+    status = c_state_save(handle_of(p), number)
+    if (status == FETI_OK) id = int(number) + 1
+    call finish(status, stat, errmsg)
+  end subroutine
+
+  !> Goes back to a saved state, which stays saved. FETI_STATE when bodies were added or rows changed since.
+  subroutine state_restore(p, id, stat, errmsg)
+    type(feti_problem), intent(in) :: p
+    integer, intent(in) :: id
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+
+    call finish(c_state_restore(handle_of(p), int(id - 1, c_int64_t)), stat, errmsg)
+  end subroutine
+
+  !> Drops a saved state.
+  subroutine state_drop(p, id, stat, errmsg)
+    type(feti_problem), intent(in) :: p
+    integer, intent(in) :: id
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+
+    call finish(c_state_drop(handle_of(p), int(id - 1, c_int64_t)), stat, errmsg)
+  end subroutine
+
+  !> What the last solve, or the last setup that failed, has found out: the body that escapes and its motion, rows that
+  !> contradict each other, motions left undetermined. Bodies, unknowns and rows count from 1, 0: none.
+  subroutine diagnosis(p, findings, stat, errmsg)
+    type(feti_problem), intent(in) :: p
+    type(feti_findings), intent(inout) :: findings
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+    integer(c_int32_t) :: status
+
+    findings%struct_size = c_sizeof(findings)
+    status = c_diagnosis(handle_of(p), findings)
+    if (status == FETI_OK) then
+      findings%body = findings%body + 1
+      findings%component = findings%component + 1
+      findings%dof = findings%dof + 1
+      findings%row = findings%row + 1
+      findings%untouched_body = findings%untouched_body + 1
+    end if
+    call finish(status, stat, errmsg)
+  end subroutine
+
+  !> Rows of one kind that contradict each other with their weights w: over both kinds sum w b = 0, sum w c < 0. Without
+  !> a contradiction the redundant rows, each with its multiple of the row that it repeats.
+  subroutine diagnosis_rows(p, kind, row, weight, stat, errmsg)
+    type(feti_problem), intent(in) :: p
+    integer(c_int32_t), intent(in) :: kind
+    integer, allocatable, intent(out) :: row(:)
+    real(real64), allocatable, intent(out) :: weight(:)
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+    integer(c_int64_t), allocatable, target :: number(:)
+    real(real64), allocatable, target :: found(:)
+    integer(c_int64_t) :: cap, count
+    integer(c_int32_t) :: status
+
+    count = 0
+    status = c_diagnosis_rows(handle_of(p), kind, 0_c_int64_t, count, c_null_ptr, c_null_ptr)
+    cap = count
+    allocate (number(cap + 1), found(cap + 1))
+    if (status == FETI_OK) status = c_diagnosis_rows(handle_of(p), kind, cap, count, c_loc(number), c_loc(found))
+    row = int(number(:cap)) + 1
+    weight = found(:cap)
+    call finish(status, stat, errmsg)
+  end subroutine
+
+  !> Rigid motion with which a body escapes, v(n), largest entry over all bodies 1; after FETI_LOAD_NOT_HELD.
+  subroutine diagnosis_motion(p, body, v, stat, errmsg)
+    type(feti_problem), intent(in) :: p
+    integer, intent(in) :: body
+    real(real64), intent(inout), contiguous :: v(:)
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+
+    call finish(c_diagnosis_motion(handle_of(p), int(body - 1, c_int64_t), size(v, kind=c_int64_t), v), stat, errmsg)
+  end subroutine
+
+end module

@@ -1,0 +1,137 @@
+//! Why there is no solution, and what an answer leaves open.
+
+use super::arrays::{count, Output};
+use super::body::body_of_order;
+use super::guard::{call, enter};
+use super::record::Target;
+use super::rows::row_kind;
+use super::status::{of_kind, of_outcome};
+use super::types::{feti_findings, feti_problem, FETI_EQUALITY, FETI_INEQUALITY};
+use crate::error::Result;
+use crate::solver::{Findings, RowKind};
+
+/// What the last solve, or the last setup that failed, has found out about the problem.
+///
+/// After FETI_LOAD_NOT_HELD: the body that escapes, its motion and the margin. After FETI_GAPS_CONTRADICT: the rows that
+/// contradict each other. After FETI_INDEFINITE, FETI_NULL_SPACE and the like: the body and the unknown. With an answer:
+/// motions left undetermined, redundant rows, bodies that no row touches. Kept until the next solve or the next setup that
+/// fails; FETI_STATE before the first. After a failure nothing is written.
+///
+/// | argument | in/out | shape | rule |
+/// |---|---|---|---|
+/// | `p` | in | scalar | the handle |
+/// | `out` | in/out | scalar | `struct_size` set, at least 16 |
+///
+/// # Safety
+/// `out` leads to `struct_size` writable bytes.
+#[no_mangle]
+pub unsafe extern "C" fn feti_diagnosis(p: *mut feti_problem, out: *mut feti_findings) -> i32 {
+    enter(p, call!(feti_diagnosis(p, out)), |problem| {
+        // SAFETY: the caller gives `struct_size` bytes.
+        let target = unsafe { Target::new(out, "out") }?;
+        target.write(&described(problem.findings()?));
+        Ok(())
+    })
+}
+
+/// Lists the rows of one kind that contradict each other, with their weights; without a contradiction the redundant rows.
+///
+/// Weights w, largest 1, prove a contradiction: with the rows of both kinds the sum of w b is 0 and the sum of w c is
+/// negative, w > 0 for inequalities. The weight of a redundant row is its multiple of the row that it repeats. FETI_STATE
+/// before the first solve. After a failure nothing is written.
+///
+/// | argument | in/out | shape | rule |
+/// |---|---|---|---|
+/// | `p` | in | scalar | the handle |
+/// | `kind` | in | scalar | FETI_INEQUALITY or FETI_EQUALITY |
+/// | `cap` | in | scalar | rows that `row` and `weight` have room for |
+/// | `count` | out | scalar | rows there are; those that fit are written |
+/// | `row` | out | cap | numbers from 0, ascending; may be NULL |
+/// | `weight` | out | cap | no unit; may be NULL |
+///
+/// # Safety
+/// `count` has room for one number, `row` and `weight` are NULL or have room for `cap` numbers.
+#[no_mangle]
+pub unsafe extern "C" fn feti_diagnosis_rows(
+    p: *mut feti_problem,
+    kind: i32,
+    cap: i64,
+    count: *mut i64,
+    row: *mut i64,
+    weight: *mut f64,
+) -> i32 {
+    enter(p, call!(feti_diagnosis_rows(p, kind, cap, count, row, weight)), |problem| {
+        let (kind, cap) = (row_kind(kind)?, self::count(cap, "cap")?);
+        // SAFETY: the caller gives room for one number, and for `cap` numbers or NULL.
+        let (number, rows, weights) = unsafe {
+            (Output::new(count, 1, "count")?, room(row, cap, "row")?, room(weight, cap, "weight")?)
+        };
+        let findings = problem.findings()?;
+        number.set(findings.rows(kind).count() as i64);
+        for (k, (row, weight)) in findings.rows(kind).take(cap).enumerate() {
+            rows.write_at(k, &[row as i64]);
+            weights.write_at(k, &[weight]);
+        }
+        Ok(())
+    })
+}
+
+/// Room for `cap` numbers; NULL drops them.
+///
+/// # Safety
+/// `to` is NULL or has room for `cap` numbers until the call returns.
+unsafe fn room<T: Copy>(to: *mut T, cap: usize, name: &'static str) -> Result<Output<T>> {
+    // SAFETY: by the caller's word.
+    unsafe { Output::new(to, if to.is_null() { 0 } else { cap }, name) }
+}
+
+/// Reads the rigid motion with which a body escapes, unknown by unknown.
+///
+/// The load does work on it, and no row resists. It is scaled to largest entry 1 over all bodies; bodies that stay have
+/// zeros. FETI_STATE unless the last solve ended with FETI_LOAD_NOT_HELD. After a failure nothing is written.
+///
+/// | argument | in/out | shape | rule |
+/// |---|---|---|---|
+/// | `p` | in | scalar | the handle |
+/// | `body` | in | scalar | number of the body, from 0 |
+/// | `n` | in | scalar | unknowns of the body |
+/// | `v` | out | n | length, up to a factor |
+///
+/// # Safety
+/// The array has the given shape.
+#[no_mangle]
+pub unsafe extern "C" fn feti_diagnosis_motion(p: *mut feti_problem, body: i64, n: i64, v: *mut f64) -> i32 {
+    enter(p, call!(feti_diagnosis_motion(p, body, n, v)), |problem| {
+        let (body, n) = body_of_order(problem, body, n)?;
+        // SAFETY: room for n numbers by the caller's word.
+        unsafe { Output::new(v, n, "v") }?.write(problem.escaping_motion(body)?);
+        Ok(())
+    })
+}
+
+fn described(from: &Findings) -> feti_findings {
+    let number = |value: Option<usize>| value.map_or(-1, |value| value as i64);
+    feti_findings {
+        struct_size: size_of::<feti_findings>() as i64,
+        status: match &from.end {
+            Ok(outcome) => of_outcome(outcome),
+            Err(kind) => of_kind(*kind, &["p", "info"]).0,
+        },
+        kind: match from.kind {
+            None => 0,
+            Some(RowKind::Inequality) => FETI_INEQUALITY,
+            Some(RowKind::Equality) => FETI_EQUALITY,
+        },
+        body: number(from.place.body),
+        component: number(from.place.component),
+        dof: number(from.place.dof),
+        row: number(from.place.row),
+        rows_involved: from.contradicting() as i64,
+        undetermined: from.undetermined as i64,
+        redundant_rows: from.redundant.len() as i64,
+        untouched_bodies: from.untouched.len() as i64,
+        untouched_body: number(from.untouched.first().copied()),
+        margin: from.margin().unwrap_or(f64::NAN),
+        motion: from.motion.unwrap_or([f64::NAN; 6]),
+    }
+}

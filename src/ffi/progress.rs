@@ -1,0 +1,109 @@
+//! Watching a call and ending it.
+
+use std::ffi::c_void;
+
+use super::fpu;
+use super::guard::{call, enter, refuse};
+use super::handle::{self, Refusal};
+use super::status::FETI_OK;
+use super::types::{
+    feti_problem, feti_progress, feti_progress_fn, FETI_PHASE_SETUP, FETI_PHASE_SOLVE,
+    FETI_STEP_CONJUGATE_GRADIENT, FETI_STEP_EXPANSION, FETI_STEP_RELEASE,
+};
+use crate::solver::{Listener, Progress, Reply, StepKind};
+
+/// Cancels the setup or the solve that runs on the problem.
+///
+/// May be called from any thread and from a progress function, while another call on the problem runs. That call returns
+/// FETI_CANCELLED before the next product with the dual operator (in the setup: before the next body); the results are
+/// those of the last step, and there are none when it was cancelled before the first one. Without a running call it does
+/// nothing: every setup and every solve begins anew. In a signal handler set a flag instead and let the progress function
+/// look at it.
+///
+/// | argument | in/out | shape | rule |
+/// |---|---|---|---|
+/// | `p` | in | scalar | the handle |
+#[no_mangle]
+pub extern "C" fn feti_cancel(p: *mut feti_problem) -> i32 {
+    let call = call!(feti_cancel(p));
+    match handle::find(p).ok_or(Refusal::Gone).and_then(|slot| slot.cancel()) {
+        Ok(()) => FETI_OK,
+        Err(refusal) => refuse(call, &refusal),
+    }
+}
+
+/// Names the function that is told of every part of a setup and every step of a solve.
+///
+/// It is called on the thread that called the library, in that thread's floating-point environment, until another one or
+/// NULL is given. It returns 0 to go on; a number > 0 ends the call with FETI_CANCELLED and the results of the last step; a
+/// number < 0 ends it with FETI_CALLBACK, the number in the error detail, and no results. Calls on the same problem from
+/// inside return FETI_BUSY, except feti_cancel and feti_problem_error; other problems may be used. It must not end by
+/// longjmp or an exception.
+///
+/// | argument | in/out | shape | rule |
+/// |---|---|---|---|
+/// | `p` | in | scalar | the handle |
+/// | `callback` | in | scalar | the function; NULL: none |
+/// | `user` | in | scalar | handed to the function unchanged; may be NULL |
+///
+/// # Safety
+/// `callback` may be called with `user` until it is replaced or the problem destroyed.
+#[no_mangle]
+pub unsafe extern "C" fn feti_on_progress(
+    p: *mut feti_problem,
+    callback: feti_progress_fn,
+    user: *mut c_void,
+) -> i32 {
+    enter(p, call!(feti_on_progress(p, callback, user)), |problem| {
+        let user = User(user);
+        let listener = callback.map(|callback| -> Listener {
+            Box::new(move |now| {
+                let now = told(now);
+                // SAFETY: by the caller's word the function may be called with `user`.
+                match fpu::in_host_environment(|| unsafe { callback(user.get(), &now) }) {
+                    0 => Reply::Continue,
+                    1.. => Reply::Cancel,
+                    number => Reply::Failed(number),
+                }
+            })
+        });
+        problem.on_progress(listener);
+        Ok(())
+    })
+}
+
+/// The host's pointer, which the library only hands back.
+#[derive(Clone, Copy)]
+struct User(*mut c_void);
+
+// SAFETY: never followed here; the host's function gets it on the thread on which the host calls the library.
+unsafe impl Send for User {}
+// SAFETY: as above.
+unsafe impl Sync for User {}
+
+impl User {
+    fn get(self) -> *mut c_void {
+        self.0
+    }
+}
+
+fn told(now: &Progress) -> feti_progress {
+    feti_progress {
+        struct_size: size_of::<feti_progress>() as i64,
+        phase: if now.step.is_none() { FETI_PHASE_SETUP } else { FETI_PHASE_SOLVE },
+        step: match now.step {
+            None => 0,
+            Some(StepKind::ConjugateGradient) => FETI_STEP_CONJUGATE_GRADIENT,
+            Some(StepKind::Expansion) => FETI_STEP_EXPANSION,
+            Some(StepKind::Release) => FETI_STEP_RELEASE,
+        },
+        steps: now.steps as i64,
+        products: now.products as i64,
+        active: now.active as i64,
+        residual: now.residual,
+        residual_free: now.free,
+        residual_chopped: now.chopped,
+        theta: now.theta,
+        seconds: now.seconds,
+    }
+}

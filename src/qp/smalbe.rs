@@ -1,0 +1,389 @@
+//! SMALBE-M, the semimonotonic augmented Lagrangian method for bounds and equalities (Dostal 2009, chapter 6),
+//! on the projected and homogenised problem. With `Q = G'W+G`, `P = I - Q`, `W = G G'`, the violation
+//! `s = W+(G x - e)` and `v = x - G's`, the nearest point to x on `G v = e`,
+//!
+//! ```text
+//! L(x, m, rho) = theta(v) + m'(G x - e) + rho/2 |G's|^2 -> min over x_i >= 0,    then  m <- m + rho s
+//! g = A v - b - G'alpha,   alpha = W+G (A v - b) - m - rho s,   H = P A P + rho Q
+//! ```
+//!
+//! alpha tends to the multiplier of `G x = e`, also at a vertex where least squares on the face do not find it.
+
+use crate::error::Result;
+use crate::linalg::vector::{axpy, dot, norm};
+use crate::qp::augmented::{Augmented, Violation};
+use crate::qp::coarse::Coarse;
+use crate::qp::mprgp::{Bounded, Move, Rule};
+use crate::qp::projection::project;
+use crate::qp::proportioning::{Judge, Limits, Observer, Progress, Solution, StepKind, Stop, Verdict};
+use crate::qp::{Counts, Qp};
+
+/// Step of gradient projection in units of 1 / |H|.
+const GRADIENT_STEP: f64 = 1.5;
+/// M is divided by this where L does not increase enough.
+const BETA: f64 = 2.0;
+/// The inner problem is solved at least to this part of `|P (A x - b)|` at the first point.
+const ETA: f64 = 0.1;
+/// Curvature below this fraction of lambda_max counts as none.
+const SINGULAR: f64 = 1e-11;
+/// Outer iterations allowed.
+const OUTER: usize = 2000;
+/// rho is increased tenfold, at most this often, ...
+const INCREASES: usize = 4;
+/// ... when this many outer iterations have not halved the violation.
+const PATIENCE: usize = 30;
+/// The judge decides after this many residuals that were small only until recomputed.
+const RECOMPUTED: usize = 10;
+
+pub fn smalbe(
+    qp: Qp,
+    start: &[f64],
+    limits: Limits,
+    judge: &mut dyn Judge,
+    observer: &mut dyn Observer,
+) -> Result<Solution> {
+    let mut al = Lagrangian::new(qp, start)?;
+    let verdict = al.run(&limits, judge, observer).or_else(Verdict::of_refusal)?;
+    al.solution(verdict)
+}
+
+struct Lagrangian<'a> {
+    map: Augmented<'a>,
+    /// x, and behind its gradient alpha.
+    point: Bounded<'a>,
+    /// m
+    multiplier: Vec<f64>,
+    /// 64 eps (|b| + |A v| + |G'alpha|) where the gradient was last computed: what rounding alone leaves of it.
+    noise: f64,
+    /// Of x.
+    violation: Violation,
+    /// M of the inner precision `|g^P| <= M |G's|`.
+    precision: f64,
+    /// eta |P (A x - b)|
+    enough: f64,
+    /// What the judge measures the residual against.
+    scale: f64,
+    outer: usize,
+    /// rho |G's|^2: what the last update of the multiplier has added to L.
+    raised: Option<f64>,
+    halving: Halving,
+}
+
+impl<'a> Lagrangian<'a> {
+    /// At the feasible point nearest to `start`.
+    fn new(qp: Qp<'a>, start: &[f64]) -> Result<Self> {
+        let mut coarse = Coarse::new(qp.g_transposed)?;
+        let none = vec![false; start.len()];
+        let first = project(&qp, &mut coarse, start, &none)?;
+        let point = Bounded::new(qp.bounded, first.map_or_else(|| start.to_vec(), |first| first.point));
+        let map = Augmented::new(qp, coarse)?;
+        let mut al = Self {
+            precision: map.rho,
+            violation: Violation::default(),
+            map,
+            point,
+            multiplier: vec![0.0; qp.e.len()],
+            noise: 0.0,
+            enough: 0.0,
+            scale: 0.0,
+            outer: 0,
+            raised: None,
+            halving: Halving::new(),
+        };
+        al.recompute()?;
+        al.enough = ETA * norm(al.gradient());
+        Ok(al)
+    }
+
+    fn run(
+        &mut self,
+        limits: &Limits,
+        judge: &mut dyn Judge,
+        observer: &mut dyn Observer,
+    ) -> Result<Verdict> {
+        self.scale = judge.scale(&self.point.x, self.alpha())?;
+        let mut stop = Stop::new(limits.tolerance * self.scale);
+        let mut recomputed = 0;
+        while self.outer < OUTER {
+            let small = stop.residual + stop.noise * self.noise;
+            let before = (self.point.x.clone(), self.point.g.clone());
+            if let Some(verdict) = self.inner(small, limits, observer)? {
+                return Ok(verdict);
+            }
+            if self.is_optimal(small) {
+                self.recompute()?;
+                recomputed += 1;
+                if self.is_optimal(small) || recomputed > RECOMPUTED {
+                    let x = self.on_equalities()?;
+                    if let Some(verdict) = stop.tighten(judge.accepts(&x, self.alpha())?) {
+                        return Ok(verdict);
+                    }
+                }
+            }
+            self.update(before);
+        }
+        Ok(Verdict::StepLimit)
+    }
+
+    /// Gradient and alpha at x, without the rounding errors of their updates.
+    fn recompute(&mut self) -> Result<()> {
+        self.violation = self.map.violation(&self.point.x)?;
+        let mut v = self.point.x.clone();
+        axpy(-1.0, &self.violation.way, &mut v);
+        let mut g = self.map.image(&v)?;
+        let size = norm(&g) + norm(self.map.qp.b);
+        axpy(-1.0, self.map.qp.b, &mut g);
+        let image = self.map.coarse.image(&g);
+        let mut alpha = self.map.solve(&image)?;
+        axpy(-1.0, &self.multiplier, &mut alpha);
+        axpy(-self.map.rho, &self.violation.s, &mut alpha);
+        let coarse = self.map.spread(&alpha);
+        axpy(-1.0, &coarse, &mut g);
+        g.extend(alpha);
+        self.noise = 64.0 * f64::EPSILON * (size + norm(&coarse));
+        self.point.set_gradient(g);
+        Ok(())
+    }
+
+    /// MPRGP until `|g^P| <= min(M |G's|, eta |P (A x - b)|)`, or as small as asked.
+    fn inner(&mut self, small: f64, limits: &Limits, observer: &mut dyn Observer) -> Result<Option<Verdict>> {
+        let (largest, rho) = (self.map.largest, self.map.rho);
+        let (step, flat) = (GRADIENT_STEP / largest.max(rho), SINGULAR * largest);
+        let rule = Rule { gamma: limits.gamma, step, flat };
+        loop {
+            let wanted = (self.precision * self.violation.length).min(self.enough);
+            if self.point.residual() <= wanted.max(small) {
+                return Ok(None);
+            }
+            if self.map.counts.steps() >= limits.steps {
+                return Ok(Some(Verdict::StepLimit));
+            }
+            let kind = match self.point.step(&mut self.map, &rule)? {
+                Move::ConjugateGradient => StepKind::ConjugateGradient,
+                Move::Expansion => StepKind::Expansion,
+                Move::Release => StepKind::Release,
+                Move::Unbounded { .. } if self.point.residual() <= self.noise => {
+                    return Ok(Some(Verdict::Inaccurate));
+                }
+                Move::Unbounded { mut p } => {
+                    self.map.project(&mut p)?;
+                    return Ok(Some(Verdict::Unbounded { p }));
+                }
+            };
+            self.violation = self.map.violation(&self.point.x)?;
+            observer.step(&self.progress(kind, small))?;
+        }
+    }
+
+    /// The projected gradient is small, and so is its change on the way to `G x = e`.
+    fn is_optimal(&self, small: f64) -> bool {
+        self.point.residual() <= small
+            && (self.is_balanced() || self.map.largest * self.violation.length <= small)
+    }
+
+    /// `G x = e` holds up to rounding.
+    fn is_balanced(&self) -> bool {
+        self.violation.length <= 64.0 * f64::EPSILON * norm(&self.point.x)
+    }
+
+    /// An outer iteration that began at `(x, g)` ends: the multiplier takes up the violation, M and rho are
+    /// adapted. L is compared by the gradients, free of the cancellation between its two values.
+    fn update(&mut self, (x, g): (Vec<f64>, Vec<f64>)) {
+        let (rho, length) = (self.map.rho, self.violation.length);
+        let (y, mut g_y) = (&self.point.x, self.point.g.clone());
+        if let Some(raised) = self.raised {
+            let terms = y.iter().zip(&x).zip(g_y.iter().zip(&g));
+            let change: f64 = terms.map(|((y, x), (g_y, g))| 0.5 * (y - x) * (g_y + g)).sum();
+            if raised + change < 0.5 * rho * length * length {
+                self.precision /= BETA;
+            }
+        }
+        axpy(rho, &self.violation.s, &mut self.multiplier);
+        self.add_violation(rho, &mut g_y);
+        self.raised = Some(rho * length * length);
+        if !self.is_balanced() && self.halving.stalls(length) {
+            self.add_violation(9.0 * rho, &mut g_y);
+            self.map.rho *= 10.0;
+            self.raised = None;
+        }
+        self.point.set_gradient(g_y);
+        self.outer += 1;
+    }
+
+    /// What `rho` more of the penalty, or of the multiplier, adds to the gradient and takes from alpha.
+    fn add_violation(&self, rho: f64, g: &mut [f64]) {
+        let (g, alpha) = g.split_at_mut(self.point.x.len());
+        axpy(rho, &self.violation.way, g);
+        axpy(-rho, &self.violation.s, alpha);
+    }
+
+    fn gradient(&self) -> &[f64] {
+        &self.point.g[..self.point.x.len()]
+    }
+
+    fn alpha(&self) -> &[f64] {
+        &self.point.g[self.point.x.len()..]
+    }
+
+    /// theta(v): `v'(A v - b) = v'g + e'alpha`.
+    fn theta(&self) -> f64 {
+        let mut v = self.point.x.clone();
+        axpy(-1.0, &self.violation.way, &mut v);
+        let (b, e) = (self.map.qp.b, self.map.qp.e);
+        0.5 * (dot(&v, self.gradient()) + dot(e, self.alpha()) - dot(b, &v))
+    }
+
+    /// Counts the step and describes the point it led to.
+    fn progress(&mut self, kind: StepKind, small: f64) -> Progress<'_> {
+        let counts = &mut self.map.counts;
+        match kind {
+            StepKind::ConjugateGradient => counts.conjugate_gradient += 1,
+            StepKind::Expansion => counts.expansions += 1,
+            StepKind::Release => counts.releases += 1,
+        }
+        Progress {
+            kind,
+            counts: &self.map.counts,
+            active: &self.point.active,
+            theta: self.theta(),
+            residual: self.point.residual(),
+            free: norm(&self.point.free),
+            chopped: norm(&self.point.chopped),
+            small,
+        }
+    }
+
+    /// The nearest point on `G x = e` with the same active rows; x itself where there is none.
+    fn on_equalities(&mut self) -> Result<Vec<f64>> {
+        let found = project(&self.map.qp, &mut self.map.coarse, &self.point.x, &self.point.active)?;
+        Ok(found.map_or_else(|| self.point.x.clone(), |found| found.point))
+    }
+
+    fn solution(mut self, verdict: Verdict) -> Result<Solution> {
+        let x = self.on_equalities()?;
+        let coarse = &mut self.map.coarse;
+        coarse.select(&self.point.active)?;
+        let (coarse_solves, coarse_factorisations) = (coarse.solves, coarse.factorisations);
+        let counts = Counts { coarse_solves, coarse_factorisations, ..self.map.counts };
+        let (undetermined, scale, alpha) = (coarse.deficiency(), self.scale, self.alpha().to_vec());
+        Ok(Solution { x, alpha, undetermined, scale, verdict, counts })
+    }
+}
+
+/// Watches the violation from one outer iteration to the next.
+struct Halving {
+    to_halve: f64,
+    since: usize,
+    increases: usize,
+}
+
+impl Halving {
+    fn new() -> Self {
+        Self { to_halve: f64::INFINITY, since: 0, increases: 0 }
+    }
+
+    /// Whether the penalty must grow.
+    fn stalls(&mut self, violation: f64) -> bool {
+        self.since += 1;
+        if violation <= 0.5 * self.to_halve {
+            (self.to_halve, self.since) = (violation, 0);
+        }
+        let stalled = self.since == PATIENCE && self.increases < INCREASES;
+        if stalled {
+            (self.since, self.increases) = (0, self.increases + 1);
+        }
+        stalled
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::error::{Error, Kind};
+    use crate::linalg::{Csr, Packed};
+
+    /// Accepts every point whose residual is as small as asked; sees `allowed` steps.
+    struct Lenient {
+        allowed: usize,
+    }
+
+    impl Judge for Lenient {
+        fn scale(&mut self, _: &[f64], _: &[f64]) -> Result<f64> {
+            Ok(1.0)
+        }
+
+        fn accepts(&mut self, _: &[f64], _: &[f64]) -> Result<bool> {
+            Ok(true)
+        }
+    }
+
+    impl Observer for Lenient {
+        fn step(&mut self, now: &Progress) -> Result<()> {
+            if now.counts.steps() < self.allowed {
+                Ok(())
+            } else {
+                Err(Error::new(Kind::Cancelled, "enough"))
+            }
+        }
+    }
+
+    const LIMITS: Limits = Limits { tolerance: 1e-10, gamma: 1.0, steps: 10_000 };
+
+    /// `sum x_i = 1`, A = I, b = (0, -3, ..., -3): only the first row is free at the answer (1, 0, ..., 0), and
+    /// it carries 1 / m of the mode: an outer iteration divides the violation by 1 + 3 / m.
+    #[test]
+    fn far_more_than_a_hundred_outer_iterations_are_taken_where_they_are_needed() {
+        let m = 60;
+        let mut g_transposed = Csr::empty(1);
+        let mut a = Packed::zeros(m).unwrap();
+        for i in 0..m {
+            g_transposed.push_row([(0, 1.0)]);
+            a.add(i, i, 1.0);
+        }
+        let b: Vec<f64> = (0..m).map(|i| if i == 0 { 0.0 } else { -3.0 }).collect();
+        let qp = Qp {
+            a: &a,
+            b: &b,
+            g_transposed: &g_transposed,
+            e: &[1.0],
+            bounded: &vec![true; m],
+            preconditioner: None,
+        };
+        let mut al = Lagrangian::new(qp, &vec![0.0; m]).unwrap();
+        let (mut judge, mut observer) = (Lenient { allowed: 0 }, Lenient { allowed: LIMITS.steps });
+        assert_eq!(al.run(&LIMITS, &mut judge, &mut observer).unwrap(), Verdict::Solved);
+        assert!(al.outer > 300, "{} outer iterations", al.outer);
+        assert!((al.point.x[0] - 1.0).abs() < 1e-8);
+        assert!((al.alpha()[0] - 1.0).abs() < 1e-8, "{:?}", al.alpha());
+        assert!(al.point.x[1..].iter().all(|x| *x == 0.0));
+    }
+    /// A tridiagonal, G = (1 ... 1; 1, 2 ... m), some rows at their bound.
+    #[test]
+    fn gradient_alpha_and_theta_follow_all_steps_without_a_product_of_their_own() {
+        let m = 12;
+        let (mut g_transposed, mut a) = (Csr::empty(2), Packed::zeros(m).unwrap());
+        for i in 0..m {
+            g_transposed.push_row([(0, 1.0), (1, 1.0 + i as f64)]);
+            a.add(i, i, 2.5);
+            (1..=i).take(1).for_each(|_| a.add(i, i - 1, -1.0));
+        }
+        let b: Vec<f64> = (0..m).map(|i| if i % 3 == 0 { -4.0 } else { 1.0 + i as f64 }).collect();
+        let (e, bounded) = ([5.0, 40.0], vec![true; m]);
+        let qp =
+            Qp { a: &a, b: &b, g_transposed: &g_transposed, e: &e, bounded: &bounded, preconditioner: None };
+        for allowed in 1..30 {
+            let mut al = Lagrangian::new(qp, &vec![0.0; m]).unwrap();
+            let (mut judge, mut observer) = (Lenient { allowed: 0 }, Lenient { allowed });
+            let refused = al.run(&LIMITS, &mut judge, &mut observer);
+            assert!(refused.is_ok() || al.map.counts.steps() == allowed);
+            let (followed, theta) = (al.point.g.clone(), al.theta());
+            al.recompute().unwrap();
+            let difference: Vec<f64> = followed.iter().zip(&al.point.g).map(|(f, g)| f - g).collect();
+            assert!(norm(&difference) <= 1e-11 * norm(&followed), "{allowed} steps: {difference:?}");
+            let mut v = al.point.x.clone();
+            axpy(-1.0, &al.violation.way, &mut v);
+            let image = al.map.image(&v).unwrap();
+            assert!((0.5 * dot(&v, &image) - dot(&b, &v) - theta).abs() <= 1e-11 * dot(&v, &image));
+        }
+    }
+}

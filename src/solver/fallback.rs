@@ -1,0 +1,62 @@
+//! The method the options ask for; and where it gives up, others, before the answer counts as incomplete.
+
+use crate::error::Result;
+use crate::qp::{minimise, smalbe, Judge, Limits, Observer, Qp, Solution, Verdict};
+use crate::solver::Settings;
+
+/// Solves the dual. After proportioning: the same without preconditioner, then SMALBE-M, each from where the
+/// one before has ended.
+pub(super) fn solve_dual(
+    settings: &Settings,
+    qp: Qp,
+    start: &[f64],
+    judge: &mut dyn Judge,
+    observer: &mut dyn Observer,
+) -> Result<Solution> {
+    let steps = usize::try_from(settings.max_steps).unwrap_or(usize::MAX);
+    let limits = Limits { tolerance: settings.tolerance, gamma: settings.gamma, steps };
+    if settings.method == c"smalbe" {
+        return smalbe(qp, start, limits, judge, observer);
+    }
+    let mut best = minimise(qp, start, limits, judge, observer)?;
+    let plain = Qp { preconditioner: None, ..qp };
+    if gave_up(&best) && qp.preconditioner.is_some() {
+        let next = minimise(plain, &best.x.clone(), limits, judge, observer)?;
+        best = better(best, next);
+    }
+    if gave_up(&best) {
+        let next = smalbe(plain, &best.x.clone(), limits, judge, observer)?;
+        best = better(best, next);
+    }
+    Ok(best)
+}
+
+fn gave_up(solution: &Solution) -> bool {
+    matches!(solution.verdict, Verdict::Stalled | Verdict::Inaccurate)
+}
+
+/// The accepted one of two, with the work of both.
+fn better(first: Solution, second: Solution) -> Solution {
+    let counts = first.counts + second.counts;
+    let chosen = if second.verdict == Verdict::Solved { second } else { first };
+    Solution { counts, ..chosen }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::qp::Counts;
+
+    fn ended(verdict: Verdict, products: usize) -> Solution {
+        let counts = Counts { products, ..Counts::default() };
+        Solution { x: vec![], alpha: vec![], undetermined: 0, scale: 0.0, verdict, counts }
+    }
+
+    #[test]
+    fn an_accepted_answer_replaces_one_that_is_not_and_the_work_of_both_counts() {
+        let solution = better(ended(Verdict::Stalled, 5), ended(Verdict::Solved, 7));
+        assert_eq!((solution.verdict, solution.counts.products), (Verdict::Solved, 12));
+        let solution = better(ended(Verdict::Inaccurate, 5), ended(Verdict::StepLimit, 7));
+        assert_eq!((solution.verdict, solution.counts.products), (Verdict::Inaccurate, 12));
+    }
+}

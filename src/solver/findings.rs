@@ -1,0 +1,134 @@
+//! What the last solve, or the last setup that failed, has found out about the problem: more than a text says.
+
+use crate::constraints::RowKind;
+use crate::error::{Error, Kind, Place, Proof, Result};
+use crate::solver::diagnosis::kind_and_row;
+use crate::solver::problem::Problem;
+use crate::solver::report::{Outcome, Report};
+use crate::solver::setup::Ready;
+
+#[derive(Debug, Clone, PartialEq)]
+pub struct Findings {
+    /// How it ended: with an answer, or with none.
+    pub end: std::result::Result<Outcome, Kind>,
+    /// Where a failure happened.
+    pub place: Place,
+    /// Kind of the row of `place`, when a proof names it.
+    pub kind: Option<RowKind>,
+    /// Why there is no solution.
+    pub proof: Option<Proof>,
+    /// The motion of the proof on its body, for bodies with coordinates: velocity of the origin (length) and
+    /// rotation about the axes.
+    pub motion: Option<[f64; 6]>,
+    /// Rigid motions that no closed row resists.
+    pub undetermined: usize,
+    /// Rows that repeat the direction of another one, contact rows before equality rows, each with its multiple
+    /// of that one.
+    pub redundant: Vec<(usize, f64)>,
+    /// Bodies that no row touches.
+    pub untouched: Vec<usize>,
+    /// Number of contact rows.
+    contact: usize,
+}
+
+impl Findings {
+    pub(super) fn of_report(problem: &Problem, report: &Report) -> Self {
+        let mut findings = Self::new(problem, Ok(report.outcome));
+        findings.undetermined = report.undetermined;
+        findings
+    }
+
+    pub(super) fn of_error(problem: &Problem, error: &Error) -> Self {
+        let mut findings = Self::new(problem, Err(error.kind));
+        findings.place = *error.place;
+        findings.proof = error.proof.as_deref().cloned();
+        match &findings.proof {
+            Some(Proof::Rows { heaviest, .. }) => {
+                findings.kind = Some(kind_and_row(*heaviest, findings.contact).0);
+            }
+            Some(Proof::Motion { v, .. }) => {
+                findings.motion = error.place.body.and_then(|body| problem.rigid_motion(body, v));
+            }
+            None => {}
+        }
+        findings
+    }
+
+    fn new(problem: &Problem, end: std::result::Result<Outcome, Kind>) -> Self {
+        let ready = problem.ready.as_ref();
+        Self {
+            end,
+            place: Place::default(),
+            kind: None,
+            proof: None,
+            motion: None,
+            undetermined: 0,
+            redundant: ready.map(redundant).unwrap_or_default(),
+            untouched: ready.map(|ready| problem.untouched(ready)).unwrap_or_default(),
+            contact: problem.contact.len(),
+        }
+    }
+
+    /// How clearly the problem has no solution.
+    pub fn margin(&self) -> Option<f64> {
+        self.proof.as_ref().map(|proof| match proof {
+            Proof::Motion { margin, .. } | Proof::Rows { margin, .. } => *margin,
+        })
+    }
+
+    /// Rows that contradict each other with their weights; of a problem without contradiction its redundant rows
+    /// with their multiples.
+    pub fn rows(&self, kind: RowKind) -> impl Iterator<Item = (usize, f64)> + '_ {
+        let listed = match &self.proof {
+            Some(Proof::Rows { weights, .. }) => weights,
+            _ => &self.redundant,
+        };
+        listed.iter().filter_map(move |&(i, weight)| {
+            let (of, row) = kind_and_row(i, self.contact);
+            (of == kind).then_some((row, weight))
+        })
+    }
+
+    /// Number of rows that contradict each other.
+    pub fn contradicting(&self) -> usize {
+        match &self.proof {
+            Some(Proof::Rows { weights, .. }) => weights.len(),
+            _ => 0,
+        }
+    }
+}
+
+/// Rows of a group but its leader, with the factor from the leader.
+fn redundant(ready: &Ready) -> Vec<(usize, f64)> {
+    let leaders = &ready.grouping.leaders;
+    let repeats = ready.grouping.members().filter(|(i, (group, _))| leaders[*group] != *i);
+    repeats.map(|(i, (group, sign))| (i, sign * ready.scale[leaders[group]] / ready.scale[i])).collect()
+}
+
+impl Problem {
+    pub fn findings(&self) -> Result<&Findings> {
+        self.findings.as_ref().ok_or_else(|| Error::new(Kind::State, "nothing has been solved yet"))
+    }
+
+    /// The rigid motion of one body that no contact force can hold, largest entry of all bodies 1.
+    pub fn escaping_motion(&self, body: usize) -> Result<&[f64]> {
+        self.slot(body)?;
+        match &self.findings()?.proof {
+            Some(Proof::Motion { v, .. }) => v.get(self.ranges()[body].clone()),
+            _ => None,
+        }
+        .ok_or_else(|| Error::new(Kind::State, "the last solve has not found a load that nothing holds"))
+    }
+
+    fn untouched(&self, ready: &Ready) -> Vec<usize> {
+        let ranges = self.ranges();
+        let mut touched = vec![false; ranges.len()];
+        ready.matrix.col.iter().for_each(|&j| touched[ranges.partition_point(|range| range.end <= j)] = true);
+        (0..touched.len()).filter(|&p| !touched[p]).collect()
+    }
+
+    fn rigid_motion(&self, body: usize, v: &[f64]) -> Option<[f64; 6]> {
+        let coordinates = self.bodies.get(body)?.body.coordinates.as_ref()?;
+        coordinates.rigid_motion(v.get(self.ranges()[body].clone())?)
+    }
+}

@@ -1,0 +1,160 @@
+//! Where a solve starts, and states of a problem to come back to when a load step is rejected.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use crate::constraints::RowKind;
+use crate::error::{Error, Kind, Result};
+use crate::linalg::memory::{copied, zeros};
+use crate::linalg::vector::first_non_finite;
+use crate::solver::problem::Problem;
+use crate::solver::results::Answer;
+use crate::solver::setup::Ready;
+
+/// What a problem remembers besides its data.
+#[derive(Default)]
+pub(super) struct History {
+    /// Start of the next solve, given by the host: multipliers of contact and equality rows, force.
+    start: [Option<Vec<f64>>; 2],
+    /// The last answer for the present rows; it outlives a change of a matrix.
+    previous: Option<Arc<Answer>>,
+    states: BTreeMap<usize, State>,
+    /// Number of states saved so far.
+    saved: usize,
+    /// Counted up with every body added and every change of the rows.
+    rows: u64,
+    /// Counted up with every change that an answer does not outlive.
+    data: u64,
+}
+
+/// Loads, gaps and multipliers; never factors.
+struct State {
+    rows: u64,
+    data: u64,
+    /// Of every body, where it has one.
+    loads: Vec<Option<Vec<f64>>>,
+    /// c and h.
+    gaps: [Vec<f64>; 2],
+    previous: Option<Arc<Answer>>,
+    /// `previous` was the answer for exactly these data.
+    answered: bool,
+}
+
+/// Where a solve starts.
+pub(super) struct Start {
+    given: [Option<Vec<f64>>; 2],
+    previous: Option<Arc<Answer>>,
+}
+
+impl Start {
+    /// `x = lambda / (S 2^p)`, parallel rows together; multipliers that are not there are zero.
+    pub fn scaled(&self, ready: &Ready) -> Result<Vec<f64>> {
+        let mut multipliers = [self.given[0].as_deref(), self.given[1].as_deref()];
+        if multipliers == [None, None] {
+            multipliers = self.previous.as_deref().map_or([None, None], |a| [Some(&a.lambda), Some(&a.mu)]);
+        }
+        let mut x = zeros(ready.grouping.leaders.len(), "start values")?;
+        for (i, (group, sign)) in ready.grouping.members() {
+            let (k, row) = if i < ready.contact { (0, i) } else { (1, i - ready.contact) };
+            if let Some(multipliers) = multipliers[k] {
+                x[group] += sign * multipliers[row] / (ready.scale[i] * ready.unit);
+            }
+        }
+        Ok(x)
+    }
+}
+
+impl History {
+    pub fn data_changed(&mut self) {
+        self.data += 1;
+    }
+
+    /// Multipliers belong to rows.
+    pub fn rows_changed(&mut self) {
+        self.rows += 1;
+        self.start = [None, None];
+        self.previous = None;
+    }
+}
+
+impl Problem {
+    pub(super) fn keep(&mut self, answer: Answer) {
+        let answer = Arc::new(answer);
+        self.history.previous = Some(Arc::clone(&answer));
+        self.answer = Some(answer);
+    }
+
+    /// Start values for the next solve alone, whatever that comes to. Rows whose multiplier is zero start open.
+    pub fn start_from(&mut self, kind: RowKind, multipliers: &[f64]) -> Result<()> {
+        let expected = self.rows(kind).len();
+        if multipliers.len() != expected {
+            let what = format!("there are {expected} rows of this kind, not {}", multipliers.len());
+            let given = multipliers.len() as f64;
+            return Err(Error::argument("rows", what).value(given).limit(expected as f64));
+        }
+        if let Some(row) = first_non_finite(multipliers) {
+            return Err(Error::argument("lambda", "the entry is not a finite number").row(row).entry(row));
+        }
+        self.history.start[kind as usize] = Some(copied(multipliers, "start values")?);
+        Ok(())
+    }
+
+    /// Where the next solve starts: given values, which are used up, or those the options ask for.
+    pub(super) fn take_start(&mut self) -> Start {
+        let given = std::mem::take(&mut self.history.start);
+        let previous = self.history.previous.clone();
+        Start { given, previous: previous.filter(|_| self.settings.start == c"previous") }
+    }
+
+    /// Keeps loads, gaps, multipliers and active set under a number that is never used again.
+    pub fn save_state(&mut self) -> Result<usize> {
+        let mut loads = Vec::with_capacity(self.bodies.len());
+        for slot in &self.bodies {
+            let load = slot.body.load.as_ref();
+            loads.push(load.map(|f| copied(f, "a saved state")).transpose()?);
+        }
+        let gaps =
+            [copied(&self.contact.rhs, "a saved state")?, copied(&self.equalities.rhs, "a saved state")?];
+        let state = State {
+            rows: self.history.rows,
+            data: self.history.data,
+            loads,
+            gaps,
+            previous: self.history.previous.clone(),
+            answered: self.answer.is_some(),
+        };
+        let number = self.history.saved;
+        self.history.states.insert(number, state);
+        self.history.saved += 1;
+        Ok(number)
+    }
+
+    /// Loads, gaps and multipliers as they were; matrices stay as they are now. The state is kept. The answer
+    /// comes back as well unless a matrix has changed.
+    pub fn restore_state(&mut self, number: usize) -> Result<()> {
+        let state = self.history.states.get(&number).ok_or_else(|| no_state(number))?;
+        if state.rows != self.history.rows {
+            let what = "bodies were added or rows changed since the state was saved: it no longer fits";
+            return Err(Error::new(Kind::State, what));
+        }
+        let mut loads = Vec::with_capacity(state.loads.len());
+        for load in &state.loads {
+            loads.push(load.as_ref().map(|f| copied(f, "a saved state")).transpose()?);
+        }
+        self.contact.rhs.copy_from_slice(&state.gaps[0]);
+        self.equalities.rhs.copy_from_slice(&state.gaps[1]);
+        self.bodies.iter_mut().zip(loads).for_each(|(slot, load)| slot.body.load = load);
+        self.answer = state.previous.clone().filter(|_| state.answered && state.data == self.history.data);
+        self.history.previous.clone_from(&state.previous);
+        self.history.start = [None, None];
+        Ok(())
+    }
+
+    pub fn drop_state(&mut self, number: usize) -> Result<()> {
+        self.history.states.remove(&number).map(drop).ok_or_else(|| no_state(number))
+    }
+}
+
+fn no_state(number: usize) -> Error {
+    Error::argument("id", format!("{number}: no state has this number")).value(number as f64)
+}
