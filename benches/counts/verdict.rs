@@ -40,7 +40,7 @@ pub fn line(case: &Case, m: &Measurement, reasons: &[String]) -> String {
     let because = if reasons.is_empty() { String::new() } else { format!("; {}", reasons.join(", ")) };
     format!(
         "count {} F {} linear {} ratio {:.2} goal {:.2} {word}\n    M {}, coarse solves {}, coarse \
-         refactorisations {}, closed {} of {} rows ({:.0} %), {:.2} s, in all {:.1} s{because}",
+         refactorisations {}, closed {} of {} rows ({:.0} %), {:.2} s, in all {:.1} s, SMALBE F {}{because}",
         case.name,
         m.products,
         m.linear,
@@ -54,5 +54,6 @@ pub fn line(case: &Case, m: &Measurement, reasons: &[String]) -> String {
         m.closed_percent(),
         m.seconds,
         m.seconds_in_all,
+        m.smalbe.map_or("none".to_owned(), |f| format!("{f} ({:.1} x)", f as f64 / m.products as f64)),
     )
 }

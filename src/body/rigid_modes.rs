@@ -43,7 +43,7 @@ impl Coordinates {
         self.direction.len()
     }
 
-    /// The six rigid modes of every connected part with more than one dof, n x (up to 6 parts). Modes that
+    /// The six rigid modes of every connected part that is no single spring at a wall, n x (up to 6 parts). Modes that
     /// move nothing are left out.
     pub fn rigid_modes(&self, stiffness: &Symmetric) -> Result<Matrix> {
         let _room = room(self.len() * PER_DOF, "the rigid modes of a body")?;
@@ -51,10 +51,11 @@ impl Coordinates {
         let mut members = vec![Vec::new(); parts];
         part_of.iter().enumerate().for_each(|(dof, &part)| members[part].push(dof));
         let mut modes = Matrix::zeros(self.len(), 0)?;
-        let moving = members.iter().filter(|dofs| dofs.len() > 1).count();
+        let floats = |dofs: &&Vec<usize>| dofs.len() > 1 || stiffness.diagonal(dofs[0]) == 0.0;
+        let moving = members.iter().filter(floats).count();
         modes.data = reserved(self.len() * 6 * moving, "the rigid modes of a body")?;
         let mut column = vec![0.0; self.len()];
-        for dofs in members.iter().filter(|dofs| dofs.len() > 1) {
+        for dofs in members.iter().filter(floats) {
             let (centre, size) = self.extent(dofs);
             for mode in 0..6 {
                 column.fill(0.0);

@@ -79,7 +79,7 @@ pub enum Verdict {
 
 impl Verdict {
     /// How a run ends that observer or operator would not let go on.
-    pub(super) fn of_refusal(error: Error) -> Result<Self> {
+    pub fn of_refusal(error: Error) -> Result<Self> {
         match error.kind {
             Kind::Cancelled => Ok(Self::Cancelled),
             Kind::TimeOver => Ok(Self::TimeLimit),

@@ -21,12 +21,12 @@ pub(super) fn solve_dual(
     let mut best = minimise(qp, start, limits, judge, observer)?;
     let plain = Qp { preconditioner: None, ..qp };
     if gave_up(&best) && qp.preconditioner.is_some() {
-        let next = minimise(plain, &best.x.clone(), limits, judge, observer)?;
-        best = better(best, next);
+        let next = minimise(plain, &best.x.clone(), limits, judge, observer);
+        best = better(best, next)?;
     }
     if gave_up(&best) {
-        let next = smalbe(plain, &best.x.clone(), limits, judge, observer)?;
-        best = better(best, next);
+        let next = smalbe(plain, &best.x.clone(), limits, judge, observer);
+        best = better(best, next)?;
     }
     Ok(best)
 }
@@ -35,16 +35,24 @@ fn gave_up(solution: &Solution) -> bool {
     matches!(solution.verdict, Verdict::Stalled | Verdict::Inaccurate)
 }
 
-/// The accepted one of two, with the work of both.
-fn better(first: Solution, second: Solution) -> Solution {
+/// The accepted one of two, with the work of both; the first one when the host or the time ended the second.
+fn better(first: Solution, second: Result<Solution>) -> Result<Solution> {
+    let second = match second {
+        Ok(second) => second,
+        Err(error) => return Ok(Solution { verdict: Verdict::of_refusal(error)?, ..first }),
+    };
     let counts = first.counts + second.counts;
-    let chosen = if second.verdict == Verdict::Solved { second } else { first };
-    Solution { counts, ..chosen }
+    Ok(match second.verdict {
+        Verdict::Solved => Solution { counts, ..second },
+        Verdict::Cancelled | Verdict::TimeLimit => Solution { counts, verdict: second.verdict, ..first },
+        _ => Solution { counts, ..first },
+    })
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::error::{Error, Kind};
     use crate::qp::Counts;
 
     fn ended(verdict: Verdict, products: usize) -> Solution {
@@ -54,9 +62,24 @@ mod tests {
 
     #[test]
     fn an_accepted_answer_replaces_one_that_is_not_and_the_work_of_both_counts() {
+        let better = |first, second| better(first, Ok(second)).unwrap();
         let solution = better(ended(Verdict::Stalled, 5), ended(Verdict::Solved, 7));
         assert_eq!((solution.verdict, solution.counts.products), (Verdict::Solved, 12));
         let solution = better(ended(Verdict::Inaccurate, 5), ended(Verdict::StepLimit, 7));
         assert_eq!((solution.verdict, solution.counts.products), (Verdict::Inaccurate, 12));
+    }
+
+    #[test]
+    fn a_cancelled_second_try_leaves_the_first_answer_and_says_so() {
+        let stalled = Solution { x: vec![1.0], ..ended(Verdict::Stalled, 5) };
+        let solution = better(stalled.clone(), Ok(ended(Verdict::Cancelled, 7))).unwrap();
+        assert_eq!(
+            (solution.verdict, solution.x, solution.counts.products),
+            (Verdict::Cancelled, vec![1.0], 12)
+        );
+        let refused = |kind| better(stalled.clone(), Err(Error::new(kind, "refused")));
+        let solution = refused(Kind::TimeOver).unwrap();
+        assert_eq!((solution.verdict, solution.x), (Verdict::TimeLimit, vec![1.0]));
+        assert_eq!(refused(Kind::Callback).unwrap_err().kind, Kind::Callback);
     }
 }

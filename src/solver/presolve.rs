@@ -8,6 +8,7 @@ use crate::qp::{minimise, Judge, Limits, Observer, Progress, Qp};
 use crate::solver::diagnosis;
 use crate::solver::problem::Problem;
 use crate::solver::setup::Ready;
+use crate::solver::watch::Stops;
 
 /// Gaps that differ by less than this fraction of the largest are equal.
 const EQUAL: f64 = 1e-10;
@@ -26,7 +27,7 @@ pub(super) struct Gaps {
 }
 
 /// Gaps of all groups; refuses rows whose gaps no displacement satisfies.
-pub(super) fn presolve(problem: &Problem, ready: &Ready) -> Result<Gaps> {
+pub(super) fn presolve(problem: &Problem, ready: &Ready, stops: &Stops) -> Result<Gaps> {
     let rhs: Vec<f64> = problem.contact.rhs.iter().chain(&problem.equalities.rhs).copied().collect();
     let scaled: Vec<f64> = rhs.iter().zip(&ready.scale).map(|(c, s)| c * s).collect();
     let leaders = &ready.grouping.leaders;
@@ -54,7 +55,7 @@ pub(super) fn presolve(problem: &Problem, ready: &Ready) -> Result<Gaps> {
             return Err(two_rows_contradict(ready, (i, scaled[i]), (leaders[group], gap, sign), slack));
         }
     }
-    match contradiction(ready, &gaps)? {
+    match contradiction(ready, &gaps, stops)? {
         Some(error) => Err(error),
         None => Ok(gaps),
     }
@@ -79,7 +80,7 @@ fn two_rows_contradict(
 
 /// `min |D^-1/2 B'w|^2 + (1 + c'w)^2` over w >= 0 on contact rows is zero exactly where rows contradict each
 /// other (c scaled to largest entry 1); B has unit rows. No product with F is needed.
-fn contradiction(ready: &Ready, gaps: &Gaps) -> Result<Option<Error>> {
+fn contradiction(ready: &Ready, gaps: &Gaps, stops: &Stops) -> Result<Option<Error>> {
     let harmless = |(c, bounded): (&f64, &bool)| if *bounded { *c >= 0.0 } else { *c == 0.0 };
     if gaps.value.iter().zip(&gaps.bounded).all(harmless) {
         return Ok(None); // u = 0 satisfies them all
@@ -93,7 +94,8 @@ fn contradiction(ready: &Ready, gaps: &Gaps) -> Result<Option<Error>> {
     let steps = (WORK / (4 * ready.matrix.val.len() + c.len() + 1)).clamp(1000, 200_000);
     let limits = Limits { tolerance: 1e-14, gamma: 1.0, steps };
     let mut judge = Unjudged { scale: norm(&b) };
-    let solution = minimise(qp, &vec![0.0; c.len()], limits, &mut judge, &mut Unobserved)?;
+    let solution = minimise(qp, &vec![0.0; c.len()], limits, &mut judge, &mut UnlessCancelled(stops))?;
+    stops.check_cancelled()?;
     Ok(diagnosis::gaps_contradict(ready, gaps, &solution.x))
 }
 
@@ -134,10 +136,10 @@ impl Judge for Unjudged {
     }
 }
 
-struct Unobserved;
+struct UnlessCancelled<'a>(&'a Stops);
 
-impl Observer for Unobserved {
+impl Observer for UnlessCancelled<'_> {
     fn step(&mut self, _: &Progress) -> Result<()> {
-        Ok(())
+        self.0.check_cancelled()
     }
 }

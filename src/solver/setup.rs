@@ -5,7 +5,7 @@ use std::ops::Range;
 use std::sync::Arc;
 use std::time::Instant;
 
-use crate::body::{dirichlet, lumped, Body, GeneralizedInverse, Modes, NullSpaceInput};
+use crate::body::{dirichlet, dirichlet_bytes, lumped, Body, GeneralizedInverse, Modes, NullSpaceInput};
 use crate::constraints::{row_scales, Grouping, RowKind};
 use crate::dual::{constrained, Boundary, Dual, Part, Preconditioner};
 use crate::error::{Error, Kind, Result};
@@ -118,19 +118,20 @@ impl Problem {
         Ok(())
     }
 
-    /// Factors and dual operators against the limit of the host, and against what the system would give.
-    fn check_memory(&self, new_factors: usize) -> Result<()> {
+    /// Factors, dual operators and so many bytes more against the limit of the host, and against what the
+    /// system would give.
+    fn check_memory(&self, more: usize) -> Result<()> {
         let kept: usize = self.bodies.iter().filter_map(|slot| slot.inverse.as_ref()).map(|i| i.bytes).sum();
         let ranges = || self.ranges().into_iter();
         let operators =
             Dual::bytes(ranges(), &self.contact.matrix) + Dual::bytes(ranges(), &self.equalities.matrix);
-        let needed = kept.saturating_add(new_factors).saturating_add(operators);
+        let needed = kept.saturating_add(more).saturating_add(operators);
         let limit = usize::try_from(self.settings.memory_limit).unwrap_or(0);
         if limit > 0 && needed > limit {
             let what = format!("factors and dual operators take {needed} bytes, memory_limit is {limit}");
             return Err(Error::new(Kind::Memory, what).value(needed as f64).limit(limit as f64));
         }
-        available(new_factors.saturating_add(operators), "factors and dual operators")
+        available(more.saturating_add(operators), "factors and dual operators")
     }
 
     /// Unknowns of every body among all.
@@ -180,7 +181,12 @@ impl Problem {
         let preconditioner = match asked.to_bytes() {
             b"none" => None,
             b"lumped" => Some((asked, self.preconditioner(ready, lumped)?)),
-            _ => Some((asked, self.preconditioner(ready, dirichlet)?)),
+            _ => {
+                let boundaries =
+                    self.ranges().into_iter().map(|range| constrained(&ready.matrix, &range).len());
+                self.check_memory(boundaries.map(dirichlet_bytes).sum())?;
+                Some((asked, self.preconditioner(ready, dirichlet)?))
+            }
         };
         if let Some(ready) = &mut self.ready {
             ready.preconditioner = preconditioner;

@@ -16,7 +16,7 @@ use crate::solver::problem::Problem;
 use crate::solver::report::{Outcome, Report};
 use crate::solver::results::Answer;
 use crate::solver::setup::Ready;
-use crate::solver::watch::Watch;
+use crate::solver::watch::{Stops, Watch};
 
 impl Problem {
     /// Solves (10)-(11) for the present loads and gaps. An answer is kept even when it is incomplete; the
@@ -33,7 +33,7 @@ impl Problem {
         self.set_up_preconditioner(watch)?;
         let solving = Instant::now();
         let ready = self.ready()?;
-        let dual = Scaled::new(self, ready)?;
+        let dual = Scaled::new(self, ready, &watch.stops)?;
         let mut judge = Certifier { ready, scaled: &dual, data: self.data()? };
         let f = watch.operator(ready, &dual.gaps.bounded);
         let solution =
@@ -103,10 +103,10 @@ struct Scaled {
 }
 
 impl Scaled {
-    fn new(problem: &Problem, ready: &Ready) -> Result<Self> {
+    fn new(problem: &Problem, ready: &Ready, stops: &Stops) -> Result<Self> {
         let mut load = problem.loads()?;
         load.iter_mut().for_each(|f| *f /= ready.unit);
-        let gaps = presolve(problem, ready)?;
+        let gaps = presolve(problem, ready, stops)?;
         let d = ready.dual.rhs(&load, &gaps.value)?;
         let e = ready.dual.resultants(&load);
         Ok(Self { load, gaps, d, e })

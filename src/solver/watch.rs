@@ -7,7 +7,7 @@ use std::time::Instant;
 use crate::dual::Dual;
 use crate::error::{Error, Kind, Result};
 use crate::linalg::Operator;
-use crate::qp::{self, Observer, StepKind};
+use crate::qp::{self, Counts, Observer, StepKind};
 use crate::solver::findings::Findings;
 use crate::solver::problem::Problem;
 use crate::solver::setup::Ready;
@@ -69,7 +69,9 @@ impl Problem {
         let cancelled = self.canceller();
         cancelled.store(false, Ordering::Relaxed);
         let stops = Stops { cancelled, started: Instant::now(), limit: self.settings.time_limit };
-        let mut watch = Watch { stops, listener: self.host.listener.take(), unit: 1.0, bounded: 0 };
+        let listener = self.host.listener.take();
+        let (before, last) = (Counts::default(), Counts::default());
+        let mut watch = Watch { stops, listener, unit: 1.0, bounded: 0, before, last };
         let outcome = work(self, &mut watch);
         self.host.listener = watch.listener;
         if let Err(error) = &outcome {
@@ -121,6 +123,9 @@ pub(super) struct Watch {
     unit: f64,
     /// Number of multipliers >= 0.
     bounded: usize,
+    /// Work of the methods that gave up, and of the present one up to its last step.
+    before: Counts,
+    last: Counts,
 }
 
 impl Watch {
@@ -162,11 +167,16 @@ impl Watch {
 
 impl Observer for Watch {
     fn step(&mut self, now: &qp::Progress) -> Result<()> {
+        if now.counts.steps() < self.last.steps() || now.counts.products < self.last.products {
+            self.before = self.before + self.last;
+        }
+        self.last = *now.counts;
+        let all = self.before + self.last;
         let against_stop = |size: f64| size / now.small;
         let told = Progress {
             step: Some(now.kind),
-            steps: now.counts.steps(),
-            products: now.counts.products,
+            steps: all.steps(),
+            products: all.products,
             active: self.bounded - now.active.iter().filter(|at_bound| **at_bound).count(),
             residual: against_stop(now.residual),
             free: against_stop(now.free),
