@@ -3,6 +3,7 @@
 #define _POSIX_C_SOURCE 200112L
 #include <fenv.h>
 #include <pthread.h>
+#include <xmmintrin.h>
 
 #include "handover.h"
 #include "small.h"
@@ -14,7 +15,8 @@ enum { MOST = 2000 };
 /* What the function hears, and what it does at call number `when` (from 0). */
 typedef struct {
     feti_problem *problem;
-    int calls, when, reply, cancels, rounding;
+    int calls, when, reply, cancels;
+    unsigned rounding; /* direction that the function must see in MXCSR, 0: not looked at */
     feti_progress heard[MOST];
 } listener;
 
@@ -24,7 +26,7 @@ static int32_t hear(void *user, const feti_progress *now)
     const int call = host->calls++;
 
     if (call < MOST) host->heard[call] = *now;
-    if (host->rounding && fegetround() != host->rounding) host->rounding = -1;
+    if (host->rounding) CHECK(_MM_GET_ROUNDING_MODE() == host->rounding, "call %d in another environment", call);
     if (call != host->when) return 0;
     if (host->cancels) OK(feti_cancel(host->problem));
     return host->reply;
@@ -51,13 +53,13 @@ static void every_step_is_told(const case_data *data, const answer *wanted)
     listener *host = listener_of(problem, -1, 0);
     int64_t kinds[4] = { 0 };
 
-    host->rounding = FE_UPWARD;
+    host->rounding = _MM_ROUND_UP;
     fesetround(FE_UPWARD);
     answer result = solved(problem, data);
-    const int rounding = fegetround();
+    const unsigned rounding = _MM_GET_ROUNDING_MODE();
     fesetround(FE_TONEAREST);
     check_bits(data, &result, wanted, "watched");
-    CHECK(host->rounding == FE_UPWARD && rounding == FE_UPWARD, "the function ran in another environment");
+    CHECK(rounding == _MM_ROUND_UP, "the environment of the host is gone");
     CHECK(host->calls == 2 + (int)result.info.steps, "%d calls for %lld steps", host->calls, (long long)result.info.steps);
     for (int k = 0; k < host->calls && k < MOST; k++) {
         const feti_progress *now = &host->heard[k], *before = &host->heard[k > 0 ? k - 1 : 0];
