@@ -97,21 +97,22 @@ impl Problem {
             slot.inverse.take_if(|inverse| inverse.unit != unit);
         }
         let threads = threads::count(self.settings.threads);
-        let todo: Vec<usize> = (0..self.bodies.len()).filter(|&p| self.bodies[p].inverse.is_none()).collect();
+        let pending: Vec<usize> =
+            (0..self.bodies.len()).filter(|&p| self.bodies[p].inverse.is_none()).collect();
         let tolerance = self.settings.null_space_tolerance;
-        let plans = threads::run(threads, todo.len(), |k| {
-            plan(&self.bodies[todo[k]].body, unit, tolerance).map_err(|e| e.body(todo[k]))
+        let plans = threads::run(threads, pending.len(), |k| {
+            plan(&self.bodies[pending[k]].body, unit, tolerance).map_err(|e| e.body(pending[k]))
         })?;
         let bytes: Vec<usize> = plans.iter().map(|plan| plan.bytes()).collect();
         self.check_memory(bytes.iter().sum())?;
         let plans: Vec<_> = plans.into_iter().map(|plan| std::sync::Mutex::new(Some(plan))).collect();
-        let inverses = threads::run(threads, todo.len(), |k| {
+        let inverses = threads::run(threads, pending.len(), |k| {
             stops.check_cancelled()?;
             let plan = plans[k].lock().ok().and_then(|mut plan| plan.take());
             let plan = plan.ok_or_else(|| Error::new(Kind::Internal, "a body was factorised twice"))?;
-            plan.execute().map_err(|e| e.body(todo[k]))
+            plan.execute().map_err(|e| e.body(pending[k]))
         })?;
-        for ((&p, kplus), bytes) in todo.iter().zip(inverses).zip(bytes) {
+        for ((&p, kplus), bytes) in pending.iter().zip(inverses).zip(bytes) {
             self.bodies[p].inverse = Some(Inverse { unit, kplus: Arc::new(kplus), bytes });
             self.factorisations += 1;
         }
