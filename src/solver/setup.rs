@@ -96,7 +96,7 @@ impl Problem {
         for slot in &mut self.bodies {
             slot.inverse.take_if(|inverse| inverse.unit != unit);
         }
-        let threads = threads::count(self.settings.threads);
+        let threads = self.threads();
         let pending: Vec<usize> =
             (0..self.bodies.len()).filter(|&p| self.bodies[p].inverse.is_none()).collect();
         let tolerance = self.settings.null_space_tolerance;
@@ -135,6 +135,16 @@ impl Problem {
         available(more.saturating_add(operators), "factors and dual operators")
     }
 
+    /// Threads of the setup; a problem so small that waking them costs more than the work gets one.
+    fn threads(&self) -> usize {
+        const SMALL: usize = 1000;
+        if self.counts().dofs < SMALL {
+            1
+        } else {
+            threads::count(self.settings.threads)
+        }
+    }
+
     /// Unknowns of every body among all.
     pub(super) fn ranges(&self) -> Vec<Range<usize>> {
         self.offsets().windows(2).map(|pair| pair[0]..pair[1]).collect()
@@ -160,7 +170,7 @@ impl Problem {
             let inverse = slot.inverse.as_ref()?;
             Some(Part { range, kplus: Arc::clone(&inverse.kplus) })
         });
-        let threads = threads::count(self.settings.threads);
+        let threads = self.threads();
         let unless_cancelled = |task: &(dyn Fn(usize) -> Result<_> + Sync), p| {
             stops.check_cancelled()?;
             task(p)
@@ -197,7 +207,7 @@ impl Problem {
 
     fn preconditioner(&self, ready: &Ready, stiffness: BoundaryStiffness) -> Result<Preconditioner> {
         let ranges = self.ranges();
-        let boundaries = threads::run(threads::count(self.settings.threads), ranges.len(), |p| {
+        let boundaries = threads::run(self.threads(), ranges.len(), |p| {
             let local = constrained(&ready.matrix, &ranges[p]);
             let k = self.bodies[p].body.stiffness.as_ref();
             let k = k.ok_or_else(|| Error::new(Kind::Internal, "a body without stiffness was set up"))?;
