@@ -12,10 +12,7 @@ use super::handle::{self, Refusal};
 use super::status::{FETI_BUSY, FETI_HANDLE, FETI_INTERNAL, FETI_OK};
 use super::types::feti_problem;
 use crate::error::{Error, Kind, Result};
-use crate::solver::Problem;
-
-/// Names of the library's own threads start with this; a panic in one of them is reported as a status, not printed.
-const THREAD_NAME: &str = "feti-contact";
+use crate::solver::{Problem, THREAD_NAME};
 
 /// An exported function and the names of its arguments, in order.
 #[derive(Debug, Clone, Copy)]
@@ -134,7 +131,8 @@ fn panic_text(payload: &(dyn Any + Send)) -> String {
     format!("the library contradicts itself, please report this: {message}{place}")
 }
 
-/// True while a panic of this thread is the library's: inside [`caught`], or on one of its own threads.
+/// True while a panic of this thread is the library's: inside [`caught`], or on one of its own threads, which all
+/// bear [`THREAD_NAME`].
 fn is_ours() -> bool {
     let inside = DEPTH.try_with(|depth| depth.get() > 0).unwrap_or(false);
     inside || std::thread::current().name().is_some_and(|name| name.starts_with(THREAD_NAME))
