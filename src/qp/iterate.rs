@@ -3,6 +3,7 @@
 use crate::error::Result;
 use crate::linalg::vector::{axpy, dot, norm, norm_max};
 use crate::qp::coarse::Coarse;
+use crate::qp::conjugate::Conjugate;
 use crate::qp::{Counts, Qp};
 
 pub struct Iterate<'a> {
@@ -22,8 +23,14 @@ pub struct Iterate<'a> {
     pub free: Vec<f64>,
     /// (23) min(r, 0) on the active rows, 0 on the free ones.
     pub chopped: Vec<f64>,
-    /// Search direction of the last conjugate gradient step on this face, with its image: (p, A p).
-    pub conjugate: Option<(Vec<f64>, Vec<f64>)>,
+    /// Directions of the steps so far that lie on this face.
+    pub kept: Conjugate,
+    /// Nothing is left to gain along the kept directions.
+    pub settled: bool,
+    /// Length that the next step along a preconditioned gradient is expected to have: that of the last one.
+    pub expected: Option<f64>,
+    /// How many projected steps in a row had to be cut short.
+    pub cuts: usize,
     /// L: running bound of the curvature of theta, 1.1 max |P A p|^2 / p'A p.
     pub curvature: f64,
     pub counts: Counts,
@@ -39,7 +46,10 @@ impl<'a> Iterate<'a> {
             r: vec![0.0; m],
             free: vec![0.0; m],
             chopped: vec![0.0; m],
-            conjugate: None,
+            kept: Conjugate::default(),
+            settled: true,
+            expected: None,
+            cuts: 0,
             curvature: 0.0,
             counts: Counts::default(),
             qp,
@@ -68,13 +78,14 @@ impl<'a> Iterate<'a> {
         self.split()
     }
 
-    /// Takes the point `x` with its gradient; a new face starts with its steepest direction.
+    /// Takes the point `x` with its gradient; directions that leave the new face are not kept.
     pub fn move_to(&mut self, x: Vec<f64>, g: Vec<f64>) -> Result<()> {
         (self.x, self.g) = (x, g);
-        let face = self.active.clone();
+        let before = self.active.clone();
         self.split()?;
-        if face != self.active {
-            self.conjugate = None;
+        for i in (0..before.len()).filter(|&i| self.active[i] && !before[i]) {
+            self.kept.hold(i);
+            self.settled = false;
         }
         Ok(())
     }
@@ -83,6 +94,12 @@ impl<'a> Iterate<'a> {
     fn split(&mut self) -> Result<()> {
         let m = self.x.len();
         (0..m).for_each(|i| self.active[i] = self.qp.bounded[i] && self.x[i] <= 0.0);
+        self.split_on_face()
+    }
+
+    /// The same on the active set as it stands: rows at zero may count as free.
+    pub fn split_on_face(&mut self) -> Result<()> {
+        let m = self.x.len();
         self.r.copy_from_slice(&self.g);
         if !self.alpha.is_empty() {
             self.coarse.select(&self.active)?;
@@ -129,12 +146,6 @@ impl<'a> Iterate<'a> {
     /// `theta(x) = 1/2 x'A x - b'x`
     pub fn theta(&self) -> f64 {
         0.5 * self.x.iter().zip(self.g.iter().zip(self.qp.b)).map(|(x, (g, b))| x * (g - b)).sum::<f64>()
-    }
-
-    /// `theta(y) - theta(x)` from both gradients, free of the cancellation between the two values.
-    pub fn increase(&self, y: &[f64], g_y: &[f64]) -> f64 {
-        let terms = y.iter().zip(&self.x).zip(g_y.iter().zip(&self.g));
-        0.5 * terms.map(|((y, x), (g_y, g))| (y - x) * (g_y + g)).sum::<f64>()
     }
 
     /// Largest t with `x - t p` feasible in the bounds, entries of p up to `rounding` |p| taken for zero.

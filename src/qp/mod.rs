@@ -8,6 +8,7 @@
 
 mod augmented;
 mod coarse;
+mod conjugate;
 mod iterate;
 mod mprgp;
 mod nnls;
@@ -16,6 +17,7 @@ mod proportioning;
 mod smalbe;
 mod steps;
 
+pub use conjugate::MOST as KEPT;
 pub use proportioning::{minimise, Judge, Limits, Observer, Progress, Solution, StepKind, Verdict};
 pub use smalbe::smalbe;
 

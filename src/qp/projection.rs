@@ -57,8 +57,16 @@ impl Trial {
         }
     }
 
-    fn done(self) -> Projected {
-        Projected { point: self.point, multiplier: self.beta }
+    fn done(self, qp: &Qp, coarse: &mut Coarse) -> Result<Projected> {
+        let mut point = self.point.clone();
+        let held: Vec<bool> = point.iter().map(|l| *l == 0.0).collect();
+        coarse.select(&held)?;
+        let step = coarse.solve(&self.residual)?;
+        for i in (0..point.len()).filter(|&i| !held[i]) {
+            point[i] += qp.g_transposed.row_dot(i, &step);
+        }
+        let inside = (0..point.len()).all(|i| !qp.bounded[i] || point[i] >= 0.0);
+        Ok(Projected { point: if inside { point } else { self.point }, multiplier: self.beta })
     }
 }
 
@@ -66,26 +74,26 @@ impl Trial {
 pub fn project(qp: &Qp, coarse: &mut Coarse, y: &[f64], held: &[bool]) -> Result<Option<Projected>> {
     let mut now = Trial::new(qp, y, held, vec![0.0; qp.e.len()]);
     if qp.e.is_empty() {
-        return Ok(Some(now.done()));
+        return Ok(Some(Projected { point: now.point, multiplier: now.beta }));
     }
     let mut error = now.error(qp);
     for _ in 0..NEWTON_STEPS {
         if error <= ACCURACY {
-            return Ok(Some(now.done()));
+            return now.done(qp, coarse).map(Some);
         }
         let face: Vec<bool> =
             (0..y.len()).map(|i| held[i] || (qp.bounded[i] && now.point[i] <= 0.0)).collect();
         coarse.select(&face)?;
         let step = coarse.solve_regularised(&now.residual)?;
         let Some(t) = minimum_along(qp, y, held, &now, &step) else {
-            return Ok((error <= STAGNATED).then(|| now.done()));
+            return if error <= STAGNATED { now.done(qp, coarse).map(Some) } else { Ok(None) };
         };
         let mut beta = now.beta.clone();
         axpy(t, &step, &mut beta);
         let next = Trial::new(qp, y, held, beta);
         let next_error = next.error(qp);
         if error <= STAGNATED && next_error >= error {
-            return Ok(Some(now.done()));
+            return now.done(qp, coarse).map(Some);
         }
         (now, error) = (next, next_error);
     }

@@ -10,6 +10,14 @@ const SINGULAR: f64 = 1e-11;
 /// An entry of a direction without curvature below this fraction of the largest is rounding: without it, such
 /// a direction would always seem to end somewhere far away.
 const ROUNDING: f64 = 1e-10;
+/// A step that its bound cuts to less than this part of it is worth a projection and another product.
+const FAR: f64 = 0.1;
+/// A direction of which the kept ones leave less than this part is lost to rounding.
+const LOST: f64 = 1e-7;
+/// So many projected steps in a row that had to be cut short are followed by one to the bound.
+const CUTS: usize = 3;
+/// Steps shorter than this against x are not kept.
+const SHORT: f64 = 1e-6;
 /// Step of gradient projection in units of 1 / L.
 const GRADIENT_STEP: f64 = 1.5;
 
@@ -31,51 +39,123 @@ pub enum Step {
 }
 
 impl Iterate<'_> {
-    /// Explores the current face: a conjugate gradient step where it stays feasible, else an expansion.
+    /// Explores the current face: a conjugate gradient step where it stays feasible, else an expansion. A step
+    /// expected to leave the bounds is projected before its product, which then tells how far to go.
     pub fn explore(&mut self) -> Result<Step> {
-        let (p, image) = self.direction()?;
+        let p = self.direction()?;
+        let to_bound = self.cuts == CUTS;
+        self.cuts %= CUTS;
+        let far = self.expected.filter(|t| !to_bound && self.feasible_step(&p, 0.0) < *t);
+        let step = match far {
+            Some(t) if self.expand(&p, t)? => Step::Expansion,
+            _ => self.step_along(p, to_bound)?,
+        };
+        self.counts.conjugate_gradient += usize::from(matches!(step, Step::ConjugateGradient));
+        self.counts.expansions += usize::from(matches!(step, Step::Expansion));
+        self.settle()?;
+        Ok(step)
+    }
+
+    /// Minimises theta over the kept directions, without any product: rows that meet their bound join the
+    /// active set one by one.
+    fn settle(&mut self) -> Result<()> {
+        while !self.settled {
+            let Some((d, image)) = self.kept.minimiser(&self.r) else { break };
+            let bound = self.feasible_step(&d, 0.0);
+            self.go_along(&d, &image, bound.min(1.0))?;
+            self.settled = bound >= 1.0;
+        }
+        Ok(())
+    }
+
+    /// `z = P_F M_F P_F phi`, conjugate to the kept directions; z itself, and none kept, where rounding is all
+    /// that they leave of it.
+    fn direction(&mut self) -> Result<Vec<f64>> {
+        let mut z = self.free.clone();
+        self.precondition(&mut z)?;
+        self.project_on_face(&mut z)?;
+        let mut p = z.clone();
+        self.kept.make_conjugate(&mut p);
+        self.project_on_face(&mut p)?;
+        if norm(&p) > LOST * norm(&z) && dot(&self.r, &p) > 0.0 {
+            return Ok(p);
+        }
+        self.kept.forget();
+        Ok(z)
+    }
+
+    /// The exact step `x - t p` where the bounds allow it. Where they do not, an expansion: projected, where a
+    /// bounds leave too little of it, or just `to_bound`.
+    fn step_along(&mut self, p: Vec<f64>, to_bound: bool) -> Result<Step> {
+        if norm(&p) == 0.0 {
+            return Ok(Step::Stuck);
+        }
+        let image = self.product(&p)?;
         let curvature = dot(&p, &image);
         self.observe_curvature(&p, &image)?;
         let singular =
             norm(&self.free) > self.noise() && curvature <= SINGULAR * self.curvature * dot(&p, &p);
-        let t = if singular { f64::INFINITY } else { dot(&self.g, &p) / curvature };
+        let t = if singular { f64::INFINITY } else { dot(&self.r, &p) / curvature };
         let bound = self.feasible_step(&p, if singular { ROUNDING } else { 0.0 });
-        if t <= bound && t.is_finite() {
-            let (mut x, mut g) = (std::mem::take(&mut self.x), std::mem::take(&mut self.g));
-            axpy(-t, &p, &mut x);
-            axpy(-t, &image, &mut g);
-            self.conjugate = Some((p, image));
-            self.move_to(x, g)?;
-            self.counts.conjugate_gradient += 1;
-            return Ok(Step::ConjugateGradient);
-        }
-        if bound.is_infinite() {
+        if bound.is_infinite() && !t.is_finite() {
             return Ok(if singular { Step::Unbounded { p } } else { Step::Stuck });
         }
-        self.conjugate = None;
-        self.counts.expansions += 1;
-        if t.is_finite() && self.accept_projected(&p, t, false)? {
+        let mut far = bound < FAR * t;
+        if t.is_finite() {
+            far |= self.expected.replace(t).is_none();
+            self.kept.push(&p, &image);
+        }
+        if t <= bound {
+            self.go_along(&p, &image, t)?;
+            return Ok(Step::ConjugateGradient);
+        }
+        if far && !to_bound && t.is_finite() && self.expand(&p, t)? {
             return Ok(Step::Expansion);
         }
-        self.stop_at_bound(&p, &image, bound)?;
-        if self.curvature > 0.0 {
-            let free = self.free.clone();
-            self.accept_projected(&free, GRADIENT_STEP / self.curvature, true)?;
-        }
+        self.go_along(&p, &image, bound)?;
         Ok(Step::Expansion)
     }
 
-    /// `p = z - (z'A p_old / p_old'A p_old) p_old` with `z = P_F M_F P_F phi`, and A p.
-    fn direction(&mut self) -> Result<(Vec<f64>, Vec<f64>)> {
-        let mut p = self.free.clone();
-        self.precondition(&mut p)?;
-        self.project_on_face(&mut p)?;
-        if let Some((old, image)) = self.conjugate.take() {
-            let beta = dot(&p, &image) / dot(&old, &image);
-            axpy(-beta, &old, &mut p);
+    /// The projected step towards `y = PROJ_face(x - t p)`, one product: all of it where theta falls that far,
+    /// else as much of it as lowers theta most. False, and nothing done, where it does not lead downwards.
+    fn expand(&mut self, p: &[f64], t: f64) -> Result<bool> {
+        let mut y = self.x.clone();
+        axpy(-t, p, &mut y);
+        let Some(projected) = project(&self.qp, &mut self.coarse, &y, &self.active)? else {
+            return Ok(false);
+        };
+        let s = difference(&projected.point, &self.x);
+        let slope = dot(&self.r, &s);
+        if slope >= 0.0 {
+            return Ok(false);
         }
-        let image = self.product(&p)?;
-        Ok((p, image))
+        let image = self.product(&s)?;
+        self.observe_curvature(&s, &image)?;
+        let curvature = dot(&s, &image);
+        let flat = curvature <= SINGULAR * self.curvature * dot(&s, &s);
+        let best = if flat { f64::INFINITY } else { -slope / curvature };
+        let cut = best <= 0.5;
+        self.cuts = if cut { self.cuts + 1 } else { 0 };
+        let length = if cut { best } else { 1.0 };
+        self.expected = Some(t * if cut { best } else { best.clamp(1.0, 2.0) });
+        let (mut x, mut g) = (projected.point, self.g.clone());
+        if cut {
+            x.clone_from(&self.x);
+            axpy(best, &s, &mut x);
+        }
+        axpy(length, &image, &mut g);
+        self.keep(&s, &image);
+        self.settled = false;
+        self.move_to(x, g)?;
+        Ok(true)
+    }
+
+    /// Keeps the direction of a projected step, unless it is so short that rounding has turned it out of the
+    /// kernel of G.
+    fn keep(&mut self, s: &[f64], image: &[f64]) {
+        if norm(s) > SHORT * norm(&self.x) {
+            self.kept.push(s, image);
+        }
     }
 
     /// `p <- M_F p`, as long as that is a direction of descent.
@@ -102,40 +182,57 @@ impl Iterate<'_> {
         Ok(())
     }
 
-    /// Moves to `y = PROJ_face(x - t p)` when theta falls (or, `or_equal`, does not rise).
-    fn accept_projected(&mut self, p: &[f64], t: f64, or_equal: bool) -> Result<bool> {
-        let mut y = self.x.clone();
-        axpy(-t, p, &mut y);
-        let Some(projected) = project(&self.qp, &mut self.coarse, &y, &self.active)? else {
-            return Ok(false);
-        };
-        let y = projected.point;
-        let mut g = self.product(&y)?;
-        axpy(-1.0, self.qp.b, &mut g);
-        // accepted or not, the trial tells how curved theta is
-        self.observe_curvature(&difference(&y, &self.x), &difference(&g, &self.g))?;
-        let increase = self.increase(&y, &g);
-        let accepted = increase < 0.0 || (or_equal && increase == 0.0);
-        if accepted {
-            self.move_to(y, g)?;
-        }
-        Ok(accepted)
-    }
-
-    /// `x - t p` for the largest feasible t; the rows that meet their bound there are set to exactly 0.
-    fn stop_at_bound(&mut self, p: &[f64], image: &[f64], t: f64) -> Result<()> {
+    /// `x - t p`; rows that meet their bound there are set to exactly 0.
+    fn go_along(&mut self, p: &[f64], image: &[f64], t: f64) -> Result<()> {
         let (mut x, mut g) = (std::mem::take(&mut self.x), std::mem::take(&mut self.g));
         for i in 0..x.len() {
-            let hits = self.qp.bounded[i] && !self.active[i] && p[i] > 0.0 && x[i] <= t * p[i];
-            x[i] = if hits { 0.0 } else { x[i] - t * p[i] };
+            let y = x[i] - t * p[i];
+            let hits = self.qp.bounded[i] && !self.active[i] && p[i] > 0.0 && y <= 4.0 * f64::EPSILON * x[i];
+            x[i] = if hits { 0.0 } else { y };
         }
         axpy(-t, image, &mut g);
         self.move_to(x, g)
     }
 
-    /// Gradient projection on the whole feasible set, with an exact line search: rows leave the active set.
-    /// `small` is the length of a projected gradient that counts as zero.
+    /// The active rows that pull leave the active set. `small` is the length of a projected gradient that counts
+    /// as zero.
     pub fn release(&mut self, small: f64) -> Result<Step> {
+        let step = if std::mem::take(&mut self.cuts) > 0 { None } else { self.release_pulling()? };
+        let step = step.map_or_else(|| self.project_gradient(small), Ok)?;
+        self.counts.releases += usize::from(matches!(step, Step::Release));
+        self.settle()?;
+        Ok(step)
+    }
+
+    /// All rows with a negative multiplier leave the active set, and the face is explored with them: where the
+    /// direction presses some of them on, it is projected. `None`, and nothing done, where it does not lead down.
+    fn release_pulling(&mut self) -> Result<Option<Step>> {
+        let before = self.active.clone();
+        (0..before.len()).for_each(|i| self.active[i] &= self.chopped[i] == 0.0);
+        self.split_on_face()?;
+        let p = self.direction()?;
+        let pressed = (0..before.len()).any(|i| before[i] && !self.active[i] && p[i] > 0.0);
+        let length = self.expected.filter(|t| pressed || self.feasible_step(&p, 0.0) < *t);
+        // a preconditioned direction has its length, any other must have been measured
+        let own = (pressed && self.qp.preconditioner.is_some()).then_some(1.0);
+        let step = match length.or(own) {
+            Some(t) if self.expand(&p, t)? => Step::Release,
+            None if !pressed => self.step_along(p, false)?,
+            _ => Step::Stuck,
+        };
+        match step {
+            Step::Stuck => {
+                self.active = before;
+                self.split_on_face()?;
+                Ok(None)
+            }
+            Step::Unbounded { .. } => Ok(Some(step)),
+            _ => Ok(Some(Step::Release)),
+        }
+    }
+
+    /// Gradient projection on the whole feasible set, with an exact line search.
+    fn project_gradient(&mut self, small: f64) -> Result<Step> {
         if self.curvature == 0.0 {
             let r = self.r.clone();
             let image = self.product(&r)?;
@@ -147,7 +244,7 @@ impl Iterate<'_> {
         axpy(-step, &self.r, &mut y);
         let none = vec![false; y.len()];
         let Some(projected) = project(&self.qp, &mut self.coarse, &y, &none)? else { return Ok(Step::Stuck) };
-        let s: Vec<f64> = projected.point.iter().zip(&self.x).map(|(y, x)| y - x).collect();
+        let s = difference(&projected.point, &self.x);
         if norm(&s) <= small * step {
             let mut alpha = self.alpha.clone();
             axpy(1.0 / step, &projected.multiplier, &mut alpha);
@@ -162,7 +259,7 @@ impl Iterate<'_> {
     fn search_along(&mut self, s: Vec<f64>) -> Result<Step> {
         let image = self.product(&s)?;
         self.observe_curvature(&s, &image)?;
-        let (slope, curvature) = (dot(&self.g, &s), dot(&s, &image));
+        let (slope, curvature) = (dot(&self.r, &s), dot(&s, &image));
         if slope >= 0.0 {
             return Ok(Step::Stuck);
         }
@@ -185,8 +282,8 @@ impl Iterate<'_> {
                 *x = 0.0;
             }
         }
-        self.conjugate = None;
-        self.counts.releases += 1;
+        self.keep(&s, &image);
+        self.settled = false;
         self.move_to(x, g)?;
         Ok(Step::Release)
     }

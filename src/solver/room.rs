@@ -7,8 +7,8 @@ use crate::solver::problem::{BodySlot, Problem};
 
 /// Bytes per unknown: loads, displacements, reactions and the certificate, about 16 vectors at a time.
 const PER_DOF: usize = 160;
-/// Bytes per row: multipliers, gradients, directions and the certificate, about 60 vectors at a time.
-const PER_ROW: usize = 640;
+/// Bytes per row: multipliers, gradients, directions kept with their images, and the certificate.
+const PER_ROW: usize = 640 + 2 * size_of::<f64>() * crate::qp::KEPT;
 /// Bytes per entry of B and H: the host's rows, the scaled ones and those by bodies, each while it grows.
 const PER_ENTRY: usize = 128;
 /// Bytes per entry of `G' = B R`, while it grows.

@@ -1,0 +1,151 @@
+//! Directions kept with their images, conjugate to each other: `p_i'A p_j = sigma` for i = j, else 0. They lie
+//! on the present face and in the kernel of G, so that theta is minimised over their span without any product.
+
+use crate::linalg::vector::{axpy, dot, norm};
+
+/// More directions than this cost more than the products they save.
+pub const MOST: usize = 100;
+/// A direction whose curvature is all but in the span of the others tells nothing new.
+const NEW: f64 = 1e-10;
+
+#[derive(Default)]
+pub struct Conjugate {
+    /// Pairs (p, A p), oldest first.
+    pairs: Vec<(Vec<f64>, Vec<f64>)>,
+    /// sigma: the power of two below the Rayleigh quotient of the first direction, so that powers of two in A
+    /// change no bit of the rest.
+    curvature: f64,
+}
+
+impl Conjugate {
+    /// `z <- z - sum p_i (A p_i)'z / sigma`
+    pub fn make_conjugate(&self, z: &mut [f64]) {
+        for (p, image) in &self.pairs {
+            axpy(-dot(image, z) / self.curvature, p, z);
+        }
+    }
+
+    /// Takes (p, A p) in; the part that is not conjugate to the others is removed.
+    pub fn push(&mut self, p: &[f64], image: &[f64]) {
+        let (mut p, mut image) = (p.to_vec(), image.to_vec());
+        let whole = dot(&p, &image);
+        for (other, of_other) in &self.pairs {
+            let share = dot(other, &image) / self.curvature;
+            axpy(-share, other, &mut p);
+            axpy(-share, of_other, &mut image);
+        }
+        let curvature = dot(&p, &image);
+        if whole > 0.0 && curvature > NEW * whole {
+            if self.pairs.is_empty() {
+                self.curvature = power_of_two_below(curvature / dot(&p, &p));
+            }
+            let length = (curvature / self.curvature).sqrt();
+            p.iter_mut().chain(&mut image).for_each(|v| *v /= length);
+            if self.pairs.len() == MOST {
+                self.pairs.remove(0);
+            }
+            self.pairs.push((p, image));
+        }
+    }
+
+    /// `d = sum p_i p_i'g / sigma` and A d: `x - d` has the least theta on x + span. `None` without directions.
+    pub fn minimiser(&self, g: &[f64]) -> Option<(Vec<f64>, Vec<f64>)> {
+        let (mut d, mut image) = (vec![0.0; g.len()], vec![0.0; g.len()]);
+        for (p, of_p) in &self.pairs {
+            let share = dot(p, g) / self.curvature;
+            axpy(share, p, &mut d);
+            axpy(share, of_p, &mut image);
+        }
+        (!self.pairs.is_empty()).then_some((d, image))
+    }
+
+    pub fn forget(&mut self) {
+        self.pairs.clear();
+    }
+
+    /// Keeps the directions of the span that vanish on row i: one less than before, by a reflection that turns
+    /// the row into (0, ..., 0, length).
+    pub fn hold(&mut self, i: usize) {
+        let mut w: Vec<f64> = self.pairs.iter().map(|(p, _)| p[i]).collect();
+        let Some(&last) = w.last() else { return };
+        let length = norm(&w);
+        if length == 0.0 {
+            return;
+        }
+        let k = w.len() - 1;
+        w[k] += length.copysign(last);
+        let scale = 2.0 / dot(&w, &w);
+        let mut sum = (vec![0.0; self.pairs[0].0.len()], vec![0.0; self.pairs[0].0.len()]);
+        for ((p, image), w) in self.pairs.iter().zip(&w) {
+            axpy(*w, p, &mut sum.0);
+            axpy(*w, image, &mut sum.1);
+        }
+        for ((p, image), w) in self.pairs.iter_mut().zip(&w) {
+            axpy(-scale * w, &sum.0, p);
+            axpy(-scale * w, &sum.1, image);
+        }
+        self.pairs.pop();
+        self.pairs.iter_mut().for_each(|(p, _)| p[i] = 0.0);
+    }
+}
+
+fn power_of_two_below(x: f64) -> f64 {
+    const EXPONENT: u64 = 0x7ff0_0000_0000_0000;
+    f64::from_bits(x.to_bits() & EXPONENT)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// `(A x)_i = 2 x_i - x_(i-1) - x_(i+1)`
+    fn image(x: &[f64]) -> Vec<f64> {
+        let at = |i: usize| x.get(i).copied().unwrap_or(0.0);
+        (0..x.len()).map(|i| 2.0 * x[i] - if i > 0 { at(i - 1) } else { 0.0 } - at(i + 1)).collect()
+    }
+
+    fn kept() -> Conjugate {
+        let mut kept = Conjugate::default();
+        for p in [[1.0, 2.0, 0.0, 1.0, -1.0], [0.0, 1.0, 3.0, -2.0, 0.5], [2.0, 0.0, 1.0, 1.0, 4.0]] {
+            kept.push(&p, &image(&p));
+        }
+        kept
+    }
+
+    fn assert_conjugate(kept: &Conjugate) {
+        for (j, (p, of_p)) in kept.pairs.iter().enumerate() {
+            assert!(image(p).iter().zip(of_p).all(|(a, b)| (a - b).abs() < 1e-14), "the image of {p:?}");
+            for (k, (_, other)) in kept.pairs.iter().enumerate() {
+                let expected = if j == k { kept.curvature } else { 0.0 };
+                assert!((dot(p, other) - expected).abs() < 1e-14, "{j} {k}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_row_that_is_held_costs_one_direction_and_leaves_the_others_conjugate_with_their_images() {
+        let mut kept = kept();
+        assert_conjugate(&kept);
+        kept.hold(3);
+        assert_eq!(kept.pairs.len(), 2);
+        assert_conjugate(&kept);
+        assert!(kept.pairs.iter().all(|(p, _)| p[3] == 0.0));
+    }
+
+    #[test]
+    fn the_minimiser_leaves_no_slope_along_any_direction() {
+        let (kept, mut g) = (kept(), vec![1.0, -2.0, 0.5, 3.0, 1.0]);
+        let (_, of_d) = kept.minimiser(&g).unwrap();
+        axpy(-1.0, &of_d, &mut g);
+        assert!(kept.pairs.iter().all(|(p, _)| dot(p, &g).abs() < 1e-14));
+        assert!(Conjugate::default().minimiser(&g).is_none());
+    }
+
+    #[test]
+    fn a_direction_of_the_span_is_not_kept_twice() {
+        let mut kept = kept();
+        let p: Vec<f64> = (0..5).map(|i| kept.pairs[0].0[i] - 3.0 * kept.pairs[2].0[i]).collect();
+        kept.push(&p, &image(&p));
+        assert_eq!(kept.pairs.len(), 3);
+    }
+}
