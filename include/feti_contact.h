@@ -553,7 +553,8 @@ typedef struct feti_info {
    */
   double duality_gap;
   /**
-   * Energy 1/2 u'Ku - f'u, force times length.
+   * Energy 1/2 u'Ku - f'u and that of the springs of compliant rows, 1/2 lambda'C lambda + 1/2 mu'C
+   * mu, force times length.
    */
   double energy;
   /**
@@ -600,11 +601,12 @@ typedef struct feti_certificate {
    */
   double balance;
   /**
-   * Relative penetration: positive part of `B u - c`.
+   * Relative penetration: positive part of `B u - c - C lambda`, C = diag(1/k) being the compliance
+   * of the rows.
    */
   double penetration;
   /**
-   * Relative error of `H u = h`.
+   * Relative error of `H u = h + C mu`.
    */
   double equality;
   /**
@@ -612,7 +614,7 @@ typedef struct feti_certificate {
    */
   double negative_force;
   /**
-   * Relative size of force times open gap.
+   * Relative size of force times open gap `c + C lambda - B u`.
    */
   double complementarity;
   /**
@@ -1166,7 +1168,8 @@ int32_t feti_amplitudes(struct feti_problem *p, int64_t body, int64_t r, double 
 int32_t feti_multipliers(struct feti_problem *p, int32_t kind, int64_t rows, double *lambda);
 
 /**
- * Reads what is left of the gaps, c - B u.
+ * Reads what is left of the gaps, c - B u; of compliant rows c + lambda/k - B u, 0 where they
+ * carry a force.
  *
  * FETI_STATE before a solve has given an answer. After a failure nothing is written.
  *
@@ -1286,6 +1289,29 @@ int32_t feti_rows_add_i64(struct feti_problem *p,
 int32_t feti_rows_rhs(struct feti_problem *p, int32_t kind, int64_t first, int64_t rows, const double *rhs);
 
 /**
+ * Makes rows compliant: each a spring, `B u - c <= lambda/k` or `H u - h = mu/k`.
+ *
+ * A contact row then carries the force k (B u - c) where that is positive: a linear law of
+ * pressure and overclosure; an equality row is an elastic support or a cohesive bond. Rows that
+ * are added are rigid, 1/k = 0. A row times t has a compliance times t^2. The numbers are copied
+ * and stay with their rows until they are replaced or the rows are cleared; factors of the bodies
+ * stay, the last answer does not. After a failure all compliances are as they were.
+ *
+ * @param[in] p     (scalar) the handle
+ * @param[in] kind  (scalar) FETI_INEQUALITY or FETI_EQUALITY
+ * @param[in] first (scalar) first row to change, from 0
+ * @param[in] rows  (scalar) number of rows to change
+ * @param[in] inv_k (rows) 1/k >= 0, length / force; 0: rigid
+ *
+ * Safety: The array has the given shape.
+ */
+int32_t feti_rows_compliance(struct feti_problem *p,
+                             int32_t kind,
+                             int64_t first,
+                             int64_t rows,
+                             const double *inv_k);
+
+/**
  * Removes all rows of a kind.
  *
  * Numbering of that kind starts again at 0. Factors of the bodies stay.
@@ -1379,11 +1405,12 @@ int32_t feti_state_save(struct feti_problem *p, int64_t *id);
 /**
  * Goes back to a saved state: after a load step that was rejected.
  *
- * Loads and gaps are as they were, and so is the answer unless a matrix has changed since; with
- * option start = previous the next solve continues from the saved multipliers, with start = cold
- * it gives the bits it would have given then. Matrices, null spaces and options stay as they are
- * now; start values that were not used yet are dropped. The state stays saved. FETI_STATE when
- * bodies were added or rows changed since; after a failure nothing is changed.
+ * Loads and gaps are as they were, and so is the answer unless a matrix or a compliance has
+ * changed since; with option start = previous the next solve continues from the saved multipliers,
+ * with start = cold it gives the bits it would have given then. Matrices, null spaces, compliances
+ * of rows and options stay as they are now; start values that were not used yet are dropped. The
+ * state stays saved. FETI_STATE when bodies were added or rows changed since; after a failure
+ * nothing is changed.
  *
  * @param[in] p  (scalar) the handle
  * @param[in] id (scalar) number of the state
@@ -1458,9 +1485,10 @@ int32_t feti_body_kplus(struct feti_problem *p,
                         int64_t ldy);
 
 /**
- * Applies the dual operator, `y = F x` with `F = [B; H] K+ [B; H]'`.
+ * Applies the dual operator, `y = F x` with `F = [B; H] K+ [B; H]' + C`.
  *
- * Runs feti_setup when it is due. `x` and `y` may be the same array. After a failure nothing is
+ * C = diag(1/k) is the compliance of the rows (feti_rows_compliance), 0 for rigid ones. Runs
+ * feti_setup when it is due. `x` and `y` may be the same array. After a failure nothing is
  * written.
  *
  * @param[in]  p (scalar) the handle

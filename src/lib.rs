@@ -25,7 +25,7 @@
 //! | [`error`] | the one error type |
 //! | [`linalg`] | vectors, matrices, ordering, sparse Cholesky |
 //! | [`body`] | one body: K_p, R_p, fixing dofs, K_p+ |
-//! | [`constraints`] | B u <= c, H u = h: rows and their scaling |
+//! | [`constraints`] | B u <= c, H u = h: rows, their compliance and scaling |
 //! | [`dual`] | F, d, G, e and the way back |
 //! | [`qp`] | Sections 4 and 5: knows no bodies |
 //! | [`solver`] | register, set up, solve, certify, report |

@@ -37,12 +37,12 @@ fn scale(problem: &mut Problem) -> feti_contact::error::Result<f64> {
     Ok(scale)
 }
 
-/// The rows with a multiplier above zero.
+/// The rows with a multiplier above zero, as compliant as they are in contact.
 fn closed(contact: &Rows, multipliers: &[f64]) -> Rows {
     let mut closed = Rows::none(contact.matrix.cols);
     for (i, _) in multipliers.iter().enumerate().filter(|(_, multiplier)| **multiplier > 0.0) {
         let entries: Vec<_> = contact.matrix.row(i).collect();
-        closed.push(&entries, contact.rhs[i]);
+        closed.push_compliant(&entries, contact.rhs[i], contact.compliance[i]);
     }
     closed
 }
@@ -51,5 +51,6 @@ fn add_equalities(problem: &mut Problem, rows: &Rows) -> feti_contact::error::Re
     let dof: Vec<i64> = rows.matrix.col.iter().map(|&j| j as i64).collect();
     let (ptr, val) = (&rows.matrix.ptr, &rows.matrix.val);
     let input = RowsInput { ptr, body: None, dof: &dof, val, rhs: Some(&rows.rhs) };
-    problem.add_rows(RowKind::Equality, input).map(|_| ())
+    let first = problem.add_rows(RowKind::Equality, input)?;
+    problem.set_compliance(RowKind::Equality, first, &rows.compliance)
 }

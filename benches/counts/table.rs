@@ -48,6 +48,7 @@ pub fn cases() -> Vec<Case> {
     let mut cases = stacks();
     cases.extend([cube(2, 4, 1.5, Some((16, 20))), cube(3, 2, 1.6, Some((14, 16)))]);
     cases.extend([cube(3, 4, 1.5, Some((17, 20))), cube(4, 4, 1.5, Some((17, 21)))]);
+    cases.push(compliant());
     cases.extend(contrasts());
     cases.extend([plane(4, 8, None), plane(4, 16, None), plane(4, 32, None)]);
     cases.extend([plane(8, 8, Some((16, 21))), plane(8, 16, Some((20, 25))), plane(16, 8, None)]);
@@ -88,6 +89,13 @@ fn cubic(side: usize, h: usize) -> Cube {
 
 fn cube_name(side: usize, h: usize) -> String {
     format!("cube_{side}x{side}x{side}_h{h}")
+}
+
+/// The obstacle of 3^3 covered by a layer of the material of the body, one element thick: every contact row is a
+/// spring about as stiff as the body is at its node.
+fn compliant() -> Case {
+    let model = Cube { layer: 0.25, ..cubic(3, 4) };
+    case(format!("{}_compliant", cube_name(3, 4)), Model::Cube(model), 1.6, None)
 }
 
 fn cube(side: usize, h: usize, goal: f64, published: Option<(usize, usize)>) -> Case {

@@ -88,6 +88,27 @@ pub fn case(seed: u64) -> Case {
     }
 }
 
+/// The case with every second row a spring, 1e-4 to 1e4 times as compliant as the bodies are at the row. Rows whose
+/// weight proves a contradiction stay rigid, so that the outcome and its proof remain.
+pub fn compliant(mut case: Case, seed: u64) -> Case {
+    let mut random = Random::new(!seed);
+    let diagonal = scaling(&case.deck);
+    let Case { deck, proof, .. } = &mut case;
+    let (mut contact, mut equalities) = (vec![0.0; deck.contact.len()], vec![0.0; deck.equalities.len()]);
+    if let Proof::GapsContradict { weights, .. } = proof {
+        (contact, equalities) = (weights.contact.clone(), weights.equalities.clone());
+    }
+    for (rows, weights) in [(&mut deck.contact, contact), (&mut deck.equalities, equalities)] {
+        for (i, weight) in weights.into_iter().enumerate() {
+            let local: f64 = rows.matrix.row(i).map(|(j, v)| v * v / diagonal[j]).sum();
+            if random.chance(0.5) && weight == 0.0 {
+                rows.compliance[i] = local * random.decades(-4.0, 4.0);
+            }
+        }
+    }
+    case
+}
+
 /// Length of gaps and displacements.
 const LENGTH: f64 = 0.01;
 

@@ -53,6 +53,9 @@ pub struct Cube {
     pub gap_offset: f64,
     /// Every gap is -gap/1000: all rows close.
     pub all_closed: bool,
+    /// Thickness of an elastic layer of Young's modulus 1 on the obstacle, length: the contact row of a node whose
+    /// share of the face is a is a spring k = a / layer. 0: none, the rows are rigid.
+    pub layer: f64,
     /// Amplitude of the waves of the normals, no unit.
     pub waves: f64,
     /// Normal deviates of this size on the normals; a uniform part of 0.3 gap on the gaps when not zero.
@@ -77,6 +80,7 @@ impl Default for Cube {
             gap: 0.02,
             gap_offset: 0.0,
             all_closed: false,
+            layer: 0.0,
             waves: 0.0,
             noise: 0.0,
             pressure: 0.01,
@@ -225,8 +229,16 @@ impl Cube {
             let normal = self.normal(&relative, &mut random);
             let entry = |axis: usize| (self.dof(shared[0], axis), normal[axis]);
             let row: Vec<_> = (0..self.dimension).map(entry).collect();
-            deck.contact.push(&row, self.gap_at(&relative, &mut random));
+            let gap = self.gap_at(&relative, &mut random);
+            deck.contact.push_compliant(&row, gap, self.layer / self.area(global));
         }
+    }
+
+    /// Share of the contact face of a node, half as long on its rim.
+    fn area(&self, global: [usize; 3]) -> f64 {
+        let rim = |axis: usize| [0, self.along(axis) * self.elements].contains(&global[axis]);
+        let length = |axis: usize| if rim(axis) { 0.5 } else { 1.0 } / self.elements as f64;
+        (0..self.dimension - 1).map(length).product()
     }
 
     /// Unit outward normal of the body, minus the last axis where there are neither waves nor noise.

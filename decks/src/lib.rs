@@ -1,7 +1,7 @@
 //! Model problems for feti-contact: the decks its tests, benchmarks and examples share.
 //!
 //! A deck is the problem min 1/2 u'Ku - f'u over { B u <= c, H u = h }, with K = diag(K_1, ..., K_s) over
-//! the bodies. Nothing here solves anything and nothing depends on the solver.
+//! the bodies; rows may be springs, B u - c <= lambda/k, H u - h = mu/k. Nothing here solves anything and nothing depends on the solver.
 //!
 //! | module | problem |
 //! |---|---|
@@ -71,18 +71,26 @@ pub struct Rows {
     pub matrix: Csr,
     /// c or h, one per row, length times the unit of the row.
     pub rhs: Vec<f64>,
+    /// 1/k, one per row, length / force times the square of the unit of the row; 0: rigid.
+    pub compliance: Vec<f64>,
 }
 
 impl Rows {
     /// No rows over `dofs` unknowns.
     pub fn none(dofs: usize) -> Rows {
-        Rows { matrix: Csr::empty(dofs), rhs: Vec::new() }
+        Rows { matrix: Csr::empty(dofs), rhs: Vec::new(), compliance: Vec::new() }
     }
 
     /// Appends sum_k value_k u_(dof_k) <= (or =) `rhs`; repeated dofs are summed, exact zeros left out.
     pub fn push(&mut self, entries: &[(usize, f64)], rhs: f64) {
+        self.push_compliant(entries, rhs, 0.0);
+    }
+
+    /// Appends sum_k value_k u_(dof_k) - `rhs` <= (or =) `compliance` times the force of the row.
+    pub fn push_compliant(&mut self, entries: &[(usize, f64)], rhs: f64, compliance: f64) {
         self.matrix.push_row(entries);
         self.rhs.push(rhs);
+        self.compliance.push(compliance);
     }
 
     /// Number of rows.
@@ -150,9 +158,10 @@ mod tests {
         }
         for rows in [&deck.contact, &deck.equalities] {
             assert_eq!(rows.matrix.rows, rows.len());
-            assert_eq!(rows.matrix.cols, deck.dofs());
+            assert_eq!((rows.matrix.cols, rows.compliance.len()), (deck.dofs(), rows.len()));
             assert!(rows.matrix.is_sorted());
             assert!(rows.rhs.iter().all(|value| value.is_finite()));
+            assert!(rows.compliance.iter().all(|value| value.is_finite() && *value >= 0.0));
         }
     }
 
@@ -172,8 +181,9 @@ mod tests {
 
     #[test]
     fn every_battery_deck_is_well_formed() {
-        for case in crate::battery::cases(0..40) {
+        for (seed, case) in (0..40).zip(crate::battery::cases(0..40)) {
             assert_well_formed(&case.deck);
+            assert_well_formed(&crate::battery::compliant(case, seed).deck);
         }
     }
 }

@@ -62,6 +62,7 @@ module feti_contact
   use feti_contact_rows, only: &
     feti_rows_add => rows_add, &
     feti_rows_rhs => rows_rhs, &
+    feti_rows_compliance => rows_compliance, &
     feti_rows_clear => rows_clear
   use feti_contact_progress, only: &
     feti_on_progress => on_progress, &

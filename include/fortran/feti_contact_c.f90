@@ -195,7 +195,8 @@ module feti_contact_c
     real(c_double) :: complementarity
     !> Relative gap between primal and dual energy.
     real(c_double) :: duality_gap
-    !> Energy 1/2 u'Ku - f'u, force times length.
+    !> Energy 1/2 u'Ku - f'u and that of the springs of compliant rows, 1/2 lambda'C lambda + 1/2 mu'C mu,
+    !> force times length.
     real(c_double) :: energy
     !> Seconds for null spaces and factors.
     real(c_double) :: seconds_setup
@@ -220,13 +221,14 @@ module feti_contact_c
     real(c_double) :: equilibrium
     !> Relative error of the balance `R'(f - B'lambda - H'mu) = 0` of each floating body.
     real(c_double) :: balance
-    !> Relative penetration: positive part of `B u - c`.
+    !> Relative penetration: positive part of `B u - c - C lambda`, C = diag(1/k) being the compliance of the
+    !> rows.
     real(c_double) :: penetration
-    !> Relative error of `H u = h`.
+    !> Relative error of `H u = h + C mu`.
     real(c_double) :: equality
     !> Relative size of a negative contact force.
     real(c_double) :: negative_force
-    !> Relative size of force times open gap.
+    !> Relative size of force times open gap `c + C lambda - B u`.
     real(c_double) :: complementarity
     !> Relative gap between primal and dual energy.
     real(c_double) :: duality_gap
@@ -344,6 +346,7 @@ module feti_contact_c
   public :: feti_rows_add_i32
   public :: feti_rows_add_i64
   public :: feti_rows_rhs
+  public :: feti_rows_compliance
   public :: feti_rows_clear
   public :: feti_setup
   public :: feti_solve
@@ -995,7 +998,8 @@ module feti_contact_c
       integer(c_int32_t) :: feti_multipliers
     end function feti_multipliers
 
-    !> Reads what is left of the gaps, c - B u.
+    !> Reads what is left of the gaps, c - B u; of compliant rows c + lambda/k - B u, 0 where they carry a
+    !> force.
     !>
     !> FETI_STATE before a solve has given an answer. After a failure nothing is written.
     !>
@@ -1141,6 +1145,31 @@ module feti_contact_c
       integer(c_int32_t) :: feti_rows_rhs
     end function feti_rows_rhs
 
+    !> Makes rows compliant: each a spring, `B u - c <= lambda/k` or `H u - h = mu/k`.
+    !>
+    !> A contact row then carries the force k (B u - c) where that is positive: a linear law of pressure and
+    !> overclosure; an equality row is an elastic support or a cohesive bond. Rows that are added are rigid,
+    !> 1/k = 0. A row times t has a compliance times t^2. The numbers are copied and stay with their rows
+    !> until they are replaced or the rows are cleared; factors of the bodies stay, the last answer does not.
+    !> After a failure all compliances are as they were.
+    !>
+    !> @param[in] p     (scalar) the handle
+    !> @param[in] kind  (scalar) FETI_INEQUALITY or FETI_EQUALITY
+    !> @param[in] first (scalar) first row to change, from 0
+    !> @param[in] rows  (scalar) number of rows to change
+    !> @param[in] inv_k (rows) 1/k >= 0, length / force; 0: rigid
+    !>
+    !> Safety: The array has the given shape.
+    function feti_rows_compliance(p, kind, first, rows, inv_k) bind(C, name="feti_rows_compliance")
+      import
+      type(c_ptr), value :: p
+      integer(c_int32_t), value :: kind
+      integer(c_int64_t), value :: first
+      integer(c_int64_t), value :: rows
+      real(c_double), intent(in) :: inv_k(*)
+      integer(c_int32_t) :: feti_rows_compliance
+    end function feti_rows_compliance
+
     !> Removes all rows of a kind.
     !>
     !> Numbering of that kind starts again at 0. Factors of the bodies stay.
@@ -1251,11 +1280,11 @@ module feti_contact_c
 
     !> Goes back to a saved state: after a load step that was rejected.
     !>
-    !> Loads and gaps are as they were, and so is the answer unless a matrix has changed since; with option
-    !> start = previous the next solve continues from the saved multipliers, with start = cold it gives the
-    !> bits it would have given then. Matrices, null spaces and options stay as they are now; start values
-    !> that were not used yet are dropped. The state stays saved. FETI_STATE when bodies were added or rows
-    !> changed since; after a failure nothing is changed.
+    !> Loads and gaps are as they were, and so is the answer unless a matrix or a compliance has changed
+    !> since; with option start = previous the next solve continues from the saved multipliers, with start =
+    !> cold it gives the bits it would have given then. Matrices, null spaces, compliances of rows and options
+    !> stay as they are now; start values that were not used yet are dropped. The state stays saved.
+    !> FETI_STATE when bodies were added or rows changed since; after a failure nothing is changed.
     !>
     !> @param[in] p  (scalar) the handle
     !> @param[in] id (scalar) number of the state
@@ -1343,9 +1372,10 @@ module feti_contact_c
       integer(c_int32_t) :: feti_body_kplus
     end function feti_body_kplus
 
-    !> Applies the dual operator, `y = F x` with `F = [B; H] K+ [B; H]'`.
+    !> Applies the dual operator, `y = F x` with `F = [B; H] K+ [B; H]' + C`.
     !>
-    !> Runs feti_setup when it is due. `x` and `y` may be the same array. After a failure nothing is written.
+    !> C = diag(1/k) is the compliance of the rows (feti_rows_compliance), 0 for rigid ones. Runs feti_setup
+    !> when it is due. `x` and `y` may be the same array. After a failure nothing is written.
     !>
     !> @param[in]  p (scalar) the handle
     !> @param[in]  m (scalar) inequality rows + equality rows

@@ -149,7 +149,7 @@ contains
       stat, errmsg)
   end subroutine
 
-  !> Open gaps c - B u of the contact rows, length.
+  !> Open gaps c - B u of the contact rows, of compliant ones c + lambda/k - B u, length.
   subroutine gaps(p, slack, stat, errmsg)
     type(feti_problem), intent(in) :: p
     real(real64), intent(inout), contiguous :: slack(:)
@@ -201,7 +201,7 @@ contains
     end if
   end subroutine
 
-  !> y = F x, F = [B; H] K+ [B; H]', contact rows first, in the host's order and scaling. For validation.
+  !> y = F x, F = [B; H] K+ [B; H]' + diag(1/k), contact rows first, in the host's order and scaling. For validation.
   subroutine dual_apply(p, x, y, stat, errmsg)
     type(feti_problem), intent(in) :: p
     real(real64), intent(in), contiguous :: x(:)

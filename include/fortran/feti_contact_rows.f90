@@ -10,10 +10,11 @@ module feti_contact_rows
     c_rows_add_i32 => feti_rows_add_i32, &
     c_rows_add_i64 => feti_rows_add_i64, &
     c_rows_clear => feti_rows_clear, &
+    c_rows_compliance => feti_rows_compliance, &
     c_rows_rhs => feti_rows_rhs
   implicit none
   private
-  public :: rows_add, rows_rhs, rows_clear
+  public :: rows_add, rows_rhs, rows_compliance, rows_clear
 
   !> Rows B u <= c (kind FETI_INEQUALITY) or H u = h (FETI_EQUALITY), added behind those of earlier calls.
   !>
@@ -198,6 +199,20 @@ contains
 
     call finish(c_rows_rhs(handle_of(p), kind, int(first - 1, c_int64_t), &
       size(rhs, kind=c_int64_t), rhs), stat, errmsg)
+  end subroutine
+
+  !> Makes rows first, first+1, ... of a kind springs, B u - c <= lambda/k or H u - h = mu/k: inv_k(:) = 1/k >= 0,
+  !> length / force, 0 for a rigid row. New rows are rigid. Factors of the bodies stay, the last answer does not.
+  subroutine rows_compliance(p, kind, first, inv_k, stat, errmsg)
+    type(feti_problem), intent(in) :: p
+    integer(c_int32_t), intent(in) :: kind
+    integer, intent(in) :: first
+    real(real64), intent(in), contiguous :: inv_k(:)
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+
+    call finish(c_rows_compliance(handle_of(p), kind, int(first - 1, c_int64_t), &
+      size(inv_k, kind=c_int64_t), inv_k), stat, errmsg)
   end subroutine
 
   !> Removes all rows of a kind.

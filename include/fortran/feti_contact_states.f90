@@ -46,7 +46,8 @@ contains
     call finish(status, stat, errmsg)
   end subroutine
 
-  !> Goes back to a saved state, which stays saved. FETI_STATE when bodies were added or rows changed since.
+  !> Goes back to a saved state, which stays saved; rows stay as compliant as they are now. FETI_STATE when bodies were
+  !> added or rows changed since.
   subroutine state_restore(p, id, stat, errmsg)
     type(feti_problem), intent(in) :: p
     integer, intent(in) :: id

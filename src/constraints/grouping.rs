@@ -18,14 +18,20 @@ pub struct Grouping {
 }
 
 impl Grouping {
-    /// `matrix` holds unit rows in the metric `D^-1`, D = `metric`; the first `contact` are contact rows.
-    /// Opposite contact rows are two groups: they bound the same gap from two sides.
-    pub fn of(matrix: &Csr, contact: usize, metric: &[f64]) -> Self {
+    /// `matrix` holds rows that are rigid of unit length in the metric `D^-1`, D = `metric`, and others; the
+    /// first `contact` are contact rows. Opposite contact rows are two groups: they bound the same gap from two
+    /// sides. A compliant row is a group of its own: parallel springs share a gap, not a force.
+    pub fn of(matrix: &Csr, contact: usize, metric: &[f64], compliant: impl Fn(usize) -> bool) -> Self {
         let mut grouping = Self { leaders: Vec::new(), member: vec![None; matrix.rows()] };
         let mut known: HashMap<&[usize], Vec<usize>> = HashMap::new();
         for i in (contact..matrix.rows()).chain(0..contact) {
             let columns = &matrix.col[matrix.ptr[i]..matrix.ptr[i + 1]];
             if columns.is_empty() {
+                continue;
+            }
+            if compliant(i) {
+                grouping.member[i] = Some((grouping.leaders.len(), 1.0));
+                grouping.leaders.push(i);
                 continue;
             }
             let candidates = known.entry(columns).or_default();
@@ -80,7 +86,7 @@ mod tests {
         matrix.push_row([(0, 0.6), (1, 0.8)]);
         matrix.push_row([]);
         matrix.push_row([(0, 1.0)]);
-        let grouping = Grouping::of(&matrix, 4, &[1.0; 2]);
+        let grouping = Grouping::of(&matrix, 4, &[1.0; 2], |_| false);
         assert_eq!(grouping.leaders, [4, 0, 1]);
         assert_eq!(grouping.member, [Some((1, 1.0)), Some((2, 1.0)), Some((1, 1.0)), None, Some((0, 1.0))]);
         assert_eq!(grouping.kind(0, 4), RowKind::Equality);
@@ -91,7 +97,16 @@ mod tests {
         let mut matrix = Csr::empty(1);
         matrix.push_row([(0, -1.0)]);
         matrix.push_row([(0, 1.0)]);
-        let grouping = Grouping::of(&matrix, 1, &[1.0]);
+        let grouping = Grouping::of(&matrix, 1, &[1.0], |_| false);
         assert_eq!(grouping.member, [Some((0, -1.0)), Some((0, 1.0))]);
+    }
+
+    #[test]
+    fn a_compliant_row_stays_alone() {
+        let mut matrix = Csr::empty(1);
+        (0..4).for_each(|_| matrix.push_row([(0, 1.0)]));
+        let grouping = Grouping::of(&matrix, 3, &[1.0], |i| i == 0 || i == 3);
+        assert_eq!(grouping.leaders, [3, 0, 1]);
+        assert_eq!(grouping.member, [Some((1, 1.0)), Some((2, 1.0)), Some((2, 1.0)), Some((0, 1.0))]);
     }
 }

@@ -1,5 +1,9 @@
 //! Contact rows `B u <= c` and equality rows `H u = h`: the host's entries over the unknowns of all bodies
 //! one after the other, and the scaling of the rows.
+//!
+//! A compliant row gives way in proportion to its force, as if a spring k sat in it: `B u - c <= lambda/k`,
+//! `H u - h = mu/k`. It is the row `[b, -1]` of a problem with one more unknown of stiffness k, so that
+//! C = diag(1/k) is added to `B D^-1 B'` and to F wherever they appear.
 
 mod grouping;
 
@@ -36,11 +40,13 @@ pub struct RowSet {
     pub matrix: Csr,
     /// c or h, length.
     pub rhs: Vec<f64>,
+    /// 1/k >= 0, length / force; 0 for a rigid row.
+    pub compliance: Vec<f64>,
 }
 
 impl Default for RowSet {
     fn default() -> Self {
-        Self { matrix: Csr::empty(0), rhs: Vec::new() }
+        Self { matrix: Csr::empty(0), rhs: Vec::new(), compliance: Vec::new() }
     }
 }
 
@@ -81,25 +87,57 @@ impl RowSet {
         (0..rows).for_each(|i| self.matrix.push_row(added.row(i)));
         self.matrix.cols = offsets.last().copied().unwrap_or(0);
         self.rhs.extend(rhs);
+        self.compliance.resize(self.rhs.len(), 0.0);
         Ok(first)
     }
 
     pub fn set_rhs(&mut self, first: usize, rhs: &[f64]) -> Result<()> {
         check_rhs(rhs)?;
-        let target = first.checked_add(rhs.len()).and_then(|end| self.rhs.get_mut(first..end));
-        match target {
-            Some(target) => target.copy_from_slice(rhs),
-            None => {
-                let what = format!("the rows end at {}", self.len());
-                return Err(Error::argument("first", what).value((first + rhs.len()) as f64));
-            }
-        }
-        Ok(())
+        replace(&mut self.rhs, first, rhs)
     }
 
-    /// A row without entries constrains nothing: it must hold by itself. Its multiplier is 0.
+    /// `inv_k`: 1/k, length / force, for the rows from `first` on; 0 makes a row rigid.
+    pub fn set_compliance(&mut self, first: usize, inv_k: &[f64]) -> Result<()> {
+        if let Some(at) = inv_k.iter().position(|v| !(v.is_finite() && *v >= 0.0)) {
+            let what = "the compliance 1/k is not a finite number >= 0";
+            return Err(Error::argument("inv_k", what)
+                .row(first.saturating_add(at))
+                .entry(at)
+                .value(inv_k[at]));
+        }
+        replace(&mut self.compliance, first, inv_k)
+    }
+
+    fn is_empty_row(&self, i: usize) -> bool {
+        self.matrix.ptr[i] == self.matrix.ptr[i + 1]
+    }
+
+    /// The forces of springs without entries: `-c <= lambda/k` gives lambda = max(0, -k c), `-h = mu/k` gives
+    /// mu = -k h; 0 for all other rows.
+    pub fn forces_without_entries(&self, kind: RowKind) -> impl Iterator<Item = f64> + '_ {
+        (0..self.len()).map(move |i| {
+            let alone = self.is_empty_row(i) && self.compliance[i] > 0.0;
+            let force = if alone { -self.rhs[i] / self.compliance[i] } else { 0.0 };
+            match kind {
+                RowKind::Inequality => force.max(0.0),
+                RowKind::Equality => force,
+            }
+        })
+    }
+
+    /// `c_i + C_i lambda_i - b_i u`: what is left of the gap when the row gives way to its force.
+    pub fn open_gap(&self, i: usize, u: &[f64], multiplier: f64) -> f64 {
+        self.rhs[i] + self.compliance[i] * multiplier - self.matrix.row_dot(i, u)
+    }
+
+    /// `lambda'C lambda`, twice the energy in the springs of the rows.
+    pub fn stored(&self, multipliers: &[f64]) -> f64 {
+        multipliers.iter().zip(&self.compliance).map(|(l, c)| c * l * l).sum()
+    }
+
+    /// A rigid row without entries constrains nothing: it must hold by itself. Its multiplier is 0.
     pub fn check_empty_rows(&self, kind: RowKind) -> Result<()> {
-        let empty = |i: usize| self.matrix.ptr[i] == self.matrix.ptr[i + 1];
+        let empty = |i: usize| self.is_empty_row(i) && self.compliance[i] == 0.0;
         let fails = |i: usize| match kind {
             RowKind::Inequality => self.rhs[i] < 0.0,
             RowKind::Equality => self.rhs[i] != 0.0,
@@ -129,6 +167,19 @@ fn check_rhs(rhs: &[f64]) -> Result<()> {
     })
 }
 
+/// Overwrites the values from `first` on.
+fn replace(target: &mut [f64], first: usize, values: &[f64]) -> Result<()> {
+    let rows = target.len();
+    match first.checked_add(values.len()).and_then(|end| target.get_mut(first..end)) {
+        Some(target) => target.copy_from_slice(values),
+        None => {
+            let what = format!("the rows end at {rows}");
+            return Err(Error::argument("first", what).value(first.saturating_add(values.len()) as f64));
+        }
+    }
+    Ok(())
+}
+
 /// Number among all unknowns of entry `at`.
 fn unknown(input: RowsInput<'_>, at: usize, offsets: &[usize]) -> Result<usize> {
     let bodies = offsets.len() - 1;
@@ -148,11 +199,12 @@ fn unknown(input: RowsInput<'_>, at: usize, offsets: &[usize]) -> Result<usize> 
     Ok(start + dof)
 }
 
-/// `s_i = (b_i D^-1 b_i')^-1/2`: with lambda = S mu every row of the dual has the same weight, whatever the
-/// stiffness of the bodies it joins. 0 for a row without entries.
-pub fn row_scales(matrix: &Csr, metric: &[f64]) -> Vec<f64> {
-    (0..matrix.rows())
-        .map(|i| matrix.row(i).map(|(j, v)| v * v / metric[j]).sum::<f64>())
+/// `s_i = (b_i D^-1 b_i' + 1/k_i)^-1/2`: with lambda = S mu every row of the dual has the same weight, whatever
+/// the stiffness of the bodies it joins and of its own spring. `metric` is D / `unit`, and s_i in that unit.
+/// 0 for a rigid row without entries.
+pub fn row_scales(rows: &RowSet, metric: &[f64], unit: f64) -> Vec<f64> {
+    (0..rows.len())
+        .map(|i| rows.matrix.row(i).map(|(j, v)| v * v / metric[j]).sum::<f64>() + unit * rows.compliance[i])
         .map(|square| if square > 0.0 { square.sqrt().recip() } else { 0.0 })
         .collect()
 }
@@ -202,7 +254,41 @@ mod tests {
     fn a_row_between_a_soft_and_a_stiff_body_weighs_as_the_soft_one() {
         let mut matrix = Csr::empty(2);
         matrix.push_row([(0, 1.0), (1, -1.0)]);
-        let s = row_scales(&matrix, &[4.0, 4e12]);
+        let mut rows = RowSet { matrix, rhs: vec![0.0], compliance: vec![0.0] };
+        let s = row_scales(&rows, &[4.0, 4e12], 1.0);
         assert!((s[0] - 2.0).abs() < 1e-11);
+        rows.set_compliance(0, &[0.75]).unwrap(); // 1/4 + 3/4 = 1, D and 1/k in the same unit
+        assert!((row_scales(&rows, &[4.0, 4e12], 1.0)[0] - 1.0).abs() < 1e-11);
+        rows.set_compliance(0, &[0.75 / 8.0]).unwrap();
+        assert!((row_scales(&rows, &[4.0, 4e12], 8.0)[0] - 1.0).abs() < 1e-11);
+    }
+
+    #[test]
+    fn a_compliance_is_finite_and_not_negative_and_belongs_to_a_row() {
+        let mut rows = RowSet::default();
+        rows.add(input(None, &[5, 5, 1], &[1.0, -1.0, 2.0]), &[0, 3, 6]).unwrap();
+        rows.add(input(None, &[5, 4, 1], &[1.0, -1.0, 2.0]), &[0, 3, 6]).unwrap();
+        rows.set_compliance(1, &[0.5]).unwrap();
+        for value in [-1e-300, f64::NAN, f64::INFINITY] {
+            let error = rows.set_compliance(0, &[3.0, value]).unwrap_err();
+            assert_eq!((error.kind, error.place.row), (Kind::Argument("inv_k"), Some(1)));
+        }
+        assert_eq!(rows.set_compliance(1, &[1.0, 1.0]).unwrap_err().kind, Kind::Argument("first"));
+        assert_eq!(rows.compliance, [0.0, 0.5]);
+    }
+
+    #[test]
+    fn a_compliant_row_without_entries_is_a_spring_by_itself() {
+        let mut rows = RowSet::default();
+        let empty = RowsInput { ptr: &[0, 0, 0], body: None, dof: &[], val: &[], rhs: Some(&[-3.0, 3.0]) };
+        rows.add(empty, &[0, 3]).unwrap();
+        rows.set_compliance(0, &[0.5, 0.5]).unwrap();
+        assert!([RowKind::Inequality, RowKind::Equality]
+            .iter()
+            .all(|kind| rows.check_empty_rows(*kind).is_ok()));
+        let forces = |kind| rows.forces_without_entries(kind).collect::<Vec<_>>();
+        assert_eq!(forces(RowKind::Inequality), [6.0, 0.0]);
+        assert_eq!(forces(RowKind::Equality), [6.0, -6.0]);
+        assert_eq!([rows.open_gap(0, &[0.0; 3], 6.0), rows.open_gap(1, &[0.0; 3], -6.0)], [0.0, 0.0]);
     }
 }

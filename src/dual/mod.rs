@@ -1,11 +1,12 @@
 //! From the primal problem (10)-(11) to the dual (12)-(13) and back:
 //!
 //! ```text
-//! F = B K+ B',  d = B K+ f - c,  G = R'B',  e = R'f,   u = K+ (f - B'lambda) + R alpha   (17)
+//! F = B K+ B' + C,  d = B K+ f - c,  G = R'B',  e = R'f,   u = K+ (f - B'lambda) + R alpha   (17)
 //! ```
 //!
-//! B holds the contact rows, then the equality rows, each divided by its length in the metric `D^-1`; forces
-//! are in units of 2^p, the size of the largest diagonal entry of K.
+//! C = diag(1/k) is the compliance of the rows, which the paper does not have: `B u - c <= C lambda`. B holds the
+//! contact rows, then the equality rows, scaled so that `B D^-1 B' + C` has the diagonal 1; forces are in units
+//! of 2^p, the size of the largest diagonal entry of K.
 
 mod preconditioner;
 
@@ -37,8 +38,8 @@ struct Subdomain {
 
 pub struct Dual {
     subdomains: Vec<Subdomain>,
-    /// Number of rows m of B.
-    rows: usize,
+    /// C, one entry per row of B, no unit.
+    compliance: Vec<f64>,
     /// `G'` = B R, m x r.
     pub coarse: Csr,
 }
@@ -50,8 +51,14 @@ pub struct Part {
 }
 
 impl Dual {
-    /// `matrix` is B, m x n; `in_parallel` runs independent tasks, each with its number, in any order.
-    pub fn new(parts: Vec<Part>, matrix: &Csr, in_parallel: &InParallel) -> Result<Self> {
+    /// `matrix` is B, m x n, `compliance` the diagonal of C; `in_parallel` runs independent tasks, each with its
+    /// number, in any order.
+    pub fn new(
+        parts: Vec<Part>,
+        matrix: &Csr,
+        compliance: Vec<f64>,
+        in_parallel: &InParallel,
+    ) -> Result<Self> {
         let local = split(&parts, matrix);
         let assemble = |p: usize| parts[p].kplus.inverse_form(&local[p].1);
         let operators = in_parallel(parts.len(), &assemble)?;
@@ -70,7 +77,7 @@ impl Dual {
             });
         }
         let coarse = coarse(&subdomains, matrix.rows(), first);
-        Ok(Self { subdomains, rows: matrix.rows(), coarse })
+        Ok(Self { subdomains, compliance, coarse })
     }
 
     /// Bytes that explicit operators take for these bodies and rows.
@@ -142,12 +149,12 @@ pub type InParallel<'a> =
 
 impl Operator for Dual {
     fn order(&self) -> usize {
-        self.rows
+        self.compliance.len()
     }
 
-    /// `y = F x = sum_p B_p K_p+ B_p' x`, body after body.
+    /// `y = F x = C x + sum_p B_p K_p+ B_p' x`, body after body.
     fn apply(&self, x: &[f64], y: &mut [f64]) {
-        y.fill(0.0);
+        y.iter_mut().zip(x).zip(&self.compliance).for_each(|((y, x), c)| *y = c * x);
         let (mut local, mut image) = (Vec::new(), Vec::new());
         for s in &self.subdomains {
             local.clear();

@@ -114,7 +114,7 @@ pub unsafe extern "C" fn feti_multipliers(
     })
 }
 
-/// Reads what is left of the gaps, c - B u.
+/// Reads what is left of the gaps, c - B u; of compliant rows c + lambda/k - B u, 0 where they carry a force.
 ///
 /// FETI_STATE before a solve has given an answer. After a failure nothing is written.
 ///

@@ -158,6 +158,38 @@ pub unsafe extern "C" fn feti_rows_rhs(
     })
 }
 
+/// Makes rows compliant: each a spring, `B u - c <= lambda/k` or `H u - h = mu/k`.
+///
+/// A contact row then carries the force k (B u - c) where that is positive: a linear law of pressure and overclosure; an
+/// equality row is an elastic support or a cohesive bond. Rows that are added are rigid, 1/k = 0. A row times t has a
+/// compliance times t^2. The numbers are copied and stay with their rows until they are replaced or the rows are cleared;
+/// factors of the bodies stay, the last answer does not. After a failure all compliances are as they were.
+///
+/// | argument | in/out | shape | rule |
+/// |---|---|---|---|
+/// | `p` | in | scalar | the handle |
+/// | `kind` | in | scalar | FETI_INEQUALITY or FETI_EQUALITY |
+/// | `first` | in | scalar | first row to change, from 0 |
+/// | `rows` | in | scalar | number of rows to change |
+/// | `inv_k` | in | rows | 1/k >= 0, length / force; 0: rigid |
+///
+/// # Safety
+/// The array has the given shape.
+#[no_mangle]
+pub unsafe extern "C" fn feti_rows_compliance(
+    p: *mut feti_problem,
+    kind: i32,
+    first: i64,
+    rows: i64,
+    inv_k: *const f64,
+) -> i32 {
+    enter(p, call!(feti_rows_compliance(p, kind, first, rows, inv_k)), |problem| {
+        let (kind, first, rows) = (row_kind(kind)?, id(first, "first")?, count(rows, "rows")?);
+        // SAFETY: one number per row by the caller's word.
+        problem.set_compliance(kind, first, unsafe { input(inv_k, rows, "inv_k") }?)
+    })
+}
+
 /// Removes all rows of a kind.
 ///
 /// Numbering of that kind starts again at 0. Factors of the bodies stay.

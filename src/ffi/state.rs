@@ -66,9 +66,9 @@ pub unsafe extern "C" fn feti_state_save(p: *mut feti_problem, id: *mut i64) -> 
 
 /// Goes back to a saved state: after a load step that was rejected.
 ///
-/// Loads and gaps are as they were, and so is the answer unless a matrix has changed since; with option start = previous
-/// the next solve continues from the saved multipliers, with start = cold it gives the bits it would have given then.
-/// Matrices, null spaces and options stay as they are now; start values that were not used yet are dropped. The state
+/// Loads and gaps are as they were, and so is the answer unless a matrix or a compliance has changed since; with option
+/// start = previous the next solve continues from the saved multipliers, with start = cold it gives the bits it would have
+/// given then. Matrices, null spaces, compliances of rows and options stay as they are now; start values that were not used yet are dropped. The state
 /// stays saved. FETI_STATE when bodies were added or rows changed since; after a failure nothing is changed.
 ///
 /// | argument | in/out | shape | rule |

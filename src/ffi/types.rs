@@ -165,7 +165,8 @@ pub struct feti_info {
     pub complementarity: f64,
     /// Relative gap between primal and dual energy.
     pub duality_gap: f64,
-    /// Energy 1/2 u'Ku - f'u, force times length.
+    /// Energy 1/2 u'Ku - f'u and that of the springs of compliant rows, 1/2 lambda'C lambda + 1/2 mu'C mu, force times
+    /// length.
     pub energy: f64,
     /// Seconds for null spaces and factors.
     pub seconds_setup: f64,
@@ -191,13 +192,13 @@ pub struct feti_certificate {
     pub equilibrium: f64,
     /// Relative error of the balance `R'(f - B'lambda - H'mu) = 0` of each floating body.
     pub balance: f64,
-    /// Relative penetration: positive part of `B u - c`.
+    /// Relative penetration: positive part of `B u - c - C lambda`, C = diag(1/k) being the compliance of the rows.
     pub penetration: f64,
-    /// Relative error of `H u = h`.
+    /// Relative error of `H u = h + C mu`.
     pub equality: f64,
     /// Relative size of a negative contact force.
     pub negative_force: f64,
-    /// Relative size of force times open gap.
+    /// Relative size of force times open gap `c + C lambda - B u`.
     pub complementarity: f64,
     /// Relative gap between primal and dual energy.
     pub duality_gap: f64,

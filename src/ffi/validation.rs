@@ -56,9 +56,9 @@ pub unsafe extern "C" fn feti_body_kplus(
     })
 }
 
-/// Applies the dual operator, `y = F x` with `F = [B; H] K+ [B; H]'`.
+/// Applies the dual operator, `y = F x` with `F = [B; H] K+ [B; H]' + C`.
 ///
-/// Runs feti_setup when it is due. `x` and `y` may be the same array. After a failure nothing is written.
+/// C = diag(1/k) is the compliance of the rows (feti_rows_compliance), 0 for rigid ones. Runs feti_setup when it is due. `x` and `y` may be the same array. After a failure nothing is written.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|

@@ -1,6 +1,6 @@
 //! The certificate: how well an answer (u, lambda, mu) satisfies the optimality conditions of (10)-(11),
 //! computed from the host's own matrices. Every figure is relative: the same in any units and for any
-//! scaling of the rows.
+//! scaling of the rows. C = diag(1/k) is the compliance of the rows, S = (B D^-1 B' + C)^-1/2.
 
 use crate::constraints::{row_scales, RowSet};
 use crate::linalg::vector::{dot, ratio, weighted_norm};
@@ -23,15 +23,15 @@ pub struct Certificate {
     pub equilibrium: Entry,
     /// `|R'(f - B'lambda - H'mu)|`, worst body.
     pub balance: Entry,
-    /// `|(B u - c)_+|`, worst row.
+    /// `|(B u - c - C lambda)_+|`, worst row.
     pub penetration: Entry,
-    /// `|H u - h|`, worst row.
+    /// `|H u - h - C mu|`, worst row.
     pub equality: Entry,
     /// `|lambda_-|`, worst row.
     pub negative_force: Entry,
-    /// `sum |lambda_i| |c_i - b_i u|`, worst row.
+    /// `sum |lambda_i| |c_i + C_i lambda_i - b_i u|`, worst row.
     pub complementarity: Entry,
-    /// `|u'K u - f'u + c'lambda + h'mu|`
+    /// `|u'K u - f'u + c'lambda + h'mu + lambda'C lambda + mu'C mu|`
     pub duality_gap: Entry,
 }
 
@@ -113,7 +113,8 @@ pub fn certify(data: &Data, answer: Answer) -> Certificate {
     let totals = forces(data, answer, &metric, &mut certificate);
     let gaps = gaps(data, answer, &metric, totals.load.sqrt(), &mut certificate);
     let size = totals.work.abs() + gaps.constrained_size;
-    let energies = |part: f64, whole: f64, place| entry(part, whole, NOISE * totals.terms, data.limit, place);
+    let noise = NOISE * (totals.terms + gaps.stored);
+    let energies = |part: f64, whole: f64, place| entry(part, whole, noise, data.limit, place);
     certificate.complementarity = energies(gaps.complementarity, size, gaps.worst_pair);
     let gap = totals.strain - totals.work + gaps.constrained;
     certificate.duality_gap = energies(gap.abs(), totals.strain.abs() + size, None);
@@ -184,19 +185,21 @@ fn replace_if_worse(worst: &mut Entry, entry: Entry) {
 
 /// What the energies need of the rows.
 struct Gaps {
-    /// `sum |lambda_i| |c_i - b_i u|` and the row with the largest term.
+    /// `sum |lambda_i| |c_i + C_i lambda_i - b_i u|` and the row with the largest term.
     complementarity: f64,
     worst_pair: Option<usize>,
-    /// `c'lambda + h'mu`, and `|c|'|lambda| + |h|'|mu|`.
+    /// `lambda'C lambda + mu'C mu`, twice the energy of the compliant rows.
+    stored: f64,
+    /// `c'lambda + h'mu + lambda'C lambda + mu'C mu`, and the same of absolute values.
     constrained: f64,
     constrained_size: f64,
 }
 
-/// Penetration, equality, sign of the contact forces; rows weighted by `S = (B D^-1 B')^-1/2`.
+/// Penetration, equality, sign of the contact forces; rows weighted by S.
 fn gaps(data: &Data, answer: Answer, metric: &[f64], load: f64, certificate: &mut Certificate) -> Gaps {
     let (contact, equalities) = (
-        Violation::of(data.contact, answer.u, metric, |v| v.max(0.0)),
-        Violation::of(data.equalities, answer.u, metric, f64::abs),
+        Violation::of(data.contact, answer.u, answer.lambda, metric, |v| v.max(0.0)),
+        Violation::of(data.equalities, answer.u, answer.mu, metric, f64::abs),
     );
     certificate.penetration = contact.entry(data.limit);
     certificate.equality = equalities.entry(data.limit);
@@ -209,11 +212,15 @@ fn gaps(data: &Data, answer: Answer, metric: &[f64], load: f64, certificate: &mu
     let pairs: Vec<f64> =
         (0..answer.lambda.len()).map(|i| (answer.lambda[i] * contact.open[i]).abs()).collect();
     let size = |l: &[f64], c: &[f64]| l.iter().zip(c).map(|(l, c)| (l * c).abs()).sum::<f64>();
+    let stored = data.contact.stored(answer.lambda) + data.equalities.stored(answer.mu);
     Gaps {
         complementarity: pairs.iter().sum(),
         worst_pair: largest(&pairs),
-        constrained: dot(answer.lambda, &data.contact.rhs) + dot(answer.mu, &data.equalities.rhs),
-        constrained_size: size(answer.lambda, &data.contact.rhs) + size(answer.mu, &data.equalities.rhs),
+        stored,
+        constrained: dot(answer.lambda, &data.contact.rhs) + dot(answer.mu, &data.equalities.rhs) + stored,
+        constrained_size: size(answer.lambda, &data.contact.rhs)
+            + size(answer.mu, &data.equalities.rhs)
+            + stored,
     }
 }
 
@@ -221,23 +228,26 @@ fn gaps(data: &Data, answer: Answer, metric: &[f64], load: f64, certificate: &mu
 struct Violation {
     /// s_i
     scale: Vec<f64>,
-    /// `c_i - b_i u`
+    /// `c_i + C_i lambda_i - b_i u`
     open: Vec<f64>,
     /// `s_i x` the violation of row i.
     violated: Vec<f64>,
-    /// `|S|B||u|| + |S c|`, and what it would be if the rows moved like the mean dof: rows that hold a body
-    /// in place (u = 0, h = 0) are measured against the movement of the bodies.
+    /// `|S|B||u|| + |S c| + |S C lambda|`, and what it would be if the rows moved like the mean dof: rows that
+    /// hold a body in place (u = 0, h = 0) are measured against the movement of the bodies.
     size: f64,
 }
 
 impl Violation {
-    fn of(rows: &RowSet, u: &[f64], metric: &[f64], excess: fn(f64) -> f64) -> Self {
-        let scale = row_scales(&rows.matrix, metric);
-        let open: Vec<f64> = (0..rows.len()).map(|i| rows.rhs[i] - rows.matrix.row_dot(i, u)).collect();
+    fn of(rows: &RowSet, u: &[f64], multipliers: &[f64], metric: &[f64], excess: fn(f64) -> f64) -> Self {
+        let scale = row_scales(rows, metric, 1.0);
+        let open: Vec<f64> = (0..rows.len()).map(|i| rows.open_gap(i, u, multipliers[i])).collect();
         let violated: Vec<f64> = (0..rows.len()).map(|i| scale[i] * excess(-open[i])).collect();
-        let moved = weighted_norm(&scale, |i| rows.matrix.row_dot_abs(i, u).powi(2));
+        let size = |length: &dyn Fn(usize) -> f64| weighted_norm(&scale, |i| length(i).powi(2));
         let mean = weighted_norm(u, |i| metric[i]) * (rows.len() as f64 / u.len().max(1) as f64).sqrt();
-        let size = moved + weighted_norm(&scale, |i| rows.rhs[i] * rows.rhs[i]) + mean;
+        let size = size(&|i| rows.matrix.row_dot_abs(i, u))
+            + size(&|i| rows.rhs[i])
+            + size(&|i| rows.compliance[i] * multipliers[i])
+            + mean;
         Self { scale, open, violated, size }
     }
 
@@ -259,10 +269,15 @@ mod tests {
 
     /// Spring 4 at a wall, loaded by 2 towards an obstacle at 0.25: u = .25, lambda = 1.
     fn with(u: f64, lambda: f64, unit: f64) -> Certificate {
+        on_a_spring(u, lambda, unit, f64::INFINITY)
+    }
+
+    /// The same with a spring in the contact row.
+    fn on_a_spring(u: f64, lambda: f64, unit: f64, stiffness_of_row: f64) -> Certificate {
         let stiffness = Symmetric { ptr: vec![0, 1], col: vec![0], val: vec![4.0 * unit] };
         let mut matrix = Csr::empty(1);
         matrix.push_row([(0, 1.0)]);
-        let contact = RowSet { matrix, rhs: vec![0.25] };
+        let contact = RowSet { matrix, rhs: vec![0.25], compliance: vec![1.0 / (stiffness_of_row * unit)] };
         let none = Matrix { rows: 1, ..Matrix::default() };
         let load = [2.0 * unit];
         let body =
@@ -291,6 +306,27 @@ mod tests {
             assert!(with(0.0, 2.0, unit).complementarity.ratio > 1.0);
             assert!(with(0.75, -1.0, unit).negative_force.ratio > 1.0);
             assert!(!with(f64::NAN, 1.0, unit).passed());
+        }
+    }
+
+    /// A spring of stiffness 4 in the row: 4 u = 2 - lambda, u - .25 = lambda / 4, so that lambda = .5, u = .375.
+    #[test]
+    fn the_answer_on_a_compliant_row_passes_in_any_unit_and_each_fault_is_named() {
+        for unit in [1.0, 1e-20, 2.1e11] {
+            let with = |u, lambda| on_a_spring(u, lambda, unit, 4.0);
+            let exact = with(0.375, 0.5);
+            assert!(exact.passed(), "{exact:?}");
+            assert!(exact.entries().iter().all(|entry| entry.figure <= 1e-15), "{exact:?}");
+            let rigid = with(0.25, 1.0);
+            assert!(rigid.equilibrium.ratio <= 1.0 && rigid.penetration.ratio <= 1.0);
+            // lambda |c + C lambda - u| = 1 x .25; |f'u| + |c lambda| + lambda C lambda = .5 + .25 + .25
+            assert!((rigid.complementarity.figure - 0.25).abs() < 1e-12 && rigid.complementarity.ratio > 1.0);
+            // u K u - f u + c lambda + lambda C lambda = .25 - .5 + .25 + .25, of .25 more than above
+            assert!((rigid.duality_gap.figure - 0.25 / 1.25).abs() < 1e-12 && rigid.duality_gap.ratio > 1.0);
+            // s = (1/4 + 1/4)^-1/2: s (u - c - C lambda) = s (.5 - .25 - 0), of s u + s c + 2 u
+            let s = 2f64.sqrt();
+            let through = with(0.5, 0.0).penetration;
+            assert!((through.figure - 0.25 * s / (0.75 * s + 1.0)).abs() < 1e-12 && through.ratio > 1.0);
         }
     }
 }

@@ -41,12 +41,13 @@ pub(super) fn load_not_held(problem: &Problem, ready: &Ready, direction: &[f64],
 }
 
 /// The weights w combine the dual rows to nothing, `B'w = 0`, yet demand a negative gap, `c'w < 0`: no
-/// displacement satisfies them. `None` when w does not prove it.
+/// displacement satisfies them. `None` when w does not prove it. Compliant rows contradict nothing.
 pub(super) fn gaps_contradict(ready: &Ready, gaps: &Gaps, w: &[f64]) -> Option<Error> {
     let leader = |group: usize| ready.grouping.leaders[group];
     let bounded = |group: usize| leader(group) < ready.contact;
     let negligible = EMPTY * norm_max(w);
-    let w: Vec<f64> = w.iter().map(|w| if w.abs() <= negligible { 0.0 } else { *w }).collect();
+    let counts = |group: usize| ready.compliance[group] == 0.0 && w[group].abs() > negligible;
+    let w: Vec<f64> = (0..w.len()).map(|group| if counts(group) { w[group] } else { 0.0 }).collect();
     let (mut left, mut terms) = (vec![0.0; ready.matrix.cols], vec![0.0; ready.matrix.cols]);
     ready.matrix.mul_transposed_add(1.0, &w, &mut left);
     ready.matrix.mul_transposed_abs_add(&w, &mut terms);

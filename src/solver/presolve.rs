@@ -79,24 +79,32 @@ fn two_rows_contradict(
 }
 
 /// `min |D^-1/2 B'w|^2 + (1 + c'w)^2` over w >= 0 on contact rows is zero exactly where rows contradict each
-/// other (c scaled to largest entry 1); B has unit rows. No product with F is needed.
+/// other (c scaled to largest entry 1); B has unit rows, and no compliant ones: they give way to any other row.
+/// No product with F is needed.
 fn contradiction(ready: &Ready, gaps: &Gaps, stops: &Stops) -> Result<Option<Error>> {
+    let rigid: Vec<usize> = (0..gaps.value.len()).filter(|&group| ready.compliance[group] == 0.0).collect();
+    let bounded: Vec<bool> = rigid.iter().map(|&group| gaps.bounded[group]).collect();
+    let mut c: Vec<f64> = rigid.iter().map(|&group| gaps.value[group]).collect();
     let harmless = |(c, bounded): (&f64, &bool)| if *bounded { *c >= 0.0 } else { *c == 0.0 };
-    if gaps.value.iter().zip(&gaps.bounded).all(harmless) {
+    if c.iter().zip(&bounded).all(harmless) {
         return Ok(None); // u = 0 satisfies them all
     }
-    let size = norm_max(&gaps.value);
-    let c: Vec<f64> = gaps.value.iter().map(|c| c / size).collect();
-    let a = Alternative { matrix: &ready.matrix, metric: &ready.metric, c: &c };
+    let size = norm_max(&c);
+    c.iter_mut().for_each(|c| *c /= size);
+    let mut matrix = Csr::empty(ready.matrix.cols);
+    rigid.iter().for_each(|&group| matrix.push_row(ready.matrix.row(group)));
+    let a = Alternative { matrix: &matrix, metric: &ready.metric, c: &c };
     let b: Vec<f64> = c.iter().map(|c| -c).collect();
     let none = Csr { ptr: vec![0; c.len() + 1], ..Csr::default() };
-    let qp = Qp { a: &a, b: &b, g_transposed: &none, e: &[], bounded: &gaps.bounded, preconditioner: None };
-    let steps = (WORK / (4 * ready.matrix.val.len() + c.len() + 1)).clamp(1000, 200_000);
+    let qp = Qp { a: &a, b: &b, g_transposed: &none, e: &[], bounded: &bounded, preconditioner: None };
+    let steps = (WORK / (4 * matrix.val.len() + c.len() + 1)).clamp(1000, 200_000);
     let limits = Limits { tolerance: 1e-14, gamma: 1.0, steps };
     let mut judge = Unjudged { scale: norm(&b) };
     let solution = minimise(qp, &vec![0.0; c.len()], limits, &mut judge, &mut UnlessCancelled(stops))?;
     stops.check_cancelled()?;
-    Ok(diagnosis::gaps_contradict(ready, gaps, &solution.x))
+    let mut w = vec![0.0; gaps.value.len()];
+    rigid.iter().zip(&solution.x).for_each(|(&group, x)| w[group] = *x);
+    Ok(diagnosis::gaps_contradict(ready, gaps, &w))
 }
 
 /// `w -> B D^-1 B'w + c (c'w)`

@@ -203,6 +203,14 @@ impl Problem {
         self.rows_mut(kind).set_rhs(first, rhs)
     }
 
+    /// Rows from `first` on as springs, `B u - c <= lambda/k`, `H u - h = mu/k`: 1/k >= 0, length / force, 0 for
+    /// rigid ones. The multipliers of the last solve still fit as a start.
+    pub fn set_compliance(&mut self, kind: RowKind, first: usize, inv_k: &[f64]) -> Result<()> {
+        self.rows_mut(kind).set_compliance(first, inv_k)?;
+        self.forget_dual();
+        Ok(())
+    }
+
     /// Drops all rows of one kind.
     pub fn clear_rows(&mut self, kind: RowKind) {
         *self.rows_mut(kind) = RowSet::default();

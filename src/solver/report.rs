@@ -67,7 +67,7 @@ pub struct Report {
     /// Factorisations and symbolic analyses since the problem was created.
     pub factorisations: usize,
     pub analyses: usize,
-    /// `1/2 u'K u - f'u`, force x length.
+    /// `1/2 u'K u - f'u + 1/2 lambda'C lambda + 1/2 mu'C mu`, force x length.
     pub energy: f64,
     pub seconds_setup: f64,
     pub seconds_solve: f64,

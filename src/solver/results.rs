@@ -20,7 +20,7 @@ pub(super) struct Answer {
     pub mu: Vec<f64>,
     /// Amplitudes of the rigid modes of all bodies.
     alpha: Vec<f64>,
-    /// c - B u, length.
+    /// c + C lambda - B u, length.
     gaps: Vec<f64>,
     states: Vec<RowState>,
 }
@@ -36,7 +36,7 @@ impl Answer {
     ) -> Result<Self> {
         let Recovered { u, lambda, mu } = recovered;
         let rows = &problem.contact;
-        let gaps: Vec<f64> = (0..rows.len()).map(|i| rows.rhs[i] - rows.matrix.row_dot(i, &u)).collect();
+        let gaps: Vec<f64> = (0..rows.len()).map(|i| rows.open_gap(i, &u, lambda[i])).collect();
         let states = states(problem, ready, &lambda, &u, &gaps);
         let counts = solution.counts;
         let report = Report {
@@ -57,7 +57,7 @@ impl Answer {
             gap_scale: solution.scale * ready.unit.sqrt(),
             factorisations: problem.factorisations,
             analyses: problem.factorisations,
-            energy: problem.energy(&u)?,
+            energy: problem.energy(&u, &lambda, &mu)?,
             seconds_setup: 0.0,
             seconds_solve: 0.0,
         };
@@ -70,7 +70,9 @@ impl Answer {
 fn states(problem: &Problem, ready: &Ready, lambda: &[f64], u: &[f64], gaps: &[f64]) -> Vec<RowState> {
     let limit = problem.settings.certificate_tolerance;
     let rows = &problem.contact;
-    let sizes = (0..rows.len()).map(|i| ready.scale[i] * (rows.matrix.row_dot_abs(i, u) + rows.rhs[i].abs()));
+    let yielded = |i: usize| rows.compliance[i] * lambda[i].abs();
+    let size = |i: usize| rows.matrix.row_dot_abs(i, u) + rows.rhs[i].abs() + yielded(i);
+    let sizes = (0..rows.len()).map(|i| ready.scale[i] * size(i));
     let small_gap = limit * sizes.fold(0.0, f64::max);
     let force = |i: usize| unscaled(lambda[i], ready.scale[i]);
     let small_force = limit * (0..rows.len()).map(|i| force(i).abs()).fold(0.0, f64::max);
@@ -87,8 +89,9 @@ fn states(problem: &Problem, ready: &Ready, lambda: &[f64], u: &[f64], gaps: &[f
 }
 
 impl Problem {
-    /// `1/2 u'K u - f'u`, force x length.
-    fn energy(&self, u: &[f64]) -> Result<f64> {
+    /// `1/2 u'K u - f'u + 1/2 lambda'C lambda + 1/2 mu'C mu`, force x length: what is minimised, springs of
+    /// compliant rows included.
+    fn energy(&self, u: &[f64], lambda: &[f64], mu: &[f64]) -> Result<f64> {
         let mut energy = 0.0;
         for (slot, range) in self.bodies.iter().zip(self.ranges()) {
             let u = &u[range];
@@ -99,6 +102,7 @@ impl Problem {
             }
             energy -= slot.body.load.as_ref().map_or(0.0, |f| dot(f, u));
         }
+        energy += 0.5 * (self.contact.stored(lambda) + self.equalities.stored(mu));
         Ok(energy)
     }
 
@@ -143,7 +147,7 @@ impl Problem {
         })
     }
 
-    /// Open gaps c - B u, length.
+    /// Open gaps c + C lambda - B u, length.
     pub fn gaps(&self) -> Result<&[f64]> {
         Ok(&self.answer()?.gaps)
     }
@@ -181,7 +185,7 @@ impl Problem {
         Ok(())
     }
 
-    /// `y = F x` of (12), contact rows first; x force, y length.
+    /// `y = F x` of (12), compliance of the rows included, contact rows first; x force, y length.
     pub fn dual_apply(&mut self, x: &[f64], y: &mut [f64]) -> Result<()> {
         self.check_rows(x.len())?;
         self.check_rows(y.len())?;
@@ -193,7 +197,8 @@ impl Problem {
             groups[group] += sign * x[i] / (ready.unit * ready.scale[i]);
         }
         ready.dual.apply(&groups, &mut image);
-        y.fill(0.0);
+        let compliance = self.contact.compliance.iter().chain(&self.equalities.compliance);
+        y.iter_mut().zip(x).zip(compliance).for_each(|((y, x), c)| *y = c * x);
         for (i, (group, sign)) in ready.grouping.members() {
             y[i] = sign * image[group] / ready.scale[i];
         }

@@ -26,9 +26,11 @@ pub(super) struct Ready {
     pub dual: Dual,
     /// One row for each group of parallel rows of `S [B; H]`.
     pub matrix: Csr,
+    /// Diagonal of `2^p S C S`, one for each group: 1/k without unit, 0 where rigid.
+    pub compliance: Vec<f64>,
     /// `D / 2^p` over all unknowns.
     pub metric: Vec<f64>,
-    /// s_i of every row, contact rows first, `length^-1` in units of 2^p; 0 for rows without entries.
+    /// s_i of every row, contact rows first, `length^-1` in units of 2^p; 0 for rigid rows without entries.
     pub scale: Vec<f64>,
     pub grouping: Grouping,
     /// Number of contact rows.
@@ -53,6 +55,7 @@ impl Problem {
         let first = self.contact.len();
         self.equalities.check_empty_rows(RowKind::Equality).map_err(|e| empty_row_contradicts(e, first))?;
         let unit = self.unit();
+        self.check_compliance(unit)?;
         self.factorize(unit, &watch.stops)?;
         watch.part_done()?;
         self.ready = Some(self.dualize(unit, &watch.stops)?);
@@ -73,6 +76,17 @@ impl Problem {
             }
             if slot.body.null_space.is_none() && slot.body.coordinates.is_none() {
                 return missing("the null space is (give it, or coordinates)");
+            }
+        }
+        Ok(())
+    }
+
+    /// A compliance times the stiffness of the bodies must be a number.
+    fn check_compliance(&self, unit: f64) -> Result<()> {
+        for (kind, rows) in [(RowKind::Inequality, &self.contact), (RowKind::Equality, &self.equalities)] {
+            if let Some(row) = rows.compliance.iter().position(|c| !(c * unit).is_finite()) {
+                let what = format!("the compliance of this {} times max K_ii overflows", kind.name());
+                return Err(Error::new(Kind::Overflow, what).row(row).value(rows.compliance[row]));
             }
         }
         Ok(())
@@ -154,18 +168,20 @@ impl Problem {
     fn dualize(&self, unit: f64, stops: &Stops) -> Result<Ready> {
         let metric = self.metric(unit);
         let mut all = Csr::empty(metric.len());
-        let mut scale = Vec::new();
+        let (mut scale, mut compliances) = (Vec::new(), Vec::new());
         for rows in [&self.contact, &self.equalities] {
-            let scales = row_scales(&rows.matrix, &metric);
+            let scales = row_scales(rows, &metric, unit);
             for (i, s) in scales.iter().enumerate() {
                 all.push_row(rows.matrix.row(i).map(|(j, v)| (j, s * v)));
+                compliances.push(s * s * (unit * rows.compliance[i]));
             }
             scale.extend(scales);
         }
         let contact = self.contact.len();
-        let grouping = Grouping::of(&all, contact, &metric);
+        let grouping = Grouping::of(&all, contact, &metric, |i| compliances[i] > 0.0);
         let mut matrix = Csr::empty(metric.len());
         grouping.leaders.iter().for_each(|&leader| matrix.push_row(all.row(leader)));
+        let compliance: Vec<f64> = grouping.leaders.iter().map(|&leader| compliances[leader]).collect();
         let parts = self.ranges().into_iter().zip(&self.bodies).filter_map(|(range, slot)| {
             let inverse = slot.inverse.as_ref()?;
             Some(Part { range, kplus: Arc::clone(&inverse.kplus) })
@@ -175,11 +191,11 @@ impl Problem {
             stops.check_cancelled()?;
             task(p)
         };
-        let dual = Dual::new(parts.collect(), &matrix, &|count, task| {
+        let dual = Dual::new(parts.collect(), &matrix, compliance.clone(), &|count, task| {
             threads::run(threads, count, |p| unless_cancelled(task, p))
         })?;
         let preconditioner = None;
-        Ok(Ready { unit, dual, matrix, metric, scale, grouping, contact, preconditioner })
+        Ok(Ready { unit, dual, matrix, compliance, metric, scale, grouping, contact, preconditioner })
     }
 
     /// The preconditioner the options ask for, kept until they ask for another.
@@ -214,7 +230,7 @@ impl Problem {
             let stiffness = stiffness(&k.scaled(1.0 / ready.unit)?, &local).map_err(|e| e.body(p))?;
             Ok(Boundary { dofs: local.iter().map(|j| j + ranges[p].start).collect(), stiffness })
         })?;
-        Preconditioner::new(&ready.matrix, &ready.metric, boundaries)
+        Preconditioner::new(&ready.matrix, ready.compliance.clone(), &ready.metric, boundaries)
     }
 
     /// `D / unit` over all unknowns, 1 for dofs without stiffness.

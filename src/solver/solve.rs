@@ -2,6 +2,7 @@
 
 use std::time::Instant;
 
+use crate::constraints::RowKind;
 use crate::dual::Preconditioner;
 use crate::error::{Error, Kind, Result};
 use crate::linalg::vector::weighted_norm;
@@ -146,11 +147,14 @@ struct Certifier<'a> {
 }
 
 impl Certifier<'_> {
-    /// (17), and lambda = 2^p S x on the rows that carry the multipliers of their groups.
+    /// (17), and lambda = 2^p S x on the rows that carry the multipliers of their groups; springs without
+    /// entries have their force from their gap.
     fn recover(&self, x: &[f64], alpha: &[f64]) -> Result<Recovered> {
         let ready = self.ready;
         let u = ready.dual.displacement(&self.scaled.load, x, alpha)?;
-        let mut lambda = vec![0.0; ready.scale.len()];
+        let contact = self.data.contact.forces_without_entries(RowKind::Inequality);
+        let equalities = self.data.equalities.forces_without_entries(RowKind::Equality);
+        let mut lambda: Vec<f64> = contact.chain(equalities).collect();
         for (x, &holder) in x.iter().zip(&self.scaled.gaps.holder) {
             lambda[holder] = x * ready.scale[holder] * ready.unit;
         }

@@ -130,7 +130,7 @@ impl Problem {
     }
 
     /// Loads, gaps and multipliers as they were; matrices stay as they are now. The state is kept. The answer
-    /// comes back as well unless a matrix has changed.
+    /// comes back as well unless a matrix or a compliance has changed.
     pub fn restore_state(&mut self, number: usize) -> Result<()> {
         let state = self.history.states.get(&number).ok_or_else(|| no_state(number))?;
         if state.rows != self.history.rows {

@@ -13,6 +13,7 @@ pub fn decks() -> Vec<Deck> {
     let plane = Cube { dimension: 2, subdomains: [2, 2, 1], elements: 3, ..Cube::default() };
     let moduli = Moduli::Checkerboard(10.0);
     let space = Cube { elements: 1, moduli, waves: 0.3, pressure: 5.0, ..Cube::default() };
+    let layered = Cube { layer: 0.5, ..plane.clone() };
     vec![
         stack.build(),
         tower.build(),
@@ -22,7 +23,18 @@ pub fn decks() -> Vec<Deck> {
         SpringAndBlock { spring: 2.0, force: 3.0, gap: 0.25, block: None }.build().deck,
         SpringAndBlock { spring: 3.0, force: 0.7, gap: 0.1, block: Some(7.0) }.build().deck,
         FacingSprings { springs: [2.0, 5.0], forces: [3.0, -1.0], gap: 0.1 }.build().deck,
+        layered.build(),
+        compliant(tower.build(), 3),
     ]
+}
+
+/// The deck with every `each`-th row of both kinds a spring, stiffer and softer than the bodies.
+fn compliant(mut deck: Deck, each: usize) -> Deck {
+    for rows in [&mut deck.contact, &mut deck.equalities] {
+        rows.compliance.iter_mut().step_by(each).zip([0.1, 30.0].iter().cycle()).for_each(|(c, v)| *c = *v);
+    }
+    deck.name += "_compliant";
+    deck
 }
 
 /// Displacements, multipliers and what the method did.

@@ -21,7 +21,7 @@ fn rows_in_order(rows: &Rows, order: &[usize], renamed: &[usize]) -> Rows {
     let mut sorted = Rows::none(rows.matrix.cols);
     for &i in order {
         let entries: Vec<_> = rows.matrix.row(i).map(|(dof, value)| (renamed[dof], value)).collect();
-        sorted.push(&entries, rows.rhs[i]);
+        sorted.push_compliant(&entries, rows.rhs[i], rows.compliance[i]);
     }
     sorted
 }

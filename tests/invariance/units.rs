@@ -14,16 +14,18 @@ fn in_units(deck: &Deck, stiffness: f64, force: f64, length: f64) -> Deck {
     }
     for rows in [&mut deck.contact, &mut deck.equalities] {
         rows.rhs.iter_mut().for_each(|c| *c *= length);
+        rows.compliance.iter_mut().for_each(|inv_k| *inv_k /= stiffness);
     }
     deck
 }
 
-/// Row i of `rows`, entries and right-hand side, by `factors[i]`.
+/// Row i of `rows`, entries and right-hand side, by `factors[i]`; its compliance by the square.
 fn with_factors(rows: &mut Rows, factors: &[f64]) {
     let matrix = &mut rows.matrix;
     for (i, factor) in factors.iter().enumerate() {
         matrix.val[matrix.ptr[i]..matrix.ptr[i + 1]].iter_mut().for_each(|v| *v *= factor);
         rows.rhs[i] *= factor;
+        rows.compliance[i] *= factor * factor;
     }
 }
 

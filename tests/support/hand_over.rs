@@ -37,7 +37,11 @@ pub fn set_body(problem: &mut Problem, p: usize, body: &Body) -> Result<()> {
 fn add_rows(problem: &mut Problem, kind: RowKind, rows: &Rows) -> Result<()> {
     let (matrix, dof) = (&rows.matrix, columns(&rows.matrix));
     let input = RowsInput { ptr: &matrix.ptr, body: None, dof: &dof, val: &matrix.val, rhs: Some(&rows.rhs) };
-    problem.add_rows(kind, input).map(|_| ())
+    let first = problem.add_rows(kind, input)?;
+    if rows.compliance.iter().any(|inv_k| *inv_k > 0.0) {
+        problem.set_compliance(kind, first, &rows.compliance)?;
+    }
+    Ok(())
 }
 
 /// Columns of a matrix in the integers of the interface.

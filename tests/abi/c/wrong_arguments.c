@@ -80,6 +80,21 @@ static void rows(feti_problem *p)
     REFUSED(p, 3, ANY, ANY, ANY, ANY, "feti_rows_rhs", "", feti_rows_rhs(p, FETI_INEQUALITY, 1, 1, GAP));
 }
 
+static void compliances(feti_problem *p)
+{
+    static const char *const COMPLIANCE = "feti_rows_compliance";
+    const double negative[1] = { -1e-300 }, not_one[2] = { 0.5, NAN }, infinite[1] = { INFINITY };
+
+    REFUSED(p, 2, ANY, ANY, ANY, ANY, COMPLIANCE, "5", feti_rows_compliance(p, 5, 0, 1, GAP));
+    REFUSED(p, 3, ANY, ANY, ANY, ANY, COMPLIANCE, "1", feti_rows_compliance(p, FETI_INEQUALITY, 1, 1, GAP));
+    REFUSED(p, 3, ANY, ANY, ANY, ANY, COMPLIANCE, "", feti_rows_compliance(p, FETI_INEQUALITY, -1, 1, GAP));
+    REFUSED(p, 3, ANY, ANY, ANY, ANY, COMPLIANCE, "0", feti_rows_compliance(p, FETI_EQUALITY, 0, 1, GAP));
+    REFUSED(p, 4, ANY, ANY, ANY, ANY, COMPLIANCE, "", feti_rows_compliance(p, FETI_INEQUALITY, 0, -1, GAP));
+    REFUSED(p, 5, ANY, ANY, 0, 0, COMPLIANCE, ">= 0", feti_rows_compliance(p, FETI_INEQUALITY, 0, 1, negative));
+    REFUSED(p, 5, ANY, ANY, 1, 1, COMPLIANCE, "finite", feti_rows_compliance(p, FETI_INEQUALITY, 0, 2, not_one));
+    REFUSED(p, 5, ANY, ANY, 0, 0, COMPLIANCE, "finite", feti_rows_compliance(p, FETI_INEQUALITY, 0, 1, infinite));
+}
+
 static void not_numbers(feti_problem *p)
 {
     const double val[3] = { 4.0, NAN, 4.0 }, pair[2] = { 1.0, INFINITY }, one[1] = { NAN };
@@ -128,6 +143,7 @@ int main(void)
     flags(problem);
     patterns(problem);
     rows(problem);
+    compliances(problem);
     not_numbers(problem);
     texts_count_from_the_base(problem);
     texts_are_cut_to_the_room(problem);

@@ -29,6 +29,7 @@ static void every_function(int32_t expected, feti_problem *h)
     EXPECT(expected, give_row(h));
     EXPECT(expected, feti_rows_add_i64(h, FETI_EQUALITY, 0, ptr64, NULL, col64, x, 0, NULL, NULL));
     EXPECT(expected, feti_rows_rhs(h, FETI_INEQUALITY, 0, 1, GAP));
+    EXPECT(expected, feti_rows_compliance(h, FETI_INEQUALITY, 0, 1, GAP));
     EXPECT(expected, feti_rows_clear(h, FETI_EQUALITY));
     EXPECT(expected, feti_setup(h));
     EXPECT(expected, feti_solve(h, NULL));
@@ -100,6 +101,7 @@ static void null_inputs(feti_problem *p)
     EXPECT(FETI_ARGUMENT - 6, feti_rows_add_i32(p, FETI_INEQUALITY, 1, ROW_PTR, ROW_BODY, NULL, ROW_VAL, 0, GAP, NULL));
     EXPECT(FETI_ARGUMENT - 7, feti_rows_add_i32(p, FETI_INEQUALITY, 1, ROW_PTR, ROW_BODY, ROW_DOF, NULL, 0, GAP, NULL));
     EXPECT(FETI_ARGUMENT - 5, feti_rows_rhs(p, FETI_INEQUALITY, 0, 1, NULL));
+    EXPECT(FETI_ARGUMENT - 5, feti_rows_compliance(p, FETI_INEQUALITY, 0, 1, NULL));
     EXPECT(FETI_ARGUMENT - 4, feti_start_from(p, FETI_INEQUALITY, 1, NULL));
 }
 

@@ -118,6 +118,13 @@ contains
     call feti_rows_add(p, FETI_INEQUALITY, [1, 3], [1, 55], [1.0_dp, -1.0_dp], stat=stat, errmsg=text)
     call expect_refused(6, 'feti_rows_add_i32', ['row 1  ', 'entry 2'])
 
+    call feti_rows_compliance(p, FETI_INEQUALITY, 1, [-0.5_dp], stat, text)
+    call expect_refused(5, 'feti_rows_compliance', ['row 1  ', 'entry 1'])
+    call feti_rows_compliance(p, FETI_INEQUALITY, 2, [0.5_dp], stat, text)
+    call expect_refused(3, 'feti_rows_compliance', ['1'])
+    call feti_rows_compliance(p, 7, 1, [0.5_dp], stat, text)
+    call expect_refused(2, 'feti_rows_compliance', ['7'])
+
     call feti_set(p, 'no_such_option', 1.0_dp, stat, text)
     call expect_refused(2, 'feti_set_f64', ['no_such_option'])
     call feti_set(p, 'tolerance', -1.0_dp, stat, text)
