@@ -2,16 +2,11 @@
 //! the rows F that are not held. S_b is the stiffness of the constrained dofs: lumped or Dirichlet.
 
 use std::ops::Range;
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 
+use crate::dual::coupling::{Coupling, Face};
 use crate::error::Result;
-use crate::linalg::gram::Gram;
-use crate::linalg::{Analysis, Cholesky, Csr, Operator};
-
-/// Added to the diagonal (1) of `B D^-1 B'` when dependent rows make it singular.
-const SHIFT: f64 = 1e-10;
-/// A pivot below this means that rows depend on each other.
-const SINGULAR: f64 = 1e-9;
+use crate::linalg::{Csr, Operator};
 
 /// The constrained dofs of one body.
 pub struct Boundary {
@@ -23,15 +18,12 @@ pub struct Boundary {
 pub struct Preconditioner {
     /// `B D^-1/2`, unit rows.
     rows: Csr,
-    /// Its transposed: the rows of every unknown.
-    columns: Csr,
     /// `D^-1/2` over all unknowns.
     weight: Vec<f64>,
     boundaries: Vec<Boundary>,
-    gram: Gram,
-    analysis: Arc<Analysis>,
-    /// The rows held on the last face, and the factor of its `B_F D^-1 B_F'`.
-    face: Mutex<Option<(Vec<bool>, Cholesky)>>,
+    coupling: Coupling,
+    /// The last face.
+    face: Mutex<Option<Face>>,
 }
 
 impl Preconditioner {
@@ -40,19 +32,17 @@ impl Preconditioner {
         let weight: Vec<f64> = metric.iter().map(|d| d.sqrt().recip()).collect();
         let mut rows = Csr::empty(matrix.cols);
         (0..matrix.rows()).for_each(|i| rows.push_row(matrix.row(i).map(|(j, v)| (j, v * weight[j]))));
-        let columns = rows.transposed()?;
-        let gram = Gram::of(&columns)?;
-        let analysis = Arc::new(Analysis::new(gram.pattern(), &vec![false; matrix.rows()])?);
-        Ok(Self { rows, columns, weight, boundaries, gram, analysis, face: Mutex::new(None) })
+        let coupling = Coupling::new(&rows.transposed()?)?;
+        Ok(Self { rows, weight, boundaries, coupling, face: Mutex::new(None) })
     }
 
     /// `z = M_F r` on the rows that are not held, 0 on the others.
     pub fn apply(&self, held: &[bool], r: &[f64], z: &mut [f64]) -> Result<()> {
-        let face = self.select(held)?;
-        let Some((_, coupling)) = face.as_ref() else { return Ok(()) };
-        z.iter_mut().zip(r).zip(held).for_each(|((z, r), held)| *z = if *held { 0.0 } else { *r });
-        coupling.solve(z)?;
-        clear(held, z);
+        z.fill(0.0);
+        let selected = self.select(held)?;
+        let Some(face) = selected.as_ref() else { return Ok(()) };
+        z.copy_from_slice(r);
+        face.solve(z)?;
         let mut spread = vec![0.0; self.weight.len()];
         self.rows.mul_transposed_add(1.0, z, &mut spread);
         let mut force = vec![0.0; spread.len()];
@@ -63,41 +53,17 @@ impl Preconditioner {
             boundary.dofs.iter().zip(image).for_each(|(&j, v)| force[j] = v * self.weight[j]);
         }
         self.rows.mul(&force, z);
-        clear(held, z);
-        coupling.solve(z)?;
-        clear(held, z);
-        Ok(())
+        face.solve(z)
     }
 
-    /// Factorises `B_F D^-1 B_F'`, the held rows uncoupled.
-    fn select(&self, held: &[bool]) -> Result<MutexGuard<'_, Option<(Vec<bool>, Cholesky)>>> {
+    /// Inverts `B_F D^-1 B_F'`, unless that has just been done.
+    fn select(&self, held: &[bool]) -> Result<MutexGuard<'_, Option<Face>>> {
         let mut face = self.face.lock().unwrap_or_else(PoisonError::into_inner);
-        if face.as_ref().is_some_and(|(known, _)| known == held) {
-            return Ok(face);
+        if !face.as_ref().is_some_and(|known| known.is_of(held)) {
+            *face = self.coupling.face(held, face.as_ref())?;
         }
-        let mut w = self.gram.sum(&self.columns, &vec![false; self.columns.rows()])?;
-        for i in 0..w.order() {
-            for at in w.ptr[i]..w.ptr[i + 1] {
-                let j = w.col[at];
-                if held[i] || held[j] {
-                    w.val[at] = f64::from(u8::from(i == j));
-                }
-            }
-        }
-        let factor = match self.analysis.attempt(&w)? {
-            Ok(factor) if factor.smallest_pivot() > SINGULAR => Some(factor),
-            _ => {
-                (0..w.order()).for_each(|i| w.val[w.ptr[i + 1] - 1] += SHIFT);
-                self.analysis.attempt(&w)?.ok()
-            }
-        };
-        *face = factor.map(|factor| (held.to_vec(), factor));
         Ok(face)
     }
-}
-
-fn clear(held: &[bool], z: &mut [f64]) {
-    z.iter_mut().zip(held).filter(|(_, held)| **held).for_each(|(z, _)| *z = 0.0);
 }
 
 /// Unknowns in the range that some row constrains, counted from its start.
