@@ -20,6 +20,13 @@ const DENSE: usize = 200;
 /// 1e-16 / 1e-10.
 const SHIFT: f64 = 1e-10;
 
+/// Rows that are combinations of those that are not named, by the pivots of `B D^-1 B'`; `columns` is `D^-1/2 B'`.
+pub fn dependent_rows(columns: &Csr) -> Result<Vec<usize>> {
+    let mut rows = Coupling::uncut(columns)?.weak_rows()?;
+    rows.sort_unstable();
+    Ok(rows)
+}
+
 /// W of all rows.
 pub struct Coupling {
     whole: Symmetric,
@@ -47,16 +54,20 @@ struct Block {
 impl Coupling {
     /// `columns` is `D^-1/2 B'`, the rows of B of length 1 in the metric `D^-1`.
     pub fn new(columns: &Csr) -> Result<Self> {
-        let gram = Gram::of(columns)?;
-        let whole = gram.sum(columns, &vec![false; columns.rows()])?;
-        let analysis = Arc::new(Analysis::new(&whole, &vec![false; whole.order()])?);
-        let mut coupling = Self { suspect: vec![false; whole.order()], whole, analysis };
+        let mut coupling = Self::uncut(columns)?;
         let weak = coupling.weak_rows()?;
         let (block, count) = components(&coupling.whole);
         let mut suspect = vec![false; count];
         weak.into_iter().for_each(|i| suspect[block[i]] = true);
         (0..block.len()).for_each(|i| coupling.suspect[i] = suspect[block[i]]);
         Ok(coupling)
+    }
+
+    fn uncut(columns: &Csr) -> Result<Self> {
+        let gram = Gram::of(columns)?;
+        let whole = gram.sum(columns, &vec![false; columns.rows()])?;
+        let analysis = Arc::new(Analysis::new(&whole, &vec![false; whole.order()])?);
+        Ok(Self { suspect: vec![false; whole.order()], whole, analysis })
     }
 
     /// Rows with a pivot that may be zero; all, where no factor tells.
@@ -260,6 +271,15 @@ mod tests {
         let held = [true, false, false, false, false, false, false];
         let third = coupling.face(&held, Some(&second)).unwrap().unwrap();
         assert_eq!(third.dense[0].rows, [1, 2, 3, 4, 5]);
+    }
+
+    #[test]
+    fn as_many_rows_are_named_as_the_rank_is_short_of() {
+        let (b, _) = coupling(6, &cross_point());
+        let named = dependent_rows(&b.transposed().unwrap()).unwrap();
+        assert!(named.len() == 3 && !named.contains(&6), "{named:?}");
+        let (b, _) = coupling(300, &ring(300));
+        assert_eq!(dependent_rows(&b.transposed().unwrap()).unwrap().len(), 1);
     }
 
     /// Differences of neighbours round a ring: n rows of rank n - 1, each with a share of 1/sqrt(n) in the dependence.

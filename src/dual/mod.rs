@@ -10,6 +10,7 @@
 mod coupling;
 mod preconditioner;
 
+pub use coupling::dependent_rows;
 pub use preconditioner::{constrained, Boundary, Preconditioner};
 
 use std::ops::Range;

@@ -16,6 +16,7 @@ mod proportioning;
 mod smalbe;
 mod steps;
 
+pub use coarse::undetermined;
 pub use proportioning::{minimise, Judge, Limits, Observer, Progress, Solution, StepKind, Verdict};
 pub use smalbe::smalbe;
 
