@@ -80,6 +80,11 @@ impl Dual {
         ranges.map(|range| Packed::bytes(touching(&range, matrix).len())).sum()
     }
 
+    /// Multiplications of a product with F.
+    pub fn product_work(&self) -> usize {
+        self.subdomains.iter().map(|s| s.rows.len() * s.rows.len()).sum()
+    }
+
     /// Dimension r of the null space of all bodies.
     pub fn modes(&self) -> usize {
         self.coarse.cols
