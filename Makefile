@@ -99,7 +99,7 @@ demo: setup
 # ---- tests
 N ?= 20000
 battery:
-	BATTERY=$(N) $(CARGO) test --release --locked --test battery -- every_random_problem
+	BATTERY=$(N) $(CARGO) test --release --locked --test battery -- every_random_problem no_marginal
 
 test: setup
 	$(CARGO) test --release --workspace --locked

@@ -835,6 +835,73 @@ int32_t feti_diagnosis_rows(struct feti_problem *p,
                             double *weight);
 
 /**
+ * Lists the equality rows that are combinations of the other equality rows, found when asked for.
+ *
+ * They constrain nothing, and which of them carry the forces is open. Rows that repeat another one
+ * are with feti_diagnosis_rows. FETI_STATE before the first setup. After a failure nothing is
+ * written.
+ *
+ * @param[in]  p     (scalar) the handle
+ * @param[in]  cap   (scalar) rows that `row` has room for
+ * @param[out] count (scalar) rows there are; those that fit are written
+ * @param[out] row   (cap) numbers from 0, ascending; may be NULL
+ *
+ * Safety: `count` has room for one number, `row` is NULL or has room for `cap` numbers.
+ */
+int32_t feti_diagnosis_dependent(struct feti_problem *p, int64_t cap, int64_t *count, int64_t *row);
+
+/**
+ * Lists the bodies that no row touched in the last solve, or in the last setup that failed.
+ *
+ * FETI_STATE before the first solve. After a failure nothing is written.
+ *
+ * @param[in]  p     (scalar) the handle
+ * @param[in]  cap   (scalar) bodies that `body` has room for
+ * @param[out] count (scalar) bodies there are; those that fit are written
+ * @param[out] body  (cap) numbers from 0, ascending; may be NULL
+ *
+ * Safety: `count` has room for one number, `body` is NULL or has room for `cap` numbers.
+ */
+int32_t feti_diagnosis_untouched(struct feti_problem *p, int64_t cap, int64_t *count, int64_t *body);
+
+/**
+ * Reads a rigid motion that the last answer leaves undetermined: which body, and how it moves.
+ *
+ * `undetermined` of feti_findings says how many there are. Bodies that have nothing to do with
+ * each other are in motions of their own. FETI_STATE without an answer. After a failure nothing is
+ * written.
+ *
+ * @param[in]  p      (scalar) the handle
+ * @param[in]  k      (scalar) number of the motion, from 0
+ * @param[out] body   (scalar) number of the body that moves fastest, from 0; may be NULL
+ * @param[out] motion (6) of this body: velocity of the origin, rotation about the axes; NaN
+ *                    without coordinates; may be NULL
+ *
+ * Safety: The arrays have the given shapes.
+ */
+int32_t feti_diagnosis_undetermined(struct feti_problem *p, int64_t k, int64_t *body, double *motion);
+
+/**
+ * Reads a rigid motion that the last answer leaves undetermined, unknown by unknown.
+ *
+ * It is scaled to largest entry 1 over all bodies; bodies that stay have zeros. FETI_STATE without
+ * an answer. After a failure nothing is written.
+ *
+ * @param[in]  p    (scalar) the handle
+ * @param[in]  k    (scalar) number of the motion, from 0
+ * @param[in]  body (scalar) number of the body, from 0
+ * @param[in]  n    (scalar) unknowns of the body
+ * @param[out] v    (n) length, up to a factor
+ *
+ * Safety: The array has the given shape.
+ */
+int32_t feti_diagnosis_undetermined_motion(struct feti_problem *p,
+                                           int64_t k,
+                                           int64_t body,
+                                           int64_t n,
+                                           double *v);
+
+/**
  * Reads the rigid motion with which a body escapes, unknown by unknown.
  *
  * The load does work on it, and no row resists. It is scaled to largest entry 1 over all bodies;

@@ -1,6 +1,6 @@
 //! The decks, cheap ones first, with their goals and the figures published for them.
 
-use decks::{Cube, Deck, Moduli, Stack};
+use decks::{Cube, Deck, Glue, Moduli, Stack};
 
 /// A generator with its parameters.
 pub enum Model {
@@ -50,6 +50,7 @@ pub fn cases() -> Vec<Case> {
     cases.extend([cube(3, 4, 1.5, Some((17, 20))), cube(4, 4, 1.5, Some((17, 21)))]);
     cases.push(compliant());
     cases.extend(contrasts());
+    cases.extend(redundant());
     cases.extend([plane(4, 8, None), plane(4, 16, None), plane(4, 32, None)]);
     cases.extend([plane(8, 8, Some((16, 21))), plane(8, 16, Some((20, 25))), plane(16, 8, None)]);
     cases.extend([plane(8, 32, Some((24, 32))), plane(16, 16, None)]);
@@ -131,6 +132,22 @@ fn contrasts() -> [Case; 3] {
         case("checkerboard_1e3", checkerboard(1e3, 300.0), 2.0, Some((53, 66))),
         case("checkerboard_1e6", checkerboard(1e6, 3e5), 2.0, None),
         case("layers_1e4", Model::Cube(layers), 2.0, Some((20, 23))),
+    ]
+}
+
+/// Every pair of copies of a node is glued: at edges and corners of subdomains the rows depend on each other.
+fn redundant() -> [Case; 3] {
+    let named = |name: &str, goal, cube: Cube| {
+        case(name, Model::Cube(Cube { glue: Glue::Redundant, ..cube }), goal, None)
+    };
+    [
+        named("cube_3x3x3_h4_redundant", 1.5, cubic(3, 4)),
+        named("plane_8x8_h8_redundant", 1.6, Cube { dimension: 2, ..cubic(8, 8) }),
+        named(
+            "slab_8x8_h4_redundant",
+            1.6,
+            Cube { subdomains: [8, 8, 1], clamp: false, waves: 0.3, ..cubic(8, 4) },
+        ),
     ]
 }
 

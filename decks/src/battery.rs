@@ -1,6 +1,7 @@
 //! Random small hard problems with a known outcome: rough gaps, parallel rows with different gaps, stacks of
 //! up to eight small bodies, stiffness contrast 1e4, dependent rows, loads that nothing holds, gaps that
-//! contradict each other. Each comes with the vectors that prove its outcome.
+//! contradict each other. Each comes with the vectors that prove its outcome. Marginal ones are so close to another outcome
+//! that rounding may decide.
 
 use std::ops::Range;
 
@@ -48,7 +49,7 @@ pub enum Proof {
 pub struct Case {
     pub deck: Deck,
     pub proof: Proof,
-    /// Distance from the other outcomes, at least 1e-4, no unit.
+    /// Distance from the other outcomes, no unit: at least 1e-4, of marginal cases 1e-12 to 1e-4.
     /// Solvable: the smallest slack of `displacement` over max |c|.
     /// LoadNotHeld: f.v / (|e| |v|), e = R'f, R'DR = I, |v|^2 = v'Dv, D = diag K: a lower bound for the
     /// distance of e from the loads that can be held over |e|.
@@ -66,6 +67,22 @@ impl Case {
     }
 }
 
+/// Decades of the numbers that the margins follow.
+struct Margins {
+    /// Smallest open gap of a solvable case, in units of `LENGTH`.
+    slack: [f64; 2],
+    /// Pull along the free motion.
+    pull: [f64; 2],
+    /// By how much gaps contradict each other.
+    excess: [f64; 2],
+    /// Whether every deck has displacements that the gaps must follow.
+    rough: bool,
+}
+
+const CLEAR: Margins = Margins { slack: [-2.0, 0.0], pull: [-3.9, 0.0], excess: [-3.0, 0.0], rough: false };
+const MARGINAL: Margins =
+    Margins { slack: [-11.0, -4.5], pull: [-11.9, -4.1], excess: [-11.0, -4.0], rough: true };
+
 /// The cases of the given seeds: of four in a row two are solvable, one of each other outcome.
 pub fn cases(seeds: Range<u64>) -> impl Iterator<Item = Case> {
     seeds.map(case)
@@ -73,18 +90,29 @@ pub fn cases(seeds: Range<u64>) -> impl Iterator<Item = Case> {
 
 /// The case of one seed.
 pub fn case(seed: u64) -> Case {
+    drawn(seed, &CLEAR)
+}
+
+/// The marginal case of one seed: its outcome is that of its proof in exact arithmetic only.
+pub fn marginal(seed: u64) -> Case {
+    let mut case = drawn(seed, &MARGINAL);
+    case.deck.name.insert_str(0, "marginal_");
+    case
+}
+
+fn drawn(seed: u64, margins: &Margins) -> Case {
     let mut random = Random::new(seed);
     let outcome = match seed % 4 {
         0 | 1 => Outcome::Solvable,
         2 => Outcome::LoadNotHeld,
         _ => Outcome::GapsContradict,
     };
-    let mut base = Base::new(outcome != Outcome::LoadNotHeld, &mut random);
+    let mut base = Base::new(outcome != Outcome::LoadNotHeld, margins, &mut random);
     base.deck.name = format!("battery_{seed}_{outcome:?}");
     match outcome {
         Outcome::Solvable => base.solvable(),
-        Outcome::LoadNotHeld => base.release(&mut random),
-        Outcome::GapsContradict => base.contradict(&mut random),
+        Outcome::LoadNotHeld => base.release(margins, &mut random),
+        Outcome::GapsContradict => base.contradict(margins, &mut random),
     }
 }
 
@@ -123,13 +151,13 @@ struct Base {
 }
 
 impl Base {
-    fn new(may_hold: bool, random: &mut Random) -> Base {
+    fn new(may_hold: bool, margins: &Margins, random: &mut Random) -> Base {
         let (mut deck, motion) =
             if random.chance(0.75) { random_stack(may_hold, random) } else { random_cube(may_hold, random) };
         if random.chance(0.5) {
             add_parallel_rows(&mut deck, random);
         }
-        let (displacement, slack) = open_gaps(&mut deck, random);
+        let (displacement, slack) = open_gaps(&mut deck, margins, random);
         let forces = balance_load(&mut deck, random);
         Base { deck, motion, displacement, slack, forces }
     }
@@ -144,7 +172,7 @@ impl Base {
 
     /// Turns the load until its cosine with the free motion v is m / sqrt(1 + m^2):
     /// f := f - (f.v/|v|^2) D v + m |R'(f - ...)| D v / |v|, |v|^2 = v'Dv, R'DR = I.
-    fn release(mut self, random: &mut Random) -> Case {
+    fn release(mut self, margins: &Margins, random: &mut Random) -> Case {
         self.unload_opening_rows();
         let diagonal = scaling(&self.deck);
         let pull: Vec<f64> = self.motion.iter().zip(&diagonal).map(|(v, d)| v * d).collect();
@@ -152,7 +180,7 @@ impl Base {
         let mut load = self.deck.load();
         axpy(-dot(&load, &self.motion) / length2, &pull, &mut load);
         set_load(&mut self.deck, &load);
-        let wanted = random.decades(-3.9, 0.0);
+        let wanted = random.decades(margins.pull[0], margins.pull[1]);
         axpy(wanted * rigid_norm(&self.deck) / length2.sqrt(), &pull, &mut load);
         set_load(&mut self.deck, &load);
         let margin = dot(&load, &self.motion) / (rigid_norm(&self.deck) * length2.sqrt());
@@ -177,7 +205,7 @@ impl Base {
 
     /// Adds one row that contradicts one to three contact rows by an amount far above rounding. New rows
     /// carry no force: the load stays held.
-    fn contradict(mut self, random: &mut Random) -> Case {
+    fn contradict(mut self, margins: &Margins, random: &mut Random) -> Case {
         let deck = &mut self.deck;
         let mut weights = vec![0.0; deck.contact.len()];
         for _ in 0..=random.below(3) {
@@ -186,7 +214,7 @@ impl Base {
         let row = sparse(&deck.contact.matrix.transpose_times(&weights));
         let reach = dot(&weights, &deck.contact.rhs);
         let size = norm_max(&deck.contact.rhs) * (1.0 + weights.iter().sum::<f64>());
-        let excess = random.decades(-3.0, 0.0) * size;
+        let excess = random.decades(margins.excess[0], margins.excess[1]) * size;
         let mut weights = Multipliers { contact: weights, equalities: vec![0.0; deck.equalities.len()] };
         if random.chance(0.5) {
             let opposite: Vec<_> = row.iter().map(|&(dof, value)| (dof, -value)).collect();
@@ -284,13 +312,13 @@ fn add_parallel_rows(deck: &mut Deck, random: &mut Random) {
 
 /// Draws a displacement u (zero half of the time) and gaps c = B u + slack, h = H u. Returns u and the
 /// smallest slack.
-fn open_gaps(deck: &mut Deck, random: &mut Random) -> (Vec<f64>, f64) {
-    let roughness = if random.chance(0.5) { LENGTH } else { 0.0 };
+fn open_gaps(deck: &mut Deck, margins: &Margins, random: &mut Random) -> (Vec<f64>, f64) {
+    let roughness = if random.chance(0.5) || margins.rough { LENGTH } else { 0.0 };
     let displacement = random.normals(deck.dofs(), roughness);
     let mut smallest = f64::INFINITY;
     deck.contact.rhs = deck.contact.matrix.times(&displacement);
     for gap in &mut deck.contact.rhs {
-        let slack = LENGTH * random.decades(-2.0, 0.0);
+        let slack = LENGTH * random.decades(margins.slack[0], margins.slack[1]);
         smallest = smallest.min(slack);
         *gap += slack;
     }

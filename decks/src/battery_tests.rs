@@ -75,6 +75,15 @@ fn every_margin_is_at_least_1e_4() {
 }
 
 #[test]
+fn margins_of_marginal_cases_lie_between_1e_12_and_1e_4() {
+    for case in SEEDS.map(crate::battery::marginal) {
+        assert!((5e-13..=1e-4).contains(&case.margin), "{} {:e}", case.deck.name, case.margin);
+    }
+    let smallest = SEEDS.map(|seed| crate::battery::marginal(seed).margin).fold(f64::INFINITY, f64::min);
+    assert!(smallest < 1e-10, "{smallest:e}");
+}
+
+#[test]
 fn all_outcomes_and_all_kinds_of_difficulty_occur() {
     let all: Vec<Case> = cases(SEEDS).collect();
     let count = |outcome: Outcome| all.iter().filter(|case| case.outcome() == outcome).count();

@@ -74,7 +74,11 @@ module feti_contact
     feti_state_drop => state_drop, &
     feti_diagnosis => diagnosis, &
     feti_diagnosis_rows => diagnosis_rows, &
-    feti_diagnosis_motion => diagnosis_motion
+    feti_diagnosis_motion => diagnosis_motion, &
+    feti_diagnosis_dependent => diagnosis_dependent, &
+    feti_diagnosis_untouched => diagnosis_untouched, &
+    feti_diagnosis_undetermined => diagnosis_undetermined, &
+    feti_diagnosis_undetermined_motion => diagnosis_undetermined_motion
   use feti_contact_results, only: feti_info, feti_certificate, &
     feti_setup => setup, &
     feti_solve => solve, &

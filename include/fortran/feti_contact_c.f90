@@ -317,6 +317,10 @@ module feti_contact_c
   public :: feti_body_load
   public :: feti_diagnosis
   public :: feti_diagnosis_rows
+  public :: feti_diagnosis_dependent
+  public :: feti_diagnosis_untouched
+  public :: feti_diagnosis_undetermined
+  public :: feti_diagnosis_undetermined_motion
   public :: feti_diagnosis_motion
   public :: feti_last_error
   public :: feti_last_error_detail
@@ -584,6 +588,89 @@ module feti_contact_c
       type(c_ptr), value :: weight
       integer(c_int32_t) :: feti_diagnosis_rows
     end function feti_diagnosis_rows
+
+    !> Lists the equality rows that are combinations of the other equality rows, found when asked for.
+    !>
+    !> They constrain nothing, and which of them carry the forces is open. Rows that repeat another one are
+    !> with feti_diagnosis_rows. FETI_STATE before the first setup. After a failure nothing is written.
+    !>
+    !> @param[in]  p     (scalar) the handle
+    !> @param[in]  cap   (scalar) rows that `row` has room for
+    !> @param[out] count (scalar) rows there are; those that fit are written
+    !> @param[out] row   (cap) numbers from 0, ascending; may be NULL
+    !>
+    !> Safety: `count` has room for one number, `row` is NULL or has room for `cap` numbers.
+    function feti_diagnosis_dependent(p, cap, count, row) bind(C, name="feti_diagnosis_dependent")
+      import
+      type(c_ptr), value :: p
+      integer(c_int64_t), value :: cap
+      integer(c_int64_t), intent(out) :: count
+      type(c_ptr), value :: row
+      integer(c_int32_t) :: feti_diagnosis_dependent
+    end function feti_diagnosis_dependent
+
+    !> Lists the bodies that no row touched in the last solve, or in the last setup that failed.
+    !>
+    !> FETI_STATE before the first solve. After a failure nothing is written.
+    !>
+    !> @param[in]  p     (scalar) the handle
+    !> @param[in]  cap   (scalar) bodies that `body` has room for
+    !> @param[out] count (scalar) bodies there are; those that fit are written
+    !> @param[out] body  (cap) numbers from 0, ascending; may be NULL
+    !>
+    !> Safety: `count` has room for one number, `body` is NULL or has room for `cap` numbers.
+    function feti_diagnosis_untouched(p, cap, count, body) bind(C, name="feti_diagnosis_untouched")
+      import
+      type(c_ptr), value :: p
+      integer(c_int64_t), value :: cap
+      integer(c_int64_t), intent(out) :: count
+      type(c_ptr), value :: body
+      integer(c_int32_t) :: feti_diagnosis_untouched
+    end function feti_diagnosis_untouched
+
+    !> Reads a rigid motion that the last answer leaves undetermined: which body, and how it moves.
+    !>
+    !> `undetermined` of feti_findings says how many there are. Bodies that have nothing to do with each other
+    !> are in motions of their own. FETI_STATE without an answer. After a failure nothing is written.
+    !>
+    !> @param[in]  p      (scalar) the handle
+    !> @param[in]  k      (scalar) number of the motion, from 0
+    !> @param[out] body   (scalar) number of the body that moves fastest, from 0; may be NULL
+    !> @param[out] motion (6) of this body: velocity of the origin, rotation about the axes; NaN without
+    !>                    coordinates; may be NULL
+    !>
+    !> Safety: The arrays have the given shapes.
+    function feti_diagnosis_undetermined(p, k, body, motion) bind(C, name="feti_diagnosis_undetermined")
+      import
+      type(c_ptr), value :: p
+      integer(c_int64_t), value :: k
+      type(c_ptr), value :: body
+      type(c_ptr), value :: motion
+      integer(c_int32_t) :: feti_diagnosis_undetermined
+    end function feti_diagnosis_undetermined
+
+    !> Reads a rigid motion that the last answer leaves undetermined, unknown by unknown.
+    !>
+    !> It is scaled to largest entry 1 over all bodies; bodies that stay have zeros. FETI_STATE without an
+    !> answer. After a failure nothing is written.
+    !>
+    !> @param[in]  p    (scalar) the handle
+    !> @param[in]  k    (scalar) number of the motion, from 0
+    !> @param[in]  body (scalar) number of the body, from 0
+    !> @param[in]  n    (scalar) unknowns of the body
+    !> @param[out] v    (n) length, up to a factor
+    !>
+    !> Safety: The array has the given shape.
+    function feti_diagnosis_undetermined_motion(p, k, body, n, v) &
+        bind(C, name="feti_diagnosis_undetermined_motion")
+      import
+      type(c_ptr), value :: p
+      integer(c_int64_t), value :: k
+      integer(c_int64_t), value :: body
+      integer(c_int64_t), value :: n
+      real(c_double), intent(out) :: v(*)
+      integer(c_int32_t) :: feti_diagnosis_undetermined_motion
+    end function feti_diagnosis_undetermined_motion
 
     !> Reads the rigid motion with which a body escapes, unknown by unknown.
     !>

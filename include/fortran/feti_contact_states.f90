@@ -7,6 +7,10 @@ module feti_contact_states
   use feti_contact_c, only: FETI_OK, feti_findings, &
     c_diagnosis => feti_diagnosis, &
     c_diagnosis_motion => feti_diagnosis_motion, &
+    c_diagnosis_dependent => feti_diagnosis_dependent, &
+    c_diagnosis_untouched => feti_diagnosis_untouched, &
+    c_diagnosis_undetermined => feti_diagnosis_undetermined, &
+    c_diagnosis_undetermined_motion => feti_diagnosis_undetermined_motion, &
     c_diagnosis_rows => feti_diagnosis_rows, &
     c_start_from => feti_start_from, &
     c_state_drop => feti_state_drop, &
@@ -17,6 +21,7 @@ module feti_contact_states
   public :: feti_findings
   public :: start_from, state_save, state_restore, state_drop
   public :: diagnosis, diagnosis_rows, diagnosis_motion
+  public :: diagnosis_dependent, diagnosis_untouched, diagnosis_undetermined, diagnosis_undetermined_motion
 
 contains
 
@@ -110,6 +115,77 @@ contains
     row = int(number(:cap)) + 1
     weight = found(:cap)
     call finish(status, stat, errmsg)
+  end subroutine
+
+  !> Equality rows that are combinations of the other equality rows.
+  subroutine diagnosis_dependent(p, row, stat, errmsg)
+    type(feti_problem), intent(in) :: p
+    integer, allocatable, intent(out) :: row(:)
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+    integer(c_int64_t), allocatable, target :: number(:)
+    integer(c_int64_t) :: cap, count
+    integer(c_int32_t) :: status
+
+    count = 0
+    status = c_diagnosis_dependent(handle_of(p), 0_c_int64_t, count, c_null_ptr)
+    cap = count
+    allocate (number(cap + 1))
+    if (status == FETI_OK) status = c_diagnosis_dependent(handle_of(p), cap, count, c_loc(number))
+    row = int(number(:cap)) + 1
+    call finish(status, stat, errmsg)
+  end subroutine
+
+  !> Bodies that no row touches.
+  subroutine diagnosis_untouched(p, body, stat, errmsg)
+    type(feti_problem), intent(in) :: p
+    integer, allocatable, intent(out) :: body(:)
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+    integer(c_int64_t), allocatable, target :: number(:)
+    integer(c_int64_t) :: cap, count
+    integer(c_int32_t) :: status
+
+    count = 0
+    status = c_diagnosis_untouched(handle_of(p), 0_c_int64_t, count, c_null_ptr)
+    cap = count
+    allocate (number(cap + 1))
+    if (status == FETI_OK) status = c_diagnosis_untouched(handle_of(p), cap, count, c_loc(number))
+    body = int(number(:cap)) + 1
+    call finish(status, stat, errmsg)
+  end subroutine
+
+  !> Rigid motion k of those that the last answer leaves undetermined: the body that moves fastest, and its motion(6), velocity
+  !> of the origin and rotation about the axes, NaN without coordinates.
+  subroutine diagnosis_undetermined(p, k, body, motion, stat, errmsg)
+    type(feti_problem), intent(in) :: p
+    integer, intent(in) :: k
+    integer, intent(out) :: body
+    real(real64), intent(out) :: motion(6)
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+    integer(c_int64_t), target :: fastest
+    real(real64), target :: found(6)
+    integer(c_int32_t) :: status
+
+    fastest = -1
+    found = 0
+    status = c_diagnosis_undetermined(handle_of(p), int(k - 1, c_int64_t), c_loc(fastest), c_loc(found))
+    body = int(fastest) + 1
+    motion = found
+    call finish(status, stat, errmsg)
+  end subroutine
+
+  !> The same on one body, v(n), largest entry over all bodies 1.
+  subroutine diagnosis_undetermined_motion(p, k, body, v, stat, errmsg)
+    type(feti_problem), intent(in) :: p
+    integer, intent(in) :: k, body
+    real(real64), intent(inout), contiguous :: v(:)
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+
+    call finish(c_diagnosis_undetermined_motion(handle_of(p), int(k - 1, c_int64_t), int(body - 1, c_int64_t), &
+      size(v, kind=c_int64_t), v), stat, errmsg)
   end subroutine
 
   !> Rigid motion with which a body escapes, v(n), largest entry over all bodies 1; after FETI_LOAD_NOT_HELD.

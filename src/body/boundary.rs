@@ -6,29 +6,30 @@ use crate::error::Result;
 use crate::linalg::reach::inverse_form;
 use crate::linalg::{Analysis, Csr, Operator, Packed, Symmetric};
 
-/// `K_bb`: the other dofs held.
-pub fn lumped(k: &Symmetric, boundary: &[usize]) -> Result<Box<dyn Operator + Send>> {
+/// `scale K_bb`: the other dofs held.
+pub fn lumped(k: &Symmetric, scale: f64, boundary: &[usize]) -> Result<Box<dyn Operator + Send>> {
     let local = positions(k.order(), boundary);
     let mut part = Symmetric { ptr: vec![0], col: Vec::new(), val: Vec::new() };
     for &dof in boundary {
         for (j, v) in k.lower_row(dof).filter_map(|(j, v)| Some((local[j]?, v))) {
             part.col.push(j);
-            part.val.push(v);
+            part.val.push(scale * v);
         }
         part.ptr.push(part.col.len());
     }
     Ok(Box::new(part))
 }
 
-/// `S = K_bb - K_bi K_ii^-1 K_ib`: the other dofs free.
-pub fn dirichlet(k: &Symmetric, boundary: &[usize]) -> Result<Box<dyn Operator + Send>> {
+/// `S = scale (K_bb - K_bi K_ii^-1 K_ib)`: the other dofs free.
+pub fn dirichlet(k: &Symmetric, scale: f64, boundary: &[usize]) -> Result<Box<dyn Operator + Send>> {
+    let k = &k.scaled(scale)?;
     let local = positions(k.order(), boundary);
     let held: Vec<bool> = local.iter().map(Option::is_some).collect();
     if !held.contains(&false) {
-        return lumped(k, boundary);
+        return lumped(k, 1.0, boundary);
     }
     let Ok(interior) = Arc::new(Analysis::new(k, &held)?).attempt(k)? else {
-        return lumped(k, boundary); // a part of the body hangs on no constrained dof
+        return lumped(k, 1.0, boundary); // a part of the body hangs on no constrained dof
     };
     let mut schur = inverse_form(&interior, &coupling(k, boundary, &local))?;
     schur.negate();
@@ -84,9 +85,9 @@ mod tests {
             val: vec![2.0, -2.0, 5.0, -3.0, 3.0],
         };
         let mut y = [0.0; 2];
-        dirichlet(&k, &[0, 2]).unwrap().apply(&[1.0, 0.0], &mut y);
+        dirichlet(&k, 1.0, &[0, 2]).unwrap().apply(&[1.0, 0.0], &mut y);
         assert!((y[0] - 1.2).abs() < 1e-15 && (y[1] + 1.2).abs() < 1e-15);
-        lumped(&k, &[0, 2]).unwrap().apply(&[1.0, 1.0], &mut y);
-        assert_eq!(y, [2.0, 3.0]);
+        lumped(&k, 2.0, &[0, 2]).unwrap().apply(&[1.0, 1.0], &mut y);
+        assert_eq!(y, [4.0, 6.0]);
     }
 }

@@ -8,8 +8,10 @@
 //! contact rows, then the equality rows, scaled so that `B D^-1 B' + C` has the diagonal 1; forces are in units
 //! of 2^p, the size of the largest diagonal entry of K.
 
+mod coupling;
 mod preconditioner;
 
+pub use coupling::dependent_rows;
 pub use preconditioner::{constrained, Boundary, Preconditioner};
 
 use std::ops::Range;
@@ -83,6 +85,11 @@ impl Dual {
     /// Bytes that explicit operators take for these bodies and rows.
     pub fn bytes(ranges: impl Iterator<Item = Range<usize>>, matrix: &Csr) -> usize {
         ranges.map(|range| Packed::bytes(touching(&range, matrix).len())).sum()
+    }
+
+    /// Multiplications of a product with F.
+    pub fn product_work(&self) -> usize {
+        self.subdomains.iter().map(|s| s.rows.len() * s.rows.len()).sum()
     }
 
     /// Dimension r of the null space of all bodies.

@@ -85,6 +85,134 @@ unsafe fn room<T: Copy>(to: *mut T, cap: usize, name: &'static str) -> Result<Ou
     unsafe { Output::new(to, if to.is_null() { 0 } else { cap }, name) }
 }
 
+/// Lists the equality rows that are combinations of the other equality rows, found when asked for.
+///
+/// They constrain nothing, and which of them carry the forces is open. Rows that repeat another one are with
+/// feti_diagnosis_rows. FETI_STATE before the first setup. After a failure nothing is written.
+///
+/// | argument | in/out | shape | rule |
+/// |---|---|---|---|
+/// | `p` | in | scalar | the handle |
+/// | `cap` | in | scalar | rows that `row` has room for |
+/// | `count` | out | scalar | rows there are; those that fit are written |
+/// | `row` | out | cap | numbers from 0, ascending; may be NULL |
+///
+/// # Safety
+/// `count` has room for one number, `row` is NULL or has room for `cap` numbers.
+#[no_mangle]
+pub unsafe extern "C" fn feti_diagnosis_dependent(
+    p: *mut feti_problem,
+    cap: i64,
+    count: *mut i64,
+    row: *mut i64,
+) -> i32 {
+    enter(p, call!(feti_diagnosis_dependent(p, cap, count, row)), |problem| {
+        let cap = self::count(cap, "cap")?;
+        // SAFETY: the caller gives room for one number, and for `cap` numbers or NULL.
+        let list = unsafe { (Output::new(count, 1, "count")?, room(row, cap, "row")?) };
+        write_list(&problem.dependent_equalities()?, cap, list);
+        Ok(())
+    })
+}
+
+/// Lists the bodies that no row touched in the last solve, or in the last setup that failed.
+///
+/// FETI_STATE before the first solve. After a failure nothing is written.
+///
+/// | argument | in/out | shape | rule |
+/// |---|---|---|---|
+/// | `p` | in | scalar | the handle |
+/// | `cap` | in | scalar | bodies that `body` has room for |
+/// | `count` | out | scalar | bodies there are; those that fit are written |
+/// | `body` | out | cap | numbers from 0, ascending; may be NULL |
+///
+/// # Safety
+/// `count` has room for one number, `body` is NULL or has room for `cap` numbers.
+#[no_mangle]
+pub unsafe extern "C" fn feti_diagnosis_untouched(
+    p: *mut feti_problem,
+    cap: i64,
+    count: *mut i64,
+    body: *mut i64,
+) -> i32 {
+    enter(p, call!(feti_diagnosis_untouched(p, cap, count, body)), |problem| {
+        let cap = self::count(cap, "cap")?;
+        // SAFETY: the caller gives room for one number, and for `cap` numbers or NULL.
+        let list = unsafe { (Output::new(count, 1, "count")?, room(body, cap, "body")?) };
+        write_list(&problem.findings()?.untouched, cap, list);
+        Ok(())
+    })
+}
+
+/// Writes how many there are, and those that there is room for.
+fn write_list(numbers: &[usize], cap: usize, (count, list): (Output<i64>, Output<i64>)) {
+    count.set(numbers.len() as i64);
+    numbers.iter().take(cap).enumerate().for_each(|(k, &number)| list.write_at(k, &[number as i64]));
+}
+
+/// Reads a rigid motion that the last answer leaves undetermined: which body, and how it moves.
+///
+/// `undetermined` of feti_findings says how many there are. Bodies that have nothing to do with each other are in motions
+/// of their own. FETI_STATE without an answer. After a failure nothing is written.
+///
+/// | argument | in/out | shape | rule |
+/// |---|---|---|---|
+/// | `p` | in | scalar | the handle |
+/// | `k` | in | scalar | number of the motion, from 0 |
+/// | `body` | out | scalar | number of the body that moves fastest, from 0; may be NULL |
+/// | `motion` | out | 6 | of this body: velocity of the origin, rotation about the axes; NaN without coordinates; may be NULL |
+///
+/// # Safety
+/// The arrays have the given shapes.
+#[no_mangle]
+pub unsafe extern "C" fn feti_diagnosis_undetermined(
+    p: *mut feti_problem,
+    k: i64,
+    body: *mut i64,
+    motion: *mut f64,
+) -> i32 {
+    enter(p, call!(feti_diagnosis_undetermined(p, k, body, motion)), |problem| {
+        // SAFETY: room by the caller's word.
+        let (fastest, motion) = unsafe { (room(body, 1, "body")?, room(motion, 6, "motion")?) };
+        let open = problem.open_motion(count(k, "k")?)?;
+        fastest.write_at(0, &[open.body as i64]);
+        motion.write_at(0, &open.motion.unwrap_or([f64::NAN; 6]));
+        Ok(())
+    })
+}
+
+/// Reads a rigid motion that the last answer leaves undetermined, unknown by unknown.
+///
+/// It is scaled to largest entry 1 over all bodies; bodies that stay have zeros. FETI_STATE without an answer. After a
+/// failure nothing is written.
+///
+/// | argument | in/out | shape | rule |
+/// |---|---|---|---|
+/// | `p` | in | scalar | the handle |
+/// | `k` | in | scalar | number of the motion, from 0 |
+/// | `body` | in | scalar | number of the body, from 0 |
+/// | `n` | in | scalar | unknowns of the body |
+/// | `v` | out | n | length, up to a factor |
+///
+/// # Safety
+/// The array has the given shape.
+#[no_mangle]
+pub unsafe extern "C" fn feti_diagnosis_undetermined_motion(
+    p: *mut feti_problem,
+    k: i64,
+    body: i64,
+    n: i64,
+    v: *mut f64,
+) -> i32 {
+    enter(p, call!(feti_diagnosis_undetermined_motion(p, k, body, n, v)), |problem| {
+        let (body, n) = body_of_order(problem, body, n)?;
+        // SAFETY: room for n numbers by the caller's word.
+        let to = unsafe { Output::new(v, n, "v") }?;
+        to.write(&problem.open_motion_of(count(k, "k")?, body)?);
+        Ok(())
+    })
+}
+
 /// Reads the rigid motion with which a body escapes, unknown by unknown.
 ///
 /// The load does work on it, and no row resists. It is scaled to largest entry 1 over all bodies; bodies that stay have

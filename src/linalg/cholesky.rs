@@ -150,12 +150,17 @@ impl Cholesky {
         SupernodalLltRef::new(&self.analysis.symbolic, &self.values)
     }
 
+    /// Pivots `L_ii^2` with their dofs, in the order of elimination.
+    pub fn pivots(&self) -> impl Iterator<Item = (usize, f64)> + '_ {
+        let factor = self.factor();
+        let nodes = (0..self.analysis.symbolic.n_supernodes()).map(move |s| factor.supernode(s).val());
+        let pivots = nodes.flat_map(|l| (0..l.ncols()).map(move |i| l[(i, i)] * l[(i, i)]));
+        self.analysis.order.iter().copied().zip(pivots)
+    }
+
     /// Smallest pivot `L_ii^2`.
     pub fn smallest_pivot(&self) -> f64 {
-        let factor = self.factor();
-        let nodes = (0..self.analysis.symbolic.n_supernodes()).map(|s| factor.supernode(s).val());
-        let pivots = nodes.flat_map(|l| (0..l.ncols()).map(move |i| l[(i, i)] * l[(i, i)]));
-        pivots.fold(f64::INFINITY, f64::min)
+        self.pivots().fold(f64::INFINITY, |smallest, (_, pivot)| smallest.min(pivot))
     }
 
     /// `x <- K_ff^-1 x` on the free dofs; x has the length of the body, held entries become 0.

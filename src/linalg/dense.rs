@@ -52,6 +52,34 @@ impl Matrix {
         (0..self.cols).map(|j| dot(self.col(j), x)).collect()
     }
 
+    /// Basis of the column space in which every vector has a 1 where all others have 0: parts that have nothing to do with
+    /// each other get vectors of their own. Entries below `drop` of the largest are rounding. For independent columns.
+    pub fn reduced(mut self, drop: f64) -> Self {
+        let mut pivots = Vec::with_capacity(self.cols);
+        for j in 0..self.cols {
+            let size = |i: &usize| self.col(j)[*i].abs();
+            let pivot = (0..self.rows).fold(0, |best, i| if size(&i) > size(&best) { i } else { best });
+            let value = self.get(pivot, j);
+            self.col_mut(j).iter_mut().for_each(|v| *v /= value);
+            let column = self.col(j).to_vec();
+            for other in (0..self.cols).filter(|other| *other != j) {
+                let part = self.get(pivot, other);
+                axpy(-part, &column, self.col_mut(other));
+                self.set(pivot, other, 0.0);
+            }
+            pivots.push(pivot);
+        }
+        let mut order: Vec<usize> = (0..self.cols).collect();
+        order.sort_unstable_by_key(|&j| pivots[j]);
+        let mut sorted = Self { rows: self.rows, ..Self::default() };
+        for j in order {
+            let smallest = drop * self.col(j).iter().fold(0.0f64, |largest, v| largest.max(v.abs()));
+            let kept = self.col(j).iter().map(|v| if v.abs() > smallest { *v } else { 0.0 });
+            sorted.push_col(&kept.collect::<Vec<f64>>());
+        }
+        sorted
+    }
+
     /// Orthonormal basis of the column space: Gram-Schmidt, twice, the longest remaining column first.
     /// Columns that keep less than `drop` of their length depend on the others and are left out.
     pub fn orthonormalised(mut self, drop: f64) -> Self {
@@ -110,5 +138,13 @@ mod tests {
                 assert!((dot(q.col(i), q.col(j)) - expected).abs() < 1e-15);
             }
         }
+    }
+
+    #[test]
+    fn a_reduced_basis_takes_apart_what_was_mixed() {
+        // the span of (1, 1, 0, 0) and (0, 0, 1, -2), mixed
+        let mixed = Matrix { rows: 4, cols: 2, data: vec![1.0, 1.0, 3.0, -6.0, -2.0, -2.0, 0.1, -0.2] };
+        let reduced = mixed.reduced(1e-12);
+        assert_eq!(reduced.data, [1.0, 1.0, 0.0, 0.0, 0.0, 0.0, -0.5, 1.0]);
     }
 }

@@ -19,8 +19,11 @@ pub struct SpdSolver {
 
 enum Factor {
     Cholesky(Llt<f64>),
-    /// Columns `v / sqrt(eigenvalue)` of the eigenvectors kept: `W+ = T T'`.
-    Pseudo(Matrix),
+    /// Columns `v / sqrt(eigenvalue)` of the eigenvectors kept, `W+ = T T'`, and the eigenvectors cut off.
+    Pseudo {
+        kept: Matrix,
+        kernel: Matrix,
+    },
 }
 
 impl SpdSolver {
@@ -30,7 +33,7 @@ impl SpdSolver {
         let scaled = Mat::from_fn(w.rows, w.cols, |i, j| inverse_root[i] * w.get(i, j) * inverse_root[j]);
         let factor = match Llt::new(scaled.as_ref(), Side::Lower) {
             Ok(llt) if regular(&llt) => Factor::Cholesky(llt),
-            _ => Factor::Pseudo(kept_eigenvectors(&scaled)?),
+            _ => eigenvectors(&scaled)?,
         };
         Ok(Self { inverse_root, factor })
     }
@@ -39,8 +42,20 @@ impl SpdSolver {
     pub fn deficiency(&self) -> usize {
         match &self.factor {
             Factor::Cholesky(_) => 0,
-            Factor::Pseudo(kept) => kept.rows - kept.cols,
+            Factor::Pseudo { kernel, .. } => kernel.cols,
         }
+    }
+
+    /// Basis of the kernel that was cut off, n x deficiency.
+    pub fn kernel(&self) -> Matrix {
+        let Factor::Pseudo { kernel, .. } = &self.factor else {
+            return Matrix { rows: self.inverse_root.len(), ..Matrix::default() };
+        };
+        let mut basis = kernel.clone();
+        for j in 0..basis.cols {
+            basis.col_mut(j).iter_mut().zip(&self.inverse_root).for_each(|(v, root)| *v *= root);
+        }
+        basis
     }
 
     pub fn solve(&self, b: &[f64]) -> Vec<f64> {
@@ -53,7 +68,7 @@ impl SpdSolver {
                 x.copy_from_slice(&b);
                 llt.solve_in_place(MatMut::from_column_major_slice_mut(&mut x, b.len(), 1));
             }
-            Factor::Pseudo(kept) => kept.mul_add(1.0, &kept.mul_transposed(&b), &mut x),
+            Factor::Pseudo { kept, .. } => kept.mul_add(1.0, &kept.mul_transposed(&b), &mut x),
         }
         scaled(&x)
     }
@@ -64,18 +79,19 @@ fn regular(llt: &Llt<f64>) -> bool {
     (0..l.nrows()).all(|i| l[(i, i)] * l[(i, i)] > RANK_TOLERANCE)
 }
 
-fn kept_eigenvectors(w: &Mat<f64>) -> Result<Matrix> {
+fn eigenvectors(w: &Mat<f64>) -> Result<Factor> {
     let eigen = SelfAdjointEigen::new(w.as_ref(), Side::Lower)
         .map_err(|_| Error::new(Kind::Internal, "the eigenvalues of a coarse matrix did not converge"))?;
-    let mut kept = Matrix { rows: w.nrows(), ..Matrix::default() };
+    let none = Matrix { rows: w.nrows(), ..Matrix::default() };
+    let (mut kept, mut kernel) = (none.clone(), none);
     for j in 0..w.ncols() {
         let value = eigen.S()[j];
-        if value > RANK_TOLERANCE {
-            let column: Vec<f64> = (0..w.nrows()).map(|i| eigen.U()[(i, j)] / value.sqrt()).collect();
-            kept.push_col(&column);
-        }
+        let (to, length) =
+            if value > RANK_TOLERANCE { (&mut kept, value.sqrt()) } else { (&mut kernel, 1.0) };
+        let column: Vec<f64> = (0..w.nrows()).map(|i| eigen.U()[(i, j)] / length).collect();
+        to.push_col(&column);
     }
-    Ok(kept)
+    Ok(Factor::Pseudo { kept, kernel })
 }
 
 /// Singular values of `a` (rows >= cols), descending, with the right singular vectors as columns.
@@ -104,6 +120,8 @@ mod tests {
         assert_eq!(solver.deficiency(), 1);
         let x = solver.solve(&[2.0, 2.0]);
         assert!((x[0] - 1.0).abs() < 1e-14 && (x[1] - 1.0).abs() < 1e-14);
+        let kernel = solver.kernel();
+        assert!(kernel.cols == 1 && (kernel.get(0, 0) + kernel.get(1, 0)).abs() < 1e-14, "{kernel:?}");
     }
 
     #[test]

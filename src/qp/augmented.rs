@@ -172,4 +172,20 @@ mod tests {
         assert!((7.0..=1.05 * 7.0).contains(&augmented.largest), "{}", augmented.largest);
         assert!(augmented.counts.products < ITERATIONS);
     }
+
+    /// Eigenvalues 1 ... 30: after three steps the estimate is a tenth too small, and steps of fixed length diverge.
+    #[test]
+    fn three_power_iterations_are_not_enough_and_not_the_last() {
+        let (m, mut g_transposed) = (30, Csr::empty(0));
+        let mut a = Packed::zeros(m).unwrap();
+        for i in 0..m {
+            a.add(i, i, 1.0 + i as f64);
+            g_transposed.push_row([]);
+        }
+        let (b, bounded) = (vec![0.0; m], vec![true; m]);
+        let qp =
+            Qp { a: &a, b: &b, g_transposed: &g_transposed, e: &[], bounded: &bounded, preconditioner: None };
+        let largest = Augmented::new(qp, Coarse::new(&g_transposed).unwrap()).unwrap().largest;
+        assert!((30.0..=1.05 * 30.0).contains(&largest), "{largest}");
+    }
 }

@@ -151,6 +151,21 @@ impl<'a> Coarse<'a> {
     }
 }
 
+/// Basis of all a with `G_F'a = 0` on the rows that are not held, r x deficiency: motions that these rows do not resist.
+pub fn undetermined(g_transposed: &Csr, held: &[bool]) -> Result<Matrix> {
+    const ROUNDING: f64 = 1e-9;
+    let mut coarse = Coarse::new(g_transposed)?;
+    coarse.select(held)?;
+    let Some(Face { solver: Solver::Pseudo(solver), .. }) = &coarse.faces[coarse.selected] else {
+        return Matrix::zeros(coarse.dimension(), 0);
+    };
+    let mut kernel = solver.kernel();
+    for j in 0..kernel.cols {
+        kernel.col_mut(j).iter_mut().zip(&coarse.root).for_each(|(v, root)| *v /= root);
+    }
+    Ok(kernel.reduced(ROUNDING))
+}
+
 fn analysed(g_transposed: &Csr) -> Result<(Gram, Arc<Analysis>)> {
     let gram = Gram::of(g_transposed)?;
     let analysis = Analysis::new(gram.pattern(), &vec![false; g_transposed.cols])?;
@@ -198,5 +213,10 @@ mod tests {
         assert_eq!(coarse.deficiency(), 1);
         let x = coarse.solve(&[1.0, 1.0]).unwrap();
         assert!((x[0] - 0.5).abs() < 1e-14 && (x[1] - 0.5).abs() < 1e-14);
+        let free = undetermined(&g_transposed, &[false, true]).unwrap();
+        assert_eq!((free.rows, free.cols), (2, 1));
+        assert!((free.get(0, 0) + free.get(1, 0)).abs() < 1e-14 && free.get(0, 0).abs() == 1.0);
+        assert_eq!(undetermined(&g_transposed, &[false, false]).unwrap().cols, 0);
+        assert_eq!(undetermined(&g_transposed, &[true, true]).unwrap().data, [1.0, 0.0, 0.0, 1.0]);
     }
 }

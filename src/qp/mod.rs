@@ -17,6 +17,7 @@ mod proportioning;
 mod smalbe;
 mod steps;
 
+pub use coarse::undetermined;
 pub use conjugate::MOST as KEPT;
 pub use proportioning::{minimise, Judge, Limits, Observer, Progress, Solution, StepKind, Verdict};
 pub use smalbe::smalbe;

@@ -127,7 +127,7 @@ impl Problem {
         (0..touched.len()).filter(|&p| !touched[p]).collect()
     }
 
-    fn rigid_motion(&self, body: usize, v: &[f64]) -> Option<[f64; 6]> {
+    pub(super) fn rigid_motion(&self, body: usize, v: &[f64]) -> Option<[f64; 6]> {
         let coordinates = self.bodies.get(body)?.body.coordinates.as_ref()?;
         coordinates.rigid_motion(v.get(self.ranges()[body].clone())?)
     }

@@ -14,6 +14,7 @@ mod setup;
 mod solve;
 mod state;
 mod threads;
+mod undetermined;
 mod watch;
 
 pub use crate::body::{Modes, SparseInput, Storage};

@@ -29,6 +29,8 @@ pub struct Problem {
     pub(super) ready: Option<Ready>,
     pub(super) answer: Option<Arc<Answer>>,
     pub(super) findings: Option<Findings>,
+    /// Motions that the answer leaves open, once somebody has asked.
+    pub(super) open_motions: Option<Matrix>,
     pub(super) history: History,
     pub(super) host: Host,
     pub(super) factorisations: usize,
@@ -261,6 +263,7 @@ impl Problem {
     fn forget_dual(&mut self) {
         self.ready = None;
         self.answer = None;
+        self.open_motions = None;
         self.history.data_changed();
     }
 

@@ -29,6 +29,7 @@ impl Problem {
     fn solve_watched(&mut self, watch: &mut Watch) -> Result<Report> {
         let started = Instant::now();
         self.answer = None;
+        self.open_motions = None;
         let start = self.take_start();
         self.set_up(watch)?;
         self.set_up_preconditioner(watch)?;

@@ -1,8 +1,9 @@
-//! Random hard problems whose outcome is known by construction, problems solved by hand, and decks of modest
-//! size: what a whole solve must find.
+//! Random hard problems whose outcome is known by construction, marginal ones where rounding may decide, problems solved
+//! by hand, and decks of modest size: what a whole solve must find.
 
 #[path = "../support/hand_over.rs"]
 mod hand_over;
+mod marginal;
 mod modest;
 mod small;
 

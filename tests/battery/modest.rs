@@ -51,3 +51,18 @@ fn cubes_of_subdomains_are_solved() {
         assert_solved(&Cube { moduli, waves: 0.3, noise: 0.1, pressure: 1.0, ..plane.clone() }.build());
     }
 }
+
+#[test]
+fn automatic_means_lumped_where_products_are_dear_and_none_elsewhere() {
+    let applications = |deck: &Deck, preconditioner: &str| {
+        let mut problem = hand_over::problem(deck).unwrap();
+        problem.set_str("preconditioner", preconditioner).unwrap();
+        let report = problem.solve().unwrap();
+        (report.preconditioner_applications, report.dual_applications)
+    };
+    let glued = Cube { elements: 4, ..Cube::default() }.build();
+    assert!(applications(&glued, "automatic").0 > 0);
+    assert_eq!(applications(&glued, "automatic"), applications(&glued, "lumped"));
+    let two = Blocks { elements: 6, young: 1.0 }.build();
+    assert_eq!(applications(&two, "automatic").0, 0);
+}

@@ -1,6 +1,6 @@
 //! Threads and earlier solves: the same bits every time.
 
-use decks::{Blocks, Deck};
+use decks::{Blocks, Cube, Deck, Glue};
 use feti_contact::solver::{Problem, RowKind};
 
 use crate::answer::{decks, Answer};
@@ -30,6 +30,21 @@ fn solving_twice_gives_the_same_bits() {
         let factorisations = problem.report().unwrap().factorisations;
         Answer::from(&mut problem, &deck.name).assert_same(&first, &deck.name);
         assert_eq!(problem.report().unwrap().factorisations, factorisations, "{}", deck.name);
+    }
+}
+
+/// The last face is kept, and the blocks of dependent rows on it.
+#[test]
+fn a_preconditioner_kept_from_the_last_solve_gives_the_same_bits() {
+    let deck = Cube { glue: Glue::Redundant, waves: 0.3, clamp: false, ..Cube::default() }.build();
+    for preconditioner in ["lumped", "dirichlet"] {
+        let mut problem = hand_over::problem(&deck).unwrap();
+        problem.set_str("preconditioner", preconditioner).unwrap();
+        let first = Answer::from(&mut problem, preconditioner);
+        change(&mut problem, &deck, 1.0, -0.5);
+        Answer::from(&mut problem, preconditioner);
+        change(&mut problem, &deck, 1.0, 1.0);
+        Answer::from(&mut problem, preconditioner).assert_same(&first, preconditioner);
     }
 }
 

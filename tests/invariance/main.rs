@@ -2,6 +2,7 @@
 //! solved before, the form in which a matrix is handed over.
 
 mod answer;
+mod factors;
 mod forms;
 #[path = "../support/hand_over.rs"]
 mod hand_over;

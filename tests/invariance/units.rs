@@ -6,7 +6,7 @@ use decks::{Deck, Rows};
 use crate::answer::{decks, Answer};
 
 /// K by `stiffness`, f by `force`, c and h by `length`.
-fn in_units(deck: &Deck, stiffness: f64, force: f64, length: f64) -> Deck {
+pub fn in_units(deck: &Deck, stiffness: f64, force: f64, length: f64) -> Deck {
     let mut deck = deck.clone();
     for body in &mut deck.bodies {
         body.stiffness.val.iter_mut().for_each(|k| *k *= stiffness);
@@ -30,7 +30,7 @@ fn with_factors(rows: &mut Rows, factors: &[f64]) {
 }
 
 /// The deck with every row in its own unit, and its answer expected from that of the deck.
-fn with_rows_in_units(deck: &Deck, answer: &Answer, mut factor: impl FnMut() -> f64) -> (Deck, Answer) {
+pub fn with_rows_in_units(deck: &Deck, answer: &Answer, mut factor: impl FnMut() -> f64) -> (Deck, Answer) {
     let (mut deck, mut answer) = (deck.clone(), answer.clone());
     let pairs = [(&mut deck.contact, &mut answer.lambda), (&mut deck.equalities, &mut answer.mu)];
     for (rows, multipliers) in pairs {
@@ -39,6 +39,18 @@ fn with_rows_in_units(deck: &Deck, answer: &Answer, mut factor: impl FnMut() -> 
         multipliers.iter_mut().zip(&factors).for_each(|(l, factor)| *l /= factor);
     }
     (deck, answer)
+}
+
+/// `found` with its forces in the units of `reference`, of which `expected` is the answer in the units of `found`.
+pub fn in_units_of(reference: &Answer, expected: &Answer, found: Answer) -> Answer {
+    let back = |found: &[f64], expected: &[f64], reference: &[f64]| -> Vec<f64> {
+        assert_eq!(found.len(), expected.len());
+        let ratios = expected.iter().zip(reference).map(|(e, r)| if *e == 0.0 { 1.0 } else { r / e });
+        found.iter().zip(ratios).map(|(l, ratio)| l * ratio).collect()
+    };
+    let lambda = back(&found.lambda, &expected.lambda, &reference.lambda);
+    let mu = back(&found.mu, &expected.mu, &reference.mu);
+    Answer { lambda, mu, ..found }
 }
 
 fn power(exponent: i32) -> f64 {
@@ -124,15 +136,7 @@ fn any_unit_of_a_row_gives_the_same_answer() {
         let mut random = Random::new(seed as u64);
         let factors = [210_000.0, 1e-3, 3.7];
         let (in_units, expected) = with_rows_in_units(deck, &answer, || factors[random.below(3)]);
-        let found = Answer::of(&in_units);
-        assert_eq!(found.lambda.len(), expected.lambda.len());
-        // forces in the units of the deck, where they are comparable
-        let back = |l: &[f64], expected: &[f64], reference: &[f64]| -> Vec<f64> {
-            let ratios = expected.iter().zip(reference).map(|(e, r)| if *e == 0.0 { 1.0 } else { r / e });
-            l.iter().zip(ratios).map(|(l, ratio)| l * ratio).collect()
-        };
-        let lambda = back(&found.lambda, &expected.lambda, &answer.lambda);
-        let mu = back(&found.mu, &expected.mu, &answer.mu);
-        assert_rounding(&Answer { lambda, mu, ..found }, &answer, &deck.name);
+        let found = in_units_of(&answer, &expected, Answer::of(&in_units));
+        assert_rounding(&found, &answer, &deck.name);
     }
 }

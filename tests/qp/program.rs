@@ -116,17 +116,24 @@ impl Program {
         accepted: f64,
         preconditioner: Option<&dyn Preconditioner>,
     ) -> Solution {
-        let g_transposed = self.g_transposed();
-        let qp = Qp {
-            a: &self.a,
-            b: &self.b,
-            g_transposed: &g_transposed,
-            e: &self.e,
-            bounded: &self.bounded,
-            preconditioner,
-        };
         let limits = Limits { tolerance, gamma: 1.0, steps: 5000 };
-        minimise(qp, start, limits, &mut Conditions { program: self, accepted }, &mut Silent).unwrap()
+        let mut judge = Conditions { program: self, accepted };
+        let g_transposed = self.g_transposed();
+        let qp = Qp { preconditioner, ..self.qp(&g_transposed) };
+        minimise(qp, start, limits, &mut judge, &mut Silent).unwrap()
+    }
+
+    /// To 1e-12 from a start, by any method, watched.
+    pub fn watched(&self, method: Method, start: &[f64], observer: &mut dyn Observer) -> Solution {
+        let limits = Limits { tolerance: 1e-12, gamma: 1.0, steps: 20_000 };
+        let mut judge = Conditions { program: self, accepted: 1e-9 };
+        let g_transposed = self.g_transposed();
+        method(self.qp(&g_transposed), start, limits, &mut judge, observer).unwrap()
+    }
+
+    fn qp<'a>(&'a self, g_transposed: &'a Csr) -> Qp<'a> {
+        let (b, e, bounded) = (&self.b, &self.e, &self.bounded);
+        Qp { a: &self.a, b, g_transposed, e, bounded, preconditioner: None }
     }
 
     /// The solution, which must have been accepted.
@@ -138,6 +145,9 @@ impl Program {
         solution
     }
 }
+
+/// `minimise` or `smalbe`.
+pub type Method = fn(Qp, &[f64], Limits, &mut dyn Judge, &mut dyn Observer) -> Result<Solution>;
 
 /// Accepts by the residuals of the optimality conditions.
 struct Conditions<'a> {
@@ -155,7 +165,7 @@ impl Judge for Conditions<'_> {
     }
 }
 
-struct Silent;
+pub struct Silent;
 
 impl Observer for Silent {
     fn step(&mut self, _: &Progress) -> Result<()> {

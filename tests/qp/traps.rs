@@ -2,10 +2,11 @@
 
 use approx::assert_relative_eq;
 use decks::random::Random;
-use feti_contact::qp::Verdict;
+use feti_contact::error::Result;
+use feti_contact::qp::{minimise, smalbe, Observer, Progress, StepKind, Verdict};
 
 use crate::dense::{dot, norm, Dense};
-use crate::program::Program;
+use crate::program::{Program, Silent};
 
 fn assert_near(found: &[f64], expected: &[f64]) {
     assert_eq!(found.len(), expected.len());
@@ -59,6 +60,7 @@ fn without_bounds_one_linear_system_is_solved() {
     assert!(solution.counts.conjugate_gradient <= 3, "{:?}", solution.counts);
 }
 
+/// Least squares on the face give one of many multipliers, and not always one that proves the vertex optimal.
 #[test]
 fn a_degenerate_vertex_is_optimal_though_its_least_squares_multiplier_says_otherwise() {
     // x1 + x2 = 0 with x >= 0 leaves only 0: r = (-1, -3) - alpha (1, 1) >= 0 with alpha <= -3
@@ -81,6 +83,7 @@ fn a_degenerate_vertex_is_optimal_though_its_least_squares_multiplier_says_other
     assert_near(&solution.alpha, &[-0.5]);
 }
 
+/// P d = 0: neither a scale for the stop nor a direction can be taken from it.
 #[test]
 fn as_many_rows_as_modes_leave_no_direction_to_search() {
     // three rows, three modes: x = G^-1 e whatever A and b, alpha = G^-T (A x - b)
@@ -201,4 +204,51 @@ fn a_tighter_tolerance_never_gives_a_larger_theta() {
         let size = norm(&values);
         assert!(values.windows(2).all(|pair| pair[1] <= pair[0] + 1e-14 * size), "seed {seed}: {values:?}");
     }
+}
+
+/// Remembers the active set before every step.
+#[derive(Default)]
+struct Faces {
+    last: Vec<bool>,
+    expansions: usize,
+}
+
+impl Observer for Faces {
+    fn step(&mut self, now: &Progress) -> Result<()> {
+        if now.kind == StepKind::Expansion {
+            let opened = self.last.iter().zip(now.active).filter(|(before, after)| **before && !**after);
+            assert_eq!(opened.count(), 0, "an expansion has opened rows");
+            self.expansions += usize::from(self.last.contains(&true));
+        }
+        self.last = now.active.to_vec();
+        Ok(())
+    }
+}
+
+/// Projected on the whole feasible set, the point of an expansion opens rows that the face has closed; they close
+/// again, and open again, for ever.
+#[test]
+fn an_expansion_never_opens_a_closed_row() {
+    let mut expansions = 0;
+    for seed in 0..20 {
+        let program = stiff(60, 2, 1e3, seed);
+        let mut faces = Faces::default();
+        let solution = program.watched(minimise, &[0.0; 60], &mut faces);
+        assert_eq!(solution.verdict, Verdict::Solved, "seed {seed}");
+        expansions += faces.expansions;
+    }
+    assert!(expansions > 20, "{expansions} from faces with closed rows show nothing");
+}
+
+/// A mode held by one row of 300: each update of the multiplier takes up only a hundredth of the violation. A cap of 100
+/// outer iterations ends with half of the load.
+#[test]
+fn an_augmented_lagrangian_may_need_hundreds_of_outer_iterations() {
+    let mut b = vec![-10.0; 300];
+    b[0] = 0.0;
+    let program = Program::new(identity(300), &b).with_equalities(&[&[1.0; 300]], &[1.0]);
+    let solution = program.watched(smalbe, &[0.0; 300], &mut Silent);
+    assert_eq!(solution.verdict, Verdict::Solved, "{:?}", solution.counts);
+    assert_relative_eq!(solution.x[0], 1.0, max_relative = 1e-9);
+    assert!(solution.x[1..].iter().all(|x| *x == 0.0));
 }

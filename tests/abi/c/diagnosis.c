@@ -173,6 +173,88 @@ static void what_an_answer_leaves_open(void)
     OK(feti_problem_destroy(&problem));
 }
 
+static void check_list(const char *what, int64_t count, const int64_t *found, int64_t expected, const int64_t *wanted)
+{
+    CHECK(count == expected, "%lld %s, expected %lld", (long long)count, what, (long long)expected);
+    for (int64_t k = 0; k < expected && k < count; k++)
+        CHECK(found[k] == wanted[k], "%s: %lld, expected %lld", what, (long long)found[k], (long long)wanted[k]);
+}
+
+/* Bars along x, y and z that no row touches, among others that rows hold: each slides along its axis. */
+static void motions_that_nothing_determines(void)
+{
+    feti_problem *problem = small_problem();
+    const int32_t node[2] = { 1, 2 };
+    int64_t bar[3], body = -1, count = -1, list[MOST] = { 0 };
+    double motion[6], v[2];
+
+    EXPECT(FETI_STATE, feti_diagnosis_untouched(problem, 0, &count, NULL));
+    EXPECT(FETI_STATE, feti_diagnosis_undetermined(problem, 0, &body, motion));
+    for (int32_t axis = 0; axis < 3; axis++) {
+        const int32_t dir[2] = { axis + 1, axis + 1 };
+        double x[6] = { 0 };
+
+        x[axis] = 2.0;
+        x[3 + axis] = 3.0;
+        OK(feti_body_add(problem, 2, &bar[axis]));
+        OK(feti_body_stiffness_i32(problem, bar[axis], 2, BLOCK_PTR, BLOCK_COL, BLOCK_VAL, 0, FETI_LOWER, FETI_COPY));
+        OK(feti_body_null_space(problem, bar[axis], 1, 2, BLOCK_MODE, 2, FETI_EXACT));
+        if (axis > 0) OK(feti_body_coordinates(problem, bar[axis], 3, 2, node, dir, x, 3));
+    }
+    OK(feti_solve(problem, NULL));
+    CHECK(findings_of(problem, FETI_OK).undetermined == 3, "other than three motions");
+    OK(feti_diagnosis_untouched(problem, 0, &count, NULL));
+    OK(feti_diagnosis_untouched(problem, MOST, &count, list));
+    check_list("untouched bodies", count, list, 3, bar);
+    for (int k = 0; k < 3; k++) {
+        OK(feti_diagnosis_undetermined(problem, k, &body, motion));
+        CHECK(body == bar[k], "motion %d is of body %lld", k, (long long)body);
+        for (int axis = 0; axis < 6; axis++) {
+            const int right = k == 0 ? isnan(motion[axis]) : fabs(motion[axis] - (axis == k)) < 1e-12;
+            CHECK(right, "motion %d, entry %d: %g", k, axis, motion[axis]);
+        }
+        for (int other = 0; other < 3; other++) {
+            OK(feti_diagnosis_undetermined_motion(problem, k, bar[other], 2, v));
+            CHECK(fabs(v[0] - (other == k)) < 1e-12 && fabs(v[1] - (other == k)) < 1e-12, "motion %d of bar %d", k, other);
+        }
+    }
+    OK(feti_diagnosis_undetermined(problem, 2, NULL, NULL));
+    EXPECT(FETI_ARGUMENT - 2, feti_diagnosis_undetermined(problem, 3, &body, motion));
+    EXPECT(FETI_ARGUMENT - 2, feti_diagnosis_undetermined(problem, -1, &body, motion));
+    EXPECT(FETI_ARGUMENT - 3, feti_diagnosis_undetermined_motion(problem, 0, 5, 2, v));
+    EXPECT(FETI_ARGUMENT - 4, feti_diagnosis_undetermined_motion(problem, 0, BLOCK, 1, v));
+    EXPECT(FETI_ARGUMENT - 5, feti_diagnosis_undetermined_motion(problem, 0, BLOCK, 2, NULL));
+    EXPECT(FETI_ARGUMENT - 2, feti_diagnosis_untouched(problem, -1, &count, list));
+    EXPECT(FETI_ARGUMENT - 3, feti_diagnosis_untouched(problem, 0, NULL, list));
+    OK(feti_problem_destroy(&problem));
+}
+
+/* u0 = u1, u1 = u2, u0 = u2 and twice the first: of the three differences one depends on the others. */
+static void equality_rows_that_depend_on_each_other(void)
+{
+    const int32_t ptr[4] = { 0, 1, 2, 3 }, col[3] = { 0, 1, 2 };
+    const int32_t row_ptr[5] = { 0, 2, 4, 6, 8 }, dof[8] = { 0, 1, 1, 2, 0, 2, 0, 1 };
+    const double diagonal[3] = { 1.0, 2.0, 3.0 }, val[8] = { 1, -1, 1, -1, 1, -1, 2, -2 }, rhs[4] = { 0 };
+    feti_problem *problem = NULL;
+    int64_t body, count = -1, list[MOST] = { -1 };
+
+    MUST(feti_problem_create(&problem));
+    MUST(feti_body_add(problem, 3, &body));
+    MUST(feti_body_stiffness_i32(problem, body, 3, ptr, col, diagonal, 0, FETI_LOWER, FETI_COPY));
+    MUST(feti_body_null_space(problem, body, 0, 3, NULL, 3, FETI_EXACT));
+    MUST(feti_rows_add_i32(problem, FETI_EQUALITY, 4, row_ptr, NULL, dof, val, 0, rhs, NULL));
+    OK(feti_body_load(problem, body, 3, (double[3]){ 6.0, 0.0, 0.0 }));
+    EXPECT(FETI_STATE, feti_diagnosis_dependent(problem, 0, &count, NULL));
+    OK(feti_solve(problem, NULL));
+    OK(feti_diagnosis_dependent(problem, 0, &count, NULL));
+    OK(feti_diagnosis_dependent(problem, MOST, &count, list));
+    CHECK(count == 1 && list[0] >= 0 && list[0] < 3, "%lld rows, first %lld", (long long)count, (long long)list[0]);
+    check_rows(problem, FETI_EQUALITY, 1, (int64_t[1]){ 3 }, (double[1]){ 2.0 });
+    EXPECT(FETI_ARGUMENT - 2, feti_diagnosis_dependent(problem, -1, &count, list));
+    EXPECT(FETI_ARGUMENT - 3, feti_diagnosis_dependent(problem, 0, NULL, list));
+    OK(feti_problem_destroy(&problem));
+}
+
 /* A matrix with a negative direction: the body and the unknown. */
 static void the_matrix_that_is_refused(void)
 {
@@ -193,6 +275,8 @@ int main(void)
     the_part_that_escapes();
     rows_that_contradict_each_other();
     what_an_answer_leaves_open();
+    motions_that_nothing_determines();
+    equality_rows_that_depend_on_each_other();
     the_matrix_that_is_refused();
     return check_result();
 }

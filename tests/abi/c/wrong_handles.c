@@ -55,6 +55,10 @@ static void every_function(int32_t expected, feti_problem *h)
     EXPECT(expected, feti_diagnosis(h, &findings));
     EXPECT(expected, feti_diagnosis_rows(h, FETI_INEQUALITY, 0, &i, NULL, NULL));
     EXPECT(expected, feti_diagnosis_motion(h, BLOCK, 2, x));
+    EXPECT(expected, feti_diagnosis_dependent(h, 0, &i, NULL));
+    EXPECT(expected, feti_diagnosis_untouched(h, 0, &i, NULL));
+    EXPECT(expected, feti_diagnosis_undetermined(h, 0, NULL, NULL));
+    EXPECT(expected, feti_diagnosis_undetermined_motion(h, 0, BLOCK, 2, x));
 }
 
 static void bad_handles(void)

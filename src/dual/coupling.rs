@@ -1,0 +1,304 @@
+//! How the rows of a face feel each other, `W_F = B_F D^-1 B_F' + C_F` (1 on the diagonal), and its inverse block by block.
+//! A block is a connected part of W_F: the rows on one node, or those that chain over a whole surface.
+
+use std::sync::Arc;
+
+use crate::error::Result;
+use crate::linalg::gram::Gram;
+use crate::linalg::graph::components;
+use crate::linalg::memory::{copied, room};
+use crate::linalg::{Analysis, Cholesky, Csr, Matrix, SpdSolver, Symmetric};
+
+/// A pivot below this means that the rows of its block may depend on each other.
+const SINGULAR: f64 = 1e-8;
+/// Added to the diagonal to find such blocks, the first that Cholesky gets through with: a dependent row keeps it
+/// divided by the square of its share of the dependence, which is far below `SINGULAR`.
+const PROBES: [f64; 4] = [0.0, 1e-13, 1e-12, 1e-11];
+/// Rows of a block up to which its pseudo-inverse is formed.
+const DENSE: usize = 200;
+/// Added to the diagonal of larger blocks: what this makes of the kernel of W, B' maps to zero again, up to rounding of
+/// 1e-16 / 1e-10.
+const SHIFT: f64 = 1e-10;
+
+/// Rows that are combinations of those that are not named, by the pivots of `B D^-1 B' + C`; `columns` is `D^-1/2 B'`,
+/// `compliance` the diagonal of C.
+pub fn dependent_rows(columns: &Csr, compliance: &[f64]) -> Result<Vec<usize>> {
+    let mut rows = Coupling::uncut(columns, compliance)?.weak_rows()?;
+    rows.sort_unstable();
+    Ok(rows)
+}
+
+/// W of all rows.
+pub struct Coupling {
+    whole: Symmetric,
+    analysis: Arc<Analysis>,
+    /// Rows in blocks of W that are not safely of full rank. On a face they depend on each other or they do not; the
+    /// others never do.
+    suspect: Vec<bool>,
+}
+
+/// `W_F+` of one face.
+pub struct Face {
+    held: Vec<bool>,
+    /// Blocks of full rank and large ones; 1 for all other rows.
+    sparse: Cholesky,
+    /// Small suspect blocks, by their first rows.
+    dense: Vec<Block>,
+}
+
+#[derive(Clone)]
+struct Block {
+    rows: Vec<usize>,
+    inverse: Arc<SpdSolver>,
+}
+
+impl Coupling {
+    /// `columns` is `D^-1/2 B'`, `compliance` the diagonal of C; the diagonal of W is 1.
+    pub fn new(columns: &Csr, compliance: &[f64]) -> Result<Self> {
+        let mut coupling = Self::uncut(columns, compliance)?;
+        let weak = coupling.weak_rows()?;
+        let (block, count) = components(&coupling.whole);
+        let mut suspect = vec![false; count];
+        weak.into_iter().for_each(|i| suspect[block[i]] = true);
+        (0..block.len()).for_each(|i| coupling.suspect[i] = suspect[block[i]]);
+        Ok(coupling)
+    }
+
+    fn uncut(columns: &Csr, compliance: &[f64]) -> Result<Self> {
+        let gram = Gram::of(columns)?;
+        let mut whole = gram.sum(columns, &vec![false; columns.rows()])?;
+        compliance.iter().enumerate().for_each(|(i, c)| shift(&mut whole, i, *c));
+        let analysis = Arc::new(Analysis::new(&whole, &vec![false; whole.order()])?);
+        Ok(Self { suspect: vec![false; whole.order()], whole, analysis })
+    }
+
+    /// Rows with a pivot that may be zero; all, where no factor tells.
+    fn weak_rows(&self) -> Result<Vec<usize>> {
+        for probe in PROBES {
+            let mut w = self.on(&vec![false; self.whole.order()])?;
+            (0..w.order()).for_each(|i| shift(&mut w, i, probe));
+            if let Ok(factor) = self.analysis.attempt(&w)? {
+                let weak = factor.pivots().filter(|(_, pivot)| *pivot <= SINGULAR);
+                return Ok(weak.map(|(row, _)| row).collect());
+            }
+        }
+        Ok((0..self.whole.order()).collect())
+    }
+
+    /// The inverse on the rows that are not held; blocks that `last` has as well are taken from it. `None` where rounding
+    /// leaves none.
+    pub fn face(&self, held: &[bool], last: Option<&Face>) -> Result<Option<Face>> {
+        let mut w = self.on(held)?;
+        let mut dense = Vec::new();
+        for rows in self.suspect_blocks(&w, held)? {
+            if rows.len() > DENSE {
+                rows.iter().for_each(|&i| shift(&mut w, i, SHIFT));
+                continue;
+            }
+            let known = last.and_then(|face| face.block(&rows));
+            dense.push(match known {
+                Some(block) => block.clone(),
+                None => Block { inverse: Arc::new(pseudo_inverse(&w, &rows)?), rows },
+            });
+        }
+        let mut apart = copied(held, "a face")?;
+        dense.iter().flat_map(|block| &block.rows).for_each(|&i| apart[i] = true);
+        uncouple(&mut w, &apart);
+        let factor = self.analysis.attempt(&w)?;
+        Ok(factor.ok().map(|sparse| Face { held: held.to_vec(), sparse, dense }))
+    }
+
+    /// W with 1 for the held rows.
+    fn on(&self, held: &[bool]) -> Result<Symmetric> {
+        let mut w = self.whole.scaled(1.0)?;
+        uncouple(&mut w, held);
+        Ok(w)
+    }
+
+    /// Blocks of at least two suspect rows on a face, each ascending, by their first rows.
+    fn suspect_blocks(&self, w: &Symmetric, held: &[bool]) -> Result<Vec<Vec<usize>>> {
+        if !self.suspect.contains(&true) {
+            return Ok(Vec::new());
+        }
+        let _room = room(48 * (w.order() + w.val.len()), "the blocks of a face")?;
+        let coupled = (0..w.order()).map(|i| w.lower_row(i).filter(|(_, v)| *v != 0.0));
+        let mut pattern = Symmetric { ptr: vec![0], col: Vec::new(), val: Vec::new() };
+        for row in coupled {
+            for (j, v) in row {
+                pattern.col.push(j);
+                pattern.val.push(v);
+            }
+            pattern.ptr.push(pattern.col.len());
+        }
+        let (block, count) = components(&pattern);
+        let mut blocks = vec![Vec::new(); count];
+        let suspects = (0..block.len()).filter(|&i| self.suspect[i] && !held[i]);
+        suspects.for_each(|i| blocks[block[i]].push(i));
+        blocks.retain(|rows| rows.len() > 1);
+        Ok(blocks)
+    }
+}
+
+impl Face {
+    pub fn is_of(&self, held: &[bool]) -> bool {
+        self.held == held
+    }
+
+    /// `z <- W_F+ z` on the rows that are not held, 0 on the others.
+    pub fn solve(&self, z: &mut [f64]) -> Result<()> {
+        clear(&self.held, z);
+        let mut parts = Vec::with_capacity(self.dense.len());
+        for block in &self.dense {
+            let part: Vec<f64> = block.rows.iter().map(|&i| z[i]).collect();
+            parts.push(block.inverse.solve(&part));
+        }
+        self.sparse.solve(z)?;
+        for (block, part) in self.dense.iter().zip(parts) {
+            block.rows.iter().zip(part).for_each(|(&i, v)| z[i] = v);
+        }
+        Ok(())
+    }
+
+    fn block(&self, rows: &[usize]) -> Option<&Block> {
+        let at = self.dense.binary_search_by_key(&rows[0], |block| block.rows[0]).ok()?;
+        self.dense.get(at).filter(|block| block.rows == rows)
+    }
+}
+
+fn clear(held: &[bool], z: &mut [f64]) {
+    z.iter_mut().zip(held).filter(|(_, held)| **held).for_each(|(z, _)| *z = 0.0);
+}
+
+fn shift(w: &mut Symmetric, i: usize, by: f64) {
+    w.val[w.ptr[i + 1] - 1] += by;
+}
+
+/// The rows apart get the unit matrix.
+fn uncouple(w: &mut Symmetric, apart: &[bool]) {
+    for i in 0..w.order() {
+        for at in w.ptr[i]..w.ptr[i + 1] {
+            let j = w.col[at];
+            if apart[i] || apart[j] {
+                w.val[at] = f64::from(u8::from(i == j));
+            }
+        }
+    }
+}
+
+fn pseudo_inverse(w: &Symmetric, rows: &[usize]) -> Result<SpdSolver> {
+    let n = rows.len();
+    let _room = room(8 * n * n * size_of::<f64>(), "a block of dependent rows")?;
+    let mut part = Matrix::zeros(n, n)?;
+    for (a, &i) in rows.iter().enumerate() {
+        for (j, v) in w.lower_row(i) {
+            if let Ok(b) = rows.binary_search(&j) {
+                part.set(a, b, v);
+                part.set(b, a, v);
+            }
+        }
+    }
+    SpdSolver::new(&part, &vec![1.0; n])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Rows over the unknowns, D = 1, divided by their lengths.
+    fn coupling(unknowns: usize, rows: &[Vec<(usize, f64)>]) -> (Csr, Coupling) {
+        let mut b = Csr::empty(unknowns);
+        for row in rows {
+            let length = row.iter().map(|(_, v)| v * v).sum::<f64>().sqrt();
+            b.push_row(row.iter().map(|&(j, v)| (j, v / length)));
+        }
+        let columns = b.transposed().unwrap();
+        (b, Coupling::new(&columns, &vec![0.0; rows.len()]).unwrap())
+    }
+
+    /// `B_F' W_F+ B_F v = v` for v in the range of `B_F'`.
+    fn assert_projects(b: &Csr, coupling: &Coupling, held: &[bool], accuracy: f64) {
+        let face = coupling.face(held, None).unwrap().unwrap();
+        let mut v = vec![0.0; b.cols];
+        let weights: Vec<f64> =
+            (0..b.rows()).map(|i| if held[i] { 0.0 } else { (1.0 + i as f64).sin() }).collect();
+        b.mul_transposed_add(1.0, &weights, &mut v);
+        let mut z = vec![0.0; b.rows()];
+        b.mul(&v, &mut z);
+        face.solve(&mut z).unwrap();
+        assert!(z.iter().zip(held).all(|(z, held)| !held || *z == 0.0));
+        let mut again = vec![0.0; b.cols];
+        b.mul_transposed_add(1.0, &z, &mut again);
+        let worst = v.iter().zip(&again).fold(0.0f64, |worst, (v, w)| worst.max((v - w).abs()));
+        assert!(worst < accuracy, "{worst:e}");
+    }
+
+    /// All pairs of four copies of one unknown: six rows of rank 3. A fifth and sixth unknown are glued once.
+    fn cross_point() -> Vec<Vec<(usize, f64)>> {
+        let pairs = (0..4).flat_map(|a| (a + 1..4).map(move |b| vec![(a, 1.0), (b, -1.0)]));
+        pairs.chain([vec![(4, 1.0), (5, -1.0)]]).collect()
+    }
+
+    #[test]
+    fn redundant_rows_share_their_force_by_the_pseudo_inverse() {
+        let (b, coupling) = coupling(6, &cross_point());
+        assert_eq!(coupling.suspect, [true, true, true, true, true, true, false]);
+        assert_projects(&b, &coupling, &[false; 7], 1e-14);
+        // W has the eigenvalue 2 three times on the pairs: W+ = W / 4
+        let face = coupling.face(&[false; 7], None).unwrap().unwrap();
+        let mut z = [1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0];
+        face.solve(&mut z).unwrap();
+        let expected = [0.25, 0.125, 0.125, -0.125, -0.125, 0.0, 1.0];
+        assert!(z.iter().zip(expected).all(|(z, e)| (z - e).abs() < 1e-14), "{z:?}");
+    }
+
+    #[test]
+    fn a_block_falls_apart_where_the_rows_that_join_it_are_held() {
+        let (b, coupling) = coupling(6, &cross_point());
+        // rows 0 = (0, 1) and 5 = (2, 3) are left: regular, and no longer coupled
+        let held = [false, true, true, true, true, false, false];
+        let face = coupling.face(&held, None).unwrap().unwrap();
+        assert!(face.dense.is_empty());
+        assert_projects(&b, &coupling, &held, 1e-14);
+        let held = [false, false, true, false, true, true, true];
+        assert_projects(&b, &coupling, &held, 1e-14);
+    }
+
+    #[test]
+    fn blocks_known_from_the_last_face_are_not_factorised_again() {
+        let (_, coupling) = coupling(6, &cross_point());
+        let first = coupling.face(&[false; 7], None).unwrap().unwrap();
+        let held = [false, false, false, false, false, false, true];
+        let second = coupling.face(&held, Some(&first)).unwrap().unwrap();
+        assert!(Arc::ptr_eq(&first.dense[0].inverse, &second.dense[0].inverse));
+        let held = [true, false, false, false, false, false, false];
+        let third = coupling.face(&held, Some(&second)).unwrap().unwrap();
+        assert_eq!(third.dense[0].rows, [1, 2, 3, 4, 5]);
+    }
+
+    #[test]
+    fn as_many_rows_are_named_as_the_rank_is_short_of() {
+        let (b, _) = coupling(6, &cross_point());
+        let named = dependent_rows(&b.transposed().unwrap(), &vec![0.0; b.rows()]).unwrap();
+        assert!(named.len() == 3 && !named.contains(&6), "{named:?}");
+        let (b, _) = coupling(300, &ring(300));
+        assert_eq!(dependent_rows(&b.transposed().unwrap(), &vec![0.0; b.rows()]).unwrap().len(), 1);
+    }
+
+    /// Differences of neighbours round a ring: n rows of rank n - 1, each with a share of 1/sqrt(n) in the dependence.
+    fn ring(n: usize) -> Vec<Vec<(usize, f64)>> {
+        let neighbours = |i: usize| vec![(i, 1.0), ((i + 1) % n, -1.0)];
+        (0..n).map(|i| if i + 1 < n { neighbours(i) } else { vec![(0, -1.0), (i, 1.0)] }).collect()
+    }
+
+    #[test]
+    fn dependent_rows_that_chain_over_a_surface_are_found_and_solved() {
+        for n in [100, 20_000] {
+            let (b, coupling) = coupling(n, &ring(n));
+            assert!(coupling.suspect.iter().all(|suspect| *suspect), "{n}");
+            assert_projects(&b, &coupling, &vec![false; n], if n > DENSE { 1e-5 } else { 1e-13 });
+            let mut held = vec![false; n];
+            held[n / 2] = true;
+            assert_projects(&b, &coupling, &held, 1e-5);
+        }
+    }
+}

@@ -1,0 +1,87 @@
+//! What an answer leaves open: rigid motions that no closed row and no equality resists, and on which the load does no
+//! work; equality rows that depend on each other and share their forces.
+
+use crate::dual::dependent_rows;
+use crate::error::{Error, Kind, Result};
+use crate::linalg::{Csr, Matrix};
+use crate::qp;
+use crate::solver::problem::Problem;
+use crate::solver::RowKind;
+
+/// One of them.
+#[derive(Debug, Clone, PartialEq)]
+pub struct OpenMotion {
+    /// Over all unknowns, largest entry 1.
+    pub v: Vec<f64>,
+    /// The body that moves fastest.
+    pub body: usize,
+    /// v on this body, where it has coordinates: velocity of the origin (length) and rotation about the axes.
+    pub motion: Option<[f64; 6]>,
+}
+
+impl Problem {
+    /// Motion k of those that the last answer leaves open.
+    pub fn open_motion(&mut self, k: usize) -> Result<OpenMotion> {
+        if self.open_motions.is_none() {
+            self.open_motions = Some(self.find_open_motions()?);
+        }
+        let amplitudes = self.open_motions.as_ref().filter(|all| k < all.cols).map(|all| all.col(k));
+        let Some(amplitudes) = amplitudes else {
+            let number = self.open_motions.as_ref().map_or(0, |all| all.cols);
+            let what = format!("{number} motions are undetermined");
+            return Err(Error::argument("k", what).value(k as f64).limit(number as f64));
+        };
+        let mut v = self.ready()?.dual.rigid_motion(amplitudes, self.counts().dofs);
+        let fastest = (0..v.len()).fold(0, |best, i| if v[i].abs() > v[best].abs() { i } else { best });
+        let largest = v.get(fastest).copied().unwrap_or(1.0);
+        v.iter_mut().for_each(|v| *v /= largest);
+        let body = self.ranges().partition_point(|range| range.end <= fastest);
+        Ok(OpenMotion { motion: self.rigid_motion(body, &v), body, v })
+    }
+
+    /// Motion k on one body.
+    pub fn open_motion_of(&mut self, k: usize, body: usize) -> Result<Vec<f64>> {
+        self.slot(body)?;
+        let range = self.ranges()[body].clone();
+        Ok(self.open_motion(k)?.v[range].to_vec())
+    }
+
+    /// Amplitudes of the motions, over the modes of all bodies.
+    fn find_open_motions(&self) -> Result<Matrix> {
+        let missing = || Error::new(Kind::State, "there is no answer yet: solve first");
+        let answer = self.answer.as_ref().ok_or_else(missing)?;
+        let ready = self.ready()?;
+        let groups = ready.grouping.leaders.len();
+        let mut held: Vec<bool> = (0..groups)
+            .map(|group| ready.grouping.kind(group, ready.contact) == RowKind::Inequality)
+            .collect();
+        for (i, (group, _)) in ready.grouping.members().filter(|(i, _)| *i < ready.contact) {
+            if answer.lambda[i] > 0.0 {
+                held[group] = false;
+            }
+        }
+        qp::undetermined(&ready.dual.coarse, &held)
+    }
+}
+
+impl Problem {
+    /// Equality rows that are combinations of others: they constrain nothing, and which of them carry the forces is open.
+    pub fn dependent_equalities(&self) -> Result<Vec<usize>> {
+        let missing = || Error::new(Kind::State, "the problem has not been set up yet");
+        let ready = self.ready.as_ref().ok_or_else(missing)?;
+        let groups: Vec<usize> = (0..ready.grouping.leaders.len())
+            .filter(|&group| ready.grouping.kind(group, ready.contact) == RowKind::Equality)
+            .collect();
+        let mut rows = Csr::empty(ready.matrix.cols);
+        for &group in &groups {
+            rows.push_row(ready.matrix.row(group).map(|(j, v)| (j, v / ready.metric[j].sqrt())));
+        }
+        let compliance: Vec<f64> = groups.iter().map(|&group| ready.compliance[group]).collect();
+        let mut dependent: Vec<usize> = dependent_rows(&rows.transposed()?, &compliance)?
+            .into_iter()
+            .map(|at| ready.grouping.leaders[groups[at]] - ready.contact)
+            .collect();
+        dependent.sort_unstable();
+        Ok(dependent)
+    }
+}
