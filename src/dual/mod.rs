@@ -7,6 +7,7 @@
 //! B holds the contact rows, then the equality rows, each divided by its length in the metric `D^-1`; forces
 //! are in units of 2^p, the size of the largest diagonal entry of K.
 
+mod entries;
 mod preconditioner;
 
 pub use preconditioner::{constrained, Boundary, Preconditioner};

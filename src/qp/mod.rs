@@ -6,8 +6,10 @@
 //!
 //! Knows A by its products only, and no bodies.
 
+mod active_set;
 mod augmented;
 mod coarse;
+mod face;
 mod iterate;
 mod mprgp;
 mod nnls;
@@ -16,6 +18,7 @@ mod proportioning;
 mod smalbe;
 mod steps;
 
+pub use active_set::{active_set, Direct};
 pub use proportioning::{minimise, Judge, Limits, Observer, Progress, Solution, StepKind, Verdict};
 pub use smalbe::smalbe;
 
@@ -53,6 +56,8 @@ pub struct Counts {
     pub coarse_factorisations: usize,
     /// Applications of the preconditioner.
     pub preconditioned: usize,
+    /// Faces solved directly.
+    pub direct: usize,
 }
 
 impl std::ops::Add for Counts {
@@ -67,6 +72,7 @@ impl std::ops::Add for Counts {
             coarse_solves: self.coarse_solves + other.coarse_solves,
             coarse_factorisations: self.coarse_factorisations + other.coarse_factorisations,
             preconditioned: self.preconditioned + other.preconditioned,
+            direct: self.direct + other.direct,
         }
     }
 }

@@ -1,34 +1,76 @@
 //! The method the options ask for; and where it gives up, others, before the answer counts as incomplete.
 
 use crate::error::Result;
-use crate::qp::{minimise, smalbe, Judge, Limits, Observer, Qp, Solution, Verdict};
+use crate::qp::{active_set, minimise, smalbe, Direct, Judge, Limits, Observer, Qp, Solution, Verdict};
 use crate::solver::Settings;
 
+/// A judge that also says by how much.
+pub(super) trait Grader: Judge {
+    /// Largest entry of the certificate of (x, alpha) over what it is allowed.
+    fn worst(&mut self, x: &[f64], alpha: &[f64]) -> Result<f64>;
+}
+
+/// How the dual is solved.
+pub(super) struct Means<'a> {
+    pub settings: &'a Settings,
+    pub direct: Direct<'a>,
+}
+
 /// Solves the dual. After proportioning: the same without preconditioner, then SMALBE-M, each from where the
-/// one before has ended.
+/// one before has ended, and after each of them the direct method.
 pub(super) fn solve_dual(
-    settings: &Settings,
+    means: &Means,
     qp: Qp,
     start: &[f64],
-    judge: &mut dyn Judge,
+    judge: &mut dyn Grader,
     observer: &mut dyn Observer,
 ) -> Result<Solution> {
+    let settings = means.settings;
     let steps = usize::try_from(settings.max_steps).unwrap_or(usize::MAX);
     let limits = Limits { tolerance: settings.tolerance, gamma: settings.gamma, steps };
     if settings.method == c"smalbe" {
         return smalbe(qp, start, limits, judge, observer);
     }
-    let mut best = minimise(qp, start, limits, judge, observer)?;
+    let first = minimise(qp, start, limits, judge, observer)?;
+    let mut best = or_directly(first, qp, means.direct, judge)?;
     let plain = Qp { preconditioner: None, ..qp };
     if gave_up(&best) && qp.preconditioner.is_some() {
         let next = minimise(plain, &best.x.clone(), limits, judge, observer);
-        best = better(best, next)?;
+        best = better(best, next.and_then(|next| or_directly(next, plain, means.direct, judge)))?;
     }
     if gave_up(&best) {
         let next = smalbe(plain, &best.x.clone(), limits, judge, observer);
-        best = better(best, next)?;
+        best = better(best, next.and_then(|next| or_directly(next, plain, means.direct, judge)))?;
     }
     Ok(best)
+}
+
+/// The same, or what the direct method makes of it where it is incomplete.
+fn or_directly(solution: Solution, qp: Qp, direct: Direct, judge: &mut dyn Grader) -> Result<Solution> {
+    if !gave_up(&solution) && solution.verdict != Verdict::StepLimit {
+        return Ok(solution);
+    }
+    let next = active_set(qp, direct, &solution, judge);
+    better(solution, next)
+}
+
+/// Option `finish`: the solution on the face that was found by a direct method, where its certificate is better.
+/// Without time for it, the solution stays what it is.
+pub(super) fn finish(
+    solution: Solution,
+    qp: Qp,
+    direct: Direct,
+    judge: &mut dyn Grader,
+) -> Result<(Solution, bool)> {
+    if solution.verdict != Verdict::Solved {
+        return Ok((solution, false));
+    }
+    let found = active_set(qp, direct, &solution, judge)?;
+    let counts = solution.counts + found.counts;
+    let accepted = found.verdict == Verdict::Solved
+        && judge.worst(&found.x, &found.alpha)? < judge.worst(&solution.x, &solution.alpha)?;
+    let kept = if accepted { found } else { solution };
+    Ok((Solution { counts, ..kept }, accepted))
 }
 
 fn gave_up(solution: &Solution) -> bool {

@@ -21,6 +21,8 @@ pub struct Settings {
     pub preconditioner: &'static CStr,
     pub method: &'static CStr,
     pub start: &'static CStr,
+    pub direct_limit: i64,
+    pub finish: &'static CStr,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -87,7 +89,7 @@ const fn word(
     OptionInfo { name, doc, default, minimum: 0.0, maximum: 0.0, field: Field::Str(field, words) }
 }
 
-static OPTIONS: [OptionInfo; 14] = [
+static OPTIONS: [OptionInfo; 16] = [
     real(c"tolerance", 1e-12, 1e-14..=1e-2, |s| &mut s.tolerance,
         c"The dual is solved until its projected gradient, a gap, is this small against the gaps and displacements of the problem."),
     real(c"certificate_tolerance", 1e-8, 1e-14..=1e-2, |s| &mut s.certificate_tolerance,
@@ -116,6 +118,10 @@ static OPTIONS: [OptionInfo; 14] = [
         c"Method for the dual: proportioning on its feasible set, with smalbe to fall back on; smalbe, an augmented Lagrangian, for comparison."),
     word(c"start", &[c"cold", c"previous"], |s| &mut s.start,
         c"Where a solve starts: cold (no forces: the same input gives the same bits) or previous (forces and active set of the last answer for these rows); feti_start_from comes before either."),
+    whole(c"direct_limit", 1000, 0.0..=MANY, |s| &mut s.direct_limit,
+        c"Forces and floating modes together up to which the dual may be solved by dense factors on the active set, where the iteration gives up or option finish asks for it; 0: never."),
+    word(c"finish", &[c"none", c"direct"], |s| &mut s.finish,
+        c"What follows a solve: none; direct (dense factors on the active set found: errors fall to rounding; kept only where the certificate improves)."),
 ];
 
 /// All options, in the order of their listing.

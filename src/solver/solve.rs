@@ -6,10 +6,10 @@ use crate::dual::Preconditioner;
 use crate::error::{Error, Kind, Result};
 use crate::linalg::vector::weighted_norm;
 use crate::linalg::Operator;
-use crate::qp::{self, Judge, Qp, Solution, Verdict};
+use crate::qp::{self, Direct, Judge, Qp, Solution, Verdict};
 use crate::solver::certificate::{certify, Answer as AnswerView, BodyData, Certificate, Data};
 use crate::solver::diagnosis;
-use crate::solver::fallback::solve_dual;
+use crate::solver::fallback::{finish, solve_dual, Grader, Means};
 use crate::solver::findings::Findings;
 use crate::solver::presolve::{presolve, Gaps};
 use crate::solver::problem::Problem;
@@ -36,12 +36,18 @@ impl Problem {
         let dual = Scaled::new(self, ready, &watch.stops)?;
         let mut judge = Certifier { ready, scaled: &dual, data: self.data()? };
         let f = watch.operator(ready, &dual.gaps.bounded);
-        let solution =
-            solve_dual(&self.settings, dual.qp(ready, &f), &start.scaled(ready)?, &mut judge, watch)?;
+        let (qp, direct) = (dual.qp(ready, &f), self.direct(ready));
+        let means = Means { settings: &self.settings, direct };
+        let mut solution = solve_dual(&means, qp, &start.scaled(ready)?, &mut judge, watch)?;
+        let mut finished = false;
+        if self.settings.finish == c"direct" {
+            (solution, finished) = finish(solution, qp, direct, &mut judge)?;
+        }
         let outcome = self.outcome(ready, &dual, &solution)?;
         let recovered = judge.recover(&solution.x, &solution.alpha)?;
         let certificate = certify(&judge.data, recovered.view());
         let mut answer = Answer::new(self, ready, &solution, recovered, outcome, certificate)?;
+        answer.report.finished = finished;
         answer.report.seconds_setup = (solving - started).as_secs_f64();
         answer.report.seconds_solve = solving.elapsed().as_secs_f64();
         let report = answer.report.clone();
@@ -52,6 +58,14 @@ impl Problem {
 
     pub(super) fn ready(&self) -> Result<&Ready> {
         self.ready.as_ref().ok_or_else(|| Error::new(Kind::Internal, "the setup left nothing"))
+    }
+
+    /// F for the direct method, which stays within the memory limit.
+    fn direct<'a>(&self, ready: &'a Ready) -> Direct<'a> {
+        let asked = usize::try_from(self.settings.direct_limit).unwrap_or(usize::MAX);
+        let most = asked.min(ready.dual.order() + ready.dual.modes());
+        let limit = if self.check_memory(Direct::bytes(most)).is_ok() { most } else { 0 };
+        Direct { entries: &ready.dual, limit }
     }
 
     /// How the solution ended, or the named reason why there is none.
@@ -169,6 +183,12 @@ impl Judge for Certifier<'_> {
 
     fn accepts(&mut self, x: &[f64], alpha: &[f64]) -> Result<bool> {
         Ok(certify(&self.data, self.recover(x, alpha)?.view()).passed())
+    }
+}
+
+impl Grader for Certifier<'_> {
+    fn worst(&mut self, x: &[f64], alpha: &[f64]) -> Result<f64> {
+        Ok(certify(&self.data, self.recover(x, alpha)?.view()).worst())
     }
 }
 

@@ -73,6 +73,15 @@ impl Program {
         rows
     }
 
+    pub fn qp<'a>(
+        &'a self,
+        g_transposed: &'a Csr,
+        preconditioner: Option<&'a dyn Preconditioner>,
+    ) -> Qp<'a> {
+        let Self { a, b, e, bounded, .. } = self;
+        Qp { a, b, g_transposed, e, bounded, preconditioner }
+    }
+
     pub fn residuals(&self, x: &[f64], alpha: &[f64]) -> Residuals {
         let (image, coarse) = (self.a.times(x), self.g.transpose_times(alpha, x.len()));
         let part = |i: usize| {
@@ -117,14 +126,7 @@ impl Program {
         preconditioner: Option<&dyn Preconditioner>,
     ) -> Solution {
         let g_transposed = self.g_transposed();
-        let qp = Qp {
-            a: &self.a,
-            b: &self.b,
-            g_transposed: &g_transposed,
-            e: &self.e,
-            bounded: &self.bounded,
-            preconditioner,
-        };
+        let qp = self.qp(&g_transposed, preconditioner);
         let limits = Limits { tolerance, gamma: 1.0, steps: 5000 };
         minimise(qp, start, limits, &mut Conditions { program: self, accepted }, &mut Silent).unwrap()
     }
@@ -140,9 +142,9 @@ impl Program {
 }
 
 /// Accepts by the residuals of the optimality conditions.
-struct Conditions<'a> {
-    program: &'a Program,
-    accepted: f64,
+pub struct Conditions<'a> {
+    pub program: &'a Program,
+    pub accepted: f64,
 }
 
 impl Judge for Conditions<'_> {

@@ -49,3 +49,30 @@ fn preconditioners_change_the_number_of_steps_and_not_the_answer() {
     let (none, lumped, dirichlet) = (products("none"), products("lumped"), products("dirichlet"));
     assert!(lumped < none && 3 * dirichlet < none, "{none}, {lumped}, {dirichlet}");
 }
+
+/// A loose solve (1e-6) on purpose, then the direct finish: every entry of the certificate at rounding.
+#[test]
+fn the_direct_finish_makes_a_loose_answer_as_good_as_rounding_allows() {
+    for name in CASES {
+        let case = Case::read(name);
+        let solve = |finish| {
+            let mut problem = case.problem(false);
+            problem.set_f64("tolerance", 1e-6).unwrap();
+            problem.set_f64("certificate_tolerance", 1e-4).unwrap();
+            problem.set_str("finish", finish).unwrap();
+            let report = problem.solve().unwrap_or_else(|e| panic!("{name}: {e}"));
+            assert_eq!(report.outcome, Outcome::Solved, "{name}: {:?}", report.certificate);
+            let force = difference(problem.multipliers(RowKind::Inequality).unwrap(), &case.lambda);
+            let entries = report.certificate.entries().map(|entry| entry.figure);
+            (report, entries.into_iter().fold(0.0, f64::max), force)
+        };
+        let ((loose, loosely, loose_force), (report, worst, force)) = (solve("none"), solve("direct"));
+        println!(
+            "{name}: {loosely:.1e} -> {worst:.1e}, dlambda {loose_force:.1e} -> {force:.1e}, {} + {} products, {} faces {:?}",
+            loose.dual_applications,
+            report.dual_applications - loose.dual_applications,
+            report.direct_solves, report.certificate.entries().map(|e| e.figure)
+        );
+        assert!(!loose.finished && loose.direct_solves == 0);
+    }
+}
