@@ -18,7 +18,8 @@ mod proportioning;
 mod smalbe;
 mod steps;
 
-pub use active_set::{active_set, Direct};
+pub use active_set::{active_set, settle, Attempt, Direct, Settled};
+pub use face::Face;
 pub use proportioning::{minimise, Judge, Limits, Observer, Progress, Solution, StepKind, Verdict};
 pub use smalbe::smalbe;
 

@@ -4,12 +4,6 @@ use crate::error::Result;
 use crate::qp::{active_set, minimise, smalbe, Direct, Judge, Limits, Observer, Qp, Solution, Verdict};
 use crate::solver::Settings;
 
-/// A judge that also says by how much.
-pub(super) trait Grader: Judge {
-    /// Largest entry of the certificate of (x, alpha) over what it is allowed.
-    fn worst(&mut self, x: &[f64], alpha: &[f64]) -> Result<f64>;
-}
-
 /// How the dual is solved.
 pub(super) struct Means<'a> {
     pub settings: &'a Settings,
@@ -22,7 +16,7 @@ pub(super) fn solve_dual(
     means: &Means,
     qp: Qp,
     start: &[f64],
-    judge: &mut dyn Grader,
+    judge: &mut dyn Judge,
     observer: &mut dyn Observer,
 ) -> Result<Solution> {
     let settings = means.settings;
@@ -46,31 +40,12 @@ pub(super) fn solve_dual(
 }
 
 /// The same, or what the direct method makes of it where it is incomplete.
-fn or_directly(solution: Solution, qp: Qp, direct: Direct, judge: &mut dyn Grader) -> Result<Solution> {
+fn or_directly(solution: Solution, qp: Qp, direct: Direct, judge: &mut dyn Judge) -> Result<Solution> {
     if !gave_up(&solution) && solution.verdict != Verdict::StepLimit {
         return Ok(solution);
     }
     let next = active_set(qp, direct, &solution, judge);
     better(solution, next)
-}
-
-/// Option `finish`: the solution on the face that was found by a direct method, where its certificate is better.
-/// Without time for it, the solution stays what it is.
-pub(super) fn finish(
-    solution: Solution,
-    qp: Qp,
-    direct: Direct,
-    judge: &mut dyn Grader,
-) -> Result<(Solution, bool)> {
-    if solution.verdict != Verdict::Solved {
-        return Ok((solution, false));
-    }
-    let found = active_set(qp, direct, &solution, judge)?;
-    let counts = solution.counts + found.counts;
-    let accepted = found.verdict == Verdict::Solved
-        && judge.worst(&found.x, &found.alpha)? < judge.worst(&solution.x, &solution.alpha)?;
-    let kept = if accepted { found } else { solution };
-    Ok((Solution { counts, ..kept }, accepted))
 }
 
 fn gave_up(solution: &Solution) -> bool {

@@ -9,8 +9,9 @@ use crate::linalg::Operator;
 use crate::qp::{self, Direct, Judge, Qp, Solution, Verdict};
 use crate::solver::certificate::{certify, Answer as AnswerView, BodyData, Certificate, Data};
 use crate::solver::diagnosis;
-use crate::solver::fallback::{finish, solve_dual, Grader, Means};
+use crate::solver::fallback::{solve_dual, Means};
 use crate::solver::findings::Findings;
+use crate::solver::finish::finish;
 use crate::solver::presolve::{presolve, Gaps};
 use crate::solver::problem::Problem;
 use crate::solver::report::{Outcome, Report};
@@ -38,14 +39,11 @@ impl Problem {
         let f = watch.operator(ready, &dual.gaps.bounded);
         let (qp, direct) = (dual.qp(ready, &f), self.direct(ready));
         let means = Means { settings: &self.settings, direct };
-        let mut solution = solve_dual(&means, qp, &start.scaled(ready)?, &mut judge, watch)?;
-        let mut finished = false;
-        if self.settings.finish == c"direct" {
-            (solution, finished) = finish(solution, qp, direct, &mut judge)?;
-        }
+        let solution = solve_dual(&means, qp, &start.scaled(ready)?, &mut judge, watch)?;
+        let mut ending = judge.ending(solution)?;
+        let finished = self.settings.finish == c"direct" && finish(&judge, qp, direct, &mut ending)?;
+        let Ending { solution, recovered, certificate } = ending;
         let outcome = self.outcome(ready, &dual, &solution)?;
-        let recovered = judge.recover(&solution.x, &solution.alpha)?;
-        let certificate = certify(&judge.data, recovered.view());
         let mut answer = Answer::new(self, ready, &solution, recovered, outcome, certificate)?;
         answer.report.finished = finished;
         answer.report.seconds_setup = (solving - started).as_secs_f64();
@@ -108,10 +106,10 @@ impl Problem {
 }
 
 /// Loads and gaps as the dual takes them.
-struct Scaled {
+pub(super) struct Scaled {
     /// f / 2^p
-    load: Vec<f64>,
-    gaps: Gaps,
+    pub load: Vec<f64>,
+    pub gaps: Gaps,
     d: Vec<f64>,
     e: Vec<f64>,
 }
@@ -153,23 +151,41 @@ impl Recovered {
 }
 
 /// Judges a point of the dual by the certificate of the answer recovered from it.
-struct Certifier<'a> {
-    ready: &'a Ready,
-    scaled: &'a Scaled,
-    data: Data<'a>,
+pub(super) struct Certifier<'a> {
+    pub ready: &'a Ready,
+    pub scaled: &'a Scaled,
+    pub data: Data<'a>,
+}
+
+/// What a solve ends with.
+pub(super) struct Ending {
+    pub solution: Solution,
+    pub recovered: Recovered,
+    pub certificate: Certificate,
 }
 
 impl Certifier<'_> {
     /// (17), and lambda = 2^p S x on the rows that carry the multipliers of their groups.
-    fn recover(&self, x: &[f64], alpha: &[f64]) -> Result<Recovered> {
+    pub fn recover(&self, x: &[f64], alpha: &[f64]) -> Result<Recovered> {
+        let u = self.ready.dual.displacement(&self.scaled.load, x, alpha)?;
+        Ok(self.with_forces(u, x))
+    }
+
+    /// An answer of u and x.
+    pub fn with_forces(&self, u: Vec<f64>, x: &[f64]) -> Recovered {
         let ready = self.ready;
-        let u = ready.dual.displacement(&self.scaled.load, x, alpha)?;
         let mut lambda = vec![0.0; ready.scale.len()];
         for (x, &holder) in x.iter().zip(&self.scaled.gaps.holder) {
             lambda[holder] = x * ready.scale[holder] * ready.unit;
         }
         let mu = lambda.split_off(ready.contact);
-        Ok(Recovered { u, lambda, mu })
+        Recovered { u, lambda, mu }
+    }
+
+    fn ending(&self, solution: Solution) -> Result<Ending> {
+        let recovered = self.recover(&solution.x, &solution.alpha)?;
+        let certificate = certify(&self.data, recovered.view());
+        Ok(Ending { solution, recovered, certificate })
     }
 }
 
@@ -183,12 +199,6 @@ impl Judge for Certifier<'_> {
 
     fn accepts(&mut self, x: &[f64], alpha: &[f64]) -> Result<bool> {
         Ok(certify(&self.data, self.recover(x, alpha)?.view()).passed())
-    }
-}
-
-impl Grader for Certifier<'_> {
-    fn worst(&mut self, x: &[f64], alpha: &[f64]) -> Result<f64> {
-        Ok(certify(&self.data, self.recover(x, alpha)?.view()).worst())
     }
 }
 

@@ -73,11 +73,7 @@ impl Program {
         rows
     }
 
-    pub fn qp<'a>(
-        &'a self,
-        g_transposed: &'a Csr,
-        preconditioner: Option<&'a dyn Preconditioner>,
-    ) -> Qp<'a> {
+    pub fn qp<'a>(&'a self, g_transposed: &'a Csr, preconditioner: Option<&'a dyn Preconditioner>) -> Qp<'a> {
         let Self { a, b, e, bounded, .. } = self;
         Qp { a, b, g_transposed, e, bounded, preconditioner }
     }

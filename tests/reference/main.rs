@@ -50,7 +50,8 @@ fn preconditioners_change_the_number_of_steps_and_not_the_answer() {
     assert!(lumped < none && 3 * dirichlet < none, "{none}, {lumped}, {dirichlet}");
 }
 
-/// A loose solve (1e-6) on purpose, then the direct finish: every entry of the certificate at rounding.
+/// A loose solve (1e-6), then the direct finish. Balance and equilibrium contradict each other as far as the null
+/// space of the host is not exact: |K R| is 1e-11 for the cylinder, 1e-12 for the three bodies.
 #[test]
 fn the_direct_finish_makes_a_loose_answer_as_good_as_rounding_allows() {
     for name in CASES {
@@ -66,13 +67,11 @@ fn the_direct_finish_makes_a_loose_answer_as_good_as_rounding_allows() {
             let entries = report.certificate.entries().map(|entry| entry.figure);
             (report, entries.into_iter().fold(0.0, f64::max), force)
         };
-        let ((loose, loosely, loose_force), (report, worst, force)) = (solve("none"), solve("direct"));
-        println!(
-            "{name}: {loosely:.1e} -> {worst:.1e}, dlambda {loose_force:.1e} -> {force:.1e}, {} + {} products, {} faces {:?}",
-            loose.dual_applications,
-            report.dual_applications - loose.dual_applications,
-            report.direct_solves, report.certificate.entries().map(|e| e.figure)
-        );
-        assert!(!loose.finished && loose.direct_solves == 0);
+        let ((loose, before, loose_force), (report, worst, force)) = (solve("none"), solve("direct"));
+        println!("{name}: certificate {before:.1e} -> {worst:.1e}, dlambda {loose_force:.1e} -> {force:.1e}");
+        assert!(!loose.finished && loose.direct_solves == 0 && report.finished, "{name}");
+        let exact = if matches!(name, "hertz_cylinder" | "three_bodies") { 1e-11 } else { 1e-13 };
+        assert!(worst <= exact && force <= 1e-12, "{name}: certificate {worst:.1e}, dlambda {force:.1e}");
+        assert!(report.dual_applications <= loose.dual_applications + 10, "{name}: {}", report.direct_solves);
     }
 }
