@@ -71,6 +71,7 @@ mod tests {
     use super::*;
     use crate::error::{Error, Kind};
     use crate::qp::Counts;
+    use crate::solver::solve::{tests::two_springs, Certifier};
 
     fn ended(verdict: Verdict, products: usize) -> Solution {
         let counts = Counts { products, ..Counts::default() };
@@ -98,5 +99,18 @@ mod tests {
         let solution = refused(Kind::TimeOver).unwrap();
         assert_eq!((solution.verdict, solution.x), (Verdict::TimeLimit, vec![1.0]));
         assert_eq!(refused(Kind::Callback).unwrap_err().kind, Kind::Callback);
+    }
+
+    #[test]
+    fn a_run_that_met_its_limit_of_steps_is_completed_directly_unless_that_is_switched_off() {
+        for (limit, verdict) in [(1000, Verdict::Solved), (0, Verdict::StepLimit)] {
+            two_springs(0.1, |judge, qp, direct, rough| {
+                let mut judge = Certifier { data: judge.data.clone(), ..*judge };
+                let ended = Solution { verdict: Verdict::StepLimit, ..rough.clone() };
+                let done = or_directly(ended, qp, Direct { limit, ..direct }, &mut judge).unwrap();
+                assert_eq!(done.verdict, verdict);
+                assert_eq!(done.x[0] == 2.0, verdict == Verdict::Solved);
+            });
+        }
     }
 }

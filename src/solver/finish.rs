@@ -89,3 +89,29 @@ impl Point {
         load
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::qp::Face;
+    use crate::solver::solve::tests::two_springs;
+
+    #[test]
+    fn a_wrong_active_set_is_never_accepted_and_the_right_one_is() {
+        // springs 1 and 1 pushed by 3 and 1 against walls at 1 and 2: only the first touches, lambda = 2
+        two_springs(1e-6, |judge, qp, direct, solved| {
+            for (rows, right) in [(vec![0], true), (vec![], false), (vec![1], false), (vec![0, 1], false)] {
+                let mut ending = judge.ending(solved.clone()).unwrap();
+                let before = ending.certificate.worst();
+                let face = Face::new(qp, direct.entries, rows.clone()).unwrap().unwrap();
+                let mut x = vec![0.0; 2];
+                let (on_face, alpha) = face.solve(rows.iter().map(|&i| qp.b[i]).collect(), qp.e).unwrap();
+                rows.iter().zip(on_face).for_each(|(&i, v)| x[i] = v);
+                let settled = Settled { x, alpha, undetermined: 0, face };
+                assert_eq!(improve(judge, &settled, &mut ending).unwrap(), right, "{rows:?}");
+                assert_eq!(ending.certificate.worst() < before, right, "{rows:?}");
+                assert!(ending.certificate.passed());
+            }
+        });
+    }
+}

@@ -182,7 +182,7 @@ impl Certifier<'_> {
         Recovered { u, lambda, mu }
     }
 
-    fn ending(&self, solution: Solution) -> Result<Ending> {
+    pub fn ending(&self, solution: Solution) -> Result<Ending> {
         let recovered = self.recover(&solution.x, &solution.alpha)?;
         let certificate = certify(&self.data, recovered.view());
         Ok(Ending { solution, recovered, certificate })
@@ -218,5 +218,43 @@ impl Problem {
             }
         }
         Ok(certify(&self.data()?, AnswerView { u, lambda, mu }))
+    }
+}
+
+#[cfg(test)]
+pub(super) mod tests {
+    use super::*;
+    use crate::qp::Counts;
+    use crate::solver::{Modes, RowKind, RowsInput, SparseInput, Storage};
+
+    /// Springs 1 and 1 pushed by 3 and 1 against walls at 1 and 2, each a body; `work` gets an answer whose first
+    /// force, 2, is wrong by the factor 1 + `error`.
+    pub fn two_springs(error: f64, work: impl Fn(&Certifier, Qp, Direct, &Solution)) {
+        let mut problem = Problem::new();
+        for load in [3.0, 1.0] {
+            let body = problem.add_body(1).unwrap();
+            let spring = SparseInput { ptr: &[0, 1], col: &[0], val: &[1.0], storage: Storage::Lower };
+            problem.set_stiffness(body, spring).unwrap();
+            problem.set_null_space(body, 1, 0, &[], 1, Modes::Exact).unwrap();
+            problem.set_load(body, &[load]).unwrap();
+        }
+        let rows =
+            RowsInput { ptr: &[0, 1, 2], body: None, dof: &[0, 1], val: &[1.0, 1.0], rhs: Some(&[1.0, 2.0]) };
+        problem.add_rows(RowKind::Inequality, rows).unwrap();
+        problem.set_f64("certificate_tolerance", 1e-4).unwrap();
+        problem
+            .watched(|problem, watch| {
+                problem.set_up(watch)?;
+                let ready = problem.ready()?;
+                let dual = Scaled::new(problem, ready, &watch.stops)?;
+                let judge = Certifier { ready, scaled: &dual, data: problem.data()? };
+                let scale = 3.0;
+                let (x, verdict) = (vec![2.0 * (1.0 + error), 0.0], Verdict::Solved);
+                let solved =
+                    Solution { x, alpha: vec![], undetermined: 0, scale, verdict, counts: Counts::default() };
+                work(&judge, dual.qp(ready, &ready.dual), problem.direct(ready), &solved);
+                Ok(())
+            })
+            .unwrap();
     }
 }
