@@ -103,7 +103,7 @@ static OPTIONS: [OptionInfo; 16] = [
     real(c"null_space_tolerance", 1e-8, 1e-15..=1e-2, |s| &mut s.null_space_tolerance,
         c"A given null space R is accepted when |K R| is this small against |K||R| in the metric of diag K."),
     whole(c"max_steps", 10_000, 1.0..=MANY, |s| &mut s.max_steps,
-        c"Steps of the dual method after which a solve ends with FETI_ITERATIONS and the best answer so far."),
+        c"Steps of the dual method after which a solve ends with FETI_ITERATIONS and the best answer so far, unless the direct method completes it (option direct_limit)."),
     whole(c"memory_limit", 0, 0.0..=MANY, |s| &mut s.memory_limit,
         c"Bytes that factors and dual operators may take; 0: no limit. Exceeding it is FETI_MEMORY before anything is allocated."),
     whole(c"threads", 0, 0.0..=4096.0, |s| &mut s.threads,
