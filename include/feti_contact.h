@@ -565,6 +565,14 @@ typedef struct feti_info {
    * Seconds for the rest.
    */
   double seconds_solve;
+  /**
+   * Faces on which the dual was solved directly.
+   */
+  int64_t direct_solves;
+  /**
+   * 1: the answer is that of option finish = direct; 0: it was not asked for, or brought nothing.
+   */
+  int64_t finished;
 } feti_info;
 
 /**

@@ -88,6 +88,7 @@ pub fn prepared(deck: &Deck, tolerance: f64) -> Result<Problem, String> {
     for (option, word) in METHOD {
         problem.set_str(option, word).map_err(|e| e.to_string())?;
     }
+    problem.set_i64("direct_limit", 0).map_err(|e| e.to_string())?;
     problem.set_f64("tolerance", tolerance).map_err(|e| e.to_string())?;
     Ok(problem)
 }

@@ -202,6 +202,10 @@ module feti_contact_c
     real(c_double) :: seconds_setup
     !> Seconds for the rest.
     real(c_double) :: seconds_solve
+    !> Faces on which the dual was solved directly.
+    integer(c_int64_t) :: direct_solves
+    !> 1: the answer is that of option finish = direct; 0: it was not asked for, or brought nothing.
+    integer(c_int64_t) :: finished
   end type feti_info
 
   !> Verdict on an answer, by relative figures: each passes when it is at most `limit` plus the noise of

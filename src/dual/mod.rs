@@ -9,6 +9,7 @@
 //! of 2^p, the size of the largest diagonal entry of K.
 
 mod coupling;
+mod entries;
 mod preconditioner;
 
 pub use coupling::dependent_rows;

@@ -136,6 +136,8 @@ fn without_answer() -> feti_info {
         energy: f64::NAN,
         seconds_setup: f64::NAN,
         seconds_solve: f64::NAN,
+        direct_solves: 0,
+        finished: 0,
     }
 }
 
@@ -170,6 +172,8 @@ fn report_in(info: &mut feti_info, report: &Report) {
     info.energy = report.energy;
     info.seconds_setup = report.seconds_setup;
     info.seconds_solve = report.seconds_solve;
+    info.direct_solves = report.direct_solves as i64;
+    info.finished = i64::from(report.finished);
 }
 
 fn certificate(from: &Certificate) -> feti_certificate {

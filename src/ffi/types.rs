@@ -172,6 +172,10 @@ pub struct feti_info {
     pub seconds_setup: f64,
     /// Seconds for the rest.
     pub seconds_solve: f64,
+    /// Faces on which the dual was solved directly.
+    pub direct_solves: i64,
+    /// 1: the answer is that of option finish = direct; 0: it was not asked for, or brought nothing.
+    pub finished: i64,
 }
 
 /// Verdict on an answer, by relative figures: each passes when it is at most `limit` plus the noise of rounding.

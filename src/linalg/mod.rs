@@ -9,6 +9,7 @@ pub mod graph;
 pub mod memory;
 pub mod ordering;
 pub mod packed;
+pub mod pivoted;
 pub mod reach;
 pub mod spd;
 pub mod symmetric;
@@ -18,6 +19,7 @@ pub use cholesky::{Analysis, Breakdown, Cholesky};
 pub use csr::Csr;
 pub use dense::Matrix;
 pub use packed::Packed;
+pub use pivoted::PivotedCholesky;
 pub use spd::SpdSolver;
 pub use symmetric::Symmetric;
 
@@ -34,4 +36,10 @@ pub trait Operator: Sync {
         self.apply(x, y);
         Ok(())
     }
+}
+
+/// A symmetric matrix that can hand out a block of its entries.
+pub trait Entries {
+    /// Adds the lower triangle of `A_FF` to `block`, n x n; F = `rows`, n of them, ascending.
+    fn add_block(&self, rows: &[usize], block: &mut Matrix);
 }

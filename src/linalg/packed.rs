@@ -2,7 +2,7 @@
 
 use crate::error::Result;
 use crate::linalg::memory::zeros;
-use crate::linalg::Operator;
+use crate::linalg::{Entries, Matrix, Operator};
 
 /// Symmetric `m x m`; entry (i, j), j <= i, at `i (i + 1) / 2 + j`.
 #[derive(Debug, Clone, PartialEq)]
@@ -58,6 +58,15 @@ impl Operator for Packed {
             }
             y[i] += sum;
             start += i + 1;
+        }
+    }
+}
+
+impl Entries for Packed {
+    fn add_block(&self, rows: &[usize], block: &mut Matrix) {
+        for (l, &j) in rows.iter().enumerate() {
+            let column = block.col_mut(l);
+            rows.iter().enumerate().skip(l).for_each(|(k, &i)| column[k] += self.get(i, j));
         }
     }
 }

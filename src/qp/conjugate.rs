@@ -1,12 +1,14 @@
 //! Directions kept with their images, conjugate to each other: `p_i'A p_j = sigma` for i = j, else 0. They lie
 //! on the present face and in the kernel of G, so that theta is minimised over their span without any product.
 
-use crate::linalg::vector::{axpy, dot, norm};
+use crate::linalg::vector::{axpy, dot, norm, norm_max};
 
 /// More directions than this cost more than the products they save.
 pub const MOST: usize = 100;
 /// A direction whose curvature is all but in the span of the others tells nothing new.
 const NEW: f64 = 1e-10;
+/// Entries of a row below this part of the largest are nothing but rounding: the row depends on others that are held.
+const ROUNDING: f64 = 1e-13;
 
 #[derive(Default)]
 pub struct Conjugate {
@@ -69,7 +71,8 @@ impl Conjugate {
         let mut w: Vec<f64> = self.pairs.iter().map(|(p, _)| p[i]).collect();
         let Some(&last) = w.last() else { return };
         let length = norm(&w);
-        if length == 0.0 {
+        if length <= ROUNDING * self.pairs.iter().map(|(p, _)| norm_max(p)).fold(0.0, f64::max) {
+            self.pairs.iter_mut().for_each(|(p, _)| p[i] = 0.0);
             return;
         }
         let k = w.len() - 1;

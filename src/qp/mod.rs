@@ -6,9 +6,11 @@
 //!
 //! Knows A by its products only, and no bodies.
 
+mod active_set;
 mod augmented;
 mod coarse;
 mod conjugate;
+mod face;
 mod iterate;
 mod mprgp;
 mod nnls;
@@ -17,8 +19,10 @@ mod proportioning;
 mod smalbe;
 mod steps;
 
+pub use active_set::{active_set, settle, Attempt, Direct, Settled};
 pub use coarse::undetermined;
 pub use conjugate::MOST as KEPT;
+pub use face::Face;
 pub use proportioning::{minimise, Judge, Limits, Observer, Progress, Solution, StepKind, Verdict};
 pub use smalbe::smalbe;
 
@@ -56,6 +60,8 @@ pub struct Counts {
     pub coarse_factorisations: usize,
     /// Applications of the preconditioner.
     pub preconditioned: usize,
+    /// Faces solved directly.
+    pub direct: usize,
 }
 
 impl std::ops::Add for Counts {
@@ -70,6 +76,7 @@ impl std::ops::Add for Counts {
             coarse_solves: self.coarse_solves + other.coarse_solves,
             coarse_factorisations: self.coarse_factorisations + other.coarse_factorisations,
             preconditioned: self.preconditioned + other.preconditioned,
+            direct: self.direct + other.direct,
         }
     }
 }

@@ -187,7 +187,8 @@ impl Iterate<'_> {
         let (mut x, mut g) = (std::mem::take(&mut self.x), std::mem::take(&mut self.g));
         for i in 0..x.len() {
             let y = x[i] - t * p[i];
-            let hits = self.qp.bounded[i] && !self.active[i] && p[i] > 0.0 && y <= 4.0 * f64::EPSILON * x[i];
+            let hits =
+                self.qp.bounded[i] && !self.active[i] && p[i] > 0.0 && y <= 256.0 * f64::EPSILON * x[i];
             x[i] = if hits { 0.0 } else { y };
         }
         axpy(-t, image, &mut g);

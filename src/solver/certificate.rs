@@ -66,6 +66,7 @@ impl Certificate {
 }
 
 /// The problem as the host gave it.
+#[derive(Clone)]
 pub struct Data<'a> {
     /// Per body: stiffness, load, null space.
     pub bodies: Vec<BodyData<'a>>,
@@ -76,6 +77,7 @@ pub struct Data<'a> {
     pub limit: f64,
 }
 
+#[derive(Clone)]
 pub struct BodyData<'a> {
     pub start: usize,
     pub stiffness: &'a Symmetric,

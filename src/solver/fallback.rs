@@ -1,34 +1,51 @@
 //! The method the options ask for; and where it gives up, others, before the answer counts as incomplete.
 
 use crate::error::Result;
-use crate::qp::{minimise, smalbe, Judge, Limits, Observer, Qp, Solution, Verdict};
+use crate::qp::{active_set, minimise, smalbe, Direct, Judge, Limits, Observer, Qp, Solution, Verdict};
 use crate::solver::Settings;
 
+/// How the dual is solved.
+pub(super) struct Means<'a> {
+    pub settings: &'a Settings,
+    pub direct: Direct<'a>,
+}
+
 /// Solves the dual. After proportioning: the same without preconditioner, then SMALBE-M, each from where the
-/// one before has ended.
+/// one before has ended, and after each of them the direct method.
 pub(super) fn solve_dual(
-    settings: &Settings,
+    means: &Means,
     qp: Qp,
     start: &[f64],
     judge: &mut dyn Judge,
     observer: &mut dyn Observer,
 ) -> Result<Solution> {
+    let settings = means.settings;
     let steps = usize::try_from(settings.max_steps).unwrap_or(usize::MAX);
     let limits = Limits { tolerance: settings.tolerance, gamma: settings.gamma, steps };
     if settings.method == c"smalbe" {
         return smalbe(qp, start, limits, judge, observer);
     }
-    let mut best = minimise(qp, start, limits, judge, observer)?;
+    let first = minimise(qp, start, limits, judge, observer)?;
+    let mut best = or_directly(first, qp, means.direct, judge)?;
     let plain = Qp { preconditioner: None, ..qp };
     if gave_up(&best) && qp.preconditioner.is_some() {
         let next = minimise(plain, &best.x.clone(), limits, judge, observer);
-        best = better(best, next)?;
+        best = better(best, next.and_then(|next| or_directly(next, plain, means.direct, judge)))?;
     }
     if gave_up(&best) {
         let next = smalbe(plain, &best.x.clone(), limits, judge, observer);
-        best = better(best, next)?;
+        best = better(best, next.and_then(|next| or_directly(next, plain, means.direct, judge)))?;
     }
     Ok(best)
+}
+
+/// The same, or what the direct method makes of it where it is incomplete.
+fn or_directly(solution: Solution, qp: Qp, direct: Direct, judge: &mut dyn Judge) -> Result<Solution> {
+    if !gave_up(&solution) && solution.verdict != Verdict::StepLimit {
+        return Ok(solution);
+    }
+    let next = active_set(qp, direct, &solution, judge);
+    better(solution, next)
 }
 
 fn gave_up(solution: &Solution) -> bool {
@@ -54,6 +71,7 @@ mod tests {
     use super::*;
     use crate::error::{Error, Kind};
     use crate::qp::Counts;
+    use crate::solver::solve::{tests::two_springs, Certifier};
 
     fn ended(verdict: Verdict, products: usize) -> Solution {
         let counts = Counts { products, ..Counts::default() };
@@ -81,5 +99,18 @@ mod tests {
         let solution = refused(Kind::TimeOver).unwrap();
         assert_eq!((solution.verdict, solution.x), (Verdict::TimeLimit, vec![1.0]));
         assert_eq!(refused(Kind::Callback).unwrap_err().kind, Kind::Callback);
+    }
+
+    #[test]
+    fn a_run_that_met_its_limit_of_steps_is_completed_directly_unless_that_is_switched_off() {
+        for (limit, verdict) in [(1000, Verdict::Solved), (0, Verdict::StepLimit)] {
+            two_springs(0.1, |judge, qp, direct, rough| {
+                let mut judge = Certifier { data: judge.data.clone(), ..*judge };
+                let ended = Solution { verdict: Verdict::StepLimit, ..rough.clone() };
+                let done = or_directly(ended, qp, Direct { limit, ..direct }, &mut judge).unwrap();
+                assert_eq!(done.verdict, verdict);
+                assert_eq!(done.x[0] == 2.0, verdict == Verdict::Solved);
+            });
+        }
     }
 }

@@ -61,6 +61,10 @@ pub struct Report {
     pub coarse_factorisations: usize,
     /// Products with the preconditioner.
     pub preconditioner_applications: usize,
+    /// Faces on which the dual was solved directly.
+    pub direct_solves: usize,
+    /// The direct finish was asked for, and its answer is kept.
+    pub finished: bool,
     /// `|S|B||u|| + |S c|` at the first feasible forces: what the tolerance of the dual is relative to,
     /// `(force x length)^1/2`.
     pub gap_scale: f64,

@@ -54,6 +54,8 @@ impl Answer {
             coarse_solves: counts.coarse_solves,
             coarse_factorisations: counts.coarse_factorisations,
             preconditioner_applications: counts.preconditioned,
+            direct_solves: counts.direct,
+            finished: false,
             gap_scale: solution.scale * ready.unit.sqrt(),
             factorisations: problem.factorisations,
             analyses: problem.factorisations,

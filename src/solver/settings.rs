@@ -21,6 +21,8 @@ pub struct Settings {
     pub preconditioner: &'static CStr,
     pub method: &'static CStr,
     pub start: &'static CStr,
+    pub direct_limit: i64,
+    pub finish: &'static CStr,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -87,7 +89,7 @@ const fn word(
     OptionInfo { name, doc, default, minimum: 0.0, maximum: 0.0, field: Field::Str(field, words) }
 }
 
-static OPTIONS: [OptionInfo; 14] = [
+static OPTIONS: [OptionInfo; 16] = [
     real(c"tolerance", 1e-12, 1e-14..=1e-2, |s| &mut s.tolerance,
         c"The dual is solved until its projected gradient, a gap, is this small against the gaps and displacements of the problem."),
     real(c"certificate_tolerance", 1e-8, 1e-14..=1e-2, |s| &mut s.certificate_tolerance,
@@ -101,7 +103,7 @@ static OPTIONS: [OptionInfo; 14] = [
     real(c"null_space_tolerance", 1e-8, 1e-15..=1e-2, |s| &mut s.null_space_tolerance,
         c"A given null space R is accepted when |K R| is this small against |K||R| in the metric of diag K."),
     whole(c"max_steps", 10_000, 1.0..=MANY, |s| &mut s.max_steps,
-        c"Steps of the dual method after which a solve ends with FETI_ITERATIONS and the best answer so far."),
+        c"Steps of the dual method after which a solve ends with FETI_ITERATIONS and the best answer so far, unless the direct method completes it (option direct_limit)."),
     whole(c"memory_limit", 0, 0.0..=MANY, |s| &mut s.memory_limit,
         c"Bytes that factors and dual operators may take; 0: no limit. Exceeding it is FETI_MEMORY before anything is allocated."),
     whole(c"threads", 0, 0.0..=4096.0, |s| &mut s.threads,
@@ -116,6 +118,10 @@ static OPTIONS: [OptionInfo; 14] = [
         c"Method for the dual: proportioning on its feasible set, with smalbe to fall back on; smalbe, an augmented Lagrangian, for comparison."),
     word(c"start", &[c"cold", c"previous"], |s| &mut s.start,
         c"Where a solve starts: cold (no forces: the same input gives the same bits) or previous (forces and active set of the last answer for these rows); feti_start_from comes before either."),
+    whole(c"direct_limit", 1000, 0.0..=MANY, |s| &mut s.direct_limit,
+        c"Forces and floating modes together up to which the dual may be solved by dense factors on the active set, where the iteration gives up or option finish asks for it; 0: never."),
+    word(c"finish", &[c"none", c"direct"], |s| &mut s.finish,
+        c"What follows a solve: none; direct (dense factors on the active set found: errors fall to rounding; kept only where the certificate improves)."),
 ];
 
 /// All options, in the order of their listing.

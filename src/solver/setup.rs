@@ -140,7 +140,7 @@ impl Problem {
 
     /// Factors, dual operators and so many bytes more against the limit of the host, and against what the
     /// system would give.
-    fn check_memory(&self, more: usize) -> Result<()> {
+    pub(super) fn check_memory(&self, more: usize) -> Result<()> {
         let kept: usize = self.bodies.iter().filter_map(|slot| slot.inverse.as_ref()).map(|i| i.bytes).sum();
         let ranges = || self.ranges().into_iter();
         let operators =

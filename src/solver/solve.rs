@@ -7,11 +7,12 @@ use crate::dual::Preconditioner;
 use crate::error::{Error, Kind, Result};
 use crate::linalg::vector::weighted_norm;
 use crate::linalg::Operator;
-use crate::qp::{self, Judge, Qp, Solution, Verdict};
+use crate::qp::{self, Direct, Judge, Qp, Solution, Verdict};
 use crate::solver::certificate::{certify, Answer as AnswerView, BodyData, Certificate, Data};
 use crate::solver::diagnosis;
-use crate::solver::fallback::solve_dual;
+use crate::solver::fallback::{solve_dual, Means};
 use crate::solver::findings::Findings;
+use crate::solver::finish::finish;
 use crate::solver::presolve::{presolve, Gaps};
 use crate::solver::problem::Problem;
 use crate::solver::report::{Outcome, Report};
@@ -38,12 +39,15 @@ impl Problem {
         let dual = Scaled::new(self, ready, &watch.stops)?;
         let mut judge = Certifier { ready, scaled: &dual, data: self.data()? };
         let f = watch.operator(ready, &dual.gaps.bounded);
-        let solution =
-            solve_dual(&self.settings, dual.qp(ready, &f), &start.scaled(ready)?, &mut judge, watch)?;
+        let (qp, direct) = (dual.qp(ready, &f), self.direct(ready));
+        let means = Means { settings: &self.settings, direct };
+        let solution = solve_dual(&means, qp, &start.scaled(ready)?, &mut judge, watch)?;
+        let mut ending = judge.ending(solution)?;
+        let finished = self.settings.finish == c"direct" && finish(&judge, qp, direct, &mut ending)?;
+        let Ending { solution, recovered, certificate } = ending;
         let outcome = self.outcome(ready, &dual, &solution)?;
-        let recovered = judge.recover(&solution.x, &solution.alpha)?;
-        let certificate = certify(&judge.data, recovered.view());
         let mut answer = Answer::new(self, ready, &solution, recovered, outcome, certificate)?;
+        answer.report.finished = finished;
         answer.report.seconds_setup = (solving - started).as_secs_f64();
         answer.report.seconds_solve = solving.elapsed().as_secs_f64();
         let report = answer.report.clone();
@@ -54,6 +58,14 @@ impl Problem {
 
     pub(super) fn ready(&self) -> Result<&Ready> {
         self.ready.as_ref().ok_or_else(|| Error::new(Kind::Internal, "the setup left nothing"))
+    }
+
+    /// F for the direct method, which stays within the memory limit.
+    fn direct<'a>(&self, ready: &'a Ready) -> Direct<'a> {
+        let asked = usize::try_from(self.settings.direct_limit).unwrap_or(usize::MAX);
+        let most = asked.min(ready.dual.order() + ready.dual.modes());
+        let limit = if self.check_memory(Direct::bytes(most)).is_ok() { most } else { 0 };
+        Direct { entries: &ready.dual, limit }
     }
 
     /// How the solution ended, or the named reason why there is none.
@@ -96,10 +108,10 @@ impl Problem {
 }
 
 /// Loads and gaps as the dual takes them.
-struct Scaled {
+pub(super) struct Scaled {
     /// f / 2^p
-    load: Vec<f64>,
-    gaps: Gaps,
+    pub load: Vec<f64>,
+    pub gaps: Gaps,
     d: Vec<f64>,
     e: Vec<f64>,
 }
@@ -141,18 +153,29 @@ impl Recovered {
 }
 
 /// Judges a point of the dual by the certificate of the answer recovered from it.
-struct Certifier<'a> {
-    ready: &'a Ready,
-    scaled: &'a Scaled,
-    data: Data<'a>,
+pub(super) struct Certifier<'a> {
+    pub ready: &'a Ready,
+    pub scaled: &'a Scaled,
+    pub data: Data<'a>,
+}
+
+/// What a solve ends with.
+pub(super) struct Ending {
+    pub solution: Solution,
+    pub recovered: Recovered,
+    pub certificate: Certificate,
 }
 
 impl Certifier<'_> {
-    /// (17), and lambda = 2^p S x on the rows that carry the multipliers of their groups; springs without
-    /// entries have their force from their gap.
-    fn recover(&self, x: &[f64], alpha: &[f64]) -> Result<Recovered> {
+    /// (17), and lambda = 2^p S x on the rows that carry the multipliers of their groups.
+    pub fn recover(&self, x: &[f64], alpha: &[f64]) -> Result<Recovered> {
+        let u = self.ready.dual.displacement(&self.scaled.load, x, alpha)?;
+        Ok(self.with_forces(u, x))
+    }
+
+    /// An answer of u and x; springs without entries have their force from their gap.
+    pub fn with_forces(&self, u: Vec<f64>, x: &[f64]) -> Recovered {
         let ready = self.ready;
-        let u = ready.dual.displacement(&self.scaled.load, x, alpha)?;
         let contact = self.data.contact.forces_without_entries(RowKind::Inequality);
         let equalities = self.data.equalities.forces_without_entries(RowKind::Equality);
         let mut lambda: Vec<f64> = contact.chain(equalities).collect();
@@ -160,7 +183,13 @@ impl Certifier<'_> {
             lambda[holder] = x * ready.scale[holder] * ready.unit;
         }
         let mu = lambda.split_off(ready.contact);
-        Ok(Recovered { u, lambda, mu })
+        Recovered { u, lambda, mu }
+    }
+
+    pub fn ending(&self, solution: Solution) -> Result<Ending> {
+        let recovered = self.recover(&solution.x, &solution.alpha)?;
+        let certificate = certify(&self.data, recovered.view());
+        Ok(Ending { solution, recovered, certificate })
     }
 }
 
@@ -193,5 +222,43 @@ impl Problem {
             }
         }
         Ok(certify(&self.data()?, AnswerView { u, lambda, mu }))
+    }
+}
+
+#[cfg(test)]
+pub(super) mod tests {
+    use super::*;
+    use crate::qp::Counts;
+    use crate::solver::{Modes, RowKind, RowsInput, SparseInput, Storage};
+
+    /// Springs 1 and 1 pushed by 3 and 1 against walls at 1 and 2, each a body; `work` gets an answer whose first
+    /// force, 2, is wrong by the factor 1 + `error`.
+    pub fn two_springs(error: f64, work: impl Fn(&Certifier, Qp, Direct, &Solution)) {
+        let mut problem = Problem::new();
+        for load in [3.0, 1.0] {
+            let body = problem.add_body(1).unwrap();
+            let spring = SparseInput { ptr: &[0, 1], col: &[0], val: &[1.0], storage: Storage::Lower };
+            problem.set_stiffness(body, spring).unwrap();
+            problem.set_null_space(body, 1, 0, &[], 1, Modes::Exact).unwrap();
+            problem.set_load(body, &[load]).unwrap();
+        }
+        let rows =
+            RowsInput { ptr: &[0, 1, 2], body: None, dof: &[0, 1], val: &[1.0, 1.0], rhs: Some(&[1.0, 2.0]) };
+        problem.add_rows(RowKind::Inequality, rows).unwrap();
+        problem.set_f64("certificate_tolerance", 1e-4).unwrap();
+        problem
+            .watched(|problem, watch| {
+                problem.set_up(watch)?;
+                let ready = problem.ready()?;
+                let dual = Scaled::new(problem, ready, &watch.stops)?;
+                let judge = Certifier { ready, scaled: &dual, data: problem.data()? };
+                let scale = 3.0;
+                let (x, verdict) = (vec![2.0 * (1.0 + error), 0.0], Verdict::Solved);
+                let solved =
+                    Solution { x, alpha: vec![], undetermined: 0, scale, verdict, counts: Counts::default() };
+                work(&judge, dual.qp(ready, &ready.dual), problem.direct(ready), &solved);
+                Ok(())
+            })
+            .unwrap();
     }
 }

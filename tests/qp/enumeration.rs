@@ -9,7 +9,7 @@ use crate::dense::{dot, independent_rows, norm, solve, Dense};
 use crate::program::Program;
 
 /// An optimal x with its multiplier, `None` when there is no feasible point.
-fn by_enumeration(program: &Program) -> Option<(Vec<f64>, Vec<f64>)> {
+pub fn by_enumeration(program: &Program) -> Option<(Vec<f64>, Vec<f64>)> {
     let m = program.b.len();
     let rows = independent_rows(&program.g);
     (0..1usize << m).find_map(|set| {
@@ -49,19 +49,19 @@ fn on_face(program: &Program, face: &[usize], rows: &[usize]) -> Option<(Vec<f64
 
 /// What a random program looks like.
 #[derive(Clone, Copy)]
-struct Kind {
+pub struct Kind {
     /// Rank of A below m.
-    deficient: bool,
+    pub deficient: bool,
     /// Some rows without a bound.
-    free: bool,
+    pub free: bool,
     /// The last row of G repeats the others.
-    dependent: bool,
+    pub dependent: bool,
     /// `b` leaves some rows at zero without a force.
-    degenerate: bool,
+    pub degenerate: bool,
 }
 
 /// A program with a feasible x and a feasible multiplier, hence with a solution; m <= 10, r <= 3.
-fn random_program(random: &mut Random, kind: Kind) -> Program {
+pub fn random_program(random: &mut Random, kind: Kind) -> Program {
     let m = 1 + random.below(10);
     let r = random.below(4).min(m.saturating_sub(1));
     let rank = if kind.deficient { random.below(m) } else { m + 1 };
@@ -105,7 +105,7 @@ fn random_program(random: &mut Random, kind: Kind) -> Program {
 }
 
 /// x is unique when A is positive definite on the kernel of G.
-fn has_one_solution(program: &Program) -> bool {
+pub fn has_one_solution(program: &Program) -> bool {
     let m = program.b.len();
     let mut sum = Dense::gram(&program.g_or_zero());
     sum.0.iter_mut().zip(&program.a.0).for_each(|(s, a)| s.iter_mut().zip(a).for_each(|(s, a)| *s += a));
@@ -156,14 +156,14 @@ fn fault(program: &Program) -> Option<String> {
     (one && forces > 1e-6 * residuals.gradient_size).then(|| format!("G'alpha differs by {forces:e}"))
 }
 
-fn distance(x: &[f64], y: &[f64]) -> f64 {
+pub fn distance(x: &[f64], y: &[f64]) -> f64 {
     x.iter().zip(y).map(|(x, y)| (x - y) * (x - y)).sum::<f64>().sqrt()
 }
 
 const PER_KIND: u64 = 60;
 
 #[test]
-fn random_programs_are_solved_as_by_enumeration_of_all_faces() {
+pub fn random_programs_are_solved_as_by_enumeration_of_all_faces() {
     let mut faults = Vec::new();
     for bits in 0..16u64 {
         let on = |bit: u64| bits >> bit & 1 == 1;

@@ -1,5 +1,6 @@
 //! The quadratic programs of the dual on small dense matrices, without a body.
 
+mod active_set;
 mod certificates;
 mod dense;
 mod enumeration;

@@ -73,6 +73,11 @@ impl Program {
         rows
     }
 
+    pub fn qp<'a>(&'a self, g_transposed: &'a Csr, preconditioner: Option<&'a dyn Preconditioner>) -> Qp<'a> {
+        let Self { a, b, e, bounded, .. } = self;
+        Qp { a, b, g_transposed, e, bounded, preconditioner }
+    }
+
     pub fn residuals(&self, x: &[f64], alpha: &[f64]) -> Residuals {
         let (image, coarse) = (self.a.times(x), self.g.transpose_times(alpha, x.len()));
         let part = |i: usize| {
@@ -119,7 +124,7 @@ impl Program {
         let limits = Limits { tolerance, gamma: 1.0, steps: 5000 };
         let mut judge = Conditions { program: self, accepted };
         let g_transposed = self.g_transposed();
-        let qp = Qp { preconditioner, ..self.qp(&g_transposed) };
+        let qp = self.qp(&g_transposed, preconditioner);
         minimise(qp, start, limits, &mut judge, &mut Silent).unwrap()
     }
 
@@ -128,12 +133,7 @@ impl Program {
         let limits = Limits { tolerance: 1e-12, gamma: 1.0, steps: 20_000 };
         let mut judge = Conditions { program: self, accepted: 1e-9 };
         let g_transposed = self.g_transposed();
-        method(self.qp(&g_transposed), start, limits, &mut judge, observer).unwrap()
-    }
-
-    fn qp<'a>(&'a self, g_transposed: &'a Csr) -> Qp<'a> {
-        let (b, e, bounded) = (&self.b, &self.e, &self.bounded);
-        Qp { a: &self.a, b, g_transposed, e, bounded, preconditioner: None }
+        method(self.qp(&g_transposed, None), start, limits, &mut judge, observer).unwrap()
     }
 
     /// The solution, which must have been accepted.
@@ -150,9 +150,9 @@ impl Program {
 pub type Method = fn(Qp, &[f64], Limits, &mut dyn Judge, &mut dyn Observer) -> Result<Solution>;
 
 /// Accepts by the residuals of the optimality conditions.
-struct Conditions<'a> {
-    program: &'a Program,
-    accepted: f64,
+pub struct Conditions<'a> {
+    pub program: &'a Program,
+    pub accepted: f64,
 }
 
 impl Judge for Conditions<'_> {

@@ -1,0 +1,233 @@
+//! Primal-dual active sets: the minimum on a face by a direct method, then rows with `x_i < 0` join the
+//! active set and active rows with `r_i < 0` leave it, until nothing changes. Fast and as accurate as rounding
+//! allows where it ends; it need not end (rows may swap for ever, a face may have no minimum), and gives up then.
+
+use crate::error::{Kind, Result};
+use crate::linalg::vector::{axpy, dot, norm};
+use crate::linalg::Entries;
+use crate::qp::coarse::Coarse;
+use crate::qp::face::Face;
+use crate::qp::projection::project;
+use crate::qp::{Counts, Judge, Qp, Solution, Verdict};
+
+/// Faces at most.
+const FACES: usize = 30;
+/// Corrections of the solution on a face by the residual of A itself, at most.
+const REFINEMENTS: usize = 5;
+/// The conditions of a face count as met when they hold to this fraction of their terms.
+const MET: f64 = 1e-10;
+/// A projected gradient below this fraction of the scale of the judge is zero.
+const ZERO: f64 = 1e-12;
+
+/// Square matrices of all free rows and modes at a time.
+const MATRICES: usize = 4;
+
+/// What the direct method needs besides the problem.
+#[derive(Clone, Copy)]
+pub struct Direct<'a> {
+    pub entries: &'a dyn Entries,
+    /// Largest number of free rows and modes together: memory and work grow with its second and third power.
+    pub limit: usize,
+}
+
+impl Direct<'_> {
+    /// Bytes taken at most where free rows and modes are so many together.
+    pub fn bytes(order: usize) -> usize {
+        order.saturating_mul(order).saturating_mul(MATRICES * size_of::<f64>())
+    }
+}
+
+/// What the method came to.
+pub struct Attempt<'a> {
+    /// `None`: it gave up.
+    pub settled: Option<Settled<'a>>,
+    pub counts: Counts,
+    /// The host or the time ended it.
+    pub ended: Option<Verdict>,
+}
+
+/// An active set that its own solution confirms.
+pub struct Settled<'a> {
+    pub x: Vec<f64>,
+    pub alpha: Vec<f64>,
+    /// Dimension of the part of alpha that the free rows leave undetermined.
+    pub undetermined: usize,
+    pub face: Face<'a>,
+}
+
+/// Goes on from `from` and its active set: solved when the judge accepts, else stalled with the point given.
+pub fn active_set(qp: Qp, direct: Direct, from: &Solution, judge: &mut dyn Judge) -> Result<Solution> {
+    let Attempt { settled, counts, ended } = settle(qp, direct, from)?;
+    if let Some(Settled { x, alpha, undetermined, .. }) = settled {
+        if judge.accepts(&x, &alpha)? {
+            let verdict = Verdict::Solved;
+            return Ok(Solution { x, alpha, undetermined, scale: from.scale, verdict, counts });
+        }
+    }
+    Ok(Solution { verdict: ended.unwrap_or(Verdict::Stalled), counts, ..from.clone() })
+}
+
+/// The same without a judge.
+pub fn settle<'a>(qp: Qp<'a>, direct: Direct<'a>, from: &Solution) -> Result<Attempt<'a>> {
+    let mut run = Run::new(qp, direct, from)?;
+    let (settled, ended) = match run.settle() {
+        Ok(face) => (face, None),
+        Err(error) if error.kind == Kind::Memory => (None, None),
+        Err(error) => (None, Some(Verdict::of_refusal(error)?)),
+    };
+    run.coarse.select(&at_bound(&qp, &run.x))?;
+    let counts = Counts {
+        coarse_solves: run.coarse.solves,
+        coarse_factorisations: run.coarse.factorisations,
+        ..run.counts
+    };
+    let undetermined = run.coarse.deficiency();
+    let settled = settled.map(|face| Settled { x: run.x, alpha: run.alpha, undetermined, face });
+    Ok(Attempt { settled, counts, ended })
+}
+
+/// Bounded rows at zero.
+fn at_bound(qp: &Qp, x: &[f64]) -> Vec<bool> {
+    x.iter().zip(qp.bounded).map(|(x, bounded)| *bounded && *x <= 0.0).collect()
+}
+
+struct Run<'a> {
+    qp: Qp<'a>,
+    direct: Direct<'a>,
+    coarse: Coarse<'a>,
+    x: Vec<f64>,
+    alpha: Vec<f64>,
+    active: Vec<bool>,
+    /// `r = A x - b - G'alpha`
+    r: Vec<f64>,
+    /// `|A x| + |b| + |G'alpha|`
+    terms: f64,
+    /// A length that counts as zero, before rounding.
+    small: f64,
+    counts: Counts,
+}
+
+impl<'a> Run<'a> {
+    fn new(qp: Qp<'a>, direct: Direct<'a>, from: &Solution) -> Result<Self> {
+        Ok(Self {
+            coarse: Coarse::new(qp.g_transposed)?,
+            active: at_bound(&qp, &from.x),
+            x: from.x.clone(),
+            alpha: from.alpha.clone(),
+            r: vec![0.0; from.x.len()],
+            terms: 0.0,
+            small: ZERO * from.scale,
+            counts: Counts::default(),
+            qp,
+            direct,
+        })
+    }
+
+    /// The face whose solution confirms it.
+    fn settle(&mut self) -> Result<Option<Face<'a>>> {
+        let mut visited: Vec<Vec<bool>> = Vec::new();
+        while visited.len() < FACES && !visited.contains(&self.active) {
+            let rows: Vec<usize> = (0..self.x.len()).filter(|&i| !self.active[i]).collect();
+            if rows.len() + self.alpha.len() > self.direct.limit {
+                return Ok(None);
+            }
+            let Some(face) = self.solve_on(rows)? else { return Ok(None) };
+            let next = self.next_set(&face)?;
+            if next == self.active {
+                return Ok(Some(face));
+            }
+            visited.push(std::mem::replace(&mut self.active, next));
+        }
+        Ok(None)
+    }
+
+    /// Moves x and alpha to the minimum on the face; `None`: there is none. Its first product asks the host
+    /// before the factorisation begins.
+    fn solve_on(&mut self, rows: Vec<usize>) -> Result<Option<Face<'a>>> {
+        self.x.iter_mut().zip(&self.active).filter(|(_, held)| **held).for_each(|(x, _)| *x = 0.0);
+        self.refresh()?;
+        let Some(face) = Face::new(self.qp, self.direct.entries, rows)? else { return Ok(None) };
+        self.counts.direct += 1;
+        let mut last = f64::INFINITY;
+        for _ in 0..REFINEMENTS {
+            let force = face.rows().iter().map(|&i| -self.r[i]).collect();
+            let (step, turn) = face.solve(force, &self.rest())?;
+            face.rows().iter().zip(&step).for_each(|(&i, s)| self.x[i] += s);
+            axpy(1.0, &turn, &mut self.alpha);
+            self.refresh()?;
+            let size = norm(&step);
+            if size <= f64::EPSILON * norm(&self.x) || size > 0.5 * last {
+                break;
+            }
+            last = size;
+        }
+        let force = face.rows().iter().map(|&i| self.r[i] * self.r[i]).sum::<f64>().sqrt();
+        let mut terms = vec![0.0; self.alpha.len()];
+        self.qp.g_transposed.mul_transposed_abs_add(&self.x, &mut terms);
+        let balanced = norm(&self.rest()) <= MET * (norm(self.qp.e) + norm(&terms));
+        Ok((balanced && force <= MET * self.terms).then_some(face))
+    }
+
+    /// `e - G x`
+    fn rest(&self) -> Vec<f64> {
+        let mut rest = self.qp.e.to_vec();
+        self.qp.g_transposed.mul_transposed_add(-1.0, &self.x, &mut rest);
+        rest
+    }
+
+    /// r of x and alpha.
+    fn refresh(&mut self) -> Result<()> {
+        let mut image = self.product(&self.x.clone())?;
+        let coarse: Vec<f64> =
+            (0..image.len()).map(|i| self.qp.g_transposed.row_dot(i, &self.alpha)).collect();
+        self.terms = norm(&image) + norm(self.qp.b) + norm(&coarse);
+        axpy(-1.0, self.qp.b, &mut image);
+        axpy(-1.0, &coarse, &mut image);
+        self.r = image;
+        Ok(())
+    }
+
+    /// `A v`, counted.
+    fn product(&mut self, v: &[f64]) -> Result<Vec<f64>> {
+        let mut image = vec![0.0; v.len()];
+        self.qp.a.try_apply(v, &mut image)?;
+        self.counts.products += 1;
+        Ok(image)
+    }
+
+    /// What rounding leaves of r.
+    fn noise(&self) -> f64 {
+        64.0 * f64::EPSILON * self.terms
+    }
+
+    /// The active set that the signs of x and r ask for.
+    fn next_set(&mut self, face: &Face) -> Result<Vec<bool>> {
+        let noise = self.noise();
+        let stays = |i: usize| if self.active[i] { self.r[i] >= -noise } else { self.x[i] < 0.0 };
+        let next: Vec<bool> = (0..self.x.len()).map(|i| self.qp.bounded[i] && stays(i)).collect();
+        let only_leave = next.iter().zip(&self.active).all(|(next, active)| *active || !*next);
+        if face.is_deficient() && only_leave && next != self.active {
+            return Ok(self.projected()?.unwrap_or(next));
+        }
+        Ok(next)
+    }
+
+    /// Where free rows leave a part of alpha open, gradient projection chooses: it gives the multiplier that
+    /// confirms the point, or shows which rows to free.
+    fn projected(&mut self) -> Result<Option<Vec<bool>>> {
+        let image = self.product(&self.r.clone())?;
+        let curvature = dot(&image, &self.r);
+        let step = if curvature > 0.0 { curvature / dot(&image, &image) } else { 1.0 };
+        let mut y = self.x.clone();
+        axpy(-step, &self.r, &mut y);
+        let none = vec![false; y.len()];
+        let Some(found) = project(&self.qp, &mut self.coarse, &y, &none)? else { return Ok(None) };
+        let mut way = found.point.clone();
+        axpy(-1.0, &self.x, &mut way);
+        if norm(&way) <= step * (self.small + self.noise()) {
+            axpy(1.0 / step, &found.multiplier, &mut self.alpha);
+            return Ok(Some(self.active.clone()));
+        }
+        Ok(Some(at_bound(&self.qp, &found.point)))
+    }
+}
