@@ -11,6 +11,7 @@ mod coarse;
 mod iterate;
 mod mprgp;
 mod nnls;
+pub mod paper;
 mod projection;
 mod proportioning;
 mod smalbe;
@@ -53,6 +54,8 @@ pub struct Counts {
     pub coarse_factorisations: usize,
     /// Applications of the preconditioner.
     pub preconditioned: usize,
+    /// Problems with bounds alone: outer iterations of an augmented Lagrangian.
+    pub outer: usize,
 }
 
 impl std::ops::Add for Counts {
@@ -67,6 +70,7 @@ impl std::ops::Add for Counts {
             coarse_solves: self.coarse_solves + other.coarse_solves,
             coarse_factorisations: self.coarse_factorisations + other.coarse_factorisations,
             preconditioned: self.preconditioned + other.preconditioned,
+            outer: self.outer + other.outer,
         }
     }
 }

@@ -1,7 +1,9 @@
 //! The method the options ask for; and where it gives up, others, before the answer counts as incomplete.
 
 use crate::error::Result;
+use crate::qp::paper::algorithm_3;
 use crate::qp::{minimise, smalbe, Judge, Limits, Observer, Qp, Solution, Verdict};
+use crate::solver::paper;
 use crate::solver::Settings;
 
 /// Solves the dual. After proportioning: the same without preconditioner, then SMALBE-M, each from where the
@@ -15,6 +17,9 @@ pub(super) fn solve_dual(
 ) -> Result<Solution> {
     let steps = usize::try_from(settings.max_steps).unwrap_or(usize::MAX);
     let limits = Limits { tolerance: settings.tolerance, gamma: settings.gamma, steps };
+    if let Some(parameters) = paper::parameters(settings) {
+        return algorithm_3(Qp { preconditioner: None, ..qp }, start, &parameters, judge, observer);
+    }
     if settings.method == c"smalbe" {
         return smalbe(qp, start, limits, judge, observer);
     }

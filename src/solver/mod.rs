@@ -4,6 +4,7 @@ mod certificate;
 mod diagnosis;
 mod fallback;
 mod findings;
+mod paper;
 mod presolve;
 mod problem;
 mod report;

@@ -6,11 +6,13 @@ use crate::dual::Preconditioner;
 use crate::error::{Error, Kind, Result};
 use crate::linalg::vector::weighted_norm;
 use crate::linalg::Operator;
+use crate::qp::paper::Units;
 use crate::qp::{self, Judge, Qp, Solution, Verdict};
 use crate::solver::certificate::{certify, Answer as AnswerView, BodyData, Certificate, Data};
 use crate::solver::diagnosis;
 use crate::solver::fallback::solve_dual;
 use crate::solver::findings::Findings;
+use crate::solver::paper::{parameters, HostUnits};
 use crate::solver::presolve::{presolve, Gaps};
 use crate::solver::problem::Problem;
 use crate::solver::report::{Outcome, Report};
@@ -36,8 +38,13 @@ impl Problem {
         let dual = Scaled::new(self, ready, &watch.stops)?;
         let mut judge = Certifier { ready, scaled: &dual, data: self.data()? };
         let f = watch.operator(ready, &dual.gaps.bounded);
-        let solution =
-            solve_dual(&self.settings, dual.qp(ready, &f), &start.scaled(ready)?, &mut judge, watch)?;
+        let (qp, start) = (dual.qp(ready, &f), start.scaled(ready)?);
+        let solution = match parameters(&self.settings) {
+            Some(parameters) if parameters.units == Units::Printed => {
+                HostUnits::new(self, ready, &dual.gaps)?.solve(qp, &start, &parameters, &mut judge, watch)?
+            }
+            _ => solve_dual(&self.settings, qp, &start, &mut judge, watch)?,
+        };
         let outcome = self.outcome(ready, &dual, &solution)?;
         let recovered = judge.recover(&solution.x, &solution.alpha)?;
         let certificate = certify(&judge.data, recovered.view());
