@@ -11,7 +11,7 @@ use crate::linalg::reach::inverse_form;
 use crate::linalg::vector::weighted_norm;
 use crate::linalg::{Analysis, Cholesky, Csr, Matrix, Packed, Symmetric};
 
-/// A pivot below minus this, relative to its diagonal entry, is no rounding error.
+/// A pivot below minus this, relative to its diagonal entry, is no rounding error: a(u, u) >= 0 of (4) is violated.
 const NEGATIVE_PIVOT: f64 = 1e-10;
 /// K with the dofs held is singular when some v has `|A v|` below this against `| |A| |v| |`.
 const SINGULAR: f64 = 1e-13;

@@ -8,7 +8,7 @@
 use crate::body::Modes;
 use crate::error::Result;
 use crate::linalg::{Csr, Matrix, Operator};
-use crate::qp::paper::{algorithm_3, Parameters, Rule, Units, Variant};
+use crate::qp::paper::{algorithm_3, Parameters, Rule, StepOne, Units, Variant};
 use crate::qp::{Judge, Observer, Progress, Qp, Solution};
 use crate::solver::presolve::Gaps;
 use crate::solver::problem::Problem;
@@ -35,6 +35,7 @@ pub(super) fn parameters(settings: &Settings) -> Option<Parameters> {
         outer: whole(settings.paper_outer),
         rule: Rule { gamma: settings.gamma, variant, extrapolation: settings.paper_extrapolation },
         units,
+        step_1: if settings.paper_step_1 == c"printed" { StepOne::Printed } else { StepOne::Corrected },
         tolerance: settings.tolerance,
         steps: whole(settings.max_steps),
     })

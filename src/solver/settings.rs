@@ -22,6 +22,7 @@ pub struct Settings {
     pub method: &'static CStr,
     pub start: &'static CStr,
     pub paper_units: &'static CStr,
+    pub paper_step_1: &'static CStr,
     pub paper_alpha: f64,
     pub paper_beta: f64,
     pub paper_rho_0: f64,
@@ -96,7 +97,7 @@ const fn word(
     OptionInfo { name, doc, default, minimum: 0.0, maximum: 0.0, field: Field::Str(field, words) }
 }
 
-static OPTIONS: [OptionInfo; 23] = [
+static OPTIONS: [OptionInfo; 24] = [
     real(c"tolerance", 1e-12, 1e-14..=1e-2, |s| &mut s.tolerance,
         c"The dual is solved until its projected gradient, a gap, is this small against the gaps and displacements of the problem."),
     real(c"certificate_tolerance", 1e-8, 1e-14..=1e-2, |s| &mut s.certificate_tolerance,
@@ -127,6 +128,8 @@ static OPTIONS: [OptionInfo; 23] = [
         c"Where a solve starts: cold (no forces: the same input gives the same bits) or previous (forces and active set of the last answer for these rows); feti_start_from comes before either."),
     word(c"paper_units", &[c"relative", c"printed"], |s| &mut s.paper_units,
         c"Methods paper-...: what their parameters are relative to. relative: rho_0 in |A|/|D|^2, M in |A|/|D|, eta_0 in the size of d, for the scaled rows; printed: the units of the host, its basis R, tolerance relative to |b| and |d|."),
+    word(c"paper_step_1", &[c"corrected", c"printed"], |s| &mut s.paper_step_1,
+        c"Methods paper-...: when Step 1 ends. printed: |g^P| <= M |D x - d|; corrected: not on this account once |D x - d| is as small as asked, |g^P| must be so too."),
     real(c"paper_alpha", 0.1, 1e-6..=0.999, |s| &mut s.paper_alpha,
         c"alpha of Algorithm 3: the bound eta on |D x - d| is multiplied by it where it was kept."),
     real(c"paper_beta", 100.0, 1.001..=1e6, |s| &mut s.paper_beta,

@@ -1,5 +1,20 @@
-//! The paper's methods on its three problems.
+//! The paper: its problems by its methods, its theorems, its formulas against dense linear algebra, its numbers in
+//! the sources.
 
+#[allow(dead_code)]
 #[path = "../reference/case.rs"]
 mod case;
+mod cases;
+mod decomposition;
+#[allow(dead_code)]
+#[path = "../qp/dense.rs"]
+mod dense;
+mod eigenvalues;
+mod equations;
+mod failures;
+#[path = "../support/hand_over.rs"]
+mod hand_over;
+mod numbers;
 mod problem_1;
+mod theorem_2;
+mod theorem_4;

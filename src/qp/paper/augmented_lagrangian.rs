@@ -6,7 +6,7 @@ use crate::linalg::vector::{axpy, norm};
 use crate::qp::coarse::Coarse;
 use crate::qp::paper::bound::Proportioning;
 use crate::qp::paper::sizes::Sizes;
-use crate::qp::paper::{Parameters, Quadratic};
+use crate::qp::paper::{Parameters, Quadratic, StepOne};
 use crate::qp::{Counts, Judge, Observer, Progress, Qp, Solution, Verdict};
 
 /// How often Step 2 is tightened when the judge does not accept.
@@ -120,8 +120,8 @@ impl<'a> Outer<'a> {
         Ok(Verdict::StepLimit)
     }
 
-    /// Step 1, with a floor (corrected): Algorithm 1 on `L(., mu^k, rho_k)` until `|g^P| <= M |D x - d|` while
-    /// D x = d does not hold yet, `|g^P|` sufficiently small where it does.
+    /// Step 1, (25) inexactly: Algorithm 1 on `L(., mu^k, rho_k)` until `|g^P| <= M |D x - d|`, or both are sufficiently small.
+    /// Corrected: the first one counts only while `|D x - d|` is not small yet.
     fn inner(&mut self, observer: &mut dyn Observer) -> Result<Inner> {
         self.q.augment(&self.mu, self.rho);
         let (m, small, small_violation) = (self.m, self.small, self.small_violation);
@@ -129,15 +129,15 @@ impl<'a> Outer<'a> {
         let mut run = Proportioning::new(&mut self.q, self.x.clone(), self.parameters.rule)?;
         run.counts = before;
         let noise = run.q.noise(&run.point.g);
-        let mut precise = false;
+        let (mut precise, as_printed) = (false, self.parameters.step_1 == StepOne::Printed);
         let end = run.run(&mut |run| {
             if run.counts.steps() > told {
                 told = run.counts.steps();
                 observer.step(&progress(run, small))?;
             }
             let (v, gradient) = (norm(&run.q.violation(&run.point.x)), run.point.projected_gradient());
-            let enough = if v > small_violation { m * v } else { small };
-            precise = gradient <= enough.max(noise);
+            let both = v <= small_violation && gradient <= small;
+            precise = both || gradient <= noise || ((v > small_violation || as_printed) && gradient <= m * v);
             Ok(precise || told >= limit)
         });
         (self.gradient, self.noise, self.counts) = (run.point.projected_gradient(), noise, run.counts);

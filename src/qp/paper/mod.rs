@@ -40,10 +40,20 @@ pub struct Parameters {
     pub outer: usize,
     pub rule: Rule,
     pub units: Units,
+    pub step_1: StepOne,
     /// Projected gradient and `|D x - d|` are sufficiently small (Step 2) at this part of what `units` say.
     pub tolerance: f64,
     /// Steps of Algorithm 1 at most, over all problems.
     pub steps: usize,
+}
+
+/// When Step 1 of Algorithm 3 ends.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum StepOne {
+    /// `|g^P| <= M |D x - d|`.
+    Printed,
+    /// The same, but not once `|D x - d|` is sufficiently small: then `|g^P|` must be so too.
+    Corrected,
 }
 
 /// What the numbers in `Parameters` are relative to.

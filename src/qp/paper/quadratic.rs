@@ -86,8 +86,8 @@ impl<'a> Quadratic<'a> {
         violation
     }
 
-    /// What rounding alone leaves of the gradient at x: 64 eps (|H x| + |c|).
+    /// What rounding alone leaves of the gradient at x: 4 eps (|H x| + |c|).
     pub fn noise(&self, g: &[f64]) -> f64 {
-        64.0 * f64::EPSILON * (norm(g) + 2.0 * norm(&self.c))
+        4.0 * f64::EPSILON * (norm(g) + 2.0 * norm(&self.c))
     }
 }

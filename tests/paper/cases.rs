@@ -1,0 +1,76 @@
+//! The eight reference cases of the paper's problems by its methods, to 1e-4.
+
+use crate::case::{difference, Case};
+use feti_contact::solver::{Outcome, Report, RowKind};
+
+pub const CASES: [&str; 8] =
+    ["p1_P1", "p1_P3", "p1_P3_galerkin", "p2_A", "p2_B1", "p2_B2", "p3_2block", "p3_3block"];
+pub const METHODS: [&str; 3] = ["paper-feasible", "paper-monotone", "paper-extrapolating"];
+
+/// In relative units, so that one tolerance serves all.
+fn solve(case: &Case, method: &str, gamma: f64) -> (Report, f64) {
+    let mut problem = case.problem(false);
+    problem.set_str("method", method).unwrap();
+    problem.set_f64("gamma", gamma).unwrap();
+    problem.set_f64("tolerance", 1e-6).unwrap();
+    problem.set_f64("certificate_tolerance", 1e-4).unwrap();
+    let report = problem.solve().unwrap();
+    let error = difference(problem.multipliers(RowKind::Inequality).unwrap(), &case.lambda);
+    (report, error)
+}
+
+#[test]
+fn every_case_is_solved_to_1e_4_by_every_variant() {
+    for name in CASES {
+        let case = Case::read(name);
+        for method in METHODS {
+            let (report, error) = solve(&case, method, 1.0);
+            assert_eq!(report.outcome, Outcome::Solved, "{name} {method}");
+            assert!(error <= 1e-4, "{name} {method}: forces differ by {error:.1e}");
+            assert!(report.outer >= 1 && report.outer <= 4, "{name} {method}: {} outer", report.outer);
+        }
+    }
+}
+
+#[test]
+fn the_default_solves_every_case_to_1e_9_in_fewer_products() {
+    for name in CASES {
+        let case = Case::read(name);
+        let mut problem = case.problem(false);
+        problem.set_f64("certificate_tolerance", 1e-9).unwrap();
+        let report = problem.solve().unwrap();
+        let error = difference(problem.multipliers(RowKind::Inequality).unwrap(), &case.lambda);
+        assert_eq!(report.outcome, Outcome::Solved, "{name}");
+        assert!(error <= 1e-9, "{name}: forces differ by {error:.1e}");
+        let (paper, _) = solve(&case, "paper-extrapolating", 1.0);
+        assert!(report.dual_applications < paper.dual_applications, "{name}");
+    }
+}
+
+/// In units of |A| / |D|^2 even Gamma = .1 serves Problem 2, all six modes floating.
+#[test]
+fn relative_units_make_problem_2_easy_for_the_printed_gamma() {
+    let (report, error) = solve(&Case::read("p2_B2"), "paper-extrapolating", 0.1);
+    assert!(
+        report.outcome == Outcome::Solved && error <= 1e-4 && report.steps < 100,
+        "{} steps",
+        report.steps
+    );
+}
+
+#[test]
+fn the_course_in_relative_units_depends_on_no_unit() {
+    let case = Case::read("p2_B1");
+    let (plain, _) = solve(&case, "paper-monotone", 1.0);
+    for (newton, metre) in [(1e6, 1.0), (1.0, 1e-3), (4.448, 39.37)] {
+        let mut scaled = Case::read("p2_B1");
+        scaled.bodies.iter_mut().for_each(|(k, _)| k.val.iter_mut().for_each(|v| *v *= newton / metre));
+        scaled.load.iter_mut().for_each(|f| *f *= newton);
+        scaled.contact.1.iter_mut().for_each(|c| *c *= metre);
+        scaled.lambda.iter_mut().for_each(|l| *l *= newton);
+        let (report, error) = solve(&scaled, "paper-monotone", 1.0);
+        let counts = |r: &Report| (r.outer, r.cg_steps, r.expansions, r.releases, r.dual_applications);
+        assert_eq!(counts(&report), counts(&plain), "{newton} {metre}");
+        assert!(error <= 1e-4);
+    }
+}
