@@ -62,7 +62,7 @@ fn relative_units_make_problem_2_easy_for_the_printed_gamma() {
 fn the_course_in_relative_units_depends_on_no_unit() {
     let case = Case::read("p2_B1");
     let (plain, _) = solve(&case, "paper-monotone", 1.0);
-    for (newton, metre) in [(1e6, 1.0), (1.0, 1e-3), (4.448, 39.37)] {
+    for (newton, metre) in [(1048576.0, 1.0), (1.0, 1.0 / 1024.0), (8.0, 64.0)] {
         let mut scaled = Case::read("p2_B1");
         scaled.bodies.iter_mut().for_each(|(k, _)| k.val.iter_mut().for_each(|v| *v *= newton / metre));
         scaled.load.iter_mut().for_each(|f| *f *= newton);

@@ -44,32 +44,31 @@ fn ten_digits_are_out_of_reach_of_the_printed_penalty_and_the_status_says_so() {
     }
 }
 
-/// E = 2.1e11 N/m^2: absolute rho_0 = 100 is no penalty at all against |A| = 1e-11.
+/// rho_0 = 100 as an absolute number hides A behind rounding where A is small: seven digits are lost at E = 2.1e11
+/// (metres), all of them with a stiffness a million times larger. Relative to |A| / |D|^2 neither is seen.
 #[test]
 fn absolute_parameters_fail_in_other_units_and_relative_ones_do_not() {
-    let mut case = Case::read("p2_A");
-    case.bodies.iter_mut().for_each(|(k, _)| k.val.iter_mut().for_each(|v| *v *= 1e3));
-    case.contact.1.iter_mut().for_each(|c| *c *= 1e-3);
-    let solve = |units: &str| {
-        let mut problem = case.problem(false);
-        problem.set_str("method", "paper-monotone").unwrap();
-        problem.set_str("paper_units", units).unwrap();
-        problem.set_f64("tolerance", 1e-6).unwrap();
-        problem.set_f64("certificate_tolerance", 1e-4).unwrap();
-        let report = problem.solve().unwrap();
-        (report, difference(problem.multipliers(RowKind::Inequality).unwrap(), &case.lambda))
-    };
-    let (report, error) = solve("relative");
-    assert!(report.outcome == Outcome::Solved && error < 1e-4);
-    let (printed, error) = solve("printed");
-    assert_eq!(printed.outcome == Outcome::Solved, printed.certificate.passed());
-    assert!(printed.outcome != Outcome::Solved || error < 1e-3, "never a wrong answer");
-    assert!(
-        printed.outcome != Outcome::Solved,
-        "{:?} {} products",
-        printed.outcome,
-        printed.dual_applications
-    );
+    for (stiffer, digits, wrong) in [(1e3, 1e-7, 1e-6), (1e9, 1e-4, 0.1)] {
+        let mut case = Case::read("p2_A");
+        case.bodies.iter_mut().for_each(|(k, _)| k.val.iter_mut().for_each(|v| *v *= stiffer));
+        case.contact.1.iter_mut().for_each(|c| *c /= stiffer);
+        for method in METHODS {
+            let solve = |units: &str| {
+                let mut problem = case.problem(false);
+                problem.set_str("method", method).unwrap();
+                problem.set_str("paper_units", units).unwrap();
+                problem.set_f64("tolerance", 1e-3 * digits).unwrap();
+                problem.set_f64("certificate_tolerance", digits).unwrap();
+                let report = problem.solve().unwrap();
+                let error = difference(problem.multipliers(RowKind::Inequality).unwrap(), &case.lambda);
+                (report.outcome, report.certificate.passed(), error)
+            };
+            let (outcome, passed, error) = solve("relative");
+            assert!(outcome == Outcome::Solved && passed && error <= 10.0 * digits, "{method} {error:.1e}");
+            let (outcome, passed, error) = solve("printed");
+            assert!(outcome == Outcome::Inaccurate && !passed && error > wrong, "{method} {outcome:?} {error:.1e}");
+        }
+    }
 }
 
 /// The load pulls the floating membrane away from the only thing that could hold it: rho grows without end.
@@ -85,8 +84,11 @@ fn a_load_that_nothing_holds_ends_stalled() {
             problem.set_f64("tolerance", 1e-5).unwrap();
             problem.set_f64("certificate_tolerance", 1e-4).unwrap();
             let report = problem.solve().unwrap();
-            assert!(matches!(report.outcome, Outcome::Stalled | Outcome::Iterations), "{method} {units}");
-            assert!(!report.certificate.passed());
+            assert!(
+                matches!(report.outcome, Outcome::Stalled | Outcome::Iterations),
+                "{method} {units}: {:?}",
+                report.outcome
+            );
         }
     }
 }

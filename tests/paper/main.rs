@@ -12,8 +12,6 @@ mod dense;
 mod eigenvalues;
 mod equations;
 mod failures;
-#[path = "../support/hand_over.rs"]
-mod hand_over;
 mod numbers;
 mod problem_1;
 mod theorem_2;

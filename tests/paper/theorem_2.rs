@@ -93,7 +93,14 @@ fn i_every_variant_converges_for_any_gamma() {
     for _ in 0..60 {
         let program = program(&mut random, false);
         for (variant, gamma) in VARIANTS.into_iter().flat_map(|v| [0.1, 1.0, 10.0].map(|g| (v, g))) {
-            let (x, _) = run(&program, gamma, variant, 20_000).expect("convergence");
+            let (x, _) = run(&program, gamma, variant, 20_000).unwrap_or_else(|| {
+                panic!(
+                    "{variant:?} {gamma} m {} strict {} cond {:?}",
+                    program.b.len(),
+                    program.strictness,
+                    eigenvalues(&program.a)
+                )
+            });
             let error: Vec<f64> = x.iter().zip(&program.x).map(|(x, y)| x - y).collect();
             assert!(norm(&error) <= 1e-9 * (1.0 + norm(&program.x)), "{variant:?} {gamma}");
         }

@@ -83,8 +83,9 @@ pub(super) struct Face {
     /// I
     pub held: Vec<bool>,
     pub p: Vec<f64>,
-    /// |r|^2 of the residual r = g on the face.
+    /// |r|^2 of the residual r = g on the face, and what it began with.
     pub square: f64,
+    first: f64,
     pub feasible: bool,
 }
 
@@ -92,13 +93,13 @@ impl Face {
     fn at(point: &Point) -> Self {
         let square = dot(&point.inner, &point.inner);
         let (y, g, held) = (point.x.clone(), point.g.clone(), point.active.clone());
-        Self { y, g, held, p: point.inner.clone(), square, feasible: true }
+        Self { y, g, held, p: point.inner.clone(), square, first: square, feasible: true }
     }
 
     /// `y - a p` with its gradient and the next conjugate direction; whether a residual is left.
     pub(super) fn advance(&mut self, a: f64, y: Vec<f64>, image: &[f64]) -> bool {
-        /// |r|^2 smaller by this factor: the face is solved to rounding.
-        const SOLVED: f64 = 1e-30;
+        /// |r|^2 against the first one: the face is solved to rounding.
+        const SOLVED: f64 = 1e-28;
         self.y = y;
         axpy(-a, image, &mut self.g);
         let r: Vec<f64> =
@@ -107,7 +108,7 @@ impl Face {
         let beta = square / self.square;
         self.p.iter_mut().zip(&r).for_each(|(p, r)| *p = r + beta * *p);
         self.square = square;
-        beta > SOLVED
+        square > SOLVED * self.first
     }
 }
 
