@@ -66,7 +66,10 @@ fn absolute_parameters_fail_in_other_units_and_relative_ones_do_not() {
             let (outcome, passed, error) = solve("relative");
             assert!(outcome == Outcome::Solved && passed && error <= 10.0 * digits, "{method} {error:.1e}");
             let (outcome, passed, error) = solve("printed");
-            assert!(outcome == Outcome::Inaccurate && !passed && error > wrong, "{method} {outcome:?} {error:.1e}");
+            assert!(
+                outcome == Outcome::Inaccurate && !passed && error > wrong,
+                "{method} {outcome:?} {error:.1e}"
+            );
         }
     }
 }
