@@ -178,11 +178,11 @@ contains
     integer, intent(in) :: dof(:)
     integer, intent(out), optional :: stat
     character(len=*), intent(inout), optional :: errmsg
-    integer(c_int64_t) :: numbers(max(1, size(dof)))
+    integer(c_int64_t), target :: numbers(max(1, size(dof)))
 
     numbers = 0
     numbers(:size(dof)) = int(dof, c_int64_t) - 1
-    call finish(c_body_fixing_set(handle_of(p), int(body - 1, c_int64_t), size(dof, kind=c_int64_t), numbers), &
+    call finish(c_body_fixing_set(handle_of(p), int(body - 1, c_int64_t), size(dof, kind=c_int64_t), c_loc(numbers)), &
       stat, errmsg)
   end subroutine
 
