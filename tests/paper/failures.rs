@@ -92,6 +92,7 @@ fn a_load_that_nothing_holds_ends_stalled() {
                 "{method} {units}: {:?}",
                 report.outcome
             );
+            assert!(!report.certificate.passed(), "{method} {units}");
         }
     }
 }
