@@ -43,6 +43,7 @@ pub(super) fn parameters(settings: &Settings) -> Option<Parameters> {
 
 /// What stands between the dual of the library and that of the host.
 pub(super) struct HostUnits {
+    parameters: Parameters,
     /// 2^p
     unit: f64,
     /// s_i of every group.
@@ -52,13 +53,13 @@ pub(super) struct HostUnits {
 }
 
 impl HostUnits {
-    pub fn new(problem: &Problem, ready: &Ready, gaps: &Gaps) -> Result<Self> {
+    pub fn new(problem: &Problem, ready: &Ready, gaps: &Gaps, parameters: Parameters) -> Result<Self> {
         let scale = gaps.holder.iter().map(|&i| ready.scale[i]).collect();
         let mut basis = Vec::with_capacity(problem.bodies.len());
         for (p, range) in problem.ranges().into_iter().enumerate() {
             basis.push((ready.dual.modes_of(p), change_of_basis(problem, p, &ready.metric[range])?));
         }
-        Ok(Self { unit: ready.unit, scale, basis })
+        Ok(Self { parameters, unit: ready.unit, scale, basis })
     }
 
     /// Algorithm 3 on the dual in the units of the host; the solution in those of the library.
@@ -66,7 +67,6 @@ impl HostUnits {
         &self,
         qp: Qp,
         start: &[f64],
-        parameters: &Parameters,
         judge: &mut dyn Judge,
         observer: &mut dyn Observer,
     ) -> Result<Solution> {
@@ -78,8 +78,8 @@ impl HostUnits {
         let start: Vec<f64> = start.iter().zip(&self.scale).map(|(x, s)| x * s * self.unit).collect();
         let mut judge = InHostUnits { units: self, inner: judge };
         let mut observer = WithoutUnit { unit: self.unit, inner: observer };
-        let solution = algorithm_3(host, &start, parameters, &mut judge, &mut observer)?;
-        let (x, alpha) = (self.forces(&solution.x), self.from_host_basis(&solution.alpha));
+        let solution = algorithm_3(host, &start, &self.parameters, &mut judge, &mut observer)?;
+        let (x, alpha) = (self.forces(&solution.x), self.to_library_basis(&solution.alpha));
         Ok(Solution { x, alpha, ..solution })
     }
 
@@ -110,7 +110,7 @@ impl HostUnits {
     }
 
     /// T alpha
-    fn from_host_basis(&self, alpha: &[f64]) -> Vec<f64> {
+    fn to_library_basis(&self, alpha: &[f64]) -> Vec<f64> {
         let mut image = vec![0.0; alpha.len()];
         for (modes, t) in &self.basis {
             t.mul_add(1.0, &alpha[modes.clone()], &mut image[modes.clone()]);
@@ -166,11 +166,11 @@ struct InHostUnits<'a> {
 
 impl Judge for InHostUnits<'_> {
     fn scale(&mut self, x: &[f64], alpha: &[f64]) -> Result<f64> {
-        self.inner.scale(&self.units.forces(x), &self.units.from_host_basis(alpha))
+        self.inner.scale(&self.units.forces(x), &self.units.to_library_basis(alpha))
     }
 
     fn accepts(&mut self, x: &[f64], alpha: &[f64]) -> Result<bool> {
-        self.inner.accepts(&self.units.forces(x), &self.units.from_host_basis(alpha))
+        self.inner.accepts(&self.units.forces(x), &self.units.to_library_basis(alpha))
     }
 }
 

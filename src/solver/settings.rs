@@ -123,7 +123,7 @@ static OPTIONS: [OptionInfo; 24] = [
     word(c"preconditioner", &[c"none", c"lumped", c"dirichlet"], |s| &mut s.preconditioner,
         c"Preconditioner of the dual: none; lumped (stiffness of the constrained dofs, the others held); dirichlet (the others free: fewer steps, one more factorisation of each body)."),
     word(c"method", &[c"proportioning", c"smalbe", c"paper-feasible", c"paper-monotone", c"paper-extrapolating"], |s| &mut s.method,
-        c"Method for the dual: proportioning on its feasible set, with smalbe to fall back on; smalbe, an augmented Lagrangian, for comparison; paper-..., Algorithm 3 of the paper with Algorithm 1 in one of its variants."),
+        c"Method for the dual: proportioning on its feasible set, with smalbe to fall back on; smalbe, an augmented Lagrangian, for comparison; paper-..., Algorithm 3 of the paper with Algorithm 1 in one of its variants, without preconditioner and fallback."),
     word(c"start", &[c"cold", c"previous"], |s| &mut s.start,
         c"Where a solve starts: cold (no forces: the same input gives the same bits) or previous (forces and active set of the last answer for these rows); feti_start_from comes before either."),
     word(c"paper_units", &[c"relative", c"printed"], |s| &mut s.paper_units,

@@ -40,8 +40,8 @@ impl Problem {
         let f = watch.operator(ready, &dual.gaps.bounded);
         let (qp, start) = (dual.qp(ready, &f), start.scaled(ready)?);
         let solution = match parameters(&self.settings) {
-            Some(parameters) if parameters.units == Units::Printed => {
-                HostUnits::new(self, ready, &dual.gaps)?.solve(qp, &start, &parameters, &mut judge, watch)?
+            Some(given) if given.units == Units::Printed => {
+                HostUnits::new(self, ready, &dual.gaps, given)?.solve(qp, &start, &mut judge, watch)?
             }
             _ => solve_dual(&self.settings, qp, &start, &mut judge, watch)?,
         };

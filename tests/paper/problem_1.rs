@@ -70,7 +70,7 @@ fn other_fixing_dofs_change_the_counts_and_not_the_forces() {
 }
 
 #[test]
-fn no_variant_needs_more_products_than_the_extrapolating_one_here() {
+fn feasible_and_monotone_proportioning_need_28_products() {
     for method in ["paper-feasible", "paper-monotone"] {
         let (_, report) = solved(method, 1.0, HELD);
         assert_eq!((report.outer, report.dual_applications), (3, 28), "{method}");
