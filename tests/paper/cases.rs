@@ -1,7 +1,7 @@
 //! The eight reference cases of the paper's problems by its methods, to 1e-4.
 
 use crate::case::{difference, Case};
-use feti_contact::solver::{Outcome, Report, RowKind};
+use feti_contact::solver::{Modes, Outcome, Report, RowKind, Storage};
 
 pub const CASES: [&str; 8] =
     ["p1_P1", "p1_P3", "p1_P3_galerkin", "p2_A", "p2_B1", "p2_B2", "p3_2block", "p3_3block"];
@@ -44,6 +44,36 @@ fn the_default_solves_every_case_to_1e_9_in_fewer_products() {
         assert!(error <= 1e-9, "{name}: forces differ by {error:.1e}");
         let (paper, _) = solve(&case, "paper-extrapolating", 1.0);
         assert!(report.dual_applications < paper.dual_applications, "{name}");
+    }
+}
+
+/// As a boundary element code hands them over: full matrices, column-major.
+#[test]
+fn dense_bodies_of_141_to_144_unknowns_have_the_forces_of_the_same_matrices_by_rows() {
+    for name in ["p2_A", "p2_B1", "p2_B2"] {
+        let case = Case::read(name);
+        for method in METHODS.into_iter().chain(["proportioning"]) {
+            let mut problem = case.problem(false);
+            for (body, (k, r)) in case.bodies.iter().enumerate() {
+                let n = k.ptr.len() - 1;
+                assert!((141..=144).contains(&n));
+                let mut dense = vec![0.0; n * n];
+                for i in 0..n {
+                    for at in k.ptr[i]..k.ptr[i + 1] {
+                        let j = k.col[at] as usize;
+                        (dense[i + j * n], dense[j + i * n]) = (k.val[at], k.val[at]);
+                    }
+                }
+                problem.set_stiffness_dense(body, n, &dense, n, Storage::Full).unwrap();
+                problem.set_null_space(body, n, r.len() / n, r, n, Modes::Exact).unwrap();
+            }
+            problem.set_str("method", method).unwrap();
+            problem.set_f64("tolerance", 1e-6).unwrap();
+            problem.set_f64("certificate_tolerance", 1e-4).unwrap();
+            assert_eq!(problem.solve().unwrap().outcome, Outcome::Solved, "{name} {method}");
+            let error = difference(problem.multipliers(RowKind::Inequality).unwrap(), &case.lambda);
+            assert!(error <= 1e-4, "{name} {method}: forces differ by {error:.1e}");
+        }
     }
 }
 

@@ -105,8 +105,8 @@ fn formulas_17_and_18_give_the_displacement_and_the_amplitudes() {
     for (name, method, bound) in [
         ("p1_P3", "proportioning", 1e-8),
         ("p2_B1", "proportioning", 1e-8),
-        ("p1_P3", "paper-extrapolating", 2e-3),
-        ("p2_B1", "paper-monotone", 2e-3),
+        ("p1_P3", "paper-extrapolating", 1e-5),
+        ("p2_B1", "paper-monotone", 1e-5),
     ] {
         let case = Case::read(name);
         let mut problem = case.problem(false);
