@@ -79,6 +79,22 @@ fn dense_bodies_of_141_to_144_unknowns_have_the_forces_of_the_same_matrices_by_r
 }
 
 #[test]
+fn a_start_from_the_last_forces_needs_few_steps_in_either_units() {
+    for units in ["relative", "printed"] {
+        let mut problem = Case::read("p1_P3").problem(false);
+        problem.set_str("method", "paper-monotone").unwrap();
+        problem.set_str("paper_units", units).unwrap();
+        problem.set_str("start", "previous").unwrap();
+        problem.set_f64("tolerance", 1e-6).unwrap();
+        problem.set_f64("certificate_tolerance", 1e-4).unwrap();
+        let cold = problem.solve().unwrap();
+        let warm = problem.solve().unwrap();
+        assert!(cold.outcome == Outcome::Solved && warm.outcome == Outcome::Solved);
+        assert!(2 * warm.steps < cold.steps, "{units}: {} steps after {}", warm.steps, cold.steps);
+    }
+}
+
+#[test]
 fn the_course_in_relative_units_depends_on_no_unit() {
     let case = Case::read("p2_B1");
     let (plain, _) = solve(&case, "paper-monotone", 1.0);
