@@ -1012,6 +1012,23 @@ int32_t feti_body_null_space_get(struct feti_problem *p,
 int32_t feti_body_fixing(struct feti_problem *p, int64_t body, int64_t r, int64_t *dof);
 
 /**
+ * Chooses the fixing unknowns of a body in place of the library.
+ *
+ * They change the course of the methods of the paper in printed units, and neither forces nor
+ * displacements. As many as the null space has dimensions, which feti_setup checks, and that they
+ * hold every motion of it. Calling again replaces them. After a failure the body keeps what it
+ * had.
+ *
+ * @param[in] p    (scalar) the handle
+ * @param[in] body (scalar) number of the body, from 0
+ * @param[in] r    (scalar) dimension of the null space of the body; 0: the library chooses again
+ * @param[in] dof  (r) unknowns of the body, from 0; may be NULL when r = 0
+ *
+ * Safety: The array has the given shape.
+ */
+int32_t feti_body_fixing_set(struct feti_problem *p, int64_t body, int64_t r, const int64_t *dof);
+
+/**
  * Sets an option that is a number.
  *
  * Holds until it is set again. After a failure the option is as it was.

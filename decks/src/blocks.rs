@@ -41,6 +41,7 @@ impl Blocks {
             let above = offset + 3 * upper.node(at) + 2;
             let [x, y, _] = upper.position(at);
             let gap = 0.02 * ((x - 0.5).powi(2) + (y - 0.5).powi(2));
+            // (5): (u_lower - u_upper)'n <= gap, n the outer normal of the lower block
             let below = below.expect("the top of the lower block is free");
             deck.contact.push(&[(below, 1.0), (above, -1.0)], gap);
         }

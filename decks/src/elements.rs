@@ -3,7 +3,8 @@
 //! Nodes are numbered in tensor order: bit a of the node number says whether the node lies at the low (0)
 //! or the high (1) end of axis a. Dofs are node by node. Matrices are dense, by rows.
 
-/// Stiffness of the rectangle (quad4, plane strain) or box (hex8) with edges `size` (2 or 3 lengths):
+/// a(u, v) of (1)-(2), corrected to a volume integral without the factor 1/2, by the strains (3) of the shape functions:
+/// stiffness of the rectangle (quad4, plane strain) or box (hex8) with edges `size` (2 or 3 lengths):
 /// K_(ai,bj) = int lambda N_a,i N_b,j + mu N_a,j N_b,i + mu delta_ij N_a,k N_b,k, two Gauss points per axis.
 /// Order d 2^d, in units of `young` times length^(d-2).
 pub fn elasticity(size: &[f64], young: f64, poisson: f64) -> Vec<f64> {

@@ -104,7 +104,8 @@ impl Rows {
     }
 }
 
-/// A whole problem.
+/// A whole problem: nodal values stand for the functions of (6), struck out dofs for the prescribed displacements
+/// (7), contact rows for the linearised non-interpenetration (8); its solution is the discrete (9).
 #[derive(Clone, Debug)]
 pub struct Deck {
     pub name: String,

@@ -10,6 +10,7 @@ module feti_contact_bodies
   use feti_contact_c, only: FETI_COPY, FETI_OK, &
     c_body_add => feti_body_add, &
     c_body_coordinates => feti_body_coordinates, &
+    c_body_fixing_set => feti_body_fixing_set, &
     c_body_load => feti_body_load, &
     c_body_null_space => feti_body_null_space, &
     c_body_null_space_get => feti_body_null_space_get, &
@@ -19,7 +20,7 @@ module feti_contact_bodies
   implicit none
   private
   public :: body_add, body_stiffness, body_null_space, body_null_space_get
-  public :: body_coordinates, body_load
+  public :: body_coordinates, body_fixing_set, body_load
 
   !> Stiffness of a body, n x n, force / length; a second call replaces the first.
   !>
@@ -167,6 +168,22 @@ contains
       call finish(c_body_coordinates(handle_of(p), int(body - 1, c_int64_t), size(xyz, 1, c_int32_t), &
         size(node, kind=c_int64_t), node, dir, xyz, size(xyz, 1, c_int64_t)), stat, errmsg)
     end if
+  end subroutine
+
+  !> The unknowns that K+ holds, dof(r), r the dimension of the null space; of size 0: those the library would choose. They
+  !> change the course of the methods of the paper in printed units, and neither forces nor displacements.
+  subroutine body_fixing_set(p, body, dof, stat, errmsg)
+    type(feti_problem), intent(in) :: p
+    integer, intent(in) :: body
+    integer, intent(in) :: dof(:)
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+    integer(c_int64_t), target :: numbers(max(1, size(dof)))
+
+    numbers = 0
+    numbers(:size(dof)) = int(dof, c_int64_t) - 1
+    call finish(c_body_fixing_set(handle_of(p), int(body - 1, c_int64_t), size(dof, kind=c_int64_t), c_loc(numbers)), &
+      stat, errmsg)
   end subroutine
 
   !> Load of a body, f(n), force; a body without a load has f = 0. A second call replaces the first.

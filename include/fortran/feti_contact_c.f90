@@ -331,6 +331,7 @@ module feti_contact_c
   public :: feti_body_null_space
   public :: feti_body_null_space_get
   public :: feti_body_fixing
+  public :: feti_body_fixing_set
   public :: feti_set_f64
   public :: feti_set_i64
   public :: feti_set_str
@@ -796,6 +797,27 @@ module feti_contact_c
       integer(c_int64_t), intent(out) :: dof(*)
       integer(c_int32_t) :: feti_body_fixing
     end function feti_body_fixing
+
+    !> Chooses the fixing unknowns of a body in place of the library.
+    !>
+    !> They change the course of the methods of the paper in printed units, and neither forces nor
+    !> displacements. As many as the null space has dimensions, which feti_setup checks, and that they hold
+    !> every motion of it. Calling again replaces them. After a failure the body keeps what it had.
+    !>
+    !> @param[in] p    (scalar) the handle
+    !> @param[in] body (scalar) number of the body, from 0
+    !> @param[in] r    (scalar) dimension of the null space of the body; 0: the library chooses again
+    !> @param[in] dof  (r) unknowns of the body, from 0; may be NULL when r = 0
+    !>
+    !> Safety: The array has the given shape.
+    function feti_body_fixing_set(p, body, r, dof) bind(C, name="feti_body_fixing_set")
+      import
+      type(c_ptr), value :: p
+      integer(c_int64_t), value :: body
+      integer(c_int64_t), value :: r
+      type(c_ptr), value :: dof
+      integer(c_int32_t) :: feti_body_fixing_set
+    end function feti_body_fixing_set
 
     !> Sets an option that is a number.
     !>

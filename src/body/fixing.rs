@@ -1,6 +1,34 @@
 //! Fixing dofs: the r dofs whose rows of R are most independent, so that `K_ff` is as regular as it can be.
 
+use crate::error::{Error, Kind, Result};
+use crate::linalg::spd::right_singular;
 use crate::linalg::Matrix;
+
+/// Smallest against largest singular value of the rows of `D^1/2 R` of the dofs held: below this they hold
+/// the body no better than rounding does.
+const REGULAR: f64 = 1e-10;
+
+/// Dofs given by the host, which must hold every motion of the null space.
+pub fn given_dofs(null_space: &Matrix, root: &[f64], given: &[usize]) -> Result<Vec<usize>> {
+    let (r, refused) = (null_space.cols, |what: String| Error::new(Kind::NullSpace, what));
+    if given.len() != r {
+        let what = format!("{} fixing dofs were given, the null space has dimension {r}", given.len());
+        return Err(refused(what).value(given.len() as f64).limit(r as f64));
+    }
+    if r == 0 {
+        return Ok(Vec::new());
+    }
+    let mut held = Matrix::zeros(r, r)?;
+    for (i, &dof) in given.iter().enumerate() {
+        (0..r).for_each(|j| held.set(i, j, root[dof] * null_space.get(dof, j)));
+    }
+    let (values, _) = right_singular(&held)?;
+    if values[r - 1].is_nan() || values[r - 1] <= REGULAR * values[0] {
+        let what = "the fixing dofs do not hold every motion of the null space".to_string();
+        return Err(refused(what).dof(given[0]).value(values[r - 1]).limit(REGULAR * values[0]));
+    }
+    Ok(given.to_vec())
+}
 
 /// Pivoted QR of `(D^1/2 R)'` (r x n): dof by dof the column with the largest part orthogonal to those
 /// chosen before; the first of equals. `root[i] = sqrt(D_ii)`.
@@ -28,6 +56,15 @@ pub fn fixing_dofs(null_space: &Matrix, root: &[f64]) -> Vec<usize> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn given_dofs_must_hold_every_motion() {
+        let r = Matrix { rows: 5, cols: 2, data: vec![1., 1., 1., 1., 1., -2., -1., 0., 1., 2.] };
+        let given = |dofs: &[usize]| given_dofs(&r, &[1.0; 5], dofs);
+        assert_eq!(given(&[3, 1]).unwrap(), [3, 1]);
+        assert_eq!(given(&[2, 2]).unwrap_err().kind, Kind::NullSpace);
+        assert_eq!(given(&[2]).unwrap_err().place.limit, Some(2.0));
+    }
 
     #[test]
     fn a_translation_and_a_rotation_are_held_at_the_two_ends() {

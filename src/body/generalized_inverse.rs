@@ -3,7 +3,7 @@
 
 use std::sync::Arc;
 
-use crate::body::fixing::fixing_dofs;
+use crate::body::fixing::{fixing_dofs, given_dofs};
 use crate::body::null_space::{largest, verified, NullSpaceInput};
 use crate::error::{Error, Kind, Result};
 use crate::linalg::memory::{room, zeros, PRODUCTS};
@@ -11,7 +11,7 @@ use crate::linalg::reach::inverse_form;
 use crate::linalg::vector::weighted_norm;
 use crate::linalg::{Analysis, Cholesky, Csr, Matrix, Packed, Symmetric};
 
-/// A pivot below minus this, relative to its diagonal entry, is no rounding error.
+/// A pivot below minus this, relative to its diagonal entry, is no rounding error: a(u, u) >= 0 of (4) is violated.
 const NEGATIVE_PIVOT: f64 = 1e-10;
 /// K with the dofs held is singular when some v has `|A v|` below this against `| |A| |v| |`.
 const SINGULAR: f64 = 1e-13;
@@ -38,11 +38,24 @@ impl GeneralizedInverse {
     /// Null space, fixing dofs and symbolic analysis of `k` (scaled so that its largest diagonal entry is in
     /// [1, 2)).
     pub fn plan(k: Symmetric, input: &NullSpaceInput, tolerance: f64) -> Result<Plan> {
+        Self::plan_with(k, input, tolerance, None)
+    }
+
+    /// The same with the dofs to hold in K+, where the host has given them.
+    pub fn plan_with(
+        k: Symmetric,
+        input: &NullSpaceInput,
+        tolerance: f64,
+        fixing: Option<&[usize]>,
+    ) -> Result<Plan> {
         let per_dof = (8 * input.vectors.cols + 24) * size_of::<f64>();
         let _room = room(k.order() * per_dof + PRODUCTS, "the null space of a body")?;
         let null_space = verified(&k, input, tolerance)?;
         let root: Vec<f64> = (0..k.order()).map(|i| k.metric(i, 1.0).sqrt()).collect();
-        let fixing = fixing_dofs(&null_space, &root);
+        let fixing = match fixing {
+            Some(given) => given_dofs(&null_space, &root, given)?,
+            None => fixing_dofs(&null_space, &root),
+        };
         let mut held = vec![false; k.order()];
         fixing.iter().for_each(|&dof| held[dof] = true);
         let analysis = Arc::new(Analysis::new(&k, &held)?);

@@ -27,6 +27,8 @@ pub struct Body {
     pub null_space: Option<NullSpaceInput>,
     /// Places of the dofs: candidates for the null space when none is given.
     pub coordinates: Option<Coordinates>,
+    /// Dofs held in `K_p+`; chosen by the library when not given.
+    pub fixing: Option<Vec<usize>>,
     /// `f_p`, length n, force; zero until given.
     pub load: Option<Vec<f64>>,
 }

@@ -127,7 +127,7 @@ impl Dual {
         e
     }
 
-    /// (17): `u = K+ (f - B'lambda) + R alpha`, over all unknowns.
+    /// (17): `u = K+ (f - B'lambda) + R alpha`, over all unknowns; (16) on bodies that are held, where K+ = K^-1.
     pub fn displacement(&self, f: &[f64], lambda: &[f64], alpha: &[f64]) -> Result<Vec<f64>> {
         let mut u = zeros(f.len(), "a displacement")?;
         for s in &self.subdomains {

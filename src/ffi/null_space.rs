@@ -1,8 +1,9 @@
 //! Null spaces of the bodies: the columns of R span all u with K u = 0.
 
-use super::arrays::{column_major, count, id, input, same, Output};
+use super::arrays::{column_major, count, id, input, reserved, same, Output};
 use super::body::body_of_order;
 use super::guard::{call, enter};
+use super::indices::numbers;
 use super::types::{feti_problem, FETI_CANDIDATES, FETI_EXACT};
 use crate::error::{Error, Result};
 use crate::solver::Modes;
@@ -129,5 +130,42 @@ pub unsafe extern "C" fn feti_body_fixing(p: *mut feti_problem, body: i64, r: i6
             output.write_at(k, &[*number as i64]);
         }
         Ok(())
+    })
+}
+
+/// Chooses the fixing unknowns of a body in place of the library.
+///
+/// They change the course of the methods of the paper in printed units, and neither forces nor displacements. As many as the
+/// null space has dimensions, which feti_setup checks, and that they hold every motion of it. Calling again replaces them.
+/// After a failure the body keeps what it had.
+///
+/// | argument | in/out | shape | rule |
+/// |---|---|---|---|
+/// | `p` | in | scalar | the handle |
+/// | `body` | in | scalar | number of the body, from 0 |
+/// | `r` | in | scalar | dimension of the null space of the body; 0: the library chooses again |
+/// | `dof` | in | r | unknowns of the body, from 0; may be NULL when r = 0 |
+///
+/// # Safety
+/// The array has the given shape.
+#[no_mangle]
+pub unsafe extern "C" fn feti_body_fixing_set(
+    p: *mut feti_problem,
+    body: i64,
+    r: i64,
+    dof: *const i64,
+) -> i32 {
+    enter(p, call!(feti_body_fixing_set(p, body, r, dof)), |problem| {
+        let (body, r) = (id(body, "body")?, count(r, "r")?);
+        // SAFETY: r numbers by the caller's word.
+        let given = unsafe { numbers(dof, r, 0, "dof") }?;
+        let mut dofs = reserved(r)?;
+        for (entry, &number) in given.iter().enumerate() {
+            dofs.push(usize::try_from(number).map_err(|_| {
+                let text = format!("unknown {number} is below 0");
+                Error::argument("dof", text).body(body).entry(entry).value(number as f64).limit(0.0)
+            })?);
+        }
+        problem.set_fixing(body, Some(dofs.as_slice()).filter(|dofs| !dofs.is_empty()))
     })
 }

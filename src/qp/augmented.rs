@@ -134,7 +134,7 @@ impl Hessian for Augmented<'_> {
 }
 
 /// A fixed sequence of numbers in [-1/2, 1/2).
-fn scattered(m: usize) -> Vec<f64> {
+pub(super) fn scattered(m: usize) -> Vec<f64> {
     let mut state = 0x9e37_79b9_7f4a_7c15_u64;
     let mut next = || {
         state ^= state << 13;

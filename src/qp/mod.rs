@@ -14,6 +14,7 @@ mod face;
 mod iterate;
 mod mprgp;
 mod nnls;
+pub mod paper;
 mod projection;
 mod proportioning;
 mod smalbe;
@@ -62,6 +63,8 @@ pub struct Counts {
     pub preconditioned: usize,
     /// Faces solved directly.
     pub direct: usize,
+    /// Problems with bounds alone: outer iterations of an augmented Lagrangian.
+    pub outer: usize,
 }
 
 impl std::ops::Add for Counts {
@@ -77,6 +80,7 @@ impl std::ops::Add for Counts {
             coarse_factorisations: self.coarse_factorisations + other.coarse_factorisations,
             preconditioned: self.preconditioned + other.preconditioned,
             direct: self.direct + other.direct,
+            outer: self.outer + other.outer,
         }
     }
 }

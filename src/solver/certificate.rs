@@ -160,7 +160,8 @@ fn forces(data: &Data, answer: Answer, metric: &[f64], certificate: &mut Certifi
         let (mut strain, mut terms) = (vec![0.0; u.len()], vec![0.0; u.len()]);
         body.stiffness.mul(u, &mut strain);
         body.stiffness.mul_abs(u, &mut terms);
-        (0..u.len()).for_each(|i| terms[i] += f[i].abs() + push_terms[i]);
+        let given: Vec<f64> = (0..u.len()).map(|i| f[i].abs() + push_terms[i]).collect();
+        (0..u.len()).for_each(|i| terms[i] += given[i]);
         totals.strain += dot(u, &strain);
         totals.work += dot(f, u);
         totals.load += size(f) * size(f);
@@ -174,6 +175,8 @@ fn forces(data: &Data, answer: Answer, metric: &[f64], certificate: &mut Certifi
         let rest: Vec<f64> = (0..u.len()).map(|i| f[i] - push[i]).collect();
         let resultants = body.null_space.mul_transposed(&rest);
         let resultant = (dot(&resultants, &resultants) / body.unit).sqrt();
+        // u takes no part in it: however far a body has moved, its forces must balance
+        let noise = NOISE * size(&given);
         replace_if_worse(&mut certificate.balance, entry(resultant, loads, noise, data.limit, Some(p)));
     }
     totals
@@ -292,6 +295,22 @@ mod tests {
             limit: 1e-8,
         };
         certify(&data, Answer { u: &[u], lambda: &[lambda * unit], mu: &[] })
+    }
+
+    /// Two dofs joined by a spring, pushed by 1 with nothing to hold them, and sent far away.
+    #[test]
+    fn no_distance_excuses_forces_that_do_not_balance() {
+        let stiffness = Symmetric { ptr: vec![0, 1, 3], col: vec![0, 0, 1], val: vec![1.0, -1.0, 1.0] };
+        let modes = Matrix { rows: 2, cols: 1, data: vec![0.5_f64.sqrt(); 2] };
+        let load = [0.5, 0.5];
+        let body =
+            BodyData { start: 0, stiffness: &stiffness, load: Some(&load), null_space: &modes, unit: 1.0 };
+        let none = RowSet::default();
+        let data = Data { bodies: vec![body], contact: &none, equalities: &none, without: 1.0, limit: 1e-8 };
+        for far in [0.0, 1.0, 1e10, 1e20] {
+            let certificate = certify(&data, Answer { u: &[far; 2], lambda: &[], mu: &[] });
+            assert!(!certificate.passed() && certificate.balance.ratio > 1.0, "{far:e}");
+        }
     }
 
     #[test]

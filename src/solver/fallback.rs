@@ -1,7 +1,9 @@
 //! The method the options ask for; and where it gives up, others, before the answer counts as incomplete.
 
 use crate::error::Result;
+use crate::qp::paper::algorithm_3;
 use crate::qp::{active_set, minimise, smalbe, Direct, Judge, Limits, Observer, Qp, Solution, Verdict};
+use crate::solver::paper;
 use crate::solver::Settings;
 
 /// How the dual is solved.
@@ -22,6 +24,9 @@ pub(super) fn solve_dual(
     let settings = means.settings;
     let steps = usize::try_from(settings.max_steps).unwrap_or(usize::MAX);
     let limits = Limits { tolerance: settings.tolerance, gamma: settings.gamma, steps };
+    if let Some(parameters) = paper::parameters(settings) {
+        return algorithm_3(Qp { preconditioner: None, ..qp }, start, &parameters, judge, observer);
+    }
     if settings.method == c"smalbe" {
         return smalbe(qp, start, limits, judge, observer);
     }

@@ -5,6 +5,7 @@ mod diagnosis;
 mod fallback;
 mod findings;
 mod finish;
+mod paper;
 mod presolve;
 mod problem;
 mod report;

@@ -160,6 +160,18 @@ impl Problem {
         Ok(())
     }
 
+    /// The dofs held in K+ of (15) instead of those the library would choose; none: its own choice again. They
+    /// change neither forces nor displacements, only the course of the methods in paper units.
+    pub fn set_fixing(&mut self, body: usize, dofs: Option<&[usize]>) -> Result<()> {
+        let order = self.order(body)?;
+        if let Some(entry) = dofs.and_then(|dofs| dofs.iter().position(|&dof| dof >= order)) {
+            let what = format!("the dof is outside the {order} unknowns");
+            return Err(Error::argument("dof", what).body(body).entry(entry).limit(order as f64));
+        }
+        self.changed(body)?.fixing = dofs.map(<[usize]>::to_vec);
+        Ok(())
+    }
+
     /// Node, direction and position of every dof; `xyz[k + ld i]` is coordinate k < dim of dof i.
     pub fn set_coordinates(
         &mut self,

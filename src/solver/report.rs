@@ -55,6 +55,8 @@ pub struct Report {
     pub cg_steps: usize,
     pub expansions: usize,
     pub releases: usize,
+    /// Outer iterations of an augmented Lagrangian; 0 for a method without one.
+    pub outer: usize,
     /// Products with F.
     pub dual_applications: usize,
     pub coarse_solves: usize,

@@ -50,6 +50,7 @@ impl Answer {
             cg_steps: counts.conjugate_gradient,
             expansions: counts.expansions,
             releases: counts.releases,
+            outer: counts.outer,
             dual_applications: counts.products,
             coarse_solves: counts.coarse_solves,
             coarse_factorisations: counts.coarse_factorisations,

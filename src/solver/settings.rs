@@ -23,6 +23,16 @@ pub struct Settings {
     pub start: &'static CStr,
     pub direct_limit: i64,
     pub finish: &'static CStr,
+    pub paper_units: &'static CStr,
+    pub paper_step_1: &'static CStr,
+    pub paper_alpha: f64,
+    pub paper_beta: f64,
+    pub paper_rho_0: f64,
+    pub paper_eta_0: f64,
+    pub paper_m: f64,
+    pub paper_mu_0: f64,
+    pub paper_extrapolation: f64,
+    pub paper_outer: i64,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -89,7 +99,7 @@ const fn word(
     OptionInfo { name, doc, default, minimum: 0.0, maximum: 0.0, field: Field::Str(field, words) }
 }
 
-static OPTIONS: [OptionInfo; 16] = [
+static OPTIONS: [OptionInfo; 26] = [
     real(c"tolerance", 1e-12, 1e-14..=1e-2, |s| &mut s.tolerance,
         c"The dual is solved until its projected gradient, a gap, is this small against the gaps and displacements of the problem."),
     real(c"certificate_tolerance", 1e-8, 1e-14..=1e-2, |s| &mut s.certificate_tolerance,
@@ -114,14 +124,34 @@ static OPTIONS: [OptionInfo; 16] = [
         c"1: the next feti_solve fails inside with FETI_INTERNAL, so that a host can test its own reaction."),
     word(c"preconditioner", &[c"automatic", c"none", c"lumped", c"dirichlet"], |s| &mut s.preconditioner,
         c"Preconditioner of the dual: automatic (lumped where products with F are dear, else none); none; lumped (stiffness of the constrained dofs, the others held); dirichlet (the others free: fewer steps, one more factorisation of each body)."),
-    word(c"method", &[c"proportioning", c"smalbe"], |s| &mut s.method,
-        c"Method for the dual: proportioning on its feasible set, with smalbe to fall back on; smalbe, an augmented Lagrangian, for comparison."),
+    word(c"method", &[c"proportioning", c"smalbe", c"paper-feasible", c"paper-monotone", c"paper-extrapolating"], |s| &mut s.method,
+        c"Method for the dual: proportioning on its feasible set, with smalbe to fall back on; smalbe, an augmented Lagrangian, for comparison; paper-..., Algorithm 3 of the paper with Algorithm 1 in one of its variants, without preconditioner and fallback."),
     word(c"start", &[c"cold", c"previous"], |s| &mut s.start,
         c"Where a solve starts: cold (no forces: the same input gives the same bits) or previous (forces and active set of the last answer for these rows); feti_start_from comes before either."),
     whole(c"direct_limit", 1000, 0.0..=MANY, |s| &mut s.direct_limit,
         c"Forces and floating modes together up to which the dual may be solved by dense factors on the active set, where the iteration gives up or option finish asks for it; 0: never."),
     word(c"finish", &[c"none", c"direct"], |s| &mut s.finish,
         c"What follows a solve: none; direct (dense factors on the active set found: errors fall to rounding; kept only where the certificate improves)."),
+    word(c"paper_units", &[c"relative", c"printed"], |s| &mut s.paper_units,
+        c"Methods paper-...: what their parameters are relative to. relative: rho_0 in |A|/|D|^2, M in |A|/|D|, eta_0 in the size of d, for the scaled rows; printed: the units of the host, its basis R, tolerance relative to |b| and |d|."),
+    word(c"paper_step_1", &[c"corrected", c"printed"], |s| &mut s.paper_step_1,
+        c"Methods paper-...: when Step 1 ends. printed: |g^P| <= M |D x - d|; corrected: not on this account once |D x - d| is as small as asked, |g^P| must be so too."),
+    real(c"paper_alpha", 0.1, 1e-6..=0.999, |s| &mut s.paper_alpha,
+        c"alpha of Algorithm 3: the bound eta on |D x - d| is multiplied by it where it was kept."),
+    real(c"paper_beta", 100.0, 1.001..=1e6, |s| &mut s.paper_beta,
+        c"beta of Algorithm 3: the penalty rho is multiplied by it where eta was exceeded."),
+    real(c"paper_rho_0", 100.0, 1e-30..=1e30, |s| &mut s.paper_rho_0,
+        c"rho_0 of Algorithm 3: the first penalty."),
+    real(c"paper_eta_0", 1e-3, 1e-30..=1e30, |s| &mut s.paper_eta_0,
+        c"eta_0 of Algorithm 3: the first bound on |D x - d|."),
+    real(c"paper_m", 0.0, 0.0..=1e30, |s| &mut s.paper_m,
+        c"M of Algorithm 3: the inner problem is solved until |g^P| <= M |D x - d|; 0: rho_0 / 100."),
+    real(c"paper_mu_0", 0.0, -1e30..=1e30, |s| &mut s.paper_mu_0,
+        c"mu^0 of Algorithm 3: every entry of the first multiplier."),
+    real(c"paper_extrapolation", 5.0, 1.01..=1e3, |s| &mut s.paper_extrapolation,
+        c"Method paper-extrapolating: factor from one trial step beyond a bound to the next."),
+    whole(c"paper_outer", 60, 1.0..=1e6, |s| &mut s.paper_outer,
+        c"Problems with bounds alone that the methods paper-... solve before they end with FETI_ITERATIONS."),
 ];
 
 /// All options, in the order of their listing.

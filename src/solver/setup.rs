@@ -253,10 +253,12 @@ impl Problem {
 fn plan(body: &Body, unit: f64, tolerance: f64) -> Result<crate::body::Plan> {
     let missing = |what: &str| Error::new(Kind::Internal, format!("a body without {what} was set up"));
     let k = body.stiffness.as_ref().ok_or_else(|| missing("stiffness"))?.scaled(1.0 / unit)?;
+    let fixing = body.fixing.as_deref();
     if let Some(given) = &body.null_space {
-        return GeneralizedInverse::plan(k, given, tolerance);
+        return GeneralizedInverse::plan_with(k, given, tolerance, fixing);
     }
     let coordinates = body.coordinates.as_ref().ok_or_else(|| missing("null space"))?;
     let vectors = coordinates.rigid_modes(&k)?;
-    GeneralizedInverse::plan(k, &NullSpaceInput { vectors, modes: Modes::Candidates }, tolerance)
+    let candidates = NullSpaceInput { vectors, modes: Modes::Candidates };
+    GeneralizedInverse::plan_with(k, &candidates, tolerance, fixing)
 }

@@ -7,12 +7,14 @@ use crate::dual::Preconditioner;
 use crate::error::{Error, Kind, Result};
 use crate::linalg::vector::weighted_norm;
 use crate::linalg::Operator;
+use crate::qp::paper::Units;
 use crate::qp::{self, Direct, Judge, Qp, Solution, Verdict};
 use crate::solver::certificate::{certify, Answer as AnswerView, BodyData, Certificate, Data};
 use crate::solver::diagnosis;
 use crate::solver::fallback::{solve_dual, Means};
 use crate::solver::findings::Findings;
 use crate::solver::finish::finish;
+use crate::solver::paper::{parameters, HostUnits};
 use crate::solver::presolve::{presolve, Gaps};
 use crate::solver::problem::Problem;
 use crate::solver::report::{Outcome, Report};
@@ -39,9 +41,13 @@ impl Problem {
         let dual = Scaled::new(self, ready, &watch.stops)?;
         let mut judge = Certifier { ready, scaled: &dual, data: self.data()? };
         let f = watch.operator(ready, &dual.gaps.bounded);
-        let (qp, direct) = (dual.qp(ready, &f), self.direct(ready));
-        let means = Means { settings: &self.settings, direct };
-        let solution = solve_dual(&means, qp, &start.scaled(ready)?, &mut judge, watch)?;
+        let (qp, start, direct) = (dual.qp(ready, &f), start.scaled(ready)?, self.direct(ready));
+        let solution = match parameters(&self.settings) {
+            Some(given) if given.units == Units::Printed => {
+                HostUnits::new(self, ready, &dual.gaps, given)?.solve(qp, &start, &mut judge, watch)?
+            }
+            _ => solve_dual(&Means { settings: &self.settings, direct }, qp, &start, &mut judge, watch)?,
+        };
         let mut ending = judge.ending(solution)?;
         let finished = self.settings.finish == c"direct" && finish(&judge, qp, direct, &mut ending)?;
         let Ending { solution, recovered, certificate } = ending;

@@ -32,6 +32,33 @@ static void sizes(feti_problem *p)
     REFUSED(p, 5, ANY, ANY, ANY, ANY, "feti_body_stiffness_dense", "", feti_body_stiffness_dense(p, BLOCK, 2, BLOCK_VAL, 1, FETI_FULL, FETI_COPY));
 }
 
+static void fixing(feti_problem *p)
+{
+    const int64_t far[1] = { 2 }, below[1] = { -1 };
+
+    REFUSED(p, 2, ANY, ANY, ANY, ANY, "feti_body_fixing_set", "", feti_body_fixing_set(p, 2, 1, far));
+    REFUSED(p, 3, ANY, ANY, ANY, ANY, "feti_body_fixing_set", "", feti_body_fixing_set(p, BLOCK, -1, far));
+    REFUSED(p, 4, BLOCK, ANY, ANY, 0, "feti_body_fixing_set", "2", feti_body_fixing_set(p, BLOCK, 1, far));
+    REFUSED(p, 4, BLOCK, ANY, ANY, 0, "feti_body_fixing_set", "-1", feti_body_fixing_set(p, BLOCK, 1, below));
+}
+
+/* Either unknown of the block may be held in K+; the answer is the same. Too many are a null space of another size. */
+static void fixing_dofs_are_taken(feti_problem *p)
+{
+    int64_t dof[2] = { 0, 1 }, held[1];
+
+    for (int64_t k = 0; k < 2; k++) {
+        OK(feti_body_fixing_set(p, BLOCK, 1, dof + k));
+        OK(feti_body_fixing(p, BLOCK, 1, held));
+        CHECK(held[0] == k, "unknown %lld is held", (long long)held[0]);
+        check_small_answer(p, "feti_body_fixing_set");
+    }
+    OK(feti_body_fixing_set(p, BLOCK, 2, dof));
+    EXPECT(FETI_NULL_SPACE, feti_setup(p));
+    OK(feti_body_fixing_set(p, BLOCK, 0, NULL));
+    check_small_answer(p, "feti_body_fixing_set");
+}
+
 static void flags(feti_problem *p)
 {
     static const char *const I32 = "feti_body_stiffness_i32";
@@ -140,6 +167,8 @@ int main(void)
     feti_problem *problem = small_problem();
     check_small_answer(problem, "handing over");
     sizes(problem);
+    fixing(problem);
+    fixing_dofs_are_taken(problem);
     flags(problem);
     patterns(problem);
     rows(problem);

@@ -42,6 +42,7 @@ static void every_function(int32_t expected, feti_problem *h)
     EXPECT(expected, feti_active(h, 1, state));
     EXPECT(expected, feti_counts(h, &i, NULL, NULL, NULL));
     EXPECT(expected, feti_body_fixing(h, BLOCK, 1, dof));
+    EXPECT(expected, feti_body_fixing_set(h, BLOCK, 0, dof));
     EXPECT(expected, feti_body_kplus(h, BLOCK, 2, 1, BLOCK_LOAD, 2, x, 2));
     EXPECT(expected, feti_dual_apply(h, 1, x, x + 1));
     EXPECT(expected, feti_dual_rhs(h, 1, x));
@@ -101,6 +102,7 @@ static void null_inputs(feti_problem *p)
     EXPECT(FETI_ARGUMENT - 6, feti_body_coordinates(p, BLOCK, 1, 2, one, NULL, x, 1));
     EXPECT(FETI_ARGUMENT - 7, feti_body_coordinates(p, BLOCK, 1, 2, one, one, NULL, 1));
     EXPECT(FETI_ARGUMENT - 4, feti_body_load(p, BLOCK, 2, NULL));
+    EXPECT(FETI_ARGUMENT - 4, feti_body_fixing_set(p, BLOCK, 1, NULL));
     EXPECT(FETI_ARGUMENT - 4, feti_rows_add_i32(p, FETI_INEQUALITY, 1, NULL, ROW_BODY, ROW_DOF, ROW_VAL, 0, GAP, NULL));
     EXPECT(FETI_ARGUMENT - 6, feti_rows_add_i32(p, FETI_INEQUALITY, 1, ROW_PTR, ROW_BODY, NULL, ROW_VAL, 0, GAP, NULL));
     EXPECT(FETI_ARGUMENT - 7, feti_rows_add_i32(p, FETI_INEQUALITY, 1, ROW_PTR, ROW_BODY, ROW_DOF, NULL, 0, GAP, NULL));

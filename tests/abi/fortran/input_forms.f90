@@ -10,6 +10,7 @@ program input_forms
   call stiffness_forms_agree
   call row_forms_agree
   call sections_agree
+  call fixing_dofs_are_taken
   call right_hand_sides_change
   call settings_are_listed_set_and_read
   call the_version_is_told
@@ -58,6 +59,28 @@ contains
     call require(abs(lambda(1) - 100) < 1e-7_dp, what // ': wrong contact force')
     call require(maxval(abs(u - [-0.1_dp, -0.6_dp, -0.625_dp])) < 1e-9_dp, what // ': wrong displacement')
     call feti_problem_destroy(p)
+  end subroutine
+
+  !> Either unknown of the block may be held in K+, and the library's own choice comes back.
+  subroutine fixing_dofs_are_taken
+    type(feti_problem) :: p
+    integer :: k, own(1), held(1), none(0)
+
+    do k = 1, 2
+      call begin(p)
+      call add_stiffness(p)
+      call add_rows(p)
+      call feti_body_fixing(p, 2, own)
+      call feti_body_fixing_set(p, 2, [k])
+      call feti_body_fixing(p, 2, held)
+      call require(held(1) == k, 'the unknown held is not the one given')
+      if (k == 2) then
+        call feti_body_fixing_set(p, 2, none)
+        call feti_body_fixing(p, 2, held)
+        call require(held(1) == own(1), 'the unknown held is not the one of the library')
+      end if
+      call finish(p, 'fixing unknowns')
+    end do
   end subroutine
 
   subroutine stiffness_forms_agree

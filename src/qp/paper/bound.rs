@@ -1,0 +1,216 @@
+//! Algorithm 1, the general proportioning scheme, for (19): theta(x) -> min subject to x_i >= 0 (i bounded).
+
+use crate::error::Result;
+use crate::linalg::vector::{axpy, dot};
+use crate::qp::paper::{Quadratic, Variant};
+use crate::qp::{Counts, StepKind};
+
+/// Curvature below this part of the largest one met counts as none.
+const FLAT: f64 = 1e-15;
+
+/// A point x >= 0 with its gradient in the two parts of (22) and (23).
+pub struct Point<'a> {
+    bounded: &'a [bool],
+    pub x: Vec<f64>,
+    /// g(x)
+    pub g: Vec<f64>,
+    /// A(x) of (21): bounded rows with x_i = 0. The others are F(x).
+    pub active: Vec<bool>,
+    /// Inner gradient g^I (22): g_i on F(x), 0 on A(x).
+    pub inner: Vec<f64>,
+    /// Chopped, unbalanced contact gradient g^C (23): 0 on F(x), min(0, g_i) on A(x).
+    pub chopped: Vec<f64>,
+}
+
+impl<'a> Point<'a> {
+    fn new(bounded: &'a [bool], x: Vec<f64>, g: Vec<f64>) -> Self {
+        let m = x.len();
+        let (active, inner, chopped) = (vec![false; m], vec![0.0; m], vec![0.0; m]);
+        let mut point = Self { bounded, x, g, active, inner, chopped };
+        point.split();
+        point
+    }
+
+    /// (21), (22), (23).
+    fn split(&mut self) {
+        for i in 0..self.x.len() {
+            self.active[i] = self.bounded[i] && self.x[i] == 0.0;
+            self.inner[i] = if self.active[i] { 0.0 } else { self.g[i] };
+            self.chopped[i] = if self.active[i] { self.g[i].min(0.0) } else { 0.0 };
+        }
+    }
+
+    /// Norm of the projected gradient `g^P = g^I + g^C`, which vanishes at the solution of (19).
+    pub fn projected_gradient(&self) -> f64 {
+        (dot(&self.inner, &self.inner) + dot(&self.chopped, &self.chopped)).sqrt()
+    }
+
+    /// `|g^C| <= Gamma |g^I|` (Section 4); where g^I = 0 only if g^C = 0.
+    pub fn is_proportional(&self, gamma: f64) -> bool {
+        dot(&self.chopped, &self.chopped) <= gamma * gamma * dot(&self.inner, &self.inner)
+    }
+
+    pub(super) fn is_feasible(&self, y: &[f64]) -> bool {
+        y.iter().zip(self.bounded).all(|(y, bounded)| !bounded || *y >= 0.0)
+    }
+
+    pub(super) fn move_to(&mut self, x: Vec<f64>, g: Vec<f64>) {
+        (self.x, self.g) = (x, g);
+        self.split();
+    }
+}
+
+/// Py: the nearest point with y_i >= 0 (i bounded).
+pub(super) fn projection(bounded: &[bool], mut y: Vec<f64>) -> Vec<f64> {
+    y.iter_mut().zip(bounded).filter(|(y, bounded)| **bounded && **y < 0.0).for_each(|(y, _)| *y = 0.0);
+    y
+}
+
+/// How Algorithm 1 is carried out.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Rule {
+    /// Gamma > 0 of the proportionality test.
+    pub gamma: f64,
+    pub variant: Variant,
+    /// Factor > 1 from one trial step of the extrapolating variant to the next.
+    pub extrapolation: f64,
+}
+
+/// Conjugate gradients for min theta(y), y in W_I, I = A(x^k). y is the point itself while it is feasible.
+pub(super) struct Face {
+    pub y: Vec<f64>,
+    pub g: Vec<f64>,
+    /// I
+    pub held: Vec<bool>,
+    pub p: Vec<f64>,
+    /// |r|^2 of the residual r = g on the face, and what it began with.
+    pub square: f64,
+    first: f64,
+    pub feasible: bool,
+}
+
+impl Face {
+    fn at(point: &Point) -> Self {
+        let square = dot(&point.inner, &point.inner);
+        let (y, g, held) = (point.x.clone(), point.g.clone(), point.active.clone());
+        Self { y, g, held, p: point.inner.clone(), square, first: square, feasible: true }
+    }
+
+    /// `y - a p` with its gradient and the next conjugate direction; whether a residual is left.
+    pub(super) fn advance(&mut self, a: f64, y: Vec<f64>, image: &[f64]) -> bool {
+        /// |r|^2 against the first one: the face is solved to rounding.
+        const SOLVED: f64 = 1e-28;
+        self.y = y;
+        axpy(-a, image, &mut self.g);
+        let r: Vec<f64> =
+            self.g.iter().zip(&self.held).map(|(g, held)| if *held { 0.0 } else { *g }).collect();
+        let square = dot(&r, &r);
+        let beta = square / self.square;
+        self.p.iter_mut().zip(&r).for_each(|(p, r)| *p = r + beta * *p);
+        self.square = square;
+        square > SOLVED * self.first
+    }
+}
+
+/// What a step came to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Step {
+    /// A conjugate gradient step, one that met a bound, or a proportioning step.
+    Done(StepKind),
+    /// theta does not curve along the direction.
+    Flat,
+}
+
+/// A run of Algorithm 1.
+pub struct Proportioning<'a, 'q> {
+    pub q: &'q mut Quadratic<'a>,
+    pub point: Point<'a>,
+    pub rule: Rule,
+    pub counts: Counts,
+    /// The step that led to the point.
+    pub last: StepKind,
+    pub(super) face: Option<Face>,
+    largest_curvature: f64,
+}
+
+impl<'a, 'q> Proportioning<'a, 'q> {
+    /// Starts at the point nearest to `start`, with one product for its gradient.
+    pub fn new(q: &'q mut Quadratic<'a>, start: Vec<f64>, rule: Rule) -> Result<Self> {
+        let x = projection(q.qp.bounded, start);
+        let g = q.gradient(&x)?;
+        let point = Point::new(q.qp.bounded, x, g);
+        let (counts, last) = (Counts::default(), StepKind::Release);
+        Ok(Self { q, point, rule, counts, last, face: None, largest_curvature: 0.0 })
+    }
+
+    /// Algorithm 1 until `enough` says so: (i) proportioning where the point is not proportional, (ii) else a
+    /// step towards the minimum on the face. Whether it came so far; not where theta does not curve.
+    pub fn run(&mut self, enough: &mut dyn FnMut(&Self) -> Result<bool>) -> Result<bool> {
+        while !enough(self)? {
+            let step = if self.explores() { self.explore()? } else { self.proportion()? };
+            match step {
+                Step::Flat => return Ok(false),
+                Step::Done(kind) => self.count(kind),
+            }
+        }
+        Ok(true)
+    }
+
+    /// Infeasible conjugate gradients of the monotone variant go on until theta(Py) rises.
+    fn explores(&self) -> bool {
+        self.face.as_ref().is_some_and(|face| !face.feasible) || self.point.is_proportional(self.rule.gamma)
+    }
+
+    /// Proportioning: the exact minimum along `d = -g^C` frees indices of the active set.
+    fn proportion(&mut self) -> Result<Step> {
+        self.face = None;
+        let image = self.q.product(&self.point.chopped)?;
+        let Some(a) = self.minimum_along(&self.point.chopped.clone(), &image) else { return Ok(Step::Flat) };
+        let (mut x, mut g) = (self.point.x.clone(), self.point.g.clone());
+        axpy(-a, &self.point.chopped, &mut x);
+        axpy(-a, &image, &mut g);
+        self.point.move_to(x, g);
+        Ok(Step::Done(StepKind::Release))
+    }
+
+    /// One conjugate gradient step on the face; the variant says what happens at its bounds.
+    fn explore(&mut self) -> Result<Step> {
+        let mut face = self.face.take().unwrap_or_else(|| Face::at(&self.point));
+        let image = self.q.product(&face.p)?;
+        let curvature = self.curvature(&face.p, &image);
+        let Some(curvature) = curvature else { return Ok(Step::Flat) };
+        let a = face.square / curvature;
+        let mut y = face.y.clone();
+        axpy(-a, &face.p, &mut y);
+        if !self.point.is_feasible(&y) {
+            return self.beyond_a_bound(face, a, y, image).map(|()| Step::Done(StepKind::Expansion));
+        }
+        let left = face.advance(a, y, &image);
+        face.feasible = true;
+        self.point.move_to(face.y.clone(), face.g.clone());
+        self.face = Some(face).filter(|face| left && face.held == self.point.active);
+        Ok(Step::Done(StepKind::ConjugateGradient))
+    }
+
+    fn minimum_along(&mut self, p: &[f64], image: &[f64]) -> Option<f64> {
+        self.curvature(p, image).map(|curvature| dot(&self.point.g, p) / curvature)
+    }
+
+    /// `p'H p`, none where it vanishes.
+    fn curvature(&mut self, p: &[f64], image: &[f64]) -> Option<f64> {
+        let (curvature, square) = (dot(p, image), dot(p, p));
+        let relative = curvature / square;
+        self.largest_curvature = self.largest_curvature.max(relative);
+        (relative > FLAT * self.largest_curvature).then_some(curvature)
+    }
+
+    fn count(&mut self, kind: StepKind) {
+        self.last = kind;
+        self.counts.products = self.q.products;
+        match kind {
+            StepKind::ConjugateGradient => self.counts.conjugate_gradient += 1,
+            StepKind::Expansion => self.counts.expansions += 1,
+            StepKind::Release => self.counts.releases += 1,
+        }
+    }
+}

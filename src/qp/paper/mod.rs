@@ -1,0 +1,67 @@
+//! The paper's own methods, in its notation: Algorithm 1 for bounds alone and Algorithm 3 for bounds and
+//! equalities. Kept as the paper has them, for its readers and as a baseline; the default is
+//! `qp/proportioning.rs`.
+//!
+//! | paper | file |
+//! |---|---|
+//! | (20) theta(x), L(x, mu, rho) | `quadratic.rs` |
+//! | (21)-(23) active set, g^I, g^C; proportional points; Algorithm 1 | `bound.rs` |
+//! | feasible, monotone and extrapolating proportioning | `variants.rs` |
+//! | (24)-(25), Algorithm 3 | `augmented_lagrangian.rs` |
+//! | what rho_0, M and eta_0 are relative to | `sizes.rs` |
+
+mod augmented_lagrangian;
+mod bound;
+mod quadratic;
+mod sizes;
+mod variants;
+
+pub use augmented_lagrangian::algorithm_3;
+pub use bound::{Point, Proportioning, Rule};
+pub use quadratic::Quadratic;
+pub use variants::Variant;
+
+/// The parameters of Algorithm 3 in their printed symbols, and of Algorithm 1 within it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Parameters {
+    /// alpha, 0 < alpha < 1: eta_{k+1} = alpha eta_k.
+    pub alpha: f64,
+    /// beta > 1: rho_{k+1} = beta rho_k.
+    pub beta: f64,
+    /// rho_0 > 0.
+    pub rho_0: f64,
+    /// eta_0 > 0.
+    pub eta_0: f64,
+    /// M > 0 of `|g^P| <= M |D x - d|`; none: rho_0 / 100.
+    pub m: Option<f64>,
+    /// Every entry of mu^0.
+    pub mu_0: f64,
+    /// Problems with bounds alone that are solved at most.
+    pub outer: usize,
+    pub rule: Rule,
+    pub units: Units,
+    pub step_1: StepOne,
+    /// Projected gradient and `|D x - d|` are sufficiently small (Step 2) at this part of what `units` say.
+    pub tolerance: f64,
+    /// Steps of Algorithm 1 at most, over all problems.
+    pub steps: usize,
+}
+
+/// When Step 1 of Algorithm 3 ends.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum StepOne {
+    /// `|g^P| <= M |D x - d|`.
+    Printed,
+    /// The same, but not once `|D x - d|` is sufficiently small: then `|g^P|` must be so too.
+    Corrected,
+}
+
+/// What the numbers in `Parameters` are relative to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Units {
+    /// rho_0 in |A| / |D|^2, M in |A| / |D|, eta_0 in the size of d, mu^0 in the size of b / |D|: the same
+    /// course in any unit of force and length and for any basis R.
+    Relative,
+    /// As printed: absolute numbers, and Step 2 relative to |b| and |d|.
+    Printed,
+}
