@@ -29,6 +29,8 @@ struct Tally {
     lines: usize,
     short: usize,
     failed: usize,
+    /// Decks on which SMALBE-M is not as far behind as expected.
+    near: usize,
 }
 
 fn main() -> ExitCode {
@@ -51,7 +53,10 @@ fn main() -> ExitCode {
     if wants(table::TIGHTER) {
         tally.tighter();
     }
-    println!("counts: {} lines, {} short, {} failed", tally.lines, tally.short, tally.failed);
+    let Tally { lines, short, failed, near } = tally;
+    println!(
+        "counts: {lines} lines, {short} short, {failed} failed; SMALBE nearer than its goal on {near} decks"
+    );
     if tally.failed > 0 {
         ExitCode::FAILURE
     } else {
@@ -78,6 +83,7 @@ impl Tally {
     fn judge(&mut self, case: &Case, measurement: &Measurement) {
         let reasons = verdict::reasons(case, measurement);
         self.short += usize::from(!reasons.is_empty());
+        self.near += usize::from(verdict::smalbe_is_near(case, measurement));
         println!("{}", verdict::line(case, measurement, &reasons));
         flush();
     }
