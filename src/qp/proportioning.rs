@@ -201,8 +201,10 @@ fn run(
                 }
                 StepKind::Release
             }
+            Step::Unbounded { .. } | Step::Stuck if judge.accepts(&it.x, &it.alpha)? => {
+                return Ok(Verdict::Solved);
+            }
             Step::Unbounded { p } => return Ok(Verdict::Unbounded { p }),
-            Step::Stuck if judge.accepts(&it.x, &it.alpha)? => return Ok(Verdict::Solved),
             Step::Stuck => return Ok(Verdict::Stalled),
             Step::ConjugateGradient => StepKind::ConjugateGradient,
             Step::Expansion => StepKind::Expansion,

@@ -53,8 +53,10 @@ fn or_directly(solution: Solution, qp: Qp, direct: Direct, judge: &mut dyn Judge
     better(solution, next)
 }
 
+/// Contradictory rows are known before the dual is solved: a direction along which theta seems to fall without
+/// end is rounding, as a rule.
 fn gave_up(solution: &Solution) -> bool {
-    matches!(solution.verdict, Verdict::Stalled | Verdict::Inaccurate)
+    matches!(solution.verdict, Verdict::Stalled | Verdict::Inaccurate | Verdict::Unbounded { .. })
 }
 
 /// The accepted one of two, with the work of both; the first one when the host or the time ended the second.
