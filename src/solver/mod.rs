@@ -10,6 +10,7 @@ mod problem;
 mod report;
 mod results;
 mod room;
+mod rows;
 mod settings;
 mod setup;
 mod solve;
