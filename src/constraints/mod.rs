@@ -5,8 +5,11 @@
 //! `H u - h = mu/k`. It is the row `[b, -1]` of a problem with one more unknown of stiffness k, so that
 //! C = diag(1/k) is added to `B D^-1 B'` and to F wherever they appear.
 
+mod accumulator;
+mod decoupling;
 mod grouping;
 
+pub use decoupling::{Decoupling, UnitRows};
 pub use grouping::Grouping;
 
 use crate::error::{Error, Kind, Result};

@@ -127,15 +127,13 @@ impl Dual {
         e
     }
 
-    /// (17): `u = K+ (f - B'lambda) + R alpha`, over all unknowns; (16) on bodies that are held, where K+ = K^-1.
-    pub fn displacement(&self, f: &[f64], lambda: &[f64], alpha: &[f64]) -> Result<Vec<f64>> {
+    /// `u = K+ f + R alpha`, over all unknowns: (17) for the load f that the forces of the rows leave; (16) on bodies
+    /// that are held, where K+ = K^-1.
+    pub fn displacement(&self, f: &[f64], alpha: &[f64]) -> Result<Vec<f64>> {
         let mut u = zeros(f.len(), "a displacement")?;
         for s in &self.subdomains {
-            let mut load = f[s.range.clone()].to_vec();
-            let local: Vec<f64> = s.rows.iter().map(|&i| lambda[i]).collect();
-            s.matrix.mul_transposed_add(-1.0, &local, &mut load);
             let u = &mut u[s.range.clone()];
-            s.kplus.apply(&load, u)?;
+            s.kplus.apply(&f[s.range.clone()], u)?;
             s.kplus.null_space.mul_add(1.0, &alpha[s.modes.clone()], u);
         }
         Ok(u)

@@ -32,7 +32,7 @@ impl Csr {
     }
 
     /// Entries `(column, value)` of row `i`.
-    pub fn row(&self, i: usize) -> impl Iterator<Item = (usize, f64)> + '_ {
+    pub fn row(&self, i: usize) -> impl Iterator<Item = (usize, f64)> + Clone + '_ {
         let range = self.ptr[i]..self.ptr[i + 1];
         self.col[range.clone()].iter().copied().zip(self.val[range].iter().copied())
     }

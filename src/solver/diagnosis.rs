@@ -40,18 +40,19 @@ pub(super) fn load_not_held(problem: &Problem, ready: &Ready, direction: &[f64],
     error.proved_by(Proof::Motion { margin, v })
 }
 
-/// The weights w combine the dual rows to nothing, `B'w = 0`, yet demand a negative gap, `c'w < 0`: no
+/// The weights w combine the scaled rows of the host to nothing, `B'w = 0`, yet demand a negative gap, `c'w < 0`: no
 /// displacement satisfies them. `None` when w does not prove it. Compliant rows contradict nothing.
 pub(super) fn gaps_contradict(ready: &Ready, gaps: &Gaps, w: &[f64]) -> Option<Error> {
-    let leader = |group: usize| ready.grouping.leaders[group];
-    let bounded = |group: usize| leader(group) < ready.contact;
+    let rows = &ready.rows;
+    let leader = |group: usize| rows.grouping.leaders[group];
+    let bounded = |group: usize| leader(group) < rows.contact;
     let negligible = EMPTY * norm_max(w);
-    let counts = |group: usize| ready.compliance[group] == 0.0 && w[group].abs() > negligible;
+    let counts = |group: usize| rows.compliance[group] == 0.0 && w[group].abs() > negligible;
     let w: Vec<f64> = (0..w.len()).map(|group| if counts(group) { w[group] } else { 0.0 }).collect();
-    let (mut left, mut terms) = (vec![0.0; ready.matrix.cols], vec![0.0; ready.matrix.cols]);
-    ready.matrix.mul_transposed_add(1.0, &w, &mut left);
-    ready.matrix.mul_transposed_abs_add(&w, &mut terms);
-    let size = |x: &[f64]| weighted_norm(x, |i| 1.0 / ready.metric[i]);
+    let (mut left, mut terms) = (vec![0.0; rows.scaled.cols], vec![0.0; rows.scaled.cols]);
+    rows.scaled.mul_transposed_add(1.0, &w, &mut left);
+    rows.scaled.mul_transposed_abs_add(&w, &mut terms);
+    let size = |x: &[f64]| weighted_norm(x, |i| 1.0 / rows.metric[i]);
     let demanded = dot(&gaps.value, &w);
     let demands: f64 = gaps.value.iter().zip(&w).map(|(c, w)| (c * w).abs()).sum();
     let proves = (0..w.len()).all(|group| !bounded(group) || w[group] >= 0.0)
@@ -62,14 +63,14 @@ pub(super) fn gaps_contradict(ready: &Ready, gaps: &Gaps, w: &[f64]) -> Option<E
     }
     let heaviest = (0..w.len()).fold(0, |best, i| if w[i].abs() > w[best].abs() { i } else { best });
     let others = w.iter().filter(|v| **v != 0.0).count() - 1;
-    let (kind, row) = kind_and_row(gaps.holder[heaviest], ready.contact);
+    let (kind, row) = kind_and_row(gaps.holder[heaviest], rows.contact);
     let what = format!(
         "this {} and {others} others contradict each other: no displacement satisfies them",
         kind.name()
     );
     let error = Error::new(Kind::GapsContradict, what).row(row).value(demanded).limit(0.0);
     let involved = (0..w.len()).filter(|&group| w[group] != 0.0);
-    let weights = involved.map(|group| (gaps.holder[group], w[group] * ready.scale[gaps.holder[group]]));
+    let weights = involved.map(|group| (gaps.holder[group], w[group] * rows.scale[gaps.holder[group]]));
     Some(error.proved_by(proof_of_rows(-demanded / demands, weights.collect(), gaps.holder[heaviest])))
 }
 

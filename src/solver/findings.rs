@@ -100,9 +100,10 @@ impl Findings {
 
 /// Rows of a group but its leader, with the factor from the leader.
 fn redundant(ready: &Ready) -> Vec<(usize, f64)> {
-    let leaders = &ready.grouping.leaders;
-    let repeats = ready.grouping.members().filter(|(i, (group, _))| leaders[*group] != *i);
-    repeats.map(|(i, (group, sign))| (i, sign * ready.scale[leaders[group]] / ready.scale[i])).collect()
+    let rows = &ready.rows;
+    let leaders = &rows.grouping.leaders;
+    let repeats = rows.grouping.members().filter(|(i, (group, _))| leaders[*group] != *i);
+    repeats.map(|(i, (group, sign))| (i, sign * rows.scale[leaders[group]] / rows.scale[i])).collect()
 }
 
 impl Problem {
@@ -123,7 +124,8 @@ impl Problem {
     fn untouched(&self, ready: &Ready) -> Vec<usize> {
         let ranges = self.ranges();
         let mut touched = vec![false; ranges.len()];
-        ready.matrix.col.iter().for_each(|&j| touched[ranges.partition_point(|range| range.end <= j)] = true);
+        let unknowns = ready.rows.scaled.col.iter();
+        unknowns.for_each(|&j| touched[ranges.partition_point(|range| range.end <= j)] = true);
         (0..touched.len()).filter(|&p| !touched[p]).collect()
     }
 

@@ -25,7 +25,7 @@ pub(super) fn finish(judge: &Certifier, qp: Qp, direct: Direct, ending: &mut End
 /// The settled point in place of `ending`, then its corrections, each only where the certificate gets better.
 fn improve(judge: &Certifier, settled: &Settled, ending: &mut Ending) -> Result<bool> {
     let (x, alpha) = (settled.x.clone(), settled.alpha.clone());
-    let u = judge.ready.dual.displacement(&judge.scaled.load, &x, &alpha)?;
+    let u = judge.displacement(&x, &alpha)?;
     let mut point = Point { u, x, alpha };
     let mut replaced = false;
     for _ in 0..=CORRECTIONS {
@@ -60,18 +60,20 @@ impl Point {
     /// F and of K+ fall with every correction.
     fn correct(&mut self, judge: &Certifier, settled: &Settled) -> Result<()> {
         let (dual, face) = (&judge.ready.dual, &settled.face);
-        let load = self.load_left(judge);
+        let mut load = self.load_left(judge);
+        let rows = &judge.ready.rows;
+        let value = judge.scaled.gaps.value.iter().enumerate();
+        let left = value.map(|(i, gap)| gap - rows.scaled.row_dot(i, &self.u)).collect();
+        let left = rows.decoupling.solve(left);
         let mut gaps = vec![0.0; self.x.len()];
-        for &i in face.rows() {
-            let spring = judge.ready.compliance[i] * self.x[i];
-            gaps[i] = judge.scaled.gaps.value[i] + spring - judge.ready.matrix.row_dot(i, &self.u);
-        }
+        face.rows().iter().for_each(|&i| gaps[i] = left[i] + rows.compliance[i] * self.x[i]);
         let d = dual.rhs(&load, &gaps)?;
         let force = face.rows().iter().map(|&i| d[i]).collect();
         let (step, turn) = face.solve(force, &dual.resultants(&load))?;
         let mut forces = vec![0.0; self.x.len()];
         face.rows().iter().zip(step).for_each(|(&i, step)| forces[i] = step);
-        axpy(1.0, &dual.displacement(&load, &forces, &turn)?, &mut self.u);
+        rows.take_forces(&forces, &mut load);
+        axpy(1.0, &dual.displacement(&load, &turn)?, &mut self.u);
         axpy(1.0, &forces, &mut self.x);
         axpy(1.0, &turn, &mut self.alpha);
         Ok(())
@@ -86,7 +88,7 @@ impl Point {
             body.stiffness.mul(&self.u[range.clone()], &mut strain);
             axpy(-1.0 / judge.ready.unit, &strain, &mut load[range]);
         }
-        judge.ready.matrix.mul_transposed_add(-1.0, &self.x, &mut load);
+        judge.ready.rows.take_forces(&self.x, &mut load);
         load
     }
 }

@@ -11,6 +11,7 @@ mod problem;
 mod report;
 mod results;
 mod room;
+mod rows;
 mod settings;
 mod setup;
 mod solve;

@@ -15,6 +15,11 @@ use crate::solver::problem::Problem;
 use crate::solver::setup::Ready;
 use crate::solver::Settings;
 
+/// True where `method` is one of the paper: its dual has the rows of the host, scaled but not decoupled.
+pub(super) fn is_asked(settings: &Settings) -> bool {
+    settings.method.to_bytes().starts_with(b"paper-")
+}
+
 /// Options of the paper's methods; none where `method` is another one.
 pub(super) fn parameters(settings: &Settings) -> Option<Parameters> {
     let variant = match settings.method.to_bytes() {
@@ -54,10 +59,10 @@ pub(super) struct HostUnits {
 
 impl HostUnits {
     pub fn new(problem: &Problem, ready: &Ready, gaps: &Gaps, parameters: Parameters) -> Result<Self> {
-        let scale = gaps.holder.iter().map(|&i| ready.scale[i]).collect();
+        let scale = gaps.holder.iter().map(|&i| ready.rows.scale[i]).collect();
         let mut basis = Vec::with_capacity(problem.bodies.len());
         for (p, range) in problem.ranges().into_iter().enumerate() {
-            basis.push((ready.dual.modes_of(p), change_of_basis(problem, p, &ready.metric[range])?));
+            basis.push((ready.dual.modes_of(p), change_of_basis(problem, p, &ready.rows.metric[range])?));
         }
         Ok(Self { parameters, unit: ready.unit, scale, basis })
     }

@@ -20,6 +20,8 @@ const WORK: usize = 200_000_000;
 pub(super) struct Gaps {
     /// `S c` or `S h` of every group: the tightest gap of its contact rows.
     pub value: Vec<f64>,
+    /// c' = L^-1 of them, for the rows of the dual.
+    pub dual: Vec<f64>,
     /// The row of the group that carries its multiplier.
     pub holder: Vec<usize>,
     /// Groups with a multiplier >= 0.
@@ -28,20 +30,22 @@ pub(super) struct Gaps {
 
 /// Gaps of all groups; refuses rows whose gaps no displacement satisfies.
 pub(super) fn presolve(problem: &Problem, ready: &Ready, stops: &Stops) -> Result<Gaps> {
+    let rows = &ready.rows;
     let rhs: Vec<f64> = problem.contact.rhs.iter().chain(&problem.equalities.rhs).copied().collect();
-    let scaled: Vec<f64> = rhs.iter().zip(&ready.scale).map(|(c, s)| c * s).collect();
-    let leaders = &ready.grouping.leaders;
-    let kinds = (0..leaders.len()).map(|group| ready.grouping.kind(group, ready.contact));
+    let scaled: Vec<f64> = rhs.iter().zip(&rows.scale).map(|(c, s)| c * s).collect();
+    let leaders = &rows.grouping.leaders;
+    let kinds = (0..leaders.len()).map(|group| rows.kind(group));
     let mut gaps = Gaps {
         value: leaders.iter().map(|&i| scaled[i]).collect(),
+        dual: Vec::new(),
         holder: leaders.clone(),
         bounded: kinds.map(|kind| kind == RowKind::Inequality).collect(),
     };
     let slack = EQUAL * norm_max(&scaled);
-    for (i, member) in ready.grouping.member.iter().enumerate() {
+    for (i, member) in rows.grouping.member.iter().enumerate() {
         let Some((group, sign)) = *member else { continue };
         let gap = sign * gaps.value[group];
-        let contradicts = if i >= ready.contact {
+        let contradicts = if i >= rows.contact {
             (gap - scaled[i]).abs() > slack
         } else if gaps.bounded[group] {
             if scaled[i] < gap {
@@ -55,10 +59,11 @@ pub(super) fn presolve(problem: &Problem, ready: &Ready, stops: &Stops) -> Resul
             return Err(two_rows_contradict(ready, (i, scaled[i]), (leaders[group], gap, sign), slack));
         }
     }
-    match contradiction(ready, &gaps, stops)? {
-        Some(error) => Err(error),
-        None => Ok(gaps),
+    if let Some(error) = contradiction(ready, &gaps, stops)? {
+        return Err(error);
     }
+    gaps.dual = rows.decoupling.solve(gaps.value.clone());
+    Ok(gaps)
 }
 
 /// Row i with its gap and a parallel equality row with its own, in the direction of row i: `b_i = sign b_leader`
@@ -69,11 +74,12 @@ fn two_rows_contradict(
     (leader, demanded, sign): (usize, f64, f64),
     slack: f64,
 ) -> Error {
-    let (kind, row) = diagnosis::kind_and_row(i, ready.contact);
+    let rows = &ready.rows;
+    let (kind, row) = diagnosis::kind_and_row(i, rows.contact);
     let what = format!("this {} contradicts an equality row in the same direction", kind.name());
     let error = Error::new(Kind::GapsContradict, what).row(row).value(demanded - gap).limit(slack);
     let turned = if demanded > gap { 1.0 } else { -1.0 };
-    let weights = vec![(i, turned * ready.scale[i]), (leader, -turned * sign * ready.scale[leader])];
+    let weights = vec![(i, turned * rows.scale[i]), (leader, -turned * sign * rows.scale[leader])];
     let margin = (demanded - gap).abs() / (demanded.abs() + gap.abs());
     error.proved_by(diagnosis::proof_of_rows(margin, weights, i))
 }
@@ -82,7 +88,8 @@ fn two_rows_contradict(
 /// other (c scaled to largest entry 1); B has unit rows, and no compliant ones: they give way to any other row.
 /// No product with F is needed.
 fn contradiction(ready: &Ready, gaps: &Gaps, stops: &Stops) -> Result<Option<Error>> {
-    let rigid: Vec<usize> = (0..gaps.value.len()).filter(|&group| ready.compliance[group] == 0.0).collect();
+    let rows = &ready.rows;
+    let rigid: Vec<usize> = (0..gaps.value.len()).filter(|&group| rows.compliance[group] == 0.0).collect();
     let bounded: Vec<bool> = rigid.iter().map(|&group| gaps.bounded[group]).collect();
     let mut c: Vec<f64> = rigid.iter().map(|&group| gaps.value[group]).collect();
     let harmless = |(c, bounded): (&f64, &bool)| if *bounded { *c >= 0.0 } else { *c == 0.0 };
@@ -91,9 +98,9 @@ fn contradiction(ready: &Ready, gaps: &Gaps, stops: &Stops) -> Result<Option<Err
     }
     let size = norm_max(&c);
     c.iter_mut().for_each(|c| *c /= size);
-    let mut matrix = Csr::empty(ready.matrix.cols);
-    rigid.iter().for_each(|&group| matrix.push_row(ready.matrix.row(group)));
-    let a = Alternative { matrix: &matrix, metric: &ready.metric, c: &c };
+    let mut matrix = Csr::empty(rows.scaled.cols);
+    rigid.iter().for_each(|&group| matrix.push_row(rows.scaled.row(group)));
+    let a = Alternative { matrix: &matrix, metric: &rows.metric, c: &c };
     let b: Vec<f64> = c.iter().map(|c| -c).collect();
     let none = Csr { ptr: vec![0; c.len() + 1], ..Csr::default() };
     let qp = Qp { a: &a, b: &b, g_transposed: &none, e: &[], bounded: &bounded, preconditioner: None };

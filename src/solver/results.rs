@@ -75,14 +75,14 @@ fn states(problem: &Problem, ready: &Ready, lambda: &[f64], u: &[f64], gaps: &[f
     let rows = &problem.contact;
     let yielded = |i: usize| rows.compliance[i] * lambda[i].abs();
     let size = |i: usize| rows.matrix.row_dot_abs(i, u) + rows.rhs[i].abs() + yielded(i);
-    let sizes = (0..rows.len()).map(|i| ready.scale[i] * size(i));
+    let sizes = (0..rows.len()).map(|i| ready.rows.scale[i] * size(i));
     let small_gap = limit * sizes.fold(0.0, f64::max);
-    let force = |i: usize| unscaled(lambda[i], ready.scale[i]);
+    let force = |i: usize| unscaled(lambda[i], ready.rows.scale[i]);
     let small_force = limit * (0..rows.len()).map(|i| force(i).abs()).fold(0.0, f64::max);
     let state = |i: usize| {
         if force(i) > small_force {
             RowState::Closed
-        } else if ready.scale[i] * gaps[i] > small_gap {
+        } else if ready.rows.scale[i] * gaps[i] > small_gap {
             RowState::Open
         } else {
             RowState::Weak
@@ -194,16 +194,18 @@ impl Problem {
         self.check_rows(y.len())?;
         self.setup()?;
         let ready = self.ready()?;
-        let mut groups = vec![0.0; ready.grouping.leaders.len()];
-        let mut image = groups.clone();
-        for (i, (group, sign)) in ready.grouping.members() {
-            groups[group] += sign * x[i] / (ready.unit * ready.scale[i]);
+        let rows = &ready.rows;
+        let mut groups = vec![0.0; rows.groups()];
+        for (i, (group, sign)) in rows.grouping.members() {
+            groups[group] += sign * x[i] / (ready.unit * rows.scale[i]);
         }
-        ready.dual.apply(&groups, &mut image);
+        let mut image = zeros(groups.len(), "a product with F")?;
+        ready.dual.apply(&rows.decoupling.apply_transposed(&groups), &mut image);
+        let image = rows.decoupling.apply(&image);
         let compliance = self.contact.compliance.iter().chain(&self.equalities.compliance);
         y.iter_mut().zip(x).zip(compliance).for_each(|((y, x), c)| *y = c * x);
-        for (i, (group, sign)) in ready.grouping.members() {
-            y[i] = sign * image[group] / ready.scale[i];
+        for (i, (group, sign)) in rows.grouping.members() {
+            y[i] = sign * image[group] / rows.scale[i];
         }
         Ok(())
     }
@@ -214,12 +216,14 @@ impl Problem {
         self.setup()?;
         let mut load = self.loads()?;
         let ready = self.ready()?;
+        let rows = &ready.rows;
         load.iter_mut().for_each(|f| *f /= ready.unit);
-        let moved = ready.dual.rhs(&load, &vec![0.0; ready.grouping.leaders.len()])?;
+        let moved = ready.dual.rhs(&load, &vec![0.0; rows.groups()])?;
+        let moved = rows.decoupling.apply(&moved);
         let gaps = self.contact.rhs.iter().chain(&self.equalities.rhs);
         d.iter_mut().zip(gaps).for_each(|(d, c)| *d = -c);
-        for (i, (group, sign)) in ready.grouping.members() {
-            d[i] += sign * moved[group] / ready.scale[i];
+        for (i, (group, sign)) in rows.grouping.members() {
+            d[i] += sign * moved[group] / rows.scale[i];
         }
         Ok(())
     }

@@ -6,13 +6,15 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use crate::body::{dirichlet, dirichlet_bytes, lumped, Body, GeneralizedInverse, Modes, NullSpaceInput};
-use crate::constraints::{row_scales, Grouping, RowKind};
+use crate::constraints::RowKind;
 use crate::dual::{constrained, Boundary, Dual, Part, Preconditioner};
 use crate::error::{Error, Kind, Result};
 use crate::linalg::memory::available;
-use crate::linalg::{Csr, Operator, Symmetric};
+use crate::linalg::{Operator, Symmetric};
 use crate::solver::diagnosis::empty_row_contradicts;
+use crate::solver::paper;
 use crate::solver::problem::{Inverse, Problem};
+use crate::solver::rows::DualRows;
 use crate::solver::threads;
 use crate::solver::watch::{Stops, Watch};
 
@@ -29,17 +31,7 @@ pub(super) struct Ready {
     /// 2^p, p = floor(log2 max K_ii), force / length: K and forces are divided by it.
     pub unit: f64,
     pub dual: Dual,
-    /// One row for each group of parallel rows of `S [B; H]`.
-    pub matrix: Csr,
-    /// Diagonal of `2^p S C S`, one for each group: 1/k without unit, 0 where rigid.
-    pub compliance: Vec<f64>,
-    /// `D / 2^p` over all unknowns.
-    pub metric: Vec<f64>,
-    /// s_i of every row, contact rows first, `length^-1` in units of 2^p; 0 for rigid rows without entries.
-    pub scale: Vec<f64>,
-    pub grouping: Grouping,
-    /// Number of contact rows.
-    pub contact: usize,
+    pub rows: DualRows,
     /// The preconditioner and its name in the options.
     pub preconditioner: Option<(&'static CStr, Preconditioner)>,
 }
@@ -51,9 +43,12 @@ impl Problem {
     }
 
     pub(super) fn set_up(&mut self, watch: &mut Watch) -> Result<()> {
-        if self.ready.is_some() {
+        let coupled = paper::is_asked(&self.settings);
+        let suits = |ready: &Ready| ready.rows.coupled == coupled || self.equalities.len() == 0;
+        if self.ready.as_ref().is_some_and(suits) {
             return Ok(());
         }
+        self.answer = None; // it goes with F
         let started = Instant::now();
         self.check_complete()?;
         self.contact.check_empty_rows(RowKind::Inequality).map_err(|e| empty_row_contradicts(e, 0))?;
@@ -61,9 +56,10 @@ impl Problem {
         self.equalities.check_empty_rows(RowKind::Equality).map_err(|e| empty_row_contradicts(e, first))?;
         let unit = self.unit();
         self.check_compliance(unit)?;
-        self.factorize(unit, &watch.stops)?;
+        let rows = DualRows::of(self, unit, coupled)?;
+        self.factorize(unit, &rows, &watch.stops)?;
         watch.part_done()?;
-        self.ready = Some(self.dualize(unit, &watch.stops)?);
+        self.ready = Some(self.dualize(unit, rows, &watch.stops)?);
         watch.part_done()?;
         self.seconds_setup = started.elapsed().as_secs_f64();
         Ok(())
@@ -111,7 +107,7 @@ impl Problem {
     }
 
     /// K+ of the bodies that have none for this unit.
-    fn factorize(&mut self, unit: f64, stops: &Stops) -> Result<()> {
+    fn factorize(&mut self, unit: f64, rows: &DualRows, stops: &Stops) -> Result<()> {
         for slot in &mut self.bodies {
             slot.inverse.take_if(|inverse| inverse.unit != unit);
         }
@@ -123,7 +119,7 @@ impl Problem {
             plan(&self.bodies[pending[k]].body, unit, tolerance).map_err(|e| e.body(pending[k]))
         })?;
         let bytes: Vec<usize> = plans.iter().map(|plan| plan.bytes()).collect();
-        self.check_memory(bytes.iter().sum())?;
+        self.check_memory(rows, bytes.iter().sum())?;
         let plans: Vec<_> = plans.into_iter().map(|plan| std::sync::Mutex::new(Some(plan))).collect();
         let inverses = threads::run(threads, pending.len(), |k| {
             stops.check_cancelled()?;
@@ -140,11 +136,9 @@ impl Problem {
 
     /// Factors, dual operators and so many bytes more against the limit of the host, and against what the
     /// system would give.
-    pub(super) fn check_memory(&self, more: usize) -> Result<()> {
+    pub(super) fn check_memory(&self, rows: &DualRows, more: usize) -> Result<()> {
         let kept: usize = self.bodies.iter().filter_map(|slot| slot.inverse.as_ref()).map(|i| i.bytes).sum();
-        let ranges = || self.ranges().into_iter();
-        let operators =
-            Dual::bytes(ranges(), &self.contact.matrix) + Dual::bytes(ranges(), &self.equalities.matrix);
+        let operators = Dual::bytes(self.ranges().into_iter(), &rows.matrix);
         let needed = kept.saturating_add(more).saturating_add(operators);
         let limit = usize::try_from(self.settings.memory_limit).unwrap_or(0);
         if limit > 0 && needed > limit {
@@ -169,24 +163,8 @@ impl Problem {
         self.offsets().windows(2).map(|pair| pair[0]..pair[1]).collect()
     }
 
-    /// Scales the rows, keeps one of those that are parallel, and forms F and G.
-    fn dualize(&self, unit: f64, stops: &Stops) -> Result<Ready> {
-        let metric = self.metric(unit);
-        let mut all = Csr::empty(metric.len());
-        let (mut scale, mut compliances) = (Vec::new(), Vec::new());
-        for rows in [&self.contact, &self.equalities] {
-            let scales = row_scales(rows, &metric, unit);
-            for (i, s) in scales.iter().enumerate() {
-                all.push_row(rows.matrix.row(i).map(|(j, v)| (j, s * v)));
-                compliances.push(s * s * (unit * rows.compliance[i]));
-            }
-            scale.extend(scales);
-        }
-        let contact = self.contact.len();
-        let grouping = Grouping::of(&all, contact, &metric, |i| compliances[i] > 0.0);
-        let mut matrix = Csr::empty(metric.len());
-        grouping.leaders.iter().for_each(|&leader| matrix.push_row(all.row(leader)));
-        let compliance: Vec<f64> = grouping.leaders.iter().map(|&leader| compliances[leader]).collect();
+    /// Forms F and G.
+    fn dualize(&self, unit: f64, rows: DualRows, stops: &Stops) -> Result<Ready> {
         let parts = self.ranges().into_iter().zip(&self.bodies).filter_map(|(range, slot)| {
             let inverse = slot.inverse.as_ref()?;
             Some(Part { range, kplus: Arc::clone(&inverse.kplus) })
@@ -196,11 +174,10 @@ impl Problem {
             stops.check_cancelled()?;
             task(p)
         };
-        let dual = Dual::new(parts.collect(), &matrix, compliance.clone(), &|count, task| {
+        let dual = Dual::new(parts.collect(), &rows.matrix, rows.compliance.clone(), &|count, task| {
             threads::run(threads, count, |p| unless_cancelled(task, p))
         })?;
-        let preconditioner = None;
-        Ok(Ready { unit, dual, matrix, compliance, metric, scale, grouping, contact, preconditioner })
+        Ok(Ready { unit, dual, rows, preconditioner: None })
     }
 
     /// The preconditioner the options ask for, kept until they ask for another.
@@ -208,7 +185,7 @@ impl Problem {
         let Some(ready) = &self.ready else { return Ok(()) };
         let asked = match self.settings.preconditioner {
             word if word != c"automatic" => word,
-            _ if ready.dual.product_work() > LUMPED_PAYS * ready.matrix.rows() => c"lumped",
+            _ if ready.dual.product_work() > LUMPED_PAYS * ready.rows.matrix.rows() => c"lumped",
             _ => c"none",
         };
         if ready.preconditioner.as_ref().map_or(c"none", |(name, _)| *name) == asked {
@@ -219,8 +196,8 @@ impl Problem {
             b"lumped" => Some((asked, self.preconditioner(ready, lumped)?)),
             _ => {
                 let boundaries =
-                    self.ranges().into_iter().map(|range| constrained(&ready.matrix, &range).len());
-                self.check_memory(boundaries.map(dirichlet_bytes).sum())?;
+                    self.ranges().into_iter().map(|range| constrained(&ready.rows.matrix, &range).len());
+                self.check_memory(&ready.rows, boundaries.map(dirichlet_bytes).sum())?;
                 Some((asked, self.preconditioner(ready, dirichlet)?))
             }
         };
@@ -233,19 +210,13 @@ impl Problem {
     fn preconditioner(&self, ready: &Ready, stiffness: BoundaryStiffness) -> Result<Preconditioner> {
         let ranges = self.ranges();
         let boundaries = threads::run(self.threads(), ranges.len(), |p| {
-            let local = constrained(&ready.matrix, &ranges[p]);
+            let local = constrained(&ready.rows.matrix, &ranges[p]);
             let k = self.bodies[p].body.stiffness.as_ref();
             let k = k.ok_or_else(|| Error::new(Kind::Internal, "a body without stiffness was set up"))?;
             let stiffness = stiffness(k, 1.0 / ready.unit, &local).map_err(|e| e.body(p))?;
             Ok(Boundary { dofs: local.iter().map(|j| j + ranges[p].start).collect(), stiffness })
         })?;
-        Preconditioner::new(&ready.matrix, ready.compliance.clone(), &ready.metric, boundaries)
-    }
-
-    /// `D / unit` over all unknowns, 1 for dofs without stiffness.
-    fn metric(&self, unit: f64) -> Vec<f64> {
-        let stiffness = self.bodies.iter().filter_map(|slot| slot.body.stiffness.as_ref());
-        stiffness.flat_map(|k| (0..k.order()).map(move |i| k.metric(i, unit) / unit)).collect()
+        Preconditioner::new(&ready.rows.matrix, ready.rows.compliance.clone(), &ready.rows.metric, boundaries)
     }
 }
 

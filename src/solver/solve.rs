@@ -5,6 +5,7 @@ use std::time::Instant;
 use crate::constraints::RowKind;
 use crate::dual::Preconditioner;
 use crate::error::{Error, Kind, Result};
+use crate::linalg::memory::copied;
 use crate::linalg::vector::weighted_norm;
 use crate::linalg::Operator;
 use crate::qp::paper::Units;
@@ -70,7 +71,7 @@ impl Problem {
     fn direct<'a>(&self, ready: &'a Ready) -> Direct<'a> {
         let asked = usize::try_from(self.settings.direct_limit).unwrap_or(usize::MAX);
         let most = asked.min(ready.dual.order() + ready.dual.modes());
-        let limit = if self.check_memory(Direct::bytes(most)).is_ok() { most } else { 0 };
+        let limit = if self.check_memory(&ready.rows, Direct::bytes(most)).is_ok() { most } else { 0 };
         Direct { entries: &ready.dual, limit }
     }
 
@@ -89,6 +90,7 @@ impl Problem {
             }
             Verdict::Unbounded { p } => {
                 let w: Vec<f64> = p.iter().map(|p| -p).collect();
+                let w = ready.rows.decoupling.solve_transposed(w);
                 diagnosis::gaps_contradict(ready, &dual.gaps, &w).map_or(Ok(Outcome::Stalled), Err)
             }
         }
@@ -127,7 +129,7 @@ impl Scaled {
         let mut load = problem.loads()?;
         load.iter_mut().for_each(|f| *f /= ready.unit);
         let gaps = presolve(problem, ready, stops)?;
-        let d = ready.dual.rhs(&load, &gaps.value)?;
+        let d = ready.dual.rhs(&load, &gaps.dual)?;
         let e = ready.dual.resultants(&load);
         Ok(Self { load, gaps, d, e })
     }
@@ -173,10 +175,16 @@ pub(super) struct Ending {
 }
 
 impl Certifier<'_> {
-    /// (17), and lambda = 2^p S x on the rows that carry the multipliers of their groups.
+    /// (17), and lambda = 2^p S L'^-1 x on the rows that carry the multipliers of their groups.
     pub fn recover(&self, x: &[f64], alpha: &[f64]) -> Result<Recovered> {
-        let u = self.ready.dual.displacement(&self.scaled.load, x, alpha)?;
-        Ok(self.with_forces(u, x))
+        Ok(self.with_forces(self.displacement(x, alpha)?, x))
+    }
+
+    /// (17): `u = K+ (f - B'x) + R alpha`
+    pub fn displacement(&self, x: &[f64], alpha: &[f64]) -> Result<Vec<f64>> {
+        let mut load = copied(&self.scaled.load, "a displacement")?;
+        self.ready.rows.take_forces(x, &mut load);
+        self.ready.dual.displacement(&load, alpha)
     }
 
     /// An answer of u and x; springs without entries have their force from their gap.
@@ -185,10 +193,11 @@ impl Certifier<'_> {
         let contact = self.data.contact.forces_without_entries(RowKind::Inequality);
         let equalities = self.data.equalities.forces_without_entries(RowKind::Equality);
         let mut lambda: Vec<f64> = contact.chain(equalities).collect();
+        let x = ready.rows.decoupling.solve_transposed(x.to_vec());
         for (x, &holder) in x.iter().zip(&self.scaled.gaps.holder) {
-            lambda[holder] = x * ready.scale[holder] * ready.unit;
+            lambda[holder] = x * ready.rows.scale[holder] * ready.unit;
         }
-        let mu = lambda.split_off(ready.contact);
+        let mu = lambda.split_off(ready.rows.contact);
         Recovered { u, lambda, mu }
     }
 
@@ -200,11 +209,11 @@ impl Certifier<'_> {
 }
 
 impl Judge for Certifier<'_> {
-    /// `|S|B||u|| + |S c|`: lengths, whatever the choice of K+.
+    /// `||B'||u|| + |c'|`: lengths, whatever the choice of K+.
     fn scale(&mut self, x: &[f64], alpha: &[f64]) -> Result<f64> {
-        let u = self.ready.dual.displacement(&self.scaled.load, x, alpha)?;
-        let moved: Vec<f64> = (0..x.len()).map(|i| self.ready.matrix.row_dot_abs(i, &u)).collect();
-        Ok(weighted_norm(&moved, |_| 1.0) + weighted_norm(&self.scaled.gaps.value, |_| 1.0))
+        let u = self.displacement(x, alpha)?;
+        let moved: Vec<f64> = (0..x.len()).map(|i| self.ready.rows.matrix.row_dot_abs(i, &u)).collect();
+        Ok(weighted_norm(&moved, |_| 1.0) + weighted_norm(&self.scaled.gaps.dual, |_| 1.0))
     }
 
     fn accepts(&mut self, x: &[f64], alpha: &[f64]) -> Result<bool> {

@@ -47,20 +47,21 @@ pub(super) struct Start {
 }
 
 impl Start {
-    /// `x = lambda / (S 2^p)`, parallel rows together; multipliers that are not there are zero.
+    /// `x = L'lambda / (S 2^p)`, parallel rows together; multipliers that are not there are zero.
     pub fn scaled(&self, ready: &Ready) -> Result<Vec<f64>> {
         let mut multipliers = [self.given[0].as_deref(), self.given[1].as_deref()];
         if multipliers == [None, None] {
             multipliers = self.previous.as_deref().map_or([None, None], |a| [Some(&a.lambda), Some(&a.mu)]);
         }
-        let mut x = zeros(ready.grouping.leaders.len(), "start values")?;
-        for (i, (group, sign)) in ready.grouping.members() {
-            let (k, row) = if i < ready.contact { (0, i) } else { (1, i - ready.contact) };
+        let rows = &ready.rows;
+        let mut x = zeros(rows.groups(), "start values")?;
+        for (i, (group, sign)) in rows.grouping.members() {
+            let (k, row) = if i < rows.contact { (0, i) } else { (1, i - rows.contact) };
             if let Some(multipliers) = multipliers[k] {
-                x[group] += sign * multipliers[row] / (ready.scale[i] * ready.unit);
+                x[group] += sign * multipliers[row] / (rows.scale[i] * ready.unit);
             }
         }
-        Ok(x)
+        Ok(rows.decoupling.apply_transposed(&x))
     }
 }
 

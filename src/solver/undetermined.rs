@@ -51,11 +51,10 @@ impl Problem {
         let missing = || Error::new(Kind::State, "there is no answer yet: solve first");
         let answer = self.answer.as_ref().ok_or_else(missing)?;
         let ready = self.ready()?;
-        let groups = ready.grouping.leaders.len();
-        let mut held: Vec<bool> = (0..groups)
-            .map(|group| ready.grouping.kind(group, ready.contact) == RowKind::Inequality)
-            .collect();
-        for (i, (group, _)) in ready.grouping.members().filter(|(i, _)| *i < ready.contact) {
+        let groups = ready.rows.groups();
+        let mut held: Vec<bool> =
+            (0..groups).map(|group| ready.rows.kind(group) == RowKind::Inequality).collect();
+        for (i, (group, _)) in ready.rows.grouping.members().filter(|(i, _)| *i < ready.rows.contact) {
             if answer.lambda[i] > 0.0 {
                 held[group] = false;
             }
@@ -69,17 +68,16 @@ impl Problem {
     pub fn dependent_equalities(&self) -> Result<Vec<usize>> {
         let missing = || Error::new(Kind::State, "the problem has not been set up yet");
         let ready = self.ready.as_ref().ok_or_else(missing)?;
-        let groups: Vec<usize> = (0..ready.grouping.leaders.len())
-            .filter(|&group| ready.grouping.kind(group, ready.contact) == RowKind::Equality)
-            .collect();
-        let mut rows = Csr::empty(ready.matrix.cols);
+        let groups: Vec<usize> =
+            (0..ready.rows.groups()).filter(|&group| ready.rows.kind(group) == RowKind::Equality).collect();
+        let mut rows = Csr::empty(ready.rows.scaled.cols);
         for &group in &groups {
-            rows.push_row(ready.matrix.row(group).map(|(j, v)| (j, v / ready.metric[j].sqrt())));
+            rows.push_row(ready.rows.scaled.row(group).map(|(j, v)| (j, v / ready.rows.metric[j].sqrt())));
         }
-        let compliance: Vec<f64> = groups.iter().map(|&group| ready.compliance[group]).collect();
+        let compliance: Vec<f64> = groups.iter().map(|&group| ready.rows.compliance[group]).collect();
         let mut dependent: Vec<usize> = dependent_rows(&rows.transposed()?, &compliance)?
             .into_iter()
-            .map(|at| ready.grouping.leaders[groups[at]] - ready.contact)
+            .map(|at| ready.rows.grouping.leaders[groups[at]] - ready.rows.contact)
             .collect();
         dependent.sort_unstable();
         Ok(dependent)

@@ -1,0 +1,73 @@
+//! The rows of the dual problem from those of the host: scaled, one for each group of parallel ones, decoupled.
+
+use crate::constraints::{row_scales, Decoupling, Grouping, RowKind, UnitRows};
+use crate::error::Result;
+use crate::linalg::Csr;
+use crate::solver::problem::Problem;
+
+/// Rows of the dual, and the way to them: S, groups, L.
+pub(super) struct DualRows {
+    /// One row for each group of parallel rows of `S [B; H]`.
+    pub scaled: Csr,
+    /// B' of `scaled = L B'`: what F and G are formed of.
+    pub matrix: Csr,
+    /// Diagonal of C' with `2^p S C S = L C'L'`: 1/k without unit, 0 where rigid.
+    pub compliance: Vec<f64>,
+    /// `D / 2^p` over all unknowns.
+    pub metric: Vec<f64>,
+    /// s_i of every row, contact rows first, `length^-1` in units of 2^p; 0 for rigid rows without entries.
+    pub scale: Vec<f64>,
+    pub grouping: Grouping,
+    pub decoupling: Decoupling,
+    /// L = I, whatever the rows.
+    pub coupled: bool,
+    /// Number of contact rows.
+    pub contact: usize,
+}
+
+impl DualRows {
+    /// `coupled` rows are those of the host but for their scales.
+    pub fn of(problem: &Problem, unit: f64, coupled: bool) -> Result<Self> {
+        let metric = metric(problem, unit);
+        let mut all = Csr::empty(metric.len());
+        let (mut scale, mut compliances) = (Vec::new(), Vec::new());
+        for rows in [&problem.contact, &problem.equalities] {
+            let scales = row_scales(rows, &metric, unit);
+            for (i, s) in scales.iter().enumerate() {
+                all.push_row(rows.matrix.row(i).map(|(j, v)| (j, s * v)));
+                compliances.push(s * s * (unit * rows.compliance[i]));
+            }
+            scale.extend(scales);
+        }
+        let contact = problem.contact.len();
+        let grouping = Grouping::of(&all, contact, &metric, |i| compliances[i] > 0.0);
+        let mut scaled = Csr::empty(metric.len());
+        grouping.leaders.iter().for_each(|&leader| scaled.push_row(all.row(leader)));
+        let compliance: Vec<f64> = grouping.leaders.iter().map(|&leader| compliances[leader]).collect();
+        let equalities = grouping.leaders.iter().filter(|&&leader| leader >= contact).count();
+        let given = UnitRows { matrix: &scaled, equalities, compliance: &compliance, metric: &metric };
+        let (decoupling, matrix) = if coupled { Decoupling::none(&scaled) } else { Decoupling::of(given)? };
+        let compliance = decoupling.compliance(&compliance);
+        Ok(Self { scaled, matrix, compliance, metric, scale, grouping, decoupling, coupled, contact })
+    }
+
+    pub fn groups(&self) -> usize {
+        self.grouping.leaders.len()
+    }
+
+    /// Takes `B'x` from a load, by way of the rows and the forces of the host: where these cancel nothing is left.
+    pub fn take_forces(&self, x: &[f64], load: &mut [f64]) {
+        self.scaled.mul_transposed_add(-1.0, &self.decoupling.solve_transposed(x.to_vec()), load);
+    }
+
+    /// Kind of the multiplier of a group.
+    pub fn kind(&self, group: usize) -> RowKind {
+        self.grouping.kind(group, self.contact)
+    }
+}
+
+/// `D / unit` over all unknowns, 1 for dofs without stiffness.
+fn metric(problem: &Problem, unit: f64) -> Vec<f64> {
+    let stiffness = problem.bodies.iter().filter_map(|slot| slot.body.stiffness.as_ref());
+    stiffness.flat_map(|k| (0..k.order()).map(move |i| k.metric(i, unit) / unit)).collect()
+}
