@@ -272,7 +272,7 @@ impl Problem {
         Ok(&mut slot.body)
     }
 
-    fn forget_dual(&mut self) {
+    pub(super) fn forget_dual(&mut self) {
         self.ready = None;
         self.answer = None;
         self.open_motions = None;

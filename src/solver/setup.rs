@@ -48,7 +48,9 @@ impl Problem {
         if self.ready.as_ref().is_some_and(suits) {
             return Ok(());
         }
-        self.answer = None; // it goes with F
+        if self.ready.is_some() {
+            self.forget_dual();
+        }
         let started = Instant::now();
         self.check_complete()?;
         self.contact.check_empty_rows(RowKind::Inequality).map_err(|e| empty_row_contradicts(e, 0))?;
