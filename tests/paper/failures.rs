@@ -39,7 +39,7 @@ fn ten_digits_are_out_of_reach_of_the_printed_penalty_and_the_status_says_so() {
         problem.set_f64("tolerance", 1e-12).unwrap();
         problem.set_f64("certificate_tolerance", 1e-10).unwrap();
         let report = problem.solve().unwrap();
-        assert_ne!(report.outcome, Outcome::Solved, "{name} {method}");
+        assert_eq!(report.outcome, Outcome::Inaccurate, "{name} {method}");
         assert!(!report.certificate.passed());
     }
 }
@@ -87,11 +87,7 @@ fn a_load_that_nothing_holds_ends_stalled() {
             problem.set_f64("tolerance", 1e-5).unwrap();
             problem.set_f64("certificate_tolerance", 1e-4).unwrap();
             let report = problem.solve().unwrap();
-            assert!(
-                matches!(report.outcome, Outcome::Stalled | Outcome::Iterations),
-                "{method} {units}: {:?}",
-                report.outcome
-            );
+            assert_eq!(report.outcome, Outcome::Stalled, "{method} {units}");
             assert!(!report.certificate.passed(), "{method} {units}");
         }
     }
