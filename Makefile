@@ -1,7 +1,7 @@
 # make demo      builds the library and the examples, runs them        make lib        the library alone
 # make test      every test: Rust, then C and Fortran under CMake      make install    PREFIX=/usr/local DESTDIR=
 # make counts    applications of F against a linear solve, deck by deck (some minutes); DECKS="slab two" picks some
-# make paper     the paper's problems by its own method and by the default, and their pictures (seconds)
+# make paper     the paper's problems by its own method and by the default: table, pictures (seconds)
 # demo and test install the Debian packages they miss (tools/setup.sh).
 PREFIX  ?= /usr/local
 DESTDIR ?=
@@ -114,4 +114,4 @@ counts:
 	$(CARGO) bench --bench counts --locked -- $(DECKS)
 
 paper:
-	@$(CARGO) bench --bench paper --locked --quiet -- $(CURDIR)/docs/pictures
+	@$(CARGO) bench --bench paper --locked --quiet -- $(CURDIR)/docs

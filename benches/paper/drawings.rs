@@ -58,8 +58,8 @@ fn membranes() -> Result<Plot, String> {
     let contact = (0..LINE).filter(|&j| run.forces[j] > 0.0).map(|j| at(0, LINE - 1, j)).collect();
     Ok(Plot {
         title: "Problem 1: two membranes, contact along x = 1".into(),
-        x: "x, with y to the right and up".into(),
-        y: "deflection x 0.9".into(),
+        x: "x + 0.45 y (seen at an angle; no units)".into(),
+        y: "0.9 u + 0.35 y".into(),
         logarithmic: false,
         equal: false,
         series: vec![
@@ -97,13 +97,19 @@ fn cylinders() -> Result<Plot, String> {
     })
 }
 
-/// A node of a floating block: its unknowns along x and z among all, and its place. The rigid motions
-/// (1, 0), (0, 1), (z, -x) tell both.
+/// A node: its unknowns along x and z among all, none where it is fixed, and its place.
 struct Node {
-    dofs: [usize; 2],
+    dofs: Option<[usize; 2]>,
     place: (f64, f64),
 }
 
+impl Node {
+    fn has(&self, dof: i64) -> bool {
+        self.dofs.is_some_and(|dofs| dofs.contains(&(dof as usize)))
+    }
+}
+
+/// Nodes of a floating block, whose rigid motions (1, 0), (0, 1), (z, -x) tell unknowns and places.
 fn nodes(case: &Case, body: usize) -> Vec<Node> {
     let orders = case.bodies.iter().map(|(k, _)| k.ptr.len() - 1);
     let start: usize = orders.take(body).sum();
@@ -117,18 +123,54 @@ fn nodes(case: &Case, body: usize) -> Vec<Node> {
             last = Some(dof);
         } else if up[dof] != 0.0 {
             if let Some(x) = last.take() {
-                found.push(Node { dofs: [start + x, start + dof], place: (-turn[dof], turn[x]) });
+                found.push(Node { dofs: Some([start + x, start + dof]), place: (-turn[dof], turn[x]) });
             }
         }
     }
     found
 }
 
-/// Grid lines through nodes, in their places moved by `scale` u and by `offset`.
-fn grid(nodes: &[Node], u: &[f64], scale: f64, offset: (f64, f64)) -> Vec<Vec<(f64, f64)>> {
+/// The first node that a row with the unknown joins to it.
+fn partner<'a>(case: &Case, dof: i64, others: &'a [Node]) -> Option<&'a Node> {
+    let rows = &case.contact.0;
+    let joined = |i: usize| &rows.col[rows.ptr[i]..rows.ptr[i + 1]];
+    let mut touching = (0..rows.ptr.len() - 1).map(joined).filter(|row| row.contains(&dof));
+    touching.find_map(|row| others.iter().find(|n| row.iter().any(|&j| j != dof && n.has(j))))
+}
+
+/// Moves the third block to its place beside the second one: rows join nodes of both at the same place.
+fn shift(case: &Case, second: &[Node], third: &mut [Node]) -> Option<()> {
+    let (x, z) = third.iter().find_map(|n| {
+        let other = partner(case, n.dofs?[0] as i64, second)?;
+        Some((other.place.0 - n.place.0, other.place.1 - n.place.1))
+    })?;
+    third.iter_mut().for_each(|n| n.place = (n.place.0 + x, n.place.1 + z));
+    Some(())
+}
+
+/// The front of the base, 12 nodes in each of two free layers of 456 unknowns and in a fixed one below. Its top nodes
+/// stand where the nodes do that rows press on them.
+fn base(case: &Case, above: &[&[Node]]) -> Option<Vec<Node>> {
+    const FRONT: usize = 12;
+    const LAYER: usize = 456;
+    const HEIGHT: f64 = 0.25;
+    let mut found = Vec::new();
+    for i in 0..FRONT {
+        let top = (LAYER + 2 * i + 1) as i64;
+        let (x, z) = above.iter().find_map(|nodes| partner(case, top, nodes))?.place;
+        for (down, layer) in [(0.0, Some(LAYER)), (HEIGHT, Some(0)), (2.0 * HEIGHT, None)] {
+            let dofs = layer.map(|first| [first + 2 * i, first + 2 * i + 1]);
+            found.push(Node { dofs, place: (x, z - down) });
+        }
+    }
+    Some(found)
+}
+
+/// Grid lines through nodes, in their places moved by `scale` u.
+fn grid(nodes: &[Node], u: &[f64], scale: f64) -> Vec<Vec<(f64, f64)>> {
     let at = |n: &Node| {
-        let (x, z) = n.place;
-        (x + offset.0 + scale * u[n.dofs[0]], z + offset.1 + scale * u[n.dofs[1]])
+        let u = n.dofs.map_or([0.0; 2], |dofs| dofs.map(|dof| u[dof]));
+        (n.place.0 + scale * u[0], n.place.1 + scale * u[1])
     };
     let key = |v: f64| (v * 1e6).round() as i64;
     let mut lines = Vec::new();
@@ -145,36 +187,18 @@ fn grid(nodes: &[Node], u: &[f64], scale: f64, offset: (f64, f64)) -> Vec<Vec<(f
     lines
 }
 
-/// Where the third block stands against the second one: from a row that joins nodes of both.
-fn offset(case: &Case, second: &[Node], third: &[Node]) -> Option<(f64, f64)> {
-    let (rows, _) = &case.contact;
-    (0..rows.ptr.len() - 1).find_map(|i| {
-        let touched = |n: &&Node| {
-            rows.col[rows.ptr[i]..rows.ptr[i + 1]].iter().any(|&j| n.dofs.contains(&(j as usize)))
-        };
-        let (a, b) = (second.iter().find(touched)?, third.iter().find(touched)?);
-        Some((a.place.0 - b.place.0, a.place.1 - b.place.1))
-    })
-}
-
-/// Problem 3, the two floating blocks of three; the third, lowest one is fixed below both.
+/// Problem 3, three blocks: two that float on a base that is fixed below and beside each other; the front of all.
 fn blocks() -> Result<Plot, String> {
     let (case, run) = solved("p3_3block")?;
-    let (second, third) = (nodes(&case, 1), nodes(&case, 2));
-    let shift = offset(&case, &second, &third).ok_or("the blocks have no common row")?;
-    let dofs = second.iter().chain(&third).flat_map(|n| n.dofs);
+    let (second, mut third) = (nodes(&case, 1), nodes(&case, 2));
+    shift(&case, &second, &mut third).ok_or("the blocks have no common row")?;
+    let base = base(&case, &[&second, &third]).ok_or("a node on top of the base has no row")?;
+    let all = [second, third, base];
+    let dofs = all.iter().flatten().filter_map(|n| n.dofs).flatten();
     let scale = 0.3 / dofs.map(|dof| run.displacement[dof].abs()).fold(0.0, f64::max);
-    let both = |scale: f64| {
-        let mut lines = grid(&second, &run.displacement, scale, (0.0, 0.0));
-        lines.extend(grid(&third, &run.displacement, scale, shift));
-        lines
-    };
-    let ground: Vec<(f64, f64)> = {
-        let lowest = second.iter().map(|n| n.place.1).fold(f64::MAX, f64::min);
-        let xs = || second.iter().map(|n| n.place.0).chain(third.iter().map(|n| n.place.0 + shift.0));
-        let (left, right) = (xs().fold(f64::MAX, f64::min), xs().fold(f64::MIN, f64::max));
-        vec![(left - 0.3, lowest), (right + 0.3, lowest)]
-    };
+    let every =
+        |scale: f64| all.iter().flat_map(|nodes| grid(nodes, &run.displacement, scale)).collect::<Vec<_>>();
+    let fixed = all[2].iter().filter(|n| n.dofs.is_none()).map(|n| n.place).collect();
     Ok(Plot {
         title: format!("Problem 3: three blocks, displacements x {scale:.0}"),
         x: "x / m".into(),
@@ -182,9 +206,9 @@ fn blocks() -> Result<Plot, String> {
         logarithmic: false,
         equal: true,
         series: vec![
-            Series { name: "before", colour: GREY, mark: Mark::Line(0.6), lines: both(0.0) },
-            Series { name: "deformed", colour: BLUE, mark: Mark::Line(0.9), lines: both(scale) },
-            Series { name: "top of the base", colour: RED, mark: Mark::Line(2.0), lines: vec![ground] },
+            Series { name: "before", colour: GREY, mark: Mark::Line(0.6), lines: every(0.0) },
+            Series { name: "deformed", colour: BLUE, mark: Mark::Line(0.9), lines: every(scale) },
+            Series { name: "fixed", colour: RED, mark: Mark::Line(2.0), lines: vec![fixed] },
         ],
     })
 }
@@ -195,6 +219,8 @@ fn histories() -> Result<Plot, String> {
     let case = Case::read(problem.data);
     let mut paper = as_in_paper(&case, problem).map_err(|e| e.to_string())?;
     let mut default = handed_over(&case, false).map_err(|e| e.to_string())?;
+    // cut short, the iteration itself is to be seen, not what would complete it
+    default.set_i64("direct_limit", 0).map_err(|e| e.to_string())?;
     let series = |name, colour, points: Vec<(f64, f64)>| {
         let line = Series { name, colour, mark: Mark::Line(1.5), lines: vec![points.clone()] };
         [line, Series { name: "", colour, mark: Mark::Disc(2.5), lines: vec![points] }]

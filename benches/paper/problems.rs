@@ -1,4 +1,6 @@
-//! What is run, and what the paper prints for it.
+//! What is run, what the paper prints for it, and the range in which a figure of ours is `ok`: exact for Problem 1; for
+//! Problems 2 and 3, whose data are not printed, the sizes of our data and the counts that an independent program
+//! needed on it. docs/paper.md gives the reason for every figure that is not the printed one.
 
 /// One problem with the configuration of the paper's method.
 pub struct Problem {
@@ -25,7 +27,7 @@ pub struct Figures {
     pub accuracy: Figure,
 }
 
-/// The printed figure, and the range where ours counts as the same.
+/// The printed figure, and the range in which ours is `ok`.
 pub struct Figure {
     pub printed: Option<f64>,
     least: f64,
@@ -97,25 +99,27 @@ pub const PROBLEMS: [Problem; 6] = [
     cylinders(
         "p2_A",
         0.1,
+        // 30 of the 72 vertical unknowns lead into the range, the choice of the library (25 steps) does not
         &[&[1], &[]],
         Figures {
-            outer: range(3.0, 2.0, 3.0),
+            outer: range(3.0, 2.0, 2.0),
             inner: range(42.0, 36.0, 61.0),
             products: ANY,
-            unknowns: range(288.0, 283.0, 288.0),
-            duals: range(14.0, 13.0, 14.0),
+            unknowns: range(288.0, 283.0, 283.0),
+            duals: range(14.0, 13.0, 13.0),
             accuracy: at_most(1e-4),
         },
     ),
     cylinders(
         "p2_B1",
         0.1,
+        // 25 of the 72 vertical unknowns lead into the range, the choice of the library (49 steps) does not
         &[&[3], &[3]],
         Figures {
-            outer: unprinted(2.0, 3.0),
+            outer: unprinted(2.0, 2.0),
             inner: unprinted(56.0, 62.0),
             products: ANY,
-            unknowns: range(288.0, 284.0, 288.0),
+            unknowns: range(288.0, 284.0, 284.0),
             duals: exact(14.0),
             accuracy: at_most(1e-4),
         },
@@ -125,7 +129,7 @@ pub const PROBLEMS: [Problem; 6] = [
         1.0,
         &[],
         Figures {
-            outer: unprinted(2.0, 3.0),
+            outer: unprinted(2.0, 2.0),
             inner: unprinted(41.0, 53.0),
             products: ANY,
             unknowns: exact(288.0),
@@ -137,7 +141,7 @@ pub const PROBLEMS: [Problem; 6] = [
         "p3_2block",
         &[&[], &[0, 3192, 3]],
         Figures {
-            outer: range(3.0, 1.0, 3.0),
+            outer: range(3.0, 1.0, 1.0),
             inner: range(105.0, 70.0, 200.0),
             products: ANY,
             unknowns: range(4663.0, 4712.0, 4712.0),
@@ -149,11 +153,11 @@ pub const PROBLEMS: [Problem; 6] = [
         "p3_3block",
         &[&[], &[0, 3192, 3], &[0, 1824, 3]],
         Figures {
-            outer: range(3.0, 1.0, 3.0),
+            outer: range(3.0, 1.0, 1.0),
             inner: range(276.0, 210.0, 350.0),
             products: ANY,
-            unknowns: range(6419.0, 6419.0, 6422.0),
-            duals: range(382.0, 377.0, 382.0),
+            unknowns: range(6419.0, 6422.0, 6422.0),
+            duals: range(382.0, 377.0, 377.0),
             accuracy: at_most(1e-4),
         },
     ),

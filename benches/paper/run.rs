@@ -99,7 +99,7 @@ pub fn finished(case: &Case, given: &mut solver::Problem) -> Result<Run, String>
     let accuracy = accuracy(case, given, &forces).map_err(|e| e.to_string())?;
     Ok(Run {
         outer: report.outer,
-        inner: report.cg_steps + report.expansions,
+        inner: if report.outer > 0 { report.cg_steps + report.expansions } else { report.steps },
         products: report.dual_applications,
         unknowns: report.counts.dofs,
         duals: report.counts.rows,

@@ -32,7 +32,7 @@ pub fn elasticity(size: &[f64], young: f64, poisson: f64) -> Vec<f64> {
     stiffness
 }
 
-/// Gradients of the 2^d shape functions at the Gauss point whose sign along axis a is bit a of `point`.
+/// What the strains (3) are made of: gradients of the 2^d shape functions at the Gauss point whose sign along axis a is bit a of `point`.
 fn gauss_gradients(size: &[f64], point: usize) -> Vec<Vec<f64>> {
     let d = size.len();
     let at = |bits: usize, axis: usize| if bits >> axis & 1 == 1 { 1.0 } else { -1.0 };

@@ -1,4 +1,5 @@
-//! `K+ = P [F^-1 0; 0 0] P'` of (14)-(15): K with r dofs held, r the dimension of its null space.
+//! (14), corrected: `P'K P = [F S; S' S'F^-1 S]`, the r dofs held last, r the dimension of the null space of K.
+//! (15): `K+ = P [F^-1 0; 0 0] P'`.
 //! Symmetric and reflexive (`K K+ K = K`, `K+ K K+ = K+`), not the Moore-Penrose inverse.
 
 use std::sync::Arc;
@@ -56,13 +57,14 @@ impl GeneralizedInverse {
             Some(given) => given_dofs(&null_space, &root, given)?,
             None => fixing_dofs(&null_space, &root),
         };
+        // (14): F is K without the rows and columns of these dofs
         let mut held = vec![false; k.order()];
         fixing.iter().for_each(|&dof| held[dof] = true);
         let analysis = Arc::new(Analysis::new(&k, &held)?);
         Ok(Plan { k, null_space, fixing, analysis })
     }
 
-    /// `x = K+ b`, both of length n.
+    /// (15): `x = K+ b`, both of length n; F^-1 on the free dofs, 0 on those held.
     pub fn apply(&self, b: &[f64], x: &mut [f64]) -> Result<()> {
         x.copy_from_slice(b);
         self.factor.solve(x)
@@ -80,7 +82,8 @@ impl Plan {
         self.analysis.bytes()
     }
 
-    /// Factorises and probes; refuses a K that is indefinite or more singular than its null space says.
+    /// Factorises F of (14) and probes; refuses a K that is indefinite, against (4), or more singular than its null
+    /// space says.
     pub fn execute(self) -> Result<GeneralizedInverse> {
         let factor = self.analysis.factorize(&self.k)?.map_err(|breakdown| {
             if breakdown.relative_pivot < -NEGATIVE_PIVOT {

@@ -114,7 +114,7 @@ impl Dual {
         Ok(d)
     }
 
-    /// `e = R'f`; what rounding alone would leave of a load in balance is zero.
+    /// The right-hand side of `G lambda = e` in (12), `e = R'f`; what rounding alone would leave of a load in balance is zero.
     pub fn resultants(&self, f: &[f64]) -> Vec<f64> {
         let mut e = vec![0.0; self.modes()];
         for s in &self.subdomains {
@@ -158,7 +158,7 @@ impl Operator for Dual {
         self.compliance.len()
     }
 
-    /// `y = F x = C x + sum_p B_p K_p+ B_p' x`, body after body.
+    /// The operator of (12)-(13): `y = F x = C x + sum_p B_p K_p+ B_p' x`, body after body.
     fn apply(&self, x: &[f64], y: &mut [f64]) {
         y.iter_mut().zip(x).zip(&self.compliance).for_each(|((y, x), c)| *y = c * x);
         let (mut local, mut image) = (Vec::new(), Vec::new());

@@ -33,6 +33,49 @@ fn every_case_is_solved_to_1e_4_by_every_variant() {
     }
 }
 
+/// rho_0 = 100, M = 1, eta_0 = .001, alpha = .1, beta = 100, mu^0 = 0 as absolute numbers in the units of the data.
+fn solve_as_printed(case: &Case, method: &str, gamma: f64, steps: i64) -> (Report, f64) {
+    let mut problem = case.problem(false);
+    problem.set_str("method", method).unwrap();
+    problem.set_str("paper_units", "printed").unwrap();
+    problem.set_str("paper_step_1", "printed").unwrap();
+    problem.set_f64("gamma", gamma).unwrap();
+    problem.set_f64("tolerance", 1e-6).unwrap();
+    problem.set_f64("certificate_tolerance", 1e-4).unwrap();
+    problem.set_i64("max_steps", steps).unwrap();
+    let report = problem.solve().unwrap();
+    let error = difference(problem.multipliers(RowKind::Inequality).unwrap(), &case.lambda);
+    (report, error)
+}
+
+#[test]
+fn every_case_is_solved_to_1e_4_with_the_printed_defaults_for_gamma_1_and_10() {
+    for name in CASES {
+        let case = Case::read(name);
+        for (method, gamma) in METHODS.into_iter().flat_map(|m| [1.0, 10.0].map(|g| (m, g))) {
+            let (report, error) = solve_as_printed(&case, method, gamma, 10_000);
+            assert_eq!(report.outcome, Outcome::Solved, "{name} {method} {gamma}");
+            assert!(error <= 1e-4, "{name} {method} {gamma}: forces differ by {error:.1e}");
+        }
+    }
+}
+
+/// The worst choice: thousands of steps where several modes float, and no answer called solved.
+#[test]
+fn with_gamma_a_tenth_the_printed_defaults_end_at_the_limit_of_steps_on_six_modes() {
+    for (name, method) in [
+        ("p2_B2", "paper-monotone"),
+        ("p2_B2", "paper-extrapolating"),
+        ("p3_3block", "paper-monotone"),
+        ("p3_3block", "paper-extrapolating"),
+        ("p3_3block", "paper-feasible"),
+    ] {
+        let (report, _) = solve_as_printed(&Case::read(name), method, 0.1, 3000);
+        assert_eq!(report.outcome, Outcome::Iterations, "{name} {method}");
+        assert!(!report.certificate.passed(), "{name} {method}");
+    }
+}
+
 #[test]
 fn the_default_solves_every_case_to_1e_9_in_fewer_products() {
     for name in CASES {

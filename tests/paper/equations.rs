@@ -131,6 +131,7 @@ fn formulas_17_and_18_give_the_displacement_and_the_amplitudes() {
         let br: Vec<Vec<f64>> = closed.iter().map(|&i| motions.iter().map(|r| row(i, r)).collect()).collect();
         let gaps: Vec<f64> = closed.iter().map(|&i| case.contact.1[i] - row(i, &u0)).collect();
         let br = Dense(br);
+        // (18), corrected
         let by_18 = solve(Dense::gram(&br).0, br.transpose_times(&gaps, motions.len())).unwrap();
         let error: Vec<f64> = by_18.iter().zip(&alpha).map(|(a, b)| a - b).collect();
         assert!(

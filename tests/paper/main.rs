@@ -14,5 +14,12 @@ mod equations;
 mod failures;
 mod numbers;
 mod problem_1;
+#[allow(dead_code)]
+#[path = "../../benches/paper/problems.rs"]
+mod problems;
+#[allow(dead_code)]
+#[path = "../../benches/paper/run.rs"]
+mod run;
+mod table;
 mod theorem_2;
 mod theorem_4;

@@ -12,6 +12,7 @@ use crate::qp::{Counts, Judge, Observer, Progress, Qp, Solution, Verdict};
 /// How often Step 2 is tightened when the judge does not accept.
 const TIGHTENINGS: usize = 6;
 
+/// Solves (24) from `start`.
 pub fn algorithm_3(
     qp: Qp,
     start: &[f64],

@@ -143,7 +143,7 @@ impl<'a, 'q> Proportioning<'a, 'q> {
         Ok(Self { q, point, rule, counts, last, face: None, largest_curvature: 0.0 })
     }
 
-    /// Algorithm 1 until `enough` says so: (i) proportioning where the point is not proportional, (ii) else a
+    /// Algorithm 1 on (19) until `enough` says so: (i) proportioning where the point is not proportional, (ii) else a
     /// step towards the minimum on the face. Whether it came so far; not where theta does not curve.
     pub fn run(&mut self, enough: &mut dyn FnMut(&Self) -> Result<bool>) -> Result<bool> {
         while !enough(self)? {

@@ -61,7 +61,7 @@ impl<'a> Quadratic<'a> {
         Ok(g)
     }
 
-    /// `1/2 x'H x - c'x` from the gradient at x.
+    /// `1/2 x'H x - c'x` from the gradient at x: (20), and L but for a constant.
     pub fn value(&self, x: &[f64], g: &[f64]) -> f64 {
         0.5 * (dot(x, g) - dot(x, &self.c))
     }
