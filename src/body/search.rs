@@ -12,7 +12,7 @@ use crate::body::generalized_inverse::{GeneralizedInverse, NEGATIVE_PIVOT, SINGU
 use crate::body::null_space::{largest, verified, Modes, NullSpaceInput};
 use crate::error::{Error, Kind, Result};
 use crate::linalg::graph::components;
-use crate::linalg::memory::{reserved, room, zeros, PRODUCTS};
+use crate::linalg::memory::{reserved, room, PRODUCTS};
 use crate::linalg::spd::symmetric_eigen;
 use crate::linalg::trailing::Trailing;
 use crate::linalg::{Analysis, Breakdown, Cholesky, Matrix, Symmetric};
@@ -178,23 +178,19 @@ impl Search {
         Ok(Soft { schur, vectors, gap })
     }
 
-    /// `R = (K + E D_tt E')^-1 E D_tt R_t`, n x r.
+    /// R: the null vectors of S at t, extended without forces at the other dofs, n x r.
     fn vectors(&self, factor: &Cholesky, soft: &[Soft]) -> Result<Matrix> {
-        let n = self.k.order();
-        let dimension = soft.iter().map(|part| part.vectors.cols).sum::<usize>();
-        let mut vectors = Matrix { rows: n, cols: 0, data: reserved(n * dimension, "a null space")? };
-        let mut motion = zeros(n, "a null vector")?;
+        let mut ends = reserved(soft.len(), "a null space")?;
         for (part, last) in soft.iter().zip(&self.last) {
-            for j in 0..part.vectors.cols {
-                motion.fill(0.0);
-                for (value, &dof) in part.vectors.col(j).iter().zip(last) {
-                    motion[dof] = value * self.k.metric(dof, 1.0).sqrt();
-                }
-                factor.solve(&mut motion)?;
-                vectors.push_col(&motion);
+            let mut end = part.vectors.clone();
+            let root = |dof: usize| self.k.metric(dof, 1.0).sqrt();
+            for j in 0..end.cols {
+                end.col_mut(j).iter_mut().zip(last).for_each(|(v, &dof)| *v /= root(dof));
             }
+            ends.push(end);
         }
-        Ok(vectors)
+        let parts: Vec<_> = self.last.iter().map(Vec::as_slice).zip(&ends).collect();
+        factor.extended(&parts)
     }
 
     /// K+ from the same factor: r of the dofs t held, the others without their springs.
@@ -210,8 +206,9 @@ impl Search {
             Error::new(Kind::NullSpace, what).dof(dof)
         })?;
         let gap = soft.iter().map(|part| part.gap).reduce(f64::min);
-        let mut inverse = GeneralizedInverse { null_space: vectors, fixing: fixing.concat(), gap, factor };
-        inverse.null_space = self.polished(&inverse)?;
+        let found = NullSpaceInput { vectors, modes: Modes::Exact };
+        let null_space = verified(&self.k, &found, self.tolerance)?;
+        let inverse = GeneralizedInverse { null_space, fixing: fixing.concat(), gap, factor };
         inverse.probe(&self.k)?;
         Ok(inverse)
     }
@@ -229,19 +226,6 @@ impl Search {
             fixing_dofs(&part.vectors, &ones).into_iter().map(|at| last[at]).collect()
         };
         Ok(soft.iter().zip(&self.last).map(chosen).collect())
-    }
-
-    /// `R - K+ K R`, verified.
-    fn polished(&self, inverse: &GeneralizedInverse) -> Result<Matrix> {
-        let n = self.k.order();
-        let mut vectors = inverse.null_space.clone();
-        let (mut image, mut part) = (zeros(n, "a null vector")?, zeros(n, "a null vector")?);
-        for j in 0..vectors.cols {
-            self.k.mul(vectors.col(j), &mut image);
-            inverse.apply(&image, &mut part)?;
-            vectors.col_mut(j).iter_mut().zip(&part).for_each(|(v, p)| *v -= p);
-        }
-        verified(&self.k, &NullSpaceInput { vectors, modes: Modes::Exact }, self.tolerance)
     }
 }
 

@@ -1,8 +1,12 @@
 //! The end of an elimination: the Schur complement of the dofs eliminated last, read from the factor, and dofs among
 //! them that are held afterwards. Only their dense block is computed anew.
 
+use faer::linalg::matmul::matmul;
+use faer::linalg::triangular_solve::solve_upper_triangular_in_place;
+use faer::{Accum, MatMut, MatRef, Par};
+
 use crate::error::Result;
-use crate::linalg::memory::{copied, zeros};
+use crate::linalg::memory::{copied, room, zeros, PRODUCTS};
 use crate::linalg::{Cholesky, Matrix};
 
 const WHAT: &str = "the end of an elimination";
@@ -65,6 +69,56 @@ impl Cholesky {
         }
         self.held = held;
         Ok(Ok(self))
+    }
+
+    /// Displacements without forces outside the trailing dofs: `x_t` given (m x r), `x_i = -K_ii^-1 K_it x_t`. One block
+    /// of columns for every part, over all dofs.
+    pub fn extended(&self, parts: &[(&[usize], &Matrix)]) -> Result<Matrix> {
+        let order = &self.analysis.order;
+        let (n, columns) = (order.len(), parts.iter().map(|part| part.1.cols).sum());
+        let mut y = Matrix::zeros(n, columns)?;
+        let mut first = 0;
+        for (dofs, given) in parts {
+            for (k, &dof) in dofs.iter().enumerate() {
+                let row = self.analysis.position[dof];
+                for (j, at) in (k..dofs.len()).filter_map(|j| Some((j, self.entry(dofs[j], dof)?))) {
+                    (0..given.cols)
+                        .for_each(|c| y.data[row + (first + c) * n] += self.values[at] * given.get(j, c));
+                }
+            }
+            first += given.cols;
+        }
+        self.back_substitute(&mut y)?;
+        let mut x = Matrix::zeros(self.analysis.position.len(), columns)?;
+        for c in 0..columns {
+            let column = x.col_mut(c);
+            y.col(c).iter().zip(order).for_each(|(y, &dof)| column[dof] = *y);
+        }
+        Ok(x)
+    }
+
+    /// `y <- L^-T y`, n x r in the order of elimination.
+    fn back_substitute(&self, y: &mut Matrix) -> Result<()> {
+        let (symbolic, factor) = (&self.analysis.symbolic, self.factor());
+        let (n, r) = (y.rows, y.cols);
+        let _room = room(2 * n * r * size_of::<f64>() + PRODUCTS, WHAT)?;
+        let mut below = zeros(n * r, WHAT)?;
+        let mut y = MatMut::from_column_major_slice_mut(&mut y.data, n, r);
+        for s in (0..symbolic.n_supernodes()).rev() {
+            let (begin, width) = (symbolic.supernode_begin()[s], factor.supernode(s).val().ncols());
+            let (top, bottom) = factor.supernode(s).val().split_at_row(width);
+            let pattern = symbolic.supernode(s).pattern();
+            let height = pattern.len();
+            for c in 0..r {
+                let column = &mut below[c * height..(c + 1) * height];
+                column.iter_mut().zip(pattern).for_each(|(b, &row)| *b = y[(row, c)]);
+            }
+            let below = MatRef::from_column_major_slice(&below[..height * r], height, r);
+            let mut own = y.as_mut().subrows_mut(begin, width);
+            matmul(own.as_mut(), Accum::Add, bottom.transpose(), below, -1.0, Par::Seq);
+            solve_upper_triangular_in_place(top.transpose(), own, Par::Seq);
+        }
+        Ok(())
     }
 
     /// Where `values` has L at the row of dof i and the column of dof j.
