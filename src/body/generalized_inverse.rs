@@ -13,7 +13,7 @@ use crate::linalg::vector::weighted_norm;
 use crate::linalg::{Analysis, Breakdown, Cholesky, Csr, Matrix, Packed, Symmetric};
 
 /// A pivot below minus this, relative to its diagonal entry, is no rounding error: a(u, u) >= 0 of (4) is violated.
-pub(super) const NEGATIVE_PIVOT: f64 = 1e-10;
+const NEGATIVE_PIVOT: f64 = 1e-10;
 /// K with the dofs held is singular when some v has `|A v|` below this against `| |A| |v| |`.
 pub(super) const SINGULAR: f64 = 1e-13;
 /// Largest residual of a solve with the factor, relative to its terms.

@@ -8,7 +8,7 @@
 use std::sync::Arc;
 
 use crate::body::fixing::{fixing_dofs, given_dofs};
-use crate::body::generalized_inverse::{GeneralizedInverse, NEGATIVE_PIVOT, SINGULAR};
+use crate::body::generalized_inverse::{GeneralizedInverse, SINGULAR};
 use crate::body::null_space::{largest, verified, Modes, NullSpaceInput};
 use crate::error::{Error, Kind, Result};
 use crate::linalg::graph::components;
@@ -162,9 +162,9 @@ impl Search {
         let (values, mut vectors) = symmetric_eigen(&scaled)?;
         let stiffest = values[m - 1];
         let worst = largest(vectors.col(0), |_| 1.0);
-        if values[0] < -NEGATIVE_PIVOT * stiffest.abs().max(1.0) {
-            return missed_or_indefinite(Breakdown { dof: last[worst], relative_pivot: values[0] })
-                .and(Err(Error::new(Kind::Internal, "a negative eigenvalue was no breakdown")));
+        let relative_pivot = values[0] / stiffest.abs().max(1.0);
+        if let Some(indefinite) = (Breakdown { dof: last[worst], relative_pivot }).refused() {
+            return Err(indefinite);
         }
         let Some((dimension, gap)) = cut(&values) else {
             let what = format!(
@@ -299,4 +299,26 @@ fn supported(k: &Symmetric, last: &[Vec<usize>]) -> Result<Symmetric> {
         ptr.push(col.len());
     }
     Ok(Symmetric { ptr, col, val })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_null_space_ends_at_the_largest_leap_below_the_soft_limit() {
+        assert_eq!(cut(&[0.1, 0.5, 1.0]).map(|c| c.0), Some(0));
+        assert_eq!(cut(&[-1e-17, 1e-16, 1e-4, 1.0]).map(|c| c.0), Some(2));
+        assert_eq!(cut(&[1e-20, 1e-16, 1e-9, 1e-4, 1.0]).map(|c| c.0), Some(2));
+        assert_eq!(cut(&[0.0, 0.0]).map(|c| c.0), Some(2));
+        assert_eq!(cut(&[3e-13, 2e-12, 3e-11, 4e-10, 1.0]), None);
+    }
+
+    #[test]
+    fn the_dofs_chosen_are_spread_and_never_the_same_twice() {
+        let all: Vec<usize> = (0..1000).map(|i| 3 * i).collect();
+        let chosen = spread(&all, LAST);
+        assert!(chosen.len() == LAST && chosen.windows(2).all(|pair| pair[0] < pair[1]));
+        assert_eq!(spread(&all[..7], LAST), all[..7]);
+    }
 }
