@@ -112,6 +112,7 @@ contains
   !>
   !> flags: FETI_EXACT, R spans the whole null space (r = 0: K is not singular); FETI_CANDIDATES, the null space
   !> lies inside the span of R and the library finds which part is left by the supports. Either is verified.
+  !> Never called for a body without coordinates: the library finds the null space from K.
   subroutine body_null_space(p, body, R, flags, stat, errmsg)
     type(feti_problem), intent(in) :: p
     integer, intent(in) :: body
@@ -149,6 +150,7 @@ contains
   end subroutine
 
   !> Instead of a null space: where the unknowns are. The library takes the rigid motions as candidates.
+  !> Without either the library finds the null space from K.
   !>
   !> node(n): any label, equal for the unknowns of one node; dir(n): 1 to 3 displacement, 4 to 6 rotation;
   !> xyz(dim,n): position, length, dim 1 to 3.

@@ -503,8 +503,9 @@ module feti_contact_c
     !> Gives position and direction of every unknown of a body, from which candidates for its null space are
     !> made.
     !>
-    !> The data is copied; calling again replaces it. Shells and beams repeat nodes with rotations. After a
-    !> failure the body keeps what it had.
+    !> The data is copied; calling again replaces it. Never called, and no null space given: the library finds
+    !> the null space from K. Shells and beams repeat nodes with rotations. After a failure the body keeps
+    !> what it had.
     !>
     !> @param[in] p    (scalar) the handle
     !> @param[in] body (scalar) number of the body, from 0
@@ -730,9 +731,9 @@ module feti_contact_c
 
     !> Gives a basis of the null space of a body, or candidates for it.
     !>
-    !> The basis is copied; calling again replaces it. Without it the coordinates of the dofs give the
-    !> candidates (feti_body_coordinates). That `K R = 0` holds is checked in feti_setup. After a failure the
-    !> body keeps what it had.
+    !> The basis is copied; calling again replaces it. Never called: the coordinates of the unknowns give
+    !> candidates (feti_body_coordinates), and without coordinates the library finds the null space from K.
+    !> That `K R = 0` holds is checked in feti_setup. After a failure the body keeps what it had.
     !>
     !> @param[in] p     (scalar) the handle
     !> @param[in] body  (scalar) number of the body, from 0

@@ -6,16 +6,17 @@ use std::sync::Arc;
 
 use crate::body::fixing::{fixing_dofs, given_dofs};
 use crate::body::null_space::{largest, verified, NullSpaceInput};
+use crate::body::search::Search;
 use crate::error::{Error, Kind, Result};
 use crate::linalg::memory::{room, zeros, PRODUCTS};
 use crate::linalg::reach::inverse_form;
 use crate::linalg::vector::weighted_norm;
-use crate::linalg::{Analysis, Cholesky, Csr, Matrix, Packed, Symmetric};
+use crate::linalg::{Analysis, Breakdown, Cholesky, Csr, Matrix, Packed, Symmetric};
 
 /// A pivot below minus this, relative to its diagonal entry, is no rounding error: a(u, u) >= 0 of (4) is violated.
 const NEGATIVE_PIVOT: f64 = 1e-10;
 /// K with the dofs held is singular when some v has `|A v|` below this against `| |A| |v| |`.
-const SINGULAR: f64 = 1e-13;
+pub(super) const SINGULAR: f64 = 1e-13;
 /// Largest residual of a solve with the factor, relative to its terms.
 const PROBE: f64 = 1e-8;
 
@@ -24,11 +25,19 @@ pub struct GeneralizedInverse {
     pub null_space: Matrix,
     /// The r dofs held.
     pub fixing: Vec<usize>,
-    factor: Cholesky,
+    /// Of a null space that was found: the softest other motion against the stiffest of it, no unit.
+    pub gap: Option<f64>,
+    pub(super) factor: Cholesky,
 }
 
 /// The part of the setup that can be costed before it is done.
-pub struct Plan {
+pub enum Plan {
+    Known(Known),
+    Search(Search),
+}
+
+/// The null space is known before the factorisation.
+pub struct Known {
     k: Symmetric,
     null_space: Matrix,
     fixing: Vec<usize>,
@@ -61,7 +70,12 @@ impl GeneralizedInverse {
         let mut held = vec![false; k.order()];
         fixing.iter().for_each(|&dof| held[dof] = true);
         let analysis = Arc::new(Analysis::new(&k, &held)?);
-        Ok(Plan { k, null_space, fixing, analysis })
+        Ok(Plan::Known(Known { k, null_space, fixing, analysis }))
+    }
+
+    /// The same where nothing is known about the null space.
+    pub fn search(k: Symmetric, tolerance: f64, fixing: Option<&[usize]>) -> Result<Plan> {
+        Search::new(k, tolerance, fixing).map(Plan::Search)
     }
 
     /// (15): `x = K+ b`, both of length n; F^-1 on the free dofs, 0 on those held.
@@ -79,36 +93,48 @@ impl GeneralizedInverse {
 impl Plan {
     /// Bytes the factorisation is going to take.
     pub fn bytes(&self) -> usize {
-        self.analysis.bytes()
+        match self {
+            Self::Known(known) => known.analysis.bytes(),
+            Self::Search(search) => search.bytes(),
+        }
     }
 
     /// Factorises F of (14) and probes; refuses a K that is indefinite, against (4), or more singular than its null
     /// space says.
     pub fn execute(self) -> Result<GeneralizedInverse> {
+        match self {
+            Self::Known(known) => known.execute(),
+            Self::Search(search) => search.execute(),
+        }
+    }
+}
+
+impl Known {
+    fn execute(self) -> Result<GeneralizedInverse> {
         let factor = self.analysis.factorize(&self.k)?.map_err(|breakdown| {
-            if breakdown.relative_pivot < -NEGATIVE_PIVOT {
-                let what = format!(
-                    "the stiffness matrix is indefinite: pivot {:.1e} K_ii",
-                    breakdown.relative_pivot
-                );
-                Error::new(Kind::Indefinite, what)
-                    .dof(breakdown.dof)
-                    .value(breakdown.relative_pivot)
-                    .limit(0.0)
-            } else {
-                missing_mode(breakdown.dof, breakdown.relative_pivot, self.null_space.cols)
-            }
+            let missing = || missing_mode(breakdown.dof, breakdown.relative_pivot, self.null_space.cols);
+            breakdown.refused().unwrap_or_else(missing)
         })?;
-        let inverse = GeneralizedInverse { null_space: self.null_space, fixing: self.fixing, factor };
+        let (null_space, fixing) = (self.null_space, self.fixing);
+        let inverse = GeneralizedInverse { null_space, fixing, gap: None, factor };
         inverse.probe(&self.k)?;
         Ok(inverse)
+    }
+}
+
+impl Breakdown {
+    /// The error for a pivot so negative that K is indefinite.
+    pub(super) fn refused(&self) -> Option<Error> {
+        let what = format!("the stiffness matrix is indefinite: pivot {:.1e} K_ii", self.relative_pivot);
+        let error = Error::new(Kind::Indefinite, what).dof(self.dof).value(self.relative_pivot).limit(0.0);
+        (self.relative_pivot < -NEGATIVE_PIVOT).then_some(error)
     }
 }
 
 impl GeneralizedInverse {
     /// A factorisation that ends without complaint proves nothing: solve for a known right-hand side, and
     /// look for a null vector that vanishes on the fixing dofs by two steps of inverse iteration on A.
-    fn probe(&self, k: &Symmetric) -> Result<()> {
+    pub(super) fn probe(&self, k: &Symmetric) -> Result<()> {
         let n = k.order();
         if self.fixing.len() == n {
             return Ok(());

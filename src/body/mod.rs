@@ -6,6 +6,7 @@ mod fixing;
 mod generalized_inverse;
 mod null_space;
 mod rigid_modes;
+mod search;
 mod stiffness;
 
 pub use boundary::{dirichlet, dirichlet_bytes, lumped};
@@ -23,7 +24,7 @@ pub struct Body {
     pub order: usize,
     /// `K_p`, n x n, force / length.
     pub stiffness: Option<Symmetric>,
-    /// `R_p` or vectors that may span it.
+    /// `R_p` or vectors that may span it; found by the library without them and without coordinates.
     pub null_space: Option<NullSpaceInput>,
     /// Places of the dofs: candidates for the null space when none is given.
     pub coordinates: Option<Coordinates>,

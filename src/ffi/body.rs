@@ -174,7 +174,8 @@ pub unsafe extern "C" fn feti_body_stiffness_dense(
 
 /// Gives position and direction of every unknown of a body, from which candidates for its null space are made.
 ///
-/// The data is copied; calling again replaces it. Shells and beams repeat nodes with rotations. After a failure the body
+/// The data is copied; calling again replaces it. Never called, and no null space given: the library finds the null space
+/// from K. Shells and beams repeat nodes with rotations. After a failure the body
 /// keeps what it had.
 ///
 /// | argument | in/out | shape | rule |

@@ -10,8 +10,9 @@ use crate::solver::Modes;
 
 /// Gives a basis of the null space of a body, or candidates for it.
 ///
-/// The basis is copied; calling again replaces it. Without it the coordinates of the dofs give
-/// the candidates (feti_body_coordinates). That `K R = 0` holds is checked in feti_setup. After a failure the body keeps what it had.
+/// The basis is copied; calling again replaces it. Never called: the coordinates of the unknowns give candidates
+/// (feti_body_coordinates), and without coordinates the library finds the null space from K. That `K R = 0` holds is
+/// checked in feti_setup. After a failure the body keeps what it had.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|

@@ -39,7 +39,9 @@ pub struct Analysis {
 /// The factor L with its analysis.
 pub struct Cholesky {
     pub analysis: Arc<Analysis>,
-    values: Vec<f64>,
+    pub(super) values: Vec<f64>,
+    /// Dofs in the order of elimination whose rows and columns of L are those of the identity, ascending.
+    pub(super) held: Vec<usize>,
 }
 
 /// The factorisation met a pivot that is not positive.
@@ -55,6 +57,18 @@ impl Analysis {
         let bytes = matrix.order() * ANALYSIS_PER_DOF + matrix.val.len() * ANALYSIS_PER_ENTRY;
         let _room = room(bytes, "the ordering of a body")?;
         Self::in_order(matrix, nested_dissection(matrix, held)?)
+    }
+
+    /// For `matrix` with the dofs `last` eliminated last, in this order; `graph`, which it may have more couplings
+    /// than among those dofs, decides on the order of the others.
+    pub fn ending(graph: &Symmetric, matrix: &Symmetric, last: &[usize]) -> Result<Self> {
+        let bytes = matrix.order() * ANALYSIS_PER_DOF + matrix.val.len() * ANALYSIS_PER_ENTRY;
+        let _room = room(bytes, "the ordering of a body")?;
+        let mut is_last = vec![false; matrix.order()];
+        last.iter().for_each(|&dof| is_last[dof] = true);
+        let mut order = nested_dissection(graph, &is_last)?;
+        order.extend(last);
+        Self::in_order(matrix, order)
     }
 
     /// `order` lists the dofs to eliminate; it is rearranged into a postorder of its elimination tree
@@ -110,7 +124,7 @@ impl Analysis {
             Spec::default(),
         );
         Ok(match done {
-            Ok(_) => Ok(Cholesky { analysis: Arc::clone(self), values }),
+            Ok(_) => Ok(Cholesky { analysis: Arc::clone(self), values, held: Vec::new() }),
             Err(LltError::NonPositivePivot { index }) => Err(index),
         })
     }
@@ -150,6 +164,15 @@ impl Cholesky {
         SupernodalLltRef::new(&self.analysis.symbolic, &self.values)
     }
 
+    /// Position of a dof in the elimination, `NONE` for held dofs.
+    pub(super) fn position(&self, dof: usize) -> usize {
+        if self.held.binary_search(&dof).is_ok() {
+            NONE
+        } else {
+            self.analysis.position[dof]
+        }
+    }
+
     /// Pivots `L_ii^2` with their dofs, in the order of elimination.
     pub fn pivots(&self) -> impl Iterator<Item = (usize, f64)> + '_ {
         let factor = self.factor();
@@ -171,6 +194,7 @@ impl Cholesky {
         for (y, &dof) in y.iter_mut().zip(order) {
             *y = x[dof];
         }
+        self.held.iter().for_each(|&dof| y[self.analysis.position[dof]] = 0.0);
         let scratch = self.analysis.symbolic.solve_in_place_scratch::<f64>(1, Par::Seq);
         let mut workspace = workspace(scratch)?;
         self.factor().solve_in_place_with_conj(

@@ -86,12 +86,13 @@ impl Graph {
     }
 }
 
-/// Connected parts of the matrix: the part of every dof, numbered by their first dof, and their count.
+/// Connected parts of the matrix: the part of every dof, numbered by their first dof, and their count. Entries that are
+/// 0 connect nothing.
 pub fn components(matrix: &Symmetric) -> (Vec<usize>, usize) {
     let n = matrix.order();
     let mut root: Vec<usize> = (0..n).collect();
     for i in 0..n {
-        for (j, _) in matrix.lower_row(i) {
+        for (j, _) in matrix.lower_row(i).filter(|(_, v)| *v != 0.0) {
             let (a, b) = (find(&mut root, i), find(&mut root, j));
             root[a.max(b)] = a.min(b);
         }

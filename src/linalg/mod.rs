@@ -13,6 +13,7 @@ pub mod pivoted;
 pub mod reach;
 pub mod spd;
 pub mod symmetric;
+pub mod trailing;
 pub mod vector;
 
 pub use cholesky::{Analysis, Breakdown, Cholesky};

@@ -71,7 +71,7 @@ fn entries_by_supernode(cholesky: &Cholesky, rows: &Csr) -> Result<Vec<Vec<(usiz
     entries.resize(ends.len(), Vec::new());
     for i in 0..rows.rows() {
         for (dof, value) in rows.row(i) {
-            let at = cholesky.analysis.position[dof];
+            let at = cholesky.position(dof);
             if at != NONE {
                 entries[ends.partition_point(|&end| end <= at)].push((i, at, value));
             }

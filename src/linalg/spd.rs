@@ -4,6 +4,7 @@ use faer::linalg::solvers::{Llt, SelfAdjointEigen, Solve};
 use faer::{Mat, MatMut, MatRef, Side};
 
 use crate::error::{Error, Kind, Result};
+use crate::linalg::memory::{room, PRODUCTS};
 use crate::linalg::Matrix;
 
 /// Relative size of a pivot or an eigenvalue below which the matrix counts as singular.
@@ -92,6 +93,19 @@ fn eigenvectors(w: &Mat<f64>) -> Result<Factor> {
         to.push_col(&column);
     }
     Ok(Factor::Pseudo { kept, kernel })
+}
+
+/// Eigenvalues of the symmetric matrix `a`, ascending, with the eigenvectors as columns.
+pub fn symmetric_eigen(a: &Matrix) -> Result<(Vec<f64>, Matrix)> {
+    let _room = room(PRODUCTS + 8 * a.data.len() * size_of::<f64>(), "the eigenvalues of a matrix")?;
+    let view = MatRef::from_column_major_slice(&a.data, a.rows, a.cols);
+    let eigen = SelfAdjointEigen::new(view, Side::Lower)
+        .map_err(|_| Error::new(Kind::Internal, "the eigenvalues of a Schur complement did not converge"))?;
+    let mut vectors = Matrix::zeros(a.rows, a.cols)?;
+    for j in 0..a.cols {
+        (0..a.rows).for_each(|i| vectors.set(i, j, eigen.U()[(i, j)]));
+    }
+    Ok(((0..a.cols).map(|j| eigen.S()[j]).collect(), vectors))
 }
 
 /// Singular values of `a` (rows >= cols), descending, with the right singular vectors as columns.

@@ -173,6 +173,12 @@ impl Problem {
         Ok((basis.cols, &basis.data))
     }
 
+    /// How far the null space the library found stands apart: softest other motion against the stiffest of it, in the
+    /// metric of diag K, both at least 1e-14 of the largest; none where the host gave vectors or coordinates.
+    pub fn null_space_gap(&mut self, body: usize) -> Result<Option<f64>> {
+        Ok(self.inverse(body)?.kplus.gap)
+    }
+
     /// The r dofs held in K+ of (14)-(15).
     pub fn fixing_dofs(&mut self, body: usize) -> Result<&[usize]> {
         Ok(&self.inverse(body)?.kplus.fixing)

@@ -72,13 +72,8 @@ impl Problem {
             return Err(Error::new(Kind::State, "the problem has no body yet"));
         }
         for (p, slot) in self.bodies.iter().enumerate() {
-            let missing =
-                |what: &str| Err(Error::new(Kind::State, format!("{what} has not been given")).body(p));
             if slot.body.stiffness.is_none() {
-                return missing("the stiffness matrix is");
-            }
-            if slot.body.null_space.is_none() && slot.body.coordinates.is_none() {
-                return missing("the null space is (give it, or coordinates)");
+                return Err(Error::new(Kind::State, "the stiffness matrix has not been given").body(p));
             }
         }
         Ok(())
@@ -224,13 +219,15 @@ impl Problem {
 
 /// What K+ of a body takes, found before it is computed.
 fn plan(body: &Body, unit: f64, tolerance: f64) -> Result<crate::body::Plan> {
-    let missing = |what: &str| Error::new(Kind::Internal, format!("a body without {what} was set up"));
-    let k = body.stiffness.as_ref().ok_or_else(|| missing("stiffness"))?.scaled(1.0 / unit)?;
+    let missing = || Error::new(Kind::Internal, "a body without stiffness was set up");
+    let k = body.stiffness.as_ref().ok_or_else(missing)?.scaled(1.0 / unit)?;
     let fixing = body.fixing.as_deref();
     if let Some(given) = &body.null_space {
         return GeneralizedInverse::plan_with(k, given, tolerance, fixing);
     }
-    let coordinates = body.coordinates.as_ref().ok_or_else(|| missing("null space"))?;
+    let Some(coordinates) = &body.coordinates else {
+        return GeneralizedInverse::search(k, tolerance, fixing);
+    };
     let vectors = coordinates.rigid_modes(&k)?;
     let candidates = NullSpaceInput { vectors, modes: Modes::Candidates };
     GeneralizedInverse::plan_with(k, &candidates, tolerance, fixing)

@@ -28,6 +28,14 @@ pub struct Case {
     pub dofs: Vec<[f64; 5]>,
 }
 
+/// What the library is told about null spaces.
+#[derive(Clone, Copy, PartialEq)]
+pub enum Hint {
+    NullSpaces,
+    Coordinates,
+    Nothing,
+}
+
 pub const CASES: [&str; 10] = [
     "p1_P1",
     "p1_P3",
@@ -93,6 +101,11 @@ impl Case {
 
     /// Registers everything; null spaces as exact, or coordinates in their place.
     pub fn problem(&self, coordinates: bool) -> Problem {
+        self.problem_with(if coordinates { Hint::Coordinates } else { Hint::NullSpaces })
+    }
+
+    /// Registers everything, with what the library is told about null spaces.
+    pub fn problem_with(&self, hint: Hint) -> Problem {
         let mut problem = Problem::new();
         let mut start = 0;
         for (k, r) in &self.bodies {
@@ -100,10 +113,12 @@ impl Case {
             let body = problem.add_body(n).unwrap();
             let input = SparseInput { ptr: &k.ptr, col: &k.col, val: &k.val, storage: Storage::Lower };
             problem.set_stiffness(body, input).unwrap();
-            if coordinates {
-                self.set_coordinates(&mut problem, body, start..start + n);
-            } else {
-                problem.set_null_space(body, n, r.len() / n, r, n, Modes::Exact).unwrap();
+            match hint {
+                Hint::Coordinates => self.set_coordinates(&mut problem, body, start..start + n),
+                Hint::NullSpaces => {
+                    problem.set_null_space(body, n, r.len() / n, r, n, Modes::Exact).unwrap();
+                }
+                Hint::Nothing => {}
             }
             problem.set_load(body, &self.load[start..start + n]).unwrap();
             start += n;

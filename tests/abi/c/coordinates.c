@@ -1,5 +1,5 @@
-/* Coordinates instead of null spaces give the same answer, with the supports as equality rows and with the
-   supported unknowns struck out of K; of the rigid motions only those the supports allow survive.
+/* Coordinates instead of null spaces, and neither of them, give the same answer, with the supports as equality rows and with the
+   supported unknowns struck out of K; only the rigid motions that the supports allow are in the null spaces.
    coordinates <data folder> */
 #include "handover.h"
 
@@ -27,9 +27,9 @@ static void check_dimensions(const char *name, feti_problem *problem, const case
     }
 }
 
-static void check_with_coordinates(const char *name, const case_data *data, const int64_t *dimensions)
+static void check_with(int null_space, const char *name, const case_data *data, const int64_t *dimensions)
 {
-    const form how = { .storage = FETI_LOWER, .null_space = NULL_SPACE_COORDINATES };
+    const form how = { .storage = FETI_LOWER, .null_space = null_space };
     feti_problem *problem = handed_over(data, &how);
 
     check_dimensions(name, problem, data, dimensions);
@@ -47,9 +47,11 @@ static void check_both(const char *folder, const char *name, const int64_t *free
     int64_t *kept;
 
     read_or_stop(folder, name, &data);
-    check_with_coordinates(name, &data, free_bodies);
+    check_with(NULL_SPACE_COORDINATES, name, &data, free_bodies);
+    check_with(NULL_SPACE_FOUND, name, &data, free_bodies);
     strike_supports(&data, &struck, &kept);
-    check_with_coordinates(name, &struck, struck_out);
+    check_with(NULL_SPACE_COORDINATES, name, &struck, struck_out);
+    check_with(NULL_SPACE_FOUND, name, &struck, struck_out);
     free(kept);
     case_free(&struck);
     case_free(&data);

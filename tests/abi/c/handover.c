@@ -105,7 +105,7 @@ feti_problem *handed_over(const case_data *data, const form *how)
         hand_stiffness(problem, number, &body->stiffness, how);
         if (how->null_space == NULL_SPACE_EXACT)
             MUST(feti_body_null_space(problem, number, body->null_columns, body->n, body->null_space, body->n, FETI_EXACT));
-        else
+        else if (how->null_space == NULL_SPACE_COORDINATES)
             MUST(feti_body_coordinates(problem, number, 3, body->n, data->node + body->first, data->dir + body->first,
                                        data->xyz + 3 * body->first, 3));
         MUST(feti_body_load(problem, number, body->n, data->load + body->first));

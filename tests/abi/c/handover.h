@@ -5,7 +5,7 @@
 #include "case_reader.h"
 #include "check.h"
 
-enum { NULL_SPACE_EXACT, NULL_SPACE_COORDINATES };
+enum { NULL_SPACE_EXACT, NULL_SPACE_COORDINATES, NULL_SPACE_FOUND };
 
 /* The form of the hand-over; all zero: full matrix, i32, from 0, exact null spaces. */
 typedef struct {
@@ -13,7 +13,7 @@ typedef struct {
     int32_t base;    /* 0, 1 */
     int wide;        /* 1: the _i64 functions */
     int dense;       /* 1: feti_body_stiffness_dense */
-    int null_space;  /* NULL_SPACE_EXACT, NULL_SPACE_COORDINATES */
+    int null_space;  /* NULL_SPACE_EXACT, NULL_SPACE_COORDINATES, NULL_SPACE_FOUND: nothing is given */
 } form;
 
 /* What the library answers. */

@@ -1,5 +1,5 @@
-!> Coordinates instead of null spaces give the same answer, with the supports as equality rows and with the
-!> supported unknowns struck out of K; of the rigid motions only those the supports allow survive.
+!> Coordinates instead of null spaces, and neither of them, give the same answer, with the supports as equality rows and with the
+!> supported unknowns struck out of K; only the rigid motions that the supports allow are in the null spaces.
 !> coordinates [data folder]
 program coordinates
   use case_problem
@@ -19,22 +19,24 @@ contains
     type(contact_case) :: this, struck
 
     call read_case(data_folder(), name, this)
-    call check(name, this, free)
+    call check(name, this, free, from_coordinates)
+    call check(name // ' from nothing', this, free, from_nothing)
     call strike_supports(this, struck)
     call require(size(struck%h) == 0 .and. struck%n < this%n, name // ': no supports were struck out')
-    call check(name // ' with struck supports', struck, held)
+    call check(name // ' with struck supports', struck, held, from_coordinates)
+    call check(name // ' with struck supports from nothing', struck, held, from_nothing)
   end subroutine
 
-  subroutine check(name, this, modes)
+  subroutine check(name, this, modes, source)
     character(len=*), intent(in) :: name
     type(contact_case), intent(in) :: this
-    integer, intent(in) :: modes(:)
+    integer, intent(in) :: modes(:), source
     type(feti_problem) :: p
     type(feti_info) :: info
     real(dp) :: u(this%n), lambda(size(this%c))
 
     call feti_problem_create(p)
-    call hand_over(p, this, from_coordinates)
+    call hand_over(p, this, source)
     call check_null_spaces(name, p, this, modes)
     call feti_solve(p, info)
     call displacements(p, this, u)

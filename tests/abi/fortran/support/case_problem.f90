@@ -8,7 +8,7 @@ module case_problem
   public :: hand_over, hand_over_body, hand_over_rows, body_of, displacements, number, stiffness_times
 
   !> Where a body gets its null space from: its basis as the exact one, or the coordinates of its unknowns.
-  integer, parameter, public :: from_basis = 1, from_coordinates = 2
+  integer, parameter, public :: from_basis = 1, from_coordinates = 2, from_nothing = 3
 
 contains
 
@@ -100,7 +100,7 @@ contains
         dim = merge(3, 2, maxval(this%dir) == 3)
         call feti_body_coordinates(p, body, this%node(part%offset + 1:part%offset + part%n), &
           this%dir(part%offset + 1:part%offset + part%n), this%xyz(1:dim, part%offset + 1:part%offset + part%n))
-      else
+      else if (source == from_basis) then
         call feti_body_null_space(p, body, part%null_space, FETI_EXACT)
       end if
       call feti_body_load(p, body, this%f(part%offset + 1:part%offset + part%n))
