@@ -1,0 +1,181 @@
+//! A whole contact solve against one analysis and factorisation of K by CHOLMOD, and against two solvers of quadratic
+//! programs. One line a figure,
+//!
+//! ```text
+//! bench <deck> <figure> <value> goal <g> ok|short
+//! ```
+//!
+//! with details below, and a closing line with the number short. Arguments: names of decks, none for all. Every run is
+//! a process of its own; raw figures go to benches/runs. Exit code 1 when a run fails; a short figure alone leaves it 0.
+
+mod clock;
+mod figures;
+#[path = "../../tests/support/hand_over.rs"]
+mod hand_over;
+mod matrix;
+mod ours;
+mod parts;
+mod peers;
+mod problems;
+mod runs;
+
+use std::io::Write;
+use std::path::Path;
+use std::process::ExitCode;
+
+use figures::Figure;
+use peers::Peers;
+use problems::{Case, Model, CASES};
+use runs::{Program, Runs};
+
+fn main() -> ExitCode {
+    let arguments: Vec<String> = std::env::args().skip(1).filter(|word| !word.starts_with('-')).collect();
+    let words: Vec<&str> = arguments.iter().map(String::as_str).collect();
+    let done = match words[..] {
+        ["child", kind, deck, threads] => child(kind, deck, threads),
+        _ => benchmark(&words),
+    };
+    match done {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(why) => {
+            eprintln!("{why}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+/// One run in this process.
+fn child(kind: &str, deck: &str, threads: &str) -> Result<(), String> {
+    let build = || problems::case(deck).map(|case| case.model.build()).ok_or("no such deck");
+    match kind {
+        "ours" => ours::run(build()?, threads.parse().map_err(|_| "no number of threads")?),
+        "parts" => parts::run(&build()?).map_err(|error| error.to_string()),
+        _ => parts::bandwidth().map_err(|error| error.to_string()),
+    }
+}
+
+fn benchmark(wanted: &[&str]) -> Result<(), String> {
+    let wants = |name: &str| wanted.is_empty() || wanted.contains(&name);
+    let peers = Peers::set_up(wants("40k"))?;
+    let mut runs = Runs::new(&Path::new(env!("CARGO_MANIFEST_DIR")).join("benches/runs"))?;
+    let (mut lines, mut short, mut failed) = (0, 0, 0);
+    let mut judge = |figures: Vec<Figure>| {
+        for figure in figures {
+            lines += 1;
+            short += usize::from(figure.is_short());
+            println!("{}", figure.line());
+        }
+        // Lines appear as they are found, also in a pipe.
+        let _ = std::io::stdout().flush();
+    };
+    for case in CASES.iter().filter(|case| wants(case.name)) {
+        match measure(case, &mut runs, &peers) {
+            Ok(blas) => {
+                judge(figures::of(case.name, &runs));
+                details(case, &runs, &blas);
+            }
+            Err(why) => {
+                failed += 1;
+                println!("bench {} failed: {why}", case.name);
+            }
+        }
+        peers.remove(case);
+    }
+    if wants("product") {
+        runs.run("product", Program::Bandwidth, 1, &peers)?;
+        judge(figures::of("product", &runs));
+    }
+    judge(figures::between(&runs));
+    println!(
+        "bench: {lines} figures, {short} short, {failed} failed; raw figures in {}",
+        runs.path.display()
+    );
+    if failed > 0 {
+        return Err(format!("{failed} decks failed"));
+    }
+    Ok(())
+}
+
+/// All programs of a deck in turn, as often as the deck says; gives the BLAS in use.
+fn measure(case: &Case, runs: &mut Runs, peers: &Peers) -> Result<String, String> {
+    let ours = [Program::Ours(1), Program::Ours(2)];
+    let mut programs = match case.model {
+        Model::Blocks(_) => {
+            peers.write(case)?;
+            vec![ours[0], Program::Cholmod(1), ours[1], Program::Cholmod(2), Program::Parts]
+        }
+        Model::OneBody(_) => ours.to_vec(),
+        Model::Cube(_) => ours[..1].to_vec(),
+    };
+    if case.name == "40k" && peers.has_packages() {
+        programs.extend([Program::Clarabel, Program::Osqp]);
+    }
+    let mut blas = String::new();
+    for round in 1..=case.rounds {
+        for &program in &programs {
+            // The two slow peers set no unit: two runs tell what their noise is.
+            if round <= 2 || !matches!(program, Program::Clarabel | Program::Osqp) {
+                let text = runs.run(case.name, program, round, peers)?;
+                if program == Program::Cholmod(2) {
+                    blas = text;
+                }
+            }
+        }
+    }
+    agree(case, runs)?;
+    Ok(blas)
+}
+
+/// Every run of ours gives the same bits, and the energy of the peers is that of ours.
+fn agree(case: &Case, runs: &Runs) -> Result<(), String> {
+    const ENERGY: f64 = 1e-4;
+    let of = |quantity: &str, programs: [Program; 2]| -> Vec<f64> {
+        programs.into_iter().flat_map(|program| runs.values(case.name, program, quantity)).collect()
+    };
+    let ours = [Program::Ours(1), Program::Ours(2)];
+    let bits = of("bits", ours);
+    if bits.iter().any(|sum| *sum != bits[0]) {
+        return Err("1 and 2 threads give different bits".into());
+    }
+    let energy = of("energy", ours)[0];
+    let peers = [Program::Clarabel, Program::Osqp];
+    match of("energy", peers).iter().find(|other| (*other - energy).abs() > ENERGY * energy.abs()) {
+        Some(other) => Err(format!("energy {energy:e}, a peer's {other:e}")),
+        None => Ok(()),
+    }
+}
+
+/// Medians in seconds, and what was solved.
+fn details(case: &Case, runs: &Runs, blas: &str) {
+    let median = |program, quantity: &str| runs.median(case.name, program, quantity);
+    let ours = Program::Ours(1);
+    let text: Vec<String> = ["dofs", "rows", "closed", "products", "second_products"]
+        .iter()
+        .filter_map(|quantity| Some(format!("{quantity} {}", median(ours, quantity)?)))
+        .collect();
+    println!("    {}, {} rounds", text.join(", "), case.rounds);
+    let times = [
+        (ours, "first_cpu"),
+        (ours, "first_setup_1_cpu"),
+        (ours, "first_setup_2_cpu"),
+        (ours, "second_cpu"),
+        (Program::Parts, "ordering_cpu"),
+        (Program::Parts, "analysis_cpu"),
+        (Program::Parts, "plan_cpu"),
+        (Program::Parts, "execute_cpu"),
+        (Program::Parts, "factorisation_cpu"),
+        (Program::Parts, "dual_operator_cpu"),
+        (Program::Cholmod(1), "analyse_cpu"),
+        (Program::Cholmod(1), "factorise_cpu"),
+        (Program::Clarabel, "cpu"),
+        (Program::Osqp, "cpu"),
+    ];
+    for (program, quantity) in times {
+        if let Some(seconds) = median(program, quantity) {
+            println!("    {} {quantity} {seconds:.3} s", program.name());
+        }
+    }
+    if !blas.is_empty() {
+        println!("    {blas}");
+    }
+}
