@@ -114,7 +114,8 @@ test: setup
 counts:
 	$(CARGO) bench --bench counts --locked -- $(DECKS)
 
-bench: setup
+bench:
+	@tools/setup.sh python3-venv
 	@$(CARGO) bench --bench bench --locked --quiet -- $(DECKS)
 
 paper:

@@ -59,7 +59,6 @@ pub fn of(deck: &'static str, runs: &Runs) -> Vec<Figure> {
         _ => None,
     };
     let threads = if deck == "one_body" { Most(0.65) } else { of_large(Most(0.60)) };
-    let peer = |goal: f64| if deck == "40k" { Least(goal) } else { None };
     let ratio = |name, over, under, goal| {
         runs.ratio(deck, over, under).map(|value| Figure { deck, name, value, goal })
     };
@@ -85,8 +84,8 @@ pub fn of(deck: &'static str, runs: &Runs) -> Vec<Figure> {
             (Program::Cholmod(1), "peak"),
             if cfg!(target_os = "linux") && by(0.0, 0.0, 0.0, 0.0).is_some() { Most(1.1) } else { None },
         ),
-        ratio("Clarabel/solve,cpu", (Program::Clarabel, "cpu"), (ONE, "first_cpu"), peer(15.0)),
-        ratio("OSQP/solve,cpu", (Program::Osqp, "cpu"), (ONE, "first_cpu"), peer(25.0)),
+        ratio("Clarabel/solve,cpu", (Program::Clarabel, "cpu"), (ONE, "first_cpu"), Least(15.0)),
+        ratio("OSQP/solve,cpu", (Program::Osqp, "cpu"), (ONE, "first_cpu"), Least(25.0)),
         ratio("F_product/triad", (Program::Bandwidth, "product"), (Program::Bandwidth, "triad"), Least(0.7)),
     ];
     figures.into_iter().flatten().collect()

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use crate::matrix;
-use crate::problems::Case;
+use crate::problems::{Case, PEERS};
 use crate::runs::{output, Program};
 
 const ROOT: &str = env!("CARGO_MANIFEST_DIR");
@@ -36,16 +36,12 @@ impl Peers {
         Ok(Self { folder, cholmod, python })
     }
 
-    pub fn has_packages(&self) -> bool {
-        self.python.is_some()
-    }
-
     /// The files that the peers read for a deck.
     pub fn write(&self, case: &Case) -> Result<(), String> {
         let deck = case.model.build();
         let text = |error: std::io::Error| format!("{}: {error}", case.name);
         matrix::write(&deck, true, &self.matrix(case.name)).map_err(text)?;
-        if self.has_packages() {
+        if case.name == PEERS {
             matrix::write(&deck, false, &self.problem(case.name)).map_err(text)?;
         }
         Ok(())
