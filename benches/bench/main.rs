@@ -68,7 +68,8 @@ fn benchmark(wanted: &[&str]) -> Result<(), String> {
         // Lines appear as they are found, also in a pipe.
         let _ = std::io::stdout().flush();
     };
-    for case in CASES.iter().filter(|case| wants(case.name)) {
+    let can_run = |case: &Case| case.name != PEERS || peers.has_packages();
+    for case in CASES.iter().filter(|case| wants(case.name) && can_run(case)) {
         match measure(case, &mut runs, &peers) {
             Ok(blas) => {
                 judge(figures::of(case.name, &runs));

@@ -36,6 +36,10 @@ impl Peers {
         Ok(Self { folder, cholmod, python })
     }
 
+    pub fn has_packages(&self) -> bool {
+        self.python.is_some()
+    }
+
     /// The files that the peers read for a deck.
     pub fn write(&self, case: &Case) -> Result<(), String> {
         let deck = case.model.build();

@@ -28,7 +28,7 @@ pub const CASES: [Case; 7] = [
     Case { name: "4k", model: Model::Blocks(8), rounds: 11 },
     Case { name: "13k", model: Model::Blocks(12), rounds: 7 },
     Case { name: "40k", model: Model::Blocks(18), rounds: 5 },
-    Case { name: "144k", model: Model::Blocks(28), rounds: 2 },
+    Case { name: "144k", model: Model::Blocks(28), rounds: 3 },
     Case { name: "one_body", model: Model::OneBody(35), rounds: 1 },
     Case { name: "64_bodies", model: Model::Cube(4), rounds: 3 },
     Case { name: PEERS, model: Model::Blocks(18), rounds: 1 },
