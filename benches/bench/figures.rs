@@ -27,13 +27,13 @@ impl Figure {
         }
     }
 
-    /// `bench <deck> <figure> <value> goal <g> ok|short`
+    /// `bench <deck> <figure> <value> goal <g> ok|short`; `goal -` alone for information.
     pub fn line(&self) -> String {
         let word = if self.is_short() { "short" } else { "ok" };
         let head = format!("bench {} {} {:.3}", self.deck, self.name, self.value);
         match self.goal {
             Goal::Most(goal) | Goal::Least(goal) => format!("{head} goal {goal:.2} {word}"),
-            Goal::None => format!("{head} goal - {word}"),
+            Goal::None => format!("{head} goal -"),
         }
     }
 }
@@ -43,57 +43,46 @@ const TWO: Program = Program::Ours(2);
 
 /// Figures of one deck, as far as its runs give them.
 pub fn of(deck: &'static str, runs: &Runs) -> Vec<Figure> {
-    use Goal::{Least, Most, None};
-    let cholmod = (Program::Cholmod(1), "cpu");
-    let by = |four: f64, thirteen: f64, forty: f64, large: f64| match deck {
-        "4k" => Most(four),
-        "13k" => Most(thirteen),
-        "40k" => Most(forty),
-        "144k" => Most(large),
-        _ => None,
-    };
-    let of_large = |goal: Goal| if deck == "144k" { goal } else { None };
-    let of_both = |forty: f64, large: f64| match deck {
-        "40k" => Most(forty),
-        "144k" => Most(large),
-        _ => None,
-    };
-    let threads = if deck == "one_body" { Most(0.65) } else { of_large(Most(0.60)) };
-    let ratio = |name, over, under, goal| {
-        runs.ratio(deck, over, under).map(|value| Figure { deck, name, value, goal })
-    };
+    let cholmod = |quantity| (Program::Cholmod(1), quantity);
+    let parts = |quantity| (Program::Parts, quantity);
+    let first = (ONE, "first_cpu");
+    let wall = (TWO, "first_wall");
     let figures = [
-        ratio("solve/CHOLMOD,1_thread_cpu", (ONE, "first_cpu"), cholmod, by(1.2, 1.0, 0.8, 0.9)),
-        ratio(
-            "solve/CHOLMOD,2_threads_wall",
-            (TWO, "first_wall"),
-            (Program::Cholmod(2), "wall"),
-            of_large(Most(0.9)),
-        ),
-        ratio("2_threads/1_thread,wall", (TWO, "first_wall"), (ONE, "first_wall"), threads),
-        ratio(
-            "F/factorisation",
-            (Program::Parts, "dual_operator_cpu"),
-            (Program::Parts, "factorisation_cpu"),
-            of_both(0.15, 0.18),
-        ),
-        ratio("second_step/first,cpu", (ONE, "second_cpu"), (ONE, "first_cpu"), of_both(0.08, 0.08)),
-        ratio(
-            "peak_memory/CHOLMOD",
-            (ONE, "peak"),
-            (Program::Cholmod(1), "peak"),
-            if cfg!(target_os = "linux") && by(0.0, 0.0, 0.0, 0.0).is_some() { Most(1.1) } else { None },
-        ),
-        ratio("Clarabel/solve,cpu", (Program::Clarabel, "cpu"), (ONE, "first_cpu"), Least(15.0)),
-        ratio("OSQP/solve,cpu", (Program::Osqp, "cpu"), (ONE, "first_cpu"), Least(25.0)),
-        ratio("F_product/triad", (Program::Bandwidth, "product"), (Program::Bandwidth, "triad"), Least(0.7)),
+        ("solve/CHOLMOD,1_thread_cpu", first, cholmod("cpu")),
+        ("solve/CHOLMOD,2_threads_wall", wall, (Program::Cholmod(2), "wall")),
+        ("2_threads/1_thread,wall", wall, (ONE, "first_wall")),
+        ("F/factorisation", parts("dual_operator_cpu"), parts("factorisation_cpu")),
+        ("second_step/first,cpu", (ONE, "second_cpu"), first),
+        ("peak_memory/CHOLMOD", (ONE, "peak"), cholmod("peak")),
+        ("Clarabel/solve,cpu", (Program::Clarabel, "cpu"), first),
+        ("OSQP/solve,cpu", (Program::Osqp, "cpu"), first),
+        ("F_product/triad", (Program::Bandwidth, "product"), (Program::Bandwidth, "triad")),
     ];
-    figures.into_iter().flatten().collect()
+    let figure = |(name, over, under)| {
+        let value = runs.ratio(deck, over, under)?;
+        Some(Figure { deck, name, value, goal: goal(name, deck) })
+    };
+    figures.into_iter().filter_map(figure).collect()
 }
 
-impl Goal {
-    fn is_some(self) -> bool {
-        !matches!(self, Goal::None)
+/// Up to which value a figure is good enough, or from which on.
+fn goal(name: &str, deck: &str) -> Goal {
+    use Goal::{Least, Most};
+    match (name, deck) {
+        ("solve/CHOLMOD,1_thread_cpu", "4k") => Most(1.2),
+        ("solve/CHOLMOD,1_thread_cpu", "13k") => Most(1.0),
+        ("solve/CHOLMOD,1_thread_cpu", "40k") => Most(0.8),
+        ("solve/CHOLMOD,1_thread_cpu" | "solve/CHOLMOD,2_threads_wall", "144k") => Most(0.9),
+        ("2_threads/1_thread,wall", "144k") => Most(0.60),
+        ("2_threads/1_thread,wall", "one_body") => Most(0.65),
+        ("F/factorisation", "40k") => Most(0.15),
+        ("F/factorisation", "144k") => Most(0.18),
+        ("second_step/first,cpu", "40k" | "144k") => Most(0.08),
+        ("peak_memory/CHOLMOD", _) => Most(1.1),
+        ("Clarabel/solve,cpu", _) => Least(15.0),
+        ("OSQP/solve,cpu", _) => Least(25.0),
+        ("F_product/triad", _) => Least(0.7),
+        _ => Goal::None,
     }
 }
 

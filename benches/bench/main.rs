@@ -60,13 +60,8 @@ fn benchmark(wanted: &[&str]) -> Result<(), String> {
     let mut runs = Runs::new(&Path::new(env!("CARGO_MANIFEST_DIR")).join("benches/runs"))?;
     let (mut lines, mut short, mut failed) = (0, 0, 0);
     let mut judge = |figures: Vec<Figure>| {
-        for figure in figures {
-            lines += 1;
-            short += usize::from(figure.is_short());
-            println!("{}", figure.line());
-        }
-        // Lines appear as they are found, also in a pipe.
-        let _ = std::io::stdout().flush();
+        lines += figures.len();
+        short += print(&figures);
     };
     let can_run = |case: &Case| case.name != PEERS || peers.has_packages();
     for case in CASES.iter().filter(|case| wants(case.name) && can_run(case)) {
@@ -95,6 +90,13 @@ fn benchmark(wanted: &[&str]) -> Result<(), String> {
         return Err(format!("{failed} decks failed"));
     }
     Ok(())
+}
+
+/// Lines appear as they are found, also in a pipe. Gives the number short.
+fn print(figures: &[Figure]) -> usize {
+    figures.iter().for_each(|figure| println!("{}", figure.line()));
+    let _ = std::io::stdout().flush();
+    figures.iter().filter(|figure| figure.is_short()).count()
 }
 
 /// All programs of a deck in turn, as often as the deck says; gives the BLAS in use.
