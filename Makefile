@@ -1,8 +1,9 @@
 # make demo      builds the library and the examples, runs them        make lib        the library alone
 # make test      every test: Rust, then C and Fortran under CMake      make install    PREFIX=/usr/local DESTDIR=
 # make counts    applications of F against a linear solve, deck by deck (some minutes); DECKS="slab two" picks some
+# make bench     time and memory against CHOLMOD, Clarabel and OSQP (some minutes); DECKS="4k 40k" picks some
 # make paper     the paper's problems by its own method and by the default: table, pictures (seconds)
-# demo and test install the Debian packages they miss (tools/setup.sh).
+# bench, demo and test install the Debian packages they miss (tools/setup.sh).
 PREFIX  ?= /usr/local
 DESTDIR ?=
 CARGO   ?= cargo
@@ -18,7 +19,7 @@ SOVERSION := $(basename $(VERSION))# 0.1 of 0.1.0: before 1.0 each minor version
 RELEASE   := $(or $(CARGO_TARGET_DIR),target)/release
 STAGE     := $(CURDIR)/build/stage
 
-.PHONY: all lib data setup demo battery test counts paper stage install uninstall fmt clean
+.PHONY: all lib data setup demo battery test counts bench paper stage install uninstall fmt clean
 .DELETE_ON_ERROR:
 all: lib
 
@@ -112,6 +113,10 @@ test: setup
 # ---- measurements
 counts:
 	$(CARGO) bench --bench counts --locked -- $(DECKS)
+
+bench:
+	@tools/setup.sh python3-venv
+	@$(CARGO) bench --bench bench --locked --quiet -- $(DECKS)
 
 paper:
 	@$(CARGO) bench --bench paper --locked --quiet -- $(CURDIR)/docs

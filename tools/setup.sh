@@ -1,7 +1,8 @@
 #!/bin/sh
-# Installs what the examples and tests need beside Rust, gcc and GNU make. Does nothing when all is there.
+# Installs what the examples and tests need beside Rust, gcc and GNU make, and the packages named as arguments.
+# Does nothing when all is there.
 set -eu
-packages="gfortran cmake libsuitesparse-dev libopenblas-dev valgrind pkg-config"
+packages="gfortran cmake libsuitesparse-dev libopenblas-dev valgrind pkg-config $*"
 
 missing=
 for package in $packages; do

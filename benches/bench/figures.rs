@@ -1,0 +1,103 @@
+//! The figures with their goals.
+
+use crate::runs::{Program, Runs};
+
+/// A figure is good enough below its goal, or above.
+#[derive(Clone, Copy)]
+pub enum Goal {
+    Most(f64),
+    Least(f64),
+    /// For information.
+    None,
+}
+
+pub struct Figure {
+    pub deck: &'static str,
+    pub name: &'static str,
+    pub value: f64,
+    pub goal: Goal,
+}
+
+impl Figure {
+    pub fn is_short(&self) -> bool {
+        match self.goal {
+            Goal::Most(most) => self.value.is_nan() || self.value > most,
+            Goal::Least(least) => self.value.is_nan() || self.value < least,
+            Goal::None => false,
+        }
+    }
+
+    /// `bench <deck> <figure> <value> goal <g> ok|short`; `goal -` alone for information.
+    pub fn line(&self) -> String {
+        let word = if self.is_short() { "short" } else { "ok" };
+        let head = format!("bench {} {} {:.3}", self.deck, self.name, self.value);
+        match self.goal {
+            Goal::Most(goal) | Goal::Least(goal) => format!("{head} goal {goal:.2} {word}"),
+            Goal::None => format!("{head} goal -"),
+        }
+    }
+}
+
+const ONE: Program = Program::Ours(1);
+const TWO: Program = Program::Ours(2);
+
+/// Figures of one deck, as far as its runs give them.
+pub fn of(deck: &'static str, runs: &Runs) -> Vec<Figure> {
+    let cholmod = |quantity| (Program::Cholmod(1), quantity);
+    let parts = |quantity| (Program::Parts, quantity);
+    let first = (ONE, "first_cpu");
+    let wall = (TWO, "first_wall");
+    let figures = [
+        ("solve/CHOLMOD,1_thread_cpu", first, cholmod("cpu")),
+        ("solve/CHOLMOD,2_threads_wall", wall, (Program::Cholmod(2), "wall")),
+        ("2_threads/1_thread,wall", wall, (ONE, "first_wall")),
+        ("F/factorisation", parts("dual_operator_cpu"), parts("factorisation_cpu")),
+        ("second_step/first,cpu", (ONE, "second_cpu"), first),
+        ("peak_memory/CHOLMOD", (ONE, "peak"), cholmod("peak")),
+        ("Clarabel/solve,cpu", (Program::Clarabel, "cpu"), first),
+        ("OSQP/solve,cpu", (Program::Osqp, "cpu"), first),
+        ("F_product/triad", (Program::Bandwidth, "product"), (Program::Bandwidth, "triad")),
+    ];
+    let figure = |(name, over, under)| {
+        let value = runs.ratio(deck, over, under)?;
+        Some(Figure { deck, name, value, goal: goal(name, deck) })
+    };
+    figures.into_iter().filter_map(figure).collect()
+}
+
+/// Up to which value a figure is good enough, or from which on.
+fn goal(name: &str, deck: &str) -> Goal {
+    use Goal::{Least, Most};
+    match (name, deck) {
+        ("solve/CHOLMOD,1_thread_cpu", "4k") => Most(1.2),
+        ("solve/CHOLMOD,1_thread_cpu", "13k") => Most(1.0),
+        ("solve/CHOLMOD,1_thread_cpu", "40k") => Most(0.8),
+        ("solve/CHOLMOD,1_thread_cpu" | "solve/CHOLMOD,2_threads_wall", "144k") => Most(0.9),
+        ("2_threads/1_thread,wall", "144k") => Most(0.60),
+        ("2_threads/1_thread,wall", "one_body") => Most(0.65),
+        ("F/factorisation", "40k") => Most(0.15),
+        ("F/factorisation", "144k") => Most(0.18),
+        ("second_step/first,cpu", "40k" | "144k") => Most(0.08),
+        ("peak_memory/CHOLMOD", _) => Most(1.1),
+        ("Clarabel/solve,cpu", _) => Least(15.0),
+        ("OSQP/solve,cpu", _) => Least(25.0),
+        ("F_product/triad", _) => Least(0.7),
+        _ => Goal::None,
+    }
+}
+
+/// Figures of two decks.
+pub fn between(runs: &Runs) -> Vec<Figure> {
+    let over = |deck| runs.ratio(deck, (ONE, "first_cpu"), (Program::Cholmod(1), "cpu"));
+    let per_dof = |deck| Some(runs.median(deck, ONE, "first_cpu")? / runs.median(deck, ONE, "dofs")?);
+    let growth = over("144k").zip(over("40k"));
+    let bodies = per_dof("64_bodies").zip(per_dof("144k"));
+    let figure = |deck, name, pair: (f64, f64), goal| Figure { deck, name, value: pair.0 / pair.1, goal };
+    [
+        growth.map(|pair| figure("144k/40k", "growth/CHOLMOD's,cpu", pair, Goal::Most(1.25))),
+        bodies.map(|pair| figure("64_bodies/144k", "solve_per_dof,cpu", pair, Goal::Most(1.0))),
+    ]
+    .into_iter()
+    .flatten()
+    .collect()
+}

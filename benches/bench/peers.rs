@@ -1,0 +1,127 @@
+//! The programs that are run: this one again, CHOLMOD in C, Clarabel and OSQP from Python.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use crate::matrix;
+use crate::problems::{Case, PEERS};
+use crate::runs::{output, Program};
+
+const ROOT: &str = env!("CARGO_MANIFEST_DIR");
+const WORK: &str = env!("CARGO_TARGET_TMPDIR");
+
+/// Python packages of the peers.
+const PACKAGES: [&str; 4] = ["numpy", "scipy", "clarabel", "osqp"];
+
+pub struct Peers {
+    folder: PathBuf,
+    cholmod: PathBuf,
+    /// Python with the packages; none where it cannot be set up.
+    python: Option<PathBuf>,
+}
+
+impl Peers {
+    /// Compiles the C program, and sets up the Python packages once.
+    pub fn set_up(packages: bool) -> Result<Self, String> {
+        let folder = Path::new(WORK).join("bench");
+        fs::create_dir_all(&folder).map_err(|error| format!("{}: {error}", folder.display()))?;
+        let cholmod = folder.join("cholmod");
+        output(compiler(&folder).args(["-std=c99", "benches/bench/cholmod.c", "-o"]).arg(&cholmod).args([
+            "-lcholmod",
+            "-lm",
+            "-ldl",
+        ]))?;
+        let python = if packages { python(&folder.join("python")) } else { None };
+        Ok(Self { folder, cholmod, python })
+    }
+
+    pub fn has_packages(&self) -> bool {
+        self.python.is_some()
+    }
+
+    /// The files that the peers read for a deck.
+    pub fn write(&self, case: &Case) -> Result<(), String> {
+        let deck = case.model.build();
+        let text = |error: std::io::Error| format!("{}: {error}", case.name);
+        matrix::write(&deck, true, &self.matrix(case.name)).map_err(text)?;
+        if case.name == PEERS {
+            matrix::write(&deck, false, &self.problem(case.name)).map_err(text)?;
+        }
+        Ok(())
+    }
+
+    pub fn remove(&self, case: &Case) {
+        for path in [self.matrix(case.name), self.problem(case.name)] {
+            // What is not there need not be removed.
+            let _ = fs::remove_file(path);
+        }
+    }
+
+    fn matrix(&self, deck: &str) -> PathBuf {
+        self.folder.join(format!("{deck}.matrix"))
+    }
+
+    fn problem(&self, deck: &str) -> PathBuf {
+        self.folder.join(format!("{deck}.problem"))
+    }
+
+    /// The command of one run.
+    pub fn command(&self, deck: &str, program: Program) -> Result<Command, String> {
+        let own = |kind: &str, threads: usize| {
+            let path = std::env::current_exe().map_err(|error| error.to_string())?;
+            let mut command = Command::new(path);
+            command.args(["child", kind, deck]).arg(threads.to_string());
+            Ok(command)
+        };
+        match program {
+            Program::Ours(threads) => own("ours", threads),
+            Program::Parts => own("parts", 1),
+            Program::Bandwidth => own("bandwidth", 1),
+            Program::Cholmod(_) => {
+                let mut command = Command::new(&self.cholmod);
+                command.arg(self.matrix(deck));
+                Ok(command)
+            }
+            Program::Clarabel | Program::Osqp => {
+                let mut command = Command::new(self.python.as_deref().ok_or("no Python packages")?);
+                let script = Path::new(ROOT).join("benches/bench/peers.py");
+                command.arg(script).arg(program.name()).arg(self.problem(deck));
+                Ok(command)
+            }
+        }
+    }
+}
+
+/// gcc as the crate `cc` calls it, outside a build script: everything it would take from cargo is given.
+fn compiler(out: &Path) -> Command {
+    let triple = format!("{}-unknown-linux-gnu", std::env::consts::ARCH);
+    let mut build = cc::Build::new();
+    build
+        .compiler("gcc")
+        .target(&triple)
+        .host(&triple)
+        .opt_level(2)
+        .debug(false)
+        .out_dir(out)
+        .cargo_metadata(false);
+    let mut command = build.get_compiler().to_command();
+    command.current_dir(ROOT);
+    command
+}
+
+/// A Python of its own with the packages, made when it is not there.
+fn python(folder: &Path) -> Option<PathBuf> {
+    let python = folder.join("bin/python");
+    let works = || output(Command::new(&python).args(["-c", "import numpy, scipy, clarabel, osqp"])).is_ok();
+    if !works() {
+        let made = output(Command::new("python3").args(["-m", "venv"]).arg(folder));
+        let install = ["-m", "pip", "install", "--quiet", "--disable-pip-version-check"];
+        let filled = made.and_then(|_| output(Command::new(&python).args(install).args(PACKAGES)));
+        if let Err(why) = filled {
+            println!("    no Clarabel and OSQP: {why}");
+            return None;
+        }
+    }
+    works().then_some(python)
+}
