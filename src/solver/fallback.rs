@@ -78,7 +78,7 @@ mod tests {
     use super::*;
     use crate::error::{Error, Kind};
     use crate::qp::Counts;
-    use crate::solver::solve::{tests::two_springs, Certifier};
+    use crate::solver::solve::tests::two_springs;
 
     fn ended(verdict: Verdict, products: usize) -> Solution {
         let counts = Counts { products, ..Counts::default() };
@@ -112,9 +112,8 @@ mod tests {
     fn a_run_that_met_its_limit_of_steps_is_completed_directly_unless_that_is_switched_off() {
         for (limit, verdict) in [(1000, Verdict::Solved), (0, Verdict::StepLimit)] {
             two_springs(0.1, |judge, qp, direct, rough| {
-                let mut judge = Certifier { data: judge.data.clone(), ..*judge };
                 let ended = Solution { verdict: Verdict::StepLimit, ..rough.clone() };
-                let done = or_directly(ended, qp, Direct { limit, ..direct }, &mut judge).unwrap();
+                let done = or_directly(ended, qp, Direct { limit, ..direct }, judge).unwrap();
                 assert_eq!(done.verdict, verdict);
                 assert_eq!(done.x[0] == 2.0, verdict == Verdict::Solved);
             });

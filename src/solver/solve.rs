@@ -40,7 +40,7 @@ impl Problem {
         let solving = Instant::now();
         let ready = self.ready()?;
         let dual = Scaled::new(self, ready, &watch.stops)?;
-        let mut judge = Certifier { ready, scaled: &dual, data: self.data()? };
+        let mut judge = Certifier { ready, scaled: &dual, data: self.data()?, accepted: None };
         let f = watch.operator(ready, &dual.gaps.bounded);
         let (qp, start, direct) = (dual.qp(ready, &f), start.scaled(ready)?, self.direct(ready));
         let solution = match parameters(&self.settings) {
@@ -165,6 +165,15 @@ pub(super) struct Certifier<'a> {
     pub ready: &'a Ready,
     pub scaled: &'a Scaled,
     pub data: Data<'a>,
+    /// The last point accepted, with its answer.
+    pub accepted: Option<Accepted>,
+}
+
+/// A point (x, alpha) of the dual whose answer has passed.
+pub(super) struct Accepted {
+    point: (Vec<f64>, Vec<f64>),
+    recovered: Recovered,
+    certificate: Certificate,
 }
 
 /// What a solve ends with.
@@ -201,10 +210,21 @@ impl Certifier<'_> {
         Recovered { u, lambda, mu }
     }
 
-    pub fn ending(&self, solution: Solution) -> Result<Ending> {
-        let recovered = self.recover(&solution.x, &solution.alpha)?;
-        let certificate = certify(&self.data, recovered.view());
+    /// The answer of a solution; that of the point just accepted is there already.
+    pub fn ending(&mut self, solution: Solution) -> Result<Ending> {
+        let known = self.accepted.take();
+        let known = known.filter(|known| known.point.0 == solution.x && known.point.1 == solution.alpha);
+        let (recovered, certificate) = match known {
+            Some(known) => (known.recovered, known.certificate),
+            None => self.certified(&solution.x, &solution.alpha)?,
+        };
         Ok(Ending { solution, recovered, certificate })
+    }
+
+    fn certified(&self, x: &[f64], alpha: &[f64]) -> Result<(Recovered, Certificate)> {
+        let recovered = self.recover(x, alpha)?;
+        let certificate = certify(&self.data, recovered.view());
+        Ok((recovered, certificate))
     }
 }
 
@@ -217,7 +237,13 @@ impl Judge for Certifier<'_> {
     }
 
     fn accepts(&mut self, x: &[f64], alpha: &[f64]) -> Result<bool> {
-        Ok(certify(&self.data, self.recover(x, alpha)?.view()).passed())
+        let (recovered, certificate) = self.certified(x, alpha)?;
+        let passed = certificate.passed();
+        if passed {
+            let point = (copied(x, "forces")?, copied(alpha, "amplitudes")?);
+            self.accepted = Some(Accepted { point, recovered, certificate });
+        }
+        Ok(passed)
     }
 }
 
@@ -248,7 +274,7 @@ pub(super) mod tests {
 
     /// Springs 1 and 1 pushed by 3 and 1 against walls at 1 and 2, each a body; `work` gets an answer whose first
     /// force, 2, is wrong by the factor 1 + `error`.
-    pub fn two_springs(error: f64, work: impl Fn(&Certifier, Qp, Direct, &Solution)) {
+    pub fn two_springs(error: f64, work: impl Fn(&mut Certifier, Qp, Direct, &Solution)) {
         let mut problem = Problem::new();
         for load in [3.0, 1.0] {
             let body = problem.add_body(1).unwrap();
@@ -266,14 +292,25 @@ pub(super) mod tests {
                 problem.set_up(watch)?;
                 let ready = problem.ready()?;
                 let dual = Scaled::new(problem, ready, &watch.stops)?;
-                let judge = Certifier { ready, scaled: &dual, data: problem.data()? };
+                let mut judge = Certifier { ready, scaled: &dual, data: problem.data()?, accepted: None };
                 let scale = 3.0;
                 let (x, verdict) = (vec![2.0 * (1.0 + error), 0.0], Verdict::Solved);
                 let solved =
                     Solution { x, alpha: vec![], undetermined: 0, scale, verdict, counts: Counts::default() };
-                work(&judge, dual.qp(ready, &ready.dual), problem.direct(ready), &solved);
+                work(&mut judge, dual.qp(ready, &ready.dual), problem.direct(ready), &solved);
                 Ok(())
             })
             .unwrap();
+    }
+
+    #[test]
+    fn a_solution_ends_with_its_own_answer_whatever_has_been_accepted_before() {
+        two_springs(1e-6, |judge, _, _, solved| {
+            assert!(judge.accepts(&solved.x, &solved.alpha).unwrap());
+            let other = Solution { x: vec![2.0, 0.0], ..solved.clone() };
+            assert_eq!(judge.ending(other).unwrap().recovered.lambda, [2.0, 0.0]);
+            assert!(judge.accepts(&solved.x, &solved.alpha).unwrap());
+            assert_eq!(judge.ending(solved.clone()).unwrap().recovered.lambda, solved.x);
+        });
     }
 }
