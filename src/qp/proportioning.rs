@@ -102,8 +102,8 @@ pub struct Solution {
 
 /// A part of e below this that no x balances is reported as marginal, not as a load that is not held.
 const MARGINAL: f64 = 1e-7;
-/// ... and a part this small is a rounding error.
-const ROUNDING: f64 = 1e-12;
+/// ... and a part this small may be a rounding error: of loads far larger than their resultants.
+const ROUNDING: f64 = 1e-10;
 /// How often the tolerance is tightened when the judge does not accept.
 const TIGHTENINGS: usize = 6;
 
