@@ -9,6 +9,8 @@
 //! a process of its own; raw figures go to benches/runs. Exit code 1 when a run fails; a short figure alone leaves it 0.
 
 mod clock;
+#[path = "../../tests/support/compiler.rs"]
+mod compiler;
 mod figures;
 #[path = "../../tests/support/hand_over.rs"]
 mod hand_over;

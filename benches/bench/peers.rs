@@ -4,6 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
+use crate::compiler::compiler;
 use crate::matrix;
 use crate::problems::{Case, PEERS};
 use crate::runs::{output, Program};
@@ -27,11 +28,12 @@ impl Peers {
         let folder = Path::new(WORK).join("bench");
         fs::create_dir_all(&folder).map_err(|error| format!("{}: {error}", folder.display()))?;
         let cholmod = folder.join("cholmod");
-        output(compiler(&folder).args(["-std=c99", "benches/bench/cholmod.c", "-o"]).arg(&cholmod).args([
-            "-lcholmod",
-            "-lm",
-            "-ldl",
-        ]))?;
+        output(
+            compiler("gcc", &folder)
+                .args(["-std=c99", "benches/bench/cholmod.c", "-o"])
+                .arg(&cholmod)
+                .args(["-lcholmod", "-lm", "-ldl"]),
+        )?;
         let python = if packages { python(&folder.join("python")) } else { None };
         Ok(Self { folder, cholmod, python })
     }
@@ -91,23 +93,6 @@ impl Peers {
             }
         }
     }
-}
-
-/// gcc as the crate `cc` calls it, outside a build script: everything it would take from cargo is given.
-fn compiler(out: &Path) -> Command {
-    let triple = format!("{}-unknown-linux-gnu", std::env::consts::ARCH);
-    let mut build = cc::Build::new();
-    build
-        .compiler("gcc")
-        .target(&triple)
-        .host(&triple)
-        .opt_level(2)
-        .debug(false)
-        .out_dir(out)
-        .cargo_metadata(false);
-    let mut command = build.get_compiler().to_command();
-    command.current_dir(ROOT);
-    command
 }
 
 /// A Python of its own with the packages, made when it is not there.

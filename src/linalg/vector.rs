@@ -40,3 +40,13 @@ pub fn ratio(part: f64, whole: f64) -> f64 {
 pub fn first_non_finite(x: &[f64]) -> Option<usize> {
     x.iter().position(|v| !v.is_finite())
 }
+
+/// The power of two below x > 0, 1 where x is no normal number: to divide by it is exact.
+pub fn power_of_two_below(x: f64) -> f64 {
+    const EXPONENT: u64 = 0x7ff0_0000_0000_0000;
+    if x.is_normal() {
+        f64::from_bits(x.to_bits() & EXPONENT)
+    } else {
+        1.0
+    }
+}

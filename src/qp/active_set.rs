@@ -75,7 +75,7 @@ pub fn settle<'a>(qp: Qp<'a>, direct: Direct<'a>, from: &Solution) -> Result<Att
         Err(error) if error.kind == Kind::Memory => (None, None),
         Err(error) => (None, Some(Verdict::of_refusal(error)?)),
     };
-    run.coarse.select(&at_bound(&qp, &run.x))?;
+    run.coarse.select(&qp.at_bound(&run.x))?;
     let counts = Counts {
         coarse_solves: run.coarse.solves,
         coarse_factorisations: run.coarse.factorisations,
@@ -84,11 +84,6 @@ pub fn settle<'a>(qp: Qp<'a>, direct: Direct<'a>, from: &Solution) -> Result<Att
     let undetermined = run.coarse.deficiency();
     let settled = settled.map(|face| Settled { x: run.x, alpha: run.alpha, undetermined, face });
     Ok(Attempt { settled, counts, ended })
-}
-
-/// Bounded rows at zero.
-fn at_bound(qp: &Qp, x: &[f64]) -> Vec<bool> {
-    x.iter().zip(qp.bounded).map(|(x, bounded)| *bounded && *x <= 0.0).collect()
 }
 
 struct Run<'a> {
@@ -111,7 +106,7 @@ impl<'a> Run<'a> {
     fn new(qp: Qp<'a>, direct: Direct<'a>, from: &Solution) -> Result<Self> {
         Ok(Self {
             coarse: Coarse::new(qp.g_transposed)?,
-            active: at_bound(&qp, &from.x),
+            active: qp.at_bound(&from.x),
             x: from.x.clone(),
             alpha: from.alpha.clone(),
             r: vec![0.0; from.x.len()],
@@ -228,6 +223,6 @@ impl<'a> Run<'a> {
             axpy(1.0 / step, &found.multiplier, &mut self.alpha);
             return Ok(Some(self.active.clone()));
         }
-        Ok(Some(at_bound(&self.qp, &found.point)))
+        Ok(Some(self.qp.at_bound(&found.point)))
     }
 }

@@ -1,7 +1,7 @@
 //! Directions kept with their images, conjugate to each other: `p_i'A p_j = sigma` for i = j, else 0. They lie
 //! on the present face and in the kernel of G, so that theta is minimised over their span without any product.
 
-use crate::linalg::vector::{axpy, dot, norm, norm_max};
+use crate::linalg::vector::{axpy, dot, norm, norm_max, power_of_two_below};
 
 /// More directions than this cost more than the products they save.
 pub const MOST: usize = 100;
@@ -90,11 +90,6 @@ impl Conjugate {
         self.pairs.pop();
         self.pairs.iter_mut().for_each(|(p, _)| p[i] = 0.0);
     }
-}
-
-fn power_of_two_below(x: f64) -> f64 {
-    const EXPONENT: u64 = 0x7ff0_0000_0000_0000;
-    f64::from_bits(x.to_bits() & EXPONENT)
 }
 
 #[cfg(test)]

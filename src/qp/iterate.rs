@@ -92,8 +92,7 @@ impl<'a> Iterate<'a> {
 
     /// Active set, multiplier and the two parts (22)-(23) of the projected gradient.
     fn split(&mut self) -> Result<()> {
-        let m = self.x.len();
-        (0..m).for_each(|i| self.active[i] = self.qp.bounded[i] && self.x[i] <= 0.0);
+        self.active = self.qp.at_bound(&self.x);
         self.split_on_face()
     }
 

@@ -41,6 +41,13 @@ pub struct Qp<'a> {
     pub preconditioner: Option<&'a dyn Preconditioner>,
 }
 
+impl Qp<'_> {
+    /// (21): bounded rows of x at zero.
+    pub fn at_bound(&self, x: &[f64]) -> Vec<bool> {
+        x.iter().zip(self.bounded).map(|(x, bounded)| *bounded && *x <= 0.0).collect()
+    }
+}
+
 /// An approximation of the inverse of A on a face.
 pub trait Preconditioner {
     /// `z = M_F r` for the rows that are not held; 0 on the others.

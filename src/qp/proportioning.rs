@@ -140,8 +140,7 @@ pub fn minimise(
 /// face has one.
 fn first_point(qp: &Qp, coarse: &mut Coarse, start: &[f64]) -> Result<Option<Vec<f64>>> {
     if start.iter().any(|x| *x != 0.0) {
-        let zeros: Vec<bool> =
-            start.iter().zip(qp.bounded).map(|(x, bounded)| *bounded && *x <= 0.0).collect();
+        let zeros = qp.at_bound(start);
         if let Some(first) = project(qp, coarse, start, &zeros)? {
             return Ok(Some(first.point));
         }

@@ -10,6 +10,7 @@ use crate::constraints::RowKind;
 use crate::dual::{constrained, Boundary, Dual, Part, Preconditioner};
 use crate::error::{Error, Kind, Result};
 use crate::linalg::memory::available;
+use crate::linalg::vector::power_of_two_below;
 use crate::linalg::{Operator, Symmetric};
 use crate::solver::diagnosis::empty_row_contradicts;
 use crate::solver::paper;
@@ -94,13 +95,7 @@ impl Problem {
     /// is exact, so powers of two in the host's units do not change a bit of what follows.
     pub(super) fn unit(&self) -> f64 {
         let stiffness = self.bodies.iter().filter_map(|slot| slot.body.stiffness.as_ref());
-        let largest = stiffness.map(|k| k.largest_diagonal()).fold(0.0, f64::max);
-        const EXPONENT: u64 = 0x7ff0_0000_0000_0000;
-        if largest.is_normal() {
-            f64::from_bits(largest.to_bits() & EXPONENT)
-        } else {
-            1.0
-        }
+        power_of_two_below(stiffness.map(|k| k.largest_diagonal()).fold(0.0, f64::max))
     }
 
     /// K+ of the bodies that have none for this unit.

@@ -10,6 +10,11 @@ use std::sync::OnceLock;
 
 use flate2::read::GzDecoder;
 
+#[path = "../support/compiler.rs"]
+mod compiler;
+
+use compiler::compiler;
+
 const ROOT: &str = env!("CARGO_MANIFEST_DIR");
 const WORK: &str = env!("CARGO_TARGET_TMPDIR");
 
@@ -51,24 +56,6 @@ fn entries(folder: &Path) -> Vec<PathBuf> {
     let mut paths: Vec<PathBuf> = list.map(|entry| entry.expect("entry of a folder").path()).collect();
     paths.sort();
     paths
-}
-
-/// A compiler call as the crate `cc` makes it, outside a build script: everything it would take from cargo is given.
-fn compiler(name: &str, out: &Path) -> Command {
-    fs::create_dir_all(out).expect("folder for objects");
-    let triple = format!("{}-unknown-linux-gnu", std::env::consts::ARCH);
-    let mut build = cc::Build::new();
-    build
-        .compiler(name)
-        .target(&triple)
-        .host(&triple)
-        .opt_level(2)
-        .debug(false)
-        .out_dir(out)
-        .cargo_metadata(false);
-    let mut command = build.get_compiler().to_command();
-    command.current_dir(ROOT);
-    command
 }
 
 /// Runs a command to its end; it must succeed.
