@@ -29,6 +29,7 @@ const PER_ROW: usize = 96;
 /// Checks and converts a sparse matrix. Full storage is accepted when
 /// `|K_ij - K_ji| <= tolerance sqrt(K_ii K_jj)`, and averaged.
 pub fn from_sparse(input: SparseInput<'_>, tolerance: f64) -> Result<Symmetric> {
+    check_order(input.ptr.len() - 1)?;
     let _room = room(input.ptr.len() * PER_ROW, "a stiffness matrix")?;
     let rows = sorted(input)?;
     symmetric(match input.storage {
@@ -40,6 +41,7 @@ pub fn from_sparse(input: SparseInput<'_>, tolerance: f64) -> Result<Symmetric> 
 
 /// Checks and converts a column-major n x n matrix with leading dimension `ld`; zeros are not stored.
 pub fn from_dense(n: usize, k: &[f64], ld: usize, storage: Storage, tolerance: f64) -> Result<Symmetric> {
+    check_order(n)?;
     let _room = room(n * PER_ROW, "a stiffness matrix")?;
     let mut rows = Csr::empty(n);
     let stored = |i: usize| match storage {
@@ -67,6 +69,16 @@ pub fn from_dense(n: usize, k: &[f64], ld: usize, storage: Storage, tolerance: f
         Storage::Lower => rows,
         Storage::Upper => rows.transposed()?,
     })
+}
+
+/// Columns are kept in 32 bits.
+fn check_order(n: usize) -> Result<()> {
+    let limit = u32::MAX as usize;
+    if n <= limit {
+        return Ok(());
+    }
+    let what = format!("a body of {n} unknowns has more than {limit}");
+    Err(Error::new(Kind::Overflow, what).value(n as f64).limit(limit as f64))
 }
 
 /// Room for the entries of a matrix that has none yet.
@@ -182,11 +194,11 @@ fn symmetric(lower: Csr) -> Result<Symmetric> {
     k.ptr.push(0);
     for i in 0..n {
         for (j, v) in lower.row(i) {
-            k.col.push(j);
+            k.col.push(j as u32);
             k.val.push(v);
         }
         if lower.row(i).last().is_none_or(|e| e.0 != i) {
-            k.col.push(i);
+            k.col.push(i as u32);
             k.val.push(0.0);
         }
         k.ptr.push(k.col.len());
@@ -228,6 +240,13 @@ mod tests {
             let dense = from_dense(2, &[2.0, -1.0, 9.0, -1.0, 3.0], 3, storage, 0.0).unwrap();
             assert_eq!(dense, expected);
         }
+    }
+
+    #[test]
+    fn more_unknowns_than_32_bits_count_are_refused() {
+        assert!(check_order(u32::MAX as usize).is_ok());
+        let error = check_order(1 << 32).unwrap_err();
+        assert_eq!((error.kind, error.place.value), (Kind::Overflow, Some(4294967296.0)));
     }
 
     #[test]

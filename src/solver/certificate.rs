@@ -162,8 +162,7 @@ fn forces(data: &Data, answer: Answer, metric: &[f64], certificate: &mut Certifi
         let weight = |i: usize| 1.0 / metric[body.start + i];
         let size = |v: &[f64]| weighted_norm(v, weight);
         let (mut strain, mut terms) = (vec![0.0; u.len()], vec![0.0; u.len()]);
-        body.stiffness.mul(u, &mut strain);
-        body.stiffness.mul_abs(u, &mut terms);
+        body.stiffness.mul_with_terms(u, &mut strain, &mut terms);
         let given: Vec<f64> = (0..u.len()).map(|i| f[i].abs() + push_terms[i]).collect();
         (0..u.len()).for_each(|i| terms[i] += given[i]);
         totals.strain += dot(u, &strain);

@@ -11,7 +11,7 @@ use crate::dual::{constrained, Boundary, Dual, Part, Preconditioner};
 use crate::error::{Error, Kind, Result};
 use crate::linalg::memory::available;
 use crate::linalg::vector::power_of_two_below;
-use crate::linalg::{Operator, Symmetric};
+use crate::linalg::{Multiple, Operator, Symmetric};
 use crate::solver::diagnosis::empty_row_contradicts;
 use crate::solver::paper;
 use crate::solver::problem::{Inverse, Problem};
@@ -215,7 +215,8 @@ impl Problem {
 /// What K+ of a body takes, found before it is computed.
 fn plan(body: &Body, unit: f64, tolerance: f64) -> Result<crate::body::Plan> {
     let missing = || Error::new(Kind::Internal, "a body without stiffness was set up");
-    let k = body.stiffness.as_ref().ok_or_else(missing)?.scaled(1.0 / unit)?;
+    let matrix = Arc::clone(body.stiffness.as_ref().ok_or_else(missing)?);
+    let k = Multiple { matrix, by: 1.0 / unit };
     let fixing = body.fixing.as_deref();
     if let Some(given) = &body.null_space {
         return GeneralizedInverse::plan_with(k, given, tolerance, fixing);
@@ -223,7 +224,7 @@ fn plan(body: &Body, unit: f64, tolerance: f64) -> Result<crate::body::Plan> {
     let Some(coordinates) = &body.coordinates else {
         return GeneralizedInverse::search(k, tolerance, fixing);
     };
-    let vectors = coordinates.rigid_modes(&k)?;
+    let vectors = coordinates.rigid_modes(&k.matrix)?;
     let candidates = NullSpaceInput { vectors, modes: Modes::Candidates };
     GeneralizedInverse::plan_with(k, &candidates, tolerance, fixing)
 }
