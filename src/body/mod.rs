@@ -4,6 +4,7 @@
 mod boundary;
 mod fixing;
 mod generalized_inverse;
+mod in_order;
 mod null_space;
 mod rigid_modes;
 mod search;
