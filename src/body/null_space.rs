@@ -31,40 +31,39 @@ const CANDIDATE: f64 = 1e-11;
 /// Entries that cancelled to this fraction of their terms are zero (supports of 1e30 would multiply them).
 const CANCELLED: f64 = 1e-12;
 
-/// Basis of the null space with `R'DR = I`.
-pub fn verified(k: &Multiple, input: &NullSpaceInput, tolerance: f64) -> Result<Matrix> {
+/// Basis of the null space with `R'DR = I`; `root` is `D^1/2`.
+pub fn verified(k: &Multiple, root: &[f64], input: &NullSpaceInput, tolerance: f64) -> Result<Matrix> {
     match input.modes {
-        Modes::Exact => exact(k, &input.vectors, tolerance),
+        Modes::Exact => exact(k, root, &input.vectors, tolerance),
         Modes::Candidates => {
             let kernel = kernel_within(k, &input.vectors)?;
-            exact(k, &kernel, tolerance)
+            exact(k, root, &kernel, tolerance)
         }
     }
 }
 
 /// `|A z| <= tolerance | |A| |z| |` for an orthonormal basis z of the span of `D^1/2 R`.
-fn exact(k: &Multiple, vectors: &Matrix, tolerance: f64) -> Result<Matrix> {
-    let n = k.order();
-    let root: Vec<f64> = (0..n).map(|i| k.metric(i, 1.0).sqrt()).collect();
+fn exact(k: &Multiple, root: &[f64], vectors: &Matrix, tolerance: f64) -> Result<Matrix> {
     let mut basis = vectors.clone();
     for j in 0..basis.cols {
-        basis.col_mut(j).iter_mut().zip(&root).for_each(|(v, d)| *v *= d);
+        basis.col_mut(j).iter_mut().zip(root).for_each(|(v, d)| *v *= d);
     }
     let mut basis = basis.orthonormalised(DEPENDENT);
     if basis.cols < vectors.cols {
         let what = format!("the {} vectors span {} dimensions only", vectors.cols, basis.cols);
         return Err(Error::new(Kind::NullSpace, what).value(basis.cols as f64).limit(vectors.cols as f64));
     }
-    let (mut image, mut terms) = (vec![0.0; n], vec![0.0; n]);
     for j in 0..basis.cols {
-        basis.col_mut(j).iter_mut().zip(&root).for_each(|(v, d)| *v /= d);
-        k.mul_with_terms(basis.col(j), &mut image, &mut terms);
-        let weight = |i: usize| 1.0 / k.metric(i, 1.0);
-        let found = ratio(weighted_norm(&image, weight), weighted_norm(&terms, weight));
+        basis.col_mut(j).iter_mut().zip(root).for_each(|(v, d)| *v /= d);
+    }
+    let (image, terms) = k.mul_columns(&basis)?;
+    let weight = |i: usize| 1.0 / k.metric(i, 1.0);
+    for j in 0..basis.cols {
+        let found = ratio(weighted_norm(image.col(j), weight), weighted_norm(terms.col(j), weight));
         if found.is_nan() || found > tolerance {
             let what = format!("not a null space: |K R| = {found:.1e} |K||R| exceeds {tolerance:.1e}");
             return Err(Error::new(Kind::NullSpace, what)
-                .dof(largest(&image, weight))
+                .dof(largest(image.col(j), weight))
                 .value(found)
                 .limit(tolerance));
         }
@@ -77,9 +76,8 @@ fn exact(k: &Multiple, vectors: &Matrix, tolerance: f64) -> Result<Matrix> {
 fn kernel_within(k: &Multiple, candidates: &Matrix) -> Result<Matrix> {
     let span = candidates.clone().orthonormalised(DEPENDENT);
     let n = k.order();
-    let mut image = Matrix::zeros(n, span.cols)?;
+    let (mut image, _) = k.mul_columns(&span)?;
     for j in 0..span.cols {
-        k.mul(span.col(j), image.col_mut(j));
         image.col_mut(j).iter_mut().enumerate().for_each(|(i, v)| *v /= k.metric(i, 1.0));
     }
     let mut kernel = Matrix::zeros(n, 0)?;
@@ -140,6 +138,10 @@ mod tests {
             ptr.push(col.len());
         }
         Symmetric { ptr, col, val }.into()
+    }
+
+    fn verified(k: &Multiple, input: &NullSpaceInput, tolerance: f64) -> Result<Matrix> {
+        super::verified(k, &k.roots()?, input, tolerance)
     }
 
     fn translation(n: usize, modes: Modes) -> NullSpaceInput {

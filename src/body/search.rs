@@ -198,7 +198,8 @@ impl Search {
     fn inverse(&self, factor: Cholesky, soft: &[Soft], vectors: Matrix) -> Result<GeneralizedInverse> {
         let n = self.k.order();
         let _room = room((8 * vectors.cols + 24) * n * size_of::<f64>() + PRODUCTS, "a null space")?;
-        let fixing = self.fixing_of(soft, &vectors)?;
+        let root = self.k.roots()?;
+        let fixing = self.fixing_of(soft, &vectors, &root)?;
         let parts: Vec<Trailing<'_>> = (self.last.iter().zip(soft).zip(&fixing))
             .map(|((dofs, part), held)| Trailing { dofs, schur: &part.schur, held })
             .collect();
@@ -208,25 +209,25 @@ impl Search {
         })?;
         let gap = soft.iter().map(|part| part.gap).reduce(f64::min);
         let found = NullSpaceInput { vectors, modes: Modes::Exact };
-        let null_space = verified(&self.k, &found, self.tolerance)?;
+        let null_space = verified(&self.k, &root, &found, self.tolerance)?;
         let inverse = GeneralizedInverse { null_space, fixing: fixing.concat(), gap, factor };
         inverse.probe(&self.k)?;
         Ok(inverse)
     }
 
     /// The fixing dofs of every part.
-    fn fixing_of(&self, soft: &[Soft], vectors: &Matrix) -> Result<Vec<Vec<usize>>> {
+    fn fixing_of(&self, soft: &[Soft], vectors: &Matrix, root: &[f64]) -> Result<Vec<Vec<usize>>> {
         if let Some(given) = &self.fixing {
-            let root: Vec<f64> = (0..self.k.order()).map(|i| self.k.metric(i, 1.0).sqrt()).collect();
-            let given = given_dofs(vectors, &root, given)?;
+            let given = given_dofs(vectors, root, given)?;
             let among = |last: &Vec<usize>| given.iter().copied().filter(|dof| last.contains(dof)).collect();
             return Ok(self.last.iter().map(among).collect());
         }
         let chosen = |(part, last): (&Soft, &Vec<usize>)| {
             let ones = vec![1.0; last.len()];
-            fixing_dofs(&part.vectors, &ones).into_iter().map(|at| last[at]).collect()
+            let chosen = fixing_dofs(&part.vectors, &ones)?;
+            Ok(chosen.into_iter().map(|at| last[at]).collect())
         };
-        Ok(soft.iter().zip(&self.last).map(chosen).collect())
+        soft.iter().zip(&self.last).map(chosen).collect()
     }
 }
 

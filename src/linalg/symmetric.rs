@@ -1,10 +1,14 @@
 //! Symmetric sparse matrices: the lower triangle by rows; and a multiple of one without a copy.
 
+use std::array;
 use std::sync::Arc;
 
 use crate::error::Result;
-use crate::linalg::memory::copied;
-use crate::linalg::Operator;
+use crate::linalg::memory::{copied, reserved};
+use crate::linalg::{Matrix, Operator};
+
+/// Columns that take one pass over the matrix.
+const TOGETHER: usize = 3;
 
 /// Symmetric `n x n`; row i holds the entries with column <= i, ascending, the diagonal last.
 #[derive(Debug, Clone, PartialEq)]
@@ -96,6 +100,37 @@ impl Symmetric {
         }
     }
 
+    /// The same for some columns at once, given and returned by rows; y and terms are zero.
+    fn accumulate_rows<const N: usize>(
+        &self,
+        by: f64,
+        x: &[[f64; N]],
+        y: &mut [[f64; N]],
+        terms: &mut [[f64; N]],
+    ) {
+        for i in 0..self.order() {
+            let (off, last) = (self.ptr[i], self.ptr[i + 1] - 1);
+            let (diagonal, x_i) = (by * self.val[last], x[i]);
+            let mut sum: [f64; N] = array::from_fn(|c| diagonal * x_i[c]);
+            let mut size = sum.map(f64::abs);
+            for (&j, &k_ij) in self.col[off..last].iter().zip(&self.val[off..last]) {
+                let k_ij = by * k_ij;
+                let (x_j, y_j, t_j) = (x[j as usize], &mut y[j as usize], &mut terms[j as usize]);
+                for c in 0..N {
+                    let (own, mate) = (k_ij * x_j[c], k_ij * x_i[c]);
+                    sum[c] += own;
+                    size[c] += own.abs();
+                    y_j[c] += mate;
+                    t_j[c] += mate.abs();
+                }
+            }
+            for c in 0..N {
+                y[i][c] += sum[c];
+                terms[i][c] += size[c];
+            }
+        }
+    }
+
     /// `max K_ii`
     pub fn largest_diagonal(&self) -> f64 {
         (0..self.order()).map(|i| self.diagonal(i)).fold(0.0, f64::max)
@@ -145,6 +180,13 @@ impl Multiple {
         }
     }
 
+    /// Square roots of the metric, 1 for a dof that has no stiffness.
+    pub fn roots(&self) -> Result<Vec<f64>> {
+        let mut roots = reserved(self.order(), "the metric of a body")?;
+        roots.extend((0..self.order()).map(|i| self.metric(i, 1.0).sqrt()));
+        Ok(roots)
+    }
+
     /// As that of the matrix.
     pub fn mul(&self, x: &[f64], y: &mut [f64]) {
         self.matrix.accumulate(self.by, x, y);
@@ -153,6 +195,31 @@ impl Multiple {
     /// As that of the matrix.
     pub fn mul_with_terms(&self, x: &[f64], y: &mut [f64], terms: &mut [f64]) {
         self.matrix.accumulate_with_terms(self.by, x, y, terms);
+    }
+
+    /// `by K X` and `|by K| |X|` of the columns of X, n x r each.
+    pub fn mul_columns(&self, x: &Matrix) -> Result<(Matrix, Matrix)> {
+        const WHAT: &str = "products with a stiffness matrix";
+        let (mut y, mut terms) = (Matrix::zeros(x.rows, x.cols)?, Matrix::zeros(x.rows, x.cols)?);
+        let mut rows: [Vec<[f64; TOGETHER]>; 3] =
+            [reserved(x.rows, WHAT)?, reserved(x.rows, WHAT)?, reserved(x.rows, WHAT)?];
+        for first in (0..x.cols).step_by(TOGETHER) {
+            let columns = first..x.cols.min(first + TOGETHER);
+            rows.iter_mut().for_each(|rows| {
+                rows.clear();
+                rows.resize(x.rows, [0.0; TOGETHER]);
+            });
+            let [given, image, sizes] = &mut rows;
+            for (c, j) in columns.clone().enumerate() {
+                given.iter_mut().zip(x.col(j)).for_each(|(row, v)| row[c] = *v);
+            }
+            self.matrix.accumulate_rows(self.by, given, image, sizes);
+            for (c, j) in columns.enumerate() {
+                y.col_mut(j).iter_mut().zip(image.iter()).for_each(|(v, row)| *v = row[c]);
+                terms.col_mut(j).iter_mut().zip(sizes.iter()).for_each(|(v, row)| *v = row[c]);
+            }
+        }
+        Ok((y, terms))
     }
 }
 
@@ -194,6 +261,21 @@ mod tests {
             for i in 0..3 {
                 assert_eq!(multiple.metric(i, 1.0), copy.metric(i, 1.0));
                 assert!(multiple.lower_row(i).eq(copy.lower_row(i)));
+            }
+        }
+    }
+
+    #[test]
+    fn products_with_many_columns_have_the_bits_of_those_with_one() {
+        let multiple = Multiple { by: 0.25, ..chain().into() };
+        for cols in [0, 1, TOGETHER, 2 * TOGETHER + 1] {
+            let mut x = Matrix::zeros(3, cols).unwrap();
+            x.data.iter_mut().enumerate().for_each(|(at, v)| *v = (at as f64).sin());
+            let (y, terms) = multiple.mul_columns(&x).unwrap();
+            let (mut image, mut sizes) = ([0.0; 3], [0.0; 3]);
+            for j in 0..cols {
+                multiple.mul_with_terms(x.col(j), &mut image, &mut sizes);
+                assert_eq!((y.col(j), terms.col(j)), (&image[..], &sizes[..]));
             }
         }
     }
