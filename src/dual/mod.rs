@@ -39,6 +39,16 @@ struct Subdomain {
     operator: Packed,
 }
 
+impl Subdomain {
+    /// `F_p x` over the rows of the body; `local` gets the forces on them.
+    fn image(&self, x: &[f64], local: &mut Vec<f64>, image: &mut Vec<f64>) {
+        local.clear();
+        local.extend(self.rows.iter().map(|&i| x[i]));
+        image.resize(local.len(), 0.0);
+        self.operator.apply(local, image);
+    }
+}
+
 pub struct Dual {
     subdomains: Vec<Subdomain>,
     /// C, one entry per row of B, no unit.
@@ -103,15 +113,40 @@ impl Dual {
         self.subdomains[p].modes.clone()
     }
 
-    /// `d = B K+ f - c` of (13).
-    pub fn rhs(&self, f: &[f64], c: &[f64]) -> Result<Vec<f64>> {
-        let mut d: Vec<f64> = c.iter().map(|c| -c).collect();
+    /// `B_p K_p+ f_p` of every body over the rows that touch it: what loads alone move.
+    pub fn moved(&self, f: &[f64]) -> Result<Vec<Vec<f64>>> {
+        let mut moved = Vec::with_capacity(self.subdomains.len());
         for s in &self.subdomains {
             let mut x = zeros(s.range.len(), "a displacement")?;
             s.kplus.apply(&f[s.range.clone()], &mut x)?;
-            s.rows.iter().enumerate().for_each(|(k, &i)| d[i] += s.matrix.row_dot(k, &x));
+            moved.push((0..s.rows.len()).map(|k| s.matrix.row_dot(k, &x)).collect());
         }
-        Ok(d)
+        Ok(moved)
+    }
+
+    /// `d = B K+ f - c` of (13), of what the loads move.
+    pub fn rhs(&self, moved: &[Vec<f64>], c: &[f64]) -> Vec<f64> {
+        let mut d: Vec<f64> = c.iter().map(|c| -c).collect();
+        for (s, moved) in self.subdomains.iter().zip(moved) {
+            s.rows.iter().zip(moved).for_each(|(&i, v)| d[i] += v);
+        }
+        d
+    }
+
+    /// `sum_p |B_p u_p|`, row by row: how far the bodies move along the rows at (x, alpha), by
+    /// `B_p u_p = B_p K_p+ f_p - F_p x + G_p'alpha`. The same for every choice of K+.
+    pub fn distances(&self, moved: &[Vec<f64>], x: &[f64], alpha: &[f64]) -> Vec<f64> {
+        let mut distances = vec![0.0; x.len()];
+        let (mut local, mut image) = (Vec::new(), Vec::new());
+        for (s, moved) in self.subdomains.iter().zip(moved) {
+            s.image(x, &mut local, &mut image);
+            for ((&i, moved), image) in s.rows.iter().zip(moved).zip(&image) {
+                let own = self.coarse.row(i).filter(|(mode, _)| s.modes.contains(mode));
+                let turned: f64 = own.map(|(mode, g)| g * alpha[mode]).sum();
+                distances[i] += (moved - image + turned).abs();
+            }
+        }
+        distances
     }
 
     /// The right-hand side of `G lambda = e` in (12), `e = R'f`; what rounding alone would leave of a load in balance is zero.
@@ -163,10 +198,7 @@ impl Operator for Dual {
         y.iter_mut().zip(x).zip(&self.compliance).for_each(|((y, x), c)| *y = c * x);
         let (mut local, mut image) = (Vec::new(), Vec::new());
         for s in &self.subdomains {
-            local.clear();
-            local.extend(s.rows.iter().map(|&i| x[i]));
-            image.resize(local.len(), 0.0);
-            s.operator.apply(&local, &mut image);
+            s.image(x, &mut local, &mut image);
             s.rows.iter().zip(&image).for_each(|(&i, v)| y[i] += v);
         }
     }

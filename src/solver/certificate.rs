@@ -33,6 +33,9 @@ pub struct Certificate {
     pub complementarity: Entry,
     /// `|u'K u - f'u + c'lambda + h'mu + lambda'C lambda + mu'C mu|`
     pub duality_gap: Entry,
+    /// `1/2 u'K u - f'u + 1/2 lambda'C lambda + 1/2 mu'C mu`, force x length: what is minimised, springs of compliant rows
+    /// included.
+    pub energy: f64,
 }
 
 impl Certificate {
@@ -123,6 +126,7 @@ pub fn certify(data: &Data, answer: Answer) -> Certificate {
     certificate.complementarity = energies(gaps.complementarity, size, gaps.worst_pair);
     let gap = totals.strain - totals.work + gaps.constrained;
     certificate.duality_gap = energies(gap.abs(), totals.strain.abs() + size, None);
+    certificate.energy = 0.5 * totals.strain - totals.work + 0.5 * gaps.stored;
     certificate
 }
 

@@ -67,7 +67,7 @@ impl Point {
         let left = rows.decoupling.solve(left);
         let mut gaps = vec![0.0; self.x.len()];
         face.rows().iter().for_each(|&i| gaps[i] = left[i] + rows.compliance[i] * self.x[i]);
-        let d = dual.rhs(&load, &gaps)?;
+        let d = dual.rhs(&dual.moved(&load)?, &gaps);
         let force = face.rows().iter().map(|&i| d[i]).collect();
         let (step, turn) = face.solve(force, &dual.resultants(&load))?;
         let mut forces = vec![0.0; self.x.len()];

@@ -6,7 +6,7 @@ use crate::constraints::RowKind;
 use crate::dual::Preconditioner;
 use crate::error::{Error, Kind, Result};
 use crate::linalg::memory::copied;
-use crate::linalg::vector::weighted_norm;
+use crate::linalg::vector::norm;
 use crate::linalg::Operator;
 use crate::qp::paper::Units;
 use crate::qp::{self, Direct, Judge, Qp, Solution, Verdict};
@@ -120,6 +120,8 @@ pub(super) struct Scaled {
     /// f / 2^p
     pub load: Vec<f64>,
     pub gaps: Gaps,
+    /// `B_p K_p+ f_p` of every body.
+    moved: Vec<Vec<f64>>,
     d: Vec<f64>,
     e: Vec<f64>,
 }
@@ -129,9 +131,10 @@ impl Scaled {
         let mut load = problem.loads()?;
         load.iter_mut().for_each(|f| *f /= ready.unit);
         let gaps = presolve(problem, ready, stops)?;
-        let d = ready.dual.rhs(&load, &gaps.dual)?;
+        let moved = ready.dual.moved(&load)?;
+        let d = ready.dual.rhs(&moved, &gaps.dual);
         let e = ready.dual.resultants(&load);
-        Ok(Self { load, gaps, d, e })
+        Ok(Self { load, gaps, moved, d, e })
     }
 
     fn qp<'a>(&'a self, ready: &'a Ready, a: &'a dyn Operator) -> Qp<'a> {
@@ -229,11 +232,10 @@ impl Certifier<'_> {
 }
 
 impl Judge for Certifier<'_> {
-    /// `||B'||u|| + |c'|`: lengths, whatever the choice of K+.
+    /// `|sum_p |B'_p u_p|| + |c'|`: lengths, whatever the choice of K+.
     fn scale(&mut self, x: &[f64], alpha: &[f64]) -> Result<f64> {
-        let u = self.displacement(x, alpha)?;
-        let moved: Vec<f64> = (0..x.len()).map(|i| self.ready.rows.matrix.row_dot_abs(i, &u)).collect();
-        Ok(weighted_norm(&moved, |_| 1.0) + weighted_norm(&self.scaled.gaps.dual, |_| 1.0))
+        let distances = self.ready.dual.distances(&self.scaled.moved, x, alpha);
+        Ok(norm(&distances) + norm(&self.scaled.gaps.dual))
     }
 
     fn accepts(&mut self, x: &[f64], alpha: &[f64]) -> Result<bool> {
