@@ -113,18 +113,19 @@ impl Dual {
         self.subdomains[p].modes.clone()
     }
 
-    /// `B_p K_p+ f_p` of every body over the rows that touch it: what loads alone move.
-    pub fn moved(&self, f: &[f64]) -> Result<Vec<Vec<f64>>> {
-        let mut moved = Vec::with_capacity(self.subdomains.len());
-        for s in &self.subdomains {
-            let mut x = zeros(s.range.len(), "a displacement")?;
-            s.kplus.apply(&f[s.range.clone()], &mut x)?;
-            moved.push((0..s.rows.len()).map(|k| s.matrix.row_dot(k, &x)).collect());
-        }
-        Ok(moved)
+    pub fn bodies(&self) -> usize {
+        self.subdomains.len()
     }
 
-    /// `d = B K+ f - c` of (13), of what the loads move.
+    /// `B_p K_p+ f_p` over the rows that touch body p: what its load alone moves.
+    pub fn moved(&self, p: usize, f: &[f64]) -> Result<Vec<f64>> {
+        let s = &self.subdomains[p];
+        let mut x = zeros(s.range.len(), "a displacement")?;
+        s.kplus.apply(&f[s.range.clone()], &mut x)?;
+        Ok((0..s.rows.len()).map(|k| s.matrix.row_dot(k, &x)).collect())
+    }
+
+    /// `d = B K+ f - c` of (13), from what the loads move, body by body.
     pub fn rhs(&self, moved: &[Vec<f64>], c: &[f64]) -> Vec<f64> {
         let mut d: Vec<f64> = c.iter().map(|c| -c).collect();
         for (s, moved) in self.subdomains.iter().zip(moved) {
@@ -162,15 +163,13 @@ impl Dual {
         e
     }
 
-    /// `u = K+ f + R alpha`, over all unknowns: (17) for the load f that the forces of the rows leave; (16) on bodies
-    /// that are held, where K+ = K^-1.
-    pub fn displacement(&self, f: &[f64], alpha: &[f64]) -> Result<Vec<f64>> {
-        let mut u = zeros(f.len(), "a displacement")?;
-        for s in &self.subdomains {
-            let u = &mut u[s.range.clone()];
-            s.kplus.apply(&f[s.range.clone()], u)?;
-            s.kplus.null_space.mul_add(1.0, &alpha[s.modes.clone()], u);
-        }
+    /// `u_p = K_p+ f_p + R_p alpha_p` of body p: (17) for the load f that the forces of the rows leave; (16) where it is
+    /// held, K+ = K^-1. The load and alpha are those of all bodies.
+    pub fn displacement(&self, p: usize, f: &[f64], alpha: &[f64]) -> Result<Vec<f64>> {
+        let s = &self.subdomains[p];
+        let mut u = zeros(s.range.len(), "a displacement")?;
+        s.kplus.apply(&f[s.range.clone()], &mut u)?;
+        s.kplus.null_space.mul_add(1.0, &alpha[s.modes.clone()], &mut u);
         Ok(u)
     }
 

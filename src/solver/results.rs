@@ -202,11 +202,11 @@ impl Problem {
     pub fn dual_rhs(&mut self, d: &mut [f64]) -> Result<()> {
         self.check_rows(d.len())?;
         self.setup()?;
-        let mut load = self.loads()?;
+        let (mut load, threads) = (self.loads()?, self.threads());
         let ready = self.ready()?;
         let rows = &ready.rows;
         load.iter_mut().for_each(|f| *f /= ready.unit);
-        let moved = ready.dual.rhs(&ready.dual.moved(&load)?, &vec![0.0; rows.groups()]);
+        let moved = ready.dual.rhs(&ready.moved(threads, &load)?, &vec![0.0; rows.groups()]);
         let moved = rows.decoupling.apply(&moved);
         let gaps = self.contact.rhs.iter().chain(&self.equalities.rhs);
         d.iter_mut().zip(gaps).for_each(|(d, c)| *d = -c);

@@ -9,7 +9,7 @@ use crate::body::{dirichlet, dirichlet_bytes, lumped, Body, GeneralizedInverse, 
 use crate::constraints::RowKind;
 use crate::dual::{constrained, Boundary, Dual, Part, Preconditioner};
 use crate::error::{Error, Kind, Result};
-use crate::linalg::memory::available;
+use crate::linalg::memory::{available, reserved};
 use crate::linalg::vector::power_of_two_below;
 use crate::linalg::{Multiple, Operator, Symmetric};
 use crate::solver::diagnosis::empty_row_contradicts;
@@ -140,8 +140,8 @@ impl Problem {
         available(more.saturating_add(operators), "factors and dual operators")
     }
 
-    /// Threads of the setup; a problem so small that waking them costs more than the work gets one.
-    fn threads(&self) -> usize {
+    /// Threads to use; a problem so small that waking them costs more than the work gets one.
+    pub(super) fn threads(&self) -> usize {
         const SMALL: usize = 1000;
         if self.counts().dofs < SMALL {
             1
@@ -209,6 +209,21 @@ impl Problem {
             Ok(Boundary { dofs: local.iter().map(|j| j + ranges[p].start).collect(), stiffness })
         })?;
         Preconditioner::new(&ready.rows.matrix, ready.rows.compliance.clone(), &ready.rows.metric, boundaries)
+    }
+}
+
+impl Ready {
+    /// `B_p K_p+ f_p` of every body.
+    pub fn moved(&self, threads: usize, f: &[f64]) -> Result<Vec<Vec<f64>>> {
+        threads::run(threads, self.dual.bodies(), |p| self.dual.moved(p, f))
+    }
+
+    /// `u = K+ f + R alpha`, over all unknowns.
+    pub fn displacement(&self, threads: usize, f: &[f64], alpha: &[f64]) -> Result<Vec<f64>> {
+        let bodies = threads::run(threads, self.dual.bodies(), |p| self.dual.displacement(p, f, alpha))?;
+        let mut all = reserved(f.len(), "a displacement")?;
+        bodies.iter().for_each(|u| all.extend_from_slice(u));
+        Ok(all)
     }
 }
 
