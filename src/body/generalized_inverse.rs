@@ -11,12 +11,15 @@ use crate::error::{Error, Kind, Result};
 use crate::linalg::memory::{room, zeros, PRODUCTS};
 use crate::linalg::reach::inverse_form;
 use crate::linalg::vector::weighted_norm;
-use crate::linalg::{Analysis, Breakdown, Cholesky, Csr, Matrix, Packed, Symmetric};
+use crate::linalg::{Analysis, Breakdown, Cholesky, Csr, Matrix, Multiple, Packed};
 
 /// A pivot below minus this, relative to its diagonal entry, is no rounding error: a(u, u) >= 0 of (4) is violated.
 const NEGATIVE_PIVOT: f64 = 1e-10;
 /// K with the dofs held is singular when some v has `|A v|` below this against `| |A| |v| |`.
 pub(super) const SINGULAR: f64 = 1e-13;
+/// Random numbers have `n^-1/2` of their length along a given direction; this many times less is not expected. (A mode
+/// that is missing is left with 1e-16 by rounding, far below `SINGULAR`: there it would take a thousand times less still.)
+const UNLIKELY: f64 = 1e3;
 /// Largest residual of a solve with the factor, relative to its terms.
 const PROBE: f64 = 1e-8;
 
@@ -38,43 +41,43 @@ pub enum Plan {
 
 /// The null space is known before the factorisation.
 pub struct Known {
-    k: Symmetric,
+    k: Multiple,
     null_space: Matrix,
     fixing: Vec<usize>,
     analysis: Arc<Analysis>,
 }
 
 impl GeneralizedInverse {
-    /// Null space, fixing dofs and symbolic analysis of `k` (scaled so that its largest diagonal entry is in
+    /// Null space, fixing dofs and symbolic analysis of `k` (a multiple with its largest diagonal entry in
     /// [1, 2)).
-    pub fn plan(k: Symmetric, input: &NullSpaceInput, tolerance: f64) -> Result<Plan> {
+    pub fn plan(k: Multiple, input: &NullSpaceInput, tolerance: f64) -> Result<Plan> {
         Self::plan_with(k, input, tolerance, None)
     }
 
     /// The same with the dofs to hold in K+, where the host has given them.
     pub fn plan_with(
-        k: Symmetric,
+        k: Multiple,
         input: &NullSpaceInput,
         tolerance: f64,
         fixing: Option<&[usize]>,
     ) -> Result<Plan> {
         let per_dof = (8 * input.vectors.cols + 24) * size_of::<f64>();
         let _room = room(k.order() * per_dof + PRODUCTS, "the null space of a body")?;
-        let null_space = verified(&k, input, tolerance)?;
-        let root: Vec<f64> = (0..k.order()).map(|i| k.metric(i, 1.0).sqrt()).collect();
+        let root = k.roots()?;
+        let null_space = verified(&k, &root, input, tolerance)?;
         let fixing = match fixing {
             Some(given) => given_dofs(&null_space, &root, given)?,
-            None => fixing_dofs(&null_space, &root),
+            None => fixing_dofs(&null_space, &root)?,
         };
         // (14): F is K without the rows and columns of these dofs
         let mut held = vec![false; k.order()];
         fixing.iter().for_each(|&dof| held[dof] = true);
-        let analysis = Arc::new(Analysis::new(&k, &held)?);
+        let analysis = Arc::new(Analysis::new(&k.matrix, &held)?);
         Ok(Plan::Known(Known { k, null_space, fixing, analysis }))
     }
 
     /// The same where nothing is known about the null space.
-    pub fn search(k: Symmetric, tolerance: f64, fixing: Option<&[usize]>) -> Result<Plan> {
+    pub fn search(k: Multiple, tolerance: f64, fixing: Option<&[usize]>) -> Result<Plan> {
         Search::new(k, tolerance, fixing).map(Plan::Search)
     }
 
@@ -111,7 +114,7 @@ impl Plan {
 
 impl Known {
     fn execute(self) -> Result<GeneralizedInverse> {
-        let factor = self.analysis.factorize(&self.k)?.map_err(|breakdown| {
+        let factor = self.analysis.factorize(&self.k.matrix, self.k.by)?.map_err(|breakdown| {
             let missing = || missing_mode(breakdown.dof, breakdown.relative_pivot, self.null_space.cols);
             breakdown.refused().unwrap_or_else(missing)
         })?;
@@ -132,35 +135,37 @@ impl Breakdown {
 }
 
 impl GeneralizedInverse {
-    /// A factorisation that ends without complaint proves nothing: solve for a known right-hand side, and
-    /// look for a null vector that vanishes on the fixing dofs by two steps of inverse iteration on A.
-    pub(super) fn probe(&self, k: &Symmetric) -> Result<()> {
+    /// A factorisation that ends without complaint proves nothing: solve for a known right-hand side b, and look for a
+    /// null vector v that vanishes on the fixing dofs by inverse iteration on A. The first step finds v by the part of b
+    /// along it; a second step is taken unless that part would have to be unlikely small.
+    pub(super) fn probe(&self, k: &Multiple) -> Result<()> {
         let n = k.order();
         if self.fixing.len() == n {
             return Ok(());
         }
         let free = |x: &mut [f64]| self.fixing.iter().for_each(|&dof| x[dof] = 0.0);
-        let weight = |i: usize| 1.0 / k.metric(i, 1.0);
+        let size = |x: &[f64]| weighted_norm(x, |i| 1.0 / k.metric(i, 1.0));
         let empty = || zeros(n, "a probe");
-        let (mut b, mut x, mut image, mut terms) = (signs(k)?, empty()?, empty()?, empty()?);
+        let (mut b, mut x, mut image, mut terms) = (random(k)?, empty()?, empty()?, empty()?);
         free(&mut b);
         self.apply(&b, &mut x)?;
-        k.mul(&x, &mut image);
-        k.mul_abs(&x, &mut terms);
+        k.mul_with_terms(&x, &mut image, &mut terms);
         image.iter_mut().zip(&b).for_each(|(i, b)| *i -= b);
         free(&mut image);
-        let residual =
-            weighted_norm(&image, weight) / (weighted_norm(&terms, weight) + weighted_norm(&b, weight));
+        let residual = size(&image) / (size(&terms) + size(&b));
         if residual.is_nan() || residual > PROBE {
             let what = format!("the factorisation failed its probe: residual {residual:.1e}");
             return Err(Error::new(Kind::Internal, what).value(residual).limit(PROBE));
         }
-        (0..n).for_each(|i| b[i] = k.metric(i, 1.0) * x[i]);
-        self.apply(&b, &mut x)?;
-        k.mul_abs(&x, &mut terms);
-        let smallest = weighted_norm(&b, weight) / weighted_norm(&terms, weight);
-        if smallest.is_nan() || smallest < SINGULAR {
-            return Err(missing_mode(largest(&x, |i| k.metric(i, 1.0)), smallest, self.null_space.cols));
+        let mut softest = size(&b) / size(&terms);
+        if softest.is_nan() || softest < UNLIKELY * (n as f64).sqrt() * SINGULAR {
+            (0..n).for_each(|i| b[i] = k.metric(i, 1.0) * x[i]);
+            self.apply(&b, &mut x)?;
+            k.mul_with_terms(&x, &mut image, &mut terms);
+            softest = size(&b) / size(&terms);
+        }
+        if softest.is_nan() || softest < SINGULAR {
+            return Err(missing_mode(largest(&x, |i| k.metric(i, 1.0)), softest, self.null_space.cols));
         }
         Ok(())
     }
@@ -174,16 +179,19 @@ fn missing_mode(dof: usize, found: f64, given: usize) -> Error {
     Error::new(Kind::NullSpace, what).dof(dof).value(found).limit(SINGULAR)
 }
 
-/// `D^1/2` times a fixed sequence of signs.
-fn signs(k: &Symmetric) -> Result<Vec<f64>> {
+/// `D^1/2` times fixed random numbers of size 1/2 to 3/2 and either sign. Mere signs would cancel along many motions of
+/// few dofs.
+fn random(k: &Multiple) -> Result<Vec<f64>> {
+    const UNIT: f64 = 1.0 / (1_u64 << 52) as f64;
     let mut state = 0x9e37_79b9_7f4a_7c15_u64;
     let mut values = zeros(k.order(), "a probe")?;
     for (i, v) in values.iter_mut().enumerate() {
         state ^= state << 13;
         state ^= state >> 7;
         state ^= state << 17;
-        let sign = if state >> 63 == 0 { 1.0 } else { -1.0 };
-        *v = sign * k.metric(i, 1.0).sqrt();
+        let size = 0.5 + (state >> 12) as f64 * UNIT;
+        let sign = if state & 1 == 0 { 1.0 } else { -1.0 };
+        *v = sign * size * k.metric(i, 1.0).sqrt();
     }
     Ok(values)
 }
@@ -192,6 +200,7 @@ fn signs(k: &Symmetric) -> Result<Vec<f64>> {
 mod tests {
     use super::*;
     use crate::body::null_space::Modes;
+    use crate::linalg::Symmetric;
 
     /// Plane grid of springs, n x n dofs, free: null space = constants, on each of `parts` copies.
     fn grids(n: usize, parts: usize) -> Symmetric {
@@ -200,11 +209,11 @@ mod tests {
             let i = k % (n * n);
             let edges = [(i >= n).then(|| k - n), (i % n > 0).then(|| k - 1)];
             for j in edges.into_iter().flatten() {
-                col.push(j);
+                col.push(j as u32);
                 val.push(-1.0);
             }
             let degree = [i >= n, i % n > 0, i + n < n * n, i % n + 1 < n];
-            col.push(k);
+            col.push(k as u32);
             val.push(degree.into_iter().filter(|d| *d).count() as f64);
             ptr.push(col.len());
         }
@@ -219,7 +228,8 @@ mod tests {
     #[test]
     fn k_kplus_k_is_k() {
         let k = grids(6, 1);
-        let kplus = GeneralizedInverse::plan(k.clone(), &constants(36), 1e-8).unwrap().execute().unwrap();
+        let kplus =
+            GeneralizedInverse::plan(k.clone().into(), &constants(36), 1e-8).unwrap().execute().unwrap();
         let (mut column, mut x, mut image) = (vec![0.0; 36], vec![0.0; 36], vec![0.0; 36]);
         for j in 0..36 {
             let mut unit = vec![0.0; 36];
@@ -234,9 +244,39 @@ mod tests {
     #[test]
     fn a_missing_mode_is_noticed() {
         let k = grids(6, 2);
-        let error = GeneralizedInverse::plan(k, &constants(72), 1e-8).unwrap().execute().err().unwrap();
+        let error =
+            GeneralizedInverse::plan(k.into(), &constants(72), 1e-8).unwrap().execute().err().unwrap();
         assert_eq!(error.kind, Kind::NullSpace);
         assert!(error.what.contains("a mode is missing"), "{error}");
+    }
+
+    /// Two dofs joined by a spring, wherever they stand among those that are held.
+    #[test]
+    fn a_missing_mode_of_two_dofs_is_noticed_wherever_they_are() {
+        let none =
+            |n| NullSpaceInput { vectors: Matrix { rows: n, cols: 0, data: vec![] }, modes: Modes::Exact };
+        for before in 0..100 {
+            let n = before + 102;
+            let mut k = Symmetric { ptr: vec![0], col: Vec::new(), val: Vec::new() };
+            for i in 0..n {
+                let pair = i == before || i == before + 1;
+                if i == before + 1 {
+                    k.col.push(i as u32 - 1);
+                    k.val.push(-0.7);
+                }
+                k.col.push(i as u32);
+                k.val.push(if pair { 0.7 } else { 1.3 });
+                k.ptr.push(k.col.len());
+            }
+            // 0.7 - 0.7 is 0, which the factorisation would refuse; what rounding leaves must be found by the probe
+            *k.val.iter_mut().filter(|v| **v == 0.7).last().unwrap() *= 1.0 + 4.0 * f64::EPSILON;
+            let error = GeneralizedInverse::plan(k.into(), &none(n), 1e-8).unwrap().execute().err().unwrap();
+            assert!(error.what.contains("a mode is missing"), "{before}: {error}");
+            assert!(
+                error.place.dof.is_some_and(|dof| dof == before || dof == before + 1),
+                "{before}: {error}"
+            );
+        }
     }
 
     #[test]
@@ -246,7 +286,7 @@ mod tests {
         k.val[last] = 0.5;
         let none =
             NullSpaceInput { vectors: Matrix { rows: 36, cols: 0, data: vec![] }, modes: Modes::Exact };
-        let error = GeneralizedInverse::plan(k, &none, 1e-8).unwrap().execute().err().unwrap();
+        let error = GeneralizedInverse::plan(k.into(), &none, 1e-8).unwrap().execute().err().unwrap();
         assert_eq!(error.kind, Kind::Indefinite);
         assert!(error.place.dof.is_some() && error.place.value.unwrap() < 0.0);
     }

@@ -4,6 +4,7 @@
 mod boundary;
 mod fixing;
 mod generalized_inverse;
+mod in_order;
 mod null_space;
 mod rigid_modes;
 mod search;
@@ -15,6 +16,8 @@ pub use null_space::{Modes, NullSpaceInput};
 pub use rigid_modes::Coordinates;
 pub use stiffness::{from_dense, from_sparse, SparseInput, Storage};
 
+use std::sync::Arc;
+
 use crate::linalg::Symmetric;
 
 /// What the host has said about one body; units are the host's own.
@@ -23,7 +26,7 @@ pub struct Body {
     /// Number of unknowns n.
     pub order: usize,
     /// `K_p`, n x n, force / length.
-    pub stiffness: Option<Symmetric>,
+    pub stiffness: Option<Arc<Symmetric>>,
     /// `R_p` or vectors that may span it; found by the library without them and without coordinates.
     pub null_space: Option<NullSpaceInput>,
     /// Places of the dofs: candidates for the null space when none is given.

@@ -153,7 +153,7 @@ mod tests {
         let (mut ptr, mut col, mut val) = (vec![0], Vec::new(), Vec::new());
         for i in 0..4 {
             for j in 0..=i {
-                col.push(j);
+                col.push(j as u32);
                 val.push(t[i] * t[j]);
             }
             ptr.push(col.len());

@@ -15,7 +15,7 @@ use crate::linalg::graph::components;
 use crate::linalg::memory::{reserved, room, PRODUCTS};
 use crate::linalg::spd::symmetric_eigen;
 use crate::linalg::trailing::Trailing;
-use crate::linalg::{Analysis, Breakdown, Cholesky, Matrix, Symmetric};
+use crate::linalg::{Analysis, Breakdown, Cholesky, Matrix, Multiple, Symmetric};
 
 /// Dofs eliminated last in each part, at first.
 const LAST: usize = 24;
@@ -31,7 +31,7 @@ const ROUNDING: f64 = 1e-14;
 const PER_DOF: usize = 256;
 
 pub struct Search {
-    k: Symmetric,
+    k: Multiple,
     tolerance: f64,
     fixing: Option<Vec<usize>>,
     /// The dofs t of every part, and all dofs of it.
@@ -39,8 +39,7 @@ pub struct Search {
     members: Vec<Vec<usize>>,
     /// Dofs wanted in t of each part.
     count: usize,
-    /// `K + E D_tt E'`, all dofs t of a part coupled in its pattern.
-    supported: Symmetric,
+    /// Of `K + E D_tt E'`.
     analysis: Arc<Analysis>,
 }
 
@@ -60,9 +59,9 @@ enum Attempt {
 
 impl Search {
     /// `fixing`: the dofs to hold in K+, where the host has given them.
-    pub fn new(k: Symmetric, tolerance: f64, fixing: Option<&[usize]>) -> Result<Self> {
+    pub fn new(k: Multiple, tolerance: f64, fixing: Option<&[usize]>) -> Result<Self> {
         let _room = room(k.order() * PER_DOF, "the connected parts of a body")?;
-        let (part_of, parts) = components(&k);
+        let (part_of, parts) = components(&k.matrix);
         let mut members = vec![Vec::new(); parts];
         part_of.iter().enumerate().for_each(|(dof, &part)| members[part].push(dof));
         let mut last = vec![Vec::new(); parts];
@@ -72,7 +71,7 @@ impl Search {
 
     /// `last`: the dofs that t has in any case.
     fn with(
-        k: Symmetric,
+        k: Multiple,
         tolerance: f64,
         fixing: Option<Vec<usize>>,
         (members, mut last): (Vec<Vec<usize>>, Vec<Vec<usize>>),
@@ -84,8 +83,8 @@ impl Search {
             last.dedup();
         }
         let supported = supported(&k, &last)?;
-        let analysis = Arc::new(Analysis::ending(&k, &supported, &last.concat())?);
-        Ok(Self { k, tolerance, fixing, last, members, count, supported, analysis })
+        let analysis = Arc::new(Analysis::ending(&k.matrix, &supported, &last.concat())?);
+        Ok(Self { k, tolerance, fixing, last, members, count, analysis })
     }
 
     /// Bytes the factorisation is going to take.
@@ -117,14 +116,16 @@ impl Search {
     }
 
     fn attempt(&self) -> Result<Attempt> {
-        let factor = match self.analysis.factorize(&self.supported)? {
+        let supported = supported(&self.k, &self.last)?;
+        let factor = match self.analysis.factorize(&supported, 1.0)? {
             Ok(factor) => factor,
             Err(breakdown) => return missed_or_indefinite(breakdown),
         };
-        let unsupported = |(dof, pivot): &(usize, f64)| *pivot < SINGULAR * self.supported.diagonal(*dof);
+        let unsupported = |(dof, pivot): &(usize, f64)| *pivot < SINGULAR * supported.diagonal(*dof);
         if let Some((dof, _)) = factor.pivots().find(unsupported) {
             return Ok(Attempt::Missed(dof));
         }
+        drop(supported);
         let mut soft = reserved(self.last.len(), "the null space of a body")?;
         for (last, members) in self.last.iter().zip(&self.members) {
             let part = self.soft(&factor, last)?;
@@ -197,7 +198,8 @@ impl Search {
     fn inverse(&self, factor: Cholesky, soft: &[Soft], vectors: Matrix) -> Result<GeneralizedInverse> {
         let n = self.k.order();
         let _room = room((8 * vectors.cols + 24) * n * size_of::<f64>() + PRODUCTS, "a null space")?;
-        let fixing = self.fixing_of(soft, &vectors)?;
+        let root = self.k.roots()?;
+        let fixing = self.fixing_of(soft, &vectors, &root)?;
         let parts: Vec<Trailing<'_>> = (self.last.iter().zip(soft).zip(&fixing))
             .map(|((dofs, part), held)| Trailing { dofs, schur: &part.schur, held })
             .collect();
@@ -207,25 +209,25 @@ impl Search {
         })?;
         let gap = soft.iter().map(|part| part.gap).reduce(f64::min);
         let found = NullSpaceInput { vectors, modes: Modes::Exact };
-        let null_space = verified(&self.k, &found, self.tolerance)?;
+        let null_space = verified(&self.k, &root, &found, self.tolerance)?;
         let inverse = GeneralizedInverse { null_space, fixing: fixing.concat(), gap, factor };
         inverse.probe(&self.k)?;
         Ok(inverse)
     }
 
     /// The fixing dofs of every part.
-    fn fixing_of(&self, soft: &[Soft], vectors: &Matrix) -> Result<Vec<Vec<usize>>> {
+    fn fixing_of(&self, soft: &[Soft], vectors: &Matrix, root: &[f64]) -> Result<Vec<Vec<usize>>> {
         if let Some(given) = &self.fixing {
-            let root: Vec<f64> = (0..self.k.order()).map(|i| self.k.metric(i, 1.0).sqrt()).collect();
-            let given = given_dofs(vectors, &root, given)?;
+            let given = given_dofs(vectors, root, given)?;
             let among = |last: &Vec<usize>| given.iter().copied().filter(|dof| last.contains(dof)).collect();
             return Ok(self.last.iter().map(among).collect());
         }
         let chosen = |(part, last): (&Soft, &Vec<usize>)| {
             let ones = vec![1.0; last.len()];
-            fixing_dofs(&part.vectors, &ones).into_iter().map(|at| last[at]).collect()
+            let chosen = fixing_dofs(&part.vectors, &ones)?;
+            Ok(chosen.into_iter().map(|at| last[at]).collect())
         };
-        Ok(soft.iter().zip(&self.last).map(chosen).collect())
+        soft.iter().zip(&self.last).map(chosen).collect()
     }
 }
 
@@ -269,15 +271,15 @@ fn spread(dofs: &[usize], count: usize) -> Vec<usize> {
 }
 
 /// `K + E D_tt E'` without the zeros of K, all dofs t of one part coupled.
-fn supported(k: &Symmetric, last: &[Vec<usize>]) -> Result<Symmetric> {
+fn supported(k: &Multiple, last: &[Vec<usize>]) -> Result<Symmetric> {
     const WHAT: &str = "a supported stiffness matrix";
     let mut mates: Vec<&[usize]> = reserved(k.order(), WHAT)?;
     mates.resize(k.order(), &[]);
     last.iter().for_each(|last| last.iter().for_each(|&dof| mates[dof] = last));
     let coupled: usize = last.iter().map(|last| last.len() * (last.len() + 1) / 2).sum();
     let mut ptr = reserved(k.order() + 1, WHAT)?;
-    let mut col = reserved(k.col.len() + coupled, WHAT)?;
-    let mut val = reserved(k.col.len() + coupled, WHAT)?;
+    let mut col = reserved(k.matrix.col.len() + coupled, WHAT)?;
+    let mut val = reserved(k.matrix.col.len() + coupled, WHAT)?;
     ptr.push(0);
     let mut row = Vec::new();
     for i in 0..k.order() {
@@ -294,7 +296,7 @@ fn supported(k: &Symmetric, last: &[Vec<usize>]) -> Result<Symmetric> {
             row.sort_unstable_by_key(|entry| entry.0);
             row.last_mut().into_iter().for_each(|diagonal| diagonal.1 += k.metric(i, 1.0));
         }
-        col.extend(row.iter().map(|entry| entry.0));
+        col.extend(row.iter().map(|entry| entry.0 as u32));
         val.extend(row.iter().map(|entry| entry.1));
         ptr.push(col.len());
     }

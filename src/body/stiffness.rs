@@ -1,5 +1,6 @@
 //! The host's stiffness matrix, checked and brought into one form: the lower triangle by sorted rows.
 
+use crate::body::in_order::lower_triangle;
 use crate::error::{Error, Kind, Result};
 use crate::linalg::memory::{reserved, room};
 use crate::linalg::vector::first_non_finite;
@@ -27,19 +28,24 @@ pub struct SparseInput<'a> {
 const PER_ROW: usize = 96;
 
 /// Checks and converts a sparse matrix. Full storage is accepted when
-/// `|K_ij - K_ji| <= tolerance sqrt(K_ii K_jj)`, and averaged.
+/// `|K_ij - K_ji| <= tolerance (K_ii K_jj)^1/2`, and averaged.
 pub fn from_sparse(input: SparseInput<'_>, tolerance: f64) -> Result<Symmetric> {
+    check_order(input.ptr.len() - 1)?;
     let _room = room(input.ptr.len() * PER_ROW, "a stiffness matrix")?;
+    if let Some(lower) = lower_triangle(input, tolerance)? {
+        return checked(lower);
+    }
     let rows = sorted(input)?;
-    symmetric(match input.storage {
+    checked(with_diagonal(match input.storage {
         Storage::Lower => rows,
         Storage::Upper => rows.transposed()?,
         Storage::Full => averaged(&rows, tolerance)?,
-    })
+    })?)
 }
 
 /// Checks and converts a column-major n x n matrix with leading dimension `ld`; zeros are not stored.
 pub fn from_dense(n: usize, k: &[f64], ld: usize, storage: Storage, tolerance: f64) -> Result<Symmetric> {
+    check_order(n)?;
     let _room = room(n * PER_ROW, "a stiffness matrix")?;
     let mut rows = Csr::empty(n);
     let stored = |i: usize| match storage {
@@ -62,11 +68,21 @@ pub fn from_dense(n: usize, k: &[f64], ld: usize, storage: Storage, tolerance: f
         let kept = range.map(|j| (j, k[i + ld * j])).filter(|&(j, v)| v != 0.0 || i == j);
         rows.push_row(kept);
     }
-    symmetric(match storage {
+    checked(with_diagonal(match storage {
         Storage::Full => averaged(&rows, tolerance).map_err(|e| rename(e, "k"))?,
         Storage::Lower => rows,
         Storage::Upper => rows.transposed()?,
-    })
+    })?)
+}
+
+/// Columns are kept in 32 bits.
+fn check_order(n: usize) -> Result<()> {
+    let limit = u32::MAX as usize;
+    if n <= limit {
+        return Ok(());
+    }
+    let what = format!("a body of {n} unknowns has more than {limit}");
+    Err(Error::new(Kind::Overflow, what).value(n as f64).limit(limit as f64))
 }
 
 /// Room for the entries of a matrix that has none yet.
@@ -131,7 +147,7 @@ fn outside(storage: Storage, row: usize, col: usize) -> Option<&'static str> {
 fn averaged(rows: &Csr, tolerance: f64) -> Result<Csr> {
     let transposed = rows.transposed()?;
     let n = rows.rows();
-    let diagonal: Vec<f64> = (0..n).map(|i| entry(rows, i, i)).collect();
+    let root: Vec<f64> = (0..n).map(|i| entry(rows, i, i).abs().sqrt()).collect();
     let mut lower = Csr::empty(n);
     reserve(&mut lower, rows.col.len())?;
     for i in 0..n {
@@ -144,7 +160,7 @@ fn averaged(rows: &Csr, tolerance: f64) -> Result<Csr> {
             };
             let k_ij = own.next_if(|e| e.0 == column).map_or(0.0, |e| e.1);
             let k_ji = mates.next_if(|e| e.0 == column).map_or(0.0, |e| e.1);
-            let limit = tolerance * (diagonal[i].abs() * diagonal[column].abs()).sqrt();
+            let limit = may_differ(tolerance, root[i], root[column]);
             if (k_ij - k_ji).abs() > limit {
                 return Err(unsymmetric(rows, i, column, k_ij - k_ji, limit));
             }
@@ -154,6 +170,11 @@ fn averaged(rows: &Csr, tolerance: f64) -> Result<Csr> {
         lower.ptr.push(lower.col.len());
     }
     Ok(lower)
+}
+
+/// How far `K_ij` and `K_ji` may be apart, given the square roots of their diagonal entries.
+pub(super) fn may_differ(tolerance: f64, root_i: f64, root_j: f64) -> f64 {
+    tolerance * root_i * root_j
 }
 
 fn entry(rows: &Csr, i: usize, j: usize) -> f64 {
@@ -170,9 +191,8 @@ fn unsymmetric(rows: &Csr, i: usize, j: usize, difference: f64, limit: f64) -> E
     Error::argument("val", what).row(i).dof(j).value(difference.abs()).limit(limit)
 }
 
-/// The lower triangle with every diagonal entry stored. A dof may have no stiffness at all (a rigid body);
-/// a diagonal entry that is negative, or zero in a row that is not, makes K indefinite.
-fn symmetric(lower: Csr) -> Result<Symmetric> {
+/// The lower triangle with every diagonal entry stored.
+fn with_diagonal(lower: Csr) -> Result<Symmetric> {
     let n = lower.rows();
     let mut k = Symmetric {
         ptr: reserved(n + 1, "a stiffness matrix")?,
@@ -182,14 +202,24 @@ fn symmetric(lower: Csr) -> Result<Symmetric> {
     k.ptr.push(0);
     for i in 0..n {
         for (j, v) in lower.row(i) {
-            k.col.push(j);
+            k.col.push(j as u32);
             k.val.push(v);
         }
         if lower.row(i).last().is_none_or(|e| e.0 != i) {
-            k.col.push(i);
+            k.col.push(i as u32);
             k.val.push(0.0);
         }
         k.ptr.push(k.col.len());
+    }
+    Ok(k)
+}
+
+/// A dof may have no stiffness at all (a rigid body); a diagonal entry that is negative, or zero in a row that is not,
+/// makes K indefinite.
+fn checked(k: Symmetric) -> Result<Symmetric> {
+    let n = k.order();
+    if (0..n).all(|i| k.diagonal(i) > 0.0) {
+        return Ok(k);
     }
     let coupled = |i: usize, j: usize, v: f64| i != j && v != 0.0;
     for i in 0..n {
@@ -228,6 +258,13 @@ mod tests {
             let dense = from_dense(2, &[2.0, -1.0, 9.0, -1.0, 3.0], 3, storage, 0.0).unwrap();
             assert_eq!(dense, expected);
         }
+    }
+
+    #[test]
+    fn more_unknowns_than_32_bits_count_are_refused() {
+        assert!(check_order(u32::MAX as usize).is_ok());
+        let error = check_order(1 << 32).unwrap_err();
+        assert_eq!((error.kind, error.place.value), (Kind::Overflow, Some(4294967296.0)));
     }
 
     #[test]

@@ -128,7 +128,7 @@ fn clusters(given: UnitRows) -> Result<Vec<Vec<usize>>> {
         }
         neighbours.sort_unstable();
         neighbours.dedup();
-        joined.col.extend(neighbours);
+        joined.col.extend(neighbours.into_iter().map(|j| j as u32));
         joined.ptr.push(joined.col.len());
     }
     joined.val.resize(joined.col.len(), 1.0);

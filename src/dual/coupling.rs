@@ -77,7 +77,7 @@ impl Coupling {
         for probe in PROBES {
             let mut w = self.on(&vec![false; self.whole.order()])?;
             (0..w.order()).for_each(|i| shift(&mut w, i, probe));
-            if let Ok(factor) = self.analysis.attempt(&w)? {
+            if let Ok(factor) = self.analysis.attempt(&w, 1.0)? {
                 let weak = factor.pivots().filter(|(_, pivot)| *pivot <= SINGULAR);
                 return Ok(weak.map(|(row, _)| row).collect());
             }
@@ -104,13 +104,13 @@ impl Coupling {
         let mut apart = copied(held, "a face")?;
         dense.iter().flat_map(|block| &block.rows).for_each(|&i| apart[i] = true);
         uncouple(&mut w, &apart);
-        let factor = self.analysis.attempt(&w)?;
+        let factor = self.analysis.attempt(&w, 1.0)?;
         Ok(factor.ok().map(|sparse| Face { held: held.to_vec(), sparse, dense }))
     }
 
     /// W with 1 for the held rows.
     fn on(&self, held: &[bool]) -> Result<Symmetric> {
-        let mut w = self.whole.scaled(1.0)?;
+        let mut w = self.whole.copied("the coupling of rows")?;
         uncouple(&mut w, held);
         Ok(w)
     }
@@ -125,7 +125,7 @@ impl Coupling {
         let mut pattern = Symmetric { ptr: vec![0], col: Vec::new(), val: Vec::new() };
         for row in coupled {
             for (j, v) in row {
-                pattern.col.push(j);
+                pattern.col.push(j as u32);
                 pattern.val.push(v);
             }
             pattern.ptr.push(pattern.col.len());
@@ -177,7 +177,7 @@ fn shift(w: &mut Symmetric, i: usize, by: f64) {
 fn uncouple(w: &mut Symmetric, apart: &[bool]) {
     for i in 0..w.order() {
         for at in w.ptr[i]..w.ptr[i + 1] {
-            let j = w.col[at];
+            let j = w.col[at] as usize;
             if apart[i] || apart[j] {
                 w.val[at] = f64::from(u8::from(i == j));
             }

@@ -39,6 +39,16 @@ struct Subdomain {
     operator: Packed,
 }
 
+impl Subdomain {
+    /// `F_p x` over the rows of the body; `local` gets the forces on them.
+    fn image(&self, x: &[f64], local: &mut Vec<f64>, image: &mut Vec<f64>) {
+        local.clear();
+        local.extend(self.rows.iter().map(|&i| x[i]));
+        image.resize(local.len(), 0.0);
+        self.operator.apply(local, image);
+    }
+}
+
 pub struct Dual {
     subdomains: Vec<Subdomain>,
     /// C, one entry per row of B, no unit.
@@ -103,15 +113,41 @@ impl Dual {
         self.subdomains[p].modes.clone()
     }
 
-    /// `d = B K+ f - c` of (13).
-    pub fn rhs(&self, f: &[f64], c: &[f64]) -> Result<Vec<f64>> {
+    pub fn bodies(&self) -> usize {
+        self.subdomains.len()
+    }
+
+    /// `B_p K_p+ f_p` over the rows that touch body p: what its load alone moves.
+    pub fn moved(&self, p: usize, f: &[f64]) -> Result<Vec<f64>> {
+        let s = &self.subdomains[p];
+        let mut x = zeros(s.range.len(), "a displacement")?;
+        s.kplus.apply(&f[s.range.clone()], &mut x)?;
+        Ok((0..s.rows.len()).map(|k| s.matrix.row_dot(k, &x)).collect())
+    }
+
+    /// `d = B K+ f - c` of (13), from what the loads move, body by body.
+    pub fn rhs(&self, moved: &[Vec<f64>], c: &[f64]) -> Vec<f64> {
         let mut d: Vec<f64> = c.iter().map(|c| -c).collect();
-        for s in &self.subdomains {
-            let mut x = zeros(s.range.len(), "a displacement")?;
-            s.kplus.apply(&f[s.range.clone()], &mut x)?;
-            s.rows.iter().enumerate().for_each(|(k, &i)| d[i] += s.matrix.row_dot(k, &x));
+        for (s, moved) in self.subdomains.iter().zip(moved) {
+            s.rows.iter().zip(moved).for_each(|(&i, v)| d[i] += v);
         }
-        Ok(d)
+        d
+    }
+
+    /// `sum_p |B_p u_p|`, row by row: how far the bodies move along the rows at (x, alpha), by
+    /// `B_p u_p = B_p K_p+ f_p - F_p x + G_p'alpha`. The same for every choice of K+.
+    pub fn distances(&self, moved: &[Vec<f64>], x: &[f64], alpha: &[f64]) -> Vec<f64> {
+        let mut distances = vec![0.0; x.len()];
+        let (mut local, mut image) = (Vec::new(), Vec::new());
+        for (s, moved) in self.subdomains.iter().zip(moved) {
+            s.image(x, &mut local, &mut image);
+            for ((&i, moved), image) in s.rows.iter().zip(moved).zip(&image) {
+                let own = self.coarse.row(i).filter(|(mode, _)| s.modes.contains(mode));
+                let turned: f64 = own.map(|(mode, g)| g * alpha[mode]).sum();
+                distances[i] += (moved - image + turned).abs();
+            }
+        }
+        distances
     }
 
     /// The right-hand side of `G lambda = e` in (12), `e = R'f`; what rounding alone would leave of a load in balance is zero.
@@ -127,15 +163,13 @@ impl Dual {
         e
     }
 
-    /// `u = K+ f + R alpha`, over all unknowns: (17) for the load f that the forces of the rows leave; (16) on bodies
-    /// that are held, where K+ = K^-1.
-    pub fn displacement(&self, f: &[f64], alpha: &[f64]) -> Result<Vec<f64>> {
-        let mut u = zeros(f.len(), "a displacement")?;
-        for s in &self.subdomains {
-            let u = &mut u[s.range.clone()];
-            s.kplus.apply(&f[s.range.clone()], u)?;
-            s.kplus.null_space.mul_add(1.0, &alpha[s.modes.clone()], u);
-        }
+    /// `u_p = K_p+ f_p + R_p alpha_p` of body p: (17) for the load f that the forces of the rows leave; (16) where it is
+    /// held, K+ = K^-1. The load and alpha are those of all bodies.
+    pub fn displacement(&self, p: usize, f: &[f64], alpha: &[f64]) -> Result<Vec<f64>> {
+        let s = &self.subdomains[p];
+        let mut u = zeros(s.range.len(), "a displacement")?;
+        s.kplus.apply(&f[s.range.clone()], &mut u)?;
+        s.kplus.null_space.mul_add(1.0, &alpha[s.modes.clone()], &mut u);
         Ok(u)
     }
 
@@ -163,10 +197,7 @@ impl Operator for Dual {
         y.iter_mut().zip(x).zip(&self.compliance).for_each(|((y, x), c)| *y = c * x);
         let (mut local, mut image) = (Vec::new(), Vec::new());
         for s in &self.subdomains {
-            local.clear();
-            local.extend(s.rows.iter().map(|&i| x[i]));
-            image.resize(local.len(), 0.0);
-            s.operator.apply(&local, &mut image);
+            s.image(x, &mut local, &mut image);
             s.rows.iter().zip(&image).for_each(|(&i, v)| y[i] += v);
         }
     }

@@ -75,11 +75,11 @@ impl Analysis {
     /// (same fill, far fewer supernodes).
     fn in_order(matrix: &Symmetric, order: Vec<usize>) -> Result<Self> {
         let position = positions(matrix.order(), &order);
-        let upper = permuted(matrix, order.len(), &position, Triangle::Upper)?;
+        let upper = permuted((matrix, 1.0), &position, order.len(), Triangle::Upper)?;
         let tree = elimination_tree(&upper.ptr, &upper.row);
         let order: Vec<usize> = postorder(&tree).into_iter().map(|k| order[k]).collect();
         let position = positions(matrix.order(), &order);
-        let upper = permuted(matrix, order.len(), &position, Triangle::Upper)?;
+        let upper = permuted((matrix, 1.0), &position, order.len(), Triangle::Upper)?;
         let symbolic = symbolic(order.len(), &upper.ptr, &upper.row)?;
         Ok(Self { order, position, symbolic })
     }
@@ -94,25 +94,30 @@ impl Analysis {
         factorize_supernodal_numeric_llt_scratch::<usize, f64>(&self.symbolic, Par::Seq, params)
     }
 
-    /// L of a matrix with the pattern that was analysed; `Ok(Err(_))` where it is not positive definite.
+    /// L of `by` times a matrix with the pattern that was analysed; `Ok(Err(_))` where it is not positive definite.
     pub fn factorize(
         self: &Arc<Self>,
         matrix: &Symmetric,
+        by: f64,
     ) -> Result<std::result::Result<Cholesky, Breakdown>> {
-        match self.attempt(matrix)? {
+        match self.attempt(matrix, by)? {
             Ok(factor) => Ok(Ok(factor)),
-            Err(at) => self.breakdown(matrix, at).map(Err),
+            Err(at) => self.breakdown(matrix, by, at).map(Err),
         }
     }
 
     /// As `factorize`, but for a matrix that may well be singular; gives the position where it broke down.
-    pub fn attempt(self: &Arc<Self>, matrix: &Symmetric) -> Result<std::result::Result<Cholesky, usize>> {
+    pub fn attempt(
+        self: &Arc<Self>,
+        matrix: &Symmetric,
+        by: f64,
+    ) -> Result<std::result::Result<Cholesky, usize>> {
         let positions = 4 * self.order.len() * size_of::<usize>();
         let _room = room(positions + PRODUCTS, "a factorisation")?;
         let mut values = zeros(self.symbolic.len_val(), "a Cholesky factor")?;
         let mut workspace = workspace(self.scratch())?;
         let n = self.order.len();
-        let lower = permuted(matrix, n, &self.position, Triangle::Lower)?;
+        let lower = permuted((matrix, by), &self.position, n, Triangle::Lower)?;
         let pattern = SymbolicSparseColMatRef::new_unsorted_checked(n, n, &lower.ptr, None, &lower.row);
         let done = factorize_supernodal_numeric_llt(
             &mut values,
@@ -131,7 +136,7 @@ impl Analysis {
 
     /// The pivot at position `at`: the Schur complement of the leading block, computed afresh
     /// (faer reports the position only).
-    fn breakdown(&self, matrix: &Symmetric, at: usize) -> Result<Breakdown> {
+    fn breakdown(&self, matrix: &Symmetric, by: f64, at: usize) -> Result<Breakdown> {
         let dof = self.order[at];
         let analysis = matrix.order() * ANALYSIS_PER_DOF + matrix.val.len() * ANALYSIS_PER_ENTRY;
         let _room = room(analysis, "the pivot of a body")?;
@@ -140,10 +145,11 @@ impl Analysis {
         let mut unit = column.clone();
         unit[dof] = 1.0;
         matrix.mul(&unit, &mut column);
+        column.iter_mut().for_each(|v| *v *= by);
         let mut x = column.clone();
         (0..x.len()).filter(|&i| leading.position[i] == NONE).for_each(|i| x[i] = 0.0);
-        let diagonal = matrix.diagonal(dof);
-        let relative_pivot = match leading.factorize(matrix)? {
+        let diagonal = by * matrix.diagonal(dof);
+        let relative_pivot = match leading.factorize(matrix, by)? {
             Ok(factor) => {
                 factor.solve(&mut x)?;
                 let explained: f64 = (0..x.len()).map(|i| x[i] * column[i]).sum();
@@ -237,11 +243,17 @@ struct Columns {
     val: Vec<f64>,
 }
 
-fn permuted(matrix: &Symmetric, n: usize, position: &[usize], triangle: Triangle) -> Result<Columns> {
+fn permuted(
+    (matrix, by): (&Symmetric, f64),
+    position: &[usize],
+    n: usize,
+    triangle: Triangle,
+) -> Result<Columns> {
     let entries = || {
         (0..matrix.order()).filter(|&i| position[i] != NONE).flat_map(move |i| {
             matrix.lower_row(i).filter(|&(j, _)| position[j] != NONE).map(move |(j, v)| {
                 let (low, high) = (position[i].min(position[j]), position[i].max(position[j]));
+                let v = by * v;
                 if triangle == Triangle::Lower {
                     (high, low, v)
                 } else {
@@ -289,11 +301,11 @@ mod tests {
         for i in 0..n * n {
             let edges = [(i >= n).then(|| i - n), (i % n > 0).then(|| i - 1)];
             for j in edges.into_iter().flatten() {
-                col.push(j);
+                col.push(j as u32);
                 val.push(-1.0);
             }
             let degree = [i >= n, i % n > 0, i + n < n * n, i % n + 1 < n];
-            col.push(i);
+            col.push(i as u32);
             val.push(degree.into_iter().filter(|d| *d).count() as f64 + shift);
             ptr.push(col.len());
         }
@@ -305,7 +317,8 @@ mod tests {
         let matrix = grid(17, 0.0);
         let mut held = vec![false; 289];
         held[40] = true;
-        let factor = Arc::new(Analysis::new(&matrix, &held).unwrap()).factorize(&matrix).unwrap().unwrap();
+        let factor =
+            Arc::new(Analysis::new(&matrix, &held).unwrap()).factorize(&matrix, 1.0).unwrap().unwrap();
         let b: Vec<f64> = (0..289).map(|i| (i as f64).sin()).collect();
         let (mut x, mut r) = (b.clone(), vec![0.0; 289]);
         factor.solve(&mut x).unwrap();
@@ -319,7 +332,7 @@ mod tests {
         let mut matrix = grid(9, 1.0);
         let last = matrix.ptr[31] - 1;
         matrix.val[last] = 0.1;
-        let broken = Arc::new(Analysis::new(&matrix, &[false; 81]).unwrap()).factorize(&matrix).unwrap();
+        let broken = Arc::new(Analysis::new(&matrix, &[false; 81]).unwrap()).factorize(&matrix, 1.0).unwrap();
         let breakdown = broken.err().expect("K_30 was made indefinite");
         assert!(breakdown.relative_pivot < -0.1, "{breakdown:?}");
     }

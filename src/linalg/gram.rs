@@ -21,7 +21,7 @@ impl Gram {
             for (k, _) in rows.row(i) {
                 let row = &pattern.col[pattern.ptr[k]..pattern.ptr[k + 1]];
                 for (l, _) in rows.row(i).take_while(|(l, _)| *l <= k) {
-                    position.push((pattern.ptr[k] + row.partition_point(|&col| col < l)) as u32);
+                    position.push((pattern.ptr[k] + row.partition_point(|&col| (col as usize) < l)) as u32);
                 }
             }
             ptr.push(position.len());
@@ -62,12 +62,12 @@ fn pattern(rows: &Csr) -> Result<Symmetric> {
             for (l, _) in rows.row(i).take_while(|(l, _)| *l < k) {
                 if seen[l] != k {
                     seen[l] = k;
-                    col.push(l);
+                    col.push(l as u32);
                 }
             }
         }
         col[start..].sort_unstable();
-        col.push(k);
+        col.push(k as u32);
         ptr.push(col.len());
     }
     let val = zeros(col.len(), "a Gram matrix")?;

@@ -22,7 +22,7 @@ pub use dense::Matrix;
 pub use packed::Packed;
 pub use pivoted::PivotedCholesky;
 pub use spd::SpdSolver;
-pub use symmetric::Symmetric;
+pub use symmetric::{Multiple, Symmetric};
 
 use crate::error::Result;
 

@@ -51,7 +51,7 @@ mod tests {
     fn every_free_dof_is_eliminated_exactly_once() {
         let n = 400;
         let (mut ptr, mut col) = (vec![0], Vec::new());
-        for i in 0..n {
+        for i in 0..n as u32 {
             col.extend((i >= 20).then(|| i - 20));
             col.extend((i % 20 > 0).then(|| i - 1));
             col.push(i);

@@ -155,18 +155,19 @@ mod tests {
         for i in 0..n {
             for j in [i.wrapping_sub(13), i.wrapping_sub(2), i.wrapping_sub(1)] {
                 if j < i {
-                    col.push(j);
+                    col.push(j as u32);
                     val.push(-0.2 - 0.01 * (i % 5) as f64);
                 }
             }
-            col.push(i);
+            col.push(i as u32);
             val.push(2.0 + 0.1 * (i % 3) as f64);
             ptr.push(col.len());
         }
         let matrix = Symmetric { ptr, col, val };
         let mut held = vec![false; n];
         held[5] = true;
-        let factor = Arc::new(Analysis::new(&matrix, &held).unwrap()).factorize(&matrix).unwrap().unwrap();
+        let factor =
+            Arc::new(Analysis::new(&matrix, &held).unwrap()).factorize(&matrix, 1.0).unwrap().unwrap();
         let mut rows = Csr::empty(n);
         for i in 0..9 {
             rows.push_row([(i, 1.0), (5 * i + 10, -0.5), (59, 0.1 * i as f64)]);

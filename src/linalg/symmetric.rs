@@ -1,14 +1,21 @@
-//! Symmetric sparse matrices: the lower triangle by rows.
+//! Symmetric sparse matrices: the lower triangle by rows; and a multiple of one without a copy.
+
+use std::array;
+use std::sync::Arc;
 
 use crate::error::Result;
-use crate::linalg::memory::copied;
-use crate::linalg::Operator;
+use crate::linalg::memory::{copied, reserved};
+use crate::linalg::{Matrix, Operator};
+
+/// Columns that take one pass over the matrix.
+const TOGETHER: usize = 3;
 
 /// Symmetric `n x n`; row i holds the entries with column <= i, ascending, the diagonal last.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Symmetric {
     pub ptr: Vec<usize>,
-    pub col: Vec<usize>,
+    /// 32 bits: a matrix has less than 2^32 rows.
+    pub col: Vec<u32>,
     pub val: Vec<f64>,
 }
 
@@ -20,7 +27,7 @@ impl Symmetric {
     /// Entries `(column, value)` of row `i` of the lower triangle, the diagonal last.
     pub fn lower_row(&self, i: usize) -> impl DoubleEndedIterator<Item = (usize, f64)> + '_ {
         let range = self.ptr[i]..self.ptr[i + 1];
-        self.col[range.clone()].iter().copied().zip(self.val[range].iter().copied())
+        self.col[range.clone()].iter().map(|&j| j as usize).zip(self.val[range].iter().copied())
     }
 
     /// `K_ii`
@@ -38,38 +45,89 @@ impl Symmetric {
         }
     }
 
-    /// `a K`
-    pub fn scaled(&self, a: f64) -> Result<Self> {
-        let mut val = copied(&self.val, "a scaled stiffness matrix")?;
-        val.iter_mut().for_each(|v| *v *= a);
+    /// A copy for `what`.
+    pub fn copied(&self, what: &str) -> Result<Self> {
         Ok(Self {
-            ptr: copied(&self.ptr, "a scaled stiffness matrix")?,
-            col: copied(&self.col, "a scaled stiffness matrix")?,
-            val,
+            ptr: copied(&self.ptr, what)?,
+            col: copied(&self.col, what)?,
+            val: copied(&self.val, what)?,
         })
     }
 
     /// `y = K x`
     pub fn mul(&self, x: &[f64], y: &mut [f64]) {
-        self.accumulate(x, y, |v| v);
+        self.accumulate(1.0, x, y);
     }
 
-    /// `y = |K| |x|`: what rounding errors of `K x` are measured against.
-    pub fn mul_abs(&self, x: &[f64], y: &mut [f64]) {
-        self.accumulate(x, y, f64::abs);
+    /// `y = K x` and `terms = |K| |x|`, what rounding errors of `K x` are measured against.
+    pub fn mul_with_terms(&self, x: &[f64], y: &mut [f64], terms: &mut [f64]) {
+        self.accumulate_with_terms(1.0, x, y, terms);
     }
 
-    fn accumulate(&self, x: &[f64], y: &mut [f64], of: impl Fn(f64) -> f64) {
+    /// `y = by K x`
+    fn accumulate(&self, by: f64, x: &[f64], y: &mut [f64]) {
         y.fill(0.0);
         for i in 0..self.order() {
             let (off, last) = (self.ptr[i], self.ptr[i + 1] - 1);
-            let mut sum = of(self.val[last] * x[i]);
-            for k in off..last {
-                let j = self.col[k];
-                sum += of(self.val[k] * x[j]);
-                y[j] += of(self.val[k] * x[i]);
+            let mut sum = by * self.val[last] * x[i];
+            for (&j, &k_ij) in self.col[off..last].iter().zip(&self.val[off..last]) {
+                let (j, k_ij) = (j as usize, by * k_ij);
+                sum += k_ij * x[j];
+                y[j] += k_ij * x[i];
             }
             y[i] += sum;
+        }
+    }
+
+    /// `y = by K x`, `terms = |by K| |x|`
+    fn accumulate_with_terms(&self, by: f64, x: &[f64], y: &mut [f64], terms: &mut [f64]) {
+        y.fill(0.0);
+        terms.fill(0.0);
+        for i in 0..self.order() {
+            let (off, last) = (self.ptr[i], self.ptr[i + 1] - 1);
+            let mut sum = by * self.val[last] * x[i];
+            let mut size = sum.abs();
+            for (&j, &k_ij) in self.col[off..last].iter().zip(&self.val[off..last]) {
+                let (j, k_ij) = (j as usize, by * k_ij);
+                let (own, mate) = (k_ij * x[j], k_ij * x[i]);
+                sum += own;
+                size += own.abs();
+                y[j] += mate;
+                terms[j] += mate.abs();
+            }
+            y[i] += sum;
+            terms[i] += size;
+        }
+    }
+
+    /// The same for some columns at once, given and returned by rows; y and terms are zero.
+    fn accumulate_rows<const N: usize>(
+        &self,
+        by: f64,
+        x: &[[f64; N]],
+        y: &mut [[f64; N]],
+        terms: &mut [[f64; N]],
+    ) {
+        for i in 0..self.order() {
+            let (off, last) = (self.ptr[i], self.ptr[i + 1] - 1);
+            let (diagonal, x_i) = (by * self.val[last], x[i]);
+            let mut sum: [f64; N] = array::from_fn(|c| diagonal * x_i[c]);
+            let mut size = sum.map(f64::abs);
+            for (&j, &k_ij) in self.col[off..last].iter().zip(&self.val[off..last]) {
+                let k_ij = by * k_ij;
+                let (x_j, y_j, t_j) = (x[j as usize], &mut y[j as usize], &mut terms[j as usize]);
+                for c in 0..N {
+                    let (own, mate) = (k_ij * x_j[c], k_ij * x_i[c]);
+                    sum[c] += own;
+                    size[c] += own.abs();
+                    y_j[c] += mate;
+                    t_j[c] += mate.abs();
+                }
+            }
+            for c in 0..N {
+                y[i][c] += sum[c];
+                terms[i][c] += size[c];
+            }
         }
     }
 
@@ -89,6 +147,82 @@ impl Operator for Symmetric {
     }
 }
 
+/// `by K`: the bits of a copy of K with every entry multiplied, without the copy. A power of two, `by` changes none.
+#[derive(Debug, Clone)]
+pub struct Multiple {
+    pub matrix: Arc<Symmetric>,
+    pub by: f64,
+}
+
+impl From<Symmetric> for Multiple {
+    fn from(matrix: Symmetric) -> Self {
+        Self { matrix: Arc::new(matrix), by: 1.0 }
+    }
+}
+
+impl Multiple {
+    pub fn order(&self) -> usize {
+        self.matrix.order()
+    }
+
+    /// Entries of row `i` of the lower triangle, the diagonal last.
+    pub fn lower_row(&self, i: usize) -> impl DoubleEndedIterator<Item = (usize, f64)> + '_ {
+        self.matrix.lower_row(i).map(|(j, v)| (j, self.by * v))
+    }
+
+    /// As that of the matrix; `without` is not multiplied.
+    pub fn metric(&self, i: usize, without: f64) -> f64 {
+        let diagonal = self.by * self.matrix.diagonal(i);
+        if diagonal > 0.0 {
+            diagonal
+        } else {
+            without
+        }
+    }
+
+    /// Square roots of the metric, 1 for a dof that has no stiffness.
+    pub fn roots(&self) -> Result<Vec<f64>> {
+        let mut roots = reserved(self.order(), "the metric of a body")?;
+        roots.extend((0..self.order()).map(|i| self.metric(i, 1.0).sqrt()));
+        Ok(roots)
+    }
+
+    /// As that of the matrix.
+    pub fn mul(&self, x: &[f64], y: &mut [f64]) {
+        self.matrix.accumulate(self.by, x, y);
+    }
+
+    /// As that of the matrix.
+    pub fn mul_with_terms(&self, x: &[f64], y: &mut [f64], terms: &mut [f64]) {
+        self.matrix.accumulate_with_terms(self.by, x, y, terms);
+    }
+
+    /// `by K X` and `|by K| |X|` of the columns of X, n x r each.
+    pub fn mul_columns(&self, x: &Matrix) -> Result<(Matrix, Matrix)> {
+        const WHAT: &str = "products with a stiffness matrix";
+        let (mut y, mut terms) = (Matrix::zeros(x.rows, x.cols)?, Matrix::zeros(x.rows, x.cols)?);
+        let mut rows: [Vec<[f64; TOGETHER]>; 3] =
+            [reserved(x.rows, WHAT)?, reserved(x.rows, WHAT)?, reserved(x.rows, WHAT)?];
+        for first in (0..x.cols).step_by(TOGETHER) {
+            let columns = first..x.cols.min(first + TOGETHER);
+            rows.iter_mut().for_each(|rows| {
+                rows.clear();
+                rows.resize(x.rows, [0.0; TOGETHER]);
+            });
+            let [given, image, sizes] = &mut rows;
+            for (c, j) in columns.clone().enumerate() {
+                given.iter_mut().zip(x.col(j)).for_each(|(row, v)| row[c] = *v);
+            }
+            self.matrix.accumulate_rows(self.by, given, image, sizes);
+            for (c, j) in columns.enumerate() {
+                y.col_mut(j).iter_mut().zip(image.iter()).for_each(|(v, row)| *v = row[c]);
+                terms.col_mut(j).iter_mut().zip(sizes.iter()).for_each(|(v, row)| *v = row[c]);
+            }
+        }
+        Ok((y, terms))
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -103,7 +237,46 @@ mod tests {
         let mut y = [0.0; 3];
         chain().mul(&[1.0, 2.0, 4.0], &mut y);
         assert_eq!(y, [0.0, -1.0, 2.0]);
-        chain().mul_abs(&[1.0, -2.0, 4.0], &mut y);
-        assert_eq!(y, [4.0, 9.0, 6.0]);
+        let mut terms = [0.0; 3];
+        chain().mul_with_terms(&[1.0, -2.0, 4.0], &mut y, &mut terms);
+        assert_eq!((y, terms), ([4.0, -9.0, 6.0], [4.0, 9.0, 6.0]));
+    }
+
+    /// Also where a number too small for a double appears in the copy.
+    #[test]
+    fn a_multiple_has_the_bits_of_a_copy() {
+        for by in [0.5_f64.powi(37), 0.5_f64.powi(1070), 3.0] {
+            let mut copy = chain();
+            copy.val.iter_mut().for_each(|v| *v = by * (*v / 3.0));
+            let mut matrix = chain();
+            matrix.val.iter_mut().for_each(|v| *v /= 3.0);
+            let multiple = Multiple { by, ..matrix.into() };
+            let x = [0.3, -2e150, 7.1];
+            let (mut y, mut terms) = ([[0.0; 3]; 2], [[0.0; 3]; 2]);
+            copy.mul_with_terms(&x, &mut y[0], &mut terms[0]);
+            multiple.mul_with_terms(&x, &mut y[1], &mut terms[1]);
+            assert_eq!((y[0], terms[0]), (y[1], terms[1]));
+            multiple.mul(&x, &mut y[1]);
+            assert_eq!(y[0], y[1]);
+            for i in 0..3 {
+                assert_eq!(multiple.metric(i, 1.0), copy.metric(i, 1.0));
+                assert!(multiple.lower_row(i).eq(copy.lower_row(i)));
+            }
+        }
+    }
+
+    #[test]
+    fn products_with_many_columns_have_the_bits_of_those_with_one() {
+        let multiple = Multiple { by: 0.25, ..chain().into() };
+        for cols in [0, 1, TOGETHER, 2 * TOGETHER + 1] {
+            let mut x = Matrix::zeros(3, cols).unwrap();
+            x.data.iter_mut().enumerate().for_each(|(at, v)| *v = (at as f64).sin());
+            let (y, terms) = multiple.mul_columns(&x).unwrap();
+            let (mut image, mut sizes) = ([0.0; 3], [0.0; 3]);
+            for j in 0..cols {
+                multiple.mul_with_terms(x.col(j), &mut image, &mut sizes);
+                assert_eq!((y.col(j), terms.col(j)), (&image[..], &sizes[..]));
+            }
+        }
     }
 }

@@ -70,10 +70,10 @@ impl<'a> Coarse<'a> {
         let mut w = gram.sum(self.g_transposed, held)?;
         for k in 0..w.order() {
             for at in w.ptr[k]..w.ptr[k + 1] {
-                w.val[at] /= self.root[k] * self.root[w.col[at]];
+                w.val[at] /= self.root[k] * self.root[w.col[at] as usize];
             }
         }
-        let solver = match analysis.attempt(&w)? {
+        let solver = match analysis.attempt(&w, 1.0)? {
             Ok(factor) if factor.smallest_pivot() > SINGULAR => Solver::Cholesky(factor),
             _ => Solver::Pseudo(SpdSolver::new(&dense(&w)?, &vec![1.0; w.order()])?),
         };
@@ -107,7 +107,7 @@ impl<'a> Coarse<'a> {
         for k in 0..w.order() {
             w.val[w.ptr[k + 1] - 1] += WEIGHT;
         }
-        let Ok(factor) = analysis.attempt(&w)? else { return self.solve(rhs) };
+        let Ok(factor) = analysis.attempt(&w, 1.0)? else { return self.solve(rhs) };
         let mut x = self.scaled(rhs);
         factor.solve(&mut x)?;
         self.solves += 1;

@@ -33,6 +33,9 @@ pub struct Certificate {
     pub complementarity: Entry,
     /// `|u'K u - f'u + c'lambda + h'mu + lambda'C lambda + mu'C mu|`
     pub duality_gap: Entry,
+    /// `1/2 u'K u - f'u + 1/2 lambda'C lambda + 1/2 mu'C mu`, force x length: what is minimised, springs of compliant rows
+    /// included.
+    pub energy: f64,
 }
 
 impl Certificate {
@@ -123,6 +126,7 @@ pub fn certify(data: &Data, answer: Answer) -> Certificate {
     certificate.complementarity = energies(gaps.complementarity, size, gaps.worst_pair);
     let gap = totals.strain - totals.work + gaps.constrained;
     certificate.duality_gap = energies(gap.abs(), totals.strain.abs() + size, None);
+    certificate.energy = 0.5 * totals.strain - totals.work + 0.5 * gaps.stored;
     certificate
 }
 
@@ -162,8 +166,7 @@ fn forces(data: &Data, answer: Answer, metric: &[f64], certificate: &mut Certifi
         let weight = |i: usize| 1.0 / metric[body.start + i];
         let size = |v: &[f64]| weighted_norm(v, weight);
         let (mut strain, mut terms) = (vec![0.0; u.len()], vec![0.0; u.len()]);
-        body.stiffness.mul(u, &mut strain);
-        body.stiffness.mul_abs(u, &mut terms);
+        body.stiffness.mul_with_terms(u, &mut strain, &mut terms);
         let given: Vec<f64> = (0..u.len()).map(|i| f[i].abs() + push_terms[i]).collect();
         (0..u.len()).for_each(|i| terms[i] += given[i]);
         totals.strain += dot(u, &strain);

@@ -32,7 +32,7 @@ pub(super) fn load_not_held(problem: &Problem, ready: &Ready, direction: &[f64],
     let v = v.iter().map(|v| v / largest).collect();
     let dof = fastest - range.start;
     let error = Error::new(Kind::LoadNotHeld, what).body(body).dof(dof).value(margin).limit(0.0);
-    let parts = problem.bodies[body].body.stiffness.as_ref().map(components);
+    let parts = problem.bodies[body].body.stiffness.as_deref().map(components);
     let error = match parts {
         Some((part_of, 2..)) => error.component(part_of[dof]),
         _ => error,

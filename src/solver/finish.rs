@@ -67,13 +67,13 @@ impl Point {
         let left = rows.decoupling.solve(left);
         let mut gaps = vec![0.0; self.x.len()];
         face.rows().iter().for_each(|&i| gaps[i] = left[i] + rows.compliance[i] * self.x[i]);
-        let d = dual.rhs(&load, &gaps)?;
+        let d = dual.rhs(&judge.ready.moved(judge.threads, &load)?, &gaps);
         let force = face.rows().iter().map(|&i| d[i]).collect();
         let (step, turn) = face.solve(force, &dual.resultants(&load))?;
         let mut forces = vec![0.0; self.x.len()];
         face.rows().iter().zip(step).for_each(|(&i, step)| forces[i] = step);
         rows.take_forces(&forces, &mut load);
-        axpy(1.0, &dual.displacement(&load, &turn)?, &mut self.u);
+        axpy(1.0, &judge.ready.displacement(judge.threads, &load, &turn)?, &mut self.u);
         axpy(1.0, &forces, &mut self.x);
         axpy(1.0, &turn, &mut self.alpha);
         Ok(())

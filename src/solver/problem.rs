@@ -123,7 +123,7 @@ impl Problem {
     }
 
     fn keep_stiffness(&mut self, body: usize, stiffness: Symmetric) -> Result<()> {
-        self.changed(body)?.stiffness = Some(stiffness);
+        self.changed(body)?.stiffness = Some(Arc::new(stiffness));
         Ok(())
     }
 

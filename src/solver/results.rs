@@ -3,7 +3,6 @@
 use crate::constraints::RowKind;
 use crate::error::{Error, Kind, Result};
 use crate::linalg::memory::zeros;
-use crate::linalg::vector::dot;
 use crate::linalg::Operator;
 use crate::qp::Solution;
 use crate::solver::certificate::Certificate;
@@ -60,7 +59,7 @@ impl Answer {
             gap_scale: solution.scale * ready.unit.sqrt(),
             factorisations: problem.factorisations,
             analyses: problem.factorisations,
-            energy: problem.energy(&u, &lambda, &mu)?,
+            energy: certificate.energy,
             seconds_setup: 0.0,
             seconds_solve: 0.0,
         };
@@ -92,23 +91,6 @@ fn states(problem: &Problem, ready: &Ready, lambda: &[f64], u: &[f64], gaps: &[f
 }
 
 impl Problem {
-    /// `1/2 u'K u - f'u + 1/2 lambda'C lambda + 1/2 mu'C mu`, force x length: what is minimised, springs of
-    /// compliant rows included.
-    fn energy(&self, u: &[f64], lambda: &[f64], mu: &[f64]) -> Result<f64> {
-        let mut energy = 0.0;
-        for (slot, range) in self.bodies.iter().zip(self.ranges()) {
-            let u = &u[range];
-            if let Some(k) = &slot.body.stiffness {
-                let mut force = zeros(u.len(), "the energy")?;
-                k.mul(u, &mut force);
-                energy += 0.5 * dot(u, &force);
-            }
-            energy -= slot.body.load.as_ref().map_or(0.0, |f| dot(f, u));
-        }
-        energy += 0.5 * (self.contact.stored(lambda) + self.equalities.stored(mu));
-        Ok(energy)
-    }
-
     fn answer(&self) -> Result<&Answer> {
         let what = "there is no answer yet: solve first (a change of bodies or rows drops the last one)";
         self.answer.as_deref().ok_or_else(|| Error::new(Kind::State, what))
@@ -220,11 +202,11 @@ impl Problem {
     pub fn dual_rhs(&mut self, d: &mut [f64]) -> Result<()> {
         self.check_rows(d.len())?;
         self.setup()?;
-        let mut load = self.loads()?;
+        let (mut load, threads) = (self.loads()?, self.threads());
         let ready = self.ready()?;
         let rows = &ready.rows;
         load.iter_mut().for_each(|f| *f /= ready.unit);
-        let moved = ready.dual.rhs(&load, &vec![0.0; rows.groups()])?;
+        let moved = ready.dual.rhs(&ready.moved(threads, &load)?, &vec![0.0; rows.groups()]);
         let moved = rows.decoupling.apply(&moved);
         let gaps = self.contact.rhs.iter().chain(&self.equalities.rhs);
         d.iter_mut().zip(gaps).for_each(|(d, c)| *d = -c);

@@ -9,9 +9,9 @@ use crate::body::{dirichlet, dirichlet_bytes, lumped, Body, GeneralizedInverse, 
 use crate::constraints::RowKind;
 use crate::dual::{constrained, Boundary, Dual, Part, Preconditioner};
 use crate::error::{Error, Kind, Result};
-use crate::linalg::memory::available;
+use crate::linalg::memory::{available, reserved};
 use crate::linalg::vector::power_of_two_below;
-use crate::linalg::{Operator, Symmetric};
+use crate::linalg::{Multiple, Operator, Symmetric};
 use crate::solver::diagnosis::empty_row_contradicts;
 use crate::solver::paper;
 use crate::solver::problem::{Inverse, Problem};
@@ -140,8 +140,8 @@ impl Problem {
         available(more.saturating_add(operators), "factors and dual operators")
     }
 
-    /// Threads of the setup; a problem so small that waking them costs more than the work gets one.
-    fn threads(&self) -> usize {
+    /// Threads to use; a problem so small that waking them costs more than the work gets one.
+    pub(super) fn threads(&self) -> usize {
         const SMALL: usize = 1000;
         if self.counts().dofs < SMALL {
             1
@@ -212,10 +212,26 @@ impl Problem {
     }
 }
 
+impl Ready {
+    /// `B_p K_p+ f_p` of every body.
+    pub fn moved(&self, threads: usize, f: &[f64]) -> Result<Vec<Vec<f64>>> {
+        threads::run(threads, self.dual.bodies(), |p| self.dual.moved(p, f))
+    }
+
+    /// `u = K+ f + R alpha`, over all unknowns.
+    pub fn displacement(&self, threads: usize, f: &[f64], alpha: &[f64]) -> Result<Vec<f64>> {
+        let bodies = threads::run(threads, self.dual.bodies(), |p| self.dual.displacement(p, f, alpha))?;
+        let mut all = reserved(f.len(), "a displacement")?;
+        bodies.iter().for_each(|u| all.extend_from_slice(u));
+        Ok(all)
+    }
+}
+
 /// What K+ of a body takes, found before it is computed.
 fn plan(body: &Body, unit: f64, tolerance: f64) -> Result<crate::body::Plan> {
     let missing = || Error::new(Kind::Internal, "a body without stiffness was set up");
-    let k = body.stiffness.as_ref().ok_or_else(missing)?.scaled(1.0 / unit)?;
+    let matrix = Arc::clone(body.stiffness.as_ref().ok_or_else(missing)?);
+    let k = Multiple { matrix, by: 1.0 / unit };
     let fixing = body.fixing.as_deref();
     if let Some(given) = &body.null_space {
         return GeneralizedInverse::plan_with(k, given, tolerance, fixing);
@@ -223,7 +239,7 @@ fn plan(body: &Body, unit: f64, tolerance: f64) -> Result<crate::body::Plan> {
     let Some(coordinates) = &body.coordinates else {
         return GeneralizedInverse::search(k, tolerance, fixing);
     };
-    let vectors = coordinates.rigid_modes(&k)?;
+    let vectors = coordinates.rigid_modes(&k.matrix)?;
     let candidates = NullSpaceInput { vectors, modes: Modes::Candidates };
     GeneralizedInverse::plan_with(k, &candidates, tolerance, fixing)
 }

@@ -6,7 +6,7 @@ use crate::constraints::RowKind;
 use crate::dual::Preconditioner;
 use crate::error::{Error, Kind, Result};
 use crate::linalg::memory::copied;
-use crate::linalg::vector::weighted_norm;
+use crate::linalg::vector::norm;
 use crate::linalg::Operator;
 use crate::qp::paper::Units;
 use crate::qp::{self, Direct, Judge, Qp, Solution, Verdict};
@@ -40,7 +40,7 @@ impl Problem {
         let solving = Instant::now();
         let ready = self.ready()?;
         let dual = Scaled::new(self, ready, &watch.stops)?;
-        let mut judge = Certifier { ready, scaled: &dual, data: self.data()?, accepted: None };
+        let mut judge = Certifier::new(self, ready, &dual)?;
         let f = watch.operator(ready, &dual.gaps.bounded);
         let (qp, start, direct) = (dual.qp(ready, &f), start.scaled(ready)?, self.direct(ready));
         let solution = match parameters(&self.settings) {
@@ -120,6 +120,8 @@ pub(super) struct Scaled {
     /// f / 2^p
     pub load: Vec<f64>,
     pub gaps: Gaps,
+    /// `B_p K_p+ f_p` of every body.
+    moved: Vec<Vec<f64>>,
     d: Vec<f64>,
     e: Vec<f64>,
 }
@@ -129,9 +131,10 @@ impl Scaled {
         let mut load = problem.loads()?;
         load.iter_mut().for_each(|f| *f /= ready.unit);
         let gaps = presolve(problem, ready, stops)?;
-        let d = ready.dual.rhs(&load, &gaps.dual)?;
+        let moved = ready.moved(problem.threads(), &load)?;
+        let d = ready.dual.rhs(&moved, &gaps.dual);
         let e = ready.dual.resultants(&load);
-        Ok(Self { load, gaps, d, e })
+        Ok(Self { load, gaps, moved, d, e })
     }
 
     fn qp<'a>(&'a self, ready: &'a Ready, a: &'a dyn Operator) -> Qp<'a> {
@@ -165,6 +168,7 @@ pub(super) struct Certifier<'a> {
     pub ready: &'a Ready,
     pub scaled: &'a Scaled,
     pub data: Data<'a>,
+    pub threads: usize,
     /// The last point accepted, with its answer.
     pub accepted: Option<Accepted>,
 }
@@ -183,7 +187,11 @@ pub(super) struct Ending {
     pub certificate: Certificate,
 }
 
-impl Certifier<'_> {
+impl<'a> Certifier<'a> {
+    fn new(problem: &'a Problem, ready: &'a Ready, scaled: &'a Scaled) -> Result<Self> {
+        Ok(Self { ready, scaled, data: problem.data()?, threads: problem.threads(), accepted: None })
+    }
+
     /// (17), and lambda = 2^p S L'^-1 x on the rows that carry the multipliers of their groups.
     pub fn recover(&self, x: &[f64], alpha: &[f64]) -> Result<Recovered> {
         Ok(self.with_forces(self.displacement(x, alpha)?, x))
@@ -193,7 +201,7 @@ impl Certifier<'_> {
     pub fn displacement(&self, x: &[f64], alpha: &[f64]) -> Result<Vec<f64>> {
         let mut load = copied(&self.scaled.load, "a displacement")?;
         self.ready.rows.take_forces(x, &mut load);
-        self.ready.dual.displacement(&load, alpha)
+        self.ready.displacement(self.threads, &load, alpha)
     }
 
     /// An answer of u and x; springs without entries have their force from their gap.
@@ -229,11 +237,10 @@ impl Certifier<'_> {
 }
 
 impl Judge for Certifier<'_> {
-    /// `||B'||u|| + |c'|`: lengths, whatever the choice of K+.
+    /// `|sum_p |B'_p u_p|| + |c'|`: lengths, whatever the choice of K+.
     fn scale(&mut self, x: &[f64], alpha: &[f64]) -> Result<f64> {
-        let u = self.displacement(x, alpha)?;
-        let moved: Vec<f64> = (0..x.len()).map(|i| self.ready.rows.matrix.row_dot_abs(i, &u)).collect();
-        Ok(weighted_norm(&moved, |_| 1.0) + weighted_norm(&self.scaled.gaps.dual, |_| 1.0))
+        let distances = self.ready.dual.distances(&self.scaled.moved, x, alpha);
+        Ok(norm(&distances) + norm(&self.scaled.gaps.dual))
     }
 
     fn accepts(&mut self, x: &[f64], alpha: &[f64]) -> Result<bool> {
@@ -292,7 +299,7 @@ pub(super) mod tests {
                 problem.set_up(watch)?;
                 let ready = problem.ready()?;
                 let dual = Scaled::new(problem, ready, &watch.stops)?;
-                let mut judge = Certifier { ready, scaled: &dual, data: problem.data()?, accepted: None };
+                let mut judge = Certifier::new(problem, ready, &dual)?;
                 let scale = 3.0;
                 let (x, verdict) = (vec![2.0 * (1.0 + error), 0.0], Verdict::Solved);
                 let solved =
@@ -312,5 +319,47 @@ pub(super) mod tests {
             assert!(judge.accepts(&solved.x, &solved.alpha).unwrap());
             assert_eq!(judge.ending(solved.clone()).unwrap().recovered.lambda, solved.x);
         });
+    }
+
+    /// Springs 1 and 1 at walls: u = (3 - 2, 1 - 0) and gaps (1, 2), all scales 1.
+    #[test]
+    fn the_scale_is_how_far_bodies_move_along_the_rows_and_their_gaps() {
+        two_springs(0.0, |judge, _, _, solved| {
+            let scale = judge.scale(&solved.x, &solved.alpha).unwrap();
+            assert!((scale - (2f64.sqrt() + 5f64.sqrt())).abs() < 1e-14);
+        });
+    }
+
+    /// A free spring between dofs 0 and 1, rows on both: against the displacements that (17) gives.
+    #[test]
+    fn the_scale_counts_the_rigid_motion() {
+        let mut problem = Problem::new();
+        let body = problem.add_body(2).unwrap();
+        let (ptr, col, val) = ([0, 1, 3], [0, 0, 1], [1.0, -1.0, 1.0]);
+        let spring = SparseInput { ptr: &ptr, col: &col, val: &val, storage: Storage::Lower };
+        problem.set_stiffness(body, spring).unwrap();
+        problem.set_load(body, &[3.0, 1.0]).unwrap();
+        let rows = RowsInput {
+            ptr: &[0, 1, 2],
+            body: None,
+            dof: &[0, 1],
+            val: &[1.0, -2.0],
+            rhs: Some(&[1.0, 2.0]),
+        };
+        problem.add_rows(RowKind::Inequality, rows).unwrap();
+        let test = |problem: &mut Problem, watch: &mut Watch| {
+            problem.set_up(watch)?;
+            let ready = problem.ready()?;
+            let dual = Scaled::new(problem, ready, &watch.stops)?;
+            let mut judge = Certifier::new(problem, ready, &dual)?;
+            for (x, alpha) in [([0.0, 0.0], 0.0), ([2.0, 0.0], -7.0), ([0.5, 1.5], 2.0)] {
+                let u = judge.displacement(&x, &[alpha])?;
+                let moved = [0, 1].map(|i| ready.rows.matrix.row_dot(i, &u));
+                let expected = norm(&moved) + norm(&dual.gaps.dual);
+                assert!((judge.scale(&x, &[alpha])? - expected).abs() < 1e-14 * expected, "{alpha}");
+            }
+            Ok(())
+        };
+        problem.watched(test).unwrap();
     }
 }

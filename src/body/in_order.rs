@@ -1,0 +1,205 @@
+//! Matrices by rows of ascending columns, those in full with entries on both sides of the diagonal: the lower triangle
+//! straight from the arrays of the host. Whatever else it gives, right or wrong, is for [`stiffness`](super::stiffness).
+
+use crate::body::stiffness::{may_differ, SparseInput, Storage};
+use crate::error::Result;
+use crate::linalg::memory::{reserved, zeros};
+use crate::linalg::Symmetric;
+
+const WHAT: &str = "a stiffness matrix";
+
+/// The lower triangle with every diagonal entry stored; `None` where the input is not of this form.
+pub fn lower_triangle(input: SparseInput, tolerance: f64) -> Result<Option<Symmetric>> {
+    match input.storage {
+        Storage::Upper => by_columns(input),
+        _ => by_rows(input, tolerance),
+    }
+}
+
+/// Row i as it was given.
+struct Row<'a> {
+    col: &'a [i64],
+    val: &'a [f64],
+    /// Number of entries left of the diagonal.
+    left: usize,
+    diagonal: Option<f64>,
+}
+
+/// `None` where columns do not ascend or a number is out of its range.
+fn row<'a>(input: &SparseInput<'a>, i: usize) -> Option<Row<'a>> {
+    let (n, range) = (input.ptr.len() - 1, input.ptr[i]..input.ptr[i + 1]);
+    let (col, val) = (input.col.get(range.clone())?, input.val.get(range)?);
+    let left = col.partition_point(|&j| (j as usize) < i);
+    let diagonal = col.get(left).filter(|&&j| j as usize == i).map(|_| val[left]);
+    let ascending = col.windows(2).all(|pair| pair[0] < pair[1]);
+    let within = col.first().is_none_or(|&j| j >= 0) && col.last().is_none_or(|&j| (j as usize) < n);
+    (ascending && within && val.iter().all(|v| v.is_finite())).then_some(Row { col, val, left, diagonal })
+}
+
+/// Storage in full, or of the lower triangle.
+fn by_rows(input: SparseInput, tolerance: f64) -> Result<Option<Symmetric>> {
+    let (n, entries) = (input.ptr.len() - 1, input.val.len());
+    let full = input.storage == Storage::Full;
+    let stored = n + if full { entries / 2 } else { entries };
+    let (ptr, col, val) = (reserved(n + 1, WHAT)?, reserved(stored, WHAT)?, reserved(stored, WHAT)?);
+    let mut rows = Rows {
+        input,
+        tolerance,
+        lower: Symmetric { ptr, col, val },
+        next: reserved(n, WHAT)?,
+        root: reserved(n, WHAT)?,
+    };
+    rows.lower.ptr.push(0);
+    let is_of_this_form = (0..n).all(|i| rows.take(i).is_some());
+    let is_paired = rows.next.iter().zip(&input.ptr[1..]).all(|(next, end)| next == end);
+    Ok((is_of_this_form && is_paired).then_some(rows.lower))
+}
+
+struct Rows<'a> {
+    input: SparseInput<'a>,
+    tolerance: f64,
+    lower: Symmetric,
+    /// Of each row taken: its first entry right of the diagonal that has not met its mate.
+    next: Vec<usize>,
+    /// `|K_ii|^1/2` of each row taken.
+    root: Vec<f64>,
+}
+
+impl Rows<'_> {
+    fn take(&mut self, i: usize) -> Option<()> {
+        let row = row(&self.input, i)?;
+        let diagonal = row.diagonal.unwrap_or(0.0);
+        self.root.push(diagonal.abs().sqrt());
+        self.next.push(self.input.ptr[i] + row.left + usize::from(row.diagonal.is_some()));
+        match self.input.storage {
+            Storage::Full => self.take_with_mates(i, &row)?,
+            _ => self.lower.val.extend_from_slice(&row.val[..row.left]),
+        }
+        self.lower.col.extend(row.col[..row.left].iter().map(|&j| j as u32));
+        self.lower.col.push(i as u32);
+        self.lower.val.push(diagonal);
+        self.lower.ptr.push(self.lower.col.len());
+        Some(())
+    }
+
+    /// The values left of the diagonal, each with its mate: that of column i in the rows taken.
+    fn take_with_mates(&mut self, i: usize, row: &Row) -> Option<()> {
+        for (&j, &k_ij) in row.col[..row.left].iter().zip(row.val) {
+            let j = j as usize;
+            let mate = self.next[j];
+            if mate == self.input.ptr[j + 1] || self.input.col[mate] != i as i64 {
+                return None;
+            }
+            self.next[j] += 1;
+            let k_ji = self.input.val[mate];
+            if k_ij != k_ji && (k_ij - k_ji).abs() > may_differ(self.tolerance, self.root[i], self.root[j]) {
+                return None;
+            }
+            self.lower.val.push(if k_ij == k_ji { k_ij } else { 0.5 * k_ij + 0.5 * k_ji });
+        }
+        Some(())
+    }
+}
+
+/// Storage of the upper triangle: its columns are the rows of the lower one.
+fn by_columns(input: SparseInput) -> Result<Option<Symmetric>> {
+    let n = input.ptr.len() - 1;
+    let mut ptr: Vec<usize> = reserved(n + 1, WHAT)?;
+    ptr.resize(n + 1, 0);
+    for i in 0..n {
+        let Some(row) = row(&input, i).filter(|row| row.left == 0) else { return Ok(None) };
+        row.col.iter().for_each(|&j| ptr[j as usize + 1] += 1);
+        ptr[i + 1] += usize::from(row.diagonal.is_none());
+    }
+    (0..n).for_each(|j| ptr[j + 1] += ptr[j]);
+    let mut next = reserved(n, WHAT)?;
+    next.extend_from_slice(&ptr[..n]);
+    let mut col = reserved(ptr[n], WHAT)?;
+    col.resize(ptr[n], 0);
+    let mut val = zeros(ptr[n], WHAT)?;
+    for i in 0..n {
+        // rows before i have filled row i of the lower triangle up to its diagonal
+        (col[next[i]], val[next[i]]) = (i as u32, 0.0);
+        for at in input.ptr[i]..input.ptr[i + 1] {
+            let place = &mut next[input.col[at] as usize];
+            (col[*place], val[*place]) = (i as u32, input.val[at]);
+            *place += 1;
+        }
+    }
+    Ok(Some(Symmetric { ptr, col, val }))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::body::from_sparse;
+
+    /// Rows of a matrix of order 40 with about 6 entries left of the diagonal, those above 1 + 1e-13 times those below,
+    /// some diagonal entries not stored, entries of the row in descending order where `turned`.
+    fn rows(storage: Storage, turned: impl Fn(usize) -> bool) -> (Vec<usize>, Vec<i64>, Vec<f64>) {
+        let coupled = |i: usize, j: usize| (3 * i + 7 * j) % 6 == 1 && i % 9 != 4 && j % 9 != 4;
+        let (mut ptr, mut col, mut val) = (vec![0], Vec::new(), Vec::new());
+        for i in 0..40 {
+            let mut row: Vec<(i64, f64)> = Vec::new();
+            for j in 0..40 {
+                let (low, high) = (i.min(j), i.max(j));
+                let wanted = match storage {
+                    Storage::Full => true,
+                    Storage::Lower => j <= i,
+                    Storage::Upper => j >= i,
+                };
+                let value = 1.0 + (low as f64).sin() * (high as f64).cos();
+                if wanted && (coupled(high, low) && i != j || i == j && i % 9 != 4) {
+                    row.push((
+                        j as i64,
+                        if i == j { 50.0 } else { value * (1.0 + f64::from(j > i) * 1e-13) },
+                    ));
+                }
+            }
+            if turned(i) {
+                row.reverse();
+            }
+            col.extend(row.iter().map(|entry| entry.0));
+            val.extend(row.iter().map(|entry| entry.1));
+            ptr.push(col.len());
+        }
+        (ptr, col, val)
+    }
+
+    #[test]
+    fn rows_in_order_and_out_of_order_give_the_same_matrix() {
+        for storage in [Storage::Full, Storage::Lower, Storage::Upper] {
+            let matrix = |turned: bool| {
+                let (ptr, col, val) = rows(storage, |i| turned && i == 37);
+                let input = SparseInput { ptr: &ptr, col: &col, val: &val, storage };
+                assert_eq!(lower_triangle(input, 1e-10).unwrap().is_none(), turned, "{storage:?}");
+                from_sparse(input, 1e-10).unwrap()
+            };
+            let in_order = matrix(false);
+            assert!(in_order.col.len() > 100 && in_order.diagonal(4) == 0.0);
+            assert_eq!(in_order, matrix(true), "{storage:?}");
+        }
+    }
+
+    /// An entry whose mate is not stored, or too far from it, and entries on the wrong side.
+    #[test]
+    fn what_is_not_symmetric_is_left_to_the_check_of_it() {
+        let (ptr, col, val) = rows(Storage::Full, |_| false);
+        let input = SparseInput { ptr: &ptr, col: &col, val: &val, storage: Storage::Full };
+        assert!(lower_triangle(input, 1e-16).unwrap().is_none());
+        for storage in [Storage::Lower, Storage::Upper] {
+            assert!(lower_triangle(SparseInput { storage, ..input }, 1e-10).unwrap().is_none());
+        }
+        for gone in 0..col.len() {
+            let row = ptr.partition_point(|&p| p <= gone) - 1;
+            let ptr: Vec<usize> = ptr.iter().enumerate().map(|(i, &p)| p - usize::from(i > row)).collect();
+            let (mut col, mut val) = (col.clone(), val.clone());
+            if col.remove(gone) == row as i64 {
+                continue;
+            }
+            val.remove(gone);
+            let input = SparseInput { ptr: &ptr, col: &col, val: &val, storage: Storage::Full };
+            assert!(lower_triangle(input, 1e-10).unwrap().is_none(), "{gone}");
+        }
+    }
+}
