@@ -3,6 +3,7 @@
 //! Large arrays are reserved one by one, with [`zeros`], [`reserved`] and [`copied`]. Where many small pieces or foreign
 //! code allocate, [`room`] proves beforehand that there is enough, and keeps the large arrays of other threads from taking it.
 
+use std::alloc::{alloc_zeroed, Layout};
 use std::hint::black_box;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -59,6 +60,29 @@ pub fn zeros(len: usize, what: &str) -> Result<Vec<f64>> {
     let mut values = reserved(len, what)?;
     values.resize(len, 0.0);
     Ok(values)
+}
+
+/// As `zeros`, in memory that the system clears when it is touched first, not before.
+pub fn untouched_zeros(len: usize, what: &str) -> Result<Vec<f64>> {
+    let bytes = len.saturating_mul(size_of::<f64>());
+    let layout = Layout::array::<f64>(len).map_err(|_| refusal(bytes, what))?;
+    if bytes < LARGE {
+        return zeros(len, what);
+    }
+    // SAFETY: the layout is that of `len` doubles, more than none, and what the allocator gives belongs to nobody else.
+    // All bits zero is the double 0.
+    let values = unsafe {
+        let start = alloc_zeroed(layout).cast::<f64>();
+        if start.is_null() {
+            return Err(refusal(bytes, what));
+        }
+        Vec::from_raw_parts(start, len, len)
+    };
+    if is_free(PROMISED.load(Ordering::Relaxed)) {
+        return Ok(values);
+    }
+    drop(values);
+    Err(refusal(bytes, what))
 }
 
 /// An empty vector with room for exactly `len` entries.

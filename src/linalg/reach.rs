@@ -3,7 +3,7 @@
 
 use faer::linalg::matmul::triangular::{self, BlockStructure};
 use faer::linalg::triangular_solve::solve_lower_triangular_in_place;
-use faer::{linalg::matmul::matmul, Accum, Mat, Par};
+use faer::{linalg::matmul::matmul, Accum, Mat, MatRef, Par};
 
 use crate::error::Result;
 use crate::linalg::elimination::NONE;
@@ -13,7 +13,7 @@ use crate::linalg::{Cholesky, Csr, Packed};
 /// What a supernode passes on to its parent: update rows for the columns (rows of B) seen so far.
 struct Update {
     /// Positions in L of the rows.
-    rows: Vec<usize>,
+    rows: Vec<u32>,
     /// Rows of B, ascending.
     columns: Vec<usize>,
     values: Mat<f64>,
@@ -23,36 +23,34 @@ const WHAT: &str = "the dual operator of a body";
 
 /// `rows` (m x n, over all dofs of the body) gives the m x m matrix.
 pub fn inverse_form(cholesky: &Cholesky, rows: &Csr) -> Result<Packed> {
-    let factor = cholesky.factor();
-    let symbolic = &cholesky.analysis.symbolic;
+    let nodes = &cholesky.analysis.nodes;
     let _room = room(small_pieces(cholesky, rows) + PRODUCTS, WHAT)?;
     let mut form = Packed::zeros(rows.rows())?;
     let mut own = entries_by_supernode(cholesky, rows)?;
-    let mut waiting: Vec<Vec<Update>> = (0..symbolic.n_supernodes()).map(|_| Vec::new()).collect();
-    let mut local = vec![NONE; symbolic.nrows()];
-    for s in 0..symbolic.n_supernodes() {
+    let mut waiting: Vec<Vec<Update>> = (0..nodes.count()).map(|_| Vec::new()).collect();
+    let mut local = vec![NONE; nodes.order()];
+    for s in 0..nodes.count() {
         let updates = std::mem::take(&mut waiting[s]);
         let columns = merged_columns(&own[s], &updates)?;
         if columns.is_empty() {
             continue;
         }
-        let (begin, end) = (symbolic.supernode_begin()[s], symbolic.supernode_end()[s]);
-        let node = factor.supernode(s);
-        let front_rows = || (begin..end).chain(node.pattern().iter().copied());
-        front_rows().enumerate().for_each(|(at, row)| local[row] = at);
+        let node = nodes.node(s);
+        node.front_rows().enumerate().for_each(|(at, row)| local[row] = at);
         let mut front =
-            assemble(&local, &columns, std::mem::take(&mut own[s]), updates, front_rows().count())?;
-        let width = end - begin;
-        let (top, bottom) = node.val().split_at_row(width);
-        let (mut y, mut rest) = front.as_mut().split_at_row_mut(width);
+            assemble(&local, &columns, std::mem::take(&mut own[s]), updates, node.height())?;
+        let panel = &cholesky.values[node.panel.clone()];
+        let panel = MatRef::from_column_major_slice(panel, node.height(), node.width);
+        let (top, bottom) = panel.split_at_row(node.width);
+        let (mut y, mut rest) = front.as_mut().split_at_row_mut(node.width);
         solve_lower_triangular_in_place(top, y.as_mut(), Par::Seq);
         add_gram(&mut form, &columns, y.as_ref())?;
-        if let Some(&next) = node.pattern().first() {
+        let parent = nodes.parent(s);
+        if parent != NONE {
             matmul(rest.as_mut(), Accum::Add, bottom, y.as_ref(), -1.0, Par::Seq);
-            let parent = symbolic.supernode_end().partition_point(|&end| end <= next);
             let mut values = zero_matrix(rest.nrows(), rest.ncols())?;
             values.copy_from(rest);
-            waiting[parent].push(Update { rows: copied(node.pattern(), WHAT)?, columns, values });
+            waiting[parent].push(Update { rows: copied(node.rows, WHAT)?, columns, values });
         }
     }
     Ok(form)
@@ -60,20 +58,20 @@ pub fn inverse_form(cholesky: &Cholesky, rows: &Csr) -> Result<Packed> {
 
 /// Bytes of the lists by supernode, by dof and by entry of B, which grow piece by piece.
 fn small_pieces(cholesky: &Cholesky, rows: &Csr) -> usize {
-    let symbolic = &cholesky.analysis.symbolic;
-    96 * symbolic.n_supernodes() + 8 * symbolic.nrows() + 96 * rows.col.len()
+    let nodes = &cholesky.analysis.nodes;
+    96 * nodes.count() + 8 * nodes.order() + 96 * rows.col.len()
 }
 
 /// The entries of P B': per supernode (row of B, position in L, value), rows of B ascending.
 fn entries_by_supernode(cholesky: &Cholesky, rows: &Csr) -> Result<Vec<Vec<(usize, usize, f64)>>> {
-    let ends = cholesky.analysis.symbolic.supernode_end();
-    let mut entries = reserved(ends.len(), WHAT)?;
-    entries.resize(ends.len(), Vec::new());
+    let nodes = &cholesky.analysis.nodes;
+    let mut entries = reserved(nodes.count(), WHAT)?;
+    entries.resize(nodes.count(), Vec::new());
     for i in 0..rows.rows() {
         for (dof, value) in rows.row(i) {
             let at = cholesky.position(dof);
             if at != NONE {
-                entries[ends.partition_point(|&end| end <= at)].push((i, at, value));
+                entries[nodes.of_column(at)].push((i, at, value));
             }
         }
     }
@@ -107,7 +105,7 @@ fn assemble(
         for (j, &column) in update.columns.iter().enumerate() {
             let to = find(column);
             for (i, &row) in update.rows.iter().enumerate() {
-                front[(local[row], to)] += update.values[(i, j)];
+                front[(local[row as usize], to)] += update.values[(i, j)];
             }
         }
     }
