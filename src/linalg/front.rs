@@ -1,12 +1,14 @@
 //! Dense work on one supernode: its panel is factorised, and the update for the supernodes above is formed,
 //!
 //! ```text
-//! [A11    ]   [L11   ]            U <- U - L21 L21'
-//! [A21   U],  [L21   ],
+//! [A11   ]   [L11   ]
+//! [A21  0] = [L21   ],   U = - L21 L21' + updates of the children
 //! ```
 //!
 //! the lower triangle of U stored by tiles: block columns, each from its diagonal down. Tiles are independent of each
 //! other; the sums within one are the same whoever forms it.
+
+use std::ops::Range;
 
 use faer::dyn_stack::{MemBuffer, MemStack, StackReq};
 use faer::linalg::cholesky::llt::factor::{cholesky_in_place, cholesky_in_place_scratch, LltError};
@@ -38,7 +40,7 @@ fn tile_start(b: usize, t: usize) -> usize {
 }
 
 /// Column j of an update of order b, from the diagonal down.
-pub fn update_column(b: usize, j: usize) -> std::ops::Range<usize> {
+pub fn update_column(b: usize, j: usize) -> Range<usize> {
     let t = j / TILE;
     let height = b - t * TILE;
     let column = tile_start(b, t) + (j - t * TILE) * height;
@@ -50,12 +52,11 @@ pub fn scratch() -> StackReq {
     cholesky_in_place_scratch::<f64>(BLOCK, Par::Seq, Default::default())
 }
 
-/// Factorises the panel (height x width, column-major) and subtracts `L21 L21'` from the update. `parallel`: tiles are
-/// shared among the threads of the present pool. `Err`: the column whose pivot is not positive.
+/// Factorises the panel, height x width, column-major. `parallel`: tiles are shared among the threads of the present
+/// pool. `Err`: the column whose pivot is not positive.
 pub fn factorize(
     panel: &mut [f64],
     width: usize,
-    update: &mut [f64],
     workspace: &mut MemBuffer,
     parallel: bool,
 ) -> Result<(), usize> {
@@ -71,28 +72,55 @@ pub fn factorize(
             let top = first + block + t * TILE;
             let columns = tile.len() / height;
             let tile = MatMut::from_column_major_slice_mut(tile, height, columns);
-            subtract_product(tile.subrows_mut(top, height - top), own.subrows(top, height - top));
+            subtract_product(tile.subrows_mut(top, height - top), own.subrows(top, height - top), Accum::Add);
         });
         first += block;
     }
-    let below = height - width;
-    let panel = MatRef::from_column_major_slice(panel, height, width);
-    each(parallel, tiles_mut(update, below), |(t, tile)| {
-        let rows = below - t * TILE;
-        let columns = tile.len() / rows;
-        let tile = MatMut::from_column_major_slice_mut(tile, rows, columns);
-        subtract_product(tile, panel.subrows(height - rows, rows));
-    });
     Ok(())
 }
 
-/// The tiles of an update of order b, with their numbers.
-fn tiles_mut(mut update: &mut [f64], b: usize) -> Vec<(usize, &mut [f64])> {
+/// The update that a factorised panel leaves. `complete` adds to some of its columns what the children left, on and
+/// below the diagonal.
+pub fn update(
+    panel: &[f64],
+    width: usize,
+    update: &mut [f64],
+    parallel: bool,
+    complete: impl Fn(&mut Tile<'_>) + Send + Sync,
+) {
+    let height = panel.len() / width.max(1);
+    let below = height - width;
+    let panel = MatRef::from_column_major_slice(panel, height, width);
+    each(parallel, tiles(update, below), |mut tile| {
+        let (rows, columns) = (below - tile.columns.start, tile.columns.len());
+        let to = MatMut::from_column_major_slice_mut(tile.values, rows, columns);
+        subtract_product(to, panel.subrows(height - rows, rows), Accum::Replace);
+        complete(&mut tile);
+    });
+}
+
+/// Some columns of an update, from the diagonal of the first down.
+pub struct Tile<'a> {
+    pub columns: Range<usize>,
+    values: &'a mut [f64],
+}
+
+impl Tile<'_> {
+    /// Column j of the update from the row j on.
+    pub fn column(&mut self, j: usize) -> &mut [f64] {
+        let height = self.values.len() / self.columns.len();
+        let column = j - self.columns.start;
+        &mut self.values[column * height + column..(column + 1) * height]
+    }
+}
+
+/// The tiles of an update of order b.
+fn tiles(mut update: &mut [f64], b: usize) -> Vec<Tile<'_>> {
     let mut tiles = Vec::with_capacity(b.div_ceil(TILE));
-    for t in 0..b.div_ceil(TILE) {
-        let rows = b - t * TILE;
-        let (tile, rest) = update.split_at_mut(rows * TILE.min(rows));
-        tiles.push((t, tile));
+    for first in (0..b).step_by(TILE) {
+        let (rows, columns) = (b - first, TILE.min(b - first));
+        let (values, rest) = update.split_at_mut(rows * columns);
+        tiles.push(Tile { columns: first..first + columns, values });
         update = rest;
     }
     tiles
@@ -129,14 +157,15 @@ fn factorize_block(
     Ok(())
 }
 
-/// `tile -= a a_1'`, on and below the diagonal of the first rows; a_1 are as many rows of a as the tile has columns.
-fn subtract_product(tile: MatMut<'_, f64>, a: MatRef<'_, f64>) {
+/// `tile <- tile - a a_1'` or `- a a_1'`, on and below the diagonal of the first rows; a_1 are as many rows of a as the
+/// tile has columns.
+fn subtract_product(tile: MatMut<'_, f64>, a: MatRef<'_, f64>, to: Accum) {
     let columns = tile.ncols();
     let first = a.subrows(0, columns);
     let (top, below) = tile.split_at_row_mut(columns);
     let (full, lower) = (BlockStructure::Rectangular, BlockStructure::TriangularLower);
-    triangular::matmul(top, lower, Accum::Add, first, full, first.transpose(), full, -1.0, Par::Seq);
-    matmul(below, Accum::Add, a.subrows(columns, a.nrows() - columns), first.transpose(), -1.0, Par::Seq);
+    triangular::matmul(top, lower, to, first, full, first.transpose(), full, -1.0, Par::Seq);
+    matmul(below, to, a.subrows(columns, a.nrows() - columns), first.transpose(), -1.0, Par::Seq);
 }
 
 /// Does all tasks, in the present pool or one after the other.
@@ -156,7 +185,8 @@ mod tests {
     fn the_tiles_of_an_update_follow_each_other_without_gaps() {
         for b in [0, 1, TILE - 1, TILE, TILE + 1, 3 * TILE + 7] {
             let mut update = vec![0.0; update_len(b)];
-            assert_eq!(tiles_mut(&mut update, b).iter().map(|tile| tile.1.len()).sum::<usize>(), update_len(b));
+            let values = tiles(&mut update, b).iter().map(|tile| tile.values.len()).sum::<usize>();
+            assert_eq!(values, update_len(b));
             for j in 0..b {
                 let column = update_column(b, j);
                 assert_eq!(column.len(), b - j);

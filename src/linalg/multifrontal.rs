@@ -10,7 +10,7 @@ use faer::dyn_stack::MemBuffer;
 use rayon::prelude::*;
 
 use crate::error::Result;
-use crate::linalg::front;
+use crate::linalg::front::{self, Tile};
 use crate::linalg::memory::{refusal, reserved, untouched_zeros};
 use crate::linalg::subtrees::{subtrees, SHARED};
 use crate::linalg::supernodes::{Node, Supernodes};
@@ -54,7 +54,7 @@ pub fn factorize(nodes: &Supernodes, matrix: &Columns) -> Result<std::result::Re
 
 /// Bytes that the factorisation takes on one thread besides L and the matrix.
 pub fn bytes(nodes: &Supernodes) -> usize {
-    stack_len(nodes, 0..nodes.count()) * size_of::<f64>() + nodes.order() * size_of::<u32>()
+    stack_lens(nodes, 0..nodes.count()).iter().sum::<usize>() * size_of::<f64>() + nodes.order() * size_of::<u32>()
 }
 
 /// Supernodes outside all subtrees.
@@ -82,23 +82,23 @@ fn split<'a>(
     tasks
 }
 
-/// Most values that wait on the stack at a time, the update being formed among them.
-fn stack_len(nodes: &Supernodes, sequence: impl Iterator<Item = usize>) -> usize {
-    let (mut most, mut top) = (0, 0);
+/// Most values that wait on each of the two stacks at a time.
+fn stack_lens(nodes: &Supernodes, sequence: impl Iterator<Item = usize>) -> [usize; 2] {
+    let (mut most, mut top) = ([0, 0], [0, 0]);
     let mut waiting: Vec<(usize, usize)> = Vec::new();
     for s in sequence {
-        let len = front::update_len(nodes.node(s).rows.len());
-        most = most.max(top + len);
+        let (own, len) = (nodes.level(s) % 2, front::update_len(nodes.node(s).rows.len()));
         while waiting.last().is_some_and(|child| nodes.parent(child.0) == s) {
-            top -= waiting.pop().map_or(0, |child| child.1);
+            top[1 - own] -= waiting.pop().map_or(0, |child| child.1);
         }
         waiting.push((s, len));
-        top += len;
+        top[own] += len;
+        most[own] = most[own].max(top[own]);
     }
     most
 }
 
-/// Where an update waits.
+/// Where an update waits: on the stack of its level, even or odd, or apart.
 enum Place {
     Stack(Range<usize>),
     Apart(Vec<f64>),
@@ -110,11 +110,16 @@ struct Task<'a> {
     matrix: &'a Columns,
     /// Row of a position within the present front.
     local: Vec<u32>,
-    /// Updates that wait, in the order of their supernodes, those on the stack one after the other up to `top`.
+    /// Updates that wait, in the order of their supernodes.
     waiting: Vec<(usize, Place)>,
-    stack: Vec<f64>,
-    top: usize,
+    /// A supernode takes its children from one stack and leaves its update on the other.
+    stacks: [Stack; 2],
     workspace: MemBuffer,
+}
+
+struct Stack {
+    values: Vec<f64>,
+    top: usize,
 }
 
 impl<'a> Task<'a> {
@@ -128,8 +133,10 @@ impl<'a> Task<'a> {
         let need = front::scratch();
         let workspace =
             MemBuffer::try_new(need).map_err(|_| refusal(need.unaligned_bytes_required(), WHAT))?;
-        let stack = untouched_zeros(stack_len(nodes, sequence), WHAT)?;
-        Ok(Self { nodes, matrix, local, waiting: Vec::new(), stack, top: 0, workspace })
+        let [even, odd] = stack_lens(nodes, sequence);
+        let stack = |len| untouched_zeros(len, WHAT).map(|values| Stack { values, top: 0 });
+        let stacks = [stack(even)?, stack(odd)?];
+        Ok(Self { nodes, matrix, local, waiting: Vec::new(), stacks, workspace })
     }
 
     /// All supernodes of a subtree, whose panels these are; the update of its root, or where a pivot is not positive.
@@ -139,15 +146,18 @@ impl<'a> Task<'a> {
         panels: &mut [f64],
     ) -> Result<std::result::Result<Vec<f64>, usize>> {
         let first = self.nodes.first_value(subtree.start);
-        for s in subtree {
+        for s in subtree.clone() {
             let panel = self.nodes.node(s).panel;
             if let Some(at) = self.eliminate(s, &mut panels[panel.start - first..panel.end - first], false) {
                 return Ok(Err(at));
             }
         }
-        self.stack.truncate(self.top);
-        self.stack.shrink_to_fit();
-        Ok(Ok(self.stack))
+        let [even, odd] = self.stacks;
+        let own = if self.nodes.level(subtree.end - 1) % 2 == 0 { even } else { odd };
+        let mut update = own.values;
+        update.truncate(own.top);
+        update.shrink_to_fit();
+        Ok(Ok(update))
     }
 
     /// Supernodes that are as large as several threads are worth.
@@ -162,37 +172,40 @@ impl<'a> Task<'a> {
         Ok(None)
     }
 
-    /// Factorises the panel of s and puts its update on the stack in place of those of its children. Gives the position
+    /// Factorises the panel of s and puts its update on a stack in place of those of its children. Gives the position
     /// of a pivot that is not positive.
     fn eliminate(&mut self, s: usize, panel: &mut [f64], shared: bool) -> Option<usize> {
         let node = self.nodes.node(s);
+        panel.fill(0.0);
         self.scatter(&node, panel);
         let first = self.waiting.iter().rposition(|child| self.nodes.parent(child.0) != s);
         let first = first.map_or(0, |at| at + 1);
-        let (below, update) = self.stack.split_at_mut(self.top);
-        let update = &mut update[..front::update_len(node.rows.len())];
-        update.fill(0.0);
-        let mut front = Front { panel, update, width: node.width, height: node.height() };
-        let mut base = self.top;
+        let own = self.nodes.level(s) % 2;
+        let [even, odd] = &mut self.stacks;
+        let (own, others) = if own == 0 { (even, odd) } else { (odd, even) };
+        let mut children = Vec::with_capacity(self.waiting.len() - first);
         for (child, place) in &self.waiting[first..] {
             let values = match place {
-                Place::Stack(range) => {
-                    base = base.min(range.start);
-                    &below[range.clone()]
-                }
+                Place::Stack(range) => &others.values[range.clone()],
                 Place::Apart(values) => values,
             };
-            front.add(values, self.nodes.node(*child).rows, &self.local);
+            children.push(Child::new(values, self.nodes.node(*child).rows, node.end(), &self.local));
         }
-        let Front { panel, update, .. } = front;
-        if let Err(at) = front::factorize(panel, node.width, update, &mut self.workspace, shared) {
+        children.iter().for_each(|child| child.add_to_panel(panel, node.height()));
+        if let Err(at) = front::factorize(panel, node.width, &mut self.workspace, shared) {
             return Some(node.begin + at);
         }
-        let len = update.len();
-        self.stack.copy_within(self.top..self.top + len, base);
-        self.top = base + len;
-        self.waiting.truncate(first);
-        self.waiting.push((s, Place::Stack(base..self.top)));
+        let place = own.top..own.top + front::update_len(node.rows.len());
+        front::update(panel, node.width, &mut own.values[place.clone()], shared, |tile| {
+            children.iter().for_each(|child| child.add_to_tile(tile, node.width));
+        });
+        own.top = place.end;
+        for (_, place) in self.waiting.drain(first..) {
+            if let Place::Stack(range) = place {
+                others.top = others.top.min(range.start);
+            }
+        }
+        self.waiting.push((s, Place::Stack(place)));
         None
     }
 
@@ -209,49 +222,60 @@ impl<'a> Task<'a> {
     }
 }
 
-/// A panel with its update.
-struct Front<'a> {
-    panel: &'a mut [f64],
-    update: &'a mut [f64],
-    width: usize,
-    height: usize,
+/// The update of a child as its parent sees it.
+struct Child<'a> {
+    values: &'a [f64],
+    order: usize,
+    /// Its first rows, so many, are columns of the parent.
+    inside: usize,
+    /// Row of the parent's front for each row.
+    to: Vec<u32>,
+    runs: Vec<Range<usize>>,
 }
 
-impl Front<'_> {
-    /// Adds the update of a child with these rows.
-    fn add(&mut self, child: &[f64], rows: &[u32], local: &[u32]) {
-        let (order, below) = (rows.len(), self.height - self.width);
-        let runs = runs(rows, local);
-        let mut run = 0;
-        for j in 0..order {
-            while runs[run].1.end <= j {
-                run += 1;
-            }
-            let from = &child[front::update_column(order, j)];
-            let column = local[rows[j] as usize] as usize;
-            let (to, offset) = if column < self.width {
-                (&mut self.panel[column * self.height..(column + 1) * self.height], 0)
-            } else {
-                (&mut self.update[front::update_column(below, column - self.width)], column)
-            };
-            for (start, range) in &runs[run..] {
-                let begin = range.start.max(j);
-                let first = start + (begin - range.start) - offset;
-                let from = &from[begin - j..range.end - j];
-                to[first..first + from.len()].iter_mut().zip(from).for_each(|(to, from)| *to += from);
-            }
+impl<'a> Child<'a> {
+    fn new(values: &'a [f64], rows: &[u32], end: usize, local: &[u32]) -> Self {
+        let to: Vec<u32> = rows.iter().map(|&row| local[row as usize]).collect();
+        let inside = rows.partition_point(|&row| (row as usize) < end);
+        Self { values, order: rows.len(), inside, runs: runs(&to), to }
+    }
+
+    fn add_to_panel(&self, panel: &mut [f64], height: usize) {
+        for (j, &column) in self.to[..self.inside].iter().enumerate() {
+            let column = column as usize * height;
+            self.add_column(j, &mut panel[column..column + height], 0);
+        }
+    }
+
+    /// To a tile of the update of a parent with so many columns.
+    fn add_to_tile(&self, tile: &mut Tile<'_>, width: usize) {
+        let place = |row: usize| self.to.partition_point(|&to| (to as usize) < row);
+        for j in place(width + tile.columns.start)..place(width + tile.columns.end) {
+            let column = self.to[j] as usize;
+            self.add_column(j, tile.column(column - width), column);
+        }
+    }
+
+    /// Column j, to a column of the parent that starts at row `first`.
+    fn add_column(&self, j: usize, to: &mut [f64], first: usize) {
+        let from = &self.values[front::update_column(self.order, j)];
+        let run = self.runs.partition_point(|run| run.end <= j);
+        for run in &self.runs[run..] {
+            let begin = run.start.max(j);
+            let at = self.to[begin] as usize - first;
+            let from = &from[begin - j..run.end - j];
+            to[at..at + from.len()].iter_mut().zip(from).for_each(|(to, from)| *to += from);
         }
     }
 }
 
-/// Rows that stay neighbours in the front: first row there, and their range.
-fn runs(rows: &[u32], local: &[u32]) -> Vec<(usize, Range<usize>)> {
-    let mut runs: Vec<(usize, Range<usize>)> = Vec::new();
-    for (i, &row) in rows.iter().enumerate() {
-        let at = local[row as usize] as usize;
+/// Rows that are neighbours in the front of the parent too.
+fn runs(to: &[u32]) -> Vec<Range<usize>> {
+    let mut runs: Vec<Range<usize>> = Vec::new();
+    for (i, &row) in to.iter().enumerate() {
         match runs.last_mut() {
-            Some((start, range)) if *start + range.len() == at => range.end = i + 1,
-            _ => runs.push((at, i..i + 1)),
+            Some(run) if to[run.start] as usize + run.len() == row as usize => run.end = i + 1,
+            _ => runs.push(i..i + 1),
         }
     }
     runs

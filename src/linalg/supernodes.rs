@@ -24,6 +24,7 @@ pub struct Supernodes {
     row_ptr: Vec<usize>,
     row: Vec<u32>,
     parent: Vec<usize>,
+    level: Vec<u32>,
     /// Where the panel of every supernode starts, then the end.
     panel: Vec<usize>,
 }
@@ -115,6 +116,11 @@ impl Supernodes {
         self.parent[s]
     }
 
+    /// Number of supernodes above s.
+    pub fn level(&self, s: usize) -> usize {
+        self.level[s] as usize
+    }
+
     /// The supernode of a column.
     pub fn of_column(&self, column: usize) -> usize {
         self.begin.partition_point(|&begin| begin <= column) - 1
@@ -139,6 +145,7 @@ impl Supernodes {
             row_ptr: reserved(groups.len() + 1, WHAT)?,
             row: reserved(entries, WHAT)?,
             parent: reserved(groups.len(), WHAT)?,
+            level: reserved(groups.len(), WHAT)?,
             panel: reserved(groups.len() + 1, WHAT)?,
         };
         let (mut column, mut value) = (0, 0);
@@ -156,6 +163,11 @@ impl Supernodes {
         nodes.begin.push(column);
         nodes.row_ptr.push(nodes.row.len());
         nodes.panel.push(value);
+        nodes.level.resize(groups.len(), 0);
+        for s in (0..groups.len()).rev() {
+            let parent = nodes.parent[s];
+            nodes.level[s] = if parent == NONE { 0 } else { nodes.level[parent] + 1 };
+        }
         Ok(nodes)
     }
 }
