@@ -16,7 +16,8 @@ use faer::linalg::matmul::matmul;
 use faer::linalg::matmul::triangular::{self, BlockStructure};
 use faer::linalg::triangular_solve::solve_lower_triangular_in_place;
 use faer::{Accum, MatMut, MatRef, Par};
-use rayon::prelude::*;
+
+use crate::linalg::subtrees::each;
 
 /// Columns of a tile.
 pub const TILE: usize = 256;
@@ -166,15 +167,6 @@ fn subtract_product(tile: MatMut<'_, f64>, a: MatRef<'_, f64>, to: Accum) {
     let (full, lower) = (BlockStructure::Rectangular, BlockStructure::TriangularLower);
     triangular::matmul(top, lower, to, first, full, first.transpose(), full, -1.0, Par::Seq);
     matmul(below, to, a.subrows(columns, a.nrows() - columns), first.transpose(), -1.0, Par::Seq);
-}
-
-/// Does all tasks, in the present pool or one after the other.
-fn each<T: Send>(parallel: bool, tasks: Vec<T>, work: impl Fn(T) + Send + Sync) {
-    if parallel && tasks.len() > 1 {
-        tasks.into_par_iter().for_each(work);
-    } else {
-        tasks.into_iter().for_each(work);
-    }
 }
 
 #[cfg(test)]

@@ -19,6 +19,7 @@ mod supernodes;
 pub mod symmetric;
 pub mod trailing;
 mod triangular;
+mod updates;
 pub mod vector;
 
 pub use cholesky::{Analysis, Breakdown, Cholesky};

@@ -1,26 +1,56 @@
-//! Independent subtrees of an elimination tree, for the threads of a pool.
+//! Independent subtrees of an elimination tree, and what threads of a pool share.
 
 use std::ops::Range;
+
+use rayon::prelude::*;
 
 use crate::linalg::elimination::NONE;
 use crate::linalg::supernodes::Supernodes;
 
-/// A supernode or subtree with less work than so many multiplications is not shared among threads.
-pub const SHARED: f64 = 2e7;
+/// Less work than so many multiplications is not shared among threads.
+const SHARED: f64 = 2e7;
 /// Subtrees for every thread: enough that all of them have as much to do.
 const SUBTREES: usize = 4;
+/// Subtrees where their number must not depend on the threads.
+const PARTS: usize = 16;
 
-/// Ranges of supernodes in ascending order, without the supernodes that all threads share afterwards; the whole forest
+/// Whether threads of the present pool are to share so much work.
+pub fn shared(work: f64) -> bool {
+    work > SHARED && rayon::current_thread_index().is_some()
+}
+
+/// Does all tasks, side by side in the present pool or one after the other.
+pub fn each<T: Send>(parallel: bool, tasks: Vec<T>, work: impl Fn(T) + Send + Sync) {
+    if parallel && tasks.len() > 1 {
+        tasks.into_par_iter().for_each(work);
+    } else {
+        tasks.into_iter().for_each(work);
+    }
+}
+
+/// Ranges of supernodes in ascending order, without those above, which all threads share afterwards; the whole forest
 /// outside a pool.
 pub fn subtrees(nodes: &Supernodes) -> Vec<Range<usize>> {
     let threads = if rayon::current_thread_index().is_some() { rayon::current_num_threads() } else { 1 };
-    let whole: f64 = nodes.nodes().map(|node| node.work()).sum();
-    let small = whole / (SUBTREES * threads) as f64;
-    if threads < 2 || whole < SHARED * (SUBTREES * threads) as f64 {
-        return vec![0..nodes.count(); 1];
+    match threads {
+        1 => vec![0..nodes.count(); 1],
+        _ => of_equal_work(nodes, SUBTREES * threads).unwrap_or_else(|| vec![0..nodes.count(); 1]),
+    }
+}
+
+/// The same whatever the threads: none where there is little work.
+pub fn parts(nodes: &Supernodes) -> Vec<Range<usize>> {
+    of_equal_work(nodes, PARTS).unwrap_or_default()
+}
+
+/// About `count` subtrees, the largest with so little work; `None` where they are too small to be worth it.
+fn of_equal_work(nodes: &Supernodes, count: usize) -> Option<Vec<Range<usize>>> {
+    let mut work: Vec<f64> = nodes.nodes().map(|node| node.work()).collect();
+    let most = work.iter().sum::<f64>() / count as f64;
+    if most < SHARED {
+        return None;
     }
     let mut first: Vec<usize> = (0..nodes.count()).collect();
-    let mut work: Vec<f64> = nodes.nodes().map(|node| node.work()).collect();
     for s in 0..nodes.count() {
         let parent = nodes.parent(s);
         if parent != NONE {
@@ -28,8 +58,7 @@ pub fn subtrees(nodes: &Supernodes) -> Vec<Range<usize>> {
             work[parent] += work[s];
         }
     }
-    // A subtree is taken whole when it is small and its parent's is not.
-    let taken = |s: usize| work[s] <= small;
-    let is_root = |s: &usize| taken(*s) && (nodes.parent(*s) == NONE || !taken(nodes.parent(*s)));
-    (0..nodes.count()).filter(is_root).map(|s| first[s]..s + 1).collect()
+    let small = |s: usize| work[s] <= most;
+    let is_root = |s: &usize| small(*s) && (nodes.parent(*s) == NONE || !small(nodes.parent(*s)));
+    Some((0..nodes.count()).filter(is_root).map(|s| first[s]..s + 1).collect())
 }
