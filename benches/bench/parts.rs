@@ -47,11 +47,8 @@ fn measure(body: &Body, rows: &Csr) -> Result<[f64; NAMES.len()]> {
     inverse.fixing.iter().for_each(|&dof| held[dof] = true);
     timed(&mut seconds[2], || nested_dissection(&Graph::of(&k)?, &held))?;
     let analysis = Arc::new(timed(&mut seconds[3], || Analysis::new(&k, &held))?);
-    println!("{}", analysis.debug_stats());
-    if let Ok(reps) = std::env::var("REPS") { let mut best = f64::INFINITY; for _ in 0..reps.parse::<usize>().unwrap() { let c = Clock::start(); let _ = black_box(analysis.factorize(&k)); best = best.min(c.lap().cpu); } println!("BEST {best:.4}"); }
     let factor = timed(&mut seconds[4], || analysis.factorize(&k))?;
     let factor = factor.map_err(|at| Error::new(Kind::Indefinite, "no factor").dof(at.dof))?;
-    if let Ok(reps) = std::env::var("REPF") { let mut best = f64::INFINITY; for _ in 0..reps.parse::<usize>().unwrap() { let c = Clock::start(); let _ = black_box(inverse_form(&factor, rows)); best = best.min(c.lap().cpu); } println!("BESTF {best:.4}"); }
     black_box(timed(&mut seconds[5], || inverse_form(&factor, rows))?);
     Ok(seconds)
 }

@@ -105,9 +105,7 @@ impl Analysis {
         let entries = || {
             (0..matrix.order()).filter(|&i| position[i] != NONE).flat_map(move |i| {
                 let row = matrix.lower_row(i).filter(|&(j, _)| position[j] != NONE);
-                row.map(move |(j, v)| {
-                    (position[i].max(position[j]) as u32, position[i].min(position[j]), v)
-                })
+                row.map(move |(j, v)| (position[i].max(position[j]) as u32, position[i].min(position[j]), v))
             })
         };
         let mut ptr = reserved(n + 1, WHAT)?;
@@ -249,4 +247,3 @@ mod tests {
         assert!(breakdown.relative_pivot < -0.1, "{breakdown:?}");
     }
 }
-impl Analysis { pub fn debug_stats(&self) -> String { let w: f64 = self.nodes.nodes().map(|n| n.work()).sum(); let hist = |f: &dyn Fn(&crate::linalg::supernodes::Node)->bool| self.nodes.nodes().filter(|n| f(n)).map(|n| n.work()).sum::<f64>()/w; format!("gflop {:.2} values {} nodes {} stack {} w<16 {:.3} w<32 {:.3} w<64 {:.3} w<128 {:.3} w<256 {:.3} w<512 {:.3}", w*1e-9, self.nodes.values(), self.nodes.count(), multifrontal::bytes(&self.nodes)/8, hist(&|n| n.width<16), hist(&|n| n.width<32), hist(&|n| n.width<64), hist(&|n| n.width<128), hist(&|n| n.width<256), hist(&|n| n.width<512)) } }

@@ -116,11 +116,7 @@ impl<'a> Task<'a> {
     }
 
     /// All supernodes of a subtree, whose panels these are; gives the update of its root.
-    fn eliminate_subtree(
-        mut self,
-        subtree: Range<usize>,
-        panels: &mut [f64],
-    ) -> Result<Factor<Vec<f64>>> {
+    fn eliminate_subtree(mut self, subtree: Range<usize>, panels: &mut [f64]) -> Result<Factor<Vec<f64>>> {
         let first = self.nodes.first_value(subtree.start);
         for s in subtree.clone() {
             let panel = self.nodes.node(s).panel;

@@ -23,7 +23,7 @@ use crate::linalg::{Cholesky, Csr, Packed};
 const WHAT: &str = "the dual operator of a body";
 
 /// Columns of Y in a tile.
-const TILE: usize = 192;
+const TILE: usize = 384;
 /// Rows of Y solved for at a time.
 const BLOCK: usize = 192;
 
@@ -175,7 +175,11 @@ impl<'a> Task<'a> {
         let child = |(child, values)| {
             let rows = RowMap::new(self.reach.nodes.node(child).rows, node.end(), &self.local);
             let of = self.reach.columns(child).iter();
-            Child { values, rows, columns: of.map(|row| columns.partition_point(|other| other < row)).collect() }
+            Child {
+                values,
+                rows,
+                columns: of.map(|row| columns.partition_point(|other| other < row)).collect(),
+            }
         };
         let children: Vec<Child<'_>> = children.into_iter().map(child).collect();
         let panel = &self.reach.cholesky.values[node.panel.clone()];
@@ -225,7 +229,8 @@ impl Tile<'_> {
         for first in (0..node.width).step_by(BLOCK) {
             let end = node.width.min(first + BLOCK);
             let columns = panel.subcols(first, end - first);
-            let (mut own, later) = above.as_mut().subrows_mut(first, node.width - first).split_at_row_mut(end - first);
+            let (mut own, later) =
+                above.as_mut().subrows_mut(first, node.width - first).split_at_row_mut(end - first);
             let triangle = columns.subrows(first, end - first);
             solve_lower_triangular_in_place(triangle, own.as_mut(), Par::Seq);
             let below = columns.subrows(end, node.width - end);

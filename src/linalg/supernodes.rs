@@ -281,7 +281,8 @@ impl Chains {
     /// Blocks must be in a postorder of their tree.
     fn of(blocks: &Blocks) -> Result<Self> {
         let n = blocks.count();
-        let mut chains = Self { first_block: Vec::new(), start: Vec::new(), end: Vec::new(), row: Vec::new() };
+        let mut chains =
+            Self { first_block: Vec::new(), start: Vec::new(), end: Vec::new(), row: Vec::new() };
         let mut children = Children { head: vec![NONE; n], next: Vec::new() };
         // mark[r] is the last mark for the rows of the chain that is open.
         let (mut mark, mut current) = (vec![u32::MAX; n], 0_u32);
@@ -361,7 +362,13 @@ impl Group {
         let entries = width * (width + 1) / 2 + width * self.below;
         let (_, share) = RELAXED.into_iter().find(|(most, _)| width <= *most)?;
         let few = zeros as f64 <= share * entries as f64;
-        few.then_some(Group { first_block: child.first_block, last: self.last, width, below: self.below, zeros })
+        few.then_some(Group {
+            first_block: child.first_block,
+            last: self.last,
+            width,
+            below: self.below,
+            zeros,
+        })
     }
 }
 
