@@ -1,25 +1,16 @@
-//! Sparse Cholesky factorisation `P K_ff P' = L L'` of the free part of a stiffness matrix.
-//! Supernodal kernels of faer, sequential: the same bits on any number of threads.
+//! Sparse Cholesky factorisation `P K_ff P' = L L'` of the free part of a stiffness matrix: supernodes in nested
+//! dissection, dense kernels of faer.
 
 use std::sync::Arc;
 
-use faer::dyn_stack::{MemBuffer, MemStack, StackReq};
-use faer::linalg::cholesky::llt::factor::{LltError, LltParams};
-use faer::sparse::linalg::cholesky::simplicial::{
-    prefactorize_symbolic_cholesky, prefactorize_symbolic_cholesky_scratch,
-};
-use faer::sparse::linalg::cholesky::supernodal::{
-    factorize_supernodal_numeric_llt, factorize_supernodal_numeric_llt_scratch,
-    factorize_supernodal_symbolic_cholesky, factorize_supernodal_symbolic_cholesky_scratch, SupernodalLltRef,
-    SymbolicSupernodalCholesky,
-};
-use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
-use faer::{Conj, MatMut, Par, Spec};
-
-use crate::error::{Error, Kind, Result};
-use crate::linalg::elimination::{elimination_tree, postorder, NONE};
-use crate::linalg::memory::{refusal, reserved, room, zeros, PRODUCTS};
+use crate::error::Result;
+use crate::linalg::elimination::NONE;
+use crate::linalg::graph::Graph;
+use crate::linalg::memory::{reserved, room, zeros, Room, PRODUCTS};
+use crate::linalg::multifrontal::{self, Columns};
 use crate::linalg::ordering::nested_dissection;
+use crate::linalg::supernodes::Supernodes;
+use crate::linalg::triangular::Triangle;
 use crate::linalg::Symmetric;
 
 /// Bytes that ordering and symbolic analysis take at most, per dof and per entry of the lower triangle: grids of all
@@ -33,12 +24,13 @@ pub struct Analysis {
     pub order: Vec<usize>,
     /// Position of each dof, `NONE` for held dofs.
     pub position: Vec<usize>,
-    pub symbolic: SymbolicSupernodalCholesky<usize>,
+    pub(super) nodes: Supernodes,
 }
 
 /// The factor L with its analysis.
 pub struct Cholesky {
     pub analysis: Arc<Analysis>,
+    /// The panels of all supernodes.
     pub(super) values: Vec<f64>,
     /// Dofs in the order of elimination whose rows and columns of L are those of the identity, ascending.
     pub(super) held: Vec<usize>,
@@ -54,44 +46,35 @@ pub struct Breakdown {
 
 impl Analysis {
     pub fn new(matrix: &Symmetric, held: &[bool]) -> Result<Self> {
-        let bytes = matrix.order() * ANALYSIS_PER_DOF + matrix.val.len() * ANALYSIS_PER_ENTRY;
-        let _room = room(bytes, "the ordering of a body")?;
-        Self::in_order(matrix, nested_dissection(matrix, held)?)
+        let _room = analysis_room(matrix)?;
+        let graph = Graph::of(matrix)?;
+        let order = nested_dissection(&graph, held)?;
+        Self::in_order(&graph, &order)
     }
 
     /// For `matrix` with the dofs `last` eliminated last, in this order; `graph`, which it may have more couplings
     /// than among those dofs, decides on the order of the others.
     pub fn ending(graph: &Symmetric, matrix: &Symmetric, last: &[usize]) -> Result<Self> {
-        let bytes = matrix.order() * ANALYSIS_PER_DOF + matrix.val.len() * ANALYSIS_PER_ENTRY;
-        let _room = room(bytes, "the ordering of a body")?;
+        let _room = analysis_room(matrix)?;
         let mut is_last = vec![false; matrix.order()];
         last.iter().for_each(|&dof| is_last[dof] = true);
-        let mut order = nested_dissection(graph, &is_last)?;
+        let mut order = nested_dissection(&Graph::of(graph)?, &is_last)?;
         order.extend(last);
-        Self::in_order(matrix, order)
+        Self::in_order(&Graph::of(matrix)?, &order)
     }
 
-    /// `order` lists the dofs to eliminate; it is rearranged into a postorder of its elimination tree
-    /// (same fill, far fewer supernodes).
-    fn in_order(matrix: &Symmetric, order: Vec<usize>) -> Result<Self> {
-        let position = positions(matrix.order(), &order);
-        let upper = permuted((matrix, 1.0), &position, order.len(), Triangle::Upper)?;
-        let tree = elimination_tree(&upper.ptr, &upper.row);
-        let order: Vec<usize> = postorder(&tree).into_iter().map(|k| order[k]).collect();
-        let position = positions(matrix.order(), &order);
-        let upper = permuted((matrix, 1.0), &position, order.len(), Triangle::Upper)?;
-        let symbolic = symbolic(order.len(), &upper.ptr, &upper.row)?;
-        Ok(Self { order, position, symbolic })
+    /// `order` lists the dofs to eliminate.
+    fn in_order(graph: &Graph, order: &[usize]) -> Result<Self> {
+        let (order, nodes) = Supernodes::of(graph, order)?;
+        let mut position = reserved(graph.order(), "the order of a body")?;
+        position.resize(graph.order(), NONE);
+        order.iter().enumerate().for_each(|(at, &dof)| position[dof] = at);
+        Ok(Self { order, position, nodes })
     }
 
     /// Bytes of L and of the workspace its computation needs.
     pub fn bytes(&self) -> usize {
-        self.symbolic.len_val() * size_of::<f64>() + self.scratch().unaligned_bytes_required()
-    }
-
-    fn scratch(&self) -> StackReq {
-        let params = Spec::<LltParams, f64>::default();
-        factorize_supernodal_numeric_llt_scratch::<usize, f64>(&self.symbolic, Par::Seq, params)
+        self.nodes.values() * size_of::<f64>() + self.nodes.bytes() + multifrontal::bytes(&self.nodes)
     }
 
     /// L of `by` times a matrix with the pattern that was analysed; `Ok(Err(_))` where it is not positive definite.
@@ -112,35 +95,47 @@ impl Analysis {
         matrix: &Symmetric,
         by: f64,
     ) -> Result<std::result::Result<Cholesky, usize>> {
-        let positions = 4 * self.order.len() * size_of::<usize>();
-        let _room = room(positions + PRODUCTS, "a factorisation")?;
-        let mut values = zeros(self.symbolic.len_val(), "a Cholesky factor")?;
-        let mut workspace = workspace(self.scratch())?;
-        let n = self.order.len();
-        let lower = permuted((matrix, by), &self.position, n, Triangle::Lower)?;
-        let pattern = SymbolicSparseColMatRef::new_unsorted_checked(n, n, &lower.ptr, None, &lower.row);
-        let done = factorize_supernodal_numeric_llt(
-            &mut values,
-            SparseColMatRef::new(pattern, &lower.val),
-            Default::default(),
-            &self.symbolic,
-            Par::Seq,
-            MemStack::new(&mut workspace),
-            Spec::default(),
-        );
-        Ok(match done {
-            Ok(_) => Ok(Cholesky { analysis: Arc::clone(self), values, held: Vec::new() }),
-            Err(LltError::NonPositivePivot { index }) => Err(index),
-        })
+        let lists = 3 * self.nodes.bytes() + 4 * self.order.len() * size_of::<usize>();
+        let _room = room(lists + PRODUCTS, "a factorisation")?;
+        let columns = self.columns(matrix, by)?;
+        let values = multifrontal::factorize(&self.nodes, &columns)?;
+        Ok(values.map(|values| Cholesky { analysis: Arc::clone(self), values, held: Vec::new() }))
     }
 
-    /// The pivot at position `at`: the Schur complement of the leading block, computed afresh
-    /// (faer reports the position only).
+    /// The lower triangle of `by` times the matrix in the order of elimination.
+    fn columns(&self, matrix: &Symmetric, by: f64) -> Result<Columns> {
+        const WHAT: &str = "a permuted stiffness matrix";
+        let n = self.order.len();
+        let position = &self.position;
+        let entries = || {
+            (0..matrix.order()).filter(|&i| position[i] != NONE).flat_map(move |i| {
+                let row = matrix.lower_row(i).filter(|&(j, _)| position[j] != NONE);
+                row.map(move |(j, v)| (position[i].max(position[j]) as u32, position[i].min(position[j]), v))
+            })
+        };
+        let mut ptr = reserved(n + 1, WHAT)?;
+        ptr.resize(n + 1, 0);
+        entries().for_each(|(_, column, _)| ptr[column + 1] += 1);
+        (0..n).for_each(|j| ptr[j + 1] += ptr[j]);
+        let mut row = reserved(ptr[n], WHAT)?;
+        row.resize(ptr[n], 0);
+        let mut val = zeros(ptr[n], WHAT)?;
+        for (i, j, v) in entries() {
+            row[ptr[j]] = i;
+            val[ptr[j]] = by * v;
+            ptr[j] += 1;
+        }
+        // Every start has moved to the next one.
+        ptr.copy_within(0..n, 1);
+        ptr[0] = 0;
+        Ok(Columns { ptr, row, val })
+    }
+
+    /// The pivot at position `at`: the Schur complement of the leading block, computed afresh.
     fn breakdown(&self, matrix: &Symmetric, by: f64, at: usize) -> Result<Breakdown> {
         let dof = self.order[at];
-        let analysis = matrix.order() * ANALYSIS_PER_DOF + matrix.val.len() * ANALYSIS_PER_ENTRY;
-        let _room = room(analysis, "the pivot of a body")?;
-        let leading = Arc::new(Self::in_order(matrix, self.order[..at].to_vec())?);
+        let _room = analysis_room(matrix)?;
+        let leading = Arc::new(Self::in_order(&Graph::of(matrix)?, &self.order[..at])?);
         let mut column = vec![0.0; matrix.order()];
         let mut unit = column.clone();
         unit[dof] = 1.0;
@@ -165,9 +160,13 @@ impl Analysis {
     }
 }
 
+fn analysis_room(matrix: &Symmetric) -> Result<Room> {
+    room(matrix.order() * ANALYSIS_PER_DOF + matrix.val.len() * ANALYSIS_PER_ENTRY, "the ordering of a body")
+}
+
 impl Cholesky {
-    pub(super) fn factor(&self) -> SupernodalLltRef<'_, usize, f64> {
-        SupernodalLltRef::new(&self.analysis.symbolic, &self.values)
+    pub(super) fn triangle(&self) -> Triangle<'_> {
+        Triangle { nodes: &self.analysis.nodes, values: &self.values }
     }
 
     /// Position of a dof in the elimination, `NONE` for held dofs.
@@ -181,9 +180,10 @@ impl Cholesky {
 
     /// Pivots `L_ii^2` with their dofs, in the order of elimination.
     pub fn pivots(&self) -> impl Iterator<Item = (usize, f64)> + '_ {
-        let factor = self.factor();
-        let nodes = (0..self.analysis.symbolic.n_supernodes()).map(move |s| factor.supernode(s).val());
-        let pivots = nodes.flat_map(|l| (0..l.ncols()).map(move |i| l[(i, i)] * l[(i, i)]));
+        let pivots = self.analysis.nodes.nodes().flat_map(move |node| {
+            let (height, start) = (node.height(), node.panel.start);
+            (0..node.width).map(move |i| self.values[start + i * height + i].powi(2))
+        });
         self.analysis.order.iter().copied().zip(pivots)
     }
 
@@ -195,100 +195,17 @@ impl Cholesky {
     /// `x <- K_ff^-1 x` on the free dofs; x has the length of the body, held entries become 0.
     pub fn solve(&self, x: &mut [f64]) -> Result<()> {
         let order = &self.analysis.order;
-        let _room = room(PRODUCTS, "a solution")?;
-        let mut y = zeros(order.len(), "a right-hand side")?;
-        for (y, &dof) in y.iter_mut().zip(order) {
-            *y = x[dof];
-        }
+        let mut y = reserved(order.len(), "a right-hand side")?;
+        y.extend(order.iter().map(|&dof| x[dof]));
         self.held.iter().for_each(|&dof| y[self.analysis.position[dof]] = 0.0);
-        let scratch = self.analysis.symbolic.solve_in_place_scratch::<f64>(1, Par::Seq);
-        let mut workspace = workspace(scratch)?;
-        self.factor().solve_in_place_with_conj(
-            Conj::No,
-            MatMut::from_column_major_slice_mut(&mut y, order.len(), 1),
-            Par::Seq,
-            MemStack::new(&mut workspace),
-        );
+        let triangle = self.triangle();
+        let mut workspace = triangle.workspace()?;
+        triangle.forward(&mut y, &mut workspace);
+        triangle.backward(&mut y, &mut workspace);
         x.fill(0.0);
-        for (y, &dof) in y.iter().zip(order) {
-            x[dof] = *y;
-        }
+        y.iter().zip(order).for_each(|(y, &dof)| x[dof] = *y);
         Ok(())
     }
-}
-
-fn workspace(need: StackReq) -> Result<MemBuffer> {
-    MemBuffer::try_new(need).map_err(|_| refusal(need.unaligned_bytes_required(), "a factorisation"))
-}
-
-fn positions(n: usize, order: &[usize]) -> Vec<usize> {
-    let mut position = vec![NONE; n];
-    for (at, &dof) in order.iter().enumerate() {
-        position[dof] = at;
-    }
-    position
-}
-
-/// Which triangle a column holds.
-#[derive(Clone, Copy, PartialEq)]
-enum Triangle {
-    Lower,
-    Upper,
-}
-
-/// One triangle of the matrix in the order of elimination, by columns, rows of a column in any order.
-struct Columns {
-    ptr: Vec<usize>,
-    row: Vec<usize>,
-    val: Vec<f64>,
-}
-
-fn permuted(
-    (matrix, by): (&Symmetric, f64),
-    position: &[usize],
-    n: usize,
-    triangle: Triangle,
-) -> Result<Columns> {
-    let entries = || {
-        (0..matrix.order()).filter(|&i| position[i] != NONE).flat_map(move |i| {
-            matrix.lower_row(i).filter(|&(j, _)| position[j] != NONE).map(move |(j, v)| {
-                let (low, high) = (position[i].min(position[j]), position[i].max(position[j]));
-                let v = by * v;
-                if triangle == Triangle::Lower {
-                    (high, low, v)
-                } else {
-                    (low, high, v)
-                }
-            })
-        })
-    };
-    let mut ptr = vec![0; n + 1];
-    entries().for_each(|(_, column, _)| ptr[column + 1] += 1);
-    (0..n).for_each(|j| ptr[j + 1] += ptr[j]);
-    let mut row = reserved(ptr[n], "a permuted stiffness matrix")?;
-    row.resize(ptr[n], 0);
-    let mut val = zeros(ptr[n], "a permuted stiffness matrix")?;
-    let mut next = ptr.clone();
-    for (i, j, v) in entries() {
-        row[next[j]] = i;
-        val[next[j]] = v;
-        next[j] += 1;
-    }
-    Ok(Columns { ptr, row, val })
-}
-
-/// Pattern of L from the upper triangle by columns.
-fn symbolic(n: usize, col_ptr: &[usize], row: &[usize]) -> Result<SymbolicSupernodalCholesky<usize>> {
-    let pattern = SymbolicSparseColMatRef::new_unsorted_checked(n, n, col_ptr, None, row);
-    let mut tree = vec![0isize; n];
-    let mut counts = vec![0usize; n];
-    let need = prefactorize_symbolic_cholesky_scratch::<usize>(n, row.len())
-        .or(factorize_supernodal_symbolic_cholesky_scratch::<usize>(n));
-    let mut workspace = workspace(need)?;
-    let stack = MemStack::new(&mut workspace);
-    let tree = prefactorize_symbolic_cholesky(&mut tree, &mut counts, pattern, stack);
-    factorize_supernodal_symbolic_cholesky(pattern, tree, &counts, stack, Default::default())
-        .map_err(|e| Error::new(Kind::Memory, format!("the symbolic factorisation failed: {e:?}")))
 }
 
 #[cfg(test)]

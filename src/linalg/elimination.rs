@@ -3,13 +3,16 @@
 /// No parent: a root of the forest.
 pub const NONE: usize = usize::MAX;
 
-/// Parent of every column, from the upper triangle by columns (Liu's algorithm with path compression).
-pub fn elimination_tree(col_ptr: &[usize], row: &[usize]) -> Vec<usize> {
-    let n = col_ptr.len() - 1;
+/// Parent of every column; `neighbours(j)` gives the rows i < j of column j, perhaps others too (Liu's algorithm with
+/// path compression).
+pub fn elimination_tree<'a, I>(n: usize, neighbours: impl Fn(usize) -> I) -> Vec<usize>
+where
+    I: Iterator<Item = &'a u32>,
+{
     let (mut parent, mut ancestor) = (vec![NONE; n], vec![NONE; n]);
     for j in 0..n {
-        for &i in &row[col_ptr[j]..col_ptr[j + 1]] {
-            let mut i = i;
+        for &i in neighbours(j) {
+            let mut i = i as usize;
             while i != NONE && i < j {
                 let next = ancestor[i];
                 ancestor[i] = j;
@@ -58,7 +61,8 @@ mod tests {
     #[test]
     fn the_tree_of_an_arrow_matrix_is_a_star_and_children_precede_parents() {
         // columns 0, 1, 2 couple to column 3 only
-        let parent = elimination_tree(&[0, 1, 2, 3, 7], &[0, 1, 2, 0, 1, 2, 3]);
+        let columns: [&[u32]; 4] = [&[3], &[3], &[3], &[0, 1, 2]];
+        let parent = elimination_tree(4, |j| columns[j].iter());
         assert_eq!(parent, [3, 3, 3, NONE]);
         assert_eq!(postorder(&parent), [0, 1, 2, 3]);
     }

@@ -46,6 +46,11 @@ impl Graph {
         Ok(Self { ptr, adj })
     }
 
+    /// Number of dofs.
+    pub fn order(&self) -> usize {
+        self.ptr.len() - 1
+    }
+
     pub fn neighbours(&self, i: usize) -> &[u32] {
         &self.adj[self.ptr[i]..self.ptr[i + 1]]
     }
@@ -53,7 +58,7 @@ impl Graph {
     /// Groups dofs with identical neighbours (the dofs of one node): group of each dof, and the
     /// first dof of each group. Groups are numbered by their first dof.
     pub fn nodes(&self) -> Result<(Vec<u32>, Vec<usize>)> {
-        let n = self.ptr.len() - 1;
+        let n = self.order();
         let mut by_key = reserved(n, WHAT)?;
         by_key.extend((0..n).map(|i| (self.key(i), i as u32)));
         by_key.sort_unstable();

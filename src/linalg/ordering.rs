@@ -5,14 +5,12 @@ use feral_metis::{metis_order, CscPattern};
 use crate::error::{Error, Kind, Result};
 use crate::linalg::graph::Graph;
 use crate::linalg::memory::reserved;
-use crate::linalg::Symmetric;
 
 /// The dofs that are not held, in the order of their elimination. The graph of nodes (dofs with
 /// identical neighbours) is dissected instead of that of dofs: 3 x smaller in 3D, and supernodes stay whole.
-pub fn nested_dissection(matrix: &Symmetric, held: &[bool]) -> Result<Vec<usize>> {
-    let graph = Graph::of(matrix)?;
+pub fn nested_dissection(graph: &Graph, held: &[bool]) -> Result<Vec<usize>> {
     let (node, first) = graph.nodes()?;
-    let order = order_nodes(&graph, &node, &first)?;
+    let order = order_nodes(graph, &node, &first)?;
     let mut rank = reserved(order.len(), "the ordering of a body")?;
     rank.resize(order.len(), 0);
     order.iter().enumerate().for_each(|(at, &node)| rank[node] = at);
@@ -46,6 +44,7 @@ fn order_nodes(graph: &Graph, node: &[u32], first: &[usize]) -> Result<Vec<usize
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::linalg::Symmetric;
 
     #[test]
     fn every_free_dof_is_eliminated_exactly_once() {
@@ -60,7 +59,8 @@ mod tests {
         let val = vec![1.0; col.len()];
         let mut held = vec![false; n];
         held[7] = true;
-        let mut order = nested_dissection(&Symmetric { ptr, col, val }, &held).unwrap();
+        let graph = Graph::of(&Symmetric { ptr, col, val }).unwrap();
+        let mut order = nested_dissection(&graph, &held).unwrap();
         order.sort_unstable();
         assert_eq!(order, (0..n).filter(|&i| i != 7).collect::<Vec<_>>());
     }

@@ -1,146 +1,302 @@
 //! `B K_ff^-1 B'` by supernode reach: each supernode of L sees only the rows of B whose elimination path
 //! meets it. With `Y = L^-1 P B'` the result is `Y'Y`: exactly symmetric and positive semidefinite.
+//!
+//! As in the factorisation, a supernode takes from its children what they leave for the rows below them, in the columns
+//! of Y they have; tiles of columns are independent of each other. Subtrees add up their products apart: the same sums,
+//! and the same bits, on any number of threads.
 
-use faer::linalg::matmul::triangular::{self, BlockStructure};
+use std::ops::Range;
+
+use faer::linalg::matmul::matmul;
 use faer::linalg::triangular_solve::solve_lower_triangular_in_place;
-use faer::{linalg::matmul::matmul, Accum, Mat, Par};
+use faer::{Accum, MatMut, MatRef, Par};
+use rayon::prelude::*;
 
 use crate::error::Result;
 use crate::linalg::elimination::NONE;
-use crate::linalg::memory::{copied, reserved, room, PRODUCTS};
+use crate::linalg::memory::{reserved, room, untouched_zeros, PRODUCTS};
+use crate::linalg::subtrees::{each, parts, shared};
+use crate::linalg::supernodes::{Node, Supernodes};
+use crate::linalg::updates::{RowMap, Updates};
 use crate::linalg::{Cholesky, Csr, Packed};
-
-/// What a supernode passes on to its parent: update rows for the columns (rows of B) seen so far.
-struct Update {
-    /// Positions in L of the rows.
-    rows: Vec<usize>,
-    /// Rows of B, ascending.
-    columns: Vec<usize>,
-    values: Mat<f64>,
-}
 
 const WHAT: &str = "the dual operator of a body";
 
+/// Columns of Y in a tile.
+const TILE: usize = 384;
+/// Rows of Y solved for at a time.
+const BLOCK: usize = 192;
+
 /// `rows` (m x n, over all dofs of the body) gives the m x m matrix.
 pub fn inverse_form(cholesky: &Cholesky, rows: &Csr) -> Result<Packed> {
-    let factor = cholesky.factor();
-    let symbolic = &cholesky.analysis.symbolic;
-    let _room = room(small_pieces(cholesky, rows) + PRODUCTS, WHAT)?;
+    let nodes = &cholesky.analysis.nodes;
+    let _room = room(small_pieces(nodes, rows) + PRODUCTS, WHAT)?;
+    let reach = Reach::of(cholesky, rows)?;
     let mut form = Packed::zeros(rows.rows())?;
-    let mut own = entries_by_supernode(cholesky, rows)?;
-    let mut waiting: Vec<Vec<Update>> = (0..symbolic.n_supernodes()).map(|_| Vec::new()).collect();
-    let mut local = vec![NONE; symbolic.nrows()];
-    for s in 0..symbolic.n_supernodes() {
-        let updates = std::mem::take(&mut waiting[s]);
-        let columns = merged_columns(&own[s], &updates)?;
-        if columns.is_empty() {
-            continue;
+    let parts = parts(nodes);
+    let run = |range: &Range<usize>| reach.part(range.clone());
+    let done: Vec<Result<Part>> = match rayon::current_thread_index() {
+        Some(_) => parts.par_iter().map(run).collect(),
+        None => parts.iter().map(run).collect(),
+    };
+    let mut above = 0;
+    let mut task = Task::new(&reach, 0..nodes.count())?;
+    for (range, part) in parts.iter().zip(done) {
+        (above..range.start).for_each(|s| task.eliminate(s, &mut form, |row| row as usize));
+        let (part, root) = (part?, range.end - 1);
+        part.add_to(&mut form, reach.columns(root));
+        if !reach.columns(root).is_empty() {
+            task.updates.push(root, part.update);
         }
-        let (begin, end) = (symbolic.supernode_begin()[s], symbolic.supernode_end()[s]);
-        let node = factor.supernode(s);
-        let front_rows = || (begin..end).chain(node.pattern().iter().copied());
-        front_rows().enumerate().for_each(|(at, row)| local[row] = at);
-        let mut front =
-            assemble(&local, &columns, std::mem::take(&mut own[s]), updates, front_rows().count())?;
-        let width = end - begin;
-        let (top, bottom) = node.val().split_at_row(width);
-        let (mut y, mut rest) = front.as_mut().split_at_row_mut(width);
-        solve_lower_triangular_in_place(top, y.as_mut(), Par::Seq);
-        add_gram(&mut form, &columns, y.as_ref())?;
-        if let Some(&next) = node.pattern().first() {
-            matmul(rest.as_mut(), Accum::Add, bottom, y.as_ref(), -1.0, Par::Seq);
-            let parent = symbolic.supernode_end().partition_point(|&end| end <= next);
-            let mut values = zero_matrix(rest.nrows(), rest.ncols())?;
-            values.copy_from(rest);
-            waiting[parent].push(Update { rows: copied(node.pattern(), WHAT)?, columns, values });
-        }
+        above = range.end;
     }
+    (above..nodes.count()).for_each(|s| task.eliminate(s, &mut form, |row| row as usize));
     Ok(form)
 }
 
 /// Bytes of the lists by supernode, by dof and by entry of B, which grow piece by piece.
-fn small_pieces(cholesky: &Cholesky, rows: &Csr) -> usize {
-    let symbolic = &cholesky.analysis.symbolic;
-    96 * symbolic.n_supernodes() + 8 * symbolic.nrows() + 96 * rows.col.len()
+fn small_pieces(nodes: &Supernodes, rows: &Csr) -> usize {
+    96 * nodes.count() + 8 * nodes.order() + 96 * rows.col.len()
 }
 
-/// The entries of P B': per supernode (row of B, position in L, value), rows of B ascending.
-fn entries_by_supernode(cholesky: &Cholesky, rows: &Csr) -> Result<Vec<Vec<(usize, usize, f64)>>> {
-    let ends = cholesky.analysis.symbolic.supernode_end();
-    let mut entries = reserved(ends.len(), WHAT)?;
-    entries.resize(ends.len(), Vec::new());
-    for i in 0..rows.rows() {
-        for (dof, value) in rows.row(i) {
-            let at = cholesky.position(dof);
-            if at != NONE {
-                entries[ends.partition_point(|&end| end <= at)].push((i, at, value));
+/// Which supernodes see which rows of B.
+struct Reach<'a> {
+    cholesky: &'a Cholesky,
+    nodes: &'a Supernodes,
+    /// Entries of P B' by supernode: row of B, position, value.
+    own: Vec<Vec<(u32, u32, f64)>>,
+    /// Rows of B by supernode, ascending: columns of Y.
+    columns: Vec<Vec<u32>>,
+}
+
+/// What a subtree adds to the form, and leaves for the rows above.
+struct Part {
+    form: Packed,
+    update: Vec<f64>,
+}
+
+impl<'a> Reach<'a> {
+    fn of(cholesky: &'a Cholesky, rows: &Csr) -> Result<Self> {
+        let nodes = &cholesky.analysis.nodes;
+        let mut own: Vec<Vec<(u32, u32, f64)>> = reserved(nodes.count(), WHAT)?;
+        own.resize(nodes.count(), Vec::new());
+        for i in 0..rows.rows() {
+            for (dof, value) in rows.row(i) {
+                let at = cholesky.position(dof);
+                if at != NONE {
+                    own[nodes.of_column(at)].push((i as u32, at as u32, value));
+                }
+            }
+        }
+        let mut columns: Vec<Vec<u32>> = reserved(nodes.count(), WHAT)?;
+        columns.resize(nodes.count(), Vec::new());
+        for s in 0..nodes.count() {
+            columns[s].extend(own[s].iter().map(|entry| entry.0));
+            columns[s].sort_unstable();
+            columns[s].dedup();
+            let (seen, later) = columns.split_at_mut(s + 1);
+            if nodes.parent(s) != NONE {
+                later[nodes.parent(s) - s - 1].extend_from_slice(&seen[s]);
+            }
+        }
+        Ok(Self { cholesky, nodes, own, columns })
+    }
+
+    fn columns(&self, s: usize) -> &[u32] {
+        &self.columns[s]
+    }
+
+    /// Values that s leaves for the rows below its columns.
+    fn update_len(&self, s: usize) -> usize {
+        self.nodes.node(s).rows.len() * self.columns(s).len()
+    }
+
+    fn part(&self, range: Range<usize>) -> Result<Part> {
+        let root = range.end - 1;
+        let rows = self.columns(root);
+        let mut form = Packed::zeros(rows.len())?;
+        let mut task = Task::new(self, range.clone())?;
+        let place = |row: u32| rows.partition_point(|&other| other < row);
+        range.for_each(|s| task.eliminate(s, &mut form, place));
+        let update = if rows.is_empty() { Vec::new() } else { task.updates.into_last(root) };
+        Ok(Part { form, update })
+    }
+}
+
+impl Part {
+    /// `rows`: the rows of B that the form of the part has.
+    fn add_to(&self, form: &mut Packed, rows: &[u32]) {
+        for (i, &row) in rows.iter().enumerate() {
+            (0..=i).for_each(|j| form.add(row as usize, rows[j] as usize, self.form.get(i, j)));
+        }
+    }
+}
+
+/// Supernodes one after the other.
+struct Task<'a> {
+    reach: &'a Reach<'a>,
+    /// Row of a position within the present front.
+    local: Vec<u32>,
+    updates: Updates<'a>,
+    /// Rows of Y of the present supernode: width x columns.
+    y: Vec<f64>,
+    /// Products of the columns of two tiles.
+    product: Vec<f64>,
+}
+
+impl<'a> Task<'a> {
+    fn new(reach: &'a Reach<'a>, range: Range<usize>) -> Result<Self> {
+        let nodes = reach.nodes;
+        let mut local = reserved(nodes.order(), WHAT)?;
+        local.resize(nodes.order(), 0);
+        let seen = range.clone().filter(|&s| !reach.columns(s).is_empty());
+        let updates = Updates::new(nodes, seen.clone(), |s| reach.update_len(s), WHAT)?;
+        let y = seen.map(|s| nodes.node(s).width * reach.columns(s).len()).max().unwrap_or(0);
+        Ok(Self { reach, local, updates, y: untouched_zeros(y, WHAT)?, product: vec![0.0; TILE * TILE] })
+    }
+
+    /// `Y_s <- L_ss^-1 (Y_s)` with what the children leave, its products, and what is left for the rows below; `place`
+    /// is where a row of B stands in the form.
+    fn eliminate(&mut self, s: usize, form: &mut Packed, place: impl Fn(u32) -> usize) {
+        let columns = self.reach.columns(s);
+        if columns.is_empty() {
+            return;
+        }
+        let node = self.reach.nodes.node(s);
+        node.front_rows().enumerate().for_each(|(at, row)| self.local[row] = at as u32);
+        let y = &mut self.y[..node.width * columns.len()];
+        y.fill(0.0);
+        for &(row, position, value) in &self.reach.own[s] {
+            let column = columns.partition_point(|&other| other < row);
+            y[column * node.width + position as usize - node.begin] += value;
+        }
+        let len = self.reach.update_len(s);
+        let (update, children) = self.updates.open(s, len);
+        let child = |(child, values)| {
+            let rows = RowMap::new(self.reach.nodes.node(child).rows, node.end(), &self.local);
+            let of = self.reach.columns(child).iter();
+            Child {
+                values,
+                rows,
+                columns: of.map(|row| columns.partition_point(|other| other < row)).collect(),
+            }
+        };
+        let children: Vec<Child<'_>> = children.into_iter().map(child).collect();
+        let panel = &self.reach.cholesky.values[node.panel.clone()];
+        let work = node.work() / node.width as f64 * columns.len() as f64;
+        each(shared(work), tiles(&node, y, update), |mut tile| {
+            children.iter().for_each(|child| child.add_above(&mut tile));
+            tile.solve(panel, &node);
+            children.iter().for_each(|child| child.add_below(&mut tile));
+        });
+        drop(children);
+        self.updates.close(s, len);
+        let y = MatRef::from_column_major_slice(y, node.width, columns.len());
+        let places: Vec<usize> = columns.iter().map(|&row| place(row)).collect();
+        add_products(y, &places, &mut self.product, form);
+    }
+}
+
+/// Some columns of Y at a supernode.
+struct Tile<'a> {
+    /// Among those of the supernode.
+    columns: Range<usize>,
+    /// width x columns
+    above: &'a mut [f64],
+    /// rows below x columns
+    below: &'a mut [f64],
+}
+
+fn tiles<'a>(node: &Node<'_>, mut y: &'a mut [f64], mut update: &'a mut [f64]) -> Vec<Tile<'a>> {
+    let count = y.len() / node.width;
+    let mut tiles = Vec::with_capacity(count.div_ceil(TILE));
+    for first in (0..count).step_by(TILE) {
+        let columns = first..count.min(first + TILE);
+        let (above, rest) = y.split_at_mut(node.width * columns.len());
+        let (below, other) = update.split_at_mut(node.rows.len() * columns.len());
+        tiles.push(Tile { columns, above, below });
+        (y, update) = (rest, other);
+    }
+    tiles
+}
+
+impl Tile<'_> {
+    /// `Y_1 <- L11^-1 Y_1`, `Y_2 <- -L21 Y_1`
+    fn solve(&mut self, panel: &[f64], node: &Node<'_>) {
+        let panel = MatRef::from_column_major_slice(panel, node.height(), node.width);
+        let count = self.columns.len();
+        let mut above = MatMut::from_column_major_slice_mut(self.above, node.width, count);
+        for first in (0..node.width).step_by(BLOCK) {
+            let end = node.width.min(first + BLOCK);
+            let columns = panel.subcols(first, end - first);
+            let (mut own, later) =
+                above.as_mut().subrows_mut(first, node.width - first).split_at_row_mut(end - first);
+            let triangle = columns.subrows(first, end - first);
+            solve_lower_triangular_in_place(triangle, own.as_mut(), Par::Seq);
+            let below = columns.subrows(end, node.width - end);
+            matmul(later, Accum::Add, below, own.as_ref(), -1.0, Par::Seq);
+        }
+        let below = MatMut::from_column_major_slice_mut(self.below, node.rows.len(), count);
+        let l21 = panel.subrows(node.width, node.rows.len());
+        matmul(below, Accum::Replace, l21, above.as_ref(), -1.0, Par::Seq);
+    }
+}
+
+/// What a child leaves, as its parent sees it.
+struct Child<'a> {
+    values: &'a [f64],
+    rows: RowMap,
+    /// Its columns among those of the parent, ascending.
+    columns: Vec<usize>,
+}
+
+impl Child<'_> {
+    /// Rows of the parent's columns.
+    fn add_above(&self, tile: &mut Tile<'_>) {
+        let rows = 0..self.rows.inside;
+        let width = tile.above.len() / tile.columns.len();
+        for (from, column) in self.columns_of(&tile.columns) {
+            let to = &mut tile.above[column * width..(column + 1) * width];
+            self.rows.add(rows.clone(), &from[rows.clone()], to, 0);
+        }
+    }
+
+    /// Rows below them.
+    fn add_below(&self, tile: &mut Tile<'_>) {
+        let rows = self.rows.inside..self.rows.to.len();
+        let (width, below) = (tile.above.len(), tile.below.len());
+        let (width, below) = (width / tile.columns.len(), below / tile.columns.len());
+        for (from, column) in self.columns_of(&tile.columns) {
+            let to = &mut tile.below[column * below..(column + 1) * below];
+            self.rows.add(rows.clone(), &from[rows.clone()], to, width);
+        }
+    }
+
+    /// Columns of the child with their places in a tile of the parent.
+    fn columns_of(&self, tile: &Range<usize>) -> impl Iterator<Item = (&[f64], usize)> {
+        let rows = self.rows.to.len();
+        let place = |column: usize| self.columns.partition_point(|&other| other < column);
+        let first = tile.start;
+        (place(tile.start)..place(tile.end))
+            .map(move |k| (&self.values[k * rows..(k + 1) * rows], self.columns[k] - first))
+    }
+}
+
+/// `form += Y'Y`, entry (i, j) at (`places[i]`, `places[j]`); `product` holds a tile of it.
+fn add_products(y: MatRef<'_, f64>, places: &[usize], product: &mut [f64], form: &mut Packed) {
+    let tile = |first: usize| first..places.len().min(first + TILE);
+    for right in (0..places.len()).step_by(TILE).map(tile) {
+        for left in (right.start..places.len()).step_by(TILE).map(tile) {
+            let product = &mut product[..left.len() * right.len()];
+            let to = MatMut::from_column_major_slice_mut(product, left.len(), right.len());
+            let columns = |range: &Range<usize>| y.subcols(range.start, range.len());
+            matmul(to, Accum::Replace, columns(&left).transpose(), columns(&right), 1.0, Par::Seq);
+            for (column, j) in product.chunks_exact(left.len()).zip(right.clone()) {
+                let below = left.clone().zip(column).filter(|(i, _)| *i >= j);
+                below.for_each(|(i, value)| form.add(places[i], places[j], *value));
             }
         }
     }
-    Ok(entries)
-}
-
-fn merged_columns(own: &[(usize, usize, f64)], updates: &[Update]) -> Result<Vec<usize>> {
-    let count = own.len() + updates.iter().map(|update| update.columns.len()).sum::<usize>();
-    let mut columns = reserved(count, WHAT)?;
-    columns.extend(own.iter().map(|entry| entry.0));
-    updates.iter().for_each(|update| columns.extend(&update.columns));
-    columns.sort_unstable();
-    columns.dedup();
-    Ok(columns)
-}
-
-/// The rows of the front (own columns of the supernode, then its pattern) of the partly eliminated P B'.
-fn assemble(
-    local: &[usize],
-    columns: &[usize],
-    own: Vec<(usize, usize, f64)>,
-    updates: Vec<Update>,
-    rows: usize,
-) -> Result<Mat<f64>> {
-    let mut front = zero_matrix(rows, columns.len())?;
-    let find = |column: usize| columns.partition_point(|&c| c < column);
-    for (column, at, value) in own {
-        front[(local[at], find(column))] += value;
-    }
-    for update in updates {
-        for (j, &column) in update.columns.iter().enumerate() {
-            let to = find(column);
-            for (i, &row) in update.rows.iter().enumerate() {
-                front[(local[row], to)] += update.values[(i, j)];
-            }
-        }
-    }
-    Ok(front)
-}
-
-/// Zeros, rows padded by faer to lines of the cache.
-fn zero_matrix(rows: usize, columns: usize) -> Result<Mat<f64>> {
-    let _room = room((rows + 8) * columns * size_of::<f64>(), WHAT)?;
-    Ok(Mat::zeros(rows, columns))
-}
-
-/// `form += Y'Y` on the given rows of B.
-fn add_gram(form: &mut Packed, columns: &[usize], y: faer::MatRef<'_, f64>) -> Result<()> {
-    let k = columns.len();
-    let mut gram = zero_matrix(k, k)?;
-    triangular::matmul(
-        gram.as_mut(),
-        BlockStructure::TriangularLower,
-        Accum::Replace,
-        y.transpose(),
-        BlockStructure::Rectangular,
-        y,
-        BlockStructure::Rectangular,
-        1.0,
-        Par::Seq,
-    );
-    for j in 0..k {
-        for i in j..k {
-            form.add(columns[i], columns[j], gram[(i, j)]);
-        }
-    }
-    Ok(())
 }
 
 #[cfg(test)]

@@ -1,12 +1,8 @@
 //! The end of an elimination: the Schur complement of the dofs eliminated last, read from the factor, and dofs among
 //! them that are held afterwards. Only their dense block is computed anew.
 
-use faer::linalg::matmul::matmul;
-use faer::linalg::triangular_solve::solve_upper_triangular_in_place;
-use faer::{Accum, MatMut, MatRef, Par};
-
 use crate::error::Result;
-use crate::linalg::memory::{copied, room, zeros, PRODUCTS};
+use crate::linalg::memory::{copied, zeros};
 use crate::linalg::{Cholesky, Matrix};
 
 const WHAT: &str = "the end of an elimination";
@@ -88,7 +84,9 @@ impl Cholesky {
             }
             first += given.cols;
         }
-        self.back_substitute(&mut y)?;
+        let triangle = self.triangle();
+        let mut workspace = triangle.workspace()?;
+        (0..columns).for_each(|c| triangle.backward(y.col_mut(c), &mut workspace));
         let mut x = Matrix::zeros(self.analysis.position.len(), columns)?;
         for c in 0..columns {
             let column = x.col_mut(c);
@@ -97,56 +95,28 @@ impl Cholesky {
         Ok(x)
     }
 
-    /// `y <- L^-T y`, n x r in the order of elimination.
-    fn back_substitute(&self, y: &mut Matrix) -> Result<()> {
-        let (symbolic, factor) = (&self.analysis.symbolic, self.factor());
-        let (n, r) = (y.rows, y.cols);
-        let _room = room(2 * n * r * size_of::<f64>() + PRODUCTS, WHAT)?;
-        let mut below = zeros(n * r, WHAT)?;
-        let mut y = MatMut::from_column_major_slice_mut(&mut y.data, n, r);
-        for s in (0..symbolic.n_supernodes()).rev() {
-            let (begin, width) = (symbolic.supernode_begin()[s], factor.supernode(s).val().ncols());
-            let (top, bottom) = factor.supernode(s).val().split_at_row(width);
-            let pattern = symbolic.supernode(s).pattern();
-            let height = pattern.len();
-            for c in 0..r {
-                let column = &mut below[c * height..(c + 1) * height];
-                column.iter_mut().zip(pattern).for_each(|(b, &row)| *b = y[(row, c)]);
-            }
-            let below = MatRef::from_column_major_slice(&below[..height * r], height, r);
-            let mut own = y.as_mut().subrows_mut(begin, width);
-            matmul(own.as_mut(), Accum::Add, bottom.transpose(), below, -1.0, Par::Seq);
-            solve_upper_triangular_in_place(top.transpose(), own, Par::Seq);
-        }
-        Ok(())
-    }
-
     /// Where `values` has L at the row of dof i and the column of dof j.
     fn entry(&self, i: usize, j: usize) -> Option<usize> {
-        let symbolic = &self.analysis.symbolic;
+        let nodes = &self.analysis.nodes;
         let (row, column) = (self.analysis.position[i], self.analysis.position[j]);
-        let s = symbolic.supernode_end().partition_point(|&end| end <= column);
-        let (begin, end) = (symbolic.supernode_begin()[s], symbolic.supernode_end()[s]);
-        let node = symbolic.supernode(s);
-        let (width, pattern) = (end - begin, node.pattern());
-        let local =
-            if row < end { row - begin } else { width + pattern.iter().position(|&other| other == row)? };
-        Some(symbolic.col_ptr_for_val()[s] + (column - begin) * (width + pattern.len()) + local)
+        let node = nodes.node(nodes.of_column(column));
+        let local = if row < node.end() {
+            row - node.begin
+        } else {
+            node.width + node.rows.binary_search(&(row as u32)).ok()?
+        };
+        Some(node.panel.start + (column - node.begin) * node.height() + local)
     }
 
     /// Zeros in the rows of these dofs, in all columns but those of the trailing dofs, which are written later.
     fn clear_rows(&mut self, held: &[usize]) -> Result<()> {
-        let symbolic = &self.analysis.symbolic;
-        let mut marked = zeros(symbolic.nrows(), WHAT)?;
+        let nodes = &self.analysis.nodes;
+        let mut marked = zeros(nodes.order(), WHAT)?;
         held.iter().for_each(|&dof| marked[self.analysis.position[dof]] = 1.0);
-        for s in 0..symbolic.n_supernodes() {
-            let (begin, end) = (symbolic.supernode_begin()[s], symbolic.supernode_end()[s]);
-            let node = symbolic.supernode(s);
-            let (start, height) = (symbolic.col_ptr_for_val()[s], end - begin + node.pattern().len());
-            for (local, row) in (begin..end).chain(node.pattern().iter().copied()).enumerate() {
-                if marked[row] > 0.0 {
-                    (0..end - begin).for_each(|column| self.values[start + column * height + local] = 0.0);
-                }
+        for node in nodes.nodes() {
+            let panel = &mut self.values[node.panel.clone()];
+            for (local, _) in node.front_rows().enumerate().filter(|(_, row)| marked[*row] > 0.0) {
+                panel.iter_mut().skip(local).step_by(node.height()).for_each(|v| *v = 0.0);
             }
         }
         Ok(())

@@ -1,0 +1,203 @@
+//! The numeric factorisation, multifrontal: supernode by supernode up the tree, each adds the updates of its children to
+//! its own entries of K, factorises its panel, and leaves an update for its parent.
+//!
+//! Subtrees are independent: on a pool of threads they are done side by side, then the supernodes above them one after
+//! the other, each by tiles side by side. Every sum has its fixed order: the same bits on any number of threads.
+
+use std::ops::Range;
+
+use faer::dyn_stack::MemBuffer;
+use rayon::prelude::*;
+
+use crate::error::Result;
+use crate::linalg::front::{self, Tile};
+use crate::linalg::memory::{refusal, reserved, untouched_zeros};
+use crate::linalg::subtrees::{shared, subtrees};
+use crate::linalg::supernodes::{Node, Supernodes};
+use crate::linalg::updates::{self, RowMap, Updates};
+
+const WHAT: &str = "a factorisation";
+
+/// The lower triangle of K in the order of elimination, by columns, rows of a column in any order.
+pub struct Columns {
+    pub ptr: Vec<usize>,
+    pub row: Vec<u32>,
+    pub val: Vec<f64>,
+}
+
+/// A factor, or the position of a pivot that is not positive.
+type Factor<T> = std::result::Result<T, usize>;
+
+/// L by panels.
+pub fn factorize(nodes: &Supernodes, matrix: &Columns) -> Result<Factor<Vec<f64>>> {
+    let mut values = untouched_zeros(nodes.values(), "a Cholesky factor")?;
+    let subtrees = subtrees(nodes);
+    let tasks = split(nodes, &subtrees, &mut values);
+    let run = |(range, panels): (Range<usize>, &mut [f64])| {
+        Task::new(nodes, matrix, range.clone())?.eliminate_subtree(range, panels)
+    };
+    let left: Vec<_> = match tasks.len() {
+        1 => tasks.into_iter().map(run).collect(),
+        _ => tasks.into_par_iter().map(run).collect(),
+    };
+    let mut above = 0;
+    let mut task = Task::new(nodes, matrix, nodes_above(nodes, &subtrees))?;
+    for (range, update) in subtrees.iter().zip(left) {
+        if let Err(at) = task.eliminate_shared(above..range.start, &mut values) {
+            return Ok(Err(at));
+        }
+        match update? {
+            Ok(update) => task.updates.push(range.end - 1, update),
+            Err(at) => return Ok(Err(at)),
+        }
+        above = range.end;
+    }
+    Ok(task.eliminate_shared(above..nodes.count(), &mut values).map(|()| values))
+}
+
+/// Bytes that the factorisation takes on one thread besides L and the matrix.
+pub fn bytes(nodes: &Supernodes) -> usize {
+    let waiting: usize = updates::most(nodes, 0..nodes.count(), |s| update_len(nodes, s)).iter().sum();
+    waiting * size_of::<f64>() + nodes.order() * size_of::<u32>()
+}
+
+fn update_len(nodes: &Supernodes, s: usize) -> usize {
+    front::update_len(nodes.node(s).rows.len())
+}
+
+/// Supernodes outside all subtrees.
+fn nodes_above<'a>(nodes: &Supernodes, subtrees: &'a [Range<usize>]) -> impl Iterator<Item = usize> + 'a {
+    let starts = subtrees.iter().map(|range| range.start).chain([nodes.count()]);
+    let ends = [0].into_iter().chain(subtrees.iter().map(|range| range.end));
+    ends.zip(starts).flat_map(|(end, start)| end..start)
+}
+
+/// Every subtree with its own panels.
+fn split<'a>(
+    nodes: &Supernodes,
+    subtrees: &[Range<usize>],
+    mut values: &'a mut [f64],
+) -> Vec<(Range<usize>, &'a mut [f64])> {
+    let mut at = 0;
+    let mut tasks = Vec::with_capacity(subtrees.len());
+    for range in subtrees {
+        let (begin, end) = (nodes.first_value(range.start), nodes.first_value(range.end));
+        let (_, rest) = values.split_at_mut(begin - at);
+        let (own, rest) = rest.split_at_mut(end - begin);
+        tasks.push((range.clone(), own));
+        (values, at) = (rest, end);
+    }
+    tasks
+}
+
+/// Supernodes eliminated one after the other.
+struct Task<'a> {
+    nodes: &'a Supernodes,
+    matrix: &'a Columns,
+    /// Row of a position within the present front.
+    local: Vec<u32>,
+    updates: Updates<'a>,
+    workspace: MemBuffer,
+}
+
+impl<'a> Task<'a> {
+    fn new(
+        nodes: &'a Supernodes,
+        matrix: &'a Columns,
+        sequence: impl Iterator<Item = usize>,
+    ) -> Result<Self> {
+        let mut local = reserved(nodes.order(), WHAT)?;
+        local.resize(nodes.order(), 0);
+        let need = front::scratch();
+        let workspace =
+            MemBuffer::try_new(need).map_err(|_| refusal(need.unaligned_bytes_required(), WHAT))?;
+        let updates = Updates::new(nodes, sequence, |s| update_len(nodes, s), WHAT)?;
+        Ok(Self { nodes, matrix, local, updates, workspace })
+    }
+
+    /// All supernodes of a subtree, whose panels these are; gives the update of its root.
+    fn eliminate_subtree(mut self, subtree: Range<usize>, panels: &mut [f64]) -> Result<Factor<Vec<f64>>> {
+        let first = self.nodes.first_value(subtree.start);
+        for s in subtree.clone() {
+            let panel = self.nodes.node(s).panel;
+            let panel = &mut panels[panel.start - first..panel.end - first];
+            if let Err(at) = self.eliminate(s, panel, false) {
+                return Ok(Err(at));
+            }
+        }
+        Ok(Ok(self.updates.into_last(subtree.end - 1)))
+    }
+
+    /// Supernodes above all subtrees.
+    fn eliminate_shared(&mut self, range: Range<usize>, values: &mut [f64]) -> Factor<()> {
+        for s in range {
+            let node = self.nodes.node(s);
+            self.eliminate(s, &mut values[node.panel.clone()], shared(node.work()))?;
+        }
+        Ok(())
+    }
+
+    /// Factorises the panel of s and forms its update.
+    fn eliminate(&mut self, s: usize, panel: &mut [f64], shared: bool) -> Factor<()> {
+        let node = self.nodes.node(s);
+        panel.fill(0.0);
+        self.scatter(&node, panel);
+        let len = front::update_len(node.rows.len());
+        let (update, children) = self.updates.open(s, len);
+        let child = |(s, values)| {
+            let rows = RowMap::new(self.nodes.node(s).rows, node.end(), &self.local);
+            Child { values, rows }
+        };
+        let children: Vec<Child<'_>> = children.into_iter().map(child).collect();
+        children.iter().for_each(|child| child.add_to_panel(panel, node.height()));
+        front::factorize(panel, node.width, &mut self.workspace, shared).map_err(|at| node.begin + at)?;
+        front::update(panel, node.width, update, shared, |tile| {
+            children.iter().for_each(|child| child.add_to_tile(tile, node.width));
+        });
+        drop(children);
+        self.updates.close(s, len);
+        Ok(())
+    }
+
+    /// The entries of K in the columns of a supernode.
+    fn scatter(&mut self, node: &Node<'_>, panel: &mut [f64]) {
+        node.front_rows().enumerate().for_each(|(at, row)| self.local[row] = at as u32);
+        let columns = node.begin..node.end();
+        for (column, panel) in columns.zip(panel.chunks_exact_mut(node.height())) {
+            let entries = self.matrix.ptr[column]..self.matrix.ptr[column + 1];
+            for (&row, val) in self.matrix.row[entries.clone()].iter().zip(&self.matrix.val[entries]) {
+                panel[self.local[row as usize] as usize] += val;
+            }
+        }
+    }
+}
+
+/// The update of a child as its parent sees it.
+struct Child<'a> {
+    values: &'a [f64],
+    rows: RowMap,
+}
+
+impl Child<'_> {
+    fn add_to_panel(&self, panel: &mut [f64], height: usize) {
+        for (j, &column) in self.rows.to[..self.rows.inside].iter().enumerate() {
+            let column = column as usize * height;
+            self.add_column(j, &mut panel[column..column + height], 0);
+        }
+    }
+
+    /// To a tile of the update of a parent with so many columns.
+    fn add_to_tile(&self, tile: &mut Tile<'_>, width: usize) {
+        let place = |row: usize| self.rows.to.partition_point(|&to| (to as usize) < row);
+        for j in place(width + tile.columns.start)..place(width + tile.columns.end) {
+            let column = self.rows.to[j] as usize;
+            self.add_column(j, tile.column(column - width), column);
+        }
+    }
+
+    /// Column j, to a column that starts at row `first` of the parent's front.
+    fn add_column(&self, j: usize, to: &mut [f64], first: usize) {
+        let order = self.rows.to.len();
+        self.rows.add(j..order, &self.values[front::update_column(order, j)], to, first);
+    }
+}

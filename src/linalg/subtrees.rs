@@ -1,0 +1,64 @@
+//! Independent subtrees of an elimination tree, and what threads of a pool share.
+
+use std::ops::Range;
+
+use rayon::prelude::*;
+
+use crate::linalg::elimination::NONE;
+use crate::linalg::supernodes::Supernodes;
+
+/// Less work than so many multiplications is not shared among threads.
+const SHARED: f64 = 2e7;
+/// Subtrees for every thread: enough that all of them have as much to do.
+const SUBTREES: usize = 4;
+/// Subtrees where their number must not depend on the threads.
+const PARTS: usize = 16;
+
+/// Whether threads of the present pool are to share so much work.
+pub fn shared(work: f64) -> bool {
+    work > SHARED && rayon::current_thread_index().is_some()
+}
+
+/// Does all tasks, side by side in the present pool or one after the other.
+pub fn each<T: Send>(parallel: bool, tasks: Vec<T>, work: impl Fn(T) + Send + Sync) {
+    if parallel && tasks.len() > 1 {
+        tasks.into_par_iter().for_each(work);
+    } else {
+        tasks.into_iter().for_each(work);
+    }
+}
+
+/// Ranges of supernodes in ascending order, without those above, which all threads share afterwards; the whole forest
+/// outside a pool.
+pub fn subtrees(nodes: &Supernodes) -> Vec<Range<usize>> {
+    let threads = if rayon::current_thread_index().is_some() { rayon::current_num_threads() } else { 1 };
+    match threads {
+        1 => vec![0..nodes.count(); 1],
+        _ => of_equal_work(nodes, SUBTREES * threads).unwrap_or_else(|| vec![0..nodes.count(); 1]),
+    }
+}
+
+/// The same whatever the threads: none where there is little work.
+pub fn parts(nodes: &Supernodes) -> Vec<Range<usize>> {
+    of_equal_work(nodes, PARTS).unwrap_or_default()
+}
+
+/// About `count` subtrees, the largest with so little work; `None` where they are too small to be worth it.
+fn of_equal_work(nodes: &Supernodes, count: usize) -> Option<Vec<Range<usize>>> {
+    let mut work: Vec<f64> = nodes.nodes().map(|node| node.work()).collect();
+    let most = work.iter().sum::<f64>() / count as f64;
+    if most < SHARED {
+        return None;
+    }
+    let mut first: Vec<usize> = (0..nodes.count()).collect();
+    for s in 0..nodes.count() {
+        let parent = nodes.parent(s);
+        if parent != NONE {
+            first[parent] = first[parent].min(first[s]);
+            work[parent] += work[s];
+        }
+    }
+    let small = |s: usize| work[s] <= most;
+    let is_root = |s: &usize| small(*s) && (nodes.parent(*s) == NONE || !small(nodes.parent(*s)));
+    Some((0..nodes.count()).filter(is_root).map(|s| first[s]..s + 1).collect())
+}
