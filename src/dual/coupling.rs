@@ -274,7 +274,8 @@ mod tests {
 
     #[test]
     fn rows_that_feel_no_other_take_no_part() {
-        let (b, coupling) = coupling(4, &[vec![(0, 1.0), (1, -1.0)], vec![(0, 1.0), (1, 1.0)], vec![(3, 2.0)]]);
+        let (b, coupling) =
+            coupling(4, &[vec![(0, 1.0), (1, -1.0)], vec![(0, 1.0), (1, 1.0)], vec![(3, 2.0)]]);
         assert!(coupling.rows.is_empty());
         assert_projects(&b, &coupling, &[false; 3], 1e-15);
         assert_projects(&b, &coupling, &[true, false, false], 1e-15);
