@@ -35,6 +35,10 @@ impl Kernel for Avx2 {
         // SAFETY: `detect` alone makes a value of `Avx2`, where the processor has AVX2 and FMA
         unsafe { by_halves(tiles, x, y, factors) }
     }
+
+    fn expect(&self, tiles: &[Tile]) {
+        prefetch(tiles);
+    }
 }
 
 impl Kernel for Avx512 {
@@ -47,6 +51,17 @@ impl Kernel for Avx512 {
     ) -> [Line; P] {
         // SAFETY: `detect` alone makes a value of `Avx512`, where the processor has AVX-512F
         unsafe { by_lines(tiles, x, y, factors) }
+    }
+
+    fn expect(&self, tiles: &[Tile]) {
+        prefetch(tiles);
+    }
+}
+
+fn prefetch(tiles: &[Tile]) {
+    for line in tiles.iter().flat_map(|tile| &tile.0) {
+        // SAFETY: SSE is part of x86-64; nothing is read or written
+        unsafe { _mm_prefetch::<_MM_HINT_T1>(line.as_ptr().cast()) };
     }
 }
 
