@@ -20,7 +20,7 @@ pub trait Kernel {
     ) -> [Line; P];
 
     /// Tells memory that these tiles will be asked for.
-    fn expect(&self, _: &[Tile]) {}
+    fn ask_for(&self, _: &[Tile]) {}
 }
 
 /// Plain loops, for any processor.
@@ -91,7 +91,7 @@ fn whole_lines(kernel: &impl Kernel, mut tiles: &[Tile], mut x: &[Line], mut y: 
         let ((x_own, x_below), (y_own, y_below)) = (x.split_at(width), y.split_at_mut(width));
         triangle(kernel, &columns[..width], x_own, y_own);
         if let Some(factors) = x_own.first_chunk::<PANEL>() {
-            expect_panel(kernel, tiles, x_below.len());
+            ask_for_panel(kernel, tiles, x_below.len());
             let below = std::array::from_fn(|p| &columns[p][PANEL - p..]);
             let sums = kernel.columns::<PANEL>(below, x_below, y_below, factors);
             y_own.iter_mut().zip(&sums).for_each(|(y, sums)| add(sums, y));
@@ -101,10 +101,10 @@ fn whole_lines(kernel: &impl Kernel, mut tiles: &[Tile], mut x: &[Line], mut y: 
 }
 
 /// The processor foresees the next tiles of a column, not the first of another: these are asked for ahead.
-fn expect_panel(kernel: &impl Kernel, mut tiles: &[Tile], n: usize) {
+fn ask_for_panel(kernel: &impl Kernel, mut tiles: &[Tile], n: usize) {
     for p in 0..PANEL.min(n) {
         let (column, rest) = tiles.split_at(n - p);
-        kernel.expect(&column[..(PANEL - p + AHEAD).min(column.len())]);
+        kernel.ask_for(&column[..(PANEL - p + AHEAD).min(column.len())]);
         tiles = rest;
     }
 }

@@ -36,7 +36,7 @@ impl Kernel for Avx2 {
         unsafe { by_halves(tiles, x, y, factors) }
     }
 
-    fn expect(&self, tiles: &[Tile]) {
+    fn ask_for(&self, tiles: &[Tile]) {
         prefetch(tiles);
     }
 }
@@ -53,7 +53,7 @@ impl Kernel for Avx512 {
         unsafe { by_lines(tiles, x, y, factors) }
     }
 
-    fn expect(&self, tiles: &[Tile]) {
+    fn ask_for(&self, tiles: &[Tile]) {
         prefetch(tiles);
     }
 }
