@@ -1,12 +1,13 @@
 //! How the rows of a face feel each other, `W_F = B_F D^-1 B_F' + C_F` (1 on the diagonal), and its inverse block by block.
-//! A block is a connected part of W_F: the rows on one node, or those that chain over a whole surface.
+//! A block is a connected part of W_F: the rows on one node, or those that chain over a whole surface. Rows that feel no
+//! other, most of them where rows have been decoupled, take no part: the diagonal is 1.
 
 use std::sync::Arc;
 
 use crate::error::Result;
 use crate::linalg::gram::Gram;
 use crate::linalg::graph::components;
-use crate::linalg::memory::{copied, room};
+use crate::linalg::memory::{copied, reserved, room};
 use crate::linalg::{Analysis, Cholesky, Csr, Matrix, SpdSolver, Symmetric};
 
 /// A pivot below this means that the rows of its block may depend on each other.
@@ -14,6 +15,8 @@ const SINGULAR: f64 = 1e-8;
 /// Added to the diagonal to find such blocks, the first that Cholesky gets through with: a dependent row keeps it
 /// divided by the square of its share of the dependence, which is far below `SINGULAR`.
 const PROBES: [f64; 4] = [0.0, 1e-13, 1e-12, 1e-11];
+/// Entries of W below this are rounding of rows that are orthogonal.
+const ROUNDING: f64 = 64.0 * f64::EPSILON;
 /// Rows of a block up to which its pseudo-inverse is formed.
 const DENSE: usize = 200;
 /// Added to the diagonal of larger blocks: what this makes of the kernel of W, B' maps to zero again, up to rounding of
@@ -23,13 +26,16 @@ const SHIFT: f64 = 1e-10;
 /// Rows that are combinations of those that are not named, by the pivots of `B D^-1 B' + C`; `columns` is `D^-1/2 B'`,
 /// `compliance` the diagonal of C.
 pub fn dependent_rows(columns: &Csr, compliance: &[f64]) -> Result<Vec<usize>> {
-    let mut rows = Coupling::uncut(columns, compliance)?.weak_rows()?;
+    let coupling = Coupling::uncut(columns, compliance)?;
+    let mut rows: Vec<usize> = coupling.weak_rows()?.into_iter().map(|i| coupling.rows[i]).collect();
     rows.sort_unstable();
     Ok(rows)
 }
 
-/// W of all rows.
+/// W of the rows that feel another one.
 pub struct Coupling {
+    /// Those rows, ascending. All that follows counts among them.
+    rows: Arc<Vec<usize>>,
     whole: Symmetric,
     analysis: Arc<Analysis>,
     /// Rows in blocks of W that are not safely of full rank. On a face they depend on each other or they do not; the
@@ -39,7 +45,10 @@ pub struct Coupling {
 
 /// `W_F+` of one face.
 pub struct Face {
+    /// Of all rows.
     held: Vec<bool>,
+    /// The rows that feel another one, ascending.
+    rows: Arc<Vec<usize>>,
     /// Blocks of full rank and large ones; 1 for all other rows.
     sparse: Cholesky,
     /// Small suspect blocks, by their first rows.
@@ -68,8 +77,10 @@ impl Coupling {
         let gram = Gram::of(columns)?;
         let mut whole = gram.sum(columns, &vec![false; columns.rows()])?;
         compliance.iter().enumerate().for_each(|(i, c)| shift(&mut whole, i, *c));
-        let analysis = Arc::new(Analysis::new(&whole, &vec![false; whole.order()])?);
-        Ok(Self { suspect: vec![false; whole.order()], whole, analysis })
+        let (rows, whole) = coupled(&whole)?;
+        let none = vec![false; whole.order()];
+        let analysis = Arc::new(Analysis::new(&whole, &none)?);
+        Ok(Self { rows: Arc::new(rows), suspect: none, whole, analysis })
     }
 
     /// Rows with a pivot that may be zero; all, where no factor tells.
@@ -88,9 +99,10 @@ impl Coupling {
     /// The inverse on the rows that are not held; blocks that `last` has as well are taken from it. `None` where rounding
     /// leaves none.
     pub fn face(&self, held: &[bool], last: Option<&Face>) -> Result<Option<Face>> {
-        let mut w = self.on(held)?;
+        let own: Vec<bool> = self.rows.iter().map(|&i| held[i]).collect();
+        let mut w = self.on(&own)?;
         let mut dense = Vec::new();
-        for rows in self.suspect_blocks(&w, held)? {
+        for rows in self.suspect_blocks(&w, &own)? {
             if rows.len() > DENSE {
                 rows.iter().for_each(|&i| shift(&mut w, i, SHIFT));
                 continue;
@@ -101,11 +113,12 @@ impl Coupling {
                 None => Block { inverse: Arc::new(pseudo_inverse(&w, &rows)?), rows },
             });
         }
-        let mut apart = copied(held, "a face")?;
+        let mut apart = own;
         dense.iter().flat_map(|block| &block.rows).for_each(|&i| apart[i] = true);
         uncouple(&mut w, &apart);
         let factor = self.analysis.attempt(&w, 1.0)?;
-        Ok(factor.ok().map(|sparse| Face { held: held.to_vec(), sparse, dense }))
+        let (held, rows) = (copied(held, "a face")?, Arc::clone(&self.rows));
+        Ok(factor.ok().map(|sparse| Face { held, rows, sparse, dense }))
     }
 
     /// W with 1 for the held rows.
@@ -147,15 +160,17 @@ impl Face {
     /// `z <- W_F+ z` on the rows that are not held, 0 on the others.
     pub fn solve(&self, z: &mut [f64]) -> Result<()> {
         clear(&self.held, z);
+        let mut own: Vec<f64> = self.rows.iter().map(|&i| z[i]).collect();
         let mut parts = Vec::with_capacity(self.dense.len());
         for block in &self.dense {
-            let part: Vec<f64> = block.rows.iter().map(|&i| z[i]).collect();
+            let part: Vec<f64> = block.rows.iter().map(|&i| own[i]).collect();
             parts.push(block.inverse.solve(&part));
         }
-        self.sparse.solve(z)?;
+        self.sparse.solve(&mut own)?;
         for (block, part) in self.dense.iter().zip(parts) {
-            block.rows.iter().zip(part).for_each(|(&i, v)| z[i] = v);
+            block.rows.iter().zip(part).for_each(|(&i, v)| own[i] = v);
         }
+        self.rows.iter().zip(own).for_each(|(&i, v)| z[i] = v);
         Ok(())
     }
 
@@ -167,6 +182,31 @@ impl Face {
 
 fn clear(held: &[bool], z: &mut [f64]) {
     z.iter_mut().zip(held).filter(|(_, held)| **held).for_each(|(z, _)| *z = 0.0);
+}
+
+/// The rows with an entry of W beside the diagonal that is more than rounding, and W among them without the others.
+fn coupled(w: &Symmetric) -> Result<(Vec<usize>, Symmetric)> {
+    let entries = |i: usize| w.lower_row(i).filter(move |(j, v)| *j == i || v.abs() > ROUNDING);
+    let mut feels = vec![false; w.order()];
+    for i in 0..w.order() {
+        for (j, _) in entries(i).filter(|(j, _)| *j != i) {
+            (feels[i], feels[j]) = (true, true);
+        }
+    }
+    let rows: Vec<usize> = (0..feels.len()).filter(|&i| feels[i]).collect();
+    let mut number = vec![0; feels.len()];
+    rows.iter().enumerate().for_each(|(at, &i)| number[i] = at);
+    let count = rows.iter().map(|&i| entries(i).count()).sum();
+    let (mut col, mut val) = (reserved(count, "coupled rows")?, reserved(count, "coupled rows")?);
+    let mut ptr = vec![0];
+    for &i in &rows {
+        for (j, v) in entries(i) {
+            col.push(number[j] as u32);
+            val.push(v);
+        }
+        ptr.push(col.len());
+    }
+    Ok((rows, Symmetric { ptr, col, val }))
 }
 
 fn shift(w: &mut Symmetric, i: usize, by: f64) {
@@ -232,6 +272,15 @@ mod tests {
         assert!(worst < accuracy, "{worst:e}");
     }
 
+    #[test]
+    fn rows_that_feel_no_other_take_no_part() {
+        let (b, coupling) =
+            coupling(4, &[vec![(0, 1.0), (1, -1.0)], vec![(0, 1.0), (1, 1.0)], vec![(3, 2.0)]]);
+        assert!(coupling.rows.is_empty());
+        assert_projects(&b, &coupling, &[false; 3], 1e-15);
+        assert_projects(&b, &coupling, &[true, false, false], 1e-15);
+    }
+
     /// All pairs of four copies of one unknown: six rows of rank 3. A fifth and sixth unknown are glued once.
     fn cross_point() -> Vec<Vec<(usize, f64)>> {
         let pairs = (0..4).flat_map(|a| (a + 1..4).map(move |b| vec![(a, 1.0), (b, -1.0)]));
@@ -241,7 +290,7 @@ mod tests {
     #[test]
     fn redundant_rows_share_their_force_by_the_pseudo_inverse() {
         let (b, coupling) = coupling(6, &cross_point());
-        assert_eq!(coupling.suspect, [true, true, true, true, true, true, false]);
+        assert_eq!((&coupling.rows[..], &coupling.suspect[..]), (&[0, 1, 2, 3, 4, 5][..], &[true; 6][..]));
         assert_projects(&b, &coupling, &[false; 7], 1e-14);
         // W has the eigenvalue 2 three times on the pairs: W+ = W / 4
         let face = coupling.face(&[false; 7], None).unwrap().unwrap();

@@ -12,7 +12,8 @@ impl Entries for Dual {
                 common.filter_map(|(k, i)| Some((k, s.rows.binary_search(i).ok()?))).collect();
             for (at, &(l, j)) in common.iter().enumerate() {
                 let column = block.col_mut(l);
-                common[at..].iter().for_each(|&(k, i)| column[k] += s.operator.get(i, j));
+                let entry = |i: usize| s.multiples.entry(i, j, |i, j| s.operator.get(i, j));
+                common[at..].iter().for_each(|&(k, i)| column[k] += entry(i));
             }
         }
         rows.iter().enumerate().for_each(|(k, &i)| block.col_mut(k)[k] += self.compliance[i]);

@@ -10,6 +10,7 @@
 
 mod coupling;
 mod entries;
+mod multiples;
 mod preconditioner;
 
 pub use coupling::dependent_rows;
@@ -19,6 +20,7 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use crate::body::GeneralizedInverse;
+use crate::dual::multiples::Multiples;
 use crate::error::Result;
 use crate::linalg::memory::zeros;
 use crate::linalg::vector::{dot, norm_max};
@@ -35,15 +37,16 @@ struct Subdomain {
     rows: Vec<usize>,
     /// Those rows, over the unknowns of the body.
     matrix: Csr,
-    /// `F_p = B_p K_p+ B_p'`
+    /// `B_p = T B`
+    multiples: Multiples,
+    /// `B K_p+ B'`: F_p between T and T'.
     operator: Packed,
 }
 
 impl Subdomain {
-    /// `F_p x` over the rows of the body; `local` gets the forces on them.
+    /// `B K_p+ B' T' x`; `local` gets T'x.
     fn image(&self, x: &[f64], local: &mut Vec<f64>, image: &mut Vec<f64>) {
-        local.clear();
-        local.extend(self.rows.iter().map(|&i| x[i]));
+        self.multiples.gather(&self.rows, x, local);
         image.resize(local.len(), 0.0);
         self.operator.apply(local, image);
     }
@@ -72,12 +75,14 @@ impl Dual {
         compliance: Vec<f64>,
         in_parallel: &InParallel,
     ) -> Result<Self> {
-        let local = split(&parts, matrix);
-        let assemble = |p: usize| parts[p].kplus.inverse_form(&local[p].1);
-        let operators = in_parallel(parts.len(), &assemble)?;
+        let local: Vec<_> = parts.iter().map(|part| cut(&part.range, matrix)).collect();
+        let (multiples, distinct): (Vec<_>, Vec<_>) =
+            local.iter().map(|(_, matrix)| Multiples::of(matrix)).unzip();
+        let assemble = |p: usize| parts[p].kplus.inverse_form(&distinct[p]);
+        let operators = in_parallel(parts.len(), &assemble)?.into_iter().zip(multiples);
         let mut first = 0;
         let mut subdomains = Vec::with_capacity(parts.len());
-        for ((part, (rows, matrix)), operator) in parts.into_iter().zip(local).zip(operators) {
+        for ((part, (rows, matrix)), (operator, multiples)) in parts.into_iter().zip(local).zip(operators) {
             let modes = first..first + part.kplus.null_space.cols;
             first = modes.end;
             subdomains.push(Subdomain {
@@ -86,6 +91,7 @@ impl Dual {
                 kplus: part.kplus,
                 rows,
                 matrix,
+                multiples,
                 operator,
             });
         }
@@ -95,12 +101,12 @@ impl Dual {
 
     /// Bytes that explicit operators take for these bodies and rows.
     pub fn bytes(ranges: impl Iterator<Item = Range<usize>>, matrix: &Csr) -> usize {
-        ranges.map(|range| Packed::bytes(touching(&range, matrix).len())).sum()
+        ranges.map(|range| Packed::bytes(Multiples::of(&cut(&range, matrix).1).0.count)).sum()
     }
 
     /// Multiplications of a product with F.
     pub fn product_work(&self) -> usize {
-        self.subdomains.iter().map(|s| s.rows.len() * s.rows.len()).sum()
+        self.subdomains.iter().map(|s| s.multiples.count * s.multiples.count).sum()
     }
 
     /// Dimension r of the null space of all bodies.
@@ -141,7 +147,7 @@ impl Dual {
         let (mut local, mut image) = (Vec::new(), Vec::new());
         for (s, moved) in self.subdomains.iter().zip(moved) {
             s.image(x, &mut local, &mut image);
-            for ((&i, moved), image) in s.rows.iter().zip(moved).zip(&image) {
+            for ((&i, moved), image) in s.rows.iter().zip(moved).zip(s.multiples.spread(&image)) {
                 let own = self.coarse.row(i).filter(|(mode, _)| s.modes.contains(mode));
                 let turned: f64 = own.map(|(mode, g)| g * alpha[mode]).sum();
                 distances[i] += (moved - image + turned).abs();
@@ -198,7 +204,7 @@ impl Operator for Dual {
         let (mut local, mut image) = (Vec::new(), Vec::new());
         for s in &self.subdomains {
             s.image(x, &mut local, &mut image);
-            s.rows.iter().zip(&image).for_each(|(&i, v)| y[i] += v);
+            s.multiples.scatter(&s.rows, &image, y);
         }
     }
 }
@@ -208,18 +214,15 @@ fn touching(range: &Range<usize>, matrix: &Csr) -> Vec<usize> {
     (0..matrix.rows()).filter(|&i| matrix.row(i).any(|(j, _)| range.contains(&j))).collect()
 }
 
-/// Per body: the rows of B that touch it and their entries over its own unknowns.
-fn split(parts: &[Part], matrix: &Csr) -> Vec<(Vec<usize>, Csr)> {
-    let cut = |range: &Range<usize>| {
-        let rows = touching(range, matrix);
-        let mut local = Csr::empty(range.len());
-        for &i in &rows {
-            let inside = matrix.row(i).filter(|(j, _)| range.contains(j));
-            local.push_row(inside.map(|(j, v)| (j - range.start, v)));
-        }
-        (rows, local)
-    };
-    parts.iter().map(|part| cut(&part.range)).collect()
+/// The rows of B that touch the body in this range and their entries over its own unknowns.
+fn cut(range: &Range<usize>, matrix: &Csr) -> (Vec<usize>, Csr) {
+    let rows = touching(range, matrix);
+    let mut local = Csr::empty(range.len());
+    for &i in &rows {
+        let inside = matrix.row(i).filter(|(j, _)| range.contains(j));
+        local.push_row(inside.map(|(j, v)| (j - range.start, v)));
+    }
+    (rows, local)
 }
 
 /// `G' = B R`, m x r; entries that are nothing but rounding are left out.

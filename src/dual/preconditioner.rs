@@ -17,31 +17,40 @@ pub struct Boundary {
 }
 
 pub struct Preconditioner {
-    /// `B D^-1/2`
+    /// `B D^-1/2` over the constrained unknowns, those of one body after those of the other.
     rows: Csr,
     /// C, no unit.
     compliance: Vec<f64>,
-    /// `D^-1/2` over all unknowns.
+    /// `D^-1/2` of the constrained unknowns.
     weight: Vec<f64>,
-    boundaries: Vec<Boundary>,
+    /// S_b, body after body.
+    stiffness: Vec<Box<dyn Operator + Send>>,
     coupling: Coupling,
     /// The last face.
     face: Mutex<Option<Face>>,
 }
 
 impl Preconditioner {
-    /// `matrix` is B, `compliance` the diagonal of C; `B D^-1 B' + C` has the diagonal 1.
+    /// `matrix` is B, `compliance` the diagonal of C; `B D^-1 B' + C` has the diagonal 1. Every unknown with an entry in B is
+    /// in one of `boundaries`.
     pub fn new(
         matrix: &Csr,
         compliance: Vec<f64>,
         metric: &[f64],
         boundaries: Vec<Boundary>,
     ) -> Result<Self> {
-        let weight: Vec<f64> = metric.iter().map(|d| d.sqrt().recip()).collect();
-        let mut rows = Csr::empty(matrix.cols);
-        (0..matrix.rows()).for_each(|i| rows.push_row(matrix.row(i).map(|(j, v)| (j, v * weight[j]))));
+        let (mut number, mut weight) = (vec![0; matrix.cols], Vec::new());
+        for &dof in boundaries.iter().flat_map(|boundary| &boundary.dofs) {
+            number[dof] = weight.len();
+            weight.push(metric[dof].sqrt().recip());
+        }
+        let mut rows = Csr::empty(weight.len());
+        for i in 0..matrix.rows() {
+            rows.push_row(matrix.row(i).map(|(j, v)| (number[j], v * weight[number[j]])));
+        }
         let coupling = Coupling::new(&rows.transposed()?, &compliance)?;
-        Ok(Self { rows, compliance, weight, boundaries, coupling, face: Mutex::new(None) })
+        let stiffness = boundaries.into_iter().map(|boundary| boundary.stiffness).collect();
+        Ok(Self { rows, compliance, weight, stiffness, coupling, face: Mutex::new(None) })
     }
 
     /// `z = M_F r` on the rows that are not held, 0 on the others.
@@ -51,15 +60,18 @@ impl Preconditioner {
         let Some(face) = selected.as_ref() else { return Ok(()) };
         z.copy_from_slice(r);
         face.solve(z)?;
-        let mut spread = vec![0.0; self.weight.len()];
-        self.rows.mul_transposed_add(1.0, z, &mut spread);
-        let mut force = vec![0.0; spread.len()];
-        for boundary in &self.boundaries {
-            let moved: Vec<f64> = boundary.dofs.iter().map(|&j| spread[j] * self.weight[j]).collect();
-            let mut image = vec![0.0; moved.len()];
-            boundary.stiffness.apply(&moved, &mut image);
-            boundary.dofs.iter().zip(image).for_each(|(&j, v)| force[j] = v * self.weight[j]);
+        let mut moved = vec![0.0; self.weight.len()];
+        self.rows.mul_transposed_add(1.0, z, &mut moved);
+        moved.iter_mut().zip(&self.weight).for_each(|(v, weight)| *v *= weight);
+        let mut force = vec![0.0; moved.len()];
+        let (mut from, mut to) = (&moved[..], &mut force[..]);
+        for stiffness in &self.stiffness {
+            let (own, rest) = from.split_at(stiffness.order());
+            let (image, others) = to.split_at_mut(stiffness.order());
+            stiffness.apply(own, image);
+            (from, to) = (rest, others);
         }
+        force.iter_mut().zip(&self.weight).for_each(|(v, weight)| *v *= weight);
         for (i, (z, c)) in z.iter_mut().zip(&self.compliance).enumerate() {
             *z = self.rows.row_dot(i, &force) + c * *z;
         }

@@ -32,12 +32,14 @@ impl Csr {
     }
 
     /// Entries `(column, value)` of row `i`.
+    #[inline]
     pub fn row(&self, i: usize) -> impl Iterator<Item = (usize, f64)> + Clone + '_ {
         let range = self.ptr[i]..self.ptr[i + 1];
         self.col[range.clone()].iter().copied().zip(self.val[range].iter().copied())
     }
 
     /// `(A x)_i`
+    #[inline]
     pub fn row_dot(&self, i: usize, x: &[f64]) -> f64 {
         self.row(i).map(|(j, v)| v * x[j]).sum()
     }

@@ -291,9 +291,12 @@ fn add_products(y: MatRef<'_, f64>, places: &[usize], product: &mut [f64], form:
             let to = MatMut::from_column_major_slice_mut(product, left.len(), right.len());
             let columns = |range: &Range<usize>| y.subcols(range.start, range.len());
             matmul(to, Accum::Replace, columns(&left).transpose(), columns(&right), 1.0, Par::Seq);
-            for (column, j) in product.chunks_exact(left.len()).zip(right.clone()) {
-                let below = left.clone().zip(column).filter(|(i, _)| *i >= j);
-                below.for_each(|(i, value)| form.add(places[i], places[j], *value));
+            if left == right {
+                form.add_lower(&places[left], product);
+                continue;
+            }
+            for (column, &j) in product.chunks_exact(left.len()).zip(&places[right.clone()]) {
+                places[left.clone()].iter().zip(column).for_each(|(&i, value)| form.add(i, j, *value));
             }
         }
     }

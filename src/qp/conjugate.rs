@@ -61,6 +61,10 @@ impl Conjugate {
         (!self.pairs.is_empty()).then_some((d, image))
     }
 
+    pub fn is_empty(&self) -> bool {
+        self.pairs.is_empty()
+    }
+
     pub fn forget(&mut self) {
         self.pairs.clear();
     }

@@ -116,12 +116,9 @@ impl<'a> Iterate<'a> {
         Ok(())
     }
 
-    /// `v <- P_F v`, twice: one projection leaves components that make conjugate gradients diverge below 1e-8.
+    /// `v <- P_F v`
     pub fn project_on_face(&mut self, v: &mut [f64]) -> Result<()> {
-        let active = std::mem::take(&mut self.active);
-        let done = self.coarse.project(&active, v).and_then(|()| self.coarse.project(&active, v));
-        self.active = active;
-        done
+        self.coarse.project(&self.active, v)
     }
 
     /// x is *proportional* when `|g^C| <= Gamma |g^I|` (Section 4): the error left on the current face still

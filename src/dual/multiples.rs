@@ -1,0 +1,125 @@
+//! Rows of a body that are multiples of each other, `B_p = T B`: the rows that glue one unknown to its copies are all
+//! multiples of the same unit vector here. F_p = T (B K_p+ B') T' is formed and applied by the rows of B alone.
+
+use crate::linalg::Csr;
+
+pub struct Multiples {
+    /// Rows of B.
+    pub count: usize,
+    /// T by rows: row i of B_p is `factor` times row `of` of B.
+    multiples: Vec<Multiple>,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Multiple {
+    of: usize,
+    factor: f64,
+}
+
+impl Multiples {
+    /// Of B_p; and B, one row of each direction, by their first appearance. Rows count as multiples where their entries,
+    /// divided by the largest, are equal to the last bit.
+    pub fn of(matrix: &Csr) -> (Self, Csr) {
+        let scale: Vec<f64> = (0..matrix.rows()).map(|i| largest(matrix, i)).collect();
+        let key = |i: usize| {
+            let scale = scale[i];
+            matrix.row(i).map(move |(j, v)| (j, (v / scale).to_bits()))
+        };
+        let mut order: Vec<usize> = (0..matrix.rows()).collect();
+        order.sort_unstable_by(|&a, &b| key(a).cmp(key(b)).then(a.cmp(&b)));
+        let mut first = vec![0; order.len()];
+        for group in order.chunk_by(|&a, &b| key(a).eq(key(b))) {
+            group.iter().for_each(|&i| first[i] = group[0]);
+        }
+        let (mut distinct, mut multiples) =
+            (Csr::empty(matrix.cols), Vec::<Multiple>::with_capacity(first.len()));
+        for (i, &first) in first.iter().enumerate() {
+            if first == i {
+                multiples.push(Multiple { of: distinct.rows(), factor: 1.0 });
+                distinct.push_row(matrix.row(i));
+            } else {
+                multiples.push(Multiple { of: multiples[first].of, factor: scale[i] / scale[first] });
+            }
+        }
+        (Self { count: distinct.rows(), multiples }, distinct)
+    }
+
+    /// `T' x_p` of the entries `rows` of x.
+    pub fn gather(&self, rows: &[usize], x: &[f64], into: &mut Vec<f64>) {
+        into.clear();
+        into.resize(self.count, 0.0);
+        rows.iter().zip(&self.multiples).for_each(|(&i, m)| into[m.of] += m.factor * x[i]);
+    }
+
+    /// `T v`
+    pub fn spread<'a>(&'a self, v: &'a [f64]) -> impl Iterator<Item = f64> + 'a {
+        self.multiples.iter().map(|m| m.factor * v[m.of])
+    }
+
+    /// Adds `T v` to the entries `rows` of y.
+    pub fn scatter(&self, rows: &[usize], v: &[f64], y: &mut [f64]) {
+        rows.iter().zip(self.spread(v)).for_each(|(&i, v)| y[i] += v);
+    }
+
+    /// Entry (i, j) of `T A T'` from those of A.
+    pub fn entry(&self, i: usize, j: usize, of: impl Fn(usize, usize) -> f64) -> f64 {
+        let (i, j) = (self.multiples[i], self.multiples[j]);
+        i.factor * j.factor * of(i.of, j.of)
+    }
+}
+
+/// The entry of row i that is largest in size; 1 for a row of zeros.
+fn largest(matrix: &Csr, i: usize) -> f64 {
+    let largest =
+        matrix.row(i).fold(0.0, |largest: f64, (_, v)| if v.abs() > largest.abs() { v } else { largest });
+    if largest == 0.0 {
+        1.0
+    } else {
+        largest
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rows_that_are_multiples_share_one_and_all_others_stay_apart() {
+        let mut rows = Csr::empty(3);
+        rows.push_row([(1, 2.0)]);
+        rows.push_row([(0, 1.0), (1, 1.0)]);
+        rows.push_row([(1, -1.0)]);
+        rows.push_row([(0, 1.0), (1, -1.0)]);
+        rows.push_row([(0, 0.25), (1, 0.25)]);
+        rows.push_row([(2, 0.0)]);
+        let (multiples, distinct) = Multiples::of(&rows);
+        let expected = [(0, 1.0), (1, 1.0), (0, -0.5), (2, 1.0), (1, 0.25), (3, 1.0)];
+        let expected = expected.map(|(of, factor)| Multiple { of, factor });
+        assert_eq!(multiples.multiples, expected);
+        assert_eq!((multiples.count, distinct.rows()), (4, 4));
+        for i in 0..6 {
+            let Multiple { of, factor } = multiples.multiples[i];
+            let made = distinct.row(of).map(|(j, v)| (j, factor * v));
+            assert!(made.eq(rows.row(i)), "row {i}");
+        }
+    }
+
+    #[test]
+    fn the_operator_of_all_rows_is_that_of_the_distinct_ones_between_its_factors() {
+        let mut rows = Csr::empty(2);
+        [(0, 1.0), (1, 3.0), (0, -2.0)].map(|entry| rows.push_row([entry]));
+        let (multiples, _) = Multiples::of(&rows);
+        // A = [[5, 7], [7, 11]] between rows 0 and 1; rows 4, 2, 0 of x are those of the body
+        let a = |i: usize, j: usize| [[5.0, 7.0], [7.0, 11.0]][i][j];
+        let full = [[5.0, 7.0, -10.0], [7.0, 11.0, -14.0], [-10.0, -14.0, 20.0]];
+        let (list, x, mut y, mut sums) = ([4, 2, 0], [1.0, 9.0, 2.0, 9.0, 3.0], [0.0; 5], Vec::new());
+        multiples.gather(&list, &x, &mut sums);
+        let image = [0, 1].map(|i| a(i, 0) * sums[0] + a(i, 1) * sums[1]);
+        multiples.scatter(&list, &image, &mut y);
+        for i in 0..3 {
+            (0..3).for_each(|j| assert_eq!(multiples.entry(i, j, a), full[i][j]));
+            assert_eq!(y[list[i]], (0..3).map(|j| full[i][j] * x[list[j]]).sum::<f64>());
+        }
+        assert_eq!((y[1], y[3]), (0.0, 0.0));
+    }
+}

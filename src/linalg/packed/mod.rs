@@ -1,0 +1,257 @@
+//! Dense symmetric matrices, the lower triangle in square tiles: local dual operators F_p.
+//!
+//! Zeros before the first row and column fill the order up to a multiple of 8. Of every column of tiles those on and
+//! below the diagonal follow each other, so that the product reads memory from one end to the other, in whole lines
+//! of the cache; the tiles on the diagonal hold both triangles.
+
+mod product;
+#[cfg(target_arch = "x86_64")]
+mod x86;
+
+use crate::error::Result;
+use crate::linalg::memory::reserved;
+use crate::linalg::{Entries, Matrix, Operator};
+
+/// Rows and columns of a tile: a line of the cache.
+const SIDE: usize = 8;
+
+/// Consecutive entries of a column, or of a vector.
+type Line = [f64; SIDE];
+
+/// Column after column.
+#[derive(Debug, Clone, PartialEq)]
+#[repr(C, align(64))]
+struct Tile([Line; SIDE]);
+
+/// Symmetric `m x m`.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Packed {
+    order: usize,
+    /// Columns of tiles: order / 8, rounded up.
+    columns: usize,
+    tiles: Vec<Tile>,
+}
+
+impl Packed {
+    /// Bytes a packed matrix of this order takes.
+    pub fn bytes(order: usize) -> usize {
+        tiles(order.div_ceil(SIDE)).saturating_mul(size_of::<Tile>())
+    }
+
+    pub fn zeros(order: usize) -> Result<Self> {
+        let columns = order.div_ceil(SIDE);
+        let mut data = reserved(tiles(columns), "an explicit dual operator")?;
+        data.resize(tiles(columns), Tile([[0.0; SIDE]; SIDE]));
+        Ok(Self { order, columns, tiles: data })
+    }
+
+    /// `A_ij += value`, any order of i and j.
+    pub fn add(&mut self, i: usize, j: usize, value: f64) {
+        let (i, j) = (self.padded(i.max(j)), self.padded(i.min(j)));
+        let tile = self.tile(i / SIDE, j / SIDE);
+        self.tiles[tile].0[j % SIDE][i % SIDE] += value;
+        if i / SIDE == j / SIDE && i != j {
+            self.tiles[tile].0[i % SIDE][j % SIDE] += value;
+        }
+    }
+
+    /// `A_ij += gram_kl` for i = `indices[k]`, j = `indices[l]`, k >= l: `indices` ascending, n of them, `gram` n x n by
+    /// columns, of which the lower triangle is read.
+    pub fn add_lower(&mut self, indices: &[usize], gram: &[f64]) {
+        let (n, pad) = (indices.len(), self.padded(0));
+        let mut start = 0;
+        for columns in indices.chunk_by(|a, b| (pad + a) / SIDE == (pad + b) / SIDE) {
+            self.add_columns(&indices[start..], columns.len(), &gram[start * (n + 1)..], n);
+            start += columns.len();
+        }
+    }
+
+    /// The first `width` columns of `add_lower`, all of one column of tiles; `stride` between the columns of `gram`.
+    fn add_columns(&mut self, indices: &[usize], width: usize, gram: &[f64], stride: usize) {
+        let (own, below) = indices.split_at(width);
+        for (l, &j) in own.iter().enumerate() {
+            (l..width).for_each(|k| self.add(indices[k], j, gram[l * stride + k]));
+        }
+        let (pad, mut start) = (self.padded(0), width);
+        for rows in below.chunk_by(|a, b| (pad + a) / SIDE == (pad + b) / SIDE) {
+            let tile = self.tile((pad + rows[0]) / SIDE, (pad + own[0]) / SIDE);
+            for (l, &j) in own.iter().enumerate() {
+                let line = &mut self.tiles[tile].0[(pad + j) % SIDE];
+                let gram = &gram[l * stride + start..][..rows.len()];
+                rows.iter().zip(gram).for_each(|(i, v)| line[(pad + i) % SIDE] += v);
+            }
+            start += rows.len();
+        }
+    }
+
+    /// `A <- -A`
+    pub fn negate(&mut self) {
+        self.tiles.iter_mut().for_each(|tile| tile.0.as_flattened_mut().iter_mut().for_each(|v| *v = -*v));
+    }
+
+    pub fn get(&self, i: usize, j: usize) -> f64 {
+        let (i, j) = (self.padded(i.max(j)), self.padded(i.min(j)));
+        self.tiles[self.tile(i / SIDE, j / SIDE)].0[j % SIDE][i % SIDE]
+    }
+
+    /// Number of a row with the zeros before the first.
+    fn padded(&self, i: usize) -> usize {
+        self.columns * SIDE - self.order + i
+    }
+
+    /// Position of tile (i, j), j <= i.
+    fn tile(&self, i: usize, j: usize) -> usize {
+        tiles(self.columns) - tiles(self.columns - j) + i - j
+    }
+}
+
+/// Tiles of so many columns.
+fn tiles(columns: usize) -> usize {
+    columns.saturating_mul(columns + 1) / 2
+}
+
+impl Operator for Packed {
+    fn order(&self) -> usize {
+        self.order
+    }
+
+    /// `y = A x`, every entry read once.
+    fn apply(&self, x: &[f64], y: &mut [f64]) {
+        product::product(&self.tiles, x, y);
+    }
+}
+
+impl Entries for Packed {
+    fn add_block(&self, rows: &[usize], block: &mut Matrix) {
+        for (l, &j) in rows.iter().enumerate() {
+            let column = block.col_mut(l);
+            rows.iter().enumerate().skip(l).for_each(|(k, &i)| column[k] += self.get(i, j));
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::linalg::vector::{dot, norm_max};
+
+    #[test]
+    fn the_packed_product_equals_the_full_one() {
+        let mut a = Packed::zeros(3).unwrap();
+        for (i, j, v) in [(0, 0, 2.0), (0, 1, -1.0), (1, 1, 3.0), (2, 0, 5.0), (2, 2, 1.0)] {
+            a.add(i, j, v);
+        }
+        let mut y = [0.0; 3];
+        a.apply(&[1.0, 2.0, 3.0], &mut y);
+        assert_eq!(y, [15.0, 5.0, 8.0]);
+        assert_eq!(a.get(0, 2), 5.0);
+    }
+
+    /// Whole numbers up to 50 in size: products and sums are exact in any order.
+    fn entry(i: usize, j: usize) -> f64 {
+        ((i.max(j) * 31 + i.min(j) * 17) % 101) as f64 - 50.0
+    }
+
+    fn filled(order: usize) -> Packed {
+        let mut a = Packed::zeros(order).unwrap();
+        (0..order).for_each(|i| (0..=i).for_each(|j| a.add(j, i, entry(i, j))));
+        a
+    }
+
+    fn orders() -> impl Iterator<Item = usize> {
+        (0..71).chain([127, 128, 129, 333, 1001])
+    }
+
+    fn dense_product(order: usize, x: &[f64]) -> Vec<f64> {
+        (0..order).map(|i| (0..order).map(|j| entry(i, j) * x[j]).sum()).collect()
+    }
+
+    #[test]
+    fn the_product_equals_the_dense_one_for_any_order() {
+        for order in orders() {
+            let x: Vec<f64> = (0..order).map(|i| ((7 * i) % 23) as f64 - 11.0).collect();
+            let mut y = vec![f64::NAN; order];
+            filled(order).apply(&x, &mut y);
+            assert_eq!(y, dense_product(order, &x), "{order}");
+        }
+    }
+
+    /// Every set of instructions that this processor has; says how many they are.
+    fn products(a: &Packed, x: &[f64]) -> Vec<Vec<f64>> {
+        let mut y = vec![vec![f64::NAN; a.order]; 3];
+        product::product_by(&product::Portable, &a.tiles, x, &mut y[0]);
+        let mut sets = 1;
+        #[cfg(target_arch = "x86_64")]
+        {
+            if let Some(avx2) = x86::Avx2::detect() {
+                product::product_by(&avx2, &a.tiles, x, &mut y[sets]);
+                sets += 1;
+            }
+            if let Some(avx512) = x86::Avx512::detect() {
+                product::product_by(&avx512, &a.tiles, x, &mut y[sets]);
+                sets += 1;
+            }
+        }
+        y.truncate(sets);
+        y
+    }
+
+    #[test]
+    fn all_sets_of_instructions_agree_to_rounding() {
+        for order in orders().filter(|order| *order > 0) {
+            let mut a = filled(order);
+            (0..order).for_each(|i| a.add(i, i, 0.1 * i as f64 + 1.0 / 3.0));
+            let x: Vec<f64> = (0..order).map(|i| (1.0 + i as f64).sin()).collect();
+            let all = products(&a, &x);
+            let size = 100.0 * dot(&x, &x).sqrt() * (order as f64).sqrt();
+            for other in &all[1..] {
+                let difference: Vec<f64> = all[0].iter().zip(other).map(|(a, b)| a - b).collect();
+                assert!(norm_max(&difference) <= 1e-15 * size, "{order}");
+            }
+        }
+    }
+
+    #[test]
+    fn all_sets_of_instructions_agree_exactly_on_whole_numbers() {
+        for order in orders() {
+            let x: Vec<f64> = (0..order).map(|i| (i % 5) as f64 - 2.0).collect();
+            let expected = dense_product(order, &x);
+            assert!(products(&filled(order), &x).iter().all(|y| *y == expected), "{order}");
+        }
+    }
+
+    #[test]
+    fn a_block_added_at_once_equals_its_entries_added_one_by_one() {
+        let lists: [&[usize]; 6] =
+            [&[], &[40], &[0, 1, 2, 3, 4], &[3, 4, 5, 9, 17, 18, 19, 20, 21, 22, 30, 40], &[0, 40], &[7, 8]];
+        for order in [41, 48, 64] {
+            for indices in lists.iter().copied().chain([(0..41).collect::<Vec<_>>().as_slice()]) {
+                let n = indices.len();
+                // the upper triangle must not be read
+                let gram: Vec<f64> =
+                    (0..n * n).map(|at| if at % n < at / n { f64::NAN } else { at as f64 }).collect();
+                let (mut once, mut single) = (filled(order), filled(order));
+                once.add_lower(indices, &gram);
+                for l in 0..n {
+                    (l..n).for_each(|k| single.add(indices[k], indices[l], gram[l * n + k]));
+                }
+                assert_eq!(once, single, "{order} {indices:?}");
+                let mut y = [vec![0.0; order], vec![0.0; order]];
+                once.apply(&vec![1.0; order], &mut y[0]);
+                (0..order).for_each(|i| y[1][i] = (0..order).map(|j| once.get(i, j)).sum());
+                assert_eq!(y[0], y[1]);
+            }
+        }
+    }
+
+    #[test]
+    fn a_negated_matrix_gives_the_opposite_product() {
+        let (a, x) = (filled(19), [1.0; 19]);
+        let mut b = a.clone();
+        b.negate();
+        let (mut y, mut z) = ([0.0; 19], [0.0; 19]);
+        a.apply(&x, &mut y);
+        b.apply(&x, &mut z);
+        assert!(y.iter().zip(z).all(|(y, z)| *y == -z));
+    }
+}
