@@ -37,7 +37,7 @@ pub fn factorize(nodes: &Supernodes, matrix: &Columns) -> Result<Factor<Vec<f64>
         Task::new(nodes, matrix, range.clone())?.eliminate_subtree(range, panels)
     };
     let left: Vec<_> = match tasks.len() {
-        1 => tasks.into_iter().map(run).collect(),
+        0 | 1 => tasks.into_iter().map(run).collect(),
         _ => tasks.into_par_iter().map(run).collect(),
     };
     let mut above = 0;

@@ -36,8 +36,8 @@ pub fn inverse_form(cholesky: &Cholesky, rows: &Csr) -> Result<Packed> {
     let parts = parts(nodes);
     let run = |range: &Range<usize>| reach.part(range.clone());
     let done: Vec<Result<Part>> = match rayon::current_thread_index() {
-        Some(_) => parts.par_iter().map(run).collect(),
-        None => parts.iter().map(run).collect(),
+        Some(_) if parts.len() > 1 => parts.par_iter().map(run).collect(),
+        _ => parts.iter().map(run).collect(),
     };
     let mut above = 0;
     let mut task = Task::new(&reach, 0..nodes.count())?;

@@ -32,10 +32,8 @@ pub fn each<T: Send>(parallel: bool, tasks: Vec<T>, work: impl Fn(T) + Send + Sy
 /// outside a pool.
 pub fn subtrees(nodes: &Supernodes) -> Vec<Range<usize>> {
     let threads = if rayon::current_thread_index().is_some() { rayon::current_num_threads() } else { 1 };
-    match threads {
-        1 => vec![0..nodes.count(); 1],
-        _ => of_equal_work(nodes, SUBTREES * threads).unwrap_or_else(|| vec![0..nodes.count(); 1]),
-    }
+    let several = if threads > 1 { of_equal_work(nodes, SUBTREES * threads) } else { None };
+    several.unwrap_or_else(|| std::iter::once(0..nodes.count()).filter(|all| !all.is_empty()).collect())
 }
 
 /// The same whatever the threads: none where there is little work.

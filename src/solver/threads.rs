@@ -29,14 +29,15 @@ pub fn count(asked: i64) -> usize {
     }
 }
 
-/// Runs tasks `0..count` and returns their results in order; the first error in order wins. Where the system does not
+/// Runs tasks `0..count`, which may share their own work among the threads, and returns their results in order; the
+/// first error in order wins. Where the system does not
 /// give so many threads, fewer do the same.
 pub fn run<T: Send>(
     threads: usize,
     count: usize,
     task: impl Fn(usize) -> Result<T> + Sync,
 ) -> Result<Vec<T>> {
-    let pool = if count < 2 { None } else { largest_pool(threads) };
+    let pool = if count < 1 { None } else { largest_pool(threads) };
     let results: Vec<Result<T>> = match pool {
         Some(pool) => pool.install(|| (0..count).into_par_iter().map(&task).collect()),
         None => (0..count).map(&task).collect(),
