@@ -11,14 +11,17 @@
 mod coupling;
 mod entries;
 mod preconditioner;
+mod reuse;
 
 pub use coupling::dependent_rows;
 pub use preconditioner::{constrained, Boundary, Preconditioner};
+pub use reuse::{Columns, Kept};
 
 use std::ops::Range;
 use std::sync::Arc;
 
 use crate::body::GeneralizedInverse;
+use crate::dual::reuse::Reuse;
 use crate::error::Result;
 use crate::linalg::memory::zeros;
 use crate::linalg::vector::{dot, norm_max};
@@ -45,25 +48,32 @@ pub struct Dual {
     compliance: Vec<f64>,
     /// `G'` = B R, m x r.
     pub coarse: Csr,
+    /// What became of the columns of all `F_p`.
+    pub columns: Columns,
 }
 
 /// A body and its place among all unknowns.
 pub struct Part {
     pub range: Range<usize>,
     pub kplus: Arc<GeneralizedInverse>,
+    /// `F_p` of other rows.
+    pub kept: Option<Kept>,
 }
 
 impl Dual {
     /// `matrix` is B, m x n, `compliance` the diagonal of C; `in_parallel` runs independent tasks, each with its
     /// number, in any order.
     pub fn new(
-        parts: Vec<Part>,
+        mut parts: Vec<Part>,
         matrix: &Csr,
         compliance: Vec<f64>,
         in_parallel: &InParallel,
     ) -> Result<Self> {
         let local = split(&parts, matrix);
-        let assemble = |p: usize| parts[p].kplus.inverse_form(&local[p].1);
+        let kept = parts.iter_mut().zip(&local).map(|(part, local)| Reuse::of(part.kept.take(), &local.1));
+        let kept: Vec<Reuse> = kept.collect();
+        let columns = kept.iter().map(Reuse::columns).sum();
+        let assemble = |p: usize| kept[p].operator(&parts[p].kplus, &local[p].1);
         let operators = in_parallel(parts.len(), &assemble)?;
         let mut first = 0;
         let mut subdomains = Vec::with_capacity(parts.len());
@@ -80,7 +90,12 @@ impl Dual {
             });
         }
         let coarse = coarse(&subdomains, matrix.rows(), first);
-        Ok(Self { subdomains, compliance, coarse })
+        Ok(Self { subdomains, compliance, coarse, columns })
+    }
+
+    /// The operators of the bodies with their rows, for a dual problem of other rows.
+    pub fn into_operators(self) -> Vec<Kept> {
+        self.subdomains.into_iter().map(|s| Kept::new(s.matrix, s.operator)).collect()
     }
 
     /// Bytes that explicit operators take for these bodies and rows.
