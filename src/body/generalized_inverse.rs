@@ -9,6 +9,7 @@ use crate::body::null_space::{largest, verified, NullSpaceInput};
 use crate::body::search::Search;
 use crate::body::symbolic::{Layout, Made, Symbolic};
 use crate::error::{Error, Kind, Result};
+use crate::linalg::columns::inverse_columns;
 use crate::linalg::memory::{room, zeros, PRODUCTS};
 use crate::linalg::reach::inverse_form;
 use crate::linalg::vector::weighted_norm;
@@ -86,6 +87,11 @@ impl GeneralizedInverse {
     /// Where its factor lies: the same for all that share it.
     pub fn factor_address(&self) -> usize {
         Arc::as_ptr(&self.factor) as usize
+    }
+
+    /// The columns `which` of `B K+ B'`, m x `which.len()`.
+    pub fn inverse_columns(&self, rows: &Csr, which: &[usize]) -> Result<Matrix> {
+        inverse_columns(&self.factor, rows, which)
     }
 
     /// `B K+ B'` for the rows B (m x n) of this body.

@@ -288,7 +288,7 @@ mod tests {
         for (stiffness, expected) in [([1.0; 6], [1, 1]), ([1.0, 1.3, 1.0, 1.3, 1.7, 1.0], [1, 3])] {
             let (mut shared, mut apart) = (chains(stiffness), chains(stiffness));
             (0..6).for_each(|p| apart.bodies[p].keys = Some([p as u64; 2]));
-            assert_eq!(answer(&mut shared), answer(&mut apart));
+            assert!(answer(&mut shared) == answer(&mut apart), "bits differ");
             assert_eq!([shared.work.analyses, shared.work.factorisations], expected);
             assert_eq!([apart.work.analyses, apart.work.factorisations], [6, 6]);
         }
@@ -299,7 +299,7 @@ mod tests {
         let stiffness = [1.0, 1.1, 1.2, 1.3, 1.4, 1.5];
         let (mut honest, mut colliding) = (chains(stiffness), chains(stiffness));
         (0..6).for_each(|p| colliding.bodies[p].keys = Some([7; 2]));
-        assert_eq!(answer(&mut honest), answer(&mut colliding));
+        assert!(answer(&mut honest) == answer(&mut colliding), "bits differ");
         assert_eq!(colliding.work.factorisations, 6);
     }
 }

@@ -290,6 +290,10 @@ impl Problem {
     /// it has.
     fn changed(&mut self, body: usize, unchanged: bool) -> Result<&mut BodySlot> {
         self.forget_dual();
+        if !unchanged {
+            let inverses = self.bodies.iter_mut().filter_map(|slot| slot.inverse.as_mut());
+            inverses.filter_map(|inverse| inverse.operator.as_mut()).for_each(Kept::only_whole);
+        }
         let bodies = self.bodies.len();
         let slot = self.bodies.get_mut(body).ok_or_else(|| no_body(body, bodies))?;
         slot.inverse.take_if(|_| !unchanged);

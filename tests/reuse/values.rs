@@ -76,7 +76,7 @@ fn the_same_matrix_and_the_same_null_space_again_cost_nothing() {
         problem.set_null_space(p, n, modes.len(), &modes.concat(), n, Modes::Exact).unwrap();
     }
     assert_eq!(spent(&mut problem, &mut before), [0, 0, 0, crate::touches(&deck)]);
-    assert_eq!(answer(&problem), first);
+    assert!(answer(&problem) == first, "bits differ");
 }
 
 #[test]
