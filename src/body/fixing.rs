@@ -30,9 +30,9 @@ pub fn given_dofs(null_space: &Matrix, root: &[f64], given: &[usize]) -> Result<
     Ok(given.to_vec())
 }
 
-/// Other dofs are as good as those of the pivoted QR when they hold the softest motion at least this well against them:
-/// rounding in K+ grows by no more than one digit.
-const AS_WELL: f64 = 0.1;
+/// Other dofs serve when their smallest singular value is at least this part of that of the dofs chosen: the largest entry
+/// of K+ grows with its inverse square, so that rounding costs no more than one digit.
+const AS_WELL: f64 = 0.3;
 
 /// Whether `dofs`, found for other values of K, hold the null space nearly as well as `chosen`, found for these. It
 /// compares the smallest singular values of the rows of `D^1/2 R` of both.
