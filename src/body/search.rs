@@ -13,7 +13,7 @@ use crate::body::null_space::{largest, verified, Modes, NullSpaceInput};
 use crate::body::symbolic::{Layout, Made, Symbolic};
 use crate::error::{Error, Kind, Result};
 use crate::linalg::graph::components;
-use crate::linalg::memory::{reserved, room, PRODUCTS};
+use crate::linalg::memory::{copied, reserved, room, PRODUCTS};
 use crate::linalg::spd::symmetric_eigen;
 use crate::linalg::trailing::Trailing;
 use crate::linalg::{Analysis, Breakdown, Cholesky, Matrix, Symmetric};
@@ -87,7 +87,8 @@ impl Search {
             last.sort_unstable();
             last.dedup();
         }
-        let layout = Arc::new(Layout::Last { dofs: last.clone(), between: between.clone() });
+        let left_out = copied(&between, "the connected parts of a body")?;
+        let layout = Arc::new(Layout::Last { dofs: last.clone(), between: left_out });
         Ok(Self { k, tolerance, fixing, last, members, between, count, layout, symbolic: None })
     }
 

@@ -189,7 +189,9 @@ impl Problem {
             return Err(Error::argument("dof", what).body(body).entry(entry).limit(order as f64));
         }
         let unchanged = self.slot(body)?.body.fixing.as_deref() == dofs;
-        self.changed(body, unchanged)?.body.fixing = dofs.map(<[usize]>::to_vec);
+        let slot = self.changed(body, unchanged)?;
+        slot.body.fixing = dofs.map(<[usize]>::to_vec);
+        slot.symbolic.take_if(|_| !unchanged);
         Ok(())
     }
 

@@ -128,3 +128,18 @@ fn dofs_that_no_longer_hold_a_body_are_chosen_anew() {
     assert!(analyses[0] == analyses[1] && analyses[0] <= 1, "{analyses:?}");
     assert!(analyses[2] == analyses[3] && analyses[2] >= 2, "{analyses:?}");
 }
+
+/// Either of two dofs holds the body well; without those of the host the library chooses as if there had been none.
+#[test]
+fn dofs_of_the_host_leave_nothing_behind() {
+    let mut problem = Problem::new();
+    problem.add_body(2).unwrap();
+    let k = [4.0, -4.0, -4.0, 4.0];
+    problem.set_stiffness_dense(0, 2, &k, 2, feti_contact::solver::Storage::Full).unwrap();
+    problem.set_null_space(0, 2, 1, &[1.0; 2], 2, Modes::Exact).unwrap();
+    let own = problem.fixing_dofs(0).unwrap().to_vec();
+    problem.set_fixing(0, Some(&[1 - own[0]])).unwrap();
+    assert_eq!(problem.fixing_dofs(0).unwrap(), [1 - own[0]]);
+    problem.set_fixing(0, None).unwrap();
+    assert_eq!(problem.fixing_dofs(0).unwrap(), own);
+}

@@ -53,8 +53,10 @@ contains
     k = 0
     do i = 1, nodes
       k(i, i) = merge(2, 1, i < nodes) * stiffness
-      if (i > 1) k(i, i - 1) = -stiffness
-      if (i > 1) k(i - 1, i) = -stiffness
+    end do
+    do i = 2, nodes
+      k(i, i - 1) = -stiffness
+      k(i - 1, i) = -stiffness
     end do
     call feti_body_stiffness(p, body, k, FETI_FULL)
   end subroutine
