@@ -513,11 +513,11 @@ typedef struct feti_info {
    */
   int64_t coarse_solves;
   /**
-   * Numeric factorisations since the problem was created.
+   * Numeric factorisations for K+ since the problem was created; equal bodies share one.
    */
   int64_t factorisations;
   /**
-   * Symbolic analyses since the problem was created.
+   * Symbolic analyses since the problem was created; bodies with one pattern share one.
    */
   int64_t analyses;
   /**
@@ -573,6 +573,15 @@ typedef struct feti_info {
    * 1: the answer is that of option finish = direct; 0: it was not asked for, or brought nothing.
    */
   int64_t finished;
+  /**
+   * Columns of the dual operators of the bodies, one for each body that a row touches, computed
+   * since the problem was created.
+   */
+  int64_t columns_computed;
+  /**
+   * Columns kept through a change of rows or bodies since the problem was created.
+   */
+  int64_t columns_kept;
 } feti_info;
 
 /**

@@ -175,9 +175,9 @@ module feti_contact_c
     integer(c_int64_t) :: dual_applications
     !> Solutions of the coarse problem.
     integer(c_int64_t) :: coarse_solves
-    !> Numeric factorisations since the problem was created.
+    !> Numeric factorisations for K+ since the problem was created; equal bodies share one.
     integer(c_int64_t) :: factorisations
-    !> Symbolic analyses since the problem was created.
+    !> Symbolic analyses since the problem was created; bodies with one pattern share one.
     integer(c_int64_t) :: analyses
     !> Largest entry of the certificate over what it is allowed: <= 1 passes.
     real(c_double) :: worst
@@ -206,6 +206,11 @@ module feti_contact_c
     integer(c_int64_t) :: direct_solves
     !> 1: the answer is that of option finish = direct; 0: it was not asked for, or brought nothing.
     integer(c_int64_t) :: finished
+    !> Columns of the dual operators of the bodies, one for each body that a row touches, computed since the
+    !> problem was created.
+    integer(c_int64_t) :: columns_computed
+    !> Columns kept through a change of rows or bodies since the problem was created.
+    integer(c_int64_t) :: columns_kept
   end type feti_info
 
   !> Verdict on an answer, by relative figures: each passes when it is at most `limit` plus the noise of

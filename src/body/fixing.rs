@@ -31,6 +31,29 @@ pub fn given_dofs(null_space: &Matrix, root: &[f64], given: &[usize]) -> Result<
     Ok(given.to_vec())
 }
 
+/// Other dofs serve when their smallest singular value is at least this part of that of the dofs chosen: the largest entry
+/// of K+ grows with its inverse square, so that rounding costs no more than one digit.
+const AS_WELL: f64 = 0.3;
+
+/// Whether `dofs`, found for other values of K, hold the null space nearly as well as `chosen`, found for these. It
+/// compares the smallest singular values of the rows of `D^1/2 R` of both.
+pub fn hold_as_well(null_space: &Matrix, root: &[f64], dofs: &[usize], chosen: &[usize]) -> Result<bool> {
+    if dofs.len() != chosen.len() {
+        return Ok(false);
+    }
+    Ok(softest(null_space, root, dofs)? >= AS_WELL * softest(null_space, root, chosen)?)
+}
+
+/// Smallest singular value of the rows `dofs` of `D^1/2 R`, as many as R has columns.
+fn softest(null_space: &Matrix, root: &[f64], dofs: &[usize]) -> Result<f64> {
+    let r = dofs.len();
+    let mut held = Matrix::zeros(r, r)?;
+    for (i, &dof) in dofs.iter().enumerate() {
+        (0..r).for_each(|j| held.set(i, j, root[dof] * null_space.get(dof, j)));
+    }
+    Ok(right_singular(&held)?.0.last().copied().unwrap_or(f64::INFINITY))
+}
+
 /// Pivoted QR of `(D^1/2 R)'` (r x n): dof by dof the column with the largest part orthogonal to those
 /// chosen before; the first of equals. `root[i] = sqrt(D_ii)`.
 pub fn fixing_dofs(null_space: &Matrix, root: &[f64]) -> Result<Vec<usize>> {
@@ -73,6 +96,18 @@ mod tests {
         assert_eq!(given(&[3, 1]).unwrap(), [3, 1]);
         assert_eq!(given(&[2, 2]).unwrap_err().kind, Kind::NullSpace);
         assert_eq!(given(&[2]).unwrap_err().place.limit, Some(2.0));
+    }
+
+    /// u = 1 and u = x at x = -2 .. 2; dof 4 weak.
+    #[test]
+    fn dofs_found_for_other_values_serve_unless_these_make_them_much_worse() {
+        let r = Matrix { rows: 5, cols: 2, data: vec![1., 1., 1., 1., 1., -2., -1., 0., 1., 2.] };
+        let serves = |weak: f64, dofs: &[usize]| {
+            let root = [1.0, 1.0, 1.0, 1.0, weak];
+            hold_as_well(&r, &root, dofs, &fixing_dofs(&r, &root).unwrap()).unwrap()
+        };
+        assert!(serves(1.0, &[1, 4]) && serves(0.5, &[0, 4]));
+        assert!(!serves(1e-3, &[0, 4]) && !serves(1.0, &[2, 2]) && !serves(1.0, &[2]));
     }
 
     #[test]

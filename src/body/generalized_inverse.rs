@@ -4,10 +4,12 @@
 
 use std::sync::Arc;
 
-use crate::body::fixing::{fixing_dofs, given_dofs};
+use crate::body::fixing::{fixing_dofs, given_dofs, hold_as_well};
 use crate::body::null_space::{largest, verified, NullSpaceInput};
 use crate::body::search::Search;
+use crate::body::symbolic::{Layout, Made, Symbolic};
 use crate::error::{Error, Kind, Result};
+use crate::linalg::columns::inverse_columns;
 use crate::linalg::memory::{room, zeros, PRODUCTS};
 use crate::linalg::reach::inverse_form;
 use crate::linalg::vector::weighted_norm;
@@ -30,7 +32,8 @@ pub struct GeneralizedInverse {
     pub fixing: Vec<usize>,
     /// Of a null space that was found: the softest other motion against the stiffest of it, no unit.
     pub gap: Option<f64>,
-    pub(super) factor: Cholesky,
+    /// Bodies with the same matrix and the same dofs held share it.
+    pub(super) factor: Arc<Cholesky>,
 }
 
 /// The part of the setup that can be costed before it is done.
@@ -44,12 +47,13 @@ pub struct Known {
     k: Multiple,
     null_space: Matrix,
     fixing: Vec<usize>,
-    analysis: Arc<Analysis>,
+    /// The fixing dofs are those of the host.
+    given: bool,
+    symbolic: Option<Arc<Symbolic>>,
 }
 
 impl GeneralizedInverse {
-    /// Null space, fixing dofs and symbolic analysis of `k` (a multiple with its largest diagonal entry in
-    /// [1, 2)).
+    /// Null space and fixing dofs of `k` (a multiple with its largest diagonal entry in [1, 2)).
     pub fn plan(k: Multiple, input: &NullSpaceInput, tolerance: f64) -> Result<Plan> {
         Self::plan_with(k, input, tolerance, None)
     }
@@ -63,17 +67,13 @@ impl GeneralizedInverse {
     ) -> Result<Plan> {
         let per_dof = (8 * input.vectors.cols + 24) * size_of::<f64>();
         let _room = room(k.order() * per_dof + PRODUCTS, "the null space of a body")?;
-        let root = k.roots()?;
+        let (root, given) = (k.roots()?, fixing.is_some());
         let null_space = verified(&k, &root, input, tolerance)?;
         let fixing = match fixing {
             Some(given) => given_dofs(&null_space, &root, given)?,
             None => fixing_dofs(&null_space, &root)?,
         };
-        // (14): F is K without the rows and columns of these dofs
-        let mut held = vec![false; k.order()];
-        fixing.iter().for_each(|&dof| held[dof] = true);
-        let analysis = Arc::new(Analysis::new(&k.matrix, &held)?);
-        Ok(Plan::Known(Known { k, null_space, fixing, analysis }))
+        Ok(Plan::Known(Known { k, null_space, fixing, given, symbolic: None }))
     }
 
     /// The same where nothing is known about the null space.
@@ -87,6 +87,16 @@ impl GeneralizedInverse {
         self.factor.solve(x)
     }
 
+    /// Where its factor lies: the same for all that share it.
+    pub fn factor_address(&self) -> usize {
+        Arc::as_ptr(&self.factor) as usize
+    }
+
+    /// The columns `which` of `B K+ B'`, m x `which.len()`.
+    pub fn inverse_columns(&self, rows: &Csr, which: &[usize]) -> Result<Matrix> {
+        inverse_columns(&self.factor, rows, which)
+    }
+
     /// `B K+ B'` for the rows B (m x n) of this body.
     pub fn inverse_form(&self, rows: &Csr) -> Result<Packed> {
         inverse_form(&self.factor, rows)
@@ -94,17 +104,75 @@ impl GeneralizedInverse {
 }
 
 impl Plan {
-    /// Bytes the factorisation is going to take.
-    pub fn bytes(&self) -> usize {
+    /// Takes over the way of elimination of another body with the same pattern, or of this one with other values, where
+    /// it serves here as well. Its analysis is wanted from whoever has it, by `set_analysis`.
+    pub fn follow(&mut self, layout: &Layout) -> Result<bool> {
+        match (self, layout) {
+            (Self::Known(known), Layout::Held(dofs)) => known.follow(dofs),
+            (Self::Search(search), layout) => Ok(*search.layout == *layout),
+            _ => Ok(false),
+        }
+    }
+
+    /// What the analysis depends on besides the pattern of K.
+    pub fn layout(&self) -> Arc<Layout> {
         match self {
-            Self::Known(known) => known.analysis.bytes(),
-            Self::Search(search) => search.bytes(),
+            Self::Known(known) => Arc::new(Layout::Held(known.fixing.clone())),
+            Self::Search(search) => Arc::clone(&search.layout),
+        }
+    }
+
+    /// The symbolic analysis for the layout.
+    pub fn analyse(&self) -> Result<Arc<Symbolic>> {
+        let analysis = match self {
+            Self::Known(known) => known.analyse()?,
+            Self::Search(search) => search.analyse()?,
+        };
+        Ok(Arc::new(Symbolic { layout: self.layout(), analysis }))
+    }
+
+    /// The analysis for the layout, made here or elsewhere.
+    pub fn set_analysis(&mut self, symbolic: Arc<Symbolic>) {
+        match self {
+            Self::Known(known) => known.symbolic = Some(symbolic),
+            Self::Search(search) => search.symbolic = Some(symbolic),
+        }
+    }
+
+    /// The analysis, once there is one.
+    pub fn symbolic(&self) -> Option<&Arc<Symbolic>> {
+        match self {
+            Self::Known(known) => known.symbolic.as_ref(),
+            Self::Search(search) => search.symbolic.as_ref(),
+        }
+    }
+
+    /// Bytes the factorisation is going to take, once it is analysed.
+    pub fn bytes(&self) -> usize {
+        self.symbolic().map_or(0, |symbolic| symbolic.analysis.bytes())
+    }
+
+    /// K+ with the factor, already probed, of the same matrix with the same dofs held. The null space is that of the
+    /// plan, where it has one.
+    pub fn with_factor_of(self, other: &GeneralizedInverse) -> GeneralizedInverse {
+        let (factor, fixing) = (Arc::clone(&other.factor), other.fixing.clone());
+        match self {
+            Self::Known(known) => {
+                GeneralizedInverse { null_space: known.null_space, fixing, gap: None, factor }
+            }
+            Self::Search(_) => {
+                GeneralizedInverse { null_space: other.null_space.clone(), fixing, gap: other.gap, factor }
+            }
         }
     }
 
     /// Factorises F of (14) and probes; refuses a K that is indefinite, against (4), or more singular than its null
     /// space says.
-    pub fn execute(self) -> Result<GeneralizedInverse> {
+    pub fn execute(mut self) -> Result<Made> {
+        if self.symbolic().is_none() {
+            let symbolic = self.analyse()?;
+            self.set_analysis(symbolic);
+        }
         match self {
             Self::Known(known) => known.execute(),
             Self::Search(search) => search.execute(),
@@ -113,15 +181,39 @@ impl Plan {
 }
 
 impl Known {
-    fn execute(self) -> Result<GeneralizedInverse> {
-        let factor = self.analysis.factorize(&self.k.matrix, self.k.by)?.map_err(|breakdown| {
+    /// Dofs chosen for other values hold this body, too, unless much worse than its own would.
+    fn follow(&mut self, dofs: &[usize]) -> Result<bool> {
+        let sorted = |dofs: &[usize]| {
+            let mut dofs = dofs.to_vec();
+            dofs.sort_unstable();
+            dofs
+        };
+        let same = sorted(dofs) == sorted(&self.fixing);
+        if !same && (self.given || !hold_as_well(&self.null_space, &self.k.roots()?, dofs, &self.fixing)?) {
+            return Ok(false);
+        }
+        self.fixing = dofs.to_vec();
+        Ok(true)
+    }
+
+    /// (14): F is K without the rows and columns of the fixing dofs.
+    fn analyse(&self) -> Result<Arc<Analysis>> {
+        let mut held = vec![false; self.k.order()];
+        self.fixing.iter().for_each(|&dof| held[dof] = true);
+        Ok(Arc::new(Analysis::new(&self.k.matrix, &held)?))
+    }
+
+    fn execute(self) -> Result<Made> {
+        let missing = || Error::new(Kind::Internal, "a body was not analysed");
+        let symbolic = self.symbolic.ok_or_else(missing)?;
+        let factor = symbolic.analysis.factorize(&self.k.matrix, self.k.by)?.map_err(|breakdown| {
             let missing = || missing_mode(breakdown.dof, breakdown.relative_pivot, self.null_space.cols);
             breakdown.refused().unwrap_or_else(missing)
         })?;
         let (null_space, fixing) = (self.null_space, self.fixing);
-        let inverse = GeneralizedInverse { null_space, fixing, gap: None, factor };
+        let inverse = GeneralizedInverse { null_space, fixing, gap: None, factor: Arc::new(factor) };
         inverse.probe(&self.k)?;
-        Ok(inverse)
+        Ok(Made { inverse, symbolic, further_analyses: 0, factorisations: 1 })
     }
 }
 
@@ -228,8 +320,11 @@ mod tests {
     #[test]
     fn k_kplus_k_is_k() {
         let k = grids(6, 1);
-        let kplus =
-            GeneralizedInverse::plan(k.clone().into(), &constants(36), 1e-8).unwrap().execute().unwrap();
+        let kplus = GeneralizedInverse::plan(k.clone().into(), &constants(36), 1e-8)
+            .unwrap()
+            .execute()
+            .unwrap()
+            .inverse;
         let (mut column, mut x, mut image) = (vec![0.0; 36], vec![0.0; 36], vec![0.0; 36]);
         for j in 0..36 {
             let mut unit = vec![0.0; 36];

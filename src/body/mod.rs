@@ -1,6 +1,7 @@
 //! One body: stiffness `K_p`, load `f_p`, null space `R_p`, fixing dofs and the generalised inverse `K_p+`
 //! of (14)-(15).
 
+mod alike;
 mod boundary;
 mod fixing;
 mod generalized_inverse;
@@ -9,12 +10,15 @@ mod null_space;
 mod rigid_modes;
 mod search;
 mod stiffness;
+mod symbolic;
 
+pub use alike::{pattern_key, same_body, same_matrix, same_pattern, same_vectors, value_key};
 pub use boundary::{dirichlet, dirichlet_bytes, lumped};
 pub use generalized_inverse::{GeneralizedInverse, Plan};
 pub use null_space::{Modes, NullSpaceInput};
 pub use rigid_modes::Coordinates;
 pub use stiffness::{from_dense, from_sparse, SparseInput, Storage};
+pub use symbolic::{Layout, Made, Symbolic};
 
 use std::sync::Arc;
 

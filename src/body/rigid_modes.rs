@@ -43,6 +43,14 @@ impl Coordinates {
         self.direction.len()
     }
 
+    /// Equal bit by bit.
+    pub fn same(&self, other: &Self) -> bool {
+        let bits = |places: &[[f64; 3]]| -> bool {
+            places.iter().flatten().zip(other.place.iter().flatten()).all(|(a, b)| a.to_bits() == b.to_bits())
+        };
+        self.direction == other.direction && bits(&self.place)
+    }
+
     /// The six rigid modes of every connected part that is no single spring at a wall, n x (up to 6 parts). Modes that
     /// move nothing are left out.
     pub fn rigid_modes(&self, stiffness: &Symmetric) -> Result<Matrix> {

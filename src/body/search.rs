@@ -10,9 +10,10 @@ use std::sync::Arc;
 use crate::body::fixing::{fixing_dofs, given_dofs};
 use crate::body::generalized_inverse::{GeneralizedInverse, SINGULAR};
 use crate::body::null_space::{largest, verified, Modes, NullSpaceInput};
+use crate::body::symbolic::{Layout, Made, Symbolic};
 use crate::error::{Error, Kind, Result};
 use crate::linalg::graph::components;
-use crate::linalg::memory::{reserved, room, PRODUCTS};
+use crate::linalg::memory::{copied, reserved, room, PRODUCTS};
 use crate::linalg::spd::symmetric_eigen;
 use crate::linalg::trailing::Trailing;
 use crate::linalg::{Analysis, Breakdown, Cholesky, Matrix, Multiple, Symmetric};
@@ -37,10 +38,13 @@ pub struct Search {
     /// The dofs t of every part, and all dofs of it.
     last: Vec<Vec<usize>>,
     members: Vec<Vec<usize>>,
+    /// Entries of K between the parts.
+    between: Vec<usize>,
     /// Dofs wanted in t of each part.
     count: usize,
-    /// Of `K + E D_tt E'`.
-    analysis: Arc<Analysis>,
+    /// What the analysis depends on besides the pattern of K.
+    pub(super) layout: Arc<Layout>,
+    pub(super) symbolic: Option<Arc<Symbolic>>,
 }
 
 /// What one part moves like without stiffness.
@@ -66,7 +70,8 @@ impl Search {
         part_of.iter().enumerate().for_each(|(dof, &part)| members[part].push(dof));
         let mut last = vec![Vec::new(); parts];
         fixing.unwrap_or_default().iter().for_each(|&dof| last[part_of[dof]].push(dof));
-        Self::with(k, tolerance, fixing.map(<[usize]>::to_vec), (members, last), LAST)
+        let between = between_parts(&k.matrix, &part_of)?;
+        Self::with(k, tolerance, fixing.map(<[usize]>::to_vec), (members, last, between), LAST)
     }
 
     /// `last`: the dofs that t has in any case.
@@ -74,7 +79,7 @@ impl Search {
         k: Multiple,
         tolerance: f64,
         fixing: Option<Vec<usize>>,
-        (members, mut last): (Vec<Vec<usize>>, Vec<Vec<usize>>),
+        (members, mut last, between): (Vec<Vec<usize>>, Vec<Vec<usize>>, Vec<usize>),
         count: usize,
     ) -> Result<Self> {
         for (members, last) in members.iter().zip(&mut last) {
@@ -82,21 +87,32 @@ impl Search {
             last.sort_unstable();
             last.dedup();
         }
-        let supported = supported(&k, &last)?;
-        let analysis = Arc::new(Analysis::ending(&k.matrix, &supported, &last.concat())?);
-        Ok(Self { k, tolerance, fixing, last, members, count, analysis })
+        let left_out = copied(&between, "the connected parts of a body")?;
+        let layout = Arc::new(Layout::Last { dofs: last.clone(), between: left_out });
+        Ok(Self { k, tolerance, fixing, last, members, between, count, layout, symbolic: None })
     }
 
-    /// Bytes the factorisation is going to take.
-    pub fn bytes(&self) -> usize {
-        self.analysis.bytes()
+    pub fn analyse(&self) -> Result<Arc<Analysis>> {
+        let supported = supported(&self.k, &self.last, &self.between)?;
+        Ok(Arc::new(Analysis::ending(&self.k.matrix, &supported, &self.last.concat())?))
     }
 
     /// Tries with more dofs t until none is missed.
-    pub fn execute(mut self) -> Result<GeneralizedInverse> {
+    pub fn execute(mut self) -> Result<Made> {
+        let (mut factorisations, mut further_analyses) = (0, 0);
         loop {
-            match self.attempt()? {
-                Attempt::Done(inverse) => return Ok(*inverse),
+            let symbolic = match self.symbolic.take() {
+                Some(symbolic) => symbolic,
+                None => {
+                    further_analyses += 1;
+                    Arc::new(Symbolic { layout: Arc::clone(&self.layout), analysis: self.analyse()? })
+                }
+            };
+            factorisations += 1;
+            match self.attempt(&symbolic.analysis)? {
+                Attempt::Done(inverse) => {
+                    return Ok(Made { inverse: *inverse, symbolic, further_analyses, factorisations })
+                }
                 Attempt::Missed(dof) if 2 * self.count > MOST => {
                     let what = format!(
                         "the null space could not be found with {} dofs of each part: give it, or coordinates",
@@ -108,16 +124,16 @@ impl Search {
                     if let Some(part) = self.members.iter().position(|all| all.binary_search(&dof).is_ok()) {
                         self.last[part].push(dof);
                     }
-                    let parts = (self.members, self.last);
+                    let parts = (self.members, self.last, self.between);
                     self = Self::with(self.k, self.tolerance, self.fixing, parts, 2 * self.count)?;
                 }
             }
         }
     }
 
-    fn attempt(&self) -> Result<Attempt> {
-        let supported = supported(&self.k, &self.last)?;
-        let factor = match self.analysis.factorize(&supported, 1.0)? {
+    fn attempt(&self, analysis: &Arc<Analysis>) -> Result<Attempt> {
+        let supported = supported(&self.k, &self.last, &self.between)?;
+        let factor = match analysis.factorize(&supported, 1.0)? {
             Ok(factor) => factor,
             Err(breakdown) => return missed_or_indefinite(breakdown),
         };
@@ -210,7 +226,8 @@ impl Search {
         let gap = soft.iter().map(|part| part.gap).reduce(f64::min);
         let found = NullSpaceInput { vectors, modes: Modes::Exact };
         let null_space = verified(&self.k, &root, &found, self.tolerance)?;
-        let inverse = GeneralizedInverse { null_space, fixing: fixing.concat(), gap, factor };
+        let inverse =
+            GeneralizedInverse { null_space, fixing: fixing.concat(), gap, factor: Arc::new(factor) };
         inverse.probe(&self.k)?;
         Ok(inverse)
     }
@@ -270,8 +287,17 @@ fn spread(dofs: &[usize], count: usize) -> Vec<usize> {
         .collect()
 }
 
-/// `K + E D_tt E'` without the zeros of K, all dofs t of one part coupled.
-fn supported(k: &Multiple, last: &[Vec<usize>]) -> Result<Symmetric> {
+/// Positions of the entries of K between different parts: all of them are 0.
+fn between_parts(k: &Symmetric, part_of: &[usize]) -> Result<Vec<usize>> {
+    let row =
+        |i: usize| (k.ptr[i]..k.ptr[i + 1]).filter(move |&at| part_of[k.col[at] as usize] != part_of[i]);
+    let mut found = reserved((0..k.order()).flat_map(row).count(), "the connected parts of a body")?;
+    found.extend((0..k.order()).flat_map(row));
+    Ok(found)
+}
+
+/// `K + E D_tt E'` without the entries between parts, all dofs t of one part coupled.
+fn supported(k: &Multiple, last: &[Vec<usize>], between: &[usize]) -> Result<Symmetric> {
     const WHAT: &str = "a supported stiffness matrix";
     let mut mates: Vec<&[usize]> = reserved(k.order(), WHAT)?;
     mates.resize(k.order(), &[]);
@@ -281,10 +307,12 @@ fn supported(k: &Multiple, last: &[Vec<usize>]) -> Result<Symmetric> {
     let mut col = reserved(k.matrix.col.len() + coupled, WHAT)?;
     let mut val = reserved(k.matrix.col.len() + coupled, WHAT)?;
     ptr.push(0);
-    let mut row = Vec::new();
+    let (mut row, mut left_out) = (Vec::new(), between.iter().copied().peekable());
     for i in 0..k.order() {
         row.clear();
-        row.extend(k.lower_row(i).filter(|&(j, v)| v != 0.0 || i == j));
+        let kept = k.matrix.ptr[i]..k.matrix.ptr[i + 1];
+        let kept = kept.filter(|at| left_out.next_if_eq(at).is_none());
+        row.extend(kept.map(|at| (k.matrix.col[at] as usize, k.by * k.matrix.val[at])));
         let earlier = mates[i].iter().copied().take_while(|&j| j < i);
         if !mates[i].is_empty() {
             let found = row.len();

@@ -12,15 +12,18 @@ mod coupling;
 mod entries;
 mod multiples;
 mod preconditioner;
+mod reuse;
 
 pub use coupling::dependent_rows;
 pub use preconditioner::{constrained, Boundary, Preconditioner};
+pub use reuse::{Columns, Kept};
 
 use std::ops::Range;
 use std::sync::Arc;
 
 use crate::body::GeneralizedInverse;
 use crate::dual::multiples::Multiples;
+use crate::dual::reuse::Reuse;
 use crate::error::Result;
 use crate::linalg::memory::zeros;
 use crate::linalg::vector::{dot, norm_max};
@@ -58,19 +61,23 @@ pub struct Dual {
     compliance: Vec<f64>,
     /// `G'` = B R, m x r.
     pub coarse: Csr,
+    /// What became of the columns of all `F_p`.
+    pub columns: Columns,
 }
 
 /// A body and its place among all unknowns.
 pub struct Part {
     pub range: Range<usize>,
     pub kplus: Arc<GeneralizedInverse>,
+    /// `F_p` of other rows.
+    pub kept: Option<Kept>,
 }
 
 impl Dual {
     /// `matrix` is B, m x n, `compliance` the diagonal of C; `in_parallel` runs independent tasks, each with its
     /// number, in any order.
     pub fn new(
-        parts: Vec<Part>,
+        mut parts: Vec<Part>,
         matrix: &Csr,
         compliance: Vec<f64>,
         in_parallel: &InParallel,
@@ -78,7 +85,10 @@ impl Dual {
         let local: Vec<_> = parts.iter().map(|part| cut(&part.range, matrix)).collect();
         let (multiples, distinct): (Vec<_>, Vec<_>) =
             local.iter().map(|(_, matrix)| Multiples::of(matrix)).unzip();
-        let assemble = |p: usize| parts[p].kplus.inverse_form(&distinct[p]);
+        let kept = parts.iter_mut().zip(&distinct).map(|(part, rows)| Reuse::of(part.kept.take(), rows));
+        let kept: Vec<Reuse> = kept.collect();
+        let columns = kept.iter().map(Reuse::columns).sum();
+        let assemble = |p: usize| kept[p].operator(&parts[p].kplus, &distinct[p]);
         let operators = in_parallel(parts.len(), &assemble)?.into_iter().zip(multiples);
         let mut first = 0;
         let mut subdomains = Vec::with_capacity(parts.len());
@@ -96,7 +106,12 @@ impl Dual {
             });
         }
         let coarse = coarse(&subdomains, matrix.rows(), first);
-        Ok(Self { subdomains, compliance, coarse })
+        Ok(Self { subdomains, compliance, coarse, columns })
+    }
+
+    /// The operators of the bodies with their rows, for a dual problem of other rows.
+    pub fn into_operators(self) -> Vec<Kept> {
+        self.subdomains.into_iter().map(|s| Kept::new(Multiples::of(&s.matrix).1, s.operator)).collect()
     }
 
     /// Bytes that explicit operators take for these bodies and rows.

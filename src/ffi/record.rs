@@ -17,7 +17,7 @@ pub(super) unsafe trait Sized64: Copy {}
 
 // SAFETY: 8 + 2 * 4 + 5 * 8 + 2 * 8 + 40 bytes, without padding.
 unsafe impl Sized64 for feti_error_detail {}
-// SAFETY: 8 + 2 * 4 + 17 * 8 + 11 * 8 bytes, without padding.
+// SAFETY: 8 + 2 * 4 + 19 * 8 + 11 * 8 bytes, without padding.
 unsafe impl Sized64 for feti_info {}
 // SAFETY: 8 + 2 * 4 + 9 * 8 + 6 * 8 bytes, without padding.
 unsafe impl Sized64 for feti_certificate {}
@@ -103,7 +103,7 @@ mod tests {
     fn structs_have_no_padding() {
         let pointers = 3 * size_of::<usize>();
         assert_eq!(size_of::<feti_error_detail>(), 8 + 2 * 4 + 5 * 8 + 2 * 8 + 40);
-        assert_eq!(size_of::<feti_info>(), 8 + 2 * 4 + 17 * 8 + 11 * 8);
+        assert_eq!(size_of::<feti_info>(), 8 + 2 * 4 + 19 * 8 + 11 * 8);
         assert_eq!(size_of::<feti_certificate>(), 8 + 2 * 4 + 9 * 8 + 6 * 8);
         assert_eq!(size_of::<feti_findings>(), 8 + 2 * 4 + 9 * 8 + 7 * 8);
         assert_eq!(size_of::<feti_option>(), 8 + 2 * 4 + 3 * 8 + 8 + pointers);

@@ -138,6 +138,8 @@ fn without_answer() -> feti_info {
         seconds_solve: f64::NAN,
         direct_solves: 0,
         finished: 0,
+        columns_computed: 0,
+        columns_kept: 0,
     }
 }
 
@@ -174,6 +176,8 @@ fn report_in(info: &mut feti_info, report: &Report) {
     info.seconds_solve = report.seconds_solve;
     info.direct_solves = report.direct_solves as i64;
     info.finished = i64::from(report.finished);
+    info.columns_computed = report.columns_computed as i64;
+    info.columns_kept = report.columns_kept as i64;
 }
 
 fn certificate(from: &Certificate) -> feti_certificate {

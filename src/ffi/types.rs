@@ -145,9 +145,9 @@ pub struct feti_info {
     pub dual_applications: i64,
     /// Solutions of the coarse problem.
     pub coarse_solves: i64,
-    /// Numeric factorisations since the problem was created.
+    /// Numeric factorisations for K+ since the problem was created; equal bodies share one.
     pub factorisations: i64,
-    /// Symbolic analyses since the problem was created.
+    /// Symbolic analyses since the problem was created; bodies with one pattern share one.
     pub analyses: i64,
     /// Largest entry of the certificate over what it is allowed: <= 1 passes.
     pub worst: f64,
@@ -176,6 +176,11 @@ pub struct feti_info {
     pub direct_solves: i64,
     /// 1: the answer is that of option finish = direct; 0: it was not asked for, or brought nothing.
     pub finished: i64,
+    /// Columns of the dual operators of the bodies, one for each body that a row touches, computed since the problem was
+    /// created.
+    pub columns_computed: i64,
+    /// Columns kept through a change of rows or bodies since the problem was created.
+    pub columns_kept: i64,
 }
 
 /// Verdict on an answer, by relative figures: each passes when it is at most `limit` plus the noise of rounding.

@@ -1,6 +1,7 @@
 //! Vectors, matrices, ordering and factorisation. The only layer that knows faer.
 
 pub mod cholesky;
+pub mod columns;
 pub mod csr;
 pub mod dense;
 pub mod elimination;

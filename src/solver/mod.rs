@@ -2,6 +2,7 @@
 
 mod certificate;
 mod diagnosis;
+mod factors;
 mod fallback;
 mod findings;
 mod finish;

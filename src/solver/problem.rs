@@ -3,16 +3,17 @@
 use std::sync::Arc;
 
 use crate::body::{
-    from_dense, from_sparse, Body, Coordinates, GeneralizedInverse, Modes, NullSpaceInput, SparseInput,
-    Storage,
+    from_dense, from_sparse, same_matrix, same_pattern, same_vectors, Body, Coordinates, GeneralizedInverse,
+    Modes, NullSpaceInput, SparseInput, Storage, Symbolic,
 };
 use crate::constraints::{RowKind, RowSet, RowsInput};
+use crate::dual::Kept;
 use crate::error::{Error, Result};
 use crate::linalg::memory::{copied, zeros};
 use crate::linalg::vector::first_non_finite;
 use crate::linalg::{Matrix, Symmetric};
 use crate::solver::findings::Findings;
-use crate::solver::report::{Counts, Report};
+use crate::solver::report::{Counts, Report, Work};
 use crate::solver::results::Answer;
 use crate::solver::setup::Ready;
 use crate::solver::state::History;
@@ -33,7 +34,7 @@ pub struct Problem {
     pub(super) open_motions: Option<Matrix>,
     pub(super) history: History,
     pub(super) host: Host,
-    pub(super) factorisations: usize,
+    pub(super) work: Work,
     pub(super) seconds_setup: f64,
 }
 
@@ -42,13 +43,19 @@ pub struct Problem {
 pub(super) struct BodySlot {
     pub body: Body,
     pub inverse: Option<Inverse>,
+    /// The last analysis of a matrix with the pattern of this one.
+    pub symbolic: Option<Arc<Symbolic>>,
+    /// Keys of pattern and values, once they have been asked for.
+    pub keys: Option<[u64; 2]>,
 }
 
-/// `K_p+` of the matrix divided by `unit`, and the bytes it takes.
+/// `K_p+` of the matrix divided by `unit`, and the bytes it takes; equal bodies have one.
 pub(super) struct Inverse {
     pub unit: f64,
     pub kplus: Arc<GeneralizedInverse>,
     pub bytes: usize,
+    /// `F_p` of the rows before the present ones, while there is no dual problem.
+    pub operator: Option<Kept>,
 }
 
 impl Problem {
@@ -90,7 +97,7 @@ impl Problem {
             return Err(Error::argument("n", "a body has at least one unknown").value(0.0).limit(1.0));
         }
         self.rows_changed();
-        self.bodies.push(BodySlot { body: Body { order: n, ..Body::default() }, inverse: None });
+        self.bodies.push(BodySlot { body: Body { order: n, ..Body::default() }, ..BodySlot::default() });
         Ok(self.bodies.len() - 1)
     }
 
@@ -123,7 +130,17 @@ impl Problem {
     }
 
     fn keep_stiffness(&mut self, body: usize, stiffness: Symmetric) -> Result<()> {
-        self.changed(body)?.stiffness = Some(Arc::new(stiffness));
+        let old = self.slot(body)?.body.stiffness.as_ref();
+        let unchanged = old.is_some_and(|old| same_matrix(old, &stiffness));
+        let analysed = old.is_some_and(|old| same_pattern(old, &stiffness));
+        let slot = self.changed(body, unchanged)?;
+        slot.body.stiffness = Some(Arc::new(stiffness));
+        if !unchanged {
+            slot.keys = None;
+        }
+        if !analysed {
+            slot.symbolic = None;
+        }
         Ok(())
     }
 
@@ -156,7 +173,10 @@ impl Problem {
             }
             vectors.col_mut(j).copy_from_slice(column);
         }
-        self.changed(body)?.null_space = Some(NullSpaceInput { vectors, modes });
+        let given = NullSpaceInput { vectors, modes };
+        let old = self.slot(body)?.body.null_space.as_ref();
+        let unchanged = old.is_some_and(|old| same_vectors(old, &given));
+        self.changed(body, unchanged)?.body.null_space = Some(given);
         Ok(())
     }
 
@@ -168,7 +188,10 @@ impl Problem {
             let what = format!("the dof is outside the {order} unknowns");
             return Err(Error::argument("dof", what).body(body).entry(entry).limit(order as f64));
         }
-        self.changed(body)?.fixing = dofs.map(<[usize]>::to_vec);
+        let unchanged = self.slot(body)?.body.fixing.as_deref() == dofs;
+        let slot = self.changed(body, unchanged)?;
+        slot.body.fixing = dofs.map(<[usize]>::to_vec);
+        slot.symbolic.take_if(|_| !unchanged);
         Ok(())
     }
 
@@ -190,7 +213,9 @@ impl Problem {
         }
         check_ld("ld", ld, dim).map_err(|e| e.body(body))?;
         let coordinates = Coordinates::new(dim, dir, xyz, ld).map_err(|e| e.body(body))?;
-        self.changed(body)?.coordinates = Some(coordinates);
+        let old = self.slot(body)?.body.coordinates.as_ref();
+        let unchanged = old.is_some_and(|old| old.same(&coordinates));
+        self.changed(body, unchanged)?.body.coordinates = Some(coordinates);
         Ok(())
     }
 
@@ -263,17 +288,28 @@ impl Problem {
         self.bodies.get(body).ok_or_else(|| no_body(body, self.bodies.len()))
     }
 
-    /// The body, about to change: its factors, the dual and the answer no longer hold.
-    fn changed(&mut self, body: usize) -> Result<&mut Body> {
+    /// The body, about to get new data: dual and answer no longer hold, nor do its factors, unless the data are those
+    /// it has.
+    fn changed(&mut self, body: usize, unchanged: bool) -> Result<&mut BodySlot> {
         self.forget_dual();
+        if !unchanged {
+            let inverses = self.bodies.iter_mut().filter_map(|slot| slot.inverse.as_mut());
+            inverses.filter_map(|inverse| inverse.operator.as_mut()).for_each(Kept::only_whole);
+        }
         let bodies = self.bodies.len();
         let slot = self.bodies.get_mut(body).ok_or_else(|| no_body(body, bodies))?;
-        slot.inverse = None;
-        Ok(&mut slot.body)
+        slot.inverse.take_if(|_| !unchanged);
+        Ok(slot)
     }
 
+    /// What was computed for the rows is kept for those to come.
     pub(super) fn forget_dual(&mut self) {
-        self.ready = None;
+        let operators = self.ready.take().map_or(Vec::new(), |ready| ready.dual.into_operators());
+        for (slot, operator) in self.bodies.iter_mut().zip(operators) {
+            if let Some(inverse) = &mut slot.inverse {
+                inverse.operator = Some(operator);
+            }
+        }
         self.answer = None;
         self.open_motions = None;
         self.history.data_changed();

@@ -40,6 +40,19 @@ pub struct Counts {
     pub equalities: usize,
 }
 
+/// Work of all setups since the problem was created: what a change of the data costs shows in the difference.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Work {
+    /// Symbolic analyses: ordering and pattern of a factor.
+    pub analyses: usize,
+    /// Numeric factorisations for K+.
+    pub factorisations: usize,
+    /// Columns of the dual operators F_p, one for each body that a row of the dual touches: computed, and kept from the
+    /// rows before.
+    pub columns_computed: usize,
+    pub columns_kept: usize,
+}
+
 #[derive(Debug, Clone, PartialEq)]
 pub struct Report {
     pub outcome: Outcome,
@@ -70,9 +83,11 @@ pub struct Report {
     /// `|S|B||u|| + |S c|` at the first feasible forces: what the tolerance of the dual is relative to,
     /// `(force x length)^1/2`.
     pub gap_scale: f64,
-    /// Factorisations and symbolic analyses since the problem was created.
+    /// As in `Work`.
     pub factorisations: usize,
     pub analyses: usize,
+    pub columns_computed: usize,
+    pub columns_kept: usize,
     /// `1/2 u'K u - f'u + 1/2 lambda'C lambda + 1/2 mu'C mu`, force x length.
     pub energy: f64,
     pub seconds_setup: f64,

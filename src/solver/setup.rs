@@ -14,7 +14,7 @@ use crate::linalg::vector::power_of_two_below;
 use crate::linalg::{Multiple, Operator, Symmetric};
 use crate::solver::diagnosis::empty_row_contradicts;
 use crate::solver::paper;
-use crate::solver::problem::{Inverse, Problem};
+use crate::solver::problem::Problem;
 use crate::solver::rows::DualRows;
 use crate::solver::threads;
 use crate::solver::watch::{Stops, Watch};
@@ -98,38 +98,10 @@ impl Problem {
         power_of_two_below(stiffness.map(|k| k.largest_diagonal()).fold(0.0, f64::max))
     }
 
-    /// K+ of the bodies that have none for this unit.
-    fn factorize(&mut self, unit: f64, rows: &DualRows, stops: &Stops) -> Result<()> {
-        for slot in &mut self.bodies {
-            slot.inverse.take_if(|inverse| inverse.unit != unit);
-        }
-        let threads = self.threads();
-        let pending: Vec<usize> =
-            (0..self.bodies.len()).filter(|&p| self.bodies[p].inverse.is_none()).collect();
-        let tolerance = self.settings.null_space_tolerance;
-        let plans = threads::run(threads, pending.len(), |k| {
-            plan(&self.bodies[pending[k]].body, unit, tolerance).map_err(|e| e.body(pending[k]))
-        })?;
-        let bytes: Vec<usize> = plans.iter().map(|plan| plan.bytes()).collect();
-        self.check_memory(rows, bytes.iter().sum())?;
-        let plans: Vec<_> = plans.into_iter().map(|plan| std::sync::Mutex::new(Some(plan))).collect();
-        let inverses = threads::run(threads, pending.len(), |k| {
-            stops.check_cancelled()?;
-            let plan = plans[k].lock().ok().and_then(|mut plan| plan.take());
-            let plan = plan.ok_or_else(|| Error::new(Kind::Internal, "a body was factorised twice"))?;
-            plan.execute().map_err(|e| e.body(pending[k]))
-        })?;
-        for ((&p, kplus), bytes) in pending.iter().zip(inverses).zip(bytes) {
-            self.bodies[p].inverse = Some(Inverse { unit, kplus: Arc::new(kplus), bytes });
-            self.factorisations += 1;
-        }
-        Ok(())
-    }
-
     /// Factors, dual operators and so many bytes more against the limit of the host, and against what the
     /// system would give.
     pub(super) fn check_memory(&self, rows: &DualRows, more: usize) -> Result<()> {
-        let kept: usize = self.bodies.iter().filter_map(|slot| slot.inverse.as_ref()).map(|i| i.bytes).sum();
+        let kept = self.bytes_of_factors();
         let operators = Dual::bytes(self.ranges().into_iter(), &rows.matrix);
         let needed = kept.saturating_add(more).saturating_add(operators);
         let limit = usize::try_from(self.settings.memory_limit).unwrap_or(0);
@@ -156,12 +128,12 @@ impl Problem {
     }
 
     /// Forms F and G.
-    fn dualize(&self, unit: f64, rows: DualRows, stops: &Stops) -> Result<Ready> {
-        let parts = self.ranges().into_iter().zip(&self.bodies).filter_map(|(range, slot)| {
-            let inverse = slot.inverse.as_ref()?;
-            Some(Part { range, kplus: Arc::clone(&inverse.kplus) })
+    fn dualize(&mut self, unit: f64, rows: DualRows, stops: &Stops) -> Result<Ready> {
+        let (ranges, threads) = (self.ranges(), self.threads());
+        let parts = ranges.into_iter().zip(&mut self.bodies).filter_map(|(range, slot)| {
+            let inverse = slot.inverse.as_mut()?;
+            Some(Part { range, kplus: Arc::clone(&inverse.kplus), kept: inverse.operator.take() })
         });
-        let threads = self.threads();
         let unless_cancelled = |task: &(dyn Fn(usize) -> Result<_> + Sync), p| {
             stops.check_cancelled()?;
             task(p)
@@ -169,6 +141,8 @@ impl Problem {
         let dual = Dual::new(parts.collect(), &rows.matrix, rows.compliance.clone(), &|count, task| {
             threads::run(threads, count, |p| unless_cancelled(task, p))
         })?;
+        self.work.columns_computed += dual.columns.computed;
+        self.work.columns_kept += dual.columns.kept;
         Ok(Ready { unit, dual, rows, preconditioner: None })
     }
 
@@ -227,8 +201,8 @@ impl Ready {
     }
 }
 
-/// What K+ of a body takes, found before it is computed.
-fn plan(body: &Body, unit: f64, tolerance: f64) -> Result<crate::body::Plan> {
+/// Null space and fixing dofs of a body, found before anything is factorised.
+pub(super) fn plan(body: &Body, unit: f64, tolerance: f64) -> Result<crate::body::Plan> {
     let missing = || Error::new(Kind::Internal, "a body without stiffness was set up");
     let matrix = Arc::clone(body.stiffness.as_ref().ok_or_else(missing)?);
     let k = Multiple { matrix, by: 1.0 / unit };

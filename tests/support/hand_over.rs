@@ -34,7 +34,7 @@ pub fn set_body(problem: &mut Problem, p: usize, body: &Body) -> Result<()> {
     problem.set_load(p, &body.load)
 }
 
-fn add_rows(problem: &mut Problem, kind: RowKind, rows: &Rows) -> Result<()> {
+pub fn add_rows(problem: &mut Problem, kind: RowKind, rows: &Rows) -> Result<()> {
     let (matrix, dof) = (&rows.matrix, columns(&rows.matrix));
     let input = RowsInput { ptr: &matrix.ptr, body: None, dof: &dof, val: &matrix.val, rhs: Some(&rows.rhs) };
     let first = problem.add_rows(kind, input)?;

@@ -29,7 +29,7 @@ OFFSET(feti_option, name, 48);
 OFFSET(feti_option, doc, 56);
 OFFSET(feti_option, default_str, 64);
 
-SIZE(feti_info, 240);
+SIZE(feti_info, 256);
 OFFSET(feti_info, struct_size, 0);
 OFFSET(feti_info, status, 8);
 OFFSET(feti_info, bodies, 16);
@@ -46,6 +46,8 @@ OFFSET(feti_info, seconds_setup, 208);
 OFFSET(feti_info, seconds_solve, 216);
 OFFSET(feti_info, direct_solves, 224);
 OFFSET(feti_info, finished, 232);
+OFFSET(feti_info, columns_computed, 240);
+OFFSET(feti_info, columns_kept, 248);
 
 SIZE(feti_certificate, 136);
 OFFSET(feti_certificate, struct_size, 0);

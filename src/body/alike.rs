@@ -1,0 +1,84 @@
+//! Bodies that are the same, and matrices with the same pattern: found by keys, proved entry by entry.
+
+use crate::body::null_space::NullSpaceInput;
+use crate::body::Body;
+use crate::linalg::Symmetric;
+
+/// Equal bit by bit: also the sign of zero counts.
+fn same_bits(a: &[f64], b: &[f64]) -> bool {
+    a.len() == b.len() && a.iter().zip(b).all(|(a, b)| a.to_bits() == b.to_bits())
+}
+
+pub fn same_pattern(a: &Symmetric, b: &Symmetric) -> bool {
+    a.ptr == b.ptr && a.col == b.col
+}
+
+/// Whether both bodies have the same K+ and the same null space.
+pub fn same_body(a: &Body, b: &Body) -> bool {
+    same_input(a, b) && a.stiffness.as_ref().zip(b.stiffness.as_ref()).is_some_and(|(a, b)| same_matrix(a, b))
+}
+
+pub fn same_matrix(a: &Symmetric, b: &Symmetric) -> bool {
+    same_pattern(a, b) && same_bits(&a.val, &b.val)
+}
+
+/// Whether the host has said the same about both besides the matrix and the load.
+fn same_input(a: &Body, b: &Body) -> bool {
+    let null_space = match (&a.null_space, &b.null_space) {
+        (Some(a), Some(b)) => same_vectors(a, b),
+        (None, None) => true,
+        _ => false,
+    };
+    let coordinates = match (&a.coordinates, &b.coordinates) {
+        (Some(a), Some(b)) => a.same(b),
+        (None, None) => true,
+        _ => false,
+    };
+    a.fixing == b.fixing && null_space && coordinates
+}
+
+pub fn same_vectors(a: &NullSpaceInput, b: &NullSpaceInput) -> bool {
+    a.modes == b.modes && a.vectors.rows == b.vectors.rows && same_bits(&a.vectors.data, &b.vectors.data)
+}
+
+/// Equal for equal patterns; seldom equal for others.
+pub fn pattern_key(k: &Symmetric) -> u64 {
+    let words = k.ptr.iter().map(|&at| at as u64).chain(k.col.iter().map(|&col| u64::from(col)));
+    words.fold(START, fold)
+}
+
+/// The same for the values; the pattern has its own.
+pub fn value_key(k: &Symmetric) -> u64 {
+    k.val.iter().map(|v| v.to_bits()).fold(START, fold)
+}
+
+/// FNV-1a, word by word; the shift brings the high bits of numbers with few digits down.
+fn fold(key: u64, word: u64) -> u64 {
+    (key ^ word ^ (word >> 32)).wrapping_mul(0x0100_0000_01b3)
+}
+
+const START: u64 = 0xcbf2_9ce4_8422_2325;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn chain(last: f64) -> Symmetric {
+        Symmetric { ptr: vec![0, 1, 3], col: vec![0, 0, 1], val: vec![1.0, -1.0, last] }
+    }
+
+    #[test]
+    fn keys_tell_values_and_patterns_apart_and_powers_of_two_among_them() {
+        let (one, two) = (chain(1.0), chain(2.0));
+        assert_eq!((pattern_key(&one), value_key(&one)), (pattern_key(&chain(1.0)), value_key(&chain(1.0))));
+        assert_eq!(pattern_key(&one), pattern_key(&two));
+        assert_ne!(value_key(&one), value_key(&two));
+        let diagonal = Symmetric { ptr: vec![0, 1, 2], col: vec![0, 1], val: vec![1.0, 1.0] };
+        assert_ne!(pattern_key(&one), pattern_key(&diagonal));
+    }
+
+    #[test]
+    fn the_sign_of_a_zero_makes_a_difference() {
+        assert!(same_matrix(&chain(1.0), &chain(1.0)) && !same_matrix(&chain(0.0), &chain(-0.0)));
+    }
+}

@@ -1,0 +1,165 @@
+//! Dual operators for new rows from those of the rows before: entries F_p(i, j) of two rows that body p has known stay.
+
+use std::iter::Sum;
+use std::sync::Mutex;
+
+use crate::body::GeneralizedInverse;
+use crate::error::{Error, Kind, Result};
+use crate::linalg::{Csr, Operator, Packed};
+
+/// New columns are computed by themselves where they are less than one in so many of all. Each takes solutions with L
+/// and with L' on the elimination paths of all rows, 2 (w^2 + 2 w h) operations for a supernode of w columns and h rows
+/// below. A column of the assembly takes half of that, only where its own path goes, and w operations for every other
+/// column there. On faces of cubes of 6k to 20k unknowns both take the same time where one column in six is new.
+const ONE_IN: usize = 6;
+
+/// `F_p` and the rows of B over body p it was made of.
+pub struct Kept {
+    rows: Csr,
+    operator: Packed,
+    /// Of use for exactly these rows only.
+    whole: bool,
+}
+
+/// What became of the columns of dual operators, one for each row and body it touches.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Columns {
+    pub computed: usize,
+    pub kept: usize,
+}
+
+/// What the new rows of a body have in common with the old ones.
+pub(super) enum Reuse {
+    /// All of it, in the same order.
+    All(Mutex<Option<Packed>>, usize),
+    /// Some rows: for every new row its number among the old ones.
+    Some { operator: Packed, old: Vec<Option<usize>> },
+    /// So little that the whole operator is assembled, of so many rows.
+    Nothing(usize),
+}
+
+impl Kept {
+    pub(super) fn new(rows: Csr, operator: Packed) -> Self {
+        Self { rows, operator, whole: false }
+    }
+
+    /// From now on of use for exactly the same rows only: columns that are computed one by one differ by rounding from
+    /// those of a whole assembly, and a matrix that comes back must give the bits it gave before.
+    pub fn only_whole(&mut self) {
+        self.whole = true;
+    }
+
+    pub fn bytes(&self) -> usize {
+        Packed::bytes(self.operator.order())
+    }
+}
+
+impl Sum for Columns {
+    fn sum<I: Iterator<Item = Self>>(all: I) -> Self {
+        all.fold(Self::default(), |a, b| Self { computed: a.computed + b.computed, kept: a.kept + b.kept })
+    }
+}
+
+impl Reuse {
+    pub fn of(kept: Option<Kept>, rows: &Csr) -> Self {
+        let m = rows.rows();
+        let Some(kept) = kept else { return Self::Nothing(m) };
+        let old = matched(&kept.rows, rows);
+        if m == kept.rows.rows() && old.iter().enumerate().all(|(i, old)| *old == Some(i)) {
+            return Self::All(Mutex::new(Some(kept.operator)), m);
+        }
+        let new = old.iter().filter(|old| old.is_none()).count();
+        if !kept.whole && new * ONE_IN < m {
+            return Self::Some { operator: kept.operator, old };
+        }
+        Self::Nothing(m)
+    }
+
+    pub fn columns(&self) -> Columns {
+        match self {
+            Self::All(_, kept) => Columns { computed: 0, kept: *kept },
+            Self::Some { old, .. } => {
+                let kept = old.iter().flatten().count();
+                Columns { computed: old.len() - kept, kept }
+            }
+            Self::Nothing(computed) => Columns { computed: *computed, kept: 0 },
+        }
+    }
+
+    /// `F_p = B_p K_p+ B_p'` of the new rows; asked for once.
+    pub fn operator(&self, kplus: &GeneralizedInverse, rows: &Csr) -> Result<Packed> {
+        match self {
+            Self::All(operator, _) => operator
+                .lock()
+                .ok()
+                .and_then(|mut operator| operator.take())
+                .ok_or_else(|| Error::new(Kind::Internal, "a dual operator was asked for twice")),
+            Self::Some { operator, old } => extended(operator, old, kplus, rows),
+            Self::Nothing(_) => kplus.inverse_form(rows),
+        }
+    }
+}
+
+/// The entries of two old rows, and `F_p(i, j) = b_i K+ b_j'` of all others.
+fn extended(from: &Packed, old: &[Option<usize>], kplus: &GeneralizedInverse, rows: &Csr) -> Result<Packed> {
+    let m = old.len();
+    let mut operator = Packed::zeros(m)?;
+    for (i, of_i) in old.iter().enumerate().filter_map(|(i, old)| Some((i, (*old)?))) {
+        for (j, of_j) in old[..=i].iter().enumerate().filter_map(|(j, old)| Some((j, (*old)?))) {
+            operator.add(i, j, from.get(of_i, of_j));
+        }
+    }
+    let new: Vec<usize> = (0..m).filter(|&j| old[j].is_none()).collect();
+    let columns = kplus.inverse_columns(rows, &new)?;
+    for (k, &j) in new.iter().enumerate() {
+        let others = (0..m).filter(|&i| i <= j || old[i].is_some());
+        others.for_each(|i| operator.add(i, j, columns.get(i, k)));
+    }
+    Ok(operator)
+}
+
+/// For every row of `new` its number in `old`, where it is there bit by bit; of several equal rows each finds another.
+fn matched(old: &Csr, new: &Csr) -> Vec<Option<usize>> {
+    let mut known: Vec<(u64, usize)> = (0..old.rows()).map(|i| (key(old, i), i)).collect();
+    known.sort_unstable();
+    let mut taken = vec![false; known.len()];
+    let mut find = |i: usize| {
+        let key = key(new, i);
+        let first = known.partition_point(|entry| entry.0 < key);
+        let mut alike = (first..known.len()).take_while(|&at| known[at].0 == key);
+        let at = alike.find(|&at| !taken[at] && same_row((old, known[at].1), (new, i)))?;
+        taken[at] = true;
+        Some(known[at].1)
+    };
+    (0..new.rows()).map(&mut find).collect()
+}
+
+fn same_row((a, i): (&Csr, usize), (b, j): (&Csr, usize)) -> bool {
+    let bits = |(dof, value): (usize, f64)| (dof, value.to_bits());
+    a.row(i).map(bits).eq(b.row(j).map(bits))
+}
+
+/// Equal for equal rows (FNV-1a over dofs and values).
+fn key(rows: &Csr, i: usize) -> u64 {
+    let words = rows.row(i).flat_map(|(dof, value)| [dof as u64, value.to_bits()]);
+    words.fold(0xcbf2_9ce4_8422_2325, |key, word| (key ^ word ^ (word >> 32)).wrapping_mul(0x0100_0000_01b3))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn rows(all: &[&[(usize, f64)]]) -> Csr {
+        let mut rows = Csr::empty(9);
+        all.iter().for_each(|row| rows.push_row(row.iter().copied()));
+        rows
+    }
+
+    #[test]
+    fn rows_are_known_again_bit_by_bit_in_any_order_and_each_only_once() {
+        let old = rows(&[&[(0, 1.0)], &[(0, 1.0), (2, -3.0)], &[(0, 1.0)], &[(5, 0.1)]]);
+        let new =
+            rows(&[&[(5, 0.1)], &[(0, 1.0)], &[(5, 0.1 + 1e-17)], &[(0, 1.0)], &[(0, 1.0)], &[(0, -1.0)]]);
+        assert_eq!(matched(&old, &new), [Some(3), Some(0), None, Some(2), None, None]);
+    }
+}

@@ -1,0 +1,305 @@
+//! K+ of the bodies. Nothing is computed twice: equal bodies share one K+, bodies with one matrix whose null spaces are
+//! given in other words one factor, bodies of one pattern one symbolic analysis; a body with new values on its old pattern
+//! takes the analysis it has.
+
+use std::collections::{HashMap, HashSet};
+use std::hash::Hash;
+use std::sync::{Arc, Mutex};
+
+use crate::body::{pattern_key, same_body, same_matrix, same_pattern, value_key, Layout, Plan, Symbolic};
+use crate::dual::Kept;
+use crate::error::{Error, Kind, Result};
+use crate::solver::problem::{Inverse, Problem};
+use crate::solver::rows::DualRows;
+use crate::solver::setup::plan;
+use crate::solver::threads;
+use crate::solver::watch::Stops;
+
+/// Analyses of one pattern that a body looks at before it makes one of its own.
+const TRIED: usize = 8;
+
+impl Problem {
+    /// K+ of the bodies that have none for this unit.
+    pub(super) fn factorize(&mut self, unit: f64, rows: &DualRows, stops: &Stops) -> Result<()> {
+        for slot in &mut self.bodies {
+            slot.inverse.take_if(|inverse| inverse.unit != unit);
+        }
+        if self.bodies.iter().all(|slot| slot.inverse.is_some()) {
+            return self.room_for_factors(rows, 0);
+        }
+        let twins = self.twins()?;
+        let pending: Vec<usize> =
+            (0..twins.len()).filter(|&p| twins[p] == p && self.bodies[p].inverse.is_none()).collect();
+        let (threads, tolerance) = (self.threads(), self.settings.null_space_tolerance);
+        let mut plans = threads::run(threads, pending.len(), |k| {
+            plan(&self.bodies[pending[k]].body, unit, tolerance).map_err(|e| e.body(pending[k]))
+        })?;
+        self.analyse(&pending, &mut plans)?;
+        let factors = self.factors_for(&pending, &plans);
+        let own = plans.iter().zip(&factors).filter(|(_, factor)| factor.is_none());
+        let bytes = own.map(|(plan, _)| plan.bytes()).sum();
+        self.room_for_factors(rows, bytes)?;
+        self.execute(unit, (&pending, plans, factors), stops)?;
+        self.share(&twins);
+        Ok(())
+    }
+
+    /// Factorises the bodies for which no factor is known, then gives theirs to those like them.
+    fn execute(&mut self, unit: f64, (pending, plans, factors): Planned, stops: &Stops) -> Result<()> {
+        let (mut own, mut others) = (Vec::new(), Vec::new());
+        for ((&p, plan), factor) in pending.iter().zip(plans).zip(factors) {
+            match factor {
+                None => own.push((p, plan.bytes(), Mutex::new(Some(plan)))),
+                Some(q) => others.push((p, plan, q)),
+            }
+        }
+        let made = threads::run(self.threads(), own.len(), |k| {
+            stops.check_cancelled()?;
+            let plan = own[k].2.lock().ok().and_then(|mut plan| plan.take());
+            let plan = plan.ok_or_else(|| Error::new(Kind::Internal, "a body was factorised twice"))?;
+            plan.execute().map_err(|e| e.body(own[k].0))
+        })?;
+        for ((p, bytes, _), made) in own.into_iter().zip(made) {
+            self.work.analyses += made.further_analyses;
+            self.work.factorisations += made.factorisations;
+            self.bodies[p].symbolic = Some(made.symbolic);
+            let kplus = Arc::new(made.inverse);
+            self.bodies[p].inverse = Some(Inverse { unit, kplus, bytes, operator: None });
+        }
+        for (p, plan, q) in others {
+            let symbolic = self.bodies[q].symbolic.clone();
+            let of = self.bodies[q].inverse.as_ref().map(|of| (of.bytes, plan.with_factor_of(&of.kplus)));
+            self.bodies[p].symbolic = symbolic;
+            self.bodies[p].inverse =
+                of.map(|(bytes, kplus)| Inverse { unit, kplus: Arc::new(kplus), bytes, operator: None });
+        }
+        Ok(())
+    }
+
+    /// For every plan the body that has, or is going to have, the factor of the same matrix with the same dofs held; none
+    /// where the plan must factorise itself.
+    fn factors_for(&self, pending: &[usize], plans: &[Plan]) -> Vec<Option<usize>> {
+        let mut known: HashMap<_, Vec<usize>> = HashMap::new();
+        for (q, slot) in self.bodies.iter().enumerate().filter(|(_, slot)| slot.inverse.is_some()) {
+            known.entry((slot.keys, slot.symbolic.as_ref().map(Arc::as_ptr))).or_default().push(q);
+        }
+        let mut find = |(&p, plan): (&usize, &Plan)| {
+            let shareable = matches!(plan, Plan::Known(_)) && self.bodies.len() > 1;
+            let symbolic = plan.symbolic().filter(|_| shareable)?;
+            let alike = known.entry((self.bodies[p].keys, Some(Arc::as_ptr(symbolic)))).or_default();
+            let found = alike.iter().copied().find(|&q| self.same_stiffness(p, q));
+            alike.extend(found.is_none().then_some(p));
+            found
+        };
+        pending.iter().zip(plans).map(&mut find).collect()
+    }
+
+    fn same_stiffness(&self, p: usize, q: usize) -> bool {
+        let [a, b] = [p, q].map(|p| self.bodies[p].body.stiffness.as_ref());
+        a.zip(b).is_some_and(|(a, b)| same_matrix(a, b))
+    }
+
+    /// For every body the one whose K+ serves it: the first equal one that has K+ already, else the first.
+    fn twins(&mut self) -> Result<Vec<usize>> {
+        self.find_keys()?;
+        let same = |p: usize, q: usize| same_body(&self.bodies[p].body, &self.bodies[q].body);
+        let first = classes(self.bodies.len(), |p| self.bodies[p].keys, same);
+        let has = |p: usize| self.bodies[p].inverse.is_some();
+        let mut ready = HashMap::new();
+        (0..first.len()).rev().filter(|&p| has(p)).for_each(|p| {
+            ready.insert(first[p], p);
+        });
+        let of = |p: usize| if has(p) { p } else { ready.get(&first[p]).copied().unwrap_or(first[p]) };
+        Ok((0..first.len()).map(of).collect())
+    }
+
+    /// Keys of the matrices; a single body needs none.
+    fn find_keys(&mut self) -> Result<()> {
+        if self.bodies.len() < 2 {
+            return Ok(());
+        }
+        let without: Vec<usize> = (0..self.bodies.len()).filter(|&p| self.bodies[p].keys.is_none()).collect();
+        let keys = threads::run(self.threads(), without.len(), |k| {
+            let stiffness = self.bodies[without[k]].body.stiffness.as_ref();
+            Ok(stiffness.map(|k| [pattern_key(k), value_key(k)]))
+        })?;
+        without.into_iter().zip(keys).for_each(|(p, keys)| self.bodies[p].keys = keys);
+        Ok(())
+    }
+
+    /// An analysis for every plan: that of its body before, of another body of the same pattern, or a new one.
+    fn analyse(&mut self, pending: &[usize], plans: &mut [Plan]) -> Result<()> {
+        let mut offers = self.offers();
+        let mut chosen = Vec::with_capacity(plans.len());
+        for (k, &p) in pending.iter().enumerate() {
+            let own = self.bodies[p].symbolic.as_ref();
+            let found = choose(&mut plans[k], own, &offers, |q| self.same_pattern(p, q))?;
+            chosen.push(found.unwrap_or(offers.len()));
+            if found.is_none() {
+                offers.push(Offer { body: p, layout: plans[k].layout(), symbolic: None, plan: k });
+            }
+        }
+        let new: Vec<usize> = (0..offers.len()).filter(|&o| offers[o].symbolic.is_none()).collect();
+        let made = threads::run(self.threads(), new.len(), |i| {
+            let offer = &offers[new[i]];
+            plans[offer.plan].analyse().map_err(|e| e.body(offer.body))
+        })?;
+        self.work.analyses += made.len();
+        new.into_iter().zip(made).for_each(|(o, made)| offers[o].symbolic = Some(made));
+        for (plan, o) in plans.iter_mut().zip(chosen) {
+            offers[o].symbolic.iter().for_each(|symbolic| plan.set_analysis(Arc::clone(symbolic)));
+        }
+        Ok(())
+    }
+
+    /// The analyses that bodies have, each once.
+    fn offers(&self) -> Vec<Offer> {
+        let mut offers: Vec<Offer> = Vec::new();
+        let mut seen = HashSet::new();
+        for (p, slot) in self.bodies.iter().enumerate() {
+            if let Some(symbolic) = slot.symbolic.as_ref().filter(|of| seen.insert(Arc::as_ptr(of))) {
+                let layout = Arc::clone(&symbolic.layout);
+                offers.push(Offer { body: p, layout, symbolic: Some(Arc::clone(symbolic)), plan: 0 });
+            }
+        }
+        offers
+    }
+
+    fn same_pattern(&self, p: usize, q: usize) -> bool {
+        let [a, b] = [p, q].map(|p| &self.bodies[p]);
+        let matrices = a.body.stiffness.as_ref().zip(b.body.stiffness.as_ref());
+        let keys = [a, b].map(|slot| slot.keys.map(|keys| keys[0]));
+        p == q || keys[0] == keys[1] && matrices.is_some_and(|(a, b)| same_pattern(a, b))
+    }
+
+    /// Equal bodies without K+ get that of their twin.
+    fn share(&mut self, twins: &[usize]) {
+        for (p, &twin) in twins.iter().enumerate().filter(|(p, twin)| p != *twin) {
+            let (symbolic, inverse) =
+                (self.bodies[twin].symbolic.clone(), self.bodies[twin].inverse.as_ref());
+            let inverse = inverse.map(|of| Inverse { kplus: Arc::clone(&of.kplus), operator: None, ..*of });
+            self.bodies[p].inverse = inverse;
+            self.bodies[p].symbolic = symbolic;
+        }
+    }
+
+    /// Refuses factors and operators that do not fit; operators kept from the rows before are dropped if that helps.
+    fn room_for_factors(&mut self, rows: &DualRows, more: usize) -> Result<()> {
+        let operators = self.bodies.iter().filter_map(|slot| slot.inverse.as_ref()?.operator.as_ref());
+        let kept: usize = operators.map(Kept::bytes).sum();
+        if kept > 0 && self.check_memory(rows, more.saturating_add(kept)).is_err() {
+            self.bodies.iter_mut().filter_map(|slot| slot.inverse.as_mut()).for_each(|of| of.operator = None);
+        }
+        self.check_memory(rows, more)
+    }
+
+    /// Bytes of all factors, those that bodies share once.
+    pub(super) fn bytes_of_factors(&self) -> usize {
+        let inverses = self.bodies.iter().filter_map(|slot| slot.inverse.as_ref());
+        let mut seen = HashSet::new();
+        inverses.filter(|of| seen.insert(of.kplus.factor_address())).map(|of| of.bytes).sum()
+    }
+}
+
+/// Bodies, their plans, and the bodies whose factors serve them.
+type Planned<'a> = (&'a [usize], Vec<Plan>, Vec<Option<usize>>);
+
+/// A symbolic analysis that is there or, by the plan of this number, going to be made.
+struct Offer {
+    /// A body with its pattern.
+    body: usize,
+    layout: Arc<Layout>,
+    symbolic: Option<Arc<Symbolic>>,
+    plan: usize,
+}
+
+/// The first of the offers that serves the plan of a body; its own, if it has one, before those of others.
+fn choose(
+    plan: &mut Plan,
+    own: Option<&Arc<Symbolic>>,
+    offers: &[Offer],
+    same_pattern: impl Fn(usize) -> bool,
+) -> Result<Option<usize>> {
+    let is_own = |offer: &Offer| offer.symbolic.as_ref().zip(own).is_some_and(|(a, b)| Arc::ptr_eq(a, b));
+    let own = offers.iter().position(is_own);
+    let others = (0..offers.len()).filter(|&o| Some(o) != own && same_pattern(offers[o].body));
+    for o in own.into_iter().chain(others.take(TRIED)) {
+        if plan.follow(&offers[o].layout)? {
+            return Ok(Some(o));
+        }
+    }
+    Ok(None)
+}
+
+/// The first member of every one's class: those that are the same as it.
+fn classes<K: Eq + Hash>(
+    count: usize,
+    key: impl Fn(usize) -> K,
+    same: impl Fn(usize, usize) -> bool,
+) -> Vec<usize> {
+    let mut first_of: HashMap<K, Vec<usize>> = HashMap::new();
+    let class = |p: usize| {
+        let firsts = first_of.entry(key(p)).or_default();
+        firsts.iter().copied().find(|&q| same(p, q)).unwrap_or_else(|| {
+            firsts.push(p);
+            p
+        })
+    };
+    (0..count).map(class).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::solver::{RowKind, RowsInput, Storage};
+
+    /// Six free chains of springs of 1, 2 and 3 times `stiffness`, their middles tied to each other in a row, the
+    /// first end of all on the ground.
+    fn chains(stiffness: [f64; 6]) -> Problem {
+        let mut problem = Problem::new();
+        for s in stiffness {
+            let k = [1.0, -1.0, 0.0, 0.0, -1.0, 3.0, -2.0, 0.0, 0.0, -2.0, 5.0, -3.0, 0.0, 0.0, -3.0, 3.0];
+            let body = problem.add_body(4).unwrap();
+            problem.set_stiffness_dense(body, 4, &k.map(|v| s * v), 4, Storage::Full).unwrap();
+            problem.set_load(body, &[0.1, 0.02 * body as f64, -0.7, 0.3]).unwrap();
+        }
+        let rows = |ptr: &[usize], dof: &[i64], val: &[f64], rhs: &[f64], problem: &mut Problem, kind| {
+            problem.add_rows(kind, RowsInput { ptr, body: None, dof, val, rhs: Some(rhs) }).unwrap();
+        };
+        let ties: Vec<i64> = (0..5).flat_map(|p| [4 * p + 1, 4 * p + 5]).collect();
+        rows(&[0, 2, 4, 6, 8, 10], &ties, &[1.0, -1.0].repeat(5), &[0.0; 5], &mut problem, RowKind::Equality);
+        let ends: Vec<i64> = (0..6).map(|p| 4 * p).collect();
+        rows(&[0, 1, 2, 3, 4, 5, 6], &ends, &[-1.0; 6], &[0.01; 6], &mut problem, RowKind::Inequality);
+        problem
+    }
+
+    /// u of all bodies, lambda, mu.
+    fn answer(problem: &mut Problem) -> Vec<f64> {
+        problem.solve().unwrap();
+        let mut all: Vec<f64> = (0..6).flat_map(|p| problem.displacement(p).unwrap().to_vec()).collect();
+        all.extend(problem.multipliers(RowKind::Inequality).unwrap());
+        all.extend(problem.multipliers(RowKind::Equality).unwrap());
+        all
+    }
+
+    /// Bodies whose keys differ are compared with no other.
+    #[test]
+    fn answers_have_the_same_bits_whether_bodies_share_or_not() {
+        for (stiffness, expected) in [([1.0; 6], [1, 1]), ([1.0, 1.3, 1.0, 1.3, 1.7, 1.0], [1, 3])] {
+            let (mut shared, mut apart) = (chains(stiffness), chains(stiffness));
+            (0..6).for_each(|p| apart.bodies[p].keys = Some([p as u64; 2]));
+            assert!(answer(&mut shared) == answer(&mut apart), "bits differ");
+            assert_eq!([shared.work.analyses, shared.work.factorisations], expected);
+            assert_eq!([apart.work.analyses, apart.work.factorisations], [6, 6]);
+        }
+    }
+
+    #[test]
+    fn keys_alone_make_no_two_bodies_equal() {
+        let stiffness = [1.0, 1.1, 1.2, 1.3, 1.4, 1.5];
+        let (mut honest, mut colliding) = (chains(stiffness), chains(stiffness));
+        (0..6).for_each(|p| colliding.bodies[p].keys = Some([7; 2]));
+        assert!(answer(&mut honest) == answer(&mut colliding), "bits differ");
+        assert_eq!(colliding.work.factorisations, 6);
+    }
+}
