@@ -102,7 +102,7 @@ mod tests {
     #[test]
     fn the_operator_of_all_rows_is_that_of_the_distinct_ones_between_its_factors() {
         let mut rows = Csr::empty(2);
-        [(0, 1.0), (1, 3.0), (0, -2.0)].map(|entry| rows.push_row([entry]));
+        [(0, 1.0), (1, 3.0), (0, -2.0)].into_iter().for_each(|entry| rows.push_row([entry]));
         let (multiples, _) = Multiples::of(&rows);
         // A = [[5, 7], [7, 11]] between rows 0 and 1; rows 4, 2, 0 of x are those of the body
         let a = |i: usize, j: usize| [[5.0, 7.0], [7.0, 11.0]][i][j];
