@@ -16,7 +16,7 @@ use crate::linalg::{Entries, Matrix, Operator};
 const SIDE: usize = 8;
 
 /// Matrices of fewer rows are mostly tiles on the diagonal: their entries are taken one by one.
-const SMALL: usize = 64;
+const SMALL: usize = 128;
 
 /// Consecutive entries of a column, or of a vector.
 type Line = [f64; SIDE];
