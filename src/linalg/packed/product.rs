@@ -8,7 +8,7 @@ const PANEL: usize = 4;
 /// Tiles below a panel's own ones that are asked for while the panel before is read.
 const AHEAD: usize = 2;
 
-/// One set of instructions of the processor.
+/// One set of instructions of the processor; all give the same bits.
 pub trait Kernel {
     /// P columns of tiles A_p of the same rows: `y += sum_p A_p factor_p`; gives the P products `A_p' x`.
     fn columns<const P: usize>(
@@ -45,8 +45,13 @@ impl Kernel for Portable {
                 }
             }
         }
-        terms.map(|terms| terms.map(|t| ((t[0] + t[4]) + (t[2] + t[6])) + ((t[1] + t[5]) + (t[3] + t[7]))))
+        terms.map(|terms| terms.map(|terms| sum(&terms)))
     }
+}
+
+/// Sum of a line, in the one order of all kernels.
+pub fn sum(t: &Line) -> f64 {
+    ((t[0] + t[4]) + (t[2] + t[6])) + ((t[1] + t[5]) + (t[3] + t[7]))
 }
 
 /// `y = A x` by the fastest instructions that this processor has.
