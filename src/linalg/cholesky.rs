@@ -253,4 +253,49 @@ mod tests {
         let breakdown = broken.err().expect("K_30 was made indefinite");
         assert!(breakdown.relative_pivot < -0.1, "{breakdown:?}");
     }
+
+    /// Random sparse matrices with a dominant diagonal, some dofs held: K x = b on the free dofs.
+    #[test]
+    fn matrices_of_all_small_orders_and_densities_are_solved() {
+        let mut state = 1_u64;
+        let mut random = move || {
+            state = state.wrapping_mul(0x5851_f42d_4c95_7f2d).wrapping_add(0x1405_7b7e_f767_814f);
+            (state >> 33) as f64 / (1_u64 << 31) as f64
+        };
+        for n in 1..60_usize {
+            for density in [0.0, 0.05, 0.2, 0.6, 1.0] {
+                let (mut ptr, mut col, mut val) = (vec![0], Vec::new(), Vec::new());
+                for i in 0..n {
+                    for j in 0..i {
+                        if random() < density {
+                            col.push(j as u32);
+                            val.push(random() - 0.5);
+                        }
+                    }
+                    col.push(i as u32);
+                    val.push(n as f64);
+                    ptr.push(col.len());
+                }
+                let matrix = Symmetric { ptr, col, val };
+                let held: Vec<bool> = (0..n).map(|_| random() < 0.1).collect();
+                let analysis = Arc::new(Analysis::new(&matrix, &held).unwrap());
+                let factor = analysis.factorize(&matrix, 0.5).unwrap().unwrap();
+                let b: Vec<f64> = (0..n).map(|_| random()).collect();
+                let (mut x, mut image) = (b.clone(), vec![0.0; n]);
+                factor.solve(&mut x).unwrap();
+                matrix.mul(&x, &mut image);
+                let wrong =
+                    (0..n).filter(
+                        |&i| {
+                            if held[i] {
+                                x[i] != 0.0
+                            } else {
+                                (0.5 * image[i] - b[i]).abs() > 1e-13
+                            }
+                        },
+                    );
+                assert_eq!(wrong.count(), 0, "order {n}, density {density}");
+            }
+        }
+    }
 }

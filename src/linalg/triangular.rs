@@ -58,7 +58,7 @@ fn eliminate(panel: &[f64], width: usize, x: &mut [f64]) {
         let columns = &panel[j * height..(j + count) * height];
         for k in 0..count {
             let column = &columns[k * height..(k + 1) * height];
-            let v = x[j + k] / column[j + k];
+            let v = x[j + k] * column[j + k].recip();
             x[j + k] = v;
             (j + k + 1..j + count).for_each(|i| x[i] -= column[i] * v);
         }
@@ -99,7 +99,7 @@ fn substitute(panel: &[f64], width: usize, x: &mut [f64]) {
         for k in (0..count).rev() {
             let column = &columns[k * height + j..k * height + end];
             let known: f64 = (k + 1..count).map(|i| column[i] * own[i]).sum();
-            own[k] = (own[k] - known) / column[k];
+            own[k] = (own[k] - known) * column[k].recip();
         }
         end = j;
     }

@@ -203,7 +203,7 @@ impl Iterate<'_> {
     /// The active rows that pull leave the active set. `small` is the length of a projected gradient that counts
     /// as zero.
     pub fn release(&mut self, small: f64) -> Result<Step> {
-        let step = if std::mem::take(&mut self.cuts) > 0 { None } else { self.release_pulling()? };
+        let step = if std::mem::take(&mut self.cuts) > 0 { None } else { self.release_pulling(small)? };
         let step = step.map_or_else(|| self.project_gradient(small), Ok)?;
         self.counts.releases += usize::from(matches!(step, Step::Release));
         self.settle()?;
@@ -211,11 +211,15 @@ impl Iterate<'_> {
     }
 
     /// All rows with a negative multiplier leave the active set, and the face is explored with them: where the
-    /// direction presses some of them on, it is projected. `None`, and nothing done, where it does not lead down.
-    fn release_pulling(&mut self) -> Result<Option<Step>> {
+    /// direction presses some of them on, it is projected. `None`, and nothing done, where it does not lead down:
+    /// always where `G x = e` leaves no motion on that face, whose gradient is `small` then.
+    fn release_pulling(&mut self, small: f64) -> Result<Option<Step>> {
         let before = self.active.clone();
         (0..before.len()).for_each(|i| self.active[i] &= self.chopped[i] == 0.0);
         self.split_on_face()?;
+        if norm(&self.free) <= small {
+            return self.back_to_face(before).map(|()| None);
+        }
         let p = self.direction()?;
         let pressed = (0..before.len()).any(|i| before[i] && !self.active[i] && p[i] > 0.0);
         let length = self.expected.filter(|t| pressed || self.feasible_step(&p, 0.0) < *t);
@@ -227,14 +231,15 @@ impl Iterate<'_> {
             _ => Step::Stuck,
         };
         match step {
-            Step::Stuck => {
-                self.active = before;
-                self.split_on_face()?;
-                Ok(None)
-            }
+            Step::Stuck => self.back_to_face(before).map(|()| None),
             Step::Unbounded { .. } => Ok(Some(step)),
             _ => Ok(Some(Step::Release)),
         }
+    }
+
+    fn back_to_face(&mut self, active: Vec<bool>) -> Result<()> {
+        self.active = active;
+        self.split_on_face()
     }
 
     /// Gradient projection on the whole feasible set, with an exact line search.
