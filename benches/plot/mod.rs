@@ -107,7 +107,8 @@ impl Plot {
         values.into_iter().map(|value| (value.log10(), text(value))).collect()
     }
 
-    /// Places on the ordinate and their names: powers of ten on a long logarithmic one, 1, 2 and 5 on a short one.
+    /// Places on the ordinate and their names: powers of ten on a long logarithmic one, digits between
+    /// them on a short one.
     fn ordinates(&self, span: (f64, f64)) -> Vec<(f64, String)> {
         if !self.logarithmic[1] {
             return ticks(span, false).into_iter().map(|value| (value, text(value))).collect();
@@ -116,7 +117,9 @@ impl Plot {
             return ticks(span, true).into_iter().map(|power| (power, format!("1e{power}"))).collect();
         }
         let decades = span.0.floor() as i32..=span.1.floor() as i32;
-        let values = decades.flat_map(|power| [1.0, 2.0, 5.0].map(|head| head * 10f64.powi(power)));
+        let heads: &[f64] =
+            if span.1 - span.0 > 1.0 { &[1.0, 2.0, 5.0] } else { &[1.0, 1.5, 2.0, 3.0, 5.0, 7.0] };
+        let values = decades.flat_map(|power| heads.iter().map(move |head| head * 10f64.powi(power)));
         let places = values.map(|value| (value.log10(), text(value)));
         places.filter(|(place, _)| (span.0..=span.1).contains(place)).collect()
     }
