@@ -2,8 +2,10 @@
 # make test      every test: Rust, then C and Fortran under CMake      make install    PREFIX=/usr/local DESTDIR=
 # make counts    applications of F against a linear solve, deck by deck (some minutes); DECKS="slab two" picks some
 # make bench     time and memory against CHOLMOD, Clarabel and OSQP (some minutes); DECKS="4k 40k" picks some
+# make scaling   time and memory as unknowns, contact rows, bodies, threads grow: pictures in docs (some minutes);
+#                SWEEPS="rows bodies" picks some, a number among them leaves out decks of more unknowns
 # make paper     the paper's problems by its own method and by the default: table, pictures (seconds)
-# bench, demo and test install the Debian packages they miss (tools/setup.sh).
+# bench, scaling, demo and test install the Debian packages they miss (tools/setup.sh).
 PREFIX  ?= /usr/local
 DESTDIR ?=
 CARGO   ?= cargo
@@ -19,7 +21,7 @@ SOVERSION := $(basename $(VERSION))# 0.1 of 0.1.0: before 1.0 each minor version
 RELEASE   := $(or $(CARGO_TARGET_DIR),target)/release
 STAGE     := $(CURDIR)/build/stage
 
-.PHONY: all lib data setup demo battery test counts bench paper stage install uninstall fmt clean
+.PHONY: all lib data setup demo battery test counts bench scaling paper stage install uninstall fmt clean
 .DELETE_ON_ERROR:
 all: lib
 
@@ -117,6 +119,9 @@ counts:
 bench:
 	@tools/setup.sh python3-venv
 	@$(CARGO) bench --bench bench --locked --quiet -- $(DECKS)
+
+scaling: setup
+	@$(CARGO) bench --bench bench --locked --quiet -- scaling $(SWEEPS)
 
 paper:
 	@$(CARGO) bench --bench paper --locked --quiet -- $(CURDIR)/docs

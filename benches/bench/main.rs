@@ -5,8 +5,8 @@
 //! bench <deck> <figure> <value> goal <g> ok|short
 //! ```
 //!
-//! with details below, and a closing line with the number short. Arguments: names of decks, none for all. Every run is
-//! a process of its own; raw figures go to benches/runs. Exit code 1 when a run fails; a short figure alone leaves it 0.
+//! with details below, and a closing line with the number short. Arguments: names of decks, none for all; `scaling` runs
+//! series of decks and draws them instead. Every run is a process of its own; raw figures go to benches/runs. Exit code 1 when a run fails; a short figure alone leaves it 0.
 
 mod clock;
 #[path = "../../tests/support/compiler.rs"]
@@ -18,8 +18,12 @@ mod matrix;
 mod ours;
 mod parts;
 mod peers;
+mod pictures;
+#[path = "../plot/mod.rs"]
+mod plot;
 mod problems;
 mod runs;
+mod scaling;
 
 use std::io::Write;
 use std::path::Path;
@@ -35,6 +39,7 @@ fn main() -> ExitCode {
     let words: Vec<&str> = arguments.iter().map(String::as_str).collect();
     let done = match words[..] {
         ["child", kind, deck, threads] => child(kind, deck, threads),
+        ["scaling", ref rest @ ..] => scaling::run(rest),
         _ => benchmark(&words),
     };
     match done {
@@ -59,7 +64,7 @@ fn child(kind: &str, deck: &str, threads: &str) -> Result<(), String> {
 fn benchmark(wanted: &[&str]) -> Result<(), String> {
     let wants = |name: &str| wanted.is_empty() || wanted.contains(&name);
     let peers = Peers::set_up(wants(PEERS))?;
-    let mut runs = Runs::new(&Path::new(env!("CARGO_MANIFEST_DIR")).join("benches/runs"))?;
+    let mut runs = Runs::new(&Path::new(env!("CARGO_MANIFEST_DIR")).join("benches/runs"), "bench")?;
     let (mut lines, mut short, mut failed) = (0, 0, 0);
     let mut judge = |figures: Vec<Figure>| {
         lines += figures.len();
@@ -114,7 +119,7 @@ fn measure(case: &Case, runs: &mut Runs, peers: &Peers) -> Result<String, String
             }
         }
         Model::OneBody(_) => ours.to_vec(),
-        Model::Cube(_) => ours[..1].to_vec(),
+        Model::Flat(..) | Model::Cube(_) | Model::Cut(_) => ours[..1].to_vec(),
     };
     let mut blas = String::new();
     for round in 1..=case.rounds {

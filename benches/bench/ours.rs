@@ -69,8 +69,10 @@ fn print_lap(name: &str, lap: Lap) {
 }
 
 fn details(problem: &Problem, report: &Report, bodies: usize) -> Solver<()> {
+    println!("bodies {}", report.counts.bodies);
     println!("dofs {}", report.counts.dofs);
     println!("rows {}", report.counts.rows);
+    println!("equalities {}", report.counts.equalities);
     println!("closed {}", report.active);
     println!("products {}", report.dual_applications);
     println!("worst {:.3e}", report.certificate.worst());

@@ -7,11 +7,19 @@ use decks::{Blocks, Cube, Deck};
 pub enum Model {
     /// Two stacked blocks of so many elements along each edge: what the goals are set for.
     Blocks(usize),
+    /// Two flat ones: elements along x and y, layers of each block.
+    Flat(usize, usize),
     /// The upper of such blocks on a rigid obstacle in the place of the lower one.
     OneBody(usize),
     /// A cube cut into side^3 bodies of 8^3 elements, glued, on an obstacle.
     Cube(usize),
+    /// One cube of `CUT`^3 elements, cut into side^3 bodies: the same solution whatever the side, lengths and all
+    /// displacements times the side.
+    Cut(usize),
 }
+
+/// Elements along the edge of a cube that is cut: so many that 1, 2, 3 and 4 divide them.
+const CUT: usize = 24;
 
 pub struct Case {
     pub name: &'static str,
@@ -34,16 +42,53 @@ pub const CASES: [Case; 7] = [
     Case { name: PEERS, model: Model::Blocks(18), rounds: 1 },
 ];
 
+/// Decks of the scaling, beside those above. The flat ones have about as many unknowns as 40k.
+pub const POINTS: [Case; 11] = [
+    point("2k", Model::Blocks(6)),
+    point("92k", Model::Blocks(24)),
+    point("729_rows", Model::Flat(26, 9)),
+    point("1296_rows", Model::Flat(35, 5)),
+    point("1936_rows", Model::Flat(43, 3)),
+    point("2704_rows", Model::Flat(51, 2)),
+    point("4489_rows", Model::Flat(66, 1)),
+    point("cut_1", Model::Cut(1)),
+    point("cut_8", Model::Cut(2)),
+    point("cut_27", Model::Cut(3)),
+    point("cut_64", Model::Cut(4)),
+];
+
+const fn point(name: &'static str, model: Model) -> Case {
+    Case { name, model, rounds: 3 }
+}
+
 pub fn case(name: &str) -> Option<&'static Case> {
-    CASES.iter().find(|case| case.name == name)
+    CASES.iter().chain(&POINTS).find(|case| case.name == name)
 }
 
 impl Model {
     pub fn build(self) -> Deck {
         match self {
             Model::Blocks(elements) => Blocks { elements, ..Blocks::default() }.build(),
+            Model::Flat(across, layers) => Blocks { elements: across, ..Blocks::default() }.layered(layers),
             Model::OneBody(elements) => one_body(elements),
             Model::Cube(side) => Cube { subdomains: [side; 3], elements: 8, ..Cube::default() }.build(),
+            Model::Cut(side) => {
+                let gap = side as f64 * Cube::default().gap;
+                Cube { subdomains: [side; 3], elements: CUT / side, gap, ..Cube::default() }.build()
+            }
+        }
+    }
+
+    /// Unknowns of all bodies, without building them.
+    pub fn unknowns(self) -> usize {
+        let stacked = |across: usize, layers: usize| 3 * (across + 1).pow(2) * (2 * layers + 1);
+        let cubes = |side: usize, elements: usize| 3 * side.pow(3) * (elements + 1).pow(3);
+        match self {
+            Model::Blocks(elements) => stacked(elements, elements),
+            Model::Flat(across, layers) => stacked(across, layers),
+            Model::OneBody(elements) => cubes(1, elements),
+            Model::Cube(side) => cubes(side, 8),
+            Model::Cut(side) => cubes(side, CUT / side),
         }
     }
 }

@@ -58,12 +58,12 @@ pub struct Runs {
 }
 
 impl Runs {
-    /// A new file in `folder`.
-    pub fn new(folder: &Path) -> Result<Self, String> {
+    /// A new file in `folder`, named by what is measured and the time.
+    pub fn new(folder: &Path, kind: &str) -> Result<Self, String> {
         let text = |error: std::io::Error| format!("{}: {error}", folder.display());
         create_dir_all(folder).map_err(text)?;
         let now = SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |since| since.as_secs());
-        let path = folder.join(format!("bench_{now}.csv"));
+        let path = folder.join(format!("{kind}_{now}.csv"));
         let mut csv = File::create(&path).map_err(text)?;
         writeln!(csv, "deck,program,round,quantity,value").map_err(text)?;
         Ok(Self { samples: Vec::new(), csv, path })

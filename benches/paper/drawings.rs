@@ -3,14 +3,9 @@
 use std::path::Path;
 
 use crate::case::Case;
-use crate::plot::{Mark, Plot, Series};
+use crate::plot::{marked, Mark, Plot, Series, BLUE, GREEN, GREY, RED};
 use crate::problems::PROBLEMS;
 use crate::run::{as_in_paper, by_default, handed_over, history, Run};
-
-const GREY: &str = "#999999";
-const BLUE: &str = "#1f5fa8";
-const RED: &str = "#c0392b";
-const GREEN: &str = "#2e8b57";
 
 type Drawing = fn() -> Result<Plot, String>;
 
@@ -60,7 +55,7 @@ fn membranes() -> Result<Plot, String> {
         title: "Problem 1: two membranes, contact along x = 1".into(),
         x: "x + 0.45 y (seen at an angle; no units)".into(),
         y: "0.9 u + 0.35 y".into(),
-        logarithmic: false,
+        logarithmic: [false; 2],
         equal: false,
         series: vec![
             Series { name: "Omega_1", colour: BLUE, mark: Mark::Line(0.8), lines: sheet(0) },
@@ -88,7 +83,7 @@ fn cylinders() -> Result<Plot, String> {
         title: "Problem 2: contact forces between the cylinders".into(),
         x: "x / mm".into(),
         y: "nodal force / N".into(),
-        logarithmic: false,
+        logarithmic: [false; 2],
         equal: false,
         series: vec![
             Series { name: "Hertz", colour: GREY, mark: Mark::Line(1.5), lines: vec![curve] },
@@ -203,7 +198,7 @@ fn blocks() -> Result<Plot, String> {
         title: format!("Problem 3: three blocks, displacements x {scale:.0}"),
         x: "x / m".into(),
         y: "z / m".into(),
-        logarithmic: false,
+        logarithmic: [false; 2],
         equal: true,
         series: vec![
             Series { name: "before", colour: GREY, mark: Mark::Line(0.6), lines: every(0.0) },
@@ -221,18 +216,14 @@ fn histories() -> Result<Plot, String> {
     let mut default = handed_over(&case, false).map_err(|e| e.to_string())?;
     // cut short, the iteration itself is to be seen, not what would complete it
     default.set_i64("direct_limit", 0).map_err(|e| e.to_string())?;
-    let series = |name, colour, points: Vec<(f64, f64)>| {
-        let line = Series { name, colour, mark: Mark::Line(1.5), lines: vec![points.clone()] };
-        [line, Series { name: "", colour, mark: Mark::Disc(2.5), lines: vec![points] }]
-    };
     let mut all =
-        Vec::from(series("paper: Algorithm 3, extrapolating", RED, history(&case, &mut paper, 200)));
-    all.extend(series("default", BLUE, history(&case, &mut default, 200)));
+        Vec::from(marked("paper: Algorithm 3, extrapolating", RED, history(&case, &mut paper, 200)));
+    all.extend(marked("default", BLUE, history(&case, &mut default, 200)));
     Ok(Plot {
         title: "Problem 1: largest error of a force".into(),
         x: "products with F".into(),
         y: "relative to the largest force".into(),
-        logarithmic: true,
+        logarithmic: [false, true],
         equal: false,
         series: all,
     })

@@ -11,6 +11,7 @@
 #[path = "../../tests/reference/case.rs"]
 mod case;
 mod drawings;
+#[path = "../plot/mod.rs"]
 mod plot;
 mod problems;
 mod run;

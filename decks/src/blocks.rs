@@ -23,10 +23,18 @@ impl Blocks {
     /// The deck: one row u_lower - u_upper <= 0.02 r^2 (vertical, r from the axis) for each of the
     /// (elements + 1)^2 pairs of facing nodes.
     pub fn build(&self) -> Deck {
+        Deck { name: format!("blocks_{}", self.elements), ..self.layered(self.elements) }
+    }
+
+    /// The same of flat blocks, `layers` layers of cubic elements each: one row for 3 (2 layers + 1) unknowns. At
+    /// least 1.
+    pub fn layered(&self, layers: usize) -> Deck {
         let n = self.elements;
+        let height = layers as f64 / n as f64;
         let block = |level: usize| Block {
-            elements: [n; 3],
-            origin: [0.0, 0.0, level as f64],
+            elements: [n, n, layers],
+            size: [1.0, 1.0, height],
+            origin: [0.0, 0.0, level as f64 * height],
             young: self.young * (level + 1) as f64,
             ..Block::default()
         };
@@ -34,10 +42,10 @@ impl Blocks {
         let bottom = lower.part(|at| at[2] == 0);
         let mut top = upper.floating();
         self.press(&upper, &mut top.body.load);
-        let mut deck = Deck::new(format!("blocks_{n}"), vec![bottom.body, top.body]);
+        let mut deck = Deck::new(format!("blocks_{n}_{layers}"), vec![bottom.body, top.body]);
         let offset = deck.offset(1);
         for at in upper.grids().filter(|at| at[2] == 0) {
-            let below = bottom.number[3 * lower.node([at[0], at[1], n]) + 2];
+            let below = bottom.number[3 * lower.node([at[0], at[1], layers]) + 2];
             let above = offset + 3 * upper.node(at) + 2;
             let [x, y, _] = upper.position(at);
             let gap = 0.02 * ((x - 0.5).powi(2) + (y - 0.5).powi(2));
@@ -52,7 +60,7 @@ impl Blocks {
     fn press(&self, block: &Block, load: &mut [f64]) {
         let area = 1.0 / (self.elements * self.elements) as f64;
         let inside = |t: f64| t > 0.1 + 1e-9 && t < 0.6 - 1e-9;
-        for at in block.grids().filter(|at| at[2] == self.elements) {
+        for at in block.grids().filter(|at| at[2] == block.elements[2]) {
             let [x, y, _] = block.position(at);
             if inside(x) && inside(y) {
                 load[3 * block.node(at) + 2] = -0.01 * self.young * (1.0 + x) * area;
@@ -64,6 +72,7 @@ impl Blocks {
 #[cfg(test)]
 mod tests {
     use super::Blocks;
+    use crate::Deck;
 
     #[test]
     fn benchmark_sizes_are_13k_40k_and_144k() {
@@ -75,9 +84,28 @@ mod tests {
         assert!(deck.bodies[0].modes().is_empty() && deck.bodies[1].modes().len() == 6);
     }
 
+    /// The rows of 7^2 pairs, and the load of the cubes.
+    #[test]
+    fn flat_blocks_have_fewer_unknowns_for_the_same_rows_and_load() {
+        let blocks = Blocks::default();
+        let (cubes, flat) = (blocks.build(), blocks.layered(2));
+        assert_eq!((flat.contact.len(), flat.dofs()), (49, 49 * 3 * 5));
+        assert_eq!(flat.contact.rhs, cubes.contact.rhs);
+        let total = |deck: &Deck| deck.bodies[1].load.iter().sum::<f64>();
+        assert!((total(&flat) - total(&cubes)).abs() < 1e-15);
+        let heights = flat.bodies[1].coordinates.iter().map(|x| x[2]);
+        let (low, high) = heights.fold((f64::MAX, f64::MIN), |(low, high), z| (low.min(z), high.max(z)));
+        assert!((low - 1.0 / 3.0).abs() < 1e-15 && (high - 2.0 / 3.0).abs() < 1e-15);
+    }
+
     #[test]
     fn rows_join_facing_nodes() {
-        let deck = Blocks::default().build();
+        for deck in [Blocks::default().build(), Blocks::default().layered(2)] {
+            assert_facing(&deck);
+        }
+    }
+
+    fn assert_facing(deck: &Deck) {
         let place = |dof: usize| {
             let body = usize::from(dof >= deck.offset(1));
             let local = dof - deck.offset(body);

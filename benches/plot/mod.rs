@@ -1,4 +1,4 @@
-//! Pictures as SVG: lines and points over two axes.
+//! Pictures as SVG: lines and points over two axes, shared by the benchmarks that draw.
 
 use std::fmt::Write;
 
@@ -8,6 +8,13 @@ const LEFT: f64 = 80.0;
 const RIGHT: f64 = 20.0;
 const TOP: f64 = 50.0;
 const BOTTOM: f64 = 60.0;
+/// Decades from which on a logarithmic ordinate names powers of ten alone.
+const LONG: f64 = 4.0;
+
+pub const GREY: &str = "#999999";
+pub const BLUE: &str = "#1f5fa8";
+pub const RED: &str = "#c0392b";
+pub const GREEN: &str = "#2e8b57";
 
 pub struct Series {
     pub name: &'static str,
@@ -16,6 +23,12 @@ pub struct Series {
     pub mark: Mark,
     /// Polylines, or points.
     pub lines: Vec<Vec<(f64, f64)>>,
+}
+
+/// A curve and the points it joins.
+pub fn marked(name: &'static str, colour: &'static str, points: Vec<(f64, f64)>) -> [Series; 2] {
+    let line = Series { name, colour, mark: Mark::Line(1.5), lines: vec![points.clone()] };
+    [line, Series { name: "", colour, mark: Mark::Disc(2.5), lines: vec![points] }]
 }
 
 #[derive(Clone, Copy, PartialEq)]
@@ -28,8 +41,8 @@ pub struct Plot {
     pub title: String,
     pub x: String,
     pub y: String,
-    /// Ordinate by powers of ten.
-    pub logarithmic: bool,
+    /// Abscissa, ordinate: logarithms are drawn, of positive values.
+    pub logarithmic: [bool; 2],
     /// The same scale along both axes.
     pub equal: bool,
     pub series: Vec<Series>,
@@ -49,8 +62,8 @@ impl Frame {
             let margin = 0.04 * (high - low).max(1e-12);
             (low - margin, high + margin)
         };
-        let x = span(&mut all().map(|p| p.0));
-        let y = span(&mut all().map(|p| plot.ordinate(p.1)));
+        let x = span(&mut all().map(|p| plot.place(p).0));
+        let y = span(&mut all().map(|p| plot.place(p).1));
         let mut frame = Self { x, y };
         if plot.equal {
             frame.equalise();
@@ -67,7 +80,7 @@ impl Frame {
         }
     }
 
-    fn place(&self, x: f64, y: f64) -> (f64, f64) {
+    fn place(&self, (x, y): (f64, f64)) -> (f64, f64) {
         let across = (x - self.x.0) / (self.x.1 - self.x.0);
         let up = (y - self.y.0) / (self.y.1 - self.y.0);
         (LEFT + across * (WIDTH - LEFT - RIGHT), HEIGHT - BOTTOM - up * (HEIGHT - TOP - BOTTOM))
@@ -75,12 +88,40 @@ impl Frame {
 }
 
 impl Plot {
-    fn ordinate(&self, y: f64) -> f64 {
-        if self.logarithmic {
-            y.log10()
-        } else {
-            y
+    /// The point on the axes: logarithms where they are drawn.
+    fn place(&self, &(x, y): &(f64, f64)) -> (f64, f64) {
+        let scaled = |axis: usize, value: f64| if self.logarithmic[axis] { value.log10() } else { value };
+        (scaled(0, x), scaled(1, y))
+    }
+
+    /// Places on the abscissa and their names: round values, or the points that discs mark on a logarithmic one.
+    fn abscissae(&self, span: (f64, f64)) -> Vec<(f64, String)> {
+        if !self.logarithmic[0] {
+            return ticks(span, false).into_iter().map(|value| (value, text(value))).collect();
         }
+        let discs = self.series.iter().filter(|series| matches!(series.mark, Mark::Disc(_)));
+        let mut values: Vec<f64> =
+            discs.flat_map(|series| series.lines.iter().flatten().map(|p| p.0)).collect();
+        values.sort_by(f64::total_cmp);
+        values.dedup();
+        values.into_iter().map(|value| (value.log10(), text(value))).collect()
+    }
+
+    /// Places on the ordinate and their names: powers of ten on a long logarithmic one, digits between
+    /// them on a short one.
+    fn ordinates(&self, span: (f64, f64)) -> Vec<(f64, String)> {
+        if !self.logarithmic[1] {
+            return ticks(span, false).into_iter().map(|value| (value, text(value))).collect();
+        }
+        if span.1 - span.0 > LONG {
+            return ticks(span, true).into_iter().map(|power| (power, format!("1e{power}"))).collect();
+        }
+        let decades = span.0.floor() as i32..=span.1.floor() as i32;
+        let heads: &[f64] =
+            if span.1 - span.0 > 1.0 { &[1.0, 2.0, 5.0] } else { &[1.0, 1.5, 2.0, 3.0, 5.0, 7.0] };
+        let values = decades.flat_map(|power| heads.iter().map(move |head| head * 10f64.powi(power)));
+        let places = values.map(|value| (value.log10(), text(value)));
+        places.filter(|(place, _)| (span.0..=span.1).contains(place)).collect()
     }
 
     pub fn svg(&self) -> String {
@@ -102,19 +143,17 @@ impl Plot {
     }
 
     fn axes(&self, frame: &Frame, svg: &mut String) {
-        for value in ticks(frame.x, false) {
-            let (x, y) = (frame.place(value, frame.y.0).0, HEIGHT - BOTTOM);
+        for (value, label) in self.abscissae(frame.x) {
+            let (x, y) = (frame.place((value, frame.y.0)).0, HEIGHT - BOTTOM);
             let _ = write!(svg, "<path d=\"M{x:.1} {y}V{TOP}\" stroke=\"#eee\"/>");
             let _ = writeln!(
                 svg,
-                "<text x=\"{x:.1}\" y=\"{:.1}\" text-anchor=\"middle\">{}</text>",
-                y + 18.0,
-                text(value)
+                "<text x=\"{x:.1}\" y=\"{:.1}\" text-anchor=\"middle\">{label}</text>",
+                y + 18.0
             );
         }
-        for value in ticks(frame.y, self.logarithmic) {
-            let y = frame.place(frame.x.0, value).1;
-            let label = if self.logarithmic { format!("1e{value}") } else { text(value) };
+        for (value, label) in self.ordinates(frame.y) {
+            let y = frame.place((frame.x.0, value)).1;
             let _ = write!(svg, "<path d=\"M{LEFT} {y:.1}H{}\" stroke=\"#eee\"/>", WIDTH - RIGHT);
             let _ = writeln!(
                 svg,
@@ -135,7 +174,7 @@ impl Plot {
 
     fn draw(&self, series: &Series, frame: &Frame, svg: &mut String) {
         for line in &series.lines {
-            let places: Vec<_> = line.iter().map(|p| frame.place(p.0, self.ordinate(p.1))).collect();
+            let places: Vec<_> = line.iter().map(|p| frame.place(self.place(p))).collect();
             match series.mark {
                 Mark::Line(width) => {
                     let points: Vec<_> = places.iter().map(|p| format!("{:.1},{:.1}", p.0, p.1)).collect();

@@ -1,0 +1,168 @@
+//! Time and memory of a whole contact solve against unknowns, contact rows, bodies and threads. One line a value,
+//!
+//! ```text
+//! scaling <sweep> <deck> <quantity> <value>
+//! ```
+//!
+//! and two pictures a sweep in docs/pictures. Arguments: names of sweeps, none for all; a number leaves out the decks of
+//! more unknowns. Exit code 1 when a run fails.
+
+use std::io::Write;
+use std::path::Path;
+use std::thread::available_parallelism;
+
+use crate::peers::Peers;
+use crate::pictures;
+use crate::problems::{self, Case, Model};
+use crate::runs::{Program, Runs};
+
+const ROOT: &str = env!("CARGO_MANIFEST_DIR");
+/// Unknowns beyond which a deck is run once.
+const LARGE: usize = 50_000;
+/// Bytes of a megabyte.
+pub const MEGABYTE: f64 = 1e6;
+
+pub const OURS: Program = Program::Ours(1);
+pub const UNIT: Program = Program::Cholmod(1);
+
+/// Decks of which one quantity grows.
+pub struct Sweep {
+    /// The quantity, as the runs print it.
+    pub name: &'static str,
+    /// What the abscissa of the pictures is.
+    pub label: &'static str,
+    pub decks: &'static [&'static str],
+}
+
+/// `threads` is the one sweep whose decks are solved on 1, 2, 4, ... threads instead.
+pub const THREADS: &str = "threads";
+
+const SWEEPS: [Sweep; 4] = [
+    Sweep { name: "dofs", label: "unknowns, two blocks", decks: &["2k", "4k", "13k", "40k", "92k", "144k"] },
+    Sweep {
+        name: "rows",
+        label: "contact rows, two blocks of about 40 thousand unknowns together, flatter and flatter",
+        decks: &["40k", "729_rows", "1296_rows", "1936_rows", "2704_rows", "4489_rows"],
+    },
+    Sweep {
+        name: "bodies",
+        label: "bodies that the same cube is cut into, glued",
+        decks: &["cut_1", "cut_8", "cut_27", "cut_64"],
+    },
+    Sweep { name: THREADS, label: "threads", decks: &["144k", "one_body", "64_bodies"] },
+];
+
+pub fn run(words: &[&str]) -> Result<(), String> {
+    let (numbers, names): (Vec<&str>, Vec<&str>) =
+        words.iter().copied().partition(|word| word.parse::<usize>().is_ok());
+    if let Some(name) = names.iter().find(|name| SWEEPS.iter().all(|sweep| sweep.name != **name)) {
+        return Err(format!("no sweep {name}"));
+    }
+    let most = numbers.iter().filter_map(|word| word.parse().ok()).min().unwrap_or(usize::MAX);
+    let peers = Peers::set_up(false)?;
+    let mut runs = Runs::new(&Path::new(ROOT).join("benches/runs"), "scaling")?;
+    let mut failed = 0;
+    for sweep in SWEEPS.iter().filter(|sweep| names.is_empty() || names.contains(&sweep.name)) {
+        let cases = sweep.decks.iter().filter_map(|name| problems::case(name));
+        for case in cases.filter(|case| case.model.unknowns() <= most) {
+            if let Err(why) = sweep.measure(case, &mut runs, &peers) {
+                failed += 1;
+                println!("scaling {} {} failed: {why}", sweep.name, case.name);
+            }
+            peers.remove(case);
+        }
+        for path in pictures::write(sweep, &runs, &Path::new(ROOT).join("docs/pictures"))? {
+            println!("picture {path}");
+        }
+    }
+    println!("scaling: {failed} failed; raw figures in {}", runs.path.display());
+    if failed > 0 {
+        return Err(format!("{failed} decks failed"));
+    }
+    Ok(())
+}
+
+impl Sweep {
+    pub fn programs(&self) -> Vec<Program> {
+        if self.name == THREADS {
+            thread_counts().into_iter().map(Program::Ours).collect()
+        } else {
+            vec![OURS, UNIT]
+        }
+    }
+
+    /// Runs the programs of one deck in turn, unless the sweep before has done so, and prints what they found.
+    fn measure(&self, case: &'static Case, runs: &mut Runs, peers: &Peers) -> Result<(), String> {
+        let programs = self.programs();
+        let rounds = if case.model.unknowns() > LARGE { 1 } else { 3 };
+        if programs.iter().any(|&program| runs.values(case.name, program, "peak").is_empty()) {
+            if programs.contains(&UNIT) {
+                peers.write(case)?;
+            }
+            for round in 1..=rounds {
+                for &program in &programs {
+                    runs.run(case.name, program, round, peers)?;
+                }
+            }
+        }
+        same_bits(case, &programs, runs)?;
+        self.same_energy(case, runs)?;
+        self.print(case, &programs, runs);
+        Ok(())
+    }
+
+    fn print(&self, case: &Case, programs: &[Program], runs: &Runs) {
+        let line = |quantity: &str, value: Option<String>| {
+            if let Some(value) = value {
+                println!("scaling {} {} {quantity} {value}", self.name, case.name);
+            }
+        };
+        let three = |value: Option<f64>| value.map(|value| format!("{value:.3}"));
+        let median = |program: Program, quantity: &str| runs.median(case.name, program, quantity);
+        for quantity in ["bodies", "dofs", "rows", "equalities", "closed", "products"] {
+            line(quantity, median(OURS, quantity).map(|count| count.to_string()));
+        }
+        for &program in programs {
+            let clock = if self.name == THREADS { "wall" } else { "cpu" };
+            let time = if program == UNIT { clock.to_string() } else { format!("first_{clock}") };
+            let peak = median(program, "peak").map(|bytes| bytes / MEGABYTE);
+            line(&format!("{},{clock}_s", program.name()), three(median(program, &time)));
+            line(&format!("{},peak_MB", program.name()), three(peak));
+        }
+        // Lines appear as they are found, also in a pipe.
+        let _ = std::io::stdout().flush();
+    }
+
+    /// A cube has the same energy whatever the bodies it is cut into: of lengths times s, s^3 times as much.
+    fn same_energy(&self, case: &Case, runs: &Runs) -> Result<(), String> {
+        const ENERGY: f64 = 1e-6;
+        let of = |name: &str| {
+            let Model::Cut(side) = problems::case(name)?.model else { return None };
+            Some(runs.median(name, OURS, "energy")? / (side as f64).powi(3))
+        };
+        let (first, own) = (self.decks.iter().find_map(|name| of(name)), of(case.name));
+        match first.zip(own) {
+            Some((first, own)) if (first - own).abs() > ENERGY * first.abs() => {
+                Err(format!("energy {own:e} of the cube of edge 1, before it was cut otherwise {first:e}"))
+            }
+            _ => Ok(()),
+        }
+    }
+}
+
+/// Every run of ours gives the same bits, on any number of threads.
+fn same_bits(case: &Case, programs: &[Program], runs: &Runs) -> Result<(), String> {
+    let bits: Vec<f64> =
+        programs.iter().flat_map(|&program| runs.values(case.name, program, "bits")).collect();
+    if bits.iter().any(|sum| *sum != bits[0]) {
+        return Err("different bits on other numbers of threads, or when run again".into());
+    }
+    Ok(())
+}
+
+/// 1, 2, 4, ... and all threads of the machine.
+fn thread_counts() -> Vec<usize> {
+    let all = available_parallelism().map_or(1, |count| count.get());
+    let powers = (0..).map(|power| 1 << power).take_while(|&count| count < all);
+    powers.chain([all]).collect()
+}
