@@ -1,5 +1,6 @@
 //! Vectors, matrices, ordering and factorisation. The only layer that knows faer.
 
+mod blocks;
 pub mod cholesky;
 pub mod columns;
 pub mod csr;

@@ -201,3 +201,52 @@ impl Child<'_> {
         self.rows.add(j..order, &self.values[front::update_column(order, j)], to, first);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use crate::linalg::{Analysis, Cholesky, Symmetric};
+
+    /// Two dense parts of 330 dofs, both coupled with 400 others: fronts of several tiles, updates that are added up.
+    fn two_parts() -> Symmetric {
+        let (mut ptr, mut col, mut val) = (vec![0], Vec::new(), Vec::new());
+        for i in 0..1060_usize {
+            let apart = |j: usize| i < 660 && (i < 330) != (j < 330);
+            for j in (0..i).filter(|&j| !apart(j)) {
+                col.push(j as u32);
+                val.push(((7 * i + 3 * j) % 11) as f64 / 11.0 - 0.5);
+            }
+            col.push(i as u32);
+            val.push(400.0 + (i % 5) as f64);
+            ptr.push(col.len());
+        }
+        Symmetric { ptr, col, val }
+    }
+
+    fn factor(matrix: &Symmetric) -> Cholesky {
+        let held = vec![false; matrix.order()];
+        Arc::new(Analysis::new(matrix, &held).unwrap()).factorize(matrix, 1.0).unwrap().unwrap()
+    }
+
+    #[test]
+    fn fronts_of_several_tiles_are_factorised() {
+        let matrix = two_parts();
+        let n = matrix.order();
+        let b: Vec<f64> = (0..n).map(|i| (i as f64).cos()).collect();
+        let (mut x, mut image) = (b.clone(), vec![0.0; n]);
+        factor(&matrix).solve(&mut x).unwrap();
+        matrix.mul(&x, &mut image);
+        assert!(image.iter().zip(&b).all(|(image, b)| (image - b).abs() < 1e-12));
+    }
+
+    #[test]
+    fn a_pool_of_threads_gives_the_same_bits() {
+        let matrix = two_parts();
+        let alone = factor(&matrix).values;
+        for threads in [2, 3] {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            assert!(pool.install(|| factor(&matrix)).values == alone, "{threads} threads");
+        }
+    }
+}

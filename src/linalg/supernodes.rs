@@ -6,6 +6,7 @@
 use std::ops::Range;
 
 use crate::error::Result;
+use crate::linalg::blocks::Blocks;
 use crate::linalg::elimination::{elimination_tree, postorder, NONE};
 use crate::linalg::graph::Graph;
 use crate::linalg::memory::reserved;
@@ -172,92 +173,6 @@ impl Supernodes {
     }
 }
 
-/// Dofs that follow each other in the order and have the same neighbours, each other among them.
-struct Blocks {
-    /// Their places in the order that was given.
-    range: Vec<Range<usize>>,
-    /// Position of the first column of every block, then n.
-    start: Vec<usize>,
-    ptr: Vec<usize>,
-    adj: Vec<u32>,
-}
-
-impl Blocks {
-    fn of(graph: &Graph, order: &[usize]) -> Result<Self> {
-        let mut range: Vec<Range<usize>> = reserved(order.len(), WHAT)?;
-        let mut block_of: Vec<u32> = reserved(graph.order(), WHAT)?;
-        block_of.resize(graph.order(), u32::MAX);
-        for (k, &dof) in order.iter().enumerate() {
-            match range.last_mut() {
-                Some(last) if graph.neighbours(dof) == graph.neighbours(order[k - 1]) => last.end = k + 1,
-                _ => range.push(k..k + 1),
-            }
-            block_of[dof] = (range.len() - 1) as u32;
-        }
-        let mut seen: Vec<u32> = reserved(range.len(), WHAT)?;
-        seen.resize(range.len(), u32::MAX);
-        let (mut ptr, mut adj) = (reserved(range.len() + 1, WHAT)?, Vec::new());
-        ptr.push(0);
-        for (own, range) in range.iter().enumerate() {
-            seen[own] = own as u32;
-            for &dof in graph.neighbours(order[range.start]) {
-                let other = block_of[dof as usize];
-                if other != u32::MAX && seen[other as usize] != own as u32 {
-                    seen[other as usize] = own as u32;
-                    adj.push(other);
-                }
-            }
-            ptr.push(adj.len());
-        }
-        let start = starts(&range)?;
-        Ok(Self { range, start, ptr, adj })
-    }
-
-    fn count(&self) -> usize {
-        self.range.len()
-    }
-
-    fn neighbours(&self, block: usize) -> &[u32] {
-        &self.adj[self.ptr[block]..self.ptr[block + 1]]
-    }
-
-    /// Columns of a block.
-    fn position(&self, block: usize) -> Range<usize> {
-        self.start[block]..self.start[block + 1]
-    }
-
-    /// Dofs of a block.
-    fn size(&self, block: usize) -> usize {
-        self.position(block).len()
-    }
-
-    /// The blocks in another sequence.
-    fn permuted(&self, sequence: &[usize]) -> Result<Self> {
-        let mut new: Vec<u32> = reserved(sequence.len(), WHAT)?;
-        new.resize(sequence.len(), 0);
-        sequence.iter().enumerate().for_each(|(at, &block)| new[block] = at as u32);
-        let (mut ptr, mut adj) = (reserved(sequence.len() + 1, WHAT)?, reserved(self.adj.len(), WHAT)?);
-        ptr.push(0);
-        for &block in sequence {
-            adj.extend(self.neighbours(block).iter().map(|&other| new[other as usize]));
-            ptr.push(adj.len());
-        }
-        let mut range = reserved(sequence.len(), WHAT)?;
-        range.extend(sequence.iter().map(|&block| self.range[block].clone()));
-        let start = starts(&range)?;
-        Ok(Self { range, start, ptr, adj })
-    }
-}
-
-fn starts(ranges: &[Range<usize>]) -> Result<Vec<usize>> {
-    let mut start = reserved(ranges.len() + 1, WHAT)?;
-    start.push(0);
-    for (k, range) in ranges.iter().enumerate() {
-        start.push(start[k] + range.len());
-    }
-    Ok(start)
-}
-
 /// Maximal chains of blocks with the same rows below: supernodes without any zeros.
 struct Chains {
     first_block: Vec<usize>,
@@ -383,5 +298,73 @@ impl Children {
         self.next.resize(self.next.len().max(chain + 1), NONE);
         self.next[chain] = self.head[parent];
         self.head[parent] = chain;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::linalg::Symmetric;
+
+    /// Columns of L below the diagonal by elimination of one dof after the other: pairs (column, row) of positions.
+    fn filled(k: &Symmetric, order: &[usize]) -> Vec<(usize, usize)> {
+        let n = order.len();
+        let mut position = vec![NONE; k.order()];
+        order.iter().enumerate().for_each(|(at, &dof)| position[dof] = at);
+        let mut full = vec![false; n * n];
+        for i in 0..k.order() {
+            for (j, _) in k.lower_row(i).filter(|(j, _)| position[i] != NONE && position[*j] != NONE) {
+                full[position[i].min(position[j]) * n + position[i].max(position[j])] = true;
+            }
+        }
+        for c in 0..n {
+            let rows: Vec<usize> = (c + 1..n).filter(|&r| full[c * n + r]).collect();
+            rows.iter().for_each(|&r| rows.iter().filter(|&&q| q > r).for_each(|&q| full[r * n + q] = true));
+        }
+        (0..n * n).filter(|&at| full[at] && at / n < at % n).map(|at| (at / n, at % n)).collect()
+    }
+
+    /// Random graphs of nodes of two dofs, some dofs held.
+    #[test]
+    fn panels_hold_all_of_l_and_little_else_and_updates_go_to_the_first_row_below() {
+        let mut state = 7_u64;
+        let mut random = move || {
+            state = state.wrapping_mul(0x5851_f42d_4c95_7f2d).wrapping_add(0x1405_7b7e_f767_814f);
+            (state >> 33) as usize
+        };
+        for nodes in 1..40 {
+            let edges: Vec<bool> = (0..nodes * nodes).map(|_| random() % nodes < 2).collect();
+            let (mut ptr, mut col) = (vec![0], Vec::new());
+            for i in 0..2 * nodes {
+                col.extend(
+                    (0..=i).filter(|&j| i / 2 == j / 2 || edges[i / 2 * nodes + j / 2]).map(|j| j as u32),
+                );
+                ptr.push(col.len());
+            }
+            let k = Symmetric { ptr, val: vec![1.0; col.len()], col };
+            let given: Vec<usize> = (0..2 * nodes).filter(|_| random() % 8 > 0).collect();
+            let (order, found) = Supernodes::of(&Graph::of(&k).unwrap(), &given).unwrap();
+            let sorted = |mut dofs: Vec<usize>| {
+                dofs.sort_unstable();
+                dofs
+            };
+            assert_eq!(sorted(order.clone()), given);
+            let l = filled(&k, &order);
+            let mut entries = 0;
+            for (s, node) in found.nodes().enumerate() {
+                let rows: Vec<usize> = node.front_rows().collect();
+                assert!(rows.windows(2).all(|pair| pair[0] < pair[1]));
+                let own = |entry: &&(usize, usize)| found.of_column(entry.0) == s;
+                assert!(l.iter().filter(own).all(|(_, row)| rows.binary_search(row).is_ok()));
+                entries += node.width * (node.width + 1) / 2 + node.width * node.rows.len();
+                let above = node.rows.first().map_or(NONE, |&row| found.of_column(row as usize));
+                assert_eq!(found.parent(s), above);
+            }
+            let exact = l.len() + order.len();
+            assert!(
+                entries >= exact && (entries - exact) as f64 <= 0.9 * entries as f64,
+                "{entries}, {exact}"
+            );
+        }
     }
 }
