@@ -383,6 +383,28 @@ typedef struct feti_option {
 } feti_option;
 
 /**
+ * Time and memory of a phase of a setup or a solve.
+ */
+typedef struct feti_phase {
+  /**
+   * Set by the caller: size of the struct in bytes.
+   */
+  int64_t struct_size;
+  /**
+   * Bytes of what the phase has made and keeps; 0: they are not counted.
+   */
+  int64_t bytes;
+  /**
+   * Wall time in the last call that set up or solved, seconds.
+   */
+  double seconds;
+  /**
+   * Name, static.
+   */
+  const char *name;
+} feti_phase;
+
+/**
  * Where a setup or a solve stands.
  */
 typedef struct feti_progress {
@@ -391,8 +413,8 @@ typedef struct feti_progress {
    */
   int64_t struct_size;
   /**
-   * FETI_PHASE_SETUP (after the factors of the bodies, the dual operator, the preconditioner) or
-   * FETI_PHASE_SOLVE.
+   * FETI_PHASE_SETUP (a body has been analysed or factorised, its dual operator or the
+   * preconditioner made, or half a second has passed) or FETI_PHASE_SOLVE.
    */
   int32_t phase;
   /**
@@ -432,6 +454,11 @@ typedef struct feti_progress {
    * Seconds since the call began, also in the setup.
    */
   double seconds;
+  /**
+   * Part of the work of the setup that is done, from 0 to 1: an estimate that never falls; NaN in
+   * the solve.
+   */
+  double fraction;
 } feti_progress;
 
 /**
@@ -573,6 +600,22 @@ typedef struct feti_info {
    * 1: the answer is that of option finish = direct; 0: it was not asked for, or brought nothing.
    */
   int64_t finished;
+  /**
+   * Bodies whose dual operator has its entries (option dual_operator).
+   */
+  int64_t explicit_operators;
+  /**
+   * Bodies whose dual operator is known by its products alone.
+   */
+  int64_t implicit_operators;
+  /**
+   * Bytes of the factors of all bodies and, at most, of the work arrays of their computation.
+   */
+  int64_t factor_bytes;
+  /**
+   * Bytes of the explicit dual operators.
+   */
+  int64_t operator_bytes;
 } feti_info;
 
 /**
@@ -1132,6 +1175,34 @@ int64_t feti_option_count(void);
 int32_t feti_option_at(int64_t k, struct feti_option *out);
 
 /**
+ * Number of phases of a setup and a solve.
+ *
+ * After a failure nothing is written.
+ *
+ * @param[in]  p     (scalar) the handle
+ * @param[out] count (scalar) the number of phases
+ *
+ * Safety: `count` has room for one number.
+ */
+int32_t feti_phase_count(struct feti_problem *p, int64_t *count);
+
+/**
+ * Tells time and memory of a phase: rows, null spaces, analysis, factorisation, dual operators,
+ * preconditioner, dual solve, recovery, in this order.
+ *
+ * Times are those of the last call that set up or solved, also of one that failed; a phase that
+ * had nothing to do took none. What a setup keeps, later solves do not make again. After a failure
+ * nothing is written.
+ *
+ * @param[in]     p   (scalar) the handle
+ * @param[in]     k   (scalar) from 0, less than feti_phase_count
+ * @param[in,out] out (scalar) `struct_size` set, at least 16
+ *
+ * Safety: `out` leads to `struct_size` writable bytes.
+ */
+int32_t feti_phase_at(struct feti_problem *p, int64_t k, struct feti_phase *out);
+
+/**
  * Creates a problem without bodies and rows.
  *
  * The handle is valid until feti_problem_destroy; its number is never used again. After a failure
@@ -1176,10 +1247,10 @@ int32_t feti_problem_error(struct feti_problem *p, char *buf, int64_t cap, int64
  *
  * May be called from any thread and from a progress function, while another call on the problem
  * runs. That call returns FETI_CANCELLED before the next product with the dual operator (in the
- * setup: before the next body); the results are those of the last step, and there are none when it
- * was cancelled before the first one. Without a running call it does nothing: every setup and
- * every solve begins anew. In a signal handler set a flag instead and let the progress function
- * look at it.
+ * setup: before the next body, and inside the assembly of its dual operator); the results are
+ * those of the last step, and there are none when it was cancelled before the first one. Without a
+ * running call it does nothing: every setup and every solve begins anew. In a signal handler set a
+ * flag instead and let the progress function look at it.
  *
  * @param[in] p (scalar) the handle
  */

@@ -206,7 +206,27 @@ module feti_contact_c
     integer(c_int64_t) :: direct_solves
     !> 1: the answer is that of option finish = direct; 0: it was not asked for, or brought nothing.
     integer(c_int64_t) :: finished
+    !> Bodies whose dual operator has its entries (option dual_operator).
+    integer(c_int64_t) :: explicit_operators
+    !> Bodies whose dual operator is known by its products alone.
+    integer(c_int64_t) :: implicit_operators
+    !> Bytes of the factors of all bodies and, at most, of the work arrays of their computation.
+    integer(c_int64_t) :: factor_bytes
+    !> Bytes of the explicit dual operators.
+    integer(c_int64_t) :: operator_bytes
   end type feti_info
+
+  !> Time and memory of a phase of a setup or a solve.
+  type, bind(C), public :: feti_phase
+    !> Set by the caller: size of the struct in bytes.
+    integer(c_int64_t) :: struct_size
+    !> Bytes of what the phase has made and keeps; 0: they are not counted.
+    integer(c_int64_t) :: bytes
+    !> Wall time in the last call that set up or solved, seconds.
+    real(c_double) :: seconds
+    !> Name, static.
+    type(c_ptr) :: name
+  end type feti_phase
 
   !> Verdict on an answer, by relative figures: each passes when it is at most `limit` plus the noise of
   !> rounding.
@@ -254,8 +274,8 @@ module feti_contact_c
   type, bind(C), public :: feti_progress
     !> Size of the struct in bytes, set by the library.
     integer(c_int64_t) :: struct_size
-    !> FETI_PHASE_SETUP (after the factors of the bodies, the dual operator, the preconditioner) or
-    !> FETI_PHASE_SOLVE.
+    !> FETI_PHASE_SETUP (a body has been analysed or factorised, its dual operator or the preconditioner made,
+    !> or half a second has passed) or FETI_PHASE_SOLVE.
     integer(c_int32_t) :: phase
     !> FETI_STEP_CONJUGATE_GRADIENT, FETI_STEP_EXPANSION or FETI_STEP_RELEASE; 0 in the setup.
     integer(c_int32_t) :: step
@@ -275,6 +295,9 @@ module feti_contact_c
     real(c_double) :: theta
     !> Seconds since the call began, also in the setup.
     real(c_double) :: seconds
+    !> Part of the work of the setup that is done, from 0 to 1: an estimate that never falls; NaN in the
+    !> solve.
+    real(c_double) :: fraction
   end type feti_progress
 
   !> What the last solve, or the last setup that failed, has found out about the problem. Numbers count from
@@ -340,6 +363,8 @@ module feti_contact_c
   public :: feti_get_str
   public :: feti_option_count
   public :: feti_option_at
+  public :: feti_phase_count
+  public :: feti_phase_at
   public :: feti_problem_create
   public :: feti_problem_destroy
   public :: feti_problem_error
@@ -950,6 +975,41 @@ module feti_contact_c
       integer(c_int32_t) :: feti_option_at
     end function feti_option_at
 
+    !> Number of phases of a setup and a solve.
+    !>
+    !> After a failure nothing is written.
+    !>
+    !> @param[in]  p     (scalar) the handle
+    !> @param[out] count (scalar) the number of phases
+    !>
+    !> Safety: `count` has room for one number.
+    function feti_phase_count(p, count) bind(C, name="feti_phase_count")
+      import
+      type(c_ptr), value :: p
+      integer(c_int64_t), intent(out) :: count
+      integer(c_int32_t) :: feti_phase_count
+    end function feti_phase_count
+
+    !> Tells time and memory of a phase: rows, null spaces, analysis, factorisation, dual operators,
+    !> preconditioner, dual solve, recovery, in this order.
+    !>
+    !> Times are those of the last call that set up or solved, also of one that failed; a phase that had
+    !> nothing to do took none. What a setup keeps, later solves do not make again. After a failure nothing is
+    !> written.
+    !>
+    !> @param[in]     p   (scalar) the handle
+    !> @param[in]     k   (scalar) from 0, less than feti_phase_count
+    !> @param[in,out] out (scalar) `struct_size` set, at least 16
+    !>
+    !> Safety: `out` leads to `struct_size` writable bytes.
+    function feti_phase_at(p, k, out) bind(C, name="feti_phase_at")
+      import
+      type(c_ptr), value :: p
+      integer(c_int64_t), value :: k
+      type(feti_phase), intent(inout) :: out
+      integer(c_int32_t) :: feti_phase_at
+    end function feti_phase_at
+
     !> Creates a problem without bodies and rows.
     !>
     !> The handle is valid until feti_problem_destroy; its number is never used again. After a failure `p` is
@@ -1002,9 +1062,10 @@ module feti_contact_c
     !>
     !> May be called from any thread and from a progress function, while another call on the problem runs.
     !> That call returns FETI_CANCELLED before the next product with the dual operator (in the setup: before
-    !> the next body); the results are those of the last step, and there are none when it was cancelled before
-    !> the first one. Without a running call it does nothing: every setup and every solve begins anew. In a
-    !> signal handler set a flag instead and let the progress function look at it.
+    !> the next body, and inside the assembly of its dual operator); the results are those of the last step,
+    !> and there are none when it was cancelled before the first one. Without a running call it does nothing:
+    !> every setup and every solve begins anew. In a signal handler set a flag instead and let the progress
+    !> function look at it.
     !>
     !> @param[in] p (scalar) the handle
     function feti_cancel(p) bind(C, name="feti_cancel")

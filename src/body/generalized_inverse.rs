@@ -41,12 +41,11 @@ pub struct Known {
     k: Symmetric,
     null_space: Matrix,
     fixing: Vec<usize>,
-    analysis: Arc<Analysis>,
+    analysis: Option<Arc<Analysis>>,
 }
 
 impl GeneralizedInverse {
-    /// Null space, fixing dofs and symbolic analysis of `k` (scaled so that its largest diagonal entry is in
-    /// [1, 2)).
+    /// Null space and fixing dofs of `k` (scaled so that its largest diagonal entry is in [1, 2)).
     pub fn plan(k: Symmetric, input: &NullSpaceInput, tolerance: f64) -> Result<Plan> {
         Self::plan_with(k, input, tolerance, None)
     }
@@ -66,11 +65,7 @@ impl GeneralizedInverse {
             Some(given) => given_dofs(&null_space, &root, given)?,
             None => fixing_dofs(&null_space, &root),
         };
-        // (14): F is K without the rows and columns of these dofs
-        let mut held = vec![false; k.order()];
-        fixing.iter().for_each(|&dof| held[dof] = true);
-        let analysis = Arc::new(Analysis::new(&k, &held)?);
-        Ok(Plan::Known(Known { k, null_space, fixing, analysis }))
+        Ok(Plan::Known(Known { k, null_space, fixing, analysis: None }))
     }
 
     /// The same where nothing is known about the null space.
@@ -81,6 +76,11 @@ impl GeneralizedInverse {
     /// (15): `x = K+ b`, both of length n; F^-1 on the free dofs, 0 on those held.
     pub fn apply(&self, b: &[f64], x: &mut [f64]) -> Result<()> {
         x.copy_from_slice(b);
+        self.apply_in_place(x)
+    }
+
+    /// `x <- K+ x`
+    pub fn apply_in_place(&self, x: &mut [f64]) -> Result<()> {
         self.factor.solve(x)
     }
 
@@ -91,12 +91,21 @@ impl GeneralizedInverse {
 }
 
 impl Plan {
-    /// Bytes the factorisation is going to take.
-    pub fn bytes(&self) -> usize {
+    /// Orders the unknowns and finds the pattern of the factor, unless that has been done.
+    pub fn analyse(&mut self) -> Result<&Arc<Analysis>> {
         match self {
-            Self::Known(known) => known.analysis.bytes(),
-            Self::Search(search) => search.bytes(),
+            Self::Known(known) => known.analyse(),
+            Self::Search(search) => search.analyse(),
         }
+    }
+
+    /// Bytes the factorisation is going to take, once it is analysed.
+    pub fn bytes(&self) -> usize {
+        let analysis = match self {
+            Self::Known(known) => &known.analysis,
+            Self::Search(search) => &search.analysis,
+        };
+        analysis.as_ref().map_or(0, |analysis| analysis.bytes())
     }
 
     /// Factorises F of (14) and probes; refuses a K that is indefinite, against (4), or more singular than its null
@@ -110,8 +119,21 @@ impl Plan {
 }
 
 impl Known {
-    fn execute(self) -> Result<GeneralizedInverse> {
-        let factor = self.analysis.factorize(&self.k)?.map_err(|breakdown| {
+    /// (14): F is K without the rows and columns of the fixing dofs.
+    fn analyse(&mut self) -> Result<&Arc<Analysis>> {
+        let analysis = match self.analysis.take() {
+            Some(analysis) => analysis,
+            None => {
+                let mut held = vec![false; self.k.order()];
+                self.fixing.iter().for_each(|&dof| held[dof] = true);
+                Arc::new(Analysis::new(&self.k, &held)?)
+            }
+        };
+        Ok(self.analysis.insert(analysis))
+    }
+
+    fn execute(mut self) -> Result<GeneralizedInverse> {
+        let factor = Arc::clone(self.analyse()?).factorize(&self.k)?.map_err(|breakdown| {
             let missing = || missing_mode(breakdown.dof, breakdown.relative_pivot, self.null_space.cols);
             breakdown.refused().unwrap_or_else(missing)
         })?;

@@ -41,7 +41,7 @@ pub struct Search {
     count: usize,
     /// `K + E D_tt E'`, all dofs t of a part coupled in its pattern.
     supported: Symmetric,
-    analysis: Arc<Analysis>,
+    pub(super) analysis: Option<Arc<Analysis>>,
 }
 
 /// What one part moves like without stiffness.
@@ -84,19 +84,23 @@ impl Search {
             last.dedup();
         }
         let supported = supported(&k, &last)?;
-        let analysis = Arc::new(Analysis::ending(&k, &supported, &last.concat())?);
-        Ok(Self { k, tolerance, fixing, last, members, count, supported, analysis })
+        Ok(Self { k, tolerance, fixing, last, members, count, supported, analysis: None })
     }
 
-    /// Bytes the factorisation is going to take.
-    pub fn bytes(&self) -> usize {
-        self.analysis.bytes()
+    /// Order of elimination with the dofs t last.
+    pub(super) fn analyse(&mut self) -> Result<&Arc<Analysis>> {
+        let analysis = match self.analysis.take() {
+            Some(analysis) => analysis,
+            None => Arc::new(Analysis::ending(&self.k, &self.supported, &self.last.concat())?),
+        };
+        Ok(self.analysis.insert(analysis))
     }
 
     /// Tries with more dofs t until none is missed.
     pub fn execute(mut self) -> Result<GeneralizedInverse> {
         loop {
-            match self.attempt()? {
+            let analysis = Arc::clone(self.analyse()?);
+            match self.attempt(&analysis)? {
                 Attempt::Done(inverse) => return Ok(*inverse),
                 Attempt::Missed(dof) if 2 * self.count > MOST => {
                     let what = format!(
@@ -116,8 +120,8 @@ impl Search {
         }
     }
 
-    fn attempt(&self) -> Result<Attempt> {
-        let factor = match self.analysis.factorize(&self.supported)? {
+    fn attempt(&self, analysis: &Arc<Analysis>) -> Result<Attempt> {
+        let factor = match analysis.factorize(&self.supported)? {
             Ok(factor) => factor,
             Err(breakdown) => return missed_or_indefinite(breakdown),
         };

@@ -8,10 +8,13 @@
 //! contact rows, then the equality rows, scaled so that `B D^-1 B' + C` has the diagonal 1; forces are in units
 //! of 2^p, the size of the largest diagonal entry of K.
 
+mod cost;
 mod coupling;
 mod entries;
+mod operator;
 mod preconditioner;
 
+pub use cost::{all_bytes, implicit_bodies, Size};
 pub use coupling::dependent_rows;
 pub use preconditioner::{constrained, Boundary, Preconditioner};
 
@@ -22,7 +25,7 @@ use crate::body::GeneralizedInverse;
 use crate::error::Result;
 use crate::linalg::memory::zeros;
 use crate::linalg::vector::{dot, norm_max};
-use crate::linalg::{Csr, Operator, Packed};
+use crate::linalg::{Csr, Packed};
 
 /// One body as the dual sees it.
 struct Subdomain {
@@ -35,8 +38,10 @@ struct Subdomain {
     rows: Vec<usize>,
     /// Those rows, over the unknowns of the body.
     matrix: Csr,
-    /// `F_p = B_p K_p+ B_p'`
-    operator: Packed,
+    /// `F_p = B_p K_p+ B_p'`; none: every product with it takes one with K_p+.
+    operator: Option<Packed>,
+    /// Multiplications of a product with F_p.
+    work: usize,
 }
 
 pub struct Dual {
@@ -51,20 +56,26 @@ pub struct Dual {
 pub struct Part {
     pub range: Range<usize>,
     pub kplus: Arc<GeneralizedInverse>,
+    /// What the body and its F_p are measured by.
+    pub size: Size,
+    /// F_p is known by its products alone.
+    pub implicit: bool,
 }
 
 impl Dual {
-    /// `matrix` is B, m x n, `compliance` the diagonal of C; `in_parallel` runs independent tasks, each with its
-    /// number, in any order.
+    /// `matrix` is B, m x n, `compliance` the diagonal of C; `assembly` runs the tasks that assemble F_p.
     pub fn new(
         parts: Vec<Part>,
         matrix: &Csr,
         compliance: Vec<f64>,
-        in_parallel: &InParallel,
+        assembly: &mut Assembly,
     ) -> Result<Self> {
         let local = split(&parts, matrix);
-        let assemble = |p: usize| parts[p].kplus.inverse_form(&local[p].1);
-        let operators = in_parallel(parts.len(), &assemble)?;
+        let assemble = |p: usize| {
+            let Part { kplus, implicit, .. } = &parts[p];
+            (!implicit).then(|| kplus.inverse_form(&local[p].1)).transpose()
+        };
+        let operators = assembly(parts.len(), &assemble)?;
         let mut first = 0;
         let mut subdomains = Vec::with_capacity(parts.len());
         for ((part, (rows, matrix)), operator) in parts.into_iter().zip(local).zip(operators) {
@@ -77,20 +88,11 @@ impl Dual {
                 rows,
                 matrix,
                 operator,
+                work: part.size.work(part.implicit),
             });
         }
         let coarse = coarse(&subdomains, matrix.rows(), first);
         Ok(Self { subdomains, compliance, coarse })
-    }
-
-    /// Bytes that explicit operators take for these bodies and rows.
-    pub fn bytes(ranges: impl Iterator<Item = Range<usize>>, matrix: &Csr) -> usize {
-        ranges.map(|range| Packed::bytes(touching(&range, matrix).len())).sum()
-    }
-
-    /// Multiplications of a product with F.
-    pub fn product_work(&self) -> usize {
-        self.subdomains.iter().map(|s| s.rows.len() * s.rows.len()).sum()
     }
 
     /// Dimension r of the null space of all bodies.
@@ -149,28 +151,12 @@ impl Dual {
     }
 }
 
+/// Assembles the operators `0..count`, none where they are implicit.
+pub type Assembly<'a> =
+    dyn FnMut(usize, &(dyn Fn(usize) -> Result<Option<Packed>> + Sync)) -> Result<Vec<Option<Packed>>> + 'a;
+
 /// Runs tasks 0..count and collects their results in order, or the first error in order.
-pub type InParallel<'a> =
-    dyn Fn(usize, &(dyn Fn(usize) -> Result<Packed> + Sync)) -> Result<Vec<Packed>> + 'a;
-
-impl Operator for Dual {
-    fn order(&self) -> usize {
-        self.compliance.len()
-    }
-
-    /// The operator of (12)-(13): `y = F x = C x + sum_p B_p K_p+ B_p' x`, body after body.
-    fn apply(&self, x: &[f64], y: &mut [f64]) {
-        y.iter_mut().zip(x).zip(&self.compliance).for_each(|((y, x), c)| *y = c * x);
-        let (mut local, mut image) = (Vec::new(), Vec::new());
-        for s in &self.subdomains {
-            local.clear();
-            local.extend(s.rows.iter().map(|&i| x[i]));
-            image.resize(local.len(), 0.0);
-            s.operator.apply(&local, &mut image);
-            s.rows.iter().zip(&image).for_each(|(&i, v)| y[i] += v);
-        }
-    }
-}
+pub type InParallel<'a, T> = dyn Fn(usize, &(dyn Fn(usize) -> Result<T> + Sync)) -> Result<Vec<T>> + 'a;
 
 /// Rows of B with an entry in the range.
 fn touching(range: &Range<usize>, matrix: &Csr) -> Vec<usize> {

@@ -15,7 +15,7 @@ use crate::solver::{Listener, Progress, Reply, StepKind};
 /// Cancels the setup or the solve that runs on the problem.
 ///
 /// May be called from any thread and from a progress function, while another call on the problem runs. That call returns
-/// FETI_CANCELLED before the next product with the dual operator (in the setup: before the next body); the results are
+/// FETI_CANCELLED before the next product with the dual operator (in the setup: before the next body, and inside the assembly of its dual operator); the results are
 /// those of the last step, and there are none when it was cancelled before the first one. Without a running call it does
 /// nothing: every setup and every solve begins anew. In a signal handler set a flag instead and let the progress function
 /// look at it.
@@ -105,5 +105,6 @@ fn told(now: &Progress) -> feti_progress {
         residual_chopped: now.chopped,
         theta: now.theta,
         seconds: now.seconds,
+        fraction: now.fraction,
     }
 }

@@ -138,6 +138,10 @@ fn without_answer() -> feti_info {
         seconds_solve: f64::NAN,
         direct_solves: 0,
         finished: 0,
+        explicit_operators: 0,
+        implicit_operators: 0,
+        factor_bytes: 0,
+        operator_bytes: 0,
     }
 }
 
@@ -174,6 +178,10 @@ fn report_in(info: &mut feti_info, report: &Report) {
     info.seconds_solve = report.seconds_solve;
     info.direct_solves = report.direct_solves as i64;
     info.finished = i64::from(report.finished);
+    info.explicit_operators = report.explicit_operators as i64;
+    info.implicit_operators = report.implicit_operators as i64;
+    info.factor_bytes = report.factor_bytes as i64;
+    info.operator_bytes = report.operator_bytes as i64;
 }
 
 fn certificate(from: &Certificate) -> feti_certificate {

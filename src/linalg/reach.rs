@@ -8,7 +8,7 @@ use faer::{linalg::matmul::matmul, Accum, Mat, Par};
 use crate::error::Result;
 use crate::linalg::elimination::NONE;
 use crate::linalg::memory::{copied, reserved, room, PRODUCTS};
-use crate::linalg::{Cholesky, Csr, Packed};
+use crate::linalg::{Cholesky, Csr, Interrupt, Packed};
 
 /// What a supernode passes on to its parent: update rows for the columns (rows of B) seen so far.
 struct Update {
@@ -30,7 +30,9 @@ pub fn inverse_form(cholesky: &Cholesky, rows: &Csr) -> Result<Packed> {
     let mut own = entries_by_supernode(cholesky, rows)?;
     let mut waiting: Vec<Vec<Update>> = (0..symbolic.n_supernodes()).map(|_| Vec::new()).collect();
     let mut local = vec![NONE; symbolic.nrows()];
+    let interrupt = Interrupt::present();
     for s in 0..symbolic.n_supernodes() {
+        interrupt.check()?;
         let updates = std::mem::take(&mut waiting[s]);
         let columns = merged_columns(&own[s], &updates)?;
         if columns.is_empty() {
@@ -172,6 +174,8 @@ mod tests {
             rows.push_row([(i, 1.0), (5 * i + 10, -0.5), (59, 0.1 * i as f64)]);
         }
         let form = inverse_form(&factor, &rows).unwrap();
+        let ended = Interrupt::new(Arc::new(true.into())).during(|| inverse_form(&factor, &rows));
+        assert_eq!(ended.unwrap_err().kind, crate::error::Kind::Cancelled);
         for j in 0..9 {
             let mut x = vec![0.0; n];
             rows.row(j).for_each(|(dof, v)| x[dof] += v);

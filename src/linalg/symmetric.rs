@@ -87,6 +87,10 @@ impl Operator for Symmetric {
     fn apply(&self, x: &[f64], y: &mut [f64]) {
         self.mul(x, y);
     }
+
+    fn bytes_kept(&self) -> usize {
+        size_of_val(&self.ptr[..]) + size_of_val(&self.col[..]) + size_of_val(&self.val[..])
+    }
 }
 
 #[cfg(test)]

@@ -12,6 +12,7 @@ use crate::linalg::memory::{copied, zeros};
 use crate::linalg::vector::first_non_finite;
 use crate::linalg::{Matrix, Symmetric};
 use crate::solver::findings::Findings;
+use crate::solver::phases::Phases;
 use crate::solver::report::{Counts, Report};
 use crate::solver::results::Answer;
 use crate::solver::setup::Ready;
@@ -34,7 +35,7 @@ pub struct Problem {
     pub(super) history: History,
     pub(super) host: Host,
     pub(super) factorisations: usize,
-    pub(super) seconds_setup: f64,
+    pub(super) phases: Phases,
 }
 
 /// A body with its factors, as long as they belong to its matrix.

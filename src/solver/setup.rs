@@ -2,27 +2,35 @@
 
 use std::ffi::CStr;
 use std::ops::Range;
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Instant;
 
-use crate::body::{dirichlet, dirichlet_bytes, lumped, Body, GeneralizedInverse, Modes, NullSpaceInput};
+use crate::body::{
+    dirichlet, dirichlet_bytes, lumped, Body, GeneralizedInverse, Modes, NullSpaceInput, Plan,
+};
 use crate::constraints::RowKind;
-use crate::dual::{constrained, Boundary, Dual, Part, Preconditioner};
+use crate::dual::{self, constrained, Boundary, Dual, Preconditioner};
 use crate::error::{Error, Kind, Result};
-use crate::linalg::memory::available;
 use crate::linalg::vector::power_of_two_below;
 use crate::linalg::{Operator, Symmetric};
 use crate::solver::diagnosis::empty_row_contradicts;
+use crate::solver::operators::Operators;
 use crate::solver::paper;
+use crate::solver::phases::{Phase, Phases};
 use crate::solver::problem::{Inverse, Problem};
 use crate::solver::rows::DualRows;
 use crate::solver::threads;
-use crate::solver::watch::{Stops, Watch};
+use crate::solver::watch::{Part, Watch};
 
 /// `automatic` takes the lumped preconditioner where a product with F costs this many operations for each row. On glued
 /// subdomains it saves a hundred products and takes the time of 3e4 operations for each row to set up; on two bodies in
 /// contact it saves few.
 const LUMPED_PAYS: usize = 300;
+
+/// Fractions of a setup that are done with the null spaces, the analyses and the factorisations, on the average of many.
+const NULL_SPACES: f64 = 0.05;
+const ANALYSED: f64 = 0.3;
+const FACTORISED: f64 = 0.9;
 
 /// `scale` times the stiffness of the constrained dofs of a body.
 type BoundaryStiffness = fn(&Symmetric, f64, &[usize]) -> Result<Box<dyn Operator + Send>>;
@@ -33,6 +41,7 @@ pub(super) struct Ready {
     pub unit: f64,
     pub dual: Dual,
     pub rows: DualRows,
+    pub operators: Operators,
     /// The preconditioner and its name in the options.
     pub preconditioner: Option<(&'static CStr, Preconditioner)>,
 }
@@ -40,31 +49,43 @@ pub(super) struct Ready {
 impl Problem {
     /// Null spaces, factors and dual operators, as far as they are not there yet.
     pub fn setup(&mut self) -> Result<()> {
-        self.watched(Self::set_up)
+        self.watched(|problem, watch| {
+            if !problem.is_set_up() {
+                problem.phases = Phases::default();
+            }
+            problem.set_up(watch)
+        })
+    }
+
+    /// True where factors and dual operators are as the options want them.
+    fn is_set_up(&self) -> bool {
+        let coupled = paper::is_asked(&self.settings);
+        let suits = |ready: &Ready| {
+            (ready.rows.coupled == coupled || self.equalities.len() == 0) && self.wants(&ready.operators)
+        };
+        self.ready.as_ref().is_some_and(suits)
     }
 
     pub(super) fn set_up(&mut self, watch: &mut Watch) -> Result<()> {
-        let coupled = paper::is_asked(&self.settings);
-        let suits = |ready: &Ready| ready.rows.coupled == coupled || self.equalities.len() == 0;
-        if self.ready.as_ref().is_some_and(suits) {
+        if self.is_set_up() {
             return Ok(());
         }
         if self.ready.is_some() {
             self.forget_dual();
         }
-        let started = Instant::now();
+        let begun = Instant::now();
         self.check_complete()?;
         self.contact.check_empty_rows(RowKind::Inequality).map_err(|e| empty_row_contradicts(e, 0))?;
         let first = self.contact.len();
         self.equalities.check_empty_rows(RowKind::Equality).map_err(|e| empty_row_contradicts(e, first))?;
         let unit = self.unit();
         self.check_compliance(unit)?;
-        let rows = DualRows::of(self, unit, coupled)?;
-        self.factorize(unit, &rows, &watch.stops)?;
-        watch.part_done()?;
-        self.ready = Some(self.dualize(unit, rows, &watch.stops)?);
-        watch.part_done()?;
-        self.seconds_setup = started.elapsed().as_secs_f64();
+        let rows = DualRows::of(self, unit, paper::is_asked(&self.settings))?;
+        self.phases.ended(Phase::Rows, begun);
+        let operators = self.factorize(unit, &rows, watch)?;
+        let begun = Instant::now();
+        self.ready = Some(self.dualize(unit, rows, operators, watch)?);
+        self.phases.ended(Phase::DualOperators, begun);
         Ok(())
     }
 
@@ -98,50 +119,66 @@ impl Problem {
         power_of_two_below(stiffness.map(|k| k.largest_diagonal()).fold(0.0, f64::max))
     }
 
-    /// K+ of the bodies that have none for this unit.
-    fn factorize(&mut self, unit: f64, rows: &DualRows, stops: &Stops) -> Result<()> {
+    /// K+ of the bodies that have none for this unit; gives the operators that they and the memory suggest.
+    fn factorize(&mut self, unit: f64, rows: &DualRows, watch: &mut Watch) -> Result<Operators> {
         for slot in &mut self.bodies {
             slot.inverse.take_if(|inverse| inverse.unit != unit);
         }
-        let threads = self.threads();
         let pending: Vec<usize> =
             (0..self.bodies.len()).filter(|&p| self.bodies[p].inverse.is_none()).collect();
-        let tolerance = self.settings.null_space_tolerance;
-        let plans = threads::run(threads, pending.len(), |k| {
-            plan(&self.bodies[pending[k]].body, unit, tolerance).map_err(|e| e.body(pending[k]))
-        })?;
+        let plans = self.plans(&pending, unit, watch)?;
+        let begun = Instant::now();
+        let mut factors: Vec<usize> =
+            self.bodies.iter().map(|slot| slot.inverse.as_ref().map_or(0, |i| i.bytes)).collect();
         let bytes: Vec<usize> = plans.iter().map(|plan| plan.bytes()).collect();
-        self.check_memory(rows, bytes.iter().sum())?;
-        let plans: Vec<_> = plans.into_iter().map(|plan| std::sync::Mutex::new(Some(plan))).collect();
-        let inverses = threads::run(threads, pending.len(), |k| {
-            stops.check_cancelled()?;
+        pending.iter().zip(&bytes).for_each(|(&p, bytes)| factors[p] = *bytes);
+        let operators = self.operators(rows, &factors, bytes.iter().sum())?;
+        // operations grow with the power 3/2 of the entries
+        let weights = bytes.iter().map(|bytes| (*bytes as f64).powf(1.5)).collect();
+        let part = Part { threads: self.threads(), weights, until: FACTORISED };
+        let plans: Vec<_> = plans.into_iter().map(|plan| Mutex::new(Some(plan))).collect();
+        let execute = |k: usize| {
             let plan = plans[k].lock().ok().and_then(|mut plan| plan.take());
             let plan = plan.ok_or_else(|| Error::new(Kind::Internal, "a body was factorised twice"))?;
             plan.execute().map_err(|e| e.body(pending[k]))
-        })?;
-        for ((&p, kplus), bytes) in pending.iter().zip(inverses).zip(bytes) {
-            self.bodies[p].inverse = Some(Inverse { unit, kplus: Arc::new(kplus), bytes });
+        };
+        let ended = watch.every_body(&part, execute, |k, kplus| {
+            let inverse = Inverse { unit, kplus: Arc::new(kplus), bytes: bytes[k] };
+            self.bodies[pending[k]].inverse = Some(inverse);
             self.factorisations += 1;
-        }
-        Ok(())
+        });
+        self.phases.ended(Phase::Factorisation, begun);
+        ended.map(|()| operators)
     }
 
-    /// Factors, dual operators and so many bytes more against the limit of the host, and against what the
-    /// system would give.
-    pub(super) fn check_memory(&self, rows: &DualRows, more: usize) -> Result<()> {
-        let kept: usize = self.bodies.iter().filter_map(|slot| slot.inverse.as_ref()).map(|i| i.bytes).sum();
-        let operators = Dual::bytes(self.ranges().into_iter(), &rows.matrix);
-        let needed = kept.saturating_add(more).saturating_add(operators);
-        let limit = usize::try_from(self.settings.memory_limit).unwrap_or(0);
-        if limit > 0 && needed > limit {
-            let what = format!("factors and dual operators take {needed} bytes, memory_limit is {limit}");
-            return Err(Error::new(Kind::Memory, what).value(needed as f64).limit(limit as f64));
-        }
-        available(more.saturating_add(operators), "factors and dual operators")
+    /// What the factorisations of the pending bodies are going to be.
+    fn plans(&mut self, pending: &[usize], unit: f64, watch: &mut Watch) -> Result<Vec<Plan>> {
+        let tolerance = self.settings.null_space_tolerance;
+        let entries = |p: &usize| self.bodies[*p].body.stiffness.as_ref().map_or(1, |k| k.col.len());
+        let weights: Vec<f64> = pending.iter().map(|p| entries(p) as f64).collect();
+        let begun = Instant::now();
+        let plans: Vec<_> = pending.iter().map(|_| Mutex::new(None)).collect();
+        let put =
+            |k: usize, plan: Plan| *plans[k].lock().unwrap_or_else(PoisonError::into_inner) = Some(plan);
+        let take = |k: usize| plans[k].lock().unwrap_or_else(PoisonError::into_inner).take();
+        let part = Part { threads: self.threads(), weights: weights.clone(), until: NULL_SPACES };
+        let plan =
+            |k: usize| plan(&self.bodies[pending[k]].body, unit, tolerance).map_err(|e| e.body(pending[k]));
+        watch.every_body(&part, plan, put)?;
+        let begun = self.phases.ended(Phase::NullSpaces, begun);
+        let part = Part { until: ANALYSED, weights, ..part };
+        let analyse = |k: usize| {
+            let mut plan = take(k).ok_or_else(|| Error::new(Kind::Internal, "a body was not planned"))?;
+            plan.analyse().map_err(|e| e.body(pending[k]))?;
+            Ok(plan)
+        };
+        watch.every_body(&part, analyse, put)?;
+        self.phases.ended(Phase::Analysis, begun);
+        Ok((0..plans.len()).filter_map(take).collect())
     }
 
     /// Threads of the setup; a problem so small that waking them costs more than the work gets one.
-    fn threads(&self) -> usize {
+    pub(super) fn threads(&self) -> usize {
         const SMALL: usize = 1000;
         if self.counts().dofs < SMALL {
             1
@@ -156,20 +193,28 @@ impl Problem {
     }
 
     /// Forms F and G.
-    fn dualize(&self, unit: f64, rows: DualRows, stops: &Stops) -> Result<Ready> {
-        let parts = self.ranges().into_iter().zip(&self.bodies).filter_map(|(range, slot)| {
-            let inverse = slot.inverse.as_ref()?;
-            Some(Part { range, kplus: Arc::clone(&inverse.kplus) })
+    fn dualize(&self, unit: f64, rows: DualRows, operators: Operators, watch: &mut Watch) -> Result<Ready> {
+        let bodies = self.ranges().into_iter().zip(&self.bodies).enumerate();
+        let parts = bodies.filter_map(|(p, (range, slot))| {
+            let kplus = Arc::clone(&slot.inverse.as_ref()?.kplus);
+            Some(dual::Part { range, kplus, size: operators.sizes[p], implicit: operators.implicit[p] })
         });
-        let threads = self.threads();
-        let unless_cancelled = |task: &(dyn Fn(usize) -> Result<_> + Sync), p| {
-            stops.check_cancelled()?;
-            task(p)
-        };
-        let dual = Dual::new(parts.collect(), &rows.matrix, rows.compliance.clone(), &|count, task| {
-            threads::run(threads, count, |p| unless_cancelled(task, p))
+        let part = Part { threads: self.threads(), weights: operators.weights(), until: self.assembled() };
+        let dual = Dual::new(parts.collect(), &rows.matrix, rows.compliance.clone(), &mut |count, task| {
+            let mut made: Vec<_> = (0..count).map(|_| None).collect();
+            watch.every_body(&part, task, |p, operator| made[p] = operator)?;
+            Ok(made)
         })?;
-        Ok(Ready { unit, dual, rows, preconditioner: None })
+        Ok(Ready { unit, dual, rows, operators, preconditioner: None })
+    }
+
+    /// Fraction of the setup that is done with the dual operators: what is left is for the preconditioner.
+    fn assembled(&self) -> f64 {
+        match self.settings.preconditioner.to_bytes() {
+            b"none" => 1.0,
+            b"dirichlet" => 0.6,
+            _ => 0.98,
+        }
     }
 
     /// The preconditioner the options ask for, kept until they ask for another.
@@ -183,20 +228,22 @@ impl Problem {
         if ready.preconditioner.as_ref().map_or(c"none", |(name, _)| *name) == asked {
             return Ok(());
         }
+        let begun = Instant::now();
         let preconditioner = match asked.to_bytes() {
             b"none" => None,
             b"lumped" => Some((asked, self.preconditioner(ready, lumped)?)),
             _ => {
                 let boundaries =
                     self.ranges().into_iter().map(|range| constrained(&ready.rows.matrix, &range).len());
-                self.check_memory(&ready.rows, boundaries.map(dirichlet_bytes).sum())?;
+                self.check_more(ready, boundaries.map(dirichlet_bytes).sum())?;
                 Some((asked, self.preconditioner(ready, dirichlet)?))
             }
         };
         if let Some(ready) = &mut self.ready {
             ready.preconditioner = preconditioner;
         }
-        watch.part_done()
+        self.phases.ended(Phase::Preconditioner, begun);
+        watch.setup_done()
     }
 
     fn preconditioner(&self, ready: &Ready, stiffness: BoundaryStiffness) -> Result<Preconditioner> {
@@ -213,7 +260,7 @@ impl Problem {
 }
 
 /// What K+ of a body takes, found before it is computed.
-fn plan(body: &Body, unit: f64, tolerance: f64) -> Result<crate::body::Plan> {
+fn plan(body: &Body, unit: f64, tolerance: f64) -> Result<Plan> {
     let missing = || Error::new(Kind::Internal, "a body without stiffness was set up");
     let k = body.stiffness.as_ref().ok_or_else(missing)?.scaled(1.0 / unit)?;
     let fixing = body.fixing.as_deref();
