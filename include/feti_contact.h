@@ -462,7 +462,8 @@ typedef struct feti_progress {
 } feti_progress;
 
 /**
- * A function of the host that hears of every part of a setup and every step of a solve.
+ * A function of the host that hears of every body in every part of a setup and of every step of a
+ * solve.
  *
  * It returns 0 to go on, a number > 0 to cancel, a number < 0 to report a failure of its own.
  *
@@ -1257,14 +1258,16 @@ int32_t feti_problem_error(struct feti_problem *p, char *buf, int64_t cap, int64
 int32_t feti_cancel(struct feti_problem *p);
 
 /**
- * Names the function that is told of every part of a setup and every step of a solve.
+ * Names the function that is told of every body in every part of a setup, and of every step of a
+ * solve.
  *
- * It is called on the thread that called the library, in that thread's floating-point environment,
- * until another one or NULL is given. It returns 0 to go on; a number > 0 ends the call with
- * FETI_CANCELLED and the results of the last step; a number < 0 ends it with FETI_CALLBACK, the
- * number in the error detail, and no results. Calls on the same problem from inside return
- * FETI_BUSY, except feti_cancel and feti_problem_error; other problems may be used. It must not
- * end by longjmp or an exception.
+ * During a setup on several threads it is also called when half a second has passed without such
+ * news. It is called on the thread that called the library, in that thread's floating-point
+ * environment, until another one or NULL is given. It returns 0 to go on; a number > 0 ends the
+ * call with FETI_CANCELLED and the results of the last step; a number < 0 ends it with
+ * FETI_CALLBACK, the number in the error detail, and no results. Calls on the same problem from
+ * inside return FETI_BUSY, except feti_cancel and feti_problem_error; other problems may be used.
+ * It must not end by longjmp or an exception.
  *
  * @param[in] p        (scalar) the handle
  * @param[in] callback (scalar) the function; NULL: none

@@ -400,7 +400,7 @@ module feti_contact_c
   public :: feti_progress_fn
   abstract interface
 
-    !> A function of the host that hears of every part of a setup and every step of a solve.
+    !> A function of the host that hears of every body in every part of a setup and of every step of a solve.
     !>
     !> It returns 0 to go on, a number > 0 to cancel, a number < 0 to report a failure of its own.
     !>
@@ -1074,9 +1074,10 @@ module feti_contact_c
       integer(c_int32_t) :: feti_cancel
     end function feti_cancel
 
-    !> Names the function that is told of every part of a setup and every step of a solve.
+    !> Names the function that is told of every body in every part of a setup, and of every step of a solve.
     !>
-    !> It is called on the thread that called the library, in that thread's floating-point environment, until
+    !> During a setup on several threads it is also called when half a second has passed without such news. It
+    !> is called on the thread that called the library, in that thread's floating-point environment, until
     !> another one or NULL is given. It returns 0 to go on; a number > 0 ends the call with FETI_CANCELLED and
     !> the results of the last step; a number < 0 ends it with FETI_CALLBACK, the number in the error detail,
     !> and no results. Calls on the same problem from inside return FETI_BUSY, except feti_cancel and

@@ -32,9 +32,9 @@ pub extern "C" fn feti_cancel(p: *mut feti_problem) -> i32 {
     }
 }
 
-/// Names the function that is told of every part of a setup and every step of a solve.
+/// Names the function that is told of every body in every part of a setup, and of every step of a solve.
 ///
-/// It is called on the thread that called the library, in that thread's floating-point environment, until another one or
+/// During a setup on several threads it is also called when half a second has passed without such news. It is called on the thread that called the library, in that thread's floating-point environment, until another one or
 /// NULL is given. It returns 0 to go on; a number > 0 ends the call with FETI_CANCELLED and the results of the last step; a
 /// number < 0 ends it with FETI_CALLBACK, the number in the error detail, and no results. Calls on the same problem from
 /// inside return FETI_BUSY, except feti_cancel and feti_problem_error; other problems may be used. It must not end by

@@ -273,7 +273,7 @@ pub struct feti_progress {
     pub fraction: f64,
 }
 
-/// A function of the host that hears of every part of a setup and every step of a solve.
+/// A function of the host that hears of every body in every part of a setup and of every step of a solve.
 ///
 /// It returns 0 to go on, a number > 0 to cancel, a number < 0 to report a failure of its own.
 ///

@@ -57,7 +57,7 @@ pub(super) struct Host {
 }
 
 impl Problem {
-    /// The function that hears of every part of a setup and every step of a solve from now on.
+    /// The function that hears of every body in every part of a setup and of every step of a solve from now on.
     pub fn on_progress(&mut self, listener: Option<Listener>) {
         self.host.listener = listener;
     }
