@@ -1,5 +1,7 @@
 /* Implicit and explicit dual operators give the same forces; info tells how many there are and what they take, also to a
    host compiled with a shorter struct; every phase has its name, time and bytes. phases <data folder> */
+#include <stddef.h>
+
 #include "handover.h"
 #include "small.h"
 
