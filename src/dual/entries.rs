@@ -44,3 +44,53 @@ fn add(common: &[(usize, usize)], entry: impl Fn(usize, usize) -> f64, block: &m
         common.iter().enumerate().skip(at).for_each(|(k, &(row, _))| column[row] += entry(k, at));
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::body::{GeneralizedInverse, Modes, NullSpaceInput};
+    use crate::dual::{Part, Size};
+    use crate::linalg::{Operator, Symmetric};
+    use std::sync::Arc;
+
+    /// Two chains of 8 springs, held at one end, with rows of their own and between them.
+    fn dual(implicit: bool) -> Dual {
+        let n = 8;
+        let ptr = (0..=n).map(|i| (2 * i as usize).saturating_sub(1)).collect();
+        let col = (0..n).flat_map(|i| [i - 1, i]).skip(1).map(|j: i32| j as usize).collect();
+        let val = (0..n).flat_map(|_| [-1.0, 2.0]).skip(1).collect();
+        let k = Symmetric { ptr, col, val };
+        let none = NullSpaceInput { vectors: Matrix::zeros(8, 0).unwrap(), modes: Modes::Exact };
+        let part = |p: usize| {
+            let kplus = GeneralizedInverse::plan(k.clone(), &none, 1e-8).unwrap().execute().unwrap();
+            let (range, size) = (8 * p..8 * p + 8, Size::default());
+            Part { range, kplus: Arc::new(kplus), size, implicit }
+        };
+        let mut rows = Csr::empty(16);
+        rows.push_row([(2, 1.0), (9, -0.5)]);
+        rows.push_row([(0, 1.0), (7, 0.3)]);
+        rows.push_row([(12, 2.0)]);
+        rows.push_row([(5, 1.0), (6, -1.0), (15, 1.0)]);
+        let compliance = vec![0.0, 0.1, 0.0, 0.2];
+        let one_by_one = &mut |count, task: &(dyn Fn(usize) -> _ + Sync)| (0..count).map(task).collect();
+        Dual::new(vec![part(0), part(1)], &rows, compliance, one_by_one).unwrap()
+    }
+
+    #[test]
+    fn the_entries_of_any_rows_are_those_that_products_with_unit_vectors_give() {
+        for (implicit, rows) in [(false, vec![0, 1, 2, 3]), (true, vec![0, 1, 2, 3]), (true, vec![0, 3])] {
+            let dual = dual(implicit);
+            assert_eq!(dual.implicit_bodies(), if implicit { 2 } else { 0 });
+            let mut block = Matrix::zeros(rows.len(), rows.len()).unwrap();
+            dual.add_block(&rows, &mut block).unwrap();
+            for (l, &j) in rows.iter().enumerate() {
+                let (mut unit, mut image) = ([0.0; 4], [0.0; 4]);
+                unit[j] = 1.0;
+                dual.try_apply(&unit, &mut image).unwrap();
+                for (k, &i) in rows.iter().enumerate().skip(l) {
+                    assert!((block.get(k, l) - image[i]).abs() < 1e-13, "({i}, {j})");
+                }
+            }
+        }
+    }
+}
