@@ -72,6 +72,11 @@ impl Analysis {
         Ok(Self { order, position, nodes })
     }
 
+    /// Entries of L.
+    pub fn entries(&self) -> usize {
+        self.nodes.values()
+    }
+
     /// Bytes of L and of the workspace its computation needs.
     pub fn bytes(&self) -> usize {
         self.nodes.values() * size_of::<f64>() + self.nodes.bytes() + multifrontal::bytes(&self.nodes)
