@@ -1,4 +1,4 @@
-//! Which local dual operators are assembled, by a model of time and memory: m rows of B_p, n unknowns, l entries of L_p,
+//! Which local dual operators are assembled, by a model of time and memory: m distinct rows of B_p, n unknowns, l entries of L_p,
 //! N products expected. Time counts bytes from memory, of which a product reads
 //!
 //! ```text
