@@ -383,6 +383,28 @@ typedef struct feti_option {
 } feti_option;
 
 /**
+ * Time and memory of a phase of a setup or a solve.
+ */
+typedef struct feti_phase {
+  /**
+   * Set by the caller: size of the struct in bytes.
+   */
+  int64_t struct_size;
+  /**
+   * Bytes of what the phase has made and keeps; 0: they are not counted.
+   */
+  int64_t bytes;
+  /**
+   * Wall time in the last call that set up or solved, seconds.
+   */
+  double seconds;
+  /**
+   * Name, static.
+   */
+  const char *name;
+} feti_phase;
+
+/**
  * Where a setup or a solve stands.
  */
 typedef struct feti_progress {
@@ -391,8 +413,8 @@ typedef struct feti_progress {
    */
   int64_t struct_size;
   /**
-   * FETI_PHASE_SETUP (after the factors of the bodies, the dual operator, the preconditioner) or
-   * FETI_PHASE_SOLVE.
+   * FETI_PHASE_SETUP (a body has been analysed or factorised, its dual operator or the
+   * preconditioner made, or half a second has passed) or FETI_PHASE_SOLVE.
    */
   int32_t phase;
   /**
@@ -432,10 +454,16 @@ typedef struct feti_progress {
    * Seconds since the call began, also in the setup.
    */
   double seconds;
+  /**
+   * Part of the work of the setup that is done, from 0 to 1: an estimate that never falls; NaN in
+   * the solve.
+   */
+  double fraction;
 } feti_progress;
 
 /**
- * A function of the host that hears of every part of a setup and every step of a solve.
+ * A function of the host that hears of every body in every part of a setup and of every step of a
+ * solve.
  *
  * It returns 0 to go on, a number > 0 to cancel, a number < 0 to report a failure of its own.
  *
@@ -582,6 +610,22 @@ typedef struct feti_info {
    * Columns kept through a change of rows or bodies since the problem was created.
    */
   int64_t columns_kept;
+  /**
+   * Bodies whose dual operator has its entries (option dual_operator).
+   */
+  int64_t explicit_operators;
+  /**
+   * Bodies whose dual operator is known by its products alone.
+   */
+  int64_t implicit_operators;
+  /**
+   * Bytes of the factors of all bodies and, at most, of the work arrays of their computation.
+   */
+  int64_t factor_bytes;
+  /**
+   * Bytes of the explicit dual operators.
+   */
+  int64_t operator_bytes;
 } feti_info;
 
 /**
@@ -1141,6 +1185,34 @@ int64_t feti_option_count(void);
 int32_t feti_option_at(int64_t k, struct feti_option *out);
 
 /**
+ * Number of phases of a setup and a solve.
+ *
+ * After a failure nothing is written.
+ *
+ * @param[in]  p     (scalar) the handle
+ * @param[out] count (scalar) the number of phases
+ *
+ * Safety: `count` has room for one number.
+ */
+int32_t feti_phase_count(struct feti_problem *p, int64_t *count);
+
+/**
+ * Tells time and memory of a phase: rows, null spaces, analysis, factorisation, dual operators,
+ * preconditioner, dual solve, recovery, in this order.
+ *
+ * Times are those of the last call that set up or solved, also of one that failed; a phase that
+ * had nothing to do took none. What a setup keeps, later solves do not make again. After a failure
+ * nothing is written.
+ *
+ * @param[in]     p   (scalar) the handle
+ * @param[in]     k   (scalar) from 0, less than feti_phase_count
+ * @param[in,out] out (scalar) `struct_size` set, at least 16
+ *
+ * Safety: `out` leads to `struct_size` writable bytes.
+ */
+int32_t feti_phase_at(struct feti_problem *p, int64_t k, struct feti_phase *out);
+
+/**
  * Creates a problem without bodies and rows.
  *
  * The handle is valid until feti_problem_destroy; its number is never used again. After a failure
@@ -1185,24 +1257,26 @@ int32_t feti_problem_error(struct feti_problem *p, char *buf, int64_t cap, int64
  *
  * May be called from any thread and from a progress function, while another call on the problem
  * runs. That call returns FETI_CANCELLED before the next product with the dual operator (in the
- * setup: before the next body); the results are those of the last step, and there are none when it
- * was cancelled before the first one. Without a running call it does nothing: every setup and
- * every solve begins anew. In a signal handler set a flag instead and let the progress function
- * look at it.
+ * setup: before the next body, and inside the assembly of its dual operator); the results are
+ * those of the last step, and there are none when it was cancelled before the first one. Without a
+ * running call it does nothing: every setup and every solve begins anew. In a signal handler set a
+ * flag instead and let the progress function look at it.
  *
  * @param[in] p (scalar) the handle
  */
 int32_t feti_cancel(struct feti_problem *p);
 
 /**
- * Names the function that is told of every part of a setup and every step of a solve.
+ * Names the function that is told of every body in every part of a setup, and of every step of a
+ * solve.
  *
- * It is called on the thread that called the library, in that thread's floating-point environment,
- * until another one or NULL is given. It returns 0 to go on; a number > 0 ends the call with
- * FETI_CANCELLED and the results of the last step; a number < 0 ends it with FETI_CALLBACK, the
- * number in the error detail, and no results. Calls on the same problem from inside return
- * FETI_BUSY, except feti_cancel and feti_problem_error; other problems may be used. It must not
- * end by longjmp or an exception.
+ * During a setup on several threads it is also called when half a second has passed without such
+ * news. It is called on the thread that called the library, in that thread's floating-point
+ * environment, until another one or NULL is given. It returns 0 to go on; a number > 0 ends the
+ * call with FETI_CANCELLED and the results of the last step; a number < 0 ends it with
+ * FETI_CALLBACK, the number in the error detail, and no results. Calls on the same problem from
+ * inside return FETI_BUSY, except feti_cancel and feti_problem_error; other problems may be used.
+ * It must not end by longjmp or an exception.
  *
  * @param[in] p        (scalar) the handle
  * @param[in] callback (scalar) the function; NULL: none

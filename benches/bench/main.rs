@@ -159,15 +159,17 @@ fn agree(case: &Case, runs: &Runs) -> Result<(), String> {
 fn details(case: &Case, runs: &Runs, blas: &str) {
     let median = |program, quantity: &str| runs.median(case.name, program, quantity);
     let ours = Program::Ours(1);
-    let text: Vec<String> = ["dofs", "rows", "closed", "products", "second_products"]
+    let text: Vec<String> = ["dofs", "rows", "closed", "products", "implicit", "second_products"]
         .iter()
         .filter_map(|quantity| Some(format!("{quantity} {}", median(ours, quantity)?)))
         .collect();
     println!("    {}, {} rounds", text.join(", "), case.rounds);
     let times = [
         (ours, "first_cpu"),
-        (ours, "first_setup_1_cpu"),
-        (ours, "first_setup_2_cpu"),
+        (ours, "first_analysis_wall"),
+        (ours, "first_factorisation_wall"),
+        (ours, "first_dual_operators_wall"),
+        (ours, "first_dual_solve_wall"),
         (ours, "second_cpu"),
         (Program::Parts, "ordering_cpu"),
         (Program::Parts, "analysis_cpu"),

@@ -1,10 +1,8 @@
 //! One contact solve in a process of its own, and a second one for new loads and gaps.
 
-use std::sync::{Arc, Mutex};
-
 use decks::Deck;
 use feti_contact::error::Result as Solver;
-use feti_contact::solver::{Outcome, Problem, Reply, Report, RowKind};
+use feti_contact::solver::{Outcome, Problem, Report, RowKind};
 
 use crate::clock::{peak, restart_peak, Clock, Lap};
 use crate::hand_over;
@@ -37,22 +35,13 @@ pub fn run(deck: Deck, threads: i64) -> Result<(), String> {
     Ok(())
 }
 
-/// Solves and prints times, also those of the parts of the setup as far as the library tells them.
+/// Solves and prints times, also those of the phases.
 fn timed(name: &str, problem: &mut Problem) -> Result<Report, String> {
-    let laps = Arc::new(Mutex::new(Vec::new()));
-    let clock = Arc::new(Clock::start());
-    let (heard, since) = (Arc::clone(&laps), Arc::clone(&clock));
-    problem.on_progress(Some(Box::new(move |progress| {
-        if let (None, Ok(mut laps)) = (progress.step, heard.lock()) {
-            laps.push(since.lap());
-        }
-        Reply::Continue
-    })));
+    let clock = Clock::start();
     let report = problem.solve().map_err(|error| error.to_string())?;
     print_lap(name, clock.lap());
-    let laps = laps.lock().map_err(|error| error.to_string())?;
-    for (part, lap) in laps.iter().enumerate() {
-        print_lap(&format!("{name}_setup_{}", part + 1), *lap);
+    for phase in &report.phases {
+        println!("{name}_{}_wall {:.6}", phase.name.to_string_lossy().replace(' ', "_"), phase.seconds);
     }
     if report.outcome != Outcome::Solved || !report.certificate.passed() {
         return Err(format!(
@@ -75,6 +64,9 @@ fn details(problem: &Problem, report: &Report, bodies: usize) -> Solver<()> {
     println!("equalities {}", report.counts.equalities);
     println!("closed {}", report.active);
     println!("products {}", report.dual_applications);
+    println!("implicit {}", report.implicit_operators);
+    println!("factor_bytes {}", report.factor_bytes);
+    println!("operator_bytes {}", report.operator_bytes);
     println!("worst {:.3e}", report.certificate.worst());
     println!("energy {:.15e}", report.energy);
     let mut sum = 0xcbf2_9ce4_8422_2325_u64;

@@ -15,8 +15,8 @@ use crate::clock::Clock;
 
 const NAMES: [&str; 6] = ["plan", "execute", "ordering", "analysis", "factorisation", "dual_operator"];
 
-/// Prints seconds of processor time of every part, all bodies together. `plan` has ordering and analysis in it,
-/// `analysis` the ordering; `execute` is the factorisation with its probe, in memory not touched before.
+/// Prints seconds of processor time of every part, all bodies together. `plan` is the null space, `analysis` has the
+/// ordering in it, `execute` analysis, factorisation and its probe, in memory not touched before.
 pub fn run(deck: &Deck) -> Result<()> {
     let mut seconds = [0.0; NAMES.len()];
     for (p, body) in deck.bodies.iter().enumerate() {

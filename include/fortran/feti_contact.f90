@@ -80,7 +80,9 @@ module feti_contact
     feti_diagnosis_untouched => diagnosis_untouched, &
     feti_diagnosis_undetermined => diagnosis_undetermined, &
     feti_diagnosis_undetermined_motion => diagnosis_undetermined_motion
-  use feti_contact_results, only: feti_info, feti_certificate, &
+  use feti_contact_results, only: feti_info, feti_certificate, feti_phase, &
+    feti_phase_count => phase_count, &
+    feti_phase_at => phase_at, &
     feti_setup => setup, &
     feti_solve => solve, &
     feti_check => check, &

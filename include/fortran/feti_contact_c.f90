@@ -211,7 +211,27 @@ module feti_contact_c
     integer(c_int64_t) :: columns_computed
     !> Columns kept through a change of rows or bodies since the problem was created.
     integer(c_int64_t) :: columns_kept
+    !> Bodies whose dual operator has its entries (option dual_operator).
+    integer(c_int64_t) :: explicit_operators
+    !> Bodies whose dual operator is known by its products alone.
+    integer(c_int64_t) :: implicit_operators
+    !> Bytes of the factors of all bodies and, at most, of the work arrays of their computation.
+    integer(c_int64_t) :: factor_bytes
+    !> Bytes of the explicit dual operators.
+    integer(c_int64_t) :: operator_bytes
   end type feti_info
+
+  !> Time and memory of a phase of a setup or a solve.
+  type, bind(C), public :: feti_phase
+    !> Set by the caller: size of the struct in bytes.
+    integer(c_int64_t) :: struct_size
+    !> Bytes of what the phase has made and keeps; 0: they are not counted.
+    integer(c_int64_t) :: bytes
+    !> Wall time in the last call that set up or solved, seconds.
+    real(c_double) :: seconds
+    !> Name, static.
+    type(c_ptr) :: name
+  end type feti_phase
 
   !> Verdict on an answer, by relative figures: each passes when it is at most `limit` plus the noise of
   !> rounding.
@@ -259,8 +279,8 @@ module feti_contact_c
   type, bind(C), public :: feti_progress
     !> Size of the struct in bytes, set by the library.
     integer(c_int64_t) :: struct_size
-    !> FETI_PHASE_SETUP (after the factors of the bodies, the dual operator, the preconditioner) or
-    !> FETI_PHASE_SOLVE.
+    !> FETI_PHASE_SETUP (a body has been analysed or factorised, its dual operator or the preconditioner made,
+    !> or half a second has passed) or FETI_PHASE_SOLVE.
     integer(c_int32_t) :: phase
     !> FETI_STEP_CONJUGATE_GRADIENT, FETI_STEP_EXPANSION or FETI_STEP_RELEASE; 0 in the setup.
     integer(c_int32_t) :: step
@@ -280,6 +300,9 @@ module feti_contact_c
     real(c_double) :: theta
     !> Seconds since the call began, also in the setup.
     real(c_double) :: seconds
+    !> Part of the work of the setup that is done, from 0 to 1: an estimate that never falls; NaN in the
+    !> solve.
+    real(c_double) :: fraction
   end type feti_progress
 
   !> What the last solve, or the last setup that failed, has found out about the problem. Numbers count from
@@ -345,6 +368,8 @@ module feti_contact_c
   public :: feti_get_str
   public :: feti_option_count
   public :: feti_option_at
+  public :: feti_phase_count
+  public :: feti_phase_at
   public :: feti_problem_create
   public :: feti_problem_destroy
   public :: feti_problem_error
@@ -380,7 +405,7 @@ module feti_contact_c
   public :: feti_progress_fn
   abstract interface
 
-    !> A function of the host that hears of every part of a setup and every step of a solve.
+    !> A function of the host that hears of every body in every part of a setup and of every step of a solve.
     !>
     !> It returns 0 to go on, a number > 0 to cancel, a number < 0 to report a failure of its own.
     !>
@@ -955,6 +980,41 @@ module feti_contact_c
       integer(c_int32_t) :: feti_option_at
     end function feti_option_at
 
+    !> Number of phases of a setup and a solve.
+    !>
+    !> After a failure nothing is written.
+    !>
+    !> @param[in]  p     (scalar) the handle
+    !> @param[out] count (scalar) the number of phases
+    !>
+    !> Safety: `count` has room for one number.
+    function feti_phase_count(p, count) bind(C, name="feti_phase_count")
+      import
+      type(c_ptr), value :: p
+      integer(c_int64_t), intent(out) :: count
+      integer(c_int32_t) :: feti_phase_count
+    end function feti_phase_count
+
+    !> Tells time and memory of a phase: rows, null spaces, analysis, factorisation, dual operators,
+    !> preconditioner, dual solve, recovery, in this order.
+    !>
+    !> Times are those of the last call that set up or solved, also of one that failed; a phase that had
+    !> nothing to do took none. What a setup keeps, later solves do not make again. After a failure nothing is
+    !> written.
+    !>
+    !> @param[in]     p   (scalar) the handle
+    !> @param[in]     k   (scalar) from 0, less than feti_phase_count
+    !> @param[in,out] out (scalar) `struct_size` set, at least 16
+    !>
+    !> Safety: `out` leads to `struct_size` writable bytes.
+    function feti_phase_at(p, k, out) bind(C, name="feti_phase_at")
+      import
+      type(c_ptr), value :: p
+      integer(c_int64_t), value :: k
+      type(feti_phase), intent(inout) :: out
+      integer(c_int32_t) :: feti_phase_at
+    end function feti_phase_at
+
     !> Creates a problem without bodies and rows.
     !>
     !> The handle is valid until feti_problem_destroy; its number is never used again. After a failure `p` is
@@ -1007,9 +1067,10 @@ module feti_contact_c
     !>
     !> May be called from any thread and from a progress function, while another call on the problem runs.
     !> That call returns FETI_CANCELLED before the next product with the dual operator (in the setup: before
-    !> the next body); the results are those of the last step, and there are none when it was cancelled before
-    !> the first one. Without a running call it does nothing: every setup and every solve begins anew. In a
-    !> signal handler set a flag instead and let the progress function look at it.
+    !> the next body, and inside the assembly of its dual operator); the results are those of the last step,
+    !> and there are none when it was cancelled before the first one. Without a running call it does nothing:
+    !> every setup and every solve begins anew. In a signal handler set a flag instead and let the progress
+    !> function look at it.
     !>
     !> @param[in] p (scalar) the handle
     function feti_cancel(p) bind(C, name="feti_cancel")
@@ -1018,9 +1079,10 @@ module feti_contact_c
       integer(c_int32_t) :: feti_cancel
     end function feti_cancel
 
-    !> Names the function that is told of every part of a setup and every step of a solve.
+    !> Names the function that is told of every body in every part of a setup, and of every step of a solve.
     !>
-    !> It is called on the thread that called the library, in that thread's floating-point environment, until
+    !> During a setup on several threads it is also called when half a second has passed without such news. It
+    !> is called on the thread that called the library, in that thread's floating-point environment, until
     !> another one or NULL is given. It returns 0 to go on; a number > 0 ends the call with FETI_CANCELLED and
     !> the results of the last step; a number < 0 ends it with FETI_CALLBACK, the number in the error detail,
     !> and no results. Calls on the same problem from inside return FETI_BUSY, except feti_cancel and

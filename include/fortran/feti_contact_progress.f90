@@ -22,7 +22,8 @@ contains
     call finish(c_cancel(handle_of(p)), stat, errmsg)
   end subroutine
 
-  !> Names the function that hears of every part of a setup and every step of a solve; without hear none does.
+  !> Names the function that hears of every body in every part of a setup and of every step of a solve; without hear none
+  !> does.
   !> hear: a module procedure (an internal one would need an executable stack). data: anything declared with the
   !> attribute target that lives as long as p or until the next feti_on_progress; hear gets it back and looks at it with
   !> select type. hear returns 0 to go on, > 0 to cancel (status FETI_CANCELLED, results of the last step), < 0 for a

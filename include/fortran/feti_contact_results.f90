@@ -5,8 +5,8 @@
 !> `stat` and `errmsg`: see feti_contact_base.
 module feti_contact_results
   use, intrinsic :: iso_c_binding, only: c_int32_t, c_int64_t, c_loc, c_null_ptr, c_ptr, c_sizeof
-  use, intrinsic :: iso_fortran_env, only: real64
-  use feti_contact_base, only: feti_problem, finish, handle_of, refuse
+  use, intrinsic :: iso_fortran_env, only: int64, real64
+  use feti_contact_base, only: feti_problem, finish, handle_of, refuse, static_text
   use feti_contact_c, only: FETI_OK, feti_certificate, feti_info, &
     c_active => feti_active, &
     c_amplitudes => feti_amplitudes, &
@@ -19,15 +19,27 @@ module feti_contact_results
     c_dual_rhs => feti_dual_rhs, &
     c_gaps => feti_gaps, &
     c_multipliers => feti_multipliers, &
+    c_phase => feti_phase, &
+    c_phase_at => feti_phase_at, &
+    c_phase_count => feti_phase_count, &
     c_reaction => feti_reaction, &
     c_setup => feti_setup, &
     c_solve => feti_solve
   implicit none
   private
   public :: feti_info, feti_certificate
-  public :: setup, solve, check, counts
+  public :: setup, solve, check, counts, feti_phase, phase_count, phase_at
   public :: displacement, reaction, amplitudes, multipliers, gaps, active
   public :: body_fixing, body_kplus, dual_apply, dual_rhs
+
+  !> Time and memory of a phase of a setup or a solve.
+  type :: feti_phase
+    character(len=:), allocatable :: name
+    !> Wall time in the last call that set up or solved.
+    real(real64) :: seconds = 0
+    !> Bytes of what it has made and keeps; 0: they are not counted.
+    integer(int64) :: bytes = 0
+  end type
 
 contains
 
@@ -55,6 +67,41 @@ contains
       address = c_loc(info)
     end if
     call finish(c_solve(handle_of(p), address), stat, errmsg)
+  end subroutine
+
+  !> Number of phases of a setup and a solve.
+  subroutine phase_count(p, count, stat, errmsg)
+    type(feti_problem), intent(in) :: p
+    integer, intent(out) :: count
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+    integer(c_int64_t) :: found
+    integer(c_int32_t) :: status
+
+    found = 0
+    status = c_phase_count(handle_of(p), found)
+    count = int(found)
+    call finish(status, stat, errmsg)
+  end subroutine
+
+  !> Phase k, from 1 to the number of phases, in the last call that set up or solved.
+  subroutine phase_at(p, k, phase, stat, errmsg)
+    type(feti_problem), intent(in) :: p
+    integer, intent(in) :: k
+    type(feti_phase), intent(out) :: phase
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+    type(c_phase) :: found
+    integer(c_int32_t) :: status
+
+    found%struct_size = c_sizeof(found)
+    status = c_phase_at(handle_of(p), int(k - 1, c_int64_t), found)
+    if (status == FETI_OK) then
+      phase%name = static_text(found%name)
+      phase%seconds = found%seconds
+      phase%bytes = found%bytes
+    end if
+    call finish(status, stat, errmsg)
   end subroutine
 
   !> Verifies any answer, also another code's: u (all bodies one after the other, length), lambda (force, one per

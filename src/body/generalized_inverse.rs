@@ -84,7 +84,17 @@ impl GeneralizedInverse {
     /// (15): `x = K+ b`, both of length n; F^-1 on the free dofs, 0 on those held.
     pub fn apply(&self, b: &[f64], x: &mut [f64]) -> Result<()> {
         x.copy_from_slice(b);
+        self.apply_in_place(x)
+    }
+
+    /// `x <- K+ x`
+    pub fn apply_in_place(&self, x: &mut [f64]) -> Result<()> {
         self.factor.solve(x)
+    }
+
+    /// Entries of the factor.
+    pub fn entries(&self) -> usize {
+        self.factor.analysis.entries()
     }
 
     /// Where its factor lies: the same for all that share it.

@@ -1,21 +1,97 @@
 //! The entries of F, gathered from the operators of the bodies and the compliance of the rows.
 
-use crate::dual::Dual;
-use crate::linalg::{Entries, Matrix};
+use crate::dual::{Dual, Subdomain};
+use crate::error::Result;
+use crate::linalg::{Csr, Entries, Matrix};
 
 impl Entries for Dual {
-    fn add_block(&self, rows: &[usize], block: &mut Matrix) {
+    /// Entries that an implicit operator does not have are assembled for these rows alone.
+    fn add_block(&self, rows: &[usize], block: &mut Matrix) -> Result<()> {
         for s in &self.subdomains {
             // (number in the block, number in the body) of the rows both have
             let common = rows.iter().enumerate();
             let common: Vec<(usize, usize)> =
                 common.filter_map(|(k, i)| Some((k, s.rows.binary_search(i).ok()?))).collect();
-            for (at, &(l, j)) in common.iter().enumerate() {
-                let column = block.col_mut(l);
-                let entry = |i: usize| s.multiples.entry(i, j, |i, j| s.operator.get(i, j));
-                common[at..].iter().for_each(|&(k, i)| column[k] += entry(i));
-            }
+            s.add_common(&common, block)?;
         }
         rows.iter().enumerate().for_each(|(k, &i)| block.col_mut(k)[k] += self.compliance[i]);
+        Ok(())
+    }
+}
+
+impl Subdomain {
+    /// Adds the lower triangle of F_p on the rows common to block and body.
+    fn add_common(&self, common: &[(usize, usize)], block: &mut Matrix) -> Result<()> {
+        if let Some(explicit) = &self.operator {
+            let entry = |i, j| self.multiples.entry(i, j, |i, j| explicit.get(i, j));
+            add(common, |k, l| entry(common[k].1, common[l].1), block);
+            return Ok(());
+        }
+        if common.is_empty() {
+            return Ok(());
+        }
+        let mut selected = Csr::empty(self.matrix.cols);
+        common.iter().for_each(|&(_, i)| selected.push_row(self.matrix.row(i)));
+        let assembled = self.kplus.inverse_form(&selected)?;
+        add(common, |k, l| assembled.get(k, l), block);
+        Ok(())
+    }
+}
+
+/// Adds entries (k, l), k >= l, of the common rows to the block.
+fn add(common: &[(usize, usize)], entry: impl Fn(usize, usize) -> f64, block: &mut Matrix) {
+    for (at, &(l, _)) in common.iter().enumerate() {
+        let column = block.col_mut(l);
+        common.iter().enumerate().skip(at).for_each(|(k, &(row, _))| column[row] += entry(k, at));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::body::{GeneralizedInverse, Modes, NullSpaceInput};
+    use crate::dual::{Part, Size};
+    use crate::linalg::{Operator, Symmetric};
+    use std::sync::Arc;
+
+    /// Two chains of 8 springs, held at one end, with rows of their own and between them.
+    fn dual(implicit: bool) -> Dual {
+        let n = 8;
+        let ptr = (0..=n).map(|i| (2 * i as usize).saturating_sub(1)).collect();
+        let col = (0..n).flat_map(|i| [i - 1, i]).skip(1).map(|j: i32| j as u32).collect();
+        let val = (0..n).flat_map(|_| [-1.0, 2.0]).skip(1).collect();
+        let k = Symmetric { ptr, col, val };
+        let none = NullSpaceInput { vectors: Matrix::zeros(8, 0).unwrap(), modes: Modes::Exact };
+        let part = |p: usize| {
+            let made = GeneralizedInverse::plan(k.clone().into(), &none, 1e-8).unwrap().execute().unwrap();
+            let (range, size) = (8 * p..8 * p + 8, Size::default());
+            Part { range, kplus: Arc::new(made.inverse), kept: None, size, implicit }
+        };
+        let mut rows = Csr::empty(16);
+        rows.push_row([(2, 1.0), (9, -0.5)]);
+        rows.push_row([(0, 1.0), (7, 0.3)]);
+        rows.push_row([(12, 2.0)]);
+        rows.push_row([(5, 1.0), (6, -1.0), (15, 1.0)]);
+        let compliance = vec![0.0, 0.1, 0.0, 0.2];
+        let one_by_one = &mut |count, task: &(dyn Fn(usize) -> _ + Sync)| (0..count).map(task).collect();
+        Dual::new(vec![part(0), part(1)], &rows, compliance, one_by_one).unwrap()
+    }
+
+    #[test]
+    fn the_entries_of_any_rows_are_those_that_products_with_unit_vectors_give() {
+        for (implicit, rows) in [(false, vec![0, 1, 2, 3]), (true, vec![0, 1, 2, 3]), (true, vec![0, 3])] {
+            let dual = dual(implicit);
+            assert_eq!(dual.implicit_bodies(), if implicit { 2 } else { 0 });
+            let mut block = Matrix::zeros(rows.len(), rows.len()).unwrap();
+            dual.add_block(&rows, &mut block).unwrap();
+            for (l, &j) in rows.iter().enumerate() {
+                let (mut unit, mut image) = ([0.0; 4], [0.0; 4]);
+                unit[j] = 1.0;
+                dual.try_apply(&unit, &mut image).unwrap();
+                for (k, &i) in rows.iter().enumerate().skip(l) {
+                    assert!((block.get(k, l) - image[i]).abs() < 1e-13, "({i}, {j})");
+                }
+            }
+        }
     }
 }

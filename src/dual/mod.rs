@@ -8,12 +8,15 @@
 //! contact rows, then the equality rows, scaled so that `B D^-1 B' + C` has the diagonal 1; forces are in units
 //! of 2^p, the size of the largest diagonal entry of K.
 
+mod cost;
 mod coupling;
 mod entries;
 mod multiples;
+mod operator;
 mod preconditioner;
 mod reuse;
 
+pub use cost::{all_bytes, implicit_bodies, Size};
 pub use coupling::dependent_rows;
 pub use preconditioner::{constrained, Boundary, Preconditioner};
 pub use reuse::{Columns, Kept};
@@ -27,7 +30,7 @@ use crate::dual::reuse::Reuse;
 use crate::error::Result;
 use crate::linalg::memory::zeros;
 use crate::linalg::vector::{dot, norm_max};
-use crate::linalg::{Csr, Operator, Packed};
+use crate::linalg::{Csr, Packed};
 
 /// One body as the dual sees it.
 struct Subdomain {
@@ -42,17 +45,10 @@ struct Subdomain {
     matrix: Csr,
     /// `B_p = T B`
     multiples: Multiples,
-    /// `B K_p+ B'`: F_p between T and T'.
-    operator: Packed,
-}
-
-impl Subdomain {
-    /// `B K_p+ B' T' x`; `local` gets T'x.
-    fn image(&self, x: &[f64], local: &mut Vec<f64>, image: &mut Vec<f64>) {
-        self.multiples.gather(&self.rows, x, local);
-        image.resize(local.len(), 0.0);
-        self.operator.apply(local, image);
-    }
+    /// `B K_p+ B'`: F_p between T and T'; none: every product with F_p takes one with K_p+.
+    operator: Option<Packed>,
+    /// Multiplications of a product with F_p.
+    work: usize,
 }
 
 pub struct Dual {
@@ -71,25 +67,34 @@ pub struct Part {
     pub kplus: Arc<GeneralizedInverse>,
     /// `F_p` of other rows.
     pub kept: Option<Kept>,
+    /// What the body and its F_p are measured by.
+    pub size: Size,
+    /// F_p is known by its products alone.
+    pub implicit: bool,
 }
 
 impl Dual {
-    /// `matrix` is B, m x n, `compliance` the diagonal of C; `in_parallel` runs independent tasks, each with its
-    /// number, in any order.
+    /// `matrix` is B, m x n, `compliance` the diagonal of C; `assembly` runs the tasks that assemble F_p.
     pub fn new(
         mut parts: Vec<Part>,
         matrix: &Csr,
         compliance: Vec<f64>,
-        in_parallel: &InParallel,
+        assembly: &mut Assembly,
     ) -> Result<Self> {
         let local: Vec<_> = parts.iter().map(|part| cut(&part.range, matrix)).collect();
         let (multiples, distinct): (Vec<_>, Vec<_>) =
             local.iter().map(|(_, matrix)| Multiples::of(matrix)).unzip();
-        let kept = parts.iter_mut().zip(&distinct).map(|(part, rows)| Reuse::of(part.kept.take(), rows));
-        let kept: Vec<Reuse> = kept.collect();
-        let columns = kept.iter().map(Reuse::columns).sum();
-        let assemble = |p: usize| kept[p].operator(&parts[p].kplus, &distinct[p]);
-        let operators = in_parallel(parts.len(), &assemble)?.into_iter().zip(multiples);
+        let reuse = |(part, rows): (&mut Part, &Csr)| {
+            let kept = part.kept.take();
+            (!part.implicit).then(|| Reuse::of(kept, rows))
+        };
+        let reuse: Vec<Option<Reuse>> = parts.iter_mut().zip(&distinct).map(reuse).collect();
+        let columns = reuse.iter().flatten().map(Reuse::columns).sum();
+        let assemble = |p: usize| {
+            let explicit = reuse[p].as_ref();
+            explicit.map(|reuse| reuse.operator(&parts[p].kplus, &distinct[p])).transpose()
+        };
+        let operators = assembly(parts.len(), &assemble)?.into_iter().zip(multiples);
         let mut first = 0;
         let mut subdomains = Vec::with_capacity(parts.len());
         for ((part, (rows, matrix)), (operator, multiples)) in parts.into_iter().zip(local).zip(operators) {
@@ -103,25 +108,22 @@ impl Dual {
                 matrix,
                 multiples,
                 operator,
+                work: part.size.work(part.implicit),
             });
         }
         let coarse = coarse(&subdomains, matrix.rows(), first);
         Ok(Self { subdomains, compliance, coarse, columns })
     }
 
-    /// The operators of the bodies with their rows, for a dual problem of other rows.
-    pub fn into_operators(self) -> Vec<Kept> {
-        self.subdomains.into_iter().map(|s| Kept::new(Multiples::of(&s.matrix).1, s.operator)).collect()
+    /// The explicit operators of the bodies with their rows, for a dual problem of other rows.
+    pub fn into_operators(self) -> Vec<Option<Kept>> {
+        let kept = |s: Subdomain| Some(Kept::new(Multiples::of(&s.matrix).1, s.operator?));
+        self.subdomains.into_iter().map(kept).collect()
     }
 
-    /// Bytes that explicit operators take for these bodies and rows.
-    pub fn bytes(ranges: impl Iterator<Item = Range<usize>>, matrix: &Csr) -> usize {
-        ranges.map(|range| Packed::bytes(Multiples::of(&cut(&range, matrix).1).0.count)).sum()
-    }
-
-    /// Multiplications of a product with F.
-    pub fn product_work(&self) -> usize {
-        self.subdomains.iter().map(|s| s.multiples.count * s.multiples.count).sum()
+    /// Distinct rows of B over this range of unknowns: those that are multiples of each other count once.
+    pub fn distinct_rows(range: &Range<usize>, matrix: &Csr) -> usize {
+        Multiples::of(&cut(range, matrix).1).0.count
     }
 
     /// Dimension r of the null space of all bodies.
@@ -157,18 +159,23 @@ impl Dual {
 
     /// `sum_p |B_p u_p|`, row by row: how far the bodies move along the rows at (x, alpha), by
     /// `B_p u_p = B_p K_p+ f_p - F_p x + G_p'alpha`. The same for every choice of K+.
-    pub fn distances(&self, moved: &[Vec<f64>], x: &[f64], alpha: &[f64]) -> Vec<f64> {
+    pub fn distances(
+        &self,
+        moved: &[Vec<f64>],
+        x: &[f64],
+        alpha: &[f64],
+        in_parallel: &InParallel<Vec<f64>>,
+    ) -> Result<Vec<f64>> {
+        let images = in_parallel(self.subdomains.len(), &|p| self.subdomains[p].product(x))?;
         let mut distances = vec![0.0; x.len()];
-        let (mut local, mut image) = (Vec::new(), Vec::new());
-        for (s, moved) in self.subdomains.iter().zip(moved) {
-            s.image(x, &mut local, &mut image);
-            for ((&i, moved), image) in s.rows.iter().zip(moved).zip(s.multiples.spread(&image)) {
+        for ((s, moved), image) in self.subdomains.iter().zip(moved).zip(&images) {
+            for ((&i, moved), image) in s.rows.iter().zip(moved).zip(image) {
                 let own = self.coarse.row(i).filter(|(mode, _)| s.modes.contains(mode));
                 let turned: f64 = own.map(|(mode, g)| g * alpha[mode]).sum();
                 distances[i] += (moved - image + turned).abs();
             }
         }
-        distances
+        Ok(distances)
     }
 
     /// The right-hand side of `G lambda = e` in (12), `e = R'f`; what rounding alone would leave of a load in balance is zero.
@@ -204,25 +211,12 @@ impl Dual {
     }
 }
 
+/// Assembles the operators `0..count`, none where they are implicit.
+pub type Assembly<'a> =
+    dyn FnMut(usize, &(dyn Fn(usize) -> Result<Option<Packed>> + Sync)) -> Result<Vec<Option<Packed>>> + 'a;
+
 /// Runs tasks 0..count and collects their results in order, or the first error in order.
-pub type InParallel<'a> =
-    dyn Fn(usize, &(dyn Fn(usize) -> Result<Packed> + Sync)) -> Result<Vec<Packed>> + 'a;
-
-impl Operator for Dual {
-    fn order(&self) -> usize {
-        self.compliance.len()
-    }
-
-    /// The operator of (12)-(13): `y = F x = C x + sum_p B_p K_p+ B_p' x`, body after body.
-    fn apply(&self, x: &[f64], y: &mut [f64]) {
-        y.iter_mut().zip(x).zip(&self.compliance).for_each(|((y, x), c)| *y = c * x);
-        let (mut local, mut image) = (Vec::new(), Vec::new());
-        for s in &self.subdomains {
-            s.image(x, &mut local, &mut image);
-            s.multiples.scatter(&s.rows, &image, y);
-        }
-    }
-}
+pub type InParallel<'a, T> = dyn Fn(usize, &(dyn Fn(usize) -> Result<T> + Sync)) -> Result<Vec<T>> + 'a;
 
 /// Rows of B with an entry in the range.
 fn touching(range: &Range<usize>, matrix: &Csr) -> Vec<usize> {

@@ -78,6 +78,11 @@ impl Preconditioner {
         face.solve(z)
     }
 
+    /// Bytes of the stiffness S_b of all bodies.
+    pub fn bytes_kept(&self) -> usize {
+        self.stiffness.iter().map(|boundary| boundary.bytes_kept()).sum()
+    }
+
     /// Inverts W, unless that has just been done.
     fn select(&self, held: &[bool]) -> Result<MutexGuard<'_, Option<Face>>> {
         let mut face = self.face.lock().unwrap_or_else(PoisonError::into_inner);

@@ -15,7 +15,7 @@ use crate::solver::{Listener, Progress, Reply, StepKind};
 /// Cancels the setup or the solve that runs on the problem.
 ///
 /// May be called from any thread and from a progress function, while another call on the problem runs. That call returns
-/// FETI_CANCELLED before the next product with the dual operator (in the setup: before the next body); the results are
+/// FETI_CANCELLED before the next product with the dual operator (in the setup: before the next body, and inside the assembly of its dual operator); the results are
 /// those of the last step, and there are none when it was cancelled before the first one. Without a running call it does
 /// nothing: every setup and every solve begins anew. In a signal handler set a flag instead and let the progress function
 /// look at it.
@@ -32,9 +32,9 @@ pub extern "C" fn feti_cancel(p: *mut feti_problem) -> i32 {
     }
 }
 
-/// Names the function that is told of every part of a setup and every step of a solve.
+/// Names the function that is told of every body in every part of a setup, and of every step of a solve.
 ///
-/// It is called on the thread that called the library, in that thread's floating-point environment, until another one or
+/// During a setup on several threads it is also called when half a second has passed without such news. It is called on the thread that called the library, in that thread's floating-point environment, until another one or
 /// NULL is given. It returns 0 to go on; a number > 0 ends the call with FETI_CANCELLED and the results of the last step; a
 /// number < 0 ends it with FETI_CALLBACK, the number in the error detail, and no results. Calls on the same problem from
 /// inside return FETI_BUSY, except feti_cancel and feti_problem_error; other problems may be used. It must not end by
@@ -105,5 +105,6 @@ fn told(now: &Progress) -> feti_progress {
         residual_chopped: now.chopped,
         theta: now.theta,
         seconds: now.seconds,
+        fraction: now.fraction,
     }
 }

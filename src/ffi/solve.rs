@@ -140,6 +140,10 @@ fn without_answer() -> feti_info {
         finished: 0,
         columns_computed: 0,
         columns_kept: 0,
+        explicit_operators: 0,
+        implicit_operators: 0,
+        factor_bytes: 0,
+        operator_bytes: 0,
     }
 }
 
@@ -178,6 +182,10 @@ fn report_in(info: &mut feti_info, report: &Report) {
     info.finished = i64::from(report.finished);
     info.columns_computed = report.columns_computed as i64;
     info.columns_kept = report.columns_kept as i64;
+    info.explicit_operators = report.explicit_operators as i64;
+    info.implicit_operators = report.implicit_operators as i64;
+    info.factor_bytes = report.factor_bytes as i64;
+    info.operator_bytes = report.operator_bytes as i64;
 }
 
 fn certificate(from: &Certificate) -> feti_certificate {

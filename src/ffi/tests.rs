@@ -8,12 +8,13 @@ use std::sync::mpsc;
 use super::guard::{call, enter};
 use super::*;
 
-const SOURCES: [&str; 12] = [
+const SOURCES: [&str; 13] = [
     include_str!("body.rs"),
     include_str!("diagnosis.rs"),
     include_str!("error_store.rs"),
     include_str!("null_space.rs"),
     include_str!("options.rs"),
+    include_str!("phases.rs"),
     include_str!("problem.rs"),
     include_str!("progress.rs"),
     include_str!("results.rs"),
@@ -122,14 +123,13 @@ fn statuses(p: *mut feti_problem) -> Vec<(&'static str, i32)> {
         feti_rows_rhs(0, 0, 0, null());
         feti_rows_compliance(0, 0, 0, null());
         feti_rows_clear(0);
-        feti_setup();
-        feti_solve(null_mut());
+        feti_setup(); feti_solve(null_mut());
+        feti_phase_count(null_mut()); feti_phase_at(0, null_mut());
         feti_cancel();
         feti_on_progress(None, null_mut());
         feti_start_from(0, 0, null());
         feti_state_save(null_mut());
-        feti_state_restore(0);
-        feti_state_drop(0);
+        feti_state_restore(0); feti_state_drop(0);
         feti_diagnosis(null_mut());
         feti_diagnosis_rows(0, 0, null_mut(), null_mut(), null_mut());
         feti_diagnosis_motion(0, 0, null_mut());
@@ -181,7 +181,7 @@ fn the_table_of_statuses_holds_every_function_of_a_problem() {
     });
     let declared: BTreeSet<_> =
         of_problem.map(|item| item.split_once(" fn ").unwrap().1.split('(').next().unwrap()).collect();
-    assert_eq!((tabled.len(), tabled), (48, declared));
+    assert_eq!((tabled.len(), tabled), (50, declared));
 }
 
 #[test]
@@ -194,7 +194,7 @@ fn argument_names_in_errors_are_those_of_the_signature_in_order() {
         assert_eq!((called, named), (name, arguments));
         seen += 1;
     }
-    assert_eq!(seen, 51);
+    assert_eq!(seen, 53);
 }
 
 #[test]

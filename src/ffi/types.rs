@@ -181,6 +181,28 @@ pub struct feti_info {
     pub columns_computed: i64,
     /// Columns kept through a change of rows or bodies since the problem was created.
     pub columns_kept: i64,
+    /// Bodies whose dual operator has its entries (option dual_operator).
+    pub explicit_operators: i64,
+    /// Bodies whose dual operator is known by its products alone.
+    pub implicit_operators: i64,
+    /// Bytes of the factors of all bodies and, at most, of the work arrays of their computation.
+    pub factor_bytes: i64,
+    /// Bytes of the explicit dual operators.
+    pub operator_bytes: i64,
+}
+
+/// Time and memory of a phase of a setup or a solve.
+#[repr(C)]
+#[derive(Debug, Clone, Copy)]
+pub struct feti_phase {
+    /// Set by the caller: size of the struct in bytes.
+    pub struct_size: i64,
+    /// Bytes of what the phase has made and keeps; 0: they are not counted.
+    pub bytes: i64,
+    /// Wall time in the last call that set up or solved, seconds.
+    pub seconds: f64,
+    /// Name, static.
+    pub name: *const c_char,
 }
 
 /// Verdict on an answer, by relative figures: each passes when it is at most `limit` plus the noise of rounding.
@@ -231,7 +253,8 @@ pub struct feti_certificate {
 pub struct feti_progress {
     /// Size of the struct in bytes, set by the library.
     pub struct_size: i64,
-    /// FETI_PHASE_SETUP (after the factors of the bodies, the dual operator, the preconditioner) or FETI_PHASE_SOLVE.
+    /// FETI_PHASE_SETUP (a body has been analysed or factorised, its dual operator or the preconditioner made, or half a
+    /// second has passed) or FETI_PHASE_SOLVE.
     pub phase: i32,
     /// FETI_STEP_CONJUGATE_GRADIENT, FETI_STEP_EXPANSION or FETI_STEP_RELEASE; 0 in the setup.
     pub step: i32,
@@ -251,9 +274,11 @@ pub struct feti_progress {
     pub theta: f64,
     /// Seconds since the call began, also in the setup.
     pub seconds: f64,
+    /// Part of the work of the setup that is done, from 0 to 1: an estimate that never falls; NaN in the solve.
+    pub fraction: f64,
 }
 
-/// A function of the host that hears of every part of a setup and every step of a solve.
+/// A function of the host that hears of every body in every part of a setup and of every step of a solve.
 ///
 /// It returns 0 to go on, a number > 0 to cancel, a number < 0 to report a failure of its own.
 ///

@@ -72,6 +72,11 @@ impl Analysis {
         Ok(Self { order, position, nodes })
     }
 
+    /// Entries of L.
+    pub fn entries(&self) -> usize {
+        self.nodes.values()
+    }
+
     /// Bytes of L and of the workspace its computation needs.
     pub fn bytes(&self) -> usize {
         self.nodes.values() * size_of::<f64>() + self.nodes.bytes() + multifrontal::bytes(&self.nodes)
@@ -211,6 +216,7 @@ impl Cholesky {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::linalg::Interrupt;
 
     /// Grid Laplacian n x n plus `shift` on the diagonal.
     pub fn grid(n: usize, shift: f64) -> Symmetric {
@@ -280,6 +286,8 @@ mod tests {
                 let held: Vec<bool> = (0..n).map(|_| random() < 0.1).collect();
                 let analysis = Arc::new(Analysis::new(&matrix, &held).unwrap());
                 let factor = analysis.factorize(&matrix, 0.5).unwrap().unwrap();
+                let ended = Interrupt::new(Arc::new(true.into())).during(|| analysis.attempt(&matrix, 0.5));
+                assert_eq!(ended.is_err(), !analysis.order.is_empty());
                 let b: Vec<f64> = (0..n).map(|_| random()).collect();
                 let (mut x, mut image) = (b.clone(), vec![0.0; n]);
                 factor.solve(&mut x).unwrap();

@@ -9,6 +9,7 @@ pub mod elimination;
 mod front;
 pub mod gram;
 pub mod graph;
+pub mod interrupt;
 pub mod memory;
 mod multifrontal;
 pub mod ordering;
@@ -27,6 +28,7 @@ pub mod vector;
 pub use cholesky::{Analysis, Breakdown, Cholesky};
 pub use csr::Csr;
 pub use dense::Matrix;
+pub use interrupt::Interrupt;
 pub use packed::Packed;
 pub use pivoted::PivotedCholesky;
 pub use spd::SpdSolver;
@@ -45,10 +47,14 @@ pub trait Operator: Sync {
         self.apply(x, y);
         Ok(())
     }
+    /// Bytes of its entries; 0 for an operator that keeps none.
+    fn bytes_kept(&self) -> usize {
+        0
+    }
 }
 
 /// A symmetric matrix that can hand out a block of its entries.
 pub trait Entries {
     /// Adds the lower triangle of `A_FF` to `block`, n x n; F = `rows`, n of them, ascending.
-    fn add_block(&self, rows: &[usize], block: &mut Matrix);
+    fn add_block(&self, rows: &[usize], block: &mut Matrix) -> Result<()>;
 }

@@ -15,6 +15,7 @@ use crate::linalg::memory::{refusal, reserved, untouched_zeros};
 use crate::linalg::subtrees::{shared, subtrees};
 use crate::linalg::supernodes::{Node, Supernodes};
 use crate::linalg::updates::{self, RowMap, Updates};
+use crate::linalg::Interrupt;
 
 const WHAT: &str = "a factorisation";
 
@@ -33,17 +34,18 @@ pub fn factorize(nodes: &Supernodes, matrix: &Columns) -> Result<Factor<Vec<f64>
     let mut values = untouched_zeros(nodes.values(), "a Cholesky factor")?;
     let subtrees = subtrees(nodes);
     let tasks = split(nodes, &subtrees, &mut values);
+    let (whole, interrupt) = ((nodes, matrix), Interrupt::present());
     let run = |(range, panels): (Range<usize>, &mut [f64])| {
-        Task::new(nodes, matrix, range.clone())?.eliminate_subtree(range, panels)
+        Task::new(whole, range.clone(), &interrupt)?.eliminate_subtree(range, panels)
     };
     let left: Vec<_> = match tasks.len() {
         0 | 1 => tasks.into_iter().map(run).collect(),
         _ => tasks.into_par_iter().map(run).collect(),
     };
     let mut above = 0;
-    let mut task = Task::new(nodes, matrix, nodes_above(nodes, &subtrees))?;
+    let mut task = Task::new(whole, nodes_above(nodes, &subtrees), &interrupt)?;
     for (range, update) in subtrees.iter().zip(left) {
-        if let Err(at) = task.eliminate_shared(above..range.start, &mut values) {
+        if let Err(at) = task.eliminate_shared(above..range.start, &mut values)? {
             return Ok(Err(at));
         }
         match update? {
@@ -52,7 +54,7 @@ pub fn factorize(nodes: &Supernodes, matrix: &Columns) -> Result<Factor<Vec<f64>
         }
         above = range.end;
     }
-    Ok(task.eliminate_shared(above..nodes.count(), &mut values).map(|()| values))
+    Ok(task.eliminate_shared(above..nodes.count(), &mut values)?.map(|()| values))
 }
 
 /// Bytes that the factorisation takes on one thread besides L and the matrix.
@@ -98,13 +100,14 @@ struct Task<'a> {
     local: Vec<u32>,
     updates: Updates<'a>,
     workspace: MemBuffer,
+    interrupt: &'a Interrupt,
 }
 
 impl<'a> Task<'a> {
     fn new(
-        nodes: &'a Supernodes,
-        matrix: &'a Columns,
+        (nodes, matrix): (&'a Supernodes, &'a Columns),
         sequence: impl Iterator<Item = usize>,
+        interrupt: &'a Interrupt,
     ) -> Result<Self> {
         let mut local = reserved(nodes.order(), WHAT)?;
         local.resize(nodes.order(), 0);
@@ -112,13 +115,14 @@ impl<'a> Task<'a> {
         let workspace =
             MemBuffer::try_new(need).map_err(|_| refusal(need.unaligned_bytes_required(), WHAT))?;
         let updates = Updates::new(nodes, sequence, |s| update_len(nodes, s), WHAT)?;
-        Ok(Self { nodes, matrix, local, updates, workspace })
+        Ok(Self { nodes, matrix, local, updates, workspace, interrupt })
     }
 
     /// All supernodes of a subtree, whose panels these are; gives the update of its root.
     fn eliminate_subtree(mut self, subtree: Range<usize>, panels: &mut [f64]) -> Result<Factor<Vec<f64>>> {
         let first = self.nodes.first_value(subtree.start);
         for s in subtree.clone() {
+            self.interrupt.check()?;
             let panel = self.nodes.node(s).panel;
             let panel = &mut panels[panel.start - first..panel.end - first];
             if let Err(at) = self.eliminate(s, panel, false) {
@@ -129,12 +133,15 @@ impl<'a> Task<'a> {
     }
 
     /// Supernodes above all subtrees.
-    fn eliminate_shared(&mut self, range: Range<usize>, values: &mut [f64]) -> Factor<()> {
+    fn eliminate_shared(&mut self, range: Range<usize>, values: &mut [f64]) -> Result<Factor<()>> {
         for s in range {
+            self.interrupt.check()?;
             let node = self.nodes.node(s);
-            self.eliminate(s, &mut values[node.panel.clone()], shared(node.work()))?;
+            if let Err(at) = self.eliminate(s, &mut values[node.panel.clone()], shared(node.work())) {
+                return Ok(Err(at));
+            }
         }
-        Ok(())
+        Ok(Ok(()))
     }
 
     /// Factorises the panel of s and forms its update.

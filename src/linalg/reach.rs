@@ -18,7 +18,7 @@ use crate::linalg::memory::{reserved, room, untouched_zeros, PRODUCTS};
 use crate::linalg::subtrees::{each, parts, shared};
 use crate::linalg::supernodes::{Node, Supernodes};
 use crate::linalg::updates::{RowMap, Updates};
-use crate::linalg::{Cholesky, Csr, Packed};
+use crate::linalg::{Cholesky, Csr, Interrupt, Packed};
 
 const WHAT: &str = "the dual operator of a body";
 
@@ -42,7 +42,7 @@ pub fn inverse_form(cholesky: &Cholesky, rows: &Csr) -> Result<Packed> {
     let mut above = 0;
     let mut task = Task::new(&reach, 0..nodes.count())?;
     for (range, part) in parts.iter().zip(done) {
-        (above..range.start).for_each(|s| task.eliminate(s, &mut form, |row| row as usize));
+        (above..range.start).try_for_each(|s| task.eliminate(s, &mut form, |row| row as usize))?;
         let (part, root) = (part?, range.end - 1);
         part.add_to(&mut form, reach.columns(root));
         if !reach.columns(root).is_empty() {
@@ -50,7 +50,7 @@ pub fn inverse_form(cholesky: &Cholesky, rows: &Csr) -> Result<Packed> {
         }
         above = range.end;
     }
-    (above..nodes.count()).for_each(|s| task.eliminate(s, &mut form, |row| row as usize));
+    (above..nodes.count()).try_for_each(|s| task.eliminate(s, &mut form, |row| row as usize))?;
     Ok(form)
 }
 
@@ -67,6 +67,8 @@ struct Reach<'a> {
     own: Vec<Vec<(u32, u32, f64)>>,
     /// Rows of B by supernode, ascending: columns of Y.
     columns: Vec<Vec<u32>>,
+    /// That of the task which asks for the form.
+    interrupt: Interrupt,
 }
 
 /// What a subtree adds to the form, and leaves for the rows above.
@@ -99,7 +101,7 @@ impl<'a> Reach<'a> {
                 later[nodes.parent(s) - s - 1].extend_from_slice(&seen[s]);
             }
         }
-        Ok(Self { cholesky, nodes, own, columns })
+        Ok(Self { cholesky, nodes, own, columns, interrupt: Interrupt::present() })
     }
 
     fn columns(&self, s: usize) -> &[u32] {
@@ -117,7 +119,7 @@ impl<'a> Reach<'a> {
         let mut form = Packed::zeros(rows.len())?;
         let mut task = Task::new(self, range.clone())?;
         let place = |row: u32| rows.partition_point(|&other| other < row);
-        range.for_each(|s| task.eliminate(s, &mut form, place));
+        { range }.try_for_each(|s| task.eliminate(s, &mut form, place))?;
         let update = if rows.is_empty() { Vec::new() } else { task.updates.into_last(root) };
         Ok(Part { form, update })
     }
@@ -157,11 +159,12 @@ impl<'a> Task<'a> {
 
     /// `Y_s <- L_ss^-1 (Y_s)` with what the children leave, its products, and what is left for the rows below; `place`
     /// is where a row of B stands in the form.
-    fn eliminate(&mut self, s: usize, form: &mut Packed, place: impl Fn(u32) -> usize) {
+    fn eliminate(&mut self, s: usize, form: &mut Packed, place: impl Fn(u32) -> usize) -> Result<()> {
         let columns = self.reach.columns(s);
         if columns.is_empty() {
-            return;
+            return Ok(());
         }
+        self.reach.interrupt.check()?;
         let node = self.reach.nodes.node(s);
         node.front_rows().enumerate().for_each(|(at, row)| self.local[row] = at as u32);
         let y = &mut self.y[..node.width * columns.len()];
@@ -194,6 +197,7 @@ impl<'a> Task<'a> {
         let y = MatRef::from_column_major_slice(y, node.width, columns.len());
         let places: Vec<usize> = columns.iter().map(|&row| place(row)).collect();
         add_products(y, &places, &mut self.product, form);
+        Ok(())
     }
 }
 
@@ -332,6 +336,8 @@ mod tests {
             rows.push_row([(i, 1.0), (5 * i + 10, -0.5), (59, 0.1 * i as f64)]);
         }
         let form = inverse_form(&factor, &rows).unwrap();
+        let ended = Interrupt::new(Arc::new(true.into())).during(|| inverse_form(&factor, &rows));
+        assert_eq!(ended.unwrap_err().kind, crate::error::Kind::Cancelled);
         for j in 0..9 {
             let mut x = vec![0.0; n];
             rows.row(j).for_each(|(dof, v)| x[dof] += v);

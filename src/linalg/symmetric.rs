@@ -145,6 +145,10 @@ impl Operator for Symmetric {
     fn apply(&self, x: &[f64], y: &mut [f64]) {
         self.mul(x, y);
     }
+
+    fn bytes_kept(&self) -> usize {
+        size_of_val(&self.ptr[..]) + size_of_val(&self.col[..]) + size_of_val(&self.val[..])
+    }
 }
 
 /// `by K`: the bits of a copy of K with every entry multiplied, without the copy. A power of two, `by` changes none.

@@ -29,7 +29,7 @@ impl<'a> Face<'a> {
     pub fn new(qp: Qp<'a>, entries: &dyn Entries, rows: Vec<usize>) -> Result<Option<Self>> {
         let (n, r) = (rows.len(), qp.e.len());
         let mut h = Matrix::zeros(n, n)?;
-        entries.add_block(&rows, &mut h);
+        entries.add_block(&rows, &mut h)?;
         let mut modes = Matrix::zeros(n, r)?;
         for (k, &i) in rows.iter().enumerate() {
             qp.g_transposed.row(i).for_each(|(mode, v)| modes.set(k, mode, v));

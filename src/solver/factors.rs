@@ -5,47 +5,84 @@
 use std::collections::{HashMap, HashSet};
 use std::hash::Hash;
 use std::sync::{Arc, Mutex};
+use std::time::Instant;
 
 use crate::body::{pattern_key, same_body, same_matrix, same_pattern, value_key, Layout, Plan, Symbolic};
-use crate::dual::Kept;
 use crate::error::{Error, Kind, Result};
+use crate::solver::operators::Operators;
+use crate::solver::phases::Phase;
 use crate::solver::problem::{Inverse, Problem};
 use crate::solver::rows::DualRows;
 use crate::solver::setup::plan;
 use crate::solver::threads;
-use crate::solver::watch::Stops;
+use crate::solver::watch::{Part, Watch};
 
 /// Analyses of one pattern that a body looks at before it makes one of its own.
 const TRIED: usize = 8;
 
+/// Fractions of a setup that are done with the null spaces, the analyses and the factorisations, on the average of many.
+const NULL_SPACES: f64 = 0.05;
+const ANALYSED: f64 = 0.3;
+const FACTORISED: f64 = 0.9;
+
 impl Problem {
-    /// K+ of the bodies that have none for this unit.
-    pub(super) fn factorize(&mut self, unit: f64, rows: &DualRows, stops: &Stops) -> Result<()> {
+    /// K+ of the bodies that have none for this unit; gives the operators that they and the memory suggest.
+    pub(super) fn factorize(&mut self, unit: f64, rows: &DualRows, watch: &mut Watch) -> Result<Operators> {
         for slot in &mut self.bodies {
             slot.inverse.take_if(|inverse| inverse.unit != unit);
         }
         if self.bodies.iter().all(|slot| slot.inverse.is_some()) {
-            return self.room_for_factors(rows, 0);
+            return self.operators(rows, &self.entries(&[], &[], &[]), 0);
         }
+        let begun = Instant::now();
         let twins = self.twins()?;
         let pending: Vec<usize> =
             (0..twins.len()).filter(|&p| twins[p] == p && self.bodies[p].inverse.is_none()).collect();
-        let (threads, tolerance) = (self.threads(), self.settings.null_space_tolerance);
-        let mut plans = threads::run(threads, pending.len(), |k| {
-            plan(&self.bodies[pending[k]].body, unit, tolerance).map_err(|e| e.body(pending[k]))
-        })?;
-        self.analyse(&pending, &mut plans)?;
+        let mut plans = self.plans(&pending, unit, watch)?;
+        let begun = self.phases.ended(Phase::NullSpaces, begun);
+        self.analyse(&pending, &mut plans, watch)?;
+        let begun = self.phases.ended(Phase::Analysis, begun);
         let factors = self.factors_for(&pending, &plans);
         let own = plans.iter().zip(&factors).filter(|(_, factor)| factor.is_none());
         let bytes = own.map(|(plan, _)| plan.bytes()).sum();
-        self.room_for_factors(rows, bytes)?;
-        self.execute(unit, (&pending, plans, factors), stops)?;
+        let operators = self.operators(rows, &self.entries(&twins, &pending, &plans), bytes)?;
+        let ended = self.execute(unit, (&pending, plans, factors), watch);
+        self.phases.ended(Phase::Factorisation, begun);
+        ended?;
         self.share(&twins);
-        Ok(())
+        Ok(operators)
+    }
+
+    /// Null spaces and fixing dofs of the pending bodies.
+    fn plans(&self, pending: &[usize], unit: f64, watch: &mut Watch) -> Result<Vec<Plan>> {
+        let tolerance = self.settings.null_space_tolerance;
+        let part = Part { threads: self.threads(), weights: self.weights(pending), until: NULL_SPACES };
+        let find =
+            |k: usize| plan(&self.bodies[pending[k]].body, unit, tolerance).map_err(|e| e.body(pending[k]));
+        let mut plans: Vec<Option<Plan>> = pending.iter().map(|_| None).collect();
+        watch.every_body(&part, find, |k, plan| plans[k] = Some(plan))?;
+        Ok(plans.into_iter().flatten().collect())
+    }
+
+    /// Entries of K of these bodies.
+    fn weights(&self, bodies: &[usize]) -> Vec<f64> {
+        let entries = |&p: &usize| self.bodies[p].body.stiffness.as_ref().map_or(1, |k| k.col.len());
+        bodies.iter().map(|p| entries(p) as f64).collect()
+    }
+
+    /// Entries of the factor of every body: of K+ that is there, or planned for it or its twin.
+    fn entries(&self, twins: &[usize], pending: &[usize], plans: &[Plan]) -> Vec<usize> {
+        let planned = plans.iter().map(|plan| plan.symbolic().map_or(0, |of| of.analysis.entries()));
+        let planned: HashMap<usize, usize> = pending.iter().copied().zip(planned).collect();
+        let of = |p: usize| {
+            let there = self.bodies[p].inverse.as_ref().map(|inverse| inverse.kplus.entries());
+            there.or_else(|| planned.get(&p).copied())
+        };
+        (0..self.bodies.len()).map(|p| of(p).or_else(|| of(*twins.get(p)?)).unwrap_or(0)).collect()
     }
 
     /// Factorises the bodies for which no factor is known, then gives theirs to those like them.
-    fn execute(&mut self, unit: f64, (pending, plans, factors): Planned, stops: &Stops) -> Result<()> {
+    fn execute(&mut self, unit: f64, (pending, plans, factors): Planned, watch: &mut Watch) -> Result<()> {
         let (mut own, mut others) = (Vec::new(), Vec::new());
         for ((&p, plan), factor) in pending.iter().zip(plans).zip(factors) {
             match factor {
@@ -53,19 +90,22 @@ impl Problem {
                 Some(q) => others.push((p, plan, q)),
             }
         }
-        let made = threads::run(self.threads(), own.len(), |k| {
-            stops.check_cancelled()?;
+        // operations grow with the power 3/2 of the entries
+        let weights = own.iter().map(|(_, bytes, _)| (*bytes as f64).powf(1.5)).collect();
+        let part = Part { threads: self.threads(), weights, until: FACTORISED };
+        let make = |k: usize| {
             let plan = own[k].2.lock().ok().and_then(|mut plan| plan.take());
             let plan = plan.ok_or_else(|| Error::new(Kind::Internal, "a body was factorised twice"))?;
             plan.execute().map_err(|e| e.body(own[k].0))
-        })?;
-        for ((p, bytes, _), made) in own.into_iter().zip(made) {
+        };
+        watch.every_body(&part, make, |k, made| {
+            let (p, bytes) = (own[k].0, own[k].1);
             self.work.analyses += made.further_analyses;
             self.work.factorisations += made.factorisations;
             self.bodies[p].symbolic = Some(made.symbolic);
             let kplus = Arc::new(made.inverse);
             self.bodies[p].inverse = Some(Inverse { unit, kplus, bytes, operator: None });
-        }
+        })?;
         for (p, plan, q) in others {
             let symbolic = self.bodies[q].symbolic.clone();
             let of = self.bodies[q].inverse.as_ref().map(|of| (of.bytes, plan.with_factor_of(&of.kplus)));
@@ -128,7 +168,7 @@ impl Problem {
     }
 
     /// An analysis for every plan: that of its body before, of another body of the same pattern, or a new one.
-    fn analyse(&mut self, pending: &[usize], plans: &mut [Plan]) -> Result<()> {
+    fn analyse(&mut self, pending: &[usize], plans: &mut [Plan], watch: &mut Watch) -> Result<()> {
         let mut offers = self.offers();
         let mut chosen = Vec::with_capacity(plans.len());
         for (k, &p) in pending.iter().enumerate() {
@@ -140,12 +180,13 @@ impl Problem {
             }
         }
         let new: Vec<usize> = (0..offers.len()).filter(|&o| offers[o].symbolic.is_none()).collect();
-        let made = threads::run(self.threads(), new.len(), |i| {
-            let offer = &offers[new[i]];
-            plans[offer.plan].analyse().map_err(|e| e.body(offer.body))
-        })?;
+        let bodies: Vec<usize> = new.iter().map(|&o| offers[o].body).collect();
+        let part = Part { threads: self.threads(), weights: self.weights(&bodies), until: ANALYSED };
+        let mut made: Vec<Option<Arc<Symbolic>>> = new.iter().map(|_| None).collect();
+        let analyse = |i: usize| plans[offers[new[i]].plan].analyse().map_err(|e| e.body(bodies[i]));
+        watch.every_body(&part, analyse, |i, symbolic| made[i] = Some(symbolic))?;
         self.work.analyses += made.len();
-        new.into_iter().zip(made).for_each(|(o, made)| offers[o].symbolic = Some(made));
+        new.into_iter().zip(made).for_each(|(o, made)| offers[o].symbolic = made);
         for (plan, o) in plans.iter_mut().zip(chosen) {
             offers[o].symbolic.iter().for_each(|symbolic| plan.set_analysis(Arc::clone(symbolic)));
         }
@@ -181,16 +222,6 @@ impl Problem {
             self.bodies[p].inverse = inverse;
             self.bodies[p].symbolic = symbolic;
         }
-    }
-
-    /// Refuses factors and operators that do not fit; operators kept from the rows before are dropped if that helps.
-    fn room_for_factors(&mut self, rows: &DualRows, more: usize) -> Result<()> {
-        let operators = self.bodies.iter().filter_map(|slot| slot.inverse.as_ref()?.operator.as_ref());
-        let kept: usize = operators.map(Kept::bytes).sum();
-        if kept > 0 && self.check_memory(rows, more.saturating_add(kept)).is_err() {
-            self.bodies.iter_mut().filter_map(|slot| slot.inverse.as_mut()).for_each(|of| of.operator = None);
-        }
-        self.check_memory(rows, more)
     }
 
     /// Bytes of all factors, those that bodies share once.

@@ -13,6 +13,7 @@ use crate::linalg::memory::{copied, zeros};
 use crate::linalg::vector::first_non_finite;
 use crate::linalg::{Matrix, Symmetric};
 use crate::solver::findings::Findings;
+use crate::solver::phases::Phases;
 use crate::solver::report::{Counts, Report, Work};
 use crate::solver::results::Answer;
 use crate::solver::setup::Ready;
@@ -35,7 +36,7 @@ pub struct Problem {
     pub(super) history: History,
     pub(super) host: Host,
     pub(super) work: Work,
-    pub(super) seconds_setup: f64,
+    pub(super) phases: Phases,
 }
 
 /// A body with its factors, as long as they belong to its matrix.
@@ -307,7 +308,7 @@ impl Problem {
         let operators = self.ready.take().map_or(Vec::new(), |ready| ready.dual.into_operators());
         for (slot, operator) in self.bodies.iter_mut().zip(operators) {
             if let Some(inverse) = &mut slot.inverse {
-                inverse.operator = Some(operator);
+                inverse.operator = operator;
             }
         }
         self.answer = None;

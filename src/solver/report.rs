@@ -1,6 +1,7 @@
 //! What a solve tells the host.
 
 use crate::solver::certificate::Certificate;
+use crate::solver::phases::PhaseReport;
 
 /// How a solve ended with an answer.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -92,4 +93,12 @@ pub struct Report {
     pub energy: f64,
     pub seconds_setup: f64,
     pub seconds_solve: f64,
+    /// Bodies whose dual operator has its entries, and those whose operator is known by its products alone.
+    pub explicit_operators: usize,
+    pub implicit_operators: usize,
+    /// Bytes of the factors and, at most, of the work arrays of their computation; of the explicit operators.
+    pub factor_bytes: usize,
+    pub operator_bytes: usize,
+    /// Time and memory of every phase, in their order.
+    pub phases: Vec<PhaseReport>,
 }

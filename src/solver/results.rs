@@ -64,6 +64,11 @@ impl Answer {
             energy: certificate.energy,
             seconds_setup: 0.0,
             seconds_solve: 0.0,
+            explicit_operators: ready.dual.explicit_bodies(),
+            implicit_operators: ready.dual.implicit_bodies(),
+            factor_bytes: ready.operators.factor_bytes,
+            operator_bytes: ready.dual.bytes_kept(),
+            phases: Vec::new(),
         };
         Ok(Self { report, u, lambda, mu, alpha: solution.alpha.clone(), gaps, states })
     }
@@ -190,7 +195,7 @@ impl Problem {
             groups[group] += sign * x[i] / (ready.unit * rows.scale[i]);
         }
         let mut image = zeros(groups.len(), "a product with F")?;
-        ready.dual.apply(&rows.decoupling.apply_transposed(&groups), &mut image);
+        ready.dual.try_apply(&rows.decoupling.apply_transposed(&groups), &mut image)?;
         let image = rows.decoupling.apply(&image);
         let compliance = self.contact.compliance.iter().chain(&self.equalities.compliance);
         y.iter_mut().zip(x).zip(compliance).for_each(|((y, x), c)| *y = c * x);

@@ -19,6 +19,7 @@ pub struct Settings {
     pub index_base: i64,
     pub fault_injection: i64,
     pub preconditioner: &'static CStr,
+    pub dual_operator: &'static CStr,
     pub method: &'static CStr,
     pub start: &'static CStr,
     pub direct_limit: i64,
@@ -99,7 +100,7 @@ const fn word(
     OptionInfo { name, doc, default, minimum: 0.0, maximum: 0.0, field: Field::Str(field, words) }
 }
 
-static OPTIONS: [OptionInfo; 26] = [
+static OPTIONS: [OptionInfo; 27] = [
     real(c"tolerance", 1e-12, 1e-14..=1e-2, |s| &mut s.tolerance,
         c"The dual is solved until its projected gradient, a gap, is this small against the gaps and displacements of the problem."),
     real(c"certificate_tolerance", 1e-8, 1e-14..=1e-2, |s| &mut s.certificate_tolerance,
@@ -115,15 +116,17 @@ static OPTIONS: [OptionInfo; 26] = [
     whole(c"max_steps", 10_000, 1.0..=MANY, |s| &mut s.max_steps,
         c"Steps of the dual method after which a solve ends with FETI_ITERATIONS and the best answer so far, unless the direct method completes it (option direct_limit)."),
     whole(c"memory_limit", 0, 0.0..=MANY, |s| &mut s.memory_limit,
-        c"Bytes that factors and dual operators may take; 0: no limit. Exceeding it is FETI_MEMORY before anything is allocated."),
+        c"Bytes that factors and dual operators may take; 0: no limit. Dual operators that do not fit become implicit (option dual_operator); exceeding it nevertheless is FETI_MEMORY before anything is allocated."),
     whole(c"threads", 0, 0.0..=4096.0, |s| &mut s.threads,
-        c"Threads of the setup (one for less than 1000 unknowns); 0: as many as the CPUs this process may use. The answer has the same bits for any number."),
+        c"Threads of the setup and of costly products with the dual operator (one for less than 1000 unknowns); 0: as many as the CPUs this process may use. The answer has the same bits for any number."),
     whole(c"index_base", 0, 0.0..=1.0, |s| &mut s.index_base,
         c"What numbers in error texts count from: 0 for C, 1 for Fortran."),
     whole(c"fault_injection", 0, 0.0..=1.0, |s| &mut s.fault_injection,
         c"1: the next feti_solve fails inside with FETI_INTERNAL, so that a host can test its own reaction."),
     word(c"preconditioner", &[c"automatic", c"none", c"lumped", c"dirichlet"], |s| &mut s.preconditioner,
         c"Preconditioner of the dual: automatic (lumped where products with F are dear, else none); none; lumped (stiffness of the constrained dofs, the others held); dirichlet (the others free: fewer steps, one more factorisation of each body)."),
+    word(c"dual_operator", &[c"automatic", c"explicit", c"implicit"], |s| &mut s.dual_operator,
+        c"How the dual operator of a body is kept: explicit (its entries: a product reads 4 m^2 bytes for m rows); implicit (a product takes two triangular solves: less memory, slower); automatic (by a model of the time, and implicit where memory_limit leaves no room)."),
     word(c"method", &[c"proportioning", c"smalbe", c"paper-feasible", c"paper-monotone", c"paper-extrapolating"], |s| &mut s.method,
         c"Method for the dual: proportioning on its feasible set, with smalbe to fall back on; smalbe, an augmented Lagrangian, for comparison; paper-..., Algorithm 3 of the paper with Algorithm 1 in one of its variants, without preconditioner and fallback."),
     word(c"start", &[c"cold", c"previous"], |s| &mut s.start,

@@ -5,19 +5,23 @@ use std::ops::Range;
 use std::sync::Arc;
 use std::time::Instant;
 
-use crate::body::{dirichlet, dirichlet_bytes, lumped, Body, GeneralizedInverse, Modes, NullSpaceInput};
+use crate::body::{
+    dirichlet, dirichlet_bytes, lumped, Body, GeneralizedInverse, Modes, NullSpaceInput, Plan,
+};
 use crate::constraints::RowKind;
-use crate::dual::{constrained, Boundary, Dual, Part, Preconditioner};
+use crate::dual::{self, constrained, Boundary, Dual, Preconditioner};
 use crate::error::{Error, Kind, Result};
-use crate::linalg::memory::{available, reserved};
+use crate::linalg::memory::reserved;
 use crate::linalg::vector::power_of_two_below;
 use crate::linalg::{Multiple, Operator, Symmetric};
 use crate::solver::diagnosis::empty_row_contradicts;
+use crate::solver::operators::Operators;
 use crate::solver::paper;
+use crate::solver::phases::{Phase, Phases};
 use crate::solver::problem::Problem;
 use crate::solver::rows::DualRows;
 use crate::solver::threads;
-use crate::solver::watch::{Stops, Watch};
+use crate::solver::watch::{Part, Watch};
 
 /// `automatic` takes the lumped preconditioner where a product with F costs this many operations for each row. On glued
 /// subdomains it saves a hundred products and takes the time of 3e4 operations for each row to set up; on two bodies in
@@ -33,6 +37,7 @@ pub(super) struct Ready {
     pub unit: f64,
     pub dual: Dual,
     pub rows: DualRows,
+    pub operators: Operators,
     /// The preconditioner and its name in the options.
     pub preconditioner: Option<(&'static CStr, Preconditioner)>,
 }
@@ -40,31 +45,43 @@ pub(super) struct Ready {
 impl Problem {
     /// Null spaces, factors and dual operators, as far as they are not there yet.
     pub fn setup(&mut self) -> Result<()> {
-        self.watched(Self::set_up)
+        self.watched(|problem, watch| {
+            if !problem.is_set_up() {
+                problem.phases = Phases::default();
+            }
+            problem.set_up(watch)
+        })
+    }
+
+    /// True where factors and dual operators are as the options want them.
+    fn is_set_up(&self) -> bool {
+        let coupled = paper::is_asked(&self.settings);
+        let suits = |ready: &Ready| {
+            (ready.rows.coupled == coupled || self.equalities.len() == 0) && self.wants(&ready.operators)
+        };
+        self.ready.as_ref().is_some_and(suits)
     }
 
     pub(super) fn set_up(&mut self, watch: &mut Watch) -> Result<()> {
-        let coupled = paper::is_asked(&self.settings);
-        let suits = |ready: &Ready| ready.rows.coupled == coupled || self.equalities.len() == 0;
-        if self.ready.as_ref().is_some_and(suits) {
+        if self.is_set_up() {
             return Ok(());
         }
         if self.ready.is_some() {
             self.forget_dual();
         }
-        let started = Instant::now();
+        let begun = Instant::now();
         self.check_complete()?;
         self.contact.check_empty_rows(RowKind::Inequality).map_err(|e| empty_row_contradicts(e, 0))?;
         let first = self.contact.len();
         self.equalities.check_empty_rows(RowKind::Equality).map_err(|e| empty_row_contradicts(e, first))?;
         let unit = self.unit();
         self.check_compliance(unit)?;
-        let rows = DualRows::of(self, unit, coupled)?;
-        self.factorize(unit, &rows, &watch.stops)?;
-        watch.part_done()?;
-        self.ready = Some(self.dualize(unit, rows, &watch.stops)?);
-        watch.part_done()?;
-        self.seconds_setup = started.elapsed().as_secs_f64();
+        let rows = DualRows::of(self, unit, paper::is_asked(&self.settings))?;
+        self.phases.ended(Phase::Rows, begun);
+        let operators = self.factorize(unit, &rows, watch)?;
+        let begun = Instant::now();
+        self.ready = Some(self.dualize(unit, rows, operators, watch)?);
+        self.phases.ended(Phase::DualOperators, begun);
         Ok(())
     }
 
@@ -98,21 +115,7 @@ impl Problem {
         power_of_two_below(stiffness.map(|k| k.largest_diagonal()).fold(0.0, f64::max))
     }
 
-    /// Factors, dual operators and so many bytes more against the limit of the host, and against what the
-    /// system would give.
-    pub(super) fn check_memory(&self, rows: &DualRows, more: usize) -> Result<()> {
-        let kept = self.bytes_of_factors();
-        let operators = Dual::bytes(self.ranges().into_iter(), &rows.matrix);
-        let needed = kept.saturating_add(more).saturating_add(operators);
-        let limit = usize::try_from(self.settings.memory_limit).unwrap_or(0);
-        if limit > 0 && needed > limit {
-            let what = format!("factors and dual operators take {needed} bytes, memory_limit is {limit}");
-            return Err(Error::new(Kind::Memory, what).value(needed as f64).limit(limit as f64));
-        }
-        available(more.saturating_add(operators), "factors and dual operators")
-    }
-
-    /// Threads to use; a problem so small that waking them costs more than the work gets one.
+    /// Threads of the setup; a problem so small that waking them costs more than the work gets one.
     pub(super) fn threads(&self) -> usize {
         const SMALL: usize = 1000;
         if self.counts().dofs < SMALL {
@@ -128,22 +131,37 @@ impl Problem {
     }
 
     /// Forms F and G.
-    fn dualize(&mut self, unit: f64, rows: DualRows, stops: &Stops) -> Result<Ready> {
-        let (ranges, threads) = (self.ranges(), self.threads());
-        let parts = ranges.into_iter().zip(&mut self.bodies).filter_map(|(range, slot)| {
+    fn dualize(
+        &mut self,
+        unit: f64,
+        rows: DualRows,
+        operators: Operators,
+        watch: &mut Watch,
+    ) -> Result<Ready> {
+        let part = Part { threads: self.threads(), weights: operators.weights(), until: self.assembled() };
+        let bodies = self.ranges().into_iter().zip(&mut self.bodies).enumerate();
+        let parts = bodies.filter_map(|(p, (range, slot))| {
             let inverse = slot.inverse.as_mut()?;
-            Some(Part { range, kplus: Arc::clone(&inverse.kplus), kept: inverse.operator.take() })
+            let (kplus, kept) = (Arc::clone(&inverse.kplus), inverse.operator.take());
+            Some(dual::Part { range, kplus, kept, size: operators.sizes[p], implicit: operators.implicit[p] })
         });
-        let unless_cancelled = |task: &(dyn Fn(usize) -> Result<_> + Sync), p| {
-            stops.check_cancelled()?;
-            task(p)
-        };
-        let dual = Dual::new(parts.collect(), &rows.matrix, rows.compliance.clone(), &|count, task| {
-            threads::run(threads, count, |p| unless_cancelled(task, p))
+        let dual = Dual::new(parts.collect(), &rows.matrix, rows.compliance.clone(), &mut |count, task| {
+            let mut made: Vec<_> = (0..count).map(|_| None).collect();
+            watch.every_body(&part, task, |p, operator| made[p] = operator)?;
+            Ok(made)
         })?;
         self.work.columns_computed += dual.columns.computed;
         self.work.columns_kept += dual.columns.kept;
-        Ok(Ready { unit, dual, rows, preconditioner: None })
+        Ok(Ready { unit, dual, rows, operators, preconditioner: None })
+    }
+
+    /// Fraction of the setup that is done with the dual operators: what is left is for the preconditioner.
+    fn assembled(&self) -> f64 {
+        match self.settings.preconditioner.to_bytes() {
+            b"none" => 1.0,
+            b"dirichlet" => 0.6,
+            _ => 0.98,
+        }
     }
 
     /// The preconditioner the options ask for, kept until they ask for another.
@@ -157,20 +175,22 @@ impl Problem {
         if ready.preconditioner.as_ref().map_or(c"none", |(name, _)| *name) == asked {
             return Ok(());
         }
+        let begun = Instant::now();
         let preconditioner = match asked.to_bytes() {
             b"none" => None,
             b"lumped" => Some((asked, self.preconditioner(ready, lumped)?)),
             _ => {
                 let boundaries =
                     self.ranges().into_iter().map(|range| constrained(&ready.rows.matrix, &range).len());
-                self.check_memory(&ready.rows, boundaries.map(dirichlet_bytes).sum())?;
+                self.check_more(ready, boundaries.map(dirichlet_bytes).sum())?;
                 Some((asked, self.preconditioner(ready, dirichlet)?))
             }
         };
         if let Some(ready) = &mut self.ready {
             ready.preconditioner = preconditioner;
         }
-        watch.part_done()
+        self.phases.ended(Phase::Preconditioner, begun);
+        watch.setup_done()
     }
 
     fn preconditioner(&self, ready: &Ready, stiffness: BoundaryStiffness) -> Result<Preconditioner> {
@@ -192,6 +212,17 @@ impl Ready {
         threads::run(threads, self.dual.bodies(), |p| self.dual.moved(p, f))
     }
 
+    /// `sum_p |B_p u_p|`, row by row.
+    pub fn distances(
+        &self,
+        threads: usize,
+        moved: &[Vec<f64>],
+        x: &[f64],
+        alpha: &[f64],
+    ) -> Result<Vec<f64>> {
+        self.dual.distances(moved, x, alpha, &|count, task| threads::run(threads, count, task))
+    }
+
     /// `u = K+ f + R alpha`, over all unknowns.
     pub fn displacement(&self, threads: usize, f: &[f64], alpha: &[f64]) -> Result<Vec<f64>> {
         let bodies = threads::run(threads, self.dual.bodies(), |p| self.dual.displacement(p, f, alpha))?;
@@ -202,7 +233,7 @@ impl Ready {
 }
 
 /// Null space and fixing dofs of a body, found before anything is factorised.
-pub(super) fn plan(body: &Body, unit: f64, tolerance: f64) -> Result<crate::body::Plan> {
+pub(super) fn plan(body: &Body, unit: f64, tolerance: f64) -> Result<Plan> {
     let missing = || Error::new(Kind::Internal, "a body without stiffness was set up");
     let matrix = Arc::clone(body.stiffness.as_ref().ok_or_else(missing)?);
     let k = Multiple { matrix, by: 1.0 / unit };

@@ -1,6 +1,6 @@
 //! Set up, solve the dual, recover the displacements, certify: the paper in order.
 
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use crate::constraints::RowKind;
 use crate::dual::Preconditioner;
@@ -16,6 +16,7 @@ use crate::solver::fallback::{solve_dual, Means};
 use crate::solver::findings::Findings;
 use crate::solver::finish::finish;
 use crate::solver::paper::{parameters, HostUnits};
+use crate::solver::phases::{Phase, Phases};
 use crate::solver::presolve::{presolve, Gaps};
 use crate::solver::problem::Problem;
 use crate::solver::report::{Outcome, Report};
@@ -35,13 +36,14 @@ impl Problem {
         self.answer = None;
         self.open_motions = None;
         let start = self.take_start();
+        self.phases = Phases::default();
         self.set_up(watch)?;
         self.set_up_preconditioner(watch)?;
         let solving = Instant::now();
         let ready = self.ready()?;
         let dual = Scaled::new(self, ready, &watch.stops)?;
         let mut judge = Certifier::new(self, ready, &dual)?;
-        let f = watch.operator(ready, &dual.gaps.bounded);
+        let f = watch.operator(ready, &dual.gaps.bounded, self.product_threads(ready));
         let (qp, start, direct) = (dual.qp(ready, &f), start.scaled(ready)?, self.direct(ready));
         let solution = match parameters(&self.settings) {
             Some(given) if given.units == Units::Printed => {
@@ -49,6 +51,7 @@ impl Problem {
             }
             _ => solve_dual(&Means { settings: &self.settings, direct }, qp, &start, &mut judge, watch)?,
         };
+        let (judging, recovering) = (judge.spent, Instant::now());
         let mut ending = judge.ending(solution)?;
         let finished = self.settings.finish == c"direct" && finish(&judge, qp, direct, &mut ending)?;
         let Ending { solution, recovered, certificate } = ending;
@@ -57,6 +60,10 @@ impl Problem {
         answer.report.finished = finished;
         answer.report.seconds_setup = (solving - started).as_secs_f64();
         answer.report.seconds_solve = solving.elapsed().as_secs_f64();
+        self.phases.add(Phase::DualSolve, recovering - solving);
+        self.phases.ended(Phase::Recovery, recovering);
+        self.phases.move_time(Phase::DualSolve, Phase::Recovery, judging);
+        answer.report.phases = self.phases();
         let report = answer.report.clone();
         self.keep(answer);
         self.findings = Some(Findings::of_report(self, &report));
@@ -71,7 +78,7 @@ impl Problem {
     fn direct<'a>(&self, ready: &'a Ready) -> Direct<'a> {
         let asked = usize::try_from(self.settings.direct_limit).unwrap_or(usize::MAX);
         let most = asked.min(ready.dual.order() + ready.dual.modes());
-        let limit = if self.check_memory(&ready.rows, Direct::bytes(most)).is_ok() { most } else { 0 };
+        let limit = if self.check_more(ready, Direct::bytes(most)).is_ok() { most } else { 0 };
         Direct { entries: &ready.dual, limit }
     }
 
@@ -171,6 +178,8 @@ pub(super) struct Certifier<'a> {
     pub threads: usize,
     /// The last point accepted, with its answer.
     pub accepted: Option<Accepted>,
+    /// Time for answers recovered and certified.
+    pub spent: Duration,
 }
 
 /// A point (x, alpha) of the dual whose answer has passed.
@@ -189,7 +198,8 @@ pub(super) struct Ending {
 
 impl<'a> Certifier<'a> {
     fn new(problem: &'a Problem, ready: &'a Ready, scaled: &'a Scaled) -> Result<Self> {
-        Ok(Self { ready, scaled, data: problem.data()?, threads: problem.threads(), accepted: None })
+        let (data, threads) = (problem.data()?, problem.threads());
+        Ok(Self { ready, scaled, data, threads, accepted: None, spent: Duration::ZERO })
     }
 
     /// (17), and lambda = 2^p S L'^-1 x on the rows that carry the multipliers of their groups.
@@ -239,12 +249,14 @@ impl<'a> Certifier<'a> {
 impl Judge for Certifier<'_> {
     /// `|sum_p |B'_p u_p|| + |c'|`: lengths, whatever the choice of K+.
     fn scale(&mut self, x: &[f64], alpha: &[f64]) -> Result<f64> {
-        let distances = self.ready.dual.distances(&self.scaled.moved, x, alpha);
+        let distances = self.ready.distances(self.threads, &self.scaled.moved, x, alpha)?;
         Ok(norm(&distances) + norm(&self.scaled.gaps.dual))
     }
 
     fn accepts(&mut self, x: &[f64], alpha: &[f64]) -> Result<bool> {
+        let begun = Instant::now();
         let (recovered, certificate) = self.certified(x, alpha)?;
+        self.spent += begun.elapsed();
         let passed = certificate.passed();
         if passed {
             let point = (copied(x, "forces")?, copied(alpha, "amplitudes")?);

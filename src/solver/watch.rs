@@ -6,11 +6,12 @@ use std::time::Instant;
 
 use crate::dual::Dual;
 use crate::error::{Error, Kind, Result};
-use crate::linalg::Operator;
+use crate::linalg::{Interrupt, Operator};
 use crate::qp::{self, Counts, Observer, StepKind};
 use crate::solver::findings::Findings;
 use crate::solver::problem::Problem;
 use crate::solver::setup::Ready;
+use crate::solver::threads::{self, Heard};
 
 /// What the host hears.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -18,6 +19,8 @@ pub struct Progress {
     /// The step of the dual method that has just been done; none: a part of the setup, with counts of 0 and
     /// figures that are not numbers.
     pub step: Option<StepKind>,
+    /// Part of the work of a setup that is done, an estimate that never falls; not a number in steps of the method.
+    pub fraction: f64,
     pub steps: usize,
     /// Products with F.
     pub products: usize,
@@ -54,7 +57,7 @@ pub(super) struct Host {
 }
 
 impl Problem {
-    /// The function that hears of every part of a setup and every step of a solve from now on.
+    /// The function that hears of every body in every part of a setup and of every step of a solve from now on.
     pub fn on_progress(&mut self, listener: Option<Listener>) {
         self.host.listener = listener;
     }
@@ -71,7 +74,7 @@ impl Problem {
         let stops = Stops { cancelled, started: Instant::now(), limit: self.settings.time_limit };
         let listener = self.host.listener.take();
         let (before, last) = (Counts::default(), Counts::default());
-        let mut watch = Watch { stops, listener, unit: 1.0, bounded: 0, before, last };
+        let mut watch = Watch { stops, listener, fraction: 0.0, unit: 1.0, bounded: 0, before, last };
         let outcome = work(self, &mut watch);
         self.host.listener = watch.listener;
         if let Err(error) = &outcome {
@@ -115,10 +118,21 @@ fn cancelled() -> Error {
     Error::new(Kind::Cancelled, "cancelled by the host")
 }
 
+/// A part of the setup that has a task for every body.
+pub(super) struct Part {
+    pub threads: usize,
+    /// Work of each body, in any unit, > 0.
+    pub weights: Vec<f64>,
+    /// Fraction of the whole setup at its end.
+    pub until: f64,
+}
+
 /// One call under watch.
 pub(super) struct Watch {
     pub stops: Stops,
     listener: Option<Listener>,
+    /// Of the setup.
+    fraction: f64,
     /// 2^p: what forces are divided by.
     unit: f64,
     /// Number of multipliers >= 0.
@@ -129,17 +143,55 @@ pub(super) struct Watch {
 }
 
 impl Watch {
-    /// F under watch; forces inside are in units of 2^p, multipliers of `bounded` groups are >= 0.
-    pub fn operator<'a>(&mut self, ready: &'a Ready, bounded: &[bool]) -> Interruptible<'a> {
+    /// F under watch, the products of the bodies on so many threads; forces inside are in units of 2^p, multipliers of
+    /// `bounded` groups are >= 0.
+    pub fn operator<'a>(&mut self, ready: &'a Ready, bounded: &[bool], threads: usize) -> Interruptible<'a> {
         self.unit = ready.unit;
         self.bounded = bounded.iter().filter(|bounded| **bounded).count();
-        Interruptible { operator: &ready.dual, stops: self.stops.clone(), begun: AtomicBool::new(false) }
+        let (operator, stops) = (&ready.dual, self.stops.clone());
+        Interruptible { operator, stops, begun: AtomicBool::new(false), threads }
     }
 
-    /// Tells the host that a part of the setup is done.
-    pub fn part_done(&mut self) -> Result<()> {
+    /// Runs a task for every body of a part of the setup; `keep` gets the results as they come, on this thread, which
+    /// tells the host of each. Once the host wants to end, tasks that have begun end where they can.
+    pub fn every_body<T: Send>(
+        &mut self,
+        part: &Part,
+        task: impl Fn(usize) -> Result<T> + Sync,
+        mut keep: impl FnMut(usize, T),
+    ) -> Result<()> {
+        let (stops, interrupt) = (self.stops.clone(), Interrupt::new(Arc::clone(&self.stops.cancelled)));
+        let guarded = |k| stops.check_cancelled().and_then(|()| interrupt.during(|| task(k)));
+        let (begun, all) = (self.fraction, part.weights.iter().sum::<f64>());
+        let (mut done, mut told) = (0.0, Ok(()));
+        let ended = threads::run_heard(part.threads, part.weights.len(), guarded, &mut |heard| {
+            if let Heard::Done(k, result) = heard {
+                keep(k, result);
+                done += part.weights[k];
+                self.fraction = begun + (part.until - begun).max(0.0) * (done / all).min(1.0);
+            }
+            if told.is_ok() {
+                told = self.part_done();
+                if told.is_err() {
+                    stops.cancelled.store(true, Ordering::Relaxed);
+                }
+            }
+        });
+        self.fraction = self.fraction.max(part.until);
+        told.and(ended)
+    }
+
+    /// Tells the host that all of the setup is done.
+    pub fn setup_done(&mut self) -> Result<()> {
+        self.fraction = 1.0;
+        self.part_done()
+    }
+
+    /// Tells the host how much of the setup is done.
+    fn part_done(&mut self) -> Result<()> {
         self.tell(&Progress {
             step: None,
+            fraction: self.fraction,
             steps: 0,
             products: 0,
             active: 0,
@@ -175,6 +227,7 @@ impl Observer for Watch {
         let against_stop = |size: f64| size / now.small;
         let told = Progress {
             step: Some(now.kind),
+            fraction: f64::NAN,
             steps: all.steps(),
             products: all.products,
             active: self.bounded - now.active.iter().filter(|at_bound| **at_bound).count(),
@@ -195,6 +248,7 @@ pub(super) struct Interruptible<'a> {
     operator: &'a Dual,
     stops: Stops,
     begun: AtomicBool,
+    threads: usize,
 }
 
 impl Operator for Interruptible<'_> {
@@ -212,6 +266,101 @@ impl Operator for Interruptible<'_> {
         } else {
             self.stops.check_cancelled()?;
         }
-        self.operator.try_apply(x, y)
+        self.operator.product(x, y, &|count, task| threads::run(self.threads, count, task))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::solver::{Modes, RowKind, RowsInput, SparseInput, Storage};
+    use std::sync::Mutex;
+    use std::thread::{self, ThreadId};
+
+    const BODIES: usize = 4;
+    const DOFS: usize = 600;
+
+    /// Chains of springs, held at one end and pushed against a wall at the other: enough for several threads.
+    fn chains(threads: i64) -> Problem {
+        let ptr: Vec<usize> = (0..=DOFS).map(|i| (2 * i).saturating_sub(1)).collect();
+        let col: Vec<i64> = (0..DOFS as i64).flat_map(|i| [i - 1, i]).skip(1).collect();
+        let val: Vec<f64> = (0..DOFS).flat_map(|_| [-1.0, 2.0]).skip(1).collect();
+        let mut problem = Problem::new();
+        for body in 0..BODIES {
+            problem.add_body(DOFS).unwrap();
+            let k = SparseInput { ptr: &ptr, col: &col, val: &val, storage: Storage::Lower };
+            problem.set_stiffness(body, k).unwrap();
+            problem.set_null_space(body, DOFS, 0, &[], 1, Modes::Exact).unwrap();
+            problem.set_load(body, &[1.0; DOFS]).unwrap();
+            // by their keys no two are alike: each has a part of its own in everything
+            problem.bodies[body].keys = Some([body as u64; 2]);
+        }
+        let last: Vec<i64> = (1..=BODIES).map(|p| (p * DOFS - 1) as i64).collect();
+        let ptr: Vec<usize> = (0..=BODIES).collect();
+        let rows =
+            RowsInput { ptr: &ptr, body: None, dof: &last, val: &[1.0; BODIES], rhs: Some(&[1.0; BODIES]) };
+        problem.add_rows(RowKind::Inequality, rows).unwrap();
+        problem.set_i64("threads", threads).unwrap();
+        problem
+    }
+
+    type Heard = Arc<Mutex<Vec<(ThreadId, Progress)>>>;
+
+    /// Keeps what is heard, and cancels at call `when`.
+    fn listen(problem: &mut Problem, when: usize) -> Heard {
+        let heard = Heard::default();
+        let book = Arc::clone(&heard);
+        problem.on_progress(Some(Box::new(move |now| {
+            let mut book = book.lock().unwrap();
+            book.push((thread::current().id(), *now));
+            if book.len() == when + 1 {
+                Reply::Cancel
+            } else {
+                Reply::Continue
+            }
+        })));
+        heard
+    }
+
+    #[test]
+    fn the_calling_thread_hears_of_every_body_with_a_fraction_that_never_falls() {
+        for threads in [1, 2, 4] {
+            let mut problem = chains(threads);
+            problem.set_str("preconditioner", "lumped").unwrap();
+            let heard = listen(&mut problem, usize::MAX);
+            problem.solve().unwrap();
+            let heard = heard.lock().unwrap();
+            assert!(heard.iter().all(|(thread, _)| *thread == thread::current().id()));
+            let setup = heard.iter().take_while(|(_, now)| now.step.is_none());
+            let mut fractions: Vec<f64> = setup.map(|(_, now)| now.fraction).collect();
+            assert!(fractions.windows(2).all(|pair| pair[0] <= pair[1]), "{fractions:?}");
+            fractions.dedup();
+            assert_eq!(fractions.len(), 4 * BODIES + 1, "{fractions:?}");
+            assert!(fractions[0] > 0.0 && fractions.last() == Some(&1.0));
+            assert!(heard
+                .iter()
+                .skip_while(|(_, now)| now.step.is_none())
+                .all(|(_, now)| now.fraction.is_nan()));
+        }
+    }
+
+    #[test]
+    fn what_a_cancelled_setup_has_factorised_is_kept() {
+        for threads in [1, 2, 4] {
+            let mut problem = chains(threads);
+            for when in 0..4 * BODIES {
+                let heard = listen(&mut problem, when);
+                problem.forget_dual();
+                let ended = problem.setup();
+                let calls = heard.lock().unwrap().len();
+                if calls <= when {
+                    break; // fewer parts are left than that
+                }
+                assert_eq!((ended.unwrap_err().kind, calls), (Kind::Cancelled, when + 1));
+            }
+            problem.on_progress(None);
+            problem.solve().unwrap();
+            assert_eq!(problem.work.factorisations, BODIES);
+        }
     }
 }

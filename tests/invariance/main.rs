@@ -1,5 +1,5 @@
 //! What must not change the answer: units, the order of bodies and rows, the number of threads, what was
-//! solved before, the form in which a matrix is handed over.
+//! solved before, the form in which a matrix is handed over, the way the dual operators are kept.
 
 mod answer;
 mod factors;
@@ -7,5 +7,6 @@ mod forms;
 #[path = "../support/hand_over.rs"]
 mod hand_over;
 mod history;
+mod operators;
 mod order;
 mod units;

@@ -19,7 +19,7 @@ const NUMBERS: [(&str, &str, &str); 33] = [
     ("(11)", "src/solver/solve.rs", "pub fn solve"),
     ("(12)", "src/dual/mod.rs", "pub fn resultants"),
     ("(13)", "src/dual/mod.rs", "pub fn rhs"),
-    ("(13)", "src/dual/mod.rs", "fn apply"),
+    ("(13)", "src/dual/operator.rs", "pub fn product"),
     ("(14)", "src/body/generalized_inverse.rs", "let mut held"),
     ("(15)", "src/body/generalized_inverse.rs", "pub fn apply"),
     ("(16)", "src/dual/mod.rs", "pub fn displacement"),

@@ -10,12 +10,13 @@ use crate::enumeration::{by_enumeration, distance, has_one_solution, random_prog
 use crate::program::{Conditions, Program};
 
 impl Entries for Dense {
-    fn add_block(&self, rows: &[usize], block: &mut Matrix) {
+    fn add_block(&self, rows: &[usize], block: &mut Matrix) -> feti_contact::error::Result<()> {
         for (l, &j) in rows.iter().enumerate() {
             for (k, &i) in rows.iter().enumerate().skip(l) {
                 block.set(k, l, block.get(k, l) + self.0[i][j]);
             }
         }
+        Ok(())
     }
 }
 

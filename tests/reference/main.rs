@@ -30,6 +30,30 @@ fn every_reference_case_is_solved_to_its_known_answer() {
     CASES.iter().for_each(|name| assert_reference(name, Hint::NullSpaces));
 }
 
+/// No entry of F is there; the direct method assembles those of its rows.
+#[test]
+fn implicit_dual_operators_give_the_same_forces() {
+    for name in CASES {
+        let case = Case::read(name);
+        let solve = |kind, finish| {
+            let mut problem = case.problem(false);
+            problem.set_str("dual_operator", kind).unwrap();
+            problem.set_str("finish", finish).unwrap();
+            let report = problem.solve().unwrap_or_else(|e| panic!("{name}: {e}"));
+            assert_eq!(report.outcome, Outcome::Solved, "{name}: {:?}", report.certificate);
+            let all = case.bodies.len();
+            let expected = if kind == "implicit" { (0, all) } else { (all, 0) };
+            assert_eq!((report.explicit_operators, report.implicit_operators), expected, "{name}");
+            problem.multipliers(RowKind::Inequality).unwrap().to_vec()
+        };
+        let expected = solve("explicit", "none");
+        for finish in ["none", "direct"] {
+            let force = difference(&solve("implicit", finish), &expected);
+            assert!(force <= 1e-9, "{name}, finish {finish}: {force:.1e}");
+        }
+    }
+}
+
 #[test]
 fn coordinates_serve_as_well_as_null_spaces() {
     ["hertz_cylinder", "three_bodies"].iter().for_each(|name| assert_reference(name, Hint::Coordinates));

@@ -140,14 +140,19 @@ impl Operator for Packed {
             product::product(&self.tiles, x, y);
         }
     }
+
+    fn bytes_kept(&self) -> usize {
+        size_of_val(&self.tiles[..])
+    }
 }
 
 impl Entries for Packed {
-    fn add_block(&self, rows: &[usize], block: &mut Matrix) {
+    fn add_block(&self, rows: &[usize], block: &mut Matrix) -> Result<()> {
         for (l, &j) in rows.iter().enumerate() {
             let column = block.col_mut(l);
             rows.iter().enumerate().skip(l).for_each(|(k, &i)| column[k] += self.get(i, j));
         }
+        Ok(())
     }
 }
 

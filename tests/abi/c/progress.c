@@ -1,4 +1,4 @@
-/* A progress function hears of every part of the setup and every step, in the host's floating-point environment; it and
+/* A progress function hears of every body in every part of the setup and of every step, in the host's floating-point environment; it and
    feti_cancel from any thread end a call; what was cancelled can be solved again. progress <data folder> */
 #define _POSIX_C_SOURCE 200112L
 #include <fenv.h>
@@ -12,10 +12,10 @@ static const form LOWER = { .storage = FETI_LOWER };
 
 enum { MOST = 2000 };
 
-/* What the function hears, and what it does at call number `when` (from 0). */
+/* What the function hears, and what it does at call number `when` (from 0) or at step `step` of the solve. */
 typedef struct {
     feti_problem *problem;
-    int calls, when, reply, cancels;
+    int calls, when, step, reply, cancels;
     unsigned rounding; /* direction that the function must see in MXCSR, 0: not looked at */
     feti_progress heard[MOST];
 } listener;
@@ -27,7 +27,7 @@ static int32_t hear(void *user, const feti_progress *now)
 
     if (call < MOST) host->heard[call] = *now;
     if (host->rounding) CHECK(_MM_GET_ROUNDING_MODE() == host->rounding, "call %d in another environment", call);
-    if (call != host->when) return 0;
+    if (call != host->when && (now->phase != FETI_PHASE_SOLVE || now->steps != host->step)) return 0;
     if (host->cancels) OK(feti_cancel(host->problem));
     return host->reply;
 }
@@ -46,8 +46,28 @@ static void check_bits(const case_data *data, const answer *found, const answer 
     CHECK(memcmp(found->lambda, wanted->lambda, (size_t)data->rows * sizeof(double)) == 0, "%s: other forces", after);
 }
 
-/* Parts of the setup: factors, dual operators, and the preconditioner that the option `automatic` takes for this case. */
-enum { PARTS = 3 };
+/* Parts of the setup that are done body by body: null spaces, analysis, factors, dual operators. */
+enum { PARTS = 4 };
+
+/* Calls during the setup: every body in every part, and the preconditioner that the option `automatic` takes for this
+   case; more where half a second passes between two. The fraction never falls and ends at 1. */
+static int calls_of_setup(const listener *host, const case_data *data)
+{
+    int calls = 0, larger = 0;
+    double before = 0.0;
+
+    for (; calls < host->calls && calls < MOST && host->heard[calls].phase == FETI_PHASE_SETUP; calls++) {
+        const feti_progress *now = &host->heard[calls];
+        CHECK(now->step == 0 && now->steps == 0, "call %d: step %d", calls, (int)now->step);
+        CHECK(isnan(now->residual) && isnan(now->theta), "figures in the setup");
+        CHECK(now->fraction >= before && now->fraction <= 1.0, "fraction %g after %g", now->fraction, before);
+        larger += now->fraction > before;
+        before = now->fraction;
+    }
+    CHECK(larger == PARTS * data->bodies + 1, "%d advances of the setup", larger);
+    CHECK(before == 1.0, "the setup ends at %g", before);
+    return calls;
+}
 
 /* The parts of the setup, then one call a step; counts as in info; the dual functional falls. */
 static void every_step_is_told(const case_data *data, const answer *wanted)
@@ -63,24 +83,22 @@ static void every_step_is_told(const case_data *data, const answer *wanted)
     fesetround(FE_TONEAREST);
     check_bits(data, &result, wanted, "watched");
     CHECK(rounding == _MM_ROUND_UP, "the environment of the host is gone");
-    CHECK(host->calls == PARTS + (int)result.info.steps, "%d calls for %lld steps", host->calls, (long long)result.info.steps);
+    const int parts = calls_of_setup(host, data);
+    CHECK(host->calls == parts + (int)result.info.steps, "%d calls for %lld steps", host->calls, (long long)result.info.steps);
     for (int k = 0; k < host->calls && k < MOST; k++) {
         const feti_progress *now = &host->heard[k], *before = &host->heard[k > 0 ? k - 1 : 0];
         CHECK(now->struct_size == (int64_t)sizeof *now, "struct_size is %lld", (long long)now->struct_size);
         CHECK(now->seconds >= before->seconds, "call %d: the clock ran back", k);
-        if (k < PARTS) {
-            CHECK(now->phase == FETI_PHASE_SETUP && now->step == 0 && now->steps == 0, "call %d: phase %d", k, (int)now->phase);
-            CHECK(isnan(now->residual) && isnan(now->theta), "figures in the setup");
-            continue;
-        }
-        CHECK(now->phase == FETI_PHASE_SOLVE && now->steps == k + 1 - PARTS, "call %d: step %lld", k, (long long)now->steps);
+        if (k < parts) continue;
+        CHECK(now->phase == FETI_PHASE_SOLVE && now->steps == k + 1 - parts, "call %d: step %lld", k, (long long)now->steps);
+        CHECK(isnan(now->fraction), "a fraction in the solve");
         CHECK(now->step >= 1 && now->step <= 3, "a step of kind %d", (int)now->step);
         kinds[now->step >= 1 && now->step <= 3 ? now->step : 0]++;
         CHECK(now->products > before->products, "step %d without a product", k);
         CHECK(now->active >= 0 && now->active <= data->rows, "%lld rows with a force", (long long)now->active);
         CHECK(fabs(hypot(now->residual_free, now->residual_chopped) - now->residual) <= 1e-12 * now->residual,
               "parts of the residual");
-        if (k > PARTS)
+        if (k > parts)
             CHECK(now->theta <= before->theta + 1e-12 * fabs(before->theta), "theta rose from %.17g to %.17g",
                   before->theta, now->theta);
     }
@@ -97,15 +115,17 @@ static void every_step_is_told(const case_data *data, const answer *wanted)
 static void the_function_cancels(const case_data *data, const answer *wanted, int cancels)
 {
     feti_problem *problem = handed_over(data, &LOWER);
-    listener *host = listener_of(problem, PARTS + 2, cancels ? 0 : 17);
+    listener *host = listener_of(problem, -1, cancels ? 0 : 17);
     feti_info info = { .struct_size = sizeof info };
     double *u = check_array(data->unknowns, sizeof(double));
 
     host->cancels = cancels;
+    host->step = 3;
     EXPECT(FETI_CANCELLED, feti_solve(problem, &info));
-    CHECK(host->calls == PARTS + 3 && info.steps == 3, "%d calls, %lld steps", host->calls, (long long)info.steps);
-    CHECK(info.dual_applications == host->heard[PARTS + 2].products, "%lld products, %lld when cancelled",
-          (long long)info.dual_applications, (long long)host->heard[PARTS + 2].products);
+    const feti_progress *last = &host->heard[host->calls - 1];
+    CHECK(last->steps == 3 && info.steps == 3, "%lld steps, %lld told", (long long)info.steps, (long long)last->steps);
+    CHECK(info.dual_applications == last->products, "%lld products, %lld when cancelled",
+          (long long)info.dual_applications, (long long)last->products);
     CHECK(info.status == FETI_CANCELLED && info.worst > 0.0, "info is not written");
     OK(feti_displacement(problem, 0, data->body[0].n, u));
 
@@ -127,8 +147,12 @@ static void the_setup_is_cancelled(const case_data *data, const answer *wanted)
 
     EXPECT(FETI_CANCELLED, feti_setup(problem));
     EXPECT(FETI_STATE, feti_displacement(problem, 0, data->body[0].n, u));
-    host->when = 1;
-    EXPECT(FETI_CANCELLED, feti_solve(problem, NULL));
+    for (int when = 1; when <= PARTS * (int)data->bodies; when++) {
+        host->calls = 0;
+        host->when = when;
+        const int32_t status = feti_setup(problem);
+        CHECK(status == (host->calls > when ? FETI_CANCELLED : FETI_OK), "status %d after %d calls", (int)status, host->calls);
+    }
     host->when = -1;
     answer result = solved(problem, data);
     check_bits(data, &result, wanted, "after a cancelled setup");

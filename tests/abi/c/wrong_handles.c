@@ -132,6 +132,8 @@ static void null_outputs(feti_problem *p)
     EXPECT(FETI_ARGUMENT - 3, feti_dual_rhs(p, 1, NULL));
     EXPECT(FETI_ARGUMENT - 4, feti_problem_error(p, NULL, 0, NULL));
     EXPECT(FETI_ARGUMENT - 2, feti_state_save(p, NULL));
+    EXPECT(FETI_ARGUMENT - 2, feti_phase_count(p, NULL));
+    EXPECT(FETI_ARGUMENT - 3, feti_phase_at(p, 0, NULL));
     EXPECT(FETI_ARGUMENT - 2, feti_diagnosis(p, NULL));
     EXPECT(FETI_ARGUMENT - 4, feti_diagnosis_rows(p, FETI_INEQUALITY, 0, NULL, NULL, NULL));
     EXPECT(FETI_ARGUMENT - 4, feti_diagnosis_motion(p, BLOCK, 2, NULL));

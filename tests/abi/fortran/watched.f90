@@ -25,6 +25,7 @@ contains
     type is (diary)
       data%calls = data%calls + 1
       data%last_step = int(now%steps)
+      if (now%phase == FETI_PHASE_SETUP .and. .not. (now%fraction >= 0 .and. now%fraction <= 1)) note = -2
       if (data%calls == data%cancel_at) then
         note = 1
         if (data%by_call) then
@@ -79,6 +80,7 @@ program watched
 
   call read_case(data_folder(), 'p1_P3', wall)
   call steps_are_told_and_cancelled
+  call phases_are_told
   call copies_share_the_function
   call failures_and_calls_from_inside
   call states_come_back
@@ -122,6 +124,39 @@ contains
     book%calls = 0
     call require(maxval(abs(forces(p) - wanted)) <= 0, 'other bits after a cancelled solve')
     call require(book%calls == 0, 'a function that was taken away is still called')
+    call feti_problem_destroy(p)
+  end subroutine
+
+  !> Implicit dual operators give the same forces; every phase has its name, time and bytes.
+  subroutine phases_are_told
+    type(feti_problem) :: p
+    type(feti_info) :: info
+    type(feti_phase) :: phase
+    real(dp) :: wanted(size(wall%c)), found(size(wall%c)), seconds
+    integer :: count, k
+
+    call feti_problem_create(p)
+    call hand_over(p, wall, from_basis)
+    call feti_set(p, 'dual_operator', 'explicit')
+    wanted = forces(p)
+    call feti_set(p, 'dual_operator', 'implicit')
+    call feti_solve(p, info)
+    call feti_multipliers(p, FETI_INEQUALITY, found)
+    call require(maxval(abs(found - wanted)) <= 1e-9_dp*maxval(abs(wanted)), 'implicit operators give other forces')
+    call require(info%explicit_operators == 0 .and. info%implicit_operators == info%bodies, 'operators are not implicit')
+    call require(info%factor_bytes > 0 .and. info%operator_bytes == 0, 'wrong bytes')
+
+    call feti_phase_count(p, count)
+    seconds = 0
+    do k = 1, count
+      call feti_phase_at(p, k, phase)
+      call require(len(phase%name) > 3, 'a phase without a name')
+      if (phase%name == 'factorisation') call require(phase%bytes == info%factor_bytes, 'wrong bytes of the factors')
+      seconds = seconds + phase%seconds
+    end do
+    call require(seconds > 0 .and. seconds <= 1.001_dp*(info%seconds_setup + info%seconds_solve), 'wrong times')
+    call feti_phase_at(p, count + 1, phase, stat, text)
+    call require(stat == FETI_ARGUMENT - 2, 'a phase beyond the last one: ' // trim(text))
     call feti_problem_destroy(p)
   end subroutine
 

@@ -29,7 +29,7 @@ OFFSET(feti_option, name, 48);
 OFFSET(feti_option, doc, 56);
 OFFSET(feti_option, default_str, 64);
 
-SIZE(feti_info, 256);
+SIZE(feti_info, 288);
 OFFSET(feti_info, struct_size, 0);
 OFFSET(feti_info, status, 8);
 OFFSET(feti_info, bodies, 16);
@@ -48,6 +48,16 @@ OFFSET(feti_info, direct_solves, 224);
 OFFSET(feti_info, finished, 232);
 OFFSET(feti_info, columns_computed, 240);
 OFFSET(feti_info, columns_kept, 248);
+OFFSET(feti_info, explicit_operators, 256);
+OFFSET(feti_info, implicit_operators, 264);
+OFFSET(feti_info, factor_bytes, 272);
+OFFSET(feti_info, operator_bytes, 280);
+
+SIZE(feti_phase, 32);
+OFFSET(feti_phase, struct_size, 0);
+OFFSET(feti_phase, bytes, 8);
+OFFSET(feti_phase, seconds, 16);
+OFFSET(feti_phase, name, 24);
 
 SIZE(feti_certificate, 136);
 OFFSET(feti_certificate, struct_size, 0);
@@ -59,7 +69,7 @@ OFFSET(feti_certificate, duality_gap, 80);
 OFFSET(feti_certificate, equilibrium_body, 88);
 OFFSET(feti_certificate, complementarity_row, 128);
 
-SIZE(feti_progress, 80);
+SIZE(feti_progress, 88);
 OFFSET(feti_progress, struct_size, 0);
 OFFSET(feti_progress, phase, 8);
 OFFSET(feti_progress, step, 12);
@@ -69,6 +79,7 @@ OFFSET(feti_progress, active, 32);
 OFFSET(feti_progress, residual, 40);
 OFFSET(feti_progress, theta, 64);
 OFFSET(feti_progress, seconds, 72);
+OFFSET(feti_progress, fraction, 80);
 
 SIZE(feti_findings, 144);
 OFFSET(feti_findings, struct_size, 0);
@@ -94,10 +105,11 @@ struct layout {
 static const struct layout in_c[] = {
     {"feti_error_detail", sizeof(feti_error_detail), offsetof(feti_error_detail, function)},
     {"feti_option", sizeof(feti_option), offsetof(feti_option, default_str)},
-    {"feti_info", sizeof(feti_info), offsetof(feti_info, seconds_solve)},
+    {"feti_info", sizeof(feti_info), offsetof(feti_info, operator_bytes)},
     {"feti_certificate", sizeof(feti_certificate), offsetof(feti_certificate, complementarity_row)},
-    {"feti_progress", sizeof(feti_progress), offsetof(feti_progress, seconds)},
+    {"feti_progress", sizeof(feti_progress), offsetof(feti_progress, fraction)},
     {"feti_findings", sizeof(feti_findings), offsetof(feti_findings, motion)},
+    {"feti_phase", sizeof(feti_phase), offsetof(feti_phase, name)},
 };
 enum { TYPES = sizeof in_c / sizeof in_c[0] };
 

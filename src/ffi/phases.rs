@@ -1,0 +1,61 @@
+//! Where the time of a call went, and the memory that is kept.
+
+use super::arrays::Output;
+use super::guard::{call, enter};
+use super::record::Target;
+use super::types::{feti_phase, feti_problem};
+use crate::error::Error;
+
+/// Number of phases of a setup and a solve.
+///
+/// After a failure nothing is written.
+///
+/// | argument | in/out | shape | rule |
+/// |---|---|---|---|
+/// | `p` | in | scalar | the handle |
+/// | `count` | out | scalar | the number of phases |
+///
+/// # Safety
+/// `count` has room for one number.
+#[no_mangle]
+pub unsafe extern "C" fn feti_phase_count(p: *mut feti_problem, count: *mut i64) -> i32 {
+    enter(p, call!(feti_phase_count(p, count)), |problem| {
+        // SAFETY: the caller gives room for one number.
+        unsafe { Output::new(count, 1, "count") }?.set(problem.phases().len() as i64);
+        Ok(())
+    })
+}
+
+/// Tells time and memory of a phase: rows, null spaces, analysis, factorisation, dual operators, preconditioner, dual
+/// solve, recovery, in this order.
+///
+/// Times are those of the last call that set up or solved, also of one that failed; a phase that had nothing to do took
+/// none. What a setup keeps, later solves do not make again. After a failure nothing is written.
+///
+/// | argument | in/out | shape | rule |
+/// |---|---|---|---|
+/// | `p` | in | scalar | the handle |
+/// | `k` | in | scalar | from 0, less than feti_phase_count |
+/// | `out` | in/out | scalar | `struct_size` set, at least 16 |
+///
+/// # Safety
+/// `out` leads to `struct_size` writable bytes.
+#[no_mangle]
+pub unsafe extern "C" fn feti_phase_at(p: *mut feti_problem, k: i64, out: *mut feti_phase) -> i32 {
+    enter(p, call!(feti_phase_at(p, k, out)), |problem| {
+        let phases = problem.phases();
+        let found = usize::try_from(k).ok().and_then(|k| phases.get(k));
+        let phase = found.ok_or_else(|| {
+            let text = format!("{k}: there are {} phases, counted from 0", phases.len());
+            Error::argument("k", text).value(k as f64).limit(phases.len() as f64 - 1.0)
+        })?;
+        // SAFETY: the caller gives `struct_size` bytes.
+        unsafe { Target::new(out, "out") }?.write(&feti_phase {
+            struct_size: size_of::<feti_phase>() as i64,
+            bytes: phase.bytes as i64,
+            seconds: phase.seconds,
+            name: phase.name.as_ptr(),
+        });
+        Ok(())
+    })
+}
