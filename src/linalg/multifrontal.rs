@@ -12,7 +12,7 @@ use rayon::prelude::*;
 use crate::error::Result;
 use crate::linalg::front::{self, Tile};
 use crate::linalg::memory::{refusal, reserved, untouched_zeros};
-use crate::linalg::subtrees::{shared, subtrees};
+use crate::linalg::subtrees::{outside, shared, subtrees};
 use crate::linalg::supernodes::{Node, Supernodes};
 use crate::linalg::updates::{self, RowMap, Updates};
 use crate::linalg::Interrupt;
@@ -43,7 +43,7 @@ pub fn factorize(nodes: &Supernodes, matrix: &Columns) -> Result<Factor<Vec<f64>
         _ => tasks.into_par_iter().map(run).collect(),
     };
     let mut above = 0;
-    let mut task = Task::new(whole, nodes_above(nodes, &subtrees), &interrupt)?;
+    let mut task = Task::new(whole, outside(nodes, &subtrees), &interrupt)?;
     for (range, update) in subtrees.iter().zip(left) {
         if let Err(at) = task.eliminate_shared(above..range.start, &mut values)? {
             return Ok(Err(at));
@@ -65,13 +65,6 @@ pub fn bytes(nodes: &Supernodes) -> usize {
 
 fn update_len(nodes: &Supernodes, s: usize) -> usize {
     front::update_len(nodes.node(s).rows.len())
-}
-
-/// Supernodes outside all subtrees.
-fn nodes_above<'a>(nodes: &Supernodes, subtrees: &'a [Range<usize>]) -> impl Iterator<Item = usize> + 'a {
-    let starts = subtrees.iter().map(|range| range.start).chain([nodes.count()]);
-    let ends = [0].into_iter().chain(subtrees.iter().map(|range| range.end));
-    ends.zip(starts).flat_map(|(end, start)| end..start)
 }
 
 /// Every subtree with its own panels.

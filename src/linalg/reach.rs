@@ -15,7 +15,7 @@ use rayon::prelude::*;
 use crate::error::Result;
 use crate::linalg::elimination::NONE;
 use crate::linalg::memory::{reserved, room, untouched_zeros, PRODUCTS};
-use crate::linalg::subtrees::{each, parts, shared};
+use crate::linalg::subtrees::{each, outside, parts, shared};
 use crate::linalg::supernodes::{Node, Supernodes};
 use crate::linalg::updates::{RowMap, Updates};
 use crate::linalg::{Cholesky, Csr, Interrupt, Packed};
@@ -40,7 +40,7 @@ pub fn inverse_form(cholesky: &Cholesky, rows: &Csr) -> Result<Packed> {
         _ => parts.iter().map(run).collect(),
     };
     let mut above = 0;
-    let mut task = Task::new(&reach, 0..nodes.count())?;
+    let mut task = Task::new(&reach, outside(nodes, &parts))?;
     for (range, part) in parts.iter().zip(done) {
         (above..range.start).try_for_each(|s| task.eliminate(s, &mut form, |row| row as usize))?;
         let (part, root) = (part?, range.end - 1);
@@ -147,14 +147,16 @@ struct Task<'a> {
 }
 
 impl<'a> Task<'a> {
-    fn new(reach: &'a Reach<'a>, range: Range<usize>) -> Result<Self> {
+    fn new(reach: &'a Reach<'a>, sequence: impl Iterator<Item = usize> + Clone) -> Result<Self> {
         let nodes = reach.nodes;
         let mut local = reserved(nodes.order(), WHAT)?;
         local.resize(nodes.order(), 0);
-        let seen = range.clone().filter(|&s| !reach.columns(s).is_empty());
+        let seen = sequence.filter(|&s| !reach.columns(s).is_empty());
         let updates = Updates::new(nodes, seen.clone(), |s| reach.update_len(s), WHAT)?;
-        let y = seen.map(|s| nodes.node(s).width * reach.columns(s).len()).max().unwrap_or(0);
-        Ok(Self { reach, local, updates, y: untouched_zeros(y, WHAT)?, product: vec![0.0; TILE * TILE] })
+        let y = seen.clone().map(|s| nodes.node(s).width * reach.columns(s).len()).max().unwrap_or(0);
+        let side = seen.map(|s| reach.columns(s).len().min(TILE)).max().unwrap_or(0);
+        let (y, product) = (untouched_zeros(y, WHAT)?, untouched_zeros(side * side, WHAT)?);
+        Ok(Self { reach, local, updates, y, product })
     }
 
     /// `Y_s <- L_ss^-1 (Y_s)` with what the children leave, its products, and what is left for the rows below; `place`

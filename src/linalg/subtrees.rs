@@ -41,6 +41,16 @@ pub fn parts(nodes: &Supernodes) -> Vec<Range<usize>> {
     of_equal_work(nodes, PARTS).unwrap_or_default()
 }
 
+/// Supernodes outside all subtrees.
+pub fn outside<'a>(
+    nodes: &Supernodes,
+    subtrees: &'a [Range<usize>],
+) -> impl Iterator<Item = usize> + Clone + 'a {
+    let starts = subtrees.iter().map(|range| range.start).chain([nodes.count()]);
+    let ends = [0].into_iter().chain(subtrees.iter().map(|range| range.end));
+    ends.zip(starts).flat_map(|(end, start)| end..start)
+}
+
 /// About `count` subtrees, the largest with so little work; `None` where they are too small to be worth it.
 fn of_equal_work(nodes: &Supernodes, count: usize) -> Option<Vec<Range<usize>>> {
     let mut work: Vec<f64> = nodes.nodes().map(|node| node.work()).collect();
