@@ -1443,10 +1443,11 @@ module feti_contact_c
       integer(c_int32_t) :: feti_start_from
     end function feti_start_from
 
-    !> Saves loads, gaps, multipliers and the contact state under a number.
+    !> Saves loads, rows, multipliers and the contact state under a number.
     !>
-    !> Factors are not copied, so that it costs no more than the vectors. States live until they are dropped
-    !> or the problem is destroyed; numbers are never used again. After a failure nothing is saved.
+    !> Factors are not copied and the entries of the rows are shared, so that it costs no more than the
+    !> vectors. States live until they are dropped or the problem is destroyed; numbers are never used again.
+    !> After a failure nothing is saved.
     !>
     !> @param[in]  p  (scalar) the handle
     !> @param[out] id (scalar) number of the state, from 0
@@ -1461,11 +1462,11 @@ module feti_contact_c
 
     !> Goes back to a saved state: after a load step that was rejected.
     !>
-    !> Loads and gaps are as they were, and so is the answer unless a matrix or a compliance has changed
-    !> since; with option start = previous the next solve continues from the saved multipliers, with start =
-    !> cold it gives the bits it would have given then. Matrices, null spaces, compliances of rows and options
-    !> stay as they are now; start values that were not used yet are dropped. The state stays saved.
-    !> FETI_STATE when bodies were added or rows changed since; after a failure nothing is changed.
+    !> Loads and rows, with right-hand sides and compliances, are as they were, and so is the answer unless a
+    !> matrix or the rows have changed since; with option start = previous the next solve continues from the
+    !> saved multipliers, with start = cold it gives the bits it would have given then. Matrices, null spaces
+    !> and options stay as they are now; start values that were not used yet are dropped. The state stays
+    !> saved. FETI_STATE when bodies were added since; after a failure nothing is changed.
     !>
     !> @param[in] p  (scalar) the handle
     !> @param[in] id (scalar) number of the state

@@ -37,7 +37,7 @@ contains
     call finish(c_start_from(handle_of(p), kind, size(lambda, kind=c_int64_t), lambda), stat, errmsg)
   end subroutine
 
-  !> Saves loads, gaps, multipliers and contact state under the number id (from 1).
+  !> Saves loads, rows, multipliers and contact state under the number id (from 1).
   subroutine state_save(p, id, stat, errmsg)
     type(feti_problem), intent(in) :: p
     integer, intent(inout) :: id
@@ -51,8 +51,8 @@ contains
     call finish(status, stat, errmsg)
   end subroutine
 
-  !> Goes back to a saved state, which stays saved; rows stay as compliant as they are now. FETI_STATE when bodies were
-  !> added or rows changed since.
+  !> Goes back to a saved state, which stays saved: loads and rows with their gaps and compliances.
+  !> FETI_STATE when bodies were added since.
   subroutine state_restore(p, id, stat, errmsg)
     type(feti_problem), intent(in) :: p
     integer, intent(in) :: id

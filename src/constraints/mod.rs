@@ -12,6 +12,8 @@ mod grouping;
 pub use decoupling::{Decoupling, UnitRows};
 pub use grouping::Grouping;
 
+use std::sync::Arc;
+
 use crate::error::{Error, Kind, Result};
 use crate::linalg::memory::{copied, zeros};
 use crate::linalg::vector::first_non_finite;
@@ -37,10 +39,10 @@ pub struct RowsInput<'a> {
 }
 
 /// All rows of one kind.
-#[derive(Debug, Clone)]
+#[derive(Debug)]
 pub struct RowSet {
-    /// m x (unknowns of all bodies); no unit.
-    pub matrix: Csr,
+    /// m x (unknowns of all bodies); no unit. Saved states share it.
+    pub matrix: Arc<Csr>,
     /// c or h, length.
     pub rhs: Vec<f64>,
     /// 1/k >= 0, length / force; 0 for a rigid row.
@@ -49,13 +51,25 @@ pub struct RowSet {
 
 impl Default for RowSet {
     fn default() -> Self {
-        Self { matrix: Csr::empty(0), rhs: Vec::new(), compliance: Vec::new() }
+        Self { matrix: Arc::new(Csr::empty(0)), rhs: Vec::new(), compliance: Vec::new() }
     }
 }
 
 impl RowSet {
     pub fn len(&self) -> usize {
         self.rhs.len()
+    }
+
+    /// The same rows, their entries shared, for `what`.
+    pub fn copied(&self, what: &str) -> Result<Self> {
+        let (rhs, compliance) = (copied(&self.rhs, what)?, copied(&self.compliance, what)?);
+        Ok(Self { matrix: Arc::clone(&self.matrix), rhs, compliance })
+    }
+
+    /// The entries and compliances of these rows are those of the other.
+    pub fn same_but_rhs(&self, other: &Self) -> bool {
+        let same = Arc::ptr_eq(&self.matrix, &other.matrix) || self.matrix == other.matrix;
+        same && self.compliance == other.compliance
     }
 
     /// Appends rows to those of bodies that begin at `offsets` (one more than bodies: the last is their end);
@@ -87,8 +101,9 @@ impl RowSet {
             added.push_row(entries);
         }
         let first = self.len();
-        (0..rows).for_each(|i| self.matrix.push_row(added.row(i)));
-        self.matrix.cols = offsets.last().copied().unwrap_or(0);
+        let matrix = Arc::make_mut(&mut self.matrix);
+        (0..rows).for_each(|i| matrix.push_row(added.row(i)));
+        matrix.cols = offsets.last().copied().unwrap_or(0);
         self.rhs.extend(rhs);
         self.compliance.resize(self.rhs.len(), 0.0);
         Ok(first)

@@ -42,9 +42,9 @@ pub unsafe extern "C" fn feti_start_from(
     })
 }
 
-/// Saves loads, gaps, multipliers and the contact state under a number.
+/// Saves loads, rows, multipliers and the contact state under a number.
 ///
-/// Factors are not copied, so that it costs no more than the vectors. States live until they are dropped or the problem is
+/// Factors are not copied and the entries of the rows are shared, so that it costs no more than the vectors. States live until they are dropped or the problem is
 /// destroyed; numbers are never used again. After a failure nothing is saved.
 ///
 /// | argument | in/out | shape | rule |
@@ -66,10 +66,11 @@ pub unsafe extern "C" fn feti_state_save(p: *mut feti_problem, id: *mut i64) -> 
 
 /// Goes back to a saved state: after a load step that was rejected.
 ///
-/// Loads and gaps are as they were, and so is the answer unless a matrix or a compliance has changed since; with option
-/// start = previous the next solve continues from the saved multipliers, with start = cold it gives the bits it would have
-/// given then. Matrices, null spaces, compliances of rows and options stay as they are now; start values that were not used yet are dropped. The state
-/// stays saved. FETI_STATE when bodies were added or rows changed since; after a failure nothing is changed.
+/// Loads and rows, with right-hand sides and compliances, are as they were, and so is the answer unless a matrix or the
+/// rows have changed since; with option start = previous the next solve continues from the saved multipliers, with
+/// start = cold it gives the bits it would have given then. Matrices, null spaces and options stay as they are now; start
+/// values that were not used yet are dropped. The state stays saved. FETI_STATE when bodies were added since; after a
+/// failure nothing is changed.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|

@@ -293,6 +293,7 @@ impl Problem {
     /// it has.
     fn changed(&mut self, body: usize, unchanged: bool) -> Result<&mut BodySlot> {
         self.forget_dual();
+        self.history.data_changed();
         if !unchanged {
             let inverses = self.bodies.iter_mut().filter_map(|slot| slot.inverse.as_mut());
             inverses.filter_map(|inverse| inverse.operator.as_mut()).for_each(Kept::only_whole);
@@ -313,7 +314,6 @@ impl Problem {
         }
         self.answer = None;
         self.open_motions = None;
-        self.history.data_changed();
     }
 
     fn rows_changed(&mut self) {

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use crate::constraints::RowKind;
+use crate::constraints::{RowKind, RowSet};
 use crate::error::{Error, Kind, Result};
 use crate::linalg::memory::{copied, zeros};
 use crate::linalg::vector::first_non_finite;
@@ -21,20 +21,17 @@ pub(super) struct History {
     states: BTreeMap<usize, State>,
     /// Number of states saved so far.
     saved: usize,
-    /// Counted up with every body added and every change of the rows.
-    rows: u64,
-    /// Counted up with every change that an answer does not outlive.
+    /// Counted up with every change of a matrix or a null space.
     data: u64,
 }
 
-/// Loads, gaps and multipliers; never factors.
+/// Loads, rows and multipliers; never factors.
 struct State {
-    rows: u64,
     data: u64,
     /// Of every body, where it has one.
     loads: Vec<Option<Vec<f64>>>,
-    /// c and h.
-    gaps: [Vec<f64>; 2],
+    /// Contact and equality rows, with c, h and 1/k.
+    rows: [RowSet; 2],
     previous: Option<Arc<Answer>>,
     /// `previous` was the answer for exactly these data.
     answered: bool,
@@ -72,7 +69,6 @@ impl History {
 
     /// Multipliers belong to rows.
     pub fn rows_changed(&mut self) {
-        self.rows += 1;
         self.start = [None, None];
         self.previous = None;
     }
@@ -107,20 +103,13 @@ impl Problem {
         Start { given, previous: previous.filter(|_| self.settings.start == c"previous") }
     }
 
-    /// Keeps loads, gaps, multipliers and active set under a number that is never used again.
+    /// Keeps loads, rows, multipliers and active set under a number that is never used again.
     pub fn save_state(&mut self) -> Result<usize> {
-        let mut loads = Vec::with_capacity(self.bodies.len());
-        for slot in &self.bodies {
-            let load = slot.body.load.as_ref();
-            loads.push(load.map(|f| copied(f, "a saved state")).transpose()?);
-        }
-        let gaps =
-            [copied(&self.contact.rhs, "a saved state")?, copied(&self.equalities.rhs, "a saved state")?];
+        let loads = self.bodies.iter().map(|slot| copy_of(slot.body.load.as_ref())).collect::<Result<_>>()?;
         let state = State {
-            rows: self.history.rows,
             data: self.history.data,
             loads,
-            gaps,
+            rows: [self.contact.copied(WHAT)?, self.equalities.copied(WHAT)?],
             previous: self.history.previous.clone(),
             answered: self.answer.is_some(),
         };
@@ -130,23 +119,27 @@ impl Problem {
         Ok(number)
     }
 
-    /// Loads, gaps and multipliers as they were; matrices stay as they are now. The state is kept. The answer
-    /// comes back as well unless a matrix or a compliance has changed.
+    /// Loads, rows and multipliers as they were; matrices stay as they are now. The state is kept. The answer
+    /// comes back as well unless matrices, rows or compliances differ.
     pub fn restore_state(&mut self, number: usize) -> Result<()> {
         let state = self.history.states.get(&number).ok_or_else(|| no_state(number))?;
-        if state.rows != self.history.rows {
-            let what = "bodies were added or rows changed since the state was saved: it no longer fits";
+        if state.loads.len() != self.bodies.len() {
+            let what = "bodies were added since the state was saved: it no longer fits";
             return Err(Error::new(Kind::State, what));
         }
-        let mut loads = Vec::with_capacity(state.loads.len());
-        for load in &state.loads {
-            loads.push(load.as_ref().map(|f| copied(f, "a saved state")).transpose()?);
+        let loads = state.loads.iter().map(|load| copy_of(load.as_ref())).collect::<Result<Vec<_>>>()?;
+        let [contact, equalities] = [state.rows[0].copied(WHAT)?, state.rows[1].copied(WHAT)?];
+        let same = self.contact.same_but_rhs(&contact) && self.equalities.same_but_rhs(&equalities);
+        let fits = same && state.answered && state.data == self.history.data;
+        let (previous, answer) = (state.previous.clone(), state.previous.clone().filter(|_| fits));
+        if !same {
+            self.forget_dual();
         }
-        self.contact.rhs.copy_from_slice(&state.gaps[0]);
-        self.equalities.rhs.copy_from_slice(&state.gaps[1]);
+        (self.contact, self.equalities) = (contact, equalities);
         self.bodies.iter_mut().zip(loads).for_each(|(slot, load)| slot.body.load = load);
-        self.answer = state.previous.clone().filter(|_| state.answered && state.data == self.history.data);
-        self.history.previous.clone_from(&state.previous);
+        self.answer = answer;
+        self.open_motions = None;
+        self.history.previous = previous;
         self.history.start = [None, None];
         Ok(())
     }
@@ -154,6 +147,12 @@ impl Problem {
     pub fn drop_state(&mut self, number: usize) -> Result<()> {
         self.history.states.remove(&number).map(drop).ok_or_else(|| no_state(number))
     }
+}
+
+const WHAT: &str = "a saved state";
+
+fn copy_of(load: Option<&Vec<f64>>) -> Result<Option<Vec<f64>>> {
+    load.map(|f| copied(f, WHAT)).transpose()
 }
 
 fn no_state(number: usize) -> Error {

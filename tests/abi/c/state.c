@@ -137,7 +137,7 @@ static void what_does_not_fit_is_refused(void)
 {
     feti_problem *problem = small_problem();
     const double start[2] = { 6.0, 1.0 }, nan_start[1] = { NAN };
-    int64_t state = -1, body;
+    int64_t state = -1, body, rows = 0;
     double u;
     char text[256];
 
@@ -169,13 +169,24 @@ static void what_does_not_fit_is_refused(void)
     OK(feti_set_str(problem, "start", "previous"));
     check_small_answer(problem, "a new matrix");
 
-    /* Other rows, another body: nothing of it fits. */
+    /* Other rows: those of the state come back, with their gaps and compliances, and give its answer. */
+    OK(feti_rows_clear(problem, FETI_INEQUALITY));
     OK(give_row(problem));
-    EXPECT(FETI_STATE, feti_state_restore(problem, state));
-    CHECK(feti_last_error(text, sizeof text) > 0 && strstr(text, "rows changed"), "%s", text);
-    OK(feti_state_save(problem, &state));
+    OK(give_row(problem));
+    OK(feti_rows_rhs(problem, FETI_INEQUALITY, 0, 2, (double[2]){ 7.0, 3.0 }));
+    OK(feti_state_restore(problem, state));
+    OK(feti_counts(problem, NULL, NULL, &rows, NULL));
+    CHECK(rows == 1, "%lld rows came back", (long long)rows);
+    EXPECT(FETI_STATE, feti_displacement(problem, SPRING, 1, &u));
+    check_small_answer(problem, "rows of a state");
+    OK(feti_rows_compliance(problem, FETI_INEQUALITY, 0, 1, (double[1]){ 0.5 }));
+    OK(feti_state_restore(problem, state));
+    check_small_answer(problem, "a rigid row of a state");
+
+    /* Another body: nothing of it fits. */
     OK(feti_body_add(problem, 1, &body));
     EXPECT(FETI_STATE, feti_state_restore(problem, state));
+    CHECK(feti_last_error(text, sizeof text) > 0 && strstr(text, "bodies were added"), "%s", text);
     OK(feti_state_drop(problem, state));
     EXPECT(FETI_ARGUMENT - 2, feti_state_restore(problem, state));
     OK(feti_problem_destroy(&problem));
