@@ -272,7 +272,7 @@ mod tests {
     fn a_row_between_a_soft_and_a_stiff_body_weighs_as_the_soft_one() {
         let mut matrix = Csr::empty(2);
         matrix.push_row([(0, 1.0), (1, -1.0)]);
-        let mut rows = RowSet { matrix, rhs: vec![0.0], compliance: vec![0.0] };
+        let mut rows = RowSet { matrix: Arc::new(matrix), rhs: vec![0.0], compliance: vec![0.0] };
         let s = row_scales(&rows, &[4.0, 4e12], 1.0);
         assert!((s[0] - 2.0).abs() < 1e-11);
         rows.set_compliance(0, &[0.75]).unwrap(); // 1/4 + 3/4 = 1, D and 1/k in the same unit

@@ -14,6 +14,7 @@ mod problem;
 mod report;
 mod results;
 mod room;
+mod rounding;
 mod rows;
 mod settings;
 mod setup;

@@ -10,7 +10,7 @@ use crate::linalg::vector::norm;
 use crate::linalg::Operator;
 use crate::qp::paper::Units;
 use crate::qp::{self, Direct, Judge, Qp, Solution, Verdict};
-use crate::solver::certificate::{certify, Answer as AnswerView, BodyData, Certificate, Data};
+use crate::solver::certificate::{Answer as AnswerView, BodyData, Certificate, Data};
 use crate::solver::diagnosis;
 use crate::solver::fallback::{solve_dual, Means};
 use crate::solver::findings::Findings;
@@ -21,6 +21,7 @@ use crate::solver::presolve::{presolve, Gaps};
 use crate::solver::problem::Problem;
 use crate::solver::report::{Outcome, Report};
 use crate::solver::results::Answer;
+use crate::solver::rounding::certify_to_rounding;
 use crate::solver::setup::Ready;
 use crate::solver::watch::{Stops, Watch};
 
@@ -118,7 +119,8 @@ impl Problem {
             });
         }
         let limit = self.settings.certificate_tolerance;
-        Ok(Data { bodies, contact: &self.contact, equalities: &self.equalities, without: self.unit(), limit })
+        let (contact, equalities, without) = (&self.contact, &self.equalities, self.unit());
+        Ok(Data { bodies, contact, equalities, without, limit, work_of_loads: 0.0 })
     }
 }
 
@@ -239,9 +241,9 @@ impl<'a> Certifier<'a> {
         Ok(Ending { solution, recovered, certificate })
     }
 
-    fn certified(&self, x: &[f64], alpha: &[f64]) -> Result<(Recovered, Certificate)> {
+    fn certified(&mut self, x: &[f64], alpha: &[f64]) -> Result<(Recovered, Certificate)> {
         let recovered = self.recover(x, alpha)?;
-        let certificate = certify(&self.data, recovered.view());
+        let certificate = certify_to_rounding(&mut self.data, recovered.view(), self.ready, self.threads)?;
         Ok((recovered, certificate))
     }
 }
@@ -281,7 +283,8 @@ impl Problem {
                     .limit(expected as f64));
             }
         }
-        Ok(certify(&self.data()?, AnswerView { u, lambda, mu }))
+        let answer = AnswerView { u, lambda, mu };
+        certify_to_rounding(&mut self.data()?, answer, self.ready()?, self.threads())
     }
 }
 

@@ -1,0 +1,54 @@
+//! What rounding of the loads explains in the energies of an answer.
+//!
+//! f - B'lambda - H'mu is known to rounding of its terms, and u to rounding of what they would move. Where loads and
+//! contact forces all but cancel, as in the last increments of Newton's method, that is far more than u itself: its
+//! energies are lost, although every force and every gap is right to rounding.
+
+use crate::error::Result;
+use crate::linalg::memory::zeros;
+use crate::linalg::vector::dot;
+use crate::solver::certificate::{certify, metric, Answer, Certificate, Data};
+use crate::solver::setup::Ready;
+
+/// The certificate of an answer; where its energies alone fail, with the work of the loads among their noise.
+pub fn certify_to_rounding(
+    data: &mut Data,
+    answer: Answer,
+    ready: &Ready,
+    threads: usize,
+) -> Result<Certificate> {
+    let certificate = certify(data, answer);
+    if data.work_of_loads > 0.0 || !certificate.only_energies_fail() {
+        return Ok(certificate);
+    }
+    data.work_of_loads = work_of_loads(data, ready, threads)?;
+    Ok(certify(data, answer))
+}
+
+/// `sum_p (g'v)^2 / v'K v` of the loads g that balance themselves, force x length. For any motion v that is no more than
+/// `g'K+ g`, the work of the load on the body alone: v = K+ g makes it large, but cannot make it wrong.
+fn work_of_loads(data: &Data, ready: &Ready, threads: usize) -> Result<f64> {
+    let unknowns = data.bodies.last().map_or(0, |body| body.start + body.stiffness.order());
+    let mut load = zeros(unknowns, "the work of the loads")?;
+    let metric = metric(data, unknowns);
+    for body in &data.bodies {
+        let range = body.start..body.start + body.stiffness.order();
+        if let Some(f) = body.load {
+            let resultants = body.null_space.mul_transposed(f);
+            let rigid = &mut load[range.clone()];
+            body.null_space.mul_add(-1.0 / body.unit, &resultants, rigid);
+            rigid.iter_mut().zip(f).zip(&metric[range]).for_each(|((g, f), d)| *g = *f + d * *g);
+        }
+    }
+    let motion = ready.displacement(threads, &load, &vec![0.0; ready.dual.modes()])?;
+    let mut strain = zeros(unknowns, "the work of the loads")?;
+    let mut work = 0.0;
+    for body in &data.bodies {
+        let range = body.start..body.start + body.stiffness.order();
+        let (g, v, strain) = (&load[range.clone()], &motion[range.clone()], &mut strain[range]);
+        body.stiffness.mul(v, strain);
+        let (done, stored) = (dot(g, v), dot(v, strain));
+        work += if stored > 0.0 { done * done / stored } else { 0.0 };
+    }
+    Ok(work)
+}
