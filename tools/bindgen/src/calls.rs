@@ -225,10 +225,7 @@ fn write_row(table: &mut String, api: &Api, function: &Function, slots: &[Slot])
         (takes_handle, "TAKES_HANDLE"),
         (function.has_status(), "HAS_STATUS"),
         (function.says("in any case"), "WRITES_ANYWAY"),
-        (
-            function.says("May be called") && function.says("while another call on the problem runs"),
-            "NEVER_BUSY",
-        ),
+        (function.is_never_busy(), "NEVER_BUSY"),
         (function.says("leaves the last error"), "KEEPS_ERROR"),
     ];
     let flags: Vec<_> = flags.iter().filter(|flag| flag.0).map(|flag| flag.1).collect();

@@ -103,7 +103,7 @@ fn overview(api: &Api) -> String {
 }
 
 /// Text that no line of it is taken for a request, with plain hyphens and backslashes.
-fn text(plain: &str) -> String {
+pub fn text(plain: &str) -> String {
     let escaped = plain.replace('\\', "\\e").replace('-', "\\-").replace('`', "");
     let lines = escaped.lines().map(|line| match line.chars().next() {
         Some('.' | '\'') => format!("\\&{line}"),

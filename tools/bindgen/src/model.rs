@@ -121,6 +121,11 @@ impl Function {
         !self.says("Never fails")
     }
 
+    /// Whether it may be called while another call on the problem runs.
+    pub fn is_never_busy(&self) -> bool {
+        self.says("May be called") && self.says("while another call on the problem runs")
+    }
+
     /// Whether the documentation holds these words.
     pub fn says(&self, words: &str) -> bool {
         self.doc.render(usize::MAX).join(" ").contains(words)

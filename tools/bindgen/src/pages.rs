@@ -1,4 +1,5 @@
 //! Reference pages in Markdown: one for every function, one for structs, constants and callbacks, and a list of all.
+//! They link to statuses.md, which tools/reference writes.
 
 use std::collections::BTreeMap;
 use std::fmt::Write;
@@ -18,11 +19,7 @@ pub type Typed = BTreeMap<String, Vec<Signature>>;
 
 /// (file name, text) of every page.
 pub fn print(api: &Api, typed: &Typed) -> Vec<(String, String)> {
-    let mut pages = vec![
-        ("functions.md".to_string(), list(api)),
-        ("types.md".to_string(), types(api)),
-        ("statuses.md".to_string(), statuses(api)),
-    ];
+    let mut pages = vec![("functions.md".to_string(), list(api)), ("types.md".to_string(), types(api))];
     for function in &api.functions {
         pages.push((format!("{}.md", function.name), page(api, typed, function)));
     }
@@ -140,9 +137,7 @@ pub fn results(api: &Api, function: &Function) -> Vec<(String, String)> {
     let handle = function.arguments.first().and_then(|argument| argument.ty.target());
     if handle.is_some_and(|ty| api.is_opaque(ty) || ty.target().is_some()) {
         names.push("FETI_HANDLE");
-        let exempt = function.says("May be called while another call on the problem runs")
-            || function.says("while another call on the problem runs. That call");
-        if !exempt && function.name != "feti_problem_create" {
+        if !function.is_never_busy() && function.name != "feti_problem_create" {
             names.push("FETI_BUSY");
         }
     }
@@ -217,11 +212,80 @@ fn types(api: &Api) -> String {
     out
 }
 
-fn statuses(api: &Api) -> String {
-    let mut out = "# Statuses\n\n| name | value | meaning |\n|---|---|---|\n".to_string();
-    for constant in api.constants.iter().filter(|constant| constant.source == STATUS_FILE) {
-        let meaning = cell(&summary(&constant.doc));
-        let _ = writeln!(out, "| `{}` | {} | {meaning} |", constant.name, constant.value);
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SOURCE: &str = "/// A problem.\n#[repr(C)] pub struct feti_problem { _private: [u8; 0] }\n\
+        /// Nothing.\npub const FETI_EXACT: i32 = 0;\n\
+        /// Adds `feti_clear`.\n///\n/// See feti_clear; FETI_STATE before.\n///\n\
+        /// | argument | in/out | shape | rule |\n/// |---|---|---|---|\n/// | `p` | in | scalar | the handle |\n\
+        /// | `x` | in | n | |x| <= 1, force |\n///\n/// # Safety\n/// Given.\n\
+        #[no_mangle] pub unsafe extern \"C\" fn feti_add(p: *mut feti_problem, x: *const f64) -> i32 { 0 }\n\
+        /// Clears. Never fails.\n#[no_mangle] pub extern \"C\" fn feti_clear() -> i32 { 0 }\n";
+    const STATUS: &str =
+        "/// Done.\npub const FETI_OK: i32 = 0;\n/// Bad.\npub const FETI_HANDLE: i32 = -2;\n\
+        /// Busy.\npub const FETI_BUSY: i32 = -3;\n/// Too early.\npub const FETI_STATE: i32 = -5;\n";
+
+    fn api() -> Api {
+        let sources = [("src/ffi/rows.rs", SOURCE), ("src/ffi/status.rs", STATUS)];
+        let sources = sources.map(|(name, text)| (name.to_string(), text.to_string()));
+        crate::checked(&sources, [0, 1, 0]).unwrap()
     }
-    out
+
+    fn pages() -> BTreeMap<String, String> {
+        let signature =
+            Signature { name: "feti_add".into(), lines: vec!["subroutine feti_add(p, x)".into()] };
+        let typed = Typed::from([("feti_add".to_string(), vec![signature])]);
+        let (api, mut pages) = (api(), BTreeMap::new());
+        pages.extend(print(&api, &typed));
+        pages.extend(crate::man::print(&api, &typed));
+        pages
+    }
+
+    #[test]
+    fn a_page_has_both_languages_arguments_statuses_and_links() {
+        let page = &pages()["feti_add.md"];
+        for line in [
+            "See [feti_clear](feti_clear.md); FETI_STATE before.",
+            "Adds `feti_clear`.",
+            "int32_t feti_add(feti_problem *p, const double *x);",
+            "subroutine feti_add(p, x)",
+            "function feti_add(p, x) bind(C, name=\"feti_add\")",
+            "| 2 | `x` | in | n | \\|x\\| <= 1, force |",
+            "| `FETI_HANDLE` | Bad. |",
+            "| `FETI_BUSY` | Busy. |",
+            "| `FETI_STATE` | Too early. |",
+            "| `FETI_ARGUMENT - k` |",
+            "**Safety.** Given.",
+            "Source: `src/ffi/rows.rs`",
+        ] {
+            assert!(page.contains(line), "no `{line}` in\n{page}");
+        }
+    }
+
+    #[test]
+    fn a_function_that_never_fails_has_no_statuses() {
+        let page = &pages()["feti_clear.md"];
+        assert!(page.contains("int32_t feti_clear(void);") && !page.contains("## Status"), "{page}");
+    }
+
+    #[test]
+    fn functions_are_listed_by_subject_and_constants_without_statuses() {
+        let pages = pages();
+        assert!(
+            pages["functions.md"].contains("## rows\n") && pages["functions.md"].contains("(feti_add.md)")
+        );
+        assert!(pages["types.md"].contains("| `FETI_EXACT` | 0 | Nothing. |"));
+        assert!(!pages["types.md"].contains("FETI_BUSY"));
+    }
+
+    #[test]
+    fn manual_pages_escape_what_roff_would_take_for_its_own() {
+        let pages = pages();
+        let page = &pages["man3/feti_add.3"];
+        assert!(page.starts_with(".TH feti_add 3 ") && page.contains(".B FETI_ARGUMENT \\- k\n"), "{page}");
+        assert!(pages["man7/feti_contact.7"].contains(".BR feti_clear (3)"));
+        assert_eq!(crate::man::text(".x\n'y - \\z"), "\\&.x\n\\&'y \\- \\ez");
+    }
 }

@@ -16,7 +16,10 @@ struct Procedure {
     statement: String,
     dummies: Vec<String>,
     declarations: Vec<String>,
+    /// Functions of C.
     calls: BTreeSet<String>,
+    /// Lines that call a subroutine, maybe one of the same module.
+    helpers: Vec<String>,
 }
 
 /// For every function of C the procedures that call it. `sources`: the modules, feti_contact.f90 among them.
@@ -29,10 +32,12 @@ pub fn signatures(sources: &[String]) -> BTreeMap<String, Vec<Signature>> {
     let mut found: BTreeMap<String, Vec<Signature>> = BTreeMap::new();
     for text in &texts {
         let generics = generics(text);
-        for procedure in procedures(text) {
+        let procedures = procedures(text);
+        for procedure in &procedures {
             let inside = generics.get(&procedure.name).unwrap_or(&procedure.name);
             let Some(outside) = faces.get(inside) else { continue };
-            for function in &procedure.calls {
+            let helpers = procedures.iter().filter(|helper| procedure.is_helped_by(helper));
+            for function in helpers.flat_map(|helper| &helper.calls).chain(&procedure.calls) {
                 found.entry(function.clone()).or_default().push(procedure.seen_as(outside));
             }
         }
@@ -41,6 +46,10 @@ pub fn signatures(sources: &[String]) -> BTreeMap<String, Vec<Signature>> {
 }
 
 impl Procedure {
+    fn is_helped_by(&self, other: &Procedure) -> bool {
+        self.helpers.iter().any(|line| line.contains(&format!("call {}(", other.name)))
+    }
+
     fn seen_as(&self, outside: &str) -> Signature {
         let statement = self.statement.replacen(&format!("{}(", self.name), &format!("{outside}("), 1);
         let declarations = self.declarations.iter().map(|line| format!("  {line}"));
@@ -115,6 +124,7 @@ fn started(line: &str) -> Option<Procedure> {
         dummies,
         declarations: Vec::new(),
         calls: BTreeSet::new(),
+        helpers: Vec::new(),
     })
 }
 
@@ -128,6 +138,9 @@ impl Procedure {
                 self.declarations.push(line.to_string());
             }
             return;
+        }
+        if line.contains("call ") {
+            self.helpers.push(line.to_string());
         }
         let called = calls.iter().filter(|(inside, _)| line.contains(&format!("{inside}(")));
         self.calls.extend(called.map(|(_, function)| function.clone()).filter(|f| f.starts_with("feti_")));
@@ -143,7 +156,8 @@ mod tests {
         let module = "module feti_contact_bodies\n  use feti_contact_c, only: FETI_OK, &\n    c_add => feti_body_add\n\
             interface body_add\n  module procedure add_int32, add_int64\nend interface\ncontains\n  !> Adds.\n\
             subroutine add_int32(p, n, stat)\n type(feti_problem), intent(in) :: p\n integer, intent(in) :: n\n\
-            integer, intent(out), optional :: stat\n integer :: local\n status = c_add(handle(p), n)\nend subroutine\n\
+            integer, intent(out), optional :: stat\n integer :: local\n call help(p, n)\nend subroutine\n\
+            subroutine help(p, n)\n status = c_add(handle(p), n)\nend subroutine\n\
             subroutine other(p)\n call nothing(p)\nend subroutine\nend module\n";
         let face = "module feti_contact\n  use feti_contact_bodies, only: &\n    feti_body_add => body_add, feti_other => other\n";
         let found = signatures(&[module.to_string(), face.to_string()]);
