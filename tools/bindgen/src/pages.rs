@@ -74,7 +74,7 @@ fn page(api: &Api, typed: &Typed, function: &Function) -> String {
     }
     let interface = fortran::interface(api, function);
     let _ = write!(out, "\n```fortran\nuse feti_contact_c\n\n{}```\n", outdented(&interface));
-    write_arguments(&mut out, function);
+    write_arguments(&mut out, api, function);
     write_results(&mut out, api, function);
     for paragraph in &after {
         let _ = write!(out, "\n{}\n", paragraph.replacen("Safety:", "**Safety.**", 1));
@@ -88,7 +88,7 @@ fn outdented(text: &str) -> String {
     text.lines().map(|line| format!("{}\n", &line[indent..])).collect()
 }
 
-fn write_arguments(out: &mut String, function: &Function) {
+fn write_arguments(out: &mut String, api: &Api, function: &Function) {
     if function.arguments.is_empty() {
         return;
     }
@@ -103,7 +103,7 @@ fn write_arguments(out: &mut String, function: &Function) {
             "| {number} | `{}` | {direction} | {} | {} |",
             row.argument,
             cell(&row.shape),
-            cell(&row.rule)
+            cell(&linked(api, function, &row.rule))
         );
     }
 }
@@ -162,7 +162,12 @@ fn has_word(text: &str, word: &str) -> bool {
     text.split(|c: char| !c.is_ascii_alphanumeric() && c != '_').any(|found| found == word)
 }
 
-/// Names of other functions outside `code` become links to their pages.
+/// Whether the page of types has a heading of this name.
+fn is_described(api: &Api, name: &str) -> bool {
+    api.structs.iter().any(|s| s.name == name) || api.callbacks.iter().any(|c| c.name == name)
+}
+
+/// Names of other functions, of structs and callbacks outside `code` become links to their pages.
 fn linked(api: &Api, function: &Function, text: &str) -> String {
     let parts = text.split('`').enumerate().map(|(k, part)| {
         if k % 2 == 1 {
@@ -171,9 +176,12 @@ fn linked(api: &Api, function: &Function, text: &str) -> String {
         let mut out = String::new();
         for word in part.split_inclusive(|c: char| !c.is_ascii_alphanumeric() && c != '_') {
             let name = word.trim_end_matches(|c: char| !c.is_ascii_alphanumeric() && c != '_');
-            let is_other = name != function.name && api.functions.iter().any(|f| f.name == name);
-            let link = if is_other { format!("[{name}]({name}.md)") } else { name.to_string() };
-            out.push_str(&link);
+            out.push_str(&match name {
+                _ if name == function.name => name.to_string(),
+                _ if api.functions.iter().any(|f| f.name == name) => format!("[{name}]({name}.md)"),
+                _ if is_described(api, name) => format!("[{name}](types.md#{name})"),
+                _ => name.to_string(),
+            });
             out.push_str(&word[name.len()..]);
         }
         out
@@ -218,7 +226,7 @@ mod tests {
 
     const SOURCE: &str = "/// A problem.\n#[repr(C)] pub struct feti_problem { _private: [u8; 0] }\n\
         /// Nothing.\npub const FETI_EXACT: i32 = 0;\n\
-        /// Adds `feti_clear`.\n///\n/// See feti_clear; FETI_STATE before.\n///\n\
+        /// Adds `feti_clear`.\n///\n/// See feti_clear; FETI_STATE before. Not feti_problem.\n///\n\
         /// | argument | in/out | shape | rule |\n/// |---|---|---|---|\n/// | `p` | in | scalar | the handle |\n\
         /// | `x` | in | n | |x| <= 1, force |\n///\n/// # Safety\n/// Given.\n\
         #[no_mangle] pub unsafe extern \"C\" fn feti_add(p: *mut feti_problem, x: *const f64) -> i32 { 0 }\n\
@@ -247,7 +255,7 @@ mod tests {
     fn a_page_has_both_languages_arguments_statuses_and_links() {
         let page = &pages()["feti_add.md"];
         for line in [
-            "See [feti_clear](feti_clear.md); FETI_STATE before.",
+            "See [feti_clear](feti_clear.md); FETI_STATE before. Not [feti_problem](types.md#feti_problem).",
             "Adds `feti_clear`.",
             "int32_t feti_add(feti_problem *p, const double *x);",
             "subroutine feti_add(p, x)",
