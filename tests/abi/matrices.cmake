@@ -38,8 +38,9 @@ add_library(trace MODULE "${trace}")
 add_dependencies(trace calls) # one of them runs the generator
 target_include_directories(trace PRIVATE "${FETI_INCLUDE}")
 target_link_libraries(trace PRIVATE ${CMAKE_DL_LIBS})
-foreach(language c fortran)
+foreach(language C Fortran)
+  string(TOLOWER "${language}_" prefix)
   claim("${language}: every function of the header succeeds in a driver"
         sh "${CMAKE_CURRENT_SOURCE_DIR}/called.sh" $<TARGET_FILE:trace> "${FETI_INCLUDE}/feti_contact.h" "${FETI_DATA}"
-        "${CMAKE_CURRENT_BINARY_DIR}" ${language}_)
+        "${CMAKE_CURRENT_BINARY_DIR}" ${prefix})
 endforeach()
