@@ -29,7 +29,7 @@ contains
     call feti_get(p, 'threads', threads)
     call feti_get(p, 'memory_limit', limit)
     call feti_get(p, 'start', word)
-    call require(gamma == 2.5_dp .and. threads == 3 .and. limit == 8000000000_int64, 'a number is read otherwise')
+    call require(abs(gamma - 2.5_dp) <= 0.0_dp .and. threads == 3 .and. limit == 8000000000_int64, 'a number is read otherwise')
     call require(word == 'previous' .and. len(word) == 8, 'a text is read otherwise: ' // word)
     call feti_problem_destroy(p)
   end subroutine
