@@ -185,14 +185,16 @@ fn check_rhs(rhs: &[f64]) -> Result<()> {
     })
 }
 
-/// Overwrites the values from `first` on.
+/// Overwrites the values from `first` on. Refused as `first` where there is no such row, as `rows` where they are too many.
 fn replace(target: &mut [f64], first: usize, values: &[f64]) -> Result<()> {
     let rows = target.len();
     match first.checked_add(values.len()).and_then(|end| target.get_mut(first..end)) {
         Some(target) => target.copy_from_slice(values),
         None => {
-            let what = format!("the rows end at {rows}");
-            return Err(Error::argument("first", what).value(first.saturating_add(values.len()) as f64));
+            let what = format!("there are {rows} rows");
+            let argument = if first < rows { "rows" } else { "first" };
+            let end = first.saturating_add(values.len());
+            return Err(Error::argument(argument, what).value(end as f64).limit(rows as f64));
         }
     }
     Ok(())
@@ -291,7 +293,8 @@ mod tests {
             let error = rows.set_compliance(0, &[3.0, value]).unwrap_err();
             assert_eq!((error.kind, error.place.row), (Kind::Argument("inv_k"), Some(1)));
         }
-        assert_eq!(rows.set_compliance(1, &[1.0, 1.0]).unwrap_err().kind, Kind::Argument("first"));
+        assert_eq!(rows.set_compliance(1, &[1.0, 1.0]).unwrap_err().kind, Kind::Argument("rows"));
+        assert_eq!(rows.set_compliance(2, &[1.0]).unwrap_err().kind, Kind::Argument("first"));
         assert_eq!(rows.compliance, [0.0, 0.5]);
     }
 

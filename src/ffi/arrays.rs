@@ -96,6 +96,25 @@ pub(super) unsafe fn input<'a, T>(from: *const T, len: usize, name: &'static str
     Ok(unsafe { std::slice::from_raw_parts(from, len) })
 }
 
+/// As [`input`], for numbers that must be finite.
+///
+/// # Safety
+/// As for [`input`].
+pub(super) unsafe fn finite_input<'a>(from: *const f64, len: usize, name: &'static str) -> Result<&'a [f64]> {
+    // SAFETY: by the caller's word.
+    let values = unsafe { input(from, len, name) }?;
+    check_finite(values, 0, name)?;
+    Ok(values)
+}
+
+/// `values` are the entries from `start` on of the array `name`.
+pub(super) fn check_finite(values: &[f64], start: usize, name: &'static str) -> Result<()> {
+    match values.iter().position(|value| !value.is_finite()) {
+        None => Ok(()),
+        Some(at) => Err(Error::argument(name, "the entry is not a finite number").entry(start + at)),
+    }
+}
+
 /// As [`input`]; NULL stands for an array that is not given.
 ///
 /// # Safety
@@ -230,6 +249,18 @@ mod tests {
             assert!(input_or_none::<f64>(std::ptr::null(), 2, "f").unwrap().is_none());
             assert_eq!(kind(Output::<f64>::new(std::ptr::null_mut(), 1, "u")), Kind::Argument("u"));
         }
+    }
+
+    #[test]
+    fn numbers_that_must_be_finite_are_refused_with_their_entry() {
+        // SAFETY: three numbers each.
+        let read = |x: [f64; 3]| unsafe { finite_input(x.as_ptr(), 3, "x") }.map(|_| ());
+        assert_eq!(read([0.0, -1e308, 5e-324]), Ok(()));
+        for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+            let error = read([0.0, bad, bad]).unwrap_err();
+            assert_eq!((error.kind, error.place.entry), (Kind::Argument("x"), Some(1)));
+        }
+        assert_eq!(check_finite(&[1.0, f64::NAN], 4, "x").unwrap_err().place.entry, Some(5));
     }
 
     #[test]

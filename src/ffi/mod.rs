@@ -39,6 +39,10 @@ mod types;
 mod validation;
 
 #[cfg(test)]
+mod error_tests;
+#[cfg(test)]
+mod panic_tests;
+#[cfg(test)]
 mod tests;
 
 pub use body::*;

@@ -1,6 +1,6 @@
 //! Setup, solve, and the verdict on an answer.
 
-use super::arrays::{input, same};
+use super::arrays::{finite_input, same};
 use super::guard::{call, enter, enter_with_status};
 use super::record::Target;
 use super::status::of_outcome;
@@ -94,8 +94,9 @@ pub unsafe extern "C" fn feti_check(
         let rows = same(rows, counts.rows, "rows", "the number of inequality rows is")?;
         let eqs = same(eqs, counts.equalities, "eqs", "the number of equality rows is")?;
         // SAFETY: shapes by the caller's word.
-        let (u, lambda, mu) =
-            unsafe { (input(u, n, "u")?, input(lambda, rows, "lambda")?, input(mu, eqs, "mu")?) };
+        let (u, lambda, mu) = unsafe {
+            (finite_input(u, n, "u")?, finite_input(lambda, rows, "lambda")?, finite_input(mu, eqs, "mu")?)
+        };
         // SAFETY: `struct_size` bytes by the caller's word.
         let target = unsafe { Target::new(out, "out") }?;
         let _room = problem.working_room()?;

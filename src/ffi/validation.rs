@@ -1,7 +1,7 @@
 //! The operators of the method, for comparison with other codes: contact rows first, then equality rows, in the host's
 //! order and scaling.
 
-use super::arrays::{column_major, count, input, same, zeros, Output};
+use super::arrays::{check_finite, column_major, count, finite_input, input, same, zeros, Output};
 use super::body::body_of_order;
 use super::guard::{call, enter};
 use super::types::feti_problem;
@@ -43,6 +43,7 @@ pub unsafe extern "C" fn feti_body_kplus(
         let (y_entries, ldy) = column_major(n, nrhs, ldy, "ldy")?;
         // SAFETY: shapes by the caller's word.
         let (x, output) = unsafe { (input(x, x_entries, "x")?, Output::new(y, y_entries, "y")?) };
+        (0..nrhs).try_for_each(|k| check_finite(&x[k * ldx..k * ldx + n], k * ldx, "x"))?;
         let _room = problem.working_room()?;
         // At most y_entries, which column_major has bounded.
         let mut columns = zeros(n * nrhs)?;
@@ -74,7 +75,7 @@ pub unsafe extern "C" fn feti_dual_apply(p: *mut feti_problem, m: i64, x: *const
     enter(p, call!(feti_dual_apply(p, m, x, y)), |problem| {
         let m = all_rows(problem, m)?;
         // SAFETY: shapes by the caller's word.
-        let (x, output) = unsafe { (input(x, m, "x")?, Output::new(y, m, "y")?) };
+        let (x, output) = unsafe { (finite_input(x, m, "x")?, Output::new(y, m, "y")?) };
         let _room = problem.working_room()?;
         let mut product = zeros(m)?;
         problem.dual_apply(x, &mut product)?;

@@ -35,4 +35,6 @@ pub use problem::Problem;
 pub use report::{Counts, Outcome, Report, RowState};
 pub use settings::{options, OptionInfo, OptionValue, Settings};
 pub use threads::THREAD_NAME;
+#[cfg(test)]
+pub(crate) use threads::{run as run_on_pool, run_heard};
 pub use watch::{Listener, Progress, Reply};

@@ -83,6 +83,14 @@ impl Doc {
         })
     }
 
+    /// The paragraphs before the table, and those after it, each in one line.
+    pub fn paragraphs(&self) -> [Vec<String>; 2] {
+        let of = |lines: &[String]| -> Vec<String> {
+            paragraphs(lines, usize::MAX).into_iter().filter(|line| !line.is_empty()).collect()
+        };
+        [of(&self.before), of(&self.after)]
+    }
+
     /// Plain lines of at most `width` characters; the table becomes one `@param[in] name (shape) rule` per argument.
     pub fn render(&self, width: usize) -> Vec<String> {
         let mut lines = paragraphs(&self.before, width);

@@ -97,6 +97,15 @@ fn write_function(out: &mut String, api: &Api, function: &Function) {
     write_body(out, api, name, &function.arguments, &function.result);
 }
 
+/// The interface of one function, without its documentation.
+pub fn interface(api: &Api, function: &Function) -> String {
+    let mut out = String::new();
+    let binding = format!("bind(C, name=\"{}\")", function.name);
+    write_statement(&mut out, &function.name, &function.arguments, &binding);
+    write_body(&mut out, api, &function.name, &function.arguments, &function.result);
+    out
+}
+
 fn write_body(out: &mut String, api: &Api, name: &str, arguments: &[Argument], result: &Type) {
     out.push_str("      import\n");
     for argument in arguments {

@@ -1,7 +1,9 @@
 //! Writes `include/feti_contact.h` and `include/fortran/feti_contact_c.f90` from one parse of `src/ffi/*.rs`.
 //!
-//! `feti-bindgen [--check] [--source DIR] [--root DIR]`; `--check` writes nothing and fails on the first line that
-//! differs from the committed files. `--root` is the folder of the library's Cargo.toml, `--source` defaults to its src/ffi.
+//! `feti-bindgen [--check] [--calls FILE] [--trace FILE] [--pages DIR] [--source DIR] [--root DIR]`; `--check` writes nothing and fails on the first line
+//! that differs from the committed files. `--calls FILE` writes a C program for the tests instead ([`calls`]), as does `--trace` ([`trace`]);
+//! `--pages DIR` writes reference pages there ([`pages`]) and manual pages below DIR/man ([`man`]).
+//! `--root` is the folder of the library's Cargo.toml, `--source` defaults to its src/ffi.
 //!
 //! Every exported function carries a table `| argument | in/out | shape | rule |` in its documentation ([`doc`]).
 
@@ -10,19 +12,30 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 mod c_header;
+mod c_types;
+mod calls;
 mod check;
+mod dictionary;
 mod doc;
+mod faults;
 mod fortran;
+mod man;
 mod model;
+mod pages;
 mod parse;
 #[cfg(test)]
 mod tests;
+mod trace;
+mod typed;
 
 const HEADER: &str = "include/feti_contact.h";
 const FORTRAN: &str = "include/fortran/feti_contact_c.f90";
 
 struct Options {
     check: bool,
+    calls: Option<PathBuf>,
+    trace: Option<PathBuf>,
+    pages: Option<PathBuf>,
     root: PathBuf,
     source: PathBuf,
 }
@@ -37,26 +50,43 @@ fn main() -> ExitCode {
 }
 
 fn options(mut arguments: impl Iterator<Item = String>) -> Result<Options, String> {
-    let mut check = false;
+    let (mut check, mut calls, mut trace, mut pages) = (false, None, None, None);
     let mut root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
     let mut source = None;
     while let Some(argument) = arguments.next() {
-        let mut folder = || arguments.next().map(PathBuf::from).ok_or(format!("{argument} needs a folder"));
+        let mut path = || arguments.next().map(PathBuf::from).ok_or(format!("{argument} needs a path"));
         match argument.as_str() {
             "--check" => check = true,
-            "--root" => root = folder()?,
-            "--source" => source = Some(folder()?),
-            _ => return Err(format!("unknown option {argument}; known: --check, --source DIR, --root DIR")),
+            "--calls" => calls = Some(path()?),
+            "--trace" => trace = Some(path()?),
+            "--pages" => pages = Some(path()?),
+            "--root" => root = path()?,
+            "--source" => source = Some(path()?),
+            _ => {
+                return Err(format!(
+                    "unknown option {argument}; known: --check, --calls FILE, --trace FILE, --pages DIR, --source DIR, --root DIR"
+                ))
+            }
         }
     }
     let source = source.unwrap_or_else(|| root.join("src/ffi"));
-    Ok(Options { check, root, source })
+    Ok(Options { check, calls, trace, pages, root, source })
 }
 
 fn run(options: &Options) -> Result<(), String> {
     let manifest = options.root.join("Cargo.toml");
     let version = package_version(&read(&manifest)?).ok_or(format!("{}: no version", manifest.display()))?;
-    let generated = generate(&sources(&options.source)?, version)?;
+    let sources = sources(&options.source)?;
+    if let Some(path) = &options.calls {
+        return write(path, &calls::print(&checked(&sources, version)?)?);
+    }
+    if let Some(path) = &options.trace {
+        return write(path, &trace::print(&checked(&sources, version)?));
+    }
+    if let Some(folder) = &options.pages {
+        return write_pages(folder, &options.root, &checked(&sources, version)?);
+    }
+    let generated = generate(&sources, version)?;
     let mut drift = Vec::new();
     for (name, text) in [HEADER, FORTRAN].iter().zip(generated) {
         let path = options.root.join(name);
@@ -64,8 +94,7 @@ fn run(options: &Options) -> Result<(), String> {
             let committed = fs::read_to_string(&path).unwrap_or_default();
             drift.extend(check::first_difference(name, &committed, &text));
         } else {
-            fs::create_dir_all(path.parent().expect("the file is in a folder")).map_err(|e| e.to_string())?;
-            fs::write(&path, text).map_err(|e| format!("{}: {e}", path.display()))?;
+            write(&path, &text)?;
         }
     }
     if drift.is_empty() {
@@ -77,18 +106,51 @@ fn run(options: &Options) -> Result<(), String> {
 
 /// Header and Fortran module of the given (file name, text) pairs.
 fn generate(sources: &[(String, String)], version: [u32; 3]) -> Result<[String; 2], String> {
+    let api = checked(sources, version)?;
+    Ok([c_header::print(&api)?, fortran::print(&api)])
+}
+
+fn checked(sources: &[(String, String)], version: [u32; 3]) -> Result<model::Api, String> {
     let api = parse::parse(sources, version)?;
     check::check(&api)?;
-    Ok([c_header::print(&api)?, fortran::print(&api)])
+    Ok(api)
+}
+
+fn write_pages(folder: &Path, root: &Path, api: &model::Api) -> Result<(), String> {
+    let mut modules = Vec::new();
+    for path in files(&root.join("include/fortran"), "f90")? {
+        // The generated interfaces and the FORTRAN 77 face are not the typed module.
+        let name = path.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
+        if !name.ends_with("_c") && !name.ends_with("_f77") {
+            modules.push(read(&path)?);
+        }
+    }
+    let typed = typed::signatures(&modules);
+    for (name, text) in pages::print(api, &typed) {
+        write(&folder.join(name), &text)?;
+    }
+    man::print(api, &typed).iter().try_for_each(|(name, text)| write(&folder.join("man").join(name), text))
+}
+
+fn write(path: &Path, text: &str) -> Result<(), String> {
+    let folder = path.parent().unwrap_or(Path::new("."));
+    fs::create_dir_all(folder).map_err(|e| format!("{}: {e}", folder.display()))?;
+    fs::write(path, text).map_err(|e| format!("{}: {e}", path.display()))
 }
 
 /// The Rust files of `folder`, by name: the order must not depend on the file system.
 fn sources(folder: &Path) -> Result<Vec<(String, String)>, String> {
+    let paths = files(folder, "rs")?;
+    paths.iter().map(|path| Ok((path.display().to_string(), read(path)?))).collect()
+}
+
+/// The files of a folder that end so, by name.
+fn files(folder: &Path, ending: &str) -> Result<Vec<PathBuf>, String> {
     let entries = fs::read_dir(folder).map_err(|e| format!("{}: {e}", folder.display()))?;
     let mut paths: Vec<PathBuf> = entries.filter_map(|entry| entry.ok().map(|entry| entry.path())).collect();
-    paths.retain(|path| path.extension().is_some_and(|extension| extension == "rs"));
+    paths.retain(|path| path.extension().is_some_and(|extension| extension == ending));
     paths.sort();
-    paths.iter().map(|path| Ok((path.display().to_string(), read(path)?))).collect()
+    Ok(paths)
 }
 
 fn read(path: &Path) -> Result<String, String> {

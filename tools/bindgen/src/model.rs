@@ -64,6 +64,8 @@ pub struct Constant {
     pub ty: Type,
     pub value: i64,
     pub doc: Doc,
+    /// Name of the file it stands in.
+    pub source: String,
 }
 
 #[derive(Debug)]
@@ -109,6 +111,25 @@ pub struct Function {
     pub arguments: Vec<Argument>,
     pub result: Type,
     pub doc: Doc,
+    /// Name of the file it stands in.
+    pub source: String,
+}
+
+impl Function {
+    /// Whether the result is a status: all but those that never fail.
+    pub fn has_status(&self) -> bool {
+        !self.says("Never fails")
+    }
+
+    /// Whether it may be called while another call on the problem runs.
+    pub fn is_never_busy(&self) -> bool {
+        self.says("May be called") && self.says("while another call on the problem runs")
+    }
+
+    /// Whether the documentation holds these words.
+    pub fn says(&self, words: &str) -> bool {
+        self.doc.render(usize::MAX).join(" ").contains(words)
+    }
 }
 
 /// `pub type feti_x_fn = Option<unsafe extern "C" fn(...) -> i32>`: a function of the host.

@@ -13,6 +13,13 @@ pub fn parse(sources: &[(String, String)], version: [u32; 3]) -> Result<Api, Str
         for item in &file.items {
             add_item(&mut api, item).map_err(|e| format!("{name}: {e}"))?;
         }
+        let file = std::path::Path::new(name).file_name().map_or(name.clone(), |f| f.display().to_string());
+        let functions = api.functions.iter_mut().map(|function| &mut function.source);
+        let constants = api.constants.iter_mut().map(|constant| &mut constant.source);
+        functions
+            .chain(constants)
+            .filter(|source| source.is_empty())
+            .for_each(|source| source.clone_from(&file));
     }
     Ok(api)
 }
@@ -46,7 +53,7 @@ fn constant(item: &syn::ItemConst) -> Result<Constant, String> {
     let value =
         value.ok_or_else(|| format!("constant `{name}`: {} is not an integer literal", text(&item.expr)))?;
     let doc = documentation(&item.attrs).map_err(|e| format!("constant `{name}`: {e}"))?;
-    Ok(Constant { name, ty, value, doc })
+    Ok(Constant { name, ty, value, doc, source: String::new() })
 }
 
 /// A literal, possibly with a minus sign.
@@ -105,7 +112,7 @@ fn function(item: &syn::ItemFn) -> Result<Option<Function>, String> {
         syn::FnArg::Receiver(_) => Err(text(input)),
     });
     let (arguments, result, doc) = signature(&name, named, &item.sig.output, &item.attrs)?;
-    Ok(Some(Function { name, arguments, result, doc }))
+    Ok(Some(Function { name, arguments, result, doc, source: String::new() }))
 }
 
 /// A type alias of the interface must be a function of the host that may be NULL.

@@ -1,0 +1,118 @@
+//! What a host hears: info, details, texts, the list of options.
+
+use std::ptr::null_mut;
+
+use super::tests::{last_detail, last_error, string, Owned};
+use super::*;
+
+#[test]
+fn info_is_written_whatever_happens_and_no_more_than_the_caller_has_room_for() {
+    let p = Owned::with_body();
+    // SAFETY: all zero is a valid value.
+    let mut info: feti_info = unsafe { std::mem::zeroed() };
+    // SAFETY: `struct_size` is at most the size.
+    let mut solve = |p: *mut feti_problem, size: usize| unsafe {
+        info = std::mem::zeroed();
+        info.struct_size = size as i64;
+        (feti_solve(p, &mut info), info)
+    };
+    let (status, full) = solve(p.0, size_of::<feti_info>());
+    assert!(status < 0 && full.status == status);
+    assert_eq!((full.bodies, full.dofs, full.rows), (1, 2, 0));
+    assert!(full.worst.is_nan() && full.seconds_solve.is_nan());
+    let (status, old) = solve(p.0, 24);
+    assert_eq!((old.struct_size, old.status, old.bodies, old.dofs), (24, status, 1, 0));
+    assert_eq!(solve(p.0, 15).0, FETI_ARGUMENT - 2);
+    assert_eq!(solve(null_mut(), size_of::<feti_info>()).1.status, FETI_HANDLE);
+    assert_eq!(p.set(c"fault_injection", 1), FETI_OK);
+    let (_, broken) = solve(p.0, size_of::<feti_info>());
+    assert_eq!((broken.status, broken.bodies), (FETI_INTERNAL, 1));
+}
+
+#[test]
+fn a_refused_argument_is_reported_by_position_name_and_place() {
+    let p = Owned::with_body();
+    assert_eq!(p.load(&[0.0, f64::INFINITY]), -104);
+    let detail = last_detail();
+    assert_eq!((detail.status, detail.argument, detail.body, detail.entry), (-104, 4, 0, 1));
+    assert_eq!((detail.dof, detail.row, detail.component), (-1, -1, -1));
+    assert_eq!(string(&detail.function), "feti_body_load");
+    assert_eq!(p.load(&[0.0, 1.0, 2.0]), -103);
+    assert_eq!((last_detail().value, last_detail().limit), (3.0, 2.0));
+    let ptr = [0_i32, 1, 2];
+    let stiffness = |row_ptr: &[i32], base, storage, flags| {
+        let (col, val) = ([0_i32, 1], [1.0, 1.0]);
+        // SAFETY: two rows of one entry each, or refused before.
+        unsafe {
+            let (col, val) = (col.as_ptr(), val.as_ptr());
+            feti_body_stiffness_i32(p.0, 0, 2, row_ptr.as_ptr(), col, val, base, storage, flags)
+        }
+    };
+    assert_eq!(stiffness(&ptr, 0, FETI_FULL, FETI_COPY), FETI_OK);
+    assert_eq!(stiffness(&ptr, 1, FETI_FULL, FETI_COPY), -104);
+    assert_eq!(stiffness(&ptr, 2, FETI_FULL, FETI_COPY), -107);
+    assert_eq!(stiffness(&ptr, 0, 3, FETI_COPY), -108);
+    assert_eq!(stiffness(&ptr, 0, FETI_FULL, 1), -109);
+    assert_eq!(stiffness(&[0, 2, 1], 0, FETI_FULL, FETI_COPY), -104);
+    assert_eq!((last_detail().row, last_detail().body), (1, -1));
+}
+
+#[test]
+fn texts_count_from_the_base_of_the_host_and_details_from_zero() {
+    let p = Owned::with_body();
+    p.load(&[f64::NAN, 0.0]);
+    assert!(last_error().starts_with("feti_body_load: body 0, entry 0: "), "{}", last_error());
+    assert_eq!(p.set(c"index_base", 1), FETI_OK);
+    p.load(&[f64::NAN, 0.0]);
+    assert!(last_error().starts_with("feti_body_load: body 1, entry 1: "), "{}", last_error());
+    assert_eq!((last_detail().body, last_detail().entry), (0, 0));
+}
+
+#[test]
+fn the_last_error_is_kept_per_thread_and_cut_to_its_room() {
+    let p = Owned::with_body();
+    p.load(&[f64::NAN, 0.0]);
+    assert_eq!(p.load(&[1.0, 1.0]), FETI_OK);
+    let full = last_error();
+    assert_eq!(full, p.error(), "a successful call clears nothing");
+    let mut text = [1; 12];
+    // SAFETY: room for as many characters as said.
+    unsafe {
+        assert_eq!(feti_last_error(null_mut(), 0), full.len() as i64);
+        assert_eq!(feti_last_error(text.as_mut_ptr(), 10), full.len() as i64);
+        assert_eq!(feti_problem_error(p.0, null_mut(), 1, &mut 0), -102);
+    }
+    assert_eq!((string(&text), &text[9..]), ("feti_body".to_string(), &[0, 1, 1][..]));
+    let elsewhere = std::thread::spawn(|| (last_error(), last_detail().status)).join().unwrap();
+    assert_eq!(elsewhere, (String::new(), FETI_OK));
+    let mut short = feti_error_detail { struct_size: 8, ..last_detail() };
+    // SAFETY: the size is refused, nothing is written.
+    assert_eq!(unsafe { feti_last_error_detail(&mut short) }, -101);
+}
+
+#[test]
+fn options_are_listed_with_type_and_default() {
+    // SAFETY: all zero is a valid value, the size is set, names are NUL terminated.
+    unsafe {
+        let mut option: feti_option = std::mem::zeroed();
+        option.struct_size = size_of::<feti_option>() as i64;
+        let p = Owned::new();
+        for k in 0..feti_option_count() {
+            assert_eq!(feti_option_at(k, &mut option), FETI_OK);
+            let (mut number, mut integer) = (0.0, 0);
+            match option.r#type {
+                FETI_OPTION_F64 => assert_eq!(feti_get_f64(p.0, option.name, &mut number), FETI_OK),
+                FETI_OPTION_I64 => assert_eq!(feti_get_i64(p.0, option.name, &mut integer), FETI_OK),
+                _ => assert_eq!(feti_get_str(p.0, option.name, null_mut(), 0, &mut integer), FETI_OK),
+            }
+            match option.r#type {
+                FETI_OPTION_F64 => assert_eq!(number, option.default_f64),
+                FETI_OPTION_I64 => assert_eq!(integer, option.default_i64),
+                _ => assert!(option.default_f64.is_nan() && !option.default_str.is_null()),
+            }
+        }
+        assert_eq!(feti_option_at(-1, &mut option), -101);
+        assert_eq!(feti_option_at(feti_option_count(), &mut option), -101);
+        assert_eq!(feti_option_at(0, null_mut()), -102);
+    }
+}

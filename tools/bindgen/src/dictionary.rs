@@ -1,0 +1,155 @@
+//! What the test programs know of arguments: a right value for every name, and what can be wrong with it.
+//!
+//! Right values belong to the problem of tests/abi/c/calls.h: body 0 with 2 unknowns, held; body 1 with 2 unknowns,
+//! floating; 2 inequality rows, 1 equality row; solved. A name that is not here, or not with its type, is an error: a new
+//! function cannot be forgotten.
+
+use crate::model::{Argument, Function};
+
+/// What an argument that is read stands for. Results need no entry.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Role {
+    /// A size that the problem knows.
+    Size,
+    /// Number of rows from `first` on: fewer are right.
+    UpTo,
+    /// A size that the caller chooses, >= 0.
+    Free,
+    /// A size that the caller chooses, > 0.
+    Positive,
+    /// Number of a body, row, state, option, phase: from 0.
+    Number,
+    /// Number of a body, or -1 for all of them.
+    BodyOrAll,
+    /// Leading dimension, at least the given number.
+    Leading,
+    /// Room for a text or a list.
+    Room,
+    /// One of some constants.
+    Choice,
+    /// 0 or 1.
+    Base,
+    /// Numbers per position, 1 to 3.
+    Dimension,
+    /// Value of an option: a double, an integer.
+    Value,
+    /// Anything goes.
+    Any,
+    /// Name of an option or a word that it knows.
+    Word,
+    /// Name of a file.
+    Path,
+    /// Doubles, all finite.
+    Doubles,
+    /// Doubles, finite and not negative.
+    NotNegative,
+    /// Positions of a sparse matrix.
+    Positions,
+    /// Indices from 0.
+    Indices,
+    /// Directions, 1 to 6.
+    Directions,
+    /// Integers of any value.
+    Labels,
+}
+
+/// (name or function.name, role, right value or initialiser)
+type Entry = (&'static str, Role, &'static str);
+
+/// A function in its own name, or without `_i32` and `_i64`.
+const ENTRIES: &[Entry] = &[
+    ("base", Role::Base, "0"),
+    ("basis", Role::Doubles, "1.0, 1.0"),
+    ("body", Role::Number, "1"),
+    ("cap", Role::Room, "8"),
+    ("col", Role::Indices, "0, 0, 1"),
+    ("concurrent", Role::Base, "0"),
+    ("diag", Role::Doubles, "4.0, 4.0"),
+    ("dim", Role::Dimension, "1"),
+    ("dir", Role::Directions, "1, 1"),
+    ("dof", Role::Indices, "0"),
+    ("eqs", Role::Size, "1"),
+    ("f", Role::Doubles, "0.0, -6.0"),
+    ("first", Role::Number, "0"),
+    ("flags", Role::Choice, "0"),
+    ("id", Role::Number, "0"),
+    ("inv_k", Role::NotNegative, "0.0, 0.0"),
+    ("k", Role::Number, "0"),
+    ("kind", Role::Choice, "FETI_INEQUALITY"),
+    ("lambda", Role::Doubles, "0.0, 0.0"),
+    ("ld", Role::Leading, "2"),
+    ("ldr", Role::Leading, "2"),
+    ("ldx", Role::Leading, "2"),
+    ("ldy", Role::Leading, "2"),
+    ("level", Role::Choice, "0"),
+    ("m", Role::Size, "3"),
+    ("mu", Role::Doubles, "0.0"),
+    ("n", Role::Size, "2"),
+    ("nnz", Role::Size, "3"),
+    ("node", Role::Labels, "1, 2"),
+    ("nrhs", Role::Free, "2"),
+    ("number", Role::Indices, "2, 3"),
+    ("path", Role::Path, "FILE_OF_CALLS"),
+    ("r", Role::Size, "1"),
+    ("rhs", Role::Doubles, "1.0, 5.0"),
+    ("row_ptr", Role::Positions, "0, 1, 3"),
+    ("rows", Role::Size, "2"),
+    ("status", Role::Any, "FETI_STATE"),
+    ("storage", Role::Choice, "FETI_LOWER"),
+    ("text", Role::Word, "\"tolerance=1e-12 threads=1\""),
+    ("u", Role::Doubles, "0.0, 0.0, 0.0, 0.0"),
+    ("user", Role::Any, "NULL"),
+    ("val", Role::Doubles, "4.0, -4.0, 4.0"),
+    ("x", Role::Doubles, "1.0, 2.0, 3.0, 4.0"),
+    ("xyz", Role::Doubles, "0.0, 1.0"),
+    // Where a name stands for something else.
+    ("feti_body_add.n", Role::Positive, "3"),
+    ("feti_body_coordinates.ld", Role::Leading, "1"),
+    ("feti_body_fixing_set.r", Role::Free, "1"),
+    ("feti_body_load.body", Role::BodyOrAll, "1"),
+    ("feti_body_null_space.r", Role::Free, "1"),
+    ("feti_body_stiffness_dense.k", Role::Doubles, "4.0, -4.0, -4.0, 4.0"),
+    ("feti_body_stiffness_split.col", Role::Indices, "0"),
+    ("feti_body_stiffness_split.row_ptr", Role::Positions, "0, 0, 1"),
+    ("feti_body_stiffness_split.val", Role::Doubles, "-4.0"),
+    ("feti_body_values_dense.k", Role::Doubles, "4.0, -4.0, -4.0, 4.0"),
+    ("feti_body_values_split.nnz", Role::Size, "1"),
+    ("feti_body_values_split.val", Role::Doubles, "-4.0"),
+    ("feti_check.n", Role::Size, "4"),
+    ("feti_displacement.body", Role::BodyOrAll, "1"),
+    ("feti_dual_apply.x", Role::Doubles, "1.0, 2.0, 3.0"),
+    ("feti_get_f64.name", Role::Word, "\"gamma\""),
+    ("feti_get_i64.name", Role::Word, "\"threads\""),
+    ("feti_get_str.name", Role::Word, "\"start\""),
+    ("feti_reaction.body", Role::BodyOrAll, "1"),
+    ("feti_rows_add.body", Role::Indices, "0, 1"),
+    ("feti_rows_add.dof", Role::Indices, "1, 0"),
+    ("feti_rows_add.rhs", Role::Doubles, "1.0"),
+    ("feti_rows_add.rows", Role::Free, "1"),
+    ("feti_rows_add.row_ptr", Role::Positions, "0, 2"),
+    ("feti_rows_add.val", Role::Doubles, "1.0, -1.0"),
+    ("feti_rows_compliance.rows", Role::UpTo, "2"),
+    ("feti_rows_rhs.rows", Role::UpTo, "2"),
+    ("feti_set_f64.name", Role::Word, "\"gamma\""),
+    ("feti_set_f64.value", Role::Value, "1.0"),
+    ("feti_set_i64.name", Role::Word, "\"threads\""),
+    ("feti_set_i64.value", Role::Value, "1"),
+    ("feti_set_str.name", Role::Word, "\"start\""),
+    ("feti_set_str.value", Role::Word, "\"cold\""),
+];
+
+/// Role and right value of an argument that is read.
+pub fn entry(function: &Function, argument: &Argument) -> Result<(Role, &'static str), String> {
+    let find = |function: &str| {
+        let key = format!("{function}.{}", argument.name);
+        ENTRIES.iter().find(|entry| entry.0 == key)
+    };
+    let name = function.name.as_str();
+    let plain = name.strip_suffix("_i32").or(name.strip_suffix("_i64")).unwrap_or(name);
+    let found = find(name).or_else(|| find(plain));
+    let found = found.or_else(|| ENTRIES.iter().find(|entry| entry.0 == argument.name));
+    let found = found.ok_or_else(|| {
+        format!("function `{}`, argument `{}`: no right value in dictionary.rs", function.name, argument.name)
+    })?;
+    Ok((found.1, found.2))
+}

@@ -1,0 +1,299 @@
+//! Reference pages in Markdown: one for every function, one for structs, constants and callbacks, and a list of all.
+//! They link to statuses.md, which tools/reference writes.
+
+use std::collections::BTreeMap;
+use std::fmt::Write;
+
+use crate::c_types::{declared, prototype};
+use crate::doc::{Direction, Doc};
+use crate::fortran;
+use crate::model::{Api, Constant, Function};
+use crate::typed::Signature;
+
+const WIDTH: usize = 100;
+/// The constants of this file are statuses.
+const STATUS_FILE: &str = "status.rs";
+
+/// Signatures of the typed Fortran module by the function of C that they call.
+pub type Typed = BTreeMap<String, Vec<Signature>>;
+
+/// (file name, text) of every page.
+pub fn print(api: &Api, typed: &Typed) -> Vec<(String, String)> {
+    let mut pages = vec![("functions.md".to_string(), list(api)), ("types.md".to_string(), types(api))];
+    for function in &api.functions {
+        pages.push((format!("{}.md", function.name), page(api, typed, function)));
+    }
+    pages
+}
+
+/// Functions by the files they stand in, with their first sentences.
+fn list(api: &Api) -> String {
+    let mut out = "# Functions\n".to_string();
+    for (subject, functions) in by_subject(api) {
+        let _ = write!(out, "\n## {subject}\n\n| function | does |\n|---|---|\n");
+        for function in functions {
+            let _ = writeln!(out, "| [{0}]({0}.md) | {1} |", function.name, cell(&summary(&function.doc)));
+        }
+    }
+    out
+}
+
+/// Functions grouped by source file, in the order of the header.
+pub fn by_subject(api: &Api) -> Vec<(String, Vec<&Function>)> {
+    let mut groups: Vec<(String, Vec<&Function>)> = Vec::new();
+    for function in &api.functions {
+        let subject = function.source.trim_end_matches(".rs").replace('_', " ");
+        match groups.last_mut().filter(|group| group.0 == subject) {
+            Some(group) => group.1.push(function),
+            None => groups.push((subject, vec![function])),
+        }
+    }
+    groups
+}
+
+/// The first paragraph.
+pub fn summary(doc: &Doc) -> String {
+    doc.paragraphs()[0].first().cloned().unwrap_or_default()
+}
+
+fn page(api: &Api, typed: &Typed, function: &Function) -> String {
+    let [before, after] = function.doc.paragraphs();
+    let mut out = format!("# {}\n", function.name);
+    for paragraph in &before {
+        let _ = write!(out, "\n{}\n", linked(api, function, paragraph));
+    }
+    let _ =
+        write!(out, "\n## C\n\n```c\n#include <feti_contact.h>\n\n{};\n```\n", prototype(function, WIDTH));
+    out.push_str("\n## Fortran\n");
+    if let Some(signatures) = typed.get(&function.name) {
+        out.push_str("\n```fortran\nuse feti_contact\n");
+        for signature in signatures {
+            let _ = write!(out, "\n{}\n", signature.lines.join("\n"));
+        }
+        out.push_str("```\n\nNumbers count from 1, sizes come from the arrays. As C has it:\n");
+    }
+    let interface = fortran::interface(api, function);
+    let _ = write!(out, "\n```fortran\nuse feti_contact_c\n\n{}```\n", outdented(&interface));
+    write_arguments(&mut out, api, function);
+    write_results(&mut out, api, function);
+    for paragraph in &after {
+        let _ = write!(out, "\n{}\n", paragraph.replacen("Safety:", "**Safety.**", 1));
+    }
+    let _ = write!(out, "\nSource: `src/ffi/{}`\n", function.source);
+    out
+}
+
+fn outdented(text: &str) -> String {
+    let indent = text.lines().map(|line| line.len() - line.trim_start().len()).min().unwrap_or(0);
+    text.lines().map(|line| format!("{}\n", &line[indent..])).collect()
+}
+
+fn write_arguments(out: &mut String, api: &Api, function: &Function) {
+    if function.arguments.is_empty() {
+        return;
+    }
+    out.push_str(
+        "\n## Arguments\n\n| k | argument | in/out | shape | meaning, unit, rule |\n|---|---|---|---|---|\n",
+    );
+    for (k, argument) in function.arguments.iter().enumerate() {
+        let row = &argument.row;
+        let (number, direction) = (k + 1, direction(row.direction));
+        let _ = writeln!(
+            out,
+            "| {number} | `{}` | {direction} | {} | {} |",
+            row.argument,
+            cell(&row.shape),
+            cell(&linked(api, function, &row.rule))
+        );
+    }
+}
+
+pub fn direction(direction: Direction) -> &'static str {
+    match direction {
+        Direction::In => "in",
+        Direction::Out => "out",
+        Direction::InOut => "in/out",
+    }
+}
+
+fn write_results(out: &mut String, api: &Api, function: &Function) {
+    if !function.has_status() {
+        return;
+    }
+    out.push_str("\n## Status\n\n| status | when |\n|---|---|\n");
+    for (status, when) in results(api, function) {
+        let _ = writeln!(out, "| `{status}` | {} |", cell(&when));
+    }
+    out.push_str("\nAll numbers: [statuses](statuses.md).\n");
+}
+
+/// The statuses of a function with the reason for each: those of its kind, then those that its text names.
+pub fn results(api: &Api, function: &Function) -> Vec<(String, String)> {
+    let said = |name: &str| {
+        let constant = api.constants.iter().find(|constant| constant.name == name);
+        constant.map_or(String::new(), |constant| summary(&constant.doc))
+    };
+    let mut names = vec!["FETI_OK"];
+    let handle = function.arguments.first().and_then(|argument| argument.ty.target());
+    if handle.is_some_and(|ty| api.is_opaque(ty) || ty.target().is_some()) {
+        names.push("FETI_HANDLE");
+        if !function.is_never_busy() && function.name != "feti_problem_create" {
+            names.push("FETI_BUSY");
+        }
+    }
+    let text = function.doc.render(usize::MAX).join(" ");
+    let mentioned = |constant: &&Constant| {
+        constant.source == STATUS_FILE && constant.name != "FETI_ARGUMENT" && has_word(&text, &constant.name)
+    };
+    for constant in api.constants.iter().filter(mentioned) {
+        if !names.contains(&constant.name.as_str()) {
+            names.push(&constant.name);
+        }
+    }
+    let mut results: Vec<_> = names.into_iter().map(|name| (name.to_string(), said(name))).collect();
+    if function.arguments.len() > usize::from(handle.is_some_and(|ty| api.is_opaque(ty))) {
+        results.push(("FETI_ARGUMENT - k".to_string(), "Argument k is refused.".to_string()));
+    }
+    results
+}
+
+/// Whether `word` is in the text and not a part of a longer one.
+fn has_word(text: &str, word: &str) -> bool {
+    text.split(|c: char| !c.is_ascii_alphanumeric() && c != '_').any(|found| found == word)
+}
+
+/// Whether the page of types has a heading of this name.
+fn is_described(api: &Api, name: &str) -> bool {
+    api.structs.iter().any(|s| s.name == name) || api.callbacks.iter().any(|c| c.name == name)
+}
+
+/// Names of other functions, of structs and callbacks outside `code` become links to their pages.
+fn linked(api: &Api, function: &Function, text: &str) -> String {
+    let parts = text.split('`').enumerate().map(|(k, part)| {
+        if k % 2 == 1 {
+            return part.to_string();
+        }
+        let mut out = String::new();
+        for word in part.split_inclusive(|c: char| !c.is_ascii_alphanumeric() && c != '_') {
+            let name = word.trim_end_matches(|c: char| !c.is_ascii_alphanumeric() && c != '_');
+            out.push_str(&match name {
+                _ if name == function.name => name.to_string(),
+                _ if api.functions.iter().any(|f| f.name == name) => format!("[{name}]({name}.md)"),
+                _ if is_described(api, name) => format!("[{name}](types.md#{name})"),
+                _ => name.to_string(),
+            });
+            out.push_str(&word[name.len()..]);
+        }
+        out
+    });
+    parts.collect::<Vec<_>>().join("`")
+}
+
+/// A text inside a table.
+fn cell(text: &str) -> String {
+    text.replace('|', "\\|")
+}
+
+fn types(api: &Api) -> String {
+    let mut out = "# Structs, functions of the host, constants\n\n## Structs\n".to_string();
+    for structure in &api.structs {
+        let _ = write!(out, "\n### {}\n\n{}\n", structure.name, summary(&structure.doc));
+        let Some(fields) = &structure.fields else { continue };
+        out.push_str("\n| member | meaning |\n|---|---|\n");
+        for field in fields {
+            let _ =
+                writeln!(out, "| `{}` | {} |", declared(&field.ty, &field.name), cell(&summary(&field.doc)));
+        }
+    }
+    out.push_str("\n## Functions of the host\n");
+    for callback in &api.callbacks {
+        let [before, _] = callback.doc.paragraphs();
+        let arguments: Vec<_> = callback.arguments.iter().map(|a| declared(&a.ty, &a.name)).collect();
+        let _ = write!(out, "\n### {}\n\n{}\n\n```c\n", callback.name, before.join("\n\n"));
+        let _ = write!(out, "typedef int32_t (*{})({});\n```\n", callback.name, arguments.join(", "));
+    }
+    out.push_str("\n## Constants\n\n| name | value | meaning |\n|---|---|---|\n");
+    for constant in api.constants.iter().filter(|constant| constant.source != STATUS_FILE) {
+        let meaning = cell(&summary(&constant.doc));
+        let _ = writeln!(out, "| `{}` | {} | {meaning} |", constant.name, constant.value);
+    }
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SOURCE: &str = "/// A problem.\n#[repr(C)] pub struct feti_problem { _private: [u8; 0] }\n\
+        /// Nothing.\npub const FETI_EXACT: i32 = 0;\n\
+        /// Adds `feti_clear`.\n///\n/// See feti_clear; FETI_STATE before. Not feti_problem.\n///\n\
+        /// | argument | in/out | shape | rule |\n/// |---|---|---|---|\n/// | `p` | in | scalar | the handle |\n\
+        /// | `x` | in | n | |x| <= 1, force |\n///\n/// # Safety\n/// Given.\n\
+        #[no_mangle] pub unsafe extern \"C\" fn feti_add(p: *mut feti_problem, x: *const f64) -> i32 { 0 }\n\
+        /// Clears. Never fails.\n#[no_mangle] pub extern \"C\" fn feti_clear() -> i32 { 0 }\n";
+    const STATUS: &str =
+        "/// Done.\npub const FETI_OK: i32 = 0;\n/// Bad.\npub const FETI_HANDLE: i32 = -2;\n\
+        /// Busy.\npub const FETI_BUSY: i32 = -3;\n/// Too early.\npub const FETI_STATE: i32 = -5;\n";
+
+    fn api() -> Api {
+        let sources = [("src/ffi/rows.rs", SOURCE), ("src/ffi/status.rs", STATUS)];
+        let sources = sources.map(|(name, text)| (name.to_string(), text.to_string()));
+        crate::checked(&sources, [0, 1, 0]).unwrap()
+    }
+
+    fn pages() -> BTreeMap<String, String> {
+        let signature =
+            Signature { name: "feti_add".into(), lines: vec!["subroutine feti_add(p, x)".into()] };
+        let typed = Typed::from([("feti_add".to_string(), vec![signature])]);
+        let (api, mut pages) = (api(), BTreeMap::new());
+        pages.extend(print(&api, &typed));
+        pages.extend(crate::man::print(&api, &typed));
+        pages
+    }
+
+    #[test]
+    fn a_page_has_both_languages_arguments_statuses_and_links() {
+        let page = &pages()["feti_add.md"];
+        for line in [
+            "See [feti_clear](feti_clear.md); FETI_STATE before. Not [feti_problem](types.md#feti_problem).",
+            "Adds `feti_clear`.",
+            "int32_t feti_add(feti_problem *p, const double *x);",
+            "subroutine feti_add(p, x)",
+            "function feti_add(p, x) bind(C, name=\"feti_add\")",
+            "| 2 | `x` | in | n | \\|x\\| <= 1, force |",
+            "| `FETI_HANDLE` | Bad. |",
+            "| `FETI_BUSY` | Busy. |",
+            "| `FETI_STATE` | Too early. |",
+            "| `FETI_ARGUMENT - k` |",
+            "**Safety.** Given.",
+            "Source: `src/ffi/rows.rs`",
+        ] {
+            assert!(page.contains(line), "no `{line}` in\n{page}");
+        }
+    }
+
+    #[test]
+    fn a_function_that_never_fails_has_no_statuses() {
+        let page = &pages()["feti_clear.md"];
+        assert!(page.contains("int32_t feti_clear(void);") && !page.contains("## Status"), "{page}");
+    }
+
+    #[test]
+    fn functions_are_listed_by_subject_and_constants_without_statuses() {
+        let pages = pages();
+        assert!(
+            pages["functions.md"].contains("## rows\n") && pages["functions.md"].contains("(feti_add.md)")
+        );
+        assert!(pages["types.md"].contains("| `FETI_EXACT` | 0 | Nothing. |"));
+        assert!(!pages["types.md"].contains("FETI_BUSY"));
+    }
+
+    #[test]
+    fn manual_pages_escape_what_roff_would_take_for_its_own() {
+        let pages = pages();
+        let page = &pages["man3/feti_add.3"];
+        assert!(page.starts_with(".TH feti_add 3 ") && page.contains(".B FETI_ARGUMENT \\- k\n"), "{page}");
+        assert!(pages["man7/feti_contact.7"].contains(".BR feti_clear (3)"));
+        assert_eq!(crate::man::text(".x\n'y - \\z"), "\\&.x\n\\&'y \\- \\ez");
+    }
+}
