@@ -11,6 +11,8 @@ pub mod gram;
 pub mod graph;
 pub mod interrupt;
 pub mod memory;
+#[cfg(feature = "metis")]
+mod metis;
 mod multifrontal;
 pub mod ordering;
 pub mod packed;
