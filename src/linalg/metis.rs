@@ -1,8 +1,10 @@
 //! Nested dissection by METIS 5, the library of the system (feature `metis`).
 //!
-//! What METIS does to the host during a call: handlers of its own for SIGABRT and SIGTERM, which are put back at the end;
-//! `srand` and `rand` of the C library, seeded by it; a line on stderr where memory is short. One call at a time in the
-//! process, so that handlers and random numbers are not mixed up among the threads of this library.
+//! What METIS 5.1 does to the host during a call, which the library itself never does: it handles SIGABRT and SIGTERM and
+//! jumps out of itself when one comes, so none must come; both handlers are put back at the end. It seeds `rand` of the C
+//! library and draws from it: a host that draws at the same time changes the order, though not the solution but for
+//! rounding. Where memory is short it prints a line on stderr. One call at a time in the process: handlers and random
+//! numbers are not mixed up among the threads of this library.
 
 use std::ffi::c_void;
 use std::ptr::null_mut;
