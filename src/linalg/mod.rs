@@ -16,6 +16,7 @@ mod metis;
 mod multifrontal;
 pub mod ordering;
 pub mod packed;
+pub mod pages;
 pub mod pivoted;
 pub mod reach;
 pub mod spd;

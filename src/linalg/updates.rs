@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use crate::error::Result;
-use crate::linalg::memory::untouched_zeros;
+use crate::linalg::pages::Pages;
 use crate::linalg::supernodes::Supernodes;
 
 /// Updates that wait, in the order of their supernodes. A supernode finds those of its children on one stack and puts its
@@ -11,14 +11,14 @@ use crate::linalg::supernodes::Supernodes;
 pub struct Updates<'a> {
     nodes: &'a Supernodes,
     waiting: Vec<(usize, Place)>,
-    stacks: [Vec<f64>; 2],
+    stacks: [Pages; 2],
     tops: [usize; 2],
 }
 
 enum Place {
     Stack(Range<usize>),
     /// Formed by another task.
-    Apart(Vec<f64>),
+    Apart(Pages),
 }
 
 impl<'a> Updates<'a> {
@@ -30,12 +30,12 @@ impl<'a> Updates<'a> {
         what: &str,
     ) -> Result<Self> {
         let [even, odd] = most(nodes, sequence, len);
-        let stacks = [untouched_zeros(even, what)?, untouched_zeros(odd, what)?];
+        let stacks = [Pages::zeros(even, what)?, Pages::zeros(odd, what)?];
         Ok(Self { nodes, waiting: Vec::new(), stacks, tops: [0, 0] })
     }
 
     /// Takes over what another task has left for the parent of s.
-    pub fn push(&mut self, s: usize, update: Vec<f64>) {
+    pub fn push(&mut self, s: usize, update: Pages) {
         self.waiting.push((s, Place::Apart(update)));
     }
 
@@ -47,7 +47,7 @@ impl<'a> Updates<'a> {
         let (own, others) = if level == 0 { (even, odd) } else { (odd, even) };
         let children = self.waiting[first..].iter().map(|(child, place)| match place {
             Place::Stack(range) => (*child, &others[range.clone()]),
-            Place::Apart(values) => (*child, values.as_slice()),
+            Place::Apart(values) => (*child, &values[..]),
         });
         (&mut own[self.tops[level]..self.tops[level] + len], children.collect())
     }
@@ -67,13 +67,11 @@ impl<'a> Updates<'a> {
     }
 
     /// The update of the root of a subtree, the last that waits.
-    pub fn into_last(self, root: usize) -> Vec<f64> {
+    pub fn into_last(self, root: usize) -> Pages {
         let [even, odd] = self.stacks;
         let level = self.nodes.level(root) % 2;
-        let mut update = if level == 0 { even } else { odd };
-        update.truncate(self.tops[level]);
-        update.shrink_to_fit();
-        update
+        let update = if level == 0 { even } else { odd };
+        update.truncated(self.tops[level])
     }
 
     fn first_child(&self, s: usize) -> usize {
