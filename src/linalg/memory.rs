@@ -12,7 +12,7 @@ use crate::linalg::pages::could_have;
 /// Bytes that are always left for small pieces: texts, maps, the growth of the heap by the allocator.
 const SPARE: usize = 2 << 20;
 /// Reservations from this size on must leave what is spare.
-const LARGE: usize = 4 << 10;
+pub const LARGE: usize = 4 << 10;
 /// Work arrays of faer's products, made on the first product of every thread.
 pub const PRODUCTS: usize = 5 << 20;
 

@@ -1,17 +1,19 @@
-//! Large arrays in pages of their own: zeros that the system makes when they are touched first, given back to it when they
-//! are dropped. What the allocator keeps of an array that is gone would add to the peak of what comes after it.
+//! Large arrays in pages of their own, zero at first, that go back to the system when they are dropped. What the allocator
+//! keeps of an array that is gone would add to the peak of what comes after it.
 
+use std::alloc::{alloc_zeroed, dealloc, Layout};
 use std::ops::{Deref, DerefMut};
 use std::ptr::NonNull;
 use std::slice::{from_raw_parts, from_raw_parts_mut};
 
 use crate::error::Result;
-use crate::linalg::memory::{ensure_spare, refusal, zeros};
+use crate::linalg::memory::{ensure_spare, refusal, LARGE};
 
-/// Smaller arrays come from the allocator.
-const SMALL: usize = 256 << 10;
-/// Arrays from this size on get large pages, where the system has them on request: clearing pages of 4 KiB one by one when
-/// they are touched first takes a sixth of a factorisation.
+/// Smaller arrays come from the allocator, which has memory at hand that is used already: faster than fresh pages.
+const SMALL: usize = 512 << 10;
+/// Less than that is not given back before an array is dropped.
+const FEW: usize = 256 << 10;
+/// Arrays from this size on get large pages, where the system has them on request.
 #[cfg(target_os = "linux")]
 const LARGE_PAGES: usize = 8 << 20;
 /// A multiple of the pages of all systems: those of Linux have 4, 16 or 64 KiB.
@@ -21,9 +23,10 @@ const PAGE: usize = 64 << 10;
 pub struct Pages {
     start: NonNull<f64>,
     len: usize,
-    /// Bytes of the pages; 0 where the allocator gave so many doubles.
+    /// Bytes of the pages, 0 where the allocator gave the array.
     mapped: usize,
-    boxed: usize,
+    /// What the allocator gave.
+    layout: Layout,
 }
 
 // SAFETY: it owns its doubles as a `Vec` does.
@@ -35,34 +38,32 @@ impl Pages {
     /// `len` zeros, or `Kind::Memory` naming `what` they were for.
     pub fn zeros(len: usize, what: &str) -> Result<Self> {
         let bytes = len.saturating_mul(size_of::<f64>());
-        if bytes < SMALL || !cfg!(target_os = "linux") {
-            return zeros(len, what).map(Self::of);
+        let refused = || refusal(bytes, what);
+        let layout = Layout::array::<f64>(len).map_err(|_| refused())?;
+        let apart = bytes >= SMALL && cfg!(target_os = "linux");
+        let mapped = if apart { bytes.checked_next_multiple_of(PAGE).ok_or_else(refused)? } else { 0 };
+        let start = match bytes {
+            0 => NonNull::dangling(),
+            _ if apart => map(mapped, true).ok_or_else(refused)?,
+            // SAFETY: there are more bytes than none. All bits zero is the double 0.
+            _ => NonNull::new(unsafe { alloc_zeroed(layout) }.cast()).ok_or_else(refused)?,
+        };
+        let pages = Self { start, len, mapped, layout };
+        if bytes >= LARGE {
+            ensure_spare(bytes, what)?;
         }
-        let mapped = bytes.checked_next_multiple_of(PAGE).ok_or_else(|| refusal(bytes, what))?;
-        let start = map(mapped).ok_or_else(|| refusal(bytes, what))?;
-        advise_large_pages(start, mapped);
-        let pages = Self { start, len, mapped, boxed: 0 };
-        ensure_spare(bytes, what).map(|()| pages)
+        Ok(pages)
     }
 
-    fn of(values: Vec<f64>) -> Self {
-        let values = values.into_boxed_slice();
-        let len = values.len();
-        // SAFETY: a box is never null.
-        let start = unsafe { NonNull::new_unchecked(Box::into_raw(values).cast()) };
-        Self { start, len, mapped: 0, boxed: len }
-    }
-
-    /// The first `len` values; what pages they do not need goes back to the system.
-    pub fn truncated(mut self, len: usize) -> Self {
+    /// Keeps the first `len` values; pages that they do not need go back to the system, where they are many.
+    pub fn truncate(&mut self, len: usize) {
         self.len = len.min(self.len);
         let kept = (self.len * size_of::<f64>()).next_multiple_of(PAGE).max(PAGE);
-        if kept < self.mapped {
+        if kept + FEW <= self.mapped {
             // SAFETY: whole pages of this array behind those that are kept.
             unsafe { unmap(self.start.byte_add(kept), self.mapped - kept) };
             self.mapped = kept;
         }
-        self
     }
 }
 
@@ -87,34 +88,31 @@ impl Drop for Pages {
         if self.mapped > 0 {
             // SAFETY: the pages of this array, mapped by `map`.
             unsafe { unmap(self.start, self.mapped) };
-        } else {
-            let values = std::ptr::slice_from_raw_parts_mut(self.start.as_ptr(), self.boxed);
-            // SAFETY: it came from a box of as many doubles.
-            drop(unsafe { Box::from_raw(values) });
+        } else if self.layout.size() > 0 {
+            // SAFETY: the allocator gave it with this layout.
+            unsafe { dealloc(self.start.as_ptr().cast(), self.layout) };
         }
     }
 }
 
-/// Fresh pages of so many bytes.
+/// Fresh pages of so many bytes. Those to be `used` are cleared all at once where they are few; for many, large pages are
+/// asked for: clearing small ones when they are touched first takes a sixth of a factorisation.
 #[cfg(target_os = "linux")]
-fn map(bytes: usize) -> Option<NonNull<f64>> {
+fn map(bytes: usize, used: bool) -> Option<NonNull<f64>> {
     let access = libc::PROT_READ | libc::PROT_WRITE;
-    let kind = libc::MAP_PRIVATE | libc::MAP_ANONYMOUS;
+    let many = bytes >= LARGE_PAGES;
+    let at_once = if used && !many { libc::MAP_POPULATE } else { 0 };
+    let kind = libc::MAP_PRIVATE | libc::MAP_ANONYMOUS | at_once;
     // SAFETY: new pages at an address that the system chooses.
     let start = unsafe { libc::mmap(std::ptr::null_mut(), bytes, access, kind, -1, 0) };
     if start == libc::MAP_FAILED {
         return None;
     }
-    NonNull::new(start.cast())
-}
-
-/// Asks for large pages; where the system has none, nothing happens.
-#[cfg(target_os = "linux")]
-fn advise_large_pages(start: NonNull<f64>, bytes: usize) {
-    if bytes >= LARGE_PAGES {
-        // SAFETY: pages that `map` gave; the advice does not change what they hold.
-        unsafe { libc::madvise(start.as_ptr().cast(), bytes, libc::MADV_HUGEPAGE) };
+    if used && many {
+        // SAFETY: the pages just mapped; the advice does not change what they hold. Where it is refused nothing happens.
+        unsafe { libc::madvise(start, bytes, libc::MADV_HUGEPAGE) };
     }
+    NonNull::new(start.cast())
 }
 
 /// # Safety
@@ -125,12 +123,9 @@ unsafe fn unmap(start: NonNull<f64>, bytes: usize) {
 }
 
 #[cfg(not(target_os = "linux"))]
-fn map(_: usize) -> Option<NonNull<f64>> {
+fn map(_: usize, _: bool) -> Option<NonNull<f64>> {
     None
 }
-
-#[cfg(not(target_os = "linux"))]
-fn advise_large_pages(_: NonNull<f64>, _: usize) {}
 
 #[cfg(not(target_os = "linux"))]
 unsafe fn unmap(_: NonNull<f64>, _: usize) {}
@@ -140,7 +135,7 @@ unsafe fn unmap(_: NonNull<f64>, _: usize) {}
 pub fn could_have(bytes: usize) -> bool {
     let Some(bytes) = bytes.checked_next_multiple_of(PAGE) else { return false };
     // SAFETY: the pages just mapped.
-    map(bytes).map(|start| unsafe { unmap(start, bytes) }).is_some()
+    map(bytes, false).map(|start| unsafe { unmap(start, bytes) }).is_some()
 }
 
 /// True when the allocator would give so many bytes now. The optimiser must see a use: it may leave out an allocation that
@@ -165,7 +160,7 @@ mod tests {
             assert!(pages.len() == len && pages.iter().all(|v| *v == 0.0));
             pages.iter_mut().enumerate().for_each(|(i, v)| *v = i as f64);
             for cut in [len, len / 2, len / 1000, 0] {
-                pages = pages.truncated(cut);
+                pages.truncate(cut);
                 assert!(pages.len() == cut && pages.iter().enumerate().all(|(i, v)| *v == i as f64));
             }
         }

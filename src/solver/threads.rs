@@ -145,6 +145,9 @@ mod tests {
                     heard.push((k, square));
                 }
             });
+            if threads == 1 {
+                assert!(heard.is_sorted_by(|a, b| a.0 > b.0), "begun in another order");
+            }
             heard.sort_unstable();
             let expected: Vec<_> = (0..20).filter(|k| k % 7 != 3).map(|k| (k, k * k)).collect();
             assert_eq!((heard, ended.unwrap_err().place.body), (expected, Some(3)));
