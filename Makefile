@@ -1,5 +1,6 @@
 # make demo      builds the library and the examples, runs them        make lib        the library alone
 # make test      every test: Rust, then C and Fortran under CMake      make install    PREFIX=/usr/local DESTDIR=
+# make metis     tests with the feature metis
 # make counts    applications of F against a linear solve, deck by deck (some minutes); DECKS="slab two" picks some
 # make bench     time and memory against CHOLMOD, Clarabel and OSQP (some minutes); DECKS="4k 40k" picks some
 # make scaling   time and memory as unknowns, contact rows, bodies, threads grow: pictures in docs (some minutes);
@@ -21,7 +22,7 @@ SOVERSION := $(basename $(VERSION))# 0.1 of 0.1.0: before 1.0 each minor version
 RELEASE   := $(or $(CARGO_TARGET_DIR),target)/release
 STAGE     := $(CURDIR)/build/stage
 
-.PHONY: all lib data setup demo battery test counts bench scaling paper stage install uninstall fmt clean
+.PHONY: all lib data setup demo battery test metis counts bench scaling paper stage install uninstall fmt clean
 .DELETE_ON_ERROR:
 all: lib
 
@@ -111,6 +112,12 @@ test: setup
 	cmake -S tests -B build/ctest -DCMAKE_PREFIX_PATH=$(STAGE) -DFETI_DATA=$(CURDIR)/build/data
 	cmake --build build/ctest -j 2
 	ctest --test-dir build/ctest --output-on-failure -j 2
+
+# With the order of elimination by METIS 5, the library of the system.
+metis:
+	@tools/setup.sh libmetis-dev
+	$(CARGO) test --release --locked --features metis --lib linalg
+	$(CARGO) test --release --locked --features metis --test reference --test invariance
 
 # ---- measurements
 counts:

@@ -19,11 +19,14 @@ const NAMES: [&str; 6] = ["plan", "execute", "ordering", "analysis", "factorisat
 /// ordering in it, `execute` analysis, factorisation and its probe, in memory not touched before.
 pub fn run(deck: &Deck) -> Result<()> {
     let mut seconds = [0.0; NAMES.len()];
+    let mut entries = 0;
     for (p, body) in deck.bodies.iter().enumerate() {
-        let rows = local_rows(deck, p);
-        seconds.iter_mut().zip(measure(body, &rows)?).for_each(|(sum, own)| *sum += own);
+        let (own, of_l) = measure(body, &local_rows(deck, p))?;
+        seconds.iter_mut().zip(own).for_each(|(sum, own)| *sum += own);
+        entries += of_l;
     }
     NAMES.iter().zip(seconds).for_each(|(name, seconds)| println!("{name}_cpu {seconds:.6}"));
+    println!("entries {entries}");
     Ok(())
 }
 
@@ -35,7 +38,8 @@ fn timed<T>(seconds: &mut f64, work: impl FnOnce() -> Result<T>) -> Result<T> {
     result
 }
 
-fn measure(body: &Body, rows: &Csr) -> Result<[f64; NAMES.len()]> {
+/// Seconds, and entries of L.
+fn measure(body: &Body, rows: &Csr) -> Result<([f64; NAMES.len()], usize)> {
     let mut seconds = [0.0; NAMES.len()];
     let k = Multiple::from(stiffness(body)?);
     let modes = body.modes();
@@ -55,7 +59,7 @@ fn measure(body: &Body, rows: &Csr) -> Result<[f64; NAMES.len()]> {
     let factor = timed(&mut seconds[4], || analysis.factorize(&k.matrix, k.by))?;
     let factor = factor.map_err(|at| Error::new(Kind::Indefinite, "no factor").dof(at.dof))?;
     black_box(timed(&mut seconds[5], || inverse_form(&factor, rows))?);
-    Ok(seconds)
+    Ok((seconds, analysis.entries()))
 }
 
 fn stiffness(body: &Body) -> Result<Symmetric> {

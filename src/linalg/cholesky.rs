@@ -9,6 +9,7 @@ use crate::linalg::graph::Graph;
 use crate::linalg::memory::{reserved, room, zeros, Room, PRODUCTS};
 use crate::linalg::multifrontal::{self, Columns};
 use crate::linalg::ordering::nested_dissection;
+use crate::linalg::pages::Pages;
 use crate::linalg::supernodes::Supernodes;
 use crate::linalg::triangular::Triangle;
 use crate::linalg::Symmetric;
@@ -31,7 +32,7 @@ pub struct Analysis {
 pub struct Cholesky {
     pub analysis: Arc<Analysis>,
     /// The panels of all supernodes.
-    pub(super) values: Vec<f64>,
+    pub(super) values: Pages,
     /// Dofs in the order of elimination whose rows and columns of L are those of the identity, ascending.
     pub(super) held: Vec<usize>,
 }

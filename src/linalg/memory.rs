@@ -1,21 +1,18 @@
 //! Memory is reserved before it is used: Rust ends the process on a failed allocation, a host must not.
 //!
-//! Large arrays are reserved one by one, with [`zeros`], [`reserved`] and [`copied`]. Where many small pieces or foreign
+//! Large arrays are reserved one by one, with [`zeros`], [`reserved`] and [`copied`], the largest with
+//! [`Pages`](super::pages::Pages). Where many small pieces or foreign
 //! code allocate, [`room`] proves beforehand that there is enough, and keeps the large arrays of other threads from taking it.
 
-use std::alloc::{alloc_zeroed, Layout};
-use std::hint::black_box;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use crate::error::{Error, Kind, Result};
+use crate::linalg::pages::could_have;
 
 /// Bytes that are always left for small pieces: texts, maps, the growth of the heap by the allocator.
 const SPARE: usize = 2 << 20;
 /// Reservations from this size on must leave what is spare.
-const LARGE: usize = 4 << 10;
-/// Arrays from this size on get large pages.
-#[cfg(target_os = "linux")]
-const LARGE_PAGES: usize = 8 << 20;
+pub const LARGE: usize = 4 << 10;
 /// Work arrays of faer's products, made on the first product of every thread.
 pub const PRODUCTS: usize = 5 << 20;
 
@@ -49,13 +46,17 @@ impl Drop for Room {
     }
 }
 
-/// True when so many bytes could be had now besides what is spare. The optimiser must see a use: it may leave out an
-/// allocation that has none, and count it as successful.
+/// True when so many bytes could be had now besides what is spare.
 fn is_free(bytes: usize) -> bool {
-    let mut block: Vec<u8> = Vec::new();
-    let had = block.try_reserve_exact(bytes.saturating_add(SPARE)).is_ok();
-    black_box(block.as_ptr());
-    had
+    could_have(bytes.saturating_add(SPARE))
+}
+
+/// Checks that what was promised and what is spare could still be had after `bytes` were taken.
+pub fn ensure_spare(bytes: usize, what: &str) -> Result<()> {
+    if is_free(PROMISED.load(Ordering::Relaxed)) {
+        return Ok(());
+    }
+    Err(refusal(bytes, what))
 }
 
 /// `len` zeros, or `Kind::Memory` naming `what` they were for.
@@ -65,58 +66,18 @@ pub fn zeros(len: usize, what: &str) -> Result<Vec<f64>> {
     Ok(values)
 }
 
-/// As `zeros`, in memory that the system clears when it is touched first, not before.
-pub fn untouched_zeros(len: usize, what: &str) -> Result<Vec<f64>> {
-    let bytes = len.saturating_mul(size_of::<f64>());
-    let layout = Layout::array::<f64>(len).map_err(|_| refusal(bytes, what))?;
-    if bytes < LARGE {
-        return zeros(len, what);
-    }
-    // SAFETY: the layout is that of `len` doubles, more than none, and what the allocator gives belongs to nobody else.
-    // All bits zero is the double 0.
-    let values = unsafe {
-        let start = alloc_zeroed(layout).cast::<f64>();
-        if start.is_null() {
-            return Err(refusal(bytes, what));
-        }
-        Vec::from_raw_parts(start, len, len)
-    };
-    if is_free(PROMISED.load(Ordering::Relaxed)) {
-        advise_large_pages(&values);
-        return Ok(values);
-    }
-    drop(values);
-    Err(refusal(bytes, what))
-}
-
-/// Asks for pages of 2 MiB, where the system has them on request: clearing pages of 4 KiB one by one when they are touched
-/// first takes a sixth of a factorisation.
-#[cfg(target_os = "linux")]
-fn advise_large_pages(values: &[f64]) {
-    const PAGE: usize = 4096;
-    let range = values.as_ptr_range();
-    let start = (range.start as usize).next_multiple_of(PAGE);
-    let len = (range.end as usize).saturating_sub(start) / PAGE * PAGE;
-    if len >= LARGE_PAGES {
-        // SAFETY: whole pages inside the array; the advice does not change what they hold. Where it is refused nothing
-        // happens.
-        unsafe { libc::madvise(start as *mut libc::c_void, len, libc::MADV_HUGEPAGE) };
-    }
-}
-
-#[cfg(not(target_os = "linux"))]
-fn advise_large_pages(_: &[f64]) {}
-
 /// An empty vector with room for exactly `len` entries.
 pub fn reserved<T>(len: usize, what: &str) -> Result<Vec<T>> {
     let bytes = len.saturating_mul(size_of::<T>());
     let mut values = Vec::new();
     let had = values.try_reserve_exact(len).is_ok();
-    if had && (bytes < LARGE || is_free(PROMISED.load(Ordering::Relaxed))) {
-        return Ok(values);
+    if !had {
+        return Err(refusal(bytes, what));
     }
-    drop(values);
-    Err(refusal(bytes, what))
+    if bytes >= LARGE {
+        ensure_spare(bytes, what)?;
+    }
+    Ok(values)
 }
 
 /// A copy of the host's array.

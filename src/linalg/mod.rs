@@ -11,9 +11,12 @@ pub mod gram;
 pub mod graph;
 pub mod interrupt;
 pub mod memory;
+#[cfg(feature = "metis")]
+mod metis;
 mod multifrontal;
 pub mod ordering;
 pub mod packed;
+pub mod pages;
 pub mod pivoted;
 pub mod reach;
 pub mod spd;

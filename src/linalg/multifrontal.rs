@@ -11,7 +11,8 @@ use rayon::prelude::*;
 
 use crate::error::Result;
 use crate::linalg::front::{self, Tile};
-use crate::linalg::memory::{refusal, reserved, untouched_zeros};
+use crate::linalg::memory::{refusal, reserved};
+use crate::linalg::pages::Pages;
 use crate::linalg::subtrees::{outside, shared, subtrees};
 use crate::linalg::supernodes::{Node, Supernodes};
 use crate::linalg::updates::{self, RowMap, Updates};
@@ -30,8 +31,8 @@ pub struct Columns {
 type Factor<T> = std::result::Result<T, usize>;
 
 /// L by panels.
-pub fn factorize(nodes: &Supernodes, matrix: &Columns) -> Result<Factor<Vec<f64>>> {
-    let mut values = untouched_zeros(nodes.values(), "a Cholesky factor")?;
+pub fn factorize(nodes: &Supernodes, matrix: &Columns) -> Result<Factor<Pages>> {
+    let mut values = Pages::zeros(nodes.values(), "a Cholesky factor")?;
     let subtrees = subtrees(nodes);
     let tasks = split(nodes, &subtrees, &mut values);
     let (whole, interrupt) = ((nodes, matrix), Interrupt::present());
@@ -112,7 +113,7 @@ impl<'a> Task<'a> {
     }
 
     /// All supernodes of a subtree, whose panels these are; gives the update of its root.
-    fn eliminate_subtree(mut self, subtree: Range<usize>, panels: &mut [f64]) -> Result<Factor<Vec<f64>>> {
+    fn eliminate_subtree(mut self, subtree: Range<usize>, panels: &mut [f64]) -> Result<Factor<Pages>> {
         let first = self.nodes.first_value(subtree.start);
         for s in subtree.clone() {
             self.interrupt.check()?;
@@ -246,7 +247,7 @@ mod tests {
         let alone = factor(&matrix).values;
         for threads in [2, 3] {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-            assert!(pool.install(|| factor(&matrix)).values == alone, "{threads} threads");
+            assert!(pool.install(|| factor(&matrix)).values[..] == alone[..], "{threads} threads");
         }
     }
 }

@@ -1,10 +1,12 @@
 //! Fill-reducing order of the unknowns: nested dissection of the graph of nodes.
 
-use feral_metis::{metis_order, CscPattern};
-
 use crate::error::{Error, Kind, Result};
 use crate::linalg::graph::Graph;
 use crate::linalg::memory::reserved;
+#[cfg(feature = "metis")]
+use crate::linalg::metis::dissect;
+#[cfg(not(feature = "metis"))]
+use feral as dissect;
 
 /// The dofs that are not held, in the order of their elimination. The graph of nodes (dofs with
 /// identical neighbours) is dissected instead of that of dofs: 3 x smaller in 3D, and supernodes stay whole.
@@ -35,9 +37,16 @@ fn order_nodes(graph: &Graph, node: &[u32], first: &[usize]) -> Result<Vec<usize
         adj.extend(row.iter().filter(|&&other| other as usize != own));
         ptr.push(i32::try_from(adj.len()).map_err(|_| too_large())?);
     }
-    let pattern = CscPattern::new(first.len(), &ptr, &adj).ok_or_else(too_large)?;
-    let order = metis_order(&pattern)
-        .map_err(|e| Error::new(Kind::Internal, format!("nested dissection failed: {e:?}")))?;
+    dissect(&ptr, &adj)
+}
+
+/// The order by the crate feral-metis; the neighbours of node i, without itself, are `adj[ptr[i]..ptr[i + 1]]`.
+#[cfg(any(test, not(feature = "metis")))]
+pub fn feral(ptr: &[i32], adj: &[i32]) -> Result<Vec<usize>> {
+    let failed = |why: String| Error::new(Kind::Internal, format!("nested dissection failed: {why}"));
+    let pattern = feral_metis::CscPattern::new(ptr.len() - 1, ptr, adj);
+    let pattern = pattern.ok_or_else(|| failed("no graph".into()))?;
+    let order = feral_metis::metis_order(&pattern).map_err(|e| failed(format!("{e:?}")))?;
     Ok(order.into_iter().map(|node| node as usize).collect())
 }
 

@@ -14,7 +14,8 @@ use rayon::prelude::*;
 
 use crate::error::Result;
 use crate::linalg::elimination::NONE;
-use crate::linalg::memory::{reserved, room, untouched_zeros, PRODUCTS};
+use crate::linalg::memory::{reserved, room, PRODUCTS};
+use crate::linalg::pages::Pages;
 use crate::linalg::subtrees::{each, outside, parts, shared};
 use crate::linalg::supernodes::{Node, Supernodes};
 use crate::linalg::updates::{RowMap, Updates};
@@ -74,7 +75,7 @@ struct Reach<'a> {
 /// What a subtree adds to the form, and leaves for the rows above.
 struct Part {
     form: Packed,
-    update: Vec<f64>,
+    update: Pages,
 }
 
 impl<'a> Reach<'a> {
@@ -120,7 +121,7 @@ impl<'a> Reach<'a> {
         let mut task = Task::new(self, range.clone())?;
         let place = |row: u32| rows.partition_point(|&other| other < row);
         { range }.try_for_each(|s| task.eliminate(s, &mut form, place))?;
-        let update = if rows.is_empty() { Vec::new() } else { task.updates.into_last(root) };
+        let update = if rows.is_empty() { Pages::zeros(0, WHAT)? } else { task.updates.into_last(root) };
         Ok(Part { form, update })
     }
 }
@@ -141,9 +142,9 @@ struct Task<'a> {
     local: Vec<u32>,
     updates: Updates<'a>,
     /// Rows of Y of the present supernode: width x columns.
-    y: Vec<f64>,
+    y: Pages,
     /// Products of the columns of two tiles.
-    product: Vec<f64>,
+    product: Pages,
 }
 
 impl<'a> Task<'a> {
@@ -155,7 +156,7 @@ impl<'a> Task<'a> {
         let updates = Updates::new(nodes, seen.clone(), |s| reach.update_len(s), WHAT)?;
         let y = seen.clone().map(|s| nodes.node(s).width * reach.columns(s).len()).max().unwrap_or(0);
         let side = seen.map(|s| reach.columns(s).len().min(TILE)).max().unwrap_or(0);
-        let (y, product) = (untouched_zeros(y, WHAT)?, untouched_zeros(side * side, WHAT)?);
+        let (y, product) = (Pages::zeros(y, WHAT)?, Pages::zeros(side * side, WHAT)?);
         Ok(Self { reach, local, updates, y, product })
     }
 

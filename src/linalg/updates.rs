@@ -1,9 +1,11 @@
 //! What supernodes leave for their parents, from when it is formed until it is used.
 
 use std::ops::Range;
+use std::vec::IntoIter;
 
 use crate::error::Result;
-use crate::linalg::memory::untouched_zeros;
+use crate::linalg::memory::reserved;
+use crate::linalg::pages::Pages;
 use crate::linalg::supernodes::Supernodes;
 
 /// Updates that wait, in the order of their supernodes. A supernode finds those of its children on one stack and puts its
@@ -11,14 +13,16 @@ use crate::linalg::supernodes::Supernodes;
 pub struct Updates<'a> {
     nodes: &'a Supernodes,
     waiting: Vec<(usize, Place)>,
-    stacks: [Vec<f64>; 2],
+    stacks: [Pages; 2],
     tops: [usize; 2],
+    /// Values that the stacks still need, for every supernode to come.
+    needs: IntoIter<[usize; 2]>,
 }
 
 enum Place {
     Stack(Range<usize>),
     /// Formed by another task.
-    Apart(Vec<f64>),
+    Apart(Pages),
 }
 
 impl<'a> Updates<'a> {
@@ -29,25 +33,34 @@ impl<'a> Updates<'a> {
         len: impl Fn(usize) -> usize,
         what: &str,
     ) -> Result<Self> {
-        let [even, odd] = most(nodes, sequence, len);
-        let stacks = [untouched_zeros(even, what)?, untouched_zeros(odd, what)?];
-        Ok(Self { nodes, waiting: Vec::new(), stacks, tops: [0, 0] })
+        let mut needs = reserved(nodes.count(), what)?;
+        for_each_step(nodes, sequence, len, |tops| needs.push(tops));
+        let mut later = [0, 0];
+        needs.iter_mut().rev().for_each(|tops| {
+            later = larger(later, *tops);
+            *tops = later;
+        });
+        let stacks = [Pages::zeros(later[0], what)?, Pages::zeros(later[1], what)?];
+        Ok(Self { nodes, waiting: Vec::new(), stacks, tops: [0, 0], needs: needs.into_iter() })
     }
 
     /// Takes over what another task has left for the parent of s.
-    pub fn push(&mut self, s: usize, update: Vec<f64>) {
+    pub fn push(&mut self, s: usize, update: Pages) {
         self.waiting.push((s, Place::Apart(update)));
     }
 
-    /// Room for the update of s, and the children of s with theirs.
+    /// Room for the update of s, the next of the sequence, and the children of s with theirs.
     pub fn open(&mut self, s: usize, len: usize) -> (&mut [f64], Vec<(usize, &[f64])>) {
+        for (stack, need) in self.stacks.iter_mut().zip(self.needs.next().into_iter().flatten()) {
+            stack.truncate(need);
+        }
         let first = self.first_child(s);
         let level = self.nodes.level(s) % 2;
         let [even, odd] = &mut self.stacks;
         let (own, others) = if level == 0 { (even, odd) } else { (odd, even) };
         let children = self.waiting[first..].iter().map(|(child, place)| match place {
             Place::Stack(range) => (*child, &others[range.clone()]),
-            Place::Apart(values) => (*child, values.as_slice()),
+            Place::Apart(values) => (*child, &values[..]),
         });
         (&mut own[self.tops[level]..self.tops[level] + len], children.collect())
     }
@@ -67,12 +80,11 @@ impl<'a> Updates<'a> {
     }
 
     /// The update of the root of a subtree, the last that waits.
-    pub fn into_last(self, root: usize) -> Vec<f64> {
+    pub fn into_last(self, root: usize) -> Pages {
         let [even, odd] = self.stacks;
         let level = self.nodes.level(root) % 2;
         let mut update = if level == 0 { even } else { odd };
         update.truncate(self.tops[level]);
-        update.shrink_to_fit();
         update
     }
 
@@ -88,18 +100,33 @@ pub fn most(
     sequence: impl Iterator<Item = usize>,
     len: impl Fn(usize) -> usize,
 ) -> [usize; 2] {
-    let (mut most, mut tops) = ([0, 0], [0, 0]);
+    let mut most = [0, 0];
+    for_each_step(nodes, sequence, len, |tops| most = larger(most, tops));
+    most
+}
+
+fn larger(a: [usize; 2], b: [usize; 2]) -> [usize; 2] {
+    [a[0].max(b[0]), a[1].max(b[1])]
+}
+
+/// Tells the tops of both stacks while every supernode is done: its update is there, those of its children too.
+fn for_each_step(
+    nodes: &Supernodes,
+    sequence: impl Iterator<Item = usize>,
+    len: impl Fn(usize) -> usize,
+    mut tell: impl FnMut([usize; 2]),
+) {
+    let mut tops = [0, 0];
     let mut waiting: Vec<(usize, usize)> = Vec::new();
     for s in sequence {
         let (level, len) = (nodes.level(s) % 2, len(s));
+        tops[level] += len;
+        tell(tops);
         while waiting.last().is_some_and(|child| nodes.parent(child.0) == s) {
             tops[1 - level] -= waiting.pop().map_or(0, |child| child.1);
         }
         waiting.push((s, len));
-        tops[level] += len;
-        most[level] = most[level].max(tops[level]);
     }
-    most
 }
 
 /// Where the rows of a child are in the front of its parent.
@@ -139,5 +166,44 @@ impl RowMap {
             let from = &from[begin - rows.start..end - rows.start];
             to[at..at + from.len()].iter_mut().zip(from).for_each(|(to, from)| *to += from);
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::linalg::graph::Graph;
+    use crate::linalg::ordering::nested_dissection;
+    use crate::linalg::Symmetric;
+
+    #[test]
+    fn updates_wait_unchanged_while_the_stacks_shrink_to_what_is_still_needed() {
+        let n = 40;
+        let (mut ptr, mut col) = (vec![0], Vec::new());
+        for i in 0..n * n {
+            let edges = [(i >= n).then(|| i - n), (i % n > 0).then(|| i - 1), Some(i)];
+            col.extend(edges.into_iter().flatten().map(|j| j as u32));
+            ptr.push(col.len());
+        }
+        let graph = Graph::of(&Symmetric { ptr, val: vec![1.0; col.len()], col }).unwrap();
+        let order = nested_dissection(&graph, &vec![false; n * n]).unwrap();
+        let nodes = &Supernodes::of(&graph, &order).unwrap().1;
+        let len = |s: usize| 100 * nodes.node(s).rows.len();
+        let children = |s: usize| (0..s).filter(move |&child| nodes.parent(child) == s);
+        let mut updates = Updates::new(nodes, 0..nodes.count(), len, "a test").unwrap();
+        let room = |updates: &Updates<'_>| updates.stacks.iter().map(|stack| stack.len()).sum::<usize>();
+        let first = room(&updates);
+        for s in 0..nodes.count() {
+            let (own, waiting) = updates.open(s, len(s));
+            assert!(waiting.iter().map(|child| child.0).eq(children(s)));
+            for (child, values) in waiting {
+                assert!(values.len() == len(child) && values.iter().all(|v| *v == child as f64));
+            }
+            own.fill(s as f64);
+            updates.close(s, len(s));
+        }
+        let root = nodes.count() - 1;
+        assert_eq!(room(&updates), children(root).map(len).sum::<usize>());
+        assert!(first > 2 * room(&updates));
     }
 }

@@ -58,11 +58,11 @@ pub enum Heard<T> {
 /// The calling thread hears of itself after this time.
 const PATIENCE: Duration = Duration::from_millis(500);
 
-/// Runs tasks `0..count` while the calling thread hears of every result as it comes, in any order. All tasks are run;
-/// returns the first error in their order.
+/// Begins tasks in the order `order`, a permutation of `0..order.len()`, while the calling thread hears of every result as
+/// it comes, in any order. All tasks are run; returns the error of the first by number.
 pub fn run_heard<T: Send>(
     threads: usize,
-    count: usize,
+    order: &[usize],
     task: impl Fn(usize) -> Result<T> + Sync,
     hear: &mut dyn FnMut(Heard<T>),
 ) -> Result<()> {
@@ -73,11 +73,11 @@ pub fn run_heard<T: Send>(
         Some((k, Err(error))) if first.as_ref().is_none_or(|(at, _)| k < *at) => first = Some((k, error)),
         Some(_) => {}
     };
-    match largest_pool(if count == 0 { 0 } else { threads }) {
-        None => (0..count).for_each(|k| sort(Some((k, task(k))))),
+    match largest_pool(if order.is_empty() { 0 } else { threads }) {
+        None => order.iter().for_each(|&k| sort(Some((k, task(k))))),
         Some(pool) => pool.in_place_scope(|scope| {
             let (sender, results) = channel();
-            for k in 0..count {
+            for &k in order {
                 let (sender, task) = (sender.clone(), &task);
                 // The calling thread listens until the last sender is gone: it is never sent into the void.
                 scope.spawn(move |_| drop(sender.send((k, task(k)))));
@@ -135,15 +135,19 @@ mod tests {
     #[test]
     fn the_calling_thread_hears_of_every_result_and_gets_the_first_error_in_order() {
         let caller = std::thread::current().id();
+        let order: Vec<usize> = (0..20).rev().collect();
         for threads in [1, 2, 5] {
             let mut heard = Vec::new();
             let failing = |k| if k % 7 == 3 { Err(Error::new(Kind::State, "no").body(k)) } else { Ok(k * k) };
-            let ended = run_heard(threads, 20, failing, &mut |event| {
+            let ended = run_heard(threads, &order, failing, &mut |event| {
                 assert_eq!(std::thread::current().id(), caller);
                 if let Heard::Done(k, square) = event {
                     heard.push((k, square));
                 }
             });
+            if threads == 1 {
+                assert!(heard.is_sorted_by(|a, b| a.0 > b.0), "begun in another order");
+            }
             heard.sort_unstable();
             let expected: Vec<_> = (0..20).filter(|k| k % 7 != 3).map(|k| (k, k * k)).collect();
             assert_eq!((heard, ended.unwrap_err().place.body), (expected, Some(3)));
@@ -160,7 +164,7 @@ mod tests {
             Ok(())
         };
         let mut events = Vec::new();
-        run_heard(2, 1, waiting, &mut |event| {
+        run_heard(2, &[0], waiting, &mut |event| {
             events.push(matches!(event, Heard::Nothing));
             ended.store(true, Ordering::Relaxed);
         })

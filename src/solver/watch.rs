@@ -153,7 +153,8 @@ impl Watch {
     }
 
     /// Runs a task for every body of a part of the setup; `keep` gets the results as they come, on this thread, which
-    /// tells the host of each. Once the host wants to end, tasks that have begun end where they can.
+    /// tells the host of each. The body with most work comes first: what it needs besides its result is gone when the
+    /// results of the others are there. Once the host wants to end, tasks that have begun end where they can.
     pub fn every_body<T: Send>(
         &mut self,
         part: &Part,
@@ -164,7 +165,9 @@ impl Watch {
         let guarded = |k| stops.check_cancelled().and_then(|()| interrupt.during(|| task(k)));
         let (begun, all) = (self.fraction, part.weights.iter().sum::<f64>());
         let (mut done, mut told) = (0.0, Ok(()));
-        let ended = threads::run_heard(part.threads, part.weights.len(), guarded, &mut |heard| {
+        let mut order: Vec<usize> = (0..part.weights.len()).collect();
+        order.sort_by(|&a, &b| part.weights[b].total_cmp(&part.weights[a]));
+        let ended = threads::run_heard(part.threads, &order, guarded, &mut |heard| {
             if let Heard::Done(k, result) = heard {
                 keep(k, result);
                 done += part.weights[k];

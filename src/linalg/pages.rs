@@ -1,0 +1,177 @@
+//! Large arrays in pages of their own, zero at first, that go back to the system when they are dropped. What the allocator
+//! keeps of an array that is gone would add to the peak of what comes after it.
+
+use std::alloc::{alloc_zeroed, dealloc, Layout};
+use std::ops::{Deref, DerefMut};
+use std::ptr::NonNull;
+use std::slice::{from_raw_parts, from_raw_parts_mut};
+
+use crate::error::Result;
+use crate::linalg::memory::{ensure_spare, refusal, LARGE};
+
+/// Smaller arrays come from the allocator, which has memory at hand that is used already: faster than fresh pages.
+const SMALL: usize = 512 << 10;
+/// Less than that is not given back before an array is dropped.
+const FEW: usize = 256 << 10;
+/// Arrays from this size on get large pages, where the system has them on request.
+#[cfg(target_os = "linux")]
+const LARGE_PAGES: usize = 8 << 20;
+/// A multiple of the pages of all systems: those of Linux have 4, 16 or 64 KiB.
+const PAGE: usize = 64 << 10;
+
+/// An array of doubles.
+pub struct Pages {
+    start: NonNull<f64>,
+    len: usize,
+    /// Bytes of the pages, 0 where the allocator gave the array.
+    mapped: usize,
+    /// What the allocator gave.
+    layout: Layout,
+}
+
+// SAFETY: it owns its doubles as a `Vec` does.
+unsafe impl Send for Pages {}
+// SAFETY: it owns its doubles as a `Vec` does.
+unsafe impl Sync for Pages {}
+
+impl Pages {
+    /// `len` zeros, or `Kind::Memory` naming `what` they were for.
+    pub fn zeros(len: usize, what: &str) -> Result<Self> {
+        let bytes = len.saturating_mul(size_of::<f64>());
+        let refused = || refusal(bytes, what);
+        let layout = Layout::array::<f64>(len).map_err(|_| refused())?;
+        let apart = bytes >= SMALL && cfg!(target_os = "linux");
+        let mapped = if apart { bytes.checked_next_multiple_of(PAGE).ok_or_else(refused)? } else { 0 };
+        let start = match bytes {
+            0 => NonNull::dangling(),
+            _ if apart => map(mapped, true).ok_or_else(refused)?,
+            // SAFETY: there are more bytes than none. All bits zero is the double 0.
+            _ => NonNull::new(unsafe { alloc_zeroed(layout) }.cast()).ok_or_else(refused)?,
+        };
+        let pages = Self { start, len, mapped, layout };
+        if bytes >= LARGE {
+            ensure_spare(bytes, what)?;
+        }
+        Ok(pages)
+    }
+
+    /// Keeps the first `len` values; pages that they do not need go back to the system, where they are many.
+    pub fn truncate(&mut self, len: usize) {
+        self.len = len.min(self.len);
+        let kept = (self.len * size_of::<f64>()).next_multiple_of(PAGE).max(PAGE);
+        if kept + FEW <= self.mapped {
+            // SAFETY: whole pages of this array behind those that are kept.
+            unsafe { unmap(self.start.byte_add(kept), self.mapped - kept) };
+            self.mapped = kept;
+        }
+    }
+}
+
+impl Deref for Pages {
+    type Target = [f64];
+
+    fn deref(&self) -> &[f64] {
+        // SAFETY: `len` doubles that belong to this array; all bits of a fresh page are zero, which is the double 0.
+        unsafe { from_raw_parts(self.start.as_ptr(), self.len) }
+    }
+}
+
+impl DerefMut for Pages {
+    fn deref_mut(&mut self) -> &mut [f64] {
+        // SAFETY: as for `deref`, and nobody else sees them.
+        unsafe { from_raw_parts_mut(self.start.as_ptr(), self.len) }
+    }
+}
+
+impl Drop for Pages {
+    fn drop(&mut self) {
+        if self.mapped > 0 {
+            // SAFETY: the pages of this array, mapped by `map`.
+            unsafe { unmap(self.start, self.mapped) };
+        } else if self.layout.size() > 0 {
+            // SAFETY: the allocator gave it with this layout.
+            unsafe { dealloc(self.start.as_ptr().cast(), self.layout) };
+        }
+    }
+}
+
+/// Fresh pages of so many bytes. Those to be `used` are cleared all at once where they are few; for many, large pages are
+/// asked for: clearing small ones when they are touched first takes a sixth of a factorisation.
+#[cfg(target_os = "linux")]
+fn map(bytes: usize, used: bool) -> Option<NonNull<f64>> {
+    let access = libc::PROT_READ | libc::PROT_WRITE;
+    let many = bytes >= LARGE_PAGES;
+    let at_once = if used && !many { libc::MAP_POPULATE } else { 0 };
+    let kind = libc::MAP_PRIVATE | libc::MAP_ANONYMOUS | at_once;
+    // SAFETY: new pages at an address that the system chooses.
+    let start = unsafe { libc::mmap(std::ptr::null_mut(), bytes, access, kind, -1, 0) };
+    if start == libc::MAP_FAILED {
+        return None;
+    }
+    if used && many {
+        // SAFETY: the pages just mapped; the advice does not change what they hold. Where it is refused nothing happens.
+        unsafe { libc::madvise(start, bytes, libc::MADV_HUGEPAGE) };
+    }
+    NonNull::new(start.cast())
+}
+
+/// # Safety
+/// Whole pages of a block that `map` gave, used by nobody.
+#[cfg(target_os = "linux")]
+unsafe fn unmap(start: NonNull<f64>, bytes: usize) {
+    libc::munmap(start.as_ptr().cast(), bytes);
+}
+
+#[cfg(not(target_os = "linux"))]
+fn map(_: usize, _: bool) -> Option<NonNull<f64>> {
+    None
+}
+
+#[cfg(not(target_os = "linux"))]
+unsafe fn unmap(_: NonNull<f64>, _: usize) {}
+
+/// True when the system would give so many bytes now.
+#[cfg(target_os = "linux")]
+pub fn could_have(bytes: usize) -> bool {
+    let Some(bytes) = bytes.checked_next_multiple_of(PAGE) else { return false };
+    // SAFETY: the pages just mapped.
+    map(bytes, false).map(|start| unsafe { unmap(start, bytes) }).is_some()
+}
+
+/// True when the allocator would give so many bytes now. The optimiser must see a use: it may leave out an allocation that
+/// has none, and count it as successful.
+#[cfg(not(target_os = "linux"))]
+pub fn could_have(bytes: usize) -> bool {
+    let mut block: Vec<u8> = Vec::new();
+    let had = block.try_reserve_exact(bytes).is_ok();
+    std::hint::black_box(block.as_ptr());
+    had
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::error::Kind;
+
+    #[test]
+    fn arrays_of_all_sizes_are_zero_and_keep_what_is_written_when_cut() {
+        for len in [0, 1, 511, 512, SMALL / 8 - 1, SMALL / 8, 3 * SMALL / 8 + 5, 2 << 20] {
+            let mut pages = Pages::zeros(len, "a body").unwrap();
+            assert!(pages.len() == len && pages.iter().all(|v| *v == 0.0));
+            pages.iter_mut().enumerate().for_each(|(i, v)| *v = i as f64);
+            for cut in [len, len / 2, len / 1000, 0] {
+                pages.truncate(cut);
+                assert!(pages.len() == cut && pages.iter().enumerate().all(|(i, v)| *v == i as f64));
+            }
+        }
+    }
+
+    #[test]
+    fn what_no_machine_has_is_refused_with_its_size() {
+        for len in [1 << 57, usize::MAX] {
+            let error = Pages::zeros(len, "a body").err().unwrap();
+            assert_eq!(error.kind, Kind::Memory);
+        }
+        assert!(!could_have(usize::MAX) && !could_have(1 << 60) && could_have(1 << 20));
+    }
+}
