@@ -5,6 +5,7 @@
 # make scaling   time and memory as unknowns, contact rows, bodies, threads grow: pictures in docs (some minutes);
 #                SWEEPS="rows bodies" picks some, a number among them leaves out decks of more unknowns
 # make paper     the paper's problems by its own method and by the default: table, pictures (seconds)
+# make abi       writes the baseline of the binary interface (abi)        make uninstall  removes what install has put
 # bench, scaling, demo and test install the Debian packages they miss (tools/setup.sh).
 PREFIX  ?= /usr/local
 DESTDIR ?=
@@ -16,12 +17,10 @@ endif
 CFLAGS  ?= -O2 -Wall -Wextra
 FCFLAGS ?= -O2 -Wall
 
-VERSION   := $(shell sed -n 's/^version = "\(.*\)"/\1/p' Cargo.toml | head -n 1)
-SOVERSION := $(basename $(VERSION))# 0.1 of 0.1.0: before 1.0 each minor version has its own soname
 RELEASE   := $(or $(CARGO_TARGET_DIR),target)/release
 STAGE     := $(CURDIR)/build/stage
 
-.PHONY: all lib data setup demo battery test counts bench scaling paper stage install uninstall fmt clean
+.PHONY: all lib data setup demo battery test counts bench scaling paper abi stage install uninstall fmt clean
 .DELETE_ON_ERROR:
 all: lib
 
@@ -48,29 +47,19 @@ build/data/%: tests/data/%.gz
 	@gzip -dc $< > $@
 
 # ---- installation: shared library with its links, static library, header, Fortran sources, pkg-config, CMake
-libdir     := $(DESTDIR)$(PREFIX)/lib
-includedir := $(DESTDIR)$(PREFIX)/include
-fortrandir := $(DESTDIR)$(PREFIX)/share/feti_contact/fortran
-cmakedir   := $(libdir)/cmake/feti_contact
-FILLED = sed -e 's/@VERSION@/$(VERSION)/g' -e 's/@SOVERSION@/$(SOVERSION)/g'
+# LIBDIR, INCLUDEDIR, DATADIR, DOCDIR, MANDIR as distributions set them, absolute or below PREFIX. tools/install.sh has the list.
+INSTALL = PREFIX='$(PREFIX)' DESTDIR='$(DESTDIR)' LIBDIR='$(LIBDIR)' INCLUDEDIR='$(INCLUDEDIR)' DATADIR='$(DATADIR)' \
+    DOCDIR='$(DOCDIR)' MANDIR='$(MANDIR)' RELEASE='$(RELEASE)' tools/install.sh
 
 install: lib
-	install -d $(libdir)/pkgconfig $(includedir) $(fortrandir) $(cmakedir)
-	install -m 755 $(RELEASE)/libfeti_contact.so $(libdir)/libfeti_contact.so.$(VERSION)
-	ln -sf libfeti_contact.so.$(VERSION) $(libdir)/libfeti_contact.so.$(SOVERSION)
-	ln -sf libfeti_contact.so.$(SOVERSION) $(libdir)/libfeti_contact.so
-	install -m 644 $(RELEASE)/libfeti_contact.a $(libdir)
-	install -m 644 include/feti_contact.h $(includedir)
-	install -m 644 include/fortran/*.f90 $(fortrandir)
-	$(FILLED) cmake/feti_contact.pc.in > $(libdir)/pkgconfig/feti_contact.pc
-	$(FILLED) cmake/feti_contact-config.cmake.in > $(cmakedir)/feti_contact-config.cmake
-	$(FILLED) cmake/feti_contact-config-version.cmake.in > $(cmakedir)/feti_contact-config-version.cmake
+	@$(INSTALL) install
 
 uninstall:
-	rm -f $(libdir)/libfeti_contact.so $(libdir)/libfeti_contact.so.$(SOVERSION) \
-	      $(libdir)/libfeti_contact.so.$(VERSION) $(libdir)/libfeti_contact.a \
-	      $(libdir)/pkgconfig/feti_contact.pc $(includedir)/feti_contact.h
-	rm -rf $(DESTDIR)$(PREFIX)/share/feti_contact $(cmakedir)
+	@$(INSTALL) uninstall
+
+# The baseline of the binary interface, for the soname of the library: written before a release, checked by ctest.
+abi: lib
+	tools/abi.sh write $(RELEASE)/libfeti_contact.so include/feti_contact.h
 
 # The library as a host finds it: installed below build/stage.
 stage:

@@ -1,0 +1,21 @@
+# ---- packaging: hosts outside the source tree, and the interface against its baseline
+set(HOSTS "${PROJECT_ROOT}/tests/packaging")
+find_program(ABIDIFF abidiff REQUIRED)
+if(DEFINED ENV{CARGO_TARGET_DIR})
+  set(CARGO_BUILT "$ENV{CARGO_TARGET_DIR}")
+else()
+  set(CARGO_BUILT "${PROJECT_ROOT}/target")
+endif()
+
+claim("packaging: a CMake host finds the library where it was moved to, shared, static and in Fortran"
+      sh "${HOSTS}/cmake.sh" "${HOSTS}" installed "${FETI_PREFIX}")
+claim("packaging: a CMake host builds the library along with itself, by add_subdirectory, and installs what make install does"
+      sh "${HOSTS}/cmake.sh" "${HOSTS}" source "${PROJECT_ROOT}" "${CARGO_BUILT}")
+claim("packaging: a CMake host builds the library along with itself, by FetchContent"
+      sh "${HOSTS}/cmake.sh" "${HOSTS}" fetch "${PROJECT_ROOT}" "${CARGO_BUILT}")
+claim("packaging: plain make and pkg-config build shared, static and wholly static hosts, in C and in Fortran"
+      sh "${HOSTS}/make.sh" "${HOSTS}" "${FETI_PREFIX}")
+claim("packaging: an fpm host depends on the Fortran sources by path"
+      sh "${HOSTS}/fpm.sh" "${HOSTS}" "${FETI_PREFIX}" "${CMAKE_BINARY_DIR}/fpm")
+claim("packaging: functions, types and constants are those of the baseline or more, and a change that breaks a host is seen"
+      sh "${CMAKE_CURRENT_SOURCE_DIR}/abi_gate.sh" "${PROJECT_ROOT}" "${FETI_LIBRARY}" "${FETI_INCLUDE}/feti_contact.h")
