@@ -20,7 +20,7 @@ FCFLAGS ?= -O2 -Wall
 RELEASE   := $(or $(CARGO_TARGET_DIR),target)/release
 STAGE     := $(CURDIR)/build/stage
 
-.PHONY: all lib data setup demo battery test counts bench scaling paper abi stage install uninstall fmt clean
+.PHONY: all lib data setup demo battery test counts bench scaling paper abi licences stage install uninstall fmt clean
 .DELETE_ON_ERROR:
 all: lib
 
@@ -60,6 +60,10 @@ uninstall:
 # The baseline of the binary interface, for the soname of the library: written before a release, checked by ctest.
 abi: lib
 	tools/abi.sh write $(RELEASE)/libfeti_contact.so include/feti_contact.h
+
+# The table of docs/licences.md, from Cargo.lock.
+licences:
+	LICENCES=write $(CARGO) test --release --locked --test licences
 
 # The library as a host finds it: installed below build/stage.
 stage:
