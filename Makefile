@@ -6,6 +6,7 @@
 #                SWEEPS="rows bodies" picks some, a number among them leaves out decks of more unknowns
 # make paper     the paper's problems by its own method and by the default: table, pictures (seconds)
 # make abi       writes the baseline of the binary interface (abi)        make uninstall  removes what install has put
+# make packaging cargo cinstall against make install, and an installation without network (some minutes, the first time many)
 # bench, scaling, demo and test install the Debian packages they miss (tools/setup.sh).
 PREFIX  ?= /usr/local
 DESTDIR ?=
@@ -20,7 +21,7 @@ FCFLAGS ?= -O2 -Wall
 RELEASE   := $(or $(CARGO_TARGET_DIR),target)/release
 STAGE     := $(CURDIR)/build/stage
 
-.PHONY: all lib data setup demo battery test counts bench scaling paper abi licences stage install uninstall fmt clean
+.PHONY: all lib data setup demo battery test counts bench scaling paper abi licences packaging stage install uninstall fmt clean
 .DELETE_ON_ERROR:
 all: lib
 
@@ -60,6 +61,18 @@ uninstall:
 # The baseline of the binary interface, for the soname of the library: written before a release, checked by ctest.
 abi: lib
 	tools/abi.sh write $(RELEASE)/libfeti_contact.so include/feti_contact.h
+
+# Ways to install that take long: cargo-c against make install (cargo-c itself takes minutes, once), and without network.
+CARGO_C := 0.10.24
+build/tools/bin/cargo-cinstall:
+	@tools/setup.sh libssl-dev
+	CARGO_TARGET_DIR=build/tools/target CARGO_PROFILE_DEV_OPT_LEVEL=0 CARGO_PROFILE_DEV_DEBUG=0 \
+	    $(CARGO) install cargo-c --version $(CARGO_C) --locked --debug --root build/tools
+	rm -rf build/tools/target
+
+packaging: build/tools/bin/cargo-cinstall
+	sh tests/packaging/offline.sh $(CURDIR) $(CURDIR)/build/offline
+	sh tests/packaging/cargo_c.sh $(CURDIR) $(CURDIR)/build/tools $(CURDIR)/build/cargo_c
 
 # The table of docs/licences.md, from Cargo.lock.
 licences:

@@ -88,6 +88,7 @@ fn linked_crates(target: &[&str]) -> BTreeSet<(String, String, String)> {
             "--manifest-path",
             concat!(env!("CARGO_MANIFEST_DIR"), "/Cargo.toml"),
         ])
+        .args(target)
         .output()
         .expect("cargo tree");
     assert!(tree.status.success(), "{}", String::from_utf8_lossy(&tree.stderr));

@@ -32,8 +32,7 @@ files() {
     echo "fill|cmake/feti_contact-config.cmake.in|$CMAKEDIR/feti_contact-config.cmake"
     echo "fill|cmake/feti_contact-config-version.cmake.in|$CMAKEDIR/feti_contact-config-version.cmake"
     echo "644|cmake/feti_contact-targets.cmake|$CMAKEDIR/feti_contact-targets.cmake"
-    each "$FORTRANDIR" include/fortran/*.f90 include/fortran/*.inc
-    echo "fill|include/fortran/fpm.toml.in|$FORTRANDIR/fpm.toml"
+    each "$FORTRANDIR" include/fortran/*.f90 include/fortran/*.inc include/fortran/fpm.toml
     each "$DOCDIR" README.md CHANGELOG.md LICENSE-MIT LICENSE-APACHE
     each "$DOCDIR/docs" docs/*.md
     each "$DOCDIR/docs/pictures" docs/pictures/*

@@ -19,3 +19,12 @@ claim("packaging: an fpm host depends on the Fortran sources by path"
       sh "${HOSTS}/fpm.sh" "${HOSTS}" "${FETI_PREFIX}" "${CMAKE_BINARY_DIR}/fpm")
 claim("packaging: functions, types and constants are those of the baseline or more, and a change that breaks a host is seen"
       sh "${CMAKE_CURRENT_SOURCE_DIR}/abi_gate.sh" "${PROJECT_ROOT}" "${FETI_LIBRARY}" "${FETI_INCLUDE}/feti_contact.h")
+
+# A host of the baseline's header, with the library of today.
+get_target_property(FETI_SONAME feti_contact::feti_contact IMPORTED_SONAME)
+configure_file("${PROJECT_ROOT}/abi/${FETI_SONAME}.h" "${CMAKE_CURRENT_BINARY_DIR}/old/feti_contact.h" COPYONLY)
+add_executable(c_old_host c/old_host.c)
+target_include_directories(c_old_host BEFORE PRIVATE "${CMAKE_CURRENT_BINARY_DIR}/old")
+target_link_libraries(c_old_host PRIVATE "${FETI_LIBRARY}" m)
+claim_silent("packaging: a host compiled with the baseline's header gets its answers, and no byte behind its structs is touched"
+             $<TARGET_FILE:c_old_host>)
