@@ -9,6 +9,8 @@ endif()
 
 claim("packaging: a CMake host finds the library where it was moved to, shared, static and in Fortran"
       sh "${HOSTS}/cmake.sh" "${HOSTS}" installed "${FETI_PREFIX}")
+claim("packaging: find_package names a component or a version that it cannot give"
+      sh "${HOSTS}/components.sh" "${FETI_PREFIX}")
 claim("packaging: a CMake host builds the library along with itself, by add_subdirectory, and installs what make install does"
       sh "${HOSTS}/cmake.sh" "${HOSTS}" source "${PROJECT_ROOT}" "${CARGO_BUILT}")
 claim("packaging: a CMake host builds the library along with itself, by FetchContent"
