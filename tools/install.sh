@@ -56,13 +56,17 @@ from() {
 }
 below() { case $2 in "$PREFIX"/*) echo "$1${2#"$PREFIX"}" ;; *) echo "$2" ;; esac; }
 
-# modules: the Fortran sources in the order in which a compiler takes them: interfaces, base, the parts, the whole, FORTRAN 77.
-modules() {
-    parts=$(cd include/fortran && ls feti_contact_*.f90 | sed 's/feti_contact//; /_c\./d; /_base\./d; /_f77\./d')
-    for part in _c.f90 _base.f90 $parts .f90 _f77.f90; do
-        [ ! -f "include/fortran/feti_contact$part" ] || printf '${fortrandir}/feti_contact%s ' "$part"
+# in_order NAME...: Fortran sources as pkg-config says them, those that exist.
+in_order() {
+    for name in "$@"; do
+        [ ! -f "include/fortran/feti_contact$name" ] || printf '${fortrandir}/feti_contact%s ' "$name"
     done
 }
+# others PATTERN: names of the sources that match, without those that come first.
+others() { (cd include/fortran && ls feti_contact_*.f90) | sed 's/feti_contact//' | grep "$@" | grep -v '^_c\.\|_base\.' || true; }
+# modules, f77: the sources of both faces in the order in which a compiler takes them: interfaces, base, parts, whole.
+modules() { in_order _c.f90 _base.f90 $(others -v '^_f77') .f90; }
+f77() { in_order _c.f90 _base.f90 _f77_base.f90 $(others '^_f77'); }
 
 # fill TEMPLATE: the template with its variables replaced.
 fill() {
@@ -72,7 +76,8 @@ fill() {
     esac
     sed -e "s|@VERSION@|$VERSION|g" -e "s|@SOVERSION@|$SOVERSION|g" -e "s|@PREFIX@|$origin|g" \
         -e "s|@LIBDIR@|$(below "$prefix" "$LIBDIR")|g" -e "s|@INCLUDEDIR@|$(below "$prefix" "$INCLUDEDIR")|g" \
-        -e "s|@FORTRANDIR@|$(below "$prefix" "$FORTRANDIR")|g" -e "s|@MODULES@|$(modules)|g" -e 's/ *$//' "$1"
+        -e "s|@FORTRANDIR@|$(below "$prefix" "$FORTRANDIR")|g" -e "s|@MODULES@|$(modules)|g" \
+        -e "s|@F77@|$(f77)|g" -e 's/ *$//' "$1"
 }
 
 # put MODE SOURCE TARGET: one line of `files`.
