@@ -6,6 +6,8 @@
 # make scaling   time and memory as unknowns, contact rows, bodies, threads grow: pictures in docs (some minutes);
 #                SWEEPS="rows bodies" picks some, a number among them leaves out decks of more unknowns
 # make paper     the paper's problems by its own method and by the default: table, pictures (seconds)
+# make abi       writes the baseline of the binary interface (abi)        make uninstall  removes what install has put
+# make packaging cargo cinstall against make install, and an installation without network (some minutes, the first time many)
 # bench, scaling, demo and test install the Debian packages they miss (tools/setup.sh).
 PREFIX  ?= /usr/local
 DESTDIR ?=
@@ -17,12 +19,11 @@ endif
 CFLAGS  ?= -O2 -Wall -Wextra
 FCFLAGS ?= -O2 -Wall
 
-VERSION   := $(shell sed -n 's/^version = "\(.*\)"/\1/p' Cargo.toml | head -n 1)
-SOVERSION := $(basename $(VERSION))# 0.1 of 0.1.0: before 1.0 each minor version has its own soname
 RELEASE   := $(or $(CARGO_TARGET_DIR),target)/release
 STAGE     := $(CURDIR)/build/stage
 
-.PHONY: all lib data setup demo battery test metis counts bench scaling paper stage install uninstall fmt clean
+.PHONY: all lib data setup demo battery test metis counts bench scaling paper abi licences packaging stage install uninstall
+.PHONY: fmt clean
 .DELETE_ON_ERROR:
 all: lib
 
@@ -49,29 +50,35 @@ build/data/%: tests/data/%.gz
 	@gzip -dc $< > $@
 
 # ---- installation: shared library with its links, static library, header, Fortran sources, pkg-config, CMake
-libdir     := $(DESTDIR)$(PREFIX)/lib
-includedir := $(DESTDIR)$(PREFIX)/include
-fortrandir := $(DESTDIR)$(PREFIX)/share/feti_contact/fortran
-cmakedir   := $(libdir)/cmake/feti_contact
-FILLED = sed -e 's/@VERSION@/$(VERSION)/g' -e 's/@SOVERSION@/$(SOVERSION)/g'
+# LIBDIR, INCLUDEDIR, DATADIR, DOCDIR, MANDIR as distributions set them, absolute or below PREFIX. tools/install.sh has the list.
+INSTALL = PREFIX='$(PREFIX)' DESTDIR='$(DESTDIR)' LIBDIR='$(LIBDIR)' INCLUDEDIR='$(INCLUDEDIR)' DATADIR='$(DATADIR)' \
+    DOCDIR='$(DOCDIR)' MANDIR='$(MANDIR)' RELEASE='$(RELEASE)' tools/install.sh
 
 install: lib
-	install -d $(libdir)/pkgconfig $(includedir) $(fortrandir) $(cmakedir)
-	install -m 755 $(RELEASE)/libfeti_contact.so $(libdir)/libfeti_contact.so.$(VERSION)
-	ln -sf libfeti_contact.so.$(VERSION) $(libdir)/libfeti_contact.so.$(SOVERSION)
-	ln -sf libfeti_contact.so.$(SOVERSION) $(libdir)/libfeti_contact.so
-	install -m 644 $(RELEASE)/libfeti_contact.a $(libdir)
-	install -m 644 include/feti_contact.h $(includedir)
-	install -m 644 include/fortran/*.f90 $(fortrandir)
-	$(FILLED) cmake/feti_contact.pc.in > $(libdir)/pkgconfig/feti_contact.pc
-	$(FILLED) cmake/feti_contact-config.cmake.in > $(cmakedir)/feti_contact-config.cmake
-	$(FILLED) cmake/feti_contact-config-version.cmake.in > $(cmakedir)/feti_contact-config-version.cmake
+	@$(INSTALL) install
 
 uninstall:
-	rm -f $(libdir)/libfeti_contact.so $(libdir)/libfeti_contact.so.$(SOVERSION) \
-	      $(libdir)/libfeti_contact.so.$(VERSION) $(libdir)/libfeti_contact.a \
-	      $(libdir)/pkgconfig/feti_contact.pc $(includedir)/feti_contact.h
-	rm -rf $(DESTDIR)$(PREFIX)/share/feti_contact $(cmakedir)
+	@$(INSTALL) uninstall
+
+# The baseline of the binary interface, for the soname of the library: written before a release, checked by ctest.
+abi: lib
+	tools/abi.sh write $(RELEASE)/libfeti_contact.so include/feti_contact.h
+
+# Ways to install that take long: cargo-c against make install (cargo-c itself takes minutes, once), and without network.
+CARGO_C := 0.10.24
+build/tools/bin/cargo-cinstall:
+	@tools/setup.sh libssl-dev
+	CARGO_TARGET_DIR=build/tools/target CARGO_PROFILE_DEV_OPT_LEVEL=0 CARGO_PROFILE_DEV_DEBUG=0 \
+	    $(CARGO) install cargo-c --version $(CARGO_C) --locked --debug --root build/tools
+	rm -rf build/tools/target
+
+packaging: build/tools/bin/cargo-cinstall
+	sh tests/packaging/offline.sh $(CURDIR) $(CURDIR)/build/offline
+	sh tests/packaging/cargo_c.sh $(CURDIR) $(CURDIR)/build/tools $(CURDIR)/build/cargo_c
+
+# The table of docs/licences.md, from Cargo.lock.
+licences:
+	LICENCES=write $(CARGO) test --release --locked --test licences
 
 # The library as a host finds it: installed below build/stage.
 stage:

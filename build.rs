@@ -7,15 +7,19 @@ use std::env;
 
 fn main() {
     println!("cargo:rerun-if-changed=build.rs");
+    let variable = |name: &str| env::var(name).unwrap_or_default();
+    if variable("CARGO_CFG_TARGET_OS") != "linux" {
+        return;
+    }
+    for option in ["-z,nodelete", "-z,noexecstack"] {
+        println!("cargo:rustc-cdylib-link-arg=-Wl,{option}");
+    }
     // cargo-c sets this variable, and the soname itself.
     println!("cargo:rerun-if-env-changed=CARGO_FEATURE_CAPI");
-    let variable = |name: &str| env::var(name).unwrap_or_default();
-    if env::var_os("CARGO_FEATURE_CAPI").is_some() || variable("CARGO_CFG_TARGET_OS") != "linux" {
+    if env::var_os("CARGO_FEATURE_CAPI").is_some() {
         return;
     }
     let major = variable("CARGO_PKG_VERSION_MAJOR");
     let version = if major == "0" { format!("0.{}", variable("CARGO_PKG_VERSION_MINOR")) } else { major };
-    for option in [&format!("-soname,libfeti_contact.so.{version}"), "-z,nodelete", "-z,noexecstack"] {
-        println!("cargo:rustc-cdylib-link-arg=-Wl,{option}");
-    }
+    println!("cargo:rustc-cdylib-link-arg=-Wl,-soname,libfeti_contact.so.{version}");
 }

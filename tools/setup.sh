@@ -2,7 +2,7 @@
 # Installs what the examples and tests need beside Rust, gcc and GNU make, and the packages named as arguments.
 # Does nothing when all is there.
 set -eu
-packages="gfortran cmake libsuitesparse-dev libopenblas-dev valgrind pkg-config $*"
+packages="gfortran cmake libsuitesparse-dev libopenblas-dev valgrind pkg-config abigail-tools python3-venv $*"
 
 missing=
 for package in $packages; do

@@ -6,13 +6,9 @@ mkdir -p "$3"
 cd "$3"
 flags=$(pkg-config --cflags feti_contact)
 libs=$(pkg-config --libs feti_contact)
-fortran=$(pkg-config --variable=fortrandir feti_contact)
+modules=$(pkg-config --variable=fortransources feti_contact)
 rpath="-Wl,-rpath,$(pkg-config --variable=libdir feti_contact)"
 "${CC:-cc}" $flags "$2/examples_c/01_spring_and_block.c" "$2/examples_c/demo.c" -o c $libs "$rpath" -lm
 ./c
-modules="$fortran/feti_contact_c.f90 $fortran/feti_contact_base.f90"
-for file in "$fortran"/*.f90; do
-    case $file in */feti_contact.f90 | */feti_contact_c.f90 | */feti_contact_base.f90) ;; *) modules="$modules $file" ;; esac
-done
-"${FC:-gfortran}" $modules "$fortran/feti_contact.f90" "$2/examples_fortran/demo.f90" "$2/examples_fortran/01_spring_and_block.f90" -o fortran $libs "$rpath"
+"${FC:-gfortran}" $modules "$2/examples_fortran/demo.f90" "$2/examples_fortran/01_spring_and_block.f90" -o fortran $libs "$rpath"
 ./fortran

@@ -1,0 +1,54 @@
+# The targets of feti_contact, the same for an installed library and for one that is built along with its host:
+#   feti_contact::feti_contact          the shared library and its header
+#   feti_contact::feti_contact_static   the same as an archive
+#   feti_contact::fortran               the Fortran modules, compiled in the host's tree with the host's flags, and the shared
+#                                       library (component Fortran)
+
+# feti_contact_library_targets(<shared library> <archive> <soname> <folder of the header>)
+function(feti_contact_library_targets shared static soname include)
+  if(TARGET feti_contact::feti_contact)
+    return()
+  endif()
+  add_library(feti_contact::feti_contact SHARED IMPORTED GLOBAL)
+  set_target_properties(feti_contact::feti_contact PROPERTIES
+    IMPORTED_LOCATION "${shared}" IMPORTED_SONAME "${soname}" INTERFACE_INCLUDE_DIRECTORIES "${include}")
+  add_library(feti_contact::feti_contact_static STATIC IMPORTED GLOBAL)
+  set_target_properties(feti_contact::feti_contact_static PROPERTIES
+    IMPORTED_LOCATION "${static}" INTERFACE_INCLUDE_DIRECTORIES "${include}"
+    INTERFACE_LINK_LIBRARIES "util;rt;pthread;m;dl")
+endfunction()
+
+# feti_contact_fortran_target(<folder of the sources>): modules go to the build folder of the host; INCLUDE finds *.inc.
+function(feti_contact_fortran_target folder)
+  if(TARGET feti_contact::fortran)
+    return()
+  endif()
+  file(GLOB sources "${folder}/*.f90")
+  set(modules "${CMAKE_BINARY_DIR}/feti_contact_modules")
+  add_library(feti_contact_fortran STATIC EXCLUDE_FROM_ALL ${sources})
+  set_target_properties(feti_contact_fortran PROPERTIES
+    Fortran_MODULE_DIRECTORY "${modules}" POSITION_INDEPENDENT_CODE ON)
+  target_include_directories(feti_contact_fortran INTERFACE "${modules}" "${folder}")
+  target_link_libraries(feti_contact_fortran PUBLIC feti_contact::feti_contact)
+  add_library(feti_contact::fortran ALIAS feti_contact_fortran)
+endfunction()
+
+# feti_contact_components(<folder of the Fortran sources>): answers find_package for the components that it asks for.
+macro(feti_contact_components folder)
+  set(feti_contact_C_FOUND TRUE)
+  foreach(_feti_component IN LISTS feti_contact_FIND_COMPONENTS)
+    if(_feti_component STREQUAL "Fortran")
+      get_property(_feti_languages GLOBAL PROPERTY ENABLED_LANGUAGES)
+      if("Fortran" IN_LIST _feti_languages)
+        feti_contact_fortran_target("${folder}")
+        set(feti_contact_Fortran_FOUND TRUE)
+      elseif(feti_contact_FIND_REQUIRED_Fortran)
+        set(feti_contact_FOUND FALSE)
+        set(feti_contact_NOT_FOUND_MESSAGE "component Fortran needs enable_language(Fortran) before find_package")
+      endif()
+    elseif(NOT _feti_component STREQUAL "C" AND feti_contact_FIND_REQUIRED_${_feti_component})
+      set(feti_contact_FOUND FALSE)
+      set(feti_contact_NOT_FOUND_MESSAGE "no component ${_feti_component}: there are C and Fortran")
+    endif()
+  endforeach()
+endmacro()

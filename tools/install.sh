@@ -1,0 +1,112 @@
+#!/bin/sh
+# install.sh install|uninstall|list: puts what a host needs below $DESTDIR$PREFIX, removes exactly that, or lists it.
+# From the environment: PREFIX, DESTDIR; LIBDIR, INCLUDEDIR, DATADIR, DOCDIR, MANDIR (absolute or below PREFIX);
+# RELEASE, the folder of the built libraries.
+set -eu
+cd "$(dirname "$0")/.."
+PREFIX=${PREFIX-/usr/local}
+PREFIX=${PREFIX%/}
+# placed FOLDER DEFAULT: the folder, or the default, below PREFIX unless absolute.
+placed() { case ${1:-$2} in /*) echo "${1:-$2}" ;; *) echo "$PREFIX/${1:-$2}" ;; esac; }
+LIBDIR=$(placed "${LIBDIR-}" lib)
+INCLUDEDIR=$(placed "${INCLUDEDIR-}" include)
+DATADIR=$(placed "${DATADIR-}" share)
+DOCDIR=$(placed "${DOCDIR-}" "$DATADIR/doc/feti-contact")
+MANDIR=$(placed "${MANDIR-}" "$DATADIR/man")
+CMAKEDIR=$LIBDIR/cmake/feti_contact
+FORTRANDIR=$DATADIR/feti_contact/fortran
+DESTDIR=${DESTDIR-}
+RELEASE=${RELEASE:-${CARGO_TARGET_DIR:-target}/release}
+VERSION=$(sed -n 's/^version = "\(.*\)"/\1/p' Cargo.toml | head -n 1)
+# The name for the loader: 0.MINOR before 1.0, MAJOR from then on, as in build.rs.
+case $VERSION in 0.*) SOVERSION=${VERSION%.*} ;; *) SOVERSION=${VERSION%%.*} ;; esac
+
+# files: a line MODE|SOURCE|TARGET for every file; mode `link`: SOURCE is what the link says; `fill`: a template.
+files() {
+    echo "755|$RELEASE/libfeti_contact.so|$LIBDIR/libfeti_contact.so.$VERSION"
+    echo "link|libfeti_contact.so.$VERSION|$LIBDIR/libfeti_contact.so.$SOVERSION"
+    echo "link|libfeti_contact.so.$SOVERSION|$LIBDIR/libfeti_contact.so"
+    echo "644|$RELEASE/libfeti_contact.a|$LIBDIR/libfeti_contact.a"
+    echo "644|include/feti_contact.h|$INCLUDEDIR/feti_contact.h"
+    echo "fill|cmake/feti_contact.pc.in|$LIBDIR/pkgconfig/feti_contact.pc"
+    echo "fill|cmake/feti_contact-config.cmake.in|$CMAKEDIR/feti_contact-config.cmake"
+    echo "fill|cmake/feti_contact-config-version.cmake.in|$CMAKEDIR/feti_contact-config-version.cmake"
+    echo "644|cmake/feti_contact-targets.cmake|$CMAKEDIR/feti_contact-targets.cmake"
+    each "$FORTRANDIR" include/fortran/*.f90 include/fortran/*.inc include/fortran/fpm.toml
+    each "$DOCDIR" README.md CHANGELOG.md LICENSE-MIT LICENSE-APACHE
+    each "$DOCDIR/docs" docs/*.md
+    each "$DOCDIR/docs/pictures" docs/pictures/*
+    each "$MANDIR/man3" build/man/*.3
+}
+
+# each FOLDER FILE...: the files that exist, to go to the folder.
+each() {
+    folder=$1
+    shift
+    for file in "$@"; do [ ! -f "$file" ] || echo "644|$file|$folder/${file##*/}"; done
+}
+
+# from FOLDER HERE: the way from the folder to PREFIX, beginning with HERE, so that a tree may be moved; PREFIX itself for a
+# folder elsewhere. below VARIABLE FOLDER: the folder in terms of the variable that holds the prefix.
+from() {
+    case $1 in
+    "$PREFIX"/*) echo "$2/$(echo "${1#"$PREFIX"/}" | sed 's|[^/][^/]*|..|g')" ;;
+    *) echo "$PREFIX" ;;
+    esac
+}
+below() { case $2 in "$PREFIX"/*) echo "$1${2#"$PREFIX"}" ;; *) echo "$2" ;; esac; }
+
+# in_order NAME...: Fortran sources as pkg-config says them, those that exist.
+in_order() {
+    for name in "$@"; do
+        [ ! -f "include/fortran/feti_contact$name" ] || printf '${fortrandir}/feti_contact%s ' "$name"
+    done
+}
+# others PATTERN: names of the sources that match, without those that come first.
+others() { (cd include/fortran && ls feti_contact_*.f90) | sed 's/feti_contact//' | grep "$@" | grep -v '^_c\.\|_base\.' || true; }
+# modules, f77: the sources of both faces in the order in which a compiler takes them: interfaces, base, parts, whole.
+modules() { in_order _c.f90 _base.f90 $(others -v '^_f77') .f90; }
+f77() { in_order _c.f90 _base.f90 _f77_base.f90 $(others '^_f77'); }
+
+# fill TEMPLATE: the template with its variables replaced.
+fill() {
+    case $1 in
+    *.pc.in) prefix='${prefix}' origin=$(from "$LIBDIR/pkgconfig" '${pcfiledir}') ;;
+    *) prefix='${_feti_prefix}' origin=$(from "$CMAKEDIR" '${CMAKE_CURRENT_LIST_DIR}') ;;
+    esac
+    sed -e "s|@VERSION@|$VERSION|g" -e "s|@SOVERSION@|$SOVERSION|g" -e "s|@PREFIX@|$origin|g" \
+        -e "s|@LIBDIR@|$(below "$prefix" "$LIBDIR")|g" -e "s|@INCLUDEDIR@|$(below "$prefix" "$INCLUDEDIR")|g" \
+        -e "s|@FORTRANDIR@|$(below "$prefix" "$FORTRANDIR")|g" -e "s|@MODULES@|$(modules)|g" \
+        -e "s|@F77@|$(f77)|g" -e 's/ *$//' "$1"
+}
+
+# put MODE SOURCE TARGET: one line of `files`.
+put() {
+    mkdir -p "${3%/*}"
+    case $1 in
+    link) ln -sf "$2" "$3" ;;
+    fill) fill "$2" >"$3" && chmod 644 "$3" ;;
+    *) install -m "$1" "$2" "$3" ;;
+    esac
+}
+
+# empty FOLDER: removes a folder that is ours by name, and its folders, where nothing is left in them.
+empty() { [ ! -d "$1" ] || find "$1" -depth -type d -empty -delete; }
+
+case ${1-} in
+list) files | cut -d '|' -f 3 ;;
+install)
+    files | while IFS='|' read -r mode source target; do
+        echo "$DESTDIR$target"
+        put "$mode" "$source" "$DESTDIR$target"
+    done
+    ;;
+uninstall)
+    files | while IFS='|' read -r mode source target; do rm -f "$DESTDIR$target"; done
+    for folder in "$CMAKEDIR" "$DATADIR/feti_contact" "$DOCDIR"; do empty "$DESTDIR$folder"; done
+    ;;
+*)
+    echo "usage: install.sh install|uninstall|list" >&2
+    exit 2
+    ;;
+esac
