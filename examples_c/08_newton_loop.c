@@ -1,0 +1,295 @@
+/* 08 A Newton loop: a strip of bars is pressed down by a round die, with large displacements.
+
+   The strip is a lattice of 24 x 4 cells of 1 mm, its ends clamped; bars of stiffness EA follow their Green strain, so
+   that the tangent K(u) changes with the displacement. The die, a cylinder of radius 10 mm, comes from above: the
+   normals of the contact rows change with the displacement too. The host iterates, the library solves each linear
+   problem with contact:
+
+       min 1/2 d'K d - f'd   with   -n_i'd <= g_i,   f = -internal forces(u),   then u := u + d
+
+   K holds the curvature of the die under the forces of the last iterate, -lambda (I - n n')/r: with it the iteration
+   converges quadratically.
+
+   1. Small displacements: K stays, only normals change. One factorisation in all, whatever the number of iterations.
+   2. Large displacements: feti_body_values gives K on its old pattern. One factorisation per iteration, no analysis.
+   3. A load step that fails is rejected: feti_state_restore brings back rows, gaps and forces, the step is halved. */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "demo.h"
+
+enum { NX = 24, NY = 4, LINE = NY + 1, NODES = (NX - 1) * LINE, N = 2 * NODES, ROWS = NX - 1, MOST = 8 };
+static const double EA = 1000.0 /* N */, RADIUS = 10.0 /* mm */, DEPTH = 8.0 /* mm */;
+
+/* Lower triangle of K by rows: node (i, j) knows the nodes left of it, below it, and itself. */
+typedef struct {
+    int32_t ptr[N + 1], col[10 * N];
+    double val[10 * N];
+} matrix;
+
+/* Free node (i, j), 0 < i < NX, among all; its unknowns are 2 node and 2 node + 1. */
+static int node_at(int i, int j)
+{
+    return i > 0 && i < NX && j >= 0 && j <= NY ? (i - 1) * LINE + j : -1;
+}
+
+static void make_pattern(matrix *k)
+{
+    int32_t end = 0;
+
+    for (int i = 1; i < NX; i++)
+        for (int j = 0; j <= NY; j++) {
+            const int near[5] = { node_at(i - 1, j - 1), node_at(i - 1, j), node_at(i - 1, j + 1), node_at(i, j - 1), node_at(i, j) };
+            for (int d = 0; d < 2; d++) {
+                k->ptr[2 * near[4] + d] = end;
+                for (int b = 0; b < 5; b++)
+                    for (int e = 0; near[b] >= 0 && e < 2; e++)
+                        if (b < 4 || e <= d) k->col[end++] = 2 * near[b] + e;
+            }
+        }
+    k->ptr[N] = end;
+}
+
+static void add(matrix *k, int row, int col, double value)
+{
+    if (col > row) return;
+    for (int32_t at = k->ptr[row]; at < k->ptr[row + 1]; at++)
+        if (k->col[at] == col) k->val[at] += value;
+}
+
+/* Adds a bar: Green strain e = (l^2 - L^2) / (2 L^2), force density q = EA e / L; the internal forces are q x per end,
+   the tangent EA/L^3 x x' + q I, x from end to end in the deformed strip. */
+static void add_bar(const double *u, matrix *k, double *internal, int i, int j, int i2, int j2)
+{
+    const int a = node_at(i, j), b = node_at(i2, j2);
+    const double X[2] = { i2 - i, j2 - j }, length = hypot(X[0], X[1]);
+    double x[2], e, q;
+
+    if (j2 < 0 || j2 > NY || (a < 0 && b < 0)) return;
+    for (int d = 0; d < 2; d++) x[d] = X[d] + (b < 0 ? 0.0 : u[2 * b + d]) - (a < 0 ? 0.0 : u[2 * a + d]);
+    e = (x[0] * x[0] + x[1] * x[1] - length * length) / (2.0 * length * length);
+    q = EA * e / length;
+    for (int c = 0; c < 2; c++) {
+        if (a >= 0) internal[2 * a + c] -= q * x[c];
+        if (b >= 0) internal[2 * b + c] += q * x[c];
+        for (int d = 0; d < 2; d++) {
+            const double value = EA / pow(length, 3) * x[c] * x[d] + (c == d ? q : 0.0);
+            if (a >= 0) add(k, 2 * a + c, 2 * a + d, value);
+            if (b >= 0) add(k, 2 * b + c, 2 * b + d, value);
+            if (a >= 0 && b >= 0) {
+                add(k, 2 * a + c, 2 * b + d, -value);
+                add(k, 2 * b + c, 2 * a + d, -value);
+            }
+        }
+    }
+}
+
+/* K and internal forces of the bars at u. */
+static void assemble(const double *u, matrix *k, double *internal)
+{
+    memset(k->val, 0, sizeof k->val);
+    memset(internal, 0, N * sizeof *internal);
+    for (int i = 0; i < NX; i++)
+        for (int j = 0; j <= NY; j++) {
+            add_bar(u, k, internal, i, j, i + 1, j);
+            add_bar(u, k, internal, i, j, i + 1, j + 1);
+            add_bar(u, k, internal, i, j, i + 1, j - 1);
+            if (i > 0) add_bar(u, k, internal, i, j, i, j + 1);
+        }
+}
+
+/* Distance of top node i from the axis of the die; its direction n away from it. */
+static double from_axis(const double *u, double depth, int i, double n[2])
+{
+    const double *v = u + 2 * node_at(i, NY);
+    const double x = i + v[0] - NX / 2.0, y = v[1] - RADIUS + depth, r = hypot(x, y);
+
+    n[0] = x / r, n[1] = y / r;
+    return r;
+}
+
+/* The forces of the rows bend with the normals: -lambda (I - n n') / r. */
+static void add_curvature(const double *u, const double *lambda, double depth, matrix *k)
+{
+    for (int i = 1; i < NX; i++) {
+        const int dof = 2 * node_at(i, NY);
+        double n[2];
+        const double bend = lambda[i - 1] / from_axis(u, depth, i, n);
+        for (int c = 0; c < 2; c++)
+            for (int d = 0; d < 2; d++) add(k, dof + c, dof + d, -bend * ((c == d) - n[c] * n[d]));
+    }
+}
+
+/* A row per top node: it moves no further towards the axis than its distance allows. `from` is the displacement that the
+   unknowns are counted from. */
+static void give_rows(feti_problem *problem, const double *u, const double *from, double depth)
+{
+    int32_t ptr[ROWS + 1], dof[2 * ROWS];
+    double val[2 * ROWS], gap[ROWS];
+
+    for (int i = 1; i < NX; i++) {
+        const int at = 2 * (i - 1), top = 2 * node_at(i, NY);
+        double n[2];
+        gap[i - 1] = from_axis(u, depth, i, n) - RADIUS;
+        ptr[i - 1] = at;
+        for (int d = 0; d < 2; d++) {
+            dof[at + d] = top + d, val[at + d] = -n[d];
+            gap[i - 1] += -n[d] * (u[top + d] - from[top + d]);
+        }
+    }
+    ptr[ROWS] = 2 * ROWS;
+    CALL(feti_rows_clear(problem, FETI_INEQUALITY));
+    CALL(feti_rows_add_i32(problem, FETI_INEQUALITY, ROWS, ptr, NULL, dof, val, 0, gap, NULL));
+}
+
+static double largest(const double *x)
+{
+    double size = 0.0;
+
+    for (int i = 0; i < N; i++) size = fmax(size, fabs(x[i]));
+    return size;
+}
+
+/* What a loop cost: feti_info counts what the problem has done in all. */
+typedef struct {
+    int iterations, factorisations, analyses;
+} cost;
+
+static void add_cost(cost *sum, const feti_info *info, const feti_info *before)
+{
+    sum->iterations++;
+    sum->factorisations += (int)(info->factorisations - before->factorisations);
+    sum->analyses += (int)(info->analyses - before->analyses);
+}
+
+/* Small displacements: K of the unloaded strip stays, the unknown is u itself. */
+static cost with_fixed_tangent(feti_problem *problem, double depth, double *u, feti_info *info)
+{
+    const double zero[N] = { 0.0 };
+    cost sum = { 0, 0, 0 };
+    double change = 1.0;
+
+    while (change > 1e-9 && sum.iterations < 30) {
+        const feti_info before = *info;
+        double next[N];
+        give_rows(problem, u, zero, depth);
+        CALL(feti_solve(problem, info));
+        CALL(feti_displacement(problem, 0, N, next));
+        for (int i = 0; i < N; i++) u[i] = next[i] - u[i];
+        change = largest(u);
+        memcpy(u, next, sizeof next);
+        add_cost(&sum, info, &before);
+    }
+    return sum;
+}
+
+/* Newton's method at a depth of the die. Returns FETI_OK, or what the library says to a step that is too large, or
+   FETI_ITERATIONS. `quadratic`: no change was more than its predecessor squared, once that was small. */
+static int32_t newton(feti_problem *problem, matrix *k, double depth, double *u, double *lambda, cost *sum, feti_info *info,
+                      int *quadratic)
+{
+    double change = 1.0;
+
+    memset(sum, 0, sizeof *sum);
+    *quadratic = 1;
+    while (sum->iterations < MOST) {
+        double f[N], d[N];
+        const double last = change;
+        const feti_info before = *info;
+        int32_t status;
+        assemble(u, k, f);
+        for (int i = 0; i < N; i++) f[i] = -f[i];
+        add_curvature(u, lambda, depth, k);
+        CALL(feti_body_values(problem, 0, k->ptr[N], k->val));
+        CALL(feti_body_load(problem, 0, N, f));
+        give_rows(problem, u, u, depth);
+        status = feti_solve(problem, info);
+        add_cost(sum, info, &before);
+        if (status != FETI_OK) return status;
+        CALL(feti_displacement(problem, 0, N, d));
+        CALL(feti_multipliers(problem, FETI_INEQUALITY, ROWS, lambda));
+        for (int i = 0; i < N; i++) u[i] += d[i];
+        change = largest(d);
+        if (last < 1e-2 && change > 10.0 * last * last + 1e-12) *quadratic = 0;
+        if (change < 1e-6) return FETI_OK;
+    }
+    return FETI_ITERATIONS;
+}
+
+/* Largest force that the bars and the die leave unbalanced, and depth of penetration: both zero in the solution. */
+static double unbalanced(matrix *k, const double *u, const double *lambda, double depth, double *force)
+{
+    double internal[N], inside = 0.0, size;
+
+    assemble(u, k, internal);
+    size = largest(internal);
+    *force = 0.0;
+    for (int i = 1; i < NX; i++) {
+        const int top = 2 * node_at(i, NY);
+        double n[2];
+        inside = fmax(inside, RADIUS - from_axis(u, depth, i, n));
+        for (int d = 0; d < 2; d++) internal[top + d] -= lambda[i - 1] * n[d];
+        *force -= lambda[i - 1] * n[1];
+    }
+    return fmax(largest(internal) / size, inside / RADIUS);
+}
+
+int main(void)
+{
+    static matrix k;
+    double u[N] = { 0.0 }, saved_u[N], lambda[ROWS] = { 0.0 }, saved_lambda[ROWS], f[N], force;
+    double depth = 0.0, step = DEPTH, error;
+    feti_problem *problem = NULL;
+    feti_info info = { .struct_size = sizeof info };
+    cost sum;
+    int64_t body, state;
+    int rejected = 0, steps = 0, right = 1, quadratic;
+
+    make_pattern(&k);
+    assemble(u, &k, f);
+    CALL(feti_problem_create(&problem));
+    CALL(feti_set_str(problem, "start", "previous"));
+    CALL(feti_body_add(problem, N, &body));
+    CALL(feti_body_stiffness_i32(problem, body, N, k.ptr, k.col, k.val, 0, FETI_LOWER, FETI_COPY));
+    CALL(feti_body_null_space(problem, body, 0, N, NULL, N, FETI_EXACT)); /* the ends are clamped */
+
+    sum = with_fixed_tangent(problem, 1.0, u, &info);
+    demo_value("small displacements, iterations", sum.iterations, "-");
+    demo_value("  factorisations", sum.factorisations, "-");
+    demo_value("  analyses", sum.analyses, "-");
+    right = right && sum.factorisations == 1 && sum.analyses == 1;
+
+    memset(u, 0, sizeof u);
+    CALL(feti_body_load(problem, body, N, u));
+    give_rows(problem, u, u, 0.0);
+    while (depth < DEPTH) {
+        int32_t status;
+        CALL(feti_state_save(problem, &state));
+        memcpy(saved_u, u, sizeof u);
+        memcpy(saved_lambda, lambda, sizeof lambda);
+        status = newton(problem, &k, depth + step, u, lambda, &sum, &info, &quadratic);
+        if (status == FETI_OK) {
+            depth += step, steps++;
+            right = right && quadratic && sum.factorisations == sum.iterations && sum.analyses == 0;
+            unbalanced(&k, u, lambda, depth, &force);
+            printf("step to %.4f mm: %d iterations, %d factorisations, %d analyses, force %.4f N\n", depth, sum.iterations,
+                   sum.factorisations, sum.analyses, force);
+        } else {
+            printf("step to %.4f mm: %s after %d iterations, halved\n", depth + step, feti_status_name(status), sum.iterations);
+            CALL(feti_state_restore(problem, state));
+            memcpy(u, saved_u, sizeof u);
+            memcpy(lambda, saved_lambda, sizeof lambda);
+            step /= 2.0, rejected++;
+        }
+        CALL(feti_state_drop(problem, state));
+    }
+    CALL(feti_problem_destroy(&problem));
+
+    error = unbalanced(&k, u, lambda, depth, &force);
+    demo_value("load steps", steps, "-");
+    demo_value("rejected load steps", rejected, "-");
+    demo_value("force on the die", force, "N");
+    return demo_line("08_newton_loop", &info, error, right && rejected > 0);
+}

@@ -1,0 +1,316 @@
+!> 08 A Newton loop: a strip of bars is pressed down by a round die, with large displacements.
+!>
+!> The strip is a lattice of 24 x 4 cells of 1 mm, its ends clamped; bars of stiffness EA follow their Green strain, so
+!> that the tangent K(u) changes with the displacement. The die, a cylinder of radius 10 mm, comes from above: the
+!> normals of the contact rows change with the displacement too. The host iterates, the library solves each linear
+!> problem with contact:
+!>
+!>     min 1/2 d'K d - f'd   with   -n_i'd <= g_i,   f = -internal forces(u),   then u := u + d
+!>
+!> K holds the curvature of the die under the forces of the last iterate, -lambda (I - n n')/r: with it the iteration
+!> converges quadratically.
+!>
+!> 1. Small displacements: K stays, only normals change. One factorisation in all, whatever the number of iterations.
+!> 2. Large displacements: feti_body_values gives K on its old pattern. One factorisation per iteration, no analysis.
+!> 3. A load step that fails is rejected: feti_state_restore brings back rows, gaps and forces, the step is halved.
+program newton_loop
+  use demo
+  use feti_contact
+  implicit none
+  integer, parameter :: dp = kind(1.0d0)
+  integer, parameter :: nx = 24, ny = 4, nodes = (nx - 1) * (ny + 1), n = 2 * nodes, rows = nx - 1, most = 8
+  real(dp), parameter :: ea = 1000, radius = 10, full_depth = 8   ! N, mm, mm
+
+  !> Lower triangle of K by rows: node (i, j) knows the nodes left of it, below it, and itself.
+  integer :: ptr(n + 1), col(10 * n), entries
+  real(dp) :: val(10 * n)
+
+  !> What a loop cost: feti_info counts what the problem has done in all.
+  type :: cost
+    integer :: iterations = 0, factorisations = 0, analyses = 0
+  end type
+
+  type(feti_problem) :: problem
+  type(feti_info) :: info
+  type(cost) :: spent
+  real(dp) :: u(n), saved_u(n), lambda(rows), saved_lambda(rows), f(n), none(n, 0), depth, step, force, error
+  integer :: body, state, stat, steps, rejected
+  logical :: right, quadratic
+
+  u = 0
+  lambda = 0
+  call make_pattern
+  call assemble(u, f)
+  call feti_problem_create(problem)
+  call feti_set(problem, 'start', 'previous')
+  call feti_body_add(problem, n, body)
+  call feti_body_stiffness(problem, body, ptr, col(:entries), val(:entries), FETI_LOWER)
+  call feti_body_null_space(problem, body, none, FETI_EXACT)   ! the ends are clamped
+
+  call with_fixed_tangent(1.0_dp)
+  call demo_value('small displacements, iterations', real(spent%iterations, dp), '-')
+  call demo_value('  factorisations', real(spent%factorisations, dp), '-')
+  call demo_value('  analyses', real(spent%analyses, dp), '-')
+  right = spent%factorisations == 1 .and. spent%analyses == 1
+
+  u = 0
+  depth = 0
+  step = full_depth
+  steps = 0
+  rejected = 0
+  call feti_body_load(problem, body, u)
+  call give_rows(u, 0.0_dp)
+  do while (depth < full_depth)
+    call feti_state_save(problem, state)
+    saved_u = u
+    saved_lambda = lambda
+    call newton(depth + step, stat, quadratic)
+    if (stat == FETI_OK) then
+      depth = depth + step
+      steps = steps + 1
+      right = right .and. quadratic .and. spent%factorisations == spent%iterations .and. spent%analyses == 0
+      call unbalanced(force, error)
+      print '(a, f6.4, 3(a, i0), a, f0.4, a)', 'step to ', depth, ' mm: ', spent%iterations, ' iterations, ', &
+        spent%factorisations, ' factorisations, ', spent%analyses, ' analyses, force ', force, ' N'
+    else
+      print '(a, f6.4, 3a, i0, a)', 'step to ', depth + step, ' mm: ', feti_status_name(stat), ' after ', &
+        spent%iterations, ' iterations, halved'
+      call feti_state_restore(problem, state)
+      u = saved_u
+      lambda = saved_lambda
+      step = step / 2
+      rejected = rejected + 1
+    end if
+    call feti_state_drop(problem, state)
+  end do
+  call feti_problem_destroy(problem)
+
+  call unbalanced(force, error)
+  call demo_value('load steps', real(steps, dp), '-')
+  call demo_value('rejected load steps', real(rejected, dp), '-')
+  call demo_value('force on the die', force, 'N')
+  call demo_line('08_newton_loop', info, error, right .and. rejected > 0)
+
+contains
+
+  !> Small displacements: K of the unloaded strip stays, the unknown is u itself.
+  subroutine with_fixed_tangent(at_depth)
+    real(dp), intent(in) :: at_depth
+    type(feti_info) :: before
+    real(dp) :: next(n), zero(n), change
+
+    zero = 0
+    change = 1
+    spent = cost()
+    do while (change > 1e-9_dp .and. spent%iterations < 30)
+      before = info
+      call give_rows(zero, at_depth)
+      call feti_solve(problem, info)
+      call feti_displacement(problem, body, next)
+      change = maxval(abs(next - u))
+      u = next
+      call add_cost(before)
+    end do
+  end subroutine
+
+  !> Newton's method at a depth of the die. stat: FETI_OK, or what the library says to a step that is too large, or
+  !> FETI_ITERATIONS. fast: no change was more than its predecessor squared, once that was small.
+  subroutine newton(at_depth, stat, fast)
+    real(dp), intent(in) :: at_depth
+    integer, intent(out) :: stat
+    logical, intent(out) :: fast
+    type(feti_info) :: before
+    real(dp) :: d(n), change, last
+
+    spent = cost()
+    fast = .true.
+    change = 1
+    do while (spent%iterations < most)
+      last = change
+      before = info
+      call assemble(u, f)
+      call add_curvature(at_depth)
+      call feti_body_values(problem, body, val(:entries))
+      call feti_body_load(problem, body, -f)
+      call give_rows(u, at_depth)
+      call feti_solve(problem, info, stat=stat)
+      call add_cost(before)
+      if (stat /= FETI_OK) return
+      call feti_displacement(problem, body, d)
+      call feti_multipliers(problem, FETI_INEQUALITY, lambda)
+      u = u + d
+      change = maxval(abs(d))
+      if (last < 1e-2_dp .and. change > 10 * last**2 + 1e-12_dp) fast = .false.
+      if (change < 1e-6_dp) return
+    end do
+    stat = FETI_ITERATIONS
+  end subroutine
+
+  subroutine add_cost(before)
+    type(feti_info), intent(in) :: before
+
+    spent%iterations = spent%iterations + 1
+    spent%factorisations = spent%factorisations + int(info%factorisations - before%factorisations)
+    spent%analyses = spent%analyses + int(info%analyses - before%analyses)
+  end subroutine
+
+  !> Free node (i, j), 0 < i < nx, among all, 0 for others; its unknowns are 2 node - 1 and 2 node.
+  pure integer function node_at(i, j)
+    integer, intent(in) :: i, j
+
+    node_at = 0
+    if (i > 0 .and. i < nx .and. j >= 0 .and. j <= ny) node_at = (i - 1) * (ny + 1) + j + 1
+  end function
+
+  subroutine make_pattern
+    integer :: i, j, b, d, e, near(5)
+
+    entries = 0
+    do i = 1, nx - 1
+      do j = 0, ny
+        near = [node_at(i - 1, j - 1), node_at(i - 1, j), node_at(i - 1, j + 1), node_at(i, j - 1), node_at(i, j)]
+        do d = 1, 2
+          ptr(2 * near(5) - 2 + d) = entries + 1
+          do b = 1, 5
+            do e = 1, merge(d, 2, b == 5)
+              if (near(b) == 0) cycle
+              entries = entries + 1
+              col(entries) = 2 * near(b) - 2 + e
+            end do
+          end do
+        end do
+      end do
+    end do
+    ptr(n + 1) = entries + 1
+  end subroutine
+
+  subroutine add(row, column, value)
+    integer, intent(in) :: row, column
+    real(dp), intent(in) :: value
+    integer :: at
+
+    do at = ptr(row), ptr(row + 1) - 1
+      if (col(at) == column) val(at) = val(at) + value
+    end do
+  end subroutine
+
+  !> K and internal forces of the bars at x.
+  subroutine assemble(x, internal)
+    real(dp), intent(in) :: x(n)
+    real(dp), intent(out) :: internal(n)
+    integer :: i, j
+
+    val = 0
+    internal = 0
+    do i = 0, nx - 1
+      do j = 0, ny
+        call add_bar(x, internal, i, j, i + 1, j)
+        call add_bar(x, internal, i, j, i + 1, j + 1)
+        call add_bar(x, internal, i, j, i + 1, j - 1)
+        if (i > 0) call add_bar(x, internal, i, j, i, j + 1)
+      end do
+    end do
+  end subroutine
+
+  !> Adds a bar: Green strain e = (l^2 - L^2) / (2 L^2), force density q = EA e / L; the internal forces are q x per end,
+  !> the tangent EA/L^3 x x' + q I, x from end to end in the deformed strip.
+  subroutine add_bar(at, internal, i, j, i2, j2)
+    real(dp), intent(in) :: at(n)
+    real(dp), intent(inout) :: internal(n)
+    integer, intent(in) :: i, j, i2, j2
+    real(dp) :: x(2), length, q, value
+    integer :: a, b, c, d
+
+    a = node_at(i, j)
+    b = node_at(i2, j2)
+    if (j2 < 0 .or. j2 > ny .or. (a == 0 .and. b == 0)) return
+    x = [i2 - i, j2 - j]
+    length = norm2(x)
+    if (b > 0) x = x + at(2 * b - 1:2 * b)
+    if (a > 0) x = x - at(2 * a - 1:2 * a)
+    q = ea * (dot_product(x, x) - length**2) / (2 * length**3)
+    if (a > 0) internal(2 * a - 1:2 * a) = internal(2 * a - 1:2 * a) - q * x
+    if (b > 0) internal(2 * b - 1:2 * b) = internal(2 * b - 1:2 * b) + q * x
+    do c = 1, 2
+      do d = 1, 2
+        value = ea / length**3 * x(c) * x(d) + merge(q, 0.0_dp, c == d)
+        if (a > 0) call add(2 * a - 2 + c, 2 * a - 2 + d, value)
+        if (b > 0) call add(2 * b - 2 + c, 2 * b - 2 + d, value)
+        if (a > 0 .and. b > 0) then
+          call add(2 * a - 2 + c, 2 * b - 2 + d, -value)
+          call add(2 * b - 2 + c, 2 * a - 2 + d, -value)
+        end if
+      end do
+    end do
+  end subroutine
+
+  !> Distance of top node i from the axis of the die, and its direction away from it.
+  subroutine from_axis(at_depth, i, r, normal)
+    real(dp), intent(in) :: at_depth
+    integer, intent(in) :: i
+    real(dp), intent(out) :: r, normal(2)
+    integer :: node
+
+    node = node_at(i, ny)
+    normal = u(2 * node - 1:2 * node) + [i - nx / 2.0_dp, at_depth - radius]
+    r = norm2(normal)
+    normal = normal / r
+  end subroutine
+
+  !> The forces of the rows bend with the normals: -lambda (I - n n') / r.
+  subroutine add_curvature(at_depth)
+    real(dp), intent(in) :: at_depth
+    real(dp) :: normal(2), r
+    integer :: i, c, d, top
+
+    do i = 1, nx - 1
+      call from_axis(at_depth, i, r, normal)
+      top = 2 * node_at(i, ny) - 2
+      do c = 1, 2
+        do d = 1, 2
+          call add(top + c, top + d, -lambda(i) / r * (merge(1, 0, c == d) - normal(c) * normal(d)))
+        end do
+      end do
+    end do
+  end subroutine
+
+  !> A row per top node: it moves no further towards the axis than its distance allows. `from` is the displacement that
+  !> the unknowns are counted from.
+  subroutine give_rows(from, at_depth)
+    real(dp), intent(in) :: from(n), at_depth
+    real(dp) :: normal(2), r, b(2, rows), gap(rows)
+    integer :: i, k, top, dof(2, rows)
+
+    do i = 1, rows
+      call from_axis(at_depth, i, r, normal)
+      top = 2 * node_at(i, ny) - 2
+      dof(:, i) = top + [1, 2]
+      b(:, i) = -normal
+      gap(i) = r - radius - dot_product(normal, u(dof(:, i)) - from(dof(:, i)))
+    end do
+    call feti_rows_clear(problem, FETI_INEQUALITY)
+    call feti_rows_add(problem, FETI_INEQUALITY, [(2 * k + 1, k=0, rows)], [(body, k=1, 2 * rows)], &
+      reshape(dof, [2 * rows]), reshape(b, [2 * rows]), gap)
+  end subroutine
+
+  !> Largest force that bars and die leave unbalanced, and depth of penetration, relative: both zero in the solution.
+  subroutine unbalanced(total, largest)
+    real(dp), intent(out) :: total, largest
+    real(dp) :: normal(2), r, inside, size
+    integer :: i, top
+
+    call assemble(u, f)
+    size = maxval(abs(f))
+    total = 0
+    inside = 0
+    do i = 1, rows
+      call from_axis(depth, i, r, normal)
+      top = 2 * node_at(i, ny)
+      inside = max(inside, radius - r)
+      f(top - 1:top) = f(top - 1:top) - lambda(i) * normal
+      total = total - lambda(i) * normal(2)
+    end do
+    largest = max(maxval(abs(f)) / size, inside / radius)
+  end subroutine
+
+end program
