@@ -1690,6 +1690,41 @@ int32_t feti_dual_apply(struct feti_problem *p, int64_t m, const double *x, doub
  */
 int32_t feti_dual_rhs(struct feti_problem *p, int64_t m, double *d);
 
+/**
+ * Gives new values of a stiffness matrix on the pattern it was given with by
+ * feti_body_stiffness_i32 or _i64.
+ *
+ * The values are copied and checked as the first were. The symbolic analysis is kept, and the next
+ * setup costs a numeric factorisation of this body; values that are bit by bit those of before
+ * cost nothing. Storage is that of the first call. FETI_STATE where the matrix has not been given,
+ * or in another form. After a failure the body keeps the values it had.
+ *
+ * @param[in] p    (scalar) the handle
+ * @param[in] body (scalar) number of the body, from 0
+ * @param[in] nnz  (scalar) number of values, that of the first call
+ * @param[in] val  (nnz) entries of K in the order of the first call, force per length
+ *
+ * Safety: The array has the given shape.
+ */
+int32_t feti_body_values(struct feti_problem *p, int64_t body, int64_t nnz, const double *val);
+
+/**
+ * Gives new values of a dense stiffness matrix.
+ *
+ * The matrix is copied and checked as the first was, in the same storage. Where zeros stay zeros
+ * the symbolic analysis is kept. FETI_STATE where the matrix has not been given, or in another
+ * form. After a failure the body keeps the matrix it had.
+ *
+ * @param[in] p    (scalar) the handle
+ * @param[in] body (scalar) number of the body, from 0
+ * @param[in] n    (scalar) unknowns of the body
+ * @param[in] k    (ld * n) column-major: K_ij is k[i + ld j], force per length
+ * @param[in] ld   (scalar) >= n
+ *
+ * Safety: The array has the given shape.
+ */
+int32_t feti_body_values_dense(struct feti_problem *p, int64_t body, int64_t n, const double *k, int64_t ld);
+
 #ifdef __cplusplus
 }  // extern "C"
 #endif  // __cplusplus

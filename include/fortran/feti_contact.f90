@@ -54,12 +54,14 @@ module feti_contact
     feti_option_at => option_at
   use feti_contact_bodies, only: &
     feti_body_add => body_add, &
-    feti_body_stiffness => body_stiffness, &
     feti_body_null_space => body_null_space, &
     feti_body_null_space_get => body_null_space_get, &
     feti_body_coordinates => body_coordinates, &
     feti_body_fixing_set => body_fixing_set, &
     feti_body_load => body_load
+  use feti_contact_stiffness, only: &
+    feti_body_stiffness => body_stiffness, &
+    feti_body_values => body_values
   use feti_contact_rows, only: &
     feti_rows_add => rows_add, &
     feti_rows_rhs => rows_rhs, &

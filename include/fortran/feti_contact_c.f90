@@ -401,6 +401,8 @@ module feti_contact_c
   public :: feti_body_kplus
   public :: feti_dual_apply
   public :: feti_dual_rhs
+  public :: feti_body_values
+  public :: feti_body_values_dense
 
   public :: feti_progress_fn
   abstract interface
@@ -1589,6 +1591,52 @@ module feti_contact_c
       real(c_double), intent(out) :: d(*)
       integer(c_int32_t) :: feti_dual_rhs
     end function feti_dual_rhs
+
+    !> Gives new values of a stiffness matrix on the pattern it was given with by feti_body_stiffness_i32 or
+    !> _i64.
+    !>
+    !> The values are copied and checked as the first were. The symbolic analysis is kept, and the next setup
+    !> costs a numeric factorisation of this body; values that are bit by bit those of before cost nothing.
+    !> Storage is that of the first call. FETI_STATE where the matrix has not been given, or in another form.
+    !> After a failure the body keeps the values it had.
+    !>
+    !> @param[in] p    (scalar) the handle
+    !> @param[in] body (scalar) number of the body, from 0
+    !> @param[in] nnz  (scalar) number of values, that of the first call
+    !> @param[in] val  (nnz) entries of K in the order of the first call, force per length
+    !>
+    !> Safety: The array has the given shape.
+    function feti_body_values(p, body, nnz, val) bind(C, name="feti_body_values")
+      import
+      type(c_ptr), value :: p
+      integer(c_int64_t), value :: body
+      integer(c_int64_t), value :: nnz
+      real(c_double), intent(in) :: val(*)
+      integer(c_int32_t) :: feti_body_values
+    end function feti_body_values
+
+    !> Gives new values of a dense stiffness matrix.
+    !>
+    !> The matrix is copied and checked as the first was, in the same storage. Where zeros stay zeros the
+    !> symbolic analysis is kept. FETI_STATE where the matrix has not been given, or in another form. After a
+    !> failure the body keeps the matrix it had.
+    !>
+    !> @param[in] p    (scalar) the handle
+    !> @param[in] body (scalar) number of the body, from 0
+    !> @param[in] n    (scalar) unknowns of the body
+    !> @param[in] k    (ld * n) column-major: K_ij is k[i + ld j], force per length
+    !> @param[in] ld   (scalar) >= n
+    !>
+    !> Safety: The array has the given shape.
+    function feti_body_values_dense(p, body, n, k, ld) bind(C, name="feti_body_values_dense")
+      import
+      type(c_ptr), value :: p
+      integer(c_int64_t), value :: body
+      integer(c_int64_t), value :: n
+      real(c_double), intent(in) :: k(*)
+      integer(c_int64_t), value :: ld
+      integer(c_int32_t) :: feti_body_values_dense
+    end function feti_body_values_dense
 
   end interface
 

@@ -5,7 +5,7 @@ use crate::body::Body;
 use crate::linalg::Symmetric;
 
 /// Equal bit by bit: also the sign of zero counts.
-fn same_bits(a: &[f64], b: &[f64]) -> bool {
+pub fn same_bits(a: &[f64], b: &[f64]) -> bool {
     a.len() == b.len() && a.iter().zip(b).all(|(a, b)| a.to_bits() == b.to_bits())
 }
 

@@ -32,15 +32,21 @@ const PER_ROW: usize = 96;
 pub fn from_sparse(input: SparseInput<'_>, tolerance: f64) -> Result<Symmetric> {
     check_order(input.ptr.len() - 1)?;
     let _room = room(input.ptr.len() * PER_ROW, "a stiffness matrix")?;
-    if let Some(lower) = lower_triangle(input, tolerance)? {
-        return checked(lower);
+    let k = match lower_triangle(input, tolerance)? {
+        Some(lower) => lower,
+        None => with_diagonal(lower_of(sorted(input)?, input.storage, tolerance)?)?,
+    };
+    check_diagonal(&k)?;
+    Ok(k)
+}
+
+/// The lower triangle of sorted rows.
+fn lower_of(rows: Csr, storage: Storage, tolerance: f64) -> Result<Csr> {
+    match storage {
+        Storage::Lower => Ok(rows),
+        Storage::Upper => rows.transposed(),
+        Storage::Full => averaged(&rows, tolerance),
     }
-    let rows = sorted(input)?;
-    checked(with_diagonal(match input.storage {
-        Storage::Lower => rows,
-        Storage::Upper => rows.transposed()?,
-        Storage::Full => averaged(&rows, tolerance)?,
-    })?)
 }
 
 /// Checks and converts a column-major n x n matrix with leading dimension `ld`; zeros are not stored.
@@ -68,11 +74,9 @@ pub fn from_dense(n: usize, k: &[f64], ld: usize, storage: Storage, tolerance: f
         let kept = range.map(|j| (j, k[i + ld * j])).filter(|&(j, v)| v != 0.0 || i == j);
         rows.push_row(kept);
     }
-    checked(with_diagonal(match storage {
-        Storage::Full => averaged(&rows, tolerance).map_err(|e| rename(e, "k"))?,
-        Storage::Lower => rows,
-        Storage::Upper => rows.transposed()?,
-    })?)
+    let k = with_diagonal(lower_of(rows, storage, tolerance).map_err(|e| rename(e, "k"))?)?;
+    check_diagonal(&k)?;
+    Ok(k)
 }
 
 /// Columns are kept in 32 bits.
@@ -162,7 +166,8 @@ fn averaged(rows: &Csr, tolerance: f64) -> Result<Csr> {
             let k_ji = mates.next_if(|e| e.0 == column).map_or(0.0, |e| e.1);
             let limit = may_differ(tolerance, root[i], root[column]);
             if (k_ij - k_ji).abs() > limit {
-                return Err(unsymmetric(rows, i, column, k_ij - k_ji, limit));
+                let lonely = |row: usize| rows.row(row).all(|(col, v)| col == row || v == 0.0);
+                return Err(unsymmetric(lonely(i) || lonely(column), (i, column), k_ij - k_ji, limit));
             }
             lower.col.push(column);
             lower.val.push(if k_ij == k_ji { k_ij } else { 0.5 * k_ij + 0.5 * k_ji });
@@ -181,9 +186,9 @@ fn entry(rows: &Csr, i: usize, j: usize) -> f64 {
     rows.row(i).find(|e| e.0 == j).map_or(0.0, |e| e.1)
 }
 
-fn unsymmetric(rows: &Csr, i: usize, j: usize, difference: f64, limit: f64) -> Error {
-    let lonely = |row: usize| rows.row(row).all(|(col, v)| col == row || v == 0.0);
-    let what = if lonely(i) || lonely(j) {
+/// `lonely`: one of the two rows has nothing beside its diagonal.
+pub(super) fn unsymmetric(lonely: bool, (i, j): (usize, usize), difference: f64, limit: f64) -> Error {
+    let what = if lonely {
         "an identity row meets a full column: eliminate supports symmetrically".to_owned()
     } else {
         format!("|K_ij - K_ji| = {:.1e} exceeds {limit:.1e}: the matrix is not symmetric", difference.abs())
@@ -216,10 +221,10 @@ fn with_diagonal(lower: Csr) -> Result<Symmetric> {
 
 /// A dof may have no stiffness at all (a rigid body); a diagonal entry that is negative, or zero in a row that is not,
 /// makes K indefinite.
-fn checked(k: Symmetric) -> Result<Symmetric> {
+pub fn check_diagonal(k: &Symmetric) -> Result<()> {
     let n = k.order();
     if (0..n).all(|i| k.diagonal(i) > 0.0) {
-        return Ok(k);
+        return Ok(());
     }
     let coupled = |i: usize, j: usize, v: f64| i != j && v != 0.0;
     for i in 0..n {
@@ -231,7 +236,7 @@ fn checked(k: Symmetric) -> Result<Symmetric> {
             return Err(Error::new(Kind::Indefinite, what).dof(dof).value(k.diagonal(dof)).limit(0.0));
         }
     }
-    Ok(k)
+    Ok(())
 }
 
 #[cfg(test)]

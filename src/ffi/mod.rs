@@ -8,7 +8,7 @@
 //! | `fpu` | the floating-point environment of the host, saved and restored |
 //! | `error_store` | the last error, per thread and per problem |
 //! | `arrays`, `indices`, `record` | host arrays, index arrays and structs with a `struct_size`, checked |
-//! | `problem`, `options`, `body`, `null_space`, `rows`, `solve`, `phases`, `progress`, `state`, `diagnosis`, `results`, `validation` | the functions |
+//! | `problem`, `options`, `body`, `values`, `null_space`, `rows`, `solve`, `phases`, `progress`, `state`, `diagnosis`, `results`, `validation` | the functions |
 //!
 //! The generator of the header and of the Fortran interfaces reads these files: each exported function has a table of
 //! its arguments, in which the word NULL in the rule says that the pointer may be NULL.
@@ -37,6 +37,7 @@ mod state;
 mod status;
 mod types;
 mod validation;
+mod values;
 
 #[cfg(test)]
 mod tests;
@@ -56,3 +57,4 @@ pub use state::*;
 pub use status::*;
 pub use types::*;
 pub use validation::*;
+pub use values::*;

@@ -19,6 +19,7 @@ mod settings;
 mod setup;
 mod solve;
 mod state;
+mod stiffness;
 mod threads;
 mod undetermined;
 mod watch;

@@ -3,15 +3,14 @@
 use std::sync::Arc;
 
 use crate::body::{
-    from_dense, from_sparse, same_matrix, same_pattern, same_vectors, Body, Coordinates, GeneralizedInverse,
-    Modes, NullSpaceInput, SparseInput, Storage, Symbolic,
+    same_vectors, Body, Coordinates, Form, GeneralizedInverse, Modes, NullSpaceInput, Symbolic,
 };
 use crate::constraints::{RowKind, RowSet, RowsInput};
 use crate::dual::Kept;
 use crate::error::{Error, Result};
 use crate::linalg::memory::{copied, zeros};
 use crate::linalg::vector::first_non_finite;
-use crate::linalg::{Matrix, Symmetric};
+use crate::linalg::Matrix;
 use crate::solver::findings::Findings;
 use crate::solver::phases::Phases;
 use crate::solver::report::{Counts, Report, Work};
@@ -43,6 +42,8 @@ pub struct Problem {
 #[derive(Default)]
 pub(super) struct BodySlot {
     pub body: Body,
+    /// How its matrix was given.
+    pub form: Option<Form>,
     pub inverse: Option<Inverse>,
     /// The last analysis of a matrix with the pattern of this one.
     pub symbolic: Option<Arc<Symbolic>>,
@@ -105,44 +106,6 @@ impl Problem {
     /// Number of unknowns of a body.
     pub fn order(&self, body: usize) -> Result<usize> {
         self.slot(body).map(|slot| slot.body.order)
-    }
-
-    /// `K_p` by rows, n x n.
-    pub fn set_stiffness(&mut self, body: usize, k: SparseInput<'_>) -> Result<()> {
-        self.check_length(body, "n", k.ptr.len() - 1)?;
-        let stiffness = from_sparse(k, self.settings.symmetry_tolerance).map_err(|e| e.body(body))?;
-        self.keep_stiffness(body, stiffness)
-    }
-
-    /// `K_p` column-major with leading dimension `ld`, n x n.
-    pub fn set_stiffness_dense(
-        &mut self,
-        body: usize,
-        n: usize,
-        k: &[f64],
-        ld: usize,
-        storage: Storage,
-    ) -> Result<()> {
-        self.check_length(body, "n", n)?;
-        check_ld("ld", ld, n).map_err(|e| e.body(body))?;
-        let tolerance = self.settings.symmetry_tolerance;
-        let stiffness = from_dense(n, k, ld, storage, tolerance).map_err(|e| e.body(body))?;
-        self.keep_stiffness(body, stiffness)
-    }
-
-    fn keep_stiffness(&mut self, body: usize, stiffness: Symmetric) -> Result<()> {
-        let old = self.slot(body)?.body.stiffness.as_ref();
-        let unchanged = old.is_some_and(|old| same_matrix(old, &stiffness));
-        let analysed = old.is_some_and(|old| same_pattern(old, &stiffness));
-        let slot = self.changed(body, unchanged)?;
-        slot.body.stiffness = Some(Arc::new(stiffness));
-        if !unchanged {
-            slot.keys = None;
-        }
-        if !analysed {
-            slot.symbolic = None;
-        }
-        Ok(())
     }
 
     /// R, n x r column-major with leading dimension `ldr`; r = 0 and exact claims that K is not singular.
@@ -291,7 +254,7 @@ impl Problem {
 
     /// The body, about to get new data: dual and answer no longer hold, nor do its factors, unless the data are those
     /// it has.
-    fn changed(&mut self, body: usize, unchanged: bool) -> Result<&mut BodySlot> {
+    pub(super) fn changed(&mut self, body: usize, unchanged: bool) -> Result<&mut BodySlot> {
         self.forget_dual();
         if !unchanged {
             let inverses = self.bodies.iter_mut().filter_map(|slot| slot.inverse.as_mut());
@@ -359,7 +322,7 @@ fn no_body(body: usize, bodies: usize) -> Error {
     Error::argument("body", format!("there are {bodies} bodies")).body(body).value(body as f64)
 }
 
-fn check_ld(name: &'static str, ld: usize, least: usize) -> Result<()> {
+pub(super) fn check_ld(name: &'static str, ld: usize, least: usize) -> Result<()> {
     if ld >= least {
         return Ok(());
     }

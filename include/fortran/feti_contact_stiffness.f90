@@ -1,0 +1,123 @@
+!> Stiffness matrices of module feti_contact. A host uses feti_contact, not this module.
+!>
+!> Everything is copied; the host's arrays are free after each call. Sizes come from the arrays and are compared with
+!> the n of feti_body_add. Bodies and unknowns count from 1. A refused call leaves the problem as it was.
+!> Arrays that are not contiguous are copied by the compiler. `stat` and `errmsg`: see feti_contact_base.
+module feti_contact_stiffness
+  use, intrinsic :: iso_c_binding, only: c_int32_t, c_int64_t
+  use, intrinsic :: iso_fortran_env, only: int32, int64, real64
+  use feti_contact_base, only: feti_problem, finish, handle_of, refuse
+  use feti_contact_c, only: FETI_COPY, &
+    c_body_stiffness_dense => feti_body_stiffness_dense, &
+    c_body_stiffness_i32 => feti_body_stiffness_i32, &
+    c_body_stiffness_i64 => feti_body_stiffness_i64, &
+    c_body_values => feti_body_values, &
+    c_body_values_dense => feti_body_values_dense
+  implicit none
+  private
+  public :: body_stiffness, body_values
+
+  !> Stiffness of a body, n x n, force / length; a second call replaces the first.
+  !>
+  !> call feti_body_stiffness(p, body, row_ptr, col, val, storage): by rows, row i holds the entries
+  !>   row_ptr(i) .. row_ptr(i+1)-1 of col and val; row_ptr(n+1); all counted from 1, int32 or int64.
+  !> call feti_body_stiffness(p, body, k, storage): the whole matrix k(n,n).
+  !>
+  !> storage: FETI_LOWER or FETI_UPPER (only that triangle is given, of k(n,n) only it is read) or FETI_FULL.
+  !> The columns of the lower triangle are the rows of the upper one: FETI_UPPER.
+  interface body_stiffness
+    module procedure stiffness_int32, stiffness_int64, stiffness_dense
+  end interface
+
+  !> New values of a stiffness matrix on the pattern it has; the next setup costs one numeric factorisation of the body.
+  !>
+  !> call feti_body_values(p, body, val): of a matrix by rows, val as in the first call, in the same order.
+  !> call feti_body_values(p, body, k): of a matrix k(n,n), in the same storage.
+  interface body_values
+    module procedure values_by_rows, values_dense
+  end interface
+
+contains
+
+  subroutine stiffness_int32(p, body, row_ptr, col, val, storage, stat, errmsg)
+    type(feti_problem), intent(in) :: p
+    integer, intent(in) :: body
+    integer(int32), intent(in), contiguous :: row_ptr(:), col(:)
+    real(real64), intent(in), contiguous :: val(:)
+    integer(c_int32_t), intent(in) :: storage
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+
+    if (size(row_ptr) == 0) then
+      call refuse(4, 'feti_body_stiffness: row_ptr is empty, it has one entry more than the body has unknowns', &
+        stat, errmsg)
+    else if (row_ptr(size(row_ptr)) - 1 > min(size(col), size(val))) then
+      call refuse(5, 'feti_body_stiffness: row_ptr points behind the end of col or val', stat, errmsg)
+    else
+      call finish(c_body_stiffness_i32(handle_of(p), int(body - 1, c_int64_t), size(row_ptr, kind=c_int64_t) - 1, &
+        row_ptr, col, val, 1_c_int32_t, storage, FETI_COPY), stat, errmsg)
+    end if
+  end subroutine
+
+  subroutine stiffness_int64(p, body, row_ptr, col, val, storage, stat, errmsg)
+    type(feti_problem), intent(in) :: p
+    integer, intent(in) :: body
+    integer(int64), intent(in), contiguous :: row_ptr(:), col(:)
+    real(real64), intent(in), contiguous :: val(:)
+    integer(c_int32_t), intent(in) :: storage
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+
+    if (size(row_ptr) == 0) then
+      call refuse(4, 'feti_body_stiffness: row_ptr is empty, it has one entry more than the body has unknowns', &
+        stat, errmsg)
+    else if (row_ptr(size(row_ptr)) - 1 > min(size(col, kind=int64), size(val, kind=int64))) then
+      call refuse(5, 'feti_body_stiffness: row_ptr points behind the end of col or val', stat, errmsg)
+    else
+      call finish(c_body_stiffness_i64(handle_of(p), int(body - 1, c_int64_t), size(row_ptr, kind=c_int64_t) - 1, &
+        row_ptr, col, val, 1_c_int32_t, storage, FETI_COPY), stat, errmsg)
+    end if
+  end subroutine
+
+  subroutine stiffness_dense(p, body, k, storage, stat, errmsg)
+    type(feti_problem), intent(in) :: p
+    integer, intent(in) :: body
+    real(real64), intent(in), contiguous :: k(:, :)
+    integer(c_int32_t), intent(in) :: storage
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+
+    if (size(k, 1) /= size(k, 2)) then
+      call refuse(4, 'feti_body_stiffness: k is not square', stat, errmsg)
+    else
+      call finish(c_body_stiffness_dense(handle_of(p), int(body - 1, c_int64_t), size(k, 1, c_int64_t), &
+        k, size(k, 1, c_int64_t), storage, FETI_COPY), stat, errmsg)
+    end if
+  end subroutine
+
+  subroutine values_by_rows(p, body, val, stat, errmsg)
+    type(feti_problem), intent(in) :: p
+    integer, intent(in) :: body
+    real(real64), intent(in), contiguous :: val(:)
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+
+    call finish(c_body_values(handle_of(p), int(body - 1, c_int64_t), size(val, kind=c_int64_t), val), stat, errmsg)
+  end subroutine
+
+  subroutine values_dense(p, body, k, stat, errmsg)
+    type(feti_problem), intent(in) :: p
+    integer, intent(in) :: body
+    real(real64), intent(in), contiguous :: k(:, :)
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+
+    if (size(k, 1) /= size(k, 2)) then
+      call refuse(4, 'feti_body_values: k is not square', stat, errmsg)
+    else
+      call finish(c_body_values_dense(handle_of(p), int(body - 1, c_int64_t), size(k, 1, c_int64_t), k, &
+        size(k, 1, c_int64_t)), stat, errmsg)
+    end if
+  end subroutine
+
+end module

@@ -1,0 +1,126 @@
+//! Stiffness matrices: given once with their pattern, then by their values alone.
+
+use std::sync::Arc;
+
+use crate::body::{
+    check_diagonal, from_dense, from_sparse, same_bits, same_matrix, same_pattern, Form, Places, SparseInput,
+    Storage,
+};
+use crate::error::{Error, Kind, Result};
+use crate::linalg::Symmetric;
+use crate::solver::problem::{check_ld, Problem};
+
+impl Problem {
+    /// `K_p` by rows, n x n.
+    pub fn set_stiffness(&mut self, body: usize, k: SparseInput<'_>) -> Result<()> {
+        self.check_length(body, "n", k.ptr.len() - 1)?;
+        let stiffness = from_sparse(k, self.settings.symmetry_tolerance).map_err(|e| e.body(body))?;
+        let form = Form::Sparse(Places::of(k, &stiffness)?);
+        self.keep_stiffness(body, stiffness, form)
+    }
+
+    /// `K_p` column-major with leading dimension `ld`, n x n.
+    pub fn set_stiffness_dense(
+        &mut self,
+        body: usize,
+        n: usize,
+        k: &[f64],
+        ld: usize,
+        storage: Storage,
+    ) -> Result<()> {
+        self.check_length(body, "n", n)?;
+        check_ld("ld", ld, n).map_err(|e| e.body(body))?;
+        let tolerance = self.settings.symmetry_tolerance;
+        let stiffness = from_dense(n, k, ld, storage, tolerance).map_err(|e| e.body(body))?;
+        self.keep_stiffness(body, stiffness, Form::Dense(storage))
+    }
+
+    fn keep_stiffness(&mut self, body: usize, stiffness: Symmetric, form: Form) -> Result<()> {
+        let old = self.slot(body)?.body.stiffness.as_ref();
+        let unchanged = old.is_some_and(|old| same_matrix(old, &stiffness));
+        let analysed = old.is_some_and(|old| same_pattern(old, &stiffness));
+        let slot = self.changed(body, unchanged)?;
+        slot.body.stiffness = Some(Arc::new(stiffness));
+        slot.form = Some(form);
+        if !unchanged {
+            slot.keys = None;
+        }
+        if !analysed {
+            slot.symbolic = None;
+        }
+        Ok(())
+    }
+
+    /// Number of values that `set_values` wants.
+    pub fn values(&self, body: usize) -> Result<usize> {
+        self.places(body).map(Places::entries)
+    }
+
+    /// New values for the pattern given last, in the order of the host; the analysis is kept.
+    pub fn set_values(&mut self, body: usize, val: &[f64]) -> Result<()> {
+        let places = self.places(body)?;
+        if val.len() != places.entries() {
+            let what = format!("the pattern has {} entries, not {}", places.entries(), val.len());
+            let error = Error::argument("nnz", what).body(body);
+            return Err(error.value(val.len() as f64).limit(places.entries() as f64));
+        }
+        let tolerance = self.settings.symmetry_tolerance;
+        let new = places.values(self.stiffness(body)?, val, tolerance).map_err(|e| e.body(body))?;
+        self.keep_values(body, new)
+    }
+
+    /// A new matrix in the storage of the one given last. What was zero and no longer is, or the other way round, changes
+    /// the pattern, and the analysis with it.
+    pub fn set_values_dense(&mut self, body: usize, n: usize, k: &[f64], ld: usize) -> Result<()> {
+        let storage = self.dense_storage(body)?;
+        self.set_stiffness_dense(body, n, k, ld, storage)
+    }
+
+    /// The storage of a matrix that was given dense.
+    pub fn dense_storage(&self, body: usize) -> Result<Storage> {
+        match self.form(body)? {
+            Form::Dense(storage) => Ok(*storage),
+            Form::Sparse(_) => Err(another_call(body, "by rows", "feti_body_values")),
+        }
+    }
+
+    fn keep_values(&mut self, body: usize, val: Vec<f64>) -> Result<()> {
+        let stiffness = self.bodies[body].body.stiffness.as_mut();
+        let k = Arc::make_mut(stiffness.ok_or_else(|| not_given(body))?);
+        let old = std::mem::replace(&mut k.val, val);
+        if let Err(error) = check_diagonal(k) {
+            k.val = old;
+            return Err(error.body(body));
+        }
+        let unchanged = same_bits(&old, &k.val);
+        let slot = self.changed(body, unchanged)?;
+        slot.keys.take_if(|_| !unchanged);
+        Ok(())
+    }
+
+    fn stiffness(&self, body: usize) -> Result<&Symmetric> {
+        self.slot(body)?.body.stiffness.as_deref().ok_or_else(|| not_given(body))
+    }
+
+    fn form(&self, body: usize) -> Result<&Form> {
+        self.slot(body)?.form.as_ref().ok_or_else(|| not_given(body))
+    }
+
+    fn places(&self, body: usize) -> Result<&Places> {
+        match self.form(body)? {
+            Form::Sparse(places) => Ok(places),
+            Form::Dense(_) => Err(another_call(body, "dense", "feti_body_values_dense")),
+        }
+    }
+}
+
+fn not_given(body: usize) -> Error {
+    let what =
+        "the stiffness matrix has not been given: a call of feti_body_stiffness comes before its values";
+    Error::new(Kind::State, what).body(body)
+}
+
+fn another_call(body: usize, given: &str, call: &str) -> Error {
+    let what = format!("the stiffness matrix was given {given}: its values come by {call}");
+    Error::new(Kind::State, what).body(body)
+}
