@@ -727,91 +727,6 @@ extern "C" {
 int32_t feti_body_add(struct feti_problem *p, int64_t n, int64_t *body);
 
 /**
- * Gives the stiffness matrix K of a body by rows, with 32-bit indices.
- *
- * The matrix is copied; calling again replaces pattern and values. Columns of a row may come in
- * any order, none twice. With FETI_FULL K must be symmetric within option symmetry_tolerance and
- * is averaged. After a failure the body keeps the matrix it had.
- *
- * @param[in] p       (scalar) the handle
- * @param[in] body    (scalar) number of the body, from 0
- * @param[in] n       (scalar) unknowns of the body
- * @param[in] row_ptr (n + 1) row i holds the entries row_ptr[i] to row_ptr[i + 1] - 1; starts with
- *                    `base`
- * @param[in] col     (row_ptr[n] - base) columns, counted from `base`
- * @param[in] val     (row_ptr[n] - base) entries of K, force per length
- * @param[in] base    (scalar) 0 or 1: what `row_ptr` and `col` count from
- * @param[in] storage (scalar) FETI_FULL, FETI_LOWER or FETI_UPPER
- * @param[in] flags   (scalar) FETI_COPY
- *
- * Safety: The arrays have the given shapes.
- */
-int32_t feti_body_stiffness_i32(struct feti_problem *p,
-                                int64_t body,
-                                int64_t n,
-                                const int32_t *row_ptr,
-                                const int32_t *col,
-                                const double *val,
-                                int32_t base,
-                                int32_t storage,
-                                int32_t flags);
-
-/**
- * Gives the stiffness matrix K of a body by rows, with 64-bit indices.
- *
- * The matrix is copied; calling again replaces pattern and values. Columns of a row may come in
- * any order, none twice. With FETI_FULL K must be symmetric within option symmetry_tolerance and
- * is averaged. After a failure the body keeps the matrix it had.
- *
- * @param[in] p       (scalar) the handle
- * @param[in] body    (scalar) number of the body, from 0
- * @param[in] n       (scalar) unknowns of the body
- * @param[in] row_ptr (n + 1) row i holds the entries row_ptr[i] to row_ptr[i + 1] - 1; starts with
- *                    `base`
- * @param[in] col     (row_ptr[n] - base) columns, counted from `base`
- * @param[in] val     (row_ptr[n] - base) entries of K, force per length
- * @param[in] base    (scalar) 0 or 1: what `row_ptr` and `col` count from
- * @param[in] storage (scalar) FETI_FULL, FETI_LOWER or FETI_UPPER
- * @param[in] flags   (scalar) FETI_COPY
- *
- * Safety: The arrays have the given shapes.
- */
-int32_t feti_body_stiffness_i64(struct feti_problem *p,
-                                int64_t body,
-                                int64_t n,
-                                const int64_t *row_ptr,
-                                const int64_t *col,
-                                const double *val,
-                                int32_t base,
-                                int32_t storage,
-                                int32_t flags);
-
-/**
- * Gives the stiffness matrix K of a body as a dense matrix, for boundary elements and condensed
- * bodies.
- *
- * The matrix is copied; calling again replaces it. With FETI_LOWER and FETI_UPPER the other
- * triangle is not read. After a failure the body keeps the matrix it had.
- *
- * @param[in] p       (scalar) the handle
- * @param[in] body    (scalar) number of the body, from 0
- * @param[in] n       (scalar) unknowns of the body
- * @param[in] k       (ld * n) column-major: K_ij is k[i + ld j], force per length
- * @param[in] ld      (scalar) >= n
- * @param[in] storage (scalar) FETI_FULL, FETI_LOWER or FETI_UPPER
- * @param[in] flags   (scalar) FETI_COPY
- *
- * Safety: The array has the given shape.
- */
-int32_t feti_body_stiffness_dense(struct feti_problem *p,
-                                  int64_t body,
-                                  int64_t n,
-                                  const double *k,
-                                  int64_t ld,
-                                  int32_t storage,
-                                  int32_t flags);
-
-/**
  * Gives position and direction of every unknown of a body, from which candidates for its null
  * space are made.
  *
@@ -1636,6 +1551,157 @@ const char *feti_version(void);
 int32_t feti_version_number(void);
 
 /**
+ * Gives the stiffness matrix K of a body by rows, with 32-bit indices.
+ *
+ * The matrix is copied; calling again replaces pattern and values. Columns of a row may come in
+ * any order, none twice. With FETI_FULL K must be symmetric within option symmetry_tolerance and
+ * is averaged. After a failure the body keeps the matrix it had.
+ *
+ * @param[in] p       (scalar) the handle
+ * @param[in] body    (scalar) number of the body, from 0
+ * @param[in] n       (scalar) unknowns of the body
+ * @param[in] row_ptr (n + 1) row i holds the entries row_ptr[i] to row_ptr[i + 1] - 1; starts with
+ *                    `base`
+ * @param[in] col     (row_ptr[n] - base) columns, counted from `base`
+ * @param[in] val     (row_ptr[n] - base) entries of K, force per length
+ * @param[in] base    (scalar) 0 or 1: what `row_ptr` and `col` count from
+ * @param[in] storage (scalar) FETI_FULL, FETI_LOWER or FETI_UPPER
+ * @param[in] flags   (scalar) FETI_COPY
+ *
+ * Safety: The arrays have the given shapes.
+ */
+int32_t feti_body_stiffness_i32(struct feti_problem *p,
+                                int64_t body,
+                                int64_t n,
+                                const int32_t *row_ptr,
+                                const int32_t *col,
+                                const double *val,
+                                int32_t base,
+                                int32_t storage,
+                                int32_t flags);
+
+/**
+ * Gives the stiffness matrix K of a body by rows, with 64-bit indices.
+ *
+ * The matrix is copied; calling again replaces pattern and values. Columns of a row may come in
+ * any order, none twice. With FETI_FULL K must be symmetric within option symmetry_tolerance and
+ * is averaged. After a failure the body keeps the matrix it had.
+ *
+ * @param[in] p       (scalar) the handle
+ * @param[in] body    (scalar) number of the body, from 0
+ * @param[in] n       (scalar) unknowns of the body
+ * @param[in] row_ptr (n + 1) row i holds the entries row_ptr[i] to row_ptr[i + 1] - 1; starts with
+ *                    `base`
+ * @param[in] col     (row_ptr[n] - base) columns, counted from `base`
+ * @param[in] val     (row_ptr[n] - base) entries of K, force per length
+ * @param[in] base    (scalar) 0 or 1: what `row_ptr` and `col` count from
+ * @param[in] storage (scalar) FETI_FULL, FETI_LOWER or FETI_UPPER
+ * @param[in] flags   (scalar) FETI_COPY
+ *
+ * Safety: The arrays have the given shapes.
+ */
+int32_t feti_body_stiffness_i64(struct feti_problem *p,
+                                int64_t body,
+                                int64_t n,
+                                const int64_t *row_ptr,
+                                const int64_t *col,
+                                const double *val,
+                                int32_t base,
+                                int32_t storage,
+                                int32_t flags);
+
+/**
+ * Gives the stiffness matrix K of a body by rows with a diagonal of its own, with 32-bit indices.
+ *
+ * For codes that keep the diagonal apart. The matrix is copied; calling again replaces pattern and
+ * values. Columns of a row may come in any order, none twice. With FETI_FULL K must be symmetric
+ * within option symmetry_tolerance and is averaged. After a failure the body keeps the matrix it
+ * had.
+ *
+ * @param[in] p       (scalar) the handle
+ * @param[in] body    (scalar) number of the body, from 0
+ * @param[in] n       (scalar) unknowns of the body
+ * @param[in] diag    (n) K_ii, force per length
+ * @param[in] row_ptr (n + 1) row i holds the entries row_ptr[i] to row_ptr[i + 1] - 1; starts with
+ *                    `base`
+ * @param[in] col     (row_ptr[n] - base) columns, counted from `base`, none that of its row
+ * @param[in] val     (row_ptr[n] - base) entries of K beside the diagonal, force per length
+ * @param[in] base    (scalar) 0 or 1: what `row_ptr` and `col` count from
+ * @param[in] storage (scalar) FETI_FULL, FETI_LOWER or FETI_UPPER
+ * @param[in] flags   (scalar) FETI_COPY
+ *
+ * Safety: The arrays have the given shapes.
+ */
+int32_t feti_body_stiffness_split_i32(struct feti_problem *p,
+                                      int64_t body,
+                                      int64_t n,
+                                      const double *diag,
+                                      const int32_t *row_ptr,
+                                      const int32_t *col,
+                                      const double *val,
+                                      int32_t base,
+                                      int32_t storage,
+                                      int32_t flags);
+
+/**
+ * Gives the stiffness matrix K of a body by rows with a diagonal of its own, with 64-bit indices.
+ *
+ * For codes that keep the diagonal apart. The matrix is copied; calling again replaces pattern and
+ * values. Columns of a row may come in any order, none twice. With FETI_FULL K must be symmetric
+ * within option symmetry_tolerance and is averaged. After a failure the body keeps the matrix it
+ * had.
+ *
+ * @param[in] p       (scalar) the handle
+ * @param[in] body    (scalar) number of the body, from 0
+ * @param[in] n       (scalar) unknowns of the body
+ * @param[in] diag    (n) K_ii, force per length
+ * @param[in] row_ptr (n + 1) row i holds the entries row_ptr[i] to row_ptr[i + 1] - 1; starts with
+ *                    `base`
+ * @param[in] col     (row_ptr[n] - base) columns, counted from `base`, none that of its row
+ * @param[in] val     (row_ptr[n] - base) entries of K beside the diagonal, force per length
+ * @param[in] base    (scalar) 0 or 1: what `row_ptr` and `col` count from
+ * @param[in] storage (scalar) FETI_FULL, FETI_LOWER or FETI_UPPER
+ * @param[in] flags   (scalar) FETI_COPY
+ *
+ * Safety: The arrays have the given shapes.
+ */
+int32_t feti_body_stiffness_split_i64(struct feti_problem *p,
+                                      int64_t body,
+                                      int64_t n,
+                                      const double *diag,
+                                      const int64_t *row_ptr,
+                                      const int64_t *col,
+                                      const double *val,
+                                      int32_t base,
+                                      int32_t storage,
+                                      int32_t flags);
+
+/**
+ * Gives the stiffness matrix K of a body as a dense matrix, for boundary elements and condensed
+ * bodies.
+ *
+ * The matrix is copied; calling again replaces it. With FETI_LOWER and FETI_UPPER the other
+ * triangle is not read. After a failure the body keeps the matrix it had.
+ *
+ * @param[in] p       (scalar) the handle
+ * @param[in] body    (scalar) number of the body, from 0
+ * @param[in] n       (scalar) unknowns of the body
+ * @param[in] k       (ld * n) column-major: K_ij is k[i + ld j], force per length
+ * @param[in] ld      (scalar) >= n
+ * @param[in] storage (scalar) FETI_FULL, FETI_LOWER or FETI_UPPER
+ * @param[in] flags   (scalar) FETI_COPY
+ *
+ * Safety: The array has the given shape.
+ */
+int32_t feti_body_stiffness_dense(struct feti_problem *p,
+                                  int64_t body,
+                                  int64_t n,
+                                  const double *k,
+                                  int64_t ld,
+                                  int32_t storage,
+                                  int32_t flags);
+
+/**
  * Applies the generalised inverse of a body, `Y = K+ X`.
  *
  * Runs feti_setup when it is due. X and Y may be the same array. After a failure nothing is
@@ -1707,6 +1773,28 @@ int32_t feti_dual_rhs(struct feti_problem *p, int64_t m, double *d);
  * Safety: The array has the given shape.
  */
 int32_t feti_body_values(struct feti_problem *p, int64_t body, int64_t nnz, const double *val);
+
+/**
+ * Gives new values of a stiffness matrix that was given by feti_body_stiffness_split_i32 or _i64.
+ *
+ * As feti_body_values, for a matrix with a diagonal of its own.
+ *
+ * @param[in] p    (scalar) the handle
+ * @param[in] body (scalar) number of the body, from 0
+ * @param[in] n    (scalar) unknowns of the body
+ * @param[in] diag (n) K_ii, force per length
+ * @param[in] nnz  (scalar) number of values beside the diagonal, that of the first call
+ * @param[in] val  (nnz) entries of K beside the diagonal in the order of the first call, force per
+ *                 length
+ *
+ * Safety: The arrays have the given shapes.
+ */
+int32_t feti_body_values_split(struct feti_problem *p,
+                               int64_t body,
+                               int64_t n,
+                               const double *diag,
+                               int64_t nnz,
+                               const double *val);
 
 /**
  * Gives new values of a dense stiffness matrix.

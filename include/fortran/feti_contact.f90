@@ -61,7 +61,9 @@ module feti_contact
     feti_body_load => body_load
   use feti_contact_stiffness, only: &
     feti_body_stiffness => body_stiffness, &
-    feti_body_values => body_values
+    feti_body_stiffness_split => body_stiffness_split, &
+    feti_body_values => body_values, &
+    feti_body_values_split => body_values_split
   use feti_contact_rows, only: &
     feti_rows_add => rows_add, &
     feti_rows_rhs => rows_rhs, &

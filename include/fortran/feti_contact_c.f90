@@ -342,9 +342,6 @@ module feti_contact_c
   end type feti_findings
 
   public :: feti_body_add
-  public :: feti_body_stiffness_i32
-  public :: feti_body_stiffness_i64
-  public :: feti_body_stiffness_dense
   public :: feti_body_coordinates
   public :: feti_body_load
   public :: feti_diagnosis
@@ -398,10 +395,16 @@ module feti_contact_c
   public :: feti_status_text
   public :: feti_version
   public :: feti_version_number
+  public :: feti_body_stiffness_i32
+  public :: feti_body_stiffness_i64
+  public :: feti_body_stiffness_split_i32
+  public :: feti_body_stiffness_split_i64
+  public :: feti_body_stiffness_dense
   public :: feti_body_kplus
   public :: feti_dual_apply
   public :: feti_dual_rhs
   public :: feti_body_values
+  public :: feti_body_values_split
   public :: feti_body_values_dense
 
   public :: feti_progress_fn
@@ -440,97 +443,6 @@ module feti_contact_c
       integer(c_int64_t), intent(out) :: body
       integer(c_int32_t) :: feti_body_add
     end function feti_body_add
-
-    !> Gives the stiffness matrix K of a body by rows, with 32-bit indices.
-    !>
-    !> The matrix is copied; calling again replaces pattern and values. Columns of a row may come in any
-    !> order, none twice. With FETI_FULL K must be symmetric within option symmetry_tolerance and is averaged.
-    !> After a failure the body keeps the matrix it had.
-    !>
-    !> @param[in] p       (scalar) the handle
-    !> @param[in] body    (scalar) number of the body, from 0
-    !> @param[in] n       (scalar) unknowns of the body
-    !> @param[in] row_ptr (n + 1) row i holds the entries row_ptr[i] to row_ptr[i + 1] - 1; starts with `base`
-    !> @param[in] col     (row_ptr[n] - base) columns, counted from `base`
-    !> @param[in] val     (row_ptr[n] - base) entries of K, force per length
-    !> @param[in] base    (scalar) 0 or 1: what `row_ptr` and `col` count from
-    !> @param[in] storage (scalar) FETI_FULL, FETI_LOWER or FETI_UPPER
-    !> @param[in] flags   (scalar) FETI_COPY
-    !>
-    !> Safety: The arrays have the given shapes.
-    function feti_body_stiffness_i32(p, body, n, row_ptr, col, val, base, storage, flags) &
-        bind(C, name="feti_body_stiffness_i32")
-      import
-      type(c_ptr), value :: p
-      integer(c_int64_t), value :: body
-      integer(c_int64_t), value :: n
-      integer(c_int32_t), intent(in) :: row_ptr(*)
-      integer(c_int32_t), intent(in) :: col(*)
-      real(c_double), intent(in) :: val(*)
-      integer(c_int32_t), value :: base
-      integer(c_int32_t), value :: storage
-      integer(c_int32_t), value :: flags
-      integer(c_int32_t) :: feti_body_stiffness_i32
-    end function feti_body_stiffness_i32
-
-    !> Gives the stiffness matrix K of a body by rows, with 64-bit indices.
-    !>
-    !> The matrix is copied; calling again replaces pattern and values. Columns of a row may come in any
-    !> order, none twice. With FETI_FULL K must be symmetric within option symmetry_tolerance and is averaged.
-    !> After a failure the body keeps the matrix it had.
-    !>
-    !> @param[in] p       (scalar) the handle
-    !> @param[in] body    (scalar) number of the body, from 0
-    !> @param[in] n       (scalar) unknowns of the body
-    !> @param[in] row_ptr (n + 1) row i holds the entries row_ptr[i] to row_ptr[i + 1] - 1; starts with `base`
-    !> @param[in] col     (row_ptr[n] - base) columns, counted from `base`
-    !> @param[in] val     (row_ptr[n] - base) entries of K, force per length
-    !> @param[in] base    (scalar) 0 or 1: what `row_ptr` and `col` count from
-    !> @param[in] storage (scalar) FETI_FULL, FETI_LOWER or FETI_UPPER
-    !> @param[in] flags   (scalar) FETI_COPY
-    !>
-    !> Safety: The arrays have the given shapes.
-    function feti_body_stiffness_i64(p, body, n, row_ptr, col, val, base, storage, flags) &
-        bind(C, name="feti_body_stiffness_i64")
-      import
-      type(c_ptr), value :: p
-      integer(c_int64_t), value :: body
-      integer(c_int64_t), value :: n
-      integer(c_int64_t), intent(in) :: row_ptr(*)
-      integer(c_int64_t), intent(in) :: col(*)
-      real(c_double), intent(in) :: val(*)
-      integer(c_int32_t), value :: base
-      integer(c_int32_t), value :: storage
-      integer(c_int32_t), value :: flags
-      integer(c_int32_t) :: feti_body_stiffness_i64
-    end function feti_body_stiffness_i64
-
-    !> Gives the stiffness matrix K of a body as a dense matrix, for boundary elements and condensed bodies.
-    !>
-    !> The matrix is copied; calling again replaces it. With FETI_LOWER and FETI_UPPER the other triangle is
-    !> not read. After a failure the body keeps the matrix it had.
-    !>
-    !> @param[in] p       (scalar) the handle
-    !> @param[in] body    (scalar) number of the body, from 0
-    !> @param[in] n       (scalar) unknowns of the body
-    !> @param[in] k       (ld * n) column-major: K_ij is k[i + ld j], force per length
-    !> @param[in] ld      (scalar) >= n
-    !> @param[in] storage (scalar) FETI_FULL, FETI_LOWER or FETI_UPPER
-    !> @param[in] flags   (scalar) FETI_COPY
-    !>
-    !> Safety: The array has the given shape.
-    function feti_body_stiffness_dense(p, body, n, k, ld, storage, flags) &
-        bind(C, name="feti_body_stiffness_dense")
-      import
-      type(c_ptr), value :: p
-      integer(c_int64_t), value :: body
-      integer(c_int64_t), value :: n
-      real(c_double), intent(in) :: k(*)
-      integer(c_int64_t), value :: ld
-      integer(c_int32_t), value :: storage
-      integer(c_int32_t), value :: flags
-      integer(c_int32_t) :: feti_body_stiffness_dense
-    end function feti_body_stiffness_dense
 
     !> Gives position and direction of every unknown of a body, from which candidates for its null space are
     !> made.
@@ -1528,6 +1440,165 @@ module feti_contact_c
       integer(c_int32_t) :: feti_version_number
     end function feti_version_number
 
+    !> Gives the stiffness matrix K of a body by rows, with 32-bit indices.
+    !>
+    !> The matrix is copied; calling again replaces pattern and values. Columns of a row may come in any
+    !> order, none twice. With FETI_FULL K must be symmetric within option symmetry_tolerance and is averaged.
+    !> After a failure the body keeps the matrix it had.
+    !>
+    !> @param[in] p       (scalar) the handle
+    !> @param[in] body    (scalar) number of the body, from 0
+    !> @param[in] n       (scalar) unknowns of the body
+    !> @param[in] row_ptr (n + 1) row i holds the entries row_ptr[i] to row_ptr[i + 1] - 1; starts with `base`
+    !> @param[in] col     (row_ptr[n] - base) columns, counted from `base`
+    !> @param[in] val     (row_ptr[n] - base) entries of K, force per length
+    !> @param[in] base    (scalar) 0 or 1: what `row_ptr` and `col` count from
+    !> @param[in] storage (scalar) FETI_FULL, FETI_LOWER or FETI_UPPER
+    !> @param[in] flags   (scalar) FETI_COPY
+    !>
+    !> Safety: The arrays have the given shapes.
+    function feti_body_stiffness_i32(p, body, n, row_ptr, col, val, base, storage, flags) &
+        bind(C, name="feti_body_stiffness_i32")
+      import
+      type(c_ptr), value :: p
+      integer(c_int64_t), value :: body
+      integer(c_int64_t), value :: n
+      integer(c_int32_t), intent(in) :: row_ptr(*)
+      integer(c_int32_t), intent(in) :: col(*)
+      real(c_double), intent(in) :: val(*)
+      integer(c_int32_t), value :: base
+      integer(c_int32_t), value :: storage
+      integer(c_int32_t), value :: flags
+      integer(c_int32_t) :: feti_body_stiffness_i32
+    end function feti_body_stiffness_i32
+
+    !> Gives the stiffness matrix K of a body by rows, with 64-bit indices.
+    !>
+    !> The matrix is copied; calling again replaces pattern and values. Columns of a row may come in any
+    !> order, none twice. With FETI_FULL K must be symmetric within option symmetry_tolerance and is averaged.
+    !> After a failure the body keeps the matrix it had.
+    !>
+    !> @param[in] p       (scalar) the handle
+    !> @param[in] body    (scalar) number of the body, from 0
+    !> @param[in] n       (scalar) unknowns of the body
+    !> @param[in] row_ptr (n + 1) row i holds the entries row_ptr[i] to row_ptr[i + 1] - 1; starts with `base`
+    !> @param[in] col     (row_ptr[n] - base) columns, counted from `base`
+    !> @param[in] val     (row_ptr[n] - base) entries of K, force per length
+    !> @param[in] base    (scalar) 0 or 1: what `row_ptr` and `col` count from
+    !> @param[in] storage (scalar) FETI_FULL, FETI_LOWER or FETI_UPPER
+    !> @param[in] flags   (scalar) FETI_COPY
+    !>
+    !> Safety: The arrays have the given shapes.
+    function feti_body_stiffness_i64(p, body, n, row_ptr, col, val, base, storage, flags) &
+        bind(C, name="feti_body_stiffness_i64")
+      import
+      type(c_ptr), value :: p
+      integer(c_int64_t), value :: body
+      integer(c_int64_t), value :: n
+      integer(c_int64_t), intent(in) :: row_ptr(*)
+      integer(c_int64_t), intent(in) :: col(*)
+      real(c_double), intent(in) :: val(*)
+      integer(c_int32_t), value :: base
+      integer(c_int32_t), value :: storage
+      integer(c_int32_t), value :: flags
+      integer(c_int32_t) :: feti_body_stiffness_i64
+    end function feti_body_stiffness_i64
+
+    !> Gives the stiffness matrix K of a body by rows with a diagonal of its own, with 32-bit indices.
+    !>
+    !> For codes that keep the diagonal apart. The matrix is copied; calling again replaces pattern and
+    !> values. Columns of a row may come in any order, none twice. With FETI_FULL K must be symmetric within
+    !> option symmetry_tolerance and is averaged. After a failure the body keeps the matrix it had.
+    !>
+    !> @param[in] p       (scalar) the handle
+    !> @param[in] body    (scalar) number of the body, from 0
+    !> @param[in] n       (scalar) unknowns of the body
+    !> @param[in] diag    (n) K_ii, force per length
+    !> @param[in] row_ptr (n + 1) row i holds the entries row_ptr[i] to row_ptr[i + 1] - 1; starts with `base`
+    !> @param[in] col     (row_ptr[n] - base) columns, counted from `base`, none that of its row
+    !> @param[in] val     (row_ptr[n] - base) entries of K beside the diagonal, force per length
+    !> @param[in] base    (scalar) 0 or 1: what `row_ptr` and `col` count from
+    !> @param[in] storage (scalar) FETI_FULL, FETI_LOWER or FETI_UPPER
+    !> @param[in] flags   (scalar) FETI_COPY
+    !>
+    !> Safety: The arrays have the given shapes.
+    function feti_body_stiffness_split_i32(p, body, n, diag, row_ptr, col, val, base, storage, flags) &
+        bind(C, name="feti_body_stiffness_split_i32")
+      import
+      type(c_ptr), value :: p
+      integer(c_int64_t), value :: body
+      integer(c_int64_t), value :: n
+      real(c_double), intent(in) :: diag(*)
+      integer(c_int32_t), intent(in) :: row_ptr(*)
+      integer(c_int32_t), intent(in) :: col(*)
+      real(c_double), intent(in) :: val(*)
+      integer(c_int32_t), value :: base
+      integer(c_int32_t), value :: storage
+      integer(c_int32_t), value :: flags
+      integer(c_int32_t) :: feti_body_stiffness_split_i32
+    end function feti_body_stiffness_split_i32
+
+    !> Gives the stiffness matrix K of a body by rows with a diagonal of its own, with 64-bit indices.
+    !>
+    !> For codes that keep the diagonal apart. The matrix is copied; calling again replaces pattern and
+    !> values. Columns of a row may come in any order, none twice. With FETI_FULL K must be symmetric within
+    !> option symmetry_tolerance and is averaged. After a failure the body keeps the matrix it had.
+    !>
+    !> @param[in] p       (scalar) the handle
+    !> @param[in] body    (scalar) number of the body, from 0
+    !> @param[in] n       (scalar) unknowns of the body
+    !> @param[in] diag    (n) K_ii, force per length
+    !> @param[in] row_ptr (n + 1) row i holds the entries row_ptr[i] to row_ptr[i + 1] - 1; starts with `base`
+    !> @param[in] col     (row_ptr[n] - base) columns, counted from `base`, none that of its row
+    !> @param[in] val     (row_ptr[n] - base) entries of K beside the diagonal, force per length
+    !> @param[in] base    (scalar) 0 or 1: what `row_ptr` and `col` count from
+    !> @param[in] storage (scalar) FETI_FULL, FETI_LOWER or FETI_UPPER
+    !> @param[in] flags   (scalar) FETI_COPY
+    !>
+    !> Safety: The arrays have the given shapes.
+    function feti_body_stiffness_split_i64(p, body, n, diag, row_ptr, col, val, base, storage, flags) &
+        bind(C, name="feti_body_stiffness_split_i64")
+      import
+      type(c_ptr), value :: p
+      integer(c_int64_t), value :: body
+      integer(c_int64_t), value :: n
+      real(c_double), intent(in) :: diag(*)
+      integer(c_int64_t), intent(in) :: row_ptr(*)
+      integer(c_int64_t), intent(in) :: col(*)
+      real(c_double), intent(in) :: val(*)
+      integer(c_int32_t), value :: base
+      integer(c_int32_t), value :: storage
+      integer(c_int32_t), value :: flags
+      integer(c_int32_t) :: feti_body_stiffness_split_i64
+    end function feti_body_stiffness_split_i64
+
+    !> Gives the stiffness matrix K of a body as a dense matrix, for boundary elements and condensed bodies.
+    !>
+    !> The matrix is copied; calling again replaces it. With FETI_LOWER and FETI_UPPER the other triangle is
+    !> not read. After a failure the body keeps the matrix it had.
+    !>
+    !> @param[in] p       (scalar) the handle
+    !> @param[in] body    (scalar) number of the body, from 0
+    !> @param[in] n       (scalar) unknowns of the body
+    !> @param[in] k       (ld * n) column-major: K_ij is k[i + ld j], force per length
+    !> @param[in] ld      (scalar) >= n
+    !> @param[in] storage (scalar) FETI_FULL, FETI_LOWER or FETI_UPPER
+    !> @param[in] flags   (scalar) FETI_COPY
+    !>
+    !> Safety: The array has the given shape.
+    function feti_body_stiffness_dense(p, body, n, k, ld, storage, flags) &
+        bind(C, name="feti_body_stiffness_dense")
+      import
+      type(c_ptr), value :: p
+      integer(c_int64_t), value :: body
+      integer(c_int64_t), value :: n
+      real(c_double), intent(in) :: k(*)
+      integer(c_int64_t), value :: ld
+      integer(c_int32_t), value :: storage
+      integer(c_int32_t), value :: flags
+      integer(c_int32_t) :: feti_body_stiffness_dense
+    end function feti_body_stiffness_dense
+
     !> Applies the generalised inverse of a body, `Y = K+ X`.
     !>
     !> Runs feti_setup when it is due. X and Y may be the same array. After a failure nothing is written.
@@ -1614,6 +1685,29 @@ module feti_contact_c
       real(c_double), intent(in) :: val(*)
       integer(c_int32_t) :: feti_body_values
     end function feti_body_values
+
+    !> Gives new values of a stiffness matrix that was given by feti_body_stiffness_split_i32 or _i64.
+    !>
+    !> As feti_body_values, for a matrix with a diagonal of its own.
+    !>
+    !> @param[in] p    (scalar) the handle
+    !> @param[in] body (scalar) number of the body, from 0
+    !> @param[in] n    (scalar) unknowns of the body
+    !> @param[in] diag (n) K_ii, force per length
+    !> @param[in] nnz  (scalar) number of values beside the diagonal, that of the first call
+    !> @param[in] val  (nnz) entries of K beside the diagonal in the order of the first call, force per length
+    !>
+    !> Safety: The arrays have the given shapes.
+    function feti_body_values_split(p, body, n, diag, nnz, val) bind(C, name="feti_body_values_split")
+      import
+      type(c_ptr), value :: p
+      integer(c_int64_t), value :: body
+      integer(c_int64_t), value :: n
+      real(c_double), intent(in) :: diag(*)
+      integer(c_int64_t), value :: nnz
+      real(c_double), intent(in) :: val(*)
+      integer(c_int32_t) :: feti_body_values_split
+    end function feti_body_values_split
 
     !> Gives new values of a dense stiffness matrix.
     !>

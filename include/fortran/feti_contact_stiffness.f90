@@ -11,11 +11,14 @@ module feti_contact_stiffness
     c_body_stiffness_dense => feti_body_stiffness_dense, &
     c_body_stiffness_i32 => feti_body_stiffness_i32, &
     c_body_stiffness_i64 => feti_body_stiffness_i64, &
+    c_body_stiffness_split_i32 => feti_body_stiffness_split_i32, &
+    c_body_stiffness_split_i64 => feti_body_stiffness_split_i64, &
     c_body_values => feti_body_values, &
-    c_body_values_dense => feti_body_values_dense
+    c_body_values_dense => feti_body_values_dense, &
+    c_body_values_split => feti_body_values_split
   implicit none
   private
-  public :: body_stiffness, body_values
+  public :: body_stiffness, body_stiffness_split, body_values, body_values_split
 
   !> Stiffness of a body, n x n, force / length; a second call replaces the first.
   !>
@@ -27,6 +30,14 @@ module feti_contact_stiffness
   !> The columns of the lower triangle are the rows of the upper one: FETI_UPPER.
   interface body_stiffness
     module procedure stiffness_int32, stiffness_int64, stiffness_dense
+  end interface
+
+  !> Stiffness of a body whose diagonal diag(n) is an array of its own; row_ptr, col and val as for feti_body_stiffness,
+  !> without entries on the diagonal.
+  !>
+  !> call feti_body_stiffness_split(p, body, diag, row_ptr, col, val, storage): row_ptr and col int32 or int64.
+  interface body_stiffness_split
+    module procedure split_int32, split_int64
   end interface
 
   !> New values of a stiffness matrix on the pattern it has; the next setup costs one numeric factorisation of the body.
@@ -95,6 +106,46 @@ contains
     end if
   end subroutine
 
+  subroutine split_int32(p, body, diag, row_ptr, col, val, storage, stat, errmsg)
+    type(feti_problem), intent(in) :: p
+    integer, intent(in) :: body
+    real(real64), intent(in), contiguous :: diag(:)
+    integer(int32), intent(in), contiguous :: row_ptr(:), col(:)
+    real(real64), intent(in), contiguous :: val(:)
+    integer(c_int32_t), intent(in) :: storage
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+
+    if (size(row_ptr) /= size(diag) + 1) then
+      call refuse(5, 'feti_body_stiffness_split: row_ptr has not one entry more than diag', stat, errmsg)
+    else if (row_ptr(size(row_ptr)) - 1 > min(size(col, kind=int64), size(val, kind=int64))) then
+      call refuse(6, 'feti_body_stiffness_split: row_ptr points behind the end of col or val', stat, errmsg)
+    else
+      call finish(c_body_stiffness_split_i32(handle_of(p), int(body - 1, c_int64_t), size(diag, kind=c_int64_t), &
+        diag, row_ptr, col, val, 1_c_int32_t, storage, FETI_COPY), stat, errmsg)
+    end if
+  end subroutine
+
+  subroutine split_int64(p, body, diag, row_ptr, col, val, storage, stat, errmsg)
+    type(feti_problem), intent(in) :: p
+    integer, intent(in) :: body
+    real(real64), intent(in), contiguous :: diag(:)
+    integer(int64), intent(in), contiguous :: row_ptr(:), col(:)
+    real(real64), intent(in), contiguous :: val(:)
+    integer(c_int32_t), intent(in) :: storage
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+
+    if (size(row_ptr) /= size(diag) + 1) then
+      call refuse(5, 'feti_body_stiffness_split: row_ptr has not one entry more than diag', stat, errmsg)
+    else if (row_ptr(size(row_ptr)) - 1 > min(size(col, kind=int64), size(val, kind=int64))) then
+      call refuse(6, 'feti_body_stiffness_split: row_ptr points behind the end of col or val', stat, errmsg)
+    else
+      call finish(c_body_stiffness_split_i64(handle_of(p), int(body - 1, c_int64_t), size(diag, kind=c_int64_t), &
+        diag, row_ptr, col, val, 1_c_int32_t, storage, FETI_COPY), stat, errmsg)
+    end if
+  end subroutine
+
   subroutine values_by_rows(p, body, val, stat, errmsg)
     type(feti_problem), intent(in) :: p
     integer, intent(in) :: body
@@ -118,6 +169,18 @@ contains
       call finish(c_body_values_dense(handle_of(p), int(body - 1, c_int64_t), size(k, 1, c_int64_t), k, &
         size(k, 1, c_int64_t)), stat, errmsg)
     end if
+  end subroutine
+
+  !> New values of a matrix with a diagonal of its own: diag(n), val as in the first call, in the same order.
+  subroutine body_values_split(p, body, diag, val, stat, errmsg)
+    type(feti_problem), intent(in) :: p
+    integer, intent(in) :: body
+    real(real64), intent(in), contiguous :: diag(:), val(:)
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+
+    call finish(c_body_values_split(handle_of(p), int(body - 1, c_int64_t), size(diag, kind=c_int64_t), diag, &
+      size(val, kind=c_int64_t), val), stat, errmsg)
   end subroutine
 
 end module

@@ -18,7 +18,7 @@ pub use boundary::{dirichlet, dirichlet_bytes, lumped};
 pub use generalized_inverse::{GeneralizedInverse, Plan};
 pub use null_space::{Modes, NullSpaceInput};
 pub use rigid_modes::Coordinates;
-pub use stiffness::{check_diagonal, from_dense, from_sparse, SparseInput, Storage};
+pub use stiffness::{check_diagonal, from_dense, from_sparse, from_split, SparseInput, Storage};
 pub use symbolic::{Layout, Made, Symbolic};
 pub use values::{Form, Places};
 

@@ -30,11 +30,20 @@ const PER_ROW: usize = 96;
 /// Checks and converts a sparse matrix. Full storage is accepted when
 /// `|K_ij - K_ji| <= tolerance (K_ii K_jj)^1/2`, and averaged.
 pub fn from_sparse(input: SparseInput<'_>, tolerance: f64) -> Result<Symmetric> {
+    from_rows(input, None, tolerance)
+}
+
+/// The same for a matrix whose diagonal `diag`, length n, is an array of its own; `input` has what lies beside it.
+pub fn from_split(input: SparseInput<'_>, diag: &[f64], tolerance: f64) -> Result<Symmetric> {
+    from_rows(input, Some(diag), tolerance)
+}
+
+fn from_rows(input: SparseInput<'_>, diag: Option<&[f64]>, tolerance: f64) -> Result<Symmetric> {
     check_order(input.ptr.len() - 1)?;
     let _room = room(input.ptr.len() * PER_ROW, "a stiffness matrix")?;
-    let k = match lower_triangle(input, tolerance)? {
+    let k = match lower_triangle(input, diag, tolerance)? {
         Some(lower) => lower,
-        None => with_diagonal(lower_of(sorted(input)?, input.storage, tolerance)?)?,
+        None => with_diagonal(lower_of(sorted(input, diag)?, input.storage, tolerance)?)?,
     };
     check_diagonal(&k)?;
     Ok(k)
@@ -104,30 +113,19 @@ fn rename(mut error: Error, argument: &'static str) -> Error {
 }
 
 /// The rows with ascending columns; refuses columns out of range, repeated entries and values not finite.
-fn sorted(input: SparseInput<'_>) -> Result<Csr> {
+fn sorted(input: SparseInput<'_>, diag: Option<&[f64]>) -> Result<Csr> {
     let n = input.ptr.len() - 1;
-    if let Some(at) = first_non_finite(input.val) {
-        let row = input.ptr.partition_point(|&p| p <= at) - 1;
-        return Err(Error::argument("val", "the entry is not a finite number").row(row).entry(at));
-    }
+    check_finite(diag.unwrap_or(&[]), "diag", |at| at)?;
+    check_finite(input.val, "val", |at| input.ptr.partition_point(|&p| p <= at) - 1)?;
     let mut rows = Csr::empty(n);
-    reserve(&mut rows, input.col.len())?;
+    reserve(&mut rows, input.col.len() + diag.map_or(0, <[f64]>::len))?;
     let mut row = Vec::new();
     for i in 0..n {
         row.clear();
         for at in input.ptr[i]..input.ptr[i + 1] {
-            let col = usize::try_from(input.col[at]).ok().filter(|&col| col < n).ok_or_else(|| {
-                Error::argument("col", format!("the column is outside the {n} unknowns of the body"))
-                    .row(i)
-                    .entry(at)
-                    .value(input.col[at] as f64)
-            })?;
-            if let Some(side) = outside(input.storage, i, col) {
-                let what = format!("the column lies {side}");
-                return Err(Error::argument("col", what).row(i).dof(col).entry(at));
-            }
-            row.push((col, input.val[at], at));
+            row.push((column(&input, diag.is_some(), i, at)?, input.val[at], at));
         }
+        row.extend(diag.map(|diag| (i, diag[i], 0)));
         row.sort_unstable_by_key(|entry| entry.0);
         if let Some(pair) = row.windows(2).find(|pair| pair[0].0 == pair[1].0) {
             let at = pair[0].2.max(pair[1].2);
@@ -136,6 +134,37 @@ fn sorted(input: SparseInput<'_>) -> Result<Csr> {
         rows.push_row(row.iter().map(|entry| (entry.0, entry.1)));
     }
     Ok(rows)
+}
+
+/// `row_of` tells the row of an entry.
+pub(super) fn check_finite(
+    values: &[f64],
+    name: &'static str,
+    row_of: impl FnOnce(usize) -> usize,
+) -> Result<()> {
+    match first_non_finite(values) {
+        None => Ok(()),
+        Some(at) => Err(Error::argument(name, "the entry is not a finite number").row(row_of(at)).entry(at)),
+    }
+}
+
+/// The column of entry `at`, which is in row `i`; `split`: none lies on the diagonal.
+fn column(input: &SparseInput<'_>, split: bool, i: usize, at: usize) -> Result<usize> {
+    let n = input.ptr.len() - 1;
+    let col = usize::try_from(input.col[at]).ok().filter(|&col| col < n).ok_or_else(|| {
+        Error::argument("col", format!("the column is outside the {n} unknowns of the body"))
+            .row(i)
+            .entry(at)
+            .value(input.col[at] as f64)
+    })?;
+    let refused = |what: String| Err(Error::argument("col", what).row(i).dof(col).entry(at));
+    match outside(input.storage, i, col) {
+        Some(side) => refused(format!("the column lies {side}")),
+        None if split && col == i => {
+            refused("the entry lies on the diagonal, which is an array of its own".to_owned())
+        }
+        None => Ok(col),
+    }
 }
 
 /// On which wrong side of the diagonal an entry lies.
@@ -199,11 +228,11 @@ pub(super) fn unsymmetric(lonely: bool, (i, j): (usize, usize), difference: f64,
 /// The lower triangle with every diagonal entry stored.
 fn with_diagonal(lower: Csr) -> Result<Symmetric> {
     let n = lower.rows();
-    let mut k = Symmetric {
-        ptr: reserved(n + 1, "a stiffness matrix")?,
-        col: reserved(lower.col.len() + n, "a stiffness matrix")?,
-        val: reserved(lower.col.len() + n, "a stiffness matrix")?,
-    };
+    let mut k = Symmetric::new(
+        reserved(n + 1, "a stiffness matrix")?,
+        reserved(lower.col.len() + n, "a stiffness matrix")?,
+        reserved(lower.col.len() + n, "a stiffness matrix")?,
+    );
     k.ptr.push(0);
     for i in 0..n {
         for (j, v) in lower.row(i) {
@@ -251,7 +280,7 @@ mod tests {
 
     #[test]
     fn the_three_storages_give_the_same_matrix() {
-        let expected = Symmetric { ptr: vec![0, 1, 3], col: vec![0, 0, 1], val: vec![2.0, -1.0, 3.0] };
+        let expected = Symmetric::new(vec![0, 1, 3], vec![0, 0, 1], vec![2.0, -1.0, 3.0]);
         assert_eq!(full(&[-1.0, 2.0, -1.0, 3.0]).unwrap(), expected);
         let lower =
             SparseInput { ptr: &[0, 1, 3], col: &[0, 1, 0], val: &[2.0, 3.0, -1.0], storage: Storage::Lower };

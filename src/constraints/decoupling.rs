@@ -119,7 +119,7 @@ impl Decoupling {
 fn clusters(given: UnitRows) -> Result<Vec<Vec<usize>>> {
     let mut last = reserved(given.matrix.cols, WHAT)?;
     last.resize(given.matrix.cols, None);
-    let mut joined = Symmetric { ptr: vec![0], col: Vec::new(), val: Vec::new() };
+    let mut joined = Symmetric::new(vec![0], Vec::new(), Vec::new());
     let is_rigid = |i: &usize| given.compliance[*i] == 0.0;
     for i in 0..given.equalities {
         let mut neighbours = vec![i];

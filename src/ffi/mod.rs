@@ -8,7 +8,7 @@
 //! | `fpu` | the floating-point environment of the host, saved and restored |
 //! | `error_store` | the last error, per thread and per problem |
 //! | `arrays`, `indices`, `record` | host arrays, index arrays and structs with a `struct_size`, checked |
-//! | `problem`, `options`, `body`, `values`, `null_space`, `rows`, `solve`, `phases`, `progress`, `state`, `diagnosis`, `results`, `validation` | the functions |
+//! | `problem`, `options`, `body`, `stiffness`, `values`, `null_space`, `rows`, `solve`, `phases`, `progress`, `state`, `diagnosis`, `results`, `validation` | the functions |
 //!
 //! The generator of the header and of the Fortran interfaces reads these files: each exported function has a table of
 //! its arguments, in which the word NULL in the rule says that the pointer may be NULL.
@@ -35,6 +35,7 @@ mod rows;
 mod solve;
 mod state;
 mod status;
+mod stiffness;
 mod types;
 mod validation;
 mod values;
@@ -55,6 +56,7 @@ pub use rows::*;
 pub use solve::*;
 pub use state::*;
 pub use status::*;
+pub use stiffness::*;
 pub use types::*;
 pub use validation::*;
 pub use values::*;

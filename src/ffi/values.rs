@@ -24,9 +24,43 @@ use super::types::feti_problem;
 pub unsafe extern "C" fn feti_body_values(p: *mut feti_problem, body: i64, nnz: i64, val: *const f64) -> i32 {
     enter(p, call!(feti_body_values(p, body, nnz, val)), |problem| {
         let body = id(body, "body")?;
-        let nnz = same(nnz, problem.values(body)?, "nnz", ENTRIES).map_err(|error| error.body(body))?;
+        let nnz =
+            same(nnz, problem.values(body, false)?, "nnz", ENTRIES).map_err(|error| error.body(body))?;
         // SAFETY: nnz numbers by the caller's word.
         problem.set_values(body, unsafe { input(val, nnz, "val") }?)
+    })
+}
+
+/// Gives new values of a stiffness matrix that was given by feti_body_stiffness_split_i32 or _i64.
+///
+/// As feti_body_values, for a matrix with a diagonal of its own.
+///
+/// | argument | in/out | shape | rule |
+/// |---|---|---|---|
+/// | `p` | in | scalar | the handle |
+/// | `body` | in | scalar | number of the body, from 0 |
+/// | `n` | in | scalar | unknowns of the body |
+/// | `diag` | in | n | K_ii, force per length |
+/// | `nnz` | in | scalar | number of values beside the diagonal, that of the first call |
+/// | `val` | in | nnz | entries of K beside the diagonal in the order of the first call, force per length |
+///
+/// # Safety
+/// The arrays have the given shapes.
+#[no_mangle]
+pub unsafe extern "C" fn feti_body_values_split(
+    p: *mut feti_problem,
+    body: i64,
+    n: i64,
+    diag: *const f64,
+    nnz: i64,
+    val: *const f64,
+) -> i32 {
+    enter(p, call!(feti_body_values_split(p, body, n, diag, nnz, val)), |problem| {
+        let (body, n) = body_of_order(problem, body, n)?;
+        let nnz = same(nnz, problem.values(body, true)?, "nnz", ENTRIES).map_err(|error| error.body(body))?;
+        // SAFETY: n and nnz numbers by the caller's word.
+        let (diag, val) = unsafe { (input(diag, n, "diag")?, input(val, nnz, "val")?) };
+        problem.set_values_split(body, diag, val)
     })
 }
 

@@ -47,7 +47,7 @@ impl Gram {
         }
         let (ptr, col) =
             (copied(&self.pattern.ptr, "a Gram matrix")?, copied(&self.pattern.col, "a Gram matrix")?);
-        Ok(Symmetric { ptr, col, val })
+        Ok(Symmetric::new(ptr, col, val))
     }
 }
 
@@ -71,7 +71,7 @@ fn pattern(rows: &Csr) -> Result<Symmetric> {
         ptr.push(col.len());
     }
     let val = zeros(col.len(), "a Gram matrix")?;
-    Ok(Symmetric { ptr, col, val })
+    Ok(Symmetric::new(ptr, col, val))
 }
 
 #[cfg(test)]

@@ -20,6 +20,10 @@ pub struct Symmetric {
 }
 
 impl Symmetric {
+    pub fn new(ptr: Vec<usize>, col: Vec<u32>, val: Vec<f64>) -> Self {
+        Self { ptr, col, val }
+    }
+
     pub fn order(&self) -> usize {
         self.ptr.len() - 1
     }
@@ -233,7 +237,7 @@ mod tests {
 
     /// [[2, -1, 0], [-1, 2, -1], [0, -1, 1]]
     fn chain() -> Symmetric {
-        Symmetric { ptr: vec![0, 1, 3, 5], col: vec![0, 0, 1, 1, 2], val: vec![2.0, -1.0, 2.0, -1.0, 1.0] }
+        Symmetric::new(vec![0, 1, 3, 5], vec![0, 0, 1, 1, 2], vec![2.0, -1.0, 2.0, -1.0, 1.0])
     }
 
     #[test]

@@ -3,8 +3,8 @@
 use std::sync::Arc;
 
 use crate::body::{
-    check_diagonal, from_dense, from_sparse, same_bits, same_matrix, same_pattern, Form, Places, SparseInput,
-    Storage,
+    check_diagonal, from_dense, from_sparse, from_split, same_bits, same_matrix, same_pattern, Form, Places,
+    SparseInput, Storage,
 };
 use crate::error::{Error, Kind, Result};
 use crate::linalg::Symmetric;
@@ -15,7 +15,17 @@ impl Problem {
     pub fn set_stiffness(&mut self, body: usize, k: SparseInput<'_>) -> Result<()> {
         self.check_length(body, "n", k.ptr.len() - 1)?;
         let stiffness = from_sparse(k, self.settings.symmetry_tolerance).map_err(|e| e.body(body))?;
-        let form = Form::Sparse(Places::of(k, &stiffness)?);
+        let form = Form::Sparse(Places::of(k, false, &stiffness)?);
+        self.keep_stiffness(body, stiffness, form)
+    }
+
+    /// `K_p` by rows without its diagonal `diag`, length n.
+    pub fn set_stiffness_split(&mut self, body: usize, diag: &[f64], k: SparseInput<'_>) -> Result<()> {
+        self.check_length(body, "n", k.ptr.len() - 1)?;
+        self.check_length(body, "n", diag.len())?;
+        let tolerance = self.settings.symmetry_tolerance;
+        let stiffness = from_split(k, diag, tolerance).map_err(|e| e.body(body))?;
+        let form = Form::Sparse(Places::of(k, true, &stiffness)?);
         self.keep_stiffness(body, stiffness, form)
     }
 
@@ -51,22 +61,35 @@ impl Problem {
         Ok(())
     }
 
-    /// Number of values that `set_values` wants.
-    pub fn values(&self, body: usize) -> Result<usize> {
-        self.places(body).map(Places::entries)
+    /// Number of values of a matrix by rows, those of a diagonal of its own (`split`) not counted.
+    pub fn values(&self, body: usize, split: bool) -> Result<usize> {
+        self.places(body, split).map(Places::entries)
     }
 
     /// New values for the pattern given last, in the order of the host; the analysis is kept.
     pub fn set_values(&mut self, body: usize, val: &[f64]) -> Result<()> {
-        let places = self.places(body)?;
+        let new = self.new_values(body, None, val).map_err(|e| e.body(body))?;
+        self.keep_values(body, new)
+    }
+
+    /// The same for a matrix without its diagonal `diag`, length n.
+    pub fn set_values_split(&mut self, body: usize, diag: &[f64], val: &[f64]) -> Result<()> {
+        let new = self.new_values(body, Some(diag), val).map_err(|e| e.body(body))?;
+        self.keep_values(body, new)
+    }
+
+    fn new_values(&self, body: usize, diag: Option<&[f64]>, val: &[f64]) -> Result<Vec<f64>> {
+        let places = self.places(body, diag.is_some())?;
+        let diag = diag.unwrap_or(&[]);
+        if places.is_split() {
+            self.check_length(body, "n", diag.len())?;
+        }
         if val.len() != places.entries() {
             let what = format!("the pattern has {} entries, not {}", places.entries(), val.len());
-            let error = Error::argument("nnz", what).body(body);
+            let error = Error::argument("nnz", what);
             return Err(error.value(val.len() as f64).limit(places.entries() as f64));
         }
-        let tolerance = self.settings.symmetry_tolerance;
-        let new = places.values(self.stiffness(body)?, val, tolerance).map_err(|e| e.body(body))?;
-        self.keep_values(body, new)
+        places.values(self.stiffness(body)?, diag, val, self.settings.symmetry_tolerance)
     }
 
     /// A new matrix in the storage of the one given last. What was zero and no longer is, or the other way round, changes
@@ -80,7 +103,7 @@ impl Problem {
     pub fn dense_storage(&self, body: usize) -> Result<Storage> {
         match self.form(body)? {
             Form::Dense(storage) => Ok(*storage),
-            Form::Sparse(_) => Err(another_call(body, "by rows", "feti_body_values")),
+            form => Err(another_call(body, form)),
         }
     }
 
@@ -106,10 +129,10 @@ impl Problem {
         self.slot(body)?.form.as_ref().ok_or_else(|| not_given(body))
     }
 
-    fn places(&self, body: usize) -> Result<&Places> {
+    fn places(&self, body: usize, split: bool) -> Result<&Places> {
         match self.form(body)? {
-            Form::Sparse(places) => Ok(places),
-            Form::Dense(_) => Err(another_call(body, "dense", "feti_body_values_dense")),
+            Form::Sparse(places) if places.is_split() == split => Ok(places),
+            form => Err(another_call(body, form)),
         }
     }
 }
@@ -120,7 +143,12 @@ fn not_given(body: usize) -> Error {
     Error::new(Kind::State, what).body(body)
 }
 
-fn another_call(body: usize, given: &str, call: &str) -> Error {
+fn another_call(body: usize, form: &Form) -> Error {
+    let (given, call) = match form {
+        Form::Dense(_) => ("dense", "feti_body_values_dense"),
+        Form::Sparse(places) if places.is_split() => ("with a diagonal of its own", "feti_body_values_split"),
+        Form::Sparse(_) => ("by rows", "feti_body_values"),
+    };
     let what = format!("the stiffness matrix was given {given}: its values come by {call}");
     Error::new(Kind::State, what).body(body)
 }

@@ -4,7 +4,7 @@ use std::ptr::{null, null_mut};
 
 use super::super::*;
 
-pub const SOURCES: [&str; 14] = [
+pub const SOURCES: [&str; 15] = [
     include_str!("../body.rs"),
     include_str!("../diagnosis.rs"),
     include_str!("../error_store.rs"),
@@ -17,6 +17,7 @@ pub const SOURCES: [&str; 14] = [
     include_str!("../rows.rs"),
     include_str!("../solve.rs"),
     include_str!("../state.rs"),
+    include_str!("../stiffness.rs"),
     include_str!("../validation.rs"),
     include_str!("../values.rs"),
 ];
@@ -42,7 +43,10 @@ pub fn statuses(p: *mut feti_problem) -> Vec<(&'static str, i32)> {
         feti_body_stiffness_i32(0, 0, null(), null(), null(), 0, 0, 0);
         feti_body_stiffness_i64(0, 0, null(), null(), null(), 0, 0, 0);
         feti_body_stiffness_dense(0, 0, null(), 0, 0, 0);
+        feti_body_stiffness_split_i32(0, 0, null(), null(), null(), null(), 0, 0, 0);
+        feti_body_stiffness_split_i64(0, 0, null(), null(), null(), null(), 0, 0, 0);
         feti_body_values(0, 0, null());
+        feti_body_values_split(0, 0, null(), 0, null());
         feti_body_values_dense(0, 0, null(), 0);
         feti_body_null_space(0, 0, 0, null(), 0, 0);
         feti_body_null_space_get(0, 0, null_mut(), null_mut(), 0);

@@ -110,6 +110,102 @@ static void every_storage(void)
         }
 }
 
+/* The diagonal in an array of its own, every storage, 32 and 64 bits, counted from 0 and 1. */
+typedef struct {
+    const char *name;
+    int32_t storage, base, entries;
+    int32_t ptr[N + 1], col[4], row[4];
+} split_way;
+
+static const split_way SPLITS[] = {
+    { "split, lower", FETI_LOWER, 1, 2, { 0, 0, 1, 2 }, { 0, 1 }, { 1, 2 } },
+    { "split, upper", FETI_UPPER, 0, 2, { 0, 1, 2, 2 }, { 1, 2 }, { 0, 1 } },
+    { "split, full", FETI_FULL, 0, 4, { 0, 1, 3, 4 }, { 1, 0, 2, 1 }, { 0, 1, 1, 2 } },
+    { "split, full, turned", FETI_FULL, 1, 4, { 0, 1, 3, 4 }, { 1, 2, 0, 1 }, { 0, 1, 1, 2 } },
+};
+enum { SPLITS_COUNT = sizeof SPLITS / sizeof SPLITS[0] };
+
+static void split_values(const split_way *how, const double s[N], double diag[N], double val[4])
+{
+    double k[N * N];
+
+    bar(s, k);
+    for (int i = 0; i < N; i++) diag[i] = k[(N + 1) * i];
+    for (int32_t e = 0; e < how->entries; e++) val[e] = k[N * how->row[e] + how->col[e]];
+}
+
+static int32_t give_split(feti_problem *p, const split_way *how, const double s[N], int wide)
+{
+    int32_t ptr[N + 1], col[4] = { 0 };
+    int64_t ptr64[N + 1], col64[4] = { 0 };
+    double diag[N], val[4];
+
+    split_values(how, s, diag, val);
+    for (int i = 0; i <= N; i++) ptr64[i] = ptr[i] = how->ptr[i] + how->base;
+    for (int32_t e = 0; e < how->entries; e++) col64[e] = col[e] = how->col[e] + how->base;
+    if (wide) return feti_body_stiffness_split_i64(p, 0, N, diag, ptr64, col64, val, how->base, how->storage, FETI_COPY);
+    return feti_body_stiffness_split_i32(p, 0, N, diag, ptr, col, val, how->base, how->storage, FETI_COPY);
+}
+
+static void every_split(void)
+{
+    for (int k = 0; k < SPLITS_COUNT; k++)
+        for (int wide = 0; wide <= 1; wide++) {
+            const split_way *how = &SPLITS[k];
+            int64_t before[2] = { 0, 0 };
+            double diag[N], val[4];
+            feti_problem *p = begin();
+
+            MUST(give_split(p, how, FIRST, wide));
+            check_step(p, FIRST, before, 1, 1, how->name);
+            split_values(how, SECOND, diag, val);
+            OK(feti_body_values_split(p, 0, N, diag, how->entries, val));
+            check_step(p, SECOND, before, 0, 1, how->name);
+            OK(feti_body_values_split(p, 0, N, diag, how->entries, val));
+            check_step(p, SECOND, before, 0, 0, how->name);
+            EXPECT(FETI_STATE, feti_body_values(p, 0, how->entries, val));
+            check_last_error(p, &(expectation){ FETI_STATE, 0, ANY, ANY, ANY, "feti_body_values", "by feti_body_values_split" });
+            OK(feti_problem_destroy(&p));
+        }
+}
+
+/* Refused matrices and values with a diagonal of its own: the argument, the place, and nothing lost. */
+static void wrong_split(void)
+{
+    const int32_t ptr[N + 1] = { 0, 0, 1, 2 }, col[2] = { 0, 1 }, on_diagonal[2] = { 0, 2 };
+    const double diag[N] = { 3.0, 6.0, 4.0 }, val[2] = { -2.0, -4.0 }, bad[N] = { 3.0, INFINITY, 4.0 };
+    int64_t before[2] = { 0, 0 };
+    feti_problem *p = begin();
+
+    EXPECT(FETI_STATE, feti_body_values_split(p, 0, N, diag, 2, val));
+    MUST(give_split(p, &SPLITS[0], FIRST, 0));
+    check_step(p, FIRST, before, 1, 1, "before");
+    EXPECT(FETI_ARGUMENT - 2, feti_body_stiffness_split_i32(p, 1, N, diag, ptr, col, val, 0, FETI_LOWER, FETI_COPY));
+    EXPECT(FETI_ARGUMENT - 3, feti_body_stiffness_split_i32(p, 0, 2, diag, ptr, col, val, 0, FETI_LOWER, FETI_COPY));
+    EXPECT(FETI_ARGUMENT - 4, feti_body_stiffness_split_i32(p, 0, N, NULL, ptr, col, val, 0, FETI_LOWER, FETI_COPY));
+    EXPECT(FETI_ARGUMENT - 4, feti_body_stiffness_split_i32(p, 0, N, bad, ptr, col, val, 0, FETI_LOWER, FETI_COPY));
+    check_last_error(p, &(expectation){ FETI_ARGUMENT - 4, 0, ANY, 1, 1, "feti_body_stiffness_split_i32", "finite" });
+    EXPECT(FETI_ARGUMENT - 5, feti_body_stiffness_split_i32(p, 0, N, diag, NULL, col, val, 0, FETI_LOWER, FETI_COPY));
+    EXPECT(FETI_ARGUMENT - 6, feti_body_stiffness_split_i32(p, 0, N, diag, ptr, NULL, val, 0, FETI_LOWER, FETI_COPY));
+    EXPECT(FETI_ARGUMENT - 6, feti_body_stiffness_split_i32(p, 0, N, diag, ptr, on_diagonal, val, 0, FETI_LOWER, FETI_COPY));
+    check_last_error(p, &(expectation){ FETI_ARGUMENT - 6, 0, 2, 2, 1, "feti_body_stiffness_split_i32", "diagonal" });
+    EXPECT(FETI_ARGUMENT - 6, feti_body_stiffness_split_i32(p, 0, N, diag, ptr, col, val, 0, FETI_UPPER, FETI_COPY));
+    EXPECT(FETI_ARGUMENT - 7, feti_body_stiffness_split_i32(p, 0, N, diag, ptr, col, NULL, 0, FETI_LOWER, FETI_COPY));
+    EXPECT(FETI_ARGUMENT - 8, feti_body_stiffness_split_i32(p, 0, N, diag, ptr, col, val, 2, FETI_LOWER, FETI_COPY));
+    EXPECT(FETI_ARGUMENT - 9, feti_body_stiffness_split_i32(p, 0, N, diag, ptr, col, val, 0, 3, FETI_COPY));
+    EXPECT(FETI_ARGUMENT - 10, feti_body_stiffness_split_i32(p, 0, N, diag, ptr, col, val, 0, FETI_LOWER, 2));
+    EXPECT(FETI_ARGUMENT - 2, feti_body_values_split(p, 1, N, diag, 2, val));
+    EXPECT(FETI_ARGUMENT - 3, feti_body_values_split(p, 0, 2, diag, 2, val));
+    EXPECT(FETI_ARGUMENT - 4, feti_body_values_split(p, 0, N, bad, 2, val));
+    EXPECT(FETI_ARGUMENT - 5, feti_body_values_split(p, 0, N, diag, 3, val));
+    EXPECT(FETI_ARGUMENT - 6, feti_body_values_split(p, 0, N, diag, 2, bad + 1));
+    EXPECT(FETI_HANDLE, feti_body_values_split(NULL, 0, N, diag, 2, val));
+    EXPECT(FETI_HANDLE, feti_body_stiffness_split_i32(NULL, 0, N, diag, ptr, col, val, 0, FETI_LOWER, FETI_COPY));
+    EXPECT(FETI_HANDLE, feti_body_stiffness_split_i64(NULL, 0, N, diag, NULL, NULL, val, 0, FETI_LOWER, FETI_COPY));
+    check_step(p, FIRST, before, 0, 0, "after refused matrices and values");
+    OK(feti_problem_destroy(&p));
+}
+
 static void dense(void)
 {
     int64_t before[2] = { 0, 0 };
@@ -193,6 +289,8 @@ static void wrong_arguments(void)
 int main(void)
 {
     every_storage();
+    every_split();
+    wrong_split();
     dense();
     wrong_form();
     wrong_arguments();

@@ -15,6 +15,7 @@ program values
   integer, parameter :: full_ptr(4) = [1, 3, 6, 8], full_col(7) = [2, 1, 3, 2, 1, 3, 2], full_row(7) = [1, 1, 2, 2, 2, 3, 3]
 
   call by_rows
+  call split
   call dense
   call refused
 
@@ -99,6 +100,45 @@ contains
         call feti_body_values(p, 1, entries(second, full_row, full_col))
       end select
       call check_step(p, second, before, [0, 1], 'second values')
+      call feti_problem_destroy(p)
+    end do
+  end subroutine
+
+  !> The diagonal in an array of its own.
+  subroutine split
+    type(feti_problem) :: p
+    integer(int64) :: before(2)
+    integer :: wide, stat
+    real(dp) :: k(n, n), diag(n)
+    integer, parameter :: ptr(4) = [1, 2, 3, 3], col(2) = [2, 3], row(2) = [1, 2]
+
+    do wide = 0, 1
+      before = 0
+      call begin(p)
+      if (wide == 0) then
+        call feti_body_stiffness_split(p, 1, [3.0_dp, 6.0_dp, 4.0_dp], ptr, col, entries(first, row, col), FETI_UPPER)
+      else
+        call feti_body_stiffness_split(p, 1, [3.0_dp, 6.0_dp, 4.0_dp], int(ptr, int64), int(col, int64), &
+          entries(first, row, col), FETI_UPPER)
+      end if
+      call check_step(p, first, before, [1, 1], 'first values beside a diagonal')
+      k = bar(second)
+      diag = [k(1, 1), k(2, 2), k(3, 3)]
+      call feti_body_values_split(p, 1, diag, entries(second, row, col))
+      call check_step(p, second, before, [0, 1], 'second values beside a diagonal')
+      call feti_body_values(p, 1, [1.0_dp, 1.0_dp], stat)
+      call require(stat == FETI_STATE, 'values without the diagonal')
+      call feti_body_values_split(p, 1, diag(:2), entries(second, row, col), stat)
+      call require(stat == FETI_ARGUMENT - 3, 'a diagonal too short')
+      call feti_body_values_split(p, 1, diag, diag, stat)
+      call require(stat == FETI_ARGUMENT - 5, 'too many values beside the diagonal')
+      call feti_body_stiffness_split(p, 1, diag(:2), ptr, col, entries(second, row, col), FETI_UPPER, stat)
+      call require(stat == FETI_ARGUMENT - 5, 'a diagonal that does not fit the rows')
+      call feti_body_stiffness_split(p, 1, diag, ptr, col, diag(:1), FETI_UPPER, stat)
+      call require(stat == FETI_ARGUMENT - 6, 'fewer values than the rows say')
+      call feti_body_stiffness_split(p, 1, diag, ptr, [2, 2], entries(second, row, col), FETI_UPPER, stat)
+      call require(stat == FETI_ARGUMENT - 6, 'an entry on the diagonal')
+      call check_step(p, second, before, [0, 0], 'after refused calls')
       call feti_problem_destroy(p)
     end do
   end subroutine

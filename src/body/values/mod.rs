@@ -1,6 +1,6 @@
 //! New values for a matrix whose pattern is there: where each of them goes, and the checks of the first time.
 
-use crate::body::stiffness::{may_differ, unsymmetric, SparseInput, Storage};
+use crate::body::stiffness::{check_finite, may_differ, unsymmetric, SparseInput, Storage};
 use crate::error::{Error, Result};
 use crate::linalg::memory::{reserved, zeros};
 use crate::linalg::vector::first_non_finite;
@@ -24,7 +24,9 @@ pub struct Places {
     storage: Storage,
     /// Number of values.
     entries: usize,
-    /// Rows whose diagonal entry is not among the values, ascending.
+    /// The diagonal is an array of its own.
+    apart: bool,
+    /// Rows whose diagonal entry is not given, ascending.
     without: Vec<usize>,
     /// For rows in any order.
     listed: Option<Listed>,
@@ -48,27 +50,34 @@ struct Entry {
 }
 
 impl Places {
-    /// For the matrix `k` that was made of `input`.
-    pub fn of(input: SparseInput<'_>, k: &Symmetric) -> Result<Self> {
+    /// For the matrix `k` that was made of `input`, with a diagonal `apart` or in its rows.
+    pub fn of(input: SparseInput<'_>, apart: bool, k: &Symmetric) -> Result<Self> {
         let row = |i: usize| &input.col[input.ptr[i]..input.ptr[i + 1]];
         let (n, storage, entries) = (k.order(), input.storage, input.col.len());
         let ascending = (0..n).all(|i| row(i).windows(2).all(|pair| pair[0] < pair[1]));
-        let given = |i: &usize| row(*i).iter().any(|&j| j as usize == *i);
+        let given = |i: &usize| apart || row(*i).iter().any(|&j| j as usize == *i);
         let mut without = reserved(n - (0..n).filter(given).count(), WHAT)?;
         without.extend((0..n).filter(|i| !given(i)));
-        let beside = entries - (n - without.len());
+        let beside = if apart { entries } else { entries - (n - without.len()) };
         let paired = storage != Storage::Full || beside == 2 * (k.col.len() - n);
         let listed = if ascending && paired { None } else { Some(Listed::of(input, k)?) };
-        Ok(Self { storage, entries, without, listed })
+        Ok(Self { storage, entries, apart, without, listed })
     }
 
-    /// Number of values.
+    /// Number of values, those of a diagonal of its own not counted.
     pub fn entries(&self) -> usize {
         self.entries
     }
 
-    /// The values of `k` anew from those of the host; in storage in full checked for symmetry and averaged.
-    pub fn values(&self, k: &Symmetric, val: &[f64], tolerance: f64) -> Result<Vec<f64>> {
+    /// True where the diagonal is an array of its own.
+    pub fn is_split(&self) -> bool {
+        self.apart
+    }
+
+    /// The values of `k` anew from those of the host, in storage in full checked for symmetry and averaged. `diag`: the
+    /// diagonal, where it is an array of its own.
+    pub fn values(&self, k: &Symmetric, diag: &[f64], val: &[f64], tolerance: f64) -> Result<Vec<f64>> {
+        check_finite(diag, "diag", |at| at)?;
         if let Some(at) = first_non_finite(val) {
             let error = Error::argument("val", "the entry is not a finite number").entry(at);
             return Err(match self.row_of(k, at)? {
@@ -78,6 +87,7 @@ impl Places {
         }
         let mut new = zeros(k.col.len(), WHAT)?;
         self.visit(k, |entry| new[entry.at] = value(val, entry.own))?;
+        diag.iter().enumerate().for_each(|(i, v)| new[k.ptr[i + 1] - 1] = *v);
         if self.storage == Storage::Full {
             self.average(k, val, tolerance, &mut new)?;
         }
@@ -158,7 +168,8 @@ impl Places {
                 };
                 visit(Entry { row, col, at, own, mate });
             }
-            let own = if without.next_if_eq(&row).is_some() { NONE } else { take(row) };
+            let given = without.next_if_eq(&row).is_none() && !self.apart;
+            let own = if given { take(row) } else { NONE };
             visit(Entry { row, col: row, at: diagonal, own, mate: NONE });
         }
         Ok(())
@@ -169,7 +180,7 @@ impl Places {
         let mut starts = reserved(k.order() + 1, WHAT)?;
         starts.resize(k.order() + 1, 0);
         for i in 0..k.order() {
-            starts[i + 1] += 1;
+            starts[i + 1] += usize::from(!self.apart);
             for &j in &k.col[k.ptr[i]..k.ptr[i + 1] - 1] {
                 starts[i + 1] += usize::from(self.storage != Storage::Upper);
                 starts[j as usize + 1] += usize::from(self.storage != Storage::Lower);
@@ -218,7 +229,7 @@ fn value(val: &[f64], at: usize) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::body::from_sparse;
+    use crate::body::{from_sparse, from_split};
     use crate::error::Kind;
 
     const N: usize = 30;
@@ -233,6 +244,28 @@ mod tests {
     impl Given {
         fn input(&self) -> SparseInput<'_> {
             SparseInput { ptr: &self.ptr, col: &self.col, val: &self.val, storage: self.storage }
+        }
+    }
+
+    impl Given {
+        /// The diagonal, 0 where it is not given, and what lies beside it.
+        fn split(&self) -> (Vec<f64>, Given) {
+            let (mut diag, mut beside) = (
+                vec![0.0; N],
+                Given { ptr: vec![0], col: Vec::new(), val: Vec::new(), storage: self.storage },
+            );
+            for i in 0..N {
+                for at in self.ptr[i]..self.ptr[i + 1] {
+                    if self.col[at] == i as i64 {
+                        diag[i] = self.val[at];
+                    } else {
+                        beside.col.push(self.col[at]);
+                        beside.val.push(self.val[at]);
+                    }
+                }
+                beside.ptr.push(beside.col.len());
+            }
+            (diag, beside)
         }
     }
 
@@ -280,14 +313,35 @@ mod tests {
         for (storage, turned, lost) in forms() {
             let (first, second) = (given(storage, turned, lost, 0.0), given(storage, turned, lost, 0.7));
             let k = from_sparse(first.input(), 1e-10).unwrap();
-            let places = Places::of(first.input(), &k).unwrap();
+            let places = Places::of(first.input(), false, &k).unwrap();
             let symmetric = storage != Storage::Full || !lost;
             assert_eq!(places.listed.is_some(), turned || !symmetric, "{storage:?} {turned} {lost}");
-            assert_eq!(places.values(&k, &first.val, 1e-10).unwrap(), k.val);
+            assert_eq!(places.values(&k, &[], &first.val, 1e-10).unwrap(), k.val);
             let anew = from_sparse(second.input(), 1e-10).unwrap();
             assert_eq!((&anew.ptr, &anew.col), (&k.ptr, &k.col));
-            assert_eq!(places.values(&k, &second.val, 1e-10).unwrap(), anew.val);
+            assert_eq!(places.values(&k, &[], &second.val, 1e-10).unwrap(), anew.val);
             assert_ne!(anew.val, k.val);
+        }
+    }
+
+    #[test]
+    fn a_diagonal_of_its_own_changes_nothing() {
+        for (storage, turned, lost) in forms() {
+            let (first, second) = (given(storage, turned, lost, 0.0), given(storage, turned, lost, 0.7));
+            let (diag, beside) = first.split();
+            let k = from_split(beside.input(), &diag, 1e-10).unwrap();
+            assert_eq!(k, from_sparse(first.input(), 1e-10).unwrap(), "{storage:?} {turned} {lost}");
+            let places = Places::of(beside.input(), true, &k).unwrap();
+            let symmetric = storage != Storage::Full || !lost;
+            assert_eq!(places.listed.is_some(), turned || !symmetric, "{storage:?} {turned} {lost}");
+            let (diag, beside) = second.split();
+            let anew = from_sparse(second.input(), 1e-10).unwrap();
+            assert_eq!(places.values(&k, &diag, &beside.val, 1e-10).unwrap(), anew.val);
+            let refused = from_split(second.input(), &diag, 1e-10).unwrap_err();
+            assert!(refused.what.contains("diagonal"), "{refused}");
+            let (at, row) = ((0..second.col.len()), |at| second.ptr.partition_point(|&p| p <= at) - 1);
+            let first_on = at.filter(|&at| second.col[at] == row(at) as i64).next();
+            assert_eq!((refused.kind, refused.place.entry), (Kind::Argument("col"), first_on));
         }
     }
 
@@ -297,12 +351,12 @@ mod tests {
         for (storage, turned, lost) in forms() {
             let mut given = given(storage, turned, lost, 0.3);
             let k = from_sparse(given.input(), 1e-10).unwrap();
-            let places = Places::of(given.input(), &k).unwrap();
+            let places = Places::of(given.input(), false, &k).unwrap();
             for at in 0..given.val.len() {
                 for bad in [f64::NAN, given.val[at] + 1.0] {
                     let good = std::mem::replace(&mut given.val[at], bad);
                     let anew = from_sparse(given.input(), 1e-10).map(|k| k.val);
-                    let found = places.values(&k, &given.val, 1e-10);
+                    let found = places.values(&k, &[], &given.val, 1e-10);
                     assert_eq!(format!("{found:?}"), format!("{anew:?}"), "{storage:?} {turned} {at}");
                     assert_eq!(found.is_err(), anew.is_err());
                     given.val[at] = good;
@@ -315,7 +369,7 @@ mod tests {
     fn an_identity_row_that_meets_a_full_column_gets_its_own_advice() {
         let first = given(Storage::Full, false, false, 0.3);
         let k = from_sparse(first.input(), 1e-10).unwrap();
-        let places = Places::of(first.input(), &k).unwrap();
+        let places = Places::of(first.input(), false, &k).unwrap();
         let mut val = first.val.clone();
         let row = 3;
         (first.ptr[row]..first.ptr[row + 1]).for_each(|at| {
@@ -323,7 +377,7 @@ mod tests {
                 val[at] = 0.0;
             }
         });
-        let error = places.values(&k, &val, 1e-10).unwrap_err();
+        let error = places.values(&k, &[], &val, 1e-10).unwrap_err();
         assert_eq!(error.kind, Kind::Argument("val"));
         assert!(error.what.contains("eliminate supports symmetrically"), "{error}");
     }
