@@ -158,6 +158,32 @@
 #define FETI_COPY 0
 
 /**
+ * Stiffness flag: the values, and columns in 32 bits from 0, stay where the host has them, where
+ * their form allows it.
+ */
+#define FETI_BORROW 1
+
+/**
+ * Null space of a body: vectors of the host that span it (FETI_EXACT).
+ */
+#define FETI_ORIGIN_EXACT 1
+
+/**
+ * Null space of a body: sought among vectors of the host (FETI_CANDIDATES).
+ */
+#define FETI_ORIGIN_CANDIDATES 2
+
+/**
+ * Null space of a body: sought among rigid motions, from coordinates.
+ */
+#define FETI_ORIGIN_COORDINATES 3
+
+/**
+ * Null space of a body: found from K alone.
+ */
+#define FETI_ORIGIN_FOUND 4
+
+/**
  * State of a row: open, its force is zero.
  */
 #define FETI_ROW_OPEN 0
@@ -218,6 +244,70 @@
  * an address.
  */
 typedef struct feti_problem feti_problem;
+
+/**
+ * A body as it is given, and what the last setup has made of it; what is not there yet is -1 or
+ * NaN.
+ */
+typedef struct feti_body_facts {
+  /**
+   * Set by the caller: size of the struct in bytes.
+   */
+  int64_t struct_size;
+  /**
+   * Unknowns.
+   */
+  int64_t unknowns;
+  /**
+   * Entries of K as the host gave them, a diagonal of its own counted; dense: all of the storage.
+   */
+  int64_t entries;
+  /**
+   * Connected parts of K.
+   */
+  int64_t components;
+  /**
+   * Bytes that the library keeps for K.
+   */
+  int64_t matrix_bytes;
+  /**
+   * Arrays of K that stay with the host (FETI_BORROW): 0 none, 1 values, 2 values and columns.
+   */
+  int64_t borrowed;
+  /**
+   * What the null space comes from: FETI_ORIGIN_EXACT, _CANDIDATES, _COORDINATES or _FOUND.
+   */
+  int64_t origin;
+  /**
+   * Dimension of the null space.
+   */
+  int64_t null_space;
+  /**
+   * Entries of the factor.
+   */
+  int64_t factor_entries;
+  /**
+   * Bytes of the factor and, at most, of the work arrays of its computation.
+   */
+  int64_t factor_bytes;
+  /**
+   * The first other body that shares the factor, from 0, -1: none.
+   */
+  int64_t shared_with;
+  /**
+   * 1: the dual operator has its entries, 0: it is known by its products.
+   */
+  int64_t explicit_operator;
+  /**
+   * Bytes of the explicit dual operator.
+   */
+  int64_t operator_bytes;
+  /**
+   * Of a null space that was found: stiffness of the softest other motion over that of the stiffest
+   * in it; else NaN.
+   */
+  double gap;
+} feti_body_facts;
 
 /**
  * What the last solve, or the last setup that failed, has found out about the problem. Numbers
@@ -768,6 +858,35 @@ int32_t feti_body_coordinates(struct feti_problem *p,
  * Safety: The array has the given shape.
  */
 int32_t feti_body_load(struct feti_problem *p, int64_t body, int64_t n, const double *f);
+
+/**
+ * Tells the connected part of every unknown of a body.
+ *
+ * A body may be in several parts that share no entry of K but zeros. They are numbered from 0 by
+ * their first unknowns. FETI_STATE before the stiffness matrix is given. After a failure nothing
+ * is written.
+ *
+ * @param[in]  p         (scalar) the handle
+ * @param[in]  body      (scalar) number of the body, from 0
+ * @param[in]  n         (scalar) unknowns of the body
+ * @param[out] component (n) part of each unknown, from 0
+ *
+ * Safety: The array has the given shape.
+ */
+int32_t feti_body_components(struct feti_problem *p, int64_t body, int64_t n, int64_t *component);
+
+/**
+ * Tells what is known about a body: its matrix, its null space, its factor, its dual operator.
+ *
+ * Nothing is computed but the connected parts. After a failure nothing is written.
+ *
+ * @param[in]     p    (scalar) the handle
+ * @param[in]     body (scalar) number of the body, from 0
+ * @param[in,out] out  (scalar) `struct_size` set, at least 16
+ *
+ * Safety: `out` leads to `struct_size` writable bytes.
+ */
+int32_t feti_body_info(struct feti_problem *p, int64_t body, struct feti_body_facts *out);
 
 /**
  * What the last solve, or the last setup that failed, has found out about the problem.
@@ -1557,6 +1676,12 @@ int32_t feti_version_number(void);
  * any order, none twice. With FETI_FULL K must be symmetric within option symmetry_tolerance and
  * is averaged. After a failure the body keeps the matrix it had.
  *
+ * With FETI_BORROW the values, and columns in 32 bits counted from 0, are not copied if storage is
+ * FETI_LOWER, columns ascend and every row ends with its diagonal entry; otherwise all is copied
+ * (`borrowed` of feti_body_info tells). Borrowed arrays stay readable until the matrix is replaced
+ * or the problem destroyed, and unchanged but for this: between two calls the values may be
+ * rewritten, and the next call then is feti_body_values with the same array.
+ *
  * @param[in] p       (scalar) the handle
  * @param[in] body    (scalar) number of the body, from 0
  * @param[in] n       (scalar) unknowns of the body
@@ -1566,7 +1691,7 @@ int32_t feti_version_number(void);
  * @param[in] val     (row_ptr[n] - base) entries of K, force per length
  * @param[in] base    (scalar) 0 or 1: what `row_ptr` and `col` count from
  * @param[in] storage (scalar) FETI_FULL, FETI_LOWER or FETI_UPPER
- * @param[in] flags   (scalar) FETI_COPY
+ * @param[in] flags   (scalar) FETI_COPY or FETI_BORROW
  *
  * Safety: The arrays have the given shapes.
  */
@@ -1587,6 +1712,12 @@ int32_t feti_body_stiffness_i32(struct feti_problem *p,
  * any order, none twice. With FETI_FULL K must be symmetric within option symmetry_tolerance and
  * is averaged. After a failure the body keeps the matrix it had.
  *
+ * With FETI_BORROW the values, and columns in 32 bits counted from 0, are not copied if storage is
+ * FETI_LOWER, columns ascend and every row ends with its diagonal entry; otherwise all is copied
+ * (`borrowed` of feti_body_info tells). Borrowed arrays stay readable until the matrix is replaced
+ * or the problem destroyed, and unchanged but for this: between two calls the values may be
+ * rewritten, and the next call then is feti_body_values with the same array.
+ *
  * @param[in] p       (scalar) the handle
  * @param[in] body    (scalar) number of the body, from 0
  * @param[in] n       (scalar) unknowns of the body
@@ -1596,7 +1727,7 @@ int32_t feti_body_stiffness_i32(struct feti_problem *p,
  * @param[in] val     (row_ptr[n] - base) entries of K, force per length
  * @param[in] base    (scalar) 0 or 1: what `row_ptr` and `col` count from
  * @param[in] storage (scalar) FETI_FULL, FETI_LOWER or FETI_UPPER
- * @param[in] flags   (scalar) FETI_COPY
+ * @param[in] flags   (scalar) FETI_COPY or FETI_BORROW
  *
  * Safety: The arrays have the given shapes.
  */
@@ -1628,7 +1759,8 @@ int32_t feti_body_stiffness_i64(struct feti_problem *p,
  * @param[in] val     (row_ptr[n] - base) entries of K beside the diagonal, force per length
  * @param[in] base    (scalar) 0 or 1: what `row_ptr` and `col` count from
  * @param[in] storage (scalar) FETI_FULL, FETI_LOWER or FETI_UPPER
- * @param[in] flags   (scalar) FETI_COPY
+ * @param[in] flags   (scalar) FETI_COPY, or FETI_BORROW, which copies as well: no matrix is kept
+ *                    in this form
  *
  * Safety: The arrays have the given shapes.
  */
@@ -1661,7 +1793,8 @@ int32_t feti_body_stiffness_split_i32(struct feti_problem *p,
  * @param[in] val     (row_ptr[n] - base) entries of K beside the diagonal, force per length
  * @param[in] base    (scalar) 0 or 1: what `row_ptr` and `col` count from
  * @param[in] storage (scalar) FETI_FULL, FETI_LOWER or FETI_UPPER
- * @param[in] flags   (scalar) FETI_COPY
+ * @param[in] flags   (scalar) FETI_COPY, or FETI_BORROW, which copies as well: no matrix is kept
+ *                    in this form
  *
  * Safety: The arrays have the given shapes.
  */
@@ -1764,6 +1897,11 @@ int32_t feti_dual_rhs(struct feti_problem *p, int64_t m, double *d);
  * setup costs a numeric factorisation of this body; values that are bit by bit those of before
  * cost nothing. Storage is that of the first call. FETI_STATE where the matrix has not been given,
  * or in another form. After a failure the body keeps the values it had.
+ *
+ * Where the values are borrowed (FETI_BORROW) they are not copied: `val` is the array that was
+ * borrowed, rewritten by the host, or another one in its place. They count as changed, also for
+ * other bodies that borrow the same array. After a failure with the same array the body is without
+ * a matrix until it gets other values.
  *
  * @param[in] p    (scalar) the handle
  * @param[in] body (scalar) number of the body, from 0

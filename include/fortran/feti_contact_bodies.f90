@@ -4,13 +4,15 @@
 !> the n of feti_body_add. Bodies and unknowns count from 1. A refused call leaves the problem as it was.
 !> Arrays that are not contiguous are copied by the compiler. `stat` and `errmsg`: see feti_contact_base.
 module feti_contact_bodies
-  use, intrinsic :: iso_c_binding, only: c_double, c_int32_t, c_int64_t, c_loc, c_null_ptr, c_ptr
+  use, intrinsic :: iso_c_binding, only: c_int32_t, c_int64_t, c_loc, c_null_ptr, c_ptr, c_sizeof
   use, intrinsic :: iso_fortran_env, only: int32, real64
   use feti_contact_base, only: feti_problem, finish, handle_of, refuse
-  use feti_contact_c, only: FETI_OK, &
+  use feti_contact_c, only: FETI_OK, feti_body_facts, &
     c_body_add => feti_body_add, &
+    c_body_components => feti_body_components, &
     c_body_coordinates => feti_body_coordinates, &
     c_body_fixing_set => feti_body_fixing_set, &
+    c_body_info => feti_body_info, &
     c_body_load => feti_body_load, &
     c_body_null_space => feti_body_null_space, &
     c_body_null_space_get => feti_body_null_space_get
@@ -18,6 +20,7 @@ module feti_contact_bodies
   private
   public :: body_add, body_null_space, body_null_space_get
   public :: body_coordinates, body_fixing_set, body_load
+  public :: body_components, body_info, feti_body_facts
 
 contains
 
@@ -126,6 +129,38 @@ contains
     character(len=*), intent(inout), optional :: errmsg
 
     call finish(c_body_load(handle_of(p), int(body - 1, c_int64_t), size(f, kind=c_int64_t), f), stat, errmsg)
+  end subroutine
+
+  !> The connected part of every unknown of a body, component(n), numbered from 1 by their first unknowns. The stiffness
+  !> matrix has been given.
+  subroutine body_components(p, body, component, stat, errmsg)
+    type(feti_problem), intent(in) :: p
+    integer, intent(in) :: body
+    integer, intent(inout) :: component(:)
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+    integer(c_int64_t), allocatable :: found(:)
+    integer(c_int32_t) :: status
+
+    allocate (found(size(component)))
+    status = c_body_components(handle_of(p), int(body - 1, c_int64_t), size(found, kind=c_int64_t), found)
+    if (status == FETI_OK) component = int(found) + 1
+    call finish(status, stat, errmsg)
+  end subroutine
+
+  !> What is known about a body; shared_with counts from 1, 0: none.
+  subroutine body_info(p, body, facts, stat, errmsg)
+    type(feti_problem), intent(in) :: p
+    integer, intent(in) :: body
+    type(feti_body_facts), intent(inout) :: facts
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+    integer(c_int32_t) :: status
+
+    facts%struct_size = c_sizeof(facts)
+    status = c_body_info(handle_of(p), int(body - 1, c_int64_t), facts)
+    if (status == FETI_OK) facts%shared_with = facts%shared_with + 1
+    call finish(status, stat, errmsg)
   end subroutine
 
 end module

@@ -68,6 +68,17 @@ module feti_contact_c
   integer(c_int32_t), parameter, public :: FETI_CANDIDATES = 1_c_int32_t
   !> Stiffness flag: the matrix is copied.
   integer(c_int32_t), parameter, public :: FETI_COPY = 0_c_int32_t
+  !> Stiffness flag: the values, and columns in 32 bits from 0, stay where the host has them, where their form
+  !> allows it.
+  integer(c_int32_t), parameter, public :: FETI_BORROW = 1_c_int32_t
+  !> Null space of a body: vectors of the host that span it (FETI_EXACT).
+  integer(c_int32_t), parameter, public :: FETI_ORIGIN_EXACT = 1_c_int32_t
+  !> Null space of a body: sought among vectors of the host (FETI_CANDIDATES).
+  integer(c_int32_t), parameter, public :: FETI_ORIGIN_CANDIDATES = 2_c_int32_t
+  !> Null space of a body: sought among rigid motions, from coordinates.
+  integer(c_int32_t), parameter, public :: FETI_ORIGIN_COORDINATES = 3_c_int32_t
+  !> Null space of a body: found from K alone.
+  integer(c_int32_t), parameter, public :: FETI_ORIGIN_FOUND = 4_c_int32_t
   !> State of a row: open, its force is zero.
   integer(c_int32_t), parameter, public :: FETI_ROW_OPEN = 0_c_int32_t
   !> State of a row: closed, it carries a force.
@@ -221,6 +232,39 @@ module feti_contact_c
     integer(c_int64_t) :: operator_bytes
   end type feti_info
 
+  !> A body as it is given, and what the last setup has made of it; what is not there yet is -1 or NaN.
+  type, bind(C), public :: feti_body_facts
+    !> Set by the caller: size of the struct in bytes.
+    integer(c_int64_t) :: struct_size
+    !> Unknowns.
+    integer(c_int64_t) :: unknowns
+    !> Entries of K as the host gave them, a diagonal of its own counted; dense: all of the storage.
+    integer(c_int64_t) :: entries
+    !> Connected parts of K.
+    integer(c_int64_t) :: components
+    !> Bytes that the library keeps for K.
+    integer(c_int64_t) :: matrix_bytes
+    !> Arrays of K that stay with the host (FETI_BORROW): 0 none, 1 values, 2 values and columns.
+    integer(c_int64_t) :: borrowed
+    !> What the null space comes from: FETI_ORIGIN_EXACT, _CANDIDATES, _COORDINATES or _FOUND.
+    integer(c_int64_t) :: origin
+    !> Dimension of the null space.
+    integer(c_int64_t) :: null_space
+    !> Entries of the factor.
+    integer(c_int64_t) :: factor_entries
+    !> Bytes of the factor and, at most, of the work arrays of its computation.
+    integer(c_int64_t) :: factor_bytes
+    !> The first other body that shares the factor, from 0, -1: none.
+    integer(c_int64_t) :: shared_with
+    !> 1: the dual operator has its entries, 0: it is known by its products.
+    integer(c_int64_t) :: explicit_operator
+    !> Bytes of the explicit dual operator.
+    integer(c_int64_t) :: operator_bytes
+    !> Of a null space that was found: stiffness of the softest other motion over that of the stiffest in it;
+    !> else NaN.
+    real(c_double) :: gap
+  end type feti_body_facts
+
   !> Time and memory of a phase of a setup or a solve.
   type, bind(C), public :: feti_phase
     !> Set by the caller: size of the struct in bytes.
@@ -344,6 +388,8 @@ module feti_contact_c
   public :: feti_body_add
   public :: feti_body_coordinates
   public :: feti_body_load
+  public :: feti_body_components
+  public :: feti_body_info
   public :: feti_diagnosis
   public :: feti_diagnosis_rows
   public :: feti_diagnosis_dependent
@@ -493,6 +539,43 @@ module feti_contact_c
       real(c_double), intent(in) :: f(*)
       integer(c_int32_t) :: feti_body_load
     end function feti_body_load
+
+    !> Tells the connected part of every unknown of a body.
+    !>
+    !> A body may be in several parts that share no entry of K but zeros. They are numbered from 0 by their
+    !> first unknowns. FETI_STATE before the stiffness matrix is given. After a failure nothing is written.
+    !>
+    !> @param[in]  p         (scalar) the handle
+    !> @param[in]  body      (scalar) number of the body, from 0
+    !> @param[in]  n         (scalar) unknowns of the body
+    !> @param[out] component (n) part of each unknown, from 0
+    !>
+    !> Safety: The array has the given shape.
+    function feti_body_components(p, body, n, component) bind(C, name="feti_body_components")
+      import
+      type(c_ptr), value :: p
+      integer(c_int64_t), value :: body
+      integer(c_int64_t), value :: n
+      integer(c_int64_t), intent(out) :: component(*)
+      integer(c_int32_t) :: feti_body_components
+    end function feti_body_components
+
+    !> Tells what is known about a body: its matrix, its null space, its factor, its dual operator.
+    !>
+    !> Nothing is computed but the connected parts. After a failure nothing is written.
+    !>
+    !> @param[in]     p    (scalar) the handle
+    !> @param[in]     body (scalar) number of the body, from 0
+    !> @param[in,out] out  (scalar) `struct_size` set, at least 16
+    !>
+    !> Safety: `out` leads to `struct_size` writable bytes.
+    function feti_body_info(p, body, out) bind(C, name="feti_body_info")
+      import
+      type(c_ptr), value :: p
+      integer(c_int64_t), value :: body
+      type(feti_body_facts), intent(inout) :: out
+      integer(c_int32_t) :: feti_body_info
+    end function feti_body_info
 
     !> What the last solve, or the last setup that failed, has found out about the problem.
     !>
@@ -1446,6 +1529,12 @@ module feti_contact_c
     !> order, none twice. With FETI_FULL K must be symmetric within option symmetry_tolerance and is averaged.
     !> After a failure the body keeps the matrix it had.
     !>
+    !> With FETI_BORROW the values, and columns in 32 bits counted from 0, are not copied if storage is
+    !> FETI_LOWER, columns ascend and every row ends with its diagonal entry; otherwise all is copied
+    !> (`borrowed` of feti_body_info tells). Borrowed arrays stay readable until the matrix is replaced or the
+    !> problem destroyed, and unchanged but for this: between two calls the values may be rewritten, and the
+    !> next call then is feti_body_values with the same array.
+    !>
     !> @param[in] p       (scalar) the handle
     !> @param[in] body    (scalar) number of the body, from 0
     !> @param[in] n       (scalar) unknowns of the body
@@ -1454,7 +1543,7 @@ module feti_contact_c
     !> @param[in] val     (row_ptr[n] - base) entries of K, force per length
     !> @param[in] base    (scalar) 0 or 1: what `row_ptr` and `col` count from
     !> @param[in] storage (scalar) FETI_FULL, FETI_LOWER or FETI_UPPER
-    !> @param[in] flags   (scalar) FETI_COPY
+    !> @param[in] flags   (scalar) FETI_COPY or FETI_BORROW
     !>
     !> Safety: The arrays have the given shapes.
     function feti_body_stiffness_i32(p, body, n, row_ptr, col, val, base, storage, flags) &
@@ -1478,6 +1567,12 @@ module feti_contact_c
     !> order, none twice. With FETI_FULL K must be symmetric within option symmetry_tolerance and is averaged.
     !> After a failure the body keeps the matrix it had.
     !>
+    !> With FETI_BORROW the values, and columns in 32 bits counted from 0, are not copied if storage is
+    !> FETI_LOWER, columns ascend and every row ends with its diagonal entry; otherwise all is copied
+    !> (`borrowed` of feti_body_info tells). Borrowed arrays stay readable until the matrix is replaced or the
+    !> problem destroyed, and unchanged but for this: between two calls the values may be rewritten, and the
+    !> next call then is feti_body_values with the same array.
+    !>
     !> @param[in] p       (scalar) the handle
     !> @param[in] body    (scalar) number of the body, from 0
     !> @param[in] n       (scalar) unknowns of the body
@@ -1486,7 +1581,7 @@ module feti_contact_c
     !> @param[in] val     (row_ptr[n] - base) entries of K, force per length
     !> @param[in] base    (scalar) 0 or 1: what `row_ptr` and `col` count from
     !> @param[in] storage (scalar) FETI_FULL, FETI_LOWER or FETI_UPPER
-    !> @param[in] flags   (scalar) FETI_COPY
+    !> @param[in] flags   (scalar) FETI_COPY or FETI_BORROW
     !>
     !> Safety: The arrays have the given shapes.
     function feti_body_stiffness_i64(p, body, n, row_ptr, col, val, base, storage, flags) &
@@ -1519,7 +1614,8 @@ module feti_contact_c
     !> @param[in] val     (row_ptr[n] - base) entries of K beside the diagonal, force per length
     !> @param[in] base    (scalar) 0 or 1: what `row_ptr` and `col` count from
     !> @param[in] storage (scalar) FETI_FULL, FETI_LOWER or FETI_UPPER
-    !> @param[in] flags   (scalar) FETI_COPY
+    !> @param[in] flags   (scalar) FETI_COPY, or FETI_BORROW, which copies as well: no matrix is kept in this
+    !>                    form
     !>
     !> Safety: The arrays have the given shapes.
     function feti_body_stiffness_split_i32(p, body, n, diag, row_ptr, col, val, base, storage, flags) &
@@ -1553,7 +1649,8 @@ module feti_contact_c
     !> @param[in] val     (row_ptr[n] - base) entries of K beside the diagonal, force per length
     !> @param[in] base    (scalar) 0 or 1: what `row_ptr` and `col` count from
     !> @param[in] storage (scalar) FETI_FULL, FETI_LOWER or FETI_UPPER
-    !> @param[in] flags   (scalar) FETI_COPY
+    !> @param[in] flags   (scalar) FETI_COPY, or FETI_BORROW, which copies as well: no matrix is kept in this
+    !>                    form
     !>
     !> Safety: The arrays have the given shapes.
     function feti_body_stiffness_split_i64(p, body, n, diag, row_ptr, col, val, base, storage, flags) &
@@ -1670,6 +1767,11 @@ module feti_contact_c
     !> costs a numeric factorisation of this body; values that are bit by bit those of before cost nothing.
     !> Storage is that of the first call. FETI_STATE where the matrix has not been given, or in another form.
     !> After a failure the body keeps the values it had.
+    !>
+    !> Where the values are borrowed (FETI_BORROW) they are not copied: `val` is the array that was borrowed,
+    !> rewritten by the host, or another one in its place. They count as changed, also for other bodies that
+    !> borrow the same array. After a failure with the same array the body is without a matrix until it gets
+    !> other values.
     !>
     !> @param[in] p    (scalar) the handle
     !> @param[in] body (scalar) number of the body, from 0

@@ -81,9 +81,9 @@ impl Rows<'_> {
         self.next.push(self.input.ptr[i] + row.left + usize::from(row.given));
         match self.input.storage {
             Storage::Full => self.take_with_mates(i, &row)?,
-            _ => self.lower.val.extend_from_slice(&row.val[..row.left]),
+            _ => self.lower.val.to_mut().extend_from_slice(&row.val[..row.left]),
         }
-        self.lower.col.extend(row.col[..row.left].iter().map(|&j| j as u32));
+        self.lower.col.to_mut().extend(row.col[..row.left].iter().map(|&j| j as u32));
         self.lower.col.push(i as u32);
         self.lower.val.push(row.diagonal);
         self.lower.ptr.push(self.lower.col.len());

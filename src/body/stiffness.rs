@@ -89,7 +89,7 @@ pub fn from_dense(n: usize, k: &[f64], ld: usize, storage: Storage, tolerance: f
 }
 
 /// Columns are kept in 32 bits.
-fn check_order(n: usize) -> Result<()> {
+pub(super) fn check_order(n: usize) -> Result<()> {
     let limit = u32::MAX as usize;
     if n <= limit {
         return Ok(());
@@ -137,11 +137,7 @@ fn sorted(input: SparseInput<'_>, diag: Option<&[f64]>) -> Result<Csr> {
 }
 
 /// `row_of` tells the row of an entry.
-pub(super) fn check_finite(
-    values: &[f64],
-    name: &'static str,
-    row_of: impl FnOnce(usize) -> usize,
-) -> Result<()> {
+pub fn check_finite(values: &[f64], name: &'static str, row_of: impl FnOnce(usize) -> usize) -> Result<()> {
     match first_non_finite(values) {
         None => Ok(()),
         Some(at) => Err(Error::argument(name, "the entry is not a finite number").row(row_of(at)).entry(at)),

@@ -8,7 +8,7 @@
 //! | `fpu` | the floating-point environment of the host, saved and restored |
 //! | `error_store` | the last error, per thread and per problem |
 //! | `arrays`, `indices`, `record` | host arrays, index arrays and structs with a `struct_size`, checked |
-//! | `problem`, `options`, `body`, `stiffness`, `values`, `null_space`, `rows`, `solve`, `phases`, `progress`, `state`, `diagnosis`, `results`, `validation` | the functions |
+//! | `problem`, `options`, `body`, `body_info`, `stiffness`, `values`, `null_space`, `rows`, `solve`, `phases`, `progress`, `state`, `diagnosis`, `results`, `validation` | the functions |
 //!
 //! The generator of the header and of the Fortran interfaces reads these files: each exported function has a table of
 //! its arguments, in which the word NULL in the rule says that the pointer may be NULL.
@@ -18,6 +18,7 @@
 
 mod arrays;
 mod body;
+mod body_info;
 mod diagnosis;
 mod error_store;
 mod fpu;
@@ -44,6 +45,7 @@ mod values;
 mod tests;
 
 pub use body::*;
+pub use body_info::*;
 pub use diagnosis::*;
 pub use error_store::{feti_last_error, feti_last_error_detail};
 pub use null_space::*;

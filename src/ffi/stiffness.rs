@@ -1,18 +1,23 @@
 //! Stiffness matrices of bodies: by rows, with a diagonal of their own, dense.
 
-use super::arrays::{column_major, input};
+use super::arrays::{borrowed, column_major, input};
 use super::body::body_of_order;
 use super::guard::{call, enter, Call};
 use super::indices::{base, numbers, pointers, Index};
-use super::types::{feti_problem, FETI_COPY, FETI_FULL, FETI_LOWER, FETI_UPPER};
+use super::types::{feti_problem, FETI_BORROW, FETI_COPY, FETI_FULL, FETI_LOWER, FETI_UPPER};
 use crate::error::{Error, Result};
-use crate::solver::{SparseInput, Storage};
+use crate::solver::{Columns, Problem, SparseInput, Storage};
 
 /// Gives the stiffness matrix K of a body by rows, with 32-bit indices.
 ///
 /// The matrix is copied; calling again replaces pattern and values. Columns of a row may come in any order, none twice.
 /// With FETI_FULL K must be symmetric within option symmetry_tolerance and is averaged. After a failure the body keeps
 /// the matrix it had.
+///
+/// With FETI_BORROW the values, and columns in 32 bits counted from 0, are not copied if storage is FETI_LOWER, columns
+/// ascend and every row ends with its diagonal entry; otherwise all is copied (`borrowed` of feti_body_info tells). Borrowed
+/// arrays stay readable until the matrix is replaced or the problem destroyed, and unchanged but for this: between two calls
+/// the values may be rewritten, and the next call then is feti_body_values with the same array.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|
@@ -24,7 +29,7 @@ use crate::solver::{SparseInput, Storage};
 /// | `val` | in | row_ptr[n] - base | entries of K, force per length |
 /// | `base` | in | scalar | 0 or 1: what `row_ptr` and `col` count from |
 /// | `storage` | in | scalar | FETI_FULL, FETI_LOWER or FETI_UPPER |
-/// | `flags` | in | scalar | FETI_COPY |
+/// | `flags` | in | scalar | FETI_COPY or FETI_BORROW |
 ///
 /// # Safety
 /// The arrays have the given shapes.
@@ -52,6 +57,11 @@ pub unsafe extern "C" fn feti_body_stiffness_i32(
 /// With FETI_FULL K must be symmetric within option symmetry_tolerance and is averaged. After a failure the body keeps
 /// the matrix it had.
 ///
+/// With FETI_BORROW the values, and columns in 32 bits counted from 0, are not copied if storage is FETI_LOWER, columns
+/// ascend and every row ends with its diagonal entry; otherwise all is copied (`borrowed` of feti_body_info tells). Borrowed
+/// arrays stay readable until the matrix is replaced or the problem destroyed, and unchanged but for this: between two calls
+/// the values may be rewritten, and the next call then is feti_body_values with the same array.
+///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|
 /// | `p` | in | scalar | the handle |
@@ -62,7 +72,7 @@ pub unsafe extern "C" fn feti_body_stiffness_i32(
 /// | `val` | in | row_ptr[n] - base | entries of K, force per length |
 /// | `base` | in | scalar | 0 or 1: what `row_ptr` and `col` count from |
 /// | `storage` | in | scalar | FETI_FULL, FETI_LOWER or FETI_UPPER |
-/// | `flags` | in | scalar | FETI_COPY |
+/// | `flags` | in | scalar | FETI_COPY or FETI_BORROW |
 ///
 /// # Safety
 /// The arrays have the given shapes.
@@ -101,7 +111,7 @@ pub unsafe extern "C" fn feti_body_stiffness_i64(
 /// | `val` | in | row_ptr[n] - base | entries of K beside the diagonal, force per length |
 /// | `base` | in | scalar | 0 or 1: what `row_ptr` and `col` count from |
 /// | `storage` | in | scalar | FETI_FULL, FETI_LOWER or FETI_UPPER |
-/// | `flags` | in | scalar | FETI_COPY |
+/// | `flags` | in | scalar | FETI_COPY, or FETI_BORROW, which copies as well: no matrix is kept in this form |
 ///
 /// # Safety
 /// The arrays have the given shapes.
@@ -142,7 +152,7 @@ pub unsafe extern "C" fn feti_body_stiffness_split_i32(
 /// | `val` | in | row_ptr[n] - base | entries of K beside the diagonal, force per length |
 /// | `base` | in | scalar | 0 or 1: what `row_ptr` and `col` count from |
 /// | `storage` | in | scalar | FETI_FULL, FETI_LOWER or FETI_UPPER |
-/// | `flags` | in | scalar | FETI_COPY |
+/// | `flags` | in | scalar | FETI_COPY, or FETI_BORROW, which copies as well: no matrix is kept in this form |
 ///
 /// # Safety
 /// The arrays have the given shapes.
@@ -186,12 +196,16 @@ impl<I: Index> SparseMatrix<I> {
         enter(p, call, |problem| {
             let (body, n) = body_of_order(problem, body, self.n)?;
             let (base, storage) = (base(self.base)?, storage_of(self.storage)?);
-            copy_only(self.flags)?;
+            let borrow = may_borrow(self.flags)? && diag.is_none() && storage == Storage::Lower;
             // SAFETY: n numbers by the caller's word.
             let diag = diag.map(|diag| unsafe { input(diag, n, "diag") }).transpose()?;
             // SAFETY: n + 1 positions by the caller's word.
             let ptr = unsafe { pointers(self.row_ptr, n, base) }?;
             let entries = ptr.last().copied().unwrap_or(0);
+            // SAFETY: the last position is the number of entries; the arrays stay, by the caller's word.
+            if borrow && entries > 0 && unsafe { self.borrow(problem, body, &ptr, base) }? {
+                return Ok(());
+            }
             // SAFETY: the last position is the number of entries.
             let (col, val) =
                 unsafe { (numbers(self.col, entries, base, "col")?, input(self.val, entries, "val")?) };
@@ -201,6 +215,23 @@ impl<I: Index> SparseMatrix<I> {
                 Some(diag) => problem.set_stiffness_split(body, diag, k),
             }
         })
+    }
+
+    /// False where the form does not allow it.
+    ///
+    /// # Safety
+    /// The arrays have as many entries as `ptr` says, and stay as documented.
+    unsafe fn borrow(&self, problem: &mut Problem, body: usize, ptr: &[usize], base: i64) -> Result<bool> {
+        let entries = ptr.last().copied().unwrap_or(0);
+        // SAFETY: by the caller's word.
+        let (val, col) = unsafe { (borrowed(self.val, entries, "val")?, input(self.col, entries, "col")?) };
+        let column = |at: usize| col[at].wide().saturating_sub(base);
+        let columns = match I::unsigned(self.col).filter(|_| base == 0) {
+            // SAFETY: by the caller's word.
+            Some(col) => Columns::Kept(unsafe { borrowed(col, entries, "col") }?),
+            None => Columns::Given(&column),
+        };
+        problem.borrow_stiffness(body, ptr, columns, val)
     }
 }
 
@@ -249,6 +280,17 @@ fn storage_of(storage: i32) -> Result<Storage> {
         _ => {
             let text = format!("{storage} is none of FETI_FULL, FETI_LOWER, FETI_UPPER");
             Err(Error::argument("storage", text).value(f64::from(storage)))
+        }
+    }
+}
+
+fn may_borrow(flags: i32) -> Result<bool> {
+    match flags {
+        FETI_COPY => Ok(false),
+        FETI_BORROW => Ok(true),
+        _ => {
+            let text = format!("{flags} is neither FETI_COPY nor FETI_BORROW");
+            Err(Error::argument("flags", text).value(f64::from(flags)))
         }
     }
 }

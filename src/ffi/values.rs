@@ -1,6 +1,6 @@
 //! New values of stiffness matrices whose pattern stays.
 
-use super::arrays::{column_major, id, input, same};
+use super::arrays::{borrowed, column_major, id, input, same};
 use super::body::body_of_order;
 use super::guard::{call, enter};
 use super::types::feti_problem;
@@ -10,6 +10,10 @@ use super::types::feti_problem;
 /// The values are copied and checked as the first were. The symbolic analysis is kept, and the next setup costs a numeric
 /// factorisation of this body; values that are bit by bit those of before cost nothing. Storage is that of the first call.
 /// FETI_STATE where the matrix has not been given, or in another form. After a failure the body keeps the values it had.
+///
+/// Where the values are borrowed (FETI_BORROW) they are not copied: `val` is the array that was borrowed, rewritten by the
+/// host, or another one in its place. They count as changed, also for other bodies that borrow the same array. After a failure
+/// with the same array the body is without a matrix until it gets other values.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|
@@ -26,6 +30,10 @@ pub unsafe extern "C" fn feti_body_values(p: *mut feti_problem, body: i64, nnz: 
         let body = id(body, "body")?;
         let nnz =
             same(nnz, problem.values(body, false)?, "nnz", ENTRIES).map_err(|error| error.body(body))?;
+        if problem.is_borrowed(body) {
+            // SAFETY: nnz numbers that stay, by the caller's word.
+            return problem.borrow_values(body, unsafe { borrowed(val, nnz, "val") }?);
+        }
         // SAFETY: nnz numbers by the caller's word.
         problem.set_values(body, unsafe { input(val, nnz, "val") }?)
     })

@@ -86,7 +86,7 @@ mod tests {
         rows.push_row([(0, -1.0), (2, 1.0)]);
         let gram = Gram::of(&rows).unwrap();
         let sum = gram.sum(&rows, &[false, true, false]).unwrap();
-        assert_eq!((sum.ptr, sum.col), (vec![0, 1, 2, 4], vec![0, 1, 0, 2]));
+        assert_eq!((sum.ptr, sum.col.to_vec()), (vec![0, 1, 2, 4], vec![0, 1, 0, 2]));
         assert_eq!(sum.val, [2.0, 0.0, 1.0, 5.0]);
     }
 }

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use crate::error::Result;
 use crate::linalg::memory::{copied, reserved};
-use crate::linalg::{Matrix, Operator};
+use crate::linalg::{Array, Matrix, Operator};
 
 /// Columns that take one pass over the matrix.
 const TOGETHER: usize = 3;
@@ -15,13 +15,13 @@ const TOGETHER: usize = 3;
 pub struct Symmetric {
     pub ptr: Vec<usize>,
     /// 32 bits: a matrix has less than 2^32 rows.
-    pub col: Vec<u32>,
-    pub val: Vec<f64>,
+    pub col: Array<u32>,
+    pub val: Array<f64>,
 }
 
 impl Symmetric {
-    pub fn new(ptr: Vec<usize>, col: Vec<u32>, val: Vec<f64>) -> Self {
-        Self { ptr, col, val }
+    pub fn new(ptr: Vec<usize>, col: impl Into<Array<u32>>, val: impl Into<Array<f64>>) -> Self {
+        Self { ptr, col: col.into(), val: val.into() }
     }
 
     pub fn order(&self) -> usize {
@@ -49,13 +49,14 @@ impl Symmetric {
         }
     }
 
+    /// Bytes that the library keeps for it.
+    pub fn bytes(&self) -> usize {
+        self.ptr.capacity() * size_of::<usize>() + self.col.bytes() + self.val.bytes()
+    }
+
     /// A copy for `what`.
     pub fn copied(&self, what: &str) -> Result<Self> {
-        Ok(Self {
-            ptr: copied(&self.ptr, what)?,
-            col: copied(&self.col, what)?,
-            val: copied(&self.val, what)?,
-        })
+        Ok(Self::new(copied(&self.ptr, what)?, copied(&self.col, what)?, copied(&self.val, what)?))
     }
 
     /// `y = K x`

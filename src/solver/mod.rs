@@ -1,5 +1,6 @@
 //! From what the host registers to the answer it gets: register, set up, solve, certify, report.
 
+mod body_facts;
 mod certificate;
 mod diagnosis;
 mod factors;
@@ -24,10 +25,12 @@ mod threads;
 mod undetermined;
 mod watch;
 
-pub use crate::body::{Modes, SparseInput, Storage};
+pub use crate::body::{Columns, Modes, SparseInput, Storage};
 pub use crate::constraints::{RowKind, RowsInput};
 pub use crate::error::Proof;
+pub use crate::linalg::Borrowed;
 pub use crate::qp::StepKind;
+pub use body_facts::{BodyFacts, Factors, Origin};
 pub use certificate::{Certificate, Entry};
 pub use findings::Findings;
 pub use phases::PhaseReport;

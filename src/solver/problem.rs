@@ -44,6 +44,8 @@ pub(super) struct BodySlot {
     pub body: Body,
     /// How its matrix was given.
     pub form: Option<Form>,
+    /// The host has rewritten the values it keeps, and they were refused: there is no matrix.
+    pub spoiled: bool,
     pub inverse: Option<Inverse>,
     /// The last analysis of a matrix with the pattern of this one.
     pub symbolic: Option<Arc<Symbolic>>,

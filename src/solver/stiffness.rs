@@ -3,11 +3,11 @@
 use std::sync::Arc;
 
 use crate::body::{
-    check_diagonal, from_dense, from_sparse, from_split, same_bits, same_matrix, same_pattern, Form, Places,
-    SparseInput, Storage,
+    check_diagonal, check_finite, from_borrowed, from_dense, from_sparse, from_split, same_bits, same_matrix,
+    same_pattern, Columns, Form, Places, SparseInput, Storage,
 };
 use crate::error::{Error, Kind, Result};
-use crate::linalg::Symmetric;
+use crate::linalg::{Borrowed, Symmetric};
 use crate::solver::problem::{check_ld, Problem};
 
 impl Problem {
@@ -45,13 +45,31 @@ impl Problem {
         self.keep_stiffness(body, stiffness, Form::Dense(storage))
     }
 
+    /// `K_p` by the rows of its lower triangle, the values left where the host has them; false, and nothing is done, where
+    /// the rows are not in the form in which the matrix is kept.
+    pub fn borrow_stiffness(
+        &mut self,
+        body: usize,
+        ptr: &[usize],
+        col: Columns<'_>,
+        val: Borrowed<f64>,
+    ) -> Result<bool> {
+        self.check_length(body, "n", ptr.len() - 1)?;
+        let Some(k) = from_borrowed(ptr, col, val).map_err(|e| e.body(body))? else { return Ok(false) };
+        let form = Form::Sparse(Places::of_lower(&k));
+        self.keep_stiffness(body, k, form)?;
+        Ok(true)
+    }
+
     fn keep_stiffness(&mut self, body: usize, stiffness: Symmetric, form: Form) -> Result<()> {
         let old = self.slot(body)?.body.stiffness.as_ref();
-        let unchanged = old.is_some_and(|old| same_matrix(old, &stiffness));
-        let analysed = old.is_some_and(|old| same_pattern(old, &stiffness));
+        // what lies with the host may be what is given now
+        let unchanged = old.is_some_and(|old| !old.val.is_of_host() && same_matrix(old, &stiffness));
+        let analysed = old.is_some_and(|old| !old.col.is_of_host() && same_pattern(old, &stiffness));
         let slot = self.changed(body, unchanged)?;
         slot.body.stiffness = Some(Arc::new(stiffness));
         slot.form = Some(form);
+        slot.spoiled = false;
         if !unchanged {
             slot.keys = None;
         }
@@ -84,11 +102,7 @@ impl Problem {
         if places.is_split() {
             self.check_length(body, "n", diag.len())?;
         }
-        if val.len() != places.entries() {
-            let what = format!("the pattern has {} entries, not {}", places.entries(), val.len());
-            let error = Error::argument("nnz", what);
-            return Err(error.value(val.len() as f64).limit(places.entries() as f64));
-        }
+        places.check_number(val.len())?;
         places.values(self.stiffness(body)?, diag, val, self.settings.symmetry_tolerance)
     }
 
@@ -110,7 +124,7 @@ impl Problem {
     fn keep_values(&mut self, body: usize, val: Vec<f64>) -> Result<()> {
         let stiffness = self.bodies[body].body.stiffness.as_mut();
         let k = Arc::make_mut(stiffness.ok_or_else(|| not_given(body))?);
-        let old = std::mem::replace(&mut k.val, val);
+        let old = std::mem::replace(&mut k.val, val.into());
         if let Err(error) = check_diagonal(k) {
             k.val = old;
             return Err(error.body(body));
@@ -119,6 +133,38 @@ impl Problem {
         let slot = self.changed(body, unchanged)?;
         slot.keys.take_if(|_| !unchanged);
         Ok(())
+    }
+
+    /// Whether the values of the matrix lie with the host.
+    pub fn is_borrowed(&self, body: usize) -> bool {
+        self.stiffness(body).is_ok_and(|k| k.val.is_of_host())
+    }
+
+    /// New values for a matrix whose values lie with the host, in this array from now on. They count as changed, also for
+    /// other bodies that borrow the same array. Where they are refused and the array is that of before, there is no matrix
+    /// until they are given again.
+    pub fn borrow_values(&mut self, body: usize, val: Borrowed<f64>) -> Result<()> {
+        self.places(body, false)?.check_number(val.len()).map_err(|e| e.body(body))?;
+        let stiffness = self.bodies[body].body.stiffness.as_mut();
+        let k = Arc::make_mut(stiffness.ok_or_else(|| not_given(body))?);
+        let old = std::mem::replace(&mut k.val, val.into());
+        let row_of = |at: usize| k.ptr.partition_point(|&start| start <= at) - 1;
+        let checked = check_finite(&k.val, "val", row_of).and_then(|()| check_diagonal(k));
+        let (array, rewritten) = (k.val.as_ptr(), k.val.as_ptr() == old.as_ptr());
+        if checked.is_err() {
+            k.val = old;
+        }
+        let borrows = |p: &usize| {
+            let k = self.bodies[*p].body.stiffness.as_ref();
+            k.is_some_and(|k| k.val.is_of_host() && k.val.as_ptr() == array)
+        };
+        let bodies: Vec<usize> = (0..self.bodies.len()).filter(borrows).collect();
+        for p in bodies.into_iter().filter(|_| checked.is_ok() || rewritten) {
+            let slot = self.changed(p, false)?;
+            slot.keys = None;
+            slot.spoiled = checked.is_err();
+        }
+        checked.map_err(|e| e.body(body))
     }
 
     fn stiffness(&self, body: usize) -> Result<&Symmetric> {

@@ -1,5 +1,5 @@
 # ---- bodies: values, forms of a matrix, numbering
-foreach(driver values)
+foreach(driver values borrow)
   add_executable(c_${driver} c/${driver}.c)
   target_link_libraries(c_${driver} PRIVATE handover_c)
 endforeach()
@@ -10,5 +10,8 @@ foreach(driver values)
 endforeach()
 
 claim_silent("C: new values on an old pattern cost one factorisation, refused ones nothing" $<TARGET_FILE:c_values>)
-claim_silent("Fortran: new values on an old pattern cost one factorisation, refused ones nothing" $<TARGET_FILE:fortran_values>)
+claim_silent("C: borrowed values are not copied, rewritten in place they count for every body" $<TARGET_FILE:c_borrow>)
+claim_silent("Fortran: new values, copied or borrowed, cost one factorisation, refused ones nothing" $<TARGET_FILE:fortran_values>)
 claim_clean("valgrind finds nothing in the C driver of new values" $<TARGET_FILE:c_values>)
+claim_clean("valgrind finds nothing in the C driver of borrowed values" $<TARGET_FILE:c_borrow>)
+claim_clean("valgrind finds nothing in the Fortran driver of new and borrowed values" $<TARGET_FILE:fortran_values>)

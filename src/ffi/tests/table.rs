@@ -4,8 +4,9 @@ use std::ptr::{null, null_mut};
 
 use super::super::*;
 
-pub const SOURCES: [&str; 15] = [
+pub const SOURCES: [&str; 16] = [
     include_str!("../body.rs"),
+    include_str!("../body_info.rs"),
     include_str!("../diagnosis.rs"),
     include_str!("../error_store.rs"),
     include_str!("../null_space.rs"),
@@ -48,6 +49,8 @@ pub fn statuses(p: *mut feti_problem) -> Vec<(&'static str, i32)> {
         feti_body_values(0, 0, null());
         feti_body_values_split(0, 0, null(), 0, null());
         feti_body_values_dense(0, 0, null(), 0);
+        feti_body_components(0, 0, null_mut());
+        feti_body_info(0, null_mut());
         feti_body_null_space(0, 0, 0, null(), 0, 0);
         feti_body_null_space_get(0, 0, null_mut(), null_mut(), 0);
         feti_body_coordinates(0, 0, 0, null(), null(), null(), 0);

@@ -17,6 +17,7 @@ program values
   call by_rows
   call split
   call dense
+  call borrowed
   call refused
 
 contains
@@ -154,6 +155,50 @@ contains
     call feti_body_values(p, 1, bar(second))
     call check_step(p, second, before, [0, 1], 'second dense matrix')
     call feti_problem_destroy(p)
+  end subroutine
+
+  !> Values that stay with the host, in an array that the pointer has allocated: rewritten, refused, replaced.
+  subroutine borrowed
+    type(feti_problem) :: p
+    type(feti_body_facts) :: facts
+    character(200) :: text
+    real(dp), pointer, contiguous :: val(:), other(:), nothing(:)
+    integer(int64) :: before(2)
+    integer :: stat, wide
+
+    nothing => null()
+    do wide = 0, 1
+      before = 0
+      allocate (val(5), other(5))
+      call begin(p)
+      val = entries(first, row, col)
+      if (wide == 0) then
+        call feti_body_stiffness_borrow(p, 1, ptr, col, val, FETI_LOWER)
+      else
+        call feti_body_stiffness_borrow(p, 1, int(ptr, int64), int(col, int64), val, FETI_LOWER)
+      end if
+      call feti_body_info(p, 1, facts)
+      call require(facts%borrowed == 1, 'the values are copied')
+      call check_step(p, first, before, [1, 1], 'borrowed values')
+      val = entries(second, row, col)
+      call feti_body_values_borrow(p, 1, val)
+      call check_step(p, second, before, [0, 1], 'values rewritten in place')
+      call feti_body_values(p, 1, entries(first, row, col), stat, text)
+      call require(stat == FETI_STATE .and. index(text, 'feti_body_values_borrow') > 0, 'values of a copy: ' // text)
+      other = entries(first, row, col)
+      call feti_body_values_borrow(p, 1, other)
+      deallocate (val)
+      call check_step(p, first, before, [0, 1], 'values in another array')
+      call feti_body_values_borrow(p, 1, nothing, stat)
+      call require(stat == FETI_ARGUMENT - 4, 'values of a pointer that leads nowhere')
+      call feti_body_stiffness_borrow(p, 1, ptr, col, nothing, FETI_LOWER, stat)
+      call require(stat == FETI_ARGUMENT - 6, 'a matrix whose values lead nowhere')
+      call feti_body_stiffness_borrow(p, 1, ptr + 1, col, other, FETI_LOWER, stat)
+      call require(stat == FETI_ARGUMENT - 5, 'a matrix with too few values')
+      call check_step(p, first, before, [0, 0], 'after refused calls')
+      call feti_problem_destroy(p)
+      deallocate (other)
+    end do
   end subroutine
 
   !> Refused values cost nothing and change nothing; the text counts from 1.
