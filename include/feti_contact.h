@@ -128,6 +128,12 @@
 #define FETI_EQUALITY 2
 
 /**
+ * In place of a body: all bodies, by the host's numbers of feti_body_numbering_i32 or _i64 where
+ * they have some.
+ */
+#define FETI_ALL -1
+
+/**
  * Storage: every entry of the symmetric matrix is given.
  */
 #define FETI_FULL 0
@@ -847,12 +853,15 @@ int32_t feti_body_coordinates(struct feti_problem *p,
 /**
  * Gives the load of a body.
  *
- * The load is copied and holds until it is given again; a body without one has zero load. After a
- * failure the body keeps the load it had.
+ * The load is copied and holds until it is given again; a body without one has zero load. With
+ * FETI_ALL the array holds the loads of all bodies: by the host's numbers where they have some,
+ * entries of no unknown not looked at; else one body after the other. After a failure the loads
+ * are as they were.
  *
  * @param[in] p    (scalar) the handle
- * @param[in] body (scalar) number of the body, from 0
- * @param[in] n    (scalar) unknowns of the body
+ * @param[in] body (scalar) number of the body, from 0, or FETI_ALL
+ * @param[in] n    (scalar) unknowns of the body; with FETI_ALL at least the largest number + 1,
+ *                 without numbers all unknowns
  * @param[in] f    (n) force
  *
  * Safety: The array has the given shape.
@@ -1118,6 +1127,54 @@ int32_t feti_body_fixing(struct feti_problem *p, int64_t body, int64_t r, int64_
 int32_t feti_body_fixing_set(struct feti_problem *p, int64_t body, int64_t r, const int64_t *dof);
 
 /**
+ * Gives the host's own numbers of the unknowns of a body, with 32-bit integers.
+ *
+ * A host that numbers all unknowns through gives every body its share; a number names one unknown
+ * of all bodies. Then FETI_ALL as body in feti_body_load, feti_displacement and feti_reaction
+ * means arrays in these numbers, and so do rows whose bodies are NULL in feti_rows_add_i32 and
+ * _i64. All bodies have numbers then: FETI_STATE names one that has not. The numbers are copied;
+ * calling again replaces them. Rows that are there stay on their unknowns. After a failure the
+ * body keeps the numbers it had.
+ *
+ * @param[in] p      (scalar) the handle
+ * @param[in] body   (scalar) number of the body, from 0
+ * @param[in] n      (scalar) unknowns of the body
+ * @param[in] number (n) number of each unknown, counted from `base`, none that of another unknown
+ * @param[in] base   (scalar) 0 or 1: what the numbers count from
+ *
+ * Safety: The array has the given shape.
+ */
+int32_t feti_body_numbering_i32(struct feti_problem *p,
+                                int64_t body,
+                                int64_t n,
+                                const int32_t *number,
+                                int32_t base);
+
+/**
+ * Gives the host's own numbers of the unknowns of a body, with 64-bit integers.
+ *
+ * A host that numbers all unknowns through gives every body its share; a number names one unknown
+ * of all bodies. Then FETI_ALL as body in feti_body_load, feti_displacement and feti_reaction
+ * means arrays in these numbers, and so do rows whose bodies are NULL in feti_rows_add_i32 and
+ * _i64. All bodies have numbers then: FETI_STATE names one that has not. The numbers are copied;
+ * calling again replaces them. Rows that are there stay on their unknowns. After a failure the
+ * body keeps the numbers it had.
+ *
+ * @param[in] p      (scalar) the handle
+ * @param[in] body   (scalar) number of the body, from 0
+ * @param[in] n      (scalar) unknowns of the body
+ * @param[in] number (n) number of each unknown, counted from `base`, none that of another unknown
+ * @param[in] base   (scalar) 0 or 1: what the numbers count from
+ *
+ * Safety: The array has the given shape.
+ */
+int32_t feti_body_numbering_i64(struct feti_problem *p,
+                                int64_t body,
+                                int64_t n,
+                                const int64_t *number,
+                                int32_t base);
+
+/**
  * Sets an option that is a number.
  *
  * Holds until it is set again. After a failure the option is as it was.
@@ -1323,11 +1380,14 @@ int32_t feti_on_progress(struct feti_problem *p, feti_progress_fn callback, void
 /**
  * Reads the displacement of a body.
  *
- * FETI_STATE before a solve has given an answer. After a failure nothing is written.
+ * With FETI_ALL the displacement of all bodies: by the host's numbers where they have some,
+ * entries of no unknown as they were; else one body after the other. FETI_STATE before a solve has
+ * given an answer. After a failure nothing is written.
  *
  * @param[in]  p    (scalar) the handle
- * @param[in]  body (scalar) number of the body, from 0
- * @param[in]  n    (scalar) unknowns of the body
+ * @param[in]  body (scalar) number of the body, from 0, or FETI_ALL
+ * @param[in]  n    (scalar) unknowns of the body; with FETI_ALL at least the largest number + 1,
+ *                  without numbers all unknowns
  * @param[out] u    (n) displacement, length
  *
  * Safety: The array has the given shape.
@@ -1337,12 +1397,15 @@ int32_t feti_displacement(struct feti_problem *p, int64_t body, int64_t n, doubl
 /**
  * Reads the force of the rows on a body, -B'lambda, -H'mu or both: `K u = f + r`.
  *
- * FETI_STATE before a solve has given an answer. After a failure nothing is written.
+ * With FETI_ALL the forces on all bodies: by the host's numbers where they have some, entries of
+ * no unknown as they were; else one body after the other. FETI_STATE before a solve has given an
+ * answer. After a failure nothing is written.
  *
  * @param[in]  p    (scalar) the handle
  * @param[in]  kind (scalar) FETI_INEQUALITY, FETI_EQUALITY, or 0 for both
- * @param[in]  body (scalar) number of the body, from 0
- * @param[in]  n    (scalar) unknowns of the body
+ * @param[in]  body (scalar) number of the body, from 0, or FETI_ALL
+ * @param[in]  n    (scalar) unknowns of the body; with FETI_ALL at least the largest number + 1,
+ *                  without numbers all unknowns
  * @param[out] r    (n) force
  *
  * Safety: The array has the given shape.
@@ -1432,7 +1495,8 @@ int32_t feti_counts(struct feti_problem *p, int64_t *bodies, int64_t *dofs, int6
  * @param[in]  row_ptr (rows + 1) row i holds the entries row_ptr[i] to row_ptr[i + 1] - 1; starts
  *                     with `base`
  * @param[in]  body    (row_ptr[rows] - base) body of each entry, counted from `base`; NULL: `dof`
- *                     counts through all bodies
+ *                     is the host's number of the unknown (feti_body_numbering_i32), without
+ *                     numbers it counts through all bodies
  * @param[in]  dof     (row_ptr[rows] - base) unknown of each entry, counted from `base`
  * @param[in]  val     (row_ptr[rows] - base) entries of B or H
  * @param[in]  base    (scalar) 0 or 1: what `row_ptr`, `body` and `dof` count from
@@ -1464,7 +1528,8 @@ int32_t feti_rows_add_i32(struct feti_problem *p,
  * @param[in]  row_ptr (rows + 1) row i holds the entries row_ptr[i] to row_ptr[i + 1] - 1; starts
  *                     with `base`
  * @param[in]  body    (row_ptr[rows] - base) body of each entry, counted from `base`; NULL: `dof`
- *                     counts through all bodies
+ *                     is the host's number of the unknown (feti_body_numbering_i32), without
+ *                     numbers it counts through all bodies
  * @param[in]  dof     (row_ptr[rows] - base) unknown of each entry, counted from `base`
  * @param[in]  val     (row_ptr[rows] - base) entries of B or H
  * @param[in]  base    (scalar) 0 or 1: what `row_ptr`, `body` and `dof` count from

@@ -27,7 +27,7 @@ module feti_contact
   use feti_contact_c, only: &
     ! kinds of rows, storage of K, null spaces, states of contact rows, types of options
     FETI_INEQUALITY, FETI_EQUALITY, FETI_FULL, FETI_LOWER, FETI_UPPER, FETI_EXACT, FETI_CANDIDATES, FETI_COPY, &
-    FETI_BORROW, FETI_ORIGIN_EXACT, FETI_ORIGIN_CANDIDATES, FETI_ORIGIN_COORDINATES, FETI_ORIGIN_FOUND, &
+    FETI_BORROW, FETI_ALL, FETI_ORIGIN_EXACT, FETI_ORIGIN_CANDIDATES, FETI_ORIGIN_COORDINATES, FETI_ORIGIN_FOUND, &
     FETI_ROW_OPEN, FETI_ROW_CLOSED, FETI_ROW_WEAK, FETI_OPTION_F64, FETI_OPTION_I64, FETI_OPTION_STR, &
     ! phases and kinds of steps that a progress function hears of
     FETI_PHASE_SETUP, FETI_PHASE_SOLVE, FETI_STEP_CONJUGATE_GRADIENT, FETI_STEP_EXPANSION, FETI_STEP_RELEASE, &
@@ -57,6 +57,7 @@ module feti_contact
     feti_body_add => body_add, &
     feti_body_components => body_components, &
     feti_body_info => body_info, &
+    feti_body_numbering => body_numbering, &
     feti_body_null_space => body_null_space, &
     feti_body_null_space_get => body_null_space_get, &
     feti_body_coordinates => body_coordinates, &

@@ -5,9 +5,9 @@
 !> Arrays that are not contiguous are copied by the compiler. `stat` and `errmsg`: see feti_contact_base.
 module feti_contact_bodies
   use, intrinsic :: iso_c_binding, only: c_int32_t, c_int64_t, c_loc, c_null_ptr, c_ptr, c_sizeof
-  use, intrinsic :: iso_fortran_env, only: int32, real64
-  use feti_contact_base, only: feti_problem, finish, handle_of, refuse
-  use feti_contact_c, only: FETI_OK, feti_body_facts, &
+  use, intrinsic :: iso_fortran_env, only: int32, int64, real64
+  use feti_contact_base, only: body_index, feti_problem, finish, handle_of, refuse
+  use feti_contact_c, only: FETI_ALL, FETI_OK, feti_body_facts, &
     c_body_add => feti_body_add, &
     c_body_components => feti_body_components, &
     c_body_coordinates => feti_body_coordinates, &
@@ -15,12 +15,30 @@ module feti_contact_bodies
     c_body_info => feti_body_info, &
     c_body_load => feti_body_load, &
     c_body_null_space => feti_body_null_space, &
-    c_body_null_space_get => feti_body_null_space_get
+    c_body_null_space_get => feti_body_null_space_get, &
+    c_body_numbering_i32 => feti_body_numbering_i32, &
+    c_body_numbering_i64 => feti_body_numbering_i64
   implicit none
   private
   public :: body_add, body_null_space, body_null_space_get
   public :: body_coordinates, body_fixing_set, body_load
-  public :: body_components, body_info, feti_body_facts
+  public :: body_numbering, body_components, body_info, feti_body_facts
+
+  !> Load, force; without one f = 0. A second call replaces the first.
+  !>
+  !> call feti_body_load(p, body, f): f(n) of a body.
+  !> call feti_body_load(p, f): of all bodies, f(number) by the numbers of feti_body_numbering, entries of no unknown not
+  !>   looked at; without numbers one body after the other.
+  interface body_load
+    module procedure load_one, load_all
+  end interface
+
+  !> The host's own numbers of the unknowns of a body, number(n), from 1, each naming one unknown of all bodies; int32 or
+  !> int64. Then calls without a body (feti_body_load, feti_displacement, feti_reaction, feti_rows_add) go by these numbers;
+  !> all bodies have some, or none.
+  interface body_numbering
+    module procedure numbering_int32, numbering_int64
+  end interface
 
 contains
 
@@ -120,15 +138,45 @@ contains
       stat, errmsg)
   end subroutine
 
-  !> Load of a body, f(n), force; a body without a load has f = 0. A second call replaces the first.
-  subroutine body_load(p, body, f, stat, errmsg)
+  subroutine load_one(p, body, f, stat, errmsg)
     type(feti_problem), intent(in) :: p
     integer, intent(in) :: body
     real(real64), intent(in), contiguous :: f(:)
     integer, intent(out), optional :: stat
     character(len=*), intent(inout), optional :: errmsg
 
-    call finish(c_body_load(handle_of(p), int(body - 1, c_int64_t), size(f, kind=c_int64_t), f), stat, errmsg)
+    call finish(c_body_load(handle_of(p), body_index(body), size(f, kind=c_int64_t), f), stat, errmsg)
+  end subroutine
+
+  subroutine load_all(p, f, stat, errmsg)
+    type(feti_problem), intent(in) :: p
+    real(real64), intent(in), contiguous :: f(:)
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+
+    call finish(c_body_load(handle_of(p), FETI_ALL, size(f, kind=c_int64_t), f), stat, errmsg)
+  end subroutine
+
+  subroutine numbering_int32(p, body, number, stat, errmsg)
+    type(feti_problem), intent(in) :: p
+    integer, intent(in) :: body
+    integer(int32), intent(in), contiguous :: number(:)
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+
+    call finish(c_body_numbering_i32(handle_of(p), int(body - 1, c_int64_t), size(number, kind=c_int64_t), number, &
+      1_c_int32_t), stat, errmsg)
+  end subroutine
+
+  subroutine numbering_int64(p, body, number, stat, errmsg)
+    type(feti_problem), intent(in) :: p
+    integer, intent(in) :: body
+    integer(int64), intent(in), contiguous :: number(:)
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+
+    call finish(c_body_numbering_i64(handle_of(p), int(body - 1, c_int64_t), size(number, kind=c_int64_t), number, &
+      1_c_int32_t), stat, errmsg)
   end subroutine
 
   !> The connected part of every unknown of a body, component(n), numbered from 1 by their first unknowns. The stiffness

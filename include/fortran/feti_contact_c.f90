@@ -56,6 +56,9 @@ module feti_contact_c
   integer(c_int32_t), parameter, public :: FETI_INEQUALITY = 1_c_int32_t
   !> Kind of rows: `H u = h`.
   integer(c_int32_t), parameter, public :: FETI_EQUALITY = 2_c_int32_t
+  !> In place of a body: all bodies, by the host's numbers of feti_body_numbering_i32 or _i64 where they have
+  !> some.
+  integer(c_int64_t), parameter, public :: FETI_ALL = -1_c_int64_t
   !> Storage: every entry of the symmetric matrix is given.
   integer(c_int32_t), parameter, public :: FETI_FULL = 0_c_int32_t
   !> Storage: entries with column <= row are given.
@@ -403,6 +406,8 @@ module feti_contact_c
   public :: feti_body_null_space_get
   public :: feti_body_fixing
   public :: feti_body_fixing_set
+  public :: feti_body_numbering_i32
+  public :: feti_body_numbering_i64
   public :: feti_set_f64
   public :: feti_set_i64
   public :: feti_set_str
@@ -522,12 +527,14 @@ module feti_contact_c
 
     !> Gives the load of a body.
     !>
-    !> The load is copied and holds until it is given again; a body without one has zero load. After a failure
-    !> the body keeps the load it had.
+    !> The load is copied and holds until it is given again; a body without one has zero load. With FETI_ALL
+    !> the array holds the loads of all bodies: by the host's numbers where they have some, entries of no
+    !> unknown not looked at; else one body after the other. After a failure the loads are as they were.
     !>
     !> @param[in] p    (scalar) the handle
-    !> @param[in] body (scalar) number of the body, from 0
-    !> @param[in] n    (scalar) unknowns of the body
+    !> @param[in] body (scalar) number of the body, from 0, or FETI_ALL
+    !> @param[in] n    (scalar) unknowns of the body; with FETI_ALL at least the largest number + 1, without
+    !>                 numbers all unknowns
     !> @param[in] f    (n) force
     !>
     !> Safety: The array has the given shape.
@@ -847,6 +854,56 @@ module feti_contact_c
       integer(c_int32_t) :: feti_body_fixing_set
     end function feti_body_fixing_set
 
+    !> Gives the host's own numbers of the unknowns of a body, with 32-bit integers.
+    !>
+    !> A host that numbers all unknowns through gives every body its share; a number names one unknown of all
+    !> bodies. Then FETI_ALL as body in feti_body_load, feti_displacement and feti_reaction means arrays in
+    !> these numbers, and so do rows whose bodies are NULL in feti_rows_add_i32 and _i64. All bodies have
+    !> numbers then: FETI_STATE names one that has not. The numbers are copied; calling again replaces them.
+    !> Rows that are there stay on their unknowns. After a failure the body keeps the numbers it had.
+    !>
+    !> @param[in] p      (scalar) the handle
+    !> @param[in] body   (scalar) number of the body, from 0
+    !> @param[in] n      (scalar) unknowns of the body
+    !> @param[in] number (n) number of each unknown, counted from `base`, none that of another unknown
+    !> @param[in] base   (scalar) 0 or 1: what the numbers count from
+    !>
+    !> Safety: The array has the given shape.
+    function feti_body_numbering_i32(p, body, n, number, base) bind(C, name="feti_body_numbering_i32")
+      import
+      type(c_ptr), value :: p
+      integer(c_int64_t), value :: body
+      integer(c_int64_t), value :: n
+      integer(c_int32_t), intent(in) :: number(*)
+      integer(c_int32_t), value :: base
+      integer(c_int32_t) :: feti_body_numbering_i32
+    end function feti_body_numbering_i32
+
+    !> Gives the host's own numbers of the unknowns of a body, with 64-bit integers.
+    !>
+    !> A host that numbers all unknowns through gives every body its share; a number names one unknown of all
+    !> bodies. Then FETI_ALL as body in feti_body_load, feti_displacement and feti_reaction means arrays in
+    !> these numbers, and so do rows whose bodies are NULL in feti_rows_add_i32 and _i64. All bodies have
+    !> numbers then: FETI_STATE names one that has not. The numbers are copied; calling again replaces them.
+    !> Rows that are there stay on their unknowns. After a failure the body keeps the numbers it had.
+    !>
+    !> @param[in] p      (scalar) the handle
+    !> @param[in] body   (scalar) number of the body, from 0
+    !> @param[in] n      (scalar) unknowns of the body
+    !> @param[in] number (n) number of each unknown, counted from `base`, none that of another unknown
+    !> @param[in] base   (scalar) 0 or 1: what the numbers count from
+    !>
+    !> Safety: The array has the given shape.
+    function feti_body_numbering_i64(p, body, n, number, base) bind(C, name="feti_body_numbering_i64")
+      import
+      type(c_ptr), value :: p
+      integer(c_int64_t), value :: body
+      integer(c_int64_t), value :: n
+      integer(c_int64_t), intent(in) :: number(*)
+      integer(c_int32_t), value :: base
+      integer(c_int32_t) :: feti_body_numbering_i64
+    end function feti_body_numbering_i64
+
     !> Sets an option that is a number.
     !>
     !> Holds until it is set again. After a failure the option is as it was.
@@ -1100,11 +1157,14 @@ module feti_contact_c
 
     !> Reads the displacement of a body.
     !>
-    !> FETI_STATE before a solve has given an answer. After a failure nothing is written.
+    !> With FETI_ALL the displacement of all bodies: by the host's numbers where they have some, entries of no
+    !> unknown as they were; else one body after the other. FETI_STATE before a solve has given an answer.
+    !> After a failure nothing is written.
     !>
     !> @param[in]  p    (scalar) the handle
-    !> @param[in]  body (scalar) number of the body, from 0
-    !> @param[in]  n    (scalar) unknowns of the body
+    !> @param[in]  body (scalar) number of the body, from 0, or FETI_ALL
+    !> @param[in]  n    (scalar) unknowns of the body; with FETI_ALL at least the largest number + 1, without
+    !>                  numbers all unknowns
     !> @param[out] u    (n) displacement, length
     !>
     !> Safety: The array has the given shape.
@@ -1119,12 +1179,15 @@ module feti_contact_c
 
     !> Reads the force of the rows on a body, -B'lambda, -H'mu or both: `K u = f + r`.
     !>
-    !> FETI_STATE before a solve has given an answer. After a failure nothing is written.
+    !> With FETI_ALL the forces on all bodies: by the host's numbers where they have some, entries of no
+    !> unknown as they were; else one body after the other. FETI_STATE before a solve has given an answer.
+    !> After a failure nothing is written.
     !>
     !> @param[in]  p    (scalar) the handle
     !> @param[in]  kind (scalar) FETI_INEQUALITY, FETI_EQUALITY, or 0 for both
-    !> @param[in]  body (scalar) number of the body, from 0
-    !> @param[in]  n    (scalar) unknowns of the body
+    !> @param[in]  body (scalar) number of the body, from 0, or FETI_ALL
+    !> @param[in]  n    (scalar) unknowns of the body; with FETI_ALL at least the largest number + 1, without
+    !>                  numbers all unknowns
     !> @param[out] r    (n) force
     !>
     !> Safety: The array has the given shape.
@@ -1242,7 +1305,8 @@ module feti_contact_c
     !> @param[in]  rows    (scalar) number of rows, 0 adds none
     !> @param[in]  row_ptr (rows + 1) row i holds the entries row_ptr[i] to row_ptr[i + 1] - 1; starts with
     !>                     `base`
-    !> @param[in]  body    (row_ptr[rows] - base) body of each entry, counted from `base`; NULL: `dof` counts
+    !> @param[in]  body    (row_ptr[rows] - base) body of each entry, counted from `base`; NULL: `dof` is the
+    !>                     host's number of the unknown (feti_body_numbering_i32), without numbers it counts
     !>                     through all bodies
     !> @param[in]  dof     (row_ptr[rows] - base) unknown of each entry, counted from `base`
     !> @param[in]  val     (row_ptr[rows] - base) entries of B or H
@@ -1277,7 +1341,8 @@ module feti_contact_c
     !> @param[in]  rows    (scalar) number of rows, 0 adds none
     !> @param[in]  row_ptr (rows + 1) row i holds the entries row_ptr[i] to row_ptr[i + 1] - 1; starts with
     !>                     `base`
-    !> @param[in]  body    (row_ptr[rows] - base) body of each entry, counted from `base`; NULL: `dof` counts
+    !> @param[in]  body    (row_ptr[rows] - base) body of each entry, counted from `base`; NULL: `dof` is the
+    !>                     host's number of the unknown (feti_body_numbering_i32), without numbers it counts
     !>                     through all bodies
     !> @param[in]  dof     (row_ptr[rows] - base) unknown of each entry, counted from `base`
     !> @param[in]  val     (row_ptr[rows] - base) entries of B or H

@@ -2,7 +2,7 @@
 
 use super::arrays::{column_major, count, id, input, same, Output};
 use super::guard::{call, enter};
-use super::types::feti_problem;
+use super::types::{feti_problem, FETI_ALL};
 use crate::error::{Error, Result};
 use crate::solver::Problem;
 
@@ -74,14 +74,15 @@ pub unsafe extern "C" fn feti_body_coordinates(
 
 /// Gives the load of a body.
 ///
-/// The load is copied and holds until it is given again; a body without one has zero load. After a failure the body keeps
-/// the load it had.
+/// The load is copied and holds until it is given again; a body without one has zero load. With FETI_ALL the array holds the
+/// loads of all bodies: by the host's numbers where they have some, entries of no unknown not looked at; else one body after
+/// the other. After a failure the loads are as they were.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|
 /// | `p` | in | scalar | the handle |
-/// | `body` | in | scalar | number of the body, from 0 |
-/// | `n` | in | scalar | unknowns of the body |
+/// | `body` | in | scalar | number of the body, from 0, or FETI_ALL |
+/// | `n` | in | scalar | unknowns of the body; with FETI_ALL at least the largest number + 1, without numbers all unknowns |
 /// | `f` | in | n | force |
 ///
 /// # Safety
@@ -89,10 +90,22 @@ pub unsafe extern "C" fn feti_body_coordinates(
 #[no_mangle]
 pub unsafe extern "C" fn feti_body_load(p: *mut feti_problem, body: i64, n: i64, f: *const f64) -> i32 {
     enter(p, call!(feti_body_load(p, body, n, f)), |problem| {
+        if body == FETI_ALL {
+            let n = whole(problem, n)?;
+            // SAFETY: n numbers by the caller's word.
+            return problem.set_all_loads(unsafe { input(f, n, "f") }?);
+        }
         let (body, n) = body_of_order(problem, body, n)?;
         // SAFETY: n numbers by the caller's word.
         problem.set_load(body, unsafe { input(f, n, "f") }?)
     })
+}
+
+/// The length of an array over the unknowns of all bodies.
+pub(super) fn whole(problem: &Problem, n: i64) -> Result<usize> {
+    let n = count(n, "n")?;
+    problem.check_whole(n)?;
+    Ok(n)
 }
 
 /// The body and its number of unknowns, which `n` must be: no array is read with a wrong length.

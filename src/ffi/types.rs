@@ -8,6 +8,9 @@ pub const FETI_INEQUALITY: i32 = 1;
 /// Kind of rows: `H u = h`.
 pub const FETI_EQUALITY: i32 = 2;
 
+/// In place of a body: all bodies, by the host's numbers of feti_body_numbering_i32 or _i64 where they have some.
+pub const FETI_ALL: i64 = -1;
+
 /// Storage: every entry of the symmetric matrix is given.
 pub const FETI_FULL: i32 = 0;
 /// Storage: entries with column <= row are given.

@@ -7,6 +7,7 @@ mod factors;
 mod fallback;
 mod findings;
 mod finish;
+mod numbering;
 mod operators;
 mod paper;
 mod phases;

@@ -12,6 +12,7 @@ use crate::linalg::memory::{copied, zeros};
 use crate::linalg::vector::first_non_finite;
 use crate::linalg::Matrix;
 use crate::solver::findings::Findings;
+use crate::solver::numbering::Numbering;
 use crate::solver::phases::Phases;
 use crate::solver::report::{Counts, Report, Work};
 use crate::solver::results::Answer;
@@ -27,6 +28,7 @@ pub struct Problem {
     pub(super) bodies: Vec<BodySlot>,
     pub(super) contact: RowSet,
     pub(super) equalities: RowSet,
+    pub(super) numbering: Numbering,
     pub(super) ready: Option<Ready>,
     pub(super) answer: Option<Arc<Answer>>,
     pub(super) findings: Option<Findings>,
@@ -46,6 +48,8 @@ pub(super) struct BodySlot {
     pub form: Option<Form>,
     /// The host has rewritten the values it keeps, and they were refused: there is no matrix.
     pub spoiled: bool,
+    /// The host's numbers of its unknowns.
+    pub numbers: Option<Vec<usize>>,
     pub inverse: Option<Inverse>,
     /// The last analysis of a matrix with the pattern of this one.
     pub symbolic: Option<Arc<Symbolic>>,
@@ -195,9 +199,15 @@ impl Problem {
         Ok(())
     }
 
-    /// Adds rows and returns the number of the first among those of its kind.
+    /// Adds rows and returns the number of the first among those of its kind. Without `body` they go by the host's numbers
+    /// of the unknowns, where there are some.
     pub fn add_rows(&mut self, kind: RowKind, rows: RowsInput<'_>) -> Result<usize> {
         let offsets = self.offsets();
+        let places = match rows.body {
+            Some(_) => None,
+            None => self.places_of(rows.ptr, rows.dof)?,
+        };
+        let rows = RowsInput { dof: places.as_deref().unwrap_or(rows.dof), ..rows };
         let first = self.rows_mut(kind).add(rows, &offsets)?;
         self.rows_changed();
         Ok(first)

@@ -4,12 +4,13 @@ use std::ptr::{null, null_mut};
 
 use super::super::*;
 
-pub const SOURCES: [&str; 16] = [
+pub const SOURCES: [&str; 17] = [
     include_str!("../body.rs"),
     include_str!("../body_info.rs"),
     include_str!("../diagnosis.rs"),
     include_str!("../error_store.rs"),
     include_str!("../null_space.rs"),
+    include_str!("../numbering.rs"),
     include_str!("../options.rs"),
     include_str!("../phases.rs"),
     include_str!("../problem.rs"),
@@ -51,6 +52,8 @@ pub fn statuses(p: *mut feti_problem) -> Vec<(&'static str, i32)> {
         feti_body_values_dense(0, 0, null(), 0);
         feti_body_components(0, 0, null_mut());
         feti_body_info(0, null_mut());
+        feti_body_numbering_i32(0, 0, null(), 0);
+        feti_body_numbering_i64(0, 0, null(), 0);
         feti_body_null_space(0, 0, 0, null(), 0, 0);
         feti_body_null_space_get(0, 0, null_mut(), null_mut(), 0);
         feti_body_coordinates(0, 0, 0, null(), null(), null(), 0);
