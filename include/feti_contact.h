@@ -128,6 +128,12 @@
 #define FETI_EQUALITY 2
 
 /**
+ * In place of a body: all bodies, by the host's numbers of feti_body_numbering_i32 or _i64 where
+ * they have some.
+ */
+#define FETI_ALL -1
+
+/**
  * Storage: every entry of the symmetric matrix is given.
  */
 #define FETI_FULL 0
@@ -156,6 +162,32 @@
  * Stiffness flag: the matrix is copied.
  */
 #define FETI_COPY 0
+
+/**
+ * Stiffness flag: the values, and columns in 32 bits from 0, stay where the host has them, where
+ * their form allows it.
+ */
+#define FETI_BORROW 1
+
+/**
+ * Null space of a body: vectors of the host that span it (FETI_EXACT).
+ */
+#define FETI_ORIGIN_EXACT 1
+
+/**
+ * Null space of a body: sought among vectors of the host (FETI_CANDIDATES).
+ */
+#define FETI_ORIGIN_CANDIDATES 2
+
+/**
+ * Null space of a body: sought among rigid motions, from coordinates.
+ */
+#define FETI_ORIGIN_COORDINATES 3
+
+/**
+ * Null space of a body: found from K alone.
+ */
+#define FETI_ORIGIN_FOUND 4
 
 /**
  * State of a row: open, its force is zero.
@@ -218,6 +250,70 @@
  * an address.
  */
 typedef struct feti_problem feti_problem;
+
+/**
+ * A body as it is given, and what the last setup has made of it; what is not there yet is -1 or
+ * NaN.
+ */
+typedef struct feti_body_facts {
+  /**
+   * Set by the caller: size of the struct in bytes.
+   */
+  int64_t struct_size;
+  /**
+   * Unknowns.
+   */
+  int64_t unknowns;
+  /**
+   * Entries of K as the host gave them, a diagonal of its own counted; dense: all of the storage.
+   */
+  int64_t entries;
+  /**
+   * Connected parts of K.
+   */
+  int64_t components;
+  /**
+   * Bytes that the library keeps for K.
+   */
+  int64_t matrix_bytes;
+  /**
+   * Arrays of K that stay with the host (FETI_BORROW): 0 none, 1 values, 2 values and columns.
+   */
+  int64_t borrowed;
+  /**
+   * What the null space comes from: FETI_ORIGIN_EXACT, _CANDIDATES, _COORDINATES or _FOUND.
+   */
+  int64_t origin;
+  /**
+   * Dimension of the null space.
+   */
+  int64_t null_space;
+  /**
+   * Entries of the factor.
+   */
+  int64_t factor_entries;
+  /**
+   * Bytes of the factor and, at most, of the work arrays of its computation.
+   */
+  int64_t factor_bytes;
+  /**
+   * The first other body that shares the factor, from 0, -1: none.
+   */
+  int64_t shared_with;
+  /**
+   * 1: the dual operator has its entries, 0: it is known by its products.
+   */
+  int64_t explicit_operator;
+  /**
+   * Bytes of the explicit dual operator.
+   */
+  int64_t operator_bytes;
+  /**
+   * Of a null space that was found: stiffness of the softest other motion over that of the stiffest
+   * in it; else NaN.
+   */
+  double gap;
+} feti_body_facts;
 
 /**
  * What the last solve, or the last setup that failed, has found out about the problem. Numbers
@@ -727,91 +823,6 @@ extern "C" {
 int32_t feti_body_add(struct feti_problem *p, int64_t n, int64_t *body);
 
 /**
- * Gives the stiffness matrix K of a body by rows, with 32-bit indices.
- *
- * The matrix is copied; calling again replaces pattern and values. Columns of a row may come in
- * any order, none twice. With FETI_FULL K must be symmetric within option symmetry_tolerance and
- * is averaged. After a failure the body keeps the matrix it had.
- *
- * @param[in] p       (scalar) the handle
- * @param[in] body    (scalar) number of the body, from 0
- * @param[in] n       (scalar) unknowns of the body
- * @param[in] row_ptr (n + 1) row i holds the entries row_ptr[i] to row_ptr[i + 1] - 1; starts with
- *                    `base`
- * @param[in] col     (row_ptr[n] - base) columns, counted from `base`
- * @param[in] val     (row_ptr[n] - base) entries of K, force per length
- * @param[in] base    (scalar) 0 or 1: what `row_ptr` and `col` count from
- * @param[in] storage (scalar) FETI_FULL, FETI_LOWER or FETI_UPPER
- * @param[in] flags   (scalar) FETI_COPY
- *
- * Safety: The arrays have the given shapes.
- */
-int32_t feti_body_stiffness_i32(struct feti_problem *p,
-                                int64_t body,
-                                int64_t n,
-                                const int32_t *row_ptr,
-                                const int32_t *col,
-                                const double *val,
-                                int32_t base,
-                                int32_t storage,
-                                int32_t flags);
-
-/**
- * Gives the stiffness matrix K of a body by rows, with 64-bit indices.
- *
- * The matrix is copied; calling again replaces pattern and values. Columns of a row may come in
- * any order, none twice. With FETI_FULL K must be symmetric within option symmetry_tolerance and
- * is averaged. After a failure the body keeps the matrix it had.
- *
- * @param[in] p       (scalar) the handle
- * @param[in] body    (scalar) number of the body, from 0
- * @param[in] n       (scalar) unknowns of the body
- * @param[in] row_ptr (n + 1) row i holds the entries row_ptr[i] to row_ptr[i + 1] - 1; starts with
- *                    `base`
- * @param[in] col     (row_ptr[n] - base) columns, counted from `base`
- * @param[in] val     (row_ptr[n] - base) entries of K, force per length
- * @param[in] base    (scalar) 0 or 1: what `row_ptr` and `col` count from
- * @param[in] storage (scalar) FETI_FULL, FETI_LOWER or FETI_UPPER
- * @param[in] flags   (scalar) FETI_COPY
- *
- * Safety: The arrays have the given shapes.
- */
-int32_t feti_body_stiffness_i64(struct feti_problem *p,
-                                int64_t body,
-                                int64_t n,
-                                const int64_t *row_ptr,
-                                const int64_t *col,
-                                const double *val,
-                                int32_t base,
-                                int32_t storage,
-                                int32_t flags);
-
-/**
- * Gives the stiffness matrix K of a body as a dense matrix, for boundary elements and condensed
- * bodies.
- *
- * The matrix is copied; calling again replaces it. With FETI_LOWER and FETI_UPPER the other
- * triangle is not read. After a failure the body keeps the matrix it had.
- *
- * @param[in] p       (scalar) the handle
- * @param[in] body    (scalar) number of the body, from 0
- * @param[in] n       (scalar) unknowns of the body
- * @param[in] k       (ld * n) column-major: K_ij is k[i + ld j], force per length
- * @param[in] ld      (scalar) >= n
- * @param[in] storage (scalar) FETI_FULL, FETI_LOWER or FETI_UPPER
- * @param[in] flags   (scalar) FETI_COPY
- *
- * Safety: The array has the given shape.
- */
-int32_t feti_body_stiffness_dense(struct feti_problem *p,
-                                  int64_t body,
-                                  int64_t n,
-                                  const double *k,
-                                  int64_t ld,
-                                  int32_t storage,
-                                  int32_t flags);
-
-/**
  * Gives position and direction of every unknown of a body, from which candidates for its null
  * space are made.
  *
@@ -842,17 +853,49 @@ int32_t feti_body_coordinates(struct feti_problem *p,
 /**
  * Gives the load of a body.
  *
- * The load is copied and holds until it is given again; a body without one has zero load. After a
- * failure the body keeps the load it had.
+ * The load is copied and holds until it is given again; a body without one has zero load. With
+ * FETI_ALL the array holds the loads of all bodies: by the host's numbers where they have some,
+ * entries of no unknown not looked at; else one body after the other. After a failure the loads
+ * are as they were.
  *
  * @param[in] p    (scalar) the handle
- * @param[in] body (scalar) number of the body, from 0
- * @param[in] n    (scalar) unknowns of the body
+ * @param[in] body (scalar) number of the body, from 0, or FETI_ALL
+ * @param[in] n    (scalar) unknowns of the body; with FETI_ALL at least the largest number + 1,
+ *                 without numbers all unknowns
  * @param[in] f    (n) force
  *
  * Safety: The array has the given shape.
  */
 int32_t feti_body_load(struct feti_problem *p, int64_t body, int64_t n, const double *f);
+
+/**
+ * Tells the connected part of every unknown of a body.
+ *
+ * A body may be in several parts that share no entry of K but zeros. They are numbered from 0 by
+ * their first unknowns. FETI_STATE before the stiffness matrix is given. After a failure nothing
+ * is written.
+ *
+ * @param[in]  p         (scalar) the handle
+ * @param[in]  body      (scalar) number of the body, from 0
+ * @param[in]  n         (scalar) unknowns of the body
+ * @param[out] component (n) part of each unknown, from 0
+ *
+ * Safety: The array has the given shape.
+ */
+int32_t feti_body_components(struct feti_problem *p, int64_t body, int64_t n, int64_t *component);
+
+/**
+ * Tells what is known about a body: its matrix, its null space, its factor, its dual operator.
+ *
+ * Nothing is computed but the connected parts. After a failure nothing is written.
+ *
+ * @param[in]     p    (scalar) the handle
+ * @param[in]     body (scalar) number of the body, from 0
+ * @param[in,out] out  (scalar) `struct_size` set, at least 16
+ *
+ * Safety: `out` leads to `struct_size` writable bytes.
+ */
+int32_t feti_body_info(struct feti_problem *p, int64_t body, struct feti_body_facts *out);
 
 /**
  * What the last solve, or the last setup that failed, has found out about the problem.
@@ -1084,6 +1127,54 @@ int32_t feti_body_fixing(struct feti_problem *p, int64_t body, int64_t r, int64_
 int32_t feti_body_fixing_set(struct feti_problem *p, int64_t body, int64_t r, const int64_t *dof);
 
 /**
+ * Gives the host's own numbers of the unknowns of a body, with 32-bit integers.
+ *
+ * A host that numbers all unknowns through gives every body its share; a number names one unknown
+ * of all bodies. Then FETI_ALL as body in feti_body_load, feti_displacement and feti_reaction
+ * means arrays in these numbers, and so do rows whose bodies are NULL in feti_rows_add_i32 and
+ * _i64. All bodies have numbers then: FETI_STATE names one that has not. The numbers are copied;
+ * calling again replaces them. Rows that are there stay on their unknowns. After a failure the
+ * body keeps the numbers it had.
+ *
+ * @param[in] p      (scalar) the handle
+ * @param[in] body   (scalar) number of the body, from 0
+ * @param[in] n      (scalar) unknowns of the body
+ * @param[in] number (n) number of each unknown, counted from `base`, none that of another unknown
+ * @param[in] base   (scalar) 0 or 1: what the numbers count from
+ *
+ * Safety: The array has the given shape.
+ */
+int32_t feti_body_numbering_i32(struct feti_problem *p,
+                                int64_t body,
+                                int64_t n,
+                                const int32_t *number,
+                                int32_t base);
+
+/**
+ * Gives the host's own numbers of the unknowns of a body, with 64-bit integers.
+ *
+ * A host that numbers all unknowns through gives every body its share; a number names one unknown
+ * of all bodies. Then FETI_ALL as body in feti_body_load, feti_displacement and feti_reaction
+ * means arrays in these numbers, and so do rows whose bodies are NULL in feti_rows_add_i32 and
+ * _i64. All bodies have numbers then: FETI_STATE names one that has not. The numbers are copied;
+ * calling again replaces them. Rows that are there stay on their unknowns. After a failure the
+ * body keeps the numbers it had.
+ *
+ * @param[in] p      (scalar) the handle
+ * @param[in] body   (scalar) number of the body, from 0
+ * @param[in] n      (scalar) unknowns of the body
+ * @param[in] number (n) number of each unknown, counted from `base`, none that of another unknown
+ * @param[in] base   (scalar) 0 or 1: what the numbers count from
+ *
+ * Safety: The array has the given shape.
+ */
+int32_t feti_body_numbering_i64(struct feti_problem *p,
+                                int64_t body,
+                                int64_t n,
+                                const int64_t *number,
+                                int32_t base);
+
+/**
  * Sets an option that is a number.
  *
  * Holds until it is set again. After a failure the option is as it was.
@@ -1289,11 +1380,14 @@ int32_t feti_on_progress(struct feti_problem *p, feti_progress_fn callback, void
 /**
  * Reads the displacement of a body.
  *
- * FETI_STATE before a solve has given an answer. After a failure nothing is written.
+ * With FETI_ALL the displacement of all bodies: by the host's numbers where they have some,
+ * entries of no unknown as they were; else one body after the other. FETI_STATE before a solve has
+ * given an answer. After a failure nothing is written.
  *
  * @param[in]  p    (scalar) the handle
- * @param[in]  body (scalar) number of the body, from 0
- * @param[in]  n    (scalar) unknowns of the body
+ * @param[in]  body (scalar) number of the body, from 0, or FETI_ALL
+ * @param[in]  n    (scalar) unknowns of the body; with FETI_ALL at least the largest number + 1,
+ *                  without numbers all unknowns
  * @param[out] u    (n) displacement, length
  *
  * Safety: The array has the given shape.
@@ -1303,12 +1397,15 @@ int32_t feti_displacement(struct feti_problem *p, int64_t body, int64_t n, doubl
 /**
  * Reads the force of the rows on a body, -B'lambda, -H'mu or both: `K u = f + r`.
  *
- * FETI_STATE before a solve has given an answer. After a failure nothing is written.
+ * With FETI_ALL the forces on all bodies: by the host's numbers where they have some, entries of
+ * no unknown as they were; else one body after the other. FETI_STATE before a solve has given an
+ * answer. After a failure nothing is written.
  *
  * @param[in]  p    (scalar) the handle
  * @param[in]  kind (scalar) FETI_INEQUALITY, FETI_EQUALITY, or 0 for both
- * @param[in]  body (scalar) number of the body, from 0
- * @param[in]  n    (scalar) unknowns of the body
+ * @param[in]  body (scalar) number of the body, from 0, or FETI_ALL
+ * @param[in]  n    (scalar) unknowns of the body; with FETI_ALL at least the largest number + 1,
+ *                  without numbers all unknowns
  * @param[out] r    (n) force
  *
  * Safety: The array has the given shape.
@@ -1398,7 +1495,8 @@ int32_t feti_counts(struct feti_problem *p, int64_t *bodies, int64_t *dofs, int6
  * @param[in]  row_ptr (rows + 1) row i holds the entries row_ptr[i] to row_ptr[i + 1] - 1; starts
  *                     with `base`
  * @param[in]  body    (row_ptr[rows] - base) body of each entry, counted from `base`; NULL: `dof`
- *                     counts through all bodies
+ *                     is the host's number of the unknown (feti_body_numbering_i32), without
+ *                     numbers it counts through all bodies
  * @param[in]  dof     (row_ptr[rows] - base) unknown of each entry, counted from `base`
  * @param[in]  val     (row_ptr[rows] - base) entries of B or H
  * @param[in]  base    (scalar) 0 or 1: what `row_ptr`, `body` and `dof` count from
@@ -1430,7 +1528,8 @@ int32_t feti_rows_add_i32(struct feti_problem *p,
  * @param[in]  row_ptr (rows + 1) row i holds the entries row_ptr[i] to row_ptr[i + 1] - 1; starts
  *                     with `base`
  * @param[in]  body    (row_ptr[rows] - base) body of each entry, counted from `base`; NULL: `dof`
- *                     counts through all bodies
+ *                     is the host's number of the unknown (feti_body_numbering_i32), without
+ *                     numbers it counts through all bodies
  * @param[in]  dof     (row_ptr[rows] - base) unknown of each entry, counted from `base`
  * @param[in]  val     (row_ptr[rows] - base) entries of B or H
  * @param[in]  base    (scalar) 0 or 1: what `row_ptr`, `body` and `dof` count from
@@ -1636,6 +1735,171 @@ const char *feti_version(void);
 int32_t feti_version_number(void);
 
 /**
+ * Gives the stiffness matrix K of a body by rows, with 32-bit indices.
+ *
+ * The matrix is copied; calling again replaces pattern and values. Columns of a row may come in
+ * any order, none twice. With FETI_FULL K must be symmetric within option symmetry_tolerance and
+ * is averaged. After a failure the body keeps the matrix it had.
+ *
+ * With FETI_BORROW the values, and columns in 32 bits counted from 0, are not copied if storage is
+ * FETI_LOWER, columns ascend and every row ends with its diagonal entry; otherwise all is copied
+ * (`borrowed` of feti_body_info tells). Borrowed arrays stay readable until the matrix is replaced
+ * or the problem destroyed, and unchanged but for this: between two calls the values may be
+ * rewritten, and the next call then is feti_body_values with the same array.
+ *
+ * @param[in] p       (scalar) the handle
+ * @param[in] body    (scalar) number of the body, from 0
+ * @param[in] n       (scalar) unknowns of the body
+ * @param[in] row_ptr (n + 1) row i holds the entries row_ptr[i] to row_ptr[i + 1] - 1; starts with
+ *                    `base`
+ * @param[in] col     (row_ptr[n] - base) columns, counted from `base`
+ * @param[in] val     (row_ptr[n] - base) entries of K, force per length
+ * @param[in] base    (scalar) 0 or 1: what `row_ptr` and `col` count from
+ * @param[in] storage (scalar) FETI_FULL, FETI_LOWER or FETI_UPPER
+ * @param[in] flags   (scalar) FETI_COPY or FETI_BORROW
+ *
+ * Safety: The arrays have the given shapes.
+ */
+int32_t feti_body_stiffness_i32(struct feti_problem *p,
+                                int64_t body,
+                                int64_t n,
+                                const int32_t *row_ptr,
+                                const int32_t *col,
+                                const double *val,
+                                int32_t base,
+                                int32_t storage,
+                                int32_t flags);
+
+/**
+ * Gives the stiffness matrix K of a body by rows, with 64-bit indices.
+ *
+ * The matrix is copied; calling again replaces pattern and values. Columns of a row may come in
+ * any order, none twice. With FETI_FULL K must be symmetric within option symmetry_tolerance and
+ * is averaged. After a failure the body keeps the matrix it had.
+ *
+ * With FETI_BORROW the values, and columns in 32 bits counted from 0, are not copied if storage is
+ * FETI_LOWER, columns ascend and every row ends with its diagonal entry; otherwise all is copied
+ * (`borrowed` of feti_body_info tells). Borrowed arrays stay readable until the matrix is replaced
+ * or the problem destroyed, and unchanged but for this: between two calls the values may be
+ * rewritten, and the next call then is feti_body_values with the same array.
+ *
+ * @param[in] p       (scalar) the handle
+ * @param[in] body    (scalar) number of the body, from 0
+ * @param[in] n       (scalar) unknowns of the body
+ * @param[in] row_ptr (n + 1) row i holds the entries row_ptr[i] to row_ptr[i + 1] - 1; starts with
+ *                    `base`
+ * @param[in] col     (row_ptr[n] - base) columns, counted from `base`
+ * @param[in] val     (row_ptr[n] - base) entries of K, force per length
+ * @param[in] base    (scalar) 0 or 1: what `row_ptr` and `col` count from
+ * @param[in] storage (scalar) FETI_FULL, FETI_LOWER or FETI_UPPER
+ * @param[in] flags   (scalar) FETI_COPY or FETI_BORROW
+ *
+ * Safety: The arrays have the given shapes.
+ */
+int32_t feti_body_stiffness_i64(struct feti_problem *p,
+                                int64_t body,
+                                int64_t n,
+                                const int64_t *row_ptr,
+                                const int64_t *col,
+                                const double *val,
+                                int32_t base,
+                                int32_t storage,
+                                int32_t flags);
+
+/**
+ * Gives the stiffness matrix K of a body by rows with a diagonal of its own, with 32-bit indices.
+ *
+ * For codes that keep the diagonal apart. The matrix is copied; calling again replaces pattern and
+ * values. Columns of a row may come in any order, none twice. With FETI_FULL K must be symmetric
+ * within option symmetry_tolerance and is averaged. After a failure the body keeps the matrix it
+ * had.
+ *
+ * @param[in] p       (scalar) the handle
+ * @param[in] body    (scalar) number of the body, from 0
+ * @param[in] n       (scalar) unknowns of the body
+ * @param[in] diag    (n) K_ii, force per length
+ * @param[in] row_ptr (n + 1) row i holds the entries row_ptr[i] to row_ptr[i + 1] - 1; starts with
+ *                    `base`
+ * @param[in] col     (row_ptr[n] - base) columns, counted from `base`, none that of its row
+ * @param[in] val     (row_ptr[n] - base) entries of K beside the diagonal, force per length
+ * @param[in] base    (scalar) 0 or 1: what `row_ptr` and `col` count from
+ * @param[in] storage (scalar) FETI_FULL, FETI_LOWER or FETI_UPPER
+ * @param[in] flags   (scalar) FETI_COPY, or FETI_BORROW, which copies as well: no matrix is kept
+ *                    in this form
+ *
+ * Safety: The arrays have the given shapes.
+ */
+int32_t feti_body_stiffness_split_i32(struct feti_problem *p,
+                                      int64_t body,
+                                      int64_t n,
+                                      const double *diag,
+                                      const int32_t *row_ptr,
+                                      const int32_t *col,
+                                      const double *val,
+                                      int32_t base,
+                                      int32_t storage,
+                                      int32_t flags);
+
+/**
+ * Gives the stiffness matrix K of a body by rows with a diagonal of its own, with 64-bit indices.
+ *
+ * For codes that keep the diagonal apart. The matrix is copied; calling again replaces pattern and
+ * values. Columns of a row may come in any order, none twice. With FETI_FULL K must be symmetric
+ * within option symmetry_tolerance and is averaged. After a failure the body keeps the matrix it
+ * had.
+ *
+ * @param[in] p       (scalar) the handle
+ * @param[in] body    (scalar) number of the body, from 0
+ * @param[in] n       (scalar) unknowns of the body
+ * @param[in] diag    (n) K_ii, force per length
+ * @param[in] row_ptr (n + 1) row i holds the entries row_ptr[i] to row_ptr[i + 1] - 1; starts with
+ *                    `base`
+ * @param[in] col     (row_ptr[n] - base) columns, counted from `base`, none that of its row
+ * @param[in] val     (row_ptr[n] - base) entries of K beside the diagonal, force per length
+ * @param[in] base    (scalar) 0 or 1: what `row_ptr` and `col` count from
+ * @param[in] storage (scalar) FETI_FULL, FETI_LOWER or FETI_UPPER
+ * @param[in] flags   (scalar) FETI_COPY, or FETI_BORROW, which copies as well: no matrix is kept
+ *                    in this form
+ *
+ * Safety: The arrays have the given shapes.
+ */
+int32_t feti_body_stiffness_split_i64(struct feti_problem *p,
+                                      int64_t body,
+                                      int64_t n,
+                                      const double *diag,
+                                      const int64_t *row_ptr,
+                                      const int64_t *col,
+                                      const double *val,
+                                      int32_t base,
+                                      int32_t storage,
+                                      int32_t flags);
+
+/**
+ * Gives the stiffness matrix K of a body as a dense matrix, for boundary elements and condensed
+ * bodies.
+ *
+ * The matrix is copied; calling again replaces it. With FETI_LOWER and FETI_UPPER the other
+ * triangle is not read. After a failure the body keeps the matrix it had.
+ *
+ * @param[in] p       (scalar) the handle
+ * @param[in] body    (scalar) number of the body, from 0
+ * @param[in] n       (scalar) unknowns of the body
+ * @param[in] k       (ld * n) column-major: K_ij is k[i + ld j], force per length
+ * @param[in] ld      (scalar) >= n
+ * @param[in] storage (scalar) FETI_FULL, FETI_LOWER or FETI_UPPER
+ * @param[in] flags   (scalar) FETI_COPY
+ *
+ * Safety: The array has the given shape.
+ */
+int32_t feti_body_stiffness_dense(struct feti_problem *p,
+                                  int64_t body,
+                                  int64_t n,
+                                  const double *k,
+                                  int64_t ld,
+                                  int32_t storage,
+                                  int32_t flags);
+
+/**
  * Applies the generalised inverse of a body, `Y = K+ X`.
  *
  * Runs feti_setup when it is due. X and Y may be the same array. After a failure nothing is
@@ -1689,6 +1953,68 @@ int32_t feti_dual_apply(struct feti_problem *p, int64_t m, const double *x, doub
  * Safety: The array has the given shape.
  */
 int32_t feti_dual_rhs(struct feti_problem *p, int64_t m, double *d);
+
+/**
+ * Gives new values of a stiffness matrix on the pattern it was given with by
+ * feti_body_stiffness_i32 or _i64.
+ *
+ * The values are copied and checked as the first were. The symbolic analysis is kept, and the next
+ * setup costs a numeric factorisation of this body; values that are bit by bit those of before
+ * cost nothing. Storage is that of the first call. FETI_STATE where the matrix has not been given,
+ * or in another form. After a failure the body keeps the values it had.
+ *
+ * Where the values are borrowed (FETI_BORROW) they are not copied: `val` is the array that was
+ * borrowed, rewritten by the host, or another one in its place. They count as changed, also for
+ * other bodies that borrow the same array. After a failure with the same array the body is without
+ * a matrix until it gets other values.
+ *
+ * @param[in] p    (scalar) the handle
+ * @param[in] body (scalar) number of the body, from 0
+ * @param[in] nnz  (scalar) number of values, that of the first call
+ * @param[in] val  (nnz) entries of K in the order of the first call, force per length
+ *
+ * Safety: The array has the given shape.
+ */
+int32_t feti_body_values(struct feti_problem *p, int64_t body, int64_t nnz, const double *val);
+
+/**
+ * Gives new values of a stiffness matrix that was given by feti_body_stiffness_split_i32 or _i64.
+ *
+ * As feti_body_values, for a matrix with a diagonal of its own.
+ *
+ * @param[in] p    (scalar) the handle
+ * @param[in] body (scalar) number of the body, from 0
+ * @param[in] n    (scalar) unknowns of the body
+ * @param[in] diag (n) K_ii, force per length
+ * @param[in] nnz  (scalar) number of values beside the diagonal, that of the first call
+ * @param[in] val  (nnz) entries of K beside the diagonal in the order of the first call, force per
+ *                 length
+ *
+ * Safety: The arrays have the given shapes.
+ */
+int32_t feti_body_values_split(struct feti_problem *p,
+                               int64_t body,
+                               int64_t n,
+                               const double *diag,
+                               int64_t nnz,
+                               const double *val);
+
+/**
+ * Gives new values of a dense stiffness matrix.
+ *
+ * The matrix is copied and checked as the first was, in the same storage. Where zeros stay zeros
+ * the symbolic analysis is kept. FETI_STATE where the matrix has not been given, or in another
+ * form. After a failure the body keeps the matrix it had.
+ *
+ * @param[in] p    (scalar) the handle
+ * @param[in] body (scalar) number of the body, from 0
+ * @param[in] n    (scalar) unknowns of the body
+ * @param[in] k    (ld * n) column-major: K_ij is k[i + ld j], force per length
+ * @param[in] ld   (scalar) >= n
+ *
+ * Safety: The array has the given shape.
+ */
+int32_t feti_body_values_dense(struct feti_problem *p, int64_t body, int64_t n, const double *k, int64_t ld);
 
 #ifdef __cplusplus
 }  // extern "C"

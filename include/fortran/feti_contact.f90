@@ -27,6 +27,7 @@ module feti_contact
   use feti_contact_c, only: &
     ! kinds of rows, storage of K, null spaces, states of contact rows, types of options
     FETI_INEQUALITY, FETI_EQUALITY, FETI_FULL, FETI_LOWER, FETI_UPPER, FETI_EXACT, FETI_CANDIDATES, FETI_COPY, &
+    FETI_BORROW, FETI_ALL, FETI_ORIGIN_EXACT, FETI_ORIGIN_CANDIDATES, FETI_ORIGIN_COORDINATES, FETI_ORIGIN_FOUND, &
     FETI_ROW_OPEN, FETI_ROW_CLOSED, FETI_ROW_WEAK, FETI_OPTION_F64, FETI_OPTION_I64, FETI_OPTION_STR, &
     ! phases and kinds of steps that a progress function hears of
     FETI_PHASE_SETUP, FETI_PHASE_SOLVE, FETI_STEP_CONJUGATE_GRADIENT, FETI_STEP_EXPANSION, FETI_STEP_RELEASE, &
@@ -52,14 +53,23 @@ module feti_contact
     feti_get => get_option, &
     feti_option_count => option_count, &
     feti_option_at => option_at
-  use feti_contact_bodies, only: &
+  use feti_contact_bodies, only: feti_body_facts, &
     feti_body_add => body_add, &
-    feti_body_stiffness => body_stiffness, &
+    feti_body_components => body_components, &
+    feti_body_info => body_info, &
+    feti_body_numbering => body_numbering, &
     feti_body_null_space => body_null_space, &
     feti_body_null_space_get => body_null_space_get, &
     feti_body_coordinates => body_coordinates, &
     feti_body_fixing_set => body_fixing_set, &
     feti_body_load => body_load
+  use feti_contact_stiffness, only: &
+    feti_body_stiffness => body_stiffness, &
+    feti_body_stiffness_borrow => body_stiffness_borrow, &
+    feti_body_stiffness_split => body_stiffness_split, &
+    feti_body_values => body_values, &
+    feti_body_values_borrow => body_values_borrow, &
+    feti_body_values_split => body_values_split
   use feti_contact_rows, only: &
     feti_rows_add => rows_add, &
     feti_rows_rhs => rows_rhs, &

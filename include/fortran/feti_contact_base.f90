@@ -29,7 +29,7 @@ module feti_contact_base
   public :: problem_create, problem_destroy, problem_error
   public :: last_error, last_error_detail, status_name, status_text
   public :: version, version_number
-  public :: handle_of, finish, refuse, c_text, f_text, static_text
+  public :: handle_of, body_index, finish, refuse, c_text, f_text, static_text
 
   abstract interface
     !> A function of the host that hears of every step: 0 goes on, > 0 cancels, < 0 reports a failure of its own.
@@ -191,6 +191,14 @@ contains
     type(feti_problem), intent(in) :: p
 
     handle_of = p%handle
+  end function
+
+  !> A body for a C function that takes FETI_ALL = -1: no number below 1 may stand for all bodies.
+  pure integer(c_int64_t) function body_index(body)
+    integer, intent(in) :: body
+
+    body_index = int(body, c_int64_t) - 1
+    if (body < 1) body_index = body_index - 1
   end function
 
   !> The listener of a problem whose handle has just been accepted by the library.

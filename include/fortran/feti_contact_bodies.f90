@@ -4,34 +4,40 @@
 !> the n of feti_body_add. Bodies and unknowns count from 1. A refused call leaves the problem as it was.
 !> Arrays that are not contiguous are copied by the compiler. `stat` and `errmsg`: see feti_contact_base.
 module feti_contact_bodies
-  use, intrinsic :: iso_c_binding, only: c_double, c_int32_t, c_int64_t, c_loc, c_null_ptr, c_ptr
+  use, intrinsic :: iso_c_binding, only: c_int32_t, c_int64_t, c_loc, c_null_ptr, c_ptr, c_sizeof
   use, intrinsic :: iso_fortran_env, only: int32, int64, real64
-  use feti_contact_base, only: feti_problem, finish, handle_of, refuse
-  use feti_contact_c, only: FETI_COPY, FETI_OK, &
+  use feti_contact_base, only: body_index, feti_problem, finish, handle_of, refuse
+  use feti_contact_c, only: FETI_ALL, FETI_OK, feti_body_facts, &
     c_body_add => feti_body_add, &
+    c_body_components => feti_body_components, &
     c_body_coordinates => feti_body_coordinates, &
     c_body_fixing_set => feti_body_fixing_set, &
+    c_body_info => feti_body_info, &
     c_body_load => feti_body_load, &
     c_body_null_space => feti_body_null_space, &
     c_body_null_space_get => feti_body_null_space_get, &
-    c_body_stiffness_dense => feti_body_stiffness_dense, &
-    c_body_stiffness_i32 => feti_body_stiffness_i32, &
-    c_body_stiffness_i64 => feti_body_stiffness_i64
+    c_body_numbering_i32 => feti_body_numbering_i32, &
+    c_body_numbering_i64 => feti_body_numbering_i64
   implicit none
   private
-  public :: body_add, body_stiffness, body_null_space, body_null_space_get
+  public :: body_add, body_null_space, body_null_space_get
   public :: body_coordinates, body_fixing_set, body_load
+  public :: body_numbering, body_components, body_info, feti_body_facts
 
-  !> Stiffness of a body, n x n, force / length; a second call replaces the first.
+  !> Load, force; without one f = 0. A second call replaces the first.
   !>
-  !> call feti_body_stiffness(p, body, row_ptr, col, val, storage): by rows, row i holds the entries
-  !>   row_ptr(i) .. row_ptr(i+1)-1 of col and val; row_ptr(n+1); all counted from 1, int32 or int64.
-  !> call feti_body_stiffness(p, body, k, storage): the whole matrix k(n,n).
-  !>
-  !> storage: FETI_LOWER or FETI_UPPER (only that triangle is given, of k(n,n) only it is read) or FETI_FULL.
-  !> The columns of the lower triangle are the rows of the upper one: FETI_UPPER.
-  interface body_stiffness
-    module procedure stiffness_int32, stiffness_int64, stiffness_dense
+  !> call feti_body_load(p, body, f): f(n) of a body.
+  !> call feti_body_load(p, f): of all bodies, f(number) by the numbers of feti_body_numbering, entries of no unknown not
+  !>   looked at; without numbers one body after the other.
+  interface body_load
+    module procedure load_one, load_all
+  end interface
+
+  !> The host's own numbers of the unknowns of a body, number(n), from 1, each naming one unknown of all bodies; int32 or
+  !> int64. Then calls without a body (feti_body_load, feti_displacement, feti_reaction, feti_rows_add) go by these numbers;
+  !> all bodies have some, or none.
+  interface body_numbering
+    module procedure numbering_int32, numbering_int64
   end interface
 
 contains
@@ -50,62 +56,6 @@ contains
     status = c_body_add(handle_of(p), int(n, c_int64_t), id)
     if (status == FETI_OK) body = int(id) + 1
     call finish(status, stat, errmsg)
-  end subroutine
-
-  subroutine stiffness_int32(p, body, row_ptr, col, val, storage, stat, errmsg)
-    type(feti_problem), intent(in) :: p
-    integer, intent(in) :: body
-    integer(int32), intent(in), contiguous :: row_ptr(:), col(:)
-    real(real64), intent(in), contiguous :: val(:)
-    integer(c_int32_t), intent(in) :: storage
-    integer, intent(out), optional :: stat
-    character(len=*), intent(inout), optional :: errmsg
-
-    if (size(row_ptr) == 0) then
-      call refuse(4, 'feti_body_stiffness: row_ptr is empty, it has one entry more than the body has unknowns', &
-        stat, errmsg)
-    else if (row_ptr(size(row_ptr)) - 1 > min(size(col), size(val))) then
-      call refuse(5, 'feti_body_stiffness: row_ptr points behind the end of col or val', stat, errmsg)
-    else
-      call finish(c_body_stiffness_i32(handle_of(p), int(body - 1, c_int64_t), size(row_ptr, kind=c_int64_t) - 1, &
-        row_ptr, col, val, 1_c_int32_t, storage, FETI_COPY), stat, errmsg)
-    end if
-  end subroutine
-
-  subroutine stiffness_int64(p, body, row_ptr, col, val, storage, stat, errmsg)
-    type(feti_problem), intent(in) :: p
-    integer, intent(in) :: body
-    integer(int64), intent(in), contiguous :: row_ptr(:), col(:)
-    real(real64), intent(in), contiguous :: val(:)
-    integer(c_int32_t), intent(in) :: storage
-    integer, intent(out), optional :: stat
-    character(len=*), intent(inout), optional :: errmsg
-
-    if (size(row_ptr) == 0) then
-      call refuse(4, 'feti_body_stiffness: row_ptr is empty, it has one entry more than the body has unknowns', &
-        stat, errmsg)
-    else if (row_ptr(size(row_ptr)) - 1 > min(size(col, kind=int64), size(val, kind=int64))) then
-      call refuse(5, 'feti_body_stiffness: row_ptr points behind the end of col or val', stat, errmsg)
-    else
-      call finish(c_body_stiffness_i64(handle_of(p), int(body - 1, c_int64_t), size(row_ptr, kind=c_int64_t) - 1, &
-        row_ptr, col, val, 1_c_int32_t, storage, FETI_COPY), stat, errmsg)
-    end if
-  end subroutine
-
-  subroutine stiffness_dense(p, body, k, storage, stat, errmsg)
-    type(feti_problem), intent(in) :: p
-    integer, intent(in) :: body
-    real(real64), intent(in), contiguous :: k(:, :)
-    integer(c_int32_t), intent(in) :: storage
-    integer, intent(out), optional :: stat
-    character(len=*), intent(inout), optional :: errmsg
-
-    if (size(k, 1) /= size(k, 2)) then
-      call refuse(4, 'feti_body_stiffness: k is not square', stat, errmsg)
-    else
-      call finish(c_body_stiffness_dense(handle_of(p), int(body - 1, c_int64_t), size(k, 1, c_int64_t), &
-        k, size(k, 1, c_int64_t), storage, FETI_COPY), stat, errmsg)
-    end if
   end subroutine
 
   !> Motions that cost the body no energy, K R = 0: the columns of R(n,r), length per unit amplitude.
@@ -188,15 +138,77 @@ contains
       stat, errmsg)
   end subroutine
 
-  !> Load of a body, f(n), force; a body without a load has f = 0. A second call replaces the first.
-  subroutine body_load(p, body, f, stat, errmsg)
+  subroutine load_one(p, body, f, stat, errmsg)
     type(feti_problem), intent(in) :: p
     integer, intent(in) :: body
     real(real64), intent(in), contiguous :: f(:)
     integer, intent(out), optional :: stat
     character(len=*), intent(inout), optional :: errmsg
 
-    call finish(c_body_load(handle_of(p), int(body - 1, c_int64_t), size(f, kind=c_int64_t), f), stat, errmsg)
+    call finish(c_body_load(handle_of(p), body_index(body), size(f, kind=c_int64_t), f), stat, errmsg)
+  end subroutine
+
+  subroutine load_all(p, f, stat, errmsg)
+    type(feti_problem), intent(in) :: p
+    real(real64), intent(in), contiguous :: f(:)
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+
+    call finish(c_body_load(handle_of(p), FETI_ALL, size(f, kind=c_int64_t), f), stat, errmsg)
+  end subroutine
+
+  subroutine numbering_int32(p, body, number, stat, errmsg)
+    type(feti_problem), intent(in) :: p
+    integer, intent(in) :: body
+    integer(int32), intent(in), contiguous :: number(:)
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+
+    call finish(c_body_numbering_i32(handle_of(p), int(body - 1, c_int64_t), size(number, kind=c_int64_t), number, &
+      1_c_int32_t), stat, errmsg)
+  end subroutine
+
+  subroutine numbering_int64(p, body, number, stat, errmsg)
+    type(feti_problem), intent(in) :: p
+    integer, intent(in) :: body
+    integer(int64), intent(in), contiguous :: number(:)
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+
+    call finish(c_body_numbering_i64(handle_of(p), int(body - 1, c_int64_t), size(number, kind=c_int64_t), number, &
+      1_c_int32_t), stat, errmsg)
+  end subroutine
+
+  !> The connected part of every unknown of a body, component(n), numbered from 1 by their first unknowns. The stiffness
+  !> matrix has been given.
+  subroutine body_components(p, body, component, stat, errmsg)
+    type(feti_problem), intent(in) :: p
+    integer, intent(in) :: body
+    integer, intent(inout) :: component(:)
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+    integer(c_int64_t), allocatable :: found(:)
+    integer(c_int32_t) :: status
+
+    allocate (found(size(component)))
+    status = c_body_components(handle_of(p), int(body - 1, c_int64_t), size(found, kind=c_int64_t), found)
+    if (status == FETI_OK) component = int(found) + 1
+    call finish(status, stat, errmsg)
+  end subroutine
+
+  !> What is known about a body; shared_with counts from 1, 0: none.
+  subroutine body_info(p, body, facts, stat, errmsg)
+    type(feti_problem), intent(in) :: p
+    integer, intent(in) :: body
+    type(feti_body_facts), intent(inout) :: facts
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+    integer(c_int32_t) :: status
+
+    facts%struct_size = c_sizeof(facts)
+    status = c_body_info(handle_of(p), int(body - 1, c_int64_t), facts)
+    if (status == FETI_OK) facts%shared_with = facts%shared_with + 1
+    call finish(status, stat, errmsg)
   end subroutine
 
 end module

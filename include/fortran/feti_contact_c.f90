@@ -56,6 +56,9 @@ module feti_contact_c
   integer(c_int32_t), parameter, public :: FETI_INEQUALITY = 1_c_int32_t
   !> Kind of rows: `H u = h`.
   integer(c_int32_t), parameter, public :: FETI_EQUALITY = 2_c_int32_t
+  !> In place of a body: all bodies, by the host's numbers of feti_body_numbering_i32 or _i64 where they have
+  !> some.
+  integer(c_int64_t), parameter, public :: FETI_ALL = -1_c_int64_t
   !> Storage: every entry of the symmetric matrix is given.
   integer(c_int32_t), parameter, public :: FETI_FULL = 0_c_int32_t
   !> Storage: entries with column <= row are given.
@@ -68,6 +71,17 @@ module feti_contact_c
   integer(c_int32_t), parameter, public :: FETI_CANDIDATES = 1_c_int32_t
   !> Stiffness flag: the matrix is copied.
   integer(c_int32_t), parameter, public :: FETI_COPY = 0_c_int32_t
+  !> Stiffness flag: the values, and columns in 32 bits from 0, stay where the host has them, where their form
+  !> allows it.
+  integer(c_int32_t), parameter, public :: FETI_BORROW = 1_c_int32_t
+  !> Null space of a body: vectors of the host that span it (FETI_EXACT).
+  integer(c_int32_t), parameter, public :: FETI_ORIGIN_EXACT = 1_c_int32_t
+  !> Null space of a body: sought among vectors of the host (FETI_CANDIDATES).
+  integer(c_int32_t), parameter, public :: FETI_ORIGIN_CANDIDATES = 2_c_int32_t
+  !> Null space of a body: sought among rigid motions, from coordinates.
+  integer(c_int32_t), parameter, public :: FETI_ORIGIN_COORDINATES = 3_c_int32_t
+  !> Null space of a body: found from K alone.
+  integer(c_int32_t), parameter, public :: FETI_ORIGIN_FOUND = 4_c_int32_t
   !> State of a row: open, its force is zero.
   integer(c_int32_t), parameter, public :: FETI_ROW_OPEN = 0_c_int32_t
   !> State of a row: closed, it carries a force.
@@ -221,6 +235,39 @@ module feti_contact_c
     integer(c_int64_t) :: operator_bytes
   end type feti_info
 
+  !> A body as it is given, and what the last setup has made of it; what is not there yet is -1 or NaN.
+  type, bind(C), public :: feti_body_facts
+    !> Set by the caller: size of the struct in bytes.
+    integer(c_int64_t) :: struct_size
+    !> Unknowns.
+    integer(c_int64_t) :: unknowns
+    !> Entries of K as the host gave them, a diagonal of its own counted; dense: all of the storage.
+    integer(c_int64_t) :: entries
+    !> Connected parts of K.
+    integer(c_int64_t) :: components
+    !> Bytes that the library keeps for K.
+    integer(c_int64_t) :: matrix_bytes
+    !> Arrays of K that stay with the host (FETI_BORROW): 0 none, 1 values, 2 values and columns.
+    integer(c_int64_t) :: borrowed
+    !> What the null space comes from: FETI_ORIGIN_EXACT, _CANDIDATES, _COORDINATES or _FOUND.
+    integer(c_int64_t) :: origin
+    !> Dimension of the null space.
+    integer(c_int64_t) :: null_space
+    !> Entries of the factor.
+    integer(c_int64_t) :: factor_entries
+    !> Bytes of the factor and, at most, of the work arrays of its computation.
+    integer(c_int64_t) :: factor_bytes
+    !> The first other body that shares the factor, from 0, -1: none.
+    integer(c_int64_t) :: shared_with
+    !> 1: the dual operator has its entries, 0: it is known by its products.
+    integer(c_int64_t) :: explicit_operator
+    !> Bytes of the explicit dual operator.
+    integer(c_int64_t) :: operator_bytes
+    !> Of a null space that was found: stiffness of the softest other motion over that of the stiffest in it;
+    !> else NaN.
+    real(c_double) :: gap
+  end type feti_body_facts
+
   !> Time and memory of a phase of a setup or a solve.
   type, bind(C), public :: feti_phase
     !> Set by the caller: size of the struct in bytes.
@@ -342,11 +389,10 @@ module feti_contact_c
   end type feti_findings
 
   public :: feti_body_add
-  public :: feti_body_stiffness_i32
-  public :: feti_body_stiffness_i64
-  public :: feti_body_stiffness_dense
   public :: feti_body_coordinates
   public :: feti_body_load
+  public :: feti_body_components
+  public :: feti_body_info
   public :: feti_diagnosis
   public :: feti_diagnosis_rows
   public :: feti_diagnosis_dependent
@@ -360,6 +406,8 @@ module feti_contact_c
   public :: feti_body_null_space_get
   public :: feti_body_fixing
   public :: feti_body_fixing_set
+  public :: feti_body_numbering_i32
+  public :: feti_body_numbering_i64
   public :: feti_set_f64
   public :: feti_set_i64
   public :: feti_set_str
@@ -398,9 +446,17 @@ module feti_contact_c
   public :: feti_status_text
   public :: feti_version
   public :: feti_version_number
+  public :: feti_body_stiffness_i32
+  public :: feti_body_stiffness_i64
+  public :: feti_body_stiffness_split_i32
+  public :: feti_body_stiffness_split_i64
+  public :: feti_body_stiffness_dense
   public :: feti_body_kplus
   public :: feti_dual_apply
   public :: feti_dual_rhs
+  public :: feti_body_values
+  public :: feti_body_values_split
+  public :: feti_body_values_dense
 
   public :: feti_progress_fn
   abstract interface
@@ -439,97 +495,6 @@ module feti_contact_c
       integer(c_int32_t) :: feti_body_add
     end function feti_body_add
 
-    !> Gives the stiffness matrix K of a body by rows, with 32-bit indices.
-    !>
-    !> The matrix is copied; calling again replaces pattern and values. Columns of a row may come in any
-    !> order, none twice. With FETI_FULL K must be symmetric within option symmetry_tolerance and is averaged.
-    !> After a failure the body keeps the matrix it had.
-    !>
-    !> @param[in] p       (scalar) the handle
-    !> @param[in] body    (scalar) number of the body, from 0
-    !> @param[in] n       (scalar) unknowns of the body
-    !> @param[in] row_ptr (n + 1) row i holds the entries row_ptr[i] to row_ptr[i + 1] - 1; starts with `base`
-    !> @param[in] col     (row_ptr[n] - base) columns, counted from `base`
-    !> @param[in] val     (row_ptr[n] - base) entries of K, force per length
-    !> @param[in] base    (scalar) 0 or 1: what `row_ptr` and `col` count from
-    !> @param[in] storage (scalar) FETI_FULL, FETI_LOWER or FETI_UPPER
-    !> @param[in] flags   (scalar) FETI_COPY
-    !>
-    !> Safety: The arrays have the given shapes.
-    function feti_body_stiffness_i32(p, body, n, row_ptr, col, val, base, storage, flags) &
-        bind(C, name="feti_body_stiffness_i32")
-      import
-      type(c_ptr), value :: p
-      integer(c_int64_t), value :: body
-      integer(c_int64_t), value :: n
-      integer(c_int32_t), intent(in) :: row_ptr(*)
-      integer(c_int32_t), intent(in) :: col(*)
-      real(c_double), intent(in) :: val(*)
-      integer(c_int32_t), value :: base
-      integer(c_int32_t), value :: storage
-      integer(c_int32_t), value :: flags
-      integer(c_int32_t) :: feti_body_stiffness_i32
-    end function feti_body_stiffness_i32
-
-    !> Gives the stiffness matrix K of a body by rows, with 64-bit indices.
-    !>
-    !> The matrix is copied; calling again replaces pattern and values. Columns of a row may come in any
-    !> order, none twice. With FETI_FULL K must be symmetric within option symmetry_tolerance and is averaged.
-    !> After a failure the body keeps the matrix it had.
-    !>
-    !> @param[in] p       (scalar) the handle
-    !> @param[in] body    (scalar) number of the body, from 0
-    !> @param[in] n       (scalar) unknowns of the body
-    !> @param[in] row_ptr (n + 1) row i holds the entries row_ptr[i] to row_ptr[i + 1] - 1; starts with `base`
-    !> @param[in] col     (row_ptr[n] - base) columns, counted from `base`
-    !> @param[in] val     (row_ptr[n] - base) entries of K, force per length
-    !> @param[in] base    (scalar) 0 or 1: what `row_ptr` and `col` count from
-    !> @param[in] storage (scalar) FETI_FULL, FETI_LOWER or FETI_UPPER
-    !> @param[in] flags   (scalar) FETI_COPY
-    !>
-    !> Safety: The arrays have the given shapes.
-    function feti_body_stiffness_i64(p, body, n, row_ptr, col, val, base, storage, flags) &
-        bind(C, name="feti_body_stiffness_i64")
-      import
-      type(c_ptr), value :: p
-      integer(c_int64_t), value :: body
-      integer(c_int64_t), value :: n
-      integer(c_int64_t), intent(in) :: row_ptr(*)
-      integer(c_int64_t), intent(in) :: col(*)
-      real(c_double), intent(in) :: val(*)
-      integer(c_int32_t), value :: base
-      integer(c_int32_t), value :: storage
-      integer(c_int32_t), value :: flags
-      integer(c_int32_t) :: feti_body_stiffness_i64
-    end function feti_body_stiffness_i64
-
-    !> Gives the stiffness matrix K of a body as a dense matrix, for boundary elements and condensed bodies.
-    !>
-    !> The matrix is copied; calling again replaces it. With FETI_LOWER and FETI_UPPER the other triangle is
-    !> not read. After a failure the body keeps the matrix it had.
-    !>
-    !> @param[in] p       (scalar) the handle
-    !> @param[in] body    (scalar) number of the body, from 0
-    !> @param[in] n       (scalar) unknowns of the body
-    !> @param[in] k       (ld * n) column-major: K_ij is k[i + ld j], force per length
-    !> @param[in] ld      (scalar) >= n
-    !> @param[in] storage (scalar) FETI_FULL, FETI_LOWER or FETI_UPPER
-    !> @param[in] flags   (scalar) FETI_COPY
-    !>
-    !> Safety: The array has the given shape.
-    function feti_body_stiffness_dense(p, body, n, k, ld, storage, flags) &
-        bind(C, name="feti_body_stiffness_dense")
-      import
-      type(c_ptr), value :: p
-      integer(c_int64_t), value :: body
-      integer(c_int64_t), value :: n
-      real(c_double), intent(in) :: k(*)
-      integer(c_int64_t), value :: ld
-      integer(c_int32_t), value :: storage
-      integer(c_int32_t), value :: flags
-      integer(c_int32_t) :: feti_body_stiffness_dense
-    end function feti_body_stiffness_dense
-
     !> Gives position and direction of every unknown of a body, from which candidates for its null space are
     !> made.
     !>
@@ -562,12 +527,14 @@ module feti_contact_c
 
     !> Gives the load of a body.
     !>
-    !> The load is copied and holds until it is given again; a body without one has zero load. After a failure
-    !> the body keeps the load it had.
+    !> The load is copied and holds until it is given again; a body without one has zero load. With FETI_ALL
+    !> the array holds the loads of all bodies: by the host's numbers where they have some, entries of no
+    !> unknown not looked at; else one body after the other. After a failure the loads are as they were.
     !>
     !> @param[in] p    (scalar) the handle
-    !> @param[in] body (scalar) number of the body, from 0
-    !> @param[in] n    (scalar) unknowns of the body
+    !> @param[in] body (scalar) number of the body, from 0, or FETI_ALL
+    !> @param[in] n    (scalar) unknowns of the body; with FETI_ALL at least the largest number + 1, without
+    !>                 numbers all unknowns
     !> @param[in] f    (n) force
     !>
     !> Safety: The array has the given shape.
@@ -579,6 +546,43 @@ module feti_contact_c
       real(c_double), intent(in) :: f(*)
       integer(c_int32_t) :: feti_body_load
     end function feti_body_load
+
+    !> Tells the connected part of every unknown of a body.
+    !>
+    !> A body may be in several parts that share no entry of K but zeros. They are numbered from 0 by their
+    !> first unknowns. FETI_STATE before the stiffness matrix is given. After a failure nothing is written.
+    !>
+    !> @param[in]  p         (scalar) the handle
+    !> @param[in]  body      (scalar) number of the body, from 0
+    !> @param[in]  n         (scalar) unknowns of the body
+    !> @param[out] component (n) part of each unknown, from 0
+    !>
+    !> Safety: The array has the given shape.
+    function feti_body_components(p, body, n, component) bind(C, name="feti_body_components")
+      import
+      type(c_ptr), value :: p
+      integer(c_int64_t), value :: body
+      integer(c_int64_t), value :: n
+      integer(c_int64_t), intent(out) :: component(*)
+      integer(c_int32_t) :: feti_body_components
+    end function feti_body_components
+
+    !> Tells what is known about a body: its matrix, its null space, its factor, its dual operator.
+    !>
+    !> Nothing is computed but the connected parts. After a failure nothing is written.
+    !>
+    !> @param[in]     p    (scalar) the handle
+    !> @param[in]     body (scalar) number of the body, from 0
+    !> @param[in,out] out  (scalar) `struct_size` set, at least 16
+    !>
+    !> Safety: `out` leads to `struct_size` writable bytes.
+    function feti_body_info(p, body, out) bind(C, name="feti_body_info")
+      import
+      type(c_ptr), value :: p
+      integer(c_int64_t), value :: body
+      type(feti_body_facts), intent(inout) :: out
+      integer(c_int32_t) :: feti_body_info
+    end function feti_body_info
 
     !> What the last solve, or the last setup that failed, has found out about the problem.
     !>
@@ -850,6 +854,56 @@ module feti_contact_c
       integer(c_int32_t) :: feti_body_fixing_set
     end function feti_body_fixing_set
 
+    !> Gives the host's own numbers of the unknowns of a body, with 32-bit integers.
+    !>
+    !> A host that numbers all unknowns through gives every body its share; a number names one unknown of all
+    !> bodies. Then FETI_ALL as body in feti_body_load, feti_displacement and feti_reaction means arrays in
+    !> these numbers, and so do rows whose bodies are NULL in feti_rows_add_i32 and _i64. All bodies have
+    !> numbers then: FETI_STATE names one that has not. The numbers are copied; calling again replaces them.
+    !> Rows that are there stay on their unknowns. After a failure the body keeps the numbers it had.
+    !>
+    !> @param[in] p      (scalar) the handle
+    !> @param[in] body   (scalar) number of the body, from 0
+    !> @param[in] n      (scalar) unknowns of the body
+    !> @param[in] number (n) number of each unknown, counted from `base`, none that of another unknown
+    !> @param[in] base   (scalar) 0 or 1: what the numbers count from
+    !>
+    !> Safety: The array has the given shape.
+    function feti_body_numbering_i32(p, body, n, number, base) bind(C, name="feti_body_numbering_i32")
+      import
+      type(c_ptr), value :: p
+      integer(c_int64_t), value :: body
+      integer(c_int64_t), value :: n
+      integer(c_int32_t), intent(in) :: number(*)
+      integer(c_int32_t), value :: base
+      integer(c_int32_t) :: feti_body_numbering_i32
+    end function feti_body_numbering_i32
+
+    !> Gives the host's own numbers of the unknowns of a body, with 64-bit integers.
+    !>
+    !> A host that numbers all unknowns through gives every body its share; a number names one unknown of all
+    !> bodies. Then FETI_ALL as body in feti_body_load, feti_displacement and feti_reaction means arrays in
+    !> these numbers, and so do rows whose bodies are NULL in feti_rows_add_i32 and _i64. All bodies have
+    !> numbers then: FETI_STATE names one that has not. The numbers are copied; calling again replaces them.
+    !> Rows that are there stay on their unknowns. After a failure the body keeps the numbers it had.
+    !>
+    !> @param[in] p      (scalar) the handle
+    !> @param[in] body   (scalar) number of the body, from 0
+    !> @param[in] n      (scalar) unknowns of the body
+    !> @param[in] number (n) number of each unknown, counted from `base`, none that of another unknown
+    !> @param[in] base   (scalar) 0 or 1: what the numbers count from
+    !>
+    !> Safety: The array has the given shape.
+    function feti_body_numbering_i64(p, body, n, number, base) bind(C, name="feti_body_numbering_i64")
+      import
+      type(c_ptr), value :: p
+      integer(c_int64_t), value :: body
+      integer(c_int64_t), value :: n
+      integer(c_int64_t), intent(in) :: number(*)
+      integer(c_int32_t), value :: base
+      integer(c_int32_t) :: feti_body_numbering_i64
+    end function feti_body_numbering_i64
+
     !> Sets an option that is a number.
     !>
     !> Holds until it is set again. After a failure the option is as it was.
@@ -1103,11 +1157,14 @@ module feti_contact_c
 
     !> Reads the displacement of a body.
     !>
-    !> FETI_STATE before a solve has given an answer. After a failure nothing is written.
+    !> With FETI_ALL the displacement of all bodies: by the host's numbers where they have some, entries of no
+    !> unknown as they were; else one body after the other. FETI_STATE before a solve has given an answer.
+    !> After a failure nothing is written.
     !>
     !> @param[in]  p    (scalar) the handle
-    !> @param[in]  body (scalar) number of the body, from 0
-    !> @param[in]  n    (scalar) unknowns of the body
+    !> @param[in]  body (scalar) number of the body, from 0, or FETI_ALL
+    !> @param[in]  n    (scalar) unknowns of the body; with FETI_ALL at least the largest number + 1, without
+    !>                  numbers all unknowns
     !> @param[out] u    (n) displacement, length
     !>
     !> Safety: The array has the given shape.
@@ -1122,12 +1179,15 @@ module feti_contact_c
 
     !> Reads the force of the rows on a body, -B'lambda, -H'mu or both: `K u = f + r`.
     !>
-    !> FETI_STATE before a solve has given an answer. After a failure nothing is written.
+    !> With FETI_ALL the forces on all bodies: by the host's numbers where they have some, entries of no
+    !> unknown as they were; else one body after the other. FETI_STATE before a solve has given an answer.
+    !> After a failure nothing is written.
     !>
     !> @param[in]  p    (scalar) the handle
     !> @param[in]  kind (scalar) FETI_INEQUALITY, FETI_EQUALITY, or 0 for both
-    !> @param[in]  body (scalar) number of the body, from 0
-    !> @param[in]  n    (scalar) unknowns of the body
+    !> @param[in]  body (scalar) number of the body, from 0, or FETI_ALL
+    !> @param[in]  n    (scalar) unknowns of the body; with FETI_ALL at least the largest number + 1, without
+    !>                  numbers all unknowns
     !> @param[out] r    (n) force
     !>
     !> Safety: The array has the given shape.
@@ -1245,7 +1305,8 @@ module feti_contact_c
     !> @param[in]  rows    (scalar) number of rows, 0 adds none
     !> @param[in]  row_ptr (rows + 1) row i holds the entries row_ptr[i] to row_ptr[i + 1] - 1; starts with
     !>                     `base`
-    !> @param[in]  body    (row_ptr[rows] - base) body of each entry, counted from `base`; NULL: `dof` counts
+    !> @param[in]  body    (row_ptr[rows] - base) body of each entry, counted from `base`; NULL: `dof` is the
+    !>                     host's number of the unknown (feti_body_numbering_i32), without numbers it counts
     !>                     through all bodies
     !> @param[in]  dof     (row_ptr[rows] - base) unknown of each entry, counted from `base`
     !> @param[in]  val     (row_ptr[rows] - base) entries of B or H
@@ -1280,7 +1341,8 @@ module feti_contact_c
     !> @param[in]  rows    (scalar) number of rows, 0 adds none
     !> @param[in]  row_ptr (rows + 1) row i holds the entries row_ptr[i] to row_ptr[i + 1] - 1; starts with
     !>                     `base`
-    !> @param[in]  body    (row_ptr[rows] - base) body of each entry, counted from `base`; NULL: `dof` counts
+    !> @param[in]  body    (row_ptr[rows] - base) body of each entry, counted from `base`; NULL: `dof` is the
+    !>                     host's number of the unknown (feti_body_numbering_i32), without numbers it counts
     !>                     through all bodies
     !> @param[in]  dof     (row_ptr[rows] - base) unknown of each entry, counted from `base`
     !> @param[in]  val     (row_ptr[rows] - base) entries of B or H
@@ -1527,6 +1589,179 @@ module feti_contact_c
       integer(c_int32_t) :: feti_version_number
     end function feti_version_number
 
+    !> Gives the stiffness matrix K of a body by rows, with 32-bit indices.
+    !>
+    !> The matrix is copied; calling again replaces pattern and values. Columns of a row may come in any
+    !> order, none twice. With FETI_FULL K must be symmetric within option symmetry_tolerance and is averaged.
+    !> After a failure the body keeps the matrix it had.
+    !>
+    !> With FETI_BORROW the values, and columns in 32 bits counted from 0, are not copied if storage is
+    !> FETI_LOWER, columns ascend and every row ends with its diagonal entry; otherwise all is copied
+    !> (`borrowed` of feti_body_info tells). Borrowed arrays stay readable until the matrix is replaced or the
+    !> problem destroyed, and unchanged but for this: between two calls the values may be rewritten, and the
+    !> next call then is feti_body_values with the same array.
+    !>
+    !> @param[in] p       (scalar) the handle
+    !> @param[in] body    (scalar) number of the body, from 0
+    !> @param[in] n       (scalar) unknowns of the body
+    !> @param[in] row_ptr (n + 1) row i holds the entries row_ptr[i] to row_ptr[i + 1] - 1; starts with `base`
+    !> @param[in] col     (row_ptr[n] - base) columns, counted from `base`
+    !> @param[in] val     (row_ptr[n] - base) entries of K, force per length
+    !> @param[in] base    (scalar) 0 or 1: what `row_ptr` and `col` count from
+    !> @param[in] storage (scalar) FETI_FULL, FETI_LOWER or FETI_UPPER
+    !> @param[in] flags   (scalar) FETI_COPY or FETI_BORROW
+    !>
+    !> Safety: The arrays have the given shapes.
+    function feti_body_stiffness_i32(p, body, n, row_ptr, col, val, base, storage, flags) &
+        bind(C, name="feti_body_stiffness_i32")
+      import
+      type(c_ptr), value :: p
+      integer(c_int64_t), value :: body
+      integer(c_int64_t), value :: n
+      integer(c_int32_t), intent(in) :: row_ptr(*)
+      integer(c_int32_t), intent(in) :: col(*)
+      real(c_double), intent(in) :: val(*)
+      integer(c_int32_t), value :: base
+      integer(c_int32_t), value :: storage
+      integer(c_int32_t), value :: flags
+      integer(c_int32_t) :: feti_body_stiffness_i32
+    end function feti_body_stiffness_i32
+
+    !> Gives the stiffness matrix K of a body by rows, with 64-bit indices.
+    !>
+    !> The matrix is copied; calling again replaces pattern and values. Columns of a row may come in any
+    !> order, none twice. With FETI_FULL K must be symmetric within option symmetry_tolerance and is averaged.
+    !> After a failure the body keeps the matrix it had.
+    !>
+    !> With FETI_BORROW the values, and columns in 32 bits counted from 0, are not copied if storage is
+    !> FETI_LOWER, columns ascend and every row ends with its diagonal entry; otherwise all is copied
+    !> (`borrowed` of feti_body_info tells). Borrowed arrays stay readable until the matrix is replaced or the
+    !> problem destroyed, and unchanged but for this: between two calls the values may be rewritten, and the
+    !> next call then is feti_body_values with the same array.
+    !>
+    !> @param[in] p       (scalar) the handle
+    !> @param[in] body    (scalar) number of the body, from 0
+    !> @param[in] n       (scalar) unknowns of the body
+    !> @param[in] row_ptr (n + 1) row i holds the entries row_ptr[i] to row_ptr[i + 1] - 1; starts with `base`
+    !> @param[in] col     (row_ptr[n] - base) columns, counted from `base`
+    !> @param[in] val     (row_ptr[n] - base) entries of K, force per length
+    !> @param[in] base    (scalar) 0 or 1: what `row_ptr` and `col` count from
+    !> @param[in] storage (scalar) FETI_FULL, FETI_LOWER or FETI_UPPER
+    !> @param[in] flags   (scalar) FETI_COPY or FETI_BORROW
+    !>
+    !> Safety: The arrays have the given shapes.
+    function feti_body_stiffness_i64(p, body, n, row_ptr, col, val, base, storage, flags) &
+        bind(C, name="feti_body_stiffness_i64")
+      import
+      type(c_ptr), value :: p
+      integer(c_int64_t), value :: body
+      integer(c_int64_t), value :: n
+      integer(c_int64_t), intent(in) :: row_ptr(*)
+      integer(c_int64_t), intent(in) :: col(*)
+      real(c_double), intent(in) :: val(*)
+      integer(c_int32_t), value :: base
+      integer(c_int32_t), value :: storage
+      integer(c_int32_t), value :: flags
+      integer(c_int32_t) :: feti_body_stiffness_i64
+    end function feti_body_stiffness_i64
+
+    !> Gives the stiffness matrix K of a body by rows with a diagonal of its own, with 32-bit indices.
+    !>
+    !> For codes that keep the diagonal apart. The matrix is copied; calling again replaces pattern and
+    !> values. Columns of a row may come in any order, none twice. With FETI_FULL K must be symmetric within
+    !> option symmetry_tolerance and is averaged. After a failure the body keeps the matrix it had.
+    !>
+    !> @param[in] p       (scalar) the handle
+    !> @param[in] body    (scalar) number of the body, from 0
+    !> @param[in] n       (scalar) unknowns of the body
+    !> @param[in] diag    (n) K_ii, force per length
+    !> @param[in] row_ptr (n + 1) row i holds the entries row_ptr[i] to row_ptr[i + 1] - 1; starts with `base`
+    !> @param[in] col     (row_ptr[n] - base) columns, counted from `base`, none that of its row
+    !> @param[in] val     (row_ptr[n] - base) entries of K beside the diagonal, force per length
+    !> @param[in] base    (scalar) 0 or 1: what `row_ptr` and `col` count from
+    !> @param[in] storage (scalar) FETI_FULL, FETI_LOWER or FETI_UPPER
+    !> @param[in] flags   (scalar) FETI_COPY, or FETI_BORROW, which copies as well: no matrix is kept in this
+    !>                    form
+    !>
+    !> Safety: The arrays have the given shapes.
+    function feti_body_stiffness_split_i32(p, body, n, diag, row_ptr, col, val, base, storage, flags) &
+        bind(C, name="feti_body_stiffness_split_i32")
+      import
+      type(c_ptr), value :: p
+      integer(c_int64_t), value :: body
+      integer(c_int64_t), value :: n
+      real(c_double), intent(in) :: diag(*)
+      integer(c_int32_t), intent(in) :: row_ptr(*)
+      integer(c_int32_t), intent(in) :: col(*)
+      real(c_double), intent(in) :: val(*)
+      integer(c_int32_t), value :: base
+      integer(c_int32_t), value :: storage
+      integer(c_int32_t), value :: flags
+      integer(c_int32_t) :: feti_body_stiffness_split_i32
+    end function feti_body_stiffness_split_i32
+
+    !> Gives the stiffness matrix K of a body by rows with a diagonal of its own, with 64-bit indices.
+    !>
+    !> For codes that keep the diagonal apart. The matrix is copied; calling again replaces pattern and
+    !> values. Columns of a row may come in any order, none twice. With FETI_FULL K must be symmetric within
+    !> option symmetry_tolerance and is averaged. After a failure the body keeps the matrix it had.
+    !>
+    !> @param[in] p       (scalar) the handle
+    !> @param[in] body    (scalar) number of the body, from 0
+    !> @param[in] n       (scalar) unknowns of the body
+    !> @param[in] diag    (n) K_ii, force per length
+    !> @param[in] row_ptr (n + 1) row i holds the entries row_ptr[i] to row_ptr[i + 1] - 1; starts with `base`
+    !> @param[in] col     (row_ptr[n] - base) columns, counted from `base`, none that of its row
+    !> @param[in] val     (row_ptr[n] - base) entries of K beside the diagonal, force per length
+    !> @param[in] base    (scalar) 0 or 1: what `row_ptr` and `col` count from
+    !> @param[in] storage (scalar) FETI_FULL, FETI_LOWER or FETI_UPPER
+    !> @param[in] flags   (scalar) FETI_COPY, or FETI_BORROW, which copies as well: no matrix is kept in this
+    !>                    form
+    !>
+    !> Safety: The arrays have the given shapes.
+    function feti_body_stiffness_split_i64(p, body, n, diag, row_ptr, col, val, base, storage, flags) &
+        bind(C, name="feti_body_stiffness_split_i64")
+      import
+      type(c_ptr), value :: p
+      integer(c_int64_t), value :: body
+      integer(c_int64_t), value :: n
+      real(c_double), intent(in) :: diag(*)
+      integer(c_int64_t), intent(in) :: row_ptr(*)
+      integer(c_int64_t), intent(in) :: col(*)
+      real(c_double), intent(in) :: val(*)
+      integer(c_int32_t), value :: base
+      integer(c_int32_t), value :: storage
+      integer(c_int32_t), value :: flags
+      integer(c_int32_t) :: feti_body_stiffness_split_i64
+    end function feti_body_stiffness_split_i64
+
+    !> Gives the stiffness matrix K of a body as a dense matrix, for boundary elements and condensed bodies.
+    !>
+    !> The matrix is copied; calling again replaces it. With FETI_LOWER and FETI_UPPER the other triangle is
+    !> not read. After a failure the body keeps the matrix it had.
+    !>
+    !> @param[in] p       (scalar) the handle
+    !> @param[in] body    (scalar) number of the body, from 0
+    !> @param[in] n       (scalar) unknowns of the body
+    !> @param[in] k       (ld * n) column-major: K_ij is k[i + ld j], force per length
+    !> @param[in] ld      (scalar) >= n
+    !> @param[in] storage (scalar) FETI_FULL, FETI_LOWER or FETI_UPPER
+    !> @param[in] flags   (scalar) FETI_COPY
+    !>
+    !> Safety: The array has the given shape.
+    function feti_body_stiffness_dense(p, body, n, k, ld, storage, flags) &
+        bind(C, name="feti_body_stiffness_dense")
+      import
+      type(c_ptr), value :: p
+      integer(c_int64_t), value :: body
+      integer(c_int64_t), value :: n
+      real(c_double), intent(in) :: k(*)
+      integer(c_int64_t), value :: ld
+      integer(c_int32_t), value :: storage
+      integer(c_int32_t), value :: flags
+      integer(c_int32_t) :: feti_body_stiffness_dense
+    end function feti_body_stiffness_dense
+
     !> Applies the generalised inverse of a body, `Y = K+ X`.
     !>
     !> Runs feti_setup when it is due. X and Y may be the same array. After a failure nothing is written.
@@ -1590,6 +1825,80 @@ module feti_contact_c
       real(c_double), intent(out) :: d(*)
       integer(c_int32_t) :: feti_dual_rhs
     end function feti_dual_rhs
+
+    !> Gives new values of a stiffness matrix on the pattern it was given with by feti_body_stiffness_i32 or
+    !> _i64.
+    !>
+    !> The values are copied and checked as the first were. The symbolic analysis is kept, and the next setup
+    !> costs a numeric factorisation of this body; values that are bit by bit those of before cost nothing.
+    !> Storage is that of the first call. FETI_STATE where the matrix has not been given, or in another form.
+    !> After a failure the body keeps the values it had.
+    !>
+    !> Where the values are borrowed (FETI_BORROW) they are not copied: `val` is the array that was borrowed,
+    !> rewritten by the host, or another one in its place. They count as changed, also for other bodies that
+    !> borrow the same array. After a failure with the same array the body is without a matrix until it gets
+    !> other values.
+    !>
+    !> @param[in] p    (scalar) the handle
+    !> @param[in] body (scalar) number of the body, from 0
+    !> @param[in] nnz  (scalar) number of values, that of the first call
+    !> @param[in] val  (nnz) entries of K in the order of the first call, force per length
+    !>
+    !> Safety: The array has the given shape.
+    function feti_body_values(p, body, nnz, val) bind(C, name="feti_body_values")
+      import
+      type(c_ptr), value :: p
+      integer(c_int64_t), value :: body
+      integer(c_int64_t), value :: nnz
+      real(c_double), intent(in) :: val(*)
+      integer(c_int32_t) :: feti_body_values
+    end function feti_body_values
+
+    !> Gives new values of a stiffness matrix that was given by feti_body_stiffness_split_i32 or _i64.
+    !>
+    !> As feti_body_values, for a matrix with a diagonal of its own.
+    !>
+    !> @param[in] p    (scalar) the handle
+    !> @param[in] body (scalar) number of the body, from 0
+    !> @param[in] n    (scalar) unknowns of the body
+    !> @param[in] diag (n) K_ii, force per length
+    !> @param[in] nnz  (scalar) number of values beside the diagonal, that of the first call
+    !> @param[in] val  (nnz) entries of K beside the diagonal in the order of the first call, force per length
+    !>
+    !> Safety: The arrays have the given shapes.
+    function feti_body_values_split(p, body, n, diag, nnz, val) bind(C, name="feti_body_values_split")
+      import
+      type(c_ptr), value :: p
+      integer(c_int64_t), value :: body
+      integer(c_int64_t), value :: n
+      real(c_double), intent(in) :: diag(*)
+      integer(c_int64_t), value :: nnz
+      real(c_double), intent(in) :: val(*)
+      integer(c_int32_t) :: feti_body_values_split
+    end function feti_body_values_split
+
+    !> Gives new values of a dense stiffness matrix.
+    !>
+    !> The matrix is copied and checked as the first was, in the same storage. Where zeros stay zeros the
+    !> symbolic analysis is kept. FETI_STATE where the matrix has not been given, or in another form. After a
+    !> failure the body keeps the matrix it had.
+    !>
+    !> @param[in] p    (scalar) the handle
+    !> @param[in] body (scalar) number of the body, from 0
+    !> @param[in] n    (scalar) unknowns of the body
+    !> @param[in] k    (ld * n) column-major: K_ij is k[i + ld j], force per length
+    !> @param[in] ld   (scalar) >= n
+    !>
+    !> Safety: The array has the given shape.
+    function feti_body_values_dense(p, body, n, k, ld) bind(C, name="feti_body_values_dense")
+      import
+      type(c_ptr), value :: p
+      integer(c_int64_t), value :: body
+      integer(c_int64_t), value :: n
+      real(c_double), intent(in) :: k(*)
+      integer(c_int64_t), value :: ld
+      integer(c_int32_t) :: feti_body_values_dense
+    end function feti_body_values_dense
 
   end interface
 

@@ -6,8 +6,8 @@
 module feti_contact_results
   use, intrinsic :: iso_c_binding, only: c_int32_t, c_int64_t, c_loc, c_null_ptr, c_ptr, c_sizeof
   use, intrinsic :: iso_fortran_env, only: int64, real64
-  use feti_contact_base, only: feti_problem, finish, handle_of, refuse, static_text
-  use feti_contact_c, only: FETI_OK, feti_certificate, feti_info, &
+  use feti_contact_base, only: body_index, feti_problem, finish, handle_of, refuse, static_text
+  use feti_contact_c, only: FETI_ALL, FETI_OK, feti_certificate, feti_info, &
     c_active => feti_active, &
     c_amplitudes => feti_amplitudes, &
     c_body_fixing => feti_body_fixing, &
@@ -40,6 +40,23 @@ module feti_contact_results
     !> Bytes of what it has made and keeps; 0: they are not counted.
     integer(int64) :: bytes = 0
   end type
+
+  !> Displacement, length.
+  !>
+  !> call feti_displacement(p, body, u): u(n) of a body.
+  !> call feti_displacement(p, u): of all bodies, u(number) by the numbers of feti_body_numbering, entries of no unknown as
+  !>   they were; without numbers one body after the other.
+  interface displacement
+    module procedure displacement_one, displacement_all
+  end interface
+
+  !> Force of the rows on a body, -B'lambda (kind FETI_INEQUALITY), -H'mu (FETI_EQUALITY) or both (0): K u = f + r.
+  !>
+  !> call feti_reaction(p, kind, body, r): r(n) on a body.
+  !> call feti_reaction(p, kind, r): on all bodies, as feti_displacement.
+  interface reaction
+    module procedure reaction_one, reaction_all
+  end interface
 
 contains
 
@@ -147,20 +164,26 @@ contains
     call finish(status, stat, errmsg)
   end subroutine
 
-  !> Displacement of a body, u(n), length.
-  subroutine displacement(p, body, u, stat, errmsg)
+  subroutine displacement_one(p, body, u, stat, errmsg)
     type(feti_problem), intent(in) :: p
     integer, intent(in) :: body
     real(real64), intent(inout), contiguous :: u(:)
     integer, intent(out), optional :: stat
     character(len=*), intent(inout), optional :: errmsg
 
-    call finish(c_displacement(handle_of(p), int(body - 1, c_int64_t), size(u, kind=c_int64_t), u), stat, errmsg)
+    call finish(c_displacement(handle_of(p), body_index(body), size(u, kind=c_int64_t), u), stat, errmsg)
   end subroutine
 
-  !> Force of the rows on a body, r(n) = -B'lambda (kind FETI_INEQUALITY), -H'mu (FETI_EQUALITY) or both (0):
-  !> K u = f + r.
-  subroutine reaction(p, kind, body, r, stat, errmsg)
+  subroutine displacement_all(p, u, stat, errmsg)
+    type(feti_problem), intent(in) :: p
+    real(real64), intent(inout), contiguous :: u(:)
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+
+    call finish(c_displacement(handle_of(p), FETI_ALL, size(u, kind=c_int64_t), u), stat, errmsg)
+  end subroutine
+
+  subroutine reaction_one(p, kind, body, r, stat, errmsg)
     type(feti_problem), intent(in) :: p
     integer(c_int32_t), intent(in) :: kind
     integer, intent(in) :: body
@@ -168,8 +191,17 @@ contains
     integer, intent(out), optional :: stat
     character(len=*), intent(inout), optional :: errmsg
 
-    call finish(c_reaction(handle_of(p), kind, int(body - 1, c_int64_t), &
-      size(r, kind=c_int64_t), r), stat, errmsg)
+    call finish(c_reaction(handle_of(p), kind, body_index(body), size(r, kind=c_int64_t), r), stat, errmsg)
+  end subroutine
+
+  subroutine reaction_all(p, kind, r, stat, errmsg)
+    type(feti_problem), intent(in) :: p
+    integer(c_int32_t), intent(in) :: kind
+    real(real64), intent(inout), contiguous :: r(:)
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+
+    call finish(c_reaction(handle_of(p), kind, FETI_ALL, size(r, kind=c_int64_t), r), stat, errmsg)
   end subroutine
 
   !> Amplitudes alpha(r) of the motions R in the displacement of a body, u = K+(f - B'lambda - H'mu) + R alpha.

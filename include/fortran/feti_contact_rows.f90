@@ -20,7 +20,8 @@ module feti_contact_rows
   !>
   !> call feti_rows_add(p, kind, row_ptr, body, dof, val, rhs, first): row i holds the entries row_ptr(i) ..
   !>   row_ptr(i+1)-1 of body, dof and val: coefficient val of unknown dof of that body. Repeated entries add up.
-  !> call feti_rows_add(p, kind, row_ptr, dof, val, rhs, first): dof counts through the bodies one after the other.
+  !> call feti_rows_add(p, kind, row_ptr, dof, val, rhs, first): dof is the number of the unknown (feti_body_numbering); without
+  !>   numbers it counts through the bodies one after the other.
   !>
   !> row_ptr has one entry more than there are rows; row_ptr, body and dof are all int32 or all int64.
   !> rhs: gaps c or values h, one per row, length; absent: zero. first: number of the first new row of its kind.

@@ -5,7 +5,7 @@ use crate::body::Body;
 use crate::linalg::Symmetric;
 
 /// Equal bit by bit: also the sign of zero counts.
-fn same_bits(a: &[f64], b: &[f64]) -> bool {
+pub fn same_bits(a: &[f64], b: &[f64]) -> bool {
     a.len() == b.len() && a.iter().zip(b).all(|(a, b)| a.to_bits() == b.to_bits())
 }
 
@@ -64,7 +64,7 @@ mod tests {
     use super::*;
 
     fn chain(last: f64) -> Symmetric {
-        Symmetric { ptr: vec![0, 1, 3], col: vec![0, 0, 1], val: vec![1.0, -1.0, last] }
+        Symmetric::new(vec![0, 1, 3], vec![0, 0, 1], vec![1.0, -1.0, last])
     }
 
     #[test]
@@ -73,7 +73,7 @@ mod tests {
         assert_eq!((pattern_key(&one), value_key(&one)), (pattern_key(&chain(1.0)), value_key(&chain(1.0))));
         assert_eq!(pattern_key(&one), pattern_key(&two));
         assert_ne!(value_key(&one), value_key(&two));
-        let diagonal = Symmetric { ptr: vec![0, 1, 2], col: vec![0, 1], val: vec![1.0, 1.0] };
+        let diagonal = Symmetric::new(vec![0, 1, 2], vec![0, 1], vec![1.0, 1.0]);
         assert_ne!(pattern_key(&one), pattern_key(&diagonal));
     }
 

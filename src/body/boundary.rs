@@ -9,7 +9,7 @@ use crate::linalg::{Analysis, Csr, Operator, Packed, Symmetric};
 /// `scale K_bb`: the other dofs held.
 pub fn lumped(k: &Symmetric, scale: f64, boundary: &[usize]) -> Result<Box<dyn Operator + Send>> {
     let local = positions(k.order(), boundary);
-    let mut part = Symmetric { ptr: vec![0], col: Vec::new(), val: Vec::new() };
+    let mut part = Symmetric::new(vec![0], Vec::new(), Vec::new());
     for &dof in boundary {
         for (j, v) in k.lower_row(dof).filter_map(|(j, v)| Some((local[j]?, v))) {
             part.col.push(j as u32);
@@ -78,11 +78,7 @@ mod tests {
     #[test]
     fn a_chain_of_two_springs_is_felt_as_both_in_series() {
         // springs 2 and 3 between dofs 0 - 1 - 2, boundary 0 and 2: series stiffness 6/5
-        let k = Symmetric {
-            ptr: vec![0, 1, 3, 5],
-            col: vec![0, 0, 1, 1, 2],
-            val: vec![2.0, -2.0, 5.0, -3.0, 3.0],
-        };
+        let k = Symmetric::new(vec![0, 1, 3, 5], vec![0, 0, 1, 1, 2], vec![2.0, -2.0, 5.0, -3.0, 3.0]);
         let mut y = [0.0; 2];
         dirichlet(&k, 0.5, &[0, 2]).unwrap().apply(&[1.0, 0.0], &mut y);
         assert!((y[0] - 0.6).abs() < 1e-15 && (y[1] + 0.6).abs() < 1e-15);

@@ -319,7 +319,7 @@ mod tests {
             val.push(degree.into_iter().filter(|d| *d).count() as f64);
             ptr.push(col.len());
         }
-        Symmetric { ptr, col, val }
+        Symmetric::new(ptr, col, val)
     }
 
     fn constants(n: usize) -> NullSpaceInput {
@@ -362,7 +362,7 @@ mod tests {
             |n| NullSpaceInput { vectors: Matrix { rows: n, cols: 0, data: vec![] }, modes: Modes::Exact };
         for before in 0..100 {
             let n = before + 102;
-            let mut k = Symmetric { ptr: vec![0], col: Vec::new(), val: Vec::new() };
+            let mut k = Symmetric::new(vec![0], Vec::new(), Vec::new());
             for i in 0..n {
                 let pair = i == before || i == before + 1;
                 if i == before + 1 {

@@ -8,11 +8,12 @@ use crate::linalg::Symmetric;
 
 const WHAT: &str = "a stiffness matrix";
 
-/// The lower triangle with every diagonal entry stored; `None` where the input is not of this form.
-pub fn lower_triangle(input: SparseInput, tolerance: f64) -> Result<Option<Symmetric>> {
+/// The lower triangle with every diagonal entry stored; `None` where the input is not of this form. `diag`: a diagonal of
+/// its own.
+pub fn lower_triangle(input: SparseInput, diag: Option<&[f64]>, tolerance: f64) -> Result<Option<Symmetric>> {
     match input.storage {
-        Storage::Upper => by_columns(input),
-        _ => by_rows(input, tolerance),
+        Storage::Upper => by_columns(input, diag),
+        _ => by_rows(input, diag, tolerance),
     }
 }
 
@@ -22,30 +23,37 @@ struct Row<'a> {
     val: &'a [f64],
     /// Number of entries left of the diagonal.
     left: usize,
-    diagonal: Option<f64>,
+    /// The diagonal is among the entries.
+    given: bool,
+    /// 0 where it is not given at all.
+    diagonal: f64,
 }
 
-/// `None` where columns do not ascend or a number is out of its range.
-fn row<'a>(input: &SparseInput<'a>, i: usize) -> Option<Row<'a>> {
+/// `None` where columns do not ascend, a number is out of its range or a diagonal entry is there twice.
+fn row<'a>(input: &SparseInput<'a>, diag: Option<&[f64]>, i: usize) -> Option<Row<'a>> {
     let (n, range) = (input.ptr.len() - 1, input.ptr[i]..input.ptr[i + 1]);
     let (col, val) = (input.col.get(range.clone())?, input.val.get(range)?);
     let left = col.partition_point(|&j| (j as usize) < i);
-    let diagonal = col.get(left).filter(|&&j| j as usize == i).map(|_| val[left]);
+    let given = col.get(left).is_some_and(|&j| j as usize == i);
+    let diagonal = diag.map_or(if given { val[left] } else { 0.0 }, |diag| diag[i]);
     let ascending = col.windows(2).all(|pair| pair[0] < pair[1]);
     let within = col.first().is_none_or(|&j| j >= 0) && col.last().is_none_or(|&j| (j as usize) < n);
-    (ascending && within && val.iter().all(|v| v.is_finite())).then_some(Row { col, val, left, diagonal })
+    let once = !(given && diag.is_some()) && diagonal.is_finite();
+    let of_this_form = ascending && within && once && val.iter().all(|v| v.is_finite());
+    of_this_form.then_some(Row { col, val, left, given, diagonal })
 }
 
 /// Storage in full, or of the lower triangle.
-fn by_rows(input: SparseInput, tolerance: f64) -> Result<Option<Symmetric>> {
+fn by_rows(input: SparseInput, diag: Option<&[f64]>, tolerance: f64) -> Result<Option<Symmetric>> {
     let (n, entries) = (input.ptr.len() - 1, input.val.len());
     let full = input.storage == Storage::Full;
     let stored = n + if full { entries / 2 } else { entries };
     let (ptr, col, val) = (reserved(n + 1, WHAT)?, reserved(stored, WHAT)?, reserved(stored, WHAT)?);
     let mut rows = Rows {
         input,
+        diag,
         tolerance,
-        lower: Symmetric { ptr, col, val },
+        lower: Symmetric::new(ptr, col, val),
         next: reserved(n, WHAT)?,
         root: reserved(n, WHAT)?,
     };
@@ -57,6 +65,7 @@ fn by_rows(input: SparseInput, tolerance: f64) -> Result<Option<Symmetric>> {
 
 struct Rows<'a> {
     input: SparseInput<'a>,
+    diag: Option<&'a [f64]>,
     tolerance: f64,
     lower: Symmetric,
     /// Of each row taken: its first entry right of the diagonal that has not met its mate.
@@ -67,17 +76,16 @@ struct Rows<'a> {
 
 impl Rows<'_> {
     fn take(&mut self, i: usize) -> Option<()> {
-        let row = row(&self.input, i)?;
-        let diagonal = row.diagonal.unwrap_or(0.0);
-        self.root.push(diagonal.abs().sqrt());
-        self.next.push(self.input.ptr[i] + row.left + usize::from(row.diagonal.is_some()));
+        let row = row(&self.input, self.diag, i)?;
+        self.root.push(row.diagonal.abs().sqrt());
+        self.next.push(self.input.ptr[i] + row.left + usize::from(row.given));
         match self.input.storage {
             Storage::Full => self.take_with_mates(i, &row)?,
-            _ => self.lower.val.extend_from_slice(&row.val[..row.left]),
+            _ => self.lower.val.to_mut().extend_from_slice(&row.val[..row.left]),
         }
-        self.lower.col.extend(row.col[..row.left].iter().map(|&j| j as u32));
+        self.lower.col.to_mut().extend(row.col[..row.left].iter().map(|&j| j as u32));
         self.lower.col.push(i as u32);
-        self.lower.val.push(diagonal);
+        self.lower.val.push(row.diagonal);
         self.lower.ptr.push(self.lower.col.len());
         Some(())
     }
@@ -102,14 +110,14 @@ impl Rows<'_> {
 }
 
 /// Storage of the upper triangle: its columns are the rows of the lower one.
-fn by_columns(input: SparseInput) -> Result<Option<Symmetric>> {
+fn by_columns(input: SparseInput, diag: Option<&[f64]>) -> Result<Option<Symmetric>> {
     let n = input.ptr.len() - 1;
     let mut ptr: Vec<usize> = reserved(n + 1, WHAT)?;
     ptr.resize(n + 1, 0);
     for i in 0..n {
-        let Some(row) = row(&input, i).filter(|row| row.left == 0) else { return Ok(None) };
+        let Some(row) = row(&input, diag, i).filter(|row| row.left == 0) else { return Ok(None) };
         row.col.iter().for_each(|&j| ptr[j as usize + 1] += 1);
-        ptr[i + 1] += usize::from(row.diagonal.is_none());
+        ptr[i + 1] += usize::from(!row.given);
     }
     (0..n).for_each(|j| ptr[j + 1] += ptr[j]);
     let mut next = reserved(n, WHAT)?;
@@ -119,14 +127,14 @@ fn by_columns(input: SparseInput) -> Result<Option<Symmetric>> {
     let mut val = zeros(ptr[n], WHAT)?;
     for i in 0..n {
         // rows before i have filled row i of the lower triangle up to its diagonal
-        (col[next[i]], val[next[i]]) = (i as u32, 0.0);
+        (col[next[i]], val[next[i]]) = (i as u32, diag.map_or(0.0, |diag| diag[i]));
         for at in input.ptr[i]..input.ptr[i + 1] {
             let place = &mut next[input.col[at] as usize];
             (col[*place], val[*place]) = (i as u32, input.val[at]);
             *place += 1;
         }
     }
-    Ok(Some(Symmetric { ptr, col, val }))
+    Ok(Some(Symmetric::new(ptr, col, val)))
 }
 
 #[cfg(test)]
@@ -172,7 +180,7 @@ mod tests {
             let matrix = |turned: bool| {
                 let (ptr, col, val) = rows(storage, |i| turned && i == 37);
                 let input = SparseInput { ptr: &ptr, col: &col, val: &val, storage };
-                assert_eq!(lower_triangle(input, 1e-10).unwrap().is_none(), turned, "{storage:?}");
+                assert_eq!(lower_triangle(input, None, 1e-10).unwrap().is_none(), turned, "{storage:?}");
                 from_sparse(input, 1e-10).unwrap()
             };
             let in_order = matrix(false);
@@ -186,9 +194,9 @@ mod tests {
     fn what_is_not_symmetric_is_left_to_the_check_of_it() {
         let (ptr, col, val) = rows(Storage::Full, |_| false);
         let input = SparseInput { ptr: &ptr, col: &col, val: &val, storage: Storage::Full };
-        assert!(lower_triangle(input, 1e-16).unwrap().is_none());
+        assert!(lower_triangle(input, None, 1e-16).unwrap().is_none());
         for storage in [Storage::Lower, Storage::Upper] {
-            assert!(lower_triangle(SparseInput { storage, ..input }, 1e-10).unwrap().is_none());
+            assert!(lower_triangle(SparseInput { storage, ..input }, None, 1e-10).unwrap().is_none());
         }
         for gone in 0..col.len() {
             let row = ptr.partition_point(|&p| p <= gone) - 1;
@@ -199,7 +207,7 @@ mod tests {
             }
             val.remove(gone);
             let input = SparseInput { ptr: &ptr, col: &col, val: &val, storage: Storage::Full };
-            assert!(lower_triangle(input, 1e-10).unwrap().is_none(), "{gone}");
+            assert!(lower_triangle(input, None, 1e-10).unwrap().is_none(), "{gone}");
         }
     }
 }

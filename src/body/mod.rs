@@ -2,6 +2,7 @@
 //! of (14)-(15).
 
 mod alike;
+mod borrowed;
 mod boundary;
 mod fixing;
 mod generalized_inverse;
@@ -11,14 +12,19 @@ mod rigid_modes;
 mod search;
 mod stiffness;
 mod symbolic;
+mod values;
 
-pub use alike::{pattern_key, same_body, same_matrix, same_pattern, same_vectors, value_key};
+pub use alike::{pattern_key, same_bits, same_body, same_matrix, same_pattern, same_vectors, value_key};
+pub use borrowed::{from_borrowed, Columns};
 pub use boundary::{dirichlet, dirichlet_bytes, lumped};
 pub use generalized_inverse::{GeneralizedInverse, Plan};
 pub use null_space::{Modes, NullSpaceInput};
 pub use rigid_modes::Coordinates;
-pub use stiffness::{from_dense, from_sparse, SparseInput, Storage};
+pub use stiffness::{
+    check_diagonal, check_finite, from_dense, from_sparse, from_split, SparseInput, Storage,
+};
 pub use symbolic::{Layout, Made, Symbolic};
+pub use values::{Form, Places};
 
 use std::sync::Arc;
 

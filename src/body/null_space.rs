@@ -137,7 +137,7 @@ mod tests {
             val.push(2.0 - ends + if i == 0 { support } else { 0.0 });
             ptr.push(col.len());
         }
-        Symmetric { ptr, col, val }.into()
+        Symmetric::new(ptr, col, val).into()
     }
 
     fn verified(k: &Multiple, input: &NullSpaceInput, tolerance: f64) -> Result<Matrix> {

@@ -168,7 +168,7 @@ mod tests {
         }
         let xyz = [0.0, 0.0, 0.0, 0.0, 3.0, 4.0, 3.0, 4.0];
         let coordinates = Coordinates::new(2, &[1, 2, 1, 2], &xyz, 2).unwrap();
-        let modes = coordinates.rigid_modes(&Symmetric { ptr, col, val }).unwrap();
+        let modes = coordinates.rigid_modes(&Symmetric::new(ptr, col, val)).unwrap();
         assert_eq!(modes.cols, 3);
         for j in 0..3 {
             let stretch: f64 = (0..4).map(|i| t[i] * modes.get(i, j)).sum();

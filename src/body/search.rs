@@ -328,7 +328,7 @@ fn supported(k: &Multiple, last: &[Vec<usize>], between: &[usize]) -> Result<Sym
         val.extend(row.iter().map(|entry| entry.1));
         ptr.push(col.len());
     }
-    Ok(Symmetric { ptr, col, val })
+    Ok(Symmetric::new(ptr, col, val))
 }
 
 #[cfg(test)]

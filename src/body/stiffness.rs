@@ -30,17 +30,32 @@ const PER_ROW: usize = 96;
 /// Checks and converts a sparse matrix. Full storage is accepted when
 /// `|K_ij - K_ji| <= tolerance (K_ii K_jj)^1/2`, and averaged.
 pub fn from_sparse(input: SparseInput<'_>, tolerance: f64) -> Result<Symmetric> {
+    from_rows(input, None, tolerance)
+}
+
+/// The same for a matrix whose diagonal `diag`, length n, is an array of its own; `input` has what lies beside it.
+pub fn from_split(input: SparseInput<'_>, diag: &[f64], tolerance: f64) -> Result<Symmetric> {
+    from_rows(input, Some(diag), tolerance)
+}
+
+fn from_rows(input: SparseInput<'_>, diag: Option<&[f64]>, tolerance: f64) -> Result<Symmetric> {
     check_order(input.ptr.len() - 1)?;
     let _room = room(input.ptr.len() * PER_ROW, "a stiffness matrix")?;
-    if let Some(lower) = lower_triangle(input, tolerance)? {
-        return checked(lower);
+    let k = match lower_triangle(input, diag, tolerance)? {
+        Some(lower) => lower,
+        None => with_diagonal(lower_of(sorted(input, diag)?, input.storage, tolerance)?)?,
+    };
+    check_diagonal(&k)?;
+    Ok(k)
+}
+
+/// The lower triangle of sorted rows.
+fn lower_of(rows: Csr, storage: Storage, tolerance: f64) -> Result<Csr> {
+    match storage {
+        Storage::Lower => Ok(rows),
+        Storage::Upper => rows.transposed(),
+        Storage::Full => averaged(&rows, tolerance),
     }
-    let rows = sorted(input)?;
-    checked(with_diagonal(match input.storage {
-        Storage::Lower => rows,
-        Storage::Upper => rows.transposed()?,
-        Storage::Full => averaged(&rows, tolerance)?,
-    })?)
 }
 
 /// Checks and converts a column-major n x n matrix with leading dimension `ld`; zeros are not stored.
@@ -68,15 +83,13 @@ pub fn from_dense(n: usize, k: &[f64], ld: usize, storage: Storage, tolerance: f
         let kept = range.map(|j| (j, k[i + ld * j])).filter(|&(j, v)| v != 0.0 || i == j);
         rows.push_row(kept);
     }
-    checked(with_diagonal(match storage {
-        Storage::Full => averaged(&rows, tolerance).map_err(|e| rename(e, "k"))?,
-        Storage::Lower => rows,
-        Storage::Upper => rows.transposed()?,
-    })?)
+    let k = with_diagonal(lower_of(rows, storage, tolerance).map_err(|e| rename(e, "k"))?)?;
+    check_diagonal(&k)?;
+    Ok(k)
 }
 
 /// Columns are kept in 32 bits.
-fn check_order(n: usize) -> Result<()> {
+pub(super) fn check_order(n: usize) -> Result<()> {
     let limit = u32::MAX as usize;
     if n <= limit {
         return Ok(());
@@ -100,30 +113,19 @@ fn rename(mut error: Error, argument: &'static str) -> Error {
 }
 
 /// The rows with ascending columns; refuses columns out of range, repeated entries and values not finite.
-fn sorted(input: SparseInput<'_>) -> Result<Csr> {
+fn sorted(input: SparseInput<'_>, diag: Option<&[f64]>) -> Result<Csr> {
     let n = input.ptr.len() - 1;
-    if let Some(at) = first_non_finite(input.val) {
-        let row = input.ptr.partition_point(|&p| p <= at) - 1;
-        return Err(Error::argument("val", "the entry is not a finite number").row(row).entry(at));
-    }
+    check_finite(diag.unwrap_or(&[]), "diag", |at| at)?;
+    check_finite(input.val, "val", |at| input.ptr.partition_point(|&p| p <= at) - 1)?;
     let mut rows = Csr::empty(n);
-    reserve(&mut rows, input.col.len())?;
+    reserve(&mut rows, input.col.len() + diag.map_or(0, <[f64]>::len))?;
     let mut row = Vec::new();
     for i in 0..n {
         row.clear();
         for at in input.ptr[i]..input.ptr[i + 1] {
-            let col = usize::try_from(input.col[at]).ok().filter(|&col| col < n).ok_or_else(|| {
-                Error::argument("col", format!("the column is outside the {n} unknowns of the body"))
-                    .row(i)
-                    .entry(at)
-                    .value(input.col[at] as f64)
-            })?;
-            if let Some(side) = outside(input.storage, i, col) {
-                let what = format!("the column lies {side}");
-                return Err(Error::argument("col", what).row(i).dof(col).entry(at));
-            }
-            row.push((col, input.val[at], at));
+            row.push((column(&input, diag.is_some(), i, at)?, input.val[at], at));
         }
+        row.extend(diag.map(|diag| (i, diag[i], 0)));
         row.sort_unstable_by_key(|entry| entry.0);
         if let Some(pair) = row.windows(2).find(|pair| pair[0].0 == pair[1].0) {
             let at = pair[0].2.max(pair[1].2);
@@ -132,6 +134,33 @@ fn sorted(input: SparseInput<'_>) -> Result<Csr> {
         rows.push_row(row.iter().map(|entry| (entry.0, entry.1)));
     }
     Ok(rows)
+}
+
+/// `row_of` tells the row of an entry.
+pub fn check_finite(values: &[f64], name: &'static str, row_of: impl FnOnce(usize) -> usize) -> Result<()> {
+    match first_non_finite(values) {
+        None => Ok(()),
+        Some(at) => Err(Error::argument(name, "the entry is not a finite number").row(row_of(at)).entry(at)),
+    }
+}
+
+/// The column of entry `at`, which is in row `i`; `split`: none lies on the diagonal.
+fn column(input: &SparseInput<'_>, split: bool, i: usize, at: usize) -> Result<usize> {
+    let n = input.ptr.len() - 1;
+    let col = usize::try_from(input.col[at]).ok().filter(|&col| col < n).ok_or_else(|| {
+        Error::argument("col", format!("the column is outside the {n} unknowns of the body"))
+            .row(i)
+            .entry(at)
+            .value(input.col[at] as f64)
+    })?;
+    let refused = |what: String| Err(Error::argument("col", what).row(i).dof(col).entry(at));
+    match outside(input.storage, i, col) {
+        Some(side) => refused(format!("the column lies {side}")),
+        None if split && col == i => {
+            refused("the entry lies on the diagonal, which is an array of its own".to_owned())
+        }
+        None => Ok(col),
+    }
 }
 
 /// On which wrong side of the diagonal an entry lies.
@@ -162,7 +191,8 @@ fn averaged(rows: &Csr, tolerance: f64) -> Result<Csr> {
             let k_ji = mates.next_if(|e| e.0 == column).map_or(0.0, |e| e.1);
             let limit = may_differ(tolerance, root[i], root[column]);
             if (k_ij - k_ji).abs() > limit {
-                return Err(unsymmetric(rows, i, column, k_ij - k_ji, limit));
+                let lonely = |row: usize| rows.row(row).all(|(col, v)| col == row || v == 0.0);
+                return Err(unsymmetric(lonely(i) || lonely(column), (i, column), k_ij - k_ji, limit));
             }
             lower.col.push(column);
             lower.val.push(if k_ij == k_ji { k_ij } else { 0.5 * k_ij + 0.5 * k_ji });
@@ -181,9 +211,9 @@ fn entry(rows: &Csr, i: usize, j: usize) -> f64 {
     rows.row(i).find(|e| e.0 == j).map_or(0.0, |e| e.1)
 }
 
-fn unsymmetric(rows: &Csr, i: usize, j: usize, difference: f64, limit: f64) -> Error {
-    let lonely = |row: usize| rows.row(row).all(|(col, v)| col == row || v == 0.0);
-    let what = if lonely(i) || lonely(j) {
+/// `lonely`: one of the two rows has nothing beside its diagonal.
+pub(super) fn unsymmetric(lonely: bool, (i, j): (usize, usize), difference: f64, limit: f64) -> Error {
+    let what = if lonely {
         "an identity row meets a full column: eliminate supports symmetrically".to_owned()
     } else {
         format!("|K_ij - K_ji| = {:.1e} exceeds {limit:.1e}: the matrix is not symmetric", difference.abs())
@@ -194,11 +224,11 @@ fn unsymmetric(rows: &Csr, i: usize, j: usize, difference: f64, limit: f64) -> E
 /// The lower triangle with every diagonal entry stored.
 fn with_diagonal(lower: Csr) -> Result<Symmetric> {
     let n = lower.rows();
-    let mut k = Symmetric {
-        ptr: reserved(n + 1, "a stiffness matrix")?,
-        col: reserved(lower.col.len() + n, "a stiffness matrix")?,
-        val: reserved(lower.col.len() + n, "a stiffness matrix")?,
-    };
+    let mut k = Symmetric::new(
+        reserved(n + 1, "a stiffness matrix")?,
+        reserved(lower.col.len() + n, "a stiffness matrix")?,
+        reserved(lower.col.len() + n, "a stiffness matrix")?,
+    );
     k.ptr.push(0);
     for i in 0..n {
         for (j, v) in lower.row(i) {
@@ -216,10 +246,10 @@ fn with_diagonal(lower: Csr) -> Result<Symmetric> {
 
 /// A dof may have no stiffness at all (a rigid body); a diagonal entry that is negative, or zero in a row that is not,
 /// makes K indefinite.
-fn checked(k: Symmetric) -> Result<Symmetric> {
+pub fn check_diagonal(k: &Symmetric) -> Result<()> {
     let n = k.order();
     if (0..n).all(|i| k.diagonal(i) > 0.0) {
-        return Ok(k);
+        return Ok(());
     }
     let coupled = |i: usize, j: usize, v: f64| i != j && v != 0.0;
     for i in 0..n {
@@ -231,7 +261,7 @@ fn checked(k: Symmetric) -> Result<Symmetric> {
             return Err(Error::new(Kind::Indefinite, what).dof(dof).value(k.diagonal(dof)).limit(0.0));
         }
     }
-    Ok(k)
+    Ok(())
 }
 
 #[cfg(test)]
@@ -246,7 +276,7 @@ mod tests {
 
     #[test]
     fn the_three_storages_give_the_same_matrix() {
-        let expected = Symmetric { ptr: vec![0, 1, 3], col: vec![0, 0, 1], val: vec![2.0, -1.0, 3.0] };
+        let expected = Symmetric::new(vec![0, 1, 3], vec![0, 0, 1], vec![2.0, -1.0, 3.0]);
         assert_eq!(full(&[-1.0, 2.0, -1.0, 3.0]).unwrap(), expected);
         let lower =
             SparseInput { ptr: &[0, 1, 3], col: &[0, 1, 0], val: &[2.0, 3.0, -1.0], storage: Storage::Lower };

@@ -135,7 +135,7 @@ impl Coupling {
         }
         let _room = room(48 * (w.order() + w.val.len()), "the blocks of a face")?;
         let coupled = (0..w.order()).map(|i| w.lower_row(i).filter(|(_, v)| *v != 0.0));
-        let mut pattern = Symmetric { ptr: vec![0], col: Vec::new(), val: Vec::new() };
+        let mut pattern = Symmetric::new(vec![0], Vec::new(), Vec::new());
         for row in coupled {
             for (j, v) in row {
                 pattern.col.push(j as u32);
@@ -206,7 +206,7 @@ fn coupled(w: &Symmetric) -> Result<(Vec<usize>, Symmetric)> {
         }
         ptr.push(col.len());
     }
-    Ok((rows, Symmetric { ptr, col, val }))
+    Ok((rows, Symmetric::new(ptr, col, val)))
 }
 
 fn shift(w: &mut Symmetric, i: usize, by: f64) {

@@ -58,9 +58,9 @@ mod tests {
     fn dual(implicit: bool) -> Dual {
         let n = 8;
         let ptr = (0..=n).map(|i| (2 * i as usize).saturating_sub(1)).collect();
-        let col = (0..n).flat_map(|i| [i - 1, i]).skip(1).map(|j: i32| j as u32).collect();
-        let val = (0..n).flat_map(|_| [-1.0, 2.0]).skip(1).collect();
-        let k = Symmetric { ptr, col, val };
+        let col: Vec<_> = (0..n).flat_map(|i| [i - 1, i]).skip(1).map(|j: i32| j as u32).collect();
+        let val: Vec<_> = (0..n).flat_map(|_| [-1.0, 2.0]).skip(1).collect();
+        let k = Symmetric::new(ptr, col, val);
         let none = NullSpaceInput { vectors: Matrix::zeros(8, 0).unwrap(), modes: Modes::Exact };
         let part = |p: usize| {
             let made = GeneralizedInverse::plan(k.clone().into(), &none, 1e-8).unwrap().execute().unwrap();

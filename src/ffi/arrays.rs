@@ -2,8 +2,10 @@
 //! copying, so that a failure leaves the host's arrays as they are and arrays that overlap do no harm.
 
 use std::ffi::{c_char, CStr};
+use std::ptr::NonNull;
 
 use crate::error::{Error, Kind, Result};
+use crate::solver::Borrowed;
 
 /// A size: not negative, and an array of as many 8-byte numbers can exist.
 pub(super) fn count(value: i64, name: &'static str) -> Result<usize> {
@@ -129,6 +131,17 @@ pub(super) unsafe fn input_or_none<'a, T>(
     }
     // SAFETY: by the caller's word.
     unsafe { input(from, len, name) }.map(Some)
+}
+
+/// The host's array of `len` numbers, to be read beyond the call.
+///
+/// # Safety
+/// `from` leads to `len` numbers that stay as long as the result and its copies, and that nobody writes to during a call.
+pub(super) unsafe fn borrowed<T>(from: *const T, len: usize, name: &'static str) -> Result<Borrowed<T>> {
+    check_pointer(from, name)?;
+    let start = NonNull::new(from.cast_mut()).ok_or_else(|| Error::argument(name, "NULL"))?;
+    // SAFETY: not NULL, aligned, and `len` numbers by the caller's word.
+    Ok(unsafe { Borrowed::new(start, len) })
 }
 
 /// Where the host wants a result; NULL-able outputs drop it.

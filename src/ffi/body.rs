@@ -1,11 +1,10 @@
-//! Bodies: stiffness, load, coordinates.
+//! Bodies: their size, coordinates and load.
 
 use super::arrays::{column_major, count, id, input, same, Output};
-use super::guard::{call, enter, Call};
-use super::indices::{base, numbers, pointers, Index};
-use super::types::{feti_problem, FETI_COPY, FETI_FULL, FETI_LOWER, FETI_UPPER};
+use super::guard::{call, enter};
+use super::types::{feti_problem, FETI_ALL};
 use crate::error::{Error, Result};
-use crate::solver::{Problem, SparseInput, Storage};
+use crate::solver::Problem;
 
 /// Adds a body with `n` unknowns.
 ///
@@ -26,149 +25,6 @@ pub unsafe extern "C" fn feti_body_add(p: *mut feti_problem, n: i64, body: *mut 
         let number = unsafe { Output::new(body, 1, "body") }?;
         number.set(problem.add_body(count(n, "n")?)? as i64);
         Ok(())
-    })
-}
-
-/// Gives the stiffness matrix K of a body by rows, with 32-bit indices.
-///
-/// The matrix is copied; calling again replaces pattern and values. Columns of a row may come in any order, none twice.
-/// With FETI_FULL K must be symmetric within option symmetry_tolerance and is averaged. After a failure the body keeps
-/// the matrix it had.
-///
-/// | argument | in/out | shape | rule |
-/// |---|---|---|---|
-/// | `p` | in | scalar | the handle |
-/// | `body` | in | scalar | number of the body, from 0 |
-/// | `n` | in | scalar | unknowns of the body |
-/// | `row_ptr` | in | n + 1 | row i holds the entries row_ptr[i] to row_ptr[i + 1] - 1; starts with `base` |
-/// | `col` | in | row_ptr[n] - base | columns, counted from `base` |
-/// | `val` | in | row_ptr[n] - base | entries of K, force per length |
-/// | `base` | in | scalar | 0 or 1: what `row_ptr` and `col` count from |
-/// | `storage` | in | scalar | FETI_FULL, FETI_LOWER or FETI_UPPER |
-/// | `flags` | in | scalar | FETI_COPY |
-///
-/// # Safety
-/// The arrays have the given shapes.
-#[no_mangle]
-pub unsafe extern "C" fn feti_body_stiffness_i32(
-    p: *mut feti_problem,
-    body: i64,
-    n: i64,
-    row_ptr: *const i32,
-    col: *const i32,
-    val: *const f64,
-    base: i32,
-    storage: i32,
-    flags: i32,
-) -> i32 {
-    let call = call!(feti_body_stiffness_i32(p, body, n, row_ptr, col, val, base, storage, flags));
-    let matrix = SparseMatrix { n, row_ptr, col, val, base, storage, flags };
-    // SAFETY: shapes by the caller's word.
-    unsafe { matrix.give(p, call, body) }
-}
-
-/// Gives the stiffness matrix K of a body by rows, with 64-bit indices.
-///
-/// The matrix is copied; calling again replaces pattern and values. Columns of a row may come in any order, none twice.
-/// With FETI_FULL K must be symmetric within option symmetry_tolerance and is averaged. After a failure the body keeps
-/// the matrix it had.
-///
-/// | argument | in/out | shape | rule |
-/// |---|---|---|---|
-/// | `p` | in | scalar | the handle |
-/// | `body` | in | scalar | number of the body, from 0 |
-/// | `n` | in | scalar | unknowns of the body |
-/// | `row_ptr` | in | n + 1 | row i holds the entries row_ptr[i] to row_ptr[i + 1] - 1; starts with `base` |
-/// | `col` | in | row_ptr[n] - base | columns, counted from `base` |
-/// | `val` | in | row_ptr[n] - base | entries of K, force per length |
-/// | `base` | in | scalar | 0 or 1: what `row_ptr` and `col` count from |
-/// | `storage` | in | scalar | FETI_FULL, FETI_LOWER or FETI_UPPER |
-/// | `flags` | in | scalar | FETI_COPY |
-///
-/// # Safety
-/// The arrays have the given shapes.
-#[no_mangle]
-pub unsafe extern "C" fn feti_body_stiffness_i64(
-    p: *mut feti_problem,
-    body: i64,
-    n: i64,
-    row_ptr: *const i64,
-    col: *const i64,
-    val: *const f64,
-    base: i32,
-    storage: i32,
-    flags: i32,
-) -> i32 {
-    let call = call!(feti_body_stiffness_i64(p, body, n, row_ptr, col, val, base, storage, flags));
-    let matrix = SparseMatrix { n, row_ptr, col, val, base, storage, flags };
-    // SAFETY: shapes by the caller's word.
-    unsafe { matrix.give(p, call, body) }
-}
-
-/// Arguments of the two functions above.
-struct SparseMatrix<I> {
-    n: i64,
-    row_ptr: *const I,
-    col: *const I,
-    val: *const f64,
-    base: i32,
-    storage: i32,
-    flags: i32,
-}
-
-impl<I: Index> SparseMatrix<I> {
-    /// # Safety
-    /// The arrays have the documented shapes.
-    unsafe fn give(&self, p: *mut feti_problem, call: Call, body: i64) -> i32 {
-        enter(p, call, |problem| {
-            let (body, n) = body_of_order(problem, body, self.n)?;
-            let (base, storage) = (base(self.base)?, storage_of(self.storage)?);
-            copy_only(self.flags)?;
-            // SAFETY: n + 1 positions by the caller's word.
-            let ptr = unsafe { pointers(self.row_ptr, n, base) }?;
-            let entries = ptr.last().copied().unwrap_or(0);
-            // SAFETY: the last position is the number of entries.
-            let (col, val) =
-                unsafe { (numbers(self.col, entries, base, "col")?, input(self.val, entries, "val")?) };
-            problem.set_stiffness(body, SparseInput { ptr: &ptr, col: &col, val, storage })
-        })
-    }
-}
-
-/// Gives the stiffness matrix K of a body as a dense matrix, for boundary elements and condensed bodies.
-///
-/// The matrix is copied; calling again replaces it. With FETI_LOWER and FETI_UPPER the other triangle is not read. After a
-/// failure the body keeps the matrix it had.
-///
-/// | argument | in/out | shape | rule |
-/// |---|---|---|---|
-/// | `p` | in | scalar | the handle |
-/// | `body` | in | scalar | number of the body, from 0 |
-/// | `n` | in | scalar | unknowns of the body |
-/// | `k` | in | ld * n | column-major: K_ij is k[i + ld j], force per length |
-/// | `ld` | in | scalar | >= n |
-/// | `storage` | in | scalar | FETI_FULL, FETI_LOWER or FETI_UPPER |
-/// | `flags` | in | scalar | FETI_COPY |
-///
-/// # Safety
-/// The array has the given shape.
-#[no_mangle]
-pub unsafe extern "C" fn feti_body_stiffness_dense(
-    p: *mut feti_problem,
-    body: i64,
-    n: i64,
-    k: *const f64,
-    ld: i64,
-    storage: i32,
-    flags: i32,
-) -> i32 {
-    enter(p, call!(feti_body_stiffness_dense(p, body, n, k, ld, storage, flags)), |problem| {
-        let (body, n) = body_of_order(problem, body, n)?;
-        let storage = storage_of(storage)?;
-        copy_only(flags)?;
-        let (entries, ld) = column_major(n, n, ld, "ld")?;
-        // SAFETY: ld (n - 1) + n entries by the caller's word.
-        problem.set_stiffness_dense(body, n, unsafe { input(k, entries, "k") }?, ld, storage)
     })
 }
 
@@ -218,14 +74,15 @@ pub unsafe extern "C" fn feti_body_coordinates(
 
 /// Gives the load of a body.
 ///
-/// The load is copied and holds until it is given again; a body without one has zero load. After a failure the body keeps
-/// the load it had.
+/// The load is copied and holds until it is given again; a body without one has zero load. With FETI_ALL the array holds the
+/// loads of all bodies: by the host's numbers where they have some, entries of no unknown not looked at; else one body after
+/// the other. After a failure the loads are as they were.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|
 /// | `p` | in | scalar | the handle |
-/// | `body` | in | scalar | number of the body, from 0 |
-/// | `n` | in | scalar | unknowns of the body |
+/// | `body` | in | scalar | number of the body, from 0, or FETI_ALL |
+/// | `n` | in | scalar | unknowns of the body; with FETI_ALL at least the largest number + 1, without numbers all unknowns |
 /// | `f` | in | n | force |
 ///
 /// # Safety
@@ -233,10 +90,22 @@ pub unsafe extern "C" fn feti_body_coordinates(
 #[no_mangle]
 pub unsafe extern "C" fn feti_body_load(p: *mut feti_problem, body: i64, n: i64, f: *const f64) -> i32 {
     enter(p, call!(feti_body_load(p, body, n, f)), |problem| {
+        if body == FETI_ALL {
+            let n = whole(problem, n)?;
+            // SAFETY: n numbers by the caller's word.
+            return problem.set_all_loads(unsafe { input(f, n, "f") }?);
+        }
         let (body, n) = body_of_order(problem, body, n)?;
         // SAFETY: n numbers by the caller's word.
         problem.set_load(body, unsafe { input(f, n, "f") }?)
     })
+}
+
+/// The length of an array over the unknowns of all bodies.
+pub(super) fn whole(problem: &Problem, n: i64) -> Result<usize> {
+    let n = count(n, "n")?;
+    problem.check_whole(n)?;
+    Ok(n)
 }
 
 /// The body and its number of unknowns, which `n` must be: no array is read with a wrong length.
@@ -245,23 +114,4 @@ pub(super) fn body_of_order(problem: &Problem, body: i64, n: i64) -> Result<(usi
     let order = problem.order(body)?;
     same(n, order, "n", "the number of unknowns of the body is").map_err(|error| error.body(body))?;
     Ok((body, order))
-}
-
-fn storage_of(storage: i32) -> Result<Storage> {
-    match storage {
-        FETI_FULL => Ok(Storage::Full),
-        FETI_LOWER => Ok(Storage::Lower),
-        FETI_UPPER => Ok(Storage::Upper),
-        _ => {
-            let text = format!("{storage} is none of FETI_FULL, FETI_LOWER, FETI_UPPER");
-            Err(Error::argument("storage", text).value(f64::from(storage)))
-        }
-    }
-}
-
-fn copy_only(flags: i32) -> Result<()> {
-    if flags == FETI_COPY {
-        return Ok(());
-    }
-    Err(Error::argument("flags", format!("{flags} is not FETI_COPY")).value(f64::from(flags)))
 }

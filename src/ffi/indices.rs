@@ -6,17 +6,27 @@ use crate::error::{Error, Result};
 /// The integer types of index arrays.
 pub(super) trait Index: Copy {
     fn wide(self) -> i64;
+    /// Numbers in the 32 bits of a matrix, in which those below 0 are far too large.
+    fn unsigned(from: *const Self) -> Option<*const u32>;
 }
 
 impl Index for i32 {
     fn wide(self) -> i64 {
         i64::from(self)
     }
+
+    fn unsigned(from: *const Self) -> Option<*const u32> {
+        Some(from.cast())
+    }
 }
 
 impl Index for i64 {
     fn wide(self) -> i64 {
         self
+    }
+
+    fn unsigned(_: *const Self) -> Option<*const u32> {
+        None
     }
 }
 

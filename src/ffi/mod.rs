@@ -8,7 +8,7 @@
 //! | `fpu` | the floating-point environment of the host, saved and restored |
 //! | `error_store` | the last error, per thread and per problem |
 //! | `arrays`, `indices`, `record` | host arrays, index arrays and structs with a `struct_size`, checked |
-//! | `problem`, `options`, `body`, `null_space`, `rows`, `solve`, `phases`, `progress`, `state`, `diagnosis`, `results`, `validation` | the functions |
+//! | `problem`, `options`, `body`, `body_info`, `stiffness`, `values`, `numbering`, `null_space`, `rows`, `solve`, `phases`, `progress`, `state`, `diagnosis`, `results`, `validation` | the functions |
 //!
 //! The generator of the header and of the Fortran interfaces reads these files: each exported function has a table of
 //! its arguments, in which the word NULL in the rule says that the pointer may be NULL.
@@ -18,6 +18,7 @@
 
 mod arrays;
 mod body;
+mod body_info;
 mod diagnosis;
 mod error_store;
 mod fpu;
@@ -25,6 +26,7 @@ mod guard;
 mod handle;
 mod indices;
 mod null_space;
+mod numbering;
 mod options;
 mod phases;
 mod problem;
@@ -35,8 +37,10 @@ mod rows;
 mod solve;
 mod state;
 mod status;
+mod stiffness;
 mod types;
 mod validation;
+mod values;
 
 #[cfg(test)]
 mod error_tests;
@@ -46,9 +50,11 @@ mod panic_tests;
 mod tests;
 
 pub use body::*;
+pub use body_info::*;
 pub use diagnosis::*;
 pub use error_store::{feti_last_error, feti_last_error_detail};
 pub use null_space::*;
+pub use numbering::*;
 pub use options::*;
 pub use phases::*;
 pub use problem::*;
@@ -58,5 +64,7 @@ pub use rows::*;
 pub use solve::*;
 pub use state::*;
 pub use status::*;
+pub use stiffness::*;
 pub use types::*;
 pub use validation::*;
+pub use values::*;

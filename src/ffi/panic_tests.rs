@@ -74,9 +74,18 @@ const INJECTIONS: [(&str, Injection); 7] = [
         inside(p, || run_on_pool(2, 9, |k| if k == 4 { panic!("{INJECTED}") } else { Ok(()) }).map(|_| ()))
     }),
     ("a thread of the pool, heard", |p| {
-        inside(p, || run_heard(2, 9, |k| if k == 4 { panic!("{INJECTED}") } else { Ok(()) }, &mut |_| ()))
+        inside(p, || {
+            run_heard(
+                2,
+                &[0, 1, 2, 3, 4, 5, 6, 7, 8],
+                |k| if k == 4 { panic!("{INJECTED}") } else { Ok(()) },
+                &mut |_| (),
+            )
+        })
     }),
-    ("the thread that hears", |p| inside(p, || run_heard(2, 9, Ok, &mut |_| panic!("{INJECTED}")))),
+    ("the thread that hears", |p| {
+        inside(p, || run_heard(2, &[0, 1, 2, 3, 4, 5, 6, 7, 8], Ok, &mut |_| panic!("{INJECTED}")))
+    }),
     ("the boundary of a progress function in the setup", |p| solve_heard_by(p, true)),
     ("the boundary of a progress function in the solve", |p| solve_heard_by(p, false)),
 ];

@@ -1,22 +1,23 @@
 //! The answer of the last solve, and the size of the problem.
 
 use super::arrays::{id, reserved, same, zeros, Output};
-use super::body::body_of_order;
+use super::body::{body_of_order, whole};
 use super::guard::{call, enter};
 use super::rows::row_kind;
-use super::types::{feti_problem, FETI_ROW_CLOSED, FETI_ROW_OPEN, FETI_ROW_WEAK};
+use super::types::{feti_problem, FETI_ALL, FETI_ROW_CLOSED, FETI_ROW_OPEN, FETI_ROW_WEAK};
 use crate::error::Result;
 use crate::solver::RowState;
 
 /// Reads the displacement of a body.
 ///
-/// FETI_STATE before a solve has given an answer. After a failure nothing is written.
+/// With FETI_ALL the displacement of all bodies: by the host's numbers where they have some, entries of no unknown as they
+/// were; else one body after the other. FETI_STATE before a solve has given an answer. After a failure nothing is written.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|
 /// | `p` | in | scalar | the handle |
-/// | `body` | in | scalar | number of the body, from 0 |
-/// | `n` | in | scalar | unknowns of the body |
+/// | `body` | in | scalar | number of the body, from 0, or FETI_ALL |
+/// | `n` | in | scalar | unknowns of the body; with FETI_ALL at least the largest number + 1, without numbers all unknowns |
 /// | `u` | out | n | displacement, length |
 ///
 /// # Safety
@@ -24,6 +25,11 @@ use crate::solver::RowState;
 #[no_mangle]
 pub unsafe extern "C" fn feti_displacement(p: *mut feti_problem, body: i64, n: i64, u: *mut f64) -> i32 {
     enter(p, call!(feti_displacement(p, body, n, u)), |problem| {
+        if body == FETI_ALL {
+            // SAFETY: room for n numbers by the caller's word.
+            let output = unsafe { Output::new(u, whole(problem, n)?, "u") }?;
+            return problem.spread(problem.displacements()?, |at, value| output.write_at(at, &[value]));
+        }
         let (body, n) = body_of_order(problem, body, n)?;
         // SAFETY: room for n numbers by the caller's word.
         unsafe { Output::new(u, n, "u") }?.write(problem.displacement(body)?);
@@ -33,14 +39,15 @@ pub unsafe extern "C" fn feti_displacement(p: *mut feti_problem, body: i64, n: i
 
 /// Reads the force of the rows on a body, -B'lambda, -H'mu or both: `K u = f + r`.
 ///
-/// FETI_STATE before a solve has given an answer. After a failure nothing is written.
+/// With FETI_ALL the forces on all bodies: by the host's numbers where they have some, entries of no unknown as they were;
+/// else one body after the other. FETI_STATE before a solve has given an answer. After a failure nothing is written.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|
 /// | `p` | in | scalar | the handle |
 /// | `kind` | in | scalar | FETI_INEQUALITY, FETI_EQUALITY, or 0 for both |
-/// | `body` | in | scalar | number of the body, from 0 |
-/// | `n` | in | scalar | unknowns of the body |
+/// | `body` | in | scalar | number of the body, from 0, or FETI_ALL |
+/// | `n` | in | scalar | unknowns of the body; with FETI_ALL at least the largest number + 1, without numbers all unknowns |
 /// | `r` | out | n | force |
 ///
 /// # Safety
@@ -55,6 +62,11 @@ pub unsafe extern "C" fn feti_reaction(
 ) -> i32 {
     enter(p, call!(feti_reaction(p, kind, body, n, r)), |problem| {
         let kind = if kind == 0 { None } else { Some(row_kind(kind)?) };
+        if body == FETI_ALL {
+            // SAFETY: room for n numbers by the caller's word.
+            let output = unsafe { Output::new(r, whole(problem, n)?, "r") }?;
+            return problem.spread(&problem.reactions(kind)?, |at, value| output.write_at(at, &[value]));
+        }
         let (body, n) = body_of_order(problem, body, n)?;
         // SAFETY: room for n numbers by the caller's word.
         let output = unsafe { Output::new(r, n, "r") }?;

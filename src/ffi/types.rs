@@ -8,6 +8,9 @@ pub const FETI_INEQUALITY: i32 = 1;
 /// Kind of rows: `H u = h`.
 pub const FETI_EQUALITY: i32 = 2;
 
+/// In place of a body: all bodies, by the host's numbers of feti_body_numbering_i32 or _i64 where they have some.
+pub const FETI_ALL: i64 = -1;
+
 /// Storage: every entry of the symmetric matrix is given.
 pub const FETI_FULL: i32 = 0;
 /// Storage: entries with column <= row are given.
@@ -22,6 +25,17 @@ pub const FETI_CANDIDATES: i32 = 1;
 
 /// Stiffness flag: the matrix is copied.
 pub const FETI_COPY: i32 = 0;
+/// Stiffness flag: the values, and columns in 32 bits from 0, stay where the host has them, where their form allows it.
+pub const FETI_BORROW: i32 = 1;
+
+/// Null space of a body: vectors of the host that span it (FETI_EXACT).
+pub const FETI_ORIGIN_EXACT: i32 = 1;
+/// Null space of a body: sought among vectors of the host (FETI_CANDIDATES).
+pub const FETI_ORIGIN_CANDIDATES: i32 = 2;
+/// Null space of a body: sought among rigid motions, from coordinates.
+pub const FETI_ORIGIN_COORDINATES: i32 = 3;
+/// Null space of a body: found from K alone.
+pub const FETI_ORIGIN_FOUND: i32 = 4;
 
 /// State of a row: open, its force is zero.
 pub const FETI_ROW_OPEN: i32 = 0;
@@ -189,6 +203,40 @@ pub struct feti_info {
     pub factor_bytes: i64,
     /// Bytes of the explicit dual operators.
     pub operator_bytes: i64,
+}
+
+/// A body as it is given, and what the last setup has made of it; what is not there yet is -1 or NaN.
+#[repr(C)]
+#[derive(Debug, Clone, Copy)]
+pub struct feti_body_facts {
+    /// Set by the caller: size of the struct in bytes.
+    pub struct_size: i64,
+    /// Unknowns.
+    pub unknowns: i64,
+    /// Entries of K as the host gave them, a diagonal of its own counted; dense: all of the storage.
+    pub entries: i64,
+    /// Connected parts of K.
+    pub components: i64,
+    /// Bytes that the library keeps for K.
+    pub matrix_bytes: i64,
+    /// Arrays of K that stay with the host (FETI_BORROW): 0 none, 1 values, 2 values and columns.
+    pub borrowed: i64,
+    /// What the null space comes from: FETI_ORIGIN_EXACT, _CANDIDATES, _COORDINATES or _FOUND.
+    pub origin: i64,
+    /// Dimension of the null space.
+    pub null_space: i64,
+    /// Entries of the factor.
+    pub factor_entries: i64,
+    /// Bytes of the factor and, at most, of the work arrays of its computation.
+    pub factor_bytes: i64,
+    /// The first other body that shares the factor, from 0, -1: none.
+    pub shared_with: i64,
+    /// 1: the dual operator has its entries, 0: it is known by its products.
+    pub explicit_operator: i64,
+    /// Bytes of the explicit dual operator.
+    pub operator_bytes: i64,
+    /// Of a null space that was found: stiffness of the softest other motion over that of the stiffest in it; else NaN.
+    pub gap: f64,
 }
 
 /// Time and memory of a phase of a setup or a solve.

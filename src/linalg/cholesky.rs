@@ -233,7 +233,7 @@ mod tests {
             val.push(degree.into_iter().filter(|d| *d).count() as f64 + shift);
             ptr.push(col.len());
         }
-        Symmetric { ptr, col, val }
+        Symmetric::new(ptr, col, val)
     }
 
     #[test]
@@ -283,7 +283,7 @@ mod tests {
                     val.push(n as f64);
                     ptr.push(col.len());
                 }
-                let matrix = Symmetric { ptr, col, val };
+                let matrix = Symmetric::new(ptr, col, val);
                 let held: Vec<bool> = (0..n).map(|_| random() < 0.1).collect();
                 let analysis = Arc::new(Analysis::new(&matrix, &held).unwrap());
                 let factor = analysis.factorize(&matrix, 0.5).unwrap().unwrap();

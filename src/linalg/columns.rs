@@ -134,7 +134,7 @@ mod tests {
             val.push(7.0);
             ptr.push(col.len());
         }
-        let matrix = Symmetric { ptr, col, val };
+        let matrix = Symmetric::new(ptr, col, val);
         let mut held = vec![false; side * side];
         held[3] = true;
         let factor =

@@ -47,7 +47,7 @@ impl Gram {
         }
         let (ptr, col) =
             (copied(&self.pattern.ptr, "a Gram matrix")?, copied(&self.pattern.col, "a Gram matrix")?);
-        Ok(Symmetric { ptr, col, val })
+        Ok(Symmetric::new(ptr, col, val))
     }
 }
 
@@ -71,7 +71,7 @@ fn pattern(rows: &Csr) -> Result<Symmetric> {
         ptr.push(col.len());
     }
     let val = zeros(col.len(), "a Gram matrix")?;
-    Ok(Symmetric { ptr, col, val })
+    Ok(Symmetric::new(ptr, col, val))
 }
 
 #[cfg(test)]
@@ -86,7 +86,7 @@ mod tests {
         rows.push_row([(0, -1.0), (2, 1.0)]);
         let gram = Gram::of(&rows).unwrap();
         let sum = gram.sum(&rows, &[false, true, false]).unwrap();
-        assert_eq!((sum.ptr, sum.col), (vec![0, 1, 2, 4], vec![0, 1, 0, 2]));
+        assert_eq!((sum.ptr, sum.col.to_vec()), (vec![0, 1, 2, 4], vec![0, 1, 0, 2]));
         assert_eq!(sum.val, [2.0, 0.0, 1.0, 5.0]);
     }
 }

@@ -130,11 +130,8 @@ mod tests {
 
     /// Dofs 0, 1 form one node coupled to dof 2; dof 3 stands alone.
     fn sample() -> Symmetric {
-        Symmetric {
-            ptr: vec![0, 1, 3, 6, 7],
-            col: vec![0, 0, 1, 0, 1, 2, 3],
-            val: vec![4.0, 1.0, 4.0, 1.0, 1.0, 4.0, 1.0],
-        }
+        let val = vec![4.0, 1.0, 4.0, 1.0, 1.0, 4.0, 1.0];
+        Symmetric::new(vec![0, 1, 3, 6, 7], vec![0, 0, 1, 0, 1, 2, 3], val)
     }
 
     #[test]

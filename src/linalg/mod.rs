@@ -1,5 +1,6 @@
 //! Vectors, matrices, ordering and factorisation. The only layer that knows faer.
 
+pub mod array;
 mod blocks;
 pub mod cholesky;
 pub mod columns;
@@ -28,6 +29,7 @@ mod triangular;
 mod updates;
 pub mod vector;
 
+pub use array::{Array, Borrowed};
 pub use cholesky::{Analysis, Breakdown, Cholesky};
 pub use csr::Csr;
 pub use dense::Matrix;

@@ -222,7 +222,7 @@ mod tests {
             val.push(400.0 + (i % 5) as f64);
             ptr.push(col.len());
         }
-        Symmetric { ptr, col, val }
+        Symmetric::new(ptr, col, val)
     }
 
     fn factor(matrix: &Symmetric) -> Cholesky {

@@ -68,7 +68,7 @@ mod tests {
         let val = vec![1.0; col.len()];
         let mut held = vec![false; n];
         held[7] = true;
-        let graph = Graph::of(&Symmetric { ptr, col, val }).unwrap();
+        let graph = Graph::of(&Symmetric::new(ptr, col, val)).unwrap();
         let mut order = nested_dissection(&graph, &held).unwrap();
         order.sort_unstable();
         assert_eq!(order, (0..n).filter(|&i| i != 7).collect::<Vec<_>>());

@@ -329,7 +329,7 @@ mod tests {
             val.push(2.0 + 0.1 * (i % 3) as f64);
             ptr.push(col.len());
         }
-        let matrix = Symmetric { ptr, col, val };
+        let matrix = Symmetric::new(ptr, col, val);
         let mut held = vec![false; n];
         held[5] = true;
         let factor =

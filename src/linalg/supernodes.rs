@@ -341,7 +341,8 @@ mod tests {
                 );
                 ptr.push(col.len());
             }
-            let k = Symmetric { ptr, val: vec![1.0; col.len()], col };
+            let val = vec![1.0; col.len()];
+            let k = Symmetric::new(ptr, col, val);
             let given: Vec<usize> = (0..2 * nodes).filter(|_| random() % 8 > 0).collect();
             let (order, found) = Supernodes::of(&Graph::of(&k).unwrap(), &given).unwrap();
             let sorted = |mut dofs: Vec<usize>| {

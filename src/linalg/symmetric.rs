@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use crate::error::Result;
 use crate::linalg::memory::{copied, reserved};
-use crate::linalg::{Matrix, Operator};
+use crate::linalg::{Array, Matrix, Operator};
 
 /// Columns that take one pass over the matrix.
 const TOGETHER: usize = 3;
@@ -15,11 +15,15 @@ const TOGETHER: usize = 3;
 pub struct Symmetric {
     pub ptr: Vec<usize>,
     /// 32 bits: a matrix has less than 2^32 rows.
-    pub col: Vec<u32>,
-    pub val: Vec<f64>,
+    pub col: Array<u32>,
+    pub val: Array<f64>,
 }
 
 impl Symmetric {
+    pub fn new(ptr: Vec<usize>, col: impl Into<Array<u32>>, val: impl Into<Array<f64>>) -> Self {
+        Self { ptr, col: col.into(), val: val.into() }
+    }
+
     pub fn order(&self) -> usize {
         self.ptr.len() - 1
     }
@@ -45,13 +49,14 @@ impl Symmetric {
         }
     }
 
+    /// Bytes that the library keeps for it.
+    pub fn bytes(&self) -> usize {
+        self.ptr.capacity() * size_of::<usize>() + self.col.bytes() + self.val.bytes()
+    }
+
     /// A copy for `what`.
     pub fn copied(&self, what: &str) -> Result<Self> {
-        Ok(Self {
-            ptr: copied(&self.ptr, what)?,
-            col: copied(&self.col, what)?,
-            val: copied(&self.val, what)?,
-        })
+        Ok(Self::new(copied(&self.ptr, what)?, copied(&self.col, what)?, copied(&self.val, what)?))
     }
 
     /// `y = K x`
@@ -233,7 +238,7 @@ mod tests {
 
     /// [[2, -1, 0], [-1, 2, -1], [0, -1, 1]]
     fn chain() -> Symmetric {
-        Symmetric { ptr: vec![0, 1, 3, 5], col: vec![0, 0, 1, 1, 2], val: vec![2.0, -1.0, 2.0, -1.0, 1.0] }
+        Symmetric::new(vec![0, 1, 3, 5], vec![0, 0, 1, 1, 2], vec![2.0, -1.0, 2.0, -1.0, 1.0])
     }
 
     #[test]

@@ -185,7 +185,7 @@ mod tests {
             col.extend(edges.into_iter().flatten().map(|j| j as u32));
             ptr.push(col.len());
         }
-        let graph = Graph::of(&Symmetric { ptr, val: vec![1.0; col.len()], col }).unwrap();
+        let graph = Graph::of(&Symmetric::new(ptr, col.clone(), vec![1.0; col.len()])).unwrap();
         let order = nested_dissection(&graph, &vec![false; n * n]).unwrap();
         let nodes = &Supernodes::of(&graph, &order).unwrap().1;
         let len = |s: usize| 100 * nodes.node(s).rows.len();

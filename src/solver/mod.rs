@@ -1,11 +1,13 @@
 //! From what the host registers to the answer it gets: register, set up, solve, certify, report.
 
+mod body_facts;
 mod certificate;
 mod diagnosis;
 mod factors;
 mod fallback;
 mod findings;
 mod finish;
+mod numbering;
 mod operators;
 mod paper;
 mod phases;
@@ -20,14 +22,17 @@ mod settings;
 mod setup;
 mod solve;
 mod state;
+mod stiffness;
 mod threads;
 mod undetermined;
 mod watch;
 
-pub use crate::body::{Modes, SparseInput, Storage};
+pub use crate::body::{Columns, Modes, SparseInput, Storage};
 pub use crate::constraints::{RowKind, RowsInput};
 pub use crate::error::Proof;
+pub use crate::linalg::Borrowed;
 pub use crate::qp::StepKind;
+pub use body_facts::{BodyFacts, Factors, Origin};
 pub use certificate::{Certificate, Entry};
 pub use findings::Findings;
 pub use phases::PhaseReport;

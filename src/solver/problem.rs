@@ -3,16 +3,16 @@
 use std::sync::Arc;
 
 use crate::body::{
-    from_dense, from_sparse, same_matrix, same_pattern, same_vectors, Body, Coordinates, GeneralizedInverse,
-    Modes, NullSpaceInput, SparseInput, Storage, Symbolic,
+    same_vectors, Body, Coordinates, Form, GeneralizedInverse, Modes, NullSpaceInput, Symbolic,
 };
 use crate::constraints::{RowKind, RowSet, RowsInput};
 use crate::dual::Kept;
 use crate::error::{Error, Result};
 use crate::linalg::memory::{copied, zeros};
 use crate::linalg::vector::first_non_finite;
-use crate::linalg::{Matrix, Symmetric};
+use crate::linalg::Matrix;
 use crate::solver::findings::Findings;
+use crate::solver::numbering::Numbering;
 use crate::solver::phases::Phases;
 use crate::solver::report::{Counts, Report, Work};
 use crate::solver::results::Answer;
@@ -28,6 +28,7 @@ pub struct Problem {
     pub(super) bodies: Vec<BodySlot>,
     pub(super) contact: RowSet,
     pub(super) equalities: RowSet,
+    pub(super) numbering: Numbering,
     pub(super) ready: Option<Ready>,
     pub(super) answer: Option<Arc<Answer>>,
     pub(super) findings: Option<Findings>,
@@ -43,6 +44,12 @@ pub struct Problem {
 #[derive(Default)]
 pub(super) struct BodySlot {
     pub body: Body,
+    /// How its matrix was given.
+    pub form: Option<Form>,
+    /// The host has rewritten the values it keeps, and they were refused: there is no matrix.
+    pub spoiled: bool,
+    /// The host's numbers of its unknowns.
+    pub numbers: Option<Vec<usize>>,
     pub inverse: Option<Inverse>,
     /// The last analysis of a matrix with the pattern of this one.
     pub symbolic: Option<Arc<Symbolic>>,
@@ -105,44 +112,6 @@ impl Problem {
     /// Number of unknowns of a body.
     pub fn order(&self, body: usize) -> Result<usize> {
         self.slot(body).map(|slot| slot.body.order)
-    }
-
-    /// `K_p` by rows, n x n.
-    pub fn set_stiffness(&mut self, body: usize, k: SparseInput<'_>) -> Result<()> {
-        self.check_length(body, "n", k.ptr.len() - 1)?;
-        let stiffness = from_sparse(k, self.settings.symmetry_tolerance).map_err(|e| e.body(body))?;
-        self.keep_stiffness(body, stiffness)
-    }
-
-    /// `K_p` column-major with leading dimension `ld`, n x n.
-    pub fn set_stiffness_dense(
-        &mut self,
-        body: usize,
-        n: usize,
-        k: &[f64],
-        ld: usize,
-        storage: Storage,
-    ) -> Result<()> {
-        self.check_length(body, "n", n)?;
-        check_ld("ld", ld, n).map_err(|e| e.body(body))?;
-        let tolerance = self.settings.symmetry_tolerance;
-        let stiffness = from_dense(n, k, ld, storage, tolerance).map_err(|e| e.body(body))?;
-        self.keep_stiffness(body, stiffness)
-    }
-
-    fn keep_stiffness(&mut self, body: usize, stiffness: Symmetric) -> Result<()> {
-        let old = self.slot(body)?.body.stiffness.as_ref();
-        let unchanged = old.is_some_and(|old| same_matrix(old, &stiffness));
-        let analysed = old.is_some_and(|old| same_pattern(old, &stiffness));
-        let slot = self.changed(body, unchanged)?;
-        slot.body.stiffness = Some(Arc::new(stiffness));
-        if !unchanged {
-            slot.keys = None;
-        }
-        if !analysed {
-            slot.symbolic = None;
-        }
-        Ok(())
     }
 
     /// R, n x r column-major with leading dimension `ldr`; r = 0 and exact claims that K is not singular.
@@ -230,9 +199,15 @@ impl Problem {
         Ok(())
     }
 
-    /// Adds rows and returns the number of the first among those of its kind.
+    /// Adds rows and returns the number of the first among those of its kind. Without `body` they go by the host's numbers
+    /// of the unknowns, where there are some.
     pub fn add_rows(&mut self, kind: RowKind, rows: RowsInput<'_>) -> Result<usize> {
         let offsets = self.offsets();
+        let places = match rows.body {
+            Some(_) => None,
+            None => self.places_of(rows.ptr, rows.dof)?,
+        };
+        let rows = RowsInput { dof: places.as_deref().unwrap_or(rows.dof), ..rows };
         let first = self.rows_mut(kind).add(rows, &offsets)?;
         self.rows_changed();
         Ok(first)
@@ -291,7 +266,7 @@ impl Problem {
 
     /// The body, about to get new data: dual and answer no longer hold, nor do its factors, unless the data are those
     /// it has.
-    fn changed(&mut self, body: usize, unchanged: bool) -> Result<&mut BodySlot> {
+    pub(super) fn changed(&mut self, body: usize, unchanged: bool) -> Result<&mut BodySlot> {
         self.forget_dual();
         self.history.data_changed();
         if !unchanged {
@@ -359,7 +334,7 @@ fn no_body(body: usize, bodies: usize) -> Error {
     Error::argument("body", format!("there are {bodies} bodies")).body(body).value(body as f64)
 }
 
-fn check_ld(name: &'static str, ld: usize, least: usize) -> Result<()> {
+pub(super) fn check_ld(name: &'static str, ld: usize, least: usize) -> Result<()> {
     if ld >= least {
         return Ok(());
     }

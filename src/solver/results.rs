@@ -109,9 +109,20 @@ impl Problem {
         Ok(&self.answer()?.u[self.ranges()[body].clone()])
     }
 
+    /// u of all bodies one after the other, length.
+    pub fn displacements(&self) -> Result<&[f64]> {
+        Ok(&self.answer()?.u)
+    }
+
     /// Force of the rows on the body: `-B'lambda`, `-H'mu`, or both, so that `K u = f + r`.
     pub fn reaction(&self, kind: Option<RowKind>, body: usize, r: &mut [f64]) -> Result<()> {
         self.check_length(body, "n", r.len())?;
+        r.copy_from_slice(&self.reactions(kind)?[self.ranges()[body].clone()]);
+        Ok(())
+    }
+
+    /// The same on all bodies one after the other.
+    pub fn reactions(&self, kind: Option<RowKind>) -> Result<Vec<f64>> {
         let answer = self.answer()?;
         let mut all = zeros(answer.u.len(), "a reaction")?;
         for (of, multipliers) in [(RowKind::Inequality, &answer.lambda), (RowKind::Equality, &answer.mu)] {
@@ -119,8 +130,7 @@ impl Problem {
                 self.rows(of).matrix.mul_transposed_add(-1.0, multipliers, &mut all);
             }
         }
-        r.copy_from_slice(&all[self.ranges()[body].clone()]);
-        Ok(())
+        Ok(all)
     }
 
     /// Amplitudes alpha of the null space of one body, in the basis `null_space` gives.

@@ -93,6 +93,11 @@ impl Problem {
             if slot.body.stiffness.is_none() {
                 return Err(Error::new(Kind::State, "the stiffness matrix has not been given").body(p));
             }
+            if slot.spoiled {
+                let what =
+                    "the values of the stiffness matrix were rewritten in place and refused: give others";
+                return Err(Error::new(Kind::State, what).body(p));
+            }
         }
         Ok(())
     }

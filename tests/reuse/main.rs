@@ -4,6 +4,7 @@
 mod hand_over;
 
 mod bodies;
+mod borrowed;
 mod rows;
 mod values;
 

@@ -1,7 +1,8 @@
 //! New loads, gaps and values on the old pattern.
 
 use decks::{Blocks, Deck};
-use feti_contact::solver::{Modes, Problem, RowKind};
+use feti_contact::error::Kind;
+use feti_contact::solver::{Modes, Problem, RowKind, SparseInput, Storage};
 
 use crate::{answer, assert_near, hand_over, spent};
 
@@ -121,7 +122,7 @@ fn dofs_that_no_longer_hold_a_body_are_chosen_anew() {
             problem.add_body(n).unwrap();
             problem.set_null_space(0, n, 1, &vec![1.0; n], n, Modes::Exact).unwrap();
         }
-        problem.set_stiffness_dense(0, n, &k, n, feti_contact::solver::Storage::Full).unwrap();
+        problem.set_stiffness_dense(0, n, &k, n, Storage::Full).unwrap();
         let held = problem.fixing_dofs(0).unwrap().to_vec();
         analyses.push(held[0]);
     }
@@ -135,11 +136,77 @@ fn dofs_of_the_host_leave_nothing_behind() {
     let mut problem = Problem::new();
     problem.add_body(2).unwrap();
     let k = [4.0, -4.0, -4.0, 4.0];
-    problem.set_stiffness_dense(0, 2, &k, 2, feti_contact::solver::Storage::Full).unwrap();
+    problem.set_stiffness_dense(0, 2, &k, 2, Storage::Full).unwrap();
     problem.set_null_space(0, 2, 1, &[1.0; 2], 2, Modes::Exact).unwrap();
     let own = problem.fixing_dofs(0).unwrap().to_vec();
     problem.set_fixing(0, Some(&[1 - own[0]])).unwrap();
     assert_eq!(problem.fixing_dofs(0).unwrap(), [1 - own[0]]);
     problem.set_fixing(0, None).unwrap();
     assert_eq!(problem.fixing_dofs(0).unwrap(), own);
+}
+
+/// The values alone, in the order in which the matrix was given; those of before cost nothing.
+#[test]
+fn values_on_their_own_cost_a_factorisation_and_the_same_values_nothing() {
+    let (deck, changed) = (deck(), new_values(&deck()));
+    let mut problem = hand_over::problem(&deck).unwrap();
+    let mut before = [0; 4];
+    spent(&mut problem, &mut before);
+    problem.set_values(0, &changed.bodies[0].stiffness.val).unwrap();
+    assert_eq!(spent(&mut problem, &mut before)[..2], [0, 1]);
+    let found = answer(&problem);
+    let mut fresh = hand_over::problem(&deck).unwrap();
+    hand_over::set_body(&mut fresh, 0, &changed.bodies[0]).unwrap();
+    spent(&mut fresh, &mut [0; 4]);
+    assert_near(&found[1], &answer(&fresh)[1], 1e-8, "forces");
+    problem.set_values(0, &changed.bodies[0].stiffness.val).unwrap();
+    assert_eq!(spent(&mut problem, &mut before)[..3], [0; 3]);
+    assert!(answer(&problem) == found, "bits differ");
+}
+
+#[test]
+fn values_that_are_refused_leave_the_matrix_and_its_factors() {
+    let deck = deck();
+    let mut problem = hand_over::problem(&deck).unwrap();
+    let mut before = [0; 4];
+    spent(&mut problem, &mut before);
+    let found = answer(&problem);
+    let mut val = deck.bodies[0].stiffness.val.clone();
+    assert_eq!(problem.set_values(0, &val[1..]).unwrap_err().kind, Kind::Argument("nnz"));
+    val[5] = f64::INFINITY;
+    let error = problem.set_values(0, &val).unwrap_err();
+    assert_eq!((error.kind, error.place.body, error.place.entry), (Kind::Argument("val"), Some(0), Some(5)));
+    let negative: Vec<f64> = deck.bodies[0].stiffness.val.iter().map(|v| -v).collect();
+    let error = problem.set_values(0, &negative).unwrap_err();
+    assert_eq!((error.kind, error.place.body), (Kind::Indefinite, Some(0)));
+    assert_eq!(problem.set_values(2, &val).unwrap_err().kind, Kind::Argument("body"));
+    assert_eq!(spent(&mut problem, &mut before), [0; 4]);
+    assert!(answer(&problem) == found, "bits differ");
+}
+
+#[test]
+fn values_come_in_the_form_of_the_matrix_or_not_at_all() {
+    let mut problem = Problem::new();
+    problem.add_body(2).unwrap();
+    let none = problem.set_values(0, &[1.0]).unwrap_err();
+    assert!(none.kind == Kind::State && none.what.contains("feti_body_stiffness"), "{none}");
+    assert_eq!(problem.set_values_dense(0, 2, &[1.0; 4], 2).unwrap_err().kind, Kind::State);
+    let k = |s: f64| [2.0 * s, 9.0, s, 2.0 * s];
+    problem.set_stiffness_dense(0, 2, &k(1.0), 2, Storage::Upper).unwrap();
+    let dense = problem.set_values(0, &[1.0]).unwrap_err();
+    assert!(dense.kind == Kind::State && dense.what.contains("feti_body_values_dense"), "{dense}");
+    problem.set_null_space(0, 2, 0, &[], 2, Modes::Exact).unwrap();
+    problem.set_load(0, &[3.0, 3.0]).unwrap();
+    let mut before = [0; 4];
+    assert_eq!(spent(&mut problem, &mut before)[..2], [1, 1]);
+    problem.set_values_dense(0, 2, &k(2.0), 2).unwrap();
+    assert_eq!(spent(&mut problem, &mut before)[..2], [0, 1]);
+    // [4 2; 2 4] u = (3, 3)
+    assert_near(problem.displacement(0).unwrap(), &[0.5, 0.5], 1e-12, "displacements");
+    let sparse = decks::Csr::from_dense(2, &[2.0, 1.0, 1.0, 2.0]);
+    let col: Vec<i64> = sparse.col.iter().map(|&j| j as i64).collect();
+    let input = SparseInput { ptr: &sparse.ptr, col: &col, val: &sparse.val, storage: Storage::Full };
+    problem.set_stiffness(0, input).unwrap();
+    let rows = problem.set_values_dense(0, 2, &k(1.0), 2).unwrap_err();
+    assert!(rows.kind == Kind::State && rows.what.ends_with("feti_body_values"), "{rows}");
 }

@@ -11,7 +11,7 @@ fn with(u: f64, lambda: f64, unit: f64) -> Certificate {
 
 /// The same with a spring in the contact row.
 fn on_a_spring(u: f64, lambda: f64, unit: f64, stiffness_of_row: f64) -> Certificate {
-    let stiffness = Symmetric { ptr: vec![0, 1], col: vec![0], val: vec![4.0 * unit] };
+    let stiffness = Symmetric::new(vec![0, 1], vec![0], vec![4.0 * unit]);
     let mut matrix = Csr::empty(1);
     matrix.push_row([(0, 1.0)]);
     let contact =
@@ -32,7 +32,7 @@ fn on_a_spring(u: f64, lambda: f64, unit: f64, stiffness_of_row: f64) -> Certifi
 
 /// Two dofs joined by a spring, with nothing to hold them.
 fn free_pair(load: [f64; 2], u: [f64; 2]) -> Certificate {
-    let stiffness = Symmetric { ptr: vec![0, 1, 3], col: vec![0, 0, 1], val: vec![1.0, -1.0, 1.0] };
+    let stiffness = Symmetric::new(vec![0, 1, 3], vec![0, 0, 1], vec![1.0, -1.0, 1.0]);
     let modes = Matrix { rows: 2, cols: 1, data: vec![0.5_f64.sqrt(); 2] };
     let body = BodyData { start: 0, stiffness: &stiffness, load: Some(&load), null_space: &modes, unit: 1.0 };
     let none = RowSet::default();
@@ -68,7 +68,7 @@ fn no_distance_excuses_a_strain_that_is_missing() {
 /// The load and the force of the obstacle cancel to `1e-12` of themselves: what is left moves the spring.
 #[test]
 fn the_energies_of_forces_that_all_but_cancel_are_known_to_their_rounding() {
-    let stiffness = Symmetric { ptr: vec![0, 1], col: vec![0], val: vec![4.0] };
+    let stiffness = Symmetric::new(vec![0, 1], vec![0], vec![4.0]);
     let mut matrix = Csr::empty(1);
     matrix.push_row([(0, 1.0)]);
     let contact = RowSet { matrix: matrix.into(), rhs: vec![1e-12], compliance: vec![0.0] };

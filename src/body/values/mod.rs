@@ -1,0 +1,257 @@
+//! New values for a matrix whose pattern is there: where each of them goes, and the checks of the first time.
+
+use crate::body::stiffness::{check_finite, may_differ, unsymmetric, SparseInput, Storage};
+use crate::error::{Error, Result};
+use crate::linalg::memory::{reserved, zeros};
+use crate::linalg::vector::first_non_finite;
+use crate::linalg::Symmetric;
+
+const WHAT: &str = "new values of a stiffness matrix";
+/// Position of an entry that the host does not give.
+const NONE: usize = usize::MAX;
+
+/// How the host gave a matrix: in which form its values come again.
+#[derive(Debug, PartialEq)]
+pub enum Form {
+    Sparse(Places),
+    Dense(Storage),
+}
+
+impl Form {
+    /// Entries that the host gives for n unknowns.
+    pub fn entries(&self, n: usize) -> usize {
+        match self {
+            Self::Sparse(places) if places.apart => n + places.entries,
+            Self::Sparse(places) => places.entries,
+            Self::Dense(Storage::Full) => n * n,
+            Self::Dense(_) => n * (n + 1) / 2,
+        }
+    }
+}
+
+/// Where the values of the host belong in the lower triangle. For rows of ascending columns, those in full with entries
+/// on both sides of the diagonal, the triangle itself tells.
+#[derive(Debug, PartialEq)]
+pub struct Places {
+    storage: Storage,
+    /// Number of values.
+    entries: usize,
+    /// The diagonal is an array of its own.
+    apart: bool,
+    /// Rows whose diagonal entry is not given, ascending.
+    without: Vec<usize>,
+    /// For rows in any order.
+    listed: Option<Listed>,
+}
+
+/// For every entry of the lower triangle its position among the values.
+#[derive(Debug, PartialEq)]
+struct Listed {
+    own: Vec<usize>,
+    /// In storage in full: position of its mate on the other side of the diagonal; of the diagonal none.
+    mate: Vec<usize>,
+}
+
+/// An entry of the lower triangle, and the positions of its values among those of the host.
+struct Entry {
+    row: usize,
+    col: usize,
+    at: usize,
+    own: usize,
+    mate: usize,
+}
+
+impl Places {
+    /// For the matrix `k` that was made of `input`, with a diagonal `apart` or in its rows.
+    pub fn of(input: SparseInput<'_>, apart: bool, k: &Symmetric) -> Result<Self> {
+        let row = |i: usize| &input.col[input.ptr[i]..input.ptr[i + 1]];
+        let (n, storage, entries) = (k.order(), input.storage, input.col.len());
+        let ascending = (0..n).all(|i| row(i).windows(2).all(|pair| pair[0] < pair[1]));
+        let given = |i: &usize| apart || row(*i).iter().any(|&j| j as usize == *i);
+        let mut without = reserved(n - (0..n).filter(given).count(), WHAT)?;
+        without.extend((0..n).filter(|i| !given(i)));
+        let beside = if apart { entries } else { entries - (n - without.len()) };
+        let paired = storage != Storage::Full || beside == 2 * (k.col.len() - n);
+        let listed = if ascending && paired { None } else { Some(Listed::of(input, k)?) };
+        Ok(Self { storage, entries, apart, without, listed })
+    }
+
+    /// For rows that are those of the lower triangle `k`.
+    pub fn of_lower(k: &Symmetric) -> Self {
+        let (storage, entries) = (Storage::Lower, k.col.len());
+        Self { storage, entries, apart: false, without: Vec::new(), listed: None }
+    }
+
+    /// Number of values, those of a diagonal of its own not counted.
+    pub fn entries(&self) -> usize {
+        self.entries
+    }
+
+    pub fn check_number(&self, values: usize) -> Result<()> {
+        let entries = self.entries;
+        if values == entries {
+            return Ok(());
+        }
+        let error = Error::argument("nnz", format!("the pattern has {entries} entries, not {values}"));
+        Err(error.value(values as f64).limit(entries as f64))
+    }
+
+    /// True where the diagonal is an array of its own.
+    pub fn is_split(&self) -> bool {
+        self.apart
+    }
+
+    /// The values of `k` anew from those of the host, in storage in full checked for symmetry and averaged. `diag`: the
+    /// diagonal, where it is an array of its own.
+    pub fn values(&self, k: &Symmetric, diag: &[f64], val: &[f64], tolerance: f64) -> Result<Vec<f64>> {
+        check_finite(diag, "diag", |at| at)?;
+        if let Some(at) = first_non_finite(val) {
+            let error = Error::argument("val", "the entry is not a finite number").entry(at);
+            return Err(match self.row_of(k, at)? {
+                Some(row) => error.row(row),
+                None => error,
+            });
+        }
+        let mut new = zeros(k.col.len(), WHAT)?;
+        self.visit(k, |entry| new[entry.at] = value(val, entry.own))?;
+        diag.iter().enumerate().for_each(|(i, v)| new[k.ptr[i + 1] - 1] = *v);
+        if self.storage == Storage::Full {
+            self.average(k, val, tolerance, &mut new)?;
+        }
+        Ok(new)
+    }
+
+    /// `(K + K')/2` for `new`, which holds the diagonal and what is left of it.
+    fn average(&self, k: &Symmetric, val: &[f64], tolerance: f64, new: &mut [f64]) -> Result<()> {
+        let mut worst = None;
+        self.visit(k, |Entry { row, col, at, mate, .. }| {
+            let (k_ij, k_ji) = (new[at], value(val, mate));
+            if row == col || k_ij == k_ji {
+                return;
+            }
+            let root = |i: usize| new[k.ptr[i + 1] - 1].abs().sqrt();
+            let limit = may_differ(tolerance, root(row), root(col));
+            if (k_ij - k_ji).abs() > limit && worst.is_none() {
+                worst = Some((row, col, k_ij - k_ji, limit));
+            }
+            new[at] = 0.5 * k_ij + 0.5 * k_ji;
+        })?;
+        let Some((row, col, difference, limit)) = worst else { return Ok(()) };
+        let lonely = self.lonely(k, val, row)? || self.lonely(k, val, col)?;
+        Err(unsymmetric(lonely, (row, col), difference, limit))
+    }
+
+    /// Whether the host's row has nothing beside its diagonal.
+    fn lonely(&self, k: &Symmetric, val: &[f64], row: usize) -> Result<bool> {
+        let mut lonely = true;
+        self.visit(k, |entry| {
+            let beside = entry.row != entry.col;
+            let own = beside && entry.row == row && value(val, entry.own) != 0.0;
+            let mate = beside && entry.col == row && value(val, entry.mate) != 0.0;
+            lonely &= !own && !mate;
+        })?;
+        Ok(lonely)
+    }
+
+    /// The host's row that holds value number `at`.
+    fn row_of(&self, k: &Symmetric, at: usize) -> Result<Option<usize>> {
+        let mut found = None;
+        self.visit(k, |entry| {
+            if entry.own == at {
+                found = Some(if self.storage == Storage::Upper { entry.col } else { entry.row });
+            } else if entry.mate == at {
+                found = Some(entry.col);
+            }
+        })?;
+        Ok(found)
+    }
+
+    /// Every entry of the lower triangle, row by row.
+    fn visit(&self, k: &Symmetric, mut visit: impl FnMut(Entry)) -> Result<()> {
+        if let Some(Listed { own, mate }) = &self.listed {
+            for row in 0..k.order() {
+                for at in k.ptr[row]..k.ptr[row + 1] {
+                    let mate = mate.get(at).copied().unwrap_or(NONE);
+                    visit(Entry { row, col: k.col[at] as usize, at, own: own[at], mate });
+                }
+            }
+            return Ok(());
+        }
+        // Row i of the triangle is read before any later one: row j < i of the host has come to its entry i.
+        let mut next = self.starts(k)?;
+        let mut take = |row: usize| {
+            next[row] += 1;
+            next[row] - 1
+        };
+        let mut without = self.without.iter().copied().peekable();
+        for row in 0..k.order() {
+            let diagonal = k.ptr[row + 1] - 1;
+            for at in k.ptr[row]..diagonal {
+                let col = k.col[at] as usize;
+                let (own, mate) = match self.storage {
+                    Storage::Lower => (take(row), NONE),
+                    Storage::Upper => (take(col), NONE),
+                    Storage::Full => (take(row), take(col)),
+                };
+                visit(Entry { row, col, at, own, mate });
+            }
+            let given = without.next_if_eq(&row).is_none() && !self.apart;
+            let own = if given { take(row) } else { NONE };
+            visit(Entry { row, col: row, at: diagonal, own, mate: NONE });
+        }
+        Ok(())
+    }
+
+    /// First value of every row of the host, where columns ascend.
+    fn starts(&self, k: &Symmetric) -> Result<Vec<usize>> {
+        let mut starts = reserved(k.order() + 1, WHAT)?;
+        starts.resize(k.order() + 1, 0);
+        for i in 0..k.order() {
+            starts[i + 1] += usize::from(!self.apart);
+            for &j in &k.col[k.ptr[i]..k.ptr[i + 1] - 1] {
+                starts[i + 1] += usize::from(self.storage != Storage::Upper);
+                starts[j as usize + 1] += usize::from(self.storage != Storage::Lower);
+            }
+        }
+        self.without.iter().for_each(|&i| starts[i + 1] -= 1);
+        (0..k.order()).for_each(|i| starts[i + 1] += starts[i]);
+        Ok(starts)
+    }
+}
+
+impl Listed {
+    fn of(input: SparseInput<'_>, k: &Symmetric) -> Result<Self> {
+        let none = |len: usize| -> Result<Vec<usize>> {
+            let mut places = reserved(len, WHAT)?;
+            places.resize(len, NONE);
+            Ok(places)
+        };
+        let full = input.storage == Storage::Full;
+        let (mut own, mut mate) = (none(k.col.len())?, none(if full { k.col.len() } else { 0 })?);
+        for i in 0..k.order() {
+            for at in input.ptr[i]..input.ptr[i + 1] {
+                let j = input.col[at] as usize;
+                let (row, col) = (i.max(j), i.min(j));
+                let place = k.ptr[row]
+                    + k.col[k.ptr[row]..k.ptr[row + 1]].partition_point(|&other| (other as usize) < col);
+                if full && j > i {
+                    mate[place] = at;
+                } else {
+                    own[place] = at;
+                }
+            }
+        }
+        Ok(Self { own, mate })
+    }
+}
+
+fn value(val: &[f64], at: usize) -> f64 {
+    if at == NONE {
+        0.0
+    } else {
+        val[at]
+    }
+}
+
+#[cfg(test)]
+mod tests;

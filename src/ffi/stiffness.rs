@@ -1,0 +1,303 @@
+//! Stiffness matrices of bodies: by rows, with a diagonal of their own, dense.
+
+use super::arrays::{borrowed, column_major, input};
+use super::body::body_of_order;
+use super::guard::{call, enter, Call};
+use super::indices::{base, numbers, pointers, Index};
+use super::types::{feti_problem, FETI_BORROW, FETI_COPY, FETI_FULL, FETI_LOWER, FETI_UPPER};
+use crate::error::{Error, Result};
+use crate::solver::{Columns, Problem, SparseInput, Storage};
+
+/// Gives the stiffness matrix K of a body by rows, with 32-bit indices.
+///
+/// The matrix is copied; calling again replaces pattern and values. Columns of a row may come in any order, none twice.
+/// With FETI_FULL K must be symmetric within option symmetry_tolerance and is averaged. After a failure the body keeps
+/// the matrix it had.
+///
+/// With FETI_BORROW the values, and columns in 32 bits counted from 0, are not copied if storage is FETI_LOWER, columns
+/// ascend and every row ends with its diagonal entry; otherwise all is copied (`borrowed` of feti_body_info tells). Borrowed
+/// arrays stay readable until the matrix is replaced or the problem destroyed, and unchanged but for this: between two calls
+/// the values may be rewritten, and the next call then is feti_body_values with the same array.
+///
+/// | argument | in/out | shape | rule |
+/// |---|---|---|---|
+/// | `p` | in | scalar | the handle |
+/// | `body` | in | scalar | number of the body, from 0 |
+/// | `n` | in | scalar | unknowns of the body |
+/// | `row_ptr` | in | n + 1 | row i holds the entries row_ptr[i] to row_ptr[i + 1] - 1; starts with `base` |
+/// | `col` | in | row_ptr[n] - base | columns, counted from `base` |
+/// | `val` | in | row_ptr[n] - base | entries of K, force per length |
+/// | `base` | in | scalar | 0 or 1: what `row_ptr` and `col` count from |
+/// | `storage` | in | scalar | FETI_FULL, FETI_LOWER or FETI_UPPER |
+/// | `flags` | in | scalar | FETI_COPY or FETI_BORROW |
+///
+/// # Safety
+/// The arrays have the given shapes.
+#[no_mangle]
+pub unsafe extern "C" fn feti_body_stiffness_i32(
+    p: *mut feti_problem,
+    body: i64,
+    n: i64,
+    row_ptr: *const i32,
+    col: *const i32,
+    val: *const f64,
+    base: i32,
+    storage: i32,
+    flags: i32,
+) -> i32 {
+    let call = call!(feti_body_stiffness_i32(p, body, n, row_ptr, col, val, base, storage, flags));
+    let matrix = SparseMatrix { n, row_ptr, col, val, base, storage, flags };
+    // SAFETY: shapes by the caller's word.
+    unsafe { matrix.give(p, call, body, None) }
+}
+
+/// Gives the stiffness matrix K of a body by rows, with 64-bit indices.
+///
+/// The matrix is copied; calling again replaces pattern and values. Columns of a row may come in any order, none twice.
+/// With FETI_FULL K must be symmetric within option symmetry_tolerance and is averaged. After a failure the body keeps
+/// the matrix it had.
+///
+/// With FETI_BORROW the values, and columns in 32 bits counted from 0, are not copied if storage is FETI_LOWER, columns
+/// ascend and every row ends with its diagonal entry; otherwise all is copied (`borrowed` of feti_body_info tells). Borrowed
+/// arrays stay readable until the matrix is replaced or the problem destroyed, and unchanged but for this: between two calls
+/// the values may be rewritten, and the next call then is feti_body_values with the same array.
+///
+/// | argument | in/out | shape | rule |
+/// |---|---|---|---|
+/// | `p` | in | scalar | the handle |
+/// | `body` | in | scalar | number of the body, from 0 |
+/// | `n` | in | scalar | unknowns of the body |
+/// | `row_ptr` | in | n + 1 | row i holds the entries row_ptr[i] to row_ptr[i + 1] - 1; starts with `base` |
+/// | `col` | in | row_ptr[n] - base | columns, counted from `base` |
+/// | `val` | in | row_ptr[n] - base | entries of K, force per length |
+/// | `base` | in | scalar | 0 or 1: what `row_ptr` and `col` count from |
+/// | `storage` | in | scalar | FETI_FULL, FETI_LOWER or FETI_UPPER |
+/// | `flags` | in | scalar | FETI_COPY or FETI_BORROW |
+///
+/// # Safety
+/// The arrays have the given shapes.
+#[no_mangle]
+pub unsafe extern "C" fn feti_body_stiffness_i64(
+    p: *mut feti_problem,
+    body: i64,
+    n: i64,
+    row_ptr: *const i64,
+    col: *const i64,
+    val: *const f64,
+    base: i32,
+    storage: i32,
+    flags: i32,
+) -> i32 {
+    let call = call!(feti_body_stiffness_i64(p, body, n, row_ptr, col, val, base, storage, flags));
+    let matrix = SparseMatrix { n, row_ptr, col, val, base, storage, flags };
+    // SAFETY: shapes by the caller's word.
+    unsafe { matrix.give(p, call, body, None) }
+}
+
+/// Gives the stiffness matrix K of a body by rows with a diagonal of its own, with 32-bit indices.
+///
+/// For codes that keep the diagonal apart. The matrix is copied; calling again replaces pattern and values. Columns of a row
+/// may come in any order, none twice. With FETI_FULL K must be symmetric within option symmetry_tolerance and is averaged.
+/// After a failure the body keeps the matrix it had.
+///
+/// | argument | in/out | shape | rule |
+/// |---|---|---|---|
+/// | `p` | in | scalar | the handle |
+/// | `body` | in | scalar | number of the body, from 0 |
+/// | `n` | in | scalar | unknowns of the body |
+/// | `diag` | in | n | K_ii, force per length |
+/// | `row_ptr` | in | n + 1 | row i holds the entries row_ptr[i] to row_ptr[i + 1] - 1; starts with `base` |
+/// | `col` | in | row_ptr[n] - base | columns, counted from `base`, none that of its row |
+/// | `val` | in | row_ptr[n] - base | entries of K beside the diagonal, force per length |
+/// | `base` | in | scalar | 0 or 1: what `row_ptr` and `col` count from |
+/// | `storage` | in | scalar | FETI_FULL, FETI_LOWER or FETI_UPPER |
+/// | `flags` | in | scalar | FETI_COPY, or FETI_BORROW, which copies as well: no matrix is kept in this form |
+///
+/// # Safety
+/// The arrays have the given shapes.
+#[no_mangle]
+pub unsafe extern "C" fn feti_body_stiffness_split_i32(
+    p: *mut feti_problem,
+    body: i64,
+    n: i64,
+    diag: *const f64,
+    row_ptr: *const i32,
+    col: *const i32,
+    val: *const f64,
+    base: i32,
+    storage: i32,
+    flags: i32,
+) -> i32 {
+    let call =
+        call!(feti_body_stiffness_split_i32(p, body, n, diag, row_ptr, col, val, base, storage, flags));
+    let matrix = SparseMatrix { n, row_ptr, col, val, base, storage, flags };
+    // SAFETY: shapes by the caller's word.
+    unsafe { matrix.give(p, call, body, Some(diag)) }
+}
+
+/// Gives the stiffness matrix K of a body by rows with a diagonal of its own, with 64-bit indices.
+///
+/// For codes that keep the diagonal apart. The matrix is copied; calling again replaces pattern and values. Columns of a row
+/// may come in any order, none twice. With FETI_FULL K must be symmetric within option symmetry_tolerance and is averaged.
+/// After a failure the body keeps the matrix it had.
+///
+/// | argument | in/out | shape | rule |
+/// |---|---|---|---|
+/// | `p` | in | scalar | the handle |
+/// | `body` | in | scalar | number of the body, from 0 |
+/// | `n` | in | scalar | unknowns of the body |
+/// | `diag` | in | n | K_ii, force per length |
+/// | `row_ptr` | in | n + 1 | row i holds the entries row_ptr[i] to row_ptr[i + 1] - 1; starts with `base` |
+/// | `col` | in | row_ptr[n] - base | columns, counted from `base`, none that of its row |
+/// | `val` | in | row_ptr[n] - base | entries of K beside the diagonal, force per length |
+/// | `base` | in | scalar | 0 or 1: what `row_ptr` and `col` count from |
+/// | `storage` | in | scalar | FETI_FULL, FETI_LOWER or FETI_UPPER |
+/// | `flags` | in | scalar | FETI_COPY, or FETI_BORROW, which copies as well: no matrix is kept in this form |
+///
+/// # Safety
+/// The arrays have the given shapes.
+#[no_mangle]
+pub unsafe extern "C" fn feti_body_stiffness_split_i64(
+    p: *mut feti_problem,
+    body: i64,
+    n: i64,
+    diag: *const f64,
+    row_ptr: *const i64,
+    col: *const i64,
+    val: *const f64,
+    base: i32,
+    storage: i32,
+    flags: i32,
+) -> i32 {
+    let call =
+        call!(feti_body_stiffness_split_i64(p, body, n, diag, row_ptr, col, val, base, storage, flags));
+    let matrix = SparseMatrix { n, row_ptr, col, val, base, storage, flags };
+    // SAFETY: shapes by the caller's word.
+    unsafe { matrix.give(p, call, body, Some(diag)) }
+}
+
+/// Arguments of the four functions above.
+struct SparseMatrix<I> {
+    n: i64,
+    row_ptr: *const I,
+    col: *const I,
+    val: *const f64,
+    base: i32,
+    storage: i32,
+    flags: i32,
+}
+
+impl<I: Index> SparseMatrix<I> {
+    /// `diag`: a diagonal of its own.
+    ///
+    /// # Safety
+    /// The arrays have the documented shapes.
+    unsafe fn give(&self, p: *mut feti_problem, call: Call, body: i64, diag: Option<*const f64>) -> i32 {
+        enter(p, call, |problem| {
+            let (body, n) = body_of_order(problem, body, self.n)?;
+            let (base, storage) = (base(self.base)?, storage_of(self.storage)?);
+            let borrow = may_borrow(self.flags)? && diag.is_none() && storage == Storage::Lower;
+            // SAFETY: n numbers by the caller's word.
+            let diag = diag.map(|diag| unsafe { input(diag, n, "diag") }).transpose()?;
+            // SAFETY: n + 1 positions by the caller's word.
+            let ptr = unsafe { pointers(self.row_ptr, n, base) }?;
+            let entries = ptr.last().copied().unwrap_or(0);
+            // SAFETY: the last position is the number of entries; the arrays stay, by the caller's word.
+            if borrow && entries > 0 && unsafe { self.borrow(problem, body, &ptr, base) }? {
+                return Ok(());
+            }
+            // SAFETY: the last position is the number of entries.
+            let (col, val) =
+                unsafe { (numbers(self.col, entries, base, "col")?, input(self.val, entries, "val")?) };
+            let k = SparseInput { ptr: &ptr, col: &col, val, storage };
+            match diag {
+                None => problem.set_stiffness(body, k),
+                Some(diag) => problem.set_stiffness_split(body, diag, k),
+            }
+        })
+    }
+
+    /// False where the form does not allow it.
+    ///
+    /// # Safety
+    /// The arrays have as many entries as `ptr` says, and stay as documented.
+    unsafe fn borrow(&self, problem: &mut Problem, body: usize, ptr: &[usize], base: i64) -> Result<bool> {
+        let entries = ptr.last().copied().unwrap_or(0);
+        // SAFETY: by the caller's word.
+        let (val, col) = unsafe { (borrowed(self.val, entries, "val")?, input(self.col, entries, "col")?) };
+        let column = |at: usize| col[at].wide().saturating_sub(base);
+        let columns = match I::unsigned(self.col).filter(|_| base == 0) {
+            // SAFETY: by the caller's word.
+            Some(col) => Columns::Kept(unsafe { borrowed(col, entries, "col") }?),
+            None => Columns::Given(&column),
+        };
+        problem.borrow_stiffness(body, ptr, columns, val)
+    }
+}
+
+/// Gives the stiffness matrix K of a body as a dense matrix, for boundary elements and condensed bodies.
+///
+/// The matrix is copied; calling again replaces it. With FETI_LOWER and FETI_UPPER the other triangle is not read. After a
+/// failure the body keeps the matrix it had.
+///
+/// | argument | in/out | shape | rule |
+/// |---|---|---|---|
+/// | `p` | in | scalar | the handle |
+/// | `body` | in | scalar | number of the body, from 0 |
+/// | `n` | in | scalar | unknowns of the body |
+/// | `k` | in | ld * n | column-major: K_ij is k[i + ld j], force per length |
+/// | `ld` | in | scalar | >= n |
+/// | `storage` | in | scalar | FETI_FULL, FETI_LOWER or FETI_UPPER |
+/// | `flags` | in | scalar | FETI_COPY |
+///
+/// # Safety
+/// The array has the given shape.
+#[no_mangle]
+pub unsafe extern "C" fn feti_body_stiffness_dense(
+    p: *mut feti_problem,
+    body: i64,
+    n: i64,
+    k: *const f64,
+    ld: i64,
+    storage: i32,
+    flags: i32,
+) -> i32 {
+    enter(p, call!(feti_body_stiffness_dense(p, body, n, k, ld, storage, flags)), |problem| {
+        let (body, n) = body_of_order(problem, body, n)?;
+        let storage = storage_of(storage)?;
+        copy_only(flags)?;
+        let (entries, ld) = column_major(n, n, ld, "ld")?;
+        // SAFETY: ld (n - 1) + n entries by the caller's word.
+        problem.set_stiffness_dense(body, n, unsafe { input(k, entries, "k") }?, ld, storage)
+    })
+}
+
+fn storage_of(storage: i32) -> Result<Storage> {
+    match storage {
+        FETI_FULL => Ok(Storage::Full),
+        FETI_LOWER => Ok(Storage::Lower),
+        FETI_UPPER => Ok(Storage::Upper),
+        _ => {
+            let text = format!("{storage} is none of FETI_FULL, FETI_LOWER, FETI_UPPER");
+            Err(Error::argument("storage", text).value(f64::from(storage)))
+        }
+    }
+}
+
+fn may_borrow(flags: i32) -> Result<bool> {
+    match flags {
+        FETI_COPY => Ok(false),
+        FETI_BORROW => Ok(true),
+        _ => {
+            let text = format!("{flags} is neither FETI_COPY nor FETI_BORROW");
+            Err(Error::argument("flags", text).value(f64::from(flags)))
+        }
+    }
+}
+
+fn copy_only(flags: i32) -> Result<()> {
+    if flags == FETI_COPY {
+        return Ok(());
+    }
+    Err(Error::argument("flags", format!("{flags} is not FETI_COPY")).value(f64::from(flags)))
+}

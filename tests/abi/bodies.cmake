@@ -1,0 +1,21 @@
+# ---- bodies: values, forms of a matrix, numbering
+foreach(driver values borrow numbering)
+  add_executable(c_${driver} c/${driver}.c)
+  target_link_libraries(c_${driver} PRIVATE handover_c)
+endforeach()
+foreach(driver values numbering)
+  add_executable(fortran_${driver} fortran/${driver}.f90)
+  set_target_properties(fortran_${driver} PROPERTIES Fortran_MODULE_DIRECTORY "${CMAKE_CURRENT_BINARY_DIR}/${driver}_modules")
+  target_link_libraries(fortran_${driver} PRIVATE handover_fortran)
+endforeach()
+
+claim_silent("C: new values on an old pattern cost one factorisation, refused ones nothing" $<TARGET_FILE:c_values>)
+claim_silent("C: borrowed values are not copied, rewritten in place they count for every body" $<TARGET_FILE:c_borrow>)
+claim_silent("C: arrays over all unknowns go by the host's numbers, parts and facts of a body are told" $<TARGET_FILE:c_numbering>)
+claim_silent("Fortran: new values, copied or borrowed, cost one factorisation, refused ones nothing" $<TARGET_FILE:fortran_values>)
+claim_silent("Fortran: arrays over all unknowns go by the host's numbers, parts and facts of a body are told"
+             $<TARGET_FILE:fortran_numbering>)
+claim_clean("valgrind finds nothing in the C driver of new values" $<TARGET_FILE:c_values>)
+claim_clean("valgrind finds nothing in the C driver of borrowed values" $<TARGET_FILE:c_borrow>)
+claim_clean("valgrind finds nothing in the C driver of numbers" $<TARGET_FILE:c_numbering>)
+claim_clean("valgrind finds nothing in the Fortran driver of new and borrowed values" $<TARGET_FILE:fortran_values>)
