@@ -8,7 +8,7 @@ use std::sync::mpsc;
 use super::guard::{call, enter};
 use super::*;
 
-const SOURCES: [&str; 13] = [
+const SOURCES: [&str; 15] = [
     include_str!("body.rs"),
     include_str!("diagnosis.rs"),
     include_str!("error_store.rs"),
