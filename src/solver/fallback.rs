@@ -74,7 +74,9 @@ fn or_directly(
     if !gave_up(&solution) && solution.verdict != Verdict::StepLimit {
         return Ok(solution);
     }
-    follows(&solution, "direct solution on active sets", log)?;
+    if direct.limit > 0 {
+        follows(&solution, "direct solution on active sets", log)?;
+    }
     let next = active_set(qp, direct, &solution, judge);
     better(solution, next)
 }
@@ -105,6 +107,7 @@ mod tests {
     use crate::error::{Error, Kind};
     use crate::qp::Counts;
     use crate::solver::solve::tests::two_springs;
+    use std::sync::{Arc, Mutex};
 
     fn ended(verdict: Verdict, products: usize) -> Solution {
         let counts = Counts { products, ..Counts::default() };
@@ -135,14 +138,23 @@ mod tests {
     }
 
     #[test]
-    fn a_run_that_met_its_limit_of_steps_is_completed_directly_unless_that_is_switched_off() {
+    fn a_run_that_met_its_limit_of_steps_is_completed_directly_and_told_so_unless_that_is_switched_off() {
         for (limit, verdict) in [(1000, Verdict::Solved), (0, Verdict::StepLimit)] {
             two_springs(0.1, |judge, qp, direct, rough| {
+                let lines = Arc::new(Mutex::new(Vec::new()));
+                let book = Arc::clone(&lines);
+                let tell = move |_, text: &str| {
+                    book.lock().unwrap().push(text.to_owned());
+                    0
+                };
+                let mut log = Log { host: Some((LogLevel::Phase, Box::new(tell))), told: 0 };
                 let ended = Solution { verdict: Verdict::StepLimit, ..rough.clone() };
-                let done = or_directly(ended, qp, Direct { limit, ..direct }, judge, &mut Log::default());
+                let done = or_directly(ended, qp, Direct { limit, ..direct }, judge, &mut log);
                 let done = done.unwrap();
                 assert_eq!(done.verdict, verdict);
                 assert_eq!(done.x[0] == 2.0, verdict == Verdict::Solved);
+                let line = "fallback after 0 steps: the limit of steps is reached; direct solution on active sets follows";
+                assert_eq!(*lines.lock().unwrap(), [line].repeat(usize::from(limit > 0)));
             });
         }
     }

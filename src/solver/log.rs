@@ -27,9 +27,9 @@ pub type LogListener = Box<dyn FnMut(LogLevel, &str) -> i32 + Send + Sync>;
 /// The host's function during a call.
 #[derive(Default)]
 pub(super) struct Log {
-    host: Option<(LogLevel, LogListener)>,
+    pub host: Option<(LogLevel, LogListener)>,
     /// Phases that have been told.
-    told: usize,
+    pub told: usize,
 }
 
 impl Log {

@@ -19,3 +19,8 @@ claim_silent("Fortran: a module procedure gets results, phases and steps in word
              $<TARGET_FILE:fortran_log> "${FETI_DATA}")
 claim_clean("valgrind finds nothing in the C driver of files" $<TARGET_FILE:c_file> "${FETI_DATA}" "${FILES}/memory"
             "${PROJECT_ROOT}/tests/data/problem_v1.feti" p1_P3 p2_B2)
+find_program(PYTHON3 python3)
+if(PYTHON3)
+  claim_silent("the reader in docs/file_format.md reads the file of format 1"
+               sh "${CMAKE_CURRENT_SOURCE_DIR}/reader.sh" "${PROJECT_ROOT}/docs/file_format.md" "${PROJECT_ROOT}/tests/data/problem_v1.feti")
+endif()
