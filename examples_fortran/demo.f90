@@ -3,7 +3,7 @@ module demo
   use feti_contact
   implicit none
   private
-  public :: data_folder, picture_folder, demo_stop, demo_error, demo_value, demo_line
+  public :: data_folder, picture_folder, demo_stop, demo_error, demo_value, demo_line, power_of_ten
 
   integer, parameter :: dp = kind(1.0d0)
 

@@ -4,11 +4,13 @@ use std::ptr::{null, null_mut};
 
 use super::super::*;
 
-pub const SOURCES: [&str; 17] = [
+pub const SOURCES: [&str; 19] = [
     include_str!("../body.rs"),
     include_str!("../body_info.rs"),
     include_str!("../diagnosis.rs"),
     include_str!("../error_store.rs"),
+    include_str!("../file.rs"),
+    include_str!("../log.rs"),
     include_str!("../null_space.rs"),
     include_str!("../numbering.rs"),
     include_str!("../options.rs"),
@@ -38,6 +40,7 @@ pub fn statuses(p: *mut feti_problem) -> Vec<(&'static str, i32)> {
         feti_set_f64(null(), 0.0);
         feti_set_i64(null(), 0);
         feti_set_str(null(), null());
+        feti_set_text(null());
         feti_get_f64(null(), null_mut());
         feti_get_i64(null(), null_mut());
         feti_get_str(null(), null_mut(), 0, null_mut());
@@ -67,6 +70,9 @@ pub fn statuses(p: *mut feti_problem) -> Vec<(&'static str, i32)> {
         feti_phase_count(null_mut()); feti_phase_at(0, null_mut());
         feti_cancel();
         feti_on_progress(None, null_mut());
+        feti_on_log(None, 0, null_mut());
+        feti_problem_write(null());
+        feti_problem_read(null());
         feti_start_from(0, 0, null());
         feti_state_save(null_mut());
         feti_state_restore(0); feti_state_drop(0);
