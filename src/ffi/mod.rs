@@ -8,7 +8,7 @@
 //! | `fpu` | the floating-point environment of the host, saved and restored |
 //! | `error_store` | the last error, per thread and per problem |
 //! | `arrays`, `indices`, `record` | host arrays, index arrays and structs with a `struct_size`, checked |
-//! | `problem`, `options`, `body`, `null_space`, `rows`, `solve`, `phases`, `progress`, `state`, `diagnosis`, `results`, `validation` | the functions |
+//! | `problem`, `options`, `body`, `null_space`, `operator`, `rows`, `solve`, `phases`, `progress`, `state`, `diagnosis`, `results`, `validation` | the functions |
 //!
 //! The generator of the header and of the Fortran interfaces reads these files: each exported function has a table of
 //! its arguments, in which the word NULL in the rule says that the pointer may be NULL.
@@ -25,6 +25,7 @@ mod guard;
 mod handle;
 mod indices;
 mod null_space;
+mod operator;
 mod options;
 mod phases;
 mod problem;
@@ -45,6 +46,7 @@ pub use body::*;
 pub use diagnosis::*;
 pub use error_store::{feti_last_error, feti_last_error_detail};
 pub use null_space::*;
+pub use operator::*;
 pub use options::*;
 pub use phases::*;
 pub use problem::*;

@@ -8,11 +8,12 @@ use std::sync::mpsc;
 use super::guard::{call, enter};
 use super::*;
 
-const SOURCES: [&str; 13] = [
+const SOURCES: [&str; 14] = [
     include_str!("body.rs"),
     include_str!("diagnosis.rs"),
     include_str!("error_store.rs"),
     include_str!("null_space.rs"),
+    include_str!("operator.rs"),
     include_str!("options.rs"),
     include_str!("phases.rs"),
     include_str!("problem.rs"),
@@ -117,7 +118,7 @@ fn statuses(p: *mut feti_problem) -> Vec<(&'static str, i32)> {
         feti_body_null_space(0, 0, 0, null(), 0, 0);
         feti_body_null_space_get(0, 0, null_mut(), null_mut(), 0);
         feti_body_coordinates(0, 0, 0, null(), null(), null(), 0);
-        feti_body_load(0, 0, null());
+        feti_body_load(0, 0, null()); feti_body_operator(0, 0, null(), None, None, 0, null_mut());
         feti_rows_add_i32(0, 0, null(), null(), null(), null(), 0, null(), null_mut());
         feti_rows_add_i64(0, 0, null(), null(), null(), null(), 0, null(), null_mut());
         feti_rows_rhs(0, 0, 0, null());
@@ -148,8 +149,7 @@ fn statuses(p: *mut feti_problem) -> Vec<(&'static str, i32)> {
         feti_body_fixing(0, 0, null_mut());
         feti_body_fixing_set(0, 0, null());
         feti_body_kplus(0, 0, 0, null(), 0, null_mut(), 0);
-        feti_dual_apply(0, null(), null_mut());
-        feti_dual_rhs(0, null_mut());
+        feti_dual_apply(0, null(), null_mut()); feti_dual_rhs(0, null_mut());
     }
 }
 

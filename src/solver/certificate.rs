@@ -2,9 +2,11 @@
 //! computed from the host's own matrices. Every figure is relative: the same in any units and for any
 //! scaling of the rows. C = diag(1/k) is the compliance of the rows, S = (B D^-1 B' + C)^-1/2.
 
+use crate::body::Stiffness;
 use crate::constraints::{row_scales, RowSet};
+use crate::error::Result;
 use crate::linalg::vector::{dot, ratio, weighted_norm};
-use crate::linalg::{Matrix, Symmetric};
+use crate::linalg::Matrix;
 
 /// One condition: its relative figure, its ratio to what is allowed, and where it is worst.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -83,7 +85,7 @@ pub struct Data<'a> {
 #[derive(Clone)]
 pub struct BodyData<'a> {
     pub start: usize,
-    pub stiffness: &'a Symmetric,
+    pub stiffness: Stiffness<'a>,
     /// Zero when absent.
     pub load: Option<&'a [f64]>,
     /// `R_p` with `R'DR = unit`, D = diag K.
@@ -115,10 +117,11 @@ struct Totals {
     terms: f64,
 }
 
-pub fn certify(data: &Data, answer: Answer) -> Certificate {
+/// Fails where the host does, that has the products with K.
+pub fn certify(data: &Data, answer: Answer) -> Result<Certificate> {
     let mut certificate = Certificate { limit: data.limit, ..Certificate::default() };
     let metric = metric(data, answer.u.len());
-    let totals = forces(data, answer, &metric, &mut certificate);
+    let totals = forces(data, answer, &metric, &mut certificate)?;
     let gaps = gaps(data, answer, &metric, totals.load.sqrt(), &mut certificate);
     let size = totals.work.abs() + gaps.constrained_size;
     let noise = NOISE * (totals.terms + gaps.stored);
@@ -127,7 +130,7 @@ pub fn certify(data: &Data, answer: Answer) -> Certificate {
     let gap = totals.strain - totals.work + gaps.constrained;
     certificate.duality_gap = energies(gap.abs(), totals.strain.abs() + size, None);
     certificate.energy = 0.5 * totals.strain - totals.work + 0.5 * gaps.stored;
-    certificate
+    Ok(certificate)
 }
 
 fn entry(part: f64, whole: f64, noise: f64, limit: f64, place: Option<usize>) -> Entry {
@@ -149,7 +152,7 @@ fn metric(data: &Data, unknowns: usize) -> Vec<f64> {
 }
 
 /// Equilibrium and rigid balance of every body.
-fn forces(data: &Data, answer: Answer, metric: &[f64], certificate: &mut Certificate) -> Totals {
+fn forces(data: &Data, answer: Answer, metric: &[f64], certificate: &mut Certificate) -> Result<Totals> {
     let n = answer.u.len();
     let (mut reaction, mut reaction_terms) = (vec![0.0; n], vec![0.0; n]);
     for (rows, multipliers) in [(data.contact, answer.lambda), (data.equalities, answer.mu)] {
@@ -166,7 +169,7 @@ fn forces(data: &Data, answer: Answer, metric: &[f64], certificate: &mut Certifi
         let weight = |i: usize| 1.0 / metric[body.start + i];
         let size = |v: &[f64]| weighted_norm(v, weight);
         let (mut strain, mut terms) = (vec![0.0; u.len()], vec![0.0; u.len()]);
-        body.stiffness.mul_with_terms(u, &mut strain, &mut terms);
+        body.stiffness.mul_with_terms(u, &mut strain, &mut terms)?;
         let given: Vec<f64> = (0..u.len()).map(|i| f[i].abs() + push_terms[i]).collect();
         (0..u.len()).for_each(|i| terms[i] += given[i]);
         totals.strain += dot(u, &strain);
@@ -186,7 +189,7 @@ fn forces(data: &Data, answer: Answer, metric: &[f64], certificate: &mut Certifi
         let noise = NOISE * size(&given);
         replace_if_worse(&mut certificate.balance, entry(resultant, loads, noise, data.limit, Some(p)));
     }
-    totals
+    Ok(totals)
 }
 
 /// `(|f|^2 + |B'lambda + H'mu|^2)^1/2` in the metric `D^-1`, over all bodies.
@@ -287,7 +290,7 @@ fn largest(values: &[f64]) -> Option<usize> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::linalg::Csr;
+    use crate::linalg::{Csr, Symmetric};
 
     /// Spring 4 at a wall, loaded by 2 towards an obstacle at 0.25: u = .25, lambda = 1.
     fn with(u: f64, lambda: f64, unit: f64) -> Certificate {
@@ -302,8 +305,13 @@ mod tests {
         let contact = RowSet { matrix, rhs: vec![0.25], compliance: vec![1.0 / (stiffness_of_row * unit)] };
         let none = Matrix { rows: 1, ..Matrix::default() };
         let load = [2.0 * unit];
-        let body =
-            BodyData { start: 0, stiffness: &stiffness, load: Some(&load), null_space: &none, unit: 1.0 };
+        let body = BodyData {
+            start: 0,
+            stiffness: (&stiffness).into(),
+            load: Some(&load),
+            null_space: &none,
+            unit: 1.0,
+        };
         let data = Data {
             bodies: vec![body],
             contact: &contact,
@@ -311,18 +319,23 @@ mod tests {
             without: 1.0,
             limit: 1e-8,
         };
-        certify(&data, Answer { u: &[u], lambda: &[lambda * unit], mu: &[] })
+        certify(&data, Answer { u: &[u], lambda: &[lambda * unit], mu: &[] }).unwrap()
     }
 
     /// Two dofs joined by a spring, with nothing to hold them.
     fn free_pair(load: [f64; 2], u: [f64; 2]) -> Certificate {
         let stiffness = Symmetric { ptr: vec![0, 1, 3], col: vec![0, 0, 1], val: vec![1.0, -1.0, 1.0] };
         let modes = Matrix { rows: 2, cols: 1, data: vec![0.5_f64.sqrt(); 2] };
-        let body =
-            BodyData { start: 0, stiffness: &stiffness, load: Some(&load), null_space: &modes, unit: 1.0 };
+        let body = BodyData {
+            start: 0,
+            stiffness: (&stiffness).into(),
+            load: Some(&load),
+            null_space: &modes,
+            unit: 1.0,
+        };
         let none = RowSet::default();
         let data = Data { bodies: vec![body], contact: &none, equalities: &none, without: 1.0, limit: 1e-8 };
-        certify(&data, Answer { u: &u, lambda: &[], mu: &[] })
+        certify(&data, Answer { u: &u, lambda: &[], mu: &[] }).unwrap()
     }
 
     #[test]

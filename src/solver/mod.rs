@@ -6,6 +6,7 @@ mod factors;
 mod fallback;
 mod findings;
 mod finish;
+mod host;
 mod operators;
 mod paper;
 mod phases;
@@ -23,7 +24,7 @@ mod threads;
 mod undetermined;
 mod watch;
 
-pub use crate::body::{Modes, SparseInput, Storage};
+pub use crate::body::{HostFunctions, HostProduct, Modes, SparseInput, Storage};
 pub use crate::constraints::{RowKind, RowsInput};
 pub use crate::error::Proof;
 pub use crate::qp::StepKind;

@@ -136,6 +136,7 @@ impl Problem {
         let analysed = old.is_some_and(|old| same_pattern(old, &stiffness));
         let slot = self.changed(body, unchanged)?;
         slot.body.stiffness = Some(Arc::new(stiffness));
+        slot.body.operator = None;
         if !unchanged {
             slot.keys = None;
         }
@@ -291,7 +292,7 @@ impl Problem {
 
     /// The body, about to get new data: dual and answer no longer hold, nor do its factors, unless the data are those
     /// it has.
-    fn changed(&mut self, body: usize, unchanged: bool) -> Result<&mut BodySlot> {
+    pub(super) fn changed(&mut self, body: usize, unchanged: bool) -> Result<&mut BodySlot> {
         self.forget_dual();
         if !unchanged {
             let inverses = self.bodies.iter_mut().filter_map(|slot| slot.inverse.as_mut());

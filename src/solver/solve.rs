@@ -111,7 +111,7 @@ impl Problem {
             let inverse = slot.inverse.as_ref().ok_or_else(missing)?;
             bodies.push(BodyData {
                 start: range.start,
-                stiffness: slot.body.stiffness.as_ref().ok_or_else(missing)?,
+                stiffness: slot.body.k().ok_or_else(missing)?,
                 load: slot.body.load.as_deref(),
                 null_space: &inverse.kplus.null_space,
                 unit: inverse.unit,
@@ -241,7 +241,7 @@ impl<'a> Certifier<'a> {
 
     fn certified(&self, x: &[f64], alpha: &[f64]) -> Result<(Recovered, Certificate)> {
         let recovered = self.recover(x, alpha)?;
-        let certificate = certify(&self.data, recovered.view());
+        let certificate = certify(&self.data, recovered.view())?;
         Ok((recovered, certificate))
     }
 }
@@ -281,7 +281,7 @@ impl Problem {
                     .limit(expected as f64));
             }
         }
-        Ok(certify(&self.data()?, AnswerView { u, lambda, mu }))
+        certify(&self.data()?, AnswerView { u, lambda, mu })
     }
 }
 

@@ -47,6 +47,33 @@ pub fn run<T: Send>(
     results.into_iter().collect()
 }
 
+/// The same where the calling thread runs the tasks `on_caller` itself.
+pub fn run_apart<T: Send>(
+    threads: usize,
+    count: usize,
+    on_caller: impl Fn(usize) -> bool,
+    task: impl Fn(usize) -> Result<T> + Sync,
+) -> Result<Vec<T>> {
+    if !(0..count).any(&on_caller) {
+        return run(threads, count, task);
+    }
+    let mut results: Vec<Option<T>> = (0..count).map(|_| None).collect();
+    run_heard(Tasks { threads, count, on_caller: &on_caller }, task, &mut |heard| {
+        if let Heard::Done(k, result) = heard {
+            results[k] = Some(result);
+        }
+    })?;
+    Ok(results.into_iter().flatten().collect())
+}
+
+/// Tasks `0..count`, and those of them that must run on the calling thread.
+#[derive(Clone, Copy)]
+pub struct Tasks<'a> {
+    pub threads: usize,
+    pub count: usize,
+    pub on_caller: &'a dyn Fn(usize) -> bool,
+}
+
 /// What the calling thread hears while tasks run.
 pub enum Heard<T> {
     /// A task is done, with its result.
@@ -58,11 +85,10 @@ pub enum Heard<T> {
 /// The calling thread hears of itself after this time.
 const PATIENCE: Duration = Duration::from_millis(500);
 
-/// Runs tasks `0..count` while the calling thread hears of every result as it comes, in any order. All tasks are run;
-/// returns the first error in their order.
+/// Runs tasks while the calling thread hears of every result as it comes, in any order, between those it runs itself. All
+/// tasks are run; returns the first error in their order.
 pub fn run_heard<T: Send>(
-    threads: usize,
-    count: usize,
+    tasks: Tasks,
     task: impl Fn(usize) -> Result<T> + Sync,
     hear: &mut dyn FnMut(Heard<T>),
 ) -> Result<()> {
@@ -73,16 +99,21 @@ pub fn run_heard<T: Send>(
         Some((k, Err(error))) if first.as_ref().is_none_or(|(at, _)| k < *at) => first = Some((k, error)),
         Some(_) => {}
     };
-    match largest_pool(if count == 0 { 0 } else { threads }) {
-        None => (0..count).for_each(|k| sort(Some((k, task(k))))),
+    let (own, others): (Vec<usize>, Vec<usize>) = (0..tasks.count).partition(|&k| (tasks.on_caller)(k));
+    match largest_pool(if others.is_empty() { 0 } else { tasks.threads }) {
+        None => (0..tasks.count).for_each(|k| sort(Some((k, task(k))))),
         Some(pool) => pool.in_place_scope(|scope| {
             let (sender, results) = channel();
-            for k in 0..count {
+            for k in others {
                 let (sender, task) = (sender.clone(), &task);
                 // The calling thread listens until the last sender is gone: it is never sent into the void.
                 scope.spawn(move |_| drop(sender.send((k, task(k)))));
             }
             drop(sender);
+            for k in own {
+                sort(Some((k, task(k))));
+                results.try_iter().for_each(|ended| sort(Some(ended)));
+            }
             loop {
                 match results.recv_timeout(PATIENCE) {
                     Ok(ended) => sort(Some(ended)),
@@ -138,15 +169,31 @@ mod tests {
         for threads in [1, 2, 5] {
             let mut heard = Vec::new();
             let failing = |k| if k % 7 == 3 { Err(Error::new(Kind::State, "no").body(k)) } else { Ok(k * k) };
-            let ended = run_heard(threads, 20, failing, &mut |event| {
-                assert_eq!(std::thread::current().id(), caller);
-                if let Heard::Done(k, square) = event {
-                    heard.push((k, square));
-                }
-            });
+            let ended =
+                run_heard(Tasks { threads, count: 20, on_caller: &|_| false }, failing, &mut |event| {
+                    assert_eq!(std::thread::current().id(), caller);
+                    if let Heard::Done(k, square) = event {
+                        heard.push((k, square));
+                    }
+                });
             heard.sort_unstable();
             let expected: Vec<_> = (0..20).filter(|k| k % 7 != 3).map(|k| (k, k * k)).collect();
             assert_eq!((heard, ended.unwrap_err().place.body), (expected, Some(3)));
+        }
+    }
+
+    #[test]
+    fn the_calling_thread_runs_its_own_tasks_and_results_stay_in_order() {
+        let caller = std::thread::current().id();
+        for threads in [1, 2, 5] {
+            let own = |k: usize| k % 3 == 1;
+            let task = |k: usize| {
+                assert!(!own(k) || std::thread::current().id() == caller, "{k}");
+                Ok(k)
+            };
+            assert_eq!(run_apart(threads, 20, own, task).unwrap(), (0..20).collect::<Vec<_>>());
+            let failing = |k| if k > 7 { Err(Error::new(Kind::State, "no").body(k)) } else { Ok(k) };
+            assert_eq!(run_apart(threads, 20, own, failing).unwrap_err().place.body, Some(8));
         }
     }
 
@@ -160,7 +207,7 @@ mod tests {
             Ok(())
         };
         let mut events = Vec::new();
-        run_heard(2, 1, waiting, &mut |event| {
+        run_heard(Tasks { threads: 2, count: 1, on_caller: &|_| false }, waiting, &mut |event| {
             events.push(matches!(event, Heard::Nothing));
             ended.store(true, Ordering::Relaxed);
         })
