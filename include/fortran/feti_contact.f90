@@ -38,6 +38,7 @@ module feti_contact
     FETI_CONTACT_VERSION_MAJOR, FETI_CONTACT_VERSION_MINOR, FETI_CONTACT_VERSION_PATCH
   use feti_contact_base, only: feti_problem, feti_error_detail, feti_progress, &
     feti_progress_procedure => progress_procedure, &
+    feti_operator_procedure => operator_procedure, &
     feti_problem_create => problem_create, &
     feti_problem_destroy => problem_destroy, &
     feti_problem_error => problem_error, &
@@ -60,6 +61,8 @@ module feti_contact
     feti_body_coordinates => body_coordinates, &
     feti_body_fixing_set => body_fixing_set, &
     feti_body_load => body_load
+  use feti_contact_operators, only: &
+    feti_body_operator => body_operator
   use feti_contact_rows, only: &
     feti_rows_add => rows_add, &
     feti_rows_rhs => rows_rhs, &
