@@ -123,6 +123,16 @@ mod tests {
         assert_eq!(implicit_bodies(&sizes, Some(0)), [true; 4]);
     }
 
+    /// K+ of the host: no entries are known.
+    #[test]
+    fn an_operator_of_the_host_is_assembled_as_long_as_there_is_room() {
+        let host = Size { rows: 5000, unknowns: 20_000, entries: 0 };
+        let explicit = all_bytes(&[host], &[false]);
+        assert_eq!(implicit_bodies(&[host], None), [false]);
+        assert_eq!(implicit_bodies(&[host], Some(explicit)), [false]);
+        assert_eq!(implicit_bodies(&[host], Some(explicit - 1)), [true]);
+    }
+
     #[test]
     fn an_operator_smaller_than_the_vectors_of_a_product_is_never_given_up() {
         assert_eq!(implicit_bodies(&[body(100)], Some(0)), [false]);

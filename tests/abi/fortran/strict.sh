@@ -7,7 +7,7 @@ trap 'rm -rf "$work"' EXIT
 cd "$work"
 compiler="${FC:-gfortran} -Wall -Wextra -pedantic -Werror -Werror=trampolines -c"
 face="$1/feti_contact_c.f90"
-for part in base options bodies rows progress states results; do face="$face $1/feti_contact_$part.f90"; done
+for part in base options bodies operators rows progress states results; do face="$face $1/feti_contact_$part.f90"; done
 examples="$2/examples_fortran/case_reader.f90 $2/examples_fortran/demo.f90 $2/examples_fortran/picture.f90"
 drivers="$2/tests/abi/fortran/support/case_problem.f90"
 
