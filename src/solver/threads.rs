@@ -39,7 +39,7 @@ pub fn run<T: Send>(
     count: usize,
     task: impl Fn(usize) -> Result<T> + Sync,
 ) -> Result<Vec<T>> {
-    let pool = if count < 1 { None } else { largest_pool(threads) };
+    let pool = if count < 1 { None } else { pool_for(threads) };
     let results: Vec<Result<T>> = match pool {
         Some(pool) => pool.install(|| (0..count).into_par_iter().map(&task).collect()),
         None => (0..count).map(&task).collect(),
@@ -100,7 +100,7 @@ pub fn run_heard<T: Send>(
         Some(_) => {}
     };
     let (own, others): (Vec<usize>, Vec<usize>) = (0..tasks.count).partition(|&k| (tasks.on_caller)(k));
-    match largest_pool(if others.is_empty() { 0 } else { tasks.threads }) {
+    match pool_for(if others.is_empty() { 0 } else { tasks.threads }) {
         None => (0..tasks.count).for_each(|k| sort(Some((k, task(k))))),
         Some(pool) => pool.in_place_scope(|scope| {
             let (sender, results) = channel();
@@ -124,6 +124,12 @@ pub fn run_heard<T: Send>(
         }),
     }
     first.map_or(Ok(()), |(_, error)| Err(error))
+}
+
+/// None on a thread of a pool, where a function of the host has called for another problem: to wait there could take the
+/// last thread that works.
+fn pool_for(threads: usize) -> Option<Arc<ThreadPool>> {
+    largest_pool(if rayon::current_thread_index().is_some() { 1 } else { threads })
 }
 
 /// A pool of so many threads, or of half as many, and so on; none of a single thread.
@@ -180,6 +186,12 @@ mod tests {
             let expected: Vec<_> = (0..20).filter(|k| k % 7 != 3).map(|k| (k, k * k)).collect();
             assert_eq!((heard, ended.unwrap_err().place.body), (expected, Some(3)));
         }
+    }
+
+    #[test]
+    fn calls_from_threads_of_the_pool_end() {
+        let within = |k: usize| run_apart(2, 5, |inner| inner == 4, |inner| Ok(k + inner));
+        assert_eq!(run(2, 8, within).unwrap()[7], [7, 8, 9, 10, 11]);
     }
 
     #[test]

@@ -194,12 +194,16 @@ static void inside_the_functions(const char *name, const case_data *data)
         /* the functions of one problem are tried once more: nothing of the failed setup is kept that they must give */
         for (int64_t b = 0; b < data->bodies; b++) give(host, b, 0);
     }
-    host->reply = host->calls = 0;
-    host->when = 2;
     host->asks = 1;
-    answer result = solved(host->problem, data);
-    check_forces(name, data, &result);
-    answer_free(&result);
+    for (int32_t concurrent = 0; concurrent <= 1; concurrent++) {
+        host->reply = host->calls = 0;
+        host->when = 2;
+        for (int64_t b = 0; b < data->bodies; b++) give(host, b, concurrent);
+        answer result = solved(host->problem, data);
+        check_forces(name, data, &result);
+        CHECK(host->calls > 2, "nothing was asked");
+        answer_free(&result);
+    }
     host_free(host);
 }
 
