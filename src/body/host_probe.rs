@@ -18,8 +18,9 @@ const FORCES: usize = 2;
 const SKEW: f64 = 1e-10;
 /// Rounding errors of a product, against D-norms.
 const NOISE: f64 = 64.0 * f64::EPSILON;
-/// A motion v that R does not have belongs to the null space when `|K v|` is below this against `|v|`.
-const MISSING: f64 = 1e-10;
+/// A motion v that R does not have belongs to the null space when `|K v|` is below this against `|v|`: K+ reproduces K x no
+/// better, so that a K+ that is wrong along a softer motion cannot be told from one without it.
+const MISSING: f64 = 10.0 * PROBE;
 
 impl GeneralizedInverse {
     /// K+ of the host, once K, K+ and the null space have passed.

@@ -16,11 +16,12 @@ use crate::solver::{HostFunctions, HostProduct};
 /// Names the functions of the host that multiply by the stiffness K of a body and by a generalised inverse K+ of it.
 ///
 /// The library sees no entry of K but the diagonal, which is copied, and factorises nothing. K+ is any symmetric positive
-/// semidefinite matrix with K K+ K = K: where K is not singular its inverse, else that of K with enough unknowns held (rows and
-/// columns of zeros in K+), or that of K plus a regularisation that acts on the null space alone. The null space must be
-/// given, by feti_body_null_space or feti_body_coordinates (the body then counts as connected). feti_setup tries the functions with a few fixed vectors and
-/// refuses what is wrong by name: FETI_CALLBACK (K or K+ not symmetric, K K+ K not K, a result that is no finite number),
-/// FETI_INDEFINITE, FETI_NULL_SPACE (K R not 0, a mode missing in R), with the figure and its limit in the error detail.
+/// semidefinite matrix with K K+ K = K: where K is not singular its inverse, else that of K with enough unknowns held (rows
+/// and columns of zeros in K+), or that of K plus a regularisation that acts on the null space alone. The null space must
+/// be given, by feti_body_null_space or feti_body_coordinates (the body then counts as connected). feti_setup tries the
+/// functions with a few fixed vectors and refuses what is wrong by name: FETI_CALLBACK (K or K+ not symmetric, K K+ K not
+/// K, a result that is no finite number), FETI_INDEFINITE, FETI_NULL_SPACE (K R not 0, a mode missing in R), with the
+/// figure and its limit in the error detail.
 ///
 /// A function that returns anything but 0 ends the call that needed it with FETI_CALLBACK, the body and that number in
 /// the error detail; the problem stays as it was. The functions run in the host's floating-point environment; with

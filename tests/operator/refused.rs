@@ -103,6 +103,44 @@ fn what_is_no_number_is_named_with_its_dof() {
     assert_says(&error, Kind::Callback, "product with K is not a finite number");
 }
 
+/// A free bending beam, K = D'D of second differences: its softest motion is n^-4 as stiff as its stiffest.
+fn beam(n: usize) -> Vec<f64> {
+    let mut k = vec![0.0; n * n];
+    for i in 1..n - 1 {
+        for (a, va) in [(i - 1, 1.0), (i, -2.0), (i + 1, 1.0)] {
+            [(i - 1, 1.0), (i, -2.0), (i + 1, 1.0)].iter().for_each(|&(b, vb)| k[a + b * n] += va * vb);
+        }
+    }
+    k
+}
+
+/// Soft bodies, and supports written as large numbers on the diagonal, pass the trial; a mode that is missing does not.
+#[test]
+fn an_ill_conditioned_body_is_no_wrong_one() {
+    for (n, form) in [(30, Form::Held), (120, Form::Regularised), (400, Form::Held), (400, Form::Regularised)]
+    {
+        let mut modes = vec![1.0; n];
+        modes.extend((0..n).map(|i| i as f64));
+        let outcome = |k: &[f64], r: usize, given: usize| {
+            let mut problem = Problem::new();
+            problem.add_body(n).unwrap();
+            Host::new(n, k.to_vec(), &modes[..r * n], form).give(&mut problem, 0, false);
+            problem.set_null_space(0, n, given, &modes[..given * n], n, Modes::Exact).unwrap();
+            problem.setup()
+        };
+        outcome(&beam(n), 2, 2).unwrap_or_else(|e| panic!("{n}, {form:?}: {e}"));
+        let error = outcome(&beam(n), 2, 1).unwrap_err();
+        assert_says(&error, Kind::NullSpace, "a mode is missing");
+        let mut supported = beam(n);
+        supported[0] += 1e20;
+        supported[n + 1] += 1e20;
+        if n > 120 {
+            continue; // an explicit inverse is no better than 1e-7 there
+        }
+        outcome(&supported, 0, 0).unwrap_or_else(|e| panic!("supported, {n}, {form:?}: {e}"));
+    }
+}
+
 /// Call by call a failure ends the solve with its number; the next solve gives the same bits as ever.
 #[test]
 fn a_function_that_fails_ends_the_call_and_nothing_else() {
