@@ -7,6 +7,7 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError, RwLock, TryLockError};
 
 use super::error_store::Record;
+use super::fpu::Environment;
 use super::types::feti_problem;
 use crate::error::{Error, Kind, Result};
 use crate::solver::Problem;
@@ -22,6 +23,8 @@ pub(super) struct Slot {
     cancelled: Arc<AtomicBool>,
     broken: AtomicBool,
     error: Mutex<Option<Record>>,
+    /// Floating-point environment of the call that runs.
+    pub environment: Arc<Environment>,
 }
 
 /// Why a problem could not be taken.
@@ -52,6 +55,7 @@ impl Slot {
         if self.broken.load(Ordering::Acquire) {
             return Err(Refusal::Broken);
         }
+        self.environment.note();
         Ok(work(problem))
     }
 
@@ -89,6 +93,7 @@ pub(super) fn register(problem: Problem) -> Result<*mut feti_problem> {
         problem: Mutex::new(Some(problem)),
         broken: AtomicBool::new(false),
         error: Mutex::new(None),
+        environment: Arc::new(Environment::new()),
     };
     PROBLEMS.write().unwrap_or_else(PoisonError::into_inner).insert(last + 1, Arc::new(slot));
     Ok(ptr::without_provenance_mut(last + 1))

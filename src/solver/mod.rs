@@ -8,6 +8,7 @@ mod fallback;
 mod file;
 mod findings;
 mod finish;
+mod host;
 mod log;
 mod numbering;
 mod operators;
@@ -30,7 +31,7 @@ mod threads;
 mod undetermined;
 mod watch;
 
-pub use crate::body::{Columns, Modes, SparseInput, Storage};
+pub use crate::body::{Columns, HostFunctions, HostProduct, Modes, SparseInput, Storage};
 pub use crate::constraints::{RowKind, RowsInput};
 pub use crate::error::Proof;
 pub use crate::linalg::Borrowed;
@@ -45,5 +46,5 @@ pub use report::{Counts, Outcome, Report, RowState};
 pub use settings::{options, OptionInfo, OptionValue, Settings};
 pub use threads::THREAD_NAME;
 #[cfg(test)]
-pub(crate) use threads::{run as run_on_pool, run_heard};
+pub(crate) use threads::{run as run_on_pool, run_heard, Tasks};
 pub use watch::{Listener, Progress, Reply};
