@@ -199,6 +199,26 @@
 #define FETI_STEP_RELEASE 3
 
 /**
+ * Level of a log: nothing.
+ */
+#define FETI_LOG_NONE 0
+
+/**
+ * Level of a log: one line for each solve, and warnings.
+ */
+#define FETI_LOG_RESULT 1
+
+/**
+ * Level of a log: also what is solved and how, and a line for each phase.
+ */
+#define FETI_LOG_PHASE 2
+
+/**
+ * Level of a log: also a line for each step.
+ */
+#define FETI_LOG_STEP 3
+
+/**
  * Type of an option: number.
  */
 #define FETI_OPTION_F64 1
@@ -319,7 +339,7 @@ typedef struct feti_error_detail {
    */
   int64_t row;
   /**
-   * Position in the array, -1: does not apply.
+   * Position in the array; byte of a text or a file; -1: does not apply.
    */
   int64_t entry;
   /**
@@ -335,6 +355,17 @@ typedef struct feti_error_detail {
    */
   char function[40];
 } feti_error_detail;
+
+/**
+ * A function of the host that gets a line of text.
+ *
+ * It returns 0 to go on, any other number to report a failure of its own.
+ *
+ * @param[in] user  (scalar) the host's own, as given to feti_on_log; may be NULL
+ * @param[in] level (scalar) FETI_LOG_RESULT, FETI_LOG_PHASE or FETI_LOG_STEP
+ * @param[in] text  (text) one line in UTF-8 without its end, valid during the call
+ */
+typedef int32_t (*feti_log_fn)(void *user, int32_t level, const char *text);
 
 /**
  * An option: name, text, default and range.
@@ -1005,6 +1036,60 @@ int64_t feti_last_error(char *buf, int64_t cap);
 int32_t feti_last_error_detail(struct feti_error_detail *out);
 
 /**
+ * Writes all that the host has registered to one file: a bug report is a file.
+ *
+ * Bodies with their matrices, null spaces, coordinates, fixing unknowns and loads, rows of both
+ * kinds with right-hand sides and compliances, and the options that differ from their defaults,
+ * bit by bit; not the answer, start values, saved states and functions of the host.
+ * docs/file_format.md describes every byte. The file is written under another name in the same
+ * folder and renamed when it is complete: after a failure an old file is as it was, and nothing
+ * else is left. FETI_IO with path, operation and the words of the system.
+ *
+ * @param[in] p    (scalar) the handle
+ * @param[in] path (text) name of the file; an old one is replaced
+ *
+ * Safety: `path` is NUL terminated.
+ */
+int32_t feti_problem_write(struct feti_problem *p, const char *path);
+
+/**
+ * Reads what feti_problem_write has written into an empty problem.
+ *
+ * The same solve then gives the same bits. FETI_STATE when there are bodies or rows already.
+ * Options become those of the file, all others their defaults, except index_base, which stays.
+ * Everything goes through the checks of the calls it stands for. FETI_IO with path and the words
+ * of the system, or with the byte where a file is damaged (`entry` of feti_last_error_detail);
+ * FETI_UNSUPPORTED when it holds what a later version has written. After a failure the problem is
+ * as it was.
+ *
+ * @param[in] p    (scalar) the handle
+ * @param[in] path (text) name of the file
+ *
+ * Safety: `path` is NUL terminated.
+ */
+int32_t feti_problem_read(struct feti_problem *p, const char *path);
+
+/**
+ * Names the function that gets what setups and solves tell in words.
+ *
+ * Level FETI_LOG_RESULT: one line for each solve, and warnings; FETI_LOG_PHASE: also sizes,
+ * options, method, fallbacks and a line for each phase with its time and bytes; FETI_LOG_STEP:
+ * also a line for each step. The function is called on the thread that called the library, in that
+ * thread's floating-point environment, until another one or NULL is given. It returns 0 to go on;
+ * any other number ends the call with FETI_CALLBACK, the number in the error detail, and no
+ * results. Calls on the same problem from inside return FETI_BUSY, except feti_cancel and
+ * feti_problem_error. It must not end by longjmp or an exception.
+ *
+ * @param[in] p        (scalar) the handle
+ * @param[in] callback (scalar) the function; NULL: none
+ * @param[in] level    (scalar) FETI_LOG_NONE, FETI_LOG_RESULT, FETI_LOG_PHASE or FETI_LOG_STEP
+ * @param[in] user     (scalar) handed to the function unchanged; may be NULL
+ *
+ * Safety: `callback` may be called with `user` until it is replaced or the problem destroyed.
+ */
+int32_t feti_on_log(struct feti_problem *p, feti_log_fn callback, int32_t level, void *user);
+
+/**
  * Gives a basis of the null space of a body, or candidates for it.
  *
  * The basis is copied; calling again replaces it. Never called: the coordinates of the unknowns
@@ -1121,6 +1206,21 @@ int32_t feti_set_i64(struct feti_problem *p, const char *name, int64_t value);
  * Safety: `name` and `value` are NUL terminated.
  */
 int32_t feti_set_str(struct feti_problem *p, const char *name, const char *value);
+
+/**
+ * Sets several options by one text, such as "tolerance=1e-8 threads=4".
+ *
+ * Items name = value of any type, separated by blanks, commas or ends of lines; a sign # begins a
+ * comment that ends with the line. An option that comes twice has its last value. After a failure
+ * all options are as they were; the error names the option, and `entry` of its detail is the byte
+ * of the text, from 0.
+ *
+ * @param[in] p    (scalar) the handle
+ * @param[in] text (text) the options
+ *
+ * Safety: `text` is NUL terminated.
+ */
+int32_t feti_set_text(struct feti_problem *p, const char *text);
 
 /**
  * Reads an option that is a number.

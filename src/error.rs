@@ -31,6 +31,8 @@ pub enum Kind {
     TimeOver,
     /// A function of the host reported a failure.
     Callback,
+    /// A file could not be read or written, or it is damaged.
+    Io,
 }
 
 /// What proves that there is no solution; `margin`, above 0 and at most 1, says how clearly.
@@ -53,6 +55,8 @@ pub struct Place {
     pub dof: Option<usize>,
     pub row: Option<usize>,
     pub entry: Option<usize>,
+    /// Position in a text or a file.
+    pub byte: Option<usize>,
     /// The number found ...
     pub value: Option<f64>,
     /// ... and the number it had to stay within.
@@ -67,6 +71,7 @@ impl fmt::Display for Place {
             ("dof", self.dof),
             ("row", self.row),
             ("entry", self.entry),
+            ("byte", self.byte),
         ];
         let mut separator = "";
         for (name, number) in parts.iter().filter_map(|(name, n)| n.map(|n| (name, n))) {
@@ -125,6 +130,11 @@ impl Error {
 
     pub fn entry(mut self, entry: usize) -> Self {
         self.place.entry = Some(entry);
+        self
+    }
+
+    pub fn byte(mut self, byte: usize) -> Self {
+        self.place.byte = Some(byte);
         self
     }
 

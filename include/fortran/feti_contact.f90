@@ -30,6 +30,8 @@ module feti_contact
     FETI_ROW_OPEN, FETI_ROW_CLOSED, FETI_ROW_WEAK, FETI_OPTION_F64, FETI_OPTION_I64, FETI_OPTION_STR, &
     ! phases and kinds of steps that a progress function hears of
     FETI_PHASE_SETUP, FETI_PHASE_SOLVE, FETI_STEP_CONJUGATE_GRADIENT, FETI_STEP_EXPANSION, FETI_STEP_RELEASE, &
+    ! levels of a log
+    FETI_LOG_NONE, FETI_LOG_RESULT, FETI_LOG_PHASE, FETI_LOG_STEP, &
     ! status: solved; usable but incomplete; failed
     FETI_OK, &
     FETI_ITERATIONS, FETI_TIME, FETI_CANCELLED, FETI_STALLED, FETI_INACCURATE, FETI_MARGINAL, &
@@ -38,6 +40,7 @@ module feti_contact
     FETI_CONTACT_VERSION_MAJOR, FETI_CONTACT_VERSION_MINOR, FETI_CONTACT_VERSION_PATCH
   use feti_contact_base, only: feti_problem, feti_error_detail, feti_progress, &
     feti_progress_procedure => progress_procedure, &
+    feti_log_procedure => log_procedure, &
     feti_problem_create => problem_create, &
     feti_problem_destroy => problem_destroy, &
     feti_problem_error => problem_error, &
@@ -49,9 +52,13 @@ module feti_contact
     feti_version_number => version_number
   use feti_contact_options, only: feti_option, &
     feti_set => set_option, &
+    feti_set_text => set_options, &
     feti_get => get_option, &
     feti_option_count => option_count, &
     feti_option_at => option_at
+  use feti_contact_file, only: &
+    feti_problem_write => problem_write, &
+    feti_problem_read => problem_read
   use feti_contact_bodies, only: &
     feti_body_add => body_add, &
     feti_body_stiffness => body_stiffness, &
@@ -68,6 +75,8 @@ module feti_contact
   use feti_contact_progress, only: &
     feti_on_progress => on_progress, &
     feti_cancel => cancel
+  use feti_contact_log, only: &
+    feti_on_log => on_log
   use feti_contact_states, only: feti_findings, &
     feti_start_from => start_from, &
     feti_state_save => state_save, &

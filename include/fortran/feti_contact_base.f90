@@ -25,7 +25,7 @@ module feti_contact_base
   implicit none
   private
   public :: feti_problem, feti_error_detail, feti_progress
-  public :: listener, progress_procedure, listener_of
+  public :: listener, log_procedure, progress_procedure, listener_of
   public :: problem_create, problem_destroy, problem_error
   public :: last_error, last_error_detail, status_name, status_text
   public :: version, version_number
@@ -39,12 +39,22 @@ module feti_contact_base
       type(feti_progress), intent(in) :: now
       class(*), intent(inout) :: data
     end function
+
+    !> A function of the host that gets a line of text: 0 goes on, any other number reports a failure of its own.
+    !> level: FETI_LOG_RESULT, FETI_LOG_PHASE or FETI_LOG_STEP. data: what was given to feti_on_log.
+    integer function log_procedure(level, text, data)
+      integer, intent(in) :: level
+      character(len=*), intent(in) :: text
+      class(*), intent(inout) :: data
+    end function
   end interface
 
-  !> What feti_on_progress keeps of the host.
+  !> What feti_on_progress and feti_on_log keep of the host.
   type :: listener
     procedure(progress_procedure), pointer, nopass :: hear => null()
     class(*), pointer :: data => null()
+    procedure(log_procedure), pointer, nopass :: tell => null()
+    class(*), pointer :: log_data => null()
     !> Stands for data that were not given.
     integer :: nothing = 0
   end type

@@ -84,6 +84,14 @@ module feti_contact_c
   integer(c_int32_t), parameter, public :: FETI_STEP_EXPANSION = 2_c_int32_t
   !> Kind of a step: rows got a force.
   integer(c_int32_t), parameter, public :: FETI_STEP_RELEASE = 3_c_int32_t
+  !> Level of a log: nothing.
+  integer(c_int32_t), parameter, public :: FETI_LOG_NONE = 0_c_int32_t
+  !> Level of a log: one line for each solve, and warnings.
+  integer(c_int32_t), parameter, public :: FETI_LOG_RESULT = 1_c_int32_t
+  !> Level of a log: also what is solved and how, and a line for each phase.
+  integer(c_int32_t), parameter, public :: FETI_LOG_PHASE = 2_c_int32_t
+  !> Level of a log: also a line for each step.
+  integer(c_int32_t), parameter, public :: FETI_LOG_STEP = 3_c_int32_t
   !> Type of an option: number.
   integer(c_int32_t), parameter, public :: FETI_OPTION_F64 = 1_c_int32_t
   !> Type of an option: integer.
@@ -107,7 +115,7 @@ module feti_contact_c
     integer(c_int64_t) :: dof
     !> Row of the matrix or of the constraints, -1: does not apply.
     integer(c_int64_t) :: row
-    !> Position in the array, -1: does not apply.
+    !> Position in the array; byte of a text or a file; -1: does not apply.
     integer(c_int64_t) :: entry
     !> The number found; NaN: does not apply.
     real(c_double) :: value
@@ -356,6 +364,9 @@ module feti_contact_c
   public :: feti_diagnosis_motion
   public :: feti_last_error
   public :: feti_last_error_detail
+  public :: feti_problem_write
+  public :: feti_problem_read
+  public :: feti_on_log
   public :: feti_body_null_space
   public :: feti_body_null_space_get
   public :: feti_body_fixing
@@ -363,6 +374,7 @@ module feti_contact_c
   public :: feti_set_f64
   public :: feti_set_i64
   public :: feti_set_str
+  public :: feti_set_text
   public :: feti_get_f64
   public :: feti_get_i64
   public :: feti_get_str
@@ -417,6 +429,26 @@ module feti_contact_c
       type(feti_progress), intent(in) :: now
       integer(c_int32_t) :: feti_progress_fn
     end function feti_progress_fn
+
+  end interface
+
+  public :: feti_log_fn
+  abstract interface
+
+    !> A function of the host that gets a line of text.
+    !>
+    !> It returns 0 to go on, any other number to report a failure of its own.
+    !>
+    !> @param[in] user  (scalar) the host's own, as given to feti_on_log; may be NULL
+    !> @param[in] level (scalar) FETI_LOG_RESULT, FETI_LOG_PHASE or FETI_LOG_STEP
+    !> @param[in] text  (text) one line in UTF-8 without its end, valid during the call
+    function feti_log_fn(user, level, text) bind(C)
+      import
+      type(c_ptr), value :: user
+      integer(c_int32_t), value :: level
+      character(kind=c_char), intent(in) :: text(*)
+      integer(c_int32_t) :: feti_log_fn
+    end function feti_log_fn
 
   end interface
 
@@ -759,6 +791,70 @@ module feti_contact_c
       integer(c_int32_t) :: feti_last_error_detail
     end function feti_last_error_detail
 
+    !> Writes all that the host has registered to one file: a bug report is a file.
+    !>
+    !> Bodies with their matrices, null spaces, coordinates, fixing unknowns and loads, rows of both kinds
+    !> with right-hand sides and compliances, and the options that differ from their defaults, bit by bit; not
+    !> the answer, start values, saved states and functions of the host. docs/file_format.md describes every
+    !> byte. The file is written under another name in the same folder and renamed when it is complete: after
+    !> a failure an old file is as it was, and nothing else is left. FETI_IO with path, operation and the
+    !> words of the system.
+    !>
+    !> @param[in] p    (scalar) the handle
+    !> @param[in] path (text) name of the file; an old one is replaced
+    !>
+    !> Safety: `path` is NUL terminated.
+    function feti_problem_write(p, path) bind(C, name="feti_problem_write")
+      import
+      type(c_ptr), value :: p
+      character(kind=c_char), intent(in) :: path(*)
+      integer(c_int32_t) :: feti_problem_write
+    end function feti_problem_write
+
+    !> Reads what feti_problem_write has written into an empty problem.
+    !>
+    !> The same solve then gives the same bits. FETI_STATE when there are bodies or rows already. Options
+    !> become those of the file, all others their defaults, except index_base, which stays. Everything goes
+    !> through the checks of the calls it stands for. FETI_IO with path and the words of the system, or with
+    !> the byte where a file is damaged (`entry` of feti_last_error_detail); FETI_UNSUPPORTED when it holds
+    !> what a later version has written. After a failure the problem is as it was.
+    !>
+    !> @param[in] p    (scalar) the handle
+    !> @param[in] path (text) name of the file
+    !>
+    !> Safety: `path` is NUL terminated.
+    function feti_problem_read(p, path) bind(C, name="feti_problem_read")
+      import
+      type(c_ptr), value :: p
+      character(kind=c_char), intent(in) :: path(*)
+      integer(c_int32_t) :: feti_problem_read
+    end function feti_problem_read
+
+    !> Names the function that gets what setups and solves tell in words.
+    !>
+    !> Level FETI_LOG_RESULT: one line for each solve, and warnings; FETI_LOG_PHASE: also sizes, options,
+    !> method, fallbacks and a line for each phase with its time and bytes; FETI_LOG_STEP: also a line for
+    !> each step. The function is called on the thread that called the library, in that thread's
+    !> floating-point environment, until another one or NULL is given. It returns 0 to go on; any other number
+    !> ends the call with FETI_CALLBACK, the number in the error detail, and no results. Calls on the same
+    !> problem from inside return FETI_BUSY, except feti_cancel and feti_problem_error. It must not end by
+    !> longjmp or an exception.
+    !>
+    !> @param[in] p        (scalar) the handle
+    !> @param[in] callback (scalar) the function; NULL: none
+    !> @param[in] level    (scalar) FETI_LOG_NONE, FETI_LOG_RESULT, FETI_LOG_PHASE or FETI_LOG_STEP
+    !> @param[in] user     (scalar) handed to the function unchanged; may be NULL
+    !>
+    !> Safety: `callback` may be called with `user` until it is replaced or the problem destroyed.
+    function feti_on_log(p, callback, level, user) bind(C, name="feti_on_log")
+      import
+      type(c_ptr), value :: p
+      type(c_funptr), value :: callback
+      integer(c_int32_t), value :: level
+      type(c_ptr), value :: user
+      integer(c_int32_t) :: feti_on_log
+    end function feti_on_log
+
     !> Gives a basis of the null space of a body, or candidates for it.
     !>
     !> The basis is copied; calling again replaces it. Never called: the coordinates of the unknowns give
@@ -900,6 +996,23 @@ module feti_contact_c
       character(kind=c_char), intent(in) :: value(*)
       integer(c_int32_t) :: feti_set_str
     end function feti_set_str
+
+    !> Sets several options by one text, such as "tolerance=1e-8 threads=4".
+    !>
+    !> Items name = value of any type, separated by blanks, commas or ends of lines; a sign # begins a comment
+    !> that ends with the line. An option that comes twice has its last value. After a failure all options are
+    !> as they were; the error names the option, and `entry` of its detail is the byte of the text, from 0.
+    !>
+    !> @param[in] p    (scalar) the handle
+    !> @param[in] text (text) the options
+    !>
+    !> Safety: `text` is NUL terminated.
+    function feti_set_text(p, text) bind(C, name="feti_set_text")
+      import
+      type(c_ptr), value :: p
+      character(kind=c_char), intent(in) :: text(*)
+      integer(c_int32_t) :: feti_set_text
+    end function feti_set_text
 
     !> Reads an option that is a number.
     !>

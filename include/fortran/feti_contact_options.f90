@@ -13,10 +13,11 @@ module feti_contact_options
     c_option_count => feti_option_count, &
     c_set_f64 => feti_set_f64, &
     c_set_i64 => feti_set_i64, &
-    c_set_str => feti_set_str
+    c_set_str => feti_set_str, &
+    c_set_text => feti_set_text
   implicit none
   private
-  public :: set_option, get_option, feti_option, option_at, option_count
+  public :: set_option, set_options, get_option, feti_option, option_at, option_count
 
   !> Sets the option `name`: call feti_set(p, 'tolerance', 1d-10).
   interface set_option
@@ -42,6 +43,17 @@ module feti_contact_options
   end type
 
 contains
+
+  !> Sets several options by one text: call feti_set_text(p, 'tolerance=1d-8 threads=4'). Blanks, commas or ends of lines
+  !> separate, # begins a comment. All or none are set; an error tells the position in the text.
+  subroutine set_options(p, text, stat, errmsg)
+    type(feti_problem), intent(in) :: p
+    character(len=*), intent(in) :: text
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+
+    call finish(c_set_text(handle_of(p), c_text(text)), stat, errmsg)
+  end subroutine
 
   subroutine set_real(p, name, value, stat, errmsg)
     type(feti_problem), intent(in) :: p

@@ -43,6 +43,16 @@ impl Coordinates {
         self.direction.len()
     }
 
+    /// Per dof: 1-3 a displacement, 4-6 a rotation.
+    pub fn directions(&self) -> &[i32] {
+        &self.direction
+    }
+
+    /// Per dof: position, length.
+    pub fn places(&self) -> &[[f64; 3]] {
+        &self.place
+    }
+
     /// Equal bit by bit.
     pub fn same(&self, other: &Self) -> bool {
         let bits = |places: &[[f64; 3]]| -> bool {

@@ -1,7 +1,8 @@
 //! Host pointers to slices and back, checked: sizes, NULL, alignment, texts. Results are written at the end of a call, by
 //! copying, so that a failure leaves the host's arrays as they are and arrays that overlap do no harm.
 
-use std::ffi::{c_char, CStr};
+use std::ffi::{c_char, CStr, OsStr};
+use std::path::Path;
 
 use crate::error::{Error, Kind, Result};
 
@@ -167,6 +168,29 @@ pub(super) unsafe fn text<'a>(from: *const c_char, name: &'static str) -> Result
         let at = error.valid_up_to();
         Error::argument(name, format!("byte {at} of the text is not UTF-8")).entry(at)
     })
+}
+
+/// The name of a file: on Unix any bytes.
+///
+/// # Safety
+/// `from` is NULL or NUL terminated.
+pub(super) unsafe fn file_path<'a>(from: *const c_char, name: &'static str) -> Result<&'a Path> {
+    if from.is_null() {
+        return Err(Error::argument(name, "NULL"));
+    }
+    #[cfg(unix)]
+    let path = {
+        use std::os::unix::ffi::OsStrExt;
+        // SAFETY: NUL terminated by the caller's word.
+        OsStr::from_bytes(unsafe { CStr::from_ptr(from) }.to_bytes())
+    };
+    #[cfg(not(unix))]
+    // SAFETY: NUL terminated by the caller's word.
+    let path = OsStr::new(unsafe { text(from, name) }?);
+    if path.is_empty() {
+        return Err(Error::argument(name, "the name of the file is empty"));
+    }
+    Ok(Path::new(path))
 }
 
 /// Room for a text: `cap` >= 0 characters, NULL only with 0.

@@ -63,7 +63,7 @@ fn detail(record: Option<&Record>) -> feti_error_detail {
         component: number(place.component),
         dof: number(place.dof),
         row: number(place.row),
-        entry: number(place.entry),
+        entry: number(place.byte.or(place.entry)),
         value: place.value.unwrap_or(f64::NAN),
         limit: place.limit.unwrap_or(f64::NAN),
         function,

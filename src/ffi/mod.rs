@@ -8,7 +8,7 @@
 //! | `fpu` | the floating-point environment of the host, saved and restored |
 //! | `error_store` | the last error, per thread and per problem |
 //! | `arrays`, `indices`, `record` | host arrays, index arrays and structs with a `struct_size`, checked |
-//! | `problem`, `options`, `body`, `null_space`, `rows`, `solve`, `phases`, `progress`, `state`, `diagnosis`, `results`, `validation` | the functions |
+//! | `problem`, `file`, `options`, `body`, `null_space`, `rows`, `solve`, `phases`, `progress`, `log`, `state`, `diagnosis`, `results`, `validation` | the functions |
 //!
 //! The generator of the header and of the Fortran interfaces reads these files: each exported function has a table of
 //! its arguments, in which the word NULL in the rule says that the pointer may be NULL.
@@ -20,10 +20,12 @@ mod arrays;
 mod body;
 mod diagnosis;
 mod error_store;
+mod file;
 mod fpu;
 mod guard;
 mod handle;
 mod indices;
+mod log;
 mod null_space;
 mod options;
 mod phases;
@@ -46,6 +48,8 @@ mod tests;
 pub use body::*;
 pub use diagnosis::*;
 pub use error_store::{feti_last_error, feti_last_error_detail};
+pub use file::*;
+pub use log::*;
 pub use null_space::*;
 pub use options::*;
 pub use phases::*;

@@ -75,6 +75,27 @@ pub unsafe extern "C" fn feti_set_str(
     })
 }
 
+/// Sets several options by one text, such as "tolerance=1e-8 threads=4".
+///
+/// Items name = value of any type, separated by blanks, commas or ends of lines; a sign # begins a comment that ends with the
+/// line. An option that comes twice has its last value. After a failure all options are as they were; the error names
+/// the option, and `entry` of its detail is the byte of the text, from 0.
+///
+/// | argument | in/out | shape | rule |
+/// |---|---|---|---|
+/// | `p` | in | scalar | the handle |
+/// | `text` | in | text | the options |
+///
+/// # Safety
+/// `text` is NUL terminated.
+#[no_mangle]
+pub unsafe extern "C" fn feti_set_text(p: *mut feti_problem, text: *const c_char) -> i32 {
+    enter(p, call!(feti_set_text(p, text)), |problem| {
+        // SAFETY: NUL terminated by the caller's word.
+        problem.set_text(unsafe { self::text(text, "text") }?)
+    })
+}
+
 /// Reads an option that is a number.
 ///
 /// After a failure `value` is as it was.

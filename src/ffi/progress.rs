@@ -74,7 +74,7 @@ pub unsafe extern "C" fn feti_on_progress(
 
 /// The host's pointer, which the library only hands back.
 #[derive(Clone, Copy)]
-struct User(*mut c_void);
+pub(super) struct User(pub *mut c_void);
 
 // SAFETY: never followed here; the host's function gets it on the thread on which the host calls the library.
 unsafe impl Send for User {}
@@ -82,7 +82,7 @@ unsafe impl Send for User {}
 unsafe impl Sync for User {}
 
 impl User {
-    fn get(self) -> *mut c_void {
+    pub fn get(self) -> *mut c_void {
         self.0
     }
 }

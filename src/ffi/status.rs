@@ -96,6 +96,7 @@ pub(super) fn of_kind(kind: Kind, arguments: &[&str]) -> (i32, i32) {
         Kind::Cancelled => FETI_CANCELLED,
         Kind::TimeOver => FETI_TIME,
         Kind::Callback => FETI_CALLBACK,
+        Kind::Io => FETI_IO,
     };
     (status, 0)
 }

@@ -42,6 +42,15 @@ pub const FETI_STEP_EXPANSION: i32 = 2;
 /// Kind of a step: rows got a force.
 pub const FETI_STEP_RELEASE: i32 = 3;
 
+/// Level of a log: nothing.
+pub const FETI_LOG_NONE: i32 = 0;
+/// Level of a log: one line for each solve, and warnings.
+pub const FETI_LOG_RESULT: i32 = 1;
+/// Level of a log: also what is solved and how, and a line for each phase.
+pub const FETI_LOG_PHASE: i32 = 2;
+/// Level of a log: also a line for each step.
+pub const FETI_LOG_STEP: i32 = 3;
+
 /// Type of an option: number.
 pub const FETI_OPTION_F64: i32 = 1;
 /// Type of an option: integer.
@@ -73,7 +82,7 @@ pub struct feti_error_detail {
     pub dof: i64,
     /// Row of the matrix or of the constraints, -1: does not apply.
     pub row: i64,
-    /// Position in the array, -1: does not apply.
+    /// Position in the array; byte of a text or a file; -1: does not apply.
     pub entry: i64,
     /// The number found; NaN: does not apply.
     pub value: f64,
@@ -287,6 +296,18 @@ pub struct feti_progress {
 /// | `user` | in | scalar | the host's own, as given to feti_on_progress; may be NULL |
 /// | `now` | in | scalar | valid during the call |
 pub type feti_progress_fn = Option<unsafe extern "C" fn(user: *mut c_void, now: *const feti_progress) -> i32>;
+
+/// A function of the host that gets a line of text.
+///
+/// It returns 0 to go on, any other number to report a failure of its own.
+///
+/// | argument | in/out | shape | rule |
+/// |---|---|---|---|
+/// | `user` | in | scalar | the host's own, as given to feti_on_log; may be NULL |
+/// | `level` | in | scalar | FETI_LOG_RESULT, FETI_LOG_PHASE or FETI_LOG_STEP |
+/// | `text` | in | text | one line in UTF-8 without its end, valid during the call |
+pub type feti_log_fn =
+    Option<unsafe extern "C" fn(user: *mut c_void, level: i32, text: *const c_char) -> i32>;
 
 /// What the last solve, or the last setup that failed, has found out about the problem. Numbers count from 0.
 #[repr(C)]

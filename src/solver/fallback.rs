@@ -2,8 +2,10 @@
 
 use crate::error::Result;
 use crate::qp::paper::algorithm_3;
-use crate::qp::{active_set, minimise, smalbe, Direct, Judge, Limits, Observer, Qp, Solution, Verdict};
+use crate::qp::{active_set, minimise, smalbe, Direct, Judge, Limits, Qp, Solution, Verdict};
+use crate::solver::log::{Log, LogLevel};
 use crate::solver::paper;
+use crate::solver::watch::Watch;
 use crate::solver::Settings;
 
 /// How the dual is solved.
@@ -19,36 +21,60 @@ pub(super) fn solve_dual(
     qp: Qp,
     start: &[f64],
     judge: &mut dyn Judge,
-    observer: &mut dyn Observer,
+    watch: &mut Watch,
 ) -> Result<Solution> {
     let settings = means.settings;
     let steps = usize::try_from(settings.max_steps).unwrap_or(usize::MAX);
     let limits = Limits { tolerance: settings.tolerance, gamma: settings.gamma, steps };
     if let Some(parameters) = paper::parameters(settings) {
-        return algorithm_3(Qp { preconditioner: None, ..qp }, start, &parameters, judge, observer);
+        return algorithm_3(Qp { preconditioner: None, ..qp }, start, &parameters, judge, watch);
     }
     if settings.method == c"smalbe" {
-        return smalbe(qp, start, limits, judge, observer);
+        return smalbe(qp, start, limits, judge, watch);
     }
-    let first = minimise(qp, start, limits, judge, observer)?;
-    let mut best = or_directly(first, qp, means.direct, judge)?;
+    let first = minimise(qp, start, limits, judge, watch)?;
+    let mut best = or_directly(first, qp, means.direct, judge, &mut watch.log)?;
     let plain = Qp { preconditioner: None, ..qp };
     if gave_up(&best) && qp.preconditioner.is_some() {
-        let next = minimise(plain, &best.x.clone(), limits, judge, observer);
-        best = better(best, next.and_then(|next| or_directly(next, plain, means.direct, judge)))?;
+        follows(&best, "proportioning without preconditioner", &mut watch.log)?;
+        let next = minimise(plain, &best.x.clone(), limits, judge, watch);
+        let next = next.and_then(|next| or_directly(next, plain, means.direct, judge, &mut watch.log));
+        best = better(best, next)?;
     }
     if gave_up(&best) {
-        let next = smalbe(plain, &best.x.clone(), limits, judge, observer);
-        best = better(best, next.and_then(|next| or_directly(next, plain, means.direct, judge)))?;
+        follows(&best, "smalbe", &mut watch.log)?;
+        let next = smalbe(plain, &best.x.clone(), limits, judge, watch);
+        let next = next.and_then(|next| or_directly(next, plain, means.direct, judge, &mut watch.log));
+        best = better(best, next)?;
     }
     Ok(best)
 }
 
+/// Tells that another method takes over.
+fn follows(ended: &Solution, next: &str, log: &mut Log) -> Result<()> {
+    let why = match ended.verdict {
+        Verdict::StepLimit => "the limit of steps is reached",
+        Verdict::Inaccurate => "the dual is solved, the certificate does not pass",
+        Verdict::Unbounded { .. } => "theta seems to fall without end",
+        _ => "steps no longer reduce the error",
+    };
+    log.say(LogLevel::Phase, || {
+        format!("fallback after {} steps: {why}; {next} follows", ended.counts.steps())
+    })
+}
+
 /// The same, or what the direct method makes of it where it is incomplete.
-fn or_directly(solution: Solution, qp: Qp, direct: Direct, judge: &mut dyn Judge) -> Result<Solution> {
+fn or_directly(
+    solution: Solution,
+    qp: Qp,
+    direct: Direct,
+    judge: &mut dyn Judge,
+    log: &mut Log,
+) -> Result<Solution> {
     if !gave_up(&solution) && solution.verdict != Verdict::StepLimit {
         return Ok(solution);
     }
+    follows(&solution, "direct solution on active sets", log)?;
     let next = active_set(qp, direct, &solution, judge);
     better(solution, next)
 }
@@ -113,7 +139,8 @@ mod tests {
         for (limit, verdict) in [(1000, Verdict::Solved), (0, Verdict::StepLimit)] {
             two_springs(0.1, |judge, qp, direct, rough| {
                 let ended = Solution { verdict: Verdict::StepLimit, ..rough.clone() };
-                let done = or_directly(ended, qp, Direct { limit, ..direct }, judge).unwrap();
+                let done = or_directly(ended, qp, Direct { limit, ..direct }, judge, &mut Log::default());
+                let done = done.unwrap();
                 assert_eq!(done.verdict, verdict);
                 assert_eq!(done.x[0] == 2.0, verdict == Verdict::Solved);
             });

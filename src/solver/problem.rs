@@ -80,6 +80,11 @@ impl Problem {
         self.settings.set_str(name, value)
     }
 
+    /// Sets options by a text such as `tolerance=1e-8 threads=4`: all of them or none.
+    pub fn set_text(&mut self, text: &str) -> Result<()> {
+        self.settings.set_text(text)
+    }
+
     pub fn get_f64(&self, name: &str) -> Result<f64> {
         self.settings.get_f64(name)
     }
@@ -293,7 +298,8 @@ impl Problem {
     /// it has.
     fn changed(&mut self, body: usize, unchanged: bool) -> Result<&mut BodySlot> {
         self.forget_dual();
-        if !unchanged {
+        // before the first factorisation no body has anything to forget
+        if !unchanged && self.work != Work::default() {
             let inverses = self.bodies.iter_mut().filter_map(|slot| slot.inverse.as_mut());
             inverses.filter_map(|inverse| inverse.operator.as_mut()).for_each(Kept::only_whole);
         }
@@ -314,6 +320,14 @@ impl Problem {
         self.answer = None;
         self.open_motions = None;
         self.history.data_changed();
+    }
+
+    /// Takes over the bodies, rows and options of another problem; texts count from what they did.
+    pub(super) fn adopt(&mut self, other: Self) {
+        self.rows_changed();
+        let index_base = self.settings.index_base;
+        self.settings = Settings { index_base, ..other.settings };
+        (self.bodies, self.contact, self.equalities) = (other.bodies, other.contact, other.equalities);
     }
 
     fn rows_changed(&mut self) {

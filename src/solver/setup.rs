@@ -48,8 +48,10 @@ impl Problem {
         self.watched(|problem, watch| {
             if !problem.is_set_up() {
                 problem.phases = Phases::default();
+                watch.log.begin(problem, "setup")?;
             }
-            problem.set_up(watch)
+            let done = problem.set_up(watch);
+            problem.logged("setup", done, watch)
         })
     }
 

@@ -28,7 +28,11 @@ impl Problem {
     /// Solves (10)-(11) for the present loads and gaps. An answer is kept even when it is incomplete; the
     /// report says how good it is.
     pub fn solve(&mut self) -> Result<Report> {
-        self.watched(Self::solve_watched)
+        self.watched(|problem, watch| {
+            watch.log.begin(problem, "solve")?;
+            let done = problem.solve_watched(watch);
+            problem.logged("solve", done, watch)
+        })
     }
 
     fn solve_watched(&mut self, watch: &mut Watch) -> Result<Report> {
@@ -39,6 +43,8 @@ impl Problem {
         self.phases = Phases::default();
         self.set_up(watch)?;
         self.set_up_preconditioner(watch)?;
+        watch.log.phases(&self.phases(), Phase::DualSolve as usize)?;
+        self.log_method(&mut watch.log, start.name())?;
         let solving = Instant::now();
         let ready = self.ready()?;
         let dual = Scaled::new(self, ready, &watch.stops)?;
@@ -64,6 +70,8 @@ impl Problem {
         self.phases.ended(Phase::Recovery, recovering);
         self.phases.move_time(Phase::DualSolve, Phase::Recovery, judging);
         answer.report.phases = self.phases();
+        watch.log.phases(&answer.report.phases, usize::MAX)?;
+        watch.log.result(&answer.report)?;
         let report = answer.report.clone();
         self.keep(answer);
         self.findings = Some(Findings::of_report(self, &report));

@@ -47,6 +47,15 @@ pub(super) struct Start {
 }
 
 impl Start {
+    /// What it comes from.
+    pub fn name(&self) -> &'static str {
+        match (&self.given, &self.previous) {
+            ([None, None], None) => "cold",
+            ([None, None], Some(_)) => "previous",
+            _ => "given",
+        }
+    }
+
     /// `x = L'lambda / (S 2^p)`, parallel rows together; multipliers that are not there are zero.
     pub fn scaled(&self, ready: &Ready) -> Result<Vec<f64>> {
         let mut multipliers = [self.given[0].as_deref(), self.given[1].as_deref()];

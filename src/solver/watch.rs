@@ -9,6 +9,7 @@ use crate::error::{Error, Kind, Result};
 use crate::linalg::{Interrupt, Operator};
 use crate::qp::{self, Counts, Observer, StepKind};
 use crate::solver::findings::Findings;
+use crate::solver::log::Log;
 use crate::solver::problem::Problem;
 use crate::solver::setup::Ready;
 use crate::solver::threads::{self, Heard};
@@ -54,6 +55,7 @@ pub type Listener = Box<dyn FnMut(&Progress) -> Reply + Send + Sync>;
 pub(super) struct Host {
     cancelled: Arc<AtomicBool>,
     listener: Option<Listener>,
+    pub log: Log,
 }
 
 impl Problem {
@@ -72,11 +74,11 @@ impl Problem {
         let cancelled = self.canceller();
         cancelled.store(false, Ordering::Relaxed);
         let stops = Stops { cancelled, started: Instant::now(), limit: self.settings.time_limit };
-        let listener = self.host.listener.take();
+        let (listener, log) = (self.host.listener.take(), std::mem::take(&mut self.host.log));
         let (before, last) = (Counts::default(), Counts::default());
-        let mut watch = Watch { stops, listener, fraction: 0.0, unit: 1.0, bounded: 0, before, last };
+        let mut watch = Watch { stops, listener, log, fraction: 0.0, unit: 1.0, bounded: 0, before, last };
         let outcome = work(self, &mut watch);
-        self.host.listener = watch.listener;
+        (self.host.listener, self.host.log) = (watch.listener, watch.log);
         if let Err(error) = &outcome {
             self.findings = Some(Findings::of_error(self, error));
         }
@@ -131,6 +133,7 @@ pub(super) struct Part {
 pub(super) struct Watch {
     pub stops: Stops,
     listener: Option<Listener>,
+    pub log: Log,
     /// Of the setup.
     fraction: f64,
     /// 2^p: what forces are divided by.
@@ -238,6 +241,7 @@ impl Observer for Watch {
             seconds: self.stops.seconds(),
         };
         self.tell(&told)?;
+        self.log.step(&told)?;
         self.stops.check()
     }
 }

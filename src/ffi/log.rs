@@ -1,0 +1,66 @@
+//! What a call tells in words.
+
+use std::ffi::{c_void, CString};
+
+use super::fpu;
+use super::guard::{call, enter};
+use super::progress::User;
+use super::types::{
+    feti_log_fn, feti_problem, FETI_LOG_NONE, FETI_LOG_PHASE, FETI_LOG_RESULT, FETI_LOG_STEP,
+};
+use crate::error::{Error, Result};
+use crate::solver::{LogLevel, LogListener};
+
+/// Names the function that gets what setups and solves tell in words.
+///
+/// Level FETI_LOG_RESULT: one line for each solve, and warnings; FETI_LOG_PHASE: also sizes, options, method, fallbacks and a line for
+/// each phase with its time and bytes; FETI_LOG_STEP: also a line for each step. The function is called on the thread that called the
+/// library, in that thread's floating-point environment, until another one or NULL is given. It returns 0 to go on; any other number
+/// ends the call with FETI_CALLBACK, the number in the error detail, and no results. Calls on the same problem from inside return
+/// FETI_BUSY, except feti_cancel and feti_problem_error. It must not end by longjmp or an exception.
+///
+/// | argument | in/out | shape | rule |
+/// |---|---|---|---|
+/// | `p` | in | scalar | the handle |
+/// | `callback` | in | scalar | the function; NULL: none |
+/// | `level` | in | scalar | FETI_LOG_NONE, FETI_LOG_RESULT, FETI_LOG_PHASE or FETI_LOG_STEP |
+/// | `user` | in | scalar | handed to the function unchanged; may be NULL |
+///
+/// # Safety
+/// `callback` may be called with `user` until it is replaced or the problem destroyed.
+#[no_mangle]
+pub unsafe extern "C" fn feti_on_log(
+    p: *mut feti_problem,
+    callback: feti_log_fn,
+    level: i32,
+    user: *mut c_void,
+) -> i32 {
+    enter(p, call!(feti_on_log(p, callback, level, user)), |problem| {
+        let user = User(user);
+        let level = log_level(level)?;
+        let listener = level.zip(callback).map(|(most, callback)| -> (LogLevel, LogListener) {
+            let tell = move |level: LogLevel, text: &str| {
+                let text = CString::new(text).unwrap_or_default();
+                // SAFETY: by the caller's word the function may be called with `user`; the text ends with NUL.
+                fpu::in_host_environment(|| unsafe { callback(user.get(), level as i32, text.as_ptr()) })
+            };
+            (most, Box::new(tell))
+        });
+        problem.on_log(listener);
+        Ok(())
+    })
+}
+
+fn log_level(level: i32) -> Result<Option<LogLevel>> {
+    match level {
+        FETI_LOG_NONE => Ok(None),
+        FETI_LOG_RESULT => Ok(Some(LogLevel::Result)),
+        FETI_LOG_PHASE => Ok(Some(LogLevel::Phase)),
+        FETI_LOG_STEP => Ok(Some(LogLevel::Step)),
+        _ => {
+            let (low, high) = (FETI_LOG_NONE, FETI_LOG_STEP);
+            let text = format!("{level} is no level: they go from {low} to {high}");
+            Err(Error::argument("level", text).value(f64::from(level)).limit(f64::from(high)))
+        }
+    }
+}
