@@ -1,6 +1,6 @@
 # make demo      builds the library and the examples, runs them        make lib        the library alone
 # make test      every test: Rust, then C and Fortran under CMake      make install    PREFIX=/usr/local DESTDIR=
-# make fuzz      random calls, texts and files under AddressSanitizer, SECONDS=600 each target; TARGETS="calls text" picks some
+# make fuzz      random calls, texts and files under AddressSanitizer, SECONDS=600 each target; TARGETS="calls file" picks some
 # make sanitize  C and Fortran drivers under AddressSanitizer     make loom      registry and pools in all orders of two threads
 # make coverage  lines of src/ffi that the tests run              make overhead  what the C ABI costs on the smallest problem
 # make counts    applications of F against a linear solve, deck by deck (some minutes); DECKS="slab two" picks some
@@ -117,7 +117,7 @@ test: setup
 
 # ---- hardening: longer or slower than a test should be
 SECONDS ?= 600
-TARGETS ?= calls text
+TARGETS ?= calls file text
 fuzz:
 	@tools/fuzz/run.sh $(SECONDS) $(CURDIR)/build/fuzz $(TARGETS)
 

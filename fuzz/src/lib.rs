@@ -10,12 +10,14 @@
 //! | `scenes` | whole problems that have a solution |
 //! | `give`, `ask` | the calls that change a problem, and those that read it |
 //! | `calls` | the target: a sequence of them |
-//! | `text` | the target: options by name |
+//! | `text` | the target: options by name and by text |
+//! | `file` | the target: problem files |
 
 pub mod ask;
 pub mod buffers;
 pub mod bytes;
 pub mod calls;
+pub mod file;
 pub mod give;
 pub mod host;
 pub mod models;

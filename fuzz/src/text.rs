@@ -1,4 +1,4 @@
-//! Options by name: any bytes as names and words.
+//! Options by name and by one text: any bytes as names, words and texts.
 
 use std::ffi::CString;
 
@@ -61,7 +61,7 @@ fn check(status: i32) -> bool {
 }
 
 fn one(p: *mut feti_problem, bytes: &mut Bytes) {
-    let (call, name) = (bytes.below(4), name(bytes));
+    let (call, name) = (bytes.below(5), name(bytes));
     // SAFETY: the texts end with NUL, every number has its room.
     unsafe {
         match call {
@@ -83,8 +83,35 @@ fn one(p: *mut feti_problem, bytes: &mut Bytes) {
                 check(feti_get_i64(p, name.as_ptr(), after.cells.as_mut_ptr()));
                 assert_eq!(after.cells[0], if set { value } else { before.cells[0] });
             }
+            2 => whole_text(p, bytes),
             _ => word(p, &name, &text(bytes, 24), bytes.below(32)),
         }
+    }
+}
+
+/// Items as they may come, among them right ones; after a refusal the option looked at is as it was.
+unsafe fn whole_text(p: *mut feti_problem, bytes: &mut Bytes) {
+    let mut items = Vec::new();
+    for _ in 0..bytes.below(4) {
+        items.extend_from_slice(name(bytes).as_bytes());
+        items.extend_from_slice([&b"="[..], b" = ", b"", b"=="][bytes.below(4)]);
+        let value = number(bytes);
+        match bytes.below(4) {
+            0 => items.extend_from_slice(text(bytes, 24).as_bytes()),
+            1 => items.extend_from_slice(format!("{value:e}").as_bytes()),
+            2 => items.extend_from_slice(format!("{}", bytes.below(4)).as_bytes()),
+            _ => items.extend_from_slice(format!("{value}").as_bytes()),
+        }
+        items.extend_from_slice([&b" "[..], b",", b"\n", b" # "][bytes.below(4)]);
+    }
+    let items = CString::new(items).expect("no NUL");
+    let (mut before, mut after) = (Out::<f64>::new(1), Out::<f64>::new(1));
+    // SAFETY: the texts end with NUL, every number has its room.
+    unsafe {
+        check(feti_get_f64(p, c"tolerance".as_ptr(), before.cells.as_mut_ptr()));
+        let set = check(feti_set_text(p, items.as_ptr()));
+        check(feti_get_f64(p, c"tolerance".as_ptr(), after.cells.as_mut_ptr()));
+        assert!(set || before.cells[0].to_bits() == after.cells[0].to_bits());
     }
 }
 

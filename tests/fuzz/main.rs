@@ -85,3 +85,8 @@ fn calls_in_any_order_with_any_argument_keep_their_word() {
 fn any_bytes_as_options_keep_their_word() {
     assert!(run("text", 50_000, Duration::from_secs(5), targets::text::run) > 0);
 }
+
+#[test]
+fn any_bytes_as_a_problem_file_are_refused_or_read_and_written_back() {
+    assert!(run("file", 20_000, Duration::from_secs(8), targets::file::run) > 0);
+}

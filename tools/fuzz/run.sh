@@ -7,7 +7,7 @@ cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 seconds=$1 work=$2
 shift 2
 programs=$(tools/fuzz/build.sh)
-[ $# -gt 0 ] || set -- calls text
+[ $# -gt 0 ] || set -- calls file text
 # Allocations that no small problem needs fail, as under memory limits.
 export ASAN_OPTIONS=allocator_may_return_null=1:max_allocation_size_mb=512:detect_stack_use_after_return=0:quarantine_size_mb=32
 status=0
