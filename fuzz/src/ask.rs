@@ -19,8 +19,7 @@ macro_rules! sized {
 }
 
 pub fn setup(host: &mut Host) {
-    // SAFETY: any handle.
-    let status = unsafe { feti_setup(host.handle()) };
+    let status = feti_setup(host.handle());
     host.note(status);
     host.changed();
 }
@@ -36,8 +35,10 @@ pub fn solve(host: &mut Host) {
     if with {
         let full = info.struct_size == size_of::<feti_info>() as i64;
         assert!(!full || info.status == status, "info says {}, not {status}", info.status);
-        [info.worst, info.energy, info.equilibrium].map(|figure| host.digest.feed(figure.to_bits()));
-        [info.steps, info.active, info.undetermined].map(|count| host.digest.feed(count as u64));
+        let figures = [info.worst, info.energy, info.equilibrium];
+        figures.iter().for_each(|figure| host.digest.feed(figure.to_bits()));
+        let counts = [info.steps, info.active, info.undetermined];
+        counts.iter().for_each(|count| host.digest.feed(*count as u64));
     }
     if status == FETI_OK {
         host.certified += 1;

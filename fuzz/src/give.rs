@@ -323,8 +323,7 @@ pub fn row_numbers(host: &mut Host, compliance: bool) {
 pub fn rows_clear(host: &mut Host) {
     let (p, code) = (host.handle(), host.bytes.below(2));
     let code = host.code(KINDS[code]);
-    // SAFETY: no array.
-    let status = unsafe { feti_rows_clear(p, code) };
+    let status = feti_rows_clear(p, code);
     if host.done(status, &[]) {
         let kind = KINDS.iter().position(|k| *k == code).expect("an unknown kind was taken");
         host.rows[kind] = 0;
@@ -425,8 +424,7 @@ pub fn progress(host: &mut Host) {
     // SAFETY: the watcher stays where it is as long as the host.
     let status = unsafe { feti_on_progress(host.handle(), function, user.cast()) };
     host.done(status, &[]);
-    // SAFETY: any handle.
-    let status = unsafe { feti_cancel(host.handle()) };
+    let status = feti_cancel(host.handle());
     host.done(status, &[]);
 }
 

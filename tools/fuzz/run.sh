@@ -9,7 +9,7 @@ shift 2
 programs=$(tools/fuzz/build.sh)
 [ $# -gt 0 ] || set -- calls file text
 # Allocations that no small problem needs fail, as under memory limits.
-export ASAN_OPTIONS=allocator_may_return_null=1:max_allocation_size_mb=512:detect_stack_use_after_return=0:quarantine_size_mb=32
+export ASAN_OPTIONS=allocator_may_return_null=1:max_allocation_size_mb=512:detect_stack_use_after_return=0:quarantine_size_mb=1:thread_local_quarantine_size_kb=64:malloc_context_size=6
 status=0
 for target; do
     mkdir -p "$work/$target"
