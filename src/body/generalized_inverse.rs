@@ -261,7 +261,11 @@ impl GeneralizedInverse {
         image.iter_mut().zip(&b).for_each(|(i, b)| *i -= b);
         free(&mut image);
         let residual = size(&image) / (size(&terms) + size(&b));
-        if residual.is_nan() || residual > PROBE {
+        if residual.is_nan() {
+            let what = "the factorisation overflows: entries of the stiffness matrix are too far apart";
+            return Err(Error::new(Kind::Indefinite, what));
+        }
+        if residual > PROBE {
             let what = format!("the factorisation failed its probe: residual {residual:.1e}");
             return Err(Error::new(Kind::Internal, what).value(residual).limit(PROBE));
         }

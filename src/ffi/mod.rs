@@ -3,7 +3,7 @@
 //! | file | holds |
 //! |---|---|
 //! | `types`, `status` | structs, constants and status numbers of the header |
-//! | `handle` | the registry: handles are counters, never addresses, never reused |
+//! | `handle`, `registry`, `sync` | the registry: handles are counters, never addresses, never reused |
 //! | `guard` | what surrounds every call: registry, busy, `catch_unwind`, error records |
 //! | `fpu` | the floating-point environment of the host, saved and restored |
 //! | `error_store` | the last error, per thread and per problem |
@@ -35,12 +35,14 @@ mod phases;
 mod problem;
 mod progress;
 mod record;
+mod registry;
 mod results;
 mod rows;
 mod solve;
 mod state;
 mod status;
 mod stiffness;
+mod sync;
 mod types;
 mod validation;
 mod values;

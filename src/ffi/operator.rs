@@ -64,7 +64,7 @@ pub unsafe extern "C" fn feti_body_operator(
         let product = |function: feti_operator_fn, name| -> Result<HostProduct> {
             let function = function.ok_or_else(|| Error::argument(name, "NULL").body(number))?;
             let host = Function { function, user: User::new(user), body, n };
-            Ok(host.product(Arc::clone(&slot.environment)))
+            Ok(host.product(Arc::clone(&slot.shared)))
         };
         let (kplus, k) = (product(kplus, "kplus")?, product(k, "k")?);
         if !(0..=1).contains(&concurrent) {

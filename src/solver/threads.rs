@@ -2,7 +2,7 @@
 
 use std::hint::black_box;
 use std::sync::mpsc::{channel, RecvTimeoutError};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
 use rayon::prelude::*;
@@ -10,9 +10,9 @@ use rayon::{ThreadPool, ThreadPoolBuilder};
 
 use crate::error::{Error, Result};
 use crate::linalg::memory::room;
+use crate::solver::pools::Pools;
 
-/// Pools by process and size: a forked child has none of its parent's threads and makes its own.
-static POOLS: Mutex<Vec<(u32, usize, Arc<ThreadPool>)>> = Mutex::new(Vec::new());
+static POOLS: Pools<ThreadPool> = Pools { made: Mutex::new(Vec::new()) };
 
 /// Address space of a thread: its stack, and the heap of 64 MiB that the GNU allocator sets apart for it. Without one
 /// every small piece takes a page.
@@ -139,19 +139,15 @@ fn largest_pool(threads: usize) -> Option<Arc<ThreadPool>> {
 }
 
 fn pool(threads: usize) -> Option<Arc<ThreadPool>> {
-    let process = std::process::id();
-    let mut pools = POOLS.lock().unwrap_or_else(PoisonError::into_inner);
-    if let Some((_, _, pool)) = pools.iter().find(|(p, size, _)| *p == process && *size == threads) {
-        return Some(Arc::clone(pool));
-    }
-    let starting = room(threads * STARTED + STARTING, "threads").ok()?;
-    let builder = ThreadPoolBuilder::new().num_threads(threads).thread_name(|_| THREAD_NAME.to_owned());
-    let pool = Arc::new(builder.build().ok()?);
-    // Every thread takes its heap now, while there is room for it.
-    pool.broadcast(|_| drop(black_box(Box::new(0_u64))));
-    drop(starting);
-    pools.push((process, threads, Arc::clone(&pool)));
-    Some(pool)
+    POOLS.get(std::process::id(), threads, || {
+        let starting = room(threads * STARTED + STARTING, "threads").ok()?;
+        let builder = ThreadPoolBuilder::new().num_threads(threads).thread_name(|_| THREAD_NAME.to_owned());
+        let pool = builder.build().ok()?;
+        // Every thread takes its heap now, while there is room for it.
+        pool.broadcast(|_| drop(black_box(Box::new(0_u64))));
+        drop(starting);
+        Some(pool)
+    })
 }
 
 #[cfg(test)]
