@@ -1,0 +1,150 @@
+!> FORTRAN 77 face: bodies. Everything is copied; bodies and unknowns count from 1. A refused call changes nothing.
+!> See docs/fortran77.md.
+
+!> Adds a body with n unknowns; ibody: its number.
+subroutine ftbadd(ip, n, ibody, ierr)
+  use feti_contact_f77_base
+  implicit none
+  integer, intent(in) :: ip, n
+  integer, intent(inout) :: ibody
+  integer, intent(out) :: ierr
+  integer(c_int64_t) :: id
+
+  ierr = told(feti_body_add(handle(ip), wide(n), id))
+  if (ierr == FETI_OK) call fit(id + 1, ibody, ierr)
+end subroutine
+
+!> Stiffness by rows, n x n, force / length: row i holds the entries iptr(i) to iptr(i+1)-1 of icol and val; iptr(n+1).
+!> istor: FTFULL, FTLOWR (columns <= row) or FTUPPR; a lower triangle by columns is FTUPPR.
+subroutine ftbstf(ip, ibody, n, iptr, icol, val, istor, ierr)
+  use feti_contact_f77_base
+  implicit none
+  integer, intent(in) :: ip, ibody, n, iptr(*), icol(*), istor
+  real(c_double), intent(in) :: val(*)
+  integer, intent(out) :: ierr
+
+  ierr = told(stiffness_by_rows(handle(ip), from_zero(ibody), wide(n), iptr, icol, val, 1_c_int32_t, narrow(istor), &
+    FETI_COPY), [1, 2, 3, 4, 5, 6, 0, 7, 0])
+end subroutine
+
+!> Stiffness as a dense matrix a(lda,n); with FTLOWR and FTUPPR the other triangle is not read.
+subroutine ftbdns(ip, ibody, n, a, lda, istor, ierr)
+  use feti_contact_f77_base
+  implicit none
+  integer, intent(in) :: ip, ibody, n, lda, istor
+  real(c_double), intent(in) :: a(*)
+  integer, intent(out) :: ierr
+
+  ierr = told(feti_body_stiffness_dense(handle(ip), from_zero(ibody), wide(n), a, wide(lda), narrow(istor), FETI_COPY))
+end subroutine
+
+!> Null space r(ldr,nr) of a body. iflag: FTEXCT, the columns span it (nr = 0: none, r is not read), or FTCAND, it lies in
+!> their span.
+subroutine ftbnul(ip, ibody, nr, n, r, ldr, iflag, ierr)
+  use feti_contact_f77_base
+  implicit none
+  integer, intent(in) :: ip, ibody, nr, n, ldr, iflag
+  real(c_double), intent(in), target :: r(*)
+  integer, intent(out) :: ierr
+
+  ierr = told(feti_body_null_space(handle(ip), from_zero(ibody), wide(nr), wide(n), reals(r, nr /= 0), wide(ldr), &
+    narrow(iflag)))
+end subroutine
+
+!> Reads the null space that the library works with into r(ldr,nr). nr in: columns of r, 0: only the dimension is wanted, r
+!> is not touched; out: the dimension.
+subroutine ftbnug(ip, ibody, n, nr, r, ldr, ierr)
+  use feti_contact_f77_base
+  implicit none
+  integer, intent(in) :: ip, ibody, n, ldr
+  integer, intent(inout) :: nr
+  real(c_double), intent(inout), target :: r(*)
+  integer, intent(out) :: ierr
+  integer(c_int64_t) :: columns
+
+  columns = wide(nr)
+  ierr = told(feti_body_null_space_get(handle(ip), from_zero(ibody), wide(n), columns, reals(r, nr /= 0), wide(ldr)))
+  if (ierr == FETI_OK) call fit(columns, nr, ierr)
+end subroutine
+
+!> Where the unknowns are: node(n), any label of 32 bits, equal for the unknowns of one node; idir(n), 1 to 3 displacement, 4
+!> to 6 rotation; xyz(ldx,n), the first idim numbers of a column, length.
+subroutine ftbxyz(ip, ibody, idim, n, node, idir, xyz, ldx, ierr)
+  use feti_contact_f77_base
+  implicit none
+  integer, intent(in) :: ip, ibody, idim, n, node(*), idir(*), ldx
+  real(c_double), intent(in) :: xyz(*)
+  integer, intent(out) :: ierr
+  integer(c_int32_t), allocatable :: nodes(:), directions(:)
+  integer :: i, refused
+
+  allocate (nodes(n), directions(n), stat=refused)
+  if (refused /= 0) then
+    ierr = FTEMEM
+    return
+  end if
+  ierr = FETI_OK
+  do i = 1, n
+    nodes(i) = narrow(node(i))
+    directions(i) = narrow(idir(i))
+    if (int(nodes(i), c_int64_t) /= wide(node(i))) ierr = FTEFIT
+  end do
+  if (ierr == FETI_OK) ierr = told(feti_body_coordinates(handle(ip), from_zero(ibody), narrow(idim), wide(n), nodes, &
+    directions, xyz, wide(ldx)))
+end subroutine
+
+!> Load of a body, f(n), force; holds until it is given again.
+subroutine ftblod(ip, ibody, n, f, ierr)
+  use feti_contact_f77_base
+  implicit none
+  integer, intent(in) :: ip, ibody, n
+  real(c_double), intent(in) :: f(*)
+  integer, intent(out) :: ierr
+
+  ierr = told(feti_body_load(handle(ip), from_zero(ibody), wide(n), f))
+end subroutine
+
+!> Reads the unknowns that K+ holds, idof(nr), nr the dimension of the null space.
+subroutine ftbfix(ip, ibody, nr, idof, ierr)
+  use feti_contact_f77_base
+  implicit none
+  integer, intent(in) :: ip, ibody, nr
+  integer, intent(inout) :: idof(*)
+  integer, intent(out) :: ierr
+  integer(c_int64_t), allocatable :: found(:)
+  integer :: refused
+
+  ierr = FTEMEM
+  allocate (found(nr), stat=refused)
+  if (refused == 0) ierr = told(feti_body_fixing(handle(ip), from_zero(ibody), wide(nr), found))
+  if (ierr == FETI_OK) call fit_all(found + 1, nr, idof, ierr)
+end subroutine
+
+!> Chooses them in place of the library: idof(nr); nr = 0: the library chooses again.
+subroutine ftbfxs(ip, ibody, nr, idof, ierr)
+  use feti_contact_f77_base
+  implicit none
+  integer, intent(in) :: ip, ibody, nr, idof(*)
+  integer, intent(out) :: ierr
+  integer(c_int64_t), allocatable, target :: numbers(:)
+  integer :: refused
+
+  ierr = FTEMEM
+  allocate (numbers(max(nr, 1)), stat=refused)
+  if (refused /= 0) return
+  numbers = 0
+  if (nr > 0) numbers(:nr) = int(idof(:nr), c_int64_t) - 1
+  ierr = told(feti_body_fixing_set(handle(ip), from_zero(ibody), wide(nr), c_loc(numbers)))
+end subroutine
+
+!> y(ldy,nrhs) = K+ x(ldx,nrhs), the generalised inverse of a body; x and y may be the same array.
+subroutine ftbkpl(ip, ibody, n, nrhs, x, ldx, y, ldy, ierr)
+  use feti_contact_f77_base
+  implicit none
+  integer, intent(in) :: ip, ibody, n, nrhs, ldx, ldy
+  real(c_double), intent(in) :: x(*)
+  real(c_double), intent(inout) :: y(*)
+  integer, intent(out) :: ierr
+
+  ierr = told(feti_body_kplus(handle(ip), from_zero(ibody), wide(n), wide(nrhs), x, wide(ldx), y, wide(ldy)))
+end subroutine
