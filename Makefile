@@ -116,7 +116,8 @@ N ?= 20000
 battery:
 	BATTERY=$(N) $(CARGO) test --release --locked --test battery -- every_random_problem no_marginal
 
-test: setup
+test:
+	@tools/setup.sh flang-19
 	$(CARGO) test --release --workspace --locked
 	@$(MAKE) --no-print-directory stage data
 	cmake -S tests -B build/ctest -DCMAKE_PREFIX_PATH=$(STAGE) -DFETI_DATA=$(CURDIR)/build/data
