@@ -61,3 +61,5 @@ claim_silent("FORTRAN 77: REAL of 8 bytes beside DOUBLE PRECISION of 8 is no dif
 
 claim_silent("FORTRAN 77: the face compiles without a warning, names have at most 6 characters, the include file both forms"
              sh "${F77}/strict.sh" "${FETI_FORTRAN}" "${F77}")
+claim_silent("FORTRAN 77: the chapter lists every subroutine with its arguments, and its example gives its numbers"
+             sh "${F77}/docs.sh" "${FETI_PREFIX}" "${PROJECT_ROOT}/docs/fortran77.md")
