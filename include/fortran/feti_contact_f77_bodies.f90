@@ -38,6 +38,28 @@ subroutine ftbdns(ip, ibody, n, a, lda, istor, ierr)
   ierr = told(feti_body_stiffness_dense(handle(ip), from_zero(ibody), wide(n), a, wide(lda), narrow(istor), FETI_COPY))
 end subroutine
 
+!> New values on the pattern of ftbstf, val(nnz) in its order: a numeric factorisation, no analysis.
+subroutine ftbval(ip, ibody, nnz, val, ierr)
+  use feti_contact_f77_base
+  implicit none
+  integer, intent(in) :: ip, ibody, nnz
+  real(c_double), intent(in) :: val(*)
+  integer, intent(out) :: ierr
+
+  ierr = told(feti_body_values(handle(ip), from_zero(ibody), wide(nnz), val))
+end subroutine
+
+!> New values of a dense matrix, a(lda,n), in the storage of ftbdns.
+subroutine ftbvdn(ip, ibody, n, a, lda, ierr)
+  use feti_contact_f77_base
+  implicit none
+  integer, intent(in) :: ip, ibody, n, lda
+  real(c_double), intent(in) :: a(*)
+  integer, intent(out) :: ierr
+
+  ierr = told(feti_body_values_dense(handle(ip), from_zero(ibody), wide(n), a, wide(lda)))
+end subroutine
+
 !> Null space r(ldr,nr) of a body. iflag: FTEXCT, the columns span it (nr = 0: none, r is not read), or FTCAND, it lies in
 !> their span.
 subroutine ftbnul(ip, ibody, nr, n, r, ldr, iflag, ierr)

@@ -7,12 +7,14 @@ C     Every subroutine of the face with status 0, its result compared.
       CALL ANSWER(IP)
       CALL INSIDE(IP)
       CALL CHANGE(IP)
+      CALL VALUES(IP)
       CALL STATES(IP)
       CALL FINDS(IP)
       CALL FTFREE(IP, IERR)
       CALL OK(IERR, 'FTFREE')
       CALL HOLDS(IP .EQ. 0, 'FTFREE leaves IP')
       CALL PLACES
+      CALL KEPT
       END
 
 C     Options, names, version.
@@ -205,6 +207,31 @@ C     Other gaps, compliance, rows cleared and added again.
       CALL OK(IERR, 'FTROWC')
       CALL HOLDS(I .EQ. 1, 'rows count from 1 again')
       CALL SOLVES(IP, 10D0, -0.3D0, 'the rows of the beginning')
+      END
+
+C     Stiffer springs, a stiffer point, and those of the beginning.
+      SUBROUTINE VALUES(IP)
+      INCLUDE 'feti_contact_f77.inc'
+      INTEGER IP, IERR
+      DOUBLE PRECISION A(4), A3(1), RMU(1)
+      DATA A / -2D2, 4D2, -2D2, 2D2 /, A3 / 8D0 /
+      CALL FTBVAL(IP, 1, 4, A, IERR)
+      CALL OK(IERR, 'FTBVAL')
+      CALL FTBVDN(IP, 3, 1, A3, 1, IERR)
+      CALL OK(IERR, 'FTBVDN')
+      CALL SOLVES(IP, 10D0, -0.2D0, 'twice the stiffness')
+      CALL FTMULT(IP, FTKEQU, 1, RMU, IERR)
+      CALL OK(IERR, 'FTMULT')
+      CALL SAME(RMU(1), -2D0, 'mu of a stiffer point')
+      A(1) = -1D2
+      A(2) = 2D2
+      A(3) = -1D2
+      A(4) = 1D2
+      CALL FTBVAL(IP, 1, 3, A, IERR)
+      CALL HOLDS(IERR .EQ. FTEARG - 3, 'three values of four')
+      CALL FTBVAL(IP, 1, 4, A, IERR)
+      CALL OK(IERR, 'FTBVAL')
+      CALL SOLVES(IP, 10D0, -0.3D0, 'the stiffness of the beginning')
       END
 
 C     A load step that is taken back; start values.

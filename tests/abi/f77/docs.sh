@@ -1,6 +1,6 @@
 #!/bin/sh
 # docs.sh PREFIX CHAPTER: the chapter lists every subroutine of the face with its arguments, its example compiles with the
-# installed sources and prints the numbers it promises, and its function of the host compiles.
+# installed sources and prints the numbers it promises, and its functions of the host compile.
 set -eu
 face=$1/share/feti_contact/fortran
 work=$(mktemp -d)
@@ -15,7 +15,7 @@ diff subroutines listed || { echo "subroutines (<) and the chapter (>) differ"; 
 sed -n '/^```fortran/,/^```$/p' "$2" | awk '/^```fortran/ { block++; next } /^```/ { next } { print > ("block" block ".f") }'
 fc=${FC:-gfortran}
 $fc -O2 -c "$face/feti_contact_c.f90" "$face/feti_contact_base.f90" "$face"/feti_contact_f77_*.f90
-$fc -std=legacy -Wall -Werror -Wno-unused-dummy-argument -I"$face" -c block2.f
+$fc -std=legacy -Wall -Werror -Wno-unused-dummy-argument -I"$face" -c block2.f block3.f
 $fc -O2 -std=legacy -Wall -Werror -I"$face" block1.f feti_contact_*.o -L"$1/lib" -lfeti_contact -Wl,-rpath,"$1/lib" -o example
 ./example > printed
 [ "$(tr -s ' \n' ' ' < printed)" = " force 10.0000 u(1) -0.3000 " ] || { cat printed; exit 1; }
