@@ -17,6 +17,12 @@ module feti_contact_f77_base
   interface stiffness_by_rows
     procedure feti_body_stiffness_i32, feti_body_stiffness_i64
   end interface
+  interface stiffness_split
+    procedure feti_body_stiffness_split_i32, feti_body_stiffness_split_i64
+  end interface
+  interface numbering
+    procedure feti_body_numbering_i32, feti_body_numbering_i64
+  end interface
   interface add_rows
     procedure feti_rows_add_i32, feti_rows_add_i64
   end interface
@@ -36,11 +42,19 @@ contains
     handle = transfer(int(ip, c_intptr_t), c_null_ptr)
   end function
 
-  !> Number of a body, row or state from 0: -1 for every number that is none.
+  !> Number of a body, row or state from 0: -2 for every number that is none, since -1 is FETI_ALL.
   integer(c_int64_t) function from_zero(i)
     integer, intent(in) :: i
 
-    from_zero = max(int(i, c_int64_t), 0_c_int64_t) - 1
+    from_zero = merge(int(i, c_int64_t) - 1, -2_c_int64_t, i >= 1)
+  end function
+
+  !> A body, or all of them.
+  integer(c_int64_t) function body_or_all(i)
+    integer, intent(in) :: i
+
+    body_or_all = from_zero(i)
+    if (i == FTALL) body_or_all = FETI_ALL
   end function
 
   integer(c_int64_t) function wide(i)

@@ -38,6 +38,55 @@ subroutine ftbdns(ip, ibody, n, a, lda, istor, ierr)
   ierr = told(feti_body_stiffness_dense(handle(ip), from_zero(ibody), wide(n), a, wide(lda), narrow(istor), FETI_COPY))
 end subroutine
 
+!> The same with the diagonal apart, diag(n), and what is beside it in iptr, icol, val.
+subroutine ftbspl(ip, ibody, n, diag, iptr, icol, val, istor, ierr)
+  use feti_contact_f77_base
+  implicit none
+  integer, intent(in) :: ip, ibody, n, iptr(*), icol(*), istor
+  real(c_double), intent(in) :: diag(*), val(*)
+  integer, intent(out) :: ierr
+
+  ierr = told(stiffness_split(handle(ip), from_zero(ibody), wide(n), diag, iptr, icol, val, 1_c_int32_t, narrow(istor), &
+    FETI_COPY), [1, 2, 3, 4, 5, 6, 7, 0, 8, 0])
+end subroutine
+
+!> New values on the pattern of ftbspl: diag(n), val(nnz).
+subroutine ftbvsp(ip, ibody, n, diag, nnz, val, ierr)
+  use feti_contact_f77_base
+  implicit none
+  integer, intent(in) :: ip, ibody, n, nnz
+  real(c_double), intent(in) :: diag(*), val(*)
+  integer, intent(out) :: ierr
+
+  ierr = told(feti_body_values_split(handle(ip), from_zero(ibody), wide(n), diag, wide(nnz), val))
+end subroutine
+
+!> Connected part of each unknown, icomp(n), from 1.
+subroutine ftbcmp(ip, ibody, n, icomp, ierr)
+  use feti_contact_f77_base
+  implicit none
+  integer, intent(in) :: ip, ibody, n
+  integer, intent(inout) :: icomp(*)
+  integer, intent(out) :: ierr
+  integer(c_int64_t), allocatable :: found(:)
+  integer :: refused
+
+  ierr = FTEMEM
+  allocate (found(n), stat=refused)
+  if (refused == 0) ierr = told(feti_body_components(handle(ip), from_zero(ibody), wide(n), found))
+  if (ierr == FETI_OK) call fit_all(found + 1, n, icomp, ierr)
+end subroutine
+
+!> The host's own numbers of the unknowns of a body, inum(n), from 1, each unknown of all bodies another one.
+subroutine ftbnum(ip, ibody, n, inum, ierr)
+  use feti_contact_f77_base
+  implicit none
+  integer, intent(in) :: ip, ibody, n, inum(*)
+  integer, intent(out) :: ierr
+
+  ierr = told(numbering(handle(ip), from_zero(ibody), wide(n), inum, 1_c_int32_t))
+end subroutine
+
 !> New values on the pattern of ftbstf, val(nnz) in its order: a numeric factorisation, no analysis.
 subroutine ftbval(ip, ibody, nnz, val, ierr)
   use feti_contact_f77_base
@@ -115,7 +164,7 @@ subroutine ftbxyz(ip, ibody, idim, n, node, idir, xyz, ldx, ierr)
     directions, xyz, wide(ldx)))
 end subroutine
 
-!> Load of a body, f(n), force; holds until it is given again.
+!> Load of a body, f(n), force; holds until it is given again. ibody = FTALL: of all, in the host's numbers.
 subroutine ftblod(ip, ibody, n, f, ierr)
   use feti_contact_f77_base
   implicit none
@@ -123,7 +172,7 @@ subroutine ftblod(ip, ibody, n, f, ierr)
   real(c_double), intent(in) :: f(*)
   integer, intent(out) :: ierr
 
-  ierr = told(feti_body_load(handle(ip), from_zero(ibody), wide(n), f))
+  ierr = told(feti_body_load(handle(ip), body_or_all(ibody), wide(n), f))
 end subroutine
 
 !> Reads the unknowns that K+ holds, idof(nr), nr the dimension of the null space.
@@ -169,4 +218,24 @@ subroutine ftbkpl(ip, ibody, n, nrhs, x, ldx, y, ldy, ierr)
   integer, intent(out) :: ierr
 
   ierr = told(feti_body_kplus(handle(ip), from_zero(ibody), wide(n), wide(nrhs), x, wide(ldx), y, wide(ldy)))
+end subroutine
+
+!> A body as it is given, and what the last setup has made of it: ifact(ni), rfact(nr), positions FTBUNK to FTBEXP, FTBENT to
+!> FTBGAP; -1 or NaN: not there yet.
+subroutine ftbinf(ip, ibody, ni, ifact, nr, rfact, ierr)
+  use feti_contact_f77_base
+  implicit none
+  integer, intent(in) :: ip, ibody, ni, nr
+  integer, intent(inout) :: ifact(*)
+  real(c_double), intent(inout) :: rfact(*)
+  integer, intent(out) :: ierr
+  type(feti_body_facts) :: found
+
+  found%struct_size = storage_size(found, c_int64_t) / 8
+  ierr = told(feti_body_info(handle(ip), from_zero(ibody), found))
+  if (ierr /= FETI_OK) return
+  call give([found%unknowns, found%components, found%origin, found%null_space, found%shared_with + 1, &
+    found%explicit_operator], ni, ifact)
+  call give_reals([real(found%entries, c_double), real(found%matrix_bytes, c_double), real(found%factor_entries, c_double), &
+    real(found%factor_bytes, c_double), real(found%operator_bytes, c_double), found%gap], nr, rfact)
 end subroutine

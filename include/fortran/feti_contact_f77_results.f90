@@ -74,7 +74,7 @@ subroutine ftcnts(ip, nbody, n, m, me, ierr)
   me = numbers(4)
 end subroutine
 
-!> Displacement of a body, u(n), length.
+!> Displacement of a body, u(n), length; ibody = FTALL: of all, in the host's numbers. The same holds for ftreac.
 subroutine ftdisp(ip, ibody, n, u, ierr)
   use feti_contact_f77_base
   implicit none
@@ -82,7 +82,7 @@ subroutine ftdisp(ip, ibody, n, u, ierr)
   real(c_double), intent(inout) :: u(*)
   integer, intent(out) :: ierr
 
-  ierr = told(feti_displacement(handle(ip), from_zero(ibody), wide(n), u))
+  ierr = told(feti_displacement(handle(ip), body_or_all(ibody), wide(n), u))
 end subroutine
 
 !> Force of the rows of a kind (0: both) on a body, r(n): K u = f + r.
@@ -93,7 +93,7 @@ subroutine ftreac(ip, kind, ibody, n, r, ierr)
   real(c_double), intent(inout) :: r(*)
   integer, intent(out) :: ierr
 
-  ierr = told(feti_reaction(handle(ip), narrow(kind), from_zero(ibody), wide(n), r))
+  ierr = told(feti_reaction(handle(ip), narrow(kind), body_or_all(ibody), wide(n), r))
 end subroutine
 
 !> Amplitudes alpha(nr) of the null space in the displacement of a body.

@@ -8,6 +8,7 @@ C     Every subroutine of the face with status 0, its result compared.
       CALL INSIDE(IP)
       CALL CHANGE(IP)
       CALL VALUES(IP)
+      CALL NUMBER(IP)
       CALL STATES(IP)
       CALL FINDS(IP)
       CALL FTFREE(IP, IERR)
