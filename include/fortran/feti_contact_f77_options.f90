@@ -110,3 +110,14 @@ subroutine ftopta(k, name, doc, ityp, rmin, rmax, dflt, idflt, cdflt, ierr)
   dflt = found%default_f64
   idflt = clipped(found%default_i64)
 end subroutine
+
+!> Sets several options by one text, such as 'tolerance=1e-8 threads=4': all or none.
+subroutine ftsett(ip, text, ierr)
+  use feti_contact_f77_base
+  implicit none
+  integer, intent(in) :: ip
+  character(len=*), intent(in) :: text
+  integer, intent(out) :: ierr
+
+  ierr = told(feti_set_text(handle(ip), c_text(text)))
+end subroutine

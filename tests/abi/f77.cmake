@@ -31,6 +31,9 @@ foreach(bytes 4 8)
   f77_program(f77_three_bodies_${bytes} f77_face_${bytes} "${flags}" three_bodies.f reader.f)
   f77_program(f77_calls_${bytes} f77_face_${bytes} "${flags}" calls.f findings.f kept.f numbers.f small.f reader.f)
   f77_program(f77_watched_${bytes} f77_face_${bytes} "${flags}" watched.f small.f reader.f)
+  f77_program(f77_saved_${bytes} f77_face_${bytes} "${flags}" saved.f small.f reader.f)
+  claim_silent("FORTRAN 77, INTEGER of ${bytes} bytes: a problem is written, read back and solved, lines are told"
+               $<TARGET_FILE:f77_saved_${bytes}> "${CMAKE_CURRENT_BINARY_DIR}/f77_saved_${bytes}.feti")
   f77_program(f77_refused_${bytes} f77_face_${bytes} "${flags}" refused.f small.f reader.f)
   claim_silent("FORTRAN 77, INTEGER of ${bytes} bytes: three bodies press on each other with the known forces"
         sh "${F77}/prints.sh" $<TARGET_FILE:f77_three_bodies_${bytes}> "${FETI_DATA}")
