@@ -89,7 +89,7 @@ stage:
 
 # ---- examples, built as a host would by hand
 EXAMPLES_C       := $(basename $(notdir $(wildcard examples_c/[0-9]*.c)))
-EXAMPLES_FORTRAN := $(basename $(notdir $(wildcard examples_fortran/[0-9]*.f90)))
+EXAMPLES_FORTRAN := $(basename $(notdir $(wildcard examples_fortran/[0-9]*.f90 examples_fortran/[0-9]*.f)))
 PROGRAMS := $(EXAMPLES_C:%=build/demo/%_c) $(EXAMPLES_FORTRAN:%=build/demo/%_fortran)
 SHARED_C := $(filter-out $(EXAMPLES_C:%=examples_c/%.c),$(wildcard examples_c/*.c))
 # Modules before their users: interfaces, base, the parts, the whole; then the reader and the rest.
@@ -106,6 +106,11 @@ build/demo/%_c: examples_c/%.c $(SHARED_C) $(wildcard examples_c/*.h) stage
 build/demo/%_fortran: examples_fortran/%.f90 $(SHARED_FORTRAN) stage
 	@mkdir -p $(@D)/$*
 	@$(FC) $(FCFLAGS) -J$(@D)/$* $(SHARED_FORTRAN) $< -o $@ $(LINK)
+
+# FORTRAN 77: the face in place of the module's users, and the include file.
+build/demo/%_fortran: examples_fortran/%.f $(MODULES) $(wildcard include/fortran/*.inc) stage
+	@mkdir -p $(@D)/$*
+	@$(FC) $(FCFLAGS) -Iinclude/fortran -J$(@D)/$* $(MODULES) $< -o $@ $(LINK)
 
 demo: setup
 	@$(MAKE) --no-print-directory data $(PROGRAMS)

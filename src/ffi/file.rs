@@ -8,11 +8,12 @@ use super::types::feti_problem;
 
 /// Writes all that the host has registered to one file: a bug report is a file.
 ///
-/// Bodies with their matrices, null spaces, coordinates, fixing unknowns and loads, rows of both kinds with right-hand
+/// Bodies with their matrices, null spaces, coordinates, fixing unknowns, loads and numbers of the host, rows of both kinds with right-hand
 /// sides and compliances, and the options that differ from their defaults, bit by bit; not the answer, start values, saved states and
 /// functions of the host. docs/file_format.md describes every byte. The file is written under another name in the same folder and
 /// renamed when it is complete: after a failure an old file is as it was, and nothing else is left. FETI_IO with path,
-/// operation and the words of the system.
+/// operation and the words of the system; FETI_UNSUPPORTED with the body where functions of the host stand for a matrix
+/// (feti_body_operator): no file holds them. Borrowed matrices are written as they are at that moment.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|
@@ -35,6 +36,10 @@ pub unsafe extern "C" fn feti_problem_write(p: *mut feti_problem, path: *const c
 /// file, all others their defaults, except index_base, which stays. Everything goes through the checks of the calls it stands
 /// for. FETI_IO with path and the words of the system, or with the byte where a file is damaged (`entry` of
 /// feti_last_error_detail); FETI_UNSUPPORTED when it holds what a later version has written. After a failure the problem is as it was.
+///
+/// Matrices come back by the rows of their lower triangle, columns ascending, with every diagonal entry, however they were
+/// given: feti_body_values then expects the values in this order, and feti_body_values_split and feti_body_values_dense
+/// return FETI_STATE until the matrix has been given again.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|

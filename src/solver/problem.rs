@@ -297,12 +297,13 @@ impl Problem {
         self.open_motions = None;
     }
 
-    /// Takes over the bodies, rows and options of another problem; texts count from what they did.
+    /// Takes over the bodies with their numbers, rows and options of another problem; texts count from what they did.
     pub(super) fn adopt(&mut self, other: Self) {
         self.rows_changed();
         let index_base = self.settings.index_base;
         self.settings = Settings { index_base, ..other.settings };
         (self.bodies, self.contact, self.equalities) = (other.bodies, other.contact, other.equalities);
+        self.numbering = other.numbering;
     }
 
     fn rows_changed(&mut self) {

@@ -27,6 +27,7 @@ pub const NULL_SPACE: Tag = *b"NULL";
 pub const COORDINATES: Tag = *b"COOR";
 pub const FIXING: Tag = *b"FIXD";
 pub const LOAD: Tag = *b"LOAD";
+pub const NUMBERING: Tag = *b"NUMB";
 pub const ROWS: Tag = *b"ROWS";
 
 /// Zero bytes between a payload of so many bytes and its checksum.

@@ -24,6 +24,7 @@ const BUFFER: usize = 1 << 17;
 impl Problem {
     /// Writes all that was registered to a new file that takes the place of an old one when it is complete.
     pub fn write_file(&self, path: &Path) -> Result<()> {
+        self.check_kept()?;
         regular(path)?;
         // a link stays one: what it leads to is replaced
         let target = fs::canonicalize(path).unwrap_or_else(|_| path.to_path_buf());
@@ -40,6 +41,7 @@ impl Problem {
 
     /// The bytes of that file.
     pub fn write_bytes(&self) -> Result<Vec<u8>> {
+        self.check_kept()?;
         let length = usize::try_from(write::length(self)).unwrap_or(usize::MAX);
         let mut bytes = reserved(length, "a problem file")?;
         write::write(self, &mut bytes).map_err(|e| Error::new(Kind::Io, e.to_string()))?;
@@ -62,6 +64,23 @@ impl Problem {
     pub fn read_bytes(&mut self, bytes: &[u8]) -> Result<()> {
         self.check_empty()?;
         self.adopt(read::read(bytes, bytes.len() as u64)?);
+        Ok(())
+    }
+
+    /// The library has all that it was given: no functions in place of a matrix, no values that were refused.
+    fn check_kept(&self) -> Result<()> {
+        for (p, slot) in self.bodies.iter().enumerate() {
+            if slot.body.operator.is_some() {
+                let what =
+                    "the body is given by functions of the host (feti_body_operator): no file holds them";
+                return Err(Error::new(Kind::Unsupported, what).body(p));
+            }
+            if slot.spoiled {
+                let what =
+                    "the values of the stiffness matrix were rewritten in place and refused: give others";
+                return Err(Error::new(Kind::State, what).body(p));
+            }
+        }
         Ok(())
     }
 

@@ -7,7 +7,7 @@ use crate::error::{Error, Kind, Result};
 use crate::linalg::memory::reserved;
 use crate::solver::file::format::{
     self, padding, section_length, Crc, Tag, BODY, COORDINATES, FIXING, FORMAT, HEAD, HEADER, LOAD, MAGIC,
-    MAY_BE_SKIPPED, NULL_SPACE, OPTIONS, ROWS, STIFFNESS,
+    MAY_BE_SKIPPED, NULL_SPACE, NUMBERING, OPTIONS, ROWS, STIFFNESS,
 };
 use crate::solver::file::sections::{Offsets, Part};
 use crate::solver::problem::Problem;
@@ -66,7 +66,7 @@ pub fn read(source: impl Read, length: u64) -> Result<Problem> {
 }
 
 fn is_known(tag: Tag) -> bool {
-    [OPTIONS, BODY, STIFFNESS, NULL_SPACE, COORDINATES, FIXING, LOAD, ROWS].contains(&tag)
+    [OPTIONS, BODY, STIFFNESS, NULL_SPACE, COORDINATES, FIXING, LOAD, NUMBERING, ROWS].contains(&tag)
 }
 
 impl<R: Read> Input<R> {

@@ -4,7 +4,9 @@ use std::io::Read;
 
 use crate::error::{Error, Kind, Result};
 use crate::linalg::memory::reserved;
-use crate::solver::file::format::{self, BODY, COORDINATES, FIXING, LOAD, NULL_SPACE, OPTIONS, STIFFNESS};
+use crate::solver::file::format::{
+    self, BODY, COORDINATES, FIXING, LOAD, NULL_SPACE, NUMBERING, OPTIONS, STIFFNESS,
+};
 use crate::solver::file::read::{Input, Open};
 use crate::solver::file::write::{CANDIDATES, EQUALITY, EXACT, INEQUALITY};
 use crate::solver::problem::Problem;
@@ -19,6 +21,7 @@ pub enum Part {
     Coordinates { places: Vec<f64>, directions: Vec<i32> },
     Fixing(Vec<usize>),
     Load(Vec<f64>),
+    Numbering(Vec<i64>),
     Rows { kind: RowKind, ptr: Vec<usize>, unknown: Vec<u64>, val: Vec<f64>, rhs: Vec<f64>, inv_k: Vec<f64> },
 }
 
@@ -51,6 +54,10 @@ impl Part {
             LOAD => {
                 let n = input.size(open)?;
                 Self::Load(input.reals(open, n)?)
+            }
+            NUMBERING => {
+                let n = input.size(open)?;
+                Self::Numbering(input.array(open, n, i64::from_le_bytes)?)
             }
             _ => Self::rows(input, open)?,
         })
@@ -114,6 +121,7 @@ impl Part {
             }
             Self::Fixing(dofs) => problem.set_fixing(body, Some(&dofs)),
             Self::Load(f) => problem.set_load(body, &f),
+            Self::Numbering(numbers) => problem.set_numbering(body, &numbers),
             Self::Rows { kind, ptr, unknown, val, rhs, inv_k } => {
                 once(&mut known.rows[kind as usize])?;
                 let (body, dof) = known.places(&unknown)?;
@@ -132,6 +140,7 @@ impl Part {
             Self::Coordinates { .. } => Some(COORDINATES),
             Self::Fixing(_) => Some(FIXING),
             Self::Load(_) => Some(LOAD),
+            Self::Numbering(_) => Some(NUMBERING),
             Self::Options(_) | Self::Body { .. } | Self::Rows { .. } => None,
         }
     }

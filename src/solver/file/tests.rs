@@ -1,5 +1,7 @@
 //! Round trips, truncated, changed and hostile files.
 
+mod given;
+
 use super::format::{padding, Crc, FORMAT, HEADER, LOAD, MAGIC};
 use crate::error::{Error, Kind};
 use crate::solver::{Modes, Outcome, Problem, RowKind, RowsInput, SparseInput, Storage};
@@ -185,6 +187,7 @@ fn lengths_that_the_file_does_not_hold_are_refused_before_anything_is_reserved()
             (b"COOR", vec![huge, 0]),
             (b"FIXD", vec![huge, 0]),
             (b"LOAD", vec![huge, 0]),
+            (b"NUMB", vec![huge, 0]),
             (b"ROWS", vec![1, huge, 0, 0]),
             (b"ROWS", vec![1, 1, huge, 0, huge]),
             (b"ROWS", vec![2, huge, huge, 0, 0]),
@@ -224,6 +227,9 @@ fn what_the_calls_refuse_is_refused_with_its_section_and_place() {
         (of_section(b"LOAD", 0, &numbers(&[1, 0])), "has 2 unknowns, not 1"),
         (of_section(b"NULL", 0, &numbers(&[2, 0, 2])), "no kind of null space"),
         (of_section(b"FIXD", 0, &numbers(&[1, 2])), "outside the 2 unknowns"),
+        (of_section(b"NUMB", 0, &numbers(&[2, 4, 4])), "another unknown of the body has this number"),
+        (of_section(b"NUMB", 0, &numbers(&[2, 4, u64::MAX])), "no array has such an entry"),
+        (of_section(b"NUMB", 0, &numbers(&[1, 4])), "has 2 unknowns, not 1"),
         (of_section(b"ROWS", 0, &rows(2, 0.0)), "there are 1 bodies"),
         (of_section(b"ROWS", 0, &rows(u64::MAX, 0.0)), "there are 1 bodies"),
         (of_section(b"ROWS", 0, &rows(1, -1.0)), "compliance"),

@@ -2,13 +2,13 @@
 
 use std::io::{self, Write};
 
-use crate::body::{Body, Modes};
+use crate::body::Modes;
 use crate::constraints::{RowKind, RowSet};
 use crate::solver::file::format::{
     self, padding, section_length, Crc, Tag, BODY, COORDINATES, FIXING, FORMAT, HEADER, LOAD, MAGIC,
-    NULL_SPACE, OPTIONS, ROWS, STIFFNESS,
+    NULL_SPACE, NUMBERING, OPTIONS, ROWS, STIFFNESS,
 };
-use crate::solver::problem::Problem;
+use crate::solver::problem::{BodySlot, Problem};
 
 /// Numbers of the format.
 pub const EXACT: u64 = 0;
@@ -137,14 +137,15 @@ pub fn write(problem: &Problem, out: &mut impl Write) -> io::Result<()> {
 /// The sections of a body follow its BODY; rows come last.
 fn sections(problem: &Problem) -> impl Iterator<Item = Section<'_>> {
     let options = Section { tag: OPTIONS, pieces: vec![Piece::Text(problem.settings.changes())] };
-    let bodies = problem.bodies.iter().flat_map(|slot| of_body(&slot.body));
+    let bodies = problem.bodies.iter().flat_map(of_body);
     let contact = rows(INEQUALITY, problem.rows(RowKind::Inequality));
     let equalities = rows(EQUALITY, problem.rows(RowKind::Equality));
     std::iter::once(options).chain(bodies).chain(contact).chain(equalities)
 }
 
-fn of_body(body: &Body) -> impl Iterator<Item = Section<'_>> {
+fn of_body(slot: &BodySlot) -> impl Iterator<Item = Section<'_>> {
     use Piece::{Columns, Directions, Number, Numbers, Places, Reals};
+    let body = &slot.body;
     let n = Number(body.order as u64);
     let order = Some(Section { tag: BODY, pieces: vec![n] });
     let count = |len: usize| Number(len as u64);
@@ -162,11 +163,14 @@ fn of_body(body: &Body) -> impl Iterator<Item = Section<'_>> {
         let pieces = vec![count(given.len()), Places(given.places()), Directions(given.directions())];
         Section { tag: COORDINATES, pieces }
     });
-    let numbers = |dofs: &'_ Vec<usize>| count(dofs.len());
-    let fixing =
-        body.fixing.as_ref().map(|dofs| Section { tag: FIXING, pieces: vec![numbers(dofs), Numbers(dofs)] });
+    let fixing = body.fixing.as_ref().map(|dofs| unknowns(FIXING, dofs));
     let load = body.load.as_ref().map(|f| Section { tag: LOAD, pieces: vec![count(f.len()), Reals(f)] });
-    [order, stiffness, null_space, coordinates, fixing, load].into_iter().flatten()
+    let numbering = slot.numbers.as_ref().map(|numbers| unknowns(NUMBERING, numbers));
+    [order, stiffness, null_space, coordinates, fixing, load, numbering].into_iter().flatten()
+}
+
+fn unknowns(tag: Tag, numbers: &[usize]) -> Section<'_> {
+    Section { tag, pieces: vec![Piece::Number(numbers.len() as u64), Piece::Numbers(numbers)] }
 }
 
 fn rows(kind: u64, rows: &RowSet) -> Option<Section<'_>> {

@@ -1,5 +1,6 @@
 /* file DATA FOLDER GOLDEN [CASE ...]: a problem goes through a file and solves to the same bits; what is no file, or a
-   damaged one, is refused with path, operation and byte; options come as a text. */
+   damaged one, is refused with path, operation and byte; so is a body that functions of the host stand for; options come
+   as a text. */
 #include "handover.h"
 #include "small.h"
 
@@ -125,6 +126,56 @@ static void wrong_arguments(void)
     OK(feti_problem_destroy(&p));
 }
 
+/* lambda = 6, u = -3, -4, -5.5 by hand; the host numbers the unknowns 4, 0, 2. New values of what was given dense come by
+   the rows of the lower triangle: with a block twice as stiff u_block[1] = -4.75. */
+static void numbers_and_patterns_come_back(void)
+{
+    static const int32_t spring[1] = { 4 }, block[2] = { 0, 2 };
+    static const double dense[4] = { 4.0, -4.0, -4.0, 4.0 }, twice[3] = { 8.0, -8.0, 8.0 };
+    feti_problem *p = small_problem(), *back = new_problem();
+    double u[5] = { 0 };
+
+    OK(feti_body_stiffness_i32(p, SPRING, 1, SPRING_PTR, SPRING_COL, SPRING_VAL, 0, FETI_LOWER, FETI_BORROW));
+    OK(feti_body_stiffness_dense(p, BLOCK, 2, dense, 2, FETI_FULL, FETI_COPY));
+    OK(feti_body_numbering_i32(p, SPRING, 1, spring, 0));
+    OK(feti_body_numbering_i32(p, BLOCK, 2, block, 0));
+    OK(feti_problem_write(p, path));
+    OK(feti_problem_read(back, path));
+    OK(feti_solve(back, NULL));
+    OK(feti_displacement(back, FETI_ALL, 5, u));
+    CHECK(fabs(u[4] + 3.0) + fabs(u[0] + 4.0) + fabs(u[2] + 5.5) <= 1e-9, "u = %g, %g, %g", u[4], u[0], u[2]);
+    EXPECT(FETI_STATE, feti_body_values_dense(back, BLOCK, 2, dense, 2));
+    OK(feti_body_values(back, BLOCK, 3, twice));
+    OK(feti_solve(back, NULL));
+    OK(feti_displacement(back, FETI_ALL, 5, u));
+    CHECK(fabs(u[2] + 4.75) <= 1e-9, "u = %g with a block twice as stiff", u[2]);
+    OK(feti_problem_destroy(&p));
+    OK(feti_problem_destroy(&back));
+}
+
+static int32_t nothing(void *user, int64_t body, int64_t n, int64_t nrhs, const double *x, int64_t ldx, double *y, int64_t ldy)
+{
+    (void)user, (void)body, (void)n, (void)nrhs, (void)x, (void)ldx, (void)y, (void)ldy;
+    return 1;
+}
+
+static void a_body_given_by_functions_is_not_written(void)
+{
+    const expectation wanted = { FETI_UNSUPPORTED, BLOCK, ANY, ANY, ANY, "feti_problem_write", "feti_body_operator" };
+    const double diagonal[2] = { 4.0, 4.0 };
+    feti_problem *p = small_problem();
+    unsigned char bytes[8];
+
+    put("old", 3);
+    OK(feti_body_operator(p, BLOCK, 2, diagonal, nothing, nothing, 0, NULL));
+    EXPECT(FETI_UNSUPPORTED, feti_problem_write(p, path));
+    check_last_error(p, &wanted);
+    CHECK(got(bytes, sizeof bytes) == 3 && memcmp(bytes, "old", 3) == 0, "the old file is gone");
+    OK(give_block_stiffness(p));
+    OK(feti_problem_write(p, path));
+    OK(feti_problem_destroy(&p));
+}
+
 static void options_come_as_a_text(void)
 {
     feti_problem *p = new_problem();
@@ -162,6 +213,8 @@ int main(int argc, char **argv)
     for (size_t k = 0; argc == 4 && k < sizeof ALL / sizeof ALL[0]; k++) comes_back(argv[1], ALL[k]);
     damaged_files_are_refused(argv[2]);
     wrong_arguments();
+    numbers_and_patterns_come_back();
+    a_body_given_by_functions_is_not_written();
     options_come_as_a_text();
     a_file_of_format_1_is_read(argv[3]);
     remove(path);

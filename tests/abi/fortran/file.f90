@@ -15,6 +15,7 @@ program file
   call comes_back('p1_P3')
   call comes_back('three_bodies')
   call damaged_files
+  call numbers_come_back
   call options_as_a_text
 
 contains
@@ -87,6 +88,30 @@ contains
     call feti_problem_destroy(p)
     call feti_problem_read(p, path, stat, text)
     call require(stat == FETI_HANDLE, 'read into a destroyed problem')
+  end subroutine
+
+  !> A spring k = 2 pulled by 6, its unknown number 4 of the host: u = 3.
+  subroutine numbers_come_back
+    type(feti_problem) :: p, back
+    real(dp) :: u(4)
+    integer :: body
+
+    call feti_problem_create(p)
+    call feti_problem_create(back)
+    call feti_body_add(p, 1, body)
+    call feti_body_stiffness(p, body, [1, 2], [1], [2d0], FETI_LOWER)
+    call feti_body_numbering(p, body, [4])
+    call feti_body_load(p, [0d0, 0d0, 0d0, 6d0])
+    call feti_problem_write(p, path)
+    call feti_problem_read(back, path)
+    call feti_solve(back)
+    u = 0
+    call feti_displacement(back, u)
+    call require(abs(u(4) - 3) < 1d-12, 'the numbers of the host did not come back')
+    open (newunit=body, file=path, status='old')
+    close (body, status='delete')
+    call feti_problem_destroy(p)
+    call feti_problem_destroy(back)
   end subroutine
 
   subroutine options_as_a_text
