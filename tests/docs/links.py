@@ -45,8 +45,8 @@ def code_has_no_links_and_no_anchors():
 
 
 def html_is_checked():
-    other = {"d/index.html": '<p id="x">', "s.html": '<a id="1"></a><a id="9">'}
-    expect(other | {"a.html": '<a href="d/#x"></a><a href="s.html#1-9">1</a><img src="https://example.org/x">'})
+    other = {"d/index.html": '<p id="x">', "s.html": '<a id="1"></a><a id="9"></a><a id="A%3CT%3E">'}
+    expect(other | {"a.html": '<a href="d/#x"></a><a href="s.html#1-9">1</a><a href="s.html#A%3CT%3E"><img src="https://example.org/x">'})
     expect(other | {"a.html": '\n<a href="d/#y">'}, "a.html:2: d/#y: no such anchor")
     expect(other | {"a.html": '<a href="s.html#1-8">'}, "a.html:1: s.html#1-8: no such anchor")
     expect(other | {"a.html": '<img src="p%20q.svg">'}, "a.html:1: p%20q.svg: no such file")

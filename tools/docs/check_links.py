@@ -29,9 +29,10 @@ class Page(HTMLParser):
     def handle_starttag(self, tag, attributes):
         given = dict(attributes)
         self.anchors.update(given[key] for key in ("id", "name") if given.get(key))
-        for key in ("href", "src", "data"):
-            if given.get(key) and tag != "base" and not (tag == "link" and given.get("rel") == "canonical"):
-                self.links.append((self.getpos()[0], given[key]))
+        # What is no link: a base, and scripts that a page can do without (rustdoc names some that it does not write).
+        if tag == "base" or tag == "script" and "async" in given:
+            return
+        self.links += [(self.getpos()[0], given[key]) for key in ("href", "src", "data") if given.get(key)]
 
 
 class Text:
@@ -53,7 +54,7 @@ def has_anchor(path, anchor):
     """Also `12-30`, lines of a source, where both are anchors."""
     known = read(path).anchors
     lines = LINES.match(anchor)
-    return anchor in known or bool(lines and known.issuperset(lines.groups()))
+    return anchor in known or unquote(anchor) in known or bool(lines and known.issuperset(lines.groups()))
 
 
 def fault(root, path, link):
@@ -68,7 +69,7 @@ def fault(root, path, link):
         return "no such file"
     if path.suffix == ".md" and BUILT.intersection(target.relative_to(root).parts):
         return "leads to what is built"
-    anchor = unquote(parts.fragment)
+    anchor = parts.fragment
     if anchor and target.suffix in KINDS and not has_anchor(target, anchor):
         return "no such anchor"
     return None
