@@ -1,6 +1,9 @@
 # make demo      builds the library and the examples, runs them        make lib        the library alone
 # make test      every test: Rust, then C and Fortran under CMake      make install    PREFIX=/usr/local DESTDIR=
 # make metis     tests with the feature metis
+# make fuzz      random calls, texts and files under AddressSanitizer, SECONDS=600 each target; TARGETS="calls file" picks some
+# make sanitize  C and Fortran drivers under AddressSanitizer     make loom      registry and pools in all orders of two threads
+# make coverage  lines of src/ffi that the tests run              make overhead  what the C ABI costs on the smallest problem
 # make counts    applications of F against a linear solve, deck by deck (some minutes); DECKS="slab two" picks some
 # make bench     time and memory against CHOLMOD, Clarabel and OSQP (some minutes); DECKS="4k 40k" picks some
 # make scaling   time and memory as unknowns, contact rows, bodies, threads grow: pictures in docs (some minutes);
@@ -23,8 +26,8 @@ FCFLAGS ?= -O2 -Wall
 RELEASE   := $(or $(CARGO_TARGET_DIR),target)/release
 STAGE     := $(CURDIR)/build/stage
 
-.PHONY: all lib data setup demo battery test metis counts bench scaling paper docs abi licences packaging stage install uninstall
-.PHONY: fmt clean
+.PHONY: all lib data setup demo battery test metis fuzz sanitize loom coverage overhead counts bench scaling paper docs
+.PHONY: abi licences packaging stage install uninstall fmt clean
 .DELETE_ON_ERROR:
 all: lib
 
@@ -114,7 +117,8 @@ N ?= 20000
 battery:
 	BATTERY=$(N) $(CARGO) test --release --locked --test battery -- every_random_problem no_marginal
 
-test: setup
+test:
+	@tools/setup.sh flang-19
 	$(CARGO) test --release --workspace --locked
 	@$(MAKE) --no-print-directory stage data
 	cmake -S tests -B build/ctest -DCMAKE_PREFIX_PATH=$(STAGE) -DFETI_DATA=$(CURDIR)/build/data
@@ -126,6 +130,29 @@ metis:
 	@tools/setup.sh libmetis-dev
 	$(CARGO) test --release --locked --features metis --lib linalg
 	$(CARGO) test --release --locked --features metis --test reference --test invariance
+
+# ---- hardening: longer or slower than a test should be
+SECONDS ?= 600
+TARGETS ?= calls file text
+fuzz:
+	@tools/fuzz/run.sh $(SECONDS) $(CURDIR)/build/fuzz $(TARGETS)
+
+sanitize: setup
+	@tools/fuzz/sanitize.sh build/sanitize
+
+loom:
+	$(CARGO) test --release --locked --manifest-path tests/loom/Cargo.toml --target-dir $(or $(CARGO_TARGET_DIR),target)/loom
+
+build/ctest/CMakeCache.txt: | stage data
+	cmake -S tests -B build/ctest -DCMAKE_PREFIX_PATH=$(STAGE) -DFETI_DATA=$(CURDIR)/build/data
+
+coverage: setup stage data build/ctest/CMakeCache.txt
+	cmake --build build/ctest
+	@tools/coverage/run.sh $(CURDIR)/build/coverage $(CURDIR)/build/ctest
+
+overhead: setup stage data build/ctest/CMakeCache.txt
+	@cmake --build build/ctest --target c_overhead > /dev/null
+	@build/ctest/abi/c_overhead 5000
 
 # ---- documents: build/docs/index.html leads to the book, the Fortran modules and the crate; manual pages lie in build/docs/man
 DOCS   := build/docs

@@ -42,6 +42,7 @@ module feti_contact
   use feti_contact_base, only: feti_problem, feti_error_detail, feti_progress, &
     feti_progress_procedure => progress_procedure, &
     feti_log_procedure => log_procedure, &
+    feti_operator_procedure => operator_procedure, &
     feti_problem_create => problem_create, &
     feti_problem_destroy => problem_destroy, &
     feti_problem_error => problem_error, &
@@ -77,6 +78,8 @@ module feti_contact
     feti_body_values => body_values, &
     feti_body_values_borrow => body_values_borrow, &
     feti_body_values_split => body_values_split
+  use feti_contact_operators, only: &
+    feti_body_operator => body_operator
   use feti_contact_rows, only: &
     feti_rows_add => rows_add, &
     feti_rows_rhs => rows_rhs, &

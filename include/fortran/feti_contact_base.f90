@@ -26,6 +26,7 @@ module feti_contact_base
   private
   public :: feti_problem, feti_error_detail, feti_progress
   public :: listener, log_procedure, progress_procedure, listener_of
+  public :: host_operator, operator_procedure, keep_operator
   public :: problem_create, problem_destroy, problem_error
   public :: last_error, last_error_detail, status_name, status_text
   public :: version, version_number
@@ -47,9 +48,30 @@ module feti_contact_base
       character(len=*), intent(in) :: text
       class(*), intent(inout) :: data
     end function
+
+    !> A function of the host that multiplies by a matrix A it keeps, y = A x: 0, or any other number for a failure.
+    !> body: from 1. x(n,nrhs), y(n,nrhs): nrhs is 1 to 32, y comes as zeros. data: what was given to feti_body_operator.
+    integer function operator_procedure(body, x, y, data)
+      import :: c_double
+      integer, intent(in) :: body
+      real(c_double), intent(in), contiguous :: x(:, :)
+      real(c_double), intent(inout), contiguous :: y(:, :)
+      class(*), intent(inout) :: data
+    end function
   end interface
 
-  !> What feti_on_progress and feti_on_log keep of the host.
+  !> What feti_body_operator keeps of the host for one body.
+  type :: host_operator
+    integer :: body = 0
+    procedure(operator_procedure), pointer, nopass :: kplus => null(), k => null()
+    class(*), pointer :: data => null()
+    !> Stands for data that were not given.
+    integer :: nothing = 0
+    !> That of another body.
+    type(host_operator), pointer :: next => null()
+  end type
+
+  !> What is kept of the host: for feti_on_progress and feti_on_log, and a list for feti_body_operator.
   type :: listener
     procedure(progress_procedure), pointer, nopass :: hear => null()
     class(*), pointer :: data => null()
@@ -57,6 +79,7 @@ module feti_contact_base
     class(*), pointer :: log_data => null()
     !> Stands for data that were not given.
     integer :: nothing = 0
+    type(host_operator), pointer :: operators => null()
   end type
 
   !> One contact problem. Copies are other names of the same problem; it lives until feti_problem_destroy.
@@ -106,7 +129,12 @@ contains
     integer(c_int32_t) :: status
 
     status = c_problem_destroy(p%handle)
-    if (status == FETI_OK) deallocate (p%listener)
+    if (status == FETI_OK) then
+      do while (associated(p%listener%operators))
+        call drop_operator(p%listener, p%listener%operators%body)
+      end do
+      deallocate (p%listener)
+    end if
     call finish(status, stat, errmsg)
   end subroutine
 
@@ -218,6 +246,38 @@ contains
 
     found => p%listener
   end function
+
+  !> Keeps the functions of a body, which the library has just accepted, in place of those before.
+  subroutine keep_operator(p, new)
+    type(feti_problem), intent(in) :: p
+    type(host_operator), intent(inout), pointer :: new
+
+    call drop_operator(p%listener, new%body)
+    new%next => p%listener%operators
+    p%listener%operators => new
+  end subroutine
+
+  !> Forgets the functions of a body, if there are any.
+  subroutine drop_operator(kept, body)
+    type(listener), intent(inout) :: kept
+    integer, intent(in) :: body
+    type(host_operator), pointer :: found, before
+
+    nullify (before)
+    found => kept%operators
+    do while (associated(found))
+      if (found%body == body) exit
+      before => found
+      found => found%next
+    end do
+    if (.not. associated(found)) return
+    if (associated(before)) then
+      before%next => found%next
+    else
+      kept%operators => found%next
+    end if
+    deallocate (found)
+  end subroutine
 
   !> Reports a status as the head of this module says. text: what the face itself found; absent: the library's words.
   subroutine finish(status, stat, errmsg, text)

@@ -419,6 +419,7 @@ module feti_contact_c
   public :: feti_body_fixing_set
   public :: feti_body_numbering_i32
   public :: feti_body_numbering_i64
+  public :: feti_body_operator
   public :: feti_set_f64
   public :: feti_set_i64
   public :: feti_set_str
@@ -505,6 +506,36 @@ module feti_contact_c
       character(kind=c_char), intent(in) :: text(*)
       integer(c_int32_t) :: feti_log_fn
     end function feti_log_fn
+
+  end interface
+
+  public :: feti_operator_fn
+  abstract interface
+
+    !> A function of the host that multiplies by a matrix A it keeps: Y = A X.
+    !>
+    !> It returns 0, or any other number for a failure of its own. X and Y never overlap.
+    !>
+    !> @param[in]  user (scalar) the host's own, as given to feti_body_operator; may be NULL
+    !> @param[in]  body (scalar) number of the body, from 0
+    !> @param[in]  n    (scalar) unknowns of the body
+    !> @param[in]  nrhs (scalar) columns of X and Y, 1 to 32
+    !> @param[in]  x    (ldx * nrhs) X, column-major, finite
+    !> @param[in]  ldx  (scalar) >= n
+    !> @param[out] y    (ldy * nrhs) Y, column-major; holds zeros before
+    !> @param[in]  ldy  (scalar) >= n
+    function feti_operator_fn(user, body, n, nrhs, x, ldx, y, ldy) bind(C)
+      import
+      type(c_ptr), value :: user
+      integer(c_int64_t), value :: body
+      integer(c_int64_t), value :: n
+      integer(c_int64_t), value :: nrhs
+      real(c_double), intent(in) :: x(*)
+      integer(c_int64_t), value :: ldx
+      real(c_double), intent(out) :: y(*)
+      integer(c_int64_t), value :: ldy
+      integer(c_int32_t) :: feti_operator_fn
+    end function feti_operator_fn
 
   end interface
 
@@ -999,6 +1030,54 @@ module feti_contact_c
       integer(c_int32_t), value :: base
       integer(c_int32_t) :: feti_body_numbering_i64
     end function feti_body_numbering_i64
+
+    !> Names the functions of the host that multiply by the stiffness K of a body and by a generalised inverse
+    !> K+ of it.
+    !>
+    !> The library sees no entry of K but the diagonal, which is copied, and factorises nothing. K+ is any
+    !> symmetric positive semidefinite matrix with K K+ K = K: where K is not singular its inverse, else that
+    !> of K with enough unknowns held (rows and columns of zeros in K+), or that of K plus a regularisation
+    !> that acts on the null space alone. The null space must be given, by feti_body_null_space or
+    !> feti_body_coordinates (the body then counts as connected). feti_setup tries the functions with a few
+    !> fixed vectors and refuses what is wrong by name: FETI_CALLBACK (K or K+ not symmetric, K K+ K not K, a
+    !> result that is no finite number), FETI_INDEFINITE, FETI_NULL_SPACE (K R not 0, a mode missing in R),
+    !> with the figure and its limit in the error detail.
+    !>
+    !> A function that returns anything but 0 ends the call that needed it with FETI_CALLBACK, the body and
+    !> that number in the error detail; the problem stays as it was. The functions run in the host's
+    !> floating-point environment; with `concurrent` 0 on the thread alone that has called the library, with 1
+    !> also on threads of the library, several at once. Inside them calls on the same problem return
+    !> FETI_BUSY, except feti_cancel and feti_problem_error. They must not end by longjmp or an exception, and
+    !> must give the same bits for the same X.
+    !>
+    !> Calling again replaces the functions and what was computed with them: to be done whenever K has
+    !> changed. A stiffness matrix given later takes their place, and they that of a matrix. After a failure
+    !> the body keeps what it had.
+    !>
+    !> @param[in] p          (scalar) the handle
+    !> @param[in] body       (scalar) number of the body, from 0
+    !> @param[in] n          (scalar) unknowns of the body
+    !> @param[in] diag       (n) diagonal of K, >= 0, force per length: what the body is measured by
+    !> @param[in] kplus      (scalar) Y = K+ X, X force, Y length
+    !> @param[in] k          (scalar) Y = K X, X length, Y force
+    !> @param[in] concurrent (scalar) 0: only on the calling thread; 1: on any thread, several at once
+    !> @param[in] user       (scalar) handed to the functions unchanged; may be NULL
+    !>
+    !> Safety: `diag` has the given shape; the functions may be called with `user` until they are replaced or
+    !> the problem destroyed.
+    function feti_body_operator(p, body, n, diag, kplus, k, concurrent, user) &
+        bind(C, name="feti_body_operator")
+      import
+      type(c_ptr), value :: p
+      integer(c_int64_t), value :: body
+      integer(c_int64_t), value :: n
+      real(c_double), intent(in) :: diag(*)
+      type(c_funptr), value :: kplus
+      type(c_funptr), value :: k
+      integer(c_int32_t), value :: concurrent
+      type(c_ptr), value :: user
+      integer(c_int32_t) :: feti_body_operator
+    end function feti_body_operator
 
     !> Sets an option that is a number.
     !>

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use crate::body::host::HostOperator;
 use crate::error::Result;
 use crate::linalg::reach::inverse_form;
 use crate::linalg::{Analysis, Csr, Operator, Packed, Symmetric};
@@ -16,6 +17,17 @@ pub fn lumped(k: &Symmetric, scale: f64, boundary: &[usize]) -> Result<Box<dyn O
             part.val.push(scale * v);
         }
         part.ptr.push(part.col.len());
+    }
+    Ok(Box::new(part))
+}
+
+/// `scale D_bb` of a body whose stiffness the host keeps.
+pub fn diagonal(k: &HostOperator, scale: f64, boundary: &[usize]) -> Result<Box<dyn Operator + Send>> {
+    let mut part = Symmetric::new(vec![0], Vec::new(), Vec::new());
+    for (row, &dof) in boundary.iter().enumerate() {
+        part.col.push(row as u32);
+        part.val.push(scale * k.diagonal(dof));
+        part.ptr.push(row + 1);
     }
     Ok(Box::new(part))
 }

@@ -4,16 +4,16 @@
 
 use std::sync::Arc;
 
+use crate::body::factor::Factor;
 use crate::body::fixing::{fixing_dofs, given_dofs, hold_as_well};
 use crate::body::null_space::{largest, verified, NullSpaceInput};
+use crate::body::random::Random;
 use crate::body::search::Search;
 use crate::body::symbolic::{Layout, Made, Symbolic};
 use crate::error::{Error, Kind, Result};
-use crate::linalg::columns::inverse_columns;
 use crate::linalg::memory::{room, zeros, PRODUCTS};
-use crate::linalg::reach::inverse_form;
 use crate::linalg::vector::weighted_norm;
-use crate::linalg::{Analysis, Breakdown, Cholesky, Csr, Matrix, Multiple, Packed};
+use crate::linalg::{Analysis, Breakdown, Csr, Matrix, Multiple, Packed};
 
 /// A pivot below minus this, relative to its diagonal entry, is no rounding error: a(u, u) >= 0 of (4) is violated.
 const NEGATIVE_PIVOT: f64 = 1e-10;
@@ -21,19 +21,18 @@ const NEGATIVE_PIVOT: f64 = 1e-10;
 pub(super) const SINGULAR: f64 = 1e-13;
 /// Random numbers have `n^-1/2` of their length along a given direction; this many times less is not expected. (A mode
 /// that is missing is left with 1e-16 by rounding, far below `SINGULAR`: there it would take a thousand times less still.)
-const UNLIKELY: f64 = 1e3;
+pub(super) const UNLIKELY: f64 = 1e3;
 /// Largest residual of a solve with the factor, relative to its terms.
-const PROBE: f64 = 1e-8;
+pub(super) const PROBE: f64 = 1e-8;
 
 pub struct GeneralizedInverse {
     /// `R_p`, n x r, with `R'DR = I`.
     pub null_space: Matrix,
-    /// The r dofs held.
+    /// The r dofs held; none where K+ is the host's.
     pub fixing: Vec<usize>,
     /// Of a null space that was found: the softest other motion against the stiffest of it, no unit.
     pub gap: Option<f64>,
-    /// Bodies with the same matrix and the same dofs held share it.
-    pub(super) factor: Arc<Cholesky>,
+    pub(super) factor: Factor,
 }
 
 /// The part of the setup that can be costed before it is done.
@@ -92,24 +91,29 @@ impl GeneralizedInverse {
         self.factor.solve(x)
     }
 
-    /// Entries of the factor.
+    /// Entries of the factor; 0 where the host has it.
     pub fn entries(&self) -> usize {
-        self.factor.analysis.entries()
+        self.factor.entries()
+    }
+
+    /// It must be applied on the thread that calls the library.
+    pub fn on_caller(&self) -> bool {
+        self.factor.on_caller()
     }
 
     /// Where its factor lies: the same for all that share it.
     pub fn factor_address(&self) -> usize {
-        Arc::as_ptr(&self.factor) as usize
+        self.factor.address()
     }
 
     /// The columns `which` of `B K+ B'`, m x `which.len()`.
     pub fn inverse_columns(&self, rows: &Csr, which: &[usize]) -> Result<Matrix> {
-        inverse_columns(&self.factor, rows, which)
+        self.factor.inverse_columns(rows, which)
     }
 
     /// `B K+ B'` for the rows B (m x n) of this body.
     pub fn inverse_form(&self, rows: &Csr) -> Result<Packed> {
-        inverse_form(&self.factor, rows)
+        self.factor.inverse_form(rows)
     }
 }
 
@@ -165,7 +169,7 @@ impl Plan {
     /// K+ with the factor, already probed, of the same matrix with the same dofs held. The null space is that of the
     /// plan, where it has one.
     pub fn with_factor_of(self, other: &GeneralizedInverse) -> GeneralizedInverse {
-        let (factor, fixing) = (Arc::clone(&other.factor), other.fixing.clone());
+        let (factor, fixing) = (other.factor.clone(), other.fixing.clone());
         match self {
             Self::Known(known) => {
                 GeneralizedInverse { null_space: known.null_space, fixing, gap: None, factor }
@@ -221,7 +225,8 @@ impl Known {
             breakdown.refused().unwrap_or_else(missing)
         })?;
         let (null_space, fixing) = (self.null_space, self.fixing);
-        let inverse = GeneralizedInverse { null_space, fixing, gap: None, factor: Arc::new(factor) };
+        let factor = Factor::Own(Arc::new(factor));
+        let inverse = GeneralizedInverse { null_space, fixing, gap: None, factor };
         inverse.probe(&self.k)?;
         Ok(Made { inverse, symbolic, further_analyses: 0, factorisations: 1 })
     }
@@ -248,14 +253,19 @@ impl GeneralizedInverse {
         let free = |x: &mut [f64]| self.fixing.iter().for_each(|&dof| x[dof] = 0.0);
         let size = |x: &[f64]| weighted_norm(x, |i| 1.0 / k.metric(i, 1.0));
         let empty = || zeros(n, "a probe");
-        let (mut b, mut x, mut image, mut terms) = (random(k)?, empty()?, empty()?, empty()?);
+        let b = Random::default().vector(n, |i| k.metric(i, 1.0).sqrt())?;
+        let (mut b, mut x, mut image, mut terms) = (b, empty()?, empty()?, empty()?);
         free(&mut b);
         self.apply(&b, &mut x)?;
         k.mul_with_terms(&x, &mut image, &mut terms);
         image.iter_mut().zip(&b).for_each(|(i, b)| *i -= b);
         free(&mut image);
         let residual = size(&image) / (size(&terms) + size(&b));
-        if residual.is_nan() || residual > PROBE {
+        if residual.is_nan() {
+            let what = "the factorisation overflows: entries of the stiffness matrix are too far apart";
+            return Err(Error::new(Kind::Indefinite, what));
+        }
+        if residual > PROBE {
             let what = format!("the factorisation failed its probe: residual {residual:.1e}");
             return Err(Error::new(Kind::Internal, what).value(residual).limit(PROBE));
         }
@@ -279,23 +289,6 @@ fn missing_mode(dof: usize, found: f64, given: usize) -> Error {
          one is largest at this dof (|K v| = {found:.1e} |K||v|)"
     );
     Error::new(Kind::NullSpace, what).dof(dof).value(found).limit(SINGULAR)
-}
-
-/// `D^1/2` times fixed random numbers of size 1/2 to 3/2 and either sign. Mere signs would cancel along many motions of
-/// few dofs.
-fn random(k: &Multiple) -> Result<Vec<f64>> {
-    const UNIT: f64 = 1.0 / (1_u64 << 52) as f64;
-    let mut state = 0x9e37_79b9_7f4a_7c15_u64;
-    let mut values = zeros(k.order(), "a probe")?;
-    for (i, v) in values.iter_mut().enumerate() {
-        state ^= state << 13;
-        state ^= state >> 7;
-        state ^= state << 17;
-        let size = 0.5 + (state >> 12) as f64 * UNIT;
-        let sign = if state & 1 == 0 { 1.0 } else { -1.0 };
-        *v = sign * size * k.metric(i, 1.0).sqrt();
-    }
-    Ok(values)
 }
 
 #[cfg(test)]

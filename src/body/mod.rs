@@ -4,10 +4,15 @@
 mod alike;
 mod borrowed;
 mod boundary;
+mod factor;
 mod fixing;
 mod generalized_inverse;
+mod given;
+mod host;
+mod host_probe;
 mod in_order;
 mod null_space;
+mod random;
 mod rigid_modes;
 mod search;
 mod stiffness;
@@ -16,8 +21,10 @@ mod values;
 
 pub use alike::{pattern_key, same_bits, same_body, same_matrix, same_pattern, same_vectors, value_key};
 pub use borrowed::{from_borrowed, Columns};
-pub use boundary::{dirichlet, dirichlet_bytes, lumped};
+pub use boundary::{diagonal, dirichlet, dirichlet_bytes, lumped};
 pub use generalized_inverse::{GeneralizedInverse, Plan};
+pub use given::Stiffness;
+pub use host::{HostFunctions, HostMultiple, HostOperator, HostProduct, TOGETHER};
 pub use null_space::{Modes, NullSpaceInput};
 pub use rigid_modes::Coordinates;
 pub use stiffness::{
@@ -37,6 +44,8 @@ pub struct Body {
     pub order: usize,
     /// `K_p`, n x n, force / length.
     pub stiffness: Option<Arc<Symmetric>>,
+    /// Instead of it: a `K_p` that the host keeps.
+    pub operator: Option<Arc<HostOperator>>,
     /// `R_p` or vectors that may span it; found by the library without them and without coordinates.
     pub null_space: Option<NullSpaceInput>,
     /// Places of the dofs: candidates for the null space when none is given.
@@ -45,4 +54,12 @@ pub struct Body {
     pub fixing: Option<Vec<usize>>,
     /// `f_p`, length n, force; zero until given.
     pub load: Option<Vec<f64>>,
+}
+
+impl Body {
+    /// `K_p` in the form the host has given it, once it has.
+    pub fn k(&self) -> Option<Stiffness<'_>> {
+        let matrix = self.stiffness.as_deref().map(Stiffness::Matrix);
+        matrix.or_else(|| self.operator.as_deref().map(Stiffness::Host))
+    }
 }

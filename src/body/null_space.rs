@@ -31,8 +31,35 @@ const CANDIDATE: f64 = 1e-11;
 /// Entries that cancelled to this fraction of their terms are zero (supports of 1e30 would multiply them).
 const CANCELLED: f64 = 1e-12;
 
+/// What the tests of a null space take of K.
+pub trait Products {
+    /// What the products with R are measured against, in words.
+    const TERMS: &'static str;
+    fn order(&self) -> usize;
+    /// `K_ii`, or `without` for a dof that has no stiffness.
+    fn metric(&self, i: usize, without: f64) -> f64;
+    /// `K X`, and the terms that its rounding errors are measured against.
+    fn mul_columns(&self, x: &Matrix) -> Result<(Matrix, Matrix)>;
+}
+
+impl Products for Multiple {
+    const TERMS: &'static str = "|K||R|";
+
+    fn order(&self) -> usize {
+        self.order()
+    }
+
+    fn metric(&self, i: usize, without: f64) -> f64 {
+        self.metric(i, without)
+    }
+
+    fn mul_columns(&self, x: &Matrix) -> Result<(Matrix, Matrix)> {
+        self.mul_columns(x)
+    }
+}
+
 /// Basis of the null space with `R'DR = I`; `root` is `D^1/2`.
-pub fn verified(k: &Multiple, root: &[f64], input: &NullSpaceInput, tolerance: f64) -> Result<Matrix> {
+pub fn verified<K: Products>(k: &K, root: &[f64], input: &NullSpaceInput, tolerance: f64) -> Result<Matrix> {
     match input.modes {
         Modes::Exact => exact(k, root, &input.vectors, tolerance),
         Modes::Candidates => {
@@ -43,7 +70,7 @@ pub fn verified(k: &Multiple, root: &[f64], input: &NullSpaceInput, tolerance: f
 }
 
 /// `|A z| <= tolerance | |A| |z| |` for an orthonormal basis z of the span of `D^1/2 R`.
-fn exact(k: &Multiple, root: &[f64], vectors: &Matrix, tolerance: f64) -> Result<Matrix> {
+fn exact<K: Products>(k: &K, root: &[f64], vectors: &Matrix, tolerance: f64) -> Result<Matrix> {
     let mut basis = vectors.clone();
     for j in 0..basis.cols {
         basis.col_mut(j).iter_mut().zip(root).for_each(|(v, d)| *v *= d);
@@ -61,7 +88,7 @@ fn exact(k: &Multiple, root: &[f64], vectors: &Matrix, tolerance: f64) -> Result
     for j in 0..basis.cols {
         let found = ratio(weighted_norm(image.col(j), weight), weighted_norm(terms.col(j), weight));
         if found.is_nan() || found > tolerance {
-            let what = format!("not a null space: |K R| = {found:.1e} |K||R| exceeds {tolerance:.1e}");
+            let what = format!("not a null space: |K R| = {found:.1e} {} exceeds {tolerance:.1e}", K::TERMS);
             return Err(Error::new(Kind::NullSpace, what)
                 .dof(largest(image.col(j), weight))
                 .value(found)
@@ -73,7 +100,7 @@ fn exact(k: &Multiple, root: &[f64], vectors: &Matrix, tolerance: f64) -> Result
 
 /// The part of the span of the candidates that `D^-1 K` maps to zero: from the singular values of
 /// `D^-1 K Q`, Q an orthonormal basis of the span.
-fn kernel_within(k: &Multiple, candidates: &Matrix) -> Result<Matrix> {
+fn kernel_within<K: Products>(k: &K, candidates: &Matrix) -> Result<Matrix> {
     let span = candidates.clone().orthonormalised(DEPENDENT);
     let n = k.order();
     let (mut image, _) = k.mul_columns(&span)?;

@@ -68,8 +68,19 @@ impl Coordinates {
         let (part_of, parts) = components(stiffness);
         let mut members = vec![Vec::new(); parts];
         part_of.iter().enumerate().for_each(|(dof, &part)| members[part].push(dof));
+        self.motions(&members, |dof| stiffness.diagonal(dof) > 0.0)
+    }
+
+    /// The same for a body whose parts are not known: it counts as one.
+    pub fn rigid_modes_of_one(&self, stiff: impl Fn(usize) -> bool) -> Result<Matrix> {
+        let _room = room(self.len() * PER_DOF, "the rigid modes of a body")?;
+        self.motions(&[(0..self.len()).collect()], stiff)
+    }
+
+    /// Those of all parts but single dofs that have a stiffness.
+    fn motions(&self, members: &[Vec<usize>], stiff: impl Fn(usize) -> bool) -> Result<Matrix> {
         let mut modes = Matrix::zeros(self.len(), 0)?;
-        let floats = |dofs: &&Vec<usize>| dofs.len() > 1 || stiffness.diagonal(dofs[0]) == 0.0;
+        let floats = |dofs: &&Vec<usize>| dofs.len() > 1 || !stiff(dofs[0]);
         let moving = members.iter().filter(floats).count();
         modes.data = reserved(self.len() * 6 * moving, "the rigid modes of a body")?;
         let mut column = vec![0.0; self.len()];

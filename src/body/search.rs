@@ -7,6 +7,7 @@
 
 use std::sync::Arc;
 
+use crate::body::factor::Factor;
 use crate::body::fixing::{fixing_dofs, given_dofs};
 use crate::body::generalized_inverse::{GeneralizedInverse, SINGULAR};
 use crate::body::null_space::{largest, verified, Modes, NullSpaceInput};
@@ -226,8 +227,12 @@ impl Search {
         let gap = soft.iter().map(|part| part.gap).reduce(f64::min);
         let found = NullSpaceInput { vectors, modes: Modes::Exact };
         let null_space = verified(&self.k, &root, &found, self.tolerance)?;
-        let inverse =
-            GeneralizedInverse { null_space, fixing: fixing.concat(), gap, factor: Arc::new(factor) };
+        let inverse = GeneralizedInverse {
+            null_space,
+            fixing: fixing.concat(),
+            gap,
+            factor: Factor::Own(Arc::new(factor)),
+        };
         inverse.probe(&self.k)?;
         Ok(inverse)
     }

@@ -25,7 +25,7 @@ pub struct Size {
     pub rows: usize,
     /// Unknowns of the body.
     pub unknowns: usize,
-    /// Entries of the factor.
+    /// Entries of the factor; 0 where the host has it.
     pub entries: usize,
 }
 
@@ -33,7 +33,7 @@ impl Size {
     /// Multiplications of a product with F_p.
     pub fn work(&self, implicit: bool) -> usize {
         if implicit {
-            2 * self.entries
+            2 * self.entries.max(self.unknowns)
         } else {
             self.rows * self.rows
         }
@@ -55,7 +55,12 @@ impl Size {
         }
     }
 
+    /// Of the host's K+ the cost is not known: F_p is assembled, so that the calls of a setup can be told beforehand and
+    /// load steps need few.
     fn prefers_implicit(&self) -> bool {
+        if self.entries == 0 {
+            return false;
+        }
         let read = |multiplications: usize| (size_of::<f64>() * multiplications) as f64;
         let (explicit, implicit) = (0.5 * read(self.work(false)), read(self.work(true)));
         self.assembly() / RATE + PRODUCTS * explicit > PRODUCTS * implicit
@@ -116,6 +121,16 @@ mod tests {
         let two = all_bytes(&sizes, &[false, true, true, false]);
         assert_eq!(implicit_bodies(&sizes, Some(two)), [false, true, true, false]);
         assert_eq!(implicit_bodies(&sizes, Some(0)), [true; 4]);
+    }
+
+    /// K+ of the host: no entries are known.
+    #[test]
+    fn an_operator_of_the_host_is_assembled_as_long_as_there_is_room() {
+        let host = Size { rows: 5000, unknowns: 20_000, entries: 0 };
+        let explicit = all_bytes(&[host], &[false]);
+        assert_eq!(implicit_bodies(&[host], None), [false]);
+        assert_eq!(implicit_bodies(&[host], Some(explicit)), [false]);
+        assert_eq!(implicit_bodies(&[host], Some(explicit - 1)), [true]);
     }
 
     #[test]

@@ -39,6 +39,16 @@ impl Dual {
         Ok(())
     }
 
+    /// Products of body p with F_p run on the thread alone that calls the library.
+    pub fn multiplies_on_caller(&self, p: usize) -> bool {
+        self.subdomains[p].operator.is_none() && self.solves_on_caller(p)
+    }
+
+    /// So do solutions with K_p+.
+    pub fn solves_on_caller(&self, p: usize) -> bool {
+        self.subdomains[p].kplus.on_caller()
+    }
+
     /// Multiplications of a product with F.
     pub fn product_work(&self) -> usize {
         self.subdomains.iter().map(|s| s.work).sum()

@@ -52,7 +52,7 @@ fn a_refused_argument_is_reported_by_position_name_and_place() {
     assert_eq!(stiffness(&ptr, 1, FETI_FULL, FETI_COPY), -104);
     assert_eq!(stiffness(&ptr, 2, FETI_FULL, FETI_COPY), -107);
     assert_eq!(stiffness(&ptr, 0, 3, FETI_COPY), -108);
-    assert_eq!(stiffness(&ptr, 0, FETI_FULL, 1), -109);
+    assert_eq!(stiffness(&ptr, 0, FETI_FULL, 2), -109);
     assert_eq!(stiffness(&[0, 2, 1], 0, FETI_FULL, FETI_COPY), -104);
     assert_eq!((last_detail().row, last_detail().body), (1, -1));
 }

@@ -4,6 +4,8 @@
 
 #[cfg(target_arch = "x86_64")]
 use std::cell::Cell;
+#[cfg(target_arch = "x86_64")]
+use std::sync::atomic::{AtomicU32, Ordering};
 
 /// Runs `work` with all traps masked, rounding to nearest, denormal numbers kept.
 pub(super) fn in_default_environment<T>(work: impl FnOnce() -> T) -> T {
@@ -26,21 +28,50 @@ fn apart<T>(work: impl FnOnce() -> T) -> T {
 
 #[cfg(target_arch = "x86_64")]
 thread_local! {
-    /// The host's control and status word while the library runs on this thread.
-    static HOST: Cell<u32> = const { Cell::new(mxcsr::DEFAULT) };
+    /// The host's control and status word while the library runs on this thread; none on a thread of the library.
+    static HOST: Cell<Option<u32>> = const { Cell::new(None) };
+}
+
+/// The environment of the host in the call that runs on a problem, for its functions on threads of the library.
+pub(super) struct Environment {
+    #[cfg(target_arch = "x86_64")]
+    mxcsr: AtomicU32,
+}
+
+#[cfg(target_arch = "x86_64")]
+impl Environment {
+    pub fn new() -> Self {
+        Self { mxcsr: AtomicU32::new(mxcsr::DEFAULT) }
+    }
+
+    /// Takes over that of the call on this thread.
+    pub fn note(&self) {
+        self.mxcsr.store(HOST.get().unwrap_or(mxcsr::DEFAULT), Ordering::Relaxed);
+    }
+
+    /// Runs a function of the host in the environment of the host, on any thread.
+    pub fn within<T>(&self, work: impl FnOnce() -> T) -> T {
+        if HOST.get().is_some() {
+            return in_host_environment(work);
+        }
+        HOST.set(Some(self.mxcsr.load(Ordering::Relaxed)));
+        let result = in_host_environment(work);
+        HOST.set(None);
+        result
+    }
 }
 
 /// The host's word is put back when this is dropped; calls may be nested through functions of the host.
 struct HostEnvironment {
     /// What HOST held before.
     #[cfg(target_arch = "x86_64")]
-    outer: u32,
+    outer: Option<u32>,
 }
 
 #[cfg(target_arch = "x86_64")]
 impl HostEnvironment {
     fn replace() -> Self {
-        let outer = HOST.replace(mxcsr::read());
+        let outer = HOST.replace(Some(mxcsr::read()));
         mxcsr::write(mxcsr::DEFAULT);
         Self { outer }
     }
@@ -49,7 +80,7 @@ impl HostEnvironment {
 #[cfg(target_arch = "x86_64")]
 impl Drop for HostEnvironment {
     fn drop(&mut self) {
-        mxcsr::write(HOST.replace(self.outer));
+        HOST.replace(self.outer).into_iter().for_each(mxcsr::write);
     }
 }
 
@@ -63,7 +94,7 @@ struct DefaultEnvironment {
 impl DefaultEnvironment {
     fn suspend() -> Self {
         let ours = Self { mxcsr: mxcsr::read() };
-        mxcsr::write(HOST.get());
+        HOST.get().into_iter().for_each(mxcsr::write);
         ours
     }
 }
@@ -71,7 +102,7 @@ impl DefaultEnvironment {
 #[cfg(target_arch = "x86_64")]
 impl Drop for DefaultEnvironment {
     fn drop(&mut self) {
-        HOST.set(mxcsr::read());
+        HOST.set(Some(mxcsr::read()));
         mxcsr::write(self.mxcsr);
     }
 }
@@ -81,6 +112,19 @@ impl Drop for DefaultEnvironment {
 impl HostEnvironment {
     fn replace() -> Self {
         Self {}
+    }
+}
+
+#[cfg(not(target_arch = "x86_64"))]
+impl Environment {
+    pub fn new() -> Self {
+        Self {}
+    }
+
+    pub fn note(&self) {}
+
+    pub fn within<T>(&self, work: impl FnOnce() -> T) -> T {
+        apart(work)
     }
 }
 
@@ -163,6 +207,23 @@ mod tests {
         mxcsr::write(before);
         assert_eq!(seen, ((mxcsr::DEFAULT, HOST_WORD), mxcsr::DEFAULT));
         assert_eq!(after, changed);
+    }
+
+    #[test]
+    fn a_function_of_the_host_on_a_thread_of_the_library_runs_in_its_environment() {
+        let (before, environment) = (mxcsr::read(), Environment::new());
+        mxcsr::write(HOST_WORD);
+        let seen = in_default_environment(|| {
+            environment.note();
+            let elsewhere = std::thread::scope(|scope| {
+                let work = || (environment.within(mxcsr::read), mxcsr::read(), HOST.get());
+                scope.spawn(work).join()
+            });
+            (elsewhere.ok(), environment.within(mxcsr::read), mxcsr::read())
+        });
+        mxcsr::write(before);
+        let elsewhere = Some((HOST_WORD, mxcsr::DEFAULT, None));
+        assert_eq!(seen, (elsewhere, HOST_WORD, mxcsr::DEFAULT));
     }
 
     #[test]

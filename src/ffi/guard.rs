@@ -46,6 +46,7 @@ pub(super) fn enter_with_status(
             return refuse(call, &Refusal::Gone);
         };
         let outcome = slot.with(|problem| {
+            slot.shared.note();
             let outcome = caught(|| work(problem));
             outcome.map_err(|error| match error.kind {
                 Kind::Internal => {

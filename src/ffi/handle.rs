@@ -3,107 +3,38 @@
 
 use std::collections::BTreeMap;
 use std::ptr;
-use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError, RwLock, TryLockError};
 
 use super::error_store::Record;
+use super::fpu::Environment;
+use super::registry::{self, Registry};
+use super::sync::{Arc, AtomicUsize, RwLock};
 use super::types::feti_problem;
 use crate::error::{Error, Kind, Result};
 use crate::solver::Problem;
 
-static PROBLEMS: RwLock<BTreeMap<usize, Arc<Slot>>> = RwLock::new(BTreeMap::new());
-static LAST_HANDLE: AtomicUsize = AtomicUsize::new(0);
+pub(super) use super::registry::Refusal;
 
-/// A problem with its busy flag, which is the lock, and its last error, which can be read while a call runs.
-pub(super) struct Slot {
-    /// None once destroyed.
-    problem: Mutex<Option<Problem>>,
-    /// Shared with the problem, so that it can be set while a call runs.
-    cancelled: Arc<AtomicBool>,
-    broken: AtomicBool,
-    error: Mutex<Option<Record>>,
-}
+pub(super) type Slot = registry::Slot<Problem, Record, Arc<Environment>>;
 
-/// Why a problem could not be taken.
-#[derive(Debug, PartialEq)]
-pub(super) enum Refusal {
-    Busy,
-    Gone,
-    Broken,
-}
-
-impl Slot {
-    /// The problem, for one call; None inside when it is destroyed.
-    fn claim(&self) -> std::result::Result<MutexGuard<'_, Option<Problem>>, Refusal> {
-        match self.problem.try_lock() {
-            Ok(problem) => Ok(problem),
-            Err(TryLockError::WouldBlock) => Err(Refusal::Busy),
-            Err(TryLockError::Poisoned(poisoned)) => {
-                self.mark_broken();
-                Ok(poisoned.into_inner())
-            }
-        }
-    }
-
-    /// Runs `work` on the problem unless another call runs, or it is destroyed, or an internal error left it unusable.
-    pub fn with<T>(&self, work: impl FnOnce(&mut Problem) -> T) -> std::result::Result<T, Refusal> {
-        let mut claimed = self.claim()?;
-        let problem = claimed.as_mut().ok_or(Refusal::Gone)?;
-        if self.broken.load(Ordering::Acquire) {
-            return Err(Refusal::Broken);
-        }
-        Ok(work(problem))
-    }
-
-    /// Ends the setup or the solve that runs.
-    pub fn cancel(&self) -> std::result::Result<(), Refusal> {
-        if self.broken.load(Ordering::Acquire) {
-            return Err(Refusal::Broken);
-        }
-        self.cancelled.store(true, Ordering::Relaxed);
-        Ok(())
-    }
-
-    /// After an internal error the problem can only be destroyed.
-    pub fn mark_broken(&self) {
-        self.broken.store(true, Ordering::Release);
-    }
-
-    pub fn keep_error(&self, record: Record) {
-        *self.error.lock().unwrap_or_else(PoisonError::into_inner) = Some(record);
-    }
-
-    /// Text of the problem's last error, empty when there was none.
-    pub fn error_text(&self) -> String {
-        let kept = self.error.lock().unwrap_or_else(PoisonError::into_inner);
-        kept.as_ref().map(|record| record.text.clone()).unwrap_or_default()
-    }
-}
+static PROBLEMS: Registry<Problem, Record, Arc<Environment>> =
+    Registry { slots: RwLock::new(BTreeMap::new()), last: AtomicUsize::new(0) };
 
 /// Enters a problem under a new handle.
 pub(super) fn register(problem: Problem) -> Result<*mut feti_problem> {
-    let next = LAST_HANDLE.fetch_update(Ordering::Relaxed, Ordering::Relaxed, |last| last.checked_add(1));
-    let last = next.map_err(|last| Error::new(Kind::Overflow, format!("all {last} handles are used up")))?;
-    let slot = Slot {
-        cancelled: problem.canceller(),
-        problem: Mutex::new(Some(problem)),
-        broken: AtomicBool::new(false),
-        error: Mutex::new(None),
-    };
-    PROBLEMS.write().unwrap_or_else(PoisonError::into_inner).insert(last + 1, Arc::new(slot));
-    Ok(ptr::without_provenance_mut(last + 1))
+    let cancelled = problem.canceller();
+    let number = PROBLEMS
+        .register(problem, cancelled, Arc::new(Environment::new()))
+        .ok_or_else(|| Error::new(Kind::Overflow, "all numbers of handles are used up"))?;
+    Ok(ptr::without_provenance_mut(number))
 }
 
 pub(super) fn find(handle: *mut feti_problem) -> Option<Arc<Slot>> {
-    PROBLEMS.read().unwrap_or_else(PoisonError::into_inner).get(&handle.addr()).cloned()
+    PROBLEMS.find(handle.addr())
 }
 
 /// Takes the problem out of the registry; a call that found the slot before meets [`Refusal::Gone`].
 pub(super) fn remove(handle: *mut feti_problem) -> std::result::Result<Problem, Refusal> {
-    let slot = find(handle).ok_or(Refusal::Gone)?;
-    let problem = slot.claim()?.take().ok_or(Refusal::Gone)?;
-    PROBLEMS.write().unwrap_or_else(PoisonError::into_inner).remove(&handle.addr());
-    Ok(problem)
+    PROBLEMS.remove(handle.addr())
 }
 
 #[cfg(test)]

@@ -36,7 +36,7 @@ pub unsafe extern "C" fn feti_on_log(
     user: *mut c_void,
 ) -> i32 {
     enter(p, call!(feti_on_log(p, callback, level, user)), |problem| {
-        let user = User(user);
+        let user = User::new(user);
         let level = log_level(level)?;
         let listener = level.zip(callback).map(|(most, callback)| -> (LogLevel, LogListener) {
             let tell = move |level: LogLevel, text: &str| {

@@ -3,12 +3,12 @@
 //! | file | holds |
 //! |---|---|
 //! | `types`, `status` | structs, constants and status numbers of the header |
-//! | `handle` | the registry: handles are counters, never addresses, never reused |
+//! | `handle`, `registry`, `sync` | the registry: handles are counters, never addresses, never reused |
 //! | `guard` | what surrounds every call: registry, busy, `catch_unwind`, error records |
 //! | `fpu` | the floating-point environment of the host, saved and restored |
 //! | `error_store` | the last error, per thread and per problem |
 //! | `arrays`, `indices`, `record` | host arrays, index arrays and structs with a `struct_size`, checked |
-//! | `problem`, `file`, `options`, `body`, `body_info`, `stiffness`, `values`, `numbering`, `null_space`, `rows`, `solve`, `phases`, `progress`, `log`, `state`, `diagnosis`, `results`, `validation` | the functions |
+//! | `problem`, `file`, `options`, `body`, `body_info`, `stiffness`, `values`, `numbering`, `null_space`, `operator`, `rows`, `solve`, `phases`, `progress`, `log`, `state`, `diagnosis`, `results`, `validation` | the functions |
 //!
 //! The generator of the header and of the Fortran interfaces reads these files: each exported function has a table of
 //! its arguments, in which the word NULL in the rule says that the pointer may be NULL.
@@ -29,17 +29,20 @@ mod indices;
 mod log;
 mod null_space;
 mod numbering;
+mod operator;
 mod options;
 mod phases;
 mod problem;
 mod progress;
 mod record;
+mod registry;
 mod results;
 mod rows;
 mod solve;
 mod state;
 mod status;
 mod stiffness;
+mod sync;
 mod types;
 mod validation;
 mod values;
@@ -59,6 +62,7 @@ pub use file::*;
 pub use log::*;
 pub use null_space::*;
 pub use numbering::*;
+pub use operator::*;
 pub use options::*;
 pub use phases::*;
 pub use problem::*;

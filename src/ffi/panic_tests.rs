@@ -6,9 +6,10 @@ use super::guard::{call, enter, enter_with_status, without_problem};
 use super::tests::{assert_all, last_detail, last_error, string, Owned};
 use super::*;
 use crate::error::Result;
-use crate::solver::{run_heard, run_on_pool, Listener, Reply};
+use crate::solver::{run_heard, run_on_pool, Listener, Reply, Tasks};
 
 const INJECTED: &str = "injected by a test";
+const NINE: Tasks = Tasks { threads: 2, order: &[0, 1, 2, 3, 4, 5, 6, 7, 8], on_caller: &|_| false };
 
 /// Two unknowns, held: K = (2 -1; -1 2), f = (1, 0), row u_0 <= 0.1.
 fn solvable() -> Owned {
@@ -74,18 +75,9 @@ const INJECTIONS: [(&str, Injection); 7] = [
         inside(p, || run_on_pool(2, 9, |k| if k == 4 { panic!("{INJECTED}") } else { Ok(()) }).map(|_| ()))
     }),
     ("a thread of the pool, heard", |p| {
-        inside(p, || {
-            run_heard(
-                2,
-                &[0, 1, 2, 3, 4, 5, 6, 7, 8],
-                |k| if k == 4 { panic!("{INJECTED}") } else { Ok(()) },
-                &mut |_| (),
-            )
-        })
+        inside(p, || run_heard(NINE, |k| if k == 4 { panic!("{INJECTED}") } else { Ok(()) }, &mut |_| ()))
     }),
-    ("the thread that hears", |p| {
-        inside(p, || run_heard(2, &[0, 1, 2, 3, 4, 5, 6, 7, 8], Ok, &mut |_| panic!("{INJECTED}")))
-    }),
+    ("the thread that hears", |p| inside(p, || run_heard(NINE, Ok, &mut |_| panic!("{INJECTED}")))),
     ("the boundary of a progress function in the setup", |p| solve_heard_by(p, true)),
     ("the boundary of a progress function in the solve", |p| solve_heard_by(p, false)),
 ];

@@ -100,8 +100,9 @@ pub unsafe extern "C" fn feti_problem_error(
         check_text_room(buf, cap)?;
         // SAFETY: the caller gives room for one number.
         let full_length = unsafe { Output::new(len, 1, "len") }?;
+        let text = slot.error().map(|record| record.text).unwrap_or_default();
         // SAFETY: the caller gives room for `cap` characters.
-        full_length.set(unsafe { copy_text(&slot.error_text(), buf, cap) });
+        full_length.set(unsafe { copy_text(&text, buf, cap) });
         Ok(())
     })
 }

@@ -63,7 +63,7 @@ const TABLE: [(i32, &CStr, &CStr); 21] = [
     (FETI_MEMORY, c"FETI_MEMORY", c"memory could not be reserved, or the memory limit would be exceeded"),
     (FETI_HANDLE, c"FETI_HANDLE", c"the handle is NULL, destroyed, or none of this library"),
     (FETI_BUSY, c"FETI_BUSY", c"another call on this problem is running"),
-    (FETI_CALLBACK, c"FETI_CALLBACK", c"a function of the host reported a failure"),
+    (FETI_CALLBACK, c"FETI_CALLBACK", c"a function of the host reported a failure, or gave what cannot be right"),
     (FETI_STATE, c"FETI_STATE", c"something this call needs has not been given yet"),
     (FETI_LOAD_NOT_HELD, c"FETI_LOAD_NOT_HELD", c"the load has a component that no contact force can balance"),
     (FETI_GAPS_CONTRADICT, c"FETI_GAPS_CONTRADICT", c"the rows contradict each other: no displacement satisfies them"),

@@ -356,6 +356,32 @@ pub type feti_progress_fn = Option<unsafe extern "C" fn(user: *mut c_void, now: 
 /// | `text` | in | text | one line in UTF-8 without its end, valid during the call |
 pub type feti_log_fn =
     Option<unsafe extern "C" fn(user: *mut c_void, level: i32, text: *const c_char) -> i32>;
+/// A function of the host that multiplies by a matrix A it keeps: Y = A X.
+///
+/// It returns 0, or any other number for a failure of its own. X and Y never overlap.
+///
+/// | argument | in/out | shape | rule |
+/// |---|---|---|---|
+/// | `user` | in | scalar | the host's own, as given to feti_body_operator; may be NULL |
+/// | `body` | in | scalar | number of the body, from 0 |
+/// | `n` | in | scalar | unknowns of the body |
+/// | `nrhs` | in | scalar | columns of X and Y, 1 to 32 |
+/// | `x` | in | ldx * nrhs | X, column-major, finite |
+/// | `ldx` | in | scalar | >= n |
+/// | `y` | out | ldy * nrhs | Y, column-major; holds zeros before |
+/// | `ldy` | in | scalar | >= n |
+pub type feti_operator_fn = Option<
+    unsafe extern "C" fn(
+        user: *mut c_void,
+        body: i64,
+        n: i64,
+        nrhs: i64,
+        x: *const f64,
+        ldx: i64,
+        y: *mut f64,
+        ldy: i64,
+    ) -> i32,
+>;
 
 /// What the last solve, or the last setup that failed, has found out about the problem. Numbers count from 0.
 #[repr(C)]

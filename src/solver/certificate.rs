@@ -2,9 +2,11 @@
 //! computed from the host's own matrices. Every figure is relative: the same in any units and for any
 //! scaling of the rows. C = diag(1/k) is the compliance of the rows, S = (B D^-1 B' + C)^-1/2.
 
+use crate::body::Stiffness;
 use crate::constraints::{row_scales, RowSet};
+use crate::error::Result;
 use crate::linalg::vector::{dot, ratio, weighted_norm};
-use crate::linalg::{Matrix, Symmetric};
+use crate::linalg::Matrix;
 
 /// One condition: its relative figure, at most the limit where it holds, its ratio to what is allowed, and where it is
 /// worst.
@@ -92,7 +94,7 @@ pub struct Data<'a> {
 #[derive(Clone)]
 pub struct BodyData<'a> {
     pub start: usize,
-    pub stiffness: &'a Symmetric,
+    pub stiffness: Stiffness<'a>,
     /// Zero when absent.
     pub load: Option<&'a [f64]>,
     /// `R_p` with `R'DR = unit`, D = diag K.
@@ -127,10 +129,11 @@ struct Totals {
     forces: f64,
 }
 
-pub fn certify(data: &Data, answer: Answer) -> Certificate {
+/// Fails where the host does, that has the products with K.
+pub fn certify(data: &Data, answer: Answer) -> Result<Certificate> {
     let mut certificate = Certificate { limit: data.limit, ..Certificate::default() };
     let metric = metric(data, answer.u.len());
-    let totals = forces(data, answer, &metric, &mut certificate);
+    let totals = forces(data, answer, &metric, &mut certificate)?;
     let gaps = gaps(data, answer, &metric, totals.load.sqrt(), &mut certificate);
     let size = totals.work.abs() + gaps.constrained_size;
     let noise = NOISE * (totals.terms + totals.forces.max(data.work_of_loads) + gaps.stored);
@@ -139,7 +142,7 @@ pub fn certify(data: &Data, answer: Answer) -> Certificate {
     let gap = totals.strain - totals.work + gaps.constrained;
     certificate.duality_gap = energies(gap.abs(), totals.strain.abs() + size, None);
     certificate.energy = 0.5 * totals.strain - totals.work + 0.5 * gaps.stored;
-    certificate
+    Ok(certificate)
 }
 
 fn entry(part: f64, whole: f64, noise: f64, limit: f64, place: Option<usize>) -> Entry {
@@ -161,7 +164,7 @@ pub fn metric(data: &Data, unknowns: usize) -> Vec<f64> {
 }
 
 /// Equilibrium and rigid balance of every body.
-fn forces(data: &Data, answer: Answer, metric: &[f64], certificate: &mut Certificate) -> Totals {
+fn forces(data: &Data, answer: Answer, metric: &[f64], certificate: &mut Certificate) -> Result<Totals> {
     let n = answer.u.len();
     let (mut reaction, mut reaction_terms) = (vec![0.0; n], vec![0.0; n]);
     for (rows, multipliers) in [(data.contact, answer.lambda), (data.equalities, answer.mu)] {
@@ -178,7 +181,7 @@ fn forces(data: &Data, answer: Answer, metric: &[f64], certificate: &mut Certifi
         let weight = |i: usize| 1.0 / metric[body.start + i];
         let size = |v: &[f64]| weighted_norm(v, weight);
         let (mut strain, mut terms) = (vec![0.0; u.len()], vec![0.0; u.len()]);
-        body.stiffness.mul_with_terms(u, &mut strain, &mut terms);
+        body.stiffness.mul_with_terms(u, &mut strain, &mut terms)?;
         let given: Vec<f64> = (0..u.len()).map(|i| f[i].abs() + push_terms[i]).collect();
         (0..u.len()).for_each(|i| terms[i] += given[i]);
         totals.strain += dot(u, &strain);
@@ -200,7 +203,7 @@ fn forces(data: &Data, answer: Answer, metric: &[f64], certificate: &mut Certifi
         let noise = NOISE * given;
         replace_if_worse(&mut certificate.balance, entry(resultant, loads, noise, data.limit, Some(p)));
     }
-    totals
+    Ok(totals)
 }
 
 /// `(|f|^2 + |B'lambda + H'mu|^2)^1/2` in the metric `D^-1`, over all bodies.

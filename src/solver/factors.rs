@@ -34,6 +34,7 @@ impl Problem {
         if self.bodies.iter().all(|slot| slot.inverse.is_some()) {
             return self.operators(rows, &self.entries(&[], &[], &[]), 0);
         }
+        self.try_hosts(unit, watch)?;
         let begun = Instant::now();
         let twins = self.twins()?;
         let pending: Vec<usize> =
@@ -56,7 +57,7 @@ impl Problem {
     /// Null spaces and fixing dofs of the pending bodies.
     fn plans(&self, pending: &[usize], unit: f64, watch: &mut Watch) -> Result<Vec<Plan>> {
         let tolerance = self.settings.null_space_tolerance;
-        let part = Part { threads: self.threads(), weights: self.weights(pending), until: NULL_SPACES };
+        let part = Part::of(self.threads(), self.weights(pending), NULL_SPACES);
         let find =
             |k: usize| plan(&self.bodies[pending[k]].body, unit, tolerance).map_err(|e| e.body(pending[k]));
         let mut plans: Vec<Option<Plan>> = pending.iter().map(|_| None).collect();
@@ -92,7 +93,7 @@ impl Problem {
         }
         // operations grow with the power 3/2 of the entries
         let weights = own.iter().map(|(_, bytes, _)| (*bytes as f64).powf(1.5)).collect();
-        let part = Part { threads: self.threads(), weights, until: FACTORISED };
+        let part = Part::of(self.threads(), weights, FACTORISED);
         let make = |k: usize| {
             let plan = own[k].2.lock().ok().and_then(|mut plan| plan.take());
             let plan = plan.ok_or_else(|| Error::new(Kind::Internal, "a body was factorised twice"))?;
@@ -181,7 +182,7 @@ impl Problem {
         }
         let new: Vec<usize> = (0..offers.len()).filter(|&o| offers[o].symbolic.is_none()).collect();
         let bodies: Vec<usize> = new.iter().map(|&o| offers[o].body).collect();
-        let part = Part { threads: self.threads(), weights: self.weights(&bodies), until: ANALYSED };
+        let part = Part::of(self.threads(), self.weights(&bodies), ANALYSED);
         let mut made: Vec<Option<Arc<Symbolic>>> = new.iter().map(|_| None).collect();
         let analyse = |i: usize| plans[offers[new[i]].plan].analyse().map_err(|e| e.body(bodies[i]));
         watch.every_body(&part, analyse, |i, symbolic| made[i] = Some(symbolic))?;

@@ -30,7 +30,7 @@ fn improve(judge: &Certifier, settled: &Settled, ending: &mut Ending) -> Result<
     let mut replaced = false;
     for _ in 0..=CORRECTIONS {
         let recovered = judge.with_forces(point.u.clone(), &point.x);
-        let certificate = certify(&judge.data, recovered.view());
+        let certificate = certify(&judge.data, recovered.view())?;
         let better = certificate.passed() && certificate.worst() < ending.certificate.worst();
         if !better && replaced {
             break;
@@ -60,7 +60,7 @@ impl Point {
     /// F and of K+ fall with every correction.
     fn correct(&mut self, judge: &Certifier, settled: &Settled) -> Result<()> {
         let (dual, face) = (&judge.ready.dual, &settled.face);
-        let mut load = self.load_left(judge);
+        let mut load = self.load_left(judge)?;
         let rows = &judge.ready.rows;
         let value = judge.scaled.gaps.value.iter().enumerate();
         let left = value.map(|(i, gap)| gap - rows.scaled.row_dot(i, &self.u)).collect();
@@ -80,16 +80,16 @@ impl Point {
     }
 
     /// `f - K u - B'x` in units of 2^p.
-    fn load_left(&self, judge: &Certifier) -> Vec<f64> {
+    fn load_left(&self, judge: &Certifier) -> Result<Vec<f64>> {
         let mut load = judge.scaled.load.clone();
         for body in &judge.data.bodies {
             let range = body.start..body.start + body.stiffness.order();
             let mut strain = vec![0.0; range.len()];
-            body.stiffness.mul(&self.u[range.clone()], &mut strain);
+            body.stiffness.mul(&self.u[range.clone()], &mut strain)?;
             axpy(-1.0 / judge.ready.unit, &strain, &mut load[range]);
         }
         judge.ready.rows.take_forces(&self.x, &mut load);
-        load
+        Ok(load)
     }
 }
 

@@ -178,8 +178,12 @@ impl Problem {
         Ok(self.inverse(body)?.kplus.gap)
     }
 
-    /// The r dofs held in K+ of (14)-(15).
+    /// The r dofs held in K+ of (14)-(15); in that of the host it is not for the library to know.
     pub fn fixing_dofs(&mut self, body: usize) -> Result<&[usize]> {
+        if self.slot(body)?.body.operator.is_some() {
+            let what = "K+ of this body is the host's: the library holds no dofs in it";
+            return Err(Error::new(Kind::Unsupported, what).body(body));
+        }
         Ok(&self.inverse(body)?.kplus.fixing)
     }
 

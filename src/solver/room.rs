@@ -21,8 +21,7 @@ impl Problem {
     pub fn working_room(&self) -> Result<Room> {
         let rows = self.contact.len() + self.equalities.len();
         // A body without stiffness is refused before anything is made of its size.
-        let dofs: usize =
-            self.bodies.iter().filter_map(|slot| slot.body.stiffness.as_ref()).map(|k| k.order()).sum();
+        let dofs: usize = self.bodies.iter().filter_map(|slot| slot.body.k()).map(|k| k.order()).sum();
         let entries = self.contact.matrix.col.len() + self.equalities.matrix.col.len();
         let modes: usize = self.bodies.iter().map(modes_of).sum();
         let most = self.bodies.iter().map(modes_of).max().unwrap_or(0);

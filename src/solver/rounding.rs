@@ -17,12 +17,12 @@ pub fn certify_to_rounding(
     ready: &Ready,
     threads: usize,
 ) -> Result<Certificate> {
-    let certificate = certify(data, answer);
+    let certificate = certify(data, answer)?;
     if data.work_of_loads > 0.0 || !certificate.only_energies_fail() {
         return Ok(certificate);
     }
     data.work_of_loads = work_of_loads(data, ready, threads)?;
-    Ok(certify(data, answer))
+    certify(data, answer)
 }
 
 /// `sum_p (g'v)^2 / v'K v` of the loads g that balance themselves, force x length. For any motion v that is no more than
@@ -46,7 +46,7 @@ fn work_of_loads(data: &Data, ready: &Ready, threads: usize) -> Result<f64> {
     for body in &data.bodies {
         let range = body.start..body.start + body.stiffness.order();
         let (g, v, strain) = (&load[range.clone()], &motion[range.clone()], &mut strain[range]);
-        body.stiffness.mul(v, strain);
+        body.stiffness.mul(v, strain)?;
         let (done, stored) = (dot(g, v), dot(v, strain));
         work += if stored > 0.0 { done * done / stored } else { 0.0 };
     }

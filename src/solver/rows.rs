@@ -68,6 +68,6 @@ impl DualRows {
 
 /// `D / unit` over all unknowns, 1 for dofs without stiffness.
 fn metric(problem: &Problem, unit: f64) -> Vec<f64> {
-    let stiffness = problem.bodies.iter().filter_map(|slot| slot.body.stiffness.as_ref());
+    let stiffness = problem.bodies.iter().filter_map(|slot| slot.body.k());
     stiffness.flat_map(|k| (0..k.order()).map(move |i| k.metric(i, unit) / unit)).collect()
 }

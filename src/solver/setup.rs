@@ -6,7 +6,8 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use crate::body::{
-    dirichlet, dirichlet_bytes, lumped, Body, GeneralizedInverse, Modes, NullSpaceInput, Plan,
+    diagonal, dirichlet, dirichlet_bytes, lumped, Body, GeneralizedInverse, Modes, NullSpaceInput, Plan,
+    Stiffness,
 };
 use crate::constraints::RowKind;
 use crate::dual::{self, constrained, Boundary, Dual, Preconditioner};
@@ -15,6 +16,7 @@ use crate::linalg::memory::reserved;
 use crate::linalg::vector::power_of_two_below;
 use crate::linalg::{Multiple, Operator, Symmetric};
 use crate::solver::diagnosis::empty_row_contradicts;
+use crate::solver::host::lacks_null_space;
 use crate::solver::operators::Operators;
 use crate::solver::paper;
 use crate::solver::phases::{Phase, Phases};
@@ -92,8 +94,12 @@ impl Problem {
             return Err(Error::new(Kind::State, "the problem has no body yet"));
         }
         for (p, slot) in self.bodies.iter().enumerate() {
-            if slot.body.stiffness.is_none() {
+            if slot.body.k().is_none() {
                 return Err(Error::new(Kind::State, "the stiffness matrix has not been given").body(p));
+            }
+            if lacks_null_space(&slot.body) {
+                let what = "the null space has not been given: it cannot be found from products with K";
+                return Err(Error::new(Kind::State, what).body(p));
             }
             if slot.spoiled {
                 let what =
@@ -118,7 +124,7 @@ impl Problem {
     /// The power of two below the largest diagonal entry of all bodies (1 when there is none): dividing by it
     /// is exact, so powers of two in the host's units do not change a bit of what follows.
     pub(super) fn unit(&self) -> f64 {
-        let stiffness = self.bodies.iter().filter_map(|slot| slot.body.stiffness.as_ref());
+        let stiffness = self.bodies.iter().filter_map(|slot| slot.body.k());
         power_of_two_below(stiffness.map(|k| k.largest_diagonal()).fold(0.0, f64::max))
     }
 
@@ -145,7 +151,13 @@ impl Problem {
         operators: Operators,
         watch: &mut Watch,
     ) -> Result<Ready> {
-        let part = Part { threads: self.threads(), weights: operators.weights(), until: self.assembled() };
+        let all: Vec<usize> = (0..self.bodies.len()).collect();
+        let part = Part {
+            threads: self.threads(),
+            weights: operators.weights(),
+            until: self.assembled(),
+            on_caller: self.on_caller(&all),
+        };
         let bodies = self.ranges().into_iter().zip(&mut self.bodies).enumerate();
         let parts = bodies.filter_map(|(p, (range, slot))| {
             let inverse = slot.inverse.as_mut()?;
@@ -176,6 +188,7 @@ impl Problem {
         let Some(ready) = &self.ready else { return Ok(()) };
         let asked = match self.settings.preconditioner {
             word if word != c"automatic" => word,
+            _ if self.bodies.iter().all(|slot| slot.body.operator.is_some()) => c"none",
             _ if ready.dual.product_work() > LUMPED_PAYS * ready.rows.matrix.rows() => c"lumped",
             _ => c"none",
         };
@@ -204,9 +217,12 @@ impl Problem {
         let ranges = self.ranges();
         let boundaries = threads::run(self.threads(), ranges.len(), |p| {
             let local = constrained(&ready.rows.matrix, &ranges[p]);
-            let k = self.bodies[p].body.stiffness.as_ref();
-            let k = k.ok_or_else(|| Error::new(Kind::Internal, "a body without stiffness was set up"))?;
-            let stiffness = stiffness(k, 1.0 / ready.unit, &local).map_err(|e| e.body(p))?;
+            let missing = || Error::new(Kind::Internal, "a body without stiffness was set up");
+            let made = match self.bodies[p].body.k().ok_or_else(missing)? {
+                Stiffness::Matrix(k) => stiffness(k, 1.0 / ready.unit, &local),
+                Stiffness::Host(k) => diagonal(k, 1.0 / ready.unit, &local),
+            };
+            let stiffness = made.map_err(|e| e.body(p))?;
             Ok(Boundary { dofs: local.iter().map(|j| j + ranges[p].start).collect(), stiffness })
         })?;
         Preconditioner::new(&ready.rows.matrix, ready.rows.compliance.clone(), &ready.rows.metric, boundaries)
@@ -216,7 +232,8 @@ impl Problem {
 impl Ready {
     /// `B_p K_p+ f_p` of every body.
     pub fn moved(&self, threads: usize, f: &[f64]) -> Result<Vec<Vec<f64>>> {
-        threads::run(threads, self.dual.bodies(), |p| self.dual.moved(p, f))
+        let on_caller = |p: usize| self.dual.solves_on_caller(p);
+        threads::run_apart(threads, self.dual.bodies(), on_caller, |p| self.dual.moved(p, f))
     }
 
     /// `sum_p |B_p u_p|`, row by row.
@@ -227,12 +244,17 @@ impl Ready {
         x: &[f64],
         alpha: &[f64],
     ) -> Result<Vec<f64>> {
-        self.dual.distances(moved, x, alpha, &|count, task| threads::run(threads, count, task))
+        let on_caller = |p: usize| self.dual.multiplies_on_caller(p);
+        let in_parallel =
+            |count, task: &(dyn Fn(usize) -> _ + Sync)| threads::run_apart(threads, count, on_caller, task);
+        self.dual.distances(moved, x, alpha, &in_parallel)
     }
 
     /// `u = K+ f + R alpha`, over all unknowns.
     pub fn displacement(&self, threads: usize, f: &[f64], alpha: &[f64]) -> Result<Vec<f64>> {
-        let bodies = threads::run(threads, self.dual.bodies(), |p| self.dual.displacement(p, f, alpha))?;
+        let on_caller = |p: usize| self.dual.solves_on_caller(p);
+        let displacement = |p| self.dual.displacement(p, f, alpha);
+        let bodies = threads::run_apart(threads, self.dual.bodies(), on_caller, displacement)?;
         let mut all = reserved(f.len(), "a displacement")?;
         bodies.iter().for_each(|u| all.extend_from_slice(u));
         Ok(all)

@@ -120,7 +120,7 @@ impl Problem {
             let inverse = slot.inverse.as_ref().ok_or_else(missing)?;
             bodies.push(BodyData {
                 start: range.start,
-                stiffness: slot.body.stiffness.as_ref().ok_or_else(missing)?,
+                stiffness: slot.body.k().ok_or_else(missing)?,
                 load: slot.body.load.as_deref(),
                 null_space: &inverse.kplus.null_space,
                 unit: inverse.unit,

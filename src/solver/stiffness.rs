@@ -68,6 +68,7 @@ impl Problem {
         let analysed = old.is_some_and(|old| !old.col.is_of_host() && same_pattern(old, &stiffness));
         let slot = self.changed(body, unchanged)?;
         slot.body.stiffness = Some(Arc::new(stiffness));
+        slot.body.operator = None;
         slot.form = Some(form);
         slot.spoiled = false;
         if !unchanged {

@@ -2,7 +2,7 @@
 
 use std::hint::black_box;
 use std::sync::mpsc::{channel, RecvTimeoutError};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
 use rayon::prelude::*;
@@ -10,9 +10,9 @@ use rayon::{ThreadPool, ThreadPoolBuilder};
 
 use crate::error::{Error, Result};
 use crate::linalg::memory::room;
+use crate::solver::pools::Pools;
 
-/// Pools by process and size: a forked child has none of its parent's threads and makes its own.
-static POOLS: Mutex<Vec<(u32, usize, Arc<ThreadPool>)>> = Mutex::new(Vec::new());
+static POOLS: Pools<ThreadPool> = Pools { made: Mutex::new(Vec::new()) };
 
 /// Address space of a thread: its stack, and the heap of 64 MiB that the GNU allocator sets apart for it. Without one
 /// every small piece takes a page.
@@ -39,12 +39,40 @@ pub fn run<T: Send>(
     count: usize,
     task: impl Fn(usize) -> Result<T> + Sync,
 ) -> Result<Vec<T>> {
-    let pool = if count < 1 { None } else { largest_pool(threads) };
+    let pool = if count < 1 { None } else { pool_for(threads) };
     let results: Vec<Result<T>> = match pool {
         Some(pool) => pool.install(|| (0..count).into_par_iter().map(&task).collect()),
         None => (0..count).map(&task).collect(),
     };
     results.into_iter().collect()
+}
+
+/// The same where the calling thread runs the tasks `on_caller` itself.
+pub fn run_apart<T: Send>(
+    threads: usize,
+    count: usize,
+    on_caller: impl Fn(usize) -> bool,
+    task: impl Fn(usize) -> Result<T> + Sync,
+) -> Result<Vec<T>> {
+    if !(0..count).any(&on_caller) {
+        return run(threads, count, task);
+    }
+    let order: Vec<usize> = (0..count).collect();
+    let mut results: Vec<Option<T>> = order.iter().map(|_| None).collect();
+    run_heard(Tasks { threads, order: &order, on_caller: &on_caller }, task, &mut |heard| {
+        if let Heard::Done(k, result) = heard {
+            results[k] = Some(result);
+        }
+    })?;
+    Ok(results.into_iter().flatten().collect())
+}
+
+/// Tasks to begin in the order `order`, a permutation of `0..order.len()`, and those that must run on the calling thread.
+#[derive(Clone, Copy)]
+pub struct Tasks<'a> {
+    pub threads: usize,
+    pub order: &'a [usize],
+    pub on_caller: &'a dyn Fn(usize) -> bool,
 }
 
 /// What the calling thread hears while tasks run.
@@ -58,11 +86,10 @@ pub enum Heard<T> {
 /// The calling thread hears of itself after this time.
 const PATIENCE: Duration = Duration::from_millis(500);
 
-/// Begins tasks in the order `order`, a permutation of `0..order.len()`, while the calling thread hears of every result as
-/// it comes, in any order. All tasks are run; returns the error of the first by number.
+/// Begins tasks in their order while the calling thread hears of every result as it comes, in any order, between those it
+/// runs itself. All tasks are run; returns the error of the first by number.
 pub fn run_heard<T: Send>(
-    threads: usize,
-    order: &[usize],
+    tasks: Tasks,
     task: impl Fn(usize) -> Result<T> + Sync,
     hear: &mut dyn FnMut(Heard<T>),
 ) -> Result<()> {
@@ -73,16 +100,21 @@ pub fn run_heard<T: Send>(
         Some((k, Err(error))) if first.as_ref().is_none_or(|(at, _)| k < *at) => first = Some((k, error)),
         Some(_) => {}
     };
-    match largest_pool(if order.is_empty() { 0 } else { threads }) {
-        None => order.iter().for_each(|&k| sort(Some((k, task(k))))),
+    let (own, others): (Vec<usize>, Vec<usize>) = tasks.order.iter().partition(|&&k| (tasks.on_caller)(k));
+    match pool_for(if others.is_empty() { 0 } else { tasks.threads }) {
+        None => tasks.order.iter().for_each(|&k| sort(Some((k, task(k))))),
         Some(pool) => pool.in_place_scope(|scope| {
             let (sender, results) = channel();
-            for &k in order {
+            for k in others {
                 let (sender, task) = (sender.clone(), &task);
                 // The calling thread listens until the last sender is gone: it is never sent into the void.
                 scope.spawn(move |_| drop(sender.send((k, task(k)))));
             }
             drop(sender);
+            for k in own {
+                sort(Some((k, task(k))));
+                results.try_iter().for_each(|ended| sort(Some(ended)));
+            }
             loop {
                 match results.recv_timeout(PATIENCE) {
                     Ok(ended) => sort(Some(ended)),
@@ -95,25 +127,27 @@ pub fn run_heard<T: Send>(
     first.map_or(Ok(()), |(_, error)| Err(error))
 }
 
+/// None on a thread of a pool, where a function of the host has called for another problem: to wait there could take the
+/// last thread that works.
+fn pool_for(threads: usize) -> Option<Arc<ThreadPool>> {
+    largest_pool(if rayon::current_thread_index().is_some() { 1 } else { threads })
+}
+
 /// A pool of so many threads, or of half as many, and so on; none of a single thread.
 fn largest_pool(threads: usize) -> Option<Arc<ThreadPool>> {
     std::iter::successors(Some(threads), |threads| Some(threads / 2)).take_while(|t| *t > 1).find_map(pool)
 }
 
 fn pool(threads: usize) -> Option<Arc<ThreadPool>> {
-    let process = std::process::id();
-    let mut pools = POOLS.lock().unwrap_or_else(PoisonError::into_inner);
-    if let Some((_, _, pool)) = pools.iter().find(|(p, size, _)| *p == process && *size == threads) {
-        return Some(Arc::clone(pool));
-    }
-    let starting = room(threads * STARTED + STARTING, "threads").ok()?;
-    let builder = ThreadPoolBuilder::new().num_threads(threads).thread_name(|_| THREAD_NAME.to_owned());
-    let pool = Arc::new(builder.build().ok()?);
-    // Every thread takes its heap now, while there is room for it.
-    pool.broadcast(|_| drop(black_box(Box::new(0_u64))));
-    drop(starting);
-    pools.push((process, threads, Arc::clone(&pool)));
-    Some(pool)
+    POOLS.get(std::process::id(), threads, || {
+        let starting = room(threads * STARTED + STARTING, "threads").ok()?;
+        let builder = ThreadPoolBuilder::new().num_threads(threads).thread_name(|_| THREAD_NAME.to_owned());
+        let pool = builder.build().ok()?;
+        // Every thread takes its heap now, while there is room for it.
+        pool.broadcast(|_| drop(black_box(Box::new(0_u64))));
+        drop(starting);
+        Some(pool)
+    })
 }
 
 #[cfg(test)]
@@ -139,18 +173,40 @@ mod tests {
         for threads in [1, 2, 5] {
             let mut heard = Vec::new();
             let failing = |k| if k % 7 == 3 { Err(Error::new(Kind::State, "no").body(k)) } else { Ok(k * k) };
-            let ended = run_heard(threads, &order, failing, &mut |event| {
-                assert_eq!(std::thread::current().id(), caller);
-                if let Heard::Done(k, square) = event {
-                    heard.push((k, square));
-                }
-            });
+            let ended =
+                run_heard(Tasks { threads, order: &order, on_caller: &|_| false }, failing, &mut |event| {
+                    assert_eq!(std::thread::current().id(), caller);
+                    if let Heard::Done(k, square) = event {
+                        heard.push((k, square));
+                    }
+                });
             if threads == 1 {
                 assert!(heard.is_sorted_by(|a, b| a.0 > b.0), "begun in another order");
             }
             heard.sort_unstable();
             let expected: Vec<_> = (0..20).filter(|k| k % 7 != 3).map(|k| (k, k * k)).collect();
             assert_eq!((heard, ended.unwrap_err().place.body), (expected, Some(3)));
+        }
+    }
+
+    #[test]
+    fn calls_from_threads_of_the_pool_end() {
+        let within = |k: usize| run_apart(2, 5, |inner| inner == 4, |inner| Ok(k + inner));
+        assert_eq!(run(2, 8, within).unwrap()[7], [7, 8, 9, 10, 11]);
+    }
+
+    #[test]
+    fn the_calling_thread_runs_its_own_tasks_and_results_stay_in_order() {
+        let caller = std::thread::current().id();
+        for threads in [1, 2, 5] {
+            let own = |k: usize| k % 3 == 1;
+            let task = |k: usize| {
+                assert!(!own(k) || std::thread::current().id() == caller, "{k}");
+                Ok(k)
+            };
+            assert_eq!(run_apart(threads, 20, own, task).unwrap(), (0..20).collect::<Vec<_>>());
+            let failing = |k| if k > 7 { Err(Error::new(Kind::State, "no").body(k)) } else { Ok(k) };
+            assert_eq!(run_apart(threads, 20, own, failing).unwrap_err().place.body, Some(8));
         }
     }
 
@@ -164,7 +220,7 @@ mod tests {
             Ok(())
         };
         let mut events = Vec::new();
-        run_heard(2, &[0], waiting, &mut |event| {
+        run_heard(Tasks { threads: 2, order: &[0], on_caller: &|_| false }, waiting, &mut |event| {
             events.push(matches!(event, Heard::Nothing));
             ended.store(true, Ordering::Relaxed);
         })

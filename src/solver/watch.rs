@@ -12,7 +12,7 @@ use crate::solver::findings::Findings;
 use crate::solver::log::Log;
 use crate::solver::problem::Problem;
 use crate::solver::setup::Ready;
-use crate::solver::threads::{self, Heard};
+use crate::solver::threads::{self, Heard, Tasks};
 
 /// What the host hears.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -127,6 +127,15 @@ pub(super) struct Part {
     pub weights: Vec<f64>,
     /// Fraction of the whole setup at its end.
     pub until: f64,
+    /// Tasks that must run on the thread that calls the library.
+    pub on_caller: Vec<bool>,
+}
+
+impl Part {
+    /// Tasks that may run on any thread.
+    pub fn of(threads: usize, weights: Vec<f64>, until: f64) -> Self {
+        Self { threads, weights, until, on_caller: Vec::new() }
+    }
 }
 
 /// One call under watch.
@@ -170,7 +179,9 @@ impl Watch {
         let (mut done, mut told) = (0.0, Ok(()));
         let mut order: Vec<usize> = (0..part.weights.len()).collect();
         order.sort_by(|&a, &b| part.weights[b].total_cmp(&part.weights[a]));
-        let ended = threads::run_heard(part.threads, &order, guarded, &mut |heard| {
+        let on_caller = |k: usize| part.on_caller.get(k) == Some(&true);
+        let tasks = Tasks { threads: part.threads, order: &order, on_caller: &on_caller };
+        let ended = threads::run_heard(tasks, guarded, &mut |heard| {
             if let Heard::Done(k, result) = heard {
                 keep(k, result);
                 done += part.weights[k];
@@ -273,7 +284,11 @@ impl Operator for Interruptible<'_> {
         } else {
             self.stops.check_cancelled()?;
         }
-        self.operator.product(x, y, &|count, task| threads::run(self.threads, count, task))
+        let on_caller = |p: usize| self.operator.multiplies_on_caller(p);
+        let in_parallel = |count, task: &(dyn Fn(usize) -> _ + Sync)| {
+            threads::run_apart(self.threads, count, on_caller, task)
+        };
+        self.operator.product(x, y, &in_parallel)
     }
 }
 

@@ -4,7 +4,7 @@ use std::ptr::{null, null_mut};
 
 use super::super::*;
 
-pub const SOURCES: [&str; 19] = [
+pub const SOURCES: [&str; 20] = [
     include_str!("../body.rs"),
     include_str!("../body_info.rs"),
     include_str!("../diagnosis.rs"),
@@ -13,6 +13,7 @@ pub const SOURCES: [&str; 19] = [
     include_str!("../log.rs"),
     include_str!("../null_space.rs"),
     include_str!("../numbering.rs"),
+    include_str!("../operator.rs"),
     include_str!("../options.rs"),
     include_str!("../phases.rs"),
     include_str!("../problem.rs"),
@@ -61,6 +62,7 @@ pub fn statuses(p: *mut feti_problem) -> Vec<(&'static str, i32)> {
         feti_body_null_space_get(0, 0, null_mut(), null_mut(), 0);
         feti_body_coordinates(0, 0, 0, null(), null(), null(), 0);
         feti_body_load(0, 0, null());
+        feti_body_operator(0, 0, null(), None, None, 0, null_mut());
         feti_rows_add_i32(0, 0, null(), null(), null(), null(), 0, null(), null_mut());
         feti_rows_add_i64(0, 0, null(), null(), null(), null(), 0, null(), null_mut());
         feti_rows_rhs(0, 0, 0, null());

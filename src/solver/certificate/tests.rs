@@ -1,5 +1,5 @@
 use super::*;
-use crate::linalg::Csr;
+use crate::linalg::{Csr, Symmetric};
 
 /// Noise / limit is 64 eps / 1e-8 of the terms of an entry, and adds to its whole.
 const NOISY: f64 = 1e-5;
@@ -18,7 +18,13 @@ fn on_a_spring(u: f64, lambda: f64, unit: f64, stiffness_of_row: f64) -> Certifi
         RowSet { matrix: matrix.into(), rhs: vec![0.25], compliance: vec![1.0 / (stiffness_of_row * unit)] };
     let none = Matrix { rows: 1, ..Matrix::default() };
     let load = [2.0 * unit];
-    let body = BodyData { start: 0, stiffness: &stiffness, load: Some(&load), null_space: &none, unit: 1.0 };
+    let body = BodyData {
+        start: 0,
+        stiffness: (&stiffness).into(),
+        load: Some(&load),
+        null_space: &none,
+        unit: 1.0,
+    };
     let data = Data {
         bodies: vec![body],
         contact: &contact,
@@ -27,14 +33,20 @@ fn on_a_spring(u: f64, lambda: f64, unit: f64, stiffness_of_row: f64) -> Certifi
         limit: 1e-8,
         work_of_loads: 0.0,
     };
-    certify(&data, Answer { u: &[u], lambda: &[lambda * unit], mu: &[] })
+    certify(&data, Answer { u: &[u], lambda: &[lambda * unit], mu: &[] }).unwrap()
 }
 
 /// Two dofs joined by a spring, with nothing to hold them.
 fn free_pair(load: [f64; 2], u: [f64; 2]) -> Certificate {
     let stiffness = Symmetric::new(vec![0, 1, 3], vec![0, 0, 1], vec![1.0, -1.0, 1.0]);
     let modes = Matrix { rows: 2, cols: 1, data: vec![0.5_f64.sqrt(); 2] };
-    let body = BodyData { start: 0, stiffness: &stiffness, load: Some(&load), null_space: &modes, unit: 1.0 };
+    let body = BodyData {
+        start: 0,
+        stiffness: (&stiffness).into(),
+        load: Some(&load),
+        null_space: &modes,
+        unit: 1.0,
+    };
     let none = RowSet::default();
     let data = Data {
         bodies: vec![body],
@@ -44,7 +56,7 @@ fn free_pair(load: [f64; 2], u: [f64; 2]) -> Certificate {
         limit: 1e-8,
         work_of_loads: 0.0,
     };
-    certify(&data, Answer { u: &u, lambda: &[], mu: &[] })
+    certify(&data, Answer { u: &u, lambda: &[], mu: &[] }).unwrap()
 }
 
 #[test]
@@ -74,7 +86,13 @@ fn the_energies_of_forces_that_all_but_cancel_are_known_to_their_rounding() {
     let contact = RowSet { matrix: matrix.into(), rhs: vec![1e-12], compliance: vec![0.0] };
     let none = Matrix { rows: 1, ..Matrix::default() };
     let load = [2.0];
-    let body = BodyData { start: 0, stiffness: &stiffness, load: Some(&load), null_space: &none, unit: 1.0 };
+    let body = BodyData {
+        start: 0,
+        stiffness: (&stiffness).into(),
+        load: Some(&load),
+        null_space: &none,
+        unit: 1.0,
+    };
     let equalities = RowSet::default();
     let data = Data {
         bodies: vec![body],
@@ -87,7 +105,7 @@ fn the_energies_of_forces_that_all_but_cancel_are_known_to_their_rounding() {
     let moved = |by: f64, work_of_loads: f64| {
         let u = 1e-12 + by;
         let answer = Answer { u: &[u], lambda: &[2.0 - 4.0 * u], mu: &[] };
-        certify(&Data { work_of_loads, ..data.clone() }, answer)
+        certify(&Data { work_of_loads, ..data.clone() }, answer).unwrap()
     };
     assert!(moved(-1e-15, 0.0).passed(), "rounding of the load moves the spring as far");
     assert!(moved(-1e-12, 0.0).only_energies_fail(), "a force across an open gap");

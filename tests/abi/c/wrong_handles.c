@@ -2,6 +2,12 @@
    argument. NULL where the interface allows it: accepted. */
 #include "small.h"
 
+static int32_t multiply_spring(void *user, int64_t body, int64_t n, int64_t nrhs, const double *x, int64_t ldx, double *y, int64_t ldy)
+{
+    (void)user, (void)body, (void)n, (void)nrhs, (void)x, (void)ldx, (void)y, (void)ldy;
+    return 1;
+}
+
 /* Every function with a handle and otherwise good arguments. */
 static void every_function(int32_t expected, feti_problem *h)
 {
@@ -26,6 +32,7 @@ static void every_function(int32_t expected, feti_problem *h)
     EXPECT(expected, feti_body_null_space_get(h, BLOCK, 2, &i, x, 2));
     EXPECT(expected, feti_body_coordinates(h, SPRING, 1, 1, (int32_t[1]){ 1 }, (int32_t[1]){ 1 }, x, 1));
     EXPECT(expected, give_block_load(h));
+    EXPECT(expected, feti_body_operator(h, SPRING, 1, SPRING_VAL, multiply_spring, multiply_spring, 0, NULL));
     EXPECT(expected, give_row(h));
     EXPECT(expected, feti_rows_add_i64(h, FETI_EQUALITY, 0, ptr64, NULL, col64, x, 0, NULL, NULL));
     EXPECT(expected, feti_rows_rhs(h, FETI_INEQUALITY, 0, 1, GAP));

@@ -1,0 +1,177 @@
+!> What the FORTRAN 77 face is made of: conversions between the host's INTEGER and the library's integers, statuses, texts.
+!> A host calls the external subroutines FT... of the files feti_contact_f77_*.f90 and needs no module.
+!>
+!> The face is shipped as source: compiled with the host's flags its INTEGER is the host's, of 4 or 8 bytes. No number is
+!> cut silently: what a host gives is clamped to a number that the library refuses; what INTEGER, or a label of 32 bits,
+!> cannot hold gives status FTEFIT; in arrays of counts (INFO and the like) it is the largest INTEGER.
+module feti_contact_f77_base
+  use, intrinsic :: iso_c_binding, only: c_char, c_double, c_funptr, c_int32_t, c_int64_t, c_intptr_t, c_loc, c_ptr, &
+    c_f_pointer, c_f_procpointer, c_funloc, c_null_char, c_null_funptr, c_null_ptr
+  use feti_contact_base, only: c_text, f_text, static_text
+  use feti_contact_c
+  implicit none
+  public
+  include 'feti_contact_f77.inc'
+
+  !> By rows, with the index arrays of the host.
+  interface stiffness_by_rows
+    procedure feti_body_stiffness_i32, feti_body_stiffness_i64
+  end interface
+  interface stiffness_split
+    procedure feti_body_stiffness_split_i32, feti_body_stiffness_split_i64
+  end interface
+  interface numbering
+    procedure feti_body_numbering_i32, feti_body_numbering_i64
+  end interface
+  interface add_rows
+    procedure feti_rows_add_i32, feti_rows_add_i64
+  end interface
+
+  !> The face's own statuses in the order FTEISZ, FTEDSZ, FTEFIT.
+  character(len=*), parameter :: own_text(3) = [character(len=110) :: &
+    'FTNEW: INTEGER of the host and of the FORTRAN 77 face differ in size: compile both with the same flags', &
+    'FTNEW: DOUBLE PRECISION of the host has not 8 bytes: compile it without -fdefault-real-8 or the like', &
+    'a number does not fit: one of the library into the host''s INTEGER, or the label of a node into 32 bits']
+
+contains
+
+  !> The library's handle: the host's INTEGER holds its number.
+  type(c_ptr) function handle(ip)
+    integer, intent(in) :: ip
+
+    handle = transfer(int(ip, c_intptr_t), c_null_ptr)
+  end function
+
+  !> Number of a body, row or state from 0: -2 for every number that is none, since -1 is FETI_ALL.
+  integer(c_int64_t) function from_zero(i)
+    integer, intent(in) :: i
+
+    from_zero = merge(int(i, c_int64_t) - 1, -2_c_int64_t, i >= 1)
+  end function
+
+  !> A body, or all of them.
+  integer(c_int64_t) function body_or_all(i)
+    integer, intent(in) :: i
+
+    body_or_all = from_zero(i)
+    if (i == FTALL) body_or_all = FETI_ALL
+  end function
+
+  integer(c_int64_t) function wide(i)
+    integer, intent(in) :: i
+
+    wide = int(i, c_int64_t)
+  end function
+
+  !> A number of 32 bits; one that does not fit becomes the largest of its sign, which no argument allows.
+  integer(c_int32_t) function narrow(i)
+    integer, intent(in) :: i
+    integer(c_int64_t), parameter :: largest = int(huge(1_c_int32_t), c_int64_t)
+
+    narrow = int(max(-largest, min(largest, int(i, c_int64_t))), c_int32_t)
+  end function
+
+  !> A count; one beyond the largest INTEGER is that INTEGER.
+  elemental integer function clipped(found)
+    integer(c_int64_t), intent(in) :: found
+
+    clipped = int(max(-int(huge(1), c_int64_t), min(int(huge(1), c_int64_t), found)))
+  end function
+
+  !> i becomes the number found, or ierr FTEFIT.
+  subroutine fit(found, i, ierr)
+    integer(c_int64_t), intent(in) :: found
+    integer, intent(inout) :: i, ierr
+
+    if (abs(found) > int(huge(i), c_int64_t)) then
+      ierr = FTEFIT
+    else
+      i = int(found)
+    end if
+  end subroutine
+
+  !> The same for the first n numbers, all or none.
+  subroutine fit_all(found, n, i, ierr)
+    integer(c_int64_t), intent(in) :: found(:)
+    integer, intent(in) :: n
+    integer, intent(inout) :: i(*), ierr
+
+    if (any(found(:n) > int(huge(1), c_int64_t))) then
+      ierr = FTEFIT
+    else
+      i(:n) = int(found(:n))
+    end if
+  end subroutine
+
+  !> A list of which the library has written the first cap numbers, from 0: how many there are, and those, from 1.
+  subroutine fit_list(count, cap, found, n, i, ierr)
+    integer(c_int64_t), intent(in) :: count, found(:)
+    integer, intent(in) :: cap
+    integer, intent(inout) :: n, i(*), ierr
+
+    call fit_all(found + 1, int(min(count, wide(cap))), i, ierr)
+    if (ierr == FETI_OK) call fit(count, n, ierr)
+  end subroutine
+
+  !> Writes the first n of the counts.
+  subroutine give(found, n, i)
+    integer(c_int64_t), intent(in) :: found(:)
+    integer, intent(in) :: n
+    integer, intent(inout) :: i(*)
+    integer :: k
+
+    do k = 1, min(n, size(found))
+      i(k) = clipped(found(k))
+    end do
+  end subroutine
+
+  subroutine give_reals(found, n, x)
+    real(c_double), intent(in) :: found(:)
+    integer, intent(in) :: n
+    real(c_double), intent(inout) :: x(*)
+    integer :: k
+
+    do k = 1, min(n, size(found))
+      x(k) = found(k)
+    end do
+  end subroutine
+
+  !> The host's status: argument k of the C function is argument place(k) of the subroutine; absent: the same one.
+  integer function told(status, place)
+    integer(c_int32_t), intent(in) :: status
+    integer, intent(in), optional :: place(:)
+    integer :: k
+
+    told = int(status)
+    if (status >= FETI_ARGUMENT .or. .not. present(place)) return
+    k = int(FETI_ARGUMENT - status)
+    if (k <= size(place)) told = int(FETI_ARGUMENT) - place(k)
+  end function
+
+  !> Address of an array of the host, NULL where there is none.
+  type(c_ptr) function reals(x, present)
+    real(c_double), intent(in), target :: x(*)
+    logical, intent(in) :: present
+
+    reals = c_null_ptr
+    if (present) reals = c_loc(x(1))
+  end function
+
+  type(c_ptr) function integers(i)
+    integer, intent(in), target :: i(*)
+
+    integers = c_loc(i(1))
+  end function
+
+  !> Text of the thread's last error, blank padded or cut.
+  subroutine give_last_error(text)
+    character(len=*), intent(inout) :: text
+    character(kind=c_char), allocatable, target :: buffer(:)
+    integer(c_int64_t) :: length
+
+    allocate (buffer(feti_last_error(c_null_ptr, 0_c_int64_t) + 1))
+    length = feti_last_error(c_loc(buffer), size(buffer, kind=c_int64_t))
+    text = f_text(buffer)
+  end subroutine
+
+end module

@@ -1,0 +1,155 @@
+!> FORTRAN 77 face: problems, errors, version. See docs/fortran77.md; ierr, the status, comes last everywhere.
+
+!> Creates a problem: ip, its handle. Texts and positions count from 1.
+!> The check words iword = 1, 2 and dword = 1, 2 tell the sizes of the host's INTEGER and DOUBLE PRECISION: where they are
+!> not those of the face, ierr, written in the host's size, is FTEISZ or FTEDSZ, FTERR has the text, and ip is as it was.
+subroutine ftnew(iword, dword, ip, ierr)
+  use feti_contact_f77_base
+  implicit none
+  integer(c_int32_t), intent(in) :: iword(2)
+  integer(c_int64_t), intent(in) :: dword(1)
+  integer, intent(inout) :: ip
+  integer(c_int32_t), intent(inout) :: ierr(*)
+  integer(c_int64_t), parameter :: one = transfer(1.0_c_double, 0_c_int64_t)
+  integer(c_int32_t), parameter :: words(2) = transfer(1_c_int64_t, [0_c_int32_t, 0_c_int32_t])
+  integer :: bits, status
+
+  bits = 0
+  if (all(iword == [1_c_int32_t, 2_c_int32_t])) bits = 32
+  if (all(iword == words)) bits = 64
+  if (bits /= storage_size(ip)) then
+    status = FTEISZ
+  else if (dword(1) /= one) then
+    status = FTEDSZ
+  else
+    call create(status)
+  end if
+  if (bits == 64) then
+    ierr(:2) = transfer(int(status, c_int64_t), ierr(:2))
+  else
+    ierr(1) = int(status, c_int32_t)
+  end if
+
+contains
+
+  subroutine create(status)
+    integer, intent(out) :: status
+    type(c_ptr) :: p
+    integer(c_int32_t) :: destroyed
+
+    p = c_null_ptr
+    status = int(feti_problem_create(p))
+    if (status == FETI_OK) status = int(feti_set_i64(p, c_text('index_base'), 1_c_int64_t))
+    if (status == FETI_OK) call fit(int(transfer(p, 0_c_intptr_t), c_int64_t), ip, status)
+    if (status /= FETI_OK) destroyed = feti_problem_destroy(p)
+  end subroutine
+
+end subroutine
+
+!> Destroys a problem with all it holds; ip becomes 0. Every copy of ip gives FTEHDL from now on.
+subroutine ftfree(ip, ierr)
+  use feti_contact_f77_base
+  implicit none
+  integer, intent(inout) :: ip
+  integer, intent(out) :: ierr
+  type(c_ptr) :: p
+
+  p = handle(ip)
+  ierr = told(feti_problem_destroy(p))
+  if (ierr == FETI_OK) ip = 0
+end subroutine
+
+!> Text to the status ierr that a subroutine has just returned on this thread; blank for 0.
+subroutine fterr(ierr, text)
+  use feti_contact_f77_base
+  implicit none
+  integer(c_int32_t), intent(in) :: ierr(*)
+  character(len=*), intent(inout) :: text
+  integer(c_int32_t), parameter :: first(2) = transfer(1_c_int64_t, [0_c_int32_t, 0_c_int32_t])
+  integer :: status
+
+  ! The half of ierr that tells, whatever the size of the host's INTEGER; where the first half is the upper one, of the
+  ! face's INTEGER.
+  status = int(ierr(merge(1, storage_size(status) / 32, first(1) == 1)))
+  text = ' '
+  if (status == FETI_OK) return
+  if (status <= FTEISZ .and. status >= FTEFIT) then
+    text = own_text(FTEISZ - status + 1)
+  else
+    call give_last_error(text)
+    if (text == ' ') text = static_text(feti_status_text(narrow(status)))
+  end if
+end subroutine
+
+!> Text of the problem's last error and its full length l; blank when there was none. From any thread, also while another
+!> call on the problem runs.
+subroutine ftperr(ip, text, l, ierr)
+  use feti_contact_f77_base
+  implicit none
+  integer, intent(in) :: ip
+  character(len=*), intent(inout) :: text
+  integer, intent(inout) :: l
+  integer, intent(out) :: ierr
+  character(kind=c_char), target :: buffer(len(text) + 1)
+  integer(c_int64_t) :: length
+
+  ierr = told(feti_problem_error(handle(ip), c_loc(buffer), size(buffer, kind=c_int64_t), length))
+  if (ierr == FETI_OK) call fit(length, l, ierr)
+  if (ierr == FETI_OK) text = f_text(buffer)
+end subroutine
+
+!> Facts of the thread's last error: idet(ni) and rdet(nr), positions FTDSTA to FTDENT, FTDVAL, FTDLIM; name: the C function,
+!> whose arguments idet(FTDARG) counts. Numbers count from 1, 0: does not apply.
+subroutine ftedet(ni, idet, nr, rdet, name, ierr)
+  use feti_contact_f77_base
+  implicit none
+  integer, intent(in) :: ni, nr
+  integer, intent(inout) :: idet(*)
+  real(c_double), intent(inout) :: rdet(*)
+  character(len=*), intent(inout) :: name
+  integer, intent(out) :: ierr
+  type(feti_error_detail) :: found
+
+  found%struct_size = storage_size(found, c_int64_t) / 8
+  ierr = told(feti_last_error_detail(found))
+  if (ierr /= FETI_OK) return
+  call give([int(found%status, c_int64_t), int(found%argument, c_int64_t), found%body + 1, found%component + 1, &
+    found%dof + 1, found%row + 1, found%entry + 1], ni, idet)
+  call give_reals([found%value, found%limit], nr, rdet)
+  name = f_text(found%function)
+end subroutine
+
+!> Name of a status, such as FETI_LOAD_NOT_HELD, which FTELNH is here.
+subroutine ftsnam(istat, text)
+  use feti_contact_f77_base
+  implicit none
+  integer, intent(in) :: istat
+  character(len=*), intent(inout) :: text
+
+  text = static_text(feti_status_name(narrow(istat)))
+end subroutine
+
+!> One sentence on a status.
+subroutine ftstxt(istat, text)
+  use feti_contact_f77_base
+  implicit none
+  integer, intent(in) :: istat
+  character(len=*), intent(inout) :: text
+
+  if (istat <= FTEISZ .and. istat >= FTEFIT) then
+    text = own_text(FTEISZ - istat + 1)
+  else
+    text = static_text(feti_status_text(narrow(istat)))
+  end if
+end subroutine
+
+!> Version of the library: text MAJOR.MINOR.PATCH, number 10000 MAJOR + 100 MINOR + PATCH.
+subroutine ftvers(text, number)
+  use feti_contact_f77_base
+  implicit none
+  character(len=*), intent(inout) :: text
+  integer, intent(out) :: number
+
+  text = static_text(feti_version())
+  number = int(feti_version_number())
+end subroutine

@@ -1,0 +1,66 @@
+//! K as the host has given it: by its entries, or by its products.
+
+use crate::body::host::HostOperator;
+use crate::error::Result;
+use crate::linalg::Symmetric;
+
+#[derive(Clone, Copy)]
+pub enum Stiffness<'a> {
+    Matrix(&'a Symmetric),
+    Host(&'a HostOperator),
+}
+
+impl Stiffness<'_> {
+    pub fn order(&self) -> usize {
+        match self {
+            Self::Matrix(k) => k.order(),
+            Self::Host(k) => k.order(),
+        }
+    }
+
+    /// `D_ii` of the metric in which all of K is measured: `K_ii`, or `without` for a dof that has no stiffness.
+    pub fn metric(&self, i: usize, without: f64) -> f64 {
+        match self {
+            Self::Matrix(k) => k.metric(i, without),
+            Self::Host(k) => k.metric(i, without),
+        }
+    }
+
+    /// `max K_ii`
+    pub fn largest_diagonal(&self) -> f64 {
+        match self {
+            Self::Matrix(k) => k.largest_diagonal(),
+            Self::Host(k) => (0..k.order()).map(|i| k.diagonal(i)).fold(0.0, f64::max),
+        }
+    }
+
+    /// `y = K x`
+    pub fn mul(&self, x: &[f64], y: &mut [f64]) -> Result<()> {
+        match self {
+            Self::Matrix(k) => k.mul(x, y),
+            Self::Host(k) => k.mul(x, y)?,
+        }
+        Ok(())
+    }
+
+    /// `y = K x`, and the terms that its rounding errors are measured against: `|K| |x|`, or `D |x| + |K x|` where the
+    /// entries are not known.
+    pub fn mul_with_terms(&self, x: &[f64], y: &mut [f64], terms: &mut [f64]) -> Result<()> {
+        match self {
+            Self::Matrix(k) => k.mul_with_terms(x, y, terms),
+            Self::Host(k) => k.mul_with_terms(x, y, terms)?,
+        }
+        Ok(())
+    }
+
+    /// Its products are taken on the thread alone that calls the library.
+    pub fn on_caller(&self) -> bool {
+        matches!(self, Self::Host(k) if k.on_caller())
+    }
+}
+
+impl<'a> From<&'a Symmetric> for Stiffness<'a> {
+    fn from(k: &'a Symmetric) -> Self {
+        Self::Matrix(k)
+    }
+}

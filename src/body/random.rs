@@ -1,0 +1,34 @@
+//! Random numbers for probes, the same in every run.
+
+use crate::error::Result;
+use crate::linalg::memory::zeros;
+
+const SEED: u64 = 0x9e37_79b9_7f4a_7c15;
+
+/// Numbers of size 1/2 to 3/2 and either sign. Mere signs would cancel along many motions of few dofs.
+pub struct Random(u64);
+
+impl Default for Random {
+    fn default() -> Self {
+        Self(SEED)
+    }
+}
+
+impl Random {
+    fn number(&mut self) -> f64 {
+        const UNIT: f64 = 1.0 / (1_u64 << 52) as f64;
+        self.0 ^= self.0 << 13;
+        self.0 ^= self.0 >> 7;
+        self.0 ^= self.0 << 17;
+        let size = 0.5 + (self.0 >> 12) as f64 * UNIT;
+        let sign = if self.0 & 1 == 0 { 1.0 } else { -1.0 };
+        sign * size
+    }
+
+    /// The next n numbers, each times `scale` of its position.
+    pub fn vector(&mut self, n: usize, scale: impl Fn(usize) -> f64) -> Result<Vec<f64>> {
+        let mut values = zeros(n, "a probe")?;
+        values.iter_mut().enumerate().for_each(|(i, v)| *v = self.number() * scale(i));
+        Ok(values)
+    }
+}

@@ -1,0 +1,97 @@
+//! Bodies whose stiffness the host keeps, with a factorisation of its own.
+
+use std::ffi::c_void;
+use std::sync::Arc;
+
+use super::arrays::input;
+use super::body::body_of_order;
+use super::fpu::Environment;
+use super::guard::{call, enter};
+use super::handle;
+use super::progress::User;
+use super::types::{feti_operator_fn, feti_problem};
+use crate::error::{Error, Kind, Result};
+use crate::solver::{HostFunctions, HostProduct};
+
+/// Names the functions of the host that multiply by the stiffness K of a body and by a generalised inverse K+ of it.
+///
+/// The library sees no entry of K but the diagonal, which is copied, and factorises nothing. K+ is any symmetric positive
+/// semidefinite matrix with K K+ K = K: where K is not singular its inverse, else that of K with enough unknowns held (rows
+/// and columns of zeros in K+), or that of K plus a regularisation that acts on the null space alone. The null space must
+/// be given, by feti_body_null_space or feti_body_coordinates (the body then counts as connected). feti_setup tries the
+/// functions with a few fixed vectors and refuses what is wrong by name: FETI_CALLBACK (K or K+ not symmetric, K K+ K not
+/// K, a result that is no finite number), FETI_INDEFINITE, FETI_NULL_SPACE (K R not 0, a mode missing in R), with the
+/// figure and its limit in the error detail.
+///
+/// A function that returns anything but 0 ends the call that needed it with FETI_CALLBACK, the body and that number in
+/// the error detail; the problem stays as it was. The functions run in the host's floating-point environment; with
+/// `concurrent` 0 on the thread alone that has called the library, with 1 also on threads of the library, several at once.
+/// Inside them calls on the same problem return FETI_BUSY, except feti_cancel and feti_problem_error. They must not end by
+/// longjmp or an exception, and must give the same bits for the same X.
+///
+/// Calling again replaces the functions and what was computed with them: to be done whenever K has changed. A stiffness
+/// matrix given later takes their place, and they that of a matrix. After a failure the body keeps what it had.
+///
+/// | argument | in/out | shape | rule |
+/// |---|---|---|---|
+/// | `p` | in | scalar | the handle |
+/// | `body` | in | scalar | number of the body, from 0 |
+/// | `n` | in | scalar | unknowns of the body |
+/// | `diag` | in | n | diagonal of K, >= 0, force per length: what the body is measured by |
+/// | `kplus` | in | scalar | Y = K+ X, X force, Y length |
+/// | `k` | in | scalar | Y = K X, X length, Y force |
+/// | `concurrent` | in | scalar | 0: only on the calling thread; 1: on any thread, several at once |
+/// | `user` | in | scalar | handed to the functions unchanged; may be NULL |
+///
+/// # Safety
+/// `diag` has the given shape; the functions may be called with `user` until they are replaced or the problem destroyed.
+#[no_mangle]
+pub unsafe extern "C" fn feti_body_operator(
+    p: *mut feti_problem,
+    body: i64,
+    n: i64,
+    diag: *const f64,
+    kplus: feti_operator_fn,
+    k: feti_operator_fn,
+    concurrent: i32,
+    user: *mut c_void,
+) -> i32 {
+    enter(p, call!(feti_body_operator(p, body, n, diag, kplus, k, concurrent, user)), |problem| {
+        let (number, order) = body_of_order(problem, body, n)?;
+        // SAFETY: the shape by the caller's word.
+        let diagonal = unsafe { input(diag, order, "diag") }?;
+        let slot = handle::find(p).ok_or_else(|| Error::new(Kind::Internal, "a problem without handle"))?;
+        let product = |function: feti_operator_fn, name| -> Result<HostProduct> {
+            let function = function.ok_or_else(|| Error::argument(name, "NULL").body(number))?;
+            let host = Function { function, user: User::new(user), body, n };
+            Ok(host.product(Arc::clone(&slot.shared)))
+        };
+        let (kplus, k) = (product(kplus, "kplus")?, product(k, "k")?);
+        if !(0..=1).contains(&concurrent) {
+            let what = format!("{concurrent} is neither 0 nor 1");
+            return Err(Error::argument("concurrent", what).body(number).value(f64::from(concurrent)));
+        }
+        problem.set_operator(number, diagonal, HostFunctions { kplus, k, concurrent: concurrent == 1 })
+    })
+}
+
+type Plain = unsafe extern "C" fn(*mut c_void, i64, i64, i64, *const f64, i64, *mut f64, i64) -> i32;
+
+/// A function of the host with what it gets besides X and Y.
+struct Function {
+    function: Plain,
+    user: User,
+    body: i64,
+    n: i64,
+}
+
+impl Function {
+    fn product(self, environment: Arc<Environment>) -> HostProduct {
+        Box::new(move |x, nrhs, y| {
+            let Self { function, user, body, n } = &self;
+            let (x, y) = (x.as_ptr(), y.as_mut_ptr());
+            // SAFETY: by the caller's word the function may be called with `user`; X and Y are n x nrhs and apart.
+            environment.within(|| unsafe { function(user.get(), *body, *n, nrhs as i64, x, *n, y, *n) })
+        })
+    }
+}

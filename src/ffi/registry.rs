@@ -1,0 +1,110 @@
+//! Problems by number, each with its lock, its wish to end and its last error; knows nothing of what a problem is. All
+//! orders of its steps on two threads are tried in `tests/loom`.
+
+use std::collections::BTreeMap;
+
+use super::sync::{
+    Arc, AtomicBool, AtomicUsize, Mutex, MutexGuard, Ordering, PoisonError, RwLock, TryLockError,
+};
+
+/// Numbers count from 1 and are never used again.
+pub(super) struct Registry<P, R, E> {
+    pub slots: RwLock<BTreeMap<usize, Arc<Slot<P, R, E>>>>,
+    pub last: AtomicUsize,
+}
+
+/// A problem with its busy flag, which is the lock, and its last error, which can be read while a call runs.
+pub(super) struct Slot<P, R, E> {
+    /// None once destroyed.
+    problem: Mutex<Option<P>>,
+    /// Shared with the problem, so that it can be set while a call runs.
+    cancelled: Arc<AtomicBool>,
+    broken: AtomicBool,
+    error: Mutex<Option<R>>,
+    /// What every thread may use while a call runs.
+    pub shared: E,
+}
+
+/// Why a problem could not be taken.
+#[derive(Debug, PartialEq)]
+pub(super) enum Refusal {
+    Busy,
+    Gone,
+    Broken,
+}
+
+impl<P, R: Clone, E> Slot<P, R, E> {
+    /// The problem, for one call; None inside when it is destroyed.
+    fn claim(&self) -> Result<MutexGuard<'_, Option<P>>, Refusal> {
+        match self.problem.try_lock() {
+            Ok(problem) => Ok(problem),
+            Err(TryLockError::WouldBlock) => Err(Refusal::Busy),
+            Err(TryLockError::Poisoned(poisoned)) => {
+                self.mark_broken();
+                Ok(poisoned.into_inner())
+            }
+        }
+    }
+
+    /// Runs `work` on the problem unless another call runs, or it is destroyed, or an internal error left it unusable.
+    pub fn with<T>(&self, work: impl FnOnce(&mut P) -> T) -> Result<T, Refusal> {
+        let mut claimed = self.claim()?;
+        let problem = claimed.as_mut().ok_or(Refusal::Gone)?;
+        if self.broken.load(Ordering::Acquire) {
+            return Err(Refusal::Broken);
+        }
+        Ok(work(problem))
+    }
+
+    /// Ends the setup or the solve that runs.
+    pub fn cancel(&self) -> Result<(), Refusal> {
+        if self.broken.load(Ordering::Acquire) {
+            return Err(Refusal::Broken);
+        }
+        self.cancelled.store(true, Ordering::Relaxed);
+        Ok(())
+    }
+
+    /// After an internal error the problem can only be destroyed.
+    pub fn mark_broken(&self) {
+        self.broken.store(true, Ordering::Release);
+    }
+
+    pub fn keep_error(&self, record: R) {
+        *self.error.lock().unwrap_or_else(PoisonError::into_inner) = Some(record);
+    }
+
+    /// The problem's last error.
+    pub fn error(&self) -> Option<R> {
+        self.error.lock().unwrap_or_else(PoisonError::into_inner).clone()
+    }
+}
+
+impl<P, R: Clone, E> Registry<P, R, E> {
+    /// Enters a problem with its flag `cancelled` under a new number; None when all are used up.
+    pub fn register(&self, problem: P, cancelled: Arc<AtomicBool>, shared: E) -> Option<usize> {
+        let next = self.last.fetch_update(Ordering::Relaxed, Ordering::Relaxed, |last| last.checked_add(1));
+        let number = next.ok()? + 1;
+        let slot = Slot {
+            problem: Mutex::new(Some(problem)),
+            cancelled,
+            broken: AtomicBool::new(false),
+            error: Mutex::new(None),
+            shared,
+        };
+        self.slots.write().unwrap_or_else(PoisonError::into_inner).insert(number, Arc::new(slot));
+        Some(number)
+    }
+
+    pub fn find(&self, number: usize) -> Option<Arc<Slot<P, R, E>>> {
+        self.slots.read().unwrap_or_else(PoisonError::into_inner).get(&number).cloned()
+    }
+
+    /// Takes the problem out; a call that found the slot before meets [`Refusal::Gone`].
+    pub fn remove(&self, number: usize) -> Result<P, Refusal> {
+        let slot = self.find(number).ok_or(Refusal::Gone)?;
+        let problem = slot.claim()?.take().ok_or(Refusal::Gone)?;
+        self.slots.write().unwrap_or_else(PoisonError::into_inner).remove(&number);
+        Ok(problem)
+    }
+}

@@ -1,0 +1,38 @@
+use loom::sync::atomic::{AtomicUsize, Ordering::Relaxed};
+use loom::sync::{Arc, Mutex};
+use loom::thread;
+
+use crate::pools::Pools;
+
+#[test]
+fn two_threads_that_ask_for_a_pool_get_the_same_one() {
+    loom::model(|| {
+        let pools = Arc::new(Pools { made: Mutex::new(Vec::new()) });
+        let built = Arc::new(AtomicUsize::new(0));
+        let get = |pools: &Pools<usize>, built: &AtomicUsize| {
+            *pools.get(1, 2, || Some(built.fetch_add(1, Relaxed))).unwrap()
+        };
+        let other = {
+            let (pools, built) = (Arc::clone(&pools), Arc::clone(&built));
+            thread::spawn(move || get(&pools, &built))
+        };
+        let mine = get(&pools, &built);
+        assert_eq!((mine, other.join().unwrap(), built.load(Relaxed)), (0, 0, 1));
+    });
+}
+
+#[test]
+fn a_pool_that_could_not_be_made_is_made_by_the_next_thread_that_asks() {
+    loom::model(|| {
+        let pools = Arc::new(Pools { made: Mutex::new(Vec::new()) });
+        let other = {
+            let pools = Arc::clone(&pools);
+            thread::spawn(move || pools.get(1, 2, || None::<usize>).is_some())
+        };
+        let mine = pools.get(1, 2, || Some(7));
+        // The one that cannot make it gets it where it is there already.
+        let found = other.join().unwrap();
+        assert_eq!(mine.map(|pool| *pool), Some(7));
+        assert!(pools.get(1, 2, || None).is_some() && (found || pools.made.lock().unwrap().len() == 1));
+    });
+}
