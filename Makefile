@@ -186,6 +186,7 @@ docs: $(TOOLS)/mdbook-$(MDBOOK) $(TOOLS)/ford/installed
 	echo '<meta http-equiv="refresh" content="0; url=feti_contact/index.html">' > $(DOCS)/rust/index.html
 	$(CHECK_LINKS) markdown .
 	$(CHECK_LINKS) html $(DOCS)
+	! grep -rlF '|---' --include='*.html' $(DOCS)/book # a table that is none
 
 # ---- measurements
 counts:

@@ -121,7 +121,7 @@ fn write_pages(folder: &Path, root: &Path, api: &model::Api) -> Result<(), Strin
     for path in files(&root.join("include/fortran"), "f90")? {
         // The generated interfaces and the FORTRAN 77 face are not the typed module.
         let name = path.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
-        if !name.ends_with("_c") && !name.ends_with("_f77") {
+        if !name.ends_with("_c") && !name.contains("_f77") {
             modules.push(read(&path)?);
         }
     }
