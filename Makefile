@@ -180,7 +180,8 @@ docs: $(TOOLS)/mdbook-$(MDBOOK) $(TOOLS)/ford/installed
 	cp docs/book/book.toml docs/book/index.html $(DOCS)
 	$(TOOLS)/bin/mdbook build $(DOCS)
 	$(TOOLS)/ford/bin/ford --quiet docs/book/ford.md
-	sed -i 's/#moduleprocedure-/#proc-/' $(DOCS)/fortran/interface/*.html # anchors as ford names them where they lead to
+	sed -i -e 's/#moduleprocedure-\([a-z0-9_]*\)~[0-9]*"/#interface-\1"/' -e 's/#moduleprocedure-/#proc-/' \
+	    $(DOCS)/fortran/interface/*.html # ford names the anchors otherwise where they lead to
 	RUSTDOCFLAGS='-D warnings' $(CARGO) doc --no-deps --locked
 	cp -R $(RELEASE)/../doc $(DOCS)/rust
 	echo '<meta http-equiv="refresh" content="0; url=feti_contact/index.html">' > $(DOCS)/rust/index.html
