@@ -134,11 +134,18 @@ static void give_loose_body(feti_problem *p)
 static void prepare(const char *name, feti_problem *p)
 {
     static const double away[2] = { 0.0, 6.0 };
+    static const double diagonal[2] = { 4.0, 4.0 }, beside[1] = { -4.0 }, dense[4] = { 4.0, -4.0, -4.0, 4.0 };
+    static const int32_t row_ptr[3] = { 0, 0, 1 }, col[1] = { 0 };
     int64_t id;
 
     if (strncmp(name, "feti_state_", 11) == 0) MUST(feti_state_save(p, &id));
     if (strncmp(name, "feti_diagnosis_undetermined", 27) == 0) give_loose_body(p);
     if (strcmp(name, "feti_diagnosis_motion") == 0) MUST(feti_body_load(p, 1, 2, away));
+    if (strcmp(name, "feti_problem_read") == 0) MUST(feti_problem_write(p, FILE_OF_CALLS));
+    if (strcmp(name, "feti_body_values_split") == 0)
+        MUST(feti_body_stiffness_split_i32(p, 1, 2, diagonal, row_ptr, col, beside, 0, FETI_LOWER, FETI_COPY));
+    if (strcmp(name, "feti_body_values_dense") == 0)
+        MUST(feti_body_stiffness_dense(p, 1, 2, dense, 2, FETI_LOWER, FETI_COPY));
 }
 
 feti_problem *problem_for(const function *f)
