@@ -10,7 +10,8 @@
 
 #include "feti_contact.h"
 
-static int check_failures;
+/* One number for all files of a driver. */
+__attribute__((weak)) int check_failures;
 
 /* CHECK(condition, format, ...): the text says what was expected, with the figures. */
 #define CHECK(condition, ...)                                   \

@@ -1,7 +1,7 @@
 #!/bin/sh
 # build.sh COMPILER PREFIX ROOT WORK [OBJECT...]: compiles all Fortran layers, the examples and the drivers of tests/abi with
 # one compiler and links them with the installed library below PREFIX: WORK/bin. Objects: what the driver cholmod_oracle
-# needs beside. Warnings are in WORK/log; any error ends it.
+# needs beside. Warnings are in WORK/words; any error ends it.
 set -eu
 fc=$1 prefix=$2 root=$3 work=$4
 shift 4
@@ -11,10 +11,10 @@ rm -rf "$work"
 mkdir -p "$work/bin"
 cd "$work"
 
-# run COMMAND...: its words go to the log, and to stdout when it fails.
+# run COMMAND...: its words are kept, and to stdout when it fails.
 run() {
     "$@" > last 2>&1 || { cat last; exit 1; }
-    cat last >> log
+    cat last >> words
 }
 
 # into FOLDER FLAGS FILE...: compiles the files in their order into FOLDER, modules and objects.
@@ -25,7 +25,7 @@ into() {
     for file in "$@"; do
         # shellcheck disable=SC2086 # one word per flag
         (cd "$folder" && "$fc" $flags -I"$face" -c "$file") > last 2>&1 || { cat last; exit 1; }
-        cat last >> log
+        cat last >> words
     done
 }
 

@@ -37,7 +37,9 @@ pub enum Role {
     Any,
     /// Name of an option or a word that it knows.
     Word,
-    /// Name of a file.
+    /// Options and their values; an empty text has none.
+    Options,
+    /// Name of a file: any text.
     Path,
     /// Doubles, all finite.
     Doubles,
@@ -49,6 +51,8 @@ pub enum Role {
     Indices,
     /// Directions, 1 to 6.
     Directions,
+    /// Numbers from 0 that differ.
+    Distinct,
     /// Integers of any value.
     Labels,
 }
@@ -88,7 +92,7 @@ const ENTRIES: &[Entry] = &[
     ("nnz", Role::Size, "3"),
     ("node", Role::Labels, "1, 2"),
     ("nrhs", Role::Free, "2"),
-    ("number", Role::Indices, "2, 3"),
+    ("number", Role::Distinct, "2, 3"),
     ("path", Role::Path, "FILE_OF_CALLS"),
     ("r", Role::Size, "1"),
     ("rhs", Role::Doubles, "1.0, 5.0"),
@@ -96,7 +100,7 @@ const ENTRIES: &[Entry] = &[
     ("rows", Role::Size, "2"),
     ("status", Role::Any, "FETI_STATE"),
     ("storage", Role::Choice, "FETI_LOWER"),
-    ("text", Role::Word, "\"tolerance=1e-12 threads=1\""),
+    ("text", Role::Options, "\"tolerance=1e-12 threads=1\""),
     ("u", Role::Doubles, "0.0, 0.0, 0.0, 0.0"),
     ("user", Role::Any, "NULL"),
     ("val", Role::Doubles, "4.0, -4.0, 4.0"),
