@@ -9,9 +9,10 @@
 # make scaling   time and memory as unknowns, contact rows, bodies, threads grow: pictures in docs (some minutes);
 #                SWEEPS="rows bodies" picks some, a number among them leaves out decks of more unknowns
 # make paper     the paper's problems by its own method and by the default: table, pictures (seconds)
+# make docs      the book, manual pages, pages of the Fortran modules and of the crate: build/docs/index.html (some minutes)
 # make abi       writes the baseline of the binary interface (abi)        make uninstall  removes what install has put
 # make packaging cargo cinstall against make install, and an installation without network (some minutes, the first time many)
-# bench, scaling, demo and test install the Debian packages they miss (tools/setup.sh).
+# bench, scaling, demo, docs and test install the Debian packages they miss (tools/setup.sh).
 PREFIX  ?= /usr/local
 DESTDIR ?=
 CARGO   ?= cargo
@@ -25,7 +26,7 @@ FCFLAGS ?= -O2 -Wall
 RELEASE   := $(or $(CARGO_TARGET_DIR),target)/release
 STAGE     := $(CURDIR)/build/stage
 
-.PHONY: all lib data setup demo battery test metis fuzz sanitize loom coverage overhead counts bench scaling paper
+.PHONY: all lib data setup demo battery test metis fuzz sanitize loom coverage overhead counts bench scaling paper docs
 .PHONY: abi licences packaging stage install uninstall fmt clean
 .DELETE_ON_ERROR:
 all: lib
@@ -157,6 +158,41 @@ coverage: setup stage data build/ctest/CMakeCache.txt
 overhead: setup stage data build/ctest/CMakeCache.txt
 	@cmake --build build/ctest --target c_overhead > /dev/null
 	@build/ctest/abi/c_overhead 5000
+
+# ---- documents: build/docs/index.html leads to the book, the Fortran modules and the crate; manual pages lie in build/docs/man
+DOCS   := build/docs
+TOOLS  := build/tools
+MDBOOK := 0.5.4
+CHECK_LINKS := python3 tools/docs/check_links.py
+$(TOOLS)/mdbook-$(MDBOOK):
+	CARGO_TARGET_DIR=$(TOOLS)/target CARGO_PROFILE_DEV_OPT_LEVEL=0 CARGO_PROFILE_DEV_DEBUG=0 $(CARGO) install mdbook \
+	    --version $(MDBOOK) --locked --no-default-features --features search --debug --force --root $(TOOLS)
+	rm -rf $(TOOLS)/target
+	touch $@
+
+$(TOOLS)/ford/installed: docs/book/requirements.txt
+	@tools/setup.sh
+	python3 -m venv --clear $(@D)
+	$(@D)/bin/pip install --quiet --requirement $<
+	touch $@
+
+docs: $(TOOLS)/mdbook-$(MDBOOK) $(TOOLS)/ford/installed
+	rm -rf $(DOCS)
+	$(CARGO) run --release --locked --quiet -p feti-bindgen -- --pages $(DOCS)/reference
+	$(CARGO) run --release --locked --quiet -p feti-reference -- $(DOCS)/reference
+	mv $(DOCS)/reference/man $(DOCS)/man
+	python3 tools/docs/stage.py $(DOCS)/reference $(DOCS)/source
+	cp docs/book/book.toml docs/book/index.html $(DOCS)
+	$(TOOLS)/bin/mdbook build $(DOCS)
+	$(TOOLS)/ford/bin/ford --quiet docs/book/ford.md
+	sed -i -e 's/#moduleprocedure-\([a-z0-9_]*\)~[0-9]*"/#interface-\1"/' -e 's/#moduleprocedure-/#proc-/' \
+	    $(DOCS)/fortran/interface/*.html # ford names the anchors otherwise where they lead to
+	RUSTDOCFLAGS='-D warnings' $(CARGO) doc --no-deps --locked
+	cp -R $(RELEASE)/../doc $(DOCS)/rust
+	echo '<meta http-equiv="refresh" content="0; url=feti_contact/index.html">' > $(DOCS)/rust/index.html
+	$(CHECK_LINKS) markdown .
+	$(CHECK_LINKS) html $(DOCS)
+	! grep -rlF '|---' --include='*.html' $(DOCS)/book # a table that is none
 
 # ---- measurements
 counts:

@@ -1668,8 +1668,8 @@ int32_t feti_counts(struct feti_problem *p, int64_t *bodies, int64_t *dofs, int6
  * @param[in]  p       (scalar) the handle
  * @param[in]  kind    (scalar) FETI_INEQUALITY or FETI_EQUALITY
  * @param[in]  rows    (scalar) number of rows, 0 adds none
- * @param[in]  row_ptr (rows + 1) row i holds the entries row_ptr[i] to row_ptr[i + 1] - 1; starts
- *                     with `base`
+ * @param[in]  row_ptr (rows + 1) row i holds the entries `row_ptr[i]` to `row_ptr[i + 1] - 1`;
+ *                     starts with `base`
  * @param[in]  body    (row_ptr[rows] - base) body of each entry, counted from `base`; NULL: `dof`
  *                     is the host's number of the unknown (feti_body_numbering_i32), without
  *                     numbers it counts through all bodies
@@ -1701,8 +1701,8 @@ int32_t feti_rows_add_i32(struct feti_problem *p,
  * @param[in]  p       (scalar) the handle
  * @param[in]  kind    (scalar) FETI_INEQUALITY or FETI_EQUALITY
  * @param[in]  rows    (scalar) number of rows, 0 adds none
- * @param[in]  row_ptr (rows + 1) row i holds the entries row_ptr[i] to row_ptr[i + 1] - 1; starts
- *                     with `base`
+ * @param[in]  row_ptr (rows + 1) row i holds the entries `row_ptr[i]` to `row_ptr[i + 1] - 1`;
+ *                     starts with `base`
  * @param[in]  body    (row_ptr[rows] - base) body of each entry, counted from `base`; NULL: `dof`
  *                     is the host's number of the unknown (feti_body_numbering_i32), without
  *                     numbers it counts through all bodies
@@ -1926,8 +1926,8 @@ int32_t feti_version_number(void);
  * @param[in] p       (scalar) the handle
  * @param[in] body    (scalar) number of the body, from 0
  * @param[in] n       (scalar) unknowns of the body
- * @param[in] row_ptr (n + 1) row i holds the entries row_ptr[i] to row_ptr[i + 1] - 1; starts with
- *                    `base`
+ * @param[in] row_ptr (n + 1) row i holds the entries `row_ptr[i]` to `row_ptr[i + 1] - 1`; starts
+ *                    with `base`
  * @param[in] col     (row_ptr[n] - base) columns, counted from `base`
  * @param[in] val     (row_ptr[n] - base) entries of K, force per length
  * @param[in] base    (scalar) 0 or 1: what `row_ptr` and `col` count from
@@ -1962,8 +1962,8 @@ int32_t feti_body_stiffness_i32(struct feti_problem *p,
  * @param[in] p       (scalar) the handle
  * @param[in] body    (scalar) number of the body, from 0
  * @param[in] n       (scalar) unknowns of the body
- * @param[in] row_ptr (n + 1) row i holds the entries row_ptr[i] to row_ptr[i + 1] - 1; starts with
- *                    `base`
+ * @param[in] row_ptr (n + 1) row i holds the entries `row_ptr[i]` to `row_ptr[i + 1] - 1`; starts
+ *                    with `base`
  * @param[in] col     (row_ptr[n] - base) columns, counted from `base`
  * @param[in] val     (row_ptr[n] - base) entries of K, force per length
  * @param[in] base    (scalar) 0 or 1: what `row_ptr` and `col` count from
@@ -1994,8 +1994,8 @@ int32_t feti_body_stiffness_i64(struct feti_problem *p,
  * @param[in] body    (scalar) number of the body, from 0
  * @param[in] n       (scalar) unknowns of the body
  * @param[in] diag    (n) K_ii, force per length
- * @param[in] row_ptr (n + 1) row i holds the entries row_ptr[i] to row_ptr[i + 1] - 1; starts with
- *                    `base`
+ * @param[in] row_ptr (n + 1) row i holds the entries `row_ptr[i]` to `row_ptr[i + 1] - 1`; starts
+ *                    with `base`
  * @param[in] col     (row_ptr[n] - base) columns, counted from `base`, none that of its row
  * @param[in] val     (row_ptr[n] - base) entries of K beside the diagonal, force per length
  * @param[in] base    (scalar) 0 or 1: what `row_ptr` and `col` count from
@@ -2028,8 +2028,8 @@ int32_t feti_body_stiffness_split_i32(struct feti_problem *p,
  * @param[in] body    (scalar) number of the body, from 0
  * @param[in] n       (scalar) unknowns of the body
  * @param[in] diag    (n) K_ii, force per length
- * @param[in] row_ptr (n + 1) row i holds the entries row_ptr[i] to row_ptr[i + 1] - 1; starts with
- *                    `base`
+ * @param[in] row_ptr (n + 1) row i holds the entries `row_ptr[i]` to `row_ptr[i + 1] - 1`; starts
+ *                    with `base`
  * @param[in] col     (row_ptr[n] - base) columns, counted from `base`, none that of its row
  * @param[in] val     (row_ptr[n] - base) entries of K beside the diagonal, force per length
  * @param[in] base    (scalar) 0 or 1: what `row_ptr` and `col` count from

@@ -36,7 +36,7 @@ files() {
     each "$DOCDIR" README.md CHANGELOG.md LICENSE-MIT LICENSE-APACHE
     each "$DOCDIR/docs" docs/*.md
     each "$DOCDIR/docs/pictures" docs/pictures/*
-    each "$MANDIR/man3" build/man/*.3
+    for section in 3 7; do each "$MANDIR/man$section" build/docs/man/man$section/*.$section; done
 }
 
 # each FOLDER FILE...: the files that exist, to go to the folder.

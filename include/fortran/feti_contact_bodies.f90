@@ -138,6 +138,7 @@ contains
       stat, errmsg)
   end subroutine
 
+  !> The load of one body.
   subroutine load_one(p, body, f, stat, errmsg)
     type(feti_problem), intent(in) :: p
     integer, intent(in) :: body
@@ -148,6 +149,7 @@ contains
     call finish(c_body_load(handle_of(p), body_index(body), size(f, kind=c_int64_t), f), stat, errmsg)
   end subroutine
 
+  !> Of all bodies, by the numbers of the host.
   subroutine load_all(p, f, stat, errmsg)
     type(feti_problem), intent(in) :: p
     real(real64), intent(in), contiguous :: f(:)
@@ -157,6 +159,7 @@ contains
     call finish(c_body_load(handle_of(p), FETI_ALL, size(f, kind=c_int64_t), f), stat, errmsg)
   end subroutine
 
+  !> int32 numbers.
   subroutine numbering_int32(p, body, number, stat, errmsg)
     type(feti_problem), intent(in) :: p
     integer, intent(in) :: body
@@ -168,6 +171,7 @@ contains
       1_c_int32_t), stat, errmsg)
   end subroutine
 
+  !> int64 numbers.
   subroutine numbering_int64(p, body, number, stat, errmsg)
     type(feti_problem), intent(in) :: p
     integer, intent(in) :: body

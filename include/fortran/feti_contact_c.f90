@@ -1502,8 +1502,8 @@ module feti_contact_c
     !> @param[in]  p       (scalar) the handle
     !> @param[in]  kind    (scalar) FETI_INEQUALITY or FETI_EQUALITY
     !> @param[in]  rows    (scalar) number of rows, 0 adds none
-    !> @param[in]  row_ptr (rows + 1) row i holds the entries row_ptr[i] to row_ptr[i + 1] - 1; starts with
-    !>                     `base`
+    !> @param[in]  row_ptr (rows + 1) row i holds the entries `row_ptr[i]` to `row_ptr[i + 1] - 1`; starts
+    !>                     with `base`
     !> @param[in]  body    (row_ptr[rows] - base) body of each entry, counted from `base`; NULL: `dof` is the
     !>                     host's number of the unknown (feti_body_numbering_i32), without numbers it counts
     !>                     through all bodies
@@ -1538,8 +1538,8 @@ module feti_contact_c
     !> @param[in]  p       (scalar) the handle
     !> @param[in]  kind    (scalar) FETI_INEQUALITY or FETI_EQUALITY
     !> @param[in]  rows    (scalar) number of rows, 0 adds none
-    !> @param[in]  row_ptr (rows + 1) row i holds the entries row_ptr[i] to row_ptr[i + 1] - 1; starts with
-    !>                     `base`
+    !> @param[in]  row_ptr (rows + 1) row i holds the entries `row_ptr[i]` to `row_ptr[i + 1] - 1`; starts
+    !>                     with `base`
     !> @param[in]  body    (row_ptr[rows] - base) body of each entry, counted from `base`; NULL: `dof` is the
     !>                     host's number of the unknown (feti_body_numbering_i32), without numbers it counts
     !>                     through all bodies
@@ -1803,7 +1803,8 @@ module feti_contact_c
     !> @param[in] p       (scalar) the handle
     !> @param[in] body    (scalar) number of the body, from 0
     !> @param[in] n       (scalar) unknowns of the body
-    !> @param[in] row_ptr (n + 1) row i holds the entries row_ptr[i] to row_ptr[i + 1] - 1; starts with `base`
+    !> @param[in] row_ptr (n + 1) row i holds the entries `row_ptr[i]` to `row_ptr[i + 1] - 1`; starts with
+    !>                    `base`
     !> @param[in] col     (row_ptr[n] - base) columns, counted from `base`
     !> @param[in] val     (row_ptr[n] - base) entries of K, force per length
     !> @param[in] base    (scalar) 0 or 1: what `row_ptr` and `col` count from
@@ -1841,7 +1842,8 @@ module feti_contact_c
     !> @param[in] p       (scalar) the handle
     !> @param[in] body    (scalar) number of the body, from 0
     !> @param[in] n       (scalar) unknowns of the body
-    !> @param[in] row_ptr (n + 1) row i holds the entries row_ptr[i] to row_ptr[i + 1] - 1; starts with `base`
+    !> @param[in] row_ptr (n + 1) row i holds the entries `row_ptr[i]` to `row_ptr[i + 1] - 1`; starts with
+    !>                    `base`
     !> @param[in] col     (row_ptr[n] - base) columns, counted from `base`
     !> @param[in] val     (row_ptr[n] - base) entries of K, force per length
     !> @param[in] base    (scalar) 0 or 1: what `row_ptr` and `col` count from
@@ -1874,7 +1876,8 @@ module feti_contact_c
     !> @param[in] body    (scalar) number of the body, from 0
     !> @param[in] n       (scalar) unknowns of the body
     !> @param[in] diag    (n) K_ii, force per length
-    !> @param[in] row_ptr (n + 1) row i holds the entries row_ptr[i] to row_ptr[i + 1] - 1; starts with `base`
+    !> @param[in] row_ptr (n + 1) row i holds the entries `row_ptr[i]` to `row_ptr[i + 1] - 1`; starts with
+    !>                    `base`
     !> @param[in] col     (row_ptr[n] - base) columns, counted from `base`, none that of its row
     !> @param[in] val     (row_ptr[n] - base) entries of K beside the diagonal, force per length
     !> @param[in] base    (scalar) 0 or 1: what `row_ptr` and `col` count from
@@ -1909,7 +1912,8 @@ module feti_contact_c
     !> @param[in] body    (scalar) number of the body, from 0
     !> @param[in] n       (scalar) unknowns of the body
     !> @param[in] diag    (n) K_ii, force per length
-    !> @param[in] row_ptr (n + 1) row i holds the entries row_ptr[i] to row_ptr[i + 1] - 1; starts with `base`
+    !> @param[in] row_ptr (n + 1) row i holds the entries `row_ptr[i]` to `row_ptr[i + 1] - 1`; starts with
+    !>                    `base`
     !> @param[in] col     (row_ptr[n] - base) columns, counted from `base`, none that of its row
     !> @param[in] val     (row_ptr[n] - base) entries of K beside the diagonal, force per length
     !> @param[in] base    (scalar) 0 or 1: what `row_ptr` and `col` count from

@@ -17,12 +17,15 @@ module feti_contact_f77_base
   interface stiffness_by_rows
     procedure feti_body_stiffness_i32, feti_body_stiffness_i64
   end interface
+  !> The same with a diagonal of its own.
   interface stiffness_split
     procedure feti_body_stiffness_split_i32, feti_body_stiffness_split_i64
   end interface
+  !> Numbers of the host, in its INTEGER.
   interface numbering
     procedure feti_body_numbering_i32, feti_body_numbering_i64
   end interface
+  !> Rows, with the index arrays of the host.
   interface add_rows
     procedure feti_rows_add_i32, feti_rows_add_i64
   end interface
@@ -57,6 +60,7 @@ contains
     if (i == FTALL) body_or_all = FETI_ALL
   end function
 
+  !> A number of the host for the library.
   integer(c_int64_t) function wide(i)
     integer, intent(in) :: i
 
@@ -125,6 +129,7 @@ contains
     end do
   end subroutine
 
+  !> The numbers found, as many as fit into x(n).
   subroutine give_reals(found, n, x)
     real(c_double), intent(in) :: found(:)
     integer, intent(in) :: n
@@ -157,6 +162,7 @@ contains
     if (present) reals = c_loc(x(1))
   end function
 
+  !> Address of an array of the host.
   type(c_ptr) function integers(i)
     integer, intent(in), target :: i(*)
 

@@ -25,6 +25,7 @@ contains
     address_of = transfer(address, c_null_ptr)
   end function
 
+  !> What the library calls: hands a line on to the function of the host.
   function hand_on(user, level, text) result(reply) bind(C, name='')
     type(c_ptr), value :: user
     integer(c_int32_t), value :: level

@@ -28,6 +28,7 @@ contains
     address_of = transfer(address, c_null_ptr)
   end function
 
+  !> What the library calls: Y = K+ X by the function of the host.
   function multiply_kplus(user, body, n, nrhs, x, ldx, y, ldy) result(reply) bind(C, name='')
     type(c_ptr), value :: user
     integer(c_int64_t), value :: body, n, nrhs, ldx, ldy
@@ -40,6 +41,7 @@ contains
     reply = narrow(host(FTKPLS, clipped(body + 1), clipped(n), clipped(nrhs), x, clipped(ldx), y, clipped(ldy)))
   end function
 
+  !> What the library calls: Y = K X by the function of the host.
   function multiply_k(user, body, n, nrhs, x, ldx, y, ldy) result(reply) bind(C, name='')
     type(c_ptr), value :: user
     integer(c_int64_t), value :: body, n, nrhs, ldx, ldy

@@ -32,6 +32,7 @@ subroutine ftnew(iword, dword, ip, ierr)
 
 contains
 
+  !> Makes the problem once the sizes are known to agree; numbers in texts count from 1.
   subroutine create(status)
     integer, intent(out) :: status
     type(c_ptr) :: p

@@ -28,6 +28,7 @@ contains
     address_of = transfer(address, c_null_ptr)
   end function
 
+  !> What the library calls: hands a step on to the function of the host.
   function hand_on(user, now) result(reply) bind(C, name='')
     type(c_ptr), value :: user
     type(feti_progress), intent(in) :: now

@@ -55,6 +55,7 @@ contains
     call finish(c_set_text(handle_of(p), c_text(text)), stat, errmsg)
   end subroutine
 
+  !> An option that is a number.
   subroutine set_real(p, name, value, stat, errmsg)
     type(feti_problem), intent(in) :: p
     character(len=*), intent(in) :: name
@@ -65,6 +66,7 @@ contains
     call finish(c_set_f64(handle_of(p), c_text(name), value), stat, errmsg)
   end subroutine
 
+  !> An option that is an integer.
   subroutine set_int32(p, name, value, stat, errmsg)
     type(feti_problem), intent(in) :: p
     character(len=*), intent(in) :: name
@@ -75,6 +77,7 @@ contains
     call set_int64(p, name, int(value, int64), stat, errmsg)
   end subroutine
 
+  !> The same, int64.
   subroutine set_int64(p, name, value, stat, errmsg)
     type(feti_problem), intent(in) :: p
     character(len=*), intent(in) :: name
@@ -85,6 +88,7 @@ contains
     call finish(c_set_i64(handle_of(p), c_text(name), value), stat, errmsg)
   end subroutine
 
+  !> An option that is a text.
   subroutine set_text(p, name, value, stat, errmsg)
     type(feti_problem), intent(in) :: p
     character(len=*), intent(in) :: name, value
@@ -94,6 +98,7 @@ contains
     call finish(c_set_str(handle_of(p), c_text(name), c_text(value)), stat, errmsg)
   end subroutine
 
+  !> An option that is a number.
   subroutine get_real(p, name, value, stat, errmsg)
     type(feti_problem), intent(in) :: p
     character(len=*), intent(in) :: name
@@ -129,6 +134,7 @@ contains
     end if
   end subroutine
 
+  !> An option that is an integer, int64.
   subroutine get_int64(p, name, value, stat, errmsg)
     type(feti_problem), intent(in) :: p
     character(len=*), intent(in) :: name

@@ -164,6 +164,7 @@ contains
     call finish(status, stat, errmsg)
   end subroutine
 
+  !> The displacement of one body.
   subroutine displacement_one(p, body, u, stat, errmsg)
     type(feti_problem), intent(in) :: p
     integer, intent(in) :: body
@@ -174,6 +175,7 @@ contains
     call finish(c_displacement(handle_of(p), body_index(body), size(u, kind=c_int64_t), u), stat, errmsg)
   end subroutine
 
+  !> Of all bodies, by the numbers of the host.
   subroutine displacement_all(p, u, stat, errmsg)
     type(feti_problem), intent(in) :: p
     real(real64), intent(inout), contiguous :: u(:)
@@ -183,6 +185,7 @@ contains
     call finish(c_displacement(handle_of(p), FETI_ALL, size(u, kind=c_int64_t), u), stat, errmsg)
   end subroutine
 
+  !> The forces on one body.
   subroutine reaction_one(p, kind, body, r, stat, errmsg)
     type(feti_problem), intent(in) :: p
     integer(c_int32_t), intent(in) :: kind
@@ -194,6 +197,7 @@ contains
     call finish(c_reaction(handle_of(p), kind, body_index(body), size(r, kind=c_int64_t), r), stat, errmsg)
   end subroutine
 
+  !> On all bodies, by the numbers of the host.
   subroutine reaction_all(p, kind, r, stat, errmsg)
     type(feti_problem), intent(in) :: p
     integer(c_int32_t), intent(in) :: kind

@@ -31,6 +31,7 @@ module feti_contact_rows
 
 contains
 
+  !> Body and unknown of every entry, int32.
   subroutine rows_int32(p, kind, row_ptr, body, dof, val, rhs, first, stat, errmsg)
     type(feti_problem), intent(in) :: p
     integer(c_int32_t), intent(in) :: kind
@@ -52,6 +53,7 @@ contains
     end if
   end subroutine
 
+  !> Body and unknown of every entry, int64.
   subroutine rows_int64(p, kind, row_ptr, body, dof, val, rhs, first, stat, errmsg)
     type(feti_problem), intent(in) :: p
     integer(c_int32_t), intent(in) :: kind
@@ -73,6 +75,7 @@ contains
     end if
   end subroutine
 
+  !> Unknowns counted through all bodies, or by the numbers of the host; int32.
   subroutine concatenated_int32(p, kind, row_ptr, dof, val, rhs, first, stat, errmsg)
     type(feti_problem), intent(in) :: p
     integer(c_int32_t), intent(in) :: kind
@@ -86,6 +89,7 @@ contains
     call add_int32(p, kind, row_ptr, c_null_ptr, dof, val, rhs, first, stat, errmsg)
   end subroutine
 
+  !> The same, int64.
   subroutine concatenated_int64(p, kind, row_ptr, dof, val, rhs, first, stat, errmsg)
     type(feti_problem), intent(in) :: p
     integer(c_int32_t), intent(in) :: kind

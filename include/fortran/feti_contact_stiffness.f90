@@ -66,6 +66,7 @@ module feti_contact_stiffness
 
 contains
 
+  !> By rows, int32 indices.
   subroutine stiffness_int32(p, body, row_ptr, col, val, storage, stat, errmsg)
     type(feti_problem), intent(in) :: p
     integer, intent(in) :: body
@@ -86,6 +87,7 @@ contains
     end if
   end subroutine
 
+  !> By rows, int64 indices.
   subroutine stiffness_int64(p, body, row_ptr, col, val, storage, stat, errmsg)
     type(feti_problem), intent(in) :: p
     integer, intent(in) :: body
@@ -106,6 +108,7 @@ contains
     end if
   end subroutine
 
+  !> The whole matrix.
   subroutine stiffness_dense(p, body, k, storage, stat, errmsg)
     type(feti_problem), intent(in) :: p
     integer, intent(in) :: body
@@ -122,6 +125,7 @@ contains
     end if
   end subroutine
 
+  !> int32 indices.
   subroutine split_int32(p, body, diag, row_ptr, col, val, storage, stat, errmsg)
     type(feti_problem), intent(in) :: p
     integer, intent(in) :: body
@@ -142,6 +146,7 @@ contains
     end if
   end subroutine
 
+  !> int64 indices.
   subroutine split_int64(p, body, diag, row_ptr, col, val, storage, stat, errmsg)
     type(feti_problem), intent(in) :: p
     integer, intent(in) :: body
@@ -162,6 +167,7 @@ contains
     end if
   end subroutine
 
+  !> int32 indices.
   subroutine borrow_int32(p, body, row_ptr, col, val, storage, stat, errmsg)
     type(feti_problem), intent(in) :: p
     integer, intent(in) :: body
@@ -184,6 +190,7 @@ contains
     end if
   end subroutine
 
+  !> int64 indices.
   subroutine borrow_int64(p, body, row_ptr, col, val, storage, stat, errmsg)
     type(feti_problem), intent(in) :: p
     integer, intent(in) :: body
@@ -206,6 +213,7 @@ contains
     end if
   end subroutine
 
+  !> Of a matrix by rows.
   subroutine values_by_rows(p, body, val, stat, errmsg)
     type(feti_problem), intent(in) :: p
     integer, intent(in) :: body
@@ -247,6 +255,7 @@ contains
     is_borrowed = c_body_info(handle_of(p), int(body - 1, c_int64_t), facts) == FETI_OK .and. facts%borrowed > 0
   end function
 
+  !> Of a matrix given as a whole.
   subroutine values_dense(p, body, k, stat, errmsg)
     type(feti_problem), intent(in) :: p
     integer, intent(in) :: body

@@ -17,10 +17,10 @@ use crate::solver::{RowKind, RowsInput};
 /// | `p` | in | scalar | the handle |
 /// | `kind` | in | scalar | FETI_INEQUALITY or FETI_EQUALITY |
 /// | `rows` | in | scalar | number of rows, 0 adds none |
-/// | `row_ptr` | in | rows + 1 | row i holds the entries row_ptr[i] to row_ptr[i + 1] - 1; starts with `base` |
-/// | `body` | in | row_ptr[rows] - base | body of each entry, counted from `base`; NULL: `dof` is the host's number of the unknown (feti_body_numbering_i32), without numbers it counts through all bodies |
-/// | `dof` | in | row_ptr[rows] - base | unknown of each entry, counted from `base` |
-/// | `val` | in | row_ptr[rows] - base | entries of B or H |
+/// | `row_ptr` | in | rows + 1 | row i holds the entries `row_ptr[i]` to `row_ptr[i + 1] - 1`; starts with `base` |
+/// | `body` | in | `row_ptr[rows] - base` | body of each entry, counted from `base`; NULL: `dof` is the host's number of the unknown (feti_body_numbering_i32), without numbers it counts through all bodies |
+/// | `dof` | in | `row_ptr[rows] - base` | unknown of each entry, counted from `base` |
+/// | `val` | in | `row_ptr[rows] - base` | entries of B or H |
 /// | `base` | in | scalar | 0 or 1: what `row_ptr`, `body` and `dof` count from |
 /// | `rhs` | in | rows | c or h, length; NULL: zeros |
 /// | `first` | out | scalar | number of the first row added, from 0; may be NULL |
@@ -56,10 +56,10 @@ pub unsafe extern "C" fn feti_rows_add_i32(
 /// | `p` | in | scalar | the handle |
 /// | `kind` | in | scalar | FETI_INEQUALITY or FETI_EQUALITY |
 /// | `rows` | in | scalar | number of rows, 0 adds none |
-/// | `row_ptr` | in | rows + 1 | row i holds the entries row_ptr[i] to row_ptr[i + 1] - 1; starts with `base` |
-/// | `body` | in | row_ptr[rows] - base | body of each entry, counted from `base`; NULL: `dof` is the host's number of the unknown (feti_body_numbering_i32), without numbers it counts through all bodies |
-/// | `dof` | in | row_ptr[rows] - base | unknown of each entry, counted from `base` |
-/// | `val` | in | row_ptr[rows] - base | entries of B or H |
+/// | `row_ptr` | in | rows + 1 | row i holds the entries `row_ptr[i]` to `row_ptr[i + 1] - 1`; starts with `base` |
+/// | `body` | in | `row_ptr[rows] - base` | body of each entry, counted from `base`; NULL: `dof` is the host's number of the unknown (feti_body_numbering_i32), without numbers it counts through all bodies |
+/// | `dof` | in | `row_ptr[rows] - base` | unknown of each entry, counted from `base` |
+/// | `val` | in | `row_ptr[rows] - base` | entries of B or H |
 /// | `base` | in | scalar | 0 or 1: what `row_ptr`, `body` and `dof` count from |
 /// | `rhs` | in | rows | c or h, length; NULL: zeros |
 /// | `first` | out | scalar | number of the first row added, from 0; may be NULL |

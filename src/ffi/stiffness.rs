@@ -24,9 +24,9 @@ use crate::solver::{Columns, Problem, SparseInput, Storage};
 /// | `p` | in | scalar | the handle |
 /// | `body` | in | scalar | number of the body, from 0 |
 /// | `n` | in | scalar | unknowns of the body |
-/// | `row_ptr` | in | n + 1 | row i holds the entries row_ptr[i] to row_ptr[i + 1] - 1; starts with `base` |
-/// | `col` | in | row_ptr[n] - base | columns, counted from `base` |
-/// | `val` | in | row_ptr[n] - base | entries of K, force per length |
+/// | `row_ptr` | in | n + 1 | row i holds the entries `row_ptr[i]` to `row_ptr[i + 1] - 1`; starts with `base` |
+/// | `col` | in | `row_ptr[n] - base` | columns, counted from `base` |
+/// | `val` | in | `row_ptr[n] - base` | entries of K, force per length |
 /// | `base` | in | scalar | 0 or 1: what `row_ptr` and `col` count from |
 /// | `storage` | in | scalar | FETI_FULL, FETI_LOWER or FETI_UPPER |
 /// | `flags` | in | scalar | FETI_COPY or FETI_BORROW |
@@ -67,9 +67,9 @@ pub unsafe extern "C" fn feti_body_stiffness_i32(
 /// | `p` | in | scalar | the handle |
 /// | `body` | in | scalar | number of the body, from 0 |
 /// | `n` | in | scalar | unknowns of the body |
-/// | `row_ptr` | in | n + 1 | row i holds the entries row_ptr[i] to row_ptr[i + 1] - 1; starts with `base` |
-/// | `col` | in | row_ptr[n] - base | columns, counted from `base` |
-/// | `val` | in | row_ptr[n] - base | entries of K, force per length |
+/// | `row_ptr` | in | n + 1 | row i holds the entries `row_ptr[i]` to `row_ptr[i + 1] - 1`; starts with `base` |
+/// | `col` | in | `row_ptr[n] - base` | columns, counted from `base` |
+/// | `val` | in | `row_ptr[n] - base` | entries of K, force per length |
 /// | `base` | in | scalar | 0 or 1: what `row_ptr` and `col` count from |
 /// | `storage` | in | scalar | FETI_FULL, FETI_LOWER or FETI_UPPER |
 /// | `flags` | in | scalar | FETI_COPY or FETI_BORROW |
@@ -106,9 +106,9 @@ pub unsafe extern "C" fn feti_body_stiffness_i64(
 /// | `body` | in | scalar | number of the body, from 0 |
 /// | `n` | in | scalar | unknowns of the body |
 /// | `diag` | in | n | K_ii, force per length |
-/// | `row_ptr` | in | n + 1 | row i holds the entries row_ptr[i] to row_ptr[i + 1] - 1; starts with `base` |
-/// | `col` | in | row_ptr[n] - base | columns, counted from `base`, none that of its row |
-/// | `val` | in | row_ptr[n] - base | entries of K beside the diagonal, force per length |
+/// | `row_ptr` | in | n + 1 | row i holds the entries `row_ptr[i]` to `row_ptr[i + 1] - 1`; starts with `base` |
+/// | `col` | in | `row_ptr[n] - base` | columns, counted from `base`, none that of its row |
+/// | `val` | in | `row_ptr[n] - base` | entries of K beside the diagonal, force per length |
 /// | `base` | in | scalar | 0 or 1: what `row_ptr` and `col` count from |
 /// | `storage` | in | scalar | FETI_FULL, FETI_LOWER or FETI_UPPER |
 /// | `flags` | in | scalar | FETI_COPY, or FETI_BORROW, which copies as well: no matrix is kept in this form |
@@ -147,9 +147,9 @@ pub unsafe extern "C" fn feti_body_stiffness_split_i32(
 /// | `body` | in | scalar | number of the body, from 0 |
 /// | `n` | in | scalar | unknowns of the body |
 /// | `diag` | in | n | K_ii, force per length |
-/// | `row_ptr` | in | n + 1 | row i holds the entries row_ptr[i] to row_ptr[i + 1] - 1; starts with `base` |
-/// | `col` | in | row_ptr[n] - base | columns, counted from `base`, none that of its row |
-/// | `val` | in | row_ptr[n] - base | entries of K beside the diagonal, force per length |
+/// | `row_ptr` | in | n + 1 | row i holds the entries `row_ptr[i]` to `row_ptr[i + 1] - 1`; starts with `base` |
+/// | `col` | in | `row_ptr[n] - base` | columns, counted from `base`, none that of its row |
+/// | `val` | in | `row_ptr[n] - base` | entries of K beside the diagonal, force per length |
 /// | `base` | in | scalar | 0 or 1: what `row_ptr` and `col` count from |
 /// | `storage` | in | scalar | FETI_FULL, FETI_LOWER or FETI_UPPER |
 /// | `flags` | in | scalar | FETI_COPY, or FETI_BORROW, which copies as well: no matrix is kept in this form |

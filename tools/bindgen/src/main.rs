@@ -2,7 +2,7 @@
 //!
 //! `feti-bindgen [--check] [--calls FILE] [--trace FILE] [--pages DIR] [--source DIR] [--root DIR]`; `--check` writes nothing and fails on the first line
 //! that differs from the committed files. `--calls FILE` writes a C program for the tests instead ([`calls`]), as does `--trace` ([`trace`]);
-//! `--pages DIR` writes reference pages there ([`pages`]) and manual pages below DIR/man ([`man`]).
+//! `--pages DIR` writes reference pages there ([`pages`], with the calls of FORTRAN 77, [`f77`]) and manual pages below DIR/man ([`man`]).
 //! `--root` is the folder of the library's Cargo.toml, `--source` defaults to its src/ffi.
 //!
 //! Every exported function carries a table `| argument | in/out | shape | rule |` in its documentation ([`doc`]).
@@ -17,6 +17,7 @@ mod calls;
 mod check;
 mod dictionary;
 mod doc;
+mod f77;
 mod faults;
 mod fortran;
 mod man;
@@ -117,19 +118,20 @@ fn checked(sources: &[(String, String)], version: [u32; 3]) -> Result<model::Api
 }
 
 fn write_pages(folder: &Path, root: &Path, api: &model::Api) -> Result<(), String> {
-    let mut modules = Vec::new();
+    let (mut modules, mut face77) = (Vec::new(), Vec::new());
     for path in files(&root.join("include/fortran"), "f90")? {
-        // The generated interfaces and the FORTRAN 77 face are not the typed module.
         let name = path.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
-        if !name.ends_with("_c") && !name.ends_with("_f77") {
-            modules.push(read(&path)?);
+        match name.strip_prefix("feti_contact").unwrap_or_default() {
+            "_c" => {} // generated
+            part if part.starts_with("_f77") => face77.push(read(&path)?),
+            _ => modules.push(read(&path)?),
         }
     }
-    let typed = typed::signatures(&modules);
-    for (name, text) in pages::print(api, &typed) {
+    let faces = pages::Faces { typed: typed::signatures(&modules), f77: f77::calls(&face77) };
+    for (name, text) in pages::print(api, &faces) {
         write(&folder.join(name), &text)?;
     }
-    man::print(api, &typed).iter().try_for_each(|(name, text)| write(&folder.join("man").join(name), text))
+    man::print(api, &faces).iter().try_for_each(|(name, text)| write(&folder.join("man").join(name), text))
 }
 
 fn write(path: &Path, text: &str) -> Result<(), String> {

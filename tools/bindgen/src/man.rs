@@ -4,13 +4,13 @@ use std::fmt::Write;
 
 use crate::c_types::prototype;
 use crate::model::{Api, Function};
-use crate::pages::{by_subject, direction, results, summary, Typed};
+use crate::pages::{by_subject, direction, results, summary, Faces};
 
 /// (file name, text) of every page, below `man3` and `man7`.
-pub fn print(api: &Api, typed: &Typed) -> Vec<(String, String)> {
+pub fn print(api: &Api, faces: &Faces) -> Vec<(String, String)> {
     let mut pages = vec![("man7/feti_contact.7".to_string(), overview(api))];
     for function in &api.functions {
-        pages.push((format!("man3/{}.3", function.name), page(api, typed, function)));
+        pages.push((format!("man3/{}.3", function.name), page(api, faces, function)));
     }
     pages
 }
@@ -20,7 +20,7 @@ fn title(api: &Api, name: &str, section: u32) -> String {
     format!(".TH {name} {section} \"\" \"feti-contact {major}.{minor}.{patch}\" \"feti-contact\"\n")
 }
 
-fn page(api: &Api, typed: &Typed, function: &Function) -> String {
+fn page(api: &Api, faces: &Faces, function: &Function) -> String {
     let [before, after] = function.doc.paragraphs();
     let name = &function.name;
     let mut out = title(api, name, 3);
@@ -30,13 +30,16 @@ fn page(api: &Api, typed: &Typed, function: &Function) -> String {
         ".SH SYNOPSIS\n.nf\n#include <feti_contact.h>\n\n{};\n.fi\n",
         text(&prototype(function, 78))
     );
-    if let Some(signatures) = typed.get(name) {
+    if let Some(signatures) = faces.typed.get(name) {
         let lines = signatures.iter().map(|signature| text(&signature.lines.join("\n")));
         let _ = write!(
             out,
             ".SS Fortran\n.nf\nuse feti_contact\n\n{}\n.fi\n",
             lines.collect::<Vec<_>>().join("\n\n")
         );
+    }
+    if let Some(calls) = faces.f77.get(name) {
+        let _ = write!(out, ".SS FORTRAN 77\n.nf\n{}\n.fi\n", text(&calls.join("\n")));
     }
     if before.len() > 1 {
         let paragraphs: Vec<_> = before[1..].iter().map(|paragraph| text(paragraph)).collect();

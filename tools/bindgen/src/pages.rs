@@ -14,14 +14,20 @@ const WIDTH: usize = 100;
 /// The constants of this file are statuses.
 const STATUS_FILE: &str = "status.rs";
 
-/// Signatures of the typed Fortran module by the function of C that they call.
-pub type Typed = BTreeMap<String, Vec<Signature>>;
+/// How Fortran calls a function of C, by its name.
+#[derive(Default)]
+pub struct Faces {
+    /// Signatures of the typed module.
+    pub typed: BTreeMap<String, Vec<Signature>>,
+    /// Statements of FORTRAN 77.
+    pub f77: BTreeMap<String, Vec<String>>,
+}
 
 /// (file name, text) of every page.
-pub fn print(api: &Api, typed: &Typed) -> Vec<(String, String)> {
+pub fn print(api: &Api, faces: &Faces) -> Vec<(String, String)> {
     let mut pages = vec![("functions.md".to_string(), list(api)), ("types.md".to_string(), types(api))];
     for function in &api.functions {
-        pages.push((format!("{}.md", function.name), page(api, typed, function)));
+        pages.push((format!("{}.md", function.name), page(api, faces, function)));
     }
     pages
 }
@@ -56,7 +62,7 @@ pub fn summary(doc: &Doc) -> String {
     doc.paragraphs()[0].first().cloned().unwrap_or_default()
 }
 
-fn page(api: &Api, typed: &Typed, function: &Function) -> String {
+fn page(api: &Api, faces: &Faces, function: &Function) -> String {
     let [before, after] = function.doc.paragraphs();
     let mut out = format!("# {}\n", function.name);
     for paragraph in &before {
@@ -64,8 +70,19 @@ fn page(api: &Api, typed: &Typed, function: &Function) -> String {
     }
     let _ =
         write!(out, "\n## C\n\n```c\n#include <feti_contact.h>\n\n{};\n```\n", prototype(function, WIDTH));
+    write_fortran(&mut out, api, faces, function);
+    write_arguments(&mut out, api, function);
+    write_results(&mut out, api, function);
+    for paragraph in &after {
+        let _ = write!(out, "\n{}\n", paragraph.replacen("Safety:", "**Safety.**", 1));
+    }
+    let _ = write!(out, "\nSource: `src/ffi/{}`\n", function.source);
+    out
+}
+
+fn write_fortran(out: &mut String, api: &Api, faces: &Faces, function: &Function) {
     out.push_str("\n## Fortran\n");
-    if let Some(signatures) = typed.get(&function.name) {
+    if let Some(signatures) = faces.typed.get(&function.name) {
         out.push_str("\n```fortran\nuse feti_contact\n");
         for signature in signatures {
             let _ = write!(out, "\n{}\n", signature.lines.join("\n"));
@@ -74,13 +91,10 @@ fn page(api: &Api, typed: &Typed, function: &Function) -> String {
     }
     let interface = fortran::interface(api, function);
     let _ = write!(out, "\n```fortran\nuse feti_contact_c\n\n{}```\n", outdented(&interface));
-    write_arguments(&mut out, api, function);
-    write_results(&mut out, api, function);
-    for paragraph in &after {
-        let _ = write!(out, "\n{}\n", paragraph.replacen("Safety:", "**Safety.**", 1));
+    if let Some(calls) = faces.f77.get(&function.name) {
+        let _ = write!(out, "\n## FORTRAN 77\n\n```fortran\n{}\n```\n\n", calls.join("\n"));
+        out.push_str("Arguments and rules: [FORTRAN 77 hosts](../fortran77.md).\n");
     }
-    let _ = write!(out, "\nSource: `src/ffi/{}`\n", function.source);
-    out
 }
 
 fn outdented(text: &str) -> String {
@@ -244,15 +258,17 @@ mod tests {
     fn pages() -> BTreeMap<String, String> {
         let signature =
             Signature { name: "feti_add".into(), lines: vec!["subroutine feti_add(p, x)".into()] };
-        let typed = Typed::from([("feti_add".to_string(), vec![signature])]);
+        let mut faces = Faces::default();
+        faces.typed.insert("feti_add".to_string(), vec![signature]);
+        faces.f77.insert("feti_add".to_string(), vec!["CALL FTADD(IP, IERR)".to_string()]);
         let (api, mut pages) = (api(), BTreeMap::new());
-        pages.extend(print(&api, &typed));
-        pages.extend(crate::man::print(&api, &typed));
+        pages.extend(print(&api, &faces));
+        pages.extend(crate::man::print(&api, &faces));
         pages
     }
 
     #[test]
-    fn a_page_has_both_languages_arguments_statuses_and_links() {
+    fn a_page_has_all_languages_arguments_statuses_and_links() {
         let page = &pages()["feti_add.md"];
         for line in [
             "See [feti_clear](feti_clear.md); FETI_STATE before. Not [feti_problem](types.md#feti_problem).",
@@ -260,6 +276,7 @@ mod tests {
             "int32_t feti_add(feti_problem *p, const double *x);",
             "subroutine feti_add(p, x)",
             "function feti_add(p, x) bind(C, name=\"feti_add\")",
+            "```fortran\nCALL FTADD(IP, IERR)\n```",
             "| 2 | `x` | in | n | \\|x\\| <= 1, force |",
             "| `FETI_HANDLE` | Bad. |",
             "| `FETI_BUSY` | Busy. |",

@@ -59,7 +59,7 @@ impl Procedure {
 }
 
 /// Statements without comments, continued lines joined.
-fn statements(text: &str) -> Vec<String> {
+pub fn statements(text: &str) -> Vec<String> {
     let mut statements = Vec::new();
     let mut open = String::new();
     for line in text.lines().map(str::trim).filter(|line| !line.starts_with('!')) {

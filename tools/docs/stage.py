@@ -1,0 +1,123 @@
+#!/usr/bin/env python3
+"""stage.py PAGES OUT: puts the sources of the book together in the folder OUT.
+
+The chapters are those of docs/book/SUMMARY.md, read where they are; the reference pages are those of the folder PAGES
+(feti-bindgen --pages, feti-reference). In OUT a chapter lies where docs/ has it, README.md as index.md, the reference
+below reference/. Links to chapters and pictures follow; a link to another file of the repository becomes its text; the
+name of a function between ticks becomes a link to its page. Exit status 1 where a chapter is missing or a document is
+none."""
+
+import os
+import re
+import shutil
+import sys
+from pathlib import Path
+
+import markdown
+
+ROOT = Path(__file__).resolve().parents[2]
+SUMMARY = ROOT / "docs/book/SUMMARY.md"
+ENTRY = re.compile(r"(?P<before>\s*- \[.*\]\()(?P<target>[^)]+)(?P<after>\).*)")
+PICTURES = {".svg", ".png"}
+REFERENCE = ["functions", "types", "options", "statuses"]
+
+
+def staged(path):
+    """Where a document of the repository lies in the book."""
+    path = path.relative_to(ROOT)
+    return "index.md" if path.name == "README.md" else path.as_posix().removeprefix("docs/")
+
+
+def chapters():
+    """The documents that the table of contents names, in its order."""
+    lines = SUMMARY.read_text(encoding="utf-8").splitlines()
+    return [(SUMMARY.parent / m.group("target")).resolve() for m in map(ENTRY.match, lines) if m]
+
+
+def faults(listed):
+    """Chapters that are missing, documents that are no chapter."""
+    shown = SUMMARY.relative_to(ROOT)
+    missing = [path for path in listed if not path.is_file()]
+    unlisted = sorted(set((ROOT / "docs").glob("*.md")) - set(listed))
+    return [f"{shown}: no {path.relative_to(ROOT)}" for path in missing] + [
+        f"{path.relative_to(ROOT)}: not in {shown}" for path in unlisted
+    ]
+
+
+class Stage:
+    """Writes the chapters, given those of the book and the functions that have a page."""
+
+    def __init__(self, out, listed, functions):
+        self.out, self.functions = out, functions
+        self.places = {path: staged(path) for path in listed}
+
+    def chapter(self, path):
+        here = Path(self.places[path]).parent
+
+        def link(_line, whole, opened, target, closed):
+            return self.link(path, here, whole, opened, target, closed)
+
+        def code(whole, words):
+            page = self.functions.get(words)
+            return f"[{whole}]({os.path.relpath(page, here)})" if page else whole
+
+        self.write(self.places[path], markdown.rewrite(path.read_text(encoding="utf-8"), link, code))
+
+    def link(self, path, here, whole, opened, target, closed):
+        name, mark, anchor = target.partition("#")
+        if not name or ":" in name:
+            return whole
+        file = (path.parent / name).resolve()
+        if file in self.places:
+            return opened + os.path.relpath(self.places[file], here) + mark + anchor + closed
+        if file.suffix in PICTURES:
+            place = staged(file)
+            (self.out / place).parent.mkdir(parents=True, exist_ok=True)
+            shutil.copyfile(file, self.out / place)
+            return opened + os.path.relpath(place, here) + closed
+        return opened[opened.index("[") + 1 : opened.rindex("]")]
+
+    def summary(self, pages):
+        lines = []
+        for line in SUMMARY.read_text(encoding="utf-8").splitlines():
+            entry = ENTRY.match(line)
+            if entry:
+                file = (SUMMARY.parent / entry.group("target")).resolve()
+                line = entry.group("before") + self.places[file] + entry.group("after")
+            lines.append(line)
+        lines += ["", "# Reference", ""]
+        for name in REFERENCE:
+            lines.append(f"- [{title(pages / f'{name}.md')}](reference/{name}.md)")
+            if name == "functions":
+                lines += [f"  - [{name}]({page})" for name, page in self.functions.items()]
+        self.write("SUMMARY.md", "\n".join(lines) + "\n")
+
+    def write(self, place, text):
+        file = self.out / place
+        file.parent.mkdir(parents=True, exist_ok=True)
+        file.write_text(text, encoding="utf-8")
+
+
+def title(page):
+    return markdown.headings(page.read_text(encoding="utf-8"))[0]
+
+
+def main(pages, out):
+    listed = chapters()
+    if wrong := faults(listed):
+        print("\n".join(wrong), file=sys.stderr)
+        return 1
+    shutil.rmtree(out, ignore_errors=True)
+    shutil.copytree(pages, out / "reference", ignore=shutil.ignore_patterns("man"))
+    names = [page.stem for page in sorted(pages.glob("feti_*.md"))]
+    stage = Stage(out, listed, {name: f"reference/{name}.md" for name in names})
+    for path in listed:
+        stage.chapter(path)
+    stage.summary(pages)
+    return 0
+
+
+if __name__ == "__main__":
+    if len(sys.argv) != 3:
+        sys.exit(__doc__)
+    sys.exit(main(Path(sys.argv[1]).resolve(), Path(sys.argv[2]).resolve()))
