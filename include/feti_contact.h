@@ -11,113 +11,6 @@
 #define FETI_CONTACT_VERSION_PATCH 0
 
 /**
- * Done.
- */
-#define FETI_OK 0
-
-/**
- * The limit on steps was reached; the results are those of the last step.
- */
-#define FETI_ITERATIONS 1
-
-/**
- * The time limit was reached; the results are those of the last step.
- */
-#define FETI_TIME 2
-
-/**
- * The host cancelled; the results are those of the last step, and none before the first.
- */
-#define FETI_CANCELLED 3
-
-/**
- * Steps no longer reduce the error; the results are those of the last step.
- */
-#define FETI_STALLED 4
-
-/**
- * The certificate does not pass.
- */
-#define FETI_INACCURATE 5
-
-/**
- * The answer is usable but incomplete: a small part of the load is not held.
- */
-#define FETI_MARGINAL 6
-
-/**
- * Memory could not be reserved, or option memory_limit would be exceeded.
- */
-#define FETI_MEMORY -1
-
-/**
- * The handle is NULL, destroyed, or none of the library.
- */
-#define FETI_HANDLE -2
-
-/**
- * Another call on this problem is running.
- */
-#define FETI_BUSY -3
-
-/**
- * A function of the host reported a failure.
- */
-#define FETI_CALLBACK -4
-
-/**
- * Something this call needs has not been given yet.
- */
-#define FETI_STATE -5
-
-/**
- * No contact force can balance the load.
- */
-#define FETI_LOAD_NOT_HELD -6
-
-/**
- * Rows contradict each other.
- */
-#define FETI_GAPS_CONTRADICT -7
-
-/**
- * The null space of a body is not what was claimed, or was not found.
- */
-#define FETI_NULL_SPACE -8
-
-/**
- * A stiffness matrix has a negative or a vanishing pivot outside its null space.
- */
-#define FETI_INDEFINITE -9
-
-/**
- * A file could not be read or written.
- */
-#define FETI_IO -10
-
-/**
- * The library contradicts itself; only destroy and the error functions accept the problem
- * afterwards.
- */
-#define FETI_INTERNAL -11
-
-/**
- * The request is valid but not available.
- */
-#define FETI_UNSUPPORTED -12
-
-/**
- * A number does not fit its integer type.
- */
-#define FETI_OVERFLOW -13
-
-/**
- * Argument k refused is FETI_ARGUMENT - k, k from 1 with the handle as 1; FETI_ARGUMENT itself:
- * data of an earlier call.
- */
-#define FETI_ARGUMENT -100
-
-/**
  * Kind of rows: `B u <= c`.
  */
 #define FETI_INEQUALITY 1
@@ -264,6 +157,113 @@
  * Type of an option: text.
  */
 #define FETI_OPTION_STR 3
+
+/**
+ * Done.
+ */
+#define FETI_OK 0
+
+/**
+ * The limit on steps was reached; the results are those of the last step.
+ */
+#define FETI_ITERATIONS 1
+
+/**
+ * The time limit was reached; the results are those of the last step.
+ */
+#define FETI_TIME 2
+
+/**
+ * The host cancelled; the results are those of the last step, and none before the first.
+ */
+#define FETI_CANCELLED 3
+
+/**
+ * Steps no longer reduce the error; the results are those of the last step.
+ */
+#define FETI_STALLED 4
+
+/**
+ * The certificate does not pass.
+ */
+#define FETI_INACCURATE 5
+
+/**
+ * The answer is usable but incomplete: a small part of the load is not held.
+ */
+#define FETI_MARGINAL 6
+
+/**
+ * Memory could not be reserved, or option memory_limit would be exceeded.
+ */
+#define FETI_MEMORY -1
+
+/**
+ * The handle is NULL, destroyed, or none of the library.
+ */
+#define FETI_HANDLE -2
+
+/**
+ * Another call on this problem is running.
+ */
+#define FETI_BUSY -3
+
+/**
+ * A function of the host reported a failure.
+ */
+#define FETI_CALLBACK -4
+
+/**
+ * Something this call needs has not been given yet.
+ */
+#define FETI_STATE -5
+
+/**
+ * No contact force can balance the load.
+ */
+#define FETI_LOAD_NOT_HELD -6
+
+/**
+ * Rows contradict each other.
+ */
+#define FETI_GAPS_CONTRADICT -7
+
+/**
+ * The null space of a body is not what was claimed, or was not found.
+ */
+#define FETI_NULL_SPACE -8
+
+/**
+ * A stiffness matrix has a negative or a vanishing pivot outside its null space.
+ */
+#define FETI_INDEFINITE -9
+
+/**
+ * A file could not be read or written.
+ */
+#define FETI_IO -10
+
+/**
+ * The library contradicts itself; only destroy and the error functions accept the problem
+ * afterwards.
+ */
+#define FETI_INTERNAL -11
+
+/**
+ * The request is valid but not available.
+ */
+#define FETI_UNSUPPORTED -12
+
+/**
+ * A number does not fit its integer type.
+ */
+#define FETI_OVERFLOW -13
+
+/**
+ * Argument k refused is FETI_ARGUMENT - k, k from 1 with the handle as 1; FETI_ARGUMENT itself:
+ * data of an earlier call.
+ */
+#define FETI_ARGUMENT -100
 
 /**
  * A problem: bodies, rows, settings, factors and the last answer. The handle is a counter, never

@@ -9,49 +9,6 @@ module feti_contact_c
   integer(c_int32_t), parameter, public :: FETI_CONTACT_VERSION_MINOR = 1_c_int32_t
   integer(c_int32_t), parameter, public :: FETI_CONTACT_VERSION_PATCH = 0_c_int32_t
 
-  !> Done.
-  integer(c_int32_t), parameter, public :: FETI_OK = 0_c_int32_t
-  !> The limit on steps was reached; the results are those of the last step.
-  integer(c_int32_t), parameter, public :: FETI_ITERATIONS = 1_c_int32_t
-  !> The time limit was reached; the results are those of the last step.
-  integer(c_int32_t), parameter, public :: FETI_TIME = 2_c_int32_t
-  !> The host cancelled; the results are those of the last step, and none before the first.
-  integer(c_int32_t), parameter, public :: FETI_CANCELLED = 3_c_int32_t
-  !> Steps no longer reduce the error; the results are those of the last step.
-  integer(c_int32_t), parameter, public :: FETI_STALLED = 4_c_int32_t
-  !> The certificate does not pass.
-  integer(c_int32_t), parameter, public :: FETI_INACCURATE = 5_c_int32_t
-  !> The answer is usable but incomplete: a small part of the load is not held.
-  integer(c_int32_t), parameter, public :: FETI_MARGINAL = 6_c_int32_t
-  !> Memory could not be reserved, or option memory_limit would be exceeded.
-  integer(c_int32_t), parameter, public :: FETI_MEMORY = -1_c_int32_t
-  !> The handle is NULL, destroyed, or none of the library.
-  integer(c_int32_t), parameter, public :: FETI_HANDLE = -2_c_int32_t
-  !> Another call on this problem is running.
-  integer(c_int32_t), parameter, public :: FETI_BUSY = -3_c_int32_t
-  !> A function of the host reported a failure.
-  integer(c_int32_t), parameter, public :: FETI_CALLBACK = -4_c_int32_t
-  !> Something this call needs has not been given yet.
-  integer(c_int32_t), parameter, public :: FETI_STATE = -5_c_int32_t
-  !> No contact force can balance the load.
-  integer(c_int32_t), parameter, public :: FETI_LOAD_NOT_HELD = -6_c_int32_t
-  !> Rows contradict each other.
-  integer(c_int32_t), parameter, public :: FETI_GAPS_CONTRADICT = -7_c_int32_t
-  !> The null space of a body is not what was claimed, or was not found.
-  integer(c_int32_t), parameter, public :: FETI_NULL_SPACE = -8_c_int32_t
-  !> A stiffness matrix has a negative or a vanishing pivot outside its null space.
-  integer(c_int32_t), parameter, public :: FETI_INDEFINITE = -9_c_int32_t
-  !> A file could not be read or written.
-  integer(c_int32_t), parameter, public :: FETI_IO = -10_c_int32_t
-  !> The library contradicts itself; only destroy and the error functions accept the problem afterwards.
-  integer(c_int32_t), parameter, public :: FETI_INTERNAL = -11_c_int32_t
-  !> The request is valid but not available.
-  integer(c_int32_t), parameter, public :: FETI_UNSUPPORTED = -12_c_int32_t
-  !> A number does not fit its integer type.
-  integer(c_int32_t), parameter, public :: FETI_OVERFLOW = -13_c_int32_t
-  !> Argument k refused is FETI_ARGUMENT - k, k from 1 with the handle as 1; FETI_ARGUMENT itself: data of an
-  !> earlier call.
-  integer(c_int32_t), parameter, public :: FETI_ARGUMENT = -100_c_int32_t
   !> Kind of rows: `B u <= c`.
   integer(c_int32_t), parameter, public :: FETI_INEQUALITY = 1_c_int32_t
   !> Kind of rows: `H u = h`.
@@ -112,6 +69,49 @@ module feti_contact_c
   integer(c_int32_t), parameter, public :: FETI_OPTION_I64 = 2_c_int32_t
   !> Type of an option: text.
   integer(c_int32_t), parameter, public :: FETI_OPTION_STR = 3_c_int32_t
+  !> Done.
+  integer(c_int32_t), parameter, public :: FETI_OK = 0_c_int32_t
+  !> The limit on steps was reached; the results are those of the last step.
+  integer(c_int32_t), parameter, public :: FETI_ITERATIONS = 1_c_int32_t
+  !> The time limit was reached; the results are those of the last step.
+  integer(c_int32_t), parameter, public :: FETI_TIME = 2_c_int32_t
+  !> The host cancelled; the results are those of the last step, and none before the first.
+  integer(c_int32_t), parameter, public :: FETI_CANCELLED = 3_c_int32_t
+  !> Steps no longer reduce the error; the results are those of the last step.
+  integer(c_int32_t), parameter, public :: FETI_STALLED = 4_c_int32_t
+  !> The certificate does not pass.
+  integer(c_int32_t), parameter, public :: FETI_INACCURATE = 5_c_int32_t
+  !> The answer is usable but incomplete: a small part of the load is not held.
+  integer(c_int32_t), parameter, public :: FETI_MARGINAL = 6_c_int32_t
+  !> Memory could not be reserved, or option memory_limit would be exceeded.
+  integer(c_int32_t), parameter, public :: FETI_MEMORY = -1_c_int32_t
+  !> The handle is NULL, destroyed, or none of the library.
+  integer(c_int32_t), parameter, public :: FETI_HANDLE = -2_c_int32_t
+  !> Another call on this problem is running.
+  integer(c_int32_t), parameter, public :: FETI_BUSY = -3_c_int32_t
+  !> A function of the host reported a failure.
+  integer(c_int32_t), parameter, public :: FETI_CALLBACK = -4_c_int32_t
+  !> Something this call needs has not been given yet.
+  integer(c_int32_t), parameter, public :: FETI_STATE = -5_c_int32_t
+  !> No contact force can balance the load.
+  integer(c_int32_t), parameter, public :: FETI_LOAD_NOT_HELD = -6_c_int32_t
+  !> Rows contradict each other.
+  integer(c_int32_t), parameter, public :: FETI_GAPS_CONTRADICT = -7_c_int32_t
+  !> The null space of a body is not what was claimed, or was not found.
+  integer(c_int32_t), parameter, public :: FETI_NULL_SPACE = -8_c_int32_t
+  !> A stiffness matrix has a negative or a vanishing pivot outside its null space.
+  integer(c_int32_t), parameter, public :: FETI_INDEFINITE = -9_c_int32_t
+  !> A file could not be read or written.
+  integer(c_int32_t), parameter, public :: FETI_IO = -10_c_int32_t
+  !> The library contradicts itself; only destroy and the error functions accept the problem afterwards.
+  integer(c_int32_t), parameter, public :: FETI_INTERNAL = -11_c_int32_t
+  !> The request is valid but not available.
+  integer(c_int32_t), parameter, public :: FETI_UNSUPPORTED = -12_c_int32_t
+  !> A number does not fit its integer type.
+  integer(c_int32_t), parameter, public :: FETI_OVERFLOW = -13_c_int32_t
+  !> Argument k refused is FETI_ARGUMENT - k, k from 1 with the handle as 1; FETI_ARGUMENT itself: data of an
+  !> earlier call.
+  integer(c_int32_t), parameter, public :: FETI_ARGUMENT = -100_c_int32_t
 
   !> What went wrong, where and by how much. Numbers count from 0.
   type, bind(C), public :: feti_error_detail

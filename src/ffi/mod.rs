@@ -2,7 +2,7 @@
 //!
 //! | file | holds |
 //! |---|---|
-//! | `types`, `status` | structs, constants and status numbers of the header |
+//! | `types`, `constants`, `status` | structs, constants and status numbers of the header |
 //! | `handle`, `registry`, `sync` | the registry: handles are counters, never addresses, never reused |
 //! | `guard` | what surrounds every call: registry, busy, `catch_unwind`, error records |
 //! | `fpu` | the floating-point environment of the host, saved and restored |
@@ -19,6 +19,7 @@
 mod arrays;
 mod body;
 mod body_info;
+mod constants;
 mod diagnosis;
 mod error_store;
 mod file;

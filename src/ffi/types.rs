@@ -1,76 +1,9 @@
-//! Structs and constants of the header. Structs without padding: the record functions copy them by bytes.
+//! Structs of the header, without padding: the record functions copy them by bytes.
 #![allow(non_camel_case_types)]
 
 use std::ffi::{c_char, c_void};
 
-/// Kind of rows: `B u <= c`.
-pub const FETI_INEQUALITY: i32 = 1;
-/// Kind of rows: `H u = h`.
-pub const FETI_EQUALITY: i32 = 2;
-
-/// In place of a body: all bodies, by the host's numbers of feti_body_numbering_i32 or _i64 where they have some.
-pub const FETI_ALL: i64 = -1;
-
-/// Storage: every entry of the symmetric matrix is given.
-pub const FETI_FULL: i32 = 0;
-/// Storage: entries with column <= row are given.
-pub const FETI_LOWER: i32 = 1;
-/// Storage: entries with column >= row are given.
-pub const FETI_UPPER: i32 = 2;
-
-/// Null-space flag: the columns span the null space.
-pub const FETI_EXACT: i32 = 0;
-/// Null-space flag: the null space lies in the span of the columns; the library selects.
-pub const FETI_CANDIDATES: i32 = 1;
-
-/// Stiffness flag: the matrix is copied.
-pub const FETI_COPY: i32 = 0;
-/// Stiffness flag: the values, and columns in 32 bits from 0, stay where the host has them, where their form allows it.
-pub const FETI_BORROW: i32 = 1;
-
-/// Null space of a body: vectors of the host that span it (FETI_EXACT).
-pub const FETI_ORIGIN_EXACT: i32 = 1;
-/// Null space of a body: sought among vectors of the host (FETI_CANDIDATES).
-pub const FETI_ORIGIN_CANDIDATES: i32 = 2;
-/// Null space of a body: sought among rigid motions, from coordinates.
-pub const FETI_ORIGIN_COORDINATES: i32 = 3;
-/// Null space of a body: found from K alone.
-pub const FETI_ORIGIN_FOUND: i32 = 4;
-
-/// State of a row: open, its force is zero.
-pub const FETI_ROW_OPEN: i32 = 0;
-/// State of a row: closed, it carries a force.
-pub const FETI_ROW_CLOSED: i32 = 1;
-/// State of a row: closed with a force that is zero to rounding, or with a force without a clear sign.
-pub const FETI_ROW_WEAK: i32 = 2;
-
-/// Phase of a call that feti_on_progress tells of: a part of the setup is done.
-pub const FETI_PHASE_SETUP: i32 = 1;
-/// Phase of a call that feti_on_progress tells of: a step of the dual method is done.
-pub const FETI_PHASE_SOLVE: i32 = 2;
-
-/// Kind of a step: conjugate gradients on the face.
-pub const FETI_STEP_CONJUGATE_GRADIENT: i32 = 1;
-/// Kind of a step: rows lost their force.
-pub const FETI_STEP_EXPANSION: i32 = 2;
-/// Kind of a step: rows got a force.
-pub const FETI_STEP_RELEASE: i32 = 3;
-
-/// Level of a log: nothing.
-pub const FETI_LOG_NONE: i32 = 0;
-/// Level of a log: one line for each solve, and warnings.
-pub const FETI_LOG_RESULT: i32 = 1;
-/// Level of a log: also what is solved and how, and a line for each phase.
-pub const FETI_LOG_PHASE: i32 = 2;
-/// Level of a log: also a line for each step.
-pub const FETI_LOG_STEP: i32 = 3;
-
-/// Type of an option: number.
-pub const FETI_OPTION_F64: i32 = 1;
-/// Type of an option: integer.
-pub const FETI_OPTION_I64: i32 = 2;
-/// Type of an option: text.
-pub const FETI_OPTION_STR: i32 = 3;
+pub use super::constants::*;
 
 /// A problem: bodies, rows, settings, factors and the last answer. The handle is a counter, never an address.
 #[repr(C)]
