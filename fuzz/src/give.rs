@@ -266,7 +266,7 @@ pub fn fixing(host: &mut Host, body: usize) {
 }
 
 pub fn states(host: &mut Host) {
-    let id = host.states.get(host.bytes.below(host.states.len())).map_or(0, |id| *id as usize);
+    let id = host.states.get(host.bytes.below(host.states.len())).map_or(0, |state| state.0 as usize);
     let mut number = Out::<i64>::new(1);
     // SAFETY: room for one number.
     unsafe {
@@ -274,12 +274,15 @@ pub fn states(host: &mut Host) {
             0 | 3 => {
                 let status = feti_state_save(host.handle(), host.out(&mut number));
                 if host.done(status, &[&number]) {
-                    host.states.push(number.cells[0]);
+                    host.states.push((number.cells[0], host.rows));
                 }
             }
             1 => {
-                let status = feti_state_restore(host.handle(), host.known(id));
+                let (p, id) = (host.handle(), host.known(id));
+                let status = feti_state_restore(p, id);
                 if host.done(status, &[]) {
+                    let state = host.states.iter().find(|state| state.0 == id);
+                    host.rows = state.expect("no state with this number was saved").1;
                     host.changed();
                 }
             }

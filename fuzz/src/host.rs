@@ -33,7 +33,8 @@ pub struct Host<'a> {
     /// A function of the host may report a failure.
     pub may_refuse: bool,
     pub listener: Option<Box<super::whole::Listener>>,
-    pub states: Vec<i64>,
+    /// Numbers of saved states, and the rows of each kind that come back with them.
+    pub states: Vec<(i64, [usize; 2])>,
     /// What the host of [`super::give::progress`] counts; an address that stays.
     pub watcher: Box<super::give::Watcher>,
     pub digest: Digest,
