@@ -4,7 +4,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use super::buffers::Digest;
 use super::host::Host;
-use super::{ask, give, scenes};
+use super::{ask, give, scenes, stiffness, whole};
 
 /// Sequences run, and those of them in which a solve was certified (status FETI_OK, accepted by feti_check).
 pub static SEQUENCES: AtomicU64 = AtomicU64::new(0);
@@ -45,7 +45,7 @@ fn sequence(data: &[u8]) -> (Digest, u64) {
 }
 
 fn one(host: &mut Host) {
-    let call = host.bytes.below(32);
+    let call = host.bytes.below(40);
     match call {
         0 => {
             host.destroy();
@@ -75,6 +75,21 @@ fn one(host: &mut Host) {
         28 => ask::null_space(host),
         29 => ask::operators(host),
         30 => ask::facts(host),
+        31 | 32 => {
+            if let Some(body) = give::pick(host) {
+                stiffness::values(host, body);
+            }
+        }
+        33 => whole::numbering(host),
+        34 => whole::all_bodies(host),
+        35 => whole::of_body(host),
+        36 => {
+            if let Some(body) = give::pick(host) {
+                stiffness::operator(host, body);
+            }
+        }
+        37 => whole::log(host),
+        38 => whole::options(host),
         _ => {
             let which = host.bytes.below(3);
             scenes::hand_over(host, which);
@@ -91,7 +106,7 @@ fn of_body(host: &mut Host, call: usize) {
                 let n = host.bodies[body].n;
                 host.bodies[body].k = super::models::any(&mut host.bytes, n).k;
             }
-            give::stiffness(host, body);
+            stiffness::stiffness(host, body);
         }
         5 => give::null_space(host, body),
         6 => give::coordinates(host, body),

@@ -11,8 +11,11 @@ use super::models::{self, Model};
 /// Adds a body like `model` and returns its number.
 pub fn body(host: &mut Host, model: Model) -> Option<usize> {
     let mut number = Out::<i64>::new(1);
-    let huge =
-        if host.turn() { [0, -1, i64::MIN, i64::MAX, 1 << 59, 1 << 40][host.bytes.below(6)] } else { 0 };
+    let huge = if host.turn() {
+        [0, -1, i64::MIN, i64::MAX, (1 << 60) - 1, 1 << 40][host.bytes.below(6)]
+    } else {
+        0
+    };
     let n = if huge == 0 { model.n as i64 } else { huge };
     // SAFETY: room for one number.
     let status = unsafe { feti_body_add(host.handle(), n, host.out(&mut number)) };
@@ -22,6 +25,7 @@ pub fn body(host: &mut Host, model: Model) -> Option<usize> {
     host.changed();
     assert_eq!(number.cells[0], host.bodies.len() as i64);
     host.bodies.push(Model { n: n as usize, ..model });
+    host.lent.push(Default::default());
     Some(host.bodies.len() - 1)
 }
 
@@ -45,30 +49,8 @@ pub fn pick(host: &mut Host) -> Option<usize> {
     (body < count && host.bodies[body].n <= LARGEST).then_some(body)
 }
 
-/// Row pointers and columns of the entries of K that `storage` keeps, `base` added; zeros are left out.
-fn sparse(model: &Model, storage: i32, base: i64, backwards: bool) -> (Vec<i64>, Vec<i64>, Vec<f64>) {
-    let n = model.n;
-    let (mut pointer, mut column, mut value) = (vec![base], Vec::new(), Vec::new());
-    for i in 0..n {
-        let kept = |j: &usize| match storage {
-            FETI_LOWER => *j <= i,
-            FETI_UPPER => *j >= i,
-            _ => true,
-        };
-        let mut row: Vec<usize> =
-            (0..n).filter(kept).filter(|j| model.k[i + j * n] != 0.0 || *j == i).collect();
-        if backwards {
-            row.reverse();
-        }
-        column.extend(row.iter().map(|j| *j as i64 + base));
-        value.extend(row.iter().map(|j| model.k[i + j * n]));
-        pointer.push(column.len() as i64 + base);
-    }
-    (pointer, column, value)
-}
-
 /// Spoils an index array but for its last entry, which may only fall: the library believes it.
-fn spoil_indices(host: &mut Host, indices: &mut [i64], last_is_length: bool) {
+pub fn spoil_indices(host: &mut Host, indices: &mut [i64], last_is_length: bool) {
     if indices.is_empty() || !host.turn() {
         return;
     }
@@ -79,81 +61,8 @@ fn spoil_indices(host: &mut Host, indices: &mut [i64], last_is_length: bool) {
     indices[at] = if length { new.min(indices[at]) } else { new };
 }
 
-fn narrow(wide: &[i64]) -> Vec<i32> {
+pub fn narrow(wide: &[i64]) -> Vec<i32> {
     wide.iter().map(|value| *value as i32).collect()
-}
-
-/// The stiffness matrix of a body in one of its forms.
-pub fn stiffness(host: &mut Host, body: usize) {
-    let model = host.bodies[body].clone();
-    let form = host.bytes.byte();
-    let storage = [FETI_FULL, FETI_LOWER, FETI_UPPER][usize::from(form & 3) % 3];
-    let base = i32::from(form >> 2 & 1);
-    let status = match form >> 4 & 3 {
-        0 => dense(host, body, &model, storage),
-        wide => {
-            let (mut pointer, mut column, mut value) =
-                sparse(&model, storage, i64::from(base), form >> 3 & 1 == 1);
-            spoil_indices(host, &mut pointer, true);
-            spoil_indices(host, &mut column, false);
-            if host.turn() {
-                let at = host.bytes.below(value.len());
-                value[at] = host.bytes.wild();
-            }
-            let (p, body, n) = (host.handle(), host.known(body), host.known(model.n));
-            // SAFETY: the last pointer is at most the number of entries.
-            unsafe {
-                if wide == 1 {
-                    let (pointer, column) = (host.array(&pointer), host.array(&column));
-                    let (value, base, storage) = (host.array(&value), host.code(base), host.code(storage));
-                    feti_body_stiffness_i64(
-                        p,
-                        body,
-                        n,
-                        pointer,
-                        column,
-                        value,
-                        base,
-                        storage,
-                        host.code(FETI_COPY),
-                    )
-                } else {
-                    let (pointer, column) = (narrow(&pointer), narrow(&column));
-                    let (pointer, column) = (host.array(&pointer).cast(), host.array(&column).cast());
-                    let (value, base, storage) = (host.array(&value), host.code(base), host.code(storage));
-                    feti_body_stiffness_i32(
-                        p,
-                        body,
-                        n,
-                        pointer,
-                        column,
-                        value,
-                        base,
-                        storage,
-                        host.code(FETI_COPY),
-                    )
-                }
-            }
-        }
-    };
-    if host.done(status, &[]) {
-        host.changed();
-    }
-}
-
-fn dense(host: &mut Host, body: usize, model: &Model, storage: i32) -> i32 {
-    let (n, ld) = (model.n, model.n + host.bytes.below(3));
-    let mut k = vec![7.0; ld * n];
-    (0..n * n).for_each(|at| k[at % n + at / n * ld] = model.k[at]);
-    if host.turn() {
-        let at = host.bytes.below(k.len());
-        k[at] = host.bytes.wild();
-    }
-    let (p, body, n, k) = (host.handle(), host.known(body), host.known(n), host.array(&k));
-    // SAFETY: k holds ld * n numbers; a spoilt ld is smaller or refused.
-    unsafe {
-        feti_body_stiffness_dense(p, body, n, k, host.length(ld), host.code(storage), host.code(FETI_COPY))
-    }
 }
 
 /// The null space of a body as its model has it, exactly or among candidates.
@@ -357,7 +266,7 @@ pub fn fixing(host: &mut Host, body: usize) {
 }
 
 pub fn states(host: &mut Host) {
-    let id = host.states.get(host.bytes.below(host.states.len())).map_or(0, |id| *id as usize);
+    let id = host.states.get(host.bytes.below(host.states.len())).map_or(0, |state| state.0 as usize);
     let mut number = Out::<i64>::new(1);
     // SAFETY: room for one number.
     unsafe {
@@ -365,12 +274,15 @@ pub fn states(host: &mut Host) {
             0 | 3 => {
                 let status = feti_state_save(host.handle(), host.out(&mut number));
                 if host.done(status, &[&number]) {
-                    host.states.push(number.cells[0]);
+                    host.states.push((number.cells[0], host.rows));
                 }
             }
             1 => {
-                let status = feti_state_restore(host.handle(), host.known(id));
+                let (p, id) = (host.handle(), host.known(id));
+                let status = feti_state_restore(p, id);
                 if host.done(status, &[]) {
+                    let state = host.states.iter().find(|state| state.0 == id);
+                    host.rows = state.expect("no state with this number was saved").1;
                     host.changed();
                 }
             }

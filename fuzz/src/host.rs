@@ -11,6 +11,13 @@ pub const KINDS: [i32; 2] = [FETI_INEQUALITY, FETI_EQUALITY];
 /// Bodies of more unknowns are only named, never filled.
 pub const LARGEST: usize = 64;
 
+/// Arrays and functions of the host behind the matrix of one body.
+#[derive(Default)]
+pub struct Lent {
+    pub pattern: Option<Box<dyn std::any::Any>>,
+    pub value: Option<Vec<f64>>,
+}
+
 pub struct Host<'a> {
     pub bytes: Bytes<'a>,
     pub p: *mut feti_problem,
@@ -19,7 +26,15 @@ pub struct Host<'a> {
     pub bodies: Vec<Model>,
     /// Rows of each kind.
     pub rows: [usize; 2],
-    pub states: Vec<i64>,
+    /// What the library may look at until a body gets another matrix.
+    pub lent: Vec<Lent>,
+    /// A body has numbers of the host.
+    pub numbered: bool,
+    /// A function of the host may report a failure.
+    pub may_refuse: bool,
+    pub listener: Option<Box<super::whole::Listener>>,
+    /// Numbers of saved states, and the rows of each kind that come back with them.
+    pub states: Vec<(i64, [usize; 2])>,
     /// What the host of [`super::give::progress`] counts; an address that stays.
     pub watcher: Box<super::give::Watcher>,
     pub digest: Digest,
@@ -42,6 +57,10 @@ impl<'a> Host<'a> {
             dead: std::ptr::null_mut(),
             bodies: Vec::new(),
             rows: [0; 2],
+            lent: Vec::new(),
+            numbered: false,
+            may_refuse: false,
+            listener: None,
             states: Vec::new(),
             watcher: Box::default(),
             digest: Digest::new(),
@@ -60,6 +79,7 @@ impl<'a> Host<'a> {
         assert_eq!(unsafe { feti_problem_create(&mut self.p) }, FETI_OK);
         (self.bodies, self.rows, self.states) = (Vec::new(), [0; 2], Vec::new());
         (self.kept, self.injected) = (None, false);
+        (self.lent, self.numbered, self.may_refuse, self.listener) = (Vec::new(), false, false, None);
     }
 
     /// Destroys the problem; its handle is dead from then on.
@@ -87,6 +107,11 @@ impl<'a> Host<'a> {
     /// All that follows is handed over as it should be.
     pub fn plain(&mut self) {
         (self.until_bad, self.spoilt) = (None, false);
+    }
+
+    /// An argument of this call has been spoilt.
+    pub fn spoilt(&self) -> bool {
+        self.spoilt
     }
 
     /// Is it this argument that is spoilt?

@@ -9,6 +9,8 @@
 //! | `host` | a host that spoils arguments, and what it checks after every call |
 //! | `scenes` | whole problems that have a solution |
 //! | `give`, `ask` | the calls that change a problem, and those that read it |
+//! | `stiffness` | matrices in every form, copied or lent, their new values, functions of the host |
+//! | `whole` | calls over all bodies, numbers of the host, facts, log, options by one text |
 //! | `calls` | the target: a sequence of them |
 //! | `text` | the target: options by name and by text |
 //! | `file` | the target: problem files |
@@ -22,4 +24,6 @@ pub mod give;
 pub mod host;
 pub mod models;
 pub mod scenes;
+pub mod stiffness;
 pub mod text;
+pub mod whole;

@@ -15,11 +15,22 @@ pub struct Model {
     pub xy: Vec<f64>,
     /// Unknowns of one node: 1 or 2.
     pub per_node: usize,
+    /// The matrix that the library has, where it is known.
+    pub given: Option<Given>,
+}
+
+/// A matrix as it was given.
+#[derive(Debug, Clone)]
+pub struct Given {
+    pub dense: bool,
+    /// Where it came by itself.
+    pub diagonal: Option<Vec<f64>>,
+    pub value: Vec<f64>,
 }
 
 impl Model {
     fn zero(n: usize) -> Self {
-        Self { n, k: vec![0.0; n * n], modes: Vec::new(), xy: Vec::new(), per_node: 1 }
+        Self { n, k: vec![0.0; n * n], modes: Vec::new(), xy: Vec::new(), per_node: 1, given: None }
     }
 
     pub fn r(&self) -> usize {

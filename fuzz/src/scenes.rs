@@ -4,6 +4,7 @@ use super::bytes::Bytes;
 use super::give::{self, Row};
 use super::host::Host;
 use super::models::{self, Model};
+use super::stiffness;
 
 /// Bodies with their loads, rows of both kinds.
 struct Scene {
@@ -84,8 +85,15 @@ pub fn hand_over(host: &mut Host, which: usize) {
     let first = host.bodies.len();
     for (model, load) in scene.bodies {
         let Some(body) = give::body(host, model) else { return };
-        give::stiffness(host, body);
+        // One scene in eight is of bodies whose stiffness the host keeps.
+        let kept = known >> 2 & 7 == 7;
+        if kept {
+            stiffness::operator(host, body);
+        } else {
+            stiffness::stiffness(host, body);
+        }
         match known & 3 {
+            _ if kept => give::null_space(host, body),
             0 | 1 => give::null_space(host, body),
             2 if !host.bodies[body].xy.is_empty() => give::coordinates(host, body),
             _ => {}

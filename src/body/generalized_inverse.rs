@@ -7,6 +7,7 @@ use std::sync::Arc;
 use crate::body::factor::Factor;
 use crate::body::fixing::{fixing_dofs, given_dofs, hold_as_well};
 use crate::body::null_space::{largest, verified, NullSpaceInput};
+use crate::body::overflow::overflow;
 use crate::body::random::Random;
 use crate::body::search::Search;
 use crate::body::symbolic::{Layout, Made, Symbolic};
@@ -260,10 +261,10 @@ impl GeneralizedInverse {
         k.mul_with_terms(&x, &mut image, &mut terms);
         image.iter_mut().zip(&b).for_each(|(i, b)| *i -= b);
         free(&mut image);
-        let residual = size(&image) / (size(&terms) + size(&b));
-        if residual.is_nan() {
-            let what = "the factorisation overflows: entries of the stiffness matrix are too far apart";
-            return Err(Error::new(Kind::Indefinite, what));
+        let whole = size(&terms) + size(&b);
+        let residual = size(&image) / whole;
+        if residual.is_nan() || !whole.is_finite() {
+            return Err(overflow());
         }
         if residual > PROBE {
             let what = format!("the factorisation failed its probe: residual {residual:.1e}");

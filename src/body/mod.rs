@@ -12,6 +12,7 @@ mod host;
 mod host_probe;
 mod in_order;
 mod null_space;
+mod overflow;
 mod random;
 mod rigid_modes;
 mod search;

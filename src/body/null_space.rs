@@ -3,6 +3,7 @@
 //! diagonal count as supports. K is scaled to a largest diagonal entry in [1, 2); a dof without any
 //! stiffness has `D_ii = 1`.
 
+use crate::body::overflow::refuse_overflow;
 use crate::error::{Error, Kind, Result};
 use crate::linalg::spd::right_singular;
 use crate::linalg::vector::{norm, norm_max, ratio, weighted_norm};
@@ -111,6 +112,7 @@ fn kernel_within<K: Products>(k: &K, candidates: &Matrix) -> Result<Matrix> {
     if span.cols == 0 || n < span.cols {
         return Ok(kernel);
     }
+    refuse_overflow(&image.data, |at| at % n)?;
     let (values, vectors) = right_singular(&image)?;
     let (mut motion, mut terms) = (vec![0.0; n], vec![0.0; n]);
     for (j, _) in values.iter().enumerate().filter(|(_, value)| **value <= CANDIDATE) {

@@ -11,6 +11,7 @@ use crate::body::factor::Factor;
 use crate::body::fixing::{fixing_dofs, given_dofs};
 use crate::body::generalized_inverse::{GeneralizedInverse, SINGULAR};
 use crate::body::null_space::{largest, verified, Modes, NullSpaceInput};
+use crate::body::overflow::refuse_overflow;
 use crate::body::symbolic::{Layout, Made, Symbolic};
 use crate::error::{Error, Kind, Result};
 use crate::linalg::graph::components;
@@ -177,6 +178,7 @@ impl Search {
         for j in 0..m {
             (0..m).for_each(|i| scaled.set(i, j, schur.get(i, j) / (d(i) * d(j)).sqrt()));
         }
+        refuse_overflow(&scaled.data, |at| last[at % m])?;
         let (values, mut vectors) = symmetric_eigen(&scaled)?;
         let stiffest = values[m - 1];
         let worst = largest(vectors.col(0), |_| 1.0);

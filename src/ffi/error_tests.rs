@@ -30,6 +30,25 @@ fn info_is_written_whatever_happens_and_no_more_than_the_caller_has_room_for() {
 }
 
 #[test]
+fn bodies_whose_unknowns_together_exceed_64_bits_are_refused_and_nothing_is_added() {
+    let p = Owned::new();
+    let add = |n: i64| {
+        let mut body = -1;
+        // SAFETY: room for one number.
+        (unsafe { feti_body_add(p.0, n, &mut body) }, body)
+    };
+    let most = (1 << 60) - 1;
+    (0..8).for_each(|body| assert_eq!(add(most), (FETI_OK, body)));
+    assert_eq!(add(8), (FETI_OVERFLOW, -1));
+    assert_eq!((last_detail().body, last_detail().limit), (8, 7.0));
+    assert_eq!((add(7), add(1)), ((FETI_OK, 8), (FETI_OVERFLOW, -1)));
+    let (mut bodies, mut unknowns, mut rows, mut equalities) = (0, 0, 0, 0);
+    // SAFETY: room for one number each.
+    let status = unsafe { feti_counts(p.0, &mut bodies, &mut unknowns, &mut rows, &mut equalities) };
+    assert_eq!((status, bodies, unknowns), (FETI_OK, 9, i64::MAX));
+}
+
+#[test]
 fn a_refused_argument_is_reported_by_position_name_and_place() {
     let p = Owned::with_body();
     assert_eq!(p.load(&[0.0, f64::INFINITY]), -104);

@@ -7,7 +7,7 @@ use crate::body::{
 };
 use crate::constraints::{RowKind, RowSet, RowsInput};
 use crate::dual::Kept;
-use crate::error::{Error, Result};
+use crate::error::{Error, Kind, Result};
 use crate::linalg::memory::{copied, zeros};
 use crate::linalg::vector::first_non_finite;
 use crate::linalg::Matrix;
@@ -26,6 +26,8 @@ use crate::solver::Settings;
 pub struct Problem {
     pub(super) settings: Settings,
     pub(super) bodies: Vec<BodySlot>,
+    /// Unknowns of all bodies, at most i64::MAX.
+    unknowns: usize,
     pub(super) contact: RowSet,
     pub(super) equalities: RowSet,
     pub(super) numbering: Numbering,
@@ -109,7 +111,16 @@ impl Problem {
         if n == 0 {
             return Err(Error::argument("n", "a body has at least one unknown").value(0.0).limit(1.0));
         }
+        let most = i64::MAX as usize - self.unknowns;
+        if n > most {
+            let what = "the unknowns of all bodies together exceed 64 bits";
+            return Err(Error::new(Kind::Overflow, what)
+                .body(self.bodies.len())
+                .value(n as f64)
+                .limit(most as f64));
+        }
         self.rows_changed();
+        self.unknowns += n;
         self.bodies.push(BodySlot { body: Body { order: n, ..Body::default() }, ..BodySlot::default() });
         Ok(self.bodies.len() - 1)
     }
@@ -240,7 +251,7 @@ impl Problem {
     pub fn counts(&self) -> Counts {
         Counts {
             bodies: self.bodies.len(),
-            dofs: self.bodies.iter().map(|slot| slot.body.order).sum(),
+            dofs: self.unknowns,
             rows: self.contact.len(),
             equalities: self.equalities.len(),
         }
@@ -302,8 +313,8 @@ impl Problem {
         self.rows_changed();
         let index_base = self.settings.index_base;
         self.settings = Settings { index_base, ..other.settings };
-        (self.bodies, self.contact, self.equalities) = (other.bodies, other.contact, other.equalities);
-        self.numbering = other.numbering;
+        (self.contact, self.equalities) = (other.contact, other.equalities);
+        (self.bodies, self.unknowns, self.numbering) = (other.bodies, other.unknowns, other.numbering);
     }
 
     fn rows_changed(&mut self) {

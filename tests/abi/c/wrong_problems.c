@@ -67,6 +67,16 @@ static void supports_as_huge_diagonal(feti_problem *p)
     check_small_answer(p, "1e30 on the diagonal");
 }
 
+/* Finite entries of which products overflow; whoever looks for the null space meets them first. */
+static void products_that_overflow(feti_problem *p)
+{
+    OK(feti_body_null_space(p, BLOCK, 1, 2, BLOCK_MODE, 2, FETI_CANDIDATES));
+    refused(p, FETI_INDEFINITE, BLOCK, or_solve(p, block_stiffness(p, 1.0, 1e300, 1.0)), "1e300 among candidates");
+    OK(give_block_stiffness(p));
+    check_small_answer(p, "1e300 among candidates");
+    OK(give_block_mode(p));
+}
+
 /* Two pairs that nothing joins have two motions; one of them alone passes K R = 0. */
 static void missing_mode(void)
 {
@@ -136,6 +146,9 @@ static void solve_before_the_data(void)
     EXPECT(FETI_STATE, feti_displacement(p, BLOCK, 2, u));
     EXPECT(FETI_STATE, feti_multipliers(p, FETI_INEQUALITY, 1, u));
     check_small_answer(p, "handing over late");
+    refused(p, FETI_INDEFINITE, BLOCK, or_solve(p, block_stiffness(p, 1.0, 1e300, 1.0)), "1e300 without null space");
+    OK(give_block_stiffness(p));
+    check_small_answer(p, "1e300 without null space");
     OK(feti_problem_destroy(&p));
 }
 
@@ -178,6 +191,7 @@ int main(void)
     singular_without_null_space(problem);
     null_space_that_is_none(problem);
     supports_as_huge_diagonal(problem);
+    products_that_overflow(problem);
     load_that_pulls_away(problem);
     rows_that_contradict(problem);
     memory_limit_reached(problem);
