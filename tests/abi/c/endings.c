@@ -1,4 +1,4 @@
-/* Ways in which a solve ends, rows that just touch, and sources of a null space, as the host sees them. An answer that is
+/* Ways in which a solve ends, rows that just touch or overflow, and sources of a null space, as the host sees them. An answer that is
    incomplete can be read; once the limit is lifted the answer has the bits of a problem that never met it. */
 #include "grid.h"
 #include "small.h"
@@ -112,6 +112,21 @@ static void a_row_that_touches_without_force_is_weak(void)
     OK(feti_problem_destroy(&problem));
 }
 
+/* 1e308 times K_ii = 4 is no number: the row is named, and with a compliance that is one the problem is solved. */
+static void a_compliance_that_overflows(void)
+{
+    static const double too_soft[1] = { 1e308 }, rigid[1] = { 0.0 };
+    static const expectation wanted = { FETI_OVERFLOW, -1, -1, 0, ANY, "feti_solve", "overflows" };
+    feti_problem *problem = small_problem();
+
+    OK(feti_rows_compliance(problem, FETI_INEQUALITY, 0, 1, too_soft));
+    EXPECT(FETI_OVERFLOW, feti_solve(problem, NULL));
+    check_last_error(problem, &wanted);
+    OK(feti_rows_compliance(problem, FETI_INEQUALITY, 0, 1, rigid));
+    check_small_answer(problem, "a compliance that overflows");
+    OK(feti_problem_destroy(&problem));
+}
+
 /* Where a null space comes from is told. */
 static void check_origin(feti_problem *problem, int64_t body, int64_t origin, int64_t dimension)
 {
@@ -149,6 +164,7 @@ int main(void)
     a_small_part_of_the_load_is_not_held(3e-7, FETI_INACCURATE);
     a_small_part_of_the_load_is_not_held(6e-6, FETI_LOAD_NOT_HELD);
     a_row_that_touches_without_force_is_weak();
+    a_compliance_that_overflows();
     a_null_space_from_every_source();
     return check_result();
 }
