@@ -16,6 +16,7 @@ program file
   call comes_back('three_bodies')
   call damaged_files
   call options_as_a_text
+  deallocate (path)
 
 contains
 
