@@ -142,14 +142,15 @@ TARGETS ?= calls file text
 fuzz:
 	@tools/fuzz/run.sh $(SECONDS) $(CURDIR)/build/fuzz $(TARGETS)
 
-sanitize: setup
-	@tools/fuzz/sanitize.sh build/sanitize
-
 loom:
 	$(CARGO) test --release --locked --manifest-path tests/loom/Cargo.toml --target-dir $(or $(CARGO_TARGET_DIR),target)/loom
 
 build/ctest/CMakeCache.txt: | stage data
 	cmake -S tests -B build/ctest -DCMAKE_PREFIX_PATH=$(STAGE) -DFETI_DATA=$(CURDIR)/build/data
+
+sanitize: setup stage data build/ctest/CMakeCache.txt
+	cmake --build build/ctest
+	@tools/fuzz/sanitize.sh $(CURDIR)/build/sanitize $(CURDIR)/build/ctest
 
 coverage: setup stage data build/ctest/CMakeCache.txt
 	cmake --build build/ctest

@@ -49,6 +49,7 @@ program write_read_check
 
   call feti_problem_destroy(first)
   call feti_problem_destroy(second)
+  deallocate (file, u, lambda, mu, u2, lambda2, mu2)
   call demo_line('09_write_read_check', info, error, &
     same .and. solved%passed == 1 .and. pushed%passed == 0 .and. moved%passed == 0)
 

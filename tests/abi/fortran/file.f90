@@ -17,6 +17,7 @@ program file
   call damaged_files
   call numbers_come_back
   call options_as_a_text
+  deallocate (path)
 
 contains
 

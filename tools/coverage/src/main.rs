@@ -52,7 +52,8 @@ fn main() -> Result<ExitCode, Box<dyn error::Error>> {
 /// A source of the folder that is no file of tests.
 fn is_below(path: &Path, folder: &str) -> bool {
     let text = path.to_string_lossy();
-    text.contains(&format!("{folder}/")) && !text.ends_with("/tests.rs")
+    let tests = text.ends_with("tests.rs") || text.contains("/tests/");
+    text.contains(&format!("{folder}/")) && !tests
 }
 
 /// Lines before the tests at the end of a source.
