@@ -4,6 +4,8 @@
 //! [`Pages`](super::pages::Pages). Where many small pieces or foreign
 //! code allocate, [`room`] proves beforehand that there is enough, and keeps the large arrays of other threads from taking it.
 
+use std::cell::Cell;
+use std::marker::PhantomData;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use crate::error::{Error, Kind, Result};
@@ -19,14 +21,44 @@ pub const PRODUCTS: usize = 5 << 20;
 /// Sum of all rooms in use.
 static PROMISED: AtomicUsize = AtomicUsize::new(0);
 
-/// A part of the memory kept free for small pieces, until dropped.
+thread_local! {
+    /// What rooms of this thread may take of one that was proved for them too: each proof costs two calls of the system.
+    static INSIDE: Cell<usize> = const { Cell::new(0) };
+}
+
+/// A part of the memory kept free for small pieces, until dropped, on the thread that asked for it.
 #[derive(Debug)]
 pub struct Room {
     bytes: usize,
+    /// It is a part of another room of this thread.
+    inner: bool,
+    /// Bytes for rooms inside.
+    inside: usize,
+    thread: PhantomData<*const ()>,
 }
 
 /// Room for `bytes` in small pieces, or `Kind::Memory` naming `what` they were for.
 pub fn room(bytes: usize, what: &str) -> Result<Room> {
+    let left = INSIDE.get().checked_sub(bytes);
+    if let Some(left) = left {
+        INSIDE.set(left);
+        return Ok(Room { bytes, inner: true, inside: 0, thread: PhantomData });
+    }
+    proved(bytes, what)
+}
+
+/// The same with as much again as `inside` says, for the rooms that this thread asks for while it lasts.
+pub fn room_with(bytes: usize, inside: usize, what: &str) -> Result<Room> {
+    if INSIDE.get() > 0 {
+        return room(bytes, what);
+    }
+    let mut room = proved(bytes.saturating_add(inside), what)?;
+    room.inside = inside;
+    INSIDE.set(inside);
+    Ok(room)
+}
+
+fn proved(bytes: usize, what: &str) -> Result<Room> {
     let mut promised = PROMISED.load(Ordering::Relaxed);
     loop {
         let with_this = promised.saturating_add(bytes);
@@ -34,7 +66,7 @@ pub fn room(bytes: usize, what: &str) -> Result<Room> {
             return Err(refusal(bytes, what));
         }
         match PROMISED.compare_exchange(promised, with_this, Ordering::Relaxed, Ordering::Relaxed) {
-            Ok(_) => return Ok(Room { bytes }),
+            Ok(_) => return Ok(Room { bytes, inner: false, inside: 0, thread: PhantomData }),
             Err(changed) => promised = changed,
         }
     }
@@ -42,6 +74,11 @@ pub fn room(bytes: usize, what: &str) -> Result<Room> {
 
 impl Drop for Room {
     fn drop(&mut self) {
+        if self.inner {
+            INSIDE.set(INSIDE.get() + self.bytes);
+            return;
+        }
+        INSIDE.set(INSIDE.get().saturating_sub(self.inside));
         PROMISED.fetch_sub(self.bytes, Ordering::Relaxed);
     }
 }
@@ -107,6 +144,18 @@ mod tests {
         }
         assert!(room(usize::MAX, "a body").is_err());
         assert!(room(1 << 20, "a body").is_ok());
+    }
+
+    #[test]
+    fn rooms_inside_another_are_parts_of_it_and_larger_ones_are_proved() {
+        let outer = room_with(1 << 20, 1 << 16, "a solve").unwrap();
+        assert_eq!((outer.bytes, INSIDE.get()), ((1 << 20) + (1 << 16), 1 << 16));
+        let (small, large) = (room(1 << 15, "a body").unwrap(), room(1 << 16, "a body").unwrap());
+        assert!(small.inner && !large.inner && INSIDE.get() == 1 << 15);
+        drop((small, large));
+        assert_eq!(INSIDE.get(), 1 << 16);
+        drop(outer);
+        assert_eq!(INSIDE.get(), 0);
     }
 
     #[test]

@@ -13,6 +13,8 @@ const PER_ROW: usize = 640 + 2 * size_of::<f64>() * crate::qp::KEPT;
 const PER_ENTRY: usize = 128;
 /// Bytes per entry of `G' = B R`, while it grows.
 const PER_COARSE_ENTRY: usize = 64;
+/// Bytes for the rooms that parts of a call ask for on the thread that called.
+const INSIDE: usize = PRODUCTS + (1 << 20);
 /// Dense matrices of the coarse problem at a time.
 const COARSE_MATRICES: usize = 6;
 
@@ -29,7 +31,7 @@ impl Problem {
         let coarse = COARSE_MATRICES * size_of::<f64>() * modes.saturating_mul(modes);
         let bytes = dofs * PER_DOF + rows * PER_ROW + entries * PER_ENTRY;
         let bytes = bytes.saturating_add(coarse_entries * PER_COARSE_ENTRY).saturating_add(coarse + PRODUCTS);
-        memory::room(bytes, "the vectors of a solve")
+        memory::room_with(bytes, INSIDE, "the vectors of a solve")
     }
 
     /// Room for so many more rows: those that are there may move while their arrays grow.
