@@ -52,3 +52,43 @@ fn work_of_loads(data: &Data, ready: &Ready, threads: usize) -> Result<f64> {
     }
     Ok(work)
 }
+
+#[cfg(test)]
+mod tests {
+    use crate::solver::{Outcome, Problem, RowKind, RowsInput, SparseInput, Storage};
+
+    /// A chain of n springs 1, its first end held, pushed by 1 at the other against an obstacle `1e-12` away: the load alone
+    /// would move it by n, so that rounding of load and contact force moves it by n eps, far more than what the last
+    /// unknown alone gives way, eps / 2.
+    #[test]
+    fn a_soft_body_between_load_and_obstacle_is_certified_to_the_rounding_of_their_forces() {
+        let n = 4000;
+        let mut problem = Problem::new();
+        let body = problem.add_body(n).unwrap();
+        let (mut ptr, mut col, mut val) = (vec![0], Vec::new(), Vec::new());
+        for i in 0..n {
+            if i > 0 {
+                col.push(i as i64 - 1);
+                val.push(-1.0);
+            }
+            col.push(i as i64);
+            val.push(if i + 1 < n { 2.0 } else { 1.0 });
+            ptr.push(col.len());
+        }
+        let k = SparseInput { ptr: &ptr, col: &col, val: &val, storage: Storage::Lower };
+        problem.set_stiffness(body, k).unwrap();
+        let mut load = vec![0.0; n];
+        load[n - 1] = 1.0;
+        problem.set_load(body, &load).unwrap();
+        let (dof, gap) = ([n as i64 - 1], [1e-12]);
+        let row = RowsInput { ptr: &[0, 1], body: None, dof: &dof, val: &[1.0], rhs: Some(&gap) };
+        problem.add_rows(RowKind::Inequality, row).unwrap();
+        let report = problem.solve().unwrap();
+        assert!(matches!(report.outcome, Outcome::Solved), "{:?}", report.certificate);
+        let mut u = problem.displacement(body).unwrap().to_vec();
+        let lambda = problem.multipliers(RowKind::Inequality).unwrap().to_vec();
+        assert!((lambda[0] - 1.0).abs() <= 1e-13 && (u[n - 1] - 1e-12).abs() <= 1e-10);
+        u[n - 1] += 1e-7;
+        assert!(!problem.check(&u, &lambda, &[]).unwrap().passed());
+    }
+}
