@@ -87,8 +87,8 @@ pub struct Data<'a> {
     /// Metric of dofs without stiffness, force / length.
     pub without: f64,
     pub limit: f64,
-    /// Work that the loads would do on each body alone, as far as it is known, force x length.
-    pub work_of_loads: f64,
+    /// Work that the loads would do on each body alone, once it has been asked for, force x length.
+    pub work_of_loads: Option<f64>,
 }
 
 #[derive(Clone)]
@@ -136,7 +136,7 @@ pub fn certify(data: &Data, answer: Answer) -> Result<Certificate> {
     let totals = forces(data, answer, &metric, &mut certificate)?;
     let gaps = gaps(data, answer, &metric, totals.load.sqrt(), &mut certificate);
     let size = totals.work.abs() + gaps.constrained_size;
-    let noise = NOISE * (totals.terms + totals.forces.max(data.work_of_loads) + gaps.stored);
+    let noise = NOISE * (totals.terms + totals.forces.max(data.work_of_loads.unwrap_or(0.0)) + gaps.stored);
     let energies = |part: f64, whole: f64, place| entry(part, whole, noise, data.limit, place);
     certificate.complementarity = energies(gaps.complementarity, size, gaps.worst_pair);
     let gap = totals.strain - totals.work + gaps.constrained;

@@ -128,7 +128,7 @@ impl Problem {
         }
         let limit = self.settings.certificate_tolerance;
         let (contact, equalities, without) = (&self.contact, &self.equalities, self.unit());
-        Ok(Data { bodies, contact, equalities, without, limit, work_of_loads: 0.0 })
+        Ok(Data { bodies, contact, equalities, without, limit, work_of_loads: None })
     }
 }
 

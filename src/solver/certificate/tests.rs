@@ -11,52 +11,40 @@ fn with(u: f64, lambda: f64, unit: f64) -> Certificate {
 
 /// The same with a spring in the contact row.
 fn on_a_spring(u: f64, lambda: f64, unit: f64, stiffness_of_row: f64) -> Certificate {
-    let stiffness = Symmetric::new(vec![0, 1], vec![0], vec![4.0 * unit]);
+    let held = Matrix { rows: 1, ..Matrix::default() };
+    let contact = obstacle(0.25, 1.0 / (stiffness_of_row * unit));
+    judged((&spring(4.0 * unit), &held, &[2.0 * unit]), &contact, (&[u], &[lambda * unit]), None)
+}
+
+fn spring(stiffness: f64) -> Symmetric {
+    Symmetric::new(vec![0, 1], vec![0], vec![stiffness])
+}
+
+/// One row, u <= gap, of this compliance.
+fn obstacle(gap: f64, compliance: f64) -> RowSet {
     let mut matrix = Csr::empty(1);
     matrix.push_row([(0, 1.0)]);
-    let contact =
-        RowSet { matrix: matrix.into(), rhs: vec![0.25], compliance: vec![1.0 / (stiffness_of_row * unit)] };
-    let none = Matrix { rows: 1, ..Matrix::default() };
-    let load = [2.0 * unit];
-    let body = BodyData {
-        start: 0,
-        stiffness: (&stiffness).into(),
-        load: Some(&load),
-        null_space: &none,
-        unit: 1.0,
-    };
-    let data = Data {
-        bodies: vec![body],
-        contact: &contact,
-        equalities: &RowSet::default(),
-        without: 1.0,
-        limit: 1e-8,
-        work_of_loads: 0.0,
-    };
-    certify(&data, Answer { u: &[u], lambda: &[lambda * unit], mu: &[] }).unwrap()
+    RowSet { matrix: matrix.into(), rhs: vec![gap], compliance: vec![compliance] }
+}
+
+/// The certificate of (u, lambda) on one body, its stiffness, null space and load, by the work of the loads.
+fn judged(
+    (stiffness, null_space, load): (&Symmetric, &Matrix, &[f64]),
+    contact: &RowSet,
+    (u, lambda): (&[f64], &[f64]),
+    work_of_loads: Option<f64>,
+) -> Certificate {
+    let body = BodyData { start: 0, stiffness: stiffness.into(), load: Some(load), null_space, unit: 1.0 };
+    let equalities = &RowSet::default();
+    let data = Data { bodies: vec![body], contact, equalities, without: 1.0, limit: 1e-8, work_of_loads };
+    certify(&data, Answer { u, lambda, mu: &[] }).unwrap()
 }
 
 /// Two dofs joined by a spring, with nothing to hold them.
 fn free_pair(load: [f64; 2], u: [f64; 2]) -> Certificate {
     let stiffness = Symmetric::new(vec![0, 1, 3], vec![0, 0, 1], vec![1.0, -1.0, 1.0]);
     let modes = Matrix { rows: 2, cols: 1, data: vec![0.5_f64.sqrt(); 2] };
-    let body = BodyData {
-        start: 0,
-        stiffness: (&stiffness).into(),
-        load: Some(&load),
-        null_space: &modes,
-        unit: 1.0,
-    };
-    let none = RowSet::default();
-    let data = Data {
-        bodies: vec![body],
-        contact: &none,
-        equalities: &none,
-        without: 1.0,
-        limit: 1e-8,
-        work_of_loads: 0.0,
-    };
-    certify(&data, Answer { u: &u, lambda: &[], mu: &[] }).unwrap()
+    judged((&stiffness, &modes, &load), &RowSet::default(), (&u, &[]), None)
 }
 
 #[test]
@@ -80,38 +68,16 @@ fn no_distance_excuses_a_strain_that_is_missing() {
 /// The load and the force of the obstacle cancel to `1e-12` of themselves: what is left moves the spring.
 #[test]
 fn the_energies_of_forces_that_all_but_cancel_are_known_to_their_rounding() {
-    let stiffness = Symmetric::new(vec![0, 1], vec![0], vec![4.0]);
-    let mut matrix = Csr::empty(1);
-    matrix.push_row([(0, 1.0)]);
-    let contact = RowSet { matrix: matrix.into(), rhs: vec![1e-12], compliance: vec![0.0] };
-    let none = Matrix { rows: 1, ..Matrix::default() };
-    let load = [2.0];
-    let body = BodyData {
-        start: 0,
-        stiffness: (&stiffness).into(),
-        load: Some(&load),
-        null_space: &none,
-        unit: 1.0,
-    };
-    let equalities = RowSet::default();
-    let data = Data {
-        bodies: vec![body],
-        contact: &contact,
-        equalities: &equalities,
-        without: 1.0,
-        limit: 1e-8,
-        work_of_loads: 0.0,
-    };
-    let moved = |by: f64, work_of_loads: f64| {
+    let moved = |by: f64, work_of_loads: Option<f64>| {
         let u = 1e-12 + by;
-        let answer = Answer { u: &[u], lambda: &[2.0 - 4.0 * u], mu: &[] };
-        certify(&Data { work_of_loads, ..data.clone() }, answer).unwrap()
+        let (k, held) = (spring(4.0), Matrix { rows: 1, ..Matrix::default() });
+        judged((&k, &held, &[2.0]), &obstacle(1e-12, 0.0), (&[u], &[2.0 - 4.0 * u]), work_of_loads)
     };
-    assert!(moved(-1e-15, 0.0).passed(), "rounding of the load moves the spring as far");
-    assert!(moved(-1e-12, 0.0).only_energies_fail(), "a force across an open gap");
-    assert!(moved(-1e-12, 0.0).complementarity.figure > 1e-8);
+    assert!(moved(-1e-15, None).passed(), "rounding of the load moves the spring as far");
+    assert!(moved(-1e-12, None).only_energies_fail(), "a force across an open gap");
+    assert!(moved(-1e-12, None).complementarity.figure > 1e-8);
     assert!(
-        moved(-1e-12, 1e3).passed(),
+        moved(-1e-12, Some(1e3)).passed(),
         "in a body so soft that loads do such work rounding moves it as far"
     );
 }
