@@ -865,8 +865,8 @@ extern "C" {
 /**
  * Adds a body with `n` unknowns.
  *
- * Bodies are numbered from 0 in the order in which they are added. After a failure nothing is
- * added.
+ * Bodies are numbered from 0 in the order in which they are added. FETI_OVERFLOW where all bodies
+ * together would have more than 2^63 - 1 unknowns. After a failure nothing is added.
  *
  * @param[in]  p    (scalar) the handle
  * @param[in]  n    (scalar) unknowns of the body, > 0
@@ -909,8 +909,9 @@ int32_t feti_body_coordinates(struct feti_problem *p,
  *
  * The load is copied and holds until it is given again; a body without one has zero load. With
  * FETI_ALL the array holds the loads of all bodies: by the host's numbers where they have some,
- * entries of no unknown not looked at; else one body after the other. After a failure the loads
- * are as they were.
+ * entries of no unknown not looked at; else one body after the other. FETI_STATE with FETI_ALL
+ * where some bodies have numbers of the host and others have none. After a failure the loads are
+ * as they were.
  *
  * @param[in] p    (scalar) the handle
  * @param[in] body (scalar) number of the body, from 0, or FETI_ALL
@@ -1213,7 +1214,8 @@ int32_t feti_body_null_space_get(struct feti_problem *p,
 /**
  * Reads the fixing unknowns of a body: with them fixed, K has full rank.
  *
- * Runs feti_setup when it is due. After a failure nothing is written.
+ * Runs feti_setup when it is due. FETI_UNSUPPORTED where functions of the host stand for the
+ * matrix. After a failure nothing is written.
  *
  * @param[in]  p    (scalar) the handle
  * @param[in]  body (scalar) number of the body, from 0
@@ -1558,7 +1560,8 @@ int32_t feti_on_progress(struct feti_problem *p, feti_progress_fn callback, void
  *
  * With FETI_ALL the displacement of all bodies: by the host's numbers where they have some,
  * entries of no unknown as they were; else one body after the other. FETI_STATE before a solve has
- * given an answer. After a failure nothing is written.
+ * given an answer, and with FETI_ALL where some bodies have numbers of the host and others have
+ * none. After a failure nothing is written.
  *
  * @param[in]  p    (scalar) the handle
  * @param[in]  body (scalar) number of the body, from 0, or FETI_ALL
@@ -1575,7 +1578,8 @@ int32_t feti_displacement(struct feti_problem *p, int64_t body, int64_t n, doubl
  *
  * With FETI_ALL the forces on all bodies: by the host's numbers where they have some, entries of
  * no unknown as they were; else one body after the other. FETI_STATE before a solve has given an
- * answer. After a failure nothing is written.
+ * answer, and with FETI_ALL where some bodies have numbers of the host and others have none. After
+ * a failure nothing is written.
  *
  * @param[in]  p    (scalar) the handle
  * @param[in]  kind (scalar) FETI_INEQUALITY, FETI_EQUALITY, or 0 for both
@@ -1663,7 +1667,8 @@ int32_t feti_counts(struct feti_problem *p, int64_t *bodies, int64_t *dofs, int6
  * Adds rows of `B u <= c` or `H u = h`, with 32-bit indices.
  *
  * The rows are copied and numbered behind those of the same kind that are there. A pair of body
- * and unknown that comes twice in a row is summed. After a failure nothing is added.
+ * and unknown that comes twice in a row is summed. FETI_STATE where `body` is NULL and some bodies
+ * have numbers of the host, others have none. After a failure nothing is added.
  *
  * @param[in]  p       (scalar) the handle
  * @param[in]  kind    (scalar) FETI_INEQUALITY or FETI_EQUALITY
@@ -1696,7 +1701,8 @@ int32_t feti_rows_add_i32(struct feti_problem *p,
  * Adds rows of `B u <= c` or `H u = h`, with 64-bit indices.
  *
  * The rows are copied and numbered behind those of the same kind that are there. A pair of body
- * and unknown that comes twice in a row is summed. After a failure nothing is added.
+ * and unknown that comes twice in a row is summed. FETI_STATE where `body` is NULL and some bodies
+ * have numbers of the host, others have none. After a failure nothing is added.
  *
  * @param[in]  p       (scalar) the handle
  * @param[in]  kind    (scalar) FETI_INEQUALITY or FETI_EQUALITY
@@ -1779,6 +1785,13 @@ int32_t feti_rows_clear(struct feti_problem *p, int32_t kind);
  * feti_solve does it when it is due; called alone it shows errors in the bodies early. After a
  * failure all that was given is kept and can be corrected.
  *
+ * FETI_STATE where there is no body, or one without a matrix; FETI_NULL_SPACE where the null space
+ * of a body is not what was claimed, or cannot be found; FETI_INDEFINITE where a matrix is
+ * indefinite, with body, unknown and pivot; FETI_GAPS_CONTRADICT where a row without entries has a
+ * right-hand side that 0 does not satisfy; FETI_CALLBACK where a function of the host fails or is
+ * not what it must be (feti_body_operator); FETI_UNSUPPORTED where fixing unknowns were given for
+ * a body whose matrix is functions of the host; FETI_CANCELLED where the host has cancelled.
+ *
  * @param[in] p (scalar) the handle
  */
 int32_t feti_setup(struct feti_problem *p);
@@ -1791,6 +1804,14 @@ int32_t feti_setup(struct feti_problem *p);
  * first step. `info` is written in any case, with NaN for figures that a failure left unknown.
  * After a failure all that was given is kept and can be corrected, except after FETI_INTERNAL.
  *
+ * A status above 0 comes with an answer. FETI_ITERATIONS at the limit of option max_steps;
+ * FETI_TIME at the limit of option time_limit; FETI_CANCELLED where the host has cancelled;
+ * FETI_STALLED where steps no longer reduce the error; FETI_INACCURATE where the certificate does
+ * not pass; FETI_MARGINAL where a part of the load, below 1e-7 of it, is not held. A status below
+ * 0 comes without one. FETI_LOAD_NOT_HELD where no contact force balances the load;
+ * FETI_GAPS_CONTRADICT where rows contradict each other; feti_diagnosis has the proof of either.
+ * It runs feti_setup when it is due, and fails as that does.
+ *
  * @param[in]     p    (scalar) the handle
  * @param[in,out] info (scalar) `struct_size` set, at least 16; may be NULL
  *
@@ -1801,7 +1822,8 @@ int32_t feti_solve(struct feti_problem *p, struct feti_info *info);
 /**
  * Verifies an answer against the problem as it is given now: any answer, also another code's.
  *
- * Keeps nothing: the answer of the last solve stays. After a failure nothing is written.
+ * Keeps nothing of the answer: that of the last solve stays. Runs feti_setup when it is due, for
+ * the null spaces. After a failure nothing is written.
  *
  * @param[in]     p      (scalar) the handle
  * @param[in]     n      (scalar) unknowns of all bodies
@@ -1915,7 +1937,8 @@ int32_t feti_version_number(void);
  *
  * The matrix is copied; calling again replaces pattern and values. Columns of a row may come in
  * any order, none twice. With FETI_FULL K must be symmetric within option symmetry_tolerance and
- * is averaged. After a failure the body keeps the matrix it had.
+ * is averaged. FETI_INDEFINITE with the unknown of a diagonal entry that is negative, or 0 beside
+ * others in its row. After a failure the body keeps the matrix it had.
  *
  * With FETI_BORROW the values, and columns in 32 bits counted from 0, are not copied if storage is
  * FETI_LOWER, columns ascend and every row ends with its diagonal entry; otherwise all is copied
@@ -1951,7 +1974,8 @@ int32_t feti_body_stiffness_i32(struct feti_problem *p,
  *
  * The matrix is copied; calling again replaces pattern and values. Columns of a row may come in
  * any order, none twice. With FETI_FULL K must be symmetric within option symmetry_tolerance and
- * is averaged. After a failure the body keeps the matrix it had.
+ * is averaged. FETI_INDEFINITE with the unknown of a diagonal entry that is negative, or 0 beside
+ * others in its row. After a failure the body keeps the matrix it had.
  *
  * With FETI_BORROW the values, and columns in 32 bits counted from 0, are not copied if storage is
  * FETI_LOWER, columns ascend and every row ends with its diagonal entry; otherwise all is copied
@@ -1987,8 +2011,9 @@ int32_t feti_body_stiffness_i64(struct feti_problem *p,
  *
  * For codes that keep the diagonal apart. The matrix is copied; calling again replaces pattern and
  * values. Columns of a row may come in any order, none twice. With FETI_FULL K must be symmetric
- * within option symmetry_tolerance and is averaged. After a failure the body keeps the matrix it
- * had.
+ * within option symmetry_tolerance and is averaged. FETI_INDEFINITE with the unknown of a diagonal
+ * entry that is negative, or 0 beside others in its row. After a failure the body keeps the matrix
+ * it had.
  *
  * @param[in] p       (scalar) the handle
  * @param[in] body    (scalar) number of the body, from 0
@@ -2021,8 +2046,9 @@ int32_t feti_body_stiffness_split_i32(struct feti_problem *p,
  *
  * For codes that keep the diagonal apart. The matrix is copied; calling again replaces pattern and
  * values. Columns of a row may come in any order, none twice. With FETI_FULL K must be symmetric
- * within option symmetry_tolerance and is averaged. After a failure the body keeps the matrix it
- * had.
+ * within option symmetry_tolerance and is averaged. FETI_INDEFINITE with the unknown of a diagonal
+ * entry that is negative, or 0 beside others in its row. After a failure the body keeps the matrix
+ * it had.
  *
  * @param[in] p       (scalar) the handle
  * @param[in] body    (scalar) number of the body, from 0
@@ -2055,7 +2081,8 @@ int32_t feti_body_stiffness_split_i64(struct feti_problem *p,
  * bodies.
  *
  * The matrix is copied; calling again replaces it. With FETI_LOWER and FETI_UPPER the other
- * triangle is not read. After a failure the body keeps the matrix it had.
+ * triangle is not read. FETI_INDEFINITE with the unknown of a diagonal entry that is negative, or
+ * 0 beside others in its row. After a failure the body keeps the matrix it had.
  *
  * @param[in] p       (scalar) the handle
  * @param[in] body    (scalar) number of the body, from 0
@@ -2137,7 +2164,8 @@ int32_t feti_dual_rhs(struct feti_problem *p, int64_t m, double *d);
  * The values are copied and checked as the first were. The symbolic analysis is kept, and the next
  * setup costs a numeric factorisation of this body; values that are bit by bit those of before
  * cost nothing. Storage is that of the first call. FETI_STATE where the matrix has not been given,
- * or in another form. After a failure the body keeps the values it had.
+ * or in another form. FETI_INDEFINITE with the unknown of a diagonal entry that is negative, or 0
+ * beside others in its row. After a failure the body keeps the values it had.
  *
  * Where the values are borrowed (FETI_BORROW) they are not copied: `val` is the array that was
  * borrowed, rewritten by the host, or another one in its place. They count as changed, also for
@@ -2156,7 +2184,9 @@ int32_t feti_body_values(struct feti_problem *p, int64_t body, int64_t nnz, cons
 /**
  * Gives new values of a stiffness matrix that was given by feti_body_stiffness_split_i32 or _i64.
  *
- * As feti_body_values, for a matrix with a diagonal of its own.
+ * As feti_body_values, for a matrix with a diagonal of its own. FETI_STATE where the matrix has
+ * not been given, or in another form. FETI_INDEFINITE with the unknown of a diagonal entry that is
+ * negative, or 0 beside others in its row. After a failure the body keeps the values it had.
  *
  * @param[in] p    (scalar) the handle
  * @param[in] body (scalar) number of the body, from 0
@@ -2180,7 +2210,8 @@ int32_t feti_body_values_split(struct feti_problem *p,
  *
  * The matrix is copied and checked as the first was, in the same storage. Where zeros stay zeros
  * the symbolic analysis is kept. FETI_STATE where the matrix has not been given, or in another
- * form. After a failure the body keeps the matrix it had.
+ * form. FETI_INDEFINITE with the unknown of a diagonal entry that is negative, or 0 beside others
+ * in its row. After a failure the body keeps the matrix it had.
  *
  * @param[in] p    (scalar) the handle
  * @param[in] body (scalar) number of the body, from 0

@@ -20,6 +20,38 @@
 //! (force), lambda and mu multipliers of contact and equality rows (force), alpha amplitudes of the null
 //! space R of K, D = diag K.
 //!
+//! A problem in Rust: a spring k at a wall, a gap c, a block of two unknowns that nothing else holds, a force that pushes
+//! it against the spring.
+//!
+//! ```
+//! use feti_contact::error::Result;
+//! use feti_contact::solver::{Modes, Outcome, Problem, RowKind, RowsInput, SparseInput, Storage};
+//!
+//! fn lower<'a>(ptr: &'a [usize], col: &'a [i64], val: &'a [f64]) -> SparseInput<'a> {
+//!     SparseInput { ptr, col, val, storage: Storage::Lower }
+//! }
+//!
+//! fn main() -> Result<()> {
+//!     let (k, s, c, force) = (1000.0, 4000.0, 0.5, 100.0); // N/mm, N/mm, mm, N
+//!     let mut problem = Problem::new();
+//!     let (spring, block) = (problem.add_body(1)?, problem.add_body(2)?);
+//!     problem.set_stiffness(spring, lower(&[0, 1], &[0], &[k]))?;
+//!     problem.set_stiffness(block, lower(&[0, 1, 3], &[0, 0, 1], &[s, -s, s]))?;
+//!     problem.set_null_space(spring, 1, 0, &[], 1, Modes::Exact)?; // K is not singular
+//!     problem.set_null_space(block, 2, 1, &[1.0, 1.0], 2, Modes::Exact)?; // K (1, 1)' = 0
+//!     problem.set_load(block, &[0.0, -force])?;
+//!     let (body, dof, val, gap) = ([0, 1], [0, 0], [1.0, -1.0], [c]); // u1 - u2 <= c
+//!     let rows = RowsInput { ptr: &[0, 2], body: Some(&body), dof: &dof, val: &val, rhs: Some(&gap) };
+//!     problem.add_rows(RowKind::Inequality, rows)?;
+//!     assert_eq!(problem.solve()?.outcome, Outcome::Solved);
+//!     assert!((problem.multipliers(RowKind::Inequality)?[0] - force).abs() < 1e-9 * force);
+//!     assert!((problem.displacement(block)?[1] + 0.625).abs() < 1e-9); // u2 = -F/k - c, u3 = u2 - F/s
+//!     Ok(())
+//! }
+//! ```
+//!
+//! The C interface is a face of [`solver::Problem`]. For C, Fortran and FORTRAN 77 see README.md.
+//!
 //! | module | what it holds |
 //! |---|---|
 //! | [`error`] | the one error type |

@@ -8,7 +8,8 @@ use crate::solver::Problem;
 
 /// Adds a body with `n` unknowns.
 ///
-/// Bodies are numbered from 0 in the order in which they are added. After a failure nothing is added.
+/// Bodies are numbered from 0 in the order in which they are added. FETI_OVERFLOW where all bodies together would have
+/// more than 2^63 - 1 unknowns. After a failure nothing is added.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|
@@ -74,9 +75,10 @@ pub unsafe extern "C" fn feti_body_coordinates(
 
 /// Gives the load of a body.
 ///
-/// The load is copied and holds until it is given again; a body without one has zero load. With FETI_ALL the array holds the
-/// loads of all bodies: by the host's numbers where they have some, entries of no unknown not looked at; else one body after
-/// the other. After a failure the loads are as they were.
+/// The load is copied and holds until it is given again; a body without one has zero load. With FETI_ALL the array
+/// holds the loads of all bodies: by the host's numbers where they have some, entries of no unknown not looked at; else
+/// one body after the other. FETI_STATE with FETI_ALL where some bodies have numbers of the host and others
+/// have none. After a failure the loads are as they were.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|

@@ -11,7 +11,8 @@ use crate::solver::RowState;
 /// Reads the displacement of a body.
 ///
 /// With FETI_ALL the displacement of all bodies: by the host's numbers where they have some, entries of no unknown as they
-/// were; else one body after the other. FETI_STATE before a solve has given an answer. After a failure nothing is written.
+/// were; else one body after the other. FETI_STATE before a solve has given an answer, and with FETI_ALL where some bodies
+/// have numbers of the host and others have none. After a failure nothing is written.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|
@@ -40,7 +41,8 @@ pub unsafe extern "C" fn feti_displacement(p: *mut feti_problem, body: i64, n: i
 /// Reads the force of the rows on a body, -B'lambda, -H'mu or both: `K u = f + r`.
 ///
 /// With FETI_ALL the forces on all bodies: by the host's numbers where they have some, entries of no unknown as they were;
-/// else one body after the other. FETI_STATE before a solve has given an answer. After a failure nothing is written.
+/// else one body after the other. FETI_STATE before a solve has given an answer, and with FETI_ALL where some bodies have
+/// numbers of the host and others have none. After a failure nothing is written.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|

@@ -10,7 +10,8 @@ use crate::solver::{RowKind, RowsInput};
 /// Adds rows of `B u <= c` or `H u = h`, with 32-bit indices.
 ///
 /// The rows are copied and numbered behind those of the same kind that are there. A pair of body and unknown that comes
-/// twice in a row is summed. After a failure nothing is added.
+/// twice in a row is summed. FETI_STATE where `body` is NULL and some bodies have numbers of the host, others have none.
+/// After a failure nothing is added.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|
@@ -49,7 +50,8 @@ pub unsafe extern "C" fn feti_rows_add_i32(
 /// Adds rows of `B u <= c` or `H u = h`, with 64-bit indices.
 ///
 /// The rows are copied and numbered behind those of the same kind that are there. A pair of body and unknown that comes
-/// twice in a row is summed. After a failure nothing is added.
+/// twice in a row is summed. FETI_STATE where `body` is NULL and some bodies have numbers of the host, others have none.
+/// After a failure nothing is added.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|

@@ -12,6 +12,12 @@ use crate::solver::{Certificate, Counts, Report};
 /// feti_solve does it when it is due; called alone it shows errors in the bodies early. After a failure all that was
 /// given is kept and can be corrected.
 ///
+/// FETI_STATE where there is no body, or one without a matrix; FETI_NULL_SPACE where the null space of a body is not what
+/// was claimed, or cannot be found; FETI_INDEFINITE where a matrix is indefinite, with body, unknown and pivot;
+/// FETI_GAPS_CONTRADICT where a row without entries has a right-hand side that 0 does not satisfy; FETI_CALLBACK where a
+/// function of the host fails or is not what it must be (feti_body_operator); FETI_UNSUPPORTED where fixing unknowns were
+/// given for a body whose matrix is functions of the host; FETI_CANCELLED where the host has cancelled.
+///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|
 /// | `p` | in | scalar | the handle |
@@ -29,6 +35,13 @@ pub extern "C" fn feti_setup(p: *mut feti_problem) -> i32 {
 /// when the status is not negative, unless the call was cancelled before the first step. `info` is written in any case,
 /// with NaN for figures that a failure left unknown. After a failure all that was given is kept and can be corrected,
 /// except after FETI_INTERNAL.
+///
+/// A status above 0 comes with an answer. FETI_ITERATIONS at the limit of option max_steps; FETI_TIME at the limit of
+/// option time_limit; FETI_CANCELLED where the host has cancelled; FETI_STALLED where steps no longer reduce the error;
+/// FETI_INACCURATE where the certificate does not pass; FETI_MARGINAL where a part of the load, below 1e-7 of it, is not
+/// held. A status below 0 comes without one. FETI_LOAD_NOT_HELD where no contact force balances the load;
+/// FETI_GAPS_CONTRADICT where rows contradict each other; feti_diagnosis has the proof of either. It runs feti_setup
+/// when it is due, and fails as that does.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|
@@ -62,7 +75,8 @@ pub unsafe extern "C" fn feti_solve(p: *mut feti_problem, info: *mut feti_info) 
 
 /// Verifies an answer against the problem as it is given now: any answer, also another code's.
 ///
-/// Keeps nothing: the answer of the last solve stays. After a failure nothing is written.
+/// Keeps nothing of the answer: that of the last solve stays. Runs feti_setup when it is due, for the null spaces. After a
+/// failure nothing is written.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|

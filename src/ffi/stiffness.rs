@@ -11,8 +11,9 @@ use crate::solver::{Columns, Problem, SparseInput, Storage};
 /// Gives the stiffness matrix K of a body by rows, with 32-bit indices.
 ///
 /// The matrix is copied; calling again replaces pattern and values. Columns of a row may come in any order, none twice.
-/// With FETI_FULL K must be symmetric within option symmetry_tolerance and is averaged. After a failure the body keeps
-/// the matrix it had.
+/// With FETI_FULL K must be symmetric within option symmetry_tolerance and is averaged. FETI_INDEFINITE with the
+/// unknown of a diagonal entry that is negative, or 0 beside others in its row. After a failure the body keeps the
+/// matrix it had.
 ///
 /// With FETI_BORROW the values, and columns in 32 bits counted from 0, are not copied if storage is FETI_LOWER, columns
 /// ascend and every row ends with its diagonal entry; otherwise all is copied (`borrowed` of feti_body_info tells). Borrowed
@@ -54,8 +55,9 @@ pub unsafe extern "C" fn feti_body_stiffness_i32(
 /// Gives the stiffness matrix K of a body by rows, with 64-bit indices.
 ///
 /// The matrix is copied; calling again replaces pattern and values. Columns of a row may come in any order, none twice.
-/// With FETI_FULL K must be symmetric within option symmetry_tolerance and is averaged. After a failure the body keeps
-/// the matrix it had.
+/// With FETI_FULL K must be symmetric within option symmetry_tolerance and is averaged. FETI_INDEFINITE with the
+/// unknown of a diagonal entry that is negative, or 0 beside others in its row. After a failure the body keeps the
+/// matrix it had.
 ///
 /// With FETI_BORROW the values, and columns in 32 bits counted from 0, are not copied if storage is FETI_LOWER, columns
 /// ascend and every row ends with its diagonal entry; otherwise all is copied (`borrowed` of feti_body_info tells). Borrowed
@@ -96,8 +98,9 @@ pub unsafe extern "C" fn feti_body_stiffness_i64(
 
 /// Gives the stiffness matrix K of a body by rows with a diagonal of its own, with 32-bit indices.
 ///
-/// For codes that keep the diagonal apart. The matrix is copied; calling again replaces pattern and values. Columns of a row
-/// may come in any order, none twice. With FETI_FULL K must be symmetric within option symmetry_tolerance and is averaged.
+/// For codes that keep the diagonal apart. The matrix is copied; calling again replaces pattern and values. Columns of
+/// a row may come in any order, none twice. With FETI_FULL K must be symmetric within option symmetry_tolerance and is
+/// averaged. FETI_INDEFINITE with the unknown of a diagonal entry that is negative, or 0 beside others in its row.
 /// After a failure the body keeps the matrix it had.
 ///
 /// | argument | in/out | shape | rule |
@@ -137,8 +140,9 @@ pub unsafe extern "C" fn feti_body_stiffness_split_i32(
 
 /// Gives the stiffness matrix K of a body by rows with a diagonal of its own, with 64-bit indices.
 ///
-/// For codes that keep the diagonal apart. The matrix is copied; calling again replaces pattern and values. Columns of a row
-/// may come in any order, none twice. With FETI_FULL K must be symmetric within option symmetry_tolerance and is averaged.
+/// For codes that keep the diagonal apart. The matrix is copied; calling again replaces pattern and values. Columns of
+/// a row may come in any order, none twice. With FETI_FULL K must be symmetric within option symmetry_tolerance and is
+/// averaged. FETI_INDEFINITE with the unknown of a diagonal entry that is negative, or 0 beside others in its row.
 /// After a failure the body keeps the matrix it had.
 ///
 /// | argument | in/out | shape | rule |
@@ -237,7 +241,8 @@ impl<I: Index> SparseMatrix<I> {
 
 /// Gives the stiffness matrix K of a body as a dense matrix, for boundary elements and condensed bodies.
 ///
-/// The matrix is copied; calling again replaces it. With FETI_LOWER and FETI_UPPER the other triangle is not read. After a
+/// The matrix is copied; calling again replaces it. With FETI_LOWER and FETI_UPPER the other triangle is not read.
+/// FETI_INDEFINITE with the unknown of a diagonal entry that is negative, or 0 beside others in its row. After a
 /// failure the body keeps the matrix it had.
 ///
 /// | argument | in/out | shape | rule |

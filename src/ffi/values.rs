@@ -7,9 +7,10 @@ use super::types::feti_problem;
 
 /// Gives new values of a stiffness matrix on the pattern it was given with by feti_body_stiffness_i32 or _i64.
 ///
-/// The values are copied and checked as the first were. The symbolic analysis is kept, and the next setup costs a numeric
-/// factorisation of this body; values that are bit by bit those of before cost nothing. Storage is that of the first call.
-/// FETI_STATE where the matrix has not been given, or in another form. After a failure the body keeps the values it had.
+/// The values are copied and checked as the first were. The symbolic analysis is kept, and the next setup costs a
+/// numeric factorisation of this body; values that are bit by bit those of before cost nothing. Storage is that of the
+/// first call. FETI_STATE where the matrix has not been given, or in another form. FETI_INDEFINITE with the unknown of
+/// a diagonal entry that is negative, or 0 beside others in its row. After a failure the body keeps the values it had.
 ///
 /// Where the values are borrowed (FETI_BORROW) they are not copied: `val` is the array that was borrowed, rewritten by the
 /// host, or another one in its place. They count as changed, also for other bodies that borrow the same array. After a failure
@@ -41,7 +42,9 @@ pub unsafe extern "C" fn feti_body_values(p: *mut feti_problem, body: i64, nnz: 
 
 /// Gives new values of a stiffness matrix that was given by feti_body_stiffness_split_i32 or _i64.
 ///
-/// As feti_body_values, for a matrix with a diagonal of its own.
+/// As feti_body_values, for a matrix with a diagonal of its own. FETI_STATE where the matrix has not been given, or in
+/// another form. FETI_INDEFINITE with the unknown of a diagonal entry that is negative, or 0 beside others in its row.
+/// After a failure the body keeps the values it had.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|
@@ -74,9 +77,9 @@ pub unsafe extern "C" fn feti_body_values_split(
 
 /// Gives new values of a dense stiffness matrix.
 ///
-/// The matrix is copied and checked as the first was, in the same storage. Where zeros stay zeros the symbolic analysis is
-/// kept. FETI_STATE where the matrix has not been given, or in another form. After a failure the body keeps the matrix it
-/// had.
+/// The matrix is copied and checked as the first was, in the same storage. Where zeros stay zeros the symbolic analysis
+/// is kept. FETI_STATE where the matrix has not been given, or in another form. FETI_INDEFINITE with the unknown of a
+/// diagonal entry that is negative, or 0 beside others in its row. After a failure the body keeps the matrix it had.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|

@@ -1,6 +1,6 @@
 #!/bin/sh
-# docs.sh PREFIX CHAPTER: the chapter lists every subroutine of the face with its arguments, its example compiles with the
-# installed sources and prints the numbers it promises, and its functions of the host compile.
+# docs.sh PREFIX CHAPTER: the chapter lists every subroutine of the face with its arguments and every constant, its example
+# compiles with the installed sources and prints the numbers it promises, and its functions of the host compile.
 set -eu
 face=$1/share/feti_contact/fortran
 work=$(mktemp -d)
@@ -11,6 +11,9 @@ cat "$face"/feti_contact_f77_*.f90 | sed -n 's/^subroutine \(ft[a-z0-9]*(.*)\)$/
 [ -s subroutines ] || { echo "no subroutine in the face"; exit 1; }
 grep -o '^| `FT[^`]*`' "$2" | sed 's/^| //' | sort > listed
 diff subroutines listed || { echo "subroutines (<) and the chapter (>) differ"; exit 1; }
+for name in $(grep -v '^!' "$face/feti_contact_f77.inc" | grep -o 'FT[A-Z0-9]*' | sort -u); do
+    grep -qw "$name" "$2" || { echo "constant $name is not in the chapter"; exit 1; }
+done
 
 sed -n '/^```fortran/,/^```$/p' "$2" | awk '/^```fortran/ { block++; next } /^```/ { next } { print > ("block" block ".f") }'
 fc=${FC:-gfortran}

@@ -24,6 +24,7 @@ mod man;
 mod model;
 mod pages;
 mod parse;
+mod statuses;
 #[cfg(test)]
 mod tests;
 mod trace;

@@ -4,7 +4,8 @@ use std::fmt::Write;
 
 use crate::c_types::prototype;
 use crate::model::{Api, Function};
-use crate::pages::{by_subject, direction, results, summary, Faces};
+use crate::pages::{by_subject, direction, summary, Faces};
+use crate::statuses::results;
 
 /// (file name, text) of every page, below `man3` and `man7`.
 pub fn print(api: &Api, faces: &Faces) -> Vec<(String, String)> {

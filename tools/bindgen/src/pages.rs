@@ -7,12 +7,11 @@ use std::fmt::Write;
 use crate::c_types::{declared, prototype};
 use crate::doc::{Direction, Doc};
 use crate::fortran;
-use crate::model::{Api, Constant, Function};
+use crate::model::{Api, Argument, Function};
+use crate::statuses;
 use crate::typed::Signature;
 
 const WIDTH: usize = 100;
-/// The constants of this file are statuses.
-const STATUS_FILE: &str = "status.rs";
 
 /// How Fortran calls a function of C, by its name.
 #[derive(Default)]
@@ -32,7 +31,7 @@ pub fn print(api: &Api, faces: &Faces) -> Vec<(String, String)> {
     pages
 }
 
-/// Functions by the files they stand in, with their first sentences.
+/// Functions by subjects, with their first sentences.
 fn list(api: &Api) -> String {
     let mut out = "# Functions\n".to_string();
     for (subject, functions) in by_subject(api) {
@@ -44,17 +43,41 @@ fn list(api: &Api) -> String {
     out
 }
 
-/// Functions grouped by source file, in the order of the header.
+/// Source files with what their functions are about, in the order in which a host meets them.
+const SUBJECTS: [(&str, &str); 21] = [
+    ("problem", "Problems"),
+    ("body", "Bodies"),
+    ("stiffness", "Stiffness matrices"),
+    ("values", "New values of stiffness matrices"),
+    ("operator", "Bodies by functions of the host"),
+    ("null_space", "Null spaces"),
+    ("numbering", "Numbers of the host"),
+    ("rows", "Rows"),
+    ("options", "Options"),
+    ("solve", "Setup, solution, certificate"),
+    ("results", "Results"),
+    ("state", "Starts and saved states"),
+    ("diagnosis", "Diagnosis"),
+    ("error_store", "Errors"),
+    ("status", "Statuses and version"),
+    ("progress", "Progress and cancelling"),
+    ("log", "Log"),
+    ("file", "Files"),
+    ("body_info", "Facts on bodies"),
+    ("phases", "Time and memory"),
+    ("validation", "Operators of the method"),
+];
+
+/// Functions grouped by source file: the subjects above, then files that are not among them by their names.
 pub fn by_subject(api: &Api) -> Vec<(String, Vec<&Function>)> {
-    let mut groups: Vec<(String, Vec<&Function>)> = Vec::new();
+    let stem = |function: &Function| function.source.trim_end_matches(".rs").to_string();
+    let place = |stem: &str| SUBJECTS.iter().position(|(file, _)| *file == stem).unwrap_or(SUBJECTS.len());
+    let mut groups: BTreeMap<(usize, String), Vec<&Function>> = BTreeMap::new();
     for function in &api.functions {
-        let subject = function.source.trim_end_matches(".rs").replace('_', " ");
-        match groups.last_mut().filter(|group| group.0 == subject) {
-            Some(group) => group.1.push(function),
-            None => groups.push((subject, vec![function])),
-        }
+        groups.entry((place(&stem(function)), stem(function))).or_default().push(function);
     }
-    groups
+    let title = |k: usize, stem: String| SUBJECTS.get(k).map_or(stem, |(_, title)| title.to_string());
+    groups.into_iter().map(|((k, stem), functions)| (title(k, stem), functions)).collect()
 }
 
 /// The first paragraph.
@@ -87,7 +110,8 @@ fn write_fortran(out: &mut String, api: &Api, faces: &Faces, function: &Function
         for signature in signatures {
             let _ = write!(out, "\n{}\n", signature.lines.join("\n"));
         }
-        out.push_str("```\n\nNumbers count from 1, sizes come from the arrays. As C has it:\n");
+        out.push_str("```\n\nNumbers count from 1, sizes come from the arrays; without `stat` any status but FETI_OK ends the program. \
+             As C has it:\n");
     }
     let interface = fortran::interface(api, function);
     let _ = write!(out, "\n```fortran\nuse feti_contact_c\n\n{}```\n", outdented(&interface));
@@ -106,10 +130,13 @@ fn write_arguments(out: &mut String, api: &Api, function: &Function) {
     if function.arguments.is_empty() {
         return;
     }
-    out.push_str(
-        "\n## Arguments\n\n| k | argument | in/out | shape | meaning, unit, rule |\n|---|---|---|---|---|\n",
-    );
-    for (k, argument) in function.arguments.iter().enumerate() {
+    out.push_str("\n## Arguments\n");
+    write_table(out, &function.arguments, |rule| linked(api, function, rule));
+}
+
+fn write_table(out: &mut String, arguments: &[Argument], linked: impl Fn(&str) -> String) {
+    out.push_str("\n| k | argument | in/out | shape | meaning, unit, rule |\n|---|---|---|---|---|\n");
+    for (k, argument) in arguments.iter().enumerate() {
         let row = &argument.row;
         let (number, direction) = (k + 1, direction(row.direction));
         let _ = writeln!(
@@ -117,7 +144,7 @@ fn write_arguments(out: &mut String, api: &Api, function: &Function) {
             "| {number} | `{}` | {direction} | {} | {} |",
             row.argument,
             cell(&row.shape),
-            cell(&linked(api, function, &row.rule))
+            cell(&linked(&row.rule))
         );
     }
 }
@@ -135,45 +162,10 @@ fn write_results(out: &mut String, api: &Api, function: &Function) {
         return;
     }
     out.push_str("\n## Status\n\n| status | when |\n|---|---|\n");
-    for (status, when) in results(api, function) {
-        let _ = writeln!(out, "| `{status}` | {} |", cell(&when));
+    for (status, when) in statuses::results(api, function) {
+        let _ = writeln!(out, "| `{status}` | {} |", cell(&linked(api, function, &when)));
     }
     out.push_str("\nAll numbers: [statuses](statuses.md).\n");
-}
-
-/// The statuses of a function with the reason for each: those of its kind, then those that its text names.
-pub fn results(api: &Api, function: &Function) -> Vec<(String, String)> {
-    let said = |name: &str| {
-        let constant = api.constants.iter().find(|constant| constant.name == name);
-        constant.map_or(String::new(), |constant| summary(&constant.doc))
-    };
-    let mut names = vec!["FETI_OK"];
-    let handle = function.arguments.first().and_then(|argument| argument.ty.target());
-    if handle.is_some_and(|ty| api.is_opaque(ty) || ty.target().is_some()) {
-        names.push("FETI_HANDLE");
-        if !function.is_never_busy() && function.name != "feti_problem_create" {
-            names.push("FETI_BUSY");
-        }
-    }
-    let text = function.doc.render(usize::MAX).join(" ");
-    let mentioned = |constant: &&Constant| {
-        constant.source == STATUS_FILE && constant.name != "FETI_ARGUMENT" && has_word(&text, &constant.name)
-    };
-    for constant in api.constants.iter().filter(mentioned) {
-        if !names.contains(&constant.name.as_str()) {
-            names.push(&constant.name);
-        }
-    }
-    let mut results: Vec<_> = names.into_iter().map(|name| (name.to_string(), said(name))).collect();
-    if function.arguments.len() > usize::from(handle.is_some_and(|ty| api.is_opaque(ty))) {
-        results.push(("FETI_ARGUMENT - k".to_string(), "Argument k is refused.".to_string()));
-    }
-    results
-}
-
-/// Whether `word` is in the text and not a part of a longer one.
-fn has_word(text: &str, word: &str) -> bool {
-    text.split(|c: char| !c.is_ascii_alphanumeric() && c != '_').any(|found| found == word)
 }
 
 /// Whether the page of types has a heading of this name.
@@ -225,9 +217,10 @@ fn types(api: &Api) -> String {
         let arguments: Vec<_> = callback.arguments.iter().map(|a| declared(&a.ty, &a.name)).collect();
         let _ = write!(out, "\n### {}\n\n{}\n\n```c\n", callback.name, before.join("\n\n"));
         let _ = write!(out, "typedef int32_t (*{})({});\n```\n", callback.name, arguments.join(", "));
+        write_table(&mut out, &callback.arguments, str::to_string);
     }
     out.push_str("\n## Constants\n\n| name | value | meaning |\n|---|---|---|\n");
-    for constant in api.constants.iter().filter(|constant| constant.source != STATUS_FILE) {
+    for constant in api.constants.iter().filter(|constant| constant.source != statuses::FILE) {
         let meaning = cell(&summary(&constant.doc));
         let _ = writeln!(out, "| `{}` | {} | {meaning} |", constant.name, constant.value);
     }
@@ -280,7 +273,7 @@ mod tests {
             "| 2 | `x` | in | n | \\|x\\| <= 1, force |",
             "| `FETI_HANDLE` | Bad. |",
             "| `FETI_BUSY` | Busy. |",
-            "| `FETI_STATE` | Too early. |",
+            "| `FETI_STATE` | Before. |",
             "| `FETI_ARGUMENT - k` |",
             "**Safety.** Given.",
             "Source: `src/ffi/rows.rs`",
@@ -299,7 +292,7 @@ mod tests {
     fn functions_are_listed_by_subject_and_constants_without_statuses() {
         let pages = pages();
         assert!(
-            pages["functions.md"].contains("## rows\n") && pages["functions.md"].contains("(feti_add.md)")
+            pages["functions.md"].contains("## Rows\n") && pages["functions.md"].contains("(feti_add.md)")
         );
         assert!(pages["types.md"].contains("| `FETI_EXACT` | 0 | Nothing. |"));
         assert!(!pages["types.md"].contains("FETI_BUSY"));

@@ -22,23 +22,24 @@ struct Procedure {
     helpers: Vec<String>,
 }
 
-/// For every function of C the procedures that call it. `sources`: the modules, feti_contact.f90 among them.
+/// For every function of C the procedures that call it, with the interfaces of the host's functions that they take.
+/// `sources`: the modules, feti_contact.f90 among them.
 pub fn signatures(sources: &[String]) -> BTreeMap<String, Vec<Signature>> {
     let texts: Vec<Vec<String>> = sources.iter().map(|text| statements(text)).collect();
     // The names of the public face: name inside -> name outside.
     let faces = texts.iter().flatten().filter(|line| line.starts_with("use ")).flat_map(|line| renamed(line));
     let faces: BTreeMap<String, String> =
         faces.filter(|pair| pair.0.starts_with("feti_")).map(|(outside, inside)| (inside, outside)).collect();
+    let modules: Vec<Vec<Procedure>> = texts.iter().map(|text| procedures(text)).collect();
     let mut found: BTreeMap<String, Vec<Signature>> = BTreeMap::new();
-    for text in &texts {
+    for (text, procedures) in texts.iter().zip(&modules) {
         let generics = generics(text);
-        let procedures = procedures(text);
-        for procedure in &procedures {
+        for procedure in procedures {
             let inside = generics.get(&procedure.name).unwrap_or(&procedure.name);
             let Some(outside) = faces.get(inside) else { continue };
             let helpers = procedures.iter().filter(|helper| procedure.is_helped_by(helper));
             for function in helpers.flat_map(|helper| &helper.calls).chain(&procedure.calls) {
-                found.entry(function.clone()).or_default().push(procedure.seen_as(outside));
+                found.entry(function.clone()).or_default().push(procedure.seen_as(outside, &modules));
             }
         }
     }
@@ -50,11 +51,25 @@ impl Procedure {
         self.helpers.iter().any(|line| line.contains(&format!("call {}(", other.name)))
     }
 
-    fn seen_as(&self, outside: &str) -> Signature {
-        let statement = self.statement.replacen(&format!("{}(", self.name), &format!("{outside}("), 1);
-        let declarations = self.declarations.iter().map(|line| format!("  {line}"));
-        let lines = std::iter::once(statement).chain(declarations).collect();
+    fn seen_as(&self, outside: &str, modules: &[Vec<Procedure>]) -> Signature {
+        let mut lines = self.lines();
+        lines[0] = lines[0].replacen(&format!("{}(", self.name), &format!("{outside}("), 1);
+        for interface in modules.iter().flatten().filter(|other| self.takes(other)) {
+            lines.push(String::new());
+            lines.extend(interface.lines());
+        }
         Signature { name: outside.to_string(), lines }
+    }
+
+    /// Whether an argument is a function of the host with the interface `other`.
+    fn takes(&self, other: &Procedure) -> bool {
+        self.declarations.iter().any(|line| line.starts_with(&format!("procedure({})", other.name)))
+    }
+
+    /// The statement and the declarations.
+    fn lines(&self) -> Vec<String> {
+        let declarations = self.declarations.iter().map(|line| format!("  {line}"));
+        std::iter::once(self.statement.clone()).chain(declarations).collect()
     }
 }
 
@@ -133,7 +148,8 @@ impl Procedure {
         if let Some((attributes, names)) = line.split_once("::") {
             let first: String =
                 names.trim().chars().take_while(|c| c.is_alphanumeric() || *c == '_').collect();
-            let is_dummy = attributes.contains("intent(") || attributes.contains("optional");
+            let marks = ["intent(", "optional", "procedure("];
+            let is_dummy = marks.iter().any(|mark| attributes.contains(mark));
             if is_dummy && self.dummies.contains(&first) {
                 self.declarations.push(line.to_string());
             }
@@ -166,5 +182,22 @@ mod tests {
         assert_eq!(signature.name, "feti_body_add");
         assert_eq!(signature.lines[0], "subroutine feti_body_add(p, n, stat)");
         assert_eq!(signature.lines.len(), 4, "{signature:?}");
+    }
+
+    #[test]
+    fn functions_of_the_host_are_declared_and_their_interface_follows() {
+        let module = "module feti_contact_base\nabstract interface\n  integer function hear(now, data)\n    import :: c_int\n\
+            integer, intent(in) :: now\n class(*), intent(inout) :: data\n end function\n end interface\n\
+            use feti_contact_c, only: c_on => feti_on\ncontains\n subroutine on(p, heard)\n\
+            type(feti_problem), intent(in) :: p\n procedure(hear) :: heard\n status = c_on(p)\n end subroutine\nend module\n";
+        let face = "module feti_contact\n  use feti_contact_base, only: feti_on => on\n";
+        let found = signatures(&[module.to_string(), face.to_string()]);
+        let lines = &found["feti_on"][0].lines;
+        assert_eq!(
+            lines[2..5],
+            ["  procedure(hear) :: heard", "", "integer function hear(now, data)"],
+            "{lines:?}"
+        );
+        assert_eq!(lines.len(), 7, "{lines:?}");
     }
 }
