@@ -1,5 +1,6 @@
 !> The handle, the errors and the texts of module feti_contact. A host uses feti_contact, not this module.
 !>
+!> Every procedure of the face is recursive: a function of the host may call the library, and threads call it side by side.
 !> Every procedure of the face ends with `stat` and `errmsg`, both optional:
 !>   stat present: it gets the status (0 is FETI_OK); a failed call changes nothing and can be repeated corrected.
 !>   stat absent:  any status but FETI_OK prints the text on error_unit and ends the program with error stop 1.
@@ -107,7 +108,7 @@ module feti_contact_base
 contains
 
   !> Creates an empty problem; texts and positions count from 1. On failure p is not a problem.
-  subroutine problem_create(p, stat, errmsg)
+  recursive subroutine problem_create(p, stat, errmsg)
     type(feti_problem), intent(out) :: p
     integer, intent(out), optional :: stat
     character(len=*), intent(inout), optional :: errmsg
@@ -122,7 +123,7 @@ contains
   end subroutine
 
   !> Gives back everything the problem holds. p is no problem afterwards; its copies are refused with FETI_HANDLE.
-  subroutine problem_destroy(p, stat, errmsg)
+  recursive subroutine problem_destroy(p, stat, errmsg)
     type(feti_problem), intent(inout) :: p
     integer, intent(out), optional :: stat
     character(len=*), intent(inout), optional :: errmsg
@@ -139,7 +140,7 @@ contains
   end subroutine
 
   !> Text of the last failed call of this problem; empty when none failed. May be called while another thread solves.
-  subroutine problem_error(p, text, stat, errmsg)
+  recursive subroutine problem_error(p, text, stat, errmsg)
     type(feti_problem), intent(in) :: p
     character(len=:), allocatable, intent(out) :: text
     integer, intent(out), optional :: stat
@@ -160,7 +161,7 @@ contains
   end subroutine
 
   !> Text of the last failed call of this thread; empty when none failed.
-  subroutine last_error(text)
+  recursive subroutine last_error(text)
     character(len=:), allocatable, intent(out) :: text
     character(kind=c_char), allocatable, target :: buffer(:)
     integer(c_int64_t) :: length
@@ -172,7 +173,7 @@ contains
   end subroutine
 
   !> Facts of the last failed call of this thread.
-  subroutine last_error_detail(detail, stat, errmsg)
+  recursive subroutine last_error_detail(detail, stat, errmsg)
     type(feti_error_detail), intent(out) :: detail
     integer, intent(out), optional :: stat
     character(len=*), intent(inout), optional :: errmsg
@@ -197,7 +198,7 @@ contains
   end subroutine
 
   !> Name of a status, such as FETI_LOAD_NOT_HELD.
-  function status_name(status) result(name)
+  recursive function status_name(status) result(name)
     integer, intent(in) :: status
     character(len=:), allocatable :: name
 
@@ -205,7 +206,7 @@ contains
   end function
 
   !> One sentence on a status.
-  function status_text(status) result(text)
+  recursive function status_text(status) result(text)
     integer, intent(in) :: status
     character(len=:), allocatable :: text
 
@@ -213,26 +214,26 @@ contains
   end function
 
   !> Version of the library, such as 0.1.0.
-  function version() result(text)
+  recursive function version() result(text)
     character(len=:), allocatable :: text
 
     text = static_text(c_version())
   end function
 
   !> 10000 major + 100 minor + patch.
-  integer function version_number()
+  recursive integer function version_number()
     version_number = int(c_version_number())
   end function
 
   !> The handle for a C function.
-  type(c_ptr) function handle_of(p)
+  recursive type(c_ptr) function handle_of(p)
     type(feti_problem), intent(in) :: p
 
     handle_of = p%handle
   end function
 
   !> A body for a C function that takes FETI_ALL = -1: no number below 1 may stand for all bodies.
-  pure integer(c_int64_t) function body_index(body)
+  recursive pure integer(c_int64_t) function body_index(body)
     integer, intent(in) :: body
 
     body_index = int(body, c_int64_t) - 1
@@ -240,7 +241,7 @@ contains
   end function
 
   !> The listener of a problem whose handle has just been accepted by the library.
-  function listener_of(p) result(found)
+  recursive function listener_of(p) result(found)
     type(feti_problem), intent(in) :: p
     type(listener), pointer :: found
 
@@ -248,7 +249,7 @@ contains
   end function
 
   !> Keeps the functions of a body, which the library has just accepted, in place of those before.
-  subroutine keep_operator(p, new)
+  recursive subroutine keep_operator(p, new)
     type(feti_problem), intent(in) :: p
     type(host_operator), intent(inout), pointer :: new
 
@@ -258,7 +259,7 @@ contains
   end subroutine
 
   !> Forgets the functions of a body, if there are any.
-  subroutine drop_operator(kept, body)
+  recursive subroutine drop_operator(kept, body)
     type(listener), intent(inout) :: kept
     integer, intent(in) :: body
     type(host_operator), pointer :: found, before
@@ -280,7 +281,7 @@ contains
   end subroutine
 
   !> Reports a status as the head of this module says. text: what the face itself found; absent: the library's words.
-  subroutine finish(status, stat, errmsg, text)
+  recursive subroutine finish(status, stat, errmsg, text)
     integer(c_int32_t), intent(in) :: status
     integer, intent(out), optional :: stat
     character(len=*), intent(inout), optional :: errmsg
@@ -302,7 +303,7 @@ contains
   end subroutine
 
   !> Refuses argument k of the C function (the handle is 1) before the library is called; text names the array.
-  subroutine refuse(k, text, stat, errmsg)
+  recursive subroutine refuse(k, text, stat, errmsg)
     integer, intent(in) :: k
     character(len=*), intent(in) :: text
     integer, intent(out), optional :: stat
@@ -312,7 +313,7 @@ contains
   end subroutine
 
   !> A C string: the text without trailing blanks and the NUL.
-  pure function c_text(text) result(string)
+  recursive pure function c_text(text) result(string)
     character(len=*), intent(in) :: text
     character(kind=c_char, len=len_trim(text) + 1) :: string
 
@@ -320,7 +321,7 @@ contains
   end function
 
   !> The characters before the first NUL.
-  pure function f_text(string) result(text)
+  recursive pure function f_text(string) result(text)
     character(kind=c_char), intent(in) :: string(:)
     character(len=:), allocatable :: text
     integer :: i, length
@@ -339,7 +340,7 @@ contains
   end function
 
   !> The text of a static C string.
-  function static_text(address) result(text)
+  recursive function static_text(address) result(text)
     type(c_ptr), intent(in) :: address
     character(len=:), allocatable :: text
     character(kind=c_char), pointer :: string(:)

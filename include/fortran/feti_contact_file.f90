@@ -13,7 +13,7 @@ contains
 
   !> Writes all that the host has registered to the file `path`: bodies, rows, options that differ from their defaults;
   !> no answer, start values or saved states. After a failure (FETI_IO) an old file is as it was.
-  subroutine problem_write(p, path, stat, errmsg)
+  recursive subroutine problem_write(p, path, stat, errmsg)
     type(feti_problem), intent(in) :: p
     character(len=*), intent(in) :: path
     integer, intent(out), optional :: stat
@@ -24,7 +24,7 @@ contains
 
   !> Reads such a file into a problem without bodies and rows (FETI_STATE otherwise); the same solve then gives the same
   !> bits. Where a file is damaged the entry of feti_last_error_detail is its byte, from 1. After a failure p is as it was.
-  subroutine problem_read(p, path, stat, errmsg)
+  recursive subroutine problem_read(p, path, stat, errmsg)
     type(feti_problem), intent(in) :: p
     character(len=*), intent(in) :: path
     integer, intent(out), optional :: stat

@@ -17,7 +17,7 @@ contains
   !> an executable stack). data: anything with the attribute target that lives as long as p or until the next feti_on_log;
   !> tell gets it back. tell returns 0 to go on, any other number for a failure of its own (FETI_CALLBACK). Inside tell p is
   !> busy, except for feti_cancel and feti_problem_error.
-  subroutine on_log(p, tell, level, data, stat, errmsg)
+  recursive subroutine on_log(p, tell, level, data, stat, errmsg)
     type(feti_problem), intent(in) :: p
     procedure(log_procedure), optional :: tell
     integer, intent(in), optional :: level
@@ -46,7 +46,7 @@ contains
   end subroutine
 
   !> Calls the host's function.
-  function hand_on(user, level, text) result(reply) bind(C, name='')
+  recursive function hand_on(user, level, text) result(reply) bind(C, name='')
     type(c_ptr), value :: user
     integer(c_int32_t), value :: level
     character(kind=c_char), intent(in) :: text(*)
@@ -63,7 +63,7 @@ contains
   end function
 
   !> The first characters of a C string.
-  pure function line(text, length)
+  recursive pure function line(text, length)
     integer, intent(in) :: length
     character(kind=c_char), intent(in) :: text(length)
     character(len=length) :: line

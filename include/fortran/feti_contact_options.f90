@@ -46,7 +46,7 @@ contains
 
   !> Sets several options by one text: call feti_set_text(p, 'tolerance=1d-8 threads=4'). Blanks, commas or ends of lines
   !> separate, # begins a comment. All or none are set; an error tells the position in the text.
-  subroutine set_options(p, text, stat, errmsg)
+  recursive subroutine set_options(p, text, stat, errmsg)
     type(feti_problem), intent(in) :: p
     character(len=*), intent(in) :: text
     integer, intent(out), optional :: stat
@@ -56,7 +56,7 @@ contains
   end subroutine
 
   !> An option that is a number.
-  subroutine set_real(p, name, value, stat, errmsg)
+  recursive subroutine set_real(p, name, value, stat, errmsg)
     type(feti_problem), intent(in) :: p
     character(len=*), intent(in) :: name
     real(real64), intent(in) :: value
@@ -67,7 +67,7 @@ contains
   end subroutine
 
   !> An option that is an integer.
-  subroutine set_int32(p, name, value, stat, errmsg)
+  recursive subroutine set_int32(p, name, value, stat, errmsg)
     type(feti_problem), intent(in) :: p
     character(len=*), intent(in) :: name
     integer(int32), intent(in) :: value
@@ -78,7 +78,7 @@ contains
   end subroutine
 
   !> The same, int64.
-  subroutine set_int64(p, name, value, stat, errmsg)
+  recursive subroutine set_int64(p, name, value, stat, errmsg)
     type(feti_problem), intent(in) :: p
     character(len=*), intent(in) :: name
     integer(int64), intent(in) :: value
@@ -89,7 +89,7 @@ contains
   end subroutine
 
   !> An option that is a text.
-  subroutine set_text(p, name, value, stat, errmsg)
+  recursive subroutine set_text(p, name, value, stat, errmsg)
     type(feti_problem), intent(in) :: p
     character(len=*), intent(in) :: name, value
     integer, intent(out), optional :: stat
@@ -99,7 +99,7 @@ contains
   end subroutine
 
   !> An option that is a number.
-  subroutine get_real(p, name, value, stat, errmsg)
+  recursive subroutine get_real(p, name, value, stat, errmsg)
     type(feti_problem), intent(in) :: p
     character(len=*), intent(in) :: name
     real(real64), intent(inout) :: value
@@ -114,7 +114,7 @@ contains
   end subroutine
 
   !> FETI_OVERFLOW, and value untouched, when the setting needs a larger integer.
-  subroutine get_int32(p, name, value, stat, errmsg)
+  recursive subroutine get_int32(p, name, value, stat, errmsg)
     type(feti_problem), intent(in) :: p
     character(len=*), intent(in) :: name
     integer(int32), intent(inout) :: value
@@ -135,7 +135,7 @@ contains
   end subroutine
 
   !> An option that is an integer, int64.
-  subroutine get_int64(p, name, value, stat, errmsg)
+  recursive subroutine get_int64(p, name, value, stat, errmsg)
     type(feti_problem), intent(in) :: p
     character(len=*), intent(in) :: name
     integer(int64), intent(inout) :: value
@@ -150,7 +150,7 @@ contains
   end subroutine
 
   !> value gets the length of the text.
-  subroutine get_text(p, name, value, stat, errmsg)
+  recursive subroutine get_text(p, name, value, stat, errmsg)
     type(feti_problem), intent(in) :: p
     character(len=*), intent(in) :: name
     character(len=:), allocatable, intent(inout) :: value
@@ -171,12 +171,12 @@ contains
   end subroutine
 
   !> Number of settings.
-  integer function option_count()
+  recursive integer function option_count()
     option_count = int(c_option_count())
   end function
 
   !> Setting k, from 1 to feti_option_count().
-  subroutine option_at(k, option, stat, errmsg)
+  recursive subroutine option_at(k, option, stat, errmsg)
     integer, intent(in) :: k
     type(feti_option), intent(out) :: option
     integer, intent(out), optional :: stat

@@ -61,7 +61,7 @@ module feti_contact_results
 contains
 
   !> Null spaces, factors and dual operator ahead of feti_solve, which does it otherwise when needed.
-  subroutine setup(p, stat, errmsg)
+  recursive subroutine setup(p, stat, errmsg)
     type(feti_problem), intent(in) :: p
     integer, intent(out), optional :: stat
     character(len=*), intent(inout), optional :: errmsg
@@ -71,7 +71,7 @@ contains
 
   !> Solves the contact problem. info: what was done and how well the answer satisfies the conditions of contact;
   !> it is written whatever the status. A positive status leaves a usable but incomplete answer.
-  subroutine solve(p, info, stat, errmsg)
+  recursive subroutine solve(p, info, stat, errmsg)
     type(feti_problem), intent(in) :: p
     type(feti_info), intent(inout), optional, target :: info
     integer, intent(out), optional :: stat
@@ -87,7 +87,7 @@ contains
   end subroutine
 
   !> Number of phases of a setup and a solve.
-  subroutine phase_count(p, count, stat, errmsg)
+  recursive subroutine phase_count(p, count, stat, errmsg)
     type(feti_problem), intent(in) :: p
     integer, intent(out) :: count
     integer, intent(out), optional :: stat
@@ -102,7 +102,7 @@ contains
   end subroutine
 
   !> Phase k, from 1 to the number of phases, in the last call that set up or solved.
-  subroutine phase_at(p, k, phase, stat, errmsg)
+  recursive subroutine phase_at(p, k, phase, stat, errmsg)
     type(feti_problem), intent(in) :: p
     integer, intent(in) :: k
     type(feti_phase), intent(out) :: phase
@@ -124,7 +124,7 @@ contains
   !> Verifies any answer, also another code's: u (all bodies one after the other, length), lambda (force, one per
   !> contact row), mu (force, one per equality row; may have size 0). Rows and bodies in the certificate count from
   !> 1, 0: none.
-  subroutine check(p, u, lambda, mu, certificate, stat, errmsg)
+  recursive subroutine check(p, u, lambda, mu, certificate, stat, errmsg)
     type(feti_problem), intent(in) :: p
     real(real64), intent(in), contiguous :: u(:), lambda(:), mu(:)
     type(feti_certificate), intent(inout) :: certificate
@@ -147,7 +147,7 @@ contains
   end subroutine
 
   !> Numbers of bodies, of unknowns of all bodies, of contact rows and of equality rows.
-  subroutine counts(p, bodies, dofs, rows, eqs, stat, errmsg)
+  recursive subroutine counts(p, bodies, dofs, rows, eqs, stat, errmsg)
     type(feti_problem), intent(in) :: p
     integer, intent(out), optional :: bodies, dofs, rows, eqs
     integer, intent(out), optional :: stat
@@ -165,7 +165,7 @@ contains
   end subroutine
 
   !> The displacement of one body.
-  subroutine displacement_one(p, body, u, stat, errmsg)
+  recursive subroutine displacement_one(p, body, u, stat, errmsg)
     type(feti_problem), intent(in) :: p
     integer, intent(in) :: body
     real(real64), intent(inout), contiguous :: u(:)
@@ -176,7 +176,7 @@ contains
   end subroutine
 
   !> Of all bodies, by the numbers of the host.
-  subroutine displacement_all(p, u, stat, errmsg)
+  recursive subroutine displacement_all(p, u, stat, errmsg)
     type(feti_problem), intent(in) :: p
     real(real64), intent(inout), contiguous :: u(:)
     integer, intent(out), optional :: stat
@@ -186,7 +186,7 @@ contains
   end subroutine
 
   !> The forces on one body.
-  subroutine reaction_one(p, kind, body, r, stat, errmsg)
+  recursive subroutine reaction_one(p, kind, body, r, stat, errmsg)
     type(feti_problem), intent(in) :: p
     integer(c_int32_t), intent(in) :: kind
     integer, intent(in) :: body
@@ -198,7 +198,7 @@ contains
   end subroutine
 
   !> On all bodies, by the numbers of the host.
-  subroutine reaction_all(p, kind, r, stat, errmsg)
+  recursive subroutine reaction_all(p, kind, r, stat, errmsg)
     type(feti_problem), intent(in) :: p
     integer(c_int32_t), intent(in) :: kind
     real(real64), intent(inout), contiguous :: r(:)
@@ -209,7 +209,7 @@ contains
   end subroutine
 
   !> Amplitudes alpha(r) of the motions R in the displacement of a body, u = K+(f - B'lambda - H'mu) + R alpha.
-  subroutine amplitudes(p, body, alpha, stat, errmsg)
+  recursive subroutine amplitudes(p, body, alpha, stat, errmsg)
     type(feti_problem), intent(in) :: p
     integer, intent(in) :: body
     real(real64), intent(inout), contiguous :: alpha(:)
@@ -221,7 +221,7 @@ contains
   end subroutine
 
   !> Contact forces lambda >= 0 (kind FETI_INEQUALITY) or forces mu of the equality rows (FETI_EQUALITY), force.
-  subroutine multipliers(p, kind, lambda, stat, errmsg)
+  recursive subroutine multipliers(p, kind, lambda, stat, errmsg)
     type(feti_problem), intent(in) :: p
     integer(c_int32_t), intent(in) :: kind
     real(real64), intent(inout), contiguous :: lambda(:)
@@ -233,7 +233,7 @@ contains
   end subroutine
 
   !> Open gaps c - B u of the contact rows, of compliant ones c + lambda/k - B u, length.
-  subroutine gaps(p, slack, stat, errmsg)
+  recursive subroutine gaps(p, slack, stat, errmsg)
     type(feti_problem), intent(in) :: p
     real(real64), intent(inout), contiguous :: slack(:)
     integer, intent(out), optional :: stat
@@ -243,7 +243,7 @@ contains
   end subroutine
 
   !> State of each contact row: FETI_ROW_OPEN, FETI_ROW_CLOSED or FETI_ROW_WEAK (closed without a clear force).
-  subroutine active(p, state, stat, errmsg)
+  recursive subroutine active(p, state, stat, errmsg)
     type(feti_problem), intent(in) :: p
     integer(c_int32_t), intent(inout), contiguous :: state(:)
     integer, intent(out), optional :: stat
@@ -253,7 +253,7 @@ contains
   end subroutine
 
   !> The unknowns that K+ holds, dof(r), r the dimension of the null space. For validation.
-  subroutine body_fixing(p, body, dof, stat, errmsg)
+  recursive subroutine body_fixing(p, body, dof, stat, errmsg)
     type(feti_problem), intent(in) :: p
     integer, intent(in) :: body
     integer, intent(inout) :: dof(:)
@@ -268,7 +268,7 @@ contains
   end subroutine
 
   !> y(n,nrhs) = K+ x(n,nrhs), the generalised inverse (14)-(15) of a body. For validation.
-  subroutine body_kplus(p, body, x, y, stat, errmsg)
+  recursive subroutine body_kplus(p, body, x, y, stat, errmsg)
     type(feti_problem), intent(in) :: p
     integer, intent(in) :: body
     real(real64), intent(in), contiguous :: x(:, :)
@@ -285,7 +285,7 @@ contains
   end subroutine
 
   !> y = F x, F = [B; H] K+ [B; H]' + diag(1/k), contact rows first, in the host's order and scaling. For validation.
-  subroutine dual_apply(p, x, y, stat, errmsg)
+  recursive subroutine dual_apply(p, x, y, stat, errmsg)
     type(feti_problem), intent(in) :: p
     real(real64), intent(in), contiguous :: x(:)
     real(real64), intent(inout), contiguous :: y(:)
@@ -300,7 +300,7 @@ contains
   end subroutine
 
   !> d = [B K+ f - c; H K+ f - h], contact rows first, length. For validation.
-  subroutine dual_rhs(p, d, stat, errmsg)
+  recursive subroutine dual_rhs(p, d, stat, errmsg)
     type(feti_problem), intent(in) :: p
     real(real64), intent(inout), contiguous :: d(:)
     integer, intent(out), optional :: stat
