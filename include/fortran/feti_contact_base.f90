@@ -61,13 +61,16 @@ module feti_contact_base
     end function
   end interface
 
+  !> Stands for data that the host has not given: no type of a host matches it in select type.
+  type :: no_data
+  end type
+
   !> What feti_body_operator keeps of the host for one body.
   type :: host_operator
     integer :: body = 0
     procedure(operator_procedure), pointer, nopass :: kplus => null(), k => null()
     class(*), pointer :: data => null()
-    !> Stands for data that were not given.
-    integer :: nothing = 0
+    type(no_data) :: nothing
     !> That of another body.
     type(host_operator), pointer :: next => null()
   end type
@@ -78,8 +81,7 @@ module feti_contact_base
     class(*), pointer :: data => null()
     procedure(log_procedure), pointer, nopass :: tell => null()
     class(*), pointer :: log_data => null()
-    !> Stands for data that were not given.
-    integer :: nothing = 0
+    type(no_data) :: nothing
     type(host_operator), pointer :: operators => null()
   end type
 

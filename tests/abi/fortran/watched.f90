@@ -67,7 +67,7 @@ contains
     end select
   end function
 
-  !> Given without data: gets an integer.
+  !> Given without data: what it gets is of no type that a host can name.
   integer function fail(now, data)
     type(feti_progress), intent(in) :: now
     class(*), intent(inout) :: data
@@ -75,6 +75,10 @@ contains
     fail = -1
     select type (data)
     type is (integer)
+      fail = -2
+    type is (diary)
+      fail = -3
+    class default
       if (now%phase == FETI_PHASE_SETUP) fail = -5
     end select
   end function
@@ -200,6 +204,7 @@ contains
 
     call feti_problem_create(p)
     call hand_over(p, wall, from_basis)
+    call feti_on_progress(p, note, book)
     call feti_on_progress(p, fail)
     call feti_setup(p, stat, text)
     call require(stat == FETI_CALLBACK, 'a failure of the function was not reported: ' // trim(text))
