@@ -7,7 +7,7 @@ module feti_contact_bodies
   use, intrinsic :: iso_c_binding, only: c_int32_t, c_int64_t, c_loc, c_null_ptr, c_ptr, c_sizeof
   use, intrinsic :: iso_fortran_env, only: int32, int64, real64
   use feti_contact_base, only: body_index, feti_problem, finish, handle_of, refuse
-  use feti_contact_c, only: FETI_ALL, FETI_OK, feti_body_facts, &
+  use feti_contact_c, only: FETI_ALL, FETI_OK, FETI_OVERFLOW, feti_body_facts, &
     c_body_add => feti_body_add, &
     c_body_components => feti_body_components, &
     c_body_coordinates => feti_body_coordinates, &
@@ -38,6 +38,15 @@ module feti_contact_bodies
   !> all bodies have some, or none.
   interface body_numbering
     module procedure numbering_int32, numbering_int64
+  end interface
+
+  !> Instead of a null space: where the unknowns are. The library takes the rigid motions as candidates.
+  !> Without either the library finds the null space from K.
+  !>
+  !> call feti_body_coordinates(p, body, node, dir, xyz): node(n): any label of 32 bits, equal for the unknowns of one node;
+  !>   dir(n): 1 to 3 displacement, 4 to 6 rotation; both int32 or int64; xyz(dim,n): position, length, dim 1 to 3.
+  interface body_coordinates
+    module procedure coordinates_int32, coordinates_int64
   end interface
 
 contains
@@ -99,12 +108,8 @@ contains
     call finish(status, stat, errmsg)
   end subroutine
 
-  !> Instead of a null space: where the unknowns are. The library takes the rigid motions as candidates.
-  !> Without either the library finds the null space from K.
-  !>
-  !> node(n): any label, equal for the unknowns of one node; dir(n): 1 to 3 displacement, 4 to 6 rotation;
-  !> xyz(dim,n): position, length, dim 1 to 3.
-  recursive subroutine body_coordinates(p, body, node, dir, xyz, stat, errmsg)
+  !> int32 labels and directions.
+  recursive subroutine coordinates_int32(p, body, node, dir, xyz, stat, errmsg)
     type(feti_problem), intent(in) :: p
     integer, intent(in) :: body
     integer(int32), intent(in), contiguous :: node(:), dir(:)
@@ -119,6 +124,23 @@ contains
     else
       call finish(c_body_coordinates(handle_of(p), int(body - 1, c_int64_t), size(xyz, 1, c_int32_t), &
         size(node, kind=c_int64_t), node, dir, xyz, size(xyz, 1, c_int64_t)), stat, errmsg)
+    end if
+  end subroutine
+
+  !> int64 labels and directions; FETI_OVERFLOW, and the body keeps what it had, where one needs more than 32 bits.
+  recursive subroutine coordinates_int64(p, body, node, dir, xyz, stat, errmsg)
+    type(feti_problem), intent(in) :: p
+    integer, intent(in) :: body
+    integer(int64), intent(in), contiguous :: node(:), dir(:)
+    real(real64), intent(in), contiguous :: xyz(:, :)
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+    integer(int64), parameter :: most = huge(1_int32)
+
+    if (any(node < -most .or. node > most) .or. any(dir < -most .or. dir > most)) then
+      call finish(FETI_OVERFLOW, stat, errmsg, 'feti_body_coordinates: a number of node or dir needs more than 32 bits')
+    else
+      call coordinates_int32(p, body, int(node, int32), int(dir, int32), xyz, stat, errmsg)
     end if
   end subroutine
 

@@ -20,7 +20,7 @@ contains
   recursive subroutine on_log(p, tell, level, data, stat, errmsg)
     type(feti_problem), intent(in) :: p
     procedure(log_procedure), optional :: tell
-    integer, intent(in), optional :: level
+    integer(c_int32_t), intent(in), optional :: level
     class(*), intent(inout), optional, target :: data
     integer, intent(out), optional :: stat
     character(len=*), intent(inout), optional :: errmsg
@@ -34,7 +34,7 @@ contains
     most = FETI_LOG_NONE
     host => listener_of(p)
     if (present(tell)) function_of_library = c_funloc(hand_on)
-    if (present(level)) most = int(level, c_int32_t)
+    if (present(level)) most = level
     if (associated(host)) address = c_loc(host)
     status = c_on_log(handle_of(p), function_of_library, most, address)
     if (status == FETI_OK .and. present(tell)) then

@@ -58,6 +58,12 @@ module feti_contact_results
     module procedure reaction_one, reaction_all
   end interface
 
+  !> State of each contact row, int32 or int64: FETI_ROW_OPEN, FETI_ROW_CLOSED or FETI_ROW_WEAK (closed without a clear
+  !> force).
+  interface active
+    module procedure active_int32, active_int64
+  end interface
+
 contains
 
   !> Null spaces, factors and dual operator ahead of feti_solve, which does it otherwise when needed.
@@ -242,14 +248,29 @@ contains
     call finish(c_gaps(handle_of(p), size(slack, kind=c_int64_t), slack), stat, errmsg)
   end subroutine
 
-  !> State of each contact row: FETI_ROW_OPEN, FETI_ROW_CLOSED or FETI_ROW_WEAK (closed without a clear force).
-  recursive subroutine active(p, state, stat, errmsg)
+  !> int32 states.
+  recursive subroutine active_int32(p, state, stat, errmsg)
     type(feti_problem), intent(in) :: p
     integer(c_int32_t), intent(inout), contiguous :: state(:)
     integer, intent(out), optional :: stat
     character(len=*), intent(inout), optional :: errmsg
 
     call finish(c_active(handle_of(p), size(state, kind=c_int64_t), state), stat, errmsg)
+  end subroutine
+
+  !> int64 states.
+  recursive subroutine active_int64(p, state, stat, errmsg)
+    type(feti_problem), intent(in) :: p
+    integer(int64), intent(inout) :: state(:)
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+    integer(c_int32_t), allocatable :: found(:)
+    integer(c_int32_t) :: status
+
+    allocate (found(size(state)))
+    status = c_active(handle_of(p), size(found, kind=c_int64_t), found)
+    if (status == FETI_OK) state = found
+    call finish(status, stat, errmsg)
   end subroutine
 
   !> The unknowns that K+ holds, dof(r), r the dimension of the null space. For validation.
