@@ -5,11 +5,12 @@
 !>   stat present: it gets the status (0 is FETI_OK); a failed call changes nothing and can be repeated corrected.
 !>   stat absent:  any status but FETI_OK prints the text on error_unit and ends the program with error stop 1.
 !>   errmsg:       gets the text when the status is not FETI_OK, cut or padded to its length; untouched otherwise.
+!> No function has a result of deferred length: gfortran keeps that length in static memory of the caller, where threads mix it up.
 !> Arrays that do not fit each other (a row pointer that points behind the entries) are refused by the face itself:
 !> status and errmsg tell it, feti_last_error and feti_last_error_detail do not.
 module feti_contact_base
   use, intrinsic :: iso_c_binding, only: c_char, c_double, c_f_pointer, c_int32_t, c_int64_t, c_loc, &
-    c_null_char, c_null_ptr, c_ptr, c_sizeof, c_associated
+    c_null_char, c_null_ptr, c_ptr, c_size_t, c_sizeof, c_associated
   use, intrinsic :: iso_fortran_env, only: error_unit
   use feti_contact_c, only: FETI_ARGUMENT, FETI_OK, feti_progress, &
     c_error_detail => feti_error_detail, &
@@ -31,7 +32,7 @@ module feti_contact_base
   public :: problem_create, problem_destroy, problem_error
   public :: last_error, last_error_detail, status_name, status_text
   public :: version, version_number
-  public :: handle_of, body_index, finish, refuse, c_text, f_text, static_text
+  public :: handle_of, body_index, finish, refuse, c_text, f_text
 
   abstract interface
     !> A function of the host that hears of every step: 0 goes on, > 0 cancels, < 0 reports a failure of its own.
@@ -58,6 +59,15 @@ module feti_contact_base
       real(c_double), intent(in), contiguous :: x(:, :)
       real(c_double), intent(inout), contiguous :: y(:, :)
       class(*), intent(inout) :: data
+    end function
+  end interface
+
+  interface
+    !> Characters of a C string before its NUL.
+    pure function strlen(string) bind(C, name='strlen')
+      import :: c_ptr, c_size_t
+      type(c_ptr), intent(in), value :: string
+      integer(c_size_t) :: strlen
     end function
   end interface
 
@@ -157,7 +167,7 @@ contains
     if (status == FETI_OK) then
       allocate (buffer(length + 1))
       status = c_problem_error(p%handle, c_loc(buffer), size(buffer, kind=c_int64_t), length)
-      if (status == FETI_OK) text = f_text(buffer)
+      if (status == FETI_OK) text = f_text(c_loc(buffer))
     end if
     call finish(status, stat, errmsg)
   end subroutine
@@ -171,7 +181,7 @@ contains
     length = c_last_error(c_null_ptr, 0_c_int64_t)
     allocate (buffer(length + 1))
     length = c_last_error(c_loc(buffer), length + 1)
-    text = f_text(buffer)
+    text = f_text(c_loc(buffer))
   end subroutine
 
   !> Facts of the last failed call of this thread.
@@ -179,7 +189,7 @@ contains
     type(feti_error_detail), intent(out) :: detail
     integer, intent(out), optional :: stat
     character(len=*), intent(inout), optional :: errmsg
-    type(c_error_detail) :: found
+    type(c_error_detail), target :: found
     integer(c_int32_t) :: status
 
     found%struct_size = c_sizeof(found)
@@ -194,7 +204,7 @@ contains
       detail%entry = found%entry + 1
       detail%value = found%value
       detail%limit = found%limit
-      detail%function = f_text(found%function)
+      detail%function = f_text(c_loc(found%function))
     end if
     call finish(status, stat, errmsg)
   end subroutine
@@ -202,24 +212,24 @@ contains
   !> Name of a status, such as FETI_LOAD_NOT_HELD.
   recursive function status_name(status) result(name)
     integer, intent(in) :: status
-    character(len=:), allocatable :: name
+    character(len=name_length(status)) :: name
 
-    name = static_text(c_status_name(int(status, c_int32_t)))
+    name = f_text(c_status_name(int(status, c_int32_t)))
   end function
 
   !> One sentence on a status.
   recursive function status_text(status) result(text)
     integer, intent(in) :: status
-    character(len=:), allocatable :: text
+    character(len=sentence_length(status)) :: text
 
-    text = static_text(c_status_text(int(status, c_int32_t)))
+    text = f_text(c_status_text(int(status, c_int32_t)))
   end function
 
   !> Version of the library, such as 0.1.0.
   recursive function version() result(text)
-    character(len=:), allocatable :: text
+    character(len=version_length()) :: text
 
-    text = static_text(c_version())
+    text = f_text(c_version())
   end function
 
   !> 10000 major + 100 minor + patch.
@@ -322,42 +332,45 @@ contains
     string = trim(text) // c_null_char
   end function
 
-  !> The characters before the first NUL.
-  recursive pure function f_text(string) result(text)
-    character(kind=c_char), intent(in) :: string(:)
-    character(len=:), allocatable :: text
-    integer :: i, length
+  !> The text of a C string, empty for NULL.
+  recursive function f_text(address) result(text)
+    type(c_ptr), intent(in) :: address
+    character(len=length_of(address)) :: text
+    character(kind=c_char), pointer :: string(:)
+    integer :: i
 
-    length = size(string)
-    do i = 1, size(string)
-      if (string(i) == c_null_char) then
-        length = i - 1
-        exit
-      end if
-    end do
-    allocate (character(len=length) :: text)
-    do i = 1, length
+    if (len(text) == 0) return
+    call c_f_pointer(address, string, [len(text)])
+    do i = 1, len(text)
       text(i:i) = string(i)
     end do
   end function
 
-  !> The text of a static C string.
-  recursive function static_text(address) result(text)
+  !> How many characters it has.
+  recursive pure integer function length_of(address)
     type(c_ptr), intent(in) :: address
-    character(len=:), allocatable :: text
-    character(kind=c_char), pointer :: string(:)
-    integer, parameter :: longest = 1000
-    integer :: length
 
-    text = ''
-    if (.not. c_associated(address)) return
-    call c_f_pointer(address, string, [longest])
-    length = 0
-    do while (length < longest)
-      if (string(length + 1) == c_null_char) exit
-      length = length + 1
-    end do
-    text = f_text(string(:length))
+    length_of = 0
+    if (c_associated(address)) length_of = int(strlen(address))
+  end function
+
+  !> Of the name of a status.
+  recursive pure integer function name_length(status)
+    integer, intent(in) :: status
+
+    name_length = length_of(c_status_name(int(status, c_int32_t)))
+  end function
+
+  !> Of the sentence on a status.
+  recursive pure integer function sentence_length(status)
+    integer, intent(in) :: status
+
+    sentence_length = length_of(c_status_text(int(status, c_int32_t)))
+  end function
+
+  !> Of the version.
+  recursive pure integer function version_length()
+    version_length = length_of(c_version())
   end function
 
 end module

@@ -7,7 +7,7 @@
 module feti_contact_f77_base
   use, intrinsic :: iso_c_binding, only: c_char, c_double, c_funptr, c_int32_t, c_int64_t, c_intptr_t, c_loc, c_ptr, &
     c_f_pointer, c_f_procpointer, c_funloc, c_null_char, c_null_funptr, c_null_ptr
-  use feti_contact_base, only: c_text, f_text, static_text
+  use feti_contact_base, only: c_text, f_text
   use feti_contact_c
   implicit none
   public
@@ -177,7 +177,7 @@ contains
 
     allocate (buffer(feti_last_error(c_null_ptr, 0_c_int64_t) + 1))
     length = feti_last_error(c_loc(buffer), size(buffer, kind=c_int64_t))
-    text = f_text(buffer)
+    text = f_text(c_loc(buffer))
   end subroutine
 
 end module

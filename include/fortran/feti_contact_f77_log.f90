@@ -34,7 +34,7 @@ contains
     procedure(host_listener), pointer :: listen
 
     call c_f_procpointer(transfer(user, c_null_funptr), listen)
-    reply = narrow(listen(int(level), static_text(c_loc(text(1)))))
+    reply = narrow(listen(int(level), f_text(c_loc(text(1)))))
   end function
 
 end module

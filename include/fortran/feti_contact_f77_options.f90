@@ -74,7 +74,7 @@ recursive subroutine ftgetc(ip, name, text, l, ierr)
 
   ierr = told(feti_get_str(handle(ip), c_text(name), c_loc(buffer), size(buffer, kind=c_int64_t), length), [1, 2, 3, 3, 4])
   if (ierr == FETI_OK) call fit(length, l, ierr)
-  if (ierr == FETI_OK) text = f_text(buffer)
+  if (ierr == FETI_OK) text = f_text(c_loc(buffer))
 end subroutine
 
 !> Number of options.
@@ -101,9 +101,9 @@ recursive subroutine ftopta(k, name, doc, ityp, rmin, rmax, dflt, idflt, cdflt, 
   found%struct_size = storage_size(found, c_int64_t) / 8
   ierr = told(feti_option_at(from_zero(k), found))
   if (ierr /= FETI_OK) return
-  name = static_text(found%name)
-  doc = static_text(found%doc)
-  cdflt = static_text(found%default_str)
+  name = f_text(found%name)
+  doc = f_text(found%doc)
+  cdflt = f_text(found%default_str)
   ityp = int(found%type)
   rmin = found%minimum
   rmax = found%maximum

@@ -78,7 +78,7 @@ recursive subroutine fterr(ierr, text)
     text = own_text(FTEISZ - status + 1)
   else
     call give_last_error(text)
-    if (text == ' ') text = static_text(feti_status_text(narrow(status)))
+    if (text == ' ') text = f_text(feti_status_text(narrow(status)))
   end if
 end subroutine
 
@@ -96,7 +96,7 @@ recursive subroutine ftperr(ip, text, l, ierr)
 
   ierr = told(feti_problem_error(handle(ip), c_loc(buffer), size(buffer, kind=c_int64_t), length))
   if (ierr == FETI_OK) call fit(length, l, ierr)
-  if (ierr == FETI_OK) text = f_text(buffer)
+  if (ierr == FETI_OK) text = f_text(c_loc(buffer))
 end subroutine
 
 !> Facts of the thread's last error: idet(ni) and rdet(nr), positions FTDSTA to FTDENT, FTDVAL, FTDLIM; name: the C function,
@@ -109,7 +109,7 @@ recursive subroutine ftedet(ni, idet, nr, rdet, name, ierr)
   real(c_double), intent(inout) :: rdet(*)
   character(len=*), intent(inout) :: name
   integer, intent(out) :: ierr
-  type(feti_error_detail) :: found
+  type(feti_error_detail), target :: found
 
   found%struct_size = storage_size(found, c_int64_t) / 8
   ierr = told(feti_last_error_detail(found))
@@ -117,7 +117,7 @@ recursive subroutine ftedet(ni, idet, nr, rdet, name, ierr)
   call give([int(found%status, c_int64_t), int(found%argument, c_int64_t), found%body + 1, found%component + 1, &
     found%dof + 1, found%row + 1, found%entry + 1], ni, idet)
   call give_reals([found%value, found%limit], nr, rdet)
-  name = f_text(found%function)
+  name = f_text(c_loc(found%function))
 end subroutine
 
 !> Name of a status, such as FETI_LOAD_NOT_HELD, which FTELNH is here.
@@ -127,7 +127,7 @@ recursive subroutine ftsnam(istat, text)
   integer, intent(in) :: istat
   character(len=*), intent(inout) :: text
 
-  text = static_text(feti_status_name(narrow(istat)))
+  text = f_text(feti_status_name(narrow(istat)))
 end subroutine
 
 !> One sentence on a status.
@@ -140,7 +140,7 @@ recursive subroutine ftstxt(istat, text)
   if (istat <= FTEISZ .and. istat >= FTEFIT) then
     text = own_text(FTEISZ - istat + 1)
   else
-    text = static_text(feti_status_text(narrow(istat)))
+    text = f_text(feti_status_text(narrow(istat)))
   end if
 end subroutine
 
@@ -151,6 +151,6 @@ recursive subroutine ftvers(text, number)
   character(len=*), intent(inout) :: text
   integer, intent(out) :: number
 
-  text = static_text(feti_version())
+  text = f_text(feti_version())
   number = int(feti_version_number())
 end subroutine

@@ -194,7 +194,7 @@ recursive subroutine ftphas(ip, k, name, secs, bytes, ierr)
   found%struct_size = storage_size(found, c_int64_t) / 8
   ierr = told(feti_phase_at(handle(ip), from_zero(k), found))
   if (ierr /= FETI_OK) return
-  name = static_text(found%name)
+  name = f_text(found%name)
   secs = found%seconds
   bytes = real(found%bytes, c_double)
 end subroutine

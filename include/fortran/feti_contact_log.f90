@@ -1,9 +1,9 @@
 !> What calls tell in words, of module feti_contact. A host uses feti_contact, not this module.
 !> `stat` and `errmsg`: see feti_contact_base.
 module feti_contact_log
-  use, intrinsic :: iso_c_binding, only: c_char, c_f_pointer, c_funloc, c_funptr, c_int32_t, c_loc, c_null_char, &
-    c_null_funptr, c_null_ptr, c_ptr
-  use feti_contact_base, only: feti_problem, finish, handle_of, listener, listener_of, log_procedure
+  use, intrinsic :: iso_c_binding, only: c_char, c_f_pointer, c_funloc, c_funptr, c_int32_t, c_loc, c_null_funptr, &
+    c_null_ptr, c_ptr
+  use feti_contact_base, only: f_text, feti_problem, finish, handle_of, listener, listener_of, log_procedure
   use feti_contact_c, only: FETI_OK, FETI_LOG_NONE, c_on_log => feti_on_log
   implicit none
   private
@@ -49,29 +49,12 @@ contains
   recursive function hand_on(user, level, text) result(reply) bind(C, name='')
     type(c_ptr), value :: user
     integer(c_int32_t), value :: level
-    character(kind=c_char), intent(in) :: text(*)
+    character(kind=c_char), intent(in), target :: text(*)
     integer(c_int32_t) :: reply
     type(listener), pointer :: host
-    integer :: length
 
     call c_f_pointer(user, host)
-    length = 0
-    do while (text(length + 1) /= c_null_char)
-      length = length + 1
-    end do
-    reply = int(host%tell(int(level), line(text, length), host%log_data), c_int32_t)
-  end function
-
-  !> The first characters of a C string.
-  recursive pure function line(text, length)
-    integer, intent(in) :: length
-    character(kind=c_char), intent(in) :: text(length)
-    character(len=length) :: line
-    integer :: i
-
-    do i = 1, length
-      line(i:i) = text(i)
-    end do
+    reply = int(host%tell(int(level), f_text(c_loc(text(1))), host%log_data), c_int32_t)
   end function
 
 end module

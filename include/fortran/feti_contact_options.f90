@@ -3,7 +3,7 @@
 module feti_contact_options
   use, intrinsic :: iso_c_binding, only: c_char, c_int32_t, c_int64_t, c_loc, c_null_ptr, c_sizeof
   use, intrinsic :: iso_fortran_env, only: int32, int64, real64
-  use feti_contact_base, only: c_text, f_text, feti_problem, finish, handle_of, static_text
+  use feti_contact_base, only: c_text, f_text, feti_problem, finish, handle_of
   use feti_contact_c, only: FETI_OK, FETI_OVERFLOW, &
     c_get_f64 => feti_get_f64, &
     c_get_i64 => feti_get_i64, &
@@ -165,7 +165,7 @@ contains
     if (status == FETI_OK) then
       allocate (buffer(length + 1))
       status = c_get_str(handle_of(p), c_text(name), c_loc(buffer), size(buffer, kind=c_int64_t), length)
-      if (status == FETI_OK) value = f_text(buffer)
+      if (status == FETI_OK) value = f_text(c_loc(buffer))
     end if
     call finish(status, stat, errmsg)
   end subroutine
@@ -187,14 +187,14 @@ contains
     found%struct_size = c_sizeof(found)
     status = c_option_at(int(k - 1, c_int64_t), found)
     if (status == FETI_OK) then
-      option%name = static_text(found%name)
-      option%doc = static_text(found%doc)
+      option%name = f_text(found%name)
+      option%doc = f_text(found%doc)
       option%type = found%type
       option%minimum = found%minimum
       option%maximum = found%maximum
       option%default_real = found%default_f64
       option%default_integer = found%default_i64
-      option%default_text = static_text(found%default_str)
+      option%default_text = f_text(found%default_str)
     end if
     call finish(status, stat, errmsg)
   end subroutine

@@ -6,7 +6,7 @@
 module feti_contact_results
   use, intrinsic :: iso_c_binding, only: c_int32_t, c_int64_t, c_loc, c_null_ptr, c_ptr, c_sizeof
   use, intrinsic :: iso_fortran_env, only: int64, real64
-  use feti_contact_base, only: body_index, feti_problem, finish, handle_of, refuse, static_text
+  use feti_contact_base, only: body_index, f_text, feti_problem, finish, handle_of, refuse
   use feti_contact_c, only: FETI_ALL, FETI_OK, feti_certificate, feti_info, &
     c_active => feti_active, &
     c_amplitudes => feti_amplitudes, &
@@ -120,7 +120,7 @@ contains
     found%struct_size = c_sizeof(found)
     status = c_phase_at(handle_of(p), int(k - 1, c_int64_t), found)
     if (status == FETI_OK) then
-      phase%name = static_text(found%name)
+      phase%name = f_text(found%name)
       phase%seconds = found%seconds
       phase%bytes = found%bytes
     end if
