@@ -24,6 +24,11 @@ function(feti_contact_fortran_target folder)
     return()
   endif()
   file(GLOB sources "${folder}/*.f90")
+  file(GLOB f77 "${folder}/feti_contact_f77_*.f90")
+  # The functions of a FORTRAN 77 host have no C binding: Fortran 2018, also for a host that asks for an older standard.
+  if(CMAKE_Fortran_COMPILER_ID STREQUAL "GNU")
+    set_source_files_properties(${f77} PROPERTIES COMPILE_OPTIONS -std=f2018)
+  endif()
   set(modules "${CMAKE_BINARY_DIR}/feti_contact_modules")
   add_library(feti_contact_fortran STATIC EXCLUDE_FROM_ALL ${sources})
   set_target_properties(feti_contact_fortran PROPERTIES

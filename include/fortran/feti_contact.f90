@@ -20,6 +20,8 @@
 !>
 !> Names and meaning are those of the C functions in feti_contact.h. Every number counts from 1: bodies, unknowns,
 !> rows, the indices inside the arrays, the places in errors. Sizes come from the arrays. Everything is copied.
+!> Index arrays are int32 or int64. A kind, a storage, a flag or a level is int32, as its constants are, also where the
+!> default INTEGER has 8 bytes.
 !> Every subroutine ends with the optional arguments stat and errmsg: with stat the host decides what a failure
 !> means (call feti_last_error_detail tells the place); without it a failure prints its text and stops the program.
 !> Where a procedure is described, with shapes and units: the module it comes from, named below.

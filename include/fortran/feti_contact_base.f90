@@ -1,14 +1,16 @@
 !> The handle, the errors and the texts of module feti_contact. A host uses feti_contact, not this module.
 !>
+!> Every procedure of the face is recursive: a function of the host may call the library, and threads call it side by side.
 !> Every procedure of the face ends with `stat` and `errmsg`, both optional:
 !>   stat present: it gets the status (0 is FETI_OK); a failed call changes nothing and can be repeated corrected.
 !>   stat absent:  any status but FETI_OK prints the text on error_unit and ends the program with error stop 1.
 !>   errmsg:       gets the text when the status is not FETI_OK, cut or padded to its length; untouched otherwise.
+!> No function has a result of deferred length: gfortran keeps it in static memory of the caller, where threads mix it up.
 !> Arrays that do not fit each other (a row pointer that points behind the entries) are refused by the face itself:
 !> status and errmsg tell it, feti_last_error and feti_last_error_detail do not.
 module feti_contact_base
   use, intrinsic :: iso_c_binding, only: c_char, c_double, c_f_pointer, c_int32_t, c_int64_t, c_loc, &
-    c_null_char, c_null_ptr, c_ptr, c_sizeof, c_associated
+    c_null_char, c_null_ptr, c_ptr, c_size_t, c_sizeof, c_associated
   use, intrinsic :: iso_fortran_env, only: error_unit
   use feti_contact_c, only: FETI_ARGUMENT, FETI_OK, feti_progress, &
     c_error_detail => feti_error_detail, &
@@ -30,7 +32,7 @@ module feti_contact_base
   public :: problem_create, problem_destroy, problem_error
   public :: last_error, last_error_detail, status_name, status_text
   public :: version, version_number
-  public :: handle_of, body_index, finish, refuse, c_text, f_text, static_text
+  public :: handle_of, body_index, finish, refuse, c_text, f_text
 
   abstract interface
     !> A function of the host that hears of every step: 0 goes on, > 0 cancels, < 0 reports a failure of its own.
@@ -60,13 +62,25 @@ module feti_contact_base
     end function
   end interface
 
+  interface
+    !> Characters of a C string before its NUL.
+    pure function strlen(string) bind(C, name='strlen')
+      import :: c_ptr, c_size_t
+      type(c_ptr), intent(in), value :: string
+      integer(c_size_t) :: strlen
+    end function
+  end interface
+
+  !> Stands for data that the host has not given: no type of a host matches it in select type.
+  type :: no_data
+  end type
+
   !> What feti_body_operator keeps of the host for one body.
   type :: host_operator
     integer :: body = 0
     procedure(operator_procedure), pointer, nopass :: kplus => null(), k => null()
     class(*), pointer :: data => null()
-    !> Stands for data that were not given.
-    integer :: nothing = 0
+    type(no_data) :: nothing
     !> That of another body.
     type(host_operator), pointer :: next => null()
   end type
@@ -77,8 +91,7 @@ module feti_contact_base
     class(*), pointer :: data => null()
     procedure(log_procedure), pointer, nopass :: tell => null()
     class(*), pointer :: log_data => null()
-    !> Stands for data that were not given.
-    integer :: nothing = 0
+    type(no_data) :: nothing
     type(host_operator), pointer :: operators => null()
   end type
 
@@ -98,7 +111,7 @@ module feti_contact_base
     integer :: argument = 0
     !> Body, component of the body, unknown of the body, row, position in the array; 0: does not apply.
     integer(c_int64_t) :: body = 0, component = 0, dof = 0, row = 0, entry = 0
-    !> The figure found and the figure allowed; NaN: does not apply.
+    !> The figure found, an index from 1, too, and the figure allowed; NaN: does not apply.
     real(c_double) :: value = 0, limit = 0
     !> Name of the C function, blank padded.
     character(len=40) :: function = ''
@@ -107,7 +120,7 @@ module feti_contact_base
 contains
 
   !> Creates an empty problem; texts and positions count from 1. On failure p is not a problem.
-  subroutine problem_create(p, stat, errmsg)
+  recursive subroutine problem_create(p, stat, errmsg)
     type(feti_problem), intent(out) :: p
     integer, intent(out), optional :: stat
     character(len=*), intent(inout), optional :: errmsg
@@ -122,7 +135,7 @@ contains
   end subroutine
 
   !> Gives back everything the problem holds. p is no problem afterwards; its copies are refused with FETI_HANDLE.
-  subroutine problem_destroy(p, stat, errmsg)
+  recursive subroutine problem_destroy(p, stat, errmsg)
     type(feti_problem), intent(inout) :: p
     integer, intent(out), optional :: stat
     character(len=*), intent(inout), optional :: errmsg
@@ -139,7 +152,7 @@ contains
   end subroutine
 
   !> Text of the last failed call of this problem; empty when none failed. May be called while another thread solves.
-  subroutine problem_error(p, text, stat, errmsg)
+  recursive subroutine problem_error(p, text, stat, errmsg)
     type(feti_problem), intent(in) :: p
     character(len=:), allocatable, intent(out) :: text
     integer, intent(out), optional :: stat
@@ -154,13 +167,13 @@ contains
     if (status == FETI_OK) then
       allocate (buffer(length + 1))
       status = c_problem_error(p%handle, c_loc(buffer), size(buffer, kind=c_int64_t), length)
-      if (status == FETI_OK) text = f_text(buffer)
+      if (status == FETI_OK) text = f_text(c_loc(buffer))
     end if
     call finish(status, stat, errmsg)
   end subroutine
 
   !> Text of the last failed call of this thread; empty when none failed.
-  subroutine last_error(text)
+  recursive subroutine last_error(text)
     character(len=:), allocatable, intent(out) :: text
     character(kind=c_char), allocatable, target :: buffer(:)
     integer(c_int64_t) :: length
@@ -168,15 +181,15 @@ contains
     length = c_last_error(c_null_ptr, 0_c_int64_t)
     allocate (buffer(length + 1))
     length = c_last_error(c_loc(buffer), length + 1)
-    text = f_text(buffer)
+    text = f_text(c_loc(buffer))
   end subroutine
 
   !> Facts of the last failed call of this thread.
-  subroutine last_error_detail(detail, stat, errmsg)
+  recursive subroutine last_error_detail(detail, stat, errmsg)
     type(feti_error_detail), intent(out) :: detail
     integer, intent(out), optional :: stat
     character(len=*), intent(inout), optional :: errmsg
-    type(c_error_detail) :: found
+    type(c_error_detail), target :: found
     integer(c_int32_t) :: status
 
     found%struct_size = c_sizeof(found)
@@ -191,48 +204,48 @@ contains
       detail%entry = found%entry + 1
       detail%value = found%value
       detail%limit = found%limit
-      detail%function = f_text(found%function)
+      detail%function = f_text(c_loc(found%function))
     end if
     call finish(status, stat, errmsg)
   end subroutine
 
   !> Name of a status, such as FETI_LOAD_NOT_HELD.
-  function status_name(status) result(name)
+  recursive function status_name(status) result(name)
     integer, intent(in) :: status
-    character(len=:), allocatable :: name
+    character(len=name_length(status)) :: name
 
-    name = static_text(c_status_name(int(status, c_int32_t)))
+    name = f_text(c_status_name(int(status, c_int32_t)))
   end function
 
   !> One sentence on a status.
-  function status_text(status) result(text)
+  recursive function status_text(status) result(text)
     integer, intent(in) :: status
-    character(len=:), allocatable :: text
+    character(len=sentence_length(status)) :: text
 
-    text = static_text(c_status_text(int(status, c_int32_t)))
+    text = f_text(c_status_text(int(status, c_int32_t)))
   end function
 
   !> Version of the library, such as 0.1.0.
-  function version() result(text)
-    character(len=:), allocatable :: text
+  recursive function version() result(text)
+    character(len=version_length()) :: text
 
-    text = static_text(c_version())
+    text = f_text(c_version())
   end function
 
   !> 10000 major + 100 minor + patch.
-  integer function version_number()
+  recursive integer function version_number()
     version_number = int(c_version_number())
   end function
 
   !> The handle for a C function.
-  type(c_ptr) function handle_of(p)
+  recursive type(c_ptr) function handle_of(p)
     type(feti_problem), intent(in) :: p
 
     handle_of = p%handle
   end function
 
   !> A body for a C function that takes FETI_ALL = -1: no number below 1 may stand for all bodies.
-  pure integer(c_int64_t) function body_index(body)
+  recursive pure integer(c_int64_t) function body_index(body)
     integer, intent(in) :: body
 
     body_index = int(body, c_int64_t) - 1
@@ -240,7 +253,7 @@ contains
   end function
 
   !> The listener of a problem whose handle has just been accepted by the library.
-  function listener_of(p) result(found)
+  recursive function listener_of(p) result(found)
     type(feti_problem), intent(in) :: p
     type(listener), pointer :: found
 
@@ -248,7 +261,7 @@ contains
   end function
 
   !> Keeps the functions of a body, which the library has just accepted, in place of those before.
-  subroutine keep_operator(p, new)
+  recursive subroutine keep_operator(p, new)
     type(feti_problem), intent(in) :: p
     type(host_operator), intent(inout), pointer :: new
 
@@ -258,7 +271,7 @@ contains
   end subroutine
 
   !> Forgets the functions of a body, if there are any.
-  subroutine drop_operator(kept, body)
+  recursive subroutine drop_operator(kept, body)
     type(listener), intent(inout) :: kept
     integer, intent(in) :: body
     type(host_operator), pointer :: found, before
@@ -280,7 +293,7 @@ contains
   end subroutine
 
   !> Reports a status as the head of this module says. text: what the face itself found; absent: the library's words.
-  subroutine finish(status, stat, errmsg, text)
+  recursive subroutine finish(status, stat, errmsg, text)
     integer(c_int32_t), intent(in) :: status
     integer, intent(out), optional :: stat
     character(len=*), intent(inout), optional :: errmsg
@@ -302,7 +315,7 @@ contains
   end subroutine
 
   !> Refuses argument k of the C function (the handle is 1) before the library is called; text names the array.
-  subroutine refuse(k, text, stat, errmsg)
+  recursive subroutine refuse(k, text, stat, errmsg)
     integer, intent(in) :: k
     character(len=*), intent(in) :: text
     integer, intent(out), optional :: stat
@@ -312,49 +325,52 @@ contains
   end subroutine
 
   !> A C string: the text without trailing blanks and the NUL.
-  pure function c_text(text) result(string)
+  recursive pure function c_text(text) result(string)
     character(len=*), intent(in) :: text
     character(kind=c_char, len=len_trim(text) + 1) :: string
 
     string = trim(text) // c_null_char
   end function
 
-  !> The characters before the first NUL.
-  pure function f_text(string) result(text)
-    character(kind=c_char), intent(in) :: string(:)
-    character(len=:), allocatable :: text
-    integer :: i, length
+  !> The text of a C string, empty for NULL.
+  recursive function f_text(address) result(text)
+    type(c_ptr), intent(in) :: address
+    character(len=length_of(address)) :: text
+    character(kind=c_char), pointer :: string(:)
+    integer :: i
 
-    length = size(string)
-    do i = 1, size(string)
-      if (string(i) == c_null_char) then
-        length = i - 1
-        exit
-      end if
-    end do
-    allocate (character(len=length) :: text)
-    do i = 1, length
+    if (len(text) == 0) return
+    call c_f_pointer(address, string, [len(text)])
+    do i = 1, len(text)
       text(i:i) = string(i)
     end do
   end function
 
-  !> The text of a static C string.
-  function static_text(address) result(text)
+  !> How many characters it has.
+  recursive pure integer function length_of(address)
     type(c_ptr), intent(in) :: address
-    character(len=:), allocatable :: text
-    character(kind=c_char), pointer :: string(:)
-    integer, parameter :: longest = 1000
-    integer :: length
 
-    text = ''
-    if (.not. c_associated(address)) return
-    call c_f_pointer(address, string, [longest])
-    length = 0
-    do while (length < longest)
-      if (string(length + 1) == c_null_char) exit
-      length = length + 1
-    end do
-    text = f_text(string(:length))
+    length_of = 0
+    if (c_associated(address)) length_of = int(strlen(address))
+  end function
+
+  !> Of the name of a status.
+  recursive pure integer function name_length(status)
+    integer, intent(in) :: status
+
+    name_length = length_of(c_status_name(int(status, c_int32_t)))
+  end function
+
+  !> Of the sentence on a status.
+  recursive pure integer function sentence_length(status)
+    integer, intent(in) :: status
+
+    sentence_length = length_of(c_status_text(int(status, c_int32_t)))
+  end function
+
+  !> Of the version.
+  recursive pure integer function version_length()
+    version_length = length_of(c_version())
   end function
 
 end module

@@ -7,7 +7,7 @@ module feti_contact_bodies
   use, intrinsic :: iso_c_binding, only: c_int32_t, c_int64_t, c_loc, c_null_ptr, c_ptr, c_sizeof
   use, intrinsic :: iso_fortran_env, only: int32, int64, real64
   use feti_contact_base, only: body_index, feti_problem, finish, handle_of, refuse
-  use feti_contact_c, only: FETI_ALL, FETI_OK, feti_body_facts, &
+  use feti_contact_c, only: FETI_ALL, FETI_OK, FETI_OVERFLOW, feti_body_facts, &
     c_body_add => feti_body_add, &
     c_body_components => feti_body_components, &
     c_body_coordinates => feti_body_coordinates, &
@@ -40,10 +40,19 @@ module feti_contact_bodies
     module procedure numbering_int32, numbering_int64
   end interface
 
+  !> Instead of a null space: where the unknowns are. The library takes the rigid motions as candidates.
+  !> Without either the library finds the null space from K.
+  !>
+  !> call feti_body_coordinates(p, body, node, dir, xyz): node(n): any label of 32 bits, equal for the unknowns of one node;
+  !>   dir(n): 1 to 3 displacement, 4 to 6 rotation; both int32 or int64; xyz(dim,n): position, length, dim 1 to 3.
+  interface body_coordinates
+    module procedure coordinates_int32, coordinates_int64
+  end interface
+
 contains
 
   !> Adds a body with n unknowns; body: its number, from 1; 0 after a failure.
-  subroutine body_add(p, n, body, stat, errmsg)
+  recursive subroutine body_add(p, n, body, stat, errmsg)
     type(feti_problem), intent(in) :: p
     integer, intent(in) :: n
     integer, intent(out) :: body
@@ -63,7 +72,7 @@ contains
   !> flags: FETI_EXACT, R spans the whole null space (r = 0: K is not singular); FETI_CANDIDATES, the null space
   !> lies inside the span of R and the library finds which part is left by the supports. Either is verified.
   !> Never called for a body without coordinates: the library finds the null space from K.
-  subroutine body_null_space(p, body, R, flags, stat, errmsg)
+  recursive subroutine body_null_space(p, body, R, flags, stat, errmsg)
     type(feti_problem), intent(in) :: p
     integer, intent(in) :: body
     real(real64), intent(in), contiguous, target :: R(:, :)
@@ -79,7 +88,7 @@ contains
   end subroutine
 
   !> The null space of a body with n unknowns as the library uses it: R is allocated n x r.
-  subroutine body_null_space_get(p, body, n, R, stat, errmsg)
+  recursive subroutine body_null_space_get(p, body, n, R, stat, errmsg)
     type(feti_problem), intent(in) :: p
     integer, intent(in) :: body, n
     real(real64), allocatable, intent(out), target :: R(:, :)
@@ -99,12 +108,8 @@ contains
     call finish(status, stat, errmsg)
   end subroutine
 
-  !> Instead of a null space: where the unknowns are. The library takes the rigid motions as candidates.
-  !> Without either the library finds the null space from K.
-  !>
-  !> node(n): any label, equal for the unknowns of one node; dir(n): 1 to 3 displacement, 4 to 6 rotation;
-  !> xyz(dim,n): position, length, dim 1 to 3.
-  subroutine body_coordinates(p, body, node, dir, xyz, stat, errmsg)
+  !> int32 labels and directions.
+  recursive subroutine coordinates_int32(p, body, node, dir, xyz, stat, errmsg)
     type(feti_problem), intent(in) :: p
     integer, intent(in) :: body
     integer(int32), intent(in), contiguous :: node(:), dir(:)
@@ -122,9 +127,26 @@ contains
     end if
   end subroutine
 
+  !> int64 labels and directions; FETI_OVERFLOW, and the body keeps what it had, where one needs more than 32 bits.
+  recursive subroutine coordinates_int64(p, body, node, dir, xyz, stat, errmsg)
+    type(feti_problem), intent(in) :: p
+    integer, intent(in) :: body
+    integer(int64), intent(in), contiguous :: node(:), dir(:)
+    real(real64), intent(in), contiguous :: xyz(:, :)
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+    integer(int64), parameter :: most = huge(1_int32)
+
+    if (any(node < -most .or. node > most) .or. any(dir < -most .or. dir > most)) then
+      call finish(FETI_OVERFLOW, stat, errmsg, 'feti_body_coordinates: a number of node or dir needs more than 32 bits')
+    else
+      call coordinates_int32(p, body, int(node, int32), int(dir, int32), xyz, stat, errmsg)
+    end if
+  end subroutine
+
   !> The unknowns that K+ holds, dof(r), r the dimension of the null space; of size 0: those the library would choose. They
   !> change the course of the methods of the paper in printed units, and neither forces nor displacements.
-  subroutine body_fixing_set(p, body, dof, stat, errmsg)
+  recursive subroutine body_fixing_set(p, body, dof, stat, errmsg)
     type(feti_problem), intent(in) :: p
     integer, intent(in) :: body
     integer, intent(in) :: dof(:)
@@ -139,7 +161,7 @@ contains
   end subroutine
 
   !> The load of one body.
-  subroutine load_one(p, body, f, stat, errmsg)
+  recursive subroutine load_one(p, body, f, stat, errmsg)
     type(feti_problem), intent(in) :: p
     integer, intent(in) :: body
     real(real64), intent(in), contiguous :: f(:)
@@ -150,7 +172,7 @@ contains
   end subroutine
 
   !> Of all bodies, by the numbers of the host.
-  subroutine load_all(p, f, stat, errmsg)
+  recursive subroutine load_all(p, f, stat, errmsg)
     type(feti_problem), intent(in) :: p
     real(real64), intent(in), contiguous :: f(:)
     integer, intent(out), optional :: stat
@@ -160,7 +182,7 @@ contains
   end subroutine
 
   !> int32 numbers.
-  subroutine numbering_int32(p, body, number, stat, errmsg)
+  recursive subroutine numbering_int32(p, body, number, stat, errmsg)
     type(feti_problem), intent(in) :: p
     integer, intent(in) :: body
     integer(int32), intent(in), contiguous :: number(:)
@@ -172,7 +194,7 @@ contains
   end subroutine
 
   !> int64 numbers.
-  subroutine numbering_int64(p, body, number, stat, errmsg)
+  recursive subroutine numbering_int64(p, body, number, stat, errmsg)
     type(feti_problem), intent(in) :: p
     integer, intent(in) :: body
     integer(int64), intent(in), contiguous :: number(:)
@@ -185,7 +207,7 @@ contains
 
   !> The connected part of every unknown of a body, component(n), numbered from 1 by their first unknowns. The stiffness
   !> matrix has been given.
-  subroutine body_components(p, body, component, stat, errmsg)
+  recursive subroutine body_components(p, body, component, stat, errmsg)
     type(feti_problem), intent(in) :: p
     integer, intent(in) :: body
     integer, intent(inout) :: component(:)
@@ -201,7 +223,7 @@ contains
   end subroutine
 
   !> What is known about a body; shared_with counts from 1, 0: none.
-  subroutine body_info(p, body, facts, stat, errmsg)
+  recursive subroutine body_info(p, body, facts, stat, errmsg)
     type(feti_problem), intent(in) :: p
     integer, intent(in) :: body
     type(feti_body_facts), intent(inout) :: facts

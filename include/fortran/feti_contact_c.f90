@@ -131,7 +131,7 @@ module feti_contact_c
     integer(c_int64_t) :: row
     !> Position in the array; byte of a text or a file; -1: does not apply.
     integer(c_int64_t) :: entry
-    !> The number found; NaN: does not apply.
+    !> The number found, an index counted as in texts (option index_base); NaN: does not apply.
     real(c_double) :: value
     !> The number it had to stay within; NaN: does not apply.
     real(c_double) :: limit
@@ -1777,9 +1777,9 @@ module feti_contact_c
     !> static. Never fails.
     !>
     !> @param[in] status (scalar) any number
-    function feti_status_name(status) bind(C, name="feti_status_name")
+    pure function feti_status_name(status) bind(C, name="feti_status_name")
       import
-      integer(c_int32_t), value :: status
+      integer(c_int32_t), intent(in), value :: status
       type(c_ptr) :: feti_status_name
     end function feti_status_name
 
@@ -1788,16 +1788,16 @@ module feti_contact_c
     !> The text is static. Never fails.
     !>
     !> @param[in] status (scalar) any number
-    function feti_status_text(status) bind(C, name="feti_status_text")
+    pure function feti_status_text(status) bind(C, name="feti_status_text")
       import
-      integer(c_int32_t), value :: status
+      integer(c_int32_t), intent(in), value :: status
       type(c_ptr) :: feti_status_text
     end function feti_status_text
 
     !> Version of the library that runs, "MAJOR.MINOR.PATCH".
     !>
     !> The text is static. Never fails.
-    function feti_version() bind(C, name="feti_version")
+    pure function feti_version() bind(C, name="feti_version")
       import
       type(c_ptr) :: feti_version
     end function feti_version

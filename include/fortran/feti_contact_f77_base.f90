@@ -7,7 +7,7 @@
 module feti_contact_f77_base
   use, intrinsic :: iso_c_binding, only: c_char, c_double, c_funptr, c_int32_t, c_int64_t, c_intptr_t, c_loc, c_ptr, &
     c_f_pointer, c_f_procpointer, c_funloc, c_null_char, c_null_funptr, c_null_ptr
-  use feti_contact_base, only: c_text, f_text, static_text
+  use feti_contact_base, only: c_text, f_text
   use feti_contact_c
   implicit none
   public
@@ -39,21 +39,21 @@ module feti_contact_f77_base
 contains
 
   !> The library's handle: the host's INTEGER holds its number.
-  type(c_ptr) function handle(ip)
+  recursive type(c_ptr) function handle(ip)
     integer, intent(in) :: ip
 
     handle = transfer(int(ip, c_intptr_t), c_null_ptr)
   end function
 
   !> Number of a body, row or state from 0: -2 for every number that is none, since -1 is FETI_ALL.
-  integer(c_int64_t) function from_zero(i)
+  recursive integer(c_int64_t) function from_zero(i)
     integer, intent(in) :: i
 
     from_zero = merge(int(i, c_int64_t) - 1, -2_c_int64_t, i >= 1)
   end function
 
   !> A body, or all of them.
-  integer(c_int64_t) function body_or_all(i)
+  recursive integer(c_int64_t) function body_or_all(i)
     integer, intent(in) :: i
 
     body_or_all = from_zero(i)
@@ -61,14 +61,14 @@ contains
   end function
 
   !> A number of the host for the library.
-  integer(c_int64_t) function wide(i)
+  recursive integer(c_int64_t) function wide(i)
     integer, intent(in) :: i
 
     wide = int(i, c_int64_t)
   end function
 
   !> A number of 32 bits; one that does not fit becomes the largest of its sign, which no argument allows.
-  integer(c_int32_t) function narrow(i)
+  recursive integer(c_int32_t) function narrow(i)
     integer, intent(in) :: i
     integer(c_int64_t), parameter :: largest = int(huge(1_c_int32_t), c_int64_t)
 
@@ -76,14 +76,14 @@ contains
   end function
 
   !> A count; one beyond the largest INTEGER is that INTEGER.
-  elemental integer function clipped(found)
+  recursive elemental integer function clipped(found)
     integer(c_int64_t), intent(in) :: found
 
     clipped = int(max(-int(huge(1), c_int64_t), min(int(huge(1), c_int64_t), found)))
   end function
 
   !> i becomes the number found, or ierr FTEFIT.
-  subroutine fit(found, i, ierr)
+  recursive subroutine fit(found, i, ierr)
     integer(c_int64_t), intent(in) :: found
     integer, intent(inout) :: i, ierr
 
@@ -95,7 +95,7 @@ contains
   end subroutine
 
   !> The same for the first n numbers, all or none.
-  subroutine fit_all(found, n, i, ierr)
+  recursive subroutine fit_all(found, n, i, ierr)
     integer(c_int64_t), intent(in) :: found(:)
     integer, intent(in) :: n
     integer, intent(inout) :: i(*), ierr
@@ -108,7 +108,7 @@ contains
   end subroutine
 
   !> A list of which the library has written the first cap numbers, from 0: how many there are, and those, from 1.
-  subroutine fit_list(count, cap, found, n, i, ierr)
+  recursive subroutine fit_list(count, cap, found, n, i, ierr)
     integer(c_int64_t), intent(in) :: count, found(:)
     integer, intent(in) :: cap
     integer, intent(inout) :: n, i(*), ierr
@@ -118,7 +118,7 @@ contains
   end subroutine
 
   !> Writes the first n of the counts.
-  subroutine give(found, n, i)
+  recursive subroutine give(found, n, i)
     integer(c_int64_t), intent(in) :: found(:)
     integer, intent(in) :: n
     integer, intent(inout) :: i(*)
@@ -130,7 +130,7 @@ contains
   end subroutine
 
   !> The numbers found, as many as fit into x(n).
-  subroutine give_reals(found, n, x)
+  recursive subroutine give_reals(found, n, x)
     real(c_double), intent(in) :: found(:)
     integer, intent(in) :: n
     real(c_double), intent(inout) :: x(*)
@@ -142,7 +142,7 @@ contains
   end subroutine
 
   !> The host's status: argument k of the C function is argument place(k) of the subroutine; absent: the same one.
-  integer function told(status, place)
+  recursive integer function told(status, place)
     integer(c_int32_t), intent(in) :: status
     integer, intent(in), optional :: place(:)
     integer :: k
@@ -154,7 +154,7 @@ contains
   end function
 
   !> Address of an array of the host, NULL where there is none.
-  type(c_ptr) function reals(x, present)
+  recursive type(c_ptr) function reals(x, present)
     real(c_double), intent(in), target :: x(*)
     logical, intent(in) :: present
 
@@ -163,21 +163,26 @@ contains
   end function
 
   !> Address of an array of the host.
-  type(c_ptr) function integers(i)
+  recursive type(c_ptr) function integers(i)
     integer, intent(in), target :: i(*)
 
     integers = c_loc(i(1))
   end function
 
-  !> Text of the thread's last error, blank padded or cut.
-  subroutine give_last_error(text)
+  !> Text of the thread's last error, blank padded or cut; none where another status is asked for: FTEMEM of the face itself.
+  recursive subroutine give_last_error(status, text)
+    integer, intent(in) :: status
     character(len=*), intent(inout) :: text
     character(kind=c_char), allocatable, target :: buffer(:)
+    type(feti_error_detail) :: found
     integer(c_int64_t) :: length
 
+    found%struct_size = storage_size(found, c_int64_t) / 8
+    if (feti_last_error_detail(found) /= FETI_OK) return
+    if (status > FTEARG .and. status /= int(found%status)) return
     allocate (buffer(feti_last_error(c_null_ptr, 0_c_int64_t) + 1))
     length = feti_last_error(c_loc(buffer), size(buffer, kind=c_int64_t))
-    text = f_text(buffer)
+    text = f_text(c_loc(buffer))
   end subroutine
 
 end module

@@ -2,7 +2,7 @@
 !> See docs/fortran77.md.
 
 !> Adds a body with n unknowns; ibody: its number.
-subroutine ftbadd(ip, n, ibody, ierr)
+recursive subroutine ftbadd(ip, n, ibody, ierr)
   use feti_contact_f77_base
   implicit none
   integer, intent(in) :: ip, n
@@ -16,7 +16,7 @@ end subroutine
 
 !> Stiffness by rows, n x n, force / length: row i holds the entries iptr(i) to iptr(i+1)-1 of icol and val; iptr(n+1).
 !> istor: FTFULL, FTLOWR (columns <= row) or FTUPPR; a lower triangle by columns is FTUPPR.
-subroutine ftbstf(ip, ibody, n, iptr, icol, val, istor, ierr)
+recursive subroutine ftbstf(ip, ibody, n, iptr, icol, val, istor, ierr)
   use feti_contact_f77_base
   implicit none
   integer, intent(in) :: ip, ibody, n, iptr(*), icol(*), istor
@@ -28,7 +28,7 @@ subroutine ftbstf(ip, ibody, n, iptr, icol, val, istor, ierr)
 end subroutine
 
 !> Stiffness as a dense matrix a(lda,n); with FTLOWR and FTUPPR the other triangle is not read.
-subroutine ftbdns(ip, ibody, n, a, lda, istor, ierr)
+recursive subroutine ftbdns(ip, ibody, n, a, lda, istor, ierr)
   use feti_contact_f77_base
   implicit none
   integer, intent(in) :: ip, ibody, n, lda, istor
@@ -39,7 +39,7 @@ subroutine ftbdns(ip, ibody, n, a, lda, istor, ierr)
 end subroutine
 
 !> The same with the diagonal apart, diag(n), and what is beside it in iptr, icol, val.
-subroutine ftbspl(ip, ibody, n, diag, iptr, icol, val, istor, ierr)
+recursive subroutine ftbspl(ip, ibody, n, diag, iptr, icol, val, istor, ierr)
   use feti_contact_f77_base
   implicit none
   integer, intent(in) :: ip, ibody, n, iptr(*), icol(*), istor
@@ -51,7 +51,7 @@ subroutine ftbspl(ip, ibody, n, diag, iptr, icol, val, istor, ierr)
 end subroutine
 
 !> New values on the pattern of ftbspl: diag(n), val(nnz).
-subroutine ftbvsp(ip, ibody, n, diag, nnz, val, ierr)
+recursive subroutine ftbvsp(ip, ibody, n, diag, nnz, val, ierr)
   use feti_contact_f77_base
   implicit none
   integer, intent(in) :: ip, ibody, n, nnz
@@ -62,7 +62,7 @@ subroutine ftbvsp(ip, ibody, n, diag, nnz, val, ierr)
 end subroutine
 
 !> Connected part of each unknown, icomp(n), from 1.
-subroutine ftbcmp(ip, ibody, n, icomp, ierr)
+recursive subroutine ftbcmp(ip, ibody, n, icomp, ierr)
   use feti_contact_f77_base
   implicit none
   integer, intent(in) :: ip, ibody, n
@@ -78,7 +78,7 @@ subroutine ftbcmp(ip, ibody, n, icomp, ierr)
 end subroutine
 
 !> The host's own numbers of the unknowns of a body, inum(n), from 1, each unknown of all bodies another one.
-subroutine ftbnum(ip, ibody, n, inum, ierr)
+recursive subroutine ftbnum(ip, ibody, n, inum, ierr)
   use feti_contact_f77_base
   implicit none
   integer, intent(in) :: ip, ibody, n, inum(*)
@@ -88,7 +88,7 @@ subroutine ftbnum(ip, ibody, n, inum, ierr)
 end subroutine
 
 !> New values on the pattern of ftbstf, val(nnz) in its order: a numeric factorisation, no analysis.
-subroutine ftbval(ip, ibody, nnz, val, ierr)
+recursive subroutine ftbval(ip, ibody, nnz, val, ierr)
   use feti_contact_f77_base
   implicit none
   integer, intent(in) :: ip, ibody, nnz
@@ -99,7 +99,7 @@ subroutine ftbval(ip, ibody, nnz, val, ierr)
 end subroutine
 
 !> New values of a dense matrix, a(lda,n), in the storage of ftbdns.
-subroutine ftbvdn(ip, ibody, n, a, lda, ierr)
+recursive subroutine ftbvdn(ip, ibody, n, a, lda, ierr)
   use feti_contact_f77_base
   implicit none
   integer, intent(in) :: ip, ibody, n, lda
@@ -111,7 +111,7 @@ end subroutine
 
 !> Null space r(ldr,nr) of a body. iflag: FTEXCT, the columns span it (nr = 0: none, r is not read), or FTCAND, it lies in
 !> their span.
-subroutine ftbnul(ip, ibody, nr, n, r, ldr, iflag, ierr)
+recursive subroutine ftbnul(ip, ibody, nr, n, r, ldr, iflag, ierr)
   use feti_contact_f77_base
   implicit none
   integer, intent(in) :: ip, ibody, nr, n, ldr, iflag
@@ -124,7 +124,7 @@ end subroutine
 
 !> Reads the null space that the library works with into r(ldr,nr). nr in: columns of r, 0: only the dimension is wanted, r
 !> is not touched; out: the dimension.
-subroutine ftbnug(ip, ibody, n, nr, r, ldr, ierr)
+recursive subroutine ftbnug(ip, ibody, n, nr, r, ldr, ierr)
   use feti_contact_f77_base
   implicit none
   integer, intent(in) :: ip, ibody, n, ldr
@@ -140,7 +140,7 @@ end subroutine
 
 !> Where the unknowns are: node(n), any label of 32 bits, equal for the unknowns of one node; idir(n), 1 to 3 displacement, 4
 !> to 6 rotation; xyz(ldx,n), the first idim numbers of a column, length.
-subroutine ftbxyz(ip, ibody, idim, n, node, idir, xyz, ldx, ierr)
+recursive subroutine ftbxyz(ip, ibody, idim, n, node, idir, xyz, ldx, ierr)
   use feti_contact_f77_base
   implicit none
   integer, intent(in) :: ip, ibody, idim, n, node(*), idir(*), ldx
@@ -165,7 +165,7 @@ subroutine ftbxyz(ip, ibody, idim, n, node, idir, xyz, ldx, ierr)
 end subroutine
 
 !> Load of a body, f(n), force; holds until it is given again. ibody = FTALL: of all, in the host's numbers.
-subroutine ftblod(ip, ibody, n, f, ierr)
+recursive subroutine ftblod(ip, ibody, n, f, ierr)
   use feti_contact_f77_base
   implicit none
   integer, intent(in) :: ip, ibody, n
@@ -176,7 +176,7 @@ subroutine ftblod(ip, ibody, n, f, ierr)
 end subroutine
 
 !> Reads the unknowns that K+ holds, idof(nr), nr the dimension of the null space.
-subroutine ftbfix(ip, ibody, nr, idof, ierr)
+recursive subroutine ftbfix(ip, ibody, nr, idof, ierr)
   use feti_contact_f77_base
   implicit none
   integer, intent(in) :: ip, ibody, nr
@@ -192,7 +192,7 @@ subroutine ftbfix(ip, ibody, nr, idof, ierr)
 end subroutine
 
 !> Chooses them in place of the library: idof(nr); nr = 0: the library chooses again.
-subroutine ftbfxs(ip, ibody, nr, idof, ierr)
+recursive subroutine ftbfxs(ip, ibody, nr, idof, ierr)
   use feti_contact_f77_base
   implicit none
   integer, intent(in) :: ip, ibody, nr, idof(*)
@@ -209,7 +209,7 @@ subroutine ftbfxs(ip, ibody, nr, idof, ierr)
 end subroutine
 
 !> y(ldy,nrhs) = K+ x(ldx,nrhs), the generalised inverse of a body; x and y may be the same array.
-subroutine ftbkpl(ip, ibody, n, nrhs, x, ldx, y, ldy, ierr)
+recursive subroutine ftbkpl(ip, ibody, n, nrhs, x, ldx, y, ldy, ierr)
   use feti_contact_f77_base
   implicit none
   integer, intent(in) :: ip, ibody, n, nrhs, ldx, ldy
@@ -222,7 +222,7 @@ end subroutine
 
 !> A body as it is given, and what the last setup has made of it: ifact(ni), rfact(nr), positions FTBUNK to FTBEXP, FTBENT to
 !> FTBGAP; -1 or NaN: not there yet.
-subroutine ftbinf(ip, ibody, ni, ifact, nr, rfact, ierr)
+recursive subroutine ftbinf(ip, ibody, ni, ifact, nr, rfact, ierr)
   use feti_contact_f77_base
   implicit none
   integer, intent(in) :: ip, ibody, ni, nr

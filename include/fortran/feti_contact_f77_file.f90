@@ -1,7 +1,7 @@
 !> FORTRAN 77 face: a problem as a file. See docs/fortran77.md.
 
 !> Writes all that has been given to the problem to the file path; an old one is replaced.
-subroutine ftwrit(ip, path, ierr)
+recursive subroutine ftwrit(ip, path, ierr)
   use feti_contact_f77_base
   implicit none
   integer, intent(in) :: ip
@@ -12,7 +12,7 @@ subroutine ftwrit(ip, path, ierr)
 end subroutine
 
 !> Reads such a file into an empty problem.
-subroutine ftread(ip, path, ierr)
+recursive subroutine ftread(ip, path, ierr)
   use feti_contact_f77_base
   implicit none
   integer, intent(in) :: ip

@@ -17,7 +17,7 @@ module feti_contact_f77_log
 contains
 
   !> The host's function travels through the library as the data of hand_on.
-  type(c_ptr) function address_of(listen)
+  recursive type(c_ptr) function address_of(listen)
     procedure(host_listener) :: listen
     type(c_funptr) :: address
 
@@ -26,7 +26,7 @@ contains
   end function
 
   !> What the library calls: hands a line on to the function of the host.
-  function hand_on(user, level, text) result(reply) bind(C, name='')
+  recursive function hand_on(user, level, text) result(reply) bind(C, name='')
     type(c_ptr), value :: user
     integer(c_int32_t), value :: level
     character(kind=c_char), intent(in), target :: text(*)
@@ -34,14 +34,14 @@ contains
     procedure(host_listener), pointer :: listen
 
     call c_f_procpointer(transfer(user, c_null_funptr), listen)
-    reply = narrow(listen(int(level), static_text(c_loc(text(1)))))
+    reply = narrow(listen(int(level), f_text(c_loc(text(1)))))
   end function
 
 end module
 
 !> Names the INTEGER FUNCTION listen(level, text) of the host, EXTERNAL there, that gets lines up to a level: FTLRES, FTLPHA or
 !> FTLSTP.
-subroutine ftonlg(ip, listen, level, ierr)
+recursive subroutine ftonlg(ip, listen, level, ierr)
   use feti_contact_f77_base
   use feti_contact_f77_log
   implicit none
@@ -55,7 +55,7 @@ subroutine ftonlg(ip, listen, level, ierr)
 end subroutine
 
 !> Nothing is told any more.
-subroutine ftoflg(ip, ierr)
+recursive subroutine ftoflg(ip, ierr)
   use feti_contact_f77_base
   implicit none
   integer, intent(in) :: ip

@@ -20,7 +20,7 @@ module feti_contact_f77_operator
 contains
 
   !> The host's function travels through the library as the data of multiply_kplus and multiply_k.
-  type(c_ptr) function address_of(host)
+  recursive type(c_ptr) function address_of(host)
     procedure(host_product) :: host
     type(c_funptr) :: address
 
@@ -29,7 +29,7 @@ contains
   end function
 
   !> What the library calls: Y = K+ X by the function of the host.
-  function multiply_kplus(user, body, n, nrhs, x, ldx, y, ldy) result(reply) bind(C, name='')
+  recursive function multiply_kplus(user, body, n, nrhs, x, ldx, y, ldy) result(reply) bind(C, name='')
     type(c_ptr), value :: user
     integer(c_int64_t), value :: body, n, nrhs, ldx, ldy
     real(c_double), intent(in) :: x(*)
@@ -42,7 +42,7 @@ contains
   end function
 
   !> What the library calls: Y = K X by the function of the host.
-  function multiply_k(user, body, n, nrhs, x, ldx, y, ldy) result(reply) bind(C, name='')
+  recursive function multiply_k(user, body, n, nrhs, x, ldx, y, ldy) result(reply) bind(C, name='')
     type(c_ptr), value :: user
     integer(c_int64_t), value :: body, n, nrhs, ldx, ldy
     real(c_double), intent(in) :: x(*)
@@ -58,7 +58,7 @@ end module
 
 !> Names the INTEGER FUNCTION host(iwhat, ibody, n, nrhs, x, ldx, y, ldy) of the host, EXTERNAL there, that multiplies by K and
 !> by a generalised inverse K+ of body ibody; diag(n): diagonal of K. iconc: 0, it runs on the calling thread alone; 1, on any.
-subroutine ftbopr(ip, ibody, n, diag, host, iconc, ierr)
+recursive subroutine ftbopr(ip, ibody, n, diag, host, iconc, ierr)
   use feti_contact_f77_base
   use feti_contact_f77_operator
   implicit none

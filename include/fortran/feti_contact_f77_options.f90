@@ -1,7 +1,7 @@
 !> FORTRAN 77 face: options by name. A refused name or value leaves the option as it was. See docs/fortran77.md.
 
 !> Sets the option name, a number: d.
-subroutine ftsetd(ip, name, d, ierr)
+recursive subroutine ftsetd(ip, name, d, ierr)
   use feti_contact_f77_base
   implicit none
   integer, intent(in) :: ip
@@ -13,7 +13,7 @@ subroutine ftsetd(ip, name, d, ierr)
 end subroutine
 
 !> Sets the option name, an integer: i.
-subroutine ftseti(ip, name, i, ierr)
+recursive subroutine ftseti(ip, name, i, ierr)
   use feti_contact_f77_base
   implicit none
   integer, intent(in) :: ip, i
@@ -24,7 +24,7 @@ subroutine ftseti(ip, name, i, ierr)
 end subroutine
 
 !> Sets the option name, a text: text without its trailing blanks.
-subroutine ftsetc(ip, name, text, ierr)
+recursive subroutine ftsetc(ip, name, text, ierr)
   use feti_contact_f77_base
   implicit none
   integer, intent(in) :: ip
@@ -35,7 +35,7 @@ subroutine ftsetc(ip, name, text, ierr)
 end subroutine
 
 !> Reads the option name, a number: d.
-subroutine ftgetd(ip, name, d, ierr)
+recursive subroutine ftgetd(ip, name, d, ierr)
   use feti_contact_f77_base
   implicit none
   integer, intent(in) :: ip
@@ -47,7 +47,7 @@ subroutine ftgetd(ip, name, d, ierr)
 end subroutine
 
 !> Reads the option name, an integer: i.
-subroutine ftgeti(ip, name, i, ierr)
+recursive subroutine ftgeti(ip, name, i, ierr)
   use feti_contact_f77_base
   implicit none
   integer, intent(in) :: ip
@@ -61,7 +61,7 @@ subroutine ftgeti(ip, name, i, ierr)
 end subroutine
 
 !> Reads the option name, a text: text, cut or blank padded, and its full length l.
-subroutine ftgetc(ip, name, text, l, ierr)
+recursive subroutine ftgetc(ip, name, text, l, ierr)
   use feti_contact_f77_base
   implicit none
   integer, intent(in) :: ip
@@ -74,11 +74,11 @@ subroutine ftgetc(ip, name, text, l, ierr)
 
   ierr = told(feti_get_str(handle(ip), c_text(name), c_loc(buffer), size(buffer, kind=c_int64_t), length), [1, 2, 3, 3, 4])
   if (ierr == FETI_OK) call fit(length, l, ierr)
-  if (ierr == FETI_OK) text = f_text(buffer)
+  if (ierr == FETI_OK) text = f_text(c_loc(buffer))
 end subroutine
 
 !> Number of options.
-subroutine ftoptn(n)
+recursive subroutine ftoptn(n)
   use feti_contact_f77_base
   implicit none
   integer, intent(out) :: n
@@ -88,7 +88,7 @@ end subroutine
 
 !> Option k, from 1: name, one sentence doc, type ityp (FTODBL, FTOINT, FTOCHR), range rmin to rmax of a number, its default
 !> in dflt, idflt or cdflt after its type.
-subroutine ftopta(k, name, doc, ityp, rmin, rmax, dflt, idflt, cdflt, ierr)
+recursive subroutine ftopta(k, name, doc, ityp, rmin, rmax, dflt, idflt, cdflt, ierr)
   use feti_contact_f77_base
   implicit none
   integer, intent(in) :: k
@@ -101,9 +101,9 @@ subroutine ftopta(k, name, doc, ityp, rmin, rmax, dflt, idflt, cdflt, ierr)
   found%struct_size = storage_size(found, c_int64_t) / 8
   ierr = told(feti_option_at(from_zero(k), found))
   if (ierr /= FETI_OK) return
-  name = static_text(found%name)
-  doc = static_text(found%doc)
-  cdflt = static_text(found%default_str)
+  name = f_text(found%name)
+  doc = f_text(found%doc)
+  cdflt = f_text(found%default_str)
   ityp = int(found%type)
   rmin = found%minimum
   rmax = found%maximum
@@ -112,7 +112,7 @@ subroutine ftopta(k, name, doc, ityp, rmin, rmax, dflt, idflt, cdflt, ierr)
 end subroutine
 
 !> Sets several options by one text, such as 'tolerance=1e-8 threads=4': all or none.
-subroutine ftsett(ip, text, ierr)
+recursive subroutine ftsett(ip, text, ierr)
   use feti_contact_f77_base
   implicit none
   integer, intent(in) :: ip

@@ -3,7 +3,7 @@
 !> Creates a problem: ip, its handle. Texts and positions count from 1.
 !> The check words iword = 1, 2 and dword = 1, 2 tell the sizes of the host's INTEGER and DOUBLE PRECISION: where they are
 !> not those of the face, ierr, written in the host's size, is FTEISZ or FTEDSZ, FTERR has the text, and ip is as it was.
-subroutine ftnew(iword, dword, ip, ierr)
+recursive subroutine ftnew(iword, dword, ip, ierr)
   use feti_contact_f77_base
   implicit none
   integer(c_int32_t), intent(in) :: iword(2)
@@ -33,7 +33,7 @@ subroutine ftnew(iword, dword, ip, ierr)
 contains
 
   !> Makes the problem once the sizes are known to agree; numbers in texts count from 1.
-  subroutine create(status)
+  recursive subroutine create(status)
     integer, intent(out) :: status
     type(c_ptr) :: p
     integer(c_int32_t) :: destroyed
@@ -48,7 +48,7 @@ contains
 end subroutine
 
 !> Destroys a problem with all it holds; ip becomes 0. Every copy of ip gives FTEHDL from now on.
-subroutine ftfree(ip, ierr)
+recursive subroutine ftfree(ip, ierr)
   use feti_contact_f77_base
   implicit none
   integer, intent(inout) :: ip
@@ -61,7 +61,7 @@ subroutine ftfree(ip, ierr)
 end subroutine
 
 !> Text to the status ierr that a subroutine has just returned on this thread; blank for 0.
-subroutine fterr(ierr, text)
+recursive subroutine fterr(ierr, text)
   use feti_contact_f77_base
   implicit none
   integer(c_int32_t), intent(in) :: ierr(*)
@@ -77,14 +77,14 @@ subroutine fterr(ierr, text)
   if (status <= FTEISZ .and. status >= FTEFIT) then
     text = own_text(FTEISZ - status + 1)
   else
-    call give_last_error(text)
-    if (text == ' ') text = static_text(feti_status_text(narrow(status)))
+    call give_last_error(status, text)
+    if (text == ' ') text = f_text(feti_status_text(narrow(status)))
   end if
 end subroutine
 
 !> Text of the problem's last error and its full length l; blank when there was none. From any thread, also while another
 !> call on the problem runs.
-subroutine ftperr(ip, text, l, ierr)
+recursive subroutine ftperr(ip, text, l, ierr)
   use feti_contact_f77_base
   implicit none
   integer, intent(in) :: ip
@@ -96,12 +96,12 @@ subroutine ftperr(ip, text, l, ierr)
 
   ierr = told(feti_problem_error(handle(ip), c_loc(buffer), size(buffer, kind=c_int64_t), length))
   if (ierr == FETI_OK) call fit(length, l, ierr)
-  if (ierr == FETI_OK) text = f_text(buffer)
+  if (ierr == FETI_OK) text = f_text(c_loc(buffer))
 end subroutine
 
 !> Facts of the thread's last error: idet(ni) and rdet(nr), positions FTDSTA to FTDENT, FTDVAL, FTDLIM; name: the C function,
 !> whose arguments idet(FTDARG) counts. Numbers count from 1, 0: does not apply.
-subroutine ftedet(ni, idet, nr, rdet, name, ierr)
+recursive subroutine ftedet(ni, idet, nr, rdet, name, ierr)
   use feti_contact_f77_base
   implicit none
   integer, intent(in) :: ni, nr
@@ -109,7 +109,7 @@ subroutine ftedet(ni, idet, nr, rdet, name, ierr)
   real(c_double), intent(inout) :: rdet(*)
   character(len=*), intent(inout) :: name
   integer, intent(out) :: ierr
-  type(feti_error_detail) :: found
+  type(feti_error_detail), target :: found
 
   found%struct_size = storage_size(found, c_int64_t) / 8
   ierr = told(feti_last_error_detail(found))
@@ -117,21 +117,21 @@ subroutine ftedet(ni, idet, nr, rdet, name, ierr)
   call give([int(found%status, c_int64_t), int(found%argument, c_int64_t), found%body + 1, found%component + 1, &
     found%dof + 1, found%row + 1, found%entry + 1], ni, idet)
   call give_reals([found%value, found%limit], nr, rdet)
-  name = f_text(found%function)
+  name = f_text(c_loc(found%function))
 end subroutine
 
 !> Name of a status, such as FETI_LOAD_NOT_HELD, which FTELNH is here.
-subroutine ftsnam(istat, text)
+recursive subroutine ftsnam(istat, text)
   use feti_contact_f77_base
   implicit none
   integer, intent(in) :: istat
   character(len=*), intent(inout) :: text
 
-  text = static_text(feti_status_name(narrow(istat)))
+  text = f_text(feti_status_name(narrow(istat)))
 end subroutine
 
 !> One sentence on a status.
-subroutine ftstxt(istat, text)
+recursive subroutine ftstxt(istat, text)
   use feti_contact_f77_base
   implicit none
   integer, intent(in) :: istat
@@ -140,17 +140,17 @@ subroutine ftstxt(istat, text)
   if (istat <= FTEISZ .and. istat >= FTEFIT) then
     text = own_text(FTEISZ - istat + 1)
   else
-    text = static_text(feti_status_text(narrow(istat)))
+    text = f_text(feti_status_text(narrow(istat)))
   end if
 end subroutine
 
 !> Version of the library: text MAJOR.MINOR.PATCH, number 10000 MAJOR + 100 MINOR + PATCH.
-subroutine ftvers(text, number)
+recursive subroutine ftvers(text, number)
   use feti_contact_f77_base
   implicit none
   character(len=*), intent(inout) :: text
   integer, intent(out) :: number
 
-  text = static_text(feti_version())
+  text = f_text(feti_version())
   number = int(feti_version_number())
 end subroutine

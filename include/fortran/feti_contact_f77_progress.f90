@@ -20,7 +20,7 @@ contains
 
   !> The host's function travels through the library as the data of hand_on: nothing is kept here, so that threads need not
   !> agree.
-  type(c_ptr) function address_of(hear)
+  recursive type(c_ptr) function address_of(hear)
     procedure(host_function) :: hear
     type(c_funptr) :: address
 
@@ -29,7 +29,7 @@ contains
   end function
 
   !> What the library calls: hands a step on to the function of the host.
-  function hand_on(user, now) result(reply) bind(C, name='')
+  recursive function hand_on(user, now) result(reply) bind(C, name='')
     type(c_ptr), value :: user
     type(feti_progress), intent(in) :: now
     integer(c_int32_t) :: reply
@@ -45,7 +45,7 @@ end module
 
 !> Names the INTEGER FUNCTION hear(now, rnow) of the host, EXTERNAL there, that hears of every body in every part of a setup
 !> and of every step of a solve.
-subroutine ftonpr(ip, hear, ierr)
+recursive subroutine ftonpr(ip, hear, ierr)
   use feti_contact_f77_base
   use feti_contact_f77_progress
   implicit none
@@ -59,7 +59,7 @@ subroutine ftonpr(ip, hear, ierr)
 end subroutine
 
 !> Nothing is told any more.
-subroutine ftofpr(ip, ierr)
+recursive subroutine ftofpr(ip, ierr)
   use feti_contact_f77_base
   implicit none
   integer, intent(in) :: ip
@@ -69,7 +69,7 @@ subroutine ftofpr(ip, ierr)
 end subroutine
 
 !> Cancels the setup or the solve that runs on the problem, from another thread or from inside hear.
-subroutine ftcanc(ip, ierr)
+recursive subroutine ftcanc(ip, ierr)
   use feti_contact_f77_base
   implicit none
   integer, intent(in) :: ip

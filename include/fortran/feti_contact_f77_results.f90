@@ -2,7 +2,7 @@
 !> host's arrays as they were. See docs/fortran77.md.
 
 !> Null spaces, factors and dual operator ahead of FTSOLV, which does it otherwise when it is due.
-subroutine ftstup(ip, ierr)
+recursive subroutine ftstup(ip, ierr)
   use feti_contact_f77_base
   implicit none
   integer, intent(in) :: ip
@@ -13,7 +13,7 @@ end subroutine
 
 !> Solves. info(ni), rinfo(nr): what was done, positions FTISTA to FTIKEP, FTRWOR to FTROPR, as many as there is room for,
 !> written whatever the status.
-subroutine ftsolv(ip, ni, info, nr, rinfo, ierr)
+recursive subroutine ftsolv(ip, ni, info, nr, rinfo, ierr)
   use feti_contact_f77_base
   implicit none
   integer, intent(in) :: ip, ni, nr
@@ -36,7 +36,7 @@ end subroutine
 
 !> Verifies any answer, also another code's: u(n) of all bodies, rlam(m), rmu(me). icert(ni), rcert(nr): positions FTVPAS to
 !> FTVCPL, FTRWOR to FTRGAP and FTRLIM.
-subroutine ftchk(ip, n, u, m, rlam, me, rmu, ni, icert, nr, rcert, ierr)
+recursive subroutine ftchk(ip, n, u, m, rlam, me, rmu, ni, icert, nr, rcert, ierr)
   use feti_contact_f77_base
   implicit none
   integer, intent(in) :: ip, n, m, me, ni, nr
@@ -56,7 +56,7 @@ subroutine ftchk(ip, n, u, m, rlam, me, rmu, ni, icert, nr, rcert, ierr)
 end subroutine
 
 !> Numbers of bodies, of unknowns of all bodies, of contact rows, of equality rows.
-subroutine ftcnts(ip, nbody, n, m, me, ierr)
+recursive subroutine ftcnts(ip, nbody, n, m, me, ierr)
   use feti_contact_f77_base
   implicit none
   integer, intent(in) :: ip
@@ -75,7 +75,7 @@ subroutine ftcnts(ip, nbody, n, m, me, ierr)
 end subroutine
 
 !> Displacement of a body, u(n), length; ibody = FTALL: of all, in the host's numbers. The same holds for ftreac.
-subroutine ftdisp(ip, ibody, n, u, ierr)
+recursive subroutine ftdisp(ip, ibody, n, u, ierr)
   use feti_contact_f77_base
   implicit none
   integer, intent(in) :: ip, ibody, n
@@ -86,7 +86,7 @@ subroutine ftdisp(ip, ibody, n, u, ierr)
 end subroutine
 
 !> Force of the rows of a kind (0: both) on a body, r(n): K u = f + r.
-subroutine ftreac(ip, kind, ibody, n, r, ierr)
+recursive subroutine ftreac(ip, kind, ibody, n, r, ierr)
   use feti_contact_f77_base
   implicit none
   integer, intent(in) :: ip, kind, ibody, n
@@ -97,7 +97,7 @@ subroutine ftreac(ip, kind, ibody, n, r, ierr)
 end subroutine
 
 !> Amplitudes alpha(nr) of the null space in the displacement of a body.
-subroutine ftampl(ip, ibody, nr, alpha, ierr)
+recursive subroutine ftampl(ip, ibody, nr, alpha, ierr)
   use feti_contact_f77_base
   implicit none
   integer, intent(in) :: ip, ibody, nr
@@ -108,7 +108,7 @@ subroutine ftampl(ip, ibody, nr, alpha, ierr)
 end subroutine
 
 !> Multipliers of the m rows of a kind, rlam(m), force; >= 0 for contact rows.
-subroutine ftmult(ip, kind, m, rlam, ierr)
+recursive subroutine ftmult(ip, kind, m, rlam, ierr)
   use feti_contact_f77_base
   implicit none
   integer, intent(in) :: ip, kind, m
@@ -119,7 +119,7 @@ subroutine ftmult(ip, kind, m, rlam, ierr)
 end subroutine
 
 !> Open gaps c - B u of the m contact rows, of compliant ones c + lambda/k - B u; gap(m), length.
-subroutine ftgaps(ip, m, gap, ierr)
+recursive subroutine ftgaps(ip, m, gap, ierr)
   use feti_contact_f77_base
   implicit none
   integer, intent(in) :: ip, m
@@ -130,7 +130,7 @@ subroutine ftgaps(ip, m, gap, ierr)
 end subroutine
 
 !> State of the m contact rows: istate(m) = FTOPEN, FTCLOS or FTWEAK.
-subroutine ftactv(ip, m, istate, ierr)
+recursive subroutine ftactv(ip, m, istate, ierr)
   use feti_contact_f77_base
   implicit none
   integer, intent(in) :: ip, m
@@ -146,7 +146,7 @@ subroutine ftactv(ip, m, istate, ierr)
 end subroutine
 
 !> y(m) = F x(m), contact rows first, m rows of both kinds; x and y may be the same array.
-subroutine ftdapp(ip, m, x, y, ierr)
+recursive subroutine ftdapp(ip, m, x, y, ierr)
   use feti_contact_f77_base
   implicit none
   integer, intent(in) :: ip, m
@@ -158,7 +158,7 @@ subroutine ftdapp(ip, m, x, y, ierr)
 end subroutine
 
 !> d(m) = [B K+ f - c; H K+ f - h], length.
-subroutine ftdrhs(ip, m, d, ierr)
+recursive subroutine ftdrhs(ip, m, d, ierr)
   use feti_contact_f77_base
   implicit none
   integer, intent(in) :: ip, m
@@ -169,7 +169,7 @@ subroutine ftdrhs(ip, m, d, ierr)
 end subroutine
 
 !> Number of phases of a setup and a solve.
-subroutine ftphsn(ip, n, ierr)
+recursive subroutine ftphsn(ip, n, ierr)
   use feti_contact_f77_base
   implicit none
   integer, intent(in) :: ip
@@ -182,7 +182,7 @@ subroutine ftphsn(ip, n, ierr)
 end subroutine
 
 !> Phase k, from 1: name, seconds in the last call that set up or solved, bytes of what it has made and keeps.
-subroutine ftphas(ip, k, name, secs, bytes, ierr)
+recursive subroutine ftphas(ip, k, name, secs, bytes, ierr)
   use feti_contact_f77_base
   implicit none
   integer, intent(in) :: ip, k
@@ -194,7 +194,7 @@ subroutine ftphas(ip, k, name, secs, bytes, ierr)
   found%struct_size = storage_size(found, c_int64_t) / 8
   ierr = told(feti_phase_at(handle(ip), from_zero(k), found))
   if (ierr /= FETI_OK) return
-  name = static_text(found%name)
+  name = f_text(found%name)
   secs = found%seconds
   bytes = real(found%bytes, c_double)
 end subroutine

@@ -3,7 +3,7 @@
 
 !> Adds m rows behind those of the kind: row i holds the entries iptr(i) to iptr(i+1)-1 of ibody, idof and val, coefficient
 !> val of unknown idof of body ibody; iptr(m+1). Repeated entries add up. rhs(m): c or h, length. ifirst: the first new row.
-subroutine ftrows(ip, kind, m, iptr, ibody, idof, val, rhs, ifirst, ierr)
+recursive subroutine ftrows(ip, kind, m, iptr, ibody, idof, val, rhs, ifirst, ierr)
   use feti_contact_f77_base
   implicit none
   integer, intent(in) :: ip, kind, m, iptr(*), idof(*)
@@ -20,7 +20,7 @@ subroutine ftrows(ip, kind, m, iptr, ibody, idof, val, rhs, ifirst, ierr)
 end subroutine
 
 !> The same, idof counting through the bodies one after the other.
-subroutine ftrowc(ip, kind, m, iptr, idof, val, rhs, ifirst, ierr)
+recursive subroutine ftrowc(ip, kind, m, iptr, idof, val, rhs, ifirst, ierr)
   use feti_contact_f77_base
   implicit none
   integer, intent(in) :: ip, kind, m, iptr(*), idof(*)
@@ -36,7 +36,7 @@ subroutine ftrowc(ip, kind, m, iptr, idof, val, rhs, ifirst, ierr)
 end subroutine
 
 !> Replaces the right-hand sides of the m rows from ifirst: rhs(m), length.
-subroutine ftrrhs(ip, kind, ifirst, m, rhs, ierr)
+recursive subroutine ftrrhs(ip, kind, ifirst, m, rhs, ierr)
   use feti_contact_f77_base
   implicit none
   integer, intent(in) :: ip, kind, ifirst, m
@@ -47,7 +47,7 @@ subroutine ftrrhs(ip, kind, ifirst, m, rhs, ierr)
 end subroutine
 
 !> Makes the m rows from ifirst compliant: B u - c <= lambda/k, cinv(m) = 1/k, length / force; 0: rigid.
-subroutine ftrcmp(ip, kind, ifirst, m, cinv, ierr)
+recursive subroutine ftrcmp(ip, kind, ifirst, m, cinv, ierr)
   use feti_contact_f77_base
   implicit none
   integer, intent(in) :: ip, kind, ifirst, m
@@ -58,7 +58,7 @@ subroutine ftrcmp(ip, kind, ifirst, m, cinv, ierr)
 end subroutine
 
 !> Removes all rows of a kind.
-subroutine ftrclr(ip, kind, ierr)
+recursive subroutine ftrclr(ip, kind, ierr)
   use feti_contact_f77_base
   implicit none
   integer, intent(in) :: ip, kind

@@ -2,7 +2,7 @@
 !> See docs/fortran77.md.
 
 !> Start values of the next solve alone: multipliers of the m rows of a kind, rlam(m), force.
-subroutine ftstrt(ip, kind, m, rlam, ierr)
+recursive subroutine ftstrt(ip, kind, m, rlam, ierr)
   use feti_contact_f77_base
   implicit none
   integer, intent(in) :: ip, kind, m
@@ -13,7 +13,7 @@ subroutine ftstrt(ip, kind, m, rlam, ierr)
 end subroutine
 
 !> Saves loads, gaps, multipliers and contact state; id: the number of the state.
-subroutine ftssav(ip, id, ierr)
+recursive subroutine ftssav(ip, id, ierr)
   use feti_contact_f77_base
   implicit none
   integer, intent(in) :: ip
@@ -26,7 +26,7 @@ subroutine ftssav(ip, id, ierr)
 end subroutine
 
 !> Goes back to state id, which stays saved.
-subroutine ftsres(ip, id, ierr)
+recursive subroutine ftsres(ip, id, ierr)
   use feti_contact_f77_base
   implicit none
   integer, intent(in) :: ip, id
@@ -36,7 +36,7 @@ subroutine ftsres(ip, id, ierr)
 end subroutine
 
 !> Drops state id.
-subroutine ftsdrp(ip, id, ierr)
+recursive subroutine ftsdrp(ip, id, ierr)
   use feti_contact_f77_base
   implicit none
   integer, intent(in) :: ip, id
@@ -47,7 +47,7 @@ end subroutine
 
 !> What the last solve, or the last setup that failed, has found out: idiag(ni) and rdiag(nr), positions FTGSTA to FTGUBD,
 !> FTGMAR and FTGMOT to FTGMOT + 5.
-subroutine ftdiag(ip, ni, idiag, nr, rdiag, ierr)
+recursive subroutine ftdiag(ip, ni, idiag, nr, rdiag, ierr)
   use feti_contact_f77_base
   implicit none
   integer, intent(in) :: ip, ni, nr
@@ -67,7 +67,7 @@ end subroutine
 
 !> Rows of a kind that contradict each other with their weights, without a contradiction the redundant rows: n there are, the
 !> first icap of them in irow and w.
-subroutine ftdrow(ip, kind, icap, n, irow, w, ierr)
+recursive subroutine ftdrow(ip, kind, icap, n, irow, w, ierr)
   use feti_contact_f77_base
   implicit none
   integer, intent(in) :: ip, kind, icap
@@ -86,7 +86,7 @@ subroutine ftdrow(ip, kind, icap, n, irow, w, ierr)
 end subroutine
 
 !> Equality rows that are combinations of the other equality rows: n there are, the first icap of them in irow.
-subroutine ftddep(ip, icap, n, irow, ierr)
+recursive subroutine ftddep(ip, icap, n, irow, ierr)
   use feti_contact_f77_base
   implicit none
   integer, intent(in) :: ip, icap
@@ -103,7 +103,7 @@ subroutine ftddep(ip, icap, n, irow, ierr)
 end subroutine
 
 !> Bodies that no row touches: n there are, the first icap of them in ibody.
-subroutine ftdunt(ip, icap, n, ibody, ierr)
+recursive subroutine ftdunt(ip, icap, n, ibody, ierr)
   use feti_contact_f77_base
   implicit none
   integer, intent(in) :: ip, icap
@@ -121,7 +121,7 @@ end subroutine
 
 !> Motion k that the last answer leaves undetermined: the body ibody that moves fastest, and rmotn(6), velocity of the origin
 !> and rotation about the axes, NaN without coordinates.
-subroutine ftdund(ip, k, ibody, rmotn, ierr)
+recursive subroutine ftdund(ip, k, ibody, rmotn, ierr)
   use feti_contact_f77_base
   implicit none
   integer, intent(in) :: ip, k
@@ -135,7 +135,7 @@ subroutine ftdund(ip, k, ibody, rmotn, ierr)
 end subroutine
 
 !> The same on one body, v(n), largest entry over all bodies 1.
-subroutine ftdunm(ip, k, ibody, n, v, ierr)
+recursive subroutine ftdunm(ip, k, ibody, n, v, ierr)
   use feti_contact_f77_base
   implicit none
   integer, intent(in) :: ip, k, ibody, n
@@ -146,7 +146,7 @@ subroutine ftdunm(ip, k, ibody, n, v, ierr)
 end subroutine
 
 !> Motion with which a body escapes, v(n), largest entry over all bodies 1; after FTELNH.
-subroutine ftdmot(ip, ibody, n, v, ierr)
+recursive subroutine ftdmot(ip, ibody, n, v, ierr)
   use feti_contact_f77_base
   implicit none
   integer, intent(in) :: ip, ibody, n

@@ -1,4 +1,5 @@
 !> A problem as one file, of module feti_contact. A host uses feti_contact, not this module.
+!> The name `path` of the file is used without trailing blanks.
 !> `stat` and `errmsg`: see feti_contact_base.
 module feti_contact_file
   use feti_contact_base, only: c_text, feti_problem, finish, handle_of
@@ -13,7 +14,7 @@ contains
 
   !> Writes all that the host has registered to the file `path`: bodies, rows, options that differ from their defaults;
   !> no answer, start values or saved states. After a failure (FETI_IO) an old file is as it was.
-  subroutine problem_write(p, path, stat, errmsg)
+  recursive subroutine problem_write(p, path, stat, errmsg)
     type(feti_problem), intent(in) :: p
     character(len=*), intent(in) :: path
     integer, intent(out), optional :: stat
@@ -24,7 +25,7 @@ contains
 
   !> Reads such a file into a problem without bodies and rows (FETI_STATE otherwise); the same solve then gives the same
   !> bits. Where a file is damaged the entry of feti_last_error_detail is its byte, from 1. After a failure p is as it was.
-  subroutine problem_read(p, path, stat, errmsg)
+  recursive subroutine problem_read(p, path, stat, errmsg)
     type(feti_problem), intent(in) :: p
     character(len=*), intent(in) :: path
     integer, intent(out), optional :: stat

@@ -1,9 +1,9 @@
 !> What calls tell in words, of module feti_contact. A host uses feti_contact, not this module.
 !> `stat` and `errmsg`: see feti_contact_base.
 module feti_contact_log
-  use, intrinsic :: iso_c_binding, only: c_char, c_f_pointer, c_funloc, c_funptr, c_int32_t, c_loc, c_null_char, &
-    c_null_funptr, c_null_ptr, c_ptr
-  use feti_contact_base, only: feti_problem, finish, handle_of, listener, listener_of, log_procedure
+  use, intrinsic :: iso_c_binding, only: c_char, c_f_pointer, c_funloc, c_funptr, c_int32_t, c_loc, c_null_funptr, &
+    c_null_ptr, c_ptr
+  use feti_contact_base, only: f_text, feti_problem, finish, handle_of, listener, listener_of, log_procedure
   use feti_contact_c, only: FETI_OK, FETI_LOG_NONE, c_on_log => feti_on_log
   implicit none
   private
@@ -17,10 +17,10 @@ contains
   !> an executable stack). data: anything with the attribute target that lives as long as p or until the next feti_on_log;
   !> tell gets it back. tell returns 0 to go on, any other number for a failure of its own (FETI_CALLBACK). Inside tell p is
   !> busy, except for feti_cancel and feti_problem_error.
-  subroutine on_log(p, tell, level, data, stat, errmsg)
+  recursive subroutine on_log(p, tell, level, data, stat, errmsg)
     type(feti_problem), intent(in) :: p
     procedure(log_procedure), optional :: tell
-    integer, intent(in), optional :: level
+    integer(c_int32_t), intent(in), optional :: level
     class(*), intent(inout), optional, target :: data
     integer, intent(out), optional :: stat
     character(len=*), intent(inout), optional :: errmsg
@@ -34,7 +34,7 @@ contains
     most = FETI_LOG_NONE
     host => listener_of(p)
     if (present(tell)) function_of_library = c_funloc(hand_on)
-    if (present(level)) most = int(level, c_int32_t)
+    if (present(level)) most = level
     if (associated(host)) address = c_loc(host)
     status = c_on_log(handle_of(p), function_of_library, most, address)
     if (status == FETI_OK .and. present(tell)) then
@@ -46,32 +46,15 @@ contains
   end subroutine
 
   !> Calls the host's function.
-  function hand_on(user, level, text) result(reply) bind(C, name='')
+  recursive function hand_on(user, level, text) result(reply) bind(C, name='')
     type(c_ptr), value :: user
     integer(c_int32_t), value :: level
-    character(kind=c_char), intent(in) :: text(*)
+    character(kind=c_char), intent(in), target :: text(*)
     integer(c_int32_t) :: reply
     type(listener), pointer :: host
-    integer :: length
 
     call c_f_pointer(user, host)
-    length = 0
-    do while (text(length + 1) /= c_null_char)
-      length = length + 1
-    end do
-    reply = int(host%tell(int(level), line(text, length), host%log_data), c_int32_t)
-  end function
-
-  !> The first characters of a C string.
-  pure function line(text, length)
-    integer, intent(in) :: length
-    character(kind=c_char), intent(in) :: text(length)
-    character(len=length) :: line
-    integer :: i
-
-    do i = 1, length
-      line(i:i) = text(i)
-    end do
+    reply = int(host%tell(int(level), f_text(c_loc(text(1))), host%log_data), c_int32_t)
   end function
 
 end module

@@ -17,10 +17,11 @@ contains
   !> length, y force); they return 0, or any other number for a failure, which ends the call with FETI_CALLBACK. K+ is any
   !> symmetric positive semidefinite matrix with K K+ K = K. The null space must be given.
   !> concurrent: absent or .false., they are called on the thread alone that calls the library; .true., on any thread,
-  !> several at once. data: anything declared with the attribute target that lives as long as p or until the functions of
-  !> the body are replaced; they get it back and look at it with select type. Inside them p is busy, except for feti_cancel
-  !> and feti_problem_error. A second call replaces the functions: to be done whenever K has changed.
-  subroutine body_operator(p, body, diag, kplus, k, concurrent, data, stat, errmsg)
+  !> several at once: declare them recursive, as -fcheck=recursion of gfortran takes a second thread for a recursion.
+  !> data: anything declared with the attribute target that lives as long as p or until the functions of the body are
+  !> replaced; they get it back and look at it with select type. Inside them p is busy, except for feti_cancel and
+  !> feti_problem_error. A second call replaces the functions: to be done whenever K has changed.
+  recursive subroutine body_operator(p, body, diag, kplus, k, concurrent, data, stat, errmsg)
     type(feti_problem), intent(in) :: p
     integer, intent(in) :: body
     real(c_double), intent(in), contiguous :: diag(:)

@@ -3,7 +3,7 @@
 module feti_contact_options
   use, intrinsic :: iso_c_binding, only: c_char, c_int32_t, c_int64_t, c_loc, c_null_ptr, c_sizeof
   use, intrinsic :: iso_fortran_env, only: int32, int64, real64
-  use feti_contact_base, only: c_text, f_text, feti_problem, finish, handle_of, static_text
+  use feti_contact_base, only: c_text, f_text, feti_problem, finish, handle_of
   use feti_contact_c, only: FETI_OK, FETI_OVERFLOW, &
     c_get_f64 => feti_get_f64, &
     c_get_i64 => feti_get_i64, &
@@ -24,7 +24,8 @@ module feti_contact_options
     module procedure set_real, set_int32, set_int64, set_text
   end interface
 
-  !> Value of the option `name`; the variable has the type of the option and is untouched by a failed call.
+  !> Value of the option `name`; the variable has the type of the option, character(len=:), allocatable for a text, and is
+  !> untouched by a failed call.
   interface get_option
     module procedure get_real, get_int32, get_int64, get_text
   end interface
@@ -46,7 +47,7 @@ contains
 
   !> Sets several options by one text: call feti_set_text(p, 'tolerance=1d-8 threads=4'). Blanks, commas or ends of lines
   !> separate, # begins a comment. All or none are set; an error tells the position in the text.
-  subroutine set_options(p, text, stat, errmsg)
+  recursive subroutine set_options(p, text, stat, errmsg)
     type(feti_problem), intent(in) :: p
     character(len=*), intent(in) :: text
     integer, intent(out), optional :: stat
@@ -56,7 +57,7 @@ contains
   end subroutine
 
   !> An option that is a number.
-  subroutine set_real(p, name, value, stat, errmsg)
+  recursive subroutine set_real(p, name, value, stat, errmsg)
     type(feti_problem), intent(in) :: p
     character(len=*), intent(in) :: name
     real(real64), intent(in) :: value
@@ -67,7 +68,7 @@ contains
   end subroutine
 
   !> An option that is an integer.
-  subroutine set_int32(p, name, value, stat, errmsg)
+  recursive subroutine set_int32(p, name, value, stat, errmsg)
     type(feti_problem), intent(in) :: p
     character(len=*), intent(in) :: name
     integer(int32), intent(in) :: value
@@ -78,7 +79,7 @@ contains
   end subroutine
 
   !> The same, int64.
-  subroutine set_int64(p, name, value, stat, errmsg)
+  recursive subroutine set_int64(p, name, value, stat, errmsg)
     type(feti_problem), intent(in) :: p
     character(len=*), intent(in) :: name
     integer(int64), intent(in) :: value
@@ -89,7 +90,7 @@ contains
   end subroutine
 
   !> An option that is a text.
-  subroutine set_text(p, name, value, stat, errmsg)
+  recursive subroutine set_text(p, name, value, stat, errmsg)
     type(feti_problem), intent(in) :: p
     character(len=*), intent(in) :: name, value
     integer, intent(out), optional :: stat
@@ -99,7 +100,7 @@ contains
   end subroutine
 
   !> An option that is a number.
-  subroutine get_real(p, name, value, stat, errmsg)
+  recursive subroutine get_real(p, name, value, stat, errmsg)
     type(feti_problem), intent(in) :: p
     character(len=*), intent(in) :: name
     real(real64), intent(inout) :: value
@@ -114,7 +115,7 @@ contains
   end subroutine
 
   !> FETI_OVERFLOW, and value untouched, when the setting needs a larger integer.
-  subroutine get_int32(p, name, value, stat, errmsg)
+  recursive subroutine get_int32(p, name, value, stat, errmsg)
     type(feti_problem), intent(in) :: p
     character(len=*), intent(in) :: name
     integer(int32), intent(inout) :: value
@@ -135,7 +136,7 @@ contains
   end subroutine
 
   !> An option that is an integer, int64.
-  subroutine get_int64(p, name, value, stat, errmsg)
+  recursive subroutine get_int64(p, name, value, stat, errmsg)
     type(feti_problem), intent(in) :: p
     character(len=*), intent(in) :: name
     integer(int64), intent(inout) :: value
@@ -150,7 +151,7 @@ contains
   end subroutine
 
   !> value gets the length of the text.
-  subroutine get_text(p, name, value, stat, errmsg)
+  recursive subroutine get_text(p, name, value, stat, errmsg)
     type(feti_problem), intent(in) :: p
     character(len=*), intent(in) :: name
     character(len=:), allocatable, intent(inout) :: value
@@ -165,18 +166,18 @@ contains
     if (status == FETI_OK) then
       allocate (buffer(length + 1))
       status = c_get_str(handle_of(p), c_text(name), c_loc(buffer), size(buffer, kind=c_int64_t), length)
-      if (status == FETI_OK) value = f_text(buffer)
+      if (status == FETI_OK) value = f_text(c_loc(buffer))
     end if
     call finish(status, stat, errmsg)
   end subroutine
 
   !> Number of settings.
-  integer function option_count()
+  recursive integer function option_count()
     option_count = int(c_option_count())
   end function
 
   !> Setting k, from 1 to feti_option_count().
-  subroutine option_at(k, option, stat, errmsg)
+  recursive subroutine option_at(k, option, stat, errmsg)
     integer, intent(in) :: k
     type(feti_option), intent(out) :: option
     integer, intent(out), optional :: stat
@@ -187,14 +188,14 @@ contains
     found%struct_size = c_sizeof(found)
     status = c_option_at(int(k - 1, c_int64_t), found)
     if (status == FETI_OK) then
-      option%name = static_text(found%name)
-      option%doc = static_text(found%doc)
+      option%name = f_text(found%name)
+      option%doc = f_text(found%doc)
       option%type = found%type
       option%minimum = found%minimum
       option%maximum = found%maximum
       option%default_real = found%default_f64
       option%default_integer = found%default_i64
-      option%default_text = static_text(found%default_str)
+      option%default_text = f_text(found%default_str)
     end if
     call finish(status, stat, errmsg)
   end subroutine

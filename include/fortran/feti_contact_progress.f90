@@ -14,7 +14,7 @@ contains
 
   !> Cancels the setup or the solve that another thread, or this one from inside its progress function, runs on p:
   !> that call ends with FETI_CANCELLED. Without a running call it does nothing.
-  subroutine cancel(p, stat, errmsg)
+  recursive subroutine cancel(p, stat, errmsg)
     type(feti_problem), intent(in) :: p
     integer, intent(out), optional :: stat
     character(len=*), intent(inout), optional :: errmsg
@@ -28,7 +28,7 @@ contains
   !> attribute target that lives as long as p or until the next feti_on_progress; hear gets it back and looks at it with
   !> select type. hear returns 0 to go on, > 0 to cancel (status FETI_CANCELLED, results of the last step), < 0 for a
   !> failure of its own (FETI_CALLBACK). Inside hear p is busy, except for feti_cancel and feti_problem_error.
-  subroutine on_progress(p, hear, data, stat, errmsg)
+  recursive subroutine on_progress(p, hear, data, stat, errmsg)
     type(feti_problem), intent(in) :: p
     procedure(progress_procedure), optional :: hear
     class(*), intent(inout), optional, target :: data
@@ -54,7 +54,7 @@ contains
   end subroutine
 
   !> Calls the host's function.
-  function hand_on(user, now) result(reply) bind(C, name='')
+  recursive function hand_on(user, now) result(reply) bind(C, name='')
     type(c_ptr), value :: user
     type(feti_progress), intent(in) :: now
     integer(c_int32_t) :: reply

@@ -6,7 +6,7 @@
 module feti_contact_results
   use, intrinsic :: iso_c_binding, only: c_int32_t, c_int64_t, c_loc, c_null_ptr, c_ptr, c_sizeof
   use, intrinsic :: iso_fortran_env, only: int64, real64
-  use feti_contact_base, only: body_index, feti_problem, finish, handle_of, refuse, static_text
+  use feti_contact_base, only: body_index, f_text, feti_problem, finish, handle_of, refuse
   use feti_contact_c, only: FETI_ALL, FETI_OK, feti_certificate, feti_info, &
     c_active => feti_active, &
     c_amplitudes => feti_amplitudes, &
@@ -58,10 +58,16 @@ module feti_contact_results
     module procedure reaction_one, reaction_all
   end interface
 
+  !> State of each contact row, int32 or int64: FETI_ROW_OPEN, FETI_ROW_CLOSED or FETI_ROW_WEAK (closed without a clear
+  !> force).
+  interface active
+    module procedure active_int32, active_int64
+  end interface
+
 contains
 
   !> Null spaces, factors and dual operator ahead of feti_solve, which does it otherwise when needed.
-  subroutine setup(p, stat, errmsg)
+  recursive subroutine setup(p, stat, errmsg)
     type(feti_problem), intent(in) :: p
     integer, intent(out), optional :: stat
     character(len=*), intent(inout), optional :: errmsg
@@ -71,7 +77,7 @@ contains
 
   !> Solves the contact problem. info: what was done and how well the answer satisfies the conditions of contact;
   !> it is written whatever the status. A positive status leaves a usable but incomplete answer.
-  subroutine solve(p, info, stat, errmsg)
+  recursive subroutine solve(p, info, stat, errmsg)
     type(feti_problem), intent(in) :: p
     type(feti_info), intent(inout), optional, target :: info
     integer, intent(out), optional :: stat
@@ -87,7 +93,7 @@ contains
   end subroutine
 
   !> Number of phases of a setup and a solve.
-  subroutine phase_count(p, count, stat, errmsg)
+  recursive subroutine phase_count(p, count, stat, errmsg)
     type(feti_problem), intent(in) :: p
     integer, intent(out) :: count
     integer, intent(out), optional :: stat
@@ -102,7 +108,7 @@ contains
   end subroutine
 
   !> Phase k, from 1 to the number of phases, in the last call that set up or solved.
-  subroutine phase_at(p, k, phase, stat, errmsg)
+  recursive subroutine phase_at(p, k, phase, stat, errmsg)
     type(feti_problem), intent(in) :: p
     integer, intent(in) :: k
     type(feti_phase), intent(out) :: phase
@@ -114,7 +120,7 @@ contains
     found%struct_size = c_sizeof(found)
     status = c_phase_at(handle_of(p), int(k - 1, c_int64_t), found)
     if (status == FETI_OK) then
-      phase%name = static_text(found%name)
+      phase%name = f_text(found%name)
       phase%seconds = found%seconds
       phase%bytes = found%bytes
     end if
@@ -124,7 +130,7 @@ contains
   !> Verifies any answer, also another code's: u (all bodies one after the other, length), lambda (force, one per
   !> contact row), mu (force, one per equality row; may have size 0). Rows and bodies in the certificate count from
   !> 1, 0: none.
-  subroutine check(p, u, lambda, mu, certificate, stat, errmsg)
+  recursive subroutine check(p, u, lambda, mu, certificate, stat, errmsg)
     type(feti_problem), intent(in) :: p
     real(real64), intent(in), contiguous :: u(:), lambda(:), mu(:)
     type(feti_certificate), intent(inout) :: certificate
@@ -147,7 +153,7 @@ contains
   end subroutine
 
   !> Numbers of bodies, of unknowns of all bodies, of contact rows and of equality rows.
-  subroutine counts(p, bodies, dofs, rows, eqs, stat, errmsg)
+  recursive subroutine counts(p, bodies, dofs, rows, eqs, stat, errmsg)
     type(feti_problem), intent(in) :: p
     integer, intent(out), optional :: bodies, dofs, rows, eqs
     integer, intent(out), optional :: stat
@@ -165,7 +171,7 @@ contains
   end subroutine
 
   !> The displacement of one body.
-  subroutine displacement_one(p, body, u, stat, errmsg)
+  recursive subroutine displacement_one(p, body, u, stat, errmsg)
     type(feti_problem), intent(in) :: p
     integer, intent(in) :: body
     real(real64), intent(inout), contiguous :: u(:)
@@ -176,7 +182,7 @@ contains
   end subroutine
 
   !> Of all bodies, by the numbers of the host.
-  subroutine displacement_all(p, u, stat, errmsg)
+  recursive subroutine displacement_all(p, u, stat, errmsg)
     type(feti_problem), intent(in) :: p
     real(real64), intent(inout), contiguous :: u(:)
     integer, intent(out), optional :: stat
@@ -186,7 +192,7 @@ contains
   end subroutine
 
   !> The forces on one body.
-  subroutine reaction_one(p, kind, body, r, stat, errmsg)
+  recursive subroutine reaction_one(p, kind, body, r, stat, errmsg)
     type(feti_problem), intent(in) :: p
     integer(c_int32_t), intent(in) :: kind
     integer, intent(in) :: body
@@ -198,7 +204,7 @@ contains
   end subroutine
 
   !> On all bodies, by the numbers of the host.
-  subroutine reaction_all(p, kind, r, stat, errmsg)
+  recursive subroutine reaction_all(p, kind, r, stat, errmsg)
     type(feti_problem), intent(in) :: p
     integer(c_int32_t), intent(in) :: kind
     real(real64), intent(inout), contiguous :: r(:)
@@ -209,7 +215,7 @@ contains
   end subroutine
 
   !> Amplitudes alpha(r) of the motions R in the displacement of a body, u = K+(f - B'lambda - H'mu) + R alpha.
-  subroutine amplitudes(p, body, alpha, stat, errmsg)
+  recursive subroutine amplitudes(p, body, alpha, stat, errmsg)
     type(feti_problem), intent(in) :: p
     integer, intent(in) :: body
     real(real64), intent(inout), contiguous :: alpha(:)
@@ -221,7 +227,7 @@ contains
   end subroutine
 
   !> Contact forces lambda >= 0 (kind FETI_INEQUALITY) or forces mu of the equality rows (FETI_EQUALITY), force.
-  subroutine multipliers(p, kind, lambda, stat, errmsg)
+  recursive subroutine multipliers(p, kind, lambda, stat, errmsg)
     type(feti_problem), intent(in) :: p
     integer(c_int32_t), intent(in) :: kind
     real(real64), intent(inout), contiguous :: lambda(:)
@@ -233,7 +239,7 @@ contains
   end subroutine
 
   !> Open gaps c - B u of the contact rows, of compliant ones c + lambda/k - B u, length.
-  subroutine gaps(p, slack, stat, errmsg)
+  recursive subroutine gaps(p, slack, stat, errmsg)
     type(feti_problem), intent(in) :: p
     real(real64), intent(inout), contiguous :: slack(:)
     integer, intent(out), optional :: stat
@@ -242,8 +248,8 @@ contains
     call finish(c_gaps(handle_of(p), size(slack, kind=c_int64_t), slack), stat, errmsg)
   end subroutine
 
-  !> State of each contact row: FETI_ROW_OPEN, FETI_ROW_CLOSED or FETI_ROW_WEAK (closed without a clear force).
-  subroutine active(p, state, stat, errmsg)
+  !> int32 states.
+  recursive subroutine active_int32(p, state, stat, errmsg)
     type(feti_problem), intent(in) :: p
     integer(c_int32_t), intent(inout), contiguous :: state(:)
     integer, intent(out), optional :: stat
@@ -252,8 +258,23 @@ contains
     call finish(c_active(handle_of(p), size(state, kind=c_int64_t), state), stat, errmsg)
   end subroutine
 
+  !> int64 states.
+  recursive subroutine active_int64(p, state, stat, errmsg)
+    type(feti_problem), intent(in) :: p
+    integer(int64), intent(inout) :: state(:)
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+    integer(c_int32_t), allocatable :: found(:)
+    integer(c_int32_t) :: status
+
+    allocate (found(size(state)))
+    status = c_active(handle_of(p), size(found, kind=c_int64_t), found)
+    if (status == FETI_OK) state = found
+    call finish(status, stat, errmsg)
+  end subroutine
+
   !> The unknowns that K+ holds, dof(r), r the dimension of the null space. For validation.
-  subroutine body_fixing(p, body, dof, stat, errmsg)
+  recursive subroutine body_fixing(p, body, dof, stat, errmsg)
     type(feti_problem), intent(in) :: p
     integer, intent(in) :: body
     integer, intent(inout) :: dof(:)
@@ -268,7 +289,7 @@ contains
   end subroutine
 
   !> y(n,nrhs) = K+ x(n,nrhs), the generalised inverse (14)-(15) of a body. For validation.
-  subroutine body_kplus(p, body, x, y, stat, errmsg)
+  recursive subroutine body_kplus(p, body, x, y, stat, errmsg)
     type(feti_problem), intent(in) :: p
     integer, intent(in) :: body
     real(real64), intent(in), contiguous :: x(:, :)
@@ -285,7 +306,7 @@ contains
   end subroutine
 
   !> y = F x, F = [B; H] K+ [B; H]' + diag(1/k), contact rows first, in the host's order and scaling. For validation.
-  subroutine dual_apply(p, x, y, stat, errmsg)
+  recursive subroutine dual_apply(p, x, y, stat, errmsg)
     type(feti_problem), intent(in) :: p
     real(real64), intent(in), contiguous :: x(:)
     real(real64), intent(inout), contiguous :: y(:)
@@ -300,7 +321,7 @@ contains
   end subroutine
 
   !> d = [B K+ f - c; H K+ f - h], contact rows first, length. For validation.
-  subroutine dual_rhs(p, d, stat, errmsg)
+  recursive subroutine dual_rhs(p, d, stat, errmsg)
     type(feti_problem), intent(in) :: p
     real(real64), intent(inout), contiguous :: d(:)
     integer, intent(out), optional :: stat

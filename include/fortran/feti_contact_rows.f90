@@ -32,7 +32,7 @@ module feti_contact_rows
 contains
 
   !> Body and unknown of every entry, int32.
-  subroutine rows_int32(p, kind, row_ptr, body, dof, val, rhs, first, stat, errmsg)
+  recursive subroutine rows_int32(p, kind, row_ptr, body, dof, val, rhs, first, stat, errmsg)
     type(feti_problem), intent(in) :: p
     integer(c_int32_t), intent(in) :: kind
     integer(int32), intent(in), contiguous :: row_ptr(:), dof(:)
@@ -54,7 +54,7 @@ contains
   end subroutine
 
   !> Body and unknown of every entry, int64.
-  subroutine rows_int64(p, kind, row_ptr, body, dof, val, rhs, first, stat, errmsg)
+  recursive subroutine rows_int64(p, kind, row_ptr, body, dof, val, rhs, first, stat, errmsg)
     type(feti_problem), intent(in) :: p
     integer(c_int32_t), intent(in) :: kind
     integer(int64), intent(in), contiguous :: row_ptr(:), dof(:)
@@ -76,7 +76,7 @@ contains
   end subroutine
 
   !> Unknowns counted through all bodies, or by the numbers of the host; int32.
-  subroutine concatenated_int32(p, kind, row_ptr, dof, val, rhs, first, stat, errmsg)
+  recursive subroutine concatenated_int32(p, kind, row_ptr, dof, val, rhs, first, stat, errmsg)
     type(feti_problem), intent(in) :: p
     integer(c_int32_t), intent(in) :: kind
     integer(int32), intent(in), contiguous :: row_ptr(:), dof(:)
@@ -90,7 +90,7 @@ contains
   end subroutine
 
   !> The same, int64.
-  subroutine concatenated_int64(p, kind, row_ptr, dof, val, rhs, first, stat, errmsg)
+  recursive subroutine concatenated_int64(p, kind, row_ptr, dof, val, rhs, first, stat, errmsg)
     type(feti_problem), intent(in) :: p
     integer(c_int32_t), intent(in) :: kind
     integer(int64), intent(in), contiguous :: row_ptr(:), dof(:)
@@ -104,7 +104,7 @@ contains
   end subroutine
 
   !> bodies: address of one body number per entry, or NULL.
-  subroutine add_int32(p, kind, row_ptr, bodies, dof, val, rhs, first, stat, errmsg)
+  recursive subroutine add_int32(p, kind, row_ptr, bodies, dof, val, rhs, first, stat, errmsg)
     type(feti_problem), intent(in) :: p
     integer(c_int32_t), intent(in) :: kind
     integer(int32), intent(in), contiguous :: row_ptr(:), dof(:)
@@ -134,7 +134,7 @@ contains
   end subroutine
 
   !> The same for 8-byte integers.
-  subroutine add_int64(p, kind, row_ptr, bodies, dof, val, rhs, first, stat, errmsg)
+  recursive subroutine add_int64(p, kind, row_ptr, bodies, dof, val, rhs, first, stat, errmsg)
     type(feti_problem), intent(in) :: p
     integer(c_int32_t), intent(in) :: kind
     integer(int64), intent(in), contiguous :: row_ptr(:), dof(:)
@@ -165,7 +165,7 @@ contains
   end subroutine
 
   !> fault: what does not fit, empty when the arrays fit each other; k: number of that argument in the C function.
-  subroutine compare_sizes(rows, entries, dofs, vals, rhs, k, fault)
+  recursive subroutine compare_sizes(rows, entries, dofs, vals, rhs, k, fault)
     integer(int64), intent(in) :: rows, entries, dofs, vals
     real(real64), intent(in), optional :: rhs(:)
     integer, intent(out) :: k
@@ -185,7 +185,7 @@ contains
   end subroutine
 
   !> Address of the right-hand sides, NULL where absent.
-  type(c_ptr) function address_of(rhs)
+  recursive type(c_ptr) function address_of(rhs)
     real(real64), intent(in), contiguous, optional, target :: rhs(:)
 
     address_of = c_null_ptr
@@ -194,7 +194,7 @@ contains
   end function
 
   !> New right-hand sides, rhs(:), length, for the rows first, first+1, ... of a kind.
-  subroutine rows_rhs(p, kind, first, rhs, stat, errmsg)
+  recursive subroutine rows_rhs(p, kind, first, rhs, stat, errmsg)
     type(feti_problem), intent(in) :: p
     integer(c_int32_t), intent(in) :: kind
     integer, intent(in) :: first
@@ -208,7 +208,7 @@ contains
 
   !> Makes rows first, first+1, ... of a kind springs, B u - c <= lambda/k or H u - h = mu/k: inv_k(:) = 1/k >= 0,
   !> length / force, 0 for a rigid row. New rows are rigid. Factors of the bodies stay, the last answer does not.
-  subroutine rows_compliance(p, kind, first, inv_k, stat, errmsg)
+  recursive subroutine rows_compliance(p, kind, first, inv_k, stat, errmsg)
     type(feti_problem), intent(in) :: p
     integer(c_int32_t), intent(in) :: kind
     integer, intent(in) :: first
@@ -221,7 +221,7 @@ contains
   end subroutine
 
   !> Removes all rows of a kind.
-  subroutine rows_clear(p, kind, stat, errmsg)
+  recursive subroutine rows_clear(p, kind, stat, errmsg)
     type(feti_problem), intent(in) :: p
     integer(c_int32_t), intent(in) :: kind
     integer, intent(out), optional :: stat

@@ -27,7 +27,7 @@ contains
 
   !> Start values for the next solve alone: lambda of kind FETI_INEQUALITY or mu of FETI_EQUALITY, force. Rows with a
   !> zero start without force. A change of rows or bodies drops them.
-  subroutine start_from(p, kind, lambda, stat, errmsg)
+  recursive subroutine start_from(p, kind, lambda, stat, errmsg)
     type(feti_problem), intent(in) :: p
     integer(c_int32_t), intent(in) :: kind
     real(real64), intent(in), contiguous :: lambda(:)
@@ -38,7 +38,7 @@ contains
   end subroutine
 
   !> Saves loads, rows, multipliers and contact state under the number id (from 1).
-  subroutine state_save(p, id, stat, errmsg)
+  recursive subroutine state_save(p, id, stat, errmsg)
     type(feti_problem), intent(in) :: p
     integer, intent(inout) :: id
     integer, intent(out), optional :: stat
@@ -53,7 +53,7 @@ contains
 
   !> Goes back to a saved state, which stays saved: loads and rows with their gaps and compliances.
   !> FETI_STATE when bodies were added since.
-  subroutine state_restore(p, id, stat, errmsg)
+  recursive subroutine state_restore(p, id, stat, errmsg)
     type(feti_problem), intent(in) :: p
     integer, intent(in) :: id
     integer, intent(out), optional :: stat
@@ -63,7 +63,7 @@ contains
   end subroutine
 
   !> Drops a saved state.
-  subroutine state_drop(p, id, stat, errmsg)
+  recursive subroutine state_drop(p, id, stat, errmsg)
     type(feti_problem), intent(in) :: p
     integer, intent(in) :: id
     integer, intent(out), optional :: stat
@@ -74,7 +74,7 @@ contains
 
   !> What the last solve, or the last setup that failed, has found out: the body that escapes and its motion, rows that
   !> contradict each other, motions left undetermined. Bodies, unknowns and rows count from 1, 0: none.
-  subroutine diagnosis(p, findings, stat, errmsg)
+  recursive subroutine diagnosis(p, findings, stat, errmsg)
     type(feti_problem), intent(in) :: p
     type(feti_findings), intent(inout) :: findings
     integer, intent(out), optional :: stat
@@ -95,7 +95,7 @@ contains
 
   !> Rows of one kind that contradict each other with their weights w: over both kinds sum w b = 0, sum w c < 0. Without
   !> a contradiction the redundant rows, each with its multiple of the row that it repeats.
-  subroutine diagnosis_rows(p, kind, row, weight, stat, errmsg)
+  recursive subroutine diagnosis_rows(p, kind, row, weight, stat, errmsg)
     type(feti_problem), intent(in) :: p
     integer(c_int32_t), intent(in) :: kind
     integer, allocatable, intent(out) :: row(:)
@@ -118,7 +118,7 @@ contains
   end subroutine
 
   !> Equality rows that are combinations of the other equality rows.
-  subroutine diagnosis_dependent(p, row, stat, errmsg)
+  recursive subroutine diagnosis_dependent(p, row, stat, errmsg)
     type(feti_problem), intent(in) :: p
     integer, allocatable, intent(out) :: row(:)
     integer, intent(out), optional :: stat
@@ -137,7 +137,7 @@ contains
   end subroutine
 
   !> Bodies that no row touches.
-  subroutine diagnosis_untouched(p, body, stat, errmsg)
+  recursive subroutine diagnosis_untouched(p, body, stat, errmsg)
     type(feti_problem), intent(in) :: p
     integer, allocatable, intent(out) :: body(:)
     integer, intent(out), optional :: stat
@@ -157,7 +157,7 @@ contains
 
   !> Rigid motion k of those that the last answer leaves undetermined: the body that moves fastest, and its motion(6), velocity
   !> of the origin and rotation about the axes, NaN without coordinates.
-  subroutine diagnosis_undetermined(p, k, body, motion, stat, errmsg)
+  recursive subroutine diagnosis_undetermined(p, k, body, motion, stat, errmsg)
     type(feti_problem), intent(in) :: p
     integer, intent(in) :: k
     integer, intent(out) :: body
@@ -177,7 +177,7 @@ contains
   end subroutine
 
   !> The same on one body, v(n), largest entry over all bodies 1.
-  subroutine diagnosis_undetermined_motion(p, k, body, v, stat, errmsg)
+  recursive subroutine diagnosis_undetermined_motion(p, k, body, v, stat, errmsg)
     type(feti_problem), intent(in) :: p
     integer, intent(in) :: k, body
     real(real64), intent(inout), contiguous :: v(:)
@@ -189,7 +189,7 @@ contains
   end subroutine
 
   !> Rigid motion with which a body escapes, v(n), largest entry over all bodies 1; after FETI_LOAD_NOT_HELD.
-  subroutine diagnosis_motion(p, body, v, stat, errmsg)
+  recursive subroutine diagnosis_motion(p, body, v, stat, errmsg)
     type(feti_problem), intent(in) :: p
     integer, intent(in) :: body
     real(real64), intent(inout), contiguous :: v(:)

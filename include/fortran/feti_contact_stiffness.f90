@@ -67,7 +67,7 @@ module feti_contact_stiffness
 contains
 
   !> By rows, int32 indices.
-  subroutine stiffness_int32(p, body, row_ptr, col, val, storage, stat, errmsg)
+  recursive subroutine stiffness_int32(p, body, row_ptr, col, val, storage, stat, errmsg)
     type(feti_problem), intent(in) :: p
     integer, intent(in) :: body
     integer(int32), intent(in), contiguous :: row_ptr(:), col(:)
@@ -88,7 +88,7 @@ contains
   end subroutine
 
   !> By rows, int64 indices.
-  subroutine stiffness_int64(p, body, row_ptr, col, val, storage, stat, errmsg)
+  recursive subroutine stiffness_int64(p, body, row_ptr, col, val, storage, stat, errmsg)
     type(feti_problem), intent(in) :: p
     integer, intent(in) :: body
     integer(int64), intent(in), contiguous :: row_ptr(:), col(:)
@@ -109,7 +109,7 @@ contains
   end subroutine
 
   !> The whole matrix.
-  subroutine stiffness_dense(p, body, k, storage, stat, errmsg)
+  recursive subroutine stiffness_dense(p, body, k, storage, stat, errmsg)
     type(feti_problem), intent(in) :: p
     integer, intent(in) :: body
     real(real64), intent(in), contiguous :: k(:, :)
@@ -126,7 +126,7 @@ contains
   end subroutine
 
   !> int32 indices.
-  subroutine split_int32(p, body, diag, row_ptr, col, val, storage, stat, errmsg)
+  recursive subroutine split_int32(p, body, diag, row_ptr, col, val, storage, stat, errmsg)
     type(feti_problem), intent(in) :: p
     integer, intent(in) :: body
     real(real64), intent(in), contiguous :: diag(:)
@@ -147,7 +147,7 @@ contains
   end subroutine
 
   !> int64 indices.
-  subroutine split_int64(p, body, diag, row_ptr, col, val, storage, stat, errmsg)
+  recursive subroutine split_int64(p, body, diag, row_ptr, col, val, storage, stat, errmsg)
     type(feti_problem), intent(in) :: p
     integer, intent(in) :: body
     real(real64), intent(in), contiguous :: diag(:)
@@ -168,7 +168,7 @@ contains
   end subroutine
 
   !> int32 indices.
-  subroutine borrow_int32(p, body, row_ptr, col, val, storage, stat, errmsg)
+  recursive subroutine borrow_int32(p, body, row_ptr, col, val, storage, stat, errmsg)
     type(feti_problem), intent(in) :: p
     integer, intent(in) :: body
     integer(int32), intent(in), contiguous :: row_ptr(:), col(:)
@@ -191,7 +191,7 @@ contains
   end subroutine
 
   !> int64 indices.
-  subroutine borrow_int64(p, body, row_ptr, col, val, storage, stat, errmsg)
+  recursive subroutine borrow_int64(p, body, row_ptr, col, val, storage, stat, errmsg)
     type(feti_problem), intent(in) :: p
     integer, intent(in) :: body
     integer(int64), intent(in), contiguous :: row_ptr(:), col(:)
@@ -214,7 +214,7 @@ contains
   end subroutine
 
   !> Of a matrix by rows.
-  subroutine values_by_rows(p, body, val, stat, errmsg)
+  recursive subroutine values_by_rows(p, body, val, stat, errmsg)
     type(feti_problem), intent(in) :: p
     integer, intent(in) :: body
     real(real64), intent(in), contiguous :: val(:)
@@ -230,7 +230,7 @@ contains
 
   !> A borrowed matrix whose values have been rewritten in the array of before, or are in another one from now on: for
   !> val the rules of feti_body_stiffness_borrow. Of a matrix that is not borrowed the values are copied.
-  subroutine body_values_borrow(p, body, val, stat, errmsg)
+  recursive subroutine body_values_borrow(p, body, val, stat, errmsg)
     type(feti_problem), intent(in) :: p
     integer, intent(in) :: body
     real(real64), pointer, contiguous, intent(in) :: val(:)
@@ -245,7 +245,7 @@ contains
   end subroutine
 
   !> feti_body_values may get a copy that the compiler has made: nothing that may be borrowed.
-  logical function is_borrowed(p, body)
+  recursive logical function is_borrowed(p, body)
     type(feti_problem), intent(in) :: p
     integer, intent(in) :: body
     type(feti_body_facts) :: facts
@@ -256,7 +256,7 @@ contains
   end function
 
   !> Of a matrix given as a whole.
-  subroutine values_dense(p, body, k, stat, errmsg)
+  recursive subroutine values_dense(p, body, k, stat, errmsg)
     type(feti_problem), intent(in) :: p
     integer, intent(in) :: body
     real(real64), intent(in), contiguous :: k(:, :)
@@ -272,7 +272,7 @@ contains
   end subroutine
 
   !> New values of a matrix with a diagonal of its own: diag(n), val as in the first call, in the same order.
-  subroutine body_values_split(p, body, diag, val, stat, errmsg)
+  recursive subroutine body_values_split(p, body, diag, val, stat, errmsg)
     type(feti_problem), intent(in) :: p
     integer, intent(in) :: body
     real(real64), intent(in), contiguous :: diag(:), val(:)

@@ -1,7 +1,7 @@
 #!/bin/sh
 # cmake.sh HOSTS installed PREFIX | source ROOT TARGET | fetch ROOT TARGET: the host under CMake, in a folder outside the source
 # tree, with an installed library (moved before, so that nothing rests on the place of the installation) or one built along
-# with it by cargo, whose results are in TARGET.
+# with it by cargo, whose results are in TARGET. The installed one serves a host that asks for Fortran 2008.
 set -eu
 hosts=$1 way=$2 place=$3
 work=$(mktemp -d)
@@ -10,7 +10,7 @@ cp "$hosts"/host.* "$hosts/cmake/CMakeLists.txt" "$work"
 case $way in
 installed)
     cp -R "$place" "$work/moved"
-    cmake -S "$work" -B "$work/build" "-DCMAKE_PREFIX_PATH=$work/moved" >"$work/log"
+    cmake -S "$work" -B "$work/build" "-DCMAKE_PREFIX_PATH=$work/moved" -DCMAKE_Fortran_FLAGS=-std=f2008 >"$work/log"
     ;;
 *)
     [ "$way" = source ] && fetch=OFF || fetch=ON

@@ -25,6 +25,8 @@ contains
       data%last = text
       if (level == FETI_LOG_STEP) data%steps = data%steps + 1
       if (data%lines == data%fail_at) note = 5
+    type is (integer)
+      note = 98
     class default
       note = 99
     end select
@@ -69,7 +71,7 @@ program log_lines
   call feti_on_log(p, note, 9, heard, stat, text)
   call require(stat == FETI_ARGUMENT - 3, 'level 9 was taken: ' // trim(text))
 
-  ! without data the function gets an integer
+  ! without data, after some had been given
   call feti_on_log(p, note, FETI_LOG_RESULT)
   call feti_solve(p, info, stat, text)
   call feti_last_error_detail(detail)

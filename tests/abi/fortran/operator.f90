@@ -126,7 +126,7 @@ contains
     end select
   end function
 
-  !> Given without data: gets an integer.
+  !> Given without data: what it gets is of no type that a host can name.
   integer function solve_without_data(body, x, y, data)
     integer, intent(in) :: body
     real(dp), intent(in), contiguous :: x(:, :)
@@ -137,6 +137,8 @@ contains
     y = x / 1000
     select type (data)
     type is (integer)
+      solve_without_data = -2
+    class default
       if (body == 1) solve_without_data = 0
     end select
   end function

@@ -4,7 +4,7 @@ module watchers
   use feti_contact
   implicit none
   private
-  public :: diary, note, refuse_calls, fail
+  public :: diary, note, refuse_calls, solve_another, fail
 
   !> What a progress function keeps.
   type :: diary
@@ -53,7 +53,21 @@ contains
     end select
   end function
 
-  !> Given without data: gets an integer.
+  !> Solves another problem from inside, which this function watches, too.
+  recursive integer function solve_another(now, data)
+    type(feti_progress), intent(in) :: now
+    class(*), intent(inout) :: data
+
+    solve_another = 0
+    if (now%struct_size <= 0) solve_another = -1
+    select type (data)
+    type is (diary)
+      data%calls = data%calls + 1
+      if (data%calls == 1) call feti_solve(data%problem)
+    end select
+  end function
+
+  !> Given without data: what it gets is of no type that a host can name.
   integer function fail(now, data)
     type(feti_progress), intent(in) :: now
     class(*), intent(inout) :: data
@@ -61,6 +75,10 @@ contains
     fail = -1
     select type (data)
     type is (integer)
+      fail = -2
+    type is (diary)
+      fail = -3
+    class default
       if (now%phase == FETI_PHASE_SETUP) fail = -5
     end select
   end function
@@ -83,6 +101,7 @@ program watched
   call phases_are_told
   call copies_share_the_function
   call failures_and_calls_from_inside
+  call another_problem_is_solved_from_inside
   call states_come_back
   call diagnosis_counts_from_one
 
@@ -185,6 +204,7 @@ contains
 
     call feti_problem_create(p)
     call hand_over(p, wall, from_basis)
+    call feti_on_progress(p, note, book)
     call feti_on_progress(p, fail)
     call feti_setup(p, stat, text)
     call require(stat == FETI_CALLBACK, 'a failure of the function was not reported: ' // trim(text))
@@ -195,6 +215,25 @@ contains
     call feti_on_progress(p, refuse_calls, book)
     call feti_solve(p)
     call require(book%busy > 2, 'a solve inside a solve was not refused')
+    call feti_problem_destroy(p)
+  end subroutine
+
+  subroutine another_problem_is_solved_from_inside
+    type(feti_problem) :: p
+    type(diary), target :: book
+    real(dp) :: outer(size(wall%c)), inner(size(wall%c))
+
+    call feti_problem_create(p)
+    call feti_problem_create(book%problem)
+    call hand_over(p, wall, from_basis)
+    call hand_over(book%problem, wall, from_basis)
+    call feti_on_progress(p, solve_another, book)
+    call feti_on_progress(book%problem, solve_another, book)
+    outer = forces(p)
+    call require(book%calls > 2, 'not heard')
+    call feti_multipliers(book%problem, FETI_INEQUALITY, inner)
+    call require(sum(outer) > 0 .and. maxval(abs(inner - outer)) <= 0, 'other bits inside')
+    call feti_problem_destroy(book%problem)
     call feti_problem_destroy(p)
   end subroutine
 

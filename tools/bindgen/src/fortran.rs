@@ -11,6 +11,7 @@
 //! | `*const c_char`, `*mut c_char` | `character(kind=c_char) :: x(*)` |
 //! | pointer to a number, shape `scalar` | scalar, intent as documented |
 //! | pointer to a number, other shape | `x(*)`, intent as documented |
+//! | a result that is a text | `type(c_ptr)` of a pure function |
 //! | `*mut struct` | `type(struct), intent(inout)`: the caller sets struct_size |
 
 use std::fmt::Write;
@@ -90,11 +91,9 @@ fn write_callback(out: &mut String, api: &Api, callback: &Callback) {
 }
 
 fn write_function(out: &mut String, api: &Api, function: &Function) {
-    let name = &function.name;
     out.push('\n');
     write_doc(out, "    ", &function.doc);
-    write_statement(out, name, &function.arguments, &format!("bind(C, name=\"{name}\")"));
-    write_body(out, api, name, &function.arguments, &function.result);
+    out.push_str(&interface(api, function));
 }
 
 /// The interface of one function, without its documentation.
@@ -103,7 +102,11 @@ pub fn interface(api: &Api, function: &Function) -> String {
     let binding = format!("bind(C, name=\"{}\")", function.name);
     write_statement(&mut out, &function.name, &function.arguments, &binding);
     write_body(&mut out, api, &function.name, &function.arguments, &function.result);
-    out
+    if function.result.target().is_none() {
+        return out;
+    }
+    // A static text: pure, so that a host may declare a variable of its length.
+    out.replacen("    function ", "    pure function ", 1).replace(", value ::", ", intent(in), value ::")
 }
 
 fn write_body(out: &mut String, api: &Api, name: &str, arguments: &[Argument], result: &Type) {

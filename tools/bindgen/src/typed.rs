@@ -73,14 +73,17 @@ impl Procedure {
     }
 }
 
-/// Statements without comments, continued lines joined.
+/// Statements without comments, continued lines joined; every procedure of the faces is recursive, which need not be said.
 pub fn statements(text: &str) -> Vec<String> {
     let mut statements = Vec::new();
     let mut open = String::new();
     for line in text.lines().map(str::trim).filter(|line| !line.starts_with('!')) {
         match line.strip_suffix('&') {
             Some(part) => open.push_str(part),
-            None => statements.push(std::mem::take(&mut open) + line),
+            None => {
+                let statement = std::mem::take(&mut open) + line;
+                statements.push(statement.trim_start_matches("recursive ").to_string());
+            }
         }
     }
     statements
@@ -171,7 +174,7 @@ mod tests {
     fn a_specific_procedure_is_seen_under_its_public_name() {
         let module = "module feti_contact_bodies\n  use feti_contact_c, only: FETI_OK, &\n    c_add => feti_body_add\n\
             interface body_add\n  module procedure add_int32, add_int64\nend interface\ncontains\n  !> Adds.\n\
-            subroutine add_int32(p, n, stat)\n type(feti_problem), intent(in) :: p\n integer, intent(in) :: n\n\
+            recursive subroutine add_int32(p, n, stat)\n type(feti_problem), intent(in) :: p\n integer, intent(in) :: n\n\
             integer, intent(out), optional :: stat\n integer :: local\n call help(p, n)\nend subroutine\n\
             subroutine help(p, n)\n status = c_add(handle(p), n)\nend subroutine\n\
             subroutine other(p)\n call nothing(p)\nend subroutine\nend module\n";
