@@ -131,6 +131,17 @@ impl RowSet {
         Ok(())
     }
 
+    /// Refuses rows with entries that have no scale.
+    pub fn check_scales(&self, kind: RowKind, scales: &[f64]) -> Result<()> {
+        match (0..self.len()).find(|&i| scales[i] == 0.0 && !self.is_empty_row(i)) {
+            Some(i) => {
+                let what = format!("the square of this {}, b D^-1 b', over- or underflows", kind.name());
+                Err(Error::new(Kind::Overflow, what).row(i))
+            }
+            None => Ok(()),
+        }
+    }
+
     fn is_empty_row(&self, i: usize) -> bool {
         self.matrix.ptr[i] == self.matrix.ptr[i + 1]
     }
@@ -222,11 +233,11 @@ fn unknown(input: RowsInput<'_>, at: usize, offsets: &[usize]) -> Result<usize> 
 
 /// `s_i = (b_i D^-1 b_i' + 1/k_i)^-1/2`: with lambda = S mu every row of the dual has the same weight, whatever
 /// the stiffness of the bodies it joins and of its own spring. `metric` is D / `unit`, and s_i in that unit.
-/// 0 for a rigid row without entries.
+/// 0 for a rigid row without entries, and for one whose square is no normal number.
 pub fn row_scales(rows: &RowSet, metric: &[f64], unit: f64) -> Vec<f64> {
     (0..rows.len())
         .map(|i| rows.matrix.row(i).map(|(j, v)| v * v / metric[j]).sum::<f64>() + unit * rows.compliance[i])
-        .map(|square| if square > 0.0 { square.sqrt().recip() } else { 0.0 })
+        .map(|square| if square.is_normal() { square.sqrt().recip() } else { 0.0 })
         .collect()
 }
 
