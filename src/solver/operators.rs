@@ -1,11 +1,9 @@
 //! Which bodies get an explicit dual operator, and whether factors and operators fit into memory.
 
-use std::ops::Range;
-
 use crate::dual::{all_bytes, implicit_bodies, Dual, Kept, Size};
 use crate::error::{Error, Kind, Result};
 use crate::linalg::memory::available;
-use crate::solver::problem::Problem;
+use crate::solver::problem::{BodySlot, Problem};
 use crate::solver::rows::DualRows;
 use crate::solver::setup::Ready;
 
@@ -37,12 +35,13 @@ impl Problem {
     /// Operators kept from the rows before are dropped if that helps. `more`: bytes of the factors that are not there yet.
     pub(super) fn operators(&mut self, rows: &DualRows, entries: &[usize], more: usize) -> Result<Operators> {
         let there = self.bytes_of_factors();
-        let size = |(range, entries): (Range<usize>, &usize)| Size {
-            rows: Dual::distinct_rows(&range, &rows.matrix),
-            unknowns: range.len(),
-            entries: *entries,
+        let rows = Dual::distinct_rows(self.ranges(), &rows.matrix).into_iter();
+        let size = |((rows, slot), &entries): ((usize, &BodySlot), &usize)| Size {
+            rows,
+            unknowns: slot.body.order,
+            entries,
         };
-        let sizes: Vec<Size> = self.ranges().into_iter().zip(entries).map(size).collect();
+        let sizes: Vec<Size> = rows.zip(&self.bodies).zip(entries).map(size).collect();
         let factor_bytes = there.saturating_add(more);
         let operators = Operators { implicit: self.implicit(&sizes, factor_bytes), sizes, factor_bytes };
         let more = more.saturating_add(operators.bytes());
