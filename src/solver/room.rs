@@ -33,6 +33,14 @@ impl Problem {
         memory::room_with(bytes, INSIDE, "the vectors of a solve")
     }
 
+    /// The same for a call that needs the setup alone: none where it is there.
+    pub fn setup_room(&self) -> Result<Option<Room>> {
+        if self.is_set_up() {
+            return Ok(None);
+        }
+        self.working_room().map(Some)
+    }
+
     /// Room for so many more rows: those that are there may move while their arrays grow.
     pub fn room_for_rows(&self, rows: usize, entries: usize) -> Result<Room> {
         let present = self.contact.matrix.col.len().max(self.equalities.matrix.col.len());

@@ -58,7 +58,7 @@ impl Problem {
     }
 
     /// True where factors and dual operators are as the options want them.
-    fn is_set_up(&self) -> bool {
+    pub(super) fn is_set_up(&self) -> bool {
         let coupled = paper::is_asked(&self.settings);
         let suits = |ready: &Ready| {
             (ready.rows.coupled == coupled || self.equalities.len() == 0) && self.wants(&ready.operators)
@@ -140,7 +140,7 @@ impl Problem {
 
     /// Unknowns of every body among all.
     pub(super) fn ranges(&self) -> Vec<Range<usize>> {
-        self.offsets().windows(2).map(|pair| pair[0]..pair[1]).collect()
+        self.offsets.windows(2).map(|pair| pair[0]..pair[1]).collect()
     }
 
     /// Forms F and G.

@@ -8,7 +8,7 @@ use crate::error::{Error, Kind, Result};
 use crate::linalg::memory::{copied, zeros};
 use crate::linalg::vector::first_non_finite;
 use crate::solver::problem::Problem;
-use crate::solver::results::Answer;
+use crate::solver::results::{Answer, Asked};
 use crate::solver::setup::Ready;
 
 /// What a problem remembers besides its data.
@@ -147,7 +147,7 @@ impl Problem {
         (self.contact, self.equalities) = (contact, equalities);
         self.bodies.iter_mut().zip(loads).for_each(|(slot, load)| slot.body.load = load);
         self.answer = answer;
-        self.open_motions = None;
+        self.asked = Asked::default();
         self.history.previous = previous;
         self.history.start = [None, None];
         Ok(())
