@@ -255,7 +255,7 @@
 #define FETI_UNSUPPORTED -12
 
 /**
- * A number does not fit its integer type.
+ * A number, or a product of numbers that were given, does not fit its type.
  */
 #define FETI_OVERFLOW -13
 

@@ -77,7 +77,8 @@ impl fmt::Display for Place {
         ];
         let mut separator = "";
         for (name, number) in parts.iter().filter_map(|(name, n)| n.map(|n| (name, n))) {
-            write!(out, "{separator}{name} {}", number as i64 + self.base)?;
+            let number = i64::try_from(number).unwrap_or(i64::MAX).saturating_add(self.base);
+            write!(out, "{separator}{name} {number}")?;
             separator = ", ";
         }
         if separator.is_empty() {

@@ -107,7 +107,7 @@ module feti_contact_c
   integer(c_int32_t), parameter, public :: FETI_INTERNAL = -11_c_int32_t
   !> The request is valid but not available.
   integer(c_int32_t), parameter, public :: FETI_UNSUPPORTED = -12_c_int32_t
-  !> A number does not fit its integer type.
+  !> A number, or a product of numbers that were given, does not fit its type.
   integer(c_int32_t), parameter, public :: FETI_OVERFLOW = -13_c_int32_t
   !> Argument k refused is FETI_ARGUMENT - k, k from 1 with the handle as 1; FETI_ARGUMENT itself: data of an
   !> earlier call.

@@ -20,7 +20,9 @@ mod stiffness;
 mod symbolic;
 mod values;
 
-pub use alike::{pattern_key, same_bits, same_body, same_matrix, same_pattern, same_vectors, value_key};
+pub use alike::{
+    input_key, pattern_key, same_bits, same_body, same_matrix, same_pattern, same_vectors, value_key,
+};
 pub use borrowed::{from_borrowed, Columns};
 pub use boundary::{diagonal, dirichlet, dirichlet_bytes, lumped};
 pub use generalized_inverse::{GeneralizedInverse, Plan};

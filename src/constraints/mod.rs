@@ -84,7 +84,7 @@ impl RowSet {
             Some(rhs) => copied(rhs, "constraint rows")?,
             None => zeros(rows, "constraint rows")?,
         };
-        check_rhs(&rhs)?;
+        check_rhs(&rhs, 0)?;
         let mut added = Csr::empty(0);
         for i in 0..rows {
             let mut entries = Vec::with_capacity(input.ptr[i + 1] - input.ptr[i]);
@@ -97,6 +97,10 @@ impl RowSet {
                 kept.1 += if same { next.1 } else { 0.0 };
                 same
             });
+            if entries.iter().any(|entry| !entry.1.is_finite()) {
+                let what = "entries of one unknown add up to what is no finite number";
+                return Err(Error::argument("val", what).row(i));
+            }
             entries.retain(|entry| entry.1 != 0.0);
             added.push_row(entries);
         }
@@ -110,20 +114,32 @@ impl RowSet {
     }
 
     pub fn set_rhs(&mut self, first: usize, rhs: &[f64]) -> Result<()> {
-        check_rhs(rhs)?;
-        replace(&mut self.rhs, first, rhs)
+        let target = values_from(&mut self.rhs, first, rhs.len())?;
+        check_rhs(rhs, first)?;
+        target.copy_from_slice(rhs);
+        Ok(())
     }
 
     /// `inv_k`: 1/k, length / force, for the rows from `first` on; 0 makes a row rigid.
     pub fn set_compliance(&mut self, first: usize, inv_k: &[f64]) -> Result<()> {
+        let target = values_from(&mut self.compliance, first, inv_k.len())?;
         if let Some(at) = inv_k.iter().position(|v| !(v.is_finite() && *v >= 0.0)) {
             let what = "the compliance 1/k is not a finite number >= 0";
-            return Err(Error::argument("inv_k", what)
-                .row(first.saturating_add(at))
-                .entry(at)
-                .value(inv_k[at]));
+            return Err(Error::argument("inv_k", what).row(first + at).entry(at).value(inv_k[at]));
         }
-        replace(&mut self.compliance, first, inv_k)
+        target.copy_from_slice(inv_k);
+        Ok(())
+    }
+
+    /// Refuses rows with entries that have no scale.
+    pub fn check_scales(&self, kind: RowKind, scales: &[f64]) -> Result<()> {
+        match (0..self.len()).find(|&i| scales[i] == 0.0 && !self.is_empty_row(i)) {
+            Some(i) => {
+                let what = format!("the square of this {}, b D^-1 b', over- or underflows", kind.name());
+                Err(Error::new(Kind::Overflow, what).row(i))
+            }
+            None => Ok(()),
+        }
     }
 
     fn is_empty_row(&self, i: usize) -> bool {
@@ -179,25 +195,21 @@ impl RowKind {
     }
 }
 
-fn check_rhs(rhs: &[f64]) -> Result<()> {
+/// `rhs` are those of the rows from `first` on.
+fn check_rhs(rhs: &[f64], first: usize) -> Result<()> {
     first_non_finite(rhs).map_or(Ok(()), |at| {
-        Err(Error::argument("rhs", "the entry is not a finite number").row(at).entry(at))
+        Err(Error::argument("rhs", "the entry is not a finite number").row(first + at).entry(at))
     })
 }
 
-/// Overwrites the values from `first` on. Refused as `first` where there is no such row, as `rows` where they are too many.
-fn replace(target: &mut [f64], first: usize, values: &[f64]) -> Result<()> {
-    let rows = target.len();
-    match first.checked_add(values.len()).and_then(|end| target.get_mut(first..end)) {
-        Some(target) => target.copy_from_slice(values),
-        None => {
-            let what = format!("there are {rows} rows");
-            let argument = if first < rows { "rows" } else { "first" };
-            let end = first.saturating_add(values.len());
-            return Err(Error::argument(argument, what).value(end as f64).limit(rows as f64));
-        }
-    }
-    Ok(())
+/// So many values from `first` on. Refused as `first` where there is no such row, as `rows` where they are too many.
+fn values_from(values: &mut [f64], first: usize, count: usize) -> Result<&mut [f64]> {
+    let rows = values.len();
+    let end = first.saturating_add(count);
+    values.get_mut(first..end).ok_or_else(|| {
+        let argument = if first < rows { "rows" } else { "first" };
+        Error::argument(argument, format!("there are {rows} rows")).value(end as f64).limit(rows as f64)
+    })
 }
 
 /// Number among all unknowns of entry `at`.
@@ -221,11 +233,11 @@ fn unknown(input: RowsInput<'_>, at: usize, offsets: &[usize]) -> Result<usize> 
 
 /// `s_i = (b_i D^-1 b_i' + 1/k_i)^-1/2`: with lambda = S mu every row of the dual has the same weight, whatever
 /// the stiffness of the bodies it joins and of its own spring. `metric` is D / `unit`, and s_i in that unit.
-/// 0 for a rigid row without entries.
+/// 0 for a rigid row without entries, and for one whose square is no normal number.
 pub fn row_scales(rows: &RowSet, metric: &[f64], unit: f64) -> Vec<f64> {
     (0..rows.len())
         .map(|i| rows.matrix.row(i).map(|(j, v)| v * v / metric[j]).sum::<f64>() + unit * rows.compliance[i])
-        .map(|square| if square > 0.0 { square.sqrt().recip() } else { 0.0 })
+        .map(|square| if square.is_normal() { square.sqrt().recip() } else { 0.0 })
         .collect()
 }
 
@@ -281,6 +293,31 @@ mod tests {
         assert!((row_scales(&rows, &[4.0, 4e12], 1.0)[0] - 1.0).abs() < 1e-11);
         rows.set_compliance(0, &[0.75 / 8.0]).unwrap();
         assert!((row_scales(&rows, &[4.0, 4e12], 8.0)[0] - 1.0).abs() < 1e-11);
+    }
+
+    #[test]
+    fn entries_that_add_up_to_no_number_are_refused() {
+        let mut rows = RowSet::default();
+        let error = rows.add(input(None, &[5, 5, 1], &[1e308, 1e308, 2.0]), &[0, 3, 6]).unwrap_err();
+        assert_eq!((error.kind, error.place.row), (Kind::Argument("val"), Some(0)));
+        assert_eq!(rows.len(), 0);
+    }
+
+    #[test]
+    fn a_refused_value_is_named_by_its_row_and_a_row_that_is_not_there_comes_first() {
+        let mut rows = RowSet::default();
+        for _ in 0..3 {
+            rows.add(input(None, &[5, 5, 1], &[1.0, -1.0, 2.0]), &[0, 3, 6]).unwrap();
+        }
+        let bad = [0.0, f64::NAN];
+        for error in [rows.set_rhs(1, &bad).unwrap_err(), rows.set_compliance(1, &bad).unwrap_err()] {
+            assert_eq!((error.place.row, error.place.entry), (Some(2), Some(1)));
+        }
+        for first in [3, usize::MAX] {
+            assert_eq!(rows.set_rhs(first, &bad).unwrap_err().kind, Kind::Argument("first"));
+            assert_eq!(rows.set_compliance(first, &bad).unwrap_err().kind, Kind::Argument("first"));
+        }
+        assert_eq!((rows.rhs, rows.compliance), (vec![0.0; 3], vec![0.0; 3]));
     }
 
     #[test]

@@ -81,7 +81,7 @@ impl Dual {
         compliance: Vec<f64>,
         assembly: &mut Assembly,
     ) -> Result<Self> {
-        let local: Vec<_> = parts.iter().map(|part| cut(&part.range, matrix)).collect();
+        let local = cut(parts.iter().map(|part| part.range.clone()).collect(), matrix);
         let (multiples, distinct): (Vec<_>, Vec<_>) =
             local.iter().map(|(_, matrix)| Multiples::of(matrix)).unzip();
         let reuse = |(part, rows): (&mut Part, &Csr)| {
@@ -121,9 +121,10 @@ impl Dual {
         self.subdomains.into_iter().map(kept).collect()
     }
 
-    /// Distinct rows of B over this range of unknowns: those that are multiples of each other count once.
-    pub fn distinct_rows(range: &Range<usize>, matrix: &Csr) -> usize {
-        Multiples::of(&cut(range, matrix).1).0.count
+    /// Distinct rows of B over each of these ranges of all unknowns, ascending: those that are multiples of each other count
+    /// once.
+    pub fn distinct_rows(ranges: Vec<Range<usize>>, matrix: &Csr) -> Vec<usize> {
+        cut(ranges, matrix).iter().map(|(_, local)| Multiples::of(local).0.count).collect()
     }
 
     /// Dimension r of the null space of all bodies.
@@ -218,20 +219,21 @@ pub type Assembly<'a> =
 /// Runs tasks 0..count and collects their results in order, or the first error in order.
 pub type InParallel<'a, T> = dyn Fn(usize, &(dyn Fn(usize) -> Result<T> + Sync)) -> Result<Vec<T>> + 'a;
 
-/// Rows of B with an entry in the range.
-fn touching(range: &Range<usize>, matrix: &Csr) -> Vec<usize> {
-    (0..matrix.rows()).filter(|&i| matrix.row(i).any(|(j, _)| range.contains(&j))).collect()
-}
-
-/// The rows of B that touch the body in this range and their entries over its own unknowns.
-fn cut(range: &Range<usize>, matrix: &Csr) -> (Vec<usize>, Csr) {
-    let rows = touching(range, matrix);
-    let mut local = Csr::empty(range.len());
-    for &i in &rows {
-        let inside = matrix.row(i).filter(|(j, _)| range.contains(j));
-        local.push_row(inside.map(|(j, v)| (j - range.start, v)));
+/// For the bodies in these ranges, which are those of all unknowns, ascending: the rows of B that touch the body, and their
+/// entries over its own unknowns.
+fn cut(ranges: Vec<Range<usize>>, matrix: &Csr) -> Vec<(Vec<usize>, Csr)> {
+    let mut bodies: Vec<_> = ranges.iter().map(|range| (Vec::new(), Csr::empty(range.len()))).collect();
+    for i in 0..matrix.rows() {
+        let mut entries = matrix.row(i).peekable();
+        while let Some(&(first, _)) = entries.peek() {
+            let p = ranges.partition_point(|range| range.end <= first);
+            let (rows, local) = &mut bodies[p];
+            let inside = std::iter::from_fn(|| entries.next_if(|(j, _)| *j < ranges[p].end));
+            local.push_row(inside.map(|(j, v)| (j - ranges[p].start, v)));
+            rows.push(i);
+        }
     }
-    (rows, local)
+    bodies
 }
 
 /// `G' = B R`, m x r; entries that are nothing but rounding are left out.
@@ -258,3 +260,29 @@ fn coarse(subdomains: &[Subdomain], m: usize, modes: usize) -> Csr {
 /// A product with a rigid motion is nothing but rounding when it is this small against the product of the
 /// sizes: the motion itself is known to rounding of its fastest dof only.
 const ROUNDING: f64 = 64.0 * f64::EPSILON;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_body_gets_the_rows_that_touch_it_over_its_own_unknowns() {
+        let mut matrix = Csr::empty(7);
+        matrix.push_row([(0, 1.0), (2, 2.0), (3, 3.0), (6, 4.0)]);
+        matrix.push_row([]);
+        matrix.push_row([(4, 5.0), (5, 0.0)]);
+        matrix.push_row([(1, 6.0), (6, 7.0)]);
+        let of = |rows: &[usize], cols: usize, entries: &[&[(usize, f64)]]| {
+            let mut local = Csr::empty(cols);
+            entries.iter().for_each(|row| local.push_row(row.iter().copied()));
+            (rows.to_vec(), local)
+        };
+        let expected = [
+            of(&[0, 3], 2, &[&[(0, 1.0)], &[(1, 6.0)]]),
+            of(&[0, 2], 3, &[&[(0, 2.0), (1, 3.0)], &[(2, 5.0)]]),
+            of(&[2], 1, &[&[(0, 0.0)]]),
+            of(&[0, 3], 1, &[&[(0, 4.0)], &[(0, 7.0)]]),
+        ];
+        assert_eq!(cut(vec![0..2, 2..5, 5..6, 6..7], &matrix), expected);
+    }
+}

@@ -93,9 +93,10 @@ impl Preconditioner {
     }
 }
 
-/// Unknowns in the range that some row constrains, counted from its start.
-pub fn constrained(matrix: &Csr, range: &Range<usize>) -> Vec<usize> {
-    let mut touched = vec![false; range.len()];
-    matrix.col.iter().filter(|j| range.contains(j)).for_each(|j| touched[j - range.start] = true);
-    (0..range.len()).filter(|&j| touched[j]).collect()
+/// Unknowns in each of the ranges that some row constrains, counted from its start.
+pub fn constrained(matrix: &Csr, ranges: &[Range<usize>]) -> Vec<Vec<usize>> {
+    let mut touched = vec![false; matrix.cols];
+    matrix.col.iter().for_each(|&j| touched[j] = true);
+    let of = |range: &Range<usize>| (0..range.len()).filter(|j| touched[range.start + j]).collect();
+    ranges.iter().map(of).collect()
 }

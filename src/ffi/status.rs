@@ -43,7 +43,7 @@ pub const FETI_IO: i32 = -10;
 pub const FETI_INTERNAL: i32 = -11;
 /// The request is valid but not available.
 pub const FETI_UNSUPPORTED: i32 = -12;
-/// A number does not fit its integer type.
+/// A number, or a product of numbers that were given, does not fit its type.
 pub const FETI_OVERFLOW: i32 = -13;
 /// Argument k refused is FETI_ARGUMENT - k, k from 1 with the handle as 1; FETI_ARGUMENT itself: data of an earlier call.
 pub const FETI_ARGUMENT: i32 = -100;
@@ -72,7 +72,7 @@ const TABLE: [(i32, &CStr, &CStr); 21] = [
     (FETI_IO, c"FETI_IO", c"a file could not be read or written"),
     (FETI_INTERNAL, c"FETI_INTERNAL", c"the library contradicts itself; the problem can only be destroyed"),
     (FETI_UNSUPPORTED, c"FETI_UNSUPPORTED", c"the request is valid but not available"),
-    (FETI_OVERFLOW, c"FETI_OVERFLOW", c"a number does not fit its integer type"),
+    (FETI_OVERFLOW, c"FETI_OVERFLOW", c"a number, or a product of numbers that were given, does not fit its type"),
     (FETI_ARGUMENT, c"FETI_ARGUMENT", c"an argument was refused: its position is FETI_ARGUMENT minus the status, 0 for data of an earlier call"),
 ];
 

@@ -44,7 +44,7 @@ pub unsafe extern "C" fn feti_body_kplus(
         // SAFETY: shapes by the caller's word.
         let (x, output) = unsafe { (input(x, x_entries, "x")?, Output::new(y, y_entries, "y")?) };
         (0..nrhs).try_for_each(|k| check_finite(&x[k * ldx..k * ldx + n], k * ldx, "x"))?;
-        let _room = problem.working_room()?;
+        let _room = problem.setup_room()?;
         // At most y_entries, which column_major has bounded.
         let mut columns = zeros(n * nrhs)?;
         for (k, column) in columns.chunks_exact_mut(n.max(1)).enumerate() {

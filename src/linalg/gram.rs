@@ -1,8 +1,12 @@
 //! Gram matrices `sum_i w_i g_i' g_i` of sparse rows g_i: the coarse matrix of a face, the coupling of rows.
 
 use crate::error::Result;
-use crate::linalg::memory::{copied, zeros};
+use crate::linalg::memory::{copied, room, zeros};
 use crate::linalg::{Csr, Symmetric};
+
+/// Bytes per product of two entries of a row, and per row and column, while their lists grow.
+const PER_PRODUCT: usize = 24;
+const PER_ROW: usize = 24;
 
 /// Where the products of the entries of each row go: the pattern is found once, the values follow the weights.
 pub struct Gram {
@@ -15,6 +19,9 @@ pub struct Gram {
 impl Gram {
     /// `rows` is m x r; the Gram matrix is r x r with its whole diagonal stored.
     pub fn of(rows: &Csr) -> Result<Self> {
+        let products = rows.ptr.windows(2).map(|row| (row[1] - row[0]).pow(2)).sum::<usize>();
+        let lists = products.saturating_mul(PER_PRODUCT);
+        let _room = room(lists.saturating_add((rows.rows() + rows.cols) * PER_ROW), "a Gram matrix")?;
         let pattern = pattern(rows)?;
         let (mut ptr, mut position) = (vec![0], Vec::new());
         for i in 0..rows.rows() {

@@ -10,6 +10,9 @@ use crate::linalg::Matrix;
 /// Relative size of a pivot or an eigenvalue below which the matrix counts as singular.
 const RANK_TOLERANCE: f64 = 1e-11;
 
+/// Matrices of the size of W at a time, the eigenvectors while they grow among them.
+const MATRICES: usize = 8;
+
 /// Solves `W x = b`: Cholesky where W is safely regular, else the solution of minimum norm. Both act on
 /// `D^-1/2 W D^-1/2` with D = `scale`, so that modes of stiff and of soft bodies count alike.
 pub struct SpdSolver {
@@ -30,6 +33,7 @@ enum Factor {
 impl SpdSolver {
     /// `scale[i]` > 0 is what W_ii is large or small against.
     pub fn new(w: &Matrix, scale: &[f64]) -> Result<Self> {
+        let _room = room(PRODUCTS + MATRICES * w.data.len() * size_of::<f64>(), "a dense coarse matrix")?;
         let inverse_root: Vec<f64> = scale.iter().map(|s| s.sqrt().recip()).collect();
         let scaled = Mat::from_fn(w.rows, w.cols, |i, j| inverse_root[i] * w.get(i, j) * inverse_root[j]);
         let factor = match Llt::new(scaled.as_ref(), Side::Lower) {

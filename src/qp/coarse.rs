@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use crate::error::Result;
 use crate::linalg::gram::Gram;
+use crate::linalg::memory::room;
 use crate::linalg::{Analysis, Cholesky, Csr, Matrix, SpdSolver, Symmetric};
 
 /// A pivot of the matrix scaled to unit diagonal below this means that W_F is singular.
@@ -159,6 +160,7 @@ pub fn undetermined(g_transposed: &Csr, held: &[bool]) -> Result<Matrix> {
     let Some(Face { solver: Solver::Pseudo(solver), .. }) = &coarse.faces[coarse.selected] else {
         return Matrix::zeros(coarse.dimension(), 0);
     };
+    let _room = room(4 * size_of::<f64>() * coarse.dimension() * solver.deficiency(), "open motions")?;
     let mut kernel = solver.kernel();
     for j in 0..kernel.cols {
         kernel.col_mut(j).iter_mut().zip(&coarse.root).for_each(|(v, root)| *v /= root);

@@ -145,10 +145,12 @@ pub fn certify(data: &Data, answer: Answer) -> Result<Certificate> {
     Ok(certificate)
 }
 
+/// What is measured against infinity is not known.
 fn entry(part: f64, whole: f64, noise: f64, limit: f64, place: Option<usize>) -> Entry {
+    let allowed = limit * whole + noise;
     Entry {
         figure: ratio(part, whole + noise / limit),
-        ratio: ratio(part, limit * whole + noise),
+        ratio: if allowed.is_finite() { ratio(part, allowed) } else { f64::NAN },
         place: place.filter(|_| part > 0.0),
     }
 }

@@ -19,7 +19,7 @@ pub(super) fn load_not_held(problem: &Problem, ready: &Ready, direction: &[f64],
     let body = (0..bodies).fold(0, |best, p| if share(p) > share(best) { p } else { best });
     let unknowns = problem.counts().dofs;
     let v = ready.dual.rigid_motion(direction, unknowns);
-    let range = problem.ranges()[body].clone();
+    let range = problem.range(body);
     let fastest =
         range.clone().fold(range.start, |best, i| if v[i].abs() > v[best].abs() { i } else { best });
     let sense = if v[fastest] > 0.0 { "positive" } else { "negative" };

@@ -7,7 +7,9 @@ use std::hash::Hash;
 use std::sync::{Arc, Mutex};
 use std::time::Instant;
 
-use crate::body::{pattern_key, same_body, same_matrix, same_pattern, value_key, Layout, Plan, Symbolic};
+use crate::body::{
+    input_key, pattern_key, same_body, same_matrix, same_pattern, value_key, Layout, Plan, Symbolic,
+};
 use crate::error::{Error, Kind, Result};
 use crate::solver::operators::Operators;
 use crate::solver::phases::Phase;
@@ -144,7 +146,8 @@ impl Problem {
     fn twins(&mut self) -> Result<Vec<usize>> {
         self.find_keys()?;
         let same = |p: usize, q: usize| same_body(&self.bodies[p].body, &self.bodies[q].body);
-        let first = classes(self.bodies.len(), |p| self.bodies[p].keys, same);
+        let key = |p: usize| (self.bodies[p].keys, input_key(&self.bodies[p].body));
+        let first = classes(self.bodies.len(), key, same);
         let has = |p: usize| self.bodies[p].inverse.is_some();
         let mut ready = HashMap::new();
         (0..first.len()).rev().filter(|&p| has(p)).for_each(|p| {

@@ -115,22 +115,21 @@ impl Problem {
     pub fn escaping_motion(&self, body: usize) -> Result<&[f64]> {
         self.slot(body)?;
         match &self.findings()?.proof {
-            Some(Proof::Motion { v, .. }) => v.get(self.ranges()[body].clone()),
+            Some(Proof::Motion { v, .. }) => v.get(self.range(body)),
             _ => None,
         }
         .ok_or_else(|| Error::new(Kind::State, "the last solve has not found a load that nothing holds"))
     }
 
     fn untouched(&self, ready: &Ready) -> Vec<usize> {
-        let ranges = self.ranges();
-        let mut touched = vec![false; ranges.len()];
+        let mut touched = vec![false; self.bodies.len()];
         let unknowns = ready.rows.scaled.col.iter();
-        unknowns.for_each(|&j| touched[ranges.partition_point(|range| range.end <= j)] = true);
+        unknowns.for_each(|&j| touched[self.offsets[1..].partition_point(|end| *end <= j)] = true);
         (0..touched.len()).filter(|&p| !touched[p]).collect()
     }
 
     pub(super) fn rigid_motion(&self, body: usize, v: &[f64]) -> Option<[f64; 6]> {
         let coordinates = self.bodies.get(body)?.body.coordinates.as_ref()?;
-        coordinates.rigid_motion(v.get(self.ranges()[body].clone())?)
+        coordinates.rigid_motion(v.get(self.range(body))?)
     }
 }

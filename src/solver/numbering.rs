@@ -59,8 +59,9 @@ impl Problem {
 
     /// Whether the bodies have numbers: all or none.
     fn is_numbered(&self) -> Result<bool> {
-        if self.bodies.iter().all(|slot| slot.numbers.is_none()) {
-            return Ok(false);
+        let numbers = self.numbering.unknowns.len();
+        if numbers == 0 || numbers == self.counts().dofs {
+            return Ok(numbers > 0);
         }
         match self.bodies.iter().position(|slot| slot.numbers.is_none()) {
             None => Ok(true),
@@ -136,7 +137,7 @@ impl Problem {
         if !self.is_numbered()? {
             return Ok(None);
         }
-        let (offsets, mut places) = (self.offsets(), reserved(numbers.len(), "constraint rows")?);
+        let mut places = reserved(numbers.len(), "constraint rows")?;
         for (entry, &number) in numbers.iter().enumerate() {
             let found = usize::try_from(number).ok().and_then(|number| self.numbering.unknowns.get(&number));
             let Some((body, dof)) = found else {
@@ -144,7 +145,7 @@ impl Problem {
                 let error = Error::argument("dof", "no unknown has this number").row(row).entry(entry);
                 return Err(error.index(number));
             };
-            places.push((offsets[*body] + dof) as i64);
+            places.push((self.offsets[*body] + dof) as i64);
         }
         Ok(Some(places))
     }

@@ -1,11 +1,11 @@
 //! Which bodies get an explicit dual operator, and whether factors and operators fit into memory.
 
-use std::ops::Range;
+use std::ffi::CStr;
 
 use crate::dual::{all_bytes, implicit_bodies, Dual, Kept, Size};
 use crate::error::{Error, Kind, Result};
 use crate::linalg::memory::available;
-use crate::solver::problem::Problem;
+use crate::solver::problem::{BodySlot, Problem};
 use crate::solver::rows::DualRows;
 use crate::solver::setup::Ready;
 
@@ -14,11 +14,16 @@ const PARALLEL_PAYS: usize = 1 << 18;
 
 /// The local dual operators as they are to be made.
 pub(super) struct Operators {
+    /// Options they were chosen by.
+    options: Options,
     pub sizes: Vec<Size>,
     pub implicit: Vec<bool>,
     /// Bytes of all factors, those that bodies share once, and at most of the work arrays of their computation.
     pub factor_bytes: usize,
 }
+
+/// Option dual_operator and the limit of memory.
+type Options = (&'static CStr, Option<usize>);
 
 impl Operators {
     fn bytes(&self) -> usize {
@@ -37,14 +42,16 @@ impl Problem {
     /// Operators kept from the rows before are dropped if that helps. `more`: bytes of the factors that are not there yet.
     pub(super) fn operators(&mut self, rows: &DualRows, entries: &[usize], more: usize) -> Result<Operators> {
         let there = self.bytes_of_factors();
-        let size = |(range, entries): (Range<usize>, &usize)| Size {
-            rows: Dual::distinct_rows(&range, &rows.matrix),
-            unknowns: range.len(),
-            entries: *entries,
+        let rows = Dual::distinct_rows(self.ranges(), &rows.matrix).into_iter();
+        let size = |((rows, slot), &entries): ((usize, &BodySlot), &usize)| Size {
+            rows,
+            unknowns: slot.body.order,
+            entries,
         };
-        let sizes: Vec<Size> = self.ranges().into_iter().zip(entries).map(size).collect();
+        let sizes: Vec<Size> = rows.zip(&self.bodies).zip(entries).map(size).collect();
         let factor_bytes = there.saturating_add(more);
-        let operators = Operators { implicit: self.implicit(&sizes, factor_bytes), sizes, factor_bytes };
+        let (options, implicit) = (self.options(), self.implicit(&sizes, factor_bytes));
+        let operators = Operators { options, sizes, implicit, factor_bytes };
         let more = more.saturating_add(operators.bytes());
         let inverses = self.bodies.iter().filter_map(|slot| slot.inverse.as_ref());
         let kept: usize = inverses.filter_map(|inverse| inverse.operator.as_ref()).map(Kept::bytes).sum();
@@ -66,7 +73,12 @@ impl Problem {
 
     /// True where the options would have the operators as they are.
     pub(super) fn wants(&self, operators: &Operators) -> bool {
-        self.implicit(&operators.sizes, operators.factor_bytes) == operators.implicit
+        self.options() == operators.options
+            || self.implicit(&operators.sizes, operators.factor_bytes) == operators.implicit
+    }
+
+    fn options(&self) -> Options {
+        (self.settings.dual_operator, self.memory_limit())
     }
 
     /// Threads for the products of the bodies with F: those of the setup where they cost more than waking them.

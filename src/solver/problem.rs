@@ -1,5 +1,6 @@
 //! What the host has registered. Every call checks first and keeps all or nothing.
 
+use std::ops::Range;
 use std::sync::Arc;
 
 use crate::body::{
@@ -15,27 +16,27 @@ use crate::solver::findings::Findings;
 use crate::solver::numbering::Numbering;
 use crate::solver::phases::Phases;
 use crate::solver::report::{Counts, Report, Work};
-use crate::solver::results::Answer;
+use crate::solver::results::{Answer, Asked};
 use crate::solver::setup::Ready;
 use crate::solver::state::History;
 use crate::solver::watch::Host;
 use crate::solver::Settings;
 
 /// Bodies, rows and options of one contact problem, its factors, and the answer of its last solve.
-#[derive(Default)]
 pub struct Problem {
     pub(super) settings: Settings,
     pub(super) bodies: Vec<BodySlot>,
-    /// Unknowns of all bodies, at most i64::MAX.
-    unknowns: usize,
+    /// First unknown of every body among all, and their end, at most i64::MAX.
+    pub(super) offsets: Vec<usize>,
     pub(super) contact: RowSet,
     pub(super) equalities: RowSet,
     pub(super) numbering: Numbering,
     pub(super) ready: Option<Ready>,
     pub(super) answer: Option<Arc<Answer>>,
     pub(super) findings: Option<Findings>,
-    /// Motions that the answer leaves open, once somebody has asked.
-    pub(super) open_motions: Option<Matrix>,
+    pub(super) asked: Asked,
+    /// Bodies have operators of the rows before, of use for some of their rows.
+    operators_kept: bool,
     pub(super) history: History,
     pub(super) host: Host,
     pub(super) work: Work,
@@ -70,7 +71,23 @@ pub(super) struct Inverse {
 
 impl Problem {
     pub fn new() -> Self {
-        Self { settings: Settings::new(), ..Self::default() }
+        Self {
+            settings: Settings::new(),
+            bodies: Vec::new(),
+            offsets: vec![0],
+            contact: RowSet::default(),
+            equalities: RowSet::default(),
+            numbering: Numbering::default(),
+            ready: None,
+            answer: None,
+            findings: None,
+            asked: Asked::default(),
+            operators_kept: false,
+            history: History::default(),
+            host: Host::default(),
+            work: Work::default(),
+            phases: Phases::default(),
+        }
     }
 
     pub fn settings(&self) -> &Settings {
@@ -111,7 +128,8 @@ impl Problem {
         if n == 0 {
             return Err(Error::argument("n", "a body has at least one unknown").value(0.0).limit(1.0));
         }
-        let most = i64::MAX as usize - self.unknowns;
+        let first = self.counts().dofs;
+        let most = i64::MAX as usize - first;
         if n > most {
             let what = "the unknowns of all bodies together exceed 64 bits";
             return Err(Error::new(Kind::Overflow, what)
@@ -120,7 +138,7 @@ impl Problem {
                 .limit(most as f64));
         }
         self.rows_changed();
-        self.unknowns += n;
+        self.offsets.push(first + n);
         self.bodies.push(BodySlot { body: Body { order: n, ..Body::default() }, ..BodySlot::default() });
         Ok(self.bodies.len() - 1)
     }
@@ -223,13 +241,16 @@ impl Problem {
     /// Adds rows and returns the number of the first among those of its kind. Without `body` they go by the host's numbers
     /// of the unknowns, where there are some.
     pub fn add_rows(&mut self, kind: RowKind, rows: RowsInput<'_>) -> Result<usize> {
-        let offsets = self.offsets();
         let places = match rows.body {
             Some(_) => None,
             None => self.places_of(rows.ptr, rows.dof)?,
         };
         let rows = RowsInput { dof: places.as_deref().unwrap_or(rows.dof), ..rows };
-        let first = self.rows_mut(kind).add(rows, &offsets)?;
+        let present = match kind {
+            RowKind::Inequality => &mut self.contact,
+            RowKind::Equality => &mut self.equalities,
+        };
+        let first = present.add(rows, &self.offsets)?;
         self.rows_changed();
         Ok(first)
     }
@@ -256,7 +277,7 @@ impl Problem {
     pub fn counts(&self) -> Counts {
         Counts {
             bodies: self.bodies.len(),
-            dofs: self.unknowns,
+            dofs: self.offsets[self.bodies.len()],
             rows: self.contact.len(),
             equalities: self.equalities.len(),
         }
@@ -290,8 +311,7 @@ impl Problem {
     pub(super) fn changed(&mut self, body: usize, unchanged: bool) -> Result<&mut BodySlot> {
         self.forget_dual();
         self.history.data_changed();
-        // before the first factorisation no body has anything to forget
-        if !unchanged && self.work != Work::default() {
+        if !unchanged && std::mem::take(&mut self.operators_kept) {
             let inverses = self.bodies.iter_mut().filter_map(|slot| slot.inverse.as_mut());
             inverses.filter_map(|inverse| inverse.operator.as_mut()).for_each(Kept::only_whole);
         }
@@ -303,6 +323,7 @@ impl Problem {
 
     /// What was computed for the rows is kept for those to come.
     pub(super) fn forget_dual(&mut self) {
+        self.operators_kept |= self.ready.is_some();
         let operators = self.ready.take().map_or(Vec::new(), |ready| ready.dual.into_operators());
         for (slot, operator) in self.bodies.iter_mut().zip(operators) {
             if let Some(inverse) = &mut slot.inverse {
@@ -310,7 +331,7 @@ impl Problem {
             }
         }
         self.answer = None;
-        self.open_motions = None;
+        self.asked = Asked::default();
     }
 
     /// Takes over the bodies with their numbers, rows and options of another problem; texts count from what they did.
@@ -319,7 +340,7 @@ impl Problem {
         let index_base = self.settings.index_base;
         self.settings = Settings { index_base, ..other.settings };
         (self.contact, self.equalities) = (other.contact, other.equalities);
-        (self.bodies, self.unknowns, self.numbering) = (other.bodies, other.unknowns, other.numbering);
+        (self.bodies, self.offsets, self.numbering) = (other.bodies, other.offsets, other.numbering);
     }
 
     fn rows_changed(&mut self) {
@@ -338,26 +359,26 @@ impl Problem {
             .limit(order as f64))
     }
 
-    /// First unknown of every body among all, and their end.
-    pub(super) fn offsets(&self) -> Vec<usize> {
-        let mut offsets = vec![0];
-        for slot in &self.bodies {
-            offsets.push(offsets[offsets.len() - 1] + slot.body.order);
-        }
-        offsets
+    /// Unknowns of a body among all.
+    pub(super) fn range(&self, body: usize) -> Range<usize> {
+        self.offsets[body]..self.offsets[body + 1]
     }
 
     /// The loads of all bodies one after the other, force.
     pub(super) fn loads(&self) -> Result<Vec<f64>> {
         let mut all = zeros(self.counts().dofs, "the loads")?;
-        let mut start = 0;
-        for slot in &self.bodies {
+        for (slot, start) in self.bodies.iter().zip(&self.offsets) {
             if let Some(load) = &slot.body.load {
-                all[start..start + load.len()].copy_from_slice(load);
+                all[*start..start + load.len()].copy_from_slice(load);
             }
-            start += slot.body.order;
         }
         Ok(all)
+    }
+}
+
+impl Default for Problem {
+    fn default() -> Self {
+        Self::new()
     }
 }
 

@@ -3,7 +3,7 @@
 use crate::constraints::RowKind;
 use crate::error::{Error, Kind, Result};
 use crate::linalg::memory::zeros;
-use crate::linalg::Operator;
+use crate::linalg::{Matrix, Operator};
 use crate::qp::Solution;
 use crate::solver::certificate::Certificate;
 use crate::solver::problem::{Inverse, Problem};
@@ -22,6 +22,15 @@ pub(super) struct Answer {
     /// c + C lambda - B u, length.
     gaps: Vec<f64>,
     states: Vec<RowState>,
+}
+
+/// What was made of the answer once somebody has asked.
+#[derive(Default)]
+pub(super) struct Asked {
+    /// Motions that it leaves open.
+    pub open_motions: Option<Matrix>,
+    /// Forces of the rows of one kind, or of both, on all bodies.
+    reactions: Option<(Option<RowKind>, Vec<f64>)>,
 }
 
 impl Answer {
@@ -106,7 +115,7 @@ impl Problem {
     /// u of one body, length.
     pub fn displacement(&self, body: usize) -> Result<&[f64]> {
         self.slot(body)?;
-        Ok(&self.answer()?.u[self.ranges()[body].clone()])
+        Ok(&self.answer()?.u[self.range(body)])
     }
 
     /// u of all bodies one after the other, length.
@@ -115,9 +124,13 @@ impl Problem {
     }
 
     /// Force of the rows on the body: `-B'lambda`, `-H'mu`, or both, so that `K u = f + r`.
-    pub fn reaction(&self, kind: Option<RowKind>, body: usize, r: &mut [f64]) -> Result<()> {
+    /// Those on all bodies are kept for the next body.
+    pub fn reaction(&mut self, kind: Option<RowKind>, body: usize, r: &mut [f64]) -> Result<()> {
         self.check_length(body, "n", r.len())?;
-        r.copy_from_slice(&self.reactions(kind)?[self.ranges()[body].clone()]);
+        let kept = self.asked.reactions.take().filter(|(of, _)| *of == kind);
+        let all = kept.map_or_else(|| self.reactions(kind), |(_, all)| Ok(all))?;
+        r.copy_from_slice(&all[self.range(body)]);
+        self.asked.reactions = Some((kind, all));
         Ok(())
     }
 
@@ -253,5 +266,44 @@ fn unscaled(v: f64, s: f64) -> f64 {
         v / s
     } else {
         0.0
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::solver::{RowsInput, SparseInput, Storage};
+
+    /// Springs 1 against walls at 1, loads 3 and 2, then 5 and 2.
+    #[test]
+    fn the_force_on_a_body_is_that_of_the_present_answer_and_of_the_kind_asked_for() {
+        let mut problem = Problem::new();
+        for _ in 0..2 {
+            let body = problem.add_body(1).unwrap();
+            let k = SparseInput { ptr: &[0, 1], col: &[0], val: &[1.0], storage: Storage::Lower };
+            problem.set_stiffness(body, k).unwrap();
+        }
+        let walls =
+            RowsInput { ptr: &[0, 1, 2], body: None, dof: &[0, 1], val: &[1.0; 2], rhs: Some(&[1.0; 2]) };
+        problem.add_rows(RowKind::Inequality, walls).unwrap();
+        let reaction = |problem: &mut Problem, kind, body| {
+            let mut r = [7.0];
+            problem.reaction(kind, body, &mut r).map(|()| r[0])
+        };
+        let (all, contact, ties) = (None, Some(RowKind::Inequality), Some(RowKind::Equality));
+        assert_eq!(reaction(&mut problem, all, 0).unwrap_err().kind, Kind::State);
+        for load in [3.0, 5.0] {
+            problem.set_load(0, &[load]).unwrap();
+            problem.set_load(1, &[2.0]).unwrap();
+            problem.solve().unwrap();
+            for (kind, expected) in
+                [(all, [1.0 - load, -1.0]), (ties, [0.0; 2]), (contact, [1.0 - load, -1.0])]
+            {
+                for body in [0, 1] {
+                    let found = reaction(&mut problem, kind, body).unwrap();
+                    assert!((found - expected[body]).abs() < 1e-12, "{kind:?} {body}: {found}");
+                }
+            }
+        }
     }
 }

@@ -15,8 +15,8 @@ const PER_ENTRY: usize = 128;
 const PER_COARSE_ENTRY: usize = 64;
 /// Bytes for the rooms that parts of a call ask for on the thread that called.
 const INSIDE: usize = PRODUCTS + (1 << 20);
-/// Dense matrices of the coarse problem at a time.
-const COARSE_MATRICES: usize = 6;
+/// Bytes per rigid mode: vectors of the coarse problem. Its matrices, sparse or dense, have rooms of their own.
+const PER_MODE: usize = 320;
 
 impl Problem {
     /// Room for setup, solve and check, for as long as the result is kept.
@@ -28,10 +28,17 @@ impl Problem {
         let modes: usize = self.bodies.iter().map(modes_of).sum();
         let most = self.bodies.iter().map(modes_of).max().unwrap_or(0);
         let coarse_entries = entries.saturating_mul(most).min(rows.saturating_mul(modes));
-        let coarse = COARSE_MATRICES * size_of::<f64>() * modes.saturating_mul(modes);
-        let bytes = dofs * PER_DOF + rows * PER_ROW + entries * PER_ENTRY;
-        let bytes = bytes.saturating_add(coarse_entries * PER_COARSE_ENTRY).saturating_add(coarse + PRODUCTS);
+        let bytes = dofs * PER_DOF + rows * PER_ROW + entries * PER_ENTRY + modes * PER_MODE + PRODUCTS;
+        let bytes = bytes.saturating_add(coarse_entries.saturating_mul(PER_COARSE_ENTRY));
         memory::room_with(bytes, INSIDE, "the vectors of a solve")
+    }
+
+    /// The same for a call that needs the setup alone: none where it is there.
+    pub fn setup_room(&self) -> Result<Option<Room>> {
+        if self.is_set_up() {
+            return Ok(None);
+        }
+        self.working_room().map(Some)
     }
 
     /// Room for so many more rows: those that are there may move while their arrays grow.
@@ -47,4 +54,22 @@ fn modes_of(slot: &BodySlot) -> usize {
     let found = slot.inverse.as_ref().map(|inverse| inverse.kplus.null_space.cols);
     let given = slot.body.null_space.as_ref().map(|given| given.vectors.cols);
     found.or(given).unwrap_or(6)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::solver::{SparseInput, Storage};
+
+    /// Six dense matrices over the modes of all bodies, of which so many have not been found yet, would take 700 GB.
+    #[test]
+    fn the_room_of_many_bodies_grows_with_their_number() {
+        let mut problem = Problem::new();
+        for body in 0..20_000 {
+            problem.add_body(1).unwrap();
+            let k = SparseInput { ptr: &[0, 1], col: &[0], val: &[1.0], storage: Storage::Lower };
+            problem.set_stiffness(body, k).unwrap();
+        }
+        assert!(problem.working_room().is_ok());
+    }
 }

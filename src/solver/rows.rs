@@ -31,8 +31,11 @@ impl DualRows {
         let metric = metric(problem, unit);
         let mut all = Csr::empty(metric.len());
         let (mut scale, mut compliances) = (Vec::new(), Vec::new());
-        for rows in [&problem.contact, &problem.equalities] {
+        for (kind, rows) in
+            [(RowKind::Inequality, &problem.contact), (RowKind::Equality, &problem.equalities)]
+        {
             let scales = row_scales(rows, &metric, unit);
+            rows.check_scales(kind, &scales)?;
             for (i, s) in scales.iter().enumerate() {
                 all.push_row(rows.matrix.row(i).map(|(j, v)| (j, s * v)));
                 compliances.push(s * s * (unit * rows.compliance[i]));
@@ -70,4 +73,37 @@ impl DualRows {
 fn metric(problem: &Problem, unit: f64) -> Vec<f64> {
     let stiffness = problem.bodies.iter().filter_map(|slot| slot.body.k());
     stiffness.flat_map(|k| (0..k.order()).map(move |i| k.metric(i, unit) / unit)).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::error::Kind;
+    use crate::solver::{Modes, Problem, RowKind, RowsInput, SparseInput, Storage};
+
+    /// A spring 1 pushed by 2 against a wall at 1, the row times t: u = 1 for every t whose square is a number.
+    #[test]
+    fn rows_that_no_scale_brings_to_unit_length_are_refused_and_never_left_out() {
+        for (t, fits) in [(1e150, true), (1e-150, true), (1e160, false), (1e-160, false), (1e-300, false)] {
+            let mut problem = Problem::new();
+            let body = problem.add_body(1).unwrap();
+            let k = SparseInput { ptr: &[0, 1], col: &[0], val: &[1.0], storage: Storage::Lower };
+            problem.set_stiffness(body, k).unwrap();
+            problem.set_null_space(body, 1, 0, &[], 1, Modes::Exact).unwrap();
+            problem.set_load(body, &[2.0]).unwrap();
+            let empty = RowsInput { ptr: &[0, 0], body: None, dof: &[], val: &[], rhs: Some(&[1.0]) };
+            let wall = RowsInput { ptr: &[0, 1], body: None, dof: &[0], val: &[t], rhs: Some(&[t]) };
+            problem.add_rows(RowKind::Inequality, empty).unwrap();
+            problem.add_rows(RowKind::Inequality, wall).unwrap();
+            match problem.solve() {
+                Ok(_) => assert!(fits && problem.displacement(body).unwrap() == [1.0], "{t:e}"),
+                Err(error) => {
+                    assert_eq!(
+                        (fits, error.kind, error.place.row),
+                        (false, Kind::Overflow, Some(1)),
+                        "{t:e}"
+                    );
+                }
+            }
+        }
+    }
 }

@@ -58,7 +58,7 @@ impl Problem {
     }
 
     /// True where factors and dual operators are as the options want them.
-    fn is_set_up(&self) -> bool {
+    pub(super) fn is_set_up(&self) -> bool {
         let coupled = paper::is_asked(&self.settings);
         let suits = |ready: &Ready| {
             (ready.rows.coupled == coupled || self.equalities.len() == 0) && self.wants(&ready.operators)
@@ -140,7 +140,7 @@ impl Problem {
 
     /// Unknowns of every body among all.
     pub(super) fn ranges(&self) -> Vec<Range<usize>> {
-        self.offsets().windows(2).map(|pair| pair[0]..pair[1]).collect()
+        self.offsets.windows(2).map(|pair| pair[0]..pair[1]).collect()
     }
 
     /// Forms F and G.
@@ -200,9 +200,8 @@ impl Problem {
             b"none" => None,
             b"lumped" => Some((asked, self.preconditioner(ready, lumped)?)),
             _ => {
-                let boundaries =
-                    self.ranges().into_iter().map(|range| constrained(&ready.rows.matrix, &range).len());
-                self.check_more(ready, boundaries.map(dirichlet_bytes).sum())?;
+                let boundaries = constrained(&ready.rows.matrix, &self.ranges());
+                self.check_more(ready, boundaries.iter().map(|dofs| dirichlet_bytes(dofs.len())).sum())?;
                 Some((asked, self.preconditioner(ready, dirichlet)?))
             }
         };
@@ -215,12 +214,13 @@ impl Problem {
 
     fn preconditioner(&self, ready: &Ready, stiffness: BoundaryStiffness) -> Result<Preconditioner> {
         let ranges = self.ranges();
+        let constrained = constrained(&ready.rows.matrix, &ranges);
         let boundaries = threads::run(self.threads(), ranges.len(), |p| {
-            let local = constrained(&ready.rows.matrix, &ranges[p]);
+            let local = &constrained[p];
             let missing = || Error::new(Kind::Internal, "a body without stiffness was set up");
             let made = match self.bodies[p].body.k().ok_or_else(missing)? {
-                Stiffness::Matrix(k) => stiffness(k, 1.0 / ready.unit, &local),
-                Stiffness::Host(k) => diagonal(k, 1.0 / ready.unit, &local),
+                Stiffness::Matrix(k) => stiffness(k, 1.0 / ready.unit, local),
+                Stiffness::Host(k) => diagonal(k, 1.0 / ready.unit, local),
             };
             let stiffness = made.map_err(|e| e.body(p))?;
             Ok(Boundary { dofs: local.iter().map(|j| j + ranges[p].start).collect(), stiffness })

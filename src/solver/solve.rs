@@ -20,7 +20,7 @@ use crate::solver::phases::{Phase, Phases};
 use crate::solver::presolve::{presolve, Gaps};
 use crate::solver::problem::Problem;
 use crate::solver::report::{Outcome, Report};
-use crate::solver::results::Answer;
+use crate::solver::results::{Answer, Asked};
 use crate::solver::rounding::certify_to_rounding;
 use crate::solver::setup::Ready;
 use crate::solver::watch::{Stops, Watch};
@@ -39,7 +39,7 @@ impl Problem {
     fn solve_watched(&mut self, watch: &mut Watch) -> Result<Report> {
         let started = Instant::now();
         self.answer = None;
-        self.open_motions = None;
+        self.asked = Asked::default();
         let start = self.take_start();
         self.phases = Phases::default();
         self.set_up(watch)?;

@@ -8,7 +8,7 @@ use crate::error::{Error, Kind, Result};
 use crate::linalg::memory::{copied, zeros};
 use crate::linalg::vector::first_non_finite;
 use crate::solver::problem::Problem;
-use crate::solver::results::Answer;
+use crate::solver::results::{Answer, Asked};
 use crate::solver::setup::Ready;
 
 /// What a problem remembers besides its data.
@@ -129,7 +129,7 @@ impl Problem {
     }
 
     /// Loads, rows and multipliers as they were; matrices stay as they are now. The state is kept. The answer
-    /// comes back as well unless matrices, rows or compliances differ.
+    /// comes back as well unless matrices, rows or compliances differ, or what they were set up to is gone.
     pub fn restore_state(&mut self, number: usize) -> Result<()> {
         let state = self.history.states.get(&number).ok_or_else(|| no_state(number))?;
         if state.loads.len() != self.bodies.len() {
@@ -139,7 +139,7 @@ impl Problem {
         let loads = state.loads.iter().map(|load| copy_of(load.as_ref())).collect::<Result<Vec<_>>>()?;
         let [contact, equalities] = [state.rows[0].copied(WHAT)?, state.rows[1].copied(WHAT)?];
         let same = self.contact.same_but_rhs(&contact) && self.equalities.same_but_rhs(&equalities);
-        let fits = same && state.answered && state.data == self.history.data;
+        let fits = same && state.answered && state.data == self.history.data && self.ready.is_some();
         let (previous, answer) = (state.previous.clone(), state.previous.clone().filter(|_| fits));
         if !same {
             self.forget_dual();
@@ -147,7 +147,7 @@ impl Problem {
         (self.contact, self.equalities) = (contact, equalities);
         self.bodies.iter_mut().zip(loads).for_each(|(slot, load)| slot.body.load = load);
         self.answer = answer;
-        self.open_motions = None;
+        self.asked = Asked::default();
         self.history.previous = previous;
         self.history.start = [None, None];
         Ok(())
@@ -166,4 +166,32 @@ fn copy_of(load: Option<&Vec<f64>>) -> Result<Option<Vec<f64>>> {
 
 fn no_state(number: usize) -> Error {
     Error::argument("id", "no state has this number").index(number as i64)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::solver::{RowsInput, SparseInput, Storage};
+
+    /// Two unknowns with a spring between them, pushed against a wall.
+    #[test]
+    fn a_restored_answer_has_its_setup_or_is_none() {
+        let mut problem = Problem::new();
+        let body = problem.add_body(2).unwrap();
+        let (ptr, col, val) = ([0, 1, 3], [0, 0, 1], [1.0, -1.0, 1.0]);
+        let k = SparseInput { ptr: &ptr, col: &col, val: &val, storage: Storage::Lower };
+        problem.set_stiffness(body, k).unwrap();
+        problem.set_load(body, &[2.0, 0.5]).unwrap();
+        let wall = RowsInput { ptr: &[0, 1], body: None, dof: &[0], val: &[1.0], rhs: Some(&[1.0]) };
+        problem.add_rows(RowKind::Inequality, wall).unwrap();
+        problem.solve().unwrap();
+        let (state, amplitudes) = (problem.save_state().unwrap(), problem.amplitudes(body).unwrap().to_vec());
+        problem.clear_rows(RowKind::Inequality);
+        problem.add_rows(RowKind::Inequality, wall).unwrap();
+        problem.restore_state(state).unwrap();
+        assert_eq!(problem.amplitudes(body).unwrap_err().kind, Kind::State);
+        problem.setup().unwrap();
+        problem.restore_state(state).unwrap();
+        assert_eq!(problem.amplitudes(body).unwrap(), amplitudes);
+    }
 }

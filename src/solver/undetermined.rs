@@ -22,12 +22,12 @@ pub struct OpenMotion {
 impl Problem {
     /// Motion k of those that the last answer leaves open.
     pub fn open_motion(&mut self, k: usize) -> Result<OpenMotion> {
-        if self.open_motions.is_none() {
-            self.open_motions = Some(self.find_open_motions()?);
+        if self.asked.open_motions.is_none() {
+            self.asked.open_motions = Some(self.find_open_motions()?);
         }
-        let amplitudes = self.open_motions.as_ref().filter(|all| k < all.cols).map(|all| all.col(k));
+        let amplitudes = self.asked.open_motions.as_ref().filter(|all| k < all.cols).map(|all| all.col(k));
         let Some(amplitudes) = amplitudes else {
-            let number = self.open_motions.as_ref().map_or(0, |all| all.cols);
+            let number = self.asked.open_motions.as_ref().map_or(0, |all| all.cols);
             let what = format!("{number} motions are undetermined");
             return Err(Error::argument("k", what).index(k as i64).limit(number as f64));
         };
@@ -35,14 +35,14 @@ impl Problem {
         let fastest = (0..v.len()).fold(0, |best, i| if v[i].abs() > v[best].abs() { i } else { best });
         let largest = v.get(fastest).copied().unwrap_or(1.0);
         v.iter_mut().for_each(|v| *v /= largest);
-        let body = self.ranges().partition_point(|range| range.end <= fastest);
+        let body = self.offsets[1..].partition_point(|end| *end <= fastest);
         Ok(OpenMotion { motion: self.rigid_motion(body, &v), body, v })
     }
 
     /// Motion k on one body.
     pub fn open_motion_of(&mut self, k: usize, body: usize) -> Result<Vec<f64>> {
         self.slot(body)?;
-        let range = self.ranges()[body].clone();
+        let range = self.range(body);
         Ok(self.open_motion(k)?.v[range].to_vec())
     }
 

@@ -119,3 +119,11 @@ fn the_answer_on_a_compliant_row_passes_in_any_unit_and_each_fault_is_named() {
         assert!((through.figure - 0.25 * s / (0.75 * s + 1.0)).abs() < NOISY && through.ratio > 1.0);
     }
 }
+
+/// A spring 1e-300 pushed by 2 against a wall at 1: squares of the displacement that it alone would have overflow.
+#[test]
+fn an_answer_whose_sizes_overflow_does_not_pass() {
+    let held = Matrix { rows: 1, ..Matrix::default() };
+    let beyond = judged((&spring(1e-300), &held, &[2.0]), &obstacle(1.0, 0.0), (&[2e300], &[0.0]), None);
+    assert!(!beyond.passed(), "{beyond:?}");
+}
