@@ -14,9 +14,11 @@ use crate::solver::pools::Pools;
 
 static POOLS: Pools<ThreadPool> = Pools { made: Mutex::new(Vec::new()) };
 
+/// Stack of a thread. Said, or the standard library takes it from the environment (RUST_MIN_STACK).
+const STACK: usize = 2 << 20;
 /// Address space of a thread: its stack, and the heap of 64 MiB that the GNU allocator sets apart for it. Without one
 /// every small piece takes a page.
-const STARTED: usize = 67 << 20;
+const STARTED: usize = STACK + (65 << 20);
 /// The heap is cut out of twice its size.
 const STARTING: usize = 64 << 20;
 
@@ -141,8 +143,8 @@ fn largest_pool(threads: usize) -> Option<Arc<ThreadPool>> {
 fn pool(threads: usize) -> Option<Arc<ThreadPool>> {
     POOLS.get(std::process::id(), threads, || {
         let starting = room(threads * STARTED + STARTING, "threads").ok()?;
-        let builder = ThreadPoolBuilder::new().num_threads(threads).thread_name(|_| THREAD_NAME.to_owned());
-        let pool = builder.build().ok()?;
+        let builder = ThreadPoolBuilder::new().num_threads(threads).stack_size(STACK);
+        let pool = builder.thread_name(|_| THREAD_NAME.to_owned()).build().ok()?;
         // Every thread takes its heap now, while there is room for it.
         pool.broadcast(|_| drop(black_box(Box::new(0_u64))));
         drop(starting);
