@@ -26,10 +26,13 @@ texts="lib/pkgconfig lib/cmake share/feti_contact"
 ! grep -rq '@[A-Z]*@' $texts || { echo "a template was not filled in"; exit 1; }
 ! grep -rqF -e "$stage" -e "$root" -e /opt/feti $texts || { echo "a file names the place of installation"; exit 1; }
 
-echo "of another package" | tee include/other.h share/feti_contact/fortran/other.f90 >lib/cmake/feti_contact/other.cmake
+mkdir -p share/man/man3
+echo "of make docs, which may be gone" >share/man/man3/feti_solve.3
+echo "of another package" | tee include/other.h share/feti_contact/fortran/other.f90 share/man/man3/feti_other.3 \
+    >lib/cmake/feti_contact/other.cmake
 make_it uninstall PREFIX=/opt/feti
 left=$(find . ! -type d | sort | tr '\n' ' ')
-expected="./include/other.h ./lib/cmake/feti_contact/other.cmake ./share/feti_contact/fortran/other.f90 "
+expected="./include/other.h ./lib/cmake/feti_contact/other.cmake ./share/feti_contact/fortran/other.f90 ./share/man/man3/feti_other.3 "
 [ "$left" = "$expected" ] || { echo "left behind: $left"; exit 1; }
 [ ! -d share/doc/feti-contact ] || { echo "an empty folder of ours is left"; exit 1; }
 cd "$root"
