@@ -192,6 +192,17 @@ mod tests {
     }
 
     #[test]
+    fn of_many_sizes_four_pools_wait_and_those_in_use_or_of_another_process_stay() {
+        let pools = Pools { made: Mutex::new(vec![(1, 2, Arc::new(0))]) };
+        let used = pools.get(7, 2, || Some(2)).unwrap();
+        (3..30).for_each(|size| assert_eq!(pools.get(7, size, || Some(size)).as_deref(), Some(&size)));
+        assert!(Arc::ptr_eq(&used, &pools.get(7, 2, || None).unwrap()), "a pool in use is gone");
+        assert_eq!(pools.get(7, 29, || None).as_deref(), Some(&29), "the one of the last call is gone");
+        let there: Vec<_> = pools.made.lock().unwrap().iter().map(|(p, size, _)| (*p, *size)).collect();
+        assert_eq!(there, [(1, 2), (7, 27), (7, 28), (7, 2), (7, 29)]);
+    }
+
+    #[test]
     fn calls_from_threads_of_the_pool_end() {
         let within = |k: usize| run_apart(2, 5, |inner| inner == 4, |inner| Ok(k + inner));
         assert_eq!(run(2, 8, within).unwrap()[7], [7, 8, 9, 10, 11]);
