@@ -80,7 +80,7 @@ packaging: build/tools/bin/cargo-cinstall
 	sh tests/packaging/offline.sh $(CURDIR) $(CURDIR)/build/offline
 	sh tests/packaging/cargo_c.sh $(CURDIR) $(CURDIR)/build/tools $(CURDIR)/build/cargo_c
 
-# The table of docs/licences.md, from Cargo.lock.
+# The table of docs/licences.md and LICENSE-THIRD-PARTY, from Cargo.lock and the sources of the crates.
 licences:
 	LICENCES=write $(CARGO) test --release --locked --test licences
 

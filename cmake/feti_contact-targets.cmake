@@ -18,7 +18,8 @@ function(feti_contact_library_targets shared static soname include)
     INTERFACE_LINK_LIBRARIES "util;rt;pthread;m;dl")
 endfunction()
 
-# feti_contact_fortran_target(<folder of the sources>): modules go to the build folder of the host; INCLUDE finds *.inc.
+# feti_contact_fortran_target(<folder of the sources>): modules go to the build folder of the host; INCLUDE finds *.inc. A host
+# that exports a library of its own puts the target feti_contact_fortran into the same export set.
 function(feti_contact_fortran_target folder)
   if(TARGET feti_contact::fortran)
     return()
@@ -33,7 +34,7 @@ function(feti_contact_fortran_target folder)
   add_library(feti_contact_fortran STATIC EXCLUDE_FROM_ALL ${sources})
   set_target_properties(feti_contact_fortran PROPERTIES
     Fortran_MODULE_DIRECTORY "${modules}" POSITION_INDEPENDENT_CODE ON)
-  target_include_directories(feti_contact_fortran INTERFACE "${modules}" "${folder}")
+  target_include_directories(feti_contact_fortran INTERFACE "$<BUILD_INTERFACE:${modules}>" "$<BUILD_INTERFACE:${folder}>")
   target_link_libraries(feti_contact_fortran PUBLIC feti_contact::feti_contact)
   add_library(feti_contact::fortran ALIAS feti_contact_fortran)
 endfunction()

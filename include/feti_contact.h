@@ -860,7 +860,7 @@ typedef struct feti_certificate {
 
 #ifdef __cplusplus
 extern "C" {
-#endif // __cplusplus
+#endif /* __cplusplus */
 
 /**
  * Adds a body with `n` unknowns.
@@ -2225,6 +2225,6 @@ int32_t feti_body_values_dense(struct feti_problem *p, int64_t body, int64_t n, 
 
 #ifdef __cplusplus
 }  // extern "C"
-#endif  // __cplusplus
+#endif  /* __cplusplus */
 
 #endif  /* FETI_CONTACT_H */

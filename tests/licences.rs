@@ -1,15 +1,18 @@
 //! Every crate that is linked into the library may be used under MIT, BSD, ISC, Zlib, 0BSD or the Unlicense: a host that is
-//! GPL-2-only can take no other (Apache-2.0 alone is refused). docs/licences.md holds the table; `make licences` writes it.
+//! GPL-2-only can take no other (Apache-2.0 alone is refused). docs/licences.md holds the table, LICENSE-THIRD-PARTY the
+//! texts, which whoever hands on a binary must hand on too; `make licences` writes both.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::env;
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::Command;
 
 const FREE: [&str; 7] = ["MIT", "BSD-2-Clause", "BSD-3-Clause", "ISC", "Zlib", "0BSD", "Unlicense"];
 const BEGIN: &str = "<!-- begin: written by make licences -->\n";
 const END: &str = "<!-- end -->\n";
+/// The processor whose crates are listed: it has most.
+const TARGET: &str = "x86_64-unknown-linux-gnu";
 
 /// Licences under which an SPDX expression lets us use the work, `None` where every alternative asks for another one.
 /// expression = term { OR term }, term = factor { AND factor }, factor = ( expression ) | name [ WITH exception ]; OR was
@@ -106,11 +109,108 @@ fn linked_crates(target: &[&str]) -> BTreeSet<(String, String, String)> {
 
 fn table() -> String {
     let mut lines = String::from("| crate | version | licence | used under |\n|---|---|---|---|\n");
-    for (name, version, licence) in linked_crates(&["--target", "x86_64-unknown-linux-gnu"]) {
+    for (name, version, licence) in linked_crates(&["--target", TARGET]) {
         let used = used_under(&licence).unwrap_or_else(|| "none of ours".into());
         lines += &format!("| {name} | {version} | {licence} | {used} |\n");
     }
     lines
+}
+
+/// Folders of the sources of all crates by name and version.
+fn folders() -> BTreeMap<(String, String), PathBuf> {
+    let metadata = Command::new(env!("CARGO"))
+        .args(["metadata", "--locked", "--offline", "--format-version", "1", "--filter-platform", TARGET])
+        .args(["--manifest-path", concat!(env!("CARGO_MANIFEST_DIR"), "/Cargo.toml")])
+        .output()
+        .expect("cargo metadata");
+    assert!(metadata.status.success(), "{}", String::from_utf8_lossy(&metadata.stderr));
+    let text = String::from_utf8(metadata.stdout).expect("paths");
+    let manifests = text.split("\"manifest_path\":\"").skip(1).map(|rest| rest.split('"').next().unwrap());
+    manifests
+        .map(|manifest| {
+            let folder = Path::new(manifest).parent().expect("a folder").to_path_buf();
+            let value = |key| stated(&folder, key).next().expect("a manifest with name and version");
+            ((value("name = "), value("version = ")), folder)
+        })
+        .collect()
+}
+
+/// Values of lines of the manifest that begin with `key`.
+fn stated(folder: &Path, key: &'static str) -> impl Iterator<Item = String> {
+    let manifest = fs::read_to_string(folder.join("Cargo.toml")).expect("a manifest");
+    let values = manifest.lines().filter_map(|line| line.strip_prefix(key));
+    values.map(|value| value.trim_matches(['[', ']', '"']).to_string()).collect::<Vec<_>>().into_iter()
+}
+
+/// Licences and notices that a crate carries, without those that are not made use of.
+fn texts(folder: &Path) -> Vec<String> {
+    let is_wanted = |name: &str| {
+        ["LICENSE", "LICENCE", "COPYING", "NOTICE"].iter().any(|begin| name.starts_with(begin))
+            && !["APACHE", "ZLIB"].iter().any(|other| name.contains(other))
+    };
+    let entries = fs::read_dir(folder).expect("the sources of a crate");
+    let mut files: Vec<PathBuf> = entries.map(|entry| entry.expect("a file").path()).collect();
+    files.retain(|file| is_wanted(&file.file_name().unwrap_or_default().to_string_lossy().to_uppercase()));
+    files.sort();
+    let read = |file: &PathBuf| fs::read_to_string(file).expect("a licence").replace('\r', "");
+    files.iter().map(read).map(|text| text.trim_matches('\n').to_string()).collect()
+}
+
+/// Every text once, after the crates that carry it; those without one, with their authors, at the end.
+fn notices() -> String {
+    let folders = folders();
+    let (mut order, mut carriers) = (Vec::new(), BTreeMap::<String, Vec<String>>::new());
+    let mut silent = String::new();
+    for (name, version, licence) in linked_crates(&["--target", TARGET]) {
+        let folder = &folders[&(name.clone(), version.clone())];
+        let own = texts(folder);
+        // What faer carries are the licences of others.
+        if own.is_empty() || name == "faer" {
+            let authors = stated(folder, "authors = ").next().unwrap_or_default();
+            silent += &format!(
+                "* {name} {version}, {licence}, {}\n",
+                if authors.is_empty() { "its authors" } else { &authors }
+            );
+        }
+        for text in own {
+            let crates = carriers.entry(text.clone()).or_default();
+            if crates.is_empty() {
+                order.push(text);
+            }
+            crates.push(format!("{name} {version}"));
+        }
+    }
+    let rule = "=".repeat(80);
+    let mut all = String::from(HEAD);
+    for text in order {
+        all += &format!("{rule}\n{}\n{rule}\n\n{text}\n\n", carriers[&text].join(", "));
+    }
+    format!("{all}{rule}\n{WITHOUT}{rule}\n\n{silent}")
+}
+
+const HEAD: &str = "\
+Licences of what is linked into libfeti_contact besides its own sources (written by make licences).
+Part of every copy of the library in binary form, with LICENSE-MIT or LICENSE-APACHE. What is used under
+which licence, and the source of the part under MPL-2.0: docs/licences.md.
+
+The library also holds parts of the standard library of Rust, copyright The Rust Project Contributors, MIT OR
+Apache-2.0: the text of MIT is below.
+
+";
+const WITHOUT: &str = "\
+Crates that name their licence but carry no text of it: MIT as above, copyright by their authors
+";
+
+#[test]
+fn the_texts_of_all_licences_are_those_of_the_crates() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("LICENSE-THIRD-PARTY");
+    let new = notices();
+    if env::var_os("LICENCES").is_some_and(|wish| wish == "write") {
+        fs::write(&path, new).expect("LICENSE-THIRD-PARTY");
+        return;
+    }
+    let old = fs::read_to_string(&path).expect("LICENSE-THIRD-PARTY");
+    assert!(old == new, "LICENSE-THIRD-PARTY is out of date: make licences");
 }
 
 #[test]

@@ -33,10 +33,10 @@ files() {
     echo "fill|cmake/feti_contact-config-version.cmake.in|$CMAKEDIR/feti_contact-config-version.cmake"
     echo "644|cmake/feti_contact-targets.cmake|$CMAKEDIR/feti_contact-targets.cmake"
     each "$FORTRANDIR" include/fortran/*.f90 include/fortran/*.inc include/fortran/fpm.toml
-    each "$DOCDIR" README.md CHANGELOG.md LICENSE-MIT LICENSE-APACHE
+    each "$DOCDIR" README.md CHANGELOG.md LICENSE-MIT LICENSE-APACHE LICENSE-THIRD-PARTY
     each "$DOCDIR/docs" docs/*.md
     each "$DOCDIR/docs/pictures" docs/pictures/*
-    for section in 3 7; do each "$MANDIR/man$section" build/docs/man/man$section/*.$section; done
+    pages
 }
 
 # each FOLDER FILE...: the files that exist, to go to the folder.
@@ -44,6 +44,14 @@ each() {
     folder=$1
     shift
     for file in "$@"; do [ ! -f "$file" ] || echo "644|$file|$folder/${file##*/}"; done
+}
+
+# pages: the manual pages that `make docs` has made, one for every function of the header and one for all; to uninstall, also
+# those that are not there any more.
+pages() {
+    for page in $(sed -n 's|^[a-z].*[ *]\(feti_[a-z0-9_]*\)(.*|man3/\1.3|p' include/feti_contact.h) man7/feti_contact.7; do
+        [ "$way" != uninstall ] && [ ! -f "build/docs/man/$page" ] || echo "644|build/docs/man/$page|$MANDIR/$page"
+    done
 }
 
 # from FOLDER HERE: the way from the folder to PREFIX, beginning with HERE, so that a tree may be moved; PREFIX itself for a
@@ -93,7 +101,8 @@ put() {
 # empty FOLDER: removes a folder that is ours by name, and its folders, where nothing is left in them.
 empty() { [ ! -d "$1" ] || find "$1" -depth -type d -empty -delete; }
 
-case ${1-} in
+way=${1-}
+case $way in
 list) files | cut -d '|' -f 3 ;;
 install)
     files | while IFS='|' read -r mode source target; do

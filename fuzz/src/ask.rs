@@ -203,7 +203,8 @@ pub fn null_space(host: &mut Host) {
         let status = feti_body_null_space_get(p, body_at, n, at, to, host.length(ld));
         set_up(host, status, &[&basis]);
         let found = r.cells[0].clamp(0, 8) as usize;
-        let mut dofs = Out::<i64>::new(found);
+        // After a failure `found` is a guess, and `known` may turn it into what is right: one more.
+        let mut dofs = Out::<i64>::new(found + 1);
         let (p, body_at) = (host.handle(), host.known(body));
         let status = feti_body_fixing(p, body_at, host.known(found), host.out(&mut dofs));
         set_up(host, status, &[&dofs]);

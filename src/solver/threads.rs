@@ -14,9 +14,11 @@ use crate::solver::pools::Pools;
 
 static POOLS: Pools<ThreadPool> = Pools { made: Mutex::new(Vec::new()) };
 
+/// Stack of a thread. Said, or the standard library takes it from the environment (RUST_MIN_STACK).
+const STACK: usize = 2 << 20;
 /// Address space of a thread: its stack, and the heap of 64 MiB that the GNU allocator sets apart for it. Without one
 /// every small piece takes a page.
-const STARTED: usize = 67 << 20;
+const STARTED: usize = STACK + (65 << 20);
 /// The heap is cut out of twice its size.
 const STARTING: usize = 64 << 20;
 
@@ -141,8 +143,8 @@ fn largest_pool(threads: usize) -> Option<Arc<ThreadPool>> {
 fn pool(threads: usize) -> Option<Arc<ThreadPool>> {
     POOLS.get(std::process::id(), threads, || {
         let starting = room(threads * STARTED + STARTING, "threads").ok()?;
-        let builder = ThreadPoolBuilder::new().num_threads(threads).thread_name(|_| THREAD_NAME.to_owned());
-        let pool = builder.build().ok()?;
+        let builder = ThreadPoolBuilder::new().num_threads(threads).stack_size(STACK);
+        let pool = builder.thread_name(|_| THREAD_NAME.to_owned()).build().ok()?;
         // Every thread takes its heap now, while there is room for it.
         pool.broadcast(|_| drop(black_box(Box::new(0_u64))));
         drop(starting);
@@ -187,6 +189,17 @@ mod tests {
             let expected: Vec<_> = (0..20).filter(|k| k % 7 != 3).map(|k| (k, k * k)).collect();
             assert_eq!((heard, ended.unwrap_err().place.body), (expected, Some(3)));
         }
+    }
+
+    #[test]
+    fn of_many_sizes_four_pools_wait_and_those_in_use_or_of_another_process_stay() {
+        let pools = Pools { made: Mutex::new(vec![(1, 2, Arc::new(0))]) };
+        let used = pools.get(7, 2, || Some(2)).unwrap();
+        (3..30).for_each(|size| assert_eq!(pools.get(7, size, || Some(size)).as_deref(), Some(&size)));
+        assert!(Arc::ptr_eq(&used, &pools.get(7, 2, || None).unwrap()), "a pool in use is gone");
+        assert_eq!(pools.get(7, 29, || None).as_deref(), Some(&29), "the one of the last call is gone");
+        let there: Vec<_> = pools.made.lock().unwrap().iter().map(|(p, size, _)| (*p, *size)).collect();
+        assert_eq!(there, [(1, 2), (7, 27), (7, 28), (7, 2), (7, 29)]);
     }
 
     #[test]

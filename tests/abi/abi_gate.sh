@@ -16,6 +16,7 @@ passes() { changed "$2"; $check "$work/header.h" >"$work/log" 2>&1 || { echo "re
 breaks "a function is gone" '/^int32_t feti_cancel(/d'
 breaks "a parameter has another type" 's/^int32_t feti_body_add(struct feti_problem \*p, int64_t n/int32_t feti_body_add(struct feti_problem *p, int32_t n/'
 breaks "a parameter more" 's/^int32_t feti_cancel(/int32_t feti_cancel(int32_t reason, /'
+breaks "parameters of one type have changed places" 's/^\(int32_t feti_rows_rhs(.*\)int64_t first, int64_t rows/\1int64_t rows, int64_t first/'
 breaks "a function returns another type" 's/^int32_t feti_cancel(/int64_t feti_cancel(/'
 breaks "a member in the middle" 's/^  int64_t cg_steps;/  int64_t before;\n  int64_t cg_steps;/'
 breaks "a member is gone" '/^  int64_t operator_bytes;/d'

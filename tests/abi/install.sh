@@ -13,7 +13,8 @@ make_it install PREFIX=/opt/feti
 cd "$stage/opt/feti"
 has lib/libfeti_contact.so lib/libfeti_contact.a include/feti_contact.h lib/pkgconfig/feti_contact.pc \
     lib/cmake/feti_contact/feti_contact-config.cmake share/feti_contact/fortran/feti_contact.f90 \
-    share/feti_contact/fortran/fpm.toml share/doc/feti-contact/LICENSE-MIT share/doc/feti-contact/docs/licences.md
+    share/feti_contact/fortran/fpm.toml share/doc/feti-contact/LICENSE-MIT share/doc/feti-contact/LICENSE-THIRD-PARTY \
+    share/doc/feti-contact/docs/licences.md
 for file in "$root"/include/fortran/*.f90 "$root"/include/fortran/*.inc; do
     [ ! -f "$file" ] || has "share/feti_contact/fortran/$(basename "$file")"
 done
@@ -26,10 +27,13 @@ texts="lib/pkgconfig lib/cmake share/feti_contact"
 ! grep -rq '@[A-Z]*@' $texts || { echo "a template was not filled in"; exit 1; }
 ! grep -rqF -e "$stage" -e "$root" -e /opt/feti $texts || { echo "a file names the place of installation"; exit 1; }
 
-echo "of another package" | tee include/other.h share/feti_contact/fortran/other.f90 >lib/cmake/feti_contact/other.cmake
+mkdir -p share/man/man3
+echo "of make docs, which may be gone" >share/man/man3/feti_solve.3
+echo "of another package" | tee include/other.h share/feti_contact/fortran/other.f90 share/man/man3/feti_other.3 \
+    >lib/cmake/feti_contact/other.cmake
 make_it uninstall PREFIX=/opt/feti
 left=$(find . ! -type d | sort | tr '\n' ' ')
-expected="./include/other.h ./lib/cmake/feti_contact/other.cmake ./share/feti_contact/fortran/other.f90 "
+expected="./include/other.h ./lib/cmake/feti_contact/other.cmake ./share/feti_contact/fortran/other.f90 ./share/man/man3/feti_other.3 "
 [ "$left" = "$expected" ] || { echo "left behind: $left"; exit 1; }
 [ ! -d share/doc/feti-contact ] || { echo "an empty folder of ours is left"; exit 1; }
 cd "$root"

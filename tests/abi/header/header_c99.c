@@ -13,8 +13,8 @@ static int32_t (*const solve)(feti_problem *, feti_info *) = feti_solve;
 
 int main(void)
 {
-    const function table[] = {(function)create, (function)load, (function)solve,
-                              (function)feti_problem_destroy, (function)feti_rows_add_i32};
+    static const function table[] = {(function)create, (function)load, (function)solve,
+                                     (function)feti_problem_destroy, (function)feti_rows_add_i32};
     const int32_t version = 10000 * FETI_CONTACT_VERSION_MAJOR + 100 * FETI_CONTACT_VERSION_MINOR
                             + FETI_CONTACT_VERSION_PATCH;
     const int32_t refused_second = FETI_ARGUMENT - 2;

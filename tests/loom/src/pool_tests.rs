@@ -36,3 +36,19 @@ fn a_pool_that_could_not_be_made_is_made_by_the_next_thread_that_asks() {
         assert!(pools.get(1, 2, || None).is_some() && (found || pools.made.lock().unwrap().len() == 1));
     });
 }
+
+#[test]
+fn a_pool_that_a_thread_has_stays_while_another_asks_for_more_than_are_kept() {
+    loom::model(|| {
+        let pools = Arc::new(Pools { made: Mutex::new(Vec::new()) });
+        let other = {
+            let pools = Arc::clone(&pools);
+            thread::spawn(move || (3..7).for_each(|size| drop(pools.get(1, size, || Some(size)).unwrap())))
+        };
+        let mine = pools.get(1, 2, || Some(2)).unwrap();
+        assert!(Arc::ptr_eq(&mine, &pools.get(1, 2, || Some(0)).unwrap()));
+        other.join().unwrap();
+        drop(mine);
+        assert_eq!(pools.made.lock().unwrap().len(), 4);
+    });
+}

@@ -19,7 +19,9 @@ pub fn print(api: &Api) -> Result<String, String> {
     let bindings = cbindgen::Builder::new().with_config(config(api)).with_src(&source.0).generate();
     let mut bytes = Vec::new();
     bindings.map_err(|e| format!("cbindgen: {e}"))?.write(&mut bytes);
-    String::from_utf8(bytes).map_err(|e| format!("cbindgen: {e}"))
+    let header = String::from_utf8(bytes).map_err(|e| format!("cbindgen: {e}"))?;
+    // C90 has no other comments.
+    Ok(header.replace("// __cplusplus", "/* __cplusplus */"))
 }
 
 fn config(api: &Api) -> cbindgen::Config {
