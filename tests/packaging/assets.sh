@@ -1,0 +1,11 @@
+#!/bin/sh
+# assets.sh ROOT WORK: what Cargo.toml has cargo-c install below share is what make install puts there.
+set -eu
+cd "$1"
+mkdir -p "$2"
+sed -n 's/^ *{ from = "\([^"]*\)", to = "\([^"]*\)" },$/\1 \2/p' Cargo.toml | while read -r from to; do
+    for file in $from; do [ ! -f "$file" ] || echo "/usr/share/$to/${file##*/}"; done
+done | sort >"$2/cargo.files"
+env PREFIX=/usr DESTDIR= LIBDIR= INCLUDEDIR= DATADIR= DOCDIR= MANDIR= RELEASE=. tools/install.sh list |
+    grep '^/usr/share/' | sort >"$2/make.files"
+[ -s "$2/make.files" ] && diff "$2/make.files" "$2/cargo.files"
