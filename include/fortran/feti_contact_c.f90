@@ -1642,7 +1642,8 @@ module feti_contact_c
     !> body, unknown and pivot; FETI_GAPS_CONTRADICT where a row without entries has a right-hand side that 0
     !> does not satisfy; FETI_CALLBACK where a function of the host fails or is not what it must be
     !> (feti_body_operator); FETI_UNSUPPORTED where fixing unknowns were given for a body whose matrix is
-    !> functions of the host; FETI_CANCELLED where the host has cancelled.
+    !> functions of the host; FETI_OVERFLOW where the square of a row, or a compliance times the largest K_ii,
+    !> over- or underflows; FETI_CANCELLED where the host has cancelled.
     !>
     !> @param[in] p (scalar) the handle
     function feti_setup(p) bind(C, name="feti_setup")

@@ -177,10 +177,11 @@ contains
     type(feti_error_detail) :: found
     integer(c_int64_t) :: length
 
+    length = feti_last_error(c_null_ptr, 0_c_int64_t)
     found%struct_size = storage_size(found, c_int64_t) / 8
     if (feti_last_error_detail(found) /= FETI_OK) return
     if (status > FTEARG .and. status /= int(found%status)) return
-    allocate (buffer(feti_last_error(c_null_ptr, 0_c_int64_t) + 1))
+    allocate (buffer(length + 1))
     length = feti_last_error(c_loc(buffer), size(buffer, kind=c_int64_t))
     text = f_text(c_loc(buffer))
   end subroutine

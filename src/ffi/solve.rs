@@ -16,7 +16,8 @@ use crate::solver::{Certificate, Counts, Report};
 /// was claimed, or cannot be found; FETI_INDEFINITE where a matrix is indefinite, with body, unknown and pivot;
 /// FETI_GAPS_CONTRADICT where a row without entries has a right-hand side that 0 does not satisfy; FETI_CALLBACK where a
 /// function of the host fails or is not what it must be (feti_body_operator); FETI_UNSUPPORTED where fixing unknowns were
-/// given for a body whose matrix is functions of the host; FETI_CANCELLED where the host has cancelled.
+/// given for a body whose matrix is functions of the host; FETI_OVERFLOW where the square of a row, or a compliance times
+/// the largest K_ii, over- or underflows; FETI_CANCELLED where the host has cancelled.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|

@@ -67,7 +67,7 @@ const TABLE: [(i32, &CStr, &CStr); 21] = [
     (FETI_STATE, c"FETI_STATE", c"something this call needs has not been given yet"),
     (FETI_LOAD_NOT_HELD, c"FETI_LOAD_NOT_HELD", c"the load has a component that no contact force can balance"),
     (FETI_GAPS_CONTRADICT, c"FETI_GAPS_CONTRADICT", c"the rows contradict each other: no displacement satisfies them"),
-    (FETI_NULL_SPACE, c"FETI_NULL_SPACE", c"the null space given for a body is none, or is incomplete"),
+    (FETI_NULL_SPACE, c"FETI_NULL_SPACE", c"the null space of a body is not what was claimed, or was not found"),
     (FETI_INDEFINITE, c"FETI_INDEFINITE", c"a stiffness matrix is not positive definite outside its null space"),
     (FETI_IO, c"FETI_IO", c"a file could not be read or written"),
     (FETI_INTERNAL, c"FETI_INTERNAL", c"the library contradicts itself; the problem can only be destroyed"),

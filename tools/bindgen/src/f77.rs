@@ -71,6 +71,16 @@ fn name_at(text: &str) -> &str {
 mod tests {
     use super::*;
 
+    /// Its helper reads the details of the error, too.
+    #[test]
+    fn the_page_of_the_error_text_has_the_subroutine_that_tells_it() {
+        let fortran = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../include/fortran");
+        let read =
+            |part| std::fs::read_to_string(fortran.join(format!("feti_contact_f77_{part}.f90"))).unwrap();
+        let found = calls(&[read("base"), read("problem")]);
+        assert_eq!(found["feti_last_error"], ["CALL FTERR(IERR, TEXT)"]);
+    }
+
     #[test]
     fn a_subroutine_is_the_face_of_what_it_calls_first() {
         let base = "interface add\n  procedure feti_add_i32, feti_add_i64\nend interface\n\
