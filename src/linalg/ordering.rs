@@ -37,7 +37,32 @@ fn order_nodes(graph: &Graph, node: &[u32], first: &[usize]) -> Result<Vec<usize
         adj.extend(row.iter().filter(|&&other| other as usize != own));
         ptr.push(i32::try_from(adj.len()).map_err(|_| too_large())?);
     }
-    dissect(&ptr, &adj)
+    dissect_sparse(&ptr, &adj)
+}
+
+/// Nodes with more neighbours come last, as in AMD: to dissect around one takes the square of their number.
+fn most_neighbours(nodes: usize) -> usize {
+    (10 * nodes.isqrt()).max(1000)
+}
+
+/// Dissects the graph without the nodes of too many neighbours, which follow.
+fn dissect_sparse(ptr: &[i32], adj: &[i32]) -> Result<Vec<usize>> {
+    let nodes = ptr.len() - 1;
+    let around = |i: usize| &adj[ptr[i] as usize..ptr[i + 1] as usize];
+    let is_dense = |&i: &usize| around(i).len() > most_neighbours(nodes);
+    let (dense, sparse): (Vec<usize>, Vec<usize>) = (0..nodes).partition(is_dense);
+    if dense.is_empty() {
+        return dissect(ptr, adj);
+    }
+    let mut number = vec![None; nodes];
+    sparse.iter().enumerate().for_each(|(k, &i)| number[i] = Some(k as i32));
+    let (mut from, mut to) = (vec![0], reserved(adj.len(), "the ordering of a body")?);
+    for &i in &sparse {
+        to.extend(around(i).iter().filter_map(|&j| number[j as usize]));
+        from.push(to.len() as i32);
+    }
+    let order = if to.is_empty() { (0..sparse.len()).collect() } else { dissect(&from, &to)? };
+    Ok(order.into_iter().map(|k| sparse[k]).chain(dense).collect())
 }
 
 /// The order by the crate feral-metis; the neighbours of node i, without itself, are `adj[ptr[i]..ptr[i + 1]]`.
@@ -72,5 +97,24 @@ mod tests {
         let mut order = nested_dissection(&graph, &held).unwrap();
         order.sort_unstable();
         assert_eq!(order, (0..n).filter(|&i| i != 7).collect::<Vec<_>>());
+    }
+
+    #[test]
+    fn nodes_tied_to_all_others_are_eliminated_last() {
+        let n = 60_000; // a chain; its first and its middle node have a spring to each of the others
+        let (mut ptr, mut col) = (vec![0], Vec::new());
+        for i in 0..n as u32 {
+            let mut row = vec![0, i.saturating_sub(1), i];
+            row.extend((i > n as u32 / 2).then_some(n as u32 / 2));
+            row.extend(if i == n as u32 / 2 { 0..i } else { 0..0 });
+            row.sort_unstable();
+            row.dedup();
+            col.extend(row);
+            ptr.push(col.len());
+        }
+        let val = vec![1.0; col.len()];
+        let graph = Graph::of(&Symmetric::new(ptr, col, val)).unwrap();
+        let order = nested_dissection(&graph, &vec![false; n]).unwrap();
+        assert_eq!(order[n - 2..], [0, n / 2]);
     }
 }
