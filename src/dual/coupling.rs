@@ -8,7 +8,8 @@ use crate::error::Result;
 use crate::linalg::gram::Gram;
 use crate::linalg::graph::components;
 use crate::linalg::memory::{copied, reserved, room};
-use crate::linalg::{Analysis, Cholesky, Csr, Matrix, SpdSolver, Symmetric};
+use crate::linalg::pseudo::{dense_inverse, uncouple};
+use crate::linalg::{Analysis, Cholesky, Csr, SpdSolver, Symmetric};
 
 /// A pivot below this means that the rows of its block may depend on each other.
 const SINGULAR: f64 = 1e-8;
@@ -110,12 +111,12 @@ impl Coupling {
             let known = last.and_then(|face| face.block(&rows));
             dense.push(match known {
                 Some(block) => block.clone(),
-                None => Block { inverse: Arc::new(pseudo_inverse(&w, &rows)?), rows },
+                None => Block { inverse: Arc::new(dense_inverse(&w, &rows)?), rows },
             });
         }
         let mut apart = own;
         dense.iter().flat_map(|block| &block.rows).for_each(|&i| apart[i] = true);
-        uncouple(&mut w, &apart);
+        uncouple(&mut w, |i| apart[i]);
         let factor = self.analysis.attempt(&w, 1.0)?;
         let (held, rows) = (copied(held, "a face")?, Arc::clone(&self.rows));
         Ok(factor.ok().map(|sparse| Face { held, rows, sparse, dense }))
@@ -124,7 +125,7 @@ impl Coupling {
     /// W with 1 for the held rows.
     fn on(&self, held: &[bool]) -> Result<Symmetric> {
         let mut w = self.whole.copied("the coupling of rows")?;
-        uncouple(&mut w, held);
+        uncouple(&mut w, |i| held[i]);
         Ok(w)
     }
 
@@ -211,33 +212,6 @@ fn coupled(w: &Symmetric) -> Result<(Vec<usize>, Symmetric)> {
 
 fn shift(w: &mut Symmetric, i: usize, by: f64) {
     w.val[w.ptr[i + 1] - 1] += by;
-}
-
-/// The rows apart get the unit matrix.
-fn uncouple(w: &mut Symmetric, apart: &[bool]) {
-    for i in 0..w.order() {
-        for at in w.ptr[i]..w.ptr[i + 1] {
-            let j = w.col[at] as usize;
-            if apart[i] || apart[j] {
-                w.val[at] = f64::from(u8::from(i == j));
-            }
-        }
-    }
-}
-
-fn pseudo_inverse(w: &Symmetric, rows: &[usize]) -> Result<SpdSolver> {
-    let n = rows.len();
-    let _room = room(8 * n * n * size_of::<f64>(), "a block of dependent rows")?;
-    let mut part = Matrix::zeros(n, n)?;
-    for (a, &i) in rows.iter().enumerate() {
-        for (j, v) in w.lower_row(i) {
-            if let Ok(b) = rows.binary_search(&j) {
-                part.set(a, b, v);
-                part.set(b, a, v);
-            }
-        }
-    }
-    SpdSolver::new(&part, &vec![1.0; n])
 }
 
 #[cfg(test)]

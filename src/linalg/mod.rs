@@ -19,6 +19,7 @@ pub mod ordering;
 pub mod packed;
 pub mod pages;
 pub mod pivoted;
+pub mod pseudo;
 pub mod reach;
 pub mod spd;
 mod subtrees;

@@ -6,10 +6,8 @@ use std::sync::Arc;
 use crate::error::Result;
 use crate::linalg::gram::Gram;
 use crate::linalg::memory::room;
-use crate::linalg::{Analysis, Cholesky, Csr, Matrix, SpdSolver, Symmetric};
-
-/// A pivot of the matrix scaled to unit diagonal below this means that W_F is singular.
-const SINGULAR: f64 = 1e-11;
+use crate::linalg::pseudo::{Pseudo, SINGULAR};
+use crate::linalg::{Analysis, Cholesky, Csr, Matrix, Symmetric};
 
 pub struct Coarse<'a> {
     /// `G'`, m x r.
@@ -35,7 +33,7 @@ struct Face {
 enum Solver {
     Cholesky(Cholesky),
     /// Minimum norm.
-    Pseudo(SpdSolver),
+    Pseudo(Pseudo),
 }
 
 impl<'a> Coarse<'a> {
@@ -76,7 +74,7 @@ impl<'a> Coarse<'a> {
         }
         let solver = match analysis.attempt(&w, 1.0)? {
             Ok(factor) if factor.smallest_pivot() > SINGULAR => Solver::Cholesky(factor),
-            _ => Solver::Pseudo(SpdSolver::new(&dense(&w)?, &vec![1.0; w.order()])?),
+            _ => Solver::Pseudo(Pseudo::new(&w, analysis)?),
         };
         self.factorisations += 1;
         *slot = Some(Face { held: held.to_vec(), w, solver });
@@ -90,7 +88,7 @@ impl<'a> Coarse<'a> {
         let mut x = self.scaled(rhs);
         match &face.solver {
             Solver::Cholesky(factor) => factor.solve(&mut x)?,
-            Solver::Pseudo(solver) => x = solver.solve(&x),
+            Solver::Pseudo(solver) => x = solver.solve(&x)?,
         }
         Ok(self.scaled(&x))
     }
@@ -172,17 +170,6 @@ fn analysed(g_transposed: &Csr) -> Result<(Gram, Arc<Analysis>)> {
     let gram = Gram::of(g_transposed)?;
     let analysis = Analysis::new(gram.pattern(), &vec![false; g_transposed.cols])?;
     Ok((gram, Arc::new(analysis)))
-}
-
-fn dense(w: &Symmetric) -> Result<Matrix> {
-    let mut full = Matrix::zeros(w.order(), w.order())?;
-    for i in 0..w.order() {
-        for (j, v) in w.lower_row(i) {
-            full.set(i, j, v);
-            full.set(j, i, v);
-        }
-    }
-    Ok(full)
 }
 
 #[cfg(test)]
