@@ -881,8 +881,9 @@ int32_t feti_body_add(struct feti_problem *p, int64_t n, int64_t *body);
  * space are made.
  *
  * The data is copied; calling again replaces it. Never called, and no null space given: the
- * library finds the null space from K. Shells and beams repeat nodes with rotations. After a
- * failure the body keeps what it had.
+ * library finds the null space from K. A null space that was given (feti_body_null_space) goes
+ * before it. Shells and beams repeat nodes with rotations. After a failure the body keeps what it
+ * had.
  *
  * @param[in] p    (scalar) the handle
  * @param[in] body (scalar) number of the body, from 0
@@ -1214,8 +1215,8 @@ int32_t feti_body_null_space_get(struct feti_problem *p,
 /**
  * Reads the fixing unknowns of a body: with them fixed, K has full rank.
  *
- * Runs feti_setup when it is due. FETI_UNSUPPORTED where functions of the host stand for the
- * matrix. After a failure nothing is written.
+ * Runs feti_setup when it is due. FETI_UNSUPPORTED where K+ is the host's (feti_body_operator).
+ * After a failure nothing is written.
  *
  * @param[in]  p    (scalar) the handle
  * @param[in]  body (scalar) number of the body, from 0

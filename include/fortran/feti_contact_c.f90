@@ -563,8 +563,8 @@ module feti_contact_c
     !> made.
     !>
     !> The data is copied; calling again replaces it. Never called, and no null space given: the library finds
-    !> the null space from K. Shells and beams repeat nodes with rotations. After a failure the body keeps
-    !> what it had.
+    !> the null space from K. A null space that was given (feti_body_null_space) goes before it. Shells and
+    !> beams repeat nodes with rotations. After a failure the body keeps what it had.
     !>
     !> @param[in] p    (scalar) the handle
     !> @param[in] body (scalar) number of the body, from 0
@@ -952,8 +952,8 @@ module feti_contact_c
 
     !> Reads the fixing unknowns of a body: with them fixed, K has full rank.
     !>
-    !> Runs feti_setup when it is due. FETI_UNSUPPORTED where functions of the host stand for the matrix.
-    !> After a failure nothing is written.
+    !> Runs feti_setup when it is due. FETI_UNSUPPORTED where K+ is the host's (feti_body_operator). After a
+    !> failure nothing is written.
     !>
     !> @param[in]  p    (scalar) the handle
     !> @param[in]  body (scalar) number of the body, from 0

@@ -26,9 +26,14 @@ pub(super) const UNLIKELY: f64 = 1e3;
 /// Largest residual of a solve with the factor, relative to its terms.
 pub(super) const PROBE: f64 = 1e-8;
 
+/// How far a null vector is known that was given.
+pub(super) const GIVEN: f64 = 64.0 * f64::EPSILON;
+
 pub struct GeneralizedInverse {
     /// `R_p`, n x r, with `R'DR = I`.
     pub null_space: Matrix,
+    /// How far its vectors are known, against the fastest dof of each, no unit: what a row or a load has less of is nothing.
+    pub rounding: f64,
     /// The r dofs held; none where K+ is the host's.
     pub fixing: Vec<usize>,
     /// Of a null space that was found: the softest other motion against the stiffest of it, no unit.
@@ -171,14 +176,11 @@ impl Plan {
     /// plan, where it has one.
     pub fn with_factor_of(self, other: &GeneralizedInverse) -> GeneralizedInverse {
         let (factor, fixing) = (other.factor.clone(), other.fixing.clone());
-        match self {
-            Self::Known(known) => {
-                GeneralizedInverse { null_space: known.null_space, fixing, gap: None, factor }
-            }
-            Self::Search(_) => {
-                GeneralizedInverse { null_space: other.null_space.clone(), fixing, gap: other.gap, factor }
-            }
-        }
+        let (null_space, rounding, gap) = match self {
+            Self::Known(known) => (known.null_space, GIVEN, None),
+            Self::Search(_) => (other.null_space.clone(), other.rounding, other.gap),
+        };
+        GeneralizedInverse { null_space, rounding, fixing, gap, factor }
     }
 
     /// Factorises F of (14) and probes; refuses a K that is indefinite, against (4), or more singular than its null
@@ -227,7 +229,7 @@ impl Known {
         })?;
         let (null_space, fixing) = (self.null_space, self.fixing);
         let factor = Factor::Own(Arc::new(factor));
-        let inverse = GeneralizedInverse { null_space, fixing, gap: None, factor };
+        let inverse = GeneralizedInverse { null_space, rounding: GIVEN, fixing, gap: None, factor };
         inverse.probe(&self.k)?;
         Ok(Made { inverse, symbolic, further_analyses: 0, factorisations: 1 })
     }

@@ -3,7 +3,7 @@
 //! measured in the metric `D^-1`, displacements in D, so that no figure has a unit.
 
 use crate::body::factor::Factor;
-use crate::body::generalized_inverse::{GeneralizedInverse, PROBE, UNLIKELY};
+use crate::body::generalized_inverse::{GeneralizedInverse, GIVEN, PROBE, UNLIKELY};
 use crate::body::host::HostMultiple;
 use crate::body::null_space::{largest, verified, NullSpaceInput, Products};
 use crate::body::random::Random;
@@ -27,7 +27,7 @@ impl GeneralizedInverse {
     pub fn of_host(k: HostMultiple, given: &NullSpaceInput, tolerance: f64) -> Result<Self> {
         let null_space = verified(&k, &k.roots()?, given, tolerance)?;
         Probe::new(&k, &null_space)?.judge()?;
-        Ok(Self { null_space, fixing: Vec::new(), gap: None, factor: Factor::Host(k) })
+        Ok(Self { null_space, rounding: GIVEN, fixing: Vec::new(), gap: None, factor: Factor::Host(k) })
     }
 }
 

@@ -29,6 +29,9 @@ pub struct NullSpaceInput {
 const DEPENDENT: f64 = 1e-10;
 /// A candidate motion belongs to the null space when `|D^-1 K v|` is this small against `|v|`.
 const CANDIDATE: f64 = 1e-11;
+/// `|A z|` of a unit vector z that is zero but for rounding, also where its terms are no more than that: z of dofs
+/// without stiffness.
+const ROUNDING: f64 = 64.0 * f64::EPSILON;
 /// Entries that cancelled to this fraction of their terms are zero (supports of 1e30 would multiply them).
 const CANCELLED: f64 = 1e-12;
 
@@ -70,7 +73,7 @@ pub fn verified<K: Products>(k: &K, root: &[f64], input: &NullSpaceInput, tolera
     }
 }
 
-/// `|A z| <= tolerance | |A| |z| |` for an orthonormal basis z of the span of `D^1/2 R`.
+/// `|A z| <= tolerance | |A| |z| |`, or rounding, for an orthonormal basis z of the span of `D^1/2 R`.
 fn exact<K: Products>(k: &K, root: &[f64], vectors: &Matrix, tolerance: f64) -> Result<Matrix> {
     let mut basis = vectors.clone();
     for j in 0..basis.cols {
@@ -87,8 +90,9 @@ fn exact<K: Products>(k: &K, root: &[f64], vectors: &Matrix, tolerance: f64) -> 
     let (image, terms) = k.mul_columns(&basis)?;
     let weight = |i: usize| 1.0 / k.metric(i, 1.0);
     for j in 0..basis.cols {
-        let found = ratio(weighted_norm(image.col(j), weight), weighted_norm(terms.col(j), weight));
-        if found.is_nan() || found > tolerance {
+        let left = weighted_norm(image.col(j), weight);
+        let found = ratio(left, weighted_norm(terms.col(j), weight));
+        if found.is_nan() || found > tolerance && left > ROUNDING {
             let what = format!("not a null space: |K R| = {found:.1e} {} exceeds {tolerance:.1e}", K::TERMS);
             return Err(Error::new(Kind::NullSpace, what)
                 .dof(largest(image.col(j), weight))
@@ -183,6 +187,17 @@ mod tests {
         let r = verified(&k, &translation(50, Modes::Exact), 1e-8).unwrap();
         let length: f64 = (0..50).map(|i| k.metric(i, 1.0) * r.get(i, 0) * r.get(i, 0)).sum();
         assert!((length - 1.0).abs() < 1e-14);
+    }
+
+    /// What orthonormalisation leaves of the second vector lies on the dof without stiffness, but for rounding.
+    #[test]
+    fn a_dof_without_stiffness_may_take_part_in_several_vectors() {
+        let val = [12.0, 0.0, 4.0, 0.0, 12.0, -8.0, 6.0].map(|v| v / 64.0);
+        let k = Symmetric::new(vec![0, 1, 2, 5, 7], vec![0, 1, 0, 1, 2, 2, 3], val.to_vec());
+        let (a, b) = (0.19611613513818406, 0.7844645405527366);
+        let data = vec![-2.0 * a, 1.0, 1.1766968108291044, 2.0 * b, -a, 0.0, 0.5883484054145522, b];
+        let input = NullSpaceInput { vectors: Matrix { rows: 4, cols: 2, data }, modes: Modes::Exact };
+        assert_eq!(verified(&k.into(), &input, 1e-8).unwrap().cols, 2);
     }
 
     #[test]

@@ -186,7 +186,7 @@ impl Dual {
             for (k, mode) in s.modes.clone().enumerate() {
                 let (motion, f) = (s.kplus.null_space.col(k), &f[s.range.clone()]);
                 let size = norm_max(motion) * f.iter().map(|f| f.abs()).sum::<f64>();
-                e[mode] = Some(dot(motion, f)).filter(|e| e.abs() > ROUNDING * size).unwrap_or(0.0);
+                e[mode] = Some(dot(motion, f)).filter(|e| e.abs() > s.kplus.rounding * size).unwrap_or(0.0);
             }
         }
         e
@@ -246,7 +246,7 @@ fn coarse(subdomains: &[Subdomain], m: usize, modes: usize) -> Csr {
             for (k, &i) in s.rows.iter().enumerate() {
                 let entry = s.matrix.row_dot(k, motion);
                 let size = fastest * s.matrix.row(k).map(|(_, v)| v.abs()).sum::<f64>();
-                if entry.abs() > ROUNDING * size {
+                if entry.abs() > s.kplus.rounding * size {
                     rows[i].push((mode, entry));
                 }
             }
@@ -256,10 +256,6 @@ fn coarse(subdomains: &[Subdomain], m: usize, modes: usize) -> Csr {
     rows.into_iter().for_each(|row| coarse.push_row(row));
     coarse
 }
-
-/// A product with a rigid motion is nothing but rounding when it is this small against the product of the
-/// sizes: the motion itself is known to rounding of its fastest dof only.
-const ROUNDING: f64 = 64.0 * f64::EPSILON;
 
 #[cfg(test)]
 mod tests {

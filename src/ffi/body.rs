@@ -32,8 +32,8 @@ pub unsafe extern "C" fn feti_body_add(p: *mut feti_problem, n: i64, body: *mut 
 /// Gives position and direction of every unknown of a body, from which candidates for its null space are made.
 ///
 /// The data is copied; calling again replaces it. Never called, and no null space given: the library finds the null space
-/// from K. Shells and beams repeat nodes with rotations. After a failure the body
-/// keeps what it had.
+/// from K. A null space that was given (feti_body_null_space) goes before it. Shells and beams repeat nodes with rotations.
+/// After a failure the body keeps what it had.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|

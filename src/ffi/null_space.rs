@@ -107,7 +107,7 @@ pub unsafe extern "C" fn feti_body_null_space_get(
 
 /// Reads the fixing unknowns of a body: with them fixed, K has full rank.
 ///
-/// Runs feti_setup when it is due. FETI_UNSUPPORTED where functions of the host stand for the matrix. After a failure
+/// Runs feti_setup when it is due. FETI_UNSUPPORTED where K+ is the host's (feti_body_operator). After a failure
 /// nothing is written.
 ///
 /// | argument | in/out | shape | rule |

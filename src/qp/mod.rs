@@ -24,7 +24,7 @@ pub use active_set::{active_set, settle, Attempt, Direct, Settled};
 pub use coarse::undetermined;
 pub use conjugate::MOST as KEPT;
 pub use face::Face;
-pub use proportioning::{minimise, Judge, Limits, Observer, Progress, Solution, StepKind, Verdict};
+pub use proportioning::{minimise, not_held, Judge, Limits, Observer, Progress, Solution, StepKind, Verdict};
 pub use smalbe::smalbe;
 
 use crate::error::Result;

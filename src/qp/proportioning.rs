@@ -5,7 +5,7 @@ use crate::error::{Error, Kind, Result};
 use crate::linalg::vector::norm;
 use crate::qp::coarse::Coarse;
 use crate::qp::iterate::Iterate;
-use crate::qp::nnls::nearest;
+use crate::qp::nnls::{nearest, Nearest};
 use crate::qp::projection::project;
 use crate::qp::steps::Step;
 use crate::qp::{Counts, Qp};
@@ -121,11 +121,7 @@ pub fn minimise(
     let found = nearest(&qp, &mut coarse)?;
     let margin = found.margin;
     if margin >= MARGINAL {
-        let (coarse_solves, coarse_factorisations) = (coarse.solves, coarse.factorisations);
-        let counts = Counts { coarse_solves, coarse_factorisations, ..Counts::default() };
-        let verdict = Verdict::Infeasible { direction: found.residual, margin };
-        let alpha = vec![0.0; qp.e.len()];
-        return Ok(Solution { x: found.point, alpha, undetermined: 0, scale: 0.0, verdict, counts });
+        return Ok(infeasible(&qp, &coarse, found));
     }
     let held = coarse.image(&found.point);
     let qp = if margin > ROUNDING { Qp { e: &held, ..qp } } else { qp };
@@ -134,6 +130,23 @@ pub fn minimise(
         solution.verdict = Verdict::Marginal;
     }
     Ok(solution)
+}
+
+/// The verdict where no x balances e, for a method that does not ask.
+pub fn not_held(qp: &Qp, start: &[f64]) -> Result<Option<Solution>> {
+    let mut coarse = Coarse::new(qp.g_transposed)?;
+    if first_point(qp, &mut coarse, start)?.is_some() {
+        return Ok(None);
+    }
+    let found = nearest(qp, &mut coarse)?;
+    Ok((found.margin >= MARGINAL).then(|| infeasible(qp, &coarse, found)))
+}
+
+fn infeasible(qp: &Qp, coarse: &Coarse, found: Nearest) -> Solution {
+    let (coarse_solves, coarse_factorisations) = (coarse.solves, coarse.factorisations);
+    let counts = Counts { coarse_solves, coarse_factorisations, ..Counts::default() };
+    let verdict = Verdict::Infeasible { direction: found.residual, margin: found.margin };
+    Solution { x: found.point, alpha: vec![0.0; qp.e.len()], undetermined: 0, scale: 0.0, verdict, counts }
 }
 
 /// The feasible point nearest to `start`: on the face of its zeros, the active set it brings along, where that

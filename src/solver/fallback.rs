@@ -2,7 +2,7 @@
 
 use crate::error::Result;
 use crate::qp::paper::algorithm_3;
-use crate::qp::{active_set, minimise, smalbe, Direct, Judge, Limits, Qp, Solution, Verdict};
+use crate::qp::{active_set, minimise, not_held, smalbe, Direct, Judge, Limits, Qp, Solution, Verdict};
 use crate::solver::log::{Log, LogLevel};
 use crate::solver::paper;
 use crate::solver::watch::Watch;
@@ -30,7 +30,7 @@ pub(super) fn solve_dual(
         return algorithm_3(Qp { preconditioner: None, ..qp }, start, &parameters, judge, watch);
     }
     if settings.method == c"smalbe" {
-        return smalbe(qp, start, limits, judge, watch);
+        return not_held(&qp, start)?.map_or_else(|| smalbe(qp, start, limits, judge, watch), Ok);
     }
     let first = minimise(qp, start, limits, judge, watch)?;
     let mut best = or_directly(first, qp, means.direct, judge, &mut watch.log)?;
@@ -107,6 +107,7 @@ mod tests {
     use crate::error::{Error, Kind};
     use crate::qp::Counts;
     use crate::solver::solve::tests::two_springs;
+    use crate::solver::{Problem, RowKind, RowsInput, SparseInput, Storage};
     use std::sync::{Arc, Mutex};
 
     fn ended(verdict: Verdict, products: usize) -> Solution {
@@ -156,6 +157,28 @@ mod tests {
                 let line = "fallback after 0 steps: the limit of steps is reached; direct solution on active sets follows";
                 assert_eq!(*lines.lock().unwrap(), [line].repeat(usize::from(limit > 0)));
             });
+        }
+    }
+
+    /// A free spring, pulled.
+    #[test]
+    fn both_methods_say_that_nothing_holds_the_load() {
+        for method in ["proportioning", "smalbe"] {
+            let mut problem = Problem::new();
+            let body = problem.add_body(2).unwrap();
+            let k = SparseInput {
+                ptr: &[0, 1, 3],
+                col: &[0, 0, 1],
+                val: &[1.0, -1.0, 1.0],
+                storage: Storage::Lower,
+            };
+            problem.set_stiffness(body, k).unwrap();
+            problem.set_load(body, &[1.0, 1.0]).unwrap();
+            problem.set_str("method", method).unwrap();
+            assert_eq!(problem.solve().unwrap_err().kind, Kind::LoadNotHeld, "{method}: no row");
+            let row = RowsInput { ptr: &[0, 1], body: None, dof: &[1], val: &[-1.0], rhs: None };
+            problem.add_rows(RowKind::Inequality, row).unwrap();
+            assert_eq!(problem.solve().unwrap_err().kind, Kind::LoadNotHeld, "{method}: the wrong side");
         }
     }
 }

@@ -94,10 +94,18 @@ fn states(problem: &Problem, ready: &Ready, lambda: &[f64], u: &[f64], gaps: &[f
     let small_gap = limit * sizes.fold(0.0, f64::max);
     let force = |i: usize| unscaled(lambda[i], ready.rows.scale[i]);
     let small_force = limit * (0..rows.len()).map(|i| force(i).abs()).fold(0.0, f64::max);
+    // a rigid row without entries has no scale
+    let is_open = |i: usize| {
+        if ready.rows.scale[i] > 0.0 {
+            ready.rows.scale[i] * gaps[i] > small_gap
+        } else {
+            gaps[i] > 0.0
+        }
+    };
     let state = |i: usize| {
         if force(i) > small_force {
             RowState::Closed
-        } else if ready.rows.scale[i] * gaps[i] > small_gap {
+        } else if is_open(i) {
             RowState::Open
         } else {
             RowState::Weak

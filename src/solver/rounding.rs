@@ -1,8 +1,8 @@
-//! What rounding of the loads explains in the energies of an answer.
+//! What rounding of the loads explains in the gaps and the energies of an answer.
 //!
 //! f - B'lambda - H'mu is known to rounding of its terms, and u to rounding of what they would move. Where loads and
-//! contact forces all but cancel, as in the last increments of Newton's method, that is far more than u itself: its
-//! energies are lost, although every force and every gap is right to rounding.
+//! forces of the rows all but cancel, as in the last increments of Newton's method or where loads act on held dofs alone,
+//! that is far more than u itself: its gaps and energies are lost, although every force is right to rounding.
 
 use crate::error::Result;
 use crate::linalg::memory::zeros;
@@ -10,7 +10,7 @@ use crate::linalg::vector::dot;
 use crate::solver::certificate::{certify, metric, Answer, Certificate, Data};
 use crate::solver::setup::Ready;
 
-/// The certificate of an answer; where its energies alone fail, with the work of the loads among their noise.
+/// The certificate of an answer; where its gaps or energies alone fail, with the work of the loads in their noise.
 pub fn certify_to_rounding(
     data: &mut Data,
     answer: Answer,
@@ -18,7 +18,7 @@ pub fn certify_to_rounding(
     threads: usize,
 ) -> Result<Certificate> {
     let certificate = certify(data, answer)?;
-    if data.work_of_loads.is_some() || !certificate.only_energies_fail() {
+    if data.work_of_loads.is_some() || !certificate.only_motions_fail() {
         return Ok(certificate);
     }
     data.work_of_loads = Some(work_of_loads(data, answer.u.len(), ready, threads)?);
@@ -54,7 +54,7 @@ fn work_of_loads(data: &Data, unknowns: usize, ready: &Ready, threads: usize) ->
 
 #[cfg(test)]
 mod tests {
-    use crate::solver::{Outcome, Problem, RowKind, RowsInput, SparseInput, Storage};
+    use crate::solver::{Modes, Outcome, Problem, RowKind, RowsInput, SparseInput, Storage};
 
     /// A chain of n springs 1, its first end held, pushed by 1 at the other against an obstacle `1e-12` away: the load alone
     /// would move it by n, so that rounding of load and contact force moves it by n eps, far more than what the last
@@ -89,5 +89,53 @@ mod tests {
         assert!((lambda[0] - 1.0).abs() <= 1e-13 && (u[n - 1] - 1e-12).abs() <= 1e-10);
         u[n - 1] += 1e-7;
         assert!(!problem.check(&u, &lambda, &[]).unwrap().passed());
+    }
+
+    /// Free chains of n springs, the load on the first dof of the first, which a row holds; the second glued to its end.
+    /// Nothing moves, and no row but the first carries a force.
+    #[test]
+    fn a_load_on_held_dofs_alone_is_certified() {
+        for n in [2, 3, 9, 40, 1000] {
+            for kind in [RowKind::Inequality, RowKind::Equality] {
+                let mut problem = Problem::new();
+                let ptr: Vec<usize> = (0..=n).map(|i| if i == 0 { 0 } else { 2 * i - 1 }).collect();
+                let stiffness = |i: usize| 3.1 + 0.37 * i as f64;
+                let (mut col, mut val) = (Vec::new(), Vec::new());
+                for i in 0..n {
+                    let left = if i > 0 { stiffness(i - 1) } else { 0.0 };
+                    if i > 0 {
+                        col.push(i as i64 - 1);
+                        val.push(-left);
+                    }
+                    col.push(i as i64);
+                    val.push(left + if i + 1 < n { stiffness(i) } else { 0.0 });
+                }
+                for body in 0..2 {
+                    problem.add_body(n).unwrap();
+                    let k = SparseInput { ptr: &ptr, col: &col, val: &val, storage: Storage::Lower };
+                    problem.set_stiffness(body, k).unwrap();
+                    problem.set_null_space(body, n, 1, &vec![1.0; n], n, Modes::Exact).unwrap();
+                }
+                let mut load = vec![0.0; n];
+                load[0] = -2.7;
+                problem.set_load(0, &load).unwrap();
+                let held = RowsInput { ptr: &[0, 1], body: None, dof: &[0], val: &[-1.0], rhs: None };
+                problem.add_rows(kind, held).unwrap();
+                let dof = [n as i64 - 1, n as i64];
+                let glued = RowsInput { ptr: &[0, 2], body: None, dof: &dof, val: &[0.7, -0.7], rhs: None };
+                problem.add_rows(RowKind::Equality, glued).unwrap();
+                let report = problem.solve().unwrap();
+                assert!(matches!(report.outcome, Outcome::Solved), "{n}: {:?}", report.certificate);
+                let (lambda, mu) =
+                    (problem.multipliers(RowKind::Inequality), problem.multipliers(RowKind::Equality));
+                let (lambda, mu) = (lambda.unwrap().to_vec(), mu.unwrap().to_vec());
+                assert!(
+                    (lambda.iter().chain(&mu).sum::<f64>() - 2.7).abs() < 1e-10,
+                    "{n}: {lambda:?} {mu:?}"
+                );
+                let moved = vec![-1e-6; 2 * n];
+                assert!(!problem.check(&moved, &lambda, &mu).unwrap().passed(), "{n}");
+            }
+        }
     }
 }

@@ -67,17 +67,15 @@ impl Problem {
     }
 
     pub(super) fn set_up(&mut self, watch: &mut Watch) -> Result<()> {
+        let begun = Instant::now();
+        self.check_complete()?;
+        self.check_empty_rows()?;
         if self.is_set_up() {
             return Ok(());
         }
         if self.ready.is_some() {
             self.forget_dual();
         }
-        let begun = Instant::now();
-        self.check_complete()?;
-        self.contact.check_empty_rows(RowKind::Inequality).map_err(|e| empty_row_contradicts(e, 0))?;
-        let first = self.contact.len();
-        self.equalities.check_empty_rows(RowKind::Equality).map_err(|e| empty_row_contradicts(e, first))?;
         let unit = self.unit();
         self.check_compliance(unit)?;
         let rows = DualRows::of(self, unit, paper::is_asked(&self.settings))?;
@@ -108,6 +106,13 @@ impl Problem {
             }
         }
         Ok(())
+    }
+
+    /// Also where all is set up: right-hand sides may have changed since.
+    fn check_empty_rows(&self) -> Result<()> {
+        self.contact.check_empty_rows(RowKind::Inequality).map_err(|e| empty_row_contradicts(e, 0))?;
+        let first = self.contact.len();
+        self.equalities.check_empty_rows(RowKind::Equality).map_err(|e| empty_row_contradicts(e, first))
     }
 
     /// A compliance times the stiffness of the bodies must be a number.

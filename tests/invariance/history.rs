@@ -1,7 +1,8 @@
 //! Threads and earlier solves: the same bits every time.
 
 use decks::{Blocks, Cube, Deck, Glue};
-use feti_contact::solver::{Problem, RowKind};
+use feti_contact::error::Kind;
+use feti_contact::solver::{Problem, RowKind, RowState};
 
 use crate::answer::{decks, Answer};
 use crate::hand_over;
@@ -89,4 +90,26 @@ fn a_body_that_was_changed_and_changed_back_gives_the_bits_of_the_first_time() {
         hand_over::set_body(&mut problem, 0, &deck.bodies[0]).unwrap();
         Answer::from(&mut problem, &deck.name).assert_same(&first, &deck.name);
     }
+}
+
+/// 0 <= c and 0 = h hold by themselves or not at all, also where c and h come after a setup.
+#[test]
+fn right_hand_sides_of_rows_without_entries_are_looked_at_in_every_solve() {
+    let mut deck = decks().swap_remove(0);
+    deck.contact.push(&[], 0.5);
+    deck.equalities.push(&[], 0.0);
+    let mut problem = hand_over::problem(&deck).unwrap();
+    let (row, equality) = (deck.contact.len() - 1, deck.equalities.len() - 1);
+    problem.solve().unwrap();
+    assert_eq!(problem.active().unwrap()[row], RowState::Open);
+    for (kind, row, good, bad) in
+        [(RowKind::Inequality, row, 0.0, -0.5), (RowKind::Equality, equality, 0.0, 0.5)]
+    {
+        problem.set_rhs(kind, row, &[bad]).unwrap();
+        let error = problem.solve().unwrap_err();
+        assert_eq!((error.kind, error.place.row), (Kind::GapsContradict, Some(row)));
+        problem.set_rhs(kind, row, &[good]).unwrap();
+        problem.solve().unwrap();
+    }
+    assert_eq!(problem.active().unwrap()[row], RowState::Weak);
 }

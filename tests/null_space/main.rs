@@ -1,6 +1,7 @@
 //! Null spaces found from the stiffness alone: bodies whose motions without stiffness are known by construction.
 
 mod bodies;
+mod rows;
 
 use bodies::{bar, chain, cube, frame, held, membrane};
 use decks::{Block, Csr};
