@@ -169,14 +169,19 @@ contains
     integers = c_loc(i(1))
   end function
 
-  !> Text of the thread's last error, blank padded or cut.
-  recursive subroutine give_last_error(text)
+  !> Text of the thread's last error, blank padded or cut; none where another status is asked for: FTEMEM of the face itself.
+  recursive subroutine give_last_error(status, text)
+    integer, intent(in) :: status
     character(len=*), intent(inout) :: text
     character(kind=c_char), allocatable, target :: buffer(:)
+    type(feti_error_detail) :: found
     integer(c_int64_t) :: length
 
     allocate (buffer(feti_last_error(c_null_ptr, 0_c_int64_t) + 1))
     length = feti_last_error(c_loc(buffer), size(buffer, kind=c_int64_t))
+    found%struct_size = storage_size(found, c_int64_t) / 8
+    if (feti_last_error_detail(found) /= FETI_OK) return
+    if (status > FTEARG .and. status /= int(found%status)) return
     text = f_text(c_loc(buffer))
   end subroutine
 

@@ -77,7 +77,7 @@ recursive subroutine fterr(ierr, text)
   if (status <= FTEISZ .and. status >= FTEFIT) then
     text = own_text(FTEISZ - status + 1)
   else
-    call give_last_error(text)
+    call give_last_error(status, text)
     if (text == ' ') text = f_text(feti_status_text(narrow(status)))
   end if
 end subroutine

@@ -1,4 +1,5 @@
 !> A problem as one file, of module feti_contact. A host uses feti_contact, not this module.
+!> The name `path` of the file is used without trailing blanks.
 !> `stat` and `errmsg`: see feti_contact_base.
 module feti_contact_file
   use feti_contact_base, only: c_text, feti_problem, finish, handle_of

@@ -24,7 +24,8 @@ module feti_contact_options
     module procedure set_real, set_int32, set_int64, set_text
   end interface
 
-  !> Value of the option `name`; the variable has the type of the option and is untouched by a failed call.
+  !> Value of the option `name`; the variable has the type of the option, character(len=:), allocatable for a text, and is
+  !> untouched by a failed call.
   interface get_option
     module procedure get_real, get_int32, get_int64, get_text
   end interface

@@ -33,6 +33,12 @@ C     half cut off is refused.
       ICOL(2) = L + 1
       CALL FTBSTF(IP, 2, 2, IPTR, ICOL, A, FTLOWR, IERR)
       CALL HOLDS(IERR .EQ. FTEARG - 5, 'column is cut')
+C     The text is that of the call, not one of an earlier call.
+      N = L * 65536 * 4096
+      CALL FTBCMP(IP, 2, N, ICOL, IERR)
+      CALL FTERR(IERR, TEXT)
+      CALL HOLDS(IERR .EQ. FTEMEM .AND. INDEX(TEXT, 'emory') .GT. 0,
+     &  TEXT)
       N = L + IP
       CALL FTSTUP(N, IERR)
       CALL HOLDS(IERR .EQ. FTEHDL, 'handle is cut')
