@@ -439,7 +439,7 @@ typedef struct feti_error_detail {
    */
   int64_t entry;
   /**
-   * The number found; NaN: does not apply.
+   * The number found, an index counted as in texts (option index_base); NaN: does not apply.
    */
   double value;
   /**

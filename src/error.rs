@@ -57,6 +57,8 @@ pub struct Place {
     pub entry: Option<usize>,
     /// Position in a text or a file.
     pub byte: Option<usize>,
+    /// The number found where it is an index; texts and details count it from `base`.
+    pub index: Option<i64>,
     /// The number found ...
     pub value: Option<f64>,
     /// ... and the number it had to stay within.
@@ -135,6 +137,12 @@ impl Error {
 
     pub fn byte(mut self, byte: usize) -> Self {
         self.place.byte = Some(byte);
+        self
+    }
+
+    /// The number found is the index `number`, from 0.
+    pub fn index(mut self, number: i64) -> Self {
+        self.place.index = Some(number);
         self
     }
 

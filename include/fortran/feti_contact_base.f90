@@ -5,7 +5,7 @@
 !>   stat present: it gets the status (0 is FETI_OK); a failed call changes nothing and can be repeated corrected.
 !>   stat absent:  any status but FETI_OK prints the text on error_unit and ends the program with error stop 1.
 !>   errmsg:       gets the text when the status is not FETI_OK, cut or padded to its length; untouched otherwise.
-!> No function has a result of deferred length: gfortran keeps that length in static memory of the caller, where threads mix it up.
+!> No function has a result of deferred length: gfortran keeps it in static memory of the caller, where threads mix it up.
 !> Arrays that do not fit each other (a row pointer that points behind the entries) are refused by the face itself:
 !> status and errmsg tell it, feti_last_error and feti_last_error_detail do not.
 module feti_contact_base
@@ -111,7 +111,7 @@ module feti_contact_base
     integer :: argument = 0
     !> Body, component of the body, unknown of the body, row, position in the array; 0: does not apply.
     integer(c_int64_t) :: body = 0, component = 0, dof = 0, row = 0, entry = 0
-    !> The figure found and the figure allowed; NaN: does not apply.
+    !> The figure found, an index from 1, too, and the figure allowed; NaN: does not apply.
     real(c_double) :: value = 0, limit = 0
     !> Name of the C function, blank padded.
     character(len=40) :: function = ''

@@ -151,7 +151,7 @@ fn column(input: &SparseInput<'_>, split: bool, i: usize, at: usize) -> Result<u
         Error::argument("col", format!("the column is outside the {n} unknowns of the body"))
             .row(i)
             .entry(at)
-            .value(input.col[at] as f64)
+            .index(input.col[at])
     })?;
     let refused = |what: String| Err(Error::argument("col", what).row(i).dof(col).entry(at));
     match outside(input.storage, i, col) {

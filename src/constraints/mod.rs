@@ -207,14 +207,14 @@ fn unknown(input: RowsInput<'_>, at: usize, offsets: &[usize]) -> Result<usize> 
         None => (0, offsets[bodies]),
         Some(body) => {
             let body = usize::try_from(body[at]).ok().filter(|&b| b < bodies).ok_or_else(|| {
-                Error::argument("body", format!("there are {bodies} bodies")).value(body[at] as f64)
+                Error::argument("body", format!("there are {bodies} bodies")).index(body[at])
             })?;
             (offsets[body], offsets[body + 1])
         }
     };
     let dof = usize::try_from(input.dof[at]).ok().filter(|&dof| dof < end - start).ok_or_else(|| {
         let what = format!("the dof is outside the {} unknowns", end - start);
-        Error::argument("dof", what).value(input.dof[at] as f64)
+        Error::argument("dof", what).index(input.dof[at])
     })?;
     Ok(start + dof)
 }

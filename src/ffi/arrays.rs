@@ -23,7 +23,7 @@ pub(super) fn count(value: i64, name: &'static str) -> Result<usize> {
 /// A number of a body or row, counted from 0.
 pub(super) fn id(value: i64, name: &'static str) -> Result<usize> {
     usize::try_from(value)
-        .map_err(|_| Error::argument(name, format!("{value}: negative")).value(value as f64))
+        .map_err(|_| Error::argument(name, format!("{name} is below the first number")).index(value))
 }
 
 /// A size that is known: "n is 5, the body has 7".
@@ -198,7 +198,7 @@ pub(super) unsafe fn text<'a>(from: *const c_char, name: &'static str) -> Result
     let bytes = unsafe { CStr::from_ptr(from) };
     bytes.to_str().map_err(|error| {
         let at = error.valid_up_to();
-        Error::argument(name, format!("byte {at} of the text is not UTF-8")).entry(at)
+        Error::argument(name, "the text is not UTF-8").byte(at)
     })
 }
 

@@ -50,6 +50,7 @@ impl Record {
 fn detail(record: Option<&Record>) -> feti_error_detail {
     let place = record.map(|record| record.place).unwrap_or_default();
     let number = |value: Option<usize>| value.map_or(-1, |value| value as i64);
+    let index = place.index.map(|index| index.saturating_add(place.base) as f64);
     let mut function = [0; 40];
     let name = record.map_or("", |record| record.function);
     for (to, from) in function[..39].iter_mut().zip(name.bytes()) {
@@ -64,7 +65,7 @@ fn detail(record: Option<&Record>) -> feti_error_detail {
         dof: number(place.dof),
         row: number(place.row),
         entry: number(place.byte.or(place.entry)),
-        value: place.value.unwrap_or(f64::NAN),
+        value: index.or(place.value).unwrap_or(f64::NAN),
         limit: place.limit.unwrap_or(f64::NAN),
         function,
     }

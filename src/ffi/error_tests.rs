@@ -87,6 +87,33 @@ fn texts_count_from_the_base_of_the_host_and_details_from_zero() {
     assert_eq!((last_detail().body, last_detail().entry), (0, 0));
 }
 
+/// One equality row of one entry.
+fn add_row(p: *mut feti_problem, ptr: &[i32; 2], dof: &[i32; 1], val: &[f64; 1], base: i32) -> i32 {
+    let (body, rhs, first) = (null_mut(), null_mut(), null_mut());
+    // SAFETY: the arrays of one row with one entry.
+    unsafe {
+        let (ptr, dof, val) = (ptr.as_ptr(), dof.as_ptr(), val.as_ptr());
+        feti_rows_add_i32(p, FETI_EQUALITY, 1, ptr, body, dof, val, base, rhs, first)
+    }
+}
+
+#[test]
+fn a_refused_index_is_told_as_the_host_counts() {
+    let p = Owned::with_body();
+    for base in [0, 1] {
+        assert_eq!(p.set(c"index_base", base), FETI_OK);
+        assert_eq!(feti_state_drop(p.0, 4), -102);
+        assert_eq!(last_error(), "feti_state_drop: no state has this number");
+        assert_eq!(last_detail().value, (4 + base) as f64);
+        assert_eq!(feti_state_drop(p.0, -1), -102);
+        assert_eq!(last_error(), "feti_state_drop: id is below the first number");
+        assert_eq!(last_detail().value, (base - 1) as f64);
+        let (ptr, dof, val) = ([base as i32, base as i32 + 1], [base as i32 + 7], [1.0]);
+        let added = add_row(p.0, &ptr, &dof, &val, base as i32);
+        assert_eq!((added, last_detail().value), (-106, (7 + base) as f64));
+    }
+}
+
 #[test]
 fn the_last_error_is_kept_per_thread_and_cut_to_its_room() {
     let p = Owned::with_body();

@@ -163,8 +163,8 @@ pub unsafe extern "C" fn feti_body_fixing_set(
         let mut dofs = reserved(r)?;
         for (entry, &number) in given.iter().enumerate() {
             dofs.push(usize::try_from(number).map_err(|_| {
-                let text = format!("unknown {number} is below 0");
-                Error::argument("dof", text).body(body).entry(entry).value(number as f64).limit(0.0)
+                let text = "the dof is below the first unknown";
+                Error::argument("dof", text).body(body).entry(entry).index(number)
             })?);
         }
         problem.set_fixing(body, Some(dofs.as_slice()).filter(|dofs| !dofs.is_empty()))

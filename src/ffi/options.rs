@@ -197,10 +197,8 @@ pub unsafe extern "C" fn feti_option_at(k: i64, out: *mut feti_option) -> i32 {
     without_problem(call!(feti_option_at(k, out)), || {
         let table = options();
         let found = usize::try_from(k).ok().and_then(|k| table.get(k));
-        let info = found.ok_or_else(|| {
-            let text = format!("{k}: there are {} options, counted from 0", table.len());
-            Error::argument("k", text).value(k as f64).limit(table.len() as f64 - 1.0)
-        })?;
+        let info = found
+            .ok_or_else(|| Error::argument("k", format!("there are {} options", table.len())).index(k))?;
         // SAFETY: the caller gives `struct_size` bytes.
         unsafe { Target::new(out, "out") }?.write(&described(info));
         Ok(())

@@ -45,10 +45,8 @@ pub unsafe extern "C" fn feti_phase_at(p: *mut feti_problem, k: i64, out: *mut f
     enter(p, call!(feti_phase_at(p, k, out)), |problem| {
         let phases = problem.phases();
         let found = usize::try_from(k).ok().and_then(|k| phases.get(k));
-        let phase = found.ok_or_else(|| {
-            let text = format!("{k}: there are {} phases, counted from 0", phases.len());
-            Error::argument("k", text).value(k as f64).limit(phases.len() as f64 - 1.0)
-        })?;
+        let phase = found
+            .ok_or_else(|| Error::argument("k", format!("there are {} phases", phases.len())).index(k))?;
         // SAFETY: the caller gives `struct_size` bytes.
         unsafe { Target::new(out, "out") }?.write(&feti_phase {
             struct_size: size_of::<feti_phase>() as i64,

@@ -21,7 +21,7 @@ impl Numbering {
     fn checked(&self, body: usize, numbers: &[i64]) -> Result<Vec<usize>> {
         let refused = |dof: usize, what: &str| {
             let error = Error::argument("number", what).body(body).dof(dof).entry(dof);
-            Err(error.value(numbers[dof] as f64))
+            Err(error.index(numbers[dof]))
         };
         let mut checked = reserved(numbers.len(), "the numbers of a body")?;
         for (dof, &number) in numbers.iter().enumerate() {
@@ -142,7 +142,7 @@ impl Problem {
             let Some((body, dof)) = found else {
                 let row = ptr.partition_point(|&start| start <= entry) - 1;
                 let error = Error::argument("dof", "no unknown has this number").row(row).entry(entry);
-                return Err(error.value(number as f64));
+                return Err(error.index(number));
             };
             places.push((offsets[*body] + dof) as i64);
         }

@@ -170,9 +170,14 @@ impl Problem {
     /// change neither forces nor displacements, only the course of the methods in paper units.
     pub fn set_fixing(&mut self, body: usize, dofs: Option<&[usize]>) -> Result<()> {
         let order = self.order(body)?;
-        if let Some(entry) = dofs.and_then(|dofs| dofs.iter().position(|&dof| dof >= order)) {
+        let beyond = dofs.into_iter().flatten().enumerate().find(|(_, dof)| **dof >= order);
+        if let Some((entry, &dof)) = beyond {
             let what = format!("the dof is outside the {order} unknowns");
-            return Err(Error::argument("dof", what).body(body).entry(entry).limit(order as f64));
+            return Err(Error::argument("dof", what)
+                .body(body)
+                .entry(entry)
+                .index(dof as i64)
+                .limit(order as f64));
         }
         let unchanged = self.slot(body)?.body.fixing.as_deref() == dofs;
         let slot = self.changed(body, unchanged)?;
@@ -357,7 +362,7 @@ impl Problem {
 }
 
 fn no_body(body: usize, bodies: usize) -> Error {
-    Error::argument("body", format!("there are {bodies} bodies")).body(body).value(body as f64)
+    Error::argument("body", format!("there are {bodies} bodies")).body(body).index(body as i64)
 }
 
 pub(super) fn check_ld(name: &'static str, ld: usize, least: usize) -> Result<()> {

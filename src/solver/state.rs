@@ -165,5 +165,5 @@ fn copy_of(load: Option<&Vec<f64>>) -> Result<Option<Vec<f64>>> {
 }
 
 fn no_state(number: usize) -> Error {
-    Error::argument("id", format!("{number}: no state has this number")).value(number as f64)
+    Error::argument("id", "no state has this number").index(number as i64)
 }

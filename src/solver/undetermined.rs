@@ -29,7 +29,7 @@ impl Problem {
         let Some(amplitudes) = amplitudes else {
             let number = self.open_motions.as_ref().map_or(0, |all| all.cols);
             let what = format!("{number} motions are undetermined");
-            return Err(Error::argument("k", what).value(k as f64).limit(number as f64));
+            return Err(Error::argument("k", what).index(k as i64).limit(number as f64));
         };
         let mut v = self.ready()?.dual.rigid_motion(amplitudes, self.counts().dofs);
         let fastest = (0..v.len()).fold(0, |best, i| if v[i].abs() > v[best].abs() { i } else { best });

@@ -39,7 +39,7 @@ static void fixing(feti_problem *p)
     REFUSED(p, 2, ANY, ANY, ANY, ANY, "feti_body_fixing_set", "", feti_body_fixing_set(p, 2, 1, far));
     REFUSED(p, 3, ANY, ANY, ANY, ANY, "feti_body_fixing_set", "", feti_body_fixing_set(p, BLOCK, -1, far));
     REFUSED(p, 4, BLOCK, ANY, ANY, 0, "feti_body_fixing_set", "2", feti_body_fixing_set(p, BLOCK, 1, far));
-    REFUSED(p, 4, BLOCK, ANY, ANY, 0, "feti_body_fixing_set", "-1", feti_body_fixing_set(p, BLOCK, 1, below));
+    REFUSED(p, 4, BLOCK, ANY, ANY, 0, "feti_body_fixing_set", "below the first", feti_body_fixing_set(p, BLOCK, 1, below));
 }
 
 /* Either unknown of the block may be held in K+; the answer is the same. Too many are a null space of another size. */

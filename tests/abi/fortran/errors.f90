@@ -49,6 +49,15 @@ contains
     call require(detail%argument == k .and. detail%status == FETI_ARGUMENT - k, function // ': wrong argument in the detail')
   end subroutine
 
+  !> The index that was refused, as the program gave it; from 1.
+  subroutine expect_index(number)
+    integer, intent(in) :: number
+    type(feti_error_detail) :: detail
+
+    call feti_last_error_detail(detail)
+    call require(nint(detail%value) == number, trim(detail%function) // ': the detail has another index than the call')
+  end subroutine
+
   !> Spring (1 unknown, held) and block (2 unknowns, floating) with the gap 0.5 between them; force: on the rear of
   !> the block, to the left where negative.
   subroutine spring_and_block(p, force)
@@ -102,9 +111,13 @@ contains
 
     call feti_body_load(p, 33, [1.0_dp], stat, text)
     call expect_refused(2, 'feti_body_load', ['33'])
+    call expect_index(33)
+    call feti_body_load(p, 0, [1.0_dp], stat, text)
+    call expect_refused(2, 'feti_body_load', ['body is below the first number'])
 
     call feti_body_stiffness(p, 2, [1, 2, 4], [1, 1, 77], [4000.0_dp, -4000.0_dp, 4000.0_dp], FETI_LOWER, stat, text)
     call expect_refused(5, 'feti_body_stiffness_i32', ['entry 3', 'body 2 ', 'row 2  '])
+    call expect_index(77)
 
     call feti_body_stiffness(p, 2, [1, 2, 4], [2, 1, 2], [4000.0_dp, -4000.0_dp, 4000.0_dp], FETI_LOWER, stat, text)
     call expect_refused(5, 'feti_body_stiffness_i32', ['body 2', 'row 1 '])
@@ -114,9 +127,20 @@ contains
 
     call feti_rows_add(p, FETI_INEQUALITY, [1, 3], [1, 44], [1, 1], [1.0_dp, -1.0_dp], stat=stat, errmsg=text)
     call expect_refused(5, 'feti_rows_add_i32', ['row 1  ', 'entry 2'])
+    call expect_index(44)
 
     call feti_rows_add(p, FETI_INEQUALITY, [1, 3], [1, 55], [1.0_dp, -1.0_dp], stat=stat, errmsg=text)
     call expect_refused(6, 'feti_rows_add_i32', ['row 1  ', 'entry 2'])
+    call expect_index(55)
+    call feti_body_numbering(p, 2, [0, 1], stat, text)
+    call expect_refused(4, 'feti_body_numbering_i32', ['body 2 ', 'entry 1'])
+    call expect_index(0)
+    call feti_body_fixing_set(p, 2, [3], stat, text)
+    call expect_refused(4, 'feti_body_fixing_set', ['entry 1'])
+    call expect_index(3)
+    call feti_state_restore(p, 5, stat, text)
+    call expect_refused(2, 'feti_state_restore', ['no state has this number'])
+    call expect_index(5)
 
     call feti_rows_compliance(p, FETI_INEQUALITY, 1, [-0.5_dp], stat, text)
     call expect_refused(5, 'feti_rows_compliance', ['row 1  ', 'entry 1'])
