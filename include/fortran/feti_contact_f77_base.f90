@@ -75,6 +75,16 @@ contains
     narrow = int(max(-largest, min(largest, int(i, c_int64_t))), c_int32_t)
   end function
 
+  !> n; 0 where it is more than the unknowns of all bodies: the library refuses that, and the host's arrays are not looked at.
+  recursive integer(c_int64_t) function readable(ip, n)
+    integer, intent(in) :: ip, n
+    integer(c_int64_t), target :: unknowns
+
+    readable = 0
+    if (feti_counts(handle(ip), c_null_ptr, c_loc(unknowns), c_null_ptr, c_null_ptr) /= FETI_OK) return
+    if (wide(n) <= unknowns) readable = wide(n)
+  end function
+
   !> A count; one beyond the largest INTEGER is that INTEGER.
   recursive elemental integer function clipped(found)
     integer(c_int64_t), intent(in) :: found
@@ -183,6 +193,9 @@ contains
     if (status > FTEARG .and. status /= int(found%status)) return
     allocate (buffer(length + 1))
     length = feti_last_error(c_loc(buffer), size(buffer, kind=c_int64_t))
+    found%struct_size = storage_size(found, c_int64_t) / 8
+    if (feti_last_error_detail(found) /= FETI_OK) return
+    if (status > FTEARG .and. status /= int(found%status)) return
     text = f_text(c_loc(buffer))
   end subroutine
 

@@ -149,13 +149,13 @@ recursive subroutine ftbxyz(ip, ibody, idim, n, node, idir, xyz, ldx, ierr)
   integer(c_int32_t), allocatable :: nodes(:), directions(:)
   integer :: i, refused
 
-  allocate (nodes(n), directions(n), stat=refused)
+  allocate (nodes(readable(ip, n)), directions(readable(ip, n)), stat=refused)
   if (refused /= 0) then
     ierr = FTEMEM
     return
   end if
   ierr = FETI_OK
-  do i = 1, n
+  do i = 1, size(nodes)
     nodes(i) = narrow(node(i))
     directions(i) = narrow(idir(i))
     if (int(nodes(i), c_int64_t) /= wide(node(i))) ierr = FTEFIT

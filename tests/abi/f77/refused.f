@@ -47,6 +47,8 @@ C     Bodies: number, unknowns, storage, columns, null space, node.
       CALL NOT(IERR, FTEARG - 6, ' ')
       CALL FTBNUL(IP, 2, 1, 2, R, 2, 9, IERR)
       CALL NOT(IERR, FTEARG - 7, ' ')
+      CALL FTBXYZ(IP, 2, 1, 100000000, IBOD, IBOD, R, 1, IERR)
+      CALL NOT(IERR, FTEARG - 4, 'n is 100000000')
       CALL FTBXYZ(IP, 2, 4, 2, IBOD, IBOD, R, 4, IERR)
       CALL NOT(IERR, FTEARG - 3, ' ')
       CALL FTBLOD(IP, 2, 3, R, IERR)
