@@ -118,7 +118,8 @@ static void compliances(feti_problem *p)
     REFUSED(p, 3, ANY, ANY, ANY, ANY, COMPLIANCE, "0", feti_rows_compliance(p, FETI_EQUALITY, 0, 1, GAP));
     REFUSED(p, 4, ANY, ANY, ANY, ANY, COMPLIANCE, "", feti_rows_compliance(p, FETI_INEQUALITY, 0, -1, GAP));
     REFUSED(p, 5, ANY, ANY, 0, 0, COMPLIANCE, ">= 0", feti_rows_compliance(p, FETI_INEQUALITY, 0, 1, negative));
-    REFUSED(p, 5, ANY, ANY, 1, 1, COMPLIANCE, "finite", feti_rows_compliance(p, FETI_INEQUALITY, 0, 2, not_one));
+    REFUSED(p, 5, ANY, ANY, 0, 0, COMPLIANCE, "finite", feti_rows_compliance(p, FETI_INEQUALITY, 0, 1, not_one + 1));
+    REFUSED(p, 4, ANY, ANY, ANY, ANY, COMPLIANCE, "1", feti_rows_compliance(p, FETI_INEQUALITY, 0, 2, not_one));
     REFUSED(p, 5, ANY, ANY, 0, 0, COMPLIANCE, "finite", feti_rows_compliance(p, FETI_INEQUALITY, 0, 1, infinite));
 }
 
