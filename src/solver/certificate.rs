@@ -192,8 +192,9 @@ fn forces(data: &Data, answer: Answer, metric: &[f64], certificate: &mut Certifi
         totals.terms += u.iter().zip(&terms).map(|(u, t)| u.abs() * t).sum::<f64>();
 
         let loads = size(f) + size(push);
-        // forces of rows are known to rounding of the largest of all
-        let noise = (NOISE * (size(&terms) + everywhere)).min(EXCUSED * data.limit * everywhere);
+        // forces of rows are known to rounding of the largest of all: a body may have no other
+        let idle = if loads <= NOISE * everywhere { everywhere } else { 0.0 };
+        let noise = (NOISE * (size(&terms) + idle)).min(EXCUSED * data.limit * everywhere);
         let left: Vec<f64> = (0..u.len()).map(|i| strain[i] - f[i] + push[i]).collect();
         let equilibrium = entry(size(&left), loads + size(&strain), noise, data.limit, Some(p));
         replace_if_worse(&mut certificate.equilibrium, equilibrium);
@@ -203,7 +204,7 @@ fn forces(data: &Data, answer: Answer, metric: &[f64], certificate: &mut Certifi
         // u takes no part in it: however far a body has moved, its forces must balance
         let given = size(&given);
         totals.forces += given * given;
-        let noise = NOISE * (given + everywhere);
+        let noise = NOISE * (given + idle);
         replace_if_worse(&mut certificate.balance, entry(resultant, loads, noise, data.limit, Some(p)));
     }
     Ok(totals)
