@@ -75,6 +75,9 @@ impl Point {
         rows.take_forces(&forces, &mut load);
         axpy(1.0, &judge.ready.displacement(judge.threads, &load, &turn)?, &mut self.u);
         axpy(1.0, &forces, &mut self.x);
+        // what rounding has made of a force that is zero
+        let bounded = self.x.iter_mut().zip(&judge.scaled.gaps.bounded).filter(|(_, bounded)| **bounded);
+        bounded.for_each(|(x, _)| *x = x.max(0.0));
         axpy(1.0, &turn, &mut self.alpha);
         Ok(())
     }
@@ -115,6 +118,19 @@ mod tests {
                 assert_eq!(ending.certificate.worst() < before, right, "{rows:?}");
                 assert!(ending.certificate.passed());
             }
+        });
+    }
+
+    #[test]
+    fn a_force_that_rounding_has_made_negative_is_none() {
+        two_springs(0.0, |judge, qp, direct, solved| {
+            let face = Face::new(qp, direct.entries, vec![0]).unwrap().unwrap();
+            let settled = Settled { x: solved.x.clone(), alpha: vec![], undetermined: 0, face };
+            let x = vec![2.0, -1e-20];
+            let u = judge.displacement(&x, &[]).unwrap();
+            let mut point = Point { u, x, alpha: vec![] };
+            point.correct(judge, &settled).unwrap();
+            assert_eq!(point.x, [2.0, 0.0]);
         });
     }
 }
