@@ -210,14 +210,25 @@ fn forces(data: &Data, answer: Answer, metric: &[f64], certificate: &mut Certifi
     Ok(totals)
 }
 
-/// `(|f|^2 + |B'lambda + H'mu|^2)^1/2` in the metric `D^-1`, over all bodies.
+/// A: `(|f|^2 + |B'lambda + H'mu|^2)^1/2` in the metric `D^-1`, over all bodies. Without any load the forces that the motion
+/// asked for by the rows would take at their own unknowns belong to it, `|S c_-| + |S_H h|`: a body that is moved, not
+/// loaded, has no other measure of its strain.
 fn all_forces(data: &Data, reaction: &[f64], metric: &[f64]) -> f64 {
     let square = |at: usize, v: f64| v * v / metric[at];
     let loads = data.bodies.iter().flat_map(|body| {
         body.load.into_iter().flatten().enumerate().map(|(i, f)| square(body.start + i, *f))
     });
+    let loads = loads.sum::<f64>();
     let pushes = reaction.iter().enumerate().map(|(at, push)| square(at, *push));
-    (loads.sum::<f64>() + pushes.sum::<f64>()).sqrt()
+    let forces = (loads + pushes.sum::<f64>()).sqrt();
+    let asked = |rows: &RowSet, motion: fn(f64) -> f64| {
+        weighted_norm(&row_scales(rows, metric, 1.0), |i| motion(rows.rhs[i]).powi(2))
+    };
+    if loads > 0.0 {
+        forces
+    } else {
+        forces + asked(data.contact, |c| c.min(0.0)) + asked(data.equalities, |h| h)
+    }
 }
 
 fn replace_if_worse(worst: &mut Entry, entry: Entry) {
