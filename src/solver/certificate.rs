@@ -173,6 +173,9 @@ fn forces(data: &Data, answer: Answer, metric: &[f64], certificate: &mut Certifi
     }
     let mut totals = Totals::default();
     let everywhere = all_forces(data, &reaction, metric);
+    // without loads the forces are as well known as the displacements that rows prescribe
+    let loaded = data.bodies.iter().filter_map(|body| body.load).flatten().any(|f| *f != 0.0);
+    let excused = if loaded { EXCUSED * data.limit * everywhere } else { f64::INFINITY };
     for (p, body) in data.bodies.iter().enumerate() {
         let range = body.start..body.start + body.stiffness.order();
         let none = vec![0.0; if body.load.is_none() { range.len() } else { 0 }];
@@ -191,7 +194,7 @@ fn forces(data: &Data, answer: Answer, metric: &[f64], certificate: &mut Certifi
 
         let loads = size(f) + size(push);
         // forces of rows are known to rounding of the largest of all
-        let noise = (NOISE * (size(&terms) + everywhere)).min(EXCUSED * data.limit * everywhere);
+        let noise = (NOISE * (size(&terms) + everywhere)).min(excused);
         let left: Vec<f64> = (0..u.len()).map(|i| strain[i] - f[i] + push[i]).collect();
         let equilibrium = entry(size(&left), loads + size(&strain), noise, data.limit, Some(p));
         replace_if_worse(&mut certificate.equilibrium, equilibrium);
@@ -201,7 +204,7 @@ fn forces(data: &Data, answer: Answer, metric: &[f64], certificate: &mut Certifi
         // u takes no part in it: however far a body has moved, its forces must balance
         let given = size(&given);
         totals.forces += given * given;
-        let noise = NOISE * (given + everywhere);
+        let noise = NOISE * (given + everywhere + if loaded { 0.0 } else { size(&terms) });
         replace_if_worse(&mut certificate.balance, entry(resultant, loads, noise, data.limit, Some(p)));
     }
     Ok(totals)

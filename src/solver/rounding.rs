@@ -138,4 +138,19 @@ mod tests {
             }
         }
     }
+
+    /// A free spring moved by the equality row: nothing strains it, its forces are rounding.
+    #[test]
+    fn a_body_that_a_row_moves_without_load_is_certified() {
+        let mut problem = Problem::new();
+        problem.add_body(3).unwrap();
+        let val = [3.1, -3.1, 6.57, -3.47, 3.47];
+        let k = SparseInput { ptr: &[0, 1, 3, 5], col: &[0, 0, 1, 1, 2], val: &val, storage: Storage::Lower };
+        problem.set_stiffness(0, k).unwrap();
+        let row = RowsInput { ptr: &[0, 1], body: None, dof: &[0], val: &[1.0], rhs: Some(&[0.3]) };
+        problem.add_rows(RowKind::Equality, row).unwrap();
+        let report = problem.solve().unwrap();
+        assert!(matches!(report.outcome, Outcome::Solved), "{:?}", report.certificate);
+        assert!(!problem.check(&[0.3, 0.3, 0.30001], &[], &[0.0]).unwrap().passed());
+    }
 }
