@@ -36,6 +36,8 @@ files() {
     each "$DOCDIR" README.md CHANGELOG.md LICENSE-MIT LICENSE-APACHE LICENSE-THIRD-PARTY
     each "$DOCDIR/docs" docs/*.md
     each "$DOCDIR/docs/pictures" docs/pictures/*
+    each "$DOCDIR/examples_c" examples_c/*
+    each "$DOCDIR/examples_fortran" examples_fortran/*
     pages
 }
 
