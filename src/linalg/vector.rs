@@ -22,9 +22,12 @@ pub fn axpy(a: f64, x: &[f64], y: &mut [f64]) {
     }
 }
 
-/// `sqrt(sum w_i x_i^2)`: the norm of `x` in the metric `diag(w)`.
+/// `sqrt(sum w_i x_i^2)`: the norm of `x` in the metric `diag(w)`, of x however small or large.
 pub fn weighted_norm(x: &[f64], weight: impl Fn(usize) -> f64) -> f64 {
-    x.iter().enumerate().map(|(i, v)| weight(i) * v * v).sum::<f64>().sqrt()
+    // exact: the bits are those without it, but where squares over- or underflow
+    let size = power_of_two_below(norm_max(x).max(f64::MIN_POSITIVE));
+    let square = |(i, v): (usize, &f64)| weight(i) * (v / size) * (v / size);
+    size * x.iter().enumerate().map(square).sum::<f64>().sqrt()
 }
 
 /// `part / whole`; nothing of nothing is 0.

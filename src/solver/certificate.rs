@@ -119,14 +119,17 @@ const EXCUSED: f64 = 100.0;
 /// What the sums over all bodies need besides their own entries.
 #[derive(Default)]
 struct Totals {
-    /// `|f|_{D^-1}^2`, `u'K u`, `f'u`, `|u|'(|K||u| + |f| + |B'||lambda| + |H'||mu|)`
+    /// `|f|_{D^-1}`
     load: f64,
+    /// `u'K u`, `f'u`, `|u|'(|K||u| + |f| + |B'||lambda| + |H'||mu|)`
     strain: f64,
     work: f64,
     terms: f64,
     /// `||f| + |B'||lambda| + |H'||mu||_{D^-1}^2`: f - r is known to rounding of its terms, so u is known to rounding of
     /// what each of them would move.
     forces: f64,
+    /// There are forces.
+    acting: bool,
 }
 
 /// Fails where the host does, that has the products with K.
@@ -137,6 +140,8 @@ pub fn certify(data: &Data, answer: Answer) -> Result<Certificate> {
     let gaps = gaps(data, answer, &metric, &totals, &mut certificate);
     let size = totals.work.abs() + gaps.constrained_size;
     let noise = NOISE * (totals.terms + totals.forces.max(data.work_of_loads.unwrap_or(0.0)) + gaps.stored);
+    // energies of forces whose squares underflow are not known
+    let noise = if totals.acting && !noise.is_normal() { f64::NAN } else { noise };
     let energies = |part: f64, whole: f64, place| entry(part, whole, noise, data.limit, place);
     certificate.complementarity = energies(gaps.complementarity, size, gaps.worst_pair);
     let gap = totals.strain - totals.work + gaps.constrained;
@@ -173,7 +178,7 @@ fn forces(data: &Data, answer: Answer, metric: &[f64], certificate: &mut Certifi
         rows.matrix.mul_transposed_add(1.0, multipliers, &mut reaction);
         rows.matrix.mul_transposed_abs_add(multipliers, &mut reaction_terms);
     }
-    let mut totals = Totals::default();
+    let (mut totals, mut load) = (Totals::default(), Vec::with_capacity(data.bodies.len()));
     let everywhere = all_forces(data, &reaction, metric);
     for (p, body) in data.bodies.iter().enumerate() {
         let range = body.start..body.start + body.stiffness.order();
@@ -188,7 +193,7 @@ fn forces(data: &Data, answer: Answer, metric: &[f64], certificate: &mut Certifi
         (0..u.len()).for_each(|i| terms[i] += given[i]);
         totals.strain += dot(u, &strain);
         totals.work += dot(f, u);
-        totals.load += size(f) * size(f);
+        load.push(size(f));
         totals.terms += u.iter().zip(&terms).map(|(u, t)| u.abs() * t).sum::<f64>();
 
         let loads = size(f) + size(push);
@@ -200,35 +205,41 @@ fn forces(data: &Data, answer: Answer, metric: &[f64], certificate: &mut Certifi
         replace_if_worse(&mut certificate.equilibrium, equilibrium);
         let rest: Vec<f64> = (0..u.len()).map(|i| f[i] - push[i]).collect();
         let resultants = body.null_space.mul_transposed(&rest);
-        let resultant = (dot(&resultants, &resultants) / body.unit).sqrt();
+        let resultant = weighted_norm(&resultants, |_| 1.0 / body.unit);
         // u takes no part in it: however far a body has moved, its forces must balance
         let given = size(&given);
         totals.forces += given * given;
+        totals.acting |= given > 0.0;
         let noise = NOISE * (given + idle);
         replace_if_worse(&mut certificate.balance, entry(resultant, loads, noise, data.limit, Some(p)));
     }
+    totals.load = norm(&load);
     Ok(totals)
+}
+
+fn norm(x: &[f64]) -> f64 {
+    weighted_norm(x, |_| 1.0)
 }
 
 /// A: `(|f|^2 + |B'lambda + H'mu|^2)^1/2` in the metric `D^-1`, over all bodies. Without any load the forces that the motion
 /// asked for by the rows would take at their own unknowns belong to it, `|S c_-| + |S_H h|`: a body that is moved, not
 /// loaded, has no other measure of its strain.
 fn all_forces(data: &Data, reaction: &[f64], metric: &[f64]) -> f64 {
-    let square = |at: usize, v: f64| v * v / metric[at];
-    let loads = data.bodies.iter().flat_map(|body| {
-        body.load.into_iter().flatten().enumerate().map(|(i, f)| square(body.start + i, *f))
+    let sizes = data.bodies.iter().map(|body| {
+        let weight = |i: usize| 1.0 / metric[body.start + i];
+        let push = &reaction[body.start..body.start + body.stiffness.order()];
+        (weighted_norm(body.load.unwrap_or_default(), weight), weighted_norm(push, weight))
     });
-    let loads = loads.sum::<f64>();
-    let pushes = reaction.iter().enumerate().map(|(at, push)| square(at, *push));
-    let forces = (loads + pushes.sum::<f64>()).sqrt();
-    let asked = |rows: &RowSet, motion: fn(f64) -> f64| {
-        weighted_norm(&row_scales(rows, metric, 1.0), |i| motion(rows.rhs[i]).powi(2))
-    };
-    if loads > 0.0 {
-        forces
-    } else {
-        forces + asked(data.contact, |c| c.min(0.0)) + asked(data.equalities, |h| h)
+    let (loads, pushes): (Vec<f64>, Vec<f64>) = sizes.unzip();
+    let forces = norm(&[norm(&loads), norm(&pushes)]);
+    if loads.iter().any(|load| *load > 0.0) {
+        return forces;
     }
+    let asked = |rows: &RowSet, motion: fn(f64) -> f64| {
+        let scale = row_scales(rows, metric, 1.0);
+        norm(&(0..rows.len()).map(|i| scale[i] * motion(rows.rhs[i])).collect::<Vec<_>>())
+    };
+    forces + asked(data.contact, |c| c.min(0.0)) + asked(data.equalities, |h| h)
 }
 
 fn replace_if_worse(worst: &mut Entry, entry: Entry) {
@@ -255,15 +266,15 @@ fn gaps(data: &Data, answer: Answer, metric: &[f64], totals: &Totals, certificat
         Violation::of(data.contact, answer.u, answer.lambda, metric, |v| v.max(0.0)),
         Violation::of(data.equalities, answer.u, answer.mu, metric, f64::abs),
     );
-    let moved = totals.load.max(data.work_of_loads.unwrap_or(0.0)).sqrt();
+    let moved = totals.load.max(data.work_of_loads.unwrap_or(0.0).sqrt());
     certificate.penetration = contact.entry(data.limit, moved);
     certificate.equality = equalities.entry(data.limit, moved);
     let scaled = |i: usize, v: f64| if contact.scale[i] > 0.0 { v / contact.scale[i] } else { 0.0 };
     let force: Vec<f64> = (0..answer.lambda.len()).map(|i| scaled(i, answer.lambda[i])).collect();
     let negative: Vec<f64> = force.iter().map(|l| (-l).max(0.0)).collect();
-    let whole = dot(&force, &force).sqrt() + totals.load.sqrt();
+    let whole = norm(&force) + totals.load;
     let place = largest(&negative);
-    certificate.negative_force = entry(dot(&negative, &negative).sqrt(), whole, 0.0, data.limit, place);
+    certificate.negative_force = entry(norm(&negative), whole, 0.0, data.limit, place);
     let pairs: Vec<f64> =
         (0..answer.lambda.len()).map(|i| (answer.lambda[i] * contact.open[i]).abs()).collect();
     let size = |l: &[f64], c: &[f64]| l.iter().zip(c).map(|(l, c)| (l * c).abs()).sum::<f64>();
@@ -297,7 +308,9 @@ impl Violation {
         let scale = row_scales(rows, metric, 1.0);
         let open: Vec<f64> = (0..rows.len()).map(|i| rows.open_gap(i, u, multipliers[i])).collect();
         let violated: Vec<f64> = (0..rows.len()).map(|i| scale[i] * excess(-open[i])).collect();
-        let size = |length: &dyn Fn(usize) -> f64| weighted_norm(&scale, |i| length(i).powi(2));
+        let size = |length: &dyn Fn(usize) -> f64| {
+            norm(&(0..rows.len()).map(|i| scale[i] * length(i)).collect::<Vec<_>>())
+        };
         let mean = weighted_norm(u, |i| metric[i]) * (rows.len() as f64 / u.len().max(1) as f64).sqrt();
         let size = size(&|i| rows.matrix.row_dot_abs(i, u))
             + size(&|i| rows.rhs[i])
@@ -309,7 +322,7 @@ impl Violation {
     /// `moved`: what the loads would move by themselves, in the metric D; its rounding moves the rows as well. Forces do not
     /// count: where rows all but contradict each other they are as large as you like.
     fn entry(&self, limit: f64, moved: f64) -> Entry {
-        let part = dot(&self.violated, &self.violated).sqrt();
+        let part = norm(&self.violated);
         entry(part, self.size, NOISE * (self.size + moved), limit, largest(&self.violated))
     }
 }

@@ -127,3 +127,25 @@ fn an_answer_whose_sizes_overflow_does_not_pass() {
     let beyond = judged((&spring(1e-300), &held, &[2.0]), &obstacle(1.0, 0.0), (&[2e300], &[0.0]), None);
     assert!(!beyond.passed(), "{beyond:?}");
 }
+
+/// A spring 1 pushed by 2 against a wall at 1, all `size` times as large: what is judged is the same, or not known.
+#[test]
+fn no_answer_is_so_small_or_large_that_a_wrong_one_passes() {
+    let held = Matrix { rows: 1, ..Matrix::default() };
+    for size in [1e-310, 1e-200, 1e-160, 1e-100, 1.0, 1e100, 1e160, 1e200] {
+        let judged = |u: f64, l: f64| {
+            judged(
+                (&spring(1.0), &held, &[2.0 * size]),
+                &obstacle(size, 0.0),
+                (&[u * size], &[l * size]),
+                None,
+            )
+        };
+        let right = judged(1.0, 1.0);
+        assert!(right.passed() == (1e-150..1e150).contains(&size), "{size:e} {right:?}");
+        assert!(right.equilibrium.ratio <= 1.0 && right.penetration.ratio <= 1.0);
+        for (u, l) in [(2.0, 0.0), (1.0, 0.9), (0.5, 1.5), (3.0, -1.0)] {
+            assert!(!judged(u, l).passed(), "{size:e} {u} {l}");
+        }
+    }
+}
