@@ -119,6 +119,34 @@ module feti_contact_base
 
 contains
 
+  !> Characters of a C string, 0 for NULL. Lengths come before the functions whose results have them: gfortran otherwise takes
+  !! them for procedures without interface.
+  recursive pure integer function length_of(address)
+    type(c_ptr), intent(in) :: address
+
+    length_of = 0
+    if (c_associated(address)) length_of = int(strlen(address))
+  end function
+
+  !> Of the name of a status.
+  recursive pure integer function name_length(status)
+    integer, intent(in) :: status
+
+    name_length = length_of(c_status_name(int(status, c_int32_t)))
+  end function
+
+  !> Of the sentence on a status.
+  recursive pure integer function sentence_length(status)
+    integer, intent(in) :: status
+
+    sentence_length = length_of(c_status_text(int(status, c_int32_t)))
+  end function
+
+  !> Of the version.
+  recursive pure integer function version_length()
+    version_length = length_of(c_version())
+  end function
+
   !> Creates an empty problem; texts and positions count from 1. On failure p is not a problem.
   recursive subroutine problem_create(p, stat, errmsg)
     type(feti_problem), intent(out) :: p
@@ -344,33 +372,6 @@ contains
     do i = 1, len(text)
       text(i:i) = string(i)
     end do
-  end function
-
-  !> How many characters it has.
-  recursive pure integer function length_of(address)
-    type(c_ptr), intent(in) :: address
-
-    length_of = 0
-    if (c_associated(address)) length_of = int(strlen(address))
-  end function
-
-  !> Of the name of a status.
-  recursive pure integer function name_length(status)
-    integer, intent(in) :: status
-
-    name_length = length_of(c_status_name(int(status, c_int32_t)))
-  end function
-
-  !> Of the sentence on a status.
-  recursive pure integer function sentence_length(status)
-    integer, intent(in) :: status
-
-    sentence_length = length_of(c_status_text(int(status, c_int32_t)))
-  end function
-
-  !> Of the version.
-  recursive pure integer function version_length()
-    version_length = length_of(c_version())
   end function
 
 end module
