@@ -133,13 +133,18 @@ impl RowSet {
 
     /// Refuses rows with entries that have no scale.
     pub fn check_scales(&self, kind: RowKind, scales: &[f64]) -> Result<()> {
-        match (0..self.len()).find(|&i| scales[i] == 0.0 && !self.is_empty_row(i)) {
+        match self.without_scale(scales) {
             Some(i) => {
                 let what = format!("the square of this {}, b D^-1 b', over- or underflows", kind.name());
                 Err(Error::new(Kind::Overflow, what).row(i))
             }
             None => Ok(()),
         }
+    }
+
+    /// The first row with entries whose scale is 0.
+    pub fn without_scale(&self, scales: &[f64]) -> Option<usize> {
+        (0..self.len()).find(|&i| scales[i] == 0.0 && !self.is_empty_row(i))
     }
 
     fn is_empty_row(&self, i: usize) -> bool {

@@ -316,6 +316,8 @@ impl Violation {
             + size(&|i| rows.rhs[i])
             + size(&|i| rows.compliance[i] * multipliers[i])
             + mean;
+        // rows that weigh nothing are not known to hold
+        let size = if rows.without_scale(&scale).is_some() { f64::NAN } else { size };
         Self { scale, open, violated, size }
     }
 

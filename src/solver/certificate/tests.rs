@@ -149,3 +149,15 @@ fn no_answer_is_so_small_or_large_that_a_wrong_one_passes() {
         }
     }
 }
+
+/// A spring 1e200 pushed by 2 beyond a wall that its row sees through 1e-100: the row has no scale in the host's units.
+#[test]
+fn a_row_whose_scale_is_lost_does_not_pass() {
+    let held = Matrix { rows: 1, ..Matrix::default() };
+    let mut wall = obstacle(1e-300, 0.0);
+    let mut matrix = Csr::empty(1);
+    matrix.push_row([(0, 1e-100)]);
+    wall.matrix = matrix.into();
+    let through = judged((&spring(1e200), &held, &[2.0]), &wall, (&[2e-200], &[0.0]), None);
+    assert!(!through.passed(), "{through:?}");
+}
