@@ -1486,7 +1486,7 @@ int32_t feti_phase_at(struct feti_problem *p, int64_t k, struct feti_phase *out)
  * Creates a problem without bodies and rows.
  *
  * The handle is valid until feti_problem_destroy; its number is never used again. After a failure
- * `p` is as it was.
+ * `p` is as it was. FETI_MEMORY, without a text, where not even an empty problem finds room.
  *
  * @param[out] p (scalar) the handle
  *

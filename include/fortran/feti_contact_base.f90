@@ -120,7 +120,7 @@ module feti_contact_base
 contains
 
   !> Characters of a C string, 0 for NULL. Lengths come before the functions whose results have them: gfortran otherwise takes
-  !! them for procedures without interface.
+  !> them for procedures without interface.
   recursive pure integer function length_of(address)
     type(c_ptr), intent(in) :: address
 

@@ -1274,7 +1274,7 @@ module feti_contact_c
     !> Creates a problem without bodies and rows.
     !>
     !> The handle is valid until feti_problem_destroy; its number is never used again. After a failure `p` is
-    !> as it was.
+    !> as it was. FETI_MEMORY, without a text, where not even an empty problem finds room.
     !>
     !> @param[out] p (scalar) the handle
     !>

@@ -69,6 +69,14 @@ pub(super) fn reserved<T>(len: usize) -> Result<Vec<T>> {
     Ok(room)
 }
 
+/// True when so many bytes are left: for small things, at whose failed allocation Rust would end the process.
+pub(super) fn left(bytes: usize) -> bool {
+    let mut room = Vec::<u8>::new();
+    let left = room.try_reserve_exact(bytes).is_ok();
+    std::hint::black_box(room);
+    left
+}
+
 /// `len` zeros.
 pub(super) fn zeros(len: usize) -> Result<Vec<f64>> {
     let mut zeros = reserved(len)?;

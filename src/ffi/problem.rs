@@ -3,17 +3,21 @@
 use std::ffi::c_char;
 use std::ptr;
 
-use super::arrays::{check_text_room, copy_text, Output};
+use super::arrays::{check_text_room, copy_text, left, Output};
 use super::fpu;
 use super::guard::{call, caught, refuse, without_problem};
 use super::handle::{self, Refusal};
-use super::status::FETI_OK;
+use super::status::{FETI_MEMORY, FETI_OK};
 use super::types::feti_problem;
 use crate::solver::Problem;
+
+/// Bytes of a problem without bodies, its place in the registry, and what the library keeps from its first call on, and more.
+const EMPTY: usize = 96 << 10;
 
 /// Creates a problem without bodies and rows.
 ///
 /// The handle is valid until feti_problem_destroy; its number is never used again. After a failure `p` is as it was.
+/// FETI_MEMORY, without a text, where not even an empty problem finds room.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|
@@ -26,6 +30,9 @@ pub unsafe extern "C" fn feti_problem_create(p: *mut *mut feti_problem) -> i32 {
     let call = call!(feti_problem_create(p));
     if p.is_null() {
         return refuse(call, &Refusal::Gone);
+    }
+    if !left(EMPTY) {
+        return FETI_MEMORY;
     }
     without_problem(call, || {
         let handle = handle::register(Problem::new())?;

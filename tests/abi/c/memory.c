@@ -100,8 +100,41 @@ static void ladder(const grid *bars, int64_t threads, uint64_t print)
     CHECK(refused > 0 && solved > 0, "%d threads: %d runs out of memory, %d not", (int)threads, refused, solved);
 }
 
+/* The first call of a process that has nothing left at all; once the host gives back what it holds, it works. */
+static void first_call(void)
+{
+    int status = 0;
+    const pid_t child = fork();
+
+    if (child == 0) {
+        void **held = NULL, **block;
+        feti_problem *problem = NULL;
+        alarm(SECONDS);
+        check_failures = 0;
+        limit_to(present_size());
+        while ((block = malloc(sizeof(void *))) != NULL) {
+            *block = held;
+            held = block;
+        }
+        EXPECT(FETI_MEMORY, feti_problem_create(&problem));
+        while (held) {
+            block = *held;
+            free(held);
+            held = block;
+        }
+        limit_to(RLIM_INFINITY);
+        OK(feti_problem_create(&problem));
+        OK(feti_problem_destroy(&problem));
+        _exit(check_failures);
+    }
+    CHECK(waitpid(child, &status, 0) == child, "no child");
+    CHECK(WIFEXITED(status) && WEXITSTATUS(status) == 0, "the first call ended the process by signal %d, code %d",
+          WIFSIGNALED(status) ? WTERMSIG(status) : 0, WIFEXITED(status) ? WEXITSTATUS(status) : 0);
+}
+
 int main(void)
 {
+    first_call();
     grid bars = grid_of(LENGTH);
     const uint64_t print = in_child(&bars, RLIM_INFINITY, 1).print;
     CHECK(in_child(&bars, RLIM_INFINITY, 2).print == print, "two threads: other bits");
