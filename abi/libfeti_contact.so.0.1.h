@@ -11,6 +11,154 @@
 #define FETI_CONTACT_VERSION_PATCH 0
 
 /**
+ * Kind of rows: `B u <= c`.
+ */
+#define FETI_INEQUALITY 1
+
+/**
+ * Kind of rows: `H u = h`.
+ */
+#define FETI_EQUALITY 2
+
+/**
+ * In place of a body: all bodies, by the host's numbers of feti_body_numbering_i32 or _i64 where
+ * they have some.
+ */
+#define FETI_ALL -1
+
+/**
+ * Storage: every entry of the symmetric matrix is given.
+ */
+#define FETI_FULL 0
+
+/**
+ * Storage: entries with column <= row are given.
+ */
+#define FETI_LOWER 1
+
+/**
+ * Storage: entries with column >= row are given.
+ */
+#define FETI_UPPER 2
+
+/**
+ * Null-space flag: the columns span the null space.
+ */
+#define FETI_EXACT 0
+
+/**
+ * Null-space flag: the null space lies in the span of the columns; the library selects.
+ */
+#define FETI_CANDIDATES 1
+
+/**
+ * Stiffness flag: the matrix is copied.
+ */
+#define FETI_COPY 0
+
+/**
+ * Stiffness flag: the values, and columns in 32 bits from 0, stay where the host has them, where
+ * their form allows it.
+ */
+#define FETI_BORROW 1
+
+/**
+ * Null space of a body: vectors of the host that span it (FETI_EXACT).
+ */
+#define FETI_ORIGIN_EXACT 1
+
+/**
+ * Null space of a body: sought among vectors of the host (FETI_CANDIDATES).
+ */
+#define FETI_ORIGIN_CANDIDATES 2
+
+/**
+ * Null space of a body: sought among rigid motions, from coordinates.
+ */
+#define FETI_ORIGIN_COORDINATES 3
+
+/**
+ * Null space of a body: found from K alone.
+ */
+#define FETI_ORIGIN_FOUND 4
+
+/**
+ * State of a row: open, its force is zero.
+ */
+#define FETI_ROW_OPEN 0
+
+/**
+ * State of a row: closed, it carries a force.
+ */
+#define FETI_ROW_CLOSED 1
+
+/**
+ * State of a row: closed with a force that is zero to rounding, or with a force without a clear
+ * sign.
+ */
+#define FETI_ROW_WEAK 2
+
+/**
+ * Phase of a call that feti_on_progress tells of: a part of the setup is done.
+ */
+#define FETI_PHASE_SETUP 1
+
+/**
+ * Phase of a call that feti_on_progress tells of: a step of the dual method is done.
+ */
+#define FETI_PHASE_SOLVE 2
+
+/**
+ * Kind of a step: conjugate gradients on the face.
+ */
+#define FETI_STEP_CONJUGATE_GRADIENT 1
+
+/**
+ * Kind of a step: rows lost their force.
+ */
+#define FETI_STEP_EXPANSION 2
+
+/**
+ * Kind of a step: rows got a force.
+ */
+#define FETI_STEP_RELEASE 3
+
+/**
+ * Level of a log: nothing.
+ */
+#define FETI_LOG_NONE 0
+
+/**
+ * Level of a log: one line for each solve, and warnings.
+ */
+#define FETI_LOG_RESULT 1
+
+/**
+ * Level of a log: also what is solved and how, and a line for each phase.
+ */
+#define FETI_LOG_PHASE 2
+
+/**
+ * Level of a log: also a line for each step.
+ */
+#define FETI_LOG_STEP 3
+
+/**
+ * Type of an option: number.
+ */
+#define FETI_OPTION_F64 1
+
+/**
+ * Type of an option: integer.
+ */
+#define FETI_OPTION_I64 2
+
+/**
+ * Type of an option: text.
+ */
+#define FETI_OPTION_STR 3
+
+/**
  * Done.
  */
 #define FETI_OK 0
@@ -107,7 +255,7 @@
 #define FETI_UNSUPPORTED -12
 
 /**
- * A number does not fit its integer type.
+ * A number, or a product of numbers that were given, does not fit its type.
  */
 #define FETI_OVERFLOW -13
 
@@ -118,106 +266,74 @@
 #define FETI_ARGUMENT -100
 
 /**
- * Kind of rows: `B u <= c`.
- */
-#define FETI_INEQUALITY 1
-
-/**
- * Kind of rows: `H u = h`.
- */
-#define FETI_EQUALITY 2
-
-/**
- * Storage: every entry of the symmetric matrix is given.
- */
-#define FETI_FULL 0
-
-/**
- * Storage: entries with column <= row are given.
- */
-#define FETI_LOWER 1
-
-/**
- * Storage: entries with column >= row are given.
- */
-#define FETI_UPPER 2
-
-/**
- * Null-space flag: the columns span the null space.
- */
-#define FETI_EXACT 0
-
-/**
- * Null-space flag: the null space lies in the span of the columns; the library selects.
- */
-#define FETI_CANDIDATES 1
-
-/**
- * Stiffness flag: the matrix is copied.
- */
-#define FETI_COPY 0
-
-/**
- * State of a row: open, its force is zero.
- */
-#define FETI_ROW_OPEN 0
-
-/**
- * State of a row: closed, it carries a force.
- */
-#define FETI_ROW_CLOSED 1
-
-/**
- * State of a row: closed with a force that is zero to rounding, or with a force without a clear
- * sign.
- */
-#define FETI_ROW_WEAK 2
-
-/**
- * Phase of a call that feti_on_progress tells of: a part of the setup is done.
- */
-#define FETI_PHASE_SETUP 1
-
-/**
- * Phase of a call that feti_on_progress tells of: a step of the dual method is done.
- */
-#define FETI_PHASE_SOLVE 2
-
-/**
- * Kind of a step: conjugate gradients on the face.
- */
-#define FETI_STEP_CONJUGATE_GRADIENT 1
-
-/**
- * Kind of a step: rows lost their force.
- */
-#define FETI_STEP_EXPANSION 2
-
-/**
- * Kind of a step: rows got a force.
- */
-#define FETI_STEP_RELEASE 3
-
-/**
- * Type of an option: number.
- */
-#define FETI_OPTION_F64 1
-
-/**
- * Type of an option: integer.
- */
-#define FETI_OPTION_I64 2
-
-/**
- * Type of an option: text.
- */
-#define FETI_OPTION_STR 3
-
-/**
  * A problem: bodies, rows, settings, factors and the last answer. The handle is a counter, never
  * an address.
  */
 typedef struct feti_problem feti_problem;
+
+/**
+ * A body as it is given, and what the last setup has made of it; what is not there yet is -1 or
+ * NaN.
+ */
+typedef struct feti_body_facts {
+  /**
+   * Set by the caller: size of the struct in bytes.
+   */
+  int64_t struct_size;
+  /**
+   * Unknowns.
+   */
+  int64_t unknowns;
+  /**
+   * Entries of K as the host gave them, a diagonal of its own counted; dense: all of the storage.
+   */
+  int64_t entries;
+  /**
+   * Connected parts of K.
+   */
+  int64_t components;
+  /**
+   * Bytes that the library keeps for K.
+   */
+  int64_t matrix_bytes;
+  /**
+   * Arrays of K that stay with the host (FETI_BORROW): 0 none, 1 values, 2 values and columns.
+   */
+  int64_t borrowed;
+  /**
+   * What the null space comes from: FETI_ORIGIN_EXACT, _CANDIDATES, _COORDINATES or _FOUND.
+   */
+  int64_t origin;
+  /**
+   * Dimension of the null space.
+   */
+  int64_t null_space;
+  /**
+   * Entries of the factor.
+   */
+  int64_t factor_entries;
+  /**
+   * Bytes of the factor and, at most, of the work arrays of its computation.
+   */
+  int64_t factor_bytes;
+  /**
+   * The first other body that shares the factor, from 0, -1: none.
+   */
+  int64_t shared_with;
+  /**
+   * 1: the dual operator has its entries, 0: it is known by its products.
+   */
+  int64_t explicit_operator;
+  /**
+   * Bytes of the explicit dual operator.
+   */
+  int64_t operator_bytes;
+  /**
+   * Of a null space that was found: stiffness of the softest other motion over that of the stiffest
+   * in it; else NaN.
+   */
+  double gap;
+} feti_body_facts;
 
 /**
  * What the last solve, or the last setup that failed, has found out about the problem. Numbers
@@ -319,11 +435,11 @@ typedef struct feti_error_detail {
    */
   int64_t row;
   /**
-   * Position in the array, -1: does not apply.
+   * Position in the array; byte of a text or a file; -1: does not apply.
    */
   int64_t entry;
   /**
-   * The number found; NaN: does not apply.
+   * The number found, an index counted as in texts (option index_base); NaN: does not apply.
    */
   double value;
   /**
@@ -335,6 +451,40 @@ typedef struct feti_error_detail {
    */
   char function[40];
 } feti_error_detail;
+
+/**
+ * A function of the host that gets a line of text.
+ *
+ * It returns 0 to go on, any other number to report a failure of its own.
+ *
+ * @param[in] user  (scalar) the host's own, as given to feti_on_log; may be NULL
+ * @param[in] level (scalar) FETI_LOG_RESULT, FETI_LOG_PHASE or FETI_LOG_STEP
+ * @param[in] text  (text) one line in UTF-8 without its end, valid during the call
+ */
+typedef int32_t (*feti_log_fn)(void *user, int32_t level, const char *text);
+
+/**
+ * A function of the host that multiplies by a matrix A it keeps: Y = A X.
+ *
+ * It returns 0, or any other number for a failure of its own. X and Y never overlap.
+ *
+ * @param[in]  user (scalar) the host's own, as given to feti_body_operator; may be NULL
+ * @param[in]  body (scalar) number of the body, from 0
+ * @param[in]  n    (scalar) unknowns of the body
+ * @param[in]  nrhs (scalar) columns of X and Y, 1 to 32
+ * @param[in]  x    (ldx * nrhs) X, column-major, finite
+ * @param[in]  ldx  (scalar) >= n
+ * @param[out] y    (ldy * nrhs) Y, column-major; holds zeros before
+ * @param[in]  ldy  (scalar) >= n
+ */
+typedef int32_t (*feti_operator_fn)(void *user,
+                                    int64_t body,
+                                    int64_t n,
+                                    int64_t nrhs,
+                                    const double *x,
+                                    int64_t ldx,
+                                    double *y,
+                                    int64_t ldy);
 
 /**
  * An option: name, text, default and range.
@@ -710,13 +860,13 @@ typedef struct feti_certificate {
 
 #ifdef __cplusplus
 extern "C" {
-#endif // __cplusplus
+#endif /* __cplusplus */
 
 /**
  * Adds a body with `n` unknowns.
  *
- * Bodies are numbered from 0 in the order in which they are added. After a failure nothing is
- * added.
+ * Bodies are numbered from 0 in the order in which they are added. FETI_OVERFLOW where all bodies
+ * together would have more than 2^63 - 1 unknowns. After a failure nothing is added.
  *
  * @param[in]  p    (scalar) the handle
  * @param[in]  n    (scalar) unknowns of the body, > 0
@@ -727,97 +877,13 @@ extern "C" {
 int32_t feti_body_add(struct feti_problem *p, int64_t n, int64_t *body);
 
 /**
- * Gives the stiffness matrix K of a body by rows, with 32-bit indices.
- *
- * The matrix is copied; calling again replaces pattern and values. Columns of a row may come in
- * any order, none twice. With FETI_FULL K must be symmetric within option symmetry_tolerance and
- * is averaged. After a failure the body keeps the matrix it had.
- *
- * @param[in] p       (scalar) the handle
- * @param[in] body    (scalar) number of the body, from 0
- * @param[in] n       (scalar) unknowns of the body
- * @param[in] row_ptr (n + 1) row i holds the entries row_ptr[i] to row_ptr[i + 1] - 1; starts with
- *                    `base`
- * @param[in] col     (row_ptr[n] - base) columns, counted from `base`
- * @param[in] val     (row_ptr[n] - base) entries of K, force per length
- * @param[in] base    (scalar) 0 or 1: what `row_ptr` and `col` count from
- * @param[in] storage (scalar) FETI_FULL, FETI_LOWER or FETI_UPPER
- * @param[in] flags   (scalar) FETI_COPY
- *
- * Safety: The arrays have the given shapes.
- */
-int32_t feti_body_stiffness_i32(struct feti_problem *p,
-                                int64_t body,
-                                int64_t n,
-                                const int32_t *row_ptr,
-                                const int32_t *col,
-                                const double *val,
-                                int32_t base,
-                                int32_t storage,
-                                int32_t flags);
-
-/**
- * Gives the stiffness matrix K of a body by rows, with 64-bit indices.
- *
- * The matrix is copied; calling again replaces pattern and values. Columns of a row may come in
- * any order, none twice. With FETI_FULL K must be symmetric within option symmetry_tolerance and
- * is averaged. After a failure the body keeps the matrix it had.
- *
- * @param[in] p       (scalar) the handle
- * @param[in] body    (scalar) number of the body, from 0
- * @param[in] n       (scalar) unknowns of the body
- * @param[in] row_ptr (n + 1) row i holds the entries row_ptr[i] to row_ptr[i + 1] - 1; starts with
- *                    `base`
- * @param[in] col     (row_ptr[n] - base) columns, counted from `base`
- * @param[in] val     (row_ptr[n] - base) entries of K, force per length
- * @param[in] base    (scalar) 0 or 1: what `row_ptr` and `col` count from
- * @param[in] storage (scalar) FETI_FULL, FETI_LOWER or FETI_UPPER
- * @param[in] flags   (scalar) FETI_COPY
- *
- * Safety: The arrays have the given shapes.
- */
-int32_t feti_body_stiffness_i64(struct feti_problem *p,
-                                int64_t body,
-                                int64_t n,
-                                const int64_t *row_ptr,
-                                const int64_t *col,
-                                const double *val,
-                                int32_t base,
-                                int32_t storage,
-                                int32_t flags);
-
-/**
- * Gives the stiffness matrix K of a body as a dense matrix, for boundary elements and condensed
- * bodies.
- *
- * The matrix is copied; calling again replaces it. With FETI_LOWER and FETI_UPPER the other
- * triangle is not read. After a failure the body keeps the matrix it had.
- *
- * @param[in] p       (scalar) the handle
- * @param[in] body    (scalar) number of the body, from 0
- * @param[in] n       (scalar) unknowns of the body
- * @param[in] k       (ld * n) column-major: K_ij is k[i + ld j], force per length
- * @param[in] ld      (scalar) >= n
- * @param[in] storage (scalar) FETI_FULL, FETI_LOWER or FETI_UPPER
- * @param[in] flags   (scalar) FETI_COPY
- *
- * Safety: The array has the given shape.
- */
-int32_t feti_body_stiffness_dense(struct feti_problem *p,
-                                  int64_t body,
-                                  int64_t n,
-                                  const double *k,
-                                  int64_t ld,
-                                  int32_t storage,
-                                  int32_t flags);
-
-/**
  * Gives position and direction of every unknown of a body, from which candidates for its null
  * space are made.
  *
  * The data is copied; calling again replaces it. Never called, and no null space given: the
- * library finds the null space from K. Shells and beams repeat nodes with rotations. After a
- * failure the body keeps what it had.
+ * library finds the null space from K. A null space that was given (feti_body_null_space) goes
+ * before it. Shells and beams repeat nodes with rotations. After a failure the body keeps what it
+ * had.
  *
  * @param[in] p    (scalar) the handle
  * @param[in] body (scalar) number of the body, from 0
@@ -842,17 +908,50 @@ int32_t feti_body_coordinates(struct feti_problem *p,
 /**
  * Gives the load of a body.
  *
- * The load is copied and holds until it is given again; a body without one has zero load. After a
- * failure the body keeps the load it had.
+ * The load is copied and holds until it is given again; a body without one has zero load. With
+ * FETI_ALL the array holds the loads of all bodies: by the host's numbers where they have some,
+ * entries of no unknown not looked at; else one body after the other. FETI_STATE with FETI_ALL
+ * where some bodies have numbers of the host and others have none. After a failure the loads are
+ * as they were.
  *
  * @param[in] p    (scalar) the handle
- * @param[in] body (scalar) number of the body, from 0
- * @param[in] n    (scalar) unknowns of the body
+ * @param[in] body (scalar) number of the body, from 0, or FETI_ALL
+ * @param[in] n    (scalar) unknowns of the body; with FETI_ALL at least the largest number + 1,
+ *                 without numbers all unknowns
  * @param[in] f    (n) force
  *
  * Safety: The array has the given shape.
  */
 int32_t feti_body_load(struct feti_problem *p, int64_t body, int64_t n, const double *f);
+
+/**
+ * Tells the connected part of every unknown of a body.
+ *
+ * A body may be in several parts that share no entry of K but zeros. They are numbered from 0 by
+ * their first unknowns. FETI_STATE before the stiffness matrix is given. After a failure nothing
+ * is written.
+ *
+ * @param[in]  p         (scalar) the handle
+ * @param[in]  body      (scalar) number of the body, from 0
+ * @param[in]  n         (scalar) unknowns of the body
+ * @param[out] component (n) part of each unknown, from 0
+ *
+ * Safety: The array has the given shape.
+ */
+int32_t feti_body_components(struct feti_problem *p, int64_t body, int64_t n, int64_t *component);
+
+/**
+ * Tells what is known about a body: its matrix, its null space, its factor, its dual operator.
+ *
+ * Nothing is computed but the connected parts. After a failure nothing is written.
+ *
+ * @param[in]     p    (scalar) the handle
+ * @param[in]     body (scalar) number of the body, from 0
+ * @param[in,out] out  (scalar) `struct_size` set, at least 16
+ *
+ * Safety: `out` leads to `struct_size` writable bytes.
+ */
+int32_t feti_body_info(struct feti_problem *p, int64_t body, struct feti_body_facts *out);
 
 /**
  * What the last solve, or the last setup that failed, has found out about the problem.
@@ -1005,6 +1104,67 @@ int64_t feti_last_error(char *buf, int64_t cap);
 int32_t feti_last_error_detail(struct feti_error_detail *out);
 
 /**
+ * Writes all that the host has registered to one file: a bug report is a file.
+ *
+ * Bodies with their matrices, null spaces, coordinates, fixing unknowns, loads and numbers of the
+ * host, rows of both kinds with right-hand sides and compliances, and the options that differ from
+ * their defaults, bit by bit; not the answer, start values, saved states and functions of the
+ * host. docs/file_format.md describes every byte. The file is written under another name in the
+ * same folder and renamed when it is complete: after a failure an old file is as it was, and
+ * nothing else is left. FETI_IO with path, operation and the words of the system; FETI_UNSUPPORTED
+ * with the body where functions of the host stand for a matrix (feti_body_operator): no file holds
+ * them. Borrowed matrices are written as they are at that moment.
+ *
+ * @param[in] p    (scalar) the handle
+ * @param[in] path (text) name of the file; an old one is replaced
+ *
+ * Safety: `path` is NUL terminated.
+ */
+int32_t feti_problem_write(struct feti_problem *p, const char *path);
+
+/**
+ * Reads what feti_problem_write has written into an empty problem.
+ *
+ * The same solve then gives the same bits. FETI_STATE when there are bodies or rows already.
+ * Options become those of the file, all others their defaults, except index_base, which stays.
+ * Everything goes through the checks of the calls it stands for. FETI_IO with path and the words
+ * of the system, or with the byte where a file is damaged (`entry` of feti_last_error_detail);
+ * FETI_UNSUPPORTED when it holds what a later version has written. After a failure the problem is
+ * as it was.
+ *
+ * Matrices come back by the rows of their lower triangle, columns ascending, with every diagonal
+ * entry, however they were given: feti_body_values then expects the values in this order, and
+ * feti_body_values_split and feti_body_values_dense return FETI_STATE until the matrix has been
+ * given again.
+ *
+ * @param[in] p    (scalar) the handle
+ * @param[in] path (text) name of the file
+ *
+ * Safety: `path` is NUL terminated.
+ */
+int32_t feti_problem_read(struct feti_problem *p, const char *path);
+
+/**
+ * Names the function that gets what setups and solves tell in words.
+ *
+ * Level FETI_LOG_RESULT: one line for each solve, and warnings; FETI_LOG_PHASE: also sizes,
+ * options, method, fallbacks and a line for each phase with its time and bytes; FETI_LOG_STEP:
+ * also a line for each step. The function is called on the thread that called the library, in that
+ * thread's floating-point environment, until another one or NULL is given. It returns 0 to go on;
+ * any other number ends the call with FETI_CALLBACK, the number in the error detail, and no
+ * results. Calls on the same problem from inside return FETI_BUSY, except feti_cancel and
+ * feti_problem_error. It must not end by longjmp or an exception.
+ *
+ * @param[in] p        (scalar) the handle
+ * @param[in] callback (scalar) the function; NULL: none
+ * @param[in] level    (scalar) FETI_LOG_NONE, FETI_LOG_RESULT, FETI_LOG_PHASE or FETI_LOG_STEP
+ * @param[in] user     (scalar) handed to the function unchanged; may be NULL
+ *
+ * Safety: `callback` may be called with `user` until it is replaced or the problem destroyed.
+ */
+int32_t feti_on_log(struct feti_problem *p, feti_log_fn callback, int32_t level, void *user);
+
+/**
  * Gives a basis of the null space of a body, or candidates for it.
  *
  * The basis is copied; calling again replaces it. Never called: the coordinates of the unknowns
@@ -1055,7 +1215,8 @@ int32_t feti_body_null_space_get(struct feti_problem *p,
 /**
  * Reads the fixing unknowns of a body: with them fixed, K has full rank.
  *
- * Runs feti_setup when it is due. After a failure nothing is written.
+ * Runs feti_setup when it is due. FETI_UNSUPPORTED where K+ is the host's (feti_body_operator).
+ * After a failure nothing is written.
  *
  * @param[in]  p    (scalar) the handle
  * @param[in]  body (scalar) number of the body, from 0
@@ -1082,6 +1243,100 @@ int32_t feti_body_fixing(struct feti_problem *p, int64_t body, int64_t r, int64_
  * Safety: The array has the given shape.
  */
 int32_t feti_body_fixing_set(struct feti_problem *p, int64_t body, int64_t r, const int64_t *dof);
+
+/**
+ * Gives the host's own numbers of the unknowns of a body, with 32-bit integers.
+ *
+ * A host that numbers all unknowns through gives every body its share; a number names one unknown
+ * of all bodies. Then FETI_ALL as body in feti_body_load, feti_displacement and feti_reaction
+ * means arrays in these numbers, and so do rows whose bodies are NULL in feti_rows_add_i32 and
+ * _i64. All bodies have numbers then: FETI_STATE names one that has not. The numbers are copied;
+ * calling again replaces them. Rows that are there stay on their unknowns. After a failure the
+ * body keeps the numbers it had.
+ *
+ * @param[in] p      (scalar) the handle
+ * @param[in] body   (scalar) number of the body, from 0
+ * @param[in] n      (scalar) unknowns of the body
+ * @param[in] number (n) number of each unknown, counted from `base`, none that of another unknown
+ * @param[in] base   (scalar) 0 or 1: what the numbers count from
+ *
+ * Safety: The array has the given shape.
+ */
+int32_t feti_body_numbering_i32(struct feti_problem *p,
+                                int64_t body,
+                                int64_t n,
+                                const int32_t *number,
+                                int32_t base);
+
+/**
+ * Gives the host's own numbers of the unknowns of a body, with 64-bit integers.
+ *
+ * A host that numbers all unknowns through gives every body its share; a number names one unknown
+ * of all bodies. Then FETI_ALL as body in feti_body_load, feti_displacement and feti_reaction
+ * means arrays in these numbers, and so do rows whose bodies are NULL in feti_rows_add_i32 and
+ * _i64. All bodies have numbers then: FETI_STATE names one that has not. The numbers are copied;
+ * calling again replaces them. Rows that are there stay on their unknowns. After a failure the
+ * body keeps the numbers it had.
+ *
+ * @param[in] p      (scalar) the handle
+ * @param[in] body   (scalar) number of the body, from 0
+ * @param[in] n      (scalar) unknowns of the body
+ * @param[in] number (n) number of each unknown, counted from `base`, none that of another unknown
+ * @param[in] base   (scalar) 0 or 1: what the numbers count from
+ *
+ * Safety: The array has the given shape.
+ */
+int32_t feti_body_numbering_i64(struct feti_problem *p,
+                                int64_t body,
+                                int64_t n,
+                                const int64_t *number,
+                                int32_t base);
+
+/**
+ * Names the functions of the host that multiply by the stiffness K of a body and by a generalised
+ * inverse K+ of it.
+ *
+ * The library sees no entry of K but the diagonal, which is copied, and factorises nothing. K+ is
+ * any symmetric positive semidefinite matrix with K K+ K = K: where K is not singular its inverse,
+ * else that of K with enough unknowns held (rows and columns of zeros in K+), or that of K plus a
+ * regularisation that acts on the null space alone. The null space must be given, by
+ * feti_body_null_space or feti_body_coordinates (the body then counts as connected). feti_setup
+ * tries the functions with a few fixed vectors and refuses what is wrong by name: FETI_CALLBACK (K
+ * or K+ not symmetric, K K+ K not K, a result that is no finite number), FETI_INDEFINITE,
+ * FETI_NULL_SPACE (K R not 0, a mode missing in R), with the figure and its limit in the error
+ * detail.
+ *
+ * A function that returns anything but 0 ends the call that needed it with FETI_CALLBACK, the body
+ * and that number in the error detail; the problem stays as it was. The functions run in the
+ * host's floating-point environment; with `concurrent` 0 on the thread alone that has called the
+ * library, with 1 also on threads of the library, several at once. Inside them calls on the same
+ * problem return FETI_BUSY, except feti_cancel and feti_problem_error. They must not end by
+ * longjmp or an exception, and must give the same bits for the same X.
+ *
+ * Calling again replaces the functions and what was computed with them: to be done whenever K has
+ * changed. A stiffness matrix given later takes their place, and they that of a matrix. After a
+ * failure the body keeps what it had.
+ *
+ * @param[in] p          (scalar) the handle
+ * @param[in] body       (scalar) number of the body, from 0
+ * @param[in] n          (scalar) unknowns of the body
+ * @param[in] diag       (n) diagonal of K, >= 0, force per length: what the body is measured by
+ * @param[in] kplus      (scalar) Y = K+ X, X force, Y length
+ * @param[in] k          (scalar) Y = K X, X length, Y force
+ * @param[in] concurrent (scalar) 0: only on the calling thread; 1: on any thread, several at once
+ * @param[in] user       (scalar) handed to the functions unchanged; may be NULL
+ *
+ * Safety: `diag` has the given shape; the functions may be called with `user` until they are
+ * replaced or the problem destroyed.
+ */
+int32_t feti_body_operator(struct feti_problem *p,
+                           int64_t body,
+                           int64_t n,
+                           const double *diag,
+                           feti_operator_fn kplus,
+                           feti_operator_fn k,
+                           int32_t concurrent,
+                           void *user);
 
 /**
  * Sets an option that is a number.
@@ -1121,6 +1376,21 @@ int32_t feti_set_i64(struct feti_problem *p, const char *name, int64_t value);
  * Safety: `name` and `value` are NUL terminated.
  */
 int32_t feti_set_str(struct feti_problem *p, const char *name, const char *value);
+
+/**
+ * Sets several options by one text, such as "tolerance=1e-8 threads=4".
+ *
+ * Items name = value of any type, separated by blanks, commas or ends of lines; a sign # begins a
+ * comment that ends with the line. An option that comes twice has its last value. After a failure
+ * all options are as they were; the error names the option, and `entry` of its detail is the byte
+ * of the text, from 0.
+ *
+ * @param[in] p    (scalar) the handle
+ * @param[in] text (text) the options
+ *
+ * Safety: `text` is NUL terminated.
+ */
+int32_t feti_set_text(struct feti_problem *p, const char *text);
 
 /**
  * Reads an option that is a number.
@@ -1216,7 +1486,7 @@ int32_t feti_phase_at(struct feti_problem *p, int64_t k, struct feti_phase *out)
  * Creates a problem without bodies and rows.
  *
  * The handle is valid until feti_problem_destroy; its number is never used again. After a failure
- * `p` is as it was.
+ * `p` is as it was. FETI_MEMORY, without a text, where not even an empty problem finds room.
  *
  * @param[out] p (scalar) the handle
  *
@@ -1289,11 +1559,15 @@ int32_t feti_on_progress(struct feti_problem *p, feti_progress_fn callback, void
 /**
  * Reads the displacement of a body.
  *
- * FETI_STATE before a solve has given an answer. After a failure nothing is written.
+ * With FETI_ALL the displacement of all bodies: by the host's numbers where they have some,
+ * entries of no unknown as they were; else one body after the other. FETI_STATE before a solve has
+ * given an answer, and with FETI_ALL where some bodies have numbers of the host and others have
+ * none. After a failure nothing is written.
  *
  * @param[in]  p    (scalar) the handle
- * @param[in]  body (scalar) number of the body, from 0
- * @param[in]  n    (scalar) unknowns of the body
+ * @param[in]  body (scalar) number of the body, from 0, or FETI_ALL
+ * @param[in]  n    (scalar) unknowns of the body; with FETI_ALL at least the largest number + 1,
+ *                  without numbers all unknowns
  * @param[out] u    (n) displacement, length
  *
  * Safety: The array has the given shape.
@@ -1303,12 +1577,16 @@ int32_t feti_displacement(struct feti_problem *p, int64_t body, int64_t n, doubl
 /**
  * Reads the force of the rows on a body, -B'lambda, -H'mu or both: `K u = f + r`.
  *
- * FETI_STATE before a solve has given an answer. After a failure nothing is written.
+ * With FETI_ALL the forces on all bodies: by the host's numbers where they have some, entries of
+ * no unknown as they were; else one body after the other. FETI_STATE before a solve has given an
+ * answer, and with FETI_ALL where some bodies have numbers of the host and others have none. After
+ * a failure nothing is written.
  *
  * @param[in]  p    (scalar) the handle
  * @param[in]  kind (scalar) FETI_INEQUALITY, FETI_EQUALITY, or 0 for both
- * @param[in]  body (scalar) number of the body, from 0
- * @param[in]  n    (scalar) unknowns of the body
+ * @param[in]  body (scalar) number of the body, from 0, or FETI_ALL
+ * @param[in]  n    (scalar) unknowns of the body; with FETI_ALL at least the largest number + 1,
+ *                  without numbers all unknowns
  * @param[out] r    (n) force
  *
  * Safety: The array has the given shape.
@@ -1390,15 +1668,17 @@ int32_t feti_counts(struct feti_problem *p, int64_t *bodies, int64_t *dofs, int6
  * Adds rows of `B u <= c` or `H u = h`, with 32-bit indices.
  *
  * The rows are copied and numbered behind those of the same kind that are there. A pair of body
- * and unknown that comes twice in a row is summed. After a failure nothing is added.
+ * and unknown that comes twice in a row is summed. FETI_STATE where `body` is NULL and some bodies
+ * have numbers of the host, others have none. After a failure nothing is added.
  *
  * @param[in]  p       (scalar) the handle
  * @param[in]  kind    (scalar) FETI_INEQUALITY or FETI_EQUALITY
  * @param[in]  rows    (scalar) number of rows, 0 adds none
- * @param[in]  row_ptr (rows + 1) row i holds the entries row_ptr[i] to row_ptr[i + 1] - 1; starts
- *                     with `base`
+ * @param[in]  row_ptr (rows + 1) row i holds the entries `row_ptr[i]` to `row_ptr[i + 1] - 1`;
+ *                     starts with `base`
  * @param[in]  body    (row_ptr[rows] - base) body of each entry, counted from `base`; NULL: `dof`
- *                     counts through all bodies
+ *                     is the host's number of the unknown (feti_body_numbering_i32), without
+ *                     numbers it counts through all bodies
  * @param[in]  dof     (row_ptr[rows] - base) unknown of each entry, counted from `base`
  * @param[in]  val     (row_ptr[rows] - base) entries of B or H
  * @param[in]  base    (scalar) 0 or 1: what `row_ptr`, `body` and `dof` count from
@@ -1422,15 +1702,17 @@ int32_t feti_rows_add_i32(struct feti_problem *p,
  * Adds rows of `B u <= c` or `H u = h`, with 64-bit indices.
  *
  * The rows are copied and numbered behind those of the same kind that are there. A pair of body
- * and unknown that comes twice in a row is summed. After a failure nothing is added.
+ * and unknown that comes twice in a row is summed. FETI_STATE where `body` is NULL and some bodies
+ * have numbers of the host, others have none. After a failure nothing is added.
  *
  * @param[in]  p       (scalar) the handle
  * @param[in]  kind    (scalar) FETI_INEQUALITY or FETI_EQUALITY
  * @param[in]  rows    (scalar) number of rows, 0 adds none
- * @param[in]  row_ptr (rows + 1) row i holds the entries row_ptr[i] to row_ptr[i + 1] - 1; starts
- *                     with `base`
+ * @param[in]  row_ptr (rows + 1) row i holds the entries `row_ptr[i]` to `row_ptr[i + 1] - 1`;
+ *                     starts with `base`
  * @param[in]  body    (row_ptr[rows] - base) body of each entry, counted from `base`; NULL: `dof`
- *                     counts through all bodies
+ *                     is the host's number of the unknown (feti_body_numbering_i32), without
+ *                     numbers it counts through all bodies
  * @param[in]  dof     (row_ptr[rows] - base) unknown of each entry, counted from `base`
  * @param[in]  val     (row_ptr[rows] - base) entries of B or H
  * @param[in]  base    (scalar) 0 or 1: what `row_ptr`, `body` and `dof` count from
@@ -1504,6 +1786,15 @@ int32_t feti_rows_clear(struct feti_problem *p, int32_t kind);
  * feti_solve does it when it is due; called alone it shows errors in the bodies early. After a
  * failure all that was given is kept and can be corrected.
  *
+ * FETI_STATE where there is no body, or one without a matrix; FETI_NULL_SPACE where the null space
+ * of a body is not what was claimed, or cannot be found; FETI_INDEFINITE where a matrix is
+ * indefinite, with body, unknown and pivot; FETI_GAPS_CONTRADICT where a row without entries has a
+ * right-hand side that 0 does not satisfy; FETI_CALLBACK where a function of the host fails or is
+ * not what it must be (feti_body_operator); FETI_UNSUPPORTED where fixing unknowns were given for
+ * a body whose matrix is functions of the host; FETI_OVERFLOW where the square of a row, or a
+ * compliance times the largest K_ii, over- or underflows; FETI_CANCELLED where the host has
+ * cancelled.
+ *
  * @param[in] p (scalar) the handle
  */
 int32_t feti_setup(struct feti_problem *p);
@@ -1516,6 +1807,14 @@ int32_t feti_setup(struct feti_problem *p);
  * first step. `info` is written in any case, with NaN for figures that a failure left unknown.
  * After a failure all that was given is kept and can be corrected, except after FETI_INTERNAL.
  *
+ * A status above 0 comes with an answer. FETI_ITERATIONS at the limit of option max_steps;
+ * FETI_TIME at the limit of option time_limit; FETI_CANCELLED where the host has cancelled;
+ * FETI_STALLED where steps no longer reduce the error; FETI_INACCURATE where the certificate does
+ * not pass; FETI_MARGINAL where a part of the load, below 1e-7 of it, is not held. A status below
+ * 0 comes without one. FETI_LOAD_NOT_HELD where no contact force balances the load;
+ * FETI_GAPS_CONTRADICT where rows contradict each other; feti_diagnosis has the proof of either.
+ * It runs feti_setup when it is due, and fails as that does.
+ *
  * @param[in]     p    (scalar) the handle
  * @param[in,out] info (scalar) `struct_size` set, at least 16; may be NULL
  *
@@ -1526,7 +1825,8 @@ int32_t feti_solve(struct feti_problem *p, struct feti_info *info);
 /**
  * Verifies an answer against the problem as it is given now: any answer, also another code's.
  *
- * Keeps nothing: the answer of the last solve stays. After a failure nothing is written.
+ * Keeps nothing of the answer: that of the last solve stays. Runs feti_setup when it is due, for
+ * the null spaces. After a failure nothing is written.
  *
  * @param[in]     p      (scalar) the handle
  * @param[in]     n      (scalar) unknowns of all bodies
@@ -1566,11 +1866,11 @@ int32_t feti_check(struct feti_problem *p,
 int32_t feti_start_from(struct feti_problem *p, int32_t kind, int64_t rows, const double *lambda);
 
 /**
- * Saves loads, gaps, multipliers and the contact state under a number.
+ * Saves loads, rows, multipliers and the contact state under a number.
  *
- * Factors are not copied, so that it costs no more than the vectors. States live until they are
- * dropped or the problem is destroyed; numbers are never used again. After a failure nothing is
- * saved.
+ * Factors are not copied and the entries of the rows are shared, so that it costs no more than the
+ * vectors. States live until they are dropped or the problem is destroyed; numbers are never used
+ * again. After a failure nothing is saved.
  *
  * @param[in]  p  (scalar) the handle
  * @param[out] id (scalar) number of the state, from 0
@@ -1582,11 +1882,11 @@ int32_t feti_state_save(struct feti_problem *p, int64_t *id);
 /**
  * Goes back to a saved state: after a load step that was rejected.
  *
- * Loads and gaps are as they were, and so is the answer unless a matrix or a compliance has
- * changed since; with option start = previous the next solve continues from the saved multipliers,
- * with start = cold it gives the bits it would have given then. Matrices, null spaces, compliances
- * of rows and options stay as they are now; start values that were not used yet are dropped. The
- * state stays saved. FETI_STATE when bodies were added or rows changed since; after a failure
+ * Loads and rows, with right-hand sides and compliances, are as they were, and so is the answer
+ * unless a matrix or the rows have changed since; with option start = previous the next solve
+ * continues from the saved multipliers, with start = cold it gives the bits it would have given
+ * then. Matrices, null spaces and options stay as they are now; start values that were not used
+ * yet are dropped. The state stays saved. FETI_STATE when bodies were added since; after a failure
  * nothing is changed.
  *
  * @param[in] p  (scalar) the handle
@@ -1634,6 +1934,176 @@ const char *feti_version(void);
  * Never fails.
  */
 int32_t feti_version_number(void);
+
+/**
+ * Gives the stiffness matrix K of a body by rows, with 32-bit indices.
+ *
+ * The matrix is copied; calling again replaces pattern and values. Columns of a row may come in
+ * any order, none twice. With FETI_FULL K must be symmetric within option symmetry_tolerance and
+ * is averaged. FETI_INDEFINITE with the unknown of a diagonal entry that is negative, or 0 beside
+ * others in its row. After a failure the body keeps the matrix it had.
+ *
+ * With FETI_BORROW the values, and columns in 32 bits counted from 0, are not copied if storage is
+ * FETI_LOWER, columns ascend and every row ends with its diagonal entry; otherwise all is copied
+ * (`borrowed` of feti_body_info tells). Borrowed arrays stay readable until the matrix is replaced
+ * or the problem destroyed, and unchanged but for this: between two calls the values may be
+ * rewritten, and the next call then is feti_body_values with the same array.
+ *
+ * @param[in] p       (scalar) the handle
+ * @param[in] body    (scalar) number of the body, from 0
+ * @param[in] n       (scalar) unknowns of the body
+ * @param[in] row_ptr (n + 1) row i holds the entries `row_ptr[i]` to `row_ptr[i + 1] - 1`; starts
+ *                    with `base`
+ * @param[in] col     (row_ptr[n] - base) columns, counted from `base`
+ * @param[in] val     (row_ptr[n] - base) entries of K, force per length
+ * @param[in] base    (scalar) 0 or 1: what `row_ptr` and `col` count from
+ * @param[in] storage (scalar) FETI_FULL, FETI_LOWER or FETI_UPPER
+ * @param[in] flags   (scalar) FETI_COPY or FETI_BORROW
+ *
+ * Safety: The arrays have the given shapes.
+ */
+int32_t feti_body_stiffness_i32(struct feti_problem *p,
+                                int64_t body,
+                                int64_t n,
+                                const int32_t *row_ptr,
+                                const int32_t *col,
+                                const double *val,
+                                int32_t base,
+                                int32_t storage,
+                                int32_t flags);
+
+/**
+ * Gives the stiffness matrix K of a body by rows, with 64-bit indices.
+ *
+ * The matrix is copied; calling again replaces pattern and values. Columns of a row may come in
+ * any order, none twice. With FETI_FULL K must be symmetric within option symmetry_tolerance and
+ * is averaged. FETI_INDEFINITE with the unknown of a diagonal entry that is negative, or 0 beside
+ * others in its row. After a failure the body keeps the matrix it had.
+ *
+ * With FETI_BORROW the values, and columns in 32 bits counted from 0, are not copied if storage is
+ * FETI_LOWER, columns ascend and every row ends with its diagonal entry; otherwise all is copied
+ * (`borrowed` of feti_body_info tells). Borrowed arrays stay readable until the matrix is replaced
+ * or the problem destroyed, and unchanged but for this: between two calls the values may be
+ * rewritten, and the next call then is feti_body_values with the same array.
+ *
+ * @param[in] p       (scalar) the handle
+ * @param[in] body    (scalar) number of the body, from 0
+ * @param[in] n       (scalar) unknowns of the body
+ * @param[in] row_ptr (n + 1) row i holds the entries `row_ptr[i]` to `row_ptr[i + 1] - 1`; starts
+ *                    with `base`
+ * @param[in] col     (row_ptr[n] - base) columns, counted from `base`
+ * @param[in] val     (row_ptr[n] - base) entries of K, force per length
+ * @param[in] base    (scalar) 0 or 1: what `row_ptr` and `col` count from
+ * @param[in] storage (scalar) FETI_FULL, FETI_LOWER or FETI_UPPER
+ * @param[in] flags   (scalar) FETI_COPY or FETI_BORROW
+ *
+ * Safety: The arrays have the given shapes.
+ */
+int32_t feti_body_stiffness_i64(struct feti_problem *p,
+                                int64_t body,
+                                int64_t n,
+                                const int64_t *row_ptr,
+                                const int64_t *col,
+                                const double *val,
+                                int32_t base,
+                                int32_t storage,
+                                int32_t flags);
+
+/**
+ * Gives the stiffness matrix K of a body by rows with a diagonal of its own, with 32-bit indices.
+ *
+ * For codes that keep the diagonal apart. The matrix is copied; calling again replaces pattern and
+ * values. Columns of a row may come in any order, none twice. With FETI_FULL K must be symmetric
+ * within option symmetry_tolerance and is averaged. FETI_INDEFINITE with the unknown of a diagonal
+ * entry that is negative, or 0 beside others in its row. After a failure the body keeps the matrix
+ * it had.
+ *
+ * @param[in] p       (scalar) the handle
+ * @param[in] body    (scalar) number of the body, from 0
+ * @param[in] n       (scalar) unknowns of the body
+ * @param[in] diag    (n) K_ii, force per length
+ * @param[in] row_ptr (n + 1) row i holds the entries `row_ptr[i]` to `row_ptr[i + 1] - 1`; starts
+ *                    with `base`
+ * @param[in] col     (row_ptr[n] - base) columns, counted from `base`, none that of its row
+ * @param[in] val     (row_ptr[n] - base) entries of K beside the diagonal, force per length
+ * @param[in] base    (scalar) 0 or 1: what `row_ptr` and `col` count from
+ * @param[in] storage (scalar) FETI_FULL, FETI_LOWER or FETI_UPPER
+ * @param[in] flags   (scalar) FETI_COPY, or FETI_BORROW, which copies as well: no matrix is kept
+ *                    in this form
+ *
+ * Safety: The arrays have the given shapes.
+ */
+int32_t feti_body_stiffness_split_i32(struct feti_problem *p,
+                                      int64_t body,
+                                      int64_t n,
+                                      const double *diag,
+                                      const int32_t *row_ptr,
+                                      const int32_t *col,
+                                      const double *val,
+                                      int32_t base,
+                                      int32_t storage,
+                                      int32_t flags);
+
+/**
+ * Gives the stiffness matrix K of a body by rows with a diagonal of its own, with 64-bit indices.
+ *
+ * For codes that keep the diagonal apart. The matrix is copied; calling again replaces pattern and
+ * values. Columns of a row may come in any order, none twice. With FETI_FULL K must be symmetric
+ * within option symmetry_tolerance and is averaged. FETI_INDEFINITE with the unknown of a diagonal
+ * entry that is negative, or 0 beside others in its row. After a failure the body keeps the matrix
+ * it had.
+ *
+ * @param[in] p       (scalar) the handle
+ * @param[in] body    (scalar) number of the body, from 0
+ * @param[in] n       (scalar) unknowns of the body
+ * @param[in] diag    (n) K_ii, force per length
+ * @param[in] row_ptr (n + 1) row i holds the entries `row_ptr[i]` to `row_ptr[i + 1] - 1`; starts
+ *                    with `base`
+ * @param[in] col     (row_ptr[n] - base) columns, counted from `base`, none that of its row
+ * @param[in] val     (row_ptr[n] - base) entries of K beside the diagonal, force per length
+ * @param[in] base    (scalar) 0 or 1: what `row_ptr` and `col` count from
+ * @param[in] storage (scalar) FETI_FULL, FETI_LOWER or FETI_UPPER
+ * @param[in] flags   (scalar) FETI_COPY, or FETI_BORROW, which copies as well: no matrix is kept
+ *                    in this form
+ *
+ * Safety: The arrays have the given shapes.
+ */
+int32_t feti_body_stiffness_split_i64(struct feti_problem *p,
+                                      int64_t body,
+                                      int64_t n,
+                                      const double *diag,
+                                      const int64_t *row_ptr,
+                                      const int64_t *col,
+                                      const double *val,
+                                      int32_t base,
+                                      int32_t storage,
+                                      int32_t flags);
+
+/**
+ * Gives the stiffness matrix K of a body as a dense matrix, for boundary elements and condensed
+ * bodies.
+ *
+ * The matrix is copied; calling again replaces it. With FETI_LOWER and FETI_UPPER the other
+ * triangle is not read. FETI_INDEFINITE with the unknown of a diagonal entry that is negative, or
+ * 0 beside others in its row. After a failure the body keeps the matrix it had.
+ *
+ * @param[in] p       (scalar) the handle
+ * @param[in] body    (scalar) number of the body, from 0
+ * @param[in] n       (scalar) unknowns of the body
+ * @param[in] k       (ld * n) column-major: K_ij is k[i + ld j], force per length
+ * @param[in] ld      (scalar) >= n
+ * @param[in] storage (scalar) FETI_FULL, FETI_LOWER or FETI_UPPER
+ * @param[in] flags   (scalar) FETI_COPY
+ *
+ * Safety: The array has the given shape.
+ */
+int32_t feti_body_stiffness_dense(struct feti_problem *p,
+                                  int64_t body,
+                                  int64_t n,
+                                  const double *k,
+                                  int64_t ld,
+                                  int32_t storage,
+                                  int32_t flags);
 
 /**
  * Applies the generalised inverse of a body, `Y = K+ X`.
@@ -1690,8 +2160,74 @@ int32_t feti_dual_apply(struct feti_problem *p, int64_t m, const double *x, doub
  */
 int32_t feti_dual_rhs(struct feti_problem *p, int64_t m, double *d);
 
+/**
+ * Gives new values of a stiffness matrix on the pattern it was given with by
+ * feti_body_stiffness_i32 or _i64.
+ *
+ * The values are copied and checked as the first were. The symbolic analysis is kept, and the next
+ * setup costs a numeric factorisation of this body; values that are bit by bit those of before
+ * cost nothing. Storage is that of the first call. FETI_STATE where the matrix has not been given,
+ * or in another form. FETI_INDEFINITE with the unknown of a diagonal entry that is negative, or 0
+ * beside others in its row. After a failure the body keeps the values it had.
+ *
+ * Where the values are borrowed (FETI_BORROW) they are not copied: `val` is the array that was
+ * borrowed, rewritten by the host, or another one in its place. They count as changed, also for
+ * other bodies that borrow the same array. After a failure with the same array the body is without
+ * a matrix until it gets other values.
+ *
+ * @param[in] p    (scalar) the handle
+ * @param[in] body (scalar) number of the body, from 0
+ * @param[in] nnz  (scalar) number of values, that of the first call
+ * @param[in] val  (nnz) entries of K in the order of the first call, force per length
+ *
+ * Safety: The array has the given shape.
+ */
+int32_t feti_body_values(struct feti_problem *p, int64_t body, int64_t nnz, const double *val);
+
+/**
+ * Gives new values of a stiffness matrix that was given by feti_body_stiffness_split_i32 or _i64.
+ *
+ * As feti_body_values, for a matrix with a diagonal of its own. FETI_STATE where the matrix has
+ * not been given, or in another form. FETI_INDEFINITE with the unknown of a diagonal entry that is
+ * negative, or 0 beside others in its row. After a failure the body keeps the values it had.
+ *
+ * @param[in] p    (scalar) the handle
+ * @param[in] body (scalar) number of the body, from 0
+ * @param[in] n    (scalar) unknowns of the body
+ * @param[in] diag (n) K_ii, force per length
+ * @param[in] nnz  (scalar) number of values beside the diagonal, that of the first call
+ * @param[in] val  (nnz) entries of K beside the diagonal in the order of the first call, force per
+ *                 length
+ *
+ * Safety: The arrays have the given shapes.
+ */
+int32_t feti_body_values_split(struct feti_problem *p,
+                               int64_t body,
+                               int64_t n,
+                               const double *diag,
+                               int64_t nnz,
+                               const double *val);
+
+/**
+ * Gives new values of a dense stiffness matrix.
+ *
+ * The matrix is copied and checked as the first was, in the same storage. Where zeros stay zeros
+ * the symbolic analysis is kept. FETI_STATE where the matrix has not been given, or in another
+ * form. FETI_INDEFINITE with the unknown of a diagonal entry that is negative, or 0 beside others
+ * in its row. After a failure the body keeps the matrix it had.
+ *
+ * @param[in] p    (scalar) the handle
+ * @param[in] body (scalar) number of the body, from 0
+ * @param[in] n    (scalar) unknowns of the body
+ * @param[in] k    (ld * n) column-major: K_ij is k[i + ld j], force per length
+ * @param[in] ld   (scalar) >= n
+ *
+ * Safety: The array has the given shape.
+ */
+int32_t feti_body_values_dense(struct feti_problem *p, int64_t body, int64_t n, const double *k, int64_t ld);
+
 #ifdef __cplusplus
 }  // extern "C"
-#endif  // __cplusplus
+#endif  /* __cplusplus */
 
 #endif  /* FETI_CONTACT_H */
