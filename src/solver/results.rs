@@ -282,9 +282,8 @@ mod tests {
     use super::*;
     use crate::solver::{RowsInput, SparseInput, Storage};
 
-    /// Springs 1 against walls at 1, loads 3 and 2, then 5 and 2.
-    #[test]
-    fn the_force_on_a_body_is_that_of_the_present_answer_and_of_the_kind_asked_for() {
+    /// Two springs 1 against walls at 1.
+    fn two_springs() -> Problem {
         let mut problem = Problem::new();
         for _ in 0..2 {
             let body = problem.add_body(1).unwrap();
@@ -294,6 +293,28 @@ mod tests {
         let walls =
             RowsInput { ptr: &[0, 1, 2], body: None, dof: &[0, 1], val: &[1.0; 2], rhs: Some(&[1.0; 2]) };
         problem.add_rows(RowKind::Inequality, walls).unwrap();
+        problem
+    }
+
+    /// The options ask for another setup, or for one that the memory does not allow.
+    #[test]
+    fn an_answer_outlives_the_check_of_another_under_other_options() {
+        let mut problem = two_springs();
+        problem.set_load(0, &[3.0]).unwrap();
+        problem.solve().unwrap();
+        let answer = problem.displacements().unwrap().to_vec();
+        problem.set_str("method", "paper-feasible").unwrap();
+        problem.set_i64("memory_limit", 1).unwrap();
+        assert!(problem.check(&answer, &[2.0, 0.0], &[]).unwrap().passed());
+        assert!(!problem.check(&answer, &[0.0, 0.0], &[]).unwrap().passed());
+        assert_eq!(problem.displacements().unwrap(), answer);
+        assert_eq!(problem.solve().unwrap_err().kind, Kind::Memory);
+    }
+
+    /// Loads 3 and 2, then 5 and 2.
+    #[test]
+    fn the_force_on_a_body_is_that_of_the_present_answer_and_of_the_kind_asked_for() {
+        let mut problem = two_springs();
         let reaction = |problem: &mut Problem, kind, body| {
             let mut r = [7.0];
             problem.reaction(kind, body, &mut r).map(|()| r[0])

@@ -109,7 +109,7 @@ impl Problem {
     }
 
     /// Also where all is set up: right-hand sides may have changed since.
-    fn check_empty_rows(&self) -> Result<()> {
+    pub(super) fn check_empty_rows(&self) -> Result<()> {
         self.contact.check_empty_rows(RowKind::Inequality).map_err(|e| empty_row_contradicts(e, 0))?;
         let first = self.contact.len();
         self.equalities.check_empty_rows(RowKind::Equality).map_err(|e| empty_row_contradicts(e, first))

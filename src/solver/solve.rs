@@ -278,9 +278,12 @@ impl Judge for Certifier<'_> {
 
 impl Problem {
     /// The certificate of any answer, also another code's: u over all unknowns, multipliers of contact and
-    /// equality rows.
+    /// equality rows. A setup that is there serves, whatever the options have become: the last answer stays.
     pub fn check(&mut self, u: &[f64], lambda: &[f64], mu: &[f64]) -> Result<Certificate> {
-        self.setup()?;
+        if self.ready.is_none() {
+            self.setup()?;
+        }
+        self.check_empty_rows()?;
         let counts = self.counts();
         let lengths = [("n", u, counts.dofs), ("rows", lambda, counts.rows), ("eqs", mu, counts.equalities)];
         for (argument, values, expected) in lengths {
