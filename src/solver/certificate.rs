@@ -178,8 +178,9 @@ fn forces(data: &Data, answer: Answer, metric: &[f64], certificate: &mut Certifi
         rows.matrix.mul_transposed_add(1.0, multipliers, &mut reaction);
         rows.matrix.mul_transposed_abs_add(multipliers, &mut reaction_terms);
     }
-    let (mut totals, mut load) = (Totals::default(), Vec::with_capacity(data.bodies.len()));
-    let everywhere = all_forces(data, &reaction, metric);
+    let (loads, pushes) = sizes(data, &reaction, metric);
+    let mut totals = Totals { load: norm(&loads), ..Totals::default() };
+    let everywhere = all_forces(data, metric, totals.load, norm(&pushes));
     for (p, body) in data.bodies.iter().enumerate() {
         let range = body.start..body.start + body.stiffness.order();
         let none = vec![0.0; if body.load.is_none() { range.len() } else { 0 }];
@@ -193,10 +194,9 @@ fn forces(data: &Data, answer: Answer, metric: &[f64], certificate: &mut Certifi
         (0..u.len()).for_each(|i| terms[i] += given[i]);
         totals.strain += dot(u, &strain);
         totals.work += dot(f, u);
-        load.push(size(f));
         totals.terms += u.iter().zip(&terms).map(|(u, t)| u.abs() * t).sum::<f64>();
 
-        let loads = size(f) + size(push);
+        let loads = loads[p] + pushes[p];
         // forces of rows are known to rounding of the largest of all: a body may have no other
         let idle = if loads <= NOISE * everywhere { everywhere } else { 0.0 };
         let noise = (NOISE * (size(&terms) + idle)).min(EXCUSED * data.limit * everywhere);
@@ -213,7 +213,6 @@ fn forces(data: &Data, answer: Answer, metric: &[f64], certificate: &mut Certifi
         let noise = NOISE * (given + idle);
         replace_if_worse(&mut certificate.balance, entry(resultant, loads, noise, data.limit, Some(p)));
     }
-    totals.load = norm(&load);
     Ok(totals)
 }
 
@@ -221,18 +220,22 @@ fn norm(x: &[f64]) -> f64 {
     weighted_norm(x, |_| 1.0)
 }
 
-/// A: `(|f|^2 + |B'lambda + H'mu|^2)^1/2` in the metric `D^-1`, over all bodies. Without any load the forces that the motion
-/// asked for by the rows would take at their own unknowns belong to it, `|S c_-| + |S_H h|`: a body that is moved, not
-/// loaded, has no other measure of its strain.
-fn all_forces(data: &Data, reaction: &[f64], metric: &[f64]) -> f64 {
-    let sizes = data.bodies.iter().map(|body| {
+/// `|f|` and `|B'lambda + H'mu|` of every body, in the metric `D^-1`.
+fn sizes(data: &Data, reaction: &[f64], metric: &[f64]) -> (Vec<f64>, Vec<f64>) {
+    let of_body = |body: &BodyData| {
         let weight = |i: usize| 1.0 / metric[body.start + i];
         let push = &reaction[body.start..body.start + body.stiffness.order()];
         (weighted_norm(body.load.unwrap_or_default(), weight), weighted_norm(push, weight))
-    });
-    let (loads, pushes): (Vec<f64>, Vec<f64>) = sizes.unzip();
-    let forces = norm(&[norm(&loads), norm(&pushes)]);
-    if loads.iter().any(|load| *load > 0.0) {
+    };
+    data.bodies.iter().map(of_body).unzip()
+}
+
+/// A: `(|f|^2 + |B'lambda + H'mu|^2)^1/2` in the metric `D^-1`, over all bodies. Without any load the forces that the motion
+/// asked for by the rows would take at their own unknowns belong to it, `|S c_-| + |S_H h|`: a body that is moved, not
+/// loaded, has no other measure of its strain.
+fn all_forces(data: &Data, metric: &[f64], load: f64, push: f64) -> f64 {
+    let forces = norm(&[load, push]);
+    if load > 0.0 {
         return forces;
     }
     let asked = |rows: &RowSet, motion: fn(f64) -> f64| {
