@@ -38,6 +38,7 @@ pub use values::{Form, Places};
 
 use std::sync::Arc;
 
+use crate::linalg::vector::power_of_two_below;
 use crate::linalg::Symmetric;
 
 /// What the host has said about one body; units are the host's own.
@@ -64,5 +65,21 @@ impl Body {
     pub fn k(&self) -> Option<Stiffness<'_>> {
         let matrix = self.stiffness.as_deref().map(Stiffness::Matrix);
         matrix.or_else(|| self.operator.as_deref().map(Stiffness::Host))
+    }
+
+    /// The power of two below the largest `K_ii`, 1 where there is none, force / length: dividing by it is exact, so powers
+    /// of two in the host's units do not change a bit of what follows.
+    pub fn unit(&self) -> f64 {
+        power_of_two_below(self.k().map_or(0.0, |k| k.largest_diagonal()))
+    }
+
+    /// What stands for `K_ii` in the metric where it is 0: the unit, or that of the `others` where there is no stiffness.
+    pub fn without(&self, others: f64) -> f64 {
+        let stiff = self.k().is_some_and(|k| k.largest_diagonal() > 0.0);
+        if stiff {
+            self.unit()
+        } else {
+            others
+        }
     }
 }

@@ -43,7 +43,7 @@ pub struct RowsInput<'a> {
 pub struct RowSet {
     /// m x (unknowns of all bodies); no unit. Saved states share it.
     pub matrix: Arc<Csr>,
-    /// c or h, length.
+    /// c or h, length; +infinity for a contact row that never closes.
     pub rhs: Vec<f64>,
     /// 1/k >= 0, length / force; 0 for a rigid row.
     pub compliance: Vec<f64>,
@@ -66,15 +66,21 @@ impl RowSet {
         Ok(Self { matrix: Arc::clone(&self.matrix), rhs, compliance })
     }
 
-    /// The entries and compliances of these rows are those of the other.
+    /// The entries and compliances of these rows are those of the other, and the same rows may close.
     pub fn same_but_rhs(&self, other: &Self) -> bool {
         let same = Arc::ptr_eq(&self.matrix, &other.matrix) || self.matrix == other.matrix;
-        same && self.compliance == other.compliance
+        let finite = |rows: &Self| (0..rows.len()).map(|i| rows.is_finite(i)).collect::<Vec<_>>();
+        same && self.compliance == other.compliance && finite(self) == finite(other)
+    }
+
+    /// Row i is one that may close: an infinite gap never does.
+    pub fn is_finite(&self, i: usize) -> bool {
+        self.rhs[i] < f64::INFINITY
     }
 
     /// Appends rows to those of bodies that begin at `offsets` (one more than bodies: the last is their end);
     /// repeated entries of a row are added up. Returns the number of the first. Nothing is kept on an error.
-    pub fn add(&mut self, input: RowsInput<'_>, offsets: &[usize]) -> Result<usize> {
+    pub fn add(&mut self, kind: RowKind, input: RowsInput<'_>, offsets: &[usize]) -> Result<usize> {
         let rows = input.ptr.len() - 1;
         if let Some(at) = first_non_finite(input.val) {
             let row = input.ptr.partition_point(|&p| p <= at) - 1;
@@ -84,7 +90,7 @@ impl RowSet {
             Some(rhs) => copied(rhs, "constraint rows")?,
             None => zeros(rows, "constraint rows")?,
         };
-        check_rhs(&rhs, 0)?;
+        check_rhs(kind, &rhs, 0)?;
         let mut added = Csr::empty(0);
         for i in 0..rows {
             let mut entries = Vec::with_capacity(input.ptr[i + 1] - input.ptr[i]);
@@ -113,11 +119,13 @@ impl RowSet {
         Ok(first)
     }
 
-    pub fn set_rhs(&mut self, first: usize, rhs: &[f64]) -> Result<()> {
+    /// True where some row has become one that may close, or one that never does.
+    pub fn set_rhs(&mut self, kind: RowKind, first: usize, rhs: &[f64]) -> Result<bool> {
         let target = values_from(&mut self.rhs, first, rhs.len())?;
-        check_rhs(rhs, first)?;
+        check_rhs(kind, rhs, first)?;
+        let turned = target.iter().zip(rhs).any(|(old, new)| old.is_finite() != new.is_finite());
         target.copy_from_slice(rhs);
-        Ok(())
+        Ok(turned)
     }
 
     /// `inv_k`: 1/k, length / force, for the rows from `first` on; 0 makes a row rigid.
@@ -200,11 +208,17 @@ impl RowKind {
     }
 }
 
-/// `rhs` are those of the rows from `first` on.
-fn check_rhs(rhs: &[f64], first: usize) -> Result<()> {
-    first_non_finite(rhs).map_or(Ok(()), |at| {
-        Err(Error::argument("rhs", "the entry is not a finite number").row(first + at).entry(at))
-    })
+/// `rhs` are those of the rows from `first` on. A gap may be +infinity.
+fn check_rhs(kind: RowKind, rhs: &[f64], first: usize) -> Result<()> {
+    let never = |c: f64| kind == RowKind::Inequality && c == f64::INFINITY;
+    let what = match kind {
+        RowKind::Inequality => "the gap is neither a finite number nor +infinity",
+        RowKind::Equality => "the entry is not a finite number",
+    };
+    match rhs.iter().position(|c| !c.is_finite() && !never(*c)) {
+        None => Ok(()),
+        Some(at) => Err(Error::argument("rhs", what).row(first + at).entry(at)),
+    }
 }
 
 /// So many values from `first` on. Refused as `first` where there is no such row, as `rows` where they are too many.
@@ -257,21 +271,32 @@ mod tests {
     #[test]
     fn repeated_entries_of_a_row_are_added_up() {
         let mut rows = RowSet::default();
-        assert_eq!(rows.add(input(Some(&[1, 0, 1]), &[2, 0, 2], &[1.0, 4.0, 2.0]), &[0, 3, 6]).unwrap(), 0);
+        assert_eq!(
+            rows.add(RowKind::Inequality, input(Some(&[1, 0, 1]), &[2, 0, 2], &[1.0, 4.0, 2.0]), &[0, 3, 6])
+                .unwrap(),
+            0
+        );
         assert_eq!(rows.matrix.row(0).collect::<Vec<_>>(), [(0, 4.0), (5, 3.0)]);
-        assert_eq!(rows.add(input(None, &[5, 5, 1], &[1.0, -1.0, 2.0]), &[0, 3, 6]).unwrap(), 1);
+        assert_eq!(
+            rows.add(RowKind::Inequality, input(None, &[5, 5, 1], &[1.0, -1.0, 2.0]), &[0, 3, 6]).unwrap(),
+            1
+        );
         assert_eq!(rows.matrix.row(1).collect::<Vec<_>>(), [(1, 2.0)]);
     }
 
     #[test]
     fn a_refused_row_leaves_nothing_behind() {
         let mut rows = RowSet::default();
-        let error = rows.add(input(Some(&[0, 1, 2]), &[0, 0, 0], &[1.0; 3]), &[0, 3, 6]).unwrap_err();
+        let error = rows
+            .add(RowKind::Inequality, input(Some(&[0, 1, 2]), &[0, 0, 0], &[1.0; 3]), &[0, 3, 6])
+            .unwrap_err();
         assert_eq!(
             (error.kind, error.place.row, error.place.entry),
             (Kind::Argument("body"), Some(0), Some(2))
         );
-        let error = rows.add(input(Some(&[0, 1, 1]), &[0, 3, 0], &[1.0; 3]), &[0, 3, 6]).unwrap_err();
+        let error = rows
+            .add(RowKind::Inequality, input(Some(&[0, 1, 1]), &[0, 3, 0], &[1.0; 3]), &[0, 3, 6])
+            .unwrap_err();
         assert_eq!((error.kind, error.place.entry), (Kind::Argument("dof"), Some(1)));
         assert_eq!(rows.len(), 0);
     }
@@ -280,9 +305,9 @@ mod tests {
     fn an_empty_row_is_refused_only_where_it_cannot_hold() {
         let mut rows = RowSet::default();
         let empty = |rhs| RowsInput { ptr: &[0, 0], body: None, dof: &[], val: &[], rhs: Some(rhs) };
-        rows.add(empty(&[1.0]), &[0, 3]).unwrap();
+        rows.add(RowKind::Inequality, empty(&[1.0]), &[0, 3]).unwrap();
         assert!(rows.check_empty_rows(RowKind::Inequality).is_ok());
-        rows.add(empty(&[-1.0]), &[0, 3]).unwrap();
+        rows.add(RowKind::Inequality, empty(&[-1.0]), &[0, 3]).unwrap();
         let error = rows.check_empty_rows(RowKind::Inequality).unwrap_err();
         assert_eq!((error.kind, error.place.row), (Kind::GapsContradict, Some(1)));
     }
@@ -303,7 +328,9 @@ mod tests {
     #[test]
     fn entries_that_add_up_to_no_number_are_refused() {
         let mut rows = RowSet::default();
-        let error = rows.add(input(None, &[5, 5, 1], &[1e308, 1e308, 2.0]), &[0, 3, 6]).unwrap_err();
+        let error = rows
+            .add(RowKind::Inequality, input(None, &[5, 5, 1], &[1e308, 1e308, 2.0]), &[0, 3, 6])
+            .unwrap_err();
         assert_eq!((error.kind, error.place.row), (Kind::Argument("val"), Some(0)));
         assert_eq!(rows.len(), 0);
     }
@@ -312,14 +339,20 @@ mod tests {
     fn a_refused_value_is_named_by_its_row_and_a_row_that_is_not_there_comes_first() {
         let mut rows = RowSet::default();
         for _ in 0..3 {
-            rows.add(input(None, &[5, 5, 1], &[1.0, -1.0, 2.0]), &[0, 3, 6]).unwrap();
+            rows.add(RowKind::Inequality, input(None, &[5, 5, 1], &[1.0, -1.0, 2.0]), &[0, 3, 6]).unwrap();
         }
         let bad = [0.0, f64::NAN];
-        for error in [rows.set_rhs(1, &bad).unwrap_err(), rows.set_compliance(1, &bad).unwrap_err()] {
+        for error in [
+            rows.set_rhs(RowKind::Inequality, 1, &bad).unwrap_err(),
+            rows.set_compliance(1, &bad).unwrap_err(),
+        ] {
             assert_eq!((error.place.row, error.place.entry), (Some(2), Some(1)));
         }
         for first in [3, usize::MAX] {
-            assert_eq!(rows.set_rhs(first, &bad).unwrap_err().kind, Kind::Argument("first"));
+            assert_eq!(
+                rows.set_rhs(RowKind::Inequality, first, &bad).unwrap_err().kind,
+                Kind::Argument("first")
+            );
             assert_eq!(rows.set_compliance(first, &bad).unwrap_err().kind, Kind::Argument("first"));
         }
         assert_eq!((rows.rhs, rows.compliance), (vec![0.0; 3], vec![0.0; 3]));
@@ -328,8 +361,8 @@ mod tests {
     #[test]
     fn a_compliance_is_finite_and_not_negative_and_belongs_to_a_row() {
         let mut rows = RowSet::default();
-        rows.add(input(None, &[5, 5, 1], &[1.0, -1.0, 2.0]), &[0, 3, 6]).unwrap();
-        rows.add(input(None, &[5, 4, 1], &[1.0, -1.0, 2.0]), &[0, 3, 6]).unwrap();
+        rows.add(RowKind::Inequality, input(None, &[5, 5, 1], &[1.0, -1.0, 2.0]), &[0, 3, 6]).unwrap();
+        rows.add(RowKind::Inequality, input(None, &[5, 4, 1], &[1.0, -1.0, 2.0]), &[0, 3, 6]).unwrap();
         rows.set_compliance(1, &[0.5]).unwrap();
         for value in [-1e-300, f64::NAN, f64::INFINITY] {
             let error = rows.set_compliance(0, &[3.0, value]).unwrap_err();
@@ -344,7 +377,7 @@ mod tests {
     fn a_compliant_row_without_entries_is_a_spring_by_itself() {
         let mut rows = RowSet::default();
         let empty = RowsInput { ptr: &[0, 0, 0], body: None, dof: &[], val: &[], rhs: Some(&[-3.0, 3.0]) };
-        rows.add(empty, &[0, 3]).unwrap();
+        rows.add(RowKind::Inequality, empty, &[0, 3]).unwrap();
         rows.set_compliance(0, &[0.5, 0.5]).unwrap();
         assert!([RowKind::Inequality, RowKind::Equality]
             .iter()

@@ -24,7 +24,7 @@ impl Subdomain {
     fn add_common(&self, common: &[(usize, usize)], block: &mut Matrix) -> Result<()> {
         if let Some(explicit) = &self.operator {
             let entry = |i, j| self.multiples.entry(i, j, |i, j| explicit.get(i, j));
-            add(common, |k, l| entry(common[k].1, common[l].1), block);
+            add(common, |k, l| self.by * entry(common[k].1, common[l].1), block);
             return Ok(());
         }
         if common.is_empty() {
@@ -33,7 +33,7 @@ impl Subdomain {
         let mut selected = Csr::empty(self.matrix.cols);
         common.iter().for_each(|&(_, i)| selected.push_row(self.matrix.row(i)));
         let assembled = self.kplus.inverse_form(&selected)?;
-        add(common, |k, l| assembled.get(k, l), block);
+        add(common, |k, l| self.by * assembled.get(k, l), block);
         Ok(())
     }
 }
@@ -50,7 +50,7 @@ fn add(common: &[(usize, usize)], entry: impl Fn(usize, usize) -> f64, block: &m
 mod tests {
     use super::*;
     use crate::body::{GeneralizedInverse, Modes, NullSpaceInput};
-    use crate::dual::{Part, Size};
+    use crate::dual::{Draft, Part, Size};
     use crate::linalg::{Operator, Symmetric};
     use std::sync::Arc;
 
@@ -65,7 +65,7 @@ mod tests {
         let part = |p: usize| {
             let made = GeneralizedInverse::plan(k.clone().into(), &none, 1e-8).unwrap().execute().unwrap();
             let (range, size) = (8 * p..8 * p + 8, Size::default());
-            Part { range, kplus: Arc::new(made.inverse), kept: None, size, implicit }
+            Part { range, kplus: Arc::new(made.inverse), by: 1.0, kept: None, size, implicit }
         };
         let mut rows = Csr::empty(16);
         rows.push_row([(2, 1.0), (9, -0.5)]);
@@ -73,8 +73,9 @@ mod tests {
         rows.push_row([(12, 2.0)]);
         rows.push_row([(5, 1.0), (6, -1.0), (15, 1.0)]);
         let compliance = vec![0.0, 0.1, 0.0, 0.2];
-        let one_by_one = &mut |count, task: &(dyn Fn(usize) -> _ + Sync)| (0..count).map(task).collect();
-        Dual::new(vec![part(0), part(1)], &rows, compliance, one_by_one).unwrap()
+        let draft = Draft::new(vec![part(0), part(1)], &rows);
+        let operators = (0..2).map(|p| draft.assemble(p).unwrap()).collect();
+        draft.finish(operators, compliance)
     }
 
     #[test]

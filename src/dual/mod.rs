@@ -47,6 +47,8 @@ struct Subdomain {
     multiples: Multiples,
     /// `B K_p+ B'`: F_p between T and T'; none: every product with F_p takes one with K_p+.
     operator: Option<Packed>,
+    /// Power of two by which `K_p+` and what is made of it are multiplied: forces of all bodies have one unit.
+    by: f64,
     /// Multiplications of a product with F_p.
     work: usize,
 }
@@ -65,6 +67,8 @@ pub struct Dual {
 pub struct Part {
     pub range: Range<usize>,
     pub kplus: Arc<GeneralizedInverse>,
+    /// Unit of forces over the unit of K in `K_p+`, a power of two.
+    pub by: f64,
     /// `F_p` of other rows.
     pub kept: Option<Kept>,
     /// What the body and its F_p are measured by.
@@ -73,14 +77,20 @@ pub struct Part {
     pub implicit: bool,
 }
 
-impl Dual {
-    /// `matrix` is B, m x n, `compliance` the diagonal of C; `assembly` runs the tasks that assemble F_p.
-    pub fn new(
-        mut parts: Vec<Part>,
-        matrix: &Csr,
-        compliance: Vec<f64>,
-        assembly: &mut Assembly,
-    ) -> Result<Self> {
+/// A dual problem whose operators `F_p` are yet to be assembled, body by body, in any order.
+pub struct Draft {
+    parts: Vec<Part>,
+    /// Rows that touch each body, and their entries over its unknowns.
+    local: Vec<(Vec<usize>, Csr)>,
+    multiples: Vec<Multiples>,
+    distinct: Vec<Csr>,
+    /// What the operators of other rows serve for; none where the operator is implicit.
+    reuse: Vec<Option<Reuse>>,
+}
+
+impl Draft {
+    /// `matrix` is B, m x n.
+    pub fn new(mut parts: Vec<Part>, matrix: &Csr) -> Self {
         let local = cut(parts.iter().map(|part| part.range.clone()).collect(), matrix);
         let (multiples, distinct): (Vec<_>, Vec<_>) =
             local.iter().map(|(_, matrix)| Multiples::of(matrix)).unzip();
@@ -88,16 +98,25 @@ impl Dual {
             let kept = part.kept.take();
             (!part.implicit).then(|| Reuse::of(kept, rows))
         };
-        let reuse: Vec<Option<Reuse>> = parts.iter_mut().zip(&distinct).map(reuse).collect();
-        let columns = reuse.iter().flatten().map(Reuse::columns).sum();
-        let assemble = |p: usize| {
-            let explicit = reuse[p].as_ref();
-            explicit.map(|reuse| reuse.operator(&parts[p].kplus, &distinct[p])).transpose()
-        };
-        let operators = assembly(parts.len(), &assemble)?.into_iter().zip(multiples);
+        let reuse = parts.iter_mut().zip(&distinct).map(reuse).collect();
+        Self { parts, local, multiples, distinct, reuse }
+    }
+
+    /// `B K_p+ B'` of body p, none where it is implicit; asked for once.
+    pub fn assemble(&self, p: usize) -> Result<Option<Packed>> {
+        let explicit = self.reuse[p].as_ref();
+        explicit.map(|reuse| reuse.operator(&self.parts[p].kplus, &self.distinct[p])).transpose()
+    }
+
+    /// The dual problem with the operators that have been assembled; `compliance` is the diagonal of C, m entries.
+    pub fn finish(self, operators: Vec<Option<Packed>>, compliance: Vec<f64>) -> Dual {
+        let columns = self.reuse.iter().flatten().map(Reuse::columns).sum();
+        let operators = operators.into_iter().zip(self.multiples);
         let mut first = 0;
-        let mut subdomains = Vec::with_capacity(parts.len());
-        for ((part, (rows, matrix)), (operator, multiples)) in parts.into_iter().zip(local).zip(operators) {
+        let mut subdomains = Vec::with_capacity(self.parts.len());
+        for ((part, (rows, matrix)), (operator, multiples)) in
+            self.parts.into_iter().zip(self.local).zip(operators)
+        {
             let modes = first..first + part.kplus.null_space.cols;
             first = modes.end;
             subdomains.push(Subdomain {
@@ -108,13 +127,16 @@ impl Dual {
                 matrix,
                 multiples,
                 operator,
+                by: part.by,
                 work: part.size.work(part.implicit),
             });
         }
-        let coarse = coarse(&subdomains, matrix.rows(), first);
-        Ok(Self { subdomains, compliance, coarse, columns })
+        let coarse = coarse(&subdomains, compliance.len(), first);
+        Dual { subdomains, compliance, coarse, columns }
     }
+}
 
+impl Dual {
     /// The explicit operators of the bodies with their rows, for a dual problem of other rows.
     pub fn into_operators(self) -> Vec<Option<Kept>> {
         let kept = |s: Subdomain| Some(Kept::new(Multiples::of(&s.matrix).1, s.operator?));
@@ -146,7 +168,7 @@ impl Dual {
         let s = &self.subdomains[p];
         let mut x = zeros(s.range.len(), "a displacement")?;
         s.kplus.apply(&f[s.range.clone()], &mut x)?;
-        Ok((0..s.rows.len()).map(|k| s.matrix.row_dot(k, &x)).collect())
+        Ok((0..s.rows.len()).map(|k| s.by * s.matrix.row_dot(k, &x)).collect())
     }
 
     /// `d = B K+ f - c` of (13), from what the loads move, body by body.
@@ -198,6 +220,7 @@ impl Dual {
         let s = &self.subdomains[p];
         let mut u = zeros(s.range.len(), "a displacement")?;
         s.kplus.apply(&f[s.range.clone()], &mut u)?;
+        u.iter_mut().for_each(|u| *u *= s.by);
         s.kplus.null_space.mul_add(1.0, &alpha[s.modes.clone()], &mut u);
         Ok(u)
     }
@@ -211,10 +234,6 @@ impl Dual {
         v
     }
 }
-
-/// Assembles the operators `0..count`, none where they are implicit.
-pub type Assembly<'a> =
-    dyn FnMut(usize, &(dyn Fn(usize) -> Result<Option<Packed>> + Sync)) -> Result<Vec<Option<Packed>>> + 'a;
 
 /// Runs tasks 0..count and collects their results in order, or the first error in order.
 pub type InParallel<'a, T> = dyn Fn(usize, &(dyn Fn(usize) -> Result<T> + Sync)) -> Result<Vec<T>> + 'a;

@@ -15,7 +15,7 @@ impl Subdomain {
             let local = self.multiples.gather(&self.rows, x);
             let mut image = vec![0.0; local.len()];
             explicit.apply(&local, &mut image);
-            return Ok(self.multiples.spread(&image).collect());
+            return Ok(self.multiples.spread(&image).map(|v| self.by * v).collect());
         }
         let local: Vec<f64> = self.rows.iter().map(|&i| x[i]).collect();
         let mut moved = zeros(self.range.len(), WHAT)?;
@@ -23,6 +23,7 @@ impl Subdomain {
         self.kplus.apply_in_place(&mut moved)?;
         let mut image = vec![0.0; local.len()];
         self.matrix.mul(&moved, &mut image);
+        image.iter_mut().for_each(|v| *v *= self.by);
         Ok(image)
     }
 }

@@ -4,7 +4,7 @@ use super::arrays::{id, reserved, same, zeros, Output};
 use super::body::{body_of_order, whole};
 use super::guard::{call, enter};
 use super::rows::row_kind;
-use super::types::{feti_problem, FETI_ALL, FETI_ROW_CLOSED, FETI_ROW_OPEN, FETI_ROW_WEAK};
+use super::types::{feti_problem, FETI_ALL, FETI_ROW_CLOSED, FETI_ROW_OPEN, FETI_ROW_UNKNOWN, FETI_ROW_WEAK};
 use crate::error::Result;
 use crate::solver::RowState;
 
@@ -156,7 +156,7 @@ pub unsafe extern "C" fn feti_gaps(p: *mut feti_problem, rows: i64, slack: *mut 
 /// |---|---|---|---|
 /// | `p` | in | scalar | the handle |
 /// | `rows` | in | scalar | number of inequality rows |
-/// | `state` | out | rows | FETI_ROW_OPEN, FETI_ROW_CLOSED or FETI_ROW_WEAK |
+/// | `state` | out | rows | FETI_ROW_OPEN, FETI_ROW_CLOSED, FETI_ROW_WEAK or FETI_ROW_UNKNOWN |
 ///
 /// # Safety
 /// The array has the given shape.
@@ -169,6 +169,7 @@ pub unsafe extern "C" fn feti_active(p: *mut feti_problem, rows: i64, state: *mu
             RowState::Open => FETI_ROW_OPEN,
             RowState::Closed => FETI_ROW_CLOSED,
             RowState::Weak => FETI_ROW_WEAK,
+            RowState::Unknown => FETI_ROW_UNKNOWN,
         }));
         // SAFETY: room for one number per row by the caller's word.
         unsafe { copy(&numbers, rows, ("rows", ROWS), state, "state") }

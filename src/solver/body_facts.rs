@@ -6,7 +6,7 @@ use crate::linalg::graph;
 use crate::linalg::memory::room;
 use crate::linalg::Symmetric;
 use crate::solver::problem::Problem;
-use crate::solver::setup::Ready;
+use crate::solver::setup::Setup;
 
 /// What the null space of a body comes from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -77,7 +77,7 @@ impl Problem {
             (None, Some(_)) => Origin::Coordinates,
             (None, None) => Origin::Found,
         };
-        let operator = self.ready.as_ref().map(|Ready { operators, .. }| {
+        let operator = self.ready.as_ref().map(|Setup { operators, .. }| {
             (!operators.implicit[body]).then(|| operators.sizes[body].bytes(false))
         });
         Ok(BodyFacts {

@@ -65,6 +65,22 @@ impl Certificate {
         })
     }
 
+    /// The worst entries of two, the energy of both.
+    pub fn worse(&self, other: &Self) -> Self {
+        let worse = |a: Entry, b: Entry| if b.ratio > a.ratio || b.ratio.is_nan() { b } else { a };
+        Self {
+            limit: self.limit,
+            equilibrium: worse(self.equilibrium, other.equilibrium),
+            balance: worse(self.balance, other.balance),
+            penetration: worse(self.penetration, other.penetration),
+            equality: worse(self.equality, other.equality),
+            negative_force: worse(self.negative_force, other.negative_force),
+            complementarity: worse(self.complementarity, other.complementarity),
+            duality_gap: worse(self.duality_gap, other.duality_gap),
+            energy: self.energy + other.energy,
+        }
+    }
+
     /// Forces and equilibrium pass, a gap or an energy does not: rounding of the loads may have moved it.
     pub fn only_motions_fail(&self) -> bool {
         let forces = [self.equilibrium, self.balance, self.negative_force];

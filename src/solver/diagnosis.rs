@@ -14,11 +14,14 @@ const EMPTY: f64 = 1e-8;
 /// `direction` = e - G l of the nearest contact forces l: the rigid motion `v = R direction` opens every
 /// contact it touches and the load does work on it.
 pub(super) fn load_not_held(problem: &Problem, ready: &Ready, direction: &[f64], margin: f64) -> Error {
-    let share = |p: usize| norm(&direction[ready.dual.modes_of(p)]);
-    let bodies = problem.bodies.len();
-    let body = (0..bodies).fold(0, |best, p| if share(p) > share(best) { p } else { best });
-    let unknowns = problem.counts().dofs;
-    let v = ready.dual.rigid_motion(direction, unknowns);
+    let island = &ready.island;
+    let share = |k: usize| norm(&direction[ready.dual.modes_of(k)]);
+    let bodies = island.bodies.len();
+    let worst = (0..bodies).fold(0, |best, k| if share(k) > share(best) { k } else { best });
+    let own = ready.dual.rigid_motion(direction, island.unknowns());
+    let mut v = vec![0.0; problem.counts().dofs];
+    island.scatter(problem, &own, &mut v);
+    let body = island.bodies[worst];
     let range = problem.range(body);
     let fastest =
         range.clone().fold(range.start, |best, i| if v[i].abs() > v[best].abs() { i } else { best });
@@ -42,7 +45,7 @@ pub(super) fn load_not_held(problem: &Problem, ready: &Ready, direction: &[f64],
 
 /// The weights w combine the scaled rows of the host to nothing, `B'w = 0`, yet demand a negative gap, `c'w < 0`: no
 /// displacement satisfies them. `None` when w does not prove it. Compliant rows contradict nothing.
-pub(super) fn gaps_contradict(ready: &Ready, gaps: &Gaps, w: &[f64]) -> Option<Error> {
+pub(super) fn gaps_contradict(problem: &Problem, ready: &Ready, gaps: &Gaps, w: &[f64]) -> Option<Error> {
     let rows = &ready.rows;
     let leader = |group: usize| rows.grouping.leaders[group];
     let bounded = |group: usize| leader(group) < rows.contact;
@@ -63,15 +66,16 @@ pub(super) fn gaps_contradict(ready: &Ready, gaps: &Gaps, w: &[f64]) -> Option<E
     }
     let heaviest = (0..w.len()).fold(0, |best, i| if w[i].abs() > w[best].abs() { i } else { best });
     let others = w.iter().filter(|v| **v != 0.0).count() - 1;
-    let (kind, row) = kind_and_row(gaps.holder[heaviest], rows.contact);
+    let (kind, row) = ready.island.kind_and_row(gaps.holder[heaviest]);
     let what = format!(
         "this {} and {others} others contradict each other: no displacement satisfies them",
         kind.name()
     );
     let error = Error::new(Kind::GapsContradict, what).row(row).value(demanded).limit(0.0);
     let involved = (0..w.len()).filter(|&group| w[group] != 0.0);
-    let weights = involved.map(|group| (gaps.holder[group], w[group] * rows.scale[gaps.holder[group]]));
-    Some(error.proved_by(proof_of_rows(-demanded / demands, weights.collect(), gaps.holder[heaviest])))
+    let place = |group: usize| in_stack(problem, ready, gaps.holder[group]);
+    let weights = involved.map(|group| (place(group), w[group] * rows.scale[gaps.holder[group]]));
+    Some(error.proved_by(proof_of_rows(-demanded / demands, weights.collect(), place(heaviest))))
 }
 
 /// The error of a row without entries, which contradicts itself; `first` is the place of its kind in the stack.
@@ -86,6 +90,14 @@ pub(super) fn proof_of_rows(margin: f64, mut weights: Vec<(usize, f64)>, heavies
     weights.iter_mut().for_each(|(_, w)| *w /= largest);
     weights.sort_by_key(|(row, _)| *row);
     Proof::Rows { margin, weights, heaviest }
+}
+
+/// Number in the stack of all contact rows and all equality rows of row i in that of an island.
+pub(super) fn in_stack(problem: &Problem, ready: &Ready, i: usize) -> usize {
+    match ready.island.kind_and_row(i) {
+        (RowKind::Inequality, row) => row,
+        (RowKind::Equality, row) => problem.contact.len() + row,
+    }
 }
 
 /// Kind of a row of the stack, and its number among those.

@@ -14,7 +14,6 @@ use crate::error::{Error, Kind, Result};
 use crate::solver::operators::Operators;
 use crate::solver::phases::Phase;
 use crate::solver::problem::{Inverse, Problem};
-use crate::solver::rows::DualRows;
 use crate::solver::setup::plan;
 use crate::solver::threads;
 use crate::solver::watch::{Part, Watch};
@@ -28,20 +27,18 @@ const ANALYSED: f64 = 0.3;
 const FACTORISED: f64 = 0.9;
 
 impl Problem {
-    /// K+ of the bodies that have none for this unit; gives the operators that they and the memory suggest.
-    pub(super) fn factorize(&mut self, unit: f64, rows: &DualRows, watch: &mut Watch) -> Result<Operators> {
-        for slot in &mut self.bodies {
-            slot.inverse.take_if(|inverse| inverse.unit != unit);
-        }
+    /// K+ of the bodies that have none; `rows` is the number of distinct rows on each. Gives the operators that they and
+    /// the memory suggest.
+    pub(super) fn factorize(&mut self, rows: &[usize], watch: &mut Watch) -> Result<Operators> {
         if self.bodies.iter().all(|slot| slot.inverse.is_some()) {
             return self.operators(rows, &self.entries(&[], &[], &[]), 0);
         }
-        self.try_hosts(unit, watch)?;
+        self.try_hosts(watch)?;
         let begun = Instant::now();
         let twins = self.twins()?;
         let pending: Vec<usize> =
             (0..twins.len()).filter(|&p| twins[p] == p && self.bodies[p].inverse.is_none()).collect();
-        let mut plans = self.plans(&pending, unit, watch)?;
+        let mut plans = self.plans(&pending, watch)?;
         let begun = self.phases.ended(Phase::NullSpaces, begun);
         self.analyse(&pending, &mut plans, watch)?;
         let begun = self.phases.ended(Phase::Analysis, begun);
@@ -49,7 +46,7 @@ impl Problem {
         let own = plans.iter().zip(&factors).filter(|(_, factor)| factor.is_none());
         let bytes = own.map(|(plan, _)| plan.bytes()).sum();
         let operators = self.operators(rows, &self.entries(&twins, &pending, &plans), bytes)?;
-        let ended = self.execute(unit, (&pending, plans, factors), watch);
+        let ended = self.execute((&pending, plans, factors), watch);
         self.phases.ended(Phase::Factorisation, begun);
         ended?;
         self.share(&twins);
@@ -57,11 +54,10 @@ impl Problem {
     }
 
     /// Null spaces and fixing dofs of the pending bodies.
-    fn plans(&self, pending: &[usize], unit: f64, watch: &mut Watch) -> Result<Vec<Plan>> {
+    fn plans(&self, pending: &[usize], watch: &mut Watch) -> Result<Vec<Plan>> {
         let tolerance = self.settings.null_space_tolerance;
         let part = Part::of(self.threads(), self.weights(pending), NULL_SPACES);
-        let find =
-            |k: usize| plan(&self.bodies[pending[k]].body, unit, tolerance).map_err(|e| e.body(pending[k]));
+        let find = |k: usize| plan(&self.bodies[pending[k]].body, tolerance).map_err(|e| e.body(pending[k]));
         let mut plans: Vec<Option<Plan>> = pending.iter().map(|_| None).collect();
         watch.every_body(&part, find, |k, plan| plans[k] = Some(plan))?;
         Ok(plans.into_iter().flatten().collect())
@@ -85,7 +81,7 @@ impl Problem {
     }
 
     /// Factorises the bodies for which no factor is known, then gives theirs to those like them.
-    fn execute(&mut self, unit: f64, (pending, plans, factors): Planned, watch: &mut Watch) -> Result<()> {
+    fn execute(&mut self, (pending, plans, factors): Planned, watch: &mut Watch) -> Result<()> {
         let (mut own, mut others) = (Vec::new(), Vec::new());
         for ((&p, plan), factor) in pending.iter().zip(plans).zip(factors) {
             match factor {
@@ -106,11 +102,11 @@ impl Problem {
             self.work.analyses += made.further_analyses;
             self.work.factorisations += made.factorisations;
             self.bodies[p].symbolic = Some(made.symbolic);
-            let kplus = Arc::new(made.inverse);
+            let (unit, kplus) = (self.bodies[p].body.unit(), Arc::new(made.inverse));
             self.bodies[p].inverse = Some(Inverse { unit, kplus, bytes, operator: None });
         })?;
         for (p, plan, q) in others {
-            let symbolic = self.bodies[q].symbolic.clone();
+            let (unit, symbolic) = (self.bodies[p].body.unit(), self.bodies[q].symbolic.clone());
             let of = self.bodies[q].inverse.as_ref().map(|of| (of.bytes, plan.with_factor_of(&of.kplus)));
             self.bodies[p].symbolic = symbolic;
             self.bodies[p].inverse =

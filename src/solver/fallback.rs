@@ -3,9 +3,8 @@
 use crate::error::Result;
 use crate::qp::paper::algorithm_3;
 use crate::qp::{active_set, minimise, not_held, smalbe, Direct, Judge, Limits, Qp, Solution, Verdict};
-use crate::solver::log::{Log, LogLevel};
 use crate::solver::paper;
-use crate::solver::watch::Watch;
+use crate::solver::watch::Steps;
 use crate::solver::Settings;
 
 /// How the dual is solved.
@@ -21,46 +20,44 @@ pub(super) fn solve_dual(
     qp: Qp,
     start: &[f64],
     judge: &mut dyn Judge,
-    watch: &mut Watch,
+    steps: &mut Steps,
 ) -> Result<Solution> {
     let settings = means.settings;
-    let steps = usize::try_from(settings.max_steps).unwrap_or(usize::MAX);
-    let limits = Limits { tolerance: settings.tolerance, gamma: settings.gamma, steps };
+    let most = usize::try_from(settings.max_steps).unwrap_or(usize::MAX);
+    let limits = Limits { tolerance: settings.tolerance, gamma: settings.gamma, steps: most };
     if let Some(parameters) = paper::parameters(settings) {
-        return algorithm_3(Qp { preconditioner: None, ..qp }, start, &parameters, judge, watch);
+        return algorithm_3(Qp { preconditioner: None, ..qp }, start, &parameters, judge, steps);
     }
     if settings.method == c"smalbe" {
-        return not_held(&qp, start)?.map_or_else(|| smalbe(qp, start, limits, judge, watch), Ok);
+        return not_held(&qp, start)?.map_or_else(|| smalbe(qp, start, limits, judge, steps), Ok);
     }
-    let first = minimise(qp, start, limits, judge, watch)?;
-    let mut best = or_directly(first, qp, means.direct, judge, &mut watch.log)?;
+    let first = minimise(qp, start, limits, judge, steps)?;
+    let mut best = or_directly(first, qp, means.direct, judge, steps)?;
     let plain = Qp { preconditioner: None, ..qp };
     if gave_up(&best) && qp.preconditioner.is_some() {
-        follows(&best, "proportioning without preconditioner", &mut watch.log)?;
-        let next = minimise(plain, &best.x.clone(), limits, judge, watch);
-        let next = next.and_then(|next| or_directly(next, plain, means.direct, judge, &mut watch.log));
+        follows(&best, "proportioning without preconditioner", steps)?;
+        let next = minimise(plain, &best.x.clone(), limits, judge, steps);
+        let next = next.and_then(|next| or_directly(next, plain, means.direct, judge, steps));
         best = better(best, next)?;
     }
     if gave_up(&best) {
-        follows(&best, "smalbe", &mut watch.log)?;
-        let next = smalbe(plain, &best.x.clone(), limits, judge, watch);
-        let next = next.and_then(|next| or_directly(next, plain, means.direct, judge, &mut watch.log));
+        follows(&best, "smalbe", steps)?;
+        let next = smalbe(plain, &best.x.clone(), limits, judge, steps);
+        let next = next.and_then(|next| or_directly(next, plain, means.direct, judge, steps));
         best = better(best, next)?;
     }
     Ok(best)
 }
 
 /// Tells that another method takes over.
-fn follows(ended: &Solution, next: &str, log: &mut Log) -> Result<()> {
+fn follows(ended: &Solution, next: &str, steps: &mut Steps) -> Result<()> {
     let why = match ended.verdict {
         Verdict::StepLimit => "the limit of steps is reached",
         Verdict::Inaccurate => "the dual is solved, the certificate does not pass",
         Verdict::Unbounded { .. } => "theta seems to fall without end",
         _ => "steps no longer reduce the error",
     };
-    log.say(LogLevel::Phase, || {
-        format!("fallback after {} steps: {why}; {next} follows", ended.counts.steps())
-    })
+    steps.line(format!("fallback after {} steps: {why}; {next} follows", ended.counts.steps()))
 }
 
 /// The same, or what the direct method makes of it where it is incomplete.
@@ -69,13 +66,13 @@ fn or_directly(
     qp: Qp,
     direct: Direct,
     judge: &mut dyn Judge,
-    log: &mut Log,
+    steps: &mut Steps,
 ) -> Result<Solution> {
     if !gave_up(&solution) && solution.verdict != Verdict::StepLimit {
         return Ok(solution);
     }
     if direct.limit > 0 {
-        follows(&solution, "direct solution on active sets", log)?;
+        follows(&solution, "direct solution on active sets", steps)?;
     }
     let next = active_set(qp, direct, &solution, judge);
     better(solution, next)
@@ -107,8 +104,8 @@ mod tests {
     use crate::error::{Error, Kind};
     use crate::qp::Counts;
     use crate::solver::solve::tests::two_springs;
+    use crate::solver::watch::{Stops, Told, Voice};
     use crate::solver::{Problem, RowKind, RowsInput, SparseInput, Storage};
-    use std::sync::{Arc, Mutex};
 
     fn ended(verdict: Verdict, products: usize) -> Solution {
         let counts = Counts { products, ..Counts::default() };
@@ -138,24 +135,35 @@ mod tests {
         assert_eq!(refused(Kind::Callback).unwrap_err().kind, Kind::Callback);
     }
 
+    /// Keeps what is said.
+    #[derive(Default)]
+    struct Lines(Vec<String>);
+
+    impl Voice for Lines {
+        fn step(&mut self, _: Told) -> Result<()> {
+            Ok(())
+        }
+
+        fn line(&mut self, text: String) -> Result<()> {
+            self.0.push(text);
+            Ok(())
+        }
+    }
+
     #[test]
     fn a_run_that_met_its_limit_of_steps_is_completed_directly_and_told_so_unless_that_is_switched_off() {
         for (limit, verdict) in [(1000, Verdict::Solved), (0, Verdict::StepLimit)] {
             two_springs(0.1, |judge, qp, direct, rough| {
-                let lines = Arc::new(Mutex::new(Vec::new()));
-                let book = Arc::clone(&lines);
-                let tell = move |_, text: &str| {
-                    book.lock().unwrap().push(text.to_owned());
-                    0
-                };
-                let mut log = Log { host: Some((LogLevel::Phase, Box::new(tell))), told: 0 };
+                let mut lines = Lines::default();
+                let stops = Stops::never();
+                let mut steps = Steps::new(0, 1.0, qp.bounded, stops, &mut lines);
                 let ended = Solution { verdict: Verdict::StepLimit, ..rough.clone() };
-                let done = or_directly(ended, qp, Direct { limit, ..direct }, judge, &mut log);
+                let done = or_directly(ended, qp, Direct { limit, ..direct }, judge, &mut steps);
                 let done = done.unwrap();
                 assert_eq!(done.verdict, verdict);
                 assert_eq!(done.x[0] == 2.0, verdict == Verdict::Solved);
                 let line = "fallback after 0 steps: the limit of steps is reached; direct solution on active sets follows";
-                assert_eq!(*lines.lock().unwrap(), [line].repeat(usize::from(limit > 0)));
+                assert_eq!(lines.0, [line].repeat(usize::from(limit > 0)));
             });
         }
     }

@@ -2,10 +2,10 @@
 
 use crate::constraints::RowKind;
 use crate::error::{Error, Kind, Place, Proof, Result};
-use crate::solver::diagnosis::kind_and_row;
+use crate::solver::diagnosis::{in_stack, kind_and_row};
 use crate::solver::problem::Problem;
 use crate::solver::report::{Outcome, Report};
-use crate::solver::setup::Ready;
+use crate::solver::setup::{Ready, Setup};
 
 #[derive(Debug, Clone, PartialEq)]
 pub struct Findings {
@@ -63,7 +63,7 @@ impl Findings {
             proof: None,
             motion: None,
             undetermined: 0,
-            redundant: ready.map(redundant).unwrap_or_default(),
+            redundant: ready.map(|ready| redundant(problem, ready)).unwrap_or_default(),
             untouched: ready.map(|ready| problem.untouched(ready)).unwrap_or_default(),
             contact: problem.contact.len(),
         }
@@ -98,12 +98,19 @@ impl Findings {
     }
 }
 
-/// Rows of a group but its leader, with the factor from the leader.
-fn redundant(ready: &Ready) -> Vec<(usize, f64)> {
-    let rows = &ready.rows;
-    let leaders = &rows.grouping.leaders;
-    let repeats = rows.grouping.members().filter(|(i, (group, _))| leaders[*group] != *i);
-    repeats.map(|(i, (group, sign))| (i, sign * rows.scale[leaders[group]] / rows.scale[i])).collect()
+/// Rows of a group but its leader, with the factor from the leader, in the order of the stack.
+fn redundant(problem: &Problem, setup: &Setup) -> Vec<(usize, f64)> {
+    let mut all = Vec::new();
+    for ready in &setup.islands {
+        let rows = &ready.rows;
+        let leaders = &rows.grouping.leaders;
+        let repeats = rows.grouping.members().filter(|(i, (group, _))| leaders[*group] != *i);
+        all.extend(repeats.map(|(i, (group, sign))| {
+            (in_stack(problem, ready, i), sign * rows.scale[leaders[group]] / rows.scale[i])
+        }));
+    }
+    all.sort_by_key(|(row, _)| *row);
+    all
 }
 
 impl Problem {
@@ -121,10 +128,14 @@ impl Problem {
         .ok_or_else(|| Error::new(Kind::State, "the last solve has not found a load that nothing holds"))
     }
 
-    fn untouched(&self, ready: &Ready) -> Vec<usize> {
+    /// Bodies that no row with entries touches, or only such as never close.
+    fn untouched(&self, setup: &Setup) -> Vec<usize> {
         let mut touched = vec![false; self.bodies.len()];
-        let unknowns = ready.rows.scaled.col.iter();
-        unknowns.for_each(|&j| touched[self.offsets[1..].partition_point(|end| *end <= j)] = true);
+        for Ready { island, rows, .. } in &setup.islands {
+            for &j in &rows.scaled.col {
+                touched[island.bodies[island.ranges.partition_point(|range| range.end <= j)]] = true;
+            }
+        }
         (0..touched.len()).filter(|&p| !touched[p]).collect()
     }
 

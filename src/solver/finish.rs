@@ -89,7 +89,7 @@ impl Point {
             let range = body.start..body.start + body.stiffness.order();
             let mut strain = vec![0.0; range.len()];
             body.stiffness.mul(&self.u[range.clone()], &mut strain)?;
-            axpy(-1.0 / judge.ready.unit, &strain, &mut load[range]);
+            axpy(-1.0 / judge.ready.island.unit, &strain, &mut load[range]);
         }
         judge.ready.rows.take_forces(&self.x, &mut load);
         Ok(load)

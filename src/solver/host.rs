@@ -34,7 +34,7 @@ impl Problem {
     }
 
     /// K+ of those bodies of the host that have none: their functions are tried.
-    pub(super) fn try_hosts(&mut self, unit: f64, watch: &mut Watch) -> Result<()> {
+    pub(super) fn try_hosts(&mut self, watch: &mut Watch) -> Result<()> {
         let slots = self.bodies.iter().enumerate();
         let pending = slots.filter(|(_, slot)| slot.inverse.is_none() && slot.body.operator.is_some());
         let pending: Vec<usize> = pending.map(|(p, _)| p).collect();
@@ -49,13 +49,13 @@ impl Problem {
             on_caller: self.on_caller(&pending),
         };
         let tolerance = self.settings.null_space_tolerance;
-        let make = |k: usize| {
-            host_inverse(&self.bodies[pending[k]].body, unit, tolerance).map_err(|e| e.body(pending[k]))
-        };
+        let make =
+            |k: usize| host_inverse(&self.bodies[pending[k]].body, tolerance).map_err(|e| e.body(pending[k]));
         let mut made: Vec<Option<GeneralizedInverse>> = pending.iter().map(|_| None).collect();
         let ended = watch.every_body(&part, make, |k, inverse| made[k] = Some(inverse));
         for (&p, made) in pending.iter().zip(made) {
             let bytes = 2 * TOGETHER * size_of::<f64>() * self.bodies[p].body.order;
+            let unit = self.bodies[p].body.unit();
             let inverse = made.map(|made| Inverse { unit, kplus: Arc::new(made), bytes, operator: None });
             self.bodies[p].inverse = inverse;
         }
@@ -75,14 +75,14 @@ pub(super) fn lacks_null_space(body: &Body) -> bool {
     body.operator.is_some() && body.null_space.is_none() && body.coordinates.is_none()
 }
 
-fn host_inverse(body: &Body, unit: f64, tolerance: f64) -> Result<GeneralizedInverse> {
+fn host_inverse(body: &Body, tolerance: f64) -> Result<GeneralizedInverse> {
     let missing = || Error::new(Kind::Internal, "a body without functions of the host was tried");
     let operator = Arc::clone(body.operator.as_ref().ok_or_else(missing)?);
     if body.fixing.is_some() {
         let what = "fixing dofs were given, and K+ of this body is the host's";
         return Err(Error::new(Kind::Unsupported, what));
     }
-    let k = HostMultiple { operator, unit };
+    let k = HostMultiple { operator, unit: body.unit() };
     if let Some(given) = &body.null_space {
         return GeneralizedInverse::of_host(k, given, tolerance);
     }

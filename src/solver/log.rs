@@ -7,6 +7,7 @@ use crate::error::{Error, Kind, Result};
 use crate::solver::phases::PhaseReport;
 use crate::solver::problem::Problem;
 use crate::solver::report::{Outcome, Report};
+use crate::solver::setup::Setup;
 use crate::solver::watch::{Progress, Watch};
 use crate::solver::StepKind;
 
@@ -177,18 +178,28 @@ impl Problem {
 
     /// How the dual is going to be solved.
     pub(super) fn log_method(&self, log: &mut Log, started: &str) -> Result<()> {
-        let ready = self.ready()?;
+        let Setup { islands, operators, .. } = self.ready()?;
         let word = |word: &CStr| word.to_string_lossy().into_owned();
-        let preconditioner = ready.preconditioner.as_ref().map_or("none".to_owned(), |(name, _)| word(name));
+        let mut preconditioners: Vec<String> = islands
+            .iter()
+            .map(|ready| ready.preconditioner.as_ref().map_or("none".to_owned(), |(name, _)| word(name)))
+            .collect();
+        preconditioners.sort_unstable();
+        preconditioners.dedup();
         log.say(LogLevel::Phase, || {
-            let implicit = ready.operators.implicit.iter().filter(|implicit| **implicit).count();
+            let implicit = operators.implicit.iter().filter(|implicit| **implicit).count();
+            let groups = match islands.len() {
+                1 => String::new(),
+                count => format!("{count} groups of bodies apart from each other, "),
+            };
             format!(
-                "method: {}, preconditioner {preconditioner}, start {started}; {} multipliers, {} floating modes, \
+                "method: {}, preconditioner {}, start {started}; {groups}{} multipliers, {} floating modes, \
                  {} explicit and {implicit} implicit dual operators",
                 word(self.settings.method),
-                ready.rows.groups(),
-                ready.dual.modes(),
-                ready.operators.implicit.len() - implicit
+                preconditioners.join(" and "),
+                islands.iter().map(|ready| ready.rows.groups()).sum::<usize>(),
+                islands.iter().map(|ready| ready.dual.modes()).sum::<usize>(),
+                operators.implicit.len() - implicit
             )
         })
     }

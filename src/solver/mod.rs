@@ -1,6 +1,7 @@
 //! From what the host registers to the answer it gets: register, set up, solve, certify, report.
 
 mod body_facts;
+mod call;
 mod certificate;
 mod diagnosis;
 mod factors;
@@ -9,6 +10,7 @@ mod file;
 mod findings;
 mod finish;
 mod host;
+mod islands;
 mod log;
 mod numbering;
 mod operators;

@@ -2,11 +2,10 @@
 
 use std::ffi::CStr;
 
-use crate::dual::{all_bytes, implicit_bodies, Dual, Kept, Size};
+use crate::dual::{all_bytes, implicit_bodies, Kept, Size};
 use crate::error::{Error, Kind, Result};
 use crate::linalg::memory::available;
 use crate::solver::problem::{BodySlot, Problem};
-use crate::solver::rows::DualRows;
 use crate::solver::setup::Ready;
 
 /// Multiplications of a product with F, a tenth of a millisecond, from which on several threads save time.
@@ -38,17 +37,16 @@ impl Operators {
 }
 
 impl Problem {
-    /// Operators for these rows where the factors of the bodies have so many entries; refused where they do not fit.
+    /// Operators for so many distinct rows on each body where the factors of the bodies have so many entries; refused where they do not fit.
     /// Operators kept from the rows before are dropped if that helps. `more`: bytes of the factors that are not there yet.
-    pub(super) fn operators(&mut self, rows: &DualRows, entries: &[usize], more: usize) -> Result<Operators> {
+    pub(super) fn operators(&mut self, rows: &[usize], entries: &[usize], more: usize) -> Result<Operators> {
         let there = self.bytes_of_factors();
-        let rows = Dual::distinct_rows(self.ranges(), &rows.matrix).into_iter();
-        let size = |((rows, slot), &entries): ((usize, &BodySlot), &usize)| Size {
+        let size = |((&rows, slot), &entries): ((&usize, &BodySlot), &usize)| Size {
             rows,
             unknowns: slot.body.order,
             entries,
         };
-        let sizes: Vec<Size> = rows.zip(&self.bodies).zip(entries).map(size).collect();
+        let sizes: Vec<Size> = rows.iter().zip(&self.bodies).zip(entries).map(size).collect();
         let factor_bytes = there.saturating_add(more);
         let (options, implicit) = (self.options(), self.implicit(&sizes, factor_bytes));
         let operators = Operators { options, sizes, implicit, factor_bytes };
@@ -95,8 +93,8 @@ impl Problem {
     }
 
     /// `more` bytes besides factors and operators that are there, against the limit of the host.
-    pub(super) fn check_more(&self, ready: &Ready, more: usize) -> Result<()> {
-        self.check_memory(ready.operators.factor_bytes.saturating_add(ready.operators.bytes()), more)
+    pub(super) fn check_more(&self, operators: &Operators, more: usize) -> Result<()> {
+        self.check_memory(operators.factor_bytes.saturating_add(operators.bytes()), more)
     }
 
     /// Bytes that are there and more against the limit of the host, and those to come against what the system would

@@ -10,6 +10,7 @@ use crate::error::Result;
 use crate::linalg::{Csr, Matrix, Operator};
 use crate::qp::paper::{algorithm_3, Parameters, Rule, StepOne, Units, Variant};
 use crate::qp::{Judge, Observer, Progress, Qp, Solution};
+use crate::solver::islands::Island;
 use crate::solver::presolve::Gaps;
 use crate::solver::problem::Problem;
 use crate::solver::setup::Ready;
@@ -61,10 +62,13 @@ impl HostUnits {
     pub fn new(problem: &Problem, ready: &Ready, gaps: &Gaps, parameters: Parameters) -> Result<Self> {
         let scale = gaps.holder.iter().map(|&i| ready.rows.scale[i]).collect();
         let mut basis = Vec::with_capacity(problem.bodies.len());
-        for (p, range) in problem.ranges().into_iter().enumerate() {
-            basis.push((ready.dual.modes_of(p), change_of_basis(problem, p, &ready.rows.metric[range])?));
+        let Island { bodies, ranges, unit, .. } = &ready.island;
+        for (k, (&p, range)) in bodies.iter().zip(ranges).enumerate() {
+            let own = unit / problem.bodies[p].inverse.as_ref().map_or(*unit, |inverse| inverse.unit);
+            let metric: Vec<f64> = ready.rows.metric[range.clone()].iter().map(|d| own * d).collect();
+            basis.push((ready.dual.modes_of(k), change_of_basis(problem, p, &metric)?));
         }
-        Ok(Self { parameters, unit: ready.unit, scale, basis })
+        Ok(Self { parameters, unit: *unit, scale, basis })
     }
 
     /// Algorithm 3 on the dual in the units of the host; the solution in those of the library.

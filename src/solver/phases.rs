@@ -85,11 +85,12 @@ impl Problem {
     /// Time and memory of the phases of the last setup or solve, also of one that failed.
     pub fn phases(&self) -> Vec<PhaseReport> {
         let mut phases = self.phases;
-        if let Some(ready) = &self.ready {
-            phases.keeps(Phase::Factorisation, ready.operators.factor_bytes);
-            phases.keeps(Phase::DualOperators, ready.dual.bytes_kept());
-            let preconditioner = ready.preconditioner.as_ref().map(|(_, made)| made.bytes_kept());
-            phases.keeps(Phase::Preconditioner, preconditioner.unwrap_or(0));
+        if let Some(setup) = &self.ready {
+            phases.keeps(Phase::Factorisation, setup.operators.factor_bytes);
+            phases
+                .keeps(Phase::DualOperators, setup.islands.iter().map(|ready| ready.dual.bytes_kept()).sum());
+            let preconditioners = setup.islands.iter().filter_map(|ready| ready.preconditioner.as_ref());
+            phases.keeps(Phase::Preconditioner, preconditioners.map(|(_, made)| made.bytes_kept()).sum());
         }
         phases.report()
     }

@@ -31,8 +31,8 @@ pub(super) struct Gaps {
 /// Gaps of all groups; refuses rows whose gaps no displacement satisfies.
 pub(super) fn presolve(problem: &Problem, ready: &Ready, stops: &Stops) -> Result<Gaps> {
     let rows = &ready.rows;
-    let rhs: Vec<f64> = problem.contact.rhs.iter().chain(&problem.equalities.rhs).copied().collect();
-    let scaled: Vec<f64> = rhs.iter().zip(&rows.scale).map(|(c, s)| c * s).collect();
+    let rhs = ready.island.contact.rows.rhs.iter().chain(&ready.island.equalities.rows.rhs);
+    let scaled: Vec<f64> = rhs.zip(&rows.scale).map(|(c, s)| c * s).collect();
     let leaders = &rows.grouping.leaders;
     let kinds = (0..leaders.len()).map(|group| rows.kind(group));
     let mut gaps = Gaps {
@@ -56,10 +56,16 @@ pub(super) fn presolve(problem: &Problem, ready: &Ready, stops: &Stops) -> Resul
             gap > scaled[i] + slack
         };
         if contradicts {
-            return Err(two_rows_contradict(ready, (i, scaled[i]), (leaders[group], gap, sign), slack));
+            return Err(two_rows_contradict(
+                problem,
+                ready,
+                (i, scaled[i]),
+                (leaders[group], gap, sign),
+                slack,
+            ));
         }
     }
-    if let Some(error) = contradiction(ready, &gaps, stops)? {
+    if let Some(error) = contradiction(problem, ready, &gaps, stops)? {
         return Err(error);
     }
     gaps.dual = rows.decoupling.solve(gaps.value.clone());
@@ -69,25 +75,28 @@ pub(super) fn presolve(problem: &Problem, ready: &Ready, stops: &Stops) -> Resul
 /// Row i with its gap and a parallel equality row with its own, in the direction of row i: `b_i = sign b_leader`
 /// in the scaling of the dual.
 fn two_rows_contradict(
+    problem: &Problem,
     ready: &Ready,
     (i, gap): (usize, f64),
     (leader, demanded, sign): (usize, f64, f64),
     slack: f64,
 ) -> Error {
     let rows = &ready.rows;
-    let (kind, row) = diagnosis::kind_and_row(i, rows.contact);
+    let (kind, row) = ready.island.kind_and_row(i);
     let what = format!("this {} contradicts an equality row in the same direction", kind.name());
     let error = Error::new(Kind::GapsContradict, what).row(row).value(demanded - gap).limit(slack);
     let turned = if demanded > gap { 1.0 } else { -1.0 };
-    let weights = vec![(i, turned * rows.scale[i]), (leader, -turned * sign * rows.scale[leader])];
+    let place = |i: usize| diagnosis::in_stack(problem, ready, i);
+    let weights =
+        vec![(place(i), turned * rows.scale[i]), (place(leader), -turned * sign * rows.scale[leader])];
     let margin = (demanded - gap).abs() / (demanded.abs() + gap.abs());
-    error.proved_by(diagnosis::proof_of_rows(margin, weights, i))
+    error.proved_by(diagnosis::proof_of_rows(margin, weights, place(i)))
 }
 
 /// `min |D^-1/2 B'w|^2 + (1 + c'w)^2` over w >= 0 on contact rows is zero exactly where rows contradict each
 /// other (c scaled to largest entry 1); B has unit rows, and no compliant ones: they give way to any other row.
 /// No product with F is needed.
-fn contradiction(ready: &Ready, gaps: &Gaps, stops: &Stops) -> Result<Option<Error>> {
+fn contradiction(problem: &Problem, ready: &Ready, gaps: &Gaps, stops: &Stops) -> Result<Option<Error>> {
     let rows = &ready.rows;
     let rigid: Vec<usize> = (0..gaps.value.len()).filter(|&group| rows.compliance[group] == 0.0).collect();
     let bounded: Vec<bool> = rigid.iter().map(|&group| gaps.bounded[group]).collect();
@@ -111,7 +120,7 @@ fn contradiction(ready: &Ready, gaps: &Gaps, stops: &Stops) -> Result<Option<Err
     stops.check_cancelled()?;
     let mut w = vec![0.0; gaps.value.len()];
     rigid.iter().zip(&solution.x).for_each(|(&group, x)| w[group] = *x);
-    Ok(diagnosis::gaps_contradict(ready, gaps, &w))
+    Ok(diagnosis::gaps_contradict(problem, ready, gaps, &w))
 }
 
 /// `w -> B D^-1 B'w + c (c'w)`

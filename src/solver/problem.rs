@@ -13,11 +13,12 @@ use crate::linalg::memory::{copied, zeros};
 use crate::linalg::vector::first_non_finite;
 use crate::linalg::Matrix;
 use crate::solver::findings::Findings;
+use crate::solver::islands::Island;
 use crate::solver::numbering::Numbering;
 use crate::solver::phases::Phases;
 use crate::solver::report::{Counts, Report, Work};
 use crate::solver::results::{Answer, Asked};
-use crate::solver::setup::Ready;
+use crate::solver::setup::Setup;
 use crate::solver::state::History;
 use crate::solver::watch::Host;
 use crate::solver::Settings;
@@ -31,7 +32,7 @@ pub struct Problem {
     pub(super) contact: RowSet,
     pub(super) equalities: RowSet,
     pub(super) numbering: Numbering,
-    pub(super) ready: Option<Ready>,
+    pub(super) ready: Option<Setup>,
     pub(super) answer: Option<Arc<Answer>>,
     pub(super) findings: Option<Findings>,
     pub(super) asked: Asked,
@@ -60,7 +61,8 @@ pub(super) struct BodySlot {
     pub keys: Option<[u64; 2]>,
 }
 
-/// `K_p+` of the matrix divided by `unit`, and the bytes it takes; equal bodies have one.
+/// `K_p+` of the matrix divided by `unit`, the power of two below its largest diagonal entry, and the bytes it takes;
+/// equal bodies have one.
 pub(super) struct Inverse {
     pub unit: f64,
     pub kplus: Arc<GeneralizedInverse>,
@@ -250,14 +252,17 @@ impl Problem {
             RowKind::Inequality => &mut self.contact,
             RowKind::Equality => &mut self.equalities,
         };
-        let first = present.add(rows, &self.offsets)?;
+        let first = present.add(kind, rows, &self.offsets)?;
         self.rows_changed();
         Ok(first)
     }
 
-    /// New right-hand sides c or h, length.
+    /// New right-hand sides c or h, length; a contact row whose gap is +infinity never closes.
     pub fn set_rhs(&mut self, kind: RowKind, first: usize, rhs: &[f64]) -> Result<()> {
-        self.rows_mut(kind).set_rhs(first, rhs)
+        if self.rows_mut(kind).set_rhs(kind, first, rhs)? {
+            self.forget_dual();
+        }
+        Ok(())
     }
 
     /// Rows from `first` on as springs, `B u - c <= lambda/k`, `H u - h = mu/k`: 1/k >= 0, length / force, 0 for
@@ -324,10 +329,11 @@ impl Problem {
     /// What was computed for the rows is kept for those to come.
     pub(super) fn forget_dual(&mut self) {
         self.operators_kept |= self.ready.is_some();
-        let operators = self.ready.take().map_or(Vec::new(), |ready| ready.dual.into_operators());
-        for (slot, operator) in self.bodies.iter_mut().zip(operators) {
-            if let Some(inverse) = &mut slot.inverse {
-                inverse.operator = operator;
+        for ready in self.ready.take().into_iter().flat_map(|setup| setup.islands) {
+            for (p, operator) in ready.island.bodies.into_iter().zip(ready.dual.into_operators()) {
+                if let Some(inverse) = &mut self.bodies[p].inverse {
+                    inverse.operator = operator;
+                }
             }
         }
         self.answer = None;
@@ -364,12 +370,12 @@ impl Problem {
         self.offsets[body]..self.offsets[body + 1]
     }
 
-    /// The loads of all bodies one after the other, force.
-    pub(super) fn loads(&self) -> Result<Vec<f64>> {
-        let mut all = zeros(self.counts().dofs, "the loads")?;
-        for (slot, start) in self.bodies.iter().zip(&self.offsets) {
-            if let Some(load) = &slot.body.load {
-                all[*start..start + load.len()].copy_from_slice(load);
+    /// The loads of the bodies of an island one after the other, force.
+    pub(super) fn loads(&self, island: &Island) -> Result<Vec<f64>> {
+        let mut all = zeros(island.unknowns(), "the loads")?;
+        for (&p, range) in island.bodies.iter().zip(&island.ranges) {
+            if let Some(load) = &self.bodies[p].body.load {
+                all[range.clone()].copy_from_slice(load);
             }
         }
         Ok(all)

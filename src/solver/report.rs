@@ -1,24 +1,29 @@
 //! What a solve tells the host.
 
+use crate::dual::Dual;
+use crate::error::Result;
+use crate::linalg::Operator;
+use crate::qp;
 use crate::solver::certificate::Certificate;
 use crate::solver::phases::PhaseReport;
+use crate::solver::problem::Problem;
 
-/// How a solve ended with an answer.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+/// How a solve ended with an answer; of several groups of bodies the last of these.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Outcome {
     /// The certificate holds.
     Solved,
+    /// The load is held only up to a part below 1e-7 of itself.
+    Marginal,
+    /// The dual is solved as well as rounding allows, and the certificate does not hold.
+    Inaccurate,
+    /// The method found no way to improve an answer whose certificate does not hold.
+    Stalled,
     /// The limit of steps was reached first.
     Iterations,
     /// The time limit was reached first.
     Time,
     Cancelled,
-    /// The method found no way to improve an answer whose certificate does not hold.
-    Stalled,
-    /// The dual is solved as well as rounding allows, and the certificate does not hold.
-    Inaccurate,
-    /// The load is held only up to a part below 1e-7 of itself.
-    Marginal,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -29,6 +34,8 @@ pub enum RowState {
     Closed,
     /// Touching without a force, to rounding.
     Weak,
+    /// The bodies of the row are in a group that has no answer.
+    Unknown,
 }
 
 /// Sizes of a problem.
@@ -101,4 +108,58 @@ pub struct Report {
     pub operator_bytes: usize,
     /// Time and memory of every phase, in their order.
     pub phases: Vec<PhaseReport>,
+}
+
+impl Report {
+    /// Before any island has been solved.
+    pub(super) fn new(problem: &Problem) -> Result<Self> {
+        let setup = problem.ready()?;
+        let sum = |of: fn(&Dual) -> usize| setup.islands.iter().map(|ready| of(&ready.dual)).sum();
+        Ok(Self {
+            outcome: Outcome::Solved,
+            certificate: Certificate::default(),
+            counts: problem.counts(),
+            floating_modes: sum(Dual::modes),
+            active: 0,
+            undetermined: 0,
+            steps: 0,
+            cg_steps: 0,
+            expansions: 0,
+            releases: 0,
+            outer: 0,
+            dual_applications: 0,
+            coarse_solves: 0,
+            coarse_factorisations: 0,
+            preconditioner_applications: 0,
+            direct_solves: 0,
+            finished: false,
+            gap_scale: 0.0,
+            factorisations: problem.work.factorisations,
+            analyses: problem.work.analyses,
+            columns_computed: problem.work.columns_computed,
+            columns_kept: problem.work.columns_kept,
+            energy: 0.0,
+            seconds_setup: 0.0,
+            seconds_solve: 0.0,
+            explicit_operators: sum(Dual::explicit_bodies),
+            implicit_operators: sum(Dual::implicit_bodies),
+            factor_bytes: setup.operators.factor_bytes,
+            operator_bytes: sum(Dual::bytes_kept),
+            phases: Vec::new(),
+        })
+    }
+
+    /// Adds the work on one island.
+    pub(super) fn count(&mut self, counts: &qp::Counts) {
+        self.steps += counts.steps();
+        self.cg_steps += counts.conjugate_gradient;
+        self.expansions += counts.expansions;
+        self.releases += counts.releases;
+        self.outer += counts.outer;
+        self.dual_applications += counts.products;
+        self.coarse_solves += counts.coarse_solves;
+        self.coarse_factorisations += counts.coarse_factorisations;
+        self.preconditioner_applications += counts.preconditioned;
+        self.direct_solves += counts.direct;
+    }
 }

@@ -3,109 +3,130 @@
 use crate::constraints::RowKind;
 use crate::error::{Error, Kind, Result};
 use crate::linalg::memory::zeros;
-use crate::linalg::{Matrix, Operator};
-use crate::qp::Solution;
+use crate::linalg::Operator;
+use crate::solver::call::Ends;
 use crate::solver::certificate::Certificate;
+use crate::solver::diagnosis::in_stack;
+use crate::solver::islands::Members;
 use crate::solver::problem::{Inverse, Problem};
-use crate::solver::report::{Outcome, Report, RowState};
+use crate::solver::report::{Report, RowState};
 use crate::solver::setup::Ready;
-use crate::solver::solve::Recovered;
+use crate::solver::solve::{Ending, Recovered, Solved};
 
-/// The answer of the last solve, in the units of the host.
+/// The answer of the last solve, in the units of the host. Not a number where a group of bodies has none.
 pub(super) struct Answer {
     pub report: Report,
     u: Vec<f64>,
     pub lambda: Vec<f64>,
     pub mu: Vec<f64>,
-    /// Amplitudes of the rigid modes of all bodies.
-    alpha: Vec<f64>,
+    /// Amplitudes of the rigid modes of every body.
+    alpha: Vec<Vec<f64>>,
     /// c + C lambda - B u, length.
     gaps: Vec<f64>,
     states: Vec<RowState>,
+    /// Islands without an answer.
+    pub failed: Vec<bool>,
 }
 
 /// What was made of the answer once somebody has asked.
 #[derive(Default)]
 pub(super) struct Asked {
-    /// Motions that it leaves open.
-    pub open_motions: Option<Matrix>,
+    /// Motions that it leaves open, over the modes of one island each.
+    pub open_motions: Option<Vec<(usize, Vec<f64>)>>,
     /// Forces of the rows of one kind, or of both, on all bodies.
     reactions: Option<(Option<RowKind>, Vec<f64>)>,
 }
 
 impl Answer {
-    pub fn new(
-        problem: &Problem,
-        ready: &Ready,
-        solution: &Solution,
-        recovered: Recovered,
-        outcome: Outcome,
-        certificate: Certificate,
-    ) -> Result<Self> {
-        let Recovered { u, lambda, mu } = recovered;
-        let rows = &problem.contact;
-        let gaps: Vec<f64> = (0..rows.len()).map(|i| rows.open_gap(i, &u, lambda[i])).collect();
-        let states = states(problem, ready, &lambda, &u, &gaps);
-        let counts = solution.counts;
-        let report = Report {
-            outcome,
-            certificate,
-            counts: problem.counts(),
-            floating_modes: ready.dual.modes(),
-            active: states.iter().filter(|state| **state == RowState::Closed).count(),
-            undetermined: solution.undetermined,
-            steps: counts.steps(),
-            cg_steps: counts.conjugate_gradient,
-            expansions: counts.expansions,
-            releases: counts.releases,
-            outer: counts.outer,
-            dual_applications: counts.products,
-            coarse_solves: counts.coarse_solves,
-            coarse_factorisations: counts.coarse_factorisations,
-            preconditioner_applications: counts.preconditioned,
-            direct_solves: counts.direct,
-            finished: false,
-            gap_scale: solution.scale * ready.unit.sqrt(),
-            factorisations: problem.work.factorisations,
-            analyses: problem.work.analyses,
-            columns_computed: problem.work.columns_computed,
-            columns_kept: problem.work.columns_kept,
-            energy: certificate.energy,
-            seconds_setup: 0.0,
-            seconds_solve: 0.0,
-            explicit_operators: ready.dual.explicit_bodies(),
-            implicit_operators: ready.dual.implicit_bodies(),
-            factor_bytes: ready.operators.factor_bytes,
-            operator_bytes: ready.dual.bytes_kept(),
-            phases: Vec::new(),
+    /// None where no island has an answer.
+    pub fn new(problem: &Problem, ends: Ends) -> Result<Option<Self>> {
+        if ends.iter().all(std::result::Result::is_err) {
+            return Ok(None);
+        }
+        let counts = problem.counts();
+        let rows = [&problem.contact, &problem.equalities];
+        let alone = [RowKind::Inequality, RowKind::Equality]
+            .map(|kind| rows[kind as usize].forces_without_entries(kind));
+        let [lambda, mu] = alone.map(Iterator::collect);
+        let mut answer = Self {
+            report: Report::new(problem)?,
+            u: zeros(counts.dofs, "an answer")?,
+            lambda,
+            mu,
+            alpha: vec![Vec::new(); counts.bodies],
+            gaps: Vec::new(),
+            states: vec![RowState::Open; counts.rows],
+            failed: ends.iter().map(std::result::Result::is_err).collect(),
         };
-        Ok(Self { report, u, lambda, mu, alpha: solution.alpha.clone(), gaps, states })
+        let mut all: Option<Certificate> = None;
+        for (ready, end) in problem.ready()?.islands.iter().zip(ends) {
+            match end {
+                Ok(solved) => {
+                    let certificate = ready.island.named(solved.ending.certificate);
+                    all = Some(all.map_or(certificate, |all| all.worse(&certificate)));
+                    answer.take_in(problem, ready, solved);
+                }
+                Err(_) => answer.leave_out(problem, ready),
+            }
+        }
+        answer.report.certificate = all.unwrap_or_default();
+        answer.report.energy = answer.report.certificate.energy;
+        let gap = |i: usize| problem.contact.open_gap(i, &answer.u, answer.lambda[i]);
+        answer.gaps = (0..counts.rows).map(gap).collect();
+        answer.report.active = answer.states.iter().filter(|state| **state == RowState::Closed).count();
+        Ok(Some(answer))
+    }
+
+    /// The answer of an island, and what it took.
+    fn take_in(&mut self, problem: &Problem, ready: &Ready, solved: Solved) {
+        let Solved { ending: Ending { solution, recovered, .. }, outcome, finished, .. } = solved;
+        let island = &ready.island;
+        let states = states(problem, ready, &recovered);
+        island.scatter(problem, &recovered.u, &mut self.u);
+        island.contact.scatter(&recovered.lambda, &mut self.lambda);
+        island.contact.scatter(&states, &mut self.states);
+        island.equalities.scatter(&recovered.mu, &mut self.mu);
+        for (k, &p) in island.bodies.iter().enumerate() {
+            self.alpha[p] = solution.alpha[ready.dual.modes_of(k)].to_vec();
+        }
+        let report = &mut self.report;
+        report.outcome = report.outcome.max(outcome);
+        report.undetermined += solution.undetermined;
+        report.finished |= finished;
+        report.count(&solution.counts);
+        let scale = solution.scale * island.unit.sqrt();
+        report.gap_scale = report.gap_scale.hypot(scale);
+    }
+
+    fn leave_out(&mut self, problem: &Problem, ready: &Ready) {
+        let island = &ready.island;
+        island.scatter(problem, &vec![f64::NAN; island.unknowns()], &mut self.u);
+        let none = |members: &Members| vec![f64::NAN; members.numbers.len()];
+        island.contact.scatter(&none(&island.contact), &mut self.lambda);
+        island.equalities.scatter(&none(&island.equalities), &mut self.mu);
+        island.contact.scatter(&vec![RowState::Unknown; island.contact.numbers.len()], &mut self.states);
+        for (k, &p) in island.bodies.iter().enumerate() {
+            self.alpha[p] = vec![f64::NAN; ready.dual.modes_of(k).len()];
+        }
     }
 }
 
 /// A force or a gap is zero when it is below `limit` (that of the certificate) of the largest force, or of
 /// the displacements and gaps of the rows.
-fn states(problem: &Problem, ready: &Ready, lambda: &[f64], u: &[f64], gaps: &[f64]) -> Vec<RowState> {
+fn states(problem: &Problem, ready: &Ready, answer: &Recovered) -> Vec<RowState> {
+    let Recovered { u, lambda, .. } = answer;
     let limit = problem.settings.certificate_tolerance;
-    let rows = &problem.contact;
+    let rows = &ready.island.contact.rows;
     let yielded = |i: usize| rows.compliance[i] * lambda[i].abs();
     let size = |i: usize| rows.matrix.row_dot_abs(i, u) + rows.rhs[i].abs() + yielded(i);
     let sizes = (0..rows.len()).map(|i| ready.rows.scale[i] * size(i));
     let small_gap = limit * sizes.fold(0.0, f64::max);
     let force = |i: usize| unscaled(lambda[i], ready.rows.scale[i]);
     let small_force = limit * (0..rows.len()).map(|i| force(i).abs()).fold(0.0, f64::max);
-    // a rigid row without entries has no scale
-    let is_open = |i: usize| {
-        if ready.rows.scale[i] > 0.0 {
-            ready.rows.scale[i] * gaps[i] > small_gap
-        } else {
-            gaps[i] > 0.0
-        }
-    };
     let state = |i: usize| {
         if force(i) > small_force {
             RowState::Closed
-        } else if is_open(i) {
+        } else if ready.rows.scale[i] * rows.open_gap(i, u, lambda[i]) > small_gap {
             RowState::Open
         } else {
             RowState::Weak
@@ -120,10 +141,20 @@ impl Problem {
         self.answer.as_deref().ok_or_else(|| Error::new(Kind::State, what))
     }
 
+    /// The same for what belongs to one body, whose group must have an answer.
+    fn answer_on(&self, body: usize) -> Result<&Answer> {
+        self.slot(body)?;
+        let answer = self.answer()?;
+        if answer.failed[self.ready()?.island_of[body]] {
+            let what = "the group of bodies that this one belongs to has no answer";
+            return Err(Error::new(Kind::State, what).body(body));
+        }
+        Ok(answer)
+    }
+
     /// u of one body, length.
     pub fn displacement(&self, body: usize) -> Result<&[f64]> {
-        self.slot(body)?;
-        Ok(&self.answer()?.u[self.range(body)])
+        Ok(&self.answer_on(body)?.u[self.range(body)])
     }
 
     /// u of all bodies one after the other, length.
@@ -135,6 +166,7 @@ impl Problem {
     /// Those on all bodies are kept for the next body.
     pub fn reaction(&mut self, kind: Option<RowKind>, body: usize, r: &mut [f64]) -> Result<()> {
         self.check_length(body, "n", r.len())?;
+        self.answer_on(body)?;
         let kept = self.asked.reactions.take().filter(|(of, _)| *of == kind);
         let all = kept.map_or_else(|| self.reactions(kind), |(_, all)| Ok(all))?;
         r.copy_from_slice(&all[self.range(body)]);
@@ -156,9 +188,7 @@ impl Problem {
 
     /// Amplitudes alpha of the null space of one body, in the basis `null_space` gives.
     pub fn amplitudes(&self, body: usize) -> Result<&[f64]> {
-        self.slot(body)?;
-        let answer = self.answer()?;
-        Ok(&answer.alpha[self.ready()?.dual.modes_of(body)])
+        Ok(&self.answer_on(body)?.alpha[body])
     }
 
     /// lambda >= 0 or mu, force.
@@ -218,42 +248,46 @@ impl Problem {
         Ok(())
     }
 
-    /// `y = F x` of (12), compliance of the rows included, contact rows first; x force, y length.
+    /// `y = F x` of (12), compliance of the rows included, contact rows first; x force, y length. Rows that never close
+    /// carry no force and move nothing: 0.
     pub fn dual_apply(&mut self, x: &[f64], y: &mut [f64]) -> Result<()> {
         self.check_rows(x.len())?;
         self.check_rows(y.len())?;
         self.setup()?;
-        let ready = self.ready()?;
-        let rows = &ready.rows;
-        let mut groups = vec![0.0; rows.groups()];
-        for (i, (group, sign)) in rows.grouping.members() {
-            groups[group] += sign * x[i] / (ready.unit * rows.scale[i]);
-        }
-        let mut image = zeros(groups.len(), "a product with F")?;
-        ready.dual.try_apply(&rows.decoupling.apply_transposed(&groups), &mut image)?;
-        let image = rows.decoupling.apply(&image);
         let compliance = self.contact.compliance.iter().chain(&self.equalities.compliance);
         y.iter_mut().zip(x).zip(compliance).for_each(|((y, x), c)| *y = c * x);
-        for (i, (group, sign)) in rows.grouping.members() {
-            y[i] = sign * image[group] / rows.scale[i];
+        for ready in &self.ready()?.islands {
+            let rows = &ready.rows;
+            let place = |i: usize| in_stack(self, ready, i);
+            let mut groups = vec![0.0; rows.groups()];
+            for (i, (group, sign)) in rows.grouping.members() {
+                groups[group] += sign * x[place(i)] / (ready.island.unit * rows.scale[i]);
+            }
+            let mut image = zeros(groups.len(), "a product with F")?;
+            ready.dual.try_apply(&rows.decoupling.apply_transposed(&groups), &mut image)?;
+            let image = rows.decoupling.apply(&image);
+            for (i, (group, sign)) in rows.grouping.members() {
+                y[place(i)] = sign * image[group] / rows.scale[i];
+            }
         }
         Ok(())
     }
 
-    /// `d = B K+ f - c` of (13), contact rows first, length.
+    /// `d = B K+ f - c` of (13), contact rows first, length; -infinity for rows that never close.
     pub fn dual_rhs(&mut self, d: &mut [f64]) -> Result<()> {
         self.check_rows(d.len())?;
         self.setup()?;
-        let (mut load, threads) = (self.loads()?, self.threads());
-        let ready = self.ready()?;
-        let rows = &ready.rows;
-        load.iter_mut().for_each(|f| *f /= ready.unit);
-        let moved = ready.dual.rhs(&ready.moved(threads, &load)?, &vec![0.0; rows.groups()]);
-        let moved = rows.decoupling.apply(&moved);
         let gaps = self.contact.rhs.iter().chain(&self.equalities.rhs);
         d.iter_mut().zip(gaps).for_each(|(d, c)| *d = -c);
-        for (i, (group, sign)) in rows.grouping.members() {
-            d[i] += sign * moved[group] / rows.scale[i];
+        for ready in &self.ready()?.islands {
+            let rows = &ready.rows;
+            let mut load = self.loads(&ready.island)?;
+            load.iter_mut().for_each(|f| *f /= ready.island.unit);
+            let moved = ready.moved(self.threads(), &load)?;
+            let moved = rows.decoupling.apply(&ready.dual.rhs(&moved, &vec![0.0; rows.groups()]));
+            for (i, (group, sign)) in rows.grouping.members() {
+                d[in_stack(self, ready, i)] += sign * moved[group] / rows.scale[i];
+            }
         }
         Ok(())
     }

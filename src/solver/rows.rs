@@ -1,9 +1,9 @@
-//! The rows of the dual problem from those of the host: scaled, one for each group of parallel ones, decoupled.
+//! The rows of the dual problem of an island from those of the host: scaled, one for each group of parallel ones, decoupled.
 
 use crate::constraints::{row_scales, Decoupling, Grouping, RowKind, UnitRows};
 use crate::error::Result;
 use crate::linalg::Csr;
-use crate::solver::problem::Problem;
+use crate::solver::islands::{Island, Members};
 
 /// Rows of the dual, and the way to them: S, groups, L.
 pub(super) struct DualRows {
@@ -13,7 +13,7 @@ pub(super) struct DualRows {
     pub matrix: Csr,
     /// Diagonal of C' with `2^p S C S = L C'L'`: 1/k without unit, 0 where rigid.
     pub compliance: Vec<f64>,
-    /// `D / 2^p` over all unknowns.
+    /// `D / 2^p` over the unknowns of the island.
     pub metric: Vec<f64>,
     /// s_i of every row, contact rows first, `length^-1` in units of 2^p; 0 for rigid rows without entries.
     pub scale: Vec<f64>,
@@ -26,23 +26,24 @@ pub(super) struct DualRows {
 }
 
 impl DualRows {
-    /// `coupled` rows are those of the host but for their scales.
-    pub fn of(problem: &Problem, unit: f64, coupled: bool) -> Result<Self> {
-        let metric = metric(problem, unit);
+    /// Of an island; `metric` is D / 2^p over its unknowns. `coupled` rows are those of the host but for their scales.
+    pub fn of(island: &Island, metric: Vec<f64>, coupled: bool) -> Result<Self> {
         let mut all = Csr::empty(metric.len());
         let (mut scale, mut compliances) = (Vec::new(), Vec::new());
-        for (kind, rows) in
-            [(RowKind::Inequality, &problem.contact), (RowKind::Equality, &problem.equalities)]
-        {
-            let scales = row_scales(rows, &metric, unit);
-            rows.check_scales(kind, &scales)?;
+        for kind in [RowKind::Inequality, RowKind::Equality] {
+            let Members { numbers, rows } = island.members(kind);
+            let scales = row_scales(rows, &metric, island.unit);
+            rows.check_scales(kind, &scales).map_err(|e| match e.place.row {
+                Some(row) => e.row(numbers[row]),
+                None => e,
+            })?;
             for (i, s) in scales.iter().enumerate() {
                 all.push_row(rows.matrix.row(i).map(|(j, v)| (j, s * v)));
-                compliances.push(s * s * (unit * rows.compliance[i]));
+                compliances.push(s * s * (island.unit * rows.compliance[i]));
             }
             scale.extend(scales);
         }
-        let contact = problem.contact.len();
+        let contact = island.contact.numbers.len();
         let grouping = Grouping::of(&all, contact, &metric, |i| compliances[i] > 0.0);
         let mut scaled = Csr::empty(metric.len());
         grouping.leaders.iter().for_each(|&leader| scaled.push_row(all.row(leader)));
@@ -67,12 +68,6 @@ impl DualRows {
     pub fn kind(&self, group: usize) -> RowKind {
         self.grouping.kind(group, self.contact)
     }
-}
-
-/// `D / unit` over all unknowns, 1 for dofs without stiffness.
-fn metric(problem: &Problem, unit: f64) -> Vec<f64> {
-    let stiffness = problem.bodies.iter().filter_map(|slot| slot.body.k());
-    stiffness.flat_map(|k| (0..k.order()).map(move |i| k.metric(i, unit) / unit)).collect()
 }
 
 #[cfg(test)]

@@ -1,7 +1,6 @@
 //! Everything that does not depend on loads and gaps: null spaces, factors, scaling, dual operators.
 
 use std::ffi::CStr;
-use std::ops::Range;
 use std::sync::Arc;
 use std::time::Instant;
 
@@ -10,13 +9,13 @@ use crate::body::{
     Stiffness,
 };
 use crate::constraints::RowKind;
-use crate::dual::{self, constrained, Boundary, Dual, Preconditioner};
+use crate::dual::{self, constrained, Boundary, Draft, Dual, Preconditioner};
 use crate::error::{Error, Kind, Result};
 use crate::linalg::memory::reserved;
-use crate::linalg::vector::power_of_two_below;
 use crate::linalg::{Multiple, Operator, Symmetric};
 use crate::solver::diagnosis::empty_row_contradicts;
 use crate::solver::host::lacks_null_space;
+use crate::solver::islands::{islands, Island, Members};
 use crate::solver::operators::Operators;
 use crate::solver::paper;
 use crate::solver::phases::{Phase, Phases};
@@ -33,13 +32,20 @@ const LUMPED_PAYS: usize = 300;
 /// `scale` times the stiffness of the constrained dofs of a body.
 type BoundaryStiffness = fn(&Symmetric, f64, &[usize]) -> Result<Box<dyn Operator + Send>>;
 
-/// The dual problem, ready for any load and gap.
+/// The dual problems of all islands, ready for any load and gap.
+pub(super) struct Setup {
+    pub islands: Vec<Ready>,
+    /// Of all bodies.
+    pub operators: Operators,
+    /// Island of every body.
+    pub island_of: Vec<usize>,
+}
+
+/// The dual problem of an island.
 pub(super) struct Ready {
-    /// 2^p, p = floor(log2 max K_ii), force / length: K and forces are divided by it.
-    pub unit: f64,
+    pub island: Island,
     pub dual: Dual,
     pub rows: DualRows,
-    pub operators: Operators,
     /// The preconditioner and its name in the options.
     pub preconditioner: Option<(&'static CStr, Preconditioner)>,
 }
@@ -60,10 +66,10 @@ impl Problem {
     /// True where factors and dual operators are as the options want them.
     pub(super) fn is_set_up(&self) -> bool {
         let coupled = paper::is_asked(&self.settings);
-        let suits = |ready: &Ready| {
-            (ready.rows.coupled == coupled || self.equalities.len() == 0) && self.wants(&ready.operators)
-        };
-        self.ready.as_ref().is_some_and(suits)
+        let suits = |ready: &Ready| ready.rows.coupled == coupled || ready.island.equalities.rows.len() == 0;
+        self.ready
+            .as_ref()
+            .is_some_and(|setup| setup.islands.iter().all(suits) && self.wants(&setup.operators))
     }
 
     pub(super) fn set_up(&mut self, watch: &mut Watch) -> Result<()> {
@@ -71,20 +77,48 @@ impl Problem {
         self.check_complete()?;
         self.check_empty_rows()?;
         if self.is_set_up() {
+            self.refresh_gaps();
             return Ok(());
         }
         if self.ready.is_some() {
             self.forget_dual();
         }
-        let unit = self.unit();
-        self.check_compliance(unit)?;
-        let rows = DualRows::of(self, unit, paper::is_asked(&self.settings))?;
+        let islands = islands(self)?;
+        let coupled = paper::is_asked(&self.settings);
+        let mut rows = reserved(islands.len(), "groups of bodies")?;
+        let mut distinct = vec![0; self.bodies.len()];
+        for island in &islands {
+            check_compliance(island)?;
+            let own = DualRows::of(island, self.metric(island), coupled)?;
+            let counts = Dual::distinct_rows(island.ranges.clone(), &own.matrix);
+            island.bodies.iter().zip(counts).for_each(|(&p, count)| distinct[p] = count);
+            rows.push(own);
+        }
         self.phases.ended(Phase::Rows, begun);
-        let operators = self.factorize(unit, &rows, watch)?;
+        let operators = self.factorize(&distinct, watch)?;
         let begun = Instant::now();
-        self.ready = Some(self.dualize(unit, rows, operators, watch)?);
+        self.ready = Some(self.dualize(islands.into_iter().zip(rows).collect(), operators, watch)?);
         self.phases.ended(Phase::DualOperators, begun);
         Ok(())
+    }
+
+    /// Gives the islands the gaps as they are now.
+    pub(super) fn refresh_gaps(&mut self) {
+        let (contact, equalities) = (&self.contact.rhs, &self.equalities.rhs);
+        let islands = self.ready.iter_mut().flat_map(|setup| &mut setup.islands);
+        islands.for_each(|ready| ready.island.refresh(contact, equalities));
+    }
+
+    /// `D / 2^p` over the unknowns of an island, for dofs without stiffness D of the stiffest dof of their body.
+    fn metric(&self, island: &Island) -> Vec<f64> {
+        let of_body = |&p: &usize| {
+            let body = &self.bodies[p].body;
+            let without = body.without(island.unit);
+            body.k()
+                .into_iter()
+                .flat_map(move |k| (0..k.order()).map(move |i| k.metric(i, without) / island.unit))
+        };
+        island.bodies.iter().flat_map(of_body).collect()
     }
 
     fn check_complete(&self) -> Result<()> {
@@ -115,24 +149,6 @@ impl Problem {
         self.equalities.check_empty_rows(RowKind::Equality).map_err(|e| empty_row_contradicts(e, first))
     }
 
-    /// A compliance times the stiffness of the bodies must be a number.
-    fn check_compliance(&self, unit: f64) -> Result<()> {
-        for (kind, rows) in [(RowKind::Inequality, &self.contact), (RowKind::Equality, &self.equalities)] {
-            if let Some(row) = rows.compliance.iter().position(|c| !(c * unit).is_finite()) {
-                let what = format!("the compliance of this {} times max K_ii overflows", kind.name());
-                return Err(Error::new(Kind::Overflow, what).row(row).value(rows.compliance[row]));
-            }
-        }
-        Ok(())
-    }
-
-    /// The power of two below the largest diagonal entry of all bodies (1 when there is none): dividing by it
-    /// is exact, so powers of two in the host's units do not change a bit of what follows.
-    pub(super) fn unit(&self) -> f64 {
-        let stiffness = self.bodies.iter().filter_map(|slot| slot.body.k());
-        power_of_two_below(stiffness.map(|k| k.largest_diagonal()).fold(0.0, f64::max))
-    }
-
     /// Threads of the setup; a problem so small that waking them costs more than the work gets one.
     pub(super) fn threads(&self) -> usize {
         const SMALL: usize = 1000;
@@ -143,19 +159,27 @@ impl Problem {
         }
     }
 
-    /// Unknowns of every body among all.
-    pub(super) fn ranges(&self) -> Vec<Range<usize>> {
-        self.offsets.windows(2).map(|pair| pair[0]..pair[1]).collect()
-    }
-
-    /// Forms F and G.
+    /// Forms F and G of every island.
     fn dualize(
         &mut self,
-        unit: f64,
-        rows: DualRows,
+        islands: Vec<(Island, DualRows)>,
         operators: Operators,
         watch: &mut Watch,
-    ) -> Result<Ready> {
+    ) -> Result<Setup> {
+        let mut drafts = reserved(islands.len(), "groups of bodies")?;
+        let (mut island_of, mut number_in) = (vec![0; self.bodies.len()], vec![0; self.bodies.len()]);
+        for (k, (island, rows)) in islands.iter().enumerate() {
+            let mut parts = reserved(island.bodies.len(), "groups of bodies")?;
+            for (number, (&p, range)) in island.bodies.iter().zip(&island.ranges).enumerate() {
+                (island_of[p], number_in[p]) = (k, number);
+                let Some(inverse) = self.bodies[p].inverse.as_mut() else { continue };
+                let (kplus, kept) = (Arc::clone(&inverse.kplus), inverse.operator.take());
+                let by = island.unit / inverse.unit;
+                let (size, implicit) = (operators.sizes[p], operators.implicit[p]);
+                parts.push(dual::Part { range: range.clone(), kplus, by, kept, size, implicit });
+            }
+            drafts.push(Draft::new(parts, &rows.matrix));
+        }
         let all: Vec<usize> = (0..self.bodies.len()).collect();
         let part = Part {
             threads: self.threads(),
@@ -163,20 +187,18 @@ impl Problem {
             until: self.assembled(),
             on_caller: self.on_caller(&all),
         };
-        let bodies = self.ranges().into_iter().zip(&mut self.bodies).enumerate();
-        let parts = bodies.filter_map(|(p, (range, slot))| {
-            let inverse = slot.inverse.as_mut()?;
-            let (kplus, kept) = (Arc::clone(&inverse.kplus), inverse.operator.take());
-            Some(dual::Part { range, kplus, kept, size: operators.sizes[p], implicit: operators.implicit[p] })
-        });
-        let dual = Dual::new(parts.collect(), &rows.matrix, rows.compliance.clone(), &mut |count, task| {
-            let mut made: Vec<_> = (0..count).map(|_| None).collect();
-            watch.every_body(&part, task, |p, operator| made[p] = operator)?;
-            Ok(made)
-        })?;
-        self.work.columns_computed += dual.columns.computed;
-        self.work.columns_kept += dual.columns.kept;
-        Ok(Ready { unit, dual, rows, operators, preconditioner: None })
+        let mut made: Vec<Vec<_>> =
+            islands.iter().map(|(island, _)| island.bodies.iter().map(|_| None).collect()).collect();
+        let assemble = |p: usize| drafts[island_of[p]].assemble(number_in[p]).map_err(|e| e.body(p));
+        watch.every_body(&part, assemble, |p, operator| made[island_of[p]][number_in[p]] = operator)?;
+        let mut ready = reserved(islands.len(), "groups of bodies")?;
+        for (((island, rows), draft), made) in islands.into_iter().zip(drafts).zip(made) {
+            let dual = draft.finish(made, rows.compliance.clone());
+            self.work.columns_computed += dual.columns.computed;
+            self.work.columns_kept += dual.columns.kept;
+            ready.push(Ready { island, dual, rows, preconditioner: None });
+        }
+        Ok(Setup { islands: ready, operators, island_of })
     }
 
     /// Fraction of the setup that is done with the dual operators: what is left is for the preconditioner.
@@ -188,47 +210,58 @@ impl Problem {
         }
     }
 
-    /// The preconditioner the options ask for, kept until they ask for another.
+    /// The preconditioners the options ask for, kept until they ask for others.
     pub(super) fn set_up_preconditioner(&mut self, watch: &mut Watch) -> Result<()> {
-        let Some(ready) = &self.ready else { return Ok(()) };
-        let asked = match self.settings.preconditioner {
-            word if word != c"automatic" => word,
-            _ if self.bodies.iter().all(|slot| slot.body.operator.is_some()) => c"none",
-            _ if ready.dual.product_work() > LUMPED_PAYS * ready.rows.matrix.rows() => c"lumped",
-            _ => c"none",
-        };
-        if ready.preconditioner.as_ref().map_or(c"none", |(name, _)| *name) == asked {
+        let Some(setup) = &self.ready else { return Ok(()) };
+        let asked: Vec<&CStr> = setup.islands.iter().map(|ready| self.wanted_preconditioner(ready)).collect();
+        let there = |ready: &Ready| ready.preconditioner.as_ref().map_or(c"none", |(name, _)| *name);
+        if setup.islands.iter().map(there).eq(asked.iter().copied()) {
             return Ok(());
         }
         let begun = Instant::now();
-        let preconditioner = match asked.to_bytes() {
-            b"none" => None,
-            b"lumped" => Some((asked, self.preconditioner(ready, lumped)?)),
-            _ => {
-                let boundaries = constrained(&ready.rows.matrix, &self.ranges());
-                self.check_more(ready, boundaries.iter().map(|dofs| dirichlet_bytes(dofs.len())).sum())?;
-                Some((asked, self.preconditioner(ready, dirichlet)?))
-            }
-        };
-        if let Some(ready) = &mut self.ready {
-            ready.preconditioner = preconditioner;
+        if asked.contains(&c"dirichlet") {
+            let boundaries = |ready: &Ready| {
+                let dofs = constrained(&ready.rows.matrix, &ready.island.ranges);
+                dofs.iter().map(|dofs| dirichlet_bytes(dofs.len())).sum::<usize>()
+            };
+            self.check_more(&setup.operators, setup.islands.iter().map(boundaries).sum())?;
         }
+        let mut made = reserved(asked.len(), "groups of bodies")?;
+        for (ready, &asked) in setup.islands.iter().zip(&asked) {
+            made.push(match asked.to_bytes() {
+                b"none" => None,
+                b"lumped" => Some((asked, self.preconditioner(ready, lumped)?)),
+                _ => Some((asked, self.preconditioner(ready, dirichlet)?)),
+            });
+        }
+        let islands = self.ready.iter_mut().flat_map(|setup| &mut setup.islands);
+        islands.zip(made).for_each(|(ready, made)| ready.preconditioner = made);
         self.phases.ended(Phase::Preconditioner, begun);
         watch.setup_done()
     }
 
+    fn wanted_preconditioner(&self, ready: &Ready) -> &'static CStr {
+        let of_host = |&p: &usize| self.bodies[p].body.operator.is_some();
+        match self.settings.preconditioner {
+            word if word != c"automatic" => word,
+            _ if ready.island.bodies.iter().all(of_host) => c"none",
+            _ if ready.dual.product_work() > LUMPED_PAYS * ready.rows.matrix.rows() => c"lumped",
+            _ => c"none",
+        }
+    }
+
     fn preconditioner(&self, ready: &Ready, stiffness: BoundaryStiffness) -> Result<Preconditioner> {
-        let ranges = self.ranges();
-        let constrained = constrained(&ready.rows.matrix, &ranges);
-        let boundaries = threads::run(self.threads(), ranges.len(), |p| {
-            let local = &constrained[p];
+        let Island { bodies, ranges, unit, .. } = &ready.island;
+        let constrained = constrained(&ready.rows.matrix, ranges);
+        let boundaries = threads::run(self.threads(), ranges.len(), |k| {
+            let (p, local) = (bodies[k], &constrained[k]);
             let missing = || Error::new(Kind::Internal, "a body without stiffness was set up");
             let made = match self.bodies[p].body.k().ok_or_else(missing)? {
-                Stiffness::Matrix(k) => stiffness(k, 1.0 / ready.unit, local),
-                Stiffness::Host(k) => diagonal(k, 1.0 / ready.unit, local),
+                Stiffness::Matrix(k) => stiffness(k, 1.0 / unit, local),
+                Stiffness::Host(k) => diagonal(k, 1.0 / unit, local),
             };
             let stiffness = made.map_err(|e| e.body(p))?;
-            Ok(Boundary { dofs: local.iter().map(|j| j + ranges[p].start).collect(), stiffness })
+            Ok(Boundary { dofs: local.iter().map(|j| j + ranges[k].start).collect(), stiffness })
         })?;
         Preconditioner::new(&ready.rows.matrix, ready.rows.compliance.clone(), &ready.rows.metric, boundaries)
     }
@@ -255,7 +288,7 @@ impl Ready {
         self.dual.distances(moved, x, alpha, &in_parallel)
     }
 
-    /// `u = K+ f + R alpha`, over all unknowns.
+    /// `u = K+ f + R alpha`, over the unknowns of the island.
     pub fn displacement(&self, threads: usize, f: &[f64], alpha: &[f64]) -> Result<Vec<f64>> {
         let on_caller = |p: usize| self.dual.solves_on_caller(p);
         let displacement = |p| self.dual.displacement(p, f, alpha);
@@ -266,11 +299,24 @@ impl Ready {
     }
 }
 
+/// A compliance times the stiffness of the bodies must be a number.
+fn check_compliance(island: &Island) -> Result<()> {
+    for kind in [RowKind::Inequality, RowKind::Equality] {
+        let Members { numbers, rows } = island.members(kind);
+        if let Some(row) = rows.compliance.iter().position(|c| !(c * island.unit).is_finite()) {
+            let what = format!("the compliance of this {} times max K_ii overflows", kind.name());
+            let error = Error::new(Kind::Overflow, what).row(numbers[row]);
+            return Err(error.value(rows.compliance[row]));
+        }
+    }
+    Ok(())
+}
+
 /// Null space and fixing dofs of a body, found before anything is factorised.
-pub(super) fn plan(body: &Body, unit: f64, tolerance: f64) -> Result<Plan> {
+pub(super) fn plan(body: &Body, tolerance: f64) -> Result<Plan> {
     let missing = || Error::new(Kind::Internal, "a body without stiffness was set up");
     let matrix = Arc::clone(body.stiffness.as_ref().ok_or_else(missing)?);
-    let k = Multiple { matrix, by: 1.0 / unit };
+    let k = Multiple { matrix, by: 1.0 / body.unit() };
     let fixing = body.fixing.as_deref();
     if let Some(given) = &body.null_space {
         return GeneralizedInverse::plan_with(k, given, tolerance, fixing);

@@ -1,8 +1,7 @@
-//! Set up, solve the dual, recover the displacements, certify: the paper in order.
+//! One island: solve the dual, recover the displacements, certify.
 
 use std::time::{Duration, Instant};
 
-use crate::constraints::RowKind;
 use crate::dual::Preconditioner;
 use crate::error::{Error, Kind, Result};
 use crate::linalg::memory::copied;
@@ -13,81 +12,68 @@ use crate::qp::{self, Direct, Judge, Qp, Solution, Verdict};
 use crate::solver::certificate::{Answer as AnswerView, BodyData, Certificate, Data};
 use crate::solver::diagnosis;
 use crate::solver::fallback::{solve_dual, Means};
-use crate::solver::findings::Findings;
 use crate::solver::finish::finish;
+use crate::solver::islands::Island;
 use crate::solver::paper::{parameters, HostUnits};
-use crate::solver::phases::{Phase, Phases};
 use crate::solver::presolve::{presolve, Gaps};
 use crate::solver::problem::Problem;
-use crate::solver::report::{Outcome, Report};
-use crate::solver::results::{Answer, Asked};
+use crate::solver::report::Outcome;
 use crate::solver::rounding::certify_to_rounding;
-use crate::solver::setup::Ready;
-use crate::solver::watch::{Stops, Watch};
+use crate::solver::setup::{Ready, Setup};
+use crate::solver::state::Start;
+use crate::solver::watch::{Interruptible, Steps, Stops, Voice};
+
+/// How the solution of one island ended.
+pub(super) struct Solved {
+    pub ending: Ending,
+    pub outcome: Outcome,
+    /// The direct finish has replaced the answer.
+    pub finished: bool,
+    /// Time for answers recovered and certified, and for the recovery of the last.
+    pub judging: Duration,
+    pub recovering: Duration,
+}
 
 impl Problem {
-    /// Solves (10)-(11) for the present loads and gaps. An answer is kept even when it is incomplete; the
-    /// report says how good it is.
-    pub fn solve(&mut self) -> Result<Report> {
-        self.watched(|problem, watch| {
-            watch.log.begin(problem, "solve")?;
-            let done = problem.solve_watched(watch);
-            problem.logged("solve", done, watch)
-        })
-    }
-
-    fn solve_watched(&mut self, watch: &mut Watch) -> Result<Report> {
-        let started = Instant::now();
-        self.answer = None;
-        self.asked = Asked::default();
-        let start = self.take_start();
-        self.phases = Phases::default();
-        self.set_up(watch)?;
-        self.set_up_preconditioner(watch)?;
-        watch.log.phases(&self.phases(), Phase::DualSolve as usize)?;
-        self.log_method(&mut watch.log, start.name())?;
-        let solving = Instant::now();
-        let ready = self.ready()?;
-        let dual = Scaled::new(self, ready, &watch.stops)?;
+    /// Solves (10)-(11) on one island: the dual, the displacements, the certificate. The named reason why there is no
+    /// answer is an error.
+    pub(super) fn solve_island(
+        &self,
+        number: usize,
+        start: &Start,
+        stops: &Stops,
+        voice: &mut dyn Voice,
+    ) -> Result<Solved> {
+        let setup = self.ready()?;
+        let ready = &setup.islands[number];
+        let dual = Scaled::new(self, ready, stops)?;
         let mut judge = Certifier::new(self, ready, &dual)?;
-        let f = watch.operator(ready, &dual.gaps.bounded, self.product_threads(ready));
-        let (qp, start, direct) = (dual.qp(ready, &f), start.scaled(ready)?, self.direct(ready));
+        let f = Interruptible::new(&ready.dual, stops.clone(), self.product_threads(ready));
+        let (qp, start) = (dual.qp(ready, &f), start.scaled(ready)?);
+        let direct = self.direct(setup, ready);
+        let steps = &mut Steps::new(number, ready.island.unit, &dual.gaps.bounded, stops.clone(), voice);
         let solution = match parameters(&self.settings) {
             Some(given) if given.units == Units::Printed => {
-                HostUnits::new(self, ready, &dual.gaps, given)?.solve(qp, &start, &mut judge, watch)?
+                HostUnits::new(self, ready, &dual.gaps, given)?.solve(qp, &start, &mut judge, steps)?
             }
-            _ => solve_dual(&Means { settings: &self.settings, direct }, qp, &start, &mut judge, watch)?,
+            _ => solve_dual(&Means { settings: &self.settings, direct }, qp, &start, &mut judge, steps)?,
         };
         let (judging, recovering) = (judge.spent, Instant::now());
         let mut ending = judge.ending(solution)?;
         let finished = self.settings.finish == c"direct" && finish(&judge, qp, direct, &mut ending)?;
-        let Ending { solution, recovered, certificate } = ending;
-        let outcome = self.outcome(ready, &dual, &solution)?;
-        let mut answer = Answer::new(self, ready, &solution, recovered, outcome, certificate)?;
-        answer.report.finished = finished;
-        answer.report.seconds_setup = (solving - started).as_secs_f64();
-        answer.report.seconds_solve = solving.elapsed().as_secs_f64();
-        self.phases.add(Phase::DualSolve, recovering - solving);
-        self.phases.ended(Phase::Recovery, recovering);
-        self.phases.move_time(Phase::DualSolve, Phase::Recovery, judging);
-        answer.report.phases = self.phases();
-        watch.log.phases(&answer.report.phases, usize::MAX)?;
-        watch.log.result(&answer.report)?;
-        let report = answer.report.clone();
-        self.keep(answer);
-        self.findings = Some(Findings::of_report(self, &report));
-        Ok(report)
+        let outcome = self.outcome(ready, &dual, &ending.solution)?;
+        Ok(Solved { ending, outcome, finished, judging, recovering: recovering.elapsed() })
     }
 
-    pub(super) fn ready(&self) -> Result<&Ready> {
+    pub(super) fn ready(&self) -> Result<&Setup> {
         self.ready.as_ref().ok_or_else(|| Error::new(Kind::Internal, "the setup left nothing"))
     }
 
     /// F for the direct method, which stays within the memory limit.
-    fn direct<'a>(&self, ready: &'a Ready) -> Direct<'a> {
+    fn direct<'a>(&self, setup: &Setup, ready: &'a Ready) -> Direct<'a> {
         let asked = usize::try_from(self.settings.direct_limit).unwrap_or(usize::MAX);
         let most = asked.min(ready.dual.order() + ready.dual.modes());
-        let limit = if self.check_more(ready, Direct::bytes(most)).is_ok() { most } else { 0 };
+        let limit = if self.check_more(&setup.operators, Direct::bytes(most)).is_ok() { most } else { 0 };
         Direct { entries: &ready.dual, limit }
     }
 
@@ -107,28 +93,29 @@ impl Problem {
             Verdict::Unbounded { p } => {
                 let w: Vec<f64> = p.iter().map(|p| -p).collect();
                 let w = ready.rows.decoupling.solve_transposed(w);
-                diagnosis::gaps_contradict(ready, &dual.gaps, &w).map_or(Ok(Outcome::Stalled), Err)
+                diagnosis::gaps_contradict(self, ready, &dual.gaps, &w).map_or(Ok(Outcome::Stalled), Err)
             }
         }
     }
 
-    /// The problem as the certificate sees it; null spaces must have been found.
-    pub(super) fn data(&self) -> Result<Data<'_>> {
+    /// An island as the certificate sees it; null spaces must have been found.
+    pub(super) fn data<'a>(&'a self, island: &'a Island) -> Result<Data<'a>> {
         let missing = || Error::new(Kind::State, "a body has not been set up");
-        let mut bodies = Vec::with_capacity(self.bodies.len());
-        for (slot, range) in self.bodies.iter().zip(self.ranges()) {
+        let mut bodies = Vec::with_capacity(island.bodies.len());
+        for (&p, range) in island.bodies.iter().zip(&island.ranges) {
+            let slot = &self.bodies[p];
             let inverse = slot.inverse.as_ref().ok_or_else(missing)?;
             bodies.push(BodyData {
                 start: range.start,
                 stiffness: slot.body.k().ok_or_else(missing)?,
                 load: slot.body.load.as_deref(),
                 null_space: &inverse.kplus.null_space,
-                unit: inverse.unit,
+                unit: slot.body.without(island.unit),
             });
         }
         let limit = self.settings.certificate_tolerance;
-        let (contact, equalities, without) = (&self.contact, &self.equalities, self.unit());
-        Ok(Data { bodies, contact, equalities, without, limit, work_of_loads: None })
+        let (contact, equalities) = (&island.contact.rows, &island.equalities.rows);
+        Ok(Data { bodies, contact, equalities, without: island.unit, limit, work_of_loads: None })
     }
 }
 
@@ -145,8 +132,8 @@ pub(super) struct Scaled {
 
 impl Scaled {
     fn new(problem: &Problem, ready: &Ready, stops: &Stops) -> Result<Self> {
-        let mut load = problem.loads()?;
-        load.iter_mut().for_each(|f| *f /= ready.unit);
+        let mut load = problem.loads(&ready.island)?;
+        load.iter_mut().for_each(|f| *f /= ready.island.unit);
         let gaps = presolve(problem, ready, stops)?;
         let moved = ready.moved(problem.threads(), &load)?;
         let d = ready.dual.rhs(&moved, &gaps.dual);
@@ -208,7 +195,7 @@ pub(super) struct Ending {
 
 impl<'a> Certifier<'a> {
     fn new(problem: &'a Problem, ready: &'a Ready, scaled: &'a Scaled) -> Result<Self> {
-        let (data, threads) = (problem.data()?, problem.threads());
+        let (data, threads) = (problem.data(&ready.island)?, problem.threads());
         Ok(Self { ready, scaled, data, threads, accepted: None, spent: Duration::ZERO })
     }
 
@@ -224,15 +211,13 @@ impl<'a> Certifier<'a> {
         self.ready.displacement(self.threads, &load, alpha)
     }
 
-    /// An answer of u and x; springs without entries have their force from their gap.
+    /// An answer of u and x.
     pub fn with_forces(&self, u: Vec<f64>, x: &[f64]) -> Recovered {
         let ready = self.ready;
-        let contact = self.data.contact.forces_without_entries(RowKind::Inequality);
-        let equalities = self.data.equalities.forces_without_entries(RowKind::Equality);
-        let mut lambda: Vec<f64> = contact.chain(equalities).collect();
+        let mut lambda = vec![0.0; ready.rows.scale.len()];
         let x = ready.rows.decoupling.solve_transposed(x.to_vec());
         for (x, &holder) in x.iter().zip(&self.scaled.gaps.holder) {
-            lambda[holder] = x * ready.rows.scale[holder] * ready.unit;
+            lambda[holder] = x * ready.rows.scale[holder] * ready.island.unit;
         }
         let mu = lambda.split_off(ready.rows.contact);
         Recovered { u, lambda, mu }
@@ -276,46 +261,22 @@ impl Judge for Certifier<'_> {
     }
 }
 
-impl Problem {
-    /// The certificate of any answer, also another code's: u over all unknowns, multipliers of contact and
-    /// equality rows. A setup that is there serves, whatever the options have become: the last answer stays.
-    pub fn check(&mut self, u: &[f64], lambda: &[f64], mu: &[f64]) -> Result<Certificate> {
-        if self.ready.is_none() {
-            self.setup()?;
-        }
-        self.check_empty_rows()?;
-        let counts = self.counts();
-        let lengths = [("n", u, counts.dofs), ("rows", lambda, counts.rows), ("eqs", mu, counts.equalities)];
-        for (argument, values, expected) in lengths {
-            if values.len() != expected {
-                let what = format!("the problem has {expected}, not {}", values.len());
-                return Err(Error::argument(argument, what)
-                    .value(values.len() as f64)
-                    .limit(expected as f64));
-            }
-        }
-        let answer = AnswerView { u, lambda, mu };
-        certify_to_rounding(&mut self.data()?, answer, self.ready()?, self.threads())
-    }
-}
-
 #[cfg(test)]
 pub(super) mod tests {
     use super::*;
     use crate::qp::Counts;
+    use crate::solver::watch::Watch;
     use crate::solver::{Modes, RowKind, RowsInput, SparseInput, Storage};
 
-    /// Springs 1 and 1 pushed by 3 and 1 against walls at 1 and 2, each a body; `work` gets an answer whose first
+    /// Springs 1 and 1 pushed by 3 and 1 against walls at 1 and 2, one body; `work` gets an answer whose first
     /// force, 2, is wrong by the factor 1 + `error`.
     pub fn two_springs(error: f64, work: impl Fn(&mut Certifier, Qp, Direct, &Solution)) {
         let mut problem = Problem::new();
-        for load in [3.0, 1.0] {
-            let body = problem.add_body(1).unwrap();
-            let spring = SparseInput { ptr: &[0, 1], col: &[0], val: &[1.0], storage: Storage::Lower };
-            problem.set_stiffness(body, spring).unwrap();
-            problem.set_null_space(body, 1, 0, &[], 1, Modes::Exact).unwrap();
-            problem.set_load(body, &[load]).unwrap();
-        }
+        let body = problem.add_body(2).unwrap();
+        let springs = SparseInput { ptr: &[0, 1, 2], col: &[0, 1], val: &[1.0; 2], storage: Storage::Lower };
+        problem.set_stiffness(body, springs).unwrap();
+        problem.set_null_space(body, 2, 0, &[], 2, Modes::Exact).unwrap();
+        problem.set_load(body, &[3.0, 1.0]).unwrap();
         let rows =
             RowsInput { ptr: &[0, 1, 2], body: None, dof: &[0, 1], val: &[1.0, 1.0], rhs: Some(&[1.0, 2.0]) };
         problem.add_rows(RowKind::Inequality, rows).unwrap();
@@ -323,14 +284,15 @@ pub(super) mod tests {
         problem
             .watched(|problem, watch| {
                 problem.set_up(watch)?;
-                let ready = problem.ready()?;
+                let setup = problem.ready()?;
+                let ready = &setup.islands[0];
                 let dual = Scaled::new(problem, ready, &watch.stops)?;
                 let mut judge = Certifier::new(problem, ready, &dual)?;
                 let scale = 3.0;
                 let (x, verdict) = (vec![2.0 * (1.0 + error), 0.0], Verdict::Solved);
                 let solved =
                     Solution { x, alpha: vec![], undetermined: 0, scale, verdict, counts: Counts::default() };
-                work(&mut judge, dual.qp(ready, &ready.dual), problem.direct(ready), &solved);
+                work(&mut judge, dual.qp(ready, &ready.dual), problem.direct(setup, ready), &solved);
                 Ok(())
             })
             .unwrap();
@@ -375,7 +337,7 @@ pub(super) mod tests {
         problem.add_rows(RowKind::Inequality, rows).unwrap();
         let test = |problem: &mut Problem, watch: &mut Watch| {
             problem.set_up(watch)?;
-            let ready = problem.ready()?;
+            let ready = &problem.ready()?.islands[0];
             let dual = Scaled::new(problem, ready, &watch.stops)?;
             let mut judge = Certifier::new(problem, ready, &dual)?;
             for (x, alpha) in [([0.0, 0.0], 0.0), ([2.0, 0.0], -7.0), ([0.5, 1.5], 2.0)] {

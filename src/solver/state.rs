@@ -53,7 +53,7 @@ impl Start {
         }
     }
 
-    /// `x = L'lambda / (S 2^p)`, parallel rows together; multipliers that are not there are zero.
+    /// `x = L'lambda / (S 2^p)` of an island, parallel rows together; multipliers that are not there are zero.
     pub fn scaled(&self, ready: &Ready) -> Result<Vec<f64>> {
         let mut multipliers = [self.given[0].as_deref(), self.given[1].as_deref()];
         if multipliers == [None, None] {
@@ -62,10 +62,10 @@ impl Start {
         let rows = &ready.rows;
         let mut x = zeros(rows.groups(), "start values")?;
         for (i, (group, sign)) in rows.grouping.members() {
-            let (k, row) = if i < rows.contact { (0, i) } else { (1, i - rows.contact) };
-            if let Some(multipliers) = multipliers[k] {
-                x[group] += sign * multipliers[row] / (rows.scale[i] * ready.unit);
-            }
+            let (kind, row) = ready.island.kind_and_row(i);
+            // where the last solve has left none
+            let known = multipliers[kind as usize].map(|all| all[row]).filter(|v| v.is_finite());
+            x[group] += sign * known.unwrap_or(0.0) / (rows.scale[i] * ready.island.unit);
         }
         Ok(rows.decoupling.apply_transposed(&x))
     }

@@ -1,7 +1,7 @@
 //! The library's own threads: as many as the host asks for, made when first needed, never rayon's global pool.
 
 use std::hint::black_box;
-use std::sync::mpsc::{channel, RecvTimeoutError};
+use std::sync::mpsc::{channel, RecvTimeoutError, Sender};
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
@@ -78,15 +78,23 @@ pub struct Tasks<'a> {
 }
 
 /// What the calling thread hears while tasks run.
-pub enum Heard<T> {
+pub enum Heard<T, M = ()> {
     /// A task is done, with its result.
     Done(usize, T),
-    /// None has been for some time.
+    /// A task that is not done yet has something to say.
+    Said(M),
+    /// None has been heard of for some time.
     Nothing,
 }
 
 /// The calling thread hears of itself after this time.
 const PATIENCE: Duration = Duration::from_millis(500);
+
+/// What a task sends to the calling thread.
+enum Sent<T, M> {
+    Ended(usize, Result<T>),
+    Said(M),
+}
 
 /// Begins tasks in their order while the calling thread hears of every result as it comes, in any order, between those it
 /// runs itself. All tasks are run; returns the error of the first by number.
@@ -95,31 +103,50 @@ pub fn run_heard<T: Send>(
     task: impl Fn(usize) -> Result<T> + Sync,
     hear: &mut dyn FnMut(Heard<T>),
 ) -> Result<()> {
+    run_telling(tasks, |k, _| task(k), hear)
+}
+
+/// The same where tasks say something before they are done.
+pub fn run_telling<T: Send, M: Send>(
+    tasks: Tasks,
+    task: impl Fn(usize, &dyn Fn(M)) -> Result<T> + Sync,
+    hear: &mut dyn FnMut(Heard<T, M>),
+) -> Result<()> {
     let mut first: Option<(usize, Error)> = None;
-    let mut sort = |ended: Option<(usize, Result<T>)>| match ended {
+    let mut sort = |sent: Option<Sent<T, M>>| match sent {
         None => hear(Heard::Nothing),
-        Some((k, Ok(value))) => hear(Heard::Done(k, value)),
-        Some((k, Err(error))) if first.as_ref().is_none_or(|(at, _)| k < *at) => first = Some((k, error)),
-        Some(_) => {}
+        Some(Sent::Said(what)) => hear(Heard::Said(what)),
+        Some(Sent::Ended(k, Ok(value))) => hear(Heard::Done(k, value)),
+        Some(Sent::Ended(k, Err(error))) if first.as_ref().is_none_or(|(at, _)| k < *at) => {
+            first = Some((k, error));
+        }
+        Some(Sent::Ended(..)) => {}
+    };
+    let (sender, sent) = channel();
+    let run = |k: usize, sender: &Sender<Sent<T, M>>| {
+        let ended = task(k, &|what| drop(sender.send(Sent::Said(what))));
+        drop(sender.send(Sent::Ended(k, ended)));
     };
     let (own, others): (Vec<usize>, Vec<usize>) = tasks.order.iter().partition(|&&k| (tasks.on_caller)(k));
     match pool_for(if others.is_empty() { 0 } else { tasks.threads }) {
-        None => tasks.order.iter().for_each(|&k| sort(Some((k, task(k))))),
+        None => tasks.order.iter().for_each(|&k| {
+            run(k, &sender);
+            sent.try_iter().for_each(|sent| sort(Some(sent)));
+        }),
         Some(pool) => pool.in_place_scope(|scope| {
-            let (sender, results) = channel();
             for k in others {
-                let (sender, task) = (sender.clone(), &task);
+                let (sender, run) = (sender.clone(), &run);
                 // The calling thread listens until the last sender is gone: it is never sent into the void.
-                scope.spawn(move |_| drop(sender.send((k, task(k)))));
+                scope.spawn(move |_| run(k, &sender));
+            }
+            for k in own {
+                run(k, &sender);
+                sent.try_iter().for_each(|sent| sort(Some(sent)));
             }
             drop(sender);
-            for k in own {
-                sort(Some((k, task(k))));
-                results.try_iter().for_each(|ended| sort(Some(ended)));
-            }
             loop {
-                match results.recv_timeout(PATIENCE) {
-                    Ok(ended) => sort(Some(ended)),
+                match sent.recv_timeout(PATIENCE) {
+                    Ok(sent) => sort(Some(sent)),
                     Err(RecvTimeoutError::Timeout) => sort(None),
                     Err(RecvTimeoutError::Disconnected) => break,
                 }

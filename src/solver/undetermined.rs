@@ -3,9 +3,11 @@
 
 use crate::dual::dependent_rows;
 use crate::error::{Error, Kind, Result};
-use crate::linalg::{Csr, Matrix};
+use crate::linalg::memory::zeros;
+use crate::linalg::Csr;
 use crate::qp;
 use crate::solver::problem::Problem;
+use crate::solver::setup::Ready;
 use crate::solver::RowKind;
 
 /// One of them.
@@ -25,13 +27,15 @@ impl Problem {
         if self.asked.open_motions.is_none() {
             self.asked.open_motions = Some(self.find_open_motions()?);
         }
-        let amplitudes = self.asked.open_motions.as_ref().filter(|all| k < all.cols).map(|all| all.col(k));
-        let Some(amplitudes) = amplitudes else {
-            let number = self.asked.open_motions.as_ref().map_or(0, |all| all.cols);
-            let what = format!("{number} motions are undetermined");
-            return Err(Error::argument("k", what).index(k as i64).limit(number as f64));
+        let all = self.asked.open_motions.as_deref().unwrap_or_default();
+        let Some((island, amplitudes)) = all.get(k) else {
+            let what = format!("{} motions are undetermined", all.len());
+            return Err(Error::argument("k", what).index(k as i64).limit(all.len() as f64));
         };
-        let mut v = self.ready()?.dual.rigid_motion(amplitudes, self.counts().dofs);
+        let ready = &self.ready()?.islands[*island];
+        let own = ready.dual.rigid_motion(amplitudes, ready.island.unknowns());
+        let mut v = zeros(self.counts().dofs, "an open motion")?;
+        ready.island.scatter(self, &own, &mut v);
         let fastest = (0..v.len()).fold(0, |best, i| if v[i].abs() > v[best].abs() { i } else { best });
         let largest = v.get(fastest).copied().unwrap_or(1.0);
         v.iter_mut().for_each(|v| *v /= largest);
@@ -46,20 +50,32 @@ impl Problem {
         Ok(self.open_motion(k)?.v[range].to_vec())
     }
 
-    /// Amplitudes of the motions, over the modes of all bodies.
-    fn find_open_motions(&self) -> Result<Matrix> {
+    /// Islands and amplitudes of the motions, over the modes of the island.
+    fn find_open_motions(&self) -> Result<Vec<(usize, Vec<f64>)>> {
         let missing = || Error::new(Kind::State, "there is no answer yet: solve first");
         let answer = self.answer.as_ref().ok_or_else(missing)?;
-        let ready = self.ready()?;
-        let groups = ready.rows.groups();
+        let mut all = Vec::new();
+        let islands = self.ready()?.islands.iter().zip(&answer.failed).enumerate();
+        for (k, (ready, _)) in islands.filter(|(_, (_, failed))| !**failed) {
+            let lambda = ready.island.contact.gather(&answer.lambda);
+            let motions = qp::undetermined(&ready.dual.coarse, &ready.without_force(&lambda))?;
+            all.extend((0..motions.cols).map(|j| (k, motions.col(j).to_vec())));
+        }
+        Ok(all)
+    }
+}
+
+impl Ready {
+    /// Groups of contact rows of which none carries a force.
+    pub fn without_force(&self, lambda: &[f64]) -> Vec<bool> {
         let mut held: Vec<bool> =
-            (0..groups).map(|group| ready.rows.kind(group) == RowKind::Inequality).collect();
-        for (i, (group, _)) in ready.rows.grouping.members().filter(|(i, _)| *i < ready.rows.contact) {
-            if answer.lambda[i] > 0.0 {
+            (0..self.rows.groups()).map(|group| self.rows.kind(group) == RowKind::Inequality).collect();
+        for (i, (group, _)) in self.rows.grouping.members().filter(|(i, _)| *i < self.rows.contact) {
+            if lambda[i] > 0.0 {
                 held[group] = false;
             }
         }
-        qp::undetermined(&ready.dual.coarse, &held)
+        held
     }
 }
 
@@ -67,18 +83,22 @@ impl Problem {
     /// Equality rows that are combinations of others: they constrain nothing, and which of them carry the forces is open.
     pub fn dependent_equalities(&self) -> Result<Vec<usize>> {
         let missing = || Error::new(Kind::State, "the problem has not been set up yet");
-        let ready = self.ready.as_ref().ok_or_else(missing)?;
-        let groups: Vec<usize> =
-            (0..ready.rows.groups()).filter(|&group| ready.rows.kind(group) == RowKind::Equality).collect();
-        let mut rows = Csr::empty(ready.rows.scaled.cols);
-        for &group in &groups {
-            rows.push_row(ready.rows.scaled.row(group).map(|(j, v)| (j, v / ready.rows.metric[j].sqrt())));
+        let mut dependent = Vec::new();
+        for ready in &self.ready.as_ref().ok_or_else(missing)?.islands {
+            let groups: Vec<usize> = (0..ready.rows.groups())
+                .filter(|&group| ready.rows.kind(group) == RowKind::Equality)
+                .collect();
+            let mut rows = Csr::empty(ready.rows.scaled.cols);
+            for &group in &groups {
+                rows.push_row(
+                    ready.rows.scaled.row(group).map(|(j, v)| (j, v / ready.rows.metric[j].sqrt())),
+                );
+            }
+            let compliance: Vec<f64> = groups.iter().map(|&group| ready.rows.compliance[group]).collect();
+            let found = dependent_rows(&rows.transposed()?, &compliance)?.into_iter();
+            let leader = |at: usize| ready.rows.grouping.leaders[groups[at]] - ready.rows.contact;
+            dependent.extend(found.map(|at| ready.island.equalities.numbers[leader(at)]));
         }
-        let compliance: Vec<f64> = groups.iter().map(|&group| ready.rows.compliance[group]).collect();
-        let mut dependent: Vec<usize> = dependent_rows(&rows.transposed()?, &compliance)?
-            .into_iter()
-            .map(|at| ready.rows.grouping.leaders[groups[at]] - ready.rows.contact)
-            .collect();
         dependent.sort_unstable();
         Ok(dependent)
     }

@@ -9,9 +9,8 @@ use crate::error::{Error, Kind, Result};
 use crate::linalg::{Interrupt, Operator};
 use crate::qp::{self, Counts, Observer, StepKind};
 use crate::solver::findings::Findings;
-use crate::solver::log::Log;
+use crate::solver::log::{Log, LogLevel};
 use crate::solver::problem::Problem;
-use crate::solver::setup::Ready;
 use crate::solver::threads::{self, Heard, Tasks};
 
 /// What the host hears.
@@ -75,8 +74,7 @@ impl Problem {
         cancelled.store(false, Ordering::Relaxed);
         let stops = Stops { cancelled, started: Instant::now(), limit: self.settings.time_limit };
         let (listener, log) = (self.host.listener.take(), std::mem::take(&mut self.host.log));
-        let (before, last) = (Counts::default(), Counts::default());
-        let mut watch = Watch { stops, listener, log, fraction: 0.0, unit: 1.0, bounded: 0, before, last };
+        let mut watch = Watch { stops, listener, log, fraction: 0.0, islands: Vec::new() };
         let outcome = work(self, &mut watch);
         (self.host.listener, self.host.log) = (watch.listener, watch.log);
         if let Err(error) = &outcome {
@@ -96,6 +94,17 @@ pub(super) struct Stops {
 }
 
 impl Stops {
+    /// Of nobody.
+    #[cfg(test)]
+    pub fn never() -> Self {
+        Self { cancelled: Arc::default(), started: Instant::now(), limit: f64::INFINITY }
+    }
+
+    /// Ends whatever runs.
+    pub fn cancel(&self) {
+        self.cancelled.store(true, Ordering::Relaxed);
+    }
+
     pub fn check_cancelled(&self) -> Result<()> {
         if self.cancelled.load(Ordering::Relaxed) {
             return Err(cancelled());
@@ -145,6 +154,52 @@ pub(super) struct Watch {
     pub log: Log,
     /// Of the setup.
     fraction: f64,
+    /// Work of every island so far, and its rows with a force.
+    islands: Vec<(Counts, usize)>,
+}
+
+/// A step in one island.
+#[derive(Clone, Copy)]
+pub(super) struct Told {
+    island: usize,
+    counts: Counts,
+    /// Of this island alone.
+    progress: Progress,
+}
+
+/// What the solution of an island has to say, and whom it says it to: the host, or the thread that listens to many.
+pub(super) trait Voice {
+    fn step(&mut self, told: Told) -> Result<()>;
+    /// A line of the log at level `LogLevel::Phase`.
+    fn line(&mut self, text: String) -> Result<()>;
+}
+
+impl Voice for Watch {
+    fn step(&mut self, told: Told) -> Result<()> {
+        if self.islands.len() <= told.island {
+            self.islands.resize(told.island + 1, Default::default());
+        }
+        self.islands[told.island] = (told.counts, told.progress.active);
+        let mut now = Progress { steps: 0, products: 0, active: 0, ..told.progress };
+        for (counts, active) in &self.islands {
+            now.steps += counts.steps();
+            now.products += counts.products;
+            now.active += active;
+        }
+        self.tell(&now)?;
+        self.log.step(&now)
+    }
+
+    fn line(&mut self, text: String) -> Result<()> {
+        self.log.say(LogLevel::Phase, || text)
+    }
+}
+
+/// One island under watch.
+pub(super) struct Steps<'a> {
+    island: usize,
+    stops: Stops,
+    voice: &'a mut dyn Voice,
     /// 2^p: what forces are divided by.
     unit: f64,
     /// Number of multipliers >= 0.
@@ -154,16 +209,45 @@ pub(super) struct Watch {
     last: Counts,
 }
 
-impl Watch {
-    /// F under watch, the products of the bodies on so many threads; forces inside are in units of 2^p, multipliers of
-    /// `bounded` groups are >= 0.
-    pub fn operator<'a>(&mut self, ready: &'a Ready, bounded: &[bool], threads: usize) -> Interruptible<'a> {
-        self.unit = ready.unit;
-        self.bounded = bounded.iter().filter(|bounded| **bounded).count();
-        let (operator, stops) = (&ready.dual, self.stops.clone());
-        Interruptible { operator, stops, begun: AtomicBool::new(false), threads }
+impl<'a> Steps<'a> {
+    /// Of island number `island`; forces inside are in units of 2^p = `unit`, multipliers of `bounded` groups are >= 0.
+    pub fn new(island: usize, unit: f64, bounded: &[bool], stops: Stops, voice: &'a mut dyn Voice) -> Self {
+        let bounded = bounded.iter().filter(|bounded| **bounded).count();
+        let (before, last) = (Counts::default(), Counts::default());
+        Self { island, stops, voice, unit, bounded, before, last }
     }
 
+    pub fn line(&mut self, text: String) -> Result<()> {
+        self.voice.line(text)
+    }
+}
+
+impl Observer for Steps<'_> {
+    fn step(&mut self, now: &qp::Progress) -> Result<()> {
+        if now.counts.steps() < self.last.steps() || now.counts.products < self.last.products {
+            self.before = self.before + self.last;
+        }
+        self.last = *now.counts;
+        let counts = self.before + self.last;
+        let against_stop = |size: f64| size / now.small;
+        let progress = Progress {
+            step: Some(now.kind),
+            fraction: f64::NAN,
+            steps: counts.steps(),
+            products: counts.products,
+            active: self.bounded - now.active.iter().filter(|at_bound| **at_bound).count(),
+            residual: against_stop(now.residual),
+            free: against_stop(now.free),
+            chopped: against_stop(now.chopped),
+            theta: self.unit * now.theta,
+            seconds: self.stops.seconds(),
+        };
+        self.voice.step(Told { island: self.island, counts, progress })?;
+        self.stops.check()
+    }
+}
+
+impl Watch {
     /// Runs a task for every body of a part of the setup; `keep` gets the results as they come, on this thread, which
     /// tells the host of each. The body with most work comes first: what it needs besides its result is gone when the
     /// results of the others are there. Once the host wants to end, tasks that have begun end where they can.
@@ -190,7 +274,7 @@ impl Watch {
             if told.is_ok() {
                 told = self.part_done();
                 if told.is_err() {
-                    stops.cancelled.store(true, Ordering::Relaxed);
+                    stops.cancel();
                 }
             }
         });
@@ -234,32 +318,6 @@ impl Watch {
     }
 }
 
-impl Observer for Watch {
-    fn step(&mut self, now: &qp::Progress) -> Result<()> {
-        if now.counts.steps() < self.last.steps() || now.counts.products < self.last.products {
-            self.before = self.before + self.last;
-        }
-        self.last = *now.counts;
-        let all = self.before + self.last;
-        let against_stop = |size: f64| size / now.small;
-        let told = Progress {
-            step: Some(now.kind),
-            fraction: f64::NAN,
-            steps: all.steps(),
-            products: all.products,
-            active: self.bounded - now.active.iter().filter(|at_bound| **at_bound).count(),
-            residual: against_stop(now.residual),
-            free: against_stop(now.free),
-            chopped: against_stop(now.chopped),
-            theta: self.unit * now.theta,
-            seconds: self.stops.seconds(),
-        };
-        self.tell(&told)?;
-        self.log.step(&told)?;
-        self.stops.check()
-    }
-}
-
 /// F, which refuses products once the host has cancelled or the time is over. The time is not asked for before
 /// the first one: without it there is no answer at all.
 pub(super) struct Interruptible<'a> {
@@ -267,6 +325,13 @@ pub(super) struct Interruptible<'a> {
     stops: Stops,
     begun: AtomicBool,
     threads: usize,
+}
+
+impl<'a> Interruptible<'a> {
+    /// The products of the bodies on so many threads.
+    pub fn new(operator: &'a Dual, stops: Stops, threads: usize) -> Self {
+        Self { operator, stops, begun: AtomicBool::new(false), threads }
+    }
 }
 
 impl Operator for Interruptible<'_> {

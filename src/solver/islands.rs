@@ -1,0 +1,248 @@
+//! Bodies that have nothing to do with each other are problems of their own. An island is a set of bodies joined by
+//! rows, directly or through others, with all its rows; it has the bits that it would have alone.
+
+use std::ops::Range;
+use std::sync::Arc;
+
+use crate::constraints::{RowKind, RowSet};
+use crate::error::Result;
+use crate::linalg::memory::{copied, reserved};
+use crate::linalg::vector::power_of_two_below;
+use crate::linalg::Csr;
+use crate::solver::certificate::{Certificate, Entry};
+use crate::solver::problem::Problem;
+
+const WHAT: &str = "groups of bodies";
+
+/// Bodies joined by rows, counted by themselves: unknowns body after body, rows in the order of the host.
+pub(super) struct Island {
+    /// Numbers of the bodies, ascending.
+    pub bodies: Vec<usize>,
+    /// Unknowns of each body among those of the island.
+    pub ranges: Vec<Range<usize>>,
+    pub contact: Members,
+    pub equalities: Members,
+    /// 2^p, p = floor(log2 max K_ii), force / length: forces are divided by it.
+    pub unit: f64,
+}
+
+/// Rows of one kind in an island.
+#[derive(Default)]
+pub(super) struct Members {
+    /// Their numbers among all rows of the kind, ascending.
+    pub numbers: Vec<usize>,
+    /// Over the unknowns of the island.
+    pub rows: RowSet,
+}
+
+impl Island {
+    pub fn unknowns(&self) -> usize {
+        self.ranges.last().map_or(0, |range| range.end)
+    }
+
+    pub fn members(&self, kind: RowKind) -> &Members {
+        match kind {
+            RowKind::Inequality => &self.contact,
+            RowKind::Equality => &self.equalities,
+        }
+    }
+
+    /// Kind and number among all rows of its kind of row i of the stack: contact rows, then equality rows.
+    pub fn kind_and_row(&self, i: usize) -> (RowKind, usize) {
+        match i.checked_sub(self.contact.numbers.len()) {
+            None => (RowKind::Inequality, self.contact.numbers[i]),
+            Some(k) => (RowKind::Equality, self.equalities.numbers[k]),
+        }
+    }
+
+    /// Values over all unknowns for those of the island.
+    pub fn gather(&self, problem: &Problem, all: &[f64]) -> Result<Vec<f64>> {
+        let mut own = reserved(self.unknowns(), WHAT)?;
+        self.bodies.iter().for_each(|&p| own.extend_from_slice(&all[problem.range(p)]));
+        Ok(own)
+    }
+
+    /// Puts values over the unknowns of the island where they belong among all.
+    pub fn scatter(&self, problem: &Problem, own: &[f64], all: &mut [f64]) {
+        for (&p, range) in self.bodies.iter().zip(&self.ranges) {
+            all[problem.range(p)].copy_from_slice(&own[range.clone()]);
+        }
+    }
+
+    /// A certificate with the numbers that bodies and rows have among all.
+    pub fn named(&self, own: Certificate) -> Certificate {
+        let at = |entry: Entry, numbers: &[usize]| Entry { place: entry.place.map(|k| numbers[k]), ..entry };
+        let (contact, equalities) = (&self.contact.numbers, &self.equalities.numbers);
+        Certificate {
+            equilibrium: at(own.equilibrium, &self.bodies),
+            balance: at(own.balance, &self.bodies),
+            penetration: at(own.penetration, contact),
+            equality: at(own.equality, equalities),
+            negative_force: at(own.negative_force, contact),
+            complementarity: at(own.complementarity, contact),
+            ..own
+        }
+    }
+
+    /// Takes over the right-hand sides of the host.
+    pub fn refresh(&mut self, contact: &[f64], equalities: &[f64]) {
+        for (members, rhs) in [(&mut self.contact, contact), (&mut self.equalities, equalities)] {
+            members.rows.rhs.iter_mut().zip(&members.numbers).for_each(|(c, &i)| *c = rhs[i]);
+        }
+    }
+}
+
+impl Members {
+    /// Values over all rows of the kind for those of the island.
+    pub fn gather(&self, all: &[f64]) -> Vec<f64> {
+        self.numbers.iter().map(|&i| all[i]).collect()
+    }
+
+    pub fn scatter<T: Copy>(&self, own: &[T], all: &mut [T]) {
+        self.numbers.iter().zip(own).for_each(|(&i, v)| all[i] = *v);
+    }
+}
+
+/// The islands of a problem, by their first bodies. Rows without entries and rows that never close, `c = +infinity`, are
+/// in none of them.
+pub(super) fn islands(problem: &Problem) -> Result<Vec<Island>> {
+    let (bodies, offsets) = (problem.bodies.len(), &problem.offsets);
+    let body_of = |j: usize| offsets[1..].partition_point(|end| *end <= j);
+    let mut sets = Sets::new(bodies)?;
+    let all = [&problem.contact, &problem.equalities];
+    for rows in all {
+        for i in (0..rows.len()).filter(|&i| rows.is_finite(i)) {
+            let mut touched = rows.matrix.row(i).map(|(j, _)| body_of(j));
+            let first = touched.next();
+            touched.for_each(|p| sets.join(first.unwrap_or(p), p));
+        }
+    }
+    let (of_body, count) = sets.numbered();
+    let mut islands: Vec<Island> = (0..count).map(|_| Island::empty()).collect();
+    let mut start = reserved(bodies, WHAT)?;
+    for (p, &island) in of_body.iter().enumerate() {
+        let island = &mut islands[island];
+        start.push(island.unknowns());
+        let range = island.unknowns()..island.unknowns() + problem.bodies[p].body.order;
+        island.bodies.push(p);
+        island.ranges.push(range);
+    }
+    for (kind, rows) in all.into_iter().enumerate() {
+        let mut numbers: Vec<Vec<usize>> = vec![Vec::new(); count];
+        for i in (0..rows.len()).filter(|&i| rows.is_finite(i)) {
+            if let Some((j, _)) = rows.matrix.row(i).next() {
+                numbers[of_body[body_of(j)]].push(i);
+            }
+        }
+        let place = |j: usize| start[body_of(j)] + j - offsets[body_of(j)];
+        for (island, numbers) in islands.iter_mut().zip(numbers) {
+            let rows = restricted(rows, &numbers, island.unknowns(), place)?;
+            *[&mut island.contact, &mut island.equalities][kind] = Members { numbers, rows };
+        }
+    }
+    for island in &mut islands {
+        let stiffness = island.bodies.iter().filter_map(|&p| problem.bodies[p].body.k());
+        island.unit = power_of_two_below(stiffness.map(|k| k.largest_diagonal()).fold(0.0, f64::max));
+    }
+    Ok(islands)
+}
+
+/// These rows over the unknowns of an island; all rows share their entries with those of the host.
+fn restricted(
+    rows: &RowSet,
+    numbers: &[usize],
+    unknowns: usize,
+    place: impl Fn(usize) -> usize,
+) -> Result<RowSet> {
+    let pick = |values: &[f64]| -> Vec<f64> { numbers.iter().map(|&i| values[i]).collect() };
+    let matrix = if numbers.len() == rows.len() && rows.matrix.cols == unknowns {
+        Arc::clone(&rows.matrix)
+    } else {
+        let mut own = Csr::empty(unknowns);
+        numbers.iter().for_each(|&i| own.push_row(rows.matrix.row(i).map(|(j, v)| (place(j), v))));
+        Arc::new(own)
+    };
+    Ok(RowSet { matrix, rhs: copied(&pick(&rows.rhs), WHAT)?, compliance: pick(&rows.compliance) })
+}
+
+impl Island {
+    fn empty() -> Self {
+        let (contact, equalities) = (Members::default(), Members::default());
+        Self { bodies: Vec::new(), ranges: Vec::new(), contact, equalities, unit: 1.0 }
+    }
+}
+
+/// Disjoint sets of bodies, each known by its smallest member.
+struct Sets {
+    parent: Vec<usize>,
+}
+
+impl Sets {
+    fn new(count: usize) -> Result<Self> {
+        let mut parent = reserved(count, WHAT)?;
+        parent.extend(0..count);
+        Ok(Self { parent })
+    }
+
+    fn root(&mut self, mut p: usize) -> usize {
+        while self.parent[p] != p {
+            self.parent[p] = self.parent[self.parent[p]];
+            p = self.parent[p];
+        }
+        p
+    }
+
+    fn join(&mut self, p: usize, q: usize) {
+        let (p, q) = (self.root(p), self.root(q));
+        self.parent[p.max(q)] = p.min(q);
+    }
+
+    /// The set of every body, numbered by their smallest members, and their count.
+    fn numbered(mut self) -> (Vec<usize>, usize) {
+        let mut number = vec![0; self.parent.len()];
+        let mut count = 0;
+        for p in 0..number.len() {
+            let root = self.root(p);
+            number[p] = if root == p { count } else { number[root] };
+            count += usize::from(root == p);
+        }
+        (number, count)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::solver::{RowsInput, SparseInput, Storage};
+
+    /// Bodies of 1, 2, 1, 2, 1 unknowns; contact rows join 0 and 3, equality rows 4 and 1.
+    #[test]
+    fn islands_are_joined_by_finite_rows_of_either_kind_alone() {
+        let mut problem = Problem::new();
+        for n in [1, 2, 1, 2, 1] {
+            let body = problem.add_body(n).unwrap();
+            let (ptr, col): (Vec<usize>, Vec<i64>) = ((0..=n).collect(), (0..n as i64).collect());
+            let k = SparseInput { ptr: &ptr, col: &col, val: &vec![3.0; n], storage: Storage::Lower };
+            problem.set_stiffness(body, k).unwrap();
+        }
+        let contact = RowsInput {
+            ptr: &[0, 2, 4, 4, 5],
+            body: None,
+            dof: &[0, 5, 3, 2, 3],
+            val: &[1.0, -1.0, 1.0, 2.0, 5.0],
+            rhs: Some(&[0.5, f64::INFINITY, 1.0, 0.25]),
+        };
+        problem.add_rows(RowKind::Inequality, contact).unwrap();
+        let equal = RowsInput { ptr: &[0, 2], body: None, dof: &[6, 1], val: &[1.0, -1.0], rhs: None };
+        problem.add_rows(RowKind::Equality, equal).unwrap();
+        let islands = islands(&problem).unwrap();
+        let bodies: Vec<_> = islands.iter().map(|island| island.bodies.clone()).collect();
+        assert_eq!(bodies, [vec![0, 3], vec![1, 4], vec![2]]);
+        let [first, second, third] = &islands[..] else { panic!("{bodies:?}") };
+        assert_eq!((first.contact.numbers.as_slice(), first.unit), (&[0][..], 2.0));
+        assert!(first.contact.rows.matrix.row(0).eq([(0, 1.0), (2, -1.0)]));
+        assert!(second.equalities.rows.matrix.row(0).eq([(0, -1.0), (2, 1.0)]));
+        assert_eq!((third.contact.numbers.as_slice(), third.contact.rows.rhs[0]), (&[3][..], 0.25));
+        assert_eq!(second.kind_and_row(0), (RowKind::Equality, 0));
+    }
+}
