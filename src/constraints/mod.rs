@@ -155,7 +155,7 @@ impl RowSet {
         (0..self.len()).find(|&i| scales[i] == 0.0 && !self.is_empty_row(i))
     }
 
-    fn is_empty_row(&self, i: usize) -> bool {
+    pub fn is_empty_row(&self, i: usize) -> bool {
         self.matrix.ptr[i] == self.matrix.ptr[i + 1]
     }
 

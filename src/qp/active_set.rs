@@ -95,8 +95,8 @@ struct Run<'a> {
     active: Vec<bool>,
     /// `r = A x - b - G'alpha`
     r: Vec<f64>,
-    /// `|A x| + |b| + |G'alpha|`
-    terms: f64,
+    /// `|A x| + |b| + |G'alpha|`, row by row.
+    terms: Vec<f64>,
     /// A length that counts as zero, before rounding.
     small: f64,
     counts: Counts,
@@ -110,7 +110,7 @@ impl<'a> Run<'a> {
             x: from.x.clone(),
             alpha: from.alpha.clone(),
             r: vec![0.0; from.x.len()],
-            terms: 0.0,
+            terms: vec![0.0; from.x.len()],
             small: ZERO * from.scale,
             counts: Counts::default(),
             qp,
@@ -160,7 +160,8 @@ impl<'a> Run<'a> {
         let mut terms = vec![0.0; self.alpha.len()];
         self.qp.g_transposed.mul_transposed_abs_add(&self.x, &mut terms);
         let balanced = norm(&self.rest()) <= MET * (norm(self.qp.e) + norm(&terms));
-        Ok((balanced && force <= MET * self.terms).then_some(face))
+        let size = face.rows().iter().map(|&i| self.terms[i] * self.terms[i]).sum::<f64>().sqrt();
+        Ok((balanced && force <= MET * size).then_some(face))
     }
 
     /// `e - G x`
@@ -175,7 +176,8 @@ impl<'a> Run<'a> {
         let mut image = self.product(&self.x.clone())?;
         let coarse: Vec<f64> =
             (0..image.len()).map(|i| self.qp.g_transposed.row_dot(i, &self.alpha)).collect();
-        self.terms = norm(&image) + norm(self.qp.b) + norm(&coarse);
+        let terms = image.iter().zip(self.qp.b).zip(&coarse);
+        self.terms = terms.map(|((image, b), coarse)| image.abs() + b.abs() + coarse.abs()).collect();
         axpy(-1.0, self.qp.b, &mut image);
         axpy(-1.0, &coarse, &mut image);
         self.r = image;
@@ -190,15 +192,14 @@ impl<'a> Run<'a> {
         Ok(image)
     }
 
-    /// What rounding leaves of r.
-    fn noise(&self) -> f64 {
-        64.0 * f64::EPSILON * self.terms
+    /// What rounding leaves of row i of r.
+    fn noise(&self, i: usize) -> f64 {
+        64.0 * f64::EPSILON * self.terms[i]
     }
 
     /// The active set that the signs of x and r ask for.
     fn next_set(&mut self, face: &Face) -> Result<Vec<bool>> {
-        let noise = self.noise();
-        let stays = |i: usize| if self.active[i] { self.r[i] >= -noise } else { self.x[i] < 0.0 };
+        let stays = |i: usize| if self.active[i] { self.r[i] >= -self.noise(i) } else { self.x[i] < 0.0 };
         let next: Vec<bool> = (0..self.x.len()).map(|i| self.qp.bounded[i] && stays(i)).collect();
         let only_leave = next.iter().zip(&self.active).all(|(next, active)| *active || !*next);
         if face.is_deficient() && only_leave && next != self.active {
@@ -210,8 +211,11 @@ impl<'a> Run<'a> {
     /// Where free rows leave a part of alpha open, gradient projection chooses: it gives the multiplier that
     /// confirms the point, or shows which rows to free.
     fn projected(&mut self) -> Result<Option<Vec<bool>>> {
-        let image = self.product(&self.r.clone())?;
-        let curvature = dot(&image, &self.r);
+        // what an open row has of r tells of its gap, not of A
+        let pulls = |i: usize| !self.active[i] || self.r[i] < 0.0;
+        let way: Vec<f64> = (0..self.r.len()).map(|i| if pulls(i) { self.r[i] } else { 0.0 }).collect();
+        let image = self.product(&way)?;
+        let curvature = dot(&image, &way);
         let step = if curvature > 0.0 { curvature / dot(&image, &image) } else { 1.0 };
         let mut y = self.x.clone();
         axpy(-step, &self.r, &mut y);
@@ -219,7 +223,9 @@ impl<'a> Run<'a> {
         let Some(found) = project(&self.qp, &mut self.coarse, &y, &none)? else { return Ok(None) };
         let mut way = found.point.clone();
         axpy(-1.0, &self.x, &mut way);
-        if norm(&way) <= step * (self.small + self.noise()) {
+        let noise =
+            (0..way.len()).filter(|&i| way[i] != 0.0).map(|i| self.noise(i).powi(2)).sum::<f64>().sqrt();
+        if norm(&way) <= step * (self.small + noise) {
             axpy(1.0 / step, &found.multiplier, &mut self.alpha);
             return Ok(Some(self.active.clone()));
         }

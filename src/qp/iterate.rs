@@ -132,11 +132,17 @@ impl<'a> Iterate<'a> {
         (dot(&self.free, &self.free) + dot(&self.chopped, &self.chopped)).sqrt()
     }
 
-    /// What rounding alone leaves of the residual: 64 eps (|b| + |A x| + |G'alpha|).
+    /// What rounding alone leaves of the residual: 64 eps (|b| + |A x| + |G'alpha|) on the rows that it counts. An open row
+    /// is not among them, however far its gap.
     pub fn noise(&self) -> f64 {
-        let image: f64 = self.g.iter().zip(self.qp.b).map(|(g, b)| (g + b) * (g + b)).sum::<f64>().sqrt();
-        let coarse: f64 = self.g.iter().zip(&self.r).map(|(g, r)| (g - r) * (g - r)).sum::<f64>().sqrt();
-        64.0 * f64::EPSILON * (norm(self.qp.b) + image + coarse)
+        let counts = |i: &usize| !self.active[*i] || self.chopped[*i] < 0.0;
+        let (mut given, mut image, mut coarse) = (0.0, 0.0, 0.0);
+        for i in (0..self.g.len()).filter(counts) {
+            given += self.qp.b[i] * self.qp.b[i];
+            image += (self.g[i] + self.qp.b[i]) * (self.g[i] + self.qp.b[i]);
+            coarse += (self.g[i] - self.r[i]) * (self.g[i] - self.r[i]);
+        }
+        64.0 * f64::EPSILON * (given.sqrt() + f64::sqrt(image) + f64::sqrt(coarse))
     }
 
     /// `theta(x) = 1/2 x'A x - b'x`

@@ -131,7 +131,7 @@ impl<'a> Lagrangian<'a> {
         let mut v = self.point.x.clone();
         axpy(-1.0, &self.violation.way, &mut v);
         let mut g = self.map.image(&v)?;
-        let size = norm(&g) + norm(self.map.qp.b);
+        let size = g.clone();
         axpy(-1.0, self.map.qp.b, &mut g);
         let image = self.map.coarse.image(&g);
         let mut alpha = self.map.solve(&image)?;
@@ -139,8 +139,12 @@ impl<'a> Lagrangian<'a> {
         axpy(-self.map.rho, &self.violation.s, &mut alpha);
         let coarse = self.map.spread(&alpha);
         axpy(-1.0, &coarse, &mut g);
+        // an open row is judged by its sign alone, however far its gap
+        let (x, Qp { b, bounded, .. }) = (&self.point.x, self.map.qp);
+        let counts = |i: &usize| !bounded[*i] || x[*i] > 0.0 || g[*i] < 0.0;
+        let on_counted = |v: &[f64]| (0..b.len()).filter(counts).map(|i| v[i] * v[i]).sum::<f64>().sqrt();
+        self.noise = 64.0 * f64::EPSILON * (on_counted(&size) + on_counted(b) + on_counted(&coarse));
         g.extend(alpha);
-        self.noise = 64.0 * f64::EPSILON * (size + norm(&coarse));
         self.point.set_gradient(g);
         Ok(())
     }

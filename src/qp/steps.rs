@@ -245,9 +245,10 @@ impl Iterate<'_> {
     /// Gradient projection on the whole feasible set, with an exact line search.
     fn project_gradient(&mut self, small: f64) -> Result<Step> {
         if self.curvature == 0.0 {
-            let r = self.r.clone();
-            let image = self.product(&r)?;
-            self.observe_curvature(&r, &image)?;
+            // what an open row has of r tells of its gap, not of A
+            let projected: Vec<f64> = self.free.iter().zip(&self.chopped).map(|(f, c)| f + c).collect();
+            let image = self.product(&projected)?;
+            self.observe_curvature(&projected, &image)?;
         }
         // without curvature any length will do
         let step = if self.curvature > 0.0 { GRADIENT_STEP / self.curvature } else { 1.0 };

@@ -2,7 +2,7 @@
 
 use crate::constraints::RowKind;
 use crate::error::{Error, Kind, Result};
-use crate::linalg::vector::{norm, norm_max};
+use crate::linalg::vector::norm;
 use crate::linalg::{Csr, Operator};
 use crate::qp::{minimise, Judge, Limits, Observer, Progress, Qp};
 use crate::solver::diagnosis;
@@ -10,8 +10,12 @@ use crate::solver::problem::Problem;
 use crate::solver::setup::Ready;
 use crate::solver::watch::Stops;
 
-/// Gaps that differ by less than this fraction of the largest are equal.
+/// Gaps of two rows that differ by less than this fraction of them are equal ...
 const EQUAL: f64 = 1e-10;
+/// ... and so are those that differ by rounding of how far loads and rows move the bodies.
+const ROUNDING: f64 = 64.0 * f64::EPSILON;
+/// A gap so many times as large as all motion that rows demand takes part in no contradiction that could be proved.
+const FAR: f64 = 1e6;
 
 /// Multiplications the search for contradictions may take.
 const WORK: usize = 200_000_000;
@@ -28,8 +32,8 @@ pub(super) struct Gaps {
     pub bounded: Vec<bool>,
 }
 
-/// Gaps of all groups; refuses rows whose gaps no displacement satisfies.
-pub(super) fn presolve(problem: &Problem, ready: &Ready, stops: &Stops) -> Result<Gaps> {
+/// Gaps of all groups; refuses rows whose gaps no displacement satisfies. `moved` is how far the loads move a row at most.
+pub(super) fn presolve(problem: &Problem, ready: &Ready, moved: f64, stops: &Stops) -> Result<Gaps> {
     let rows = &ready.rows;
     let rhs = ready.island.contact.rows.rhs.iter().chain(&ready.island.equalities.rows.rhs);
     let scaled: Vec<f64> = rhs.zip(&rows.scale).map(|(c, s)| c * s).collect();
@@ -41,10 +45,13 @@ pub(super) fn presolve(problem: &Problem, ready: &Ready, stops: &Stops) -> Resul
         holder: leaders.clone(),
         bounded: kinds.map(|kind| kind == RowKind::Inequality).collect(),
     };
-    let slack = EQUAL * norm_max(&scaled);
+    let demand = |(i, c): (usize, &f64)| if i < rows.contact { (-c).max(0.0) } else { c.abs() };
+    let reach = scaled.iter().enumerate().map(demand).fold(moved, f64::max);
+    let slack = |a: f64, b: f64| EQUAL * a.abs().max(b.abs()) + ROUNDING * reach;
     for (i, member) in rows.grouping.member.iter().enumerate() {
         let Some((group, sign)) = *member else { continue };
         let gap = sign * gaps.value[group];
+        let slack = slack(gap, scaled[i]);
         let contradicts = if i >= rows.contact {
             (gap - scaled[i]).abs() > slack
         } else if gaps.bounded[group] {
@@ -94,18 +101,21 @@ fn two_rows_contradict(
 }
 
 /// `min |D^-1/2 B'w|^2 + (1 + c'w)^2` over w >= 0 on contact rows is zero exactly where rows contradict each
-/// other (c scaled to largest entry 1); B has unit rows, and no compliant ones: they give way to any other row.
+/// other (c scaled by the largest motion demanded); B has unit rows, and no compliant ones: they give way to any other row.
 /// No product with F is needed.
 fn contradiction(problem: &Problem, ready: &Ready, gaps: &Gaps, stops: &Stops) -> Result<Option<Error>> {
     let rows = &ready.rows;
-    let rigid: Vec<usize> = (0..gaps.value.len()).filter(|&group| rows.compliance[group] == 0.0).collect();
+    let demand =
+        |group: usize| if gaps.bounded[group] { -gaps.value[group] } else { gaps.value[group].abs() };
+    let rigid = |group: &usize| rows.compliance[*group] == 0.0;
+    let size = (0..gaps.value.len()).filter(rigid).map(demand).fold(0.0, f64::max);
+    let near = |group: &usize| gaps.value[*group] <= FAR * size;
+    let rigid: Vec<usize> = (0..gaps.value.len()).filter(rigid).filter(near).collect();
     let bounded: Vec<bool> = rigid.iter().map(|&group| gaps.bounded[group]).collect();
     let mut c: Vec<f64> = rigid.iter().map(|&group| gaps.value[group]).collect();
-    let harmless = |(c, bounded): (&f64, &bool)| if *bounded { *c >= 0.0 } else { *c == 0.0 };
-    if c.iter().zip(&bounded).all(harmless) {
+    if size == 0.0 {
         return Ok(None); // u = 0 satisfies them all
     }
-    let size = norm_max(&c);
     c.iter_mut().for_each(|c| *c /= size);
     let mut matrix = Csr::empty(rows.scaled.cols);
     rigid.iter().for_each(|&group| matrix.push_row(rows.scaled.row(group)));

@@ -1,6 +1,6 @@
 //! What the host reads after a solve, and the operators it may validate.
 
-use crate::constraints::RowKind;
+use crate::constraints::{RowKind, RowSet};
 use crate::error::{Error, Kind, Result};
 use crate::linalg::memory::zeros;
 use crate::linalg::Operator;
@@ -69,8 +69,9 @@ impl Answer {
                 Err(_) => answer.leave_out(problem, ready),
             }
         }
-        answer.report.certificate = all.unwrap_or_default();
-        answer.report.energy = answer.report.certificate.energy;
+        let mut certificate = all.unwrap_or_default();
+        certificate.energy += answer.take_in_rows_alone(problem);
+        (answer.report.certificate, answer.report.energy) = (certificate, certificate.energy);
         let gap = |i: usize| problem.contact.open_gap(i, &answer.u, answer.lambda[i]);
         answer.gaps = (0..counts.rows).map(gap).collect();
         answer.report.active = answer.states.iter().filter(|state| **state == RowState::Closed).count();
@@ -96,6 +97,23 @@ impl Answer {
         report.count(&solution.counts);
         let scale = solution.scale * island.unit.sqrt();
         report.gap_scale = report.gap_scale.hypot(scale);
+    }
+
+    /// States of contact rows without entries; gives the energy of the springs among the rows of both kinds.
+    fn take_in_rows_alone(&mut self, problem: &Problem) -> f64 {
+        let contact = &problem.contact;
+        for i in (0..contact.len()).filter(|&i| contact.is_empty_row(i)) {
+            self.states[i] = match (self.lambda[i] > 0.0, contact.rhs[i] > 0.0) {
+                (true, _) => RowState::Closed,
+                (false, true) => RowState::Open,
+                (false, false) => RowState::Weak,
+            };
+        }
+        let stored = |rows: &RowSet, forces: &[f64]| {
+            let alone = (0..rows.len()).filter(|&i| rows.is_empty_row(i));
+            alone.map(|i| 0.5 * rows.compliance[i] * forces[i] * forces[i]).sum::<f64>()
+        };
+        stored(contact, &self.lambda) + stored(&problem.equalities, &self.mu)
     }
 
     fn leave_out(&mut self, problem: &Problem, ready: &Ready) {
