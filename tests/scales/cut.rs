@@ -3,7 +3,7 @@
 
 use decks::{Block, Blocks, Deck};
 
-use crate::free::{blocks, held, inner, least};
+use crate::free::{blocks, held, inner, least, SEED};
 use crate::{difference, energy, largest, problem, solved, Claims};
 
 const ELEMENTS: usize = 8;
@@ -33,8 +33,8 @@ fn piece(block: &Block, pieces: [usize; 2], place: [usize; 2]) -> (Block, [usize
 /// The varied blocks with the upper one cut: load and contact rows stay with the first copy of a node, and every other copy
 /// is glued to it.
 fn cut(variation: f64, pieces: [usize; 2]) -> Cut {
-    let uncut = blocks(ELEMENTS, variation);
-    let [_, upper] = Blocks { elements: ELEMENTS, young: 1.0 }.varied_blocks(variation, 7);
+    let uncut = blocks(ELEMENTS, variation, SEED);
+    let [_, upper] = Blocks { elements: ELEMENTS, young: 1.0 }.varied_blocks(variation, SEED);
     let offset = uncut.offset(1);
     let (mut bodies, mut whole) = (vec![uncut.bodies[0].clone()], (0..offset).collect::<Vec<_>>());
     for (i, j) in (0..pieces[0]).flat_map(|i| (0..pieces[1]).map(move |j| (i, j))) {
@@ -71,7 +71,8 @@ fn cut(variation: f64, pieces: [usize; 2]) -> Cut {
 fn assert_same_cut(pieces: [usize; 2]) {
     let mut claims = Claims::default();
     for v in [0.0, 1e-9, 1e-6, 1e-3] {
-        let (uncut, Cut { deck, whole }, what) = (blocks(ELEMENTS, v), cut(v, pieces), format!("V = {v:e}"));
+        let (uncut, Cut { deck, whole }, what) =
+            (blocks(ELEMENTS, v, SEED), cut(v, pieces), format!("V = {v:e}"));
         let reference = solved(&mut problem(&held(&uncut)));
         let lies = least(&uncut, &reference.u);
         let expected: Vec<f64> = whole.iter().map(|&of| lies[of]).collect();
@@ -103,7 +104,7 @@ fn a_free_block_cut_into_four_pieces_lies_where_it_lies_uncut() {
 /// The cut itself: the same energy and |u|_D for displacements that its rows hold together, and the same load.
 #[test]
 fn pieces_add_up_to_the_block() {
-    let (uncut, Cut { deck, whole }) = (blocks(ELEMENTS, 0.5), cut(0.5, [2, 2]));
+    let (uncut, Cut { deck, whole }) = (blocks(ELEMENTS, 0.5, SEED), cut(0.5, [2, 2]));
     let u: Vec<f64> = (0..uncut.dofs()).map(|i| (i as f64).sin()).collect();
     let copied: Vec<f64> = whole.iter().map(|&of| u[of]).collect();
     assert!(deck.equalities.matrix.times(&copied).iter().all(|jump| *jump == 0.0));

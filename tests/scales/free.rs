@@ -12,8 +12,11 @@ const FREE: [usize; 3] = [0, 1, 3];
 /// Edge of a block, length.
 const EDGE: f64 = 1.0;
 
-pub fn blocks(elements: usize, variation: f64) -> Deck {
-    Blocks { elements, young: 1.0 }.varied(variation, 7)
+/// Seed of the moduli, where one is enough.
+pub const SEED: u64 = 2;
+
+pub fn blocks(elements: usize, variation: f64, seed: u64) -> Deck {
+    Blocks { elements, young: 1.0 }.varied(variation, seed)
 }
 
 /// The deck with the slides and the spin of the upper block held by three rows at two corners of its bottom. No load acts
@@ -87,10 +90,10 @@ pub fn claim_least(claims: &mut Claims, deck: &Deck, found: &Answer, reference: 
     claims.at_most(difference(&found.u, &least(deck, &reference.u)), 1e-8, &format!("{what}, u"));
 }
 
-fn assert_least(elements: &[usize], variations: &[f64]) {
+fn assert_least(elements: &[usize], variation: f64) {
     let mut claims = Claims::default();
-    for (n, v) in elements.iter().flat_map(|n| variations.iter().map(move |v| (*n, *v))) {
-        let (deck, what) = (blocks(n, v), format!("n = {n}, V = {v:e}"));
+    for (n, seed) in elements.iter().flat_map(|n| [SEED, 7].map(|seed| (*n, seed))) {
+        let (deck, what) = (blocks(n, variation, seed), format!("n = {n}, seed {seed}"));
         let reference = solved(&mut problem(&held(&deck)));
         if let Some(found) = claims.solved(&mut problem(&deck), &what) {
             claim_least(&mut claims, &deck, &found, &reference, &what);
@@ -101,27 +104,32 @@ fn assert_least(elements: &[usize], variations: &[f64]) {
 
 #[test]
 fn a_free_block_of_equal_elements_lies_where_u_is_least() {
-    assert_least(&[8, 10], &[0.0]);
+    assert_least(&[8, 10], 0.0);
 }
 
 #[test]
 fn a_free_block_of_elements_varied_by_1e_9_lies_where_u_is_least() {
-    assert_least(&[8, 10], &[1e-9]);
+    assert_least(&[8, 10], 1e-9);
 }
 
 #[test]
 fn a_free_block_of_elements_varied_by_1e_6_lies_where_u_is_least() {
-    assert_least(&[8, 10], &[1e-6]);
+    assert_least(&[8, 10], 1e-6);
 }
 
 #[test]
 fn a_free_block_of_elements_varied_by_1e_3_lies_where_u_is_least() {
-    assert_least(&[8, 10], &[1e-3]);
+    assert_least(&[8, 10], 1e-3);
 }
 
 #[test]
-fn a_free_block_of_40_thousand_unknowns_lies_where_u_is_least() {
-    assert_least(&[18], &[1e-3]);
+fn a_free_block_of_40_thousand_unknowns_varied_by_1e_6_lies_where_u_is_least() {
+    assert_least(&[18], 1e-6);
+}
+
+#[test]
+fn a_free_block_of_40_thousand_unknowns_varied_by_1e_3_lies_where_u_is_least() {
+    assert_least(&[18], 1e-3);
 }
 
 /// A wall that the upper block overlaps by 0.1 pushes it out and then carries nothing: -u_x <= -0.1 at one corner. With N
@@ -130,7 +138,7 @@ fn a_free_block_of_40_thousand_unknowns_lies_where_u_is_least() {
 fn a_wall_without_force_moves_a_free_block_no_further_than_it_must() {
     let mut claims = Claims::default();
     for v in [0.0, 1e-9, 1e-6, 1e-3] {
-        let (plain, what) = (blocks(8, v), format!("V = {v:e}"));
+        let (plain, what) = (blocks(8, v, SEED), format!("V = {v:e}"));
         let reference = solved(&mut problem(&held(&plain)));
         let (mut deck, corner) = (plain.clone(), plain.offset(1));
         deck.contact.push(&[(corner, -1.0)], -0.1);
@@ -180,7 +188,7 @@ fn noisy(deck: &Deck, size: f64, random: &mut Random) -> Vec<Vec<f64>> {
 fn assert_same_for(modes: impl Fn(&Deck, &mut Random) -> Vec<Vec<f64>>) {
     let mut claims = Claims::default();
     for v in [0.0, 1e-9, 1e-6, 1e-3] {
-        let deck = blocks(8, v);
+        let deck = blocks(8, v, SEED);
         let reference = solved(&mut problem(&held(&deck)));
         for seed in 0..2 {
             let what = format!("V = {v:e}, seed {seed}");
@@ -222,7 +230,7 @@ fn a_null_space_mixed_and_noisy_gives_the_same_u() {
 fn a_free_block_lies_where_u_is_least_at_every_load_step_from_the_previous_one() {
     let mut claims = Claims::default();
     for v in [1e-9, 1e-6, 1e-3] {
-        let deck = blocks(8, v);
+        let deck = blocks(8, v, SEED);
         let mut walking = problem(&deck);
         walking.set_str("start", "previous").unwrap();
         for share in [0.9, 1.0, 1.1] {

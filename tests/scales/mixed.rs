@@ -91,6 +91,12 @@ fn assert_right_or_inaccurate(options: impl Fn(&mut Problem)) {
             called_solved += 1;
             let (_, right) = optimum(&deck, found.lambda.iter().map(|l| *l > 0.0).collect());
             let off = error(&deck, &found.lambda, &right);
+            if std::env::var("SHOW").is_ok() {
+                eprintln!(
+                    "SHOW {off:.1e} worst {worst:.1e} seed {seed} steps {} direct {}",
+                    found.report.steps, found.report.direct_solves
+                );
+            }
             claims.at_most(off, WRONG, &format!("seed {seed}: solved, worst {worst:.1e}, forces"));
         } else {
             claims.claim(outcome == Outcome::Inaccurate, || format!("seed {seed}: {outcome:?}"));
