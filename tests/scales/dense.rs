@@ -136,6 +136,31 @@ pub fn optimum(deck: &Deck, mut closed: Vec<bool>) -> (Vec<f64>, Vec<f64>) {
     panic!("{}: the reference finds no optimal face", deck.name);
 }
 
+/// lambda >= 0 with F lambda >= `over` and no force where a row is open, the same way from the face given.
+pub fn dual_optimum(f: &Dense, over: &[f64], mut closed: Vec<bool>) -> Vec<f64> {
+    for _ in 0..10_000 {
+        let rows: Vec<usize> = (0..f.n).filter(|i| closed[*i]).collect();
+        let entries = rows.iter().flat_map(|i| rows.iter().map(|j| f.row(*i)[*j])).collect();
+        let rhs: Vec<f64> = rows.iter().map(|i| over[*i]).collect();
+        let mut lambda = vec![0.0; f.n];
+        let forces = solve(&Dense { n: rows.len(), entries }, &rhs);
+        rows.iter().zip(forces).for_each(|(row, force)| lambda[*row] = force);
+        let (force, length) = (largest(&lambda), largest(over));
+        let wrong = |i: &usize| {
+            if closed[*i] {
+                lambda[*i] < -1e-12 * force
+            } else {
+                over[*i] - crate::dot(f.row(*i), &lambda) > 1e-12 * length
+            }
+        };
+        match (0..f.n).find(wrong) {
+            None => return lambda,
+            Some(i) => closed[i] = !closed[i],
+        }
+    }
+    panic!("the reference finds no optimal face");
+}
+
 /// Spring 3 pushed by 4 against a wall at 1/2, and one pushed by 1 that does not reach its wall: lambda = 4 - 3/2 and 0.
 #[test]
 fn the_reference_finds_the_face_of_two_springs_from_any_other() {

@@ -2,7 +2,7 @@
 
 use decks::{Block, Deck};
 
-/// A unit of width 1 and height `rows / across` with this modulus, its first node at height `from`.
+/// A block of width 1 and height `rows / across` with this modulus, its first node at height `from`.
 fn block(across: usize, rows: usize, from: f64, young: f64) -> Block {
     let height = rows as f64 / across as f64;
     Block {
@@ -32,7 +32,12 @@ fn pressure(x: f64, across: usize) -> f64 {
 
 /// A block held at its bottom and pushed up against a wall over its top: across + 1 rows u_y <= gap.
 pub fn under_a_wall(across: usize, rows: usize) -> Deck {
-    let block = block(across, rows, 0.0, 1.0);
+    under_a_wall_of(Vec::new(), across, rows)
+}
+
+/// The same with the modulus of every element multiplied by its factor.
+pub fn under_a_wall_of(factors: Vec<f64>, across: usize, rows: usize) -> Deck {
+    let block = Block { factors, ..block(across, rows, 0.0, 1.0) };
     let mut part = block.part(|at| at[1] == 0);
     let mut contact = Vec::new();
     for at in block.grids().filter(|at| at[1] == rows) {
