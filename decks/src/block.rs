@@ -20,12 +20,22 @@ pub struct Block {
     pub young: f64,
     /// Poisson's ratio.
     pub poisson: f64,
+    /// What `young` is multiplied by in each element, x first, then y, then z; no unit. Empty: 1 everywhere.
+    pub factors: Vec<f64>,
 }
 
 impl Default for Block {
     /// One element, the unit cube, E = 1, nu = 0.3.
     fn default() -> Block {
-        Block { dimension: 3, elements: [1; 3], size: [1.0; 3], origin: [0.0; 3], young: 1.0, poisson: 0.3 }
+        Block {
+            dimension: 3,
+            elements: [1; 3],
+            size: [1.0; 3],
+            origin: [0.0; 3],
+            young: 1.0,
+            poisson: 0.3,
+            factors: Vec::new(),
+        }
     }
 }
 
@@ -106,18 +116,31 @@ impl Block {
             let Some(low) = self.element_with(at, corner) else {
                 continue;
             };
+            let factor = self.factor(low);
             for other in 0..1usize << d {
                 let node = self.node(std::array::from_fn(|a| low[a] + (other >> a & 1)));
                 let place = neighbours.binary_search_by_key(&node, |entry| entry.0);
                 let block = &mut neighbours[place.expect("a node of the same element")].1;
                 for i in 0..d {
                     for j in 0..d {
-                        block[i * d + j] += element[(corner * d + i) * order + other * d + j];
+                        block[i * d + j] += factor * element[(corner * d + i) * order + other * d + j];
                     }
                 }
             }
         }
         neighbours
+    }
+
+    /// Number of elements.
+    pub fn volume(&self) -> usize {
+        self.elements[..self.dimension].iter().product()
+    }
+
+    /// What `young` is multiplied by in the element whose lowest node is at `low`.
+    fn factor(&self, low: [usize; 3]) -> f64 {
+        let [nx, ny, _] = self.elements;
+        let layer = if self.dimension == 3 { nx * ny * low[2] } else { 0 };
+        self.factors.get(low[0] + nx * low[1] + layer).copied().unwrap_or(1.0)
     }
 
     /// Zero blocks for all nodes at most one step away from `at`, ascending.
@@ -217,6 +240,22 @@ mod tests {
             let stiffness = uneven(d).stiffness();
             assert_eq!(stiffness.asymmetry(), 0.0);
             assert!(stiffness.is_sorted());
+        }
+    }
+
+    /// Factors 1 change no bit; the factor of one element enters at its own nodes alone.
+    #[test]
+    fn factors_multiply_the_modulus_of_their_elements() {
+        for d in [2, 3] {
+            let plain = uneven(d);
+            let mut factors = vec![1.0; plain.volume()];
+            assert_eq!(Block { factors: factors.clone(), ..plain.clone() }.stiffness(), plain.stiffness());
+            factors[0] = 3.0;
+            let varied = Block { factors, ..plain.clone() }.stiffness();
+            assert_eq!(varied.asymmetry(), 0.0);
+            assert_eq!(varied.get(0, 0), 3.0 * plain.stiffness().get(0, 0));
+            let last = varied.rows - 1;
+            assert_eq!(varied.get(last, last), plain.stiffness().get(last, last));
         }
     }
 

@@ -1,5 +1,6 @@
 //! The benchmark: two stacked elastic blocks on matching grids, about half of the interface in contact.
 
+use crate::random::Random;
 use crate::{Block, Deck};
 
 /// Unit cubes of elements^3 hexahedra, nu = 0.3. The lower one (modulus E) is clamped at its bottom, its
@@ -29,19 +30,40 @@ impl Blocks {
     /// The same of flat blocks, `layers` layers of cubic elements each: one row for 3 (2 layers + 1) unknowns. At
     /// least 1.
     pub fn layered(&self, layers: usize) -> Deck {
+        self.deck(layers, &self.blocks(layers))
+    }
+
+    /// The cubes with the modulus of every element multiplied by 1 + `variation` (uniform - 1/2).
+    pub fn varied(&self, variation: f64, seed: u64) -> Deck {
+        self.deck(self.elements, &self.varied_blocks(variation, seed))
+    }
+
+    /// Lower and upper block of [`Blocks::varied`].
+    pub fn varied_blocks(&self, variation: f64, seed: u64) -> [Block; 2] {
+        let mut random = Random::new(seed);
+        self.blocks(self.elements).map(|block| {
+            let factors = (0..block.volume()).map(|_| 1.0 + variation * (random.uniform() - 0.5)).collect();
+            Block { factors, ..block }
+        })
+    }
+
+    fn blocks(&self, layers: usize) -> [Block; 2] {
         let n = self.elements;
         let height = layers as f64 / n as f64;
-        let block = |level: usize| Block {
+        [0, 1].map(|level: usize| Block {
             elements: [n, n, layers],
             size: [1.0, 1.0, height],
             origin: [0.0, 0.0, level as f64 * height],
             young: self.young * (level + 1) as f64,
             ..Block::default()
-        };
-        let (lower, upper) = (block(0), block(1));
+        })
+    }
+
+    fn deck(&self, layers: usize, [lower, upper]: &[Block; 2]) -> Deck {
+        let n = self.elements;
         let bottom = lower.part(|at| at[2] == 0);
         let mut top = upper.floating();
-        self.press(&upper, &mut top.body.load);
+        self.press(upper, &mut top.body.load);
         let mut deck = Deck::new(format!("blocks_{n}_{layers}"), vec![bottom.body, top.body]);
         let offset = deck.offset(1);
         for at in upper.grids().filter(|at| at[2] == 0) {
