@@ -41,11 +41,7 @@ pub fn all(seed: u64, case: &Varied, yardstick: &Yardstick) -> Vec<Lie> {
 impl Liar<'_> {
     fn truth(&self) -> Answer {
         let case = self.case;
-        Answer {
-            u: case.displacement.clone(),
-            lambda: case.forces.clone(),
-            mu: case.equality_forces.clone(),
-        }
+        Answer { u: case.displacement.clone(), lambda: case.forces.clone(), mu: case.equality_forces.clone() }
     }
 
     fn tell(&mut self, name: &'static str, body: usize, answer: Answer) {
@@ -86,7 +82,9 @@ impl Liar<'_> {
         let steps: Vec<f64> = free.iter().map(|_| self.random.normal()).collect();
         let length = steps.iter().map(|step| step * step).sum::<f64>().sqrt();
         let mut answer = self.truth();
-        free.iter().zip(&steps).for_each(|(&i, step)| answer.u[i] += size * step / length / diagonal[i].sqrt());
+        free.iter()
+            .zip(&steps)
+            .for_each(|(&i, step)| answer.u[i] += size * step / length / diagonal[i].sqrt());
         self.tell("2 a body moved at random", p, answer);
         let mut answer = self.truth();
         answer.u[stiffest] += size / diagonal[stiffest].sqrt();
@@ -162,12 +160,19 @@ impl Liar<'_> {
         let mut random: Vec<f64> = modes.iter().map(|_| self.random.normal()).collect();
         let length = random.iter().map(|a| a * a).sum::<f64>().sqrt();
         random.iter_mut().for_each(|a| *a /= length);
-        let kept: f64 = resisted.right.iter().zip(&resisted.values).map(|(v, s)| {
-            let along: f64 = v.iter().zip(&random).map(|(v, a)| v * a).sum();
-            (along * s).powi(2)
-        }).sum();
-        let chosen = [("5 moved as rows resist most", &resisted.right[0], true),
-            ("5 moved rigidly at random", &random, kept.sqrt() > 1e-2)];
+        let kept: f64 = resisted
+            .right
+            .iter()
+            .zip(&resisted.values)
+            .map(|(v, s)| {
+                let along: f64 = v.iter().zip(&random).map(|(v, a)| v * a).sum();
+                (along * s).powi(2)
+            })
+            .sum();
+        let chosen = [
+            ("5 moved as rows resist most", &resisted.right[0], true),
+            ("5 moved rigidly at random", &random, kept.sqrt() > 1e-2),
+        ];
         for (name, a, tell) in chosen {
             let mut answer = self.truth();
             for (a, mode) in a.iter().zip(&modes) {

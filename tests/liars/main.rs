@@ -49,7 +49,8 @@ impl Tally {
         let mut text = format!("{} wrong verdicts, {} cases judged, ", self.failures.len(), self.judged);
         let _ = writeln!(text, "{} with a condition above {CONDITION:.0e}", self.beyond);
         for (lie, [made, within, accepted]) in &self.lies {
-            let _ = writeln!(text, "{lie:28} {made:6} made, {within:6} within the yardstick, {accepted:6} wrong");
+            let _ =
+                writeln!(text, "{lie:28} {made:6} made, {within:6} within the yardstick, {accepted:6} wrong");
         }
         let _ = writeln!(text, "by class: {:?}", self.classes);
         self.failures.iter().take(LINES).for_each(|line| {
@@ -103,11 +104,7 @@ impl Tally {
 }
 
 fn right(case: &Varied) -> Answer {
-    Answer {
-        u: case.displacement.clone(),
-        lambda: case.forces.clone(),
-        mu: case.equality_forces.clone(),
-    }
+    Answer { u: case.displacement.clone(), lambda: case.forces.clone(), mu: case.equality_forces.clone() }
 }
 
 /// Worst ratio and the entries above 1, or why there is no verdict.
@@ -153,7 +150,8 @@ fn every_lie_is_refused() {
             let (passed, found) = verdict(problem, &answer);
             if passed {
                 tally.lies.entry(name.to_string()).or_default()[2] += 1;
-                let text = format!("{name} at body {body}: {found}, error {error:.1e} of allowed in body {where_}");
+                let text =
+                    format!("{name} at body {body}: {found}, error {error:.1e} of allowed in body {where_}");
                 tally.fails(seed, case, &text);
             }
         }
