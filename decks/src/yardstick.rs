@@ -101,7 +101,7 @@ impl<'a> Yardstick<'a> {
     }
 
     /// What section 3 allows, in the norms of D and D^-1:
-    /// tol (|f| + |r| + |K u|) + 64 eps |t| + (sum_i s_i^2 (tol L_i + 64 eps (|b_i||u| + |c_i| + C_i |lambda_i|))^2)^1/2
+    /// the larger of tol (|f| + |r| + |K u|) + 64 eps |t| and max_i s_i (tol L_i + 64 eps (|b_i||u| + |c_i| + C_i |lambda_i|))
     /// over the rows with a force and the equality rows of the body.
     fn measure(&mut self) {
         let (deformation, terms, strain) = (self.deformation(), self.terms(), self.strain());
@@ -119,18 +119,18 @@ impl<'a> Yardstick<'a> {
         for (rows, forces, all) in sets {
             for i in (0..rows.len()).filter(|&i| all || forces[i] != 0.0) {
                 let error = self.row(rows, i, forces[i], &delta);
-                for (p, square) in of_rows.iter_mut().enumerate() {
+                for (p, worst) in of_rows.iter_mut().enumerate() {
                     if self.touches(rows, i, p) {
-                        *square += error * error;
+                        *worst = error.max(*worst);
                     }
                 }
             }
         }
-        for (p, square) in of_rows.iter().enumerate() {
+        for (p, of_rows) in of_rows.iter().enumerate() {
             let norm = |v: &[f64]| self.norm(p, v, -1);
             let forces = norm(&self.reaction);
-            let overlooked =
-                TOLERANCE * (norm(&load) + forces + norm(&strain)) + NOISE * norm(&terms) + square.sqrt();
+            let of_body = TOLERANCE * (norm(&load) + forces + norm(&strain)) + NOISE * norm(&terms);
+            let overlooked = of_body.max(*of_rows);
             self.sizes.push(Size { deformation: self.norm(p, &deformation, 1), forces, overlooked });
         }
         self.single = (0..terms.len())

@@ -119,7 +119,7 @@ fn push_contact(draft: &mut Draft, entries: &Entries, closed: bool, strength: f6
     let compliance = compliance(draft, entries);
     draft.deck.contact.push_compliant(entries, 0.0, compliance);
     let (force, length) = sizes(draft, entries, compliance);
-    let (share, slack) = (draft.random.decades(-2.0, 0.5), draft.random.decades(-3.0, 1.0));
+    let (share, slack) = (draft.random.decades(-2.0, 0.0), draft.random.decades(-3.0, 1.0));
     draft.lambda.push(if closed { force * share * strength } else { 0.0 });
     draft.slack.push(if closed { 0.0 } else { length * slack });
 }
@@ -131,7 +131,7 @@ fn equality(draft: &mut Draft, strength: f64) {
     }
     let compliance = compliance(draft, &entries);
     draft.deck.equalities.push_compliant(&entries, 0.0, compliance);
-    let share = draft.random.decades(-1.0, 0.5) * if draft.random.chance(0.5) { 1.0 } else { -1.0 };
+    let share = draft.random.decades(-1.0, 0.0) * if draft.random.chance(0.5) { 1.0 } else { -1.0 };
     let force = sizes(draft, &entries, compliance).0 * share * strength;
     draft.mu.push(force);
 }
