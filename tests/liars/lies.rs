@@ -8,6 +8,8 @@ use decks::{Deck, Rows};
 
 /// Size of a lie.
 const PART: f64 = 1e-5;
+/// A rigid motion v is resisted where one row feels s_i |b_i v| above this part of |v|_D.
+const RESISTED: f64 = 0.1;
 
 pub struct Lie {
     pub name: &'static str,
@@ -140,7 +142,7 @@ impl Liar<'_> {
         let (range, diagonal) = (self.range(p), self.yardstick.metric());
         let modes = orthonormal(self.deck.bodies[p].modes(), &diagonal[range.clone()]);
         let rows = [(&self.deck.contact, Some(&self.case.forces)), (&self.deck.equalities, None)];
-        let felt = |mode: &Vec<f64>| {
+        let felt = |mode: &Vec<f64>| -> Vec<f64> {
             let mut felt = Vec::new();
             for (rows, forces) in rows {
                 for i in (0..rows.len()).filter(|&i| forces.is_none_or(|forces| forces[i] > 0.0)) {
@@ -153,32 +155,18 @@ impl Liar<'_> {
             felt
         };
         let resisted = singular(modes.iter().map(felt).collect());
-        if resisted.values.first().is_none_or(|&largest| largest < 1e-3) {
-            return;
-        }
+        let Some(most) = resisted.right.first() else { return };
+        let random: Vec<f64> = modes.iter().map(|_| self.random.normal()).collect();
         let size = PART * self.yardstick.sizes[p].deformation;
-        let mut random: Vec<f64> = modes.iter().map(|_| self.random.normal()).collect();
-        let length = random.iter().map(|a| a * a).sum::<f64>().sqrt();
-        random.iter_mut().for_each(|a| *a /= length);
-        let kept: f64 = resisted
-            .right
-            .iter()
-            .zip(&resisted.values)
-            .map(|(v, s)| {
-                let along: f64 = v.iter().zip(&random).map(|(v, a)| v * a).sum();
-                (along * s).powi(2)
-            })
-            .sum();
-        let chosen = [
-            ("5 moved as rows resist most", &resisted.right[0], true),
-            ("5 moved rigidly at random", &random, kept.sqrt() > 1e-2),
-        ];
-        for (name, a, tell) in chosen {
-            let mut answer = self.truth();
+        for (name, a) in [("5 moved as rows resist most", most), ("5 moved rigidly at random", &random)] {
+            let length = a.iter().map(|a| a * a).sum::<f64>().sqrt();
+            let mut motion = vec![0.0; range.len()];
             for (a, mode) in a.iter().zip(&modes) {
-                range.clone().zip(mode).for_each(|(i, r)| answer.u[i] += size * a * r);
+                motion.iter_mut().zip(mode).for_each(|(v, r)| *v += a * r / length);
             }
-            if tell {
+            if felt(&motion).iter().fold(0.0f64, |most, v| most.max(v.abs())) > RESISTED {
+                let mut answer = self.truth();
+                range.clone().zip(&motion).for_each(|(i, v)| answer.u[i] += size * v);
                 self.tell(name, p, answer);
             }
         }
