@@ -129,7 +129,7 @@ impl Liar<'_> {
             self.tell("4 a force with the wrong sign", p, answer);
         }
         for i in 0..self.case.equality_forces.len() {
-            if self.touches(&self.deck.equalities, i, p) {
+            if self.touches(&self.deck.equalities, i, p) && self.case.equality_forces[i] != 0.0 {
                 let mut answer = self.truth();
                 answer.mu[i] = 0.0;
                 self.tell("3 a glue force left out", p, answer);
