@@ -120,7 +120,8 @@ demo: setup
 # ---- tests
 N ?= 20000
 battery:
-	BATTERY=$(N) $(CARGO) test --release --locked --test battery -- every_random_problem no_marginal
+	BATTERY=$(N) $(CARGO) test --release --locked --test battery -- \
+	    every_random_problem no_marginal every_varied_problem small_problems_of_the_battery
 
 test:
 	@tools/setup.sh flang-19

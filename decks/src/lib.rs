@@ -11,6 +11,9 @@
 //! | [`cube`] | an elastic body cut into subdomains, glued by equalities, on an obstacle |
 //! | [`small`] | one to three unknowns, solved by hand |
 //! | [`battery`] | random small hard problems whose outcome is known by construction |
+//! | [`varied`] | random small problems of bodies and rows of unequal size, with a known answer |
+//!
+//! [`yardstick`] says when an answer is wrong, [`second`] solves small problems in double-double arithmetic ([`dd`]).
 
 pub mod battery;
 #[cfg(test)]
@@ -20,13 +23,18 @@ pub mod blocks;
 pub mod cube;
 #[cfg(test)]
 mod cube_tests;
+pub mod dd;
+pub mod dense;
 pub mod elements;
 pub mod membrane;
 pub mod random;
+pub mod second;
 pub mod small;
 pub mod sparse;
 pub mod stack;
+pub mod varied;
 mod vector;
+pub mod yardstick;
 
 pub use block::Block;
 pub use blocks::Blocks;

@@ -5,7 +5,9 @@
 mod hand_over;
 mod marginal;
 mod modest;
+mod second;
 mod small;
+mod varied;
 
 use std::fmt::Write;
 

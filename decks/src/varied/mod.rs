@@ -1,0 +1,115 @@
+//! Random small problems, 3 to about 120 unknowns, of all the kinds that go wrong in practice, with a known answer.
+//!
+//! Bodies, displacements u, forces lambda, mu and the set of closed rows are drawn; loads and gaps follow from them,
+//! f = K u + B'lambda + H'mu, c = B u - C lambda + slack, h = H u - C mu, each sum rounded once. The answer is right to the last
+//! bit of f, c, h.
+//!
+//! | file | |
+//! |---|---|
+//! | `bodies` | springs, networks, trusses, blocks, supports by penalty |
+//! | `draft` | the order in which a case is drawn |
+//! | `rows` | contact rows, glue, struts, far rows |
+//! | `condition` | motions that the closed rows leave, condition of the final face |
+
+mod bodies;
+mod condition;
+mod draft;
+mod rows;
+#[cfg(test)]
+mod tests;
+
+use crate::Deck;
+
+pub use bodies::{inner, orthonormal, remove};
+
+/// What is special about a case.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Class {
+    /// Two or three groups of bodies that no row joins, stiffness 1e-8 to 1e8, loads alike.
+    Groups,
+    /// Rows that never close: slack 1e6 to 1e30 displacements, some infinite.
+    Far,
+    /// Floating bodies move rigidly by 1 to 1e8 times their deformation.
+    Travel,
+    /// Displacements prescribed by penalty: K_ii (1 + p), p = 1e8 to 1e20, f_i = p K_ii u0.
+    Penalty,
+    /// Equality rows between bodies, also redundant ones.
+    Glue,
+    /// Half of the rows are springs; bodies of one unknown.
+    Springs,
+    /// No body feels a resultant: forces only within bodies, supports without reaction.
+    Thermal,
+    /// The last iteration of Newton's method: f nearly B'lambda, u 1e-6 to 1e-12 of what f alone would move.
+    Newton,
+    /// Every spring of a body has its own stiffness, down to 1e-9.
+    Moduli,
+    /// Bodies of stiffness 1e-6 to 1e6.
+    StiffOnSoft,
+    /// Null spaces are random combinations of the rigid modes.
+    Mixed,
+    /// Null spaces are wrong by 1e-13 of their length.
+    Noisy,
+    /// K, B, H, f, c, h have 15 decimal digits.
+    Rounded,
+}
+
+pub const CLASSES: [Class; 13] = [
+    Class::Groups,
+    Class::Far,
+    Class::Travel,
+    Class::Penalty,
+    Class::Glue,
+    Class::Springs,
+    Class::Thermal,
+    Class::Newton,
+    Class::Moduli,
+    Class::StiffOnSoft,
+    Class::Mixed,
+    Class::Noisy,
+    Class::Rounded,
+];
+
+/// A problem with its answer.
+#[derive(Clone, Debug)]
+pub struct Varied {
+    /// Named after the seed and all its classes. Gaps may be infinite.
+    pub deck: Deck,
+    /// The class the case was drawn for, then those that came with it.
+    pub classes: Vec<Class>,
+    /// u over all bodies, length.
+    pub displacement: Vec<f64>,
+    /// lambda, one force per contact row. Of dependent rows only B'lambda + H'mu is unique.
+    pub forces: Vec<f64>,
+    /// mu, one force per equality row.
+    pub equality_forces: Vec<f64>,
+    /// Dimension of the rigid motions that neither rows with a force nor equality rows resist; with any only forces and
+    /// deformation are unique.
+    pub undetermined: usize,
+    /// Unknowns with a penalty.
+    pub penalties: Vec<usize>,
+    /// Largest over smallest singular value of [K B_F' H'; B_F -C; H -C] on the rows F with a force, scaled by D = diag K and
+    /// s_i = (b_i D^-1 b_i' + C_i)^-1/2, without the zeros of undetermined motions and redundant rows. Infinite where these
+    /// cannot be told from the others.
+    pub condition: f64,
+}
+
+impl Varied {
+    /// All classes in one word.
+    pub fn kind(&self) -> String {
+        let names: Vec<String> = self.classes.iter().map(|class| format!("{class:?}")).collect();
+        names.join("+")
+    }
+}
+
+/// The case of one seed; seeds 13 apart are of the same main class.
+pub fn case(seed: u64) -> Varied {
+    draft::case(seed)
+}
+
+/// The nearest number of 15 decimal digits.
+pub fn rounded(value: f64) -> f64 {
+    if !value.is_finite() {
+        return value;
+    }
+    format!("{value:.14e}").parse().expect("a number")
+}

@@ -1,0 +1,104 @@
+//! Varied problems solved by the library: "solved" must mean right, body by body.
+
+use std::collections::BTreeMap;
+use std::fmt::Write;
+
+use decks::varied::{self, Varied};
+use decks::yardstick::{Answer, Yardstick};
+use feti_contact::solver::{Outcome, Problem, RowKind};
+
+use crate::{hand_over, seeds};
+
+/// Number of problems of the ordinary run, one for this many of the others.
+const SHARE: u64 = 2;
+/// Beyond it an answer may be wrong without anyone's fault; such cases are counted apart.
+const CONDITION: f64 = 1e8;
+/// Of the cases up to that condition this part may end other than solved.
+const UNSOLVED: f64 = 0.01;
+/// Lines of a table.
+const LINES: usize = 60;
+
+/// Ends of the cases of one class.
+#[derive(Default)]
+struct Ends(BTreeMap<String, usize>);
+
+/// Outcome by name, and for a solved case the worst error over what is allowed with its body.
+struct End {
+    name: String,
+    error: Option<(f64, usize)>,
+}
+
+pub fn answer(problem: &Problem) -> Answer {
+    Answer {
+        u: problem.displacements().unwrap().to_vec(),
+        lambda: problem.multipliers(RowKind::Inequality).unwrap().to_vec(),
+        mu: problem.multipliers(RowKind::Equality).unwrap().to_vec(),
+    }
+}
+
+fn end(case: &Varied) -> End {
+    let failed = |error: feti_contact::error::Error| format!("{:?}: {error}", error.kind);
+    let mut problem = match hand_over::problem(&case.deck) {
+        Ok(problem) => problem,
+        Err(error) => return End { name: failed(error), error: None },
+    };
+    let report = match problem.solve() {
+        Ok(report) => report,
+        Err(error) => return End { name: failed(error), error: None },
+    };
+    let truth = Answer {
+        u: case.displacement.clone(),
+        lambda: case.forces.clone(),
+        mu: case.equality_forces.clone(),
+    };
+    let yardstick = Yardstick::new(&case.deck, &truth, case.undetermined > 0);
+    let worst = yardstick.worst(&answer(&problem));
+    let solved = report.outcome == Outcome::Solved;
+    End { name: format!("{:?}", report.outcome), error: solved.then_some(worst) }
+}
+
+/// The part of a name before a colon: kinds of errors are counted, their texts are listed.
+fn short(name: &str) -> &str {
+    name.split(':').next().unwrap_or(name)
+}
+
+#[test]
+fn every_varied_problem_that_is_solved_is_solved_rightly() {
+    let mut classes: BTreeMap<String, Ends> = BTreeMap::new();
+    let (mut wrong, mut unsolved, mut beyond) = (Vec::new(), Vec::new(), Vec::new());
+    let mut judged = 0;
+    for seed in 0..seeds().end.div_ceil(SHARE) {
+        let case = varied::case(seed);
+        let End { name, error } = end(&case);
+        let is_wrong = error.is_some_and(|(error, _)| error > 1.0);
+        let hard = case.condition > CONDITION;
+        judged += usize::from(!hard);
+        let counted = if is_wrong { "wrong" } else { short(&name) };
+        let class = format!("{:?}{}", case.classes[0], if hard { " beyond" } else { "" });
+        *classes.entry(class).or_default().0.entry(counted.to_string()).or_default() += 1;
+        let (ratio, body) = error.unwrap_or_default();
+        let line = format!(
+            "{seed:6}  {:24} {name}, error {ratio:.1e} of allowed at body {body}  (condition {:.0e})",
+            case.kind(),
+            case.condition
+        );
+        match (is_wrong || error.is_none(), hard, is_wrong) {
+            (false, ..) => {}
+            (_, true, _) => beyond.push(line),
+            (.., true) => wrong.push(line),
+            _ => unsolved.push(line),
+        }
+    }
+    let allowed = (UNSOLVED * f64::from(judged as u32)) as usize;
+    let mut table = format!(
+        "{} solved wrongly, {} not solved ({allowed} allowed) of {judged}; {} not solved rightly beyond {CONDITION:e}\n",
+        wrong.len(),
+        unsolved.len(),
+        beyond.len()
+    );
+    for (class, ends) in &classes {
+        let _ = writeln!(table, "{class:20} {:?}", ends.0);
+    }
+    let lines = wrong.iter().chain(&unsolved).take(LINES).cloned().collect::<Vec<_>>().join("\n");
+    assert!(wrong.is_empty() && unsolved.len() <= allowed, "{table}{lines}");
+}
