@@ -37,6 +37,11 @@ pub extern "C" fn feti_setup(p: *mut feti_problem) -> i32 {
 /// with NaN for figures that a failure left unknown. After a failure all that was given is kept and can be corrected,
 /// except after FETI_INTERNAL.
 ///
+/// Groups of bodies that no row with a finite gap joins are problems of their own, each solved to its own accuracy and as
+/// many at a time as there are threads. The status is that of the group that ended worst; counts are sums. Where the load
+/// of one group is not held, or its rows contradict each other, the others keep their answers: feti_displacement is
+/// FETI_STATE for its bodies alone, and its entries are NaN (FETI_ROW_UNKNOWN) in what is read for all at once.
+///
 /// A status above 0 comes with an answer. FETI_ITERATIONS at the limit of option max_steps; FETI_TIME at the limit of
 /// option time_limit; FETI_CANCELLED where the host has cancelled; FETI_STALLED where steps no longer reduce the error;
 /// FETI_INACCURATE where the certificate does not pass; FETI_MARGINAL where a part of the load, below 1e-7 of it, is not
@@ -63,9 +68,12 @@ pub unsafe extern "C" fn feti_solve(p: *mut feti_problem, info: *mut feti_info) 
             panic!("fault injected on request");
         }
         let _room = problem.working_room()?;
-        let report = problem.solve()?;
-        report_in(&mut filled, &report);
-        Ok(of_outcome(&report.outcome))
+        let solved = problem.solve();
+        // groups of bodies may have an answer where another has none
+        if let Some(report) = problem.report() {
+            report_in(&mut filled, report);
+        }
+        solved.map(|report| of_outcome(&report.outcome))
     });
     filled.status = status;
     if let Ok(Some(target)) = target {
