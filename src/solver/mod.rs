@@ -1,7 +1,6 @@
 //! From what the host registers to the answer it gets: register, set up, solve, certify, report.
 
 mod body_facts;
-mod certificate;
 mod diagnosis;
 mod factors;
 mod fallback;
@@ -18,9 +17,9 @@ mod pools;
 mod presolve;
 mod problem;
 mod report;
+mod response;
 mod results;
 mod room;
-mod rounding;
 mod rows;
 mod settings;
 mod settings_text;
@@ -33,13 +32,13 @@ mod threads;
 mod undetermined;
 mod watch;
 
+pub use crate::certificate::{Certificate, Entry};
 pub use crate::body::{Columns, HostFunctions, HostProduct, Modes, SparseInput, Storage};
 pub use crate::constraints::{RowKind, RowsInput};
 pub use crate::error::Proof;
 pub use crate::linalg::Borrowed;
 pub use crate::qp::StepKind;
 pub use body_facts::{BodyFacts, Factors, Origin};
-pub use certificate::{Certificate, Entry};
 pub use findings::Findings;
 pub use log::{LogLevel, LogListener};
 pub use phases::PhaseReport;

@@ -1,6 +1,6 @@
 //! What a solve tells the host.
 
-use crate::solver::certificate::Certificate;
+use crate::certificate::Certificate;
 use crate::solver::phases::PhaseReport;
 
 /// How a solve ended with an answer.

@@ -1,11 +1,11 @@
 //! What the host reads after a solve, and the operators it may validate.
 
+use crate::certificate::{BodyJudgement, Judgement, RowJudgement};
 use crate::constraints::RowKind;
 use crate::error::{Error, Kind, Result};
 use crate::linalg::memory::zeros;
 use crate::linalg::{Matrix, Operator};
 use crate::qp::Solution;
-use crate::solver::certificate::Certificate;
 use crate::solver::problem::{Inverse, Problem};
 use crate::solver::report::{Outcome, Report, RowState};
 use crate::solver::setup::Ready;
@@ -22,6 +22,8 @@ pub(super) struct Answer {
     /// c + C lambda - B u, length.
     gaps: Vec<f64>,
     states: Vec<RowState>,
+    /// What is known about the errors on every body.
+    pub bodies: Vec<BodyJudgement>,
 }
 
 /// What was made of the answer once somebody has asked.
@@ -40,12 +42,13 @@ impl Answer {
         solution: &Solution,
         recovered: Recovered,
         outcome: Outcome,
-        certificate: Certificate,
+        judgement: Judgement,
     ) -> Result<Self> {
         let Recovered { u, lambda, mu } = recovered;
+        let Judgement { certificate, bodies, contact } = judgement;
         let rows = &problem.contact;
         let gaps: Vec<f64> = (0..rows.len()).map(|i| rows.open_gap(i, &u, lambda[i])).collect();
-        let states = states(problem, ready, &lambda, &u, &gaps);
+        let states = states(&contact, &lambda, &gaps);
         let counts = solution.counts;
         let report = Report {
             outcome,
@@ -79,39 +82,22 @@ impl Answer {
             operator_bytes: ready.dual.bytes_kept(),
             phases: Vec::new(),
         };
-        Ok(Self { report, u, lambda, mu, alpha: solution.alpha.clone(), gaps, states })
+        Ok(Self { report, u, lambda, mu, alpha: solution.alpha.clone(), gaps, states, bodies })
     }
 }
 
-/// A force or a gap is zero when it is below `limit` (that of the certificate) of the largest force, or of
-/// the displacements and gaps of the rows.
-fn states(problem: &Problem, ready: &Ready, lambda: &[f64], u: &[f64], gaps: &[f64]) -> Vec<RowState> {
-    let limit = problem.settings.certificate_tolerance;
-    let rows = &problem.contact;
-    let yielded = |i: usize| rows.compliance[i] * lambda[i].abs();
-    let size = |i: usize| rows.matrix.row_dot_abs(i, u) + rows.rhs[i].abs() + yielded(i);
-    let sizes = (0..rows.len()).map(|i| ready.rows.scale[i] * size(i));
-    let small_gap = limit * sizes.fold(0.0, f64::max);
-    let force = |i: usize| unscaled(lambda[i], ready.rows.scale[i]);
-    let small_force = limit * (0..rows.len()).map(|i| force(i).abs()).fold(0.0, f64::max);
-    // a rigid row without entries has no scale
-    let is_open = |i: usize| {
-        if ready.rows.scale[i] > 0.0 {
-            ready.rows.scale[i] * gaps[i] > small_gap
-        } else {
-            gaps[i] > 0.0
-        }
-    };
-    let state = |i: usize| {
-        if force(i) > small_force {
+/// By what the certificate takes for zero at every row: closed with a force, open with a gap, weak with neither.
+fn states(zero: &[RowJudgement], lambda: &[f64], gaps: &[f64]) -> Vec<RowState> {
+    let state = |(zero, (force, gap)): (&RowJudgement, (&f64, &f64))| {
+        if *force > zero.force {
             RowState::Closed
-        } else if is_open(i) {
+        } else if *gap > zero.gap {
             RowState::Open
         } else {
             RowState::Weak
         }
     };
-    (0..rows.len()).map(state).collect()
+    zero.iter().zip(lambda.iter().zip(gaps)).map(state).collect()
 }
 
 impl Problem {
@@ -265,15 +251,6 @@ impl Problem {
         }
         let what = format!("the problem has {expected} rows, not {m}");
         Err(Error::argument("m", what).value(m as f64).limit(expected as f64))
-    }
-}
-
-/// `v / s`, 0 for rows without entries.
-fn unscaled(v: f64, s: f64) -> f64 {
-    if s > 0.0 {
-        v / s
-    } else {
-        0.0
     }
 }
 

@@ -1,7 +1,9 @@
 //! Set up, solve the dual, recover the displacements, certify: the paper in order.
 
+use std::cell::Cell;
 use std::time::{Duration, Instant};
 
+use crate::certificate::{certify, Answer as AnswerView, BodyData, Certificate, Data, Judgement};
 use crate::constraints::RowKind;
 use crate::dual::Preconditioner;
 use crate::error::{Error, Kind, Result};
@@ -10,7 +12,6 @@ use crate::linalg::vector::norm;
 use crate::linalg::Operator;
 use crate::qp::paper::Units;
 use crate::qp::{self, Direct, Judge, Qp, Solution, Verdict};
-use crate::solver::certificate::{Answer as AnswerView, BodyData, Certificate, Data};
 use crate::solver::diagnosis;
 use crate::solver::fallback::{solve_dual, Means};
 use crate::solver::findings::Findings;
@@ -21,7 +22,7 @@ use crate::solver::presolve::{presolve, Gaps};
 use crate::solver::problem::Problem;
 use crate::solver::report::{Outcome, Report};
 use crate::solver::results::{Answer, Asked};
-use crate::solver::rounding::certify_to_rounding;
+use crate::solver::response::ByInverse;
 use crate::solver::setup::Ready;
 use crate::solver::watch::{Stops, Watch};
 
@@ -61,9 +62,9 @@ impl Problem {
         let (judging, recovering) = (judge.spent, Instant::now());
         let mut ending = judge.ending(solution)?;
         let finished = self.settings.finish == c"direct" && finish(&judge, qp, direct, &mut ending)?;
-        let Ending { solution, recovered, certificate } = ending;
+        let Ending { solution, recovered, judgement } = ending;
         let outcome = self.outcome(ready, &dual, &solution)?;
-        let mut answer = Answer::new(self, ready, &solution, recovered, outcome, certificate)?;
+        let mut answer = Answer::new(self, ready, &solution, recovered, outcome, judgement)?;
         answer.report.finished = finished;
         answer.report.seconds_setup = (solving - started).as_secs_f64();
         answer.report.seconds_solve = solving.elapsed().as_secs_f64();
@@ -124,11 +125,12 @@ impl Problem {
                 load: slot.body.load.as_deref(),
                 null_space: &inverse.kplus.null_space,
                 unit: inverse.unit,
+                grounded: &inverse.grounded,
             });
         }
         let limit = self.settings.certificate_tolerance;
         let (contact, equalities, without) = (&self.contact, &self.equalities, self.unit());
-        Ok(Data { bodies, contact, equalities, without, limit, work_of_loads: None })
+        Ok(Data { bodies, contact, equalities, without, limit })
     }
 }
 
@@ -186,6 +188,8 @@ pub(super) struct Certifier<'a> {
     pub scaled: &'a Scaled,
     pub data: Data<'a>,
     pub threads: usize,
+    /// V of the certificate, force x length, once it has been asked for.
+    work: Cell<Option<f64>>,
     /// The last point accepted, with its answer.
     pub accepted: Option<Accepted>,
     /// Time for answers recovered and certified.
@@ -196,20 +200,21 @@ pub(super) struct Certifier<'a> {
 pub(super) struct Accepted {
     point: (Vec<f64>, Vec<f64>),
     recovered: Recovered,
-    certificate: Certificate,
+    judgement: Judgement,
 }
 
 /// What a solve ends with.
 pub(super) struct Ending {
     pub solution: Solution,
     pub recovered: Recovered,
-    pub certificate: Certificate,
+    pub judgement: Judgement,
 }
 
 impl<'a> Certifier<'a> {
     fn new(problem: &'a Problem, ready: &'a Ready, scaled: &'a Scaled) -> Result<Self> {
         let (data, threads) = (problem.data()?, problem.threads());
-        Ok(Self { ready, scaled, data, threads, accepted: None, spent: Duration::ZERO })
+        let work = Cell::new(None);
+        Ok(Self { ready, scaled, data, threads, work, accepted: None, spent: Duration::ZERO })
     }
 
     /// (17), and lambda = 2^p S L'^-1 x on the rows that carry the multipliers of their groups.
@@ -242,17 +247,22 @@ impl<'a> Certifier<'a> {
     pub fn ending(&mut self, solution: Solution) -> Result<Ending> {
         let known = self.accepted.take();
         let known = known.filter(|known| known.point.0 == solution.x && known.point.1 == solution.alpha);
-        let (recovered, certificate) = match known {
-            Some(known) => (known.recovered, known.certificate),
+        let (recovered, judgement) = match known {
+            Some(known) => (known.recovered, known.judgement),
             None => self.certified(&solution.x, &solution.alpha)?,
         };
-        Ok(Ending { solution, recovered, certificate })
+        Ok(Ending { solution, recovered, judgement })
     }
 
-    fn certified(&mut self, x: &[f64], alpha: &[f64]) -> Result<(Recovered, Certificate)> {
+    fn certified(&self, x: &[f64], alpha: &[f64]) -> Result<(Recovered, Judgement)> {
         let recovered = self.recover(x, alpha)?;
-        let certificate = certify_to_rounding(&mut self.data, recovered.view(), self.ready, self.threads)?;
-        Ok((recovered, certificate))
+        let judgement = self.judged(&recovered)?;
+        Ok((recovered, judgement))
+    }
+
+    pub fn judged(&self, recovered: &Recovered) -> Result<Judgement> {
+        let Self { data, ready, threads, work, .. } = self;
+        certify(data, recovered.view(), &mut ByInverse { data, ready, threads: *threads, work })
     }
 }
 
@@ -265,12 +275,12 @@ impl Judge for Certifier<'_> {
 
     fn accepts(&mut self, x: &[f64], alpha: &[f64]) -> Result<bool> {
         let begun = Instant::now();
-        let (recovered, certificate) = self.certified(x, alpha)?;
+        let (recovered, judgement) = self.certified(x, alpha)?;
         self.spent += begun.elapsed();
-        let passed = certificate.passed();
+        let passed = judgement.certificate.passed();
         if passed {
             let point = (copied(x, "forces")?, copied(alpha, "amplitudes")?);
-            self.accepted = Some(Accepted { point, recovered, certificate });
+            self.accepted = Some(Accepted { point, recovered, judgement });
         }
         Ok(passed)
     }
@@ -295,7 +305,10 @@ impl Problem {
             }
         }
         let answer = AnswerView { u, lambda, mu };
-        certify_to_rounding(&mut self.data()?, answer, self.ready()?, self.threads())
+        let (data, work) = (self.data()?, Cell::new(None));
+        let (ready, threads) = (self.ready()?, self.threads());
+        let judgement = certify(&data, answer, &mut ByInverse { data: &data, ready, threads, work: &work })?;
+        Ok(judgement.certificate)
     }
 }
 
