@@ -60,10 +60,12 @@
 //! | [`constraints`] | B u <= c, H u = h: rows, their compliance and scaling |
 //! | [`dual`] | F, d, G, e and the way back |
 //! | [`qp`] | Sections 4 and 5: knows no bodies |
+//! | [`certificate`] | how right an answer is, by matrices and rows alone |
 //! | [`solver`] | register, set up, solve, certify, report |
 //! | [`ffi`] | the C interface |
 
 pub mod body;
+pub mod certificate;
 pub mod constraints;
 pub mod dual;
 pub mod error;

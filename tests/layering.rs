@@ -3,6 +3,7 @@
 //! ```text
 //! error <- linalg <- body, constraints <- dual <- solver <- ffi
 //!          linalg <- qp <- solver
+//!          body, constraints <- certificate <- solver
 //! ```
 //!
 //! faer is known to linalg only; nothing prints; nothing panics but the fault a host may ask for; no file is
@@ -13,14 +14,15 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// What each layer may name; every layer may name itself.
-const ALLOWED: [(&str, &[&str]); 8] = [
+const ALLOWED: [(&str, &[&str]); 9] = [
     ("error", &[]),
     ("linalg", &["error"]),
     ("body", &["error", "linalg"]),
     ("constraints", &["error", "linalg"]),
     ("dual", &["error", "linalg", "body", "constraints"]),
     ("qp", &["error", "linalg"]),
-    ("solver", &["error", "linalg", "body", "constraints", "dual", "qp"]),
+    ("certificate", &["error", "linalg", "body", "constraints"]),
+    ("solver", &["error", "linalg", "body", "constraints", "dual", "qp", "certificate"]),
     ("ffi", &["error", "solver"]),
 ];
 

@@ -86,5 +86,6 @@ fn record(facts: &BodyFacts) -> feti_body_facts {
         explicit_operator: known(facts.operator.map(|bytes| usize::from(bytes.is_some()))),
         operator_bytes: known(facts.operator.map(|bytes| bytes.unwrap_or(0))),
         gap: factors.and_then(|factors| factors.gap).unwrap_or(f64::NAN),
+        force_error: facts.force_error.unwrap_or(f64::NAN),
     }
 }

@@ -179,6 +179,8 @@ pub struct feti_body_facts {
     pub operator_bytes: i64,
     /// Of a null space that was found: stiffness of the softest other motion over that of the stiffest in it; else NaN.
     pub gap: f64,
+    /// Estimated relative error of the forces on the body in the last answer; NaN without one.
+    pub force_error: f64,
 }
 
 /// Time and memory of a phase of a setup or a solve.

@@ -37,6 +37,8 @@ pub struct BodyFacts {
     pub factors: Option<Factors>,
     /// Bytes of the dual operator; none of one that is known by its products.
     pub operator: Option<Option<usize>>,
+    /// Estimated relative error of the forces on the body in the last answer, no unit; none without one.
+    pub force_error: Option<f64>,
 }
 
 /// Null space and factor of a body.
@@ -89,6 +91,7 @@ impl Problem {
             origin,
             factors: self.factors_of(body),
             operator,
+            force_error: self.answer.as_ref().map(|answer| answer.force_errors[body]),
         })
     }
 

@@ -1,16 +1,17 @@
 //! A solve from the call to the answer: set up, solve every island, put their answers together, report.
 
+use std::cell::Cell;
 use std::cmp::Reverse;
 use std::time::{Duration, Instant};
 
+use crate::certificate::{certify, Answer as AnswerView, Certificate};
 use crate::error::{Error, Kind, Result};
-use crate::solver::certificate::{Answer as AnswerView, Certificate};
 use crate::solver::findings::Findings;
 use crate::solver::phases::{Phase, Phases};
 use crate::solver::problem::Problem;
 use crate::solver::report::Report;
+use crate::solver::response::ByInverse;
 use crate::solver::results::{Answer, Asked};
-use crate::solver::rounding::certify_to_rounding;
 use crate::solver::solve::Solved;
 use crate::solver::state::Start;
 use crate::solver::threads::{self, Heard, Tasks};
@@ -171,9 +172,13 @@ impl Problem {
             let own = island.gather(self, u)?;
             let (lambda, mu) = (island.contact.gather(lambda), island.equalities.gather(mu));
             let answer = AnswerView { u: &own, lambda: &lambda, mu: &mu };
-            let of_island = certify_to_rounding(&mut self.data(island)?, answer, ready, self.threads())?;
-            let certificate = island.named(of_island);
-            all = Some(all.map_or(certificate, |all| all.worse(&certificate)));
+            let (data, work) = (self.data(island)?, Cell::new(None));
+            let mut response = ByInverse { data: &data, ready, threads: self.threads(), work: &work };
+            let own = island.named(certify(&data, answer, &mut response)?.certificate);
+            match &mut all {
+                None => all = Some(own),
+                Some(all) => all.merge(&own),
+            }
         }
         all.ok_or_else(|| Error::new(Kind::Internal, "a problem without bodies was set up"))
     }

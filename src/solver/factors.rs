@@ -10,7 +10,9 @@ use std::time::Instant;
 use crate::body::{
     input_key, pattern_key, same_body, same_matrix, same_pattern, value_key, Layout, Plan, Symbolic,
 };
+use crate::certificate::grounded;
 use crate::error::{Error, Kind, Result};
+use crate::linalg::Symmetric;
 use crate::solver::operators::Operators;
 use crate::solver::phases::Phase;
 use crate::solver::problem::{Inverse, Problem};
@@ -85,32 +87,39 @@ impl Problem {
         let (mut own, mut others) = (Vec::new(), Vec::new());
         for ((&p, plan), factor) in pending.iter().zip(plans).zip(factors) {
             match factor {
-                None => own.push((p, plan.bytes(), Mutex::new(Some(plan)))),
+                None => {
+                    let matrix = self.bodies[p].body.stiffness.clone();
+                    own.push((p, plan.bytes(), Mutex::new(Some(plan)), matrix));
+                }
                 Some(q) => others.push((p, plan, q)),
             }
         }
         // operations grow with the power 3/2 of the entries
-        let weights = own.iter().map(|(_, bytes, _)| (*bytes as f64).powf(1.5)).collect();
+        let weights = own.iter().map(|(_, bytes, ..)| (*bytes as f64).powf(1.5)).collect();
         let part = Part::of(self.threads(), weights, FACTORISED);
         let make = |k: usize| {
             let plan = own[k].2.lock().ok().and_then(|mut plan| plan.take());
             let plan = plan.ok_or_else(|| Error::new(Kind::Internal, "a body was factorised twice"))?;
-            plan.execute().map_err(|e| e.body(own[k].0))
+            let made = plan.execute().map_err(|e| e.body(own[k].0))?;
+            Ok((made, grounded_in(own[k].3.as_ref())?))
         };
-        watch.every_body(&part, make, |k, made| {
+        watch.every_body(&part, make, |k, (made, grounded)| {
             let (p, bytes) = (own[k].0, own[k].1);
             self.work.analyses += made.further_analyses;
             self.work.factorisations += made.factorisations;
             self.bodies[p].symbolic = Some(made.symbolic);
             let (unit, kplus) = (self.bodies[p].body.unit(), Arc::new(made.inverse));
-            self.bodies[p].inverse = Some(Inverse { unit, kplus, bytes, operator: None });
+            self.bodies[p].inverse = Some(Inverse { unit, kplus, grounded, bytes, operator: None });
         })?;
         for (p, plan, q) in others {
             let (unit, symbolic) = (self.bodies[p].body.unit(), self.bodies[q].symbolic.clone());
             let of = self.bodies[q].inverse.as_ref().map(|of| (of.bytes, plan.with_factor_of(&of.kplus)));
             self.bodies[p].symbolic = symbolic;
-            self.bodies[p].inverse =
-                of.map(|(bytes, kplus)| Inverse { unit, kplus: Arc::new(kplus), bytes, operator: None });
+            let grounded = grounded_in(self.bodies[p].body.stiffness.as_ref())?;
+            self.bodies[p].inverse = of.map(|(bytes, kplus)| {
+                let kplus = Arc::new(kplus);
+                Inverse { unit, kplus, grounded, bytes, operator: None }
+            });
         }
         Ok(())
     }
@@ -218,7 +227,10 @@ impl Problem {
         for (p, &twin) in twins.iter().enumerate().filter(|(p, twin)| p != *twin) {
             let (symbolic, inverse) =
                 (self.bodies[twin].symbolic.clone(), self.bodies[twin].inverse.as_ref());
-            let inverse = inverse.map(|of| Inverse { kplus: Arc::clone(&of.kplus), operator: None, ..*of });
+            let inverse = inverse.map(|of| {
+                let (kplus, grounded) = (Arc::clone(&of.kplus), Arc::clone(&of.grounded));
+                Inverse { kplus, grounded, operator: None, ..*of }
+            });
             self.bodies[p].inverse = inverse;
             self.bodies[p].symbolic = symbolic;
         }
@@ -230,6 +242,11 @@ impl Problem {
         let mut seen = HashSet::new();
         inverses.filter(|of| seen.insert(of.kplus.factor_address())).map(|of| of.bytes).sum()
     }
+}
+
+/// Unknowns of a matrix that are held so stiffly that their neighbours count for nothing.
+fn grounded_in(matrix: Option<&Arc<Symmetric>>) -> Result<Arc<[u32]>> {
+    matrix.map_or(Ok(Arc::from([])), |k| grounded((&**k).into()).map(Arc::from))
 }
 
 /// Bodies, their plans, and the bodies whose factors serve them.

@@ -4,7 +4,6 @@
 use crate::error::Result;
 use crate::linalg::vector::axpy;
 use crate::qp::{settle, Direct, Qp, Settled, Solution, Verdict};
-use crate::solver::certificate::certify;
 use crate::solver::solve::{Certifier, Ending};
 
 /// Corrections at most.
@@ -30,8 +29,9 @@ fn improve(judge: &Certifier, settled: &Settled, ending: &mut Ending) -> Result<
     let mut replaced = false;
     for _ in 0..=CORRECTIONS {
         let recovered = judge.with_forces(point.u.clone(), &point.x);
-        let certificate = certify(&judge.data, recovered.view())?;
-        let better = certificate.passed() && certificate.worst() < ending.certificate.worst();
+        let judgement = judge.judged(&recovered)?;
+        let certificate = &judgement.certificate;
+        let better = certificate.passed() && certificate.worst() < ending.judgement.certificate.worst();
         if !better && replaced {
             break;
         }
@@ -39,7 +39,7 @@ fn improve(judge: &Certifier, settled: &Settled, ending: &mut Ending) -> Result<
             let Point { x, alpha, .. } = point.clone();
             let undetermined = settled.undetermined;
             let solution = Solution { x, alpha, undetermined, ..ending.solution.clone() };
-            *ending = Ending { solution, recovered, certificate };
+            *ending = Ending { solution, recovered, judgement };
             replaced = true;
         }
         point.correct(judge, settled)?;
@@ -108,15 +108,15 @@ mod tests {
         two_springs(1e-6, |judge, qp, direct, solved| {
             for (rows, right) in [(vec![0], true), (vec![], false), (vec![1], false), (vec![0, 1], false)] {
                 let mut ending = judge.ending(solved.clone()).unwrap();
-                let before = ending.certificate.worst();
+                let before = ending.judgement.certificate.worst();
                 let face = Face::new(qp, direct.entries, rows.clone()).unwrap().unwrap();
                 let mut x = vec![0.0; 2];
                 let (on_face, alpha) = face.solve(rows.iter().map(|&i| qp.b[i]).collect(), qp.e).unwrap();
                 rows.iter().zip(on_face).for_each(|(&i, v)| x[i] = v);
                 let settled = Settled { x, alpha, undetermined: 0, face };
                 assert_eq!(improve(judge, &settled, &mut ending).unwrap(), right, "{rows:?}");
-                assert_eq!(ending.certificate.worst() < before, right, "{rows:?}");
-                assert!(ending.certificate.passed());
+                assert_eq!(ending.judgement.certificate.worst() < before, right, "{rows:?}");
+                assert!(ending.judgement.certificate.passed());
             }
         });
     }

@@ -56,7 +56,10 @@ impl Problem {
         for (&p, made) in pending.iter().zip(made) {
             let bytes = 2 * TOGETHER * size_of::<f64>() * self.bodies[p].body.order;
             let unit = self.bodies[p].body.unit();
-            let inverse = made.map(|made| Inverse { unit, kplus: Arc::new(made), bytes, operator: None });
+            let inverse = made.map(|made| {
+                let (kplus, grounded) = (Arc::new(made), Arc::from([]));
+                Inverse { unit, kplus, grounded, bytes, operator: None }
+            });
             self.bodies[p].inverse = inverse;
         }
         self.phases.ended(Phase::NullSpaces, begun);

@@ -4,12 +4,12 @@
 use std::ops::Range;
 use std::sync::Arc;
 
+use crate::certificate::{Certificate, Entry};
 use crate::constraints::{RowKind, RowSet};
 use crate::error::Result;
 use crate::linalg::memory::{copied, reserved};
 use crate::linalg::vector::power_of_two_below;
 use crate::linalg::Csr;
-use crate::solver::certificate::{Certificate, Entry};
 use crate::solver::problem::Problem;
 
 const WHAT: &str = "groups of bodies";

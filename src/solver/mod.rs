@@ -2,7 +2,6 @@
 
 mod body_facts;
 mod call;
-mod certificate;
 mod diagnosis;
 mod factors;
 mod fallback;
@@ -20,9 +19,9 @@ mod pools;
 mod presolve;
 mod problem;
 mod report;
+mod response;
 mod results;
 mod room;
-mod rounding;
 mod rows;
 mod settings;
 mod settings_text;
@@ -36,12 +35,12 @@ mod undetermined;
 mod watch;
 
 pub use crate::body::{Columns, HostFunctions, HostProduct, Modes, SparseInput, Storage};
+pub use crate::certificate::{Certificate, Entry};
 pub use crate::constraints::{RowKind, RowsInput};
 pub use crate::error::Proof;
 pub use crate::linalg::Borrowed;
 pub use crate::qp::StepKind;
 pub use body_facts::{BodyFacts, Factors, Origin};
-pub use certificate::{Certificate, Entry};
 pub use findings::Findings;
 pub use log::{LogLevel, LogListener};
 pub use phases::PhaseReport;

@@ -66,6 +66,8 @@ pub(super) struct BodySlot {
 pub(super) struct Inverse {
     pub unit: f64,
     pub kplus: Arc<GeneralizedInverse>,
+    /// Unknowns of the matrix that the certificate measures by themselves, ascending.
+    pub grounded: Arc<[u32]>,
     pub bytes: usize,
     /// `F_p` of the rows before the present ones, while there is no dual problem.
     pub operator: Option<Kept>,

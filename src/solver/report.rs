@@ -1,10 +1,10 @@
 //! What a solve tells the host.
 
+use crate::certificate::Certificate;
 use crate::dual::Dual;
 use crate::error::Result;
 use crate::linalg::Operator;
 use crate::qp;
-use crate::solver::certificate::Certificate;
 use crate::solver::phases::PhaseReport;
 use crate::solver::problem::Problem;
 

@@ -1,11 +1,11 @@
 //! What the host reads after a solve, and the operators it may validate.
 
+use crate::certificate::{Certificate, RowJudgement};
 use crate::constraints::{RowKind, RowSet};
 use crate::error::{Error, Kind, Result};
 use crate::linalg::memory::zeros;
 use crate::linalg::Operator;
 use crate::solver::call::Ends;
-use crate::solver::certificate::Certificate;
 use crate::solver::diagnosis::in_stack;
 use crate::solver::islands::Members;
 use crate::solver::problem::{Inverse, Problem};
@@ -24,6 +24,8 @@ pub(super) struct Answer {
     /// c + C lambda - B u, length.
     gaps: Vec<f64>,
     states: Vec<RowState>,
+    /// Estimated relative error of the forces on every body, no unit.
+    pub force_errors: Vec<f64>,
     /// Islands without an answer.
     pub failed: Vec<bool>,
 }
@@ -56,14 +58,18 @@ impl Answer {
             alpha: vec![Vec::new(); counts.bodies],
             gaps: Vec::new(),
             states: vec![RowState::Open; counts.rows],
+            force_errors: vec![f64::NAN; counts.bodies],
             failed: ends.iter().map(std::result::Result::is_err).collect(),
         };
         let mut all: Option<Certificate> = None;
         for (ready, end) in problem.ready()?.islands.iter().zip(ends) {
             match end {
                 Ok(solved) => {
-                    let certificate = ready.island.named(solved.ending.certificate);
-                    all = Some(all.map_or(certificate, |all| all.worse(&certificate)));
+                    let own = ready.island.named(solved.ending.judgement.certificate);
+                    match &mut all {
+                        None => all = Some(own),
+                        Some(all) => all.merge(&own),
+                    }
                     answer.take_in(problem, ready, solved);
                 }
                 Err(_) => answer.leave_out(problem, ready),
@@ -80,15 +86,16 @@ impl Answer {
 
     /// The answer of an island, and what it took.
     fn take_in(&mut self, problem: &Problem, ready: &Ready, solved: Solved) {
-        let Solved { ending: Ending { solution, recovered, .. }, outcome, finished, .. } = solved;
+        let Solved { ending: Ending { solution, recovered, judgement }, outcome, finished, .. } = solved;
         let island = &ready.island;
-        let states = states(problem, ready, &recovered);
+        let states = states(ready, &recovered, &judgement.contact);
         island.scatter(problem, &recovered.u, &mut self.u);
         island.contact.scatter(&recovered.lambda, &mut self.lambda);
         island.contact.scatter(&states, &mut self.states);
         island.equalities.scatter(&recovered.mu, &mut self.mu);
         for (k, &p) in island.bodies.iter().enumerate() {
             self.alpha[p] = solution.alpha[ready.dual.modes_of(k)].to_vec();
+            self.force_errors[p] = judgement.bodies[k].force_error;
         }
         let report = &mut self.report;
         report.outcome = report.outcome.max(outcome);
@@ -129,28 +136,19 @@ impl Answer {
     }
 }
 
-/// A force or a gap is zero when it is below `limit` (that of the certificate) of the largest force, or of
-/// the displacements and gaps of the rows.
-fn states(problem: &Problem, ready: &Ready, answer: &Recovered) -> Vec<RowState> {
-    let Recovered { u, lambda, .. } = answer;
-    let limit = problem.settings.certificate_tolerance;
-    let rows = &ready.island.contact.rows;
-    let yielded = |i: usize| rows.compliance[i] * lambda[i].abs();
-    let size = |i: usize| rows.matrix.row_dot_abs(i, u) + rows.rhs[i].abs() + yielded(i);
-    let sizes = (0..rows.len()).map(|i| ready.rows.scale[i] * size(i));
-    let small_gap = limit * sizes.fold(0.0, f64::max);
-    let force = |i: usize| unscaled(lambda[i], ready.rows.scale[i]);
-    let small_force = limit * (0..rows.len()).map(|i| force(i).abs()).fold(0.0, f64::max);
-    let state = |i: usize| {
-        if force(i) > small_force {
+/// By what the certificate takes for zero at every row: closed with a force, open with a gap, weak with neither.
+fn states(ready: &Ready, answer: &Recovered, zero: &[RowJudgement]) -> Vec<RowState> {
+    let (Recovered { u, lambda, .. }, rows) = (answer, &ready.island.contact.rows);
+    let state = |(i, zero): (usize, &RowJudgement)| {
+        if lambda[i] > zero.force {
             RowState::Closed
-        } else if ready.rows.scale[i] * rows.open_gap(i, u, lambda[i]) > small_gap {
+        } else if rows.open_gap(i, u, lambda[i]) > zero.gap {
             RowState::Open
         } else {
             RowState::Weak
         }
     };
-    (0..rows.len()).map(state).collect()
+    zero.iter().enumerate().map(state).collect()
 }
 
 impl Problem {

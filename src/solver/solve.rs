@@ -1,7 +1,9 @@
 //! One island: solve the dual, recover the displacements, certify.
 
+use std::cell::Cell;
 use std::time::{Duration, Instant};
 
+use crate::certificate::{certify, Answer as AnswerView, BodyData, Data, Judgement};
 use crate::dual::Preconditioner;
 use crate::error::{Error, Kind, Result};
 use crate::linalg::memory::copied;
@@ -9,7 +11,6 @@ use crate::linalg::vector::{norm, norm_max};
 use crate::linalg::Operator;
 use crate::qp::paper::Units;
 use crate::qp::{self, Direct, Judge, Qp, Solution, Verdict};
-use crate::solver::certificate::{Answer as AnswerView, BodyData, Certificate, Data};
 use crate::solver::diagnosis;
 use crate::solver::fallback::{solve_dual, Means};
 use crate::solver::finish::finish;
@@ -18,7 +19,7 @@ use crate::solver::paper::{parameters, HostUnits};
 use crate::solver::presolve::{presolve, Gaps};
 use crate::solver::problem::Problem;
 use crate::solver::report::Outcome;
-use crate::solver::rounding::certify_to_rounding;
+use crate::solver::response::ByInverse;
 use crate::solver::setup::{Ready, Setup};
 use crate::solver::state::Start;
 use crate::solver::watch::{Interruptible, Steps, Stops, Voice};
@@ -111,11 +112,12 @@ impl Problem {
                 load: slot.body.load.as_deref(),
                 null_space: &inverse.kplus.null_space,
                 unit: slot.body.without(island.unit),
+                grounded: &inverse.grounded,
             });
         }
         let limit = self.settings.certificate_tolerance;
         let (contact, equalities) = (&island.contact.rows, &island.equalities.rows);
-        Ok(Data { bodies, contact, equalities, without: island.unit, limit, work_of_loads: None })
+        Ok(Data { bodies, contact, equalities, limit })
     }
 }
 
@@ -174,6 +176,8 @@ pub(super) struct Certifier<'a> {
     pub scaled: &'a Scaled,
     pub data: Data<'a>,
     pub threads: usize,
+    /// V of the loads, once it has been asked for.
+    work: Cell<Option<f64>>,
     /// The last point accepted, with its answer.
     pub accepted: Option<Accepted>,
     /// Time for answers recovered and certified.
@@ -184,20 +188,21 @@ pub(super) struct Certifier<'a> {
 pub(super) struct Accepted {
     point: (Vec<f64>, Vec<f64>),
     recovered: Recovered,
-    certificate: Certificate,
+    judgement: Judgement,
 }
 
 /// What a solve ends with.
 pub(super) struct Ending {
     pub solution: Solution,
     pub recovered: Recovered,
-    pub certificate: Certificate,
+    pub judgement: Judgement,
 }
 
 impl<'a> Certifier<'a> {
     fn new(problem: &'a Problem, ready: &'a Ready, scaled: &'a Scaled) -> Result<Self> {
         let (data, threads) = (problem.data(&ready.island)?, problem.threads());
-        Ok(Self { ready, scaled, data, threads, accepted: None, spent: Duration::ZERO })
+        let work = Cell::new(None);
+        Ok(Self { ready, scaled, data, threads, work, accepted: None, spent: Duration::ZERO })
     }
 
     /// (17), and lambda = 2^p S L'^-1 x on the rows that carry the multipliers of their groups.
@@ -228,17 +233,23 @@ impl<'a> Certifier<'a> {
     pub fn ending(&mut self, solution: Solution) -> Result<Ending> {
         let known = self.accepted.take();
         let known = known.filter(|known| known.point.0 == solution.x && known.point.1 == solution.alpha);
-        let (recovered, certificate) = match known {
-            Some(known) => (known.recovered, known.certificate),
+        let (recovered, judgement) = match known {
+            Some(known) => (known.recovered, known.judgement),
             None => self.certified(&solution.x, &solution.alpha)?,
         };
-        Ok(Ending { solution, recovered, certificate })
+        Ok(Ending { solution, recovered, judgement })
     }
 
-    fn certified(&mut self, x: &[f64], alpha: &[f64]) -> Result<(Recovered, Certificate)> {
+    fn certified(&self, x: &[f64], alpha: &[f64]) -> Result<(Recovered, Judgement)> {
         let recovered = self.recover(x, alpha)?;
-        let certificate = certify_to_rounding(&mut self.data, recovered.view(), self.ready, self.threads)?;
-        Ok((recovered, certificate))
+        let judgement = self.judged(&recovered)?;
+        Ok((recovered, judgement))
+    }
+
+    /// The judgement of an answer.
+    pub fn judged(&self, answer: &Recovered) -> Result<Judgement> {
+        let Self { data, ready, threads, work, .. } = self;
+        certify(data, answer.view(), &mut ByInverse { data, ready, threads: *threads, work })
     }
 }
 
@@ -255,12 +266,12 @@ impl Judge for Certifier<'_> {
 
     fn accepts(&mut self, x: &[f64], alpha: &[f64]) -> Result<bool> {
         let begun = Instant::now();
-        let (recovered, certificate) = self.certified(x, alpha)?;
+        let (recovered, judgement) = self.certified(x, alpha)?;
         self.spent += begun.elapsed();
-        let passed = certificate.passed();
+        let passed = judgement.certificate.passed();
         if passed {
             let point = (copied(x, "forces")?, copied(alpha, "amplitudes")?);
-            self.accepted = Some(Accepted { point, recovered, certificate });
+            self.accepted = Some(Accepted { point, recovered, judgement });
         }
         Ok(passed)
     }

@@ -97,13 +97,14 @@ OFFSET(feti_findings, untouched_body, 80);
 OFFSET(feti_findings, margin, 88);
 OFFSET(feti_findings, motion, 96);
 
-SIZE(feti_body_facts, 112);
+SIZE(feti_body_facts, 120);
 OFFSET(feti_body_facts, struct_size, 0);
 OFFSET(feti_body_facts, unknowns, 8);
 OFFSET(feti_body_facts, borrowed, 40);
 OFFSET(feti_body_facts, null_space, 56);
 OFFSET(feti_body_facts, shared_with, 80);
 OFFSET(feti_body_facts, gap, 104);
+OFFSET(feti_body_facts, force_error, 112);
 
 struct layout {
     const char *type;
@@ -118,7 +119,7 @@ static const struct layout in_c[] = {
     {"feti_progress", sizeof(feti_progress), offsetof(feti_progress, fraction)},
     {"feti_findings", sizeof(feti_findings), offsetof(feti_findings, motion)},
     {"feti_phase", sizeof(feti_phase), offsetof(feti_phase, name)},
-    {"feti_body_facts", sizeof(feti_body_facts), offsetof(feti_body_facts, gap)},
+    {"feti_body_facts", sizeof(feti_body_facts), offsetof(feti_body_facts, force_error)},
 };
 enum { TYPES = sizeof in_c / sizeof in_c[0] };
 

@@ -25,7 +25,7 @@ subroutine layout_in_fortran(size, last) bind(C, name="layout_in_fortran")
     distance(c_loc(progress), c_loc(progress%fraction)), &
     distance(c_loc(findings), c_loc(findings%motion)), &
     distance(c_loc(phase), c_loc(phase%name)), &
-    distance(c_loc(facts), c_loc(facts%gap))]
+    distance(c_loc(facts), c_loc(facts%force_error))]
 
 contains
 

@@ -1,0 +1,170 @@
+//! What of a displacement is deformation: all but the rigid motions of the bodies that the rows leave them.
+
+use crate::certificate::field::{range, touched, Field};
+use crate::certificate::{Data, NOISE};
+use crate::linalg::vector::{axpy, norm, norm_max, power_of_two_below};
+use crate::linalg::{Csr, Matrix};
+
+/// The gradient against the first one, where the projection ends.
+const STOP: f64 = 1e-13;
+
+/// `|u - R a|`, n, length. a is the fit by the rigid motions, least squares in D without the grounded unknowns, that rigid
+/// equality rows which join bodies do not resist, `H R a = 0`; rows that hold one body alone do not count. `|u|` on bodies
+/// without a null space.
+pub(super) fn deformation(field: &Field) -> Vec<f64> {
+    let data = field.data;
+    let mut left = field.answer.u.to_vec();
+    let mut first = Vec::with_capacity(data.bodies.len() + 1);
+    first.push(0);
+    for body in &data.bodies {
+        first.push(first[first.len() - 1] + body.null_space.cols);
+    }
+    let modes = first[data.bodies.len()];
+    if modes > 0 {
+        let weights = weights(data);
+        let mut amplitudes = Vec::with_capacity(modes);
+        for p in 0..data.bodies.len() {
+            amplitudes.extend(fitted(field, p).into_iter().map(|a| a * weights[p]));
+        }
+        let joints = joints(data, &first, &weights);
+        let kept = project(&joints, amplitudes);
+        for (p, body) in data.bodies.iter().enumerate() {
+            let a: Vec<f64> = kept[first[p]..first[p + 1]].iter().map(|b| b / weights[p]).collect();
+            body.null_space.mul_add(-1.0, &a, &mut left[range(body)]);
+        }
+    }
+    left.iter_mut().for_each(|v| *v = v.abs());
+    left
+}
+
+/// `(unit_p / unit_0)^1/2`, no unit: what an amplitude of body p counts for, `|R_p a_p|_D = unit_p^1/2 |a_p|`.
+fn weights(data: &Data) -> Vec<f64> {
+    let unit = data.bodies.first().map_or(1.0, |body| body.unit);
+    data.bodies.iter().map(|body| (body.unit / unit).sqrt()).collect()
+}
+
+/// `a = R'D u / unit` of body p, r, length, without grounded unknowns; once more of what is left, where rounding of a far
+/// travel has been.
+fn fitted(field: &Field, p: usize) -> Vec<f64> {
+    let (body, range) = (&field.data.bodies[p], field.range(p));
+    let mut all = vec![0.0; body.null_space.cols];
+    if all.is_empty() {
+        return all;
+    }
+    let by = field.unit / body.unit;
+    let mut left = field.free(p, |j| field.answer.u[j]);
+    for _ in 0..2 {
+        let weighed: Vec<f64> = range.clone().map(|j| by * field.metric[j] * left[j - range.start]).collect();
+        let step = body.null_space.mul_transposed(&weighed);
+        body.null_space.mul_add(-1.0, &step, &mut left);
+        left.iter_mut().zip(range.clone()).filter(|(_, j)| field.grounded[*j]).for_each(|(v, _)| *v = 0.0);
+        axpy(1.0, &step, &mut all);
+    }
+    all
+}
+
+/// `H R` of the rigid equality rows that join two or more bodies, each of length 1, m x (modes of all bodies).
+fn joints(data: &Data, first: &[usize], weights: &[f64]) -> Csr {
+    let rows = data.equalities;
+    let mut joints = Csr::empty(first[data.bodies.len()]);
+    for i in (0..rows.len()).filter(|i| rows.compliance[*i] == 0.0) {
+        if touched(data, rows, i).nth(1).is_none() {
+            continue;
+        }
+        let mut entries = Vec::new();
+        for p in touched(data, rows, i) {
+            let body = &data.bodies[p];
+            let range = range(body);
+            let own = rows.matrix.row(i).filter(|(j, _)| range.contains(j));
+            let own: Vec<(usize, f64)> = own.map(|(j, v)| (j - range.start, v)).collect();
+            let resisted = resisted(&own, body.null_space).into_iter().enumerate();
+            entries.extend(resisted.map(|(k, v)| (first[p] + k, v / weights[p])).filter(|e| e.1 != 0.0));
+        }
+        let length = norm(&entries.iter().map(|(_, v)| *v).collect::<Vec<_>>());
+        if length.is_normal() {
+            joints.push_row(entries.into_iter().map(|(j, v)| (j, v / length)));
+        }
+    }
+    joints
+}
+
+/// `h R`, r, of the entries of a row on one body; 0 where it is rounding.
+fn resisted(entries: &[(usize, f64)], motions: &Matrix) -> Vec<f64> {
+    let of = |k: usize| {
+        let terms = entries.iter().map(|&(j, v)| v * motions.get(j, k));
+        let (sum, size) = terms.fold((0.0, 0.0), |(sum, size), term: f64| (sum + term, size + term.abs()));
+        if f64::abs(sum) > NOISE * size {
+            sum
+        } else {
+            0.0
+        }
+    };
+    (0..motions.cols).map(of).collect()
+}
+
+/// `b - A^+ A b`, the part of b in the kernel of A: conjugate gradients for least squares, from zero. They end where the
+/// gradient is rounding of `A b`: what A hardly resists, because R is not exact, is no joint.
+fn project(a: &Csr, mut b: Vec<f64>) -> Vec<f64> {
+    // exact: squares neither over- nor underflow
+    let unit = power_of_two_below(norm_max(&b));
+    b.iter_mut().for_each(|b| *b /= unit);
+    let mut r = vec![0.0; a.rows()];
+    a.mul(&b, &mut r);
+    let gradient = |r: &[f64]| {
+        let mut s = vec![0.0; a.cols];
+        a.mul_transposed_add(1.0, r, &mut s);
+        s
+    };
+    let mut s = gradient(&r);
+    let mut direction = s.clone();
+    let mut size = norm(&s);
+    let end = (STOP * size).max(8.0 * f64::EPSILON * norm(&b));
+    let mut image = vec![0.0; a.rows()];
+    for _ in 0..2 * a.cols + 50 {
+        // also where it is no number
+        if !(size > end) {
+            break;
+        }
+        a.mul(&direction, &mut image);
+        let step = (size / norm(&image)).powi(2);
+        if !step.is_finite() {
+            break;
+        }
+        axpy(-step, &direction, &mut b);
+        axpy(-step, &image, &mut r);
+        s = gradient(&r);
+        let next = norm(&s);
+        let keep = (next / size).powi(2);
+        direction.iter_mut().zip(&s).for_each(|(d, s)| *d = s + keep * *d);
+        size = next;
+    }
+    b.iter_mut().for_each(|b| *b *= unit);
+    b
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn motions_that_joints_resist_are_taken_out() {
+        let mut a = Csr::empty(4);
+        let half = 0.5_f64.sqrt();
+        a.push_row([(0, half), (1, -half)]);
+        a.push_row([(1, half), (2, -half)]);
+        a.push_row([(0, half), (2, -half)]);
+        let kept = project(&a, vec![1.0, 2.0, 6.0, 7.0]);
+        assert!(kept.iter().zip([3.0, 3.0, 3.0, 7.0]).all(|(b, e)| (b - e).abs() < 1e-14), "{kept:?}");
+    }
+
+    /// The second row resists the motion of both by rounding of R alone.
+    #[test]
+    fn what_is_hardly_resisted_is_no_joint() {
+        let mut a = Csr::empty(2);
+        let half = 0.5_f64.sqrt();
+        a.push_row([(0, half), (1, -half)]);
+        a.push_row([(0, half), (1, -half * (1.0 + 1e-12))]);
+        let kept = project(&a, vec![1e6, 1e6 + 1.0]);
+        assert!(kept.iter().all(|b| (b - 1e6 - 0.5).abs() < 1e-5), "{kept:?}");
+    }
+}

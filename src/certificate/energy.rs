@@ -1,0 +1,73 @@
+//! The energies of an island: the duality gap, and what is minimised.
+
+use crate::certificate::field::Field;
+use crate::certificate::{share, Entry, NOISE};
+use crate::constraints::RowKind;
+use crate::linalg::vector::dot;
+
+/// Sums over the island, force x length.
+#[derive(Default)]
+pub(super) struct Energies {
+    /// `u'K u`
+    strain: f64,
+    /// `f'u`
+    work: f64,
+    /// `|u|'(|K||u| + |f| + |B'||lambda| + |H'||mu|)`
+    terms: f64,
+    /// `||f| + |B'||lambda| + |H'||mu||_{D^-1}^2`: f - r is known to rounding of its terms, so u is known to rounding of what
+    /// each of them would move.
+    forces: f64,
+    /// `lambda'C lambda + mu'C mu`, twice the energy of the compliant rows.
+    stored: f64,
+    /// `c'lambda + h'mu + lambda'C lambda + mu'C mu`, and the same of absolute values.
+    constrained: f64,
+    constrained_size: f64,
+    /// There are forces.
+    acting: bool,
+}
+
+impl Energies {
+    /// Adds body p, of which `K u` and `|K||u|` are given, n_p, force.
+    pub fn add_body(&mut self, field: &Field, p: usize, (strain, terms): (&[f64], &[f64])) {
+        let range = field.range(p);
+        let u = &field.answer.u[range.clone()];
+        let given: Vec<f64> = range.clone().map(|j| field.load(p, j).abs() + field.push_terms[j]).collect();
+        self.strain += dot(u, strain);
+        self.work += range.map(|j| field.load(p, j) * field.answer.u[j]).sum::<f64>();
+        self.terms += u.iter().zip(terms).zip(&given).map(|((u, t), g)| u.abs() * (t + g)).sum::<f64>();
+        let size = field.size(p, &given);
+        self.forces += size * (size / field.unit);
+        self.acting |= size > 0.0;
+    }
+
+    /// Adds the rows. A row without force does no work, however far it is: 0 x infinity is 0.
+    pub fn add_rows(&mut self, field: &Field) {
+        for (kind, forces) in
+            [(RowKind::Inequality, field.answer.lambda), (RowKind::Equality, field.answer.mu)]
+        {
+            let rows = field.rows(kind);
+            for (i, force) in forces.iter().enumerate().filter(|(_, force)| **force != 0.0) {
+                let (work, stored) = (force * rows.rhs[i], rows.compliance[i] * force * force);
+                self.stored += stored;
+                self.constrained += work + stored;
+                self.constrained_size += work.abs() + stored;
+            }
+        }
+    }
+
+    /// `|u'K u - f'u + c'lambda + h'mu + lambda'C lambda + mu'C mu|` against `tol` of the sum of their sizes and rounding; V
+    /// is the work of the loads, as far as it is known.
+    pub fn entry(&self, limit: f64, work_of_loads: f64) -> Entry {
+        let noise = NOISE * (self.terms + self.forces.max(work_of_loads) + self.stored);
+        // energies of forces whose squares underflow are not known
+        let noise = if self.acting && !noise.is_normal() { f64::NAN } else { noise };
+        let size = self.strain.abs() + self.work.abs() + self.constrained_size;
+        let gap = self.strain - self.work + self.constrained;
+        Entry::new(share(gap.abs(), limit * size + noise), limit, None)
+    }
+
+    /// `1/2 u'K u - f'u + 1/2 lambda'C lambda + 1/2 mu'C mu`
+    pub fn minimised(&self) -> f64 {
+        0.5 * self.strain - self.work + 0.5 * self.stored
+    }
+}

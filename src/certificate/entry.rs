@@ -1,0 +1,125 @@
+//! The figures of a certificate.
+
+/// One condition: where it is worst, and by how much.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Entry {
+    /// `limit x ratio`, no unit: relative to what the condition is measured against, rounding included.
+    pub figure: f64,
+    /// What is violated over what is allowed, no unit: the condition holds when this is at most 1.
+    pub ratio: f64,
+    /// Body or row; none where nothing is violated, and none of the duality gap.
+    pub place: Option<usize>,
+}
+
+impl Entry {
+    /// `limit`: no unit.
+    pub(super) fn new(ratio: f64, limit: f64, place: Option<usize>) -> Self {
+        // of nothing at all there is no place; of what is no number there is
+        Self { figure: limit * ratio, ratio, place: place.filter(|_| ratio != 0.0) }
+    }
+
+    /// The worse of the two, the first of equals.
+    pub(super) fn replace_if_worse(&mut self, other: Entry) {
+        let not_known = other.ratio.is_nan() && !self.ratio.is_nan();
+        if other.ratio > self.ratio || not_known {
+            *self = other;
+        }
+    }
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Certificate {
+    /// Largest figure allowed, no unit.
+    pub limit: f64,
+    /// `K u - f + B'lambda + H'mu`, worst body.
+    pub equilibrium: Entry,
+    /// `R'(f - B'lambda - H'mu)`, worst body.
+    pub balance: Entry,
+    /// `(b_i u - c_i - C_i lambda_i)_+`, worst row.
+    pub penetration: Entry,
+    /// `|h_i u - h_i - C_i mu_i|`, worst row.
+    pub equality: Entry,
+    /// `(lambda_i)_-`, worst row.
+    pub negative_force: Entry,
+    /// Open gap or force, whichever is less of what it may be, worst row.
+    pub complementarity: Entry,
+    /// `|u'K u - f'u + c'lambda + h'mu + lambda'C lambda + mu'C mu|`
+    pub duality_gap: Entry,
+    /// `1/2 u'K u - f'u + 1/2 lambda'C lambda + 1/2 mu'C mu`, force x length: what is minimised, springs of compliant rows
+    /// included.
+    pub energy: f64,
+}
+
+impl Certificate {
+    pub fn entries(&self) -> [Entry; 7] {
+        [
+            self.equilibrium,
+            self.balance,
+            self.penetration,
+            self.equality,
+            self.negative_force,
+            self.complementarity,
+            self.duality_gap,
+        ]
+    }
+
+    /// Largest ratio of an entry to what is allowed.
+    pub fn worst(&self) -> f64 {
+        let mut worst = Entry::default();
+        self.entries().into_iter().for_each(|entry| worst.replace_if_worse(entry));
+        worst.ratio
+    }
+
+    /// A figure that is not a number fails.
+    pub fn passed(&self) -> bool {
+        self.entries().iter().all(|entry| entry.ratio <= 1.0)
+    }
+
+    /// Forces and equilibrium pass, a gap or an energy does not: rounding of the loads may have moved it.
+    pub(super) fn only_motions_fail(&self) -> bool {
+        let forces = [self.equilibrium, self.balance, self.negative_force];
+        !self.passed() && forces.iter().all(|entry| entry.ratio <= 1.0)
+    }
+
+    /// The certificate of several islands: the worst of each entry, energies added.
+    pub fn merge(&mut self, other: &Certificate) {
+        self.limit = self.limit.max(other.limit);
+        self.equilibrium.replace_if_worse(other.equilibrium);
+        self.balance.replace_if_worse(other.balance);
+        self.penetration.replace_if_worse(other.penetration);
+        self.equality.replace_if_worse(other.equality);
+        self.negative_force.replace_if_worse(other.negative_force);
+        self.complementarity.replace_if_worse(other.complementarity);
+        self.duality_gap.replace_if_worse(other.duality_gap);
+        self.energy += other.energy;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn entry(ratio: f64, place: usize) -> Entry {
+        Entry::new(ratio, 1e-8, Some(place))
+    }
+
+    #[test]
+    fn the_worst_of_two_islands_counts_and_their_energies_add_up() {
+        let mut all =
+            Certificate { limit: 1e-8, balance: entry(0.5, 3), energy: -1.0, ..Certificate::default() };
+        let other = Certificate { balance: entry(2.0, 7), penetration: entry(0.1, 4), energy: -2.0, ..all };
+        all.merge(&other);
+        assert_eq!((all.balance.place, all.penetration.place, all.energy), (Some(7), Some(4), -3.0));
+        assert_eq!((all.worst(), all.balance.figure, all.passed()), (2.0, 2e-8, false));
+    }
+
+    #[test]
+    fn what_is_no_number_is_worse_than_any_and_stays() {
+        let mut all = Certificate { equality: entry(f64::NAN, 2), ..Certificate::default() };
+        all.merge(&Certificate { equality: entry(1e300, 5), ..Certificate::default() });
+        assert!(all.equality.ratio.is_nan() && all.equality.place == Some(2) && all.worst().is_nan());
+        let mut known = Certificate { equality: entry(1e300, 5), ..Certificate::default() };
+        known.merge(&all);
+        assert!(!known.passed() && known.equality.place == Some(2));
+    }
+}

@@ -1,0 +1,52 @@
+//! What rounding of the loads explains in gaps and energies.
+//!
+//! f - B'lambda - H'mu is known to rounding of its terms, and u to rounding of what they would move. Where loads and
+//! forces of the rows all but cancel, as in the last increments of Newton's method or where loads act on held dofs alone,
+//! that is far more than u itself: its gaps and energies are lost, although every force is right to rounding.
+
+use std::collections::HashSet;
+
+use crate::certificate::energy::Energies;
+use crate::certificate::rows::Measured;
+use crate::certificate::{Certificate, Response, NOISE};
+use crate::constraints::RowKind;
+use crate::error::Result;
+
+/// Judges once more with `64 eps (V phi_i)^1/2`, length, added to what the gaps that fail may be, and `64 eps V` to the rounding
+/// of the energies. The worst row comes first, and the first that still fails is the last.
+pub(super) fn by_rounding(
+    limit: f64,
+    energies: &Energies,
+    rows: &mut Measured,
+    response: &mut dyn Response,
+    certificate: &mut Certificate,
+) -> Result<()> {
+    let work = response.work_of_loads()?;
+    certificate.duality_gap = energies.entry(limit, work);
+    let mut failing = failing(rows);
+    let mut asked = 0;
+    for &(kind, i, _) in &failing {
+        asked += 1;
+        let compliance = response.compliance_of(kind, i)?;
+        let row = &mut rows.of(kind)[i];
+        row.gap_limit += NOISE * (work * compliance).sqrt();
+        if !(row.gap_ratio() <= 1.0) {
+            break;
+        }
+    }
+    // those that come after one that fails are not known
+    let skipped: HashSet<(bool, usize)> =
+        failing.drain(asked..).map(|(kind, i, _)| (kind == RowKind::Equality, i)).collect();
+    rows.judge_gaps(limit, certificate, |kind, i| !skipped.contains(&(kind == RowKind::Equality, i)));
+    Ok(())
+}
+
+/// Rows whose gaps fail, with their ratios, the worst first.
+fn failing(rows: &Measured) -> Vec<(RowKind, usize, f64)> {
+    let contact = rows.contact.iter().enumerate().map(|(i, row)| (RowKind::Inequality, i, row.gap_ratio()));
+    let equalities =
+        rows.equalities.iter().enumerate().map(|(i, row)| (RowKind::Equality, i, row.gap_ratio()));
+    let mut failing: Vec<_> = contact.chain(equalities).filter(|(_, _, ratio)| !(*ratio <= 1.0)).collect();
+    failing.sort_by(|a, b| b.2.total_cmp(&a.2));
+    failing
+}

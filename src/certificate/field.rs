@@ -1,0 +1,116 @@
+//! What all entries need, over all unknowns and rows of the island.
+
+use std::ops::Range;
+
+use crate::certificate::deformation::deformation;
+use crate::certificate::{metric, Answer, BodyData, Data};
+use crate::constraints::{row_scales, RowKind, RowSet};
+use crate::linalg::vector::{norm_max, power_of_two_below, weighted_norm};
+
+pub(super) struct Field<'a> {
+    pub data: &'a Data<'a>,
+    pub answer: Answer<'a>,
+    /// U, the power of two below max D, force / length.
+    pub unit: f64,
+    /// D / U, n, no unit.
+    pub metric: Vec<f64>,
+    /// Grounded unknowns, n.
+    pub grounded: Vec<bool>,
+    /// r = B'lambda + H'mu, n, force.
+    pub push: Vec<f64>,
+    /// `|B'||lambda| + |H'||mu|`, n, force.
+    pub push_terms: Vec<f64>,
+    /// delta, n, length.
+    pub deformation: Vec<f64>,
+    /// `s_i / U^1/2` of contact and equality rows, no unit.
+    pub scales: [Vec<f64>; 2],
+}
+
+impl<'a> Field<'a> {
+    pub fn new(data: &'a Data<'a>, answer: Answer<'a>) -> Self {
+        let n = answer.u.len();
+        let mut metric = metric(data, n);
+        let unit = power_of_two_below(norm_max(&metric));
+        metric.iter_mut().for_each(|d| *d /= unit);
+        let (mut push, mut push_terms) = (vec![0.0; n], vec![0.0; n]);
+        for (rows, multipliers) in [(data.contact, answer.lambda), (data.equalities, answer.mu)] {
+            rows.matrix.mul_transposed_add(1.0, multipliers, &mut push);
+            rows.matrix.mul_transposed_abs_add(multipliers, &mut push_terms);
+        }
+        let mut grounded = vec![false; n];
+        for body in &data.bodies {
+            body.grounded.iter().for_each(|j| grounded[body.start + *j as usize] = true);
+        }
+        let scales = [data.contact, data.equalities].map(|rows| row_scales(rows, &metric, unit));
+        let deformation = Vec::new();
+        let mut field = Self { data, answer, unit, metric, grounded, push, push_terms, deformation, scales };
+        field.deformation = deformation_of(&field);
+        field
+    }
+
+    pub fn rows(&self, kind: RowKind) -> &'a RowSet {
+        match kind {
+            RowKind::Inequality => self.data.contact,
+            RowKind::Equality => self.data.equalities,
+        }
+    }
+
+    /// Unknowns of body p among all.
+    pub fn range(&self, p: usize) -> Range<usize> {
+        range(&self.data.bodies[p])
+    }
+
+    /// `f_j`, force.
+    pub fn load(&self, p: usize, j: usize) -> f64 {
+        let body = &self.data.bodies[p];
+        body.load.map_or(0.0, |f| f[j - body.start])
+    }
+
+    /// `values` over the unknowns of body p, 0 where they are grounded.
+    pub fn free(&self, p: usize, value: impl Fn(usize) -> f64) -> Vec<f64> {
+        self.range(p).map(|j| if self.grounded[j] { 0.0 } else { value(j) }).collect()
+    }
+
+    /// `|v|_{D^-1}` over the unknowns of body p, n_p, force.
+    pub fn size(&self, p: usize, v: &[f64]) -> f64 {
+        let start = self.data.bodies[p].start;
+        weighted_norm(v, |i| 1.0 / self.metric[start + i])
+    }
+
+    /// The bodies that row i touches, ascending.
+    pub fn touched<'s>(&'s self, rows: &'s RowSet, i: usize) -> impl Iterator<Item = usize> + 's {
+        touched(self.data, rows, i)
+    }
+}
+
+fn deformation_of(field: &Field) -> Vec<f64> {
+    let mut left = deformation(field);
+    let unit = field.unit;
+    for j in (0..left.len()).filter(|j| field.grounded[*j]) {
+        left[j] = field.push[j].abs() / unit / field.metric[j];
+    }
+    left
+}
+
+/// Unknowns of a body among all.
+pub(super) fn range(body: &BodyData) -> Range<usize> {
+    body.start..body.start + body.stiffness.order()
+}
+
+/// The body that has unknown j.
+pub(super) fn body_of(data: &Data, j: usize) -> usize {
+    data.bodies.partition_point(|body| body.start <= j) - 1
+}
+
+/// The bodies that row i touches, ascending.
+pub(super) fn touched<'s>(data: &'s Data, rows: &'s RowSet, i: usize) -> impl Iterator<Item = usize> + 's {
+    let mut end = 0;
+    rows.matrix.row(i).filter_map(move |(j, _)| {
+        if j < end {
+            return None;
+        }
+        let p = body_of(data, j);
+        end = range(&data.bodies[p]).end;
+        Some(p)
+    })
+}

@@ -1,0 +1,221 @@
+//! Equilibrium and rigid balance of every body, `res = K u - f + r`.
+
+use crate::certificate::energy::Energies;
+use crate::certificate::field::Field;
+use crate::certificate::{positive, share, Certificate, Entry, NOISE};
+use crate::constraints::{RowKind, RowSet};
+use crate::error::Result;
+use crate::linalg::vector::weighted_norm;
+use crate::linalg::Matrix;
+
+/// The part of the forces of the island that rounding may excuse in the equilibrium of one body: where a body has moved so
+/// far that its strain is lost, the answer is not known.
+const EXCUSED: f64 = 1e-3;
+
+/// How large the forces are.
+pub(super) struct Forces {
+    /// `|f|_{D^-1} + |r|_{D^-1}` of every body without its grounded unknowns, force; none of a body that has no others.
+    sizes: Vec<Option<f64>>,
+    /// `(|f|^2 + |r|^2)^1/2` of all bodies without loads on grounded unknowns, force. Without any such load the forces that the
+    /// motion asked for would take belong to it.
+    everywhere: f64,
+    /// Deformation of the island, `U |delta|_D` without grounded unknowns, force.
+    strain: f64,
+    /// There are forces.
+    acting: bool,
+}
+
+impl Forces {
+    pub fn new(field: &Field) -> Self {
+        let (mut sizes, mut loads, mut pushes) = (Vec::new(), Vec::new(), Vec::new());
+        for (p, body) in field.data.bodies.iter().enumerate() {
+            let load = field.size(p, &field.free(p, |j| field.load(p, j)));
+            let push = field.size(p, &field.free(p, |j| field.push[j]));
+            sizes.push((body.grounded.len() < body.stiffness.order()).then_some(load + push));
+            loads.push(load);
+            pushes.push(field.size(p, &field.push[field.range(p)]));
+        }
+        let forces = norm_of([loads.as_slice(), pushes.as_slice()].concat());
+        let moved = if loads.iter().all(|load| *load == 0.0) { asked(field) } else { 0.0 };
+        let rounding = |j: usize| NOISE * field.answer.u[j].abs();
+        let strains = (0..field.data.bodies.len()).map(|p| {
+            let strain = field.free(p, |j| positive(field.deformation[j] - rounding(j)));
+            let start = field.range(p).start;
+            weighted_norm(&strain, |i| field.metric[start + i])
+        });
+        let strain = field.unit * norm_of(strains.collect());
+        Self { sizes, everywhere: forces + moved, strain, acting: forces > 0.0 }
+    }
+
+    /// Rounding of the largest forces, where the body has no other: force.
+    fn idle(&self, size: f64) -> f64 {
+        if size <= NOISE * self.everywhere {
+            NOISE * self.everywhere
+        } else {
+            0.0
+        }
+    }
+
+    /// What the force of a row may differ from zero by, `tol Lambda_i` with `Lambda_i = s_i min (|f| + |r|)_{D^-1}` over the
+    /// bodies it touches, force. Of a body whose unknowns are all grounded those count that the row touches: nothing passes
+    /// from one to another.
+    pub fn limit_of(&self, field: &Field, kind: RowKind, i: usize) -> f64 {
+        let rows = field.rows(kind);
+        let allowed = |p: usize| {
+            let size = self.sizes[p].unwrap_or_else(|| at_row(field, rows, i, p));
+            (field.data.limit * size).max(self.idle(size))
+        };
+        match field.touched(rows, i).map(allowed).reduce(smaller) {
+            Some(least) => field.scales[kind as usize][i] * least,
+            None => field.data.limit * alone(rows, i),
+        }
+    }
+}
+
+/// A spring without entries, `-c_i <= C_i lambda_i`, has the force `(-c_i)_+ / C_i`.
+fn alone(rows: &RowSet, i: usize) -> f64 {
+    share(positive(-rows.rhs[i]), rows.compliance[i])
+}
+
+/// The smaller of the two; what is no number stays none.
+fn smaller(a: f64, b: f64) -> f64 {
+    if b >= a {
+        a
+    } else {
+        b
+    }
+}
+
+/// `|f|_{D^-1} + |r|_{D^-1}` over the unknowns of body p in row i, force.
+fn at_row(field: &Field, rows: &RowSet, i: usize, p: usize) -> f64 {
+    let (start, mut there) = (field.range(p).start, vec![0.0; field.range(p).len()]);
+    let own = rows.matrix.row(i).map(|(j, _)| j).filter(|j| field.range(p).contains(j));
+    own.clone().for_each(|j| there[j - start] = field.load(p, j));
+    let load = field.size(p, &there);
+    own.for_each(|j| there[j - start] = field.push[j]);
+    load + field.size(p, &there)
+}
+
+/// The forces that the motion asked for by the rows and by grounded unknowns would take where it is asked for, force:
+/// `|S c_-| + |S_H h|` and `|D^1/2 f_j / K_jj|` with the largest D of the body that is not grounded. A body that is moved, not
+/// loaded, has no other measure of its strain.
+fn asked(field: &Field) -> f64 {
+    let by_rows = |kind: RowKind, motion: fn(f64) -> f64| {
+        let (rows, scale) = (field.rows(kind), &field.scales[kind as usize]);
+        field.unit * norm_of((0..rows.len()).map(|i| scale[i] * motion(rows.rhs[i])).collect())
+    };
+    let by_support = (0..field.data.bodies.len()).map(|p| {
+        let softest = |free: f64, j: usize| if field.grounded[j] { free } else { field.metric[j].max(free) };
+        let stiffness = field.range(p).fold(0.0, softest).sqrt();
+        let moved = field.range(p).filter(|j| field.grounded[*j]);
+        norm_of(moved.map(|j| stiffness * field.load(p, j) / field.metric[j]).collect())
+    });
+    let by_support = norm_of(by_support.collect());
+    let contact = by_rows(RowKind::Inequality, |c| c.min(0.0));
+    contact + by_rows(RowKind::Equality, |h| h) + by_support
+}
+
+/// `|x|`, however small or large.
+fn norm_of(x: Vec<f64>) -> f64 {
+    weighted_norm(&x, |_| 1.0)
+}
+
+/// Equilibrium and balance of body p, and its part of the energies.
+pub(super) fn judge(
+    field: &Field,
+    forces: &Forces,
+    p: usize,
+    certificate: &mut Certificate,
+    energies: &mut Energies,
+) -> Result<()> {
+    let (range, limit) = (field.range(p), field.data.limit);
+    let (mut strain, mut terms) = (vec![0.0; range.len()], vec![0.0; range.len()]);
+    field.data.bodies[p].stiffness.mul_with_terms(&field.answer.u[range], &mut strain, &mut terms)?;
+    let shares = [
+        equilibrium(field, forces, p, (&strain, &terms)),
+        excused(field, forces, p, (&strain, &terms)),
+        grounded(field, p, (&strain, &terms)),
+    ];
+    for share in shares {
+        certificate.equilibrium.replace_if_worse(Entry::new(share, limit, Some(p)));
+    }
+    certificate.balance.replace_if_worse(Entry::new(balance(field, forces, p)?, limit, Some(p)));
+    energies.add_body(field, p, (&strain, &terms));
+    Ok(())
+}
+
+/// `res_j`, force, and 64 eps of its terms `t = |K||u| + |f| + |B'||lambda| + |H'||mu|`, from `K u` and `|K||u|` of body p.
+fn residual(field: &Field, p: usize, (strain, terms): (&[f64], &[f64]), j: usize) -> (f64, f64) {
+    let (i, f) = (j - field.range(p).start, field.load(p, j));
+    (strain[i] - f + field.push[j], NOISE * (terms[i] + f.abs() + field.push_terms[j]))
+}
+
+/// `|(|res_j| - 64 eps t_j)_+|_{D^-1}` against `tol (|f| + |r| + |K u|)_{D^-1}`, without grounded unknowns; no unit.
+fn equilibrium(field: &Field, forces: &Forces, p: usize, products: (&[f64], &[f64])) -> f64 {
+    let Some(size) = forces.sizes[p] else { return 0.0 };
+    let start = field.range(p).start;
+    let left = field.free(p, |j| {
+        let (residual, noise) = residual(field, p, products, j);
+        positive(residual.abs() - noise)
+    });
+    let strain = field.size(p, &field.free(p, |j| products.0[j - start]));
+    share(field.size(p, &left), field.data.limit * (size + strain) + forces.idle(size))
+}
+
+/// What rounding has excused there against the most it may excuse; no unit.
+fn excused(field: &Field, forces: &Forces, p: usize, products: (&[f64], &[f64])) -> f64 {
+    if !forces.acting {
+        return 0.0;
+    }
+    let left = field.free(p, |j| {
+        let (residual, noise) = residual(field, p, products, j);
+        residual.abs().min(noise)
+    });
+    share(field.size(p, &left), EXCUSED * (forces.everywhere + forces.strain))
+}
+
+/// `(|res_j| - 64 eps t_j)_+` against `tol (|r_j| + sum_k |K_jk||u_k|)`, the worst grounded unknown; no unit.
+fn grounded(field: &Field, p: usize, products: (&[f64], &[f64])) -> f64 {
+    let start = field.range(p).start;
+    let of = |j: usize| {
+        let (residual, noise) = residual(field, p, products, j);
+        let size = field.push[j].abs() + products.1[j - start];
+        share(positive(residual.abs() - noise), field.data.limit * size)
+    };
+    let worse = |worst: f64, share: f64| if share <= worst || worst.is_nan() { worst } else { share };
+    field.data.bodies[p].grounded.iter().map(|j| of(start + *j as usize)).fold(0.0, worse)
+}
+
+/// `|R'(f - r)|` against `tol (|f| + |r|)_{D^-1} + 64 eps ||f| + |B'||lambda| + |H'||mu||_{D^-1}`, without grounded unknowns; no
+/// unit. u takes no part in it: however far a body has moved, its forces must balance. Soft motions balance them by
+/// `(K R)'u`.
+fn balance(field: &Field, forces: &Forces, p: usize) -> Result<f64> {
+    let body = &field.data.bodies[p];
+    let Some(size) = forces.sizes[p].filter(|_| body.null_space.cols > 0) else { return Ok(0.0) };
+    let terms = field.size(p, &field.free(p, |j| field.load(p, j).abs() + field.push_terms[j]));
+    let allowed = field.data.limit * size + NOISE * terms + forces.idle(size);
+    let rest = field.free(p, |j| field.load(p, j) - field.push[j]);
+    let mut resultants = body.null_space.mul_transposed(&rest);
+    let weight = field.unit / body.unit;
+    let ratio = share(weighted_norm(&resultants, |_| weight), allowed);
+    if ratio <= 1.0 {
+        return Ok(ratio);
+    }
+    let resisted = resisted(field, p)?;
+    let u = field.free(p, |j| field.answer.u[j]);
+    resultants.iter_mut().zip(resisted.mul_transposed(&u)).for_each(|(left, held)| *left -= held);
+    Ok(share(weighted_norm(&resultants, |_| weight), allowed))
+}
+
+/// `K R` of body p, n_p x r, force / length; 0 where it is rounding.
+fn resisted(field: &Field, p: usize) -> Result<Matrix> {
+    let body = &field.data.bodies[p];
+    let (n, r) = (body.null_space.rows, body.null_space.cols);
+    let (mut all, mut terms) = (Matrix::zeros(n, r)?, vec![0.0; n]);
+    for k in 0..r {
+        body.stiffness.mul_with_terms(body.null_space.col(k), all.col_mut(k), &mut terms)?;
+        let rounding = |(v, t): &(&mut f64, &f64)| v.abs() <= NOISE * **t;
+        all.col_mut(k).iter_mut().zip(&terms).filter(rounding).for_each(|(v, _)| *v = 0.0);
+    }
+    Ok(all)
+}

@@ -1,0 +1,74 @@
+//! Unknowns held so stiffly that their neighbours count for nothing, such as those of penalty supports.
+
+use crate::body::Stiffness;
+use crate::error::Result;
+use crate::linalg::memory::zeros;
+
+/// K_jj against T_j. Chains, trusses, beams and solids, also where they are a million times as stiff as what they stand on,
+/// have no more than 4.5.
+const GROUNDED: f64 = 1e3;
+
+/// The unknowns with `K_jj > 1000 T_j`, `T_j = sum_{i != j} K_ij^2 / K_ii`: what the neighbours add to the stiffness at j, and
+/// K_jj is force / length. One without neighbours is grounded when it has a stiffness at all. Ascending; none of a body that
+/// is known by its products only. Belongs to the matrix: once for all answers.
+pub fn grounded(k: Stiffness) -> Result<Vec<u32>> {
+    let Stiffness::Matrix(k) = k else { return Ok(Vec::new()) };
+    let mut neighbours = zeros(k.order(), "the stiffness of neighbours")?;
+    for i in 0..k.order() {
+        for (j, k_ij) in k.lower_row(i).filter(|(j, _)| *j != i) {
+            neighbours[j] += through(k_ij, k.diagonal(i));
+            neighbours[i] += through(k_ij, k.diagonal(j));
+        }
+    }
+    let is_grounded = |j: &usize| k.diagonal(*j) > GROUNDED * neighbours[*j];
+    Ok((0..k.order()).filter(is_grounded).map(|j| j as u32).collect())
+}
+
+/// `k_ij^2 / k_ii`, force / length; the square alone might overflow.
+fn through(k_ij: f64, k_ii: f64) -> f64 {
+    if k_ii > 0.0 {
+        (k_ij / k_ii) * k_ij
+    } else {
+        0.0
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::linalg::Symmetric;
+
+    /// Springs between n unknowns, and what holds single ones.
+    fn chain(springs: &[f64], held: &[(usize, f64)]) -> Symmetric {
+        let n = springs.len() + 1;
+        let (mut ptr, mut col, mut val) = (vec![0], Vec::new(), Vec::new());
+        for i in 0..n {
+            let (left, right) = (i.checked_sub(1).map(|i| springs[i]), springs.get(i));
+            if let Some(left) = left {
+                col.push(i as u32 - 1);
+                val.push(-left);
+            }
+            let ground: f64 = held.iter().filter(|(at, _)| *at == i).map(|(_, k)| k).sum();
+            col.push(i as u32);
+            val.push(left.unwrap_or(0.0) + right.unwrap_or(&0.0) + ground);
+            ptr.push(col.len());
+        }
+        Symmetric::new(ptr, col, val)
+    }
+
+    #[test]
+    fn penalty_supports_and_single_springs_are_grounded_in_any_unit() {
+        for unit in [1e-290, 1.0, 1e290] {
+            let k = chain(&[unit, unit], &[(0, 1e6 * unit), (2, 1e2 * unit)]);
+            assert_eq!(grounded((&k).into()).unwrap(), [0], "{unit:e}");
+            assert_eq!(grounded((&chain(&[], &[(0, 4.0 * unit)])).into()).unwrap(), [0]);
+        }
+        assert!(grounded((&chain(&[], &[])).into()).unwrap().is_empty(), "no stiffness holds nothing");
+    }
+
+    #[test]
+    fn stiff_parts_on_soft_ones_are_not() {
+        let contrast = chain(&[1.0, 1.0, 1e6, 1e6, 1e6, 1.0], &[(0, 1.0), (6, 1e-8)]);
+        assert!(grounded((&contrast).into()).unwrap().is_empty());
+    }
+}

@@ -1,0 +1,163 @@
+//! The certificate: how well an answer (u, lambda, mu) of one island satisfies the optimality conditions of (10)-(11),
+//! computed from the host's own matrices. An island is a set of bodies with all the rows among them. Every measure is
+//! local, of one body or of one row: what is large elsewhere excuses nothing here. The same in any units and for any scaling
+//! of the rows.
+//!
+//! C = diag(1/k) is the compliance of the rows, D = diag K, r = B'lambda + H'mu, `s_i = (b_i D^-1 b_i' + C_i)^-1/2`, tol the
+//! limit. Forces are measured by `|f|_{D^-1}`, lengths by `|u|_D`. All three are kept in units of U, the power of two below
+//! max D: `(sum U/D f^2)^1/2` is a force, `(sum D/U u^2)^1/2` a length, `s_i / U^1/2` a number that is the same to the last
+//! bit in units that differ by powers of two.
+
+mod deformation;
+mod energy;
+mod entry;
+mod excuses;
+mod field;
+mod forces;
+mod grounded;
+mod rows;
+
+use crate::body::Stiffness;
+use crate::constraints::{RowKind, RowSet};
+use crate::error::Result;
+use crate::linalg::Matrix;
+
+use energy::Energies;
+pub use entry::{Certificate, Entry};
+use field::Field;
+use forces::Forces;
+pub use grounded::grounded;
+use rows::Measured;
+
+/// Rounding errors of a sum of these terms.
+const NOISE: f64 = 64.0 * f64::EPSILON;
+
+/// One island as the host gave it: its unknowns are those of its bodies one after the other.
+#[derive(Clone)]
+pub struct Data<'a> {
+    /// Bodies in the order of their unknowns.
+    pub bodies: Vec<BodyData<'a>>,
+    /// `B u <= c`, m x n. A gap of +infinity never closes.
+    pub contact: &'a RowSet,
+    /// `H u = h`, q x n.
+    pub equalities: &'a RowSet,
+    /// tol, no unit: what every figure may be.
+    pub limit: f64,
+}
+
+/// One body of the island, n_p unknowns.
+#[derive(Clone)]
+pub struct BodyData<'a> {
+    /// First of its unknowns among those of the island.
+    pub start: usize,
+    /// K_p, n_p x n_p, force / length.
+    pub stiffness: Stiffness<'a>,
+    /// f_p, n_p, force; zero when absent.
+    pub load: Option<&'a [f64]>,
+    /// R_p, n_p x r, no unit, with `R'DR = unit`.
+    pub null_space: &'a Matrix,
+    /// Force / length, also the metric of dofs without stiffness.
+    pub unit: f64,
+    /// Unknowns of the body held so stiffly that their neighbours count for nothing, ascending: see [`grounded`].
+    pub grounded: &'a [u32],
+}
+
+/// An answer over all unknowns, contact rows, equality rows of the island.
+#[derive(Clone, Copy)]
+pub struct Answer<'a> {
+    /// n, length.
+    pub u: &'a [f64],
+    /// m, force.
+    pub lambda: &'a [f64],
+    /// q, force.
+    pub mu: &'a [f64],
+}
+
+/// What loads and unit forces of rows move, by K+: asked for only where rounding of the loads may excuse a gap.
+pub trait Response {
+    /// V, force x length: sum over the bodies of `g'K+ g`, g being the part of the load that balances itself, without the
+    /// grounded unknowns.
+    fn work_of_loads(&mut self) -> Result<f64>;
+    /// `phi_i = b_i K+ b_i'`, length / force, of a row made to balance itself on each body.
+    fn compliance_of(&mut self, kind: RowKind, row: usize) -> Result<f64>;
+}
+
+/// What is known about an answer.
+#[derive(Debug, Clone, Default)]
+pub struct Judgement {
+    pub certificate: Certificate,
+    /// Of every body.
+    pub bodies: Vec<BodyJudgement>,
+    /// Of every contact row.
+    pub contact: Vec<RowJudgement>,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct BodyJudgement {
+    /// `eta_p = |S v|_p / |S^-1 lambda|_p` over the rows that touch the body, no unit: estimated relative error of its
+    /// forces; 0 without forces and violations. v is `min(g_i, lambda_i / s_i^2)` of a contact row with the open gap g_i, and
+    /// the error of an equality row.
+    pub force_error: f64,
+}
+
+/// What counts as zero at one row.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct RowJudgement {
+    /// What its gap may differ from zero by: `tol L_i` and rounding, length.
+    pub gap: f64,
+    /// What its force may differ from zero by: `tol Lambda_i`, force.
+    pub force: f64,
+}
+
+/// The judgement of an answer. Fails where the host does, that has the products with K.
+pub fn certify(data: &Data, answer: Answer, response: &mut dyn Response) -> Result<Judgement> {
+    let field = Field::new(data, answer);
+    let mut certificate = Certificate { limit: data.limit, ..Certificate::default() };
+    let forces = Forces::new(&field);
+    let (mut rows, mut energies) = (Measured::new(&field, &forces), Energies::default());
+    for p in 0..data.bodies.len() {
+        forces::judge(&field, &forces, p, &mut certificate, &mut energies)?;
+    }
+    energies.add_rows(&field);
+    rows.judge(data.limit, &mut certificate);
+    certificate.duality_gap = energies.entry(data.limit, 0.0);
+    certificate.energy = energies.minimised();
+    if certificate.only_motions_fail() {
+        excuses::by_rounding(data.limit, &energies, &mut rows, response, &mut certificate)?;
+    }
+    let bodies = rows.force_errors(&field);
+    Ok(Judgement { certificate, bodies, contact: rows.limits() })
+}
+
+/// `D = diag K` over all unknowns, force / length.
+pub fn metric(data: &Data, unknowns: usize) -> Vec<f64> {
+    let mut metric = vec![0.0; unknowns];
+    for body in &data.bodies {
+        (0..body.stiffness.order())
+            .for_each(|i| metric[body.start + i] = body.stiffness.metric(i, body.unit));
+    }
+    metric
+}
+
+/// `(x)_+`; what is no number stays none.
+fn positive(x: f64) -> f64 {
+    if x <= 0.0 {
+        0.0
+    } else {
+        x
+    }
+}
+
+/// What a part is of what is allowed; nothing of nothing is 0, and what is measured against infinity is not known.
+fn share(part: f64, allowed: f64) -> f64 {
+    if part == 0.0 {
+        0.0
+    } else if allowed < f64::INFINITY {
+        part / allowed
+    } else {
+        f64::NAN
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,163 @@
+//! Penetration, equality, sign and complementarity, every row for itself.
+
+use crate::certificate::field::Field;
+use crate::certificate::forces::Forces;
+use crate::certificate::{positive, share, BodyJudgement, Certificate, Entry, RowJudgement, NOISE};
+use crate::constraints::RowKind;
+use crate::linalg::vector::{ratio, weighted_norm};
+
+/// A row with what it is measured against.
+pub(super) struct Row {
+    kind: RowKind,
+    /// lambda_i or mu_i, force.
+    force: f64,
+    /// `c_i + C_i lambda_i - b_i u`, length.
+    open: f64,
+    /// `|lambda_i| / s_i^2`, length: what an error of the force as large as itself would do to the gap.
+    given_way: f64,
+    /// What a gap may differ from zero by, length; not known of a row without scale.
+    pub gap_limit: f64,
+    /// What a force may, force.
+    force_limit: f64,
+}
+
+impl Row {
+    fn new(field: &Field, forces: &Forces, kind: RowKind, i: usize) -> Self {
+        let rows = field.rows(kind);
+        let (scale, multipliers) = match kind {
+            RowKind::Inequality => (field.scales[0][i], field.answer.lambda),
+            RowKind::Equality => (field.scales[1][i], field.answer.mu),
+        };
+        let force = multipliers[i];
+        let empty = rows.matrix.row(i).next().is_none();
+        let given_way = if scale > 0.0 { (force.abs() / scale) / scale / field.unit } else { 0.0 };
+        let moved = rows.matrix.row_dot_abs(i, field.answer.u);
+        let size = rows.matrix.row_dot_abs(i, &field.deformation) + given_way;
+        let rounding = NOISE * (moved + rows.rhs[i].abs() + rows.compliance[i] * force.abs());
+        // a row that weighs nothing is not known to hold
+        let known = scale > 0.0 || empty;
+        let gap_limit = if known { field.data.limit * size + rounding } else { f64::NAN };
+        let force_limit = forces.limit_of(field, kind, i);
+        Self { kind, force, open: rows.open_gap(i, field.answer.u, force), given_way, gap_limit, force_limit }
+    }
+
+    /// `(b_i u - c_i - C_i lambda_i)_+`, or the error of an equality row, against what it may be; no unit.
+    fn violation(&self) -> f64 {
+        let violation = match self.kind {
+            RowKind::Inequality => positive(-self.open),
+            RowKind::Equality => self.open.abs(),
+        };
+        share(violation, self.gap_limit)
+    }
+
+    /// `(-lambda_i)_+ / (tol Lambda_i)`
+    fn sign(&self) -> f64 {
+        share(positive(-self.force), self.force_limit)
+    }
+
+    /// `min(g_i / (tol L_i + noise_i), lambda_i / (tol Lambda_i))` of an open row with a force.
+    fn complementarity(&self) -> f64 {
+        let (force, gap) = (positive(self.force), positive(self.open));
+        let closed = if gap == f64::INFINITY { gap } else { share(gap, self.gap_limit) };
+        let idle = share(force, self.force_limit);
+        if closed.is_nan() || idle.is_nan() {
+            return if force == 0.0 { 0.0 } else { f64::NAN };
+        }
+        closed.min(idle)
+    }
+
+    /// The violation that tells the error of its force: `min(g_i, lambda_i / s_i^2)` or the error of an equality row, length.
+    fn natural(&self) -> f64 {
+        match self.kind {
+            RowKind::Inequality => self.open.min(self.given_way * self.force.signum()).abs(),
+            RowKind::Equality => self.open.abs(),
+        }
+    }
+
+    /// The worse of what is violated in its gap; no unit.
+    pub fn gap_ratio(&self) -> f64 {
+        match self.kind {
+            RowKind::Inequality => worse(self.violation(), self.complementarity()),
+            RowKind::Equality => self.violation(),
+        }
+    }
+}
+
+fn worse(a: f64, b: f64) -> f64 {
+    if a >= b || a.is_nan() {
+        a
+    } else {
+        b
+    }
+}
+
+/// All rows of the island.
+pub(super) struct Measured {
+    pub contact: Vec<Row>,
+    pub equalities: Vec<Row>,
+}
+
+impl Measured {
+    pub fn new(field: &Field, forces: &Forces) -> Self {
+        let of = |kind| (0..field.rows(kind).len()).map(|i| Row::new(field, forces, kind, i)).collect();
+        Self { contact: of(RowKind::Inequality), equalities: of(RowKind::Equality) }
+    }
+
+    pub fn of(&mut self, kind: RowKind) -> &mut Vec<Row> {
+        match kind {
+            RowKind::Inequality => &mut self.contact,
+            RowKind::Equality => &mut self.equalities,
+        }
+    }
+
+    /// The entries of the rows.
+    pub fn judge(&mut self, limit: f64, certificate: &mut Certificate) {
+        self.judge_gaps(limit, certificate, |_, _| true);
+        certificate.negative_force = worst(&self.contact, limit, Row::sign, |_| true);
+    }
+
+    /// The entries of gaps, by the rows `counts` names.
+    pub fn judge_gaps(
+        &self,
+        limit: f64,
+        certificate: &mut Certificate,
+        counts: impl Fn(RowKind, usize) -> bool,
+    ) {
+        let contact = |i: usize| counts(RowKind::Inequality, i);
+        certificate.penetration = worst(&self.contact, limit, Row::violation, contact);
+        certificate.complementarity = worst(&self.contact, limit, Row::complementarity, contact);
+        let equalities = |i: usize| counts(RowKind::Equality, i);
+        certificate.equality = worst(&self.equalities, limit, Row::violation, equalities);
+    }
+
+    /// What counts as zero at every contact row.
+    pub fn limits(&self) -> Vec<RowJudgement> {
+        self.contact.iter().map(|row| RowJudgement { gap: row.gap_limit, force: row.force_limit }).collect()
+    }
+
+    /// `eta_p = |S v|_p / |S^-1 lambda|_p` of every body; both in units of force.
+    pub fn force_errors(&self, field: &Field) -> Vec<BodyJudgement> {
+        let mut parts = vec![(Vec::new(), Vec::new()); field.data.bodies.len()];
+        for (kind, rows) in [(RowKind::Inequality, &self.contact), (RowKind::Equality, &self.equalities)] {
+            let scales = &field.scales[kind as usize];
+            for (i, row) in rows.iter().enumerate().filter(|(i, _)| scales[*i] > 0.0) {
+                let (moved, force) = (field.unit * (scales[i] * row.natural()), row.force / scales[i]);
+                for p in field.touched(field.rows(kind), i) {
+                    parts[p].0.push(moved);
+                    parts[p].1.push(force);
+                }
+            }
+        }
+        let norm = |x: &[f64]| weighted_norm(x, |_| 1.0);
+        let of = |(moved, forces): &(Vec<f64>, Vec<f64>)| ratio(norm(moved), norm(forces));
+        parts.iter().map(|part| BodyJudgement { force_error: of(part) }).collect()
+    }
+}
+
+fn worst(rows: &[Row], limit: f64, measure: fn(&Row) -> f64, counts: impl Fn(usize) -> bool) -> Entry {
+    let mut worst = Entry::default();
+    for (i, row) in rows.iter().enumerate().filter(|(i, _)| counts(*i)) {
+        worst.replace_if_worse(Entry::new(measure(row), limit, Some(i)));
+    }
+    worst
+}

@@ -1,0 +1,5 @@
+use super::*;
+
+mod by_hand;
+mod lies;
+mod model;

@@ -1,0 +1,177 @@
+//! By hand: single springs, units, what over- or underflows, what is not known.
+
+use super::model::{chain, Model, Point, LIMIT};
+use super::*;
+
+/// Spring 4 at a wall, loaded by 2 towards an obstacle at 0.25: u = .25, lambda = 1. `c`: compliance of the row.
+fn spring(unit: f64, c: f64) -> Model {
+    let parts = vec![chain(&[], &[(0, 4.0 * unit)]).loaded(&[(0, 2.0 * unit)])];
+    Model { parts, contact: vec![(vec![(0, 1.0)], 0.25, c / unit)], active: vec![0], ..Model::default() }
+}
+
+fn point(u: f64, lambda: f64) -> Point {
+    Point { u: vec![u], lambda: vec![lambda], mu: vec![] }
+}
+
+#[test]
+fn the_exact_answer_passes_in_any_unit_and_each_fault_is_named() {
+    for unit in [1.0, 1e-20, 2.1e11] {
+        let with = |u, lambda: f64| spring(unit, 0.0).certificate(&point(u, lambda * unit));
+        assert!(with(0.25, 1.0).passed());
+        let unbalanced = with(0.25, 0.9);
+        assert!(unbalanced.equilibrium.ratio > 1.0 && unbalanced.equilibrium.place == Some(0));
+        // |res| = .1 of |r| + |K u| = .9 + 1, by itself: the spring has no neighbours
+        assert!((unbalanced.equilibrium.figure - 0.1 / 1.9).abs() < 1e-12, "{unbalanced:?}");
+        let through = with(0.5, 0.0);
+        assert!(through.equilibrium.ratio <= 1.0 && through.penetration.ratio > 1.0);
+        assert_eq!(through.penetration.place, Some(0));
+        assert!(with(0.0, 2.0).complementarity.ratio > 1.0);
+        assert!(with(0.75, -1.0).negative_force.ratio > 1.0);
+        // s = 2, |f| + |r| = (2 + 1) / 2: -lambda = 1 of s (|f| + |r|) = 3
+        assert!((with(0.75, -1.0).negative_force.figure - 1.0 / 3.0).abs() < 1e-12);
+        assert!(!with(f64::NAN, 1.0).passed() && !with(0.25, f64::NAN).passed());
+    }
+}
+
+/// A spring of stiffness 4 in the row: 4 u = 2 - lambda, u - .25 = lambda / 4, so that lambda = .5, u = .375.
+#[test]
+fn the_answer_on_a_compliant_row_passes_in_any_unit_and_each_fault_is_named() {
+    for unit in [1.0, 1e-20, 2.1e11] {
+        let with = |u, lambda: f64| spring(unit, 0.25).certificate(&point(u, lambda * unit));
+        let exact = with(0.375, 0.5);
+        assert!(exact.entries().iter().all(|entry| entry.figure <= 1e-15), "{exact:?}");
+        let rigid = with(0.25, 1.0);
+        assert!(rigid.equilibrium.ratio <= 1.0 && rigid.penetration.ratio <= 1.0);
+        // g = .25 of L = |r| / K + lambda (1/4 + 1/4) = .25 + .5; lambda = 1 of sqrt 2 (2 + 1) / 2
+        let share = (0.25_f64 / 0.75).min(1.0 / (1.5 * 2f64.sqrt()));
+        assert!((rigid.complementarity.figure - share).abs() < 1e-5 && rigid.complementarity.ratio > 1.0);
+        // u K u - f u + c lambda + lambda C lambda = .25 - .5 + .25 + .25, of .25 + .5 + .25 + .25
+        assert!((rigid.duality_gap.figure - 0.25 / 1.25).abs() < 1e-5 && rigid.duality_gap.ratio > 1.0);
+        assert!(with(0.5, 0.0).penetration.ratio > 1.0);
+    }
+}
+
+#[test]
+fn no_distance_excuses_forces_that_do_not_balance() {
+    for far in [0.0, 1.0, 1e10, 1e20] {
+        let model =
+            Model { parts: vec![chain(&[1.0], &[]).loaded(&[(0, 0.5), (1, 0.5)])], ..Model::default() };
+        let certificate = model.certificate(&Point { u: vec![far; 2], lambda: vec![], mu: vec![] });
+        assert!(!certificate.passed() && certificate.balance.ratio > 1.0, "{far:e}");
+    }
+}
+
+#[test]
+fn no_distance_excuses_a_strain_that_is_missing() {
+    let model = Model { parts: vec![chain(&[1.0], &[]).loaded(&[(0, 1.0), (1, -1.0)])], ..Model::default() };
+    let with = |u: [f64; 2]| model.certificate(&Point { u: u.to_vec(), lambda: vec![], mu: vec![] });
+    for far in [0.0, 1.0, 1e10, 1e13, 1e16, 1e20] {
+        assert!(with([far; 2]).equilibrium.ratio > 1.0, "{far:e}");
+    }
+    for far in [0.0, 1.0, 1e6, 1e10] {
+        assert!(with([far + 0.5, far - 0.5]).passed(), "{far:e}");
+    }
+}
+
+/// The load and the force of the obstacle cancel to `1e-12` of themselves: what is left moves the spring.
+#[test]
+fn the_energies_of_forces_that_all_but_cancel_are_known_to_their_rounding() {
+    let mut model = spring(1.0, 0.0);
+    model.contact[0].1 = 1e-12;
+    let moved = |by: f64| {
+        let u = 1e-12 + by;
+        model.certificate(&point(u, 2.0 - 4.0 * u))
+    };
+    assert!(moved(-1e-15).passed(), "rounding of the load moves the spring as far");
+    assert!(moved(-1e-12).duality_gap.ratio > 1.0, "a force across an open gap");
+}
+
+/// A spring 1e-300 pushed by 2 against a wall at 1: squares of the displacement that it alone would have overflow.
+#[test]
+fn an_answer_whose_sizes_overflow_does_not_pass() {
+    let parts = vec![chain(&[], &[(0, 1e-300)]).loaded(&[(0, 2.0)])];
+    let model = Model { parts, contact: vec![(vec![(0, 1.0)], 1.0, 0.0)], ..Model::default() };
+    let beyond = model.certificate(&point(2e300, 0.0));
+    assert!(!beyond.passed(), "{beyond:?}");
+}
+
+/// A spring 1 pushed by 2 against a wall at 1, all `size` times as large: what is judged is the same, or not known.
+#[test]
+fn no_answer_is_so_small_or_large_that_a_wrong_one_passes() {
+    for size in [1e-310, 1e-200, 1e-160, 1e-100, 1.0, 1e100, 1e160, 1e200] {
+        let parts = vec![chain(&[], &[(0, 1.0)]).loaded(&[(0, 2.0 * size)])];
+        let model = Model { parts, contact: vec![(vec![(0, 1.0)], size, 0.0)], ..Model::default() };
+        let judged = |u: f64, l: f64| model.certificate(&point(u * size, l * size));
+        let right = judged(1.0, 1.0);
+        assert!(right.passed() == (1e-150..1e150).contains(&size), "{size:e} {right:?}");
+        assert!(right.equilibrium.ratio <= 1.0 && right.penetration.ratio <= 1.0);
+        for (u, l) in [(2.0, 0.0), (1.0, 0.9), (0.5, 1.5), (3.0, -1.0)] {
+            assert!(!judged(u, l).passed(), "{size:e} {u} {l}");
+        }
+    }
+}
+
+/// The square of the row's entry underflows: its scale is not known.
+#[test]
+fn a_row_whose_scale_is_lost_does_not_pass() {
+    let parts = vec![chain(&[], &[(0, 1.0)]).loaded(&[(0, 2.0)])];
+    let model = Model { parts, contact: vec![(vec![(0, 1e-200)], 1e-200, 0.0)], ..Model::default() };
+    assert!(!model.certificate(&point(2.0, 0.0)).passed());
+}
+
+/// Two chains, the first pushed against the second: K in 2^a, forces in 2^b, lengths in 2^(b - a).
+#[test]
+fn units_that_differ_by_powers_of_two_change_no_bit() {
+    let model = |k: f64, f: f64| {
+        let springs = |s: &[f64]| s.iter().map(|s| s * k).collect::<Vec<_>>();
+        let parts = vec![
+            chain(&springs(&[2.0, 3.1, 1.7]), &[]).loaded(&[(0, 0.7 * f), (2, 0.3 * f)]),
+            chain(&springs(&[1.9, 2.3]), &[(2, 3.7 * k)]),
+            chain(&springs(&[0.3]), &[]),
+        ];
+        let contact = vec![(vec![(3, 1.0), (4, -1.0)], 0.1 * f / k, 0.1 / k)];
+        let equalities = vec![(vec![(6, 1.0), (7, -1.0)], 0.02 * f / k, 0.0)];
+        Model { parts, contact, equalities, active: vec![0] }
+    };
+    let answer = model(1.0, 1.0).answer();
+    for error in [1.0, 1.0 + 1e-9, 1.001] {
+        let judged = |a: i32, b: i32| {
+            let (k, f) = (2f64.powi(a), 2f64.powi(b));
+            let scaled = |v: &[f64], by: f64| v.iter().map(|v| v * by).collect::<Vec<_>>();
+            let point = Point {
+                u: scaled(&answer.u, f / k),
+                lambda: scaled(&answer.lambda, f * error),
+                mu: scaled(&answer.mu, f),
+            };
+            let (judgement, _) = model(k, f).judged(&point);
+            (judgement.certificate.entries(), judgement.bodies)
+        };
+        for (a, b) in [(1, 0), (0, 1), (-31, 17), (100, -100)] {
+            assert_eq!(judged(0, 0), judged(a, b), "{a} {b}");
+        }
+    }
+}
+
+#[test]
+fn the_error_of_the_forces_on_a_body_is_estimated() {
+    let (model, error) = (spring(1.0, 0.0), 1e-6);
+    // the force is off by 1e-6, the spring is where it is with this force
+    let lambda = 1.0 + error;
+    let judged = model.judged(&point((2.0 - lambda) / 4.0, lambda)).0;
+    let estimated = judged.bodies[0].force_error;
+    assert!((0.5..2.0).contains(&(estimated / error)), "{estimated:e}");
+    assert_eq!(model.judged(&point(0.25, 1.0)).0.bodies[0].force_error, 0.0);
+    // s = 2, (|f| + |r|) = (2 + 1) / 2; L = |r| / K + lambda / s^2 = .5
+    let zero = model.judged(&point(0.25, 1.0)).0.contact[0];
+    assert!(
+        (zero.force / (3.0 * LIMIT) - 1.0).abs() < 1e-12 && (zero.gap / (0.5 * LIMIT) - 1.0).abs() < 1e-5
+    );
+}
+
+#[test]
+fn what_the_loads_move_is_asked_for_only_where_it_may_excuse_a_gap() {
+    assert_eq!(spring(1.0, 0.0).judged(&point(0.25, 1.0)).1, 0);
+    assert_eq!(spring(1.0, 0.0).judged(&point(0.3, 1.0)).1, 0, "there is no equilibrium");
+    assert_eq!(spring(1.0, 0.0).judged(&point(0.75, -1.0)).1, 0, "a force of the wrong sign");
+    assert_eq!(spring(1.0, 0.0).judged(&point(0.5, 0.0)).1, 2, "the work and the row");
+}

@@ -1,0 +1,185 @@
+//! Right answers pass and wrong ones do not, in models that hold things of different size.
+
+use super::model::{chain, truss, Model, Point};
+
+/// Two chains that stand on the ground, the first pushed by 1 at its end against the second across a gap of .1.
+fn held() -> Model {
+    let parts = vec![
+        chain(&[2.0, 3.1, 1.7], &[(0, 4.3)]).loaded(&[(3, 1.0), (1, 0.3)]),
+        chain(&[1.9, 2.3], &[(2, 3.7)]),
+    ];
+    let contact = vec![(vec![(3, 1.0), (4, -1.0)], 0.1, 0.0)];
+    Model { parts, contact, active: vec![0], ..Model::default() }
+}
+
+#[test]
+fn held_bodies() {
+    held().refuses_wrong_forces("held");
+    held().refuses_wrong_motions("held", 1.0);
+}
+
+/// A free chain that travels before it touches a held one.
+fn travelling(far: f64) -> Model {
+    let parts = vec![
+        chain(&[2.0, 3.1, 1.7, 2.9], &[]).loaded(&[(0, 0.01), (2, 0.02)]),
+        chain(&[1.9, 2.3], &[(2, 3.7)]),
+    ];
+    let contact = vec![(vec![(4, 1.0), (5, -1.0)], far, 0.0)];
+    Model { parts, contact, active: vec![0], ..Model::default() }
+}
+
+#[test]
+fn travel_excuses_no_force() {
+    for far in [0.0, 1e-2, 1.0, 1e2, 1e4, 1e6, 1e8, 1e10] {
+        travelling(far).refuses_wrong_forces(&format!("travel {far:e}"));
+        if far <= 1e4 {
+            travelling(far).refuses_wrong_motions(&format!("travel {far:e}"), 0.02);
+        }
+    }
+}
+
+#[test]
+fn a_stiff_part_hides_no_error_of_a_soft_one() {
+    for contrast in [1e2, 1e4, 1e6] {
+        let stiff = contrast * 3.1;
+        for held in [vec![], vec![(0, 2.0)], vec![(5, 2.0 * contrast)]] {
+            let springs = [2.0, 1.3, stiff, stiff, stiff];
+            let parts =
+                vec![chain(&springs, &held).loaded(&[(5, 1.0), (0, -0.2)]), chain(&[1.9], &[(1, 3.7)])];
+            let contact = vec![(vec![(0, 1.0), (6, -1.0)], -0.5, 0.0)];
+            let model = Model { parts, contact, active: vec![0], ..Model::default() };
+            let name = format!("contrast {contrast:e} {held:?}");
+            model.refuses_wrong_forces(&name);
+            model.refuses_wrong_motions(&name, 1.0);
+        }
+    }
+}
+
+/// A body that a spring of 1e-8 holds and an obstacle stops.
+#[test]
+fn a_body_on_a_weak_spring() {
+    let parts = vec![chain(&[2.0, 3.1, 1.7], &[(0, 1e-8)]).loaded(&[(0, 1.0)]), chain(&[1.9], &[(1, 3.7)])];
+    let contact = vec![(vec![(3, 1.0), (4, -1.0)], 0.3, 0.0)];
+    let model = Model { parts, contact, active: vec![0], ..Model::default() };
+    model.refuses_wrong_forces("weak");
+    model.refuses_wrong_motions("weak", 1.0);
+}
+
+/// The end of a chain is moved by .4 through a stiff spring, the other pushes a chain on the ground.
+#[test]
+fn displacements_prescribed_by_penalty_hide_nothing() {
+    for penalty in [1e8, 1e10, 1e12, 1e16, 1e20] {
+        let parts = vec![
+            chain(&[2.0, 3.1, 1.7], &[(0, penalty)]).loaded(&[(0, 0.4 * penalty)]),
+            chain(&[1.9, 2.3], &[(2, penalty)]),
+        ];
+        let contact = vec![(vec![(3, 1.0), (4, -1.0)], 0.1, 0.0)];
+        let model = Model { parts, contact, active: vec![0], ..Model::default() };
+        let name = format!("penalty {penalty:e}");
+        model.refuses_wrong_forces(&name);
+        model.refuses_wrong_motions(&name, 0.4);
+    }
+}
+
+/// Load and force of the obstacle cancel to this part of themselves.
+#[test]
+fn loads_that_all_but_cancel_pass_by_their_rounding_and_forces_are_right() {
+    for left in [1e-6, 1e-9, 1e-12] {
+        let mut model = held();
+        model.parts[0].load = vec![0.0, 0.0, 0.0, 1.0];
+        model.parts[1].load = vec![-1.0 + left, 0.0, 0.0];
+        model.contact[0].1 = 0.0;
+        model.refuses_wrong_forces(&format!("cancelling to {left:e}"));
+    }
+}
+
+#[test]
+fn subdomains_glued_together_move_as_one() {
+    for far in [0.0, 1.0, 1e5] {
+        let parts = vec![
+            chain(&[2.0, 3.1], &[]).loaded(&[(0, 0.01)]),
+            chain(&[1.7, 2.9], &[]),
+            chain(&[0.3, 2.2], &[]),
+            chain(&[1.9], &[(1, 3.7)]),
+        ];
+        let equalities = vec![(vec![(2, 1.0), (3, -1.0)], 0.0, 0.0), (vec![(5, 2.0), (6, -2.0)], 0.0, 0.0)];
+        let contact = vec![(vec![(8, 1.0), (9, -1.0)], far, 0.0)];
+        let model = Model { parts, contact, equalities, active: vec![0] };
+        let name = format!("glued {far:e}");
+        model.refuses_wrong_forces(&name);
+        if far <= 1.0 {
+            model.refuses_wrong_motions(&name, 0.01);
+        }
+        let right = model.answer();
+        for p in 0..3 {
+            let mut wrong = right.clone();
+            (3 * p..3 * p + 3).for_each(|j| wrong.u[j] += 1e-5 * 0.01);
+            model.refused(&format!("{name}, body {p} moved"), &wrong);
+        }
+    }
+}
+
+#[test]
+fn a_truss_that_is_free_to_turn() {
+    for far in [0.0, 1.0, 1e3] {
+        let nodes = [[0.0, 0.0], [1.0, 0.1], [0.2, 1.0], [1.3, 1.1]];
+        let bars = [(0, 1, 2.0), (0, 2, 3.1), (1, 2, 1.7), (1, 3, 2.3), (2, 3, 1.1)];
+        let parts = vec![truss(&nodes, &bars).loaded(&[(5, -0.02), (7, -0.03), (6, 0.005)])];
+        let contact =
+            vec![(vec![(1, -1.0)], far, 0.0), (vec![(3, -1.0)], far, 0.0), (vec![(2, 1.0)], far, 0.0)];
+        let model = Model { parts, contact, active: vec![0, 1, 2], ..Model::default() };
+        assert!(model.answer().lambda.iter().all(|l| *l > 0.0), "{:?}", model.answer());
+        let name = format!("truss {far:e}");
+        model.refuses_wrong_forces(&name);
+        model.refuses_wrong_motions(&name, 0.01);
+    }
+}
+
+/// Gaps of rows that never close change no verdict, however far, and no force has to bear them.
+#[test]
+fn far_rows_excuse_nothing() {
+    let gaps = [1e6, 1e12, 1e20, 1e30, 1e300, f64::INFINITY];
+    for far in gaps {
+        let mut model = held();
+        model.contact.push((vec![(1, 1.0), (5, -1.0)], far, 0.0));
+        model.contact.push((vec![(2, 1.0)], far, 0.5));
+        let name = format!("far {far:e}");
+        model.refuses_wrong_forces(&name);
+        model.refuses_wrong_motions(&name, 1.0);
+        let (near, with) = (held().certificate(&held().answer()), model.certificate(&model.answer()));
+        assert_eq!((near.worst(), near.energy), (with.worst(), with.energy), "{name}");
+        let mut wrong = model.answer();
+        wrong.lambda[1] = 1e-5;
+        model.refused(&format!("{name}, a force across the gap"), &wrong);
+        let open = Point { u: vec![0.0; 7], lambda: vec![0.0; 3], mu: vec![] };
+        model.refused(&format!("{name}, nothing at all"), &open);
+    }
+}
+
+/// A penalty support, a single spring, a free chain and a far row, all in one.
+#[test]
+fn what_is_light_is_judged_by_itself() {
+    for heavy in [1.0, 1e5, 1e9] {
+        let parts = vec![
+            chain(&[2.0, 3.1], &[(0, 4.3)]).loaded(&[(2, 1.0)]),
+            chain(&[1.9], &[(1, 3.7)]),
+            chain(&[2.0, 3.1], &[(0, 4.3)]).loaded(&[(2, heavy)]),
+            chain(&[1.9], &[(1, 3.7)]),
+        ];
+        let contact = vec![(vec![(2, 1.0), (3, -1.0)], 0.01, 0.0), (vec![(7, 1.0), (8, -1.0)], 0.0, 0.0)];
+        let model = Model { parts, contact, active: vec![0, 1], ..Model::default() };
+        model.refuses_wrong_forces(&format!("heavy {heavy:e}"));
+    }
+}
+
+/// Single springs against each other, each of them a body that nothing of its own surrounds.
+#[test]
+fn single_springs_are_judged_by_the_forces_on_them() {
+    for stiffness in [1e-8, 1.0, 1e8] {
+        let parts = vec![chain(&[], &[(0, 4.0)]).loaded(&[(0, 2.0)]), chain(&[], &[(0, stiffness)])];
+        let contact = vec![(vec![(0, 1.0), (1, -1.0)], 0.1, 0.0)];
+        let model = Model { parts, contact, active: vec![0], ..Model::default() };
+        model.refuses_wrong_forces(&format!("springs {stiffness:e}"));
+        model.refuses_wrong_motions(&format!("springs {stiffness:e}"), 0.5 / stiffness.max(1.0));
+    }
+}

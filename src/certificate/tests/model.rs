@@ -1,0 +1,318 @@
+//! Small dense models: their right answers by elimination, and the certificate of any other.
+
+use super::*;
+use crate::linalg::{Csr, Symmetric};
+
+pub const LIMIT: f64 = 1e-8;
+
+/// A dense matrix by rows.
+type Dense = Vec<Vec<f64>>;
+
+#[derive(Clone)]
+pub struct Part {
+    pub k: Dense,
+    pub load: Vec<f64>,
+    /// Columns, before they are made orthonormal.
+    pub motions: Vec<Vec<f64>>,
+}
+
+/// Rows as (entries, right-hand side, compliance).
+pub type Rows = Vec<(Vec<(usize, f64)>, f64, f64)>;
+
+#[derive(Clone, Default)]
+pub struct Model {
+    pub parts: Vec<Part>,
+    pub contact: Rows,
+    pub equalities: Rows,
+    /// Contact rows that carry a force.
+    pub active: Vec<usize>,
+}
+
+#[derive(Clone, Debug)]
+pub struct Point {
+    pub u: Vec<f64>,
+    pub lambda: Vec<f64>,
+    pub mu: Vec<f64>,
+}
+
+/// A chain of springs between unknowns, and springs to the ground.
+pub fn chain(springs: &[f64], held: &[(usize, f64)]) -> Part {
+    let n = springs.len() + 1;
+    let mut k = vec![vec![0.0; n]; n];
+    for (i, s) in springs.iter().enumerate() {
+        k[i][i] += s;
+        k[i + 1][i + 1] += s;
+        k[i][i + 1] -= s;
+        k[i + 1][i] -= s;
+    }
+    held.iter().for_each(|&(i, s)| k[i][i] += s);
+    let motions = if held.is_empty() { vec![vec![1.0; n]] } else { Vec::new() };
+    Part { k, load: vec![0.0; n], motions }
+}
+
+/// A plane truss, two unknowns of every node; bars as (node, node, stiffness).
+pub fn truss(nodes: &[[f64; 2]], bars: &[(usize, usize, f64)]) -> Part {
+    let n = 2 * nodes.len();
+    let mut k = vec![vec![0.0; n]; n];
+    for &(a, b, s) in bars {
+        let along = [nodes[b][0] - nodes[a][0], nodes[b][1] - nodes[a][1]];
+        let length = along[0].hypot(along[1]);
+        let ends = [(2 * a, -along[0]), (2 * a + 1, -along[1]), (2 * b, along[0]), (2 * b + 1, along[1])];
+        for (i, x) in ends {
+            for (j, y) in ends {
+                k[i][j] += s * x * y / (length * length);
+            }
+        }
+    }
+    let of = |motion: &dyn Fn([f64; 2]) -> [f64; 2]| nodes.iter().flat_map(|x| motion(*x)).collect();
+    let motions = vec![of(&|_| [1.0, 0.0]), of(&|_| [0.0, 1.0]), of(&|[x, y]| [-y, x])];
+    Part { k, load: vec![0.0; n], motions }
+}
+
+impl Part {
+    pub fn loaded(mut self, loads: &[(usize, f64)]) -> Self {
+        loads.iter().for_each(|&(i, f)| self.load[i] += f);
+        self
+    }
+
+    fn matrix(&self) -> Symmetric {
+        let (mut ptr, mut col, mut val) = (vec![0], Vec::new(), Vec::new());
+        for (i, row) in self.k.iter().enumerate() {
+            for (j, v) in row.iter().enumerate().take(i + 1).filter(|(j, v)| **v != 0.0 || *j == i) {
+                col.push(j as u32);
+                val.push(*v);
+            }
+            ptr.push(col.len());
+        }
+        Symmetric::new(ptr, col, val)
+    }
+
+    /// Orthonormal in D.
+    fn null_space(&self) -> Matrix {
+        let n = self.k.len();
+        let mut basis: Vec<Vec<f64>> = Vec::new();
+        let inner = |a: &[f64], b: &[f64]| (0..n).map(|i| self.k[i][i] * a[i] * b[i]).sum::<f64>();
+        for motion in &self.motions {
+            let mut v = motion.clone();
+            for _ in 0..2 {
+                for b in &basis {
+                    let part = inner(b, &v);
+                    v.iter_mut().zip(b).for_each(|(v, b)| *v -= part * b);
+                }
+                let length = inner(&v, &v).sqrt();
+                v.iter_mut().for_each(|v| *v /= length);
+            }
+            basis.push(v);
+        }
+        Matrix { rows: n, cols: basis.len(), data: basis.concat() }
+    }
+}
+
+/// The solution of a symmetric system scaled to unit diagonal, refined.
+fn solve(a: &Dense, b: &[f64]) -> Vec<f64> {
+    let n = a.len();
+    let scale: Vec<f64> = (0..n).map(|i| if a[i][i] > 0.0 { a[i][i] } else { 1.0 }.sqrt().recip()).collect();
+    let largest = |i: usize| (0..n).map(|j| (a[i][j] * scale[j]).abs()).fold(0.0, f64::max);
+    let scale: Vec<f64> = (0..n).map(|i| if a[i][i] > 0.0 { scale[i] } else { largest(i).recip() }).collect();
+    let lu = |b: &[f64]| {
+        let mut m: Dense = (0..n)
+            .map(|i| {
+                let mut row: Vec<f64> = (0..n).map(|j| scale[i] * a[i][j] * scale[j]).collect();
+                row.push(scale[i] * b[i]);
+                row
+            })
+            .collect();
+        for c in 0..n {
+            let p = (c..n).fold(c, |p, i| if m[i][c].abs() > m[p][c].abs() { i } else { p });
+            m.swap(c, p);
+            for i in c + 1..n {
+                let by = m[i][c] / m[c][c];
+                if by != 0.0 {
+                    let (upper, lower) = m.split_at_mut(i);
+                    lower[0].iter_mut().zip(&upper[c]).skip(c).for_each(|(x, y)| *x -= by * y);
+                }
+            }
+        }
+        let mut x = vec![0.0; n];
+        for i in (0..n).rev() {
+            let rest: f64 = (i + 1..n).map(|j| m[i][j] * x[j]).sum();
+            x[i] = (m[i][n] - rest) / m[i][i];
+        }
+        (0..n).map(|i| scale[i] * x[i]).collect::<Vec<f64>>()
+    };
+    let mut x = lu(b);
+    for _ in 0..3 {
+        let left: Vec<f64> = (0..n).map(|i| b[i] - (0..n).map(|j| a[i][j] * x[j]).sum::<f64>()).collect();
+        x.iter_mut().zip(lu(&left)).for_each(|(x, d)| *x += d);
+    }
+    x
+}
+
+/// K+ by elimination of the bordered matrix.
+pub struct ByElimination<'a>(pub &'a Model, pub usize);
+
+impl ByElimination<'_> {
+    fn work(&self, load: &[f64]) -> f64 {
+        let (mut work, mut start) = (0.0, 0);
+        for part in &self.0.parts {
+            let (n, basis) = (part.k.len(), part.null_space());
+            let mut a = vec![vec![0.0; n + basis.cols]; n + basis.cols];
+            for i in 0..n {
+                a[i][..n].copy_from_slice(&part.k[i]);
+                for k in 0..basis.cols {
+                    a[i][n + k] = part.k[i][i] * basis.get(i, k);
+                    a[n + k][i] = a[i][n + k];
+                }
+            }
+            let mut b = load[start..start + n].to_vec();
+            b.resize(n + basis.cols, 0.0);
+            let v = solve(&a, &b);
+            work += (0..n).map(|i| v[i] * load[start + i]).sum::<f64>();
+            start += n;
+        }
+        work
+    }
+}
+
+impl Response for ByElimination<'_> {
+    fn work_of_loads(&mut self) -> Result<f64> {
+        self.1 += 1;
+        let mut load = Vec::new();
+        for part in &self.0.parts {
+            let from = load.len();
+            load.extend_from_slice(&part.load);
+            grounded((&part.matrix()).into())?.iter().for_each(|j| load[from + *j as usize] = 0.0);
+        }
+        Ok(self.work(&load))
+    }
+
+    fn compliance_of(&mut self, kind: RowKind, row: usize) -> Result<f64> {
+        self.1 += 1;
+        let rows = if kind == RowKind::Equality { &self.0.equalities } else { &self.0.contact };
+        let mut load = vec![0.0; self.0.unknowns()];
+        rows[row].0.iter().for_each(|&(j, v)| load[j] = v);
+        Ok(self.work(&load))
+    }
+}
+
+impl Model {
+    pub fn unknowns(&self) -> usize {
+        self.parts.iter().map(|part| part.k.len()).sum()
+    }
+
+    fn rows(rows: &Rows, n: usize) -> RowSet {
+        let mut matrix = Csr::empty(n);
+        rows.iter().for_each(|row| matrix.push_row(row.0.iter().copied()));
+        RowSet {
+            matrix: matrix.into(),
+            rhs: rows.iter().map(|row| row.1).collect(),
+            compliance: rows.iter().map(|row| row.2).collect(),
+        }
+    }
+
+    /// With the forces of the active rows alone.
+    pub fn answer(&self) -> Point {
+        let n = self.unknowns();
+        let rows: Vec<_> = self.active.iter().map(|&i| &self.contact[i]).chain(&self.equalities).collect();
+        let m = rows.len();
+        let mut a = vec![vec![0.0; n + m]; n + m];
+        let (mut b, mut start) = (vec![0.0; n + m], 0);
+        for part in &self.parts {
+            for i in 0..part.k.len() {
+                a[start + i][start..start + part.k.len()].copy_from_slice(&part.k[i]);
+                b[start + i] = part.load[i];
+            }
+            start += part.k.len();
+        }
+        for (i, (entries, rhs, compliance)) in rows.iter().enumerate() {
+            for &(j, v) in entries {
+                a[n + i][j] = v;
+                a[j][n + i] = v;
+            }
+            a[n + i][n + i] = -compliance;
+            b[n + i] = *rhs;
+        }
+        let x = solve(&a, &b);
+        let mut lambda = vec![0.0; self.contact.len()];
+        self.active.iter().enumerate().for_each(|(k, &i)| lambda[i] = x[n + k]);
+        Point { u: x[..n].to_vec(), lambda, mu: x[n + self.active.len()..].to_vec() }
+    }
+
+    /// The judgement, and how often K+ has been asked for.
+    pub fn judged(&self, point: &Point) -> (Judgement, usize) {
+        let n = self.unknowns();
+        let (contact, equalities) = (Self::rows(&self.contact, n), Self::rows(&self.equalities, n));
+        let matrices: Vec<Symmetric> = self.parts.iter().map(Part::matrix).collect();
+        let spaces: Vec<Matrix> = self.parts.iter().map(Part::null_space).collect();
+        let grounded: Vec<Vec<u32>> = matrices.iter().map(|k| grounded(k.into()).unwrap()).collect();
+        let (mut bodies, mut start) = (Vec::new(), 0);
+        for (p, part) in self.parts.iter().enumerate() {
+            bodies.push(BodyData {
+                start,
+                stiffness: (&matrices[p]).into(),
+                load: Some(&part.load),
+                null_space: &spaces[p],
+                unit: 1.0,
+                grounded: &grounded[p],
+            });
+            start += part.k.len();
+        }
+        let data = Data { bodies, contact: &contact, equalities: &equalities, limit: LIMIT };
+        let answer = Answer { u: &point.u, lambda: &point.lambda, mu: &point.mu };
+        let mut response = ByElimination(self, 0);
+        let judgement = certify(&data, answer, &mut response).unwrap();
+        (judgement, response.1)
+    }
+
+    pub fn certificate(&self, point: &Point) -> Certificate {
+        self.judged(point).0.certificate
+    }
+
+    /// The right answer passes, also rounded to 15 digits, and so do its parts only where they are known.
+    pub fn accepted(&self, name: &str) -> Point {
+        let right = self.answer();
+        let certificate = self.certificate(&right);
+        assert!(certificate.worst() <= 0.5, "{name}: {certificate:#?} {right:?}");
+        let digits = |v: &Vec<f64>| v.iter().map(|v| format!("{v:.14e}").parse().unwrap()).collect();
+        let rounded = Point { u: digits(&right.u), lambda: digits(&right.lambda), mu: digits(&right.mu) };
+        let certificate = self.certificate(&rounded);
+        assert!(certificate.passed(), "{name} in 15 digits: {certificate:#?} {right:?}");
+        right
+    }
+
+    pub fn refused(&self, name: &str, point: &Point) {
+        let certificate = self.certificate(point);
+        assert!(!certificate.passed(), "{name}: {certificate:#?} {point:?}");
+    }
+
+    /// Everything that may be wrong with the forces of an answer is refused.
+    pub fn refuses_wrong_forces(&self, name: &str) {
+        let right = self.accepted(name);
+        let times = |by: f64| {
+            let scaled = |v: &[f64]| v.iter().map(|v| by * v).collect::<Vec<_>>();
+            Point { u: right.u.clone(), lambda: scaled(&right.lambda), mu: scaled(&right.mu) }
+        };
+        for by in [1.5, 1.0 + 1e-5, 0.0, -1.0] {
+            self.refused(&format!("{name}, all forces x {by}"), &times(by));
+        }
+        for i in self.active.iter().copied() {
+            for by in [0.0, -1.0, 1.0 + 1e-5] {
+                let mut wrong = right.clone();
+                wrong.lambda[i] *= by;
+                self.refused(&format!("{name}, force {i} x {by}"), &wrong);
+            }
+        }
+    }
+
+    /// ... and any unknown that is moved by 1e-5 of `deformation`.
+    pub fn refuses_wrong_motions(&self, name: &str, deformation: f64) {
+        let right = self.accepted(name);
+        for j in 0..right.u.len() {
+            for by in [1e-5, -1e-5] {
+                let mut wrong = right.clone();
+                wrong.u[j] += by * deformation;
+                self.refused(&format!("{name}, unknown {j} moved by {by}"), &wrong);
+            }
+        }
+    }
+}
