@@ -62,7 +62,9 @@ impl HostUnits {
         let scale = gaps.holder.iter().map(|&i| ready.rows.scale[i]).collect();
         let mut basis = Vec::with_capacity(problem.bodies.len());
         for (p, range) in problem.ranges().into_iter().enumerate() {
-            basis.push((ready.dual.modes_of(p), change_of_basis(problem, p, &ready.rows.metric[range])?));
+            let mut t = change_of_basis(problem, p, &ready.rows.metric[range])?;
+            t.data.iter_mut().for_each(|v| *v *= ready.dual.size_of(p));
+            basis.push((ready.dual.modes_of(p), t));
         }
         Ok(Self { parameters, unit: ready.unit, scale, basis })
     }

@@ -79,7 +79,7 @@ impl Answer {
             operator_bytes: ready.dual.bytes_kept(),
             phases: Vec::new(),
         };
-        Ok(Self { report, u, lambda, mu, alpha: solution.alpha.clone(), gaps, states })
+        Ok(Self { report, u, lambda, mu, alpha: ready.dual.amplitudes(&solution.alpha), gaps, states })
     }
 }
 

@@ -59,7 +59,7 @@ impl Problem {
                 held[group] = false;
             }
         }
-        qp::undetermined(&ready.dual.coarse, &held)
+        qp::undetermined(&ready.dual.coarse, &held, ready.dual.rounding())
     }
 }
 
