@@ -103,6 +103,27 @@ impl Pseudo {
         self.dense.iter().map(|part| part.inverse.deficiency()).sum()
     }
 
+    /// Basis of all but the kernel, n x rank: `T'W T = I` on the parts with a kernel or weakly held, units elsewhere.
+    pub fn basis(&self) -> Matrix {
+        let mut apart = vec![false; self.order];
+        let mut basis = Matrix { rows: self.order, ..Matrix::default() };
+        for Part { rows, inverse } in &self.dense {
+            let Some(kept) = inverse.kept() else { continue };
+            for j in 0..kept.cols {
+                let mut column = vec![0.0; self.order];
+                rows.iter().zip(kept.col(j)).for_each(|(&row, v)| column[row] = *v);
+                basis.push_col(&column);
+            }
+            rows.iter().for_each(|&row| apart[row] = true);
+        }
+        for row in (0..self.order).filter(|&row| !apart[row]) {
+            let mut column = vec![0.0; self.order];
+            column[row] = 1.0;
+            basis.push_col(&column);
+        }
+        basis
+    }
+
     /// Basis of the kernel, n x deficiency.
     pub fn kernel(&self) -> Matrix {
         let mut basis = Matrix { rows: self.order, ..Matrix::default() };

@@ -56,6 +56,14 @@ impl SpdSolver {
         Self { inverse_root: vec![1.0; kept.rows], factor: Factor::Pseudo { kept, kernel } }
     }
 
+    /// T of `W+ = T T'`, where it is no Cholesky factor; scales of 1.
+    pub fn kept(&self) -> Option<&Matrix> {
+        match &self.factor {
+            Factor::Cholesky(_) => None,
+            Factor::Pseudo { kept, .. } => Some(kept),
+        }
+    }
+
     /// Dimension of the kernel that was cut off.
     pub fn deficiency(&self) -> usize {
         match &self.factor {

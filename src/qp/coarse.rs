@@ -118,14 +118,12 @@ impl<'a> Coarse<'a> {
         let mut rest: Vec<f64> = v.iter().zip(held).map(|(v, held)| if *held { 0.0 } else { *v }).collect();
         let image = self.image(&rest);
         let mut alpha = self.solve(&image)?;
-        let mut turn = alpha.clone();
         for _ in 1..if self.is_weak() { PASSES } else { 1 } {
             for i in (0..v.len()).filter(|&i| !held[i]) {
-                rest[i] -= self.g_transposed.row_dot(i, &turn);
+                rest[i] = v[i] - self.g_transposed.row_dot(i, &alpha);
             }
             let image = self.image(&rest);
-            turn = self.solve(&image)?;
-            axpy(1.0, &turn, &mut alpha);
+            axpy(1.0, &self.solve(&image)?, &mut alpha);
         }
         Ok(alpha)
     }
@@ -146,6 +144,16 @@ impl<'a> Coarse<'a> {
             Some(Face { solver: Solver::Pseudo(solver), .. }) => solver.deficiency(),
             _ => 0,
         }
+    }
+
+    /// T with `T'W_F T = I` on all that the face resists, r x rank, where it does not resist all motions well.
+    pub fn basis(&self) -> Option<Matrix> {
+        let Some(Face { solver: Solver::Pseudo(solver), .. }) = &self.faces[self.selected] else {
+            return None;
+        };
+        let mut basis = solver.basis();
+        basis.data.iter_mut().for_each(|v| *v /= self.unit);
+        Some(basis)
     }
 
     /// `G x`

@@ -297,7 +297,7 @@ mod tests {
         let mut numbers = scattered(10_000).into_iter();
         let mut next = move || numbers.next().unwrap();
         let a: Vec<Vec<f64>> = (0..40).map(|_| (0..9).map(|_| next()).collect()).collect();
-        let gap: Vec<f64> = (0..40).map(|_| (0.1 * next()).max(0.0)).collect();
+        let gap: Vec<f64> = (0..40).map(|_| 0.1 + 0.1 * next()).collect();
         let target: Vec<f64> = (0..9).map(|_| next()).collect();
         let times = |x: &[f64], by: f64| -> Vec<f64> { x.iter().map(|v| v * by).collect() };
         let expected = solve(&a, &gap, &target);
@@ -317,7 +317,7 @@ mod tests {
         let mut next = move || numbers.next().unwrap();
         let (d, m) = (120, 3000);
         let mut a: Vec<Vec<f64>> = (0..m / 2).map(|_| (0..d).map(|_| next()).collect()).collect();
-        let mut gap: Vec<f64> = (0..m / 2).map(|_| (0.5 * next()).max(0.0)).collect();
+        let mut gap: Vec<f64> = (0..m / 2).map(|_| 0.5 + next()).collect();
         for i in 0..m / 2 {
             a.push(a[i].iter().map(|v| v * (1.0 + 1e-15 * next())).collect());
             gap.push(gap[i]);

@@ -30,6 +30,7 @@ mod state;
 mod stiffness;
 mod sync;
 mod threads;
+pub mod travel;
 mod undetermined;
 mod watch;
 
