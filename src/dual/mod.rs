@@ -29,8 +29,11 @@ use crate::dual::multiples::Multiples;
 use crate::dual::reuse::Reuse;
 use crate::error::Result;
 use crate::linalg::memory::zeros;
-use crate::linalg::vector::{dot, norm_max};
+use crate::linalg::vector::{dot, norm_max, power_of_two_below};
 use crate::linalg::{Csr, Packed};
+
+/// G is not known better than this.
+const ROUNDING: f64 = 64.0 * f64::EPSILON;
 
 /// One body as the dual sees it.
 struct Subdomain {
@@ -39,6 +42,8 @@ struct Subdomain {
     /// Rigid modes of the body among all modes.
     modes: Range<usize>,
     kplus: Arc<GeneralizedInverse>,
+    /// The power of two that R_p is divided by in G and e, and alpha with it: `|G_p|` is in [1, 2) then.
+    size: f64,
     /// Rows of B that touch the body, ascending.
     rows: Vec<usize>,
     /// Those rows, over the unknowns of the body.
@@ -123,6 +128,7 @@ impl Draft {
                 range: part.range,
                 modes,
                 kplus: part.kplus,
+                size: 1.0,
                 rows,
                 matrix,
                 multiples,
@@ -131,7 +137,8 @@ impl Draft {
                 work: part.size.work(part.implicit),
             });
         }
-        let coarse = coarse(&subdomains, compliance.len(), first);
+        let mut coarse = coarse(&subdomains, compliance.len(), first);
+        scale_by_body(&mut subdomains, &mut coarse);
         Dual { subdomains, compliance, coarse, columns }
     }
 }
@@ -152,6 +159,22 @@ impl Dual {
     /// Dimension r of the null space of all bodies.
     pub fn modes(&self) -> usize {
         self.coarse.cols
+    }
+
+    /// Amplitudes of the null spaces `R_p` of those of the dual problem.
+    pub fn amplitudes(&self, alpha: &[f64]) -> Vec<f64> {
+        let sizes = self.subdomains.iter().flat_map(|s| s.modes.clone().map(|_| s.size));
+        alpha.iter().zip(sizes).map(|(a, size)| a / size).collect()
+    }
+
+    /// The number that R_p is divided by in G and e.
+    pub fn size_of(&self, p: usize) -> f64 {
+        self.subdomains[p].size
+    }
+
+    /// How far G is known: the part of `|G_p|` that is nothing.
+    pub fn rounding(&self) -> f64 {
+        self.subdomains.iter().fold(ROUNDING, |most, s| most.max(s.kplus.rounding))
     }
 
     /// Modes of body p among all modes.
@@ -208,20 +231,21 @@ impl Dual {
             for (k, mode) in s.modes.clone().enumerate() {
                 let (motion, f) = (s.kplus.null_space.col(k), &f[s.range.clone()]);
                 let size = norm_max(motion) * f.iter().map(|f| f.abs()).sum::<f64>();
-                e[mode] = Some(dot(motion, f)).filter(|e| e.abs() > s.kplus.rounding * size).unwrap_or(0.0);
+                let resultant = Some(dot(motion, f)).filter(|e| e.abs() > s.kplus.rounding * size);
+                e[mode] = resultant.unwrap_or(0.0) / s.size;
             }
         }
         e
     }
 
     /// `u_p = K_p+ f_p + R_p alpha_p` of body p: (17) for the load f that the forces of the rows leave; (16) where it is
-    /// held, K+ = K^-1. The load and alpha are those of all bodies.
+    /// held, K+ = K^-1. The load and alpha are those of all bodies, alpha that of the dual problem.
     pub fn displacement(&self, p: usize, f: &[f64], alpha: &[f64]) -> Result<Vec<f64>> {
         let s = &self.subdomains[p];
         let mut u = zeros(s.range.len(), "a displacement")?;
         s.kplus.apply(&f[s.range.clone()], &mut u)?;
         u.iter_mut().for_each(|u| *u *= s.by);
-        s.kplus.null_space.mul_add(1.0, &alpha[s.modes.clone()], &mut u);
+        s.kplus.null_space.mul_add(1.0 / s.size, &alpha[s.modes.clone()], &mut u);
         Ok(u)
     }
 
@@ -229,7 +253,7 @@ impl Dual {
     pub fn rigid_motion(&self, a: &[f64], unknowns: usize) -> Vec<f64> {
         let mut v = vec![0.0; unknowns];
         for s in &self.subdomains {
-            s.kplus.null_space.mul_add(1.0, &a[s.modes.clone()], &mut v[s.range.clone()]);
+            s.kplus.null_space.mul_add(1.0 / s.size, &a[s.modes.clone()], &mut v[s.range.clone()]);
         }
         v
     }
@@ -274,6 +298,18 @@ fn coarse(subdomains: &[Subdomain], m: usize, modes: usize) -> Csr {
     let mut coarse = Csr::empty(modes);
     rows.into_iter().for_each(|row| coarse.push_row(row));
     coarse
+}
+
+/// `|G_p|` is in [1, 2) for every body that rows touch.
+fn scale_by_body(subdomains: &mut [Subdomain], coarse: &mut Csr) {
+    let mut square = vec![0.0; coarse.cols];
+    coarse.col.iter().zip(&coarse.val).for_each(|(&mode, v)| square[mode] += v * v);
+    let mut by = vec![1.0; coarse.cols];
+    for s in subdomains {
+        s.size = power_of_two_below(square[s.modes.clone()].iter().sum::<f64>().sqrt());
+        by[s.modes.clone()].fill(s.size);
+    }
+    coarse.col.iter().zip(&mut coarse.val).for_each(|(&mode, v)| *v /= by[mode]);
 }
 
 #[cfg(test)]

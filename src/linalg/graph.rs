@@ -94,11 +94,18 @@ impl Graph {
 /// Connected parts of the matrix: the part of every dof, numbered by their first dof, and their count. Entries that are
 /// 0 connect nothing.
 pub fn components(matrix: &Symmetric) -> (Vec<usize>, usize) {
-    let n = matrix.order();
+    let row =
+        |i| std::iter::once(i).chain(matrix.lower_row(i).filter(|(_, v)| *v != 0.0).map(|entry| entry.0));
+    joined(matrix.order(), (0..matrix.order()).map(row))
+}
+
+/// Parts of 0..n where the members of each set are in one part: the part of each, numbered by their first, and their count.
+pub fn joined(n: usize, sets: impl Iterator<Item = impl Iterator<Item = usize>>) -> (Vec<usize>, usize) {
     let mut root: Vec<usize> = (0..n).collect();
-    for i in 0..n {
-        for (j, _) in matrix.lower_row(i).filter(|(_, v)| *v != 0.0) {
-            let (a, b) = (find(&mut root, i), find(&mut root, j));
+    for mut set in sets {
+        let Some(first) = set.next() else { continue };
+        for i in set {
+            let (a, b) = (find(&mut root, first), find(&mut root, i));
             root[a.max(b)] = a.min(b);
         }
     }

@@ -21,6 +21,7 @@ pub mod pages;
 pub mod pivoted;
 pub mod pseudo;
 pub mod reach;
+pub mod resisted;
 pub mod spd;
 mod subtrees;
 mod supernodes;

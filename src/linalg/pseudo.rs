@@ -6,9 +6,10 @@ use std::sync::Arc;
 use crate::error::Result;
 use crate::linalg::graph::components;
 use crate::linalg::memory::room;
-use crate::linalg::{Analysis, Cholesky, Matrix, SpdSolver, Symmetric};
+use crate::linalg::resisted;
+use crate::linalg::{Analysis, Cholesky, Csr, Matrix, SpdSolver, Symmetric};
 
-/// A pivot of a matrix with unit diagonal below this means that it is singular.
+/// A pivot of a matrix with its largest diagonal entry about 1 below this means that it is singular.
 pub const SINGULAR: f64 = 1e-11;
 /// Parts up to this order are dense from the start.
 const SMALL: usize = 64;
@@ -16,11 +17,25 @@ const SMALL: usize = 64;
 const PER_ROW: usize = 512;
 const PER_ENTRY: usize = 16;
 
+/// `G'`, and which of its rows make up `s^2 W = G_F G_F'`.
+pub struct Rows<'a> {
+    pub g_transposed: &'a Csr,
+    pub held: &'a [bool],
+    /// s
+    pub unit: f64,
+    /// Diagonal of `G G'` of all rows, in units of s^2.
+    pub whole: &'a [f64],
+    /// A motion a is free when `|G_F a| <= rounding |G| |a|`.
+    pub rounding: f64,
+}
+
 pub struct Pseudo {
     order: usize,
     /// Of all parts that are not dense, with the unit matrix in place of those.
     regular: Option<Cholesky>,
     dense: Vec<Part>,
+    /// Some motions are held so weakly that rounding of `G_F v` matters in `W+ G_F v`.
+    pub weak: bool,
 }
 
 struct Part {
@@ -29,8 +44,8 @@ struct Part {
 }
 
 impl Pseudo {
-    /// `w` has the diagonal 1, or 0 where a row is empty, and the pattern that was analysed.
-    pub fn new(w: &Symmetric, analysis: &Arc<Analysis>) -> Result<Self> {
+    /// `w` has the pattern that was analysed; its largest diagonal entry is about 1 where no row is held.
+    pub fn new(w: &Symmetric, analysis: &Arc<Analysis>, rows_of_g: &Rows) -> Result<Self> {
         let _room = room(PER_ROW * w.order() + PER_ENTRY * w.val.len(), "the parts of a matrix")?;
         let (part_of, count) = components(w);
         let mut parts = vec![Vec::new(); count];
@@ -49,10 +64,25 @@ impl Pseudo {
                 Err(at) => dense[part_of[analysis.order[at]]] = true,
             }
         }
-        let singular = parts.into_iter().zip(&dense).filter(|(_, dense)| **dense);
-        let part = |rows: Vec<usize>| Ok(Part { inverse: dense_inverse(w, &rows)?, rows });
-        let dense = singular.map(|(rows, _)| part(rows)).collect::<Result<_>>()?;
-        Ok(Self { order: w.order(), regular, dense })
+        let own = rows_of_g.by_part(&part_of, &dense);
+        let (mut singular, mut weak) = (Vec::new(), false);
+        for ((rows, own), _) in parts.into_iter().zip(own).zip(&dense).filter(|(_, dense)| **dense) {
+            let size = rows.iter().map(|&row| rows_of_g.whole[row]).sum::<f64>().sqrt();
+            let (inverse, weakly) = resisted::inverse(&block(w, &rows)?, &own, rows_of_g.rounding * size)?;
+            weak |= weakly;
+            singular.push(Part { rows, inverse });
+        }
+        Ok(Self { order: w.order(), regular, dense: singular, weak })
+    }
+
+    /// `x += a N N'b`, N the kernel.
+    pub fn add_kernel_part(&self, a: f64, b: &[f64], x: &mut [f64]) {
+        for Part { rows, inverse } in self.dense.iter().filter(|part| part.inverse.deficiency() > 0) {
+            let (kernel, mut part) = (inverse.kernel(), vec![0.0; rows.len()]);
+            let own: Vec<f64> = rows.iter().map(|&row| b[row]).collect();
+            kernel.mul_add(a, &kernel.mul_transposed(&own), &mut part);
+            rows.iter().zip(part).for_each(|(&row, v)| x[row] += v);
+        }
     }
 
     /// The solution of minimum norm.
@@ -73,6 +103,27 @@ impl Pseudo {
         self.dense.iter().map(|part| part.inverse.deficiency()).sum()
     }
 
+    /// Basis of all but the kernel, n x rank: `T'W T = I` on the parts with a kernel or weakly held, units elsewhere.
+    pub fn basis(&self) -> Matrix {
+        let mut apart = vec![false; self.order];
+        let mut basis = Matrix { rows: self.order, ..Matrix::default() };
+        for Part { rows, inverse } in &self.dense {
+            let Some(kept) = inverse.kept() else { continue };
+            for j in 0..kept.cols {
+                let mut column = vec![0.0; self.order];
+                rows.iter().zip(kept.col(j)).for_each(|(&row, v)| column[row] = *v);
+                basis.push_col(&column);
+            }
+            rows.iter().for_each(|&row| apart[row] = true);
+        }
+        for row in (0..self.order).filter(|&row| !apart[row]) {
+            let mut column = vec![0.0; self.order];
+            column[row] = 1.0;
+            basis.push_col(&column);
+        }
+        basis
+    }
+
     /// Basis of the kernel, n x deficiency.
     pub fn kernel(&self) -> Matrix {
         let mut basis = Matrix { rows: self.order, ..Matrix::default() };
@@ -85,6 +136,28 @@ impl Pseudo {
             }
         }
         basis
+    }
+}
+
+impl Rows<'_> {
+    /// `G_F'` over the columns of each part that is wanted, in units of s.
+    fn by_part(&self, part_of: &[usize], wanted: &[bool]) -> Vec<Csr> {
+        let (mut local, mut parts) = (vec![0; part_of.len()], vec![Csr::empty(0); wanted.len()]);
+        for (local, &part) in local.iter_mut().zip(part_of) {
+            *local = parts[part].cols;
+            parts[part].cols += 1;
+        }
+        for i in (0..self.g_transposed.rows()).filter(|&i| !self.held[i]) {
+            let row = self.g_transposed.row(i).filter(|(k, v)| *v != 0.0 && wanted[part_of[*k]]);
+            let mut touched: Vec<usize> = row.clone().map(|(k, _)| part_of[k]).collect();
+            touched.sort_unstable();
+            touched.dedup();
+            for part in touched {
+                let own = row.clone().filter(|(k, _)| part_of[*k] == part);
+                parts[part].push_row(own.map(|(k, v)| (local[k], v / self.unit)));
+            }
+        }
+        parts
     }
 }
 
@@ -102,6 +175,11 @@ pub fn uncouple(w: &mut Symmetric, apart: impl Fn(usize) -> bool) {
 
 /// Of some rows of a matrix with unit diagonal, ascending: all of a connected part, or of one without some of its rows.
 pub fn dense_inverse(w: &Symmetric, rows: &[usize]) -> Result<SpdSolver> {
+    SpdSolver::new(&block(w, rows)?, &vec![1.0; rows.len()])
+}
+
+/// Some rows and columns, ascending.
+fn block(w: &Symmetric, rows: &[usize]) -> Result<Matrix> {
     let n = rows.len();
     let mut part = Matrix::zeros(n, n)?;
     for (a, &i) in rows.iter().enumerate() {
@@ -112,39 +190,36 @@ pub fn dense_inverse(w: &Symmetric, rows: &[usize]) -> Result<SpdSolver> {
             }
         }
     }
-    SpdSolver::new(&part, &vec![1.0; n])
+    Ok(part)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::linalg::gram::Gram;
 
-    /// Chains of springs between so many masses each, divided by their diagonals: free ones, `held` ones with a spring to
-    /// the ground; a mass alone, without a spring.
-    fn chains(lengths: &[(usize, bool)]) -> Symmetric {
-        let (mut ptr, mut col, mut val) = (vec![0], Vec::new(), Vec::new());
+    /// Chains of springs between so many masses each, springs by rows: free ones, `held` ones with a spring to the ground;
+    /// a mass alone, without a spring.
+    fn chains(lengths: &[(usize, bool)]) -> Csr {
+        let mut springs = Csr::empty(lengths.iter().map(|(length, _)| length).sum());
         let mut first = 0;
         for &(length, held) in lengths {
-            let springs = |i: usize| f64::from(u8::from(i > 0 || held) + u8::from(i + 1 < length));
-            for i in 0..length {
-                if i > 0 {
-                    col.push((first + i - 1) as u32);
-                    val.push(-(springs(i) * springs(i - 1)).sqrt().recip());
-                }
-                col.push((first + i) as u32);
-                val.push(springs(i).min(1.0));
-                ptr.push(col.len());
-            }
+            (0..usize::from(held)).for_each(|_| springs.push_row([(first, 0.7)]));
+            (first + 1..first + length).for_each(|i| springs.push_row([(i - 1, -0.7), (i, 0.7)]));
             first += length;
         }
-        Symmetric::new(ptr, col, val)
+        springs
     }
 
     #[test]
     fn singular_parts_small_and_large_beside_regular_ones_are_solved_and_counted() {
-        let w = chains(&[(100, true), (80, false), (3, true), (2, false), (1, false), (70, true)]);
+        let g = chains(&[(100, true), (80, false), (3, true), (2, false), (1, false), (70, true)]);
+        let held = vec![false; g.rows()];
+        let w = Gram::of(&g).unwrap().sum(&g, &held).unwrap();
+        let whole: Vec<f64> = (0..w.order()).map(|k| w.val[w.ptr[k + 1] - 1]).collect();
         let analysis = Arc::new(Analysis::new(&w, &vec![false; w.order()]).unwrap());
-        let pseudo = Pseudo::new(&w, &analysis).unwrap();
+        let rows = Rows { g_transposed: &g, held: &held, unit: 1.0, whole: &whole, rounding: 1e-14 };
+        let pseudo = Pseudo::new(&w, &analysis, &rows).unwrap();
         assert!(pseudo.regular.is_some() && pseudo.dense.len() == 4, "{}", pseudo.dense.len());
         let kernel = pseudo.kernel();
         assert_eq!((pseudo.deficiency(), kernel.cols), (3, 3));

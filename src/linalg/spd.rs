@@ -43,6 +43,27 @@ impl SpdSolver {
         Ok(Self { inverse_root, factor })
     }
 
+    /// By Cholesky, where W, with its largest diagonal entry about 1, is safely regular.
+    pub fn regular(w: &Matrix) -> Result<Option<Self>> {
+        let _room = room(PRODUCTS + MATRICES * w.data.len() * size_of::<f64>(), "a dense coarse matrix")?;
+        let view = MatRef::from_column_major_slice(&w.data, w.rows, w.cols);
+        let llt = Llt::new(view, Side::Lower).ok().filter(regular);
+        Ok(llt.map(|llt| Self { inverse_root: vec![1.0; w.rows], factor: Factor::Cholesky(llt) }))
+    }
+
+    /// `W+ = T T'`, T = `kept`, of a matrix with that kernel.
+    pub fn of_parts(kept: Matrix, kernel: Matrix) -> Self {
+        Self { inverse_root: vec![1.0; kept.rows], factor: Factor::Pseudo { kept, kernel } }
+    }
+
+    /// T of `W+ = T T'`, where it is no Cholesky factor; scales of 1.
+    pub fn kept(&self) -> Option<&Matrix> {
+        match &self.factor {
+            Factor::Cholesky(_) => None,
+            Factor::Pseudo { kept, .. } => Some(kept),
+        }
+    }
+
     /// Dimension of the kernel that was cut off.
     pub fn deficiency(&self) -> usize {
         match &self.factor {

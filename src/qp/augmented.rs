@@ -164,11 +164,12 @@ mod tests {
             a: &a,
             b: &b,
             g_transposed: &g_transposed,
+            rounding: 1e-14,
             e: &[1.0],
             bounded: &bounded,
             preconditioner: None,
         };
-        let augmented = Augmented::new(qp, Coarse::new(&g_transposed).unwrap()).unwrap();
+        let augmented = Augmented::new(qp, Coarse::new(&g_transposed, 1e-14).unwrap()).unwrap();
         assert!((7.0..=1.05 * 7.0).contains(&augmented.largest), "{}", augmented.largest);
         assert!(augmented.counts.products < ITERATIONS);
     }
@@ -183,9 +184,16 @@ mod tests {
             g_transposed.push_row([]);
         }
         let (b, bounded) = (vec![0.0; m], vec![true; m]);
-        let qp =
-            Qp { a: &a, b: &b, g_transposed: &g_transposed, e: &[], bounded: &bounded, preconditioner: None };
-        let largest = Augmented::new(qp, Coarse::new(&g_transposed).unwrap()).unwrap().largest;
+        let qp = Qp {
+            a: &a,
+            b: &b,
+            g_transposed: &g_transposed,
+            rounding: 1e-14,
+            e: &[],
+            bounded: &bounded,
+            preconditioner: None,
+        };
+        let largest = Augmented::new(qp, Coarse::new(&g_transposed, 1e-14).unwrap()).unwrap().largest;
         assert!((30.0..=1.05 * 30.0).contains(&largest), "{largest}");
     }
 }

@@ -6,15 +6,19 @@ use std::sync::Arc;
 use crate::error::Result;
 use crate::linalg::gram::Gram;
 use crate::linalg::memory::room;
-use crate::linalg::pseudo::{Pseudo, SINGULAR};
-use crate::linalg::{Analysis, Cholesky, Csr, Matrix, Symmetric};
+use crate::linalg::pseudo::{Pseudo, Rows, SINGULAR};
+use crate::linalg::vector::{axpy, norm_max, power_of_two_below};
+use crate::linalg::{Analysis, Cholesky, Csr, Matrix};
 
 pub struct Coarse<'a> {
     /// `G'`, m x r.
     g_transposed: &'a Csr,
-    /// Square roots of the diagonal of the whole `G G'`, 1 where it vanishes: W is scaled by them, so that
-    /// modes of stiff and of soft bodies count alike.
-    root: Vec<f64>,
+    /// A motion a is free when `|G_F a| <= rounding |G| |a|`.
+    rounding: f64,
+    /// The power of two s that W is divided by twice.
+    unit: f64,
+    /// Diagonal of the whole `G G' / s^2`: the largest entry in [1, 4).
+    whole: Vec<f64>,
     gram: Option<(Gram, Arc<Analysis>)>,
     /// The face of all rows, and the last other one.
     faces: [Option<Face>; 2],
@@ -25,8 +29,6 @@ pub struct Coarse<'a> {
 
 struct Face {
     held: Vec<bool>,
-    /// `D^-1/2 W_F D^-1/2`
-    w: Symmetric,
     solver: Solver,
 }
 
@@ -37,25 +39,32 @@ enum Solver {
 }
 
 impl<'a> Coarse<'a> {
-    pub fn new(g_transposed: &'a Csr) -> Result<Self> {
-        let mut root = vec![0.0; g_transposed.cols];
+    /// The rows of G of stiff and of soft bodies are of one size; `rounding` is how far they are known against it.
+    pub fn new(g_transposed: &'a Csr, rounding: f64) -> Result<Self> {
+        let mut whole = vec![0.0; g_transposed.cols];
         for (&k, v) in g_transposed.col.iter().zip(&g_transposed.val) {
-            root[k] += v * v;
+            whole[k] += v * v;
         }
-        root.iter_mut().for_each(|s| *s = if *s > 0.0 { s.sqrt() } else { 1.0 });
-        let gram = if root.is_empty() { None } else { Some(analysed(g_transposed)?) };
+        let unit = power_of_two_below(norm_max(&whole).sqrt());
+        whole.iter_mut().for_each(|v| *v /= unit * unit);
+        let gram = if whole.is_empty() { None } else { Some(analysed(g_transposed)?) };
         let faces = [None, None];
-        Ok(Self { g_transposed, root, gram, faces, selected: 0, solves: 0, factorisations: 0 })
+        Ok(Self {
+            g_transposed,
+            rounding,
+            unit,
+            whole,
+            gram,
+            faces,
+            selected: 0,
+            solves: 0,
+            factorisations: 0,
+        })
     }
 
     /// Dimension r of the coarse space.
     pub fn dimension(&self) -> usize {
-        self.root.len()
-    }
-
-    /// `D_kk`: diagonal entry of the whole `G G'`, 1 where it vanishes.
-    pub fn weight(&self, k: usize) -> f64 {
-        self.root[k] * self.root[k]
+        self.whole.len()
     }
 
     /// Factorises `W_F` of the rows that are not held, unless that has just been done.
@@ -67,17 +76,15 @@ impl<'a> Coarse<'a> {
             return Ok(());
         }
         let mut w = gram.sum(self.g_transposed, held)?;
-        for k in 0..w.order() {
-            for at in w.ptr[k]..w.ptr[k + 1] {
-                w.val[at] /= self.root[k] * self.root[w.col[at] as usize];
-            }
-        }
+        w.val.iter_mut().for_each(|v| *v /= self.unit * self.unit);
+        let (unit, whole, rounding) = (self.unit, &self.whole[..], self.rounding);
+        let rows = Rows { g_transposed: self.g_transposed, held, unit, whole, rounding };
         let solver = match analysis.attempt(&w, 1.0)? {
             Ok(factor) if factor.smallest_pivot() > SINGULAR => Solver::Cholesky(factor),
-            _ => Solver::Pseudo(Pseudo::new(&w, analysis)?),
+            _ => Solver::Pseudo(Pseudo::new(&w, analysis, &rows)?),
         };
         self.factorisations += 1;
-        *slot = Some(Face { held: held.to_vec(), w, solver });
+        *slot = Some(Face { held: held.to_vec(), solver });
         Ok(())
     }
 
@@ -85,38 +92,50 @@ impl<'a> Coarse<'a> {
     pub fn solve(&mut self, rhs: &[f64]) -> Result<Vec<f64>> {
         self.solves += 1;
         let Some(face) = &self.faces[self.selected] else { return Ok(vec![0.0; rhs.len()]) };
-        let mut x = self.scaled(rhs);
+        let mut x = self.in_units(rhs);
         match &face.solver {
             Solver::Cholesky(factor) => factor.solve(&mut x)?,
             Solver::Pseudo(solver) => x = solver.solve(&x)?,
         }
-        Ok(self.scaled(&x))
+        Ok(self.in_units(&x))
     }
 
-    /// `W_F^-1 rhs`, or `(W_F + 1e-8 diag W)^-1 rhs` where W_F is singular.
+    /// `W_F^-1 rhs`, or `(W_F + 1e-8 N N')^-1 rhs` where W_F has the kernel N.
     pub fn solve_regularised(&mut self, rhs: &[f64]) -> Result<Vec<f64>> {
         const WEIGHT: f64 = 1e-8;
-        let (Some(face), Some((_, analysis))) = (&self.faces[self.selected], &self.gram) else {
-            return Ok(vec![0.0; rhs.len()]);
-        };
-        if matches!(face.solver, Solver::Cholesky(_)) {
-            return self.solve(rhs);
+        let mut x = self.solve(rhs)?;
+        if let Some(Face { solver: Solver::Pseudo(solver), .. }) = &self.faces[self.selected] {
+            solver.add_kernel_part(1.0 / (WEIGHT * self.unit * self.unit), rhs, &mut x);
         }
-        let mut w = face.w.clone();
-        for k in 0..w.order() {
-            w.val[w.ptr[k + 1] - 1] += WEIGHT;
-        }
-        let Ok(factor) = analysis.attempt(&w, 1.0)? else { return self.solve(rhs) };
-        let mut x = self.scaled(rhs);
-        factor.solve(&mut x)?;
-        self.solves += 1;
-        self.factorisations += 1;
-        Ok(self.scaled(&x))
+        Ok(x)
     }
 
-    /// `D^-1/2 x`
-    fn scaled(&self, x: &[f64]) -> Vec<f64> {
-        x.iter().zip(&self.root).map(|(x, root)| x / root).collect()
+    /// `argmin |v_F - G_F'alpha|`, alpha of minimum norm.
+    pub fn multiplier(&mut self, held: &[bool], v: &[f64]) -> Result<Vec<f64>> {
+        /// Rounding of `G_F v` is large against what weakly held motions have of it; of what is left of v it is not.
+        const PASSES: usize = 3;
+        self.select(held)?;
+        let mut rest: Vec<f64> = v.iter().zip(held).map(|(v, held)| if *held { 0.0 } else { *v }).collect();
+        let image = self.image(&rest);
+        let mut alpha = self.solve(&image)?;
+        for _ in 1..if self.is_weak() { PASSES } else { 1 } {
+            for i in (0..v.len()).filter(|&i| !held[i]) {
+                rest[i] = v[i] - self.g_transposed.row_dot(i, &alpha);
+            }
+            let image = self.image(&rest);
+            axpy(1.0, &self.solve(&image)?, &mut alpha);
+        }
+        Ok(alpha)
+    }
+
+    /// x / s
+    fn in_units(&self, x: &[f64]) -> Vec<f64> {
+        x.iter().map(|x| x / self.unit).collect()
+    }
+
+    /// Some motions are held so weakly that rounding of `G_F v` matters in `W_F+ G_F v`.
+    fn is_weak(&self) -> bool {
+        matches!(&self.faces[self.selected], Some(Face { solver: Solver::Pseudo(solver), .. }) if solver.weak)
     }
 
     /// Dimension of the kernel of `W_F` on the selected face.
@@ -125,6 +144,16 @@ impl<'a> Coarse<'a> {
             Some(Face { solver: Solver::Pseudo(solver), .. }) => solver.deficiency(),
             _ => 0,
         }
+    }
+
+    /// T with `T'W_F T = I` on all that the face resists, r x rank, where it does not resist all motions well.
+    pub fn basis(&self) -> Option<Matrix> {
+        let Some(Face { solver: Solver::Pseudo(solver), .. }) = &self.faces[self.selected] else {
+            return None;
+        };
+        let mut basis = solver.basis();
+        basis.data.iter_mut().for_each(|v| *v /= self.unit);
+        Some(basis)
     }
 
     /// `G x`
@@ -140,9 +169,7 @@ impl<'a> Coarse<'a> {
         if self.dimension() == 0 {
             return Ok(());
         }
-        self.select(held)?;
-        let image = self.image(v);
-        let alpha = self.solve(&image)?;
+        let alpha = self.multiplier(held, v)?;
         for i in (0..v.len()).filter(|&i| !held[i]) {
             v[i] -= self.g_transposed.row_dot(i, &alpha);
         }
@@ -150,20 +177,17 @@ impl<'a> Coarse<'a> {
     }
 }
 
-/// Basis of all a with `G_F'a = 0` on the rows that are not held, r x deficiency: motions that these rows do not resist.
-pub fn undetermined(g_transposed: &Csr, held: &[bool]) -> Result<Matrix> {
-    const ROUNDING: f64 = 1e-9;
-    let mut coarse = Coarse::new(g_transposed)?;
+/// Basis of the free motions, `|G_F a| <= rounding |G| |a|`, r x deficiency: what the rows that are not held do not resist.
+pub fn undetermined(g_transposed: &Csr, held: &[bool], rounding: f64) -> Result<Matrix> {
+    /// Entries of a basis vector below this, in units of `rounding`, are rounding.
+    const DROP: f64 = 16.0;
+    let mut coarse = Coarse::new(g_transposed, rounding)?;
     coarse.select(held)?;
     let Some(Face { solver: Solver::Pseudo(solver), .. }) = &coarse.faces[coarse.selected] else {
         return Matrix::zeros(coarse.dimension(), 0);
     };
     let _room = room(4 * size_of::<f64>() * coarse.dimension() * solver.deficiency(), "open motions")?;
-    let mut kernel = solver.kernel();
-    for j in 0..kernel.cols {
-        kernel.col_mut(j).iter_mut().zip(&coarse.root).for_each(|(v, root)| *v /= root);
-    }
-    Ok(kernel.reduced(ROUNDING))
+    Ok(solver.kernel().reduced(DROP * rounding))
 }
 
 fn analysed(g_transposed: &Csr) -> Result<(Gram, Arc<Analysis>)> {
@@ -175,6 +199,8 @@ fn analysed(g_transposed: &Csr) -> Result<(Gram, Arc<Analysis>)> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::linalg::vector::{dot, norm};
+    use crate::qp::augmented::scattered;
 
     #[test]
     fn the_projected_vector_lies_on_the_face_and_in_the_kernel_of_g() {
@@ -182,7 +208,7 @@ mod tests {
         for v in [1.0, 2.0, -1.0, 3.0] {
             g_transposed.push_row([(0, v)]);
         }
-        let mut coarse = Coarse::new(&g_transposed).unwrap();
+        let mut coarse = Coarse::new(&g_transposed, 1e-14).unwrap();
         let mut v = [1.0, 1.0, 1.0, 1.0];
         coarse.project(&[false, true, false, false], &mut v).unwrap();
         assert_eq!(v[1], 0.0);
@@ -197,15 +223,135 @@ mod tests {
         let mut g_transposed = Csr::empty(2);
         g_transposed.push_row([(0, 1.0), (1, 1.0)]);
         g_transposed.push_row([(0, 1.0), (1, -1.0)]);
-        let mut coarse = Coarse::new(&g_transposed).unwrap();
+        let mut coarse = Coarse::new(&g_transposed, 1e-14).unwrap();
         coarse.select(&[false, true]).unwrap();
         assert_eq!(coarse.deficiency(), 1);
         let x = coarse.solve(&[1.0, 1.0]).unwrap();
         assert!((x[0] - 0.5).abs() < 1e-14 && (x[1] - 0.5).abs() < 1e-14);
-        let free = undetermined(&g_transposed, &[false, true]).unwrap();
+        let free = undetermined(&g_transposed, &[false, true], 1e-14).unwrap();
         assert_eq!((free.rows, free.cols), (2, 1));
         assert!((free.get(0, 0) + free.get(1, 0)).abs() < 1e-14 && free.get(0, 0).abs() == 1.0);
-        assert_eq!(undetermined(&g_transposed, &[false, false]).unwrap().cols, 0);
-        assert_eq!(undetermined(&g_transposed, &[true, true]).unwrap().data, [1.0, 0.0, 0.0, 1.0]);
+        assert_eq!(undetermined(&g_transposed, &[false, false], 1e-14).unwrap().cols, 0);
+        assert_eq!(undetermined(&g_transposed, &[true, true], 1e-14).unwrap().data, [1.0, 0.0, 0.0, 1.0]);
+    }
+
+    /// Numbers in [-1/2, 1/2) and an orthogonal matrix.
+    fn random() -> impl FnMut() -> f64 {
+        let mut numbers = scattered(100_000).into_iter();
+        move || numbers.next().unwrap()
+    }
+
+    fn orthogonal(n: usize, next: &mut impl FnMut() -> f64) -> Matrix {
+        let data = (0..n * n).map(|_| next()).collect();
+        Matrix { rows: n, cols: n, data }.orthonormalised(0.0)
+    }
+
+    /// Rows of `G' T`, |G T|_F = 1.
+    fn turned(rows: &[[f64; 6]], t: &Matrix) -> Csr {
+        let size = rows.iter().flatten().map(|v| v * v).sum::<f64>().sqrt();
+        let mut g_transposed = Csr::empty(6);
+        for row in rows {
+            g_transposed.push_row((0..6).map(|k| (k, dot(row, t.col(k)) / size)));
+        }
+        g_transposed
+    }
+
+    /// A flat contact resists one translation and two rotations; the others by `weak` of that.
+    fn flat(weak: [f64; 3], next: &mut impl FnMut() -> f64) -> Vec<[f64; 6]> {
+        (0..300)
+            .map(|_| [next(), 1.0, next(), weak[0] * next(), weak[1] * next(), weak[2] * next()])
+            .collect()
+    }
+
+    /// As many columns of T' are free as `weak` has zeros, and `free` spans them to `accuracy`.
+    fn assert_free(g_transposed: &Csr, rounding: f64, t: &Matrix, expected: &[usize], accuracy: f64) {
+        let held = vec![false; g_transposed.rows()];
+        let free = undetermined(g_transposed, &held, rounding).unwrap();
+        let mut coarse = Coarse::new(g_transposed, rounding).unwrap();
+        coarse.select(&held).unwrap();
+        assert_eq!((free.cols, coarse.deficiency()), (expected.len(), expected.len()));
+        for j in 0..free.cols {
+            let mut original = vec![0.0; 6];
+            t.mul_add(1.0, free.col(j), &mut original);
+            for k in (0..6).filter(|k| !expected.contains(k)) {
+                assert!(original[k].abs() <= accuracy * norm(&original), "{k}: {original:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_flat_contact_leaves_three_motions_free_however_the_modes_are_mixed_and_known() {
+        let mut next = random();
+        for mixed in 0..6 {
+            let rows = flat([0.0; 3], &mut next);
+            let mut t = Matrix::zeros(6, 6).unwrap();
+            (0..6).for_each(|k| t.set(k, k, 1.0));
+            match mixed {
+                0 => {}
+                1 | 2 => t = orthogonal(6, &mut next),
+                3 => t.data.iter_mut().for_each(|v| *v += 1e-9 * next()),
+                _ => t.data.iter_mut().for_each(|v| *v += next()),
+            }
+            let mut g_transposed = turned(&rows, &t);
+            assert_free(&g_transposed, 1.5e-14, &t, &[3, 4, 5], 1e-12);
+            let size = norm_max(&g_transposed.val);
+            g_transposed.val.iter_mut().for_each(|v| *v += 1e-12 * size * next());
+            assert_free(&g_transposed, 1e-12, &t, &[3, 4, 5], 1e-10);
+        }
+    }
+
+    #[test]
+    fn a_motion_that_is_resisted_by_little_is_resisted_and_its_forces_are_found() {
+        let mut next = random();
+        for weak in [1e-5, 1e-7, 1e-10] {
+            let rows = flat([weak, 0.0, weak], &mut next);
+            let t = orthogonal(6, &mut next);
+            let g_transposed = turned(&rows, &t);
+            assert_free(&g_transposed, 1.5e-14, &t, &[4], 1e-3 * 1e-12 / weak);
+            // nothing is left of G'alpha, though rounding of G G'alpha is large against the weak part of it
+            let mut coarse = Coarse::new(&g_transposed, 1.5e-14).unwrap();
+            let alpha = [1.0, -2.0, 0.5, 3.0, 1.0, 0.1];
+            let mut v: Vec<f64> = (0..300).map(|i| g_transposed.row_dot(i, &alpha)).collect();
+            coarse.project(&[false; 300], &mut v).unwrap();
+            assert!(norm(&v) < 1e-14, "{weak}: {:e}", norm(&v));
+            assert!((0..100).all(|i| coarse.image(&v)[i % 6].abs() < 1e-15));
+        }
+    }
+
+    #[test]
+    fn rows_that_are_rounding_alone_hold_nothing() {
+        let mut next = random();
+        let mut rows = flat([0.0; 3], &mut next);
+        rows.iter_mut().skip(10).for_each(|row| row.iter_mut().for_each(|v| *v *= 1e-16));
+        let mut t = Matrix::zeros(6, 6).unwrap();
+        (0..6).for_each(|k| t.set(k, k, 1.0));
+        let g_transposed = turned(&rows, &t);
+        let held: Vec<bool> = (0..300).map(|i| i < 10).collect();
+        assert_eq!(undetermined(&g_transposed, &held, 1.5e-14).unwrap().cols, 6);
+    }
+
+    /// Two blocks in a flat contact, the lower one on the ground by few rows; modes of the stiff one divided by one number.
+    #[test]
+    fn a_body_a_million_times_stiffer_counts_alike() {
+        let mut next = random();
+        let (t, u) = (orthogonal(6, &mut next), orthogonal(6, &mut next));
+        let between = flat([0.0; 3], &mut next);
+        for stiffer in [1.0, 1e6] {
+            let size = (between.iter().flatten().map(|v| v * v).sum::<f64>()).sqrt();
+            let mut g_transposed = Csr::empty(12);
+            let soft = |row: &[f64; 6], by: f64, t: &Matrix| -> Vec<f64> {
+                (0..6).map(|k| by * dot(row, t.col(k)) / size).collect()
+            };
+            for row in &between {
+                let of_stiff = soft(row, 1.0 / stiffer, &u);
+                let scaled = of_stiff.iter().map(|v| -v * stiffer);
+                g_transposed.push_row(soft(row, 1.0, &t).into_iter().chain(scaled).enumerate());
+            }
+            (0..6).for_each(|k| g_transposed.push_row([(6 + k, 0.1)]));
+            let rows = g_transposed.rows();
+            assert_eq!(undetermined(&g_transposed, &vec![false; rows], 1.5e-14).unwrap().cols, 3);
+            let ground: Vec<bool> = (0..rows).map(|i| i >= 300).collect();
+            assert_eq!(undetermined(&g_transposed, &ground, 1.5e-14).unwrap().cols, 9);
+        }
     }
 }

@@ -5,10 +5,12 @@
 //! ```
 //!
 //! With `H = A_FF + G_F'Q G_F`, Q > 0 diagonal, `H x = b_F + G_F'(alpha + Q e)` has the same solutions, and H
-//! is positive definite where x is unique; then `S alpha = e - G_F H^-1 (b_F + G_F'Q e)`, `S = G_F H^-1 G_F'`.
+//! is positive definite where x is unique; then `S alpha = e - G_F H^-1 (b_F + G_F'Q e)`, `S = G_F H^-1 G_F'`. Where some
+//! motions are free or held weakly, T'G_F with orthonormal rows stands for G_F, and T'e for e: `alpha = T beta`.
 
 use crate::error::Result;
 use crate::linalg::{Entries, Matrix, PivotedCholesky, SpdSolver};
+use crate::qp::coarse::Coarse;
 use crate::qp::Qp;
 
 pub struct Face<'a> {
@@ -16,11 +18,14 @@ pub struct Face<'a> {
     /// F, ascending, n of them.
     rows: Vec<usize>,
     factor: PivotedCholesky,
-    /// `H^-1 G_F'`, n x r.
+    /// `H^-1 G_F'T`, n x rank.
     spread: Matrix,
     /// Q, stiffness of A per unit of `G G'`.
     penalty: Vec<f64>,
-    /// S, r x r; none without modes.
+    /// T, r x rank; none where all motions are held well.
+    basis: Option<Matrix>,
+    deficient: bool,
+    /// S, rank x rank; none without modes.
     coarse: Option<SpdSolver>,
 }
 
@@ -34,36 +39,57 @@ impl<'a> Face<'a> {
         for (k, &i) in rows.iter().enumerate() {
             qp.g_transposed.row(i).for_each(|(mode, v)| modes.set(k, mode, v));
         }
+        let (basis, deficient) = resisted(&qp, &rows)?;
+        if let Some(basis) = &basis {
+            modes = product(&modes, basis)?;
+        }
         let penalty = penalty(&h, &modes);
-        for (l, &j) in rows.iter().enumerate() {
-            for (mode, v) in qp.g_transposed.row(j).filter(|(_, v)| *v != 0.0) {
+        for l in 0..n {
+            for mode in 0..modes.cols {
                 let (from, to) = (modes.col(mode), h.col_mut(l));
-                (l..n).for_each(|k| to[k] += penalty[mode] * v * from[k]);
+                let v = from[l];
+                if v != 0.0 {
+                    (l..n).for_each(|k| to[k] += penalty[mode] * v * from[k]);
+                }
             }
         }
         let Some(factor) = PivotedCholesky::new(h)? else { return Ok(None) };
         let spread = factor.solve(&modes)?;
-        let coarse = if r == 0 { None } else { Some(schur_complement(&modes, &spread)?) };
-        Ok(Some(Self { qp, rows, factor, spread, penalty, coarse }))
+        let coarse = if modes.cols == 0 { None } else { Some(schur_complement(&modes, &spread)?) };
+        Ok(Some(Self { qp, rows, factor, spread, penalty, basis, deficient, coarse }))
     }
 
     /// x on F and alpha with `A_FF x - G_F'alpha = force`, `G_F x = rest`: where there are many, one of them.
     pub fn solve(&self, mut force: Vec<f64>, rest: &[f64]) -> Result<(Vec<f64>, Vec<f64>)> {
         let g_transposed = self.qp.g_transposed;
-        let weighted: Vec<f64> = rest.iter().zip(&self.penalty).map(|(rest, q)| rest * q).collect();
+        let weighted = self.in_basis(rest).iter().zip(&self.penalty).map(|(rest, q)| rest * q).collect();
+        let weighted = self.of_basis(weighted);
         for (force, &i) in force.iter_mut().zip(&self.rows) {
             *force += g_transposed.row_dot(i, &weighted);
         }
         let force = Matrix { rows: self.rows.len(), cols: 1, data: force };
         let mut x = self.factor.solve(&force)?.data;
-        let Some(coarse) = &self.coarse else { return Ok((x, Vec::new())) };
+        let Some(coarse) = &self.coarse else { return Ok((x, vec![0.0; rest.len()])) };
         let mut left = rest.to_vec();
         for (x, &i) in x.iter().zip(&self.rows) {
             g_transposed.row(i).for_each(|(mode, v)| left[mode] -= v * x);
         }
-        let alpha = coarse.solve(&left);
-        self.spread.mul_add(1.0, &alpha, &mut x);
-        Ok((x, alpha))
+        let beta = coarse.solve(&self.in_basis(&left));
+        self.spread.mul_add(1.0, &beta, &mut x);
+        Ok((x, self.of_basis(beta)))
+    }
+
+    /// `T'v`
+    fn in_basis(&self, v: &[f64]) -> Vec<f64> {
+        self.basis.as_ref().map_or_else(|| v.to_vec(), |basis| basis.mul_transposed(v))
+    }
+
+    /// `T beta`
+    fn of_basis(&self, beta: Vec<f64>) -> Vec<f64> {
+        let Some(basis) = &self.basis else { return beta };
+        let mut alpha = vec![0.0; basis.rows];
+        basis.mul_add(1.0, &beta, &mut alpha);
+        alpha
     }
 
     pub fn rows(&self) -> &[usize] {
@@ -72,8 +98,24 @@ impl<'a> Face<'a> {
 
     /// True where the face leaves a part of alpha undetermined.
     pub fn is_deficient(&self) -> bool {
-        self.coarse.as_ref().is_some_and(|coarse| coarse.deficiency() > 0)
+        self.deficient
     }
+}
+
+/// T, where the rows F do not resist all motions well, and whether some are free.
+fn resisted(qp: &Qp, rows: &[usize]) -> Result<(Option<Matrix>, bool)> {
+    let mut held = vec![true; qp.g_transposed.rows()];
+    rows.iter().for_each(|&i| held[i] = false);
+    let mut coarse = Coarse::new(qp.g_transposed, qp.rounding)?;
+    coarse.select(&held)?;
+    Ok((coarse.basis(), coarse.deficiency() > 0))
+}
+
+/// `A B`
+fn product(a: &Matrix, b: &Matrix) -> Result<Matrix> {
+    let mut product = Matrix::zeros(a.rows, b.cols)?;
+    (0..b.cols).for_each(|j| a.mul_add(1.0, b.col(j), product.col_mut(j)));
+    Ok(product)
 }
 
 /// `q_k = (sum A_ii / n) / |g_k|^2`: both parts of H weigh alike, in any units; 1 where A or the mode vanishes.

@@ -101,10 +101,7 @@ impl<'a> Iterate<'a> {
         let m = self.x.len();
         self.r.copy_from_slice(&self.g);
         if !self.alpha.is_empty() {
-            self.coarse.select(&self.active)?;
-            let on_face: Vec<f64> = (0..m).map(|i| if self.active[i] { 0.0 } else { self.g[i] }).collect();
-            let image = self.coarse.image(&on_face);
-            self.alpha = self.coarse.solve(&image)?;
+            self.alpha = self.coarse.multiplier(&self.active, &self.g)?;
             for i in 0..m {
                 self.r[i] -= self.qp.g_transposed.row_dot(i, &self.alpha);
             }

@@ -12,6 +12,7 @@ mod coarse;
 mod conjugate;
 mod face;
 mod iterate;
+mod least_travel;
 mod mprgp;
 mod nnls;
 pub mod paper;
@@ -24,18 +25,21 @@ pub use active_set::{active_set, settle, Attempt, Direct, Settled};
 pub use coarse::undetermined;
 pub use conjugate::MOST as KEPT;
 pub use face::Face;
+pub use least_travel::least_travel;
 pub use proportioning::{minimise, not_held, Judge, Limits, Observer, Progress, Solution, StepKind, Verdict};
 pub use smalbe::smalbe;
 
 use crate::error::Result;
 use crate::linalg::{Csr, Operator};
 
-/// The problem; `G` is given as `G'`, m x r.
+/// The problem; `G` is given as `G'`, m x r, the modes of each body divided by one number so that `|G_p|` = 1.
 #[derive(Clone, Copy)]
 pub struct Qp<'a> {
     pub a: &'a dyn Operator,
     pub b: &'a [f64],
     pub g_transposed: &'a Csr,
+    /// A motion a is free when `|G_F a| <= rounding |G| |a|`: how far G is known, at least 64 eps.
+    pub rounding: f64,
     pub e: &'a [f64],
     pub bounded: &'a [bool],
     pub preconditioner: Option<&'a dyn Preconditioner>,

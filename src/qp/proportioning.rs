@@ -114,7 +114,7 @@ pub fn minimise(
     judge: &mut dyn Judge,
     observer: &mut dyn Observer,
 ) -> Result<Solution> {
-    let mut coarse = Coarse::new(qp.g_transposed)?;
+    let mut coarse = Coarse::new(qp.g_transposed, qp.rounding)?;
     if let Some(first) = first_point(&qp, &mut coarse, start)? {
         return proportioning(Iterate::new(qp, coarse, first)?, limits, judge, observer);
     }
@@ -134,7 +134,7 @@ pub fn minimise(
 
 /// The verdict where no x balances e, for a method that does not ask.
 pub fn not_held(qp: &Qp, start: &[f64]) -> Result<Option<Solution>> {
-    let mut coarse = Coarse::new(qp.g_transposed)?;
+    let mut coarse = Coarse::new(qp.g_transposed, qp.rounding)?;
     if first_point(qp, &mut coarse, start)?.is_some() {
         return Ok(None);
     }

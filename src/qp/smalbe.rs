@@ -72,7 +72,7 @@ struct Lagrangian<'a> {
 impl<'a> Lagrangian<'a> {
     /// At the feasible point nearest to `start`.
     fn new(qp: Qp<'a>, start: &[f64]) -> Result<Self> {
-        let mut coarse = Coarse::new(qp.g_transposed)?;
+        let mut coarse = Coarse::new(qp.g_transposed, qp.rounding)?;
         let none = vec![false; start.len()];
         let first = project(&qp, &mut coarse, start, &none)?;
         let point = Bounded::new(qp.bounded, first.map_or_else(|| start.to_vec(), |first| first.point));
@@ -349,6 +349,7 @@ mod tests {
             a: &a,
             b: &b,
             g_transposed: &g_transposed,
+            rounding: 1e-14,
             e: &[1.0],
             bounded: &vec![true; m],
             preconditioner: None,
@@ -373,8 +374,15 @@ mod tests {
         }
         let b: Vec<f64> = (0..m).map(|i| if i % 3 == 0 { -4.0 } else { 1.0 + i as f64 }).collect();
         let (e, bounded) = ([5.0, 40.0], vec![true; m]);
-        let qp =
-            Qp { a: &a, b: &b, g_transposed: &g_transposed, e: &e, bounded: &bounded, preconditioner: None };
+        let qp = Qp {
+            a: &a,
+            b: &b,
+            g_transposed: &g_transposed,
+            rounding: 1e-14,
+            e: &e,
+            bounded: &bounded,
+            preconditioner: None,
+        };
         for allowed in 1..30 {
             let mut al = Lagrangian::new(qp, &vec![0.0; m]).unwrap();
             let (mut judge, mut observer) = (Lenient { allowed: 0 }, Lenient { allowed });

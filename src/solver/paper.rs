@@ -66,7 +66,9 @@ impl HostUnits {
         for (k, (&p, range)) in bodies.iter().zip(ranges).enumerate() {
             let own = unit / problem.bodies[p].inverse.as_ref().map_or(*unit, |inverse| inverse.unit);
             let metric: Vec<f64> = ready.rows.metric[range.clone()].iter().map(|d| own * d).collect();
-            basis.push((ready.dual.modes_of(k), change_of_basis(problem, p, &metric)?));
+            let mut t = change_of_basis(problem, p, &metric)?;
+            t.data.iter_mut().for_each(|v| *v *= ready.dual.size_of(k));
+            basis.push((ready.dual.modes_of(k), t));
         }
         Ok(Self { parameters, unit: *unit, scale, basis })
     }

@@ -93,8 +93,9 @@ impl Answer {
         island.contact.scatter(&recovered.lambda, &mut self.lambda);
         island.contact.scatter(&states, &mut self.states);
         island.equalities.scatter(&recovered.mu, &mut self.mu);
+        let alpha = ready.dual.amplitudes(&solution.alpha);
         for (k, &p) in island.bodies.iter().enumerate() {
-            self.alpha[p] = solution.alpha[ready.dual.modes_of(k)].to_vec();
+            self.alpha[p] = alpha[ready.dual.modes_of(k)].to_vec();
             self.force_errors[p] = judgement.bodies[k].force_error;
         }
         let report = &mut self.report;

@@ -147,7 +147,8 @@ impl Scaled {
     fn qp<'a>(&'a self, ready: &'a Ready, a: &'a dyn Operator) -> Qp<'a> {
         let g_transposed = &ready.dual.coarse;
         let preconditioner = ready.preconditioner.as_ref().map(|(_, m)| m as &dyn qp::Preconditioner);
-        Qp { a, b: &self.d, g_transposed, e: &self.e, bounded: &self.gaps.bounded, preconditioner }
+        let (b, e, bounded, rounding) = (&self.d, &self.e, &self.gaps.bounded, ready.dual.rounding());
+        Qp { a, b, g_transposed, rounding, e, bounded, preconditioner }
     }
 }
 

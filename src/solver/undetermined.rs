@@ -58,7 +58,8 @@ impl Problem {
         let islands = self.ready()?.islands.iter().zip(&answer.failed).enumerate();
         for (k, (ready, _)) in islands.filter(|(_, (_, failed))| !**failed) {
             let lambda = ready.island.contact.gather(&answer.lambda);
-            let motions = qp::undetermined(&ready.dual.coarse, &ready.without_force(&lambda))?;
+            let held = ready.without_force(&lambda);
+            let motions = qp::undetermined(&ready.dual.coarse, &held, ready.dual.rounding())?;
             all.extend((0..motions.cols).map(|j| (k, motions.col(j).to_vec())));
         }
         Ok(all)

@@ -67,6 +67,7 @@ fn run(program: &Program, gamma: f64, variant: Variant, limit: usize) -> Option<
         a: &program.a,
         b: &program.b,
         g_transposed: &none,
+        rounding: 1e-14,
         e: &[],
         bounded: &bounded,
         preconditioner: None,

@@ -75,7 +75,7 @@ impl Program {
 
     pub fn qp<'a>(&'a self, g_transposed: &'a Csr, preconditioner: Option<&'a dyn Preconditioner>) -> Qp<'a> {
         let Self { a, b, e, bounded, .. } = self;
-        Qp { a, b, g_transposed, e, bounded, preconditioner }
+        Qp { a, b, g_transposed, rounding: 1e-14, e, bounded, preconditioner }
     }
 
     pub fn residuals(&self, x: &[f64], alpha: &[f64]) -> Residuals {

@@ -73,6 +73,7 @@ fn run(program: &Program, start: &[f64], products: usize, then: Kind, diary: &mu
         a: &a,
         b: &program.b,
         g_transposed: &g_transposed,
+        rounding: 1e-14,
         e: &program.e,
         bounded: &program.bounded,
         preconditioner: None,

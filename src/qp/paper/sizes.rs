@@ -64,7 +64,7 @@ impl Sizes {
 
 /// The scale of the gaps at `l = D'(D D')+ d`, with `alpha = argmin |A l - b - D'alpha|`.
 fn reference(q: &mut Quadratic, judge: &mut dyn Judge) -> Result<f64> {
-    let mut coarse = Coarse::new(q.qp.g_transposed)?;
+    let mut coarse = Coarse::new(q.qp.g_transposed, q.qp.rounding)?;
     let all = vec![false; q.qp.b.len()];
     coarse.select(&all)?;
     let y = coarse.solve(q.qp.e)?;

@@ -1,0 +1,139 @@
+//! Which motions the rows of G_F resist, and how well, on a connected part of `W = G_F G_F'`, r x r: eigenvectors of W where
+//! its eigenvalues can tell, and where they are rounding (they are squares) the singular values of `G_F N` themselves.
+
+use crate::error::Result;
+use crate::linalg::spd::{right_singular, symmetric_eigen};
+use crate::linalg::vector::norm;
+use crate::linalg::{Csr, Matrix, SpdSolver};
+
+/// Eigenvalues of W below this, W with its largest diagonal entry in [1, 2), are looked at again.
+const UNCERTAIN: f64 = 1e-8;
+/// Each makes `|G_F n|` of a motion n accurate to rounding, whatever the eigenvectors have left of well resisted ones in it.
+const REFINEMENTS: usize = 2;
+/// Rows reduced at a time, in addition to as many as there are motions, and in units of their number.
+const ROWS: usize = 64;
+
+/// Inverse of `w`, and whether it has motions that are held weakly; `g_transposed` is `G_F'` of the same scale. A motion
+/// a is free when `|G_F a| <= limit |a|`: the kernel of the inverse.
+pub fn inverse(w: &Matrix, g_transposed: &Csr, limit: f64) -> Result<(SpdSolver, bool)> {
+    if let Some(regular) = SpdSolver::regular(w)? {
+        return Ok((regular, false));
+    }
+    let (values, vectors) = symmetric_eigen(w)?;
+    let certain = values.partition_point(|value| *value <= UNCERTAIN);
+    let part = |columns: std::ops::Range<usize>| Matrix {
+        rows: w.rows,
+        cols: columns.len(),
+        data: vectors.data[columns.start * w.rows..columns.end * w.rows].to_vec(),
+    };
+    let (mut motions, mut kept) = (part(0..certain), part(certain..w.cols));
+    for (j, value) in values[certain..].iter().enumerate() {
+        kept.col_mut(j).iter_mut().for_each(|v| *v /= value.sqrt());
+    }
+    for _ in 0..REFINEMENTS {
+        (0..motions.cols).for_each(|j| conjugate(motions.col_mut(j), &kept, g_transposed));
+    }
+    let (resistance, turned) = singular(&motions, g_transposed, limit)?;
+    let mut kernel = Matrix { rows: w.rows, ..Matrix::default() };
+    let mut weak = false;
+    for (j, resistance) in resistance.iter().enumerate() {
+        let mut motion = vec![0.0; w.rows];
+        motions.mul_add(1.0, turned.col(j), &mut motion);
+        if *resistance <= limit {
+            kernel.push_col(&motion);
+        } else {
+            weak = true;
+            motion.iter_mut().for_each(|v| *v /= resistance);
+            kept.push_col(&motion);
+        }
+    }
+    Ok((SpdSolver::of_parts(kept, kernel), weak))
+}
+
+/// `n <- n - T T'W n`: then `T'W n = 0`, where `T'W T = I`.
+fn conjugate(n: &mut [f64], kept: &Matrix, g_transposed: &Csr) {
+    let mut image = vec![0.0; n.len()];
+    g_transposed.mul_transposed_add(1.0, &product(g_transposed, n), &mut image);
+    let part = kept.mul_transposed(&image);
+    kept.mul_add(-1.0, &part, n);
+}
+
+/// Singular values of `G_F N` with its right singular vectors; 0 where all are below the limit.
+fn singular(motions: &Matrix, g_transposed: &Csr, limit: f64) -> Result<(Vec<f64>, Matrix)> {
+    let d = motions.cols;
+    let mut turned = Matrix::zeros(d, d)?;
+    (0..d).for_each(|j| turned.set(j, j, 1.0));
+    let images: Vec<Vec<f64>> = (0..d).map(|j| product(g_transposed, motions.col(j))).collect();
+    let lengths: Vec<f64> = images.iter().map(|image| norm(image)).collect();
+    if norm(&lengths) <= limit {
+        return Ok((vec![0.0; d], turned));
+    }
+    let (mut values, mut done) = (vec![0.0; d], 0);
+    while done < g_transposed.rows() {
+        // values and vectors of the rows so far, in place of these rows
+        let some = (g_transposed.rows() - done).min(4 * d + ROWS);
+        let mut stacked = Matrix::zeros(d + some, d)?;
+        for j in 0..d {
+            let column = stacked.col_mut(j);
+            (0..d).for_each(|k| column[k] = values[k] * turned.get(j, k));
+            column[d..].copy_from_slice(&images[j][done..done + some]);
+        }
+        (values, turned) = right_singular(&stacked)?;
+        done += some;
+    }
+    Ok((values, turned))
+}
+
+/// `G_F'n`
+fn product(g_transposed: &Csr, n: &[f64]) -> Vec<f64> {
+    let mut image = vec![0.0; g_transposed.rows()];
+    g_transposed.mul(n, &mut image);
+    image
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::linalg::vector::{axpy, dot};
+
+    /// Rows that resist three motions by 1, `weak` and nothing, mixed.
+    fn mixed(weak: f64) -> (Matrix, Csr) {
+        let third = 1.0 / 3.0;
+        let turn = [
+            [third, 2.0 * third, 2.0 * third],
+            [2.0 * third, third, -2.0 * third],
+            [2.0 * third, -2.0 * third, third],
+        ];
+        let mut g_transposed = Csr::empty(3);
+        for i in 0..200 {
+            let (a, b) = ((1.0 + i as f64).sin(), weak * (3.0 * i as f64).cos());
+            g_transposed.push_row((0..3).map(|k| (k, 0.1 * (a * turn[0][k] + b * turn[1][k]))));
+        }
+        let mut w = Matrix::zeros(3, 3).unwrap();
+        for i in 0..200 {
+            for (k, a) in g_transposed.row(i) {
+                g_transposed.row(i).for_each(|(l, b)| w.set(k, l, w.get(k, l) + a * b));
+            }
+        }
+        (w, g_transposed)
+    }
+
+    #[test]
+    fn a_motion_held_weakly_is_told_from_a_free_one_far_below_the_root_of_rounding() {
+        for weak in [1e-5, 1e-7, 1e-10, 1e-12] {
+            let (w, g_transposed) = mixed(weak);
+            let (inverse, weakly) = inverse(&w, &g_transposed, 2e-14).unwrap();
+            assert!(weakly && inverse.deficiency() == 1, "{weak}");
+            let kernel = inverse.kernel();
+            assert!(norm(&product(&g_transposed, kernel.col(0))) <= 2e-15, "{weak}");
+            // g in the range of G_F': nothing is left of it
+            let g = product(&g_transposed, &[1.0, -0.5, 0.25]);
+            let mut image = vec![0.0; 3];
+            g_transposed.mul_transposed_add(1.0, &g, &mut image);
+            let mut rest = g.clone();
+            axpy(-1.0, &product(&g_transposed, &inverse.solve(&image)), &mut rest);
+            assert!(norm(&rest) <= 1e-15 / weak * norm(&g), "{weak}: {:e}", norm(&rest));
+            assert!(dot(&inverse.solve(&image), kernel.col(0)).abs() < 1e-7);
+        }
+    }
+}

@@ -1,0 +1,285 @@
+//! Of the answers that differ by motions which nothing resists, the one of least travel (certificate.md 4):
+//!
+//! ```text
+//! u = u0 + N a,   a = argmin |u0 + N a|_D   subject to   B (u0 + N a) <= c + C lambda
+//! ```
+//!
+//! N = R A: the motions that rows with lambda > 0 and equality rows do not resist, exactly 0 on grounded unknowns. It is
+//! unique, and does not depend on the choice of K+. No matrix over all unknowns is formed.
+
+use std::borrow::Cow;
+use std::ops::Range;
+
+use crate::error::Result;
+use crate::linalg::graph::joined;
+use crate::linalg::vector::{axpy, dot, norm_max};
+use crate::linalg::{Csr, Matrix};
+use crate::qp::least_travel;
+
+/// A motion that keeps less than this of its length beside others depends on them.
+const DEPENDENT: f64 = 1e-10;
+/// Rounding of a gap, relative to its terms.
+const NOISE: f64 = 64.0 * f64::EPSILON;
+/// The second takes what the first, far travelled, has left by rounding.
+const PASSES: usize = 2;
+
+/// The null space of one body.
+pub struct Moving<'a> {
+    /// Its unknowns among all unknowns.
+    pub unknowns: Range<usize>,
+    /// Its modes among all modes.
+    pub modes: Range<usize>,
+    /// `R_p`
+    pub null_space: &'a Matrix,
+    /// How far it is known, against the fastest dof of each vector.
+    pub rounding: f64,
+}
+
+/// Motions left open, and what restricts them.
+pub struct Open<'a> {
+    /// Ascending, all modes and all unknowns.
+    pub bodies: &'a [Moving<'a>],
+    /// A: amplitudes of the null spaces, r x d.
+    pub amplitudes: &'a Matrix,
+    /// D, one entry per unknown.
+    pub metric: &'a [f64],
+    /// Unknowns that do not move.
+    pub grounded: &'a [bool],
+    /// Contact rows B over all unknowns, their gaps c (infinite: never), compliance C and forces lambda. Those with
+    /// lambda > 0 resist no motion of N, and are not looked at.
+    pub rows: &'a Csr,
+    pub gaps: &'a [f64],
+    pub compliance: &'a [f64],
+    pub lambda: &'a [f64],
+}
+
+/// What the answer changes by.
+pub struct Change {
+    /// `N a`
+    pub u: Vec<f64>,
+    /// `A a` over all modes, D-orthonormalisation undone.
+    pub amplitudes: Vec<f64>,
+}
+
+/// The way from `u` to the answer of least travel.
+pub fn travel(open: &Open, u: &[f64]) -> Result<Change> {
+    let null_spaces: Vec<Cow<Matrix>> = open.bodies.iter().map(|body| open.grounded_out(body)).collect();
+    let groups = open.orthonormal(&null_spaces)?;
+    let of_motion: Vec<(usize, usize)> = groups
+        .iter()
+        .enumerate()
+        .flat_map(|(g, group)| (0..group.motions.cols).map(move |j| (g, j)))
+        .collect();
+    let motions = open.along_rows(&null_spaces, &groups);
+    let mut change = Change { u: vec![0.0; u.len()], amplitudes: vec![0.0; open.amplitudes.rows] };
+    for _ in 0..PASSES {
+        let now: Vec<f64> = u.iter().zip(&change.u).map(|(u, way)| u + way).collect();
+        let spent = open.projections(&null_spaces, &now);
+        let target: Vec<f64> = of_motion.iter().map(|&(g, j)| -groups[g].dot(j, &spent)).collect();
+        let (gap, noise) = open.left(&now);
+        let a = least_travel(&motions, &gap, &target, &noise)?;
+        let mut turn = vec![0.0; open.amplitudes.rows];
+        of_motion.iter().zip(&a).for_each(|(&(g, j), a)| groups[g].add(*a, j, &mut turn));
+        for (body, null_space) in open.bodies.iter().zip(&null_spaces) {
+            null_space.mul_add(1.0, &turn[body.modes.clone()], &mut change.u[body.unknowns.clone()]);
+        }
+        axpy(1.0, &turn, &mut change.amplitudes);
+    }
+    Ok(change)
+}
+
+/// D-orthonormal motions of bodies that do not move alone.
+struct Group {
+    /// Modes of these bodies, ascending.
+    modes: Vec<usize>,
+    /// Amplitudes of `modes`, one column per motion.
+    motions: Matrix,
+    /// Of all motions, the first of the group.
+    first: usize,
+}
+
+impl Group {
+    /// `A_j'v`
+    fn dot(&self, j: usize, v: &[f64]) -> f64 {
+        self.modes.iter().zip(self.motions.col(j)).map(|(&mode, a)| a * v[mode]).sum()
+    }
+
+    /// `v += a A_j`
+    fn add(&self, a: f64, j: usize, v: &mut [f64]) {
+        self.modes.iter().zip(self.motions.col(j)).for_each(|(&mode, m)| v[mode] += a * m);
+    }
+}
+
+impl Open<'_> {
+    /// `R_p`, exactly 0 on grounded unknowns.
+    fn grounded_out<'b>(&self, body: &Moving<'b>) -> Cow<'b, Matrix> {
+        let grounded = &self.grounded[body.unknowns.clone()];
+        let mut null_space = Cow::Borrowed(body.null_space);
+        for i in (0..grounded.len()).filter(|&i| grounded[i]) {
+            let null_space = null_space.to_mut();
+            (0..null_space.cols).for_each(|j| null_space.set(i, j, 0.0));
+        }
+        null_space
+    }
+
+    /// `R_p'D v` of every body, over all modes.
+    fn projections(&self, null_spaces: &[Cow<Matrix>], v: &[f64]) -> Vec<f64> {
+        let mut all = vec![0.0; self.amplitudes.rows];
+        for (body, null_space) in
+            self.bodies.iter().zip(null_spaces).filter(|(body, _)| !body.modes.is_empty())
+        {
+            let own = body.unknowns.clone();
+            let weighted: Vec<f64> = own.map(|i| self.metric[i] * v[i]).collect();
+            all[body.modes.clone()].copy_from_slice(&null_space.mul_transposed(&weighted));
+        }
+        all
+    }
+
+    /// The motions that share bodies, by groups, `A'R'D R A = I`.
+    fn orthonormal(&self, null_spaces: &[Cow<Matrix>]) -> Result<Vec<Group>> {
+        let (a, mut moved_by) = (self.amplitudes, vec![Vec::new(); self.bodies.len()]);
+        for j in 0..a.cols {
+            for (moved, body) in moved_by.iter_mut().zip(self.bodies) {
+                if a.col(j)[body.modes.clone()].iter().any(|v| *v != 0.0) {
+                    moved.push(j);
+                }
+            }
+        }
+        let (group_of, count) = joined(a.cols, moved_by.iter().map(|moved| moved.iter().copied()));
+        let mut groups: Vec<(Vec<usize>, Vec<usize>)> = vec![Default::default(); count];
+        (0..a.cols).for_each(|j| groups[group_of[j]].1.push(j));
+        for (p, moved) in moved_by.iter().enumerate().filter(|(_, moved)| !moved.is_empty()) {
+            groups[group_of[moved[0]]].0.push(p);
+        }
+        let (mut done, mut first) = (Vec::with_capacity(count), 0);
+        for (bodies, columns) in groups {
+            let group = self.orthonormal_group(null_spaces, &bodies, &columns, first)?;
+            first += group.motions.cols;
+            done.push(group);
+        }
+        Ok(done)
+    }
+
+    fn orthonormal_group(
+        &self,
+        null_spaces: &[Cow<Matrix>],
+        bodies: &[usize],
+        columns: &[usize],
+        first: usize,
+    ) -> Result<Group> {
+        let modes: Vec<usize> = bodies.iter().flat_map(|&p| self.bodies[p].modes.clone()).collect();
+        let (mut grams, mut start) = (Vec::with_capacity(bodies.len()), 0);
+        for &p in bodies {
+            grams.push((start, self.gram(p, &null_spaces[p])?));
+            start += null_spaces[p].cols;
+        }
+        // R'D R a
+        let image = |a: &[f64]| -> Vec<f64> {
+            let mut image = vec![0.0; a.len()];
+            for (start, gram) in &grams {
+                let own = *start..*start + gram.rows;
+                gram.mul_add(1.0, &a[own.clone()], &mut image[own]);
+            }
+            image
+        };
+        let mut motions = Matrix { rows: modes.len(), ..Matrix::default() };
+        let mut images = motions.clone();
+        for &j in columns {
+            let mut column: Vec<f64> = modes.iter().map(|&mode| self.amplitudes.col(j)[mode]).collect();
+            let before = dot(&column, &image(&column)).sqrt();
+            for _ in 0..2 {
+                for k in 0..motions.cols {
+                    let part = dot(images.col(k), &column);
+                    axpy(-part, motions.col(k), &mut column);
+                }
+            }
+            let length = dot(&column, &image(&column)).max(0.0).sqrt();
+            if length > DEPENDENT * before {
+                column.iter_mut().for_each(|v| *v /= length);
+                images.push_col(&image(&column));
+                motions.push_col(&column);
+            }
+        }
+        Ok(Group { modes, motions, first })
+    }
+
+    /// `R_p'D R_p`
+    fn gram(&self, p: usize, null_space: &Matrix) -> Result<Matrix> {
+        let metric = &self.metric[self.bodies[p].unknowns.clone()];
+        let mut gram = Matrix::zeros(null_space.cols, null_space.cols)?;
+        for j in 0..null_space.cols {
+            let weighted: Vec<f64> = null_space.col(j).iter().zip(metric).map(|(r, d)| r * d).collect();
+            gram.col_mut(j).copy_from_slice(&null_space.mul_transposed(&weighted));
+        }
+        Ok(gram)
+    }
+
+    /// `B N`, entries that are nothing but rounding left out, rows with lambda > 0 empty.
+    fn along_rows(&self, null_spaces: &[Cow<Matrix>], groups: &[Group]) -> Csr {
+        let modes = self.amplitudes.rows;
+        let (mut at, mut fastest) = (vec![None; modes], vec![0.0; modes]);
+        for (g, group) in groups.iter().enumerate() {
+            group.modes.iter().enumerate().for_each(|(k, &mode)| at[mode] = Some((g, k)));
+        }
+        for (body, null_space) in self.bodies.iter().zip(null_spaces) {
+            body.modes.clone().enumerate().for_each(|(j, mode)| fastest[mode] = norm_max(null_space.col(j)));
+        }
+        let mut all = Csr::empty(groups.iter().map(|group| group.motions.cols).sum());
+        for i in 0..self.rows.rows() {
+            // terms of `b_i R`: mode, value, what it is known to
+            let mut terms: Vec<(usize, f64, f64)> = Vec::new();
+            for (unknown, b) in self.rows.row(i).filter(|_| self.lambda[i] <= 0.0) {
+                let p = self.bodies.partition_point(|body| body.unknowns.end <= unknown);
+                let body = &self.bodies[p];
+                for (j, mode) in body.modes.clone().enumerate().filter(|(_, mode)| at[*mode].is_some()) {
+                    let value = b * null_spaces[p].get(unknown - body.unknowns.start, j);
+                    let known = body.rounding.max(NOISE) * b.abs() * fastest[mode];
+                    match terms.iter_mut().find(|term| term.0 == mode) {
+                        Some(term) => (term.1, term.2) = (term.1 + value, term.2 + known),
+                        None => terms.push((mode, value, known)),
+                    }
+                }
+            }
+            all.push_row(row_of(&terms, &at, groups));
+        }
+        all
+    }
+
+    /// `c + C lambda - B u` and its rounding; rows with lambda > 0 and infinite gaps restrict nothing.
+    fn left(&self, u: &[f64]) -> (Vec<f64>, Vec<f64>) {
+        let (mut gaps, mut noise) = (vec![f64::INFINITY; self.rows.rows()], vec![0.0; self.rows.rows()]);
+        let restricts = |i: &usize| self.lambda[*i] <= 0.0 && self.gaps[*i] < f64::INFINITY;
+        for i in (0..self.rows.rows()).filter(restricts) {
+            let yielded = self.compliance[i] * self.lambda[i];
+            gaps[i] = self.gaps[i] + yielded - self.rows.row_dot(i, u);
+            noise[i] = NOISE * (self.gaps[i].abs() + yielded.abs() + self.rows.row_dot_abs(i, u));
+        }
+        (gaps, noise)
+    }
+}
+
+/// `b_i R A` from the terms of `b_i R`, motions ascending.
+fn row_of(terms: &[(usize, f64, f64)], at: &[Option<(usize, usize)>], groups: &[Group]) -> Vec<(usize, f64)> {
+    let mut touched: Vec<usize> = terms.iter().filter_map(|term| Some(at[term.0]?.0)).collect();
+    touched.sort_unstable();
+    touched.dedup();
+    let mut row = Vec::new();
+    for g in touched {
+        for j in 0..groups[g].motions.cols {
+            let (mut value, mut known) = (0.0, 0.0);
+            for (mode, term, rounding) in terms {
+                if let Some((_, k)) = at[*mode].filter(|(group, _)| *group == g) {
+                    let a = groups[g].motions.get(k, j);
+                    (value, known) = (value + term * a, known + rounding * a.abs());
+                }
+            }
+            if f64::abs(value) > known {
+                row.push((groups[g].first + j, value));
+            }
+        }
+    }
+    row
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,142 @@
+use super::*;
+use crate::qp::undetermined;
+
+/// Blocks of four unknowns, (x, y) of two points, that slide along x, y and turn; unknowns of unequal weight.
+struct Blocks {
+    null_space: Matrix,
+    count: usize,
+    metric: Vec<f64>,
+}
+
+impl Blocks {
+    fn new(count: usize) -> Self {
+        let metric: Vec<f64> = (0..4 * count).map(|i| 1.0 + (i % 3) as f64).collect();
+        let null_space =
+            Matrix { rows: 4, cols: 3, data: vec![1., 0., 1., 0., 0., 1., 0., 1., 0.3, -1., 0.7, 1.] };
+        Self { null_space, count, metric }
+    }
+
+    /// Change and kernel; `closed` rows resist.
+    fn solve(&self, rows: &Csr, gaps: &[f64], lambda: &[f64], u: &[f64]) -> (Change, usize) {
+        let bodies: Vec<Moving> = (0..self.count)
+            .map(|p| Moving {
+                unknowns: 4 * p..4 * p + 4,
+                modes: 3 * p..3 * p + 3,
+                null_space: &self.null_space,
+                rounding: 1e-14,
+            })
+            .collect();
+        let mut g_transposed = Csr::empty(3 * self.count);
+        for i in 0..rows.rows() {
+            let mut row = vec![0.0; 3 * self.count];
+            for (unknown, b) in rows.row(i) {
+                (0..3).for_each(|j| row[3 * (unknown / 4) + j] += b * self.null_space.get(unknown % 4, j));
+            }
+            g_transposed.push_row(row.into_iter().enumerate().filter(|(_, v)| *v != 0.0));
+        }
+        let held: Vec<bool> = lambda.iter().map(|lambda| *lambda <= 0.0).collect();
+        let amplitudes = undetermined(&g_transposed, &held, 1.5e-14).unwrap();
+        let open = Open {
+            bodies: &bodies,
+            amplitudes: &amplitudes,
+            metric: &self.metric,
+            grounded: &vec![false; 4 * self.count],
+            rows,
+            gaps,
+            compliance: &vec![0.0; gaps.len()],
+            lambda,
+        };
+        (travel(&open, u).unwrap(), amplitudes.cols)
+    }
+
+    fn length(&self, u: &[f64]) -> f64 {
+        u.iter().zip(&self.metric).map(|(u, d)| d * u * u).sum::<f64>().sqrt()
+    }
+}
+
+/// Block 0 stands on two closed rows and slides along x; a wall stops it on the way back, at x = 0.25.
+#[test]
+fn a_block_slides_back_as_far_as_the_wall_allows_whatever_the_start() {
+    let blocks = Blocks::new(1);
+    let mut rows = Csr::empty(4);
+    rows.push_row([(1, -1.0)]);
+    rows.push_row([(3, -1.0)]);
+    rows.push_row([(0, -1.0)]);
+    rows.push_row([(2, 1.0)]);
+    for (slide, wall) in [(3.0, -0.25), (1e6, -0.25), (0.5, f64::INFINITY), (1e9, 1e30)] {
+        let u = [slide, 0.1, slide + 0.01, -0.1];
+        let (change, free) = blocks.solve(&rows, &[-0.1, 0.1, wall, 1e20], &[1.0, 2.0, 0.0, 0.0], &u);
+        let x = u[0] + change.u[0];
+        assert!(free == 1 && (u[2] + change.u[2] - x - 0.01).abs() < 1e-9 * slide, "{free} {x}");
+        assert!(change.u[1].abs().max(change.u[3].abs()) <= 1e-15 * slide);
+        // without the wall: x + 3 (x + 0.01) = 0, the weights being 1 and 3
+        let expected = if wall < 0.0 { 0.25 } else { -0.03 / 4.0 };
+        assert!((x - expected).abs() <= 1e-15 * slide + 1e-15, "{slide} {wall}: {x}");
+        assert!((change.amplitudes[0] - change.u[0]).abs() <= 1e-15 * slide);
+    }
+}
+
+/// Loose blocks: each goes back by itself, and the second answer is where the first is.
+#[test]
+fn three_hundred_loose_blocks_go_back_and_stay() {
+    let blocks = Blocks::new(300);
+    let mut rows = Csr::empty(1200);
+    let (mut gaps, mut lambda) = (Vec::<f64>::new(), Vec::<f64>::new());
+    for p in 0..300 {
+        rows.push_row([(4 * p + 1, -1.0)]);
+        rows.push_row([(4 * p + 3, -1.0)]);
+        gaps.extend([0.0, 0.0]);
+        lambda.extend([1.0, f64::from(p % 2 == 0)]);
+        if p > 0 {
+            rows.push_row([(4 * p - 2, 1.0), (4 * p, -1.0)]);
+            gaps.push(0.5);
+            lambda.push(0.0);
+        }
+    }
+    let elastic: Vec<f64> =
+        (0..1200).map(|i| if i % 2 == 1 { 0.0 } else { 0.2 * (i as f64).sin() }).collect();
+    let mut answers = Vec::new();
+    for travelled in [0.0, 1.0, 1e5] {
+        let mut u = elastic.clone();
+        (0..300).for_each(|p| [4 * p, 4 * p + 2].iter().for_each(|&i| u[i] += travelled * (p as f64).cos()));
+        // rows that the start violates are none: the gap that it leaves is the one to keep
+        let open: Vec<f64> = (0..rows.rows())
+            .map(|i| if lambda[i] > 0.0 { gaps[i] } else { gaps[i].max(rows.row_dot(i, &u)) })
+            .collect();
+        let gaps_now = if travelled == 0.0 { gaps.clone() } else { open };
+        let (change, free) = blocks.solve(&rows, &gaps_now, &lambda, &u);
+        assert_eq!(free, 150 + 2 * 150);
+        let answer: Vec<f64> = u.iter().zip(&change.u).map(|(u, way)| u + way).collect();
+        let met = |i: usize| rows.row_dot(i, &answer) <= gaps_now[i] + 1e-15 * (1.0 + travelled);
+        assert!((0..rows.rows()).filter(|&i| lambda[i] == 0.0).all(met));
+        assert!(blocks.length(&answer) <= blocks.length(&u));
+        let (again, _) = blocks.solve(&rows, &gaps_now, &lambda, &answer);
+        assert!(norm_max(&again.u) <= 1e-14 * (1.0 + travelled), "{:e}", norm_max(&again.u));
+        answers.push(answer);
+    }
+    let far = answers[0].iter().zip(&answers[2]).fold(0.0f64, |most, (a, b)| most.max((a - b).abs()));
+    assert!(far < 1.0, "{far}");
+}
+
+/// A motion is exactly 0 on a grounded unknown, and its rows there are not moved.
+#[test]
+fn grounded_unknowns_stay_to_the_last_bit() {
+    let null_space = Matrix { rows: 3, cols: 1, data: vec![1.0, 1.0, 1e-20] };
+    let bodies = [Moving { unknowns: 0..3, modes: 0..1, null_space: &null_space, rounding: 1e-14 }];
+    let amplitudes = Matrix { rows: 1, cols: 1, data: vec![2.0] };
+    let mut rows = Csr::empty(3);
+    rows.push_row([(0, 1.0), (2, -1.0)]);
+    let open = Open {
+        bodies: &bodies,
+        amplitudes: &amplitudes,
+        metric: &[1.0, 1.0, 1e20],
+        grounded: &[false, false, true],
+        rows: &rows,
+        gaps: &[1.0],
+        compliance: &[0.0],
+        lambda: &[0.0],
+    };
+    let change = travel(&open, &[-5.0, -5.0, -2.0]).unwrap();
+    assert_eq!(change.u, [4.0, 4.0, 0.0]);
+    assert_eq!(change.amplitudes, [4.0]);
+}
