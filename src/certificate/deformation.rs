@@ -54,8 +54,7 @@ fn fitted(field: &Field, p: usize) -> Vec<f64> {
     let by = field.unit / body.unit;
     let mut left = field.free(p, |j| field.answer.u[j]);
     for _ in 0..2 {
-        let weighed: Vec<f64> =
-            range.clone().map(|j| by * field.metric[j] * left[j - range.start]).collect();
+        let weighed: Vec<f64> = range.clone().map(|j| by * field.metric[j] * left[j - range.start]).collect();
         let step = body.null_space.mul_transposed(&weighed);
         body.null_space.mul_add(-1.0, &step, &mut left);
         left.iter_mut().zip(range.clone()).filter(|(_, j)| field.grounded[*j]).for_each(|(v, _)| *v = 0.0);

@@ -31,8 +31,7 @@ impl Energies {
     pub fn add_body(&mut self, field: &Field, p: usize, (strain, terms): (&[f64], &[f64])) {
         let range = field.range(p);
         let u = &field.answer.u[range.clone()];
-        let given: Vec<f64> =
-            range.clone().map(|j| field.load(p, j).abs() + field.push_terms[j]).collect();
+        let given: Vec<f64> = range.clone().map(|j| field.load(p, j).abs() + field.push_terms[j]).collect();
         self.strain += dot(u, strain);
         self.work += range.map(|j| field.load(p, j) * field.answer.u[j]).sum::<f64>();
         self.terms += u.iter().zip(terms).zip(&given).map(|((u, t), g)| u.abs() * (t + g)).sum::<f64>();
@@ -43,7 +42,9 @@ impl Energies {
 
     /// Adds the rows. A row without force does no work, however far it is: 0 x infinity is 0.
     pub fn add_rows(&mut self, field: &Field) {
-        for (kind, forces) in [(RowKind::Inequality, field.answer.lambda), (RowKind::Equality, field.answer.mu)] {
+        for (kind, forces) in
+            [(RowKind::Inequality, field.answer.lambda), (RowKind::Equality, field.answer.mu)]
+        {
             let rows = field.rows(kind);
             for (i, force) in forces.iter().enumerate().filter(|(_, force)| **force != 0.0) {
                 let (work, stored) = (force * rows.rhs[i], rows.compliance[i] * force * force);

@@ -105,9 +105,9 @@ mod tests {
 
     #[test]
     fn the_worst_of_two_islands_counts_and_their_energies_add_up() {
-        let mut all = Certificate { limit: 1e-8, balance: entry(0.5, 3), energy: -1.0, ..Certificate::default() };
-        let other =
-            Certificate { balance: entry(2.0, 7), penetration: entry(0.1, 4), energy: -2.0, ..all };
+        let mut all =
+            Certificate { limit: 1e-8, balance: entry(0.5, 3), energy: -1.0, ..Certificate::default() };
+        let other = Certificate { balance: entry(2.0, 7), penetration: entry(0.1, 4), energy: -2.0, ..all };
         all.merge(&other);
         assert_eq!((all.balance.place, all.penetration.place, all.energy), (Some(7), Some(4), -3.0));
         assert_eq!((all.worst(), all.balance.figure, all.passed()), (2.0, 2e-8, false));

@@ -44,7 +44,8 @@ pub(super) fn by_rounding(
 /// Rows whose gaps fail, with their ratios, the worst first.
 fn failing(rows: &Measured) -> Vec<(RowKind, usize, f64)> {
     let contact = rows.contact.iter().enumerate().map(|(i, row)| (RowKind::Inequality, i, row.gap_ratio()));
-    let equalities = rows.equalities.iter().enumerate().map(|(i, row)| (RowKind::Equality, i, row.gap_ratio()));
+    let equalities =
+        rows.equalities.iter().enumerate().map(|(i, row)| (RowKind::Equality, i, row.gap_ratio()));
     let mut failing: Vec<_> = contact.chain(equalities).filter(|(_, _, ratio)| !(*ratio <= 1.0)).collect();
     failing.sort_by(|a, b| b.2.total_cmp(&a.2));
     failing

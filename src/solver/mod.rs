@@ -32,8 +32,8 @@ mod threads;
 mod undetermined;
 mod watch;
 
-pub use crate::certificate::{Certificate, Entry};
 pub use crate::body::{Columns, HostFunctions, HostProduct, Modes, SparseInput, Storage};
+pub use crate::certificate::{Certificate, Entry};
 pub use crate::constraints::{RowKind, RowsInput};
 pub use crate::error::Proof;
 pub use crate::linalg::Borrowed;

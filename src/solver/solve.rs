@@ -21,8 +21,8 @@ use crate::solver::phases::{Phase, Phases};
 use crate::solver::presolve::{presolve, Gaps};
 use crate::solver::problem::Problem;
 use crate::solver::report::{Outcome, Report};
-use crate::solver::results::{Answer, Asked};
 use crate::solver::response::ByInverse;
+use crate::solver::results::{Answer, Asked};
 use crate::solver::setup::Ready;
 use crate::solver::watch::{Stops, Watch};
 

@@ -1,7 +1,6 @@
 //! By hand: single springs, units, what over- or underflows, what is not known.
 
 use super::model::{chain, Model, Point, LIMIT};
-use super::*;
 
 /// Spring 4 at a wall, loaded by 2 towards an obstacle at 0.25: u = .25, lambda = 1. `c`: compliance of the row.
 fn spring(unit: f64, c: f64) -> Model {
@@ -54,7 +53,8 @@ fn the_answer_on_a_compliant_row_passes_in_any_unit_and_each_fault_is_named() {
 #[test]
 fn no_distance_excuses_forces_that_do_not_balance() {
     for far in [0.0, 1.0, 1e10, 1e20] {
-        let model = Model { parts: vec![chain(&[1.0], &[]).loaded(&[(0, 0.5), (1, 0.5)])], ..Model::default() };
+        let model =
+            Model { parts: vec![chain(&[1.0], &[]).loaded(&[(0, 0.5), (1, 0.5)])], ..Model::default() };
         let certificate = model.certificate(&Point { u: vec![far; 2], lambda: vec![], mu: vec![] });
         assert!(!certificate.passed() && certificate.balance.ratio > 1.0, "{far:e}");
     }
@@ -126,11 +126,11 @@ fn units_that_differ_by_powers_of_two_change_no_bit() {
         let parts = vec![
             chain(&springs(&[2.0, 3.1, 1.7]), &[]).loaded(&[(0, 0.7 * f), (2, 0.3 * f)]),
             chain(&springs(&[1.9, 2.3]), &[(2, 3.7 * k)]),
-            chain(&springs(&[0.3]), &[]),
+            chain(&springs(&[0.3]), &[(0, 0.9 * k)]),
         ];
         let contact = vec![(vec![(3, 1.0), (4, -1.0)], 0.1 * f / k, 0.1 / k)];
         let equalities = vec![(vec![(6, 1.0), (7, -1.0)], 0.02 * f / k, 0.0)];
-        Model { parts, contact, equalities, active: vec![0] }
+        Model { parts, contact, equalities, active: vec![0], ..Model::default() }
     };
     let answer = model(1.0, 1.0).answer();
     for error in [1.0, 1.0 + 1e-9, 1.001] {
@@ -162,7 +162,9 @@ fn the_error_of_the_forces_on_a_body_is_estimated() {
     assert_eq!(model.judged(&point(0.25, 1.0)).0.bodies[0].force_error, 0.0);
     // s = 2, (|f| + |r|) = (2 + 1) / 2; L = |r| / K + lambda / s^2 = .5
     let zero = model.judged(&point(0.25, 1.0)).0.contact[0];
-    assert!((zero.force / (3.0 * LIMIT) - 1.0).abs() < 1e-12 && (zero.gap / (0.5 * LIMIT) - 1.0).abs() < 1e-5);
+    assert!(
+        (zero.force / (3.0 * LIMIT) - 1.0).abs() < 1e-12 && (zero.gap / (0.5 * LIMIT) - 1.0).abs() < 1e-5
+    );
 }
 
 #[test]
