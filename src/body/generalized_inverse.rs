@@ -6,14 +6,14 @@ use std::sync::Arc;
 
 use crate::body::factor::Factor;
 use crate::body::fixing::{fixing_dofs, given_dofs, hold_as_well};
-use crate::body::null_space::{largest, verified, NullSpaceInput};
+use crate::body::null_space::{largest, verified, NullSpaceInput, Verified, ROUNDING as KNOWN};
 use crate::body::overflow::overflow;
 use crate::body::random::Random;
 use crate::body::search::Search;
 use crate::body::symbolic::{Layout, Made, Symbolic};
 use crate::error::{Error, Kind, Result};
 use crate::linalg::memory::{room, zeros, PRODUCTS};
-use crate::linalg::vector::weighted_norm;
+use crate::linalg::vector::{norm_max, weighted_norm};
 use crate::linalg::{Analysis, Breakdown, Csr, Matrix, Multiple, Packed};
 
 /// A pivot below minus this, relative to its diagonal entry, is no rounding error: a(u, u) >= 0 of (4) is violated.
@@ -23,11 +23,12 @@ pub(super) const SINGULAR: f64 = 1e-13;
 /// Random numbers have `n^-1/2` of their length along a given direction; this many times less is not expected. (A mode
 /// that is missing is left with 1e-16 by rounding, far below `SINGULAR`: there it would take a thousand times less still.)
 pub(super) const UNLIKELY: f64 = 1e3;
+/// Rounding errors of R may be so many times those of the sample that is taken of them, ...
+const SAMPLE: f64 = 16.0;
+/// ... and what is more against the fastest dof is none.
+const MOST_ROUNDING: f64 = 1e-9;
 /// Largest residual of a solve with the factor, relative to its terms.
 pub(super) const PROBE: f64 = 1e-8;
-
-/// How far a null vector is known that was given.
-pub(super) const GIVEN: f64 = 64.0 * f64::EPSILON;
 
 pub struct GeneralizedInverse {
     /// `R_p`, n x r, with `R'DR = I`.
@@ -51,6 +52,7 @@ pub enum Plan {
 pub struct Known {
     k: Multiple,
     null_space: Matrix,
+    rounding: f64,
     fixing: Vec<usize>,
     /// The fixing dofs are those of the host.
     given: bool,
@@ -73,12 +75,12 @@ impl GeneralizedInverse {
         let per_dof = (8 * input.vectors.cols + 24) * size_of::<f64>();
         let _room = room(k.order() * per_dof + PRODUCTS, "the null space of a body")?;
         let (root, given) = (k.roots()?, fixing.is_some());
-        let null_space = verified(&k, &root, input, tolerance)?;
+        let Verified { basis: null_space, rounding } = verified(&k, &root, input, tolerance)?;
         let fixing = match fixing {
             Some(given) => given_dofs(&null_space, &root, given)?,
             None => fixing_dofs(&null_space, &root)?,
         };
-        Ok(Plan::Known(Known { k, null_space, fixing, given, symbolic: None }))
+        Ok(Plan::Known(Known { k, null_space, rounding, fixing, given, symbolic: None }))
     }
 
     /// The same where nothing is known about the null space.
@@ -177,7 +179,7 @@ impl Plan {
     pub fn with_factor_of(self, other: &GeneralizedInverse) -> GeneralizedInverse {
         let (factor, fixing) = (other.factor.clone(), other.fixing.clone());
         let (null_space, rounding, gap) = match self {
-            Self::Known(known) => (known.null_space, GIVEN, None),
+            Self::Known(known) => (known.null_space, known.rounding, None),
             Self::Search(_) => (other.null_space.clone(), other.rounding, other.gap),
         };
         GeneralizedInverse { null_space, rounding, fixing, gap, factor }
@@ -227,10 +229,13 @@ impl Known {
             let missing = || missing_mode(breakdown.dof, breakdown.relative_pivot, self.null_space.cols);
             breakdown.refused().unwrap_or_else(missing)
         })?;
-        let (null_space, fixing) = (self.null_space, self.fixing);
+        let Self { k, null_space, rounding, fixing, .. } = self;
         let factor = Factor::Own(Arc::new(factor));
-        let inverse = GeneralizedInverse { null_space, rounding: GIVEN, fixing, gap: None, factor };
-        inverse.probe(&self.k)?;
+        let mut inverse = GeneralizedInverse { null_space, rounding, fixing, gap: None, factor };
+        inverse.probe(&k)?;
+        if rounding > KNOWN {
+            inverse.rounding = inverse.known_to(&k)?;
+        }
         Ok(Made { inverse, symbolic, further_analyses: 0, factorisations: 1 })
     }
 }
@@ -245,6 +250,18 @@ impl Breakdown {
 }
 
 impl GeneralizedInverse {
+    /// `|K+ K R|`, zero but for errors of R: the factor enlarges what K makes of them as it has those of rounding.
+    pub(super) fn known_to(&self, k: &Multiple) -> Result<f64> {
+        let (image, _) = k.mul_columns(&self.null_space)?;
+        let mut turned = zeros(k.order(), "a null space")?;
+        let mut worst: f64 = KNOWN;
+        for j in 0..image.cols {
+            self.apply(image.col(j), &mut turned)?;
+            worst = worst.max(SAMPLE * norm_max(&turned) / norm_max(self.null_space.col(j)));
+        }
+        Ok(worst.min(MOST_ROUNDING))
+    }
+
     /// A factorisation that ends without complaint proves nothing: solve for a known right-hand side b, and look for a
     /// null vector v that vanishes on the fixing dofs by inverse iteration on A. The first step finds v by the part of b
     /// along it; a second step is taken unless that part would have to be unlikely small.

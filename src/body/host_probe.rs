@@ -3,9 +3,9 @@
 //! measured in the metric `D^-1`, displacements in D, so that no figure has a unit.
 
 use crate::body::factor::Factor;
-use crate::body::generalized_inverse::{GeneralizedInverse, GIVEN, PROBE, UNLIKELY};
+use crate::body::generalized_inverse::{GeneralizedInverse, PROBE, UNLIKELY};
 use crate::body::host::HostMultiple;
-use crate::body::null_space::{largest, verified, NullSpaceInput, Products};
+use crate::body::null_space::{largest, verified, NullSpaceInput, Products, Verified};
 use crate::body::random::Random;
 use crate::error::{Error, Kind, Result};
 use crate::linalg::vector::{axpy, dot, ratio, weighted_norm};
@@ -25,9 +25,9 @@ const MISSING: f64 = 10.0 * PROBE;
 impl GeneralizedInverse {
     /// K+ of the host, once K, K+ and the null space have passed.
     pub fn of_host(k: HostMultiple, given: &NullSpaceInput, tolerance: f64) -> Result<Self> {
-        let null_space = verified(&k, &k.roots()?, given, tolerance)?;
+        let Verified { basis: null_space, rounding } = verified(&k, &k.roots()?, given, tolerance)?;
         Probe::new(&k, &null_space)?.judge()?;
-        Ok(Self { null_space, rounding: GIVEN, fixing: Vec::new(), gap: None, factor: Factor::Host(k) })
+        Ok(Self { null_space, rounding, fixing: Vec::new(), gap: None, factor: Factor::Host(k) })
     }
 }
 

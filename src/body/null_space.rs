@@ -31,7 +31,9 @@ const DEPENDENT: f64 = 1e-10;
 const CANDIDATE: f64 = 1e-11;
 /// `|A z|` of a unit vector z that is zero but for rounding, also where its terms are no more than that: z of dofs
 /// without stiffness.
-const ROUNDING: f64 = 64.0 * f64::EPSILON;
+pub(super) const ROUNDING: f64 = 64.0 * f64::EPSILON;
+/// The largest error of a null vector against the mean.
+const PEAK: f64 = 8.0;
 /// Entries that cancelled to this fraction of their terms are zero (supports of 1e30 would multiply them).
 const CANCELLED: f64 = 1e-12;
 
@@ -62,8 +64,20 @@ impl Products for Multiple {
     }
 }
 
+/// A null space and how far it is known: the part of the fastest dof that is nothing.
+pub struct Verified {
+    /// `R'DR = I`
+    pub basis: Matrix,
+    pub rounding: f64,
+}
+
 /// Basis of the null space with `R'DR = I`; `root` is `D^1/2`.
-pub fn verified<K: Products>(k: &K, root: &[f64], input: &NullSpaceInput, tolerance: f64) -> Result<Matrix> {
+pub fn verified<K: Products>(
+    k: &K,
+    root: &[f64],
+    input: &NullSpaceInput,
+    tolerance: f64,
+) -> Result<Verified> {
     match input.modes {
         Modes::Exact => exact(k, root, &input.vectors, tolerance),
         Modes::Candidates => {
@@ -74,7 +88,7 @@ pub fn verified<K: Products>(k: &K, root: &[f64], input: &NullSpaceInput, tolera
 }
 
 /// `|A z| <= tolerance | |A| |z| |`, or rounding, for an orthonormal basis z of the span of `D^1/2 R`.
-fn exact<K: Products>(k: &K, root: &[f64], vectors: &Matrix, tolerance: f64) -> Result<Matrix> {
+fn exact<K: Products>(k: &K, root: &[f64], vectors: &Matrix, tolerance: f64) -> Result<Verified> {
     let mut basis = vectors.clone();
     for j in 0..basis.cols {
         basis.col_mut(j).iter_mut().zip(root).for_each(|(v, d)| *v *= d);
@@ -88,6 +102,7 @@ fn exact<K: Products>(k: &K, root: &[f64], vectors: &Matrix, tolerance: f64) -> 
         basis.col_mut(j).iter_mut().zip(root).for_each(|(v, d)| *v /= d);
     }
     let (image, terms) = k.mul_columns(&basis)?;
+    let mut rounding = ROUNDING;
     let weight = |i: usize| 1.0 / k.metric(i, 1.0);
     for j in 0..basis.cols {
         let left = weighted_norm(image.col(j), weight);
@@ -99,8 +114,10 @@ fn exact<K: Products>(k: &K, root: &[f64], vectors: &Matrix, tolerance: f64) -> 
                 .value(found)
                 .limit(tolerance));
         }
+        // what A resists of z is no null vector: single dofs have more of it than the mean
+        rounding = rounding.max(PEAK * found.min(left));
     }
-    Ok(basis)
+    Ok(Verified { basis, rounding })
 }
 
 /// The part of the span of the candidates that `D^-1 K` maps to zero: from the singular values of
@@ -174,7 +191,7 @@ mod tests {
     }
 
     fn verified(k: &Multiple, input: &NullSpaceInput, tolerance: f64) -> Result<Matrix> {
-        super::verified(k, &k.roots()?, input, tolerance)
+        super::verified(k, &k.roots()?, input, tolerance).map(|found| found.basis)
     }
 
     fn translation(n: usize, modes: Modes) -> NullSpaceInput {

@@ -9,16 +9,15 @@ use std::sync::Arc;
 
 use crate::body::factor::Factor;
 use crate::body::fixing::{fixing_dofs, given_dofs};
-use crate::body::generalized_inverse::{GeneralizedInverse, GIVEN, SINGULAR};
-use crate::body::null_space::{largest, verified, Modes, NullSpaceInput};
+use crate::body::generalized_inverse::{GeneralizedInverse, SINGULAR};
+use crate::body::null_space::{largest, verified, Modes, NullSpaceInput, Verified};
 use crate::body::overflow::refuse_overflow;
 use crate::body::symbolic::{Layout, Made, Symbolic};
 use crate::error::{Error, Kind, Result};
 use crate::linalg::graph::components;
-use crate::linalg::memory::{copied, reserved, room, zeros, PRODUCTS};
+use crate::linalg::memory::{copied, reserved, room, PRODUCTS};
 use crate::linalg::spd::symmetric_eigen;
 use crate::linalg::trailing::Trailing;
-use crate::linalg::vector::norm_max;
 use crate::linalg::{Analysis, Breakdown, Cholesky, Matrix, Multiple, Symmetric};
 
 /// Dofs eliminated last in each part, at first.
@@ -33,10 +32,6 @@ const GAP: f64 = 1e3;
 const ROUNDING: f64 = 1e-14;
 /// Bytes of labels, lists and vectors, per dof.
 const PER_DOF: usize = 256;
-/// Rounding errors of R may be so many times those of the sample that is taken of them, ...
-const SAMPLE: f64 = 16.0;
-/// ... and what is more against the fastest dof is none.
-const MOST_ROUNDING: f64 = 1e-9;
 
 pub struct Search {
     k: Multiple,
@@ -233,16 +228,16 @@ impl Search {
         })?;
         let gap = soft.iter().map(|part| part.gap).reduce(f64::min);
         let found = NullSpaceInput { vectors, modes: Modes::Exact };
-        let null_space = verified(&self.k, &root, &found, self.tolerance)?;
+        let Verified { basis: null_space, rounding } = verified(&self.k, &root, &found, self.tolerance)?;
         let mut inverse = GeneralizedInverse {
             null_space,
-            rounding: GIVEN,
+            rounding,
             fixing: fixing.concat(),
             gap,
             factor: Factor::Own(Arc::new(factor)),
         };
         inverse.probe(&self.k)?;
-        inverse.rounding = rounding(&inverse, &self.k)?;
+        inverse.rounding = inverse.known_to(&self.k)?;
         Ok(inverse)
     }
 
@@ -260,18 +255,6 @@ impl Search {
         };
         soft.iter().zip(&self.last).map(chosen).collect()
     }
-}
-
-/// `|K+ K R|`, zero but for rounding errors, which the factor enlarges as it has those of R.
-fn rounding(inverse: &GeneralizedInverse, k: &Multiple) -> Result<f64> {
-    let (image, _) = k.mul_columns(&inverse.null_space)?;
-    let mut turned = zeros(k.order(), "a null space")?;
-    let mut worst: f64 = GIVEN;
-    for j in 0..image.cols {
-        inverse.apply(image.col(j), &mut turned)?;
-        worst = worst.max(SAMPLE * norm_max(&turned) / norm_max(inverse.null_space.col(j)));
-    }
-    Ok(worst.min(MOST_ROUNDING))
 }
 
 /// A pivot that is not positive: K is indefinite, or t does not resist a motion of the null space.

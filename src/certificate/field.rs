@@ -1,10 +1,12 @@
 //! What all entries need, over all unknowns and rows of the island.
 
+use std::collections::HashSet;
 use std::ops::Range;
 
 use crate::certificate::deformation::deformation;
 use crate::certificate::{metric, Answer, BodyData, Data};
 use crate::constraints::{row_scales, RowKind, RowSet};
+use crate::error::Result;
 use crate::linalg::vector::{norm_max, power_of_two_below, weighted_norm};
 
 pub(super) struct Field<'a> {
@@ -27,7 +29,7 @@ pub(super) struct Field<'a> {
 }
 
 impl<'a> Field<'a> {
-    pub fn new(data: &'a Data<'a>, answer: Answer<'a>) -> Self {
+    pub fn new(data: &'a Data<'a>, answer: Answer<'a>) -> Result<Self> {
         let n = answer.u.len();
         let mut metric = metric(data, n);
         let unit = power_of_two_below(norm_max(&metric));
@@ -38,14 +40,16 @@ impl<'a> Field<'a> {
             rows.matrix.mul_transposed_abs_add(multipliers, &mut push_terms);
         }
         let mut grounded = vec![false; n];
-        for body in &data.bodies {
-            body.grounded.iter().for_each(|j| grounded[body.start + *j as usize] = true);
+        for body in data.bodies.iter().filter(|body| !body.grounded.is_empty()) {
+            let moving = moving(body)?;
+            let held = body.grounded.iter().filter(|j| !moving.contains(j));
+            held.for_each(|j| grounded[body.start + *j as usize] = true);
         }
         let scales = [data.contact, data.equalities].map(|rows| row_scales(rows, &metric, unit));
         let deformation = Vec::new();
         let mut field = Self { data, answer, unit, metric, grounded, push, push_terms, deformation, scales };
         field.deformation = deformation_of(&field);
-        field
+        Ok(field)
     }
 
     pub fn rows(&self, kind: RowKind) -> &'a RowSet {
@@ -90,6 +94,19 @@ fn deformation_of(field: &Field) -> Vec<f64> {
         left[j] = field.push[j].abs() / unit / field.metric[j];
     }
     left
+}
+
+/// Grounded unknowns j of a body that its null space moves all the same, `|K_jj R_j| > 1/4 sum_k |K_jk||R_k|`: no ground holds
+/// them but a stiff neighbour that may move itself.
+fn moving(body: &BodyData) -> Result<HashSet<u32>> {
+    let (n, motions) = (body.null_space.rows, body.null_space);
+    let (mut image, mut terms, mut moving) = (vec![0.0; n], vec![0.0; n], HashSet::new());
+    for k in 0..motions.cols {
+        body.stiffness.mul_with_terms(motions.col(k), &mut image, &mut terms)?;
+        let moves = |j: usize| 4.0 * (body.stiffness.metric(j, 0.0) * motions.get(j, k)).abs() > terms[j];
+        moving.extend(body.grounded.iter().filter(|j| moves(**j as usize)));
+    }
+    Ok(moving)
 }
 
 /// Unknowns of a body among all.

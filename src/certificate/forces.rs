@@ -10,7 +10,7 @@ use crate::linalg::Matrix;
 
 /// The part of the forces of the island that rounding may excuse in the equilibrium of one body: where a body has moved so
 /// far that its strain is lost, the answer is not known.
-const EXCUSED: f64 = 1e-3;
+const EXCUSED: f64 = 1e-2;
 
 /// How large the forces are.
 pub(super) struct Forces {
@@ -28,10 +28,11 @@ pub(super) struct Forces {
 impl Forces {
     pub fn new(field: &Field) -> Self {
         let (mut sizes, mut loads, mut pushes) = (Vec::new(), Vec::new(), Vec::new());
-        for (p, body) in field.data.bodies.iter().enumerate() {
+        for p in 0..field.data.bodies.len() {
             let load = field.size(p, &field.free(p, |j| field.load(p, j)));
             let push = field.size(p, &field.free(p, |j| field.push[j]));
-            sizes.push((body.grounded.len() < body.stiffness.order()).then_some(load + push));
+            let all = field.range(p).all(|j| field.grounded[j]);
+            sizes.push((!all).then_some(load + push));
             loads.push(load);
             pushes.push(field.size(p, &field.push[field.range(p)]));
         }
@@ -57,12 +58,11 @@ impl Forces {
     }
 
     /// What the force of a row may differ from zero by, `tol Lambda_i` with `Lambda_i = s_i min (|f| + |r|)_{D^-1}` over the
-    /// bodies it touches, force. Of a body whose unknowns are all grounded those count that the row touches: nothing passes
-    /// from one to another.
+    /// bodies it touches, force. Where it touches grounded unknowns alone, those on them belong to it.
     pub fn limit_of(&self, field: &Field, kind: RowKind, i: usize) -> f64 {
         let rows = field.rows(kind);
         let allowed = |p: usize| {
-            let size = self.sizes[p].unwrap_or_else(|| at_row(field, rows, i, p));
+            let size = self.sizes[p].unwrap_or(0.0) + at_grounded(field, rows, i, p);
             (field.data.limit * size).max(self.idle(size))
         };
         match field.touched(rows, i).map(allowed).reduce(smaller) {
@@ -86,10 +86,13 @@ fn smaller(a: f64, b: f64) -> f64 {
     }
 }
 
-/// `|f|_{D^-1} + |r|_{D^-1}` over the unknowns of body p in row i, force.
-fn at_row(field: &Field, rows: &RowSet, i: usize, p: usize) -> f64 {
+/// `|f|_{D^-1} + |r|_{D^-1}` over the unknowns of body p in row i, force; 0 unless all of them are grounded.
+fn at_grounded(field: &Field, rows: &RowSet, i: usize, p: usize) -> f64 {
     let (start, mut there) = (field.range(p).start, vec![0.0; field.range(p).len()]);
     let own = rows.matrix.row(i).map(|(j, _)| j).filter(|j| field.range(p).contains(j));
+    if !own.clone().all(|j| field.grounded[j]) {
+        return 0.0;
+    }
     own.clone().for_each(|j| there[j - start] = field.load(p, j));
     let load = field.size(p, &there);
     own.for_each(|j| there[j - start] = field.push[j]);
@@ -183,7 +186,7 @@ fn grounded(field: &Field, p: usize, products: (&[f64], &[f64])) -> f64 {
         share(positive(residual.abs() - noise), field.data.limit * size)
     };
     let worse = |worst: f64, share: f64| if share <= worst || worst.is_nan() { worst } else { share };
-    field.data.bodies[p].grounded.iter().map(|j| of(start + *j as usize)).fold(0.0, worse)
+    field.range(p).filter(|j| field.grounded[*j]).map(of).fold(0.0, worse)
 }
 
 /// `|R'(f - r)|` against `tol (|f| + |r|)_{D^-1} + 64 eps ||f| + |B'||lambda| + |H'||mu||_{D^-1}`, without grounded unknowns; no

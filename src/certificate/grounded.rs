@@ -68,7 +68,7 @@ mod tests {
 
     #[test]
     fn stiff_parts_on_soft_ones_are_not() {
-        let contrast = chain(&[1.0, 1.0, 1e6, 1e6, 1e6, 1.0], &[(0, 1.0), (6, 1e-8)]);
+        let contrast = chain(&[1.0, 1.0, 1e6, 1e6, 1e6, 1.0, 1.0], &[(0, 1.0), (7, 1e-8)]);
         assert!(grounded((&contrast).into()).unwrap().is_empty());
     }
 }

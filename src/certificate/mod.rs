@@ -111,7 +111,7 @@ pub struct RowJudgement {
 
 /// The judgement of an answer. Fails where the host does, that has the products with K.
 pub fn certify(data: &Data, answer: Answer, response: &mut dyn Response) -> Result<Judgement> {
-    let field = Field::new(data, answer);
+    let field = Field::new(data, answer)?;
     let mut certificate = Certificate { limit: data.limit, ..Certificate::default() };
     let forces = Forces::new(&field);
     let (mut rows, mut energies) = (Measured::new(&field, &forces), Energies::default());
@@ -150,7 +150,7 @@ fn positive(x: f64) -> f64 {
 
 /// What a part is of what is allowed; nothing of nothing is 0, and what is measured against infinity is not known.
 fn share(part: f64, allowed: f64) -> f64 {
-    if part == 0.0 {
+    if part == 0.0 && !allowed.is_nan() {
         0.0
     } else if allowed < f64::INFINITY {
         part / allowed

@@ -31,7 +31,7 @@ mod state;
 mod stiffness;
 mod sync;
 mod threads;
-pub mod travel;
+mod travel;
 mod undetermined;
 mod watch;
 

@@ -319,15 +319,6 @@ impl Problem {
     }
 }
 
-/// `v / s`, 0 for rows without entries.
-fn unscaled(v: f64, s: f64) -> f64 {
-    if s > 0.0 {
-        v / s
-    } else {
-        0.0
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -1,4 +1,4 @@
-//! Of the answers that differ by motions which nothing resists, the one of least travel (certificate.md 4):
+//! Of the answers that differ by motions which nothing resists, the one of least travel:
 //!
 //! ```text
 //! u = u0 + N a,   a = argmin |u0 + N a|_D   subject to   B (u0 + N a) <= c + C lambda

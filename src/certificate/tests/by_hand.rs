@@ -1,7 +1,6 @@
 //! By hand: single springs, units, what over- or underflows, what is not known.
 
 use super::model::{chain, Model, Point, LIMIT};
-use super::*;
 
 /// Spring 4 at a wall, loaded by 2 towards an obstacle at 0.25: u = .25, lambda = 1. `c`: compliance of the row.
 fn spring(unit: f64, c: f64) -> Model {
@@ -127,11 +126,11 @@ fn units_that_differ_by_powers_of_two_change_no_bit() {
         let parts = vec![
             chain(&springs(&[2.0, 3.1, 1.7]), &[]).loaded(&[(0, 0.7 * f), (2, 0.3 * f)]),
             chain(&springs(&[1.9, 2.3]), &[(2, 3.7 * k)]),
-            chain(&springs(&[0.3]), &[]),
+            chain(&springs(&[0.3]), &[(0, 0.9 * k)]),
         ];
         let contact = vec![(vec![(3, 1.0), (4, -1.0)], 0.1 * f / k, 0.1 / k)];
         let equalities = vec![(vec![(6, 1.0), (7, -1.0)], 0.02 * f / k, 0.0)];
-        Model { parts, contact, equalities, active: vec![0] }
+        Model { parts, contact, equalities, active: vec![0], ..Model::default() }
     };
     let answer = model(1.0, 1.0).answer();
     for error in [1.0, 1.0 + 1e-9, 1.001] {

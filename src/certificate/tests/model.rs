@@ -1,6 +1,7 @@
 //! Small dense models: their right answers by elimination, and the certificate of any other.
 
 use super::*;
+use crate::linalg::vector::power_of_two_below;
 use crate::linalg::{Csr, Symmetric};
 
 pub const LIMIT: f64 = 1e-8;
@@ -26,6 +27,8 @@ pub struct Model {
     pub equalities: Rows,
     /// Contact rows that carry a force.
     pub active: Vec<usize>,
+    /// A rigid motion that is part of the answer, n or nothing, length: exact where elimination would lose digits.
+    pub travel: Vec<f64>,
 }
 
 #[derive(Clone, Debug)]
@@ -87,11 +90,15 @@ impl Part {
         Symmetric::new(ptr, col, val)
     }
 
-    /// Orthonormal in D.
+    fn unit(&self) -> f64 {
+        power_of_two_below((0..self.k.len()).map(|i| self.k[i][i]).fold(0.0, f64::max))
+    }
+
+    /// Orthonormal in D / unit.
     fn null_space(&self) -> Matrix {
-        let n = self.k.len();
+        let (n, unit) = (self.k.len(), self.unit());
         let mut basis: Vec<Vec<f64>> = Vec::new();
-        let inner = |a: &[f64], b: &[f64]| (0..n).map(|i| self.k[i][i] * a[i] * b[i]).sum::<f64>();
+        let inner = |a: &[f64], b: &[f64]| (0..n).map(|i| self.k[i][i] / unit * a[i] * b[i]).sum::<f64>();
         for motion in &self.motions {
             let mut v = motion.clone();
             for _ in 0..2 {
@@ -230,9 +237,11 @@ impl Model {
                 a[j][n + i] = v;
             }
             a[n + i][n + i] = -compliance;
-            b[n + i] = *rhs;
+            b[n + i] =
+                rhs - entries.iter().map(|&(j, v)| v * self.travel.get(j).unwrap_or(&0.0)).sum::<f64>();
         }
-        let x = solve(&a, &b);
+        let mut x = solve(&a, &b);
+        x.iter_mut().zip(&self.travel).for_each(|(x, t)| *x += t);
         let mut lambda = vec![0.0; self.contact.len()];
         self.active.iter().enumerate().for_each(|(k, &i)| lambda[i] = x[n + k]);
         Point { u: x[..n].to_vec(), lambda, mu: x[n + self.active.len()..].to_vec() }
@@ -252,7 +261,7 @@ impl Model {
                 stiffness: (&matrices[p]).into(),
                 load: Some(&part.load),
                 null_space: &spaces[p],
-                unit: 1.0,
+                unit: part.unit(),
                 grounded: &grounded[p],
             });
             start += part.k.len();
