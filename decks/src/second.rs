@@ -76,15 +76,20 @@ struct Second<'a> {
     matrix: Vec<Dd>,
 }
 
-/// The answer; `None` where pivoting does not end or K is not semi-definite. Rows with an infinite gap stay open.
+/// The answer; `None` where pivoting does not end, K is not semi-definite, or the last
+/// step still takes a force that counts: bodies held by springs 1e11 times softer than they are. Rows with an infinite gap stay open.
 pub fn solve(deck: &Deck) -> Option<Answer> {
     let mut second = Second::new(deck)?;
     second.set_matrix();
     let (n, m) = (deck.dofs(), second.rows.len());
     let (mut u, mut forces) = (vec![Dd::ZERO; n], vec![Dd::ZERO; m]);
     let mut closed: Vec<bool> = (0..m).map(|i| i >= second.contact).collect();
-    for _ in 0..STEPS {
-        (u, forces) = second.step(&u, &forces, &mut closed)?;
+    for k in 1..=STEPS {
+        let (next, pushes) = second.step(&u, &forces, &mut closed)?;
+        if k == STEPS && !second.stands(&next, &u) {
+            return None;
+        }
+        (u, forces) = (next, pushes);
     }
     let values = |v: &[Dd]| v.iter().map(|v| v.value()).collect();
     let (lambda, mu) = forces.split_at(second.contact);
@@ -164,6 +169,17 @@ impl<'a> Second<'a> {
         }
         self.of_bodies(&mut rest, Cholesky::backward);
         Some((rest, forces))
+    }
+
+    /// delta |u - v|_D <= 1e-10 |f|_{D^-1} on every body that has a load.
+    fn stands(&self, u: &[Dd], v: &[Dd]) -> bool {
+        let load = self.deck.load();
+        (0..self.deck.bodies.len()).all(|p| {
+            let range = self.deck.offset(p)..self.deck.offset(p + 1);
+            let moved = range.clone().map(|j| (u[j] - v[j]).value().powi(2) * self.diagonal[j]).sum::<f64>();
+            let loads = range.map(|j| load[j] * load[j] / self.diagonal[j]).sum::<f64>();
+            loads == 0.0 || SHIFT * moved.sqrt() <= 1e-10 * loads.sqrt()
+        })
     }
 
     /// Principal pivoting: all wrong rows change sides while their number falls, else the last wrong one (Murty).
