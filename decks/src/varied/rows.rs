@@ -136,39 +136,36 @@ fn equality(draft: &mut Draft, strength: f64) {
     draft.mu.push(force);
 }
 
-/// The sum of two equality rows, or a multiple of a closed contact row, with a force of its own.
+/// The sum of two equality rows of one group, or a multiple of a closed contact row, with a force of its own.
 fn redundant(draft: &mut Draft) {
-    let random = &mut draft.random;
-    let rows = &draft.deck.equalities;
-    if !rows.is_empty() && random.chance(0.7) {
-        let (a, b) = (random.below(rows.len()), random.below(rows.len()));
-        let factor = [1.0, -1.0, 2.0][random.below(3)];
-        let entries: Entries =
-            rows.matrix.row(a).chain(rows.matrix.row(b).map(|(j, v)| (j, factor * v))).collect();
-        let force = 0.5 * draft.mu[a];
-        let before = rows.matrix.col.len();
-        draft.deck.equalities.push(&entries, 0.0);
-        if draft.deck.equalities.matrix.col.len() == before {
-            // a row minus itself
-            let matrix = &mut draft.deck.equalities.matrix;
-            matrix.rows -= 1;
-            matrix.ptr.pop();
-            draft.deck.equalities.rhs.pop();
-            draft.deck.equalities.compliance.pop();
-        } else {
-            draft.mu.push(force);
+    let count = draft.deck.equalities.len();
+    if count > 0 && draft.random.chance(0.7) {
+        let (a, b) = (draft.random.below(count), draft.random.below(count));
+        let factor = [1.0, -1.0, 2.0][draft.random.below(3)];
+        if group_of(draft, a) == group_of(draft, b) && (a != b || factor != -1.0) {
+            let matrix = &draft.deck.equalities.matrix;
+            let entries: Entries = matrix.row(a).chain(matrix.row(b).map(|(j, v)| (j, factor * v))).collect();
+            draft.deck.equalities.push(&entries, 0.0);
+            draft.mu.push(0.5 * draft.mu[a]);
         }
         return;
     }
     let closed: Vec<usize> = (0..draft.slack.len()).filter(|&i| draft.slack[i] == 0.0).collect();
     if !closed.is_empty() {
-        let i = closed[random.below(closed.len())];
-        let factor = random.decades(-2.0, 2.0);
+        let i = closed[draft.random.below(closed.len())];
+        let factor = draft.random.decades(-2.0, 2.0);
         let entries: Entries = draft.deck.contact.matrix.row(i).map(|(j, v)| (j, factor * v)).collect();
         draft.deck.contact.push(&entries, 0.0);
         draft.lambda.push(draft.lambda[i] / factor);
         draft.slack.push(0.0);
     }
+}
+
+/// Group of the bodies that an equality row touches.
+fn group_of(draft: &Draft, row: usize) -> Option<usize> {
+    let (first, _) = draft.deck.equalities.matrix.row(row).next()?;
+    let body = (0..draft.group.len()).find(|&p| first < draft.deck.offset(p + 1))?;
+    Some(draft.group[body])
 }
 
 /// A row whose bodies never meet: slack 1e6 to 1e30 displacements, one in five infinite.

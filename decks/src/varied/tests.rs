@@ -96,26 +96,26 @@ fn what_makes_a_class_is_there() {
     }
 }
 
+/// Rows with finite gaps never join the groups of a case: stiffness and forces of one are none of the other's business.
+#[test]
+fn groups_have_nothing_in_common() {
+    for case in SEEDS.map(case).filter(|case| case.classes[0] == Class::Groups) {
+        let deck = &case.deck;
+        let body = |dof: usize| (0..deck.bodies.len()).find(|&p| dof < deck.offset(p + 1)).unwrap();
+        let mut label: Vec<usize> = (0..deck.bodies.len()).collect();
+        for rows in [&deck.contact, &deck.equalities] {
+            for i in 0..rows.len() {
+                let touched: Vec<usize> = rows.matrix.row(i).map(|(j, _)| label[body(j)]).collect();
+                label.iter_mut().for_each(|l| *l = if touched.contains(l) { touched[0] } else { *l });
+            }
+        }
+        assert!(label.iter().any(|l| *l != label[0]), "{}", deck.name);
+    }
+}
+
 #[test]
 fn same_seed_gives_the_same_bits() {
     let pair = [11, 11].map(case);
     assert_eq!(pair[0].deck.load(), pair[1].deck.load());
     assert_eq!(pair[0].displacement, pair[1].displacement);
-}
-
-/// Prints how classes and conditions are distributed: for those who change the mixture.
-#[test]
-#[ignore]
-fn table() {
-    let mut table = BTreeMap::new();
-    for case in SEEDS.map(case) {
-        let row = table.entry(case.classes[0]).or_insert([0usize; 6]);
-        row[0] += 1;
-        row[1] += usize::from(case.condition <= 1e4);
-        row[2] += usize::from(case.condition <= 1e8);
-        row[3] += usize::from(case.condition.is_infinite());
-        row[4] += usize::from(case.undetermined > 0);
-        row[5] += case.deck.dofs();
-    }
-    println!("class, cases, <=1e4, <=1e8, infinite, undetermined, dofs\n{table:#?}");
 }
