@@ -1,0 +1,126 @@
+//! The problem on some of its rows: the others stay at 0 and are not looked at, neither is their gradient. Rows whose gap
+//! is far beyond all that moves so change nothing, not even rounding.
+
+use crate::error::Result;
+use crate::linalg::{Csr, Entries, Matrix, Operator};
+use crate::qp::{Direct, Judge, Preconditioner, Qp, Solution};
+
+pub struct Restricted<'a> {
+    whole: Qp<'a>,
+    /// Ascending.
+    rows: &'a [usize],
+    b: Vec<f64>,
+    g_transposed: Csr,
+    bounded: Vec<bool>,
+}
+
+impl<'a> Restricted<'a> {
+    pub fn new(whole: Qp<'a>, rows: &'a [usize]) -> Self {
+        let mut g_transposed = Csr::empty(whole.g_transposed.cols);
+        rows.iter().for_each(|&i| g_transposed.push_row(whole.g_transposed.row(i)));
+        let b = gather(rows, whole.b);
+        let bounded = rows.iter().map(|&i| whole.bounded[i]).collect();
+        Self { whole, rows, b, g_transposed, bounded }
+    }
+
+    pub fn bounded(&self) -> &[bool] {
+        &self.bounded
+    }
+
+    pub fn qp(&self) -> Qp<'_> {
+        let preconditioner = self.whole.preconditioner.is_some().then_some(self as &dyn Preconditioner);
+        let (b, g_transposed, bounded) = (&self.b, &self.g_transposed, &self.bounded);
+        Qp { a: self, b, g_transposed, bounded, preconditioner, ..self.whole }
+    }
+
+    /// The entries of x on the rows.
+    pub fn start(&self, x: &[f64]) -> Vec<f64> {
+        gather(self.rows, x)
+    }
+
+    /// A solution, or a direction without end, over all rows.
+    pub fn whole(&self, solution: Solution) -> Solution {
+        let verdict = match solution.verdict {
+            crate::qp::Verdict::Unbounded { p } => crate::qp::Verdict::Unbounded { p: self.spread(&p) },
+            verdict => verdict,
+        };
+        Solution { x: self.spread(&solution.x), verdict, ..solution }
+    }
+
+    fn spread(&self, own: &[f64]) -> Vec<f64> {
+        let mut all = vec![0.0; self.whole.b.len()];
+        self.rows.iter().zip(own).for_each(|(&i, v)| all[i] = *v);
+        all
+    }
+}
+
+fn gather(rows: &[usize], all: &[f64]) -> Vec<f64> {
+    rows.iter().map(|&i| all[i]).collect()
+}
+
+impl Operator for Restricted<'_> {
+    fn order(&self) -> usize {
+        self.rows.len()
+    }
+
+    fn apply(&self, x: &[f64], y: &mut [f64]) {
+        let mut image = vec![0.0; self.whole.b.len()];
+        self.whole.a.apply(&self.spread(x), &mut image);
+        y.copy_from_slice(&gather(self.rows, &image));
+    }
+
+    fn try_apply(&self, x: &[f64], y: &mut [f64]) -> Result<()> {
+        let mut image = vec![0.0; self.whole.b.len()];
+        self.whole.a.try_apply(&self.spread(x), &mut image)?;
+        y.copy_from_slice(&gather(self.rows, &image));
+        Ok(())
+    }
+}
+
+impl Preconditioner for Restricted<'_> {
+    /// The rows left out are held.
+    fn apply(&self, held: &[bool], r: &[f64], z: &mut [f64]) -> Result<()> {
+        let Some(preconditioner) = self.whole.preconditioner else { return Ok(()) };
+        let mut all = vec![true; self.whole.b.len()];
+        self.rows.iter().zip(held).for_each(|(&i, held)| all[i] = *held);
+        let mut image = vec![0.0; all.len()];
+        preconditioner.apply(&all, &self.spread(r), &mut image)?;
+        z.copy_from_slice(&gather(self.rows, &image));
+        Ok(())
+    }
+}
+
+/// The entries of A on the rows.
+pub struct Block<'a> {
+    pub whole: Direct<'a>,
+    pub rows: &'a [usize],
+}
+
+impl Block<'_> {
+    pub fn direct(&self) -> Direct<'_> {
+        Direct { entries: self, limit: self.whole.limit }
+    }
+}
+
+impl Entries for Block<'_> {
+    fn add_block(&self, rows: &[usize], block: &mut Matrix) -> Result<()> {
+        let all: Vec<usize> = rows.iter().map(|&i| self.rows[i]).collect();
+        self.whole.entries.add_block(&all, block)
+    }
+}
+
+/// Judges points on some rows as one who knows them all.
+pub struct Judged<'a> {
+    pub whole: &'a mut dyn Judge,
+    pub on: &'a Restricted<'a>,
+}
+
+impl Judge for Judged<'_> {
+    fn scale(&mut self, x: &[f64], alpha: &[f64]) -> Result<f64> {
+        self.whole.scale(&self.on.spread(x), alpha)
+    }
+
+    fn accepts(&mut self, x: &[f64], alpha: &[f64]) -> Result<bool> {
+        self.whole.accepts(&self.on.spread(x), alpha)
+    }
+}
