@@ -1,6 +1,7 @@
 //! From what the host registers to the answer it gets: register, set up, solve, certify, report.
 
 mod body_facts;
+mod check;
 mod diagnosis;
 mod factors;
 mod fallback;
