@@ -333,6 +333,10 @@ typedef struct feti_body_facts {
    * in it; else NaN.
    */
   double gap;
+  /**
+   * Estimated relative error of the forces on the body in the last answer; NaN without one.
+   */
+  double force_error;
 } feti_body_facts;
 
 /**

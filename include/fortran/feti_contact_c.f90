@@ -274,6 +274,8 @@ module feti_contact_c
     !> Of a null space that was found: stiffness of the softest other motion over that of the stiffest in it;
     !> else NaN.
     real(c_double) :: gap
+    !> Estimated relative error of the forces on the body in the last answer; NaN without one.
+    real(c_double) :: force_error
   end type feti_body_facts
 
   !> Time and memory of a phase of a setup or a solve.

@@ -36,8 +36,11 @@ impl Row {
         let rounding = NOISE * (moved + rows.rhs[i].abs() + rows.compliance[i] * force.abs());
         // a row that weighs nothing is not known to hold
         let known = scale > 0.0 || empty;
-        let gap_limit = if known { field.data.limit * size + rounding } else { f64::NAN };
         let force_limit = forces.limit_of(field, kind, i);
+        // an error of the force that is allowed moves a soft row so far
+        let by_spring = if rows.compliance[i] > 0.0 { rows.compliance[i] * force_limit } else { 0.0 };
+        let allowed = field.data.limit * size + rounding + by_spring;
+        let gap_limit = if known { allowed } else { f64::NAN };
         Self { kind, force, open: rows.open_gap(i, field.answer.u, force), given_way, gap_limit, force_limit }
     }
 

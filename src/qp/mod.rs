@@ -18,6 +18,7 @@ mod nnls;
 pub mod paper;
 mod projection;
 mod proportioning;
+mod restricted;
 mod smalbe;
 mod steps;
 
@@ -27,6 +28,7 @@ pub use conjugate::MOST as KEPT;
 pub use face::Face;
 pub use least_travel::least_travel;
 pub use proportioning::{minimise, not_held, Judge, Limits, Observer, Progress, Solution, StepKind, Verdict};
+pub use restricted::{Block, Judged, Restricted};
 pub use smalbe::smalbe;
 
 use crate::error::Result;
@@ -53,7 +55,7 @@ impl Qp<'_> {
 }
 
 /// An approximation of the inverse of A on a face.
-pub trait Preconditioner {
+pub trait Preconditioner: Sync {
     /// `z = M_F r` for the rows that are not held; 0 on the others.
     fn apply(&self, held: &[bool], r: &[f64], z: &mut [f64]) -> Result<()>;
 }

@@ -3,7 +3,7 @@
 
 use crate::error::Result;
 use crate::linalg::{Csr, Entries, Matrix, Operator};
-use crate::qp::{Direct, Judge, Preconditioner, Qp, Solution};
+use crate::qp::{Direct, Judge, Preconditioner, Qp, Solution, Verdict};
 
 pub struct Restricted<'a> {
     whole: Qp<'a>,
@@ -41,7 +41,7 @@ impl<'a> Restricted<'a> {
     /// A solution, or a direction without end, over all rows.
     pub fn whole(&self, solution: Solution) -> Solution {
         let verdict = match solution.verdict {
-            crate::qp::Verdict::Unbounded { p } => crate::qp::Verdict::Unbounded { p: self.spread(&p) },
+            Verdict::Unbounded { p } => Verdict::Unbounded { p: self.spread(&p) },
             verdict => verdict,
         };
         Solution { x: self.spread(&solution.x), verdict, ..solution }

@@ -1,16 +1,13 @@
 //! A solve from the call to the answer: set up, solve every island, put their answers together, report.
 
-use std::cell::Cell;
 use std::cmp::Reverse;
 use std::time::{Duration, Instant};
 
-use crate::certificate::{certify, Answer as AnswerView, Certificate};
 use crate::error::{Error, Kind, Result};
 use crate::solver::findings::Findings;
 use crate::solver::phases::{Phase, Phases};
 use crate::solver::problem::Problem;
 use crate::solver::report::Report;
-use crate::solver::response::ByInverse;
 use crate::solver::results::{Answer, Asked};
 use crate::solver::solve::Solved;
 use crate::solver::state::Start;
@@ -144,42 +141,5 @@ impl Voice for Apart<'_> {
     fn line(&mut self, text: String) -> Result<()> {
         (self.say)(Message::Line(text));
         Ok(())
-    }
-}
-
-impl Problem {
-    /// The certificate of any answer, also another code's: u over all unknowns, multipliers of contact and
-    /// equality rows. A setup that is there serves, whatever the options have become: the last answer stays.
-    pub fn check(&mut self, u: &[f64], lambda: &[f64], mu: &[f64]) -> Result<Certificate> {
-        if self.ready.is_none() {
-            self.setup()?;
-        }
-        self.check_empty_rows()?;
-        self.refresh_gaps();
-        let counts = self.counts();
-        let lengths = [("n", u, counts.dofs), ("rows", lambda, counts.rows), ("eqs", mu, counts.equalities)];
-        for (argument, values, expected) in lengths {
-            if values.len() != expected {
-                let what = format!("the problem has {expected}, not {}", values.len());
-                return Err(Error::argument(argument, what)
-                    .value(values.len() as f64)
-                    .limit(expected as f64));
-            }
-        }
-        let mut all: Option<Certificate> = None;
-        for ready in &self.ready()?.islands {
-            let island = &ready.island;
-            let own = island.gather(self, u)?;
-            let (lambda, mu) = (island.contact.gather(lambda), island.equalities.gather(mu));
-            let answer = AnswerView { u: &own, lambda: &lambda, mu: &mu };
-            let (data, work) = (self.data(island)?, Cell::new(None));
-            let mut response = ByInverse { data: &data, ready, threads: self.threads(), work: &work };
-            let own = island.named(certify(&data, answer, &mut response)?.certificate);
-            match &mut all {
-                None => all = Some(own),
-                Some(all) => all.merge(&own),
-            }
-        }
-        all.ok_or_else(|| Error::new(Kind::Internal, "a problem without bodies was set up"))
     }
 }

@@ -8,6 +8,7 @@ use crate::solver::watch::Steps;
 use crate::solver::Settings;
 
 /// How the dual is solved.
+#[derive(Clone, Copy)]
 pub(super) struct Means<'a> {
     pub settings: &'a Settings,
     pub direct: Direct<'a>,

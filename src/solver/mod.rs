@@ -2,6 +2,7 @@
 
 mod body_facts;
 mod call;
+mod check;
 mod diagnosis;
 mod factors;
 mod fallback;
@@ -11,6 +12,7 @@ mod finish;
 mod host;
 mod islands;
 mod log;
+mod near;
 mod numbering;
 mod operators;
 mod paper;

@@ -14,8 +14,9 @@ use crate::solver::watch::Stops;
 const EQUAL: f64 = 1e-10;
 /// ... and so are those that differ by rounding of how far loads and rows move the bodies.
 const ROUNDING: f64 = 64.0 * f64::EPSILON;
-/// A gap so many times as large as all motion that rows demand takes part in no contradiction that could be proved.
-const FAR: f64 = 1e6;
+/// A gap so many times as large as all motion that loads make and rows demand is far, and takes part in no contradiction
+/// that could be proved.
+pub(super) const FAR: f64 = 1e6;
 
 /// Multiplications the search for contradictions may take.
 const WORK: usize = 200_000_000;
@@ -30,6 +31,8 @@ pub(super) struct Gaps {
     pub holder: Vec<usize>,
     /// Groups with a multiplier >= 0.
     pub bounded: Vec<bool>,
+    /// Those whose gaps are far beyond all that loads and rows move.
+    pub far: Vec<bool>,
 }
 
 /// Gaps of all groups; refuses rows whose gaps no displacement satisfies. `moved` is how far the loads move a row at most.
@@ -44,6 +47,7 @@ pub(super) fn presolve(problem: &Problem, ready: &Ready, moved: f64, stops: &Sto
         dual: Vec::new(),
         holder: leaders.clone(),
         bounded: kinds.map(|kind| kind == RowKind::Inequality).collect(),
+        far: Vec::new(),
     };
     let demand = |(i, c): (usize, &f64)| if i < rows.contact { (-c).max(0.0) } else { c.abs() };
     let reach = scaled.iter().enumerate().map(demand).fold(moved, f64::max);
@@ -76,6 +80,7 @@ pub(super) fn presolve(problem: &Problem, ready: &Ready, moved: f64, stops: &Sto
         return Err(error);
     }
     gaps.dual = rows.decoupling.solve(gaps.value.clone());
+    gaps.far = gaps.value.iter().zip(&gaps.bounded).map(|(c, bounded)| *bounded && *c > FAR * reach).collect();
     Ok(gaps)
 }
 

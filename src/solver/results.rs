@@ -353,6 +353,18 @@ mod tests {
         assert_eq!(problem.solve().unwrap_err().kind, Kind::Memory);
     }
 
+    /// The second spring touches nothing: it has neither forces nor violations.
+    #[test]
+    fn the_error_of_the_forces_on_a_body_is_known_with_an_answer() {
+        let mut problem = two_springs();
+        problem.set_load(0, &[3.0]).unwrap();
+        assert_eq!(problem.body_facts(0).unwrap().force_error, None);
+        problem.solve().unwrap();
+        assert!(problem.body_facts(0).unwrap().force_error.is_some_and(|error| error <= 1e-12));
+        assert_eq!(problem.body_facts(1).unwrap().force_error, Some(0.0));
+        assert_eq!(problem.active().unwrap(), [RowState::Closed, RowState::Open]);
+    }
+
     /// Loads 3 and 2, then 5 and 2.
     #[test]
     fn the_force_on_a_body_is_that_of_the_present_answer_and_of_the_kind_asked_for() {

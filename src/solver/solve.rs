@@ -12,9 +12,10 @@ use crate::linalg::Operator;
 use crate::qp::paper::Units;
 use crate::qp::{self, Direct, Judge, Qp, Solution, Verdict};
 use crate::solver::diagnosis;
-use crate::solver::fallback::{solve_dual, Means};
+use crate::solver::fallback::Means;
 use crate::solver::finish::finish;
 use crate::solver::islands::Island;
+use crate::solver::near::solve_near;
 use crate::solver::paper::{parameters, HostUnits};
 use crate::solver::presolve::{presolve, Gaps};
 use crate::solver::problem::Problem;
@@ -58,7 +59,7 @@ impl Problem {
             Some(given) if given.units == Units::Printed => {
                 HostUnits::new(self, ready, &dual.gaps, given)?.solve(qp, &start, &mut judge, steps)?
             }
-            _ => solve_dual(&Means { settings: &self.settings, direct }, qp, &start, &mut judge, steps)?,
+            _ => solve_near(&Means { settings: &self.settings, direct }, qp, &start, &mut judge, steps)?,
         };
         let (judging, recovering) = (judge.spent, Instant::now());
         let mut ending = judge.ending(solution)?;
@@ -101,27 +102,6 @@ impl Problem {
                 diagnosis::gaps_contradict(self, ready, &dual.gaps, &w).map_or(Ok(Outcome::Stalled), Err)
             }
         }
-    }
-
-    /// An island as the certificate sees it; null spaces must have been found.
-    pub(super) fn data<'a>(&'a self, island: &'a Island) -> Result<Data<'a>> {
-        let missing = || Error::new(Kind::State, "a body has not been set up");
-        let mut bodies = Vec::with_capacity(island.bodies.len());
-        for (&p, range) in island.bodies.iter().zip(&island.ranges) {
-            let slot = &self.bodies[p];
-            let inverse = slot.inverse.as_ref().ok_or_else(missing)?;
-            bodies.push(BodyData {
-                start: range.start,
-                stiffness: slot.body.k().ok_or_else(missing)?,
-                load: slot.body.load.as_deref(),
-                null_space: &inverse.kplus.null_space,
-                unit: slot.body.without(island.unit),
-                grounded: &inverse.grounded,
-            });
-        }
-        let limit = self.settings.certificate_tolerance;
-        let (contact, equalities) = (&island.contact.rows, &island.equalities.rows);
-        Ok(Data { bodies, contact, equalities, limit })
     }
 }
 
@@ -188,6 +168,9 @@ pub(super) struct Certifier<'a> {
     pub accepted: Option<Accepted>,
     /// Time for answers recovered and certified.
     pub spent: Duration,
+    /// Rows of the dual that are left out, and those of them that the last point goes through.
+    pub far: Vec<bool>,
+    pub reached: Vec<usize>,
 }
 
 /// A point (x, alpha) of the dual whose answer has passed.
@@ -208,7 +191,8 @@ impl<'a> Certifier<'a> {
     fn new(problem: &'a Problem, ready: &'a Ready, scaled: &'a Scaled) -> Result<Self> {
         let (data, threads) = (problem.data(&ready.island)?, problem.threads());
         let work = Cell::new(None);
-        Ok(Self { ready, scaled, data, threads, work, accepted: None, spent: Duration::ZERO })
+        let (far, reached, spent) = (Vec::new(), Vec::new(), Duration::ZERO);
+        Ok(Self { ready, scaled, data, threads, work, accepted: None, spent, far, reached })
     }
 
     /// (17), and lambda = 2^p S L'^-1 x on the rows that carry the multipliers of their groups.
@@ -310,6 +294,12 @@ impl<'a> Certifier<'a> {
         Ok(Some((rested, alpha)))
     }
 
+    /// The rows left out that a displacement goes through.
+    fn beyond(&self, u: &[f64]) -> Vec<usize> {
+        let (rows, gaps) = (&self.ready.rows.scaled, &self.scaled.gaps.value);
+        (0..self.far.len()).filter(|&i| self.far[i] && rows.row_dot(i, u) > gaps[i]).collect()
+    }
+
     /// The judgement of an answer.
     pub fn judged(&self, answer: &Recovered) -> Result<Judgement> {
         let Self { data, ready, threads, work, .. } = self;
@@ -331,19 +321,26 @@ impl Judge for Certifier<'_> {
     fn accepts(&mut self, x: &[f64], alpha: &[f64]) -> Result<bool> {
         let begun = Instant::now();
         let (recovered, judgement) = self.certified(x, alpha)?;
-        self.spent += begun.elapsed();
         let mut passed = judgement.certificate.passed();
-        if !passed && !alpha.is_empty() {
+        let mut reached = Vec::new();
+        if !passed {
             // a travel that nothing resists may hide the rest
-            if let Some((rested, _)) = self.at_rest(&recovered, alpha)? {
-                passed = self.judged(&rested)?.certificate.passed();
+            let rested = if alpha.is_empty() { None } else { self.at_rest(&recovered, alpha)? };
+            if let Some((rested, _)) = &rested {
+                passed = self.judged(rested)?.certificate.passed();
+            }
+            if !passed {
+                reached = self.beyond(rested.as_ref().map_or(&recovered.u, |(rested, _)| &rested.u));
             }
         }
+        self.spent += begun.elapsed();
         if passed {
             let point = (copied(x, "forces")?, copied(alpha, "amplitudes")?);
             self.accepted = Some(Accepted { point, recovered, judgement });
         }
-        Ok(passed)
+        self.reached = reached;
+        // those rows come first: without them there is nothing to make better
+        Ok(passed || !self.reached.is_empty())
     }
 }
 

@@ -217,6 +217,11 @@ impl<'a> Steps<'a> {
         Self { island, stops, voice, unit, bounded, before, last }
     }
 
+    /// The multipliers that follow.
+    pub fn set_bounded(&mut self, bounded: &[bool]) {
+        self.bounded = bounded.iter().filter(|bounded| **bounded).count();
+    }
+
     pub fn line(&mut self, text: String) -> Result<()> {
         self.voice.line(text)
     }

@@ -1,0 +1,55 @@
+//! Rows whose gaps are far beyond all that loads and rows move are left out of the dual, and join it only where bodies
+//! travel that far: where nothing else holds a load, or where the answer without them goes through them.
+
+use crate::error::Result;
+use crate::qp::{Block, Judged, Qp, Restricted, Solution, Verdict};
+use crate::solver::fallback::{solve_dual, Means};
+use crate::solver::presolve::FAR;
+use crate::solver::solve::Certifier;
+use crate::solver::watch::Steps;
+
+/// Solves the dual for the rows that matter; the forces of the others are 0.
+pub(super) fn solve_near(
+    means: &Means,
+    qp: Qp,
+    start: &[f64],
+    judge: &mut Certifier,
+    steps: &mut Steps,
+) -> Result<Solution> {
+    let gaps = &judge.scaled.gaps.value;
+    let mut far = judge.scaled.gaps.far.clone();
+    let (mut start, mut before) = (start.to_vec(), Default::default());
+    while far.contains(&true) {
+        let rows: Vec<usize> = (0..far.len()).filter(|&i| !far[i]).collect();
+        let (near, block) = (Restricted::new(qp, &rows), Block { whole: means.direct, rows: &rows });
+        steps.set_bounded(near.bounded());
+        judge.far.clone_from(&far);
+        judge.reached.clear();
+        let means = Means { direct: block.direct(), ..*means };
+        let solution = solve_dual(
+            &means,
+            near.qp(),
+            &near.start(&start),
+            &mut Judged { whole: judge, on: &near },
+            steps,
+        )?;
+        let solution = near.whole(solution);
+        before = before + solution.counts;
+        let nearest = (0..far.len()).filter(|&i| far[i]).map(|i| gaps[i]).fold(f64::INFINITY, f64::min);
+        match solution.verdict {
+            Verdict::Infeasible { .. } | Verdict::Unbounded { .. } => {
+                (0..far.len()).for_each(|i| far[i] &= gaps[i] > FAR * nearest);
+            }
+            _ if judge.reached.is_empty() => return Ok(Solution { counts: before, ..solution }),
+            _ => {
+                judge.reached.iter().for_each(|&i| far[i] = false);
+                start = solution.x;
+            }
+        }
+    }
+    steps.set_bounded(qp.bounded);
+    judge.far.clear();
+    judge.reached.clear();
+    let solution = solve_dual(means, qp, &start, judge, steps)?;
+    Ok(Solution { counts: before + solution.counts, ..solution })
+}
