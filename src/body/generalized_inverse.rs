@@ -33,8 +33,10 @@ pub(super) const PROBE: f64 = 1e-8;
 pub struct GeneralizedInverse {
     /// `R_p`, n x r, with `R'DR = I`.
     pub null_space: Matrix,
-    /// How far its vectors are known, against the fastest dof of each, no unit: what a row or a load has less of is nothing.
+    /// Rounding of its vectors, against the fastest dof of each, no unit: what a row or a load has less of is nothing.
     pub rounding: f64,
+    /// How far they are known, at least `rounding`: a motion that rows resist by less than this may be none.
+    pub error: f64,
     /// The r dofs held; none where K+ is the host's.
     pub fixing: Vec<usize>,
     /// Of a null space that was found: the softest other motion against the stiffest of it, no unit.
@@ -52,7 +54,7 @@ pub enum Plan {
 pub struct Known {
     k: Multiple,
     null_space: Matrix,
-    rounding: f64,
+    error: f64,
     fixing: Vec<usize>,
     /// The fixing dofs are those of the host.
     given: bool,
@@ -75,12 +77,12 @@ impl GeneralizedInverse {
         let per_dof = (8 * input.vectors.cols + 24) * size_of::<f64>();
         let _room = room(k.order() * per_dof + PRODUCTS, "the null space of a body")?;
         let (root, given) = (k.roots()?, fixing.is_some());
-        let Verified { basis: null_space, rounding } = verified(&k, &root, input, tolerance)?;
+        let Verified { basis: null_space, error } = verified(&k, &root, input, tolerance)?;
         let fixing = match fixing {
             Some(given) => given_dofs(&null_space, &root, given)?,
             None => fixing_dofs(&null_space, &root)?,
         };
-        Ok(Plan::Known(Known { k, null_space, rounding, fixing, given, symbolic: None }))
+        Ok(Plan::Known(Known { k, null_space, error, fixing, given, symbolic: None }))
     }
 
     /// The same where nothing is known about the null space.
@@ -176,13 +178,19 @@ impl Plan {
 
     /// K+ with the factor, already probed, of the same matrix with the same dofs held. The null space is that of the
     /// plan, where it has one.
-    pub fn with_factor_of(self, other: &GeneralizedInverse) -> GeneralizedInverse {
+    pub fn with_factor_of(self, other: &GeneralizedInverse) -> Result<GeneralizedInverse> {
         let (factor, fixing) = (other.factor.clone(), other.fixing.clone());
-        let (null_space, rounding, gap) = match self {
-            Self::Known(known) => (known.null_space, known.rounding, None),
-            Self::Search(_) => (other.null_space.clone(), other.rounding, other.gap),
-        };
-        GeneralizedInverse { null_space, rounding, fixing, gap, factor }
+        match self {
+            Self::Known(Known { k, null_space, error, .. }) => {
+                GeneralizedInverse { null_space, rounding: KNOWN, error, fixing, gap: None, factor }
+                    .measured(&k)
+            }
+            Self::Search(_) => {
+                let (null_space, gap) = (other.null_space.clone(), other.gap);
+                let (rounding, error) = (other.rounding, other.error);
+                Ok(GeneralizedInverse { null_space, rounding, error, fixing, gap, factor })
+            }
+        }
     }
 
     /// Factorises F of (14) and probes; refuses a K that is indefinite, against (4), or more singular than its null
@@ -229,13 +237,11 @@ impl Known {
             let missing = || missing_mode(breakdown.dof, breakdown.relative_pivot, self.null_space.cols);
             breakdown.refused().unwrap_or_else(missing)
         })?;
-        let Self { k, null_space, rounding, fixing, .. } = self;
+        let Self { k, null_space, error, fixing, .. } = self;
         let factor = Factor::Own(Arc::new(factor));
-        let mut inverse = GeneralizedInverse { null_space, rounding, fixing, gap: None, factor };
+        let inverse = GeneralizedInverse { null_space, rounding: KNOWN, error, fixing, gap: None, factor };
         inverse.probe(&k)?;
-        if rounding > KNOWN {
-            inverse.rounding = inverse.known_to(&k)?;
-        }
+        let inverse = inverse.measured(&k)?;
         Ok(Made { inverse, symbolic, further_analyses: 0, factorisations: 1 })
     }
 }
@@ -250,6 +256,14 @@ impl Breakdown {
 }
 
 impl GeneralizedInverse {
+    /// The error of a null space that K does not map to zero but for rounding, as far as the factor enlarges it.
+    fn measured(mut self, k: &Multiple) -> Result<Self> {
+        if self.error > KNOWN {
+            self.error = self.known_to(k)?;
+        }
+        Ok(self)
+    }
+
     /// `|K+ K R|`, zero but for errors of R: the factor enlarges what K makes of them as it has those of rounding.
     pub(super) fn known_to(&self, k: &Multiple) -> Result<f64> {
         let (image, _) = k.mul_columns(&self.null_space)?;

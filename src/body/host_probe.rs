@@ -5,7 +5,7 @@
 use crate::body::factor::Factor;
 use crate::body::generalized_inverse::{GeneralizedInverse, PROBE, UNLIKELY};
 use crate::body::host::HostMultiple;
-use crate::body::null_space::{largest, verified, NullSpaceInput, Products, Verified};
+use crate::body::null_space::{largest, verified, NullSpaceInput, Products, Verified, ROUNDING as KNOWN};
 use crate::body::random::Random;
 use crate::error::{Error, Kind, Result};
 use crate::linalg::vector::{axpy, dot, ratio, weighted_norm};
@@ -25,9 +25,16 @@ const MISSING: f64 = 10.0 * PROBE;
 impl GeneralizedInverse {
     /// K+ of the host, once K, K+ and the null space have passed.
     pub fn of_host(k: HostMultiple, given: &NullSpaceInput, tolerance: f64) -> Result<Self> {
-        let Verified { basis: null_space, rounding } = verified(&k, &k.roots()?, given, tolerance)?;
+        let Verified { basis: null_space, error } = verified(&k, &k.roots()?, given, tolerance)?;
         Probe::new(&k, &null_space)?.judge()?;
-        Ok(Self { null_space, rounding, fixing: Vec::new(), gap: None, factor: Factor::Host(k) })
+        Ok(Self {
+            null_space,
+            rounding: KNOWN,
+            error,
+            fixing: Vec::new(),
+            gap: None,
+            factor: Factor::Host(k),
+        })
     }
 }
 

@@ -64,11 +64,11 @@ impl Products for Multiple {
     }
 }
 
-/// A null space and how far it is known: the part of the fastest dof that is nothing.
+/// A null space and how far it is known, against the fastest dof.
 pub struct Verified {
     /// `R'DR = I`
     pub basis: Matrix,
-    pub rounding: f64,
+    pub error: f64,
 }
 
 /// Basis of the null space with `R'DR = I`; `root` is `D^1/2`.
@@ -102,7 +102,7 @@ fn exact<K: Products>(k: &K, root: &[f64], vectors: &Matrix, tolerance: f64) -> 
         basis.col_mut(j).iter_mut().zip(root).for_each(|(v, d)| *v /= d);
     }
     let (image, terms) = k.mul_columns(&basis)?;
-    let mut rounding = ROUNDING;
+    let mut error = ROUNDING;
     let weight = |i: usize| 1.0 / k.metric(i, 1.0);
     for j in 0..basis.cols {
         let left = weighted_norm(image.col(j), weight);
@@ -115,9 +115,9 @@ fn exact<K: Products>(k: &K, root: &[f64], vectors: &Matrix, tolerance: f64) -> 
                 .limit(tolerance));
         }
         // what A resists of z is no null vector: single dofs have more of it than the mean
-        rounding = rounding.max(PEAK * found.min(left));
+        error = error.max(PEAK * found.min(left));
     }
-    Ok(Verified { basis, rounding })
+    Ok(Verified { basis, error })
 }
 
 /// The part of the span of the candidates that `D^-1 K` maps to zero: from the singular values of

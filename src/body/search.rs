@@ -228,16 +228,18 @@ impl Search {
         })?;
         let gap = soft.iter().map(|part| part.gap).reduce(f64::min);
         let found = NullSpaceInput { vectors, modes: Modes::Exact };
-        let Verified { basis: null_space, rounding } = verified(&self.k, &root, &found, self.tolerance)?;
+        let Verified { basis: null_space, error } = verified(&self.k, &root, &found, self.tolerance)?;
         let mut inverse = GeneralizedInverse {
             null_space,
-            rounding,
+            rounding: error,
+            error,
             fixing: fixing.concat(),
             gap,
             factor: Factor::Own(Arc::new(factor)),
         };
         inverse.probe(&self.k)?;
         inverse.rounding = inverse.known_to(&self.k)?;
+        inverse.error = inverse.rounding;
         Ok(inverse)
     }
 

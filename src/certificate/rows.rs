@@ -37,7 +37,7 @@ impl Row {
         // a row that weighs nothing is not known to hold
         let known = scale > 0.0 || empty;
         let force_limit = forces.limit_of(field, kind, i);
-        // an error of the force that is allowed moves a soft row so far
+        // tol C_i Lambda_i: what an error of the force that is allowed moves a soft row by
         let by_spring = if rows.compliance[i] > 0.0 { rows.compliance[i] * force_limit } else { 0.0 };
         let allowed = field.data.limit * size + rounding + by_spring;
         let gap_limit = if known { allowed } else { f64::NAN };

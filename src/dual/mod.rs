@@ -174,7 +174,7 @@ impl Dual {
 
     /// How far G is known: the part of `|G_p|` that is nothing.
     pub fn rounding(&self) -> f64 {
-        self.subdomains.iter().fold(ROUNDING, |most, s| most.max(s.kplus.rounding))
+        self.subdomains.iter().fold(ROUNDING, |most, s| most.max(s.kplus.error))
     }
 
     /// Modes of body p among all modes.

@@ -113,7 +113,8 @@ impl Problem {
         })?;
         for (p, plan, q) in others {
             let (unit, symbolic) = (self.bodies[p].body.unit(), self.bodies[q].symbolic.clone());
-            let of = self.bodies[q].inverse.as_ref().map(|of| (of.bytes, plan.with_factor_of(&of.kplus)));
+            let share = |of: &Inverse| Ok((of.bytes, plan.with_factor_of(&of.kplus)?));
+            let of = self.bodies[q].inverse.as_ref().map(share).transpose()?;
             self.bodies[p].symbolic = symbolic;
             let grounded = grounded_in(self.bodies[p].body.stiffness.as_ref())?;
             self.bodies[p].inverse = of.map(|(bytes, kplus)| {

@@ -2,7 +2,7 @@
 
 use crate::constraints::RowKind;
 use crate::error::{Error, Kind, Result};
-use crate::linalg::vector::norm;
+use crate::linalg::vector::{norm, norm_max};
 use crate::linalg::{Csr, Operator};
 use crate::qp::{minimise, Judge, Limits, Observer, Progress, Qp};
 use crate::solver::diagnosis;
@@ -80,7 +80,8 @@ pub(super) fn presolve(problem: &Problem, ready: &Ready, moved: f64, stops: &Sto
         return Err(error);
     }
     gaps.dual = rows.decoupling.solve(gaps.value.clone());
-    gaps.far = gaps.value.iter().zip(&gaps.bounded).map(|(c, bounded)| *bounded && *c > FAR * reach).collect();
+    gaps.far =
+        gaps.value.iter().zip(&gaps.bounded).map(|(c, bounded)| *bounded && *c > FAR * reach).collect();
     Ok(gaps)
 }
 
@@ -106,7 +107,7 @@ fn two_rows_contradict(
 }
 
 /// `min |D^-1/2 B'w|^2 + (1 + c'w)^2` over w >= 0 on contact rows is zero exactly where rows contradict each
-/// other (c scaled by the largest motion demanded); B has unit rows, and no compliant ones: they give way to any other row.
+/// other (c scaled to largest entry 1, far rows left out); B has unit rows, and no compliant ones: they give way to any other row.
 /// No product with F is needed.
 fn contradiction(problem: &Problem, ready: &Ready, gaps: &Gaps, stops: &Stops) -> Result<Option<Error>> {
     let rows = &ready.rows;
@@ -121,6 +122,7 @@ fn contradiction(problem: &Problem, ready: &Ready, gaps: &Gaps, stops: &Stops) -
     if size == 0.0 {
         return Ok(None); // u = 0 satisfies them all
     }
+    let size = norm_max(&c);
     c.iter_mut().for_each(|c| *c /= size);
     let mut matrix = Csr::empty(rows.scaled.cols);
     rigid.iter().for_each(|&group| matrix.push_row(rows.scaled.row(group)));

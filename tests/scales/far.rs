@@ -102,10 +102,14 @@ fn a_far_row_of_a_floating_block_changes_nothing() {
     assert_changes_nothing(&deck, deck.dofs() - 1, &GAPS, |p| p.set_i64("direct_limit", 0).unwrap());
 }
 
+/// Solved as far as rounding allows: one more column in F rounds the others otherwise, and with the default the forces are
+/// known to 3e-10, with the far row and without it.
 #[test]
 fn a_far_row_changes_nothing_among_40_thousand_unknowns() {
     let deck = under_a_wall(140, 140);
-    assert_changes_nothing(&deck, side(&deck), &[1e12, 1e30, f64::INFINITY], |_| {});
+    assert_changes_nothing(&deck, side(&deck), &[1e12, 1e30, f64::INFINITY], |p| {
+        p.set_f64("tolerance", 1e-14).unwrap();
+    });
 }
 
 /// What the loads alone do, without a row.

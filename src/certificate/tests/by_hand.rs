@@ -41,8 +41,9 @@ fn the_answer_on_a_compliant_row_passes_in_any_unit_and_each_fault_is_named() {
         assert!(exact.entries().iter().all(|entry| entry.figure <= 1e-15), "{exact:?}");
         let rigid = with(0.25, 1.0);
         assert!(rigid.equilibrium.ratio <= 1.0 && rigid.penetration.ratio <= 1.0);
-        // g = .25 of L = |r| / K + lambda (1/4 + 1/4) = .25 + .5; lambda = 1 of sqrt 2 (2 + 1) / 2
-        let share = (0.25_f64 / 0.75).min(1.0 / (1.5 * 2f64.sqrt()));
+        // lambda = 1 of Lambda = sqrt 2 (2 + 1) / 2; g = .25 of L = |r| / K + lambda (1/4 + 1/4) + Lambda / 4 = .25 + .5 + ..
+        let force = 1.5 * 2f64.sqrt();
+        let share = (0.25 / (0.75 + force / 4.0)).min(1.0 / force);
         assert!((rigid.complementarity.figure - share).abs() < 1e-5 && rigid.complementarity.ratio > 1.0);
         // u K u - f u + c lambda + lambda C lambda = .25 - .5 + .25 + .25, of .25 + .5 + .25 + .25
         assert!((rigid.duality_gap.figure - 0.25 / 1.25).abs() < 1e-5 && rigid.duality_gap.ratio > 1.0);
