@@ -22,6 +22,7 @@ mod presolve;
 mod problem;
 mod report;
 mod response;
+mod rest;
 mod results;
 mod room;
 mod rows;

@@ -3,18 +3,17 @@
 use std::cell::Cell;
 use std::time::{Duration, Instant};
 
-use crate::certificate::{certify, Answer as AnswerView, BodyData, Data, Judgement};
+use crate::certificate::{certify, Answer as AnswerView, Data, Judgement};
 use crate::dual::Preconditioner;
 use crate::error::{Error, Kind, Result};
 use crate::linalg::memory::copied;
-use crate::linalg::vector::{axpy, norm, norm_max};
+use crate::linalg::vector::{norm, norm_max};
 use crate::linalg::Operator;
 use crate::qp::paper::Units;
 use crate::qp::{self, Direct, Judge, Qp, Solution, Verdict};
 use crate::solver::diagnosis;
 use crate::solver::fallback::Means;
 use crate::solver::finish::finish;
-use crate::solver::islands::Island;
 use crate::solver::near::solve_near;
 use crate::solver::paper::{parameters, HostUnits};
 use crate::solver::presolve::{presolve, Gaps};
@@ -23,7 +22,6 @@ use crate::solver::report::Outcome;
 use crate::solver::response::ByInverse;
 use crate::solver::setup::{Ready, Setup};
 use crate::solver::state::Start;
-use crate::solver::travel::{travel, Moving, Open};
 use crate::solver::watch::{Interruptible, Steps, Stops, Voice};
 
 /// How the solution of one island ended.
@@ -236,64 +234,6 @@ impl<'a> Certifier<'a> {
         Ok((recovered, judgement))
     }
 
-    /// Of the answers that differ by motions which nothing resists the one of least travel takes the place of this one,
-    /// unless this one alone passes.
-    fn bring_to_rest(&self, ending: &mut Ending) -> Result<()> {
-        let Some((recovered, alpha)) = self.at_rest(&ending.recovered, &ending.solution.alpha)? else {
-            return Ok(());
-        };
-        let judgement = self.judged(&recovered)?;
-        if judgement.certificate.passed() || !ending.judgement.certificate.passed() {
-            ending.solution.alpha = alpha;
-            (ending.recovered, ending.judgement) = (recovered, judgement);
-        }
-        Ok(())
-    }
-
-    /// The answer of least travel with its amplitudes; none where rows resist every motion.
-    fn at_rest(&self, answer: &Recovered, alpha: &[f64]) -> Result<Option<(Recovered, Vec<f64>)>> {
-        let (dual, Island { ranges, .. }) = (&self.ready.dual, &self.ready.island);
-        let held = self.ready.without_force(&answer.lambda);
-        let mut free = qp::undetermined(&dual.coarse, &held, dual.rounding())?;
-        if free.cols == 0 {
-            return Ok(None);
-        }
-        (0..free.cols).for_each(|j| {
-            let own = dual.amplitudes(free.col(j));
-            free.col_mut(j).copy_from_slice(&own);
-        });
-        let mut grounded = vec![false; answer.u.len()];
-        let held = self.data.bodies.iter().flat_map(|b| b.grounded.iter().map(|j| b.start + *j as usize));
-        held.for_each(|j| grounded[j] = true);
-        let moving = |(k, body): (usize, &BodyData<'a>)| Moving {
-            unknowns: ranges[k].clone(),
-            modes: dual.modes_of(k),
-            null_space: body.null_space,
-            rounding: dual.rounding(),
-        };
-        let bodies: Vec<Moving> = self.data.bodies.iter().enumerate().map(moving).collect();
-        let contact = self.data.contact;
-        let open = Open {
-            bodies: &bodies,
-            amplitudes: &free,
-            metric: &self.ready.rows.metric,
-            grounded: &grounded,
-            rows: &contact.matrix,
-            gaps: &contact.rhs,
-            compliance: &contact.compliance,
-            lambda: &answer.lambda,
-        };
-        let Ok(change) = travel(&open, &answer.u) else { return Ok(None) };
-        let mut rested = answer.clone();
-        axpy(1.0, &change.u, &mut rested.u);
-        let mut alpha = alpha.to_vec();
-        for k in 0..bodies.len() {
-            let modes = dual.modes_of(k);
-            axpy(dual.size_of(k), &change.amplitudes[modes.clone()], &mut alpha[modes]);
-        }
-        Ok(Some((rested, alpha)))
-    }
-
     /// The rows left out that a displacement goes through.
     fn beyond(&self, u: &[f64]) -> Vec<usize> {
         let (rows, gaps) = (&self.ready.rows.scaled, &self.scaled.gaps.value);
@@ -325,7 +265,7 @@ impl Judge for Certifier<'_> {
         let mut reached = Vec::new();
         if !passed {
             // a travel that nothing resists may hide the rest
-            let rested = if alpha.is_empty() { None } else { self.at_rest(&recovered, alpha)? };
+            let rested = if alpha.is_empty() { None } else { self.at_rest(&recovered, x)? };
             if let Some((rested, _)) = &rested {
                 passed = self.judged(rested)?.certificate.passed();
             }
