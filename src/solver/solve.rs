@@ -169,6 +169,8 @@ pub(super) struct Certifier<'a> {
     /// Rows of the dual that are left out, and those of them that the last point goes through.
     pub far: Vec<bool>,
     pub reached: Vec<usize>,
+    /// Ratio of the worst entry of the point refused last.
+    missed: Option<f64>,
 }
 
 /// A point (x, alpha) of the dual whose answer has passed.
@@ -190,7 +192,7 @@ impl<'a> Certifier<'a> {
         let (data, threads) = (problem.data(&ready.island)?, problem.threads());
         let work = Cell::new(None);
         let (far, reached, spent) = (Vec::new(), Vec::new(), Duration::ZERO);
-        Ok(Self { ready, scaled, data, threads, work, accepted: None, spent, far, reached })
+        Ok(Self { ready, scaled, data, threads, work, accepted: None, spent, far, reached, missed: None })
     }
 
     /// (17), and lambda = 2^p S L'^-1 x on the rows that carry the multipliers of their groups.
@@ -274,6 +276,7 @@ impl Judge for Certifier<'_> {
             }
         }
         self.spent += begun.elapsed();
+        self.missed = Some(judgement.certificate.worst()).filter(|_| !passed);
         if passed {
             let point = (copied(x, "forces")?, copied(alpha, "amplitudes")?);
             self.accepted = Some(Accepted { point, recovered, judgement });
@@ -281,6 +284,16 @@ impl Judge for Certifier<'_> {
         self.reached = reached;
         // those rows come first: without them there is nothing to make better
         Ok(passed || !self.reached.is_empty())
+    }
+
+    fn missed(&self) -> Option<f64> {
+        self.missed
+    }
+
+    fn length(&self) -> Option<f64> {
+        let unit = self.ready.island.unit.sqrt();
+        let accepted = self.accepted.as_ref().filter(|_| self.reached.is_empty());
+        accepted.map(|accepted| accepted.judgement.length / unit)
     }
 }
 
