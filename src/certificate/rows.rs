@@ -15,7 +15,7 @@ pub(super) struct Row {
     open: f64,
     /// `|lambda_i| / s_i^2`, length: what an error of the force as large as itself would do to the gap.
     given_way: f64,
-    /// `s_i L_i / U^1/2`, length.
+    /// `s_i (|b_i| delta + |lambda_i| / s_i^2) / U^1/2` with the deformation of its own unknowns alone, length.
     weighed: f64,
     /// What a gap may differ from zero by, length; not known of a row without scale.
     pub gap_limit: f64,
@@ -43,7 +43,8 @@ impl Row {
         let by_spring = if rows.compliance[i] > 0.0 { rows.compliance[i] * force_limit } else { 0.0 };
         let allowed = field.data.limit * size + rounding + by_spring;
         let gap_limit = if known { allowed } else { f64::NAN };
-        let (open, weighed) = (rows.open_gap(i, field.answer.u, force), scale * size);
+        let own = rows.matrix.row_dot_abs(i, &field.own_deformation) + given_way;
+        let (open, weighed) = (rows.open_gap(i, field.answer.u, force), scale * own);
         Self { kind, force, open, given_way, weighed, gap_limit, force_limit }
     }
 
@@ -141,7 +142,7 @@ impl Measured {
         self.contact.iter().map(|row| RowJudgement { gap: row.gap_limit, force: row.force_limit }).collect()
     }
 
-    /// `|S L|` over all rows, (force x length)^1/2.
+    /// `|S L|` over all rows with the deformation of their own unknowns alone, (force x length)^1/2.
     pub fn length(&self, field: &Field) -> f64 {
         let all: Vec<f64> = self.contact.iter().chain(&self.equalities).map(|row| row.weighed).collect();
         weighted_norm(&all, |_| 1.0) * field.unit.sqrt()

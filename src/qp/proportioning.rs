@@ -113,7 +113,7 @@ const MARGINAL: f64 = 1e-7;
 /// ... and a part this small may be a rounding error: of loads far larger than their resultants.
 const ROUNDING: f64 = 1e-10;
 /// A scale so many times the one without travel is travel.
-const TRAVEL: f64 = 10.0;
+const TRAVEL: f64 = 2.0;
 /// A point refused for less than this much is mended by some more steps.
 const MISSED: f64 = 1e3;
 /// How often the tolerance is tightened when the judge does not accept.
@@ -277,7 +277,15 @@ pub(super) struct Stop {
 
 impl Stop {
     pub fn new(residual: f64) -> Self {
-        Self { residual, noise: 1.0, tightenings: 0, refined: false, best: f64::INFINITY, met: 0, face: Vec::new() }
+        Self {
+            residual,
+            noise: 1.0,
+            tightenings: 0,
+            refined: false,
+            best: f64::INFINITY,
+            met: 0,
+            face: Vec::new(),
+        }
     }
 
     /// No conjugate gradient step has halved the residual of this face for longer than exact arithmetic

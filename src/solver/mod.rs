@@ -31,6 +31,7 @@ mod settings_text;
 mod setup;
 mod solve;
 mod state;
+mod steps;
 mod stiffness;
 mod sync;
 mod threads;

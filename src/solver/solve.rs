@@ -22,7 +22,8 @@ use crate::solver::report::Outcome;
 use crate::solver::response::ByInverse;
 use crate::solver::setup::{Ready, Setup};
 use crate::solver::state::Start;
-use crate::solver::watch::{Interruptible, Steps, Stops, Voice};
+use crate::solver::steps::{Interruptible, Steps, Voice};
+use crate::solver::watch::Stops;
 
 /// How the solution of one island ended.
 pub(super) struct Solved {
@@ -116,7 +117,7 @@ pub(super) struct Scaled {
 
 impl Scaled {
     fn new(problem: &Problem, ready: &Ready, stops: &Stops) -> Result<Self> {
-        let mut load = problem.loads(&ready.island)?;
+        let mut load = ready.island.loads(problem)?;
         load.iter_mut().for_each(|f| *f /= ready.island.unit);
         let moved = ready.moved(problem.threads(), &load)?;
         let farthest = moved.iter().map(|own| norm_max(own)).fold(0.0, f64::max);
