@@ -75,7 +75,7 @@ mod tests {
         let compliance = vec![0.0, 0.1, 0.0, 0.2];
         let draft = Draft::new(vec![part(0), part(1)], &rows);
         let operators = (0..2).map(|p| draft.assemble(p).unwrap()).collect();
-        draft.finish(operators, compliance)
+        draft.finish(operators, compliance, true)
     }
 
     #[test]

@@ -113,8 +113,9 @@ impl Draft {
         explicit.map(|reuse| reuse.operator(&self.parts[p].kplus, &self.distinct[p])).transpose()
     }
 
-    /// The dual problem with the operators that have been assembled; `compliance` is the diagonal of C, m entries.
-    pub fn finish(self, operators: Vec<Option<Packed>>, compliance: Vec<f64>) -> Dual {
+    /// The dual problem with the operators that have been assembled; `compliance` is the diagonal of C, m entries. `balanced`:
+    /// `|G_p|` is in [1, 2) for every body that rows touch; else it is that of R_p as it is.
+    pub fn finish(self, operators: Vec<Option<Packed>>, compliance: Vec<f64>, balanced: bool) -> Dual {
         let columns = self.reuse.iter().flatten().map(Reuse::columns).sum();
         let operators = operators.into_iter().zip(self.multiples);
         let mut first = 0;
@@ -138,7 +139,9 @@ impl Draft {
             });
         }
         let mut coarse = coarse(&subdomains, compliance.len(), first);
-        scale_by_body(&mut subdomains, &mut coarse);
+        if balanced {
+            scale_by_body(&mut subdomains, &mut coarse);
+        }
         Dual { subdomains, compliance, coarse, columns }
     }
 }

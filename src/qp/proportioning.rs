@@ -113,7 +113,7 @@ const MARGINAL: f64 = 1e-7;
 /// ... and a part this small may be a rounding error: of loads far larger than their resultants.
 const ROUNDING: f64 = 1e-10;
 /// A scale so many times the one without travel is travel.
-const TRAVEL: f64 = 2.0;
+const TRAVEL: f64 = 10.0;
 /// A point refused for less than this much is mended by some more steps.
 const MISSED: f64 = 1e3;
 /// How often the tolerance is tightened when the judge does not accept.

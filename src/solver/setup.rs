@@ -66,7 +66,7 @@ impl Problem {
     /// True where factors and dual operators are as the options want them.
     pub(super) fn is_set_up(&self) -> bool {
         let coupled = paper::is_asked(&self.settings);
-        let suits = |ready: &Ready| ready.rows.coupled == coupled || ready.island.equalities.rows.len() == 0;
+        let suits = |ready: &Ready| ready.rows.coupled == coupled;
         self.ready
             .as_ref()
             .is_some_and(|setup| setup.islands.iter().all(suits) && self.wants(&setup.operators))
@@ -193,7 +193,8 @@ impl Problem {
         watch.every_body(&part, assemble, |p, operator| made[island_of[p]][number_in[p]] = operator)?;
         let mut ready = reserved(islands.len(), "groups of bodies")?;
         for (((island, rows), draft), made) in islands.into_iter().zip(drafts).zip(made) {
-            let dual = draft.finish(made, rows.compliance.clone());
+            // Algorithm 3 weighs the rigid modes as the paper has them
+            let dual = draft.finish(made, rows.compliance.clone(), !rows.coupled);
             self.work.columns_computed += dual.columns.computed;
             self.work.columns_kept += dual.columns.kept;
             ready.push(Ready { island, dual, rows, preconditioner: None });
