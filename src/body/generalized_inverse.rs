@@ -6,29 +6,16 @@ use std::sync::Arc;
 
 use crate::body::factor::Factor;
 use crate::body::fixing::{fixing_dofs, given_dofs, hold_as_well};
-use crate::body::null_space::{largest, verified, NullSpaceInput, Verified, ROUNDING as KNOWN};
-use crate::body::overflow::overflow;
-use crate::body::random::Random;
+use crate::body::null_space::{verified, NullSpaceInput, Verified, ROUNDING as KNOWN};
+use crate::body::probe::missing_mode;
 use crate::body::search::Search;
 use crate::body::symbolic::{Layout, Made, Symbolic};
 use crate::error::{Error, Kind, Result};
-use crate::linalg::memory::{room, zeros, PRODUCTS};
-use crate::linalg::vector::{norm_max, weighted_norm};
+use crate::linalg::memory::{room, PRODUCTS};
 use crate::linalg::{Analysis, Breakdown, Csr, Matrix, Multiple, Packed};
 
 /// A pivot below minus this, relative to its diagonal entry, is no rounding error: a(u, u) >= 0 of (4) is violated.
 const NEGATIVE_PIVOT: f64 = 1e-10;
-/// K with the dofs held is singular when some v has `|A v|` below this against `| |A| |v| |`.
-pub(super) const SINGULAR: f64 = 1e-13;
-/// Random numbers have `n^-1/2` of their length along a given direction; this many times less is not expected. (A mode
-/// that is missing is left with 1e-16 by rounding, far below `SINGULAR`: there it would take a thousand times less still.)
-pub(super) const UNLIKELY: f64 = 1e3;
-/// Rounding errors of R may be so many times those of the sample that is taken of them, ...
-const SAMPLE: f64 = 16.0;
-/// ... and what is more against the fastest dof is none.
-const MOST_ROUNDING: f64 = 1e-9;
-/// Largest residual of a solve with the factor, relative to its terms.
-pub(super) const PROBE: f64 = 1e-8;
 
 pub struct GeneralizedInverse {
     /// `R_p`, n x r, with `R'DR = I`.
@@ -253,76 +240,6 @@ impl Breakdown {
         let error = Error::new(Kind::Indefinite, what).dof(self.dof).value(self.relative_pivot).limit(0.0);
         (self.relative_pivot < -NEGATIVE_PIVOT).then_some(error)
     }
-}
-
-impl GeneralizedInverse {
-    /// The error of a null space that K does not map to zero but for rounding, as far as the factor enlarges it.
-    fn measured(mut self, k: &Multiple) -> Result<Self> {
-        if self.error > KNOWN {
-            self.error = self.known_to(k)?;
-        }
-        Ok(self)
-    }
-
-    /// `|K+ K R|`, zero but for errors of R: the factor enlarges what K makes of them as it has those of rounding.
-    pub(super) fn known_to(&self, k: &Multiple) -> Result<f64> {
-        let (image, _) = k.mul_columns(&self.null_space)?;
-        let mut turned = zeros(k.order(), "a null space")?;
-        let mut worst: f64 = KNOWN;
-        for j in 0..image.cols {
-            self.apply(image.col(j), &mut turned)?;
-            worst = worst.max(SAMPLE * norm_max(&turned) / norm_max(self.null_space.col(j)));
-        }
-        Ok(worst.min(MOST_ROUNDING))
-    }
-
-    /// A factorisation that ends without complaint proves nothing: solve for a known right-hand side b, and look for a
-    /// null vector v that vanishes on the fixing dofs by inverse iteration on A. The first step finds v by the part of b
-    /// along it; a second step is taken unless that part would have to be unlikely small.
-    pub(super) fn probe(&self, k: &Multiple) -> Result<()> {
-        let n = k.order();
-        if self.fixing.len() == n {
-            return Ok(());
-        }
-        let free = |x: &mut [f64]| self.fixing.iter().for_each(|&dof| x[dof] = 0.0);
-        let size = |x: &[f64]| weighted_norm(x, |i| 1.0 / k.metric(i, 1.0));
-        let empty = || zeros(n, "a probe");
-        let b = Random::default().vector(n, |i| k.metric(i, 1.0).sqrt())?;
-        let (mut b, mut x, mut image, mut terms) = (b, empty()?, empty()?, empty()?);
-        free(&mut b);
-        self.apply(&b, &mut x)?;
-        k.mul_with_terms(&x, &mut image, &mut terms);
-        image.iter_mut().zip(&b).for_each(|(i, b)| *i -= b);
-        free(&mut image);
-        let whole = size(&terms) + size(&b);
-        let residual = size(&image) / whole;
-        if residual.is_nan() || !whole.is_finite() {
-            return Err(overflow());
-        }
-        if residual > PROBE {
-            let what = format!("the factorisation failed its probe: residual {residual:.1e}");
-            return Err(Error::new(Kind::Internal, what).value(residual).limit(PROBE));
-        }
-        let mut softest = size(&b) / size(&terms);
-        if softest.is_nan() || softest < UNLIKELY * (n as f64).sqrt() * SINGULAR {
-            (0..n).for_each(|i| b[i] = k.metric(i, 1.0) * x[i]);
-            self.apply(&b, &mut x)?;
-            k.mul_with_terms(&x, &mut image, &mut terms);
-            softest = size(&b) / size(&terms);
-        }
-        if softest.is_nan() || softest < SINGULAR {
-            return Err(missing_mode(largest(&x, |i| k.metric(i, 1.0)), softest, self.null_space.cols));
-        }
-        Ok(())
-    }
-}
-
-fn missing_mode(dof: usize, found: f64, given: usize) -> Error {
-    let what = format!(
-        "a mode is missing: the stiffness matrix has more than the {given} null vectors given; \
-         one is largest at this dof (|K v| = {found:.1e} |K||v|)"
-    );
-    Error::new(Kind::NullSpace, what).dof(dof).value(found).limit(SINGULAR)
 }
 
 #[cfg(test)]

@@ -3,9 +3,10 @@
 //! measured in the metric `D^-1`, displacements in D, so that no figure has a unit.
 
 use crate::body::factor::Factor;
-use crate::body::generalized_inverse::{GeneralizedInverse, PROBE, UNLIKELY};
+use crate::body::generalized_inverse::GeneralizedInverse;
 use crate::body::host::HostMultiple;
 use crate::body::null_space::{largest, verified, NullSpaceInput, Products, Verified, ROUNDING as KNOWN};
+use crate::body::probe::{PROBE, UNLIKELY};
 use crate::body::random::Random;
 use crate::error::{Error, Kind, Result};
 use crate::linalg::vector::{axpy, dot, ratio, weighted_norm};

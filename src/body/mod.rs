@@ -13,6 +13,7 @@ mod host_probe;
 mod in_order;
 mod null_space;
 mod overflow;
+mod probe;
 mod random;
 mod rigid_modes;
 mod search;

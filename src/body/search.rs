@@ -9,9 +9,10 @@ use std::sync::Arc;
 
 use crate::body::factor::Factor;
 use crate::body::fixing::{fixing_dofs, given_dofs};
-use crate::body::generalized_inverse::{GeneralizedInverse, SINGULAR};
+use crate::body::generalized_inverse::GeneralizedInverse;
 use crate::body::null_space::{largest, verified, Modes, NullSpaceInput, Verified};
 use crate::body::overflow::refuse_overflow;
+use crate::body::probe::SINGULAR;
 use crate::body::symbolic::{Layout, Made, Symbolic};
 use crate::error::{Error, Kind, Result};
 use crate::linalg::graph::components;

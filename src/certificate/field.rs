@@ -22,7 +22,8 @@ pub(super) struct Field<'a> {
     pub push: Vec<f64>,
     /// `|B'||lambda| + |H'||mu|`, n, force.
     pub push_terms: Vec<f64>,
-    /// delta, n, length.
+    /// delta, n, length: what an unknown is deformed by, and it together with those it is joined to.
+    pub own_deformation: Vec<f64>,
     pub deformation: Vec<f64>,
     /// `s_i / U^1/2` of contact and equality rows, no unit.
     pub scales: [Vec<f64>; 2],
@@ -46,9 +47,21 @@ impl<'a> Field<'a> {
             held.for_each(|j| grounded[body.start + *j as usize] = true);
         }
         let scales = [data.contact, data.equalities].map(|rows| row_scales(rows, &metric, unit));
-        let deformation = Vec::new();
-        let mut field = Self { data, answer, unit, metric, grounded, push, push_terms, deformation, scales };
-        field.deformation = deformation_of(&field);
+        let (own_deformation, deformation) = (Vec::new(), Vec::new());
+        let mut field = Self {
+            data,
+            answer,
+            unit,
+            metric,
+            grounded,
+            push,
+            push_terms,
+            own_deformation,
+            deformation,
+            scales,
+        };
+        field.own_deformation = own(&field);
+        field.deformation = with_neighbours(&field)?;
         Ok(field)
     }
 
@@ -87,13 +100,27 @@ impl<'a> Field<'a> {
     }
 }
 
-fn deformation_of(field: &Field) -> Vec<f64> {
-    let mut left = deformation(field);
-    let unit = field.unit;
-    for j in (0..left.len()).filter(|j| field.grounded[*j]) {
-        left[j] = field.push[j].abs() / unit / field.metric[j];
+/// `|r_j| / K_jj` of grounded unknowns, `|u - R a|` of the others.
+fn own(field: &Field) -> Vec<f64> {
+    let mut own = deformation(field);
+    for j in (0..own.len()).filter(|j| field.grounded[*j]) {
+        own[j] = field.push[j].abs() / field.unit / field.metric[j];
     }
-    left
+    own
+}
+
+/// `sum_k |K_jk| delta_k / K_jj`, for a single unknown may be at rest by symmetry; of grounded unknowns their own.
+fn with_neighbours(field: &Field) -> Result<Vec<f64>> {
+    let mut all = field.own_deformation.clone();
+    for (p, body) in field.data.bodies.iter().enumerate() {
+        let range = field.range(p);
+        let (mut image, mut terms) = (vec![0.0; range.len()], vec![0.0; range.len()]);
+        body.stiffness.mul_with_terms(&field.own_deformation[range.clone()], &mut image, &mut terms)?;
+        for j in range.clone().filter(|j| !field.grounded[*j]) {
+            all[j] = all[j].max(terms[j - range.start] / field.unit / field.metric[j]);
+        }
+    }
+    Ok(all)
 }
 
 /// Grounded unknowns j of a body that its null space moves all the same, `|K_jj R_j| > 1/4 sum_k |K_jk||R_k|`: no ground holds

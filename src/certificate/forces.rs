@@ -40,7 +40,7 @@ impl Forces {
         let moved = if loads.iter().all(|load| *load == 0.0) { asked(field) } else { 0.0 };
         let rounding = |j: usize| NOISE * field.answer.u[j].abs();
         let strains = (0..field.data.bodies.len()).map(|p| {
-            let strain = field.free(p, |j| positive(field.deformation[j] - rounding(j)));
+            let strain = field.free(p, |j| positive(field.own_deformation[j] - rounding(j)));
             let start = field.range(p).start;
             weighted_norm(&strain, |i| field.metric[start + i])
         });

@@ -90,6 +90,8 @@ pub struct Judgement {
     pub bodies: Vec<BodyJudgement>,
     /// Of every contact row.
     pub contact: Vec<RowJudgement>,
+    /// `|S L|` over all rows, (force x length)^1/2: the lengths that gaps are measured against, without any travel.
+    pub length: f64,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -126,7 +128,7 @@ pub fn certify(data: &Data, answer: Answer, response: &mut dyn Response) -> Resu
         excuses::by_rounding(data.limit, &energies, &mut rows, response, &mut certificate)?;
     }
     let bodies = rows.force_errors(&field);
-    Ok(Judgement { certificate, bodies, contact: rows.limits() })
+    Ok(Judgement { certificate, bodies, contact: rows.limits(), length: rows.length(&field) })
 }
 
 /// `D = diag K` over all unknowns, force / length.

@@ -15,6 +15,8 @@ pub(super) struct Row {
     open: f64,
     /// `|lambda_i| / s_i^2`, length: what an error of the force as large as itself would do to the gap.
     given_way: f64,
+    /// `s_i (|b_i| delta + |lambda_i| / s_i^2) / U^1/2` with the deformation of its own unknowns alone, length.
+    weighed: f64,
     /// What a gap may differ from zero by, length; not known of a row without scale.
     pub gap_limit: f64,
     /// What a force may, force.
@@ -41,7 +43,9 @@ impl Row {
         let by_spring = if rows.compliance[i] > 0.0 { rows.compliance[i] * force_limit } else { 0.0 };
         let allowed = field.data.limit * size + rounding + by_spring;
         let gap_limit = if known { allowed } else { f64::NAN };
-        Self { kind, force, open: rows.open_gap(i, field.answer.u, force), given_way, gap_limit, force_limit }
+        let own = rows.matrix.row_dot_abs(i, &field.own_deformation) + given_way;
+        let (open, weighed) = (rows.open_gap(i, field.answer.u, force), scale * own);
+        Self { kind, force, open, given_way, weighed, gap_limit, force_limit }
     }
 
     /// `(b_i u - c_i - C_i lambda_i)_+`, or the error of an equality row, against what it may be; no unit.
@@ -136,6 +140,12 @@ impl Measured {
     /// What counts as zero at every contact row.
     pub fn limits(&self) -> Vec<RowJudgement> {
         self.contact.iter().map(|row| RowJudgement { gap: row.gap_limit, force: row.force_limit }).collect()
+    }
+
+    /// `|S L|` over all rows with the deformation of their own unknowns alone, (force x length)^1/2.
+    pub fn length(&self, field: &Field) -> f64 {
+        let all: Vec<f64> = self.contact.iter().chain(&self.equalities).map(|row| row.weighed).collect();
+        weighted_norm(&all, |_| 1.0) * field.unit.sqrt()
     }
 
     /// `eta_p = |S v|_p / |S^-1 lambda|_p` of every body; both in units of force.

@@ -190,6 +190,11 @@ pub fn undetermined(g_transposed: &Csr, held: &[bool], rounding: f64) -> Result<
     Ok(solver.kernel().reduced(DROP * rounding))
 }
 
+/// `argmin |r_F - G_F'alpha|` on the rows that are not held, alpha of minimum norm.
+pub fn fitted(g_transposed: &Csr, held: &[bool], r: &[f64], rounding: f64) -> Result<Vec<f64>> {
+    Coarse::new(g_transposed, rounding)?.multiplier(held, r)
+}
+
 fn analysed(g_transposed: &Csr) -> Result<(Gram, Arc<Analysis>)> {
     let gram = Gram::of(g_transposed)?;
     let analysis = Analysis::new(gram.pattern(), &vec![false; g_transposed.cols])?;

@@ -1,5 +1,4 @@
-//! `a = argmin |a - a0|` subject to `A a <= g`, g >= 0: the dual active-set method of Goldfarb and Idnani (1983) with unit
-//! Hessian. a = 0 is feasible, so that `|a| <= |a0|`: rows that are not met within this distance are left out.
+//! `a = argmin |a - a0|` subject to `A a <= g`: the dual active-set method of Goldfarb and Idnani (1983) with unit Hessian.
 
 use crate::error::{Error, Kind, Result};
 use crate::linalg::graph::joined;
@@ -11,13 +10,14 @@ const DEPENDENT: f64 = 1e-11;
 /// A row is violated by more than this part of `|a0|`, and by more than its noise.
 const ROUNDING: f64 = 64.0 * f64::EPSILON;
 
-/// `motions` is A, m x d; `gap` is g, negative by no more than `noise` (what is neither met nor violated). Columns that no
-/// row connects do not know of each other; those that no row restricts are those of `target`, a0.
+/// `motions` is A, m x d, and `gap` is g, +infinity where nothing restricts, known to `noise`. Columns that no row connects do
+/// not know of each other; those that no row restricts are those of `target`, a0.
 pub fn least_travel(motions: &Csr, gap: &[f64], target: &[f64], noise: &[f64]) -> Result<Vec<f64>> {
-    let unit = power_of_two_below(norm_max(target));
     let length = |i: usize| motions.row(i).map(|(_, v)| v * v).sum::<f64>().sqrt();
-    let within = |i: &usize| length(*i) * unit * norm_of(target, unit) > gap[*i].max(0.0) + noise[*i];
-    let rows: Vec<usize> = (0..motions.rows()).filter(within).collect();
+    let rows: Vec<usize> =
+        (0..motions.rows()).filter(|&i| gap[i] < f64::INFINITY && length(i) > 0.0).collect();
+    let asked = rows.iter().map(|&i| -gap[i] / length(i)).fold(norm_max(target), f64::max);
+    let unit = power_of_two_below(asked);
     let entries = |i: usize| motions.row(i).filter(|(_, v)| *v != 0.0);
     let columns = |&i: &usize| entries(i).map(|entry| entry.0);
     let (part_of, count) = joined(target.len(), rows.iter().map(columns));
@@ -29,16 +29,11 @@ pub fn least_travel(motions: &Csr, gap: &[f64], target: &[f64], noise: &[f64]) -
     for (i, first) in rows.into_iter().filter_map(|i| Some((i, entries(i).next()?.0))) {
         let (part, length) = (&mut parts[part_of[first]], length(i));
         part.rows.push_row(entries(i).map(|(j, v)| (local[j], v / length)));
-        part.gap.push(gap[i].max(0.0) / unit / length);
+        part.gap.push(gap[i] / unit / length);
         part.noise.push(noise[i] / unit / length);
     }
     let solutions = parts.iter().map(Part::nearest).collect::<Result<Vec<_>>>()?;
     Ok(local.iter().zip(&part_of).map(|(&j, &part)| unit * solutions[part][j]).collect())
-}
-
-/// `|a0| / unit`
-fn norm_of(target: &[f64], unit: f64) -> f64 {
-    target.iter().map(|a| (a / unit) * (a / unit)).sum::<f64>().sqrt()
 }
 
 /// Columns that rows connect, with rows of unit length.
@@ -62,7 +57,7 @@ impl Part {
         let mut active = Active::new(self);
         for _ in 0..50 * (self.target.len() + 2) {
             let Some(p) = self.most_violated(&active.a, size, &left_out) else { return Ok(active.a) };
-            // only rounding can make a row depend on active ones and be violated for ever: 0 satisfies all
+            // where some motion keeps all rows, only rounding can make one depend on active ones and be violated for ever
             left_out[p] = !active.admit(p);
         }
         Err(Error::new(Kind::Internal, "the active set of the least travel does not settle"))

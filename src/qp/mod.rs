@@ -23,7 +23,7 @@ mod smalbe;
 mod steps;
 
 pub use active_set::{active_set, settle, Attempt, Direct, Settled};
-pub use coarse::undetermined;
+pub use coarse::{fitted, undetermined};
 pub use conjugate::MOST as KEPT;
 pub use face::Face;
 pub use least_travel::least_travel;

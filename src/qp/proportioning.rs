@@ -26,6 +26,14 @@ pub trait Judge {
     fn scale(&mut self, x: &[f64], alpha: &[f64]) -> Result<f64>;
     /// Whether the answer recovered from (x, alpha) passes its certificate.
     fn accepts(&mut self, x: &[f64], alpha: &[f64]) -> Result<bool>;
+    /// How many times too large what the last point was refused for is; not known to one who does not ask.
+    fn missed(&self) -> Option<f64> {
+        None
+    }
+    /// The scale without any travel, at the point accepted last; not known before, or to one who does not ask.
+    fn length(&self) -> Option<f64> {
+        None
+    }
 }
 
 /// Sees every step; an error ends the run, with the point reached where it says `Cancelled` or `TimeOver`.
@@ -64,7 +72,7 @@ pub enum Verdict {
     Cancelled,
     /// theta no longer decreases, and the judge does not accept.
     Stalled,
-    /// The residual is as small as asked, six times over, and the judge does not accept.
+    /// The residual is as small as asked, seven times over, and the judge does not accept.
     Inaccurate,
     /// No x >= 0 gives `G x = e`: `direction'(e - G x) = |direction|^2` for all of them.
     Infeasible {
@@ -104,8 +112,12 @@ pub struct Solution {
 const MARGINAL: f64 = 1e-7;
 /// ... and a part this small may be a rounding error: of loads far larger than their resultants.
 const ROUNDING: f64 = 1e-10;
+/// A scale so many times the one without travel is travel.
+const TRAVEL: f64 = 2.0;
+/// A point refused for less than this much is mended by some more steps.
+const MISSED: f64 = 1e3;
 /// How often the tolerance is tightened when the judge does not accept.
-const TIGHTENINGS: usize = 6;
+const TIGHTENINGS: usize = 7;
 
 pub fn minimise(
     qp: Qp,
@@ -194,7 +206,13 @@ fn run(
         let small = stop.residual + stop.noise * it.noise();
         if it.residual() <= small || stop.plateau(it) {
             if judge.accepts(&it.x, &it.alpha)? {
-                return Ok(Verdict::Solved);
+                if !stop.refine(limits.tolerance, judge.length()) {
+                    return Ok(Verdict::Solved);
+                }
+                continue;
+            }
+            if stop.tighten_by(judge.missed()) {
+                continue;
             }
             it.refresh()?;
             if it.residual() <= small || stop.plateau(it) {
@@ -250,6 +268,7 @@ pub(super) struct Stop {
     /// Share of the allowance for rounding that counts.
     pub noise: f64,
     tightenings: usize,
+    refined: bool,
     /// Smallest residual of the current face, the count of steps when it was met, and that face.
     best: f64,
     met: usize,
@@ -258,7 +277,15 @@ pub(super) struct Stop {
 
 impl Stop {
     pub fn new(residual: f64) -> Self {
-        Self { residual, noise: 1.0, tightenings: 0, best: f64::INFINITY, met: 0, face: Vec::new() }
+        Self {
+            residual,
+            noise: 1.0,
+            tightenings: 0,
+            refined: false,
+            best: f64::INFINITY,
+            met: 0,
+            face: Vec::new(),
+        }
     }
 
     /// No conjugate gradient step has halved the residual of this face for longer than exact arithmetic
@@ -271,6 +298,27 @@ impl Stop {
         }
         let unknowns = it.active.iter().filter(|active| !**active).count();
         steps - self.met > 2 * unknowns + 20
+    }
+
+    /// Once, where all that the residual was measured against is travel: from now on it is measured against the rest.
+    fn refine(&mut self, tolerance: f64, length: Option<f64>) -> bool {
+        let target = length.map_or(f64::INFINITY, |length| tolerance * length);
+        let refines = !self.refined && TRAVEL * target < self.residual;
+        if refines {
+            self.residual = target;
+        }
+        self.refined |= refines;
+        refines
+    }
+
+    /// At the first refusal, by as much as it tells; false where that is more than steps without rounding could mend.
+    fn tighten_by(&mut self, missed: Option<f64>) -> bool {
+        let missed = missed.filter(|missed| *missed < MISSED && self.tightenings == 0);
+        if let Some(missed) = missed {
+            self.tightenings += 1;
+            self.residual *= (0.5 / missed).min(0.5);
+        }
+        missed.is_some()
     }
 
     pub fn tighten(&mut self, accepted: bool) -> Option<Verdict> {

@@ -123,4 +123,12 @@ impl Judge for Judged<'_> {
     fn accepts(&mut self, x: &[f64], alpha: &[f64]) -> Result<bool> {
         self.whole.accepts(&self.on.spread(x), alpha)
     }
+
+    fn missed(&self) -> Option<f64> {
+        self.whole.missed()
+    }
+
+    fn length(&self) -> Option<f64> {
+        self.whole.length()
+    }
 }

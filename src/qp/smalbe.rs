@@ -53,7 +53,7 @@ struct Lagrangian<'a> {
     point: Bounded<'a>,
     /// m
     multiplier: Vec<f64>,
-    /// 64 eps (|b| + |A v| + |G'alpha|) where the gradient was last computed: what rounding alone leaves of it.
+    /// 64 eps (|b| + |A v| + |G'alpha|) on the rows not at rest where the gradient was last computed: its rounding.
     noise: f64,
     /// Of x.
     violation: Violation,
@@ -139,11 +139,10 @@ impl<'a> Lagrangian<'a> {
         axpy(-self.map.rho, &self.violation.s, &mut alpha);
         let coarse = self.map.spread(&alpha);
         axpy(-1.0, &coarse, &mut g);
-        // an open row is judged by its sign alone, however far its gap
-        let (x, Qp { b, bounded, .. }) = (&self.point.x, self.map.qp);
-        let counts = |i: &usize| !bounded[*i] || x[*i] > 0.0 || g[*i] < 0.0;
-        let on_counted = |v: &[f64]| (0..b.len()).filter(counts).map(|i| v[i] * v[i]).sum::<f64>().sqrt();
-        self.noise = 64.0 * f64::EPSILON * (on_counted(&size) + on_counted(b) + on_counted(&coarse));
+        let (x, qp) = (&self.point.x, &self.map.qp);
+        let counts = |i: &usize| !qp.bounded[*i] || x[*i] > 0.0 || g[*i] < 0.0;
+        let on = |v: &[f64]| (0..v.len()).filter(counts).map(|i| v[i] * v[i]).sum::<f64>().sqrt();
+        self.noise = 64.0 * f64::EPSILON * (on(&size) + on(qp.b) + on(&coarse));
         g.extend(alpha);
         self.point.set_gradient(g);
         Ok(())

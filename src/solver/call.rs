@@ -11,8 +11,9 @@ use crate::solver::report::Report;
 use crate::solver::results::{Answer, Asked};
 use crate::solver::solve::Solved;
 use crate::solver::state::Start;
+use crate::solver::steps::{Told, Voice};
 use crate::solver::threads::{self, Heard, Tasks};
-use crate::solver::watch::{Told, Voice, Watch};
+use crate::solver::watch::Watch;
 
 /// How every island ended: with an answer, or with the named reason why it has none.
 pub(super) type Ends = Vec<std::result::Result<Solved, Error>>;

@@ -4,7 +4,7 @@ use crate::error::Result;
 use crate::qp::paper::algorithm_3;
 use crate::qp::{active_set, minimise, not_held, smalbe, Direct, Judge, Limits, Qp, Solution, Verdict};
 use crate::solver::paper;
-use crate::solver::watch::Steps;
+use crate::solver::steps::Steps;
 use crate::solver::Settings;
 
 /// How the dual is solved.
@@ -105,7 +105,8 @@ mod tests {
     use crate::error::{Error, Kind};
     use crate::qp::Counts;
     use crate::solver::solve::tests::two_springs;
-    use crate::solver::watch::{Stops, Told, Voice};
+    use crate::solver::steps::{Told, Voice};
+    use crate::solver::watch::Stops;
     use crate::solver::{Problem, RowKind, RowsInput, SparseInput, Storage};
 
     fn ended(verdict: Verdict, products: usize) -> Solution {

@@ -7,7 +7,7 @@ use std::sync::Arc;
 use crate::certificate::{Certificate, Entry};
 use crate::constraints::{RowKind, RowSet};
 use crate::error::Result;
-use crate::linalg::memory::{copied, reserved};
+use crate::linalg::memory::{copied, reserved, zeros};
 use crate::linalg::vector::power_of_two_below;
 use crate::linalg::Csr;
 use crate::solver::problem::Problem;
@@ -53,6 +53,17 @@ impl Island {
             None => (RowKind::Inequality, self.contact.numbers[i]),
             Some(k) => (RowKind::Equality, self.equalities.numbers[k]),
         }
+    }
+
+    /// The loads of its bodies one after the other, force.
+    pub fn loads(&self, problem: &Problem) -> Result<Vec<f64>> {
+        let mut all = zeros(self.unknowns(), "the loads")?;
+        for (&p, range) in self.bodies.iter().zip(&self.ranges) {
+            if let Some(load) = &problem.bodies[p].body.load {
+                all[range.clone()].copy_from_slice(load);
+            }
+        }
+        Ok(all)
     }
 
     /// Values over all unknowns for those of the island.

@@ -9,11 +9,10 @@ use crate::body::{
 use crate::constraints::{RowKind, RowSet, RowsInput};
 use crate::dual::Kept;
 use crate::error::{Error, Kind, Result};
-use crate::linalg::memory::{copied, zeros};
+use crate::linalg::memory::copied;
 use crate::linalg::vector::first_non_finite;
 use crate::linalg::Matrix;
 use crate::solver::findings::Findings;
-use crate::solver::islands::Island;
 use crate::solver::numbering::Numbering;
 use crate::solver::phases::Phases;
 use crate::solver::report::{Counts, Report, Work};
@@ -370,17 +369,6 @@ impl Problem {
     /// Unknowns of a body among all.
     pub(super) fn range(&self, body: usize) -> Range<usize> {
         self.offsets[body]..self.offsets[body + 1]
-    }
-
-    /// The loads of the bodies of an island one after the other, force.
-    pub(super) fn loads(&self, island: &Island) -> Result<Vec<f64>> {
-        let mut all = zeros(island.unknowns(), "the loads")?;
-        for (&p, range) in island.bodies.iter().zip(&island.ranges) {
-            if let Some(load) = &self.bodies[p].body.load {
-                all[range.clone()].copy_from_slice(load);
-            }
-        }
-        Ok(all)
     }
 }
 

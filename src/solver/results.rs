@@ -298,7 +298,7 @@ impl Problem {
         d.iter_mut().zip(gaps).for_each(|(d, c)| *d = -c);
         for ready in &self.ready()?.islands {
             let rows = &ready.rows;
-            let mut load = self.loads(&ready.island)?;
+            let mut load = ready.island.loads(self)?;
             load.iter_mut().for_each(|f| *f /= ready.island.unit);
             let moved = ready.moved(self.threads(), &load)?;
             let moved = rows.decoupling.apply(&ready.dual.rhs(&moved, &vec![0.0; rows.groups()]));

@@ -3,18 +3,17 @@
 use std::cell::Cell;
 use std::time::{Duration, Instant};
 
-use crate::certificate::{certify, Answer as AnswerView, BodyData, Data, Judgement};
+use crate::certificate::{certify, Answer as AnswerView, Data, Judgement};
 use crate::dual::Preconditioner;
 use crate::error::{Error, Kind, Result};
 use crate::linalg::memory::copied;
-use crate::linalg::vector::{axpy, norm, norm_max};
+use crate::linalg::vector::{norm, norm_max};
 use crate::linalg::Operator;
 use crate::qp::paper::Units;
 use crate::qp::{self, Direct, Judge, Qp, Solution, Verdict};
 use crate::solver::diagnosis;
 use crate::solver::fallback::Means;
 use crate::solver::finish::finish;
-use crate::solver::islands::Island;
 use crate::solver::near::solve_near;
 use crate::solver::paper::{parameters, HostUnits};
 use crate::solver::presolve::{presolve, Gaps};
@@ -23,8 +22,8 @@ use crate::solver::report::Outcome;
 use crate::solver::response::ByInverse;
 use crate::solver::setup::{Ready, Setup};
 use crate::solver::state::Start;
-use crate::solver::travel::{travel, Moving, Open};
-use crate::solver::watch::{Interruptible, Steps, Stops, Voice};
+use crate::solver::steps::{Interruptible, Steps, Voice};
+use crate::solver::watch::Stops;
 
 /// How the solution of one island ended.
 pub(super) struct Solved {
@@ -118,7 +117,7 @@ pub(super) struct Scaled {
 
 impl Scaled {
     fn new(problem: &Problem, ready: &Ready, stops: &Stops) -> Result<Self> {
-        let mut load = problem.loads(&ready.island)?;
+        let mut load = ready.island.loads(problem)?;
         load.iter_mut().for_each(|f| *f /= ready.island.unit);
         let moved = ready.moved(problem.threads(), &load)?;
         let farthest = moved.iter().map(|own| norm_max(own)).fold(0.0, f64::max);
@@ -171,6 +170,8 @@ pub(super) struct Certifier<'a> {
     /// Rows of the dual that are left out, and those of them that the last point goes through.
     pub far: Vec<bool>,
     pub reached: Vec<usize>,
+    /// Ratio of the worst entry of the point refused last.
+    missed: Option<f64>,
 }
 
 /// A point (x, alpha) of the dual whose answer has passed.
@@ -192,7 +193,7 @@ impl<'a> Certifier<'a> {
         let (data, threads) = (problem.data(&ready.island)?, problem.threads());
         let work = Cell::new(None);
         let (far, reached, spent) = (Vec::new(), Vec::new(), Duration::ZERO);
-        Ok(Self { ready, scaled, data, threads, work, accepted: None, spent, far, reached })
+        Ok(Self { ready, scaled, data, threads, work, accepted: None, spent, far, reached, missed: None })
     }
 
     /// (17), and lambda = 2^p S L'^-1 x on the rows that carry the multipliers of their groups.
@@ -236,64 +237,6 @@ impl<'a> Certifier<'a> {
         Ok((recovered, judgement))
     }
 
-    /// Of the answers that differ by motions which nothing resists the one of least travel takes the place of this one,
-    /// unless this one alone passes.
-    fn bring_to_rest(&self, ending: &mut Ending) -> Result<()> {
-        let Some((recovered, alpha)) = self.at_rest(&ending.recovered, &ending.solution.alpha)? else {
-            return Ok(());
-        };
-        let judgement = self.judged(&recovered)?;
-        if judgement.certificate.passed() || !ending.judgement.certificate.passed() {
-            ending.solution.alpha = alpha;
-            (ending.recovered, ending.judgement) = (recovered, judgement);
-        }
-        Ok(())
-    }
-
-    /// The answer of least travel with its amplitudes; none where rows resist every motion.
-    fn at_rest(&self, answer: &Recovered, alpha: &[f64]) -> Result<Option<(Recovered, Vec<f64>)>> {
-        let (dual, Island { ranges, .. }) = (&self.ready.dual, &self.ready.island);
-        let held = self.ready.without_force(&answer.lambda);
-        let mut free = qp::undetermined(&dual.coarse, &held, dual.rounding())?;
-        if free.cols == 0 {
-            return Ok(None);
-        }
-        (0..free.cols).for_each(|j| {
-            let own = dual.amplitudes(free.col(j));
-            free.col_mut(j).copy_from_slice(&own);
-        });
-        let mut grounded = vec![false; answer.u.len()];
-        let held = self.data.bodies.iter().flat_map(|b| b.grounded.iter().map(|j| b.start + *j as usize));
-        held.for_each(|j| grounded[j] = true);
-        let moving = |(k, body): (usize, &BodyData<'a>)| Moving {
-            unknowns: ranges[k].clone(),
-            modes: dual.modes_of(k),
-            null_space: body.null_space,
-            rounding: dual.rounding(),
-        };
-        let bodies: Vec<Moving> = self.data.bodies.iter().enumerate().map(moving).collect();
-        let contact = self.data.contact;
-        let open = Open {
-            bodies: &bodies,
-            amplitudes: &free,
-            metric: &self.ready.rows.metric,
-            grounded: &grounded,
-            rows: &contact.matrix,
-            gaps: &contact.rhs,
-            compliance: &contact.compliance,
-            lambda: &answer.lambda,
-        };
-        let Ok(change) = travel(&open, &answer.u) else { return Ok(None) };
-        let mut rested = answer.clone();
-        axpy(1.0, &change.u, &mut rested.u);
-        let mut alpha = alpha.to_vec();
-        for k in 0..bodies.len() {
-            let modes = dual.modes_of(k);
-            axpy(dual.size_of(k), &change.amplitudes[modes.clone()], &mut alpha[modes]);
-        }
-        Ok(Some((rested, alpha)))
-    }
-
     /// The rows left out that a displacement goes through.
     fn beyond(&self, u: &[f64]) -> Vec<usize> {
         let (rows, gaps) = (&self.ready.rows.scaled, &self.scaled.gaps.value);
@@ -325,7 +268,7 @@ impl Judge for Certifier<'_> {
         let mut reached = Vec::new();
         if !passed {
             // a travel that nothing resists may hide the rest
-            let rested = if alpha.is_empty() { None } else { self.at_rest(&recovered, alpha)? };
+            let rested = if alpha.is_empty() { None } else { self.at_rest(&recovered, x)? };
             if let Some((rested, _)) = &rested {
                 passed = self.judged(rested)?.certificate.passed();
             }
@@ -334,6 +277,7 @@ impl Judge for Certifier<'_> {
             }
         }
         self.spent += begun.elapsed();
+        self.missed = Some(judgement.certificate.worst()).filter(|_| !passed);
         if passed {
             let point = (copied(x, "forces")?, copied(alpha, "amplitudes")?);
             self.accepted = Some(Accepted { point, recovered, judgement });
@@ -341,6 +285,16 @@ impl Judge for Certifier<'_> {
         self.reached = reached;
         // those rows come first: without them there is nothing to make better
         Ok(passed || !self.reached.is_empty())
+    }
+
+    fn missed(&self) -> Option<f64> {
+        self.missed
+    }
+
+    fn length(&self) -> Option<f64> {
+        let unit = self.ready.island.unit.sqrt();
+        let accepted = self.accepted.as_ref().filter(|_| self.reached.is_empty());
+        accepted.map(|accepted| accepted.judgement.length / unit)
     }
 }
 

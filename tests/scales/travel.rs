@@ -64,7 +64,7 @@ fn forces_of_two_legs_that_travel_are_those_by_hand() {
 }
 
 /// The plane blocks with a travel, and the answer of the same blocks that touch from the start: the forces are the same,
-/// and so is u but for the travel of the upper block.
+/// and so is u but for the travel of the upper block. A loose tolerance costs them no more than it costs those that touch.
 fn assert_shifted(across: usize, rows: usize, travels: &[f64]) {
     let mut claims = Claims::default();
     let near = pressed(across, rows, 0.0);
@@ -73,7 +73,9 @@ fn assert_shifted(across: usize, rows: usize, travels: &[f64]) {
         let what = format!("travel {travel:e}, tolerance {tolerance:e}");
         let deck = pressed(across, rows, travel);
         if let Some(found) = claims.solved(&mut with_tolerance(&deck, tolerance), &what) {
-            claims.at_most(difference(&found.lambda, &expected.lambda), 1e-6, &format!("{what}, forces"));
+            let loose = solved(&mut with_tolerance(&near, tolerance));
+            let allowed = (3.0 * difference(&loose.lambda, &expected.lambda)).max(1e-6);
+            claims.at_most(difference(&found.lambda, &expected.lambda), allowed, &format!("{what}, forces"));
             let back = moved(&near, &found.u, travel);
             claims.at_most(difference(&back, &expected.u), 1e-6, &format!("{what}, u"));
         }

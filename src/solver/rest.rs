@@ -1,0 +1,81 @@
+//! Answers whose forces leave motions open are brought to rest: of them all the one of least travel is told.
+
+use crate::certificate::BodyData;
+use crate::error::Result;
+use crate::linalg::vector::axpy;
+use crate::linalg::Matrix;
+use crate::qp;
+use crate::solver::islands::Island;
+use crate::solver::solve::{Certifier, Ending, Recovered};
+use crate::solver::travel::{travel, Change, Moving, Open};
+
+impl<'a> Certifier<'a> {
+    /// Of the answers that differ by motions which nothing resists the one of least travel takes the place of this one,
+    /// unless this one alone passes.
+    pub fn bring_to_rest(&self, ending: &mut Ending) -> Result<()> {
+        let Some((recovered, alpha)) = self.at_rest(&ending.recovered, &ending.solution.x)? else {
+            return Ok(());
+        };
+        let judgement = self.judged(&recovered)?;
+        if judgement.certificate.passed() || !ending.judgement.certificate.passed() {
+            ending.solution.alpha = alpha;
+            (ending.recovered, ending.judgement) = (recovered, judgement);
+        }
+        Ok(())
+    }
+
+    /// The answer of least travel with its amplitudes, for the forces x; none where rows resist every motion. How far that
+    /// of the method has travelled plays no part, not even by its rounding.
+    pub fn at_rest(&self, answer: &Recovered, x: &[f64]) -> Result<Option<(Recovered, Vec<f64>)>> {
+        let (dual, rows) = (&self.ready.dual, &self.ready.rows);
+        let held = self.ready.without_force(&answer.lambda);
+        let free = qp::undetermined(&dual.coarse, &held, dual.rounding())?;
+        if free.cols == 0 {
+            return Ok(None);
+        }
+        let mut u = self.displacement(x, &vec![0.0; dual.modes()])?;
+        let value = self.scaled.gaps.value.iter().enumerate();
+        let open = value.map(|(i, gap)| gap - rows.scaled.row_dot(i, &u)).collect();
+        let mut open = rows.decoupling.solve(open);
+        open.iter_mut().zip(x).zip(&rows.compliance).for_each(|((g, x), c)| *g += c * x);
+        let mut alpha = qp::fitted(&dual.coarse, &held, &open, dual.rounding())?;
+        axpy(1.0, &dual.rigid_motion(&alpha, u.len()), &mut u);
+        let Some(change) = self.way_to_rest(&u, &answer.lambda, free) else { return Ok(None) };
+        axpy(1.0, &change.u, &mut u);
+        for k in 0..self.data.bodies.len() {
+            let modes = dual.modes_of(k);
+            axpy(dual.size_of(k), &change.amplitudes[modes.clone()], &mut alpha[modes]);
+        }
+        Ok(Some((Recovered { u, ..answer.clone() }, alpha)))
+    }
+
+    /// What brings u to rest by the free motions; none where rounding leaves no way.
+    fn way_to_rest(&self, u: &[f64], lambda: &[f64], mut free: Matrix) -> Option<Change> {
+        let (dual, Island { ranges, .. }) = (&self.ready.dual, &self.ready.island);
+        for j in 0..free.cols {
+            let own = dual.amplitudes(free.col(j));
+            free.col_mut(j).copy_from_slice(&own);
+        }
+        let mut grounded = vec![false; u.len()];
+        let held = self.data.bodies.iter().flat_map(|b| b.grounded.iter().map(|j| b.start + *j as usize));
+        held.for_each(|j| grounded[j] = true);
+        let moving = |(k, body): (usize, &BodyData<'a>)| Moving {
+            unknowns: ranges[k].clone(),
+            modes: dual.modes_of(k),
+            null_space: body.null_space,
+            rounding: dual.rounding(),
+        };
+        let contact = self.data.contact;
+        let open = Open {
+            bodies: &self.data.bodies.iter().enumerate().map(moving).collect::<Vec<_>>(),
+            amplitudes: &free,
+            metric: &self.ready.rows.metric,
+            grounded: &grounded,
+            rows: &contact.matrix,
+            gaps: &contact.rhs,
+            compliance: &contact.compliance,
+            lambda,
+        };
+        travel(&open, u).ok()
+    }
+}
