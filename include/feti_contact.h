@@ -99,6 +99,11 @@
 #define FETI_ROW_WEAK 2
 
 /**
+ * State of a row: unknown, the bodies it touches are in a group that has no answer.
+ */
+#define FETI_ROW_UNKNOWN 3
+
+/**
  * Phase of a call that feti_on_progress tells of: a part of the setup is done.
  */
 #define FETI_PHASE_SETUP 1
@@ -334,7 +339,8 @@ typedef struct feti_body_facts {
    */
   double gap;
   /**
-   * Estimated relative error of the forces on the body in the last answer; NaN without one.
+   * Estimated relative error of the forces on the body in the last answer; NaN without one, also of
+   * its group of bodies alone.
    */
   double force_error;
 } feti_body_facts;
@@ -627,7 +633,9 @@ typedef struct feti_progress {
 typedef int32_t (*feti_progress_fn)(void *user, const struct feti_progress *now);
 
 /**
- * How a solve went. Counts of a call that failed early are zero, figures NaN.
+ * How a solve went. Counts of a call that failed early are zero, figures NaN. Where some groups of
+ * bodies have an answer and others have none, counts of work, energy and figures are those of the
+ * groups that have one.
  */
 typedef struct feti_info {
   /**
@@ -635,7 +643,7 @@ typedef struct feti_info {
    */
   int64_t struct_size;
   /**
-   * What feti_solve returned.
+   * What feti_solve returned: the worst of all groups of bodies.
    */
   int32_t status;
   /**
@@ -667,7 +675,7 @@ typedef struct feti_info {
    */
   int64_t active;
   /**
-   * Motions that neither loads nor rows determine.
+   * Motions that neither loads nor rows determine: the answer has the least sum of `K_ii u_i^2`.
    */
   int64_t undetermined;
   /**
@@ -703,35 +711,36 @@ typedef struct feti_info {
    */
   int64_t analyses;
   /**
-   * Largest entry of the certificate over what it is allowed: <= 1 passes.
+   * Largest entry of the certificate over what it is allowed, over all bodies and rows that have an
+   * answer: <= 1 passes.
    */
   double worst;
   /**
-   * Relative error of equilibrium, as in feti_certificate.
+   * Relative error of equilibrium, as in feti_certificate: of the worst body.
    */
   double equilibrium;
   /**
-   * Relative error of the balance of each floating body.
+   * Relative error of the balance, of the worst floating body.
    */
   double balance;
   /**
-   * Relative penetration.
+   * Relative penetration, of the worst row.
    */
   double penetration;
   /**
-   * Relative error of the equality rows.
+   * Relative error of the worst equality row.
    */
   double equality;
   /**
-   * Relative size of a force of the wrong sign.
+   * Relative size of a force of the wrong sign, of the worst row.
    */
   double negative_force;
   /**
-   * Relative error of complementarity.
+   * Relative error of complementarity, of the worst row.
    */
   double complementarity;
   /**
-   * Relative gap between primal and dual energy.
+   * Relative gap between primal and dual energy, of the worst group of bodies.
    */
   double duality_gap;
   /**
@@ -783,8 +792,9 @@ typedef struct feti_info {
 } feti_info;
 
 /**
- * Verdict on an answer, by relative figures: each passes when it is at most `limit` plus the noise
- * of rounding.
+ * Verdict on an answer, by relative figures: each is `limit` times the ratio of what the worst
+ * body or row violates to what it is allowed, rounding included, and passes when it is at most
+ * `limit`.
  */
 typedef struct feti_certificate {
   /**
@@ -808,32 +818,33 @@ typedef struct feti_certificate {
    */
   double worst;
   /**
-   * Relative error of equilibrium `K u + B'lambda + H'mu = f`.
+   * Relative error of equilibrium `K u + B'lambda + H'mu = f`, worst body.
    */
   double equilibrium;
   /**
-   * Relative error of the balance `R'(f - B'lambda - H'mu) = 0` of each floating body.
+   * Relative error of the balance `R'(f - B'lambda - H'mu) = 0`, worst floating body.
    */
   double balance;
   /**
    * Relative penetration: positive part of `B u - c - C lambda`, C = diag(1/k) being the compliance
-   * of the rows.
+   * of the rows, worst row.
    */
   double penetration;
   /**
-   * Relative error of `H u = h + C mu`.
+   * Relative error of `H u = h + C mu`, worst row.
    */
   double equality;
   /**
-   * Relative size of a negative contact force.
+   * Relative size of a negative contact force, worst row.
    */
   double negative_force;
   /**
-   * Relative size of force times open gap `c + C lambda - B u`.
+   * Relative size of the force or of the open gap `c + C lambda - B u`, whichever is less, worst
+   * row.
    */
   double complementarity;
   /**
-   * Relative gap between primal and dual energy.
+   * Relative gap between primal and dual energy, worst group of bodies.
    */
   double duality_gap;
   /**
@@ -845,15 +856,15 @@ typedef struct feti_certificate {
    */
   int64_t balance_body;
   /**
-   * Row of the deepest penetration, from 0, -1: none.
+   * Row with the worst penetration, from 0, -1: none.
    */
   int64_t penetration_row;
   /**
-   * Equality row with the largest error, from 0, -1: none.
+   * Equality row with the worst error, from 0, -1: none.
    */
   int64_t equality_row;
   /**
-   * Row of the most negative force, from 0, -1: none.
+   * Row with the worst negative force, from 0, -1: none.
    */
   int64_t force_row;
   /**
@@ -961,10 +972,11 @@ int32_t feti_body_info(struct feti_problem *p, int64_t body, struct feti_body_fa
  * What the last solve, or the last setup that failed, has found out about the problem.
  *
  * After FETI_LOAD_NOT_HELD: the body that escapes, its motion and the margin. After
- * FETI_GAPS_CONTRADICT: the rows that contradict each other. After FETI_INDEFINITE,
- * FETI_NULL_SPACE and the like: the body and the unknown. With an answer: motions left
- * undetermined, redundant rows, bodies that no row touches. Kept until the next solve or the next
- * setup that fails; FETI_STATE before the first. After a failure nothing is written.
+ * FETI_GAPS_CONTRADICT: the rows that contradict each other. Of several groups of bodies without
+ * an answer the first is told of. After FETI_INDEFINITE, FETI_NULL_SPACE and the like: the body
+ * and the unknown. With an answer: motions left undetermined, redundant rows, bodies that no row
+ * touches. Kept until the next solve or the next setup that fails; FETI_STATE before the first.
+ * After a failure nothing is written.
  *
  * @param[in]     p   (scalar) the handle
  * @param[in,out] out (scalar) `struct_size` set, at least 16
@@ -1018,7 +1030,8 @@ int32_t feti_diagnosis_dependent(struct feti_problem *p, int64_t cap, int64_t *c
 /**
  * Lists the bodies that no row touched in the last solve, or in the last setup that failed.
  *
- * FETI_STATE before the first solve. After a failure nothing is written.
+ * Rows that never close, c = +infinity, do not count. FETI_STATE before the first solve. After a
+ * failure nothing is written.
  *
  * @param[in]  p     (scalar) the handle
  * @param[in]  cap   (scalar) bodies that `body` has room for
@@ -1564,9 +1577,10 @@ int32_t feti_on_progress(struct feti_problem *p, feti_progress_fn callback, void
  * Reads the displacement of a body.
  *
  * With FETI_ALL the displacement of all bodies: by the host's numbers where they have some,
- * entries of no unknown as they were; else one body after the other. FETI_STATE before a solve has
- * given an answer, and with FETI_ALL where some bodies have numbers of the host and others have
- * none. After a failure nothing is written.
+ * entries of no unknown as they were; else one body after the other; NaN on bodies whose group has
+ * no answer (feti_solve). FETI_STATE before a solve has given an answer, for a body whose group
+ * has none, and with FETI_ALL where some bodies have numbers of the host and others have none.
+ * After a failure nothing is written.
  *
  * @param[in]  p    (scalar) the handle
  * @param[in]  body (scalar) number of the body, from 0, or FETI_ALL
@@ -1582,9 +1596,10 @@ int32_t feti_displacement(struct feti_problem *p, int64_t body, int64_t n, doubl
  * Reads the force of the rows on a body, -B'lambda, -H'mu or both: `K u = f + r`.
  *
  * With FETI_ALL the forces on all bodies: by the host's numbers where they have some, entries of
- * no unknown as they were; else one body after the other. FETI_STATE before a solve has given an
- * answer, and with FETI_ALL where some bodies have numbers of the host and others have none. After
- * a failure nothing is written.
+ * no unknown as they were; else one body after the other; NaN where rows act on bodies whose group
+ * has no answer (feti_solve). FETI_STATE before a solve has given an answer, for a body whose
+ * group has none, and with FETI_ALL where some bodies have numbers of the host and others have
+ * none. After a failure nothing is written.
  *
  * @param[in]  p    (scalar) the handle
  * @param[in]  kind (scalar) FETI_INEQUALITY, FETI_EQUALITY, or 0 for both
@@ -1601,7 +1616,8 @@ int32_t feti_reaction(struct feti_problem *p, int32_t kind, int64_t body, int64_
  * Reads the amplitudes alpha of the null space in the displacement of a body, `u = K+ (f + r) + R
  * alpha`.
  *
- * FETI_STATE before a solve has given an answer. After a failure nothing is written.
+ * FETI_STATE before a solve has given an answer, and for a body whose group has none (feti_solve).
+ * After a failure nothing is written.
  *
  * @param[in]  p     (scalar) the handle
  * @param[in]  body  (scalar) number of the body, from 0
@@ -1615,6 +1631,7 @@ int32_t feti_amplitudes(struct feti_problem *p, int64_t body, int64_t r, double 
 /**
  * Reads the multipliers: lambda of `B u <= c`, or mu of `H u = h`.
  *
+ * NaN for rows on bodies whose group has no answer (feti_solve), 0 for rows that never close.
  * FETI_STATE before a solve has given an answer. After a failure nothing is written.
  *
  * @param[in]  p      (scalar) the handle
@@ -1630,7 +1647,8 @@ int32_t feti_multipliers(struct feti_problem *p, int32_t kind, int64_t rows, dou
  * Reads what is left of the gaps, c - B u; of compliant rows c + lambda/k - B u, 0 where they
  * carry a force.
  *
- * FETI_STATE before a solve has given an answer. After a failure nothing is written.
+ * NaN for rows on bodies whose group has no answer (feti_solve), +infinity for rows that never
+ * close. FETI_STATE before a solve has given an answer. After a failure nothing is written.
  *
  * @param[in]  p     (scalar) the handle
  * @param[in]  rows  (scalar) number of inequality rows
@@ -1641,13 +1659,15 @@ int32_t feti_multipliers(struct feti_problem *p, int32_t kind, int64_t rows, dou
 int32_t feti_gaps(struct feti_problem *p, int64_t rows, double *slack);
 
 /**
- * Reads the state of the inequality rows.
+ * Reads the state of the inequality rows: what the certificate takes for zero at a row decides.
  *
- * FETI_STATE before a solve has given an answer. After a failure nothing is written.
+ * FETI_ROW_CLOSED with a force; FETI_ROW_OPEN with a gap and no force, and for rows that never
+ * close; FETI_ROW_WEAK with neither; FETI_ROW_UNKNOWN for rows on bodies whose group has no answer
+ * (feti_solve). FETI_STATE before a solve has given an answer. After a failure nothing is written.
  *
  * @param[in]  p     (scalar) the handle
  * @param[in]  rows  (scalar) number of inequality rows
- * @param[out] state (rows) FETI_ROW_OPEN, FETI_ROW_CLOSED or FETI_ROW_WEAK
+ * @param[out] state (rows) FETI_ROW_OPEN, FETI_ROW_CLOSED, FETI_ROW_WEAK or FETI_ROW_UNKNOWN
  *
  * Safety: The array has the given shape.
  */
@@ -1672,8 +1692,10 @@ int32_t feti_counts(struct feti_problem *p, int64_t *bodies, int64_t *dofs, int6
  * Adds rows of `B u <= c` or `H u = h`, with 32-bit indices.
  *
  * The rows are copied and numbered behind those of the same kind that are there. A pair of body
- * and unknown that comes twice in a row is summed. FETI_STATE where `body` is NULL and some bodies
- * have numbers of the host, others have none. After a failure nothing is added.
+ * and unknown that comes twice in a row is summed. A contact row with c = +infinity never closes:
+ * it carries no force and joins no bodies, as if it were not there, and keeps its number;
+ * feti_rows_rhs turns it on. FETI_STATE where `body` is NULL and some bodies have numbers of the
+ * host, others have none. After a failure nothing is added.
  *
  * @param[in]  p       (scalar) the handle
  * @param[in]  kind    (scalar) FETI_INEQUALITY or FETI_EQUALITY
@@ -1686,7 +1708,7 @@ int32_t feti_counts(struct feti_problem *p, int64_t *bodies, int64_t *dofs, int6
  * @param[in]  dof     (row_ptr[rows] - base) unknown of each entry, counted from `base`
  * @param[in]  val     (row_ptr[rows] - base) entries of B or H
  * @param[in]  base    (scalar) 0 or 1: what `row_ptr`, `body` and `dof` count from
- * @param[in]  rhs     (rows) c or h, length; NULL: zeros
+ * @param[in]  rhs     (rows) c or h, length; c may be +infinity; NULL: zeros
  * @param[out] first   (scalar) number of the first row added, from 0; may be NULL
  *
  * Safety: The arrays have the given shapes.
@@ -1706,8 +1728,10 @@ int32_t feti_rows_add_i32(struct feti_problem *p,
  * Adds rows of `B u <= c` or `H u = h`, with 64-bit indices.
  *
  * The rows are copied and numbered behind those of the same kind that are there. A pair of body
- * and unknown that comes twice in a row is summed. FETI_STATE where `body` is NULL and some bodies
- * have numbers of the host, others have none. After a failure nothing is added.
+ * and unknown that comes twice in a row is summed. A contact row with c = +infinity never closes:
+ * it carries no force and joins no bodies, as if it were not there, and keeps its number;
+ * feti_rows_rhs turns it on. FETI_STATE where `body` is NULL and some bodies have numbers of the
+ * host, others have none. After a failure nothing is added.
  *
  * @param[in]  p       (scalar) the handle
  * @param[in]  kind    (scalar) FETI_INEQUALITY or FETI_EQUALITY
@@ -1720,7 +1744,7 @@ int32_t feti_rows_add_i32(struct feti_problem *p,
  * @param[in]  dof     (row_ptr[rows] - base) unknown of each entry, counted from `base`
  * @param[in]  val     (row_ptr[rows] - base) entries of B or H
  * @param[in]  base    (scalar) 0 or 1: what `row_ptr`, `body` and `dof` count from
- * @param[in]  rhs     (rows) c or h, length; NULL: zeros
+ * @param[in]  rhs     (rows) c or h, length; c may be +infinity; NULL: zeros
  * @param[out] first   (scalar) number of the first row added, from 0; may be NULL
  *
  * Safety: The arrays have the given shapes.
@@ -1739,13 +1763,15 @@ int32_t feti_rows_add_i64(struct feti_problem *p,
 /**
  * Replaces right-hand sides: c of `B u <= c` or h of `H u = h`.
  *
- * The numbers are copied. After a failure all right-hand sides are as they were.
+ * c = +infinity turns a contact row off, a finite c turns it on again: that drops the last answer,
+ * the factors of the bodies stay. The numbers are copied. After a failure all right-hand sides are
+ * as they were.
  *
  * @param[in] p     (scalar) the handle
  * @param[in] kind  (scalar) FETI_INEQUALITY or FETI_EQUALITY
  * @param[in] first (scalar) first row to change, from 0
  * @param[in] rows  (scalar) number of rows to change
- * @param[in] rhs   (rows) c or h, length
+ * @param[in] rhs   (rows) c or h, length; c may be +infinity
  *
  * Safety: The array has the given shape.
  */
@@ -1810,14 +1836,25 @@ int32_t feti_setup(struct feti_problem *p);
  * the like; there is one when the status is not negative, unless the call was cancelled before the
  * first step. `info` is written in any case, with NaN for figures that a failure left unknown.
  * After a failure all that was given is kept and can be corrected, except after FETI_INTERNAL.
+ * Where rows and loads leave motions open (`undetermined`), the answer is the one nearest to rest
+ * that keeps the rows: the least sum of `K_ii u_i^2`.
+ *
+ * Groups of bodies that no row with a finite gap joins are problems of their own, each solved to
+ * its own accuracy and several at a time where there are threads. The worst status of all groups
+ * is returned; counts and the energy are sums, every figure of the certificate is that of the
+ * worst group. Where one group has no answer because its load is not held or its rows contradict
+ * each other, the status, feti_last_error and feti_diagnosis are those of the first such group,
+ * and the other groups keep their answers: `info` has what they came to. What is read for one body
+ * of a group without an answer is FETI_STATE; what is read for all bodies or rows at once is NaN
+ * there, in feti_active FETI_ROW_UNKNOWN.
  *
  * A status above 0 comes with an answer. FETI_ITERATIONS at the limit of option max_steps;
  * FETI_TIME at the limit of option time_limit; FETI_CANCELLED where the host has cancelled;
  * FETI_STALLED where steps no longer reduce the error; FETI_INACCURATE where the certificate does
  * not pass; FETI_MARGINAL where a part of the load, below 1e-7 of it, is not held. A status below
- * 0 comes without one. FETI_LOAD_NOT_HELD where no contact force balances the load;
- * FETI_GAPS_CONTRADICT where rows contradict each other; feti_diagnosis has the proof of either.
- * It runs feti_setup when it is due, and fails as that does.
+ * 0 comes without one for the group of bodies it is about. FETI_LOAD_NOT_HELD where no contact
+ * force balances the load; FETI_GAPS_CONTRADICT where rows contradict each other; feti_diagnosis
+ * has the proof of either. It runs feti_setup when it is due, and fails as that does.
  *
  * @param[in]     p    (scalar) the handle
  * @param[in,out] info (scalar) `struct_size` set, at least 16; may be NULL
@@ -1829,8 +1866,10 @@ int32_t feti_solve(struct feti_problem *p, struct feti_info *info);
 /**
  * Verifies an answer against the problem as it is given now: any answer, also another code's.
  *
- * Keeps nothing of the answer: that of the last solve stays. Runs feti_setup when it is due, for
- * the null spaces. After a failure nothing is written.
+ * Every figure is that of the worst body or the worst row, measured against its own forces and
+ * deformation, and is named with it. Rows that never close, c = +infinity, are left out: what is
+ * given for their lambda counts as 0. Keeps nothing of the answer: that of the last solve stays.
+ * Runs feti_setup when it is due, for the null spaces. After a failure nothing is written.
  *
  * @param[in]     p      (scalar) the handle
  * @param[in]     n      (scalar) unknowns of all bodies

@@ -221,7 +221,7 @@ recursive subroutine ftbkpl(ip, ibody, n, nrhs, x, ldx, y, ldy, ierr)
 end subroutine
 
 !> A body as it is given, and what the last setup has made of it: ifact(ni), rfact(nr), positions FTBUNK to FTBEXP, FTBENT to
-!> FTBGAP; -1 or NaN: not there yet.
+!> FTBERR; -1 or NaN: not there yet.
 recursive subroutine ftbinf(ip, ibody, ni, ifact, nr, rfact, ierr)
   use feti_contact_f77_base
   implicit none
@@ -237,5 +237,5 @@ recursive subroutine ftbinf(ip, ibody, ni, ifact, nr, rfact, ierr)
   call give([found%unknowns, found%components, found%origin, found%null_space, found%shared_with + 1, &
     found%explicit_operator], ni, ifact)
   call give_reals([real(found%entries, c_double), real(found%matrix_bytes, c_double), real(found%factor_entries, c_double), &
-    real(found%factor_bytes, c_double), real(found%operator_bytes, c_double), found%gap], nr, rfact)
+    real(found%factor_bytes, c_double), real(found%operator_bytes, c_double), found%gap, found%force_error], nr, rfact)
 end subroutine

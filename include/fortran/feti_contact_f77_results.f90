@@ -129,7 +129,7 @@ recursive subroutine ftgaps(ip, m, gap, ierr)
   ierr = told(feti_gaps(handle(ip), wide(m), gap))
 end subroutine
 
-!> State of the m contact rows: istate(m) = FTOPEN, FTCLOS or FTWEAK.
+!> State of the m contact rows: istate(m) = FTOPEN, FTCLOS, FTWEAK or FTUNKN (a group of bodies without an answer).
 recursive subroutine ftactv(ip, m, istate, ierr)
   use feti_contact_f77_base
   implicit none

@@ -45,7 +45,8 @@ module feti_contact_results
   !>
   !> call feti_displacement(p, body, u): u(n) of a body.
   !> call feti_displacement(p, u): of all bodies, u(number) by the numbers of feti_body_numbering, entries of no unknown as
-  !>   they were; without numbers one body after the other.
+  !>   they were; without numbers one body after the other; NaN on bodies whose group has no answer, which
+  !>   are FETI_STATE when asked for one by one.
   interface displacement
     module procedure displacement_one, displacement_all
   end interface
@@ -58,8 +59,8 @@ module feti_contact_results
     module procedure reaction_one, reaction_all
   end interface
 
-  !> State of each contact row, int32 or int64: FETI_ROW_OPEN, FETI_ROW_CLOSED or FETI_ROW_WEAK (closed without a clear
-  !> force).
+  !> State of each contact row, int32 or int64: FETI_ROW_OPEN, FETI_ROW_CLOSED, FETI_ROW_WEAK (closed without a clear force)
+  !> or FETI_ROW_UNKNOWN (the bodies it touches are in a group that has no answer).
   interface active
     module procedure active_int32, active_int64
   end interface

@@ -40,7 +40,7 @@ pub const FETI_ROW_OPEN: i32 = 0;
 pub const FETI_ROW_CLOSED: i32 = 1;
 /// State of a row: closed with a force that is zero to rounding, or with a force without a clear sign.
 pub const FETI_ROW_WEAK: i32 = 2;
-/// The bodies of the row are in a group that has no answer.
+/// State of a row: unknown, the bodies it touches are in a group that has no answer.
 pub const FETI_ROW_UNKNOWN: i32 = 3;
 
 /// Phase of a call that feti_on_progress tells of: a part of the setup is done.

@@ -13,7 +13,7 @@ use crate::solver::{Findings, RowKind};
 /// What the last solve, or the last setup that failed, has found out about the problem.
 ///
 /// After FETI_LOAD_NOT_HELD: the body that escapes, its motion and the margin. After FETI_GAPS_CONTRADICT: the rows that
-/// contradict each other. After FETI_INDEFINITE, FETI_NULL_SPACE and the like: the body and the unknown. With an answer:
+/// contradict each other. Of several groups of bodies without an answer the first is told of. After FETI_INDEFINITE, FETI_NULL_SPACE and the like: the body and the unknown. With an answer:
 /// motions left undetermined, redundant rows, bodies that no row touches. Kept until the next solve or the next setup that
 /// fails; FETI_STATE before the first. After a failure nothing is written.
 ///
@@ -117,7 +117,7 @@ pub unsafe extern "C" fn feti_diagnosis_dependent(
 
 /// Lists the bodies that no row touched in the last solve, or in the last setup that failed.
 ///
-/// FETI_STATE before the first solve. After a failure nothing is written.
+/// Rows that never close, c = +infinity, do not count. FETI_STATE before the first solve. After a failure nothing is written.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|

@@ -11,8 +11,9 @@ use crate::solver::RowState;
 /// Reads the displacement of a body.
 ///
 /// With FETI_ALL the displacement of all bodies: by the host's numbers where they have some, entries of no unknown as they
-/// were; else one body after the other. FETI_STATE before a solve has given an answer, and with FETI_ALL where some bodies
-/// have numbers of the host and others have none. After a failure nothing is written.
+/// were; else one body after the other; NaN on bodies whose group has no answer (feti_solve). FETI_STATE before a solve has
+/// given an answer, for a body whose group has none, and with FETI_ALL where some bodies have numbers of the host and
+/// others have none. After a failure nothing is written.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|
@@ -41,8 +42,9 @@ pub unsafe extern "C" fn feti_displacement(p: *mut feti_problem, body: i64, n: i
 /// Reads the force of the rows on a body, -B'lambda, -H'mu or both: `K u = f + r`.
 ///
 /// With FETI_ALL the forces on all bodies: by the host's numbers where they have some, entries of no unknown as they were;
-/// else one body after the other. FETI_STATE before a solve has given an answer, and with FETI_ALL where some bodies have
-/// numbers of the host and others have none. After a failure nothing is written.
+/// else one body after the other; NaN where rows act on bodies whose group has no answer (feti_solve). FETI_STATE before a
+/// solve has given an answer, for a body whose group has none, and with FETI_ALL where some bodies have numbers of the host
+/// and others have none. After a failure nothing is written.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|
@@ -81,7 +83,8 @@ pub unsafe extern "C" fn feti_reaction(
 
 /// Reads the amplitudes alpha of the null space in the displacement of a body, `u = K+ (f + r) + R alpha`.
 ///
-/// FETI_STATE before a solve has given an answer. After a failure nothing is written.
+/// FETI_STATE before a solve has given an answer, and for a body whose group has none (feti_solve). After a failure nothing
+/// is written.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|
@@ -103,7 +106,8 @@ pub unsafe extern "C" fn feti_amplitudes(p: *mut feti_problem, body: i64, r: i64
 
 /// Reads the multipliers: lambda of `B u <= c`, or mu of `H u = h`.
 ///
-/// FETI_STATE before a solve has given an answer. After a failure nothing is written.
+/// NaN for rows on bodies whose group has no answer (feti_solve), 0 for rows that never close. FETI_STATE before a solve has
+/// given an answer. After a failure nothing is written.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|
@@ -130,7 +134,8 @@ pub unsafe extern "C" fn feti_multipliers(
 
 /// Reads what is left of the gaps, c - B u; of compliant rows c + lambda/k - B u, 0 where they carry a force.
 ///
-/// FETI_STATE before a solve has given an answer. After a failure nothing is written.
+/// NaN for rows on bodies whose group has no answer (feti_solve), +infinity for rows that never close. FETI_STATE before a
+/// solve has given an answer. After a failure nothing is written.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|
@@ -148,9 +153,11 @@ pub unsafe extern "C" fn feti_gaps(p: *mut feti_problem, rows: i64, slack: *mut 
     })
 }
 
-/// Reads the state of the inequality rows.
+/// Reads the state of the inequality rows: what the certificate takes for zero at a row decides.
 ///
-/// FETI_STATE before a solve has given an answer. After a failure nothing is written.
+/// FETI_ROW_CLOSED with a force; FETI_ROW_OPEN with a gap and no force, and for rows that never close; FETI_ROW_WEAK with
+/// neither; FETI_ROW_UNKNOWN for rows on bodies whose group has no answer (feti_solve). FETI_STATE before a solve has given
+/// an answer. After a failure nothing is written.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|

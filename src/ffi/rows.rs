@@ -10,8 +10,9 @@ use crate::solver::{RowKind, RowsInput};
 /// Adds rows of `B u <= c` or `H u = h`, with 32-bit indices.
 ///
 /// The rows are copied and numbered behind those of the same kind that are there. A pair of body and unknown that comes
-/// twice in a row is summed. FETI_STATE where `body` is NULL and some bodies have numbers of the host, others have none.
-/// After a failure nothing is added.
+/// twice in a row is summed. A contact row with c = +infinity never closes: it carries no force and joins no bodies, as if
+/// it were not there, and keeps its number; feti_rows_rhs turns it on. FETI_STATE where `body` is NULL and some bodies have
+/// numbers of the host, others have none. After a failure nothing is added.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|
@@ -23,7 +24,7 @@ use crate::solver::{RowKind, RowsInput};
 /// | `dof` | in | `row_ptr[rows] - base` | unknown of each entry, counted from `base` |
 /// | `val` | in | `row_ptr[rows] - base` | entries of B or H |
 /// | `base` | in | scalar | 0 or 1: what `row_ptr`, `body` and `dof` count from |
-/// | `rhs` | in | rows | c or h, length; NULL: zeros |
+/// | `rhs` | in | rows | c or h, length; c may be +infinity; NULL: zeros |
 /// | `first` | out | scalar | number of the first row added, from 0; may be NULL |
 ///
 /// # Safety
@@ -50,8 +51,9 @@ pub unsafe extern "C" fn feti_rows_add_i32(
 /// Adds rows of `B u <= c` or `H u = h`, with 64-bit indices.
 ///
 /// The rows are copied and numbered behind those of the same kind that are there. A pair of body and unknown that comes
-/// twice in a row is summed. FETI_STATE where `body` is NULL and some bodies have numbers of the host, others have none.
-/// After a failure nothing is added.
+/// twice in a row is summed. A contact row with c = +infinity never closes: it carries no force and joins no bodies, as if
+/// it were not there, and keeps its number; feti_rows_rhs turns it on. FETI_STATE where `body` is NULL and some bodies have
+/// numbers of the host, others have none. After a failure nothing is added.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|
@@ -63,7 +65,7 @@ pub unsafe extern "C" fn feti_rows_add_i32(
 /// | `dof` | in | `row_ptr[rows] - base` | unknown of each entry, counted from `base` |
 /// | `val` | in | `row_ptr[rows] - base` | entries of B or H |
 /// | `base` | in | scalar | 0 or 1: what `row_ptr`, `body` and `dof` count from |
-/// | `rhs` | in | rows | c or h, length; NULL: zeros |
+/// | `rhs` | in | rows | c or h, length; c may be +infinity; NULL: zeros |
 /// | `first` | out | scalar | number of the first row added, from 0; may be NULL |
 ///
 /// # Safety
@@ -133,7 +135,8 @@ impl<I: Index> Rows<I> {
 
 /// Replaces right-hand sides: c of `B u <= c` or h of `H u = h`.
 ///
-/// The numbers are copied. After a failure all right-hand sides are as they were.
+/// c = +infinity turns a contact row off, a finite c turns it on again: that drops the last answer, the factors of the bodies
+/// stay. The numbers are copied. After a failure all right-hand sides are as they were.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|
@@ -141,7 +144,7 @@ impl<I: Index> Rows<I> {
 /// | `kind` | in | scalar | FETI_INEQUALITY or FETI_EQUALITY |
 /// | `first` | in | scalar | first row to change, from 0 |
 /// | `rows` | in | scalar | number of rows to change |
-/// | `rhs` | in | rows | c or h, length |
+/// | `rhs` | in | rows | c or h, length; c may be +infinity |
 ///
 /// # Safety
 /// The array has the given shape.

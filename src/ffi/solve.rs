@@ -35,19 +35,22 @@ pub extern "C" fn feti_setup(p: *mut feti_problem) -> i32 {
 /// The answer is kept until the next solve and read with feti_displacement, feti_multipliers and the like; there is one
 /// when the status is not negative, unless the call was cancelled before the first step. `info` is written in any case,
 /// with NaN for figures that a failure left unknown. After a failure all that was given is kept and can be corrected,
-/// except after FETI_INTERNAL.
+/// except after FETI_INTERNAL. Where rows and loads leave motions open (`undetermined`), the answer is the one nearest to
+/// rest that keeps the rows: the least sum of `K_ii u_i^2`.
 ///
-/// Groups of bodies that no row with a finite gap joins are problems of their own, each solved to its own accuracy and as
-/// many at a time as there are threads. The status is that of the group that ended worst; counts are sums. Where the load
-/// of one group is not held, or its rows contradict each other, the others keep their answers: feti_displacement is
-/// FETI_STATE for its bodies alone, and its entries are NaN (FETI_ROW_UNKNOWN) in what is read for all at once.
+/// Groups of bodies that no row with a finite gap joins are problems of their own, each solved to its own accuracy and
+/// several at a time where there are threads. The worst status of all groups is returned; counts and the energy are sums,
+/// every figure of the certificate is that of the worst group. Where one group has no answer because its load is not held
+/// or its rows contradict each other, the status, feti_last_error and feti_diagnosis are those of the first such group,
+/// and the other groups keep their answers: `info` has what they came to. What is read for one body of a group without an
+/// answer is FETI_STATE; what is read for all bodies or rows at once is NaN there, in feti_active FETI_ROW_UNKNOWN.
 ///
 /// A status above 0 comes with an answer. FETI_ITERATIONS at the limit of option max_steps; FETI_TIME at the limit of
 /// option time_limit; FETI_CANCELLED where the host has cancelled; FETI_STALLED where steps no longer reduce the error;
 /// FETI_INACCURATE where the certificate does not pass; FETI_MARGINAL where a part of the load, below 1e-7 of it, is not
-/// held. A status below 0 comes without one. FETI_LOAD_NOT_HELD where no contact force balances the load;
-/// FETI_GAPS_CONTRADICT where rows contradict each other; feti_diagnosis has the proof of either. It runs feti_setup
-/// when it is due, and fails as that does.
+/// held. A status below 0 comes without one for the group of bodies it is about. FETI_LOAD_NOT_HELD where no contact force
+/// balances the load; FETI_GAPS_CONTRADICT where rows contradict each other; feti_diagnosis has the proof of either. It
+/// runs feti_setup when it is due, and fails as that does.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|
@@ -84,8 +87,9 @@ pub unsafe extern "C" fn feti_solve(p: *mut feti_problem, info: *mut feti_info) 
 
 /// Verifies an answer against the problem as it is given now: any answer, also another code's.
 ///
-/// Keeps nothing of the answer: that of the last solve stays. Runs feti_setup when it is due, for the null spaces. After a
-/// failure nothing is written.
+/// Every figure is that of the worst body or the worst row, measured against its own forces and deformation, and is named
+/// with it. Rows that never close, c = +infinity, are left out: what is given for their lambda counts as 0. Keeps nothing of
+/// the answer: that of the last solve stays. Runs feti_setup when it is due, for the null spaces. After a failure nothing is written.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|

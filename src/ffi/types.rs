@@ -65,13 +65,14 @@ pub struct feti_option {
     pub default_str: *const c_char,
 }
 
-/// How a solve went. Counts of a call that failed early are zero, figures NaN.
+/// How a solve went. Counts of a call that failed early are zero, figures NaN. Where some groups of bodies have an answer
+/// and others have none, counts of work, energy and figures are those of the groups that have one.
 #[repr(C)]
 #[derive(Debug, Clone, Copy)]
 pub struct feti_info {
     /// Set by the caller: size of the struct in bytes.
     pub struct_size: i64,
-    /// What feti_solve returned.
+    /// What feti_solve returned: the worst of all groups of bodies.
     pub status: i32,
     /// Zero.
     pub reserved: i32,
@@ -87,7 +88,7 @@ pub struct feti_info {
     pub floating_modes: i64,
     /// Inequality rows that are closed in the answer.
     pub active: i64,
-    /// Motions that neither loads nor rows determine.
+    /// Motions that neither loads nor rows determine: the answer has the least sum of `K_ii u_i^2`.
     pub undetermined: i64,
     /// Steps of the active-set method.
     pub steps: i64,
@@ -105,21 +106,21 @@ pub struct feti_info {
     pub factorisations: i64,
     /// Symbolic analyses since the problem was created; bodies with one pattern share one.
     pub analyses: i64,
-    /// Largest entry of the certificate over what it is allowed: <= 1 passes.
+    /// Largest entry of the certificate over what it is allowed, over all bodies and rows that have an answer: <= 1 passes.
     pub worst: f64,
-    /// Relative error of equilibrium, as in feti_certificate.
+    /// Relative error of equilibrium, as in feti_certificate: of the worst body.
     pub equilibrium: f64,
-    /// Relative error of the balance of each floating body.
+    /// Relative error of the balance, of the worst floating body.
     pub balance: f64,
-    /// Relative penetration.
+    /// Relative penetration, of the worst row.
     pub penetration: f64,
-    /// Relative error of the equality rows.
+    /// Relative error of the worst equality row.
     pub equality: f64,
-    /// Relative size of a force of the wrong sign.
+    /// Relative size of a force of the wrong sign, of the worst row.
     pub negative_force: f64,
-    /// Relative error of complementarity.
+    /// Relative error of complementarity, of the worst row.
     pub complementarity: f64,
-    /// Relative gap between primal and dual energy.
+    /// Relative gap between primal and dual energy, of the worst group of bodies.
     pub duality_gap: f64,
     /// Energy 1/2 u'Ku - f'u and that of the springs of compliant rows, 1/2 lambda'C lambda + 1/2 mu'C mu, force times
     /// length.
@@ -179,7 +180,8 @@ pub struct feti_body_facts {
     pub operator_bytes: i64,
     /// Of a null space that was found: stiffness of the softest other motion over that of the stiffest in it; else NaN.
     pub gap: f64,
-    /// Estimated relative error of the forces on the body in the last answer; NaN without one.
+    /// Estimated relative error of the forces on the body in the last answer; NaN without one, also of its group of bodies
+    /// alone.
     pub force_error: f64,
 }
 
@@ -197,7 +199,8 @@ pub struct feti_phase {
     pub name: *const c_char,
 }
 
-/// Verdict on an answer, by relative figures: each passes when it is at most `limit` plus the noise of rounding.
+/// Verdict on an answer, by relative figures: each is `limit` times the ratio of what the worst body or row violates to what
+/// it is allowed, rounding included, and passes when it is at most `limit`.
 #[repr(C)]
 #[derive(Debug, Clone, Copy)]
 pub struct feti_certificate {
@@ -211,29 +214,29 @@ pub struct feti_certificate {
     pub limit: f64,
     /// Largest entry over what it is allowed: <= 1 passes.
     pub worst: f64,
-    /// Relative error of equilibrium `K u + B'lambda + H'mu = f`.
+    /// Relative error of equilibrium `K u + B'lambda + H'mu = f`, worst body.
     pub equilibrium: f64,
-    /// Relative error of the balance `R'(f - B'lambda - H'mu) = 0` of each floating body.
+    /// Relative error of the balance `R'(f - B'lambda - H'mu) = 0`, worst floating body.
     pub balance: f64,
-    /// Relative penetration: positive part of `B u - c - C lambda`, C = diag(1/k) being the compliance of the rows.
+    /// Relative penetration: positive part of `B u - c - C lambda`, C = diag(1/k) being the compliance of the rows, worst row.
     pub penetration: f64,
-    /// Relative error of `H u = h + C mu`.
+    /// Relative error of `H u = h + C mu`, worst row.
     pub equality: f64,
-    /// Relative size of a negative contact force.
+    /// Relative size of a negative contact force, worst row.
     pub negative_force: f64,
-    /// Relative size of force times open gap `c + C lambda - B u`.
+    /// Relative size of the force or of the open gap `c + C lambda - B u`, whichever is less, worst row.
     pub complementarity: f64,
-    /// Relative gap between primal and dual energy.
+    /// Relative gap between primal and dual energy, worst group of bodies.
     pub duality_gap: f64,
     /// Body of the worst equilibrium, from 0, -1: none.
     pub equilibrium_body: i64,
     /// Body of the worst balance, from 0, -1: none.
     pub balance_body: i64,
-    /// Row of the deepest penetration, from 0, -1: none.
+    /// Row with the worst penetration, from 0, -1: none.
     pub penetration_row: i64,
-    /// Equality row with the largest error, from 0, -1: none.
+    /// Equality row with the worst error, from 0, -1: none.
     pub equality_row: i64,
-    /// Row of the most negative force, from 0, -1: none.
+    /// Row with the worst negative force, from 0, -1: none.
     pub force_row: i64,
     /// Row with the worst complementarity, from 0, -1: none.
     pub complementarity_row: i64,

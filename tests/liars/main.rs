@@ -1,9 +1,11 @@
 //! Tests that try to lie: from the right answers of varied problems wrong ones are made, and `check` must refuse each of
 //! them and accept every right one. LIARS asks for another number of problems, LIARS_SEED for another first seed.
 
+mod figures;
 #[path = "../support/hand_over.rs"]
 mod hand_over;
 mod lies;
+mod limits;
 
 use std::collections::BTreeMap;
 use std::fmt::Write;

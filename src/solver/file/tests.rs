@@ -102,6 +102,36 @@ fn all_that_is_registered_comes_back_bit_by_bit() {
     assert_eq!(back.write_bytes().unwrap(), bytes, "written again it is the same file");
 }
 
+/// A gap of +infinity is a row that never closes; every other number that is not finite is refused.
+#[test]
+fn rows_that_never_close_come_back_and_other_gaps_without_end_are_refused() {
+    let mut problem = small();
+    problem.set_load(1, &[0.0, 0.0]).unwrap();
+    problem.set_rhs(RowKind::Inequality, 0, &[f64::INFINITY]).unwrap();
+    let bytes = problem.write_bytes().unwrap();
+    let mut back = read(&bytes).unwrap();
+    assert_eq!(back.rows(RowKind::Inequality).rhs, [f64::INFINITY]);
+    assert_eq!(back.write_bytes().unwrap(), bytes, "written again it is the same file");
+    assert_eq!(back.solve().unwrap().outcome, Outcome::Solved);
+    assert_eq!(back.multipliers(RowKind::Inequality).unwrap(), [0.0]);
+    back.set_rhs(RowKind::Inequality, 0, &[1.0]).unwrap();
+    back.set_load(1, &[0.0, -6.0]).unwrap();
+    assert_eq!(back.solve().unwrap().outcome, Outcome::Solved);
+    assert!((back.multipliers(RowKind::Inequality).unwrap()[0] - 6.0).abs() < 1e-9);
+    let body = of_section(b"BODY", 0, &numbers(&[1]));
+    let row = |kind: u64, rhs: f64| {
+        let payload = numbers(&[kind, 1, 1, 0, 1, 0, 1.0_f64.to_bits(), rhs.to_bits(), 0]);
+        of_sections(FORMAT, &[body.clone(), of_section(b"ROWS", 0, &payload)])
+    };
+    assert_eq!(read(&row(1, f64::INFINITY)).unwrap().counts().rows, 1);
+    for rhs in [f64::NAN, f64::NEG_INFINITY] {
+        assert!(refused(&row(1, rhs)).what.contains("neither a finite number nor +infinity"));
+    }
+    for rhs in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+        assert!(refused(&row(2, rhs)).what.contains("not a finite number"));
+    }
+}
+
 #[test]
 fn an_empty_and_an_incomplete_problem_come_back() {
     let mut problem = Problem::new();

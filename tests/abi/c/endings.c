@@ -85,7 +85,8 @@ static void a_small_part_of_the_load_is_not_held(double force, int32_t wanted)
         OK(feti_multipliers(problem, FETI_INEQUALITY, 2, lambda));
         CHECK(fabs(lambda[0] - 6.0) <= 1e-6 && fabs(lambda[1]) <= 1e-6, "forces %g %g", lambda[0], lambda[1]);
     } else {
-        EXPECT(FETI_STATE, feti_multipliers(problem, FETI_INEQUALITY, 2, lambda));
+        OK(feti_multipliers(problem, FETI_INEQUALITY, 2, lambda));
+        CHECK(fabs(lambda[0] - 6.0) <= 1e-6 && isnan(lambda[1]), "forces %g %g", lambda[0], lambda[1]);
     }
     OK(feti_problem_destroy(&problem));
 }

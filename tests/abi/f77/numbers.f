@@ -28,6 +28,8 @@ C     the host: 5 4 of the chain, 3 2 of the bar, 1 of the point.
       CALL HOLDS(IF(FTBUNK) .EQ. 2 .AND. IF(FTBPRT) .EQ. 1 .AND.
      &  IF(FTBORI) .EQ. FTOREX .AND. IF(FTBNSP) .EQ. 1, 'FTBINF')
       CALL SAME(RF(FTBENT), 3D0, 'entries of the bar')
+      CALL HOLDS(RF(FTBERR) .GE. 0D0 .AND. RF(FTBERR) .LT. 1D-9,
+     &  'error of the forces on the bar')
       DO 10 I = 1, 2
         CALL FTBNUM(IP, I, 2, INUM(2 * I - 1), IERR)
    10   CALL OK(IERR, 'FTBNUM')

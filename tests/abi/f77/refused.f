@@ -69,7 +69,7 @@ C     Rows: with bodies and without the positions differ.
       CALL NOT(IERR, FTEARG - 5, 'row 1')
       ICOL(1) = 1
       C(1) = 1D300
-      C(1) = C(1) * C(1)
+      C(1) = -C(1) * C(1)
       CALL FTROWS(IP, FTKINE, 1, IPTR, IBOD, ICOL, A, C, N, IERR)
       CALL NOT(IERR, FTEARG - 8, ' ')
       CALL FTROWC(IP, FTKINE, 1, IPTR, ICOL, A, C, N, IERR)

@@ -43,6 +43,8 @@ pub enum Role {
     Path,
     /// Doubles, all finite.
     Doubles,
+    /// Doubles, finite or +infinity.
+    Gaps,
     /// Doubles, finite and not negative.
     NotNegative,
     /// Positions of a sparse matrix.
@@ -95,7 +97,7 @@ const ENTRIES: &[Entry] = &[
     ("number", Role::Distinct, "2, 3"),
     ("path", Role::Path, "FILE_OF_CALLS"),
     ("r", Role::Size, "1"),
-    ("rhs", Role::Doubles, "1.0, 5.0"),
+    ("rhs", Role::Gaps, "1.0, 5.0"),
     ("row_ptr", Role::Positions, "0, 1, 3"),
     ("rows", Role::Size, "2"),
     ("status", Role::Any, "FETI_STATE"),
@@ -128,7 +130,7 @@ const ENTRIES: &[Entry] = &[
     ("feti_reaction.body", Role::BodyOrAll, "1"),
     ("feti_rows_add.body", Role::Indices, "0, 1"),
     ("feti_rows_add.dof", Role::Indices, "1, 0"),
-    ("feti_rows_add.rhs", Role::Doubles, "1.0"),
+    ("feti_rows_add.rhs", Role::Gaps, "1.0"),
     ("feti_rows_add.rows", Role::Free, "1"),
     ("feti_rows_add.row_ptr", Role::Positions, "0, 2"),
     ("feti_rows_add.val", Role::Doubles, "1.0, -1.0"),

@@ -37,6 +37,7 @@ pub fn of_contents(role: Role, right: &str) -> Vec<String> {
     let at_last = |value: &str| format!("@_[{last}] = {value}");
     match role {
         Role::Doubles => vec!["@_[0] = NAN".to_string(), at_last("INFINITY"), at_last("-INFINITY")],
+        Role::Gaps => vec!["@_[0] = NAN".to_string(), at_last("-INFINITY")],
         Role::NotNegative => vec!["@_[0] = NAN".to_string(), at_last("INFINITY"), at_last("-1e-300")],
         Role::Positions => vec!["@_[0] = 1".to_string(), "@_[0] = -1".to_string(), at_last("-1")],
         Role::Indices => vec!["@_[0] = -1".to_string(), at_last("99")],
