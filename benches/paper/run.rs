@@ -52,7 +52,8 @@ pub fn as_in_paper(case: &Case, problem: &Problem) -> feti_contact::error::Resul
     given.set_f64("paper_rho_0", problem.rho_0)?;
     given.set_f64("paper_m", problem.m)?;
     given.set_f64("tolerance", problem.tolerance)?;
-    given.set_f64("certificate_tolerance", 1e-2)?;
+    // every row for itself: the stop of the paper is one norm over all
+    given.set_f64("certificate_tolerance", 1e-1)?;
     Ok(given)
 }
 

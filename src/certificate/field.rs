@@ -109,7 +109,11 @@ fn own(field: &Field) -> Vec<f64> {
     own
 }
 
-/// `sum_k |K_jk| delta_k / K_jj`, for a single unknown may be at rest by symmetry; of grounded unknowns their own.
+/// What neighbours count for beside an unknown itself: in solids `sum_k |K_jk|` is about 8 K_jj.
+const NEIGHBOURS: f64 = 0.125;
+
+/// `max(delta_j, 1/8 sum_k |K_jk| delta_k / K_jj)`, for a single unknown may be at rest by symmetry; of grounded unknowns
+/// their own.
 fn with_neighbours(field: &Field) -> Result<Vec<f64>> {
     let mut all = field.own_deformation.clone();
     for (p, body) in field.data.bodies.iter().enumerate() {
@@ -117,7 +121,8 @@ fn with_neighbours(field: &Field) -> Result<Vec<f64>> {
         let (mut image, mut terms) = (vec![0.0; range.len()], vec![0.0; range.len()]);
         body.stiffness.mul_with_terms(&field.own_deformation[range.clone()], &mut image, &mut terms)?;
         for j in range.clone().filter(|j| !field.grounded[*j]) {
-            all[j] = all[j].max(terms[j - range.start] / field.unit / field.metric[j]);
+            let joined = terms[j - range.start] / field.unit / field.metric[j];
+            all[j] = all[j].max(NEIGHBOURS * joined);
         }
     }
     Ok(all)

@@ -29,7 +29,7 @@ use crate::dual::multiples::Multiples;
 use crate::dual::reuse::Reuse;
 use crate::error::Result;
 use crate::linalg::memory::zeros;
-use crate::linalg::vector::{dot, norm_max, power_of_two_below};
+use crate::linalg::vector::{dot, norm_max, power_of_two_below, weighted_norm};
 use crate::linalg::{Csr, Packed};
 
 /// G is not known better than this.
@@ -239,6 +239,16 @@ impl Dual {
             }
         }
         e
+    }
+
+    /// What the resultants are a part of, `|f|_{D^-1}` of the bodies that float; `metric` is D over the unknowns.
+    pub fn size_of_loads(&self, f: &[f64], metric: &[f64]) -> f64 {
+        let of = |s: &Subdomain| {
+            let start = s.range.start;
+            weighted_norm(&f[s.range.clone()], |j| 1.0 / (metric[start + j] * s.by)) / s.size
+        };
+        let floating = self.subdomains.iter().filter(|s| !s.modes.is_empty());
+        weighted_norm(&floating.map(of).collect::<Vec<_>>(), |_| 1.0)
     }
 
     /// `u_p = K_p+ f_p + R_p alpha_p` of body p: (17) for the load f that the forces of the rows leave; (16) where it is

@@ -18,6 +18,9 @@ pub struct Limits {
     /// Gamma > 0 of the proportionality test, no unit.
     pub gamma: f64,
     pub steps: usize,
+    /// What |e| is of the loads that it is the resultant of, at most 1: a part of e that no x balances is measured against
+    /// those.
+    pub share: f64,
 }
 
 /// Knows what the numbers mean: gives the length the residual is measured against, and the last word.
@@ -65,7 +68,7 @@ pub struct Progress<'a> {
 pub enum Verdict {
     /// The judge accepted the answer.
     Solved,
-    /// `G x = e` holds only up to a part of e below 1e-7: the load is not quite held.
+    /// `G x = e` holds only up to a part of the loads below 1e-7: they are not quite held.
     Marginal,
     StepLimit,
     TimeLimit,
@@ -108,7 +111,7 @@ pub struct Solution {
     pub counts: Counts,
 }
 
-/// A part of e below this that no x balances is reported as marginal, not as a load that is not held.
+/// A part of the loads below this that no x balances is reported as marginal, not as a load that is not held.
 const MARGINAL: f64 = 1e-7;
 /// ... and a part this small may be a rounding error: of loads far larger than their resultants.
 const ROUNDING: f64 = 1e-10;
@@ -131,7 +134,7 @@ pub fn minimise(
         return proportioning(Iterate::new(qp, coarse, first)?, limits, judge, observer);
     }
     let found = nearest(&qp, &mut coarse)?;
-    let margin = found.margin;
+    let margin = limits.share * found.margin;
     if margin >= MARGINAL {
         return Ok(infeasible(&qp, &coarse, found));
     }
@@ -145,13 +148,13 @@ pub fn minimise(
 }
 
 /// The verdict where no x balances e, for a method that does not ask.
-pub fn not_held(qp: &Qp, start: &[f64]) -> Result<Option<Solution>> {
+pub fn not_held(qp: &Qp, start: &[f64], limits: Limits) -> Result<Option<Solution>> {
     let mut coarse = Coarse::new(qp.g_transposed, qp.rounding)?;
     if first_point(qp, &mut coarse, start)?.is_some() {
         return Ok(None);
     }
     let found = nearest(qp, &mut coarse)?;
-    Ok((found.margin >= MARGINAL).then(|| infeasible(qp, &coarse, found)))
+    Ok((limits.share * found.margin >= MARGINAL).then(|| infeasible(qp, &coarse, found)))
 }
 
 fn infeasible(qp: &Qp, coarse: &Coarse, found: Nearest) -> Solution {

@@ -2,7 +2,8 @@
 
 use std::cell::Cell;
 
-use crate::certificate::{certify, Answer, BodyData, Certificate, Data};
+use crate::certificate::{certify, Answer, BodyData, Certificate, Data, Entry};
+use crate::constraints::RowKind;
 use crate::error::{Error, Kind, Result};
 use crate::solver::islands::Island;
 use crate::solver::problem::Problem;
@@ -41,7 +42,25 @@ impl Problem {
                 Some(all) => all.merge(&own),
             }
         }
-        all.ok_or_else(|| Error::new(Kind::Internal, "a problem without bodies was set up"))
+        let mut all = all.ok_or_else(|| Error::new(Kind::Internal, "a problem without bodies was set up"))?;
+        all.complementarity = self.without_force(lambda, all.complementarity);
+        Ok(all)
+    }
+
+    /// No force is allowed on a contact row that never closes, and none but its own, `max(0, -k c)`, on one without entries
+    /// that does.
+    fn without_force(&self, lambda: &[f64], worst: Entry) -> Entry {
+        let rows = &self.contact;
+        let wrong = |(i, force): (usize, f64)| {
+            let alone = rows.is_empty_row(i) && (rows.rhs[i] > 0.0 || rows.compliance[i] > 0.0);
+            let off = (lambda[i] - force).abs();
+            let known = alone || !rows.is_finite(i);
+            known && !(off <= self.settings.certificate_tolerance * force)
+        };
+        match rows.forces_without_entries(RowKind::Inequality).enumerate().find(|row| wrong(*row)) {
+            Some((row, _)) => Entry { figure: f64::INFINITY, ratio: f64::INFINITY, place: Some(row) },
+            None => worst,
+        }
     }
 
     /// An island as the certificate sees it; null spaces must have been found.

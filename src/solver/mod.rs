@@ -26,6 +26,7 @@ mod rest;
 mod results;
 mod room;
 mod rows;
+mod scaled;
 mod settings;
 mod settings_text;
 mod setup;

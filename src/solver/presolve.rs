@@ -14,9 +14,10 @@ use crate::solver::watch::Stops;
 const EQUAL: f64 = 1e-10;
 /// ... and so are those that differ by rounding of how far loads and rows move the bodies.
 const ROUNDING: f64 = 64.0 * f64::EPSILON;
-/// A gap so many times as large as all motion that loads make and rows demand is far, and takes part in no contradiction
-/// that could be proved.
-pub(super) const FAR: f64 = 1e6;
+/// A gap so many times as large as all motion that rows demand takes part in no contradiction that could be proved.
+const BEYOND: f64 = 1e6;
+/// A gap so many times as large as all motion that loads make and rows demand is far.
+pub(super) const FAR: f64 = 1e4;
 
 /// Multiplications the search for contradictions may take.
 const WORK: usize = 200_000_000;
@@ -115,7 +116,7 @@ fn contradiction(problem: &Problem, ready: &Ready, gaps: &Gaps, stops: &Stops) -
         |group: usize| if gaps.bounded[group] { -gaps.value[group] } else { gaps.value[group].abs() };
     let rigid = |group: &usize| rows.compliance[*group] == 0.0;
     let size = (0..gaps.value.len()).filter(rigid).map(demand).fold(0.0, f64::max);
-    let near = |group: &usize| gaps.value[*group] <= FAR * size;
+    let near = |group: &usize| gaps.value[*group] <= BEYOND * size;
     let rigid: Vec<usize> = (0..gaps.value.len()).filter(rigid).filter(near).collect();
     let bounded: Vec<bool> = rigid.iter().map(|&group| gaps.bounded[group]).collect();
     let mut c: Vec<f64> = rigid.iter().map(|&group| gaps.value[group]).collect();
@@ -139,7 +140,7 @@ fn contradiction(problem: &Problem, ready: &Ready, gaps: &Gaps, stops: &Stops) -
         preconditioner: None,
     };
     let steps = (WORK / (4 * matrix.val.len() + c.len() + 1)).clamp(1000, 200_000);
-    let limits = Limits { tolerance: 1e-14, gamma: 1.0, steps };
+    let limits = Limits { tolerance: 1e-14, gamma: 1.0, steps, share: 1.0 };
     let mut judge = Unjudged { scale: norm(&b) };
     let solution = minimise(qp, &vec![0.0; c.len()], limits, &mut judge, &mut UnlessCancelled(stops))?;
     stops.check_cancelled()?;

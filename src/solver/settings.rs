@@ -103,7 +103,7 @@ const fn word(
 static OPTIONS: [OptionInfo; 27] = [
     real(c"tolerance", 1e-12, 1e-14..=1e-2, |s| &mut s.tolerance,
         c"The dual of each group of bodies is solved until its projected gradient, a gap, is this small against how far its bodies move along the rows and the gaps within that reach; then until the certificate passes."),
-    real(c"certificate_tolerance", 1e-8, 1e-14..=1e-2, |s| &mut s.certificate_tolerance,
+    real(c"certificate_tolerance", 1e-8, 1e-14..=1e-1, |s| &mut s.certificate_tolerance,
         c"Every entry of the certificate must be this small, for every body and row against its own forces and deformation, for the answer to count as solved."),
     real(c"gamma", 1.0, 1e-3..=1e3, |s| &mut s.gamma,
         c"Gamma of the proportionality test: how much larger than the error on the current face the error of having chosen it may be."),

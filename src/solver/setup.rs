@@ -172,9 +172,9 @@ impl Problem {
             let mut parts = reserved(island.bodies.len(), "groups of bodies")?;
             for (number, (&p, range)) in island.bodies.iter().zip(&island.ranges).enumerate() {
                 (island_of[p], number_in[p]) = (k, number);
+                let by = island.unit / self.bodies[p].body.without(island.unit);
                 let Some(inverse) = self.bodies[p].inverse.as_mut() else { continue };
                 let (kplus, kept) = (Arc::clone(&inverse.kplus), inverse.operator.take());
-                let by = island.unit / inverse.unit;
                 let (size, implicit) = (operators.sizes[p], operators.implicit[p]);
                 parts.push(dual::Part { range: range.clone(), kplus, by, kept, size, implicit });
             }

@@ -4,22 +4,22 @@ use std::cell::Cell;
 use std::time::{Duration, Instant};
 
 use crate::certificate::{certify, Answer as AnswerView, Data, Judgement};
-use crate::dual::Preconditioner;
 use crate::error::{Error, Kind, Result};
 use crate::linalg::memory::copied;
-use crate::linalg::vector::{norm, norm_max};
+use crate::linalg::vector::norm;
 use crate::linalg::Operator;
 use crate::qp::paper::Units;
-use crate::qp::{self, Direct, Judge, Qp, Solution, Verdict};
+use crate::qp::{Direct, Judge, Solution, Verdict};
 use crate::solver::diagnosis;
 use crate::solver::fallback::Means;
 use crate::solver::finish::finish;
 use crate::solver::near::solve_near;
 use crate::solver::paper::{parameters, HostUnits};
-use crate::solver::presolve::{presolve, Gaps};
+use crate::solver::presolve::Gaps;
 use crate::solver::problem::Problem;
 use crate::solver::report::Outcome;
 use crate::solver::response::ByInverse;
+use crate::solver::scaled::Scaled;
 use crate::solver::setup::{Ready, Setup};
 use crate::solver::state::Start;
 use crate::solver::steps::{Interruptible, Steps, Voice};
@@ -58,7 +58,13 @@ impl Problem {
             Some(given) if given.units == Units::Printed => {
                 HostUnits::new(self, ready, &dual.gaps, given)?.solve(qp, &start, &mut judge, steps)?
             }
-            _ => solve_near(&Means { settings: &self.settings, direct }, qp, &start, &mut judge, steps)?,
+            _ => solve_near(
+                &Means { settings: &self.settings, direct, share: dual.share },
+                qp,
+                &start,
+                &mut judge,
+                steps,
+            )?,
         };
         let (judging, recovering) = (judge.spent, Instant::now());
         let mut ending = judge.ending(solution)?;
@@ -66,7 +72,10 @@ impl Problem {
         if ending.solution.undetermined > 0 {
             judge.bring_to_rest(&mut ending)?;
         }
-        let outcome = self.outcome(ready, &dual, &ending.solution)?;
+        let mut outcome = self.outcome(ready, &dual, &ending.solution)?;
+        if outcome <= Outcome::Marginal && !ending.judgement.certificate.passed() {
+            outcome = Outcome::Inaccurate;
+        }
         Ok(Solved { ending, outcome, finished, judging, recovering: recovering.elapsed() })
     }
 
@@ -104,43 +113,6 @@ impl Problem {
     }
 }
 
-/// Loads and gaps as the dual takes them.
-pub(super) struct Scaled {
-    /// f / 2^p
-    pub load: Vec<f64>,
-    pub gaps: Gaps,
-    /// `B_p K_p+ f_p` of every body.
-    moved: Vec<Vec<f64>>,
-    d: Vec<f64>,
-    e: Vec<f64>,
-}
-
-impl Scaled {
-    fn new(problem: &Problem, ready: &Ready, stops: &Stops) -> Result<Self> {
-        let mut load = ready.island.loads(problem)?;
-        load.iter_mut().for_each(|f| *f /= ready.island.unit);
-        let moved = ready.moved(problem.threads(), &load)?;
-        let farthest = moved.iter().map(|own| norm_max(own)).fold(0.0, f64::max);
-        let gaps = presolve(problem, ready, farthest, stops)?;
-        let d = ready.dual.rhs(&moved, &gaps.dual);
-        let e = ready.dual.resultants(&load);
-        Ok(Self { load, gaps, moved, d, e })
-    }
-
-    fn qp<'a>(&'a self, ready: &'a Ready, a: &'a dyn Operator) -> Qp<'a> {
-        let g_transposed = &ready.dual.coarse;
-        let preconditioner = ready.preconditioner.as_ref().map(|(_, m)| m as &dyn qp::Preconditioner);
-        let (b, e, bounded, rounding) = (&self.d, &self.e, &self.gaps.bounded, ready.dual.rounding());
-        Qp { a, b, g_transposed, rounding, e, bounded, preconditioner }
-    }
-}
-
-impl qp::Preconditioner for Preconditioner {
-    fn apply(&self, held: &[bool], r: &[f64], z: &mut [f64]) -> Result<()> {
-        Preconditioner::apply(self, held, r, z)
-    }
-}
-
 /// Displacements and multipliers in the units of the host.
 #[derive(Clone)]
 pub(super) struct Recovered {
@@ -174,9 +146,10 @@ pub(super) struct Certifier<'a> {
     missed: Option<f64>,
 }
 
-/// A point (x, alpha) of the dual whose answer has passed.
+/// A point (x, alpha) of the dual whose answer has passed, and its amplitudes where it had to be brought to rest.
 pub(super) struct Accepted {
     point: (Vec<f64>, Vec<f64>),
+    alpha_at_rest: Option<Vec<f64>>,
     recovered: Recovered,
     judgement: Judgement,
 }
@@ -221,11 +194,14 @@ impl<'a> Certifier<'a> {
     }
 
     /// The answer of a solution; that of the point just accepted is there already.
-    pub fn ending(&mut self, solution: Solution) -> Result<Ending> {
+    pub fn ending(&mut self, mut solution: Solution) -> Result<Ending> {
         let known = self.accepted.take();
         let known = known.filter(|known| known.point.0 == solution.x && known.point.1 == solution.alpha);
         let (recovered, judgement) = match known {
-            Some(known) => (known.recovered, known.judgement),
+            Some(known) => {
+                solution.alpha = known.alpha_at_rest.unwrap_or(solution.alpha);
+                (known.recovered, known.judgement)
+            }
             None => self.certified(&solution.x, &solution.alpha)?,
         };
         Ok(Ending { solution, recovered, judgement })
@@ -252,35 +228,42 @@ impl<'a> Certifier<'a> {
 
 impl Judge for Certifier<'_> {
     /// `|sum_p |B'_p u_p|| + |c'|`: lengths, whatever the choice of K+. Gaps count up to how far bodies move, and are moved
-    /// by rows that demand it: no gap that is never closed makes others seem small.
+    /// by rows that demand it: no gap that is never closed makes others seem small, and rows left out do not count.
     fn scale(&mut self, x: &[f64], alpha: &[f64]) -> Result<f64> {
-        let distances = self.ready.distances(self.threads, &self.scaled.moved, x, alpha)?;
+        let mut distances = self.ready.distances(self.threads, &self.scaled.moved, x, alpha)?;
         let Gaps { dual, bounded, .. } = &self.scaled.gaps;
-        let demanded = dual.iter().zip(bounded).map(|(c, bounded)| if *bounded { c.min(0.0) } else { *c });
+        let mut gaps = dual.clone();
+        for (i, _) in self.far.iter().enumerate().filter(|(_, far)| **far) {
+            (distances[i], gaps[i]) = (0.0, 0.0);
+        }
+        let demanded = gaps.iter().zip(bounded).map(|(c, bounded)| if *bounded { c.min(0.0) } else { *c });
         let reach = norm(&distances) + norm(&demanded.collect::<Vec<_>>());
-        Ok(norm(&distances) + norm(dual).min(reach))
+        Ok(norm(&distances) + norm(&gaps).min(reach))
     }
 
     fn accepts(&mut self, x: &[f64], alpha: &[f64]) -> Result<bool> {
         let begun = Instant::now();
-        let (recovered, judgement) = self.certified(x, alpha)?;
-        let mut passed = judgement.certificate.passed();
-        let mut reached = Vec::new();
-        if !passed {
+        let (mut recovered, mut judgement) = self.certified(x, alpha)?;
+        let (mut alpha_at_rest, mut reached) = (None, Vec::new());
+        if !judgement.certificate.passed() {
             // a travel that nothing resists may hide the rest
-            let rested = if alpha.is_empty() { None } else { self.at_rest(&recovered, x)? };
-            if let Some((rested, _)) = &rested {
-                passed = self.judged(rested)?.certificate.passed();
-            }
-            if !passed {
-                reached = self.beyond(rested.as_ref().map_or(&recovered.u, |(rested, _)| &rested.u));
+            if let Some((rested, amplitudes)) = self.at_rest(&recovered, x)? {
+                let at_rest = self.judged(&rested)?;
+                if at_rest.certificate.passed() {
+                    (recovered, judgement, alpha_at_rest) = (rested, at_rest, Some(amplitudes));
+                } else {
+                    reached = self.beyond(&rested.u);
+                }
+            } else {
+                reached = self.beyond(&recovered.u);
             }
         }
         self.spent += begun.elapsed();
+        let passed = judgement.certificate.passed();
         self.missed = Some(judgement.certificate.worst()).filter(|_| !passed);
         if passed {
             let point = (copied(x, "forces")?, copied(alpha, "amplitudes")?);
-            self.accepted = Some(Accepted { point, recovered, judgement });
+            self.accepted = Some(Accepted { point, alpha_at_rest, recovered, judgement });
         }
         self.reached = reached;
         // those rows come first: without them there is nothing to make better
@@ -301,7 +284,7 @@ impl Judge for Certifier<'_> {
 #[cfg(test)]
 pub(super) mod tests {
     use super::*;
-    use crate::qp::Counts;
+    use crate::qp::{Counts, Qp};
     use crate::solver::watch::Watch;
     use crate::solver::{Modes, RowKind, RowsInput, SparseInput, Storage};
 
