@@ -82,6 +82,19 @@ pub trait Response {
     fn compliance_of(&mut self, kind: RowKind, row: usize) -> Result<f64>;
 }
 
+/// No motion is known: rounding of the loads excuses nothing.
+pub struct Unasked;
+
+impl Response for Unasked {
+    fn work_of_loads(&mut self) -> Result<f64> {
+        Ok(0.0)
+    }
+
+    fn compliance_of(&mut self, _: RowKind, _: usize) -> Result<f64> {
+        Ok(0.0)
+    }
+}
+
 /// What is known about an answer.
 #[derive(Debug, Clone, Default)]
 pub struct Judgement {
