@@ -90,6 +90,25 @@ impl<'a> Iterate<'a> {
         Ok(())
     }
 
+    /// Takes out of x what rounding of many steps has left of `e - G x`, on the free rows; too little to change the gradient.
+    pub fn rebalance(&mut self) -> Result<()> {
+        if self.alpha.is_empty() {
+            return Ok(());
+        }
+        let mut rest = self.qp.e.to_vec();
+        self.qp.g_transposed.mul_transposed_add(-1.0, &self.x, &mut rest);
+        self.coarse.select(&self.active)?;
+        let step = self.coarse.solve(&rest)?;
+        let mut x = self.x.clone();
+        for i in (0..x.len()).filter(|&i| !self.active[i]) {
+            x[i] += self.qp.g_transposed.row_dot(i, &step);
+        }
+        if (0..x.len()).all(|i| self.active[i] || !self.qp.bounded[i] || x[i] > 0.0) {
+            self.x = x;
+        }
+        Ok(())
+    }
+
     /// Active set, multiplier and the two parts (22)-(23) of the projected gradient.
     fn split(&mut self) -> Result<()> {
         self.active = self.qp.at_bound(&self.x);

@@ -208,6 +208,7 @@ fn run(
     loop {
         let small = stop.residual + stop.noise * it.noise();
         if it.residual() <= small || stop.plateau(it) {
+            it.rebalance()?;
             if judge.accepts(&it.x, &it.alpha)? {
                 if !stop.refine(limits.tolerance, judge.length()) {
                     return Ok(Verdict::Solved);
