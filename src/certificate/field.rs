@@ -109,10 +109,10 @@ fn own(field: &Field) -> Vec<f64> {
     own
 }
 
-/// What neighbours count for beside an unknown itself: in solids `sum_k |K_jk|` is about 8 K_jj.
-const NEIGHBOURS: f64 = 0.125;
+/// What neighbours count for beside an unknown itself.
+const NEIGHBOURS: f64 = 0.5;
 
-/// `max(delta_j, 1/8 sum_k |K_jk| delta_k / K_jj)`, for a single unknown may be at rest by symmetry; of grounded unknowns
+/// `max(delta_j, 1/2 sum_k |K_jk| delta_k / K_jj)`, for a single unknown may be at rest by symmetry; of grounded unknowns
 /// their own.
 fn with_neighbours(field: &Field) -> Result<Vec<f64>> {
     let mut all = field.own_deformation.clone();

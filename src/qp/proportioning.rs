@@ -75,7 +75,7 @@ pub enum Verdict {
     Cancelled,
     /// theta no longer decreases, and the judge does not accept.
     Stalled,
-    /// The residual is as small as asked, seven times over, and the judge does not accept.
+    /// The residual is as small as asked, eight times over, and the judge does not accept.
     Inaccurate,
     /// No x >= 0 gives `G x = e`: `direction'(e - G x) = |direction|^2` for all of them.
     Infeasible {
@@ -120,7 +120,7 @@ const TRAVEL: f64 = 10.0;
 /// A point refused for less than this much is mended by some more steps.
 const MISSED: f64 = 1e3;
 /// How often the tolerance is tightened when the judge does not accept.
-const TIGHTENINGS: usize = 7;
+const TIGHTENINGS: usize = 8;
 
 pub fn minimise(
     qp: Qp,
@@ -315,12 +315,12 @@ impl Stop {
         refines
     }
 
-    /// At the first refusal, by as much as it tells; false where that is more than steps without rounding could mend.
+    /// At the first two refusals, by as much as they tell; false where that is more than steps without rounding could mend.
     fn tighten_by(&mut self, missed: Option<f64>) -> bool {
-        let missed = missed.filter(|missed| *missed < MISSED && self.tightenings == 0);
+        let missed = missed.filter(|missed| *missed < MISSED && self.tightenings < 2);
         if let Some(missed) = missed {
             self.tightenings += 1;
-            self.residual *= (0.5 / missed).min(0.5);
+            self.residual *= (0.4 / missed).min(0.4);
         }
         missed.is_some()
     }

@@ -1,6 +1,7 @@
 //! Option `finish`: after a solve, the dual is solved directly on the active set found, and the whole answer is
 //! corrected by the residuals of the host's own data, as long as its certificate improves.
 
+use crate::certificate::Certificate;
 use crate::error::Result;
 use crate::linalg::vector::axpy;
 use crate::qp::{settle, Direct, Qp, Settled, Solution, Verdict};
@@ -21,7 +22,7 @@ pub(super) fn finish(judge: &Certifier, qp: Qp, direct: Direct, ending: &mut End
     improve(judge, &settled, ending)
 }
 
-/// The settled point in place of `ending`, then its corrections, each only where the certificate gets better.
+/// The settled point or one of its corrections in place of `ending`: the one with the best certificate.
 fn improve(judge: &Certifier, settled: &Settled, ending: &mut Ending) -> Result<bool> {
     let (x, alpha) = (settled.x.clone(), settled.alpha.clone());
     let u = judge.displacement(&x, &alpha)?;
@@ -30,11 +31,8 @@ fn improve(judge: &Certifier, settled: &Settled, ending: &mut Ending) -> Result<
     for _ in 0..=CORRECTIONS {
         let recovered = judge.with_forces(point.u.clone(), &point.x);
         let judgement = judge.judged(&recovered)?;
-        let certificate = &judgement.certificate;
-        let better = certificate.passed() && certificate.worst() < ending.judgement.certificate.worst();
-        if !better && replaced {
-            break;
-        }
+        let better = judgement.certificate.passed()
+            && is_better(&judgement.certificate, &ending.judgement.certificate);
         if better {
             let Point { x, alpha, .. } = point.clone();
             let undetermined = settled.undetermined;
@@ -45,6 +43,15 @@ fn improve(judge: &Certifier, settled: &Settled, ending: &mut Ending) -> Result<
         point.correct(judge, settled)?;
     }
     Ok(replaced)
+}
+
+/// The worst entry is smaller, or as good and the others together are: what no correction mends, balance where the null space
+/// is not exact, does not choose among them.
+fn is_better(new: &Certificate, old: &Certificate) -> bool {
+    const AS_GOOD: f64 = 0.1;
+    let others = |of: &Certificate| of.entries().iter().map(|entry| entry.ratio).sum::<f64>() - of.worst();
+    let (worst, before) = (new.worst(), old.worst());
+    worst < (1.0 - AS_GOOD) * before || worst <= (1.0 + AS_GOOD) * before && others(new) < others(old)
 }
 
 /// u with the forces and amplitudes that belong to it.
