@@ -16,6 +16,8 @@ const EXCUSED: f64 = 1e-2;
 pub(super) struct Forces {
     /// `|f|_{D^-1} + |r|_{D^-1}` of every body without its grounded unknowns, force; none of a body that has no others.
     sizes: Vec<Option<f64>>,
+    /// Bodies without load, but for grounded unknowns.
+    unloaded: Vec<bool>,
     /// `(|f|^2 + |r|^2)^1/2` of all bodies without loads on grounded unknowns, force. Without any such load the forces that the
     /// motion asked for would take belong to it.
     everywhere: f64,
@@ -45,12 +47,13 @@ impl Forces {
             weighted_norm(&strain, |i| field.metric[start + i])
         });
         let strain = field.unit * norm_of(strains.collect());
-        Self { sizes, everywhere: forces + moved, strain, acting: forces > 0.0 }
+        let unloaded = loads.iter().map(|load| *load == 0.0).collect();
+        Self { sizes, unloaded, everywhere: forces + moved, strain, acting: forces > 0.0 }
     }
 
-    /// Rounding of the largest forces, where the body has no other: force.
-    fn idle(&self, size: f64) -> f64 {
-        if size <= NOISE * self.everywhere {
+    /// Rounding of the largest forces, where body p has neither a load nor any other forces: force.
+    fn idle(&self, p: usize, size: f64) -> f64 {
+        if self.unloaded[p] && size <= NOISE * self.everywhere {
             NOISE * self.everywhere
         } else {
             0.0
@@ -63,7 +66,7 @@ impl Forces {
         let rows = field.rows(kind);
         let allowed = |p: usize| {
             let size = self.sizes[p].unwrap_or(0.0) + at_grounded(field, rows, i, p);
-            (field.data.limit * size).max(self.idle(size))
+            (field.data.limit * size).max(self.idle(p, size))
         };
         match field.touched(rows, i).map(allowed).reduce(smaller) {
             Some(least) => field.scales[kind as usize][i] * least,
@@ -162,7 +165,7 @@ fn equilibrium(field: &Field, forces: &Forces, p: usize, products: (&[f64], &[f6
         positive(residual.abs() - noise)
     });
     let strain = field.size(p, &field.free(p, |j| products.0[j - start]));
-    share(field.size(p, &left), field.data.limit * (size + strain) + forces.idle(size))
+    share(field.size(p, &left), field.data.limit * (size + strain) + forces.idle(p, size))
 }
 
 /// What rounding has excused there against the most it may excuse; no unit.
@@ -196,7 +199,7 @@ fn balance(field: &Field, forces: &Forces, p: usize) -> Result<f64> {
     let body = &field.data.bodies[p];
     let Some(size) = forces.sizes[p].filter(|_| body.null_space.cols > 0) else { return Ok(0.0) };
     let terms = field.size(p, &field.free(p, |j| field.load(p, j).abs() + field.push_terms[j]));
-    let allowed = field.data.limit * size + NOISE * terms + forces.idle(size);
+    let allowed = field.data.limit * size + NOISE * terms + forces.idle(p, size);
     let rest = field.free(p, |j| field.load(p, j) - field.push[j]);
     let mut resultants = body.null_space.mul_transposed(&rest);
     let weight = field.unit / body.unit;
