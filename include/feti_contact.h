@@ -363,7 +363,8 @@ typedef struct feti_findings {
    */
   int32_t kind;
   /**
-   * Body that escapes or was refused, -1: none.
+   * Body that escapes or was refused; of several groups of bodies the first of the one that ended
+   * with this status; -1: none.
    */
   int64_t body;
   /**

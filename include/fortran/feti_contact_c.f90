@@ -377,7 +377,8 @@ module feti_contact_c
     integer(c_int32_t) :: status
     !> FETI_INEQUALITY or FETI_EQUALITY: kind of the contradicting rows' `row`; 0: none.
     integer(c_int32_t) :: kind
-    !> Body that escapes or was refused, -1: none.
+    !> Body that escapes or was refused; of several groups of bodies the first of the one that ended with this
+    !> status; -1: none.
     integer(c_int64_t) :: body
     !> Connected part of the body that escapes, where it has several, -1: does not apply.
     integer(c_int64_t) :: component

@@ -331,7 +331,7 @@ pub struct feti_findings {
     pub status: i32,
     /// FETI_INEQUALITY or FETI_EQUALITY: kind of the contradicting rows' `row`; 0: none.
     pub kind: i32,
-    /// Body that escapes or was refused, -1: none.
+    /// Body that escapes or was refused; of several groups of bodies the first of the one that ended with this status; -1: none.
     pub body: i64,
     /// Connected part of the body that escapes, where it has several, -1: does not apply.
     pub component: i64,

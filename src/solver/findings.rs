@@ -35,6 +35,7 @@ impl Findings {
     pub(super) fn of_report(problem: &Problem, report: &Report) -> Self {
         let mut findings = Self::new(problem, Ok(report.outcome));
         findings.undetermined = report.undetermined;
+        findings.place.body = report.body;
         findings
     }
 

@@ -64,6 +64,8 @@ pub struct Work {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Report {
     pub outcome: Outcome,
+    /// Where there are several groups of bodies and not all are solved, the first body of the one that ended so.
+    pub body: Option<usize>,
     pub certificate: Certificate,
     pub counts: Counts,
     /// Dimension of the null spaces of all bodies.
@@ -117,6 +119,7 @@ impl Report {
         let sum = |of: fn(&Dual) -> usize| setup.islands.iter().map(|ready| of(&ready.dual)).sum();
         Ok(Self {
             outcome: Outcome::Solved,
+            body: None,
             certificate: Certificate::default(),
             counts: problem.counts(),
             floating_modes: sum(Dual::modes),

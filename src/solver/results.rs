@@ -75,6 +75,7 @@ impl Answer {
                 Err(_) => answer.leave_out(problem, ready),
             }
         }
+        answer.report.body.take_if(|_| answer.failed.len() == 1);
         let mut certificate = all.unwrap_or_default();
         certificate.energy += answer.take_in_rows_alone(problem);
         (answer.report.certificate, answer.report.energy) = (certificate, certificate.energy);
@@ -99,7 +100,9 @@ impl Answer {
             self.force_errors[p] = judgement.bodies[k].force_error;
         }
         let report = &mut self.report;
-        report.outcome = report.outcome.max(outcome);
+        if outcome > report.outcome {
+            (report.outcome, report.body) = (outcome, island.bodies.first().copied());
+        }
         report.undetermined += solution.undetermined;
         report.finished |= finished;
         report.count(&solution.counts);
