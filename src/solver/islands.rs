@@ -7,7 +7,8 @@ use std::sync::Arc;
 use crate::certificate::{Certificate, Entry};
 use crate::constraints::{RowKind, RowSet};
 use crate::error::Result;
-use crate::linalg::memory::{copied, reserved, zeros};
+use crate::linalg::graph::joined;
+use crate::linalg::memory::{copied, reserved, room, zeros};
 use crate::linalg::vector::power_of_two_below;
 use crate::linalg::Csr;
 use crate::solver::problem::Problem;
@@ -129,16 +130,13 @@ impl Members {
 pub(super) fn islands(problem: &Problem) -> Result<Vec<Island>> {
     let (bodies, offsets) = (problem.bodies.len(), &problem.offsets);
     let body_of = |j: usize| offsets[1..].partition_point(|end| *end <= j);
-    let mut sets = Sets::new(bodies)?;
     let all = [&problem.contact, &problem.equalities];
-    for rows in all {
-        for i in (0..rows.len()).filter(|&i| rows.is_finite(i)) {
-            let mut touched = rows.matrix.row(i).map(|(j, _)| body_of(j));
-            let first = touched.next();
-            touched.for_each(|p| sets.join(first.unwrap_or(p), p));
-        }
-    }
-    let (of_body, count) = sets.numbered();
+    let touched = all.into_iter().flat_map(|rows| {
+        let finite = (0..rows.len()).filter(|&i| rows.is_finite(i));
+        finite.map(move |i| rows.matrix.row(i).map(move |(j, _)| body_of(j)))
+    });
+    let _room = room(2 * size_of::<usize>() * bodies, WHAT)?;
+    let (of_body, count) = joined(bodies, touched);
     let mut islands: Vec<Island> = (0..count).map(|_| Island::empty()).collect();
     let mut start = reserved(bodies, WHAT)?;
     for (p, &island) in of_body.iter().enumerate() {
@@ -190,44 +188,6 @@ impl Island {
     fn empty() -> Self {
         let (contact, equalities) = (Members::default(), Members::default());
         Self { bodies: Vec::new(), ranges: Vec::new(), contact, equalities, unit: 1.0 }
-    }
-}
-
-/// Disjoint sets of bodies, each known by its smallest member.
-struct Sets {
-    parent: Vec<usize>,
-}
-
-impl Sets {
-    fn new(count: usize) -> Result<Self> {
-        let mut parent = reserved(count, WHAT)?;
-        parent.extend(0..count);
-        Ok(Self { parent })
-    }
-
-    fn root(&mut self, mut p: usize) -> usize {
-        while self.parent[p] != p {
-            self.parent[p] = self.parent[self.parent[p]];
-            p = self.parent[p];
-        }
-        p
-    }
-
-    fn join(&mut self, p: usize, q: usize) {
-        let (p, q) = (self.root(p), self.root(q));
-        self.parent[p.max(q)] = p.min(q);
-    }
-
-    /// The set of every body, numbered by their smallest members, and their count.
-    fn numbered(mut self) -> (Vec<usize>, usize) {
-        let mut number = vec![0; self.parent.len()];
-        let mut count = 0;
-        for p in 0..number.len() {
-            let root = self.root(p);
-            number[p] = if root == p { count } else { number[root] };
-            count += usize::from(root == p);
-        }
-        (number, count)
     }
 }
 
