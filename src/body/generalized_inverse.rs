@@ -28,6 +28,8 @@ pub struct GeneralizedInverse {
     pub fixing: Vec<usize>,
     /// Of a null space that was found: the softest other motion against the stiffest of it, no unit.
     pub gap: Option<f64>,
+    /// `|f| / | |K||K+ f| |` of a random load, no unit: its inverse is what rounding of K+ grows by.
+    pub softness: f64,
     pub(super) factor: Factor,
 }
 
@@ -169,13 +171,21 @@ impl Plan {
         let (factor, fixing) = (other.factor.clone(), other.fixing.clone());
         match self {
             Self::Known(Known { k, null_space, error, .. }) => {
-                GeneralizedInverse { null_space, rounding: KNOWN, error, fixing, gap: None, factor }
-                    .measured(&k)
+                let (rounding, gap, softness) = (KNOWN, None, other.softness);
+                GeneralizedInverse { null_space, rounding, error, fixing, gap, softness, factor }.measured(&k)
             }
             Self::Search(_) => {
                 let (null_space, gap) = (other.null_space.clone(), other.gap);
                 let (rounding, error) = (other.rounding, other.error);
-                Ok(GeneralizedInverse { null_space, rounding, error, fixing, gap, factor })
+                Ok(GeneralizedInverse {
+                    null_space,
+                    rounding,
+                    error,
+                    fixing,
+                    gap,
+                    softness: other.softness,
+                    factor,
+                })
             }
         }
     }
@@ -226,8 +236,9 @@ impl Known {
         })?;
         let Self { k, null_space, error, fixing, .. } = self;
         let factor = Factor::Own(Arc::new(factor));
-        let inverse = GeneralizedInverse { null_space, rounding: KNOWN, error, fixing, gap: None, factor };
-        inverse.probe(&k)?;
+        let (rounding, gap, softness) = (KNOWN, None, 1.0);
+        let mut inverse = GeneralizedInverse { null_space, rounding, error, fixing, gap, softness, factor };
+        inverse.softness = inverse.probe(&k)?;
         let inverse = inverse.measured(&k)?;
         Ok(Made { inverse, symbolic, further_analyses: 0, factorisations: 1 })
     }

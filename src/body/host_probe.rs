@@ -34,6 +34,7 @@ impl GeneralizedInverse {
             error,
             fixing: Vec::new(),
             gap: None,
+            softness: 1.0,
             factor: Factor::Host(k),
         })
     }

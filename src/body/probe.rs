@@ -45,10 +45,12 @@ impl GeneralizedInverse {
     /// A factorisation that ends without complaint proves nothing: solve for a known right-hand side b, and look for a
     /// null vector v that vanishes on the fixing dofs by inverse iteration on A. The first step finds v by the part of b
     /// along it; a second step is taken unless that part would have to be unlikely small.
-    pub(super) fn probe(&self, k: &Multiple) -> Result<()> {
+    ///
+    /// Returns `|b| / | |K||x| |`: the part of a load that rounding would be, were it 1.
+    pub(super) fn probe(&self, k: &Multiple) -> Result<f64> {
         let n = k.order();
         if self.fixing.len() == n {
-            return Ok(());
+            return Ok(1.0);
         }
         let free = |x: &mut [f64]| self.fixing.iter().for_each(|&dof| x[dof] = 0.0);
         let size = |x: &[f64]| weighted_norm(x, |i| 1.0 / k.metric(i, 1.0));
@@ -70,6 +72,7 @@ impl GeneralizedInverse {
             return Err(Error::new(Kind::Internal, what).value(residual).limit(PROBE));
         }
         let mut softest = size(&b) / size(&terms);
+        let found = softest;
         if softest.is_nan() || softest < UNLIKELY * (n as f64).sqrt() * SINGULAR {
             (0..n).for_each(|i| b[i] = k.metric(i, 1.0) * x[i]);
             self.apply(&b, &mut x)?;
@@ -79,7 +82,7 @@ impl GeneralizedInverse {
         if softest.is_nan() || softest < SINGULAR {
             return Err(missing_mode(largest(&x, |i| k.metric(i, 1.0)), softest, self.null_space.cols));
         }
-        Ok(())
+        Ok(found)
     }
 }
 

@@ -236,9 +236,10 @@ impl Search {
             error,
             fixing: fixing.concat(),
             gap,
+            softness: 1.0,
             factor: Factor::Own(Arc::new(factor)),
         };
-        inverse.probe(&self.k)?;
+        inverse.softness = inverse.probe(&self.k)?;
         inverse.rounding = inverse.known_to(&self.k)?;
         inverse.error = inverse.rounding;
         Ok(inverse)

@@ -140,6 +140,7 @@ pub(super) fn judge(
     let shares = [
         equilibrium(field, forces, p, (&strain, &terms)),
         excused(field, forces, p, (&strain, &terms)),
+        cancelled(field, forces, p, &strain),
         grounded(field, p, (&strain, &terms)),
     ];
     for share in shares {
@@ -178,6 +179,16 @@ fn excused(field: &Field, forces: &Forces, p: usize, products: (&[f64], &[f64]))
         residual.abs().min(noise)
     });
     share(field.size(p, &left), EXCUSED * (forces.everywhere + forces.strain))
+}
+
+/// What rounding of forces of rows that cancel has excused, against `tol` of the forces of the island; no unit. Redundant rows may
+/// share a force as they like, but not so that it is lost between them.
+fn cancelled(field: &Field, forces: &Forces, p: usize, strain: &[f64]) -> f64 {
+    let start = field.range(p).start;
+    let of = |j: usize| (strain[j - start] - field.load(p, j) + field.push[j]).abs();
+    let left: Vec<f64> = field.range(p).map(|j| of(j).min(NOISE * field.push_terms[j])).collect();
+    let allowed = field.data.limit * (forces.everywhere + forces.strain);
+    share(field.size(p, &left), allowed)
 }
 
 /// `(|res_j| - 64 eps t_j)_+` against `tol (|r_j| + sum_k |K_jk||u_k|)`, the worst grounded unknown; no unit.

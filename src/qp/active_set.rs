@@ -202,7 +202,7 @@ impl<'a> Run<'a> {
         let stays = |i: usize| if self.active[i] { self.r[i] >= -self.noise(i) } else { self.x[i] < 0.0 };
         let next: Vec<bool> = (0..self.x.len()).map(|i| self.qp.bounded[i] && stays(i)).collect();
         let only_leave = next.iter().zip(&self.active).all(|(next, active)| *active || !*next);
-        if face.is_deficient() && only_leave && next != self.active {
+        if face.undetermined() > 0 && only_leave && next != self.active {
             return Ok(self.projected()?.unwrap_or(next));
         }
         Ok(next)

@@ -13,6 +13,9 @@ use crate::linalg::{Entries, Matrix, PivotedCholesky, SpdSolver};
 use crate::qp::coarse::Coarse;
 use crate::qp::Qp;
 
+/// Rows whose pivots are below this depend on others, as far as A is known, which may be little.
+const DEPENDENT: f64 = 1e-11;
+
 pub struct Face<'a> {
     qp: Qp<'a>,
     /// F, ascending, n of them.
@@ -24,7 +27,8 @@ pub struct Face<'a> {
     penalty: Vec<f64>,
     /// T, r x rank; none where all motions are held well.
     basis: Option<Matrix>,
-    deficient: bool,
+    /// Dimension of the part of alpha that the rows leave open.
+    undetermined: usize,
     /// S, rank x rank; none without modes.
     coarse: Option<SpdSolver>,
 }
@@ -32,6 +36,20 @@ pub struct Face<'a> {
 impl<'a> Face<'a> {
     /// `None`: A_FF is not positive semidefinite.
     pub fn new(qp: Qp<'a>, entries: &dyn Entries, rows: Vec<usize>) -> Result<Option<Self>> {
+        Self::with_rank(qp, entries, rows, DEPENDENT)
+    }
+
+    /// The face where no row depends on others but for rounding: for those who correct its solutions by better data than A.
+    pub fn in_full(self, entries: &dyn Entries) -> Result<Option<Self>> {
+        Self::with_rank(self.qp, entries, self.rows, 0.0)
+    }
+
+    fn with_rank(
+        qp: Qp<'a>,
+        entries: &dyn Entries,
+        rows: Vec<usize>,
+        dependent: f64,
+    ) -> Result<Option<Self>> {
         let (n, r) = (rows.len(), qp.e.len());
         let mut h = Matrix::zeros(n, n)?;
         entries.add_block(&rows, &mut h)?;
@@ -39,7 +57,7 @@ impl<'a> Face<'a> {
         for (k, &i) in rows.iter().enumerate() {
             qp.g_transposed.row(i).for_each(|(mode, v)| modes.set(k, mode, v));
         }
-        let (basis, deficient) = resisted(&qp, &rows)?;
+        let (basis, undetermined) = resisted(&qp, &rows)?;
         if let Some(basis) = &basis {
             modes = product(&modes, basis)?;
         }
@@ -53,10 +71,10 @@ impl<'a> Face<'a> {
                 }
             }
         }
-        let Some(factor) = PivotedCholesky::new(h)? else { return Ok(None) };
+        let Some(factor) = PivotedCholesky::new(h, dependent)? else { return Ok(None) };
         let spread = factor.solve(&modes)?;
         let coarse = if modes.cols == 0 { None } else { Some(schur_complement(&modes, &spread)?) };
-        Ok(Some(Self { qp, rows, factor, spread, penalty, basis, deficient, coarse }))
+        Ok(Some(Self { qp, rows, factor, spread, penalty, basis, undetermined, coarse }))
     }
 
     /// x on F and alpha with `A_FF x - G_F'alpha = force`, `G_F x = rest`: where there are many, one of them.
@@ -96,19 +114,24 @@ impl<'a> Face<'a> {
         &self.rows
     }
 
-    /// True where the face leaves a part of alpha undetermined.
-    pub fn is_deficient(&self) -> bool {
-        self.deficient
+    /// Rows were left out that do not quite depend on others.
+    pub fn is_truncated(&self) -> bool {
+        self.factor.is_truncated()
+    }
+
+    /// Dimension of the part of alpha that the face leaves open.
+    pub fn undetermined(&self) -> usize {
+        self.undetermined
     }
 }
 
-/// T, where the rows F do not resist all motions well, and whether some are free.
-fn resisted(qp: &Qp, rows: &[usize]) -> Result<(Option<Matrix>, bool)> {
+/// T, where the rows F do not resist all motions well, and how many are free.
+fn resisted(qp: &Qp, rows: &[usize]) -> Result<(Option<Matrix>, usize)> {
     let mut held = vec![true; qp.g_transposed.rows()];
     rows.iter().for_each(|&i| held[i] = false);
     let mut coarse = Coarse::new(qp.g_transposed, qp.rounding)?;
     coarse.select(&held)?;
-    Ok((coarse.basis(), coarse.deficiency() > 0))
+    Ok((coarse.basis(), coarse.deficiency()))
 }
 
 /// `A B`

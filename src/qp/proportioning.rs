@@ -33,6 +33,10 @@ pub trait Judge {
     fn missed(&self) -> Option<f64> {
         None
     }
+    /// A solution that was not accepted, mended by better data than A and b until it is; none where that fails.
+    fn mended(&mut self, _: &Solution) -> Result<Option<Solution>> {
+        Ok(None)
+    }
     /// The scale without any travel, at the point accepted last; not known before, or to one who does not ask.
     fn length(&self) -> Option<f64> {
         None

@@ -47,6 +47,12 @@ impl<'a> Restricted<'a> {
         Solution { x: self.spread(&solution.x), verdict, ..solution }
     }
 
+    /// A solution without forces on the other rows, on these; none where it has some.
+    fn part(&self, solution: Solution) -> Option<Solution> {
+        let x = gather(self.rows, &solution.x);
+        (self.spread(&x) == solution.x).then_some(Solution { x, ..solution })
+    }
+
     fn spread(&self, own: &[f64]) -> Vec<f64> {
         let mut all = vec![0.0; self.whole.b.len()];
         self.rows.iter().zip(own).for_each(|(&i, v)| all[i] = *v);
@@ -130,5 +136,10 @@ impl Judge for Judged<'_> {
 
     fn length(&self) -> Option<f64> {
         self.whole.length()
+    }
+
+    fn mended(&mut self, solution: &Solution) -> Result<Option<Solution>> {
+        let mended = self.whole.mended(&self.on.whole(solution.clone()))?;
+        Ok(mended.and_then(|mended| self.on.part(mended)))
     }
 }

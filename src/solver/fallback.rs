@@ -64,7 +64,7 @@ fn follows(ended: &Solution, next: &str, steps: &mut Steps) -> Result<()> {
     steps.line(format!("fallback after {} steps: {why}; {next} follows", ended.counts.steps()))
 }
 
-/// The same, or what the direct method makes of it where it is incomplete.
+/// The same, or what the direct method makes of it where it is incomplete, by F and then by the data of the host.
 fn or_directly(
     solution: Solution,
     qp: Qp,
@@ -72,14 +72,22 @@ fn or_directly(
     judge: &mut dyn Judge,
     steps: &mut Steps,
 ) -> Result<Solution> {
-    if !gave_up(&solution) && solution.verdict != Verdict::StepLimit {
+    if !is_incomplete(&solution) {
         return Ok(solution);
     }
     if direct.limit > 0 {
         follows(&solution, "direct solution on active sets", steps)?;
     }
     let next = active_set(qp, direct, &solution, judge);
-    better(solution, next)
+    let best = better(solution, next)?;
+    if is_incomplete(&best) && direct.limit > 0 {
+        return Ok(judge.mended(&best)?.unwrap_or(best));
+    }
+    Ok(best)
+}
+
+fn is_incomplete(solution: &Solution) -> bool {
+    gave_up(solution) || solution.verdict == Verdict::StepLimit
 }
 
 /// Contradictory rows are known before the dual is solved: a direction along which theta seems to fall without
@@ -158,7 +166,8 @@ mod tests {
     #[test]
     fn a_run_that_met_its_limit_of_steps_is_completed_directly_and_told_so_unless_that_is_switched_off() {
         for (limit, verdict) in [(1000, Verdict::Solved), (0, Verdict::StepLimit)] {
-            two_springs(0.1, |judge, qp, direct, rough| {
+            two_springs(0.1, |judge, rough| {
+                let (qp, direct) = (judge.faces.qp, judge.faces.direct);
                 let mut lines = Lines::default();
                 let stops = Stops::never();
                 let mut steps = Steps::new(0, 1.0, qp.bounded, stops, &mut lines);

@@ -1,61 +1,150 @@
-//! Option `finish`: after a solve, the dual is solved directly on the active set found, and the whole answer is
-//! corrected by the residuals of the host's own data, as long as its certificate improves.
+//! Option `finish`: after a solve, forces and displacements together are corrected by the residuals of the host's own data,
+//! each time on the rows that these data show to be in contact, until rounding is all that is left.
 
 use crate::certificate::Certificate;
-use crate::error::Result;
-use crate::linalg::vector::axpy;
-use crate::qp::{settle, Direct, Qp, Settled, Solution, Verdict};
-use crate::solver::solve::{Certifier, Ending};
+use crate::error::{Kind, Result};
+use crate::linalg::vector::{axpy, weighted_norm};
+use crate::qp::{Face, Verdict};
+use crate::solver::problem::Problem;
+use crate::solver::setup::Ready;
+use crate::solver::solve::{Certifier, Ending, Faces};
 
-/// Corrections at most.
+/// Active sets at most.
+const FACES: usize = 8;
+/// Corrections on one of them at most.
 const CORRECTIONS: usize = 4;
+/// Ratios of the certificate below this are rounding.
+const ROUNDING: f64 = 1e-4;
+/// A ratio so many times another one is much better, or no worse.
+const MUCH_BETTER: f64 = 0.1;
+const NO_WORSE: f64 = 1.1;
 
-/// True where `ending` was replaced by an answer with a better certificate. Ended by the host or the time, it
-/// leaves what there was: that is solved.
-pub(super) fn finish(judge: &Certifier, qp: Qp, direct: Direct, ending: &mut Ending) -> Result<bool> {
-    if ending.solution.verdict != Verdict::Solved {
-        return Ok(false);
+/// The most that rounding may grow by in K+ of a body, and stiffness from body to body across a row.
+const SOFT: f64 = 1e-4;
+const UNEVEN: f64 = 1e4;
+
+impl Problem {
+    /// Whether the answer of an island is to be finished, as option `finish` has it. `automatic`: where an error that passes the
+    /// certificate may be large elsewhere.
+    pub(super) fn is_to_finish(&self, ready: &Ready) -> bool {
+        let is_soft = |p: &usize| {
+            let inverse = self.bodies[*p].inverse.as_ref();
+            inverse.is_some_and(|inverse| inverse.kplus.softness < SOFT)
+        };
+        let is_delicate = || ready.island.bodies.iter().any(is_soft) || is_uneven(ready);
+        let default = self.settings.method == c"proportioning" && self.settings.finish == c"automatic";
+        self.settings.finish == c"direct" || default && is_delicate()
     }
-    let attempt = settle(qp, direct, &ending.solution)?;
-    ending.solution.counts = ending.solution.counts + attempt.counts;
-    let Some(settled) = attempt.settled else { return Ok(false) };
-    improve(judge, &settled, ending)
 }
 
-/// The settled point or one of its corrections in place of `ending`: the one with the best certificate.
-fn improve(judge: &Certifier, settled: &Settled, ending: &mut Ending) -> Result<bool> {
-    let (x, alpha) = (settled.x.clone(), settled.alpha.clone());
-    let u = judge.displacement(&x, &alpha)?;
-    let mut point = Point { u, x, alpha };
-    let mut replaced = false;
-    for _ in 0..=CORRECTIONS {
-        let recovered = judge.with_forces(point.u.clone(), &point.x);
-        let judgement = judge.judged(&recovered)?;
-        let better = judgement.certificate.passed()
-            && is_better(&judgement.certificate, &ending.judgement.certificate);
-        if better {
-            let Point { x, alpha, .. } = point.clone();
-            let undetermined = settled.undetermined;
-            let solution = Solution { x, alpha, undetermined, ..ending.solution.clone() };
-            *ending = Ending { solution, recovered, judgement };
-            replaced = true;
+/// A row joins bodies whose shares of `b D^-1 b'` are far apart.
+fn is_uneven(ready: &Ready) -> bool {
+    let (rows, ranges) = (&ready.rows.scaled, &ready.island.ranges);
+    (0..rows.rows()).any(|i| {
+        let mut shares: Vec<(usize, f64)> = Vec::new();
+        for (j, v) in rows.row(i) {
+            let share = v * v / ready.rows.metric[j];
+            let body = ranges.partition_point(|range| range.end <= j);
+            match shares.last_mut() {
+                Some(last) if last.0 == body => last.1 += share,
+                _ => shares.push((body, share)),
+            }
         }
-        point.correct(judge, settled)?;
+        let most = shares.iter().map(|share| share.1).fold(0.0, f64::max);
+        shares.iter().any(|share| UNEVEN * share.1 < most)
+    })
+}
+
+/// True where `ending` was replaced by a corrected answer, which passes and whose certificate is no worse. Ended by the host or
+/// the time, or short of memory, it leaves what there was: that is solved.
+pub(super) fn finish(judge: &Certifier, ending: &mut Ending) -> Result<bool> {
+    let mut finish = Finish { judge, ending, replaced: false };
+    match finish.run() {
+        Ok(()) => {}
+        Err(error) if error.kind == Kind::Memory => {}
+        Err(error) => drop(Verdict::of_refusal(error)?),
+    }
+    let Finish { ending, replaced, .. } = finish;
+    if replaced {
+        judge.bring_to_rest(ending)?;
     }
     Ok(replaced)
 }
 
-/// The worst entry is smaller, or as good and the others together are: what no correction mends, balance where the null space
-/// is not exact, does not choose among them.
+struct Finish<'a, 'b> {
+    judge: &'b Certifier<'a>,
+    ending: &'b mut Ending,
+    replaced: bool,
+}
+
+impl Finish<'_, '_> {
+    /// Active sets one after the other, until one confirms itself or comes again.
+    fn run(&mut self) -> Result<()> {
+        let Faces { qp, direct, stops } = &self.judge.faces;
+        let mut active = qp.at_bound(&self.ending.solution.x);
+        let mut point = Point::of(self.ending);
+        let mut visited: Vec<Vec<bool>> = Vec::new();
+        while visited.len() < FACES && !visited.contains(&active) {
+            let rows: Vec<usize> = (0..active.len()).filter(|&i| !active[i]).collect();
+            if rows.len() + point.alpha.len() > direct.limit {
+                break;
+            }
+            stops.check()?;
+            let Some(face) = Face::new(*qp, direct.entries, rows)? else { break };
+            self.ending.solution.counts.direct += 1;
+            point.hold(&active);
+            self.correct(&mut point, &face)?;
+            if face.is_truncated() {
+                let Some(face) = face.in_full(direct.entries)? else { break };
+                self.correct(&mut point, &face)?;
+            }
+            if self.ending.judgement.certificate.worst() <= ROUNDING {
+                break;
+            }
+            visited.push(std::mem::replace(&mut active, point.active(self.judge)));
+        }
+        Ok(())
+    }
+
+    /// Corrections on one face as long as each is less than half the one before; every answer on the way that is no worse
+    /// than the one there is takes its place.
+    fn correct(&mut self, point: &mut Point, face: &Face) -> Result<()> {
+        let mut last = f64::INFINITY;
+        for _ in 0..CORRECTIONS {
+            let size = point.correct(self.judge, face)?;
+            self.keep(point, face)?;
+            if size >= 0.5 * last {
+                break;
+            }
+            last = size;
+        }
+        Ok(())
+    }
+
+    fn keep(&mut self, point: &Point, face: &Face) -> Result<()> {
+        let x = point.forces(&self.judge.scaled.gaps.bounded);
+        let recovered = self.judge.with_forces(point.u.clone(), &x);
+        let judgement = self.judge.judged(&recovered)?;
+        if is_better(&judgement.certificate, &self.ending.judgement.certificate) {
+            let solution = &mut self.ending.solution;
+            (solution.x, solution.alpha) = (x, point.alpha.clone());
+            solution.undetermined = face.undetermined();
+            (self.ending.recovered, self.ending.judgement) = (recovered, judgement);
+            self.replaced = true;
+        }
+        Ok(())
+    }
+}
+
+/// It passes, and is much better or in no entry worse but for rounding. Bodies that carry little beside others may lose their
+/// balance by what is rounding elsewhere.
 fn is_better(new: &Certificate, old: &Certificate) -> bool {
-    const AS_GOOD: f64 = 0.1;
-    let others = |of: &Certificate| of.entries().iter().map(|entry| entry.ratio).sum::<f64>() - of.worst();
-    let (worst, before) = (new.worst(), old.worst());
-    worst < (1.0 - AS_GOOD) * before || worst <= (1.0 + AS_GOOD) * before && others(new) < others(old)
+    let mut entries = new.entries().into_iter().zip(old.entries());
+    let much = new.worst() <= MUCH_BETTER * old.worst();
+    new.passed() && (much || entries.all(|(new, old)| new.ratio <= (NO_WORSE * old.ratio).max(ROUNDING)))
 }
 
 /// u with the forces and amplitudes that belong to it.
-#[derive(Clone)]
 struct Point {
     u: Vec<f64>,
     x: Vec<f64>,
@@ -63,81 +152,112 @@ struct Point {
 }
 
 impl Point {
+    /// The answer there is, or nothing where that does not pass: its forces may be lost in redundant rows.
+    fn of(ending: &Ending) -> Self {
+        let Ending { solution, recovered, judgement } = ending;
+        let (u, x, alpha) = (&recovered.u, &solution.x, &solution.alpha);
+        let known = |v: &[f64]| if judgement.certificate.passed() { v.to_vec() } else { vec![0.0; v.len()] };
+        Self { u: known(u), x: known(x), alpha: known(alpha) }
+    }
+
+    /// No force on the rows of an active set.
+    fn hold(&mut self, active: &[bool]) {
+        self.x.iter_mut().zip(active).filter(|(_, held)| **held).for_each(|(x, _)| *x = 0.0);
+    }
+
+    /// x without what rounding has made of a force that is zero.
+    fn forces(&self, bounded: &[bool]) -> Vec<f64> {
+        let bounded = self.x.iter().zip(bounded);
+        bounded.map(|(x, bounded)| if *bounded { x.max(0.0) } else { *x }).collect()
+    }
+
     /// Solves (10)-(11) on the face for the loads and gaps that are left, `f - K u - B'x` and `c + C x - B u`: errors of
-    /// F and of K+ fall with every correction.
-    fn correct(&mut self, judge: &Certifier, settled: &Settled) -> Result<()> {
-        let (dual, face) = (&judge.ready.dual, &settled.face);
-        let mut load = self.load_left(judge)?;
-        let rows = &judge.ready.rows;
-        let value = judge.scaled.gaps.value.iter().enumerate();
-        let left = value.map(|(i, gap)| gap - rows.scaled.row_dot(i, &self.u)).collect();
-        let left = rows.decoupling.solve(left);
+    /// F and of K+ fall with every correction. Its length, `|.|_D`.
+    fn correct(&mut self, judge: &Certifier, face: &Face) -> Result<f64> {
+        let (dual, rows) = (&judge.ready.dual, &judge.ready.rows);
+        let mut load = judge.load_left(&self.u, &self.x)?;
+        let left = self.gaps_left(judge).0;
         let mut gaps = vec![0.0; self.x.len()];
-        face.rows().iter().for_each(|&i| gaps[i] = left[i] + rows.compliance[i] * self.x[i]);
+        face.rows().iter().for_each(|&i| gaps[i] = left[i]);
         let d = dual.rhs(&judge.ready.moved(judge.threads, &load)?, &gaps);
         let force = face.rows().iter().map(|&i| d[i]).collect();
         let (step, turn) = face.solve(force, &dual.resultants(&load))?;
         let mut forces = vec![0.0; self.x.len()];
         face.rows().iter().zip(step).for_each(|(&i, step)| forces[i] = step);
         rows.take_forces(&forces, &mut load);
-        axpy(1.0, &judge.ready.displacement(judge.threads, &load, &turn)?, &mut self.u);
+        let moved = judge.ready.displacement(judge.threads, &load, &turn)?;
+        axpy(1.0, &moved, &mut self.u);
         axpy(1.0, &forces, &mut self.x);
-        // what rounding has made of a force that is zero
-        let bounded = self.x.iter_mut().zip(&judge.scaled.gaps.bounded).filter(|(_, bounded)| **bounded);
-        bounded.for_each(|(x, _)| *x = x.max(0.0));
         axpy(1.0, &turn, &mut self.alpha);
-        Ok(())
+        Ok(weighted_norm(&moved, |i| rows.metric[i]))
     }
 
-    /// `f - K u - B'x` in units of 2^p.
-    fn load_left(&self, judge: &Certifier) -> Result<Vec<f64>> {
-        let mut load = judge.scaled.load.clone();
-        for body in &judge.data.bodies {
-            let range = body.start..body.start + body.stiffness.order();
-            let mut strain = vec![0.0; range.len()];
-            body.stiffness.mul(&self.u[range.clone()], &mut strain)?;
-            axpy(-1.0 / judge.ready.island.unit, &strain, &mut load[range]);
-        }
-        judge.ready.rows.take_forces(&self.x, &mut load);
-        Ok(load)
+    /// `c + C x - B u` of every row, and what rounding may have made of it.
+    fn gaps_left(&self, judge: &Certifier) -> (Vec<f64>, Vec<f64>) {
+        let rows = &judge.ready.rows;
+        let value = || judge.scaled.gaps.value.iter().enumerate();
+        let left = value().map(|(i, gap)| gap - rows.scaled.row_dot(i, &self.u)).collect();
+        let mut left: Vec<f64> = rows.decoupling.solve(left);
+        left.iter_mut().zip(&self.x).zip(&rows.compliance).for_each(|((g, x), c)| *g += c * x);
+        let terms = |i: usize| rows.scaled.row(i).map(|(j, v)| (v * self.u[j]).abs()).sum::<f64>();
+        (left, value().map(|(i, gap)| 64.0 * f64::EPSILON * (gap.abs() + terms(i))).collect())
+    }
+
+    /// The active set that signs of forces and gaps ask for.
+    fn active(&self, judge: &Certifier) -> Vec<bool> {
+        let (left, noise) = self.gaps_left(judge);
+        let bounded = &judge.scaled.gaps.bounded;
+        let stays = |i: usize| if self.x[i] == 0.0 { left[i] >= -noise[i] } else { self.x[i] < 0.0 };
+        (0..self.x.len()).map(|i| bounded[i] && stays(i)).collect()
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::qp::Face;
+    use crate::qp::Solution;
     use crate::solver::solve::tests::two_springs;
 
+    /// Springs 1 and 1 pushed by 3 and 1 against walls at 1 and 2: only the first touches, lambda = 2.
     #[test]
-    fn a_wrong_active_set_is_never_accepted_and_the_right_one_is() {
-        // springs 1 and 1 pushed by 3 and 1 against walls at 1 and 2: only the first touches, lambda = 2
-        two_springs(1e-6, |judge, qp, direct, solved| {
-            for (rows, right) in [(vec![0], true), (vec![], false), (vec![1], false), (vec![0, 1], false)] {
-                let mut ending = judge.ending(solved.clone()).unwrap();
-                let before = ending.judgement.certificate.worst();
-                let face = Face::new(qp, direct.entries, rows.clone()).unwrap().unwrap();
-                let mut x = vec![0.0; 2];
-                let (on_face, alpha) = face.solve(rows.iter().map(|&i| qp.b[i]).collect(), qp.e).unwrap();
-                rows.iter().zip(on_face).for_each(|(&i, v)| x[i] = v);
-                let settled = Settled { x, alpha, undetermined: 0, face };
-                assert_eq!(improve(judge, &settled, &mut ending).unwrap(), right, "{rows:?}");
-                assert_eq!(ending.judgement.certificate.worst() < before, right, "{rows:?}");
-                assert!(ending.judgement.certificate.passed());
+    fn whatever_rows_the_answer_had_in_contact_it_ends_with_those_that_are() {
+        two_springs(1e-6, |judge, solved| {
+            for x in [[2.0 * (1.0 + 1e-6), 0.0], [2.0 * (1.0 + 1e-6), 1e-12]] {
+                let mut ending = judge.ending(Solution { x: x.to_vec(), ..solved.clone() }).unwrap();
+                assert!(finish(judge, &mut ending).unwrap(), "{x:?}");
+                assert_eq!(ending.solution.x, [2.0, 0.0]);
+                assert_eq!(
+                    (ending.recovered.u.as_slice(), ending.recovered.lambda.as_slice()),
+                    ([1.0, 1.0].as_slice(), [2.0, 0.0].as_slice())
+                );
             }
         });
     }
 
     #[test]
-    fn a_force_that_rounding_has_made_negative_is_none() {
-        two_springs(0.0, |judge, qp, direct, solved| {
-            let face = Face::new(qp, direct.entries, vec![0]).unwrap().unwrap();
-            let settled = Settled { x: solved.x.clone(), alpha: vec![], undetermined: 0, face };
-            let x = vec![2.0, -1e-20];
-            let u = judge.displacement(&x, &[]).unwrap();
-            let mut point = Point { u, x, alpha: vec![] };
-            point.correct(judge, &settled).unwrap();
-            assert_eq!(point.x, [2.0, 0.0]);
+    fn no_answer_is_kept_on_a_wrong_active_set() {
+        two_springs(1e-6, |judge, solved| {
+            for (rows, right) in [(vec![0], true), (vec![], false), (vec![1], false), (vec![0, 1], false)] {
+                let mut ending = judge.ending(solved.clone()).unwrap();
+                let mut point = Point { u: ending.recovered.u.clone(), x: solved.x.clone(), alpha: vec![] };
+                point.hold(&[0, 1].map(|i| !rows.contains(&i)));
+                let Faces { qp, direct, .. } = &judge.faces;
+                let face = Face::new(*qp, direct.entries, rows.clone()).unwrap().unwrap();
+                let mut finish = Finish { judge, ending: &mut ending, replaced: false };
+                finish.correct(&mut point, &face).unwrap();
+                assert_eq!(finish.replaced, right, "{rows:?}");
+                assert_eq!(ending.recovered.lambda == [2.0, 0.0], right, "{rows:?}");
+                assert_eq!(point.active(judge), [false, true], "{rows:?}");
+            }
+        });
+    }
+
+    #[test]
+    fn a_force_that_rounding_has_made_negative_is_none_and_its_row_leaves() {
+        two_springs(0.0, |judge, _| {
+            let point = Point { u: vec![1.0, 1.0], x: vec![2.0, -1e-20], alpha: vec![] };
+            assert_eq!(point.forces(&[true, true]), [2.0, 0.0]);
+            assert_eq!(point.active(judge), [false, true]);
         });
     }
 }

@@ -13,6 +13,9 @@ impl<'a> Certifier<'a> {
     /// Of the answers that differ by motions which nothing resists the one of least travel takes the place of this one,
     /// unless this one alone passes.
     pub fn bring_to_rest(&self, ending: &mut Ending) -> Result<()> {
+        if ending.solution.undetermined == 0 {
+            return Ok(());
+        }
         let Some((recovered, alpha)) = self.at_rest(&ending.recovered, &ending.solution.x)? else {
             return Ok(());
         };
@@ -33,7 +36,11 @@ impl<'a> Certifier<'a> {
         if free.cols == 0 {
             return Ok(None);
         }
-        let mut u = self.displacement(x, &vec![0.0; dual.modes()])?;
+        let unmoved = vec![0.0; dual.modes()];
+        let mut u = self.displacement(x, &unmoved)?;
+        // what K+ has lost must not be taken for a motion
+        let left = self.load_left(&u, x)?;
+        axpy(1.0, &self.ready.displacement(self.threads, &left, &unmoved)?, &mut u);
         let value = self.scaled.gaps.value.iter().enumerate();
         let open = value.map(|(i, gap)| gap - rows.scaled.row_dot(i, &u)).collect();
         let mut open = rows.decoupling.solve(open);

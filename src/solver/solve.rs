@@ -5,11 +5,11 @@ use std::time::{Duration, Instant};
 
 use crate::certificate::{certify, Answer as AnswerView, Data, Judgement, Unasked};
 use crate::error::{Error, Kind, Result};
-use crate::linalg::memory::copied;
-use crate::linalg::vector::norm;
+use crate::linalg::memory::{copied, zeros};
+use crate::linalg::vector::{axpy, norm};
 use crate::linalg::Operator;
 use crate::qp::paper::Units;
-use crate::qp::{Direct, Judge, Solution, Verdict};
+use crate::qp::{Direct, Judge, Qp, Solution, Verdict};
 use crate::solver::diagnosis;
 use crate::solver::fallback::Means;
 use crate::solver::finish::finish;
@@ -49,10 +49,10 @@ impl Problem {
         let setup = self.ready()?;
         let ready = &setup.islands[number];
         let dual = Scaled::new(self, ready, stops)?;
-        let mut judge = Certifier::new(self, ready, &dual)?;
         let f = Interruptible::new(&ready.dual, stops.clone(), self.product_threads(ready));
         let (qp, start) = (dual.qp(ready, &f), start.scaled(ready)?);
         let direct = self.direct(setup, ready);
+        let mut judge = Certifier::new(self, ready, &dual, Faces { qp, direct, stops })?;
         let steps = &mut Steps::new(number, ready.island.unit, &dual.gaps.bounded, stops.clone(), voice);
         let solution = match parameters(&self.settings) {
             Some(given) if given.units == Units::Printed => {
@@ -68,10 +68,9 @@ impl Problem {
         };
         let (judging, recovering) = (judge.spent, Instant::now());
         let mut ending = judge.ending(solution)?;
-        let finished = self.settings.finish == c"direct" && finish(&judge, qp, direct, &mut ending)?;
-        if ending.solution.undetermined > 0 {
-            judge.bring_to_rest(&mut ending)?;
-        }
+        judge.bring_to_rest(&mut ending)?;
+        let is_solved = ending.solution.verdict == Verdict::Solved;
+        let finished = is_solved && self.is_to_finish(ready) && finish(&judge, &mut ending)?;
         let mut outcome = self.outcome(ready, &dual, &ending.solution)?;
         if outcome <= Outcome::Marginal && !ending.judgement.certificate.passed() {
             outcome = Outcome::Inaccurate;
@@ -127,12 +126,20 @@ impl Recovered {
     }
 }
 
+/// What solutions on faces of the dual are made with, and when that has to end.
+pub(super) struct Faces<'a> {
+    pub qp: Qp<'a>,
+    pub direct: Direct<'a>,
+    pub stops: &'a Stops,
+}
+
 /// Judges a point of the dual by the certificate of the answer recovered from it.
 pub(super) struct Certifier<'a> {
     pub ready: &'a Ready,
     pub scaled: &'a Scaled,
     pub data: Data<'a>,
     pub threads: usize,
+    pub faces: Faces<'a>,
     /// V of the loads, once it has been asked for.
     work: Cell<Option<f64>>,
     /// The last point accepted, with its answer.
@@ -162,11 +169,12 @@ pub(super) struct Ending {
 }
 
 impl<'a> Certifier<'a> {
-    fn new(problem: &'a Problem, ready: &'a Ready, scaled: &'a Scaled) -> Result<Self> {
+    fn new(problem: &'a Problem, ready: &'a Ready, scaled: &'a Scaled, faces: Faces<'a>) -> Result<Self> {
         let (data, threads) = (problem.data(&ready.island)?, problem.threads());
         let work = Cell::new(None);
         let (far, reached, spent) = (Vec::new(), Vec::new(), Duration::ZERO);
-        Ok(Self { ready, scaled, data, threads, work, accepted: None, spent, far, reached, missed: None })
+        let (accepted, missed) = (None, None);
+        Ok(Self { ready, scaled, data, threads, faces, work, accepted, spent, far, reached, missed })
     }
 
     /// (17), and lambda = 2^p S L'^-1 x on the rows that carry the multipliers of their groups.
@@ -179,6 +187,19 @@ impl<'a> Certifier<'a> {
         let mut load = copied(&self.scaled.load, "a displacement")?;
         self.ready.rows.take_forces(x, &mut load);
         self.ready.displacement(self.threads, &load, alpha)
+    }
+
+    /// `f - K u - B'x` by the host's own data, in units of 2^p.
+    pub fn load_left(&self, u: &[f64], x: &[f64]) -> Result<Vec<f64>> {
+        let mut load = copied(&self.scaled.load, "what is left of the loads")?;
+        for body in &self.data.bodies {
+            let range = body.start..body.start + body.stiffness.order();
+            let mut strain = zeros(range.len(), "what is left of the loads")?;
+            body.stiffness.mul(&u[range.clone()], &mut strain)?;
+            axpy(-1.0 / self.ready.island.unit, &strain, &mut load[range]);
+        }
+        self.ready.rows.take_forces(x, &mut load);
+        Ok(load)
     }
 
     /// An answer of u and x.
@@ -282,6 +303,22 @@ impl Judge for Certifier<'_> {
         self.missed
     }
 
+    fn mended(&mut self, solution: &Solution) -> Result<Option<Solution>> {
+        let begun = Instant::now();
+        let mut ending = self.ending(solution.clone())?;
+        self.bring_to_rest(&mut ending)?;
+        let mended = finish(self, &mut ending)?;
+        self.spent += begun.elapsed();
+        if !mended {
+            return Ok(None);
+        }
+        let Ending { solution, recovered, judgement } = ending;
+        let point = (copied(&solution.x, "forces")?, copied(&solution.alpha, "amplitudes")?);
+        self.accepted = Some(Accepted { point, alpha_at_rest: None, recovered, judgement });
+        self.reached.clear();
+        Ok(Some(Solution { verdict: Verdict::Solved, ..solution }))
+    }
+
     fn length(&self) -> Option<f64> {
         let unit = self.ready.island.unit.sqrt();
         let accepted = self.accepted.as_ref().filter(|_| self.reached.is_empty());
@@ -292,13 +329,13 @@ impl Judge for Certifier<'_> {
 #[cfg(test)]
 pub(super) mod tests {
     use super::*;
-    use crate::qp::{Counts, Qp};
+    use crate::qp::Counts;
     use crate::solver::watch::Watch;
     use crate::solver::{Modes, RowKind, RowsInput, SparseInput, Storage};
 
     /// Springs 1 and 1 pushed by 3 and 1 against walls at 1 and 2, one body; `work` gets an answer whose first
     /// force, 2, is wrong by the factor 1 + `error`.
-    pub fn two_springs(error: f64, work: impl Fn(&mut Certifier, Qp, Direct, &Solution)) {
+    pub fn two_springs(error: f64, work: impl Fn(&mut Certifier, &Solution)) {
         let mut problem = Problem::new();
         let body = problem.add_body(2).unwrap();
         let springs = SparseInput { ptr: &[0, 1, 2], col: &[0, 1], val: &[1.0; 2], storage: Storage::Lower };
@@ -315,12 +352,14 @@ pub(super) mod tests {
                 let setup = problem.ready()?;
                 let ready = &setup.islands[0];
                 let dual = Scaled::new(problem, ready, &watch.stops)?;
-                let mut judge = Certifier::new(problem, ready, &dual)?;
+                let (qp, direct) = (dual.qp(ready, &ready.dual), problem.direct(setup, ready));
+                let faces = Faces { qp, direct, stops: &watch.stops };
+                let mut judge = Certifier::new(problem, ready, &dual, faces)?;
                 let scale = 3.0;
                 let (x, verdict) = (vec![2.0 * (1.0 + error), 0.0], Verdict::Solved);
                 let solved =
                     Solution { x, alpha: vec![], undetermined: 0, scale, verdict, counts: Counts::default() };
-                work(&mut judge, dual.qp(ready, &ready.dual), problem.direct(setup, ready), &solved);
+                work(&mut judge, &solved);
                 Ok(())
             })
             .unwrap();
@@ -328,7 +367,7 @@ pub(super) mod tests {
 
     #[test]
     fn a_solution_ends_with_its_own_answer_whatever_has_been_accepted_before() {
-        two_springs(1e-6, |judge, _, _, solved| {
+        two_springs(1e-6, |judge, solved| {
             assert!(judge.accepts(&solved.x, &solved.alpha).unwrap());
             let other = Solution { x: vec![2.0, 0.0], ..solved.clone() };
             assert_eq!(judge.ending(other).unwrap().recovered.lambda, [2.0, 0.0]);
@@ -340,7 +379,7 @@ pub(super) mod tests {
     /// Springs 1 and 1 at walls: u = (3 - 2, 1 - 0), all scales 1; gaps (1, 2) are farther than that.
     #[test]
     fn the_scale_is_how_far_bodies_move_along_the_rows_and_their_gaps() {
-        two_springs(0.0, |judge, _, _, solved| {
+        two_springs(0.0, |judge, solved| {
             let scale = judge.scale(&solved.x, &solved.alpha).unwrap();
             assert!((scale - 2.0 * 2f64.sqrt()).abs() < 1e-14);
         });
@@ -365,9 +404,12 @@ pub(super) mod tests {
         problem.add_rows(RowKind::Inequality, rows).unwrap();
         let test = |problem: &mut Problem, watch: &mut Watch| {
             problem.set_up(watch)?;
-            let ready = &problem.ready()?.islands[0];
+            let setup = problem.ready()?;
+            let ready = &setup.islands[0];
             let dual = Scaled::new(problem, ready, &watch.stops)?;
-            let mut judge = Certifier::new(problem, ready, &dual)?;
+            let (qp, direct) = (dual.qp(ready, &ready.dual), problem.direct(setup, ready));
+            let faces = Faces { qp, direct, stops: &watch.stops };
+            let mut judge = Certifier::new(problem, ready, &dual, faces)?;
             for (x, alpha) in [([0.0, 0.0], 0.0), ([2.0, 0.0], -7.0), ([0.5, 1.5], 2.0)] {
                 let u = judge.displacement(&x, &[alpha])?;
                 let moved = [0, 1].map(|i| ready.rows.matrix.row_dot(i, &u));
