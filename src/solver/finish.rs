@@ -19,7 +19,8 @@ const ROUNDING: f64 = 1e-4;
 const MUCH_BETTER: f64 = 0.1;
 const NO_WORSE: f64 = 1.1;
 
-/// The most that rounding may grow by in K+ of a body, and stiffness from body to body across a row.
+/// Rounding that grows by more than 1 / `SOFT` in K+ of a body, or stiffnesses across a row that differ by more than `UNEVEN`,
+/// make errors of an answer much larger than its certificate. Solids, plates and beams of thousands of elements stay below.
 const SOFT: f64 = 1e-4;
 const UNEVEN: f64 = 1e4;
 

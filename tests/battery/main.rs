@@ -12,15 +12,34 @@ mod varied;
 use std::fmt::Write;
 
 use decks::battery::{self, Case};
+use decks::varied::{Mixture, MIXTURE, SECOND_MIXTURE};
 use feti_contact::error::{Kind, Result};
 use feti_contact::solver::{Outcome, Report};
 
-/// Number of problems of the ordinary run; the variable BATTERY asks for another.
+/// Number of problems of the ordinary run, and the seed of the first; the variables BATTERY and BATTERY_SEED ask for others.
 const PROBLEMS: u64 = 1000;
+const FIRST: u64 = 0;
 
 fn seeds() -> std::ops::Range<u64> {
-    let asked = std::env::var("BATTERY").ok().and_then(|text| text.parse().ok());
-    0..asked.unwrap_or(PROBLEMS)
+    let asked = |name: &str| std::env::var(name).ok().and_then(|text| text.parse().ok());
+    let first = asked("BATTERY_SEED").unwrap_or(FIRST);
+    first..first + asked("BATTERY").unwrap_or(PROBLEMS)
+}
+
+/// The first of them, one for `share` of all.
+fn some_seeds(share: u64) -> std::ops::Range<u64> {
+    let all = seeds();
+    all.start..all.start + (all.end - all.start).div_ceil(share)
+}
+
+/// Varied problems are drawn from the second mixture where BATTERY_MIXTURE is 2.
+fn mixture() -> &'static Mixture {
+    let second = std::env::var("BATTERY_MIXTURE").is_ok_and(|text| text == "2");
+    if second {
+        &SECOND_MIXTURE
+    } else {
+        &MIXTURE
+    }
 }
 
 fn solve(case: &Case) -> Result<Report> {
@@ -84,5 +103,5 @@ fn assert_ends_as_built(cases: impl Iterator<Item = (u64, Case)>) {
             let _ = writeln!(table, "{}", line(seed, &case, &got));
         }
     }
-    assert_eq!(failures, 0, "of {} problems end otherwise:\n{table}", seeds().end);
+    assert_eq!(failures, 0, "of {:?} end otherwise:\n{table}", seeds());
 }

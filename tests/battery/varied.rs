@@ -7,7 +7,7 @@ use decks::varied::{self, Varied};
 use decks::yardstick::{Answer, Yardstick};
 use feti_contact::solver::{Outcome, Problem, RowKind};
 
-use crate::{hand_over, seeds};
+use crate::{hand_over, mixture, some_seeds};
 
 /// Number of problems of the ordinary run, one for this many of the others.
 const SHARE: u64 = 2;
@@ -57,6 +57,21 @@ fn end(case: &Varied) -> End {
     End { name: format!("{:?}", report.outcome), error: solved.then_some(worst) }
 }
 
+/// Seeds that were solved wrongly before answers of ill-conditioned bodies were finished, then some that were not solved at all:
+/// glue of soft bodies, travel with a null space of little accuracy, forces lost between redundant rows.
+const ONCE_WRONG: [u64; 28] = [
+    2998, 8120, 9758, 15803, 39086, 42687, 47393, 47536, 49382, 66555, 79945, 84197, 84742, 85288, 99459,
+    99796, 93, 704, 1906, 3635, 8016, 8783, 25020, 59002, 83754, 98416, 20092, 31742,
+];
+
+#[test]
+fn what_was_once_solved_wrongly_or_not_at_all_is_solved_rightly() {
+    for seed in ONCE_WRONG {
+        let End { name, error } = end(&varied::case(seed));
+        assert!(error.is_some_and(|(error, _)| error < 0.5), "{seed}: {name}, {error:?}");
+    }
+}
+
 /// The part of a name before a colon: kinds of errors are counted, their texts are listed.
 fn short(name: &str) -> &str {
     name.split(':').next().unwrap_or(name)
@@ -67,8 +82,8 @@ fn every_varied_problem_that_is_solved_is_solved_rightly() {
     let mut classes: BTreeMap<String, Ends> = BTreeMap::new();
     let (mut wrong, mut unsolved, mut beyond) = (Vec::new(), Vec::new(), Vec::new());
     let mut judged = 0;
-    for seed in 0..seeds().end.div_ceil(SHARE) {
-        let case = varied::case(seed);
+    for seed in some_seeds(SHARE) {
+        let case = varied::mixed(seed, mixture());
         let End { name, error } = end(&case);
         let is_wrong = error.is_some_and(|(error, _)| error > 1.0);
         let hard = case.condition > CONDITION;

@@ -3,13 +3,10 @@
 use crate::dd::{self, Dd};
 use crate::random::Random;
 use crate::varied::bodies::{self, inner, orthonormal, remove, Spread};
-use crate::varied::{condition, rounded, rows, Class, Varied, CLASSES};
+use crate::varied::{condition, rounded, rows, Class, Mixture, Varied, CLASSES};
 use crate::vector::axpy;
 use crate::yardstick::grounded;
 use crate::{Deck, Rows};
-
-/// Unknowns of a case at most.
-const UNKNOWNS: usize = 120;
 
 pub(super) struct Draft {
     pub random: Random,
@@ -34,17 +31,17 @@ pub(super) struct Draft {
     pub slack: Vec<f64>,
 }
 
-pub(super) fn case(seed: u64) -> Varied {
+pub(super) fn case(seed: u64, mixture: &Mixture) -> Varied {
     let mut random = Random::new(seed ^ 0x7661_7269_6564);
     let main = CLASSES[(seed % CLASSES.len() as u64) as usize];
     let mut classes = vec![main];
-    for extra in [Class::Far, Class::Glue, Class::Springs, Class::Mixed, Class::Noisy, Class::Rounded] {
+    for &extra in mixture.extras {
         let fits = extra != main && (main != Class::Thermal || extra != Class::Glue);
-        if random.chance(0.1) && fits {
+        if random.chance(mixture.chance) && fits {
             classes.push(extra);
         }
     }
-    let mut draft = Draft::new(classes, random);
+    let mut draft = Draft::new(classes, mixture.unknowns, random);
     draft.round_stiffness();
     draft.deform();
     rows::draw(&mut draft);
@@ -59,11 +56,12 @@ impl Draft {
         self.classes.contains(&class)
     }
 
-    fn new(classes: Vec<Class>, mut random: Random) -> Draft {
+    /// Of at most so many unknowns, but for the last body.
+    fn new(classes: Vec<Class>, unknowns: usize, mut random: Random) -> Draft {
         let has = |class: Class| classes.contains(&class);
         let groups = if has(Class::Groups) { 2 + random.below(2) } else { 1 };
         let (mut list, mut group, mut length, mut penalties) = (vec![], vec![], vec![], vec![]);
-        let mut room = UNKNOWNS;
+        let mut room = unknowns;
         for g in 0..groups {
             let stiffness = random.decades(-8.0, 8.0);
             length.push(random.decades(-4.0, 1.0));
@@ -78,10 +76,10 @@ impl Draft {
                 } else if room < 4 {
                     continue;
                 } else {
-                    bodies::draw(room.min(UNKNOWNS / 2), held, spread, &mut random)
+                    bodies::draw(room.min(unknowns / 2), held, spread, &mut random)
                 };
                 if has(Class::Penalty) && body.dofs() > 3 {
-                    let first = UNKNOWNS - room;
+                    let first = unknowns - room;
                     penalties.extend(bodies::support(&mut body, &mut random).iter().map(|dof| first + dof));
                 }
                 room = room.saturating_sub(body.dofs());

@@ -101,9 +101,48 @@ impl Varied {
     }
 }
 
+/// How cases are mixed.
+#[derive(Clone, Copy, Debug)]
+pub struct Mixture {
+    /// Unknowns of a case, about.
+    pub unknowns: usize,
+    /// Classes that a case may have beside its main one, each with this chance.
+    pub extras: &'static [Class],
+    pub chance: f64,
+}
+
+/// Cases mostly of one class, up to 120 unknowns.
+pub const MIXTURE: Mixture = Mixture {
+    unknowns: 120,
+    extras: &[Class::Far, Class::Glue, Class::Springs, Class::Mixed, Class::Noisy, Class::Rounded],
+    chance: 0.1,
+};
+
+/// Smaller ones, of more classes at once.
+pub const SECOND_MIXTURE: Mixture = Mixture {
+    unknowns: 70,
+    extras: &[
+        Class::Moduli,
+        Class::StiffOnSoft,
+        Class::Travel,
+        Class::Far,
+        Class::Glue,
+        Class::Springs,
+        Class::Mixed,
+        Class::Noisy,
+        Class::Rounded,
+    ],
+    chance: 0.3,
+};
+
 /// The case of one seed; seeds 13 apart are of the same main class.
 pub fn case(seed: u64) -> Varied {
-    draft::case(seed)
+    draft::case(seed, &MIXTURE)
+}
+
+/// The same from another mixture.
+pub fn mixed(seed: u64, mixture: &Mixture) -> Varied {
+    draft::case(seed, mixture)
 }
 
 /// The nearest number of 15 decimal digits.

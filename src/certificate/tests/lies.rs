@@ -211,3 +211,19 @@ fn single_springs_are_judged_by_the_forces_on_them() {
         model.refuses_wrong_motions(&format!("springs {stiffness:e}"), 0.5);
     }
 }
+
+/// The same tie twice shares its force as it likes, as long as it is not lost between the two.
+#[test]
+fn forces_that_are_lost_between_redundant_rows_are_refused() {
+    for (load, excess, right) in [(1.0, 1e3, true), (1.0, 1e12, false), (1e-6, 1e6, false), (1e6, 1e9, true)]
+    {
+        let parts = vec![chain(&[2.0, 3.0], &[(0, 1.0)]).loaded(&[(2, load)]), chain(&[1.5], &[(1, 0.7)])];
+        let tie = (vec![(2, 1.0), (3, -1.0)], 0.0, 0.0);
+        let single = Model { parts, equalities: vec![tie.clone()], ..Model::default() };
+        let answer = single.answer();
+        let double = Model { equalities: vec![tie.clone(), tie], ..single };
+        let mut shared = answer.clone();
+        shared.mu = vec![answer.mu[0] + excess, -excess];
+        assert_eq!(double.certificate(&shared).passed(), right, "{load:e} {excess:e}");
+    }
+}
