@@ -1,6 +1,6 @@
 //! What of a displacement is deformation: all but the rigid motions of the bodies that the rows leave them.
 
-use crate::certificate::field::{range, touched, Field};
+use crate::certificate::field::{touched, Field};
 use crate::certificate::{Data, NOISE};
 use crate::linalg::vector::{axpy, norm, norm_max, power_of_two_below};
 use crate::linalg::{Csr, Matrix};
@@ -30,7 +30,7 @@ pub(super) fn deformation(field: &Field) -> Vec<f64> {
         let kept = project(&joints, amplitudes);
         for (p, body) in data.bodies.iter().enumerate() {
             let a: Vec<f64> = kept[first[p]..first[p + 1]].iter().map(|b| b / weights[p]).collect();
-            body.null_space.mul_add(-1.0, &a, &mut left[range(body)]);
+            body.null_space.mul_add(-1.0, &a, &mut left[body.range()]);
         }
     }
     left.iter_mut().for_each(|v| *v = v.abs());
@@ -74,7 +74,7 @@ fn joints(data: &Data, first: &[usize], weights: &[f64]) -> Csr {
         let mut entries = Vec::new();
         for p in touched(data, rows, i) {
             let body = &data.bodies[p];
-            let range = range(body);
+            let range = body.range();
             let own = rows.matrix.row(i).filter(|(j, _)| range.contains(j));
             let own: Vec<(usize, f64)> = own.map(|(j, v)| (j - range.start, v)).collect();
             let resisted = resisted(&own, body.null_space).into_iter().enumerate();

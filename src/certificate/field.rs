@@ -74,7 +74,7 @@ impl<'a> Field<'a> {
 
     /// Unknowns of body p among all.
     pub fn range(&self, p: usize) -> Range<usize> {
-        range(&self.data.bodies[p])
+        self.data.bodies[p].range()
     }
 
     /// `f_j`, force.
@@ -141,11 +141,6 @@ fn moving(body: &BodyData) -> Result<HashSet<u32>> {
     Ok(moving)
 }
 
-/// Unknowns of a body among all.
-pub(super) fn range(body: &BodyData) -> Range<usize> {
-    body.start..body.start + body.stiffness.order()
-}
-
 /// The body that has unknown j.
 pub(super) fn body_of(data: &Data, j: usize) -> usize {
     data.bodies.partition_point(|body| body.start <= j) - 1
@@ -159,7 +154,7 @@ pub(super) fn touched<'s>(data: &'s Data, rows: &'s RowSet, i: usize) -> impl It
             return None;
         }
         let p = body_of(data, j);
-        end = range(&data.bodies[p]).end;
+        end = data.bodies[p].range().end;
         Some(p)
     })
 }

@@ -17,6 +17,8 @@ mod forces;
 mod grounded;
 mod rows;
 
+use std::ops::Range;
+
 use crate::body::Stiffness;
 use crate::constraints::{RowKind, RowSet};
 use crate::error::Result;
@@ -60,6 +62,13 @@ pub struct BodyData<'a> {
     pub unit: f64,
     /// Unknowns of the body held so stiffly that their neighbours count for nothing, ascending: see [`grounded`].
     pub grounded: &'a [u32],
+}
+
+impl BodyData<'_> {
+    /// Its unknowns among those of the island.
+    pub fn range(&self) -> Range<usize> {
+        self.start..self.start + self.stiffness.order()
+    }
 }
 
 /// An answer over all unknowns, contact rows, equality rows of the island.

@@ -25,7 +25,7 @@ impl Response for ByInverse<'_> {
         }
         let mut load = zeros(self.unknowns(), "the work of the loads")?;
         for body in &self.data.bodies {
-            let free = &mut load[body.start..body.start + body.stiffness.order()];
+            let free = &mut load[body.range()];
             free.copy_from_slice(body.load.unwrap_or(&vec![0.0; free.len()]));
             body.grounded.iter().for_each(|j| free[*j as usize] = 0.0);
         }
@@ -55,7 +55,7 @@ impl ByInverse<'_> {
     fn work_of(&self, mut load: Vec<f64>) -> Result<f64> {
         let metric = metric(self.data, load.len());
         for body in &self.data.bodies {
-            let range = body.start..body.start + body.stiffness.order();
+            let range = body.range();
             let resultants = body.null_space.mul_transposed(&load[range.clone()]);
             let mut rigid = zeros(range.len(), "the work of a load")?;
             body.null_space.mul_add(1.0 / body.unit, &resultants, &mut rigid);
@@ -64,7 +64,7 @@ impl ByInverse<'_> {
         let motion = self.ready.displacement(self.threads, &load, &vec![0.0; self.ready.dual.modes()])?;
         let mut work = 0.0;
         for body in &self.data.bodies {
-            let range = body.start..body.start + body.stiffness.order();
+            let range = body.range();
             let (g, v) = (&load[range.clone()], &motion[range.clone()]);
             let mut strain = zeros(range.len(), "the work of a load")?;
             body.stiffness.mul(v, &mut strain)?;

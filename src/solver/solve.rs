@@ -193,7 +193,7 @@ impl<'a> Certifier<'a> {
     pub fn load_left(&self, u: &[f64], x: &[f64]) -> Result<Vec<f64>> {
         let mut load = copied(&self.scaled.load, "what is left of the loads")?;
         for body in &self.data.bodies {
-            let range = body.start..body.start + body.stiffness.order();
+            let range = body.range();
             let mut strain = zeros(range.len(), "what is left of the loads")?;
             body.stiffness.mul(&u[range.clone()], &mut strain)?;
             axpy(-1.0 / self.ready.island.unit, &strain, &mut load[range]);
