@@ -12,7 +12,7 @@ use crate::{hand_over, mixture, some_seeds};
 /// Number of problems of the ordinary run, one for this many of the others.
 const SHARE: u64 = 2;
 /// Beyond it an answer may be wrong without anyone's fault; such cases are counted apart.
-const CONDITION: f64 = 1e8;
+pub const CONDITION: f64 = 1e8;
 /// Of the cases up to that condition this part may end other than solved.
 const UNSOLVED: f64 = 0.01;
 /// Lines of a table.

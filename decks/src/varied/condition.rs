@@ -25,10 +25,15 @@ pub(super) struct Face<'a> {
 
 impl<'a> Face<'a> {
     pub fn new(draft: &'a Draft) -> Face<'a> {
-        let root: Vec<f64> = draft.diagonal.iter().map(|d| d.sqrt()).collect();
+        Self::of(&draft.deck, |i| draft.slack[i] == 0.0)
+    }
+
+    /// With the contact rows that are `closed`.
+    pub fn of(deck: &'a Deck, closed: impl Fn(usize) -> bool) -> Face<'a> {
+        let diagonals = deck.bodies.iter().flat_map(|body| body.stiffness.diagonal());
+        let root: Vec<f64> = diagonals.map(f64::sqrt).collect();
         let mut rows = Vec::new();
-        let closed = |i: usize| draft.slack[i] == 0.0;
-        for (set, equality) in [(&draft.deck.contact, false), (&draft.deck.equalities, true)] {
+        for (set, equality) in [(&deck.contact, false), (&deck.equalities, true)] {
             for i in (0..set.len()).filter(|&i| equality || closed(i)) {
                 let mut entries = vec![0.0; root.len()];
                 set.matrix.row(i).for_each(|(j, value)| entries[j] = value / root[j]);
@@ -37,7 +42,7 @@ impl<'a> Face<'a> {
                 rows.push(Row { entries, compliance: set.compliance[i] / square });
             }
         }
-        let mut face = Face { deck: &draft.deck, root, rows, undetermined: 0 };
+        let mut face = Face { deck, root, rows, undetermined: 0 };
         face.undetermined = face.free_motions(ZERO);
         face
     }

@@ -135,6 +135,11 @@ pub const SECOND_MIXTURE: Mixture = Mixture {
     chance: 0.3,
 };
 
+/// The condition of any problem on the rows with a force, as [`Varied::condition`] has it.
+pub fn condition(deck: &Deck, forces: &[f64]) -> f64 {
+    condition::Face::of(deck, |i| forces[i] > 0.0).condition()
+}
+
 /// The case of one seed; seeds 13 apart are of the same main class.
 pub fn case(seed: u64) -> Varied {
     draft::case(seed, &MIXTURE)
