@@ -762,7 +762,8 @@ typedef struct feti_info {
    */
   int64_t direct_solves;
   /**
-   * 1: the answer is that of option finish = direct; 0: it was not asked for, or brought nothing.
+   * 1: the answer was finished directly (option finish); 0: that was not asked for or not needed, or
+   * brought nothing.
    */
   int64_t finished;
   /**

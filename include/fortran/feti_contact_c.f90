@@ -231,7 +231,8 @@ module feti_contact_c
     real(c_double) :: seconds_solve
     !> Faces on which the dual was solved directly.
     integer(c_int64_t) :: direct_solves
-    !> 1: the answer is that of option finish = direct; 0: it was not asked for, or brought nothing.
+    !> 1: the answer was finished directly (option finish); 0: that was not asked for or not needed, or
+    !> brought nothing.
     integer(c_int64_t) :: finished
     !> Columns of the dual operators of the bodies, one for each body that a row touches, computed since the
     !> problem was created.

@@ -131,7 +131,7 @@ pub struct feti_info {
     pub seconds_solve: f64,
     /// Faces on which the dual was solved directly.
     pub direct_solves: i64,
-    /// 1: the answer is that of option finish = direct; 0: it was not asked for, or brought nothing.
+    /// 1: the answer was finished directly (option finish); 0: that was not asked for or not needed, or brought nothing.
     pub finished: i64,
     /// Columns of the dual operators of the bodies, one for each body that a row touches, computed since the problem was
     /// created.

@@ -115,7 +115,7 @@ mod tests {
     use super::*;
     use crate::error::{Error, Kind};
     use crate::qp::Counts;
-    use crate::solver::solve::tests::two_springs;
+    use crate::solver::certifier::tests::two_springs;
     use crate::solver::steps::{Told, Voice};
     use crate::solver::watch::Stops;
     use crate::solver::{Problem, RowKind, RowsInput, SparseInput, Storage};

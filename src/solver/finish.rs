@@ -5,9 +5,9 @@ use crate::certificate::Certificate;
 use crate::error::{Kind, Result};
 use crate::linalg::vector::{axpy, weighted_norm};
 use crate::qp::{Face, Verdict};
+use crate::solver::certifier::{Certifier, Ending, Faces};
 use crate::solver::problem::Problem;
 use crate::solver::setup::Ready;
-use crate::solver::solve::{Certifier, Ending, Faces};
 
 /// Active sets at most.
 const FACES: usize = 8;
@@ -20,7 +20,7 @@ const MUCH_BETTER: f64 = 0.1;
 const NO_WORSE: f64 = 1.1;
 
 /// Rounding that grows by more than 1 / `SOFT` in K+ of a body, or stiffnesses across a row that differ by more than `UNEVEN`,
-/// make errors of an answer much larger than its certificate. Solids, plates and beams of thousands of elements stay below.
+/// make errors of an answer much larger than its certificate.
 const SOFT: f64 = 1e-4;
 const UNEVEN: f64 = 1e4;
 
@@ -217,7 +217,7 @@ impl Point {
 mod tests {
     use super::*;
     use crate::qp::Solution;
-    use crate::solver::solve::tests::two_springs;
+    use crate::solver::certifier::tests::two_springs;
 
     /// Springs 1 and 1 pushed by 3 and 1 against walls at 1 and 2: only the first touches, lambda = 2.
     #[test]

@@ -2,6 +2,7 @@
 
 mod body_facts;
 mod call;
+mod certifier;
 mod check;
 mod diagnosis;
 mod factors;

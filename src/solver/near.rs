@@ -3,9 +3,9 @@
 
 use crate::error::Result;
 use crate::qp::{Block, Judged, Qp, Restricted, Solution, Verdict};
+use crate::solver::certifier::Certifier;
 use crate::solver::fallback::{solve_dual, Means};
 use crate::solver::presolve::FAR;
-use crate::solver::solve::Certifier;
 use crate::solver::steps::Steps;
 
 /// Solves the dual for the rows that matter; the forces of the others are 0.

@@ -88,7 +88,7 @@ pub struct Report {
     pub preconditioner_applications: usize,
     /// Faces on which the dual was solved directly.
     pub direct_solves: usize,
-    /// The direct finish was asked for, and its answer is kept.
+    /// The direct finish followed (option `finish`), and its answer is kept.
     pub finished: bool,
     /// `|S|B||u|| + |S c|` at the first feasible forces: what the tolerance of the dual is relative to,
     /// `(force x length)^1/2`.

@@ -5,8 +5,8 @@ use crate::error::Result;
 use crate::linalg::vector::axpy;
 use crate::linalg::Matrix;
 use crate::qp;
+use crate::solver::certifier::{Certifier, Ending, Recovered};
 use crate::solver::islands::Island;
-use crate::solver::solve::{Certifier, Ending, Recovered};
 use crate::solver::travel::{travel, Change, Moving, Open};
 
 impl<'a> Certifier<'a> {

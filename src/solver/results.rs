@@ -6,12 +6,13 @@ use crate::error::{Error, Kind, Result};
 use crate::linalg::memory::zeros;
 use crate::linalg::Operator;
 use crate::solver::call::Ends;
+use crate::solver::certifier::{Ending, Recovered};
 use crate::solver::diagnosis::in_stack;
 use crate::solver::islands::Members;
 use crate::solver::problem::{Inverse, Problem};
 use crate::solver::report::{Report, RowState};
 use crate::solver::setup::Ready;
-use crate::solver::solve::{Ending, Recovered, Solved};
+use crate::solver::solve::Solved;
 
 /// The answer of the last solve, in the units of the host. Not a number where a group of bodies has none.
 pub(super) struct Answer {
