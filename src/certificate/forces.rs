@@ -140,7 +140,7 @@ pub(super) fn judge(
     let shares = [
         equilibrium(field, forces, p, (&strain, &terms)),
         excused(field, forces, p, (&strain, &terms)),
-        cancelled(field, forces, p, &strain),
+        cancelled(field, forces, p, (&strain, &terms)),
         grounded(field, p, (&strain, &terms)),
     ];
     for share in shares {
@@ -183,10 +183,9 @@ fn excused(field: &Field, forces: &Forces, p: usize, products: (&[f64], &[f64]))
 
 /// What rounding of forces of rows that cancel has excused, against `tol` of the forces of the island; no unit. Redundant rows may
 /// share a force as they like, but not so that it is lost between them.
-fn cancelled(field: &Field, forces: &Forces, p: usize, strain: &[f64]) -> f64 {
-    let start = field.range(p).start;
-    let of = |j: usize| (strain[j - start] - field.load(p, j) + field.push[j]).abs();
-    let left: Vec<f64> = field.range(p).map(|j| of(j).min(NOISE * field.push_terms[j])).collect();
+fn cancelled(field: &Field, forces: &Forces, p: usize, products: (&[f64], &[f64])) -> f64 {
+    let left = |j: usize| residual(field, p, products, j).0.abs().min(NOISE * field.push_terms[j]);
+    let left: Vec<f64> = field.range(p).map(left).collect();
     let allowed = field.data.limit * (forces.everywhere + forces.strain);
     share(field.size(p, &left), allowed)
 }

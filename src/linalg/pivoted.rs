@@ -12,7 +12,9 @@ use crate::error::Result;
 use crate::linalg::memory::{refusal, reserved, room, zeros, PRODUCTS};
 use crate::linalg::Matrix;
 
-/// A pivot of the matrix scaled to unit diagonal below this is rounding, whatever the entries are known to.
+/// A pivot of the matrix scaled to unit diagonal below this is none, as far as the entries are known, which may be little, ...
+const SINGULAR: f64 = 1e-11;
+/// ... and below this rounding in any case.
 const ROUNDING: f64 = 1e-14;
 
 pub struct PivotedCholesky {
@@ -27,9 +29,8 @@ pub struct PivotedCholesky {
 }
 
 impl PivotedCholesky {
-    /// `a` is n x n, its lower triangle is read. Pivots of the matrix scaled to unit diagonal up to `singular` are left out.
-    /// `None`: it has a negative or no finite diagonal.
-    pub fn new(mut a: Matrix, singular: f64) -> Result<Option<Self>> {
+    /// `a` is n x n, its lower triangle is read. `None`: it has a negative or no finite diagonal.
+    pub fn new(mut a: Matrix) -> Result<Option<Self>> {
         let n = a.rows;
         let mut inverse_root = zeros(n, "a dense factor")?;
         for i in 0..n {
@@ -60,7 +61,7 @@ impl PivotedCholesky {
         );
         let Ok(found) = done.map(|(info, _)| info.rank) else { return Ok(None) };
         let above = |limit: f64| (0..found).find(|&j| a.get(j, j) * a.get(j, j) <= limit).unwrap_or(found);
-        let (rank, full_rank) = (above(singular.max(ROUNDING)), above(ROUNDING));
+        let (rank, full_rank) = (above(SINGULAR), above(ROUNDING));
         Ok(Some(Self { order, factor: a, inverse_root, rank, full_rank }))
     }
 
@@ -71,6 +72,11 @@ impl PivotedCholesky {
     /// Pivots that are more than rounding are left out.
     pub fn is_truncated(&self) -> bool {
         self.rank < self.full_rank
+    }
+
+    /// With these pivots.
+    pub fn in_full(self) -> Self {
+        Self { rank: self.full_rank, ..self }
     }
 
     /// One solution of `A X = B` (n x k) where there is one, that which is 0 on the rows beyond the rank.
@@ -129,7 +135,7 @@ mod tests {
             let mut x = Matrix::zeros(n, 1).unwrap();
             (0..n).for_each(|i| x.set(i, 0, (i as f64).cos() / scale[i]));
             let b = Matrix { rows: n, cols: 1, data: image(&a, &x) };
-            let factor = PivotedCholesky::new(a.clone(), 1e-11).unwrap().unwrap();
+            let factor = PivotedCholesky::new(a.clone()).unwrap().unwrap();
             assert_eq!(factor.rank(), rank);
             let solution = factor.solve(&b).unwrap();
             let found = image(&a, &solution);
@@ -140,22 +146,21 @@ mod tests {
 
     #[test]
     fn nothing_and_zero_have_no_rank_and_a_negative_diagonal_is_refused() {
-        assert_eq!(PivotedCholesky::new(Matrix::default(), 0.0).unwrap().unwrap().rank(), 0);
-        let zero = PivotedCholesky::new(Matrix::zeros(2, 2).unwrap(), 0.0).unwrap().unwrap();
+        assert_eq!(PivotedCholesky::new(Matrix::default()).unwrap().unwrap().rank(), 0);
+        let zero = PivotedCholesky::new(Matrix::zeros(2, 2).unwrap()).unwrap().unwrap();
         assert_eq!(zero.rank(), 0);
         assert_eq!(zero.solve(&Matrix::zeros(2, 1).unwrap()).unwrap().data, [0.0; 2]);
         for entry in [-1.0, f64::NAN] {
-            assert!(PivotedCholesky::new(Matrix { rows: 1, cols: 1, data: vec![entry] }, 0.0)
-                .unwrap()
-                .is_none());
+            assert!(PivotedCholesky::new(Matrix { rows: 1, cols: 1, data: vec![entry] }).unwrap().is_none());
         }
     }
 
     #[test]
     fn weak_pivots_are_left_out_or_not_as_asked() {
         let a = Matrix { rows: 2, cols: 2, data: vec![1.0, 1.0, 1.0, 1.0 + 1e-12] };
-        for (singular, rank, x) in [(1e-11, 1, 1.0), (0.0, 2, 0.0)] {
-            let factor = PivotedCholesky::new(a.clone(), singular).unwrap().unwrap();
+        for (in_full, rank, x) in [(false, 1, 1.0), (true, 2, 0.0)] {
+            let factor = PivotedCholesky::new(a.clone()).unwrap().unwrap();
+            let factor = if in_full { factor.in_full() } else { factor };
             assert_eq!((factor.rank(), factor.is_truncated()), (rank, rank == 1));
             let b = Matrix { rows: 2, cols: 1, data: vec![1.0, 1.0 + 1e-12] };
             let found = factor.solve(&b).unwrap();

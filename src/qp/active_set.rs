@@ -37,43 +37,13 @@ impl Direct<'_> {
     }
 }
 
-/// What the method came to.
-pub struct Attempt<'a> {
-    /// `None`: it gave up.
-    pub settled: Option<Settled<'a>>,
-    pub counts: Counts,
-    /// The host or the time ended it.
-    pub ended: Option<Verdict>,
-}
-
-/// An active set that its own solution confirms.
-pub struct Settled<'a> {
-    pub x: Vec<f64>,
-    pub alpha: Vec<f64>,
-    /// Dimension of the part of alpha that the free rows leave undetermined.
-    pub undetermined: usize,
-    pub face: Face<'a>,
-}
-
 /// Goes on from `from` and its active set: solved when the judge accepts, else stalled with the point given.
 pub fn active_set(qp: Qp, direct: Direct, from: &Solution, judge: &mut dyn Judge) -> Result<Solution> {
-    let Attempt { settled, counts, ended } = settle(qp, direct, from)?;
-    if let Some(Settled { x, alpha, undetermined, .. }) = settled {
-        if judge.accepts(&x, &alpha)? {
-            let verdict = Verdict::Solved;
-            return Ok(Solution { x, alpha, undetermined, scale: from.scale, verdict, counts });
-        }
-    }
-    Ok(Solution { verdict: ended.unwrap_or(Verdict::Stalled), counts, ..from.clone() })
-}
-
-/// The same without a judge.
-pub fn settle<'a>(qp: Qp<'a>, direct: Direct<'a>, from: &Solution) -> Result<Attempt<'a>> {
     let mut run = Run::new(qp, direct, from)?;
     let (settled, ended) = match run.settle() {
-        Ok(face) => (face, None),
-        Err(error) if error.kind == Kind::Memory => (None, None),
-        Err(error) => (None, Some(Verdict::of_refusal(error)?)),
+        Ok(settled) => (settled, Verdict::Stalled),
+        Err(error) if error.kind == Kind::Memory => (false, Verdict::Stalled),
+        Err(error) => (false, Verdict::of_refusal(error)?),
     };
     run.coarse.select(&qp.at_bound(&run.x))?;
     let counts = Counts {
@@ -81,9 +51,11 @@ pub fn settle<'a>(qp: Qp<'a>, direct: Direct<'a>, from: &Solution) -> Result<Att
         coarse_factorisations: run.coarse.factorisations,
         ..run.counts
     };
-    let undetermined = run.coarse.deficiency();
-    let settled = settled.map(|face| Settled { x: run.x, alpha: run.alpha, undetermined, face });
-    Ok(Attempt { settled, counts, ended })
+    if settled && judge.accepts(&run.x, &run.alpha)? {
+        let (undetermined, verdict) = (run.coarse.deficiency(), Verdict::Solved);
+        return Ok(Solution { x: run.x, alpha: run.alpha, undetermined, scale: from.scale, verdict, counts });
+    }
+    Ok(Solution { verdict: ended, counts, ..from.clone() })
 }
 
 struct Run<'a> {
@@ -118,22 +90,22 @@ impl<'a> Run<'a> {
         })
     }
 
-    /// The face whose solution confirms it.
-    fn settle(&mut self) -> Result<Option<Face<'a>>> {
+    /// Goes from face to face; false where none is confirmed by its own solution.
+    fn settle(&mut self) -> Result<bool> {
         let mut visited: Vec<Vec<bool>> = Vec::new();
         while visited.len() < FACES && !visited.contains(&self.active) {
             let rows: Vec<usize> = (0..self.x.len()).filter(|&i| !self.active[i]).collect();
             if rows.len() + self.alpha.len() > self.direct.limit {
-                return Ok(None);
+                return Ok(false);
             }
-            let Some(face) = self.solve_on(rows)? else { return Ok(None) };
+            let Some(face) = self.solve_on(rows)? else { return Ok(false) };
             let next = self.next_set(&face)?;
             if next == self.active {
-                return Ok(Some(face));
+                return Ok(true);
             }
             visited.push(std::mem::replace(&mut self.active, next));
         }
-        Ok(None)
+        Ok(false)
     }
 
     /// Moves x and alpha to the minimum on the face; `None`: there is none. Its first product asks the host

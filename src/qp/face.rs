@@ -13,9 +13,6 @@ use crate::linalg::{Entries, Matrix, PivotedCholesky, SpdSolver};
 use crate::qp::coarse::Coarse;
 use crate::qp::Qp;
 
-/// Rows whose pivots are below this depend on others, as far as A is known, which may be little.
-const DEPENDENT: f64 = 1e-11;
-
 pub struct Face<'a> {
     qp: Qp<'a>,
     /// F, ascending, n of them.
@@ -36,31 +33,11 @@ pub struct Face<'a> {
 impl<'a> Face<'a> {
     /// `None`: A_FF is not positive semidefinite.
     pub fn new(qp: Qp<'a>, entries: &dyn Entries, rows: Vec<usize>) -> Result<Option<Self>> {
-        Self::with_rank(qp, entries, rows, DEPENDENT)
-    }
-
-    /// The face where no row depends on others but for rounding: for those who correct its solutions by better data than A.
-    pub fn in_full(self, entries: &dyn Entries) -> Result<Option<Self>> {
-        Self::with_rank(self.qp, entries, self.rows, 0.0)
-    }
-
-    fn with_rank(
-        qp: Qp<'a>,
-        entries: &dyn Entries,
-        rows: Vec<usize>,
-        dependent: f64,
-    ) -> Result<Option<Self>> {
-        let (n, r) = (rows.len(), qp.e.len());
+        let n = rows.len();
         let mut h = Matrix::zeros(n, n)?;
         entries.add_block(&rows, &mut h)?;
-        let mut modes = Matrix::zeros(n, r)?;
-        for (k, &i) in rows.iter().enumerate() {
-            qp.g_transposed.row(i).for_each(|(mode, v)| modes.set(k, mode, v));
-        }
         let (basis, undetermined) = resisted(&qp, &rows)?;
-        if let Some(basis) = &basis {
-            modes = product(&modes, basis)?;
-        }
+        let modes = modes(&qp, &rows, basis.as_ref())?;
         let penalty = penalty(&h, &modes);
         for l in 0..n {
             for mode in 0..modes.cols {
@@ -71,10 +48,17 @@ impl<'a> Face<'a> {
                 }
             }
         }
-        let Some(factor) = PivotedCholesky::new(h, dependent)? else { return Ok(None) };
-        let spread = factor.solve(&modes)?;
-        let coarse = if modes.cols == 0 { None } else { Some(schur_complement(&modes, &spread)?) };
+        let Some(factor) = PivotedCholesky::new(h)? else { return Ok(None) };
+        let (spread, coarse) = eliminated(&factor, &modes)?;
         Ok(Some(Self { qp, rows, factor, spread, penalty, basis, undetermined, coarse }))
+    }
+
+    /// The face where no row depends on others but for rounding: for those who correct its solutions by better data than A.
+    pub fn in_full(self) -> Result<Self> {
+        let modes = modes(&self.qp, &self.rows, self.basis.as_ref())?;
+        let factor = self.factor.in_full();
+        let (spread, coarse) = eliminated(&factor, &modes)?;
+        Ok(Self { factor, spread, coarse, ..self })
     }
 
     /// x on F and alpha with `A_FF x - G_F'alpha = force`, `G_F x = rest`: where there are many, one of them.
@@ -125,6 +109,18 @@ impl<'a> Face<'a> {
     }
 }
 
+/// `G_F'T`, n x rank.
+fn modes(qp: &Qp, rows: &[usize], basis: Option<&Matrix>) -> Result<Matrix> {
+    let mut modes = Matrix::zeros(rows.len(), qp.e.len())?;
+    for (k, &i) in rows.iter().enumerate() {
+        qp.g_transposed.row(i).for_each(|(mode, v)| modes.set(k, mode, v));
+    }
+    match basis {
+        Some(basis) => product(&modes, basis),
+        None => Ok(modes),
+    }
+}
+
 /// T, where the rows F do not resist all motions well, and how many are free.
 fn resisted(qp: &Qp, rows: &[usize]) -> Result<(Option<Matrix>, usize)> {
     let mut held = vec![true; qp.g_transposed.rows()];
@@ -149,12 +145,18 @@ fn penalty(h: &Matrix, modes: &Matrix) -> Vec<f64> {
     (0..modes.cols).map(|k| positive(stiffness) / positive(length(k))).collect()
 }
 
-fn schur_complement(modes: &Matrix, spread: &Matrix) -> Result<SpdSolver> {
+/// `H^-1 G_F'T` and S.
+fn eliminated(factor: &PivotedCholesky, modes: &Matrix) -> Result<(Matrix, Option<SpdSolver>)> {
+    let spread = factor.solve(modes)?;
     let r = modes.cols;
+    if r == 0 {
+        return Ok((spread, None));
+    }
     let mut s = Matrix::zeros(r, r)?;
     for j in 0..r {
         s.col_mut(j).copy_from_slice(&modes.mul_transposed(spread.col(j)));
     }
     let scale: Vec<f64> = (0..r).map(|k| if s.get(k, k) > 0.0 { s.get(k, k) } else { 1.0 }).collect();
-    SpdSolver::new(&s, &scale)
+    let solver = SpdSolver::new(&s, &scale)?;
+    Ok((spread, Some(solver)))
 }

@@ -22,7 +22,7 @@ mod restricted;
 mod smalbe;
 mod steps;
 
-pub use active_set::{active_set, settle, Attempt, Direct, Settled};
+pub use active_set::{active_set, Direct};
 pub use coarse::{fitted, undetermined};
 pub use conjugate::MOST as KEPT;
 pub use face::Face;

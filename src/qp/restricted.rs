@@ -49,7 +49,7 @@ impl<'a> Restricted<'a> {
 
     /// A solution without forces on the other rows, on these; none where it has some.
     fn part(&self, solution: Solution) -> Option<Solution> {
-        let x = gather(self.rows, &solution.x);
+        let x = self.start(&solution.x);
         (self.spread(&x) == solution.x).then_some(Solution { x, ..solution })
     }
 

@@ -106,6 +106,16 @@ impl<'a> Certifier<'a> {
         Ok(load)
     }
 
+    /// `c + C x - B u` of the rows of the dual, by the host's own data.
+    pub fn gaps_left(&self, u: &[f64], x: &[f64]) -> Vec<f64> {
+        let rows = &self.ready.rows;
+        let value = self.scaled.gaps.value.iter().enumerate();
+        let left = value.map(|(i, gap)| gap - rows.scaled.row_dot(i, u)).collect();
+        let mut left = rows.decoupling.solve(left);
+        left.iter_mut().zip(x).zip(&rows.compliance).for_each(|((g, x), c)| *g += c * x);
+        left
+    }
+
     /// An answer of u and x.
     pub fn with_forces(&self, u: Vec<f64>, x: &[f64]) -> Recovered {
         let ready = self.ready;
@@ -250,23 +260,25 @@ pub(super) mod tests {
             RowsInput { ptr: &[0, 1, 2], body: None, dof: &[0, 1], val: &[1.0, 1.0], rhs: Some(&[1.0, 2.0]) };
         problem.add_rows(RowKind::Inequality, rows).unwrap();
         problem.set_f64("certificate_tolerance", 1e-4).unwrap();
-        problem
-            .watched(|problem, watch| {
-                problem.set_up(watch)?;
-                let setup = problem.ready()?;
-                let ready = &setup.islands[0];
-                let dual = Scaled::new(problem, ready, &watch.stops)?;
-                let (qp, direct) = (dual.qp(ready, &ready.dual), problem.direct(setup, ready));
-                let faces = Faces { qp, direct, stops: &watch.stops };
-                let mut judge = Certifier::new(problem, ready, &dual, faces)?;
-                let scale = 3.0;
-                let (x, verdict) = (vec![2.0 * (1.0 + error), 0.0], Verdict::Solved);
-                let solved =
-                    Solution { x, alpha: vec![], undetermined: 0, scale, verdict, counts: Counts::default() };
-                work(&mut judge, &solved);
-                Ok(())
-            })
-            .unwrap();
+        let (x, verdict) = (vec![2.0 * (1.0 + error), 0.0], Verdict::Solved);
+        let solved =
+            Solution { x, alpha: vec![], undetermined: 0, scale: 3.0, verdict, counts: Counts::default() };
+        judging(&mut problem, |judge| work(judge, &solved));
+    }
+
+    /// `work` with the judge of the first island.
+    fn judging(problem: &mut Problem, work: impl Fn(&mut Certifier)) {
+        let test = |problem: &mut Problem, watch: &mut Watch| {
+            problem.set_up(watch)?;
+            let setup = problem.ready()?;
+            let ready = &setup.islands[0];
+            let dual = Scaled::new(problem, ready, &watch.stops)?;
+            let (qp, direct) = (dual.qp(ready, &ready.dual), problem.direct(setup, ready));
+            let faces = Faces { qp, direct, stops: &watch.stops };
+            work(&mut Certifier::new(problem, ready, &dual, faces)?);
+            Ok(())
+        };
+        problem.watched(test).unwrap();
     }
 
     #[test]
@@ -306,22 +318,14 @@ pub(super) mod tests {
             rhs: Some(&[1.0, 2.0]),
         };
         problem.add_rows(RowKind::Inequality, rows).unwrap();
-        let test = |problem: &mut Problem, watch: &mut Watch| {
-            problem.set_up(watch)?;
-            let setup = problem.ready()?;
-            let ready = &setup.islands[0];
-            let dual = Scaled::new(problem, ready, &watch.stops)?;
-            let (qp, direct) = (dual.qp(ready, &ready.dual), problem.direct(setup, ready));
-            let faces = Faces { qp, direct, stops: &watch.stops };
-            let mut judge = Certifier::new(problem, ready, &dual, faces)?;
+        judging(&mut problem, |judge| {
             for (x, alpha) in [([0.0, 0.0], 0.0), ([2.0, 0.0], -7.0), ([0.5, 1.5], 2.0)] {
-                let u = judge.displacement(&x, &[alpha])?;
-                let moved = [0, 1].map(|i| ready.rows.matrix.row_dot(i, &u));
-                let expected = norm(&moved) + norm(&dual.gaps.dual).min(norm(&moved));
-                assert!((judge.scale(&x, &[alpha])? - expected).abs() <= 1e-14 * expected, "{alpha}");
+                let u = judge.displacement(&x, &[alpha]).unwrap();
+                let moved = [0, 1].map(|i| judge.ready.rows.matrix.row_dot(i, &u));
+                let expected = norm(&moved) + norm(&judge.scaled.gaps.dual).min(norm(&moved));
+                let scale = judge.scale(&x, &[alpha]).unwrap();
+                assert!((scale - expected).abs() <= 1e-14 * expected, "{alpha}");
             }
-            Ok(())
-        };
-        problem.watched(test).unwrap();
+        });
     }
 }

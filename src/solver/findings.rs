@@ -134,7 +134,7 @@ impl Problem {
         let mut touched = vec![false; self.bodies.len()];
         for Ready { island, rows, .. } in &setup.islands {
             for &j in &rows.scaled.col {
-                touched[island.bodies[island.ranges.partition_point(|range| range.end <= j)]] = true;
+                touched[island.bodies[island.body_of(j)]] = true;
             }
         }
         (0..touched.len()).filter(|&p| !touched[p]).collect()

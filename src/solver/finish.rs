@@ -6,9 +6,12 @@ use crate::error::{Kind, Result};
 use crate::linalg::vector::{axpy, weighted_norm};
 use crate::qp::{Face, Verdict};
 use crate::solver::certifier::{Certifier, Ending, Faces};
+use crate::solver::presolve::Gaps;
 use crate::solver::problem::Problem;
 use crate::solver::setup::Ready;
 
+/// Rounding of a gap, relative to its terms.
+const NOISE: f64 = 64.0 * f64::EPSILON;
 /// Active sets at most.
 const FACES: usize = 8;
 /// Corrections on one of them at most.
@@ -40,12 +43,12 @@ impl Problem {
 
 /// A row joins bodies whose shares of `b D^-1 b'` are far apart.
 fn is_uneven(ready: &Ready) -> bool {
-    let (rows, ranges) = (&ready.rows.scaled, &ready.island.ranges);
+    let rows = &ready.rows.scaled;
     (0..rows.rows()).any(|i| {
         let mut shares: Vec<(usize, f64)> = Vec::new();
         for (j, v) in rows.row(i) {
             let share = v * v / ready.rows.metric[j];
-            let body = ranges.partition_point(|range| range.end <= j);
+            let body = ready.island.body_of(j);
             match shares.last_mut() {
                 Some(last) if last.0 == body => last.1 += share,
                 _ => shares.push((body, share)),
@@ -91,12 +94,12 @@ impl Finish<'_, '_> {
                 break;
             }
             stops.check()?;
-            let Some(face) = Face::new(*qp, direct.entries, rows)? else { break };
+            let Some(mut face) = Face::new(*qp, direct.entries, rows)? else { break };
             self.ending.solution.counts.direct += 1;
             point.hold(&active);
             self.correct(&mut point, &face)?;
             if face.is_truncated() {
-                let Some(face) = face.in_full(direct.entries)? else { break };
+                face = face.in_full()?;
                 self.correct(&mut point, &face)?;
             }
             if self.ending.judgement.certificate.worst() <= ROUNDING {
@@ -177,7 +180,7 @@ impl Point {
     fn correct(&mut self, judge: &Certifier, face: &Face) -> Result<f64> {
         let (dual, rows) = (&judge.ready.dual, &judge.ready.rows);
         let mut load = judge.load_left(&self.u, &self.x)?;
-        let left = self.gaps_left(judge).0;
+        let left = judge.gaps_left(&self.u, &self.x);
         let mut gaps = vec![0.0; self.x.len()];
         face.rows().iter().for_each(|&i| gaps[i] = left[i]);
         let d = dual.rhs(&judge.ready.moved(judge.threads, &load)?, &gaps);
@@ -193,22 +196,13 @@ impl Point {
         Ok(weighted_norm(&moved, |i| rows.metric[i]))
     }
 
-    /// `c + C x - B u` of every row, and what rounding may have made of it.
-    fn gaps_left(&self, judge: &Certifier) -> (Vec<f64>, Vec<f64>) {
-        let rows = &judge.ready.rows;
-        let value = || judge.scaled.gaps.value.iter().enumerate();
-        let left = value().map(|(i, gap)| gap - rows.scaled.row_dot(i, &self.u)).collect();
-        let mut left: Vec<f64> = rows.decoupling.solve(left);
-        left.iter_mut().zip(&self.x).zip(&rows.compliance).for_each(|((g, x), c)| *g += c * x);
-        let terms = |i: usize| rows.scaled.row(i).map(|(j, v)| (v * self.u[j]).abs()).sum::<f64>();
-        (left, value().map(|(i, gap)| 64.0 * f64::EPSILON * (gap.abs() + terms(i))).collect())
-    }
-
     /// The active set that signs of forces and gaps ask for.
     fn active(&self, judge: &Certifier) -> Vec<bool> {
-        let (left, noise) = self.gaps_left(judge);
-        let bounded = &judge.scaled.gaps.bounded;
-        let stays = |i: usize| if self.x[i] == 0.0 { left[i] >= -noise[i] } else { self.x[i] < 0.0 };
+        let (left, rows) = (judge.gaps_left(&self.u, &self.x), &judge.ready.rows.scaled);
+        let Gaps { value, bounded, .. } = &judge.scaled.gaps;
+        let terms = |i: usize| rows.row(i).map(|(j, v)| (v * self.u[j]).abs()).sum::<f64>();
+        let noise = |i: usize| NOISE * (value[i].abs() + terms(i));
+        let stays = |i: usize| if self.x[i] == 0.0 { left[i] >= -noise(i) } else { self.x[i] < 0.0 };
         (0..self.x.len()).map(|i| bounded[i] && stays(i)).collect()
     }
 }

@@ -41,6 +41,11 @@ impl Island {
         self.ranges.last().map_or(0, |range| range.end)
     }
 
+    /// Place among its bodies of the one that has unknown j of the island.
+    pub fn body_of(&self, j: usize) -> usize {
+        self.ranges.partition_point(|range| range.end <= j)
+    }
+
     pub fn members(&self, kind: RowKind) -> &Members {
         match kind {
             RowKind::Inequality => &self.contact,

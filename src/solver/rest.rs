@@ -30,7 +30,7 @@ impl<'a> Certifier<'a> {
     /// The answer of least travel with its amplitudes, for the forces x; none where rows resist every motion. How far that
     /// of the method has travelled plays no part, not even by its rounding.
     pub fn at_rest(&self, answer: &Recovered, x: &[f64]) -> Result<Option<(Recovered, Vec<f64>)>> {
-        let (dual, rows) = (&self.ready.dual, &self.ready.rows);
+        let dual = &self.ready.dual;
         let held = self.ready.without_force(&answer.lambda);
         let free = qp::undetermined(&dual.coarse, &held, dual.rounding())?;
         if free.cols == 0 {
@@ -41,10 +41,7 @@ impl<'a> Certifier<'a> {
         // what K+ has lost must not be taken for a motion
         let left = self.load_left(&u, x)?;
         axpy(1.0, &self.ready.displacement(self.threads, &left, &unmoved)?, &mut u);
-        let value = self.scaled.gaps.value.iter().enumerate();
-        let open = value.map(|(i, gap)| gap - rows.scaled.row_dot(i, &u)).collect();
-        let mut open = rows.decoupling.solve(open);
-        open.iter_mut().zip(x).zip(&rows.compliance).for_each(|((g, x), c)| *g += c * x);
+        let open = self.gaps_left(&u, x);
         let mut alpha = qp::fitted(&dual.coarse, &held, &open, dual.rounding())?;
         axpy(1.0, &dual.rigid_motion(&alpha, u.len()), &mut u);
         let Some(change) = self.way_to_rest(&u, &answer.lambda, free) else { return Ok(None) };
