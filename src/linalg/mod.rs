@@ -28,6 +28,7 @@ mod supernodes;
 pub mod symmetric;
 pub mod trailing;
 mod triangular;
+pub mod twofold;
 mod updates;
 pub mod vector;
 

@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use crate::error::Result;
 use crate::linalg::memory::{copied, reserved};
+use crate::linalg::twofold::Twofold;
 use crate::linalg::{Array, Matrix, Operator};
 
 /// Columns that take one pass over the matrix.
@@ -81,6 +82,19 @@ impl Symmetric {
                 y[j] += k_ij * x[i];
             }
             y[i] += sum;
+        }
+    }
+
+    /// `y += by K x` in twice the digits, by a power of two.
+    pub fn add_twofold(&self, by: f64, x: &[f64], y: &mut [Twofold]) {
+        for i in 0..self.order() {
+            let last = self.ptr[i + 1] - 1;
+            for at in self.ptr[i]..last {
+                let (j, k_ij) = (self.col[at] as usize, by * self.val[at]);
+                y[i].add_product(k_ij, x[j]);
+                y[j].add_product(k_ij, x[i]);
+            }
+            y[i].add_product(by * self.val[last], x[i]);
         }
     }
 
@@ -249,6 +263,13 @@ mod tests {
         let mut terms = [0.0; 3];
         chain().mul_with_terms(&[1.0, -2.0, 4.0], &mut y, &mut terms);
         assert_eq!((y, terms), ([4.0, -9.0, 6.0], [4.0, 9.0, 6.0]));
+    }
+
+    #[test]
+    fn a_product_in_twice_the_digits_keeps_what_cancels() {
+        let mut left = [Twofold::from(1e16), Twofold::default(), Twofold::from(-1e16)];
+        chain().add_twofold(-1.0, &[1e16 / 2.0, 0.5, -1e16], &mut left);
+        assert_eq!(left.map(Twofold::value), [0.5, -1e16 / 2.0 - 1.0, 0.5]);
     }
 
     /// Also where a number too small for a double appears in the copy.

@@ -1,0 +1,62 @@
+//! Sums of products in twice the digits of f64: Dot2 of Ogita, Rump, Oishi, "Accurate sum and dot product" (2005).
+
+/// A sum that is right as if computed with 106 bits and rounded once, but for terms that over- or underflow.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Twofold {
+    sum: f64,
+    /// What roundings of `sum` and of products have lost.
+    lost: f64,
+}
+
+impl Twofold {
+    pub fn add(&mut self, a: f64) {
+        let sum = self.sum + a;
+        let taken = sum - self.sum;
+        self.lost += (self.sum - (sum - taken)) + (a - taken);
+        self.sum = sum;
+    }
+
+    pub fn add_product(&mut self, a: f64, b: f64) {
+        let product = a * b;
+        self.add(product);
+        self.lost += a.mul_add(b, -product);
+    }
+
+    /// The sum in f64; what is not finite stays what f64 makes of it.
+    pub fn value(self) -> f64 {
+        if self.sum.is_finite() {
+            self.sum + self.lost
+        } else {
+            self.sum
+        }
+    }
+}
+
+impl From<f64> for Twofold {
+    fn from(sum: f64) -> Self {
+        Self { sum, lost: 0.0 }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Twofold;
+
+    #[test]
+    fn a_sum_that_cancels_keeps_what_is_left() {
+        let mut sum = Twofold::from(1e16);
+        [1.0, -1e16].into_iter().for_each(|a| sum.add(a));
+        assert_eq!(sum.value(), 1.0);
+        let mut square = Twofold::default();
+        square.add_product(1e8 + 1.0, 1e8 - 1.0);
+        square.add_product(-1e8, 1e8);
+        assert_eq!(square.value(), -1.0);
+    }
+
+    #[test]
+    fn what_is_not_finite_stays_so() {
+        let mut sum = Twofold::from(f64::INFINITY);
+        sum.add_product(1.0, -2.0);
+        assert_eq!(sum.value(), f64::INFINITY);
+    }
+}
