@@ -5,7 +5,7 @@ use crate::certificate::field::Field;
 use crate::certificate::{positive, share, Certificate, Entry, NOISE};
 use crate::constraints::{RowKind, RowSet};
 use crate::error::Result;
-use crate::linalg::vector::weighted_norm;
+use crate::linalg::vector::{ratio, weighted_norm};
 use crate::linalg::Matrix;
 
 /// The part of the forces of the island that rounding may excuse in the equilibrium of one body: where a body has moved so
@@ -21,7 +21,8 @@ pub(super) struct Forces {
     /// `(|f|^2 + |r|^2)^1/2` of all bodies without loads on grounded unknowns, force. Without any such load the forces that the
     /// motion asked for would take belong to it.
     everywhere: f64,
-    /// Deformation of the island, `U |delta|_D` without grounded unknowns, force.
+    /// Deformation of every body, `U |delta|_D` without grounded unknowns, and of the island, force.
+    strains: Vec<f64>,
     strain: f64,
     /// There are forces.
     acting: bool,
@@ -44,11 +45,18 @@ impl Forces {
         let strains = (0..field.data.bodies.len()).map(|p| {
             let strain = field.free(p, |j| positive(field.own_deformation[j] - rounding(j)));
             let start = field.range(p).start;
-            weighted_norm(&strain, |i| field.metric[start + i])
+            field.unit * weighted_norm(&strain, |i| field.metric[start + i])
         });
-        let strain = field.unit * norm_of(strains.collect());
+        let strains: Vec<f64> = strains.collect();
+        let strain = norm_of(strains.clone());
         let unloaded = loads.iter().map(|load| *load == 0.0).collect();
-        Self { sizes, unloaded, everywhere: forces + moved, strain, acting: forces > 0.0 }
+        Self { sizes, unloaded, everywhere: forces + moved, strains, strain, acting: forces > 0.0 }
+    }
+
+    /// The largest `(|f| + |r|)_{D^-1} / |delta|_D` of a body, no unit.
+    pub fn leverage(&self) -> f64 {
+        let of = |(size, strain): (&Option<f64>, &f64)| ratio(size.unwrap_or(0.0), *strain);
+        self.sizes.iter().zip(&self.strains).map(of).fold(0.0, f64::max)
     }
 
     /// Rounding of the largest forces, where body p has neither a load nor any other forces: force.

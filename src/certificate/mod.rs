@@ -114,6 +114,9 @@ pub struct Judgement {
     pub contact: Vec<RowJudgement>,
     /// `|S L|` over all rows, (force x length)^1/2: the lengths that gaps are measured against, without any travel.
     pub length: f64,
+    /// The largest `(|f| + |r|)_{D^-1} / |delta|_D` of a body, no unit: the certificate overlooks errors of a deformation that are
+    /// so many times tol of it.
+    pub leverage: f64,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -150,7 +153,8 @@ pub fn certify(data: &Data, answer: Answer, response: &mut dyn Response) -> Resu
         excuses::by_rounding(data.limit, &energies, &mut rows, response, &mut certificate)?;
     }
     let bodies = rows.force_errors(&field);
-    Ok(Judgement { certificate, bodies, contact: rows.limits(), length: rows.length(&field) })
+    let (length, leverage) = (rows.length(&field), forces.leverage());
+    Ok(Judgement { certificate, bodies, contact: rows.limits(), length, leverage })
 }
 
 /// `D = diag K` over all unknowns, force / length.

@@ -32,6 +32,21 @@ fn the_exact_answer_passes_in_any_unit_and_each_fault_is_named() {
     }
 }
 
+/// Springs 4 and 4 in a line, D = (8, 4), the end pushed by 2 and held back by 1: `|f| + |r| = (2 + 1) / 2`, `|delta|_D^2 = 8/16 + 4/4`.
+#[test]
+fn leverage_is_how_many_times_forces_exceed_what_they_deform() {
+    for unit in [1.0, 1e-20, 2.1e11] {
+        let parts = vec![chain(&[4.0 * unit], &[(0, 4.0 * unit)]).loaded(&[(1, 2.0 * unit)])];
+        let model = Model { parts, contact: vec![(vec![(1, 1.0)], 0.5, 0.0)], ..Model::default() };
+        let leverage = |u: [f64; 2]| {
+            let point = Point { u: u.to_vec(), lambda: vec![unit], mu: vec![] };
+            model.judged(&point).0.leverage
+        };
+        assert!((leverage([0.25, 0.5]) - 1.5f64.sqrt()).abs() < 1e-12);
+        assert_eq!(leverage([0.0, 0.0]), f64::INFINITY);
+    }
+}
+
 /// A spring of stiffness 4 in the row: 4 u = 2 - lambda, u - .25 = lambda / 4, so that lambda = .5, u = .375.
 #[test]
 fn the_answer_on_a_compliant_row_passes_in_any_unit_and_each_fault_is_named() {
