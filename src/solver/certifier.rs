@@ -1,17 +1,18 @@
 //! Judges points of the dual of one island by the certificate of the answers that they give.
 
-use std::cell::Cell;
+use std::cell::{Cell, RefCell};
 use std::time::{Duration, Instant};
 
 use crate::certificate::{certify, Answer as AnswerView, Data, Judgement, Unasked};
 use crate::error::Result;
-use crate::linalg::memory::{copied, zeros};
+use crate::linalg::memory::copied;
 use crate::linalg::vector::{axpy, norm};
 use crate::qp::{Direct, Judge, Qp, Solution, Verdict};
 use crate::solver::finish::finish;
 use crate::solver::presolve::Gaps;
 use crate::solver::problem::Problem;
 use crate::solver::response::ByInverse;
+use crate::solver::rigid::Cleaner;
 use crate::solver::scaled::Scaled;
 use crate::solver::setup::Ready;
 use crate::solver::watch::Stops;
@@ -46,6 +47,8 @@ pub(super) struct Certifier<'a> {
     pub faces: Faces<'a>,
     /// V of the loads, once it has been asked for.
     work: Cell<Option<f64>>,
+    /// What cleans the motions of every body, once it has been asked for.
+    pub cleaners: RefCell<Vec<Option<Cleaner>>>,
     /// The last point accepted, with its answer.
     pub accepted: Option<Accepted>,
     /// Time for answers recovered and certified.
@@ -55,12 +58,18 @@ pub(super) struct Certifier<'a> {
     pub reached: Vec<usize>,
     /// Ratio of the worst entry of the point refused last.
     missed: Option<f64>,
+    /// Rounding grows by more than 1 / `SOFT` in K+ of a body.
+    pub soft: bool,
 }
+
+/// Least `softness` of a K+ whose losses do not matter.
+const SOFT: f64 = 1e-4;
 
 /// A point (x, alpha) of the dual whose answer has passed, and its amplitudes where it had to be brought to rest.
 pub(super) struct Accepted {
     point: (Vec<f64>, Vec<f64>),
     alpha_at_rest: Option<Vec<f64>>,
+    deformed: Vec<f64>,
     recovered: Recovered,
     judgement: Judgement,
 }
@@ -68,6 +77,8 @@ pub(super) struct Accepted {
 /// What a solve ends with.
 pub(super) struct Ending {
     pub solution: Solution,
+    /// u but for a motion by R, length.
+    pub deformed: Vec<f64>,
     pub recovered: Recovered,
     pub judgement: Judgement,
 }
@@ -75,49 +86,60 @@ pub(super) struct Ending {
 impl<'a> Certifier<'a> {
     pub fn new(problem: &'a Problem, ready: &'a Ready, scaled: &'a Scaled, faces: Faces<'a>) -> Result<Self> {
         let (data, threads) = (problem.data(&ready.island)?, problem.threads());
-        let work = Cell::new(None);
+        let (work, cleaners) = (Cell::new(None), RefCell::default());
         let (far, reached, spent) = (Vec::new(), Vec::new(), Duration::ZERO);
         let (accepted, missed) = (None, None);
-        Ok(Self { ready, scaled, data, threads, faces, work, accepted, spent, far, reached, missed })
+        let inverses = ready.island.bodies.iter().filter_map(|&p| problem.bodies[p].inverse.as_ref());
+        let soft = inverses.map(|inverse| inverse.kplus.softness).any(|softness| softness < SOFT);
+        Ok(Self {
+            ready,
+            scaled,
+            data,
+            threads,
+            faces,
+            work,
+            cleaners,
+            accepted,
+            spent,
+            far,
+            reached,
+            missed,
+            soft,
+        })
     }
 
-    /// (17), and lambda = 2^p S L'^-1 x on the rows that carry the multipliers of their groups.
-    pub fn recover(&self, x: &[f64], alpha: &[f64]) -> Result<Recovered> {
-        Ok(self.with_forces(self.displacement(x, alpha)?, x))
+    /// (17) and lambda = 2^p S L'^-1 x on the rows that carry the multipliers of their groups, for u but for its motion.
+    pub fn recover(&self, deformed: &[f64], x: &[f64], alpha: &[f64]) -> Recovered {
+        let mut u = self.ready.dual.rigid_motion(alpha, deformed.len());
+        axpy(1.0, deformed, &mut u);
+        self.with_forces(u, x)
     }
 
-    /// (17): `u = K+ (f - B'x) + R alpha`
-    pub fn displacement(&self, x: &[f64], alpha: &[f64]) -> Result<Vec<f64>> {
+    /// `K+ (f - B'x)`; where K+ is soft what it has lost is added, lest it be taken for a motion.
+    pub fn deformed(&self, x: &[f64]) -> Result<Vec<f64>> {
         let mut load = copied(&self.scaled.load, "a displacement")?;
         self.ready.rows.take_forces(x, &mut load);
-        self.ready.displacement(self.threads, &load, alpha)
-    }
-
-    /// `f - K u - B'x` by the host's own data, in units of 2^p.
-    pub fn load_left(&self, u: &[f64], x: &[f64]) -> Result<Vec<f64>> {
-        let mut load = copied(&self.scaled.load, "what is left of the loads")?;
-        for body in &self.data.bodies {
-            let range = body.range();
-            let mut strain = zeros(range.len(), "what is left of the loads")?;
-            body.stiffness.mul(&u[range.clone()], &mut strain)?;
-            axpy(-1.0 / self.ready.island.unit, &strain, &mut load[range]);
+        let mut deformed = self.inverse(&load)?;
+        if self.soft {
+            let lost = self.inverse(&self.load_left(&deformed, x)?)?;
+            axpy(1.0, &lost, &mut deformed);
         }
-        self.ready.rows.take_forces(x, &mut load);
-        Ok(load)
+        Ok(deformed)
     }
 
-    /// `c + C x - B u` of the rows of the dual, by the host's own data.
-    pub fn gaps_left(&self, u: &[f64], x: &[f64]) -> Vec<f64> {
-        let rows = &self.ready.rows;
-        let value = self.scaled.gaps.value.iter().enumerate();
-        let left = value.map(|(i, gap)| gap - rows.scaled.row_dot(i, u)).collect();
-        let mut left = rows.decoupling.solve(left);
-        left.iter_mut().zip(x).zip(&rows.compliance).for_each(|((g, x), c)| *g += c * x);
-        left
+    /// `K+ f`
+    pub fn inverse(&self, load: &[f64]) -> Result<Vec<f64>> {
+        self.ready.displacement(self.threads, load, &vec![0.0; self.ready.dual.modes()])
     }
 
     /// An answer of u and x.
     pub fn with_forces(&self, u: Vec<f64>, x: &[f64]) -> Recovered {
+        let (lambda, mu) = self.forces_of_host(x);
+        Recovered { u, lambda, mu }
+    }
+
+    /// `lambda = 2^p S L'^-1 x` and mu, on the rows that carry the multipliers of their groups.
+    pub fn forces_of_host(&self, x: &[f64]) -> (Vec<f64>, Vec<f64>) {
         let ready = self.ready;
         let mut lambda = vec![0.0; ready.rows.scale.len()];
         let x = ready.rows.decoupling.solve_transposed(x.to_vec());
@@ -125,27 +147,21 @@ impl<'a> Certifier<'a> {
             lambda[holder] = x * ready.rows.scale[holder] * ready.island.unit;
         }
         let mu = lambda.split_off(ready.rows.contact);
-        Recovered { u, lambda, mu }
+        (lambda, mu)
     }
 
     /// The answer of a solution; that of the point just accepted is there already.
     pub fn ending(&mut self, mut solution: Solution) -> Result<Ending> {
         let known = self.accepted.take();
         let known = known.filter(|known| known.point.0 == solution.x && known.point.1 == solution.alpha);
-        let (recovered, judgement) = match known {
-            Some(known) => {
-                solution.alpha = known.alpha_at_rest.unwrap_or(solution.alpha);
-                (known.recovered, known.judgement)
-            }
-            None => self.certified(&solution.x, &solution.alpha)?,
-        };
-        Ok(Ending { solution, recovered, judgement })
-    }
-
-    fn certified(&self, x: &[f64], alpha: &[f64]) -> Result<(Recovered, Judgement)> {
-        let recovered = self.recover(x, alpha)?;
+        if let Some(Accepted { alpha_at_rest, deformed, recovered, judgement, .. }) = known {
+            solution.alpha = alpha_at_rest.unwrap_or(solution.alpha);
+            return Ok(Ending { solution, deformed, recovered, judgement });
+        }
+        let deformed = self.deformed(&solution.x)?;
+        let recovered = self.recover(&deformed, &solution.x, &solution.alpha);
         let judgement = self.judged(&recovered)?;
-        Ok((recovered, judgement))
+        Ok(Ending { solution, deformed, recovered, judgement })
     }
 
     /// The same where rounding of the loads excuses nothing, and K+ is not asked.
@@ -183,14 +199,15 @@ impl Judge for Certifier<'_> {
 
     fn accepts(&mut self, x: &[f64], alpha: &[f64]) -> Result<bool> {
         let begun = Instant::now();
-        let mut recovered = self.recover(x, alpha)?;
+        let deformed = self.deformed(x)?;
+        let mut recovered = self.recover(&deformed, x, alpha);
         // more steps may do what K+ would have to explain
         let first = self.missed.is_none();
         let mut judgement = if first { self.judged_strictly(&recovered)? } else { self.judged(&recovered)? };
         let (mut alpha_at_rest, mut reached) = (None, Vec::new());
         if !judgement.certificate.passed() {
             // a travel that nothing resists may hide the rest
-            if let Some((rested, amplitudes)) = self.at_rest(&recovered, x)? {
+            if let Some((rested, amplitudes)) = self.at_rest(&recovered, x, &deformed, false)? {
                 let at_rest = self.judged(&rested)?;
                 if at_rest.certificate.passed() {
                     (recovered, judgement, alpha_at_rest) = (rested, at_rest, Some(amplitudes));
@@ -206,7 +223,7 @@ impl Judge for Certifier<'_> {
         self.missed = Some(judgement.certificate.worst()).filter(|_| !passed);
         if passed {
             let point = (copied(x, "forces")?, copied(alpha, "amplitudes")?);
-            self.accepted = Some(Accepted { point, alpha_at_rest, recovered, judgement });
+            self.accepted = Some(Accepted { point, alpha_at_rest, deformed, recovered, judgement });
         }
         self.reached = reached;
         // those rows come first: without them there is nothing to make better
@@ -220,15 +237,15 @@ impl Judge for Certifier<'_> {
     fn mended(&mut self, solution: &Solution) -> Result<Option<Solution>> {
         let begun = Instant::now();
         let mut ending = self.ending(solution.clone())?;
-        self.bring_to_rest(&mut ending)?;
+        self.bring_to_rest(&mut ending, false)?;
         let mended = finish(self, &mut ending)?;
         self.spent += begun.elapsed();
         if !mended {
             return Ok(None);
         }
-        let Ending { solution, recovered, judgement } = ending;
+        let Ending { solution, deformed, recovered, judgement } = ending;
         let point = (copied(&solution.x, "forces")?, copied(&solution.alpha, "amplitudes")?);
-        self.accepted = Some(Accepted { point, alpha_at_rest: None, recovered, judgement });
+        self.accepted = Some(Accepted { point, alpha_at_rest: None, deformed, recovered, judgement });
         self.reached.clear();
         Ok(Some(Solution { verdict: Verdict::Solved, ..solution }))
     }
@@ -320,7 +337,7 @@ pub(super) mod tests {
         problem.add_rows(RowKind::Inequality, rows).unwrap();
         judging(&mut problem, |judge| {
             for (x, alpha) in [([0.0, 0.0], 0.0), ([2.0, 0.0], -7.0), ([0.5, 1.5], 2.0)] {
-                let u = judge.displacement(&x, &[alpha]).unwrap();
+                let u = judge.recover(&judge.deformed(&x).unwrap(), &x, &[alpha]).u;
                 let moved = [0, 1].map(|i| judge.ready.rows.matrix.row_dot(i, &u));
                 let expected = norm(&moved) + norm(&judge.scaled.gaps.dual).min(norm(&moved));
                 let scale = judge.scale(&x, &[alpha]).unwrap();

@@ -1,6 +1,8 @@
 //! Option `finish`: after a solve, forces and displacements together are corrected by the residuals of the host's own data,
 //! each time on the rows that these data show to be in contact, until rounding is all that is left.
 
+use std::ops::Range;
+
 use crate::certificate::Certificate;
 use crate::error::{Kind, Result};
 use crate::linalg::vector::{axpy, weighted_norm};
@@ -19,23 +21,20 @@ const CORRECTIONS: usize = 4;
 /// Ratios of the certificate below this are rounding.
 const ROUNDING: f64 = 1e-4;
 /// A ratio so many times another one is much better, or no worse.
-const MUCH_BETTER: f64 = 0.1;
+const MUCH_BETTER: f64 = 0.5;
 const NO_WORSE: f64 = 1.1;
 
-/// Rounding that grows by more than 1 / `SOFT` in K+ of a body, or stiffnesses across a row that differ by more than `UNEVEN`,
-/// make errors of an answer much larger than its certificate.
-const SOFT: f64 = 1e-4;
+/// Beside soft bodies, stiffnesses across a row that differ by more than `UNEVEN`, or forces that cancel in a body to a part of them in
+/// this range, make errors of an answer much larger than its certificate. Of less than that rounding of the loads decides.
 const UNEVEN: f64 = 1e4;
+const CANCELLING: Range<f64> = 1e4..1e9;
 
 impl Problem {
     /// Whether the answer of an island is to be finished, as option `finish` has it. `automatic`: where an error that passes the
     /// certificate may be large elsewhere.
-    pub(super) fn is_to_finish(&self, ready: &Ready) -> bool {
-        let is_soft = |p: &usize| {
-            let inverse = self.bodies[*p].inverse.as_ref();
-            inverse.is_some_and(|inverse| inverse.kplus.softness < SOFT)
-        };
-        let is_delicate = || ready.island.bodies.iter().any(is_soft) || is_uneven(ready);
+    pub(super) fn is_to_finish(&self, judge: &Certifier, ending: &Ending) -> bool {
+        let is_cancelling = CANCELLING.contains(&ending.judgement.leverage);
+        let is_delicate = || is_cancelling || judge.soft || is_uneven(judge.ready);
         let default = self.settings.method == c"proportioning" && self.settings.finish == c"automatic";
         self.settings.finish == c"direct" || default && is_delicate()
     }
@@ -70,7 +69,7 @@ pub(super) fn finish(judge: &Certifier, ending: &mut Ending) -> Result<bool> {
     }
     let Finish { ending, replaced, .. } = finish;
     if replaced {
-        judge.bring_to_rest(ending)?;
+        judge.bring_to_rest(ending, true)?;
     }
     Ok(replaced)
 }
@@ -86,7 +85,7 @@ impl Finish<'_, '_> {
     fn run(&mut self) -> Result<()> {
         let Faces { qp, direct, stops } = &self.judge.faces;
         let mut active = qp.at_bound(&self.ending.solution.x);
-        let mut point = Point::of(self.ending);
+        let mut point = Point::of(self.judge, self.ending)?;
         let mut visited: Vec<Vec<bool>> = Vec::new();
         while visited.len() < FACES && !visited.contains(&active) {
             let rows: Vec<usize> = (0..active.len()).filter(|&i| !active[i]).collect();
@@ -101,9 +100,6 @@ impl Finish<'_, '_> {
             if face.is_truncated() {
                 face = face.in_full()?;
                 self.correct(&mut point, &face)?;
-            }
-            if self.ending.judgement.certificate.worst() <= ROUNDING {
-                break;
             }
             visited.push(std::mem::replace(&mut active, point.active(self.judge)));
         }
@@ -127,13 +123,14 @@ impl Finish<'_, '_> {
 
     fn keep(&mut self, point: &Point, face: &Face) -> Result<()> {
         let x = point.forces(&self.judge.scaled.gaps.bounded);
-        let recovered = self.judge.with_forces(point.u.clone(), &x);
+        let recovered = self.judge.with_forces(point.displacement(), &x);
         let judgement = self.judge.judged(&recovered)?;
         if is_better(&judgement.certificate, &self.ending.judgement.certificate) {
             let solution = &mut self.ending.solution;
             (solution.x, solution.alpha) = (x, point.alpha.clone());
             solution.undetermined = face.undetermined();
             (self.ending.recovered, self.ending.judgement) = (recovered, judgement);
+            self.ending.deformed = point.deformed(self.judge);
             self.replaced = true;
         }
         Ok(())
@@ -148,20 +145,67 @@ fn is_better(new: &Certificate, old: &Certificate) -> bool {
     new.passed() && (much || entries.all(|(new, old)| new.ratio <= (NO_WORSE * old.ratio).max(ROUNDING)))
 }
 
-/// u with the forces and amplitudes that belong to it.
+/// Forces x and amplitudes alpha with u = v + w: w are motions that K does not resist, so large that v would lose its digits
+/// in them.
 struct Point {
-    u: Vec<f64>,
+    v: Vec<f64>,
+    /// Amplitudes of the motions that v has.
+    beta: Vec<f64>,
+    w: Vec<f64>,
     x: Vec<f64>,
     alpha: Vec<f64>,
 }
 
 impl Point {
     /// The answer there is, or nothing where that does not pass: its forces may be lost in redundant rows.
-    fn of(ending: &Ending) -> Self {
-        let Ending { solution, recovered, judgement } = ending;
-        let (u, x, alpha) = (&recovered.u, &solution.x, &solution.alpha);
+    fn of(judge: &Certifier, ending: &Ending) -> Result<Self> {
+        let Ending { solution, judgement, .. } = ending;
         let known = |v: &[f64]| if judgement.certificate.passed() { v.to_vec() } else { vec![0.0; v.len()] };
-        Self { u: known(u), x: known(x), alpha: known(alpha) }
+        let x = known(&solution.x);
+        let mut point = Self::at_origin(judge.deformed(&x)?, x, solution.alpha.len());
+        point.turn(judge, &known(&solution.alpha))?;
+        Ok(point)
+    }
+
+    fn at_origin(v: Vec<f64>, x: Vec<f64>, modes: usize) -> Self {
+        Self { w: vec![0.0; v.len()], v, x, alpha: vec![0.0; modes], beta: vec![0.0; modes] }
+    }
+
+    /// Adds R a, and returns it.
+    fn turn(&mut self, judge: &Certifier, a: &[f64]) -> Result<Vec<f64>> {
+        let dual = &judge.ready.dual;
+        let whole = dual.rigid_motion(a, self.v.len());
+        let mut motion = whole.clone();
+        let apart = judge.clean(&mut motion, &self.v)?;
+        for (k, (body, apart)) in judge.data.bodies.iter().zip(apart).enumerate() {
+            let (range, modes) = (body.range(), dual.modes_of(k));
+            if apart {
+                axpy(1.0, &motion[range.clone()], &mut self.w[range]);
+            } else {
+                axpy(1.0, &motion[range.clone()], &mut self.v[range]);
+                axpy(1.0, &a[modes.clone()], &mut self.beta[modes]);
+            }
+        }
+        axpy(1.0, a, &mut self.alpha);
+        Ok(whole)
+    }
+
+    /// u - R alpha
+    fn deformed(&self, judge: &Certifier) -> Vec<f64> {
+        let mut v = judge.ready.dual.rigid_motion(&self.beta, self.v.len());
+        v.iter_mut().zip(&self.v).for_each(|(motion, v)| *motion = v - *motion);
+        v
+    }
+
+    /// u
+    fn displacement(&self) -> Vec<f64> {
+        let mut u = self.w.clone();
+        axpy(1.0, &self.v, &mut u);
+        u
+    }
+
+    fn gaps_left(&self, judge: &Certifier) -> Vec<f64> {
+        judge.gaps_left(&[&self.v, &self.w], &self.x)
     }
 
     /// No force on the rows of an active set.
@@ -179,8 +223,8 @@ impl Point {
     /// F and of K+ fall with every correction. Its length, `|.|_D`.
     fn correct(&mut self, judge: &Certifier, face: &Face) -> Result<f64> {
         let (dual, rows) = (&judge.ready.dual, &judge.ready.rows);
-        let mut load = judge.load_left(&self.u, &self.x)?;
-        let left = judge.gaps_left(&self.u, &self.x);
+        let mut load = judge.load_left(&self.v, &self.x)?;
+        let left = self.gaps_left(judge);
         let mut gaps = vec![0.0; self.x.len()];
         face.rows().iter().for_each(|&i| gaps[i] = left[i]);
         let d = dual.rhs(&judge.ready.moved(judge.threads, &load)?, &gaps);
@@ -189,20 +233,23 @@ impl Point {
         let mut forces = vec![0.0; self.x.len()];
         face.rows().iter().zip(step).for_each(|(&i, step)| forces[i] = step);
         rows.take_forces(&forces, &mut load);
-        let moved = judge.ready.displacement(judge.threads, &load, &turn)?;
-        axpy(1.0, &moved, &mut self.u);
+        let mut moved = judge.inverse(&load)?;
+        axpy(1.0, &moved, &mut self.v);
+        axpy(1.0, &self.turn(judge, &turn)?, &mut moved);
         axpy(1.0, &forces, &mut self.x);
-        axpy(1.0, &turn, &mut self.alpha);
         Ok(weighted_norm(&moved, |i| rows.metric[i]))
     }
 
     /// The active set that signs of forces and gaps ask for.
     fn active(&self, judge: &Certifier) -> Vec<bool> {
-        let (left, rows) = (judge.gaps_left(&self.u, &self.x), &judge.ready.rows.scaled);
+        let (left, rows) = (self.gaps_left(judge), &judge.ready.rows.scaled);
+        let u = self.displacement();
         let Gaps { value, bounded, .. } = &judge.scaled.gaps;
-        let terms = |i: usize| rows.row(i).map(|(j, v)| (v * self.u[j]).abs()).sum::<f64>();
+        let terms = |i: usize| rows.row(i).map(|(j, v)| (v * u[j]).abs()).sum::<f64>();
         let noise = |i: usize| NOISE * (value[i].abs() + terms(i));
-        let stays = |i: usize| if self.x[i] == 0.0 { left[i] >= -noise(i) } else { self.x[i] < 0.0 };
+        // a gap that corrections leave open depends on others, which carry its force as well
+        let leaves = |i: usize| self.x[i] < 0.0 || left[i] > noise(i);
+        let stays = |i: usize| if self.x[i] == 0.0 { left[i] >= -noise(i) } else { leaves(i) };
         (0..self.x.len()).map(|i| bounded[i] && stays(i)).collect()
     }
 }
@@ -234,7 +281,7 @@ mod tests {
         two_springs(1e-6, |judge, solved| {
             for (rows, right) in [(vec![0], true), (vec![], false), (vec![1], false), (vec![0, 1], false)] {
                 let mut ending = judge.ending(solved.clone()).unwrap();
-                let mut point = Point { u: ending.recovered.u.clone(), x: solved.x.clone(), alpha: vec![] };
+                let mut point = Point::at_origin(ending.recovered.u.clone(), solved.x.clone(), 0);
                 point.hold(&[0, 1].map(|i| !rows.contains(&i)));
                 let Faces { qp, direct, .. } = &judge.faces;
                 let face = Face::new(*qp, direct.entries, rows.clone()).unwrap().unwrap();
@@ -250,7 +297,7 @@ mod tests {
     #[test]
     fn a_force_that_rounding_has_made_negative_is_none_and_its_row_leaves() {
         two_springs(0.0, |judge, _| {
-            let point = Point { u: vec![1.0, 1.0], x: vec![2.0, -1e-20], alpha: vec![] };
+            let point = Point::at_origin(vec![1.0, 1.0], vec![2.0, -1e-20], 0);
             assert_eq!(point.forces(&[true, true]), [2.0, 0.0]);
             assert_eq!(point.active(judge), [false, true]);
         });

@@ -11,14 +11,13 @@ use crate::solver::travel::{travel, Change, Moving, Open};
 
 impl<'a> Certifier<'a> {
     /// Of the answers that differ by motions which nothing resists the one of least travel takes the place of this one,
-    /// unless this one alone passes.
-    pub fn bring_to_rest(&self, ending: &mut Ending) -> Result<()> {
+    /// unless this one alone passes. `exact`: motions are cleaned of the errors of R.
+    pub fn bring_to_rest(&self, ending: &mut Ending, exact: bool) -> Result<()> {
         if ending.solution.undetermined == 0 {
             return Ok(());
         }
-        let Some((recovered, alpha)) = self.at_rest(&ending.recovered, &ending.solution.x)? else {
-            return Ok(());
-        };
+        let at_rest = self.at_rest(&ending.recovered, &ending.solution.x, &ending.deformed, exact)?;
+        let Some((recovered, alpha)) = at_rest else { return Ok(()) };
         let judgement = self.judged(&recovered)?;
         if judgement.certificate.passed() || !ending.judgement.certificate.passed() {
             ending.solution.alpha = alpha;
@@ -29,23 +28,32 @@ impl<'a> Certifier<'a> {
 
     /// The answer of least travel with its amplitudes, for the forces x; none where rows resist every motion. How far that
     /// of the method has travelled plays no part, not even by its rounding.
-    pub fn at_rest(&self, answer: &Recovered, x: &[f64]) -> Result<Option<(Recovered, Vec<f64>)>> {
+    pub fn at_rest(
+        &self,
+        answer: &Recovered,
+        x: &[f64],
+        deformed: &[f64],
+        exact: bool,
+    ) -> Result<Option<(Recovered, Vec<f64>)>> {
         let dual = &self.ready.dual;
         let held = self.ready.without_force(&answer.lambda);
         let free = qp::undetermined(&dual.coarse, &held, dual.rounding())?;
         if free.cols == 0 {
             return Ok(None);
         }
-        let unmoved = vec![0.0; dual.modes()];
-        let mut u = self.displacement(x, &unmoved)?;
-        // what K+ has lost must not be taken for a motion
-        let left = self.load_left(&u, x)?;
-        axpy(1.0, &self.ready.displacement(self.threads, &left, &unmoved)?, &mut u);
-        let open = self.gaps_left(&u, x);
+        let mut u = deformed.to_vec();
+        let open = self.gaps_left(&[&u], x);
         let mut alpha = qp::fitted(&dual.coarse, &held, &open, dual.rounding())?;
-        axpy(1.0, &dual.rigid_motion(&alpha, u.len()), &mut u);
+        let add = |mut motion: Vec<f64>, u: &mut [f64]| -> Result<()> {
+            if exact {
+                self.clean(&mut motion, u)?;
+            }
+            axpy(1.0, &motion, u);
+            Ok(())
+        };
+        add(dual.rigid_motion(&alpha, u.len()), &mut u)?;
         let Some(change) = self.way_to_rest(&u, &answer.lambda, free) else { return Ok(None) };
-        axpy(1.0, &change.u, &mut u);
+        add(change.u, &mut u)?;
         for k in 0..self.data.bodies.len() {
             let modes = dual.modes_of(k);
             axpy(dual.size_of(k), &change.amplitudes[modes.clone()], &mut alpha[modes]);

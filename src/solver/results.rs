@@ -88,7 +88,7 @@ impl Answer {
 
     /// The answer of an island, and what it took.
     fn take_in(&mut self, problem: &Problem, ready: &Ready, solved: Solved) {
-        let Solved { ending: Ending { solution, recovered, judgement }, outcome, finished, .. } = solved;
+        let Solved { ending: Ending { solution, recovered, judgement, .. }, outcome, finished, .. } = solved;
         let island = &ready.island;
         let states = states(ready, &recovered, &judgement.contact);
         island.scatter(problem, &recovered.u, &mut self.u);

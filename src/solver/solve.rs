@@ -63,9 +63,9 @@ impl Problem {
         };
         let (judging, recovering) = (judge.spent, Instant::now());
         let mut ending = judge.ending(solution)?;
-        judge.bring_to_rest(&mut ending)?;
+        judge.bring_to_rest(&mut ending, false)?;
         let is_solved = ending.solution.verdict == Verdict::Solved;
-        let finished = is_solved && self.is_to_finish(ready) && finish(&judge, &mut ending)?;
+        let finished = is_solved && self.is_to_finish(&judge, &ending) && finish(&judge, &mut ending)?;
         let mut outcome = self.outcome(ready, &dual, &ending.solution)?;
         if outcome <= Outcome::Marginal && !ending.judgement.certificate.passed() {
             outcome = Outcome::Inaccurate;
