@@ -65,6 +65,8 @@ pub struct Yardstick<'a> {
     pub sizes: Vec<Size>,
     /// Error of each grounded unknown that the certificate may overlook, length.
     single: Vec<f64>,
+    /// `sum_k |K_jk| D_k^-1/2 / K_jj` over its neighbours, length / (force x length)^1/2: it follows their errors.
+    following: Vec<f64>,
 }
 
 /// K_jj > 1e3 T_j, T_j = sum_{i != j} K_ij^2 / K_ii > 0: an unknown whose displacement is all but given.
@@ -86,9 +88,9 @@ impl<'a> Yardstick<'a> {
         let diagonal: Vec<f64> = deck.bodies.iter().flat_map(|body| body.stiffness.diagonal()).collect();
         let grounded: Vec<bool> = deck.bodies.iter().flat_map(|body| grounded(&body.stiffness)).collect();
         let reaction = reaction(deck, answer);
-        let (sizes, single) = (Vec::new(), Vec::new());
+        let (sizes, single, following) = (Vec::new(), Vec::new(), Vec::new());
         let mut yardstick =
-            Yardstick { deck, answer, undetermined, diagonal, grounded, reaction, sizes, single };
+            Yardstick { deck, answer, undetermined, diagonal, grounded, reaction, sizes, single, following };
         yardstick.measure();
         yardstick
     }
@@ -136,6 +138,21 @@ impl<'a> Yardstick<'a> {
         self.single = (0..terms.len())
             .map(|j| (TOLERANCE * (self.reaction[j].abs() + terms[j]) + NOISE * terms[j]) / self.diagonal[j])
             .collect();
+        self.following = self.following();
+    }
+
+    fn following(&self) -> Vec<f64> {
+        let bodies = self.deck.bodies.iter().enumerate();
+        let of = |(p, body): (usize, &crate::Body)| {
+            let own = &self.diagonal[self.deck.offset(p)..self.deck.offset(p + 1)];
+            let grounded = &self.grounded[self.deck.offset(p)..self.deck.offset(p + 1)];
+            let follows = |j: usize| {
+                let neighbours = body.stiffness.row(j).filter(|&(k, _)| k != j && !grounded[k]);
+                neighbours.map(|(k, v)| v.abs() / own[k].sqrt()).sum::<f64>() / own[j]
+            };
+            (0..body.dofs()).map(follows).collect::<Vec<_>>()
+        };
+        bodies.flat_map(of).collect()
     }
 
     /// s_i times what row i may be off, L_i = |b_i| delta + |lambda_i| / s_i^2.
@@ -239,9 +256,13 @@ impl<'a> Yardstick<'a> {
 
     fn ratio(&self, p: usize, moved: &[f64], forces: &[f64]) -> Ratio {
         let size = self.sizes[p];
-        let over = |error: f64, own: f64| ratio(error, (OWN * own).max(SHARE * size.overlooked));
+        let allowed = |own: f64| (OWN * own).max(SHARE * size.overlooked);
+        let over = |error: f64, own: f64| ratio(error, allowed(own));
         let single = (self.deck.offset(p)..self.deck.offset(p + 1)).filter(|&j| self.grounded[j]);
-        let single = single.map(|j| ratio(moved[j].abs(), SHARE * self.single[j]));
+        let single = single.map(|j| {
+            let following = self.following[j] * allowed(size.deformation);
+            ratio(moved[j].abs(), SHARE * self.single[j] + following)
+        });
         let u = over(self.norm(p, moved, 1), size.deformation);
         Ratio {
             u: single.fold(u, |worst, ratio| if ratio > worst || ratio.is_nan() { ratio } else { worst }),

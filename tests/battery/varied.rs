@@ -3,7 +3,8 @@
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
-use decks::varied::{self, Varied};
+use decks::second;
+use decks::varied::{self, Varied, MIXTURE, SECOND_MIXTURE};
 use decks::yardstick::{Answer, Yardstick};
 use feti_contact::solver::{Outcome, Problem, RowKind};
 
@@ -46,15 +47,25 @@ fn end(case: &Varied) -> End {
         Ok(report) => report,
         Err(error) => return End { name: failed(error), error: None },
     };
-    let truth = Answer {
-        u: case.displacement.clone(),
-        lambda: case.forces.clone(),
-        mu: case.equality_forces.clone(),
-    };
-    let yardstick = Yardstick::new(&case.deck, &truth, case.undetermined > 0);
-    let worst = yardstick.worst(&answer(&problem));
     let solved = report.outcome == Outcome::Solved;
-    End { name: format!("{:?}", report.outcome), error: solved.then_some(worst) }
+    let error = solved.then(|| error(case, &answer(&problem)));
+    End { name: format!("{:?}", report.outcome), error }
+}
+
+/// The worst error over what is allowed, with its body. The answer that a case was drawn with is that of its loads before these
+/// were rounded: where an answer differs from it, a second solver decides, which takes the loads as they are.
+fn error(case: &Varied, found: &Answer) -> (f64, usize) {
+    let against = |truth: &Answer| Yardstick::new(&case.deck, truth, case.undetermined > 0).worst(found);
+    let (u, lambda, mu) = (&case.displacement, &case.forces, &case.equality_forces);
+    let drawn = Answer { u: u.clone(), lambda: lambda.clone(), mu: mu.clone() };
+    let by_drawn = against(&drawn);
+    let second = (by_drawn.0 > 1.0).then(|| second::solve(&case.deck)).flatten();
+    let by_second = second.map_or(by_drawn, |second| against(&second));
+    if by_second.0 < by_drawn.0 {
+        by_second
+    } else {
+        by_drawn
+    }
 }
 
 /// Seeds that were solved wrongly before answers of ill-conditioned bodies were finished, then some that were not solved at all:
@@ -64,10 +75,18 @@ const ONCE_WRONG: [u64; 28] = [
     99796, 93, 704, 1906, 3635, 8016, 8783, 25020, 59002, 83754, 98416, 20092, 31742,
 ];
 
+/// The same of the second mixture: moduli within a body together with travel, a noisy null space or a last Newton iteration.
+const ONCE_WRONG_OF_SECOND: [u64; 12] = [
+    5000276, 5000444, 5000614, 5001251, 5001263, 5001695, 5001747, 5001776, 6000032, 6000278, 6001812,
+    7006560,
+];
+
 #[test]
 fn what_was_once_solved_wrongly_or_not_at_all_is_solved_rightly() {
-    for seed in ONCE_WRONG {
-        let End { name, error } = end(&varied::case(seed));
+    let first = ONCE_WRONG.map(|seed| (seed, &MIXTURE));
+    let second = ONCE_WRONG_OF_SECOND.map(|seed| (seed, &SECOND_MIXTURE));
+    for (seed, mixture) in first.into_iter().chain(second) {
+        let End { name, error } = end(&varied::mixed(seed, mixture));
         assert!(error.is_some_and(|(error, _)| error < 0.5), "{seed}: {name}, {error:?}");
     }
 }
