@@ -89,8 +89,11 @@ impl<'a> Certifier<'a> {
         let (work, cleaners) = (Cell::new(None), RefCell::default());
         let (far, reached, spent) = (Vec::new(), Vec::new(), Duration::ZERO);
         let (accepted, missed) = (None, None);
-        let inverses = ready.island.bodies.iter().filter_map(|&p| problem.bodies[p].inverse.as_ref());
-        let soft = inverses.map(|inverse| inverse.kplus.softness).any(|softness| softness < SOFT);
+        let is_soft = |p: &usize| {
+            let inverse = problem.bodies[*p].inverse.as_ref();
+            inverse.is_some_and(|inverse| inverse.kplus.softness < SOFT)
+        };
+        let soft = ready.island.bodies.iter().any(is_soft);
         Ok(Self {
             ready,
             scaled,

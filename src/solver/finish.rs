@@ -33,11 +33,13 @@ impl Problem {
     /// Whether the answer of an island is to be finished, as option `finish` has it. `automatic`: where an error that passes the
     /// certificate may be large elsewhere.
     pub(super) fn is_to_finish(&self, judge: &Certifier, ending: &Ending) -> bool {
-        let is_cancelling = CANCELLING.contains(&ending.judgement.leverage);
-        let is_delicate = || is_cancelling || judge.soft || is_uneven(judge.ready);
         let default = self.settings.method == c"proportioning" && self.settings.finish == c"automatic";
-        self.settings.finish == c"direct" || default && is_delicate()
+        self.settings.finish == c"direct" || default && is_delicate(judge, ending)
     }
+}
+
+fn is_delicate(judge: &Certifier, ending: &Ending) -> bool {
+    CANCELLING.contains(&ending.judgement.leverage) || judge.soft || is_uneven(judge.ready)
 }
 
 /// A row joins bodies whose shares of `b D^-1 b'` are far apart.
@@ -61,7 +63,8 @@ fn is_uneven(ready: &Ready) -> bool {
 /// True where `ending` was replaced by a corrected answer, which passes and whose certificate is no worse. Ended by the host or
 /// the time, or short of memory, it leaves what there was: that is solved.
 pub(super) fn finish(judge: &Certifier, ending: &mut Ending) -> Result<bool> {
-    let mut finish = Finish { judge, ending, replaced: false };
+    let delicate = is_delicate(judge, ending);
+    let mut finish = Finish { judge, ending, delicate, replaced: false };
     match finish.run() {
         Ok(()) => {}
         Err(error) if error.kind == Kind::Memory => {}
@@ -69,7 +72,7 @@ pub(super) fn finish(judge: &Certifier, ending: &mut Ending) -> Result<bool> {
     }
     let Finish { ending, replaced, .. } = finish;
     if replaced {
-        judge.bring_to_rest(ending, true)?;
+        judge.bring_to_rest(ending, delicate)?;
     }
     Ok(replaced)
 }
@@ -77,6 +80,8 @@ pub(super) fn finish(judge: &Certifier, ending: &mut Ending) -> Result<bool> {
 struct Finish<'a, 'b> {
     judge: &'b Certifier<'a>,
     ending: &'b mut Ending,
+    /// Rounding of K on rigid motions is no strain; elsewhere K is taken as it stands.
+    delicate: bool,
     replaced: bool,
 }
 
@@ -85,7 +90,7 @@ impl Finish<'_, '_> {
     fn run(&mut self) -> Result<()> {
         let Faces { qp, direct, stops } = &self.judge.faces;
         let mut active = qp.at_bound(&self.ending.solution.x);
-        let mut point = Point::of(self.judge, self.ending)?;
+        let mut point = Point::of(self.judge, self.ending, self.delicate)?;
         let mut visited: Vec<Vec<bool>> = Vec::new();
         while visited.len() < FACES && !visited.contains(&active) {
             let rows: Vec<usize> = (0..active.len()).filter(|&i| !active[i]).collect();
@@ -154,21 +159,23 @@ struct Point {
     w: Vec<f64>,
     x: Vec<f64>,
     alpha: Vec<f64>,
+    /// w is in use.
+    apart: bool,
 }
 
 impl Point {
     /// The answer there is, or nothing where that does not pass: its forces may be lost in redundant rows.
-    fn of(judge: &Certifier, ending: &Ending) -> Result<Self> {
+    fn of(judge: &Certifier, ending: &Ending, apart: bool) -> Result<Self> {
         let Ending { solution, judgement, .. } = ending;
         let known = |v: &[f64]| if judgement.certificate.passed() { v.to_vec() } else { vec![0.0; v.len()] };
         let x = known(&solution.x);
-        let mut point = Self::at_origin(judge.deformed(&x)?, x, solution.alpha.len());
+        let mut point = Self::at_origin(judge.deformed(&x)?, x, solution.alpha.len(), apart);
         point.turn(judge, &known(&solution.alpha))?;
         Ok(point)
     }
 
-    fn at_origin(v: Vec<f64>, x: Vec<f64>, modes: usize) -> Self {
-        Self { w: vec![0.0; v.len()], v, x, alpha: vec![0.0; modes], beta: vec![0.0; modes] }
+    fn at_origin(v: Vec<f64>, x: Vec<f64>, modes: usize, apart: bool) -> Self {
+        Self { w: vec![0.0; v.len()], v, x, alpha: vec![0.0; modes], beta: vec![0.0; modes], apart }
     }
 
     /// Adds R a, and returns it.
@@ -176,7 +183,8 @@ impl Point {
         let dual = &judge.ready.dual;
         let whole = dual.rigid_motion(a, self.v.len());
         let mut motion = whole.clone();
-        let apart = judge.clean(&mut motion, &self.v)?;
+        let bodies = judge.data.bodies.len();
+        let apart = if self.apart { judge.clean(&mut motion, &self.v)? } else { vec![false; bodies] };
         for (k, (body, apart)) in judge.data.bodies.iter().zip(apart).enumerate() {
             let (range, modes) = (body.range(), dual.modes_of(k));
             if apart {
@@ -281,11 +289,11 @@ mod tests {
         two_springs(1e-6, |judge, solved| {
             for (rows, right) in [(vec![0], true), (vec![], false), (vec![1], false), (vec![0, 1], false)] {
                 let mut ending = judge.ending(solved.clone()).unwrap();
-                let mut point = Point::at_origin(ending.recovered.u.clone(), solved.x.clone(), 0);
+                let mut point = Point::at_origin(ending.recovered.u.clone(), solved.x.clone(), 0, false);
                 point.hold(&[0, 1].map(|i| !rows.contains(&i)));
                 let Faces { qp, direct, .. } = &judge.faces;
                 let face = Face::new(*qp, direct.entries, rows.clone()).unwrap().unwrap();
-                let mut finish = Finish { judge, ending: &mut ending, replaced: false };
+                let mut finish = Finish { judge, ending: &mut ending, delicate: false, replaced: false };
                 finish.correct(&mut point, &face).unwrap();
                 assert_eq!(finish.replaced, right, "{rows:?}");
                 assert_eq!(ending.recovered.lambda == [2.0, 0.0], right, "{rows:?}");
@@ -297,7 +305,7 @@ mod tests {
     #[test]
     fn a_force_that_rounding_has_made_negative_is_none_and_its_row_leaves() {
         two_springs(0.0, |judge, _| {
-            let point = Point::at_origin(vec![1.0, 1.0], vec![2.0, -1e-20], 0);
+            let point = Point::at_origin(vec![1.0, 1.0], vec![2.0, -1e-20], 0, false);
             assert_eq!(point.forces(&[true, true]), [2.0, 0.0]);
             assert_eq!(point.active(judge), [false, true]);
         });
