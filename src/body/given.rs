@@ -2,6 +2,8 @@
 
 use crate::body::host::HostOperator;
 use crate::error::Result;
+use crate::linalg::memory::zeros;
+use crate::linalg::twofold::Twofold;
 use crate::linalg::Symmetric;
 
 #[derive(Clone, Copy)]
@@ -49,6 +51,19 @@ impl Stiffness<'_> {
         match self {
             Self::Matrix(k) => k.mul_with_terms(x, y, terms),
             Self::Host(k) => k.mul_with_terms(x, y, terms)?,
+        }
+        Ok(())
+    }
+
+    /// `y += by K x` in twice the digits, by a power of two; in those of the host where it has the products.
+    pub fn add_twofold(&self, by: f64, x: &[f64], y: &mut [Twofold]) -> Result<()> {
+        match self {
+            Self::Matrix(k) => k.add_twofold(by, x, y),
+            Self::Host(k) => {
+                let mut image = zeros(x.len(), "a product with K")?;
+                k.mul(x, &mut image)?;
+                y.iter_mut().zip(image).for_each(|(y, image)| y.add(by * image));
+            }
         }
         Ok(())
     }

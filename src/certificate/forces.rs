@@ -21,9 +21,10 @@ pub(super) struct Forces {
     /// `(|f|^2 + |r|^2)^1/2` of all bodies without loads on grounded unknowns, force. Without any such load the forces that the
     /// motion asked for would take belong to it.
     everywhere: f64,
-    /// Deformation of every body, `U |delta|_D` without grounded unknowns, and of the island, force.
-    strains: Vec<f64>,
+    /// Deformation of the island, `U |delta|_D` without grounded unknowns, force.
     strain: f64,
+    /// The largest `(|f| + |r|)_{D^-1} / |delta|_D` of a body, no unit.
+    pub leverage: f64,
     /// There are forces.
     acting: bool,
 }
@@ -48,15 +49,11 @@ impl Forces {
             field.unit * weighted_norm(&strain, |i| field.metric[start + i])
         });
         let strains: Vec<f64> = strains.collect();
-        let strain = norm_of(strains.clone());
+        let of_body = |(size, strain): (&Option<f64>, &f64)| ratio(size.unwrap_or(0.0), *strain);
+        let leverage = sizes.iter().zip(&strains).map(of_body).fold(0.0, f64::max);
+        let strain = norm_of(strains);
         let unloaded = loads.iter().map(|load| *load == 0.0).collect();
-        Self { sizes, unloaded, everywhere: forces + moved, strains, strain, acting: forces > 0.0 }
-    }
-
-    /// The largest `(|f| + |r|)_{D^-1} / |delta|_D` of a body, no unit.
-    pub fn leverage(&self) -> f64 {
-        let of = |(size, strain): (&Option<f64>, &f64)| ratio(size.unwrap_or(0.0), *strain);
-        self.sizes.iter().zip(&self.strains).map(of).fold(0.0, f64::max)
+        Self { sizes, unloaded, everywhere: forces + moved, strain, leverage, acting: forces > 0.0 }
     }
 
     /// Rounding of the largest forces, where body p has neither a load nor any other forces: force.

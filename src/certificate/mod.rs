@@ -31,8 +31,8 @@ use forces::Forces;
 pub use grounded::grounded;
 use rows::Measured;
 
-/// Rounding errors of a sum of these terms.
-const NOISE: f64 = 64.0 * f64::EPSILON;
+/// Rounding errors of a sum, relative to its terms.
+pub const NOISE: f64 = 64.0 * f64::EPSILON;
 
 /// One island as the host gave it: its unknowns are those of its bodies one after the other.
 #[derive(Clone)]
@@ -153,7 +153,7 @@ pub fn certify(data: &Data, answer: Answer, response: &mut dyn Response) -> Resu
         excuses::by_rounding(data.limit, &energies, &mut rows, response, &mut certificate)?;
     }
     let bodies = rows.force_errors(&field);
-    let (length, leverage) = (rows.length(&field), forces.leverage());
+    let (length, leverage) = (rows.length(&field), forces.leverage);
     Ok(Judgement { certificate, bodies, contact: rows.limits(), length, leverage })
 }
 

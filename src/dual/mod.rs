@@ -251,14 +251,13 @@ impl Dual {
         weighted_norm(&floating.map(of).collect::<Vec<_>>(), |_| 1.0)
     }
 
-    /// `u_p = K_p+ f_p + R_p alpha_p` of body p: (17) for the load f that the forces of the rows leave; (16) where it is
-    /// held, K+ = K^-1. The load and alpha are those of all bodies, alpha that of the dual problem.
-    pub fn displacement(&self, p: usize, f: &[f64], alpha: &[f64]) -> Result<Vec<f64>> {
+    /// `u_p = K_p+ f_p` of body p, (17) but for its rigid motion, for the load f that the forces of the rows leave; (16) where it is
+    /// held, K+ = K^-1. The load is that of all bodies.
+    pub fn displacement(&self, p: usize, f: &[f64]) -> Result<Vec<f64>> {
         let s = &self.subdomains[p];
         let mut u = zeros(s.range.len(), "a displacement")?;
         s.kplus.apply(&f[s.range.clone()], &mut u)?;
         u.iter_mut().for_each(|u| *u *= s.by);
-        s.kplus.null_space.mul_add(1.0 / s.size, &alpha[s.modes.clone()], &mut u);
         Ok(u)
     }
 

@@ -86,7 +86,8 @@ pub(super) struct Ending {
 impl<'a> Certifier<'a> {
     pub fn new(problem: &'a Problem, ready: &'a Ready, scaled: &'a Scaled, faces: Faces<'a>) -> Result<Self> {
         let (data, threads) = (problem.data(&ready.island)?, problem.threads());
-        let (work, cleaners) = (Cell::new(None), RefCell::default());
+        let work = Cell::new(None);
+        let cleaners = RefCell::new(data.bodies.iter().map(|_| None).collect());
         let (far, reached, spent) = (Vec::new(), Vec::new(), Duration::ZERO);
         let (accepted, missed) = (None, None);
         let is_soft = |p: &usize| {
@@ -132,7 +133,7 @@ impl<'a> Certifier<'a> {
 
     /// `K+ f`
     pub fn inverse(&self, load: &[f64]) -> Result<Vec<f64>> {
-        self.ready.displacement(self.threads, load, &vec![0.0; self.ready.dual.modes()])
+        self.ready.displacement(self.threads, load)
     }
 
     /// An answer of u and x.

@@ -3,17 +3,14 @@
 
 use std::ops::Range;
 
-use crate::certificate::Certificate;
+use crate::certificate::{Certificate, NOISE};
 use crate::error::{Kind, Result};
 use crate::linalg::vector::{axpy, weighted_norm};
 use crate::qp::{Face, Verdict};
 use crate::solver::certifier::{Certifier, Ending, Faces};
 use crate::solver::presolve::Gaps;
 use crate::solver::problem::Problem;
-use crate::solver::setup::Ready;
 
-/// Rounding of a gap, relative to its terms.
-const NOISE: f64 = 64.0 * f64::EPSILON;
 /// Active sets at most.
 const FACES: usize = 8;
 /// Corrections on one of them at most.
@@ -24,9 +21,8 @@ const ROUNDING: f64 = 1e-4;
 const MUCH_BETTER: f64 = 0.5;
 const NO_WORSE: f64 = 1.1;
 
-/// Beside soft bodies, stiffnesses across a row that differ by more than `UNEVEN`, or forces that cancel in a body to a part of them in
-/// this range, make errors of an answer much larger than its certificate. Of less than that rounding of the loads decides.
-const UNEVEN: f64 = 1e4;
+/// Beside soft bodies and rows that join uneven ones, forces that are so many times what they deform make errors of an answer much
+/// larger than its certificate. Beyond that rounding of the loads decides.
 const CANCELLING: Range<f64> = 1e4..1e9;
 
 impl Problem {
@@ -39,25 +35,7 @@ impl Problem {
 }
 
 fn is_delicate(judge: &Certifier, ending: &Ending) -> bool {
-    CANCELLING.contains(&ending.judgement.leverage) || judge.soft || is_uneven(judge.ready)
-}
-
-/// A row joins bodies whose shares of `b D^-1 b'` are far apart.
-fn is_uneven(ready: &Ready) -> bool {
-    let rows = &ready.rows.scaled;
-    (0..rows.rows()).any(|i| {
-        let mut shares: Vec<(usize, f64)> = Vec::new();
-        for (j, v) in rows.row(i) {
-            let share = v * v / ready.rows.metric[j];
-            let body = ready.island.body_of(j);
-            match shares.last_mut() {
-                Some(last) if last.0 == body => last.1 += share,
-                _ => shares.push((body, share)),
-            }
-        }
-        let most = shares.iter().map(|share| share.1).fold(0.0, f64::max);
-        shares.iter().any(|share| UNEVEN * share.1 < most)
-    })
+    CANCELLING.contains(&ending.judgement.leverage) || judge.soft || judge.ready.rows.uneven
 }
 
 /// True where `ending` was replaced by a corrected answer, which passes and whose certificate is no worse. Ended by the host or
@@ -105,6 +83,9 @@ impl Finish<'_, '_> {
             if face.is_truncated() {
                 face = face.in_full()?;
                 self.correct(&mut point, &face)?;
+            }
+            if !self.delicate && self.ending.judgement.certificate.worst() <= ROUNDING {
+                break;
             }
             visited.push(std::mem::replace(&mut active, point.active(self.judge)));
         }

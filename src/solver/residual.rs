@@ -1,9 +1,7 @@
 //! What an answer of one island leaves of the host's loads and gaps, by the host's own data and in twice the digits: nothing of it
 //! is rounding but that of the answer.
 
-use crate::body::Stiffness;
 use crate::error::Result;
-use crate::linalg::memory::zeros;
 use crate::linalg::twofold::Twofold;
 use crate::solver::certifier::Certifier;
 
@@ -13,15 +11,7 @@ impl Certifier<'_> {
         let unit = self.ready.island.unit;
         let mut left: Vec<Twofold> = self.scaled.load.iter().map(|&f| f.into()).collect();
         for body in &self.data.bodies {
-            let (u, left) = (&u[body.range()], &mut left[body.range()]);
-            match body.stiffness {
-                Stiffness::Matrix(k) => k.add_twofold(-1.0 / unit, u, left),
-                Stiffness::Host(k) => {
-                    let mut strain = zeros(u.len(), "what is left of the loads")?;
-                    k.mul(u, &mut strain)?;
-                    left.iter_mut().zip(strain).for_each(|(left, force)| left.add(-force / unit));
-                }
-            }
+            body.stiffness.add_twofold(-1.0 / unit, &u[body.range()], &mut left[body.range()])?;
         }
         let (lambda, mu) = self.forces_of_host(x);
         for (rows, forces) in [(self.data.contact, lambda), (self.data.equalities, mu)] {

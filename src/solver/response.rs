@@ -61,7 +61,7 @@ impl ByInverse<'_> {
             body.null_space.mul_add(1.0 / body.unit, &resultants, &mut rigid);
             range.for_each(|j| load[j] -= metric[j] * rigid[j - body.start]);
         }
-        let motion = self.ready.displacement(self.threads, &load, &vec![0.0; self.ready.dual.modes()])?;
+        let motion = self.ready.displacement(self.threads, &load)?;
         let mut work = 0.0;
         for body in &self.data.bodies {
             let range = body.range();

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use crate::body::Stiffness;
-use crate::certificate::BodyData;
+use crate::certificate::{BodyData, NOISE};
 use crate::error::Result;
 use crate::linalg::memory::{copied, zeros};
 use crate::linalg::twofold::Twofold;
@@ -12,8 +12,6 @@ use crate::linalg::{Analysis, Cholesky, Symmetric};
 use crate::solver::certifier::Certifier;
 
 const WHAT: &str = "a rigid motion";
-/// Rounding of a sum of these terms.
-const NOISE: f64 = 64.0 * f64::EPSILON;
 
 impl Certifier<'_> {
     /// Of every body, whether the motion is larger than v and K resists it by rounding alone, if need be once it is cleaned.
@@ -21,7 +19,6 @@ impl Certifier<'_> {
         let length =
             |body: &BodyData, u: &[f64]| weighted_norm(u, |i| self.ready.rows.metric[body.start + i]);
         let mut cleaners = self.cleaners.borrow_mut();
-        cleaners.resize_with(self.data.bodies.len(), || None);
         let clean = |(body, cleaner): (&BodyData, &mut Option<Cleaner>)| {
             let (motion, v) = (&mut motion[body.range()], &v[body.range()]);
             Ok(length(body, motion) > length(body, v) && unresisted(body, motion, cleaner)?)

@@ -23,6 +23,28 @@ pub(super) struct DualRows {
     pub coupled: bool,
     /// Number of contact rows.
     pub contact: usize,
+    /// A row joins bodies whose stiffnesses there are far apart.
+    pub uneven: bool,
+}
+
+/// Shares of `b D^-1 b'` that differ by more than this are far apart: rounding of the one is much to the other.
+const UNEVEN: f64 = 1e4;
+
+/// A row joins bodies whose shares of `b D^-1 b'` are far apart.
+fn is_uneven(rows: &Csr, metric: &[f64], island: &Island) -> bool {
+    (0..rows.rows()).any(|i| {
+        let mut shares: Vec<(usize, f64)> = Vec::new();
+        for (j, v) in rows.row(i) {
+            let share = v * v / metric[j];
+            let body = island.body_of(j);
+            match shares.last_mut() {
+                Some(last) if last.0 == body => last.1 += share,
+                _ => shares.push((body, share)),
+            }
+        }
+        let most = shares.iter().map(|share| share.1).fold(0.0, f64::max);
+        shares.iter().any(|share| UNEVEN * share.1 < most)
+    })
 }
 
 impl DualRows {
@@ -52,7 +74,8 @@ impl DualRows {
         let given = UnitRows { matrix: &scaled, equalities, compliance: &compliance, metric: &metric };
         let (decoupling, matrix) = if coupled { Decoupling::none(&scaled) } else { Decoupling::of(given)? };
         let compliance = decoupling.compliance(&compliance);
-        Ok(Self { scaled, matrix, compliance, metric, scale, grouping, decoupling, coupled, contact })
+        let uneven = is_uneven(&scaled, &metric, island);
+        Ok(Self { scaled, matrix, compliance, metric, scale, grouping, decoupling, coupled, contact, uneven })
     }
 
     pub fn groups(&self) -> usize {

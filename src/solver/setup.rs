@@ -289,10 +289,10 @@ impl Ready {
         self.dual.distances(moved, x, alpha, &in_parallel)
     }
 
-    /// `u = K+ f + R alpha`, over the unknowns of the island.
-    pub fn displacement(&self, threads: usize, f: &[f64], alpha: &[f64]) -> Result<Vec<f64>> {
+    /// `K+ f`, over the unknowns of the island.
+    pub fn displacement(&self, threads: usize, f: &[f64]) -> Result<Vec<f64>> {
         let on_caller = |p: usize| self.dual.solves_on_caller(p);
-        let displacement = |p| self.dual.displacement(p, f, alpha);
+        let displacement = |p| self.dual.displacement(p, f);
         let bodies = threads::run_apart(threads, self.dual.bodies(), on_caller, displacement)?;
         let mut all = reserved(f.len(), "a displacement")?;
         bodies.iter().for_each(|u| all.extend_from_slice(u));

@@ -105,8 +105,7 @@ fn the_direct_method_needs_no_explicit_operator() {
             (answer, report.direct_solves)
         };
         let (implicit, explicit) = (finished("implicit"), finished("explicit"));
-        // a row whose force is rounding costs one face more
-        assert!(implicit.1 > 0 && implicit.1.abs_diff(explicit.1) <= 1, "{}", deck.name);
+        assert!(implicit.1 > 0 && implicit.1 == explicit.1, "{}", deck.name);
         implicit.0.assert_near(&explicit.0, 1e-9, &deck.name);
     }
 }
