@@ -22,6 +22,9 @@ pub struct Findings {
     pub motion: Option<[f64; 6]>,
     /// Rigid motions that no closed row resists.
     pub undetermined: usize,
+    /// The largest share of the load of bodies that are free to move together which nothing holds, |resultant| / |load|:
+    /// rounding of the load where there is an answer.
+    pub unheld: f64,
     /// Rows that repeat the direction of another one, contact rows before equality rows, each with its multiple
     /// of that one.
     pub redundant: Vec<(usize, f64)>,
@@ -64,6 +67,7 @@ impl Findings {
             proof: None,
             motion: None,
             undetermined: 0,
+            unheld: 0.0,
             redundant: ready.map(|ready| redundant(problem, ready)).unwrap_or_default(),
             untouched: ready.map(|ready| problem.untouched(ready)).unwrap_or_default(),
             contact: problem.contact.len(),

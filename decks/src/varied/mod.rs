@@ -152,8 +152,13 @@ pub fn mixed(seed: u64, mixture: &Mixture) -> Varied {
 
 /// The nearest number of 15 decimal digits.
 pub fn rounded(value: f64) -> f64 {
+    rounded_to(value, 15)
+}
+
+/// The nearest number of so many decimal digits, 1 or more.
+pub fn rounded_to(value: f64, digits: usize) -> f64 {
     if !value.is_finite() {
         return value;
     }
-    format!("{value:.14e}").parse().expect("a number")
+    format!("{value:.*e}", digits - 1).parse().expect("a number")
 }

@@ -1,0 +1,53 @@
+//! u0 = a, u0 - u1 = b, u1 = a - b, u1 - x u2 = h: the third row says what the first two say, but for the rounding of a - b.
+
+use feti_contact::solver::{Outcome, RowKind};
+
+use crate::{body, deck, hand_over, springs};
+
+const A: f64 = 0.229;
+const B: f64 = 0.0264;
+const H: f64 = 11.4;
+const LOAD: f64 = 1.35;
+
+/// Springs of `stiffness` to the ground, the first unknown loaded; values of x that are refused or not solved.
+fn refused(stiffness: [f64; 3], count: usize) -> Vec<String> {
+    let mut refused = Vec::new();
+    for k in 0..count {
+        let x = 0.5 + (k as f64) * 1e-3 * 1.000_123_7;
+        let grounded = body(
+            springs(3, &[], &[(0, stiffness[0]), (1, stiffness[1]), (2, stiffness[2])]),
+            vec![],
+            vec![LOAD, 0.0, 0.0],
+        );
+        let ties: [(&[(usize, f64)], f64); 4] =
+            [(&[(0, 1.0)], A), (&[(0, 1.0), (1, -1.0)], B), (&[(1, 1.0)], A - B), (&[(1, 1.0), (2, -x)], H)];
+        let deck = deck(vec![grounded], &[], &ties);
+        let mut problem = hand_over::problem(&deck).unwrap();
+        match problem.solve() {
+            Ok(report) if report.outcome == Outcome::Solved => {
+                let u = problem.displacements().unwrap();
+                for (found, wanted) in u.iter().zip([A, A - B, (A - B - H) / x]) {
+                    assert!((found - wanted).abs() <= 1e-6 * wanted.abs(), "{found:e} {wanted:e}");
+                }
+                assert_eq!(problem.multipliers(RowKind::Equality).unwrap().len(), 4);
+            }
+            Ok(report) => refused.push(format!("{x}: {:?}", report.outcome)),
+            Err(error) => refused.push(format!("{x}: {error}")),
+        }
+    }
+    refused
+}
+
+#[test]
+fn a_tie_that_follows_from_two_others_contradicts_nothing() {
+    let refused = refused([1.0; 3], 2000);
+    assert!(refused.is_empty(), "{} of 2000: {}", refused.len(), refused[0]);
+}
+
+#[test]
+fn nor_does_it_where_stiffnesses_are_1e6_apart() {
+    for stiffness in [[1.0, 1e6, 1.0], [1e6, 1.0, 1e-6], [1e-6, 1.0, 1e6]] {
+        let refused = refused(stiffness, 500);
+        assert!(refused.is_empty(), "{stiffness:?} {} of 500: {}", refused.len(), refused[0]);
+    }
+}
