@@ -29,7 +29,7 @@ use crate::dual::multiples::Multiples;
 use crate::dual::reuse::Reuse;
 use crate::error::Result;
 use crate::linalg::memory::zeros;
-use crate::linalg::vector::{dot, norm_max, power_of_two_below, weighted_norm};
+use crate::linalg::vector::{dot, norm_max, power_of_two_below};
 use crate::linalg::{Csr, Packed};
 
 /// G is not known better than this.
@@ -241,14 +241,15 @@ impl Dual {
         e
     }
 
-    /// What the resultants are a part of, `|f|_{D^-1}` of the bodies that float; `metric` is D over the unknowns.
-    pub fn size_of_loads(&self, f: &[f64], metric: &[f64]) -> f64 {
-        let of = |s: &Subdomain| {
-            let start = s.range.start;
-            weighted_norm(&f[s.range.clone()], |j| 1.0 / (metric[start + j] * s.by)) / s.size
-        };
-        let floating = self.subdomains.iter().filter(|s| !s.modes.is_empty());
-        weighted_norm(&floating.map(of).collect::<Vec<_>>(), |_| 1.0)
+    /// `D R c`, n, the load of least |f|_{D^-1} whose resultants are `e`; `metric` is D over the unknowns.
+    pub fn load_of(&self, e: &[f64], unknowns: usize, metric: &[f64]) -> Vec<f64> {
+        let mut load = vec![0.0; unknowns];
+        for s in &self.subdomains {
+            let own = &mut load[s.range.clone()];
+            s.kplus.null_space.mul_add(s.size, &e[s.modes.clone()], own);
+            own.iter_mut().zip(&metric[s.range.clone()]).for_each(|(f, d)| *f *= d * s.by);
+        }
+        load
     }
 
     /// `u_p = K_p+ f_p` of body p, (17) but for its rigid motion, for the load f that the forces of the rows leave; (16) where it is

@@ -8,13 +8,13 @@
 
 mod active_set;
 mod augmented;
+mod balance;
 mod coarse;
 mod conjugate;
 mod face;
 mod iterate;
-mod least_travel;
 mod mprgp;
-mod nnls;
+mod nearest;
 pub mod paper;
 mod projection;
 mod proportioning;
@@ -26,7 +26,7 @@ pub use active_set::{active_set, Direct};
 pub use coarse::{fitted, undetermined};
 pub use conjugate::MOST as KEPT;
 pub use face::Face;
-pub use least_travel::least_travel;
+pub use nearest::{nearest_point, Nearest, Polyhedron};
 pub use proportioning::{minimise, not_held, Judge, Limits, Observer, Progress, Solution, StepKind, Verdict};
 pub use restricted::{Block, Judged, Restricted};
 pub use smalbe::smalbe;

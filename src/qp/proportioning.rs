@@ -3,9 +3,9 @@
 
 use crate::error::{Error, Kind, Result};
 use crate::linalg::vector::norm;
+use crate::qp::balance::{balance, Balance};
 use crate::qp::coarse::Coarse;
 use crate::qp::iterate::Iterate;
-use crate::qp::nnls::{nearest, Nearest};
 use crate::qp::projection::project;
 use crate::qp::steps::Step;
 use crate::qp::{Counts, Qp};
@@ -18,9 +18,6 @@ pub struct Limits {
     /// Gamma > 0 of the proportionality test, no unit.
     pub gamma: f64,
     pub steps: usize,
-    /// What |e| is of the loads that it is the resultant of, at most 1: a part of e that no x balances is measured against
-    /// those.
-    pub share: f64,
 }
 
 /// Knows what the numbers mean: gives the length the residual is measured against, and the last word.
@@ -72,8 +69,6 @@ pub struct Progress<'a> {
 pub enum Verdict {
     /// The judge accepted the answer.
     Solved,
-    /// `G x = e` holds only up to a part of the loads below 1e-7: they are not quite held.
-    Marginal,
     StepLimit,
     TimeLimit,
     Cancelled,
@@ -81,7 +76,8 @@ pub enum Verdict {
     Stalled,
     /// The residual is as small as asked, eight times over, and the judge does not accept.
     Inaccurate,
-    /// No x >= 0 gives `G x = e`: `direction'(e - G x) = |direction|^2` for all of them.
+    /// No x >= 0 was found with `G x = e`; that of the solution comes nearest, `direction = e - G x`. Where G resists it
+    /// nowhere, `G_i'direction <= 0` (`= 0` where x_i is free), it proves that there is none; `margin = |direction| / |e|`.
     Infeasible {
         direction: Vec<f64>,
         margin: f64,
@@ -115,10 +111,10 @@ pub struct Solution {
     pub counts: Counts,
 }
 
-/// A part of the loads below this that no x balances is reported as marginal, not as a load that is not held.
-const MARGINAL: f64 = 1e-7;
-/// ... and a part this small may be a rounding error: of loads far larger than their resultants.
-const ROUNDING: f64 = 1e-10;
+/// What no x balances of e is rounding of e where it is less than this part of it.
+const ROUNDING: f64 = 1e-12;
+/// Forces of a start that move so many times as far as loads and gaps are not worth while.
+const FAR_OFF: f64 = 1e3;
 /// A scale so many times the one without travel is travel.
 const TRAVEL: f64 = 10.0;
 /// A point refused for less than this much is mended by some more steps.
@@ -134,34 +130,38 @@ pub fn minimise(
     observer: &mut dyn Observer,
 ) -> Result<Solution> {
     let mut coarse = Coarse::new(qp.g_transposed, qp.rounding)?;
-    if let Some(first) = first_point(&qp, &mut coarse, start)? {
-        return proportioning(Iterate::new(qp, coarse, first)?, limits, judge, observer);
+    let first = match first_point(&qp, &mut coarse, start)? {
+        Some(first) => first,
+        None => {
+            let found = balance(&qp, &mut coarse)?;
+            if found.margin > ROUNDING {
+                return Ok(infeasible(&qp, &coarse, found));
+            }
+            found.point
+        }
+    };
+    let mut it = Iterate::new(qp, coarse, first)?;
+    if start.iter().any(|x| *x != 0.0) && it.is_far_off() {
+        if let Some(cold) = project(&qp, &mut it.coarse, &vec![0.0; start.len()], &vec![false; start.len()])?
+        {
+            it.x = cold.point;
+            it.refresh()?;
+        }
     }
-    let found = nearest(&qp, &mut coarse)?;
-    let margin = limits.share * found.margin;
-    if margin >= MARGINAL {
-        return Ok(infeasible(&qp, &coarse, found));
-    }
-    let held = coarse.image(&found.point);
-    let qp = if margin > ROUNDING { Qp { e: &held, ..qp } } else { qp };
-    let mut solution = proportioning(Iterate::new(qp, coarse, found.point)?, limits, judge, observer)?;
-    if margin > ROUNDING && solution.verdict == Verdict::Solved {
-        solution.verdict = Verdict::Marginal;
-    }
-    Ok(solution)
+    proportioning(it, limits, judge, observer)
 }
 
 /// The verdict where no x balances e, for a method that does not ask.
-pub fn not_held(qp: &Qp, start: &[f64], limits: Limits) -> Result<Option<Solution>> {
+pub fn not_held(qp: &Qp, start: &[f64]) -> Result<Option<Solution>> {
     let mut coarse = Coarse::new(qp.g_transposed, qp.rounding)?;
     if first_point(qp, &mut coarse, start)?.is_some() {
         return Ok(None);
     }
-    let found = nearest(qp, &mut coarse)?;
-    Ok((limits.share * found.margin >= MARGINAL).then(|| infeasible(qp, &coarse, found)))
+    let found = balance(qp, &mut coarse)?;
+    Ok((found.margin > ROUNDING).then(|| infeasible(qp, &coarse, found)))
 }
 
-fn infeasible(qp: &Qp, coarse: &Coarse, found: Nearest) -> Solution {
+fn infeasible(qp: &Qp, coarse: &Coarse, found: Balance) -> Solution {
     let (coarse_solves, coarse_factorisations) = (coarse.solves, coarse.factorisations);
     let counts = Counts { coarse_solves, coarse_factorisations, ..Counts::default() };
     let verdict = Verdict::Infeasible { direction: found.residual, margin: found.margin };
@@ -256,6 +256,13 @@ fn run(
 }
 
 impl Iterate<'_> {
+    /// The forces move everything so much farther than loads and gaps do that they belong to other loads: what they would leave
+    /// by rounding is much for these.
+    fn is_far_off(&self) -> bool {
+        let image: Vec<f64> = self.g.iter().zip(self.qp.b).map(|(g, b)| g + b).collect();
+        norm(&image) > FAR_OFF * norm(self.qp.b)
+    }
+
     fn progress(&self, kind: StepKind, small: f64) -> Progress<'_> {
         Progress {
             kind,

@@ -8,6 +8,7 @@ use crate::error::Result;
 use crate::linalg::memory::copied;
 use crate::linalg::vector::{axpy, norm};
 use crate::qp::{Direct, Judge, Qp, Solution, Verdict};
+use crate::solver::diagnosis::Unheld;
 use crate::solver::finish::finish;
 use crate::solver::presolve::Gaps;
 use crate::solver::problem::Problem;
@@ -85,7 +86,10 @@ pub(super) struct Ending {
 
 impl<'a> Certifier<'a> {
     pub fn new(problem: &'a Problem, ready: &'a Ready, scaled: &'a Scaled, faces: Faces<'a>) -> Result<Self> {
-        let (data, threads) = (problem.data(&ready.island)?, problem.threads());
+        let (mut data, threads) = (problem.data(&ready.island)?, problem.threads());
+        if let Some(taken) = &scaled.unheld {
+            data.bodies.iter_mut().for_each(|body| body.load = Some(&taken.load[body.range()]));
+        }
         let work = Cell::new(None);
         let cleaners = RefCell::new(data.bodies.iter().map(|_| None).collect());
         let (far, reached, spent) = (Vec::new(), Vec::new(), Duration::ZERO);
@@ -173,6 +177,11 @@ impl<'a> Certifier<'a> {
         certify(&self.data, answer.view(), &mut Unasked)
     }
 
+    /// What the forces of a solution leave of the loads.
+    pub fn unheld(&self, solution: &Solution, direction: &[f64]) -> Unheld {
+        Unheld::of(&self.data, self.ready, self.scaled, solution, direction)
+    }
+
     /// The rows left out that a displacement goes through.
     fn beyond(&self, u: &[f64]) -> Vec<usize> {
         let (rows, gaps) = (&self.ready.rows.scaled, &self.scaled.gaps.value);
@@ -181,7 +190,12 @@ impl<'a> Certifier<'a> {
 
     /// The judgement of an answer.
     pub fn judged(&self, answer: &Recovered) -> Result<Judgement> {
-        let Self { data, ready, threads, work, .. } = self;
+        self.judged_on(&self.data, answer)
+    }
+
+    /// The same by data with other loads, but for rounding of those.
+    pub fn judged_on(&self, data: &Data, answer: &Recovered) -> Result<Judgement> {
+        let Self { ready, threads, work, .. } = self;
         certify(data, answer.view(), &mut ByInverse { data, ready, threads: *threads, work })
     }
 }

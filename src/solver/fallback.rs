@@ -12,8 +12,6 @@ use crate::solver::Settings;
 pub(super) struct Means<'a> {
     pub settings: &'a Settings,
     pub direct: Direct<'a>,
-    /// Of the loads that their resultants are.
-    pub share: f64,
 }
 
 /// Solves the dual. After proportioning: the same without preconditioner, then SMALBE-M, each from where the
@@ -27,13 +25,12 @@ pub(super) fn solve_dual(
 ) -> Result<Solution> {
     let settings = means.settings;
     let most = usize::try_from(settings.max_steps).unwrap_or(usize::MAX);
-    let (tolerance, gamma, share) = (settings.tolerance, settings.gamma, means.share);
-    let limits = Limits { tolerance, gamma, steps: most, share };
+    let limits = Limits { tolerance: settings.tolerance, gamma: settings.gamma, steps: most };
     if let Some(parameters) = paper::parameters(settings) {
         return algorithm_3(Qp { preconditioner: None, ..qp }, start, &parameters, judge, steps);
     }
     if settings.method == c"smalbe" {
-        return not_held(&qp, start, limits)?.map_or_else(|| smalbe(qp, start, limits, judge, steps), Ok);
+        return not_held(&qp, start)?.map_or_else(|| smalbe(qp, start, limits, judge, steps), Ok);
     }
     let first = minimise(qp, start, limits, judge, steps)?;
     let mut best = or_directly(first, qp, means.direct, judge, steps)?;

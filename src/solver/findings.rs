@@ -22,8 +22,8 @@ pub struct Findings {
     pub motion: Option<[f64; 6]>,
     /// Rigid motions that no closed row resists.
     pub undetermined: usize,
-    /// The largest share of the load of bodies that are free to move together which nothing holds, |resultant| / |load|:
-    /// rounding of the load where there is an answer.
+    /// The largest share of the load of bodies that move together which nothing holds: |resultant| / |load|, no unit. With an
+    /// answer it has been taken for rounding of the load.
     pub unheld: f64,
     /// Rows that repeat the direction of another one, contact rows before equality rows, each with its multiple
     /// of that one.
@@ -37,7 +37,7 @@ pub struct Findings {
 impl Findings {
     pub(super) fn of_report(problem: &Problem, report: &Report) -> Self {
         let mut findings = Self::new(problem, Ok(report.outcome));
-        findings.undetermined = report.undetermined;
+        (findings.undetermined, findings.unheld) = (report.undetermined, report.unheld);
         findings.place.body = report.body;
         findings
     }
@@ -51,6 +51,7 @@ impl Findings {
                 findings.kind = Some(kind_and_row(*heaviest, findings.contact).0);
             }
             Some(Proof::Motion { v, .. }) => {
+                findings.unheld = error.place.value.unwrap_or(0.0);
                 findings.motion = error.place.body.and_then(|body| problem.rigid_motion(body, v));
             }
             None => {}

@@ -72,16 +72,6 @@ impl Island {
         Ok(all)
     }
 
-    /// A load without what acts on grounded unknowns, which no rigid motion moves.
-    pub fn without_grounded(&self, problem: &Problem, load: &[f64]) -> Vec<f64> {
-        let mut free = load.to_vec();
-        for (&p, range) in self.bodies.iter().zip(&self.ranges) {
-            let grounded = problem.bodies[p].inverse.iter().flat_map(|inverse| inverse.grounded.iter());
-            grounded.for_each(|&j| free[range.start + j as usize] = 0.0);
-        }
-        free
-    }
-
     /// Values over all unknowns for those of the island.
     pub fn gather(&self, problem: &Problem, all: &[f64]) -> Result<Vec<f64>> {
         let mut own = reserved(self.unknowns(), WHAT)?;

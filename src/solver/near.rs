@@ -36,7 +36,10 @@ pub(super) fn solve_near(
         let solution = near.whole(solution);
         before = before + solution.counts;
         let nearest = (0..far.len()).filter(|&i| far[i]).map(|i| gaps[i]).fold(f64::INFINITY, f64::min);
-        match solution.verdict {
+        match &solution.verdict {
+            Verdict::Infeasible { direction, .. } if judge.unheld(&solution, direction).is_little() => {
+                return Ok(Solution { counts: before, ..solution });
+            }
             Verdict::Infeasible { .. } | Verdict::Unbounded { .. } => {
                 (0..far.len()).for_each(|i| far[i] &= gaps[i] > FAR * nearest);
             }

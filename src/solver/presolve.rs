@@ -1,11 +1,11 @@
 //! Before any product with F: the gap of every group of parallel rows, and rows that contradict each other.
 
 use crate::constraints::RowKind;
-use crate::error::{Error, Kind, Result};
-use crate::linalg::vector::{norm, norm_max};
+use crate::error::{Error, Result};
+use crate::linalg::vector::{dot, norm, norm_max};
 use crate::linalg::{Csr, Operator};
 use crate::qp::{minimise, Judge, Limits, Observer, Progress, Qp};
-use crate::solver::diagnosis;
+use crate::solver::diagnosis::Contradictions;
 use crate::solver::problem::Problem;
 use crate::solver::setup::Ready;
 use crate::solver::watch::Stops;
@@ -18,6 +18,13 @@ const ROUNDING: f64 = 64.0 * f64::EPSILON;
 const BEYOND: f64 = 1e6;
 /// A gap so many times as large as all motion that loads make and rows demand is far.
 pub(super) const FAR: f64 = 1e4;
+
+/// What the search leaves of 1 where rows that contradict each other are worth a closer look: some displacement 1e3 times as
+/// large as the largest gap would leave as much.
+const UNCERTAIN: f64 = 1e-6;
+
+/// Rows that touch no more unknowns are searched by a method that ends, in the time of a few dense factorisations.
+const SMALL: usize = 200;
 
 /// Multiplications the search for contradictions may take.
 const WORK: usize = 200_000_000;
@@ -68,13 +75,11 @@ pub(super) fn presolve(problem: &Problem, ready: &Ready, moved: f64, stops: &Sto
             gap > scaled[i] + slack
         };
         if contradicts {
-            return Err(two_rows_contradict(
-                problem,
-                ready,
-                (i, scaled[i]),
-                (leaders[group], gap, sign),
-                slack,
-            ));
+            let turned = if gap > scaled[i] { 1.0 } else { -1.0 };
+            let pair = vec![(i, turned), (leaders[group], -turned * sign)];
+            if let Some(error) = Contradictions::new(problem, ready, &gaps).proof(pair)? {
+                return Err(error);
+            }
         }
     }
     if let Some(error) = contradiction(problem, ready, &gaps, stops)? {
@@ -84,27 +89,6 @@ pub(super) fn presolve(problem: &Problem, ready: &Ready, moved: f64, stops: &Sto
     gaps.far =
         gaps.value.iter().zip(&gaps.bounded).map(|(c, bounded)| *bounded && *c > FAR * reach).collect();
     Ok(gaps)
-}
-
-/// Row i with its gap and a parallel equality row with its own, in the direction of row i: `b_i = sign b_leader`
-/// in the scaling of the dual.
-fn two_rows_contradict(
-    problem: &Problem,
-    ready: &Ready,
-    (i, gap): (usize, f64),
-    (leader, demanded, sign): (usize, f64, f64),
-    slack: f64,
-) -> Error {
-    let rows = &ready.rows;
-    let (kind, row) = ready.island.kind_and_row(i);
-    let what = format!("this {} contradicts an equality row in the same direction", kind.name());
-    let error = Error::new(Kind::GapsContradict, what).row(row).value(demanded - gap).limit(slack);
-    let turned = if demanded > gap { 1.0 } else { -1.0 };
-    let place = |i: usize| diagnosis::in_stack(problem, ready, i);
-    let weights =
-        vec![(place(i), turned * rows.scale[i]), (place(leader), -turned * sign * rows.scale[leader])];
-    let margin = (demanded - gap).abs() / (demanded.abs() + gap.abs());
-    error.proved_by(diagnosis::proof_of_rows(margin, weights, place(i)))
 }
 
 /// `min |D^-1/2 B'w|^2 + (1 + c'w)^2` over w >= 0 on contact rows is zero exactly where rows contradict each
@@ -118,11 +102,15 @@ fn contradiction(problem: &Problem, ready: &Ready, gaps: &Gaps, stops: &Stops) -
     let size = (0..gaps.value.len()).filter(rigid).map(demand).fold(0.0, f64::max);
     let near = |group: &usize| gaps.value[*group] <= BEYOND * size;
     let rigid: Vec<usize> = (0..gaps.value.len()).filter(rigid).filter(near).collect();
-    let bounded: Vec<bool> = rigid.iter().map(|&group| gaps.bounded[group]).collect();
-    let mut c: Vec<f64> = rigid.iter().map(|&group| gaps.value[group]).collect();
     if size == 0.0 {
         return Ok(None); // u = 0 satisfies them all
     }
+    let claims = Contradictions::new(problem, ready, gaps);
+    if claims.touched(&rigid).len() <= SMALL {
+        return claims.proved_among(&rigid);
+    }
+    let bounded: Vec<bool> = rigid.iter().map(|&group| gaps.bounded[group]).collect();
+    let mut c: Vec<f64> = rigid.iter().map(|&group| gaps.value[group]).collect();
     let size = norm_max(&c);
     c.iter_mut().for_each(|c| *c /= size);
     let mut matrix = Csr::empty(rows.scaled.cols);
@@ -140,13 +128,19 @@ fn contradiction(problem: &Problem, ready: &Ready, gaps: &Gaps, stops: &Stops) -
         preconditioner: None,
     };
     let steps = (WORK / (4 * matrix.val.len() + c.len() + 1)).clamp(1000, 200_000);
-    let limits = Limits { tolerance: 1e-14, gamma: 1.0, steps, share: 1.0 };
+    let limits = Limits { tolerance: 1e-14, gamma: 1.0, steps };
     let mut judge = Unjudged { scale: norm(&b) };
     let solution = minimise(qp, &vec![0.0; c.len()], limits, &mut judge, &mut UnlessCancelled(stops))?;
     stops.check_cancelled()?;
+    if left(&a, &solution.x) > UNCERTAIN {
+        return Ok(None);
+    }
     let mut w = vec![0.0; gaps.value.len()];
     rigid.iter().zip(&solution.x).for_each(|(&group, x)| w[group] = *x);
-    Ok(diagnosis::gaps_contradict(problem, ready, gaps, &w))
+    match claims.proved(&w)? {
+        Some(error) => Ok(Some(error)),
+        None => claims.proved_among(&rigid),
+    }
 }
 
 /// `w -> B D^-1 B'w + c (c'w)`
@@ -166,9 +160,16 @@ impl Operator for Alternative<'_> {
         self.matrix.mul_transposed_add(1.0, w, &mut v);
         v.iter_mut().zip(self.metric).for_each(|(v, d)| *v /= d);
         self.matrix.mul(&v, y);
-        let demanded = crate::linalg::vector::dot(self.c, w);
+        let demanded = dot(self.c, w);
         y.iter_mut().zip(self.c).for_each(|(y, c)| *y += c * demanded);
     }
+}
+
+/// `|D^-1/2 B'w|^2 + (1 + c'w)^2`, 1 / (1 + |u|_D^2 / max |c|^2) for the shortest u that satisfies the rows.
+fn left(a: &Alternative, w: &[f64]) -> f64 {
+    let mut image = vec![0.0; w.len()];
+    a.apply(w, &mut image);
+    dot(w, &image) + 2.0 * dot(a.c, w) + 1.0
 }
 
 /// The combination found is examined afterwards.

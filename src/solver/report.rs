@@ -74,6 +74,8 @@ pub struct Report {
     pub active: usize,
     /// Rigid motions that no closed row resists: u is one of many.
     pub undetermined: usize,
+    /// The largest share of the load of bodies that move together which nothing holds: |resultant| / |load|, no unit.
+    pub unheld: f64,
     pub steps: usize,
     pub cg_steps: usize,
     pub expansions: usize,
@@ -125,6 +127,7 @@ impl Report {
             floating_modes: sum(Dual::modes),
             active: 0,
             undetermined: 0,
+            unheld: 0.0,
             steps: 0,
             cg_steps: 0,
             expansions: 0,

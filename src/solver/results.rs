@@ -88,7 +88,8 @@ impl Answer {
 
     /// The answer of an island, and what it took.
     fn take_in(&mut self, problem: &Problem, ready: &Ready, solved: Solved) {
-        let Solved { ending: Ending { solution, recovered, judgement, .. }, outcome, finished, .. } = solved;
+        let Solved { ending, outcome, finished, unheld, .. } = solved;
+        let Ending { solution, recovered, judgement, .. } = ending;
         let island = &ready.island;
         let states = states(ready, &recovered, &judgement.contact);
         island.scatter(problem, &recovered.u, &mut self.u);
@@ -106,6 +107,7 @@ impl Answer {
         }
         report.undetermined += solution.undetermined;
         report.finished |= finished;
+        report.unheld = report.unheld.max(unheld);
         report.count(&solution.counts);
         let scale = solution.scale * island.unit.sqrt();
         report.gap_scale = report.gap_scale.hypot(scale);

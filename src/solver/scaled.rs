@@ -2,9 +2,10 @@
 
 use crate::dual::Preconditioner;
 use crate::error::Result;
-use crate::linalg::vector::{norm_max, ratio, weighted_norm};
+use crate::linalg::vector::{axpy, norm_max};
 use crate::linalg::Operator;
 use crate::qp::{self, Qp};
+use crate::solver::diagnosis::Unheld;
 use crate::solver::presolve::{presolve, Gaps};
 use crate::solver::problem::Problem;
 use crate::solver::setup::Ready;
@@ -18,8 +19,17 @@ pub(super) struct Scaled {
     /// `B_p K_p+ f_p` of every body.
     pub moved: Vec<Vec<f64>>,
     d: Vec<f64>,
-    e: Vec<f64>,
-    /// `|e|` over the size of the loads that it is the resultant of, at most 1.
+    /// `e = R'f`
+    pub resultants: Vec<f64>,
+    /// What has been taken from the loads because nothing holds it.
+    pub unheld: Option<Taken>,
+}
+
+/// Loads without what nothing holds of them.
+pub(super) struct Taken {
+    /// As those of the host, force.
+    pub load: Vec<f64>,
+    /// The largest |resultant| / |load| of bodies that move together.
     pub share: f64,
 }
 
@@ -31,17 +41,27 @@ impl Scaled {
         let farthest = moved.iter().map(|own| norm_max(own)).fold(0.0, f64::max);
         let gaps = presolve(problem, ready, farthest, stops)?;
         let d = ready.dual.rhs(&moved, &gaps.dual);
-        let e = ready.dual.resultants(&load);
-        let whole =
-            ready.dual.size_of_loads(&ready.island.without_grounded(problem, &load), &ready.rows.metric);
-        let share = ratio(weighted_norm(&e, |_| 1.0), whole).min(1.0);
-        Ok(Self { load, gaps, moved, d, e, share })
+        let resultants = ready.dual.resultants(&load);
+        Ok(Self { load, gaps, moved, d, resultants, unheld: None })
+    }
+
+    /// Takes from the loads what the forces x of the dual leave of them.
+    pub fn take(&mut self, problem: &Problem, ready: &Ready, unheld: Unheld, x: &[f64]) -> Result<()> {
+        axpy(-1.0, &unheld.load, &mut self.load);
+        self.moved = ready.moved(problem.threads(), &self.load)?;
+        self.d = ready.dual.rhs(&self.moved, &self.gaps.dual);
+        self.resultants.fill(0.0);
+        ready.dual.coarse.mul_transposed_add(1.0, x, &mut self.resultants);
+        let load = self.load.iter().map(|f| f * ready.island.unit).collect();
+        self.unheld = Some(Taken { load, share: unheld.share });
+        Ok(())
     }
 
     pub fn qp<'a>(&'a self, ready: &'a Ready, a: &'a dyn Operator) -> Qp<'a> {
         let g_transposed = &ready.dual.coarse;
         let preconditioner = ready.preconditioner.as_ref().map(|(_, m)| m as &dyn qp::Preconditioner);
-        let (b, e, bounded, rounding) = (&self.d, &self.e, &self.gaps.bounded, ready.dual.rounding());
+        let (b, e, bounded, rounding) =
+            (&self.d, &self.resultants, &self.gaps.bounded, ready.dual.rounding());
         Qp { a, b, g_transposed, rounding, e, bounded, preconditioner }
     }
 }

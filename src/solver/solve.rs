@@ -7,7 +7,7 @@ use crate::linalg::Operator;
 use crate::qp::paper::Units;
 use crate::qp::{Direct, Solution, Verdict};
 use crate::solver::certifier::{Certifier, Ending, Faces};
-use crate::solver::diagnosis;
+use crate::solver::diagnosis::{Contradictions, Unheld, ROUNDING};
 use crate::solver::fallback::Means;
 use crate::solver::finish::finish;
 use crate::solver::near::solve_near;
@@ -26,14 +26,23 @@ pub(super) struct Solved {
     pub outcome: Outcome,
     /// The direct finish has replaced the answer.
     pub finished: bool,
+    /// The largest share of the load of bodies that move together which nothing holds.
+    pub unheld: f64,
     /// Time for answers recovered and certified, and for the recovery of the last.
     pub judging: Duration,
     pub recovering: Duration,
 }
 
+/// One try at an island.
+enum Attempt {
+    Ended(Box<Solved>),
+    /// No forces were found that hold the load: the nearest, and what they leave.
+    NotHeld(Solution, Vec<f64>),
+}
+
 impl Problem {
     /// Solves (10)-(11) on one island: the dual, the displacements, the certificate. The named reason why there is no
-    /// answer is an error.
+    /// answer is an error. What rounding has made of a load that nothing holds is taken from it.
     pub(super) fn solve_island(
         &self,
         number: usize,
@@ -43,34 +52,71 @@ impl Problem {
     ) -> Result<Solved> {
         let setup = self.ready()?;
         let ready = &setup.islands[number];
-        let dual = Scaled::new(self, ready, stops)?;
+        let mut dual = Scaled::new(self, ready, stops)?;
+        let mut start = start.scaled(ready)?;
+        loop {
+            match self.attempt(number, &dual, &start, stops, voice)? {
+                Attempt::Ended(solved) => return Ok(*solved),
+                Attempt::NotHeld(solution, direction) => {
+                    let unheld = Unheld::of(&self.data(&ready.island)?, ready, &dual, &solution, &direction);
+                    if let Some(error) = unheld.proof(self, ready, &dual, &direction)? {
+                        return Err(error);
+                    }
+                    dual.take(self, ready, unheld, &solution.x)?;
+                    start = solution.x;
+                }
+            }
+        }
+    }
+
+    fn attempt(
+        &self,
+        number: usize,
+        dual: &Scaled,
+        start: &[f64],
+        stops: &Stops,
+        voice: &mut dyn Voice,
+    ) -> Result<Attempt> {
+        let setup = self.ready()?;
+        let ready = &setup.islands[number];
         let f = Interruptible::new(&ready.dual, stops.clone(), self.product_threads(ready));
-        let (qp, start) = (dual.qp(ready, &f), start.scaled(ready)?);
+        let qp = dual.qp(ready, &f);
         let direct = self.direct(setup, ready);
-        let mut judge = Certifier::new(self, ready, &dual, Faces { qp, direct, stops })?;
+        let mut judge = Certifier::new(self, ready, dual, Faces { qp, direct, stops })?;
         let steps = &mut Steps::new(number, ready.island.unit, &dual.gaps.bounded, stops.clone(), voice);
         let solution = match parameters(&self.settings) {
             Some(given) if given.units == Units::Printed => {
-                HostUnits::new(self, ready, &dual.gaps, given)?.solve(qp, &start, &mut judge, steps)?
+                HostUnits::new(self, ready, &dual.gaps, given)?.solve(qp, start, &mut judge, steps)?
             }
-            _ => solve_near(
-                &Means { settings: &self.settings, direct, share: dual.share },
-                qp,
-                &start,
-                &mut judge,
-                steps,
-            )?,
+            _ => solve_near(&Means { settings: &self.settings, direct }, qp, start, &mut judge, steps)?,
+        };
+        let solution = match solution {
+            Solution { verdict: Verdict::Infeasible { direction, .. }, .. } if dual.unheld.is_none() => {
+                return Ok(Attempt::NotHeld(Solution { verdict: Verdict::Stalled, ..solution }, direction));
+            }
+            solution => solution,
         };
         let (judging, recovering) = (judge.spent, Instant::now());
         let mut ending = judge.ending(solution)?;
         judge.bring_to_rest(&mut ending, false)?;
         let is_solved = ending.solution.verdict == Verdict::Solved;
         let finished = is_solved && self.is_to_finish(&judge, &ending) && finish(&judge, &mut ending)?;
-        let mut outcome = self.outcome(ready, &dual, &ending.solution)?;
-        if outcome <= Outcome::Marginal && !ending.judgement.certificate.passed() {
+        let mut outcome = self.outcome(ready, dual, &ending.solution)?;
+        if outcome == Outcome::Solved && !ending.judgement.certificate.passed() {
             outcome = Outcome::Inaccurate;
         }
-        Ok(Solved { ending, outcome, finished, judging, recovering: recovering.elapsed() })
+        if let Some(taken) = &dual.unheld {
+            // what the host is told is about its own load
+            ending.judgement = judge.judged_on(&self.data(&ready.island)?, &ending.recovered)?;
+            outcome = match outcome {
+                Outcome::Solved if taken.share > ROUNDING => Outcome::Marginal,
+                Outcome::Solved if !ending.judgement.certificate.passed() => Outcome::Inaccurate,
+                outcome => outcome,
+            };
+        }
+        let unheld = dual.unheld.as_ref().map_or(0.0, |taken| taken.share);
+        let recovering = recovering.elapsed();
+        Ok(Attempt::Ended(Box::new(Solved { ending, outcome, finished, unheld, judging, recovering })))
     }
 
     pub(super) fn ready(&self) -> Result<&Setup> {
@@ -89,19 +135,16 @@ impl Problem {
     fn outcome(&self, ready: &Ready, dual: &Scaled, solution: &Solution) -> Result<Outcome> {
         match &solution.verdict {
             Verdict::Solved => Ok(Outcome::Solved),
-            Verdict::Marginal => Ok(Outcome::Marginal),
             Verdict::StepLimit => Ok(Outcome::Iterations),
             Verdict::TimeLimit => Ok(Outcome::Time),
             Verdict::Cancelled => Ok(Outcome::Cancelled),
-            Verdict::Stalled => Ok(Outcome::Stalled),
+            Verdict::Stalled | Verdict::Infeasible { .. } => Ok(Outcome::Stalled),
             Verdict::Inaccurate => Ok(Outcome::Inaccurate),
-            Verdict::Infeasible { direction, margin } => {
-                Err(diagnosis::load_not_held(self, ready, direction, *margin))
-            }
             Verdict::Unbounded { p } => {
                 let w: Vec<f64> = p.iter().map(|p| -p).collect();
                 let w = ready.rows.decoupling.solve_transposed(w);
-                diagnosis::gaps_contradict(self, ready, &dual.gaps, &w).map_or(Ok(Outcome::Stalled), Err)
+                let proved = Contradictions::new(self, ready, &dual.gaps).proved(&w)?;
+                proved.map_or(Ok(Outcome::Stalled), Err)
             }
         }
     }

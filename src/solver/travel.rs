@@ -14,7 +14,7 @@ use crate::error::Result;
 use crate::linalg::graph::joined;
 use crate::linalg::vector::{axpy, dot, norm_max};
 use crate::linalg::{Csr, Matrix};
-use crate::qp::least_travel;
+use crate::qp::{nearest_point, Polyhedron};
 
 /// A motion that keeps less than this of its length beside others depends on them.
 const DEPENDENT: f64 = 1e-10;
@@ -77,7 +77,9 @@ pub fn travel(open: &Open, u: &[f64]) -> Result<Change> {
         let spent = open.projections(&null_spaces, &now);
         let target: Vec<f64> = of_motion.iter().map(|&(g, j)| -groups[g].dot(j, &spent)).collect();
         let (gap, noise) = open.left(&now);
-        let a = least_travel(&motions, &gap, &target, &noise)?;
+        let within =
+            Polyhedron { rows: &motions, gap: &gap, target: &target, noise: &noise, rounding: NOISE };
+        let a = nearest_point(within)?.point;
         let mut turn = vec![0.0; open.amplitudes.rows];
         of_motion.iter().zip(&a).for_each(|(&(g, j), a)| groups[g].add(*a, j, &mut turn));
         for (body, null_space) in open.bodies.iter().zip(&null_spaces) {

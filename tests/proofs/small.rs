@@ -29,14 +29,14 @@ fn network(n: usize, free: bool, random: &mut Random) -> decks::Body {
         k[j * n + i] -= s;
     };
     for i in 1..n {
-        spring(i, random.below(i), random.decades(0.1, 10.0));
+        spring(i, random.below(i), random.decades(-1.0, 1.0));
         let j = random.below(n);
         if j != i {
-            spring(i, j, random.decades(0.1, 10.0));
+            spring(i, j, random.decades(-1.0, 1.0));
         }
     }
     if !free {
-        k[0] += random.decades(0.1, 10.0);
+        k[0] += random.decades(-1.0, 1.0);
     }
     let modes = if free { vec![vec![1.0; n]] } else { vec![] };
     body(Csr::from_dense(n, &k), modes, vec![0.0; n])
@@ -73,7 +73,7 @@ fn draw(kind: Kind, seed: u64) -> Deck {
         }
         sum.into_iter().enumerate().filter(|(_, v)| *v != 0.0).collect()
     };
-    let small = |random: &mut Random| random.decades(1e-12, 1e-6);
+    let small = |random: &mut Random| random.decades(-12.0, -6.0);
     match kind {
         Kind::Redundant => {
             let next = combined(&ties, random, true);

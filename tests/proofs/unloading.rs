@@ -64,12 +64,12 @@ fn a_cube_of_springs_on_supports_is_unloaded() {
         let full: Vec<f64> = (0..order)
             .map(|i| if i % 3 == 2 { -1.0 - 0.1 * (i as f64).sin() } else { 0.02 * (i as f64).cos() })
             .collect();
-        for by in [1.0, 0.5, 0.0] {
+        for by in [1.0, 0.5, 1e-12, 0.0] {
             problem.set_load(0, &full.iter().map(|f| by * f).collect::<Vec<_>>()).unwrap();
             let report = problem.solve().unwrap();
             assert_eq!(report.outcome, Outcome::Solved, "{n}, {by}: {report:?}");
             if by == 0.0 {
-                assert!(report.steps <= 20, "{n}: {} steps", report.steps);
+                assert!(report.steps <= 10, "{n}: {} steps", report.steps);
                 assert!(problem.displacements().unwrap().iter().all(|u| *u == 0.0));
             }
         }

@@ -121,7 +121,7 @@ impl Program {
         accepted: f64,
         preconditioner: Option<&dyn Preconditioner>,
     ) -> Solution {
-        let limits = Limits { tolerance, gamma: 1.0, steps: 5000, share: 1.0 };
+        let limits = Limits { tolerance, gamma: 1.0, steps: 5000 };
         let mut judge = Conditions { program: self, accepted };
         let g_transposed = self.g_transposed();
         let qp = self.qp(&g_transposed, preconditioner);
@@ -130,7 +130,7 @@ impl Program {
 
     /// To 1e-12 from a start, by any method, watched.
     pub fn watched(&self, method: Method, start: &[f64], observer: &mut dyn Observer) -> Solution {
-        let limits = Limits { tolerance: 1e-12, gamma: 1.0, steps: 20_000, share: 1.0 };
+        let limits = Limits { tolerance: 1e-12, gamma: 1.0, steps: 20_000 };
         let mut judge = Conditions { program: self, accepted: 1e-9 };
         let g_transposed = self.g_transposed();
         method(self.qp(&g_transposed, None), start, limits, &mut judge, observer).unwrap()

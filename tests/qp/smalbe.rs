@@ -11,7 +11,7 @@ use feti_contact::qp::{smalbe, Judge, Limits, Observer, Preconditioner, Progress
 use crate::dense::{norm, Dense};
 use crate::program::Program;
 
-const LIMITS: Limits = Limits { tolerance: 1e-12, gamma: 1.0, steps: 20_000, share: 1.0 };
+const LIMITS: Limits = Limits { tolerance: 1e-12, gamma: 1.0, steps: 20_000 };
 
 /// Accepts by the residuals of the optimality conditions.
 struct Conditions<'a>(&'a Program);

@@ -78,7 +78,7 @@ fn run(program: &Program, start: &[f64], products: usize, then: Kind, diary: &mu
         bounded: &program.bounded,
         preconditioner: None,
     };
-    let limits = Limits { tolerance: 1e-12, gamma: 1.0, steps: 5000, share: 1.0 };
+    let limits = Limits { tolerance: 1e-12, gamma: 1.0, steps: 5000 };
     minimise(qp, start, limits, &mut Content, diary)
 }
 

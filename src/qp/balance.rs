@@ -1,29 +1,64 @@
-//! `min |e - G l|` over `l_i >= 0 (i bounded)`: Lawson and Hanson's method. Its residual `a` decides whether
-//! the equalities can be met at all: `G_i'a <= 0` on bounded rows, `= 0` on free ones, `e'a = |a|^2`.
+//! `min |e - G l|` over `l_i >= 0 (i bounded)`. Its residual `a` decides whether the equalities can be met at all: `G_i'a <= 0` on
+//! bounded rows, `= 0` on free ones, `e'a = |a|^2`. Where G has few columns a is found as the point of the cone of those that
+//! is nearest to e, which ends and loses no digits to `G G'`; else by Lawson and Hanson's method.
 
-use crate::error::Result;
+use crate::error::{Kind, Result};
 use crate::linalg::vector::{norm, ratio};
+use crate::linalg::Csr;
 use crate::qp::coarse::Coarse;
-use crate::qp::Qp;
+use crate::qp::{nearest_point, Polyhedron, Qp};
 
 /// A correlation with the residual below this fraction of its terms counts as zero.
 const ZERO: f64 = 1e-12;
+/// Modes of a problem for which a square matrix of them, and one rotation of it per row and mode, are cheap.
+const FEW: usize = 1500;
 
-pub struct Nearest {
+pub struct Balance {
     pub point: Vec<f64>,
-    /// `a = e - G l`: `G_i'a <= 0` on bounded rows, `= 0` on free ones, `e'a = |a|^2`.
+    /// `a = e - G l`: `G_i'a <= 0` on bounded rows, `= 0` on free ones, `e'a = |a|^2`; only nearly so where Lawson and Hanson's
+    /// method has not converged.
     pub residual: Vec<f64>,
+    /// `|a| / |e|`
     pub margin: f64,
 }
 
-pub fn nearest(qp: &Qp, coarse: &mut Coarse) -> Result<Nearest> {
+pub fn balance(qp: &Qp, coarse: &mut Coarse) -> Result<Balance> {
+    let point = match if qp.e.len() <= FEW { in_cone(qp)? } else { None } {
+        Some(point) => point,
+        None => lawson_hanson(qp, coarse)?,
+    };
+    let residual = residual(qp, &point);
+    Ok(Balance { margin: margin(qp, &residual), point, residual })
+}
+
+/// l, the forces that keep a in its cone; none where rounding keeps the method from ending.
+fn in_cone(qp: &Qp) -> Result<Option<Vec<f64>>> {
+    let m = qp.bounded.len();
+    let mut rows = Csr::empty(qp.g_transposed.cols);
+    (0..m).for_each(|i| rows.push_row(qp.g_transposed.row(i)));
+    let free: Vec<usize> = (0..m).filter(|&i| !qp.bounded[i]).collect();
+    free.iter().for_each(|&i| rows.push_row(qp.g_transposed.row(i).map(|(mode, v)| (mode, -v))));
+    let gap = vec![0.0; rows.rows()];
+    let found =
+        nearest_point(Polyhedron { rows: &rows, gap: &gap, target: qp.e, noise: &gap, rounding: 0.0 });
+    let mut forces = match found {
+        Ok(found) => found.forces,
+        Err(error) if error.kind == Kind::Internal => return Ok(None),
+        Err(error) => return Err(error),
+    };
+    let opposite = forces.split_off(m);
+    free.iter().zip(opposite).for_each(|(&i, force)| forces[i] -= force);
+    Ok(Some(forces))
+}
+
+fn lawson_hanson(qp: &Qp, coarse: &mut Coarse) -> Result<Vec<f64>> {
     let m = qp.b.len();
     let mut held: Vec<bool> = qp.bounded.to_vec();
     let mut point = least_squares(qp, coarse, &held)?;
     for _ in 0..3 * m + 3 {
         let residual = residual(qp, &point);
         let Some(best) = most_correlated(qp, &held, &residual) else {
-            return Ok(Nearest { margin: margin(qp, &residual), point, residual });
+            return Ok(point);
         };
         held[best] = false;
         loop {
@@ -44,8 +79,7 @@ pub fn nearest(qp: &Qp, coarse: &mut Coarse) -> Result<Nearest> {
             }
         }
     }
-    let residual = residual(qp, &point);
-    Ok(Nearest { margin: margin(qp, &residual), point, residual })
+    Ok(point)
 }
 
 /// `e - G l`
@@ -90,7 +124,8 @@ mod tests {
     use super::*;
     use crate::linalg::{Csr, Packed};
 
-    fn solve(columns: &[[f64; 2]], e: [f64; 2]) -> Nearest {
+    /// By the cone, and the same by Lawson and Hanson.
+    fn solve(columns: &[[f64; 2]], e: [f64; 2]) -> Balance {
         let mut g_transposed = Csr::empty(2);
         columns.iter().for_each(|c| g_transposed.push_row([(0, c[0]), (1, c[1])]));
         let (a, m) = (Packed::zeros(columns.len()).unwrap(), columns.len());
@@ -103,7 +138,11 @@ mod tests {
             bounded: &vec![true; m],
             preconditioner: None,
         };
-        nearest(&qp, &mut Coarse::new(&g_transposed, 1e-14).unwrap()).unwrap()
+        let coarse = &mut Coarse::new(&g_transposed, 1e-14).unwrap();
+        let found = balance(&qp, coarse).unwrap();
+        let other = residual(&qp, &lawson_hanson(&qp, coarse).unwrap());
+        assert!(found.residual.iter().zip(&other).all(|(a, b)| (a - b).abs() < 1e-14));
+        found
     }
 
     #[test]

@@ -1,0 +1,197 @@
+//! Rows whose gaps no displacement satisfies: combinations of them are tried on the data of the host.
+
+use std::cell::Cell;
+use std::collections::HashMap;
+
+use crate::certificate::Response;
+use crate::constraints::RowSet;
+use crate::error::{Error, Kind, Result};
+use crate::linalg::twofold::Twofold;
+use crate::linalg::vector::{norm_max, weighted_norm};
+use crate::linalg::Csr;
+use crate::qp::{nearest_point, Polyhedron};
+use crate::solver::diagnosis::{in_stack, proof_of_rows};
+use crate::solver::presolve::Gaps;
+use crate::solver::problem::Problem;
+use crate::solver::response::ByInverse;
+use crate::solver::setup::Ready;
+
+/// A displacement so many times as large as all that rows demand and loads make is none that could satisfy the rows.
+const BEYOND: f64 = 1e6;
+const ROUNDING: f64 = 64.0 * f64::EPSILON;
+/// A weight below this part of the largest is none.
+const NEGLIGIBLE: f64 = 1e-8;
+/// Unknowns that rows touch for which a square matrix of them is cheap.
+const FEW: usize = 1500;
+
+/// A combination of rows of the island, contact rows first, each with its weight times the scaled row `s_i b_i u <= s_i c_i`.
+pub(in crate::solver) type Weights = Vec<(usize, f64)>;
+
+/// Looks for proofs that the rows of an island contradict each other.
+pub(in crate::solver) struct Contradictions<'a> {
+    pub problem: &'a Problem,
+    pub ready: &'a Ready,
+    pub gaps: &'a Gaps,
+    /// V of the loads, once it has been asked for, force x length.
+    work: Cell<Option<f64>>,
+}
+
+impl<'a> Contradictions<'a> {
+    pub fn new(problem: &'a Problem, ready: &'a Ready, gaps: &'a Gaps) -> Self {
+        Self { problem, ready, gaps, work: Cell::new(None) }
+    }
+
+    /// The error that names the rows, where a combination w of the groups of the dual, or what rows that take part in it
+    /// demand of each other, proves it. Compliant rows contradict nothing.
+    pub fn proved(&self, w: &[f64]) -> Result<Option<Error>> {
+        let rows = &self.ready.rows;
+        let negligible = NEGLIGIBLE * norm_max(w);
+        let counts = |group: &usize| rows.compliance[*group] == 0.0 && w[*group].abs() > negligible;
+        let groups: Vec<usize> = (0..w.len()).filter(counts).collect();
+        let weights = groups.iter().map(|&group| (self.gaps.holder[group], w[group])).collect();
+        match self.proof(weights)? {
+            Some(error) => Ok(Some(error)),
+            None => self.proved_among(&groups),
+        }
+    }
+
+    /// The same by a method that ends for all of these groups, where they touch few unknowns: the displacement of least |u|_D
+    /// that satisfies them, or rows that none does.
+    pub fn proved_among(&self, groups: &[usize]) -> Result<Option<Error>> {
+        let (rows, place) = (&self.ready.rows, self.touched(groups));
+        if place.len() > FEW {
+            return Ok(None);
+        }
+        let (mut matrix, mut gap, mut of) = (Csr::empty(place.len()), Vec::new(), Vec::new());
+        for &group in groups {
+            let both = if self.gaps.bounded[group] { &[1.0][..] } else { &[1.0, -1.0] };
+            for sign in both {
+                let row = rows.scaled.row(group).map(|(j, v)| (place[&j], sign * v / rows.metric[j].sqrt()));
+                matrix.push_row(row);
+                gap.push(sign * self.gaps.value[group]);
+                of.push((self.gaps.holder[group], *sign));
+            }
+        }
+        let noise: Vec<f64> = gap.iter().map(|c| ROUNDING * c.abs()).collect();
+        let target = vec![0.0; place.len()];
+        let found = nearest_point(Polyhedron {
+            rows: &matrix,
+            gap: &gap,
+            target: &target,
+            noise: &noise,
+            rounding: 0.0,
+        });
+        let contradictions = match found {
+            Ok(found) => found.contradictions,
+            Err(error) if error.kind == Kind::Internal => return Ok(None),
+            Err(error) => return Err(error),
+        };
+        let of_rows = |w: Vec<(usize, f64)>| w.into_iter().map(|(k, w)| (of[k].0, of[k].1 * w)).collect();
+        let mut proofs = contradictions.into_iter().map(|w| self.proof(of_rows(w)));
+        proofs.find_map(Result::transpose).transpose()
+    }
+
+    /// The unknowns that these groups touch, each with a number from 0.
+    pub fn touched(&self, groups: &[usize]) -> HashMap<usize, usize> {
+        let mut place = HashMap::new();
+        for (j, _) in groups.iter().flat_map(|&group| self.ready.rows.scaled.row(group)) {
+            let next = place.len();
+            place.entry(j).or_insert(next);
+        }
+        place
+    }
+
+    /// `w'c + X |B'w|_{D^-1} + 64 eps (|w|'|c| + X ||B|'|w||_{D^-1}) < 0` by the rows of the host: no displacement of less than
+    /// X in the metric D satisfies them, X being 10^6 times what they demand and the loads make.
+    pub fn proof(&self, mut weights: Weights) -> Result<Option<Error>> {
+        let rows = &self.ready.rows;
+        merge(&mut weights);
+        let bounded = |i: usize| i < rows.contact;
+        if weights.iter().any(|&(i, w)| bounded(i) && w < 0.0) {
+            return Ok(None);
+        }
+        let unknowns = rows.scaled.cols;
+        let (mut left, mut terms) = (vec![Twofold::default(); unknowns], vec![0.0; unknowns]);
+        let (mut demanded, mut demands) = (Twofold::default(), 0.0);
+        for &(i, w) in &weights {
+            let (set, k) = self.row(i);
+            let weight = w * rows.scale[i];
+            for (j, b) in set.matrix.row(k) {
+                left[j].add_product(weight, b);
+                terms[j] += (weight * b).abs();
+            }
+            demanded.add_product(weight, set.rhs[k]);
+            demands += (weight * set.rhs[k]).abs();
+        }
+        let left: Vec<f64> = left.into_iter().map(Twofold::value).collect();
+        let size = |x: &[f64]| weighted_norm(x, |j| 1.0 / rows.metric[j]);
+        let (left, terms, excess) = (size(&left), size(&terms), -demanded.value());
+        let proves = |moved: f64| {
+            let reach = BEYOND * moved;
+            excess > reach * left + ROUNDING * (demands + reach * terms)
+        };
+        // what the loads move costs a product with K+
+        let proved = proves(self.demand()) && proves(self.moved()?);
+        Ok(proved.then(|| self.named(&weights, excess, demands)))
+    }
+
+    /// V^1/2 of the loads, a length in the metric D / 2^p.
+    fn moved(&self) -> Result<f64> {
+        let (problem, ready) = (self.problem, self.ready);
+        let data = &problem.data(&ready.island)?;
+        let work = ByInverse { data, ready, threads: problem.threads(), work: &self.work }.work_of_loads()?;
+        Ok((work / ready.island.unit).sqrt())
+    }
+
+    /// |S c_-, S_H h|: a length that the rows demand.
+    fn demand(&self) -> f64 {
+        let rows = &self.ready.rows;
+        let of = |i: usize| {
+            let (set, k) = self.row(i);
+            let c = rows.scale[i] * set.rhs[k];
+            if i < rows.contact {
+                c.min(0.0)
+            } else {
+                c
+            }
+        };
+        let all: Vec<f64> = (0..rows.scale.len()).map(of).collect();
+        weighted_norm(&all, |_| 1.0)
+    }
+
+    /// The set of row i of the island, and its place there.
+    fn row(&self, i: usize) -> (&RowSet, usize) {
+        let island = &self.ready.island;
+        match i.checked_sub(self.ready.rows.contact) {
+            None => (&island.contact.rows, i),
+            Some(k) => (&island.equalities.rows, k),
+        }
+    }
+
+    fn named(&self, weights: &[(usize, f64)], excess: f64, demands: f64) -> Error {
+        let (problem, ready) = (self.problem, self.ready);
+        let heaviest =
+            weights.iter().fold(weights[0], |best, &at| if at.1.abs() > best.1.abs() { at } else { best }).0;
+        let (kind, row) = ready.island.kind_and_row(heaviest);
+        let what = match weights.len() - 1 {
+            1 => format!("this {} and another row contradict each other", kind.name()),
+            others => format!("this {} and {others} others contradict each other", kind.name()),
+        };
+        let what = format!("{what}: no displacement satisfies them");
+        let error = Error::new(Kind::GapsContradict, what).row(row).value(-excess).limit(0.0);
+        let place = |i: usize| in_stack(problem, ready, i);
+        let of_host = weights.iter().map(|&(i, w)| (place(i), w * ready.rows.scale[i])).collect();
+        error.proved_by(proof_of_rows(excess / demands, of_host, place(heaviest)))
+    }
+}
+
+/// One weight for each row, none of zero.
+fn merge(weights: &mut Weights) {
+    weights.sort_by_key(|(i, _)| *i);
+    weights.dedup_by(|next, first| {
+        let same = next.0 == first.0;
+        first.1 += if same { next.1 } else { 0.0 };
+        same
+    });
+    weights.retain(|(_, w)| *w != 0.0);
+}

@@ -1,0 +1,167 @@
+//! Loads that no forces of the rows hold: how much of them, on which bodies, and whether that is proved.
+
+use crate::certificate::Data;
+use crate::error::{Error, Kind, Proof, Result};
+use crate::linalg::graph::{components, joined};
+use crate::linalg::memory::zeros;
+use crate::linalg::twofold::Twofold;
+use crate::linalg::vector::{norm_max, ratio, weighted_norm};
+use crate::qp::Solution;
+use crate::solver::islands::Island;
+use crate::solver::problem::Problem;
+use crate::solver::scaled::Scaled;
+use crate::solver::setup::Ready;
+
+/// Up to this share of the load what is not held may be rounding of the load: there is an answer without it.
+pub(in crate::solver) const ROUNDING: f64 = 1e-10;
+/// Up to this share the answer without it is told, as marginal; beyond it there is none, where that is proved.
+const MARGINAL: f64 = 1e-7;
+/// Rows resist a motion that so many times the load could not hold.
+const BEYOND: f64 = 1e6;
+/// K resists a rigid motion that forces of its own strain so many times as much.
+const RIGID: f64 = 10.0;
+
+/// The part of a load that the forces which come nearest to it leave. Bodies with such a part that rows with a force or equality
+/// rows join are free to move together; shares are of their load, |f|_{D^-1} without grounded unknowns.
+pub(in crate::solver) struct Unheld {
+    /// D R c over the unknowns of the island, in units of 2^p: what is left, as a load.
+    pub load: Vec<f64>,
+    /// The largest |D R c|_{D^-1} / |f|_{D^-1} of bodies that move together.
+    pub share: f64,
+    /// |D R c| / |D R R'f| of these bodies.
+    margin: f64,
+    /// |f|_{D^-1} of all bodies that are left more than a marginal share.
+    size: f64,
+    /// Place in the island of the body that is left most, of those with the largest share.
+    body: usize,
+}
+
+impl Unheld {
+    /// Of the forces x of a solution that leave `direction` = e - G x.
+    pub fn of(data: &Data, ready: &Ready, scaled: &Scaled, solution: &Solution, direction: &[f64]) -> Self {
+        let (island, metric) = (&ready.island, &ready.rows.metric);
+        let free = |mut load: Vec<f64>| {
+            let grounded = data.bodies.iter().flat_map(|b| b.grounded.iter().map(|j| b.start + *j as usize));
+            grounded.for_each(|j| load[j] = 0.0);
+            load
+        };
+        let as_load = |resultants: &[f64]| free(ready.dual.load_of(resultants, island.unknowns(), metric));
+        let sizes = |load: &[f64]| -> Vec<f64> {
+            let of_body = |range: &std::ops::Range<usize>| {
+                weighted_norm(&load[range.clone()], |j| 1.0 / metric[range.start + j])
+            };
+            island.ranges.iter().map(of_body).collect()
+        };
+        let load = as_load(direction);
+        let (left, resultants) = (sizes(&load), sizes(&as_load(&scaled.resultants)));
+        let loads = sizes(&free(scaled.load.clone()));
+        let (cluster, count) = clusters(ready, solution, &left);
+        let of_cluster = |k: usize, sizes: &[f64]| {
+            let own = (0..sizes.len()).filter(|&p| cluster[p] == k && left[p] > 0.0).map(|p| sizes[p]);
+            weighted_norm(&own.collect::<Vec<_>>(), |_| 1.0)
+        };
+        let shares: Vec<f64> =
+            (0..count).map(|k| ratio(of_cluster(k, &left), of_cluster(k, &loads))).collect();
+        let worst = (0..count).fold(0, |worst, k| if shares[k] > shares[worst] { k } else { worst });
+        let most = |best: usize, p: usize| if left[p] > left[best] { p } else { best };
+        let first = (0..left.len()).find(|&p| cluster[p] == worst && left[p] > 0.0).unwrap_or(0);
+        let body = (0..left.len()).filter(|&p| cluster[p] == worst).fold(first, most);
+        let named = (0..count).filter(|&k| shares[k] > MARGINAL).map(|k| of_cluster(k, &loads));
+        let size = weighted_norm(&named.collect::<Vec<_>>(), |_| 1.0);
+        let margin = ratio(of_cluster(worst, &left), of_cluster(worst, &resultants)).min(1.0);
+        Self { share: shares.get(worst).copied().unwrap_or(0.0), load, margin, size, body }
+    }
+
+    /// So little that it may be rounding, or be told as marginal.
+    pub fn is_little(&self) -> bool {
+        self.share <= MARGINAL
+    }
+
+    /// The error that names the motion v = R S direction, where it proves that nothing holds the load: on the data of the host
+    /// K does not strain by it, and f'v is more than forces of `BEYOND` the load could do against the rows that resist.
+    pub fn proof(
+        &self,
+        problem: &Problem,
+        ready: &Ready,
+        scaled: &Scaled,
+        direction: &[f64],
+    ) -> Result<Option<Error>> {
+        if self.is_little() {
+            return Ok(None);
+        }
+        let island = &ready.island;
+        let own = ready.dual.rigid_motion(direction, island.unknowns());
+        let mut work = Twofold::default();
+        scaled.load.iter().zip(&own).for_each(|(f, v)| work.add_product(*f, *v));
+        let resisted = BEYOND * resistance(ready, &own) + RIGID * strain(problem, ready, &own)?;
+        if work.value() <= self.size * resisted {
+            return Ok(None);
+        }
+        let mut v = zeros(problem.counts().dofs, "a motion")?;
+        island.scatter(problem, &own, &mut v);
+        Ok(Some(self.named(problem, island, v)))
+    }
+
+    fn named(&self, problem: &Problem, island: &Island, mut v: Vec<f64>) -> Error {
+        let body = island.bodies[self.body];
+        let range = problem.range(body);
+        let fastest =
+            range.clone().fold(range.start, |best, i| if v[i].abs() > v[best].abs() { i } else { best });
+        let sense = if v[fastest] > 0.0 { "positive" } else { "negative" };
+        let what = format!(
+            "the load moves the body and no contact force can hold it (|resultant| / |load| = {:.1e} of the load of what \
+             moves is left); the motion is fastest at this dof, in the {sense} sense",
+            self.share
+        );
+        let largest = norm_max(&v);
+        v.iter_mut().for_each(|v| *v /= largest);
+        let dof = fastest - range.start;
+        let error = Error::new(Kind::LoadNotHeld, what).body(body).dof(dof).value(self.share).limit(MARGINAL);
+        let parts = problem.bodies[body].body.stiffness.as_deref().map(components);
+        let error = match parts {
+            Some((part_of, 2..)) => error.component(part_of[dof]),
+            _ => error,
+        };
+        error.proved_by(Proof::Motion { margin: self.margin, v })
+    }
+}
+
+/// Label of the bodies that move together, and how many labels there are.
+fn clusters(ready: &Ready, solution: &Solution, left: &[f64]) -> (Vec<usize>, usize) {
+    let (rows, island) = (&ready.rows, &ready.island);
+    let forces = rows.decoupling.solve_transposed(solution.x.clone());
+    let joins = (0..forces.len()).filter(|&i| forces[i] != 0.0 || rows.grouping.leaders[i] >= rows.contact);
+    let bodies = joins.map(|i| {
+        let touched = rows.scaled.row(i).map(|(j, _)| island.body_of(j));
+        touched.filter(|&p| left[p] > 0.0)
+    });
+    joined(left.len(), bodies)
+}
+
+/// `|(S B v)_+, S_H H v|` by the rows of the host.
+fn resistance(ready: &Ready, v: &[f64]) -> f64 {
+    let island = &ready.island;
+    let contact = island.contact.rows.matrix.rows();
+    let along = |i: usize| {
+        let (rows, i) = match i.checked_sub(contact) {
+            None => (&island.contact.rows, i),
+            Some(i) => (&island.equalities.rows, i),
+        };
+        let mut sum = Twofold::default();
+        rows.matrix.row(i).for_each(|(j, b)| sum.add_product(b, v[j]));
+        sum.value()
+    };
+    let resists = |(i, s): (usize, &f64)| s * if i < contact { along(i).max(0.0) } else { along(i) };
+    let all: Vec<f64> = ready.rows.scale.iter().enumerate().map(resists).collect();
+    weighted_norm(&all, |_| 1.0)
+}
+
+/// `|K v|_{D^-1}` in units of 2^p.
+fn strain(problem: &Problem, ready: &Ready, v: &[f64]) -> Result<f64> {
+    let Island { unit, .. } = ready.island;
+    let mut strained = zeros(v.len(), "the strain of a motion")?;
+    for body in &problem.data(&ready.island)?.bodies {
+        body.stiffness.mul(&v[body.range()], &mut strained[body.range()])?;
+    }
+    Ok(weighted_norm(&strained, |j| 1.0 / ready.rows.metric[j]) / unit)
+}
