@@ -3,6 +3,7 @@
 
 #[path = "../support/hand_over.rs"]
 mod hand_over;
+mod hard;
 mod marginal;
 mod modest;
 mod second;
