@@ -84,12 +84,7 @@ impl Weights {
 pub fn weights(deck: &Deck, weights: &[(usize, f64)]) -> Weights {
     let diagonal = diagonal(deck);
     let contact = deck.contact.len();
-    let mut reach = length(&deck.load(), |j| 1.0 / diagonal[j]);
-    for (rows, both) in [(&deck.contact, false), (&deck.equalities, true)] {
-        let gap = |i: usize| if both { rows.rhs[i] } else { rows.rhs[i].min(0.0) };
-        let scaled: Vec<f64> = (0..rows.len()).map(|i| gap(i) * scale(rows, i, &diagonal)).collect();
-        reach = reach.max(length(&scaled, |_| 1.0));
-    }
+    let reach = CLEAR * overlap(deck).max(length(&deck.load(), |j| 1.0 / diagonal[j]));
     let (mut left, mut terms) = (vec![Dd::ZERO; deck.dofs()], vec![0.0; deck.dofs()]);
     let (mut demanded, mut sum) = (Dd::ZERO, 0.0);
     let mut found = Weights { negative: 0.0, astray: false, demanded: 0.0, doubt: 0.0 };
@@ -112,10 +107,21 @@ pub fn weights(deck: &Deck, weights: &[(usize, f64)]) -> Weights {
     }
     let left: Vec<f64> = left.iter().map(|v| v.value()).collect();
     let over = |v: &[f64]| length(v, |j| 1.0 / diagonal[j]);
-    let reach = CLEAR * reach;
     found.demanded = demanded.value();
     found.doubt = reach * over(&left) + NOISE * (sum + reach * over(&terms));
     found
+}
+
+/// max(|S c_-|, |S_H h|)
+pub fn overlap(deck: &Deck) -> f64 {
+    let diagonal = diagonal(deck);
+    let sets = [(&deck.contact, false), (&deck.equalities, true)];
+    let all = sets.map(|(rows, both)| {
+        let gap = |i: usize| if both { rows.rhs[i] } else { rows.rhs[i].min(0.0) };
+        let scaled: Vec<f64> = (0..rows.len()).map(|i| gap(i) * scale(rows, i, &diagonal)).collect();
+        length(&scaled, |_| 1.0)
+    });
+    all[0].max(all[1])
 }
 
 fn diagonal(deck: &Deck) -> Vec<f64> {
