@@ -154,6 +154,11 @@ pub const SECOND_MIXTURE: Mixture =
 const EXTRAS: [Kind; 7] =
     [Kind::Ties, Kind::Near, Kind::Idle, Kind::Leverage, Kind::Gaps, Kind::Contrast, Kind::Parts];
 
+/// The kind that the case of a seed is drawn for.
+pub fn main(seed: u64) -> Kind {
+    KINDS[(seed % KINDS.len() as u64) as usize]
+}
+
 /// The case of one seed; seeds 13 apart are of the same main kind.
 pub fn case(seed: u64) -> Hard {
     mixed(seed, &MIXTURE)
@@ -161,7 +166,7 @@ pub fn case(seed: u64) -> Hard {
 
 /// The same from another mixture.
 pub fn mixed(seed: u64, mixture: &Mixture) -> Hard {
-    let main = KINDS[(seed % KINDS.len() as u64) as usize];
+    let main = main(seed);
     let mut random = Random::new(seed ^ 0x6861_7264);
     if matches!(main, Kind::Small | Kind::Drawn) {
         return small::case(seed, main, random);

@@ -16,7 +16,7 @@ mod condition;
 pub(crate) mod draft;
 pub(crate) mod rows;
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;
 
 use crate::Deck;
 
