@@ -67,19 +67,22 @@ pub fn problem(deck: &Deck, given: Given) -> Result<Problem> {
 
 /// Nothing is known better than to rounding of the largest forces of all: bodies without load have nothing else. Where no load acts
 /// either, of those that overlaps and prescribed displacements would take.
-pub fn yardstick<'a>(deck: &'a Deck, truth: &'a Answer, undetermined: bool) -> Yardstick<'a> {
+/// `blur`: part of the loads, times what it may move, that is anybody's choice.
+pub fn yardstick<'a>(deck: &'a Deck, truth: &'a Answer, undetermined: bool, blur: f64) -> Yardstick<'a> {
     let mut yardstick = Yardstick::new(deck, truth, undetermined);
     let metric = yardstick.metric();
     let over = |v: &[f64]| v.iter().zip(metric).map(|(v, d)| v * v / d).sum::<f64>().sqrt();
     let forces = over(&deck.load()).hypot(over(&reaction(deck, truth)));
-    let floor = 64.0 * f64::EPSILON * if forces > 0.0 { forces } else { proof::overlap(deck) };
+    let floor = (64.0 * f64::EPSILON + blur) * if forces > 0.0 { forces } else { proof::overlap(deck) };
     yardstick.sizes.iter_mut().for_each(|size| size.overlooked = size.overlooked.max(floor));
     yardstick
 }
 
 /// The worst error over what is allowed, against the answer of the case or, where it differs, that of a second solver.
 pub fn error(case: &Hard, found: &Answer) -> Option<f64> {
-    let against = |truth: &Answer| yardstick(&case.deck, truth, case.undetermined > 0).worst(found).0;
+    let against = |truth: &Answer| {
+        yardstick(&case.deck, truth, case.undetermined > 0, case.resultant * case.condition).worst(found).0
+    };
     let by_drawn = case.answer.as_ref().map(against)?;
     if by_drawn <= 1.0 {
         return Some(by_drawn);
@@ -234,7 +237,8 @@ fn one_hard_problem_in_full() {
         println!("found {found:?}");
         let truth = case.answer.as_ref();
         truth.into_iter().for_each(|truth| {
-            let yardstick = yardstick(&case.deck, truth, case.undetermined > 0);
+            let yardstick =
+                yardstick(&case.deck, truth, case.undetermined > 0, case.resultant * case.condition);
             println!("{:?}\n{:?}", yardstick.ratios(found), yardstick.sizes);
         });
     }

@@ -139,7 +139,7 @@ fn end(problem: &mut Problem) -> Result<Answer, String> {
 
 /// What differs between two answers, or `None`: deformations and forces by the yardstick, u as a whole by 1e-6 of its own.
 fn difference(deck: &Deck, a: &Answer, b: &Answer, undetermined: bool) -> Option<String> {
-    let yardstick = yardstick(deck, b, undetermined);
+    let yardstick = yardstick(deck, b, undetermined, 0.0);
     let (error, body) = yardstick.worst(a);
     if error > 1.0 {
         return Some(format!("error {error:.1e} of allowed at body {body}"));

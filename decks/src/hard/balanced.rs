@@ -2,7 +2,7 @@
 
 use super::bodies::digits;
 use super::none::open;
-use super::{Ends, Hard, Plan};
+use super::{Ends, Hard, Kind, Plan};
 use crate::dd;
 use crate::random::Random;
 use crate::varied::draft::Draft;
@@ -29,7 +29,18 @@ enum Join {
 }
 
 pub(super) fn case(seed: u64, mut plan: Plan, mut draft: Draft) -> Hard {
-    let join = [Join::None, Join::Open, Join::Touching, Join::Struts, Join::Glued][draft.random.below(5)];
+    let mut join = [Join::None, Join::Open, Join::Touching, Join::Struts, Join::Glued][draft.random.below(5)];
+    if join == Join::Struts && plan.is(Kind::Parts) {
+        // they would hold the parts of a body to each other
+        join = Join::Open;
+    }
+    let unequal = draft.random.chance(0.3);
+    for p in (0..draft.group.len()).filter(|_| unequal) {
+        let (range, factor) =
+            (draft.deck.offset(p)..draft.deck.offset(p + 1), draft.random.decades(-4.0, 4.0));
+        draft.u[range].iter_mut().for_each(|u| *u *= factor);
+        draft.strength[p] *= factor;
+    }
     let floating = |p: &usize| !draft.deck.bodies[*p].modes().is_empty();
     let all: Vec<usize> = (0..draft.group.len()).filter(floating).collect();
     let p = all[draft.random.below(all.len())];
@@ -63,6 +74,11 @@ pub(super) fn case(seed: u64, mut plan: Plan, mut draft: Draft) -> Hard {
         loads.for_each(|f| *f = digits(*f, 12));
     }
     hard.ends = ends(&hard.deck, &cluster, &diagonal, &motions);
+    let everything: Vec<usize> = (0..hard.deck.bodies.len()).collect();
+    let others: Vec<Vec<f64>> =
+        everything.iter().filter(|p| !cluster.contains(p)).flat_map(|&p| own(&hard.deck, p)).collect();
+    let left = resultant(&hard.deck, &motions).hypot(resultant(&hard.deck, &others));
+    hard.resultant = left / loads(&hard.deck, &everything, &diagonal);
     if !hard.ends.solved && !hard.ends.marginal {
         hard.answer = None;
     }
@@ -132,11 +148,27 @@ fn loads(deck: &Deck, cluster: &[usize], diagonal: &[f64]) -> f64 {
     unknowns.map(|j| load[j] * load[j] / diagonal[j]).sum::<f64>().sqrt()
 }
 
-/// By the share of the resultant in the load of its cluster and in all loads: where the two differ both ends are right.
-fn ends(deck: &Deck, cluster: &[usize], diagonal: &[f64], motions: &[Vec<f64>]) -> Ends {
+/// |R'f|
+fn resultant(deck: &Deck, motions: &[Vec<f64>]) -> f64 {
     let load = deck.load();
     let felt = |mode: &Vec<f64>| dd::dot(load.iter().copied().zip(mode.iter().copied())).value();
-    let resultant = motions.iter().map(felt).map(|v| v * v).sum::<f64>().sqrt();
+    motions.iter().map(felt).map(|v| v * v).sum::<f64>().sqrt()
+}
+
+/// The rigid motions of one body over all unknowns, R'DR = I.
+fn own(deck: &Deck, p: usize) -> Vec<Vec<f64>> {
+    let body = &deck.bodies[p];
+    let long = |mode: Vec<f64>| {
+        let mut long = vec![0.0; deck.dofs()];
+        long[deck.offset(p)..deck.offset(p + 1)].copy_from_slice(&mode);
+        long
+    };
+    orthonormal(body.modes(), &body.stiffness.diagonal()).into_iter().map(long).collect()
+}
+
+/// By the share of the resultant in the load of its cluster and in all loads: where the two differ both ends are right.
+fn ends(deck: &Deck, cluster: &[usize], diagonal: &[f64], motions: &[Vec<f64>]) -> Ends {
+    let resultant = resultant(deck, motions);
     let everything: Vec<usize> = (0..deck.bodies.len()).collect();
     let most = NEAR * resultant / loads(deck, cluster, diagonal);
     let least = resultant / loads(deck, &everything, diagonal) / NEAR;

@@ -111,6 +111,8 @@ pub struct Hard {
     /// As in [`Varied`], of the answer.
     pub undetermined: usize,
     pub condition: f64,
+    /// Part of the loads that nothing holds: what takes it is anybody's choice.
+    pub resultant: f64,
     /// Decimal digits of K, 16 for all.
     pub digits: usize,
     /// In words: figures that the kinds have drawn.
@@ -214,9 +216,13 @@ impl Plan {
             true => Given::NullSpaces,
             false => Given::Coordinates,
         };
+        let mut classes = if springs { vec![Class::Springs] } else { vec![] };
+        if main == Kind::Balanced && random.chance(0.2) {
+            classes.push(Class::Moduli);
+        }
         Plan {
             kinds,
-            classes: if springs { vec![Class::Springs] } else { vec![] },
+            classes,
             given,
             far: random.chance(if main == Kind::Balanced { 0.4 } else { mixture.far }),
             digits,
@@ -283,6 +289,7 @@ impl Plan {
             answer: Some(Answer { u: displacement, lambda: forces, mu: equality_forces }),
             undetermined,
             condition,
+            resultant: 0.0,
             digits: self.digits,
             detail: self.detail,
         }
