@@ -149,9 +149,26 @@ fn difference(deck: &Deck, a: &Answer, b: &Answer, undetermined: bool) -> Option
         let allowed = (1e-6 * yardstick.norm(p, &b.u, 1)).max(100.0 * yardstick.sizes[p].overlooked);
         let moved = yardstick.norm(p, &moved, 1);
         if moved > allowed {
+            let size = |u: &[f64]| {
+                let all = (0..deck.bodies.len()).map(|q| yardstick.norm(q, u, 1).powi(2));
+                all.sum::<f64>().sqrt()
+            };
+            let forces = |a: &Answer| {
+                let some = || a.lambda.iter().copied().filter(|force| *force > 0.0);
+                format!(
+                    "{} of {:.0e} to {:.0e}",
+                    some().count(),
+                    some().fold(f64::MAX, f64::min),
+                    some().fold(0.0, f64::max)
+                )
+            };
             return Some(format!(
-                "u of body {p} differs by {:.1e} of itself",
-                moved / yardstick.norm(p, &b.u, 1)
+                "u of body {p} differs by {:.1e} of itself; |u|_D {:e} and fresh {:e}, forces {}, fresh {}",
+                moved / yardstick.norm(p, &b.u, 1),
+                size(&a.u),
+                size(&b.u),
+                forces(a),
+                forces(b)
             ));
         }
     }
