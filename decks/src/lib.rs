@@ -37,6 +37,8 @@ pub mod stack;
 pub mod varied;
 mod vector;
 pub mod yardstick;
+#[cfg(test)]
+mod yardstick_tests;
 
 pub use block::Block;
 pub use blocks::Blocks;

@@ -1,7 +1,8 @@
 //! Problems without an answer, made from the proof that there is none.
 
 use super::rows::sign;
-use super::{proof, Ends, Hard, Kind, Plan};
+use super::{proof, Ends, Hard, Plan};
+use crate::random::Random;
 use crate::varied::draft::Draft;
 use crate::varied::orthonormal;
 use crate::vector::axpy;
@@ -89,38 +90,61 @@ pub(super) fn contradict(seed: u64, mut plan: Plan, mut draft: Draft) -> Hard {
     plan.rows(&mut draft);
     let mut random = draft.random.clone();
     let mut hard = plan.finish(seed, draft);
-    let deck = &mut hard.deck;
-    let (contact, ties) = (deck.contact.len(), deck.equalities.len());
+    (hard.answer, hard.ends) = (None, Ends::ANY);
+    let chosen = weights(&hard.deck, &mut random);
+    if !chosen.is_empty() {
+        let factor = random.decades(1.0, 6.0);
+        let excess = oppose(&mut hard.deck, chosen, factor);
+        if let Some(excess) = excess {
+            hard.ends = Ends { gaps_contradict: true, ..Ends::default() };
+            hard.detail.push_str(&format!("rows contradict by {excess:.0e}; "));
+        }
+    }
+    hard
+}
+
+/// The row of a place among all, contact rows before ties.
+fn row(deck: &Deck, place: usize) -> (&Rows, usize) {
+    let contact = deck.contact.len();
+    if place < contact {
+        (&deck.contact, place)
+    } else {
+        (&deck.equalities, place - contact)
+    }
+}
+
+/// One to five rigid rows with finite gaps, each with a weight.
+fn weights(deck: &Deck, random: &mut Random) -> Vec<(usize, f64)> {
+    let contact = deck.contact.len();
     let usable = |place: &usize| {
-        let (rows, i) =
-            if *place < contact { (&deck.contact, *place) } else { (&deck.equalities, *place - contact) };
+        let (rows, i) = row(deck, *place);
         rows.compliance[i] == 0.0 && rows.rhs[i].is_finite()
     };
-    let places: Vec<usize> = (0..contact + ties).filter(usable).collect();
-    hard.answer = None;
-    hard.ends = Ends::ANY;
+    let places: Vec<usize> = (0..contact + deck.equalities.len()).filter(usable).collect();
     if places.is_empty() {
-        return hard;
+        return vec![];
     }
     let mut chosen: Vec<usize> =
         (0..1 + random.below(5)).map(|_| places[random.below(places.len())]).collect();
     chosen.sort_unstable();
     chosen.dedup();
-    let mut weights: Vec<(usize, f64)> = Vec::new();
-    for place in chosen {
-        let sense = if place < contact { 1.0 } else { sign(&mut random) };
-        weights.push((place, sense * random.between(0.3, 2.0)));
-    }
-    let (mut sum, mut reach) = (vec![], 0.0);
+    let mut weigh = |place: usize| {
+        let sense = if place < contact { 1.0 } else { sign(random) };
+        (place, sense * random.between(0.3, 2.0))
+    };
+    chosen.into_iter().map(&mut weigh).collect()
+}
+
+/// Adds the row that these weights and 1 of its own leave nothing of. What it asks for too much, if that proves it.
+fn oppose(deck: &mut Deck, mut weights: Vec<(usize, f64)>, factor: f64) -> Option<f64> {
+    let (contact, mut sum, mut reach) = (deck.contact.len(), vec![], 0.0);
     for &(place, w) in &weights {
-        let (rows, i) =
-            if place < contact { (&deck.contact, place) } else { (&deck.equalities, place - contact) };
+        let (rows, i) = row(deck, place);
         sum.extend(rows.matrix.row(i).map(|(j, v)| (j, -w * v)));
         reach += w * rows.rhs[i];
     }
-    let factor = random.decades(1.0, 6.0);
     deck.contact.push(&sum, -reach);
-    // equality rows have moved on by one
+    // ties have moved on by one
     weights.iter_mut().filter(|(place, _)| *place >= contact).for_each(|(place, _)| *place += 1);
     weights.push((contact, 1.0));
     let mut excess = factor * proof::weights(deck, &weights).doubt;
@@ -128,12 +152,9 @@ pub(super) fn contradict(seed: u64, mut plan: Plan, mut draft: Draft) -> Hard {
         deck.contact.rhs[contact] = -reach - excess;
         let found = proof::weights(deck, &weights);
         if found.hold() && -found.demanded > CLEARLY * found.doubt {
-            hard.ends = Ends { gaps_contradict: true, ..Ends::default() };
-            break;
+            return Some(excess);
         }
         excess *= 10.0;
     }
-    hard.detail.push_str(&format!("{} rows contradict by {excess:.0e}; ", weights.len()));
-    debug_assert!(hard.kinds[0] == Kind::Contradict);
-    hard
+    None
 }
