@@ -80,9 +80,8 @@ pub fn yardstick<'a>(deck: &'a Deck, truth: &'a Answer, undetermined: bool, blur
 
 /// The worst error over what is allowed, against the answer of the case or, where it differs, that of a second solver.
 pub fn error(case: &Hard, found: &Answer) -> Option<f64> {
-    let against = |truth: &Answer| {
-        yardstick(&case.deck, truth, case.undetermined > 0, case.resultant * case.condition).worst(found).0
-    };
+    let blur = if case.resultant > 0.0 { case.resultant * case.condition } else { 0.0 };
+    let against = |truth: &Answer| yardstick(&case.deck, truth, case.undetermined > 0, blur).worst(found).0;
     let by_drawn = case.answer.as_ref().map(against)?;
     if by_drawn <= 1.0 {
         return Some(by_drawn);
@@ -253,8 +252,7 @@ fn one_hard_problem_in_full() {
         println!("found {found:?}");
         let truth = case.answer.as_ref();
         truth.into_iter().for_each(|truth| {
-            let yardstick =
-                yardstick(&case.deck, truth, case.undetermined > 0, case.resultant * case.condition);
+            let yardstick = yardstick(&case.deck, truth, case.undetermined > 0, 0.0);
             println!("{:?}\n{:?}", yardstick.ratios(found), yardstick.sizes);
         });
     }

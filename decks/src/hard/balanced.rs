@@ -9,6 +9,7 @@ use crate::varied::draft::Draft;
 use crate::varied::rows::{contact, strut};
 use crate::varied::{inner, orthonormal};
 use crate::vector::axpy;
+use crate::yardstick::reaction;
 use crate::Deck;
 
 /// A resultant of this part of a load is rounding; up to the second one it is told.
@@ -57,6 +58,11 @@ pub(super) fn case(seed: u64, mut plan: Plan, mut draft: Draft) -> Hard {
         Join::Glued => cluster.push(copy(&mut draft, p)),
     }
     draft.travel();
+    let naive = draft.random.chance(0.3);
+    if naive {
+        far(&mut draft);
+        plan.note("products with u far away");
+    }
     let motions = motions(&draft, &cluster);
     let mut motion = vec![0.0; draft.deck.dofs()];
     motions.iter().for_each(|mode| axpy(draft.random.normal(), mode, &mut motion));
@@ -68,6 +74,9 @@ pub(super) fn case(seed: u64, mut plan: Plan, mut draft: Draft) -> Hard {
     plan.note(&format!("{join:?}, resultant {share:.0e}{}", if coarse { ", 12 digits" } else { "" }));
     let diagonal = draft.diagonal.clone();
     let mut hard = plan.finish(seed, draft);
+    if naive {
+        multiply(&mut hard);
+    }
     drive(&mut hard.deck, &cluster, &diagonal, &motion, share);
     if coarse {
         let loads = hard.deck.bodies.iter_mut().flat_map(|body| &mut body.load);
@@ -83,6 +92,30 @@ pub(super) fn case(seed: u64, mut plan: Plan, mut draft: Draft) -> Hard {
         hard.answer = None;
     }
     hard
+}
+
+/// Floating bodies 1000 deformations away.
+fn far(draft: &mut Draft) {
+    for p in 0..draft.group.len() {
+        let range = draft.deck.offset(p)..draft.deck.offset(p + 1);
+        let own = draft.diagonal[range.clone()].to_vec();
+        let size = inner(&draft.u[range.clone()], &own, &draft.u[range.clone()]).sqrt();
+        for mode in orthonormal(draft.deck.bodies[p].modes(), &own) {
+            axpy(1e3 * size * draft.random.normal(), &mode, &mut draft.u[range.clone()]);
+        }
+    }
+}
+
+/// f := K u + B'lambda + H'mu as a host would compute it, the rounding of a large u in it.
+fn multiply(hard: &mut Hard) {
+    let Some(answer) = &hard.answer else { return };
+    let pull = reaction(&hard.deck, answer);
+    for p in 0..hard.deck.bodies.len() {
+        let range = hard.deck.offset(p)..hard.deck.offset(p + 1);
+        let body = &mut hard.deck.bodies[p];
+        body.load = body.stiffness.times(&answer.u[range.clone()]);
+        axpy(1.0, &pull[range], &mut body.load);
+    }
 }
 
 fn share(random: &mut Random) -> f64 {

@@ -208,7 +208,8 @@ impl Plan {
                 kinds.push(extra);
             }
         }
-        let digits = if main == Kind::Digits { 8 + random.below(8) } else { 16 };
+        let rounded = main == Kind::Digits || main == Kind::Balanced && random.chance(0.15);
+        let digits = if rounded { 8 + random.below(8) } else { 16 };
         let springs = random.chance(mixture.springs) && main != Kind::Balanced;
         let nothing = random.chance(mixture.nothing) && digits >= 13;
         let given = match random.chance(0.5) {
