@@ -132,11 +132,13 @@ pub fn judge(case: &Hard, ended: &std::result::Result<Outcome, Error>, found: Op
         Outcome::Marginal => case.ends.marginal && case.ends != Ends::ANY,
         _ => false,
     };
+    let beyond = |found: &Answer| proof::travel(&case.deck, &found.u) > proof::reach(&case.deck);
     let told = matches!(outcome, Outcome::Solved | Outcome::Marginal);
     let verdict = match (told, wrong) {
         (true, Some(_)) => Verdict::Wrong,
         (true, None) if due && case.answer.is_none() => Verdict::Open,
         _ if due => Verdict::Right,
+        (true, None) if case.ends.gaps_contradict && found.is_some_and(beyond) => Verdict::Open,
         _ if !case.ends.solved && !case.ends.marginal => Verdict::Untold,
         _ if case.answer.is_none() => Verdict::Open,
         _ if *outcome == Outcome::Solved => Verdict::Unmarked,

@@ -80,11 +80,23 @@ impl Weights {
     }
 }
 
-/// X = 1e6 max(|S c_-|, |S_H h|, |f|_{D^-1}).
+/// X = 1e6 max(|S c_-|, |S_H h|, |f|_{D^-1}): weights prove that there is no answer of |u|_D up to this.
+pub fn reach(deck: &Deck) -> f64 {
+    let diagonal = diagonal(deck);
+    CLEAR * overlap(deck).max(length(&deck.load(), |j| 1.0 / diagonal[j]))
+}
+
+/// |u|_D
+pub fn travel(deck: &Deck, u: &[f64]) -> f64 {
+    let diagonal = diagonal(deck);
+    length(u, |j| diagonal[j])
+}
+
+/// What weights w of rows prove.
 pub fn weights(deck: &Deck, weights: &[(usize, f64)]) -> Weights {
     let diagonal = diagonal(deck);
     let contact = deck.contact.len();
-    let reach = CLEAR * overlap(deck).max(length(&deck.load(), |j| 1.0 / diagonal[j]));
+    let reach = reach(deck);
     let (mut left, mut terms) = (vec![Dd::ZERO; deck.dofs()], vec![0.0; deck.dofs()]);
     let (mut demanded, mut sum) = (Dd::ZERO, 0.0);
     let mut found = Weights { negative: 0.0, astray: false, demanded: 0.0, doubt: 0.0 };
