@@ -252,6 +252,13 @@ fn one_hard_problem_in_full() {
     let found = ended.is_ok().then(|| answer(&problem));
     if let Some(found) = &found {
         println!("found {found:?}");
+        let (travel, reach) = (proof::travel(&case.deck, &found.u), proof::reach(&case.deck));
+        println!("|u|_D {travel:e}, excluded by weights up to {reach:e}");
+        for rows in [&case.deck.contact, &case.deck.equalities] {
+            let moved = rows.matrix.times(&found.u);
+            let gaps: Vec<f64> = moved.iter().zip(&rows.rhs).map(|(moved, rhs)| rhs - moved).collect();
+            println!("gaps {gaps:?}\nof {:?}", rows.rhs);
+        }
         let truth = case.answer.as_ref();
         truth.into_iter().for_each(|truth| {
             let yardstick = yardstick(&case.deck, truth, case.undetermined > 0, 0.0);
