@@ -121,7 +121,8 @@ demo: setup
 N ?= 20000
 battery:
 	BATTERY=$(N) $(CARGO) test --release --locked --test battery -- \
-	    every_random_problem no_marginal every_varied_problem small_problems_of_the_battery
+	    every_random_problem no_marginal every_varied_problem small_problems_of_the_battery every_hard_problem \
+	    an_answer_does_not_depend
 
 test:
 	@tools/setup.sh flang-19

@@ -12,6 +12,7 @@
 //! | [`small`] | one to three unknowns, solved by hand |
 //! | [`battery`] | random small hard problems whose outcome is known by construction |
 //! | [`varied`] | random small problems of bodies and rows of unequal size, with a known answer |
+//! | [`hard`] | random small problems that have been refused or left unsolved, each with what may come of it |
 //!
 //! [`yardstick`] says when an answer is wrong, [`second`] solves small problems in double-double arithmetic ([`dd`]).
 
@@ -26,6 +27,7 @@ mod cube_tests;
 pub mod dd;
 pub mod dense;
 pub mod elements;
+pub mod hard;
 pub mod membrane;
 pub mod random;
 pub mod second;
@@ -35,6 +37,8 @@ pub mod stack;
 pub mod varied;
 mod vector;
 pub mod yardstick;
+#[cfg(test)]
+mod yardstick_tests;
 
 pub use block::Block;
 pub use blocks::Blocks;

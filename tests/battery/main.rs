@@ -3,6 +3,8 @@
 
 #[path = "../support/hand_over.rs"]
 mod hand_over;
+mod hard;
+mod history;
 mod marginal;
 mod modest;
 mod second;

@@ -8,14 +8,14 @@ use crate::vector::axpy;
 use crate::yardstick::grounded;
 use crate::{Deck, Rows};
 
-pub(super) struct Draft {
+pub(crate) struct Draft {
     pub random: Random,
     pub classes: Vec<Class>,
     pub deck: Deck,
     /// Group of each body.
     pub group: Vec<usize>,
     /// Size of lengths in each group.
-    length: Vec<f64>,
+    pub length: Vec<f64>,
     /// D = diag K over all unknowns.
     pub diagonal: Vec<f64>,
     /// Unknowns that no row may touch: their forces would not be felt.
@@ -57,7 +57,7 @@ impl Draft {
     }
 
     /// Of at most so many unknowns, but for the last body.
-    fn new(classes: Vec<Class>, unknowns: usize, mut random: Random) -> Draft {
+    pub fn new(classes: Vec<Class>, unknowns: usize, mut random: Random) -> Draft {
         let has = |class: Class| classes.contains(&class);
         let groups = if has(Class::Groups) { 2 + random.below(2) } else { 1 };
         let (mut list, mut group, mut length, mut penalties) = (vec![], vec![], vec![], vec![]);
@@ -128,7 +128,7 @@ impl Draft {
     }
 
     /// A rough deformation of every body, lengths alike or forces alike, free of rigid motions; zero where supported.
-    fn deform(&mut self) {
+    pub fn deform(&mut self) {
         let alike = self.random.chance(0.5);
         let largest = self.diagonal.iter().zip(&self.grounded).filter(|(_, &g)| !g).map(|(d, _)| *d);
         let largest = largest.fold(f64::MIN_POSITIVE, f64::max);
@@ -162,7 +162,7 @@ impl Draft {
     }
 
     /// u := u + R a: floating bodies move, each by its own motion or all of a case alike.
-    fn travel(&mut self) {
+    pub fn travel(&mut self) {
         let share = if self.is(Class::Travel) { self.random.decades(0.0, 8.0) } else { 1.0 };
         for p in 0..self.deck.bodies.len() {
             let range = self.deck.offset(p)..self.deck.offset(p + 1);
@@ -189,7 +189,7 @@ impl Draft {
         }
     }
 
-    fn finish(mut self, seed: u64) -> Varied {
+    pub fn finish(mut self, seed: u64) -> Varied {
         let rounding = self.is(Class::Rounded);
         self.set_gaps();
         self.set_loads();

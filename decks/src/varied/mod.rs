@@ -13,10 +13,10 @@
 
 mod bodies;
 mod condition;
-mod draft;
-mod rows;
+pub(crate) mod draft;
+pub(crate) mod rows;
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;
 
 use crate::Deck;
 
@@ -138,6 +138,11 @@ pub const SECOND_MIXTURE: Mixture = Mixture {
 /// The condition of any problem on the rows with a force, as [`Varied::condition`] has it.
 pub fn condition(deck: &Deck, forces: &[f64]) -> f64 {
     condition::Face::of(deck, |i| forces[i] > 0.0).condition()
+}
+
+/// Dimension of the rigid motions that neither rows with a force nor equality rows resist.
+pub fn undetermined(deck: &Deck, forces: &[f64]) -> usize {
+    condition::Face::of(deck, |i| forces[i] > 0.0).undetermined
 }
 
 /// The case of one seed; seeds 13 apart are of the same main class.

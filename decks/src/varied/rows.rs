@@ -10,9 +10,9 @@ const HOLDING: usize = 60;
 /// A motion is held where |S B R a| exceeds this part of |a|.
 const HELD: f64 = 0.02;
 
-type Entries = Vec<(usize, f64)>;
+pub(crate) type Entries = Vec<(usize, f64)>;
 
-pub(super) fn draw(draft: &mut Draft) {
+pub(crate) fn draw(draft: &mut Draft) {
     let bodies = draft.group.len();
     let thermal = draft.is(Class::Thermal);
     let strength = if draft.is(Class::Newton) { draft.random.decades(6.0, 12.0) } else { 1.0 };
@@ -38,7 +38,7 @@ pub(super) fn draw(draft: &mut Draft) {
 }
 
 /// Closed rows or equality rows (without a force in thermal cases) until they resist every motion.
-fn hold(draft: &mut Draft, strength: f64) {
+pub(crate) fn hold(draft: &mut Draft, strength: f64) {
     for _ in 0..HOLDING {
         if Face::new(draft).free_motions(HELD) == 0 {
             return;
@@ -54,7 +54,7 @@ fn hold(draft: &mut Draft, strength: f64) {
 }
 
 /// One to three unknowns of a body with random coefficients times `sign`; nothing where all are grounded.
-fn touch(draft: &mut Draft, p: usize, sign: f64, entries: &mut Entries) {
+pub(crate) fn touch(draft: &mut Draft, p: usize, sign: f64, entries: &mut Entries) {
     let first = draft.deck.offset(p);
     let free: Vec<usize> = (first..draft.deck.offset(p + 1)).filter(|&i| !draft.grounded[i]).collect();
     if free.is_empty() {
@@ -71,7 +71,7 @@ fn touch(draft: &mut Draft, p: usize, sign: f64, entries: &mut Entries) {
 
 /// A row between a body and another one of its group, a third of the time a wall; all rows of a case in units of their own
 /// one time in four.
-fn between(draft: &mut Draft) -> Entries {
+pub(crate) fn between(draft: &mut Draft) -> Entries {
     let p = draft.random.below(draft.group.len());
     let partners: Vec<usize> =
         (0..draft.group.len()).filter(|&q| q != p && draft.group[q] == draft.group[p]).collect();
@@ -87,7 +87,7 @@ fn between(draft: &mut Draft) -> Entries {
 }
 
 /// Row a/|a|: two unknowns of one body along the line between them; no rigid motion is felt.
-fn strut(draft: &mut Draft) {
+pub(crate) fn strut(draft: &mut Draft) {
     let p = draft.random.below(draft.group.len());
     let (first, body) = (draft.deck.offset(p), &draft.deck.bodies[p]);
     let (a, b) = (draft.random.below(body.dofs()), draft.random.below(body.dofs()));
@@ -108,14 +108,14 @@ fn strut(draft: &mut Draft) {
     }
 }
 
-fn contact(draft: &mut Draft, closed: bool, strength: f64) {
+pub(crate) fn contact(draft: &mut Draft, closed: bool, strength: f64) {
     let entries = between(draft);
     if !entries.is_empty() {
         push_contact(draft, &entries, closed, strength);
     }
 }
 
-fn push_contact(draft: &mut Draft, entries: &Entries, closed: bool, strength: f64) {
+pub(crate) fn push_contact(draft: &mut Draft, entries: &Entries, closed: bool, strength: f64) {
     let compliance = compliance(draft, entries);
     draft.deck.contact.push_compliant(entries, 0.0, compliance);
     let (force, length) = sizes(draft, entries, compliance);
@@ -197,7 +197,7 @@ fn local(draft: &Draft, entries: &Entries) -> f64 {
 }
 
 /// The force that the weakest body it touches carries on one row, and the length of its group in the unit of the row.
-fn sizes(draft: &Draft, entries: &Entries, compliance: f64) -> (f64, f64) {
+pub(crate) fn sizes(draft: &Draft, entries: &Entries, compliance: f64) -> (f64, f64) {
     let touches = |p: usize| {
         let range = draft.deck.offset(p)..draft.deck.offset(p + 1);
         entries.iter().any(|entry| range.contains(&entry.0))
