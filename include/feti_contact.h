@@ -411,6 +411,12 @@ typedef struct feti_findings {
    * without coordinates. feti_diagnosis_motion has it for every unknown.
    */
   double motion[6];
+  /**
+   * The largest share of the load of bodies that move together which nothing holds, |resultant| /
+   * |load| in the metric of diag K: above 1e-7 after FETI_LOAD_NOT_HELD; with an answer rounding of
+   * the load, FETI_MARGINAL above 1e-10.
+   */
+  double unheld;
 } feti_findings;
 
 /**

@@ -33,8 +33,11 @@ impl Row {
         let force = multipliers[i];
         let empty = rows.matrix.row(i).next().is_none();
         let given_way = if scale > 0.0 { (force.abs() / scale) / scale / field.unit } else { 0.0 };
+        // forces that other rows cancel do nothing
+        let pushed: f64 = rows.matrix.row(i).map(|(j, b)| (b * field.push[j]).abs() / field.metric[j]).sum();
+        let felt = given_way.min(pushed + rows.compliance[i] * force.abs());
         let moved = rows.matrix.row_dot_abs(i, field.answer.u);
-        let size = rows.matrix.row_dot_abs(i, &field.deformation) + given_way;
+        let size = rows.matrix.row_dot_abs(i, &field.deformation) + felt;
         let rounding = NOISE * (moved + rows.rhs[i].abs() + rows.compliance[i] * force.abs());
         // a row that weighs nothing is not known to hold
         let known = scale > 0.0 || empty;
@@ -43,7 +46,7 @@ impl Row {
         let by_spring = if rows.compliance[i] > 0.0 { rows.compliance[i] * force_limit } else { 0.0 };
         let allowed = field.data.limit * size + rounding + by_spring;
         let gap_limit = if known { allowed } else { f64::NAN };
-        let own = rows.matrix.row_dot_abs(i, &field.own_deformation) + given_way;
+        let own = rows.matrix.row_dot_abs(i, &field.own_deformation) + felt;
         let (open, weighed) = (rows.open_gap(i, field.answer.u, force), scale * own);
         Self { kind, force, open, given_way, weighed, gap_limit, force_limit }
     }

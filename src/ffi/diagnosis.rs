@@ -261,5 +261,6 @@ fn described(from: &Findings) -> feti_findings {
         untouched_body: number(from.untouched.first().copied()),
         margin: from.margin().unwrap_or(f64::NAN),
         motion: from.motion.unwrap_or([f64::NAN; 6]),
+        unheld: from.unheld,
     }
 }

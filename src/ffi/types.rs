@@ -355,4 +355,7 @@ pub struct feti_findings {
     /// Rigid motion of the body that escapes: velocity of the origin and rotation about the axes; NaN without
     /// coordinates. feti_diagnosis_motion has it for every unknown.
     pub motion: [f64; 6],
+    /// The largest share of the load of bodies that move together which nothing holds, |resultant| / |load| in the metric of diag K:
+    /// above 1e-7 after FETI_LOAD_NOT_HELD; with an answer rounding of the load, FETI_MARGINAL above 1e-10.
+    pub unheld: f64,
 }

@@ -23,8 +23,8 @@ pub(super) const FAR: f64 = 1e4;
 /// large as the largest gap would leave as much.
 const UNCERTAIN: f64 = 1e-6;
 
-/// Rows that touch no more unknowns are searched by a method that ends, in the time of a few dense factorisations.
-const SMALL: usize = 200;
+/// Multiplications that a method which ends may take before the one for many rows.
+const SMALL: usize = 100_000_000;
 
 /// Multiplications the search for contradictions may take.
 const WORK: usize = 200_000_000;
@@ -106,7 +106,7 @@ fn contradiction(problem: &Problem, ready: &Ready, gaps: &Gaps, stops: &Stops) -
         return Ok(None); // u = 0 satisfies them all
     }
     let claims = Contradictions::new(problem, ready, gaps);
-    if claims.touched(&rigid).len() <= SMALL {
+    if claims.work(&rigid) <= SMALL {
         return claims.proved_among(&rigid);
     }
     let bounded: Vec<bool> = rigid.iter().map(|&group| gaps.bounded[group]).collect();

@@ -21,8 +21,8 @@ const BEYOND: f64 = 1e6;
 const ROUNDING: f64 = 64.0 * f64::EPSILON;
 /// A weight below this part of the largest is none.
 const NEGLIGIBLE: f64 = 1e-8;
-/// Unknowns that rows touch for which a square matrix of them is cheap.
-const FEW: usize = 1500;
+/// Multiplications that a search which ends may take.
+const WORK: usize = 10_000_000_000;
 
 /// A combination of rows of the island, contact rows first, each with its weight times the scaled row `s_i b_i u <= s_i c_i`.
 pub(in crate::solver) type Weights = Vec<(usize, f64)>;
@@ -59,7 +59,7 @@ impl<'a> Contradictions<'a> {
     /// that satisfies them, or rows that none does.
     pub fn proved_among(&self, groups: &[usize]) -> Result<Option<Error>> {
         let (rows, place) = (&self.ready.rows, self.touched(groups));
-        if place.len() > FEW {
+        if work(place.len(), groups.len()) > WORK {
             return Ok(None);
         }
         let (mut matrix, mut gap, mut of) = (Csr::empty(place.len()), Vec::new(), Vec::new());
@@ -91,8 +91,13 @@ impl<'a> Contradictions<'a> {
         proofs.find_map(Result::transpose).transpose()
     }
 
+    /// Multiplications of a search among these groups that ends.
+    pub fn work(&self, groups: &[usize]) -> usize {
+        work(self.touched(groups).len(), groups.len())
+    }
+
     /// The unknowns that these groups touch, each with a number from 0.
-    pub fn touched(&self, groups: &[usize]) -> HashMap<usize, usize> {
+    fn touched(&self, groups: &[usize]) -> HashMap<usize, usize> {
         let mut place = HashMap::new();
         for (j, _) in groups.iter().flat_map(|&group| self.ready.rows.scaled.row(group)) {
             let next = place.len();
@@ -183,6 +188,12 @@ impl<'a> Contradictions<'a> {
         let of_host = weights.iter().map(|&(i, w)| (place(i), w * ready.rows.scale[i])).collect();
         error.proved_by(proof_of_rows(excess / demands, of_host, place(heaviest)))
     }
+}
+
+/// A rotation of the unknowns for every active row, for each row that joins or leaves.
+fn work(unknowns: usize, rows: usize) -> usize {
+    let active = unknowns.min(rows);
+    4usize.saturating_mul(unknowns).saturating_mul(active).saturating_mul(active)
 }
 
 /// One weight for each row, none of zero.

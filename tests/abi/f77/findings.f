@@ -34,7 +34,8 @@ C     The bar is pulled away.
       CALL FTDIAG(IP, FTNIDG, ID, FTNRDG, RD, IERR)
       CALL OK(IERR, 'FTDIAG')
       CALL HOLDS(ID(FTGSTA) .EQ. FTELNH .AND. ID(FTGBOD) .EQ. 2 .AND.
-     &  RD(FTGMAR) .GT. 0.5D0, 'FTDIAG, the bar escapes')
+     &  RD(FTGMAR) .GT. 0.5D0 .AND. RD(FTGUNH) .GT. 0.1D0,
+     &  'FTDIAG, the bar escapes')
       CALL FTDMOT(IP, 2, 2, V, IERR)
       CALL OK(IERR, 'FTDMOT')
       CALL SAME(V(1), 1D0, 'motion of the bar')

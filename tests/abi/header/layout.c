@@ -81,7 +81,7 @@ OFFSET(feti_progress, theta, 64);
 OFFSET(feti_progress, seconds, 72);
 OFFSET(feti_progress, fraction, 80);
 
-SIZE(feti_findings, 144);
+SIZE(feti_findings, 152);
 OFFSET(feti_findings, struct_size, 0);
 OFFSET(feti_findings, status, 8);
 OFFSET(feti_findings, kind, 12);
@@ -96,6 +96,7 @@ OFFSET(feti_findings, untouched_bodies, 72);
 OFFSET(feti_findings, untouched_body, 80);
 OFFSET(feti_findings, margin, 88);
 OFFSET(feti_findings, motion, 96);
+OFFSET(feti_findings, unheld, 144);
 
 SIZE(feti_body_facts, 120);
 OFFSET(feti_body_facts, struct_size, 0);
