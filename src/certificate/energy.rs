@@ -3,7 +3,7 @@
 use crate::certificate::field::Field;
 use crate::certificate::{share, Entry, NOISE};
 use crate::constraints::RowKind;
-use crate::linalg::vector::dot;
+use crate::linalg::twofold::Twofold;
 
 /// Sums over the island, force x length.
 #[derive(Default)]
@@ -32,8 +32,10 @@ impl Energies {
         let range = field.range(p);
         let u = &field.answer.u[range.clone()];
         let given: Vec<f64> = range.clone().map(|j| field.load(p, j).abs() + field.push_terms[j]).collect();
-        self.strain += dot(u, strain);
-        self.work += range.map(|j| field.load(p, j) * field.answer.u[j]).sum::<f64>();
+        // rounding of long sums would be many times that of their terms
+        self.strain += Twofold::dot(u, strain);
+        let loads: Vec<f64> = range.map(|j| field.load(p, j)).collect();
+        self.work += Twofold::dot(&loads, u);
         self.terms += u.iter().zip(terms).zip(&given).map(|((u, t), g)| u.abs() * (t + g)).sum::<f64>();
         let size = field.size(p, &given);
         self.forces += size * (size / field.unit);

@@ -16,6 +16,7 @@ use std::sync::Arc;
 
 use crate::error::{Error, Kind, Result};
 use crate::linalg::memory::{copied, zeros};
+use crate::linalg::twofold::Twofold;
 use crate::linalg::vector::first_non_finite;
 use crate::linalg::Csr;
 
@@ -172,9 +173,13 @@ impl RowSet {
         })
     }
 
-    /// `c_i + C_i lambda_i - b_i u`: what is left of the gap when the row gives way to its force.
+    /// `c_i + C_i lambda_i - b_i u`: what is left of the gap when the row gives way to its force. In twice the digits: the
+    /// rounding of a long sum, of equal terms above all, is many times that of its terms.
     pub fn open_gap(&self, i: usize, u: &[f64], multiplier: f64) -> f64 {
-        self.rhs[i] + self.compliance[i] * multiplier - self.matrix.row_dot(i, u)
+        let mut left = Twofold::from(self.rhs[i]);
+        left.add_product(self.compliance[i], multiplier);
+        self.matrix.row(i).for_each(|(j, v)| left.add_product(-v, u[j]));
+        left.value()
     }
 
     /// `lambda'C lambda`, twice the energy in the springs of the rows.

@@ -12,7 +12,7 @@ use super::handle::{self, Refusal};
 use super::status::{FETI_BUSY, FETI_HANDLE, FETI_INTERNAL, FETI_OK};
 use super::types::feti_problem;
 use crate::error::{Error, Kind, Result};
-use crate::solver::{Problem, THREAD_NAME};
+use crate::solver::{instant, Problem, THREAD_NAME};
 
 /// An exported function and the names of its arguments, in order.
 #[derive(Debug, Clone, Copy)]
@@ -146,10 +146,11 @@ fn install_hook() {
     if HOOK.is_completed() || std::thread::panicking() {
         return;
     }
-    HOOK.call_once(|| {
+    let install = || {
         let previous = panic::take_hook();
         panic::set_hook(Box::new(move |info| if is_ours() { note_place(info) } else { previous(info) }));
-    });
+    };
+    instant(|| HOOK.call_once(install));
 }
 
 fn note_place(info: &PanicHookInfo<'_>) {

@@ -4,7 +4,7 @@
 use std::collections::BTreeMap;
 
 use super::sync::{
-    Arc, AtomicBool, AtomicUsize, Mutex, MutexGuard, Ordering, PoisonError, RwLock, TryLockError,
+    instant, Arc, AtomicBool, AtomicUsize, Mutex, MutexGuard, Ordering, PoisonError, RwLock, TryLockError,
 };
 
 /// Numbers count from 1 and are never used again.
@@ -71,12 +71,12 @@ impl<P, R: Clone, E> Slot<P, R, E> {
     }
 
     pub fn keep_error(&self, record: R) {
-        *self.error.lock().unwrap_or_else(PoisonError::into_inner) = Some(record);
+        instant(|| *self.error.lock().unwrap_or_else(PoisonError::into_inner) = Some(record));
     }
 
     /// The problem's last error.
     pub fn error(&self) -> Option<R> {
-        self.error.lock().unwrap_or_else(PoisonError::into_inner).clone()
+        instant(|| self.error.lock().unwrap_or_else(PoisonError::into_inner).clone())
     }
 }
 
@@ -92,19 +92,20 @@ impl<P, R: Clone, E> Registry<P, R, E> {
             error: Mutex::new(None),
             shared,
         };
-        self.slots.write().unwrap_or_else(PoisonError::into_inner).insert(number, Arc::new(slot));
+        let slot = Arc::new(slot);
+        instant(|| self.slots.write().unwrap_or_else(PoisonError::into_inner).insert(number, slot));
         Some(number)
     }
 
     pub fn find(&self, number: usize) -> Option<Arc<Slot<P, R, E>>> {
-        self.slots.read().unwrap_or_else(PoisonError::into_inner).get(&number).cloned()
+        instant(|| self.slots.read().unwrap_or_else(PoisonError::into_inner).get(&number).cloned())
     }
 
     /// Takes the problem out; a call that found the slot before meets [`Refusal::Gone`].
     pub fn remove(&self, number: usize) -> Result<P, Refusal> {
         let slot = self.find(number).ok_or(Refusal::Gone)?;
         let problem = slot.claim()?.take().ok_or(Refusal::Gone)?;
-        self.slots.write().unwrap_or_else(PoisonError::into_inner).remove(&number);
+        instant(|| self.slots.write().unwrap_or_else(PoisonError::into_inner).remove(&number));
         Ok(problem)
     }
 }

@@ -24,6 +24,8 @@ static PROMISED: AtomicUsize = AtomicUsize::new(0);
 thread_local! {
     /// What rooms of this thread may take of one that was proved for them too: each proof costs two calls of the system.
     static INSIDE: Cell<usize> = const { Cell::new(0) };
+    /// Sum of the rooms of this thread that were proved.
+    static PROVED: Cell<usize> = const { Cell::new(0) };
 }
 
 /// A part of the memory kept free for small pieces, until dropped, on the thread that asked for it.
@@ -66,7 +68,10 @@ fn proved(bytes: usize, what: &str) -> Result<Room> {
             return Err(refusal(bytes, what));
         }
         match PROMISED.compare_exchange(promised, with_this, Ordering::Relaxed, Ordering::Relaxed) {
-            Ok(_) => return Ok(Room { bytes, inner: false, inside: 0, thread: PhantomData }),
+            Ok(_) => {
+                PROVED.set(PROVED.get() + bytes);
+                return Ok(Room { bytes, inner: false, inside: 0, thread: PhantomData });
+            }
             Err(changed) => promised = changed,
         }
     }
@@ -79,8 +84,14 @@ impl Drop for Room {
             return;
         }
         INSIDE.set(INSIDE.get().saturating_sub(self.inside));
+        PROVED.set(PROVED.get() - self.bytes);
         PROMISED.fetch_sub(self.bytes, Ordering::Relaxed);
     }
+}
+
+/// In a child of fork, whose only thread this is: what was promised to others is nobody's.
+pub fn keep_own_promises() {
+    PROMISED.store(PROVED.try_with(Cell::get).unwrap_or(0), Ordering::Relaxed);
 }
 
 /// True when so many bytes could be had now besides what is spare.

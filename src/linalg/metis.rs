@@ -36,11 +36,9 @@ extern "C" {
     ) -> i32;
 }
 
-/// Nodes in the order of their elimination; the neighbours of node i, without itself, are `adj[ptr[i]..ptr[i + 1]]`.
+/// Nodes in the order of their elimination; the neighbours of node i, without itself, are `adj[ptr[i]..ptr[i + 1]]`, and some
+/// node has one.
 pub fn dissect(ptr: &[i32], adj: &[i32]) -> Result<Vec<usize>> {
-    if adj.is_empty() {
-        return Ok((0..ptr.len() - 1).collect());
-    }
     let _alone = ONE_AT_A_TIME.lock().unwrap_or_else(PoisonError::into_inner);
     let (mut options, wide) = default_options();
     if wide {

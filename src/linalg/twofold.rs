@@ -22,6 +22,13 @@ impl Twofold {
         self.lost += a.mul_add(b, -product);
     }
 
+    /// `x'y`
+    pub fn dot(x: &[f64], y: &[f64]) -> f64 {
+        let mut sum = Self::default();
+        x.iter().zip(y).for_each(|(x, y)| sum.add_product(*x, *y));
+        sum.value()
+    }
+
     /// The sum in f64; what is not finite stays what f64 makes of it.
     pub fn value(self) -> f64 {
         if self.sum.is_finite() {
@@ -51,6 +58,15 @@ mod tests {
         square.add_product(1e8 + 1.0, 1e8 - 1.0);
         square.add_product(-1e8, 1e8);
         assert_eq!(square.value(), -1.0);
+    }
+
+    #[test]
+    fn a_long_sum_of_equal_terms_is_right_to_its_last_digit() {
+        let n = 200_000;
+        let (tenths, ones) = (vec![0.1; n], vec![1.0; n]);
+        assert_eq!(Twofold::dot(&tenths, &ones), 0.1 * n as f64);
+        let plain: f64 = tenths.iter().sum();
+        assert!((plain - 0.1 * n as f64).abs() > 1000.0 * f64::EPSILON * plain, "{plain}");
     }
 
     #[test]

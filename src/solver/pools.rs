@@ -1,7 +1,7 @@
 //! Pools of threads that are there, by process and size: made when first needed. All orders of its steps on two threads
 //! are tried in `tests/loom`.
 
-use super::sync::{Arc, Mutex, PoisonError};
+use super::sync::{instant, Arc, Mutex, PoisonError};
 
 /// Pools that are kept while nobody uses them: their threads wait, and hold their stacks and heaps.
 const KEPT: usize = 4;
@@ -13,21 +13,34 @@ pub struct Pools<P> {
 }
 
 impl<P> Pools<P> {
-    /// The pool of this size in this process, made if it is not there; None where it cannot be made.
+    /// The pool of this size in this process, made if it is not there; None where it cannot be made. To start threads
+    /// takes long: others have the list meanwhile, and of two pools that are made at the same time one ends unused.
     pub fn get(&self, process: u32, size: usize, make: impl FnOnce() -> Option<P>) -> Option<Arc<P>> {
-        let mut made = self.made.lock().unwrap_or_else(PoisonError::into_inner);
-        let pool = match made.iter().position(|(p, s, _)| *p == process && *s == size) {
-            Some(at) => made.remove(at).2,
-            None => Arc::new(make()?),
-        };
-        // What the parent made has no threads here that could be told to end.
-        let mut over = (made.iter().filter(|(p, ..)| *p == process).count() + 1).saturating_sub(KEPT);
-        made.retain(|(p, _, idle)| {
-            let ends = over > 0 && *p == process && Arc::strong_count(idle) == 1;
-            over -= usize::from(ends);
-            !ends
+        self.listed(process, size, None).or_else(|| self.listed(process, size, make().map(Arc::new)))
+    }
+
+    /// The pool that is there, or `new` in its place, comes last; those that are too many end.
+    fn listed(&self, process: u32, size: usize, new: Option<Arc<P>>) -> Option<Arc<P>> {
+        let mut ended = Vec::new();
+        let pool = instant(|| {
+            let mut made = self.made.lock().unwrap_or_else(PoisonError::into_inner);
+            let there = made.iter().position(|(p, s, _)| *p == process && *s == size);
+            let pool = there.map(|at| made.remove(at).2).or_else(|| new.clone())?;
+            // What the parent made has no threads here that could be told to end.
+            let mut over = (made.iter().filter(|(p, ..)| *p == process).count() + 1).saturating_sub(KEPT);
+            made.retain(|(p, _, idle)| {
+                let ends = over > 0 && *p == process && Arc::strong_count(idle) == 1;
+                if ends {
+                    over -= 1;
+                    ended.push(Arc::clone(idle));
+                }
+                !ends
+            });
+            made.push((process, size, Arc::clone(&pool)));
+            Some(pool)
         });
-        made.push((process, size, Arc::clone(&pool)));
-        Some(pool)
+        // To wake threads that are to end takes longer than the list may be held.
+        drop(ended);
+        pool
     }
 }

@@ -118,7 +118,7 @@ static OPTIONS: [OptionInfo; 27] = [
     whole(c"memory_limit", 0, 0.0..=MANY, |s| &mut s.memory_limit,
         c"Bytes that factors and dual operators may take; 0: no limit. Dual operators that do not fit become implicit (option dual_operator); exceeding it nevertheless is FETI_MEMORY before anything is allocated."),
     whole(c"threads", 0, 0.0..=4096.0, |s| &mut s.threads,
-        c"Threads of the setup and of costly products with the dual operator (one for less than 1000 unknowns); 0: as many as the CPUs this process may use. The answer has the same bits for any number."),
+        c"Threads of the setup and of costly products with the dual operator (at most one for 500 unknowns and four for a CPU); 0: as many as the CPUs this process may use. The answer has the same bits for any number."),
     whole(c"index_base", 0, 0.0..=1.0, |s| &mut s.index_base,
         c"What numbers in error texts count from: 0 for C, 1 for Fortran."),
     whole(c"fault_injection", 0, 0.0..=1.0, |s| &mut s.fault_injection,

@@ -149,14 +149,10 @@ impl Problem {
         self.equalities.check_empty_rows(RowKind::Equality).map_err(|e| empty_row_contradicts(e, first))
     }
 
-    /// Threads of the setup; a problem so small that waking them costs more than the work gets one.
+    /// Threads of the setup: fewer unknowns for each cost less than to wake it.
     pub(super) fn threads(&self) -> usize {
-        const SMALL: usize = 1000;
-        if self.counts().dofs < SMALL {
-            1
-        } else {
-            threads::count(self.settings.threads)
-        }
+        const FOR_EACH: usize = 500;
+        threads::count(self.settings.threads, self.counts().dofs / FOR_EACH)
     }
 
     /// Forms F and G of every island.

@@ -25,11 +25,20 @@ const STARTING: usize = 64 << 20;
 /// Name of every thread of a pool.
 pub const THREAD_NAME: &str = "feti-contact";
 
-/// Threads to use: those asked for, or one for every CPU this process may run on.
-pub fn count(asked: i64) -> usize {
-    match usize::try_from(asked) {
-        Ok(threads) if threads > 0 => threads,
-        _ => std::thread::available_parallelism().map_or(1, std::num::NonZero::get),
+/// Threads for each CPU at most: more of them wait for each other.
+const PER_CPU: usize = 4;
+
+/// Threads to use: those asked for, or one for every CPU this process may run on; no more than the work can occupy. That
+/// counts as the power of two below it: problems of about the same size share a pool.
+pub fn count(asked: i64, occupied: usize) -> usize {
+    let cpus = || std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
+    let occupied = 1 << occupied.max(1).ilog2();
+    match usize::try_from(asked).unwrap_or(0).min(occupied) {
+        0 if occupied == 1 => 1,
+        0 => cpus().min(occupied),
+        // the system is asked only where it matters
+        asked if asked <= PER_CPU => asked,
+        asked => asked.min(PER_CPU * cpus()),
     }
 }
 
@@ -215,6 +224,25 @@ mod tests {
             heard.sort_unstable();
             let expected: Vec<_> = (0..20).filter(|k| k % 7 != 3).map(|k| (k, k * k)).collect();
             assert_eq!((heard, ended.unwrap_err().place.body), (expected, Some(3)));
+        }
+    }
+
+    #[test]
+    fn threads_are_as_many_as_the_work_occupies_and_a_few_for_each_cpu_at_most() {
+        let cpus = std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
+        for (asked, occupied, expected) in [
+            (1, 1 << 20, 1),
+            (3, 1 << 20, 3),
+            (4096, 0, 1),
+            (4096, 1, 1),
+            (4096, 3, 2),
+            (3, 5, 3),
+            (4096, 9, 8.min(4 * cpus)),
+            (4096, 1 << 20, 4 * cpus),
+            (0, 1 << 20, cpus),
+            (0, 1, 1),
+        ] {
+            assert_eq!(count(asked, occupied), expected, "{asked} asked for, {occupied} occupied");
         }
     }
 

@@ -6,6 +6,7 @@
 //! | [`free`], [`cut`] | an upper block free to slide and spin, moduli varied, null spaces mixed and noisy, cut into pieces |
 //! | [`far`] | a row whose gap is never closed |
 //! | [`presolve`] | rows that contradict each other beside one that is far away |
+//! | [`long`] | rows over all unknowns of a large body |
 //! | [`groups`] | groups of bodies that no row joins |
 //! | [`travel`] | a body that travels much further than it deforms |
 //! | [`penalty`] | displacements prescribed by penalty |
@@ -19,6 +20,7 @@ mod free;
 mod groups;
 #[path = "../support/hand_over.rs"]
 mod hand_over;
+mod long;
 mod mixed;
 mod penalty;
 mod plane;

@@ -9,6 +9,9 @@ mod pools;
 mod registry;
 
 mod sync {
+    pub fn instant<T>(work: impl FnOnce() -> T) -> T {
+        work()
+    }
     pub use loom::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
     pub use loom::sync::{Arc, Mutex, MutexGuard, RwLock};
     pub use std::sync::{PoisonError, TryLockError};

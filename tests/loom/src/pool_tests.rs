@@ -4,6 +4,7 @@ use loom::thread;
 
 use crate::pools::Pools;
 
+/// Both may make one: the list is free meanwhile.
 #[test]
 fn two_threads_that_ask_for_a_pool_get_the_same_one() {
     loom::model(|| {
@@ -17,7 +18,8 @@ fn two_threads_that_ask_for_a_pool_get_the_same_one() {
             thread::spawn(move || get(&pools, &built))
         };
         let mine = get(&pools, &built);
-        assert_eq!((mine, other.join().unwrap(), built.load(Relaxed)), (0, 0, 1));
+        assert_eq!(mine, other.join().unwrap());
+        assert!(built.load(Relaxed) <= 2 && pools.made.lock().unwrap().len() == 1);
     });
 }
 

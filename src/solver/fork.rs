@@ -1,0 +1,63 @@
+//! What a child of fork finds: none of the locks that all threads share, held by a thread that it does not have.
+//!
+//! Those locks are held for instants, in which nothing is waited for and no function of the host runs. `fork` waits until
+//! none of them goes on, and none begins before parent and child are apart. What lasts longer, such as a call on a problem,
+//! is not waited for: in the child that problem stays busy.
+
+#[cfg(target_os = "linux")]
+pub(crate) use watched::instant;
+
+/// Runs `work`, which takes locks that all threads share.
+#[cfg(not(target_os = "linux"))]
+pub(crate) fn instant<T>(work: impl FnOnce() -> T) -> T {
+    work()
+}
+
+#[cfg(target_os = "linux")]
+mod watched {
+    use std::cell::RefCell;
+    use std::sync::atomic::{AtomicBool, Ordering};
+    use std::sync::{PoisonError, RwLock, RwLockWriteGuard};
+
+    use crate::linalg::memory;
+
+    /// Instants that go on are its readers, a fork is its writer.
+    static INSTANTS: RwLock<()> = RwLock::new(());
+
+    thread_local! {
+        /// Taken before the fork of this thread, given back after it in both processes.
+        static FORKING: RefCell<Option<RwLockWriteGuard<'static, ()>>> = const { RefCell::new(None) };
+    }
+
+    /// Runs `work`, which takes locks that all threads share.
+    pub(crate) fn instant<T>(work: impl FnOnce() -> T) -> T {
+        hear_of_forks();
+        let _goes_on = INSTANTS.read().unwrap_or_else(PoisonError::into_inner);
+        work()
+    }
+
+    /// Once in a process, and its children hear of theirs too. No thread waits for the one that does it: a child might have to.
+    fn hear_of_forks() {
+        static HEARD: AtomicBool = AtomicBool::new(false);
+        if !HEARD.load(Ordering::Relaxed) && !HEARD.swap(true, Ordering::Relaxed) {
+            // SAFETY: functions that the library, which is never unloaded, has as long as the process lives. Short of
+            // memory the system takes none; then forks are not heard of.
+            unsafe { libc::pthread_atfork(Some(before), Some(after), Some(in_child)) };
+        }
+    }
+
+    extern "C" fn before() {
+        let none_goes_on = INSTANTS.write().unwrap_or_else(PoisonError::into_inner);
+        // A thread that is being torn down gives it back at once.
+        let _ = FORKING.try_with(|forking| forking.replace(Some(none_goes_on)));
+    }
+
+    extern "C" fn after() {
+        let _ = FORKING.try_with(RefCell::take);
+    }
+
+    extern "C" fn in_child() {
+        memory::keep_own_promises();
+        after();
+    }
+}
