@@ -36,7 +36,8 @@ impl<'a> Certifier<'a> {
         exact: bool,
     ) -> Result<Option<(Recovered, Vec<f64>)>> {
         let dual = &self.ready.dual;
-        let held = self.ready.without_force(&answer.lambda);
+        let load: Vec<f64> = self.scaled.load.iter().map(|f| f * self.ready.island.unit).collect();
+        let held = self.ready.without_force(&load, &answer.lambda, &answer.mu);
         let free = qp::undetermined(&dual.coarse, &held, dual.rounding())?;
         if free.cols == 0 {
             return Ok(None);
@@ -52,7 +53,13 @@ impl<'a> Certifier<'a> {
             Ok(())
         };
         add(dual.rigid_motion(&alpha, u.len()), &mut u)?;
-        let Some(change) = self.way_to_rest(&u, &answer.lambda, free) else { return Ok(None) };
+        let mut forces = answer.lambda.clone();
+        for (i, member) in self.ready.rows.grouping.member[..forces.len()].iter().enumerate() {
+            if member.is_some_and(|(group, _)| held[group]) {
+                forces[i] = 0.0;
+            }
+        }
+        let Some(change) = self.way_to_rest(&u, &forces, free) else { return Ok(None) };
         add(change.u, &mut u)?;
         for k in 0..self.data.bodies.len() {
             let modes = dual.modes_of(k);

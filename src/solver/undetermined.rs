@@ -1,9 +1,12 @@
 //! What an answer leaves open: rigid motions that no closed row and no equality resists, and on which the load does no
 //! work; equality rows that depend on each other and share their forces.
 
+use std::ops::Range;
+
 use crate::dual::dependent_rows;
 use crate::error::{Error, Kind, Result};
 use crate::linalg::memory::zeros;
+use crate::linalg::vector::weighted_norm;
 use crate::linalg::Csr;
 use crate::qp;
 use crate::solver::problem::Problem;
@@ -58,7 +61,8 @@ impl Problem {
         let islands = self.ready()?.islands.iter().zip(&answer.failed).enumerate();
         for (k, (ready, _)) in islands.filter(|(_, (_, failed))| !**failed) {
             let lambda = ready.island.contact.gather(&answer.lambda);
-            let held = ready.without_force(&lambda);
+            let mu = ready.island.equalities.gather(&answer.mu);
+            let held = ready.without_force(&ready.island.loads(self)?, &lambda, &mu);
             let motions = qp::undetermined(&ready.dual.coarse, &held, ready.dual.rounding())?;
             all.extend((0..motions.cols).map(|j| (k, motions.col(j).to_vec())));
         }
@@ -66,13 +70,27 @@ impl Problem {
     }
 }
 
+/// A force below this part of all forces on each of the bodies that its row touches is rounding, and holds no motion.
+const ROUNDING: f64 = 1e-12;
+
 impl Ready {
-    /// Groups of contact rows of which none carries a force.
-    pub fn without_force(&self, lambda: &[f64]) -> Vec<bool> {
+    /// Groups of contact rows of which none carries a force, but for rounding; `load` is that of all unknowns, force.
+    pub fn without_force(&self, load: &[f64], lambda: &[f64], mu: &[f64]) -> Vec<bool> {
+        let (rows, island) = (&self.rows, &self.island);
+        let mut push = vec![0.0; load.len()];
+        island.contact.rows.matrix.mul_transposed_add(1.0, lambda, &mut push);
+        island.equalities.rows.matrix.mul_transposed_add(1.0, mu, &mut push);
+        let on_body = |range: &Range<usize>| {
+            let size = |v: &[f64]| weighted_norm(&v[range.clone()], |j| 1.0 / rows.metric[range.start + j]);
+            size(load) + size(&push)
+        };
+        let forces: Vec<f64> = island.ranges.iter().map(on_body).collect();
         let mut held: Vec<bool> =
-            (0..self.rows.groups()).map(|group| self.rows.kind(group) == RowKind::Inequality).collect();
-        for (i, (group, _)) in self.rows.grouping.members().filter(|(i, _)| *i < self.rows.contact) {
-            if lambda[i] > 0.0 {
+            (0..rows.groups()).map(|group| rows.kind(group) == RowKind::Inequality).collect();
+        for (i, (group, _)) in rows.grouping.members().filter(|(i, _)| *i < rows.contact) {
+            let bodies = island.contact.rows.matrix.row(i).map(|(j, _)| forces[island.body_of(j)]);
+            let least = bodies.fold(f64::INFINITY, f64::min);
+            if lambda[i] > ROUNDING * rows.scale[i] * least {
                 held[group] = false;
             }
         }

@@ -18,6 +18,8 @@ use crate::solver::setup::Ready;
 
 /// A displacement so many times as large as all that rows demand and loads make is none that could satisfy the rows.
 const BEYOND: f64 = 1e6;
+/// Gaps may be differences of displacements so many times as large: their rounding is that of those.
+const TRAVELLED: f64 = 1e3;
 const ROUNDING: f64 = 64.0 * f64::EPSILON;
 /// A weight below this part of the largest is none.
 const NEGLIGIBLE: f64 = 1e-8;
@@ -106,8 +108,9 @@ impl<'a> Contradictions<'a> {
         place
     }
 
-    /// `w'c + X |B'w|_{D^-1} + 64 eps (|w|'|c| + X ||B|'|w||_{D^-1}) < 0` by the rows of the host: no displacement of less than
-    /// X in the metric D satisfies them, X being 10^6 times what they demand and the loads make.
+    /// `w'c + X |B'w|_{D^-1} + 64 eps (|w|'|c| + Y ||B|'|w||_{D^-1}) < 0` by the rows of the host: no displacement u of less than
+    /// X in the metric D satisfies them, nor if c is B u rounded for one of less than Y; X and Y are 10^6 and 10^3 times what the rows
+    /// demand and the loads make.
     pub fn proof(&self, mut weights: Weights) -> Result<Option<Error>> {
         let rows = &self.ready.rows;
         merge(&mut weights);
@@ -131,10 +134,8 @@ impl<'a> Contradictions<'a> {
         let left: Vec<f64> = left.into_iter().map(Twofold::value).collect();
         let size = |x: &[f64]| weighted_norm(x, |j| 1.0 / rows.metric[j]);
         let (left, terms, excess) = (size(&left), size(&terms), -demanded.value());
-        let proves = |moved: f64| {
-            let reach = BEYOND * moved;
-            excess > reach * left + ROUNDING * (demands + reach * terms)
-        };
+        let proves =
+            |moved: f64| excess > BEYOND * moved * left + ROUNDING * (demands + TRAVELLED * moved * terms);
         // what the loads move costs a product with K+
         let proved = proves(self.demand()) && proves(self.moved()?);
         Ok(proved.then(|| self.named(&weights, excess, demands)))
