@@ -6,7 +6,9 @@ use std::fmt;
 use crate::body::digits::Digits;
 use crate::body::fixing::{fixing_dofs, given_dofs};
 use crate::body::generalized_inverse::{GeneralizedInverse, Known, Plan};
-use crate::body::null_space::{kernel_by_parts, verified_by_parts, Kernel, Part, Verified, ROUNDING};
+use crate::body::null_space::{
+    kernel_by_parts, verified_by_parts, Kernel, Part, Verified, CANDIDATE, ROUNDING,
+};
 use crate::body::rigid_modes::RigidModes;
 use crate::body::search::Search;
 use crate::body::spectrum::Doubt;
@@ -14,6 +16,9 @@ use crate::body::symbolic::Made;
 use crate::error::{Error, Kind, Result};
 use crate::linalg::memory::{room, PRODUCTS};
 use crate::linalg::{Matrix, Multiple};
+
+/// Where rigid motions are mixed, their terms may cancel to this part of them.
+const MIXED: f64 = 16.0;
 
 /// Rigid motions that do not all fit K.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -58,8 +63,8 @@ impl GeneralizedInverse {
         let misfit = Misfit { fit, of: candidates, next };
         if let Some(digits) = Digits::of(&k.matrix)? {
             if let Some(doubt) = explained(&k, digits, rigid)? {
-                let told = Some(doubt).filter(|doubt| doubt.resisted > tolerance);
-                let tolerance = tolerance.max(doubt.resisted);
+                let told = Some(doubt).filter(|doubt| doubt.resisted > CANDIDATE);
+                let tolerance = tolerance.max(MIXED * doubt.resisted);
                 let counts = &rigid.counts;
                 return Self::known(k, &rigid.modes, (rigid, counts), (tolerance, told), fixing);
             }
@@ -113,7 +118,7 @@ impl GeneralizedInverse {
 /// Whether K resists every rigid motion by no more than rounding of its entries may have left, at each dof.
 fn explained(k: &Multiple, digits: Digits, rigid: &RigidModes) -> Result<Option<Doubt>> {
     let (image, terms) = k.mul_columns(&rigid.modes)?;
-    let mut resisted: f64 = 0.0;
+    let (mut resisted, mut rounding): (f64, f64) = (0.0, 0.0);
     for j in 0..rigid.modes.cols {
         let most = digits.most(&k.matrix, rigid.modes.col(j))?;
         let (image, terms) = (image.col(j), terms.col(j));
@@ -121,11 +126,12 @@ fn explained(k: &Multiple, digits: Digits, rigid: &RigidModes) -> Result<Option<
         if (0..k.order()).any(|i| left(i) > k.by * most[i]) {
             return Ok(None);
         }
-        resisted = (0..k.order())
-            .filter(|&i| terms[i] > 0.0)
-            .fold(resisted, |most, i| most.max(image[i].abs() / terms[i]));
+        for i in (0..k.order()).filter(|&i| terms[i] > 0.0) {
+            resisted = resisted.max(image[i].abs() / terms[i]);
+            rounding = rounding.max(k.by * most[i] / terms[i]);
+        }
     }
-    Ok(Some(Doubt { digits, motions: rigid.counts.iter().sum(), resisted, free: true }))
+    Ok(Some(Doubt { digits, motions: rigid.counts.iter().sum(), resisted, rounding, free: true }))
 }
 
 impl Retry {

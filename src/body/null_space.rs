@@ -29,7 +29,7 @@ pub struct NullSpaceInput {
 /// Columns that keep less of their length than this after orthogonalisation are dependent.
 const DEPENDENT: f64 = 1e-10;
 /// A candidate motion belongs to the null space when `|D^-1 K v|` is this small against `|v|`.
-const CANDIDATE: f64 = 1e-11;
+pub(super) const CANDIDATE: f64 = 1e-11;
 /// `|A z|` of a unit vector z that is zero but for rounding, also where its terms are no more than that: z of dofs
 /// without stiffness.
 pub(super) const ROUNDING: f64 = 64.0 * f64::EPSILON;

@@ -138,7 +138,7 @@ impl Search {
             misfit.iter().for_each(|misfit| error.what = format!("{misfit}; sought in K: {}", error.what));
             error
         })?;
-        made.inverse.misfit = misfit;
+        made.inverse.misfit = misfit.filter(|misfit| made.inverse.null_space.cols > misfit.fit);
         Ok(made)
     }
 
@@ -264,7 +264,7 @@ impl Search {
             let (dimension, gap) = cut(&values).unwrap_or((0, f64::INFINITY));
             return soft(first_columns(&vectors, dimension), gap, 0.0, None);
         };
-        let doubt = |motions, free| ritz.doubt(self.digits, motions, free, self.tolerance);
+        let doubt = |motions, free| ritz.doubt(self.digits, motions, free);
         let dof = last[largest(vectors.col(0), |_| 1.0)];
         match ritz.judged(self.digits) {
             Verdict::Free { dimension, gap } => {

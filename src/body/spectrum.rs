@@ -24,6 +24,8 @@ const ROUNDING: f64 = 1e-14;
 const DEVIATIONS: f64 = 5.0;
 /// A support is known where rounding of the entries is less than this part of it.
 const UNKNOWN: f64 = 1e-3;
+/// Rounding of so much of the softest other motion changes forces no more than the certificate lets them be wrong.
+const TRIFLE: f64 = 1e-6;
 /// theta below minus this is no rounding of products, whatever digits the entries have.
 const NEGATIVE: f64 = 1e-10;
 
@@ -32,23 +34,29 @@ const NEGATIVE: f64 = 1e-10;
 pub struct Doubt {
     pub digits: Digits,
     pub motions: usize,
-    /// Largest v'K v / v'D v of them.
+    /// Largest v'K v / v'D v of them, ...
     pub resisted: f64,
+    /// ... and what rounding of the entries may make of it.
+    pub rounding: f64,
     /// They are taken as free; as supports where no gap tells them from the others.
     pub free: bool,
 }
 
 impl fmt::Display for Doubt {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { digits, motions, resisted, free } = self;
+        let Self { digits, motions, resisted, rounding, free } = self;
         write!(out, "the entries of K have {digits}: ")?;
         if *free {
-            write!(out, "{motions} motions are taken as free that K resists by {resisted:.1e} of its stiffness, rounding")
+            write!(
+                out,
+                "{motions} motions are taken as free that K resists by {resisted:.1e} of its stiffness: rounding \
+                 explains up to {rounding:.1e}"
+            )
         } else {
             write!(
                 out,
-                "{motions} motions that K resists only by {resisted:.1e} of its stiffness are taken as supports, though \
-                 rounding may be what resists them; give the null space, or more digits"
+                "{motions} motions that K resists only by {resisted:.1e} of its stiffness are taken as supports; \
+                 rounding may be {rounding:.1e} of it: give the null space, or more digits"
             )
         }
     }
@@ -208,22 +216,26 @@ impl Ritz {
         Verdict::Held { doubtful, gap: values[0] / noise[0] }
     }
 
-    /// What is said of the first motions where more than `tolerance` of them may be rounding of the entries.
-    pub fn doubt(&self, digits: Option<Digits>, motions: usize, free: bool, tolerance: f64) -> Option<Doubt> {
+    /// What is said of the first motions: of free ones where entries of all digits would make them supports, or where
+    /// rounding is no trifle against the next one.
+    pub fn doubt(&self, digits: Option<Digits>, motions: usize, free: bool) -> Option<Doubt> {
         let resisted = self.values[..motions].iter().fold(0.0f64, |most, v| most.max(v.abs()));
-        let digits =
-            digits.filter(|_| motions > 0 && self.noise[..motions].iter().any(|n| *n > tolerance))?;
-        Some(Doubt { digits, motions, resisted, free })
+        let rounding = self.noise[..motions].iter().fold(0.0f64, |most, v| most.max(*v));
+        let trifle = self.values.get(motions).filter(|_| free).map_or(0.0, |next| TRIFLE * next);
+        let digits = digits.filter(|_| motions > 0 && (rounding > trifle || resisted >= SOFT))?;
+        Some(Doubt { digits, motions, resisted, rounding, free })
     }
 }
 
 /// No motion stands apart.
 pub fn unclear(digits: Option<Digits>) -> Error {
-    let of = digits.map(|digits| format!(", the entries of K have {digits}")).unwrap_or_default();
-    let what = format!(
-        "the null space cannot be told from soft motions{of}: no gap of {GAP:.0e} below {SOFT:.0e} of the largest \
-         stiffness; give it, or coordinates"
-    );
+    let gap = match digits {
+        Some(digits) => {
+            format!("no gap of {GAP:.0e} above what rounding of K, whose entries have {digits}, may be")
+        }
+        None => format!("no gap of {GAP:.0e} below {SOFT:.0e} of the largest stiffness"),
+    };
+    let what = format!("the null space cannot be told from soft motions: {gap}; give it, or coordinates");
     Error::new(Kind::NullSpace, what)
 }
 

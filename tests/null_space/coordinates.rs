@@ -4,7 +4,7 @@ use decks::{Block, Csr};
 use feti_contact::solver::{LogLevel, Origin, Problem};
 use std::sync::{Arc, Mutex};
 
-use crate::bodies::cube;
+use crate::bodies::{chain, cube};
 use crate::digits::{in_single_precision, printed, quads};
 use crate::registered;
 
@@ -65,8 +65,42 @@ fn a_stiffness_of_few_digits_has_the_rigid_motions_of_its_coordinates() {
             let told = warnings(&mut problem);
             let facts = problem.body_facts(0).unwrap();
             let found = facts.factors.unwrap();
-            println!("{digits} digits: {:?} {} {:?} {told:?}", facts.origin, found.null_space, found.doubts);
             assert_eq!(found.null_space, all, "{digits} digits");
         }
+    }
+}
+
+#[test]
+fn each_of_many_parts_has_the_rigid_motions_of_its_coordinates() {
+    let (block, parts) = (quads(2), 200);
+    let one = block.stiffness();
+    let mut problem = registered(&chain(&vec![&one; parts], 0, &vec![1.0; parts]));
+    let n = parts * one.rows;
+    let place = |i: usize, k: usize| block.grid(i % one.rows / 2)[k] as f64 / 2.0;
+    let xyz: Vec<f64> = (0..n).flat_map(|i| [place(i, 0), place(i, 1)]).collect();
+    let node: Vec<i32> = (0..n).map(|i| i as i32 / 2).collect();
+    let directions: Vec<i32> = (0..n).map(|i| i as i32 % 2 + 1).collect();
+    problem.set_coordinates(0, 2, &node, &directions, &xyz, 2).unwrap();
+    let (dimension, basis) = problem.null_space(0).unwrap();
+    assert_eq!(dimension, 3 * parts);
+    assert!(basis.chunks_exact(n).all(|r| r.iter().filter(|v| **v != 0.0).count() <= one.rows));
+    assert_eq!(problem.body_facts(0).unwrap().origin, Origin::Coordinates);
+}
+
+/// A body on its supports resists its rigid motions: that is no fault of the coordinates.
+#[test]
+fn coordinates_of_a_body_on_supports_are_not_doubted() {
+    let block = quads(8);
+    let k = block.stiffness();
+    for digits in [9, 12, 17] {
+        let mut k = printed(&k, digits);
+        for dof in 0..18 {
+            let at = k.ptr[dof] + k.col[k.ptr[dof]..k.ptr[dof + 1]].partition_point(|&j| j < dof);
+            k.val[at] *= 2.0;
+        }
+        let mut problem = placed(&k, &block, |_, _| 0.0);
+        assert_eq!(warnings(&mut problem), Vec::<String>::new());
+        let facts = problem.body_facts(0).unwrap();
+        assert_eq!((facts.origin, facts.factors.unwrap().null_space), (Origin::Coordinates, 0));
     }
 }

@@ -77,13 +77,11 @@ fn motions_softer_than_the_rounding_of_few_digits_are_free_by_their_gap_or_told_
         for (k, digits) in few.zip([7, 8, 9, 0]) {
             let (found, doubts, told) = match registered(&k).setup() {
                 Err(error) => {
-                    println!("{name} {digits} {error}");
                     assert_eq!(error.kind, Kind::NullSpace, "{name}: {error}");
                     continue;
                 }
                 Ok(()) => set_up(&k),
             };
-            println!("{name}, {digits} digits: {found} {doubts:?}");
             assert!(found == dimension || found == 0, "{name}, {digits} digits: {found}");
             assert!(found == dimension || !doubts.is_empty(), "{name}, {digits} digits: in silence");
             assert_eq!(told.len(), doubts.len());
@@ -159,15 +157,13 @@ fn an_indefinite_matrix_of_two_dofs_is_refused_with_dof_and_pivot() {
     }
 }
 
-/// Time is told only: 800 parts took 7.2 s when all their motions were made orthogonal to each other.
+/// Vectors that are made orthogonal part by part are 0 on all other parts.
 #[test]
 fn each_of_many_floating_parts_has_its_motions() {
     let one = quads(2).stiffness();
-    for parts in [100, 800] {
+    for parts in [10, 200] {
         let k = chain(&vec![&one; parts], 0, &vec![1.0; parts]);
-        let begun = std::time::Instant::now();
         let found = assert_dimension("parts", &k, 3 * parts);
-        println!("{parts} parts: {:?}", begun.elapsed());
         assert!(found
             .basis
             .chunks_exact(k.rows)

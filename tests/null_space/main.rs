@@ -1,5 +1,6 @@
 //! Null spaces found from the stiffness alone: bodies whose motions without stiffness are known by construction.
 
+mod answers;
 mod bodies;
 mod coordinates;
 mod digits;
