@@ -6,9 +6,11 @@ use std::sync::Arc;
 
 use crate::body::factor::Factor;
 use crate::body::fixing::{fixing_dofs, given_dofs, hold_as_well};
+use crate::body::hints::{Misfit, Retry};
 use crate::body::null_space::{verified, NullSpaceInput, Verified, ROUNDING as KNOWN};
 use crate::body::probe::missing_mode;
 use crate::body::search::Search;
+use crate::body::spectrum::Doubt;
 use crate::body::symbolic::{Layout, Made, Symbolic};
 use crate::error::{Error, Kind, Result};
 use crate::linalg::memory::{room, PRODUCTS};
@@ -17,6 +19,7 @@ use crate::linalg::{Analysis, Breakdown, Csr, Matrix, Multiple, Packed};
 /// A pivot below minus this, relative to its diagonal entry, is no rounding error: a(u, u) >= 0 of (4) is violated.
 const NEGATIVE_PIVOT: f64 = 1e-10;
 
+#[derive(Clone)]
 pub struct GeneralizedInverse {
     /// `R_p`, n x r, with `R'DR = I`.
     pub null_space: Matrix,
@@ -30,6 +33,10 @@ pub struct GeneralizedInverse {
     pub gap: Option<f64>,
     /// `|f| / | |K||K+ f| |` of a random load, no unit: its inverse is what rounding of K+ grows by.
     pub softness: f64,
+    /// Motions that rounding of the entries of K may be all that resists, of its parts one by one.
+    pub doubts: Vec<Doubt>,
+    /// Coordinates that did not fit: the null space was sought in K.
+    pub misfit: Option<Misfit>,
     pub(super) factor: Factor,
 }
 
@@ -41,13 +48,17 @@ pub enum Plan {
 
 /// The null space is known before the factorisation.
 pub struct Known {
-    k: Multiple,
-    null_space: Matrix,
-    error: f64,
-    fixing: Vec<usize>,
+    pub(super) k: Multiple,
+    pub(super) null_space: Matrix,
+    pub(super) error: f64,
+    pub(super) fixing: Vec<usize>,
     /// The fixing dofs are those of the host.
-    given: bool,
-    symbolic: Option<Arc<Symbolic>>,
+    pub(super) given: bool,
+    pub(super) symbolic: Option<Arc<Symbolic>>,
+    /// What rounding of the entries resists of it.
+    pub(super) doubt: Option<Doubt>,
+    /// Where it may lack a vector.
+    pub(super) retry: Option<Retry>,
 }
 
 impl GeneralizedInverse {
@@ -71,7 +82,7 @@ impl GeneralizedInverse {
             Some(given) => given_dofs(&null_space, &root, given)?,
             None => fixing_dofs(&null_space, &root)?,
         };
-        Ok(Plan::Known(Known { k, null_space, error, fixing, given, symbolic: None }))
+        Ok(Plan::Known(Known::of(k, null_space, error, fixing, given)))
     }
 
     /// The same where nothing is known about the null space.
@@ -166,27 +177,15 @@ impl Plan {
     }
 
     /// K+ with the factor, already probed, of the same matrix with the same dofs held. The null space is that of the
-    /// plan, where it has one.
+    /// plan, where it has one and the other did not have to be sought.
     pub fn with_factor_of(self, other: &GeneralizedInverse) -> Result<GeneralizedInverse> {
-        let (factor, fixing) = (other.factor.clone(), other.fixing.clone());
         match self {
-            Self::Known(Known { k, null_space, error, .. }) => {
-                let (rounding, gap, softness) = (KNOWN, None, other.softness);
-                GeneralizedInverse { null_space, rounding, error, fixing, gap, softness, factor }.measured(&k)
+            Self::Known(Known { k, null_space, error, doubt, .. }) if other.gap.is_none() => {
+                let doubts = doubt.into_iter().collect();
+                let own = GeneralizedInverse { null_space, rounding: KNOWN, error, doubts, ..other.clone() };
+                own.measured(&k)
             }
-            Self::Search(_) => {
-                let (null_space, gap) = (other.null_space.clone(), other.gap);
-                let (rounding, error) = (other.rounding, other.error);
-                Ok(GeneralizedInverse {
-                    null_space,
-                    rounding,
-                    error,
-                    fixing,
-                    gap,
-                    softness: other.softness,
-                    factor,
-                })
-            }
+            Self::Known(_) | Self::Search(_) => Ok(other.clone()),
         }
     }
 
@@ -205,6 +204,11 @@ impl Plan {
 }
 
 impl Known {
+    /// `given`: the fixing dofs are those of the host.
+    pub(super) fn of(k: Multiple, null_space: Matrix, error: f64, fixing: Vec<usize>, given: bool) -> Self {
+        Self { k, null_space, error, fixing, given, symbolic: None, doubt: None, retry: None }
+    }
+
     /// Dofs chosen for other values hold this body, too, unless much worse than its own would.
     fn follow(&mut self, dofs: &[usize]) -> Result<bool> {
         let sorted = |dofs: &[usize]| {
@@ -227,17 +231,36 @@ impl Known {
         Ok(Arc::new(Analysis::new(&self.k.matrix, &held)?))
     }
 
-    fn execute(self) -> Result<Made> {
+    fn execute(mut self) -> Result<Made> {
+        match self.retry.take() {
+            None => self.factorised(),
+            Some(retry) => {
+                let k = self.k.clone();
+                self.factorised().or_else(|error| retry.execute(k, error))
+            }
+        }
+    }
+
+    fn factorised(self) -> Result<Made> {
         let missing = || Error::new(Kind::Internal, "a body was not analysed");
         let symbolic = self.symbolic.ok_or_else(missing)?;
         let factor = symbolic.analysis.factorize(&self.k.matrix, self.k.by)?.map_err(|breakdown| {
             let missing = || missing_mode(breakdown.dof, breakdown.relative_pivot, self.null_space.cols);
             breakdown.refused().unwrap_or_else(missing)
         })?;
-        let Self { k, null_space, error, fixing, .. } = self;
+        let Self { k, null_space, error, fixing, doubt, .. } = self;
         let factor = Factor::Own(Arc::new(factor));
-        let (rounding, gap, softness) = (KNOWN, None, 1.0);
-        let mut inverse = GeneralizedInverse { null_space, rounding, error, fixing, gap, softness, factor };
+        let mut inverse = GeneralizedInverse {
+            null_space,
+            rounding: KNOWN,
+            error,
+            fixing,
+            gap: None,
+            softness: 1.0,
+            doubts: doubt.into_iter().collect(),
+            misfit: None,
+            factor,
+        };
         inverse.softness = inverse.probe(&k)?;
         let inverse = inverse.measured(&k)?;
         Ok(Made { inverse, symbolic, further_analyses: 0, factorisations: 1 })
@@ -247,9 +270,12 @@ impl Known {
 impl Breakdown {
     /// The error for a pivot so negative that K is indefinite.
     pub(super) fn refused(&self) -> Option<Error> {
+        (self.relative_pivot < -NEGATIVE_PIVOT).then(|| self.indefinite())
+    }
+
+    pub(super) fn indefinite(&self) -> Error {
         let what = format!("the stiffness matrix is indefinite: pivot {:.1e} K_ii", self.relative_pivot);
-        let error = Error::new(Kind::Indefinite, what).dof(self.dof).value(self.relative_pivot).limit(0.0);
-        (self.relative_pivot < -NEGATIVE_PIVOT).then_some(error)
+        Error::new(Kind::Indefinite, what).dof(self.dof).value(self.relative_pivot).limit(0.0)
     }
 }
 

@@ -35,6 +35,8 @@ impl GeneralizedInverse {
             fixing: Vec::new(),
             gap: None,
             softness: 1.0,
+            doubts: Vec::new(),
+            misfit: None,
             factor: Factor::Host(k),
         })
     }

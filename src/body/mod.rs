@@ -4,19 +4,23 @@
 mod alike;
 mod borrowed;
 mod boundary;
+mod digits;
 mod factor;
 mod fixing;
 mod generalized_inverse;
 mod given;
+mod hints;
 mod host;
 mod host_probe;
 mod in_order;
+mod last;
 mod null_space;
 mod overflow;
 mod probe;
 mod random;
 mod rigid_modes;
 mod search;
+mod spectrum;
 mod stiffness;
 mod symbolic;
 mod values;
@@ -26,11 +30,14 @@ pub use alike::{
 };
 pub use borrowed::{from_borrowed, Columns};
 pub use boundary::{diagonal, dirichlet, dirichlet_bytes, lumped};
+pub use digits::Digits;
 pub use generalized_inverse::{GeneralizedInverse, Plan};
 pub use given::Stiffness;
+pub use hints::Misfit;
 pub use host::{HostFunctions, HostMultiple, HostOperator, HostProduct, TOGETHER};
 pub use null_space::{Modes, NullSpaceInput};
 pub use rigid_modes::Coordinates;
+pub use spectrum::Doubt;
 pub use stiffness::{
     check_diagonal, check_finite, from_dense, from_sparse, from_split, SparseInput, Storage,
 };

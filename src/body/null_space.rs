@@ -5,6 +5,7 @@
 
 use crate::body::overflow::refuse_overflow;
 use crate::error::{Error, Kind, Result};
+use crate::linalg::memory::{reserved, zeros};
 use crate::linalg::spd::right_singular;
 use crate::linalg::vector::{norm, norm_max, ratio, weighted_norm};
 use crate::linalg::{Matrix, Multiple};
@@ -28,7 +29,7 @@ pub struct NullSpaceInput {
 /// Columns that keep less of their length than this after orthogonalisation are dependent.
 const DEPENDENT: f64 = 1e-10;
 /// A candidate motion belongs to the null space when `|D^-1 K v|` is this small against `|v|`.
-const CANDIDATE: f64 = 1e-11;
+pub(super) const CANDIDATE: f64 = 1e-11;
 /// `|A z|` of a unit vector z that is zero but for rounding, also where its terms are no more than that: z of dofs
 /// without stiffness.
 pub(super) const ROUNDING: f64 = 64.0 * f64::EPSILON;
@@ -87,74 +88,151 @@ pub fn verified<K: Products>(
     }
 }
 
-/// `|A z| <= tolerance | |A| |z| |`, or rounding, for an orthonormal basis z of the span of `D^1/2 R`.
+/// One part of all dofs.
 fn exact<K: Products>(k: &K, root: &[f64], vectors: &Matrix, tolerance: f64) -> Result<Verified> {
-    let mut basis = vectors.clone();
-    for j in 0..basis.cols {
-        basis.col_mut(j).iter_mut().zip(root).for_each(|(v, d)| *v *= d);
-    }
-    let mut basis = basis.orthonormalised(DEPENDENT);
-    if basis.cols < vectors.cols {
-        let what = format!("the {} vectors span {} dimensions only", vectors.cols, basis.cols);
-        return Err(Error::new(Kind::NullSpace, what).value(basis.cols as f64).limit(vectors.cols as f64));
-    }
-    for j in 0..basis.cols {
-        basis.col_mut(j).iter_mut().zip(root).for_each(|(v, d)| *v /= d);
+    let dofs: Vec<usize> = (0..k.order()).collect();
+    verified_by_parts(k, root, vectors, &[Part { dofs: &dofs, count: vectors.cols, tolerance }])
+}
+
+/// Dofs that share no stiffness with the others.
+pub struct Part<'a> {
+    pub dofs: &'a [usize],
+    /// Null vectors of the part, in the first columns.
+    pub count: usize,
+    pub tolerance: f64,
+}
+
+/// `|A z| <= tolerance | |A| |z| |`, or rounding, for an orthonormal basis z of the span of `D^1/2 R`, part by part: column
+/// j of `vectors` has the null vectors j of all parts. The cost grows with the number of parts, not with its square.
+pub fn verified_by_parts<K: Products>(
+    k: &K,
+    root: &[f64],
+    vectors: &Matrix,
+    parts: &[Part<'_>],
+) -> Result<Verified> {
+    let mut basis = Matrix::zeros(vectors.rows, vectors.cols)?;
+    for &Part { dofs, count, .. } in parts {
+        let mut own = Matrix::zeros(dofs.len(), count)?;
+        for j in 0..count {
+            own.col_mut(j).iter_mut().zip(dofs).for_each(|(v, &i)| *v = root[i] * vectors.get(i, j));
+        }
+        let own = own.orthonormalised(DEPENDENT);
+        if own.cols < count {
+            let what = format!("the {count} vectors span {} dimensions only", own.cols);
+            return Err(Error::new(Kind::NullSpace, what).value(own.cols as f64).limit(count as f64));
+        }
+        for j in 0..count {
+            own.col(j).iter().zip(dofs).for_each(|(v, &i)| basis.set(i, j, v / root[i]));
+        }
     }
     let (image, terms) = k.mul_columns(&basis)?;
     let mut error = ROUNDING;
     let weight = |i: usize| 1.0 / k.metric(i, 1.0);
-    for j in 0..basis.cols {
-        let left = weighted_norm(image.col(j), weight);
-        let found = ratio(left, weighted_norm(terms.col(j), weight));
-        if found.is_nan() || found > tolerance && left > ROUNDING {
-            let what = format!("not a null space: |K R| = {found:.1e} {} exceeds {tolerance:.1e}", K::TERMS);
-            return Err(Error::new(Kind::NullSpace, what)
-                .dof(largest(image.col(j), weight))
-                .value(found)
-                .limit(tolerance));
+    for &Part { dofs, count, tolerance } in parts {
+        for j in 0..count {
+            let part = |of: &Matrix| dofs.iter().map(|&i| of.get(i, j)).collect::<Vec<f64>>();
+            let image = part(&image);
+            let left = weighted_norm(&image, |at| weight(dofs[at]));
+            let found = ratio(left, weighted_norm(&part(&terms), |at| weight(dofs[at])));
+            if found.is_nan() || found > tolerance && left > ROUNDING {
+                let what =
+                    format!("not a null space: |K R| = {found:.1e} {} exceeds {tolerance:.1e}", K::TERMS);
+                return Err(Error::new(Kind::NullSpace, what)
+                    .dof(dofs[largest(&image, |at| weight(dofs[at]))])
+                    .value(found)
+                    .limit(tolerance));
+            }
+            // what A resists of z is no null vector: single dofs have more of it than the mean
+            error = error.max(PEAK * found.min(left));
         }
-        // what A resists of z is no null vector: single dofs have more of it than the mean
-        error = error.max(PEAK * found.min(left));
     }
     Ok(Verified { basis, error })
 }
 
-/// The part of the span of the candidates that `D^-1 K` maps to zero: from the singular values of
-/// `D^-1 K Q`, Q an orthonormal basis of the span.
+/// One part of all dofs.
 fn kernel_within<K: Products>(k: &K, candidates: &Matrix) -> Result<Matrix> {
-    let span = candidates.clone().orthonormalised(DEPENDENT);
-    let n = k.order();
-    let (mut image, _) = k.mul_columns(&span)?;
-    for j in 0..span.cols {
-        image.col_mut(j).iter_mut().enumerate().for_each(|(i, v)| *v /= k.metric(i, 1.0));
-    }
-    let mut kernel = Matrix::zeros(n, 0)?;
-    if span.cols == 0 || n < span.cols {
-        return Ok(kernel);
-    }
-    refuse_overflow(&image.data, |at| at % n)?;
-    let (values, vectors) = right_singular(&image)?;
-    let (mut motion, mut terms) = (vec![0.0; n], vec![0.0; n]);
-    for (j, _) in values.iter().enumerate().filter(|(_, value)| **value <= CANDIDATE) {
-        motion.fill(0.0);
-        terms.fill(0.0);
-        span.mul_add(1.0, vectors.col(j), &mut motion);
-        for q in 0..span.cols {
-            let share = vectors.get(q, j).abs();
-            terms.iter_mut().zip(span.col(q)).for_each(|(t, v)| *t += share * v.abs());
+    let dofs: Vec<usize> = (0..k.order()).collect();
+    let found = kernel_by_parts(k, candidates, &[(&dofs, candidates.cols)])?;
+    Ok(Matrix { rows: k.order(), cols: found.counts[0], data: found.kernel.data })
+}
+
+/// What K does to candidates.
+pub struct Kernel {
+    /// Null vectors j of all parts in column j.
+    pub kernel: Matrix,
+    /// Of every part.
+    pub counts: Vec<usize>,
+    /// Dimension of the span of the candidates of all parts.
+    pub candidates: usize,
+    /// The least `|D^-1 K v|` of a unit vector v among those that are no null vectors.
+    pub next: f64,
+}
+
+/// The part of the span of the candidates that `D^-1 K` maps to zero, part by part: from the singular values of `D^-1 K Q`,
+/// Q an orthonormal basis of the span. `parts`: dofs and number of candidates, which are in the first columns.
+pub fn kernel_by_parts<K: Products>(
+    k: &K,
+    candidates: &Matrix,
+    parts: &[(&[usize], usize)],
+) -> Result<Kernel> {
+    let mut spans = reserved(parts.len(), "a null space")?;
+    let mut all = Matrix::zeros(candidates.rows, candidates.cols)?;
+    for &(dofs, count) in parts {
+        let mut own = Matrix::zeros(dofs.len(), count)?;
+        for j in 0..count {
+            own.col_mut(j).iter_mut().zip(dofs).for_each(|(v, &i)| *v = candidates.get(i, j));
         }
-        let floor = CANCELLED * norm_max(&motion);
-        for (v, t) in motion.iter_mut().zip(&terms) {
-            if v.abs() <= CANCELLED * t || v.abs() <= floor {
-                *v = 0.0;
+        let own = own.orthonormalised(DEPENDENT);
+        (0..own.cols).for_each(|j| own.col(j).iter().zip(dofs).for_each(|(v, &i)| all.set(i, j, *v)));
+        spans.push(own);
+    }
+    let (image, _) = k.mul_columns(&all)?;
+    all.data.fill(0.0);
+    let mut found = Kernel { kernel: all, counts: Vec::new(), candidates: 0, next: f64::INFINITY };
+    for (&(dofs, _), span) in parts.iter().zip(&spans) {
+        let mut resisted = Matrix::zeros(dofs.len(), span.cols)?;
+        for j in 0..span.cols {
+            let column = resisted.col_mut(j);
+            column.iter_mut().zip(dofs).for_each(|(v, &i)| *v = image.get(i, j) / k.metric(i, 1.0));
+        }
+        found.candidates += span.cols;
+        found.counts.push(0);
+        if span.cols == 0 || dofs.len() < span.cols {
+            continue;
+        }
+        refuse_overflow(&resisted.data, |at| dofs[at % dofs.len()])?;
+        let (values, vectors) = right_singular(&resisted)?;
+        for (j, value) in values.iter().enumerate() {
+            if *value > CANDIDATE {
+                found.next = found.next.min(*value);
+                continue;
             }
-        }
-        if norm(&motion) > 0.0 {
-            kernel.push_col(&motion);
+            let motion = combined(span, vectors.col(j))?;
+            let count = found.counts.last_mut().filter(|_| norm(&motion) > 0.0);
+            count.into_iter().for_each(|count| {
+                dofs.iter().zip(&motion).for_each(|(&i, v)| found.kernel.set(i, *count, *v));
+                *count += 1;
+            });
         }
     }
-    Ok(kernel)
+    Ok(found)
+}
+
+/// `Q x` with zeros where only rounding is left.
+fn combined(span: &Matrix, x: &[f64]) -> Result<Vec<f64>> {
+    let n = span.rows;
+    let (mut motion, mut terms) = (zeros(n, "a null space")?, zeros(n, "a null space")?);
+    span.mul_add(1.0, x, &mut motion);
+    for (q, share) in x.iter().enumerate() {
+        terms.iter_mut().zip(span.col(q)).for_each(|(t, v)| *t += share.abs() * v.abs());
+    }
+    let floor = CANCELLED * norm_max(&motion);
+    for (v, t) in motion.iter_mut().zip(&terms) {
+        if v.abs() <= CANCELLED * t || v.abs() <= floor {
+            *v = 0.0;
+        }
+    }
+    Ok(motion)
 }
 
 /// Position of the largest `w_i x_i^2`.

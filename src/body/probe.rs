@@ -1,13 +1,14 @@
 //! What a factor and a null space are worth, tried out after every factorisation.
 
+use crate::body::factor::Factor;
 use crate::body::generalized_inverse::GeneralizedInverse;
 use crate::body::null_space::{largest, ROUNDING as KNOWN};
 use crate::body::overflow::overflow;
 use crate::body::random::Random;
 use crate::error::{Error, Kind, Result};
 use crate::linalg::memory::zeros;
-use crate::linalg::vector::{norm_max, weighted_norm};
-use crate::linalg::Multiple;
+use crate::linalg::vector::weighted_norm;
+use crate::linalg::{Matrix, Multiple};
 
 /// K with the dofs held is singular when some v has `|A v|` below this against `| |A| |v| |`.
 pub(super) const SINGULAR: f64 = 1e-13;
@@ -25,21 +26,10 @@ impl GeneralizedInverse {
     /// The error of a null space that K does not map to zero but for rounding, as far as the factor enlarges it.
     pub(super) fn measured(mut self, k: &Multiple) -> Result<Self> {
         if self.error > KNOWN {
-            self.error = self.known_to(k)?;
+            let dofs: Vec<usize> = (0..k.order()).collect();
+            self.error = known_to(&self.factor, k, &self.null_space, &[(&dofs, self.null_space.cols)])?;
         }
         Ok(self)
-    }
-
-    /// `|K+ K R|`, zero but for errors of R: the factor enlarges what K makes of them as it has those of rounding.
-    pub(super) fn known_to(&self, k: &Multiple) -> Result<f64> {
-        let (image, _) = k.mul_columns(&self.null_space)?;
-        let mut turned = zeros(k.order(), "a null space")?;
-        let mut worst: f64 = KNOWN;
-        for j in 0..image.cols {
-            self.apply(image.col(j), &mut turned)?;
-            worst = worst.max(SAMPLE * norm_max(&turned) / norm_max(self.null_space.col(j)));
-        }
-        Ok(worst.min(MOST_ROUNDING))
     }
 
     /// A factorisation that ends without complaint proves nothing: solve for a known right-hand side b, and look for a
@@ -84,6 +74,26 @@ impl GeneralizedInverse {
         }
         Ok(found)
     }
+}
+
+/// `|K+ K R|`, zero but for errors of R: the factor enlarges what K makes of them as it has those of rounding. `parts`: dofs
+/// of each and its null vectors, in the first columns of R.
+pub(super) fn known_to(
+    factor: &Factor,
+    k: &Multiple,
+    r: &Matrix,
+    parts: &[(&[usize], usize)],
+) -> Result<f64> {
+    let (mut turned, _) = k.mul_columns(r)?;
+    (0..turned.cols).try_for_each(|j| factor.solve(turned.col_mut(j)))?;
+    let mut worst: f64 = KNOWN;
+    for &(dofs, count) in parts {
+        for j in 0..count {
+            let size = |of: &Matrix| dofs.iter().map(|&i| of.get(i, j).abs()).fold(0.0, f64::max);
+            worst = worst.max(SAMPLE * size(&turned) / size(r));
+        }
+    }
+    Ok(worst.min(MOST_ROUNDING))
 }
 
 pub(super) fn missing_mode(dof: usize, found: f64, given: usize) -> Error {

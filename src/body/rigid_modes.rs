@@ -2,7 +2,7 @@
 
 use crate::error::{Error, Result};
 use crate::linalg::graph::components;
-use crate::linalg::memory::{copied, reserved, room};
+use crate::linalg::memory::{copied, reserved, room, zeros};
 use crate::linalg::vector::{first_non_finite, norm};
 use crate::linalg::{Matrix, SpdSolver, Symmetric};
 
@@ -13,6 +13,15 @@ pub struct Coordinates {
     direction: Vec<i32>,
     /// Position, length; coordinates beyond the given dimension are 0.
     place: Vec<[f64; 3]>,
+}
+
+/// Rigid modes of the parts of a body.
+pub struct RigidModes {
+    /// Modes j of all parts in column j.
+    pub modes: Matrix,
+    /// Dofs of every part, and the number of its modes.
+    pub members: Vec<Vec<usize>>,
+    pub counts: Vec<usize>,
 }
 
 /// What may be left of a rigid motion that is taken apart.
@@ -61,40 +70,43 @@ impl Coordinates {
         self.direction == other.direction && bits(&self.place)
     }
 
-    /// The six rigid modes of every connected part that is no single spring at a wall, n x (up to 6 parts). Modes that
-    /// move nothing are left out.
-    pub fn rigid_modes(&self, stiffness: &Symmetric) -> Result<Matrix> {
+    /// The six rigid modes of every connected part that is no single spring at a wall, those that move nothing left out:
+    /// modes j of all parts in column j, n x (up to 6).
+    pub fn rigid_modes(&self, stiffness: &Symmetric) -> Result<RigidModes> {
         let _room = room(self.len() * PER_DOF, "the rigid modes of a body")?;
         let (part_of, parts) = components(stiffness);
         let mut members = vec![Vec::new(); parts];
         part_of.iter().enumerate().for_each(|(dof, &part)| members[part].push(dof));
-        self.motions(&members, |dof| stiffness.diagonal(dof) > 0.0)
+        self.motions(members, |dof| stiffness.diagonal(dof) > 0.0)
     }
 
     /// The same for a body whose parts are not known: it counts as one.
     pub fn rigid_modes_of_one(&self, stiff: impl Fn(usize) -> bool) -> Result<Matrix> {
         let _room = room(self.len() * PER_DOF, "the rigid modes of a body")?;
-        self.motions(&[(0..self.len()).collect()], stiff)
+        Ok(self.motions(vec![(0..self.len()).collect()], stiff)?.modes)
     }
 
     /// Those of all parts but single dofs that have a stiffness.
-    fn motions(&self, members: &[Vec<usize>], stiff: impl Fn(usize) -> bool) -> Result<Matrix> {
-        let mut modes = Matrix::zeros(self.len(), 0)?;
-        let floats = |dofs: &&Vec<usize>| dofs.len() > 1 || !stiff(dofs[0]);
-        let moving = members.iter().filter(floats).count();
-        modes.data = reserved(self.len() * 6 * moving, "the rigid modes of a body")?;
-        let mut column = vec![0.0; self.len()];
-        for dofs in members.iter().filter(floats) {
+    fn motions(&self, members: Vec<Vec<usize>>, stiff: impl Fn(usize) -> bool) -> Result<RigidModes> {
+        let (mut modes, mut counts) = (Matrix::zeros(self.len(), 0)?, vec![0; members.len()]);
+        modes.data = reserved(self.len() * 6, "the rigid modes of a body")?;
+        let floats = |dofs: &[usize]| dofs.len() > 1 || !stiff(dofs[0]);
+        let empty = zeros(self.len(), "the rigid modes of a body")?;
+        for (dofs, count) in members.iter().zip(&mut counts).filter(|(dofs, _)| floats(dofs)) {
             let (centre, size) = self.extent(dofs);
             for mode in 0..6 {
-                column.fill(0.0);
-                dofs.iter().for_each(|&i| column[i] = self.motion(i, mode, centre, size));
-                if column.iter().any(|v| *v != 0.0) {
-                    modes.push_col(&column);
+                let motion = |i: usize| self.motion(i, mode, centre, size);
+                if dofs.iter().all(|&i| motion(i) == 0.0) {
+                    continue;
                 }
+                if modes.cols == *count {
+                    modes.push_col(&empty);
+                }
+                dofs.iter().for_each(|&i| modes.set(i, *count, motion(i)));
+                *count += 1;
             }
         }
-        Ok(modes)
+        Ok(RigidModes { modes, members, counts })
     }
 
     /// The rigid motion of v, one entry per dof: velocity of the origin (length) and rotation about the axes, of
@@ -189,7 +201,7 @@ mod tests {
         }
         let xyz = [0.0, 0.0, 0.0, 0.0, 3.0, 4.0, 3.0, 4.0];
         let coordinates = Coordinates::new(2, &[1, 2, 1, 2], &xyz, 2).unwrap();
-        let modes = coordinates.rigid_modes(&Symmetric::new(ptr, col, val)).unwrap();
+        let modes = coordinates.rigid_modes(&Symmetric::new(ptr, col, val)).unwrap().modes;
         assert_eq!(modes.cols, 3);
         for j in 0..3 {
             let stretch: f64 = (0..4).map(|i| t[i] * modes.get(i, j)).sum();

@@ -7,30 +7,29 @@
 
 use std::sync::Arc;
 
+use crate::body::digits::Digits;
 use crate::body::factor::Factor;
 use crate::body::fixing::{fixing_dofs, given_dofs};
 use crate::body::generalized_inverse::GeneralizedInverse;
-use crate::body::null_space::{largest, verified, Modes, NullSpaceInput, Verified};
+use crate::body::hints::Misfit;
+use crate::body::last::{between_parts, spread, supported};
+use crate::body::null_space::{largest, verified_by_parts, Part, Verified};
 use crate::body::overflow::refuse_overflow;
-use crate::body::probe::SINGULAR;
+use crate::body::probe::{known_to, SINGULAR};
+use crate::body::spectrum::{cut, measured, to_measure, unclear, Doubt, Ritz, Verdict};
 use crate::body::symbolic::{Layout, Made, Symbolic};
 use crate::error::{Error, Kind, Result};
 use crate::linalg::graph::components;
 use crate::linalg::memory::{copied, reserved, room, PRODUCTS};
 use crate::linalg::spd::symmetric_eigen;
 use crate::linalg::trailing::Trailing;
-use crate::linalg::{Analysis, Breakdown, Cholesky, Matrix, Multiple, Symmetric};
+use crate::linalg::vector::ratio;
+use crate::linalg::{Analysis, Breakdown, Cholesky, Matrix, Multiple};
 
 /// Dofs eliminated last in each part, at first.
 const LAST: usize = 24;
 /// More than this in one part are not tried.
 const MOST: usize = 400;
-/// An eigenvalue of the scaled S below this against the largest may belong to the null space.
-const SOFT: f64 = 1e-11;
-/// Least ratio between the stiffest motion of the null space and the softest of the others.
-const GAP: f64 = 1e3;
-/// Eigenvalues below this against the largest are rounding.
-const ROUNDING: f64 = 1e-14;
 /// Bytes of labels, lists and vectors, per dof.
 const PER_DOF: usize = 256;
 
@@ -45,17 +44,31 @@ pub struct Search {
     between: Vec<usize>,
     /// Dofs wanted in t of each part.
     count: usize,
+    /// Of the entries of K, where they are fewer than those of double precision.
+    digits: Option<Digits>,
+    /// Coordinates that were tried before.
+    misfit: Option<Misfit>,
     /// What the analysis depends on besides the pattern of K.
     pub(super) layout: Arc<Layout>,
     pub(super) symbolic: Option<Arc<Symbolic>>,
 }
 
+/// The end of the elimination of one part, and the eigenvalues of `D_tt^-1/2 S D_tt^-1/2` with their vectors, m x m.
+struct End {
+    schur: Matrix,
+    values: Vec<f64>,
+    vectors: Matrix,
+}
+
 /// What one part moves like without stiffness.
 struct Soft {
     schur: Matrix,
-    /// m x r, the null vectors at t times D^1/2, orthonormal.
+    /// m x r, the null vectors at t times D^1/2.
     vectors: Matrix,
     gap: f64,
+    /// What rounding of the entries may have left of `v'K v / v'D v`, no unit.
+    rounding: f64,
+    doubt: Option<Doubt>,
 }
 
 /// An attempt ends with K+, or at a dof that t must have.
@@ -92,7 +105,25 @@ impl Search {
         }
         let left_out = copied(&between, "the connected parts of a body")?;
         let layout = Arc::new(Layout::Last { dofs: last.clone(), between: left_out });
-        Ok(Self { k, tolerance, fixing, last, members, between, count, layout, symbolic: None })
+        let digits = Digits::of(&k.matrix)?;
+        Ok(Self {
+            k,
+            tolerance,
+            fixing,
+            last,
+            members,
+            between,
+            count,
+            digits,
+            misfit: None,
+            layout,
+            symbolic: None,
+        })
+    }
+
+    /// Coordinates were given that do not fit.
+    pub(super) fn instead_of(self, misfit: Misfit) -> Self {
+        Self { misfit: Some(misfit), ..self }
     }
 
     pub fn analyse(&self) -> Result<Arc<Analysis>> {
@@ -101,7 +132,17 @@ impl Search {
     }
 
     /// Tries with more dofs t until none is missed.
-    pub fn execute(mut self) -> Result<Made> {
+    pub fn execute(self) -> Result<Made> {
+        let misfit = self.misfit;
+        let mut made = self.attempted().map_err(|mut error| {
+            misfit.iter().for_each(|misfit| error.what = format!("{misfit}; sought in K: {}", error.what));
+            error
+        })?;
+        made.inverse.misfit = misfit.filter(|misfit| made.inverse.null_space.cols > misfit.fit);
+        Ok(made)
+    }
+
+    fn attempted(mut self) -> Result<Made> {
         let (mut factorisations, mut further_analyses) = (0, 0);
         loop {
             let symbolic = match self.symbolic.take() {
@@ -138,22 +179,20 @@ impl Search {
         let supported = supported(&self.k, &self.last, &self.between)?;
         let factor = match analysis.factorize(&supported, 1.0)? {
             Ok(factor) => factor,
-            Err(breakdown) => return missed_or_indefinite(breakdown),
+            Err(breakdown) => return self.missed_or_indefinite(breakdown),
         };
-        let unsupported = |(dof, pivot): &(usize, f64)| *pivot < SINGULAR * supported.diagonal(*dof);
-        if let Some((dof, _)) = factor.pivots().find(unsupported) {
-            return Ok(Attempt::Missed(dof));
+        let relative = |(dof, pivot)| Breakdown { dof, relative_pivot: pivot / supported.diagonal(dof) };
+        if let Some(breakdown) = factor.pivots().map(relative).find(|pivot| pivot.relative_pivot < SINGULAR) {
+            return self.missed_or_indefinite(breakdown);
         }
         drop(supported);
-        let mut soft = reserved(self.last.len(), "the null space of a body")?;
-        for (last, members) in self.last.iter().zip(&self.members) {
-            let part = self.soft(&factor, last)?;
+        let soft = self.soft(&factor)?;
+        for ((last, members), part) in self.last.iter().zip(&self.members).zip(&soft) {
             if 2 * part.vectors.cols > last.len() && last.len() < members.len() {
                 return Ok(Attempt::Missed(last[0]));
             }
-            soft.push(part);
         }
-        let vectors = self.vectors(&factor, &soft)?;
+        let vectors = self.extended(&factor, soft.iter().map(|part| part.vectors.clone()))?;
         match self.inverse(factor, &soft, vectors) {
             Err(Error { kind: Kind::NullSpace, place, .. })
                 if place.dof.is_some_and(|dof| self.may_take(dof)) =>
@@ -169,8 +208,7 @@ impl Search {
         self.last.iter().all(|last| last.binary_search(&dof).is_err())
     }
 
-    /// The eigenvalues of `D_tt^-1/2 S D_tt^-1/2` of one part, cut where they leap.
-    fn soft(&self, factor: &Cholesky, last: &[usize]) -> Result<Soft> {
+    fn end(&self, factor: &Cholesky, last: &[usize]) -> Result<End> {
         let m = last.len();
         let mut schur = factor.trailing(last)?;
         let d = |i: usize| self.k.metric(last[i], 1.0);
@@ -180,31 +218,75 @@ impl Search {
             (0..m).for_each(|i| scaled.set(i, j, schur.get(i, j) / (d(i) * d(j)).sqrt()));
         }
         refuse_overflow(&scaled.data, |at| last[at % m])?;
-        let (values, mut vectors) = symmetric_eigen(&scaled)?;
-        let stiffest = values[m - 1];
-        let worst = largest(vectors.col(0), |_| 1.0);
-        let relative_pivot = values[0] / stiffest.abs().max(1.0);
-        if let Some(indefinite) = (Breakdown { dof: last[worst], relative_pivot }).refused() {
-            return Err(indefinite);
-        }
-        let Some((dimension, gap)) = cut(&values) else {
-            let what = format!(
-                "the null space cannot be told from soft motions: no gap of {GAP:.0e} below {SOFT:.0e} of the \
-                 largest stiffness; give it, or coordinates"
-            );
-            return Err(Error::new(Kind::NullSpace, what).dof(last[worst]).value(values[0] / stiffest));
-        };
-        vectors.data.truncate(m * dimension);
-        vectors.cols = dimension;
-        Ok(Soft { schur, vectors, gap })
+        let (values, vectors) = symmetric_eigen(&scaled)?;
+        Ok(End { schur, values, vectors })
     }
 
-    /// R: the null vectors of S at t, extended without forces at the other dofs, n x r.
-    fn vectors(&self, factor: &Cholesky, soft: &[Soft]) -> Result<Matrix> {
-        let mut ends = reserved(soft.len(), "a null space")?;
-        for (part, last) in soft.iter().zip(&self.last) {
-            let mut end = part.vectors.clone();
-            let root = |dof: usize| self.k.metric(dof, 1.0).sqrt();
+    /// The null space of every part at t: from the eigenvalues at t where they leave no question, else from the softest
+    /// motions, measured over the whole part.
+    fn soft(&self, factor: &Cholesky) -> Result<Vec<Soft>> {
+        const WHAT: &str = "the null space of a body";
+        let (mut ends, mut candidates) = (reserved(self.last.len(), WHAT)?, reserved(self.last.len(), WHAT)?);
+        for last in &self.last {
+            let end = self.end(factor, last)?;
+            candidates.push(self.candidates(&end, last)?);
+            ends.push(end);
+        }
+        let part = |(members, q): (_, &usize)| (Vec::as_slice(members), *q);
+        let parts: Vec<_> = self.members.iter().zip(&candidates).map(part).collect();
+        let first = ends.iter().zip(&candidates).map(|(end, q): (&End, _)| first_columns(&end.vectors, *q));
+        let ritz = measured(&self.k, self.digits, &parts, self.extended(factor, first)?)?;
+        let parts = ends.into_iter().zip(&self.last).zip(ritz);
+        parts.map(|((end, last), ritz)| self.decided(end, last, &ritz)).collect()
+    }
+
+    /// Number of the motions to be measured.
+    fn candidates(&self, end: &End, last: &[usize]) -> Result<usize> {
+        let (values, cut) = (&end.values, cut(&end.values));
+        if self.digits.is_some() || cut.is_none() {
+            return Ok(to_measure(values));
+        }
+        self.definite(values[0] / values[values.len() - 1].abs().max(1.0), end, last)?;
+        Ok(0)
+    }
+
+    /// An error where the softest motion of a part is resisted by so much less than nothing.
+    fn definite(&self, relative_pivot: f64, end: &End, last: &[usize]) -> Result<()> {
+        let dof = last[largest(end.vectors.col(0), |_| 1.0)];
+        (Breakdown { dof, relative_pivot }).refused().map_or(Ok(()), Err)
+    }
+
+    fn decided(&self, end: End, last: &[usize], ritz: &Ritz) -> Result<Soft> {
+        let End { schur, values, vectors } = end;
+        let soft = |vectors, gap, rounding, doubt| Ok(Soft { schur, vectors, gap, rounding, doubt });
+        let Some(softest) = ritz.values.first() else {
+            // nothing is soft, or the eigenvalues at t have told
+            let (dimension, gap) = cut(&values).unwrap_or((0, f64::INFINITY));
+            return soft(first_columns(&vectors, dimension), gap, 0.0, None);
+        };
+        let doubt = |motions, free| ritz.doubt(self.digits, motions, free);
+        let dof = last[largest(vectors.col(0), |_| 1.0)];
+        match ritz.judged(self.digits) {
+            Verdict::Free { dimension, gap } => {
+                let (measured, mut turned) =
+                    (first_columns(&vectors, ritz.values.len()), Matrix::zeros(last.len(), dimension)?);
+                (0..dimension).for_each(|j| measured.mul_add(1.0, ritz.turn.col(j), turned.col_mut(j)));
+                let rounding = ritz.noise[..dimension].iter().fold(0.0, |most: f64, v| most.max(*v));
+                soft(turned, gap, rounding, doubt(dimension, true))
+            }
+            Verdict::Held { doubtful, gap } => {
+                soft(first_columns(&vectors, 0), gap, 0.0, doubt(doubtful, false))
+            }
+            Verdict::Indefinite => Err(Breakdown { dof, relative_pivot: *softest }.indefinite()),
+            Verdict::Unclear => Err(unclear(self.digits).dof(dof).value(*softest)),
+        }
+    }
+
+    /// Motions at t times D^1/2, extended without forces at the other dofs: column c has motion c of every part.
+    fn extended(&self, factor: &Cholesky, motions: impl Iterator<Item = Matrix>) -> Result<Matrix> {
+        let mut ends = reserved(self.last.len(), "a null space")?;
+        let root = |dof: usize| self.k.metric(dof, 1.0).sqrt();
+        for (mut end, last) in motions.zip(&self.last) {
             for j in 0..end.cols {
                 end.col_mut(j).iter_mut().zip(last).for_each(|(v, &dof)| *v /= root(dof));
             }
@@ -214,10 +296,11 @@ impl Search {
         factor.extended(&parts)
     }
 
-    /// K+ from the same factor: r of the dofs t held, the others without their springs.
+    /// K+ from the same factor: r of the dofs t held, the others without their springs. `vectors`: the null vectors j of all
+    /// parts in column j.
     fn inverse(&self, factor: Cholesky, soft: &[Soft], vectors: Matrix) -> Result<GeneralizedInverse> {
-        let n = self.k.order();
-        let _room = room((8 * vectors.cols + 24) * n * size_of::<f64>() + PRODUCTS, "a null space")?;
+        let (n, r) = (self.k.order(), soft.iter().map(|part| part.vectors.cols).sum::<usize>());
+        let _room = room((2 * r + 8 * vectors.cols + 24) * n * size_of::<f64>() + PRODUCTS, "a null space")?;
         let root = self.k.roots()?;
         let fixing = self.fixing_of(soft, &vectors, &root)?;
         let parts: Vec<Trailing<'_>> = (self.last.iter().zip(soft).zip(&fixing))
@@ -227,28 +310,69 @@ impl Search {
             let what = "the stiffness matrix is singular with the fixing dofs of its null space held";
             Error::new(Kind::NullSpace, what).dof(dof)
         })?;
-        let gap = soft.iter().map(|part| part.gap).reduce(f64::min);
-        let found = NullSpaceInput { vectors, modes: Modes::Exact };
-        let Verified { basis: null_space, error } = verified(&self.k, &root, &found, self.tolerance)?;
+        let factor = Factor::Own(Arc::new(factor));
+        let vectors = self.resisted_evenly(&factor, vectors)?;
+        let part = |(dofs, part): (_, &Soft)| {
+            let tolerance = self.tolerance.max(part.rounding);
+            Part { dofs: Vec::as_slice(dofs), count: part.vectors.cols, tolerance }
+        };
+        let parts: Vec<Part<'_>> = self.members.iter().zip(soft).map(part).collect();
+        let Verified { basis, error } = verified_by_parts(&self.k, &root, &vectors, &parts)?;
+        let counts: Vec<_> = parts.iter().map(|part| (part.dofs, part.count)).collect();
         let mut inverse = GeneralizedInverse {
-            null_space,
+            null_space: self.one_column_each(&basis, soft)?,
             rounding: error,
             error,
             fixing: fixing.concat(),
-            gap,
+            gap: soft.iter().map(|part| part.gap).reduce(f64::min),
             softness: 1.0,
-            factor: Factor::Own(Arc::new(factor)),
+            misfit: None,
+            doubts: soft.iter().filter_map(|part| part.doubt).collect(),
+            factor,
         };
         inverse.softness = inverse.probe(&self.k)?;
-        inverse.rounding = inverse.known_to(&self.k)?;
+        inverse.rounding = known_to(&inverse.factor, &self.k, &basis, &counts)?;
         inverse.error = inverse.rounding;
         Ok(inverse)
+    }
+
+    /// Where rounding of the entries resists the null vectors r, all of it acts at the dofs t. What it is at the least lies
+    /// on all dofs like the forces of inertia: `r - K+ (K r - theta D r)`, `theta = r'K r / r'D r`.
+    fn resisted_evenly(&self, factor: &Factor, mut vectors: Matrix) -> Result<Matrix> {
+        if self.digits.is_none() {
+            return Ok(vectors);
+        }
+        let (mut image, _) = self.k.mul_columns(&vectors)?;
+        for c in 0..vectors.cols {
+            let (r, image) = (vectors.col_mut(c), image.col_mut(c));
+            for dofs in &self.members {
+                let work = |of: &dyn Fn(usize) -> f64| dofs.iter().map(|&i| r[i] * of(i)).sum::<f64>();
+                let theta = ratio(work(&|i| image[i]), work(&|i| self.k.metric(i, 1.0) * r[i]));
+                dofs.iter().for_each(|&i| image[i] -= theta * self.k.metric(i, 1.0) * r[i]);
+            }
+            factor.solve(image)?;
+            r.iter_mut().zip(image.iter()).for_each(|(r, x)| *r -= x);
+        }
+        Ok(vectors)
+    }
+
+    /// The null vectors of all parts, n x r, from those in common columns.
+    fn one_column_each(&self, vectors: &Matrix, soft: &[Soft]) -> Result<Matrix> {
+        let r = soft.iter().map(|part| part.vectors.cols).sum();
+        let (mut all, mut at) = (Matrix::zeros(self.k.order(), r)?, 0);
+        for (part, dofs) in soft.iter().zip(&self.members) {
+            for j in 0..part.vectors.cols {
+                dofs.iter().for_each(|&i| all.set(i, at, vectors.get(i, j)));
+                at += 1;
+            }
+        }
+        Ok(all)
     }
 
     /// The fixing dofs of every part.
     fn fixing_of(&self, soft: &[Soft], vectors: &Matrix, root: &[f64]) -> Result<Vec<Vec<usize>>> {
         if let Some(given) = &self.fixing {
-            let given = given_dofs(vectors, root, given)?;
+            let given = given_dofs(&self.one_column_each(vectors, soft)?, root, given)?;
             let among = |last: &Vec<usize>| given.iter().copied().filter(|dof| last.contains(dof)).collect();
             return Ok(self.last.iter().map(among).collect());
         }
@@ -259,109 +383,18 @@ impl Search {
         };
         soft.iter().zip(&self.last).map(chosen).collect()
     }
-}
 
-/// A pivot that is not positive: K is indefinite, or t does not resist a motion of the null space.
-fn missed_or_indefinite(breakdown: Breakdown) -> Result<Attempt> {
-    match breakdown.refused() {
-        Some(indefinite) => Err(indefinite),
-        None => Ok(Attempt::Missed(breakdown.dof)),
+    /// A pivot of `K + E D_tt E'` that is not positive: K is indefinite, or t does not resist a motion of the null space,
+    /// which it does where it has all dofs of the part.
+    fn missed_or_indefinite(&self, Breakdown { dof, relative_pivot }: Breakdown) -> Result<Attempt> {
+        let mut parts = self.members.iter().zip(&self.last);
+        let whole =
+            parts.any(|(members, last)| members.len() == last.len() && last.binary_search(&dof).is_ok());
+        let relative_pivot = if whole { 2.0 * relative_pivot - 1.0 } else { relative_pivot };
+        (Breakdown { dof, relative_pivot }).refused().map_or(Ok(Attempt::Missed(dof)), Err)
     }
 }
 
-/// Dimension of the null space and the ratio of the stiffness beyond it to that within, from ascending eigenvalues of a
-/// matrix of unit diagonal or a Schur complement of it; `None` where some are soft and none stands apart.
-fn cut(values: &[f64]) -> Option<(usize, f64)> {
-    let m = values.len();
-    let stiffest = values[m - 1];
-    if stiffest <= ROUNDING {
-        return Some((m, ROUNDING.recip()));
-    }
-    let relative = |k: usize| (values[k] / stiffest).max(ROUNDING);
-    if relative(0) >= SOFT {
-        return Some((0, relative(0) / ROUNDING));
-    }
-    let gaps = (1..m).filter(|&k| relative(k - 1) < SOFT).map(|k| (k, relative(k) / relative(k - 1)));
-    gaps.reduce(|best, gap| if gap.1 > best.1 { gap } else { best }).filter(|(_, gap)| *gap >= GAP)
-}
-
-/// One of the dofs from each of `count` stretches of equal length, at random with a fixed seed; all when there are no more.
-fn spread(dofs: &[usize], count: usize) -> Vec<usize> {
-    let (n, mut state) = (dofs.len(), 0x9e37_79b9_7f4a_7c15_u64);
-    if n <= count {
-        return dofs.to_vec();
-    }
-    (0..count)
-        .map(|k| {
-            state = state.wrapping_mul(0x5851_f42d_4c95_7f2d).wrapping_add(0x1405_7b7e_f767_814f);
-            let (begin, end) = (k * n / count, (k + 1) * n / count);
-            dofs[begin + (state >> 33) as usize % (end - begin)]
-        })
-        .collect()
-}
-
-/// Positions of the entries of K between different parts: all of them are 0.
-fn between_parts(k: &Symmetric, part_of: &[usize]) -> Result<Vec<usize>> {
-    let row =
-        |i: usize| (k.ptr[i]..k.ptr[i + 1]).filter(move |&at| part_of[k.col[at] as usize] != part_of[i]);
-    let mut found = reserved((0..k.order()).flat_map(row).count(), "the connected parts of a body")?;
-    found.extend((0..k.order()).flat_map(row));
-    Ok(found)
-}
-
-/// `K + E D_tt E'` without the entries between parts, all dofs t of one part coupled.
-fn supported(k: &Multiple, last: &[Vec<usize>], between: &[usize]) -> Result<Symmetric> {
-    const WHAT: &str = "a supported stiffness matrix";
-    let mut mates: Vec<&[usize]> = reserved(k.order(), WHAT)?;
-    mates.resize(k.order(), &[]);
-    last.iter().for_each(|last| last.iter().for_each(|&dof| mates[dof] = last));
-    let coupled: usize = last.iter().map(|last| last.len() * (last.len() + 1) / 2).sum();
-    let mut ptr = reserved(k.order() + 1, WHAT)?;
-    let mut col = reserved(k.matrix.col.len() + coupled, WHAT)?;
-    let mut val = reserved(k.matrix.col.len() + coupled, WHAT)?;
-    ptr.push(0);
-    let (mut row, mut left_out) = (Vec::new(), between.iter().copied().peekable());
-    for i in 0..k.order() {
-        row.clear();
-        let kept = k.matrix.ptr[i]..k.matrix.ptr[i + 1];
-        let kept = kept.filter(|at| left_out.next_if_eq(at).is_none());
-        row.extend(kept.map(|at| (k.matrix.col[at] as usize, k.by * k.matrix.val[at])));
-        let earlier = mates[i].iter().copied().take_while(|&j| j < i);
-        if !mates[i].is_empty() {
-            let found = row.len();
-            for j in earlier {
-                if row[..found].binary_search_by_key(&j, |entry| entry.0).is_err() {
-                    row.push((j, 0.0));
-                }
-            }
-            row.sort_unstable_by_key(|entry| entry.0);
-            row.last_mut().into_iter().for_each(|diagonal| diagonal.1 += k.metric(i, 1.0));
-        }
-        col.extend(row.iter().map(|entry| entry.0 as u32));
-        val.extend(row.iter().map(|entry| entry.1));
-        ptr.push(col.len());
-    }
-    Ok(Symmetric::new(ptr, col, val))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_null_space_ends_at_the_largest_leap_below_the_soft_limit() {
-        assert_eq!(cut(&[0.1, 0.5, 1.0]).map(|c| c.0), Some(0));
-        assert_eq!(cut(&[-1e-17, 1e-16, 1e-4, 1.0]).map(|c| c.0), Some(2));
-        assert_eq!(cut(&[1e-20, 1e-16, 1e-9, 1e-4, 1.0]).map(|c| c.0), Some(2));
-        assert_eq!(cut(&[0.0, 0.0]).map(|c| c.0), Some(2));
-        assert_eq!(cut(&[3e-13, 2e-12, 3e-11, 4e-10, 1.0]), None);
-    }
-
-    #[test]
-    fn the_dofs_chosen_are_spread_and_never_the_same_twice() {
-        let all: Vec<usize> = (0..1000).map(|i| 3 * i).collect();
-        let chosen = spread(&all, LAST);
-        assert!(chosen.len() == LAST && chosen.windows(2).all(|pair| pair[0] < pair[1]));
-        assert_eq!(spread(&all[..7], LAST), all[..7]);
-    }
+fn first_columns(matrix: &Matrix, count: usize) -> Matrix {
+    Matrix { rows: matrix.rows, cols: count, data: matrix.data[..matrix.rows * count].to_vec() }
 }

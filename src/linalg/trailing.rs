@@ -67,22 +67,19 @@ impl Cholesky {
         Ok(Ok(self))
     }
 
-    /// Displacements without forces outside the trailing dofs: `x_t` given (m x r), `x_i = -K_ii^-1 K_it x_t`. One block
-    /// of columns for every part, over all dofs.
+    /// Displacements without forces outside the trailing dofs: `x_t` given (m x r), `x_i = -K_ii^-1 K_it x_t`. Parts share
+    /// no entry of K: column c has the motions c of all of them.
     pub fn extended(&self, parts: &[(&[usize], &Matrix)]) -> Result<Matrix> {
         let order = &self.analysis.order;
-        let (n, columns) = (order.len(), parts.iter().map(|part| part.1.cols).sum());
+        let (n, columns) = (order.len(), parts.iter().map(|part| part.1.cols).max().unwrap_or(0));
         let mut y = Matrix::zeros(n, columns)?;
-        let mut first = 0;
         for (dofs, given) in parts {
             for (k, &dof) in dofs.iter().enumerate() {
                 let row = self.analysis.position[dof];
                 for (j, at) in (k..dofs.len()).filter_map(|j| Some((j, self.entry(dofs[j], dof)?))) {
-                    (0..given.cols)
-                        .for_each(|c| y.data[row + (first + c) * n] += self.values[at] * given.get(j, c));
+                    (0..given.cols).for_each(|c| y.data[row + c * n] += self.values[at] * given.get(j, c));
                 }
             }
-            first += given.cols;
         }
         let triangle = self.triangle();
         let mut workspace = triangle.workspace()?;

@@ -1,6 +1,6 @@
 //! What is known about one body.
 
-use crate::body::Modes;
+use crate::body::{Doubt, Modes};
 use crate::error::{Error, Kind, Result};
 use crate::linalg::graph;
 use crate::linalg::memory::room;
@@ -48,6 +48,8 @@ pub struct Factors {
     pub null_space: usize,
     /// Of a null space that was found: the softest other motion against the stiffest of it.
     pub gap: Option<f64>,
+    /// Motions that may be resisted by nothing but the rounding of the entries of K.
+    pub doubts: Vec<Doubt>,
     pub entries: usize,
     pub bytes: usize,
     /// The first other body with this factor.
@@ -76,6 +78,8 @@ impl Problem {
         let origin = match (&slot.body.null_space, &slot.body.coordinates) {
             (Some(given), _) if given.modes == Modes::Exact => Origin::Given,
             (Some(_), _) => Origin::Candidates,
+            // where coordinates did not fit
+            (None, _) if slot.inverse.as_ref().is_some_and(|of| of.kplus.misfit.is_some()) => Origin::Found,
             (None, Some(_)) => Origin::Coordinates,
             (None, None) => Origin::Found,
         };
@@ -101,6 +105,7 @@ impl Problem {
         Some(Factors {
             null_space: of.kplus.null_space.cols,
             gap: of.kplus.gap,
+            doubts: of.kplus.doubts.clone(),
             entries: of.kplus.entries(),
             bytes: of.bytes,
             shared_with: (0..self.bodies.len()).find(|&p| p != body && address(p) == address(body)),

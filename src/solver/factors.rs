@@ -52,6 +52,7 @@ impl Problem {
         self.phases.ended(Phase::Factorisation, begun);
         ended?;
         self.share(&twins);
+        self.tell_doubts(&pending, &mut watch.log)?;
         Ok(operators)
     }
 

@@ -30,6 +30,8 @@ pub struct Findings {
     pub redundant: Vec<(usize, f64)>,
     /// Bodies that no row touches.
     pub untouched: Vec<usize>,
+    /// Bodies with motions that may be resisted by nothing but the rounding of the entries of K: `doubts` of their facts.
+    pub doubtful: Vec<usize>,
     /// Number of contact rows.
     contact: usize,
 }
@@ -71,6 +73,7 @@ impl Findings {
             unheld: 0.0,
             redundant: ready.map(|ready| redundant(problem, ready)).unwrap_or_default(),
             untouched: ready.map(|ready| problem.untouched(ready)).unwrap_or_default(),
+            doubtful: problem.doubtful(),
             contact: problem.contact.len(),
         }
     }
@@ -132,6 +135,12 @@ impl Problem {
             _ => None,
         }
         .ok_or_else(|| Error::new(Kind::State, "the last solve has not found a load that nothing holds"))
+    }
+
+    fn doubtful(&self) -> Vec<usize> {
+        let doubts =
+            |p: &usize| self.bodies[*p].inverse.as_ref().is_some_and(|of| !of.kplus.doubts.is_empty());
+        (0..self.bodies.len()).filter(doubts).collect()
     }
 
     /// Bodies that no row with entries touches, or only such as never close.

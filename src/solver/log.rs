@@ -176,6 +176,22 @@ impl Problem {
         done
     }
 
+    /// What rounding of the entries leaves open about the null spaces of these bodies.
+    pub(super) fn tell_doubts(&self, bodies: &[usize], log: &mut Log) -> Result<()> {
+        for &p in bodies {
+            let number = p as i64 + self.settings.index_base;
+            let misfit = self.bodies[p].inverse.as_ref().and_then(|of| of.kplus.misfit);
+            if let Some(misfit) = misfit {
+                let text = || format!("warning: body {number}: {misfit}; its null space was sought in K");
+                log.say(LogLevel::Result, text)?;
+            }
+            for doubt in self.bodies[p].inverse.iter().flat_map(|of| &of.kplus.doubts) {
+                log.say(LogLevel::Result, || format!("warning: body {number}: {doubt}"))?;
+            }
+        }
+        Ok(())
+    }
+
     /// How the dual is going to be solved.
     pub(super) fn log_method(&self, log: &mut Log, started: &str) -> Result<()> {
         let Setup { islands, operators, .. } = self.ready()?;

@@ -44,7 +44,7 @@ mod travel;
 mod undetermined;
 mod watch;
 
-pub use crate::body::{Columns, HostFunctions, HostProduct, Modes, SparseInput, Storage};
+pub use crate::body::{Columns, Digits, Doubt, HostFunctions, HostProduct, Modes, SparseInput, Storage};
 pub use crate::certificate::{Certificate, Entry};
 pub use crate::constraints::{RowKind, RowsInput};
 pub use crate::error::Proof;

@@ -4,10 +4,7 @@ use std::ffi::CStr;
 use std::sync::Arc;
 use std::time::Instant;
 
-use crate::body::{
-    diagonal, dirichlet, dirichlet_bytes, lumped, Body, GeneralizedInverse, Modes, NullSpaceInput, Plan,
-    Stiffness,
-};
+use crate::body::{diagonal, dirichlet, dirichlet_bytes, lumped, Body, GeneralizedInverse, Plan, Stiffness};
 use crate::constraints::RowKind;
 use crate::dual::{self, constrained, Boundary, Draft, Dual, Preconditioner};
 use crate::error::{Error, Kind, Result};
@@ -321,7 +318,6 @@ pub(super) fn plan(body: &Body, tolerance: f64) -> Result<Plan> {
     let Some(coordinates) = &body.coordinates else {
         return GeneralizedInverse::search(k, tolerance, fixing);
     };
-    let vectors = coordinates.rigid_modes(&k.matrix)?;
-    let candidates = NullSpaceInput { vectors, modes: Modes::Candidates };
-    GeneralizedInverse::plan_with(k, &candidates, tolerance, fixing)
+    let rigid = coordinates.rigid_modes(&k.matrix)?;
+    GeneralizedInverse::plan_near(k, &rigid, tolerance, fixing)
 }

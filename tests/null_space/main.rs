@@ -1,6 +1,9 @@
 //! Null spaces found from the stiffness alone: bodies whose motions without stiffness are known by construction.
 
+mod answers;
 mod bodies;
+mod coordinates;
+mod digits;
 mod rows;
 
 use bodies::{bar, chain, cube, frame, held, membrane};

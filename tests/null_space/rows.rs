@@ -7,13 +7,17 @@ use feti_contact::solver::{Modes, Outcome, Problem, RowKind, RowsInput};
 use crate::registered;
 
 /// Contact rows of these entries, with one gap.
-fn add_rows(problem: &mut Problem, rows: &[Vec<(usize, f64)>], gap: f64) {
+pub fn add_rows(problem: &mut Problem, rows: &[Vec<(usize, f64)>], gap: f64) {
+    add(problem, RowKind::Inequality, rows, gap);
+}
+
+fn add(problem: &mut Problem, kind: RowKind, rows: &[Vec<(usize, f64)>], gap: f64) {
     let ptr: Vec<usize> = (0..=rows.len()).map(|i| rows[..i].iter().map(Vec::len).sum::<usize>()).collect();
     let dof: Vec<i64> = rows.iter().flatten().map(|entry| entry.0 as i64).collect();
     let val: Vec<f64> = rows.iter().flatten().map(|entry| entry.1).collect();
     let rhs = vec![gap; rows.len()];
     let rows = RowsInput { ptr: &ptr, body: None, dof: &dof, val: &val, rhs: Some(&rhs) };
-    problem.add_rows(RowKind::Inequality, rows).unwrap();
+    problem.add_rows(kind, rows).unwrap();
 }
 
 /// K (-1, 0, 0, 1)' = 0; rounding of the motion found was more than 64 eps.
@@ -58,4 +62,9 @@ fn rows_inside_a_body_leave_its_balance_to_its_load() {
         let error: feti_contact::error::Error = solved(given, 30.0).unwrap_err();
         assert_eq!(error.kind, Kind::LoadNotHeld, "{error}");
     }
+}
+
+/// Equality rows of these entries, with value 0.
+pub fn add_equalities(problem: &mut Problem, rows: &[Vec<(usize, f64)>]) {
+    add(problem, RowKind::Equality, rows, 0.0);
 }

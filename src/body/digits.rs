@@ -1,0 +1,237 @@
+//! How many digits the entries of K have. A host that prints K, or keeps it in single precision, hands over another K: the
+//! motions of its null space are resisted by what rounding has left. What that can be is estimated from K itself.
+
+use std::collections::HashMap;
+use std::fmt;
+
+use crate::error::Result;
+use crate::linalg::memory::{reserved, zeros};
+use crate::linalg::Symmetric;
+
+/// Rows that are looked at, and entries of each.
+const ROWS: usize = 64;
+const ENTRIES: usize = 16;
+/// Fewer digits are those of tidy numbers, ...
+const FEWEST: usize = 7;
+/// ... and a number of double precision that has no more than these is one of a hundred.
+const MOST: usize = 15;
+/// Part of the entries beside the diagonal that need the last digit or the last but one: 99 of 100 that were rounded, but
+/// entries of regular meshes and frames may be tidy. Springs to the ground lie on the diagonal alone.
+const USED: f64 = 0.4;
+/// Of the 24 bits of a number in single precision the last ones may be 0: all but 1 of 32 need so many.
+const BITS: u32 = 20;
+/// Rows whose entries sum to 0 in all these parts of a body are exact.
+const EXACT: f64 = 0.9;
+/// What a sum of the entries of a row may be but for the rounding of its terms.
+const SUM: f64 = 2.0 * f64::EPSILON;
+
+/// What the entries of a matrix were rounded to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Digits {
+    /// Significant decimal digits, 7 to 15.
+    Decimal(usize),
+    /// Single precision.
+    Single,
+}
+
+impl fmt::Display for Digits {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Decimal(digits) => write!(out, "{digits} digits"),
+            Self::Single => out.write_str("single precision"),
+        }
+    }
+}
+
+impl Digits {
+    /// `None` where the entries have those of double precision, or few because they are exact: numbers that do not need the
+    /// digits of the longest of them, or that sum to 0 in nearly every row, as those of springs between dofs do.
+    pub fn of(k: &Symmetric) -> Result<Option<Self>> {
+        let sampled = sampled(k);
+        let used = |uses: &dyn Fn(f64) -> bool| {
+            let beside = || sampled.iter().filter(|entry| entry.1);
+            let count = beside().filter(|entry| uses(entry.0)).count();
+            count > 0 && count as f64 >= USED * beside().count() as f64
+        };
+        let digits = decimal(&sampled);
+        let digits = digits.filter(|&digits| digits >= FEWEST && used(&|v| !has(v, digits - 2)));
+        let single = sampled.iter().all(|&(v, _)| f64::from(v as f32) == v) && used(&|v| bits(v) >= BITS);
+        // large numbers in single precision are whole ones, of few digits
+        let found = match digits {
+            Some(digits) if digits == FEWEST || !single => Some(Self::Decimal(digits)),
+            _ => single.then_some(Self::Single),
+        };
+        Ok(if found.is_some() && sums_are_exact(k)? { None } else { found })
+    }
+
+    /// The distance between numbers with these digits next to `v`, in units of v; the largest error is half of it.
+    fn unit(self, v: f64) -> f64 {
+        match self {
+            Self::Decimal(digits) => 10f64.powi(v.abs().log10().floor() as i32 + 1 - digits as i32),
+            Self::Single => 2f64.powi(v.abs().log2().floor() as i32 - 23),
+        }
+    }
+
+    /// Standard deviation of `v'E v` for each of `count` motions v, E the rounding of the entries in the rows of one part:
+    /// equal entries have equal errors, different ones errors that know nothing of each other. `v(i, c)` is motion c at
+    /// dof i.
+    pub fn noise(
+        self,
+        k: &Symmetric,
+        rows: &[usize],
+        count: usize,
+        v: impl Fn(usize, usize) -> f64,
+    ) -> Result<Vec<f64>> {
+        const WHAT: &str = "the rounding of a stiffness matrix";
+        let mut slots: HashMap<u64, usize> = HashMap::new();
+        let entries = rows.iter().map(|&i| k.ptr[i + 1] - k.ptr[i]).sum::<usize>();
+        let (mut units, mut sums) = (reserved(entries, WHAT)?, zeros(entries * count, WHAT)?);
+        for &i in rows {
+            for (j, value) in k.lower_row(i).filter(|entry| entry.1 != 0.0) {
+                let slot = *slots.entry(value.abs().to_bits()).or_insert(units.len());
+                if slot == units.len() {
+                    units.push(self.unit(value));
+                }
+                let times = if i == j { value.signum() } else { 2.0 * value.signum() };
+                (0..count).for_each(|c| sums[slot * count + c] += times * v(i, c) * v(j, c));
+            }
+        }
+        let square = |c: usize, slot: usize| (units[slot] * sums[slot * count + c]).powi(2) / 12.0;
+        Ok((0..count).map(|c| (0..units.len()).map(|slot| square(c, slot)).sum::<f64>().sqrt()).collect())
+    }
+
+    /// The most that rounding of the entries makes of `K v`, row by row.
+    pub fn most(self, k: &Symmetric, v: &[f64]) -> Result<Vec<f64>> {
+        let mut most = zeros(k.order(), "the rounding of a stiffness matrix")?;
+        for i in 0..k.order() {
+            for (j, value) in k.lower_row(i).filter(|entry| entry.1 != 0.0) {
+                let half = 0.5 * self.unit(value);
+                most[i] += half * v[j].abs();
+                if i != j {
+                    most[j] += half * v[i].abs();
+                }
+            }
+        }
+        Ok(most)
+    }
+}
+
+/// Entries other than 0 of rows spread over the matrix, from both ends of each, and whether they lie beside the diagonal.
+fn sampled(k: &Symmetric) -> Vec<(f64, bool)> {
+    let n = k.order();
+    let rows = (0..ROWS.min(n)).map(|r| if n <= ROWS { r } else { (2 * r + 1) * n / (2 * ROWS) });
+    let entries = rows.flat_map(|i| {
+        let (begin, end) = (k.ptr[i], k.ptr[i + 1]);
+        let taken = (begin..end).filter(move |at| at - begin < ENTRIES / 2 || end - at <= ENTRIES / 2);
+        taken.map(move |at| (k.val[at], at + 1 < end))
+    });
+    entries.filter(|entry| entry.0 != 0.0).collect()
+}
+
+/// The digits that all numbers have; `None` where one has more than `MOST`.
+fn decimal(numbers: &[(f64, bool)]) -> Option<usize> {
+    numbers.iter().try_fold(1, |digits, &(v, _)| (digits..=MOST).find(|&digits| has(v, digits)))
+}
+
+/// Whether `v` printed with so many significant digits and read again is `v`.
+fn has(v: f64, digits: usize) -> bool {
+    format!("{v:.*e}", digits.saturating_sub(1)).parse() == Ok(v)
+}
+
+/// Bits from the first to the last that is 1, of a normal number.
+fn bits(v: f64) -> u32 {
+    let mantissa = v.to_bits() & ((1 << 52) - 1);
+    53 - mantissa.trailing_zeros().min(52)
+}
+
+/// Whether `K (1, .., 1)' = 0` in nearly all rows, and above 0 in the others, springs to the ground. Rounding leaves sums of
+/// both signs.
+fn sums_are_exact(k: &Symmetric) -> Result<bool> {
+    const WHAT: &str = "the sums of the rows of a stiffness matrix";
+    let (mut ones, mut sums, mut terms) =
+        (zeros(k.order(), WHAT)?, zeros(k.order(), WHAT)?, zeros(k.order(), WHAT)?);
+    ones.fill(1.0);
+    k.mul_with_terms(&ones, &mut sums, &mut terms);
+    let left = |(sum, terms): &(&f64, &f64)| sum.abs() > SUM * **terms;
+    let others = || sums.iter().zip(&terms).filter(left);
+    let few = (others().count() as f64) < (1.0 - EXACT) * k.order() as f64;
+    Ok(few && others().all(|(sum, _)| *sum > 0.0))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A chain of springs between n dofs, `ground` at the first.
+    fn chain(n: usize, spring: impl Fn(usize) -> f64, ground: f64) -> Symmetric {
+        let (mut ptr, mut col, mut val) = (vec![0], Vec::new(), Vec::new());
+        for i in 0..n {
+            let [before, after] =
+                [if i > 0 { spring(i - 1) } else { ground }, if i + 1 < n { spring(i) } else { 0.0 }];
+            if i > 0 {
+                col.push(i as u32 - 1);
+                val.push(-before);
+            }
+            col.push(i as u32);
+            val.push(before + after);
+            ptr.push(col.len());
+        }
+        Symmetric::new(ptr, col, val)
+    }
+
+    fn rounded(mut k: Symmetric, to: impl Fn(f64) -> f64) -> Symmetric {
+        k.val = k.val.iter().map(|v| to(*v)).collect::<Vec<f64>>().into();
+        k
+    }
+
+    fn printed(v: f64, digits: usize) -> f64 {
+        format!("{v:.*e}", digits - 1).parse().unwrap()
+    }
+
+    #[test]
+    fn the_digits_of_entries_that_were_printed_or_kept_in_single_precision_are_found() {
+        let any = |i: usize| 1.0 + (i as f64).sin().abs();
+        assert_eq!(Digits::of(&chain(100, any, 0.0)).unwrap(), None);
+        for digits in 7..=15 {
+            let k = rounded(chain(100, any, 0.0), |v| printed(v, digits));
+            assert_eq!(Digits::of(&k).unwrap(), Some(Digits::Decimal(digits)));
+        }
+        let k = rounded(chain(100, any, 0.0), |v| f64::from(v as f32));
+        assert_eq!(Digits::of(&k).unwrap(), Some(Digits::Single));
+    }
+
+    #[test]
+    fn entries_that_are_exact_with_few_digits_are_not_taken_for_rounded_ones() {
+        let of = |k: Symmetric| Digits::of(&k).unwrap();
+        assert_eq!(of(chain(100, |_| 1.0, 1e-8)), None);
+        // every dof on a spring of its own: half of the entries need nine digits
+        let mut springs = chain(100, |_| 1.0, 0.0);
+        (0..100).for_each(|i| springs.val[2 * i] += 1e-8);
+        assert_eq!(of(springs), None);
+        // springs of eight digits each, a soft one at the end
+        assert_eq!(of(chain(100, |i| 1e7 + (7_654_321 * i % 89_999_999) as f64, 1.0)), None);
+        assert_eq!(of(chain(100, |i| (0.1 + 0.01 * i as f64) as f32 as f64, 0.0)), None);
+    }
+
+    /// Of many matrices rounded in the same way `v'E v` has the deviation foretold.
+    #[test]
+    fn the_noise_foretold_is_that_of_rounding() {
+        let digits = Digits::Decimal(8);
+        let (mut worst, mut sum, mut count) = (0.0f64, 0.0, 0);
+        for turn in 0..200 {
+            let k = chain(50, |i| 1.0 + 7.0 * (3.0 * (i + 100 * turn) as f64).sin().abs(), 0.0);
+            let near = rounded(k.clone(), |v| printed(v, 8));
+            let rows: Vec<usize> = (0..50).collect();
+            let expected = digits.noise(&near, &rows, 1, |_, _| 1.0).unwrap()[0];
+            let ones = vec![1.0; 50];
+            let mut image = vec![0.0; 50];
+            near.mul(&ones, &mut image);
+            let found = image.iter().sum::<f64>() / expected;
+            worst = worst.max(found.abs());
+            sum += found * found;
+            count += 1;
+        }
+        let deviation = (sum / f64::from(count)).sqrt();
+        assert!((0.8..1.2).contains(&deviation) && worst < 4.5, "{deviation} {worst}");
+    }
+}

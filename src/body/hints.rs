@@ -1,0 +1,148 @@
+//! Coordinates are hints: where all their rigid motions fit K, the null space is known before the factorisation. Where K
+//! resists some of them and yet is singular without these (places of another state, a body of revolution), it is sought in K.
+
+use std::fmt;
+
+use crate::body::digits::Digits;
+use crate::body::fixing::{fixing_dofs, given_dofs};
+use crate::body::generalized_inverse::{GeneralizedInverse, Known, Plan};
+use crate::body::null_space::{
+    kernel_by_parts, verified_by_parts, Kernel, Part, Verified, CANDIDATE, ROUNDING,
+};
+use crate::body::rigid_modes::RigidModes;
+use crate::body::search::Search;
+use crate::body::spectrum::Doubt;
+use crate::body::symbolic::Made;
+use crate::error::{Error, Kind, Result};
+use crate::linalg::memory::{room, PRODUCTS};
+use crate::linalg::{Matrix, Multiple};
+
+/// Where rigid motions are mixed, their terms may cancel to this part of them.
+const MIXED: f64 = 16.0;
+
+/// Rigid motions that do not all fit K.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Misfit {
+    pub fit: usize,
+    pub of: usize,
+    /// The least `|D^-1 K v|` of a unit vector v among the others.
+    pub next: f64,
+}
+
+impl fmt::Display for Misfit {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { fit, of, next } = self;
+        write!(out, "{fit} of {of} rigid motions of these coordinates fit K, the next leaves |K R| = {next:.1e} |D||R|")
+    }
+}
+
+/// What to do where K turns out to have more null vectors than rigid motions that fit.
+pub(super) struct Retry {
+    misfit: Misfit,
+    tolerance: f64,
+    fixing: Option<Vec<usize>>,
+}
+
+impl GeneralizedInverse {
+    /// Null space and fixing dofs of `k` from the rigid motions of coordinates, as far as they fit.
+    pub fn plan_near(
+        k: Multiple,
+        rigid: &RigidModes,
+        tolerance: f64,
+        fixing: Option<&[usize]>,
+    ) -> Result<Plan> {
+        let n = k.order();
+        let _room = room(64 * n * size_of::<f64>() + PRODUCTS, "the null space of a body")?;
+        let parts: Vec<_> =
+            rigid.members.iter().map(Vec::as_slice).zip(rigid.counts.iter().copied()).collect();
+        let Kernel { kernel, counts, candidates, next } = kernel_by_parts(&k, &rigid.modes, &parts)?;
+        let fit = counts.iter().sum();
+        if fit == candidates {
+            return Self::known(k, &kernel, (rigid, &counts), (tolerance, None), fixing);
+        }
+        let misfit = Misfit { fit, of: candidates, next };
+        if let Some(digits) = Digits::of(&k.matrix)? {
+            if let Some(doubt) = explained(&k, digits, rigid)? {
+                let told = Some(doubt).filter(|doubt| doubt.resisted > CANDIDATE);
+                let tolerance = tolerance.max(MIXED * doubt.resisted);
+                let counts = &rigid.counts;
+                return Self::known(k, &rigid.modes, (rigid, counts), (tolerance, told), fixing);
+            }
+            return Ok(Plan::Search(Search::new(k, tolerance, fixing)?.instead_of(misfit)));
+        }
+        let given = fixing.map(<[usize]>::to_vec);
+        let planned = Self::known(k.clone(), &kernel, (rigid, &counts), (tolerance, None), fixing);
+        match planned {
+            Ok(Plan::Known(known)) => {
+                Ok(Plan::Known(Known { retry: Some(Retry { misfit, tolerance, fixing: given }), ..known }))
+            }
+            Err(Error { kind: Kind::NullSpace, .. }) => {
+                Ok(Plan::Search(Search::new(k, tolerance, fixing)?.instead_of(misfit)))
+            }
+            other => other,
+        }
+    }
+
+    /// The plan for vectors j of all parts in column j, so many of each part.
+    fn known(
+        k: Multiple,
+        vectors: &Matrix,
+        (rigid, counts): (&RigidModes, &[usize]),
+        (tolerance, doubt): (f64, Option<Doubt>),
+        fixing: Option<&[usize]>,
+    ) -> Result<Plan> {
+        let root = k.roots()?;
+        let part = |(dofs, &count): (_, &usize)| Part { dofs: Vec::as_slice(dofs), count, tolerance };
+        let parts: Vec<Part<'_>> = rigid.members.iter().zip(counts).map(part).collect();
+        let Verified { basis, error } = verified_by_parts(&k, &root, vectors, &parts)?;
+        let (mut null_space, mut chosen, mut at) =
+            (Matrix::zeros(k.order(), counts.iter().sum())?, Vec::new(), 0);
+        for Part { dofs, count, .. } in parts {
+            let (mut own, first) = (Matrix::zeros(dofs.len(), count)?, at);
+            for j in 0..count {
+                own.col_mut(j).iter_mut().zip(dofs).for_each(|(v, &i)| *v = basis.get(i, j));
+                own.col(j).iter().zip(dofs).for_each(|(v, &i)| null_space.set(i, first + j, *v));
+                at += 1;
+            }
+            if fixing.is_none() {
+                let roots: Vec<f64> = dofs.iter().map(|&i| root[i]).collect();
+                chosen.extend(fixing_dofs(&own, &roots)?.into_iter().map(|own| dofs[own]));
+            }
+        }
+        let given = fixing.map(|given| given_dofs(&null_space, &root, given)).transpose()?;
+        let (held, given) = (given.is_some(), given.unwrap_or(chosen));
+        Ok(Plan::Known(Known { doubt, ..Known::of(k, null_space, error, given, held) }))
+    }
+}
+
+/// Whether K resists every rigid motion by no more than rounding of its entries may have left, at each dof.
+fn explained(k: &Multiple, digits: Digits, rigid: &RigidModes) -> Result<Option<Doubt>> {
+    let (image, terms) = k.mul_columns(&rigid.modes)?;
+    let (mut resisted, mut rounding): (f64, f64) = (0.0, 0.0);
+    for j in 0..rigid.modes.cols {
+        let most = digits.most(&k.matrix, rigid.modes.col(j))?;
+        let (image, terms) = (image.col(j), terms.col(j));
+        let left = |i: usize| image[i].abs() - ROUNDING * terms[i];
+        if (0..k.order()).any(|i| left(i) > k.by * most[i]) {
+            return Ok(None);
+        }
+        for i in (0..k.order()).filter(|&i| terms[i] > 0.0) {
+            resisted = resisted.max(image[i].abs() / terms[i]);
+            rounding = rounding.max(k.by * most[i] / terms[i]);
+        }
+    }
+    Ok(Some(Doubt { digits, motions: rigid.counts.iter().sum(), resisted, rounding, free: true }))
+}
+
+impl Retry {
+    /// The null space sought in K, after `error`.
+    pub(super) fn execute(self, k: Multiple, error: Error) -> Result<Made> {
+        if !matches!(error.kind, Kind::NullSpace | Kind::Indefinite | Kind::Internal) {
+            return Err(error);
+        }
+        let mut made =
+            Search::new(k, self.tolerance, self.fixing.as_deref())?.instead_of(self.misfit).execute()?;
+        made.factorisations += 1;
+        Ok(made)
+    }
+}

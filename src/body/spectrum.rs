@@ -1,0 +1,278 @@
+//! Which of the softest motions of a part are its null space. Seen from the few dofs t of the search a motion that K resists
+//! by the rounding of its entries looks stiffer by (dofs of the part) / (dofs t); what tells it from a support is
+//! `theta = v'K v / v'D v` over the whole part, against what rounding makes of it.
+
+use std::fmt;
+
+use crate::body::digits::Digits;
+use crate::body::null_space::ROUNDING as KNOWN;
+use crate::error::{Error, Kind, Result};
+use crate::linalg::memory::reserved;
+use crate::linalg::spd::symmetric_eigen;
+use crate::linalg::vector::dot;
+use crate::linalg::{Matrix, Multiple};
+
+/// An eigenvalue of the scaled S below this against the largest may belong to the null space.
+const SOFT: f64 = 1e-11;
+/// Motions softer than this, and the next one, are measured over the whole part where they must be.
+const MEASURED: f64 = 1e-3;
+/// Least ratio between the stiffest motion of the null space and the softest of the others.
+pub const GAP: f64 = 1e3;
+/// Eigenvalues below this against the largest are rounding.
+const ROUNDING: f64 = 1e-14;
+/// Rounding is less than so many standard deviations.
+const DEVIATIONS: f64 = 5.0;
+/// A support is known where rounding of the entries is less than this part of it.
+const UNKNOWN: f64 = 1e-3;
+/// Rounding of so much of the softest other motion changes forces no more than the certificate lets them be wrong.
+const TRIFLE: f64 = 1e-6;
+/// theta below minus this is no rounding of products, whatever digits the entries have.
+const NEGATIVE: f64 = 1e-10;
+
+/// Motions that K resists by no more than the rounding of its entries may have left.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Doubt {
+    pub digits: Digits,
+    pub motions: usize,
+    /// Largest v'K v / v'D v of them, ...
+    pub resisted: f64,
+    /// ... and what rounding of the entries may make of it.
+    pub rounding: f64,
+    /// They are taken as free; as supports where no gap tells them from the others.
+    pub free: bool,
+}
+
+impl fmt::Display for Doubt {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { digits, motions, resisted, rounding, free } = self;
+        write!(out, "the entries of K have {digits}: ")?;
+        if *free {
+            write!(
+                out,
+                "{motions} motions are taken as free that K resists by {resisted:.1e} of its stiffness: rounding \
+                 explains up to {rounding:.1e}"
+            )
+        } else {
+            write!(
+                out,
+                "{motions} motions that K resists only by {resisted:.1e} of its stiffness are taken as supports; \
+                 rounding may be {rounding:.1e} of it: give the null space, or more digits"
+            )
+        }
+    }
+}
+
+/// The softest motions of a part, Ritz vectors of K in the metric D, ascending.
+pub struct Ritz {
+    /// theta
+    pub values: Vec<f64>,
+    /// What rounding may have made of theta.
+    pub noise: Vec<f64>,
+    /// The same of the products alone.
+    products: Vec<f64>,
+    /// Ritz vectors by the motions that were measured, q x q.
+    pub turn: Matrix,
+}
+
+/// What the softest motions of a part are.
+#[derive(Debug, PartialEq)]
+pub enum Verdict {
+    /// The first `dimension`.
+    Free {
+        dimension: usize,
+        gap: f64,
+    },
+    /// None; rounding of the entries may be all that resists the first ones.
+    Held {
+        doubtful: usize,
+        gap: f64,
+    },
+    Indefinite,
+    Unclear,
+}
+
+/// Dimension of the null space and the ratio of the stiffness beyond it to that within, from ascending eigenvalues of a
+/// matrix of unit diagonal or a Schur complement of it; `None` where some are soft and none stands apart.
+pub fn cut(values: &[f64]) -> Option<(usize, f64)> {
+    let m = values.len();
+    let stiffest = values[m - 1];
+    if stiffest <= ROUNDING {
+        return Some((m, ROUNDING.recip()));
+    }
+    let relative = |k: usize| (values[k] / stiffest).max(ROUNDING);
+    if relative(0) >= SOFT {
+        return Some((0, relative(0) / ROUNDING));
+    }
+    let gaps = (1..m).filter(|&k| relative(k - 1) < SOFT).map(|k| (k, relative(k) / relative(k - 1)));
+    gaps.reduce(|best, gap| if gap.1 > best.1 { gap } else { best }).filter(|(_, gap)| *gap >= GAP)
+}
+
+/// How many of the softest motions at t are to be measured; none where none is soft.
+pub fn to_measure(values: &[f64]) -> usize {
+    let stiffest = values[values.len() - 1];
+    match values.partition_point(|value| *value < MEASURED * stiffest) {
+        0 => 0,
+        soft => (soft + 1).min(values.len()),
+    }
+}
+
+/// The motions of some parts, in the columns of `x` from the first on, measured. `parts`: dofs and number of motions of
+/// each; no two share an entry of K.
+pub fn measured(
+    k: &Multiple,
+    digits: Option<Digits>,
+    parts: &[(&[usize], usize)],
+    mut x: Matrix,
+) -> Result<Vec<Ritz>> {
+    let (image, _) = k.mul_columns(&x)?;
+    let mut turns = reserved(parts.len(), "the softest motions of a body")?;
+    for &(dofs, q) in parts {
+        let metric =
+            |a: usize, b: usize| dofs.iter().map(|&i| x.get(i, a) * k.metric(i, 1.0) * x.get(i, b)).sum();
+        let stiff = |a: usize, b: usize| dofs.iter().map(|&i| x.get(i, a) * image.get(i, b)).sum();
+        let turn = turned(&filled(q, metric)?, &filled(q, stiff)?)?;
+        let mut row = vec![0.0; q];
+        for &i in dofs {
+            (0..q).for_each(|b| row[b] = (0..q).map(|a| x.get(i, a) * turn.get(a, b)).sum());
+            (0..q).for_each(|b| x.set(i, b, row[b]));
+        }
+        turns.push(turn);
+    }
+    let (image, terms) = k.mul_columns(&x)?;
+    let mut all = reserved(parts.len(), "the softest motions of a body")?;
+    for (&(dofs, q), turn) in parts.iter().zip(turns) {
+        let work = |of: &Matrix, c: usize, size: fn(f64) -> f64| {
+            dofs.iter().map(|&i| size(x.get(i, c)) * of.get(i, c)).sum::<f64>()
+        };
+        let values = (0..q).map(|c| work(&image, c, |v| v)).collect();
+        let products: Vec<f64> = (0..q).map(|c| KNOWN * work(&terms, c, f64::abs)).collect();
+        let mut noise = products.clone();
+        if let Some(digits) = digits {
+            let entries = digits.noise(&k.matrix, dofs, q, |i, c| x.get(i, c))?;
+            noise.iter_mut().zip(entries).for_each(|(noise, e)| *noise += DEVIATIONS * k.by * e);
+        }
+        all.push(Ritz { values, noise, products, turn });
+    }
+    Ok(all)
+}
+
+fn filled(q: usize, entry: impl Fn(usize, usize) -> f64) -> Result<Matrix> {
+    let mut matrix = Matrix::zeros(q, q)?;
+    for a in 0..q {
+        for b in 0..=a {
+            let value = 0.5 * (entry(a, b) + entry(b, a));
+            matrix.set(a, b, value);
+            matrix.set(b, a, value);
+        }
+    }
+    Ok(matrix)
+}
+
+/// T with `T'M T = I` and `T'A T` diagonal, ascending.
+fn turned(m: &Matrix, a: &Matrix) -> Result<Matrix> {
+    let q = m.rows;
+    if q == 0 {
+        return Ok(Matrix::default());
+    }
+    let (sizes, mut unit) = symmetric_eigen(m)?;
+    for (j, size) in sizes.iter().enumerate() {
+        unit.col_mut(j).iter_mut().for_each(|v| *v /= size.sqrt());
+    }
+    let mut image = Matrix::zeros(q, q)?;
+    (0..q).for_each(|j| a.mul_add(1.0, unit.col(j), image.col_mut(j)));
+    let (_, vectors) = symmetric_eigen(&filled(q, |a, b| dot(unit.col(a), image.col(b)))?)?;
+    let mut turn = Matrix::zeros(q, q)?;
+    (0..q).for_each(|j| unit.mul_add(1.0, vectors.col(j), turn.col_mut(j)));
+    Ok(turn)
+}
+
+impl Ritz {
+    /// Motions that rounding explains are free where the next one stands apart from them.
+    pub fn judged(&self, digits: Option<Digits>) -> Verdict {
+        let (values, noise) = (&self.values, &self.noise);
+        if values[0] < -noise[0].max(NEGATIVE) {
+            return Verdict::Indefinite;
+        }
+        let explained = (0..values.len()).take_while(|&k| values[k] <= noise[k]).count();
+        let most = (0..explained).map(|k| noise[k].max(values[k].abs())).fold(0.0, f64::max);
+        match values.get(explained) {
+            None => return Verdict::Free { dimension: explained, gap: ROUNDING.recip() },
+            Some(next) if explained > 0 && *next >= GAP * most => {
+                return Verdict::Free { dimension: explained, gap: next / most }
+            }
+            Some(_) => {}
+        }
+        if digits.is_none() {
+            return match cut(&[values, &[1.0][..]].concat()) {
+                Some((0, gap)) => Verdict::Held { doubtful: 0, gap },
+                Some((dimension, gap)) => Verdict::Free { dimension, gap },
+                None => Verdict::Unclear,
+            };
+        }
+        if values[0] <= self.products[0] {
+            return Verdict::Unclear;
+        }
+        let doubtful = (0..values.len()).take_while(|&k| noise[k] >= UNKNOWN * values[k]).count();
+        Verdict::Held { doubtful, gap: values[0] / noise[0] }
+    }
+
+    /// What is said of the first motions: of free ones where entries of all digits would make them supports, or where
+    /// rounding is no trifle against the next one.
+    pub fn doubt(&self, digits: Option<Digits>, motions: usize, free: bool) -> Option<Doubt> {
+        let resisted = self.values[..motions].iter().fold(0.0f64, |most, v| most.max(v.abs()));
+        let rounding = self.noise[..motions].iter().fold(0.0f64, |most, v| most.max(*v));
+        let trifle = self.values.get(motions).filter(|_| free).map_or(0.0, |next| TRIFLE * next);
+        let digits = digits.filter(|_| motions > 0 && (rounding > trifle || resisted >= SOFT))?;
+        Some(Doubt { digits, motions, resisted, rounding, free })
+    }
+}
+
+/// No motion stands apart.
+pub fn unclear(digits: Option<Digits>) -> Error {
+    let gap = match digits {
+        Some(digits) => {
+            format!("no gap of {GAP:.0e} above what rounding of K, whose entries have {digits}, may be")
+        }
+        None => format!("no gap of {GAP:.0e} below {SOFT:.0e} of the largest stiffness"),
+    };
+    let what = format!("the null space cannot be told from soft motions: {gap}; give it, or coordinates");
+    Error::new(Kind::NullSpace, what)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_null_space_ends_at_the_largest_leap_below_the_soft_limit() {
+        assert_eq!(cut(&[0.1, 0.5, 1.0]).map(|c| c.0), Some(0));
+        assert_eq!(cut(&[-1e-17, 1e-16, 1e-4, 1.0]).map(|c| c.0), Some(2));
+        assert_eq!(cut(&[1e-20, 1e-16, 1e-9, 1e-4, 1.0]).map(|c| c.0), Some(2));
+        assert_eq!(cut(&[0.0, 0.0]).map(|c| c.0), Some(2));
+        assert_eq!(cut(&[3e-13, 2e-12, 3e-11, 4e-10, 1.0]), None);
+    }
+
+    fn verdict(values: &[f64], noise: f64, digits: Option<Digits>) -> Verdict {
+        let all = vec![noise; values.len()];
+        let turn = Matrix::default();
+        Ritz { values: values.to_vec(), products: vec![1e-15; all.len()], noise: all, turn }.judged(digits)
+    }
+
+    #[test]
+    fn motions_that_rounding_explains_are_free_where_a_gap_shows_them_and_held_where_none_does() {
+        let nine = Some(Digits::Decimal(9));
+        let dimension = |verdict| match verdict {
+            Verdict::Free { dimension, .. } => Some(dimension),
+            _ => None,
+        };
+        assert_eq!(dimension(verdict(&[-2e-10, 1e-10, 3e-10, 1e-3], 1e-9, nine)), Some(3));
+        assert_eq!(dimension(verdict(&[1e-14, 1e-14, 1e-14, 5e-4], 1e-13, None)), Some(3));
+        let slender = verdict(&[1e-10, 1e-10, 3e-10, 1e-7, 1e-5], 1e-9, nine);
+        assert!(matches!(slender, Verdict::Held { doubtful: 4, .. }), "{slender:?}");
+        assert_eq!(verdict(&[-2e-8, 1e-3], 1e-9, nine), Verdict::Indefinite);
+        assert_eq!(verdict(&[-2e-10, 1e-7], 1e-9, nine), Verdict::Unclear);
+        // springs that rounding does not explain
+        let springs = verdict(&[1e-7, 2e-7, 1e-3], 1e-11, nine);
+        assert!(matches!(springs, Verdict::Held { doubtful: 0, .. }), "{springs:?}");
+    }
+}

@@ -1,0 +1,106 @@
+//! Coordinates are hints: where they are not those of K its null space is sought in K.
+
+use decks::{Block, Csr};
+use feti_contact::solver::{LogLevel, Origin, Problem};
+use std::sync::{Arc, Mutex};
+
+use crate::bodies::{chain, cube};
+use crate::digits::{in_single_precision, printed, quads};
+use crate::registered;
+
+/// The body with the coordinates of its nodes, moved from where they are.
+fn placed(k: &Csr, block: &Block, moved: impl Fn(usize, usize) -> f64) -> Problem {
+    let mut problem = registered(k);
+    let (dimension, nodes) = (block.dimension, block.nodes());
+    let step: Vec<f64> = (0..dimension).map(|k| block.size[k] / block.elements[k] as f64).collect();
+    let place = |node: usize, k: usize| block.grid(node)[k] as f64 * step[k] + moved(node, k);
+    let dofs = || (0..nodes).flat_map(|node| (0..dimension).map(move |k| (node, k)));
+    let node: Vec<i32> = dofs().map(|(node, _)| node as i32).collect();
+    let directions: Vec<i32> = dofs().map(|(_, k)| k as i32 + 1).collect();
+    let xyz: Vec<f64> = dofs()
+        .flat_map(|(node, _)| (0..dimension).map(move |k| (node, k)))
+        .map(|(node, k)| place(node, k))
+        .collect();
+    problem.set_coordinates(0, dimension, &node, &directions, &xyz, dimension).unwrap();
+    problem
+}
+
+fn warnings(problem: &mut Problem) -> Vec<String> {
+    let lines = Arc::new(Mutex::new(Vec::new()));
+    let book = Arc::clone(&lines);
+    let listener = move |_, text: &str| {
+        book.lock().unwrap().push(text.to_owned());
+        0
+    };
+    problem.on_log(Some((LogLevel::Result, Box::new(listener))));
+    problem.setup().unwrap_or_else(|e| panic!("{e}"));
+    let lines = lines.lock().unwrap();
+    lines.iter().filter(|line| line.contains("warning")).cloned().collect()
+}
+
+#[test]
+fn coordinates_that_are_not_quite_those_of_the_stiffness_are_hints() {
+    for (block, translations, all) in [(quads(12), 2, 3), (cube(5), 3, 6)] {
+        let k = block.stiffness();
+        let shaken = |node: usize, k: usize| 0.005 * (7.0 * (3 * node + k) as f64).sin();
+        let mut problem = placed(&k, &block, shaken);
+        let told = warnings(&mut problem);
+        let facts = problem.body_facts(0).unwrap();
+        assert_eq!((facts.origin, facts.factors.unwrap().null_space), (Origin::Found, all));
+        let expected = format!("body 0: {translations} of {all} rigid motions of these coordinates fit K");
+        assert!(told.len() == 1 && told[0].contains(&expected), "{told:?}");
+        let mut right = placed(&k, &block, |_, _| 0.0);
+        assert_eq!(warnings(&mut right), Vec::<String>::new());
+        assert_eq!(right.body_facts(0).unwrap().origin, Origin::Coordinates);
+    }
+}
+
+#[test]
+fn a_stiffness_of_few_digits_has_the_rigid_motions_of_its_coordinates() {
+    for (block, all) in [(quads(40), 3), (cube(6), 6)] {
+        let k = block.stiffness();
+        let few = (7..=15).map(|digits| printed(&k, digits)).chain([in_single_precision(&k)]);
+        for (k, digits) in few.zip((7..=15).chain([0])) {
+            let mut problem = placed(&k, &block, |_, _| 0.0);
+            let told = warnings(&mut problem);
+            let facts = problem.body_facts(0).unwrap();
+            let found = facts.factors.unwrap();
+            assert_eq!(found.null_space, all, "{digits} digits");
+        }
+    }
+}
+
+#[test]
+fn each_of_many_parts_has_the_rigid_motions_of_its_coordinates() {
+    let (block, parts) = (quads(2), 200);
+    let one = block.stiffness();
+    let mut problem = registered(&chain(&vec![&one; parts], 0, &vec![1.0; parts]));
+    let n = parts * one.rows;
+    let place = |i: usize, k: usize| block.grid(i % one.rows / 2)[k] as f64 / 2.0;
+    let xyz: Vec<f64> = (0..n).flat_map(|i| [place(i, 0), place(i, 1)]).collect();
+    let node: Vec<i32> = (0..n).map(|i| i as i32 / 2).collect();
+    let directions: Vec<i32> = (0..n).map(|i| i as i32 % 2 + 1).collect();
+    problem.set_coordinates(0, 2, &node, &directions, &xyz, 2).unwrap();
+    let (dimension, basis) = problem.null_space(0).unwrap();
+    assert_eq!(dimension, 3 * parts);
+    assert!(basis.chunks_exact(n).all(|r| r.iter().filter(|v| **v != 0.0).count() <= one.rows));
+    assert_eq!(problem.body_facts(0).unwrap().origin, Origin::Coordinates);
+}
+
+/// A body on its supports resists its rigid motions: that is no fault of the coordinates.
+#[test]
+fn coordinates_of_a_body_on_supports_are_not_doubted() {
+    let block = quads(8);
+    let k = block.stiffness();
+    for digits in [9, 12, 17] {
+        let mut k = printed(&k, digits);
+        for dof in 0..18 {
+            let at = k.ptr[dof] + k.col[k.ptr[dof]..k.ptr[dof + 1]].partition_point(|&j| j < dof);
+            k.val[at] *= 2.0;
+        }
+        let mut problem = placed(&k, &block, |_, _| 0.0);
+        assert_eq!(warnings(&mut problem), Vec::<String>::new());
+        let facts = problem.body_facts(0).unwrap();
+        assert_eq!((facts.origin, facts.factors.unwrap().null_space), (Origin::Coordinates, 0));
+    }
+}

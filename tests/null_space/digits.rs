@@ -1,0 +1,172 @@
+//! Stiffnesses that arrive with fewer digits than double precision: printed, or kept in single precision.
+
+use decks::{Block, Csr};
+use feti_contact::error::Kind;
+use feti_contact::solver::{Digits, Doubt, LogLevel};
+use std::sync::{Arc, Mutex};
+
+use crate::bodies::{bar, chain, cube, held, membrane};
+use crate::{assert_dimension, left_over, registered};
+
+pub fn printed(k: &Csr, digits: usize) -> Csr {
+    let round = |v: &f64| format!("{v:.*e}", digits - 1).parse().unwrap();
+    Csr { val: k.val.iter().map(round).collect(), ..k.clone() }
+}
+
+pub fn in_single_precision(k: &Csr) -> Csr {
+    Csr { val: k.val.iter().map(|v| f64::from(*v as f32)).collect(), ..k.clone() }
+}
+
+pub fn quads(n: usize) -> Block {
+    Block { dimension: 2, elements: [n, n, 1], young: 2.1e5, ..Block::default() }
+}
+
+/// The same with springs at some dofs, each of this part of what is there already.
+fn on_springs(k: &Csr, part: f64, dofs: impl Fn(usize) -> bool) -> Csr {
+    let mut k = k.clone();
+    for i in (0..k.rows).filter(|i| dofs(*i)) {
+        let at = k.ptr[i] + k.col[k.ptr[i]..k.ptr[i + 1]].partition_point(|&j| j < i);
+        k.val[at] *= 1.0 + part;
+    }
+    k
+}
+
+/// Dimension of the null space, what is in doubt, and the warnings told.
+fn set_up(k: &Csr) -> (usize, Vec<Doubt>, Vec<String>) {
+    let mut problem = registered(k);
+    let lines = Arc::new(Mutex::new(Vec::new()));
+    let book = Arc::clone(&lines);
+    let listener = move |_, text: &str| {
+        book.lock().unwrap().push(text.to_owned());
+        0
+    };
+    problem.on_log(Some((LogLevel::Result, Box::new(listener))));
+    problem.setup().unwrap_or_else(|e| panic!("{e}"));
+    let factors = problem.body_facts(0).unwrap().factors.unwrap();
+    let lines = lines.lock().unwrap().iter().filter(|line| line.contains("warning")).cloned().collect();
+    (factors.null_space, factors.doubts, lines)
+}
+
+#[test]
+fn the_null_space_of_a_solid_printed_with_14_digits_is_found() {
+    let block = bar([25, 15, 15], [25.0, 15.0, 15.0], 0.3);
+    let k = block.stiffness();
+    for digits in [13, 14, 15] {
+        let found = assert_dimension("solid", &printed(&k, digits), 6);
+        let left = left_over(&k, &found, &block.rigid_modes());
+        assert!(left < 1e-7, "{digits} digits: {left:.1e} of a rigid motion is missing");
+    }
+}
+
+#[test]
+fn the_null_space_of_plane_quads_is_found_with_10_to_15_digits() {
+    let block = quads(60);
+    let k = block.stiffness();
+    for digits in 10..=15 {
+        let found = assert_dimension("quads", &printed(&k, digits), 3);
+        let left = left_over(&k, &found, &block.rigid_modes());
+        assert!(left < 1e-4, "{digits} digits: {left:.1e} of a rigid motion is missing");
+    }
+}
+
+#[test]
+fn motions_softer_than_the_rounding_of_few_digits_are_free_by_their_gap_or_told_as_supports() {
+    for (name, block, dimension) in [("quads", quads(40), 3), ("cube", cube(8), 6), ("strip", strip(), 3)] {
+        let k = block.stiffness();
+        let few = (7..=9).map(|digits| printed(&k, digits)).chain([in_single_precision(&k)]);
+        for (k, digits) in few.zip([7, 8, 9, 0]) {
+            let (found, doubts, told) = match registered(&k).setup() {
+                Err(error) => {
+                    assert_eq!(error.kind, Kind::NullSpace, "{name}: {error}");
+                    continue;
+                }
+                Ok(()) => set_up(&k),
+            };
+            assert!(found == dimension || found == 0, "{name}, {digits} digits: {found}");
+            assert!(found == dimension || !doubts.is_empty(), "{name}, {digits} digits: in silence");
+            assert_eq!(told.len(), doubts.len());
+            let number = if digits == 0 { Digits::Single } else { Digits::Decimal(digits) };
+            assert!(doubts.iter().all(|doubt| doubt.digits == number && doubt.free == (found > 0)));
+        }
+    }
+}
+
+/// 100 : 1
+fn strip() -> Block {
+    Block { dimension: 2, elements: [200, 2, 1], size: [200.0, 2.0, 1.0], ..Block::default() }
+}
+
+#[test]
+fn soft_springs_in_a_stiffness_of_all_digits_are_supports_without_a_word() {
+    for part in [1e-6, 1e-8] {
+        for k in [
+            on_springs(&quads(20).stiffness(), part, |i| i % 43 < 2),
+            on_springs(&cube(5).stiffness(), part, |i| i % 37 < 3),
+        ] {
+            assert_eq!(set_up(&k), (0, vec![], vec![]));
+        }
+    }
+}
+
+/// Stiffnesses of few digits because they are exact: springs of 1, of eight digits, at one dof or at all.
+#[test]
+fn soft_springs_in_an_exact_stiffness_of_few_digits_are_supports() {
+    let chain_of = |spring: &dyn Fn(usize) -> f64| {
+        let element = Csr::from_dense(2, &[1.0, -1.0, -1.0, 1.0]);
+        let factors: Vec<f64> = (0..99).map(spring).collect();
+        chain(&[&element; 99], 1, &factors)
+    };
+    let tidy = Csr { val: membrane(20).val.iter().map(|v| (6.0 * v).round()).collect(), ..membrane(20) };
+    let add = |k: &Csr, spring: f64, dofs: &dyn Fn(usize) -> bool| {
+        let mut k = k.clone();
+        for i in (0..k.rows).filter(|i| dofs(*i)) {
+            let at = k.ptr[i] + k.col[k.ptr[i]..k.ptr[i + 1]].partition_point(|&j| j < i);
+            k.val[at] += spring;
+        }
+        k
+    };
+    for (name, k) in [
+        ("ones", add(&chain_of(&|_| 1.0), 1e-8, &|i| i == 0)),
+        ("ones, all on springs", add(&chain_of(&|_| 1.0), 1e-8, &|_| true)),
+        ("tidy", add(&tidy, 2e-7, &|i| i == 5)),
+        ("tidy, all on springs", add(&tidy, 2e-7, &|_| true)),
+        ("eight digits", add(&chain_of(&|i| 1e7 + (7_654_321 * i % 89_999_999) as f64), 1.0, &|i| i == 0)),
+    ] {
+        let (found, doubts, _) = set_up(&k);
+        assert_eq!((found, doubts), (0, vec![]), "{name}");
+    }
+}
+
+/// Springs that are stiffer than all rounding of nine digits can be, at the corners alone, and a pad of 1e-6.
+#[test]
+fn supports_that_rounding_cannot_explain_are_supports() {
+    let k = printed(&on_springs(&cube(6).stiffness(), 1e-3, |i| i < 12), 9);
+    assert_eq!(set_up(&k).0, 0, "springs");
+    let (block, pad) = (bar([6, 6, 6], [1.0; 3], 0.3), bar([6, 6, 1], [1.0, 1.0, 0.2], 0.3));
+    let pad = held(&pad, |at, _| at[2] == 0);
+    let k = printed(&chain(&[&pad, &block.stiffness()], 3 * 49, &[1e-6, 1.0]), 9);
+    assert_eq!(set_up(&k).0, 0, "pad");
+}
+
+#[test]
+fn an_indefinite_matrix_of_two_dofs_is_refused_with_dof_and_pivot() {
+    for k in [[1.0, 2.0, 2.0, 1.0], [1.0, 1.5, 1.5, 1.0], [4.0, 8.0, 8.0, 4.0]] {
+        let error = registered(&Csr::from_dense(2, &k)).setup().unwrap_err();
+        assert_eq!(error.kind, Kind::Indefinite, "{error}");
+        assert!(error.place.dof.is_some() && error.place.value.unwrap() < 0.0, "{error}");
+    }
+}
+
+/// Vectors that are made orthogonal part by part are 0 on all other parts.
+#[test]
+fn each_of_many_floating_parts_has_its_motions() {
+    let one = quads(2).stiffness();
+    for parts in [10, 200] {
+        let k = chain(&vec![&one; parts], 0, &vec![1.0; parts]);
+        let found = assert_dimension("parts", &k, 3 * parts);
+        assert!(found
+            .basis
+            .chunks_exact(k.rows)
+            .all(|r| r.iter().filter(|v| **v != 0.0).count() <= one.rows));
+    }
+}
