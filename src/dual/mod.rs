@@ -292,20 +292,28 @@ fn cut(ranges: Vec<Range<usize>>, matrix: &Csr) -> Vec<(Vec<usize>, Csr)> {
     bodies
 }
 
-/// `G' = B R`, m x r; entries that are nothing but rounding are left out.
+/// `G' = B R`, m x r; entries that are nothing but rounding are left out, and all of a body whose rows resist its motions by no more
+/// than errors of R: struts within a body far from the origin of its rotations.
 fn coarse(subdomains: &[Subdomain], m: usize, modes: usize) -> Csr {
     let mut rows: Vec<Vec<(usize, f64)>> = vec![Vec::new(); m];
     for s in subdomains {
+        let (mut resisted, mut terms) = (0.0, 0.0);
+        let mut own = Vec::new();
         for (j, mode) in s.modes.clone().enumerate() {
             let motion = s.kplus.null_space.col(j);
             let fastest = norm_max(motion);
             for (k, &i) in s.rows.iter().enumerate() {
                 let entry = s.matrix.row_dot(k, motion);
                 let size = fastest * s.matrix.row(k).map(|(_, v)| v.abs()).sum::<f64>();
+                resisted += entry * entry;
+                terms += size * size;
                 if entry.abs() > s.kplus.rounding * size {
-                    rows[i].push((mode, entry));
+                    own.push((i, mode, entry));
                 }
             }
+        }
+        if f64::sqrt(resisted) > s.kplus.error * f64::sqrt(terms) {
+            own.into_iter().for_each(|(i, mode, entry)| rows[i].push((mode, entry)));
         }
     }
     let mut coarse = Csr::empty(modes);

@@ -23,16 +23,21 @@ pub struct Balance {
 }
 
 pub fn balance(qp: &Qp, coarse: &mut Coarse) -> Result<Balance> {
-    let point = match if qp.e.len() <= FEW { in_cone(qp)? } else { None } {
-        Some(point) => point,
-        None => lawson_hanson(qp, coarse)?,
+    let in_cone = if qp.e.len() <= FEW { in_cone(qp)? } else { None };
+    let (point, residual) = match in_cone {
+        Some(found) => found,
+        None => {
+            let point = lawson_hanson(qp, coarse)?;
+            let residual = residual(qp, &point);
+            (point, residual)
+        }
     };
-    let residual = residual(qp, &point);
     Ok(Balance { margin: margin(qp, &residual), point, residual })
 }
 
-/// l, the forces that keep a in its cone; none where rounding keeps the method from ending.
-fn in_cone(qp: &Qp) -> Result<Option<Vec<f64>>> {
+/// l, the forces that keep a in its cone, and a, orthogonal to rows with a force to its own rounding; none where rounding keeps the
+/// method from ending.
+fn in_cone(qp: &Qp) -> Result<Option<(Vec<f64>, Vec<f64>)>> {
     let m = qp.bounded.len();
     let mut rows = Csr::empty(qp.g_transposed.cols);
     (0..m).for_each(|i| rows.push_row(qp.g_transposed.row(i)));
@@ -41,14 +46,14 @@ fn in_cone(qp: &Qp) -> Result<Option<Vec<f64>>> {
     let gap = vec![0.0; rows.rows()];
     let found =
         nearest_point(Polyhedron { rows: &rows, gap: &gap, target: qp.e, noise: &gap, rounding: 0.0 });
-    let mut forces = match found {
-        Ok(found) => found.forces,
+    let (mut forces, a) = match found {
+        Ok(found) => (found.forces, found.point),
         Err(error) if error.kind == Kind::Internal => return Ok(None),
         Err(error) => return Err(error),
     };
     let opposite = forces.split_off(m);
     free.iter().zip(opposite).for_each(|(&i, force)| forces[i] -= force);
-    Ok(Some(forces))
+    Ok(Some((forces, a)))
 }
 
 fn lawson_hanson(qp: &Qp, coarse: &mut Coarse) -> Result<Vec<f64>> {

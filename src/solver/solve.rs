@@ -7,7 +7,7 @@ use crate::linalg::Operator;
 use crate::qp::paper::Units;
 use crate::qp::{Direct, Solution, Verdict};
 use crate::solver::certifier::{Certifier, Ending, Faces};
-use crate::solver::diagnosis::{Contradictions, Unheld, ROUNDING};
+use crate::solver::diagnosis::{Contradictions, Unheld, MARGINAL, ROUNDING};
 use crate::solver::fallback::Means;
 use crate::solver::finish::finish;
 use crate::solver::near::solve_near;
@@ -109,6 +109,7 @@ impl Problem {
             // what the host is told is about its own load
             ending.judgement = judge.judged_on(&self.data(&ready.island)?, &ending.recovered)?;
             outcome = match outcome {
+                Outcome::Solved if taken.share > MARGINAL => Outcome::Inaccurate,
                 Outcome::Solved if taken.share > ROUNDING => Outcome::Marginal,
                 Outcome::Solved if !ending.judgement.certificate.passed() => Outcome::Inaccurate,
                 outcome => outcome,

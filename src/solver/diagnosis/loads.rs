@@ -15,7 +15,7 @@ use crate::solver::setup::Ready;
 /// Up to this share of the load what is not held may be rounding of the load: there is an answer without it.
 pub(in crate::solver) const ROUNDING: f64 = 1e-10;
 /// Up to this share the answer without it is told, as marginal; beyond it there is none, where that is proved.
-const MARGINAL: f64 = 1e-7;
+pub(in crate::solver) const MARGINAL: f64 = 1e-7;
 /// Rows resist a motion that so many times the load could not hold.
 const BEYOND: f64 = 1e6;
 /// K resists a rigid motion that forces of its own strain so many times as much.
