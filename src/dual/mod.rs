@@ -29,7 +29,7 @@ use crate::dual::multiples::Multiples;
 use crate::dual::reuse::Reuse;
 use crate::error::Result;
 use crate::linalg::memory::zeros;
-use crate::linalg::vector::{dot, norm_max, power_of_two_below};
+use crate::linalg::vector::{dot, norm_max, power_of_two_below, weighted_norm};
 use crate::linalg::{Csr, Packed};
 
 /// G is not known better than this.
@@ -239,6 +239,16 @@ impl Dual {
             }
         }
         e
+    }
+
+    /// What the resultants of each mode are a part of, `|f|_{D^-1}` of its body, in their units; `metric` is D over the unknowns.
+    pub fn sizes_of_loads(&self, f: &[f64], metric: &[f64]) -> Vec<f64> {
+        let of = |s: &Subdomain| {
+            let start = s.range.start;
+            let size = weighted_norm(&f[s.range.clone()], |j| 1.0 / (metric[start + j] * s.by)) / s.size;
+            vec![size; s.modes.len()]
+        };
+        self.subdomains.iter().flat_map(of).collect()
     }
 
     /// `D R c`, n, the load of least |f|_{D^-1} whose resultants are `e`; `metric` is D over the unknowns.

@@ -23,7 +23,7 @@ pub struct Balance {
 }
 
 pub fn balance(qp: &Qp, coarse: &mut Coarse) -> Result<Balance> {
-    let in_cone = if qp.e.len() <= FEW { in_cone(qp)? } else { None };
+    let in_cone = in_cone(qp.g_transposed, qp.bounded, qp.e)?;
     let (point, residual) = match in_cone {
         Some(found) => found,
         None => {
@@ -35,17 +35,30 @@ pub fn balance(qp: &Qp, coarse: &mut Coarse) -> Result<Balance> {
     Ok(Balance { margin: margin(qp, &residual), point, residual })
 }
 
+/// Forces l and what they leave, `a = e - G l` of least `|W a|`, W = diag(`weights`) > 0; none where there are many modes, or
+/// rounding keeps the method from ending.
+pub fn weighted(qp: &Qp, weights: &[f64]) -> Result<Option<(Vec<f64>, Vec<f64>)>> {
+    let mut g_transposed = qp.g_transposed.clone();
+    for (mode, v) in g_transposed.col.iter().zip(&mut g_transposed.val) {
+        *v *= weights[*mode];
+    }
+    let e: Vec<f64> = qp.e.iter().zip(weights).map(|(e, w)| e * w).collect();
+    let found = in_cone(&g_transposed, qp.bounded, &e)?;
+    Ok(found.map(|(point, a)| (point, a.iter().zip(weights).map(|(a, w)| a / w).collect())))
+}
+
 /// l, the forces that keep a in its cone, and a, orthogonal to rows with a force to its own rounding; none where rounding keeps the
 /// method from ending.
-fn in_cone(qp: &Qp) -> Result<Option<(Vec<f64>, Vec<f64>)>> {
-    let m = qp.bounded.len();
-    let mut rows = Csr::empty(qp.g_transposed.cols);
-    (0..m).for_each(|i| rows.push_row(qp.g_transposed.row(i)));
-    let free: Vec<usize> = (0..m).filter(|&i| !qp.bounded[i]).collect();
-    free.iter().for_each(|&i| rows.push_row(qp.g_transposed.row(i).map(|(mode, v)| (mode, -v))));
+fn in_cone(g_transposed: &Csr, bounded: &[bool], e: &[f64]) -> Result<Option<(Vec<f64>, Vec<f64>)>> {
+    if e.len() > FEW {
+        return Ok(None);
+    }
+    let m = bounded.len();
+    let mut rows = g_transposed.clone();
+    let free: Vec<usize> = (0..m).filter(|&i| !bounded[i]).collect();
+    free.iter().for_each(|&i| rows.push_row(g_transposed.row(i).map(|(mode, v)| (mode, -v))));
     let gap = vec![0.0; rows.rows()];
-    let found =
-        nearest_point(Polyhedron { rows: &rows, gap: &gap, target: qp.e, noise: &gap, rounding: 0.0 });
+    let found = nearest_point(Polyhedron { rows: &rows, gap: &gap, target: e, noise: &gap, rounding: 0.0 });
     let (mut forces, a) = match found {
         Ok(found) => (found.forces, found.point),
         Err(error) if error.kind == Kind::Internal => return Ok(None),

@@ -23,6 +23,7 @@ mod smalbe;
 mod steps;
 
 pub use active_set::{active_set, Direct};
+pub use balance::weighted;
 pub use coarse::{fitted, undetermined};
 pub use conjugate::MOST as KEPT;
 pub use face::Face;

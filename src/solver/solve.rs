@@ -3,11 +3,12 @@
 use std::time::{Duration, Instant};
 
 use crate::error::{Error, Kind, Result};
+use crate::linalg::vector::norm_max;
 use crate::linalg::Operator;
 use crate::qp::paper::Units;
-use crate::qp::{Direct, Solution, Verdict};
+use crate::qp::{weighted, Direct, Solution, Verdict};
 use crate::solver::certifier::{Certifier, Ending, Faces};
-use crate::solver::diagnosis::{Contradictions, Unheld, MARGINAL, ROUNDING};
+use crate::solver::diagnosis::{free, Contradictions, Unheld, MARGINAL, ROUNDING};
 use crate::solver::fallback::Means;
 use crate::solver::finish::finish;
 use crate::solver::near::solve_near;
@@ -62,10 +63,35 @@ impl Problem {
                     if let Some(error) = unheld.proof(self, ready, &dual, &direction)? {
                         return Err(error);
                     }
-                    dual.take(self, ready, unheld, &solution.x)?;
-                    start = solution.x;
+                    let (unheld, x) = self.least_taken(ready, &dual, solution, unheld)?;
+                    dual.take(self, ready, unheld, &x)?;
+                    start = x;
                 }
             }
+        }
+    }
+
+    /// What is to be taken from the loads, and the forces that balance the rest: of each body as small a part of its own load as
+    /// may be, so that what is rounding of a large load does not press on a body with a small one.
+    fn least_taken(
+        &self,
+        ready: &Ready,
+        dual: &Scaled,
+        solution: Solution,
+        unheld: Unheld,
+    ) -> Result<(Unheld, Vec<f64>)> {
+        /// Loads are told apart as far as this; those of a body without any are of that size.
+        const RANGE: f64 = 1e-7;
+        let data = self.data(&ready.island)?;
+        let sizes = ready.dual.sizes_of_loads(&free(&data, dual.load.clone()), &ready.rows.metric);
+        let most = norm_max(&sizes);
+        let weights: Vec<f64> = sizes.iter().map(|size| most / size.max(RANGE * most)).collect();
+        match weighted(&dual.qp(ready, &ready.dual), &weights)? {
+            Some((x, direction)) if most > 0.0 => {
+                let solution = Solution { x, ..solution };
+                Ok((Unheld::of(&data, ready, dual, &solution, &direction), solution.x))
+            }
+            _ => Ok((unheld, solution.x)),
         }
     }
 

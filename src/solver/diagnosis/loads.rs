@@ -40,12 +40,8 @@ impl Unheld {
     /// Of the forces x of a solution that leave `direction` = e - G x.
     pub fn of(data: &Data, ready: &Ready, scaled: &Scaled, solution: &Solution, direction: &[f64]) -> Self {
         let (island, metric) = (&ready.island, &ready.rows.metric);
-        let free = |mut load: Vec<f64>| {
-            let grounded = data.bodies.iter().flat_map(|b| b.grounded.iter().map(|j| b.start + *j as usize));
-            grounded.for_each(|j| load[j] = 0.0);
-            load
-        };
-        let as_load = |resultants: &[f64]| free(ready.dual.load_of(resultants, island.unknowns(), metric));
+        let as_load =
+            |resultants: &[f64]| free(data, ready.dual.load_of(resultants, island.unknowns(), metric));
         let sizes = |load: &[f64]| -> Vec<f64> {
             let of_body = |range: &std::ops::Range<usize>| {
                 weighted_norm(&load[range.clone()], |j| 1.0 / metric[range.start + j])
@@ -54,7 +50,7 @@ impl Unheld {
         };
         let load = as_load(direction);
         let (left, resultants) = (sizes(&load), sizes(&as_load(&scaled.resultants)));
-        let loads = sizes(&free(scaled.load.clone()));
+        let loads = sizes(&free(data, scaled.load.clone()));
         let (cluster, count) = clusters(ready, solution, &left);
         let of_cluster = |k: usize, sizes: &[f64]| {
             let own = (0..sizes.len()).filter(|&p| cluster[p] == k && left[p] > 0.0).map(|p| sizes[p]);
@@ -124,6 +120,13 @@ impl Unheld {
         };
         error.proved_by(Proof::Motion { margin: self.margin, v })
     }
+}
+
+/// A load without what acts on grounded unknowns, which no rigid motion moves.
+pub(in crate::solver) fn free(data: &Data, mut load: Vec<f64>) -> Vec<f64> {
+    let grounded = data.bodies.iter().flat_map(|b| b.grounded.iter().map(|j| b.start + *j as usize));
+    grounded.for_each(|j| load[j] = 0.0);
+    load
 }
 
 /// Label of the bodies that move together, and how many labels there are.
