@@ -33,12 +33,17 @@ impl Row {
         let force = multipliers[i];
         let empty = rows.matrix.row(i).next().is_none();
         let given_way = if scale > 0.0 { (force.abs() / scale) / scale / field.unit } else { 0.0 };
-        // forces that other rows cancel do nothing
-        let pushed: f64 = rows.matrix.row(i).map(|(j, b)| (b * field.push[j]).abs() / field.metric[j]).sum();
-        let felt = given_way.min(pushed + rows.compliance[i] * force.abs());
+        // what all forces on its unknowns together would move there: those that cancel do nothing but by their rounding
+        let moves = |forces: &[f64]| -> f64 {
+            let at = |(j, b): (usize, f64)| (b / field.metric[j] * (forces[j] / field.unit)).abs();
+            rows.matrix.row(i).map(at).sum()
+        };
+        let felt = given_way.min(moves(&field.push) + rows.compliance[i] * force.abs());
+        let cancelled = given_way.min(moves(&field.push_terms));
         let moved = rows.matrix.row_dot_abs(i, field.answer.u);
         let size = rows.matrix.row_dot_abs(i, &field.deformation) + felt;
-        let rounding = NOISE * (moved + rows.rhs[i].abs() + rows.compliance[i] * force.abs());
+        let given = rows.rhs[i].abs() + rows.compliance[i] * force.abs();
+        let rounding = NOISE * (moved + given + cancelled);
         // a row that weighs nothing is not known to hold
         let known = scale > 0.0 || empty;
         let force_limit = forces.limit_of(field, kind, i);
