@@ -73,7 +73,7 @@ fn up_to_1e_10_of_the_load_is_solved_up_to_1e_7_is_marginal_and_more_is_named() 
                 assert_eq!(error.kind, Kind::LoadNotHeld, "{pull:e}");
                 let told = error.place.value.unwrap();
                 assert!((told / pull - 1.0).abs() < 0.01, "{told:e} of {pull:e}");
-                assert!(error.to_string().contains(&format!("{told:.1e} of the load")), "{error}");
+                assert!(error.to_string().contains(&format!("|resultant| / |load| = {told:.1e}")), "{error}");
             }
         }
     }

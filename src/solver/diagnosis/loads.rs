@@ -105,8 +105,8 @@ impl Unheld {
             range.clone().fold(range.start, |best, i| if v[i].abs() > v[best].abs() { i } else { best });
         let sense = if v[fastest] > 0.0 { "positive" } else { "negative" };
         let what = format!(
-            "the load moves the body and no contact force can hold it (|resultant| / |load| = {:.1e} of the load of what \
-             moves is left); the motion is fastest at this dof, in the {sense} sense",
+            "the load moves the body and no contact force can hold it (|resultant| / |load| = {:.1e} of what moves with \
+             it); the motion is fastest at this dof, in the {sense} sense",
             self.share
         );
         let largest = norm_max(&v);
