@@ -87,8 +87,8 @@ pub(super) struct Ending {
 impl<'a> Certifier<'a> {
     pub fn new(problem: &'a Problem, ready: &'a Ready, scaled: &'a Scaled, faces: Faces<'a>) -> Result<Self> {
         let (mut data, threads) = (problem.data(&ready.island)?, problem.threads());
-        if let Some(taken) = &scaled.unheld {
-            data.bodies.iter_mut().for_each(|body| body.load = Some(&taken.load[body.range()]));
+        if let Some(load) = scaled.unheld.as_ref().and_then(|taken| taken.load.as_ref()) {
+            data.bodies.iter_mut().for_each(|body| body.load = Some(&load[body.range()]));
         }
         let work = Cell::new(None);
         let cleaners = RefCell::new(data.bodies.iter().map(|_| None).collect());

@@ -5,7 +5,7 @@ use crate::error::Result;
 use crate::linalg::vector::{axpy, norm_max};
 use crate::linalg::Operator;
 use crate::qp::{self, Qp};
-use crate::solver::diagnosis::Unheld;
+use crate::solver::diagnosis::{Unheld, ROUNDING};
 use crate::solver::presolve::{presolve, Gaps};
 use crate::solver::problem::Problem;
 use crate::solver::setup::Ready;
@@ -27,8 +27,8 @@ pub(super) struct Scaled {
 
 /// Loads without what nothing holds of them.
 pub(super) struct Taken {
-    /// As those of the host, force.
-    pub load: Vec<f64>,
+    /// The loads without it, force; none where it is so little that only their resultants are without it.
+    pub load: Option<Vec<f64>>,
     /// The largest |resultant| / |load| of bodies that move together.
     pub share: f64,
 }
@@ -47,13 +47,17 @@ impl Scaled {
 
     /// Takes from the loads what the forces x of the dual leave of them.
     pub fn take(&mut self, problem: &Problem, ready: &Ready, unheld: Unheld, x: &[f64]) -> Result<()> {
-        axpy(-1.0, &unheld.load, &mut self.load);
-        self.moved = ready.moved(problem.threads(), &self.load)?;
-        self.d = ready.dual.rhs(&self.moved, &self.gaps.dual);
+        let Unheld { load, share, .. } = unheld;
         self.resultants.fill(0.0);
         ready.dual.coarse.mul_transposed_add(1.0, x, &mut self.resultants);
-        let load = self.load.iter().map(|f| f * ready.island.unit).collect();
-        self.unheld = Some(Taken { load, share: unheld.share });
+        let mut taken = Taken { load: None, share };
+        if share > ROUNDING {
+            axpy(-1.0, &load, &mut self.load);
+            self.moved = ready.moved(problem.threads(), &self.load)?;
+            self.d = ready.dual.rhs(&self.moved, &self.gaps.dual);
+            taken.load = Some(self.load.iter().map(|f| f * ready.island.unit).collect());
+        }
+        self.unheld = Some(taken);
         Ok(())
     }
 

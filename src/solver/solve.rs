@@ -8,7 +8,7 @@ use crate::linalg::Operator;
 use crate::qp::paper::Units;
 use crate::qp::{weighted, Direct, Solution, Verdict};
 use crate::solver::certifier::{Certifier, Ending, Faces};
-use crate::solver::diagnosis::{free, Contradictions, Unheld, MARGINAL, ROUNDING};
+use crate::solver::diagnosis::{free, Contradictions, Unheld, MARGINAL};
 use crate::solver::fallback::Means;
 use crate::solver::finish::finish;
 use crate::solver::near::solve_near;
@@ -131,13 +131,12 @@ impl Problem {
         if outcome == Outcome::Solved && !ending.judgement.certificate.passed() {
             outcome = Outcome::Inaccurate;
         }
-        if let Some(taken) = &dual.unheld {
+        if let Some(taken) = dual.unheld.as_ref().filter(|taken| taken.load.is_some()) {
             // what the host is told is about its own load
             ending.judgement = judge.judged_on(&self.data(&ready.island)?, &ending.recovered)?;
             outcome = match outcome {
                 Outcome::Solved if taken.share > MARGINAL => Outcome::Inaccurate,
-                Outcome::Solved if taken.share > ROUNDING => Outcome::Marginal,
-                Outcome::Solved if !ending.judgement.certificate.passed() => Outcome::Inaccurate,
+                Outcome::Solved => Outcome::Marginal,
                 outcome => outcome,
             };
         }
