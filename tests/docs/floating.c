@@ -1,7 +1,7 @@
 /* What docs/newton.md says about bodies that float: a lattice of bars with Green's strain stands on a flat floor, tilted at
    first, and is pressed down. Its whole tangent is refused as indefinite; its material part converges, with the current
    coordinates and without, and a multiple of the diagonal helps the whole tangent: in no case with a second analysis. The first
-   coordinates are refused once the body has turned. */
+   coordinates serve as well, but once the body has turned its null space is sought in K, at the cost of analyses. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -117,14 +117,14 @@ int main(void)
 {
     static const struct { way w; int32_t status; } cases[] = {
         { { 1, CURRENT, 0.0 }, FETI_INDEFINITE }, { { 1, NOTHING, 0.0 }, FETI_INDEFINITE }, { { 0, CURRENT, 0.0 }, FETI_OK },
-        { { 0, NOTHING, 0.0 }, FETI_OK },         { { 0, FIRST, 0.0 }, FETI_NULL_SPACE },   { { 1, NOTHING, 1e-3 }, FETI_OK },
+        { { 0, NOTHING, 0.0 }, FETI_OK },         { { 0, FIRST, 0.0 }, FETI_OK },            { { 1, NOTHING, 1e-3 }, FETI_OK },
     };
     int wrong = 0;
 
     for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
         feti_info info = { .struct_size = sizeof info };
         const int32_t status = newton(&cases[k].w, &info);
-        if (status != cases[k].status || (status == FETI_OK && info.analyses != 1)) {
+        if (status != cases[k].status || (status == FETI_OK && (info.analyses > 1) != (cases[k].w.coordinates == FIRST))) {
             printf("case %d: %s, %d analyses\n", (int)k, feti_status_name(status), (int)info.analyses);
             wrong = 1;
         }

@@ -176,8 +176,9 @@ impl<'a> Contradictions<'a> {
 
     fn named(&self, weights: &[(usize, f64)], excess: f64, demands: f64) -> Error {
         let (problem, ready) = (self.problem, self.ready);
-        let heaviest =
-            weights.iter().fold(weights[0], |best, &at| if at.1.abs() > best.1.abs() { at } else { best }).0;
+        let weight = |&(i, w): &(usize, f64)| (w * ready.rows.scale[i]).abs();
+        let heavier = |best, at| if weight(at) >= weight(best) { at } else { best };
+        let heaviest = weights.iter().fold(&weights[0], heavier).0;
         let (kind, row) = ready.island.kind_and_row(heaviest);
         let what = match weights.len() - 1 {
             1 => format!("this {} and another row contradict each other", kind.name()),
