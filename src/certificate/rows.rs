@@ -39,7 +39,7 @@ impl Row {
             rows.matrix.row(i).map(at).sum()
         };
         let felt = given_way.min(moves(&field.push) + rows.compliance[i] * force.abs());
-        let cancelled = given_way.min(moves(&field.push_terms));
+        let cancelled = moves(&field.push_terms);
         let moved = rows.matrix.row_dot_abs(i, field.answer.u);
         let size = rows.matrix.row_dot_abs(i, &field.deformation) + felt;
         let given = rows.rhs[i].abs() + rows.compliance[i] * force.abs();
