@@ -18,8 +18,8 @@ pub(in crate::solver) const ROUNDING: f64 = 1e-10;
 pub(in crate::solver) const MARGINAL: f64 = 1e-7;
 /// Rows resist a motion that so many times the load could not hold.
 const BEYOND: f64 = 1e6;
-/// K resists a rigid motion that forces of its own strain so many times as much.
-const RIGID: f64 = 10.0;
+/// A rigid motion that K resists is known to so many times that: by K of 8 digits no small resultant is.
+const RIGID: f64 = 1e4;
 
 /// The part of a load that the forces which come nearest to it leave. Bodies with such a part that rows with a force or equality
 /// rows join are free to move together; shares are of their load, |f|_{D^-1} without grounded unknowns.
