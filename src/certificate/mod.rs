@@ -47,6 +47,13 @@ pub struct Data<'a> {
     pub limit: f64,
 }
 
+impl Data<'_> {
+    /// Grounded unknowns of all bodies.
+    pub fn grounded(&self) -> impl Iterator<Item = usize> + '_ {
+        self.bodies.iter().flat_map(|body| body.grounded.iter().map(|j| body.start + *j as usize))
+    }
+}
+
 /// One body of the island, n_p unknowns.
 #[derive(Clone)]
 pub struct BodyData<'a> {

@@ -61,6 +61,14 @@ impl Island {
         }
     }
 
+    /// The set of row i of the stack, and its place there.
+    pub fn row(&self, i: usize) -> (&RowSet, usize) {
+        match i.checked_sub(self.contact.numbers.len()) {
+            None => (&self.contact.rows, i),
+            Some(k) => (&self.equalities.rows, k),
+        }
+    }
+
     /// The loads of its bodies one after the other, force.
     pub fn loads(&self, problem: &Problem) -> Result<Vec<f64>> {
         let mut all = zeros(self.unknowns(), "the loads")?;

@@ -106,15 +106,16 @@ fn contradiction(problem: &Problem, ready: &Ready, gaps: &Gaps, stops: &Stops) -
         return Ok(None); // u = 0 satisfies them all
     }
     let claims = Contradictions::new(problem, ready, gaps);
-    if claims.work(&rigid) <= SMALL {
+    let rigid = claims.among(rigid);
+    if rigid.work() <= SMALL {
         return claims.proved_among(&rigid);
     }
-    let bounded: Vec<bool> = rigid.iter().map(|&group| gaps.bounded[group]).collect();
-    let mut c: Vec<f64> = rigid.iter().map(|&group| gaps.value[group]).collect();
+    let bounded: Vec<bool> = rigid.groups.iter().map(|&group| gaps.bounded[group]).collect();
+    let mut c: Vec<f64> = rigid.groups.iter().map(|&group| gaps.value[group]).collect();
     let size = norm_max(&c);
     c.iter_mut().for_each(|c| *c /= size);
     let mut matrix = Csr::empty(rows.scaled.cols);
-    rigid.iter().for_each(|&group| matrix.push_row(rows.scaled.row(group)));
+    rigid.groups.iter().for_each(|&group| matrix.push_row(rows.scaled.row(group)));
     let a = Alternative { matrix: &matrix, metric: &rows.metric, c: &c };
     let b: Vec<f64> = c.iter().map(|c| -c).collect();
     let none = Csr { ptr: vec![0; c.len() + 1], ..Csr::default() };
@@ -136,7 +137,7 @@ fn contradiction(problem: &Problem, ready: &Ready, gaps: &Gaps, stops: &Stops) -
         return Ok(None);
     }
     let mut w = vec![0.0; gaps.value.len()];
-    rigid.iter().zip(&solution.x).for_each(|(&group, x)| w[group] = *x);
+    rigid.groups.iter().zip(&solution.x).for_each(|(&group, x)| w[group] = *x);
     match claims.proved(&w)? {
         Some(error) => Ok(Some(error)),
         None => claims.proved_among(&rigid),

@@ -76,8 +76,7 @@ impl<'a> Certifier<'a> {
             free.col_mut(j).copy_from_slice(&own);
         }
         let mut grounded = vec![false; u.len()];
-        let held = self.data.bodies.iter().flat_map(|b| b.grounded.iter().map(|j| b.start + *j as usize));
-        held.for_each(|j| grounded[j] = true);
+        self.data.grounded().for_each(|j| grounded[j] = true);
         let moving = |(k, body): (usize, &BodyData<'a>)| Moving {
             unknowns: ranges[k].clone(),
             modes: dual.modes_of(k),

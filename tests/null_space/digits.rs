@@ -1,15 +1,15 @@
 //! Stiffnesses that arrive with fewer digits than double precision: printed, or kept in single precision.
 
+use decks::varied::rounded_to;
 use decks::{Block, Csr};
 use feti_contact::error::Kind;
-use feti_contact::solver::{Digits, Doubt, LogLevel};
-use std::sync::{Arc, Mutex};
+use feti_contact::solver::{Digits, Doubt};
 
 use crate::bodies::{bar, chain, cube, held, membrane};
-use crate::{assert_dimension, left_over, registered};
+use crate::{assert_dimension, left_over, registered, warnings};
 
 pub fn printed(k: &Csr, digits: usize) -> Csr {
-    let round = |v: &f64| format!("{v:.*e}", digits - 1).parse().unwrap();
+    let round = |v: &f64| rounded_to(*v, digits);
     Csr { val: k.val.iter().map(round).collect(), ..k.clone() }
 }
 
@@ -34,17 +34,9 @@ fn on_springs(k: &Csr, part: f64, dofs: impl Fn(usize) -> bool) -> Csr {
 /// Dimension of the null space, what is in doubt, and the warnings told.
 fn set_up(k: &Csr) -> (usize, Vec<Doubt>, Vec<String>) {
     let mut problem = registered(k);
-    let lines = Arc::new(Mutex::new(Vec::new()));
-    let book = Arc::clone(&lines);
-    let listener = move |_, text: &str| {
-        book.lock().unwrap().push(text.to_owned());
-        0
-    };
-    problem.on_log(Some((LogLevel::Result, Box::new(listener))));
-    problem.setup().unwrap_or_else(|e| panic!("{e}"));
+    let told = warnings(&mut problem);
     let factors = problem.body_facts(0).unwrap().factors.unwrap();
-    let lines = lines.lock().unwrap().iter().filter(|line| line.contains("warning")).cloned().collect();
-    (factors.null_space, factors.doubts, lines)
+    (factors.null_space, factors.doubts, told)
 }
 
 #[test]

@@ -9,7 +9,8 @@ mod rows;
 use bodies::{bar, chain, cube, frame, held, membrane};
 use decks::{Block, Csr};
 use feti_contact::error::{Error, Kind};
-use feti_contact::solver::{Modes, Problem, SparseInput, Storage};
+use feti_contact::solver::{LogLevel, Modes, Problem, SparseInput, Storage};
+use std::sync::{Arc, Mutex};
 
 fn registered(k: &Csr) -> Problem {
     let mut problem = Problem::new();
@@ -18,6 +19,20 @@ fn registered(k: &Csr) -> Problem {
     let input = SparseInput { ptr: &k.ptr, col: &col, val: &k.val, storage: Storage::Full };
     problem.set_stiffness(0, input).unwrap();
     problem
+}
+
+/// The warnings that a setup tells.
+fn warnings(problem: &mut Problem) -> Vec<String> {
+    let lines = Arc::new(Mutex::new(Vec::new()));
+    let book = Arc::clone(&lines);
+    let listener = move |_, text: &str| {
+        book.lock().unwrap().push(text.to_owned());
+        0
+    };
+    problem.on_log(Some((LogLevel::Result, Box::new(listener))));
+    problem.setup().unwrap_or_else(|e| panic!("{e}"));
+    let lines = lines.lock().unwrap();
+    lines.iter().filter(|line| line.contains("warning")).cloned().collect()
 }
 
 /// What the library found.

@@ -1,36 +1,12 @@
 //! The motion told with a load that nothing holds: rigid, resisted by no row, and the load does work on it.
 
 use decks::dd::{dot, Dd};
+use decks::hard::proof;
 use decks::random::Random;
 use decks::{Block, Csr, Deck};
 use feti_contact::error::{Error, Kind, Proof};
 
 use crate::hand_over;
-
-/// |(S B v)_+, S_H H v| |f|_{D^-1} / f.v by the data of the host; infinite where the load does no work on v.
-pub fn resisted(deck: &Deck, v: &[f64]) -> f64 {
-    let metric: Vec<f64> = deck.bodies.iter().flat_map(|body| body.stiffness.diagonal()).collect();
-    let load = deck.load();
-    let work = dot(load.iter().copied().zip(v.iter().copied())).value();
-    let size = load.iter().zip(&metric).map(|(f, d)| f * f / d).sum::<f64>().sqrt();
-    let mut left = 0.0;
-    for (rows, both) in [(&deck.contact, false), (&deck.equalities, true)] {
-        for i in 0..rows.len() {
-            if rows.rhs[i].is_infinite() {
-                continue;
-            }
-            let local = rows.matrix.row(i).map(|(j, b)| b * b / metric[j]).sum::<f64>() + rows.compliance[i];
-            let moved = dot(rows.matrix.row(i).map(|(j, b)| (b, v[j]))).value();
-            let moved = if both { moved.abs() } else { moved.max(0.0) };
-            left += moved * moved / local;
-        }
-    }
-    if work > 0.0 {
-        size * f64::sqrt(left) / work
-    } else {
-        f64::INFINITY
-    }
-}
 
 /// |K v| against |K||v|, the worst unknown.
 fn strained(k: &Csr, v: &[f64]) -> f64 {
@@ -99,8 +75,9 @@ fn the_motion_of_a_load_that_is_not_held_is_rigid_and_no_row_resists_it() {
         let Error { kind: Kind::LoadNotHeld, proof: Some(proof), .. } = error else { continue };
         let Proof::Motion { v, .. } = &*proof else { panic!("{proof:?}") };
         named += 1;
+        let motion = proof::motion(&deck, v);
         let (left, strain) = (
-            resisted(&deck, v),
+            if motion.work > 0.0 { motion.resisted / motion.work } else { f64::INFINITY },
             (0..deck.bodies.len())
                 .map(|p| strained(&deck.bodies[p].stiffness, &v[deck.offset(p)..deck.offset(p + 1)]))
                 .fold(0.0, f64::max),

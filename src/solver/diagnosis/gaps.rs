@@ -3,8 +3,7 @@
 use std::cell::Cell;
 use std::collections::HashMap;
 
-use crate::certificate::Response;
-use crate::constraints::RowSet;
+use crate::certificate::{Response, NOISE};
 use crate::error::{Error, Kind, Result};
 use crate::linalg::twofold::Twofold;
 use crate::linalg::vector::{norm_max, weighted_norm};
@@ -20,7 +19,6 @@ use crate::solver::setup::Ready;
 const BEYOND: f64 = 1e6;
 /// Gaps may be differences of displacements so many times as large: their rounding is that of those.
 const TRAVELLED: f64 = 1e3;
-const ROUNDING: f64 = 64.0 * f64::EPSILON;
 /// A weight below this part of the largest is none.
 const NEGLIGIBLE: f64 = 1e-8;
 /// Multiplications that a search which ends may take.
@@ -38,6 +36,13 @@ pub(in crate::solver) struct Contradictions<'a> {
     work: Cell<Option<f64>>,
 }
 
+/// Groups of rows that may contradict each other.
+pub(in crate::solver) struct Among {
+    pub groups: Vec<usize>,
+    /// The unknowns that they touch, each with a number from 0.
+    place: HashMap<usize, usize>,
+}
+
 impl<'a> Contradictions<'a> {
     pub fn new(problem: &'a Problem, ready: &'a Ready, gaps: &'a Gaps) -> Self {
         Self { problem, ready, gaps, work: Cell::new(None) }
@@ -53,15 +58,15 @@ impl<'a> Contradictions<'a> {
         let weights = groups.iter().map(|&group| (self.gaps.holder[group], w[group])).collect();
         match self.proof(weights)? {
             Some(error) => Ok(Some(error)),
-            None => self.proved_among(&groups),
+            None => self.proved_among(&self.among(groups)),
         }
     }
 
     /// The same by a method that ends for all of these groups, where they touch few unknowns: the displacement of least |u|_D
     /// that satisfies them, or rows that none does.
-    pub fn proved_among(&self, groups: &[usize]) -> Result<Option<Error>> {
-        let (rows, place) = (&self.ready.rows, self.touched(groups));
-        if work(place.len(), groups.len()) > WORK {
+    pub fn proved_among(&self, among: &Among) -> Result<Option<Error>> {
+        let (rows, Among { groups, place }) = (&self.ready.rows, among);
+        if among.work() > WORK {
             return Ok(None);
         }
         let (mut matrix, mut gap, mut of) = (Csr::empty(place.len()), Vec::new(), Vec::new());
@@ -74,7 +79,7 @@ impl<'a> Contradictions<'a> {
                 of.push((self.gaps.holder[group], *sign));
             }
         }
-        let noise: Vec<f64> = gap.iter().map(|c| ROUNDING * c.abs()).collect();
+        let noise: Vec<f64> = gap.iter().map(|c| NOISE * c.abs()).collect();
         let target = vec![0.0; place.len()];
         let found = nearest_point(Polyhedron {
             rows: &matrix,
@@ -93,19 +98,14 @@ impl<'a> Contradictions<'a> {
         proofs.find_map(Result::transpose).transpose()
     }
 
-    /// Multiplications of a search among these groups that ends.
-    pub fn work(&self, groups: &[usize]) -> usize {
-        work(self.touched(groups).len(), groups.len())
-    }
-
-    /// The unknowns that these groups touch, each with a number from 0.
-    fn touched(&self, groups: &[usize]) -> HashMap<usize, usize> {
+    /// These groups with the unknowns that they touch.
+    pub fn among(&self, groups: Vec<usize>) -> Among {
         let mut place = HashMap::new();
         for (j, _) in groups.iter().flat_map(|&group| self.ready.rows.scaled.row(group)) {
             let next = place.len();
             place.entry(j).or_insert(next);
         }
-        place
+        Among { groups, place }
     }
 
     /// `w'c + X |B'w|_{D^-1} + 64 eps (|w|'|c| + Y ||B|'|w||_{D^-1}) < 0` by the rows of the host: no displacement u of less than
@@ -122,7 +122,7 @@ impl<'a> Contradictions<'a> {
         let (mut left, mut terms) = (vec![Twofold::default(); unknowns], vec![0.0; unknowns]);
         let (mut demanded, mut demands) = (Twofold::default(), 0.0);
         for &(i, w) in &weights {
-            let (set, k) = self.row(i);
+            let (set, k) = self.ready.island.row(i);
             let weight = w * rows.scale[i];
             for (j, b) in set.matrix.row(k) {
                 left[j].add_product(weight, b);
@@ -135,7 +135,7 @@ impl<'a> Contradictions<'a> {
         let size = |x: &[f64]| weighted_norm(x, |j| 1.0 / rows.metric[j]);
         let (left, terms, excess) = (size(&left), size(&terms), -demanded.value());
         let proves =
-            |moved: f64| excess > BEYOND * moved * left + ROUNDING * (demands + TRAVELLED * moved * terms);
+            |moved: f64| excess > BEYOND * moved * left + NOISE * (demands + TRAVELLED * moved * terms);
         // what the loads move costs a product with K+
         let proved = proves(self.demand()) && proves(self.moved()?);
         Ok(proved.then(|| self.named(&weights, excess, demands)))
@@ -153,7 +153,7 @@ impl<'a> Contradictions<'a> {
     fn demand(&self) -> f64 {
         let rows = &self.ready.rows;
         let of = |i: usize| {
-            let (set, k) = self.row(i);
+            let (set, k) = self.ready.island.row(i);
             let c = rows.scale[i] * set.rhs[k];
             if i < rows.contact {
                 c.min(0.0)
@@ -163,15 +163,6 @@ impl<'a> Contradictions<'a> {
         };
         let all: Vec<f64> = (0..rows.scale.len()).map(of).collect();
         weighted_norm(&all, |_| 1.0)
-    }
-
-    /// The set of row i of the island, and its place there.
-    fn row(&self, i: usize) -> (&RowSet, usize) {
-        let island = &self.ready.island;
-        match i.checked_sub(self.ready.rows.contact) {
-            None => (&island.contact.rows, i),
-            Some(k) => (&island.equalities.rows, k),
-        }
     }
 
     fn named(&self, weights: &[(usize, f64)], excess: f64, demands: f64) -> Error {
@@ -192,10 +183,13 @@ impl<'a> Contradictions<'a> {
     }
 }
 
-/// A rotation of the unknowns for every active row, for each row that joins or leaves.
-fn work(unknowns: usize, rows: usize) -> usize {
-    let active = unknowns.min(rows);
-    4usize.saturating_mul(unknowns).saturating_mul(active).saturating_mul(active)
+impl Among {
+    /// Multiplications of a search among them that ends: a rotation of the unknowns for every active row, for each row that joins
+    /// or leaves.
+    pub fn work(&self) -> usize {
+        let (unknowns, active) = (self.place.len(), self.place.len().min(self.groups.len()));
+        4usize.saturating_mul(unknowns).saturating_mul(active).saturating_mul(active)
+    }
 }
 
 /// One weight for each row, none of zero.

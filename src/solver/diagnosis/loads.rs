@@ -124,8 +124,7 @@ impl Unheld {
 
 /// A load without what acts on grounded unknowns, which no rigid motion moves.
 pub(in crate::solver) fn free(data: &Data, mut load: Vec<f64>) -> Vec<f64> {
-    let grounded = data.bodies.iter().flat_map(|b| b.grounded.iter().map(|j| b.start + *j as usize));
-    grounded.for_each(|j| load[j] = 0.0);
+    data.grounded().for_each(|j| load[j] = 0.0);
     load
 }
 
@@ -143,18 +142,13 @@ fn clusters(ready: &Ready, solution: &Solution, left: &[f64]) -> (Vec<usize>, us
 
 /// `|(S B v)_+, S_H H v|` by the rows of the host.
 fn resistance(ready: &Ready, v: &[f64]) -> f64 {
-    let island = &ready.island;
-    let contact = island.contact.rows.matrix.rows();
     let along = |i: usize| {
-        let (rows, i) = match i.checked_sub(contact) {
-            None => (&island.contact.rows, i),
-            Some(i) => (&island.equalities.rows, i),
-        };
-        let mut sum = Twofold::default();
-        rows.matrix.row(i).for_each(|(j, b)| sum.add_product(b, v[j]));
+        let ((rows, k), mut sum) = (ready.island.row(i), Twofold::default());
+        rows.matrix.row(k).for_each(|(j, b)| sum.add_product(b, v[j]));
         sum.value()
     };
-    let resists = |(i, s): (usize, &f64)| s * if i < contact { along(i).max(0.0) } else { along(i) };
+    let is_contact = |i: usize| i < ready.rows.contact;
+    let resists = |(i, s): (usize, &f64)| s * if is_contact(i) { along(i).max(0.0) } else { along(i) };
     let all: Vec<f64> = ready.rows.scale.iter().enumerate().map(resists).collect();
     weighted_norm(&all, |_| 1.0)
 }
