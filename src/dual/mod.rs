@@ -251,6 +251,13 @@ impl Dual {
         self.subdomains.iter().flat_map(of).collect()
     }
 
+    /// For each mode what its resultants e have to be multiplied by, so that their norm is `|D R c|_{D^-1}` of the loads
+    /// [`Self::load_of`] them.
+    pub fn sizes_of_modes(&self) -> Vec<f64> {
+        let of = |s: &Subdomain| vec![s.size * s.by.sqrt(); s.modes.len()];
+        self.subdomains.iter().flat_map(of).collect()
+    }
+
     /// `D R c`, n, the load of least |f|_{D^-1} whose resultants are `e`; `metric` is D over the unknowns.
     pub fn load_of(&self, e: &[f64], unknowns: usize, metric: &[f64]) -> Vec<f64> {
         let mut load = vec![0.0; unknowns];

@@ -23,28 +23,28 @@ pub struct Balance {
 }
 
 pub fn balance(qp: &Qp, coarse: &mut Coarse) -> Result<Balance> {
-    let in_cone = in_cone(qp.g_transposed, qp.bounded, qp.e)?;
-    let (point, residual) = match in_cone {
+    let (point, residual) = match in_cone(qp.g_transposed, qp.bounded, qp.e)? {
         Some(found) => found,
-        None => {
-            let point = lawson_hanson(qp, coarse)?;
-            let residual = residual(qp, &point);
-            (point, residual)
-        }
+        None => lawson_hanson(qp, coarse)?,
     };
     Ok(Balance { margin: margin(qp, &residual), point, residual })
 }
 
-/// Forces l and what they leave, `a = e - G l` of least `|W a|`, W = diag(`weights`) > 0; none where there are many modes, or
-/// rounding keeps the method from ending.
-pub fn weighted(qp: &Qp, weights: &[f64]) -> Result<Option<(Vec<f64>, Vec<f64>)>> {
+/// Forces l and what they leave, `a = e - G l` of least `|W a|`, W = diag(`weights`) > 0.
+pub fn weighted(qp: &Qp, weights: &[f64]) -> Result<(Vec<f64>, Vec<f64>)> {
     let mut g_transposed = qp.g_transposed.clone();
     for (mode, v) in g_transposed.col.iter().zip(&mut g_transposed.val) {
         *v *= weights[*mode];
     }
     let e: Vec<f64> = qp.e.iter().zip(weights).map(|(e, w)| e * w).collect();
-    let found = in_cone(&g_transposed, qp.bounded, &e)?;
-    Ok(found.map(|(point, a)| (point, a.iter().zip(weights).map(|(a, w)| a / w).collect())))
+    let (point, a) = match in_cone(&g_transposed, qp.bounded, &e)? {
+        Some(found) => found,
+        None => {
+            let scaled = Qp { g_transposed: &g_transposed, e: &e, ..*qp };
+            lawson_hanson(&scaled, &mut Coarse::new(&g_transposed, qp.rounding)?)?
+        }
+    };
+    Ok((point, a.iter().zip(weights).map(|(a, w)| a / w).collect()))
 }
 
 /// l, the forces that keep a in its cone, and a, orthogonal to rows with a force to its own rounding; none where rounding keeps the
@@ -69,14 +69,15 @@ fn in_cone(g_transposed: &Csr, bounded: &[bool], e: &[f64]) -> Result<Option<(Ve
     Ok(Some((forces, a)))
 }
 
-fn lawson_hanson(qp: &Qp, coarse: &mut Coarse) -> Result<Vec<f64>> {
+/// l and a where Lawson and Hanson's method ends, or has taken its rounds.
+fn lawson_hanson(qp: &Qp, coarse: &mut Coarse) -> Result<(Vec<f64>, Vec<f64>)> {
     let m = qp.b.len();
     let mut held: Vec<bool> = qp.bounded.to_vec();
     let mut point = least_squares(qp, coarse, &held)?;
     for _ in 0..3 * m + 3 {
         let residual = residual(qp, &point);
         let Some(best) = most_correlated(qp, &held, &residual) else {
-            return Ok(point);
+            return Ok((point, residual));
         };
         held[best] = false;
         loop {
@@ -97,7 +98,8 @@ fn lawson_hanson(qp: &Qp, coarse: &mut Coarse) -> Result<Vec<f64>> {
             }
         }
     }
-    Ok(point)
+    let residual = residual(qp, &point);
+    Ok((point, residual))
 }
 
 /// `e - G l`
@@ -158,7 +160,7 @@ mod tests {
         };
         let coarse = &mut Coarse::new(&g_transposed, 1e-14).unwrap();
         let found = balance(&qp, coarse).unwrap();
-        let other = residual(&qp, &lawson_hanson(&qp, coarse).unwrap());
+        let (_, other) = lawson_hanson(&qp, coarse).unwrap();
         assert!(found.residual.iter().zip(&other).all(|(a, b)| (a - b).abs() < 1e-14));
         found
     }

@@ -177,9 +177,9 @@ impl<'a> Certifier<'a> {
         certify(&self.data, answer.view(), &mut Unasked)
     }
 
-    /// What the forces of a solution leave of the loads.
-    pub fn unheld(&self, solution: &Solution, direction: &[f64]) -> Unheld {
-        Unheld::of(&self.data, self.ready, self.scaled, solution, direction)
+    /// What forces x of the dual leave of the loads, `rest` of the resultants.
+    pub fn unheld(&self, x: &[f64], rest: &[f64]) -> Unheld {
+        Unheld::of(&self.data, self.ready, self.scaled, x, rest)
     }
 
     /// The rows left out that a displacement goes through.

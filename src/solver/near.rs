@@ -37,7 +37,7 @@ pub(super) fn solve_near(
         before = before + solution.counts;
         let nearest = (0..far.len()).filter(|&i| far[i]).map(|i| gaps[i]).fold(f64::INFINITY, f64::min);
         match &solution.verdict {
-            Verdict::Infeasible { direction, .. } if judge.unheld(&solution, direction).is_little() => {
+            Verdict::Infeasible { direction, .. } if judge.unheld(&solution.x, direction).is_little() => {
                 return Ok(Solution { counts: before, ..solution });
             }
             Verdict::Infeasible { .. } | Verdict::Unbounded { .. } => {

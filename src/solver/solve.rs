@@ -37,8 +37,14 @@ pub(super) struct Solved {
 /// One try at an island.
 enum Attempt {
     Ended(Box<Solved>),
-    /// No forces were found that hold the load: the nearest, and what they leave.
-    NotHeld(Solution, Vec<f64>),
+    /// No forces were found that hold the load.
+    NotHeld,
+}
+
+/// Forces, and what they leave of the load.
+struct Left {
+    unheld: Unheld,
+    x: Vec<f64>,
 }
 
 impl Problem {
@@ -58,13 +64,15 @@ impl Problem {
         loop {
             match self.attempt(number, &dual, &start, stops, voice)? {
                 Attempt::Ended(solved) => return Ok(*solved),
-                Attempt::NotHeld(solution, direction) => {
-                    let unheld = Unheld::of(&self.data(&ready.island)?, ready, &dual, &solution, &direction);
-                    if let Some(error) = unheld.proof(self, ready, &dual, &direction)? {
+                Attempt::NotHeld => {
+                    let left = self.left(ready, &dual, &ready.dual.sizes_of_modes())?;
+                    if let Some(error) = left.unheld.proof(self, ready, &dual)? {
                         return Err(error);
                     }
-                    let (unheld, x) = self.least_taken(ready, &dual, solution, unheld)?;
-                    dual.take(self, ready, unheld, &x)?;
+                    let least = self.least_taken(ready, &dual)?.filter(|least| least.unheld.is_little());
+                    let share = left.unheld.share;
+                    let Left { unheld, x } = least.unwrap_or(left);
+                    dual.take(self, ready, &x, &unheld.load, share)?;
                     start = x;
                 }
             }
@@ -72,27 +80,22 @@ impl Problem {
     }
 
     /// What is to be taken from the loads, and the forces that balance the rest: of each body as small a part of its own load as
-    /// may be, so that what is rounding of a large load does not press on a body with a small one.
-    fn least_taken(
-        &self,
-        ready: &Ready,
-        dual: &Scaled,
-        solution: Solution,
-        unheld: Unheld,
-    ) -> Result<(Unheld, Vec<f64>)> {
+    /// may be, so that what is rounding of a large load does not press on a body with a small one. None without loads.
+    fn least_taken(&self, ready: &Ready, dual: &Scaled) -> Result<Option<Left>> {
         /// Loads are told apart as far as this; those of a body without any are of that size.
         const RANGE: f64 = 1e-7;
-        let data = self.data(&ready.island)?;
-        let sizes = ready.dual.sizes_of_loads(&free(&data, dual.load.clone()), &ready.rows.metric);
+        let load = free(&self.data(&ready.island)?, dual.load.clone());
+        let sizes = ready.dual.sizes_of_loads(&load, &ready.rows.metric);
         let most = norm_max(&sizes);
         let weights: Vec<f64> = sizes.iter().map(|size| most / size.max(RANGE * most)).collect();
-        match weighted(&dual.qp(ready, &ready.dual), &weights)? {
-            Some((x, direction)) if most > 0.0 => {
-                let solution = Solution { x, ..solution };
-                Ok((Unheld::of(&data, ready, dual, &solution, &direction), solution.x))
-            }
-            _ => Ok((unheld, solution.x)),
-        }
+        (most > 0.0).then(|| self.left(ready, dual, &weights)).transpose()
+    }
+
+    /// The forces that leave least of the resultants, each times its weight, and what they leave.
+    fn left(&self, ready: &Ready, dual: &Scaled, weights: &[f64]) -> Result<Left> {
+        let (x, rest) = weighted(&dual.qp(ready, &ready.dual), weights)?;
+        let unheld = Unheld::of(&self.data(&ready.island)?, ready, dual, &x, &rest);
+        Ok(Left { unheld, x })
     }
 
     fn attempt(
@@ -117,8 +120,8 @@ impl Problem {
             _ => solve_near(&Means { settings: &self.settings, direct }, qp, start, &mut judge, steps)?,
         };
         let solution = match solution {
-            Solution { verdict: Verdict::Infeasible { direction, .. }, .. } if dual.unheld.is_none() => {
-                return Ok(Attempt::NotHeld(Solution { verdict: Verdict::Stalled, ..solution }, direction));
+            Solution { verdict: Verdict::Infeasible { .. }, .. } if dual.unheld.is_none() => {
+                return Ok(Attempt::NotHeld);
             }
             solution => solution,
         };

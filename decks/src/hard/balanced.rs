@@ -9,7 +9,7 @@ use crate::varied::draft::Draft;
 use crate::varied::rows::{contact, strut};
 use crate::varied::{inner, orthonormal};
 use crate::vector::axpy;
-use crate::yardstick::reaction;
+use crate::yardstick::{grounded, reaction};
 use crate::Deck;
 
 /// A resultant of this part of a load is rounding; up to the second one it is told.
@@ -82,12 +82,13 @@ pub(super) fn case(seed: u64, mut plan: Plan, mut draft: Draft) -> Hard {
         let loads = hard.deck.bodies.iter_mut().flat_map(|body| &mut body.load);
         loads.for_each(|f| *f = digits(*f, 12));
     }
-    hard.ends = ends(&hard.deck, &cluster, &diagonal, &motions);
     let everything: Vec<usize> = (0..hard.deck.bodies.len()).collect();
-    let others: Vec<Vec<f64>> =
-        everything.iter().filter(|p| !cluster.contains(p)).flat_map(|&p| own(&hard.deck, p)).collect();
-    let left = resultant(&hard.deck, &motions).hypot(resultant(&hard.deck, &others));
-    hard.resultant = left / loads(&hard.deck, &everything, &diagonal);
+    let others = everything.iter().filter(|p| !cluster.contains(p));
+    let others: Vec<(Vec<usize>, Vec<Vec<f64>>)> = others.map(|&p| (vec![p], own(&hard.deck, p))).collect();
+    hard.ends = ends(&hard.deck, &diagonal, (&cluster, &motions), &others);
+    let all_motions: Vec<Vec<f64>> =
+        motions.iter().chain(others.iter().flat_map(|(_, motions)| motions)).cloned().collect();
+    hard.resultant = resultant(&hard.deck, &all_motions) / loads(&hard.deck, &everything, &diagonal);
     if !hard.ends.solved && !hard.ends.marginal {
         hard.answer = None;
     }
@@ -199,15 +200,28 @@ fn own(deck: &Deck, p: usize) -> Vec<Vec<f64>> {
     orthonormal(body.modes(), &body.stiffness.diagonal()).into_iter().map(long).collect()
 }
 
-/// By the share of the resultant in the load of its cluster and in all loads: where the two differ both ends are right.
-fn ends(deck: &Deck, cluster: &[usize], diagonal: &[f64], motions: &[Vec<f64>]) -> Ends {
-    let resultant = resultant(deck, motions);
+/// By the share of the resultant in the load of its cluster, but for what acts on grounded unknowns, and in all loads: where the
+/// two differ both ends are right. Products may leave the other bodies a resultant as well.
+fn ends(
+    deck: &Deck,
+    diagonal: &[f64],
+    (cluster, motions): (&[usize], &[Vec<f64>]),
+    others: &[(Vec<usize>, Vec<Vec<f64>>)],
+) -> Ends {
+    let grounded: Vec<bool> = deck.bodies.iter().flat_map(|body| grounded(&body.stiffness)).collect();
+    let load = deck.load();
+    let share = |bodies: &[usize], motions: &[Vec<f64>]| {
+        let unknowns = bodies.iter().flat_map(|&p| deck.offset(p)..deck.offset(p + 1));
+        let moving = unknowns.filter(|&j| !grounded[j]).map(|j| load[j] * load[j] / diagonal[j]);
+        resultant(deck, motions) / moving.sum::<f64>().sqrt()
+    };
+    let most = NEAR * share(cluster, motions);
     let everything: Vec<usize> = (0..deck.bodies.len()).collect();
-    let most = NEAR * resultant / loads(deck, cluster, diagonal);
-    let least = resultant / loads(deck, &everything, diagonal) / NEAR;
+    let least = resultant(deck, motions) / loads(deck, &everything, diagonal) / NEAR;
+    let elsewhere = others.iter().map(|(body, motions)| NEAR * share(body, motions)).fold(0.0, f64::max);
     Ends {
         solved: least <= ROUNDING || most.is_nan(),
-        marginal: most > ROUNDING && least <= MARGINAL,
+        marginal: most.max(elsewhere) > ROUNDING && least <= MARGINAL,
         load_not_held: most > MARGINAL,
         gaps_contradict: false,
     }

@@ -18,9 +18,9 @@ pub struct Motion {
     pub strain: f64,
     /// f.v
     pub work: f64,
-    /// |f|_{D^-1} |((S B v)_+, S_H H v)|
+    /// |f|_{D^-1} |((S B v)_+, S_H H v)|, f of the bodies that v moves.
     pub resisted: f64,
-    /// f.v / (|f|_{D^-1} |v|_D)
+    /// f.v / (|f|_{D^-1} |v|_D), f of the bodies that v moves.
     pub share: f64,
 }
 
@@ -34,10 +34,14 @@ impl Motion {
 
 pub fn motion(deck: &Deck, v: &[f64]) -> Motion {
     let diagonal = diagonal(deck);
-    let load = deck.load();
+    let mut load = deck.load();
     let mut strain = 0.0f64;
     for (p, body) in deck.bodies.iter().enumerate() {
-        let own = &v[deck.offset(p)..deck.offset(p + 1)];
+        let range = deck.offset(p)..deck.offset(p + 1);
+        let own = &v[range.clone()];
+        if own.iter().all(|v| *v == 0.0) {
+            load[range].fill(0.0);
+        }
         let (mut force, mut terms) = (0.0, 0.0);
         for (i, d) in body.stiffness.diagonal().iter().enumerate() {
             force += dd::dot(body.stiffness.row(i).map(|(j, k)| (k, own[j]))).value().powi(2) / d;

@@ -6,7 +6,6 @@ use crate::linalg::graph::{components, joined};
 use crate::linalg::memory::zeros;
 use crate::linalg::twofold::Twofold;
 use crate::linalg::vector::{norm_max, ratio, weighted_norm};
-use crate::qp::Solution;
 use crate::solver::islands::Island;
 use crate::solver::problem::Problem;
 use crate::solver::scaled::Scaled;
@@ -22,50 +21,62 @@ const BEYOND: f64 = 1e6;
 const RIGID: f64 = 1e4;
 
 /// The part of a load that the forces which come nearest to it leave. Bodies with such a part that rows with a force or equality
-/// rows join are free to move together; shares are of their load, |f|_{D^-1} without grounded unknowns.
+/// rows join are free to move together, a cluster; shares are of its load, |f|_{D^-1} without grounded unknowns.
 pub(in crate::solver) struct Unheld {
     /// D R c over the unknowns of the island, in units of 2^p: what is left, as a load.
     pub load: Vec<f64>,
-    /// The largest |D R c|_{D^-1} / |f|_{D^-1} of bodies that move together.
+    /// R c, the motion that it drives.
+    motion: Vec<f64>,
+    /// The largest |D R c|_{D^-1} / |f|_{D^-1} of a cluster.
     pub share: f64,
-    /// |D R c| / |D R R'f| of these bodies.
+    /// |D R c| / |D R R'f| of this cluster.
     margin: f64,
-    /// |f|_{D^-1} of all bodies that are left more than a marginal share.
-    size: f64,
-    /// Place in the island of the body that is left most, of those with the largest share.
+    /// Body by body the cluster, |f|_{D^-1} of the body, and the share of the cluster; this is 0 for a body that is left nothing.
+    cluster: Vec<usize>,
+    loads: Vec<f64>,
+    shares: Vec<f64>,
+    /// Place in the island of the body that is left most, of the cluster with the largest share.
     body: usize,
 }
 
 impl Unheld {
-    /// Of the forces x of a solution that leave `direction` = e - G x.
-    pub fn of(data: &Data, ready: &Ready, scaled: &Scaled, solution: &Solution, direction: &[f64]) -> Self {
+    /// Of the forces x of the dual, which leave `rest` = e - G x.
+    pub fn of(data: &Data, ready: &Ready, scaled: &Scaled, x: &[f64], rest: &[f64]) -> Self {
         let (island, metric) = (&ready.island, &ready.rows.metric);
-        let as_load =
-            |resultants: &[f64]| free(data, ready.dual.load_of(resultants, island.unknowns(), metric));
+        let as_load = |resultants: &[f64]| ready.dual.load_of(resultants, island.unknowns(), metric);
         let sizes = |load: &[f64]| -> Vec<f64> {
             let of_body = |range: &std::ops::Range<usize>| {
                 weighted_norm(&load[range.clone()], |j| 1.0 / metric[range.start + j])
             };
             island.ranges.iter().map(of_body).collect()
         };
-        let load = as_load(direction);
-        let (left, resultants) = (sizes(&load), sizes(&as_load(&scaled.resultants)));
+        let load = as_load(rest);
+        let motion = load.iter().zip(metric).map(|(f, d)| f / d).collect();
+        let load = free(data, load);
+        let (left, resultants) = (sizes(&load), sizes(&free(data, as_load(&scaled.resultants))));
         let loads = sizes(&free(data, scaled.load.clone()));
-        let (cluster, count) = clusters(ready, solution, &left);
+        let (cluster, count) = clusters(ready, x, &left);
         let of_cluster = |k: usize, sizes: &[f64]| {
             let own = (0..sizes.len()).filter(|&p| cluster[p] == k && left[p] > 0.0).map(|p| sizes[p]);
             weighted_norm(&own.collect::<Vec<_>>(), |_| 1.0)
         };
-        let shares: Vec<f64> =
+        let of_clusters: Vec<f64> =
             (0..count).map(|k| ratio(of_cluster(k, &left), of_cluster(k, &loads))).collect();
-        let worst = (0..count).fold(0, |worst, k| if shares[k] > shares[worst] { k } else { worst });
-        let most = |best: usize, p: usize| if left[p] > left[best] { p } else { best };
-        let first = (0..left.len()).find(|&p| cluster[p] == worst && left[p] > 0.0).unwrap_or(0);
-        let body = (0..left.len()).filter(|&p| cluster[p] == worst).fold(first, most);
-        let named = (0..count).filter(|&k| shares[k] > MARGINAL).map(|k| of_cluster(k, &loads));
-        let size = weighted_norm(&named.collect::<Vec<_>>(), |_| 1.0);
+        let share_of = |p: usize| if left[p] > 0.0 { of_clusters[cluster[p]] } else { 0.0 };
+        let shares: Vec<f64> = (0..left.len()).map(share_of).collect();
+        let worse = |best: usize, p: usize| {
+            let (p_is, best_is) = ((shares[p], left[p]), (shares[best], left[best]));
+            if p_is > best_is {
+                p
+            } else {
+                best
+            }
+        };
+        let body = (0..left.len()).fold(0, worse);
+        let worst = cluster.get(body).copied().unwrap_or(0);
         let margin = ratio(of_cluster(worst, &left), of_cluster(worst, &resultants)).min(1.0);
-        Self { share: shares.get(worst).copied().unwrap_or(0.0), load, margin, size, body }
+        let share = shares.get(body).copied().unwrap_or(0.0);
+        Self { load, motion, share, margin, cluster, loads, shares, body }
     }
 
     /// So little that it may be rounding, or be told as marginal.
@@ -73,29 +84,34 @@ impl Unheld {
         self.share <= MARGINAL
     }
 
-    /// The error that names the motion v = R S direction, where it proves that nothing holds the load: on the data of the host
-    /// K does not strain by it, and f'v is more than forces of `BEYOND` the load could do against the rows that resist.
-    pub fn proof(
-        &self,
-        problem: &Problem,
-        ready: &Ready,
-        scaled: &Scaled,
-        direction: &[f64],
-    ) -> Result<Option<Error>> {
+    /// The error that names a motion v = R c which proves that nothing holds the load: on the data of the host K does not
+    /// strain by it, and f'v is more than forces of `BEYOND` the load could do against the rows that resist. It moves the
+    /// cluster with the largest share, or all that are left more than a little, or all: loads of other bodies play no part.
+    pub fn proof(&self, problem: &Problem, ready: &Ready, scaled: &Scaled) -> Result<Option<Error>> {
         if self.is_little() {
             return Ok(None);
         }
         let island = &ready.island;
-        let own = ready.dual.rigid_motion(direction, island.unknowns());
-        let mut work = Twofold::default();
-        scaled.load.iter().zip(&own).for_each(|(f, v)| work.add_product(*f, *v));
-        let resisted = BEYOND * resistance(ready, &own) + RIGID * strain(problem, ready, &own)?;
-        if work.value() <= self.size * resisted {
-            return Ok(None);
+        let worst = self.cluster[self.body];
+        let moves: [&dyn Fn(usize) -> bool; 3] =
+            [&|p| self.cluster[p] == worst, &|p| self.shares[p] > MARGINAL, &|p| self.shares[p] > 0.0];
+        for moves in moves {
+            let mut own = vec![0.0; self.motion.len()];
+            let moved: Vec<usize> = (0..self.loads.len()).filter(|&p| moves(p)).collect();
+            moved.iter().map(|&p| island.ranges[p].clone()).for_each(|range| {
+                own[range.clone()].copy_from_slice(&self.motion[range]);
+            });
+            let size = weighted_norm(&moved.iter().map(|&p| self.loads[p]).collect::<Vec<_>>(), |_| 1.0);
+            let mut work = Twofold::default();
+            scaled.load.iter().zip(&own).for_each(|(f, v)| work.add_product(*f, *v));
+            let resisted = BEYOND * resistance(ready, &own) + RIGID * strain(problem, ready, &own)?;
+            if work.value() > size * resisted {
+                let mut v = zeros(problem.counts().dofs, "a motion")?;
+                island.scatter(problem, &own, &mut v);
+                return Ok(Some(self.named(problem, island, v)));
+            }
         }
-        let mut v = zeros(problem.counts().dofs, "a motion")?;
-        island.scatter(problem, &own, &mut v);
-        Ok(Some(self.named(problem, island, v)))
+        Ok(None)
     }
 
     fn named(&self, problem: &Problem, island: &Island, mut v: Vec<f64>) -> Error {
@@ -129,9 +145,9 @@ pub(in crate::solver) fn free(data: &Data, mut load: Vec<f64>) -> Vec<f64> {
 }
 
 /// Label of the bodies that move together, and how many labels there are.
-fn clusters(ready: &Ready, solution: &Solution, left: &[f64]) -> (Vec<usize>, usize) {
+fn clusters(ready: &Ready, x: &[f64], left: &[f64]) -> (Vec<usize>, usize) {
     let (rows, island) = (&ready.rows, &ready.island);
-    let forces = rows.decoupling.solve_transposed(solution.x.clone());
+    let forces = rows.decoupling.solve_transposed(x.to_vec());
     let joins = (0..forces.len()).filter(|&i| forces[i] != 0.0 || rows.grouping.leaders[i] >= rows.contact);
     let bodies = joins.map(|i| {
         let touched = rows.scaled.row(i).map(|(j, _)| island.body_of(j));
