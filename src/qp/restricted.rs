@@ -53,7 +53,8 @@ impl<'a> Restricted<'a> {
         (self.spread(&x) == solution.x).then_some(Solution { x, ..solution })
     }
 
-    fn spread(&self, own: &[f64]) -> Vec<f64> {
+    /// Entries on the rows, and 0 on the others.
+    pub fn spread(&self, own: &[f64]) -> Vec<f64> {
         let mut all = vec![0.0; self.whole.b.len()];
         self.rows.iter().zip(own).for_each(|(&i, v)| all[i] = *v);
         all

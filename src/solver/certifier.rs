@@ -8,7 +8,6 @@ use crate::error::Result;
 use crate::linalg::memory::copied;
 use crate::linalg::vector::{axpy, norm};
 use crate::qp::{Direct, Judge, Qp, Solution, Verdict};
-use crate::solver::diagnosis::Unheld;
 use crate::solver::finish::finish;
 use crate::solver::presolve::Gaps;
 use crate::solver::problem::Problem;
@@ -175,11 +174,6 @@ impl<'a> Certifier<'a> {
     /// The same where rounding of the loads excuses nothing, and K+ is not asked.
     fn judged_strictly(&self, answer: &Recovered) -> Result<Judgement> {
         certify(&self.data, answer.view(), &mut Unasked)
-    }
-
-    /// What forces x of the dual leave of the loads, `rest` of the resultants.
-    pub fn unheld(&self, x: &[f64], rest: &[f64]) -> Unheld {
-        Unheld::of(&self.data, self.ready, self.scaled, x, rest)
     }
 
     /// The rows left out that a displacement goes through.

@@ -4,6 +4,7 @@
 use crate::error::Result;
 use crate::qp::{Block, Judged, Qp, Restricted, Solution, Verdict};
 use crate::solver::certifier::Certifier;
+use crate::solver::diagnosis::Unheld;
 use crate::solver::fallback::{solve_dual, Means};
 use crate::solver::presolve::FAR;
 use crate::solver::steps::Steps;
@@ -37,7 +38,9 @@ pub(super) fn solve_near(
         before = before + solution.counts;
         let nearest = (0..far.len()).filter(|&i| far[i]).map(|i| gaps[i]).fold(f64::INFINITY, f64::min);
         match &solution.verdict {
-            Verdict::Infeasible { direction, .. } if judge.unheld(&solution.x, direction).is_little() => {
+            Verdict::Infeasible { .. }
+                if Unheld::least(&judge.data, judge.ready, judge.scaled, &far)?.is_little() =>
+            {
                 return Ok(Solution { counts: before, ..solution });
             }
             Verdict::Infeasible { .. } | Verdict::Unbounded { .. } => {

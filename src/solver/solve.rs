@@ -3,12 +3,11 @@
 use std::time::{Duration, Instant};
 
 use crate::error::{Error, Kind, Result};
-use crate::linalg::vector::norm_max;
 use crate::linalg::Operator;
 use crate::qp::paper::Units;
-use crate::qp::{weighted, Direct, Solution, Verdict};
+use crate::qp::{Direct, Solution, Verdict};
 use crate::solver::certifier::{Certifier, Ending, Faces};
-use crate::solver::diagnosis::{free, Contradictions, Unheld, MARGINAL};
+use crate::solver::diagnosis::{Contradictions, Unheld, MARGINAL};
 use crate::solver::fallback::Means;
 use crate::solver::finish::finish;
 use crate::solver::near::solve_near;
@@ -37,14 +36,8 @@ pub(super) struct Solved {
 /// One try at an island.
 enum Attempt {
     Ended(Box<Solved>),
-    /// No forces were found that hold the load.
-    NotHeld,
-}
-
-/// Forces, and what they leave of the load.
-struct Left {
-    unheld: Unheld,
-    x: Vec<f64>,
+    /// No forces were found that hold the load, but for rows that are too far off to hold so little.
+    NotHeld { far: Vec<bool> },
 }
 
 impl Problem {
@@ -64,38 +57,20 @@ impl Problem {
         loop {
             match self.attempt(number, &dual, &start, stops, voice)? {
                 Attempt::Ended(solved) => return Ok(*solved),
-                Attempt::NotHeld => {
-                    let left = self.left(ready, &dual, &ready.dual.sizes_of_modes())?;
-                    if let Some(error) = left.unheld.proof(self, ready, &dual)? {
+                Attempt::NotHeld { far } => {
+                    let data = self.data(&ready.island)?;
+                    let least = Unheld::least(&data, ready, &dual, &far)?;
+                    if let Some(error) = least.proof(self, ready, &dual)? {
                         return Err(error);
                     }
-                    let least = self.least_taken(ready, &dual)?.filter(|least| least.unheld.is_little());
-                    let share = left.unheld.share;
-                    let Left { unheld, x } = least.unwrap_or(left);
-                    dual.take(self, ready, &x, &unheld.load, share)?;
+                    let share = least.share;
+                    let relative = Unheld::relative(&data, ready, &dual, &far)?.filter(Unheld::is_little);
+                    let Unheld { load, x, .. } = relative.unwrap_or(least);
+                    dual.take(self, ready, &x, &load, share)?;
                     start = x;
                 }
             }
         }
-    }
-
-    /// What is to be taken from the loads, and the forces that balance the rest: of each body as small a part of its own load as
-    /// may be, so that what is rounding of a large load does not press on a body with a small one. None without loads.
-    fn least_taken(&self, ready: &Ready, dual: &Scaled) -> Result<Option<Left>> {
-        /// Loads are told apart as far as this; those of a body without any are of that size.
-        const RANGE: f64 = 1e-7;
-        let load = free(&self.data(&ready.island)?, dual.load.clone());
-        let sizes = ready.dual.sizes_of_loads(&load, &ready.rows.metric);
-        let most = norm_max(&sizes);
-        let weights: Vec<f64> = sizes.iter().map(|size| most / size.max(RANGE * most)).collect();
-        (most > 0.0).then(|| self.left(ready, dual, &weights)).transpose()
-    }
-
-    /// The forces that leave least of the resultants, each times its weight, and what they leave.
-    fn left(&self, ready: &Ready, dual: &Scaled, weights: &[f64]) -> Result<Left> {
-        let (x, rest) = weighted(&dual.qp(ready, &ready.dual), weights)?;
-        let unheld = Unheld::of(&self.data(&ready.island)?, ready, dual, &x, &rest);
-        Ok(Left { unheld, x })
     }
 
     fn attempt(
@@ -121,7 +96,7 @@ impl Problem {
         };
         let solution = match solution {
             Solution { verdict: Verdict::Infeasible { .. }, .. } if dual.unheld.is_none() => {
-                return Ok(Attempt::NotHeld);
+                return Ok(Attempt::NotHeld { far: judge.far });
             }
             solution => solution,
         };

@@ -6,6 +6,7 @@ use crate::linalg::graph::{components, joined};
 use crate::linalg::memory::zeros;
 use crate::linalg::twofold::Twofold;
 use crate::linalg::vector::{norm_max, ratio, weighted_norm};
+use crate::qp::{weighted, Restricted};
 use crate::solver::islands::Island;
 use crate::solver::problem::Problem;
 use crate::solver::scaled::Scaled;
@@ -15,6 +16,8 @@ use crate::solver::setup::Ready;
 pub(in crate::solver) const ROUNDING: f64 = 1e-10;
 /// Up to this share the answer without it is told, as marginal; beyond it there is none, where that is proved.
 pub(in crate::solver) const MARGINAL: f64 = 1e-7;
+/// Loads are told apart as far as this; those of a body without any are of that size.
+const RANGE: f64 = 1e-7;
 /// Rows resist a motion that so many times the load could not hold.
 const BEYOND: f64 = 1e6;
 /// A rigid motion that K resists is known to so many times that: by K of 8 digits no small resultant is.
@@ -27,6 +30,8 @@ pub(in crate::solver) struct Unheld {
     pub load: Vec<f64>,
     /// R c, the motion that it drives.
     motion: Vec<f64>,
+    /// The forces of the dual that leave it.
+    pub x: Vec<f64>,
     /// The largest |D R c|_{D^-1} / |f|_{D^-1} of a cluster.
     pub share: f64,
     /// |D R c| / |D R R'f| of this cluster.
@@ -40,8 +45,39 @@ pub(in crate::solver) struct Unheld {
 }
 
 impl Unheld {
+    /// Of the forces that leave least of the load, |D R c|_{D^-1}; those of rows that are `far`, by number, are 0 (none where it is
+    /// empty).
+    pub fn least(data: &Data, ready: &Ready, scaled: &Scaled, far: &[bool]) -> Result<Self> {
+        Self::nearest(data, ready, scaled, far, &ready.dual.sizes_of_modes())
+    }
+
+    /// Of those that leave of each body as small a part of its own load as may be, so that what is rounding of a large load does
+    /// not press on a body with a small one; `None` without loads.
+    pub fn relative(data: &Data, ready: &Ready, scaled: &Scaled, far: &[bool]) -> Result<Option<Self>> {
+        let sizes = ready.dual.sizes_of_loads(&free(data, scaled.load.clone()), &ready.rows.metric);
+        let most = norm_max(&sizes);
+        let weights: Vec<f64> = sizes.iter().map(|size| most / size.max(RANGE * most)).collect();
+        (most > 0.0).then(|| Self::nearest(data, ready, scaled, far, &weights)).transpose()
+    }
+
+    /// Of those that leave least of the resultants, each times its weight.
+    fn nearest(
+        data: &Data,
+        ready: &Ready,
+        scaled: &Scaled,
+        far: &[bool],
+        weights: &[f64],
+    ) -> Result<Self> {
+        let qp = scaled.qp(ready, &ready.dual);
+        let is_far = |i: &usize| far.get(*i).copied().unwrap_or(false);
+        let rows: Vec<usize> = (0..qp.b.len()).filter(|i| !is_far(i)).collect();
+        let near = Restricted::new(qp, &rows);
+        let (x, rest) = weighted(&near.qp(), weights)?;
+        Ok(Self::of(data, ready, scaled, near.spread(&x), &rest))
+    }
+
     /// Of the forces x of the dual, which leave `rest` = e - G x.
-    pub fn of(data: &Data, ready: &Ready, scaled: &Scaled, x: &[f64], rest: &[f64]) -> Self {
+    fn of(data: &Data, ready: &Ready, scaled: &Scaled, x: Vec<f64>, rest: &[f64]) -> Self {
         let (island, metric) = (&ready.island, &ready.rows.metric);
         let as_load = |resultants: &[f64]| ready.dual.load_of(resultants, island.unknowns(), metric);
         let sizes = |load: &[f64]| -> Vec<f64> {
@@ -55,7 +91,7 @@ impl Unheld {
         let load = free(data, load);
         let (left, resultants) = (sizes(&load), sizes(&free(data, as_load(&scaled.resultants))));
         let loads = sizes(&free(data, scaled.load.clone()));
-        let (cluster, count) = clusters(ready, x, &left);
+        let (cluster, count) = clusters(ready, &x, &left);
         let of_cluster = |k: usize, sizes: &[f64]| {
             let own = (0..sizes.len()).filter(|&p| cluster[p] == k && left[p] > 0.0).map(|p| sizes[p]);
             weighted_norm(&own.collect::<Vec<_>>(), |_| 1.0)
@@ -76,7 +112,7 @@ impl Unheld {
         let worst = cluster.get(body).copied().unwrap_or(0);
         let margin = ratio(of_cluster(worst, &left), of_cluster(worst, &resultants)).min(1.0);
         let share = shares.get(body).copied().unwrap_or(0.0);
-        Self { load, motion, share, margin, cluster, loads, shares, body }
+        Self { load, motion, x, share, margin, cluster, loads, shares, body }
     }
 
     /// So little that it may be rounding, or be told as marginal.

@@ -16,7 +16,7 @@ use crate::solver::problem::Problem;
 use crate::solver::setup::Ready;
 
 pub(super) use gaps::Contradictions;
-pub(super) use loads::{free, Unheld, MARGINAL, ROUNDING};
+pub(super) use loads::{Unheld, MARGINAL, ROUNDING};
 
 /// The error of a row without entries, which contradicts itself; `first` is the place of its kind in the stack.
 pub(super) fn empty_row_contradicts(error: Error, first: usize) -> Error {
