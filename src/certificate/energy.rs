@@ -10,6 +10,8 @@ use crate::linalg::twofold::Twofold;
 pub(super) struct Energies {
     /// `u'K u`
     strain: f64,
+    /// That of bodies without grounded unknowns.
+    pub deforming: f64,
     /// `f'u`
     work: f64,
     /// `|u|'(|K||u| + |f| + |B'||lambda| + |H'||mu|)`
@@ -33,7 +35,11 @@ impl Energies {
         let u = &field.answer.u[range.clone()];
         let given: Vec<f64> = range.clone().map(|j| field.load(p, j).abs() + field.push_terms[j]).collect();
         // rounding of long sums would be many times that of their terms
-        self.strain += Twofold::dot(u, strain);
+        let strain = Twofold::dot(u, strain);
+        self.strain += strain;
+        if field.data.bodies[p].grounded.is_empty() {
+            self.deforming += strain;
+        }
         let loads: Vec<f64> = range.map(|j| field.load(p, j)).collect();
         self.work += Twofold::dot(&loads, u);
         self.terms += u.iter().zip(terms).zip(&given).map(|((u, t), g)| u.abs() * (t + g)).sum::<f64>();
