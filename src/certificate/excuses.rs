@@ -12,8 +12,8 @@ use crate::certificate::{Certificate, Response, NOISE};
 use crate::constraints::RowKind;
 use crate::error::Result;
 
-/// Judges once more with `64 eps (V phi_i)^1/2`, length, added to what the gaps that fail may be, and `64 eps V` to the rounding
-/// of the energies. The worst row comes first, and the first that still fails is the last.
+/// Judges once more with `64 eps (V phi_i)^1/2`, length, added to what the gaps that fail may be, `64 eps A phi_i^1/2` where the row
+/// touches a body without load or forces, and `64 eps V` to the rounding of the energies. The worst row comes first, and the first that still fails is the last.
 pub(super) fn by_rounding(
     limit: f64,
     energies: &Energies,
@@ -31,7 +31,7 @@ pub(super) fn by_rounding(
         asked += 1;
         let compliance = response.compliance_of(kind, i)?;
         let row = &mut rows.of(kind)[i];
-        row.gap_limit += NOISE * (work * compliance).sqrt();
+        row.gap_limit += NOISE * (work * compliance).sqrt() + row.idle * compliance.sqrt();
         if !(row.gap_ratio() <= 1.0) {
             break;
         }

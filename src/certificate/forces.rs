@@ -65,6 +65,12 @@ impl Forces {
         }
     }
 
+    /// The same for the bodies that a row touches, (force x length)^1/2.
+    pub fn idle_at(&self, field: &Field, kind: RowKind, i: usize) -> f64 {
+        let of = |p: usize| self.idle(p, self.sizes[p].unwrap_or(0.0));
+        field.touched(field.rows(kind), i).map(of).fold(0.0, f64::max) / field.unit.sqrt()
+    }
+
     /// What the force of a row may differ from zero by, `tol Lambda_i` with `Lambda_i = s_i min (|f| + |r|)_{D^-1}` over the
     /// bodies it touches, force. Where it touches grounded unknowns alone, those on them belong to it.
     pub fn limit_of(&self, field: &Field, kind: RowKind, i: usize) -> f64 {

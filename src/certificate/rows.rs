@@ -21,6 +21,8 @@ pub(super) struct Row {
     pub gap_limit: f64,
     /// What a force may, force.
     force_limit: f64,
+    /// What the forces of a body that has none may be, `64 eps A`, (force x length)^1/2; 0 where the row touches no such body.
+    pub idle: f64,
 }
 
 impl Row {
@@ -53,7 +55,8 @@ impl Row {
         let gap_limit = if known { allowed } else { f64::NAN };
         let own = rows.matrix.row_dot_abs(i, &field.own_deformation) + felt;
         let (open, weighed) = (rows.open_gap(i, field.answer.u, force), scale * own);
-        Self { kind, force, open, given_way, weighed, gap_limit, force_limit }
+        let idle = forces.idle_at(field, kind, i);
+        Self { kind, force, open, given_way, weighed, gap_limit, force_limit, idle }
     }
 
     /// `(b_i u - c_i - C_i lambda_i)_+`, or the error of an equality row, against what it may be; no unit.

@@ -79,6 +79,17 @@ impl PivotedCholesky {
         Self { rank: self.full_rank, ..self }
     }
 
+    /// V, rank x n, with `A = V'V` but for the pivots left out.
+    pub fn root(&self) -> Result<Matrix> {
+        let mut root = Matrix::zeros(self.rank, self.order.len())?;
+        for (k, &i) in self.order.iter().enumerate() {
+            for j in 0..self.rank.min(k + 1) {
+                root.set(j, i, self.factor.get(k, j) / self.inverse_root[i]);
+            }
+        }
+        Ok(root)
+    }
+
     /// One solution of `A X = B` (n x k) where there is one, that which is 0 on the rows beyond the rank.
     pub fn solve(&self, b: &Matrix) -> Result<Matrix> {
         let mut y = Matrix::zeros(self.rank, b.cols)?;

@@ -19,8 +19,8 @@ const MET: f64 = 1e-10;
 /// A projected gradient below this fraction of the scale of the judge is zero.
 const ZERO: f64 = 1e-12;
 
-/// Square matrices of all free rows and modes at a time.
-const MATRICES: usize = 4;
+/// Square matrices of all free rows and modes at a time, here and in `proximal`.
+const MATRICES: usize = 8;
 
 /// What the direct method needs besides the problem.
 #[derive(Clone, Copy)]

@@ -18,6 +18,7 @@ mod nearest;
 pub mod paper;
 mod projection;
 mod proportioning;
+mod proximal;
 mod restricted;
 mod smalbe;
 mod steps;
@@ -29,6 +30,7 @@ pub use conjugate::MOST as KEPT;
 pub use face::Face;
 pub use nearest::{nearest_point, Nearest, Polyhedron};
 pub use proportioning::{minimise, not_held, Judge, Limits, Observer, Progress, Solution, StepKind, Verdict};
+pub use proximal::proximal;
 pub use restricted::{Block, Judged, Restricted};
 pub use smalbe::smalbe;
 

@@ -11,6 +11,9 @@ const DEPENDENT: f64 = 1e-11;
 /// A row is violated by more than this part of `|a|`, by more than its noise and that of a0.
 const ROUNDING: f64 = 64.0 * f64::EPSILON;
 
+/// The distance from a0 has fallen where it is less than this part of what it was.
+const FALLS: f64 = 0.999;
+
 /// Each takes out of a what rounding of the one before has left of rows.
 const PASSES: usize = 2;
 
@@ -97,9 +100,10 @@ impl Part {
     fn nearest(&self, rounding: f64) -> Result<(Active<'_>, Vec<Vec<(usize, f64)>>)> {
         let (size, mut left_out) = (norm(&self.target), vec![false; self.gap.len()]);
         let at_origin = |a: &[f64]| norm(a) <= ROUNDING * size && self.gap.iter().all(|gap| *gap >= 0.0);
-        let (mut active, mut contradictions) = (Active::new(self), Vec::new());
-        for _ in 0..50 * (self.target.len() + 2) {
-            let violated = self.most_violated(&active.a, rounding * size, &left_out);
+        let (mut active, mut contradictions, mut farthest) = (Active::new(self), Vec::new(), 0.0);
+        let enough = 5 * (self.target.len() + self.gap.len());
+        for round in 0..enough.max(50 * (self.target.len() + 2)) {
+            let violated = self.most_violated(&active, rounding * size, &left_out);
             let Some(p) = violated.filter(|_| !at_origin(&active.a)) else {
                 return Ok((active, contradictions));
             };
@@ -107,6 +111,12 @@ impl Part {
                 contradictions.push(weights);
                 left_out[p] = true;
             }
+            // |a - a0| grows from row to row; where it still falls at last, they change places for rounding
+            let distance = active.distance();
+            if round > enough && distance < FALLS * farthest {
+                return Ok((active, contradictions));
+            }
+            farthest = distance;
         }
         Err(Error::new(Kind::Internal, "the active set of a nearest point does not settle"))
     }
@@ -116,10 +126,13 @@ impl Part {
         self.rows.row_dot(i, a) - self.gap[i]
     }
 
-    fn most_violated(&self, a: &[f64], known: f64, left_out: &[bool]) -> Option<usize> {
-        let (mut worst, zero) = ((None, 0.0), known + ROUNDING * norm(a));
-        for i in (0..self.gap.len()).filter(|&i| !left_out[i]) {
-            let excess = self.excess(i, a);
+    /// Active rows are met as well as rounding allows.
+    fn most_violated(&self, active: &Active, known: f64, left_out: &[bool]) -> Option<usize> {
+        let (mut worst, zero) = ((None, 0.0), known + ROUNDING * norm(&active.a));
+        let mut asked: Vec<bool> = left_out.iter().map(|out| !out).collect();
+        active.rows.iter().for_each(|&i| asked[i] = false);
+        for i in (0..self.gap.len()).filter(|&i| asked[i]) {
+            let excess = self.excess(i, &active.a);
             if excess > worst.1 && excess > zero + self.noise[i] {
                 worst = (Some(i), excess);
             }
@@ -143,6 +156,11 @@ impl<'a> Active<'a> {
     fn new(of: &'a Part) -> Self {
         let q = Matrix { rows: of.target.len(), ..Matrix::default() };
         Self { of, rows: Vec::new(), q, r: Vec::new(), force: Vec::new(), a: of.target.clone() }
+    }
+
+    /// `|a - a0|`
+    fn distance(&self) -> f64 {
+        self.a.iter().zip(&self.of.target).map(|(a, target)| (a - target) * (a - target)).sum::<f64>().sqrt()
     }
 
     /// Makes the violated row p active; rows whose force would turn negative on the way leave. Where it cannot be met: its

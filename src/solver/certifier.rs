@@ -252,7 +252,7 @@ impl Judge for Certifier<'_> {
         self.bring_to_rest(&mut ending, false)?;
         let mended = finish(self, &mut ending)?;
         self.spent += begun.elapsed();
-        if !mended {
+        if !mended && !ending.judgement.certificate.passed() {
             return Ok(None);
         }
         let Ending { solution, deformed, recovered, judgement } = ending;

@@ -2,7 +2,9 @@
 
 use crate::error::Result;
 use crate::qp::paper::algorithm_3;
-use crate::qp::{active_set, minimise, not_held, smalbe, Direct, Judge, Limits, Qp, Solution, Verdict};
+use crate::qp::{
+    active_set, minimise, not_held, proximal, smalbe, Direct, Judge, Limits, Qp, Solution, Verdict,
+};
 use crate::solver::paper;
 use crate::solver::steps::Steps;
 use crate::solver::Settings;
@@ -15,7 +17,7 @@ pub(super) struct Means<'a> {
 }
 
 /// Solves the dual. After proportioning: the same without preconditioner, then SMALBE-M, each from where the
-/// one before has ended, and after each of them the direct method.
+/// one before has ended, and after each of them the direct method; where there are few rows, at last a method that always ends.
 pub(super) fn solve_dual(
     means: &Means,
     qp: Qp,
@@ -46,6 +48,13 @@ pub(super) fn solve_dual(
         let next = smalbe(plain, &best.x.clone(), limits, judge, steps);
         let next = next.and_then(|next| or_directly(next, plain, means.direct, judge, steps));
         best = better(best, next)?;
+    }
+    if is_incomplete(&best) && means.direct.limit > 0 {
+        if let Some(found) = proximal(plain, means.direct, &best).transpose() {
+            follows(&best, "nearest points of polyhedra", steps)?;
+            let next = found.and_then(|found| or_directly(found, plain, means.direct, judge, steps));
+            best = better(best, next)?;
+        }
     }
     Ok(best)
 }

@@ -47,7 +47,14 @@ impl Scaled {
 
     /// Takes from the loads what the forces x of the dual leave of them: `left`, in units of 2^p, of which nothing holds a `share`
     /// of the load.
-    pub fn take(&mut self, problem: &Problem, ready: &Ready, x: &[f64], left: &[f64], share: f64) -> Result<()> {
+    pub fn take(
+        &mut self,
+        problem: &Problem,
+        ready: &Ready,
+        x: &[f64],
+        left: &[f64],
+        share: f64,
+    ) -> Result<()> {
         self.resultants.fill(0.0);
         ready.dual.coarse.mul_transposed_add(1.0, x, &mut self.resultants);
         let mut taken = Taken { load: None, share };

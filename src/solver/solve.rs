@@ -37,7 +37,9 @@ pub(super) struct Solved {
 enum Attempt {
     Ended(Box<Solved>),
     /// No forces were found that hold the load, but for rows that are too far off to hold so little.
-    NotHeld { far: Vec<bool> },
+    NotHeld {
+        far: Vec<bool>,
+    },
 }
 
 impl Problem {

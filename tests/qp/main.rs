@@ -6,6 +6,7 @@ mod dense;
 mod enumeration;
 mod preconditioned;
 mod program;
+mod proximal;
 mod scaling;
 mod smalbe;
 mod traps;

@@ -6,7 +6,7 @@ use std::collections::HashMap;
 use crate::certificate::{Response, NOISE};
 use crate::error::{Error, Kind, Result};
 use crate::linalg::twofold::Twofold;
-use crate::linalg::vector::{norm_max, weighted_norm};
+use crate::linalg::vector::{norm, norm_max, weighted_norm};
 use crate::linalg::Csr;
 use crate::qp::{nearest_point, Polyhedron};
 use crate::solver::diagnosis::{in_stack, proof_of_rows};
@@ -88,13 +88,17 @@ impl<'a> Contradictions<'a> {
             noise: &noise,
             rounding: 0.0,
         });
-        let contradictions = match found {
-            Ok(found) => found.contradictions,
+        let found = match found {
+            Ok(found) => found,
             Err(error) if error.kind == Kind::Internal => return Ok(None),
             Err(error) => return Err(error),
         };
         let of_rows = |w: Vec<(usize, f64)>| w.into_iter().map(|(k, w)| (of[k].0, of[k].1 * w)).collect();
-        let mut proofs = contradictions.into_iter().map(|w| self.proof(of_rows(w)));
+        // the forces l of the nearest point u prove best how far it is: B'l = -u, c'l = -|u|^2
+        let far = norm(&found.point) > BEYOND * self.demand();
+        let forces = found.forces.into_iter().enumerate().filter(|(_, force)| *force > 0.0);
+        let forces = far.then(|| forces.collect());
+        let mut proofs = found.contradictions.into_iter().chain(forces).map(|w| self.proof(of_rows(w)));
         proofs.find_map(Result::transpose).transpose()
     }
 

@@ -61,13 +61,7 @@ impl Unheld {
     }
 
     /// Of those that leave least of the resultants, each times its weight.
-    fn nearest(
-        data: &Data,
-        ready: &Ready,
-        scaled: &Scaled,
-        far: &[bool],
-        weights: &[f64],
-    ) -> Result<Self> {
+    fn nearest(data: &Data, ready: &Ready, scaled: &Scaled, far: &[bool], weights: &[f64]) -> Result<Self> {
         let qp = scaled.qp(ready, &ready.dual);
         let is_far = |i: &usize| far.get(*i).copied().unwrap_or(false);
         let rows: Vec<usize> = (0..qp.b.len()).filter(|i| !is_far(i)).collect();
