@@ -21,7 +21,8 @@ pub(super) struct Forces {
     /// `(|f|^2 + |r|^2)^1/2` of all bodies without loads on grounded unknowns, force. Without any such load the forces that the
     /// motion asked for would take belong to it.
     everywhere: f64,
-    /// Deformation of the island, `U |delta|_D` without grounded unknowns, force.
+    /// Deformation of every body, `U |delta|_D` without grounded unknowns, and of the island, force.
+    strains: Vec<f64>,
     strain: f64,
     /// The largest `(|f| + |r|)_{D^-1} / |delta|_D` of a body, no unit.
     pub leverage: f64,
@@ -51,9 +52,9 @@ impl Forces {
         let strains: Vec<f64> = strains.collect();
         let of_body = |(size, strain): (&Option<f64>, &f64)| ratio(size.unwrap_or(0.0), *strain);
         let leverage = sizes.iter().zip(&strains).map(of_body).fold(0.0, f64::max);
-        let strain = norm_of(strains);
+        let strain = norm_of(strains.clone());
         let unloaded = loads.iter().map(|load| *load == 0.0).collect();
-        Self { sizes, unloaded, everywhere: forces + moved, strain, leverage, acting: forces > 0.0 }
+        Self { sizes, unloaded, everywhere: forces + moved, strains, strain, leverage, acting: forces > 0.0 }
     }
 
     /// Rounding of the largest forces, where body p has neither a load nor any other forces: force.
@@ -63,6 +64,12 @@ impl Forces {
         } else {
             0.0
         }
+    }
+
+    /// `|delta|_D` of the body that is deformed least of those that a row touches, length with the metric D / U.
+    pub fn least_deformation(&self, field: &Field, kind: RowKind, i: usize) -> f64 {
+        let of = |p: usize| self.strains[p] / field.unit;
+        field.touched(field.rows(kind), i).map(of).fold(f64::INFINITY, f64::min)
     }
 
     /// The same for the bodies that a row touches, (force x length)^1/2.

@@ -124,6 +124,9 @@ pub struct Judgement {
     /// The largest `(|f| + |r|)_{D^-1} / |delta|_D` of a body, no unit: the certificate overlooks errors of a deformation that are
     /// so many times tol of it.
     pub leverage: f64,
+    /// The largest `s_i (|b_i| delta + ..) / |delta|_D` of a row with a force and a body that it touches, no unit: the certificate
+    /// overlooks errors of the deformation of this body that are so many times tol of it.
+    pub unevenness: f64,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -161,7 +164,8 @@ pub fn certify(data: &Data, answer: Answer, response: &mut dyn Response) -> Resu
     }
     let bodies = rows.force_errors(&field);
     let (length, leverage) = (rows.length(&field), forces.leverage);
-    Ok(Judgement { certificate, bodies, contact: rows.limits(), length, leverage })
+    let unevenness = rows.unevenness();
+    Ok(Judgement { certificate, bodies, contact: rows.limits(), length, leverage, unevenness })
 }
 
 /// `D = diag K` over all unknowns, force / length.

@@ -21,6 +21,8 @@ pub(super) struct Row {
     pub gap_limit: f64,
     /// What a force may, force.
     force_limit: f64,
+    /// `weighed` as a multiple of the deformation of the body deformed least that the row touches, no unit; 0 without force.
+    unevenness: f64,
     /// What the forces of a body that has none may be, `64 eps A`, (force x length)^1/2; 0 where the row touches no such body.
     pub idle: f64,
 }
@@ -56,7 +58,9 @@ impl Row {
         let own = rows.matrix.row_dot_abs(i, &field.own_deformation) + felt;
         let (open, weighed) = (rows.open_gap(i, field.answer.u, force), scale * own);
         let idle = forces.idle_at(field, kind, i);
-        Self { kind, force, open, given_way, weighed, gap_limit, force_limit, idle }
+        let closed = force.abs() > force_limit;
+        let unevenness = if closed { ratio(weighed, forces.least_deformation(field, kind, i)) } else { 0.0 };
+        Self { kind, force, open, given_way, weighed, gap_limit, force_limit, unevenness, idle }
     }
 
     /// `(b_i u - c_i - C_i lambda_i)_+`, or the error of an equality row, against what it may be; no unit.
@@ -146,6 +150,11 @@ impl Measured {
         certificate.complementarity = worst(&self.contact, limit, Row::complementarity, contact);
         let equalities = |i: usize| counts(RowKind::Equality, i);
         certificate.equality = worst(&self.equalities, limit, Row::violation, equalities);
+    }
+
+    /// The largest unevenness of a row.
+    pub fn unevenness(&self) -> f64 {
+        self.contact.iter().chain(&self.equalities).map(|row| row.unevenness).fold(0.0, f64::max)
     }
 
     /// What counts as zero at every contact row.

@@ -25,12 +25,16 @@ const NO_WORSE: f64 = 1.1;
 /// larger than its certificate. Beyond that rounding of the loads decides.
 const CANCELLING: Range<f64> = 1e4..1e9;
 
+/// So are errors of bodies beside others that are deformed so many times as much.
+const UNEVEN: f64 = 100.0;
+
 impl Problem {
     /// Whether the answer of an island is to be finished, as option `finish` has it. `automatic`: where an error that passes the
     /// certificate may be large elsewhere.
     pub(super) fn is_to_finish(&self, judge: &Certifier, ending: &Ending) -> bool {
         let default = self.settings.method == c"proportioning" && self.settings.finish == c"automatic";
-        self.settings.finish == c"direct" || default && is_delicate(judge, ending)
+        let overlooked = ending.judgement.unevenness > UNEVEN;
+        self.settings.finish == c"direct" || default && (overlooked || is_delicate(judge, ending))
     }
 }
 

@@ -90,3 +90,21 @@ fn a_small_body_that_nothing_holds_is_named_beside_one_with_a_large_load() {
     let error = hand_over::problem(&deck).unwrap().solve().unwrap_err();
     assert_eq!((error.kind, error.place.body), (Kind::LoadNotHeld, Some(1)), "{error}");
 }
+
+/// A free pair of springs whose load is in balance but for 1e-12 of it, beside a wall a million deformations away.
+#[test]
+fn what_rounding_leaves_of_a_load_drives_no_body_to_a_wall_far_away() {
+    use crate::{body, deck, springs};
+    for unit in [1.0, 1e-9, 1e11] {
+        let stiffness = springs(3, &[(0, 1, unit), (1, 2, unit)], &[]);
+        let load = vec![-unit, 0.0, unit * (1.0 + 1e-12)];
+        let deck = deck(vec![body(stiffness, vec![vec![1.0; 3]], load)], &[(&[(2, 1.0)], 1e6)], &[]);
+        let mut problem = hand_over::problem(&deck).unwrap();
+        let report = problem.solve().unwrap();
+        assert_eq!((report.outcome, report.active), (Outcome::Solved, 0), "{unit:e}");
+        let told = report.unheld;
+        assert!(told > 1e-13 && told < 1e-12, "{told:e}");
+        let u = problem.displacements().unwrap();
+        assert!(u.iter().zip([-1.0, 0.0, 1.0]).all(|(u, right)| (u - right).abs() < 1e-9), "{u:?}");
+    }
+}

@@ -1,5 +1,6 @@
 //! u0 = a, u0 - u1 = b, u1 = a - b, u1 - x u2 = h: the third row says what the first two say, but for the rounding of a - b.
 
+use feti_contact::error::Kind;
 use feti_contact::solver::{Outcome, RowKind};
 
 use crate::{body, deck, hand_over, springs};
@@ -50,5 +51,25 @@ fn nor_does_it_where_stiffnesses_are_1e6_apart() {
     for stiffness in [[1.0, 1e6, 1.0], [1e6, 1.0, 1e-6], [1e-6, 1.0, 1e6]] {
         let refused = refused(stiffness, 500);
         assert!(refused.is_empty(), "{stiffness:?} {} of 500: {}", refused.len(), refused[0]);
+    }
+}
+
+/// u0 = 1, u0 + x u1 = 0: only u1 = -1/x satisfies both.
+#[test]
+fn ties_that_only_a_displacement_a_million_times_as_large_satisfies_contradict_each_other() {
+    for (x, solved) in [(1.0, true), (1e-4, true), (1e-5, true), (1e-7, false), (1e-10, false), (0.0, false)]
+    {
+        let grounded = body(springs(2, &[(0, 1, 1.0)], &[(0, 1.0), (1, 1.0)]), vec![], vec![0.0, 0.0]);
+        let deck = deck(vec![grounded], &[], &[(&[(0, 1.0)], 1.0), (&[(0, 1.0), (1, x)], 0.0)]);
+        let mut problem = hand_over::problem(&deck).unwrap();
+        match problem.solve() {
+            Ok(report) => {
+                assert!(solved && report.outcome == Outcome::Solved, "{x:e}: {:?}", report.outcome);
+                let u = problem.displacements().unwrap();
+                // the first tie is known to 1e-8 of what its body is deformed by
+                assert!((u[1] * x + 1.0).abs() <= 1e-8 / x, "{u:?}");
+            }
+            Err(error) => assert!(!solved && error.kind == Kind::GapsContradict, "{x:e}: {error}"),
+        }
     }
 }

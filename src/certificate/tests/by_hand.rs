@@ -47,6 +47,24 @@ fn leverage_is_how_many_times_forces_exceed_what_they_deform() {
     }
 }
 
+/// Two such bodies, ends tied by the force lambda = .001, the second deformed 1000 times as much: s = 2^1/2,
+/// `|b| delta + lambda / s^2` = .0005 + .5 + .0005, `|delta|_D` = .001 1.5^1/2 of the first.
+#[test]
+fn unevenness_is_how_many_times_a_row_is_deformed_more_than_a_body_that_it_touches() {
+    for unit in [1.0, 1e-20, 2.1e11] {
+        let body = || chain(&[4.0 * unit], &[(0, 4.0 * unit)]);
+        let equalities = vec![(vec![(1, 1.0), (3, -1.0)], -0.4995, 0.0)];
+        let model = Model { parts: vec![body(), body()], equalities, ..Model::default() };
+        let unevenness = |mu: f64| {
+            let u = vec![0.00025, 0.0005, 0.25, 0.5];
+            model.judged(&Point { u, lambda: vec![], mu: vec![mu * unit] }).0.unevenness
+        };
+        let expected = 2f64.sqrt() * 0.501 / (0.001 * 1.5f64.sqrt());
+        assert!((unevenness(0.001) / expected - 1.0).abs() < 1e-12, "{} {expected}", unevenness(0.001));
+        assert_eq!(unevenness(0.0), 0.0);
+    }
+}
+
 /// A spring of stiffness 4 in the row: 4 u = 2 - lambda, u - .25 = lambda / 4, so that lambda = .5, u = .375.
 #[test]
 fn the_answer_on_a_compliant_row_passes_in_any_unit_and_each_fault_is_named() {
