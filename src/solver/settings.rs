@@ -134,7 +134,7 @@ static OPTIONS: [OptionInfo; 27] = [
     whole(c"direct_limit", 1000, 0.0..=MANY, |s| &mut s.direct_limit,
         c"Forces and floating modes together up to which the dual may be solved by dense factors on the active set, where the iteration gives up or option finish asks for it; 0: never."),
     word(c"finish", &[c"automatic", c"none", c"direct"], |s| &mut s.finish,
-        c"What follows a solve: direct (dense factors on the active set found and corrections from K, B, f, c: errors fall to rounding; kept only where the certificate is no worse); none; automatic (direct where a body is ill-conditioned or rows join bodies of very different stiffness, so that the certificate alone would leave errors that matter)."),
+        c"What follows a solve: direct (dense factors on the active set found and corrections from K, B, f, c: errors fall to rounding; kept only where the certificate is no worse); none; automatic (direct where a body is ill-conditioned or rows join bodies of very different stiffness or deformation, so that the certificate alone would leave errors that matter)."),
     word(c"paper_units", &[c"relative", c"printed"], |s| &mut s.paper_units,
         c"Methods paper-...: what their parameters are relative to. relative: rho_0 in |A|/|D|^2, M in |A|/|D|, eta_0 in the size of d, for the scaled rows; printed: the units of the host, its basis R, tolerance relative to |b| and |d|."),
     word(c"paper_step_1", &[c"corrected", c"printed"], |s| &mut s.paper_step_1,
