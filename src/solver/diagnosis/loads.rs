@@ -18,10 +18,8 @@ pub(in crate::solver) const ROUNDING: f64 = 1e-10;
 pub(in crate::solver) const MARGINAL: f64 = 1e-7;
 /// Loads are told apart as far as this; those of a body without any are of that size.
 const RANGE: f64 = 1e-7;
-/// Rows resist a motion that so many times the load could not hold.
+/// Rows and K resist a motion that so many times the load, and what that moves, could not hold.
 const BEYOND: f64 = 1e6;
-/// A rigid motion that K resists is known to so many times that: by K of 8 digits no small resultant is.
-const RIGID: f64 = 1e4;
 
 /// The part of a load that the forces which come nearest to it leave. Bodies with such a part that rows with a force or equality
 /// rows join are free to move together, a cluster; shares are of its load, |f|_{D^-1} without grounded unknowns.
@@ -134,7 +132,7 @@ impl Unheld {
             let size = weighted_norm(&moved.iter().map(|&p| self.loads[p]).collect::<Vec<_>>(), |_| 1.0);
             let mut work = Twofold::default();
             scaled.load.iter().zip(&own).for_each(|(f, v)| work.add_product(*f, *v));
-            let resisted = BEYOND * resistance(ready, &own) + RIGID * strain(problem, ready, &own)?;
+            let resisted = BEYOND * (resistance(ready, &own) + strain(problem, ready, &own)?);
             if work.value() > size * resisted {
                 let mut v = zeros(problem.counts().dofs, "a motion")?;
                 island.scatter(problem, &own, &mut v);
