@@ -5,7 +5,7 @@ use crate::error::Result;
 use crate::linalg::vector::{axpy, norm_max};
 use crate::linalg::Operator;
 use crate::qp::{self, Qp};
-use crate::solver::diagnosis::ROUNDING;
+use crate::solver::diagnosis::{Unheld, ROUNDING};
 use crate::solver::presolve::{presolve, Gaps};
 use crate::solver::problem::Problem;
 use crate::solver::setup::Ready;
@@ -27,7 +27,7 @@ pub(super) struct Scaled {
 
 /// Loads without what nothing holds of them.
 pub(super) struct Taken {
-    /// The loads without it, force; none where it is so little that only their resultants are without it.
+    /// The loads without it, force; none where it is so little of each body that only their resultants are without it.
     pub load: Option<Vec<f64>>,
     /// The largest |resultant| / |load| of bodies that move together.
     pub share: f64,
@@ -45,21 +45,13 @@ impl Scaled {
         Ok(Self { load, gaps, moved, d, resultants, unheld: None })
     }
 
-    /// Takes from the loads what the forces x of the dual leave of them: `left`, in units of 2^p, of which nothing holds a `share`
-    /// of the load.
-    pub fn take(
-        &mut self,
-        problem: &Problem,
-        ready: &Ready,
-        x: &[f64],
-        left: &[f64],
-        share: f64,
-    ) -> Result<()> {
+    /// Takes from the loads what the forces of the dual leave of them, of which nothing holds a `share`.
+    pub fn take(&mut self, problem: &Problem, ready: &Ready, left: &Unheld, share: f64) -> Result<()> {
         self.resultants.fill(0.0);
-        ready.dual.coarse.mul_transposed_add(1.0, x, &mut self.resultants);
+        ready.dual.coarse.mul_transposed_add(1.0, &left.x, &mut self.resultants);
         let mut taken = Taken { load: None, share };
-        if share > ROUNDING {
-            axpy(-1.0, left, &mut self.load);
+        if share.max(left.of_body) > ROUNDING {
+            axpy(-1.0, &left.load, &mut self.load);
             self.moved = ready.moved(problem.threads(), &self.load)?;
             self.d = ready.dual.rhs(&self.moved, &self.gaps.dual);
             taken.load = Some(self.load.iter().map(|f| f * ready.island.unit).collect());

@@ -7,7 +7,7 @@ use crate::linalg::Operator;
 use crate::qp::paper::Units;
 use crate::qp::{Direct, Solution, Verdict};
 use crate::solver::certifier::{Certifier, Ending, Faces};
-use crate::solver::diagnosis::{Contradictions, Unheld, MARGINAL};
+use crate::solver::diagnosis::{Contradictions, Unheld, MARGINAL, ROUNDING};
 use crate::solver::fallback::Means;
 use crate::solver::finish::finish;
 use crate::solver::near::solve_near;
@@ -67,9 +67,9 @@ impl Problem {
                     }
                     let share = least.share;
                     let relative = Unheld::relative(&data, ready, &dual, &far)?.filter(Unheld::is_little);
-                    let Unheld { load, x, .. } = relative.unwrap_or(least);
-                    dual.take(self, ready, &x, &load, share)?;
-                    start = x;
+                    let left = relative.unwrap_or(least);
+                    dual.take(self, ready, &left, share)?;
+                    start = left.x;
                 }
             }
         }
@@ -114,9 +114,10 @@ impl Problem {
         if let Some(taken) = dual.unheld.as_ref().filter(|taken| taken.load.is_some()) {
             // what the host is told is about its own load
             ending.judgement = judge.judged_on(&self.data(&ready.island)?, &ending.recovered)?;
+            let is_marginal = taken.share > ROUNDING || !ending.judgement.certificate.passed();
             outcome = match outcome {
                 Outcome::Solved if taken.share > MARGINAL => Outcome::Inaccurate,
-                Outcome::Solved => Outcome::Marginal,
+                Outcome::Solved if is_marginal => Outcome::Marginal,
                 outcome => outcome,
             };
         }

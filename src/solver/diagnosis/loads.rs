@@ -32,6 +32,8 @@ pub(in crate::solver) struct Unheld {
     pub x: Vec<f64>,
     /// The largest |D R c|_{D^-1} / |f|_{D^-1} of a cluster.
     pub share: f64,
+    /// The largest of a body with a load, by itself.
+    pub of_body: f64,
     /// |D R c| / |D R R'f| of this cluster.
     margin: f64,
     /// Body by body the cluster, |f|_{D^-1} of the body, and the share of the cluster; this is 0 for a body that is left nothing.
@@ -104,7 +106,9 @@ impl Unheld {
         let worst = cluster.get(body).copied().unwrap_or(0);
         let margin = ratio(of_cluster(worst, &left), of_cluster(worst, &resultants)).min(1.0);
         let share = shares.get(body).copied().unwrap_or(0.0);
-        Self { load, motion, x, share, margin, cluster, loads, shares, body }
+        let loaded = (0..left.len()).filter(|&p| loads[p] > 0.0);
+        let of_body = loaded.map(|p| left[p] / loads[p]).fold(0.0, f64::max);
+        Self { load, motion, x, share, of_body, margin, cluster, loads, shares, body }
     }
 
     /// So little that it may be rounding, or be told as marginal.
