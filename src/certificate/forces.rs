@@ -66,9 +66,10 @@ impl Forces {
         }
     }
 
-    /// `|delta|_D` of the body that is deformed least of those that a row touches, length with the metric D / U.
+    /// `|delta|_D`, or what its forces would deform if that is more, of the body that is deformed least of those that a row touches,
+    /// length with the metric D / U.
     pub fn least_deformation(&self, field: &Field, kind: RowKind, i: usize) -> f64 {
-        let of = |p: usize| self.strains[p] / field.unit;
+        let of = |p: usize| self.strains[p].max(self.sizes[p].unwrap_or(0.0)) / field.unit;
         field.touched(field.rows(kind), i).map(of).fold(f64::INFINITY, f64::min)
     }
 

@@ -124,7 +124,7 @@ pub struct Judgement {
     /// The largest `(|f| + |r|)_{D^-1} / |delta|_D` of a body, no unit: the certificate overlooks errors of a deformation that are
     /// so many times tol of it.
     pub leverage: f64,
-    /// The largest `s_i (|b_i| delta + ..) / |delta|_D` of a row with a force and a body that it touches, no unit: the certificate
+    /// The largest `s_i (|b_i| delta + ..)` of a row with a force over `max(|delta|_D, (|f| + |r|)_{D^-1})` of a body that it touches, no unit: the certificate
     /// overlooks errors of the deformation of this body that are so many times tol of it.
     pub unevenness: f64,
 }
