@@ -67,10 +67,10 @@ impl Forces {
     }
 
     /// `|delta|_D`, or what its forces would deform if that is more, of the body that is deformed least of those that a row touches,
-    /// length with the metric D / U.
+    /// length with the metric D / U; infinite where all their unknowns are grounded.
     pub fn least_deformation(&self, field: &Field, kind: RowKind, i: usize) -> f64 {
-        let of = |p: usize| self.strains[p].max(self.sizes[p].unwrap_or(0.0)) / field.unit;
-        field.touched(field.rows(kind), i).map(of).fold(f64::INFINITY, f64::min)
+        let of = |p: usize| Some(self.strains[p].max(self.sizes[p]?) / field.unit);
+        field.touched(field.rows(kind), i).filter_map(of).fold(f64::INFINITY, f64::min)
     }
 
     /// The same for the bodies that a row touches, (force x length)^1/2.

@@ -65,6 +65,17 @@ fn unevenness_is_how_many_times_a_row_is_deformed_more_than_a_body_that_it_touch
     }
 }
 
+/// The spring is one grounded unknown, which has no deformation.
+#[test]
+fn a_spring_of_one_unknown_makes_no_row_uneven() {
+    let parts = vec![chain(&[], &[(0, 4.0)]), chain(&[4.0], &[(0, 4.0)])];
+    let model = Model { parts, contact: vec![(vec![(0, 1.0), (2, -1.0)], 0.0, 0.0)], ..Model::default() };
+    let unevenness =
+        |u: [f64; 3]| model.judged(&Point { u: u.to_vec(), lambda: vec![1.0], mu: vec![] }).0.unevenness;
+    let found = unevenness([-0.25, 0.25, 0.5]);
+    assert!(found > 0.0 && found < 2.0, "{found}");
+}
+
 /// A spring of stiffness 4 in the row: 4 u = 2 - lambda, u - .25 = lambda / 4, so that lambda = .5, u = .375.
 #[test]
 fn the_answer_on_a_compliant_row_passes_in_any_unit_and_each_fault_is_named() {
