@@ -7,21 +7,25 @@
 use std::collections::HashSet;
 
 use crate::certificate::energy::Energies;
+use crate::certificate::field::Field;
+use crate::certificate::forces::Forces;
 use crate::certificate::rows::Measured;
 use crate::certificate::{Certificate, Response, NOISE};
 use crate::constraints::RowKind;
 use crate::error::Result;
 
 /// Judges once more with `64 eps (V phi_i)^1/2`, length, added to what the gaps that fail may be, `64 eps A phi_i^1/2` where the row
-/// touches a body without load or forces, and `64 eps V` to the rounding of the energies. The worst row comes first, and the first that still fails is the last.
+/// touches a body without load or forces, and `64 eps V` to the rounding of the energies. The worst row comes first, and the
+/// first that still fails is the last.
 pub(super) fn by_rounding(
-    limit: f64,
+    field: &Field,
+    forces: &Forces,
     energies: &Energies,
     rows: &mut Measured,
     response: &mut dyn Response,
     certificate: &mut Certificate,
 ) -> Result<()> {
-    let work = response.work_of_loads()?;
+    let (limit, work) = (field.data.limit, response.work_of_loads()?);
     certificate.duality_gap = energies.entry(limit, work);
     // what rows prescribe moves bodies as loads do
     let work = work.max(energies.deforming);
@@ -31,7 +35,8 @@ pub(super) fn by_rounding(
         asked += 1;
         let compliance = response.compliance_of(kind, i)?;
         let row = &mut rows.of(kind)[i];
-        row.gap_limit += NOISE * (work * compliance).sqrt() + row.idle * compliance.sqrt();
+        row.gap_limit +=
+            NOISE * (work * compliance).sqrt() + forces.idle_at(field, kind, i) * compliance.sqrt();
         if !(row.gap_ratio() <= 1.0) {
             break;
         }

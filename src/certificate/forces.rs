@@ -52,7 +52,7 @@ impl Forces {
         let strains: Vec<f64> = strains.collect();
         let of_body = |(size, strain): (&Option<f64>, &f64)| ratio(size.unwrap_or(0.0), *strain);
         let leverage = sizes.iter().zip(&strains).map(of_body).fold(0.0, f64::max);
-        let strain = norm_of(strains.clone());
+        let strain = weighted_norm(&strains, |_| 1.0);
         let unloaded = loads.iter().map(|load| *load == 0.0).collect();
         Self { sizes, unloaded, everywhere: forces + moved, strains, strain, leverage, acting: forces > 0.0 }
     }
@@ -66,17 +66,17 @@ impl Forces {
         }
     }
 
+    /// The same for the bodies that a row touches, (force x length)^1/2.
+    pub fn idle_at(&self, field: &Field, kind: RowKind, i: usize) -> f64 {
+        let of = |p: usize| self.idle(p, self.sizes[p].unwrap_or(0.0));
+        field.touched(field.rows(kind), i).map(of).fold(0.0, f64::max) / field.unit.sqrt()
+    }
+
     /// `|delta|_D`, or what its forces would deform if that is more, of the body that is deformed least of those that a row touches,
     /// length with the metric D / U; infinite where all their unknowns are grounded.
     pub fn least_deformation(&self, field: &Field, kind: RowKind, i: usize) -> f64 {
         let of = |p: usize| Some(self.strains[p].max(self.sizes[p]?) / field.unit);
         field.touched(field.rows(kind), i).filter_map(of).fold(f64::INFINITY, f64::min)
-    }
-
-    /// The same for the bodies that a row touches, (force x length)^1/2.
-    pub fn idle_at(&self, field: &Field, kind: RowKind, i: usize) -> f64 {
-        let of = |p: usize| self.idle(p, self.sizes[p].unwrap_or(0.0));
-        field.touched(field.rows(kind), i).map(of).fold(0.0, f64::max) / field.unit.sqrt()
     }
 
     /// What the force of a row may differ from zero by, `tol Lambda_i` with `Lambda_i = s_i min (|f| + |r|)_{D^-1}` over the

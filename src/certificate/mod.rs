@@ -124,8 +124,8 @@ pub struct Judgement {
     /// The largest `(|f| + |r|)_{D^-1} / |delta|_D` of a body, no unit: the certificate overlooks errors of a deformation that are
     /// so many times tol of it.
     pub leverage: f64,
-    /// The largest `s_i (|b_i| delta + ..)` of a row with a force over `max(|delta|_D, (|f| + |r|)_{D^-1})` of a body that it touches, no unit: the certificate
-    /// overlooks errors of the deformation of this body that are so many times tol of it.
+    /// The largest `s_i (|b_i| delta + ..)` of a row with a force over `max(|delta|_D, (|f| + |r|)_{D^-1})` of a body that it
+    /// touches, no unit: the certificate overlooks errors of the deformation of this body that are so many times tol of it.
     pub unevenness: f64,
 }
 
@@ -160,7 +160,7 @@ pub fn certify(data: &Data, answer: Answer, response: &mut dyn Response) -> Resu
     certificate.duality_gap = energies.entry(data.limit, 0.0);
     certificate.energy = energies.minimised();
     if certificate.only_motions_fail() {
-        excuses::by_rounding(data.limit, &energies, &mut rows, response, &mut certificate)?;
+        excuses::by_rounding(&field, &forces, &energies, &mut rows, response, &mut certificate)?;
     }
     let bodies = rows.force_errors(&field);
     let (length, leverage) = (rows.length(&field), forces.leverage);

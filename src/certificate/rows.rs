@@ -23,8 +23,6 @@ pub(super) struct Row {
     force_limit: f64,
     /// `weighed` as a multiple of the deformation of the body deformed least that the row touches, no unit; 0 without force.
     unevenness: f64,
-    /// What the forces of a body that has none may be, `64 eps A`, (force x length)^1/2; 0 where the row touches no such body.
-    pub idle: f64,
 }
 
 impl Row {
@@ -57,10 +55,9 @@ impl Row {
         let gap_limit = if known { allowed } else { f64::NAN };
         let own = rows.matrix.row_dot_abs(i, &field.own_deformation) + felt;
         let (open, weighed) = (rows.open_gap(i, field.answer.u, force), scale * own);
-        let idle = forces.idle_at(field, kind, i);
         let closed = force.abs() > force_limit;
         let unevenness = if closed { ratio(weighed, forces.least_deformation(field, kind, i)) } else { 0.0 };
-        Self { kind, force, open, given_way, weighed, gap_limit, force_limit, unevenness, idle }
+        Self { kind, force, open, given_way, weighed, gap_limit, force_limit, unevenness }
     }
 
     /// `(b_i u - c_i - C_i lambda_i)_+`, or the error of an equality row, against what it may be; no unit.

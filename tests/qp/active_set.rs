@@ -3,7 +3,7 @@
 
 use decks::random::Random;
 use feti_contact::linalg::{Entries, Matrix};
-use feti_contact::qp::{active_set, Counts, Direct, Solution, Verdict};
+use feti_contact::qp::{active_set, Direct, Solution, Verdict};
 
 use crate::dense::{norm, Dense};
 use crate::enumeration::{by_enumeration, distance, has_one_solution, random_program, Kind};
@@ -27,14 +27,7 @@ impl Program {
     }
 
     fn directly_within(&self, start: &[f64], accepted: f64, limit: usize) -> Solution {
-        let from = Solution {
-            x: start.to_vec(),
-            alpha: vec![0.0; self.e.len()],
-            undetermined: 0,
-            scale: norm(&self.b),
-            verdict: Verdict::Stalled,
-            counts: Counts::default(),
-        };
+        let from = self.given_up_at(start);
         let g_transposed = self.g_transposed();
         let direct = Direct { entries: &self.a, limit };
         let mut judge = Conditions { program: self, accepted };

@@ -3,7 +3,9 @@
 
 use feti_contact::error::Result;
 use feti_contact::linalg::Csr;
-use feti_contact::qp::{minimise, Judge, Limits, Observer, Preconditioner, Progress, Qp, Solution, Verdict};
+use feti_contact::qp::{
+    minimise, Counts, Judge, Limits, Observer, Preconditioner, Progress, Qp, Solution, Verdict,
+};
 
 use crate::dense::{dot, norm, Dense};
 
@@ -76,6 +78,18 @@ impl Program {
     pub fn qp<'a>(&'a self, g_transposed: &'a Csr, preconditioner: Option<&'a dyn Preconditioner>) -> Qp<'a> {
         let Self { a, b, e, bounded, .. } = self;
         Qp { a, b, g_transposed, rounding: 1e-14, e, bounded, preconditioner }
+    }
+
+    /// A method has given up at `start`, with alpha = 0.
+    pub fn given_up_at(&self, start: &[f64]) -> Solution {
+        Solution {
+            x: start.to_vec(),
+            alpha: vec![0.0; self.e.len()],
+            undetermined: 0,
+            scale: norm(&self.b),
+            verdict: Verdict::Stalled,
+            counts: Counts::default(),
+        }
     }
 
     pub fn residuals(&self, x: &[f64], alpha: &[f64]) -> Residuals {

@@ -1,7 +1,7 @@
 //! The method that always ends on small programs: redundant rows, vertices without forces, motions that nothing resists.
 
 use decks::random::Random;
-use feti_contact::qp::{proximal, Counts, Direct, Solution, Verdict};
+use feti_contact::qp::{proximal, Direct, Solution};
 
 use crate::dense::{norm, Dense};
 use crate::enumeration::{by_enumeration, random_program, Kind};
@@ -9,19 +9,12 @@ use crate::program::Program;
 
 impl Program {
     fn by_nearest_points(&self, limit: usize) -> Option<Solution> {
-        let nothing = Solution {
-            x: vec![0.0; self.b.len()],
-            alpha: vec![0.0; self.e.len()],
-            undetermined: 0,
-            scale: norm(&self.b),
-            verdict: Verdict::Stalled,
-            counts: Counts::default(),
-        };
+        let nothing = self.given_up_at(&vec![0.0; self.b.len()]);
         let g_transposed = self.g_transposed();
         proximal(self.qp(&g_transposed, None), Direct { entries: &self.a, limit }, &nothing).unwrap()
     }
 
-    /// Every row `times` times, each again times a factor.
+    /// Every row once times each of the factors.
     fn repeated(&self, factors: &[f64]) -> Self {
         let m = self.b.len();
         let all: Vec<(usize, f64)> = factors.iter().flat_map(|f| (0..m).map(move |i| (i, *f))).collect();
