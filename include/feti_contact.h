@@ -343,6 +343,24 @@ typedef struct feti_body_facts {
    * its group of bodies alone.
    */
   double force_error;
+  /**
+   * Motions taken as free that K resists by no more than the rounding of its entries may make, -1
+   * before a setup.
+   */
+  int64_t soft_free;
+  /**
+   * Motions taken as supports though the rounding of the entries of K may be all that resists them:
+   * with a number above 0 give the null space, or K with more digits. -1 before a setup.
+   */
+  int64_t soft_held;
+  /**
+   * How much K resists these motions, largest v'K v over v'diag(K) v; NaN where there are none.
+   */
+  double softness;
+  /**
+   * What the rounding of the entries may make of it; NaN where there are none.
+   */
+  double softness_of_rounding;
 } feti_body_facts;
 
 /**
@@ -417,6 +435,15 @@ typedef struct feti_findings {
    * the load, FETI_MARGINAL above 1e-10.
    */
   double unheld;
+  /**
+   * Bodies with motions that only the rounding of the entries of K may resist; feti_body_info has
+   * their numbers.
+   */
+  int64_t doubtful_bodies;
+  /**
+   * The first of them, -1: none.
+   */
+  int64_t doubtful_body;
 } feti_findings;
 
 /**

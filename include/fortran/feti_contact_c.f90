@@ -283,6 +283,16 @@ module feti_contact_c
     !> Estimated relative error of the forces on the body in the last answer; NaN without one, also of its
     !> group of bodies alone.
     real(c_double) :: force_error
+    !> Motions taken as free that K resists by no more than the rounding of its entries may make, -1 before a
+    !> setup.
+    integer(c_int64_t) :: soft_free
+    !> Motions taken as supports though the rounding of the entries of K may be all that resists them: with a
+    !> number above 0 give the null space, or K with more digits. -1 before a setup.
+    integer(c_int64_t) :: soft_held
+    !> How much K resists these motions, largest v'K v over v'diag(K) v; NaN where there are none.
+    real(c_double) :: softness
+    !> What the rounding of the entries may make of it; NaN where there are none.
+    real(c_double) :: softness_of_rounding
   end type feti_body_facts
 
   !> Time and memory of a phase of a setup or a solve.
@@ -408,6 +418,11 @@ module feti_contact_c
     !> the metric of diag K: above 1e-7 after FETI_LOAD_NOT_HELD; with an answer rounding of the load,
     !> FETI_MARGINAL above 1e-10.
     real(c_double) :: unheld
+    !> Bodies with motions that only the rounding of the entries of K may resist; feti_body_info has their
+    !> numbers.
+    integer(c_int64_t) :: doubtful_bodies
+    !> The first of them, -1: none.
+    integer(c_int64_t) :: doubtful_body
   end type feti_findings
 
   public :: feti_body_add

@@ -220,8 +220,8 @@ recursive subroutine ftbkpl(ip, ibody, n, nrhs, x, ldx, y, ldy, ierr)
   ierr = told(feti_body_kplus(handle(ip), from_zero(ibody), wide(n), wide(nrhs), x, wide(ldx), y, wide(ldy)))
 end subroutine
 
-!> A body as it is given, and what the last setup has made of it: ifact(ni), rfact(nr), positions FTBUNK to FTBEXP, FTBENT to
-!> FTBERR; -1 or NaN: not there yet.
+!> A body as it is given, and what the last setup has made of it: ifact(ni), rfact(nr), positions FTBUNK to FTBSHL, FTBENT to
+!> FTBSRN; -1 or NaN: not there yet.
 recursive subroutine ftbinf(ip, ibody, ni, ifact, nr, rfact, ierr)
   use feti_contact_f77_base
   implicit none
@@ -235,7 +235,8 @@ recursive subroutine ftbinf(ip, ibody, ni, ifact, nr, rfact, ierr)
   ierr = told(feti_body_info(handle(ip), from_zero(ibody), found))
   if (ierr /= FETI_OK) return
   call give([found%unknowns, found%components, found%origin, found%null_space, found%shared_with + 1, &
-    found%explicit_operator], ni, ifact)
+    found%explicit_operator, found%soft_free, found%soft_held], ni, ifact)
   call give_reals([real(found%entries, c_double), real(found%matrix_bytes, c_double), real(found%factor_entries, c_double), &
-    real(found%factor_bytes, c_double), real(found%operator_bytes, c_double), found%gap, found%force_error], nr, rfact)
+    real(found%factor_bytes, c_double), real(found%operator_bytes, c_double), found%gap, found%force_error, found%softness, &
+    found%softness_of_rounding], nr, rfact)
 end subroutine

@@ -8,7 +8,7 @@ use super::types::{
     feti_body_facts, feti_problem, FETI_ORIGIN_CANDIDATES, FETI_ORIGIN_COORDINATES, FETI_ORIGIN_EXACT,
     FETI_ORIGIN_FOUND,
 };
-use crate::solver::{BodyFacts, Origin};
+use crate::solver::{BodyFacts, Doubt, Origin};
 
 /// Tells the connected part of every unknown of a body.
 ///
@@ -66,6 +66,10 @@ pub unsafe extern "C" fn feti_body_info(p: *mut feti_problem, body: i64, out: *m
 fn record(facts: &BodyFacts) -> feti_body_facts {
     let known = |number: Option<usize>| number.map_or(-1, |number| number as i64);
     let factors = facts.factors.as_ref();
+    // NaN where there are no doubts
+    let largest = |of: fn(&Doubt) -> f64| {
+        factors.iter().flat_map(|factors| &factors.doubts).map(of).fold(f64::NAN, f64::max)
+    };
     feti_body_facts {
         struct_size: size_of::<feti_body_facts>() as i64,
         unknowns: facts.unknowns as i64,
@@ -87,5 +91,9 @@ fn record(facts: &BodyFacts) -> feti_body_facts {
         operator_bytes: known(facts.operator.map(|bytes| bytes.unwrap_or(0))),
         gap: factors.and_then(|factors| factors.gap).unwrap_or(f64::NAN),
         force_error: facts.force_error.unwrap_or(f64::NAN),
+        soft_free: known(factors.map(|factors| factors.soft(true))),
+        soft_held: known(factors.map(|factors| factors.soft(false))),
+        softness: largest(|doubt| doubt.resisted),
+        softness_of_rounding: largest(|doubt| doubt.rounding),
     }
 }

@@ -262,5 +262,7 @@ fn described(from: &Findings) -> feti_findings {
         margin: from.margin().unwrap_or(f64::NAN),
         motion: from.motion.unwrap_or([f64::NAN; 6]),
         unheld: from.unheld,
+        doubtful_bodies: from.doubtful.len() as i64,
+        doubtful_body: number(from.doubtful.first().copied()),
     }
 }

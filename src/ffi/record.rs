@@ -19,7 +19,7 @@ pub(super) unsafe trait Sized64: Copy {}
 
 // SAFETY: 8 + 2 * 4 + 5 * 8 + 2 * 8 + 40 bytes, without padding.
 unsafe impl Sized64 for feti_error_detail {}
-// SAFETY: 15 * 8 bytes, without padding.
+// SAFETY: 19 * 8 bytes, without padding.
 unsafe impl Sized64 for feti_body_facts {}
 // SAFETY: 3 * 8 bytes and a pointer, without padding.
 unsafe impl Sized64 for feti_phase {}
@@ -29,7 +29,7 @@ unsafe impl Sized64 for feti_info {}
 unsafe impl Sized64 for feti_certificate {}
 // SAFETY: 8 + 2 * 4 + 3 * 8 + 8 bytes and three pointers, without padding.
 unsafe impl Sized64 for feti_option {}
-// SAFETY: 8 + 2 * 4 + 9 * 8 + 7 * 8 bytes, without padding.
+// SAFETY: 8 + 2 * 4 + 11 * 8 + 7 * 8 bytes, without padding.
 unsafe impl Sized64 for feti_findings {}
 
 /// The caller's struct, to be written once.
@@ -109,11 +109,11 @@ mod tests {
     fn structs_have_no_padding() {
         let pointers = 3 * size_of::<usize>();
         assert_eq!(size_of::<feti_error_detail>(), 8 + 2 * 4 + 5 * 8 + 2 * 8 + 40);
-        assert_eq!(size_of::<feti_body_facts>(), 15 * 8);
+        assert_eq!(size_of::<feti_body_facts>(), 19 * 8);
         assert_eq!(size_of::<feti_info>(), 8 + 2 * 4 + 23 * 8 + 11 * 8);
         assert_eq!(size_of::<feti_phase>(), 3 * 8 + size_of::<usize>());
         assert_eq!(size_of::<feti_certificate>(), 8 + 2 * 4 + 9 * 8 + 6 * 8);
-        assert_eq!(size_of::<feti_findings>(), 8 + 2 * 4 + 9 * 8 + 8 * 8);
+        assert_eq!(size_of::<feti_findings>(), 8 + 2 * 4 + 11 * 8 + 7 * 8);
         assert_eq!(size_of::<feti_option>(), 8 + 2 * 4 + 3 * 8 + 8 + pointers);
     }
 }

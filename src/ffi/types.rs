@@ -183,6 +183,15 @@ pub struct feti_body_facts {
     /// Estimated relative error of the forces on the body in the last answer; NaN without one, also of its group of bodies
     /// alone.
     pub force_error: f64,
+    /// Motions taken as free that K resists by no more than the rounding of its entries may make, -1 before a setup.
+    pub soft_free: i64,
+    /// Motions taken as supports though the rounding of the entries of K may be all that resists them: with a number above 0
+    /// give the null space, or K with more digits. -1 before a setup.
+    pub soft_held: i64,
+    /// How much K resists these motions, largest v'K v over v'diag(K) v; NaN where there are none.
+    pub softness: f64,
+    /// What the rounding of the entries may make of it; NaN where there are none.
+    pub softness_of_rounding: f64,
 }
 
 /// Time and memory of a phase of a setup or a solve.
@@ -358,4 +367,8 @@ pub struct feti_findings {
     /// The largest share of the load of bodies that move together which nothing holds, |resultant| / |load| in the metric of diag K:
     /// above 1e-7 after FETI_LOAD_NOT_HELD; with an answer rounding of the load, FETI_MARGINAL above 1e-10.
     pub unheld: f64,
+    /// Bodies with motions that only the rounding of the entries of K may resist; feti_body_info has their numbers.
+    pub doubtful_bodies: i64,
+    /// The first of them, -1: none.
+    pub doubtful_body: i64,
 }

@@ -56,6 +56,13 @@ pub struct Factors {
     pub shared_with: Option<usize>,
 }
 
+impl Factors {
+    /// Motions that may be resisted by nothing but the rounding of the entries of K, taken as free or as supports.
+    pub fn soft(&self, free: bool) -> usize {
+        self.doubts.iter().filter(|doubt| doubt.free == free).map(|doubt| doubt.motions).sum()
+    }
+}
+
 impl Problem {
     /// The connected part of every unknown of a body, numbered by their first unknowns, and their number. Entries that
     /// are 0 connect nothing.

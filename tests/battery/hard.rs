@@ -285,5 +285,6 @@ fn one_hard_problem_in_full() {
     }
     println!("second {:?}", second::solve(&case.deck));
     println!("findings {:#?}", problem.findings());
+    (0..case.deck.bodies.len()).for_each(|p| println!("{:?}", problem.body_facts(p)));
     println!("{}", line(seed, &case, &judge(&case, &ended, found.as_ref())));
 }

@@ -269,6 +269,60 @@ static void the_matrix_that_is_refused(void)
     OK(feti_problem_destroy(&problem));
 }
 
+static feti_body_facts facts_of(feti_problem *problem, int64_t body)
+{
+    feti_body_facts facts = { .struct_size = sizeof facts };
+
+    OK(feti_body_info(problem, body, &facts));
+    return facts;
+}
+
+enum { LINKS = 200 };
+
+/* A chain of springs that nothing holds, its entries sums in the precision of float: row i has -k[i - 1], k[i - 1] + k[i]. */
+static void give_chain(feti_problem *problem, int64_t body, int in_float)
+{
+    int32_t ptr[LINKS + 2] = { 0 }, col[2 * LINKS + 1];
+    double val[2 * LINKS + 1], before = 0.0;
+
+    for (int32_t i = 0, e = 0; i <= LINKS; i++) {
+        const double k = i < LINKS ? 1e5 * (1.0 + 0.3 * sin(i + 1.0)) : 0.0, sum = before + k;
+
+        if (i > 0) col[e] = i - 1, val[e++] = in_float ? (double)(float)-before : -before;
+        col[e] = i, val[e++] = in_float ? (double)(float)sum : sum;
+        ptr[i + 1] = e;
+        before = k;
+    }
+    OK(feti_body_stiffness_i32(problem, body, LINKS + 1, ptr, col, val, 0, FETI_LOWER, FETI_COPY));
+}
+
+/* Rounding of the entries holds a chain that nothing else does. */
+static void a_stiffness_of_few_digits(void)
+{
+    feti_problem *problem = small_problem();
+    int64_t chain;
+
+    OK(feti_body_add(problem, LINKS + 1, &chain));
+    give_chain(problem, chain, 1);
+    CHECK(facts_of(problem, chain).soft_held == -1 && isnan(facts_of(problem, chain).softness), "soft motions before a setup");
+    OK(feti_solve(problem, NULL));
+    feti_findings found = findings_of(problem, FETI_OK);
+    feti_body_facts facts = facts_of(problem, chain);
+    CHECK(found.doubtful_bodies == 1 && found.doubtful_body == chain, "%lld doubtful bodies, the first %lld",
+          (long long)found.doubtful_bodies, (long long)found.doubtful_body);
+    CHECK(facts.soft_free + facts.soft_held == 1 && facts.softness > 0.0 && facts.softness_of_rounding < 1e-5,
+          "%lld free, %lld held, %g, %g", (long long)facts.soft_free, (long long)facts.soft_held, facts.softness, facts.softness_of_rounding);
+
+    give_chain(problem, chain, 0);
+    OK(feti_solve(problem, NULL));
+    found = findings_of(problem, FETI_OK);
+    facts = facts_of(problem, chain);
+    CHECK(found.doubtful_bodies == 0 && found.doubtful_body == -1, "%lld doubtful bodies", (long long)found.doubtful_bodies);
+    CHECK(facts.soft_free == 0 && facts.soft_held == 0 && isnan(facts.softness) && isnan(facts.softness_of_rounding),
+          "%lld free, %lld held, %g", (long long)facts.soft_free, (long long)facts.soft_held, facts.softness);
+    OK(feti_problem_destroy(&problem));
+}
+
 int main(void)
 {
     the_body_that_escapes();
@@ -278,5 +332,6 @@ int main(void)
     motions_that_nothing_determines();
     equality_rows_that_depend_on_each_other();
     the_matrix_that_is_refused();
+    a_stiffness_of_few_digits();
     return check_result();
 }

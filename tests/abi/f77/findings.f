@@ -8,7 +8,8 @@ C     What has no solution, and what has many.
       CALL FTDIAG(IP, FTNIDG, ID, FTNRDG, RD, IERR)
       CALL OK(IERR, 'FTDIAG')
       CALL HOLDS(ID(FTGSTA) .EQ. 0 .AND. ID(FTGUND) .EQ. 0 .AND.
-     &  ID(FTGBOD) .EQ. 0 .AND. ID(FTGNUB) .EQ. 0, 'FTDIAG, all well')
+     &  ID(FTGBOD) .EQ. 0 .AND. ID(FTGNUB) .EQ. 0 .AND.
+     &  ID(FTGNDB) .EQ. 0 .AND. ID(FTGDBD) .EQ. 0, 'FTDIAG, all well')
       CALL FTDROW(IP, FTKINE, 2, N, IROW, W, IERR)
       CALL OK(IERR, 'FTDROW')
 C     u31 <= 1 has the direction of u31 = .25.

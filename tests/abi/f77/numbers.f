@@ -26,7 +26,8 @@ C     the host: 5 4 of the chain, 3 2 of the bar, 1 of the point.
       CALL FTBINF(IP, 2, FTNIBD, IF, FTNRBD, RF, IERR)
       CALL OK(IERR, 'FTBINF')
       CALL HOLDS(IF(FTBUNK) .EQ. 2 .AND. IF(FTBPRT) .EQ. 1 .AND.
-     &  IF(FTBORI) .EQ. FTOREX .AND. IF(FTBNSP) .EQ. 1, 'FTBINF')
+     &  IF(FTBORI) .EQ. FTOREX .AND. IF(FTBNSP) .EQ. 1 .AND.
+     &  IF(FTBSFR) .EQ. 0 .AND. IF(FTBSHL) .EQ. 0, 'FTBINF')
       CALL SAME(RF(FTBENT), 3D0, 'entries of the bar')
       CALL HOLDS(RF(FTBERR) .GE. 0D0 .AND. RF(FTBERR) .LT. 1D-9,
      &  'error of the forces on the bar')

@@ -105,6 +105,7 @@ contains
 
     call feti_diagnosis(p, found)
     call require(found%undetermined == 1 .and. found%untouched_body == 3 .and. found%redundant_rows == 1, 'other findings')
+    call require(found%doubtful_bodies == 0 .and. found%doubtful_body == 0, 'doubts about a matrix of all digits')
     call require(ieee_is_nan(found%margin), 'a margin of an answer')
     call feti_diagnosis_rows(p, FETI_INEQUALITY, list, weight)
     call require(size(list) == 1 .and. all(list == 2) .and. all(abs(weight - 3) < 1e-12_dp), 'another redundant row')

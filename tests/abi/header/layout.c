@@ -81,7 +81,7 @@ OFFSET(feti_progress, theta, 64);
 OFFSET(feti_progress, seconds, 72);
 OFFSET(feti_progress, fraction, 80);
 
-SIZE(feti_findings, 152);
+SIZE(feti_findings, 168);
 OFFSET(feti_findings, struct_size, 0);
 OFFSET(feti_findings, status, 8);
 OFFSET(feti_findings, kind, 12);
@@ -97,8 +97,10 @@ OFFSET(feti_findings, untouched_body, 80);
 OFFSET(feti_findings, margin, 88);
 OFFSET(feti_findings, motion, 96);
 OFFSET(feti_findings, unheld, 144);
+OFFSET(feti_findings, doubtful_bodies, 152);
+OFFSET(feti_findings, doubtful_body, 160);
 
-SIZE(feti_body_facts, 120);
+SIZE(feti_body_facts, 152);
 OFFSET(feti_body_facts, struct_size, 0);
 OFFSET(feti_body_facts, unknowns, 8);
 OFFSET(feti_body_facts, borrowed, 40);
@@ -106,6 +108,10 @@ OFFSET(feti_body_facts, null_space, 56);
 OFFSET(feti_body_facts, shared_with, 80);
 OFFSET(feti_body_facts, gap, 104);
 OFFSET(feti_body_facts, force_error, 112);
+OFFSET(feti_body_facts, soft_free, 120);
+OFFSET(feti_body_facts, soft_held, 128);
+OFFSET(feti_body_facts, softness, 136);
+OFFSET(feti_body_facts, softness_of_rounding, 144);
 
 struct layout {
     const char *type;
@@ -118,9 +124,9 @@ static const struct layout in_c[] = {
     {"feti_info", sizeof(feti_info), offsetof(feti_info, operator_bytes)},
     {"feti_certificate", sizeof(feti_certificate), offsetof(feti_certificate, complementarity_row)},
     {"feti_progress", sizeof(feti_progress), offsetof(feti_progress, fraction)},
-    {"feti_findings", sizeof(feti_findings), offsetof(feti_findings, motion)},
+    {"feti_findings", sizeof(feti_findings), offsetof(feti_findings, doubtful_body)},
     {"feti_phase", sizeof(feti_phase), offsetof(feti_phase, name)},
-    {"feti_body_facts", sizeof(feti_body_facts), offsetof(feti_body_facts, force_error)},
+    {"feti_body_facts", sizeof(feti_body_facts), offsetof(feti_body_facts, softness_of_rounding)},
 };
 enum { TYPES = sizeof in_c / sizeof in_c[0] };
 
