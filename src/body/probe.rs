@@ -20,7 +20,7 @@ pub(super) const PROBE: f64 = 1e-8;
 /// Rounding errors of R may be so many times those of the sample that is taken of them, ...
 const SAMPLE: f64 = 16.0;
 /// ... and what is more against the fastest dof is none.
-const MOST_ROUNDING: f64 = 1e-9;
+const MOST_ROUNDING: f64 = 1e-7;
 
 impl GeneralizedInverse {
     /// The error of a null space that K does not map to zero but for rounding, as far as the factor enlarges it.
