@@ -29,7 +29,7 @@ unsafe impl Sized64 for feti_info {}
 unsafe impl Sized64 for feti_certificate {}
 // SAFETY: 8 + 2 * 4 + 3 * 8 + 8 bytes and three pointers, without padding.
 unsafe impl Sized64 for feti_option {}
-// SAFETY: 8 + 2 * 4 + 11 * 8 + 7 * 8 bytes, without padding.
+// SAFETY: 8 + 2 * 4 + 11 * 8 + 8 * 8 bytes, without padding.
 unsafe impl Sized64 for feti_findings {}
 
 /// The caller's struct, to be written once.
@@ -113,7 +113,7 @@ mod tests {
         assert_eq!(size_of::<feti_info>(), 8 + 2 * 4 + 23 * 8 + 11 * 8);
         assert_eq!(size_of::<feti_phase>(), 3 * 8 + size_of::<usize>());
         assert_eq!(size_of::<feti_certificate>(), 8 + 2 * 4 + 9 * 8 + 6 * 8);
-        assert_eq!(size_of::<feti_findings>(), 8 + 2 * 4 + 11 * 8 + 7 * 8);
+        assert_eq!(size_of::<feti_findings>(), 8 + 2 * 4 + 11 * 8 + 8 * 8);
         assert_eq!(size_of::<feti_option>(), 8 + 2 * 4 + 3 * 8 + 8 + pointers);
     }
 }
