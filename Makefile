@@ -26,7 +26,7 @@ FCFLAGS ?= -O2 -Wall
 RELEASE   := $(or $(CARGO_TARGET_DIR),target)/release
 STAGE     := $(CURDIR)/build/stage
 
-.PHONY: all lib data setup demo battery test metis fuzz sanitize loom coverage overhead counts bench scaling paper docs
+.PHONY: all lib data setup demo battery bits test metis fuzz sanitize loom coverage overhead counts bench scaling paper docs
 .PHONY: abi licences packaging stage install uninstall fmt clean
 .DELETE_ON_ERROR:
 all: lib
@@ -123,6 +123,11 @@ battery:
 	BATTERY=$(N) $(CARGO) test --release --locked --test battery -- \
 	    every_random_problem no_marginal every_varied_problem small_problems_of_the_battery every_hard_problem \
 	    an_answer_does_not_depend
+
+# The bits of many answers, a line for 100: `make bits > before`, then again after a change that is to keep them.
+bits:
+	@BATTERY=$(or $(BITS),1000) $(CARGO) test --release --locked --quiet --test battery -- \
+	    the_bits_of_many --ignored --nocapture | grep ': [0-9a-f]\{16\}$$'
 
 test:
 	@tools/setup.sh flang-19

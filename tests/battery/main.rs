@@ -1,6 +1,7 @@
 //! Random hard problems whose outcome is known by construction, marginal ones where rounding may decide, problems solved
 //! by hand, and decks of modest size: what a whole solve must find.
 
+mod bits;
 #[path = "../support/hand_over.rs"]
 mod hand_over;
 mod hard;
