@@ -1,0 +1,236 @@
+//! Modules of one folder that import each other in a circle. A name that a folder hands on (`pub use`) counts as the module it comes
+//! from; what stands in `mod.rs` itself is a module of the folder, too; tests are left out.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use crate::source::{closing, is_word, test_ranges, words};
+
+/// Of every folder the modules in circles: `solver: log watch`.
+pub fn circles(sources: &[(String, String)]) -> Vec<String> {
+    let modules: BTreeSet<Vec<String>> = sources.iter().map(|(path, _)| module_of(path)).collect();
+    let parents: BTreeSet<&[String]> =
+        modules.iter().filter(|m| !m.is_empty()).map(|m| &m[..m.len() - 1]).collect();
+    let mut found = Vec::new();
+    for folder in parents {
+        let arrows = arrows(folder, &modules, sources);
+        found.extend(knots(&arrows).iter().map(|knot| format!("{}: {}", folder.join("/"), knot.join(" "))));
+    }
+    found
+}
+
+/// `solver/file/mod.rs` -> [solver, file]; `lib.rs` -> [].
+fn module_of(path: &str) -> Vec<String> {
+    let path = path.trim_end_matches(".rs").trim_end_matches("/mod");
+    path.split('/').filter(|name| *name != "lib").map(str::to_owned).collect()
+}
+
+/// Which module of the folder names which others of it.
+fn arrows(
+    folder: &[String],
+    modules: &BTreeSet<Vec<String>>,
+    sources: &[(String, String)],
+) -> BTreeMap<String, BTreeSet<String>> {
+    let is_child = |name: &str| modules.contains(&[folder, &[name.to_owned()]].concat());
+    let own = sources.iter().find(|(path, _)| module_of(path) == folder);
+    let handed_on = own.map(|(_, code)| handed_on(code, &is_child)).unwrap_or_default();
+    let mut arrows: BTreeMap<String, BTreeSet<String>> = BTreeMap::new();
+    for (path, code) in sources {
+        let module = module_of(path);
+        let Some(rest) = module.strip_prefix(folder) else { continue };
+        let from = rest.first().map_or("mod", String::as_str);
+        let named = paths(code, !rest.is_empty()).into_iter().filter_map(|path| {
+            let path = absolute(path, &module)?;
+            let name = path.strip_prefix(folder)?.first()?.clone();
+            Some(if is_child(&name) { name } else { handed_on.get(&name).cloned().unwrap_or("mod".into()) })
+        });
+        arrows.entry(from.to_owned()).or_default().extend(named.filter(|to| to != from));
+    }
+    arrows
+}
+
+/// Where the names come from that `mod.rs` has by `use child::...`.
+fn handed_on(code: &str, is_child: &dyn Fn(&str) -> bool) -> BTreeMap<String, String> {
+    let mut names = BTreeMap::new();
+    for path in uses(code) {
+        let from = usize::from(path.first().is_some_and(|first| first == "self"));
+        if let [child, .., name] = &path[from..] {
+            if is_child(child) {
+                names.insert(name.clone(), child.clone());
+            }
+        }
+    }
+    names
+}
+
+/// All paths of `use` declarations and expressions that start with crate, self or super, outside the tests. The names a folder hands
+/// on are no arrows of its own: where `own_uses` is not wanted, `use` is left out.
+fn paths(code: &str, own_uses: bool) -> Vec<Vec<String>> {
+    let tests = test_ranges(code);
+    let of_use: Vec<_> = words(code, "use").map(|at| at..end_of_use(code, at)).collect();
+    let outside = |at: &usize| {
+        !tests.iter().any(|range| range.contains(at))
+            && (own_uses || !of_use.iter().any(|range| range.contains(at)))
+    };
+    let starts = ["crate", "self", "super"].into_iter().flat_map(|word| {
+        words(code, word).filter(move |&at| !code[..at].trim_end().ends_with("::")).map(move |at| (at, word))
+    });
+    let starts =
+        starts.filter(|(at, word)| outside(at) && code[at + word.len()..].trim_start().starts_with("::"));
+    starts.flat_map(|(at, _)| expanded(&code[at..], Renamed::AsItWas)).collect()
+}
+
+/// The paths of all `use` declarations, outside the tests.
+fn uses(code: &str) -> Vec<Vec<String>> {
+    let tests = test_ranges(code);
+    let declared = words(code, "use").filter(|at| !tests.iter().any(|range| range.contains(at)));
+    declared.flat_map(|at| expanded(code[at + 3..].trim_start(), Renamed::AsItIs)).collect()
+}
+
+fn end_of_use(code: &str, at: usize) -> usize {
+    code[at..].find(';').map_or(code.len(), |end| at + end)
+}
+
+/// Which name of `old as new` counts.
+#[derive(Clone, Copy, PartialEq)]
+enum Renamed {
+    AsItWas,
+    AsItIs,
+}
+
+/// The paths that start here, those in braces one by one.
+fn expanded(code: &str, renamed: Renamed) -> Vec<Vec<String>> {
+    let mut head = Vec::new();
+    let mut rest = code;
+    loop {
+        rest = rest.trim_start();
+        if rest.starts_with('{') {
+            let inside = &rest[1..closing(rest, 0) - 1];
+            let parts = split(inside).into_iter().flat_map(|part| expanded(part, renamed));
+            return parts.map(|tail| [head.clone(), tail].concat()).collect();
+        }
+        let name: String = rest.bytes().take_while(|c| is_word(*c)).map(char::from).collect();
+        if name.is_empty() {
+            break;
+        }
+        rest = rest[name.len()..].trim_start();
+        head.push(name);
+        match rest.strip_prefix("::") {
+            Some(tail) => rest = tail,
+            None => break,
+        }
+    }
+    if let Some(new) = rest.strip_prefix("as ").filter(|_| renamed == Renamed::AsItIs) {
+        head.pop();
+        head.extend(expanded(new, renamed).concat());
+    }
+    vec![head]
+}
+
+/// What commas outside of braces part.
+fn split(list: &str) -> Vec<&str> {
+    let (mut depth, mut start, mut parts) = (0, 0, Vec::new());
+    for (at, c) in list.char_indices() {
+        match c {
+            '{' => depth += 1,
+            '}' => depth -= 1,
+            ',' if depth == 0 => {
+                parts.push(&list[start..at]);
+                start = at + 1;
+            }
+            _ => {}
+        }
+    }
+    parts.push(&list[start..]);
+    parts.into_iter().filter(|part| !part.trim().is_empty()).collect()
+}
+
+/// The path from the root; none through `super` beyond it.
+fn absolute(path: Vec<String>, module: &[String]) -> Option<Vec<String>> {
+    let mut base = match path.first()?.as_str() {
+        "crate" => Vec::new(),
+        _ => module.to_vec(),
+    };
+    for name in path {
+        match name.as_str() {
+            "crate" | "self" => {}
+            "super" => drop(base.pop()?),
+            _ => base.push(name),
+        }
+    }
+    Some(base)
+}
+
+/// Sets of modules that reach each other.
+fn knots(arrows: &BTreeMap<String, BTreeSet<String>>) -> Vec<Vec<String>> {
+    let reached = |from: &String| {
+        let (mut seen, mut next) = (BTreeSet::new(), vec![from]);
+        while let Some(at) = next.pop() {
+            next.extend(arrows.get(at).into_iter().flatten().filter(|to| seen.insert((*to).clone())));
+        }
+        seen
+    };
+    let all: BTreeMap<&String, BTreeSet<String>> = arrows.keys().map(|from| (from, reached(from))).collect();
+    let together = |from: &String| -> Vec<String> {
+        all[from].iter().filter(|to| all.get(to).is_some_and(|back| back.contains(from))).cloned().collect()
+    };
+    let knots: BTreeSet<Vec<String>> = arrows.keys().map(together).filter(|knot| knot.len() > 1).collect();
+    knots.into_iter().collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn of(sources: &[(&str, &str)]) -> Vec<String> {
+        let sources: Vec<_> =
+            sources.iter().map(|(path, code)| (path.to_string(), code.to_string())).collect();
+        circles(&sources)
+    }
+
+    #[test]
+    fn a_circle_is_seen_however_it_is_written() {
+        let a = ("qp/a.rs", "use crate::qp::b::{B, C};");
+        for b in [
+            "use crate::qp::a::A;",
+            "use super::a::A;",
+            "use super::{c, a};",
+            "use crate::{error, qp::{a as x, d}};",
+            "fn f() { crate::qp::a::f(); }",
+            "use crate::qp::Handed;",
+            "use crate::qp::Renamed;",
+        ] {
+            let folder =
+                ("qp/mod.rs", "mod a; mod b; pub use a::Handed; pub(crate) use self::a::{Old as Renamed};");
+            assert_eq!(of(&[folder, a, ("qp/b.rs", b)]), ["qp: a b"], "{b}");
+        }
+    }
+
+    #[test]
+    fn a_circle_of_three_through_folders_is_one() {
+        let sources = [
+            ("lib.rs", "mod x;"),
+            ("x/mod.rs", "mod a; mod b; mod c;"),
+            ("x/a/mod.rs", "mod inner;"),
+            ("x/a/inner.rs", "use crate::x::b::B;"),
+            ("x/b.rs", "use super::c;"),
+            ("x/c.rs", "use crate::x::a::A;"),
+        ];
+        assert_eq!(of(&sources), ["x: a b c"]);
+    }
+
+    #[test]
+    fn what_stands_in_mod_rs_is_a_module_and_tests_are_none() {
+        let parent = ("x/mod.rs", "mod a; pub struct P; fn f() { self::a::g(); }");
+        assert_eq!(of(&[parent, ("x/a.rs", "use super::P;")]), ["x: a mod"]);
+        let only_names = ("x/mod.rs", "mod a; pub use a::A; pub struct P;");
+        assert!(of(&[only_names, ("x/a.rs", "use super::P;")]).is_empty());
+        let tests = "use super::P;\n#[cfg(test)]\nmod tests { use crate::x::b::B; }";
+        let sources = [only_names, ("x/a.rs", tests), ("x/b.rs", "use super::A;")];
+        assert!(of(&sources).is_empty(), "only a test looks back");
+    }
+
+    #[test]
+    fn one_way_is_no_circle() {
+        assert!(of(&[("x/mod.rs", "mod a; mod b;"), ("x/a.rs", "use super::b;"), ("x/b.rs", "")]).is_empty());
+    }
+}
