@@ -20,7 +20,9 @@ pub(super) const PROBE: f64 = 1e-8;
 /// Rounding errors of R may be so many times those of the sample that is taken of them, ...
 const SAMPLE: f64 = 16.0;
 /// ... and what is more against the fastest dof is none.
-const MOST_ROUNDING: f64 = 1e-7;
+const MOST_ERROR: f64 = 1e-7;
+/// More than this of a row or a load is no rounding, however little is known of R: it is told as marginal.
+pub(super) const MOST_ROUNDING: f64 = 1e-9;
 
 impl GeneralizedInverse {
     /// The error of a null space that K does not map to zero but for rounding, as far as the factor enlarges it.
@@ -93,7 +95,7 @@ pub(super) fn known_to(
             worst = worst.max(SAMPLE * size(&turned) / size(r));
         }
     }
-    Ok(worst.min(MOST_ROUNDING))
+    Ok(worst.min(MOST_ERROR))
 }
 
 pub(super) fn missing_mode(dof: usize, found: f64, given: usize) -> Error {

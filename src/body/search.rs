@@ -15,7 +15,7 @@ use crate::body::hints::Misfit;
 use crate::body::last::{between_parts, spread, supported};
 use crate::body::null_space::{largest, verified_by_parts, Part, Verified};
 use crate::body::overflow::refuse_overflow;
-use crate::body::probe::{known_to, SINGULAR};
+use crate::body::probe::{known_to, MOST_ROUNDING, SINGULAR};
 use crate::body::spectrum::{cut, measured, to_measure, unclear, Doubt, Ritz, Verdict};
 use crate::body::symbolic::{Layout, Made, Symbolic};
 use crate::error::{Error, Kind, Result};
@@ -331,8 +331,8 @@ impl Search {
             factor,
         };
         inverse.softness = inverse.probe(&self.k)?;
-        inverse.rounding = known_to(&inverse.factor, &self.k, &basis, &counts)?;
-        inverse.error = inverse.rounding;
+        inverse.error = known_to(&inverse.factor, &self.k, &basis, &counts)?;
+        inverse.rounding = inverse.error.min(MOST_ROUNDING);
         Ok(inverse)
     }
 

@@ -98,7 +98,7 @@ fn is_incomplete(solution: &Solution) -> bool {
 
 /// Contradictory rows are known before the dual is solved: a direction along which theta seems to fall without
 /// end is rounding, as a rule.
-fn gave_up(solution: &Solution) -> bool {
+pub(super) fn gave_up(solution: &Solution) -> bool {
     matches!(solution.verdict, Verdict::Stalled | Verdict::Inaccurate | Verdict::Unbounded { .. })
 }
 

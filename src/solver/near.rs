@@ -1,11 +1,12 @@
 //! Rows whose gaps are far beyond all that loads and rows move are left out of the dual, and join it only where bodies
-//! travel that far: where nothing else holds a load, or where the answer without them goes through them.
+//! travel that far: where nothing else holds a load, where the answer without them goes through them, or where there is none
+//! without them.
 
 use crate::error::Result;
 use crate::qp::{Block, Judged, Qp, Restricted, Solution, Verdict};
 use crate::solver::certifier::Certifier;
 use crate::solver::diagnosis::Unheld;
-use crate::solver::fallback::{solve_dual, Means};
+use crate::solver::fallback::{gave_up, solve_dual, Means};
 use crate::solver::presolve::FAR;
 use crate::solver::steps::Steps;
 
@@ -19,7 +20,7 @@ pub(super) fn solve_near(
 ) -> Result<Solution> {
     let gaps = &judge.scaled.gaps.value;
     let mut far = judge.scaled.gaps.far.clone();
-    let (mut start, mut before) = (start.to_vec(), Default::default());
+    let (mut start, mut before, mut given_up) = (start.to_vec(), Default::default(), None);
     while far.contains(&true) {
         let rows: Vec<usize> = (0..far.len()).filter(|&i| !far[i]).collect();
         let (near, block) = (Restricted::new(qp, &rows), Block { whole: means.direct, rows: &rows });
@@ -46,6 +47,10 @@ pub(super) fn solve_near(
             Verdict::Infeasible { .. } | Verdict::Unbounded { .. } => {
                 (0..far.len()).for_each(|i| far[i] &= gaps[i] > FAR * nearest);
             }
+            _ if judge.reached.is_empty() && gave_up(&solution) => {
+                (0..far.len()).for_each(|i| far[i] &= gaps[i] > FAR * nearest);
+                given_up.get_or_insert(solution);
+            }
             _ if judge.reached.is_empty() => return Ok(Solution { counts: before, ..solution }),
             _ => {
                 judge.reached.iter().for_each(|&i| far[i] = false);
@@ -57,5 +62,7 @@ pub(super) fn solve_near(
     judge.far.clear();
     judge.reached.clear();
     let solution = solve_dual(means, qp, &start, judge, steps)?;
-    Ok(Solution { counts: before + solution.counts, ..solution })
+    let counts = before + solution.counts;
+    let solution = given_up.filter(|_| gave_up(&solution)).unwrap_or(solution);
+    Ok(Solution { counts, ..solution })
 }

@@ -239,12 +239,12 @@ fn every_hard_problem_ends_as_it_may_end_and_every_proof_proves() {
 }
 
 /// Near-redundant rows, ties of large contrast, leverage and idle bodies on which every iteration gave up, loads that a wall far away
-/// could hold, gaps that contradict each other by rows nearly the same, and ties that hold what nobody knows to move.
+/// could hold, gaps that contradict each other by rows nearly the same, ties that hold what nobody knows to move, and gaps too far to matter until nothing else holds.
 #[test]
 fn hard_problems_that_once_stalled_end_as_they_may() {
     let first = [
         101663, 104420, 105274, 105290, 110187, 120071, 123487, 133679, 140443, 149681, 154999, 158499,
-        163030, 176619, 183956, 189370, 193714, 194012, 196715, 676416,
+        163030, 176619, 183956, 189370, 193714, 194012, 196715, 676416, 1035551, 1040195, 1074242,
     ];
     let second = [3000936, 3001030, 3006672, 6000255, 6001208];
     let of = |seeds: &[u64], mixture| -> Vec<(u64, Hard)> {
