@@ -7,6 +7,7 @@ use crate::qp::{
 };
 use crate::solver::paper;
 use crate::solver::steps::Steps;
+use crate::solver::words::Method;
 use crate::solver::Settings;
 
 /// How the dual is solved.
@@ -31,7 +32,7 @@ pub(super) fn solve_dual(
     if let Some(parameters) = paper::parameters(settings) {
         return algorithm_3(Qp { preconditioner: None, ..qp }, start, &parameters, judge, steps);
     }
-    if settings.method == c"smalbe" {
+    if settings.method == Method::Smalbe {
         return not_held(&qp, start)?.map_or_else(|| smalbe(qp, start, limits, judge, steps), Ok);
     }
     let first = minimise(qp, start, limits, judge, steps)?;

@@ -10,6 +10,7 @@ use crate::qp::{Face, Verdict};
 use crate::solver::certifier::{Certifier, Ending, Faces};
 use crate::solver::presolve::Gaps;
 use crate::solver::problem::Problem;
+use crate::solver::words::{FinishBy, Method};
 
 /// Active sets at most.
 const FACES: usize = 8;
@@ -32,9 +33,10 @@ impl Problem {
     /// Whether the answer of an island is to be finished, as option `finish` has it. `automatic`: where an error that passes the
     /// certificate may be large elsewhere.
     pub(super) fn is_to_finish(&self, judge: &Certifier, ending: &Ending) -> bool {
-        let default = self.settings.method == c"proportioning" && self.settings.finish == c"automatic";
+        let default =
+            self.settings.method == Method::Proportioning && self.settings.finish == FinishBy::Automatic;
         let overlooked = ending.judgement.unevenness > UNEVEN;
-        self.settings.finish == c"direct" || default && (overlooked || is_delicate(judge, ending))
+        self.settings.finish == FinishBy::Direct || default && (overlooked || is_delicate(judge, ending))
     }
 }
 

@@ -1,14 +1,14 @@
 //! What a call tells in words: its result, its phases, its steps.
 
-use std::ffi::CStr;
 use std::fmt::Write;
 
 use crate::error::{Error, Kind, Result};
 use crate::solver::phases::PhaseReport;
 use crate::solver::problem::Problem;
 use crate::solver::report::{Outcome, Report};
-use crate::solver::setup::Setup;
+use crate::solver::setup::{Ready, Setup};
 use crate::solver::watch::{Progress, Watch};
+use crate::solver::words::{Preconditioning, Word};
 use crate::solver::StepKind;
 
 /// How much is told; each level tells what those before it tell.
@@ -195,11 +195,11 @@ impl Problem {
     /// How the dual is going to be solved.
     pub(super) fn log_method(&self, log: &mut Log, started: &str) -> Result<()> {
         let Setup { islands, operators, .. } = self.ready()?;
-        let word = |word: &CStr| word.to_string_lossy().into_owned();
-        let mut preconditioners: Vec<String> = islands
-            .iter()
-            .map(|ready| ready.preconditioner.as_ref().map_or("none".to_owned(), |(name, _)| word(name)))
-            .collect();
+        let of_island = |ready: &Ready| {
+            let kind = ready.preconditioner.as_ref().map_or(Preconditioning::None, |(kind, _)| *kind);
+            kind.word().to_string_lossy()
+        };
+        let mut preconditioners: Vec<_> = islands.iter().map(of_island).collect();
         preconditioners.sort_unstable();
         preconditioners.dedup();
         log.say(LogLevel::Phase, || {
@@ -211,7 +211,7 @@ impl Problem {
             format!(
                 "method: {}, preconditioner {}, start {started}; {groups}{} multipliers, {} floating modes, \
                  {} explicit and {implicit} implicit dual operators",
-                word(self.settings.method),
+                self.settings.method.word().to_string_lossy(),
                 preconditioners.join(" and "),
                 islands.iter().map(|ready| ready.rows.groups()).sum::<usize>(),
                 islands.iter().map(|ready| ready.dual.modes()).sum::<usize>(),

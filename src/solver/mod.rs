@@ -43,6 +43,7 @@ mod threads;
 mod travel;
 mod undetermined;
 mod watch;
+mod words;
 
 pub use crate::body::{Columns, Digits, Doubt, HostFunctions, HostProduct, Modes, SparseInput, Storage};
 pub use crate::certificate::{Certificate, Entry};

@@ -1,12 +1,11 @@
 //! Which bodies get an explicit dual operator, and whether factors and operators fit into memory.
 
-use std::ffi::CStr;
-
 use crate::dual::{all_bytes, implicit_bodies, Kept, Size};
 use crate::error::{Error, Kind, Result};
 use crate::linalg::memory::available;
 use crate::solver::problem::{BodySlot, Problem};
 use crate::solver::setup::Ready;
+use crate::solver::words::OperatorForm;
 
 /// Multiplications of a product with F, a tenth of a millisecond, from which on several threads save time.
 const PARALLEL_PAYS: usize = 1 << 18;
@@ -22,7 +21,7 @@ pub(super) struct Operators {
 }
 
 /// Option dual_operator and the limit of memory.
-type Options = (&'static CStr, Option<usize>);
+type Options = (OperatorForm, Option<usize>);
 
 impl Operators {
     fn bytes(&self) -> usize {
@@ -62,10 +61,12 @@ impl Problem {
 
     /// True where the options want the operator of a body to be implicit.
     fn implicit(&self, sizes: &[Size], factor_bytes: usize) -> Vec<bool> {
-        match self.settings.dual_operator.to_bytes() {
-            b"explicit" => vec![false; sizes.len()],
-            b"implicit" => vec![true; sizes.len()],
-            _ => implicit_bodies(sizes, self.memory_limit().map(|limit| limit.saturating_sub(factor_bytes))),
+        match self.settings.dual_operator {
+            OperatorForm::Explicit => vec![false; sizes.len()],
+            OperatorForm::Implicit => vec![true; sizes.len()],
+            OperatorForm::Automatic => {
+                implicit_bodies(sizes, self.memory_limit().map(|limit| limit.saturating_sub(factor_bytes)))
+            }
         }
     }
 

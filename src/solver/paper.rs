@@ -14,22 +14,26 @@ use crate::solver::islands::Island;
 use crate::solver::presolve::Gaps;
 use crate::solver::problem::Problem;
 use crate::solver::setup::Ready;
+use crate::solver::words::{Method, PaperStep1, PaperUnits};
 use crate::solver::Settings;
 
 /// True where `method` is one of the paper: its dual has the rows of the host, scaled but not decoupled.
 pub(super) fn is_asked(settings: &Settings) -> bool {
-    settings.method.to_bytes().starts_with(b"paper-")
+    variant(settings).is_some()
+}
+
+/// Of Algorithm 1; none where `method` is not one of the paper.
+fn variant(settings: &Settings) -> Option<Variant> {
+    match settings.method {
+        Method::Proportioning | Method::Smalbe => None,
+        Method::PaperFeasible => Some(Variant::Feasible),
+        Method::PaperMonotone => Some(Variant::Monotone),
+        Method::PaperExtrapolating => Some(Variant::Extrapolating),
+    }
 }
 
 /// Options of the paper's methods; none where `method` is another one.
 pub(super) fn parameters(settings: &Settings) -> Option<Parameters> {
-    let variant = match settings.method.to_bytes() {
-        b"paper-feasible" => Variant::Feasible,
-        b"paper-monotone" => Variant::Monotone,
-        b"paper-extrapolating" => Variant::Extrapolating,
-        _ => return None,
-    };
-    let units = if settings.paper_units == c"printed" { Units::Printed } else { Units::Relative };
     let whole = |n: i64| usize::try_from(n).unwrap_or(usize::MAX);
     Some(Parameters {
         alpha: settings.paper_alpha,
@@ -39,9 +43,19 @@ pub(super) fn parameters(settings: &Settings) -> Option<Parameters> {
         m: Some(settings.paper_m).filter(|m| *m > 0.0),
         mu_0: settings.paper_mu_0,
         outer: whole(settings.paper_outer),
-        rule: Rule { gamma: settings.gamma, variant, extrapolation: settings.paper_extrapolation },
-        units,
-        step_1: if settings.paper_step_1 == c"printed" { StepOne::Printed } else { StepOne::Corrected },
+        rule: Rule {
+            gamma: settings.gamma,
+            variant: variant(settings)?,
+            extrapolation: settings.paper_extrapolation,
+        },
+        units: match settings.paper_units {
+            PaperUnits::Relative => Units::Relative,
+            PaperUnits::Printed => Units::Printed,
+        },
+        step_1: match settings.paper_step_1 {
+            PaperStep1::Corrected => StepOne::Corrected,
+            PaperStep1::Printed => StepOne::Printed,
+        },
         tolerance: settings.tolerance,
         steps: whole(settings.max_steps),
     })

@@ -3,6 +3,9 @@
 use std::ffi::CStr;
 
 use crate::error::{Error, Result};
+use crate::solver::words::{
+    FinishBy, Method, OperatorForm, PaperStep1, PaperUnits, Preconditioning, StartFrom, Word,
+};
 
 /// Values of all options; the table says what they mean. `Settings::new` has the defaults.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -18,14 +21,14 @@ pub struct Settings {
     pub threads: i64,
     pub index_base: i64,
     pub fault_injection: i64,
-    pub preconditioner: &'static CStr,
-    pub dual_operator: &'static CStr,
-    pub method: &'static CStr,
-    pub start: &'static CStr,
+    pub preconditioner: Preconditioning,
+    pub dual_operator: OperatorForm,
+    pub method: Method,
+    pub start: StartFrom,
     pub direct_limit: i64,
-    pub finish: &'static CStr,
-    pub paper_units: &'static CStr,
-    pub paper_step_1: &'static CStr,
+    pub finish: FinishBy,
+    pub paper_units: PaperUnits,
+    pub paper_step_1: PaperStep1,
     pub paper_alpha: f64,
     pub paper_beta: f64,
     pub paper_rho_0: f64,
@@ -57,8 +60,7 @@ pub struct OptionInfo {
 enum Field {
     F64(fn(&mut Settings) -> &mut f64),
     I64(fn(&mut Settings) -> &mut i64),
-    /// One of the words listed.
-    Str(fn(&mut Settings) -> &mut &'static CStr, &'static [&'static CStr]),
+    Word(fn(&mut Settings) -> &mut dyn Word),
 }
 
 type Range = std::ops::RangeInclusive<f64>;
@@ -89,15 +91,17 @@ const fn whole(
     OptionInfo { name, doc, default: OptionValue::I64(default), minimum, maximum, field: Field::I64(field) }
 }
 
-/// The first word is the default.
-const fn word(
-    name: &'static CStr,
-    words: &'static [&'static CStr],
-    field: fn(&mut Settings) -> &mut &'static CStr,
-    doc: &'static CStr,
-) -> OptionInfo {
-    let default = OptionValue::Str(words[0]);
-    OptionInfo { name, doc, default, minimum: 0.0, maximum: 0.0, field: Field::Str(field, words) }
+macro_rules! word {
+    ($name:literal, $field:ident: $kind:ty, $doc:literal) => {
+        OptionInfo {
+            name: $name,
+            doc: $doc,
+            default: OptionValue::Str(<$kind>::WORDS[0]),
+            minimum: 0.0,
+            maximum: 0.0,
+            field: Field::Word(|settings| &mut settings.$field),
+        }
+    };
 }
 
 static OPTIONS: [OptionInfo; 27] = [
@@ -123,21 +127,21 @@ static OPTIONS: [OptionInfo; 27] = [
         c"What numbers in error texts count from: 0 for C, 1 for Fortran."),
     whole(c"fault_injection", 0, 0.0..=1.0, |s| &mut s.fault_injection,
         c"1: the next feti_solve fails inside with FETI_INTERNAL, so that a host can test its own reaction."),
-    word(c"preconditioner", &[c"automatic", c"none", c"lumped", c"dirichlet"], |s| &mut s.preconditioner,
+    word!(c"preconditioner", preconditioner: Preconditioning,
         c"Preconditioner of the dual: automatic (lumped where products with F are dear, else none); none; lumped (stiffness of the constrained dofs, the others held); dirichlet (the others free: fewer steps, one more factorisation of each body). A body whose stiffness the host keeps enters with its diagonal."),
-    word(c"dual_operator", &[c"automatic", c"explicit", c"implicit"], |s| &mut s.dual_operator,
+    word!(c"dual_operator", dual_operator: OperatorForm,
         c"How the dual operator of a body is kept: explicit (its entries: a product reads 4 m^2 bytes for m rows); implicit (a product takes two triangular solves: less memory, slower); automatic (by a model of the time, explicit for a body whose stiffness the host keeps, and implicit where memory_limit leaves no room)."),
-    word(c"method", &[c"proportioning", c"smalbe", c"paper-feasible", c"paper-monotone", c"paper-extrapolating"], |s| &mut s.method,
+    word!(c"method", method: Method,
         c"Method for the dual: proportioning on its feasible set, with smalbe to fall back on; smalbe, an augmented Lagrangian, for comparison; paper-..., Algorithm 3 of the paper with Algorithm 1 in one of its variants, without preconditioner and fallback."),
-    word(c"start", &[c"cold", c"previous"], |s| &mut s.start,
+    word!(c"start", start: StartFrom,
         c"Where a solve starts: cold (no forces: the same input gives the same bits) or previous (forces and active set of the last answer for these rows); feti_start_from comes before either."),
     whole(c"direct_limit", 1000, 0.0..=MANY, |s| &mut s.direct_limit,
         c"Forces and floating modes together up to which the dual may be solved by dense factors on the active set, where the iteration gives up or option finish asks for it; 0: never."),
-    word(c"finish", &[c"automatic", c"none", c"direct"], |s| &mut s.finish,
+    word!(c"finish", finish: FinishBy,
         c"What follows a solve: direct (dense factors on the active set found and corrections from K, B, f, c: errors fall to rounding; kept only where the certificate is no worse); none; automatic (direct where a body is ill-conditioned or rows join bodies of very different stiffness or deformation, so that the certificate alone would leave errors that matter)."),
-    word(c"paper_units", &[c"relative", c"printed"], |s| &mut s.paper_units,
+    word!(c"paper_units", paper_units: PaperUnits,
         c"Methods paper-...: what their parameters are relative to. relative: rho_0 in |A|/|D|^2, M in |A|/|D|, eta_0 in the size of d, for the scaled rows; printed: the units of the host, its basis R, tolerance relative to |b| and |d|."),
-    word(c"paper_step_1", &[c"corrected", c"printed"], |s| &mut s.paper_step_1,
+    word!(c"paper_step_1", paper_step_1: PaperStep1,
         c"Methods paper-...: when Step 1 ends. printed: |g^P| <= M |D x - d|; corrected: not on this account once |D x - d| is as small as asked, |g^P| must be so too."),
     real(c"paper_alpha", 0.1, 1e-6..=0.999, |s| &mut s.paper_alpha,
         c"alpha of Algorithm 3: the bound eta on |D x - d| is multiplied by it where it was kept."),
@@ -169,7 +173,6 @@ impl Settings {
             match (&option.field, option.default) {
                 (Field::F64(field), OptionValue::F64(value)) => *field(&mut settings) = value,
                 (Field::I64(field), OptionValue::I64(value)) => *field(&mut settings) = value,
-                (Field::Str(field, _), OptionValue::Str(value)) => *field(&mut settings) = value,
                 _ => {}
             }
         }
@@ -194,14 +197,14 @@ impl Settings {
 
     pub fn set_str(&mut self, name: &str, value: &str) -> Result<()> {
         let option = find(name)?;
-        let Field::Str(field, words) = &option.field else { return Err(wrong_type(option)) };
-        let found = words.iter().find(|word| word.to_bytes() == value.as_bytes());
-        *field(self) = found.ok_or_else(|| {
-            let known: Vec<_> = words.iter().map(|word| word.to_string_lossy()).collect();
-            let what = format!("option \"{name}\" is one of {}, not \"{value}\"", known.join(", "));
-            Error::argument("value", what)
-        })?;
-        Ok(())
+        let Field::Word(field) = &option.field else { return Err(wrong_type(option)) };
+        let field = field(self);
+        if field.take(value.as_bytes()) {
+            return Ok(());
+        }
+        let known: Vec<_> = field.words().iter().map(|word| word.to_string_lossy()).collect();
+        let what = format!("option \"{name}\" is one of {}, not \"{value}\"", known.join(", "));
+        Err(Error::argument("value", what))
     }
 
     pub fn get_f64(&self, name: &str) -> Result<f64> {
@@ -218,8 +221,8 @@ impl Settings {
 
     pub fn get_str(&self, name: &str) -> Result<String> {
         let option = find(name)?;
-        let Field::Str(field, _) = &option.field else { return Err(wrong_type(option)) };
-        Ok(field(&mut self.clone()).to_string_lossy().into_owned())
+        let Field::Word(field) = &option.field else { return Err(wrong_type(option)) };
+        Ok(field(&mut self.clone()).word().to_string_lossy().into_owned())
     }
 }
 

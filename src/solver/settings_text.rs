@@ -137,6 +137,7 @@ impl<'a> Rest<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::solver::words::Preconditioning;
 
     fn set(text: &str) -> Result<Settings> {
         let mut settings = Settings::new();
@@ -145,7 +146,12 @@ mod tests {
 
     #[test]
     fn blanks_commas_ends_of_lines_and_comments_separate() {
-        let expected = Settings { tolerance: 1e-8, threads: 4, preconditioner: c"lumped", ..Settings::new() };
+        let expected = Settings {
+            tolerance: 1e-8,
+            threads: 4,
+            preconditioner: Preconditioning::Lumped,
+            ..Settings::new()
+        };
         for text in [
             "tolerance=1e-8 threads=4 preconditioner=lumped",
             "preconditioner=lumped,threads=4,tolerance=1e-8",

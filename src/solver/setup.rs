@@ -1,6 +1,5 @@
 //! Everything that does not depend on loads and gaps: null spaces, factors, scaling, dual operators.
 
-use std::ffi::CStr;
 use std::sync::Arc;
 use std::time::Instant;
 
@@ -20,6 +19,7 @@ use crate::solver::problem::Problem;
 use crate::solver::rows::DualRows;
 use crate::solver::threads;
 use crate::solver::watch::{Part, Watch};
+use crate::solver::words::Preconditioning;
 
 /// `automatic` takes the lumped preconditioner where a product with F costs this many operations for each row. On glued
 /// subdomains it saves a hundred products and takes the time of 3e4 operations for each row to set up; on two bodies in
@@ -43,8 +43,8 @@ pub(super) struct Ready {
     pub island: Island,
     pub dual: Dual,
     pub rows: DualRows,
-    /// The preconditioner and its name in the options.
-    pub preconditioner: Option<(&'static CStr, Preconditioner)>,
+    /// The preconditioner and which one of the options it is.
+    pub preconditioner: Option<(Preconditioning, Preconditioner)>,
 }
 
 impl Problem {
@@ -197,23 +197,25 @@ impl Problem {
 
     /// Fraction of the setup that is done with the dual operators: what is left is for the preconditioner.
     fn assembled(&self) -> f64 {
-        match self.settings.preconditioner.to_bytes() {
-            b"none" => 1.0,
-            b"dirichlet" => 0.6,
-            _ => 0.98,
+        match self.settings.preconditioner {
+            Preconditioning::None => 1.0,
+            Preconditioning::Dirichlet => 0.6,
+            Preconditioning::Automatic | Preconditioning::Lumped => 0.98,
         }
     }
 
     /// The preconditioners the options ask for, kept until they ask for others.
     pub(super) fn set_up_preconditioner(&mut self, watch: &mut Watch) -> Result<()> {
         let Some(setup) = &self.ready else { return Ok(()) };
-        let asked: Vec<&CStr> = setup.islands.iter().map(|ready| self.wanted_preconditioner(ready)).collect();
-        let there = |ready: &Ready| ready.preconditioner.as_ref().map_or(c"none", |(name, _)| *name);
+        let asked: Vec<Preconditioning> =
+            setup.islands.iter().map(|ready| self.wanted_preconditioner(ready)).collect();
+        let there =
+            |ready: &Ready| ready.preconditioner.as_ref().map_or(Preconditioning::None, |(kind, _)| *kind);
         if setup.islands.iter().map(there).eq(asked.iter().copied()) {
             return Ok(());
         }
         let begun = Instant::now();
-        if asked.contains(&c"dirichlet") {
+        if asked.contains(&Preconditioning::Dirichlet) {
             let boundaries = |ready: &Ready| {
                 let dofs = constrained(&ready.rows.matrix, &ready.island.ranges);
                 dofs.iter().map(|dofs| dirichlet_bytes(dofs.len())).sum::<usize>()
@@ -222,10 +224,10 @@ impl Problem {
         }
         let mut made = reserved(asked.len(), "groups of bodies")?;
         for (ready, &asked) in setup.islands.iter().zip(&asked) {
-            made.push(match asked.to_bytes() {
-                b"none" => None,
-                b"lumped" => Some((asked, self.preconditioner(ready, lumped)?)),
-                _ => Some((asked, self.preconditioner(ready, dirichlet)?)),
+            made.push(match asked {
+                Preconditioning::Automatic | Preconditioning::None => None,
+                Preconditioning::Lumped => Some((asked, self.preconditioner(ready, lumped)?)),
+                Preconditioning::Dirichlet => Some((asked, self.preconditioner(ready, dirichlet)?)),
             });
         }
         let islands = self.ready.iter_mut().flat_map(|setup| &mut setup.islands);
@@ -234,13 +236,17 @@ impl Problem {
         watch.setup_done()
     }
 
-    fn wanted_preconditioner(&self, ready: &Ready) -> &'static CStr {
+    fn wanted_preconditioner(&self, ready: &Ready) -> Preconditioning {
         let of_host = |&p: &usize| self.bodies[p].body.operator.is_some();
         match self.settings.preconditioner {
-            word if word != c"automatic" => word,
-            _ if ready.island.bodies.iter().all(of_host) => c"none",
-            _ if ready.dual.product_work() > LUMPED_PAYS * ready.rows.matrix.rows() => c"lumped",
-            _ => c"none",
+            Preconditioning::Automatic if ready.island.bodies.iter().all(of_host) => Preconditioning::None,
+            Preconditioning::Automatic
+                if ready.dual.product_work() > LUMPED_PAYS * ready.rows.matrix.rows() =>
+            {
+                Preconditioning::Lumped
+            }
+            Preconditioning::Automatic => Preconditioning::None,
+            asked => asked,
         }
     }
 

@@ -10,6 +10,7 @@ use crate::linalg::vector::first_non_finite;
 use crate::solver::problem::Problem;
 use crate::solver::results::{Answer, Asked};
 use crate::solver::setup::Ready;
+use crate::solver::words::StartFrom;
 
 /// What a problem remembers besides its data.
 #[derive(Default)]
@@ -109,7 +110,7 @@ impl Problem {
     pub(super) fn take_start(&mut self) -> Start {
         let given = std::mem::take(&mut self.history.start);
         let previous = self.history.previous.clone();
-        Start { given, previous: previous.filter(|_| self.settings.start == c"previous") }
+        Start { given, previous: previous.filter(|_| self.settings.start == StartFrom::Previous) }
     }
 
     /// Keeps loads, rows, multipliers and active set under a number that is never used again.
