@@ -11,6 +11,7 @@ mod front;
 pub mod gram;
 pub mod graph;
 pub mod interrupt;
+mod mapping;
 pub mod memory;
 #[cfg(feature = "metis")]
 mod metis;

@@ -1,0 +1,72 @@
+//! Pages that the system maps on request.
+
+use std::ptr::NonNull;
+
+/// Blocks from this size on get large pages, where the system has them on request.
+#[cfg(target_os = "linux")]
+const LARGE_PAGES: usize = 8 << 20;
+/// A multiple of the pages of all systems: those of Linux have 4, 16 or 64 KiB.
+pub const PAGE: usize = 64 << 10;
+
+/// Fresh pages of so many bytes. Those to be `used` are cleared all at once where they are few; for many, large pages are
+/// asked for: clearing small ones when they are touched first takes a sixth of a factorisation.
+#[cfg(target_os = "linux")]
+pub fn map(bytes: usize, used: bool) -> Option<NonNull<f64>> {
+    let access = libc::PROT_READ | libc::PROT_WRITE;
+    let many = bytes >= LARGE_PAGES;
+    let at_once = if used && !many { libc::MAP_POPULATE } else { 0 };
+    let kind = libc::MAP_PRIVATE | libc::MAP_ANONYMOUS | at_once;
+    // SAFETY: new pages at an address that the system chooses.
+    let start = unsafe { libc::mmap(std::ptr::null_mut(), bytes, access, kind, -1, 0) };
+    if start == libc::MAP_FAILED {
+        return None;
+    }
+    if used && many {
+        // SAFETY: the pages just mapped; the advice does not change what they hold. Where it is refused nothing happens.
+        unsafe { libc::madvise(start, bytes, libc::MADV_HUGEPAGE) };
+    }
+    NonNull::new(start.cast())
+}
+
+/// # Safety
+/// Whole pages of a block that `map` gave, used by nobody.
+#[cfg(target_os = "linux")]
+pub unsafe fn unmap(start: NonNull<f64>, bytes: usize) {
+    libc::munmap(start.as_ptr().cast(), bytes);
+}
+
+#[cfg(not(target_os = "linux"))]
+pub fn map(_: usize, _: bool) -> Option<NonNull<f64>> {
+    None
+}
+
+#[cfg(not(target_os = "linux"))]
+pub unsafe fn unmap(_: NonNull<f64>, _: usize) {}
+
+/// True when the system would give so many bytes now.
+#[cfg(target_os = "linux")]
+pub fn could_have(bytes: usize) -> bool {
+    let Some(bytes) = bytes.checked_next_multiple_of(PAGE) else { return false };
+    // SAFETY: the pages just mapped.
+    map(bytes, false).map(|start| unsafe { unmap(start, bytes) }).is_some()
+}
+
+/// True when the allocator would give so many bytes now. The optimiser must see a use: it may leave out an allocation that
+/// has none, and count it as successful.
+#[cfg(not(target_os = "linux"))]
+pub fn could_have(bytes: usize) -> bool {
+    let mut block: Vec<u8> = Vec::new();
+    let had = block.try_reserve_exact(bytes).is_ok();
+    std::hint::black_box(block.as_ptr());
+    had
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_no_machine_has_could_not_be_had() {
+        assert!(!could_have(usize::MAX) && !could_have(1 << 60) && could_have(1 << 20));
+    }
+}
