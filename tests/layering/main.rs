@@ -59,7 +59,6 @@ const STILL: &[&str] = &[
     "body: in_order stiffness",
     "certificate: deformation field",
     "ffi: error_store guard handle",
-    "linalg/packed: product x86",
     "qp/paper: bound variants",
     "solver: call certifier diagnosis fallback findings finish host islands log near numbering operators paper phases presolve problem report response results rigid rows scaled setup solve state steps watch",
     "solver/file: read sections",

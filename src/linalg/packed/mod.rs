@@ -4,6 +4,7 @@
 //! below the diagonal follow each other, so that the product reads memory from one end to the other, in whole lines
 //! of the cache; the tiles on the diagonal hold both triangles.
 
+mod kernel;
 mod product;
 #[cfg(target_arch = "x86_64")]
 mod x86;
@@ -204,7 +205,7 @@ mod tests {
     /// Every set of instructions that this processor has; says how many they are.
     fn products(a: &Packed, x: &[f64]) -> Vec<Vec<f64>> {
         let mut y = vec![vec![f64::NAN; a.order]; 3];
-        product::product_by(&product::Portable, &a.tiles, x, &mut y[0]);
+        product::product_by(&kernel::Portable, &a.tiles, x, &mut y[0]);
         let mut sets = 1;
         #[cfg(target_arch = "x86_64")]
         {

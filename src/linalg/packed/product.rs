@@ -1,58 +1,13 @@
 //! `y = A x` with the tiles of a packed matrix: each is read once, for its place below the diagonal and for the one
 //! above. Four columns of tiles are read side by side: one stream of memory alone waits at the end of every page.
 
+use crate::linalg::packed::kernel::{Kernel, Portable};
 use crate::linalg::packed::{Line, Tile, SIDE};
 
 /// Columns of tiles at a time.
 const PANEL: usize = 4;
 /// Tiles below a panel's own ones that are asked for while the panel before is read.
 const AHEAD: usize = 2;
-
-/// One set of instructions of the processor; all give the same bits.
-pub trait Kernel {
-    /// P columns of tiles A_p of the same rows: `y += sum_p A_p factor_p`; gives the P products `A_p' x`.
-    fn columns<const P: usize>(
-        &self,
-        tiles: [&[Tile]; P],
-        x: &[Line],
-        y: &mut [Line],
-        factors: &[Line; P],
-    ) -> [Line; P];
-
-    /// Tells memory that these tiles will be asked for.
-    fn ask_for(&self, _: &[Tile]) {}
-}
-
-/// Plain loops, for any processor.
-pub struct Portable;
-
-impl Kernel for Portable {
-    fn columns<const P: usize>(
-        &self,
-        tiles: [&[Tile]; P],
-        x: &[Line],
-        y: &mut [Line],
-        factors: &[Line; P],
-    ) -> [Line; P] {
-        let mut terms = [[[0.0; SIDE]; SIDE]; P];
-        for (at, (x, y)) in x.iter().zip(y).enumerate() {
-            for ((tiles, factors), terms) in tiles.iter().zip(factors).zip(&mut terms) {
-                for ((a, factor), terms) in tiles[at].0.iter().zip(factors).zip(terms) {
-                    for k in 0..SIDE {
-                        y[k] += a[k] * factor;
-                        terms[k] += a[k] * x[k];
-                    }
-                }
-            }
-        }
-        terms.map(|terms| terms.map(|terms| sum(&terms)))
-    }
-}
-
-/// Sum of a line, in the one order of all kernels.
-pub fn sum(t: &Line) -> f64 {
-    ((t[0] + t[4]) + (t[2] + t[6])) + ((t[1] + t[5]) + (t[3] + t[7]))
-}
 
 /// `y = A x` by the fastest instructions that this processor has.
 pub fn product(tiles: &[Tile], x: &[f64], y: &mut [f64]) {

@@ -4,7 +4,7 @@
 use std::arch::is_x86_feature_detected;
 use std::arch::x86_64::*;
 
-use crate::linalg::packed::product::{sum, Kernel};
+use crate::linalg::packed::kernel::{sum, Kernel};
 use crate::linalg::packed::{Line, Tile, SIDE};
 
 /// AVX2: half a line at a time.
