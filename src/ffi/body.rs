@@ -1,7 +1,8 @@
 //! Bodies: their size, coordinates and load.
 
 use super::arrays::{column_major, count, id, input, same, Output};
-use super::guard::{call, enter};
+use super::call::call;
+use super::guard::enter;
 use super::types::{feti_problem, FETI_ALL};
 use crate::error::{Error, Result};
 use crate::solver::Problem;

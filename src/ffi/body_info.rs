@@ -2,7 +2,8 @@
 
 use super::arrays::{id, Output};
 use super::body::body_of_order;
-use super::guard::{call, enter};
+use super::call::call;
+use super::guard::enter;
 use super::record::Target;
 use super::types::{
     feti_body_facts, feti_problem, FETI_ORIGIN_CANDIDATES, FETI_ORIGIN_COORDINATES, FETI_ORIGIN_EXACT,

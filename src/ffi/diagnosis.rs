@@ -2,7 +2,8 @@
 
 use super::arrays::{count, Output};
 use super::body::body_of_order;
-use super::guard::{call, enter};
+use super::call::call;
+use super::guard::enter;
 use super::record::Target;
 use super::rows::row_kind;
 use super::status::{of_kind, of_outcome};

@@ -4,7 +4,7 @@ use std::cell::RefCell;
 use std::ffi::c_char;
 
 use super::arrays;
-use super::guard::Call;
+use super::call::Call;
 use super::record::Target;
 use super::status::{describe, of_kind, FETI_ARGUMENT, FETI_OK};
 use super::types::feti_error_detail;

@@ -6,6 +6,7 @@ use std::cell::{Cell, RefCell};
 use std::panic::{self, AssertUnwindSafe, PanicHookInfo};
 use std::sync::Once;
 
+use super::call::Call;
 use super::error_store::Record;
 use super::fpu;
 use super::handle::{self, Refusal};
@@ -13,22 +14,6 @@ use super::status::{FETI_BUSY, FETI_HANDLE, FETI_INTERNAL, FETI_OK};
 use super::types::feti_problem;
 use crate::error::{Error, Kind, Result};
 use crate::solver::{instant, Problem, THREAD_NAME};
-
-/// An exported function and the names of its arguments, in order.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Call {
-    pub function: &'static str,
-    pub arguments: &'static [&'static str],
-}
-
-/// `call!(feti_body_load(p, body, n, f))`: the arguments must be names in scope.
-macro_rules! call {
-    ($function:ident($($argument:ident),*)) => {{
-        $(let _ = &$argument;)*
-        $crate::ffi::guard::Call { function: stringify!($function), arguments: &[$(stringify!($argument)),*] }
-    }};
-}
-pub(super) use call;
 
 /// Runs `work` on the problem behind `p` and returns the status of the call.
 pub(super) fn enter(p: *mut feti_problem, call: Call, work: impl FnOnce(&mut Problem) -> Result<()>) -> i32 {

@@ -2,8 +2,9 @@
 
 use std::ffi::{c_void, CString};
 
+use super::call::call;
 use super::fpu;
-use super::guard::{call, enter};
+use super::guard::enter;
 use super::progress::User;
 use super::types::{
     feti_log_fn, feti_problem, FETI_LOG_NONE, FETI_LOG_PHASE, FETI_LOG_RESULT, FETI_LOG_STEP,

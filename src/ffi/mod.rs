@@ -4,6 +4,7 @@
 //! |---|---|
 //! | `types`, `constants`, `status` | structs, constants and status numbers of the header |
 //! | `handle`, `registry`, `sync` | the registry: handles are counters, never addresses, never reused |
+//! | `call` | which exported function was called, and the names of its arguments |
 //! | `guard` | what surrounds every call: registry, busy, `catch_unwind`, error records |
 //! | `fpu` | the floating-point environment of the host, saved and restored |
 //! | `error_store` | the last error, per thread and per problem |
@@ -19,6 +20,7 @@
 mod arrays;
 mod body;
 mod body_info;
+mod call;
 mod constants;
 mod diagnosis;
 mod error_store;

@@ -2,7 +2,8 @@
 
 use super::arrays::{column_major, count, id, input, reserved, same, Output};
 use super::body::body_of_order;
-use super::guard::{call, enter};
+use super::call::call;
+use super::guard::enter;
 use super::indices::numbers;
 use super::types::{feti_problem, FETI_CANDIDATES, FETI_EXACT};
 use crate::error::{Error, Result};

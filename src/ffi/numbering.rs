@@ -1,7 +1,8 @@
 //! The host's own numbers of the unknowns.
 
 use super::body::body_of_order;
-use super::guard::{call, enter, Call};
+use super::call::{call, Call};
+use super::guard::enter;
 use super::indices::{base, numbers, Index};
 use super::types::feti_problem;
 

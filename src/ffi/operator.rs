@@ -5,8 +5,9 @@ use std::sync::Arc;
 
 use super::arrays::input;
 use super::body::body_of_order;
+use super::call::call;
 use super::fpu::Environment;
-use super::guard::{call, enter};
+use super::guard::enter;
 use super::handle;
 use super::progress::User;
 use super::types::{feti_operator_fn, feti_problem};

@@ -4,7 +4,8 @@ use std::ffi::c_char;
 use std::ptr;
 
 use super::arrays::{check_text_room, copy_text, text, Output};
-use super::guard::{call, enter, without_problem};
+use super::call::call;
+use super::guard::{enter, without_problem};
 use super::record::Target;
 use super::types::{feti_option, feti_problem, FETI_OPTION_F64, FETI_OPTION_I64, FETI_OPTION_STR};
 use crate::error::Error;

@@ -2,7 +2,8 @@
 
 use std::ptr::{null, null_mut};
 
-use super::guard::{call, enter, enter_with_status, without_problem};
+use super::call::call;
+use super::guard::{enter, enter_with_status, without_problem};
 use super::tests::{assert_all, last_detail, last_error, string, Owned};
 use super::*;
 use crate::error::Result;

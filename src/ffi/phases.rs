@@ -1,7 +1,8 @@
 //! Where the time of a call went, and the memory that is kept.
 
 use super::arrays::Output;
-use super::guard::{call, enter};
+use super::call::call;
+use super::guard::enter;
 use super::record::Target;
 use super::types::{feti_phase, feti_problem};
 use crate::error::Error;

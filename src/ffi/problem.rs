@@ -4,8 +4,9 @@ use std::ffi::c_char;
 use std::ptr;
 
 use super::arrays::{check_text_room, copy_text, left, Output};
+use super::call::call;
 use super::fpu;
-use super::guard::{call, caught, refuse, without_problem};
+use super::guard::{caught, refuse, without_problem};
 use super::handle::{self, Refusal};
 use super::status::{FETI_MEMORY, FETI_OK};
 use super::types::feti_problem;

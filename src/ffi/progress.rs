@@ -2,8 +2,9 @@
 
 use std::ffi::c_void;
 
+use super::call::call;
 use super::fpu;
-use super::guard::{call, enter, refuse};
+use super::guard::{enter, refuse};
 use super::handle::{self, Refusal};
 use super::status::FETI_OK;
 use super::types::{

@@ -2,7 +2,8 @@
 
 use super::arrays::{id, reserved, same, zeros, Output};
 use super::body::{body_of_order, whole};
-use super::guard::{call, enter};
+use super::call::call;
+use super::guard::enter;
 use super::rows::row_kind;
 use super::types::{feti_problem, FETI_ALL, FETI_ROW_CLOSED, FETI_ROW_OPEN, FETI_ROW_UNKNOWN, FETI_ROW_WEAK};
 use crate::error::Result;

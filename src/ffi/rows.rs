@@ -1,7 +1,8 @@
 //! Rows of `B u <= c` and `H u = h`, numbered per kind from 0.
 
 use super::arrays::{count, id, input, input_or_none, Output};
-use super::guard::{call, enter, Call};
+use super::call::{call, Call};
+use super::guard::enter;
 use super::indices::{base, numbers, pointers, Index};
 use super::types::{feti_problem, FETI_EQUALITY, FETI_INEQUALITY};
 use crate::error::{Error, Result};

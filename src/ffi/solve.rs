@@ -1,7 +1,8 @@
 //! Setup, solve, and the verdict on an answer.
 
 use super::arrays::{finite_input, same};
-use super::guard::{call, enter, enter_with_status};
+use super::call::call;
+use super::guard::{enter, enter_with_status};
 use super::record::Target;
 use super::status::of_outcome;
 use super::types::{feti_certificate, feti_info, feti_problem};

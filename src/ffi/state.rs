@@ -1,7 +1,8 @@
 //! Start values, and states of a problem to come back to.
 
 use super::arrays::{id, input, same, Output};
-use super::guard::{call, enter};
+use super::call::call;
+use super::guard::enter;
 use super::rows::row_kind;
 use super::types::feti_problem;
 use crate::solver::RowKind;

@@ -2,7 +2,8 @@
 
 use super::arrays::{borrowed, column_major, input};
 use super::body::body_of_order;
-use super::guard::{call, enter, Call};
+use super::call::{call, Call};
+use super::guard::enter;
 use super::indices::{base, numbers, pointers, Index};
 use super::types::{feti_problem, FETI_BORROW, FETI_COPY, FETI_FULL, FETI_LOWER, FETI_UPPER};
 use crate::error::{Error, Result};

@@ -5,7 +5,8 @@ use std::ffi::{c_char, CStr};
 use std::ptr::null_mut;
 use std::sync::mpsc;
 
-use super::guard::{call, enter};
+use super::call::call;
+use super::guard::enter;
 use super::*;
 
 mod table;

@@ -3,7 +3,8 @@
 
 use super::arrays::{check_finite, column_major, count, finite_input, input, same, zeros, Output};
 use super::body::body_of_order;
-use super::guard::{call, enter};
+use super::call::call;
+use super::guard::enter;
 use super::types::feti_problem;
 use crate::error::Result;
 use crate::solver::Problem;

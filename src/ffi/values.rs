@@ -2,7 +2,8 @@
 
 use super::arrays::{borrowed, column_major, id, input, same};
 use super::body::body_of_order;
-use super::guard::{call, enter};
+use super::call::call;
+use super::guard::enter;
 use super::types::feti_problem;
 
 /// Gives new values of a stiffness matrix on the pattern it was given with by feti_body_stiffness_i32 or _i64.
