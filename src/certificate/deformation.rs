@@ -2,16 +2,60 @@
 
 use crate::certificate::field::{touched, Field};
 use crate::certificate::{Data, NOISE};
+use crate::error::Result;
 use crate::linalg::vector::{axpy, norm, norm_max, power_of_two_below};
 use crate::linalg::{Csr, Matrix};
 
 /// The gradient against the first one, where the projection ends.
 const STOP: f64 = 1e-13;
+/// What neighbours count for beside an unknown itself.
+const NEIGHBOURS: f64 = 0.5;
+
+/// delta, n, length.
+pub(super) struct Deformation {
+    /// What an unknown is deformed by.
+    pub own: Vec<f64>,
+    /// The same together with those it is joined to.
+    pub joined: Vec<f64>,
+}
+
+impl Deformation {
+    pub fn new(field: &Field) -> Result<Self> {
+        let own = own(field);
+        let joined = with_neighbours(field, &own)?;
+        Ok(Self { own, joined })
+    }
+}
+
+/// `|r_j| / K_jj` of grounded unknowns, `|u - R a|` of the others.
+fn own(field: &Field) -> Vec<f64> {
+    let mut own = without_motions(field);
+    for j in (0..own.len()).filter(|j| field.grounded[*j]) {
+        own[j] = field.push[j].abs() / field.unit / field.metric[j];
+    }
+    own
+}
+
+/// `max(delta_j, 1/2 sum_k |K_jk| delta_k / K_jj)`, for a single unknown may be at rest by symmetry; of grounded unknowns
+/// their own.
+fn with_neighbours(field: &Field, own: &[f64]) -> Result<Vec<f64>> {
+    let mut all = own.to_vec();
+    for (p, body) in field.data.bodies.iter().enumerate() {
+        let range = field.range(p);
+        let (mut image, mut terms) = (vec![0.0; range.len()], vec![0.0; range.len()]);
+        body.stiffness.mul_with_terms(&own[range.clone()], &mut image, &mut terms)?;
+        for j in range.clone().filter(|j| !field.grounded[*j]) {
+            let joined = terms[j - range.start] / field.unit / field.metric[j];
+            all[j] = all[j].max(NEIGHBOURS * joined);
+        }
+    }
+    Ok(all)
+}
 
 /// `|u - R a|`, n, length. a is the fit by the rigid motions, least squares in D without the grounded unknowns, that rigid
 /// equality rows which join bodies do not resist, `H R a = 0`; rows that hold one body alone do not count. `|u|` on bodies
 /// without a null space.
-pub(super) fn deformation(field: &Field) -> Vec<f64> {
+fn without_motions(field: &Field) -> Vec<f64> {
     let data = field.data;
     let mut left = field.answer.u.to_vec();
     let mut first = Vec::with_capacity(data.bodies.len() + 1);

@@ -3,7 +3,6 @@
 use std::collections::HashSet;
 use std::ops::Range;
 
-use crate::certificate::deformation::deformation;
 use crate::certificate::{metric, Answer, BodyData, Data};
 use crate::constraints::{row_scales, RowKind, RowSet};
 use crate::error::Result;
@@ -22,9 +21,6 @@ pub(super) struct Field<'a> {
     pub push: Vec<f64>,
     /// `|B'||lambda| + |H'||mu|`, n, force.
     pub push_terms: Vec<f64>,
-    /// delta, n, length: what an unknown is deformed by, and it together with those it is joined to.
-    pub own_deformation: Vec<f64>,
-    pub deformation: Vec<f64>,
     /// `s_i / U^1/2` of contact and equality rows, no unit.
     pub scales: [Vec<f64>; 2],
 }
@@ -47,22 +43,7 @@ impl<'a> Field<'a> {
             held.for_each(|j| grounded[body.start + *j as usize] = true);
         }
         let scales = [data.contact, data.equalities].map(|rows| row_scales(rows, &metric, unit));
-        let (own_deformation, deformation) = (Vec::new(), Vec::new());
-        let mut field = Self {
-            data,
-            answer,
-            unit,
-            metric,
-            grounded,
-            push,
-            push_terms,
-            own_deformation,
-            deformation,
-            scales,
-        };
-        field.own_deformation = own(&field);
-        field.deformation = with_neighbours(&field)?;
-        Ok(field)
+        Ok(Self { data, answer, unit, metric, grounded, push, push_terms, scales })
     }
 
     pub fn rows(&self, kind: RowKind) -> &'a RowSet {
@@ -98,34 +79,6 @@ impl<'a> Field<'a> {
     pub fn touched<'s>(&'s self, rows: &'s RowSet, i: usize) -> impl Iterator<Item = usize> + 's {
         touched(self.data, rows, i)
     }
-}
-
-/// `|r_j| / K_jj` of grounded unknowns, `|u - R a|` of the others.
-fn own(field: &Field) -> Vec<f64> {
-    let mut own = deformation(field);
-    for j in (0..own.len()).filter(|j| field.grounded[*j]) {
-        own[j] = field.push[j].abs() / field.unit / field.metric[j];
-    }
-    own
-}
-
-/// What neighbours count for beside an unknown itself.
-const NEIGHBOURS: f64 = 0.5;
-
-/// `max(delta_j, 1/2 sum_k |K_jk| delta_k / K_jj)`, for a single unknown may be at rest by symmetry; of grounded unknowns
-/// their own.
-fn with_neighbours(field: &Field) -> Result<Vec<f64>> {
-    let mut all = field.own_deformation.clone();
-    for (p, body) in field.data.bodies.iter().enumerate() {
-        let range = field.range(p);
-        let (mut image, mut terms) = (vec![0.0; range.len()], vec![0.0; range.len()]);
-        body.stiffness.mul_with_terms(&field.own_deformation[range.clone()], &mut image, &mut terms)?;
-        for j in range.clone().filter(|j| !field.grounded[*j]) {
-            let joined = terms[j - range.start] / field.unit / field.metric[j];
-            all[j] = all[j].max(NEIGHBOURS * joined);
-        }
-    }
-    Ok(all)
 }
 
 /// Grounded unknowns j of a body that its null space moves all the same, `|K_jj R_j| > 1/4 sum_k |K_jk||R_k|`: no ground holds

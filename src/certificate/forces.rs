@@ -1,5 +1,6 @@
 //! Equilibrium and rigid balance of every body, `res = K u - f + r`.
 
+use crate::certificate::deformation::Deformation;
 use crate::certificate::energy::Energies;
 use crate::certificate::field::Field;
 use crate::certificate::{positive, share, Certificate, Entry, NOISE};
@@ -31,7 +32,7 @@ pub(super) struct Forces {
 }
 
 impl Forces {
-    pub fn new(field: &Field) -> Self {
+    pub fn new(field: &Field, deformation: &Deformation) -> Self {
         let (mut sizes, mut loads, mut pushes) = (Vec::new(), Vec::new(), Vec::new());
         for p in 0..field.data.bodies.len() {
             let load = field.size(p, &field.free(p, |j| field.load(p, j)));
@@ -45,7 +46,7 @@ impl Forces {
         let moved = if loads.iter().all(|load| *load == 0.0) { asked(field) } else { 0.0 };
         let rounding = |j: usize| NOISE * field.answer.u[j].abs();
         let strains = (0..field.data.bodies.len()).map(|p| {
-            let strain = field.free(p, |j| positive(field.own_deformation[j] - rounding(j)));
+            let strain = field.free(p, |j| positive(deformation.own[j] - rounding(j)));
             let start = field.range(p).start;
             field.unit * weighted_norm(&strain, |i| field.metric[start + i])
         });

@@ -24,6 +24,7 @@ use crate::constraints::{RowKind, RowSet};
 use crate::error::Result;
 use crate::linalg::Matrix;
 
+use deformation::Deformation;
 use energy::Energies;
 pub use entry::{Certificate, Entry};
 use field::Field;
@@ -149,9 +150,10 @@ pub struct RowJudgement {
 /// The judgement of an answer. Fails where the host does, that has the products with K.
 pub fn certify(data: &Data, answer: Answer, response: &mut dyn Response) -> Result<Judgement> {
     let field = Field::new(data, answer)?;
+    let deformation = Deformation::new(&field)?;
     let mut certificate = Certificate { limit: data.limit, ..Certificate::default() };
-    let forces = Forces::new(&field);
-    let (mut rows, mut energies) = (Measured::new(&field, &forces), Energies::default());
+    let forces = Forces::new(&field, &deformation);
+    let (mut rows, mut energies) = (Measured::new(&field, &deformation, &forces), Energies::default());
     for p in 0..data.bodies.len() {
         forces::judge(&field, &forces, p, &mut certificate, &mut energies)?;
     }

@@ -1,5 +1,6 @@
 //! Penetration, equality, sign and complementarity, every row for itself.
 
+use crate::certificate::deformation::Deformation;
 use crate::certificate::field::Field;
 use crate::certificate::forces::Forces;
 use crate::certificate::{positive, share, BodyJudgement, Certificate, Entry, RowJudgement, NOISE};
@@ -26,7 +27,7 @@ pub(super) struct Row {
 }
 
 impl Row {
-    fn new(field: &Field, forces: &Forces, kind: RowKind, i: usize) -> Self {
+    fn new(field: &Field, deformation: &Deformation, forces: &Forces, kind: RowKind, i: usize) -> Self {
         let rows = field.rows(kind);
         let (scale, multipliers) = match kind {
             RowKind::Inequality => (field.scales[0][i], field.answer.lambda),
@@ -43,7 +44,7 @@ impl Row {
         let felt = given_way.min(moves(&field.push) + rows.compliance[i] * force.abs());
         let cancelled = moves(&field.push_terms);
         let moved = rows.matrix.row_dot_abs(i, field.answer.u);
-        let size = rows.matrix.row_dot_abs(i, &field.deformation) + felt;
+        let size = rows.matrix.row_dot_abs(i, &deformation.joined) + felt;
         let given = rows.rhs[i].abs() + rows.compliance[i] * force.abs();
         let rounding = NOISE * (moved + given + cancelled);
         // a row that weighs nothing is not known to hold
@@ -53,7 +54,7 @@ impl Row {
         let by_spring = if rows.compliance[i] > 0.0 { rows.compliance[i] * force_limit } else { 0.0 };
         let allowed = field.data.limit * size + rounding + by_spring;
         let gap_limit = if known { allowed } else { f64::NAN };
-        let own = rows.matrix.row_dot_abs(i, &field.own_deformation) + felt;
+        let own = rows.matrix.row_dot_abs(i, &deformation.own) + felt;
         let (open, weighed) = (rows.open_gap(i, field.answer.u, force), scale * own);
         let closed = force.abs() > force_limit;
         let unevenness = if closed { ratio(weighed, forces.least_deformation(field, kind, i)) } else { 0.0 };
@@ -117,8 +118,9 @@ pub(super) struct Measured {
 }
 
 impl Measured {
-    pub fn new(field: &Field, forces: &Forces) -> Self {
-        let of = |kind| (0..field.rows(kind).len()).map(|i| Row::new(field, forces, kind, i)).collect();
+    pub fn new(field: &Field, deformation: &Deformation, forces: &Forces) -> Self {
+        let row = |kind, i| Row::new(field, deformation, forces, kind, i);
+        let of = |kind| (0..field.rows(kind).len()).map(|i| row(kind, i)).collect();
         Self { contact: of(RowKind::Inequality), equalities: of(RowKind::Equality) }
     }
 
