@@ -1,7 +1,8 @@
 //! Matrices by rows of ascending columns, those in full with entries on both sides of the diagonal: the lower triangle
 //! straight from the arrays of the host. Whatever else it gives, right or wrong, is for [`stiffness`](super::stiffness).
 
-use crate::body::stiffness::{may_differ, SparseInput, Storage};
+use crate::body::storage::{SparseInput, Storage};
+use crate::body::symmetry::may_differ;
 use crate::error::Result;
 use crate::linalg::memory::{reserved, zeros};
 use crate::linalg::Symmetric;

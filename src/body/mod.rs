@@ -22,7 +22,9 @@ mod rigid_modes;
 mod search;
 mod spectrum;
 mod stiffness;
+mod storage;
 mod symbolic;
+mod symmetry;
 mod values;
 
 pub use alike::{
@@ -38,9 +40,8 @@ pub use host::{HostFunctions, HostMultiple, HostOperator, HostProduct, TOGETHER}
 pub use null_space::{Modes, NullSpaceInput};
 pub use rigid_modes::Coordinates;
 pub use spectrum::Doubt;
-pub use stiffness::{
-    check_diagonal, check_finite, from_dense, from_sparse, from_split, SparseInput, Storage,
-};
+pub use stiffness::{check_diagonal, check_finite, from_dense, from_sparse, from_split};
+pub use storage::{SparseInput, Storage};
 pub use symbolic::{Layout, Made, Symbolic};
 pub use values::{Form, Places};
 

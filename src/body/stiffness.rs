@@ -1,28 +1,12 @@
 //! The host's stiffness matrix, checked and brought into one form: the lower triangle by sorted rows.
 
 use crate::body::in_order::lower_triangle;
+use crate::body::storage::{SparseInput, Storage};
+use crate::body::symmetry::{may_differ, unsymmetric};
 use crate::error::{Error, Kind, Result};
 use crate::linalg::memory::{reserved, room};
 use crate::linalg::vector::first_non_finite;
 use crate::linalg::{Csr, Symmetric};
-
-/// Which entries the host hands over.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Storage {
-    Full,
-    Lower,
-    Upper,
-}
-
-/// A matrix by rows as it arrived: `ptr` has n + 1 nondecreasing entries from 0, columns count from 0 in any
-/// order within a row.
-#[derive(Debug, Clone, Copy)]
-pub struct SparseInput<'a> {
-    pub ptr: &'a [usize],
-    pub col: &'a [i64],
-    pub val: &'a [f64],
-    pub storage: Storage,
-}
 
 /// Bytes of row pointers and diagonals that come and go in the conversion of a matrix, per row.
 const PER_ROW: usize = 96;
@@ -202,23 +186,8 @@ fn averaged(rows: &Csr, tolerance: f64) -> Result<Csr> {
     Ok(lower)
 }
 
-/// How far `K_ij` and `K_ji` may be apart, given the square roots of their diagonal entries.
-pub(super) fn may_differ(tolerance: f64, root_i: f64, root_j: f64) -> f64 {
-    tolerance * root_i * root_j
-}
-
 fn entry(rows: &Csr, i: usize, j: usize) -> f64 {
     rows.row(i).find(|e| e.0 == j).map_or(0.0, |e| e.1)
-}
-
-/// `lonely`: one of the two rows has nothing beside its diagonal.
-pub(super) fn unsymmetric(lonely: bool, (i, j): (usize, usize), difference: f64, limit: f64) -> Error {
-    let what = if lonely {
-        "an identity row meets a full column: eliminate supports symmetrically".to_owned()
-    } else {
-        format!("|K_ij - K_ji| = {:.1e} exceeds {limit:.1e}: the matrix is not symmetric", difference.abs())
-    };
-    Error::argument("val", what).row(i).dof(j).value(difference.abs()).limit(limit)
 }
 
 /// The lower triangle with every diagonal entry stored.
