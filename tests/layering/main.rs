@@ -58,7 +58,6 @@ const STILL: &[&str] = &[
     "body: generalized_inverse hints probe search symbolic",
     "qp/paper: bound variants",
     "solver: call certifier diagnosis fallback findings finish host islands log near numbering operators paper phases presolve problem report response results rigid rows scaled setup solve state steps watch",
-    "solver/file: read sections",
 ];
 
 /// All faults of one source; `path` is relative to src.

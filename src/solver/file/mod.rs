@@ -2,6 +2,7 @@
 //! calls. Answers, start values, saved states and factors are not in it.
 
 mod format;
+mod input;
 mod read;
 mod sections;
 #[cfg(test)]

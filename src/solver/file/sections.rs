@@ -7,7 +7,7 @@ use crate::linalg::memory::reserved;
 use crate::solver::file::format::{
     self, BODY, COORDINATES, FIXING, LOAD, NULL_SPACE, NUMBERING, OPTIONS, STIFFNESS,
 };
-use crate::solver::file::read::{Input, Open};
+use crate::solver::file::input::{Input, Open};
 use crate::solver::file::write::{CANDIDATES, EQUALITY, EXACT, INEQUALITY};
 use crate::solver::problem::Problem;
 use crate::solver::{Modes, RowKind, RowsInput, SparseInput, Storage};
