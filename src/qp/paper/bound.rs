@@ -2,6 +2,8 @@
 
 use crate::error::Result;
 use crate::linalg::vector::{axpy, dot};
+use crate::qp::paper::face::Face;
+use crate::qp::paper::variants::{extrapolate, feasible, monotone, Moved};
 use crate::qp::paper::{Quadratic, Variant};
 use crate::qp::{Counts, StepKind};
 
@@ -50,20 +52,19 @@ impl<'a> Point<'a> {
         dot(&self.chopped, &self.chopped) <= gamma * gamma * dot(&self.inner, &self.inner)
     }
 
-    pub(super) fn is_feasible(&self, y: &[f64]) -> bool {
+    fn is_feasible(&self, y: &[f64]) -> bool {
         y.iter().zip(self.bounded).all(|(y, bounded)| !bounded || *y >= 0.0)
     }
 
-    pub(super) fn move_to(&mut self, x: Vec<f64>, g: Vec<f64>) {
+    fn move_to(&mut self, x: Vec<f64>, g: Vec<f64>) {
         (self.x, self.g) = (x, g);
         self.split();
     }
-}
 
-/// Py: the nearest point with y_i >= 0 (i bounded).
-pub(super) fn projection(bounded: &[bool], mut y: Vec<f64>) -> Vec<f64> {
-    y.iter_mut().zip(bounded).filter(|(y, bounded)| **bounded && **y < 0.0).for_each(|(y, _)| *y = 0.0);
-    y
+    /// Conjugate gradients that start here, on the face I = A(x).
+    fn face(&self) -> Face {
+        Face::new(self.x.clone(), self.g.clone(), self.active.clone(), self.inner.clone())
+    }
 }
 
 /// How Algorithm 1 is carried out.
@@ -74,42 +75,6 @@ pub struct Rule {
     pub variant: Variant,
     /// Factor > 1 from one trial step of the extrapolating variant to the next.
     pub extrapolation: f64,
-}
-
-/// Conjugate gradients for min theta(y), y in W_I, I = A(x^k). y is the point itself while it is feasible.
-pub(super) struct Face {
-    pub y: Vec<f64>,
-    pub g: Vec<f64>,
-    /// I
-    pub held: Vec<bool>,
-    pub p: Vec<f64>,
-    /// |r|^2 of the residual r = g on the face, and what it began with.
-    pub square: f64,
-    first: f64,
-    pub feasible: bool,
-}
-
-impl Face {
-    fn at(point: &Point) -> Self {
-        let square = dot(&point.inner, &point.inner);
-        let (y, g, held) = (point.x.clone(), point.g.clone(), point.active.clone());
-        Self { y, g, held, p: point.inner.clone(), square, first: square, feasible: true }
-    }
-
-    /// `y - a p` with its gradient and the next conjugate direction; whether a residual is left.
-    pub(super) fn advance(&mut self, a: f64, y: Vec<f64>, image: &[f64]) -> bool {
-        /// |r|^2 against the first one: the face is solved to rounding.
-        const SOLVED: f64 = 1e-28;
-        self.y = y;
-        axpy(-a, image, &mut self.g);
-        let r: Vec<f64> =
-            self.g.iter().zip(&self.held).map(|(g, held)| if *held { 0.0 } else { *g }).collect();
-        let square = dot(&r, &r);
-        let beta = square / self.square;
-        self.p.iter_mut().zip(&r).for_each(|(p, r)| *p = r + beta * *p);
-        self.square = square;
-        square > SOLVED * self.first
-    }
 }
 
 /// What a step came to.
@@ -129,14 +94,14 @@ pub struct Proportioning<'a, 'q> {
     pub counts: Counts,
     /// The step that led to the point.
     pub last: StepKind,
-    pub(super) face: Option<Face>,
+    face: Option<Face>,
     largest_curvature: f64,
 }
 
 impl<'a, 'q> Proportioning<'a, 'q> {
     /// Starts at the point nearest to `start`, with one product for its gradient.
     pub fn new(q: &'q mut Quadratic<'a>, start: Vec<f64>, rule: Rule) -> Result<Self> {
-        let x = projection(q.qp.bounded, start);
+        let x = q.projection(start);
         let g = q.gradient(&x)?;
         let point = Point::new(q.qp.bounded, x, g);
         let (counts, last) = (Counts::default(), StepKind::Release);
@@ -175,7 +140,7 @@ impl<'a, 'q> Proportioning<'a, 'q> {
 
     /// One conjugate gradient step on the face; the variant says what happens at its bounds.
     fn explore(&mut self) -> Result<Step> {
-        let mut face = self.face.take().unwrap_or_else(|| Face::at(&self.point));
+        let mut face = self.face.take().unwrap_or_else(|| self.point.face());
         let image = self.q.product(&face.p)?;
         let curvature = self.curvature(&face.p, &image);
         let Some(curvature) = curvature else { return Ok(Step::Flat) };
@@ -183,13 +148,40 @@ impl<'a, 'q> Proportioning<'a, 'q> {
         let mut y = face.y.clone();
         axpy(-a, &face.p, &mut y);
         if !self.point.is_feasible(&y) {
-            return self.beyond_a_bound(face, a, y, image).map(|()| Step::Done(StepKind::Expansion));
+            return self.beyond_a_bound(face, a, y, &image).map(|()| Step::Done(StepKind::Expansion));
         }
         let left = face.advance(a, y, &image);
         face.feasible = true;
         self.point.move_to(face.y.clone(), face.g.clone());
         self.face = Some(face).filter(|face| left && face.held == self.point.active);
         Ok(Step::Done(StepKind::ConjugateGradient))
+    }
+
+    /// The step to `y = y^i - a p` from y^i leaves the bounds; `image` = H p.
+    fn beyond_a_bound(&mut self, face: Face, a: f64, y: Vec<f64>, image: &[f64]) -> Result<()> {
+        let bounded = self.q.qp.bounded;
+        match self.rule.variant {
+            Variant::Feasible => self.take(feasible(bounded, &face, image).0),
+            Variant::Extrapolating => {
+                let (mut moved, step) = feasible(bounded, &face, image);
+                let outcome = extrapolate(self.q, &face, step, self.rule.extrapolation, &mut moved);
+                // where a product failed what came before it stays
+                self.take(moved);
+                outcome?;
+            }
+            Variant::Monotone => {
+                let at = (self.point.x.as_slice(), self.point.g.as_slice());
+                if let Some(moved) = monotone(self.q, at, face, (a, y), image)? {
+                    self.take(moved);
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn take(&mut self, Moved { x, g, face }: Moved) {
+        self.point.move_to(x, g);
+        self.face = face;
     }
 
     fn minimum_along(&mut self, p: &[f64], image: &[f64]) -> Option<f64> {

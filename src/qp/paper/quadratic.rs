@@ -35,6 +35,13 @@ impl<'a> Quadratic<'a> {
         self.spread_add(-1.0, &shifted);
     }
 
+    /// Py: the nearest point with y_i >= 0 (i bounded).
+    pub fn projection(&self, mut y: Vec<f64>) -> Vec<f64> {
+        let bounded = y.iter_mut().zip(self.qp.bounded).filter(|(y, bounded)| **bounded && **y < 0.0);
+        bounded.for_each(|(y, _)| *y = 0.0);
+        y
+    }
+
     fn spread_add(&mut self, a: f64, y: &[f64]) {
         let d_transposed = self.qp.g_transposed;
         self.c.iter_mut().enumerate().for_each(|(i, c)| *c += a * d_transposed.row_dot(i, y));
