@@ -5,19 +5,14 @@
 use std::sync::Arc;
 
 use crate::body::factor::Factor;
-use crate::body::fixing::{fixing_dofs, given_dofs, hold_as_well};
-use crate::body::hints::{Misfit, Retry};
-use crate::body::null_space::{verified, NullSpaceInput, Verified, ROUNDING as KNOWN};
-use crate::body::probe::missing_mode;
-use crate::body::search::Search;
+use crate::body::fixing::hold_as_well;
+use crate::body::misfit::{Misfit, Retry};
+use crate::body::null_space::ROUNDING as KNOWN;
+use crate::body::probe::{known_to, missing_mode, probe};
 use crate::body::spectrum::Doubt;
-use crate::body::symbolic::{Layout, Made, Symbolic};
+use crate::body::symbolic::Symbolic;
 use crate::error::{Error, Kind, Result};
-use crate::linalg::memory::{room, PRODUCTS};
-use crate::linalg::{Analysis, Breakdown, Csr, Matrix, Multiple, Packed};
-
-/// A pivot below minus this, relative to its diagonal entry, is no rounding error: a(u, u) >= 0 of (4) is violated.
-const NEGATIVE_PIVOT: f64 = 1e-10;
+use crate::linalg::{Analysis, Csr, Matrix, Multiple, Packed};
 
 #[derive(Clone)]
 pub struct GeneralizedInverse {
@@ -40,10 +35,15 @@ pub struct GeneralizedInverse {
     pub(super) factor: Factor,
 }
 
-/// The part of the setup that can be costed before it is done.
-pub enum Plan {
-    Known(Known),
-    Search(Search),
+/// `K_p+` of a body and what it took.
+pub struct Made {
+    pub inverse: GeneralizedInverse,
+    /// The analysis its factor belongs to.
+    pub symbolic: Arc<Symbolic>,
+    /// Analyses beyond the first, where the search for the null space had to begin anew.
+    pub further_analyses: usize,
+    /// Numeric factorisations, also those that missed a motion of the null space.
+    pub factorisations: usize,
 }
 
 /// The null space is known before the factorisation.
@@ -62,34 +62,6 @@ pub struct Known {
 }
 
 impl GeneralizedInverse {
-    /// Null space and fixing dofs of `k` (a multiple with its largest diagonal entry in [1, 2)).
-    pub fn plan(k: Multiple, input: &NullSpaceInput, tolerance: f64) -> Result<Plan> {
-        Self::plan_with(k, input, tolerance, None)
-    }
-
-    /// The same with the dofs to hold in K+, where the host has given them.
-    pub fn plan_with(
-        k: Multiple,
-        input: &NullSpaceInput,
-        tolerance: f64,
-        fixing: Option<&[usize]>,
-    ) -> Result<Plan> {
-        let per_dof = (8 * input.vectors.cols + 24) * size_of::<f64>();
-        let _room = room(k.order() * per_dof + PRODUCTS, "the null space of a body")?;
-        let (root, given) = (k.roots()?, fixing.is_some());
-        let Verified { basis: null_space, error } = verified(&k, &root, input, tolerance)?;
-        let fixing = match fixing {
-            Some(given) => given_dofs(&null_space, &root, given)?,
-            None => fixing_dofs(&null_space, &root)?,
-        };
-        Ok(Plan::Known(Known::of(k, null_space, error, fixing, given)))
-    }
-
-    /// The same where nothing is known about the null space.
-    pub fn search(k: Multiple, tolerance: f64, fixing: Option<&[usize]>) -> Result<Plan> {
-        Search::new(k, tolerance, fixing).map(Plan::Search)
-    }
-
     /// (15): `x = K+ b`, both of length n; F^-1 on the free dofs, 0 on those held.
     pub fn apply(&self, b: &[f64], x: &mut [f64]) -> Result<()> {
         x.copy_from_slice(b);
@@ -125,81 +97,14 @@ impl GeneralizedInverse {
     pub fn inverse_form(&self, rows: &Csr) -> Result<Packed> {
         self.factor.inverse_form(rows)
     }
-}
 
-impl Plan {
-    /// Takes over the way of elimination of another body with the same pattern, or of this one with other values, where
-    /// it serves here as well. Its analysis is wanted from whoever has it, by `set_analysis`.
-    pub fn follow(&mut self, layout: &Layout) -> Result<bool> {
-        match (self, layout) {
-            (Self::Known(known), Layout::Held(dofs)) => known.follow(dofs),
-            (Self::Search(search), layout) => Ok(*search.layout == *layout),
-            _ => Ok(false),
+    /// The error of a null space that K does not map to zero but for rounding, as far as the factor enlarges it.
+    pub(super) fn measured(mut self, k: &Multiple) -> Result<Self> {
+        if self.error > KNOWN {
+            let dofs: Vec<usize> = (0..k.order()).collect();
+            self.error = known_to(&self.factor, k, &self.null_space, &[(&dofs, self.null_space.cols)])?;
         }
-    }
-
-    /// What the analysis depends on besides the pattern of K.
-    pub fn layout(&self) -> Arc<Layout> {
-        match self {
-            Self::Known(known) => Arc::new(Layout::Held(known.fixing.clone())),
-            Self::Search(search) => Arc::clone(&search.layout),
-        }
-    }
-
-    /// The symbolic analysis for the layout.
-    pub fn analyse(&self) -> Result<Arc<Symbolic>> {
-        let analysis = match self {
-            Self::Known(known) => known.analyse()?,
-            Self::Search(search) => search.analyse()?,
-        };
-        Ok(Arc::new(Symbolic { layout: self.layout(), analysis }))
-    }
-
-    /// The analysis for the layout, made here or elsewhere.
-    pub fn set_analysis(&mut self, symbolic: Arc<Symbolic>) {
-        match self {
-            Self::Known(known) => known.symbolic = Some(symbolic),
-            Self::Search(search) => search.symbolic = Some(symbolic),
-        }
-    }
-
-    /// The analysis, once there is one.
-    pub fn symbolic(&self) -> Option<&Arc<Symbolic>> {
-        match self {
-            Self::Known(known) => known.symbolic.as_ref(),
-            Self::Search(search) => search.symbolic.as_ref(),
-        }
-    }
-
-    /// Bytes the factorisation is going to take, once it is analysed.
-    pub fn bytes(&self) -> usize {
-        self.symbolic().map_or(0, |symbolic| symbolic.analysis.bytes())
-    }
-
-    /// K+ with the factor, already probed, of the same matrix with the same dofs held. The null space is that of the
-    /// plan, where it has one and the other did not have to be sought.
-    pub fn with_factor_of(self, other: &GeneralizedInverse) -> Result<GeneralizedInverse> {
-        match self {
-            Self::Known(Known { k, null_space, error, doubt, .. }) if other.gap.is_none() => {
-                let doubts = doubt.into_iter().collect();
-                let own = GeneralizedInverse { null_space, rounding: KNOWN, error, doubts, ..other.clone() };
-                own.measured(&k)
-            }
-            Self::Known(_) | Self::Search(_) => Ok(other.clone()),
-        }
-    }
-
-    /// Factorises F of (14) and probes; refuses a K that is indefinite, against (4), or more singular than its null
-    /// space says.
-    pub fn execute(mut self) -> Result<Made> {
-        if self.symbolic().is_none() {
-            let symbolic = self.analyse()?;
-            self.set_analysis(symbolic);
-        }
-        match self {
-            Self::Known(known) => known.execute(),
-            Self::Search(search) => search.execute(),
-        }
+        Ok(self)
     }
 }
 
@@ -210,7 +115,7 @@ impl Known {
     }
 
     /// Dofs chosen for other values hold this body, too, unless much worse than its own would.
-    fn follow(&mut self, dofs: &[usize]) -> Result<bool> {
+    pub(super) fn follow(&mut self, dofs: &[usize]) -> Result<bool> {
         let sorted = |dofs: &[usize]| {
             let mut dofs = dofs.to_vec();
             dofs.sort_unstable();
@@ -225,23 +130,15 @@ impl Known {
     }
 
     /// (14): F is K without the rows and columns of the fixing dofs.
-    fn analyse(&self) -> Result<Arc<Analysis>> {
+    pub(super) fn analyse(&self) -> Result<Arc<Analysis>> {
         let mut held = vec![false; self.k.order()];
         self.fixing.iter().for_each(|&dof| held[dof] = true);
         Ok(Arc::new(Analysis::new(&self.k.matrix, &held)?))
     }
 
-    fn execute(mut self) -> Result<Made> {
-        match self.retry.take() {
-            None => self.factorised(),
-            Some(retry) => {
-                let k = self.k.clone();
-                self.factorised().or_else(|error| retry.execute(k, error))
-            }
-        }
-    }
-
-    fn factorised(self) -> Result<Made> {
+    /// Factorises F of (14) and probes; refuses a K that is indefinite, against (4), or more singular than its null
+    /// space says.
+    pub fn execute(self) -> Result<Made> {
         let missing = || Error::new(Kind::Internal, "a body was not analysed");
         let symbolic = self.symbolic.ok_or_else(missing)?;
         let factor = symbolic.analysis.factorize(&self.k.matrix, self.k.by)?.map_err(|breakdown| {
@@ -250,39 +147,27 @@ impl Known {
         })?;
         let Self { k, null_space, error, fixing, doubt, .. } = self;
         let factor = Factor::Own(Arc::new(factor));
-        let mut inverse = GeneralizedInverse {
+        let softness = probe(&factor, &k, &fixing, null_space.cols)?;
+        let inverse = GeneralizedInverse {
             null_space,
             rounding: KNOWN,
             error,
             fixing,
             gap: None,
-            softness: 1.0,
+            softness,
             doubts: doubt.into_iter().collect(),
             misfit: None,
             factor,
         };
-        inverse.softness = inverse.probe(&k)?;
         let inverse = inverse.measured(&k)?;
         Ok(Made { inverse, symbolic, further_analyses: 0, factorisations: 1 })
-    }
-}
-
-impl Breakdown {
-    /// The error for a pivot so negative that K is indefinite.
-    pub(super) fn refused(&self) -> Option<Error> {
-        (self.relative_pivot < -NEGATIVE_PIVOT).then(|| self.indefinite())
-    }
-
-    pub(super) fn indefinite(&self) -> Error {
-        let what = format!("the stiffness matrix is indefinite: pivot {:.1e} K_ii", self.relative_pivot);
-        Error::new(Kind::Indefinite, what).dof(self.dof).value(self.relative_pivot).limit(0.0)
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::body::null_space::Modes;
+    use crate::body::null_space::{Modes, NullSpaceInput};
     use crate::linalg::Symmetric;
 
     /// Plane grid of springs, n x n dofs, free: null space = constants, on each of `parts` copies.

@@ -1,47 +1,23 @@
 //! Coordinates are hints: where all their rigid motions fit K, the null space is known before the factorisation. Where K
 //! resists some of them and yet is singular without these (places of another state, a body of revolution), it is sought in K.
 
-use std::fmt;
-
 use crate::body::digits::Digits;
 use crate::body::fixing::{fixing_dofs, given_dofs};
-use crate::body::generalized_inverse::{GeneralizedInverse, Known, Plan};
+use crate::body::generalized_inverse::{GeneralizedInverse, Known};
+use crate::body::misfit::{Misfit, Retry};
 use crate::body::null_space::{
     kernel_by_parts, verified_by_parts, Kernel, Part, Verified, CANDIDATE, ROUNDING,
 };
+use crate::body::plan::Plan;
 use crate::body::rigid_modes::RigidModes;
 use crate::body::search::Search;
 use crate::body::spectrum::Doubt;
-use crate::body::symbolic::Made;
 use crate::error::{Error, Kind, Result};
 use crate::linalg::memory::{room, PRODUCTS};
 use crate::linalg::{Matrix, Multiple};
 
 /// Where rigid motions are mixed, their terms may cancel to this part of them.
 const MIXED: f64 = 16.0;
-
-/// Rigid motions that do not all fit K.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Misfit {
-    pub fit: usize,
-    pub of: usize,
-    /// The least `|D^-1 K v|` of a unit vector v among the others.
-    pub next: f64,
-}
-
-impl fmt::Display for Misfit {
-    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { fit, of, next } = self;
-        write!(out, "{fit} of {of} rigid motions of these coordinates fit K, the next leaves |K R| = {next:.1e} |D||R|")
-    }
-}
-
-/// What to do where K turns out to have more null vectors than rigid motions that fit.
-pub(super) struct Retry {
-    misfit: Misfit,
-    tolerance: f64,
-    fixing: Option<Vec<usize>>,
-}
 
 impl GeneralizedInverse {
     /// Null space and fixing dofs of `k` from the rigid motions of coordinates, as far as they fit.
@@ -132,17 +108,4 @@ fn explained(k: &Multiple, digits: Digits, rigid: &RigidModes) -> Result<Option<
         }
     }
     Ok(Some(Doubt { digits, motions: rigid.counts.iter().sum(), resisted, rounding, free: true }))
-}
-
-impl Retry {
-    /// The null space sought in K, after `error`.
-    pub(super) fn execute(self, k: Multiple, error: Error) -> Result<Made> {
-        if !matches!(error.kind, Kind::NullSpace | Kind::Indefinite | Kind::Internal) {
-            return Err(error);
-        }
-        let mut made =
-            Search::new(k, self.tolerance, self.fixing.as_deref())?.instead_of(self.misfit).execute()?;
-        made.factorisations += 1;
-        Ok(made)
-    }
 }

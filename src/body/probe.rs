@@ -1,7 +1,6 @@
 //! What a factor and a null space are worth, tried out after every factorisation.
 
 use crate::body::factor::Factor;
-use crate::body::generalized_inverse::GeneralizedInverse;
 use crate::body::null_space::{largest, ROUNDING as KNOWN};
 use crate::body::overflow::overflow;
 use crate::body::random::Random;
@@ -24,58 +23,50 @@ const MOST_ERROR: f64 = 1e-7;
 /// More than this of a row or a load is no rounding, however little is known of R: it is told as marginal.
 pub(super) const MOST_ROUNDING: f64 = 1e-9;
 
-impl GeneralizedInverse {
-    /// The error of a null space that K does not map to zero but for rounding, as far as the factor enlarges it.
-    pub(super) fn measured(mut self, k: &Multiple) -> Result<Self> {
-        if self.error > KNOWN {
-            let dofs: Vec<usize> = (0..k.order()).collect();
-            self.error = known_to(&self.factor, k, &self.null_space, &[(&dofs, self.null_space.cols)])?;
-        }
-        Ok(self)
+/// A factorisation that ends without complaint proves nothing: solve for a known right-hand side b, and look for a
+/// null vector v that vanishes on the fixing dofs by inverse iteration on A. The first step finds v by the part of b
+/// along it; a second step is taken unless that part would have to be unlikely small.
+///
+/// `fixing`: dofs held; `modes`: dimension of the null space. Returns `|b| / | |K||x| |`: the part of a load that rounding
+/// would be, were it 1.
+pub(super) fn probe(factor: &Factor, k: &Multiple, fixing: &[usize], modes: usize) -> Result<f64> {
+    let n = k.order();
+    if fixing.len() == n {
+        return Ok(1.0);
     }
-
-    /// A factorisation that ends without complaint proves nothing: solve for a known right-hand side b, and look for a
-    /// null vector v that vanishes on the fixing dofs by inverse iteration on A. The first step finds v by the part of b
-    /// along it; a second step is taken unless that part would have to be unlikely small.
-    ///
-    /// Returns `|b| / | |K||x| |`: the part of a load that rounding would be, were it 1.
-    pub(super) fn probe(&self, k: &Multiple) -> Result<f64> {
-        let n = k.order();
-        if self.fixing.len() == n {
-            return Ok(1.0);
-        }
-        let free = |x: &mut [f64]| self.fixing.iter().for_each(|&dof| x[dof] = 0.0);
-        let size = |x: &[f64]| weighted_norm(x, |i| 1.0 / k.metric(i, 1.0));
-        let empty = || zeros(n, "a probe");
-        let b = Random::default().vector(n, |i| k.metric(i, 1.0).sqrt())?;
-        let (mut b, mut x, mut image, mut terms) = (b, empty()?, empty()?, empty()?);
-        free(&mut b);
-        self.apply(&b, &mut x)?;
+    let free = |x: &mut [f64]| fixing.iter().for_each(|&dof| x[dof] = 0.0);
+    let size = |x: &[f64]| weighted_norm(x, |i| 1.0 / k.metric(i, 1.0));
+    let empty = || zeros(n, "a probe");
+    let b = Random::default().vector(n, |i| k.metric(i, 1.0).sqrt())?;
+    let (mut b, mut x, mut image, mut terms) = (b, empty()?, empty()?, empty()?);
+    free(&mut b);
+    x.copy_from_slice(&b);
+    factor.solve(&mut x)?;
+    k.mul_with_terms(&x, &mut image, &mut terms);
+    image.iter_mut().zip(&b).for_each(|(i, b)| *i -= b);
+    free(&mut image);
+    let whole = size(&terms) + size(&b);
+    let residual = size(&image) / whole;
+    if residual.is_nan() || !whole.is_finite() {
+        return Err(overflow());
+    }
+    if residual > PROBE {
+        let what = format!("the factorisation failed its probe: residual {residual:.1e}");
+        return Err(Error::new(Kind::Internal, what).value(residual).limit(PROBE));
+    }
+    let mut softest = size(&b) / size(&terms);
+    let found = softest;
+    if softest.is_nan() || softest < UNLIKELY * (n as f64).sqrt() * SINGULAR {
+        (0..n).for_each(|i| b[i] = k.metric(i, 1.0) * x[i]);
+        x.copy_from_slice(&b);
+        factor.solve(&mut x)?;
         k.mul_with_terms(&x, &mut image, &mut terms);
-        image.iter_mut().zip(&b).for_each(|(i, b)| *i -= b);
-        free(&mut image);
-        let whole = size(&terms) + size(&b);
-        let residual = size(&image) / whole;
-        if residual.is_nan() || !whole.is_finite() {
-            return Err(overflow());
-        }
-        if residual > PROBE {
-            let what = format!("the factorisation failed its probe: residual {residual:.1e}");
-            return Err(Error::new(Kind::Internal, what).value(residual).limit(PROBE));
-        }
-        let mut softest = size(&b) / size(&terms);
-        let found = softest;
-        if softest.is_nan() || softest < UNLIKELY * (n as f64).sqrt() * SINGULAR {
-            (0..n).for_each(|i| b[i] = k.metric(i, 1.0) * x[i]);
-            self.apply(&b, &mut x)?;
-            k.mul_with_terms(&x, &mut image, &mut terms);
-            softest = size(&b) / size(&terms);
-        }
-        if softest.is_nan() || softest < SINGULAR {
-            return Err(missing_mode(largest(&x, |i| k.metric(i, 1.0)), softest, self.null_space.cols));
-        }
-        Ok(found)
+        softest = size(&b) / size(&terms);
     }
+    if softest.is_nan() || softest < SINGULAR {
+        return Err(missing_mode(largest(&x, |i| k.metric(i, 1.0)), softest, modes));
+    }
+    Ok(found)
 }
 
 /// `|K+ K R|`, zero but for errors of R: the factor enlarges what K makes of them as it has those of rounding. `parts`: dofs

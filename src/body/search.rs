@@ -10,14 +10,14 @@ use std::sync::Arc;
 use crate::body::digits::Digits;
 use crate::body::factor::Factor;
 use crate::body::fixing::{fixing_dofs, given_dofs};
-use crate::body::generalized_inverse::GeneralizedInverse;
-use crate::body::hints::Misfit;
+use crate::body::generalized_inverse::{GeneralizedInverse, Made};
 use crate::body::last::{between_parts, spread, supported};
+use crate::body::misfit::Misfit;
 use crate::body::null_space::{largest, verified_by_parts, Part, Verified};
 use crate::body::overflow::refuse_overflow;
-use crate::body::probe::{known_to, MOST_ROUNDING, SINGULAR};
+use crate::body::probe::{known_to, probe, MOST_ROUNDING, SINGULAR};
 use crate::body::spectrum::{cut, measured, to_measure, unclear, Doubt, Ritz, Verdict};
-use crate::body::symbolic::{Layout, Made, Symbolic};
+use crate::body::symbolic::{Layout, Symbolic};
 use crate::error::{Error, Kind, Result};
 use crate::linalg::graph::components;
 use crate::linalg::memory::{copied, reserved, room, PRODUCTS};
@@ -317,23 +317,23 @@ impl Search {
             Part { dofs: Vec::as_slice(dofs), count: part.vectors.cols, tolerance }
         };
         let parts: Vec<Part<'_>> = self.members.iter().zip(soft).map(part).collect();
-        let Verified { basis, error } = verified_by_parts(&self.k, &root, &vectors, &parts)?;
+        let Verified { basis, .. } = verified_by_parts(&self.k, &root, &vectors, &parts)?;
         let counts: Vec<_> = parts.iter().map(|part| (part.dofs, part.count)).collect();
-        let mut inverse = GeneralizedInverse {
-            null_space: self.one_column_each(&basis, soft)?,
-            rounding: error,
+        let null_space = self.one_column_each(&basis, soft)?;
+        let fixing = fixing.concat();
+        let softness = probe(&factor, &self.k, &fixing, null_space.cols)?;
+        let error = known_to(&factor, &self.k, &basis, &counts)?;
+        Ok(GeneralizedInverse {
+            null_space,
+            rounding: error.min(MOST_ROUNDING),
             error,
-            fixing: fixing.concat(),
+            fixing,
             gap: soft.iter().map(|part| part.gap).reduce(f64::min),
-            softness: 1.0,
+            softness,
             misfit: None,
             doubts: soft.iter().filter_map(|part| part.doubt).collect(),
             factor,
-        };
-        inverse.softness = inverse.probe(&self.k)?;
-        inverse.error = known_to(&inverse.factor, &self.k, &basis, &counts)?;
-        inverse.rounding = inverse.error.min(MOST_ROUNDING);
-        Ok(inverse)
+        })
     }
 
     /// Where rounding of the entries resists the null vectors r, all of it acts at the dofs t. What it is at the least lies

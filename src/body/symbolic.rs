@@ -3,7 +3,6 @@
 
 use std::sync::Arc;
 
-use crate::body::GeneralizedInverse;
 use crate::linalg::Analysis;
 
 /// What the analysis of a body depends on besides the pattern of K.
@@ -20,15 +19,4 @@ pub enum Layout {
 pub struct Symbolic {
     pub layout: Arc<Layout>,
     pub analysis: Arc<Analysis>,
-}
-
-/// `K_p+` of a body and what it took.
-pub struct Made {
-    pub inverse: GeneralizedInverse,
-    /// The analysis its factor belongs to.
-    pub symbolic: Arc<Symbolic>,
-    /// Analyses beyond the first, where the search for the null space had to begin anew.
-    pub further_analyses: usize,
-    /// Numeric factorisations, also those that missed a motion of the null space.
-    pub factorisations: usize,
 }

@@ -1,0 +1,141 @@
+//! The part of the setup of K+ that can be costed before it is done.
+
+use std::sync::Arc;
+
+use crate::body::fixing::{fixing_dofs, given_dofs};
+use crate::body::generalized_inverse::{GeneralizedInverse, Known, Made};
+use crate::body::misfit::Retry;
+use crate::body::null_space::{verified, NullSpaceInput, Verified, ROUNDING as KNOWN};
+use crate::body::search::Search;
+use crate::body::symbolic::{Layout, Symbolic};
+use crate::error::{Error, Kind, Result};
+use crate::linalg::memory::{room, PRODUCTS};
+use crate::linalg::Multiple;
+
+/// How K+ will be made.
+pub enum Plan {
+    Known(Known),
+    Search(Search),
+}
+
+impl GeneralizedInverse {
+    /// Null space and fixing dofs of `k` (a multiple with its largest diagonal entry in [1, 2)).
+    pub fn plan(k: Multiple, input: &NullSpaceInput, tolerance: f64) -> Result<Plan> {
+        Self::plan_with(k, input, tolerance, None)
+    }
+
+    /// The same with the dofs to hold in K+, where the host has given them.
+    pub fn plan_with(
+        k: Multiple,
+        input: &NullSpaceInput,
+        tolerance: f64,
+        fixing: Option<&[usize]>,
+    ) -> Result<Plan> {
+        let per_dof = (8 * input.vectors.cols + 24) * size_of::<f64>();
+        let _room = room(k.order() * per_dof + PRODUCTS, "the null space of a body")?;
+        let (root, given) = (k.roots()?, fixing.is_some());
+        let Verified { basis: null_space, error } = verified(&k, &root, input, tolerance)?;
+        let fixing = match fixing {
+            Some(given) => given_dofs(&null_space, &root, given)?,
+            None => fixing_dofs(&null_space, &root)?,
+        };
+        Ok(Plan::Known(Known::of(k, null_space, error, fixing, given)))
+    }
+
+    /// The same where nothing is known about the null space.
+    pub fn search(k: Multiple, tolerance: f64, fixing: Option<&[usize]>) -> Result<Plan> {
+        Search::new(k, tolerance, fixing).map(Plan::Search)
+    }
+}
+
+impl Plan {
+    /// Takes over the way of elimination of another body with the same pattern, or of this one with other values, where
+    /// it serves here as well. Its analysis is wanted from whoever has it, by `set_analysis`.
+    pub fn follow(&mut self, layout: &Layout) -> Result<bool> {
+        match (self, layout) {
+            (Self::Known(known), Layout::Held(dofs)) => known.follow(dofs),
+            (Self::Search(search), layout) => Ok(*search.layout == *layout),
+            _ => Ok(false),
+        }
+    }
+
+    /// What the analysis depends on besides the pattern of K.
+    pub fn layout(&self) -> Arc<Layout> {
+        match self {
+            Self::Known(known) => Arc::new(Layout::Held(known.fixing.clone())),
+            Self::Search(search) => Arc::clone(&search.layout),
+        }
+    }
+
+    /// The symbolic analysis for the layout.
+    pub fn analyse(&self) -> Result<Arc<Symbolic>> {
+        let analysis = match self {
+            Self::Known(known) => known.analyse()?,
+            Self::Search(search) => search.analyse()?,
+        };
+        Ok(Arc::new(Symbolic { layout: self.layout(), analysis }))
+    }
+
+    /// The analysis for the layout, made here or elsewhere.
+    pub fn set_analysis(&mut self, symbolic: Arc<Symbolic>) {
+        match self {
+            Self::Known(known) => known.symbolic = Some(symbolic),
+            Self::Search(search) => search.symbolic = Some(symbolic),
+        }
+    }
+
+    /// The analysis, once there is one.
+    pub fn symbolic(&self) -> Option<&Arc<Symbolic>> {
+        match self {
+            Self::Known(known) => known.symbolic.as_ref(),
+            Self::Search(search) => search.symbolic.as_ref(),
+        }
+    }
+
+    /// Bytes the factorisation is going to take, once it is analysed.
+    pub fn bytes(&self) -> usize {
+        self.symbolic().map_or(0, |symbolic| symbolic.analysis.bytes())
+    }
+
+    /// K+ with the factor, already probed, of the same matrix with the same dofs held. The null space is that of the
+    /// plan, where it has one and the other did not have to be sought.
+    pub fn with_factor_of(self, other: &GeneralizedInverse) -> Result<GeneralizedInverse> {
+        match self {
+            Self::Known(Known { k, null_space, error, doubt, .. }) if other.gap.is_none() => {
+                let doubts = doubt.into_iter().collect();
+                let own = GeneralizedInverse { null_space, rounding: KNOWN, error, doubts, ..other.clone() };
+                own.measured(&k)
+            }
+            Self::Known(_) | Self::Search(_) => Ok(other.clone()),
+        }
+    }
+
+    /// Factorises and probes. Where coordinates have promised fewer null vectors than K has, these are sought in K.
+    pub fn execute(mut self) -> Result<Made> {
+        if self.symbolic().is_none() {
+            let symbolic = self.analyse()?;
+            self.set_analysis(symbolic);
+        }
+        match self {
+            Self::Known(mut known) => match known.retry.take() {
+                None => known.execute(),
+                Some(retry) => {
+                    let k = known.k.clone();
+                    known.execute().or_else(|error| sought(k, retry, error))
+                }
+            },
+            Self::Search(search) => search.execute(),
+        }
+    }
+}
+
+/// The null space sought in K, after `error`.
+fn sought(k: Multiple, retry: Retry, error: Error) -> Result<Made> {
+    if !matches!(error.kind, Kind::NullSpace | Kind::Indefinite | Kind::Internal) {
+        return Err(error);
+    }
+    let Retry { misfit, tolerance, fixing } = retry;
+    let mut made = Search::new(k, tolerance, fixing.as_deref())?.instead_of(misfit).execute()?;
+    made.factorisations += 1;
+    Ok(made)
+}
