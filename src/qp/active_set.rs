@@ -1,6 +1,7 @@
 //! Primal-dual active sets: the minimum on a face by a direct method, then rows with `x_i < 0` join the
 //! active set and active rows with `r_i < 0` leave it, until nothing changes. Fast and as accurate as rounding
-//! allows where it ends; it need not end (rows may swap for ever, a face may have no minimum), and gives up then.
+//! allows where it ends; it need not end (rows may swap for ever, a face may have no minimum), and gives up then. Steps A1 to A5
+//! of docs/method.md.
 
 use crate::error::{Kind, Result};
 use crate::linalg::vector::{axpy, dot, norm};
@@ -90,7 +91,7 @@ impl<'a> Run<'a> {
         })
     }
 
-    /// Goes from face to face; false where none is confirmed by its own solution.
+    /// A1: goes from face to face; false where none is confirmed by its own solution.
     fn settle(&mut self) -> Result<bool> {
         let mut visited: Vec<Vec<bool>> = Vec::new();
         while visited.len() < FACES && !visited.contains(&self.active) {
@@ -108,7 +109,7 @@ impl<'a> Run<'a> {
         Ok(false)
     }
 
-    /// Moves x and alpha to the minimum on the face; `None`: there is none. Its first product asks the host
+    /// A2 and A3: moves x and alpha to the minimum on the face; `None`: there is none. Its first product asks the host
     /// before the factorisation begins.
     fn solve_on(&mut self, rows: Vec<usize>) -> Result<Option<Face<'a>>> {
         self.x.iter_mut().zip(&self.active).filter(|(_, held)| **held).for_each(|(x, _)| *x = 0.0);
@@ -169,7 +170,7 @@ impl<'a> Run<'a> {
         64.0 * f64::EPSILON * self.terms[i]
     }
 
-    /// The active set that the signs of x and r ask for.
+    /// A4: the active set that the signs of x and r ask for.
     fn next_set(&mut self, face: &Face) -> Result<Vec<bool>> {
         let stays = |i: usize| if self.active[i] { self.r[i] >= -self.noise(i) } else { self.x[i] < 0.0 };
         let next: Vec<bool> = (0..self.x.len()).map(|i| self.qp.bounded[i] && stays(i)).collect();

@@ -1,5 +1,6 @@
 //! Directions kept with their images, conjugate to each other: `p_i'A p_j = sigma` for i = j, else 0. They lie
-//! on the present face and in the kernel of G, so that theta is minimised over their span without any product.
+//! on the present face and in the kernel of G, so that theta is minimised over their span without any product: P8 and P13 of
+//! docs/method.md.
 
 use crate::linalg::vector::{axpy, dot, norm, norm_max, power_of_two_below};
 

@@ -57,6 +57,7 @@ impl Trial {
         }
     }
 
+    /// J4: without what rounding has left of `e - G l`, where the bounds allow that.
     fn done(self, qp: &Qp, coarse: &mut Coarse) -> Result<Projected> {
         let mut point = self.point.clone();
         let held: Vec<bool> = point.iter().map(|l| *l == 0.0).collect();
@@ -70,7 +71,7 @@ impl Trial {
     }
 }
 
-/// `None`: no such point was found. Entries in `held` stay zero.
+/// J1 to J4 of docs/method.md. `None`: no such point was found. Entries in `held` stay zero.
 pub fn project(qp: &Qp, coarse: &mut Coarse, y: &[f64], held: &[bool]) -> Result<Option<Projected>> {
     let mut now = Trial::new(qp, y, held, vec![0.0; qp.e.len()]);
     if qp.e.is_empty() {
@@ -78,9 +79,11 @@ pub fn project(qp: &Qp, coarse: &mut Coarse, y: &[f64], held: &[bool]) -> Result
     }
     let mut error = now.error(qp);
     for _ in 0..NEWTON_STEPS {
+        // J2
         if error <= ACCURACY {
             return now.done(qp, coarse).map(Some);
         }
+        // J3: Newton
         let face: Vec<bool> =
             (0..y.len()).map(|i| held[i] || (qp.bounded[i] && now.point[i] <= 0.0)).collect();
         coarse.select(&face)?;
@@ -100,7 +103,7 @@ pub fn project(qp: &Qp, coarse: &mut Coarse, y: &[f64], held: &[bool]) -> Result
     Ok(None)
 }
 
-/// Exact minimum of phi over `beta + t step`, t > 0: phi' is piecewise linear and does not fall, its slope is
+/// J3: exact minimum of phi over `beta + t step`, t > 0: phi' is piecewise linear and does not fall, its slope is
 /// the sum of `(G'step)_i^2` over the rows that are not at their bound. `None`: phi falls without end.
 fn minimum_along(qp: &Qp, y: &[f64], held: &[bool], now: &Trial, step: &[f64]) -> Option<f64> {
     let (mut slope, mut whole, mut turns) = (0.0, 0.0, Vec::new());

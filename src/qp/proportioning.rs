@@ -1,5 +1,6 @@
 //! Proportioning on the dual polyhedron: Algorithm 1 kept on the true feasible set of (12) instead of behind
-//! an augmented Lagrangian. No penalty, no estimate of a norm, no parameter with a unit.
+//! an augmented Lagrangian. No penalty, no estimate of a norm, no parameter with a unit. Step by step: docs/method.md, whose tags
+//! the comments here and in `steps` name.
 
 use crate::error::{Error, Kind, Result};
 use crate::linalg::vector::norm;
@@ -132,6 +133,7 @@ pub fn minimise(
     let mut coarse = Coarse::new(qp.g_transposed, qp.rounding)?;
     let first = match first_point(&qp, &mut coarse, start)? {
         Some(first) => first,
+        // S6.2
         None => {
             let found = balance(&qp, &mut coarse)?;
             if found.margin > ROUNDING {
@@ -140,6 +142,7 @@ pub fn minimise(
             found.point
         }
     };
+    // S6.3
     let mut it = Iterate::new(qp, coarse, first)?;
     if start.iter().any(|x| *x != 0.0) && it.is_far_off() {
         if let Some(cold) = project(&qp, &mut it.coarse, &vec![0.0; start.len()], &vec![false; start.len()])?
@@ -168,7 +171,7 @@ fn infeasible(qp: &Qp, coarse: &Coarse, found: Balance) -> Solution {
     Solution { x: found.point, alpha: vec![0.0; qp.e.len()], undetermined: 0, scale: 0.0, verdict, counts }
 }
 
-/// The feasible point nearest to `start`: on the face of its zeros, the active set it brings along, where that
+/// S6.1: the feasible point nearest to `start`: on the face of its zeros, the active set it brings along, where that
 /// face has one.
 fn first_point(qp: &Qp, coarse: &mut Coarse, start: &[f64]) -> Result<Option<Vec<f64>>> {
     if start.iter().any(|x| *x != 0.0) {
@@ -187,6 +190,7 @@ fn proportioning(
     judge: &mut dyn Judge,
     observer: &mut dyn Observer,
 ) -> Result<Solution> {
+    // S7
     let scale = judge.scale(&it.x, &it.alpha)?;
     let stop = Stop::new(limits.tolerance * scale);
     let verdict = run(&mut it, stop, limits, judge, observer).or_else(Verdict::of_refusal)?;
@@ -210,6 +214,7 @@ fn run(
     observer: &mut dyn Observer,
 ) -> Result<Verdict> {
     loop {
+        // P1 of docs/method.md: the stop
         let small = stop.residual + stop.noise * it.noise();
         if it.residual() <= small || stop.plateau(it) {
             it.rebalance()?;
@@ -230,7 +235,9 @@ fn run(
                 }
             }
         }
+        // P2: the face is explored (P3 to P8), or rows are released (P9 to P11)
         let step = if it.is_proportional(limits.gamma) { it.explore()? } else { it.release(small)? };
+        // P12, and P10 at a degenerate vertex
         let kind = match step {
             Step::Vertex { alpha } => {
                 if let Some(verdict) = stop.tighten(judge.accepts(&it.x, &alpha)?) {
@@ -303,7 +310,7 @@ impl Stop {
         }
     }
 
-    /// No conjugate gradient step has halved the residual of this face for longer than exact arithmetic
+    /// P1, the plateau: no conjugate gradient step has halved the residual of this face for longer than exact arithmetic
     /// would need to solve it: rounding errors have taken over.
     fn plateau(&mut self, it: &Iterate) -> bool {
         let (steps, residual) = (it.counts.steps(), norm(&it.free));
@@ -315,7 +322,7 @@ impl Stop {
         steps - self.met > 2 * unknowns + 20
     }
 
-    /// Once, where all that the residual was measured against is travel: from now on it is measured against the rest.
+    /// P1.2: once, where all that the residual was measured against is travel: from now on it is measured against the rest.
     fn refine(&mut self, tolerance: f64, length: Option<f64>) -> bool {
         let target = length.map_or(f64::INFINITY, |length| tolerance * length);
         let refines = !self.refined && TRAVEL * target < self.residual;
@@ -326,7 +333,7 @@ impl Stop {
         refines
     }
 
-    /// At the first two refusals, by as much as they tell; false where that is more than steps without rounding could mend.
+    /// P1.3: at the first two refusals, by as much as they tell; false where that is more than steps without rounding could mend.
     fn tighten_by(&mut self, missed: Option<f64>) -> bool {
         let missed = missed.filter(|missed| *missed < MISSED && self.tightenings < 2);
         if let Some(missed) = missed {
@@ -336,6 +343,7 @@ impl Stop {
         missed.is_some()
     }
 
+    /// P1.4: the verdict; none where target and allowance for rounding have become a tenth, and the run goes on.
     pub fn tighten(&mut self, accepted: bool) -> Option<Verdict> {
         if accepted {
             return Some(Verdict::Solved);

@@ -1,4 +1,4 @@
-//! The three steps: conjugate gradients on the face, expansion of the active set, release from it.
+//! The three steps: conjugate gradients on the face, expansion of the active set, release from it: P3 to P12 of docs/method.md.
 
 use crate::error::Result;
 use crate::linalg::vector::{axpy, dot, norm};
@@ -39,12 +39,13 @@ pub enum Step {
 }
 
 impl Iterate<'_> {
-    /// Explores the current face: a conjugate gradient step where it stays feasible, else an expansion. A step
+    /// P3 to P8 of docs/method.md: explores the current face, a conjugate gradient step where it stays feasible, else an expansion. A step
     /// expected to leave the bounds is projected before its product, which then tells how far to go.
     pub fn explore(&mut self) -> Result<Step> {
         let p = self.direction()?;
         let to_bound = self.cuts == CUTS;
         self.cuts %= CUTS;
+        // P4: projection before the product
         let far = self.expected.filter(|t| !to_bound && self.feasible_step(&p, 0.0) < *t);
         let step = match far {
             Some(t) if self.expand(&p, t)? => Step::Expansion,
@@ -56,7 +57,7 @@ impl Iterate<'_> {
         Ok(step)
     }
 
-    /// Minimises theta over the kept directions, without any product: rows that meet their bound join the
+    /// P8: minimises theta over the kept directions, without any product: rows that meet their bound join the
     /// active set one by one.
     fn settle(&mut self) -> Result<()> {
         while !self.settled {
@@ -68,7 +69,7 @@ impl Iterate<'_> {
         Ok(())
     }
 
-    /// `z = P_F M_F P_F phi`, conjugate to the kept directions; z itself, and none kept, where rounding is all
+    /// P3: `z = P_F M_F P_F phi`, conjugate to the kept directions; z itself, and none kept, where rounding is all
     /// that they leave of it. One projection leaves components that make conjugate gradients diverge below 1e-8: what is
     /// returned has been projected twice at least.
     fn direction(&mut self) -> Result<Vec<f64>> {
@@ -89,7 +90,7 @@ impl Iterate<'_> {
         Ok(z)
     }
 
-    /// The exact step `x - t p` where the bounds allow it. Where they do not, an expansion: projected, where a
+    /// P5 and P6: the exact step `x - t p` where the bounds allow it. Where they do not, an expansion: projected, where the
     /// bounds leave too little of it, or just `to_bound`.
     fn step_along(&mut self, p: Vec<f64>, to_bound: bool) -> Result<Step> {
         if norm(&p) == 0.0 {
@@ -98,6 +99,7 @@ impl Iterate<'_> {
         let image = self.product(&p)?;
         let curvature = dot(&p, &image);
         self.observe_curvature(&p, &image)?;
+        // P5: no curvature
         let singular =
             norm(&self.free) > self.noise() && curvature <= SINGULAR * self.curvature * dot(&p, &p);
         let t = if singular { f64::INFINITY } else { dot(&self.r, &p) / curvature };
@@ -110,6 +112,7 @@ impl Iterate<'_> {
             far |= self.expected.replace(t).is_none();
             self.kept.push(&p, &image);
         }
+        // P6
         if t <= bound {
             self.go_along(&p, &image, t)?;
             return Ok(Step::ConjugateGradient);
@@ -121,7 +124,7 @@ impl Iterate<'_> {
         Ok(Step::Expansion)
     }
 
-    /// The projected step towards `y = PROJ_face(x - t p)`, one product: all of it where theta falls that far,
+    /// P7: the projected step towards `y = PROJ_face(x - t p)`, one product: all of it where theta falls that far,
     /// else as much of it as lowers theta most. False, and nothing done, where it does not lead downwards.
     fn expand(&mut self, p: &[f64], t: f64) -> Result<bool> {
         let mut y = self.x.clone();
@@ -155,7 +158,7 @@ impl Iterate<'_> {
         Ok(true)
     }
 
-    /// Keeps the direction of a projected step, unless it is so short that rounding has turned it out of the
+    /// P7.3: keeps the direction of a projected step, unless it is so short that rounding has turned it out of the
     /// kernel of G.
     fn keep(&mut self, s: &[f64], image: &[f64]) {
         if norm(s) > SHORT * norm(&self.x) {
@@ -163,7 +166,7 @@ impl Iterate<'_> {
         }
     }
 
-    /// `p <- M_F p`, as long as that is a direction of descent.
+    /// P3: `p <- M_F p`, as long as that is a direction of descent.
     fn precondition(&mut self, p: &mut [f64]) -> Result<()> {
         let Some(preconditioner) = self.qp.preconditioner else { return Ok(()) };
         let mut z = vec![0.0; p.len()];
@@ -187,7 +190,7 @@ impl Iterate<'_> {
         Ok(())
     }
 
-    /// `x - t p`; rows that meet their bound there are set to exactly 0.
+    /// P6, P8: `x - t p`; rows that meet their bound there are set to exactly 0.
     fn go_along(&mut self, p: &[f64], image: &[f64], t: f64) -> Result<()> {
         let (mut x, mut g) = (std::mem::take(&mut self.x), std::mem::take(&mut self.g));
         for i in 0..x.len() {
@@ -200,7 +203,7 @@ impl Iterate<'_> {
         self.move_to(x, g)
     }
 
-    /// The active rows that pull leave the active set. `small` is the length of a projected gradient that counts
+    /// P9, and P10 after a cut or where P9 does not lead down: the active rows that pull leave the active set. `small` is the length of a projected gradient that counts
     /// as zero.
     pub fn release(&mut self, small: f64) -> Result<Step> {
         let step = if std::mem::take(&mut self.cuts) > 0 { None } else { self.release_pulling(small)? };
@@ -210,7 +213,7 @@ impl Iterate<'_> {
         Ok(step)
     }
 
-    /// All rows with a negative multiplier leave the active set, and the face is explored with them: where the
+    /// P9: all rows with a negative multiplier leave the active set, and the face is explored with them: where the
     /// direction presses some of them on, it is projected. `None`, and nothing done, where it does not lead down:
     /// always where `G x = e` leaves no motion on that face, whose gradient is `small` then.
     fn release_pulling(&mut self, small: f64) -> Result<Option<Step>> {
@@ -242,7 +245,7 @@ impl Iterate<'_> {
         self.split_on_face()
     }
 
-    /// Gradient projection on the whole feasible set, with an exact line search.
+    /// P10: gradient projection on the whole feasible set, with an exact line search.
     fn project_gradient(&mut self, small: f64) -> Result<Step> {
         if self.curvature == 0.0 {
             // what an open row has of r tells of its gap, not of A
@@ -267,7 +270,7 @@ impl Iterate<'_> {
         self.search_along(s)
     }
 
-    /// Exact minimum of theta over `x + t s`, t in [0, max(1, first bound)].
+    /// P11: exact minimum of theta over `x + t s`, t in [0, max(1, first bound)].
     fn search_along(&mut self, s: Vec<f64>) -> Result<Step> {
         let image = self.product(&s)?;
         self.observe_curvature(&s, &image)?;

@@ -17,8 +17,8 @@ pub(super) struct Means<'a> {
     pub direct: Direct<'a>,
 }
 
-/// Solves the dual. After proportioning: the same without preconditioner, then SMALBE-M, each from where the
-/// one before has ended, and after each of them the direct method; where there are few rows, at last a method that always ends.
+/// S10 of docs/method.md: solves the dual. After proportioning: proportioning without preconditioner, then SMALBE-M, each from where
+/// the first has ended, and after each of them the direct method; where there are few rows, at last a method that always ends.
 pub(super) fn solve_dual(
     means: &Means,
     qp: Qp,
