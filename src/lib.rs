@@ -71,5 +71,6 @@ pub mod dual;
 pub mod error;
 pub mod ffi;
 pub mod linalg;
+pub mod platform;
 pub mod qp;
 pub mod solver;

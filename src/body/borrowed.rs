@@ -2,9 +2,9 @@
 
 use crate::body::stiffness::{check_diagonal, check_order};
 use crate::error::Result;
-use crate::linalg::memory::{copied, reserved};
 use crate::linalg::vector::first_non_finite;
 use crate::linalg::{Array, Borrowed, Symmetric};
+use crate::platform::memory::{copied, reserved};
 
 const WHAT: &str = "the pattern of a stiffness matrix";
 

@@ -5,8 +5,8 @@ use std::collections::HashMap;
 use std::fmt;
 
 use crate::error::Result;
-use crate::linalg::memory::{reserved, zeros};
 use crate::linalg::Symmetric;
+use crate::platform::memory::{reserved, zeros};
 
 /// Rows that are looked at, and entries of each.
 const ROWS: usize = 64;

@@ -1,9 +1,9 @@
 //! Fixing dofs: the r dofs whose rows of R are most independent, so that `K_ff` is as regular as it can be.
 
 use crate::error::{Error, Kind, Result};
-use crate::linalg::memory::zeros;
 use crate::linalg::spd::right_singular;
 use crate::linalg::Matrix;
+use crate::platform::memory::zeros;
 
 /// Smallest against largest singular value of the rows of `D^1/2 R` of the dofs held: below this they hold
 /// the body no better than rounding does.

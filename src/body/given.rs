@@ -2,9 +2,9 @@
 
 use crate::body::host::HostOperator;
 use crate::error::Result;
-use crate::linalg::memory::zeros;
 use crate::linalg::twofold::Twofold;
 use crate::linalg::Symmetric;
+use crate::platform::memory::zeros;
 
 #[derive(Clone, Copy)]
 pub enum Stiffness<'a> {

@@ -13,8 +13,8 @@ use crate::body::rigid_modes::RigidModes;
 use crate::body::search::Search;
 use crate::body::spectrum::Doubt;
 use crate::error::{Error, Kind, Result};
-use crate::linalg::memory::{room, PRODUCTS};
 use crate::linalg::{Matrix, Multiple};
+use crate::platform::memory::{room, PRODUCTS};
 
 /// Where rigid motions are mixed, their terms may cancel to this part of them.
 const MIXED: f64 = 16.0;

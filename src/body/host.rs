@@ -5,9 +5,10 @@ use std::sync::Arc;
 
 use crate::body::null_space::Products;
 use crate::error::{Error, Kind, Result};
-use crate::linalg::memory::{copied, reserved, zeros};
 use crate::linalg::vector::first_non_finite;
-use crate::linalg::{Csr, Interrupt, Matrix, Packed};
+use crate::linalg::{Csr, Matrix, Packed};
+use crate::platform::memory::{copied, reserved, zeros};
+use crate::platform::Interrupt;
 
 /// Right-hand sides of one call.
 pub const TOGETHER: usize = 32;

@@ -4,8 +4,8 @@
 use crate::body::storage::{SparseInput, Storage};
 use crate::body::symmetry::may_differ;
 use crate::error::Result;
-use crate::linalg::memory::{reserved, zeros};
 use crate::linalg::Symmetric;
+use crate::platform::memory::{reserved, zeros};
 
 const WHAT: &str = "a stiffness matrix";
 

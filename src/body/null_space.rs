@@ -5,10 +5,10 @@
 
 use crate::body::overflow::refuse_overflow;
 use crate::error::{Error, Kind, Result};
-use crate::linalg::memory::{reserved, zeros};
 use crate::linalg::spd::right_singular;
 use crate::linalg::vector::{norm, norm_max, ratio, weighted_norm};
 use crate::linalg::{Matrix, Multiple};
+use crate::platform::memory::{reserved, zeros};
 
 /// What the host says about the vectors it hands over.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -9,8 +9,8 @@ use crate::body::null_space::{verified, NullSpaceInput, Verified, ROUNDING as KN
 use crate::body::search::Search;
 use crate::body::symbolic::{Layout, Symbolic};
 use crate::error::{Error, Kind, Result};
-use crate::linalg::memory::{room, PRODUCTS};
 use crate::linalg::Multiple;
+use crate::platform::memory::{room, PRODUCTS};
 
 /// How K+ will be made.
 pub enum Plan {

@@ -5,9 +5,9 @@ use crate::body::null_space::{largest, ROUNDING as KNOWN};
 use crate::body::overflow::overflow;
 use crate::body::random::Random;
 use crate::error::{Error, Kind, Result};
-use crate::linalg::memory::zeros;
 use crate::linalg::vector::weighted_norm;
 use crate::linalg::{Matrix, Multiple};
+use crate::platform::memory::zeros;
 
 /// K with the dofs held is singular when some v has `|A v|` below this against `| |A| |v| |`.
 pub(super) const SINGULAR: f64 = 1e-13;

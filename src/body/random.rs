@@ -1,7 +1,7 @@
 //! Random numbers for probes, the same in every run.
 
 use crate::error::Result;
-use crate::linalg::memory::zeros;
+use crate::platform::memory::zeros;
 
 const SEED: u64 = 0x9e37_79b9_7f4a_7c15;
 

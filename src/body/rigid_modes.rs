@@ -2,9 +2,9 @@
 
 use crate::error::{Error, Result};
 use crate::linalg::graph::components;
-use crate::linalg::memory::{copied, reserved, room, zeros};
 use crate::linalg::vector::{first_non_finite, norm};
 use crate::linalg::{Matrix, SpdSolver, Symmetric};
+use crate::platform::memory::{copied, reserved, room, zeros};
 
 /// Per dof: what it moves and where it sits.
 #[derive(Debug, Clone)]

@@ -20,11 +20,11 @@ use crate::body::spectrum::{cut, measured, to_measure, unclear, Doubt, Ritz, Ver
 use crate::body::symbolic::{Layout, Symbolic};
 use crate::error::{Error, Kind, Result};
 use crate::linalg::graph::components;
-use crate::linalg::memory::{copied, reserved, room, PRODUCTS};
 use crate::linalg::spd::symmetric_eigen;
 use crate::linalg::trailing::Trailing;
 use crate::linalg::vector::ratio;
 use crate::linalg::{Analysis, Breakdown, Cholesky, Matrix, Multiple};
+use crate::platform::memory::{copied, reserved, room, PRODUCTS};
 
 /// Dofs eliminated last in each part, at first.
 const LAST: usize = 24;

@@ -7,10 +7,10 @@ use std::fmt;
 use crate::body::digits::Digits;
 use crate::body::null_space::ROUNDING as KNOWN;
 use crate::error::{Error, Kind, Result};
-use crate::linalg::memory::reserved;
 use crate::linalg::spd::symmetric_eigen;
 use crate::linalg::vector::dot;
 use crate::linalg::{Matrix, Multiple};
+use crate::platform::memory::reserved;
 
 /// An eigenvalue of the scaled S below this against the largest may belong to the null space.
 const SOFT: f64 = 1e-11;

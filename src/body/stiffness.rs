@@ -4,9 +4,9 @@ use crate::body::in_order::lower_triangle;
 use crate::body::storage::{SparseInput, Storage};
 use crate::body::symmetry::{may_differ, unsymmetric};
 use crate::error::{Error, Kind, Result};
-use crate::linalg::memory::{reserved, room};
 use crate::linalg::vector::first_non_finite;
 use crate::linalg::{Csr, Symmetric};
+use crate::platform::memory::{reserved, room};
 
 /// Bytes of row pointers and diagonals that come and go in the conversion of a matrix, per row.
 const PER_ROW: usize = 96;

@@ -2,7 +2,7 @@
 
 use crate::body::Stiffness;
 use crate::error::Result;
-use crate::linalg::memory::zeros;
+use crate::platform::memory::zeros;
 
 /// K_jj against T_j. Chains, trusses, beams and solids, also where they are a million times as stiff as what they stand on,
 /// have no more than 4.5.

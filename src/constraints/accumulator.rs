@@ -1,7 +1,7 @@
 //! A sparse sum of rows that knows what is rounding in it.
 
 use crate::error::Result;
-use crate::linalg::memory::zeros;
+use crate::platform::memory::zeros;
 
 /// A sum that is this small against its terms is rounding.
 const ROUNDING: f64 = 8.0 * f64::EPSILON;

@@ -6,8 +6,8 @@
 use crate::constraints::accumulator::Accumulator;
 use crate::error::Result;
 use crate::linalg::graph::components;
-use crate::linalg::memory::{reserved, room};
 use crate::linalg::{Csr, Symmetric};
+use crate::platform::memory::{reserved, room};
 
 /// Rows of a cluster at most; mortar rows chain over a whole surface.
 const LARGEST: usize = 32;

@@ -15,10 +15,10 @@ pub use grouping::Grouping;
 use std::sync::Arc;
 
 use crate::error::{Error, Kind, Result};
-use crate::linalg::memory::{copied, zeros};
 use crate::linalg::twofold::Twofold;
 use crate::linalg::vector::first_non_finite;
 use crate::linalg::Csr;
+use crate::platform::memory::{copied, zeros};
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum RowKind {

@@ -7,9 +7,9 @@ use std::sync::Arc;
 use crate::error::Result;
 use crate::linalg::gram::Gram;
 use crate::linalg::graph::components;
-use crate::linalg::memory::{copied, reserved, room};
 use crate::linalg::pseudo::{dense_inverse, uncouple};
 use crate::linalg::{Analysis, Cholesky, Csr, SpdSolver, Symmetric};
+use crate::platform::memory::{copied, reserved, room};
 
 /// A pivot below this means that the rows of its block may depend on each other.
 const SINGULAR: f64 = 1e-8;

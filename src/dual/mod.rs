@@ -28,9 +28,9 @@ use crate::body::GeneralizedInverse;
 use crate::dual::multiples::Multiples;
 use crate::dual::reuse::Reuse;
 use crate::error::Result;
-use crate::linalg::memory::zeros;
 use crate::linalg::vector::{dot, norm_max, power_of_two_below, weighted_norm};
 use crate::linalg::{Csr, Packed};
+use crate::platform::memory::zeros;
 
 /// G is not known better than this.
 const ROUNDING: f64 = 64.0 * f64::EPSILON;

@@ -3,8 +3,8 @@
 
 use crate::dual::{Dual, InParallel, Subdomain};
 use crate::error::Result;
-use crate::linalg::memory::zeros;
 use crate::linalg::Operator;
+use crate::platform::memory::zeros;
 
 const WHAT: &str = "a product with the dual operator";
 

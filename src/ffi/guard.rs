@@ -13,7 +13,9 @@ use super::handle::{self, Refusal};
 use super::status::{FETI_BUSY, FETI_HANDLE, FETI_INTERNAL, FETI_OK};
 use super::types::feti_problem;
 use crate::error::{Error, Kind, Result};
-use crate::solver::{instant, Problem, THREAD_NAME};
+use crate::platform::instant;
+use crate::platform::threads::THREAD_NAME;
+use crate::solver::Problem;
 
 /// Runs `work` on the problem behind `p` and returns the status of the call.
 pub(super) fn enter(p: *mut feti_problem, call: Call, work: impl FnOnce(&mut Problem) -> Result<()>) -> i32 {

@@ -7,7 +7,8 @@ use super::guard::{enter, enter_with_status, without_problem};
 use super::tests::{assert_all, last_detail, last_error, string, Owned};
 use super::*;
 use crate::error::Result;
-use crate::solver::{run_heard, run_on_pool, Listener, Reply, Tasks};
+use crate::platform::threads::{run as run_on_pool, run_heard, Tasks};
+use crate::solver::{Listener, Reply};
 
 const INJECTED: &str = "injected by a test";
 const NINE: Tasks = Tasks { threads: 2, order: &[0, 1, 2, 3, 4, 5, 6, 7, 8], on_caller: &|_| false };

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use crate::error::Result;
 use crate::linalg::graph::Graph;
-use crate::linalg::memory::reserved;
+use crate::platform::memory::reserved;
 
 const WHAT: &str = "the pattern of a Cholesky factor";
 

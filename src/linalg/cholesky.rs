@@ -6,13 +6,13 @@ use std::sync::Arc;
 use crate::error::Result;
 use crate::linalg::elimination::NONE;
 use crate::linalg::graph::Graph;
-use crate::linalg::memory::{reserved, room, zeros, Room, PRODUCTS};
 use crate::linalg::multifrontal::{self, Columns};
 use crate::linalg::ordering::nested_dissection;
-use crate::linalg::pages::Pages;
 use crate::linalg::supernodes::Supernodes;
 use crate::linalg::triangular::Triangle;
 use crate::linalg::Symmetric;
+use crate::platform::memory::{reserved, room, zeros, Room, PRODUCTS};
+use crate::platform::pages::Pages;
 
 /// Bytes that ordering and symbolic analysis take at most, per dof and per entry of the lower triangle: grids of all
 /// dimensions, chains, stars and diagonal matrices take up to 4/5 of it.
@@ -217,7 +217,7 @@ impl Cholesky {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::linalg::Interrupt;
+    use crate::platform::Interrupt;
 
     /// Grid Laplacian n x n plus `shift` on the diagonal.
     pub fn grid(n: usize, shift: f64) -> Symmetric {

@@ -6,8 +6,8 @@ use faer::{Accum, MatMut, MatRef, Par};
 
 use crate::error::Result;
 use crate::linalg::elimination::NONE;
-use crate::linalg::memory::{reserved, room, zeros, PRODUCTS};
 use crate::linalg::{Cholesky, Csr, Matrix};
+use crate::platform::memory::{reserved, room, zeros, PRODUCTS};
 
 /// Right-hand sides solved for at a time: L is read twice for all of them.
 const TOGETHER: usize = 32;

@@ -1,8 +1,8 @@
 //! Small dense matrices: null spaces (n x r, r a handful) and coarse matrices (r x r).
 
 use crate::error::Result;
-use crate::linalg::memory::zeros;
 use crate::linalg::vector::{axpy, dot, norm};
+use crate::platform::memory::zeros;
 
 /// `rows x cols`, column-major.
 #[derive(Debug, Clone, PartialEq, Default)]

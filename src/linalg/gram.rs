@@ -1,8 +1,8 @@
 //! Gram matrices `sum_i w_i g_i' g_i` of sparse rows g_i: the coarse matrix of a face, the coupling of rows.
 
 use crate::error::Result;
-use crate::linalg::memory::{copied, room, zeros};
 use crate::linalg::{Csr, Symmetric};
+use crate::platform::memory::{copied, room, zeros};
 
 /// Bytes per product of two entries of a row, and per row and column, while their lists grow.
 const PER_PRODUCT: usize = 24;

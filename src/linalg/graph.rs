@@ -1,8 +1,8 @@
 //! The adjacency graph of a stiffness matrix: connected parts, and dofs of one node.
 
 use crate::error::{Error, Kind, Result};
-use crate::linalg::memory::reserved;
 use crate::linalg::Symmetric;
+use crate::platform::memory::reserved;
 
 const WHAT: &str = "the graph of a body";
 

@@ -11,7 +11,7 @@ use std::ptr::null_mut;
 use std::sync::{Mutex, PoisonError};
 
 use crate::error::{Error, Kind, Result};
-use crate::linalg::memory::{refusal, reserved};
+use crate::platform::memory::{refusal, reserved};
 
 /// METIS_NOPTIONS.
 const OPTIONS: usize = 40;

@@ -11,12 +11,12 @@ use rayon::prelude::*;
 
 use crate::error::Result;
 use crate::linalg::front::{self, Tile};
-use crate::linalg::memory::{refusal, reserved};
-use crate::linalg::pages::Pages;
 use crate::linalg::subtrees::{outside, shared, subtrees};
 use crate::linalg::supernodes::{Node, Supernodes};
 use crate::linalg::updates::{self, RowMap, Updates};
-use crate::linalg::Interrupt;
+use crate::platform::memory::{refusal, reserved};
+use crate::platform::pages::Pages;
+use crate::platform::Interrupt;
 
 const WHAT: &str = "a factorisation";
 

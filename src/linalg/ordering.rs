@@ -2,9 +2,9 @@
 
 use crate::error::{Error, Kind, Result};
 use crate::linalg::graph::{joined, Graph};
-use crate::linalg::memory::reserved;
 #[cfg(feature = "metis")]
 use crate::linalg::metis::dissect;
+use crate::platform::memory::reserved;
 #[cfg(not(feature = "metis"))]
 use feral as dissect;
 

@@ -9,8 +9,8 @@ use faer::linalg::triangular_solve::{solve_lower_triangular_in_place, solve_uppe
 use faer::{MatMut, MatRef, Par, Spec};
 
 use crate::error::Result;
-use crate::linalg::memory::{refusal, reserved, room, zeros, PRODUCTS};
 use crate::linalg::Matrix;
+use crate::platform::memory::{refusal, reserved, room, zeros, PRODUCTS};
 
 /// A pivot of the matrix scaled to unit diagonal below this is none, as far as the entries are known, which may be little, ...
 const SINGULAR: f64 = 1e-11;

@@ -5,9 +5,9 @@ use std::sync::Arc;
 
 use crate::error::Result;
 use crate::linalg::graph::components;
-use crate::linalg::memory::room;
 use crate::linalg::resisted;
 use crate::linalg::{Analysis, Cholesky, Csr, Matrix, SpdSolver, Symmetric};
+use crate::platform::memory::room;
 
 /// A pivot of a matrix with its largest diagonal entry about 1 below this means that it is singular.
 pub const SINGULAR: f64 = 1e-11;

@@ -14,12 +14,13 @@ use rayon::prelude::*;
 
 use crate::error::Result;
 use crate::linalg::elimination::NONE;
-use crate::linalg::memory::{reserved, room, PRODUCTS};
-use crate::linalg::pages::Pages;
 use crate::linalg::subtrees::{each, outside, parts, shared};
 use crate::linalg::supernodes::{Node, Supernodes};
 use crate::linalg::updates::{RowMap, Updates};
-use crate::linalg::{Cholesky, Csr, Interrupt, Packed};
+use crate::linalg::{Cholesky, Csr, Packed};
+use crate::platform::memory::{reserved, room, PRODUCTS};
+use crate::platform::pages::Pages;
+use crate::platform::Interrupt;
 
 const WHAT: &str = "the dual operator of a body";
 

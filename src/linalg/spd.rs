@@ -4,8 +4,8 @@ use faer::linalg::solvers::{Llt, SelfAdjointEigen, Solve};
 use faer::{Mat, MatMut, MatRef, Side};
 
 use crate::error::{Error, Kind, Result};
-use crate::linalg::memory::{room, PRODUCTS};
 use crate::linalg::Matrix;
+use crate::platform::memory::{room, PRODUCTS};
 
 /// Relative size of a pivot or an eigenvalue below which the matrix counts as singular.
 const RANK_TOLERANCE: f64 = 1e-11;

@@ -9,7 +9,7 @@ use crate::error::Result;
 use crate::linalg::blocks::Blocks;
 use crate::linalg::elimination::{elimination_tree, postorder, NONE};
 use crate::linalg::graph::Graph;
-use crate::linalg::memory::reserved;
+use crate::platform::memory::reserved;
 
 const WHAT: &str = "the pattern of a Cholesky factor";
 

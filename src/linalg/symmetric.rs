@@ -4,9 +4,9 @@ use std::array;
 use std::sync::Arc;
 
 use crate::error::Result;
-use crate::linalg::memory::{copied, reserved};
 use crate::linalg::twofold::Twofold;
 use crate::linalg::{Array, Matrix, Operator};
+use crate::platform::memory::{copied, reserved};
 
 /// Columns that take one pass over the matrix.
 const TOGETHER: usize = 3;

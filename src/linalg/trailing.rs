@@ -2,8 +2,8 @@
 //! them that are held afterwards. Only their dense block is computed anew.
 
 use crate::error::Result;
-use crate::linalg::memory::{copied, zeros};
 use crate::linalg::{Cholesky, Matrix};
+use crate::platform::memory::{copied, zeros};
 
 const WHAT: &str = "the end of an elimination";
 

@@ -1,8 +1,8 @@
 //! Solutions with L and L' for one right-hand side: L is read once each, at the speed of the memory.
 
 use crate::error::Result;
-use crate::linalg::memory::zeros;
 use crate::linalg::supernodes::{Node, Supernodes};
+use crate::platform::memory::zeros;
 
 /// Columns taken at a time: the vector is read once for all of them.
 const COLUMNS: usize = 4;

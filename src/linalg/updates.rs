@@ -4,9 +4,9 @@ use std::ops::Range;
 use std::vec::IntoIter;
 
 use crate::error::Result;
-use crate::linalg::memory::reserved;
-use crate::linalg::pages::Pages;
 use crate::linalg::supernodes::Supernodes;
+use crate::platform::memory::reserved;
+use crate::platform::pages::Pages;
 
 /// Updates that wait, in the order of their supernodes. A supernode finds those of its children on one stack and puts its
 /// own on the other, that of its level, even or odd: nothing is moved.

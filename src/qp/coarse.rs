@@ -5,10 +5,10 @@ use std::sync::Arc;
 
 use crate::error::Result;
 use crate::linalg::gram::Gram;
-use crate::linalg::memory::room;
 use crate::linalg::pseudo::{Pseudo, Rows, SINGULAR};
 use crate::linalg::vector::{axpy, norm_max, power_of_two_below};
 use crate::linalg::{Analysis, Cholesky, Csr, Matrix};
+use crate::platform::memory::room;
 
 pub struct Coarse<'a> {
     /// `G'`, m x r.

@@ -3,8 +3,8 @@
 use crate::body::{Doubt, Modes};
 use crate::error::{Error, Kind, Result};
 use crate::linalg::graph;
-use crate::linalg::memory::room;
 use crate::linalg::Symmetric;
+use crate::platform::memory::room;
 use crate::solver::problem::Problem;
 use crate::solver::setup::Setup;
 

@@ -4,6 +4,7 @@ use std::cmp::Reverse;
 use std::time::{Duration, Instant};
 
 use crate::error::{Error, Kind, Result};
+use crate::platform::threads::{self, Heard, Tasks};
 use crate::solver::findings::Findings;
 use crate::solver::phases::{Phase, Phases};
 use crate::solver::problem::Problem;
@@ -12,7 +13,6 @@ use crate::solver::results::{Answer, Asked};
 use crate::solver::solve::Solved;
 use crate::solver::state::Start;
 use crate::solver::steps::{Told, Voice};
-use crate::solver::threads::{self, Heard, Tasks};
 use crate::solver::watch::Watch;
 
 /// How every island ended: with an answer, or with the named reason why it has none.

@@ -5,8 +5,8 @@ use std::time::{Duration, Instant};
 
 use crate::certificate::{certify, Answer as AnswerView, Data, Judgement, Unasked};
 use crate::error::Result;
-use crate::linalg::memory::copied;
 use crate::linalg::vector::{axpy, norm};
+use crate::platform::memory::copied;
 use crate::qp::{Direct, Judge, Qp, Solution, Verdict};
 use crate::solver::finish::finish;
 use crate::solver::presolve::Gaps;

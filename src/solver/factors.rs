@@ -13,11 +13,11 @@ use crate::body::{
 use crate::certificate::grounded;
 use crate::error::{Error, Kind, Result};
 use crate::linalg::Symmetric;
+use crate::platform::threads;
 use crate::solver::operators::Operators;
 use crate::solver::phases::Phase;
 use crate::solver::problem::{Inverse, Problem};
 use crate::solver::setup::plan;
-use crate::solver::threads;
 use crate::solver::watch::{Part, Watch};
 
 /// Analyses of one pattern that a body looks at before it makes one of its own.

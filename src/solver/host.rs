@@ -7,7 +7,7 @@ use crate::body::{
     Body, GeneralizedInverse, HostFunctions, HostMultiple, HostOperator, Modes, NullSpaceInput, TOGETHER,
 };
 use crate::error::{Error, Kind, Result};
-use crate::linalg::memory::copied;
+use crate::platform::memory::copied;
 use crate::solver::phases::Phase;
 use crate::solver::problem::{Inverse, Problem};
 use crate::solver::watch::{Part, Watch};

@@ -8,9 +8,9 @@ use crate::certificate::{Certificate, Entry};
 use crate::constraints::{RowKind, RowSet};
 use crate::error::Result;
 use crate::linalg::graph::joined;
-use crate::linalg::memory::{copied, reserved, room, zeros};
 use crate::linalg::vector::power_of_two_below;
 use crate::linalg::Csr;
+use crate::platform::memory::{copied, reserved, room, zeros};
 use crate::solver::problem::Problem;
 
 const WHAT: &str = "groups of bodies";

@@ -3,8 +3,8 @@
 use std::collections::HashMap;
 
 use crate::error::{Error, Kind, Result};
-use crate::linalg::memory::{refusal, reserved};
 use crate::linalg::vector::first_non_finite;
+use crate::platform::memory::{refusal, reserved};
 use crate::solver::problem::Problem;
 
 /// The unknown behind every number: body and dof.

@@ -2,7 +2,7 @@
 
 use crate::dual::{all_bytes, implicit_bodies, Kept, Size};
 use crate::error::{Error, Kind, Result};
-use crate::linalg::memory::available;
+use crate::platform::memory::available;
 use crate::solver::problem::{BodySlot, Problem};
 use crate::solver::setup::Ready;
 use crate::solver::words::OperatorForm;

@@ -9,9 +9,9 @@ use crate::body::{
 use crate::constraints::{RowKind, RowSet, RowsInput};
 use crate::dual::Kept;
 use crate::error::{Error, Kind, Result};
-use crate::linalg::memory::copied;
 use crate::linalg::vector::first_non_finite;
 use crate::linalg::Matrix;
+use crate::platform::memory::copied;
 use crate::solver::findings::Findings;
 use crate::solver::numbering::Numbering;
 use crate::solver::phases::Phases;

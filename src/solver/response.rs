@@ -5,8 +5,8 @@ use std::cell::Cell;
 use crate::certificate::{metric, Data, Response};
 use crate::constraints::RowKind;
 use crate::error::Result;
-use crate::linalg::memory::zeros;
 use crate::linalg::vector::dot;
+use crate::platform::memory::zeros;
 use crate::solver::setup::Ready;
 
 /// K+ of all bodies.

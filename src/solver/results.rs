@@ -3,8 +3,8 @@
 use crate::certificate::{Certificate, RowJudgement};
 use crate::constraints::{RowKind, RowSet};
 use crate::error::{Error, Kind, Result};
-use crate::linalg::memory::zeros;
 use crate::linalg::Operator;
+use crate::platform::memory::zeros;
 use crate::solver::call::Ends;
 use crate::solver::certifier::{Ending, Recovered};
 use crate::solver::diagnosis::in_stack;

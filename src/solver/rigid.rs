@@ -5,10 +5,10 @@ use std::sync::Arc;
 use crate::body::Stiffness;
 use crate::certificate::{BodyData, NOISE};
 use crate::error::Result;
-use crate::linalg::memory::{copied, zeros};
 use crate::linalg::twofold::Twofold;
 use crate::linalg::vector::{axpy, weighted_norm};
 use crate::linalg::{Analysis, Cholesky, Symmetric};
+use crate::platform::memory::{copied, zeros};
 use crate::solver::certifier::Certifier;
 
 const WHAT: &str = "a rigid motion";

@@ -2,7 +2,7 @@
 //! each is reserved when its size is known.
 
 use crate::error::Result;
-use crate::linalg::memory::{self, Room, PRODUCTS};
+use crate::platform::memory::{self, Room, PRODUCTS};
 use crate::solver::problem::{BodySlot, Problem};
 
 /// Bytes per unknown: loads, displacements, reactions and the certificate, about 16 vectors at a time.

@@ -7,8 +7,9 @@ use crate::body::{diagonal, dirichlet, dirichlet_bytes, lumped, Body, Generalize
 use crate::constraints::RowKind;
 use crate::dual::{self, constrained, Boundary, Draft, Dual, Preconditioner};
 use crate::error::{Error, Kind, Result};
-use crate::linalg::memory::reserved;
 use crate::linalg::{Multiple, Operator, Symmetric};
+use crate::platform::memory::reserved;
+use crate::platform::threads;
 use crate::solver::diagnosis::empty_row_contradicts;
 use crate::solver::host::lacks_null_space;
 use crate::solver::islands::{islands, Island, Members};
@@ -17,7 +18,6 @@ use crate::solver::paper;
 use crate::solver::phases::{Phase, Phases};
 use crate::solver::problem::Problem;
 use crate::solver::rows::DualRows;
-use crate::solver::threads;
 use crate::solver::watch::{Part, Watch};
 use crate::solver::words::Preconditioning;
 

@@ -5,8 +5,8 @@ use std::sync::Arc;
 
 use crate::constraints::{RowKind, RowSet};
 use crate::error::{Error, Kind, Result};
-use crate::linalg::memory::{copied, zeros};
 use crate::linalg::vector::first_non_finite;
+use crate::platform::memory::{copied, zeros};
 use crate::solver::problem::Problem;
 use crate::solver::results::{Answer, Asked};
 use crate::solver::setup::Ready;

@@ -5,8 +5,8 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use crate::dual::Dual;
 use crate::error::Result;
 use crate::linalg::Operator;
+use crate::platform::threads;
 use crate::qp::{self, Counts, Observer};
-use crate::solver::threads;
 use crate::solver::watch::{Progress, Stops};
 
 /// A step in one island.

@@ -5,9 +5,9 @@ use std::ops::Range;
 
 use crate::dual::dependent_rows;
 use crate::error::{Error, Kind, Result};
-use crate::linalg::memory::zeros;
 use crate::linalg::vector::weighted_norm;
 use crate::linalg::Csr;
+use crate::platform::memory::zeros;
 use crate::qp;
 use crate::solver::problem::Problem;
 use crate::solver::setup::Ready;

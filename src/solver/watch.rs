@@ -5,13 +5,13 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use crate::error::{Error, Kind, Result};
-use crate::linalg::Interrupt;
+use crate::platform::threads::{self, Heard, Tasks};
+use crate::platform::Interrupt;
 use crate::qp::{Counts, StepKind};
 use crate::solver::findings::Findings;
 use crate::solver::log::{Log, LogLevel};
 use crate::solver::problem::Problem;
 use crate::solver::steps::{Told, Voice};
-use crate::solver::threads::{self, Heard, Tasks};
 
 /// What the host hears.
 #[derive(Debug, Clone, Copy, PartialEq)]

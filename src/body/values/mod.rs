@@ -4,9 +4,9 @@ use crate::body::stiffness::check_finite;
 use crate::body::storage::{SparseInput, Storage};
 use crate::body::symmetry::{may_differ, unsymmetric};
 use crate::error::{Error, Result};
-use crate::linalg::memory::{reserved, zeros};
 use crate::linalg::vector::first_non_finite;
 use crate::linalg::Symmetric;
+use crate::platform::memory::{reserved, zeros};
 
 const WHAT: &str = "new values of a stiffness matrix";
 /// Position of an entry that the host does not give.

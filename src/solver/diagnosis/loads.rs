@@ -3,9 +3,9 @@
 use crate::certificate::Data;
 use crate::error::{Error, Kind, Proof, Result};
 use crate::linalg::graph::{components, joined};
-use crate::linalg::memory::zeros;
 use crate::linalg::twofold::Twofold;
 use crate::linalg::vector::{norm_max, ratio, weighted_norm};
+use crate::platform::memory::zeros;
 use crate::qp::{weighted, Restricted};
 use crate::solver::islands::Island;
 use crate::solver::problem::Problem;

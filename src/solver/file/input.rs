@@ -4,7 +4,7 @@
 use std::io::Read;
 
 use crate::error::{Error, Kind, Result};
-use crate::linalg::memory::reserved;
+use crate::platform::memory::reserved;
 use crate::solver::file::format::{
     self, padding, section_length, Crc, Tag, FORMAT, HEAD, HEADER, MAGIC, MAY_BE_SKIPPED,
 };

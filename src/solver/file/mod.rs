@@ -16,7 +16,7 @@ use std::process;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use crate::error::{Error, Kind, Result};
-use crate::linalg::memory::reserved;
+use crate::platform::memory::reserved;
 use crate::solver::problem::Problem;
 
 /// Bytes that are handed to the system at a time.

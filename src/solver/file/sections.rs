@@ -3,7 +3,7 @@
 use std::io::Read;
 
 use crate::error::{Error, Kind, Result};
-use crate::linalg::memory::reserved;
+use crate::platform::memory::reserved;
 use crate::solver::file::format::{
     self, BODY, COORDINATES, FIXING, LOAD, NULL_SPACE, NUMBERING, OPTIONS, STIFFNESS,
 };

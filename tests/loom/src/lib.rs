@@ -3,7 +3,7 @@
 #![cfg(test)]
 #![allow(dead_code)]
 
-#[path = "../../../src/solver/pools.rs"]
+#[path = "../../../src/platform/pools.rs"]
 mod pools;
 #[path = "../../../src/ffi/registry.rs"]
 mod registry;

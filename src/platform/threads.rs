@@ -9,8 +9,8 @@ use rayon::prelude::*;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 
 use crate::error::{Error, Result};
-use crate::linalg::memory::room;
-use crate::solver::pools::Pools;
+use crate::platform::memory::room;
+use crate::platform::pools::Pools;
 
 static POOLS: Pools<ThreadPool> = Pools { made: Mutex::new(Vec::new()) };
 

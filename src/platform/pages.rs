@@ -7,8 +7,8 @@ use std::ptr::NonNull;
 use std::slice::{from_raw_parts, from_raw_parts_mut};
 
 use crate::error::Result;
-use crate::linalg::mapping::{map, unmap, PAGE};
-use crate::linalg::memory::{ensure_spare, refusal, LARGE};
+use crate::platform::mapping::{map, unmap, PAGE};
+use crate::platform::memory::{ensure_spare, refusal, LARGE};
 
 /// Smaller arrays come from the allocator, which has memory at hand that is used already: faster than fresh pages.
 const SMALL: usize = 512 << 10;

@@ -19,7 +19,7 @@ mod watched {
     use std::sync::atomic::{AtomicBool, Ordering};
     use std::sync::{PoisonError, RwLock, RwLockWriteGuard};
 
-    use crate::linalg::memory;
+    use crate::platform::memory;
 
     /// Instants that go on are its readers, a fork is its writer.
     static INSTANTS: RwLock<()> = RwLock::new(());

@@ -9,7 +9,7 @@ use std::marker::PhantomData;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use crate::error::{Error, Kind, Result};
-use crate::linalg::mapping::could_have;
+use crate::platform::mapping::could_have;
 
 /// Bytes that are always left for small pieces: texts, maps, the growth of the heap by the allocator.
 const SPARE: usize = 2 << 20;

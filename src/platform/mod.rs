@@ -1,0 +1,13 @@
+//! What the library asks of the machine: memory, threads, locks, the wish to end.
+
+mod fork;
+pub mod interrupt;
+mod mapping;
+pub mod memory;
+pub mod pages;
+mod pools;
+mod sync;
+pub mod threads;
+
+pub(crate) use fork::instant;
+pub use interrupt::Interrupt;
