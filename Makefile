@@ -27,7 +27,7 @@ RELEASE   := $(or $(CARGO_TARGET_DIR),target)/release
 STAGE     := $(CURDIR)/build/stage
 
 .PHONY: all lib data setup demo battery bits test metis fuzz sanitize loom coverage overhead counts bench scaling paper docs
-.PHONY: abi licences packaging stage install uninstall fmt clean
+.PHONY: abi licences packaging stage install uninstall lint fmt clean
 .DELETE_ON_ERROR:
 all: lib
 
@@ -36,6 +36,10 @@ lib:
 
 setup:
 	@tools/setup.sh
+
+lint:
+	$(CARGO) fmt --all --check
+	$(CARGO) clippy --release --workspace --all-targets --locked -- --deny warnings
 
 fmt:
 	$(CARGO) fmt --all

@@ -84,7 +84,7 @@ fn substitute(panel: &[f64], width: usize, x: &mut [f64]) {
     let height = x.len();
     let mut end = width;
     while end > 0 {
-        let count = if end % COLUMNS == 0 { COLUMNS } else { end % COLUMNS };
+        let count = if end.is_multiple_of(COLUMNS) { COLUMNS } else { end % COLUMNS };
         let j = end - count;
         let columns = &panel[j * height..end * height];
         let (own, below) = x.split_at_mut(end);

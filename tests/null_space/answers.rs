@@ -35,7 +35,7 @@ fn forces_on_a_floating_block_of_few_digits_are_those_of_all_digits() {
         let doubtful = problem.findings().unwrap().doubtful.clone();
         (
             report.outcome,
-            report.certificate.clone(),
+            report.certificate,
             problem.multipliers(RowKind::Inequality).unwrap().to_vec(),
             doubtful,
         )

@@ -107,8 +107,8 @@ fn a_diagonal_of_its_own_changes_nothing() {
         assert_eq!(places.values(&k, &diag, &beside.val, 1e-10).unwrap(), *anew.val);
         let refused = from_split(second.input(), &diag, 1e-10).unwrap_err();
         assert!(refused.what.contains("diagonal"), "{refused}");
-        let (at, row) = ((0..second.col.len()), |at| second.ptr.partition_point(|&p| p <= at) - 1);
-        let first_on = at.filter(|&at| second.col[at] == row(at) as i64).next();
+        let (mut at, row) = ((0..second.col.len()), |at| second.ptr.partition_point(|&p| p <= at) - 1);
+        let first_on = at.find(|&at| second.col[at] == row(at) as i64);
         assert_eq!((refused.kind, refused.place.entry), (Kind::Argument("col"), first_on));
     }
 }

@@ -122,7 +122,7 @@ mod tests {
         let mut crc = Crc::new();
         crc.add(b"123456789");
         assert_eq!(crc.value(), 0xCBF4_3926);
-        let bytes: Vec<u8> = (0..1000_u32).map(|k| (k * k >> 3) as u8).collect();
+        let bytes: Vec<u8> = (0..1000_u32).map(|k| ((k * k) >> 3) as u8).collect();
         let mut by_bit = !0_u32;
         for byte in &bytes {
             by_bit ^= u32::from(*byte);

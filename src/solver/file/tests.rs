@@ -275,7 +275,7 @@ fn what_the_calls_refuse_is_refused_with_its_section_and_place() {
         assert!(error.what.contains("section "), "{error}");
     }
     let load = of_section(b"LOAD", 0, &numbers(&[2, 0, 0]));
-    assert!(refused(&of_sections(FORMAT, &[load.clone()])).what.contains("no body before it"));
+    assert!(refused(&of_sections(FORMAT, std::slice::from_ref(&load))).what.contains("no body before it"));
     assert!(refused(&of_sections(FORMAT, &[body.clone(), load.clone(), load])).what.contains("twice"));
     let row = of_section(b"ROWS", 0, &rows(1, 0.0));
     assert!(refused(&of_sections(FORMAT, &[body.clone(), row.clone(), row.clone()])).what.contains("twice"));

@@ -81,8 +81,8 @@ fn begin(clause: &str) -> (Vec<&str>, &str) {
         let end = rest.find(|c: char| !c.is_ascii_uppercase() && c != '_').unwrap_or(rest.len());
         names.push(&rest[..end]);
         rest = &rest[end..];
-        let more = [", ", " and ", " or "].iter().filter_map(|joint| rest.strip_prefix(joint));
-        rest = more.filter(|next| next.starts_with("FETI_")).next().unwrap_or(rest);
+        let mut more = [", ", " and ", " or "].iter().filter_map(|joint| rest.strip_prefix(joint));
+        rest = more.find(|next| next.starts_with("FETI_")).unwrap_or(rest);
     }
     (names, rest.trim_start_matches([':', ',']).trim())
 }
