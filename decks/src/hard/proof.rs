@@ -3,6 +3,7 @@
 //! D = diag K, s_i = (b_i D^-1 b_i' + C_i)^-1/2, eps = 2^-52 (docs/certificate.md).
 
 use crate::dd::{self, Dd};
+use crate::yardstick::grounded;
 use crate::{Deck, Rows};
 
 /// What a resistance counts beside what it resists.
@@ -18,7 +19,7 @@ pub struct Motion {
     pub strain: f64,
     /// f.v
     pub work: f64,
-    /// |f|_{D^-1} |((S B v)_+, S_H H v)|, f of the bodies that v moves.
+    /// |f|_{D^-1} |((S B v)_+, S_H H v)|, f of the bodies that v moves, without grounded unknowns.
     pub resisted: f64,
     /// f.v / (|f|_{D^-1} |v|_D), f of the bodies that v moves.
     pub share: f64,
@@ -60,7 +61,9 @@ pub fn motion(deck: &Deck, v: &[f64]) -> Motion {
         }
     }
     let work = dd::dot(load.iter().copied().zip(v.iter().copied())).value();
-    let force = length(&load, |j| 1.0 / diagonal[j]);
+    // loads on grounded unknowns drive no motion, and however large they are press on nothing else
+    let grounded: Vec<bool> = deck.bodies.iter().flat_map(|body| grounded(&body.stiffness)).collect();
+    let force = length(&load, |j| if grounded[j] { 0.0 } else { 1.0 / diagonal[j] });
     let share = work / (force * length(v, |j| diagonal[j]));
     Motion { strain, work, resisted: force * f64::sqrt(resistance), share }
 }
