@@ -3,7 +3,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use crate::source::{closing, is_word, test_ranges, words};
+use crate::source::{expanded, module_of, paths, test_ranges, words, Named, Renamed};
 
 /// Of every folder the modules in circles: `solver: log watch`.
 pub fn circles(sources: &[(String, String)]) -> Vec<String> {
@@ -16,12 +16,6 @@ pub fn circles(sources: &[(String, String)]) -> Vec<String> {
         found.extend(knots(&arrows).iter().map(|knot| format!("{}: {}", folder.join("/"), knot.join(" "))));
     }
     found
-}
-
-/// `solver/file/mod.rs` -> [solver, file]; `lib.rs` -> [].
-fn module_of(path: &str) -> Vec<String> {
-    let path = path.trim_end_matches(".rs").trim_end_matches("/mod");
-    path.split('/').filter(|name| *name != "lib").map(str::to_owned).collect()
 }
 
 /// Which module of the folder names which others of it.
@@ -38,8 +32,7 @@ fn arrows(
         let module = module_of(path);
         let Some(rest) = module.strip_prefix(folder) else { continue };
         let from = rest.first().map_or("mod", String::as_str);
-        let named = paths(code, !rest.is_empty()).into_iter().filter_map(|path| {
-            let path = absolute(path, &module)?;
+        let named = named(path, code, !rest.is_empty()).filter_map(|path| {
             let name = path.strip_prefix(folder)?.first()?.clone();
             Some(if is_child(&name) { name } else { handed_on.get(&name).cloned().unwrap_or("mod".into()) })
         });
@@ -62,21 +55,16 @@ fn handed_on(code: &str, is_child: &dyn Fn(&str) -> bool) -> BTreeMap<String, St
     names
 }
 
-/// All paths of `use` declarations and expressions that start with crate, self or super, outside the tests. The names a folder hands
-/// on are no arrows of its own: where `own_uses` is not wanted, `use` is left out.
-fn paths(code: &str, own_uses: bool) -> Vec<Vec<String>> {
+/// All paths outside the tests, from the root. The names a folder hands on are no arrows of its own: where `own_uses` is not wanted,
+/// `use` is left out.
+fn named(file: &str, code: &str, own_uses: bool) -> impl Iterator<Item = Vec<String>> {
     let tests = test_ranges(code);
     let of_use: Vec<_> = words(code, "use").map(|at| at..end_of_use(code, at)).collect();
-    let outside = |at: &usize| {
-        !tests.iter().any(|range| range.contains(at))
-            && (own_uses || !of_use.iter().any(|range| range.contains(at)))
+    let outside = move |named: &Named| {
+        !tests.iter().any(|range| range.contains(&named.at))
+            && (own_uses || !of_use.iter().any(|range| range.contains(&named.at)))
     };
-    let starts = ["crate", "self", "super"].into_iter().flat_map(|word| {
-        words(code, word).filter(move |&at| !code[..at].trim_end().ends_with("::")).map(move |at| (at, word))
-    });
-    let starts =
-        starts.filter(|(at, word)| outside(at) && code[at + word.len()..].trim_start().starts_with("::"));
-    starts.flat_map(|(at, _)| expanded(&code[at..], Renamed::AsItWas)).collect()
+    paths(file, code).into_iter().filter(outside).map(|named| named.path)
 }
 
 /// The paths of all `use` declarations, outside the tests.
@@ -88,76 +76,6 @@ fn uses(code: &str) -> Vec<Vec<String>> {
 
 fn end_of_use(code: &str, at: usize) -> usize {
     code[at..].find(';').map_or(code.len(), |end| at + end)
-}
-
-/// Which name of `old as new` counts.
-#[derive(Clone, Copy, PartialEq)]
-enum Renamed {
-    AsItWas,
-    AsItIs,
-}
-
-/// The paths that start here, those in braces one by one.
-fn expanded(code: &str, renamed: Renamed) -> Vec<Vec<String>> {
-    let mut head = Vec::new();
-    let mut rest = code;
-    loop {
-        rest = rest.trim_start();
-        if rest.starts_with('{') {
-            let inside = &rest[1..closing(rest, 0) - 1];
-            let parts = split(inside).into_iter().flat_map(|part| expanded(part, renamed));
-            return parts.map(|tail| [head.clone(), tail].concat()).collect();
-        }
-        let name: String = rest.bytes().take_while(|c| is_word(*c)).map(char::from).collect();
-        if name.is_empty() {
-            break;
-        }
-        rest = rest[name.len()..].trim_start();
-        head.push(name);
-        match rest.strip_prefix("::") {
-            Some(tail) => rest = tail,
-            None => break,
-        }
-    }
-    if let Some(new) = rest.strip_prefix("as ").filter(|_| renamed == Renamed::AsItIs) {
-        head.pop();
-        head.extend(expanded(new, renamed).concat());
-    }
-    vec![head]
-}
-
-/// What commas outside of braces part.
-fn split(list: &str) -> Vec<&str> {
-    let (mut depth, mut start, mut parts) = (0, 0, Vec::new());
-    for (at, c) in list.char_indices() {
-        match c {
-            '{' => depth += 1,
-            '}' => depth -= 1,
-            ',' if depth == 0 => {
-                parts.push(&list[start..at]);
-                start = at + 1;
-            }
-            _ => {}
-        }
-    }
-    parts.push(&list[start..]);
-    parts.into_iter().filter(|part| !part.trim().is_empty()).collect()
-}
-
-/// The path from the root; none through `super` beyond it.
-fn absolute(path: Vec<String>, module: &[String]) -> Option<Vec<String>> {
-    let mut base = match path.first()?.as_str() {
-        "crate" => Vec::new(),
-        _ => module.to_vec(),
-    };
-    for name in path {
-        match name.as_str() {
-            "crate" | "self" => {}
-            "super" => drop(base.pop()?),
-            _ => base.push(name),
-        }
-    }
-    Some(base)
 }
 
 /// Sets of modules that reach each other.

@@ -21,66 +21,114 @@ pub fn words<'a>(code: &'a str, word: &'a str) -> impl Iterator<Item = usize> + 
     occurrences(code, word).filter(ends)
 }
 
-/// The names that follow `::` at the start of `rest`: one, or the heads of a `{...}` list.
-pub fn heads(rest: &str) -> Vec<String> {
-    let Some(rest) = rest.trim_start().strip_prefix("::") else { return Vec::new() };
-    let rest = rest.trim_start();
-    let head = |text: &str| -> String {
-        let text = text.trim_start();
-        let name: String = text.chars().take_while(|c| c.is_alphanumeric() || *c == '_').collect();
-        if name.is_empty() {
-            text.chars().take(1).collect()
-        } else {
-            name
-        }
+/// A path that starts with crate, self or super.
+pub struct Named {
+    pub at: usize,
+    pub through_super: bool,
+    /// From the root.
+    pub path: Vec<String>,
+}
+
+/// All paths of `use` declarations and expressions that start with crate, self or super, those in braces one by one.
+pub fn paths(file: &str, code: &str) -> Vec<Named> {
+    let starts = ["crate", "self", "super"].into_iter().flat_map(|word| {
+        let first = move |at: &usize| {
+            !code[..*at].trim_end().ends_with("::") && code[at + word.len()..].trim_start().starts_with("::")
+        };
+        words(code, word).filter(first).map(move |at| (at, word == "super"))
+    });
+    let from = |(at, through_super): (usize, bool)| {
+        let module = module_at(file, code, at);
+        let paths = expanded(&code[at..], Renamed::AsItWas).into_iter();
+        paths.filter_map(move |path| Some(Named { at, through_super, path: absolute(path, &module)? }))
     };
-    let Some(list) = rest.strip_prefix('{') else { return vec![head(rest)] };
-    let (mut depth, mut start, mut names) = (0, 0, Vec::new());
+    starts.flat_map(from).collect()
+}
+
+/// `solver/file/mod.rs` -> [solver, file]; `lib.rs` -> [].
+pub fn module_of(file: &str) -> Vec<String> {
+    let file = file.trim_end_matches(".rs").trim_end_matches("/mod");
+    file.split('/').filter(|name| *name != "lib").map(str::to_owned).collect()
+}
+
+/// The module of the file, and in it those opened with `mod name {` around `at`.
+fn module_at(file: &str, code: &str, at: usize) -> Vec<String> {
+    let inline = words(code, "mod").filter_map(|start| {
+        let open = start + code[start..].find(['{', ';'])?;
+        let inside = code.as_bytes()[open] == b'{' && open < at && at < closing(code, open);
+        inside.then(|| code[start + 3..open].trim().to_owned())
+    });
+    module_of(file).into_iter().chain(inline).collect()
+}
+
+/// Which name of `old as new` counts.
+#[derive(Clone, Copy, PartialEq)]
+pub enum Renamed {
+    AsItWas,
+    AsItIs,
+}
+
+/// The paths that start here, those in braces one by one.
+pub fn expanded(code: &str, renamed: Renamed) -> Vec<Vec<String>> {
+    let mut head = Vec::new();
+    let mut rest = code;
+    loop {
+        rest = rest.trim_start();
+        if rest.starts_with('{') {
+            let inside = &rest[1..closing(rest, 0) - 1];
+            let parts = split(inside).into_iter().flat_map(|part| expanded(part, renamed));
+            return parts.map(|tail| [head.clone(), tail].concat()).collect();
+        }
+        let name: String = rest.bytes().take_while(|c| is_word(*c)).map(char::from).collect();
+        if name.is_empty() {
+            break;
+        }
+        rest = rest[name.len()..].trim_start();
+        head.push(name);
+        match rest.strip_prefix("::") {
+            Some(tail) => rest = tail,
+            None => break,
+        }
+    }
+    if let Some(new) = rest.strip_prefix("as ").filter(|_| renamed == Renamed::AsItIs) {
+        head.pop();
+        head.extend(expanded(new, renamed).concat());
+    }
+    vec![head]
+}
+
+/// What commas outside of braces part.
+fn split(list: &str) -> Vec<&str> {
+    let (mut depth, mut start, mut parts) = (0, 0, Vec::new());
     for (at, c) in list.char_indices() {
         match c {
             '{' => depth += 1,
-            '}' if depth > 0 => depth -= 1,
-            ',' | '}' if depth == 0 => {
-                names.push(head(&list[start..at]));
+            '}' => depth -= 1,
+            ',' if depth == 0 => {
+                parts.push(&list[start..at]);
                 start = at + 1;
-                if c == '}' {
-                    break;
-                }
             }
             _ => {}
         }
     }
-    names.retain(|name| !name.is_empty() && name != "}" && name != ",");
-    names
+    parts.push(&list[start..]);
+    parts.into_iter().filter(|part| !part.trim().is_empty()).collect()
 }
 
-/// Every `crate::name`, with what `crate::{a, b}` names.
-pub fn paths_from_root(code: &str) -> Vec<(usize, String)> {
-    let of = |at: usize| heads(&code[at + 5..]).into_iter().map(move |name| (at, name));
-    words(code, "crate").flat_map(of).collect()
-}
-
-/// Every `super::...::name`, with the number of `super`.
-pub fn paths_through_super(code: &str) -> Vec<(usize, usize, String)> {
-    let mut found = Vec::new();
-    for at in words(code, "super").filter(|&at| !code[..at].trim_end().ends_with("super::")) {
-        let (mut supers, mut rest) = (1, &code[at + 5..]);
-        while let Some(next) = rest.strip_prefix("::super") {
-            (supers, rest) = (supers + 1, next);
+/// The path from the root; none through `super` beyond it.
+fn absolute(path: Vec<String>, module: &[String]) -> Option<Vec<String>> {
+    let mut base = match path.first()?.as_str() {
+        "crate" => Vec::new(),
+        _ => module.to_vec(),
+    };
+    for name in path {
+        match name.as_str() {
+            "crate" | "self" => {}
+            "super" => drop(base.pop()?),
+            _ => base.push(name),
         }
-        found.extend(heads(rest).into_iter().map(|name| (at, supers, name)));
     }
-    found
-}
-
-/// Modules between the root and the code at `at`: those of the path and those opened with `mod name {`.
-pub fn depth_at(path: &str, code: &str, at: usize) -> usize {
-    let of_file = path.split('/').count() - usize::from(path.ends_with("/mod.rs"));
-    let inline = words(code, "mod").filter(|&start| {
-        let header = code[start..].find(['{', ';']).map(|offset| start + offset);
-        header.is_some_and(|open| code.as_bytes()[open] == b'{' && open < at && at < closing(code, open))
-    });
-    of_file + inline.count()
+    Some(base)
 }
 
 /// Position after the brace that closes the one at `open`.
