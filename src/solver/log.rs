@@ -8,7 +8,7 @@ use crate::solver::problem::Problem;
 use crate::solver::report::{Outcome, Report};
 use crate::solver::setup::{Ready, Setup};
 use crate::solver::watch::{Progress, Watch};
-use crate::solver::words::{Preconditioning, Word};
+use crate::solver::words::Word;
 use crate::solver::StepKind;
 
 /// How much is told; each level tells what those before it tell.
@@ -195,10 +195,7 @@ impl Problem {
     /// How the dual is going to be solved.
     pub(super) fn log_method(&self, log: &mut Log, started: &str) -> Result<()> {
         let Setup { islands, operators, .. } = self.ready()?;
-        let of_island = |ready: &Ready| {
-            let kind = ready.preconditioner.as_ref().map_or(Preconditioning::None, |(kind, _)| *kind);
-            kind.word().to_string_lossy()
-        };
+        let of_island = |ready: &Ready| ready.preconditioning().word().to_string_lossy();
         let mut preconditioners: Vec<_> = islands.iter().map(of_island).collect();
         preconditioners.sort_unstable();
         preconditioners.dedup();

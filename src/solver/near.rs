@@ -37,18 +37,15 @@ pub(super) fn solve_near(
         )?;
         let solution = near.whole(solution);
         before = before + solution.counts;
-        let nearest = (0..far.len()).filter(|&i| far[i]).map(|i| gaps[i]).fold(f64::INFINITY, f64::min);
         match &solution.verdict {
             Verdict::Infeasible { .. }
                 if Unheld::least(&judge.data, judge.ready, judge.scaled, &far)?.is_little() =>
             {
                 return Ok(Solution { counts: before, ..solution });
             }
-            Verdict::Infeasible { .. } | Verdict::Unbounded { .. } => {
-                (0..far.len()).for_each(|i| far[i] &= gaps[i] > FAR * nearest);
-            }
+            Verdict::Infeasible { .. } | Verdict::Unbounded { .. } => take_in_nearest(&mut far, gaps),
             _ if judge.reached.is_empty() && gave_up(&solution) => {
-                (0..far.len()).for_each(|i| far[i] &= gaps[i] > FAR * nearest);
+                take_in_nearest(&mut far, gaps);
                 given_up.get_or_insert(solution);
             }
             _ if judge.reached.is_empty() => return Ok(Solution { counts: before, ..solution }),
@@ -65,4 +62,10 @@ pub(super) fn solve_near(
     let counts = before + solution.counts;
     let solution = given_up.filter(|_| gave_up(&solution)).unwrap_or(solution);
     Ok(Solution { counts, ..solution })
+}
+
+/// Of the rows that are far the nearest, and those up to `FAR` times as far, are so no longer.
+fn take_in_nearest(far: &mut [bool], gaps: &[f64]) {
+    let nearest = (0..far.len()).filter(|&i| far[i]).map(|i| gaps[i]).fold(f64::INFINITY, f64::min);
+    far.iter_mut().zip(gaps).for_each(|(far, gap)| *far &= *gap > FAR * nearest);
 }

@@ -209,9 +209,7 @@ impl Problem {
         let Some(setup) = &self.ready else { return Ok(()) };
         let asked: Vec<Preconditioning> =
             setup.islands.iter().map(|ready| self.wanted_preconditioner(ready)).collect();
-        let there =
-            |ready: &Ready| ready.preconditioner.as_ref().map_or(Preconditioning::None, |(kind, _)| *kind);
-        if setup.islands.iter().map(there).eq(asked.iter().copied()) {
+        if setup.islands.iter().map(Ready::preconditioning).eq(asked.iter().copied()) {
             return Ok(());
         }
         let begun = Instant::now();
@@ -268,6 +266,11 @@ impl Problem {
 }
 
 impl Ready {
+    /// Which preconditioner is there.
+    pub fn preconditioning(&self) -> Preconditioning {
+        self.preconditioner.as_ref().map_or(Preconditioning::None, |(kind, _)| *kind)
+    }
+
     /// `B_p K_p+ f_p` of every body.
     pub fn moved(&self, threads: usize, f: &[f64]) -> Result<Vec<Vec<f64>>> {
         let on_caller = |p: usize| self.dual.solves_on_caller(p);
