@@ -70,7 +70,7 @@ pub struct Yardstick<'a> {
 }
 
 /// K_jj > 1e3 T_j, T_j = sum_{i != j} K_ij^2 / K_ii > 0: an unknown whose displacement is all but given.
-pub fn grounded(stiffness: &Csr) -> Vec<bool> {
+fn grounded(stiffness: &Csr) -> Vec<bool> {
     let diagonal = stiffness.diagonal();
     let neighbours = |j: usize| -> f64 {
         stiffness.row(j).filter(|&(i, _)| i != j).map(|(i, k)| k * k / diagonal[i]).sum()
@@ -83,10 +83,15 @@ pub fn grounded(stiffness: &Csr) -> Vec<bool> {
         .collect()
 }
 
+/// Which unknowns of all bodies are grounded.
+pub fn all_grounded(deck: &Deck) -> Vec<bool> {
+    deck.bodies.iter().flat_map(|body| grounded(&body.stiffness)).collect()
+}
+
 impl<'a> Yardstick<'a> {
     pub fn new(deck: &'a Deck, answer: &'a Answer, undetermined: bool) -> Yardstick<'a> {
         let diagonal: Vec<f64> = deck.bodies.iter().flat_map(|body| body.stiffness.diagonal()).collect();
-        let grounded: Vec<bool> = deck.bodies.iter().flat_map(|body| grounded(&body.stiffness)).collect();
+        let grounded = all_grounded(deck);
         let reaction = reaction(deck, answer);
         let (sizes, single, following) = (Vec::new(), Vec::new(), Vec::new());
         let mut yardstick =

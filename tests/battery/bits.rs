@@ -55,7 +55,6 @@ fn lines(out: &mut String, name: &str, answers: impl Iterator<Item = u64>) {
 #[test]
 #[ignore]
 fn the_bits_of_many_answers() {
-    let seeds = || 0..crate::seeds().end;
     let mut out = String::new();
     let of_deck = |deck: &Deck, options: &str| {
         let mut problem = hand_over::problem(deck).unwrap();
@@ -90,15 +89,16 @@ fn the_bits_of_many_answers() {
     }
     for (name, mixture) in [("hard", &hard::MIXTURE), ("hard, other mixture", &hard::SECOND_MIXTURE)] {
         let case = |seed| hard::mixed(seed, mixture);
-        let answers = seeds().map(case).map(|case| match crate::hard::problem(&case.deck, case.given) {
-            Ok(mut problem) => bits(&mut problem, &case.deck),
-            Err(_) => 0,
-        });
+        let answers =
+            crate::seeds().map(case).map(|case| match crate::hard::problem(&case.deck, case.given) {
+                Ok(mut problem) => bits(&mut problem, &case.deck),
+                Err(_) => 0,
+            });
         lines(&mut out, name, answers);
     }
-    lines(&mut out, "varied", seeds().map(|seed| of_deck(&varied::case(seed).deck, "")));
-    lines(&mut out, "known outcome", battery::cases(seeds()).map(|case| of_deck(&case.deck, "")));
-    lines(&mut out, "marginal", seeds().map(|seed| of_deck(&battery::marginal(seed).deck, "")));
+    lines(&mut out, "varied", crate::seeds().map(|seed| of_deck(&varied::case(seed).deck, "")));
+    lines(&mut out, "known outcome", battery::cases(crate::seeds()).map(|case| of_deck(&case.deck, "")));
+    lines(&mut out, "marginal", crate::seeds().map(|seed| of_deck(&battery::marginal(seed).deck, "")));
     assert!(!out.is_empty());
     println!("{out}");
 }

@@ -9,7 +9,7 @@ use crate::varied::draft::Draft;
 use crate::varied::rows::{contact, strut};
 use crate::varied::{inner, orthonormal};
 use crate::vector::axpy;
-use crate::yardstick::{grounded, reaction};
+use crate::yardstick::{all_grounded, reaction};
 use crate::Deck;
 
 /// A resultant of this part of a load is rounding; up to the second one it is told.
@@ -208,7 +208,7 @@ fn ends(
     (cluster, motions): (&[usize], &[Vec<f64>]),
     others: &[(Vec<usize>, Vec<Vec<f64>>)],
 ) -> Ends {
-    let grounded: Vec<bool> = deck.bodies.iter().flat_map(|body| grounded(&body.stiffness)).collect();
+    let grounded = all_grounded(deck);
     let load = deck.load();
     let share = |bodies: &[usize], motions: &[Vec<f64>]| {
         let unknowns = bodies.iter().flat_map(|&p| deck.offset(p)..deck.offset(p + 1));

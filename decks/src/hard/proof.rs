@@ -3,7 +3,7 @@
 //! D = diag K, s_i = (b_i D^-1 b_i' + C_i)^-1/2, eps = 2^-52 (docs/certificate.md).
 
 use crate::dd::{self, Dd};
-use crate::yardstick::grounded;
+use crate::yardstick::all_grounded;
 use crate::{Deck, Rows};
 
 /// What a resistance counts beside what it resists.
@@ -62,7 +62,7 @@ pub fn motion(deck: &Deck, v: &[f64]) -> Motion {
     }
     let work = dd::dot(load.iter().copied().zip(v.iter().copied())).value();
     // loads on grounded unknowns drive no motion, and however large they are press on nothing else
-    let grounded: Vec<bool> = deck.bodies.iter().flat_map(|body| grounded(&body.stiffness)).collect();
+    let grounded = all_grounded(deck);
     let force = length(&load, |j| if grounded[j] { 0.0 } else { 1.0 / diagonal[j] });
     let share = work / (force * length(v, |j| diagonal[j]));
     Motion { strain, work, resisted: force * f64::sqrt(resistance), share }

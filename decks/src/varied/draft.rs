@@ -5,7 +5,7 @@ use crate::random::Random;
 use crate::varied::bodies::{self, inner, orthonormal, remove, Spread};
 use crate::varied::{condition, rounded, rows, Class, Mixture, Varied, CLASSES};
 use crate::vector::axpy;
-use crate::yardstick::grounded;
+use crate::yardstick::all_grounded;
 use crate::{Deck, Rows};
 
 pub(crate) struct Draft {
@@ -89,7 +89,7 @@ impl Draft {
         }
         let deck = Deck::new("varied", list);
         let diagonal: Vec<f64> = deck.bodies.iter().flat_map(|body| body.stiffness.diagonal()).collect();
-        let grounded = deck.bodies.iter().flat_map(|body| grounded(&body.stiffness)).collect();
+        let grounded = all_grounded(&deck);
         let (u, strength) = (vec![0.0; diagonal.len()], vec![]);
         let (lambda, mu, slack) = (vec![], vec![], vec![]);
         Draft {
