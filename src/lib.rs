@@ -61,6 +61,7 @@
 //! | [`dual`] | F, d, G, e and the way back |
 //! | [`qp`] | Sections 4 and 5: knows no bodies |
 //! | [`certificate`] | how right an answer is, by matrices and rows alone |
+//! | `progress` | what the host hears of a call, and how it ends one |
 //! | [`solver`] | register, set up, solve, certify, report |
 //! | [`ffi`] | the C interface |
 
@@ -71,6 +72,10 @@ pub mod dual;
 pub mod error;
 pub mod ffi;
 pub mod linalg;
+mod model;
 pub mod platform;
+mod progress;
 pub mod qp;
+mod setup;
+mod solve;
 pub mod solver;

@@ -1,24 +1,25 @@
-//! The certificate of an answer that is there, and the problem as the certificate sees it.
+//! The certificate of an answer that is there.
 
 use std::cell::Cell;
 
-use crate::certificate::{certify, Answer, BodyData, Certificate, Data, Entry};
+use crate::certificate::{certify, Answer, Certificate, Entry};
 use crate::constraints::RowKind;
 use crate::error::{Error, Kind, Result};
-use crate::solver::islands::Island;
+use crate::model::Model;
+use crate::solve::{ByInverse, Case};
 use crate::solver::problem::Problem;
-use crate::solver::response::ByInverse;
 
 impl Problem {
     /// The certificate of any answer, also another code's: u over all unknowns, multipliers of contact and
     /// equality rows. A setup that is there serves, whatever the options have become: the last answer stays.
     pub fn check(&mut self, u: &[f64], lambda: &[f64], mu: &[f64]) -> Result<Certificate> {
-        if self.ready.is_none() {
+        if self.prepared.duals(&self.model).is_none() {
             self.setup()?;
         }
-        self.check_empty_rows()?;
-        self.refresh_gaps();
-        let counts = self.counts();
+        let Self { model, prepared, .. } = self;
+        model.check_empty_rows()?;
+        prepared.refresh_gaps(model);
+        let counts = model.counts();
         let lengths = [("n", u, counts.dofs), ("rows", lambda, counts.rows), ("eqs", mu, counts.equalities)];
         for (argument, values, expected) in lengths {
             if values.len() != expected {
@@ -29,13 +30,13 @@ impl Problem {
             }
         }
         let mut all: Option<Certificate> = None;
-        for ready in &self.ready()?.islands {
+        for ready in &prepared.done(model)?.islands {
             let island = &ready.island;
-            let own = island.gather(self, u)?;
+            let own = island.gather(model, u)?;
             let (lambda, mu) = (island.contact.gather(lambda), island.equalities.gather(mu));
             let answer = Answer { u: &own, lambda: &lambda, mu: &mu };
-            let (data, work) = (self.data(island)?, Cell::new(None));
-            let mut response = ByInverse { data: &data, ready, threads: self.threads(), work: &work };
+            let (data, work) = (Case { model, prepared, ready }.data()?, Cell::new(None));
+            let mut response = ByInverse { data: &data, ready, threads: model.threads(), work: &work };
             let own = island.named(certify(&data, answer, &mut response)?.certificate);
             match &mut all {
                 None => all = Some(own),
@@ -43,44 +44,23 @@ impl Problem {
             }
         }
         let mut all = all.ok_or_else(|| Error::new(Kind::Internal, "a problem without bodies was set up"))?;
-        all.complementarity = self.without_force(lambda, all.complementarity);
+        all.complementarity = without_force(model, lambda, all.complementarity);
         Ok(all)
     }
+}
 
-    /// No force is allowed on a contact row that never closes, and none but its own, `max(0, -k c)`, on one without entries
-    /// that does.
-    fn without_force(&self, lambda: &[f64], worst: Entry) -> Entry {
-        let rows = &self.contact;
-        let wrong = |(i, force): (usize, f64)| {
-            let alone = rows.is_empty_row(i) && (rows.rhs[i] > 0.0 || rows.compliance[i] > 0.0);
-            let off = (lambda[i] - force).abs();
-            let known = alone || !rows.is_finite(i);
-            known && !(off <= self.settings.certificate_tolerance * force)
-        };
-        match rows.forces_without_entries(RowKind::Inequality).enumerate().find(|row| wrong(*row)) {
-            Some((row, _)) => Entry { figure: f64::INFINITY, ratio: f64::INFINITY, place: Some(row) },
-            None => worst,
-        }
-    }
-
-    /// An island as the certificate sees it; null spaces must have been found.
-    pub(super) fn data<'a>(&'a self, island: &'a Island) -> Result<Data<'a>> {
-        let missing = || Error::new(Kind::State, "a body has not been set up");
-        let mut bodies = Vec::with_capacity(island.bodies.len());
-        for (&p, range) in island.bodies.iter().zip(&island.ranges) {
-            let slot = &self.bodies[p];
-            let inverse = slot.inverse.as_ref().ok_or_else(missing)?;
-            bodies.push(BodyData {
-                start: range.start,
-                stiffness: slot.body.k().ok_or_else(missing)?,
-                load: slot.body.load.as_deref(),
-                null_space: &inverse.kplus.null_space,
-                unit: slot.body.without(island.unit),
-                grounded: &inverse.grounded,
-            });
-        }
-        let limit = self.settings.certificate_tolerance;
-        let (contact, equalities) = (&island.contact.rows, &island.equalities.rows);
-        Ok(Data { bodies, contact, equalities, limit })
+/// No force is allowed on a contact row that never closes, and none but its own, `max(0, -k c)`, on one without entries
+/// that does.
+fn without_force(model: &Model, lambda: &[f64], worst: Entry) -> Entry {
+    let rows = &model.contact;
+    let wrong = |(i, force): (usize, f64)| {
+        let alone = rows.is_empty_row(i) && (rows.rhs[i] > 0.0 || rows.compliance[i] > 0.0);
+        let off = (lambda[i] - force).abs();
+        let known = alone || !rows.is_finite(i);
+        known && !(off <= model.settings.certificate_tolerance * force)
+    };
+    match rows.forces_without_entries(RowKind::Inequality).enumerate().find(|row| wrong(*row)) {
+        Some((row, _)) => Entry { figure: f64::INFINITY, ratio: f64::INFINITY, place: Some(row) },
+        None => worst,
     }
 }

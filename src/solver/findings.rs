@@ -1,11 +1,10 @@
 //! What the last solve, or the last setup that failed, has found out about the problem: more than a text says.
 
 use crate::constraints::RowKind;
-use crate::error::{Error, Kind, Place, Proof, Result};
-use crate::solver::diagnosis::{in_stack, kind_and_row};
-use crate::solver::problem::Problem;
-use crate::solver::report::{Outcome, Report};
-use crate::solver::setup::{Ready, Setup};
+use crate::error::{Error, Kind, Place, Proof};
+use crate::model::{kind_and_row, Model};
+use crate::setup::{Duals, Prepared, Ready};
+use crate::solve::{Outcome, Report};
 
 #[derive(Debug, Clone, PartialEq)]
 pub struct Findings {
@@ -37,15 +36,15 @@ pub struct Findings {
 }
 
 impl Findings {
-    pub(super) fn of_report(problem: &Problem, report: &Report) -> Self {
-        let mut findings = Self::new(problem, Ok(report.outcome));
+    pub fn of_report(model: &Model, prepared: &Prepared, report: &Report) -> Self {
+        let mut findings = Self::new(model, prepared, Ok(report.outcome));
         (findings.undetermined, findings.unheld) = (report.undetermined, report.unheld);
         findings.place.body = report.body;
         findings
     }
 
-    pub(super) fn of_error(problem: &Problem, error: &Error) -> Self {
-        let mut findings = Self::new(problem, Err(error.kind));
+    pub fn of_error(model: &Model, prepared: &Prepared, error: &Error) -> Self {
+        let mut findings = Self::new(model, prepared, Err(error.kind));
         findings.place = *error.place;
         findings.proof = error.proof.as_deref().cloned();
         match &findings.proof {
@@ -54,15 +53,15 @@ impl Findings {
             }
             Some(Proof::Motion { v, .. }) => {
                 findings.unheld = error.place.value.unwrap_or(0.0);
-                findings.motion = error.place.body.and_then(|body| problem.rigid_motion(body, v));
+                findings.motion = error.place.body.and_then(|body| rigid_motion(model, body, v));
             }
             None => {}
         }
         findings
     }
 
-    fn new(problem: &Problem, end: std::result::Result<Outcome, Kind>) -> Self {
-        let ready = problem.ready.as_ref();
+    fn new(model: &Model, prepared: &Prepared, end: std::result::Result<Outcome, Kind>) -> Self {
+        let duals = prepared.duals(model);
         Self {
             end,
             place: Place::default(),
@@ -71,10 +70,10 @@ impl Findings {
             motion: None,
             undetermined: 0,
             unheld: 0.0,
-            redundant: ready.map(|ready| redundant(problem, ready)).unwrap_or_default(),
-            untouched: ready.map(|ready| problem.untouched(ready)).unwrap_or_default(),
-            doubtful: problem.doubtful(),
-            contact: problem.contact.len(),
+            redundant: duals.map(|duals| redundant(model, duals)).unwrap_or_default(),
+            untouched: duals.map(|duals| untouched(model, duals)).unwrap_or_default(),
+            doubtful: doubtful(model, prepared),
+            contact: model.contact.len(),
         }
     }
 
@@ -108,54 +107,39 @@ impl Findings {
 }
 
 /// Rows of a group but its leader, with the factor from the leader, in the order of the stack.
-fn redundant(problem: &Problem, setup: &Setup) -> Vec<(usize, f64)> {
+fn redundant(model: &Model, duals: &Duals) -> Vec<(usize, f64)> {
     let mut all = Vec::new();
-    for ready in &setup.islands {
+    for ready in &duals.islands {
         let rows = &ready.rows;
         let leaders = &rows.grouping.leaders;
         let repeats = rows.grouping.members().filter(|(i, (group, _))| leaders[*group] != *i);
         all.extend(repeats.map(|(i, (group, sign))| {
-            (in_stack(problem, ready, i), sign * rows.scale[leaders[group]] / rows.scale[i])
+            (ready.island.in_stack(model.contact.len(), i), sign * rows.scale[leaders[group]] / rows.scale[i])
         }));
     }
     all.sort_by_key(|(row, _)| *row);
     all
 }
 
-impl Problem {
-    pub fn findings(&self) -> Result<&Findings> {
-        self.findings.as_ref().ok_or_else(|| Error::new(Kind::State, "nothing has been solved yet"))
-    }
+/// Bodies with doubts about their null spaces.
+fn doubtful(model: &Model, prepared: &Prepared) -> Vec<usize> {
+    let doubts = |p: &usize| prepared.inverse(model, *p).is_some_and(|of| !of.kplus.doubts.is_empty());
+    (0..model.bodies.len()).filter(doubts).collect()
+}
 
-    /// The rigid motion of one body that no contact force can hold, largest entry of all bodies 1.
-    pub fn escaping_motion(&self, body: usize) -> Result<&[f64]> {
-        self.slot(body)?;
-        match &self.findings()?.proof {
-            Some(Proof::Motion { v, .. }) => v.get(self.range(body)),
-            _ => None,
+/// Bodies that no row with entries touches, or only such as never close.
+fn untouched(model: &Model, duals: &Duals) -> Vec<usize> {
+    let mut touched = vec![false; model.bodies.len()];
+    for Ready { island, rows, .. } in &duals.islands {
+        for &j in &rows.scaled.col {
+            touched[island.bodies[island.body_of(j)]] = true;
         }
-        .ok_or_else(|| Error::new(Kind::State, "the last solve has not found a load that nothing holds"))
     }
+    (0..touched.len()).filter(|&p| !touched[p]).collect()
+}
 
-    fn doubtful(&self) -> Vec<usize> {
-        let doubts =
-            |p: &usize| self.bodies[*p].inverse.as_ref().is_some_and(|of| !of.kplus.doubts.is_empty());
-        (0..self.bodies.len()).filter(doubts).collect()
-    }
-
-    /// Bodies that no row with entries touches, or only such as never close.
-    fn untouched(&self, setup: &Setup) -> Vec<usize> {
-        let mut touched = vec![false; self.bodies.len()];
-        for Ready { island, rows, .. } in &setup.islands {
-            for &j in &rows.scaled.col {
-                touched[island.bodies[island.body_of(j)]] = true;
-            }
-        }
-        (0..touched.len()).filter(|&p| !touched[p]).collect()
-    }
-
-    pub(super) fn rigid_motion(&self, body: usize, v: &[f64]) -> Option<[f64; 6]> {
-        let coordinates = self.bodies.get(body)?.body.coordinates.as_ref()?;
-        coordinates.rigid_motion(v.get(self.range(body))?)
-    }
+/// A motion of all unknowns on one body, where it has coordinates: velocity of the origin (length) and rotation about the axes.
+pub fn rigid_motion(model: &Model, body: usize, v: &[f64]) -> Option<[f64; 6]> {
+    let coordinates = model.bodies.get(body)?.body.coordinates.as_ref()?;
+    coordinates.rigid_motion(v.get(model.range(body))?)
 }

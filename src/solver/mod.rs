@@ -1,57 +1,27 @@
-//! From what the host registers to the answer it gets: register, set up, solve, certify, report.
+//! The problem of a host: what it has given, what is computed of it, what it gets.
 
 mod body_facts;
-mod call;
-mod certifier;
 mod check;
-mod diagnosis;
-mod factors;
-mod fallback;
-mod file;
 mod findings;
-mod finish;
-mod host;
-mod islands;
-mod log;
-mod near;
-mod numbering;
-mod operators;
-mod paper;
-mod phases;
-mod presolve;
+mod history;
 mod problem;
-mod report;
-mod residual;
-mod response;
-mod rest;
+mod products;
 mod results;
-mod rigid;
-mod room;
-mod rows;
-mod scaled;
-mod settings;
-mod settings_text;
-mod setup;
-mod solve;
-mod state;
-mod steps;
-mod stiffness;
-mod travel;
+mod states;
+#[cfg(test)]
+mod tests;
+mod told;
 mod undetermined;
-mod watch;
-mod words;
 
 pub use crate::body::{Columns, Digits, Doubt, HostFunctions, HostProduct, Modes, SparseInput, Storage};
 pub use crate::certificate::{Certificate, Entry};
 pub use crate::constraints::{RowKind, RowsInput};
 pub use crate::error::Proof;
 pub use crate::linalg::Borrowed;
+pub use crate::model::{options, Counts, Model, OptionInfo, OptionValue, Settings};
+pub use crate::progress::{Listener, LogLevel, LogListener, PhaseReport, Progress, Reply};
 pub use crate::qp::StepKind;
+pub use crate::solve::{Outcome, Report, RowState};
 pub use body_facts::{BodyFacts, Factors, Origin};
 pub use findings::Findings;
-pub use log::{LogLevel, LogListener};
-pub use phases::PhaseReport;
 pub use problem::Problem;
-pub use report::{Counts, Outcome, Report, RowState};
-pub use settings::{options, OptionInfo, OptionValue, Settings};
-pub use watch::{Listener, Progress, Reply};

@@ -1,0 +1,209 @@
+//! All that the host has given: bodies, rows, options. Nothing is computed here; what has been computed elsewhere remembers the
+//! revisions of what it was computed from.
+
+use std::collections::HashMap;
+use std::ops::Range;
+
+use crate::body::{Body, Form};
+use crate::constraints::{RowKind, RowSet};
+use crate::error::{Error, Result};
+use crate::model::settings::Settings;
+use crate::platform::threads;
+
+/// Bodies, rows and options of one contact problem. Every call checks first and keeps all or nothing.
+pub struct Model {
+    pub settings: Settings,
+    pub bodies: Vec<GivenBody>,
+    /// First unknown of every body among all, and their end, at most i64::MAX.
+    pub offsets: Vec<usize>,
+    pub contact: RowSet,
+    pub equalities: RowSet,
+    /// The unknown behind every number of the host: body and dof.
+    pub unknowns: HashMap<usize, (usize, usize)>,
+    pub revisions: Revisions,
+}
+
+/// Counted up with every call that gives anew what they name, be it what it was.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Revisions {
+    /// Matrices, null spaces, coordinates and fixing dofs of any body.
+    pub bodies: u64,
+    /// Which bodies and rows there are: multipliers belong to them.
+    pub rows: u64,
+    /// Compliances of rows, and which of them may close.
+    pub laws: u64,
+}
+
+/// Counted up where what they name is no longer, bit by bit, what it was.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct BodyRevisions {
+    /// The pattern of K, and the dofs held: what an analysis is made of.
+    pub analysed: u64,
+    /// K itself.
+    pub stiffness: u64,
+    /// The null space or the coordinates.
+    pub motions: u64,
+}
+
+/// What a call gives a body anew.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Change {
+    /// What it has already.
+    Nothing,
+    Motions,
+    Fixing,
+    Values,
+    Pattern,
+}
+
+/// A body as the host has given it.
+#[derive(Default)]
+pub struct GivenBody {
+    pub body: Body,
+    /// How its matrix was given.
+    pub form: Option<Form>,
+    /// The host has rewritten the values it keeps, and they were refused: there is no matrix.
+    pub spoiled: bool,
+    /// The host's numbers of its unknowns.
+    pub numbers: Option<Vec<usize>>,
+    pub revisions: BodyRevisions,
+}
+
+/// Sizes of a problem.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Counts {
+    pub bodies: usize,
+    /// Unknowns of all bodies.
+    pub dofs: usize,
+    pub rows: usize,
+    pub equalities: usize,
+}
+
+impl Model {
+    pub fn new() -> Self {
+        Self {
+            settings: Settings::new(),
+            bodies: Vec::new(),
+            offsets: vec![0],
+            contact: RowSet::default(),
+            equalities: RowSet::default(),
+            unknowns: HashMap::new(),
+            revisions: Revisions::default(),
+        }
+    }
+
+    pub fn settings(&self) -> &Settings {
+        &self.settings
+    }
+
+    pub fn set_f64(&mut self, name: &str, value: f64) -> Result<()> {
+        self.settings.set_f64(name, value)
+    }
+
+    pub fn set_i64(&mut self, name: &str, value: i64) -> Result<()> {
+        self.settings.set_i64(name, value)
+    }
+
+    pub fn set_str(&mut self, name: &str, value: &str) -> Result<()> {
+        self.settings.set_str(name, value)
+    }
+
+    /// Sets options by a text such as `tolerance=1e-8 threads=4`: all of them or none.
+    pub fn set_text(&mut self, text: &str) -> Result<()> {
+        self.settings.set_text(text)
+    }
+
+    pub fn get_f64(&self, name: &str) -> Result<f64> {
+        self.settings.get_f64(name)
+    }
+
+    pub fn get_i64(&self, name: &str) -> Result<i64> {
+        self.settings.get_i64(name)
+    }
+
+    pub fn get_str(&self, name: &str) -> Result<String> {
+        self.settings.get_str(name)
+    }
+
+    pub fn counts(&self) -> Counts {
+        Counts {
+            bodies: self.bodies.len(),
+            dofs: self.offsets[self.bodies.len()],
+            rows: self.contact.len(),
+            equalities: self.equalities.len(),
+        }
+    }
+
+    /// Number of unknowns of a body.
+    pub fn order(&self, body: usize) -> Result<usize> {
+        self.given(body).map(|given| given.body.order)
+    }
+
+    pub fn rows(&self, kind: RowKind) -> &RowSet {
+        match kind {
+            RowKind::Inequality => &self.contact,
+            RowKind::Equality => &self.equalities,
+        }
+    }
+
+    pub fn rows_mut(&mut self, kind: RowKind) -> &mut RowSet {
+        match kind {
+            RowKind::Inequality => &mut self.contact,
+            RowKind::Equality => &mut self.equalities,
+        }
+    }
+
+    pub fn given(&self, body: usize) -> Result<&GivenBody> {
+        self.bodies.get(body).ok_or_else(|| no_body(body, self.bodies.len()))
+    }
+
+    /// The body, about to get new data.
+    pub fn change(&mut self, body: usize, change: Change) -> Result<&mut GivenBody> {
+        let bodies = self.bodies.len();
+        let given = self.bodies.get_mut(body).ok_or_else(|| no_body(body, bodies))?;
+        self.revisions.bodies += 1;
+        let of = &mut given.revisions;
+        of.motions += u64::from(change == Change::Motions);
+        of.stiffness += u64::from(matches!(change, Change::Values | Change::Pattern));
+        of.analysed += u64::from(matches!(change, Change::Fixing | Change::Pattern));
+        Ok(given)
+    }
+
+    pub fn check_length(&self, body: usize, argument: &'static str, n: usize) -> Result<()> {
+        let order = self.order(body)?;
+        if n == order {
+            return Ok(());
+        }
+        Err(Error::argument(argument, format!("the body has {order} unknowns, not {n}"))
+            .body(body)
+            .value(n as f64)
+            .limit(order as f64))
+    }
+
+    /// Unknowns of a body among all.
+    pub fn range(&self, body: usize) -> Range<usize> {
+        self.offsets[body]..self.offsets[body + 1]
+    }
+
+    /// Threads for work on all bodies: fewer unknowns for each cost less than to wake it.
+    pub fn threads(&self) -> usize {
+        const FOR_EACH: usize = 500;
+        threads::count(self.settings.threads, self.counts().dofs / FOR_EACH)
+    }
+
+    /// Which of these bodies are worked on by the thread alone that calls the library.
+    pub fn on_caller(&self, bodies: &[usize]) -> Vec<bool> {
+        let on_caller = |p: &usize| self.bodies[*p].body.k().is_some_and(|k| k.on_caller());
+        bodies.iter().map(on_caller).collect()
+    }
+}
+
+impl Default for Model {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+fn no_body(body: usize, bodies: usize) -> Error {
+    Error::argument("body", format!("there are {bodies} bodies")).body(body).index(body as i64)
+}

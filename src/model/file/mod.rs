@@ -1,0 +1,145 @@
+//! A problem as one file: all that the host has registered, so that whoever reads it gets the same bits from the same
+//! calls. Answers, start values, saved states and factors are not in it.
+
+pub mod format;
+mod input;
+mod read;
+mod sections;
+pub mod write;
+
+use std::fs::{self, File, OpenOptions};
+use std::io::{self, BufReader, BufWriter, Write};
+use std::path::{Path, PathBuf};
+use std::process;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use crate::error::{Error, Kind, Result};
+use crate::model::bodies::SPOILED;
+use crate::model::contents::Model;
+use crate::platform::memory::reserved;
+
+/// Bytes that are handed to the system at a time.
+const BUFFER: usize = 1 << 17;
+
+impl Model {
+    /// Writes all that was registered to a new file that takes the place of an old one when it is complete.
+    pub fn write_file(&self, path: &Path) -> Result<()> {
+        self.check_kept()?;
+        regular(path)?;
+        // a link stays one: what it leads to is replaced
+        let target = fs::canonicalize(path).unwrap_or_else(|_| path.to_path_buf());
+        let (temporary, file) = create_beside(&target).map_err(|e| failed(path, "create", &e))?;
+        let written = self.fill(file, &target).map_err(|e| failed(path, "write", &e));
+        let renamed =
+            written.and_then(|()| fs::rename(&temporary, &target).map_err(|e| failed(path, "rename", &e)));
+        if renamed.is_err() {
+            // nothing is left to do when even this fails
+            let _ = fs::remove_file(&temporary);
+        }
+        renamed
+    }
+
+    /// The bytes of that file.
+    pub fn write_bytes(&self) -> Result<Vec<u8>> {
+        self.check_kept()?;
+        let length = usize::try_from(write::length(self)).unwrap_or(usize::MAX);
+        let mut bytes = reserved(length, "a problem file")?;
+        write::write(self, &mut bytes).map_err(|e| Error::new(Kind::Io, e.to_string()))?;
+        Ok(bytes)
+    }
+
+    /// Takes over what a file holds. The problem must be empty; on an error it stays so. Options become those of the
+    /// file, all others their defaults; what texts count from (`index_base`) stays.
+    pub fn read_file(&mut self, path: &Path) -> Result<()> {
+        self.check_empty()?;
+        regular(path)?;
+        let file = File::open(path).map_err(|e| failed(path, "open", &e))?;
+        let length = file.metadata().map_err(|e| failed(path, "open", &e))?.len();
+        let read = read::read(BufReader::with_capacity(BUFFER, file), length);
+        self.adopt(read.map_err(|error| at(path, error))?);
+        Ok(())
+    }
+
+    /// As `read_file`, from the bytes of a file.
+    pub fn read_bytes(&mut self, bytes: &[u8]) -> Result<()> {
+        self.check_empty()?;
+        self.adopt(read::read(bytes, bytes.len() as u64)?);
+        Ok(())
+    }
+
+    /// Takes over the bodies with their numbers, rows and options of another model; texts count from what they did.
+    fn adopt(&mut self, other: Self) {
+        let (rows, index_base) = (self.revisions.rows, self.settings.index_base);
+        *self = other;
+        self.settings.index_base = index_base;
+        self.revisions.rows += rows + 1;
+    }
+
+    /// The library has all that it was given: no functions in place of a matrix, no values that were refused.
+    fn check_kept(&self) -> Result<()> {
+        for (p, given) in self.bodies.iter().enumerate() {
+            if given.body.operator.is_some() {
+                let what =
+                    "the body is given by functions of the host (feti_body_operator): no file holds them";
+                return Err(Error::new(Kind::Unsupported, what).body(p));
+            }
+            if given.spoiled {
+                return Err(Error::new(Kind::State, SPOILED).body(p));
+            }
+        }
+        Ok(())
+    }
+
+    fn check_empty(&self) -> Result<()> {
+        let counts = self.counts();
+        if counts.bodies + counts.rows + counts.equalities == 0 {
+            return Ok(());
+        }
+        let what = format!("a file is read into an empty problem; this one has {} bodies", counts.bodies);
+        Err(Error::new(Kind::State, what))
+    }
+
+    fn fill(&self, file: File, target: &Path) -> io::Result<()> {
+        if let Ok(old) = fs::metadata(target) {
+            file.set_permissions(old.permissions())?;
+        }
+        let mut out = BufWriter::with_capacity(BUFFER, file);
+        write::write(self, &mut out)?;
+        out.flush()?;
+        out.get_ref().sync_all()
+    }
+}
+
+/// A name with a device or a folder behind it is left alone; one with nothing behind it is not.
+fn regular(path: &Path) -> Result<()> {
+    match fs::metadata(path) {
+        Ok(found) if !found.is_file() => {
+            Err(Error::new(Kind::Io, format!("{}: open: this is no file", path.display())))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// A new file in the folder of `target`.
+fn create_beside(target: &Path) -> io::Result<(PathBuf, File)> {
+    static NUMBER: AtomicUsize = AtomicUsize::new(0);
+    loop {
+        let number = NUMBER.fetch_add(1, Ordering::Relaxed);
+        let path = target.with_file_name(format!("feti-{}-{number}.tmp", process::id()));
+        match OpenOptions::new().write(true).create_new(true).open(&path) {
+            Ok(file) => return Ok((path, file)),
+            Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {}
+            Err(error) => return Err(error),
+        }
+    }
+}
+
+fn failed(path: &Path, operation: &str, error: &io::Error) -> Error {
+    Error::new(Kind::Io, format!("{}: {operation}: {error}", path.display()))
+}
+
+/// The same error with the name of the file.
+fn at(path: &Path, mut error: Error) -> Error {
+    error.what = format!("{}: {}", path.display(), error.what);
+    error
+}

@@ -1,0 +1,195 @@
+//! What the sections of a problem file say, and the calls they stand for.
+
+use std::io::Read;
+
+use crate::body::{Modes, SparseInput, Storage};
+use crate::constraints::{RowKind, RowsInput};
+use crate::error::{Error, Kind, Result};
+use crate::model::contents::Model;
+use crate::model::file::format::{
+    self, BODY, COORDINATES, FIXING, LOAD, NULL_SPACE, NUMBERING, OPTIONS, STIFFNESS,
+};
+use crate::model::file::input::{Input, Open};
+use crate::model::file::write::{CANDIDATES, EQUALITY, EXACT, INEQUALITY};
+use crate::platform::memory::reserved;
+
+/// A section that has been read.
+pub enum Part {
+    Options(String),
+    Body { n: usize },
+    Stiffness { ptr: Vec<usize>, col: Vec<i64>, val: Vec<f64> },
+    NullSpace { n: usize, r: usize, modes: Modes, basis: Vec<f64> },
+    Coordinates { places: Vec<f64>, directions: Vec<i32> },
+    Fixing(Vec<usize>),
+    Load(Vec<f64>),
+    Numbering(Vec<i64>),
+    Rows { kind: RowKind, ptr: Vec<usize>, unknown: Vec<u64>, val: Vec<f64>, rhs: Vec<f64>, inv_k: Vec<f64> },
+}
+
+/// First unknown of every body among all and their end, and which sections of the last body have come.
+#[derive(Default)]
+pub struct Offsets {
+    ends: Vec<u64>,
+    seen: Vec<format::Tag>,
+    rows: [bool; 2],
+    options: bool,
+}
+
+impl Part {
+    pub fn read<R: Read>(input: &mut Input<R>, open: &mut Open) -> Result<Self> {
+        Ok(match open.tag {
+            OPTIONS => Self::Options(input.text(open)?),
+            BODY => Self::Body { n: input.size(open)? },
+            STIFFNESS => Self::stiffness(input, open)?,
+            NULL_SPACE => Self::null_space(input, open)?,
+            COORDINATES => {
+                let n = input.size(open)?;
+                let places = input.reals(open, 3 * n)?;
+                Self::Coordinates { places, directions: input.array(open, n, i32::from_le_bytes)? }
+            }
+            FIXING => {
+                let r = input.size(open)?;
+                let saturated = |bytes| usize::try_from(u64::from_le_bytes(bytes)).unwrap_or(usize::MAX);
+                Self::Fixing(input.array(open, r, saturated)?)
+            }
+            LOAD => {
+                let n = input.size(open)?;
+                Self::Load(input.reals(open, n)?)
+            }
+            NUMBERING => {
+                let n = input.size(open)?;
+                Self::Numbering(input.array(open, n, i64::from_le_bytes)?)
+            }
+            _ => Self::rows(input, open)?,
+        })
+    }
+
+    fn stiffness<R: Read>(input: &mut Input<R>, open: &mut Open) -> Result<Self> {
+        let (n, entries) = (input.size(open)?, input.size(open)?);
+        let ptr = input.pointers(open, n, entries)?;
+        let val = input.reals(open, entries)?;
+        let col = input.array(open, entries, |bytes| i64::from(u32::from_le_bytes(bytes)))?;
+        Ok(Self::Stiffness { ptr, col, val })
+    }
+
+    fn null_space<R: Read>(input: &mut Input<R>, open: &mut Open) -> Result<Self> {
+        let (n, r) = (input.size(open)?, input.size(open)?);
+        let modes = match input.number(open)? {
+            EXACT => Modes::Exact,
+            CANDIDATES => Modes::Candidates,
+            number => return Err(input.wrong(open, &format!("{number} is no kind of null space"))),
+        };
+        let basis = input.reals(open, n.saturating_mul(r))?;
+        Ok(Self::NullSpace { n, r, modes, basis })
+    }
+
+    fn rows<R: Read>(input: &mut Input<R>, open: &mut Open) -> Result<Self> {
+        let kind = match input.number(open)? {
+            INEQUALITY => RowKind::Inequality,
+            EQUALITY => RowKind::Equality,
+            number => return Err(input.wrong(open, &format!("{number} is no kind of rows"))),
+        };
+        let (rows, entries) = (input.size(open)?, input.size(open)?);
+        let ptr = input.pointers(open, rows, entries)?;
+        let unknown = input.array(open, entries, u64::from_le_bytes)?;
+        let (val, rhs) = (input.reals(open, entries)?, input.reals(open, rows)?);
+        Ok(Self::Rows { kind, ptr, unknown, val, rhs, inv_k: input.reals(open, rows)? })
+    }
+
+    /// Makes the call of a host.
+    pub fn hand_over(self, model: &mut Model, known: &mut Offsets) -> Result<()> {
+        if let Some(tag) = self.of_body() {
+            known.once(tag)?;
+        }
+        let body = known.ends.len().wrapping_sub(1);
+        match self {
+            Self::Options(text) => {
+                once(&mut known.options)?;
+                model.set_text(&text)
+            }
+            Self::Body { n } => {
+                known.add_body(n)?;
+                model.add_body(n).map(drop)
+            }
+            Self::Stiffness { ptr, col, val } => {
+                let lower = SparseInput { ptr: &ptr, col: &col, val: &val, storage: Storage::Lower };
+                model.set_stiffness(body, lower)
+            }
+            Self::NullSpace { n, r, modes, basis } => model.set_null_space(body, n, r, &basis, n, modes),
+            // of the labels of the nodes nothing is kept
+            Self::Coordinates { places, directions } => {
+                model.set_coordinates(body, 3, &directions, &directions, &places, 3)
+            }
+            Self::Fixing(dofs) => model.set_fixing(body, Some(&dofs)),
+            Self::Load(f) => model.set_load(body, &f),
+            Self::Numbering(numbers) => model.set_numbering(body, &numbers),
+            Self::Rows { kind, ptr, unknown, val, rhs, inv_k } => {
+                once(&mut known.rows[kind as usize])?;
+                let (body, dof) = known.places(&unknown)?;
+                let _room = model.room_for_rows(rhs.len(), val.len())?;
+                let rows = RowsInput { ptr: &ptr, body: Some(&body), dof: &dof, val: &val, rhs: Some(&rhs) };
+                model.add_rows(kind, rows)?;
+                model.set_compliance(kind, 0, &inv_k)
+            }
+        }
+    }
+
+    fn of_body(&self) -> Option<format::Tag> {
+        match self {
+            Self::Stiffness { .. } => Some(STIFFNESS),
+            Self::NullSpace { .. } => Some(NULL_SPACE),
+            Self::Coordinates { .. } => Some(COORDINATES),
+            Self::Fixing(_) => Some(FIXING),
+            Self::Load(_) => Some(LOAD),
+            Self::Numbering(_) => Some(NUMBERING),
+            Self::Options(_) | Self::Body { .. } | Self::Rows { .. } => None,
+        }
+    }
+}
+
+fn once(seen: &mut bool) -> Result<()> {
+    if std::mem::replace(seen, true) {
+        return Err(Error::new(Kind::Io, "this comes twice"));
+    }
+    Ok(())
+}
+
+impl Offsets {
+    /// A section of the last body.
+    fn once(&mut self, tag: format::Tag) -> Result<()> {
+        if self.ends.is_empty() {
+            return Err(Error::new(Kind::Io, "there is no body before it"));
+        }
+        if self.seen.contains(&tag) {
+            return Err(Error::new(Kind::Io, "this comes twice").body(self.ends.len() - 1));
+        }
+        self.seen.push(tag);
+        Ok(())
+    }
+
+    fn add_body(&mut self, n: usize) -> Result<()> {
+        if self.rows != [false; 2] {
+            return Err(Error::new(Kind::Io, "a body after the rows"));
+        }
+        let end = self.ends.last().copied().unwrap_or(0).saturating_add(n as u64);
+        if end > isize::MAX as u64 / 8 {
+            return Err(Error::new(Kind::Io, "the bodies have more unknowns than an array entries"));
+        }
+        self.ends.push(end);
+        self.seen.clear();
+        Ok(())
+    }
+
+    /// Body and dof of unknowns that count through all bodies; one beyond the last body is left to the call to refuse.
+    fn places(&self, unknown: &[u64]) -> Result<(Vec<i64>, Vec<i64>)> {
+        let what = "the rows of a problem file";
+        let (mut body, mut dof) = (reserved(unknown.len(), what)?, reserved(unknown.len(), what)?);
+        for &number in unknown {
+            let p = self.ends.partition_point(|end| *end <= number);
+            let first = p.checked_sub(1).map_or(0, |before| self.ends[before]);
+            body.push(p as i64);
+            dof.push(i64::try_from(number - first).unwrap_or(i64::MAX));
+        }
+        Ok((body, dof))
+    }
+}

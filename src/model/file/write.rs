@@ -1,0 +1,190 @@
+//! What goes into a problem file, section by section.
+
+use std::io::{self, Write};
+
+use crate::body::Modes;
+use crate::constraints::{RowKind, RowSet};
+use crate::model::contents::{GivenBody, Model};
+use crate::model::file::format::{
+    self, padding, section_length, Crc, Tag, BODY, COORDINATES, FIXING, FORMAT, HEADER, LOAD, MAGIC,
+    NULL_SPACE, NUMBERING, OPTIONS, ROWS, STIFFNESS,
+};
+
+/// Numbers of the format.
+pub const EXACT: u64 = 0;
+pub const CANDIDATES: u64 = 1;
+pub const INEQUALITY: u64 = 1;
+pub const EQUALITY: u64 = 2;
+
+/// Bytes that are converted at a time.
+const BLOCK: usize = 8192;
+
+/// A part of a payload, as it lies in memory.
+enum Piece<'a> {
+    Number(u64),
+    Numbers(&'a [usize]),
+    Columns(&'a [u32]),
+    Directions(&'a [i32]),
+    Reals(&'a [f64]),
+    Places(&'a [[f64; 3]]),
+    Text(String),
+}
+
+struct Section<'a> {
+    tag: Tag,
+    pieces: Vec<Piece<'a>>,
+}
+
+impl Piece<'_> {
+    fn bytes(&self) -> u64 {
+        let bytes = match self {
+            Self::Number(_) => 8,
+            Self::Numbers(numbers) => 8 * numbers.len(),
+            Self::Columns(columns) => 4 * columns.len(),
+            Self::Directions(directions) => 4 * directions.len(),
+            Self::Reals(reals) => 8 * reals.len(),
+            Self::Places(places) => 24 * places.len(),
+            Self::Text(text) => text.len(),
+        };
+        bytes as u64
+    }
+
+    fn write(&self, out: &mut impl Write) -> io::Result<()> {
+        match self {
+            Self::Number(number) => out.write_all(&number.to_le_bytes()),
+            Self::Numbers(numbers) => blocks(numbers, |number| (*number as u64).to_le_bytes(), out),
+            Self::Columns(columns) => blocks(columns, |column| column.to_le_bytes(), out),
+            Self::Directions(directions) => blocks(directions, |direction| direction.to_le_bytes(), out),
+            Self::Reals(reals) => blocks(reals, |real| real.to_le_bytes(), out),
+            Self::Places(places) => blocks(places.as_flattened(), |real| real.to_le_bytes(), out),
+            Self::Text(text) => out.write_all(text.as_bytes()),
+        }
+    }
+}
+
+fn blocks<T, const N: usize>(
+    values: &[T],
+    bytes: impl Fn(&T) -> [u8; N],
+    out: &mut impl Write,
+) -> io::Result<()> {
+    let mut block = [0; BLOCK];
+    for values in values.chunks(BLOCK / N) {
+        let used = &mut block[..values.len() * N];
+        used.chunks_exact_mut(N).zip(values).for_each(|(to, value)| to.copy_from_slice(&bytes(value)));
+        out.write_all(used)?;
+    }
+    Ok(())
+}
+
+impl Section<'_> {
+    fn payload(&self) -> u64 {
+        self.pieces.iter().map(Piece::bytes).sum()
+    }
+
+    fn write(&self, out: &mut impl Write) -> io::Result<()> {
+        let mut out = Summed { out, crc: Crc::new() };
+        out.write_all(&self.tag)?;
+        out.write_all(&0_u32.to_le_bytes())?;
+        out.write_all(&self.payload().to_le_bytes())?;
+        self.pieces.iter().try_for_each(|piece| piece.write(&mut out))?;
+        out.write_all(&[0; 8][..padding(self.payload()) as usize])?;
+        out.finish()
+    }
+}
+
+/// Passes bytes on and adds them to a checksum.
+struct Summed<'a, W> {
+    out: &'a mut W,
+    crc: Crc,
+}
+
+impl<W: Write> Summed<'_, W> {
+    fn finish(self) -> io::Result<()> {
+        self.out.write_all(&self.crc.value().to_le_bytes())
+    }
+}
+
+impl<W: Write> Write for Summed<'_, W> {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        let written = self.out.write(bytes)?;
+        self.crc.add(&bytes[..written]);
+        Ok(written)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.out.flush()
+    }
+}
+
+/// Bytes of the whole file.
+pub fn length(model: &Model) -> u64 {
+    let sizes = sections(model).filter_map(|section| section_length(section.payload()));
+    HEADER + sizes.sum::<u64>()
+}
+
+/// Header and sections.
+pub fn write(model: &Model, out: &mut impl Write) -> io::Result<()> {
+    let mut header = Summed { out, crc: Crc::new() };
+    header.write_all(&MAGIC)?;
+    header.write_all(&FORMAT.to_le_bytes())?;
+    header.write_all(&format::library().to_le_bytes())?;
+    header.write_all(&length(model).to_le_bytes())?;
+    header.write_all(&0_u32.to_le_bytes())?;
+    header.finish()?;
+    sections(model).try_for_each(|section| section.write(out))
+}
+
+/// The sections of a body follow its BODY; rows come last.
+fn sections(model: &Model) -> impl Iterator<Item = Section<'_>> {
+    let options = Section { tag: OPTIONS, pieces: vec![Piece::Text(model.settings.changes())] };
+    let bodies = model.bodies.iter().flat_map(of_body);
+    let contact = rows(INEQUALITY, model.rows(RowKind::Inequality));
+    let equalities = rows(EQUALITY, model.rows(RowKind::Equality));
+    std::iter::once(options).chain(bodies).chain(contact).chain(equalities)
+}
+
+fn of_body(given: &GivenBody) -> impl Iterator<Item = Section<'_>> {
+    use Piece::{Columns, Directions, Number, Numbers, Places, Reals};
+    let body = &given.body;
+    let n = Number(body.order as u64);
+    let order = Some(Section { tag: BODY, pieces: vec![n] });
+    let count = |len: usize| Number(len as u64);
+    let stiffness = body.stiffness.as_ref().map(|k| {
+        let sizes = [count(k.order()), count(k.val.len())];
+        let arrays = [Numbers(&k.ptr), Reals(&k.val), Columns(&k.col)];
+        Section { tag: STIFFNESS, pieces: sizes.into_iter().chain(arrays).collect() }
+    });
+    let null_space = body.null_space.as_ref().map(|r| {
+        let modes = if r.modes == Modes::Exact { EXACT } else { CANDIDATES };
+        let sizes = [count(r.vectors.rows), count(r.vectors.cols), Number(modes)];
+        Section { tag: NULL_SPACE, pieces: sizes.into_iter().chain([Reals(&r.vectors.data)]).collect() }
+    });
+    let coordinates = body.coordinates.as_ref().map(|given| {
+        let pieces = vec![count(given.len()), Places(given.places()), Directions(given.directions())];
+        Section { tag: COORDINATES, pieces }
+    });
+    let fixing = body.fixing.as_ref().map(|dofs| unknowns(FIXING, dofs));
+    let load = body.load.as_ref().map(|f| Section { tag: LOAD, pieces: vec![count(f.len()), Reals(f)] });
+    let numbering = given.numbers.as_ref().map(|numbers| unknowns(NUMBERING, numbers));
+    [order, stiffness, null_space, coordinates, fixing, load, numbering].into_iter().flatten()
+}
+
+fn unknowns(tag: Tag, numbers: &[usize]) -> Section<'_> {
+    Section { tag, pieces: vec![Piece::Number(numbers.len() as u64), Piece::Numbers(numbers)] }
+}
+
+fn rows(kind: u64, rows: &RowSet) -> Option<Section<'_>> {
+    use Piece::{Number, Numbers, Reals};
+    let matrix = &rows.matrix;
+    let pieces = vec![
+        Number(kind),
+        Number(rows.len() as u64),
+        Number(matrix.val.len() as u64),
+        Numbers(&matrix.ptr),
+        Numbers(&matrix.col),
+        Reals(&matrix.val),
+        Reals(&rows.rhs),
+        Reals(&rows.compliance),
+    ];
+    (rows.len() > 0).then_some(Section { tag: ROWS, pieces })
+}

@@ -1,0 +1,196 @@
+//! Stiffness matrices: given once with their pattern, then by their values alone.
+
+use std::sync::Arc;
+
+use crate::body::{
+    check_diagonal, check_finite, from_borrowed, from_dense, from_sparse, from_split, same_bits, same_matrix,
+    same_pattern, Columns, Form, Places, SparseInput, Storage,
+};
+use crate::error::{Error, Kind, Result};
+use crate::linalg::{Borrowed, Symmetric};
+use crate::model::bodies::check_ld;
+use crate::model::contents::{Change, Model};
+
+impl Model {
+    /// `K_p` by rows, n x n.
+    pub fn set_stiffness(&mut self, body: usize, k: SparseInput<'_>) -> Result<()> {
+        self.check_length(body, "n", k.ptr.len() - 1)?;
+        let stiffness = from_sparse(k, self.settings.symmetry_tolerance).map_err(|e| e.body(body))?;
+        let form = Form::Sparse(Places::of(k, false, &stiffness)?);
+        self.keep_stiffness(body, stiffness, form)
+    }
+
+    /// `K_p` by rows without its diagonal `diag`, length n.
+    pub fn set_stiffness_split(&mut self, body: usize, diag: &[f64], k: SparseInput<'_>) -> Result<()> {
+        self.check_length(body, "n", k.ptr.len() - 1)?;
+        self.check_length(body, "n", diag.len())?;
+        let tolerance = self.settings.symmetry_tolerance;
+        let stiffness = from_split(k, diag, tolerance).map_err(|e| e.body(body))?;
+        let form = Form::Sparse(Places::of(k, true, &stiffness)?);
+        self.keep_stiffness(body, stiffness, form)
+    }
+
+    /// `K_p` column-major with leading dimension `ld`, n x n.
+    pub fn set_stiffness_dense(
+        &mut self,
+        body: usize,
+        n: usize,
+        k: &[f64],
+        ld: usize,
+        storage: Storage,
+    ) -> Result<()> {
+        self.check_length(body, "n", n)?;
+        check_ld("ld", ld, n).map_err(|e| e.body(body))?;
+        let tolerance = self.settings.symmetry_tolerance;
+        let stiffness = from_dense(n, k, ld, storage, tolerance).map_err(|e| e.body(body))?;
+        self.keep_stiffness(body, stiffness, Form::Dense(storage))
+    }
+
+    /// `K_p` by the rows of its lower triangle, the values left where the host has them; false, and nothing is done, where
+    /// the rows are not in the form in which the matrix is kept.
+    pub fn borrow_stiffness(
+        &mut self,
+        body: usize,
+        ptr: &[usize],
+        col: Columns<'_>,
+        val: Borrowed<f64>,
+    ) -> Result<bool> {
+        self.check_length(body, "n", ptr.len() - 1)?;
+        let Some(k) = from_borrowed(ptr, col, val).map_err(|e| e.body(body))? else { return Ok(false) };
+        let form = Form::Sparse(Places::of_lower(&k));
+        self.keep_stiffness(body, k, form)?;
+        Ok(true)
+    }
+
+    fn keep_stiffness(&mut self, body: usize, stiffness: Symmetric, form: Form) -> Result<()> {
+        let old = self.given(body)?.body.stiffness.as_ref();
+        // what lies with the host may be what is given now
+        let old = old.filter(|old| !old.col.is_of_host());
+        let change = match old {
+            Some(old) if !old.val.is_of_host() && same_matrix(old, &stiffness) => Change::Nothing,
+            Some(old) if same_pattern(old, &stiffness) => Change::Values,
+            _ => Change::Pattern,
+        };
+        let given = self.change(body, change)?;
+        given.body.stiffness = Some(Arc::new(stiffness));
+        given.body.operator = None;
+        given.form = Some(form);
+        given.spoiled = false;
+        Ok(())
+    }
+
+    /// Number of values of a matrix by rows, those of a diagonal of its own (`split`) not counted.
+    pub fn values(&self, body: usize, split: bool) -> Result<usize> {
+        self.places(body, split).map(Places::entries)
+    }
+
+    /// New values for the pattern given last, in the order of the host; the analysis is kept.
+    pub fn set_values(&mut self, body: usize, val: &[f64]) -> Result<()> {
+        let new = self.new_values(body, None, val).map_err(|e| e.body(body))?;
+        self.keep_values(body, new)
+    }
+
+    /// The same for a matrix without its diagonal `diag`, length n.
+    pub fn set_values_split(&mut self, body: usize, diag: &[f64], val: &[f64]) -> Result<()> {
+        let new = self.new_values(body, Some(diag), val).map_err(|e| e.body(body))?;
+        self.keep_values(body, new)
+    }
+
+    fn new_values(&self, body: usize, diag: Option<&[f64]>, val: &[f64]) -> Result<Vec<f64>> {
+        let places = self.places(body, diag.is_some())?;
+        let diag = diag.unwrap_or(&[]);
+        if places.is_split() {
+            self.check_length(body, "n", diag.len())?;
+        }
+        places.check_number(val.len())?;
+        places.values(self.stiffness(body)?, diag, val, self.settings.symmetry_tolerance)
+    }
+
+    /// A new matrix in the storage of the one given last. What was zero and no longer is, or the other way round, changes
+    /// the pattern, and the analysis with it.
+    pub fn set_values_dense(&mut self, body: usize, n: usize, k: &[f64], ld: usize) -> Result<()> {
+        let storage = self.dense_storage(body)?;
+        self.set_stiffness_dense(body, n, k, ld, storage)
+    }
+
+    /// The storage of a matrix that was given dense.
+    pub fn dense_storage(&self, body: usize) -> Result<Storage> {
+        match self.form(body)? {
+            Form::Dense(storage) => Ok(*storage),
+            form => Err(another_call(body, form)),
+        }
+    }
+
+    fn keep_values(&mut self, body: usize, val: Vec<f64>) -> Result<()> {
+        let stiffness = self.bodies[body].body.stiffness.as_mut();
+        let k = Arc::make_mut(stiffness.ok_or_else(|| not_given(body))?);
+        let old = std::mem::replace(&mut k.val, val.into());
+        if let Err(error) = check_diagonal(k) {
+            k.val = old;
+            return Err(error.body(body));
+        }
+        let unchanged = same_bits(&old, &k.val);
+        self.change(body, Change::unless(unchanged, Change::Values)).map(drop)
+    }
+
+    /// Whether the values of the matrix lie with the host.
+    pub fn is_borrowed(&self, body: usize) -> bool {
+        self.stiffness(body).is_ok_and(|k| k.val.is_of_host())
+    }
+
+    /// New values for a matrix whose values lie with the host, in this array from now on. They count as changed, also for
+    /// other bodies that borrow the same array. Where they are refused and the array is that of before, there is no matrix
+    /// until they are given again.
+    pub fn borrow_values(&mut self, body: usize, val: Borrowed<f64>) -> Result<()> {
+        self.places(body, false)?.check_number(val.len()).map_err(|e| e.body(body))?;
+        let stiffness = self.bodies[body].body.stiffness.as_mut();
+        let k = Arc::make_mut(stiffness.ok_or_else(|| not_given(body))?);
+        let old = std::mem::replace(&mut k.val, val.into());
+        let row_of = |at: usize| k.ptr.partition_point(|&start| start <= at) - 1;
+        let checked = check_finite(&k.val, "val", row_of).and_then(|()| check_diagonal(k));
+        let (array, rewritten) = (k.val.as_ptr(), k.val.as_ptr() == old.as_ptr());
+        if checked.is_err() {
+            k.val = old;
+        }
+        let borrows = |p: &usize| {
+            let k = self.bodies[*p].body.stiffness.as_ref();
+            k.is_some_and(|k| k.val.is_of_host() && k.val.as_ptr() == array)
+        };
+        let bodies: Vec<usize> = (0..self.bodies.len()).filter(borrows).collect();
+        for p in bodies.into_iter().filter(|_| checked.is_ok() || rewritten) {
+            self.change(p, Change::Values)?.spoiled = checked.is_err();
+        }
+        checked.map_err(|e| e.body(body))
+    }
+
+    fn stiffness(&self, body: usize) -> Result<&Symmetric> {
+        self.given(body)?.body.stiffness.as_deref().ok_or_else(|| not_given(body))
+    }
+
+    fn form(&self, body: usize) -> Result<&Form> {
+        self.given(body)?.form.as_ref().ok_or_else(|| not_given(body))
+    }
+
+    fn places(&self, body: usize, split: bool) -> Result<&Places> {
+        match self.form(body)? {
+            Form::Sparse(places) if places.is_split() == split => Ok(places),
+            form => Err(another_call(body, form)),
+        }
+    }
+}
+
+fn not_given(body: usize) -> Error {
+    let what =
+        "the stiffness matrix has not been given: a call of feti_body_stiffness comes before its values";
+    Error::new(Kind::State, what).body(body)
+}
+
+fn another_call(body: usize, form: &Form) -> Error {
+    let (given, call) = match form {
+        Form::Dense(_) => ("dense", "feti_body_values_dense"),
+        Form::Sparse(places) if places.is_split() => ("with a diagonal of its own", "feti_body_values_split"),
+        Form::Sparse(_) => ("by rows", "feti_body_values"),
+    };
+    let what = format!("the stiffness matrix was given {given}: its values come by {call}");
+    Error::new(Kind::State, what).body(body)
+}

@@ -1,0 +1,16 @@
+//! What the host has given: bodies, rows, options, as a file too. It is checked here, and nothing is computed.
+
+mod bodies;
+mod contents;
+pub mod file;
+mod matrices;
+mod numbering;
+mod row_sets;
+mod settings;
+mod settings_text;
+mod words;
+
+pub use contents::{BodyRevisions, Counts, GivenBody, Model, Revisions};
+pub use row_sets::{kind_and_row, proof_of_rows, PER_ENTRY};
+pub use settings::{options, OptionInfo, OptionValue, Settings};
+pub use words::{FinishBy, Method, OperatorForm, PaperStep1, PaperUnits, Preconditioning, StartFrom, Word};

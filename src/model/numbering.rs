@@ -1,0 +1,142 @@
+//! The host's own numbers of the unknowns, over all bodies; without them the bodies count one after the other.
+
+use crate::error::{Error, Kind, Result};
+use crate::linalg::vector::first_non_finite;
+use crate::model::contents::Model;
+use crate::platform::memory::{refusal, reserved};
+
+/// Numbers from which on no array has so many entries.
+const TOO_LARGE: usize = isize::MAX as usize / size_of::<f64>();
+
+impl Model {
+    /// The numbers of a body, each used once in all bodies.
+    fn checked_numbers(&self, body: usize, numbers: &[i64]) -> Result<Vec<usize>> {
+        let refused = |dof: usize, what: &str| {
+            let error = Error::argument("number", what).body(body).dof(dof).entry(dof);
+            Err(error.index(numbers[dof]))
+        };
+        let mut checked = reserved(numbers.len(), "the numbers of a body")?;
+        for (dof, &number) in numbers.iter().enumerate() {
+            match usize::try_from(number).ok().filter(|number| *number < TOO_LARGE) {
+                None => return refused(dof, "no array has such an entry"),
+                Some(number) if self.unknowns.get(&number).is_some_and(|(other, _)| *other != body) => {
+                    return refused(dof, "the number is that of an unknown of another body");
+                }
+                Some(number) => checked.push(number),
+            }
+        }
+        let mut order: Vec<usize> = reserved(numbers.len(), "the numbers of a body")?;
+        order.extend(0..numbers.len());
+        order.sort_unstable_by_key(|&dof| (checked[dof], dof));
+        let again = order.windows(2).filter(|pair| checked[pair[0]] == checked[pair[1]]).map(|pair| pair[1]);
+        again.min().map_or(Ok(checked), |dof| refused(dof, "another unknown of the body has this number"))
+    }
+
+    /// The host's numbers of the unknowns of a body, from 0, distinct over all bodies. Calling again replaces them.
+    pub fn set_numbering(&mut self, body: usize, numbers: &[i64]) -> Result<()> {
+        self.check_length(body, "n", numbers.len())?;
+        let numbers = self.checked_numbers(body, numbers)?;
+        let unknowns = &mut self.unknowns;
+        let bytes = numbers.len() * size_of::<(usize, (usize, usize))>();
+        unknowns.try_reserve(numbers.len()).map_err(|_| refusal(bytes, "the numbers of the unknowns"))?;
+        for old in self.bodies[body].numbers.iter().flatten() {
+            unknowns.remove(old);
+        }
+        unknowns.extend(numbers.iter().enumerate().map(|(dof, &number)| (number, (body, dof))));
+        self.bodies[body].numbers = Some(numbers);
+        Ok(())
+    }
+
+    /// Whether the bodies have numbers: all or none.
+    fn is_numbered(&self) -> Result<bool> {
+        let numbers = self.unknowns.len();
+        if numbers == 0 || numbers == self.counts().dofs {
+            return Ok(numbers > 0);
+        }
+        match self.bodies.iter().position(|given| given.numbers.is_none()) {
+            None => Ok(true),
+            Some(body) => {
+                let what =
+                    "other bodies have numbers of the host, this one has not: feti_body_numbering gives them";
+                Err(Error::new(Kind::State, what).body(body))
+            }
+        }
+    }
+
+    /// The length of an array over all unknowns: at least the largest number + 1, without numbers that of all bodies.
+    pub fn check_whole(&self, n: usize) -> Result<()> {
+        let numbered = self.is_numbered()?;
+        let largest = self.bodies.iter().filter_map(|given| given.numbers.as_deref()?.iter().max());
+        let end = if numbered { largest.max().map_or(0, |most| most + 1) } else { self.counts().dofs };
+        if n == end || numbered && n > end {
+            return Ok(());
+        }
+        let what = match numbered {
+            true => format!("the largest number of an unknown needs {end} entries, there are {n}"),
+            false => format!("the bodies have {end} unknowns, not {n}"),
+        };
+        Err(Error::argument("n", what).value(n as f64).limit(end as f64))
+    }
+
+    /// `work` on every unknown: its body, its dof, and its place in an array over all unknowns.
+    fn each_unknown(&self, mut work: impl FnMut(usize, usize, usize)) -> Result<()> {
+        let (numbered, mut place) = (self.is_numbered()?, 0);
+        for (body, given) in self.bodies.iter().enumerate() {
+            for dof in 0..given.body.order {
+                let number = given.numbers.as_ref().filter(|_| numbered).map(|numbers| numbers[dof]);
+                work(body, dof, number.unwrap_or(place));
+                place += 1;
+            }
+        }
+        Ok(())
+    }
+
+    /// Gives the values of all bodies, one after the other, with their places in an array over all unknowns.
+    pub fn spread(&self, values: &[f64], mut to: impl FnMut(usize, f64)) -> Result<()> {
+        let mut values = values.iter();
+        self.each_unknown(|_, _, place| values.next().into_iter().for_each(|v| to(place, *v)))
+    }
+
+    /// The loads of all bodies, force; entries of `f` that belong to no unknown are not looked at.
+    pub fn set_all_loads(&mut self, f: &[f64]) -> Result<()> {
+        self.check_whole(f.len())?;
+        let mut loads = reserved(self.bodies.len(), "the loads")?;
+        for given in &self.bodies {
+            loads.push(reserved(given.body.order, "a load")?);
+        }
+        self.each_unknown(|body, _, place| loads[body].push(f[place]))?;
+        for (body, load) in loads.iter().enumerate() {
+            if let Some(dof) = first_non_finite(load) {
+                let mut entry = dof;
+                self.each_unknown(|p, i, place| {
+                    if (p, i) == (body, dof) {
+                        entry = place;
+                    }
+                })?;
+                let error = Error::argument("f", "the entry is not a finite number");
+                return Err(error.body(body).dof(dof).entry(entry));
+            }
+        }
+        self.bodies.iter_mut().zip(loads).for_each(|(given, load)| given.body.load = Some(load));
+        Ok(())
+    }
+
+    /// Unknowns of rows, which begin at `ptr`, as places among those of all bodies one after the other; none where the host
+    /// has no numbers but these.
+    pub fn places_of(&self, ptr: &[usize], numbers: &[i64]) -> Result<Option<Vec<i64>>> {
+        if !self.is_numbered()? {
+            return Ok(None);
+        }
+        let mut places = reserved(numbers.len(), "constraint rows")?;
+        for (entry, &number) in numbers.iter().enumerate() {
+            let found = usize::try_from(number).ok().and_then(|number| self.unknowns.get(&number));
+            let Some((body, dof)) = found else {
+                let row = ptr.partition_point(|&start| start <= entry) - 1;
+                let error = Error::argument("dof", "no unknown has this number").row(row).entry(entry);
+                return Err(error.index(number));
+            };
+            places.push((self.offsets[*body] + dof) as i64);
+        }
+        Ok(Some(places))
+    }
+}

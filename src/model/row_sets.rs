@@ -1,0 +1,88 @@
+//! Contact rows and equality rows: given, changed, dropped.
+
+use crate::constraints::{RowKind, RowSet, RowsInput};
+use crate::error::{Error, Proof, Result};
+use crate::model::contents::Model;
+use crate::platform::memory::{self, Room};
+
+/// Bytes per entry of B and H: the host's rows, the scaled ones and those by bodies, each while it grows.
+pub const PER_ENTRY: usize = 128;
+
+impl Model {
+    /// Adds rows and returns the number of the first among those of its kind. Without `body` they go by the host's numbers
+    /// of the unknowns, where there are some.
+    pub fn add_rows(&mut self, kind: RowKind, rows: RowsInput<'_>) -> Result<usize> {
+        let places = match rows.body {
+            Some(_) => None,
+            None => self.places_of(rows.ptr, rows.dof)?,
+        };
+        let rows = RowsInput { dof: places.as_deref().unwrap_or(rows.dof), ..rows };
+        let present = match kind {
+            RowKind::Inequality => &mut self.contact,
+            RowKind::Equality => &mut self.equalities,
+        };
+        let first = present.add(kind, rows, &self.offsets)?;
+        self.revisions.rows += 1;
+        Ok(first)
+    }
+
+    /// New right-hand sides c or h, length; a contact row whose gap is +infinity never closes.
+    pub fn set_rhs(&mut self, kind: RowKind, first: usize, rhs: &[f64]) -> Result<()> {
+        if self.rows_mut(kind).set_rhs(kind, first, rhs)? {
+            self.revisions.laws += 1;
+        }
+        Ok(())
+    }
+
+    /// Rows from `first` on as springs, `B u - c <= lambda/k`, `H u - h = mu/k`: 1/k >= 0, length / force, 0 for
+    /// rigid ones. The multipliers of the last solve still fit as a start.
+    pub fn set_compliance(&mut self, kind: RowKind, first: usize, inv_k: &[f64]) -> Result<()> {
+        self.rows_mut(kind).set_compliance(first, inv_k)?;
+        self.revisions.laws += 1;
+        Ok(())
+    }
+
+    /// Drops all rows of one kind.
+    pub fn clear_rows(&mut self, kind: RowKind) {
+        *self.rows_mut(kind) = RowSet::default();
+        self.revisions.rows += 1;
+    }
+
+    /// Room for so many more rows: those that are there may move while their arrays grow.
+    pub fn room_for_rows(&self, rows: usize, entries: usize) -> Result<Room> {
+        let present = self.contact.matrix.col.len().max(self.equalities.matrix.col.len());
+        let bytes = present.saturating_add(entries).saturating_mul(PER_ENTRY);
+        memory::room(bytes.saturating_add(rows.saturating_mul(PER_ENTRY)), "constraint rows")
+    }
+
+    /// Rows without entries must hold by themselves.
+    pub fn check_empty_rows(&self) -> Result<()> {
+        let contact = self.contact.check_empty_rows(RowKind::Inequality);
+        contact.map_err(|error| empty_row_contradicts(error, 0))?;
+        let equalities = self.equalities.check_empty_rows(RowKind::Equality);
+        equalities.map_err(|error| empty_row_contradicts(error, self.contact.len()))
+    }
+}
+
+/// The error of a row without entries, which contradicts itself; `first` is the place of its kind in the stack.
+fn empty_row_contradicts(error: Error, first: usize) -> Error {
+    let (Some(row), Some(gap)) = (error.place.row, error.place.value) else { return error };
+    error.proved_by(proof_of_rows(1.0, vec![(first + row, -gap)], first + row))
+}
+
+/// Weights in the scaling of the host, the largest 1, in the order of the rows.
+pub fn proof_of_rows(margin: f64, mut weights: Vec<(usize, f64)>, heaviest: usize) -> Proof {
+    let largest = weights.iter().fold(0.0, |largest: f64, (_, w)| largest.max(w.abs()));
+    weights.iter_mut().for_each(|(_, w)| *w /= largest);
+    weights.sort_by_key(|(row, _)| *row);
+    Proof::Rows { margin, weights, heaviest }
+}
+
+/// Kind of a row of the stack of all contact rows and all equality rows, and its number among those.
+pub fn kind_and_row(i: usize, contact: usize) -> (RowKind, usize) {
+    if i < contact {
+        (RowKind::Inequality, i)
+    } else {
+        (RowKind::Equality, i - contact)
+    }
+}

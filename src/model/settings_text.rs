@@ -1,0 +1,220 @@
+//! Options as a text: `tolerance=1e-8 threads=4`.
+
+use crate::error::{Error, Kind, Result};
+use crate::model::settings::{options, OptionValue, Settings};
+
+/// One `name = value` of a text, with the bytes at which they begin.
+#[derive(Debug, PartialEq)]
+struct Item<'a> {
+    name: (usize, &'a str),
+    value: (usize, &'a str),
+}
+
+/// The part of a text that has not been read.
+struct Rest<'a> {
+    text: &'a str,
+    at: usize,
+}
+
+impl Settings {
+    /// Sets all options that the text names, in its order, or none of them. Items `name = value` are separated by
+    /// blanks, commas or ends of lines; `#` begins a comment that ends with the line.
+    pub fn set_text(&mut self, text: &str) -> Result<()> {
+        let mut changed = self.clone();
+        let mut rest = Rest { text, at: 0 };
+        while let Some(item) = rest.item()? {
+            let (at, value) = item.value;
+            changed.set_by_type(item.name.1, value).map_err(|mut error| {
+                let byte = if error.kind == Kind::Argument("name") { item.name.0 } else { at };
+                error.kind = Kind::Argument("text");
+                error.byte(byte)
+            })?;
+        }
+        *self = changed;
+        Ok(())
+    }
+
+    /// The value as a text, of whatever type the option is.
+    fn set_by_type(&mut self, name: &str, value: &str) -> Result<()> {
+        let option = options().iter().find(|option| option.name.to_bytes() == name.as_bytes());
+        let wrong = |kind: &str| {
+            Error::argument("value", format!("option \"{name}\" is {kind}, which \"{value}\" is not"))
+        };
+        match option.map(|option| option.default) {
+            Some(OptionValue::I64(_)) => {
+                self.set_i64(name, value.parse().map_err(|_| wrong("a whole number"))?)
+            }
+            Some(OptionValue::Str(_)) => self.set_str(name, value),
+            // Fortran writes 1d-8
+            _ => {
+                let number = value.replace(['d', 'D'], "e").parse();
+                self.set_f64(
+                    name,
+                    if option.is_some() { number.map_err(|_| wrong("a number"))? } else { 0.0 },
+                )
+            }
+        }
+    }
+
+    /// The options that differ from their defaults, as a text for `set_text`. What texts count from is not among them:
+    /// it belongs to the host.
+    pub fn changes(&self) -> String {
+        let mut items = Vec::new();
+        for option in options().iter().filter(|option| option.name != c"index_base") {
+            let name = option.name.to_string_lossy();
+            let differs = match option.default {
+                OptionValue::F64(default) => self
+                    .get_f64(&name)
+                    .ok()
+                    .filter(|value| *value != default)
+                    .map(|value| format!("{value:e}")),
+                OptionValue::I64(default) => {
+                    self.get_i64(&name).ok().filter(|value| *value != default).map(|value| value.to_string())
+                }
+                OptionValue::Str(default) => {
+                    self.get_str(&name).ok().filter(|value| value.as_bytes() != default.to_bytes())
+                }
+            };
+            items.extend(differs.map(|value| format!("{name}={value}")));
+        }
+        items.join(" ")
+    }
+}
+
+fn is_blank(c: char) -> bool {
+    c.is_ascii_whitespace()
+}
+
+impl<'a> Rest<'a> {
+    fn item(&mut self) -> Result<Option<Item<'a>>> {
+        self.pass_separators();
+        if self.rest().is_empty() {
+            return Ok(None);
+        }
+        let name = self.word();
+        self.pass(is_blank);
+        if name.1.is_empty() || !self.rest().starts_with('=') {
+            let what = match name.1 {
+                "" => "there is no name before this sign =".to_owned(),
+                name => format!("option \"{name}\" has no value: {name}=... is missing"),
+            };
+            return Err(Error::argument("text", what).byte(name.0));
+        }
+        self.at += 1;
+        self.pass(is_blank);
+        let value = self.word();
+        if value.1.is_empty() {
+            let what = format!("option \"{}\" has no value after the sign =", name.1);
+            return Err(Error::argument("text", what).byte(value.0));
+        }
+        Ok(Some(Item { name, value }))
+    }
+
+    fn rest(&self) -> &'a str {
+        &self.text[self.at..]
+    }
+
+    fn pass(&mut self, passed: impl Fn(char) -> bool) {
+        self.at += self.rest().find(|c| !passed(c)).unwrap_or(self.rest().len());
+    }
+
+    fn pass_separators(&mut self) {
+        self.pass(|c| is_blank(c) || c == ',');
+        while self.rest().starts_with('#') {
+            self.pass(|c| c != '\n');
+            self.pass(|c| is_blank(c) || c == ',');
+        }
+    }
+
+    /// What ends at a separator, a sign = or a comment, with the byte where it begins.
+    fn word(&mut self) -> (usize, &'a str) {
+        let start = self.at;
+        self.pass(|c| !is_blank(c) && !matches!(c, ',' | '=' | '#'));
+        (start, &self.text[start..self.at])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::words::Preconditioning;
+
+    fn set(text: &str) -> Result<Settings> {
+        let mut settings = Settings::new();
+        settings.set_text(text).map(|()| settings)
+    }
+
+    #[test]
+    fn blanks_commas_ends_of_lines_and_comments_separate() {
+        let expected = Settings {
+            tolerance: 1e-8,
+            threads: 4,
+            preconditioner: Preconditioning::Lumped,
+            ..Settings::new()
+        };
+        for text in [
+            "tolerance=1e-8 threads=4 preconditioner=lumped",
+            "preconditioner=lumped,threads=4,tolerance=1e-8",
+            " tolerance = 1D-8,\n\tthreads\t=\t+4 # cores\r\n# gamma = 2\npreconditioner =lumped#end",
+            "tolerance=1e-3 threads=4 preconditioner=lumped tolerance=1e-8",
+        ] {
+            assert_eq!(set(text).unwrap(), expected, "{text}");
+        }
+        for nothing in ["", " ,\n", "# threads=4", "#"] {
+            assert_eq!(set(nothing).unwrap(), Settings::new(), "{nothing}");
+        }
+    }
+
+    #[test]
+    fn what_is_wrong_is_named_with_its_byte_and_nothing_is_set() {
+        for (text, byte, says) in [
+            ("threads=4 tolerence=1e-8", 10, "no option \"tolerence\""),
+            ("threads=4 tolerance=1e3", 20, "\"tolerance\" takes"),
+            ("threads=4 tolerance=small", 20, "\"tolerance\" is a number"),
+            ("tolerance=1e-8,threads=1.5", 23, "\"threads\" is a whole number"),
+            ("tolerance=nan", 10, "\"tolerance\" takes"),
+            ("gamma=2 preconditioner=Lumped", 23, "\"preconditioner\" is one of"),
+            ("gamma=2 threads", 8, "\"threads\" has no value"),
+            ("gamma=2 threads 4", 8, "\"threads\" has no value"),
+            ("gamma=2 threads= # 4", 17, "\"threads\" has no value"),
+            ("gamma=2 =4", 8, "no name"),
+            ("gamma=2 # \u{e9}\n\u{e9}=4", 13, "no option \"\u{e9}\""),
+        ] {
+            let mut settings = Settings::new();
+            let error = settings.set_text(text).unwrap_err();
+            assert_eq!(
+                (error.kind, error.place.byte),
+                (Kind::Argument("text"), Some(byte)),
+                "{text}: {error}"
+            );
+            assert!(error.what.contains(says), "{text}: {error}");
+            assert_eq!(settings, Settings::new());
+        }
+    }
+
+    #[test]
+    fn the_changes_of_all_options_come_back_bit_by_bit() {
+        let mut settings = Settings::new();
+        assert_eq!(settings.changes(), "");
+        for option in options() {
+            let name = option.name.to_str().unwrap();
+            match option.default {
+                OptionValue::F64(default) => {
+                    let value = if default == 0.0 { 1.0 / 3.0 } else { default * (1.0 - 1.0 / 3.0) };
+                    settings.set_f64(name, value.max(option.minimum)).unwrap();
+                }
+                OptionValue::I64(default) => {
+                    settings.set_i64(name, (default + 1).min(option.maximum as i64)).unwrap()
+                }
+                OptionValue::Str(_) => {
+                    let known = settings.set_str(name, "?").unwrap_err().what;
+                    let last = known.split_once(", not").unwrap().0.rsplit(' ').next().unwrap();
+                    settings.set_str(name, last).unwrap();
+                }
+            }
+        }
+        let text = settings.changes();
+        assert_eq!(text.split(' ').count(), options().len() - 1, "{text}");
+        assert_eq!(set(&text).unwrap(), Settings { index_base: 0, ..settings });
+    }
+}

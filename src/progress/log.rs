@@ -1,0 +1,83 @@
+//! Lines of text for the host: phases, steps, and whatever others have to say.
+
+use crate::error::{Error, Kind, Result};
+use crate::progress::listener::Progress;
+use crate::progress::phases::PhaseReport;
+use crate::qp::StepKind;
+
+/// How much is told; each level tells what those before it tell.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum LogLevel {
+    /// One line for each solve, and warnings.
+    Result = 1,
+    /// What is solved and how, and a line for each phase.
+    Phase = 2,
+    /// A line for each step.
+    Step = 3,
+}
+
+/// Gets the level and the text of a line, without its end; 0 goes on, any other number ends the call.
+pub type LogListener = Box<dyn FnMut(LogLevel, &str) -> i32 + Send + Sync>;
+
+/// The host's function during a call.
+#[derive(Default)]
+pub struct Log {
+    pub host: Option<(LogLevel, LogListener)>,
+    /// Phases that have been told.
+    pub told: usize,
+}
+
+impl Log {
+    pub fn say(&mut self, level: LogLevel, text: impl FnOnce() -> String) -> Result<()> {
+        let Some((_, listener)) = self.host.as_mut().filter(|(most, _)| level <= *most) else {
+            return Ok(());
+        };
+        match listener(level, &text()) {
+            0 => Ok(()),
+            number => {
+                let what = format!("the log function of the host returned {number}");
+                Err(Error::new(Kind::Callback, what).value(f64::from(number)))
+            }
+        }
+    }
+
+    /// The first `until` phases, each once; those that had nothing to do are left out.
+    pub fn phases(&mut self, phases: &[PhaseReport], until: usize) -> Result<()> {
+        let until = until.min(phases.len());
+        while self.told < until {
+            let phase = phases[self.told];
+            self.told += 1;
+            if phase.seconds == 0.0 {
+                continue;
+            }
+            self.say(LogLevel::Phase, || {
+                let bytes = if phase.bytes > 0 { format!(", {} bytes", phase.bytes) } else { String::new() };
+                format!("{}: {:.6} seconds{bytes}", phase.name.to_string_lossy(), phase.seconds)
+            })?;
+        }
+        Ok(())
+    }
+
+    pub fn step(&mut self, now: &Progress) -> Result<()> {
+        let Some(kind) = now.step else { return Ok(()) };
+        let kind = match kind {
+            StepKind::ConjugateGradient => "conjugate gradients",
+            StepKind::Expansion => "expansion",
+            StepKind::Release => "release",
+        };
+        self.say(LogLevel::Step, || {
+            format!(
+                "step {}: {kind}, residual {:.3e} (free {:.3e}, chopped {:.3e}), {} active, {} products, theta {:.9e}",
+                now.steps, now.residual, now.free, now.chopped, now.active, now.products, now.theta
+            )
+        })
+    }
+
+    /// One line on a call that gave no answer. What the function says to this changes nothing.
+    pub fn failure(&mut self, call: &str, error: &Error, base: i64) {
+        if error.kind != Kind::Callback {
+            let error = error.clone().counted_from(base);
+            let _ = self.say(LogLevel::Result, || format!("{call} failed: {error}"));
+        }
+    }
+}

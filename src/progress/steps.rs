@@ -1,0 +1,79 @@
+//! The steps of one island, told to whoever listens.
+
+use crate::error::Result;
+use crate::progress::listener::Progress;
+use crate::progress::stops::Stops;
+use crate::qp::{self, Counts, Observer};
+
+/// A step in one island.
+#[derive(Clone, Copy)]
+pub struct Told {
+    pub island: usize,
+    pub counts: Counts,
+    /// Of this island alone.
+    pub progress: Progress,
+}
+
+/// What the solution of an island has to say, and whom it says it to: the host, or the thread that listens to many.
+pub trait Voice {
+    fn step(&mut self, told: Told) -> Result<()>;
+    /// A line of the log at level `LogLevel::Phase`.
+    fn line(&mut self, text: String) -> Result<()>;
+}
+
+/// One island under watch.
+pub struct Steps<'a> {
+    island: usize,
+    stops: Stops,
+    voice: &'a mut dyn Voice,
+    /// 2^p: what forces are divided by.
+    unit: f64,
+    /// Number of multipliers >= 0.
+    bounded: usize,
+    /// Work of the methods that gave up, and of the present one up to its last step.
+    before: Counts,
+    last: Counts,
+}
+
+impl<'a> Steps<'a> {
+    /// Of island number `island`; forces inside are in units of 2^p = `unit`, multipliers of `bounded` groups are >= 0.
+    pub fn new(island: usize, unit: f64, bounded: &[bool], stops: Stops, voice: &'a mut dyn Voice) -> Self {
+        let bounded = bounded.iter().filter(|bounded| **bounded).count();
+        let (before, last) = (Counts::default(), Counts::default());
+        Self { island, stops, voice, unit, bounded, before, last }
+    }
+
+    /// The multipliers that follow.
+    pub fn set_bounded(&mut self, bounded: &[bool]) {
+        self.bounded = bounded.iter().filter(|bounded| **bounded).count();
+    }
+
+    pub fn line(&mut self, text: String) -> Result<()> {
+        self.voice.line(text)
+    }
+}
+
+impl Observer for Steps<'_> {
+    fn step(&mut self, now: &qp::Progress) -> Result<()> {
+        if now.counts.steps() < self.last.steps() || now.counts.products < self.last.products {
+            self.before = self.before + self.last;
+        }
+        self.last = *now.counts;
+        let counts = self.before + self.last;
+        let against_stop = |size: f64| size / now.small;
+        let progress = Progress {
+            step: Some(now.kind),
+            fraction: f64::NAN,
+            steps: counts.steps(),
+            products: counts.products,
+            active: self.bounded - now.active.iter().filter(|at_bound| **at_bound).count(),
+            residual: against_stop(now.residual),
+            free: against_stop(now.free),
+            chopped: against_stop(now.chopped),
+            theta: self.unit * now.theta,
+            seconds: self.stops.seconds(),
+        };
+        self.voice.step(Told { island: self.island, counts, progress })?;
+        self.stops.check()
+    }
+}

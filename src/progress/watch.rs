@@ -1,0 +1,165 @@
+//! One call under watch: the host hears of every body of a setup and of every step, and may end it.
+
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::Arc;
+
+use crate::error::{Error, Kind, Result};
+use crate::platform::threads::{self, Heard, Tasks};
+use crate::platform::Interrupt;
+use crate::progress::listener::{Listener, Progress, Reply};
+use crate::progress::log::{Log, LogLevel};
+use crate::progress::phases::Phases;
+use crate::progress::steps::{Told, Voice};
+use crate::progress::stops::{cancelled, Stops};
+use crate::qp::Counts;
+
+/// The host's functions and its wish to cancel, kept between calls.
+#[derive(Default)]
+pub struct Host {
+    cancelled: Arc<AtomicBool>,
+    pub listener: Option<Listener>,
+    pub log: Log,
+}
+
+impl Host {
+    /// Set to true by any thread, it ends the setup or the solve that runs; the next one begins by clearing it.
+    pub fn canceller(&self) -> Arc<AtomicBool> {
+        Arc::clone(&self.cancelled)
+    }
+
+    /// Begins a call, which ends after `limit` seconds; `phases` are those of the calls before.
+    pub fn watch(&mut self, limit: f64, phases: Phases) -> Watch {
+        self.cancelled.store(false, Ordering::Relaxed);
+        let stops = Stops::new(self.canceller(), limit);
+        let (listener, log) = (self.listener.take(), std::mem::take(&mut self.log));
+        Watch { stops, listener, log, phases, fraction: 0.0, islands: Vec::new() }
+    }
+
+    /// The call has ended: takes back what it was watched with, and gives its phases.
+    pub fn ended(&mut self, watch: Watch) -> Phases {
+        (self.listener, self.log) = (watch.listener, watch.log);
+        watch.phases
+    }
+}
+
+/// A part of the setup that has a task for every body.
+pub struct Part {
+    pub threads: usize,
+    /// Work of each body, in any unit, > 0.
+    pub weights: Vec<f64>,
+    /// Fraction of the whole setup at its end.
+    pub until: f64,
+    /// Tasks that must run on the thread that calls the library.
+    pub on_caller: Vec<bool>,
+}
+
+impl Part {
+    /// Tasks that may run on any thread.
+    pub fn of(threads: usize, weights: Vec<f64>, until: f64) -> Self {
+        Self { threads, weights, until, on_caller: Vec::new() }
+    }
+}
+
+/// One call under watch.
+pub struct Watch {
+    pub stops: Stops,
+    listener: Option<Listener>,
+    pub log: Log,
+    pub phases: Phases,
+    /// Of the setup.
+    fraction: f64,
+    /// Work of every island so far, and its rows with a force.
+    islands: Vec<(Counts, usize)>,
+}
+
+impl Voice for Watch {
+    fn step(&mut self, told: Told) -> Result<()> {
+        if self.islands.len() <= told.island {
+            self.islands.resize(told.island + 1, Default::default());
+        }
+        self.islands[told.island] = (told.counts, told.progress.active);
+        let mut now = Progress { steps: 0, products: 0, active: 0, ..told.progress };
+        for (counts, active) in &self.islands {
+            now.steps += counts.steps();
+            now.products += counts.products;
+            now.active += active;
+        }
+        self.tell(&now)?;
+        self.log.step(&now)
+    }
+
+    fn line(&mut self, text: String) -> Result<()> {
+        self.log.say(LogLevel::Phase, || text)
+    }
+}
+
+impl Watch {
+    /// Runs a task for every body of a part of the setup; `keep` gets the results as they come, on this thread, which
+    /// tells the host of each. The body with most work comes first: what it needs besides its result is gone when the
+    /// results of the others are there. Once the host wants to end, tasks that have begun end where they can.
+    pub fn every_body<T: Send>(
+        &mut self,
+        part: &Part,
+        task: impl Fn(usize) -> Result<T> + Sync,
+        mut keep: impl FnMut(usize, T),
+    ) -> Result<()> {
+        let (stops, interrupt) = (self.stops.clone(), Interrupt::new(self.stops.flag()));
+        let guarded = |k| stops.check_cancelled().and_then(|()| interrupt.during(|| task(k)));
+        let (begun, all) = (self.fraction, part.weights.iter().sum::<f64>());
+        let (mut done, mut told) = (0.0, Ok(()));
+        let mut order: Vec<usize> = (0..part.weights.len()).collect();
+        order.sort_by(|&a, &b| part.weights[b].total_cmp(&part.weights[a]));
+        let on_caller = |k: usize| part.on_caller.get(k) == Some(&true);
+        let tasks = Tasks { threads: part.threads, order: &order, on_caller: &on_caller };
+        let ended = threads::run_heard(tasks, guarded, &mut |heard| {
+            if let Heard::Done(k, result) = heard {
+                keep(k, result);
+                done += part.weights[k];
+                self.fraction = begun + (part.until - begun).max(0.0) * (done / all).min(1.0);
+            }
+            if told.is_ok() {
+                told = self.part_done();
+                if told.is_err() {
+                    stops.cancel();
+                }
+            }
+        });
+        self.fraction = self.fraction.max(part.until);
+        told.and(ended)
+    }
+
+    /// Tells the host that all of the setup is done.
+    pub fn setup_done(&mut self) -> Result<()> {
+        self.fraction = 1.0;
+        self.part_done()
+    }
+
+    /// Tells the host how much of the setup is done.
+    fn part_done(&mut self) -> Result<()> {
+        self.tell(&Progress {
+            step: None,
+            fraction: self.fraction,
+            steps: 0,
+            products: 0,
+            active: 0,
+            residual: f64::NAN,
+            free: f64::NAN,
+            chopped: f64::NAN,
+            theta: f64::NAN,
+            seconds: self.stops.seconds(),
+        })?;
+        self.stops.check_cancelled()
+    }
+
+    fn tell(&mut self, now: &Progress) -> Result<()> {
+        let Some(listener) = &mut self.listener else { return Ok(()) };
+        match listener(now) {
+            Reply::Continue => Ok(()),
+            Reply::Cancel => Err(cancelled()),
+            Reply::Failed(number) => {
+                let what = format!("the progress function of the host returned {number}");
+                Err(Error::new(Kind::Callback, what).value(f64::from(number)))
+            }
+        }
+    }
+}

@@ -1,0 +1,145 @@
+//! Everything that does not depend on loads and gaps: null spaces, factors, scaling, dual operators.
+
+use std::sync::Arc;
+use std::time::Instant;
+
+use crate::constraints::RowKind;
+use crate::dual::{self, Draft, Dual};
+use crate::error::{Error, Kind, Result};
+use crate::model::{Method, Model, Preconditioning, Settings};
+use crate::platform::memory::reserved;
+use crate::progress::{Part, Phase, Watch};
+use crate::setup::islands::{islands, Island, Members};
+use crate::setup::operators::Operators;
+use crate::setup::prepared::{Duals, Prepared};
+use crate::setup::ready::Ready;
+use crate::setup::rows::DualRows;
+
+impl Prepared {
+    /// True where factors and dual operators are as the options want them.
+    pub fn is_up_to_date(&self, model: &Model) -> bool {
+        let suits = |ready: &Ready| ready.rows.coupled == coupled(&model.settings);
+        self.duals(model)
+            .is_some_and(|duals| duals.islands.iter().all(suits) && duals.operators.suit(&model.settings))
+    }
+
+    /// Null spaces, factors and dual operators, as far as they are not there yet.
+    pub fn set_up(&mut self, model: &Model, watch: &mut Watch) -> Result<()> {
+        let begun = Instant::now();
+        self.follow(model);
+        model.check_complete()?;
+        model.check_empty_rows()?;
+        if self.is_up_to_date(model) {
+            self.refresh_gaps(model);
+            return Ok(());
+        }
+        self.release();
+        let islands = islands(model)?;
+        let mut rows = reserved(islands.len(), "groups of bodies")?;
+        let mut distinct = vec![0; model.bodies.len()];
+        for island in &islands {
+            check_compliance(island)?;
+            let own = DualRows::of(island, metric(model, island), coupled(&model.settings))?;
+            let counts = Dual::distinct_rows(island.ranges.clone(), &own.matrix);
+            island.bodies.iter().zip(counts).for_each(|(&p, count)| distinct[p] = count);
+            rows.push(own);
+        }
+        watch.phases.ended(Phase::Rows, begun);
+        let operators = self.factorize(model, &distinct, watch)?;
+        let begun = Instant::now();
+        self.duals = Some(self.dualize(model, islands.into_iter().zip(rows).collect(), operators, watch)?);
+        self.made += 1;
+        watch.phases.ended(Phase::DualOperators, begun);
+        Ok(())
+    }
+
+    /// Gives the islands the gaps as they are now.
+    pub fn refresh_gaps(&mut self, model: &Model) {
+        let (contact, equalities) = (&model.contact.rhs, &model.equalities.rhs);
+        let islands = self.duals.iter_mut().flat_map(|duals| &mut duals.islands);
+        islands.for_each(|ready| ready.island.refresh(contact, equalities));
+    }
+
+    /// Forms F and G of every island.
+    fn dualize(
+        &mut self,
+        model: &Model,
+        islands: Vec<(Island, DualRows)>,
+        operators: Operators,
+        watch: &mut Watch,
+    ) -> Result<Duals> {
+        let mut drafts = reserved(islands.len(), "groups of bodies")?;
+        let (mut island_of, mut number_in) = (vec![0; model.bodies.len()], vec![0; model.bodies.len()]);
+        for (k, (island, rows)) in islands.iter().enumerate() {
+            let mut parts = reserved(island.bodies.len(), "groups of bodies")?;
+            for (number, (&p, range)) in island.bodies.iter().zip(&island.ranges).enumerate() {
+                (island_of[p], number_in[p]) = (k, number);
+                let by = island.unit / model.bodies[p].body.without(island.unit);
+                let Some(inverse) = self.bodies[p].inverse.as_mut() else { continue };
+                let (kplus, kept) = (Arc::clone(&inverse.kplus), inverse.operator.take());
+                let (size, implicit) = (operators.sizes[p], operators.implicit[p]);
+                parts.push(dual::Part { range: range.clone(), kplus, by, kept, size, implicit });
+            }
+            drafts.push(Draft::new(parts, &rows.matrix));
+        }
+        let all: Vec<usize> = (0..model.bodies.len()).collect();
+        let part = Part {
+            threads: model.threads(),
+            weights: operators.weights(),
+            until: assembled(&model.settings),
+            on_caller: model.on_caller(&all),
+        };
+        let mut made: Vec<Vec<_>> =
+            islands.iter().map(|(island, _)| island.bodies.iter().map(|_| None).collect()).collect();
+        let assemble = |p: usize| drafts[island_of[p]].assemble(number_in[p]).map_err(|e| e.body(p));
+        watch.every_body(&part, assemble, |p, operator| made[island_of[p]][number_in[p]] = operator)?;
+        let mut ready = reserved(islands.len(), "groups of bodies")?;
+        for (((island, rows), draft), made) in islands.into_iter().zip(drafts).zip(made) {
+            // Algorithm 3 weighs the rigid modes as the paper has them
+            let dual = draft.finish(made, rows.compliance.clone(), !rows.coupled);
+            self.work.columns_computed += dual.columns.computed;
+            self.work.columns_kept += dual.columns.kept;
+            ready.push(Ready { island, dual, rows, preconditioner: None });
+        }
+        Ok(Duals { of: model.revisions, islands: ready, operators, island_of })
+    }
+}
+
+/// The methods of the paper have the rows of the host, scaled but not decoupled.
+fn coupled(settings: &Settings) -> bool {
+    !matches!(settings.method, Method::Proportioning | Method::Smalbe)
+}
+
+/// `D / 2^p` over the unknowns of an island, for dofs without stiffness D of the stiffest dof of their body.
+fn metric(model: &Model, island: &Island) -> Vec<f64> {
+    let of_body = |&p: &usize| {
+        let body = &model.bodies[p].body;
+        let without = body.without(island.unit);
+        body.k()
+            .into_iter()
+            .flat_map(move |k| (0..k.order()).map(move |i| k.metric(i, without) / island.unit))
+    };
+    island.bodies.iter().flat_map(of_body).collect()
+}
+
+/// Fraction of the setup that is done with the dual operators: what is left is for the preconditioner.
+fn assembled(settings: &Settings) -> f64 {
+    match settings.preconditioner {
+        Preconditioning::None => 1.0,
+        Preconditioning::Dirichlet => 0.6,
+        Preconditioning::Automatic | Preconditioning::Lumped => 0.98,
+    }
+}
+
+/// A compliance times the stiffness of the bodies must be a number.
+fn check_compliance(island: &Island) -> Result<()> {
+    for kind in [RowKind::Inequality, RowKind::Equality] {
+        let Members { numbers, rows } = island.members(kind);
+        if let Some(row) = rows.compliance.iter().position(|c| !(c * island.unit).is_finite()) {
+            let what = format!("the compliance of this {} times max K_ii overflows", kind.name());
+            let error = Error::new(Kind::Overflow, what).row(numbers[row]);
+            return Err(error.value(rows.compliance[row]));
+        }
+    }
+    Ok(())
+}

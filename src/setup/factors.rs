@@ -1,0 +1,368 @@
+//! K+ of the bodies. Nothing is computed twice: equal bodies share one K+, bodies with one matrix whose null spaces are
+//! given in other words one factor, bodies of one pattern one symbolic analysis; a body with new values on its old pattern
+//! takes the analysis it has.
+
+use std::collections::{HashMap, HashSet};
+use std::hash::Hash;
+use std::sync::{Arc, Mutex};
+use std::time::Instant;
+
+use crate::body::{
+    input_key, pattern_key, same_body, same_matrix, same_pattern, value_key, Body, GeneralizedInverse,
+    Layout, Plan, Symbolic,
+};
+use crate::certificate::grounded;
+use crate::dual::{Kept, Size};
+use crate::error::{Error, Kind, Result};
+use crate::linalg::{Multiple, Symmetric};
+use crate::model::{GivenBody, Model};
+use crate::platform::threads;
+use crate::progress::{Log, LogLevel, Part, Phase, Watch};
+use crate::setup::operators::{check_memory, Operators};
+use crate::setup::prepared::{Inverse, Prepared};
+
+/// Analyses of one pattern that a body looks at before it makes one of its own.
+const TRIED: usize = 8;
+
+/// Fractions of a setup that are done with the null spaces, the analyses and the factorisations, on the average of many.
+const NULL_SPACES: f64 = 0.05;
+const ANALYSED: f64 = 0.3;
+const FACTORISED: f64 = 0.9;
+
+impl Prepared {
+    /// K+ of the bodies that have none; `rows` is the number of distinct rows on each. Gives the operators that they and
+    /// the memory suggest.
+    pub(super) fn factorize(
+        &mut self,
+        model: &Model,
+        rows: &[usize],
+        watch: &mut Watch,
+    ) -> Result<Operators> {
+        if self.bodies.iter().all(|own| own.inverse.is_some()) {
+            return self.operators(model, rows, &self.entries(&[], &[], &[]), 0);
+        }
+        self.try_hosts(model, watch)?;
+        let begun = Instant::now();
+        let twins = self.twins(model)?;
+        let pending: Vec<usize> =
+            (0..twins.len()).filter(|&p| twins[p] == p && self.bodies[p].inverse.is_none()).collect();
+        let mut plans = plans(model, &pending, watch)?;
+        let begun = watch.phases.ended(Phase::NullSpaces, begun);
+        self.analyse(model, &pending, &mut plans, watch)?;
+        let begun = watch.phases.ended(Phase::Analysis, begun);
+        let factors = self.factors_for(model, &pending, &plans);
+        let own = plans.iter().zip(&factors).filter(|(_, factor)| factor.is_none());
+        let bytes = own.map(|(plan, _)| plan.bytes()).sum();
+        let operators = self.operators(model, rows, &self.entries(&twins, &pending, &plans), bytes)?;
+        let ended = self.execute(model, (&pending, plans, factors), watch);
+        watch.phases.ended(Phase::Factorisation, begun);
+        ended?;
+        self.share(&twins);
+        self.tell_doubts(model, &pending, &mut watch.log)?;
+        Ok(operators)
+    }
+
+    /// Entries of the factor of every body: of K+ that is there, or planned for it or its twin.
+    fn entries(&self, twins: &[usize], pending: &[usize], plans: &[Plan]) -> Vec<usize> {
+        let planned = plans.iter().map(|plan| plan.symbolic().map_or(0, |of| of.analysis.entries()));
+        let planned: HashMap<usize, usize> = pending.iter().copied().zip(planned).collect();
+        let of = |p: usize| {
+            let there = self.bodies[p].inverse.as_ref().map(|inverse| inverse.kplus.entries());
+            there.or_else(|| planned.get(&p).copied())
+        };
+        (0..self.bodies.len()).map(|p| of(p).or_else(|| of(*twins.get(p)?)).unwrap_or(0)).collect()
+    }
+
+    /// Factorises the bodies for which no factor is known, then gives theirs to those like them.
+    fn execute(
+        &mut self,
+        model: &Model,
+        (pending, plans, factors): Planned,
+        watch: &mut Watch,
+    ) -> Result<()> {
+        let (mut own, mut others) = (Vec::new(), Vec::new());
+        for ((&p, plan), factor) in pending.iter().zip(plans).zip(factors) {
+            match factor {
+                None => {
+                    let matrix = model.bodies[p].body.stiffness.clone();
+                    own.push((p, plan.bytes(), Mutex::new(Some(plan)), matrix));
+                }
+                Some(q) => others.push((p, plan, q)),
+            }
+        }
+        // operations grow with the power 3/2 of the entries
+        let weights = own.iter().map(|(_, bytes, ..)| (*bytes as f64).powf(1.5)).collect();
+        let part = Part::of(model.threads(), weights, FACTORISED);
+        let make = |k: usize| {
+            let plan = own[k].2.lock().ok().and_then(|mut plan| plan.take());
+            let plan = plan.ok_or_else(|| Error::new(Kind::Internal, "a body was factorised twice"))?;
+            let made = plan.execute().map_err(|e| e.body(own[k].0))?;
+            Ok((made, grounded_in(own[k].3.as_ref())?))
+        };
+        watch.every_body(&part, make, |k, (made, grounded)| {
+            let (p, bytes) = (own[k].0, own[k].1);
+            self.work.analyses += made.further_analyses;
+            self.work.factorisations += made.factorisations;
+            self.bodies[p].symbolic = Some(made.symbolic);
+            let (unit, kplus) = (model.bodies[p].body.unit(), Arc::new(made.inverse));
+            self.bodies[p].inverse = Some(Inverse { unit, kplus, grounded, bytes, operator: None });
+        })?;
+        for (p, plan, q) in others {
+            let (unit, symbolic) = (model.bodies[p].body.unit(), self.bodies[q].symbolic.clone());
+            let share = |of: &Inverse| Ok((of.bytes, plan.with_factor_of(&of.kplus)?));
+            let of = self.bodies[q].inverse.as_ref().map(share).transpose()?;
+            self.bodies[p].symbolic = symbolic;
+            let grounded = grounded_in(model.bodies[p].body.stiffness.as_ref())?;
+            self.bodies[p].inverse = of.map(|(bytes, kplus)| {
+                let kplus = Arc::new(kplus);
+                Inverse { unit, kplus, grounded, bytes, operator: None }
+            });
+        }
+        Ok(())
+    }
+
+    /// For every plan the body that has, or is going to have, the factor of the same matrix with the same dofs held; none
+    /// where the plan must factorise itself.
+    fn factors_for(&self, model: &Model, pending: &[usize], plans: &[Plan]) -> Vec<Option<usize>> {
+        let mut known: HashMap<_, Vec<usize>> = HashMap::new();
+        for (q, own) in self.bodies.iter().enumerate().filter(|(_, own)| own.inverse.is_some()) {
+            known.entry((own.keys, own.symbolic.as_ref().map(Arc::as_ptr))).or_default().push(q);
+        }
+        let mut find = |(&p, plan): (&usize, &Plan)| {
+            let shareable = matches!(plan, Plan::Known(_)) && self.bodies.len() > 1;
+            let symbolic = plan.symbolic().filter(|_| shareable)?;
+            let alike = known.entry((self.bodies[p].keys, Some(Arc::as_ptr(symbolic)))).or_default();
+            let found = alike.iter().copied().find(|&q| same_stiffness(model, p, q));
+            alike.extend(found.is_none().then_some(p));
+            found
+        };
+        pending.iter().zip(plans).map(&mut find).collect()
+    }
+
+    /// For every body the one whose K+ serves it: the first equal one that has K+ already, else the first.
+    fn twins(&mut self, model: &Model) -> Result<Vec<usize>> {
+        self.find_keys(model)?;
+        let same = |p: usize, q: usize| same_body(&model.bodies[p].body, &model.bodies[q].body);
+        let key = |p: usize| (self.bodies[p].keys, input_key(&model.bodies[p].body));
+        let first = classes(self.bodies.len(), key, same);
+        let has = |p: usize| self.bodies[p].inverse.is_some();
+        let mut ready = HashMap::new();
+        (0..first.len()).rev().filter(|&p| has(p)).for_each(|p| {
+            ready.insert(first[p], p);
+        });
+        let of = |p: usize| if has(p) { p } else { ready.get(&first[p]).copied().unwrap_or(first[p]) };
+        Ok((0..first.len()).map(of).collect())
+    }
+
+    /// Keys of the matrices; a single body needs none.
+    fn find_keys(&mut self, model: &Model) -> Result<()> {
+        if self.bodies.len() < 2 {
+            return Ok(());
+        }
+        let without: Vec<usize> = (0..self.bodies.len()).filter(|&p| self.bodies[p].keys.is_none()).collect();
+        let keys = threads::run(model.threads(), without.len(), |k| {
+            let stiffness = model.bodies[without[k]].body.stiffness.as_ref();
+            Ok(stiffness.map(|k| [pattern_key(k), value_key(k)]))
+        })?;
+        without.into_iter().zip(keys).for_each(|(p, keys)| self.bodies[p].keys = keys);
+        Ok(())
+    }
+
+    /// An analysis for every plan: that of its body before, of another body of the same pattern, or a new one.
+    fn analyse(
+        &mut self,
+        model: &Model,
+        pending: &[usize],
+        plans: &mut [Plan],
+        watch: &mut Watch,
+    ) -> Result<()> {
+        let mut offers = self.offers();
+        let mut chosen = Vec::with_capacity(plans.len());
+        for (k, &p) in pending.iter().enumerate() {
+            let own = self.bodies[p].symbolic.as_ref();
+            let found = choose(&mut plans[k], own, &offers, |q| self.same_pattern(model, p, q))?;
+            chosen.push(found.unwrap_or(offers.len()));
+            if found.is_none() {
+                offers.push(Offer { body: p, layout: plans[k].layout(), symbolic: None, plan: k });
+            }
+        }
+        let new: Vec<usize> = (0..offers.len()).filter(|&o| offers[o].symbolic.is_none()).collect();
+        let bodies: Vec<usize> = new.iter().map(|&o| offers[o].body).collect();
+        let part = Part::of(model.threads(), weights(model, &bodies), ANALYSED);
+        let mut made: Vec<Option<Arc<Symbolic>>> = new.iter().map(|_| None).collect();
+        let analyse = |i: usize| plans[offers[new[i]].plan].analyse().map_err(|e| e.body(bodies[i]));
+        watch.every_body(&part, analyse, |i, symbolic| made[i] = Some(symbolic))?;
+        self.work.analyses += made.len();
+        new.into_iter().zip(made).for_each(|(o, made)| offers[o].symbolic = made);
+        for (plan, o) in plans.iter_mut().zip(chosen) {
+            offers[o].symbolic.iter().for_each(|symbolic| plan.set_analysis(Arc::clone(symbolic)));
+        }
+        Ok(())
+    }
+
+    /// The analyses that bodies have, each once.
+    fn offers(&self) -> Vec<Offer> {
+        let mut offers: Vec<Offer> = Vec::new();
+        let mut seen = HashSet::new();
+        for (p, own) in self.bodies.iter().enumerate() {
+            if let Some(symbolic) = own.symbolic.as_ref().filter(|of| seen.insert(Arc::as_ptr(of))) {
+                let layout = Arc::clone(&symbolic.layout);
+                offers.push(Offer { body: p, layout, symbolic: Some(Arc::clone(symbolic)), plan: 0 });
+            }
+        }
+        offers
+    }
+
+    fn same_pattern(&self, model: &Model, p: usize, q: usize) -> bool {
+        let [a, b] = [p, q].map(|p| model.bodies[p].body.stiffness.as_ref());
+        let keys = [p, q].map(|p| self.bodies[p].keys.map(|keys| keys[0]));
+        p == q || keys[0] == keys[1] && a.zip(b).is_some_and(|(a, b)| same_pattern(a, b))
+    }
+
+    /// Equal bodies without K+ get that of their twin.
+    fn share(&mut self, twins: &[usize]) {
+        for (p, &twin) in twins.iter().enumerate().filter(|(p, twin)| p != *twin) {
+            let (symbolic, inverse) =
+                (self.bodies[twin].symbolic.clone(), self.bodies[twin].inverse.as_ref());
+            let inverse = inverse.map(|of| {
+                let (kplus, grounded) = (Arc::clone(&of.kplus), Arc::clone(&of.grounded));
+                Inverse { kplus, grounded, operator: None, ..*of }
+            });
+            self.bodies[p].inverse = inverse;
+            self.bodies[p].symbolic = symbolic;
+        }
+    }
+
+    /// Operators for so many distinct rows on each body where the factors of the bodies have so many entries; refused where they
+    /// do not fit. Operators kept from the rows before are dropped if that helps. `more`: bytes of the factors that are not there
+    /// yet.
+    fn operators(
+        &mut self,
+        model: &Model,
+        rows: &[usize],
+        entries: &[usize],
+        more: usize,
+    ) -> Result<Operators> {
+        let (settings, there) = (&model.settings, self.bytes_of_factors());
+        let size = |((&rows, given), &entries): ((&usize, &GivenBody), &usize)| Size {
+            rows,
+            unknowns: given.body.order,
+            entries,
+        };
+        let sizes: Vec<Size> = rows.iter().zip(&model.bodies).zip(entries).map(size).collect();
+        let operators = Operators::new(settings, sizes, there.saturating_add(more));
+        let more = more.saturating_add(operators.bytes());
+        let inverses = self.bodies.iter().filter_map(|own| own.inverse.as_ref());
+        let kept: usize = inverses.filter_map(|inverse| inverse.operator.as_ref()).map(Kept::bytes).sum();
+        if kept > 0 && check_memory(settings, there, more.saturating_add(kept)).is_err() {
+            self.bodies.iter_mut().filter_map(|own| own.inverse.as_mut()).for_each(|of| of.operator = None);
+        }
+        check_memory(settings, there, more)?;
+        Ok(operators)
+    }
+
+    /// What rounding of the entries leaves open about the null spaces of these bodies.
+    fn tell_doubts(&self, model: &Model, bodies: &[usize], log: &mut Log) -> Result<()> {
+        for &p in bodies {
+            let number = p as i64 + model.settings.index_base;
+            let Some(kplus) = self.bodies[p].inverse.as_ref().map(|of| &of.kplus) else { continue };
+            if let Some(misfit) = kplus.misfit {
+                let text = || format!("warning: body {number}: {misfit}; its null space was sought in K");
+                log.say(LogLevel::Result, text)?;
+            }
+            for doubt in &kplus.doubts {
+                log.say(LogLevel::Result, || format!("warning: body {number}: {doubt}"))?;
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Null spaces and fixing dofs of the pending bodies.
+fn plans(model: &Model, pending: &[usize], watch: &mut Watch) -> Result<Vec<Plan>> {
+    let tolerance = model.settings.null_space_tolerance;
+    let part = Part::of(model.threads(), weights(model, pending), NULL_SPACES);
+    let find = |k: usize| plan(&model.bodies[pending[k]].body, tolerance).map_err(|e| e.body(pending[k]));
+    let mut plans: Vec<Option<Plan>> = pending.iter().map(|_| None).collect();
+    watch.every_body(&part, find, |k, plan| plans[k] = Some(plan))?;
+    Ok(plans.into_iter().flatten().collect())
+}
+
+/// Entries of K of these bodies.
+fn weights(model: &Model, bodies: &[usize]) -> Vec<f64> {
+    let entries = |&p: &usize| model.bodies[p].body.stiffness.as_ref().map_or(1, |k| k.col.len());
+    bodies.iter().map(|p| entries(p) as f64).collect()
+}
+
+/// Null space and fixing dofs of a body, found before anything is factorised.
+fn plan(body: &Body, tolerance: f64) -> Result<Plan> {
+    let missing = || Error::new(Kind::Internal, "a body without stiffness was set up");
+    let matrix = Arc::clone(body.stiffness.as_ref().ok_or_else(missing)?);
+    let k = Multiple { matrix, by: 1.0 / body.unit() };
+    let fixing = body.fixing.as_deref();
+    if let Some(given) = &body.null_space {
+        return GeneralizedInverse::plan_with(k, given, tolerance, fixing);
+    }
+    let Some(coordinates) = &body.coordinates else {
+        return GeneralizedInverse::search(k, tolerance, fixing);
+    };
+    let rigid = coordinates.rigid_modes(&k.matrix)?;
+    GeneralizedInverse::plan_near(k, &rigid, tolerance, fixing)
+}
+
+fn same_stiffness(model: &Model, p: usize, q: usize) -> bool {
+    let [a, b] = [p, q].map(|p| model.bodies[p].body.stiffness.as_ref());
+    a.zip(b).is_some_and(|(a, b)| same_matrix(a, b))
+}
+
+/// Unknowns of a matrix that are held so stiffly that their neighbours count for nothing.
+fn grounded_in(matrix: Option<&Arc<Symmetric>>) -> Result<Arc<[u32]>> {
+    matrix.map_or(Ok(Arc::from([])), |k| grounded((&**k).into()).map(Arc::from))
+}
+
+/// Bodies, their plans, and the bodies whose factors serve them.
+type Planned<'a> = (&'a [usize], Vec<Plan>, Vec<Option<usize>>);
+
+/// A symbolic analysis that is there or, by the plan of this number, going to be made.
+struct Offer {
+    /// A body with its pattern.
+    body: usize,
+    layout: Arc<Layout>,
+    symbolic: Option<Arc<Symbolic>>,
+    plan: usize,
+}
+
+/// The first of the offers that serves the plan of a body; its own, if it has one, before those of others.
+fn choose(
+    plan: &mut Plan,
+    own: Option<&Arc<Symbolic>>,
+    offers: &[Offer],
+    same_pattern: impl Fn(usize) -> bool,
+) -> Result<Option<usize>> {
+    let is_own = |offer: &Offer| offer.symbolic.as_ref().zip(own).is_some_and(|(a, b)| Arc::ptr_eq(a, b));
+    let own = offers.iter().position(is_own);
+    let others = (0..offers.len()).filter(|&o| Some(o) != own && same_pattern(offers[o].body));
+    for o in own.into_iter().chain(others.take(TRIED)) {
+        if plan.follow(&offers[o].layout)? {
+            return Ok(Some(o));
+        }
+    }
+    Ok(None)
+}
+
+/// The first member of every one's class: those that are the same as it.
+fn classes<K: Eq + Hash>(
+    count: usize,
+    key: impl Fn(usize) -> K,
+    same: impl Fn(usize, usize) -> bool,
+) -> Vec<usize> {
+    let mut first_of: HashMap<K, Vec<usize>> = HashMap::new();
+    let class = |p: usize| {
+        let firsts = first_of.entry(key(p)).or_default();
+        firsts.iter().copied().find(|&q| same(p, q)).unwrap_or_else(|| {
+            firsts.push(p);
+            p
+        })
+    };
+    (0..count).map(class).collect()
+}

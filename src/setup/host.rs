@@ -1,0 +1,67 @@
+//! Bodies whose stiffness the host keeps, K and K+ by its functions.
+
+use std::sync::Arc;
+use std::time::Instant;
+
+use crate::body::{Body, GeneralizedInverse, HostMultiple, Modes, NullSpaceInput, TOGETHER};
+use crate::error::{Error, Kind, Result};
+use crate::model::Model;
+use crate::progress::{Part, Phase, Watch};
+use crate::setup::prepared::{Inverse, Prepared};
+
+/// Fraction of a setup that is done once the functions of the host have been tried.
+const TRIED: f64 = 0.03;
+
+impl Prepared {
+    /// K+ of those bodies of the host that have none: their functions are tried.
+    pub(super) fn try_hosts(&mut self, model: &Model, watch: &mut Watch) -> Result<()> {
+        let pending =
+            |&p: &usize| self.bodies[p].inverse.is_none() && model.bodies[p].body.operator.is_some();
+        let pending: Vec<usize> = (0..self.bodies.len()).filter(pending).collect();
+        if pending.is_empty() {
+            return Ok(());
+        }
+        let begun = Instant::now();
+        let part = Part {
+            threads: model.threads(),
+            weights: pending.iter().map(|&p| model.bodies[p].body.order as f64).collect(),
+            until: TRIED,
+            on_caller: model.on_caller(&pending),
+        };
+        let tolerance = model.settings.null_space_tolerance;
+        let make = |k: usize| {
+            host_inverse(&model.bodies[pending[k]].body, tolerance).map_err(|e| e.body(pending[k]))
+        };
+        let mut made: Vec<Option<GeneralizedInverse>> = pending.iter().map(|_| None).collect();
+        let ended = watch.every_body(&part, make, |k, inverse| made[k] = Some(inverse));
+        for (&p, made) in pending.iter().zip(made) {
+            let bytes = 2 * TOGETHER * size_of::<f64>() * model.bodies[p].body.order;
+            let unit = model.bodies[p].body.unit();
+            let inverse = made.map(|made| {
+                let (kplus, grounded) = (Arc::new(made), Arc::from([]));
+                Inverse { unit, kplus, grounded, bytes, operator: None }
+            });
+            self.bodies[p].inverse = inverse;
+        }
+        watch.phases.ended(Phase::NullSpaces, begun);
+        ended
+    }
+}
+
+fn host_inverse(body: &Body, tolerance: f64) -> Result<GeneralizedInverse> {
+    let missing = || Error::new(Kind::Internal, "a body without functions of the host was tried");
+    let operator = Arc::clone(body.operator.as_ref().ok_or_else(missing)?);
+    if body.fixing.is_some() {
+        let what = "fixing dofs were given, and K+ of this body is the host's";
+        return Err(Error::new(Kind::Unsupported, what));
+    }
+    let k = HostMultiple { operator, unit: body.unit() };
+    if let Some(given) = &body.null_space {
+        return GeneralizedInverse::of_host(k, given, tolerance);
+    }
+    let missing = || Error::new(Kind::State, "the null space has not been given");
+    let coordinates = body.coordinates.as_ref().ok_or_else(missing)?;
+    let vectors = coordinates.rigid_modes_of_one(|dof| k.operator.diagonal(dof) > 0.0)?;
+    let candidates = NullSpaceInput { vectors, modes: Modes::Candidates };
+    GeneralizedInverse::of_host(k, &candidates, tolerance)
+}

@@ -1,0 +1,16 @@
+//! What is computed of a model once, for any load and gap: null spaces, factors, scaled rows, dual operators.
+
+mod build;
+mod factors;
+mod host;
+mod islands;
+mod operators;
+mod preconditioner;
+mod prepared;
+mod ready;
+mod room;
+mod rows;
+
+pub use islands::{Island, Members};
+pub use prepared::{Duals, Inverse, Prepared, Work};
+pub use ready::Ready;

@@ -1,0 +1,77 @@
+//! Which bodies get an explicit dual operator, and whether factors and operators fit into memory.
+
+use crate::dual::{all_bytes, implicit_bodies, Size};
+use crate::error::{Error, Kind, Result};
+use crate::model::{OperatorForm, Settings};
+use crate::platform::memory::available;
+
+/// The local dual operators as they are to be made.
+pub struct Operators {
+    /// Options they were chosen by.
+    options: Options,
+    pub sizes: Vec<Size>,
+    pub implicit: Vec<bool>,
+    /// Bytes of all factors, those that bodies share once, and at most of the work arrays of their computation.
+    pub factor_bytes: usize,
+}
+
+/// Option dual_operator and the limit of memory.
+type Options = (OperatorForm, Option<usize>);
+
+impl Operators {
+    /// As the options and the memory that factors of so many bytes leave suggest.
+    pub fn new(settings: &Settings, sizes: Vec<Size>, factor_bytes: usize) -> Self {
+        let implicit = implicit(settings, &sizes, factor_bytes);
+        Self { options: options(settings), sizes, implicit, factor_bytes }
+    }
+
+    pub fn bytes(&self) -> usize {
+        all_bytes(&self.sizes, &self.implicit)
+    }
+
+    /// Work of the assembly of each, in operations.
+    pub fn weights(&self) -> Vec<f64> {
+        let sizes = self.sizes.iter().zip(&self.implicit);
+        sizes.map(|(size, implicit)| 1.0 + if *implicit { 0.0 } else { size.assembly() }).collect()
+    }
+
+    /// True where these options would have the operators as they are.
+    pub fn suit(&self, settings: &Settings) -> bool {
+        options(settings) == self.options
+            || implicit(settings, &self.sizes, self.factor_bytes) == self.implicit
+    }
+
+    /// `more` bytes besides factors and operators that are there, against the limit of the host.
+    pub fn check_more(&self, settings: &Settings, more: usize) -> Result<()> {
+        check_memory(settings, self.factor_bytes.saturating_add(self.bytes()), more)
+    }
+}
+
+/// True where the options want the operator of a body to be implicit.
+fn implicit(settings: &Settings, sizes: &[Size], factor_bytes: usize) -> Vec<bool> {
+    match settings.dual_operator {
+        OperatorForm::Explicit => vec![false; sizes.len()],
+        OperatorForm::Implicit => vec![true; sizes.len()],
+        OperatorForm::Automatic => {
+            implicit_bodies(sizes, memory_limit(settings).map(|limit| limit.saturating_sub(factor_bytes)))
+        }
+    }
+}
+
+fn options(settings: &Settings) -> Options {
+    (settings.dual_operator, memory_limit(settings))
+}
+
+fn memory_limit(settings: &Settings) -> Option<usize> {
+    usize::try_from(settings.memory_limit).ok().filter(|limit| *limit > 0)
+}
+
+/// Bytes that are there and more against the limit of the host, and those to come against what the system would give.
+pub fn check_memory(settings: &Settings, kept: usize, more: usize) -> Result<()> {
+    let needed = kept.saturating_add(more);
+    if let Some(limit) = memory_limit(settings).filter(|limit| needed > *limit) {
+        let what = format!("factors and dual operators take {needed} bytes, memory_limit is {limit}");
+        return Err(Error::new(Kind::Memory, what).value(needed as f64).limit(limit as f64));
+    }
+    available(more, "factors and dual operators")
+}

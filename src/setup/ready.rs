@@ -1,0 +1,67 @@
+//! The dual problem of an island, ready for any load and gap.
+
+use crate::dual::{Dual, Preconditioner};
+use crate::error::Result;
+use crate::model::Preconditioning;
+use crate::platform::memory::reserved;
+use crate::platform::threads;
+use crate::setup::islands::Island;
+use crate::setup::rows::DualRows;
+
+/// Multiplications of a product with F, a tenth of a millisecond, from which on several threads save time.
+const PARALLEL_PAYS: usize = 1 << 18;
+
+/// The dual problem of an island.
+pub struct Ready {
+    pub island: Island,
+    pub dual: Dual,
+    pub rows: DualRows,
+    /// The preconditioner and which one of the options it is.
+    pub preconditioner: Option<(Preconditioning, Preconditioner)>,
+}
+
+impl Ready {
+    /// Which preconditioner is there.
+    pub fn preconditioning(&self) -> Preconditioning {
+        self.preconditioner.as_ref().map_or(Preconditioning::None, |(kind, _)| *kind)
+    }
+
+    /// Threads for its products with F, of so many: one where they cost less than waking others.
+    pub fn product_threads(&self, threads: usize) -> usize {
+        if self.dual.product_work() < PARALLEL_PAYS {
+            1
+        } else {
+            threads
+        }
+    }
+
+    /// `B_p K_p+ f_p` of every body.
+    pub fn moved(&self, threads: usize, f: &[f64]) -> Result<Vec<Vec<f64>>> {
+        let on_caller = |p: usize| self.dual.solves_on_caller(p);
+        threads::run_apart(threads, self.dual.bodies(), on_caller, |p| self.dual.moved(p, f))
+    }
+
+    /// `sum_p |B_p u_p|`, row by row.
+    pub fn distances(
+        &self,
+        threads: usize,
+        moved: &[Vec<f64>],
+        x: &[f64],
+        alpha: &[f64],
+    ) -> Result<Vec<f64>> {
+        let on_caller = |p: usize| self.dual.multiplies_on_caller(p);
+        let in_parallel =
+            |count, task: &(dyn Fn(usize) -> _ + Sync)| threads::run_apart(threads, count, on_caller, task);
+        self.dual.distances(moved, x, alpha, &in_parallel)
+    }
+
+    /// `K+ f`, over the unknowns of the island.
+    pub fn displacement(&self, threads: usize, f: &[f64]) -> Result<Vec<f64>> {
+        let on_caller = |p: usize| self.dual.solves_on_caller(p);
+        let displacement = |p| self.dual.displacement(p, f);
+        let bodies = threads::run_apart(threads, self.dual.bodies(), on_caller, displacement)?;
+        let mut all = reserved(f.len(), "a displacement")?;
+        bodies.iter().for_each(|u| all.extend_from_slice(u));
+        Ok(all)
+    }
+}

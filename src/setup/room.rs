@@ -1,0 +1,50 @@
+//! Room for the vectors that a call makes over unknowns, rows and modes. Factors and dual operators are not among them:
+//! each is reserved when its size is known.
+
+use crate::error::Result;
+use crate::model::{Model, PER_ENTRY};
+use crate::platform::memory::{self, Room, PRODUCTS};
+use crate::setup::prepared::Prepared;
+
+/// Bytes per unknown: loads, displacements, reactions and the certificate, about 16 vectors at a time.
+const PER_DOF: usize = 160;
+/// Bytes per row: multipliers, gradients, directions kept with their images, and the certificate.
+const PER_ROW: usize = 640 + 2 * size_of::<f64>() * crate::qp::KEPT;
+/// Bytes per entry of `G' = B R`, while it grows.
+const PER_COARSE_ENTRY: usize = 64;
+/// Bytes for the rooms that parts of a call ask for on the thread that called.
+const INSIDE: usize = PRODUCTS + (1 << 20);
+/// Bytes per rigid mode: vectors of the coarse problem. Its matrices, sparse or dense, have rooms of their own.
+const PER_MODE: usize = 320;
+
+impl Prepared {
+    /// Room for setup, solve and check, for as long as the result is kept.
+    pub fn working_room(&self, model: &Model) -> Result<Room> {
+        let rows = model.contact.len() + model.equalities.len();
+        // A body without stiffness is refused before anything is made of its size.
+        let dofs: usize = model.bodies.iter().filter_map(|given| given.body.k()).map(|k| k.order()).sum();
+        let entries = model.contact.matrix.col.len() + model.equalities.matrix.col.len();
+        let modes_of = |p: usize| self.modes(model, p);
+        let modes: usize = (0..model.bodies.len()).map(modes_of).sum();
+        let most = (0..model.bodies.len()).map(modes_of).max().unwrap_or(0);
+        let coarse_entries = entries.saturating_mul(most).min(rows.saturating_mul(modes));
+        let bytes = dofs * PER_DOF + rows * PER_ROW + entries * PER_ENTRY + modes * PER_MODE + PRODUCTS;
+        let bytes = bytes.saturating_add(coarse_entries.saturating_mul(PER_COARSE_ENTRY));
+        memory::room_with(bytes, INSIDE, "the vectors of a solve")
+    }
+
+    /// The same for a call that needs the setup alone: none where it is there.
+    pub fn setup_room(&self, model: &Model) -> Result<Option<Room>> {
+        if self.is_up_to_date(model) {
+            return Ok(None);
+        }
+        self.working_room(model).map(Some)
+    }
+
+    /// Dimension of the null space of a body; six rigid motions where it has not been found yet.
+    fn modes(&self, model: &Model, body: usize) -> usize {
+        let found = self.inverse(model, body).map(|inverse| inverse.kplus.null_space.cols);
+        let given = model.bodies[body].body.null_space.as_ref().map(|given| given.vectors.cols);
+        found.or(given).unwrap_or(6)
+    }
+}

@@ -1,0 +1,94 @@
+//! The rows of the dual problem of an island from those of the host: scaled, one for each group of parallel ones, decoupled.
+
+use crate::constraints::{row_scales, Decoupling, Grouping, RowKind, UnitRows};
+use crate::error::Result;
+use crate::linalg::Csr;
+use crate::setup::islands::{Island, Members};
+
+/// Rows of the dual, and the way to them: S, groups, L.
+pub struct DualRows {
+    /// One row for each group of parallel rows of `S [B; H]`.
+    pub scaled: Csr,
+    /// B' of `scaled = L B'`: what F and G are formed of.
+    pub matrix: Csr,
+    /// Diagonal of C' with `2^p S C S = L C'L'`: 1/k without unit, 0 where rigid.
+    pub compliance: Vec<f64>,
+    /// `D / 2^p` over the unknowns of the island.
+    pub metric: Vec<f64>,
+    /// s_i of every row, contact rows first, `length^-1` in units of 2^p; 0 for rigid rows without entries.
+    pub scale: Vec<f64>,
+    pub grouping: Grouping,
+    pub decoupling: Decoupling,
+    /// L = I, whatever the rows.
+    pub coupled: bool,
+    /// Number of contact rows.
+    pub contact: usize,
+    /// A row joins bodies whose stiffnesses there are far apart.
+    pub uneven: bool,
+}
+
+/// Shares of `b D^-1 b'` that differ by more than this are far apart: rounding of the one is much to the other.
+const UNEVEN: f64 = 1e4;
+
+/// A row joins bodies whose shares of `b D^-1 b'` are far apart.
+fn is_uneven(rows: &Csr, metric: &[f64], island: &Island) -> bool {
+    (0..rows.rows()).any(|i| {
+        let mut shares: Vec<(usize, f64)> = Vec::new();
+        for (j, v) in rows.row(i) {
+            let share = v * v / metric[j];
+            let body = island.body_of(j);
+            match shares.last_mut() {
+                Some(last) if last.0 == body => last.1 += share,
+                _ => shares.push((body, share)),
+            }
+        }
+        let most = shares.iter().map(|share| share.1).fold(0.0, f64::max);
+        shares.iter().any(|share| UNEVEN * share.1 < most)
+    })
+}
+
+impl DualRows {
+    /// Of an island; `metric` is D / 2^p over its unknowns. `coupled` rows are those of the host but for their scales.
+    pub fn of(island: &Island, metric: Vec<f64>, coupled: bool) -> Result<Self> {
+        let mut all = Csr::empty(metric.len());
+        let (mut scale, mut compliances) = (Vec::new(), Vec::new());
+        for kind in [RowKind::Inequality, RowKind::Equality] {
+            let Members { numbers, rows } = island.members(kind);
+            let scales = row_scales(rows, &metric, island.unit);
+            rows.check_scales(kind, &scales).map_err(|e| match e.place.row {
+                Some(row) => e.row(numbers[row]),
+                None => e,
+            })?;
+            for (i, s) in scales.iter().enumerate() {
+                all.push_row(rows.matrix.row(i).map(|(j, v)| (j, s * v)));
+                compliances.push(s * s * (island.unit * rows.compliance[i]));
+            }
+            scale.extend(scales);
+        }
+        let contact = island.contact.numbers.len();
+        let grouping = Grouping::of(&all, contact, &metric, |i| compliances[i] > 0.0);
+        let mut scaled = Csr::empty(metric.len());
+        grouping.leaders.iter().for_each(|&leader| scaled.push_row(all.row(leader)));
+        let compliance: Vec<f64> = grouping.leaders.iter().map(|&leader| compliances[leader]).collect();
+        let equalities = grouping.leaders.iter().filter(|&&leader| leader >= contact).count();
+        let given = UnitRows { matrix: &scaled, equalities, compliance: &compliance, metric: &metric };
+        let (decoupling, matrix) = if coupled { Decoupling::none(&scaled) } else { Decoupling::of(given)? };
+        let compliance = decoupling.compliance(&compliance);
+        let uneven = is_uneven(&scaled, &metric, island);
+        Ok(Self { scaled, matrix, compliance, metric, scale, grouping, decoupling, coupled, contact, uneven })
+    }
+
+    pub fn groups(&self) -> usize {
+        self.grouping.leaders.len()
+    }
+
+    /// Takes `B'x` from a load, by way of the rows and the forces of the host: where these cancel nothing is left.
+    pub fn take_forces(&self, x: &[f64], load: &mut [f64]) {
+        self.scaled.mul_transposed_add(-1.0, &self.decoupling.solve_transposed(x.to_vec()), load);
+    }
+
+    /// Kind of the multiplier of a group.
+    pub fn kind(&self, group: usize) -> RowKind {
+        self.grouping.kind(group, self.contact)
+    }
+}

@@ -1,0 +1,147 @@
+//! The answers of all islands put together.
+
+use crate::certificate::{Certificate, RowJudgement};
+use crate::constraints::{RowKind, RowSet};
+use crate::error::Result;
+use crate::model::Model;
+use crate::platform::memory::zeros;
+use crate::setup::{Members, Prepared, Ready};
+use crate::solve::every_island::Ends;
+use crate::solve::island::Solved;
+use crate::solve::recovery::{Ending, Recovered};
+use crate::solve::report::{Report, RowState};
+
+/// The answer of the last solve, in the units of the host. Not a number where a group of bodies has none.
+pub struct Answer {
+    pub report: Report,
+    pub u: Vec<f64>,
+    pub lambda: Vec<f64>,
+    pub mu: Vec<f64>,
+    /// Amplitudes of the rigid modes of every body.
+    pub alpha: Vec<Vec<f64>>,
+    /// c + C lambda - B u, length.
+    pub gaps: Vec<f64>,
+    pub states: Vec<RowState>,
+    /// Estimated relative error of the forces on every body, no unit.
+    pub force_errors: Vec<f64>,
+    /// Islands without an answer.
+    pub failed: Vec<bool>,
+}
+
+impl Answer {
+    /// None where no island has an answer.
+    pub fn new(model: &Model, prepared: &Prepared, ends: Ends) -> Result<Option<Self>> {
+        if ends.iter().all(std::result::Result::is_err) {
+            return Ok(None);
+        }
+        let counts = model.counts();
+        let rows = [&model.contact, &model.equalities];
+        let alone = [RowKind::Inequality, RowKind::Equality]
+            .map(|kind| rows[kind as usize].forces_without_entries(kind));
+        let [lambda, mu] = alone.map(Iterator::collect);
+        let mut answer = Self {
+            report: Report::new(model, prepared)?,
+            u: zeros(counts.dofs, "an answer")?,
+            lambda,
+            mu,
+            alpha: vec![Vec::new(); counts.bodies],
+            gaps: Vec::new(),
+            states: vec![RowState::Open; counts.rows],
+            force_errors: vec![f64::NAN; counts.bodies],
+            failed: ends.iter().map(std::result::Result::is_err).collect(),
+        };
+        let mut all: Option<Certificate> = None;
+        for (ready, end) in prepared.done(model)?.islands.iter().zip(ends) {
+            match end {
+                Ok(solved) => {
+                    let own = ready.island.named(solved.ending.judgement.certificate);
+                    match &mut all {
+                        None => all = Some(own),
+                        Some(all) => all.merge(&own),
+                    }
+                    answer.take_in(model, ready, solved);
+                }
+                Err(_) => answer.leave_out(model, ready),
+            }
+        }
+        answer.report.body.take_if(|_| answer.failed.len() == 1);
+        let mut certificate = all.unwrap_or_default();
+        certificate.energy += answer.take_in_rows_alone(model);
+        (answer.report.certificate, answer.report.energy) = (certificate, certificate.energy);
+        let gap = |i: usize| model.contact.open_gap(i, &answer.u, answer.lambda[i]);
+        answer.gaps = (0..counts.rows).map(gap).collect();
+        answer.report.active = answer.states.iter().filter(|state| **state == RowState::Closed).count();
+        Ok(Some(answer))
+    }
+
+    /// The answer of an island, and what it took.
+    fn take_in(&mut self, model: &Model, ready: &Ready, solved: Solved) {
+        let Solved { ending, outcome, finished, unheld, .. } = solved;
+        let Ending { solution, recovered, judgement, .. } = ending;
+        let island = &ready.island;
+        let states = states(ready, &recovered, &judgement.contact);
+        island.scatter(model, &recovered.u, &mut self.u);
+        island.contact.scatter(&recovered.lambda, &mut self.lambda);
+        island.contact.scatter(&states, &mut self.states);
+        island.equalities.scatter(&recovered.mu, &mut self.mu);
+        let alpha = ready.dual.amplitudes(&solution.alpha);
+        for (k, &p) in island.bodies.iter().enumerate() {
+            self.alpha[p] = alpha[ready.dual.modes_of(k)].to_vec();
+            self.force_errors[p] = judgement.bodies[k].force_error;
+        }
+        let report = &mut self.report;
+        if outcome > report.outcome {
+            (report.outcome, report.body) = (outcome, island.bodies.first().copied());
+        }
+        report.undetermined += solution.undetermined;
+        report.finished |= finished;
+        report.unheld = report.unheld.max(unheld);
+        report.count(&solution.counts);
+        let scale = solution.scale * island.unit.sqrt();
+        report.gap_scale = report.gap_scale.hypot(scale);
+    }
+
+    /// States of contact rows without entries; gives the energy of the springs among the rows of both kinds.
+    fn take_in_rows_alone(&mut self, model: &Model) -> f64 {
+        let contact = &model.contact;
+        for i in (0..contact.len()).filter(|&i| contact.is_empty_row(i)) {
+            self.states[i] = match (self.lambda[i] > 0.0, contact.rhs[i] > 0.0) {
+                (true, _) => RowState::Closed,
+                (false, true) => RowState::Open,
+                (false, false) => RowState::Weak,
+            };
+        }
+        let stored = |rows: &RowSet, forces: &[f64]| {
+            let alone = (0..rows.len()).filter(|&i| rows.is_empty_row(i));
+            alone.map(|i| 0.5 * rows.compliance[i] * forces[i] * forces[i]).sum::<f64>()
+        };
+        stored(contact, &self.lambda) + stored(&model.equalities, &self.mu)
+    }
+
+    fn leave_out(&mut self, model: &Model, ready: &Ready) {
+        let island = &ready.island;
+        island.scatter(model, &vec![f64::NAN; island.unknowns()], &mut self.u);
+        let none = |members: &Members| vec![f64::NAN; members.numbers.len()];
+        island.contact.scatter(&none(&island.contact), &mut self.lambda);
+        island.equalities.scatter(&none(&island.equalities), &mut self.mu);
+        island.contact.scatter(&vec![RowState::Unknown; island.contact.numbers.len()], &mut self.states);
+        for (k, &p) in island.bodies.iter().enumerate() {
+            self.alpha[p] = vec![f64::NAN; ready.dual.modes_of(k).len()];
+        }
+    }
+}
+
+/// By what the certificate takes for zero at every row: closed with a force, open with a gap, weak with neither.
+fn states(ready: &Ready, answer: &Recovered, zero: &[RowJudgement]) -> Vec<RowState> {
+    let (Recovered { u, lambda, .. }, rows) = (answer, &ready.island.contact.rows);
+    let state = |(i, zero): (usize, &RowJudgement)| {
+        if lambda[i] > zero.force {
+            RowState::Closed
+        } else if rows.open_gap(i, u, lambda[i]) > zero.gap {
+            RowState::Open
+        } else {
+            RowState::Weak
+        }
+    };
+    zero.iter().enumerate().map(state).collect()
+}

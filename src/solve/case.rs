@@ -1,0 +1,46 @@
+//! One island with the data of the host.
+
+use crate::certificate::{BodyData, Data};
+use crate::error::{Error, Kind, Result};
+use crate::model::Model;
+use crate::setup::{Island, Prepared, Ready};
+
+/// What the solution of one island goes by: what the host has given, and what has been computed of it.
+#[derive(Clone, Copy)]
+pub struct Case<'a> {
+    pub model: &'a Model,
+    pub prepared: &'a Prepared,
+    pub ready: &'a Ready,
+}
+
+impl<'a> Case<'a> {
+    pub fn island(&self) -> &'a Island {
+        &self.ready.island
+    }
+
+    pub fn threads(&self) -> usize {
+        self.model.threads()
+    }
+
+    /// The island as the certificate sees it.
+    pub fn data(&self) -> Result<Data<'a>> {
+        let missing = || Error::new(Kind::State, "a body has not been set up");
+        let (model, island) = (self.model, self.island());
+        let mut bodies = Vec::with_capacity(island.bodies.len());
+        for (&p, range) in island.bodies.iter().zip(&island.ranges) {
+            let body = &model.bodies[p].body;
+            let inverse = self.prepared.inverse(model, p).ok_or_else(missing)?;
+            bodies.push(BodyData {
+                start: range.start,
+                stiffness: body.k().ok_or_else(missing)?,
+                load: body.load.as_deref(),
+                null_space: &inverse.kplus.null_space,
+                unit: body.without(island.unit),
+                grounded: &inverse.grounded,
+            });
+        }
+        let limit = model.settings.certificate_tolerance;
+        let (contact, equalities) = (&island.contact.rows, &island.equalities.rows);
+        Ok(Data { bodies, contact, equalities, limit })
+    }
+}

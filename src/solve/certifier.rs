@@ -1,0 +1,233 @@
+//! The acceptance test of the methods: a point of the dual of one island is judged by the certificate of the answer that it gives.
+
+use std::time::{Duration, Instant};
+
+use crate::certificate::Judgement;
+use crate::error::Result;
+use crate::linalg::vector::norm;
+use crate::platform::memory::copied;
+use crate::qp::{Judge, Solution, Verdict};
+use crate::solve::finish::finish;
+use crate::solve::gaps::Gaps;
+use crate::solve::recovery::{Ending, Recovered, Recovery};
+
+/// Judges a point of the dual by the certificate of the answer recovered from it.
+pub struct Certifier<'a> {
+    pub recovery: Recovery<'a>,
+    /// The last point accepted, with its answer.
+    accepted: Option<Accepted>,
+    /// Time for answers recovered and certified.
+    pub spent: Duration,
+    /// Rows of the dual that are left out, and those of them that the last point goes through.
+    pub far: Vec<bool>,
+    pub reached: Vec<usize>,
+    /// Ratio of the worst entry of the point refused last.
+    missed: Option<f64>,
+}
+
+/// A point (x, alpha) of the dual whose answer has passed, and its amplitudes where it had to be brought to rest.
+struct Accepted {
+    point: (Vec<f64>, Vec<f64>),
+    alpha_at_rest: Option<Vec<f64>>,
+    deformed: Vec<f64>,
+    recovered: Recovered,
+    judgement: Judgement,
+}
+
+impl<'a> Certifier<'a> {
+    pub fn new(recovery: Recovery<'a>) -> Self {
+        let (far, reached, spent) = (Vec::new(), Vec::new(), Duration::ZERO);
+        Self { recovery, accepted: None, spent, far, reached, missed: None }
+    }
+
+    /// The answer of a solution; that of the point just accepted is there already.
+    pub fn ending(&mut self, mut solution: Solution) -> Result<Ending> {
+        let known = self.accepted.take();
+        let known = known.filter(|known| known.point.0 == solution.x && known.point.1 == solution.alpha);
+        if let Some(Accepted { alpha_at_rest, deformed, recovered, judgement, .. }) = known {
+            solution.alpha = alpha_at_rest.unwrap_or(solution.alpha);
+            return Ok(Ending { solution, deformed, recovered, judgement });
+        }
+        self.recovery.ending(solution)
+    }
+
+    /// The rows left out that a displacement goes through.
+    fn beyond(&self, u: &[f64]) -> Vec<usize> {
+        let (rows, gaps) = (&self.recovery.ready.rows.scaled, &self.recovery.scaled.gaps.value);
+        (0..self.far.len()).filter(|&i| self.far[i] && rows.row_dot(i, u) > gaps[i]).collect()
+    }
+}
+
+impl Judge for Certifier<'_> {
+    /// `|sum_p |B'_p u_p|| + |c'|`: lengths, whatever the choice of K+. Gaps count up to how far bodies move, and are moved
+    /// by rows that demand it: no gap that is never closed makes others seem small, and rows left out do not count.
+    fn scale(&mut self, x: &[f64], alpha: &[f64]) -> Result<f64> {
+        let recovery = &self.recovery;
+        let mut distances = recovery.ready.distances(recovery.threads, &recovery.scaled.moved, x, alpha)?;
+        let Gaps { dual, bounded, .. } = &recovery.scaled.gaps;
+        let mut gaps = dual.clone();
+        for (i, _) in self.far.iter().enumerate().filter(|(_, far)| **far) {
+            (distances[i], gaps[i]) = (0.0, 0.0);
+        }
+        let demanded = gaps.iter().zip(bounded).map(|(c, bounded)| if *bounded { c.min(0.0) } else { *c });
+        let reach = norm(&distances) + norm(&demanded.collect::<Vec<_>>());
+        Ok(norm(&distances) + norm(&gaps).min(reach))
+    }
+
+    fn accepts(&mut self, x: &[f64], alpha: &[f64]) -> Result<bool> {
+        let (begun, recovery) = (Instant::now(), &self.recovery);
+        let deformed = recovery.deformed(x)?;
+        let mut recovered = recovery.recover(&deformed, x, alpha);
+        // more steps may do what K+ would have to explain
+        let first = self.missed.is_none();
+        let mut judgement = match first {
+            true => recovery.judged_strictly(&recovered)?,
+            false => recovery.judged(&recovered)?,
+        };
+        let (mut alpha_at_rest, mut reached) = (None, Vec::new());
+        if !judgement.certificate.passed() {
+            // a travel that nothing resists may hide the rest
+            if let Some((rested, amplitudes)) = recovery.at_rest(&recovered, x, &deformed, false)? {
+                let at_rest = recovery.judged(&rested)?;
+                if at_rest.certificate.passed() {
+                    (recovered, judgement, alpha_at_rest) = (rested, at_rest, Some(amplitudes));
+                } else {
+                    reached = self.beyond(&rested.u);
+                }
+            } else {
+                reached = self.beyond(&recovered.u);
+            }
+        }
+        self.spent += begun.elapsed();
+        let passed = judgement.certificate.passed();
+        self.missed = Some(judgement.certificate.worst()).filter(|_| !passed);
+        if passed {
+            let point = (copied(x, "forces")?, copied(alpha, "amplitudes")?);
+            self.accepted = Some(Accepted { point, alpha_at_rest, deformed, recovered, judgement });
+        }
+        self.reached = reached;
+        // those rows come first: without them there is nothing to make better
+        Ok(passed || !self.reached.is_empty())
+    }
+
+    fn missed(&self) -> Option<f64> {
+        self.missed
+    }
+
+    fn mended(&mut self, solution: &Solution) -> Result<Option<Solution>> {
+        let begun = Instant::now();
+        let mut ending = self.ending(solution.clone())?;
+        self.recovery.bring_to_rest(&mut ending, false)?;
+        let mended = finish(&self.recovery, &mut ending)?;
+        self.spent += begun.elapsed();
+        if !mended && !ending.judgement.certificate.passed() {
+            return Ok(None);
+        }
+        let Ending { solution, deformed, recovered, judgement } = ending;
+        let point = (copied(&solution.x, "forces")?, copied(&solution.alpha, "amplitudes")?);
+        self.accepted = Some(Accepted { point, alpha_at_rest: None, deformed, recovered, judgement });
+        self.reached.clear();
+        Ok(Some(Solution { verdict: Verdict::Solved, ..solution }))
+    }
+
+    fn length(&self) -> Option<f64> {
+        let unit = self.recovery.ready.island.unit.sqrt();
+        let accepted = self.accepted.as_ref().filter(|_| self.reached.is_empty());
+        accepted.map(|accepted| accepted.judgement.length / unit)
+    }
+}
+
+#[cfg(test)]
+pub(super) mod tests {
+    use super::*;
+    use crate::body::{Modes, SparseInput, Storage};
+    use crate::constraints::{RowKind, RowsInput};
+    use crate::model::Model;
+    use crate::progress::{Host, Phases};
+    use crate::qp::Counts;
+    use crate::setup::Prepared;
+    use crate::solve::case::Case;
+    use crate::solve::island::{direct, scaled};
+    use crate::solve::recovery::Faces;
+
+    /// Springs 1 and 1 pushed by 3 and 1 against walls at 1 and 2, one body; `work` gets an answer whose first
+    /// force, 2, is wrong by the factor 1 + `error`.
+    pub fn two_springs(error: f64, work: impl Fn(&mut Certifier, &Solution)) {
+        let mut model = Model::new();
+        let body = model.add_body(2).unwrap();
+        let springs = SparseInput { ptr: &[0, 1, 2], col: &[0, 1], val: &[1.0; 2], storage: Storage::Lower };
+        model.set_stiffness(body, springs).unwrap();
+        model.set_null_space(body, 2, 0, &[], 2, Modes::Exact).unwrap();
+        model.set_load(body, &[3.0, 1.0]).unwrap();
+        let rows =
+            RowsInput { ptr: &[0, 1, 2], body: None, dof: &[0, 1], val: &[1.0, 1.0], rhs: Some(&[1.0, 2.0]) };
+        model.add_rows(RowKind::Inequality, rows).unwrap();
+        model.set_f64("certificate_tolerance", 1e-4).unwrap();
+        let (x, verdict) = (vec![2.0 * (1.0 + error), 0.0], Verdict::Solved);
+        let solved =
+            Solution { x, alpha: vec![], undetermined: 0, scale: 3.0, verdict, counts: Counts::default() };
+        judging(&model, |judge| work(judge, &solved));
+    }
+
+    /// `work` with the judge of the first island.
+    fn judging(model: &Model, work: impl Fn(&mut Certifier)) {
+        let (mut prepared, mut watch) =
+            (Prepared::default(), Host::default().watch(1e300, Phases::default()));
+        prepared.set_up(model, &mut watch).unwrap();
+        let ready = &prepared.done(model).unwrap().islands[0];
+        let case = Case { model, prepared: &prepared, ready };
+        let dual = scaled(case, &watch.stops).unwrap();
+        let (qp, direct) = (dual.qp(ready, &ready.dual), direct(case).unwrap());
+        let recovery = Recovery::new(case, &dual, Faces { qp, direct, stops: &watch.stops }).unwrap();
+        work(&mut Certifier::new(recovery));
+    }
+
+    #[test]
+    fn a_solution_ends_with_its_own_answer_whatever_has_been_accepted_before() {
+        two_springs(1e-6, |judge, solved| {
+            assert!(judge.accepts(&solved.x, &solved.alpha).unwrap());
+            let other = Solution { x: vec![2.0, 0.0], ..solved.clone() };
+            assert_eq!(judge.ending(other).unwrap().recovered.lambda, [2.0, 0.0]);
+            assert!(judge.accepts(&solved.x, &solved.alpha).unwrap());
+            assert_eq!(judge.ending(solved.clone()).unwrap().recovered.lambda, solved.x);
+        });
+    }
+
+    /// Springs 1 and 1 at walls: u = (3 - 2, 1 - 0), all scales 1; gaps (1, 2) are farther than that.
+    #[test]
+    fn the_scale_is_how_far_bodies_move_along_the_rows_and_their_gaps() {
+        two_springs(0.0, |judge, solved| {
+            let scale = judge.scale(&solved.x, &solved.alpha).unwrap();
+            assert!((scale - 2.0 * 2f64.sqrt()).abs() < 1e-14);
+        });
+    }
+
+    /// A free spring between dofs 0 and 1, rows on both: against the displacements that (17) gives.
+    #[test]
+    fn the_scale_counts_the_rigid_motion() {
+        let mut model = Model::new();
+        let body = model.add_body(2).unwrap();
+        let (ptr, col, val) = ([0, 1, 3], [0, 0, 1], [1.0, -1.0, 1.0]);
+        let spring = SparseInput { ptr: &ptr, col: &col, val: &val, storage: Storage::Lower };
+        model.set_stiffness(body, spring).unwrap();
+        model.set_load(body, &[3.0, 1.0]).unwrap();
+        let rows = RowsInput {
+            ptr: &[0, 1, 2],
+            body: None,
+            dof: &[0, 1],
+            val: &[1.0, -2.0],
+            rhs: Some(&[1.0, 2.0]),
+        };
+        model.add_rows(RowKind::Inequality, rows).unwrap();
+        judging(&model, |judge| {
+            for (x, alpha) in [([0.0, 0.0], 0.0), ([2.0, 0.0], -7.0), ([0.5, 1.5], 2.0)] {
+                let recovery = &judge.recovery;
+                let u = recovery.recover(&recovery.deformed(&x).unwrap(), &x, &[alpha]).u;
+                let moved = [0, 1].map(|i| recovery.ready.rows.matrix.row_dot(i, &u));
+                let expected = norm(&moved) + norm(&recovery.scaled.gaps.dual).min(norm(&moved));
+                let scale = judge.scale(&x, &[alpha]).unwrap();
+                assert!((scale - expected).abs() <= 1e-14 * expected, "{alpha}");
+            }
+        });
+    }
+}

@@ -1,0 +1,207 @@
+//! Rows whose gaps no displacement satisfies: combinations of them are tried on the data of the host.
+
+use std::cell::Cell;
+use std::collections::HashMap;
+
+use crate::certificate::{Response, NOISE};
+use crate::error::{Error, Kind, Result};
+use crate::linalg::twofold::Twofold;
+use crate::linalg::vector::{norm, norm_max, weighted_norm};
+use crate::linalg::Csr;
+use crate::model::proof_of_rows;
+use crate::qp::{nearest_point, Polyhedron};
+use crate::solve::case::Case;
+use crate::solve::gaps::Gaps;
+use crate::solve::response::ByInverse;
+
+/// A displacement so many times as large as all that rows demand and loads make is none that could satisfy the rows.
+const BEYOND: f64 = 1e6;
+/// Gaps may be differences of displacements so many times as large: their rounding is that of those.
+const TRAVELLED: f64 = 1e3;
+/// A weight below this part of the largest is none.
+const NEGLIGIBLE: f64 = 1e-8;
+/// Multiplications that a search which ends may take.
+const WORK: usize = 10_000_000_000;
+
+/// A combination of rows of the island, contact rows first, each with its weight times the scaled row `s_i b_i u <= s_i c_i`.
+pub type Weights = Vec<(usize, f64)>;
+
+/// Looks for proofs that the rows of an island contradict each other.
+pub struct Contradictions<'a> {
+    case: Case<'a>,
+    gaps: &'a Gaps,
+    /// V of the loads, once it has been asked for, force x length.
+    work: Cell<Option<f64>>,
+}
+
+/// Groups of rows that may contradict each other.
+pub struct Among {
+    pub groups: Vec<usize>,
+    /// The unknowns that they touch, each with a number from 0.
+    place: HashMap<usize, usize>,
+}
+
+impl<'a> Contradictions<'a> {
+    pub fn new(case: Case<'a>, gaps: &'a Gaps) -> Self {
+        Self { case, gaps, work: Cell::new(None) }
+    }
+
+    /// The error that names the rows, where a combination w of the groups of the dual, or what rows that take part in it
+    /// demand of each other, proves it. Compliant rows contradict nothing.
+    pub fn proved(&self, w: &[f64]) -> Result<Option<Error>> {
+        let rows = &self.case.ready.rows;
+        let negligible = NEGLIGIBLE * norm_max(w);
+        let counts = |group: &usize| rows.compliance[*group] == 0.0 && w[*group].abs() > negligible;
+        let groups: Vec<usize> = (0..w.len()).filter(counts).collect();
+        let weights = groups.iter().map(|&group| (self.gaps.holder[group], w[group])).collect();
+        match self.proof(weights)? {
+            Some(error) => Ok(Some(error)),
+            None => self.proved_among(&self.among(groups)),
+        }
+    }
+
+    /// The same by a method that ends for all of these groups, where they touch few unknowns: the displacement of least |u|_D
+    /// that satisfies them, or rows that none does.
+    pub fn proved_among(&self, among: &Among) -> Result<Option<Error>> {
+        let (rows, Among { groups, place }) = (&self.case.ready.rows, among);
+        if among.work() > WORK {
+            return Ok(None);
+        }
+        let (mut matrix, mut gap, mut of) = (Csr::empty(place.len()), Vec::new(), Vec::new());
+        for &group in groups {
+            let both = if self.gaps.bounded[group] { &[1.0][..] } else { &[1.0, -1.0] };
+            for sign in both {
+                let row = rows.scaled.row(group).map(|(j, v)| (place[&j], sign * v / rows.metric[j].sqrt()));
+                matrix.push_row(row);
+                gap.push(sign * self.gaps.value[group]);
+                of.push((self.gaps.holder[group], *sign));
+            }
+        }
+        let noise: Vec<f64> = gap.iter().map(|c| NOISE * c.abs()).collect();
+        let target = vec![0.0; place.len()];
+        let found = nearest_point(Polyhedron {
+            rows: &matrix,
+            gap: &gap,
+            target: &target,
+            noise: &noise,
+            rounding: 0.0,
+        });
+        let found = match found {
+            Ok(found) => found,
+            Err(error) if error.kind == Kind::Internal => return Ok(None),
+            Err(error) => return Err(error),
+        };
+        let of_rows = |w: Vec<(usize, f64)>| w.into_iter().map(|(k, w)| (of[k].0, of[k].1 * w)).collect();
+        // the forces l of the nearest point u prove best how far it is: B'l = -u, c'l = -|u|^2
+        let far = norm(&found.point) > BEYOND * self.demand();
+        let forces = found.forces.into_iter().enumerate().filter(|(_, force)| *force > 0.0);
+        let forces = far.then(|| forces.collect());
+        let mut proofs = found.contradictions.into_iter().chain(forces).map(|w| self.proof(of_rows(w)));
+        proofs.find_map(Result::transpose).transpose()
+    }
+
+    /// These groups with the unknowns that they touch.
+    pub fn among(&self, groups: Vec<usize>) -> Among {
+        let mut place = HashMap::new();
+        for (j, _) in groups.iter().flat_map(|&group| self.case.ready.rows.scaled.row(group)) {
+            let next = place.len();
+            place.entry(j).or_insert(next);
+        }
+        Among { groups, place }
+    }
+
+    /// `w'c + X |B'w|_{D^-1} + 64 eps (|w|'|c| + Y ||B|'|w||_{D^-1}) < 0` by the rows of the host: no displacement u of less than
+    /// X in the metric D satisfies them, nor if c is B u rounded for one of less than Y; X and Y are 10^6 and 10^3 times what the rows
+    /// demand and the loads make.
+    pub fn proof(&self, mut weights: Weights) -> Result<Option<Error>> {
+        let rows = &self.case.ready.rows;
+        merge(&mut weights);
+        let bounded = |i: usize| i < rows.contact;
+        if weights.iter().any(|&(i, w)| bounded(i) && w < 0.0) {
+            return Ok(None);
+        }
+        let unknowns = rows.scaled.cols;
+        let (mut left, mut terms) = (vec![Twofold::default(); unknowns], vec![0.0; unknowns]);
+        let (mut demanded, mut demands) = (Twofold::default(), 0.0);
+        for &(i, w) in &weights {
+            let (set, k) = self.case.ready.island.row(i);
+            let weight = w * rows.scale[i];
+            for (j, b) in set.matrix.row(k) {
+                left[j].add_product(weight, b);
+                terms[j] += (weight * b).abs();
+            }
+            demanded.add_product(weight, set.rhs[k]);
+            demands += (weight * set.rhs[k]).abs();
+        }
+        let left: Vec<f64> = left.into_iter().map(Twofold::value).collect();
+        let size = |x: &[f64]| weighted_norm(x, |j| 1.0 / rows.metric[j]);
+        let (left, terms, excess) = (size(&left), size(&terms), -demanded.value());
+        let proves =
+            |moved: f64| excess > BEYOND * moved * left + NOISE * (demands + TRAVELLED * moved * terms);
+        // what the loads move costs a product with K+
+        let proved = proves(self.demand()) && proves(self.moved()?);
+        Ok(proved.then(|| self.named(&weights, excess, demands)))
+    }
+
+    /// V^1/2 of the loads, a length in the metric D / 2^p.
+    fn moved(&self) -> Result<f64> {
+        let ready = self.case.ready;
+        let data = &self.case.data()?;
+        let work =
+            ByInverse { data, ready, threads: self.case.threads(), work: &self.work }.work_of_loads()?;
+        Ok((work / ready.island.unit).sqrt())
+    }
+
+    /// |S c_-, S_H h|: a length that the rows demand.
+    fn demand(&self) -> f64 {
+        let rows = &self.case.ready.rows;
+        let of = |i: usize| {
+            let (set, k) = self.case.ready.island.row(i);
+            let c = rows.scale[i] * set.rhs[k];
+            if i < rows.contact {
+                c.min(0.0)
+            } else {
+                c
+            }
+        };
+        let all: Vec<f64> = (0..rows.scale.len()).map(of).collect();
+        weighted_norm(&all, |_| 1.0)
+    }
+
+    fn named(&self, weights: &[(usize, f64)], excess: f64, demands: f64) -> Error {
+        let Case { model, ready, .. } = self.case;
+        let weight = |&(i, w): &(usize, f64)| (w * ready.rows.scale[i]).abs();
+        let heavier = |best, at| if weight(at) >= weight(best) { at } else { best };
+        let heaviest = weights.iter().fold(&weights[0], heavier).0;
+        let (kind, row) = ready.island.kind_and_row(heaviest);
+        let what = match weights.len() - 1 {
+            1 => format!("this {} and another row contradict each other", kind.name()),
+            others => format!("this {} and {others} others contradict each other", kind.name()),
+        };
+        let what = format!("{what}: no displacement satisfies them");
+        let error = Error::new(Kind::GapsContradict, what).row(row).value(-excess).limit(0.0);
+        let place = |i: usize| ready.island.in_stack(model.contact.len(), i);
+        let of_host = weights.iter().map(|&(i, w)| (place(i), w * ready.rows.scale[i])).collect();
+        error.proved_by(proof_of_rows(excess / demands, of_host, place(heaviest)))
+    }
+}
+
+impl Among {
+    /// Multiplications of a search among them that ends: a rotation of the unknowns for every active row, for each row that joins
+    /// or leaves.
+    pub fn work(&self) -> usize {
+        let (unknowns, active) = (self.place.len(), self.place.len().min(self.groups.len()));
+        4usize.saturating_mul(unknowns).saturating_mul(active).saturating_mul(active)
+    }
+}
+
+/// One weight for each row, none of zero.
+fn merge(weights: &mut Weights) {
+    weights.sort_by_key(|(i, _)| *i);
+    weights.dedup_by(|next, first| {
+        let same = next.0 == first.0;
+        first.1 += if same { next.1 } else { 0.0 };
+        same
+    });
+    weights.retain(|(_, w)| *w != 0.0);
+}

@@ -1,0 +1,217 @@
+//! Loads that no forces of the rows hold: how much of them, on which bodies, and whether that is proved.
+
+use crate::certificate::Data;
+use crate::error::{Error, Kind, Proof, Result};
+use crate::linalg::graph::{components, joined};
+use crate::linalg::twofold::Twofold;
+use crate::linalg::vector::{norm_max, ratio, weighted_norm};
+use crate::platform::memory::zeros;
+use crate::qp::{weighted, Restricted};
+use crate::setup::Ready;
+use crate::solve::case::Case;
+use crate::solve::scaled::Scaled;
+
+/// Up to this share of the load what is not held may be rounding of the load: there is an answer without it.
+pub const ROUNDING: f64 = 1e-10;
+/// Up to this share the answer without it is told, as marginal; beyond it there is none, where that is proved.
+pub const MARGINAL: f64 = 1e-7;
+/// Loads are told apart as far as this; those of a body without any are of that size.
+const RANGE: f64 = 1e-7;
+/// Rows and K resist a motion that so many times the load, and what that moves, could not hold.
+const BEYOND: f64 = 1e6;
+
+/// The part of a load that the forces which come nearest to it leave. Bodies with such a part that rows with a force or equality
+/// rows join are free to move together, a cluster; shares are of its load, |f|_{D^-1} without grounded unknowns.
+pub struct Unheld {
+    /// D R c over the unknowns of the island, in units of 2^p: what is left, as a load.
+    pub load: Vec<f64>,
+    /// R c, the motion that it drives.
+    motion: Vec<f64>,
+    /// The forces of the dual that leave it.
+    pub x: Vec<f64>,
+    /// The largest |D R c|_{D^-1} / |f|_{D^-1} of a cluster.
+    pub share: f64,
+    /// The largest of a body with a load, by itself.
+    pub of_body: f64,
+    /// |D R c| / |D R R'f| of this cluster.
+    margin: f64,
+    /// Body by body the cluster, |f|_{D^-1} of the body, and the share of the cluster; this is 0 for a body that is left nothing.
+    cluster: Vec<usize>,
+    loads: Vec<f64>,
+    shares: Vec<f64>,
+    /// Place in the island of the body that is left most, of the cluster with the largest share.
+    body: usize,
+}
+
+impl Unheld {
+    /// Of the forces that leave least of the load, |D R c|_{D^-1}; those of rows that are `far`, by number, are 0 (none where it is
+    /// empty).
+    pub fn least(data: &Data, ready: &Ready, scaled: &Scaled, far: &[bool]) -> Result<Self> {
+        Self::nearest(data, ready, scaled, far, &ready.dual.sizes_of_modes())
+    }
+
+    /// Of those that leave of each body as small a part of its own load as may be, so that what is rounding of a large load does
+    /// not press on a body with a small one; `None` without loads.
+    pub fn relative(data: &Data, ready: &Ready, scaled: &Scaled, far: &[bool]) -> Result<Option<Self>> {
+        let sizes = ready.dual.sizes_of_loads(&free(data, scaled.load.clone()), &ready.rows.metric);
+        let most = norm_max(&sizes);
+        let weights: Vec<f64> = sizes.iter().map(|size| most / size.max(RANGE * most)).collect();
+        (most > 0.0).then(|| Self::nearest(data, ready, scaled, far, &weights)).transpose()
+    }
+
+    /// Of those that leave least of the resultants, each times its weight.
+    fn nearest(data: &Data, ready: &Ready, scaled: &Scaled, far: &[bool], weights: &[f64]) -> Result<Self> {
+        let qp = scaled.qp(ready, &ready.dual);
+        let is_far = |i: &usize| far.get(*i).copied().unwrap_or(false);
+        let rows: Vec<usize> = (0..qp.b.len()).filter(|i| !is_far(i)).collect();
+        let near = Restricted::new(qp, &rows);
+        let (x, rest) = weighted(&near.qp(), weights)?;
+        Ok(Self::of(data, ready, scaled, near.spread(&x), &rest))
+    }
+
+    /// Of the forces x of the dual, which leave `rest` = e - G x.
+    fn of(data: &Data, ready: &Ready, scaled: &Scaled, x: Vec<f64>, rest: &[f64]) -> Self {
+        let (island, metric) = (&ready.island, &ready.rows.metric);
+        let as_load = |resultants: &[f64]| ready.dual.load_of(resultants, island.unknowns(), metric);
+        let sizes = |load: &[f64]| -> Vec<f64> {
+            let of_body = |range: &std::ops::Range<usize>| {
+                weighted_norm(&load[range.clone()], |j| 1.0 / metric[range.start + j])
+            };
+            island.ranges.iter().map(of_body).collect()
+        };
+        let load = as_load(rest);
+        let motion = load.iter().zip(metric).map(|(f, d)| f / d).collect();
+        let load = free(data, load);
+        let (left, resultants) = (sizes(&load), sizes(&free(data, as_load(&scaled.resultants))));
+        let loads = sizes(&free(data, scaled.load.clone()));
+        let (cluster, count) = clusters(ready, &x, &left);
+        let of_cluster = |k: usize, sizes: &[f64]| {
+            let own = (0..sizes.len()).filter(|&p| cluster[p] == k && left[p] > 0.0).map(|p| sizes[p]);
+            weighted_norm(&own.collect::<Vec<_>>(), |_| 1.0)
+        };
+        let of_clusters: Vec<f64> =
+            (0..count).map(|k| ratio(of_cluster(k, &left), of_cluster(k, &loads))).collect();
+        let share_of = |p: usize| if left[p] > 0.0 { of_clusters[cluster[p]] } else { 0.0 };
+        let shares: Vec<f64> = (0..left.len()).map(share_of).collect();
+        let worse = |best: usize, p: usize| {
+            let (p_is, best_is) = ((shares[p], left[p]), (shares[best], left[best]));
+            if p_is > best_is {
+                p
+            } else {
+                best
+            }
+        };
+        let body = (0..left.len()).fold(0, worse);
+        let worst = cluster.get(body).copied().unwrap_or(0);
+        let margin = ratio(of_cluster(worst, &left), of_cluster(worst, &resultants)).min(1.0);
+        let share = shares.get(body).copied().unwrap_or(0.0);
+        let loaded = (0..left.len()).filter(|&p| loads[p] > 0.0);
+        let of_body = loaded.map(|p| left[p] / loads[p]).fold(0.0, f64::max);
+        Self { load, motion, x, share, of_body, margin, cluster, loads, shares, body }
+    }
+
+    /// What is to be taken from the loads themselves; none where it is so little of each body, with a `share` of all, that it is
+    /// taken from their resultants alone.
+    pub fn load_to_take(&self, share: f64) -> Option<&[f64]> {
+        (share.max(self.of_body) > ROUNDING).then_some(&self.load)
+    }
+
+    /// So little that it may be rounding, or be told as marginal.
+    pub fn is_little(&self) -> bool {
+        self.share <= MARGINAL
+    }
+
+    /// The error that names a motion v = R c which proves that nothing holds the load: on the data of the host K does not
+    /// strain by it, and f'v is more than forces of `BEYOND` the load could do against the rows that resist. It moves the
+    /// cluster with the largest share, or all that are left more than a little, or all: loads of other bodies play no part.
+    pub fn proof(&self, case: Case, scaled: &Scaled) -> Result<Option<Error>> {
+        if self.is_little() {
+            return Ok(None);
+        }
+        let (ready, island) = (case.ready, case.island());
+        let worst = self.cluster[self.body];
+        let moves: [&dyn Fn(usize) -> bool; 3] =
+            [&|p| self.cluster[p] == worst, &|p| self.shares[p] > MARGINAL, &|p| self.shares[p] > 0.0];
+        for moves in moves {
+            let mut own = vec![0.0; self.motion.len()];
+            let moved: Vec<usize> = (0..self.loads.len()).filter(|&p| moves(p)).collect();
+            moved.iter().map(|&p| island.ranges[p].clone()).for_each(|range| {
+                own[range.clone()].copy_from_slice(&self.motion[range]);
+            });
+            let size = weighted_norm(&moved.iter().map(|&p| self.loads[p]).collect::<Vec<_>>(), |_| 1.0);
+            let mut work = Twofold::default();
+            scaled.load.iter().zip(&own).for_each(|(f, v)| work.add_product(*f, *v));
+            let resisted = BEYOND * (resistance(ready, &own) + strain(case, &own)?);
+            if work.value() > size * resisted {
+                let mut v = zeros(case.model.counts().dofs, "a motion")?;
+                island.scatter(case.model, &own, &mut v);
+                return Ok(Some(self.named(case, v)));
+            }
+        }
+        Ok(None)
+    }
+
+    fn named(&self, case: Case, mut v: Vec<f64>) -> Error {
+        let body = case.island().bodies[self.body];
+        let range = case.model.range(body);
+        let fastest =
+            range.clone().fold(range.start, |best, i| if v[i].abs() > v[best].abs() { i } else { best });
+        let sense = if v[fastest] > 0.0 { "positive" } else { "negative" };
+        let what = format!(
+            "the load moves the body and no contact force can hold it (|resultant| / |load| = {:.1e} of what moves with \
+             it); the motion is fastest at this dof, in the {sense} sense",
+            self.share
+        );
+        let largest = norm_max(&v);
+        v.iter_mut().for_each(|v| *v /= largest);
+        let dof = fastest - range.start;
+        let error = Error::new(Kind::LoadNotHeld, what).body(body).dof(dof).value(self.share).limit(MARGINAL);
+        let parts = case.model.bodies[body].body.stiffness.as_deref().map(components);
+        let error = match parts {
+            Some((part_of, 2..)) => error.component(part_of[dof]),
+            _ => error,
+        };
+        error.proved_by(Proof::Motion { margin: self.margin, v })
+    }
+}
+
+/// A load without what acts on grounded unknowns, which no rigid motion moves.
+pub fn free(data: &Data, mut load: Vec<f64>) -> Vec<f64> {
+    data.grounded().for_each(|j| load[j] = 0.0);
+    load
+}
+
+/// Label of the bodies that move together, and how many labels there are.
+fn clusters(ready: &Ready, x: &[f64], left: &[f64]) -> (Vec<usize>, usize) {
+    let (rows, island) = (&ready.rows, &ready.island);
+    let forces = rows.decoupling.solve_transposed(x.to_vec());
+    let joins = (0..forces.len()).filter(|&i| forces[i] != 0.0 || rows.grouping.leaders[i] >= rows.contact);
+    let bodies = joins.map(|i| {
+        let touched = rows.scaled.row(i).map(|(j, _)| island.body_of(j));
+        touched.filter(|&p| left[p] > 0.0)
+    });
+    joined(left.len(), bodies)
+}
+
+/// `|(S B v)_+, S_H H v|` by the rows of the host.
+fn resistance(ready: &Ready, v: &[f64]) -> f64 {
+    let along = |i: usize| {
+        let ((rows, k), mut sum) = (ready.island.row(i), Twofold::default());
+        rows.matrix.row(k).for_each(|(j, b)| sum.add_product(b, v[j]));
+        sum.value()
+    };
+    let is_contact = |i: usize| i < ready.rows.contact;
+    let resists = |(i, s): (usize, &f64)| s * if is_contact(i) { along(i).max(0.0) } else { along(i) };
+    let all: Vec<f64> = ready.rows.scale.iter().enumerate().map(resists).collect();
+    weighted_norm(&all, |_| 1.0)
+}
+
+/// `|K v|_{D^-1}` in units of 2^p.
+fn strain(case: Case, v: &[f64]) -> Result<f64> {
+    let Ready { rows, island, .. } = case.ready;
+    let mut strained = zeros(v.len(), "the strain of a motion")?;
+    for body in &case.data()?.bodies {
+        body.stiffness.mul(&v[body.range()], &mut strained[body.range()])?;
+    }
+    Ok(weighted_norm(&strained, |j| 1.0 / rows.metric[j]) / island.unit)
+}

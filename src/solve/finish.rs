@@ -1,0 +1,299 @@
+//! Option `finish`: after a solve, forces and displacements together are corrected by the residuals of the host's own data,
+//! each time on the rows that these data show to be in contact, until rounding is all that is left.
+
+use std::ops::Range;
+
+use crate::certificate::{Certificate, NOISE};
+use crate::error::{Kind, Result};
+use crate::linalg::vector::{axpy, weighted_norm};
+use crate::model::{FinishBy, Method, Settings};
+use crate::qp::{Face, Verdict};
+use crate::solve::gaps::Gaps;
+use crate::solve::recovery::{Ending, Faces, Recovery};
+
+/// Active sets at most.
+const FACES: usize = 8;
+/// Corrections on one of them at most.
+const CORRECTIONS: usize = 4;
+/// Ratios of the certificate below this are rounding.
+const ROUNDING: f64 = 1e-4;
+/// A ratio so many times another one is much better, or no worse.
+const MUCH_BETTER: f64 = 0.5;
+const NO_WORSE: f64 = 1.1;
+
+/// Beside soft bodies and rows that join uneven ones, forces that are so many times what they deform make errors of an answer much
+/// larger than its certificate. Beyond that rounding of the loads decides.
+const CANCELLING: Range<f64> = 1e4..1e9;
+
+/// So are errors of bodies beside others that are deformed so many times as much.
+const UNEVEN: f64 = 100.0;
+
+/// Whether the answer of an island is to be finished, as option `finish` has it. `automatic`: where an error that passes the
+/// certificate may be large elsewhere.
+pub fn is_to_finish(settings: &Settings, recovery: &Recovery, ending: &Ending) -> bool {
+    let default = settings.method == Method::Proportioning && settings.finish == FinishBy::Automatic;
+    let overlooked = ending.judgement.unevenness > UNEVEN;
+    settings.finish == FinishBy::Direct || default && (overlooked || is_delicate(recovery, ending))
+}
+
+fn is_delicate(recovery: &Recovery, ending: &Ending) -> bool {
+    CANCELLING.contains(&ending.judgement.leverage) || recovery.soft || recovery.ready.rows.uneven
+}
+
+/// True where `ending` was replaced by a corrected answer, which passes and whose certificate is no worse. Ended by the host or
+/// the time, or short of memory, it leaves what there was: that is solved.
+pub fn finish(recovery: &Recovery, ending: &mut Ending) -> Result<bool> {
+    let delicate = is_delicate(recovery, ending);
+    let mut finish = Finish { recovery, ending, delicate, replaced: false };
+    match finish.run() {
+        Ok(()) => {}
+        Err(error) if error.kind == Kind::Memory => {}
+        Err(error) => drop(Verdict::of_refusal(error)?),
+    }
+    let Finish { ending, replaced, .. } = finish;
+    if replaced {
+        recovery.bring_to_rest(ending, delicate)?;
+    }
+    Ok(replaced)
+}
+
+struct Finish<'a, 'b> {
+    recovery: &'b Recovery<'a>,
+    ending: &'b mut Ending,
+    /// Rounding of K on rigid motions is no strain; elsewhere K is taken as it stands.
+    delicate: bool,
+    replaced: bool,
+}
+
+impl Finish<'_, '_> {
+    /// Active sets one after the other, until one confirms itself or comes again.
+    fn run(&mut self) -> Result<()> {
+        let Faces { qp, direct, stops } = &self.recovery.faces;
+        let mut active = qp.at_bound(&self.ending.solution.x);
+        let mut point = Point::of(self.recovery, self.ending, self.delicate)?;
+        let mut visited: Vec<Vec<bool>> = Vec::new();
+        while visited.len() < FACES && !visited.contains(&active) {
+            let rows: Vec<usize> = (0..active.len()).filter(|&i| !active[i]).collect();
+            if rows.len() + point.alpha.len() > direct.limit {
+                break;
+            }
+            stops.check()?;
+            let Some(mut face) = Face::new(*qp, direct.entries, rows)? else { break };
+            self.ending.solution.counts.direct += 1;
+            point.hold(&active);
+            self.correct(&mut point, &face)?;
+            if face.is_truncated() {
+                face = face.in_full()?;
+                self.correct(&mut point, &face)?;
+            }
+            if !self.delicate && self.ending.judgement.certificate.worst() <= ROUNDING {
+                break;
+            }
+            visited.push(std::mem::replace(&mut active, point.active(self.recovery)));
+        }
+        Ok(())
+    }
+
+    /// Corrections on one face as long as each is less than half the one before; every answer on the way that is no worse
+    /// than the one there is takes its place.
+    fn correct(&mut self, point: &mut Point, face: &Face) -> Result<()> {
+        let mut last = f64::INFINITY;
+        for _ in 0..CORRECTIONS {
+            let size = point.correct(self.recovery, face)?;
+            self.keep(point, face)?;
+            if size >= 0.5 * last {
+                break;
+            }
+            last = size;
+        }
+        Ok(())
+    }
+
+    fn keep(&mut self, point: &Point, face: &Face) -> Result<()> {
+        let x = point.forces(&self.recovery.scaled.gaps.bounded);
+        let recovered = self.recovery.with_forces(point.displacement(), &x);
+        let judgement = self.recovery.judged(&recovered)?;
+        if is_better(&judgement.certificate, &self.ending.judgement.certificate) {
+            let solution = &mut self.ending.solution;
+            (solution.x, solution.alpha) = (x, point.alpha.clone());
+            solution.undetermined = face.undetermined();
+            (self.ending.recovered, self.ending.judgement) = (recovered, judgement);
+            self.ending.deformed = point.deformed(self.recovery);
+            self.replaced = true;
+        }
+        Ok(())
+    }
+}
+
+/// It passes, and is much better or in no entry worse but for rounding. Bodies that carry little beside others may lose their
+/// balance by what is rounding elsewhere.
+fn is_better(new: &Certificate, old: &Certificate) -> bool {
+    let mut entries = new.entries().into_iter().zip(old.entries());
+    let much = new.worst() <= MUCH_BETTER * old.worst();
+    new.passed() && (much || entries.all(|(new, old)| new.ratio <= (NO_WORSE * old.ratio).max(ROUNDING)))
+}
+
+/// Forces x and amplitudes alpha with u = v + w: w are motions that K does not resist, so large that v would lose its digits
+/// in them.
+struct Point {
+    v: Vec<f64>,
+    /// Amplitudes of the motions that v has.
+    beta: Vec<f64>,
+    w: Vec<f64>,
+    x: Vec<f64>,
+    alpha: Vec<f64>,
+    /// w is in use.
+    apart: bool,
+}
+
+impl Point {
+    /// The answer there is, or nothing where that does not pass: its forces may be lost in redundant rows.
+    fn of(recovery: &Recovery, ending: &Ending, apart: bool) -> Result<Self> {
+        let Ending { solution, judgement, .. } = ending;
+        let known = |v: &[f64]| if judgement.certificate.passed() { v.to_vec() } else { vec![0.0; v.len()] };
+        let x = known(&solution.x);
+        let mut point = Self::at_origin(recovery.deformed(&x)?, x, solution.alpha.len(), apart);
+        point.turn(recovery, &known(&solution.alpha))?;
+        Ok(point)
+    }
+
+    fn at_origin(v: Vec<f64>, x: Vec<f64>, modes: usize, apart: bool) -> Self {
+        Self { w: vec![0.0; v.len()], v, x, alpha: vec![0.0; modes], beta: vec![0.0; modes], apart }
+    }
+
+    /// Adds R a, and returns it.
+    fn turn(&mut self, recovery: &Recovery, a: &[f64]) -> Result<Vec<f64>> {
+        let dual = &recovery.ready.dual;
+        let whole = dual.rigid_motion(a, self.v.len());
+        let mut motion = whole.clone();
+        let bodies = recovery.data.bodies.len();
+        let apart = if self.apart { recovery.clean(&mut motion, &self.v)? } else { vec![false; bodies] };
+        for (k, (body, apart)) in recovery.data.bodies.iter().zip(apart).enumerate() {
+            let (range, modes) = (body.range(), dual.modes_of(k));
+            if apart {
+                axpy(1.0, &motion[range.clone()], &mut self.w[range]);
+            } else {
+                axpy(1.0, &motion[range.clone()], &mut self.v[range]);
+                axpy(1.0, &a[modes.clone()], &mut self.beta[modes]);
+            }
+        }
+        axpy(1.0, a, &mut self.alpha);
+        Ok(whole)
+    }
+
+    /// u - R alpha
+    fn deformed(&self, recovery: &Recovery) -> Vec<f64> {
+        let mut v = recovery.ready.dual.rigid_motion(&self.beta, self.v.len());
+        v.iter_mut().zip(&self.v).for_each(|(motion, v)| *motion = v - *motion);
+        v
+    }
+
+    /// u
+    fn displacement(&self) -> Vec<f64> {
+        let mut u = self.w.clone();
+        axpy(1.0, &self.v, &mut u);
+        u
+    }
+
+    fn gaps_left(&self, recovery: &Recovery) -> Vec<f64> {
+        recovery.gaps_left(&[&self.v, &self.w], &self.x)
+    }
+
+    /// No force on the rows of an active set.
+    fn hold(&mut self, active: &[bool]) {
+        self.x.iter_mut().zip(active).filter(|(_, held)| **held).for_each(|(x, _)| *x = 0.0);
+    }
+
+    /// x without what rounding has made of a force that is zero.
+    fn forces(&self, bounded: &[bool]) -> Vec<f64> {
+        let bounded = self.x.iter().zip(bounded);
+        bounded.map(|(x, bounded)| if *bounded { x.max(0.0) } else { *x }).collect()
+    }
+
+    /// Solves (10)-(11) on the face for the loads and gaps that are left, `f - K u - B'x` and `c + C x - B u`: errors of
+    /// F and of K+ fall with every correction. Its length, `|.|_D`.
+    fn correct(&mut self, recovery: &Recovery, face: &Face) -> Result<f64> {
+        let (dual, rows) = (&recovery.ready.dual, &recovery.ready.rows);
+        let mut load = recovery.load_left(&self.v, &self.x)?;
+        let left = self.gaps_left(recovery);
+        let mut gaps = vec![0.0; self.x.len()];
+        face.rows().iter().for_each(|&i| gaps[i] = left[i]);
+        let d = dual.rhs(&recovery.ready.moved(recovery.threads, &load)?, &gaps);
+        let force = face.rows().iter().map(|&i| d[i]).collect();
+        let (step, turn) = face.solve(force, &dual.resultants(&load))?;
+        let mut forces = vec![0.0; self.x.len()];
+        face.rows().iter().zip(step).for_each(|(&i, step)| forces[i] = step);
+        rows.take_forces(&forces, &mut load);
+        let mut moved = recovery.inverse(&load)?;
+        axpy(1.0, &moved, &mut self.v);
+        axpy(1.0, &self.turn(recovery, &turn)?, &mut moved);
+        axpy(1.0, &forces, &mut self.x);
+        Ok(weighted_norm(&moved, |i| rows.metric[i]))
+    }
+
+    /// The active set that signs of forces and gaps ask for.
+    fn active(&self, recovery: &Recovery) -> Vec<bool> {
+        let (left, rows) = (self.gaps_left(recovery), &recovery.ready.rows.scaled);
+        let u = self.displacement();
+        let Gaps { value, bounded, .. } = &recovery.scaled.gaps;
+        let terms = |i: usize| rows.row(i).map(|(j, v)| (v * u[j]).abs()).sum::<f64>();
+        let noise = |i: usize| NOISE * (value[i].abs() + terms(i));
+        // a gap that corrections leave open depends on others, which carry its force as well
+        let leaves = |i: usize| self.x[i] < 0.0 || left[i] > noise(i);
+        let stays = |i: usize| if self.x[i] == 0.0 { left[i] >= -noise(i) } else { leaves(i) };
+        (0..self.x.len()).map(|i| bounded[i] && stays(i)).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::qp::Solution;
+    use crate::solve::certifier::tests::two_springs;
+
+    /// Springs 1 and 1 pushed by 3 and 1 against walls at 1 and 2: only the first touches, lambda = 2.
+    #[test]
+    fn whatever_rows_the_answer_had_in_contact_it_ends_with_those_that_are() {
+        two_springs(1e-6, |judge, solved| {
+            let recovery = &judge.recovery;
+            for x in [[2.0 * (1.0 + 1e-6), 0.0], [2.0 * (1.0 + 1e-6), 1e-12]] {
+                let mut ending = recovery.ending(Solution { x: x.to_vec(), ..solved.clone() }).unwrap();
+                assert!(finish(recovery, &mut ending).unwrap(), "{x:?}");
+                assert_eq!(ending.solution.x, [2.0, 0.0]);
+                assert_eq!(
+                    (ending.recovered.u.as_slice(), ending.recovered.lambda.as_slice()),
+                    ([1.0, 1.0].as_slice(), [2.0, 0.0].as_slice())
+                );
+            }
+        });
+    }
+
+    #[test]
+    fn no_answer_is_kept_on_a_wrong_active_set() {
+        two_springs(1e-6, |judge, solved| {
+            let recovery = &judge.recovery;
+            for (rows, right) in [(vec![0], true), (vec![], false), (vec![1], false), (vec![0, 1], false)] {
+                let mut ending = recovery.ending(solved.clone()).unwrap();
+                let mut point = Point::at_origin(ending.recovered.u.clone(), solved.x.clone(), 0, false);
+                point.hold(&[0, 1].map(|i| !rows.contains(&i)));
+                let Faces { qp, direct, .. } = &recovery.faces;
+                let face = Face::new(*qp, direct.entries, rows.clone()).unwrap().unwrap();
+                let mut finish = Finish { recovery, ending: &mut ending, delicate: false, replaced: false };
+                finish.correct(&mut point, &face).unwrap();
+                assert_eq!(finish.replaced, right, "{rows:?}");
+                assert_eq!(ending.recovered.lambda == [2.0, 0.0], right, "{rows:?}");
+                assert_eq!(point.active(recovery), [false, true], "{rows:?}");
+            }
+        });
+    }
+
+    #[test]
+    fn a_force_that_rounding_has_made_negative_is_none_and_its_row_leaves() {
+        two_springs(0.0, |judge, _| {
+            let recovery = &judge.recovery;
+            let point = Point::at_origin(vec![1.0, 1.0], vec![2.0, -1e-20], 0, false);
+            assert_eq!(point.forces(&[true, true]), [2.0, 0.0]);
+            assert_eq!(point.active(recovery), [false, true]);
+        });
+    }
+}

@@ -1,0 +1,162 @@
+//! One island: solve the dual, recover the displacements, certify.
+
+use std::time::{Duration, Instant};
+
+use crate::error::Result;
+use crate::linalg::vector::norm_max;
+use crate::linalg::Operator;
+use crate::model::Model;
+use crate::progress::{Steps, Stops, Voice};
+use crate::qp::paper::Units;
+use crate::qp::{Direct, Solution, Verdict};
+use crate::solve::case::Case;
+use crate::solve::certifier::Certifier;
+use crate::solve::diagnosis::{Contradictions, Unheld, MARGINAL, ROUNDING};
+use crate::solve::fallback::Means;
+use crate::solve::finish::{finish, is_to_finish};
+use crate::solve::interruptible::Interruptible;
+use crate::solve::near::solve_near;
+use crate::solve::paper::{parameters, HostUnits};
+use crate::solve::presolve::presolve;
+use crate::solve::recovery::{Ending, Faces, Recovery};
+use crate::solve::report::Outcome;
+use crate::solve::scaled::Scaled;
+
+/// How the solution of one island ended.
+pub struct Solved {
+    pub ending: Ending,
+    pub outcome: Outcome,
+    /// The direct finish has replaced the answer.
+    pub finished: bool,
+    /// The largest share of the load of bodies that move together which nothing holds.
+    pub unheld: f64,
+    /// Time for answers recovered and certified, and for the recovery of the last.
+    pub judging: Duration,
+    pub recovering: Duration,
+}
+
+/// One try at an island.
+enum Attempt {
+    Ended(Box<Solved>),
+    /// No forces were found that hold the load, but for rows that are too far off to hold so little.
+    NotHeld {
+        far: Vec<bool>,
+    },
+}
+
+/// Solves (10)-(11) on one island, number `number`: the dual from x = `start`, the displacements, the certificate. The named reason
+/// why there is no answer is an error. What rounding has made of a load that nothing holds is taken from it.
+pub fn solve_island(
+    case: Case,
+    number: usize,
+    mut start: Vec<f64>,
+    stops: &Stops,
+    voice: &mut dyn Voice,
+) -> Result<Solved> {
+    let mut dual = scaled(case, stops)?;
+    loop {
+        match attempt(case, number, &dual, &start, stops, voice)? {
+            Attempt::Ended(solved) => return Ok(*solved),
+            Attempt::NotHeld { far } => {
+                let (data, ready) = (case.data()?, case.ready);
+                let least = Unheld::least(&data, ready, &dual, &far)?;
+                if let Some(error) = least.proof(case, &dual)? {
+                    return Err(error);
+                }
+                let share = least.share;
+                let relative = Unheld::relative(&data, ready, &dual, &far)?.filter(Unheld::is_little);
+                let left = relative.unwrap_or(least);
+                dual.take(case, &left.x, left.load_to_take(share), share)?;
+                start = left.x;
+            }
+        }
+    }
+}
+
+/// The loads and gaps of the host as the dual takes them; refuses rows whose gaps no displacement satisfies.
+pub fn scaled(case: Case, stops: &Stops) -> Result<Scaled> {
+    let ready = case.ready;
+    let mut load = ready.island.loads(case.model)?;
+    load.iter_mut().for_each(|f| *f /= ready.island.unit);
+    let moved = ready.moved(case.threads(), &load)?;
+    let farthest = moved.iter().map(|own| norm_max(own)).fold(0.0, f64::max);
+    let gaps = presolve(case, farthest, stops)?;
+    Ok(Scaled::new(ready, load, moved, gaps))
+}
+
+fn attempt(
+    case: Case,
+    number: usize,
+    dual: &Scaled,
+    start: &[f64],
+    stops: &Stops,
+    voice: &mut dyn Voice,
+) -> Result<Attempt> {
+    let (settings, ready) = (&case.model.settings, case.ready);
+    let f = Interruptible::new(&ready.dual, stops.clone(), ready.product_threads(case.threads()));
+    let (qp, direct) = (dual.qp(ready, &f), direct(case)?);
+    let mut judge = Certifier::new(Recovery::new(case, dual, Faces { qp, direct, stops })?);
+    let steps = &mut Steps::new(number, ready.island.unit, &dual.gaps.bounded, stops.clone(), voice);
+    let solution = match parameters(settings) {
+        Some(given) if given.units == Units::Printed => {
+            HostUnits::new(case, &dual.gaps, given)?.solve(qp, start, &mut judge, steps)?
+        }
+        _ => solve_near(&Means { settings, direct }, qp, start, &mut judge, steps)?,
+    };
+    let solution = match solution {
+        Solution { verdict: Verdict::Infeasible { .. }, .. } if dual.unheld.is_none() => {
+            return Ok(Attempt::NotHeld { far: judge.far });
+        }
+        solution => solution,
+    };
+    let (judging, recovering) = (judge.spent, Instant::now());
+    let mut ending = judge.ending(solution)?;
+    let recovery = &judge.recovery;
+    recovery.bring_to_rest(&mut ending, false)?;
+    let is_solved = ending.solution.verdict == Verdict::Solved;
+    let finished = is_solved && is_to_finish(settings, recovery, &ending) && finish(recovery, &mut ending)?;
+    let mut outcome = outcome(case, dual, &ending.solution)?;
+    if outcome == Outcome::Solved && !ending.judgement.certificate.passed() {
+        outcome = Outcome::Inaccurate;
+    }
+    if let Some(taken) = dual.unheld.as_ref().filter(|taken| taken.load.is_some()) {
+        // what the host is told is about its own load
+        ending.judgement = recovery.judged_on(&case.data()?, &ending.recovered)?;
+        let is_marginal = taken.share > ROUNDING || !ending.judgement.certificate.passed();
+        outcome = match outcome {
+            Outcome::Solved if taken.share > MARGINAL => Outcome::Inaccurate,
+            Outcome::Solved if is_marginal => Outcome::Marginal,
+            outcome => outcome,
+        };
+    }
+    let unheld = dual.unheld.as_ref().map_or(0.0, |taken| taken.share);
+    let recovering = recovering.elapsed();
+    Ok(Attempt::Ended(Box::new(Solved { ending, outcome, finished, unheld, judging, recovering })))
+}
+
+/// F for the direct method, which stays within the memory limit.
+pub fn direct(case: Case<'_>) -> Result<Direct<'_>> {
+    let Case { model: Model { settings, .. }, prepared, ready } = case;
+    let asked = usize::try_from(settings.direct_limit).unwrap_or(usize::MAX);
+    let most = asked.min(ready.dual.order() + ready.dual.modes());
+    let fits = prepared.done(case.model)?.operators.check_more(settings, Direct::bytes(most)).is_ok();
+    Ok(Direct { entries: &ready.dual, limit: if fits { most } else { 0 } })
+}
+
+/// How the solution ended, or the named reason why there is none.
+fn outcome(case: Case, dual: &Scaled, solution: &Solution) -> Result<Outcome> {
+    match &solution.verdict {
+        Verdict::Solved => Ok(Outcome::Solved),
+        Verdict::StepLimit => Ok(Outcome::Iterations),
+        Verdict::TimeLimit => Ok(Outcome::Time),
+        Verdict::Cancelled => Ok(Outcome::Cancelled),
+        Verdict::Stalled | Verdict::Infeasible { .. } => Ok(Outcome::Stalled),
+        Verdict::Inaccurate => Ok(Outcome::Inaccurate),
+        Verdict::Unbounded { p } => {
+            let w: Vec<f64> = p.iter().map(|p| -p).collect();
+            let w = case.ready.rows.decoupling.solve_transposed(w);
+            let proved = Contradictions::new(case, &dual.gaps).proved(&w)?;
+            proved.map_or(Ok(Outcome::Stalled), Err)
+        }
+    }
+}

@@ -1,0 +1,33 @@
+//! From a model that is set up to its answer: presolve, the methods on the dual, recovery of displacements, diagnosis.
+
+mod answer;
+mod case;
+mod certifier;
+mod diagnosis;
+mod every_island;
+mod fallback;
+mod finish;
+mod gaps;
+mod held;
+mod interruptible;
+mod island;
+mod near;
+mod paper;
+mod presolve;
+mod recovery;
+mod report;
+mod response;
+mod rest;
+mod rigid;
+mod scaled;
+mod start;
+mod travel;
+
+pub use answer::Answer;
+pub use case::Case;
+pub use every_island::solve_islands;
+pub use held::without_force;
+pub use island::Solved;
+pub use report::{Outcome, Report, RowState};
+pub use response::ByInverse;
+pub use start::Start;

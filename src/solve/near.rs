@@ -1,0 +1,71 @@
+//! Rows whose gaps are far beyond all that loads and rows move are left out of the dual, and join it only where bodies
+//! travel that far: where nothing else holds a load, where the answer without them goes through them, or where there is none
+//! without them.
+
+use crate::error::Result;
+use crate::progress::Steps;
+use crate::qp::{Block, Judged, Qp, Restricted, Solution, Verdict};
+use crate::solve::certifier::Certifier;
+use crate::solve::diagnosis::Unheld;
+use crate::solve::fallback::{gave_up, solve_dual, Means};
+use crate::solve::presolve::FAR;
+
+/// Solves the dual for the rows that matter; the forces of the others are 0.
+pub fn solve_near(
+    means: &Means,
+    qp: Qp,
+    start: &[f64],
+    judge: &mut Certifier,
+    steps: &mut Steps,
+) -> Result<Solution> {
+    let (ready, scaled) = (judge.recovery.ready, judge.recovery.scaled);
+    let (gaps, mut far) = (&scaled.gaps.value, scaled.gaps.far.clone());
+    let (mut start, mut before, mut given_up) = (start.to_vec(), Default::default(), None);
+    while far.contains(&true) {
+        let rows: Vec<usize> = (0..far.len()).filter(|&i| !far[i]).collect();
+        let (near, block) = (Restricted::new(qp, &rows), Block { whole: means.direct, rows: &rows });
+        steps.set_bounded(near.bounded());
+        judge.far.clone_from(&far);
+        judge.reached.clear();
+        let means = Means { direct: block.direct(), ..*means };
+        let solution = solve_dual(
+            &means,
+            near.qp(),
+            &near.start(&start),
+            &mut Judged { whole: judge, on: &near },
+            steps,
+        )?;
+        let solution = near.whole(solution);
+        before = before + solution.counts;
+        match &solution.verdict {
+            Verdict::Infeasible { .. }
+                if Unheld::least(&judge.recovery.data, ready, scaled, &far)?.is_little() =>
+            {
+                return Ok(Solution { counts: before, ..solution });
+            }
+            Verdict::Infeasible { .. } | Verdict::Unbounded { .. } => take_in_nearest(&mut far, gaps),
+            _ if judge.reached.is_empty() && gave_up(&solution) => {
+                take_in_nearest(&mut far, gaps);
+                given_up.get_or_insert(solution);
+            }
+            _ if judge.reached.is_empty() => return Ok(Solution { counts: before, ..solution }),
+            _ => {
+                judge.reached.iter().for_each(|&i| far[i] = false);
+                start = solution.x;
+            }
+        }
+    }
+    steps.set_bounded(qp.bounded);
+    judge.far.clear();
+    judge.reached.clear();
+    let solution = solve_dual(means, qp, &start, judge, steps)?;
+    let counts = before + solution.counts;
+    let solution = given_up.filter(|_| gave_up(&solution)).unwrap_or(solution);
+    Ok(Solution { counts, ..solution })
+}
+
+/// Of the rows that are far the nearest, and those up to `FAR` times as far, are so no longer.
+fn take_in_nearest(far: &mut [bool], gaps: &[f64]) {
+    let nearest = (0..far.len()).filter(|&i| far[i]).map(|i| gaps[i]).fold(f64::INFINITY, f64::min);
+    far.iter_mut().zip(gaps).for_each(|(far, gap)| *far &= *gap > FAR * nearest);
+}

@@ -1,0 +1,217 @@
+//! From a point of the dual of one island to the answer in the units of the host (17), what that answer leaves of loads and gaps, and
+//! the judgement of its certificate.
+
+use std::cell::{Cell, RefCell};
+
+use crate::certificate::{certify, Answer as AnswerView, BodyData, Data, Judgement, Unasked};
+use crate::error::Result;
+use crate::linalg::twofold::Twofold;
+use crate::linalg::vector::{axpy, weighted_norm};
+use crate::platform::memory::copied;
+use crate::progress::Stops;
+use crate::qp::{Direct, Qp, Solution};
+use crate::setup::Ready;
+use crate::solve::case::Case;
+use crate::solve::response::ByInverse;
+use crate::solve::rigid::{unresisted, Cleaner};
+use crate::solve::scaled::Scaled;
+
+/// Displacements and multipliers in the units of the host.
+#[derive(Clone)]
+pub struct Recovered {
+    pub u: Vec<f64>,
+    pub lambda: Vec<f64>,
+    pub mu: Vec<f64>,
+}
+
+impl Recovered {
+    pub fn view(&self) -> AnswerView<'_> {
+        AnswerView { u: &self.u, lambda: &self.lambda, mu: &self.mu }
+    }
+}
+
+/// What solutions on faces of the dual are made with, and when that has to end.
+pub struct Faces<'a> {
+    pub qp: Qp<'a>,
+    pub direct: Direct<'a>,
+    pub stops: &'a Stops,
+}
+
+/// What a solve ends with.
+pub struct Ending {
+    pub solution: Solution,
+    /// u but for a motion by R, length.
+    pub deformed: Vec<f64>,
+    pub recovered: Recovered,
+    pub judgement: Judgement,
+}
+
+/// Recovers and judges the answers of one island.
+pub struct Recovery<'a> {
+    pub ready: &'a Ready,
+    pub scaled: &'a Scaled,
+    pub data: Data<'a>,
+    pub threads: usize,
+    pub faces: Faces<'a>,
+    /// V of the loads, once it has been asked for.
+    work: Cell<Option<f64>>,
+    /// What cleans the motions of every body, once it has been asked for.
+    cleaners: RefCell<Vec<Option<Cleaner>>>,
+    /// Rounding grows by more than 1 / `SOFT` in K+ of a body.
+    pub soft: bool,
+}
+
+/// Least `softness` of a K+ whose losses do not matter.
+const SOFT: f64 = 1e-4;
+
+impl<'a> Recovery<'a> {
+    pub fn new(case: Case<'a>, scaled: &'a Scaled, faces: Faces<'a>) -> Result<Self> {
+        let (mut data, ready) = (case.data()?, case.ready);
+        if let Some(load) = scaled.unheld.as_ref().and_then(|taken| taken.load.as_ref()) {
+            data.bodies.iter_mut().for_each(|body| body.load = Some(&load[body.range()]));
+        }
+        let cleaners = RefCell::new(data.bodies.iter().map(|_| None).collect());
+        let is_soft = |p: &usize| {
+            let inverse = case.prepared.inverse(case.model, *p);
+            inverse.is_some_and(|inverse| inverse.kplus.softness < SOFT)
+        };
+        let soft = ready.island.bodies.iter().any(is_soft);
+        Ok(Self {
+            ready,
+            scaled,
+            data,
+            threads: case.threads(),
+            faces,
+            work: Cell::new(None),
+            cleaners,
+            soft,
+        })
+    }
+
+    /// (17) and lambda = 2^p S L'^-1 x on the rows that carry the multipliers of their groups, for u but for its motion.
+    pub fn recover(&self, deformed: &[f64], x: &[f64], alpha: &[f64]) -> Recovered {
+        let mut u = self.ready.dual.rigid_motion(alpha, deformed.len());
+        axpy(1.0, deformed, &mut u);
+        self.with_forces(u, x)
+    }
+
+    /// `K+ (f - B'x)`; where K+ is soft what it has lost is added, lest it be taken for a motion.
+    pub fn deformed(&self, x: &[f64]) -> Result<Vec<f64>> {
+        let mut load = copied(&self.scaled.load, "a displacement")?;
+        self.ready.rows.take_forces(x, &mut load);
+        let mut deformed = self.inverse(&load)?;
+        if self.soft {
+            let lost = self.inverse(&self.load_left(&deformed, x)?)?;
+            axpy(1.0, &lost, &mut deformed);
+        }
+        Ok(deformed)
+    }
+
+    /// `K+ f`
+    pub fn inverse(&self, load: &[f64]) -> Result<Vec<f64>> {
+        self.ready.displacement(self.threads, load)
+    }
+
+    /// An answer of u and x.
+    pub fn with_forces(&self, u: Vec<f64>, x: &[f64]) -> Recovered {
+        let (lambda, mu) = self.forces_of_host(x);
+        Recovered { u, lambda, mu }
+    }
+
+    /// `lambda = 2^p S L'^-1 x` and mu, on the rows that carry the multipliers of their groups.
+    pub fn forces_of_host(&self, x: &[f64]) -> (Vec<f64>, Vec<f64>) {
+        let ready = self.ready;
+        let mut lambda = vec![0.0; ready.rows.scale.len()];
+        let x = ready.rows.decoupling.solve_transposed(x.to_vec());
+        for (x, &holder) in x.iter().zip(&self.scaled.gaps.holder) {
+            lambda[holder] = x * ready.rows.scale[holder] * ready.island.unit;
+        }
+        let mu = lambda.split_off(ready.rows.contact);
+        (lambda, mu)
+    }
+
+    /// `f - K u - B'lambda - H'mu` in units of 2^p, for the forces of x.
+    pub fn load_left(&self, u: &[f64], x: &[f64]) -> Result<Vec<f64>> {
+        let unit = self.ready.island.unit;
+        let mut left: Vec<Twofold> = self.scaled.load.iter().map(|&f| f.into()).collect();
+        for body in &self.data.bodies {
+            body.stiffness.add_twofold(-1.0 / unit, &u[body.range()], &mut left[body.range()])?;
+        }
+        let (lambda, mu) = self.forces_of_host(x);
+        for (rows, forces) in [(self.data.contact, lambda), (self.data.equalities, mu)] {
+            for (i, force) in forces.iter().enumerate().filter(|(_, force)| **force != 0.0) {
+                rows.matrix.row(i).for_each(|(j, v)| left[j].add_product(-v, force / unit));
+            }
+        }
+        Ok(left.into_iter().map(Twofold::value).collect())
+    }
+
+    /// `c + C x - B u` of the rows of the dual, u being the sum of `parts`.
+    pub fn gaps_left(&self, parts: &[&[f64]], x: &[f64]) -> Vec<f64> {
+        let rows = &self.ready.rows;
+        let (lambda, mu) = self.forces_of_host(x);
+        let left = self.scaled.gaps.holder.iter().map(|&holder| {
+            let (set, i, force) = match holder.checked_sub(rows.contact) {
+                None => (self.data.contact, holder, lambda[holder]),
+                Some(i) => (self.data.equalities, i, mu[i]),
+            };
+            let mut left = Twofold::from(set.rhs[i]);
+            left.add_product(set.compliance[i], force);
+            for part in parts {
+                set.matrix.row(i).for_each(|(j, v)| left.add_product(-v, part[j]));
+            }
+            left.value() * rows.scale[holder]
+        });
+        rows.decoupling.solve(left.collect())
+    }
+
+    /// Of every body, whether the motion is larger than v and K resists it by rounding alone, if need be once it is cleaned.
+    pub fn clean(&self, motion: &mut [f64], v: &[f64]) -> Result<Vec<bool>> {
+        let length =
+            |body: &BodyData, u: &[f64]| weighted_norm(u, |i| self.ready.rows.metric[body.start + i]);
+        let mut cleaners = self.cleaners.borrow_mut();
+        let clean = |(body, cleaner): (&BodyData, &mut Option<Cleaner>)| {
+            let (motion, v) = (&mut motion[body.range()], &v[body.range()]);
+            Ok(length(body, motion) > length(body, v) && unresisted(body, motion, cleaner)?)
+        };
+        self.data.bodies.iter().zip(cleaners.iter_mut()).map(clean).collect()
+    }
+
+    /// The judgement of an answer.
+    pub fn judged(&self, answer: &Recovered) -> Result<Judgement> {
+        self.judged_on(&self.data, answer)
+    }
+
+    /// The same by data with other loads, but for rounding of those.
+    pub fn judged_on(&self, data: &Data, answer: &Recovered) -> Result<Judgement> {
+        let Self { ready, threads, work, .. } = self;
+        certify(data, answer.view(), &mut ByInverse { data, ready, threads: *threads, work })
+    }
+
+    /// The same where rounding of the loads excuses nothing, and K+ is not asked.
+    pub fn judged_strictly(&self, answer: &Recovered) -> Result<Judgement> {
+        certify(&self.data, answer.view(), &mut Unasked)
+    }
+
+    /// The answer of a solution.
+    pub fn ending(&self, solution: Solution) -> Result<Ending> {
+        let deformed = self.deformed(&solution.x)?;
+        let recovered = self.recover(&deformed, &solution.x, &solution.alpha);
+        let judgement = self.judged(&recovered)?;
+        Ok(Ending { solution, deformed, recovered, judgement })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::solve::certifier::tests::two_springs;
+
+    /// Springs 1 and 1 pushed by 3 and 1 against walls at 1 and 2.
+    #[test]
+    fn what_is_left_keeps_its_digits_where_large_numbers_cancel() {
+        two_springs(0.0, |judge, _| {
+            assert_eq!(judge.recovery.load_left(&[1e16, 0.0], &[-1e16, 0.0]).unwrap(), [3.0, 1.0]);
+            assert_eq!(judge.recovery.gaps_left(&[&[1e16, 1.0], &[-1e16, 0.0]], &[0.0; 2]), [1.0, 1.0]);
+        });
+    }
+}

@@ -1,0 +1,149 @@
+//! What a solve tells the host.
+
+use crate::certificate::Certificate;
+use crate::dual::Dual;
+use crate::error::Result;
+use crate::linalg::Operator;
+use crate::model::{Counts, Model};
+use crate::progress::PhaseReport;
+use crate::qp;
+use crate::setup::Prepared;
+
+/// How a solve ended with an answer; of several groups of bodies the last of these.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Outcome {
+    /// The certificate holds.
+    Solved,
+    /// The load is held only up to a part below 1e-7 of itself.
+    Marginal,
+    /// The dual is solved as well as rounding allows, and the certificate does not hold.
+    Inaccurate,
+    /// The method found no way to improve an answer whose certificate does not hold.
+    Stalled,
+    /// The limit of steps was reached first.
+    Iterations,
+    /// The time limit was reached first.
+    Time,
+    Cancelled,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum RowState {
+    /// The bodies are apart here, no force.
+    Open,
+    /// In contact, with a force.
+    Closed,
+    /// Touching without a force, to rounding.
+    Weak,
+    /// The bodies of the row are in a group that has no answer.
+    Unknown,
+}
+
+#[derive(Debug, Clone, PartialEq)]
+pub struct Report {
+    pub outcome: Outcome,
+    /// Where there are several groups of bodies and not all are solved, the first body of the one that ended so.
+    pub body: Option<usize>,
+    pub certificate: Certificate,
+    pub counts: Counts,
+    /// Dimension of the null spaces of all bodies.
+    pub floating_modes: usize,
+    /// Contact rows that are closed.
+    pub active: usize,
+    /// Rigid motions that no closed row resists: u is one of many.
+    pub undetermined: usize,
+    /// The largest share of the load of bodies that move together which nothing holds: |resultant| / |load|, no unit.
+    pub unheld: f64,
+    pub steps: usize,
+    pub cg_steps: usize,
+    pub expansions: usize,
+    pub releases: usize,
+    /// Outer iterations of an augmented Lagrangian; 0 for a method without one.
+    pub outer: usize,
+    /// Products with F.
+    pub dual_applications: usize,
+    pub coarse_solves: usize,
+    pub coarse_factorisations: usize,
+    /// Products with the preconditioner.
+    pub preconditioner_applications: usize,
+    /// Faces on which the dual was solved directly.
+    pub direct_solves: usize,
+    /// The direct finish followed (option `finish`), and its answer is kept.
+    pub finished: bool,
+    /// `|S|B||u|| + |S c|` at the first feasible forces: what the tolerance of the dual is relative to,
+    /// `(force x length)^1/2`.
+    pub gap_scale: f64,
+    /// As in `Work`.
+    pub factorisations: usize,
+    pub analyses: usize,
+    pub columns_computed: usize,
+    pub columns_kept: usize,
+    /// `1/2 u'K u - f'u + 1/2 lambda'C lambda + 1/2 mu'C mu`, force x length.
+    pub energy: f64,
+    pub seconds_setup: f64,
+    pub seconds_solve: f64,
+    /// Bodies whose dual operator has its entries, and those whose operator is known by its products alone.
+    pub explicit_operators: usize,
+    pub implicit_operators: usize,
+    /// Bytes of the factors and, at most, of the work arrays of their computation; of the explicit operators.
+    pub factor_bytes: usize,
+    pub operator_bytes: usize,
+    /// Time and memory of every phase, in their order.
+    pub phases: Vec<PhaseReport>,
+}
+
+impl Report {
+    /// Before any island has been solved.
+    pub fn new(model: &Model, prepared: &Prepared) -> Result<Self> {
+        let duals = prepared.done(model)?;
+        let sum = |of: fn(&Dual) -> usize| duals.islands.iter().map(|ready| of(&ready.dual)).sum();
+        Ok(Self {
+            outcome: Outcome::Solved,
+            body: None,
+            certificate: Certificate::default(),
+            counts: model.counts(),
+            floating_modes: sum(Dual::modes),
+            active: 0,
+            undetermined: 0,
+            unheld: 0.0,
+            steps: 0,
+            cg_steps: 0,
+            expansions: 0,
+            releases: 0,
+            outer: 0,
+            dual_applications: 0,
+            coarse_solves: 0,
+            coarse_factorisations: 0,
+            preconditioner_applications: 0,
+            direct_solves: 0,
+            finished: false,
+            gap_scale: 0.0,
+            factorisations: prepared.work.factorisations,
+            analyses: prepared.work.analyses,
+            columns_computed: prepared.work.columns_computed,
+            columns_kept: prepared.work.columns_kept,
+            energy: 0.0,
+            seconds_setup: 0.0,
+            seconds_solve: 0.0,
+            explicit_operators: sum(Dual::explicit_bodies),
+            implicit_operators: sum(Dual::implicit_bodies),
+            factor_bytes: duals.operators.factor_bytes,
+            operator_bytes: sum(Dual::bytes_kept),
+            phases: Vec::new(),
+        })
+    }
+
+    /// Adds the work on one island.
+    pub fn count(&mut self, counts: &qp::Counts) {
+        self.steps += counts.steps();
+        self.cg_steps += counts.conjugate_gradient;
+        self.expansions += counts.expansions;
+        self.releases += counts.releases;
+        self.outer += counts.outer;
+        self.dual_applications += counts.products;
+        self.coarse_solves += counts.coarse_solves;
+        self.coarse_factorisations += counts.coarse_factorisations;
+        self.preconditioner_applications += counts.preconditioned;
+        self.direct_solves += counts.direct;
+    }
+}

@@ -1,0 +1,100 @@
+//! Answers whose forces leave motions open are brought to rest: of them all the one of least travel is told.
+
+use crate::certificate::BodyData;
+use crate::error::Result;
+use crate::linalg::vector::axpy;
+use crate::linalg::Matrix;
+use crate::qp;
+use crate::setup::Island;
+use crate::solve::held::without_force;
+use crate::solve::recovery::{Ending, Recovered, Recovery};
+use crate::solve::travel::{travel, Change, Moving, Open};
+
+impl<'a> Recovery<'a> {
+    /// Of the answers that differ by motions which nothing resists the one of least travel takes the place of this one,
+    /// unless this one alone passes. `exact`: motions are cleaned of the errors of R.
+    pub fn bring_to_rest(&self, ending: &mut Ending, exact: bool) -> Result<()> {
+        if ending.solution.undetermined == 0 {
+            return Ok(());
+        }
+        let at_rest = self.at_rest(&ending.recovered, &ending.solution.x, &ending.deformed, exact)?;
+        let Some((recovered, alpha)) = at_rest else { return Ok(()) };
+        let judgement = self.judged(&recovered)?;
+        if judgement.certificate.passed() || !ending.judgement.certificate.passed() {
+            ending.solution.alpha = alpha;
+            (ending.recovered, ending.judgement) = (recovered, judgement);
+        }
+        Ok(())
+    }
+
+    /// The answer of least travel with its amplitudes, for the forces x; none where rows resist every motion. How far that
+    /// of the method has travelled plays no part, not even by its rounding.
+    pub fn at_rest(
+        &self,
+        answer: &Recovered,
+        x: &[f64],
+        deformed: &[f64],
+        exact: bool,
+    ) -> Result<Option<(Recovered, Vec<f64>)>> {
+        let dual = &self.ready.dual;
+        let load: Vec<f64> = self.scaled.load.iter().map(|f| f * self.ready.island.unit).collect();
+        let held = without_force(self.ready, &load, &answer.lambda, &answer.mu);
+        let free = qp::undetermined(&dual.coarse, &held, dual.rounding())?;
+        if free.cols == 0 {
+            return Ok(None);
+        }
+        let mut u = deformed.to_vec();
+        let open = self.gaps_left(&[&u], x);
+        let mut alpha = qp::fitted(&dual.coarse, &held, &open, dual.rounding())?;
+        let add = |mut motion: Vec<f64>, u: &mut [f64]| -> Result<()> {
+            if exact {
+                self.clean(&mut motion, u)?;
+            }
+            axpy(1.0, &motion, u);
+            Ok(())
+        };
+        add(dual.rigid_motion(&alpha, u.len()), &mut u)?;
+        let mut forces = answer.lambda.clone();
+        for (i, member) in self.ready.rows.grouping.member[..forces.len()].iter().enumerate() {
+            if member.is_some_and(|(group, _)| held[group]) {
+                forces[i] = 0.0;
+            }
+        }
+        let Some(change) = self.way_to_rest(&u, &forces, free) else { return Ok(None) };
+        add(change.u, &mut u)?;
+        for k in 0..self.data.bodies.len() {
+            let modes = dual.modes_of(k);
+            axpy(dual.size_of(k), &change.amplitudes[modes.clone()], &mut alpha[modes]);
+        }
+        Ok(Some((Recovered { u, ..answer.clone() }, alpha)))
+    }
+
+    /// What brings u to rest by the free motions; none where rounding leaves no way.
+    fn way_to_rest(&self, u: &[f64], lambda: &[f64], mut free: Matrix) -> Option<Change> {
+        let (dual, Island { ranges, .. }) = (&self.ready.dual, &self.ready.island);
+        for j in 0..free.cols {
+            let own = dual.amplitudes(free.col(j));
+            free.col_mut(j).copy_from_slice(&own);
+        }
+        let mut grounded = vec![false; u.len()];
+        self.data.grounded().for_each(|j| grounded[j] = true);
+        let moving = |(k, body): (usize, &BodyData<'a>)| Moving {
+            unknowns: ranges[k].clone(),
+            modes: dual.modes_of(k),
+            null_space: body.null_space,
+            rounding: dual.rounding(),
+        };
+        let contact = self.data.contact;
+        let open = Open {
+            bodies: &self.data.bodies.iter().enumerate().map(moving).collect::<Vec<_>>(),
+            amplitudes: &free,
+            metric: &self.ready.rows.metric,
+            grounded: &grounded,
+            rows: &contact.matrix,
+            gaps: &contact.rhs,
+            compliance: &contact.compliance,
+            lambda,
+        };
+        travel(&open, u).ok()
+    }
+}

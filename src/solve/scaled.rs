@@ -1,0 +1,72 @@
+//! Loads and gaps of an island as its dual takes them.
+
+use crate::dual::Preconditioner;
+use crate::error::Result;
+use crate::linalg::vector::axpy;
+use crate::linalg::Operator;
+use crate::qp::{self, Qp};
+use crate::setup::Ready;
+use crate::solve::case::Case;
+use crate::solve::gaps::Gaps;
+
+/// Loads and gaps as the dual takes them.
+pub struct Scaled {
+    /// f / 2^p
+    pub load: Vec<f64>,
+    pub gaps: Gaps,
+    /// `B_p K_p+ f_p` of every body.
+    pub moved: Vec<Vec<f64>>,
+    d: Vec<f64>,
+    /// `e = R'f`
+    pub resultants: Vec<f64>,
+    /// What has been taken from the loads because nothing holds it.
+    pub unheld: Option<Taken>,
+}
+
+/// Loads without what nothing holds of them.
+pub struct Taken {
+    /// The loads without it, force; none where it is so little of each body that only their resultants are without it.
+    pub load: Option<Vec<f64>>,
+    /// The largest |resultant| / |load| of bodies that move together.
+    pub share: f64,
+}
+
+impl Scaled {
+    /// `load` is f / 2^p, `moved` what it moves.
+    pub fn new(ready: &Ready, load: Vec<f64>, moved: Vec<Vec<f64>>, gaps: Gaps) -> Self {
+        let d = ready.dual.rhs(&moved, &gaps.dual);
+        let resultants = ready.dual.resultants(&load);
+        Self { load, gaps, moved, d, resultants, unheld: None }
+    }
+
+    /// Takes from the loads what forces x of the dual leave of them, of which nothing holds a `share`: from the loads themselves
+    /// those in units of 2^p that are given, else from their resultants alone.
+    pub fn take(&mut self, case: Case, x: &[f64], left: Option<&[f64]>, share: f64) -> Result<()> {
+        let ready = case.ready;
+        self.resultants.fill(0.0);
+        ready.dual.coarse.mul_transposed_add(1.0, x, &mut self.resultants);
+        let mut taken = Taken { load: None, share };
+        if let Some(left) = left {
+            axpy(-1.0, left, &mut self.load);
+            self.moved = ready.moved(case.threads(), &self.load)?;
+            self.d = ready.dual.rhs(&self.moved, &self.gaps.dual);
+            taken.load = Some(self.load.iter().map(|f| f * ready.island.unit).collect());
+        }
+        self.unheld = Some(taken);
+        Ok(())
+    }
+
+    pub fn qp<'a>(&'a self, ready: &'a Ready, a: &'a dyn Operator) -> Qp<'a> {
+        let g_transposed = &ready.dual.coarse;
+        let preconditioner = ready.preconditioner.as_ref().map(|(_, m)| m as &dyn qp::Preconditioner);
+        let (b, e, bounded, rounding) =
+            (&self.d, &self.resultants, &self.gaps.bounded, ready.dual.rounding());
+        Qp { a, b, g_transposed, rounding, e, bounded, preconditioner }
+    }
+}
+
+impl qp::Preconditioner for Preconditioner {
+    fn apply(&self, held: &[bool], r: &[f64], z: &mut [f64]) -> Result<()> {
+        Preconditioner::apply(self, held, r, z)
+    }
+}

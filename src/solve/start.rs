@@ -1,0 +1,44 @@
+//! Where a solve starts.
+
+use std::sync::Arc;
+
+use crate::error::Result;
+use crate::platform::memory::zeros;
+use crate::setup::Ready;
+use crate::solve::answer::Answer;
+
+/// Where a solve starts.
+pub struct Start {
+    /// Multipliers of contact and equality rows, force.
+    pub given: [Option<Vec<f64>>; 2],
+    /// The last answer for the rows.
+    pub previous: Option<Arc<Answer>>,
+}
+
+impl Start {
+    /// What it comes from.
+    pub fn name(&self) -> &'static str {
+        match (&self.given, &self.previous) {
+            ([None, None], None) => "cold",
+            ([None, None], Some(_)) => "previous",
+            _ => "given",
+        }
+    }
+
+    /// `x = L'lambda / (S 2^p)` of an island, parallel rows together; multipliers that are not there are zero.
+    pub fn scaled(&self, ready: &Ready) -> Result<Vec<f64>> {
+        let mut multipliers = [self.given[0].as_deref(), self.given[1].as_deref()];
+        if multipliers == [None, None] {
+            multipliers = self.previous.as_deref().map_or([None, None], |a| [Some(&a.lambda), Some(&a.mu)]);
+        }
+        let rows = &ready.rows;
+        let mut x = zeros(rows.groups(), "start values")?;
+        for (i, (group, sign)) in rows.grouping.members() {
+            let (kind, row) = ready.island.kind_and_row(i);
+            // where the last solve has left none
+            let known = multipliers[kind as usize].map(|all| all[row]).filter(|v| v.is_finite());
+            x[group] += sign * known.unwrap_or(0.0) / (rows.scale[i] * ready.island.unit);
+        }
+        Ok(rows.decoupling.apply_transposed(&x))
+    }
+}

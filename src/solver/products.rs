@@ -1,0 +1,101 @@
+//! The operators that the host may validate: null spaces, K+, F, d.
+
+use crate::error::{Error, Kind, Result};
+use crate::linalg::Operator;
+use crate::platform::memory::zeros;
+use crate::setup::Inverse;
+use crate::solver::problem::Problem;
+
+impl Problem {
+    fn inverse(&mut self, body: usize) -> Result<&Inverse> {
+        self.model.given(body)?;
+        self.setup()?;
+        let missing = || Error::new(Kind::Internal, "the setup left a body without factors");
+        self.prepared.inverse(&self.model, body).ok_or_else(missing)
+    }
+
+    /// Dimension r of the null space of a body and its basis as the library uses it: n x r column-major,
+    /// orthonormal in the metric of diag K / 2^p.
+    pub fn null_space(&mut self, body: usize) -> Result<(usize, &[f64])> {
+        let basis = &self.inverse(body)?.kplus.null_space;
+        Ok((basis.cols, &basis.data))
+    }
+
+    /// How far the null space the library found stands apart: softest other motion against the stiffest of it, in the
+    /// metric of diag K, both at least 1e-14 of the largest; none where the host gave vectors or coordinates.
+    pub fn null_space_gap(&mut self, body: usize) -> Result<Option<f64>> {
+        Ok(self.inverse(body)?.kplus.gap)
+    }
+
+    /// The r dofs held in K+ of (14)-(15); in that of the host it is not for the library to know.
+    pub fn fixing_dofs(&mut self, body: usize) -> Result<&[usize]> {
+        if self.model.given(body)?.body.operator.is_some() {
+            let what = "K+ of this body is the host's: the library holds no dofs in it";
+            return Err(Error::new(Kind::Unsupported, what).body(body));
+        }
+        Ok(&self.inverse(body)?.kplus.fixing)
+    }
+
+    /// `y = K_p+ x`, x force, y length.
+    pub fn kplus(&mut self, body: usize, x: &[f64], y: &mut [f64]) -> Result<()> {
+        self.model.check_length(body, "n", x.len())?;
+        self.model.check_length(body, "n", y.len())?;
+        let inverse = self.inverse(body)?;
+        inverse.kplus.apply(x, y)?;
+        y.iter_mut().for_each(|y| *y /= inverse.unit);
+        Ok(())
+    }
+
+    /// `y = F x` of (12), compliance of the rows included, contact rows first; x force, y length. Rows that never close
+    /// carry no force and move nothing: 0.
+    pub fn dual_apply(&mut self, x: &[f64], y: &mut [f64]) -> Result<()> {
+        self.check_rows(x.len())?;
+        self.check_rows(y.len())?;
+        self.setup()?;
+        let compliance = self.model.contact.compliance.iter().chain(&self.model.equalities.compliance);
+        y.iter_mut().zip(x).zip(compliance).for_each(|((y, x), c)| *y = c * x);
+        for ready in &self.prepared.done(&self.model)?.islands {
+            let rows = &ready.rows;
+            let place = |i: usize| ready.island.in_stack(self.model.contact.len(), i);
+            let mut groups = vec![0.0; rows.groups()];
+            for (i, (group, sign)) in rows.grouping.members() {
+                groups[group] += sign * x[place(i)] / (ready.island.unit * rows.scale[i]);
+            }
+            let mut image = zeros(groups.len(), "a product with F")?;
+            ready.dual.try_apply(&rows.decoupling.apply_transposed(&groups), &mut image)?;
+            let image = rows.decoupling.apply(&image);
+            for (i, (group, sign)) in rows.grouping.members() {
+                y[place(i)] = sign * image[group] / rows.scale[i];
+            }
+        }
+        Ok(())
+    }
+
+    /// `d = B K+ f - c` of (13), contact rows first, length; -infinity for rows that never close.
+    pub fn dual_rhs(&mut self, d: &mut [f64]) -> Result<()> {
+        self.check_rows(d.len())?;
+        self.setup()?;
+        let gaps = self.model.contact.rhs.iter().chain(&self.model.equalities.rhs);
+        d.iter_mut().zip(gaps).for_each(|(d, c)| *d = -c);
+        for ready in &self.prepared.done(&self.model)?.islands {
+            let rows = &ready.rows;
+            let mut load = ready.island.loads(&self.model)?;
+            load.iter_mut().for_each(|f| *f /= ready.island.unit);
+            let moved = ready.moved(self.model.threads(), &load)?;
+            let moved = rows.decoupling.apply(&ready.dual.rhs(&moved, &vec![0.0; rows.groups()]));
+            for (i, (group, sign)) in rows.grouping.members() {
+                d[ready.island.in_stack(self.model.contact.len(), i)] += sign * moved[group] / rows.scale[i];
+            }
+        }
+        Ok(())
+    }
+
+    fn check_rows(&self, m: usize) -> Result<()> {
+        let expected = self.model.contact.len() + self.model.equalities.len();
+        if m == expected {
+            return Ok(());
+        }
+        let what = format!("the problem has {expected} rows, not {m}");
+        Err(Error::argument("m", what).value(m as f64).limit(expected as f64))
+    }
+}

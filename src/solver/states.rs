@@ -1,0 +1,80 @@
+//! States of a problem to come back to when a load step is rejected, and start values.
+
+use crate::constraints::RowKind;
+use crate::error::{Error, Kind, Result};
+use crate::linalg::vector::first_non_finite;
+use crate::platform::memory::copied;
+use crate::solver::history::{Current, State};
+use crate::solver::problem::Problem;
+
+impl Problem {
+    /// Start values for the next solve alone, whatever that comes to. Rows whose multiplier is zero start open.
+    pub fn start_from(&mut self, kind: RowKind, multipliers: &[f64]) -> Result<()> {
+        let expected = self.model.rows(kind).len();
+        if multipliers.len() != expected {
+            let what = format!("there are {expected} rows of this kind, not {}", multipliers.len());
+            let given = multipliers.len() as f64;
+            return Err(Error::argument("rows", what).value(given).limit(expected as f64));
+        }
+        if let Some(row) = first_non_finite(multipliers) {
+            return Err(Error::argument("lambda", "the entry is not a finite number").row(row).entry(row));
+        }
+        self.history().start[kind as usize] = Some(copied(multipliers, "start values")?);
+        Ok(())
+    }
+
+    /// Keeps loads, rows, multipliers and active set under a number that is never used again.
+    pub fn save_state(&mut self) -> Result<usize> {
+        let loads = self.model.bodies.iter().map(|given| copy_of(given.body.load.as_ref()));
+        let state = State {
+            bodies: self.model.revisions.bodies,
+            loads: loads.collect::<Result<_>>()?,
+            rows: [self.model.contact.copied(WHAT)?, self.model.equalities.copied(WHAT)?],
+            previous: self.history().previous.clone(),
+            answered: self.current().is_some(),
+        };
+        let history = &mut self.history;
+        history.states.insert(history.saved, state);
+        history.saved += 1;
+        Ok(history.saved - 1)
+    }
+
+    /// Loads, rows and multipliers as they were; matrices stay as they are now. The state is kept. The answer
+    /// comes back as well unless matrices, rows or compliances differ, or what they were set up to is gone.
+    pub fn restore_state(&mut self, number: usize) -> Result<()> {
+        let Self { model, prepared, history, .. } = self;
+        let state = history.states.get(&number).ok_or_else(|| no_state(number))?;
+        if state.loads.len() != model.bodies.len() {
+            let what = "bodies were added since the state was saved: it no longer fits";
+            return Err(Error::new(Kind::State, what));
+        }
+        let loads = state.loads.iter().map(|load| copy_of(load.as_ref())).collect::<Result<Vec<_>>>()?;
+        let [contact, equalities] = [state.rows[0].copied(WHAT)?, state.rows[1].copied(WHAT)?];
+        let same = model.contact.same_but_rhs(&contact) && model.equalities.same_but_rhs(&equalities);
+        let is_set_up = prepared.duals(model).is_some();
+        let fits = same && state.answered && state.bodies == model.revisions.bodies && is_set_up;
+        let previous = state.previous.clone();
+        model.revisions.laws += u64::from(!same);
+        (model.contact, model.equalities) = (contact, equalities);
+        model.bodies.iter_mut().zip(loads).for_each(|(given, load)| given.body.load = load);
+        history.of(model.revisions.rows).start = [None, None];
+        let answer = previous.clone().filter(|_| fits);
+        history.current = answer.map(|answer| Current::new(answer, prepared.made));
+        history.previous = previous;
+        Ok(())
+    }
+
+    pub fn drop_state(&mut self, number: usize) -> Result<()> {
+        self.history.states.remove(&number).map(drop).ok_or_else(|| no_state(number))
+    }
+}
+
+const WHAT: &str = "a saved state";
+
+fn copy_of(load: Option<&Vec<f64>>) -> Result<Option<Vec<f64>>> {
+    load.map(|f| copied(f, WHAT)).transpose()
+}
+
+fn no_state(number: usize) -> Error {
+    Error::argument("id", "no state has this number").index(number as i64)
+}

@@ -1,0 +1,15 @@
+//! Room for the vectors of a call.
+
+use crate::solver::{Problem, SparseInput, Storage};
+
+/// Six dense matrices over the modes of all bodies, of which so many have not been found yet, would take 700 GB.
+#[test]
+fn the_room_of_many_bodies_grows_with_their_number() {
+    let mut problem = Problem::new();
+    for body in 0..20_000 {
+        problem.add_body(1).unwrap();
+        let k = SparseInput { ptr: &[0, 1], col: &[0], val: &[1.0], storage: Storage::Lower };
+        problem.set_stiffness(body, k).unwrap();
+    }
+    assert!(problem.working_room().is_ok());
+}

@@ -1,0 +1,107 @@
+//! What a call tells in words: what is solved and how, its result, its warnings.
+
+use std::fmt::Write;
+
+use crate::error::Result;
+use crate::model::{Model, Word};
+use crate::progress::{Log, LogLevel};
+use crate::setup::{Duals, Prepared, Ready};
+use crate::solve::{Outcome, Report};
+
+/// Sizes and options, before anything is done.
+pub fn begin(log: &mut Log, model: &Model, call: &str) -> Result<()> {
+    log.told = 0;
+    let counts = model.counts();
+    log.say(LogLevel::Phase, || {
+        format!(
+            "feti-contact {}: {call}: {} bodies, {} unknowns, {} contact rows, {} equality rows",
+            env!("CARGO_PKG_VERSION"),
+            counts.bodies,
+            counts.dofs,
+            counts.rows,
+            counts.equalities
+        )
+    })?;
+    log.say(LogLevel::Phase, || match model.settings.changes() {
+        changes if changes.is_empty() => "options: defaults".to_owned(),
+        changes => format!("options: {changes}"),
+    })
+}
+
+/// One line on an answer, and warnings.
+pub fn result(log: &mut Log, report: &Report) -> Result<()> {
+    log.say(LogLevel::Result, || result_line(report))?;
+    if report.outcome == Outcome::Marginal {
+        let what = "warning: a small part of the load, below 1e-7 of it, is held by no row";
+        log.say(LogLevel::Result, || what.to_owned())?;
+    }
+    if report.undetermined > 0 {
+        log.say(LogLevel::Result, || {
+            format!(
+                "warning: {} motions are left open: neither rows nor loads determine them",
+                report.undetermined
+            )
+        })?;
+    }
+    Ok(())
+}
+
+fn result_line(report: &Report) -> String {
+    let ended = match report.outcome {
+        Outcome::Solved => "solved",
+        Outcome::Iterations => "ended at the limit of steps",
+        Outcome::Time => "ended at the limit of time",
+        Outcome::Cancelled => "cancelled by the host",
+        Outcome::Stalled => "stalled",
+        Outcome::Inaccurate => "inaccurate",
+        Outcome::Marginal => "marginal",
+    };
+    let certificate = &report.certificate;
+    let figures = [
+        ("equilibrium", &certificate.equilibrium),
+        ("balance", &certificate.balance),
+        ("penetration", &certificate.penetration),
+        ("equality", &certificate.equality),
+        ("negative force", &certificate.negative_force),
+        ("complementarity", &certificate.complementarity),
+        ("duality gap", &certificate.duality_gap),
+    ];
+    let mut line = format!(
+        "{ended}: {} steps, {} products, {} of {} contact rows closed; certificate",
+        report.steps, report.dual_applications, report.active, report.counts.rows
+    );
+    for (name, entry) in figures {
+        let _ = write!(line, " {name} {:.1e},", entry.figure);
+    }
+    let _ = write!(
+        line,
+        " limit {:.1e}; setup {:.6} seconds, solve {:.6} seconds",
+        certificate.limit, report.seconds_setup, report.seconds_solve
+    );
+    line
+}
+
+/// How the dual is going to be solved.
+pub fn method(log: &mut Log, model: &Model, prepared: &Prepared, started: &str) -> Result<()> {
+    let Duals { islands, operators, .. } = prepared.done(model)?;
+    let of_island = |ready: &Ready| ready.preconditioning().word().to_string_lossy();
+    let mut preconditioners: Vec<_> = islands.iter().map(of_island).collect();
+    preconditioners.sort_unstable();
+    preconditioners.dedup();
+    log.say(LogLevel::Phase, || {
+        let implicit = operators.implicit.iter().filter(|implicit| **implicit).count();
+        let groups = match islands.len() {
+            1 => String::new(),
+            count => format!("{count} groups of bodies apart from each other, "),
+        };
+        format!(
+            "method: {}, preconditioner {}, start {started}; {groups}{} multipliers, {} floating modes, \
+             {} explicit and {implicit} implicit dual operators",
+            model.settings.method.word().to_string_lossy(),
+            preconditioners.join(" and "),
+            islands.iter().map(|ready| ready.rows.groups()).sum::<usize>(),
+            islands.iter().map(|ready| ready.dual.modes()).sum::<usize>(),
+            operators.implicit.len() - implicit
+        )
+    })
+}
