@@ -10,6 +10,7 @@ mod prepared;
 mod ready;
 mod room;
 mod rows;
+mod scaling;
 
 pub use islands::{Island, Members};
 pub use prepared::{Duals, Inverse, Prepared, Work};

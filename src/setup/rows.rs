@@ -4,8 +4,9 @@ use crate::constraints::{row_scales, Decoupling, Grouping, RowKind, UnitRows};
 use crate::error::Result;
 use crate::linalg::Csr;
 use crate::setup::islands::{Island, Members};
+use crate::setup::scaling::Scaling;
 
-/// Rows of the dual, and the way to them: S, groups, L.
+/// Rows of the dual, and the way to them.
 pub struct DualRows {
     /// One row for each group of parallel rows of `S [B; H]`.
     pub scaled: Csr,
@@ -15,10 +16,7 @@ pub struct DualRows {
     pub compliance: Vec<f64>,
     /// `D / 2^p` over the unknowns of the island.
     pub metric: Vec<f64>,
-    /// s_i of every row, contact rows first, `length^-1` in units of 2^p; 0 for rigid rows without entries.
-    pub scale: Vec<f64>,
-    pub grouping: Grouping,
-    pub decoupling: Decoupling,
+    pub scaling: Scaling,
     /// L = I, whatever the rows.
     pub coupled: bool,
     /// Number of contact rows.
@@ -75,20 +73,21 @@ impl DualRows {
         let (decoupling, matrix) = if coupled { Decoupling::none(&scaled) } else { Decoupling::of(given)? };
         let compliance = decoupling.compliance(&compliance);
         let uneven = is_uneven(&scaled, &metric, island);
-        Ok(Self { scaled, matrix, compliance, metric, scale, grouping, decoupling, coupled, contact, uneven })
+        let scaling = Scaling { unit: island.unit, scale, grouping, decoupling };
+        Ok(Self { scaled, matrix, compliance, metric, scaling, coupled, contact, uneven })
     }
 
     pub fn groups(&self) -> usize {
-        self.grouping.leaders.len()
+        self.scaling.grouping.leaders.len()
     }
 
     /// Takes `B'x` from a load, by way of the rows and the forces of the host: where these cancel nothing is left.
     pub fn take_forces(&self, x: &[f64], load: &mut [f64]) {
-        self.scaled.mul_transposed_add(-1.0, &self.decoupling.solve_transposed(x.to_vec()), load);
+        self.scaled.mul_transposed_add(-1.0, &self.scaling.decoupling.solve_transposed(x.to_vec()), load);
     }
 
     /// Kind of the multiplier of a group.
     pub fn kind(&self, group: usize) -> RowKind {
-        self.grouping.kind(group, self.contact)
+        self.scaling.grouping.kind(group, self.contact)
     }
 }

@@ -6,8 +6,7 @@ use crate::error::Result;
 use crate::model::Model;
 use crate::platform::memory::zeros;
 use crate::setup::{Members, Prepared, Ready};
-use crate::solve::every_island::Ends;
-use crate::solve::island::Solved;
+use crate::solve::island::{Ends, Solved};
 use crate::solve::recovery::{Ending, Recovered};
 use crate::solve::report::{Report, RowState};
 

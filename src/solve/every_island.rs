@@ -8,11 +8,8 @@ use crate::platform::threads::{self, Heard, Tasks};
 use crate::progress::{Told, Voice, Watch};
 use crate::setup::Prepared;
 use crate::solve::case::Case;
-use crate::solve::island::{solve_island, Solved};
+use crate::solve::island::{solve_island, Ends, Solved};
 use crate::solve::start::Start;
-
-/// How every island ended: with an answer, or with the named reason why it has none.
-pub type Ends = Vec<std::result::Result<Solved, Error>>;
 
 /// Every island by itself: several at a time where there are threads, each with the bits it has alone.
 pub fn solve_islands(model: &Model, prepared: &Prepared, start: &Start, watch: &mut Watch) -> Result<Ends> {

@@ -2,7 +2,7 @@
 
 use std::time::{Duration, Instant};
 
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::linalg::vector::norm_max;
 use crate::linalg::Operator;
 use crate::model::Model;
@@ -34,6 +34,9 @@ pub struct Solved {
     pub judging: Duration,
     pub recovering: Duration,
 }
+
+/// How every island ended: with an answer, or with the named reason why it has none.
+pub type Ends = Vec<std::result::Result<Solved, Error>>;
 
 /// One try at an island.
 enum Attempt {
@@ -154,7 +157,7 @@ fn outcome(case: Case, dual: &Scaled, solution: &Solution) -> Result<Outcome> {
         Verdict::Inaccurate => Ok(Outcome::Inaccurate),
         Verdict::Unbounded { p } => {
             let w: Vec<f64> = p.iter().map(|p| -p).collect();
-            let w = case.ready.rows.decoupling.solve_transposed(w);
+            let w = case.ready.rows.scaling.decoupling.solve_transposed(w);
             let proved = Contradictions::new(case, &dual.gaps).proved(&w)?;
             proved.map_or(Ok(Outcome::Stalled), Err)
         }

@@ -68,7 +68,7 @@ pub struct HostUnits {
 impl HostUnits {
     pub fn new(case: Case, gaps: &Gaps, parameters: Parameters) -> Result<Self> {
         let ready = case.ready;
-        let scale = gaps.holder.iter().map(|&i| ready.rows.scale[i]).collect();
+        let scale = gaps.holder.iter().map(|&i| ready.rows.scaling.scale[i]).collect();
         let mut basis = Vec::with_capacity(ready.island.bodies.len());
         let Island { bodies, ranges, unit, .. } = &ready.island;
         for (k, (&p, range)) in bodies.iter().zip(ranges).enumerate() {

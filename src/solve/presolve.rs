@@ -34,8 +34,8 @@ const WORK: usize = 200_000_000;
 pub fn presolve(case: Case, moved: f64, stops: &Stops) -> Result<Gaps> {
     let Ready { rows, island, .. } = case.ready;
     let rhs = island.contact.rows.rhs.iter().chain(&island.equalities.rows.rhs);
-    let scaled: Vec<f64> = rhs.zip(&rows.scale).map(|(c, s)| c * s).collect();
-    let leaders = &rows.grouping.leaders;
+    let scaled: Vec<f64> = rhs.zip(&rows.scaling.scale).map(|(c, s)| c * s).collect();
+    let leaders = &rows.scaling.grouping.leaders;
     let kinds = (0..leaders.len()).map(|group| rows.kind(group));
     let mut gaps = Gaps {
         value: leaders.iter().map(|&i| scaled[i]).collect(),
@@ -47,7 +47,7 @@ pub fn presolve(case: Case, moved: f64, stops: &Stops) -> Result<Gaps> {
     let demand = |(i, c): (usize, &f64)| if i < rows.contact { (-c).max(0.0) } else { c.abs() };
     let reach = scaled.iter().enumerate().map(demand).fold(moved, f64::max);
     let slack = |a: f64, b: f64| EQUAL * a.abs().max(b.abs()) + ROUNDING * reach;
-    for (i, member) in rows.grouping.member.iter().enumerate() {
+    for (i, member) in rows.scaling.grouping.member.iter().enumerate() {
         let Some((group, sign)) = *member else { continue };
         let gap = sign * gaps.value[group];
         let slack = slack(gap, scaled[i]);
@@ -72,7 +72,7 @@ pub fn presolve(case: Case, moved: f64, stops: &Stops) -> Result<Gaps> {
     if let Some(error) = contradiction(case, &gaps, stops)? {
         return Err(error);
     }
-    gaps.dual = rows.decoupling.solve(gaps.value.clone());
+    gaps.dual = rows.scaling.decoupling.solve(gaps.value.clone());
     gaps.far =
         gaps.value.iter().zip(&gaps.bounded).map(|(c, bounded)| *bounded && *c > FAR * reach).collect();
     Ok(gaps)

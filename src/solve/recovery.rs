@@ -120,13 +120,9 @@ impl<'a> Recovery<'a> {
 
     /// `lambda = 2^p S L'^-1 x` and mu, on the rows that carry the multipliers of their groups.
     pub fn forces_of_host(&self, x: &[f64]) -> (Vec<f64>, Vec<f64>) {
-        let ready = self.ready;
-        let mut lambda = vec![0.0; ready.rows.scale.len()];
-        let x = ready.rows.decoupling.solve_transposed(x.to_vec());
-        for (x, &holder) in x.iter().zip(&self.scaled.gaps.holder) {
-            lambda[holder] = x * ready.rows.scale[holder] * ready.island.unit;
-        }
-        let mu = lambda.split_off(ready.rows.contact);
+        let rows = &self.ready.rows;
+        let mut lambda = rows.scaling.forces_to_host(x, &self.scaled.gaps.holder);
+        let mu = lambda.split_off(rows.contact);
         (lambda, mu)
     }
 
@@ -150,7 +146,7 @@ impl<'a> Recovery<'a> {
     pub fn gaps_left(&self, parts: &[&[f64]], x: &[f64]) -> Vec<f64> {
         let rows = &self.ready.rows;
         let (lambda, mu) = self.forces_of_host(x);
-        let left = self.scaled.gaps.holder.iter().map(|&holder| {
+        rows.scaling.lengths_to_dual(&self.scaled.gaps.holder, |holder| {
             let (set, i, force) = match holder.checked_sub(rows.contact) {
                 None => (self.data.contact, holder, lambda[holder]),
                 Some(i) => (self.data.equalities, i, mu[i]),
@@ -160,9 +156,8 @@ impl<'a> Recovery<'a> {
             for part in parts {
                 set.matrix.row(i).for_each(|(j, v)| left.add_product(-v, part[j]));
             }
-            left.value() * rows.scale[holder]
-        });
-        rows.decoupling.solve(left.collect())
+            left.value()
+        })
     }
 
     /// Of every body, whether the motion is larger than v and K resists it by rounding alone, if need be once it is cleaned.

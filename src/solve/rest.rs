@@ -55,7 +55,7 @@ impl<'a> Recovery<'a> {
         };
         add(dual.rigid_motion(&alpha, u.len()), &mut u)?;
         let mut forces = answer.lambda.clone();
-        for (i, member) in self.ready.rows.grouping.member[..forces.len()].iter().enumerate() {
+        for (i, member) in self.ready.rows.scaling.grouping.member[..forces.len()].iter().enumerate() {
             if member.is_some_and(|(group, _)| held[group]) {
                 forces[i] = 0.0;
             }

@@ -3,7 +3,6 @@
 use std::sync::Arc;
 
 use crate::error::Result;
-use crate::platform::memory::zeros;
 use crate::setup::Ready;
 use crate::solve::answer::Answer;
 
@@ -31,14 +30,11 @@ impl Start {
         if multipliers == [None, None] {
             multipliers = self.previous.as_deref().map_or([None, None], |a| [Some(&a.lambda), Some(&a.mu)]);
         }
-        let rows = &ready.rows;
-        let mut x = zeros(rows.groups(), "start values")?;
-        for (i, (group, sign)) in rows.grouping.members() {
+        ready.rows.scaling.forces_to_dual(|i| {
             let (kind, row) = ready.island.kind_and_row(i);
             // where the last solve has left none
             let known = multipliers[kind as usize].map(|all| all[row]).filter(|v| v.is_finite());
-            x[group] += sign * known.unwrap_or(0.0) / (rows.scale[i] * ready.island.unit);
-        }
-        Ok(rows.decoupling.apply_transposed(&x))
+            known.unwrap_or(0.0)
+        })
     }
 }

@@ -111,10 +111,13 @@ fn redundant(model: &Model, duals: &Duals) -> Vec<(usize, f64)> {
     let mut all = Vec::new();
     for ready in &duals.islands {
         let rows = &ready.rows;
-        let leaders = &rows.grouping.leaders;
-        let repeats = rows.grouping.members().filter(|(i, (group, _))| leaders[*group] != *i);
+        let leaders = &rows.scaling.grouping.leaders;
+        let repeats = rows.scaling.grouping.members().filter(|(i, (group, _))| leaders[*group] != *i);
         all.extend(repeats.map(|(i, (group, sign))| {
-            (ready.island.in_stack(model.contact.len(), i), sign * rows.scale[leaders[group]] / rows.scale[i])
+            (
+                ready.island.in_stack(model.contact.len(), i),
+                sign * rows.scaling.scale[leaders[group]] / rows.scaling.scale[i],
+            )
         }));
     }
     all.sort_by_key(|(row, _)| *row);

@@ -54,19 +54,13 @@ impl Problem {
         self.setup()?;
         let compliance = self.model.contact.compliance.iter().chain(&self.model.equalities.compliance);
         y.iter_mut().zip(x).zip(compliance).for_each(|((y, x), c)| *y = c * x);
+        let contact = self.model.contact.len();
         for ready in &self.prepared.done(&self.model)?.islands {
-            let rows = &ready.rows;
-            let place = |i: usize| ready.island.in_stack(self.model.contact.len(), i);
-            let mut groups = vec![0.0; rows.groups()];
-            for (i, (group, sign)) in rows.grouping.members() {
-                groups[group] += sign * x[place(i)] / (ready.island.unit * rows.scale[i]);
-            }
-            let mut image = zeros(groups.len(), "a product with F")?;
-            ready.dual.try_apply(&rows.decoupling.apply_transposed(&groups), &mut image)?;
-            let image = rows.decoupling.apply(&image);
-            for (i, (group, sign)) in rows.grouping.members() {
-                y[place(i)] = sign * image[group] / rows.scale[i];
-            }
+            let (scaling, place) = (&ready.rows.scaling, |i| ready.island.in_stack(contact, i));
+            let forces = scaling.forces_to_dual(|i| x[place(i)])?;
+            let mut image = zeros(forces.len(), "a product with F")?;
+            ready.dual.try_apply(&forces, &mut image)?;
+            scaling.lengths_to_host(&image).for_each(|(i, length)| y[place(i)] = length);
         }
         Ok(())
     }
@@ -77,15 +71,14 @@ impl Problem {
         self.setup()?;
         let gaps = self.model.contact.rhs.iter().chain(&self.model.equalities.rhs);
         d.iter_mut().zip(gaps).for_each(|(d, c)| *d = -c);
+        let contact = self.model.contact.len();
         for ready in &self.prepared.done(&self.model)?.islands {
-            let rows = &ready.rows;
             let mut load = ready.island.loads(&self.model)?;
             load.iter_mut().for_each(|f| *f /= ready.island.unit);
             let moved = ready.moved(self.model.threads(), &load)?;
-            let moved = rows.decoupling.apply(&ready.dual.rhs(&moved, &vec![0.0; rows.groups()]));
-            for (i, (group, sign)) in rows.grouping.members() {
-                d[ready.island.in_stack(self.model.contact.len(), i)] += sign * moved[group] / rows.scale[i];
-            }
+            let moved = ready.dual.rhs(&moved, &vec![0.0; ready.rows.groups()]);
+            let along = ready.rows.scaling.lengths_to_host(&moved);
+            along.for_each(|(i, length)| d[ready.island.in_stack(contact, i)] += length);
         }
         Ok(())
     }

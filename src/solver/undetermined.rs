@@ -84,7 +84,7 @@ impl Problem {
             }
             let compliance: Vec<f64> = groups.iter().map(|&group| ready.rows.compliance[group]).collect();
             let found = dependent_rows(&rows.transposed()?, &compliance)?.into_iter();
-            let leader = |at: usize| ready.rows.grouping.leaders[groups[at]] - ready.rows.contact;
+            let leader = |at: usize| ready.rows.scaling.grouping.leaders[groups[at]] - ready.rows.contact;
             dependent.extend(found.map(|at| ready.island.equalities.numbers[leader(at)]));
         }
         dependent.sort_unstable();

@@ -125,7 +125,7 @@ impl<'a> Contradictions<'a> {
         let (mut demanded, mut demands) = (Twofold::default(), 0.0);
         for &(i, w) in &weights {
             let (set, k) = self.case.ready.island.row(i);
-            let weight = w * rows.scale[i];
+            let weight = w * rows.scaling.scale[i];
             for (j, b) in set.matrix.row(k) {
                 left[j].add_product(weight, b);
                 terms[j] += (weight * b).abs();
@@ -157,20 +157,20 @@ impl<'a> Contradictions<'a> {
         let rows = &self.case.ready.rows;
         let of = |i: usize| {
             let (set, k) = self.case.ready.island.row(i);
-            let c = rows.scale[i] * set.rhs[k];
+            let c = rows.scaling.scale[i] * set.rhs[k];
             if i < rows.contact {
                 c.min(0.0)
             } else {
                 c
             }
         };
-        let all: Vec<f64> = (0..rows.scale.len()).map(of).collect();
+        let all: Vec<f64> = (0..rows.scaling.scale.len()).map(of).collect();
         weighted_norm(&all, |_| 1.0)
     }
 
     fn named(&self, weights: &[(usize, f64)], excess: f64, demands: f64) -> Error {
         let Case { model, ready, .. } = self.case;
-        let weight = |&(i, w): &(usize, f64)| (w * ready.rows.scale[i]).abs();
+        let weight = |&(i, w): &(usize, f64)| (w * ready.rows.scaling.scale[i]).abs();
         let heavier = |best, at| if weight(at) >= weight(best) { at } else { best };
         let heaviest = weights.iter().fold(&weights[0], heavier).0;
         let (kind, row) = ready.island.kind_and_row(heaviest);
@@ -181,7 +181,7 @@ impl<'a> Contradictions<'a> {
         let what = format!("{what}: no displacement satisfies them");
         let error = Error::new(Kind::GapsContradict, what).row(row).value(-excess).limit(0.0);
         let place = |i: usize| ready.island.in_stack(model.contact.len(), i);
-        let of_host = weights.iter().map(|&(i, w)| (place(i), w * ready.rows.scale[i])).collect();
+        let of_host = weights.iter().map(|&(i, w)| (place(i), w * ready.rows.scaling.scale[i])).collect();
         error.proved_by(proof_of_rows(excess / demands, of_host, place(heaviest)))
     }
 }

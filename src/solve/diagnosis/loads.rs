@@ -184,8 +184,9 @@ pub fn free(data: &Data, mut load: Vec<f64>) -> Vec<f64> {
 /// Label of the bodies that move together, and how many labels there are.
 fn clusters(ready: &Ready, x: &[f64], left: &[f64]) -> (Vec<usize>, usize) {
     let (rows, island) = (&ready.rows, &ready.island);
-    let forces = rows.decoupling.solve_transposed(x.to_vec());
-    let joins = (0..forces.len()).filter(|&i| forces[i] != 0.0 || rows.grouping.leaders[i] >= rows.contact);
+    let forces = rows.scaling.decoupling.solve_transposed(x.to_vec());
+    let joins =
+        (0..forces.len()).filter(|&i| forces[i] != 0.0 || rows.scaling.grouping.leaders[i] >= rows.contact);
     let bodies = joins.map(|i| {
         let touched = rows.scaled.row(i).map(|(j, _)| island.body_of(j));
         touched.filter(|&p| left[p] > 0.0)
@@ -202,7 +203,7 @@ fn resistance(ready: &Ready, v: &[f64]) -> f64 {
     };
     let is_contact = |i: usize| i < ready.rows.contact;
     let resists = |(i, s): (usize, &f64)| s * if is_contact(i) { along(i).max(0.0) } else { along(i) };
-    let all: Vec<f64> = ready.rows.scale.iter().enumerate().map(resists).collect();
+    let all: Vec<f64> = ready.rows.scaling.scale.iter().enumerate().map(resists).collect();
     weighted_norm(&all, |_| 1.0)
 }
 
