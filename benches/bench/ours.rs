@@ -30,8 +30,8 @@ pub fn run(deck: Deck, threads: i64) -> Result<(), String> {
     details(&problem, &report, loads.len()).map_err(text)?;
     next_step(&mut problem, &loads, &gaps).map_err(text)?;
     let second = timed("second", &mut problem)?;
-    println!("second_products {}", second.dual_applications);
-    println!("second_factorisations {}", second.factorisations - report.factorisations);
+    println!("second_products {}", second.counts.products);
+    println!("second_factorisations {}", second.work.factorisations - report.work.factorisations);
     Ok(())
 }
 
@@ -58,12 +58,12 @@ fn print_lap(name: &str, lap: Lap) {
 }
 
 fn details(problem: &Problem, report: &Report, bodies: usize) -> Solver<()> {
-    println!("bodies {}", report.counts.bodies);
-    println!("dofs {}", report.counts.dofs);
-    println!("rows {}", report.counts.rows);
-    println!("equalities {}", report.counts.equalities);
+    println!("bodies {}", report.sizes.bodies);
+    println!("dofs {}", report.sizes.dofs);
+    println!("rows {}", report.sizes.rows);
+    println!("equalities {}", report.sizes.equalities);
     println!("closed {}", report.active);
-    println!("products {}", report.dual_applications);
+    println!("products {}", report.counts.products);
     println!("implicit {}", report.implicit_operators);
     println!("factor_bytes {}", report.factor_bytes);
     println!("operator_bytes {}", report.operator_bytes);

@@ -25,7 +25,7 @@ pub fn products(
     problem.set_f64("certificate_tolerance", ANY_CERTIFICATE).map_err(text)?;
     let scale = scale(problem).map_err(text)?;
     problem.set_f64("tolerance", residual / scale).map_err(text)?;
-    Ok(solved(problem, "linear")?.cg_steps + 1)
+    Ok(solved(problem, "linear")?.counts.conjugate_gradient + 1)
 }
 
 /// The scale w that tolerances of this problem are relative to: known after one step.

@@ -38,14 +38,14 @@ pub struct Measurement {
 impl Measurement {
     pub fn new(report: &Report, linear: usize, started: Instant) -> Self {
         Self {
-            products: report.dual_applications,
+            products: report.counts.products,
             linear,
             smalbe: None,
-            preconditioned: report.preconditioner_applications,
-            coarse_solves: report.coarse_solves,
-            coarse_factorisations: report.coarse_factorisations,
+            preconditioned: report.counts.preconditioned,
+            coarse_solves: report.counts.coarse_solves,
+            coarse_factorisations: report.counts.coarse_factorisations,
             closed: report.active,
-            rows: report.counts.rows,
+            rows: report.sizes.rows,
             seconds: report.seconds_setup + report.seconds_solve,
             seconds_in_all: started.elapsed().as_secs_f64(),
         }
@@ -79,7 +79,7 @@ fn smalbe(problem: &mut Problem) -> Option<usize> {
     problem.set_str("method", "smalbe").ok()?;
     let report = problem.solve().ok();
     problem.set_str("method", "proportioning").ok()?;
-    report.filter(|report| report.outcome == Outcome::Solved).map(|report| report.dual_applications)
+    report.filter(|report| report.outcome == Outcome::Solved).map(|report| report.counts.products)
 }
 
 /// The deck with the options of every run.
@@ -100,6 +100,6 @@ pub fn solved(problem: &mut Problem, what: &str) -> Result<Report, String> {
         return Ok(report);
     }
     let (outcome, worst) = (report.outcome, report.certificate.worst());
-    let products = report.dual_applications;
+    let products = report.counts.products;
     Err(format!("{what}: {outcome:?} after {products} products with F, certificate {worst:.1e} of its limit"))
 }

@@ -94,19 +94,23 @@ pub fn finished(case: &Case, given: &mut solver::Problem) -> Result<Run, String>
     let report = given.solve().map_err(|e| e.to_string())?;
     let certificate = report.certificate.worst() * report.certificate.limit;
     if report.outcome != Outcome::Solved {
-        return Err(format!("{:?} after {} products", report.outcome, report.dual_applications));
+        return Err(format!("{:?} after {} products", report.outcome, report.counts.products));
     }
     let forces = given.multipliers(RowKind::Inequality).map_err(|e| e.to_string())?.to_vec();
     let accuracy = accuracy(case, given, &forces).map_err(|e| e.to_string())?;
     Ok(Run {
-        outer: report.outer,
-        inner: if report.outer > 0 { report.cg_steps + report.expansions } else { report.steps },
-        products: report.dual_applications,
-        unknowns: report.counts.dofs,
-        duals: report.counts.rows,
+        outer: report.counts.outer,
+        inner: if report.counts.outer > 0 {
+            report.counts.conjugate_gradient + report.counts.expansions
+        } else {
+            report.counts.steps()
+        },
+        products: report.counts.products,
+        unknowns: report.sizes.dofs,
+        duals: report.sizes.rows,
         accuracy,
         error: difference(&forces, &case.lambda),
-        releases: report.releases,
+        releases: report.counts.releases,
         certificate,
         seconds: report.seconds_setup + report.seconds_solve,
         displacement: case.displacement(given),
@@ -160,7 +164,7 @@ pub fn history(case: &Case, given: &mut solver::Problem, most: i64) -> Vec<(f64,
         let Ok(()) = given.set_i64("max_steps", steps) else { break };
         let Ok(report) = given.solve() else { break };
         let Ok(forces) = given.multipliers(RowKind::Inequality) else { break };
-        points.push((report.dual_applications as f64, difference(forces, &case.lambda).max(1e-16)));
+        points.push((report.counts.products as f64, difference(forces, &case.lambda).max(1e-16)));
         if report.outcome == Outcome::Solved {
             break;
         }

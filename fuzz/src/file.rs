@@ -55,7 +55,7 @@ pub fn run(data: &[u8]) {
             "{:?}: {error}",
             error.kind
         );
-        let counts = problem.counts();
+        let counts = problem.sizes();
         assert_eq!(counts.bodies + counts.rows + counts.equalities, 0);
         return;
     }
@@ -63,7 +63,7 @@ pub fn run(data: &[u8]) {
     let mut back = Problem::new();
     back.read_bytes(&written).expect("what was written is read");
     assert!(back.write_bytes().expect("it is written again") == written, "other bytes");
-    let counts = problem.counts();
+    let counts = problem.sizes();
     if counts.dofs <= LARGEST && counts.rows + counts.equalities <= LARGEST {
         solve(problem);
     }

@@ -216,7 +216,7 @@ pub unsafe extern "C" fn feti_counts(
                 Output::optional(eqs, "eqs")?,
             ]
         };
-        let counts = problem.counts();
+        let counts = problem.sizes();
         let numbers = [counts.bodies, counts.dofs, counts.rows, counts.equalities];
         for (output, number) in outputs.iter().zip(numbers) {
             output.set(number as i64);

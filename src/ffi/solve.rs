@@ -6,7 +6,7 @@ use super::guard::{enter, enter_with_status};
 use super::record::Target;
 use super::status::of_outcome;
 use super::types::{feti_certificate, feti_info, feti_problem};
-use crate::solver::{Certificate, Counts, Report};
+use crate::solver::{Certificate, Report, Sizes};
 
 /// Prepares the solve: null spaces, factors of the bodies, the dual operator.
 ///
@@ -64,24 +64,21 @@ pub extern "C" fn feti_setup(p: *mut feti_problem) -> i32 {
 pub unsafe extern "C" fn feti_solve(p: *mut feti_problem, info: *mut feti_info) -> i32 {
     // SAFETY: NULL, or `struct_size` bytes by the caller's word.
     let target = (!info.is_null()).then(|| unsafe { Target::new(info, "info") }).transpose();
-    let mut filled = without_answer();
+    let (mut sizes, mut found) = (Sizes::default(), None);
     let status = enter_with_status(p, call!(feti_solve(p, info)), |problem| {
         target.as_ref().map_err(Clone::clone)?;
-        count_in(&mut filled, &problem.counts());
+        sizes = problem.sizes();
         if problem.settings().fault_injection == 1 {
             panic!("fault injected on request");
         }
         let _room = problem.working_room()?;
         let solved = problem.solve();
         // groups of bodies may have an answer where another has none
-        if let Some(report) = problem.report() {
-            report_in(&mut filled, report);
-        }
+        found = problem.report().cloned();
         solved.map(|report| of_outcome(&report.outcome))
     });
-    filled.status = status;
     if let Ok(Some(target)) = target {
-        target.write(&filled);
+        target.write(&info_of(status, sizes, found.as_ref()));
     }
     status
 }
@@ -117,7 +114,7 @@ pub unsafe extern "C" fn feti_check(
     out: *mut feti_certificate,
 ) -> i32 {
     enter(p, call!(feti_check(p, n, u, rows, lambda, eqs, mu, out)), |problem| {
-        let counts = problem.counts();
+        let counts = problem.sizes();
         let n = same(n, counts.dofs, "n", "the number of unknowns of all bodies is")?;
         let rows = same(rows, counts.rows, "rows", "the number of inequality rows is")?;
         let eqs = same(eqs, counts.equalities, "eqs", "the number of equality rows is")?;
@@ -133,88 +130,49 @@ pub unsafe extern "C" fn feti_check(
     })
 }
 
-/// Counts zero, figures NaN.
-fn without_answer() -> feti_info {
+/// How a solve went by its report; without one counts are zero, figures NaN.
+fn info_of(status: i32, sizes: Sizes, report: Option<&Report>) -> feti_info {
+    let count = |of: fn(&Report) -> usize| report.map_or(0, |report| of(report) as i64);
+    let figure = |of: fn(&Report) -> f64| report.map_or(f64::NAN, of);
     feti_info {
         struct_size: size_of::<feti_info>() as i64,
-        status: 0,
+        status,
         reserved: 0,
-        bodies: 0,
-        dofs: 0,
-        rows: 0,
-        equalities: 0,
-        floating_modes: 0,
-        active: 0,
-        undetermined: 0,
-        steps: 0,
-        cg_steps: 0,
-        expansions: 0,
-        releases: 0,
-        dual_applications: 0,
-        coarse_solves: 0,
-        factorisations: 0,
-        analyses: 0,
-        worst: f64::NAN,
-        equilibrium: f64::NAN,
-        balance: f64::NAN,
-        penetration: f64::NAN,
-        equality: f64::NAN,
-        negative_force: f64::NAN,
-        complementarity: f64::NAN,
-        duality_gap: f64::NAN,
-        energy: f64::NAN,
-        seconds_setup: f64::NAN,
-        seconds_solve: f64::NAN,
-        direct_solves: 0,
-        finished: 0,
-        columns_computed: 0,
-        columns_kept: 0,
-        explicit_operators: 0,
-        implicit_operators: 0,
-        factor_bytes: 0,
-        operator_bytes: 0,
+        bodies: sizes.bodies as i64,
+        dofs: sizes.dofs as i64,
+        rows: sizes.rows as i64,
+        equalities: sizes.equalities as i64,
+        floating_modes: count(|report| report.floating_modes),
+        active: count(|report| report.active),
+        undetermined: count(|report| report.undetermined),
+        steps: count(|report| report.counts.steps()),
+        cg_steps: count(|report| report.counts.conjugate_gradient),
+        expansions: count(|report| report.counts.expansions),
+        releases: count(|report| report.counts.releases),
+        dual_applications: count(|report| report.counts.products),
+        coarse_solves: count(|report| report.counts.coarse_solves),
+        factorisations: count(|report| report.work.factorisations),
+        analyses: count(|report| report.work.analyses),
+        worst: figure(|report| report.certificate.worst()),
+        equilibrium: figure(|report| report.certificate.equilibrium.figure),
+        balance: figure(|report| report.certificate.balance.figure),
+        penetration: figure(|report| report.certificate.penetration.figure),
+        equality: figure(|report| report.certificate.equality.figure),
+        negative_force: figure(|report| report.certificate.negative_force.figure),
+        complementarity: figure(|report| report.certificate.complementarity.figure),
+        duality_gap: figure(|report| report.certificate.duality_gap.figure),
+        energy: figure(|report| report.energy),
+        seconds_setup: figure(|report| report.seconds_setup),
+        seconds_solve: figure(|report| report.seconds_solve),
+        direct_solves: count(|report| report.counts.direct),
+        finished: count(|report| usize::from(report.finished)),
+        columns_computed: count(|report| report.work.columns_computed),
+        columns_kept: count(|report| report.work.columns_kept),
+        explicit_operators: count(|report| report.explicit_operators),
+        implicit_operators: count(|report| report.implicit_operators),
+        factor_bytes: count(|report| report.factor_bytes),
+        operator_bytes: count(|report| report.operator_bytes),
     }
-}
-
-fn count_in(info: &mut feti_info, counts: &Counts) {
-    info.bodies = counts.bodies as i64;
-    info.dofs = counts.dofs as i64;
-    info.rows = counts.rows as i64;
-    info.equalities = counts.equalities as i64;
-}
-
-fn report_in(info: &mut feti_info, report: &Report) {
-    count_in(info, &report.counts);
-    info.floating_modes = report.floating_modes as i64;
-    info.active = report.active as i64;
-    info.undetermined = report.undetermined as i64;
-    info.steps = report.steps as i64;
-    info.cg_steps = report.cg_steps as i64;
-    info.expansions = report.expansions as i64;
-    info.releases = report.releases as i64;
-    info.dual_applications = report.dual_applications as i64;
-    info.coarse_solves = report.coarse_solves as i64;
-    info.factorisations = report.factorisations as i64;
-    info.analyses = report.analyses as i64;
-    info.worst = report.certificate.worst();
-    info.equilibrium = report.certificate.equilibrium.figure;
-    info.balance = report.certificate.balance.figure;
-    info.penetration = report.certificate.penetration.figure;
-    info.equality = report.certificate.equality.figure;
-    info.negative_force = report.certificate.negative_force.figure;
-    info.complementarity = report.certificate.complementarity.figure;
-    info.duality_gap = report.certificate.duality_gap.figure;
-    info.energy = report.energy;
-    info.seconds_setup = report.seconds_setup;
-    info.seconds_solve = report.seconds_solve;
-    info.direct_solves = report.direct_solves as i64;
-    info.finished = i64::from(report.finished);
-    info.columns_computed = report.columns_computed as i64;
-    info.columns_kept = report.columns_kept as i64;
-    info.explicit_operators = report.explicit_operators as i64;
-    info.implicit_operators = report.implicit_operators as i64;
-    info.factor_bytes = report.factor_bytes as i64;
-    info.operator_bytes = report.operator_bytes as i64;
 }
 
 fn certificate(from: &Certificate) -> feti_certificate {

@@ -32,7 +32,7 @@ pub unsafe extern "C" fn feti_start_from(
 ) -> i32 {
     enter(p, call!(feti_start_from(p, kind, rows, lambda)), |problem| {
         let kind = row_kind(kind)?;
-        let counts = problem.counts();
+        let counts = problem.sizes();
         let expected = match kind {
             RowKind::Inequality => counts.rows,
             RowKind::Equality => counts.equalities,

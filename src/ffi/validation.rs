@@ -113,6 +113,6 @@ pub unsafe extern "C" fn feti_dual_rhs(p: *mut feti_problem, m: i64, d: *mut f64
 
 /// Rows of both kinds, which `m` must be.
 fn all_rows(problem: &Problem, m: i64) -> Result<usize> {
-    let counts = problem.counts();
+    let counts = problem.sizes();
     same(m, counts.rows + counts.equalities, "m", "the number of rows of both kinds is")
 }

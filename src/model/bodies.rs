@@ -26,7 +26,7 @@ impl Model {
         if n == 0 {
             return Err(Error::argument("n", "a body has at least one unknown").value(0.0).limit(1.0));
         }
-        let first = self.counts().dofs;
+        let first = self.sizes().dofs;
         let most = i64::MAX as usize - first;
         if n > most {
             let what = "the unknowns of all bodies together exceed 64 bits";

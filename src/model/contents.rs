@@ -71,7 +71,7 @@ pub struct GivenBody {
 
 /// Sizes of a problem.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub struct Counts {
+pub struct Sizes {
     pub bodies: usize,
     /// Unknowns of all bodies.
     pub dofs: usize,
@@ -125,8 +125,8 @@ impl Model {
         self.settings.get_str(name)
     }
 
-    pub fn counts(&self) -> Counts {
-        Counts {
+    pub fn sizes(&self) -> Sizes {
+        Sizes {
             bodies: self.bodies.len(),
             dofs: self.offsets[self.bodies.len()],
             rows: self.contact.len(),
@@ -188,7 +188,7 @@ impl Model {
     /// Threads for work on all bodies: fewer unknowns for each cost less than to wake it.
     pub fn threads(&self) -> usize {
         const FOR_EACH: usize = 500;
-        threads::count(self.settings.threads, self.counts().dofs / FOR_EACH)
+        threads::count(self.settings.threads, self.sizes().dofs / FOR_EACH)
     }
 
     /// Which of these bodies are worked on by the thread alone that calls the library.

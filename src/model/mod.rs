@@ -10,7 +10,7 @@ mod settings;
 mod settings_text;
 mod words;
 
-pub use contents::{BodyRevisions, Counts, GivenBody, Model, Revisions};
+pub use contents::{BodyRevisions, GivenBody, Model, Revisions, Sizes};
 pub use row_sets::{kind_and_row, proof_of_rows, PER_ENTRY};
 pub use settings::{options, OptionInfo, OptionValue, Settings};
 pub use words::{FinishBy, Method, OperatorForm, PaperStep1, PaperUnits, Preconditioning, StartFrom, Word};

@@ -50,7 +50,7 @@ impl Model {
     /// Whether the bodies have numbers: all or none.
     fn is_numbered(&self) -> Result<bool> {
         let numbers = self.unknowns.len();
-        if numbers == 0 || numbers == self.counts().dofs {
+        if numbers == 0 || numbers == self.sizes().dofs {
             return Ok(numbers > 0);
         }
         match self.bodies.iter().position(|given| given.numbers.is_none()) {
@@ -67,7 +67,7 @@ impl Model {
     pub fn check_whole(&self, n: usize) -> Result<()> {
         let numbered = self.is_numbered()?;
         let largest = self.bodies.iter().filter_map(|given| given.numbers.as_deref()?.iter().max());
-        let end = if numbered { largest.max().map_or(0, |most| most + 1) } else { self.counts().dofs };
+        let end = if numbered { largest.max().map_or(0, |most| most + 1) } else { self.sizes().dofs };
         if n == end || numbered && n > end {
             return Ok(());
         }

@@ -33,7 +33,7 @@ impl Answer {
         if ends.iter().all(std::result::Result::is_err) {
             return Ok(None);
         }
-        let counts = model.counts();
+        let counts = model.sizes();
         let rows = [&model.contact, &model.equalities];
         let alone = [RowKind::Inequality, RowKind::Equality]
             .map(|kind| rows[kind as usize].forces_without_entries(kind));
@@ -95,7 +95,7 @@ impl Answer {
         report.undetermined += solution.undetermined;
         report.finished |= finished;
         report.unheld = report.unheld.max(unheld);
-        report.count(&solution.counts);
+        report.counts = report.counts + solution.counts;
         let scale = solution.scale * island.unit.sqrt();
         report.gap_scale = report.gap_scale.hypot(scale);
     }

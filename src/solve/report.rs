@@ -4,10 +4,10 @@ use crate::certificate::Certificate;
 use crate::dual::Dual;
 use crate::error::Result;
 use crate::linalg::Operator;
-use crate::model::{Counts, Model};
+use crate::model::{Model, Sizes};
 use crate::progress::PhaseReport;
 use crate::qp;
-use crate::setup::Prepared;
+use crate::setup::{Prepared, Work};
 
 /// How a solve ended with an answer; of several groups of bodies the last of these.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -45,7 +45,7 @@ pub struct Report {
     /// Where there are several groups of bodies and not all are solved, the first body of the one that ended so.
     pub body: Option<usize>,
     pub certificate: Certificate,
-    pub counts: Counts,
+    pub sizes: Sizes,
     /// Dimension of the null spaces of all bodies.
     pub floating_modes: usize,
     /// Contact rows that are closed.
@@ -54,30 +54,15 @@ pub struct Report {
     pub undetermined: usize,
     /// The largest share of the load of bodies that move together which nothing holds: |resultant| / |load|, no unit.
     pub unheld: f64,
-    pub steps: usize,
-    pub cg_steps: usize,
-    pub expansions: usize,
-    pub releases: usize,
-    /// Outer iterations of an augmented Lagrangian; 0 for a method without one.
-    pub outer: usize,
-    /// Products with F.
-    pub dual_applications: usize,
-    pub coarse_solves: usize,
-    pub coarse_factorisations: usize,
-    /// Products with the preconditioner.
-    pub preconditioner_applications: usize,
-    /// Faces on which the dual was solved directly.
-    pub direct_solves: usize,
+    /// Work of the methods on all islands.
+    pub counts: qp::Counts,
     /// The direct finish followed (option `finish`), and its answer is kept.
     pub finished: bool,
     /// `|S|B||u|| + |S c|` at the first feasible forces: what the tolerance of the dual is relative to,
     /// `(force x length)^1/2`.
     pub gap_scale: f64,
-    /// As in `Work`.
-    pub factorisations: usize,
-    pub analyses: usize,
-    pub columns_computed: usize,
-    pub columns_kept: usize,
+    /// Work of all setups so far.
+    pub work: Work,
     /// `1/2 u'K u - f'u + 1/2 lambda'C lambda + 1/2 mu'C mu`, force x length.
     pub energy: f64,
     pub seconds_setup: f64,
@@ -101,27 +86,15 @@ impl Report {
             outcome: Outcome::Solved,
             body: None,
             certificate: Certificate::default(),
-            counts: model.counts(),
+            sizes: model.sizes(),
             floating_modes: sum(Dual::modes),
             active: 0,
             undetermined: 0,
             unheld: 0.0,
-            steps: 0,
-            cg_steps: 0,
-            expansions: 0,
-            releases: 0,
-            outer: 0,
-            dual_applications: 0,
-            coarse_solves: 0,
-            coarse_factorisations: 0,
-            preconditioner_applications: 0,
-            direct_solves: 0,
+            counts: qp::Counts::default(),
             finished: false,
             gap_scale: 0.0,
-            factorisations: prepared.work.factorisations,
-            analyses: prepared.work.analyses,
-            columns_computed: prepared.work.columns_computed,
-            columns_kept: prepared.work.columns_kept,
+            work: prepared.work,
             energy: 0.0,
             seconds_setup: 0.0,
             seconds_solve: 0.0,
@@ -131,19 +104,5 @@ impl Report {
             operator_bytes: sum(Dual::bytes_kept),
             phases: Vec::new(),
         })
-    }
-
-    /// Adds the work on one island.
-    pub fn count(&mut self, counts: &qp::Counts) {
-        self.steps += counts.steps();
-        self.cg_steps += counts.conjugate_gradient;
-        self.expansions += counts.expansions;
-        self.releases += counts.releases;
-        self.outer += counts.outer;
-        self.dual_applications += counts.products;
-        self.coarse_solves += counts.coarse_solves;
-        self.coarse_factorisations += counts.coarse_factorisations;
-        self.preconditioner_applications += counts.preconditioned;
-        self.direct_solves += counts.direct;
     }
 }

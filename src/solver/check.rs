@@ -19,7 +19,7 @@ impl Problem {
         let Self { model, prepared, .. } = self;
         model.check_empty_rows()?;
         prepared.refresh_gaps(model);
-        let counts = model.counts();
+        let counts = model.sizes();
         let lengths = [("n", u, counts.dofs), ("rows", lambda, counts.rows), ("eqs", mu, counts.equalities)];
         for (argument, values, expected) in lengths {
             if values.len() != expected {

@@ -11,7 +11,7 @@ use crate::solve::{Outcome, Report};
 /// Sizes and options, before anything is done.
 pub fn begin(log: &mut Log, model: &Model, call: &str) -> Result<()> {
     log.told = 0;
-    let counts = model.counts();
+    let counts = model.sizes();
     log.say(LogLevel::Phase, || {
         format!(
             "feti-contact {}: {call}: {} bodies, {} unknowns, {} contact rows, {} equality rows",
@@ -68,7 +68,10 @@ fn result_line(report: &Report) -> String {
     ];
     let mut line = format!(
         "{ended}: {} steps, {} products, {} of {} contact rows closed; certificate",
-        report.steps, report.dual_applications, report.active, report.counts.rows
+        report.counts.steps(),
+        report.counts.products,
+        report.active,
+        report.sizes.rows
     );
     for (name, entry) in figures {
         let _ = write!(line, " {name} {:.1e},", entry.figure);

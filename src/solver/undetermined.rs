@@ -36,7 +36,7 @@ impl Problem {
         };
         let ready = &self.prepared.done(&self.model)?.islands[*island];
         let own = ready.dual.rigid_motion(amplitudes, ready.island.unknowns());
-        let mut v = zeros(self.model.counts().dofs, "an open motion")?;
+        let mut v = zeros(self.model.sizes().dofs, "an open motion")?;
         ready.island.scatter(&self.model, &own, &mut v);
         let fastest = (0..v.len()).fold(0, |best, i| if v[i].abs() > v[best].abs() { i } else { best });
         let largest = v.get(fastest).copied().unwrap_or(1.0);

@@ -111,7 +111,7 @@ fn restore(problem: &mut Problem, deck: &Deck, how: usize) {
         }
         2 => rows(deck).iter().for_each(|(kind, rows)| problem.set_rhs(*kind, 0, &rows.rhs).unwrap()),
         3 => {
-            let have = problem.counts().rows;
+            let have = problem.sizes().rows;
             let rest = some(&deck.contact, have..deck.contact.len());
             hand_over::add_rows(problem, RowKind::Inequality, &rest).unwrap();
         }

@@ -77,8 +77,8 @@ fn line(seed: u64, case: &Case, got: &Result<Report>) -> String {
             "{:?}, certificate {:.1e}, {} steps, {} products",
             report.outcome,
             report.certificate.worst(),
-            report.steps,
-            report.dual_applications
+            report.counts.steps(),
+            report.counts.products
         ),
         Err(error) => format!("{:?}: {error}", error.kind),
     };

@@ -58,7 +58,7 @@ fn automatic_means_lumped_where_products_are_dear_and_none_elsewhere() {
         let mut problem = hand_over::problem(deck).unwrap();
         problem.set_str("preconditioner", preconditioner).unwrap();
         let report = problem.solve().unwrap();
-        (report.preconditioner_applications, report.dual_applications)
+        (report.counts.preconditioned, report.counts.products)
     };
     let glued = Cube { elements: 4, ..Cube::default() }.build();
     assert!(applications(&glued, "automatic").0 > 0);

@@ -74,7 +74,7 @@ fn a_rigid_punch_follows_the_law_of_pressure_and_overclosure() {
         assert_near(&u, &[depth], 1e-10, "depth");
         assert_near(&lambda, &pressure, 1e-10, "pressure");
     }
-    assert_eq!(problem.report().unwrap().factorisations, 1);
+    assert_eq!(problem.report().unwrap().work.factorisations, 1);
 }
 
 /// One rigid dof over rows u - c_i <= lambda_i / k_i.

@@ -11,7 +11,7 @@ fn stack() -> Deck {
 }
 
 fn set(problem: &mut Problem, inv_k: f64) {
-    let rows = problem.counts().rows;
+    let rows = problem.sizes().rows;
     problem.set_compliance(RowKind::Inequality, 0, &vec![inv_k; rows]).unwrap();
 }
 
@@ -19,7 +19,7 @@ fn set(problem: &mut Problem, inv_k: f64) {
 fn rows_made_rigid_again_give_the_bits_of_rigid_rows_and_nothing_is_factorised_anew() {
     let deck = stack();
     let mut problem = hand_over::problem(&deck).unwrap();
-    let factorisations = solved(&mut problem, "rigid").factorisations;
+    let factorisations = solved(&mut problem, "rigid").work.factorisations;
     let rigid = answer(&problem);
     set(&mut problem, 0.5);
     assert_eq!(problem.displacement(0).unwrap_err().kind, Kind::State, "the answer of rigid rows is gone");
@@ -27,7 +27,7 @@ fn rows_made_rigid_again_give_the_bits_of_rigid_rows_and_nothing_is_factorised_a
     let compliant = answer(&problem);
     assert_ne!(compliant, rigid);
     set(&mut problem, 0.0);
-    assert_eq!(solved(&mut problem, "rigid again").factorisations, factorisations);
+    assert_eq!(solved(&mut problem, "rigid again").work.factorisations, factorisations);
     assert_eq!(answer(&problem), rigid);
     let mut anew = deck.clone();
     anew.contact.compliance.fill(0.5);
@@ -95,11 +95,16 @@ fn a_warm_start_from_the_answer_takes_no_step_and_one_from_other_springs_fewer_t
     let first = answer(&problem);
     problem.set_str("start", "previous").unwrap();
     let again = solved(&mut problem, "from the answer");
-    assert!(again.steps <= 1, "{} steps, cold {}", again.steps, cold.steps);
+    assert!(again.counts.steps() <= 1, "{} steps, cold {}", again.counts.steps(), cold.counts.steps());
     assert_near(&answer(&problem)[1], &first[1], 1e-10, "lambda");
     problem.set_compliance(RowKind::Inequality, 0, &scaled(&deck.contact.compliance, 1.001)).unwrap();
     let warm = solved(&mut problem, "from other springs");
-    assert!(warm.steps < cold.steps, "{} steps, cold {}", warm.steps, cold.steps);
+    assert!(
+        warm.counts.steps() < cold.counts.steps(),
+        "{} steps, cold {}",
+        warm.counts.steps(),
+        cold.counts.steps()
+    );
 }
 
 fn scaled(values: &[f64], factor: f64) -> Vec<f64> {

@@ -33,7 +33,7 @@ fn solved(problem: &mut Problem, name: &str) -> Report {
 
 /// u over all bodies, lambda, mu.
 fn answer(problem: &Problem) -> [Vec<f64>; 3] {
-    let bodies = problem.counts().bodies;
+    let bodies = problem.sizes().bodies;
     let u = (0..bodies).flat_map(|p| problem.displacement(p).unwrap().to_vec()).collect();
     let [lambda, mu] =
         [RowKind::Inequality, RowKind::Equality].map(|kind| problem.multipliers(kind).unwrap().to_vec());

@@ -126,7 +126,7 @@ fn random_hard_problems_with_springs_have_the_energy_of_those_with_bodies_instea
 #[test]
 fn the_preconditioner_contains_the_springs() {
     for deck in decks() {
-        let steps = |deck: &Deck| solved_with(deck, "proportioning", "dirichlet").1.dual_applications;
+        let steps = |deck: &Deck| solved_with(deck, "proportioning", "dirichlet").1.counts.products;
         let (implicit, explicit) = (steps(&deck), steps(&with_explicit_springs(&deck)));
         assert!(implicit <= explicit + 2, "{}: {implicit} products, {explicit} with bodies", deck.name);
     }

@@ -41,7 +41,7 @@ fn solved(problem: &mut Problem) -> Report {
 
 /// u, lambda, mu.
 fn answer(problem: &Problem) -> [Vec<f64>; 3] {
-    let bodies = 0..problem.counts().bodies;
+    let bodies = 0..problem.sizes().bodies;
     let u = bodies.flat_map(|p| problem.displacement(p).unwrap().to_vec()).collect();
     let [lambda, mu] =
         [RowKind::Inequality, RowKind::Equality].map(|k| problem.multipliers(k).unwrap().to_vec());
@@ -72,7 +72,7 @@ fn forces_of_a_chain_of_soft_and_stiff_springs_are_those_by_hand() {
     // the wall moved: no new factorisation, and so does the glue: u_0 - u_1 = 0.1
     problem.set_rhs(RowKind::Inequality, 0, &[1.2]).unwrap();
     problem.set_rhs(RowKind::Equality, 0, &[0.1]).unwrap();
-    assert_eq!(solved(&mut problem).factorisations, 4);
+    assert_eq!(solved(&mut problem).work.factorisations, 4);
     assert_near(&answer(&problem)[0], &[0.4, 0.3, 0.3, 0.3], 1e-9, "moved");
     // far away it is not met: 1007 u = 3007
     problem.set_rhs(RowKind::Inequality, 0, &[1e3]).unwrap();
@@ -105,7 +105,7 @@ fn contact_on_any_copy_of_a_node_takes_the_same_steps_to_the_same_forces() {
         deck.contact.push(&[(dof, 1.0)], 0.1);
         let mut problem = hand_over::problem(&deck).unwrap();
         let report = solved(&mut problem);
-        (report.dual_applications, answer(&problem))
+        (report.counts.products, answer(&problem))
     };
     let (products, [u, lambda, _]) = on(0);
     for dof in [1, 2] {
@@ -187,7 +187,7 @@ fn a_stiffness_jump_of_a_million_costs_no_more_products_than_none() {
     let products = |contrast| {
         let mut problem = hand_over::problem(&checkerboard(Glue::NonRedundant, contrast)).unwrap();
         problem.set_str("preconditioner", "lumped").unwrap();
-        solved(&mut problem).dual_applications
+        solved(&mut problem).counts.products
     };
     let (uniform, jump) = (products(1.0), products(1e6));
     assert!(2 * jump <= 3 * uniform, "{uniform} and {jump}");
@@ -198,15 +198,15 @@ fn a_stiffness_jump_of_a_million_costs_no_more_products_than_none() {
 fn a_start_from_the_answer_is_an_answer_at_once() {
     let deck = checkerboard(Glue::NonRedundant, 1e4);
     let mut problem = hand_over::problem(&deck).unwrap();
-    let cold = solved(&mut problem).dual_applications;
+    let cold = solved(&mut problem).counts.products;
     let [u, lambda, mu] = answer(&problem);
     problem.start_from(RowKind::Inequality, &lambda).unwrap();
     problem.start_from(RowKind::Equality, &mu).unwrap();
-    let warm = solved(&mut problem).dual_applications;
+    let warm = solved(&mut problem).counts.products;
     assert!(warm <= 3 && cold > 10, "{warm} instead of {cold}");
     assert_near(&answer(&problem)[0], &u, 1e-8, "u");
     let state = problem.save_state().unwrap();
     problem.set_str("start", "previous").unwrap();
     problem.restore_state(state).unwrap();
-    assert!(solved(&mut problem).dual_applications <= 3);
+    assert!(solved(&mut problem).counts.products <= 3);
 }

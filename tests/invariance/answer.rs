@@ -59,14 +59,14 @@ impl Answer {
         let report = problem.solve().unwrap_or_else(|error| panic!("{name}: {error}"));
         assert_eq!(report.outcome, Outcome::Solved, "{name}: {report:?}");
         assert!(report.certificate.passed(), "{name}: {:?}", report.certificate);
-        let bodies = 0..report.counts.bodies;
+        let bodies = 0..report.sizes.bodies;
         Self {
             u: bodies.flat_map(|p| problem.displacement(p).unwrap().to_vec()).collect(),
             lambda: problem.multipliers(RowKind::Inequality).unwrap().to_vec(),
             mu: problem.multipliers(RowKind::Equality).unwrap().to_vec(),
-            steps: [report.cg_steps, report.expansions, report.releases],
-            products: report.dual_applications,
-            coarse_solves: report.coarse_solves,
+            steps: [report.counts.conjugate_gradient, report.counts.expansions, report.counts.releases],
+            products: report.counts.products,
+            coarse_solves: report.counts.coarse_solves,
         }
     }
 

@@ -29,9 +29,9 @@ fn solving_twice_gives_the_same_bits() {
     for deck in decks() {
         let mut problem = hand_over::problem(&deck).unwrap();
         let first = Answer::from(&mut problem, &deck.name);
-        let factorisations = problem.report().unwrap().factorisations;
+        let factorisations = problem.report().unwrap().work.factorisations;
         Answer::from(&mut problem, &deck.name).assert_same(&first, &deck.name);
-        assert_eq!(problem.report().unwrap().factorisations, factorisations, "{}", deck.name);
+        assert_eq!(problem.report().unwrap().work.factorisations, factorisations, "{}", deck.name);
     }
 }
 

@@ -60,7 +60,7 @@ fn another_kind_of_operator_takes_no_factorisation_and_leaves_no_trace() {
         problem.set_str("dual_operator", "implicit").unwrap();
         let implicit = Answer::from(&mut problem, &deck.name);
         implicit.assert_same(&Answer::from(&mut with(&deck, "implicit"), &deck.name), &deck.name);
-        assert_eq!(problem.report().unwrap().factorisations, explicit.factorisations);
+        assert_eq!(problem.report().unwrap().work.factorisations, explicit.work.factorisations);
         problem.set_str("dual_operator", "explicit").unwrap();
         Answer::from(&mut problem, &deck.name).assert_same(&first, &deck.name);
         assert_eq!(problem.report().unwrap().operator_bytes, explicit.operator_bytes);
@@ -102,7 +102,7 @@ fn the_direct_method_needs_no_explicit_operator() {
             let answer = Answer::from(&mut problem, &deck.name);
             let report = problem.report().unwrap();
             assert!(report.finished || deck.name != "blocks_8", "{kind}");
-            (answer, report.direct_solves)
+            (answer, report.counts.direct)
         };
         let (implicit, explicit) = (finished("implicit"), finished("explicit"));
         assert!(implicit.1 > 0 && implicit.1 == explicit.1, "{}", deck.name);

@@ -66,7 +66,7 @@ fn solved(problem: &mut Problem) -> Report {
 
 /// u, lambda, mu.
 fn answer(problem: &Problem) -> [Vec<f64>; 3] {
-    let bodies = 0..problem.counts().bodies;
+    let bodies = 0..problem.sizes().bodies;
     let u = bodies.flat_map(|p| problem.displacement(p).unwrap().to_vec()).collect();
     let [lambda, mu] =
         [RowKind::Inequality, RowKind::Equality].map(|k| problem.multipliers(k).unwrap().to_vec());
@@ -178,20 +178,22 @@ fn load_steps_and_new_rows_ask_for_no_more_than_they_need() {
     hosts.iter().enumerate().for_each(|(p, host)| host.give(&mut problem, p, false));
     let report = solved(&mut problem);
     let first = columns(&hosts);
-    assert!(first > report.columns_computed && report.factorisations == 0 && report.analyses == 0);
+    assert!(
+        first > report.work.columns_computed && report.work.factorisations == 0 && report.work.analyses == 0
+    );
     assert_eq!(report.explicit_operators, bodies);
     for (p, body) in deck.bodies.iter().enumerate() {
         let load: Vec<f64> = body.load.iter().map(|f| 1.1 * f).collect();
         problem.set_load(p, &load).unwrap();
     }
     let second = solved(&mut problem);
-    assert_eq!(second.columns_computed, report.columns_computed);
+    assert_eq!(second.work.columns_computed, report.work.columns_computed);
     let spent = columns(&hosts);
     assert!(spent >= 2 * bodies && spent <= 4 * bodies, "{spent} columns");
     problem.set_rhs(RowKind::Inequality, 0, &vec![0.01; deck.contact.len()]).unwrap();
     hand_over::add_rows(&mut problem, RowKind::Inequality, &extra_row(&deck)).unwrap();
     let third = solved(&mut problem);
-    assert_eq!(third.columns_computed - second.columns_computed, 1);
+    assert_eq!(third.work.columns_computed - second.work.columns_computed, 1);
     assert!(columns(&hosts) <= 4 * bodies + 1);
 }
 
@@ -210,7 +212,7 @@ fn a_matrix_takes_the_place_of_functions_and_they_that_of_a_matrix() {
     let report = solved(&mut problem);
     let expected = answer(&problem);
     hosts[3].give(&mut problem, 3, true);
-    assert_eq!(solved(&mut problem).factorisations, report.factorisations);
+    assert_eq!(solved(&mut problem).work.factorisations, report.work.factorisations);
     assert!(columns(&hosts[3..4]) > 0);
     assert_same(&answer(&problem), &expected, 1e-7, "functions");
     let error = problem.fixing_dofs(3).unwrap_err();

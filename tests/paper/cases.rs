@@ -28,7 +28,11 @@ fn every_case_is_solved_to_1e_4_by_every_variant() {
             let (report, error) = solve(&case, method, gamma);
             assert_eq!(report.outcome, Outcome::Solved, "{name} {method} {gamma}");
             assert!(error <= 1e-4, "{name} {method} {gamma}: forces differ by {error:.1e}");
-            assert!(report.outer >= 1 && report.outer <= 4, "{name} {method}: {} outer", report.outer);
+            assert!(
+                report.counts.outer >= 1 && report.counts.outer <= 4,
+                "{name} {method}: {} outer",
+                report.counts.outer
+            );
         }
     }
 }
@@ -87,7 +91,7 @@ fn the_default_solves_every_case_to_1e_9_in_fewer_products() {
         assert_eq!(report.outcome, Outcome::Solved, "{name}");
         assert!(error <= 1e-9, "{name}: forces differ by {error:.1e}");
         let (paper, _) = solve(&case, "paper-extrapolating", 1.0);
-        assert!(report.dual_applications < paper.dual_applications, "{name}");
+        assert!(report.counts.products < paper.counts.products, "{name}");
     }
 }
 
@@ -133,7 +137,12 @@ fn a_start_from_the_last_forces_needs_few_steps_in_either_units() {
         let cold = problem.solve().unwrap();
         let warm = problem.solve().unwrap();
         assert!(cold.outcome == Outcome::Solved && warm.outcome == Outcome::Solved);
-        assert!(2 * warm.steps < cold.steps, "{units}: {} steps after {}", warm.steps, cold.steps);
+        assert!(
+            2 * warm.counts.steps() < cold.counts.steps(),
+            "{units}: {} steps after {}",
+            warm.counts.steps(),
+            cold.counts.steps()
+        );
     }
 }
 
@@ -148,7 +157,15 @@ fn the_course_in_relative_units_depends_on_no_unit() {
         scaled.contact.1.iter_mut().for_each(|c| *c *= metre);
         scaled.lambda.iter_mut().for_each(|l| *l *= newton);
         let (report, error) = solve(&scaled, "paper-monotone", 1.0);
-        let counts = |r: &Report| (r.outer, r.cg_steps, r.expansions, r.releases, r.dual_applications);
+        let counts = |r: &Report| {
+            (
+                r.counts.outer,
+                r.counts.conjugate_gradient,
+                r.counts.expansions,
+                r.counts.releases,
+                r.counts.products,
+            )
+        };
         assert_eq!(counts(&report), counts(&plain), "{newton} {metre}");
         assert!(error <= 1e-4);
     }

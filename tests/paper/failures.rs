@@ -30,7 +30,7 @@ fn gamma_a_tenth_runs_into_the_limit_of_steps_where_all_modes_float() {
         assert!(!report.certificate.passed());
     }
     let (_, mut problem) = as_printed("p2_B2", "paper-extrapolating", 1.0);
-    assert!(problem.solve().unwrap().steps < 200, "Gamma = 1 does with tens");
+    assert!(problem.solve().unwrap().counts.steps() < 200, "Gamma = 1 does with tens");
 }
 
 #[test]
@@ -114,5 +114,5 @@ fn a_run_that_is_cancelled_keeps_what_it_has() {
         }
     })));
     let report = problem.solve().unwrap();
-    assert_eq!((report.outcome, report.steps), (Outcome::Cancelled, 5));
+    assert_eq!((report.outcome, report.counts.steps()), (Outcome::Cancelled, 5));
 }

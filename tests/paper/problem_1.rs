@@ -32,9 +32,9 @@ fn problem_1_takes_3_outer_23_inner_steps_and_34_products_whatever_gamma() {
         problem.set_f64("gamma", gamma).unwrap();
         problem.set_f64("certificate_tolerance", 1e-4).unwrap();
         let report = problem.solve().unwrap();
-        let steps = (report.cg_steps, report.expansions, report.releases);
+        let steps = (report.counts.conjugate_gradient, report.counts.expansions, report.counts.releases);
         assert_eq!(
-            (report.outer, steps, report.dual_applications),
+            (report.counts.outer, steps, report.counts.products),
             (3, (17, 6, 1), 34),
             "Gamma {gamma} {step_1}"
         );
@@ -62,7 +62,11 @@ fn other_fixing_dofs_change_the_counts_and_not_the_forces() {
     let (held, _) = solved("paper-extrapolating", 1.0, HELD);
     for (other, inner, products) in [(0, 25, 35), (220, 21, 31)] {
         let (problem, report) = solved("paper-extrapolating", 1.0, other);
-        let counts = (report.outer, report.cg_steps + report.expansions, report.dual_applications);
+        let counts = (
+            report.counts.outer,
+            report.counts.conjugate_gradient + report.counts.expansions,
+            report.counts.products,
+        );
         assert_eq!(counts, (2, inner, products));
         let forces = problem.multipliers(RowKind::Inequality).unwrap();
         let known = held.multipliers(RowKind::Inequality).unwrap();
@@ -74,7 +78,7 @@ fn other_fixing_dofs_change_the_counts_and_not_the_forces() {
 fn feasible_and_monotone_proportioning_need_28_products() {
     for method in ["paper-feasible", "paper-monotone"] {
         let (_, report) = solved(method, 1.0, HELD);
-        assert_eq!((report.outer, report.dual_applications), (3, 28), "{method}");
+        assert_eq!((report.counts.outer, report.counts.products), (3, 28), "{method}");
     }
 }
 

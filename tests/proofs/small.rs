@@ -124,7 +124,7 @@ fn not_solved(kind: Kind, count: u64) -> Vec<String> {
                 "{:?}, worst {:.1e}, {} steps",
                 report.outcome,
                 report.certificate.worst(),
-                report.steps
+                report.counts.steps()
             ),
             Err(error) => error.to_string(),
         };

@@ -31,7 +31,7 @@ fn unloaded_to_zero_everything_is_zero_in_a_few_steps() {
         let report = problem.solve().unwrap();
         assert_eq!(report.outcome, Outcome::Solved, "{by}: {report:?}");
         if by == 0.0 {
-            assert!(report.steps <= 10, "{} steps", report.steps);
+            assert!(report.counts.steps() <= 10, "{} steps", report.counts.steps());
             let zero = |values: &[f64]| values.iter().all(|v| *v == 0.0);
             assert!(zero(problem.displacements().unwrap()), "{:?}", problem.displacements());
             assert!(zero(problem.multipliers(RowKind::Inequality).unwrap()));
@@ -69,7 +69,7 @@ fn a_cube_of_springs_on_supports_is_unloaded() {
             let report = problem.solve().unwrap();
             assert_eq!(report.outcome, Outcome::Solved, "{n}, {by}: {report:?}");
             if by == 0.0 {
-                assert!(report.steps <= 10, "{n}: {} steps", report.steps);
+                assert!(report.counts.steps() <= 10, "{n}: {} steps", report.counts.steps());
                 assert!(problem.displacements().unwrap().iter().all(|u| *u == 0.0));
             }
         }

@@ -15,7 +15,12 @@ use feti_contact::solver::{Outcome, Problem, RowKind};
 pub fn spent(problem: &mut Problem, before: &mut [usize; 4]) -> [usize; 4] {
     let report = problem.solve().unwrap();
     assert_eq!(report.outcome, Outcome::Solved, "{report:?}");
-    let all = [report.analyses, report.factorisations, report.columns_computed, report.columns_kept];
+    let all = [
+        report.work.analyses,
+        report.work.factorisations,
+        report.work.columns_computed,
+        report.work.columns_kept,
+    ];
     let now = std::array::from_fn(|k| all[k] - before[k]);
     *before = all;
     now
@@ -23,7 +28,7 @@ pub fn spent(problem: &mut Problem, before: &mut [usize; 4]) -> [usize; 4] {
 
 /// u, lambda, mu.
 pub fn answer(problem: &Problem) -> [Vec<f64>; 3] {
-    let bodies = 0..problem.counts().bodies;
+    let bodies = 0..problem.sizes().bodies;
     let u = bodies.flat_map(|p| problem.displacement(p).unwrap().to_vec()).collect();
     let [lambda, mu] =
         [RowKind::Inequality, RowKind::Equality].map(|k| problem.multipliers(k).unwrap().to_vec());

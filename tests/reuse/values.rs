@@ -118,7 +118,7 @@ fn dofs_that_no_longer_hold_a_body_are_chosen_anew() {
         [[8.0, 1.0, 1.0, 1.0], [9.0, 1.1, 1.0, 1.5], [1e-4, 1e-4, 1.0, 2.0], [1e-4, 1e-4, 3.0, 1.0]]
     {
         let (n, k) = chain(&stiffness);
-        if problem.counts().bodies == 0 {
+        if problem.sizes().bodies == 0 {
             problem.add_body(n).unwrap();
             problem.set_null_space(0, n, 1, &vec![1.0; n], n, Modes::Exact).unwrap();
         }

@@ -27,7 +27,7 @@ fn claim_bits(claims: &mut Claims, found: [&[f64]; 3], alone: &Answer, what: &st
 /// What must add up over the groups.
 fn work_of(report: &Report) -> [usize; 5] {
     let r = report;
-    [r.steps, r.dual_applications, r.cg_steps, r.expansions, r.releases]
+    [r.counts.steps(), r.counts.products, r.counts.conjugate_gradient, r.counts.expansions, r.counts.releases]
 }
 
 /// The decks side by side against each of them alone.

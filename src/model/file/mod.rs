@@ -91,7 +91,7 @@ impl Model {
     }
 
     fn check_empty(&self) -> Result<()> {
-        let counts = self.counts();
+        let counts = self.sizes();
         if counts.bodies + counts.rows + counts.equalities == 0 {
             return Ok(());
         }

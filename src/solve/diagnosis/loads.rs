@@ -143,7 +143,7 @@ impl Unheld {
             scaled.load.iter().zip(&own).for_each(|(f, v)| work.add_product(*f, *v));
             let resisted = BEYOND * (resistance(ready, &own) + strain(case, &own)?);
             if work.value() > size * resisted {
-                let mut v = zeros(case.model.counts().dofs, "a motion")?;
+                let mut v = zeros(case.model.sizes().dofs, "a motion")?;
                 island.scatter(case.model, &own, &mut v);
                 return Ok(Some(self.named(case, v)));
             }

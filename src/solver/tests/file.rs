@@ -98,7 +98,7 @@ fn all_that_is_registered_comes_back_bit_by_bit() {
         let (new, old) = (back.rows(kind), problem.rows(kind));
         assert_eq!((&new.matrix, &new.rhs, &new.compliance), (&old.matrix, &old.rhs, &old.compliance));
     }
-    assert_eq!(back.counts().rows, 1);
+    assert_eq!(back.sizes().rows, 1);
     assert_eq!(back.write_bytes().unwrap(), bytes, "written again it is the same file");
 }
 
@@ -123,7 +123,7 @@ fn rows_that_never_close_come_back_and_other_gaps_without_end_are_refused() {
         let payload = numbers(&[kind, 1, 1, 0, 1, 0, 1.0_f64.to_bits(), rhs.to_bits(), 0]);
         of_sections(FORMAT, &[body.clone(), of_section(b"ROWS", 0, &payload)])
     };
-    assert_eq!(read(&row(1, f64::INFINITY)).unwrap().counts().rows, 1);
+    assert_eq!(read(&row(1, f64::INFINITY)).unwrap().sizes().rows, 1);
     for rhs in [f64::NAN, f64::NEG_INFINITY] {
         assert!(refused(&row(1, rhs)).what.contains("neither a finite number nor +infinity"));
     }
@@ -135,7 +135,7 @@ fn rows_that_never_close_come_back_and_other_gaps_without_end_are_refused() {
 #[test]
 fn an_empty_and_an_incomplete_problem_come_back() {
     let mut problem = Problem::new();
-    assert_eq!(read(&problem.write_bytes().unwrap()).unwrap().counts(), problem.counts());
+    assert_eq!(read(&problem.write_bytes().unwrap()).unwrap().sizes(), problem.sizes());
     problem.add_body(7).unwrap();
     problem.set_load(0, &[1.0; 7]).unwrap();
     let mut back = read(&problem.write_bytes().unwrap()).unwrap();
@@ -191,7 +191,7 @@ fn an_unknown_section_is_passed_over_if_it_may_be_and_refused_by_the_version_tha
     let body = of_section(b"BODY", 0, &numbers(&[3]));
     for payload in [&b""[..], b"later", &[7; 10_000]] {
         let skipped = of_sections(FORMAT, &[of_section(b"NEWS", 1, payload), body.clone()]);
-        assert_eq!(read(&skipped).unwrap().counts().dofs, 3);
+        assert_eq!(read(&skipped).unwrap().sizes().dofs, 3);
         let mut damaged = skipped.clone();
         damaged[HEADER as usize + 17] ^= 1;
         assert!(refused(&damaged).what.contains("damaged"));
@@ -247,7 +247,7 @@ fn what_the_calls_refuse_is_refused_with_its_section_and_place() {
     let rows =
         |unknown: u64, inv_k: f64| numbers(&[1, 1, 1, 0, 1, unknown, bits(1.0), bits(0.0), bits(inv_k)]);
     let good = [body.clone(), stiffness([1.0, 0.0, 1.0], [0, 0, 1]), of_section(b"ROWS", 0, &rows(1, 0.0))];
-    assert_eq!(read(&of_sections(FORMAT, &good)).unwrap().counts().rows, 1);
+    assert_eq!(read(&of_sections(FORMAT, &good)).unwrap().sizes().rows, 1);
     for (section, says) in [
         (of_section(b"BODY", 0, &numbers(&[0])), "at least one unknown"),
         (stiffness([1.0, f64::NAN, 1.0], [0, 0, 1]), "not a finite number"),
@@ -288,7 +288,7 @@ fn many_small_bodies_are_read_in_a_time_that_grows_with_the_file() {
     let payload = [numbers(&[1, 1, 0, 1, 1.0_f64.to_bits()]), vec![0; 4]].concat();
     let body = [of_section(b"BODY", 0, &numbers(&[1])), of_section(b"STIF", 0, &payload)].concat();
     let begun = std::time::Instant::now();
-    assert_eq!(read(&of_sections(FORMAT, &vec![body; 200_000])).unwrap().counts().bodies, 200_000);
+    assert_eq!(read(&of_sections(FORMAT, &vec![body; 200_000])).unwrap().sizes().bodies, 200_000);
     assert!(begun.elapsed().as_secs() < 20);
 }
 

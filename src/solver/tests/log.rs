@@ -110,7 +110,7 @@ fn every_step_is_a_line_of_its_own_level() {
     let lines = listen(&mut problem, LogLevel::Step, 0, 0);
     let report = problem.solve().unwrap();
     let steps: Vec<_> = told(&lines).into_iter().filter(|line| line.0 == LogLevel::Step).collect();
-    assert_eq!(steps.len(), report.steps);
+    assert_eq!(steps.len(), report.counts.steps());
     assert!(steps.iter().enumerate().all(|(k, line)| line.1.starts_with(&format!("step {}: ", k + 1))));
 }
 
