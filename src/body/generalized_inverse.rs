@@ -36,7 +36,7 @@ pub struct GeneralizedInverse {
 }
 
 /// `K_p+` of a body and what it took.
-pub struct Made {
+pub struct Factorised {
     pub inverse: GeneralizedInverse,
     /// The analysis its factor belongs to.
     pub symbolic: Arc<Symbolic>,
@@ -138,7 +138,7 @@ impl Known {
 
     /// Factorises F of (14) and probes; refuses a K that is indefinite, against (4), or more singular than its null
     /// space says.
-    pub fn execute(self) -> Result<Made> {
+    pub fn execute(self) -> Result<Factorised> {
         let missing = || Error::new(Kind::Internal, "a body was not analysed");
         let symbolic = self.symbolic.ok_or_else(missing)?;
         let factor = symbolic.analysis.factorize(&self.k.matrix, self.k.by)?.map_err(|breakdown| {
@@ -160,7 +160,7 @@ impl Known {
             factor,
         };
         let inverse = inverse.measured(&k)?;
-        Ok(Made { inverse, symbolic, further_analyses: 0, factorisations: 1 })
+        Ok(Factorised { inverse, symbolic, further_analyses: 0, factorisations: 1 })
     }
 }
 

@@ -6,7 +6,7 @@ use crate::body::fixing::{fixing_dofs, given_dofs};
 use crate::body::generalized_inverse::{GeneralizedInverse, Known};
 use crate::body::misfit::{Misfit, Retry};
 use crate::body::null_space::{
-    kernel_by_parts, verified_by_parts, Kernel, Part, Verified, CANDIDATE, ROUNDING,
+    kernel_by_parts, verified_by_parts, FreePart, KernelByParts, Verified, CANDIDATE, ROUNDING,
 };
 use crate::body::plan::Plan;
 use crate::body::rigid_modes::RigidModes;
@@ -31,7 +31,7 @@ impl GeneralizedInverse {
         let _room = room(64 * n * size_of::<f64>() + PRODUCTS, "the null space of a body")?;
         let parts: Vec<_> =
             rigid.members.iter().map(Vec::as_slice).zip(rigid.counts.iter().copied()).collect();
-        let Kernel { kernel, counts, candidates, next } = kernel_by_parts(&k, &rigid.modes, &parts)?;
+        let KernelByParts { kernel, counts, candidates, next } = kernel_by_parts(&k, &rigid.modes, &parts)?;
         let fit = counts.iter().sum();
         if fit == candidates {
             return Self::known(k, &kernel, (rigid, &counts), (tolerance, None), fixing);
@@ -68,12 +68,12 @@ impl GeneralizedInverse {
         fixing: Option<&[usize]>,
     ) -> Result<Plan> {
         let root = k.roots()?;
-        let part = |(dofs, &count): (_, &usize)| Part { dofs: Vec::as_slice(dofs), count, tolerance };
-        let parts: Vec<Part<'_>> = rigid.members.iter().zip(counts).map(part).collect();
+        let part = |(dofs, &count): (_, &usize)| FreePart { dofs: Vec::as_slice(dofs), count, tolerance };
+        let parts: Vec<FreePart<'_>> = rigid.members.iter().zip(counts).map(part).collect();
         let Verified { basis, error } = verified_by_parts(&k, &root, vectors, &parts)?;
         let (mut null_space, mut chosen, mut at) =
             (Matrix::zeros(k.order(), counts.iter().sum())?, Vec::new(), 0);
-        for Part { dofs, count, .. } in parts {
+        for FreePart { dofs, count, .. } in parts {
             let (mut own, first) = (Matrix::zeros(dofs.len(), count)?, at);
             for j in 0..count {
                 own.col_mut(j).iter_mut().zip(dofs).for_each(|(v, &i)| *v = basis.get(i, j));

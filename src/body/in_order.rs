@@ -19,7 +19,7 @@ pub fn lower_triangle(input: SparseInput, diag: Option<&[f64]>, tolerance: f64) 
 }
 
 /// Row i as it was given.
-struct Row<'a> {
+struct InOrderRow<'a> {
     col: &'a [i64],
     val: &'a [f64],
     /// Number of entries left of the diagonal.
@@ -31,7 +31,7 @@ struct Row<'a> {
 }
 
 /// `None` where columns do not ascend, a number is out of its range or a diagonal entry is there twice.
-fn row<'a>(input: &SparseInput<'a>, diag: Option<&[f64]>, i: usize) -> Option<Row<'a>> {
+fn row<'a>(input: &SparseInput<'a>, diag: Option<&[f64]>, i: usize) -> Option<InOrderRow<'a>> {
     let (n, range) = (input.ptr.len() - 1, input.ptr[i]..input.ptr[i + 1]);
     let (col, val) = (input.col.get(range.clone())?, input.val.get(range)?);
     let left = col.partition_point(|&j| (j as usize) < i);
@@ -41,7 +41,7 @@ fn row<'a>(input: &SparseInput<'a>, diag: Option<&[f64]>, i: usize) -> Option<Ro
     let within = col.first().is_none_or(|&j| j >= 0) && col.last().is_none_or(|&j| (j as usize) < n);
     let once = !(given && diag.is_some()) && diagonal.is_finite();
     let of_this_form = ascending && within && once && val.iter().all(|v| v.is_finite());
-    of_this_form.then_some(Row { col, val, left, given, diagonal })
+    of_this_form.then_some(InOrderRow { col, val, left, given, diagonal })
 }
 
 /// Storage in full, or of the lower triangle.
@@ -50,7 +50,7 @@ fn by_rows(input: SparseInput, diag: Option<&[f64]>, tolerance: f64) -> Result<O
     let full = input.storage == Storage::Full;
     let stored = n + if full { entries / 2 } else { entries };
     let (ptr, col, val) = (reserved(n + 1, WHAT)?, reserved(stored, WHAT)?, reserved(stored, WHAT)?);
-    let mut rows = Rows {
+    let mut rows = LowerRows {
         input,
         diag,
         tolerance,
@@ -64,7 +64,7 @@ fn by_rows(input: SparseInput, diag: Option<&[f64]>, tolerance: f64) -> Result<O
     Ok((is_of_this_form && is_paired).then_some(rows.lower))
 }
 
-struct Rows<'a> {
+struct LowerRows<'a> {
     input: SparseInput<'a>,
     diag: Option<&'a [f64]>,
     tolerance: f64,
@@ -75,7 +75,7 @@ struct Rows<'a> {
     root: Vec<f64>,
 }
 
-impl Rows<'_> {
+impl LowerRows<'_> {
     fn take(&mut self, i: usize) -> Option<()> {
         let row = row(&self.input, self.diag, i)?;
         self.root.push(row.diagonal.abs().sqrt());
@@ -92,7 +92,7 @@ impl Rows<'_> {
     }
 
     /// The values left of the diagonal, each with its mate: that of column i in the rows taken.
-    fn take_with_mates(&mut self, i: usize, row: &Row) -> Option<()> {
+    fn take_with_mates(&mut self, i: usize, row: &InOrderRow) -> Option<()> {
         for (&j, &k_ij) in row.col[..row.left].iter().zip(row.val) {
             let j = j as usize;
             let mate = self.next[j];

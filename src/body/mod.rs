@@ -36,7 +36,7 @@ pub use alike::{
 pub use borrowed::{from_borrowed, Columns};
 pub use boundary::{diagonal, dirichlet, dirichlet_bytes, lumped};
 pub use digits::Digits;
-pub use generalized_inverse::{GeneralizedInverse, Made};
+pub use generalized_inverse::{Factorised, GeneralizedInverse};
 pub use given::Stiffness;
 pub use host::{HostFunctions, HostMultiple, HostOperator, HostProduct, TOGETHER};
 pub use misfit::Misfit;

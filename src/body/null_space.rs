@@ -91,11 +91,11 @@ pub fn verified<K: Products>(
 /// One part of all dofs.
 fn exact<K: Products>(k: &K, root: &[f64], vectors: &Matrix, tolerance: f64) -> Result<Verified> {
     let dofs: Vec<usize> = (0..k.order()).collect();
-    verified_by_parts(k, root, vectors, &[Part { dofs: &dofs, count: vectors.cols, tolerance }])
+    verified_by_parts(k, root, vectors, &[FreePart { dofs: &dofs, count: vectors.cols, tolerance }])
 }
 
 /// Dofs that share no stiffness with the others.
-pub struct Part<'a> {
+pub struct FreePart<'a> {
     pub dofs: &'a [usize],
     /// Null vectors of the part, in the first columns.
     pub count: usize,
@@ -108,10 +108,10 @@ pub fn verified_by_parts<K: Products>(
     k: &K,
     root: &[f64],
     vectors: &Matrix,
-    parts: &[Part<'_>],
+    parts: &[FreePart<'_>],
 ) -> Result<Verified> {
     let mut basis = Matrix::zeros(vectors.rows, vectors.cols)?;
-    for &Part { dofs, count, .. } in parts {
+    for &FreePart { dofs, count, .. } in parts {
         let mut own = Matrix::zeros(dofs.len(), count)?;
         for j in 0..count {
             own.col_mut(j).iter_mut().zip(dofs).for_each(|(v, &i)| *v = root[i] * vectors.get(i, j));
@@ -128,7 +128,7 @@ pub fn verified_by_parts<K: Products>(
     let (image, terms) = k.mul_columns(&basis)?;
     let mut error = ROUNDING;
     let weight = |i: usize| 1.0 / k.metric(i, 1.0);
-    for &Part { dofs, count, tolerance } in parts {
+    for &FreePart { dofs, count, tolerance } in parts {
         for j in 0..count {
             let part = |of: &Matrix| dofs.iter().map(|&i| of.get(i, j)).collect::<Vec<f64>>();
             let image = part(&image);
@@ -157,7 +157,7 @@ fn kernel_within<K: Products>(k: &K, candidates: &Matrix) -> Result<Matrix> {
 }
 
 /// What K does to candidates.
-pub struct Kernel {
+pub struct KernelByParts {
     /// Null vectors j of all parts in column j.
     pub kernel: Matrix,
     /// Of every part.
@@ -174,7 +174,7 @@ pub fn kernel_by_parts<K: Products>(
     k: &K,
     candidates: &Matrix,
     parts: &[(&[usize], usize)],
-) -> Result<Kernel> {
+) -> Result<KernelByParts> {
     let mut spans = reserved(parts.len(), "a null space")?;
     let mut all = Matrix::zeros(candidates.rows, candidates.cols)?;
     for &(dofs, count) in parts {
@@ -188,7 +188,7 @@ pub fn kernel_by_parts<K: Products>(
     }
     let (image, _) = k.mul_columns(&all)?;
     all.data.fill(0.0);
-    let mut found = Kernel { kernel: all, counts: Vec::new(), candidates: 0, next: f64::INFINITY };
+    let mut found = KernelByParts { kernel: all, counts: Vec::new(), candidates: 0, next: f64::INFINITY };
     for (&(dofs, _), span) in parts.iter().zip(&spans) {
         let mut resisted = Matrix::zeros(dofs.len(), span.cols)?;
         for j in 0..span.cols {

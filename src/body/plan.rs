@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use crate::body::fixing::{fixing_dofs, given_dofs};
-use crate::body::generalized_inverse::{GeneralizedInverse, Known, Made};
+use crate::body::generalized_inverse::{Factorised, GeneralizedInverse, Known};
 use crate::body::misfit::Retry;
 use crate::body::null_space::{verified, NullSpaceInput, Verified, ROUNDING as KNOWN};
 use crate::body::search::Search;
@@ -111,7 +111,7 @@ impl Plan {
     }
 
     /// Factorises and probes. Where coordinates have promised fewer null vectors than K has, these are sought in K.
-    pub fn execute(mut self) -> Result<Made> {
+    pub fn execute(mut self) -> Result<Factorised> {
         if self.symbolic().is_none() {
             let symbolic = self.analyse()?;
             self.set_analysis(symbolic);
@@ -130,7 +130,7 @@ impl Plan {
 }
 
 /// The null space sought in K, after `error`.
-fn sought(k: Multiple, retry: Retry, error: Error) -> Result<Made> {
+fn sought(k: Multiple, retry: Retry, error: Error) -> Result<Factorised> {
     if !matches!(error.kind, Kind::NullSpace | Kind::Indefinite | Kind::Internal) {
         return Err(error);
     }

@@ -10,13 +10,13 @@ use std::sync::Arc;
 use crate::body::digits::Digits;
 use crate::body::factor::Factor;
 use crate::body::fixing::{fixing_dofs, given_dofs};
-use crate::body::generalized_inverse::{GeneralizedInverse, Made};
+use crate::body::generalized_inverse::{Factorised, GeneralizedInverse};
 use crate::body::last::{between_parts, spread, supported};
 use crate::body::misfit::Misfit;
-use crate::body::null_space::{largest, verified_by_parts, Part, Verified};
+use crate::body::null_space::{largest, verified_by_parts, FreePart, Verified};
 use crate::body::overflow::refuse_overflow;
 use crate::body::probe::{known_to, probe, MOST_ROUNDING, SINGULAR};
-use crate::body::spectrum::{cut, measured, to_measure, unclear, Doubt, Ritz, Verdict};
+use crate::body::spectrum::{cut, measured, to_measure, unclear, Doubt, MotionVerdict, Ritz};
 use crate::body::symbolic::{Layout, Symbolic};
 use crate::error::{Error, Kind, Result};
 use crate::linalg::graph::components;
@@ -132,7 +132,7 @@ impl Search {
     }
 
     /// Tries with more dofs t until none is missed.
-    pub fn execute(self) -> Result<Made> {
+    pub fn execute(self) -> Result<Factorised> {
         let misfit = self.misfit;
         let mut made = self.attempted().map_err(|mut error| {
             misfit.iter().for_each(|misfit| error.what = format!("{misfit}; sought in K: {}", error.what));
@@ -142,7 +142,7 @@ impl Search {
         Ok(made)
     }
 
-    fn attempted(mut self) -> Result<Made> {
+    fn attempted(mut self) -> Result<Factorised> {
         let (mut factorisations, mut further_analyses) = (0, 0);
         loop {
             let symbolic = match self.symbolic.take() {
@@ -155,7 +155,7 @@ impl Search {
             factorisations += 1;
             match self.attempt(&symbolic.analysis)? {
                 Attempt::Done(inverse) => {
-                    return Ok(Made { inverse: *inverse, symbolic, further_analyses, factorisations })
+                    return Ok(Factorised { inverse: *inverse, symbolic, further_analyses, factorisations })
                 }
                 Attempt::Missed(dof) if 2 * self.count > MOST => {
                     let what = format!(
@@ -267,18 +267,18 @@ impl Search {
         let doubt = |motions, free| ritz.doubt(self.digits, motions, free);
         let dof = last[largest(vectors.col(0), |_| 1.0)];
         match ritz.judged(self.digits) {
-            Verdict::Free { dimension, gap } => {
+            MotionVerdict::Free { dimension, gap } => {
                 let (measured, mut turned) =
                     (first_columns(&vectors, ritz.values.len()), Matrix::zeros(last.len(), dimension)?);
                 (0..dimension).for_each(|j| measured.mul_add(1.0, ritz.turn.col(j), turned.col_mut(j)));
                 let rounding = ritz.noise[..dimension].iter().fold(0.0, |most: f64, v| most.max(*v));
                 soft(turned, gap, rounding, doubt(dimension, true))
             }
-            Verdict::Held { doubtful, gap } => {
+            MotionVerdict::Held { doubtful, gap } => {
                 soft(first_columns(&vectors, 0), gap, 0.0, doubt(doubtful, false))
             }
-            Verdict::Indefinite => Err(Breakdown { dof, relative_pivot: *softest }.indefinite()),
-            Verdict::Unclear => Err(unclear(self.digits).dof(dof).value(*softest)),
+            MotionVerdict::Indefinite => Err(Breakdown { dof, relative_pivot: *softest }.indefinite()),
+            MotionVerdict::Unclear => Err(unclear(self.digits).dof(dof).value(*softest)),
         }
     }
 
@@ -314,9 +314,9 @@ impl Search {
         let vectors = self.resisted_evenly(&factor, vectors)?;
         let part = |(dofs, part): (_, &Soft)| {
             let tolerance = self.tolerance.max(part.rounding);
-            Part { dofs: Vec::as_slice(dofs), count: part.vectors.cols, tolerance }
+            FreePart { dofs: Vec::as_slice(dofs), count: part.vectors.cols, tolerance }
         };
-        let parts: Vec<Part<'_>> = self.members.iter().zip(soft).map(part).collect();
+        let parts: Vec<FreePart<'_>> = self.members.iter().zip(soft).map(part).collect();
         let Verified { basis, .. } = verified_by_parts(&self.k, &root, &vectors, &parts)?;
         let counts: Vec<_> = parts.iter().map(|part| (part.dofs, part.count)).collect();
         let null_space = self.one_column_each(&basis, soft)?;

@@ -76,7 +76,7 @@ pub struct Ritz {
 
 /// What the softest motions of a part are.
 #[derive(Debug, PartialEq)]
-pub enum Verdict {
+pub enum MotionVerdict {
     /// The first `dimension`.
     Free {
         dimension: usize,
@@ -188,32 +188,32 @@ fn turned(m: &Matrix, a: &Matrix) -> Result<Matrix> {
 
 impl Ritz {
     /// Motions that rounding explains are free where the next one stands apart from them.
-    pub fn judged(&self, digits: Option<Digits>) -> Verdict {
+    pub fn judged(&self, digits: Option<Digits>) -> MotionVerdict {
         let (values, noise) = (&self.values, &self.noise);
         if values[0] < -noise[0].max(NEGATIVE) {
-            return Verdict::Indefinite;
+            return MotionVerdict::Indefinite;
         }
         let explained = (0..values.len()).take_while(|&k| values[k] <= noise[k]).count();
         let most = (0..explained).map(|k| noise[k].max(values[k].abs())).fold(0.0, f64::max);
         match values.get(explained) {
-            None => return Verdict::Free { dimension: explained, gap: ROUNDING.recip() },
+            None => return MotionVerdict::Free { dimension: explained, gap: ROUNDING.recip() },
             Some(next) if explained > 0 && *next >= GAP * most => {
-                return Verdict::Free { dimension: explained, gap: next / most }
+                return MotionVerdict::Free { dimension: explained, gap: next / most }
             }
             Some(_) => {}
         }
         if digits.is_none() {
             return match cut(&[values, &[1.0][..]].concat()) {
-                Some((0, gap)) => Verdict::Held { doubtful: 0, gap },
-                Some((dimension, gap)) => Verdict::Free { dimension, gap },
-                None => Verdict::Unclear,
+                Some((0, gap)) => MotionVerdict::Held { doubtful: 0, gap },
+                Some((dimension, gap)) => MotionVerdict::Free { dimension, gap },
+                None => MotionVerdict::Unclear,
             };
         }
         if values[0] <= self.products[0] {
-            return Verdict::Unclear;
+            return MotionVerdict::Unclear;
         }
         let doubtful = (0..values.len()).take_while(|&k| noise[k] >= UNKNOWN * values[k]).count();
-        Verdict::Held { doubtful, gap: values[0] / noise[0] }
+        MotionVerdict::Held { doubtful, gap: values[0] / noise[0] }
     }
 
     /// What is said of the first motions: of free ones where entries of all digits would make them supports, or where
@@ -252,7 +252,7 @@ mod tests {
         assert_eq!(cut(&[3e-13, 2e-12, 3e-11, 4e-10, 1.0]), None);
     }
 
-    fn verdict(values: &[f64], noise: f64, digits: Option<Digits>) -> Verdict {
+    fn verdict(values: &[f64], noise: f64, digits: Option<Digits>) -> MotionVerdict {
         let all = vec![noise; values.len()];
         let turn = Matrix::default();
         Ritz { values: values.to_vec(), products: vec![1e-15; all.len()], noise: all, turn }.judged(digits)
@@ -262,17 +262,17 @@ mod tests {
     fn motions_that_rounding_explains_are_free_where_a_gap_shows_them_and_held_where_none_does() {
         let nine = Some(Digits::Decimal(9));
         let dimension = |verdict| match verdict {
-            Verdict::Free { dimension, .. } => Some(dimension),
+            MotionVerdict::Free { dimension, .. } => Some(dimension),
             _ => None,
         };
         assert_eq!(dimension(verdict(&[-2e-10, 1e-10, 3e-10, 1e-3], 1e-9, nine)), Some(3));
         assert_eq!(dimension(verdict(&[1e-14, 1e-14, 1e-14, 5e-4], 1e-13, None)), Some(3));
         let slender = verdict(&[1e-10, 1e-10, 3e-10, 1e-7, 1e-5], 1e-9, nine);
-        assert!(matches!(slender, Verdict::Held { doubtful: 4, .. }), "{slender:?}");
-        assert_eq!(verdict(&[-2e-8, 1e-3], 1e-9, nine), Verdict::Indefinite);
-        assert_eq!(verdict(&[-2e-10, 1e-7], 1e-9, nine), Verdict::Unclear);
+        assert!(matches!(slender, MotionVerdict::Held { doubtful: 4, .. }), "{slender:?}");
+        assert_eq!(verdict(&[-2e-8, 1e-3], 1e-9, nine), MotionVerdict::Indefinite);
+        assert_eq!(verdict(&[-2e-10, 1e-7], 1e-9, nine), MotionVerdict::Unclear);
         // springs that rounding does not explain
         let springs = verdict(&[1e-7, 2e-7, 1e-3], 1e-11, nine);
-        assert!(matches!(springs, Verdict::Held { doubtful: 0, .. }), "{springs:?}");
+        assert!(matches!(springs, MotionVerdict::Held { doubtful: 0, .. }), "{springs:?}");
     }
 }

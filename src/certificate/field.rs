@@ -3,14 +3,14 @@
 use std::collections::HashSet;
 use std::ops::Range;
 
-use crate::certificate::{metric, Answer, BodyData, Data};
+use crate::certificate::{metric, BodyData, Candidate, Data};
 use crate::constraints::{row_scales, RowKind, RowSet};
 use crate::error::Result;
 use crate::linalg::vector::{norm_max, power_of_two_below, weighted_norm};
 
 pub(super) struct Field<'a> {
     pub data: &'a Data<'a>,
-    pub answer: Answer<'a>,
+    pub answer: Candidate<'a>,
     /// U, the power of two below max D, force / length.
     pub unit: f64,
     /// D / U, n, no unit.
@@ -26,7 +26,7 @@ pub(super) struct Field<'a> {
 }
 
 impl<'a> Field<'a> {
-    pub fn new(data: &'a Data<'a>, answer: Answer<'a>) -> Result<Self> {
+    pub fn new(data: &'a Data<'a>, answer: Candidate<'a>) -> Result<Self> {
         let n = answer.u.len();
         let mut metric = metric(data, n);
         let unit = power_of_two_below(norm_max(&metric));

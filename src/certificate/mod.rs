@@ -81,7 +81,7 @@ impl BodyData<'_> {
 
 /// An answer over all unknowns, contact rows, equality rows of the island.
 #[derive(Clone, Copy)]
-pub struct Answer<'a> {
+pub struct Candidate<'a> {
     /// n, length.
     pub u: &'a [f64],
     /// m, force.
@@ -148,7 +148,7 @@ pub struct RowJudgement {
 }
 
 /// The judgement of an answer. Fails where the host does, that has the products with K.
-pub fn certify(data: &Data, answer: Answer, response: &mut dyn Response) -> Result<Judgement> {
+pub fn certify(data: &Data, answer: Candidate, response: &mut dyn Response) -> Result<Judgement> {
     let field = Field::new(data, answer)?;
     let deformation = Deformation::new(&field)?;
     let mut certificate = Certificate { limit: data.limit, ..Certificate::default() };

@@ -8,7 +8,7 @@ use crate::constraints::RowKind;
 use crate::linalg::vector::{ratio, weighted_norm};
 
 /// A row with what it is measured against.
-pub(super) struct Row {
+pub(super) struct JudgedRow {
     kind: RowKind,
     /// lambda_i or mu_i, force.
     force: f64,
@@ -26,7 +26,7 @@ pub(super) struct Row {
     unevenness: f64,
 }
 
-impl Row {
+impl JudgedRow {
     fn new(field: &Field, deformation: &Deformation, forces: &Forces, kind: RowKind, i: usize) -> Self {
         let rows = field.rows(kind);
         let (scale, multipliers) = match kind {
@@ -113,18 +113,18 @@ fn worse(a: f64, b: f64) -> f64 {
 
 /// All rows of the island.
 pub(super) struct Measured {
-    pub contact: Vec<Row>,
-    pub equalities: Vec<Row>,
+    pub contact: Vec<JudgedRow>,
+    pub equalities: Vec<JudgedRow>,
 }
 
 impl Measured {
     pub fn new(field: &Field, deformation: &Deformation, forces: &Forces) -> Self {
-        let row = |kind, i| Row::new(field, deformation, forces, kind, i);
+        let row = |kind, i| JudgedRow::new(field, deformation, forces, kind, i);
         let of = |kind| (0..field.rows(kind).len()).map(|i| row(kind, i)).collect();
         Self { contact: of(RowKind::Inequality), equalities: of(RowKind::Equality) }
     }
 
-    pub fn of(&mut self, kind: RowKind) -> &mut Vec<Row> {
+    pub fn of(&mut self, kind: RowKind) -> &mut Vec<JudgedRow> {
         match kind {
             RowKind::Inequality => &mut self.contact,
             RowKind::Equality => &mut self.equalities,
@@ -134,7 +134,7 @@ impl Measured {
     /// The entries of the rows.
     pub fn judge(&mut self, limit: f64, certificate: &mut Certificate) {
         self.judge_gaps(limit, certificate, |_, _| true);
-        certificate.negative_force = worst(&self.contact, limit, Row::sign, |_| true);
+        certificate.negative_force = worst(&self.contact, limit, JudgedRow::sign, |_| true);
     }
 
     /// The entries of gaps, by the rows `counts` names.
@@ -145,10 +145,10 @@ impl Measured {
         counts: impl Fn(RowKind, usize) -> bool,
     ) {
         let contact = |i: usize| counts(RowKind::Inequality, i);
-        certificate.penetration = worst(&self.contact, limit, Row::violation, contact);
-        certificate.complementarity = worst(&self.contact, limit, Row::complementarity, contact);
+        certificate.penetration = worst(&self.contact, limit, JudgedRow::violation, contact);
+        certificate.complementarity = worst(&self.contact, limit, JudgedRow::complementarity, contact);
         let equalities = |i: usize| counts(RowKind::Equality, i);
-        certificate.equality = worst(&self.equalities, limit, Row::violation, equalities);
+        certificate.equality = worst(&self.equalities, limit, JudgedRow::violation, equalities);
     }
 
     /// The largest unevenness of a row.
@@ -186,7 +186,12 @@ impl Measured {
     }
 }
 
-fn worst(rows: &[Row], limit: f64, measure: fn(&Row) -> f64, counts: impl Fn(usize) -> bool) -> Entry {
+fn worst(
+    rows: &[JudgedRow],
+    limit: f64,
+    measure: fn(&JudgedRow) -> f64,
+    counts: impl Fn(usize) -> bool,
+) -> Entry {
     let mut worst = Entry::default();
     for (i, row) in rows.iter().enumerate().filter(|(i, _)| counts(*i)) {
         worst.replace_if_worse(Entry::new(measure(row), limit, Some(i)));

@@ -43,7 +43,7 @@ impl Decoupling {
     pub fn of(given: UnitRows) -> Result<(Self, Csr)> {
         let (matrix, m) = (given.matrix, given.matrix.rows());
         let _room = room(64 * (matrix.val.len() + m + matrix.cols), WHAT)?;
-        let mut work = Work::new(given)?;
+        let mut work = Orthogonalisation::new(given)?;
         let mut cluster_of = reserved(matrix.cols, WHAT)?;
         cluster_of.resize(matrix.cols, None);
         let clusters = clusters(given)?;
@@ -139,16 +139,16 @@ fn clusters(given: UnitRows) -> Result<Vec<Vec<usize>>> {
     Ok(clusters)
 }
 
-type Entries = Vec<(usize, f64)>;
+type Combination = Vec<(usize, f64)>;
 
-struct Work<'a> {
+struct Orthogonalisation<'a> {
     given: UnitRows<'a>,
     /// Rows of B' and of L that differ from those of B and I.
-    changed: Vec<Option<(Entries, Entries)>>,
+    changed: Vec<Option<(Combination, Combination)>>,
     sum: Accumulator,
 }
 
-impl<'a> Work<'a> {
+impl<'a> Orthogonalisation<'a> {
     fn new(given: UnitRows<'a>) -> Result<Self> {
         let mut changed = reserved(given.matrix.rows(), WHAT)?;
         changed.resize(given.matrix.rows(), None);
@@ -179,7 +179,7 @@ impl<'a> Work<'a> {
     }
 
     /// Leaves `b_i - sum l_k b'_k` in the sum and gives the l_k that are not zero: Gram-Schmidt, twice.
-    fn cleared(&mut self, i: usize, against: &[usize]) -> Entries {
+    fn cleared(&mut self, i: usize, against: &[usize]) -> Combination {
         let matrix = self.given.matrix;
         self.sum.reset();
         matrix.row(i).for_each(|(j, v)| self.sum.add(j, v));
@@ -197,7 +197,7 @@ impl<'a> Work<'a> {
     }
 
     /// `b_i = sum l_k b'_k + length b'_i`; a row that nothing was taken from has its length already.
-    fn store(&mut self, i: usize, mut parts: Entries, length: f64) {
+    fn store(&mut self, i: usize, mut parts: Combination, length: f64) {
         if !parts.is_empty() {
             parts.sort_unstable_by_key(|(k, _)| *k);
             parts.push((i, length));

@@ -45,7 +45,7 @@ pub struct Coupling {
 }
 
 /// `W_F+` of one face.
-pub struct Face {
+pub struct FaceCoupling {
     /// Of all rows.
     held: Vec<bool>,
     /// The rows that feel another one, ascending.
@@ -99,7 +99,7 @@ impl Coupling {
 
     /// The inverse on the rows that are not held; blocks that `last` has as well are taken from it. `None` where rounding
     /// leaves none.
-    pub fn face(&self, held: &[bool], last: Option<&Face>) -> Result<Option<Face>> {
+    pub fn face(&self, held: &[bool], last: Option<&FaceCoupling>) -> Result<Option<FaceCoupling>> {
         let own: Vec<bool> = self.rows.iter().map(|&i| held[i]).collect();
         let mut w = self.on(&own)?;
         let mut dense = Vec::new();
@@ -119,7 +119,7 @@ impl Coupling {
         uncouple(&mut w, |i| apart[i]);
         let factor = self.analysis.attempt(&w, 1.0)?;
         let (held, rows) = (copied(held, "a face")?, Arc::clone(&self.rows));
-        Ok(factor.ok().map(|sparse| Face { held, rows, sparse, dense }))
+        Ok(factor.ok().map(|sparse| FaceCoupling { held, rows, sparse, dense }))
     }
 
     /// W with 1 for the held rows.
@@ -153,7 +153,7 @@ impl Coupling {
     }
 }
 
-impl Face {
+impl FaceCoupling {
     pub fn is_of(&self, held: &[bool]) -> bool {
         self.held == held
     }

@@ -50,7 +50,7 @@ fn add(common: &[(usize, usize)], entry: impl Fn(usize, usize) -> f64, block: &m
 mod tests {
     use super::*;
     use crate::body::{GeneralizedInverse, Modes, NullSpaceInput};
-    use crate::dual::{Draft, Part, Size};
+    use crate::dual::{BodyShare, Draft, Size};
     use crate::linalg::{Operator, Symmetric};
     use std::sync::Arc;
 
@@ -65,7 +65,7 @@ mod tests {
         let part = |p: usize| {
             let made = GeneralizedInverse::plan(k.clone().into(), &none, 1e-8).unwrap().execute().unwrap();
             let (range, size) = (8 * p..8 * p + 8, Size::default());
-            Part { range, kplus: Arc::new(made.inverse), by: 1.0, kept: None, size, implicit }
+            BodyShare { range, kplus: Arc::new(made.inverse), by: 1.0, kept: None, size, implicit }
         };
         let mut rows = Csr::empty(16);
         rows.push_row([(2, 1.0), (9, -0.5)]);

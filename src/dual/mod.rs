@@ -19,7 +19,7 @@ mod reuse;
 pub use cost::{all_bytes, implicit_bodies, Size};
 pub use coupling::dependent_rows;
 pub use preconditioner::{constrained, Boundary, Preconditioner};
-pub use reuse::{Columns, Kept};
+pub use reuse::{ColumnCounts, Kept};
 
 use std::ops::Range;
 use std::sync::Arc;
@@ -65,11 +65,11 @@ pub struct Dual {
     /// `G'` = B R, m x r.
     pub coarse: Csr,
     /// What became of the columns of all `F_p`.
-    pub columns: Columns,
+    pub columns: ColumnCounts,
 }
 
 /// A body and its place among all unknowns.
-pub struct Part {
+pub struct BodyShare {
     pub range: Range<usize>,
     pub kplus: Arc<GeneralizedInverse>,
     /// Unit of forces over the unit of K in `K_p+`, a power of two.
@@ -84,7 +84,7 @@ pub struct Part {
 
 /// A dual problem whose operators `F_p` are yet to be assembled, body by body, in any order.
 pub struct Draft {
-    parts: Vec<Part>,
+    parts: Vec<BodyShare>,
     /// Rows that touch each body, and their entries over its unknowns.
     local: Vec<(Vec<usize>, Csr)>,
     multiples: Vec<Multiples>,
@@ -95,11 +95,11 @@ pub struct Draft {
 
 impl Draft {
     /// `matrix` is B, m x n.
-    pub fn new(mut parts: Vec<Part>, matrix: &Csr) -> Self {
+    pub fn new(mut parts: Vec<BodyShare>, matrix: &Csr) -> Self {
         let local = cut(parts.iter().map(|part| part.range.clone()).collect(), matrix);
         let (multiples, distinct): (Vec<_>, Vec<_>) =
             local.iter().map(|(_, matrix)| Multiples::of(matrix)).unzip();
-        let reuse = |(part, rows): (&mut Part, &Csr)| {
+        let reuse = |(part, rows): (&mut BodyShare, &Csr)| {
             let kept = part.kept.take();
             (!part.implicit).then(|| Reuse::of(kept, rows))
         };

@@ -7,11 +7,11 @@ pub struct Multiples {
     /// Rows of B.
     pub count: usize,
     /// T by rows: row i of B_p is `factor` times row `of` of B.
-    multiples: Vec<Multiple>,
+    multiples: Vec<RowMultiple>,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq)]
-struct Multiple {
+struct RowMultiple {
     of: usize,
     factor: f64,
 }
@@ -32,13 +32,13 @@ impl Multiples {
             group.iter().for_each(|&i| first[i] = group[0]);
         }
         let (mut distinct, mut multiples) =
-            (Csr::empty(matrix.cols), Vec::<Multiple>::with_capacity(first.len()));
+            (Csr::empty(matrix.cols), Vec::<RowMultiple>::with_capacity(first.len()));
         for (i, &first) in first.iter().enumerate() {
             if first == i {
-                multiples.push(Multiple { of: distinct.rows(), factor: 1.0 });
+                multiples.push(RowMultiple { of: distinct.rows(), factor: 1.0 });
                 distinct.push_row(matrix.row(i));
             } else {
-                multiples.push(Multiple { of: multiples[first].of, factor: scale[i] / scale[first] });
+                multiples.push(RowMultiple { of: multiples[first].of, factor: scale[i] / scale[first] });
             }
         }
         (Self { count: distinct.rows(), multiples }, distinct)
@@ -89,11 +89,11 @@ mod tests {
         rows.push_row([(2, 0.0)]);
         let (multiples, distinct) = Multiples::of(&rows);
         let expected = [(0, 1.0), (1, 1.0), (0, -0.5), (2, 1.0), (1, 0.25), (3, 1.0)];
-        let expected = expected.map(|(of, factor)| Multiple { of, factor });
+        let expected = expected.map(|(of, factor)| RowMultiple { of, factor });
         assert_eq!(multiples.multiples, expected);
         assert_eq!((multiples.count, distinct.rows()), (4, 4));
         for i in 0..6 {
-            let Multiple { of, factor } = multiples.multiples[i];
+            let RowMultiple { of, factor } = multiples.multiples[i];
             let made = distinct.row(of).map(|(j, v)| (j, factor * v));
             assert!(made.eq(rows.row(i)), "row {i}");
         }

@@ -5,7 +5,7 @@
 use std::ops::Range;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-use crate::dual::coupling::{Coupling, Face};
+use crate::dual::coupling::{Coupling, FaceCoupling};
 use crate::error::Result;
 use crate::linalg::{Csr, Operator};
 
@@ -27,7 +27,7 @@ pub struct Preconditioner {
     stiffness: Vec<Box<dyn Operator + Send>>,
     coupling: Coupling,
     /// The last face.
-    face: Mutex<Option<Face>>,
+    face: Mutex<Option<FaceCoupling>>,
 }
 
 impl Preconditioner {
@@ -84,7 +84,7 @@ impl Preconditioner {
     }
 
     /// Inverts W, unless that has just been done.
-    fn select(&self, held: &[bool]) -> Result<MutexGuard<'_, Option<Face>>> {
+    fn select(&self, held: &[bool]) -> Result<MutexGuard<'_, Option<FaceCoupling>>> {
         let mut face = self.face.lock().unwrap_or_else(PoisonError::into_inner);
         if !face.as_ref().is_some_and(|known| known.is_of(held)) {
             *face = self.coupling.face(held, face.as_ref())?;

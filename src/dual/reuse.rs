@@ -23,7 +23,7 @@ pub struct Kept {
 
 /// What became of the columns of dual operators, one for each row and body it touches.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub struct Columns {
+pub struct ColumnCounts {
     pub computed: usize,
     pub kept: usize,
 }
@@ -54,7 +54,7 @@ impl Kept {
     }
 }
 
-impl Sum for Columns {
+impl Sum for ColumnCounts {
     fn sum<I: Iterator<Item = Self>>(all: I) -> Self {
         all.fold(Self::default(), |a, b| Self { computed: a.computed + b.computed, kept: a.kept + b.kept })
     }
@@ -75,14 +75,14 @@ impl Reuse {
         Self::Nothing(m)
     }
 
-    pub fn columns(&self) -> Columns {
+    pub fn columns(&self) -> ColumnCounts {
         match self {
-            Self::All(_, kept) => Columns { computed: 0, kept: *kept },
+            Self::All(_, kept) => ColumnCounts { computed: 0, kept: *kept },
             Self::Some { old, .. } => {
                 let kept = old.iter().flatten().count();
-                Columns { computed: old.len() - kept, kept }
+                ColumnCounts { computed: old.len() - kept, kept }
             }
-            Self::Nothing(computed) => Columns { computed: *computed, kept: 0 },
+            Self::Nothing(computed) => ColumnCounts { computed: *computed, kept: 0 },
         }
     }
 

@@ -53,11 +53,11 @@ pub struct OptionInfo {
     pub default: OptionValue,
     pub minimum: f64,
     pub maximum: f64,
-    field: Field,
+    field: Location,
 }
 
 /// Where the value of an option lives.
-enum Field {
+enum Location {
     F64(fn(&mut Settings) -> &mut f64),
     I64(fn(&mut Settings) -> &mut i64),
     Word(fn(&mut Settings) -> &mut dyn Word),
@@ -77,7 +77,14 @@ const fn real(
     doc: &'static CStr,
 ) -> OptionInfo {
     let (minimum, maximum) = (*range.start(), *range.end());
-    OptionInfo { name, doc, default: OptionValue::F64(default), minimum, maximum, field: Field::F64(field) }
+    OptionInfo {
+        name,
+        doc,
+        default: OptionValue::F64(default),
+        minimum,
+        maximum,
+        field: Location::F64(field),
+    }
 }
 
 const fn whole(
@@ -88,7 +95,14 @@ const fn whole(
     doc: &'static CStr,
 ) -> OptionInfo {
     let (minimum, maximum) = (*range.start(), *range.end());
-    OptionInfo { name, doc, default: OptionValue::I64(default), minimum, maximum, field: Field::I64(field) }
+    OptionInfo {
+        name,
+        doc,
+        default: OptionValue::I64(default),
+        minimum,
+        maximum,
+        field: Location::I64(field),
+    }
 }
 
 macro_rules! word {
@@ -99,7 +113,7 @@ macro_rules! word {
             default: OptionValue::Str(<$kind>::WORDS[0]),
             minimum: 0.0,
             maximum: 0.0,
-            field: Field::Word(|settings| &mut settings.$field),
+            field: Location::Word(|settings| &mut settings.$field),
         }
     };
 }
@@ -171,8 +185,8 @@ impl Settings {
         let mut settings = Self::default();
         for option in options() {
             match (&option.field, option.default) {
-                (Field::F64(field), OptionValue::F64(value)) => *field(&mut settings) = value,
-                (Field::I64(field), OptionValue::I64(value)) => *field(&mut settings) = value,
+                (Location::F64(field), OptionValue::F64(value)) => *field(&mut settings) = value,
+                (Location::I64(field), OptionValue::I64(value)) => *field(&mut settings) = value,
                 _ => {}
             }
         }
@@ -181,7 +195,7 @@ impl Settings {
 
     pub fn set_f64(&mut self, name: &str, value: f64) -> Result<()> {
         let option = find(name)?;
-        let Field::F64(field) = &option.field else { return Err(wrong_type(option)) };
+        let Location::F64(field) = &option.field else { return Err(wrong_type(option)) };
         check(option, value)?;
         *field(self) = value;
         Ok(())
@@ -189,7 +203,7 @@ impl Settings {
 
     pub fn set_i64(&mut self, name: &str, value: i64) -> Result<()> {
         let option = find(name)?;
-        let Field::I64(field) = &option.field else { return Err(wrong_type(option)) };
+        let Location::I64(field) = &option.field else { return Err(wrong_type(option)) };
         check(option, value as f64)?;
         *field(self) = value;
         Ok(())
@@ -197,7 +211,7 @@ impl Settings {
 
     pub fn set_str(&mut self, name: &str, value: &str) -> Result<()> {
         let option = find(name)?;
-        let Field::Word(field) = &option.field else { return Err(wrong_type(option)) };
+        let Location::Word(field) = &option.field else { return Err(wrong_type(option)) };
         let field = field(self);
         if field.take(value.as_bytes()) {
             return Ok(());
@@ -209,19 +223,19 @@ impl Settings {
 
     pub fn get_f64(&self, name: &str) -> Result<f64> {
         let option = find(name)?;
-        let Field::F64(field) = &option.field else { return Err(wrong_type(option)) };
+        let Location::F64(field) = &option.field else { return Err(wrong_type(option)) };
         Ok(*field(&mut self.clone()))
     }
 
     pub fn get_i64(&self, name: &str) -> Result<i64> {
         let option = find(name)?;
-        let Field::I64(field) = &option.field else { return Err(wrong_type(option)) };
+        let Location::I64(field) = &option.field else { return Err(wrong_type(option)) };
         Ok(*field(&mut self.clone()))
     }
 
     pub fn get_str(&self, name: &str) -> Result<String> {
         let option = find(name)?;
-        let Field::Word(field) = &option.field else { return Err(wrong_type(option)) };
+        let Location::Word(field) = &option.field else { return Err(wrong_type(option)) };
         Ok(field(&mut self.clone()).word().to_string_lossy().into_owned())
     }
 }

@@ -12,4 +12,4 @@ pub use log::{Log, LogLevel, LogListener};
 pub use phases::{Phase, PhaseReport, Phases};
 pub use steps::{Steps, Told, Voice};
 pub use stops::Stops;
-pub use watch::{Host, Part, Watch};
+pub use watch::{Host, SetupPart, Watch};

@@ -43,7 +43,7 @@ impl Host {
 }
 
 /// A part of the setup that has a task for every body.
-pub struct Part {
+pub struct SetupPart {
     pub threads: usize,
     /// Work of each body, in any unit, > 0.
     pub weights: Vec<f64>,
@@ -53,7 +53,7 @@ pub struct Part {
     pub on_caller: Vec<bool>,
 }
 
-impl Part {
+impl SetupPart {
     /// Tasks that may run on any thread.
     pub fn of(threads: usize, weights: Vec<f64>, until: f64) -> Self {
         Self { threads, weights, until, on_caller: Vec::new() }
@@ -99,7 +99,7 @@ impl Watch {
     /// results of the others are there. Once the host wants to end, tasks that have begun end where they can.
     pub fn every_body<T: Send>(
         &mut self,
-        part: &Part,
+        part: &SetupPart,
         task: impl Fn(usize) -> Result<T> + Sync,
         mut keep: impl FnMut(usize, T),
     ) -> Result<()> {

@@ -8,7 +8,7 @@ use crate::dual::{self, Draft, Dual};
 use crate::error::{Error, Kind, Result};
 use crate::model::{Method, Model, Preconditioning, Settings};
 use crate::platform::memory::reserved;
-use crate::progress::{Part, Phase, Watch};
+use crate::progress::{Phase, SetupPart, Watch};
 use crate::setup::islands::{islands, Island, Members};
 use crate::setup::operators::Operators;
 use crate::setup::prepared::{Duals, Prepared};
@@ -78,12 +78,12 @@ impl Prepared {
                 let Some(inverse) = self.bodies[p].inverse.as_mut() else { continue };
                 let (kplus, kept) = (Arc::clone(&inverse.kplus), inverse.operator.take());
                 let (size, implicit) = (operators.sizes[p], operators.implicit[p]);
-                parts.push(dual::Part { range: range.clone(), kplus, by, kept, size, implicit });
+                parts.push(dual::BodyShare { range: range.clone(), kplus, by, kept, size, implicit });
             }
             drafts.push(Draft::new(parts, &rows.matrix));
         }
         let all: Vec<usize> = (0..model.bodies.len()).collect();
-        let part = Part {
+        let part = SetupPart {
             threads: model.threads(),
             weights: operators.weights(),
             until: assembled(&model.settings),

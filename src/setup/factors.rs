@@ -17,7 +17,7 @@ use crate::error::{Error, Kind, Result};
 use crate::linalg::{Multiple, Symmetric};
 use crate::model::{GivenBody, Model};
 use crate::platform::threads;
-use crate::progress::{Log, LogLevel, Part, Phase, Watch};
+use crate::progress::{Log, LogLevel, Phase, SetupPart, Watch};
 use crate::setup::operators::{check_memory, Operators};
 use crate::setup::prepared::{Inverse, Prepared};
 
@@ -43,9 +43,10 @@ impl Prepared {
         }
         self.try_hosts(model, watch)?;
         let begun = Instant::now();
-        let twins = self.twins(model)?;
-        let pending: Vec<usize> =
-            (0..twins.len()).filter(|&p| twins[p] == p && self.bodies[p].inverse.is_none()).collect();
+        let representatives = self.representatives(model)?;
+        let pending: Vec<usize> = (0..representatives.len())
+            .filter(|&p| representatives[p] == p && self.bodies[p].inverse.is_none())
+            .collect();
         let mut plans = plans(model, &pending, watch)?;
         let begun = watch.phases.ended(Phase::NullSpaces, begun);
         self.analyse(model, &pending, &mut plans, watch)?;
@@ -53,24 +54,25 @@ impl Prepared {
         let factors = self.factors_for(model, &pending, &plans);
         let own = plans.iter().zip(&factors).filter(|(_, factor)| factor.is_none());
         let bytes = own.map(|(plan, _)| plan.bytes()).sum();
-        let operators = self.operators(model, rows, &self.entries(&twins, &pending, &plans), bytes)?;
+        let operators =
+            self.operators(model, rows, &self.entries(&representatives, &pending, &plans), bytes)?;
         let ended = self.execute(model, (&pending, plans, factors), watch);
         watch.phases.ended(Phase::Factorisation, begun);
         ended?;
-        self.share(&twins);
+        self.share(&representatives);
         self.tell_doubts(model, &pending, &mut watch.log)?;
         Ok(operators)
     }
 
-    /// Entries of the factor of every body: of K+ that is there, or planned for it or its twin.
-    fn entries(&self, twins: &[usize], pending: &[usize], plans: &[Plan]) -> Vec<usize> {
+    /// Entries of the factor of every body: of K+ that is there, or planned for it or the body that it is equal to.
+    fn entries(&self, representatives: &[usize], pending: &[usize], plans: &[Plan]) -> Vec<usize> {
         let planned = plans.iter().map(|plan| plan.symbolic().map_or(0, |of| of.analysis.entries()));
         let planned: HashMap<usize, usize> = pending.iter().copied().zip(planned).collect();
         let of = |p: usize| {
             let there = self.bodies[p].inverse.as_ref().map(|inverse| inverse.kplus.entries());
             there.or_else(|| planned.get(&p).copied())
         };
-        (0..self.bodies.len()).map(|p| of(p).or_else(|| of(*twins.get(p)?)).unwrap_or(0)).collect()
+        (0..self.bodies.len()).map(|p| of(p).or_else(|| of(*representatives.get(p)?)).unwrap_or(0)).collect()
     }
 
     /// Factorises the bodies for which no factor is known, then gives theirs to those like them.
@@ -92,7 +94,7 @@ impl Prepared {
         }
         // operations grow with the power 3/2 of the entries
         let weights = own.iter().map(|(_, bytes, ..)| (*bytes as f64).powf(1.5)).collect();
-        let part = Part::of(model.threads(), weights, FACTORISED);
+        let part = SetupPart::of(model.threads(), weights, FACTORISED);
         let make = |k: usize| {
             let plan = own[k].2.lock().ok().and_then(|mut plan| plan.take());
             let plan = plan.ok_or_else(|| Error::new(Kind::Internal, "a body was factorised twice"))?;
@@ -140,7 +142,7 @@ impl Prepared {
     }
 
     /// For every body the one whose K+ serves it: the first equal one that has K+ already, else the first.
-    fn twins(&mut self, model: &Model) -> Result<Vec<usize>> {
+    fn representatives(&mut self, model: &Model) -> Result<Vec<usize>> {
         self.find_keys(model)?;
         let same = |p: usize, q: usize| same_body(&model.bodies[p].body, &model.bodies[q].body);
         let key = |p: usize| (self.bodies[p].keys, input_key(&model.bodies[p].body));
@@ -183,12 +185,12 @@ impl Prepared {
             let found = choose(&mut plans[k], own, &offers, |q| self.same_pattern(model, p, q))?;
             chosen.push(found.unwrap_or(offers.len()));
             if found.is_none() {
-                offers.push(Offer { body: p, layout: plans[k].layout(), symbolic: None, plan: k });
+                offers.push(SharedAnalysis { body: p, layout: plans[k].layout(), symbolic: None, plan: k });
             }
         }
         let new: Vec<usize> = (0..offers.len()).filter(|&o| offers[o].symbolic.is_none()).collect();
         let bodies: Vec<usize> = new.iter().map(|&o| offers[o].body).collect();
-        let part = Part::of(model.threads(), weights(model, &bodies), ANALYSED);
+        let part = SetupPart::of(model.threads(), weights(model, &bodies), ANALYSED);
         let mut made: Vec<Option<Arc<Symbolic>>> = new.iter().map(|_| None).collect();
         let analyse = |i: usize| plans[offers[new[i]].plan].analyse().map_err(|e| e.body(bodies[i]));
         watch.every_body(&part, analyse, |i, symbolic| made[i] = Some(symbolic))?;
@@ -201,13 +203,18 @@ impl Prepared {
     }
 
     /// The analyses that bodies have, each once.
-    fn offers(&self) -> Vec<Offer> {
-        let mut offers: Vec<Offer> = Vec::new();
+    fn offers(&self) -> Vec<SharedAnalysis> {
+        let mut offers: Vec<SharedAnalysis> = Vec::new();
         let mut seen = HashSet::new();
         for (p, own) in self.bodies.iter().enumerate() {
             if let Some(symbolic) = own.symbolic.as_ref().filter(|of| seen.insert(Arc::as_ptr(of))) {
                 let layout = Arc::clone(&symbolic.layout);
-                offers.push(Offer { body: p, layout, symbolic: Some(Arc::clone(symbolic)), plan: 0 });
+                offers.push(SharedAnalysis {
+                    body: p,
+                    layout,
+                    symbolic: Some(Arc::clone(symbolic)),
+                    plan: 0,
+                });
             }
         }
         offers
@@ -219,11 +226,13 @@ impl Prepared {
         p == q || keys[0] == keys[1] && a.zip(b).is_some_and(|(a, b)| same_pattern(a, b))
     }
 
-    /// Equal bodies without K+ get that of their twin.
-    fn share(&mut self, twins: &[usize]) {
-        for (p, &twin) in twins.iter().enumerate().filter(|(p, twin)| p != *twin) {
+    /// Equal bodies without K+ get that of the one that represents them.
+    fn share(&mut self, representatives: &[usize]) {
+        for (p, &representative) in
+            representatives.iter().enumerate().filter(|(p, representative)| p != *representative)
+        {
             let (symbolic, inverse) =
-                (self.bodies[twin].symbolic.clone(), self.bodies[twin].inverse.as_ref());
+                (self.bodies[representative].symbolic.clone(), self.bodies[representative].inverse.as_ref());
             let inverse = inverse.map(|of| {
                 let (kplus, grounded) = (Arc::clone(&of.kplus), Arc::clone(&of.grounded));
                 Inverse { kplus, grounded, operator: None, ..*of }
@@ -281,7 +290,7 @@ impl Prepared {
 /// Null spaces and fixing dofs of the pending bodies.
 fn plans(model: &Model, pending: &[usize], watch: &mut Watch) -> Result<Vec<Plan>> {
     let tolerance = model.settings.null_space_tolerance;
-    let part = Part::of(model.threads(), weights(model, pending), NULL_SPACES);
+    let part = SetupPart::of(model.threads(), weights(model, pending), NULL_SPACES);
     let find = |k: usize| plan(&model.bodies[pending[k]].body, tolerance).map_err(|e| e.body(pending[k]));
     let mut plans: Vec<Option<Plan>> = pending.iter().map(|_| None).collect();
     watch.every_body(&part, find, |k, plan| plans[k] = Some(plan))?;
@@ -324,7 +333,7 @@ fn grounded_in(matrix: Option<&Arc<Symmetric>>) -> Result<Arc<[u32]>> {
 type Planned<'a> = (&'a [usize], Vec<Plan>, Vec<Option<usize>>);
 
 /// A symbolic analysis that is there or, by the plan of this number, going to be made.
-struct Offer {
+struct SharedAnalysis {
     /// A body with its pattern.
     body: usize,
     layout: Arc<Layout>,
@@ -336,10 +345,11 @@ struct Offer {
 fn choose(
     plan: &mut Plan,
     own: Option<&Arc<Symbolic>>,
-    offers: &[Offer],
+    offers: &[SharedAnalysis],
     same_pattern: impl Fn(usize) -> bool,
 ) -> Result<Option<usize>> {
-    let is_own = |offer: &Offer| offer.symbolic.as_ref().zip(own).is_some_and(|(a, b)| Arc::ptr_eq(a, b));
+    let is_own =
+        |offer: &SharedAnalysis| offer.symbolic.as_ref().zip(own).is_some_and(|(a, b)| Arc::ptr_eq(a, b));
     let own = offers.iter().position(is_own);
     let others = (0..offers.len()).filter(|&o| Some(o) != own && same_pattern(offers[o].body));
     for o in own.into_iter().chain(others.take(TRIED)) {

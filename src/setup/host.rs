@@ -6,7 +6,7 @@ use std::time::Instant;
 use crate::body::{Body, GeneralizedInverse, HostMultiple, Modes, NullSpaceInput, TOGETHER};
 use crate::error::{Error, Kind, Result};
 use crate::model::Model;
-use crate::progress::{Part, Phase, Watch};
+use crate::progress::{Phase, SetupPart, Watch};
 use crate::setup::prepared::{Inverse, Prepared};
 
 /// Fraction of a setup that is done once the functions of the host have been tried.
@@ -22,7 +22,7 @@ impl Prepared {
             return Ok(());
         }
         let begun = Instant::now();
-        let part = Part {
+        let part = SetupPart {
             threads: model.threads(),
             weights: pending.iter().map(|&p| model.bodies[p].body.order as f64).collect(),
             until: TRIED,

@@ -11,7 +11,7 @@ use crate::solve::paper;
 
 /// How the dual is solved.
 #[derive(Clone, Copy)]
-pub struct Means<'a> {
+pub struct MethodOptions<'a> {
     pub settings: &'a Settings,
     pub direct: Direct<'a>,
 }
@@ -19,7 +19,7 @@ pub struct Means<'a> {
 /// S10 of docs/method.md: solves the dual. After proportioning: proportioning without preconditioner, then SMALBE-M, each from where
 /// the first has ended, and after each of them the direct method; where there are few rows, at last a method that always ends.
 pub fn solve_dual(
-    means: &Means,
+    means: &MethodOptions,
     qp: Qp,
     start: &[f64],
     judge: &mut dyn Judge,

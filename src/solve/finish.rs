@@ -70,7 +70,7 @@ impl Finish<'_, '_> {
     fn run(&mut self) -> Result<()> {
         let Faces { qp, direct, stops } = &self.recovery.faces;
         let mut active = qp.at_bound(&self.ending.solution.x);
-        let mut point = Point::of(self.recovery, self.ending, self.delicate)?;
+        let mut point = SplitPoint::of(self.recovery, self.ending, self.delicate)?;
         let mut visited: Vec<Vec<bool>> = Vec::new();
         while visited.len() < FACES && !visited.contains(&active) {
             let rows: Vec<usize> = (0..active.len()).filter(|&i| !active[i]).collect();
@@ -96,7 +96,7 @@ impl Finish<'_, '_> {
 
     /// Corrections on one face as long as each is less than half the one before; every answer on the way that is no worse
     /// than the one there is takes its place.
-    fn correct(&mut self, point: &mut Point, face: &Face) -> Result<()> {
+    fn correct(&mut self, point: &mut SplitPoint, face: &Face) -> Result<()> {
         let mut last = f64::INFINITY;
         for _ in 0..CORRECTIONS {
             let size = point.correct(self.recovery, face)?;
@@ -109,7 +109,7 @@ impl Finish<'_, '_> {
         Ok(())
     }
 
-    fn keep(&mut self, point: &Point, face: &Face) -> Result<()> {
+    fn keep(&mut self, point: &SplitPoint, face: &Face) -> Result<()> {
         let x = point.forces(&self.recovery.scaled.gaps.bounded);
         let recovered = self.recovery.with_forces(point.displacement(), &x);
         let judgement = self.recovery.judged(&recovered)?;
@@ -135,7 +135,7 @@ fn is_better(new: &Certificate, old: &Certificate) -> bool {
 
 /// Forces x and amplitudes alpha with u = v + w: w are motions that K does not resist, so large that v would lose its digits
 /// in them.
-struct Point {
+struct SplitPoint {
     v: Vec<f64>,
     /// Amplitudes of the motions that v has.
     beta: Vec<f64>,
@@ -146,7 +146,7 @@ struct Point {
     apart: bool,
 }
 
-impl Point {
+impl SplitPoint {
     /// The answer there is, or nothing where that does not pass: its forces may be lost in redundant rows.
     fn of(recovery: &Recovery, ending: &Ending, apart: bool) -> Result<Self> {
         let Ending { solution, judgement, .. } = ending;
@@ -274,7 +274,7 @@ mod tests {
             let recovery = &judge.recovery;
             for (rows, right) in [(vec![0], true), (vec![], false), (vec![1], false), (vec![0, 1], false)] {
                 let mut ending = recovery.ending(solved.clone()).unwrap();
-                let mut point = Point::at_origin(ending.recovered.u.clone(), solved.x.clone(), 0, false);
+                let mut point = SplitPoint::at_origin(ending.recovered.u.clone(), solved.x.clone(), 0, false);
                 point.hold(&[0, 1].map(|i| !rows.contains(&i)));
                 let Faces { qp, direct, .. } = &recovery.faces;
                 let face = Face::new(*qp, direct.entries, rows.clone()).unwrap().unwrap();
@@ -291,7 +291,7 @@ mod tests {
     fn a_force_that_rounding_has_made_negative_is_none_and_its_row_leaves() {
         two_springs(0.0, |judge, _| {
             let recovery = &judge.recovery;
-            let point = Point::at_origin(vec![1.0, 1.0], vec![2.0, -1e-20], 0, false);
+            let point = SplitPoint::at_origin(vec![1.0, 1.0], vec![2.0, -1e-20], 0, false);
             assert_eq!(point.forces(&[true, true]), [2.0, 0.0]);
             assert_eq!(point.active(recovery), [false, true]);
         });

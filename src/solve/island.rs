@@ -12,7 +12,7 @@ use crate::qp::{Direct, Solution, Verdict};
 use crate::solve::case::Case;
 use crate::solve::certifier::Certifier;
 use crate::solve::diagnosis::{Contradictions, Unheld, MARGINAL, ROUNDING};
-use crate::solve::fallback::Means;
+use crate::solve::fallback::MethodOptions;
 use crate::solve::finish::{finish, is_to_finish};
 use crate::solve::interruptible::Interruptible;
 use crate::solve::near::solve_near;
@@ -39,7 +39,7 @@ pub struct Solved {
 pub type Ends = Vec<std::result::Result<Solved, Error>>;
 
 /// One try at an island.
-enum Attempt {
+enum Tried {
     Ended(Box<Solved>),
     /// No forces were found that hold the load, but for rows that are too far off to hold so little.
     NotHeld {
@@ -59,8 +59,8 @@ pub fn solve_island(
     let mut dual = scaled(case, stops)?;
     loop {
         match attempt(case, number, &dual, &start, stops, voice)? {
-            Attempt::Ended(solved) => return Ok(*solved),
-            Attempt::NotHeld { far } => {
+            Tried::Ended(solved) => return Ok(*solved),
+            Tried::NotHeld { far } => {
                 let (data, ready) = (case.data()?, case.ready);
                 let least = Unheld::least(&data, ready, &dual, &far)?;
                 if let Some(error) = least.proof(case, &dual)? {
@@ -94,7 +94,7 @@ fn attempt(
     start: &[f64],
     stops: &Stops,
     voice: &mut dyn Voice,
-) -> Result<Attempt> {
+) -> Result<Tried> {
     let (settings, ready) = (&case.model.settings, case.ready);
     let f = Interruptible::new(&ready.dual, stops.clone(), ready.product_threads(case.threads()));
     let (qp, direct) = (dual.qp(ready, &f), direct(case)?);
@@ -104,11 +104,11 @@ fn attempt(
         Some(given) if given.units == Units::Printed => {
             HostUnits::new(case, &dual.gaps, given)?.solve(qp, start, &mut judge, steps)?
         }
-        _ => solve_near(&Means { settings, direct }, qp, start, &mut judge, steps)?,
+        _ => solve_near(&MethodOptions { settings, direct }, qp, start, &mut judge, steps)?,
     };
     let solution = match solution {
         Solution { verdict: Verdict::Infeasible { .. }, .. } if dual.unheld.is_none() => {
-            return Ok(Attempt::NotHeld { far: judge.far });
+            return Ok(Tried::NotHeld { far: judge.far });
         }
         solution => solution,
     };
@@ -134,7 +134,7 @@ fn attempt(
     }
     let unheld = dual.unheld.as_ref().map_or(0.0, |taken| taken.share);
     let recovering = recovering.elapsed();
-    Ok(Attempt::Ended(Box::new(Solved { ending, outcome, finished, unheld, judging, recovering })))
+    Ok(Tried::Ended(Box::new(Solved { ending, outcome, finished, unheld, judging, recovering })))
 }
 
 /// F for the direct method, which stays within the memory limit.

@@ -7,12 +7,12 @@ use crate::progress::Steps;
 use crate::qp::{Block, Judged, Qp, Restricted, Solution, Verdict};
 use crate::solve::certifier::Certifier;
 use crate::solve::diagnosis::Unheld;
-use crate::solve::fallback::{gave_up, solve_dual, Means};
+use crate::solve::fallback::{gave_up, solve_dual, MethodOptions};
 use crate::solve::presolve::FAR;
 
 /// Solves the dual for the rows that matter; the forces of the others are 0.
 pub fn solve_near(
-    means: &Means,
+    means: &MethodOptions,
     qp: Qp,
     start: &[f64],
     judge: &mut Certifier,
@@ -27,7 +27,7 @@ pub fn solve_near(
         steps.set_bounded(near.bounded());
         judge.far.clone_from(&far);
         judge.reached.clear();
-        let means = Means { direct: block.direct(), ..*means };
+        let means = MethodOptions { direct: block.direct(), ..*means };
         let solution = solve_dual(
             &means,
             near.qp(),

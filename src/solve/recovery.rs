@@ -3,7 +3,7 @@
 
 use std::cell::{Cell, RefCell};
 
-use crate::certificate::{certify, Answer as AnswerView, BodyData, Data, Judgement, Unasked};
+use crate::certificate::{certify, BodyData, Candidate, Data, Judgement, Unasked};
 use crate::error::Result;
 use crate::linalg::twofold::Twofold;
 use crate::linalg::vector::{axpy, weighted_norm};
@@ -25,8 +25,8 @@ pub struct Recovered {
 }
 
 impl Recovered {
-    pub fn view(&self) -> AnswerView<'_> {
-        AnswerView { u: &self.u, lambda: &self.lambda, mu: &self.mu }
+    pub fn view(&self) -> Candidate<'_> {
+        Candidate { u: &self.u, lambda: &self.lambda, mu: &self.mu }
     }
 }
 

@@ -8,7 +8,7 @@ use crate::qp;
 use crate::setup::Island;
 use crate::solve::held::without_force;
 use crate::solve::recovery::{Ending, Recovered, Recovery};
-use crate::solve::travel::{travel, Change, Moving, Open};
+use crate::solve::travel::{travel, Moving, OpenMotions, Shift};
 
 impl<'a> Recovery<'a> {
     /// Of the answers that differ by motions which nothing resists the one of least travel takes the place of this one,
@@ -70,7 +70,7 @@ impl<'a> Recovery<'a> {
     }
 
     /// What brings u to rest by the free motions; none where rounding leaves no way.
-    fn way_to_rest(&self, u: &[f64], lambda: &[f64], mut free: Matrix) -> Option<Change> {
+    fn way_to_rest(&self, u: &[f64], lambda: &[f64], mut free: Matrix) -> Option<Shift> {
         let (dual, Island { ranges, .. }) = (&self.ready.dual, &self.ready.island);
         for j in 0..free.cols {
             let own = dual.amplitudes(free.col(j));
@@ -85,7 +85,7 @@ impl<'a> Recovery<'a> {
             rounding: dual.rounding(),
         };
         let contact = self.data.contact;
-        let open = Open {
+        let open = OpenMotions {
             bodies: &self.data.bodies.iter().enumerate().map(moving).collect::<Vec<_>>(),
             amplitudes: &free,
             metric: &self.ready.rows.metric,

@@ -36,7 +36,7 @@ pub struct Moving<'a> {
 }
 
 /// Motions left open, and what restricts them.
-pub struct Open<'a> {
+pub struct OpenMotions<'a> {
     /// Ascending, all modes and all unknowns.
     pub bodies: &'a [Moving<'a>],
     /// A: amplitudes of the null spaces, r x d.
@@ -54,7 +54,7 @@ pub struct Open<'a> {
 }
 
 /// What the answer changes by.
-pub struct Change {
+pub struct Shift {
     /// `N a`
     pub u: Vec<f64>,
     /// `A a` over all modes, D-orthonormalisation undone.
@@ -62,7 +62,7 @@ pub struct Change {
 }
 
 /// The way from `u` to the answer of least travel.
-pub fn travel(open: &Open, u: &[f64]) -> Result<Change> {
+pub fn travel(open: &OpenMotions, u: &[f64]) -> Result<Shift> {
     let null_spaces: Vec<Cow<Matrix>> = open.bodies.iter().map(|body| open.grounded_out(body)).collect();
     let groups = open.orthonormal(&null_spaces)?;
     let of_motion: Vec<(usize, usize)> = groups
@@ -71,7 +71,7 @@ pub fn travel(open: &Open, u: &[f64]) -> Result<Change> {
         .flat_map(|(g, group)| (0..group.motions.cols).map(move |j| (g, j)))
         .collect();
     let motions = open.along_rows(&null_spaces, &groups);
-    let mut change = Change { u: vec![0.0; u.len()], amplitudes: vec![0.0; open.amplitudes.rows] };
+    let mut change = Shift { u: vec![0.0; u.len()], amplitudes: vec![0.0; open.amplitudes.rows] };
     for _ in 0..PASSES {
         let now: Vec<f64> = u.iter().zip(&change.u).map(|(u, way)| u + way).collect();
         let spent = open.projections(&null_spaces, &now);
@@ -91,7 +91,7 @@ pub fn travel(open: &Open, u: &[f64]) -> Result<Change> {
 }
 
 /// D-orthonormal motions of bodies that do not move alone.
-struct Group {
+struct MotionGroup {
     /// Modes of these bodies, ascending.
     modes: Vec<usize>,
     /// Amplitudes of `modes`, one column per motion.
@@ -100,7 +100,7 @@ struct Group {
     first: usize,
 }
 
-impl Group {
+impl MotionGroup {
     /// `A_j'v`
     fn dot(&self, j: usize, v: &[f64]) -> f64 {
         self.modes.iter().zip(self.motions.col(j)).map(|(&mode, a)| a * v[mode]).sum()
@@ -112,7 +112,7 @@ impl Group {
     }
 }
 
-impl Open<'_> {
+impl OpenMotions<'_> {
     /// `R_p`, exactly 0 on grounded unknowns.
     fn grounded_out<'b>(&self, body: &Moving<'b>) -> Cow<'b, Matrix> {
         let grounded = &self.grounded[body.unknowns.clone()];
@@ -138,7 +138,7 @@ impl Open<'_> {
     }
 
     /// The motions that share bodies, by groups, `A'R'D R A = I`.
-    fn orthonormal(&self, null_spaces: &[Cow<Matrix>]) -> Result<Vec<Group>> {
+    fn orthonormal(&self, null_spaces: &[Cow<Matrix>]) -> Result<Vec<MotionGroup>> {
         let (a, mut moved_by) = (self.amplitudes, vec![Vec::new(); self.bodies.len()]);
         for j in 0..a.cols {
             for (moved, body) in moved_by.iter_mut().zip(self.bodies) {
@@ -168,7 +168,7 @@ impl Open<'_> {
         bodies: &[usize],
         columns: &[usize],
         first: usize,
-    ) -> Result<Group> {
+    ) -> Result<MotionGroup> {
         let modes: Vec<usize> = bodies.iter().flat_map(|&p| self.bodies[p].modes.clone()).collect();
         let (mut grams, mut start) = (Vec::with_capacity(bodies.len()), 0);
         for &p in bodies {
@@ -202,7 +202,7 @@ impl Open<'_> {
                 motions.push_col(&column);
             }
         }
-        Ok(Group { modes, motions, first })
+        Ok(MotionGroup { modes, motions, first })
     }
 
     /// `R_p'D R_p`
@@ -217,7 +217,7 @@ impl Open<'_> {
     }
 
     /// `B N`, entries that are nothing but rounding left out, rows with lambda > 0 empty.
-    fn along_rows(&self, null_spaces: &[Cow<Matrix>], groups: &[Group]) -> Csr {
+    fn along_rows(&self, null_spaces: &[Cow<Matrix>], groups: &[MotionGroup]) -> Csr {
         let modes = self.amplitudes.rows;
         let (mut at, mut fastest) = (vec![None; modes], vec![0.0; modes]);
         for (g, group) in groups.iter().enumerate() {
@@ -261,7 +261,11 @@ impl Open<'_> {
 }
 
 /// `b_i R A` from the terms of `b_i R`, motions ascending.
-fn row_of(terms: &[(usize, f64, f64)], at: &[Option<(usize, usize)>], groups: &[Group]) -> Vec<(usize, f64)> {
+fn row_of(
+    terms: &[(usize, f64, f64)],
+    at: &[Option<(usize, usize)>],
+    groups: &[MotionGroup],
+) -> Vec<(usize, f64)> {
     let mut touched: Vec<usize> = terms.iter().filter_map(|term| Some(at[term.0]?.0)).collect();
     touched.sort_unstable();
     touched.dedup();

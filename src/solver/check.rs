@@ -2,7 +2,7 @@
 
 use std::cell::Cell;
 
-use crate::certificate::{certify, Answer, Certificate, Entry};
+use crate::certificate::{certify, Candidate, Certificate, Entry};
 use crate::constraints::RowKind;
 use crate::error::{Error, Kind, Result};
 use crate::model::Model;
@@ -34,7 +34,7 @@ impl Problem {
             let island = &ready.island;
             let own = island.gather(model, u)?;
             let (lambda, mu) = (island.contact.gather(lambda), island.equalities.gather(mu));
-            let answer = Answer { u: &own, lambda: &lambda, mu: &mu };
+            let answer = Candidate { u: &own, lambda: &lambda, mu: &mu };
             let (data, work) = (Case { model, prepared, ready }.data()?, Cell::new(None));
             let mut response = ByInverse { data: &data, ready, threads: model.threads(), work: &work };
             let own = island.named(certify(&data, answer, &mut response)?.certificate);

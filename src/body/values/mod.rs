@@ -55,7 +55,7 @@ struct Listed {
 }
 
 /// An entry of the lower triangle, and the positions of its values among those of the host.
-struct Entry {
+struct GivenEntry {
     row: usize,
     col: usize,
     at: usize,
@@ -126,7 +126,7 @@ impl Places {
     /// `(K + K')/2` for `new`, which holds the diagonal and what is left of it.
     fn average(&self, k: &Symmetric, val: &[f64], tolerance: f64, new: &mut [f64]) -> Result<()> {
         let mut worst = None;
-        self.visit(k, |Entry { row, col, at, mate, .. }| {
+        self.visit(k, |GivenEntry { row, col, at, mate, .. }| {
             let (k_ij, k_ji) = (new[at], value(val, mate));
             if row == col || k_ij == k_ji {
                 return;
@@ -169,12 +169,12 @@ impl Places {
     }
 
     /// Every entry of the lower triangle, row by row.
-    fn visit(&self, k: &Symmetric, mut visit: impl FnMut(Entry)) -> Result<()> {
+    fn visit(&self, k: &Symmetric, mut visit: impl FnMut(GivenEntry)) -> Result<()> {
         if let Some(Listed { own, mate }) = &self.listed {
             for row in 0..k.order() {
                 for at in k.ptr[row]..k.ptr[row + 1] {
                     let mate = mate.get(at).copied().unwrap_or(NONE);
-                    visit(Entry { row, col: k.col[at] as usize, at, own: own[at], mate });
+                    visit(GivenEntry { row, col: k.col[at] as usize, at, own: own[at], mate });
                 }
             }
             return Ok(());
@@ -195,11 +195,11 @@ impl Places {
                     Storage::Upper => (take(col), NONE),
                     Storage::Full => (take(row), take(col)),
                 };
-                visit(Entry { row, col, at, own, mate });
+                visit(GivenEntry { row, col, at, own, mate });
             }
             let given = without.next_if_eq(&row).is_none() && !self.apart;
             let own = if given { take(row) } else { NONE };
-            visit(Entry { row, col: row, at: diagonal, own, mate: NONE });
+            visit(GivenEntry { row, col: row, at: diagonal, own, mate: NONE });
         }
         Ok(())
     }

@@ -1,15 +1,20 @@
 //! By hand: single springs, units, what over- or underflows, what is not known.
 
-use super::model::{chain, Model, Point, LIMIT};
+use super::model::{chain, DenseAnswer, DenseModel, LIMIT};
 
 /// Spring 4 at a wall, loaded by 2 towards an obstacle at 0.25: u = .25, lambda = 1. `c`: compliance of the row.
-fn spring(unit: f64, c: f64) -> Model {
+fn spring(unit: f64, c: f64) -> DenseModel {
     let parts = vec![chain(&[], &[(0, 4.0 * unit)]).loaded(&[(0, 2.0 * unit)])];
-    Model { parts, contact: vec![(vec![(0, 1.0)], 0.25, c / unit)], active: vec![0], ..Model::default() }
+    DenseModel {
+        parts,
+        contact: vec![(vec![(0, 1.0)], 0.25, c / unit)],
+        active: vec![0],
+        ..DenseModel::default()
+    }
 }
 
-fn point(u: f64, lambda: f64) -> Point {
-    Point { u: vec![u], lambda: vec![lambda], mu: vec![] }
+fn point(u: f64, lambda: f64) -> DenseAnswer {
+    DenseAnswer { u: vec![u], lambda: vec![lambda], mu: vec![] }
 }
 
 #[test]
@@ -37,9 +42,9 @@ fn the_exact_answer_passes_in_any_unit_and_each_fault_is_named() {
 fn leverage_is_how_many_times_forces_exceed_what_they_deform() {
     for unit in [1.0, 1e-20, 2.1e11] {
         let parts = vec![chain(&[4.0 * unit], &[(0, 4.0 * unit)]).loaded(&[(1, 2.0 * unit)])];
-        let model = Model { parts, contact: vec![(vec![(1, 1.0)], 0.5, 0.0)], ..Model::default() };
+        let model = DenseModel { parts, contact: vec![(vec![(1, 1.0)], 0.5, 0.0)], ..DenseModel::default() };
         let leverage = |u: [f64; 2]| {
-            let point = Point { u: u.to_vec(), lambda: vec![unit], mu: vec![] };
+            let point = DenseAnswer { u: u.to_vec(), lambda: vec![unit], mu: vec![] };
             model.judged(&point).0.leverage
         };
         assert!((leverage([0.25, 0.5]) - 1.5f64.sqrt()).abs() < 1e-12);
@@ -54,10 +59,10 @@ fn unevenness_is_how_many_times_a_row_is_deformed_more_than_a_body_that_it_touch
     for unit in [1.0, 1e-20, 2.1e11] {
         let body = || chain(&[4.0 * unit], &[(0, 4.0 * unit)]);
         let equalities = vec![(vec![(1, 1.0), (3, -1.0)], -0.4995, 0.0)];
-        let model = Model { parts: vec![body(), body()], equalities, ..Model::default() };
+        let model = DenseModel { parts: vec![body(), body()], equalities, ..DenseModel::default() };
         let unevenness = |mu: f64| {
             let u = vec![0.00025, 0.0005, 0.25, 0.5];
-            model.judged(&Point { u, lambda: vec![], mu: vec![mu * unit] }).0.unevenness
+            model.judged(&DenseAnswer { u, lambda: vec![], mu: vec![mu * unit] }).0.unevenness
         };
         let expected = 2f64.sqrt() * 0.501 / (0.001 * 1.5f64.sqrt());
         assert!((unevenness(0.001) / expected - 1.0).abs() < 1e-12, "{} {expected}", unevenness(0.001));
@@ -69,9 +74,11 @@ fn unevenness_is_how_many_times_a_row_is_deformed_more_than_a_body_that_it_touch
 #[test]
 fn a_spring_of_one_unknown_makes_no_row_uneven() {
     let parts = vec![chain(&[], &[(0, 4.0)]), chain(&[4.0], &[(0, 4.0)])];
-    let model = Model { parts, contact: vec![(vec![(0, 1.0), (2, -1.0)], 0.0, 0.0)], ..Model::default() };
-    let unevenness =
-        |u: [f64; 3]| model.judged(&Point { u: u.to_vec(), lambda: vec![1.0], mu: vec![] }).0.unevenness;
+    let model =
+        DenseModel { parts, contact: vec![(vec![(0, 1.0), (2, -1.0)], 0.0, 0.0)], ..DenseModel::default() };
+    let unevenness = |u: [f64; 3]| {
+        model.judged(&DenseAnswer { u: u.to_vec(), lambda: vec![1.0], mu: vec![] }).0.unevenness
+    };
     let found = unevenness([-0.25, 0.25, 0.5]);
     assert!(found > 0.0 && found < 2.0, "{found}");
 }
@@ -98,17 +105,22 @@ fn the_answer_on_a_compliant_row_passes_in_any_unit_and_each_fault_is_named() {
 #[test]
 fn no_distance_excuses_forces_that_do_not_balance() {
     for far in [0.0, 1.0, 1e10, 1e20] {
-        let model =
-            Model { parts: vec![chain(&[1.0], &[]).loaded(&[(0, 0.5), (1, 0.5)])], ..Model::default() };
-        let certificate = model.certificate(&Point { u: vec![far; 2], lambda: vec![], mu: vec![] });
+        let model = DenseModel {
+            parts: vec![chain(&[1.0], &[]).loaded(&[(0, 0.5), (1, 0.5)])],
+            ..DenseModel::default()
+        };
+        let certificate = model.certificate(&DenseAnswer { u: vec![far; 2], lambda: vec![], mu: vec![] });
         assert!(!certificate.passed() && certificate.balance.ratio > 1.0, "{far:e}");
     }
 }
 
 #[test]
 fn no_distance_excuses_a_strain_that_is_missing() {
-    let model = Model { parts: vec![chain(&[1.0], &[]).loaded(&[(0, 1.0), (1, -1.0)])], ..Model::default() };
-    let with = |u: [f64; 2]| model.certificate(&Point { u: u.to_vec(), lambda: vec![], mu: vec![] });
+    let model = DenseModel {
+        parts: vec![chain(&[1.0], &[]).loaded(&[(0, 1.0), (1, -1.0)])],
+        ..DenseModel::default()
+    };
+    let with = |u: [f64; 2]| model.certificate(&DenseAnswer { u: u.to_vec(), lambda: vec![], mu: vec![] });
     for far in [0.0, 1.0, 1e10, 1e13, 1e16, 1e20] {
         assert!(with([far; 2]).equilibrium.ratio > 1.0, "{far:e}");
     }
@@ -134,7 +146,7 @@ fn the_energies_of_forces_that_all_but_cancel_are_known_to_their_rounding() {
 #[test]
 fn an_answer_whose_sizes_overflow_does_not_pass() {
     let parts = vec![chain(&[], &[(0, 1e-300)]).loaded(&[(0, 2.0)])];
-    let model = Model { parts, contact: vec![(vec![(0, 1.0)], 1.0, 0.0)], ..Model::default() };
+    let model = DenseModel { parts, contact: vec![(vec![(0, 1.0)], 1.0, 0.0)], ..DenseModel::default() };
     let beyond = model.certificate(&point(2e300, 0.0));
     assert!(!beyond.passed(), "{beyond:?}");
 }
@@ -144,7 +156,7 @@ fn an_answer_whose_sizes_overflow_does_not_pass() {
 fn no_answer_is_so_small_or_large_that_a_wrong_one_passes() {
     for size in [1e-310, 1e-200, 1e-160, 1e-100, 1.0, 1e100, 1e160, 1e200] {
         let parts = vec![chain(&[], &[(0, 1.0)]).loaded(&[(0, 2.0 * size)])];
-        let model = Model { parts, contact: vec![(vec![(0, 1.0)], size, 0.0)], ..Model::default() };
+        let model = DenseModel { parts, contact: vec![(vec![(0, 1.0)], size, 0.0)], ..DenseModel::default() };
         let judged = |u: f64, l: f64| model.certificate(&point(u * size, l * size));
         let right = judged(1.0, 1.0);
         assert!(right.passed() == (1e-150..1e150).contains(&size), "{size:e} {right:?}");
@@ -159,7 +171,8 @@ fn no_answer_is_so_small_or_large_that_a_wrong_one_passes() {
 #[test]
 fn a_row_whose_scale_is_lost_does_not_pass() {
     let parts = vec![chain(&[], &[(0, 1.0)]).loaded(&[(0, 2.0)])];
-    let model = Model { parts, contact: vec![(vec![(0, 1e-200)], 1e-200, 0.0)], ..Model::default() };
+    let model =
+        DenseModel { parts, contact: vec![(vec![(0, 1e-200)], 1e-200, 0.0)], ..DenseModel::default() };
     assert!(!model.certificate(&point(2.0, 0.0)).passed());
 }
 
@@ -175,14 +188,14 @@ fn units_that_differ_by_powers_of_two_change_no_bit() {
         ];
         let contact = vec![(vec![(3, 1.0), (4, -1.0)], 0.1 * f / k, 0.1 / k)];
         let equalities = vec![(vec![(6, 1.0), (7, -1.0)], 0.02 * f / k, 0.0)];
-        Model { parts, contact, equalities, active: vec![0], ..Model::default() }
+        DenseModel { parts, contact, equalities, active: vec![0], ..DenseModel::default() }
     };
     let answer = model(1.0, 1.0).answer();
     for error in [1.0, 1.0 + 1e-9, 1.001] {
         let judged = |a: i32, b: i32| {
             let (k, f) = (2f64.powi(a), 2f64.powi(b));
             let scaled = |v: &[f64], by: f64| v.iter().map(|v| v * by).collect::<Vec<_>>();
-            let point = Point {
+            let point = DenseAnswer {
                 u: scaled(&answer.u, f / k),
                 lambda: scaled(&answer.lambda, f * error),
                 mu: scaled(&answer.mu, f),

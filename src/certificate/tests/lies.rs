@@ -1,15 +1,15 @@
 //! Right answers pass and wrong ones do not, in models that hold things of different size.
 
-use super::model::{chain, truss, Model, Point};
+use super::model::{chain, truss, DenseAnswer, DenseModel};
 
 /// Two chains that stand on the ground, the first pushed by 1 at its end against the second across a gap of .1.
-fn held() -> Model {
+fn held() -> DenseModel {
     let parts = vec![
         chain(&[2.0, 3.1, 1.7], &[(0, 4.3)]).loaded(&[(3, 1.0), (1, 0.3)]),
         chain(&[1.9, 2.3], &[(2, 3.7)]),
     ];
     let contact = vec![(vec![(3, 1.0), (4, -1.0)], 0.1, 0.0)];
-    Model { parts, contact, active: vec![0], ..Model::default() }
+    DenseModel { parts, contact, active: vec![0], ..DenseModel::default() }
 }
 
 #[test]
@@ -19,13 +19,13 @@ fn held_bodies() {
 }
 
 /// A free chain that travels before it touches a held one.
-fn travelling(far: f64) -> Model {
+fn travelling(far: f64) -> DenseModel {
     let parts = vec![
         chain(&[2.0, 3.1, 1.7, 2.9], &[]).loaded(&[(0, 0.01), (2, 0.02)]),
         chain(&[1.9, 2.3], &[(2, 3.7)]),
     ];
     let contact = vec![(vec![(4, 1.0), (5, -1.0)], far, 0.0)];
-    Model { parts, contact, active: vec![0], travel: vec![far; 5], ..Model::default() }
+    DenseModel { parts, contact, active: vec![0], travel: vec![far; 5], ..DenseModel::default() }
 }
 
 #[test]
@@ -47,7 +47,7 @@ fn a_stiff_part_hides_no_error_of_a_soft_one() {
             let parts =
                 vec![chain(&springs, &held).loaded(&[(5, 1.0), (0, -0.2)]), chain(&[1.9], &[(1, 3.7)])];
             let contact = vec![(vec![(0, 1.0), (6, -1.0)], -0.5, 0.0)];
-            let model = Model { parts, contact, active: vec![0], ..Model::default() };
+            let model = DenseModel { parts, contact, active: vec![0], ..DenseModel::default() };
             let name = format!("contrast {contrast:e} {held:?}");
             model.refuses_wrong_forces(&name);
             model.refuses_wrong_motions(&name, 1.0);
@@ -60,7 +60,7 @@ fn a_stiff_part_hides_no_error_of_a_soft_one() {
 fn a_body_on_a_weak_spring() {
     let parts = vec![chain(&[2.0, 3.1, 1.7], &[(0, 1e-8)]).loaded(&[(0, 1.0)]), chain(&[1.9], &[(1, 3.7)])];
     let contact = vec![(vec![(3, 1.0), (4, -1.0)], 0.3, 0.0)];
-    let model = Model { parts, contact, active: vec![0], ..Model::default() };
+    let model = DenseModel { parts, contact, active: vec![0], ..DenseModel::default() };
     model.refuses_wrong_forces("weak");
     model.refuses_wrong_motions("weak", 1.0);
 }
@@ -74,7 +74,7 @@ fn displacements_prescribed_by_penalty_hide_nothing() {
             chain(&[1.9, 2.3], &[(2, penalty)]),
         ];
         let contact = vec![(vec![(3, 1.0), (4, -1.0)], 0.1, 0.0)];
-        let model = Model { parts, contact, active: vec![0], ..Model::default() };
+        let model = DenseModel { parts, contact, active: vec![0], ..DenseModel::default() };
         let name = format!("penalty {penalty:e}");
         model.refuses_wrong_forces(&name);
         model.refuses_wrong_motions(&name, 0.4);
@@ -104,7 +104,7 @@ fn subdomains_glued_together_move_as_one() {
         ];
         let equalities = vec![(vec![(2, 1.0), (3, -1.0)], 0.0, 0.0), (vec![(5, 2.0), (6, -2.0)], 0.0, 0.0)];
         let contact = vec![(vec![(8, 1.0), (9, -1.0)], far, 0.0)];
-        let model = Model { parts, contact, equalities, active: vec![0], travel: vec![far; 9] };
+        let model = DenseModel { parts, contact, equalities, active: vec![0], travel: vec![far; 9] };
         let name = format!("glued {far:e}");
         model.refuses_wrong_forces(&name);
         if far <= 1.0 {
@@ -133,7 +133,7 @@ fn a_truss_that_is_free_to_turn() {
             .enumerate()
             .map(|(j, t)| if j % 2 == 0 { -far * t } else { far * t })
             .collect();
-        let model = Model { parts, contact, active: vec![0, 1, 2], travel, ..Model::default() };
+        let model = DenseModel { parts, contact, active: vec![0, 1, 2], travel, ..DenseModel::default() };
         assert!(model.answer().lambda.iter().all(|l| *l > 0.0), "{:?}", model.answer());
         let name = format!("truss {far:e}");
         model.refuses_wrong_forces(&name);
@@ -157,7 +157,7 @@ fn far_rows_excuse_nothing() {
         let mut wrong = model.answer();
         wrong.lambda[1] = 1e-5;
         model.refused(&format!("{name}, a force across the gap"), &wrong);
-        let open = Point { u: vec![0.0; 7], lambda: vec![0.0; 3], mu: vec![] };
+        let open = DenseAnswer { u: vec![0.0; 7], lambda: vec![0.0; 3], mu: vec![] };
         model.refused(&format!("{name}, nothing at all"), &open);
     }
 }
@@ -175,7 +175,7 @@ fn the_soft_end_of_a_stiff_body() {
                 let gap = if held.is_empty() { far } else { -0.1 };
                 let contact = vec![(vec![(4, 1.0), (5, -1.0)], gap, 0.0)];
                 let travel = if held.is_empty() { vec![far; 5] } else { vec![] };
-                let model = Model { parts, contact, active: vec![0], travel, ..Model::default() };
+                let model = DenseModel { parts, contact, active: vec![0], travel, ..DenseModel::default() };
                 let name = format!("soft end {stiff:e} {held:?} {far}");
                 model.refuses_wrong_forces(&name);
                 model.refuses_wrong_motions(&name, 1.0);
@@ -195,7 +195,7 @@ fn what_is_light_is_judged_by_itself() {
             chain(&[1.9], &[(1, 3.7)]),
         ];
         let contact = vec![(vec![(2, 1.0), (3, -1.0)], 0.01, 0.0), (vec![(7, 1.0), (8, -1.0)], 0.0, 0.0)];
-        let model = Model { parts, contact, active: vec![0, 1], ..Model::default() };
+        let model = DenseModel { parts, contact, active: vec![0, 1], ..DenseModel::default() };
         model.refuses_wrong_forces(&format!("heavy {heavy:e}"));
     }
 }
@@ -206,7 +206,7 @@ fn single_springs_are_judged_by_the_forces_on_them() {
     for stiffness in [1e-8, 1.0, 1e8] {
         let parts = vec![chain(&[], &[(0, 4.0)]).loaded(&[(0, 2.0)]), chain(&[], &[(0, stiffness)])];
         let contact = vec![(vec![(0, 1.0), (1, -1.0)], 0.1, 0.0)];
-        let model = Model { parts, contact, active: vec![0], ..Model::default() };
+        let model = DenseModel { parts, contact, active: vec![0], ..DenseModel::default() };
         model.refuses_wrong_forces(&format!("springs {stiffness:e}"));
         model.refuses_wrong_motions(&format!("springs {stiffness:e}"), 0.5);
     }
@@ -219,9 +219,9 @@ fn forces_that_are_lost_between_redundant_rows_are_refused() {
     {
         let parts = vec![chain(&[2.0, 3.0], &[(0, 1.0)]).loaded(&[(2, load)]), chain(&[1.5], &[(1, 0.7)])];
         let tie = (vec![(2, 1.0), (3, -1.0)], 0.0, 0.0);
-        let single = Model { parts, equalities: vec![tie.clone()], ..Model::default() };
+        let single = DenseModel { parts, equalities: vec![tie.clone()], ..DenseModel::default() };
         let answer = single.answer();
-        let double = Model { equalities: vec![tie.clone(), tie], ..single };
+        let double = DenseModel { equalities: vec![tie.clone(), tie], ..single };
         let mut shared = answer.clone();
         shared.mu = vec![answer.mu[0] + excess, -excess];
         assert_eq!(double.certificate(&shared).passed(), right, "{load:e} {excess:e}");

@@ -10,7 +10,7 @@ pub const LIMIT: f64 = 1e-8;
 type Dense = Vec<Vec<f64>>;
 
 #[derive(Clone)]
-pub struct Part {
+pub struct DenseBody {
     pub k: Dense,
     pub load: Vec<f64>,
     /// Columns, before they are made orthonormal.
@@ -21,8 +21,8 @@ pub struct Part {
 pub type Rows = Vec<(Vec<(usize, f64)>, f64, f64)>;
 
 #[derive(Clone, Default)]
-pub struct Model {
-    pub parts: Vec<Part>,
+pub struct DenseModel {
+    pub parts: Vec<DenseBody>,
     pub contact: Rows,
     pub equalities: Rows,
     /// Contact rows that carry a force.
@@ -32,14 +32,14 @@ pub struct Model {
 }
 
 #[derive(Clone, Debug)]
-pub struct Point {
+pub struct DenseAnswer {
     pub u: Vec<f64>,
     pub lambda: Vec<f64>,
     pub mu: Vec<f64>,
 }
 
 /// A chain of springs between unknowns, and springs to the ground.
-pub fn chain(springs: &[f64], held: &[(usize, f64)]) -> Part {
+pub fn chain(springs: &[f64], held: &[(usize, f64)]) -> DenseBody {
     let n = springs.len() + 1;
     let mut k = vec![vec![0.0; n]; n];
     for (i, s) in springs.iter().enumerate() {
@@ -50,11 +50,11 @@ pub fn chain(springs: &[f64], held: &[(usize, f64)]) -> Part {
     }
     held.iter().for_each(|&(i, s)| k[i][i] += s);
     let motions = if held.is_empty() { vec![vec![1.0; n]] } else { Vec::new() };
-    Part { k, load: vec![0.0; n], motions }
+    DenseBody { k, load: vec![0.0; n], motions }
 }
 
 /// A plane truss, two unknowns of every node; bars as (node, node, stiffness).
-pub fn truss(nodes: &[[f64; 2]], bars: &[(usize, usize, f64)]) -> Part {
+pub fn truss(nodes: &[[f64; 2]], bars: &[(usize, usize, f64)]) -> DenseBody {
     let n = 2 * nodes.len();
     let mut k = vec![vec![0.0; n]; n];
     for &(a, b, s) in bars {
@@ -69,10 +69,10 @@ pub fn truss(nodes: &[[f64; 2]], bars: &[(usize, usize, f64)]) -> Part {
     }
     let of = |motion: &dyn Fn([f64; 2]) -> [f64; 2]| nodes.iter().flat_map(|x| motion(*x)).collect();
     let motions = vec![of(&|_| [1.0, 0.0]), of(&|_| [0.0, 1.0]), of(&|[x, y]| [-y, x])];
-    Part { k, load: vec![0.0; n], motions }
+    DenseBody { k, load: vec![0.0; n], motions }
 }
 
-impl Part {
+impl DenseBody {
     pub fn loaded(mut self, loads: &[(usize, f64)]) -> Self {
         loads.iter().for_each(|&(i, f)| self.load[i] += f);
         self
@@ -156,7 +156,7 @@ fn solve(a: &Dense, b: &[f64]) -> Vec<f64> {
 }
 
 /// K+ by elimination of the bordered matrix.
-pub struct ByElimination<'a>(pub &'a Model, pub usize);
+pub struct ByElimination<'a>(pub &'a DenseModel, pub usize);
 
 impl ByElimination<'_> {
     fn work(&self, load: &[f64]) -> f64 {
@@ -202,7 +202,7 @@ impl Response for ByElimination<'_> {
     }
 }
 
-impl Model {
+impl DenseModel {
     pub fn unknowns(&self) -> usize {
         self.parts.iter().map(|part| part.k.len()).sum()
     }
@@ -218,7 +218,7 @@ impl Model {
     }
 
     /// With the forces of the active rows alone.
-    pub fn answer(&self) -> Point {
+    pub fn answer(&self) -> DenseAnswer {
         let n = self.unknowns();
         let rows: Vec<_> = self.active.iter().map(|&i| &self.contact[i]).chain(&self.equalities).collect();
         let m = rows.len();
@@ -244,15 +244,15 @@ impl Model {
         x.iter_mut().zip(&self.travel).for_each(|(x, t)| *x += t);
         let mut lambda = vec![0.0; self.contact.len()];
         self.active.iter().enumerate().for_each(|(k, &i)| lambda[i] = x[n + k]);
-        Point { u: x[..n].to_vec(), lambda, mu: x[n + self.active.len()..].to_vec() }
+        DenseAnswer { u: x[..n].to_vec(), lambda, mu: x[n + self.active.len()..].to_vec() }
     }
 
     /// The judgement, and how often K+ has been asked for.
-    pub fn judged(&self, point: &Point) -> (Judgement, usize) {
+    pub fn judged(&self, point: &DenseAnswer) -> (Judgement, usize) {
         let n = self.unknowns();
         let (contact, equalities) = (Self::rows(&self.contact, n), Self::rows(&self.equalities, n));
-        let matrices: Vec<Symmetric> = self.parts.iter().map(Part::matrix).collect();
-        let spaces: Vec<Matrix> = self.parts.iter().map(Part::null_space).collect();
+        let matrices: Vec<Symmetric> = self.parts.iter().map(DenseBody::matrix).collect();
+        let spaces: Vec<Matrix> = self.parts.iter().map(DenseBody::null_space).collect();
         let grounded: Vec<Vec<u32>> = matrices.iter().map(|k| grounded(k.into()).unwrap()).collect();
         let (mut bodies, mut start) = (Vec::new(), 0);
         for (p, part) in self.parts.iter().enumerate() {
@@ -267,29 +267,30 @@ impl Model {
             start += part.k.len();
         }
         let data = Data { bodies, contact: &contact, equalities: &equalities, limit: LIMIT };
-        let answer = Answer { u: &point.u, lambda: &point.lambda, mu: &point.mu };
+        let answer = Candidate { u: &point.u, lambda: &point.lambda, mu: &point.mu };
         let mut response = ByElimination(self, 0);
         let judgement = certify(&data, answer, &mut response).unwrap();
         (judgement, response.1)
     }
 
-    pub fn certificate(&self, point: &Point) -> Certificate {
+    pub fn certificate(&self, point: &DenseAnswer) -> Certificate {
         self.judged(point).0.certificate
     }
 
     /// The right answer passes, also rounded to 15 digits, and so do its parts only where they are known.
-    pub fn accepted(&self, name: &str) -> Point {
+    pub fn accepted(&self, name: &str) -> DenseAnswer {
         let right = self.answer();
         let certificate = self.certificate(&right);
         assert!(certificate.worst() <= 0.5, "{name}: {certificate:#?} {right:?}");
         let digits = |v: &Vec<f64>| v.iter().map(|v| format!("{v:.14e}").parse().unwrap()).collect();
-        let rounded = Point { u: digits(&right.u), lambda: digits(&right.lambda), mu: digits(&right.mu) };
+        let rounded =
+            DenseAnswer { u: digits(&right.u), lambda: digits(&right.lambda), mu: digits(&right.mu) };
         let certificate = self.certificate(&rounded);
         assert!(certificate.passed(), "{name} in 15 digits: {certificate:#?} {right:?}");
         right
     }
 
-    pub fn refused(&self, name: &str, point: &Point) {
+    pub fn refused(&self, name: &str, point: &DenseAnswer) {
         let certificate = self.certificate(point);
         assert!(!certificate.passed(), "{name}: {certificate:#?} {point:?}");
     }
@@ -299,7 +300,7 @@ impl Model {
         let right = self.accepted(name);
         let times = |by: f64| {
             let scaled = |v: &[f64]| v.iter().map(|v| by * v).collect::<Vec<_>>();
-            Point { u: right.u.clone(), lambda: scaled(&right.lambda), mu: scaled(&right.mu) }
+            DenseAnswer { u: right.u.clone(), lambda: scaled(&right.lambda), mu: scaled(&right.mu) }
         };
         for by in [1.5, 1.0 + 1e-5, 0.0, -1.0] {
             self.refused(&format!("{name}, all forces x {by}"), &times(by));

@@ -25,7 +25,7 @@ pub struct Input<R> {
 }
 
 /// The section that is read.
-pub struct Open {
+pub struct OpenSection {
     pub tag: Tag,
     flags: u32,
     /// Byte at which it begins.
@@ -35,7 +35,7 @@ pub struct Open {
     left: u64,
 }
 
-impl Open {
+impl OpenSection {
     /// "section STIF"
     fn name(&self) -> String {
         format!("section {}", self.tag.escape_ascii())
@@ -82,7 +82,7 @@ impl<R: Read> Input<R> {
     }
 
     /// The head of a section, whose length is proved to fit the file.
-    pub fn open(&mut self) -> Result<Open> {
+    pub fn open(&mut self) -> Result<OpenSection> {
         let start = self.at;
         if self.length - start < HEAD {
             return Err(damaged(start, "the file ends inside the head of a section"));
@@ -90,7 +90,7 @@ impl<R: Read> Input<R> {
         self.crc = Crc::new();
         let (tag, flags) = (self.bytes()?, u32::from_le_bytes(self.bytes()?));
         let payload = u64::from_le_bytes(self.bytes()?);
-        let open = Open { tag, flags, start, payload, left: payload };
+        let open = OpenSection { tag, flags, start, payload, left: payload };
         if section_length(payload).is_none_or(|whole| whole > self.length - start) {
             let what = format!("{} has {payload} bytes, the file ends before", open.name());
             return Err(damaged(start, what));
@@ -99,14 +99,14 @@ impl<R: Read> Input<R> {
     }
 
     /// Nothing is left of the section but its zeros and its checksum, which is right.
-    pub fn close(&mut self, open: &mut Open) -> Result<()> {
+    pub fn close(&mut self, open: &mut OpenSection) -> Result<()> {
         if open.left > 0 {
             return Err(damaged(self.at, format!("{} bytes too many in {}", open.left, open.name())));
         }
         self.trailer(open)
     }
 
-    fn trailer(&mut self, open: &Open) -> Result<()> {
+    fn trailer(&mut self, open: &OpenSection) -> Result<()> {
         let mut zeros = [0; 8];
         let zeros = &mut zeros[..padding(open.payload) as usize];
         let at = self.at;
@@ -119,7 +119,7 @@ impl<R: Read> Input<R> {
     }
 
     /// Passes over a section that this library does not know, if that may be done.
-    pub fn skip(&mut self, open: &mut Open) -> Result<()> {
+    pub fn skip(&mut self, open: &mut OpenSection) -> Result<()> {
         let mut block = [0; BLOCK];
         while open.left > 0 {
             let now = open.left.min(BLOCK as u64);
@@ -159,13 +159,13 @@ impl<R: Read> Input<R> {
     }
 
     /// A number of a section.
-    pub fn number(&mut self, open: &mut Open) -> Result<u64> {
+    pub fn number(&mut self, open: &mut OpenSection) -> Result<u64> {
         self.take(open, 1, 8)?;
         Ok(u64::from_le_bytes(self.bytes()?))
     }
 
     /// A number that must be an index or a size of this machine.
-    pub fn size(&mut self, open: &mut Open) -> Result<usize> {
+    pub fn size(&mut self, open: &mut OpenSection) -> Result<usize> {
         let at = self.at;
         let number = self.number(open)?;
         let fits = usize::try_from(number).ok().filter(|size| *size <= isize::MAX as usize / 8);
@@ -175,7 +175,7 @@ impl<R: Read> Input<R> {
     /// `len` numbers of N bytes each.
     pub fn array<T, const N: usize>(
         &mut self,
-        open: &mut Open,
+        open: &mut OpenSection,
         len: usize,
         number: impl Fn([u8; N]) -> T,
     ) -> Result<Vec<T>> {
@@ -192,12 +192,12 @@ impl<R: Read> Input<R> {
         Ok(values)
     }
 
-    pub fn reals(&mut self, open: &mut Open, len: usize) -> Result<Vec<f64>> {
+    pub fn reals(&mut self, open: &mut OpenSection, len: usize) -> Result<Vec<f64>> {
         self.array(open, len, f64::from_le_bytes)
     }
 
     /// Row pointers: `rows` + 1 numbers from 0 to `entries`, not decreasing.
-    pub fn pointers(&mut self, open: &mut Open, rows: usize, entries: usize) -> Result<Vec<usize>> {
+    pub fn pointers(&mut self, open: &mut OpenSection, rows: usize, entries: usize) -> Result<Vec<usize>> {
         let at = self.at;
         let saturated = |bytes| usize::try_from(u64::from_le_bytes(bytes)).unwrap_or(usize::MAX);
         let pointers = self.array(open, rows + 1, saturated)?;
@@ -214,7 +214,7 @@ impl<R: Read> Input<R> {
     }
 
     /// All that is left of the section, as text.
-    pub fn text(&mut self, open: &mut Open) -> Result<String> {
+    pub fn text(&mut self, open: &mut OpenSection) -> Result<String> {
         let at = self.at;
         let left = usize::try_from(open.left).unwrap_or(usize::MAX);
         let bytes = self.array(open, left, |[byte]: [u8; 1]| byte)?;
@@ -222,12 +222,12 @@ impl<R: Read> Input<R> {
     }
 
     /// An error of what a section says, at a number that has just been read.
-    pub fn wrong(&self, open: &Open, what: &str) -> Error {
+    pub fn wrong(&self, open: &OpenSection, what: &str) -> Error {
         damaged(self.at.saturating_sub(8), format!("{}: {what}", open.name()))
     }
 
     /// So many numbers are still there.
-    fn take(&self, open: &mut Open, len: u64, each: u64) -> Result<()> {
+    fn take(&self, open: &mut OpenSection, len: u64, each: u64) -> Result<()> {
         let wanted = len.checked_mul(each).filter(|wanted| *wanted <= open.left);
         open.left -= wanted.ok_or_else(|| {
             let what =
@@ -238,7 +238,7 @@ impl<R: Read> Input<R> {
     }
 
     /// What a call has refused, as a fault of the file.
-    pub fn refused(&self, mut error: Error, open: &Open) -> Error {
+    pub fn refused(&self, mut error: Error, open: &OpenSection) -> Error {
         if error.kind == Kind::Memory {
             return error;
         }

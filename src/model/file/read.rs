@@ -8,7 +8,7 @@ use crate::model::file::format::{
     Tag, BODY, COORDINATES, FIXING, LOAD, NULL_SPACE, NUMBERING, OPTIONS, ROWS, STIFFNESS,
 };
 use crate::model::file::input::Input;
-use crate::model::file::sections::{Offsets, Part};
+use crate::model::file::sections::{Offsets, SectionContent};
 
 /// Reads a problem of `length` bytes.
 pub fn read(source: impl Read, length: u64) -> Result<Model> {
@@ -21,7 +21,7 @@ pub fn read(source: impl Read, length: u64) -> Result<Model> {
             input.skip(&mut open)?;
             continue;
         }
-        let part = Part::read(&mut input, &mut open)?;
+        let part = SectionContent::read(&mut input, &mut open)?;
         input.close(&mut open)?;
         part.hand_over(&mut model, &mut offsets).map_err(|error| input.refused(error, &open))?;
     }

@@ -9,12 +9,12 @@ use crate::model::contents::Model;
 use crate::model::file::format::{
     self, BODY, COORDINATES, FIXING, LOAD, NULL_SPACE, NUMBERING, OPTIONS, STIFFNESS,
 };
-use crate::model::file::input::{Input, Open};
+use crate::model::file::input::{Input, OpenSection};
 use crate::model::file::write::{CANDIDATES, EQUALITY, EXACT, INEQUALITY};
 use crate::platform::memory::reserved;
 
 /// A section that has been read.
-pub enum Part {
+pub enum SectionContent {
     Options(String),
     Body { n: usize },
     Stiffness { ptr: Vec<usize>, col: Vec<i64>, val: Vec<f64> },
@@ -35,8 +35,8 @@ pub struct Offsets {
     options: bool,
 }
 
-impl Part {
-    pub fn read<R: Read>(input: &mut Input<R>, open: &mut Open) -> Result<Self> {
+impl SectionContent {
+    pub fn read<R: Read>(input: &mut Input<R>, open: &mut OpenSection) -> Result<Self> {
         Ok(match open.tag {
             OPTIONS => Self::Options(input.text(open)?),
             BODY => Self::Body { n: input.size(open)? },
@@ -64,7 +64,7 @@ impl Part {
         })
     }
 
-    fn stiffness<R: Read>(input: &mut Input<R>, open: &mut Open) -> Result<Self> {
+    fn stiffness<R: Read>(input: &mut Input<R>, open: &mut OpenSection) -> Result<Self> {
         let (n, entries) = (input.size(open)?, input.size(open)?);
         let ptr = input.pointers(open, n, entries)?;
         let val = input.reals(open, entries)?;
@@ -72,7 +72,7 @@ impl Part {
         Ok(Self::Stiffness { ptr, col, val })
     }
 
-    fn null_space<R: Read>(input: &mut Input<R>, open: &mut Open) -> Result<Self> {
+    fn null_space<R: Read>(input: &mut Input<R>, open: &mut OpenSection) -> Result<Self> {
         let (n, r) = (input.size(open)?, input.size(open)?);
         let modes = match input.number(open)? {
             EXACT => Modes::Exact,
@@ -83,7 +83,7 @@ impl Part {
         Ok(Self::NullSpace { n, r, modes, basis })
     }
 
-    fn rows<R: Read>(input: &mut Input<R>, open: &mut Open) -> Result<Self> {
+    fn rows<R: Read>(input: &mut Input<R>, open: &mut OpenSection) -> Result<Self> {
         let kind = match input.number(open)? {
             INEQUALITY => RowKind::Inequality,
             EQUALITY => RowKind::Equality,

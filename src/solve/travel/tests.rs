@@ -17,7 +17,7 @@ impl Blocks {
     }
 
     /// Change and kernel; `closed` rows resist.
-    fn solve(&self, rows: &Csr, gaps: &[f64], lambda: &[f64], u: &[f64]) -> (Change, usize) {
+    fn solve(&self, rows: &Csr, gaps: &[f64], lambda: &[f64], u: &[f64]) -> (Shift, usize) {
         let bodies: Vec<Moving> = (0..self.count)
             .map(|p| Moving {
                 unknowns: 4 * p..4 * p + 4,
@@ -36,7 +36,7 @@ impl Blocks {
         }
         let held: Vec<bool> = lambda.iter().map(|lambda| *lambda <= 0.0).collect();
         let amplitudes = undetermined(&g_transposed, &held, 1.5e-14).unwrap();
-        let open = Open {
+        let open = OpenMotions {
             bodies: &bodies,
             amplitudes: &amplitudes,
             metric: &self.metric,
@@ -126,7 +126,7 @@ fn grounded_unknowns_stay_to_the_last_bit() {
     let amplitudes = Matrix { rows: 1, cols: 1, data: vec![2.0] };
     let mut rows = Csr::empty(3);
     rows.push_row([(0, 1.0), (2, -1.0)]);
-    let open = Open {
+    let open = OpenMotions {
         bodies: &bodies,
         amplitudes: &amplitudes,
         metric: &[1.0, 1.0, 1e20],
