@@ -6,9 +6,8 @@ use std::sync::Arc;
 use decks::{Body, Deck};
 use feti_contact::body::{from_sparse, GeneralizedInverse, Modes, NullSpaceInput, SparseInput, Storage};
 use feti_contact::error::{Error, Kind, Result};
+use feti_contact::linalg::cholesky::{inverse_form, nested_dissection};
 use feti_contact::linalg::graph::Graph;
-use feti_contact::linalg::ordering::nested_dissection;
-use feti_contact::linalg::reach::inverse_form;
 use feti_contact::linalg::{Analysis, Csr, Matrix, Multiple, Operator, Packed, Symmetric};
 
 use crate::clock::Clock;

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use crate::body::host::HostOperator;
 use crate::error::Result;
-use crate::linalg::reach::inverse_form;
+use crate::linalg::cholesky::inverse_form;
 use crate::linalg::{Analysis, Csr, Operator, Packed, Symmetric};
 
 /// `scale K_bb`: the other dofs held.

@@ -4,8 +4,7 @@ use std::sync::Arc;
 
 use crate::body::host::HostMultiple;
 use crate::error::Result;
-use crate::linalg::columns::inverse_columns;
-use crate::linalg::reach::inverse_form;
+use crate::linalg::cholesky::{inverse_columns, inverse_form};
 use crate::linalg::{Cholesky, Csr, Matrix, Packed};
 
 #[derive(Clone)]

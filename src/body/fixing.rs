@@ -1,7 +1,7 @@
 //! Fixing dofs: the r dofs whose rows of R are most independent, so that `K_ff` is as regular as it can be.
 
 use crate::error::{Error, Kind, Result};
-use crate::linalg::spd::right_singular;
+use crate::linalg::dense::spectrum::right_singular;
 use crate::linalg::Matrix;
 use crate::platform::memory::zeros;
 

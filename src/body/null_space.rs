@@ -5,7 +5,7 @@
 
 use crate::body::overflow::refuse_overflow;
 use crate::error::{Error, Kind, Result};
-use crate::linalg::spd::right_singular;
+use crate::linalg::dense::spectrum::right_singular;
 use crate::linalg::vector::{norm, norm_max, ratio, weighted_norm};
 use crate::linalg::{Matrix, Multiple};
 use crate::platform::memory::{reserved, zeros};

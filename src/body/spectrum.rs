@@ -7,7 +7,7 @@ use std::fmt;
 use crate::body::digits::Digits;
 use crate::body::null_space::ROUNDING as KNOWN;
 use crate::error::{Error, Kind, Result};
-use crate::linalg::spd::symmetric_eigen;
+use crate::linalg::dense::spectrum::symmetric_eigen;
 use crate::linalg::vector::dot;
 use crate::linalg::{Matrix, Multiple};
 use crate::platform::memory::reserved;

@@ -5,9 +5,9 @@
 use std::sync::Arc;
 
 use crate::error::Result;
-use crate::linalg::gram::Gram;
 use crate::linalg::graph::components;
-use crate::linalg::pseudo::{dense_inverse, uncouple};
+use crate::linalg::semidefinite::sparse::{dense_inverse, uncouple};
+use crate::linalg::sparse::gram::Gram;
 use crate::linalg::{Analysis, Cholesky, Csr, SpdSolver, Symmetric};
 use crate::platform::memory::{copied, reserved, room};
 

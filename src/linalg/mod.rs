@@ -1,42 +1,30 @@
 //! Vectors, matrices, ordering and factorisation. The only layer that knows faer.
+//!
+//! | module | holds |
+//! |---|---|
+//! | `vector`, `twofold`, `array` | loops over vectors, sums in twice the digits, numbers that are left with the host |
+//! | `dense` | columns; packed symmetric matrices; pivoted Cholesky, eigenvalues, singular values |
+//! | `sparse` | by rows; symmetric; graphs; Gram matrices |
+//! | `cholesky` | the sparse factorisation and what is made from the factor |
+//! | `semidefinite` | systems that may be singular, dense and sparse |
 
 pub mod array;
-mod blocks;
 pub mod cholesky;
-pub mod columns;
-pub mod csr;
 pub mod dense;
-pub mod elimination;
-mod front;
-pub mod gram;
-pub mod graph;
-#[cfg(feature = "metis")]
-mod metis;
-mod multifrontal;
-pub mod ordering;
-pub mod packed;
-pub mod pivoted;
-pub mod pseudo;
-pub mod reach;
-pub mod resisted;
-pub mod spd;
-mod subtrees;
-mod supernodes;
-pub mod symmetric;
-pub mod trailing;
-mod triangular;
+pub mod semidefinite;
+pub mod sparse;
 pub mod twofold;
-mod updates;
 pub mod vector;
 
 pub use array::{Array, Borrowed};
 pub use cholesky::{Analysis, Breakdown, Cholesky};
-pub use csr::Csr;
-pub use dense::Matrix;
-pub use packed::Packed;
-pub use pivoted::PivotedCholesky;
-pub use spd::SpdSolver;
-pub use symmetric::{Multiple, Symmetric};
+pub use dense::matrix::Matrix;
+pub use dense::packed::Packed;
+pub use dense::pivoted::PivotedCholesky;
+pub use semidefinite::dense::SpdSolver;
+pub use sparse::csr::Csr;
+pub use sparse::graph;
+pub use sparse::symmetric::{Multiple, Symmetric};
 
 use crate::error::Result;
 

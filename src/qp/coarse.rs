@@ -4,8 +4,8 @@
 use std::sync::Arc;
 
 use crate::error::Result;
-use crate::linalg::gram::Gram;
-use crate::linalg::pseudo::{Pseudo, Rows, SINGULAR};
+use crate::linalg::semidefinite::sparse::{PseudoInverse, Rows, SINGULAR};
+use crate::linalg::sparse::gram::Gram;
 use crate::linalg::vector::{axpy, norm_max, power_of_two_below};
 use crate::linalg::{Analysis, Cholesky, Csr, Matrix};
 use crate::platform::memory::room;
@@ -35,7 +35,7 @@ struct Face {
 enum Solver {
     Cholesky(Cholesky),
     /// Minimum norm.
-    Pseudo(Pseudo),
+    Pseudo(PseudoInverse),
 }
 
 impl<'a> Coarse<'a> {
@@ -81,7 +81,7 @@ impl<'a> Coarse<'a> {
         let rows = Rows { g_transposed: self.g_transposed, held, unit, whole, rounding };
         let solver = match analysis.attempt(&w, 1.0)? {
             Ok(factor) if factor.smallest_pivot() > SINGULAR => Solver::Cholesky(factor),
-            _ => Solver::Pseudo(Pseudo::new(&w, analysis, &rows)?),
+            _ => Solver::Pseudo(PseudoInverse::new(&w, analysis, &rows)?),
         };
         self.factorisations += 1;
         *slot = Some(Face { held: held.to_vec(), solver });

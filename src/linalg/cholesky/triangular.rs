@@ -1,7 +1,7 @@
 //! Solutions with L and L' for one right-hand side: L is read once each, at the speed of the memory.
 
 use crate::error::Result;
-use crate::linalg::supernodes::{Node, Supernodes};
+use crate::linalg::cholesky::analysis::supernodes::{Node, Supernodes};
 use crate::platform::memory::zeros;
 
 /// Columns taken at a time: the vector is read once for all of them.

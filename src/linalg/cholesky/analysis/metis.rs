@@ -102,9 +102,9 @@ fn failed(status: i32) -> Error {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::linalg::graph::Graph;
-    use crate::linalg::ordering::feral;
-    use crate::linalg::supernodes::Supernodes;
+    use crate::linalg::cholesky::analysis::ordering::feral;
+    use crate::linalg::cholesky::analysis::supernodes::Supernodes;
+    use crate::linalg::sparse::graph::Graph;
 
     /// A cube of n^3 nodes, all of an element coupled.
     fn cube(n: i32) -> (Vec<i32>, Vec<i32>) {

@@ -4,8 +4,8 @@ use std::ops::Range;
 
 use rayon::prelude::*;
 
-use crate::linalg::elimination::NONE;
-use crate::linalg::supernodes::Supernodes;
+use crate::linalg::cholesky::analysis::elimination::NONE;
+use crate::linalg::cholesky::analysis::supernodes::Supernodes;
 
 /// Less work than so many multiplications is not shared among threads.
 const SHARED: f64 = 2e7;

@@ -1,8 +1,8 @@
 //! `y = A x` with the tiles of a packed matrix: each is read once, for its place below the diagonal and for the one
 //! above. Four columns of tiles are read side by side: one stream of memory alone waits at the end of every page.
 
-use crate::linalg::packed::kernel::{Kernel, Portable};
-use crate::linalg::packed::{Line, Tile, SIDE};
+use crate::linalg::dense::packed::kernel::{Kernel, Portable};
+use crate::linalg::dense::packed::{Line, Tile, SIDE};
 
 /// Columns of tiles at a time.
 const PANEL: usize = 4;
@@ -13,7 +13,7 @@ const AHEAD: usize = 2;
 pub fn product(tiles: &[Tile], x: &[f64], y: &mut [f64]) {
     #[cfg(target_arch = "x86_64")]
     {
-        use crate::linalg::packed::x86::{Avx2, Avx512};
+        use crate::linalg::dense::packed::x86::{Avx2, Avx512};
         if let Some(avx512) = Avx512::detect() {
             return product_by(&avx512, tiles, x, y);
         }

@@ -1,9 +1,9 @@
 //! Fill-reducing order of the unknowns: nested dissection of the graph of nodes, every connected part by itself.
 
 use crate::error::{Error, Kind, Result};
-use crate::linalg::graph::{joined, Graph};
 #[cfg(feature = "metis")]
-use crate::linalg::metis::dissect;
+use crate::linalg::cholesky::analysis::metis::dissect;
+use crate::linalg::sparse::graph::{joined, Graph};
 use crate::platform::memory::reserved;
 #[cfg(not(feature = "metis"))]
 use feral as dissect;

@@ -4,8 +4,8 @@
 use std::sync::Arc;
 
 use crate::error::Result;
-use crate::linalg::graph::components;
-use crate::linalg::resisted;
+use crate::linalg::semidefinite::resisted;
+use crate::linalg::sparse::graph::components;
 use crate::linalg::{Analysis, Cholesky, Csr, Matrix, SpdSolver, Symmetric};
 use crate::platform::memory::room;
 
@@ -29,7 +29,7 @@ pub struct Rows<'a> {
     pub rounding: f64,
 }
 
-pub struct Pseudo {
+pub struct PseudoInverse {
     order: usize,
     /// Of all parts that are not dense, with the unit matrix in place of those.
     regular: Option<Cholesky>,
@@ -43,7 +43,7 @@ struct Part {
     inverse: SpdSolver,
 }
 
-impl Pseudo {
+impl PseudoInverse {
     /// `w` has the pattern that was analysed; its largest diagonal entry is about 1 where no row is held.
     pub fn new(w: &Symmetric, analysis: &Arc<Analysis>, rows_of_g: &Rows) -> Result<Self> {
         let _room = room(PER_ROW * w.order() + PER_ENTRY * w.val.len(), "the parts of a matrix")?;
@@ -196,7 +196,7 @@ fn block(w: &Symmetric, rows: &[usize]) -> Result<Matrix> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::linalg::gram::Gram;
+    use crate::linalg::sparse::gram::Gram;
 
     /// Chains of springs between so many masses each, springs by rows: free ones, `held` ones with a spring to the ground;
     /// a mass alone, without a spring.
@@ -219,7 +219,7 @@ mod tests {
         let whole: Vec<f64> = (0..w.order()).map(|k| w.val[w.ptr[k + 1] - 1]).collect();
         let analysis = Arc::new(Analysis::new(&w, &vec![false; w.order()]).unwrap());
         let rows = Rows { g_transposed: &g, held: &held, unit: 1.0, whole: &whole, rounding: 1e-14 };
-        let pseudo = Pseudo::new(&w, &analysis, &rows).unwrap();
+        let pseudo = PseudoInverse::new(&w, &analysis, &rows).unwrap();
         assert!(pseudo.regular.is_some() && pseudo.dense.len() == 4, "{}", pseudo.dense.len());
         let kernel = pseudo.kernel();
         assert_eq!((pseudo.deficiency(), kernel.cols), (3, 3));

@@ -13,10 +13,10 @@ use faer::{Accum, MatMut, MatRef, Par};
 use rayon::prelude::*;
 
 use crate::error::Result;
-use crate::linalg::elimination::NONE;
-use crate::linalg::subtrees::{each, outside, parts, shared};
-use crate::linalg::supernodes::{Node, Supernodes};
-use crate::linalg::updates::{RowMap, Updates};
+use crate::linalg::cholesky::analysis::elimination::NONE;
+use crate::linalg::cholesky::analysis::subtrees::{each, outside, parts, shared};
+use crate::linalg::cholesky::analysis::supernodes::{Node, Supernodes};
+use crate::linalg::cholesky::numeric::updates::{RowMap, Updates};
 use crate::linalg::{Cholesky, Csr, Packed};
 use crate::platform::memory::{reserved, room, PRODUCTS};
 use crate::platform::pages::Pages;

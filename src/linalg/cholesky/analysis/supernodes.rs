@@ -6,9 +6,9 @@
 use std::ops::Range;
 
 use crate::error::Result;
-use crate::linalg::blocks::Blocks;
-use crate::linalg::elimination::{elimination_tree, postorder, NONE};
-use crate::linalg::graph::Graph;
+use crate::linalg::cholesky::analysis::blocks::Blocks;
+use crate::linalg::cholesky::analysis::elimination::{elimination_tree, postorder, NONE};
+use crate::linalg::sparse::graph::Graph;
 use crate::platform::memory::reserved;
 
 const WHAT: &str = "the pattern of a Cholesky factor";

@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use crate::error::Result;
-use crate::linalg::graph::Graph;
+use crate::linalg::sparse::graph::Graph;
 use crate::platform::memory::reserved;
 
 const WHAT: &str = "the pattern of a Cholesky factor";

@@ -17,7 +17,7 @@ use faer::linalg::matmul::triangular::{self, BlockStructure};
 use faer::linalg::triangular_solve::solve_lower_triangular_in_place;
 use faer::{Accum, MatMut, MatRef, Par};
 
-use crate::linalg::subtrees::each;
+use crate::linalg::cholesky::analysis::subtrees::each;
 
 /// Columns of a tile.
 pub const TILE: usize = 256;

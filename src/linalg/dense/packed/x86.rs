@@ -4,8 +4,8 @@
 use std::arch::is_x86_feature_detected;
 use std::arch::x86_64::*;
 
-use crate::linalg::packed::kernel::{sum, Kernel};
-use crate::linalg::packed::{Line, Tile, SIDE};
+use crate::linalg::dense::packed::kernel::{sum, Kernel};
+use crate::linalg::dense::packed::{Line, Tile, SIDE};
 
 /// AVX2: half a line at a time.
 pub struct Avx2(());

@@ -2,7 +2,7 @@
 //! its eigenvalues can tell, and where they are rounding (they are squares) the singular values of `G_F N` themselves.
 
 use crate::error::Result;
-use crate::linalg::spd::{right_singular, symmetric_eigen};
+use crate::linalg::dense::spectrum::{right_singular, symmetric_eigen};
 use crate::linalg::vector::norm;
 use crate::linalg::{Csr, Matrix, SpdSolver};
 

@@ -5,7 +5,7 @@ use faer::linalg::triangular_solve::{solve_lower_triangular_in_place, solve_uppe
 use faer::{Accum, MatMut, MatRef, Par};
 
 use crate::error::Result;
-use crate::linalg::elimination::NONE;
+use crate::linalg::cholesky::analysis::elimination::NONE;
 use crate::linalg::{Cholesky, Csr, Matrix};
 use crate::platform::memory::{reserved, room, zeros, PRODUCTS};
 
@@ -117,7 +117,7 @@ fn solutions(cholesky: &Cholesky, rows: &Csr, which: &[usize], met: &[bool]) -> 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::linalg::reach::inverse_form;
+    use crate::linalg::cholesky::inverse_form::inverse_form;
     use crate::linalg::{Analysis, Symmetric};
     use std::sync::Arc;
 

@@ -10,10 +10,10 @@ use faer::dyn_stack::MemBuffer;
 use rayon::prelude::*;
 
 use crate::error::Result;
-use crate::linalg::front::{self, Tile};
-use crate::linalg::subtrees::{outside, shared, subtrees};
-use crate::linalg::supernodes::{Node, Supernodes};
-use crate::linalg::updates::{self, RowMap, Updates};
+use crate::linalg::cholesky::analysis::subtrees::{outside, shared, subtrees};
+use crate::linalg::cholesky::analysis::supernodes::{Node, Supernodes};
+use crate::linalg::cholesky::numeric::front::{self, Tile};
+use crate::linalg::cholesky::numeric::updates::{self, RowMap, Updates};
 use crate::platform::memory::{refusal, reserved};
 use crate::platform::pages::Pages;
 use crate::platform::Interrupt;

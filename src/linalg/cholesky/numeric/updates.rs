@@ -4,7 +4,7 @@ use std::ops::Range;
 use std::vec::IntoIter;
 
 use crate::error::Result;
-use crate::linalg::supernodes::Supernodes;
+use crate::linalg::cholesky::analysis::supernodes::Supernodes;
 use crate::platform::memory::reserved;
 use crate::platform::pages::Pages;
 
@@ -172,8 +172,8 @@ impl RowMap {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::linalg::graph::Graph;
-    use crate::linalg::ordering::nested_dissection;
+    use crate::linalg::cholesky::analysis::ordering::nested_dissection;
+    use crate::linalg::sparse::graph::Graph;
     use crate::linalg::Symmetric;
 
     #[test]

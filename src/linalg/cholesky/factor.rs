@@ -1,32 +1,15 @@
-//! Sparse Cholesky factorisation `P K_ff P' = L L'` of the free part of a stiffness matrix: supernodes in nested
-//! dissection, dense kernels of faer.
+//! The factor L of the free part of a stiffness matrix, and solutions with it.
 
 use std::sync::Arc;
 
 use crate::error::Result;
-use crate::linalg::elimination::NONE;
-use crate::linalg::graph::Graph;
-use crate::linalg::multifrontal::{self, Columns};
-use crate::linalg::ordering::nested_dissection;
-use crate::linalg::supernodes::Supernodes;
-use crate::linalg::triangular::Triangle;
+use crate::linalg::cholesky::analysis::elimination::NONE;
+use crate::linalg::cholesky::analysis::Analysis;
+use crate::linalg::cholesky::numeric::multifrontal::{self, Columns};
+use crate::linalg::cholesky::triangular::Triangle;
 use crate::linalg::Symmetric;
-use crate::platform::memory::{reserved, room, zeros, Room, PRODUCTS};
+use crate::platform::memory::{reserved, room, zeros, PRODUCTS};
 use crate::platform::pages::Pages;
-
-/// Bytes that ordering and symbolic analysis take at most, per dof and per entry of the lower triangle: grids of all
-/// dimensions, chains, stars and diagonal matrices take up to 4/5 of it.
-const ANALYSIS_PER_DOF: usize = 256;
-const ANALYSIS_PER_ENTRY: usize = 128;
-
-/// Order of elimination and pattern of L: depends on the pattern of K and the held dofs only.
-pub struct Analysis {
-    /// Dof eliminated at each position.
-    pub order: Vec<usize>,
-    /// Position of each dof, `NONE` for held dofs.
-    pub position: Vec<usize>,
-    pub(super) nodes: Supernodes,
-}
 
 /// The factor L with its analysis.
 pub struct Cholesky {
@@ -46,38 +29,6 @@ pub struct Breakdown {
 }
 
 impl Analysis {
-    pub fn new(matrix: &Symmetric, held: &[bool]) -> Result<Self> {
-        let _room = analysis_room(matrix)?;
-        let graph = Graph::of(matrix)?;
-        let order = nested_dissection(&graph, held)?;
-        Self::in_order(&graph, &order)
-    }
-
-    /// For `matrix` with the dofs `last` eliminated last, in this order; `graph`, which it may have more couplings
-    /// than among those dofs, decides on the order of the others.
-    pub fn ending(graph: &Symmetric, matrix: &Symmetric, last: &[usize]) -> Result<Self> {
-        let _room = analysis_room(matrix)?;
-        let mut is_last = vec![false; matrix.order()];
-        last.iter().for_each(|&dof| is_last[dof] = true);
-        let mut order = nested_dissection(&Graph::of(graph)?, &is_last)?;
-        order.extend(last);
-        Self::in_order(&Graph::of(matrix)?, &order)
-    }
-
-    /// `order` lists the dofs to eliminate.
-    fn in_order(graph: &Graph, order: &[usize]) -> Result<Self> {
-        let (order, nodes) = Supernodes::of(graph, order)?;
-        let mut position = reserved(graph.order(), "the order of a body")?;
-        position.resize(graph.order(), NONE);
-        order.iter().enumerate().for_each(|(at, &dof)| position[dof] = at);
-        Ok(Self { order, position, nodes })
-    }
-
-    /// Entries of L.
-    pub fn entries(&self) -> usize {
-        self.nodes.values()
-    }
-
     /// Bytes of L and of the workspace its computation needs.
     pub fn bytes(&self) -> usize {
         self.nodes.values() * size_of::<f64>() + self.nodes.bytes() + multifrontal::bytes(&self.nodes)
@@ -140,8 +91,7 @@ impl Analysis {
     /// The pivot at position `at`: the Schur complement of the leading block, computed afresh.
     fn breakdown(&self, matrix: &Symmetric, by: f64, at: usize) -> Result<Breakdown> {
         let dof = self.order[at];
-        let _room = analysis_room(matrix)?;
-        let leading = Arc::new(Self::in_order(&Graph::of(matrix)?, &self.order[..at])?);
+        let leading = Arc::new(Self::of_leading(matrix, &self.order[..at])?);
         let mut column = vec![0.0; matrix.order()];
         let mut unit = column.clone();
         unit[dof] = 1.0;
@@ -164,10 +114,6 @@ impl Analysis {
         };
         Ok(Breakdown { dof, relative_pivot })
     }
-}
-
-fn analysis_room(matrix: &Symmetric) -> Result<Room> {
-    room(matrix.order() * ANALYSIS_PER_DOF + matrix.val.len() * ANALYSIS_PER_ENTRY, "the ordering of a body")
 }
 
 impl Cholesky {

@@ -1,6 +1,6 @@
 //! The loop over columns of tiles that the product is made of.
 
-use crate::linalg::packed::{Line, Tile, SIDE};
+use crate::linalg::dense::packed::{Line, Tile, SIDE};
 
 /// One set of instructions of the processor; all give the same bits.
 pub trait Kernel {

@@ -1,0 +1,26 @@
+//! Sparse Cholesky factorisation `P K_ff P' = L L'` of the free part of a stiffness matrix: supernodes in nested
+//! dissection, dense kernels of faer; and what is made from the factor.
+//!
+//! | module | does |
+//! |---|---|
+//! | `analysis` | order of elimination, pattern of L |
+//! | `numeric` | the entries of L, multifrontal |
+//! | `factor` | L with its analysis, `K_ff^-1 x` |
+//! | `triangular` | solutions with L and L' |
+//! | `inverse_form`, `inverse_columns` | `B K_ff^-1 B'`, some columns of it |
+//! | `schur` | the Schur complement of the dofs eliminated last |
+
+mod analysis;
+mod factor;
+mod inverse_columns;
+mod inverse_form;
+mod numeric;
+mod schur;
+mod triangular;
+
+pub use analysis::ordering::nested_dissection;
+pub use analysis::Analysis;
+pub use factor::{Breakdown, Cholesky};
+pub use inverse_columns::inverse_columns;
+pub use inverse_form::inverse_form;
+pub use schur::Trailing;

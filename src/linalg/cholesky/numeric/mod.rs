@@ -1,0 +1,5 @@
+//! The numeric factorisation.
+
+mod front;
+pub mod multifrontal;
+pub mod updates;

@@ -1,0 +1,6 @@
+//! Sparse matrices and their graphs.
+
+pub mod csr;
+pub mod gram;
+pub mod graph;
+pub mod symmetric;
