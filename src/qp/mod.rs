@@ -6,14 +6,9 @@
 //!
 //! Knows A by its products only, and no bodies.
 
+mod acceptance;
 mod active_set;
-mod augmented;
-mod balance;
 mod coarse;
-mod conjugate;
-mod face;
-mod iterate;
-mod mprgp;
 mod nearest;
 pub mod paper;
 mod projection;
@@ -21,15 +16,12 @@ mod proportioning;
 mod proximal;
 mod restricted;
 mod smalbe;
-mod steps;
 
-pub use active_set::{active_set, Direct};
-pub use balance::weighted;
+pub use acceptance::{Judge, Limits, Observer, Progress, Solution, StepKind, Verdict};
+pub use active_set::{active_set, Direct, Face};
 pub use coarse::{fitted, undetermined};
-pub use conjugate::MOST as KEPT;
-pub use face::Face;
 pub use nearest::{nearest_point, Nearest, Polyhedron};
-pub use proportioning::{minimise, not_held, Judge, Limits, Observer, Progress, Solution, StepKind, Verdict};
+pub use proportioning::{minimise, not_held, weighted, KEPT};
 pub use proximal::proximal;
 pub use restricted::{Block, Judged, Restricted};
 pub use smalbe::smalbe;
@@ -70,6 +62,7 @@ pub struct Counts {
     pub products: usize,
     pub conjugate_gradient: usize,
     pub expansions: usize,
+    /// Proportioning steps.
     pub releases: usize,
     /// Systems solved with `W_F = G_F G_F'`.
     pub coarse_solves: usize,

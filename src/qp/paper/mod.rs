@@ -1,6 +1,6 @@
 //! The paper's own methods, in its notation: Algorithm 1 for bounds alone and Algorithm 3 for bounds and
 //! equalities. Kept as the paper has them, for its readers and as a baseline; the default is
-//! `qp/proportioning.rs`.
+//! `qp/proportioning/`.
 //!
 //! | paper | file |
 //! |---|---|

@@ -3,9 +3,9 @@
 
 use crate::error::Result;
 use crate::linalg::vector::{axpy, norm};
-use crate::qp::augmented::scattered;
 use crate::qp::coarse::Coarse;
 use crate::qp::paper::{Quadratic, Units};
+use crate::qp::smalbe::augmented::scattered;
 use crate::qp::Judge;
 
 pub struct Sizes {

@@ -3,13 +3,16 @@
 //! allows where it ends; it need not end (rows may swap for ever, a face may have no minimum), and gives up then. Steps A1 to A5
 //! of docs/method.md.
 
+mod face;
+
 use crate::error::{Kind, Result};
 use crate::linalg::vector::{axpy, dot, norm};
 use crate::linalg::Entries;
 use crate::qp::coarse::Coarse;
-use crate::qp::face::Face;
 use crate::qp::projection::project;
 use crate::qp::{Counts, Judge, Qp, Solution, Verdict};
+
+pub use face::Face;
 
 /// Faces at most.
 const FACES: usize = 30;

@@ -3,7 +3,7 @@
 use crate::error::Result;
 use crate::linalg::vector::{axpy, dot, norm, norm_max};
 use crate::qp::coarse::Coarse;
-use crate::qp::conjugate::Conjugate;
+use crate::qp::proportioning::conjugate::Conjugate;
 use crate::qp::{Counts, Qp};
 
 pub struct Iterate<'a> {

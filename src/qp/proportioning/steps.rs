@@ -1,9 +1,9 @@
-//! The three steps: conjugate gradients on the face, expansion of the active set, release from it: P3 to P12 of docs/method.md.
+//! The three steps: conjugate gradients on the face, expansion of the active set, the proportioning step: P3 to P12 of docs/method.md.
 
 use crate::error::Result;
 use crate::linalg::vector::{axpy, dot, norm};
-use crate::qp::iterate::Iterate;
 use crate::qp::projection::project;
+use crate::qp::proportioning::iterate::Iterate;
 
 /// Curvature below this fraction of L counts as none.
 const SINGULAR: f64 = 1e-11;
@@ -205,8 +205,8 @@ impl Iterate<'_> {
 
     /// P9, and P10 after a cut or where P9 does not lead down: the active rows that pull leave the active set. `small` is the length of a projected gradient that counts
     /// as zero.
-    pub fn release(&mut self, small: f64) -> Result<Step> {
-        let step = if std::mem::take(&mut self.cuts) > 0 { None } else { self.release_pulling(small)? };
+    pub fn proportion(&mut self, small: f64) -> Result<Step> {
+        let step = if std::mem::take(&mut self.cuts) > 0 { None } else { self.free_pulling(small)? };
         let step = step.map_or_else(|| self.project_gradient(small), Ok)?;
         self.counts.releases += usize::from(matches!(step, Step::Release));
         self.settle()?;
@@ -216,7 +216,7 @@ impl Iterate<'_> {
     /// P9: all rows with a negative multiplier leave the active set, and the face is explored with them: where the
     /// direction presses some of them on, it is projected. `None`, and nothing done, where it does not lead down:
     /// always where `G x = e` leaves no motion on that face, whose gradient is `small` then.
-    fn release_pulling(&mut self, small: f64) -> Result<Option<Step>> {
+    fn free_pulling(&mut self, small: f64) -> Result<Option<Step>> {
         let before = self.active.clone();
         (0..before.len()).for_each(|i| self.active[i] &= self.chopped[i] == 0.0);
         self.split_on_face()?;

@@ -4,7 +4,7 @@
 use crate::error::Result;
 use crate::linalg::vector::{axpy, norm};
 use crate::qp::coarse::Coarse;
-use crate::qp::mprgp::Hessian;
+use crate::qp::smalbe::mprgp::Hessian;
 use crate::qp::{Counts, Qp};
 
 /// rho in units of lambda_max(P A P).
@@ -134,7 +134,7 @@ impl Hessian for Augmented<'_> {
 }
 
 /// A fixed sequence of numbers in [-1/2, 1/2).
-pub(super) fn scattered(m: usize) -> Vec<f64> {
+pub fn scattered(m: usize) -> Vec<f64> {
     let mut state = 0x9e37_79b9_7f4a_7c15_u64;
     let mut next = || {
         state ^= state << 13;

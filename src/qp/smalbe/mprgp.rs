@@ -82,7 +82,7 @@ impl<'a> Bounded<'a> {
         if self.is_proportional(rule) {
             self.explore(hessian, rule)
         } else {
-            self.release(hessian, rule)
+            self.proportion(hessian, rule)
         }
     }
 
@@ -118,8 +118,8 @@ impl<'a> Bounded<'a> {
         Ok(Move::Expansion)
     }
 
-    /// The exact minimum along the chopped gradient: rows leave the active set.
-    fn release(&mut self, hessian: &mut dyn Hessian, rule: &Rule) -> Result<Move> {
+    /// The proportioning step, the exact minimum along the chopped gradient: rows leave the active set.
+    fn proportion(&mut self, hessian: &mut dyn Hessian, rule: &Rule) -> Result<Move> {
         let p = self.chopped.clone();
         let image = hessian.product(&p)?;
         let t = self.minimum_along(&p, &image, rule);

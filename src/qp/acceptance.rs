@@ -1,0 +1,106 @@
+//! The acceptance test, which has the last word on a point, and what a run tells: its steps, its end.
+
+use crate::error::{Error, Kind, Result};
+use crate::qp::Counts;
+
+/// When to stop.
+#[derive(Debug, Clone, Copy)]
+pub struct Limits {
+    /// The projected gradient is small at `tolerance` x the scale of the judge.
+    pub tolerance: f64,
+    /// Gamma > 0 of the proportionality test, no unit.
+    pub gamma: f64,
+    pub steps: usize,
+}
+
+/// The acceptance test. Knows what the numbers mean: gives the length the residual is measured against, and the last word.
+pub trait Judge {
+    /// Scale of the gaps at the point x with multiplier alpha.
+    fn scale(&mut self, x: &[f64], alpha: &[f64]) -> Result<f64>;
+    /// Whether the answer recovered from (x, alpha) passes its certificate.
+    fn accepts(&mut self, x: &[f64], alpha: &[f64]) -> Result<bool>;
+    /// How many times too large what the last point was refused for is; not known to one who does not ask.
+    fn missed(&self) -> Option<f64> {
+        None
+    }
+    /// A solution that was not accepted, mended by better data than A and b until it is; none where that fails.
+    fn mended(&mut self, _: &Solution) -> Result<Option<Solution>> {
+        Ok(None)
+    }
+    /// The scale without any travel, at the point accepted last; not known before, or to one who does not ask.
+    fn length(&self) -> Option<f64> {
+        None
+    }
+}
+
+/// Sees every step; an error ends the run, with the point reached where it says `Cancelled` or `TimeOver`.
+pub trait Observer {
+    fn step(&mut self, now: &Progress) -> Result<()>;
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum StepKind {
+    ConjugateGradient,
+    Expansion,
+    /// The proportioning step: rows leave the active set.
+    Release,
+}
+
+/// Where the method stands after a step.
+pub struct Progress<'a> {
+    pub kind: StepKind,
+    pub counts: &'a Counts,
+    pub active: &'a [bool],
+    pub theta: f64,
+    /// Norms of `g^P`, of its parts `g^I` (22) and `g^C` (23), and the norm that counts as zero.
+    pub residual: f64,
+    pub free: f64,
+    pub chopped: f64,
+    pub small: f64,
+}
+
+#[derive(Debug, Clone, PartialEq)]
+pub enum Verdict {
+    /// The judge accepted the answer.
+    Solved,
+    StepLimit,
+    TimeLimit,
+    Cancelled,
+    /// theta no longer decreases, and the judge does not accept.
+    Stalled,
+    /// The residual is as small as asked, eight times over, and the judge does not accept.
+    Inaccurate,
+    /// No x >= 0 was found with `G x = e`; that of the solution comes nearest, `direction = e - G x`. Where G resists it
+    /// nowhere, `G_i'direction <= 0` (`= 0` where x_i is free), it proves that there is none; `margin = |direction| / |e|`.
+    Infeasible {
+        direction: Vec<f64>,
+        margin: f64,
+    },
+    /// theta falls without end along `-p`.
+    Unbounded {
+        p: Vec<f64>,
+    },
+}
+
+impl Verdict {
+    /// How a run ends that observer or operator would not let go on.
+    pub fn of_refusal(error: Error) -> Result<Self> {
+        match error.kind {
+            Kind::Cancelled => Ok(Self::Cancelled),
+            Kind::TimeOver => Ok(Self::TimeLimit),
+            _ => Err(error),
+        }
+    }
+}
+
+#[derive(Debug, Clone)]
+pub struct Solution {
+    pub x: Vec<f64>,
+    pub alpha: Vec<f64>,
+    /// Dimension of the part of alpha that the free rows leave undetermined.
+    pub undetermined: usize,
+    /// What the judge measured the residual against.
+    pub scale: f64,
+    pub verdict: Verdict,
+    pub counts: Counts,
+}

@@ -1,0 +1,195 @@
+//! Proportioning on the dual polyhedron: Algorithm 1 kept on the true feasible set of (12) instead of behind
+//! an augmented Lagrangian. No penalty, no estimate of a norm, no parameter with a unit. Step by step: docs/method.md, whose tags
+//! the comments here and in `steps` name.
+//!
+//! | module | does |
+//! |---|---|
+//! | `balance` | first point where none is near: can `G l = e` hold? |
+//! | `iterate` | point, gradient, face |
+//! | `steps`, `conjugate` | conjugate gradients, expansion, proportioning step; the directions kept |
+//! | `stop` | when the residual is small enough |
+
+mod balance;
+mod conjugate;
+mod iterate;
+mod steps;
+mod stop;
+
+use crate::error::Result;
+use crate::linalg::vector::norm;
+use crate::qp::coarse::Coarse;
+use crate::qp::projection::project;
+use crate::qp::{Counts, Judge, Limits, Observer, Progress, Qp, Solution, StepKind, Verdict};
+use balance::{balance, Balance};
+use iterate::Iterate;
+use steps::Step;
+
+pub use balance::weighted;
+pub use conjugate::MOST as KEPT;
+pub use stop::Stop;
+
+/// What no x balances of e is rounding of e where it is less than this part of it.
+const ROUNDING: f64 = 1e-12;
+/// Forces of a start that move so many times as far as loads and gaps are not worth while.
+const FAR_OFF: f64 = 1e3;
+
+pub fn minimise(
+    qp: Qp,
+    start: &[f64],
+    limits: Limits,
+    judge: &mut dyn Judge,
+    observer: &mut dyn Observer,
+) -> Result<Solution> {
+    let mut coarse = Coarse::new(qp.g_transposed, qp.rounding)?;
+    let first = match first_point(&qp, &mut coarse, start)? {
+        Some(first) => first,
+        // S6.2
+        None => {
+            let found = balance(&qp, &mut coarse)?;
+            if found.margin > ROUNDING {
+                return Ok(infeasible(&qp, &coarse, found));
+            }
+            found.point
+        }
+    };
+    // S6.3
+    let mut it = Iterate::new(qp, coarse, first)?;
+    if start.iter().any(|x| *x != 0.0) && it.is_far_off() {
+        if let Some(cold) = project(&qp, &mut it.coarse, &vec![0.0; start.len()], &vec![false; start.len()])?
+        {
+            it.x = cold.point;
+            it.refresh()?;
+        }
+    }
+    proportioning(it, limits, judge, observer)
+}
+
+/// The verdict where no x balances e, for a method that does not ask.
+pub fn not_held(qp: &Qp, start: &[f64]) -> Result<Option<Solution>> {
+    let mut coarse = Coarse::new(qp.g_transposed, qp.rounding)?;
+    if first_point(qp, &mut coarse, start)?.is_some() {
+        return Ok(None);
+    }
+    let found = balance(qp, &mut coarse)?;
+    Ok((found.margin > ROUNDING).then(|| infeasible(qp, &coarse, found)))
+}
+
+fn infeasible(qp: &Qp, coarse: &Coarse, found: Balance) -> Solution {
+    let (coarse_solves, coarse_factorisations) = (coarse.solves, coarse.factorisations);
+    let counts = Counts { coarse_solves, coarse_factorisations, ..Counts::default() };
+    let verdict = Verdict::Infeasible { direction: found.residual, margin: found.margin };
+    Solution { x: found.point, alpha: vec![0.0; qp.e.len()], undetermined: 0, scale: 0.0, verdict, counts }
+}
+
+/// S6.1: the feasible point nearest to `start`: on the face of its zeros, the active set it brings along, where that
+/// face has one.
+fn first_point(qp: &Qp, coarse: &mut Coarse, start: &[f64]) -> Result<Option<Vec<f64>>> {
+    if start.iter().any(|x| *x != 0.0) {
+        let zeros = qp.at_bound(start);
+        if let Some(first) = project(qp, coarse, start, &zeros)? {
+            return Ok(Some(first.point));
+        }
+    }
+    let none = vec![false; start.len()];
+    Ok(project(qp, coarse, start, &none)?.map(|first| first.point))
+}
+
+fn proportioning(
+    mut it: Iterate,
+    limits: Limits,
+    judge: &mut dyn Judge,
+    observer: &mut dyn Observer,
+) -> Result<Solution> {
+    // S7
+    let scale = judge.scale(&it.x, &it.alpha)?;
+    let stop = Stop::new(limits.tolerance * scale);
+    let verdict = run(&mut it, stop, limits, judge, observer).or_else(Verdict::of_refusal)?;
+    it.counts.coarse_solves = it.coarse.solves;
+    it.counts.coarse_factorisations = it.coarse.factorisations;
+    Ok(Solution {
+        undetermined: it.coarse.deficiency(),
+        scale,
+        x: it.x,
+        alpha: it.alpha,
+        verdict,
+        counts: it.counts,
+    })
+}
+
+fn run(
+    it: &mut Iterate,
+    mut stop: Stop,
+    limits: Limits,
+    judge: &mut dyn Judge,
+    observer: &mut dyn Observer,
+) -> Result<Verdict> {
+    loop {
+        // P1 of docs/method.md: the stop
+        let small = stop.residual + stop.noise * it.noise();
+        if it.residual() <= small || stop.plateau(it) {
+            it.rebalance()?;
+            if judge.accepts(&it.x, &it.alpha)? {
+                if !stop.refine(limits.tolerance, judge.length()) {
+                    return Ok(Verdict::Solved);
+                }
+                continue;
+            }
+            if stop.tighten_by(judge.missed()) {
+                continue;
+            }
+            it.refresh()?;
+            if it.residual() <= small || stop.plateau(it) {
+                match stop.tighten(judge.accepts(&it.x, &it.alpha)?) {
+                    Some(verdict) => return Ok(verdict),
+                    None => continue,
+                }
+            }
+        }
+        // P2: the face is explored (P3 to P8), or rows leave the active set, the proportioning step (P9 to P11)
+        let step = if it.is_proportional(limits.gamma) { it.explore()? } else { it.proportion(small)? };
+        // P12, and P10 at a degenerate vertex
+        let kind = match step {
+            Step::Vertex { alpha } => {
+                if let Some(verdict) = stop.tighten(judge.accepts(&it.x, &alpha)?) {
+                    it.alpha = alpha;
+                    return Ok(verdict);
+                }
+                StepKind::Release
+            }
+            Step::Unbounded { .. } | Step::Stuck if judge.accepts(&it.x, &it.alpha)? => {
+                return Ok(Verdict::Solved);
+            }
+            Step::Unbounded { p } => return Ok(Verdict::Unbounded { p }),
+            Step::Stuck => return Ok(Verdict::Stalled),
+            Step::ConjugateGradient => StepKind::ConjugateGradient,
+            Step::Expansion => StepKind::Expansion,
+            Step::Release => StepKind::Release,
+        };
+        observer.step(&it.progress(kind, small))?;
+        if it.counts.steps() >= limits.steps {
+            return Ok(Verdict::StepLimit);
+        }
+    }
+}
+
+impl Iterate<'_> {
+    /// The forces move everything so much farther than loads and gaps do that they belong to other loads: what they would leave
+    /// by rounding is much for these.
+    fn is_far_off(&self) -> bool {
+        let image: Vec<f64> = self.g.iter().zip(self.qp.b).map(|(g, b)| g + b).collect();
+        norm(&image) > FAR_OFF * norm(self.qp.b)
+    }
+
+    fn progress(&self, kind: StepKind, small: f64) -> Progress<'_> {
+        Progress {
+            kind,
+            counts: &self.counts,
+            active: &self.active,
+            theta: self.theta(),
+            residual: self.residual(),
+            free: norm(&self.free),
+            chopped: norm(&self.chopped),
+            small,
+        }
+    }
+}
