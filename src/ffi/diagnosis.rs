@@ -1,14 +1,11 @@
 //! Why there is no solution, and what an answer leaves open.
 
-use super::arrays::{count, Output};
-use super::body::body_of_order;
-use super::call::call;
-use super::guard::enter;
-use super::record::Target;
-use super::rows::row_kind;
-use super::status::{of_kind, of_outcome};
-use super::types::{feti_findings, feti_problem, FETI_EQUALITY, FETI_INEQUALITY};
 use crate::error::Result;
+use crate::ffi::bodies::body_of_order;
+use crate::ffi::boundary::{call, count, enter, Output, Target};
+use crate::ffi::header::status::{of_kind, of_outcome};
+use crate::ffi::header::types::{feti_findings, feti_problem, FETI_EQUALITY, FETI_INEQUALITY};
+use crate::ffi::rows::row_kind;
 use crate::solver::{Findings, RowKind};
 
 /// What the last solve, or the last setup that failed, has found out about the problem.

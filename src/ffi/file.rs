@@ -2,10 +2,8 @@
 
 use std::ffi::c_char;
 
-use super::arrays::file_path;
-use super::call::call;
-use super::guard::enter;
-use super::types::feti_problem;
+use crate::ffi::boundary::{call, enter, file_path};
+use crate::ffi::header::types::feti_problem;
 
 /// Writes all that the host has registered to one file: a bug report is a file.
 ///

@@ -2,14 +2,13 @@
 
 use std::ffi::{c_void, CString};
 
-use super::call::call;
-use super::fpu;
-use super::guard::enter;
-use super::progress::User;
-use super::types::{
+use crate::error::{Error, Result};
+use crate::ffi::boundary::fpu;
+use crate::ffi::boundary::{call, enter};
+use crate::ffi::header::types::{
     feti_log_fn, feti_problem, FETI_LOG_NONE, FETI_LOG_PHASE, FETI_LOG_RESULT, FETI_LOG_STEP,
 };
-use crate::error::{Error, Result};
+use crate::ffi::progress::User;
 use crate::solver::{LogLevel, LogListener};
 
 /// Names the function that gets what setups and solves tell in words.

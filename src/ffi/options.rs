@@ -3,12 +3,11 @@
 use std::ffi::c_char;
 use std::ptr;
 
-use super::arrays::{check_text_room, copy_text, text, Output};
-use super::call::call;
-use super::guard::{enter, without_problem};
-use super::record::Target;
-use super::types::{feti_option, feti_problem, FETI_OPTION_F64, FETI_OPTION_I64, FETI_OPTION_STR};
 use crate::error::Error;
+use crate::ffi::boundary::{call, check_text_room, copy_text, enter, text, without_problem, Output, Target};
+use crate::ffi::header::types::{
+    feti_option, feti_problem, FETI_OPTION_F64, FETI_OPTION_I64, FETI_OPTION_STR,
+};
 use crate::solver::{options, OptionInfo, OptionValue};
 
 /// Sets an option that is a number.

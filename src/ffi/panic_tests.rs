@@ -2,11 +2,10 @@
 
 use std::ptr::{null, null_mut};
 
-use super::call::call;
-use super::guard::{enter, enter_with_status, without_problem};
 use super::tests::{assert_all, last_detail, last_error, string, Owned};
 use super::*;
 use crate::error::Result;
+use crate::ffi::boundary::{call, enter, enter_with_status, without_problem};
 use crate::platform::threads::{run as run_on_pool, run_heard, Tasks};
 use crate::solver::{Listener, Reply};
 

@@ -1,11 +1,8 @@
 //! Where the time of a call went, and the memory that is kept.
 
-use super::arrays::Output;
-use super::call::call;
-use super::guard::enter;
-use super::record::Target;
-use super::types::{feti_phase, feti_problem};
 use crate::error::Error;
+use crate::ffi::boundary::{call, enter, Output, Target};
+use crate::ffi::header::types::{feti_phase, feti_problem};
 
 /// Number of phases of a setup and a solve.
 ///

@@ -3,13 +3,11 @@
 use std::ffi::c_char;
 use std::ptr;
 
-use super::arrays::{check_text_room, copy_text, left, Output};
-use super::call::call;
-use super::fpu;
-use super::guard::{caught, refuse, without_problem};
-use super::handle::{self, Refusal};
-use super::status::{FETI_MEMORY, FETI_OK};
-use super::types::feti_problem;
+use crate::ffi::boundary::fpu;
+use crate::ffi::boundary::handle::{self, Refusal};
+use crate::ffi::boundary::{call, caught, check_text_room, copy_text, left, refuse, without_problem, Output};
+use crate::ffi::header::status::{FETI_MEMORY, FETI_OK};
+use crate::ffi::header::types::feti_problem;
 use crate::solver::Problem;
 
 /// Bytes of a problem without bodies, its place in the registry, and what the library keeps from its first call on, and more.

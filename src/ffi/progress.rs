@@ -2,12 +2,11 @@
 
 use std::ffi::c_void;
 
-use super::call::call;
-use super::fpu;
-use super::guard::{enter, refuse};
-use super::handle::{self, Refusal};
-use super::status::FETI_OK;
-use super::types::{
+use crate::ffi::boundary::fpu;
+use crate::ffi::boundary::handle::{self, Refusal};
+use crate::ffi::boundary::{call, enter, refuse};
+use crate::ffi::header::status::FETI_OK;
+use crate::ffi::header::types::{
     feti_problem, feti_progress, feti_progress_fn, FETI_PHASE_SETUP, FETI_PHASE_SOLVE,
     FETI_STEP_CONJUGATE_GRADIENT, FETI_STEP_EXPANSION, FETI_STEP_RELEASE,
 };

@@ -1,12 +1,12 @@
 //! The answer of the last solve, and the size of the problem.
 
-use super::arrays::{id, reserved, same, zeros, Output};
-use super::body::{body_of_order, whole};
-use super::call::call;
-use super::guard::enter;
-use super::rows::row_kind;
-use super::types::{feti_problem, FETI_ALL, FETI_ROW_CLOSED, FETI_ROW_OPEN, FETI_ROW_UNKNOWN, FETI_ROW_WEAK};
 use crate::error::Result;
+use crate::ffi::bodies::{body_of_order, whole};
+use crate::ffi::boundary::{call, enter, id, reserved, same, zeros, Output};
+use crate::ffi::header::types::{
+    feti_problem, FETI_ALL, FETI_ROW_CLOSED, FETI_ROW_OPEN, FETI_ROW_UNKNOWN, FETI_ROW_WEAK,
+};
+use crate::ffi::rows::row_kind;
 use crate::solver::RowState;
 
 /// Reads the displacement of a body.

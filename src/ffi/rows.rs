@@ -1,11 +1,10 @@
 //! Rows of `B u <= c` and `H u = h`, numbered per kind from 0.
 
-use super::arrays::{count, id, input, input_or_none, Output};
-use super::call::{call, Call};
-use super::guard::enter;
-use super::indices::{base, numbers, pointers, Index};
-use super::types::{feti_problem, FETI_EQUALITY, FETI_INEQUALITY};
 use crate::error::{Error, Result};
+use crate::ffi::boundary::{
+    base, call, count, enter, id, input, input_or_none, numbers, pointers, Call, Index, Output,
+};
+use crate::ffi::header::types::{feti_problem, FETI_EQUALITY, FETI_INEQUALITY};
 use crate::solver::{RowKind, RowsInput};
 
 /// Adds rows of `B u <= c` or `H u = h`, with 32-bit indices.

@@ -1,11 +1,8 @@
 //! Setup, solve, and the verdict on an answer.
 
-use super::arrays::{finite_input, same};
-use super::call::call;
-use super::guard::{enter, enter_with_status};
-use super::record::Target;
-use super::status::of_outcome;
-use super::types::{feti_certificate, feti_info, feti_problem};
+use crate::ffi::boundary::{call, enter, enter_with_status, finite_input, same, Target};
+use crate::ffi::header::status::of_outcome;
+use crate::ffi::header::types::{feti_certificate, feti_info, feti_problem};
 use crate::solver::{Certificate, Report, Sizes};
 
 /// Prepares the solve: null spaces, factors of the bodies, the dual operator.

@@ -1,10 +1,8 @@
 //! Start values, and states of a problem to come back to.
 
-use super::arrays::{id, input, same, Output};
-use super::call::call;
-use super::guard::enter;
-use super::rows::row_kind;
-use super::types::feti_problem;
+use crate::ffi::boundary::{call, enter, id, input, same, Output};
+use crate::ffi::header::types::feti_problem;
+use crate::ffi::rows::row_kind;
 use crate::solver::RowKind;
 
 /// Gives start values for the next solve.

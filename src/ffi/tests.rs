@@ -5,9 +5,8 @@ use std::ffi::{c_char, CStr};
 use std::ptr::null_mut;
 use std::sync::mpsc;
 
-use super::call::call;
-use super::guard::enter;
 use super::*;
+use crate::ffi::boundary::{call, enter, handle};
 
 mod table;
 use table::{statuses, SOURCES};

@@ -1,12 +1,12 @@
 //! The operators of the method, for comparison with other codes: contact rows first, then equality rows, in the host's
 //! order and scaling.
 
-use super::arrays::{check_finite, column_major, count, finite_input, input, same, zeros, Output};
-use super::body::body_of_order;
-use super::call::call;
-use super::guard::enter;
-use super::types::feti_problem;
 use crate::error::Result;
+use crate::ffi::bodies::body_of_order;
+use crate::ffi::boundary::{
+    call, check_finite, column_major, count, enter, finite_input, input, same, zeros, Output,
+};
+use crate::ffi::header::types::feti_problem;
 use crate::solver::Problem;
 
 /// Applies the generalised inverse of a body, `Y = K+ X`.

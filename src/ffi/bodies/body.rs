@@ -1,10 +1,8 @@
 //! Bodies: their size, coordinates and load.
 
-use super::arrays::{column_major, count, id, input, same, Output};
-use super::call::call;
-use super::guard::enter;
-use super::types::{feti_problem, FETI_ALL};
 use crate::error::{Error, Result};
+use crate::ffi::boundary::{call, column_major, count, enter, id, input, same, Output};
+use crate::ffi::header::types::{feti_problem, FETI_ALL};
 use crate::solver::Problem;
 
 /// Adds a body with `n` unknowns.
@@ -105,14 +103,14 @@ pub unsafe extern "C" fn feti_body_load(p: *mut feti_problem, body: i64, n: i64,
 }
 
 /// The length of an array over the unknowns of all bodies.
-pub(super) fn whole(problem: &Problem, n: i64) -> Result<usize> {
+pub(in crate::ffi) fn whole(problem: &Problem, n: i64) -> Result<usize> {
     let n = count(n, "n")?;
     problem.check_whole(n)?;
     Ok(n)
 }
 
 /// The body and its number of unknowns, which `n` must be: no array is read with a wrong length.
-pub(super) fn body_of_order(problem: &Problem, body: i64, n: i64) -> Result<(usize, usize)> {
+pub(in crate::ffi) fn body_of_order(problem: &Problem, body: i64, n: i64) -> Result<(usize, usize)> {
     let body = id(body, "body")?;
     let order = problem.order(body)?;
     same(n, order, "n", "the number of unknowns of the body is").map_err(|error| error.body(body))?;

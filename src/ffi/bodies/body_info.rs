@@ -1,11 +1,8 @@
 //! What the library knows about a body.
 
-use super::arrays::{id, Output};
-use super::body::body_of_order;
-use super::call::call;
-use super::guard::enter;
-use super::record::Target;
-use super::types::{
+use crate::ffi::bodies::body::body_of_order;
+use crate::ffi::boundary::{call, enter, id, Output, Target};
+use crate::ffi::header::types::{
     feti_body_facts, feti_problem, FETI_ORIGIN_CANDIDATES, FETI_ORIGIN_COORDINATES, FETI_ORIGIN_EXACT,
     FETI_ORIGIN_FOUND,
 };

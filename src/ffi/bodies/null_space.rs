@@ -1,12 +1,9 @@
 //! Null spaces of the bodies: the columns of R span all u with K u = 0.
 
-use super::arrays::{column_major, count, id, input, reserved, same, Output};
-use super::body::body_of_order;
-use super::call::call;
-use super::guard::enter;
-use super::indices::numbers;
-use super::types::{feti_problem, FETI_CANDIDATES, FETI_EXACT};
 use crate::error::{Error, Result};
+use crate::ffi::bodies::body::body_of_order;
+use crate::ffi::boundary::{call, column_major, count, enter, id, input, numbers, reserved, same, Output};
+use crate::ffi::header::types::{feti_problem, FETI_CANDIDATES, FETI_EXACT};
 use crate::solver::Modes;
 
 /// Gives a basis of the null space of a body, or candidates for it.

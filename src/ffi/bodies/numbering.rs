@@ -1,10 +1,8 @@
 //! The host's own numbers of the unknowns.
 
-use super::body::body_of_order;
-use super::call::{call, Call};
-use super::guard::enter;
-use super::indices::{base, numbers, Index};
-use super::types::feti_problem;
+use crate::ffi::bodies::body::body_of_order;
+use crate::ffi::boundary::{base, call, enter, numbers, Call, Index};
+use crate::ffi::header::types::feti_problem;
 
 /// Gives the host's own numbers of the unknowns of a body, with 32-bit integers.
 ///

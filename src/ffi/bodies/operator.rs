@@ -3,15 +3,13 @@
 use std::ffi::c_void;
 use std::sync::Arc;
 
-use super::arrays::input;
-use super::body::body_of_order;
-use super::call::call;
-use super::fpu::Environment;
-use super::guard::enter;
-use super::handle;
-use super::progress::User;
-use super::types::{feti_operator_fn, feti_problem};
 use crate::error::{Error, Kind, Result};
+use crate::ffi::bodies::body::body_of_order;
+use crate::ffi::boundary::fpu::Environment;
+use crate::ffi::boundary::handle;
+use crate::ffi::boundary::{call, enter, input};
+use crate::ffi::header::types::{feti_operator_fn, feti_problem};
+use crate::ffi::progress::User;
 use crate::solver::{HostFunctions, HostProduct};
 
 /// Names the functions of the host that multiply by the stiffness K of a body and by a generalised inverse K+ of it.

@@ -1,12 +1,11 @@
 //! Stiffness matrices of bodies: by rows, with a diagonal of their own, dense.
 
-use super::arrays::{borrowed, column_major, input};
-use super::body::body_of_order;
-use super::call::{call, Call};
-use super::guard::enter;
-use super::indices::{base, numbers, pointers, Index};
-use super::types::{feti_problem, FETI_BORROW, FETI_COPY, FETI_FULL, FETI_LOWER, FETI_UPPER};
 use crate::error::{Error, Result};
+use crate::ffi::bodies::body::body_of_order;
+use crate::ffi::boundary::{
+    base, borrowed, call, column_major, enter, input, numbers, pointers, Call, Index,
+};
+use crate::ffi::header::types::{feti_problem, FETI_BORROW, FETI_COPY, FETI_FULL, FETI_LOWER, FETI_UPPER};
 use crate::solver::{Columns, Problem, SparseInput, Storage};
 
 /// Gives the stiffness matrix K of a body by rows, with 32-bit indices.

@@ -1,10 +1,8 @@
 //! New values of stiffness matrices whose pattern stays.
 
-use super::arrays::{borrowed, column_major, id, input, same};
-use super::body::body_of_order;
-use super::call::call;
-use super::guard::enter;
-use super::types::feti_problem;
+use crate::ffi::bodies::body::body_of_order;
+use crate::ffi::boundary::{borrowed, call, column_major, enter, id, input, same};
+use crate::ffi::header::types::feti_problem;
 
 /// Gives new values of a stiffness matrix on the pattern it was given with by feti_body_stiffness_i32 or _i64.
 ///

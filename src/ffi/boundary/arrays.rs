@@ -9,7 +9,7 @@ use crate::error::{Error, Kind, Result};
 use crate::solver::Borrowed;
 
 /// A size: not negative, and an array of as many 8-byte numbers can exist.
-pub(super) fn count(value: i64, name: &'static str) -> Result<usize> {
+pub fn count(value: i64, name: &'static str) -> Result<usize> {
     let largest = isize::MAX as usize / 8;
     match usize::try_from(value) {
         Ok(count) if count <= largest => Ok(count),
@@ -21,13 +21,13 @@ pub(super) fn count(value: i64, name: &'static str) -> Result<usize> {
 }
 
 /// A number of a body or row, counted from 0.
-pub(super) fn id(value: i64, name: &'static str) -> Result<usize> {
+pub fn id(value: i64, name: &'static str) -> Result<usize> {
     usize::try_from(value)
         .map_err(|_| Error::argument(name, format!("{name} is below the first number")).index(value))
 }
 
 /// A size that is known: "n is 5, the body has 7".
-pub(super) fn same(value: i64, expected: usize, name: &'static str, what: &str) -> Result<usize> {
+pub fn same(value: i64, expected: usize, name: &'static str, what: &str) -> Result<usize> {
     if usize::try_from(value) == Ok(expected) {
         return Ok(expected);
     }
@@ -36,12 +36,7 @@ pub(super) fn same(value: i64, expected: usize, name: &'static str, what: &str) 
 }
 
 /// Entries of a column-major array of `rows` x `columns` with leading dimension `ld`: ld (columns - 1) + rows.
-pub(super) fn column_major(
-    rows: usize,
-    columns: usize,
-    ld: i64,
-    name: &'static str,
-) -> Result<(usize, usize)> {
+pub fn column_major(rows: usize, columns: usize, ld: i64, name: &'static str) -> Result<(usize, usize)> {
     let ld = count(ld, name)?;
     if ld < rows {
         let text = format!("leading dimension {ld} is less than the {rows} rows");
@@ -60,7 +55,7 @@ pub(super) fn column_major(
 }
 
 /// An empty vector with room for `len` entries.
-pub(super) fn reserved<T>(len: usize) -> Result<Vec<T>> {
+pub fn reserved<T>(len: usize) -> Result<Vec<T>> {
     let mut room = Vec::new();
     room.try_reserve_exact(len).map_err(|_| {
         let bytes = len.saturating_mul(size_of::<T>());
@@ -70,7 +65,7 @@ pub(super) fn reserved<T>(len: usize) -> Result<Vec<T>> {
 }
 
 /// True when so many bytes are left: for small things, at whose failed allocation Rust would end the process.
-pub(super) fn left(bytes: usize) -> bool {
+pub fn left(bytes: usize) -> bool {
     let mut room = Vec::<u8>::new();
     let left = room.try_reserve_exact(bytes).is_ok();
     std::hint::black_box(room);
@@ -78,7 +73,7 @@ pub(super) fn left(bytes: usize) -> bool {
 }
 
 /// `len` zeros.
-pub(super) fn zeros(len: usize) -> Result<Vec<f64>> {
+pub fn zeros(len: usize) -> Result<Vec<f64>> {
     let mut zeros = reserved(len)?;
     zeros.resize(len, 0.0);
     Ok(zeros)
@@ -98,7 +93,7 @@ fn check_pointer<T>(from: *const T, name: &'static str) -> Result<()> {
 ///
 /// # Safety
 /// `from` leads to `len` numbers that nobody writes to during the call.
-pub(super) unsafe fn input<'a, T>(from: *const T, len: usize, name: &'static str) -> Result<&'a [T]> {
+pub unsafe fn input<'a, T>(from: *const T, len: usize, name: &'static str) -> Result<&'a [T]> {
     if len == 0 {
         return Ok(&[]);
     }
@@ -111,7 +106,7 @@ pub(super) unsafe fn input<'a, T>(from: *const T, len: usize, name: &'static str
 ///
 /// # Safety
 /// As for [`input`].
-pub(super) unsafe fn finite_input<'a>(from: *const f64, len: usize, name: &'static str) -> Result<&'a [f64]> {
+pub unsafe fn finite_input<'a>(from: *const f64, len: usize, name: &'static str) -> Result<&'a [f64]> {
     // SAFETY: by the caller's word.
     let values = unsafe { input(from, len, name) }?;
     check_finite(values, 0, name)?;
@@ -119,7 +114,7 @@ pub(super) unsafe fn finite_input<'a>(from: *const f64, len: usize, name: &'stat
 }
 
 /// `values` are the entries from `start` on of the array `name`.
-pub(super) fn check_finite(values: &[f64], start: usize, name: &'static str) -> Result<()> {
+pub fn check_finite(values: &[f64], start: usize, name: &'static str) -> Result<()> {
     match values.iter().position(|value| !value.is_finite()) {
         None => Ok(()),
         Some(at) => Err(Error::argument(name, "the entry is not a finite number").entry(start + at)),
@@ -130,7 +125,7 @@ pub(super) fn check_finite(values: &[f64], start: usize, name: &'static str) -> 
 ///
 /// # Safety
 /// As for [`input`].
-pub(super) unsafe fn input_or_none<'a, T>(
+pub unsafe fn input_or_none<'a, T>(
     from: *const T,
     len: usize,
     name: &'static str,
@@ -146,7 +141,7 @@ pub(super) unsafe fn input_or_none<'a, T>(
 ///
 /// # Safety
 /// `from` leads to `len` numbers that stay as long as the result and its copies, and that nobody writes to during a call.
-pub(super) unsafe fn borrowed<T>(from: *const T, len: usize, name: &'static str) -> Result<Borrowed<T>> {
+pub unsafe fn borrowed<T>(from: *const T, len: usize, name: &'static str) -> Result<Borrowed<T>> {
     check_pointer(from, name)?;
     let start = NonNull::new(from.cast_mut()).ok_or_else(|| Error::argument(name, "NULL"))?;
     // SAFETY: not NULL, aligned, and `len` numbers by the caller's word.
@@ -154,7 +149,7 @@ pub(super) unsafe fn borrowed<T>(from: *const T, len: usize, name: &'static str)
 }
 
 /// Where the host wants a result; NULL-able outputs drop it.
-pub(super) struct Output<T> {
+pub struct Output<T> {
     to: *mut T,
     len: usize,
 }
@@ -198,7 +193,7 @@ impl<T: Copy> Output<T> {
 ///
 /// # Safety
 /// `from` is NULL or NUL terminated.
-pub(super) unsafe fn text<'a>(from: *const c_char, name: &'static str) -> Result<&'a str> {
+pub unsafe fn text<'a>(from: *const c_char, name: &'static str) -> Result<&'a str> {
     if from.is_null() {
         return Err(Error::argument(name, "NULL"));
     }
@@ -214,7 +209,7 @@ pub(super) unsafe fn text<'a>(from: *const c_char, name: &'static str) -> Result
 ///
 /// # Safety
 /// `from` is NULL or NUL terminated.
-pub(super) unsafe fn file_path<'a>(from: *const c_char, name: &'static str) -> Result<&'a Path> {
+pub unsafe fn file_path<'a>(from: *const c_char, name: &'static str) -> Result<&'a Path> {
     if from.is_null() {
         return Err(Error::argument(name, "NULL"));
     }
@@ -234,7 +229,7 @@ pub(super) unsafe fn file_path<'a>(from: *const c_char, name: &'static str) -> R
 }
 
 /// Room for a text: `cap` >= 0 characters, NULL only with 0.
-pub(super) fn check_text_room(buf: *const c_char, cap: i64) -> Result<()> {
+pub fn check_text_room(buf: *const c_char, cap: i64) -> Result<()> {
     if cap < 0 {
         return Err(Error::argument("cap", format!("{cap}: negative")).value(cap as f64));
     }
@@ -248,7 +243,7 @@ pub(super) fn check_text_room(buf: *const c_char, cap: i64) -> Result<()> {
 ///
 /// # Safety
 /// `buf` is NULL or has room for `cap` characters.
-pub(super) unsafe fn copy_text(text: &str, buf: *mut c_char, cap: i64) -> i64 {
+pub unsafe fn copy_text(text: &str, buf: *mut c_char, cap: i64) -> i64 {
     let room = usize::try_from(cap).unwrap_or(0);
     if !buf.is_null() && room > 0 {
         let len = text.floor_char_boundary(room - 1);

@@ -2,7 +2,7 @@
 
 /// An exported function and the names of its arguments, in order.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Call {
+pub struct Call {
     pub function: &'static str,
     pub arguments: &'static [&'static str],
 }
@@ -11,7 +11,7 @@ pub(super) struct Call {
 macro_rules! call {
     ($function:ident($($argument:ident),*)) => {{
         $(let _ = &$argument;)*
-        $crate::ffi::call::Call { function: stringify!($function), arguments: &[$(stringify!($argument)),*] }
+        $crate::ffi::boundary::Call { function: stringify!($function), arguments: &[$(stringify!($argument)),*] }
     }};
 }
-pub(super) use call;
+pub(crate) use call;

@@ -3,16 +3,16 @@
 use std::cell::RefCell;
 use std::ffi::c_char;
 
-use super::arrays;
-use super::call::Call;
-use super::record::Target;
-use super::status::{describe, of_kind, FETI_ARGUMENT, FETI_OK};
-use super::types::feti_error_detail;
 use crate::error::{Error, Place};
+use crate::ffi::boundary::arrays;
+use crate::ffi::boundary::call::Call;
+use crate::ffi::boundary::record::Target;
+use crate::ffi::header::status::{describe, of_kind, FETI_ARGUMENT, FETI_OK};
+use crate::ffi::header::types::feti_error_detail;
 
 /// A failed call.
 #[derive(Debug, Clone)]
-pub(super) struct Record {
+pub struct Record {
     pub status: i32,
     /// Position of the refused argument from 1, 0: none.
     argument: i32,

@@ -8,14 +8,14 @@ use std::cell::Cell;
 use std::sync::atomic::{AtomicU32, Ordering};
 
 /// Runs `work` with all traps masked, rounding to nearest, denormal numbers kept.
-pub(super) fn in_default_environment<T>(work: impl FnOnce() -> T) -> T {
+pub fn in_default_environment<T>(work: impl FnOnce() -> T) -> T {
     let _host = HostEnvironment::replace();
     apart(work)
 }
 
 /// Inside [`in_default_environment`]: runs a function of the host in the environment of the host. What it changes there
 /// is the host's from then on.
-pub(super) fn in_host_environment<T>(work: impl FnOnce() -> T) -> T {
+pub fn in_host_environment<T>(work: impl FnOnce() -> T) -> T {
     let _ours = DefaultEnvironment::suspend();
     apart(work)
 }
@@ -33,7 +33,7 @@ thread_local! {
 }
 
 /// The environment of the host in the call that runs on a problem, for its functions on threads of the library.
-pub(super) struct Environment {
+pub struct Environment {
     #[cfg(target_arch = "x86_64")]
     mxcsr: AtomicU32,
 }

@@ -6,24 +6,24 @@ use std::cell::{Cell, RefCell};
 use std::panic::{self, AssertUnwindSafe, PanicHookInfo};
 use std::sync::Once;
 
-use super::call::Call;
-use super::error_store::Record;
-use super::fpu;
-use super::handle::{self, Refusal};
-use super::status::{FETI_BUSY, FETI_HANDLE, FETI_INTERNAL, FETI_OK};
-use super::types::feti_problem;
 use crate::error::{Error, Kind, Result};
+use crate::ffi::boundary::call::Call;
+use crate::ffi::boundary::error_store::Record;
+use crate::ffi::boundary::fpu;
+use crate::ffi::boundary::handle::{self, Refusal};
+use crate::ffi::header::status::{FETI_BUSY, FETI_HANDLE, FETI_INTERNAL, FETI_OK};
+use crate::ffi::header::types::feti_problem;
 use crate::platform::instant;
 use crate::platform::threads::THREAD_NAME;
 use crate::solver::Problem;
 
 /// Runs `work` on the problem behind `p` and returns the status of the call.
-pub(super) fn enter(p: *mut feti_problem, call: Call, work: impl FnOnce(&mut Problem) -> Result<()>) -> i32 {
+pub fn enter(p: *mut feti_problem, call: Call, work: impl FnOnce(&mut Problem) -> Result<()>) -> i32 {
     enter_with_status(p, call, |problem| work(problem).map(|()| FETI_OK))
 }
 
 /// As [`enter`] for work that has a status of its own; one that is not FETI_OK is recorded like a failure.
-pub(super) fn enter_with_status(
+pub fn enter_with_status(
     p: *mut feti_problem,
     call: Call,
     work: impl FnOnce(&mut Problem) -> Result<i32>,
@@ -55,7 +55,7 @@ pub(super) fn enter_with_status(
 }
 
 /// Runs `work`, which needs no problem, and returns the status of the call.
-pub(super) fn without_problem(call: Call, work: impl FnOnce() -> Result<()>) -> i32 {
+pub fn without_problem(call: Call, work: impl FnOnce() -> Result<()>) -> i32 {
     fpu::in_default_environment(|| match caught(work) {
         Ok(()) => FETI_OK,
         Err(error) => publish(Record::of_error(call, &error)),
@@ -63,7 +63,7 @@ pub(super) fn without_problem(call: Call, work: impl FnOnce() -> Result<()>) -> 
 }
 
 /// The status of a problem that could not be taken. The problem's own last error stays: it belongs to another call.
-pub(super) fn refuse(call: Call, refusal: &Refusal) -> i32 {
+pub fn refuse(call: Call, refusal: &Refusal) -> i32 {
     let status = match refusal {
         Refusal::Gone => FETI_HANDLE,
         Refusal::Busy => FETI_BUSY,
@@ -102,7 +102,7 @@ impl Drop for Depth {
 }
 
 /// Runs `work`; a panic becomes an error of kind Internal. What `work` had under its hands must not be used afterwards.
-pub(super) fn caught<T>(work: impl FnOnce() -> Result<T>) -> Result<T> {
+pub fn caught<T>(work: impl FnOnce() -> Result<T>) -> Result<T> {
     install_hook();
     let outcome = {
         let _depth = Depth::enter();

@@ -4,23 +4,23 @@
 use std::collections::BTreeMap;
 use std::ptr;
 
-use super::error_store::Record;
-use super::fpu::Environment;
-use super::registry::{self, Registry};
-use super::sync::{Arc, AtomicUsize, RwLock};
-use super::types::feti_problem;
 use crate::error::{Error, Kind, Result};
+use crate::ffi::boundary::error_store::Record;
+use crate::ffi::boundary::fpu::Environment;
+use crate::ffi::boundary::registry::{self, Registry};
+use crate::ffi::boundary::sync::{Arc, AtomicUsize, RwLock};
+use crate::ffi::header::types::feti_problem;
 use crate::solver::Problem;
 
-pub(super) use super::registry::Refusal;
+pub use crate::ffi::boundary::registry::Refusal;
 
-pub(super) type Slot = registry::Slot<Problem, Record, Arc<Environment>>;
+pub type Slot = registry::Slot<Problem, Record, Arc<Environment>>;
 
 static PROBLEMS: Registry<Problem, Record, Arc<Environment>> =
     Registry { slots: RwLock::new(BTreeMap::new()), last: AtomicUsize::new(0) };
 
 /// Enters a problem under a new handle.
-pub(super) fn register(problem: Problem) -> Result<*mut feti_problem> {
+pub fn register(problem: Problem) -> Result<*mut feti_problem> {
     let cancelled = problem.canceller();
     let number = PROBLEMS
         .register(problem, cancelled, Arc::new(Environment::new()))
@@ -28,12 +28,12 @@ pub(super) fn register(problem: Problem) -> Result<*mut feti_problem> {
     Ok(ptr::without_provenance_mut(number))
 }
 
-pub(super) fn find(handle: *mut feti_problem) -> Option<Arc<Slot>> {
+pub fn find(handle: *mut feti_problem) -> Option<Arc<Slot>> {
     PROBLEMS.find(handle.addr())
 }
 
 /// Takes the problem out of the registry; a call that found the slot before meets [`Refusal::Gone`].
-pub(super) fn remove(handle: *mut feti_problem) -> std::result::Result<Problem, Refusal> {
+pub fn remove(handle: *mut feti_problem) -> std::result::Result<Problem, Refusal> {
     PROBLEMS.remove(handle.addr())
 }
 

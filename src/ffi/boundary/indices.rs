@@ -1,10 +1,10 @@
 //! Index arrays of the host, 32 or 64 bits, counted from 0 or 1, converted once.
 
-use super::arrays::{input, reserved};
 use crate::error::{Error, Result};
+use crate::ffi::boundary::arrays::{input, reserved};
 
 /// The integer types of index arrays.
-pub(super) trait Index: Copy {
+pub trait Index: Copy {
     fn wide(self) -> i64;
     /// Numbers in the 32 bits of a matrix, in which those below 0 are far too large.
     fn unsigned(from: *const Self) -> Option<*const u32>;
@@ -31,7 +31,7 @@ impl Index for i64 {
 }
 
 /// What the index arrays of a call count from: 0 or 1.
-pub(super) fn base(value: i32) -> Result<i64> {
+pub fn base(value: i32) -> Result<i64> {
     match value {
         0 | 1 => Ok(i64::from(value)),
         _ => Err(Error::argument("base", format!("{value} is neither 0 nor 1")).value(f64::from(value))),
@@ -42,7 +42,7 @@ pub(super) fn base(value: i32) -> Result<i64> {
 ///
 /// # Safety
 /// `from` leads to `rows` + 1 numbers that nobody writes to during the call.
-pub(super) unsafe fn pointers<I: Index>(from: *const I, rows: usize, base: i64) -> Result<Vec<usize>> {
+pub unsafe fn pointers<I: Index>(from: *const I, rows: usize, base: i64) -> Result<Vec<usize>> {
     // SAFETY: by the caller's word; without rows the array is not looked at.
     let given = unsafe { input(from, if rows == 0 { 0 } else { rows + 1 }, "row_ptr") }?;
     let mut positions = reserved(rows + 1)?;
@@ -69,7 +69,7 @@ pub(super) unsafe fn pointers<I: Index>(from: *const I, rows: usize, base: i64) 
 ///
 /// # Safety
 /// `from` leads to `len` numbers that nobody writes to during the call.
-pub(super) unsafe fn numbers<I: Index>(
+pub unsafe fn numbers<I: Index>(
     from: *const I,
     len: usize,
     base: i64,

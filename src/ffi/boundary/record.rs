@@ -2,7 +2,7 @@
 
 use crate::error::{Error, Result};
 
-use super::types::{
+use crate::ffi::header::types::{
     feti_body_facts, feti_certificate, feti_error_detail, feti_findings, feti_info, feti_option, feti_phase,
 };
 
@@ -15,7 +15,7 @@ const SIZE_BYTES: usize = size_of::<i64>();
 ///
 /// # Safety
 /// The struct has no padding: every byte of it is initialised.
-pub(super) unsafe trait Sized64: Copy {}
+pub unsafe trait Sized64: Copy {}
 
 // SAFETY: 8 + 2 * 4 + 5 * 8 + 2 * 8 + 40 bytes, without padding.
 unsafe impl Sized64 for feti_error_detail {}
@@ -33,7 +33,7 @@ unsafe impl Sized64 for feti_option {}
 unsafe impl Sized64 for feti_findings {}
 
 /// The caller's struct, to be written once.
-pub(super) struct Target<T> {
+pub struct Target<T> {
     to: *mut T,
     bytes: usize,
 }

@@ -8,13 +8,13 @@ use super::sync::{
 };
 
 /// Numbers count from 1 and are never used again.
-pub(super) struct Registry<P, R, E> {
+pub struct Registry<P, R, E> {
     pub slots: RwLock<BTreeMap<usize, Arc<Slot<P, R, E>>>>,
     pub last: AtomicUsize,
 }
 
 /// A problem with its busy flag, which is the lock, and its last error, which can be read while a call runs.
-pub(super) struct Slot<P, R, E> {
+pub struct Slot<P, R, E> {
     /// None once destroyed.
     problem: Mutex<Option<P>>,
     /// Shared with the problem, so that it can be set while a call runs.
@@ -27,7 +27,7 @@ pub(super) struct Slot<P, R, E> {
 
 /// Why a problem could not be taken.
 #[derive(Debug, PartialEq)]
-pub(super) enum Refusal {
+pub enum Refusal {
     Busy,
     Gone,
     Broken,

@@ -77,7 +77,7 @@ const TABLE: [(i32, &CStr, &CStr); 21] = [
 ];
 
 /// Status of a failure, and the position of the refused argument (0: none) in `arguments`.
-pub(super) fn of_kind(kind: Kind, arguments: &[&str]) -> (i32, i32) {
+pub(in crate::ffi) fn of_kind(kind: Kind, arguments: &[&str]) -> (i32, i32) {
     let status = match kind {
         Kind::Argument(name) => {
             let position =
@@ -102,7 +102,7 @@ pub(super) fn of_kind(kind: Kind, arguments: &[&str]) -> (i32, i32) {
 }
 
 /// Status of a solve that gave an answer.
-pub(super) fn of_outcome(outcome: &Outcome) -> i32 {
+pub(in crate::ffi) fn of_outcome(outcome: &Outcome) -> i32 {
     match outcome {
         Outcome::Solved => FETI_OK,
         Outcome::Iterations => FETI_ITERATIONS,
@@ -115,7 +115,7 @@ pub(super) fn of_outcome(outcome: &Outcome) -> i32 {
 }
 
 /// (name, text) of a status.
-pub(super) fn describe(status: i32) -> (&'static CStr, &'static CStr) {
+pub(in crate::ffi) fn describe(status: i32) -> (&'static CStr, &'static CStr) {
     let is_argument = (FETI_ARGUMENT - MOST_ARGUMENTS..=FETI_ARGUMENT).contains(&status);
     let number = if is_argument { FETI_ARGUMENT } else { status };
     let found = TABLE.iter().find(|row| row.0 == number);

@@ -3,7 +3,7 @@
 
 use std::ffi::{c_char, c_void};
 
-pub use super::constants::*;
+pub use crate::ffi::header::constants::*;
 
 /// A problem: bodies, rows, settings, factors and the last answer. The handle is a counter, never an address.
 #[repr(C)]

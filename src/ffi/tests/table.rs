@@ -5,15 +5,15 @@ use std::ptr::{null, null_mut};
 use super::super::*;
 
 pub const SOURCES: [&str; 20] = [
-    include_str!("../body.rs"),
-    include_str!("../body_info.rs"),
+    include_str!("../bodies/body.rs"),
+    include_str!("../bodies/body_info.rs"),
     include_str!("../diagnosis.rs"),
-    include_str!("../error_store.rs"),
+    include_str!("../boundary/error_store.rs"),
     include_str!("../file.rs"),
     include_str!("../log.rs"),
-    include_str!("../null_space.rs"),
-    include_str!("../numbering.rs"),
-    include_str!("../operator.rs"),
+    include_str!("../bodies/null_space.rs"),
+    include_str!("../bodies/numbering.rs"),
+    include_str!("../bodies/operator.rs"),
     include_str!("../options.rs"),
     include_str!("../phases.rs"),
     include_str!("../problem.rs"),
@@ -22,9 +22,9 @@ pub const SOURCES: [&str; 20] = [
     include_str!("../rows.rs"),
     include_str!("../solve.rs"),
     include_str!("../state.rs"),
-    include_str!("../stiffness.rs"),
+    include_str!("../bodies/stiffness.rs"),
     include_str!("../validation.rs"),
-    include_str!("../values.rs"),
+    include_str!("../bodies/values.rs"),
 ];
 
 /// Status of every function with handle `p` and otherwise NULL and zero; the handle is looked at first.

@@ -1,4 +1,4 @@
-//! Writes `include/feti_contact.h` and `include/fortran/feti_contact_c.f90` from one parse of `src/ffi/*.rs`.
+//! Writes `include/feti_contact.h` and `include/fortran/feti_contact_c.f90` from one parse of `src/ffi`.
 //!
 //! `feti-bindgen [--check] [--calls FILE] [--trace FILE] [--pages DIR] [--source DIR] [--root DIR]`; `--check` writes nothing and fails on the first line
 //! that differs from the committed files. `--calls FILE` writes a C program for the tests instead ([`calls`]), as does `--trace` ([`trace`]);
@@ -141,17 +141,28 @@ fn write(path: &Path, text: &str) -> Result<(), String> {
     fs::write(path, text).map_err(|e| format!("{}: {e}", path.display()))
 }
 
-/// The Rust files of `folder`, by name: the order must not depend on the file system.
+/// The Rust files of `folder` and the folders in it by their paths from there, ordered by name alone: neither the file system
+/// nor a move to another folder may change the order.
 fn sources(folder: &Path) -> Result<Vec<(String, String)>, String> {
-    let paths = files(folder, "rs")?;
-    paths.iter().map(|path| Ok((path.display().to_string(), read(path)?))).collect()
+    let mut paths = files(folder, "rs")?;
+    for inner in entries(folder)?.iter().filter(|path| path.is_dir()) {
+        paths.extend(files(inner, "rs")?);
+    }
+    paths.sort_by(|a, b| a.file_name().cmp(&b.file_name()));
+    let named = |path: &PathBuf| path.strip_prefix(folder).unwrap_or(path).display().to_string();
+    paths.iter().map(|path| Ok((named(path), read(path)?))).collect()
 }
 
 /// The files of a folder that end so, by name.
 fn files(folder: &Path, ending: &str) -> Result<Vec<PathBuf>, String> {
+    let mut paths = entries(folder)?;
+    paths.retain(|path| path.extension().is_some_and(|extension| extension == ending));
+    Ok(paths)
+}
+
+fn entries(folder: &Path) -> Result<Vec<PathBuf>, String> {
     let entries = fs::read_dir(folder).map_err(|e| format!("{}: {e}", folder.display()))?;
     let mut paths: Vec<PathBuf> = entries.filter_map(|entry| entry.ok().map(|entry| entry.path())).collect();
-    paths.retain(|path| path.extension().is_some_and(|extension| extension == ending));
     paths.sort();
     Ok(paths)
 }

@@ -5,7 +5,7 @@ use std::fmt::Write;
 use crate::c_types::prototype;
 use crate::model::{Api, Function};
 use crate::pages::{by_subject, direction, summary, Faces};
-use crate::statuses::results;
+use crate::statuses::{self, results};
 
 /// (file name, text) of every page, below `man3` and `man7`.
 pub fn print(api: &Api, faces: &Faces) -> Vec<(String, String)> {
@@ -94,7 +94,7 @@ fn overview(api: &Api) -> String {
         }
     }
     out.push_str(".SH STATUSES\n");
-    for constant in api.constants.iter().filter(|constant| constant.source == "status.rs") {
+    for constant in api.constants.iter().filter(|constant| constant.source == statuses::FILE) {
         let meaning = text(&summary(&constant.doc));
         let _ = write!(
             out,

@@ -70,7 +70,9 @@ const SUBJECTS: [(&str, &str); 21] = [
 
 /// Functions grouped by source file: the subjects above, then files that are not among them by their names.
 pub fn by_subject(api: &Api) -> Vec<(String, Vec<&Function>)> {
-    let stem = |function: &Function| function.source.trim_end_matches(".rs").to_string();
+    let stem = |function: &Function| {
+        function.source.rsplit('/').next().unwrap_or_default().trim_end_matches(".rs").to_string()
+    };
     let place = |stem: &str| SUBJECTS.iter().position(|(file, _)| *file == stem).unwrap_or(SUBJECTS.len());
     let mut groups: BTreeMap<(usize, String), Vec<&Function>> = BTreeMap::new();
     for function in &api.functions {
@@ -243,7 +245,7 @@ mod tests {
         /// Busy.\npub const FETI_BUSY: i32 = -3;\n/// Too early.\npub const FETI_STATE: i32 = -5;\n";
 
     fn api() -> Api {
-        let sources = [("src/ffi/rows.rs", SOURCE), ("src/ffi/status.rs", STATUS)];
+        let sources = [("rows.rs", SOURCE), ("header/status.rs", STATUS)];
         let sources = sources.map(|(name, text)| (name.to_string(), text.to_string()));
         crate::checked(&sources, [0, 1, 0]).unwrap()
     }

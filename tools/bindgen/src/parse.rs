@@ -5,7 +5,7 @@ use quote::ToTokens;
 use crate::doc::{Direction, Doc};
 use crate::model::{Api, Argument, Callback, Constant, Field, Function, Struct, Type};
 
-/// `sources`: (file name, text), in the order in which the items are printed.
+/// `sources`: (path from src/ffi, text), in the order in which the items are printed.
 pub fn parse(sources: &[(String, String)], version: [u32; 3]) -> Result<Api, String> {
     let mut api = Api { version, ..Api::default() };
     for (name, text) in sources {
@@ -13,13 +13,12 @@ pub fn parse(sources: &[(String, String)], version: [u32; 3]) -> Result<Api, Str
         for item in &file.items {
             add_item(&mut api, item).map_err(|e| format!("{name}: {e}"))?;
         }
-        let file = std::path::Path::new(name).file_name().map_or(name.clone(), |f| f.display().to_string());
         let functions = api.functions.iter_mut().map(|function| &mut function.source);
         let constants = api.constants.iter_mut().map(|constant| &mut constant.source);
         functions
             .chain(constants)
             .filter(|source| source.is_empty())
-            .for_each(|source| source.clone_from(&file));
+            .for_each(|source| source.clone_from(name));
     }
     Ok(api)
 }

@@ -4,7 +4,7 @@ use crate::model::{Api, Constant, Function};
 use crate::pages::summary;
 
 /// The constants of this file are statuses.
-pub const FILE: &str = "status.rs";
+pub const FILE: &str = "header/status.rs";
 /// A function with these words in its text returns what this one does, too.
 const SETUP: (&str, &str) = ("feti_setup when it is due", "feti_setup");
 
@@ -109,7 +109,7 @@ mod tests {
         /// None left.\npub const FETI_MEMORY: i32 = -1;\n/// A fault.\npub const FETI_INTERNAL: i32 = -11;\n";
 
     fn of(name: &str) -> Vec<(String, String)> {
-        let sources = [("src/ffi/solve.rs", SOURCE), ("src/ffi/status.rs", STATUS)];
+        let sources = [("solve.rs", SOURCE), ("header/status.rs", STATUS)];
         let sources = sources.map(|(name, text)| (name.to_string(), text.to_string()));
         let api = crate::checked(&sources, [0, 1, 0]).unwrap();
         results(&api, api.functions.iter().find(|f| f.name == name).unwrap())

@@ -1,0 +1,17 @@
+//! Exported functions of bodies.
+
+mod body;
+mod body_info;
+mod null_space;
+mod numbering;
+mod operator;
+mod stiffness;
+mod values;
+
+pub use body::*;
+pub use body_info::*;
+pub use null_space::*;
+pub use numbering::*;
+pub use operator::*;
+pub use stiffness::*;
+pub use values::*;

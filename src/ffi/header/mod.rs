@@ -1,0 +1,5 @@
+//! What the header declares besides the functions.
+
+mod constants;
+pub mod status;
+pub mod types;
