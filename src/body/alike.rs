@@ -2,6 +2,7 @@
 
 use crate::body::null_space::NullSpaceInput;
 use crate::body::Body;
+use crate::linalg::hash::{hash, START};
 use crate::linalg::Symmetric;
 
 /// Equal bit by bit: also the sign of zero counts.
@@ -44,12 +45,12 @@ pub fn same_vectors(a: &NullSpaceInput, b: &NullSpaceInput) -> bool {
 /// Equal for equal patterns; seldom equal for others.
 pub fn pattern_key(k: &Symmetric) -> u64 {
     let words = k.ptr.iter().map(|&at| at as u64).chain(k.col.iter().map(|&col| u64::from(col)));
-    words.fold(START, fold)
+    hash(START, words)
 }
 
 /// The same for the values; the pattern has its own.
 pub fn value_key(k: &Symmetric) -> u64 {
-    k.val.iter().map(|v| v.to_bits()).fold(START, fold)
+    hash(START, k.val.iter().map(|v| v.to_bits()))
 }
 
 /// The same for what [`same_body`] compares besides the matrix, by some of its numbers: equal meshes in different places have
@@ -57,18 +58,11 @@ pub fn value_key(k: &Symmetric) -> u64 {
 pub fn input_key(body: &Body) -> u64 {
     const SOME: usize = 64;
     let some = |key: u64, values: &[f64]| {
-        values.iter().step_by(values.len() / SOME + 1).map(|v| v.to_bits()).fold(key, fold)
+        hash(key, values.iter().step_by(values.len() / SOME + 1).map(|v| v.to_bits()))
     };
     let key = body.null_space.as_ref().map_or(START, |given| some(START, &given.vectors.data));
     body.coordinates.as_ref().map_or(key, |given| some(key, given.places().as_flattened()))
 }
-
-/// FNV-1a, word by word; the shift brings the high bits of numbers with few digits down.
-fn fold(key: u64, word: u64) -> u64 {
-    (key ^ word ^ (word >> 32)).wrapping_mul(0x0100_0000_01b3)
-}
-
-const START: u64 = 0xcbf2_9ce4_8422_2325;
 
 #[cfg(test)]
 mod tests {

@@ -7,8 +7,8 @@ use crate::body::generalized_inverse::GeneralizedInverse;
 use crate::body::host::HostMultiple;
 use crate::body::null_space::{largest, verified, NullSpaceInput, Products, Verified, ROUNDING as KNOWN};
 use crate::body::probe::{PROBE, UNLIKELY};
-use crate::body::random::Random;
 use crate::error::{Error, Kind, Result};
+use crate::linalg::random::Random;
 use crate::linalg::vector::{axpy, dot, ratio, weighted_norm};
 use crate::linalg::Matrix;
 

@@ -20,7 +20,6 @@ mod null_space;
 mod overflow;
 mod plan;
 mod probe;
-mod random;
 mod rigid_modes;
 mod search;
 mod spectrum;

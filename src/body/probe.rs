@@ -3,8 +3,8 @@
 use crate::body::factor::Factor;
 use crate::body::null_space::{largest, ROUNDING as KNOWN};
 use crate::body::overflow::overflow;
-use crate::body::random::Random;
 use crate::error::{Error, Kind, Result};
+use crate::linalg::random::Random;
 use crate::linalg::vector::weighted_norm;
 use crate::linalg::{Matrix, Multiple};
 use crate::platform::memory::zeros;

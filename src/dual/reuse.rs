@@ -5,6 +5,7 @@ use std::sync::Mutex;
 
 use crate::body::GeneralizedInverse;
 use crate::error::{Error, Kind, Result};
+use crate::linalg::hash::{hash, START};
 use crate::linalg::{Csr, Operator, Packed};
 
 /// New columns are computed by themselves where they are less than one in so many of all. Each takes solutions with L
@@ -139,10 +140,10 @@ fn same_row((a, i): (&Csr, usize), (b, j): (&Csr, usize)) -> bool {
     a.row(i).map(bits).eq(b.row(j).map(bits))
 }
 
-/// Equal for equal rows (FNV-1a over dofs and values).
+/// Of dofs and values.
 fn key(rows: &Csr, i: usize) -> u64 {
     let words = rows.row(i).flat_map(|(dof, value)| [dof as u64, value.to_bits()]);
-    words.fold(0xcbf2_9ce4_8422_2325, |key, word| (key ^ word ^ (word >> 32)).wrapping_mul(0x0100_0000_01b3))
+    hash(START, words)
 }
 
 #[cfg(test)]

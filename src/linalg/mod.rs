@@ -3,6 +3,7 @@
 //! | module | holds |
 //! |---|---|
 //! | `vector`, `twofold`, `array` | loops over vectors, sums in twice the digits, numbers that are left with the host |
+//! | `random`, `hash` | fixed random numbers, keys of lists |
 //! | `dense` | columns; packed symmetric matrices; pivoted Cholesky, eigenvalues, singular values |
 //! | `sparse` | by rows; symmetric; graphs; Gram matrices |
 //! | `cholesky` | the sparse factorisation and what is made from the factor |
@@ -11,6 +12,8 @@
 pub mod array;
 pub mod cholesky;
 pub mod dense;
+pub mod hash;
+pub mod random;
 pub mod semidefinite;
 pub mod sparse;
 pub mod twofold;

@@ -204,8 +204,8 @@ fn analysed(g_transposed: &Csr) -> Result<(Gram, Arc<Analysis>)> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::linalg::random::scattered;
     use crate::linalg::vector::{dot, norm};
-    use crate::qp::smalbe::augmented::scattered;
 
     #[test]
     fn the_projected_vector_lies_on_the_face_and_in_the_kernel_of_g() {

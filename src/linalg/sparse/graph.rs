@@ -1,6 +1,7 @@
 //! The adjacency graph of a stiffness matrix: connected parts, and dofs of one node.
 
 use crate::error::{Error, Kind, Result};
+use crate::linalg::hash::{hash, START};
 use crate::linalg::Symmetric;
 use crate::platform::memory::reserved;
 
@@ -83,11 +84,9 @@ impl Graph {
         Ok((group, first))
     }
 
-    /// A hash of the neighbours of `i` (FNV-1a).
+    /// Of the neighbours of `i`.
     fn key(&self, i: usize) -> u64 {
-        self.neighbours(i)
-            .iter()
-            .fold(0xcbf2_9ce4_8422_2325, |key, &j| (key ^ u64::from(j)).wrapping_mul(0x0100_0000_01b3))
+        hash(START, self.neighbours(i).iter().map(|&j| u64::from(j)))
     }
 }
 

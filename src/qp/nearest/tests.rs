@@ -1,6 +1,6 @@
 use super::*;
+use crate::linalg::random::scattered;
 use crate::linalg::SpdSolver;
-use crate::qp::smalbe::augmented::scattered;
 
 fn rows(rows: &[Vec<f64>]) -> Csr {
     let mut csr = Csr::empty(rows[0].len());

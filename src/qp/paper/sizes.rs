@@ -2,10 +2,10 @@
 //! E = 2.1e11 every run with them fails. In units of |A| / |D|^2 the course depends on no unit, and on no basis R.
 
 use crate::error::Result;
+use crate::linalg::random::scattered;
 use crate::linalg::vector::{axpy, norm};
 use crate::qp::coarse::Coarse;
 use crate::qp::paper::{Quadratic, Units};
-use crate::qp::smalbe::augmented::scattered;
 use crate::qp::Judge;
 
 pub struct Sizes {

@@ -2,6 +2,7 @@
 //! `W = G G'` over all rows, and how far a point is from `G x = e`.
 
 use crate::error::Result;
+use crate::linalg::random::scattered;
 use crate::linalg::vector::{axpy, norm};
 use crate::qp::coarse::Coarse;
 use crate::qp::smalbe::mprgp::Hessian;
@@ -131,18 +132,6 @@ impl Hessian for Augmented<'_> {
         }
         Ok(z)
     }
-}
-
-/// A fixed sequence of numbers in [-1/2, 1/2).
-pub fn scattered(m: usize) -> Vec<f64> {
-    let mut state = 0x9e37_79b9_7f4a_7c15_u64;
-    let mut next = || {
-        state ^= state << 13;
-        state ^= state >> 7;
-        state ^= state << 17;
-        (state >> 11) as f64 / (1_u64 << 53) as f64 - 0.5
-    };
-    (0..m).map(|_| next()).collect()
 }
 
 #[cfg(test)]

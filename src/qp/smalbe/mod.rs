@@ -9,7 +9,7 @@
 //!
 //! alpha tends to the multiplier of `G x = e`, also at a vertex where least squares on the face do not find it.
 
-pub(super) mod augmented;
+mod augmented;
 mod mprgp;
 
 use crate::error::Result;
