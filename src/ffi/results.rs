@@ -2,11 +2,12 @@
 
 use crate::error::Result;
 use crate::ffi::bodies::{body_of_order, whole};
-use crate::ffi::boundary::{call, enter, id, reserved, same, zeros, Output};
+use crate::ffi::boundary::{call, enter, id, same, Output};
 use crate::ffi::header::types::{
     feti_problem, FETI_ALL, FETI_ROW_CLOSED, FETI_ROW_OPEN, FETI_ROW_UNKNOWN, FETI_ROW_WEAK,
 };
 use crate::ffi::rows::row_kind;
+use crate::platform::memory::{reserved, zeros};
 use crate::solver::RowState;
 
 /// Reads the displacement of a body.
@@ -75,7 +76,7 @@ pub unsafe extern "C" fn feti_reaction(
         let (body, n) = body_of_order(problem, body, n)?;
         // SAFETY: room for n numbers by the caller's word.
         let output = unsafe { Output::new(r, n, "r") }?;
-        let mut reaction = zeros(n)?;
+        let mut reaction = zeros(n, "a result")?;
         problem.reaction(kind, body, &mut reaction)?;
         output.write(&reaction);
         Ok(())
@@ -172,7 +173,7 @@ pub unsafe extern "C" fn feti_gaps(p: *mut feti_problem, rows: i64, slack: *mut 
 pub unsafe extern "C" fn feti_active(p: *mut feti_problem, rows: i64, state: *mut i32) -> i32 {
     enter(p, call!(feti_active(p, rows, state)), |problem| {
         let active = problem.active()?;
-        let mut numbers = reserved(active.len())?;
+        let mut numbers = reserved(active.len(), "a result")?;
         numbers.extend(active.iter().map(|state| match state {
             RowState::Open => FETI_ROW_OPEN,
             RowState::Closed => FETI_ROW_CLOSED,

@@ -4,9 +4,10 @@
 use crate::error::Result;
 use crate::ffi::bodies::body_of_order;
 use crate::ffi::boundary::{
-    call, check_finite, column_major, count, enter, finite_input, input, same, zeros, Output,
+    call, check_finite, column_major, count, enter, finite_input, input, same, Output,
 };
 use crate::ffi::header::types::feti_problem;
+use crate::platform::memory::zeros;
 use crate::solver::Problem;
 
 /// Applies the generalised inverse of a body, `Y = K+ X`.
@@ -47,7 +48,7 @@ pub unsafe extern "C" fn feti_body_kplus(
         (0..nrhs).try_for_each(|k| check_finite(&x[k * ldx..k * ldx + n], k * ldx, "x"))?;
         let _room = problem.setup_room()?;
         // At most y_entries, which column_major has bounded.
-        let mut columns = zeros(n * nrhs)?;
+        let mut columns = zeros(n * nrhs, "a result")?;
         for (k, column) in columns.chunks_exact_mut(n.max(1)).enumerate() {
             problem.kplus(body, &x[k * ldx..k * ldx + n], column)?;
         }
@@ -78,7 +79,7 @@ pub unsafe extern "C" fn feti_dual_apply(p: *mut feti_problem, m: i64, x: *const
         // SAFETY: shapes by the caller's word.
         let (x, output) = unsafe { (finite_input(x, m, "x")?, Output::new(y, m, "y")?) };
         let _room = problem.working_room()?;
-        let mut product = zeros(m)?;
+        let mut product = zeros(m, "a result")?;
         problem.dual_apply(x, &mut product)?;
         output.write(&product);
         Ok(())
@@ -104,7 +105,7 @@ pub unsafe extern "C" fn feti_dual_rhs(p: *mut feti_problem, m: i64, d: *mut f64
         // SAFETY: room for m numbers by the caller's word.
         let output = unsafe { Output::new(d, m, "d") }?;
         let _room = problem.working_room()?;
-        let mut rhs = zeros(m)?;
+        let mut rhs = zeros(m, "a result")?;
         problem.dual_rhs(&mut rhs)?;
         output.write(&rhs);
         Ok(())

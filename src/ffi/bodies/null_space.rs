@@ -2,8 +2,9 @@
 
 use crate::error::{Error, Result};
 use crate::ffi::bodies::body::body_of_order;
-use crate::ffi::boundary::{call, column_major, count, enter, id, input, numbers, reserved, same, Output};
+use crate::ffi::boundary::{call, column_major, count, enter, id, input, numbers, same, Output};
 use crate::ffi::header::types::{feti_problem, FETI_CANDIDATES, FETI_EXACT};
+use crate::platform::memory::reserved;
 use crate::solver::Modes;
 
 /// Gives a basis of the null space of a body, or candidates for it.
@@ -159,7 +160,7 @@ pub unsafe extern "C" fn feti_body_fixing_set(
         let (body, r) = (id(body, "body")?, count(r, "r")?);
         // SAFETY: r numbers by the caller's word.
         let given = unsafe { numbers(dof, r, 0, "dof") }?;
-        let mut dofs = reserved(r)?;
+        let mut dofs = reserved(r, "an index array")?;
         for (entry, &number) in given.iter().enumerate() {
             dofs.push(usize::try_from(number).map_err(|_| {
                 let text = "the dof is below the first unknown";

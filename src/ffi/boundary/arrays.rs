@@ -5,7 +5,7 @@ use std::ffi::{c_char, CStr, OsStr};
 use std::path::Path;
 use std::ptr::NonNull;
 
-use crate::error::{Error, Kind, Result};
+use crate::error::{Error, Result};
 use crate::solver::Borrowed;
 
 /// A size: not negative, and an array of as many 8-byte numbers can exist.
@@ -54,29 +54,12 @@ pub fn column_major(rows: usize, columns: usize, ld: i64, name: &'static str) ->
     }
 }
 
-/// An empty vector with room for `len` entries.
-pub fn reserved<T>(len: usize) -> Result<Vec<T>> {
-    let mut room = Vec::new();
-    room.try_reserve_exact(len).map_err(|_| {
-        let bytes = len.saturating_mul(size_of::<T>());
-        Error::new(Kind::Memory, format!("{bytes} bytes could not be reserved")).value(bytes as f64)
-    })?;
-    Ok(room)
-}
-
 /// True when so many bytes are left: for small things, at whose failed allocation Rust would end the process.
 pub fn left(bytes: usize) -> bool {
     let mut room = Vec::<u8>::new();
     let left = room.try_reserve_exact(bytes).is_ok();
     std::hint::black_box(room);
     left
-}
-
-/// `len` zeros.
-pub fn zeros(len: usize) -> Result<Vec<f64>> {
-    let mut zeros = reserved(len)?;
-    zeros.resize(len, 0.0);
-    Ok(zeros)
 }
 
 fn check_pointer<T>(from: *const T, name: &'static str) -> Result<()> {
@@ -259,6 +242,7 @@ pub unsafe fn copy_text(text: &str, buf: *mut c_char, cap: i64) -> i64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::error::Kind;
 
     fn kind<T>(result: Result<T>) -> Kind {
         result.err().map_or(Kind::Internal, |error| error.kind)
@@ -301,11 +285,6 @@ mod tests {
             assert_eq!((error.kind, error.place.entry), (Kind::Argument("x"), Some(1)));
         }
         assert_eq!(check_finite(&[1.0, f64::NAN], 4, "x").unwrap_err().place.entry, Some(5));
-    }
-
-    #[test]
-    fn memory_that_cannot_be_had_is_an_error() {
-        assert_eq!(kind(reserved::<u64>(isize::MAX as usize / 8)), Kind::Memory);
     }
 
     #[test]

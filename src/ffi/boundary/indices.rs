@@ -1,7 +1,8 @@
 //! Index arrays of the host, 32 or 64 bits, counted from 0 or 1, converted once.
 
 use crate::error::{Error, Result};
-use crate::ffi::boundary::arrays::{input, reserved};
+use crate::ffi::boundary::arrays::input;
+use crate::platform::memory::reserved;
 
 /// The integer types of index arrays.
 pub trait Index: Copy {
@@ -45,7 +46,7 @@ pub fn base(value: i32) -> Result<i64> {
 pub unsafe fn pointers<I: Index>(from: *const I, rows: usize, base: i64) -> Result<Vec<usize>> {
     // SAFETY: by the caller's word; without rows the array is not looked at.
     let given = unsafe { input(from, if rows == 0 { 0 } else { rows + 1 }, "row_ptr") }?;
-    let mut positions = reserved(rows + 1)?;
+    let mut positions = reserved(rows + 1, "an index array")?;
     positions.push(0);
     if given.first().is_some_and(|first| first.wide() != base) {
         let text = format!("row_ptr starts with {}, with base {base} it starts with {base}", given[0].wide());
@@ -77,7 +78,7 @@ pub unsafe fn numbers<I: Index>(
 ) -> Result<Vec<i64>> {
     // SAFETY: by the caller's word.
     let given = unsafe { input(from, len, name) }?;
-    let mut numbers = reserved(len)?;
+    let mut numbers = reserved(len, "an index array")?;
     numbers.extend(given.iter().map(|number| number.wide().saturating_sub(base)));
     Ok(numbers)
 }
