@@ -1,6 +1,8 @@
 //! The acceptance test, which has the last word on a point, and what a run tells: its steps, its end.
 
 use crate::error::{Error, Kind, Result};
+use crate::linalg::vector::norm;
+use crate::qp::gradient::Split;
 use crate::qp::Counts;
 
 /// When to stop.
@@ -57,6 +59,13 @@ pub struct Progress<'a> {
     pub free: f64,
     pub chopped: f64,
     pub small: f64,
+}
+
+impl<'a> Progress<'a> {
+    pub fn new(kind: StepKind, counts: &'a Counts, split: &'a Split, theta: f64, small: f64) -> Self {
+        let (free, chopped) = (norm(&split.free), norm(&split.chopped));
+        Self { kind, counts, active: &split.active, theta, residual: split.norm(), free, chopped, small }
+    }
 }
 
 #[derive(Debug, Clone, PartialEq)]

@@ -9,6 +9,7 @@
 mod acceptance;
 mod active_set;
 mod coarse;
+mod gradient;
 mod nearest;
 pub mod paper;
 mod projection;
@@ -45,7 +46,7 @@ pub struct Qp<'a> {
 impl Qp<'_> {
     /// (21): bounded rows of x at zero.
     pub fn at_bound(&self, x: &[f64]) -> Vec<bool> {
-        x.iter().zip(self.bounded).map(|(x, bounded)| *bounded && *x <= 0.0).collect()
+        gradient::at_bound(self.bounded, x)
     }
 }
 

@@ -82,10 +82,10 @@ fn run(program: &Program, gamma: f64, variant: Variant, limit: usize) -> Option<
         assert!(value <= values[values.len() - 1] + 1e-13 * value.abs(), "theta rose");
         assert!(run.point.x.iter().all(|x| *x >= 0.0), "left the bounds");
         values.push(value);
-        Ok(run.point.projected_gradient() <= small || run.counts.steps() >= limit)
+        Ok(run.point.split.norm() <= small || run.counts.steps() >= limit)
     })
     .unwrap();
-    (run.point.projected_gradient() <= small).then(|| (run.point.x.clone(), run.counts.steps()))
+    (run.point.split.norm() <= small).then(|| (run.point.x.clone(), run.counts.steps()))
 }
 
 #[test]

@@ -136,12 +136,12 @@ impl<'a> Outer<'a> {
                 told = run.counts.steps();
                 observer.step(&progress(run, small))?;
             }
-            let (v, gradient) = (norm(&run.q.violation(&run.point.x)), run.point.projected_gradient());
+            let (v, gradient) = (norm(&run.q.violation(&run.point.x)), run.point.split.norm());
             let both = v <= small_violation && gradient <= small;
             precise = both || gradient <= noise || ((v > small_violation || as_printed) && gradient <= m * v);
             Ok(precise || told >= limit)
         });
-        (self.gradient, self.noise, self.counts) = (run.point.projected_gradient(), noise, run.counts);
+        (self.gradient, self.noise, self.counts) = (run.point.split.norm(), noise, run.counts);
         self.x = std::mem::take(&mut run.point.x);
         self.counts.products = self.q.products;
         self.counts.outer += 1;
@@ -169,14 +169,5 @@ impl<'a> Outer<'a> {
 
 fn progress<'a>(run: &'a Proportioning, small: f64) -> Progress<'a> {
     let point = &run.point;
-    Progress {
-        kind: run.last,
-        counts: &run.counts,
-        active: &point.active,
-        theta: run.q.energy(&point.x, &point.g),
-        residual: point.projected_gradient(),
-        free: norm(&point.inner),
-        chopped: norm(&point.chopped),
-        small,
-    }
+    Progress::new(run.last, &run.counts, &point.split, run.q.energy(&point.x, &point.g), small)
 }

@@ -2,6 +2,7 @@
 
 use crate::error::Result;
 use crate::linalg::vector::{axpy, dot};
+use crate::qp::gradient::{at_bound, Split};
 use crate::qp::paper::face::Face;
 use crate::qp::paper::variants::{extrapolate, feasible, monotone, Moved};
 use crate::qp::paper::{Quadratic, Variant};
@@ -16,40 +17,15 @@ pub struct Point<'a> {
     pub x: Vec<f64>,
     /// g(x)
     pub g: Vec<f64>,
-    /// A(x) of (21): bounded rows with x_i = 0. The others are F(x).
-    pub active: Vec<bool>,
-    /// Inner gradient g^I (22): g_i on F(x), 0 on A(x).
-    pub inner: Vec<f64>,
-    /// Chopped, unbalanced contact gradient g^C (23): 0 on F(x), min(0, g_i) on A(x).
-    pub chopped: Vec<f64>,
+    /// A(x), g^I and g^C, the unbalanced contact gradient.
+    pub split: Split,
 }
 
 impl<'a> Point<'a> {
     fn new(bounded: &'a [bool], x: Vec<f64>, g: Vec<f64>) -> Self {
-        let m = x.len();
-        let (active, inner, chopped) = (vec![false; m], vec![0.0; m], vec![0.0; m]);
-        let mut point = Self { bounded, x, g, active, inner, chopped };
-        point.split();
-        point
-    }
-
-    /// (21), (22), (23).
-    fn split(&mut self) {
-        for i in 0..self.x.len() {
-            self.active[i] = self.bounded[i] && self.x[i] == 0.0;
-            self.inner[i] = if self.active[i] { 0.0 } else { self.g[i] };
-            self.chopped[i] = if self.active[i] { self.g[i].min(0.0) } else { 0.0 };
-        }
-    }
-
-    /// Norm of the projected gradient `g^P = g^I + g^C`, which vanishes at the solution of (19).
-    pub fn projected_gradient(&self) -> f64 {
-        (dot(&self.inner, &self.inner) + dot(&self.chopped, &self.chopped)).sqrt()
-    }
-
-    /// `|g^C| <= Gamma |g^I|` (Section 4); where g^I = 0 only if g^C = 0.
-    pub fn is_proportional(&self, gamma: f64) -> bool {
-        dot(&self.chopped, &self.chopped) <= gamma * gamma * dot(&self.inner, &self.inner)
+        let mut split = Split::of(at_bound(bounded, &x));
+        split.update_on_face(&g);
+        Self { bounded, x, g, split }
     }
 
     fn is_feasible(&self, y: &[f64]) -> bool {
@@ -58,12 +34,12 @@ impl<'a> Point<'a> {
 
     fn move_to(&mut self, x: Vec<f64>, g: Vec<f64>) {
         (self.x, self.g) = (x, g);
-        self.split();
+        self.split.update(at_bound(self.bounded, &self.x), &self.g);
     }
 
     /// Conjugate gradients that start here, on the face I = A(x).
     fn face(&self) -> Face {
-        Face::new(self.x.clone(), self.g.clone(), self.active.clone(), self.inner.clone())
+        Face::new(self.x.clone(), self.g.clone(), self.split.active.clone(), self.split.free.clone())
     }
 }
 
@@ -123,16 +99,19 @@ impl<'a, 'q> Proportioning<'a, 'q> {
 
     /// Infeasible conjugate gradients of the monotone variant go on until theta(Py) rises.
     fn explores(&self) -> bool {
-        self.face.as_ref().is_some_and(|face| !face.feasible) || self.point.is_proportional(self.rule.gamma)
+        self.face.as_ref().is_some_and(|face| !face.feasible)
+            || self.point.split.is_proportional(self.rule.gamma)
     }
 
     /// Proportioning: the exact minimum along `d = -g^C` frees indices of the active set.
     fn proportion(&mut self) -> Result<Step> {
         self.face = None;
-        let image = self.q.product(&self.point.chopped)?;
-        let Some(a) = self.minimum_along(&self.point.chopped.clone(), &image) else { return Ok(Step::Flat) };
+        let image = self.q.product(&self.point.split.chopped)?;
+        let Some(a) = self.minimum_along(&self.point.split.chopped.clone(), &image) else {
+            return Ok(Step::Flat);
+        };
         let (mut x, mut g) = (self.point.x.clone(), self.point.g.clone());
-        axpy(-a, &self.point.chopped, &mut x);
+        axpy(-a, &self.point.split.chopped, &mut x);
         axpy(-a, &image, &mut g);
         self.point.move_to(x, g);
         Ok(Step::Done(StepKind::Release))
@@ -153,7 +132,7 @@ impl<'a, 'q> Proportioning<'a, 'q> {
         let left = face.advance(a, y, &image);
         face.feasible = true;
         self.point.move_to(face.y.clone(), face.g.clone());
-        self.face = Some(face).filter(|face| left && face.held == self.point.active);
+        self.face = Some(face).filter(|face| left && face.held == self.point.split.active);
         Ok(Step::Done(StepKind::ConjugateGradient))
     }
 

@@ -5,7 +5,8 @@
 //! | paper | file |
 //! |---|---|
 //! | (20) theta(x), L(x, mu, rho) | `quadratic.rs` |
-//! | (21)-(23) active set, g^I, g^C; proportional points; Algorithm 1 | `bound.rs` |
+//! | (21)-(23) active set, g^I, g^C; proportional points | `qp/gradient.rs` |
+//! | Algorithm 1 | `bound.rs` |
 //! | conjugate gradients for min theta(y), y in W_I | `face.rs` |
 //! | feasible, monotone and extrapolating proportioning | `variants.rs` |
 //! | (24)-(25), Algorithm 3 | `augmented_lagrangian.rs` |

@@ -2,6 +2,7 @@
 
 use crate::error::Result;
 use crate::linalg::vector::axpy;
+use crate::qp::gradient::feasible_step;
 use crate::qp::paper::face::Face;
 use crate::qp::paper::Quadratic;
 
@@ -29,7 +30,7 @@ pub(super) struct Moved {
 /// `image` = H p.
 pub(super) fn feasible(bounded: &[bool], face: &Face, image: &[f64]) -> (Moved, f64) {
     let hits = |i: &usize| bounded[*i] && face.p[*i] > 0.0;
-    let step = (0..face.y.len()).filter(hits).map(|i| face.y[i] / face.p[i]).fold(f64::INFINITY, f64::min);
+    let step = feasible_step(&face.y, &face.p, |i| bounded[i]);
     let (mut x, mut g) = (face.y.clone(), face.g.clone());
     for (i, x) in x.iter_mut().enumerate() {
         let reached = hits(&i) && *x <= step * face.p[i];

@@ -1,8 +1,9 @@
 //! The current point, its gradient and its parts on the face: Section 4 on the feasible set of (12).
 
 use crate::error::Result;
-use crate::linalg::vector::{axpy, dot, norm, norm_max};
+use crate::linalg::vector::{axpy, norm_max};
 use crate::qp::coarse::Coarse;
+use crate::qp::gradient::{feasible_step, Split};
 use crate::qp::proportioning::conjugate::Conjugate;
 use crate::qp::{Counts, Qp};
 
@@ -13,16 +14,12 @@ pub struct Iterate<'a> {
     pub x: Vec<f64>,
     /// `g = A x - b`
     pub g: Vec<f64>,
-    /// (21): bounded rows at zero.
-    pub active: Vec<bool>,
     /// Least-squares multiplier of `G x = e` on the face: `argmin |g_F - G_F'alpha|`.
     pub alpha: Vec<f64>,
     /// `r = g - G'alpha`
     pub r: Vec<f64>,
-    /// (22) r on the free rows, 0 on the active ones.
-    pub free: Vec<f64>,
-    /// (23) min(r, 0) on the active rows, 0 on the free ones.
-    pub chopped: Vec<f64>,
+    /// (21), and r in its parts (22), (23).
+    pub split: Split,
     /// Directions of the steps so far that lie on this face.
     pub kept: Conjugate,
     /// Nothing is left to gain along the kept directions.
@@ -41,11 +38,9 @@ impl<'a> Iterate<'a> {
         let m = x.len();
         let mut iterate = Self {
             g: vec![0.0; m],
-            active: vec![false; m],
             alpha: vec![0.0; qp.e.len()],
             r: vec![0.0; m],
-            free: vec![0.0; m],
-            chopped: vec![0.0; m],
+            split: Split::of(vec![false; m]),
             kept: Conjugate::default(),
             settled: true,
             expected: None,
@@ -75,15 +70,15 @@ impl<'a> Iterate<'a> {
         self.x = x;
         self.g = image?;
         axpy(-1.0, self.qp.b, &mut self.g);
-        self.split()
+        self.update()
     }
 
     /// Takes the point `x` with its gradient; directions that leave the new face are not kept.
     pub fn move_to(&mut self, x: Vec<f64>, g: Vec<f64>) -> Result<()> {
         (self.x, self.g) = (x, g);
-        let before = self.active.clone();
-        self.split()?;
-        for i in (0..before.len()).filter(|&i| self.active[i] && !before[i]) {
+        let before = self.split.active.clone();
+        self.update()?;
+        for i in (0..before.len()).filter(|&i| self.split.active[i] && !before[i]) {
             self.kept.hold(i);
             self.settled = false;
         }
@@ -97,61 +92,46 @@ impl<'a> Iterate<'a> {
         }
         let mut rest = self.qp.e.to_vec();
         self.qp.g_transposed.mul_transposed_add(-1.0, &self.x, &mut rest);
-        self.coarse.select(&self.active)?;
+        self.coarse.select(&self.split.active)?;
         let step = self.coarse.solve(&rest)?;
         let mut x = self.x.clone();
-        for i in (0..x.len()).filter(|&i| !self.active[i]) {
+        for i in (0..x.len()).filter(|&i| !self.split.active[i]) {
             x[i] += self.qp.g_transposed.row_dot(i, &step);
         }
-        if (0..x.len()).all(|i| self.active[i] || !self.qp.bounded[i] || x[i] > 0.0) {
+        if (0..x.len()).all(|i| self.split.active[i] || !self.qp.bounded[i] || x[i] > 0.0) {
             self.x = x;
         }
         Ok(())
     }
 
     /// Active set, multiplier and the two parts (22)-(23) of the projected gradient.
-    fn split(&mut self) -> Result<()> {
-        self.active = self.qp.at_bound(&self.x);
-        self.split_on_face()
+    fn update(&mut self) -> Result<()> {
+        self.split.active = self.qp.at_bound(&self.x);
+        self.update_on_face()
     }
 
     /// The same on the active set as it stands: rows at zero may count as free.
-    pub fn split_on_face(&mut self) -> Result<()> {
-        let m = self.x.len();
+    pub fn update_on_face(&mut self) -> Result<()> {
         self.r.copy_from_slice(&self.g);
         if !self.alpha.is_empty() {
-            self.alpha = self.coarse.multiplier(&self.active, &self.g)?;
-            for i in 0..m {
+            self.alpha = self.coarse.multiplier(&self.split.active, &self.g)?;
+            for i in 0..self.x.len() {
                 self.r[i] -= self.qp.g_transposed.row_dot(i, &self.alpha);
             }
         }
-        for i in 0..m {
-            let (free, chopped) = if self.active[i] { (0.0, self.r[i].min(0.0)) } else { (self.r[i], 0.0) };
-            (self.free[i], self.chopped[i]) = (free, chopped);
-        }
+        self.split.update_on_face(&self.r);
         Ok(())
     }
 
     /// `v <- P_F v`
     pub fn project_on_face(&mut self, v: &mut [f64]) -> Result<()> {
-        self.coarse.project(&self.active, v)
-    }
-
-    /// x is *proportional* when `|g^C| <= Gamma |g^I|` (Section 4): the error left on the current face still
-    /// outweighs the error of having chosen that face.
-    pub fn is_proportional(&self, gamma: f64) -> bool {
-        norm(&self.chopped) <= gamma * norm(&self.free)
-    }
-
-    /// Norm of the projected gradient `g^P = g^I + g^C`.
-    pub fn residual(&self) -> f64 {
-        (dot(&self.free, &self.free) + dot(&self.chopped, &self.chopped)).sqrt()
+        self.coarse.project(&self.split.active, v)
     }
 
     /// What rounding alone leaves of the residual: 64 eps (|b| + |A x| + |G'alpha|) on the rows that it counts. An open row
     /// is not among them, however far its gap.
     pub fn noise(&self) -> f64 {
-        let counts = |i: &usize| !self.active[*i] || self.chopped[*i] < 0.0;
+        let counts = |i: &usize| !self.split.active[*i] || self.split.chopped[*i] < 0.0;
         let (mut given, mut image, mut coarse) = (0.0, 0.0, 0.0);
         for i in (0..self.g.len()).filter(counts) {
             given += self.qp.b[i] * self.qp.b[i];
@@ -169,9 +149,6 @@ impl<'a> Iterate<'a> {
     /// Largest t with `x - t p` feasible in the bounds, entries of p up to `rounding` |p| taken for zero.
     pub fn feasible_step(&self, p: &[f64], rounding: f64) -> f64 {
         let zero = rounding * norm_max(p);
-        (0..p.len())
-            .filter(|&i| self.qp.bounded[i] && !self.active[i] && p[i] > zero)
-            .map(|i| self.x[i] / p[i])
-            .fold(f64::INFINITY, f64::min)
+        feasible_step(&self.x, p, |i| self.qp.bounded[i] && !self.split.active[i] && p[i] > zero)
     }
 }

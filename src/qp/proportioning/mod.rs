@@ -126,7 +126,7 @@ fn run(
     loop {
         // P1 of docs/method.md: the stop
         let small = stop.residual + stop.noise * it.noise();
-        if it.residual() <= small || stop.plateau(it) {
+        if it.split.norm() <= small || stop.plateau(it) {
             it.rebalance()?;
             if judge.accepts(&it.x, &it.alpha)? {
                 if !stop.refine(limits.tolerance, judge.length()) {
@@ -138,7 +138,7 @@ fn run(
                 continue;
             }
             it.refresh()?;
-            if it.residual() <= small || stop.plateau(it) {
+            if it.split.norm() <= small || stop.plateau(it) {
                 match stop.tighten(judge.accepts(&it.x, &it.alpha)?) {
                     Some(verdict) => return Ok(verdict),
                     None => continue,
@@ -146,7 +146,7 @@ fn run(
             }
         }
         // P2: the face is explored (P3 to P8), or rows leave the active set, the proportioning step (P9 to P11)
-        let step = if it.is_proportional(limits.gamma) { it.explore()? } else { it.proportion(small)? };
+        let step = if it.split.is_proportional(limits.gamma) { it.explore()? } else { it.proportion(small)? };
         // P12, and P10 at a degenerate vertex
         let kind = match step {
             Step::Vertex { alpha } => {
@@ -181,15 +181,6 @@ impl Iterate<'_> {
     }
 
     fn progress(&self, kind: StepKind, small: f64) -> Progress<'_> {
-        Progress {
-            kind,
-            counts: &self.counts,
-            active: &self.active,
-            theta: self.theta(),
-            residual: self.residual(),
-            free: norm(&self.free),
-            chopped: norm(&self.chopped),
-            small,
-        }
+        Progress::new(kind, &self.counts, &self.split, self.theta(), small)
     }
 }

@@ -2,6 +2,7 @@
 
 use crate::error::Result;
 use crate::linalg::vector::{axpy, dot, norm};
+use crate::qp::gradient::feasible_step;
 use crate::qp::projection::project;
 use crate::qp::proportioning::iterate::Iterate;
 
@@ -73,7 +74,7 @@ impl Iterate<'_> {
     /// that they leave of it. One projection leaves components that make conjugate gradients diverge below 1e-8: what is
     /// returned has been projected twice at least.
     fn direction(&mut self) -> Result<Vec<f64>> {
-        let mut z = self.free.clone();
+        let mut z = self.split.free.clone();
         self.precondition(&mut z)?;
         self.project_on_face(&mut z)?;
         if !self.kept.is_empty() {
@@ -101,7 +102,7 @@ impl Iterate<'_> {
         self.observe_curvature(&p, &image)?;
         // P5: no curvature
         let singular =
-            norm(&self.free) > self.noise() && curvature <= SINGULAR * self.curvature * dot(&p, &p);
+            norm(&self.split.free) > self.noise() && curvature <= SINGULAR * self.curvature * dot(&p, &p);
         let t = if singular { f64::INFINITY } else { dot(&self.r, &p) / curvature };
         let bound = self.feasible_step(&p, if singular { ROUNDING } else { 0.0 });
         if bound.is_infinite() && !t.is_finite() {
@@ -129,7 +130,7 @@ impl Iterate<'_> {
     fn expand(&mut self, p: &[f64], t: f64) -> Result<bool> {
         let mut y = self.x.clone();
         axpy(-t, p, &mut y);
-        let Some(projected) = project(&self.qp, &mut self.coarse, &y, &self.active)? else {
+        let Some(projected) = project(&self.qp, &mut self.coarse, &y, &self.split.active)? else {
             return Ok(false);
         };
         let s = difference(&projected.point, &self.x);
@@ -170,7 +171,7 @@ impl Iterate<'_> {
     fn precondition(&mut self, p: &mut [f64]) -> Result<()> {
         let Some(preconditioner) = self.qp.preconditioner else { return Ok(()) };
         let mut z = vec![0.0; p.len()];
-        preconditioner.apply(&self.active, p, &mut z)?;
+        preconditioner.apply(&self.split.active, p, &mut z)?;
         self.counts.preconditioned += 1;
         if dot(&z, p) > 0.0 {
             p.copy_from_slice(&z);
@@ -181,7 +182,7 @@ impl Iterate<'_> {
     /// `L = max(L, 1.1 |P A p|^2 / p'A p)`, while the gradient is more than rounding.
     fn observe_curvature(&mut self, p: &[f64], image: &[f64]) -> Result<()> {
         let energy = dot(p, image);
-        if self.residual() > self.noise() && energy > 0.0 {
+        if self.split.norm() > self.noise() && energy > 0.0 {
             let mut projected = image.to_vec();
             let none = vec![false; p.len()];
             self.coarse.project(&none, &mut projected)?;
@@ -196,7 +197,7 @@ impl Iterate<'_> {
         for i in 0..x.len() {
             let y = x[i] - t * p[i];
             let hits =
-                self.qp.bounded[i] && !self.active[i] && p[i] > 0.0 && y <= 256.0 * f64::EPSILON * x[i];
+                self.qp.bounded[i] && !self.split.active[i] && p[i] > 0.0 && y <= 256.0 * f64::EPSILON * x[i];
             x[i] = if hits { 0.0 } else { y };
         }
         axpy(-t, image, &mut g);
@@ -217,14 +218,14 @@ impl Iterate<'_> {
     /// direction presses some of them on, it is projected. `None`, and nothing done, where it does not lead down:
     /// always where `G x = e` leaves no motion on that face, whose gradient is `small` then.
     fn free_pulling(&mut self, small: f64) -> Result<Option<Step>> {
-        let before = self.active.clone();
-        (0..before.len()).for_each(|i| self.active[i] &= self.chopped[i] == 0.0);
-        self.split_on_face()?;
-        if norm(&self.free) <= small {
+        let before = self.split.active.clone();
+        (0..before.len()).for_each(|i| self.split.active[i] &= self.split.chopped[i] == 0.0);
+        self.update_on_face()?;
+        if norm(&self.split.free) <= small {
             return self.back_to_face(before).map(|()| None);
         }
         let p = self.direction()?;
-        let pressed = (0..before.len()).any(|i| before[i] && !self.active[i] && p[i] > 0.0);
+        let pressed = (0..before.len()).any(|i| before[i] && !self.split.active[i] && p[i] > 0.0);
         let length = self.expected.filter(|t| pressed || self.feasible_step(&p, 0.0) < *t);
         // a preconditioned direction has its length, any other must have been measured
         let own = (pressed && self.qp.preconditioner.is_some()).then_some(1.0);
@@ -241,15 +242,16 @@ impl Iterate<'_> {
     }
 
     fn back_to_face(&mut self, active: Vec<bool>) -> Result<()> {
-        self.active = active;
-        self.split_on_face()
+        self.split.active = active;
+        self.update_on_face()
     }
 
     /// P10: gradient projection on the whole feasible set, with an exact line search.
     fn project_gradient(&mut self, small: f64) -> Result<Step> {
         if self.curvature == 0.0 {
             // what an open row has of r tells of its gap, not of A
-            let projected: Vec<f64> = self.free.iter().zip(&self.chopped).map(|(f, c)| f + c).collect();
+            let projected: Vec<f64> =
+                self.split.free.iter().zip(&self.split.chopped).map(|(f, c)| f + c).collect();
             let image = self.product(&projected)?;
             self.observe_curvature(&projected, &image)?;
         }
@@ -278,13 +280,11 @@ impl Iterate<'_> {
         if slope >= 0.0 {
             return Ok(Step::Stuck);
         }
-        let bound = (0..s.len())
-            .filter(|&i| self.qp.bounded[i] && s[i] < 0.0)
-            .map(|i| -self.x[i] / s[i])
-            .fold(f64::INFINITY, f64::min);
+        let p: Vec<f64> = s.iter().map(|s| -s).collect();
+        let bound = feasible_step(&self.x, &p, |i| self.qp.bounded[i]);
         let flat = curvature <= SINGULAR * self.curvature * dot(&s, &s);
         if flat && bound.is_infinite() {
-            return Ok(Step::Unbounded { p: s.into_iter().map(|s| -s).collect() });
+            return Ok(Step::Unbounded { p });
         }
         let minimum = if flat { f64::INFINITY } else { -slope / curvature };
         let t = minimum.min(bound.max(1.0));

@@ -40,12 +40,12 @@ impl Stop {
     /// P1, the plateau: no conjugate gradient step has halved the residual of this face for longer than exact arithmetic
     /// would need to solve it: rounding errors have taken over.
     pub fn plateau(&mut self, it: &Iterate) -> bool {
-        let (steps, residual) = (it.counts.steps(), norm(&it.free));
-        if self.face != it.active || residual < 0.5 * self.best {
+        let (steps, residual) = (it.counts.steps(), norm(&it.split.free));
+        if self.face != it.split.active || residual < 0.5 * self.best {
             (self.best, self.met) = (residual, steps);
-            self.face.clone_from(&it.active);
+            self.face.clone_from(&it.split.active);
         }
-        let unknowns = it.active.iter().filter(|active| !**active).count();
+        let unknowns = it.split.active.iter().filter(|active| !**active).count();
         steps - self.met > 2 * unknowns + 20
     }
 

@@ -158,7 +158,7 @@ impl<'a> Lagrangian<'a> {
         let rule = Rule { gamma: limits.gamma, step, flat };
         loop {
             let wanted = (self.precision * self.violation.length).min(self.enough);
-            if self.point.residual() <= wanted.max(small) {
+            if self.point.split.norm() <= wanted.max(small) {
                 return Ok(None);
             }
             if self.map.counts.steps() >= limits.steps {
@@ -168,7 +168,7 @@ impl<'a> Lagrangian<'a> {
                 Move::ConjugateGradient => StepKind::ConjugateGradient,
                 Move::Expansion => StepKind::Expansion,
                 Move::Release => StepKind::Release,
-                Move::Unbounded { .. } if self.point.residual() <= self.noise => {
+                Move::Unbounded { .. } if self.point.split.norm() <= self.noise => {
                     return Ok(Some(Verdict::Inaccurate));
                 }
                 Move::Unbounded { mut p } => {
@@ -183,7 +183,7 @@ impl<'a> Lagrangian<'a> {
 
     /// The projected gradient is small, and so is its change on the way to `G x = e`.
     fn is_optimal(&self, small: f64) -> bool {
-        self.point.residual() <= small
+        self.point.split.norm() <= small
             && (self.is_balanced() || self.map.largest * self.violation.length <= small)
     }
 
@@ -247,28 +247,19 @@ impl<'a> Lagrangian<'a> {
             StepKind::Expansion => counts.expansions += 1,
             StepKind::Release => counts.releases += 1,
         }
-        Progress {
-            kind,
-            counts: &self.map.counts,
-            active: &self.point.active,
-            theta: self.theta(),
-            residual: self.point.residual(),
-            free: norm(&self.point.free),
-            chopped: norm(&self.point.chopped),
-            small,
-        }
+        Progress::new(kind, &self.map.counts, &self.point.split, self.theta(), small)
     }
 
     /// The nearest point on `G x = e` with the same active rows; x itself where there is none.
     fn on_equalities(&mut self) -> Result<Vec<f64>> {
-        let found = project(&self.map.qp, &mut self.map.coarse, &self.point.x, &self.point.active)?;
+        let found = project(&self.map.qp, &mut self.map.coarse, &self.point.x, &self.point.split.active)?;
         Ok(found.map_or_else(|| self.point.x.clone(), |found| found.point))
     }
 
     fn solution(mut self, verdict: Verdict) -> Result<Solution> {
         let x = self.on_equalities()?;
         let coarse = &mut self.map.coarse;
-        coarse.select(&self.point.active)?;
+        coarse.select(&self.point.split.active)?;
         let (coarse_solves, coarse_factorisations) = (coarse.solves, coarse.factorisations);
         let counts = Counts { coarse_solves, coarse_factorisations, ..self.map.counts };
         let (undetermined, scale, alpha) = (coarse.deficiency(), self.scale, self.alpha().to_vec());

@@ -9,6 +9,7 @@
 
 use crate::error::Result;
 use crate::linalg::vector::{axpy, dot};
+use crate::qp::gradient::{at_bound, feasible_step, Split};
 
 /// H by its products.
 pub trait Hessian {
@@ -45,12 +46,7 @@ pub struct Bounded<'a> {
     bounded: &'a [bool],
     pub x: Vec<f64>,
     pub g: Vec<f64>,
-    /// Bounded rows at zero.
-    pub active: Vec<bool>,
-    /// g on the free rows, 0 on the active ones.
-    pub free: Vec<f64>,
-    /// min(g, 0) on the active rows, 0 on the free ones.
-    pub chopped: Vec<f64>,
+    pub split: Split,
     /// Search direction of the last conjugate gradient step on this face, with its image: (p, H p).
     conjugate: Option<(Vec<f64>, Vec<f64>)>,
 }
@@ -59,22 +55,15 @@ impl<'a> Bounded<'a> {
     /// The nearest x within the bounds; its gradient is still unknown.
     pub fn new(bounded: &'a [bool], mut x: Vec<f64>) -> Self {
         clip(bounded, &mut x);
-        let m = x.len();
-        let active = (0..m).map(|i| bounded[i] && x[i] == 0.0).collect();
-        let (g, free, chopped) = (vec![0.0; m], vec![0.0; m], vec![0.0; m]);
-        Self { bounded, x, g, active, free, chopped, conjugate: None }
-    }
-
-    /// Norm of the projected gradient `g^P`: the free and the chopped part together.
-    pub fn residual(&self) -> f64 {
-        (dot(&self.free, &self.free) + dot(&self.chopped, &self.chopped)).sqrt()
+        let (g, split) = (vec![0.0; x.len()], Split::of(at_bound(bounded, &x)));
+        Self { bounded, x, g, split, conjugate: None }
     }
 
     /// Takes another gradient at the same x: q itself has changed, or g is free of rounding again.
     pub fn set_gradient(&mut self, g: Vec<f64>) {
         self.g = g;
         self.conjugate = None;
-        self.split();
+        self.update();
     }
 
     /// One step: towards the minimum on the face while x is proportional, else off the face.
@@ -90,18 +79,19 @@ impl<'a> Bounded<'a> {
     /// step can still move on the face.
     fn is_proportional(&self, rule: &Rule) -> bool {
         let reduced = |i: usize| match self.bounded[i] {
-            true => self.free[i].min(self.x[i] / rule.step),
-            false => self.free[i],
+            true => self.split.free[i].min(self.x[i] / rule.step),
+            false => self.split.free[i],
         };
-        let face: f64 = (0..self.x.len()).map(|i| reduced(i) * self.free[i]).sum();
-        dot(&self.chopped, &self.chopped) <= rule.gamma * rule.gamma * face
+        let face: f64 = (0..self.x.len()).map(|i| reduced(i) * self.split.free[i]).sum();
+        dot(&self.split.chopped, &self.split.chopped) <= rule.gamma * rule.gamma * face
     }
 
     /// A conjugate gradient step where it stays within the bounds, else an expansion of the active set.
     fn explore(&mut self, hessian: &mut dyn Hessian, rule: &Rule) -> Result<Move> {
         let p = self.direction(hessian)?;
         let image = hessian.product(&p)?;
-        let (t, bound) = (self.minimum_along(&p, &image, rule), self.feasible_step(&p));
+        let (t, bound) =
+            (self.minimum_along(&p, &image, rule), feasible_step(&self.x, &p, |i| self.bounded[i]));
         if t <= bound && t.is_finite() {
             let same_face = self.advance(t, &p, &image);
             self.conjugate = same_face.then_some((p, image));
@@ -112,7 +102,7 @@ impl<'a> Bounded<'a> {
         }
         if !(t.is_finite() && self.project_if_lower(hessian, t, &p)?) {
             self.advance(bound, &p, &image);
-            let free = self.free.clone();
+            let free = self.split.free.clone();
             self.project(hessian, rule.step, &free)?;
         }
         Ok(Move::Expansion)
@@ -120,7 +110,7 @@ impl<'a> Bounded<'a> {
 
     /// The proportioning step, the exact minimum along the chopped gradient: rows leave the active set.
     fn proportion(&mut self, hessian: &mut dyn Hessian, rule: &Rule) -> Result<Move> {
-        let p = self.chopped.clone();
+        let p = self.split.chopped.clone();
         let image = hessian.product(&p)?;
         let t = self.minimum_along(&p, &image, rule);
         if t.is_infinite() {
@@ -133,7 +123,7 @@ impl<'a> Bounded<'a> {
 
     /// `p = z - (z'H p_old / p_old'H p_old) p_old`, z the preconditioned g^F.
     fn direction(&mut self, hessian: &mut dyn Hessian) -> Result<Vec<f64>> {
-        let mut p = hessian.precondition(&self.active, &self.free)?;
+        let mut p = hessian.precondition(&self.split.active, &self.split.free)?;
         if let Some((old, image)) = self.conjugate.take() {
             let beta = dot(&p, &image) / dot(&old, &image);
             axpy(-beta, &old, &mut p);
@@ -151,14 +141,6 @@ impl<'a> Bounded<'a> {
         }
     }
 
-    /// Largest t with `x - t p` within the bounds.
-    fn feasible_step(&self, p: &[f64]) -> f64 {
-        (0..p.len())
-            .filter(|&i| self.bounded[i] && p[i] > 0.0)
-            .map(|i| self.x[i] / p[i])
-            .fold(f64::INFINITY, f64::min)
-    }
-
     /// `x - t p` for a t within the bounds; rows that meet their bound there are set to exactly 0. Whether the
     /// face is still the same.
     fn advance(&mut self, t: f64, p: &[f64], image: &[f64]) -> bool {
@@ -167,7 +149,7 @@ impl<'a> Bounded<'a> {
             *x = if hits { 0.0 } else { *x - t * p };
         }
         axpy(-t, image, &mut self.g);
-        self.split()
+        self.update()
     }
 
     /// The point nearest to `x - t p` within the bounds, as the way there with its image: (s, H s).
@@ -201,20 +183,12 @@ impl<'a> Bounded<'a> {
         axpy(1.0, s, &mut self.x);
         clip(self.bounded, &mut self.x);
         axpy(1.0, image, &mut self.g);
-        self.split();
+        self.update();
     }
 
-    /// Active set and the two parts of the projected gradient; whether the active set is still the same.
-    fn split(&mut self) -> bool {
-        let mut same = true;
-        for i in 0..self.x.len() {
-            let active = self.bounded[i] && self.x[i] == 0.0;
-            same &= active == self.active[i];
-            self.active[i] = active;
-            let (free, chopped) = if active { (0.0, self.g[i].min(0.0)) } else { (self.g[i], 0.0) };
-            (self.free[i], self.chopped[i]) = (free, chopped);
-        }
-        same
+    /// Whether the active set is still the same.
+    fn update(&mut self) -> bool {
+        self.split.update(at_bound(self.bounded, &self.x), &self.g)
     }
 }
 
@@ -269,7 +243,7 @@ mod tests {
             let c: Vec<f64> = (0..m).map(|i| (0.3 * (wave * i) as f64).sin() - 0.1).collect();
             let mut point = start(&mut h, &bounded, vec![0.4 * wave as f64; m], &c);
             let q = |x: &[f64], g: &[f64]| 0.5 * (dot(x, g) - dot(x, &c));
-            while point.residual() > 1e-12 {
+            while point.split.norm() > 1e-12 {
                 let before = q(&point.x, &point.g);
                 match point.step(&mut h, &RULE).unwrap() {
                     Move::ConjugateGradient => kinds[0] += 1,
