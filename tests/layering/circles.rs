@@ -5,14 +5,21 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use crate::source::{expanded, module_of, paths, test_ranges, words, Named, Renamed};
 
+/// Of every folder the names it hands on, each with the module it comes from.
+type HandedOn = BTreeMap<Vec<String>, BTreeMap<String, Vec<String>>>;
+
 /// Of every folder the modules in circles: `solver: log watch`.
 pub fn circles(sources: &[(String, String)]) -> Vec<String> {
     let modules: BTreeSet<Vec<String>> = sources.iter().map(|(path, _)| module_of(path)).collect();
     let parents: BTreeSet<&[String]> =
         modules.iter().filter(|m| !m.is_empty()).map(|m| &m[..m.len() - 1]).collect();
+    let handed_on: HandedOn = sources
+        .iter()
+        .map(|(path, code)| (module_of(path), handed_on(&module_of(path), code, &modules)))
+        .collect();
     let mut found = Vec::new();
     for folder in parents {
-        let arrows = arrows(folder, &modules, sources);
+        let arrows = arrows(folder, &modules, &handed_on, sources);
         found.extend(knots(&arrows).iter().map(|knot| format!("{}: {}", folder.join("/"), knot.join(" "))));
     }
     found
@@ -22,33 +29,48 @@ pub fn circles(sources: &[(String, String)]) -> Vec<String> {
 fn arrows(
     folder: &[String],
     modules: &BTreeSet<Vec<String>>,
+    handed_on: &HandedOn,
     sources: &[(String, String)],
 ) -> BTreeMap<String, BTreeSet<String>> {
-    let is_child = |name: &str| modules.contains(&[folder, &[name.to_owned()]].concat());
-    let own = sources.iter().find(|(path, _)| module_of(path) == folder);
-    let handed_on = own.map(|(_, code)| handed_on(code, &is_child)).unwrap_or_default();
     let mut arrows: BTreeMap<String, BTreeSet<String>> = BTreeMap::new();
     for (path, code) in sources {
         let module = module_of(path);
         let Some(rest) = module.strip_prefix(folder) else { continue };
         let from = rest.first().map_or("mod", String::as_str);
         let named = named(path, code, !rest.is_empty()).filter_map(|path| {
+            let path = resolved(path, modules, handed_on);
             let name = path.strip_prefix(folder)?.first()?.clone();
-            Some(if is_child(&name) { name } else { handed_on.get(&name).cloned().unwrap_or("mod".into()) })
+            Some(if modules.contains(&path[..=folder.len()]) { name } else { "mod".into() })
         });
         arrows.entry(from.to_owned()).or_default().extend(named.filter(|to| to != from));
     }
     arrows
 }
 
-/// Where the names come from that `mod.rs` has by `use child::...`.
-fn handed_on(code: &str, is_child: &dyn Fn(&str) -> bool) -> BTreeMap<String, String> {
+/// The path with the modules in it that hand the name on from one to the next.
+fn resolved(mut path: Vec<String>, modules: &BTreeSet<Vec<String>>, handed_on: &HandedOn) -> Vec<String> {
+    for at in 0.. {
+        let Some(name) = path.get(at) else { break };
+        let from = handed_on.get(&path[..at]).and_then(|names| names.get(name));
+        if let Some(from) = from.filter(|_| !modules.contains(&path[..=at])).cloned() {
+            path.splice(at..at, from);
+        }
+    }
+    path
+}
+
+/// Where the names come from that the folder has by `use child::...`.
+fn handed_on(
+    folder: &[String],
+    code: &str,
+    modules: &BTreeSet<Vec<String>>,
+) -> BTreeMap<String, Vec<String>> {
     let mut names = BTreeMap::new();
     for path in uses(code) {
         let from = usize::from(path.first().is_some_and(|first| first == "self"));
-        if let [child, .., name] = &path[from..] {
-            if is_child(child) {
-                names.insert(name.clone(), child.clone());
+        if let [through @ .., name] = &path[from..] {
+            if !through.is_empty() && modules.contains(&[folder, &through[..1]].concat()) {
+                names.insert(name.clone(), through.to_vec());
             }
         }
     }
@@ -134,6 +156,18 @@ mod tests {
             ("x/c.rs", "use crate::x::a::A;"),
         ];
         assert_eq!(of(&sources), ["x: a b c"]);
+    }
+
+    #[test]
+    fn a_name_that_comes_through_several_folders_is_that_of_its_module() {
+        let sources = [
+            ("x/mod.rs", "mod y; mod c; pub use y::A; pub use y::b::B;"),
+            ("x/y/mod.rs", "mod a; mod b; pub use a::A;"),
+            ("x/y/a.rs", "use crate::x::B;"),
+            ("x/y/b.rs", "use crate::x::{c, A};"),
+            ("x/c.rs", ""),
+        ];
+        assert_eq!(of(&sources), ["x/y: a b"]);
     }
 
     #[test]
