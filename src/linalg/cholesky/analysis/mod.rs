@@ -27,7 +27,7 @@ pub struct Analysis {
     pub order: Vec<usize>,
     /// Position of each dof, `NONE` for held dofs.
     pub position: Vec<usize>,
-    pub nodes: Supernodes,
+    pub(in crate::linalg::cholesky) nodes: Supernodes,
 }
 
 impl Analysis {
