@@ -21,13 +21,12 @@ pub struct Coarse<'a> {
     whole: Vec<f64>,
     gram: Option<(Gram, Arc<Analysis>)>,
     /// The face of all rows, and the last other one.
-    faces: [Option<Face>; 2],
-    selected: usize,
+    faces: [Option<CoarseFace>; 2],
     pub solves: usize,
     pub factorisations: usize,
 }
 
-struct Face {
+struct CoarseFace {
     held: Vec<bool>,
     solver: Solver,
 }
@@ -49,17 +48,7 @@ impl<'a> Coarse<'a> {
         whole.iter_mut().for_each(|v| *v /= unit * unit);
         let gram = if whole.is_empty() { None } else { Some(analysed(g_transposed)?) };
         let faces = [None, None];
-        Ok(Self {
-            g_transposed,
-            rounding,
-            unit,
-            whole,
-            gram,
-            faces,
-            selected: 0,
-            solves: 0,
-            factorisations: 0,
-        })
+        Ok(Self { g_transposed, rounding, unit, whole, gram, faces, solves: 0, factorisations: 0 })
     }
 
     /// Dimension r of the coarse space.
@@ -67,93 +56,47 @@ impl<'a> Coarse<'a> {
         self.whole.len()
     }
 
-    /// Factorises `W_F` of the rows that are not held, unless that has just been done.
-    pub fn select(&mut self, held: &[bool]) -> Result<()> {
-        let Some((gram, analysis)) = &self.gram else { return Ok(()) };
-        self.selected = usize::from(held.contains(&true));
-        let slot = &mut self.faces[self.selected];
-        if slot.as_ref().is_some_and(|face| face.held == held) {
-            return Ok(());
+    /// The space on the rows that are not held: `W_F` is factorised, unless that has just been done.
+    pub fn on(&mut self, held: &[bool]) -> Result<OnFace<'_>> {
+        let selected = usize::from(held.contains(&true));
+        if let Some((gram, analysis)) = &self.gram {
+            if !self.faces[selected].as_ref().is_some_and(|face| face.held == held) {
+                let mut w = gram.sum(self.g_transposed, held)?;
+                w.val.iter_mut().for_each(|v| *v /= self.unit * self.unit);
+                let (unit, whole, rounding) = (self.unit, &self.whole[..], self.rounding);
+                let rows = Rows { g_transposed: self.g_transposed, held, unit, whole, rounding };
+                let solver = match analysis.attempt(&w, 1.0)? {
+                    Ok(factor) if factor.smallest_pivot() > SINGULAR => Solver::Cholesky(factor),
+                    _ => Solver::Pseudo(PseudoInverse::new(&w, analysis, &rows)?),
+                };
+                self.factorisations += 1;
+                self.faces[selected] = Some(CoarseFace { held: held.to_vec(), solver });
+            }
         }
-        let mut w = gram.sum(self.g_transposed, held)?;
-        w.val.iter_mut().for_each(|v| *v /= self.unit * self.unit);
-        let (unit, whole, rounding) = (self.unit, &self.whole[..], self.rounding);
-        let rows = Rows { g_transposed: self.g_transposed, held, unit, whole, rounding };
-        let solver = match analysis.attempt(&w, 1.0)? {
-            Ok(factor) if factor.smallest_pivot() > SINGULAR => Solver::Cholesky(factor),
-            _ => Solver::Pseudo(PseudoInverse::new(&w, analysis, &rows)?),
-        };
-        self.factorisations += 1;
-        *slot = Some(Face { held: held.to_vec(), solver });
-        Ok(())
-    }
-
-    /// `W_F+ rhs` on the selected face.
-    pub fn solve(&mut self, rhs: &[f64]) -> Result<Vec<f64>> {
-        self.solves += 1;
-        let Some(face) = &self.faces[self.selected] else { return Ok(vec![0.0; rhs.len()]) };
-        let mut x = self.in_units(rhs);
-        match &face.solver {
-            Solver::Cholesky(factor) => factor.solve(&mut x)?,
-            Solver::Pseudo(solver) => x = solver.solve(&x)?,
-        }
-        Ok(self.in_units(&x))
-    }
-
-    /// `W_F^-1 rhs`, or `(W_F + 1e-8 N N')^-1 rhs` where W_F has the kernel N.
-    pub fn solve_regularised(&mut self, rhs: &[f64]) -> Result<Vec<f64>> {
-        const WEIGHT: f64 = 1e-8;
-        let mut x = self.solve(rhs)?;
-        if let Some(Face { solver: Solver::Pseudo(solver), .. }) = &self.faces[self.selected] {
-            solver.add_kernel_part(1.0 / (WEIGHT * self.unit * self.unit), rhs, &mut x);
-        }
-        Ok(x)
+        let solver = self.faces[selected].as_ref().map(|face| &face.solver);
+        Ok(OnFace { unit: self.unit, solver, solves: &mut self.solves })
     }
 
     /// `argmin |v_F - G_F'alpha|`, alpha of minimum norm.
     pub fn multiplier(&mut self, held: &[bool], v: &[f64]) -> Result<Vec<f64>> {
         /// Rounding of `G_F v` is large against what weakly held motions have of it; of what is left of v it is not.
         const PASSES: usize = 3;
-        self.select(held)?;
         let mut rest: Vec<f64> = v.iter().zip(held).map(|(v, held)| if *held { 0.0 } else { *v }).collect();
-        let image = self.image(&rest);
-        let mut alpha = self.solve(&image)?;
-        for _ in 1..if self.is_weak() { PASSES } else { 1 } {
+        let (g_transposed, dimension) = (self.g_transposed, self.dimension());
+        let image = |x: &[f64]| {
+            let mut image = vec![0.0; dimension];
+            g_transposed.mul_transposed_add(1.0, x, &mut image);
+            image
+        };
+        let mut face = self.on(held)?;
+        let mut alpha = face.solve(&image(&rest))?;
+        for _ in 1..if face.is_weak() { PASSES } else { 1 } {
             for i in (0..v.len()).filter(|&i| !held[i]) {
-                rest[i] = v[i] - self.g_transposed.row_dot(i, &alpha);
+                rest[i] = v[i] - g_transposed.row_dot(i, &alpha);
             }
-            let image = self.image(&rest);
-            axpy(1.0, &self.solve(&image)?, &mut alpha);
+            axpy(1.0, &face.solve(&image(&rest))?, &mut alpha);
         }
         Ok(alpha)
-    }
-
-    /// x / s
-    fn in_units(&self, x: &[f64]) -> Vec<f64> {
-        x.iter().map(|x| x / self.unit).collect()
-    }
-
-    /// Some motions are held so weakly that rounding of `G_F v` matters in `W_F+ G_F v`.
-    fn is_weak(&self) -> bool {
-        matches!(&self.faces[self.selected], Some(Face { solver: Solver::Pseudo(solver), .. }) if solver.weak)
-    }
-
-    /// Dimension of the kernel of `W_F` on the selected face.
-    pub fn deficiency(&self) -> usize {
-        match &self.faces[self.selected] {
-            Some(Face { solver: Solver::Pseudo(solver), .. }) => solver.deficiency(),
-            _ => 0,
-        }
-    }
-
-    /// T with `T'W_F T = I` on all that the face resists, r x rank, where it does not resist all motions well.
-    pub fn basis(&self) -> Option<Matrix> {
-        let Some(Face { solver: Solver::Pseudo(solver), .. }) = &self.faces[self.selected] else {
-            return None;
-        };
-        let mut basis = solver.basis();
-        basis.data.iter_mut().for_each(|v| *v /= self.unit);
-        Some(basis)
     }
 
     /// `G x`
@@ -177,16 +120,75 @@ impl<'a> Coarse<'a> {
     }
 }
 
+/// The coarse space on one face.
+pub struct OnFace<'c> {
+    unit: f64,
+    /// None where there are no modes.
+    solver: Option<&'c Solver>,
+    solves: &'c mut usize,
+}
+
+impl OnFace<'_> {
+    /// `W_F+ rhs`
+    pub fn solve(&mut self, rhs: &[f64]) -> Result<Vec<f64>> {
+        *self.solves += 1;
+        let Some(solver) = self.solver else { return Ok(vec![0.0; rhs.len()]) };
+        let mut x = self.in_units(rhs);
+        match solver {
+            Solver::Cholesky(factor) => factor.solve(&mut x)?,
+            Solver::Pseudo(solver) => x = solver.solve(&x)?,
+        }
+        Ok(self.in_units(&x))
+    }
+
+    /// `W_F^-1 rhs`, or `(W_F + 1e-8 N N')^-1 rhs` where W_F has the kernel N.
+    pub fn solve_regularised(&mut self, rhs: &[f64]) -> Result<Vec<f64>> {
+        const WEIGHT: f64 = 1e-8;
+        let mut x = self.solve(rhs)?;
+        if let Some(solver) = self.pseudo() {
+            solver.add_kernel_part(1.0 / (WEIGHT * self.unit * self.unit), rhs, &mut x);
+        }
+        Ok(x)
+    }
+
+    /// Dimension of the kernel of `W_F`.
+    pub fn deficiency(&self) -> usize {
+        self.pseudo().map_or(0, PseudoInverse::deficiency)
+    }
+
+    /// T with `T'W_F T = I` on all that the face resists, r x rank, where it does not resist all motions well.
+    pub fn basis(&self) -> Option<Matrix> {
+        let mut basis = self.pseudo()?.basis();
+        basis.data.iter_mut().for_each(|v| *v /= self.unit);
+        Some(basis)
+    }
+
+    /// Some motions are held so weakly that rounding of `G_F v` matters in `W_F+ G_F v`.
+    fn is_weak(&self) -> bool {
+        self.pseudo().is_some_and(|solver| solver.weak)
+    }
+
+    fn pseudo(&self) -> Option<&PseudoInverse> {
+        match self.solver {
+            Some(Solver::Pseudo(solver)) => Some(solver),
+            _ => None,
+        }
+    }
+
+    /// x / s
+    fn in_units(&self, x: &[f64]) -> Vec<f64> {
+        x.iter().map(|x| x / self.unit).collect()
+    }
+}
+
 /// Basis of the free motions, `|G_F a| <= rounding |G| |a|`, r x deficiency: what the rows that are not held do not resist.
 pub fn undetermined(g_transposed: &Csr, held: &[bool], rounding: f64) -> Result<Matrix> {
     /// Entries of a basis vector below this, in units of `rounding`, are rounding.
     const DROP: f64 = 16.0;
     let mut coarse = Coarse::new(g_transposed, rounding)?;
-    coarse.select(held)?;
-    let Some(Face { solver: Solver::Pseudo(solver), .. }) = &coarse.faces[coarse.selected] else {
-        return Matrix::zeros(coarse.dimension(), 0);
-    };
-    let _room = room(4 * size_of::<f64>() * coarse.dimension() * solver.deficiency(), "open motions")?;
+    let (dimension, face) = (coarse.dimension(), coarse.on(held)?);
+    let Some(solver) = face.pseudo() else { return Matrix::zeros(dimension, 0) };
+    let _room = room(4 * size_of::<f64>() * dimension * solver.deficiency(), "open motions")?;
     Ok(solver.kernel().reduced(DROP * rounding))
 }
 
@@ -229,9 +231,9 @@ mod tests {
         g_transposed.push_row([(0, 1.0), (1, 1.0)]);
         g_transposed.push_row([(0, 1.0), (1, -1.0)]);
         let mut coarse = Coarse::new(&g_transposed, 1e-14).unwrap();
-        coarse.select(&[false, true]).unwrap();
-        assert_eq!(coarse.deficiency(), 1);
-        let x = coarse.solve(&[1.0, 1.0]).unwrap();
+        let mut face = coarse.on(&[false, true]).unwrap();
+        assert_eq!(face.deficiency(), 1);
+        let x = face.solve(&[1.0, 1.0]).unwrap();
         assert!((x[0] - 0.5).abs() < 1e-14 && (x[1] - 0.5).abs() < 1e-14);
         let free = undetermined(&g_transposed, &[false, true], 1e-14).unwrap();
         assert_eq!((free.rows, free.cols), (2, 1));
@@ -273,8 +275,8 @@ mod tests {
         let held = vec![false; g_transposed.rows()];
         let free = undetermined(g_transposed, &held, rounding).unwrap();
         let mut coarse = Coarse::new(g_transposed, rounding).unwrap();
-        coarse.select(&held).unwrap();
-        assert_eq!((free.cols, coarse.deficiency()), (expected.len(), expected.len()));
+        let face = coarse.on(&held).unwrap();
+        assert_eq!((free.cols, face.deficiency()), (expected.len(), expected.len()));
         for j in 0..free.cols {
             let mut original = vec![0.0; 6];
             t.mul_add(1.0, free.col(j), &mut original);

@@ -61,8 +61,7 @@ impl Trial {
     fn done(self, qp: &Qp, coarse: &mut Coarse) -> Result<Projected> {
         let mut point = self.point.clone();
         let held: Vec<bool> = point.iter().map(|l| *l == 0.0).collect();
-        coarse.select(&held)?;
-        let step = coarse.solve(&self.residual)?;
+        let step = coarse.on(&held)?.solve(&self.residual)?;
         for i in (0..point.len()).filter(|&i| !held[i]) {
             point[i] += qp.g_transposed.row_dot(i, &step);
         }
@@ -86,8 +85,7 @@ pub fn project(qp: &Qp, coarse: &mut Coarse, y: &[f64], held: &[bool]) -> Result
         // J3: Newton
         let face: Vec<bool> =
             (0..y.len()).map(|i| held[i] || (qp.bounded[i] && now.point[i] <= 0.0)).collect();
-        coarse.select(&face)?;
-        let step = coarse.solve_regularised(&now.residual)?;
+        let step = coarse.on(&face)?.solve_regularised(&now.residual)?;
         let Some(t) = minimum_along(qp, y, held, &now, &step) else {
             return if error <= STAGNATED { now.done(qp, coarse).map(Some) } else { Ok(None) };
         };

@@ -126,8 +126,8 @@ fn resisted(qp: &Qp, rows: &[usize]) -> Result<(Option<Matrix>, usize)> {
     let mut held = vec![true; qp.g_transposed.rows()];
     rows.iter().for_each(|&i| held[i] = false);
     let mut coarse = Coarse::new(qp.g_transposed, qp.rounding)?;
-    coarse.select(&held)?;
-    Ok((coarse.basis(), coarse.deficiency()))
+    let on_face = coarse.on(&held)?;
+    Ok((on_face.basis(), on_face.deficiency()))
 }
 
 /// `A B`

@@ -49,14 +49,14 @@ pub fn active_set(qp: Qp, direct: Direct, from: &Solution, judge: &mut dyn Judge
         Err(error) if error.kind == Kind::Memory => (false, Verdict::Stalled),
         Err(error) => (false, Verdict::of_refusal(error)?),
     };
-    run.coarse.select(&qp.at_bound(&run.x))?;
+    let undetermined = run.coarse.on(&qp.at_bound(&run.x))?.deficiency();
     let counts = Counts {
         coarse_solves: run.coarse.solves,
         coarse_factorisations: run.coarse.factorisations,
         ..run.counts
     };
     if settled && judge.accepts(&run.x, &run.alpha)? {
-        let (undetermined, verdict) = (run.coarse.deficiency(), Verdict::Solved);
+        let verdict = Verdict::Solved;
         return Ok(Solution { x: run.x, alpha: run.alpha, undetermined, scale: from.scale, verdict, counts });
     }
     Ok(Solution { verdict: ended, counts, ..from.clone() })

@@ -27,9 +27,7 @@ pub fn algorithm_3(
     let (alpha, scale) = (outer.alpha(), judge.scale(&outer.x, &outer.alpha())?);
     let active: Vec<bool> =
         outer.x.iter().zip(qp.bounded).map(|(x, bounded)| *bounded && *x == 0.0).collect();
-    let mut coarse = Coarse::new(qp.g_transposed, qp.rounding)?;
-    coarse.select(&active)?;
-    let undetermined = coarse.deficiency();
+    let undetermined = Coarse::new(qp.g_transposed, qp.rounding)?.on(&active)?.deficiency();
     Ok(Solution { x: outer.x, alpha, undetermined, scale, verdict, counts: outer.counts })
 }
 

@@ -66,13 +66,12 @@ impl Sizes {
 fn reference(q: &mut Quadratic, judge: &mut dyn Judge) -> Result<f64> {
     let mut coarse = Coarse::new(q.qp.g_transposed, q.qp.rounding)?;
     let all = vec![false; q.qp.b.len()];
-    coarse.select(&all)?;
-    let y = coarse.solve(q.qp.e)?;
+    let y = coarse.on(&all)?.solve(q.qp.e)?;
     let l: Vec<f64> = (0..all.len()).map(|i| q.qp.g_transposed.row_dot(i, &y)).collect();
     let mut g = q.product(&l)?;
     axpy(-1.0, q.qp.b, &mut g);
     let image = coarse.image(&g);
-    judge.scale(&l, &coarse.solve(&image)?)
+    judge.scale(&l, &coarse.on(&all)?.solve(&image)?)
 }
 
 /// Norm of a symmetric semidefinite map, from below; 1 where it is 0.

@@ -129,8 +129,7 @@ fn most_correlated(qp: &Qp, held: &[bool], residual: &[f64]) -> Option<usize> {
 
 /// `G_P' (G_P G_P')+ e` on the rows P that are not held, zero elsewhere.
 fn least_squares(qp: &Qp, coarse: &mut Coarse, held: &[bool]) -> Result<Vec<f64>> {
-    coarse.select(held)?;
-    let alpha = coarse.solve(qp.e)?;
+    let alpha = coarse.on(held)?.solve(qp.e)?;
     Ok((0..held.len()).map(|i| if held[i] { 0.0 } else { qp.g_transposed.row_dot(i, &alpha) }).collect())
 }
 

@@ -92,8 +92,7 @@ impl<'a> Iterate<'a> {
         }
         let mut rest = self.qp.e.to_vec();
         self.qp.g_transposed.mul_transposed_add(-1.0, &self.x, &mut rest);
-        self.coarse.select(&self.split.active)?;
-        let step = self.coarse.solve(&rest)?;
+        let step = self.coarse.on(&self.split.active)?.solve(&rest)?;
         let mut x = self.x.clone();
         for i in (0..x.len()).filter(|&i| !self.split.active[i]) {
             x[i] += self.qp.g_transposed.row_dot(i, &step);

@@ -84,8 +84,7 @@ impl<'a> Augmented<'a> {
 
     /// `W+ y`
     pub fn solve(&mut self, y: &[f64]) -> Result<Vec<f64>> {
-        self.coarse.select(&self.none)?;
-        self.coarse.solve(y)
+        self.coarse.on(&self.none)?.solve(y)
     }
 
     /// `G'y`

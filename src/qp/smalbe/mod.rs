@@ -259,10 +259,10 @@ impl<'a> Lagrangian<'a> {
     fn solution(mut self, verdict: Verdict) -> Result<Solution> {
         let x = self.on_equalities()?;
         let coarse = &mut self.map.coarse;
-        coarse.select(&self.point.split.active)?;
+        let undetermined = coarse.on(&self.point.split.active)?.deficiency();
         let (coarse_solves, coarse_factorisations) = (coarse.solves, coarse.factorisations);
         let counts = Counts { coarse_solves, coarse_factorisations, ..self.map.counts };
-        let (undetermined, scale, alpha) = (coarse.deficiency(), self.scale, self.alpha().to_vec());
+        let (scale, alpha) = (self.scale, self.alpha().to_vec());
         Ok(Solution { x, alpha, undetermined, scale, verdict, counts })
     }
 }
