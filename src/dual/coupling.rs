@@ -53,11 +53,11 @@ pub struct FaceCoupling {
     /// Blocks of full rank and large ones; 1 for all other rows.
     sparse: Cholesky,
     /// Small suspect blocks, by their first rows.
-    dense: Vec<Block>,
+    dense: Vec<DependentRows>,
 }
 
 #[derive(Clone)]
-struct Block {
+struct DependentRows {
     rows: Vec<usize>,
     inverse: Arc<SpdSolver>,
 }
@@ -111,7 +111,7 @@ impl Coupling {
             let known = last.and_then(|face| face.block(&rows));
             dense.push(match known {
                 Some(block) => block.clone(),
-                None => Block { inverse: Arc::new(dense_inverse(&w, &rows)?), rows },
+                None => DependentRows { inverse: Arc::new(dense_inverse(&w, &rows)?), rows },
             });
         }
         let mut apart = own;
@@ -175,7 +175,7 @@ impl FaceCoupling {
         Ok(())
     }
 
-    fn block(&self, rows: &[usize]) -> Option<&Block> {
+    fn block(&self, rows: &[usize]) -> Option<&DependentRows> {
         let at = self.dense.binary_search_by_key(&rows[0], |block| block.rows[0]).ok()?;
         self.dense.get(at).filter(|block| block.rows == rows)
     }

@@ -2,7 +2,7 @@
 
 use crate::error::Result;
 use crate::ffi::bodies::body_of_order;
-use crate::ffi::boundary::{call, count, enter, Output, Target};
+use crate::ffi::boundary::{call, count, enter, OutStruct, Output};
 use crate::ffi::header::status::{of_kind, of_outcome};
 use crate::ffi::header::types::{feti_findings, feti_problem, FETI_EQUALITY, FETI_INEQUALITY};
 use crate::ffi::rows::row_kind;
@@ -26,7 +26,7 @@ use crate::solver::{Findings, RowKind};
 pub unsafe extern "C" fn feti_diagnosis(p: *mut feti_problem, out: *mut feti_findings) -> i32 {
     enter(p, call!(feti_diagnosis(p, out)), |problem| {
         // SAFETY: the caller gives `struct_size` bytes.
-        let target = unsafe { Target::new(out, "out") }?;
+        let target = unsafe { OutStruct::new(out, "out") }?;
         target.write(&described(problem.findings()?));
         Ok(())
     })

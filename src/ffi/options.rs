@@ -4,7 +4,9 @@ use std::ffi::c_char;
 use std::ptr;
 
 use crate::error::Error;
-use crate::ffi::boundary::{call, check_text_room, copy_text, enter, text, without_problem, Output, Target};
+use crate::ffi::boundary::{
+    call, check_text_room, copy_text, enter, text, without_problem, OutStruct, Output,
+};
 use crate::ffi::header::types::{
     feti_option, feti_problem, FETI_OPTION_F64, FETI_OPTION_I64, FETI_OPTION_STR,
 };
@@ -200,7 +202,7 @@ pub unsafe extern "C" fn feti_option_at(k: i64, out: *mut feti_option) -> i32 {
         let info = found
             .ok_or_else(|| Error::argument("k", format!("there are {} options", table.len())).index(k))?;
         // SAFETY: the caller gives `struct_size` bytes.
-        unsafe { Target::new(out, "out") }?.write(&described(info));
+        unsafe { OutStruct::new(out, "out") }?.write(&described(info));
         Ok(())
     })
 }

@@ -1,7 +1,7 @@
 //! Where the time of a call went, and the memory that is kept.
 
 use crate::error::Error;
-use crate::ffi::boundary::{call, enter, Output, Target};
+use crate::ffi::boundary::{call, enter, OutStruct, Output};
 use crate::ffi::header::types::{feti_phase, feti_problem};
 
 /// Number of phases of a setup and a solve.
@@ -46,7 +46,7 @@ pub unsafe extern "C" fn feti_phase_at(p: *mut feti_problem, k: i64, out: *mut f
         let phase = found
             .ok_or_else(|| Error::argument("k", format!("there are {} phases", phases.len())).index(k))?;
         // SAFETY: the caller gives `struct_size` bytes.
-        unsafe { Target::new(out, "out") }?.write(&feti_phase {
+        unsafe { OutStruct::new(out, "out") }?.write(&feti_phase {
             struct_size: size_of::<feti_phase>() as i64,
             bytes: phase.bytes as i64,
             seconds: phase.seconds,

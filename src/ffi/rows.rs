@@ -43,7 +43,7 @@ pub unsafe extern "C" fn feti_rows_add_i32(
     first: *mut i64,
 ) -> i32 {
     let call = call!(feti_rows_add_i32(p, kind, rows, row_ptr, body, dof, val, base, rhs, first));
-    let given = Rows { kind, rows, row_ptr, body, dof, val, base, rhs, first };
+    let given = HostRows { kind, rows, row_ptr, body, dof, val, base, rhs, first };
     // SAFETY: shapes by the caller's word.
     unsafe { given.add(p, call) }
 }
@@ -84,13 +84,13 @@ pub unsafe extern "C" fn feti_rows_add_i64(
     first: *mut i64,
 ) -> i32 {
     let call = call!(feti_rows_add_i64(p, kind, rows, row_ptr, body, dof, val, base, rhs, first));
-    let given = Rows { kind, rows, row_ptr, body, dof, val, base, rhs, first };
+    let given = HostRows { kind, rows, row_ptr, body, dof, val, base, rhs, first };
     // SAFETY: shapes by the caller's word.
     unsafe { given.add(p, call) }
 }
 
 /// Arguments of the two functions above.
-struct Rows<I> {
+struct HostRows<I> {
     kind: i32,
     rows: i64,
     row_ptr: *const I,
@@ -102,7 +102,7 @@ struct Rows<I> {
     first: *mut i64,
 }
 
-impl<I: Index> Rows<I> {
+impl<I: Index> HostRows<I> {
     /// # Safety
     /// The arrays have the documented shapes.
     unsafe fn add(&self, p: *mut feti_problem, call: Call) -> i32 {

@@ -1,6 +1,6 @@
 //! Setup, solve, and the verdict on an answer.
 
-use crate::ffi::boundary::{call, enter, enter_with_status, finite_input, same, Target};
+use crate::ffi::boundary::{call, enter, enter_with_status, finite_input, same, OutStruct};
 use crate::ffi::header::status::of_outcome;
 use crate::ffi::header::types::{feti_certificate, feti_info, feti_problem};
 use crate::solver::{Certificate, Report, Sizes};
@@ -60,7 +60,7 @@ pub extern "C" fn feti_setup(p: *mut feti_problem) -> i32 {
 #[no_mangle]
 pub unsafe extern "C" fn feti_solve(p: *mut feti_problem, info: *mut feti_info) -> i32 {
     // SAFETY: NULL, or `struct_size` bytes by the caller's word.
-    let target = (!info.is_null()).then(|| unsafe { Target::new(info, "info") }).transpose();
+    let target = (!info.is_null()).then(|| unsafe { OutStruct::new(info, "info") }).transpose();
     let (mut sizes, mut found) = (Sizes::default(), None);
     let status = enter_with_status(p, call!(feti_solve(p, info)), |problem| {
         target.as_ref().map_err(Clone::clone)?;
@@ -120,7 +120,7 @@ pub unsafe extern "C" fn feti_check(
             (finite_input(u, n, "u")?, finite_input(lambda, rows, "lambda")?, finite_input(mu, eqs, "mu")?)
         };
         // SAFETY: `struct_size` bytes by the caller's word.
-        let target = unsafe { Target::new(out, "out") }?;
+        let target = unsafe { OutStruct::new(out, "out") }?;
         let _room = problem.working_room()?;
         target.write(&certificate(&problem.check(u, lambda, mu)?));
         Ok(())

@@ -71,7 +71,7 @@ pub fn run_apart<T: Send>(
     let order: Vec<usize> = (0..count).collect();
     let mut results: Vec<Option<T>> = order.iter().map(|_| None).collect();
     run_heard(Tasks { threads, order: &order, on_caller: &on_caller }, task, &mut |heard| {
-        if let Heard::Done(k, result) = heard {
+        if let TaskEvent::Done(k, result) = heard {
             results[k] = Some(result);
         }
     })?;
@@ -87,7 +87,7 @@ pub struct Tasks<'a> {
 }
 
 /// What the calling thread hears while tasks run.
-pub enum Heard<T, M = ()> {
+pub enum TaskEvent<T, M = ()> {
     /// A task is done, with its result.
     Done(usize, T),
     /// A task that is not done yet has something to say.
@@ -110,7 +110,7 @@ enum Sent<T, M> {
 pub fn run_heard<T: Send>(
     tasks: Tasks,
     task: impl Fn(usize) -> Result<T> + Sync,
-    hear: &mut dyn FnMut(Heard<T>),
+    hear: &mut dyn FnMut(TaskEvent<T>),
 ) -> Result<()> {
     run_telling(tasks, |k, _| task(k), hear)
 }
@@ -119,13 +119,13 @@ pub fn run_heard<T: Send>(
 pub fn run_telling<T: Send, M: Send>(
     tasks: Tasks,
     task: impl Fn(usize, &dyn Fn(M)) -> Result<T> + Sync,
-    hear: &mut dyn FnMut(Heard<T, M>),
+    hear: &mut dyn FnMut(TaskEvent<T, M>),
 ) -> Result<()> {
     let mut first: Option<(usize, Error)> = None;
     let mut sort = |sent: Option<Sent<T, M>>| match sent {
-        None => hear(Heard::Nothing),
-        Some(Sent::Said(what)) => hear(Heard::Said(what)),
-        Some(Sent::Ended(k, Ok(value))) => hear(Heard::Done(k, value)),
+        None => hear(TaskEvent::Nothing),
+        Some(Sent::Said(what)) => hear(TaskEvent::Said(what)),
+        Some(Sent::Ended(k, Ok(value))) => hear(TaskEvent::Done(k, value)),
         Some(Sent::Ended(k, Err(error))) if first.as_ref().is_none_or(|(at, _)| k < *at) => {
             first = Some((k, error));
         }
@@ -214,7 +214,7 @@ mod tests {
             let ended =
                 run_heard(Tasks { threads, order: &order, on_caller: &|_| false }, failing, &mut |event| {
                     assert_eq!(std::thread::current().id(), caller);
-                    if let Heard::Done(k, square) = event {
+                    if let TaskEvent::Done(k, square) = event {
                         heard.push((k, square));
                     }
                 });
@@ -289,7 +289,7 @@ mod tests {
         };
         let mut events = Vec::new();
         run_heard(Tasks { threads: 2, order: &[0], on_caller: &|_| false }, waiting, &mut |event| {
-            events.push(matches!(event, Heard::Nothing));
+            events.push(matches!(event, TaskEvent::Nothing));
             ended.store(true, Ordering::Relaxed);
         })
         .unwrap();

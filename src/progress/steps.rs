@@ -54,7 +54,7 @@ impl<'a> Steps<'a> {
 }
 
 impl Observer for Steps<'_> {
-    fn step(&mut self, now: &qp::Progress) -> Result<()> {
+    fn step(&mut self, now: &qp::StepReport) -> Result<()> {
         if now.counts.steps() < self.last.steps() || now.counts.products < self.last.products {
             self.before = self.before + self.last;
         }

@@ -4,7 +4,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::Arc;
 
 use crate::error::{Error, Kind, Result};
-use crate::platform::threads::{self, Heard, Tasks};
+use crate::platform::threads::{self, TaskEvent, Tasks};
 use crate::platform::Interrupt;
 use crate::progress::listener::{Listener, Progress, Reply};
 use crate::progress::log::{Log, LogLevel};
@@ -112,7 +112,7 @@ impl Watch {
         let on_caller = |k: usize| part.on_caller.get(k) == Some(&true);
         let tasks = Tasks { threads: part.threads, order: &order, on_caller: &on_caller };
         let ended = threads::run_heard(tasks, guarded, &mut |heard| {
-            if let Heard::Done(k, result) = heard {
+            if let TaskEvent::Done(k, result) = heard {
                 keep(k, result);
                 done += part.weights[k];
                 self.fraction = begun + (part.until - begun).max(0.0) * (done / all).min(1.0);

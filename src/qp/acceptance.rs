@@ -16,7 +16,7 @@ pub struct Limits {
 }
 
 /// The acceptance test. Knows what the numbers mean: gives the length the residual is measured against, and the last word.
-pub trait Judge {
+pub trait AcceptanceTest {
     /// Scale of the gaps at the point x with multiplier alpha.
     fn scale(&mut self, x: &[f64], alpha: &[f64]) -> Result<f64>;
     /// Whether the answer recovered from (x, alpha) passes its certificate.
@@ -37,7 +37,7 @@ pub trait Judge {
 
 /// Sees every step; an error ends the run, with the point reached where it says `Cancelled` or `TimeOver`.
 pub trait Observer {
-    fn step(&mut self, now: &Progress) -> Result<()>;
+    fn step(&mut self, now: &StepReport) -> Result<()>;
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -49,7 +49,7 @@ pub enum StepKind {
 }
 
 /// Where the method stands after a step.
-pub struct Progress<'a> {
+pub struct StepReport<'a> {
     pub kind: StepKind,
     pub counts: &'a Counts,
     pub active: &'a [bool],
@@ -61,7 +61,7 @@ pub struct Progress<'a> {
     pub small: f64,
 }
 
-impl<'a> Progress<'a> {
+impl<'a> StepReport<'a> {
     pub fn new(kind: StepKind, counts: &'a Counts, split: &'a Split, theta: f64, small: f64) -> Self {
         let (free, chopped) = (norm(&split.free), norm(&split.chopped));
         Self { kind, counts, active: &split.active, theta, residual: split.norm(), free, chopped, small }

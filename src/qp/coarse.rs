@@ -4,7 +4,7 @@
 use std::sync::Arc;
 
 use crate::error::Result;
-use crate::linalg::semidefinite::sparse::{PseudoInverse, Rows, SINGULAR};
+use crate::linalg::semidefinite::sparse::{FaceRows, PseudoInverse, SINGULAR};
 use crate::linalg::sparse::gram::Gram;
 use crate::linalg::vector::{axpy, norm_max, power_of_two_below};
 use crate::linalg::{Analysis, Cholesky, Csr, Matrix};
@@ -64,7 +64,7 @@ impl<'a> Coarse<'a> {
                 let mut w = gram.sum(self.g_transposed, held)?;
                 w.val.iter_mut().for_each(|v| *v /= self.unit * self.unit);
                 let (unit, whole, rounding) = (self.unit, &self.whole[..], self.rounding);
-                let rows = Rows { g_transposed: self.g_transposed, held, unit, whole, rounding };
+                let rows = FaceRows { g_transposed: self.g_transposed, held, unit, whole, rounding };
                 let solver = match analysis.attempt(&w, 1.0)? {
                     Ok(factor) if factor.smallest_pivot() > SINGULAR => Solver::Cholesky(factor),
                     _ => Solver::Pseudo(PseudoInverse::new(&w, analysis, &rows)?),

@@ -18,13 +18,13 @@ mod proximal;
 mod restricted;
 mod smalbe;
 
-pub use acceptance::{Judge, Limits, Observer, Progress, Solution, StepKind, Verdict};
+pub use acceptance::{AcceptanceTest, Limits, Observer, Solution, StepKind, StepReport, Verdict};
 pub use active_set::{active_set, Direct, Face};
 pub use coarse::{fitted, undetermined};
 pub use nearest::{nearest_point, Nearest, Polyhedron};
 pub use proportioning::{minimise, not_held, weighted, KEPT};
 pub use proximal::proximal;
-pub use restricted::{Block, Judged, Restricted};
+pub use restricted::{DirectOnRows, Judged, Restricted};
 pub use smalbe::smalbe;
 
 use crate::error::Result;

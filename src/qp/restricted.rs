@@ -3,7 +3,7 @@
 
 use crate::error::Result;
 use crate::linalg::{Csr, Entries, Matrix, Operator};
-use crate::qp::{Direct, Judge, Preconditioner, Qp, Solution, Verdict};
+use crate::qp::{AcceptanceTest, Direct, Preconditioner, Qp, Solution, Verdict};
 
 pub struct Restricted<'a> {
     whole: Qp<'a>,
@@ -98,18 +98,18 @@ impl Preconditioner for Restricted<'_> {
 }
 
 /// The entries of A on the rows.
-pub struct Block<'a> {
+pub struct DirectOnRows<'a> {
     pub whole: Direct<'a>,
     pub rows: &'a [usize],
 }
 
-impl Block<'_> {
+impl DirectOnRows<'_> {
     pub fn direct(&self) -> Direct<'_> {
         Direct { entries: self, limit: self.whole.limit }
     }
 }
 
-impl Entries for Block<'_> {
+impl Entries for DirectOnRows<'_> {
     fn add_block(&self, rows: &[usize], block: &mut Matrix) -> Result<()> {
         let all: Vec<usize> = rows.iter().map(|&i| self.rows[i]).collect();
         self.whole.entries.add_block(&all, block)
@@ -118,11 +118,11 @@ impl Entries for Block<'_> {
 
 /// Judges points on some rows as one who knows them all.
 pub struct Judged<'a> {
-    pub whole: &'a mut dyn Judge,
+    pub whole: &'a mut dyn AcceptanceTest,
     pub on: &'a Restricted<'a>,
 }
 
-impl Judge for Judged<'_> {
+impl AcceptanceTest for Judged<'_> {
     fn scale(&mut self, x: &[f64], alpha: &[f64]) -> Result<f64> {
         self.whole.scale(&self.on.spread(x), alpha)
     }

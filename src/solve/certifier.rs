@@ -6,7 +6,7 @@ use crate::certificate::Judgement;
 use crate::error::Result;
 use crate::linalg::vector::norm;
 use crate::platform::memory::copied;
-use crate::qp::{Judge, Solution, Verdict};
+use crate::qp::{AcceptanceTest, Solution, Verdict};
 use crate::solve::finish::finish;
 use crate::solve::gaps::Gaps;
 use crate::solve::recovery::{Ending, Recovered, Recovery};
@@ -58,7 +58,7 @@ impl<'a> Certifier<'a> {
     }
 }
 
-impl Judge for Certifier<'_> {
+impl AcceptanceTest for Certifier<'_> {
     /// `|sum_p |B'_p u_p|| + |c'|`: lengths, whatever the choice of K+. Gaps count up to how far bodies move, and are moved
     /// by rows that demand it: no gap that is never closed makes others seem small, and rows left out do not count.
     fn scale(&mut self, x: &[f64], alpha: &[f64]) -> Result<f64> {

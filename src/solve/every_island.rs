@@ -4,7 +4,7 @@ use std::cmp::Reverse;
 
 use crate::error::{Error, Kind, Result};
 use crate::model::Model;
-use crate::platform::threads::{self, Heard, Tasks};
+use crate::platform::threads::{self, TaskEvent, Tasks};
 use crate::progress::{Told, Voice, Watch};
 use crate::setup::Prepared;
 use crate::solve::case::Case;
@@ -31,8 +31,8 @@ pub fn solve_islands(model: &Model, prepared: &Prepared, start: &Start, watch: &
     let solve = |k: usize, say: &dyn Fn(Message)| Ok(solve(k, &mut Apart { say }));
     let tasks = Tasks { threads, order: &order, on_caller: &on_caller };
     threads::run_telling(tasks, solve, &mut |heard| match heard {
-        Heard::Done(k, end) => ends[k] = Some(end),
-        Heard::Said(message) if told.is_ok() => {
+        TaskEvent::Done(k, end) => ends[k] = Some(end),
+        TaskEvent::Said(message) if told.is_ok() => {
             told = message.pass_on(watch);
             if told.is_err() {
                 stops.cancel();

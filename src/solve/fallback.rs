@@ -5,7 +5,7 @@ use crate::model::{Method, Settings};
 use crate::progress::Steps;
 use crate::qp::paper::algorithm_3;
 use crate::qp::{
-    active_set, minimise, not_held, proximal, smalbe, Direct, Judge, Limits, Qp, Solution, Verdict,
+    active_set, minimise, not_held, proximal, smalbe, AcceptanceTest, Direct, Limits, Qp, Solution, Verdict,
 };
 use crate::solve::paper;
 
@@ -22,7 +22,7 @@ pub fn solve_dual(
     means: &MethodOptions,
     qp: Qp,
     start: &[f64],
-    judge: &mut dyn Judge,
+    judge: &mut dyn AcceptanceTest,
     steps: &mut Steps,
 ) -> Result<Solution> {
     let settings = means.settings;
@@ -75,7 +75,7 @@ fn or_directly(
     solution: Solution,
     qp: Qp,
     direct: Direct,
-    judge: &mut dyn Judge,
+    judge: &mut dyn AcceptanceTest,
     steps: &mut Steps,
 ) -> Result<Solution> {
     if !is_incomplete(&solution) {

@@ -4,7 +4,7 @@
 
 use crate::error::Result;
 use crate::progress::Steps;
-use crate::qp::{Block, Judged, Qp, Restricted, Solution, Verdict};
+use crate::qp::{DirectOnRows, Judged, Qp, Restricted, Solution, Verdict};
 use crate::solve::certifier::Certifier;
 use crate::solve::diagnosis::Unheld;
 use crate::solve::fallback::{gave_up, solve_dual, MethodOptions};
@@ -23,7 +23,7 @@ pub fn solve_near(
     let (mut start, mut before, mut given_up) = (start.to_vec(), Default::default(), None);
     while far.contains(&true) {
         let rows: Vec<usize> = (0..far.len()).filter(|&i| !far[i]).collect();
-        let (near, block) = (Restricted::new(qp, &rows), Block { whole: means.direct, rows: &rows });
+        let (near, block) = (Restricted::new(qp, &rows), DirectOnRows { whole: means.direct, rows: &rows });
         steps.set_bounded(near.bounded());
         judge.far.clone_from(&far);
         judge.reached.clear();

@@ -9,8 +9,8 @@ use crate::body::Modes;
 use crate::error::Result;
 use crate::linalg::{Csr, Matrix, Operator};
 use crate::model::{Method, PaperStep1, PaperUnits, Settings};
-use crate::qp::paper::{algorithm_3, Parameters, Rule, StepOne, Units, Variant};
-use crate::qp::{Judge, Observer, Progress, Qp, Solution};
+use crate::qp::paper::{algorithm_3, PaperRule, Parameters, StepOne, Units, Variant};
+use crate::qp::{AcceptanceTest, Observer, Qp, Solution, StepReport};
 use crate::setup::Island;
 use crate::solve::case::Case;
 use crate::solve::gaps::Gaps;
@@ -36,7 +36,7 @@ pub fn parameters(settings: &Settings) -> Option<Parameters> {
         m: Some(settings.paper_m).filter(|m| *m > 0.0),
         mu_0: settings.paper_mu_0,
         outer: whole(settings.paper_outer),
-        rule: Rule {
+        rule: PaperRule {
             gamma: settings.gamma,
             variant: variant(settings)?,
             extrapolation: settings.paper_extrapolation,
@@ -86,7 +86,7 @@ impl HostUnits {
         &self,
         qp: Qp,
         start: &[f64],
-        judge: &mut dyn Judge,
+        judge: &mut dyn AcceptanceTest,
         observer: &mut dyn Observer,
     ) -> Result<Solution> {
         let a = Rescaled { inner: qp.a, units: self };
@@ -180,10 +180,10 @@ impl Operator for Rescaled<'_> {
 /// The judge knows the dual of the library.
 struct InHostUnits<'a> {
     units: &'a HostUnits,
-    inner: &'a mut dyn Judge,
+    inner: &'a mut dyn AcceptanceTest,
 }
 
-impl Judge for InHostUnits<'_> {
+impl AcceptanceTest for InHostUnits<'_> {
     fn scale(&mut self, x: &[f64], alpha: &[f64]) -> Result<f64> {
         self.inner.scale(&self.units.forces(x), &self.units.to_library_basis(alpha))
     }
@@ -200,7 +200,7 @@ struct WithoutUnit<'a> {
 }
 
 impl Observer for WithoutUnit<'_> {
-    fn step(&mut self, now: &Progress) -> Result<()> {
-        self.inner.step(&Progress { theta: now.theta / self.unit, ..*now })
+    fn step(&mut self, now: &StepReport) -> Result<()> {
+        self.inner.step(&StepReport { theta: now.theta / self.unit, ..*now })
     }
 }

@@ -5,7 +5,7 @@ use crate::error::{Error, Result};
 use crate::linalg::vector::{dot, norm, norm_max};
 use crate::linalg::{Csr, Operator};
 use crate::progress::Stops;
-use crate::qp::{minimise, Judge, Limits, Observer, Progress, Qp};
+use crate::qp::{minimise, AcceptanceTest, Limits, Observer, Qp, StepReport};
 use crate::setup::Ready;
 use crate::solve::case::Case;
 use crate::solve::diagnosis::Contradictions;
@@ -165,7 +165,7 @@ struct Unjudged {
     scale: f64,
 }
 
-impl Judge for Unjudged {
+impl AcceptanceTest for Unjudged {
     fn scale(&mut self, _: &[f64], _: &[f64]) -> Result<f64> {
         Ok(self.scale)
     }
@@ -178,7 +178,7 @@ impl Judge for Unjudged {
 struct UnlessCancelled<'a>(&'a Stops);
 
 impl Observer for UnlessCancelled<'_> {
-    fn step(&mut self, _: &Progress) -> Result<()> {
+    fn step(&mut self, _: &StepReport) -> Result<()> {
         self.0.check_cancelled()
     }
 }

@@ -4,7 +4,7 @@
 
 use decks::random::Random;
 use feti_contact::linalg::Csr;
-use feti_contact::qp::paper::{Proportioning, Quadratic, Rule, Variant};
+use feti_contact::qp::paper::{PaperRule, Proportioning, Quadratic, Variant};
 use feti_contact::qp::Qp;
 
 use crate::dense::{dot, norm, solve, Dense};
@@ -73,7 +73,7 @@ fn run(program: &Program, gamma: f64, variant: Variant, limit: usize) -> Option<
         preconditioner: None,
     };
     let mut q = Quadratic::theta(qp);
-    let rule = Rule { gamma, variant, extrapolation: 5.0 };
+    let rule = PaperRule { gamma, variant, extrapolation: 5.0 };
     let mut run = Proportioning::new(&mut q, vec![1.0; m], rule).unwrap();
     let small = ROUNDING * norm(&program.b);
     let mut values = vec![f64::INFINITY];

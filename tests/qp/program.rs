@@ -4,7 +4,7 @@
 use feti_contact::error::Result;
 use feti_contact::linalg::Csr;
 use feti_contact::qp::{
-    minimise, Counts, Judge, Limits, Observer, Preconditioner, Progress, Qp, Solution, Verdict,
+    minimise, AcceptanceTest, Counts, Limits, Observer, Preconditioner, Qp, Solution, StepReport, Verdict,
 };
 
 use crate::dense::{dot, norm, Dense};
@@ -161,7 +161,7 @@ impl Program {
 }
 
 /// `minimise` or `smalbe`.
-pub type Method = fn(Qp, &[f64], Limits, &mut dyn Judge, &mut dyn Observer) -> Result<Solution>;
+pub type Method = fn(Qp, &[f64], Limits, &mut dyn AcceptanceTest, &mut dyn Observer) -> Result<Solution>;
 
 /// Accepts by the residuals of the optimality conditions.
 pub struct Conditions<'a> {
@@ -169,7 +169,7 @@ pub struct Conditions<'a> {
     pub accepted: f64,
 }
 
-impl Judge for Conditions<'_> {
+impl AcceptanceTest for Conditions<'_> {
     fn scale(&mut self, x: &[f64], alpha: &[f64]) -> Result<f64> {
         Ok(self.program.residuals(x, alpha).gradient_size)
     }
@@ -182,7 +182,7 @@ impl Judge for Conditions<'_> {
 pub struct Silent;
 
 impl Observer for Silent {
-    fn step(&mut self, _: &Progress) -> Result<()> {
+    fn step(&mut self, _: &StepReport) -> Result<()> {
         Ok(())
     }
 }

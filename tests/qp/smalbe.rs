@@ -6,7 +6,9 @@ use approx::assert_relative_eq;
 use decks::random::Random;
 use feti_contact::error::{Error, Kind, Result};
 use feti_contact::linalg::{Csr, Operator};
-use feti_contact::qp::{smalbe, Judge, Limits, Observer, Preconditioner, Progress, Qp, Solution, Verdict};
+use feti_contact::qp::{
+    smalbe, AcceptanceTest, Limits, Observer, Preconditioner, Qp, Solution, StepReport, Verdict,
+};
 
 use crate::dense::{norm, Dense};
 use crate::program::Program;
@@ -16,7 +18,7 @@ const LIMITS: Limits = Limits { tolerance: 1e-12, gamma: 1.0, steps: 20_000 };
 /// Accepts by the residuals of the optimality conditions.
 struct Conditions<'a>(&'a Program);
 
-impl Judge for Conditions<'_> {
+impl AcceptanceTest for Conditions<'_> {
     fn scale(&mut self, x: &[f64], alpha: &[f64]) -> Result<f64> {
         Ok(self.0.residuals(x, alpha).gradient_size)
     }
@@ -29,7 +31,7 @@ impl Judge for Conditions<'_> {
 struct Silent;
 
 impl Observer for Silent {
-    fn step(&mut self, _: &Progress) -> Result<()> {
+    fn step(&mut self, _: &StepReport) -> Result<()> {
         Ok(())
     }
 }
@@ -274,7 +276,7 @@ struct Watching {
 }
 
 impl Observer for Watching {
-    fn step(&mut self, now: &Progress) -> Result<()> {
+    fn step(&mut self, now: &StepReport) -> Result<()> {
         self.theta = now.theta;
         if now.counts.steps() < self.allowed {
             Ok(())

@@ -3,7 +3,7 @@
 use approx::assert_relative_eq;
 use decks::random::Random;
 use feti_contact::error::Result;
-use feti_contact::qp::{minimise, smalbe, Observer, Progress, StepKind, Verdict};
+use feti_contact::qp::{minimise, smalbe, Observer, StepKind, StepReport, Verdict};
 
 use crate::dense::{dot, norm, Dense};
 use crate::program::{Program, Silent};
@@ -214,7 +214,7 @@ struct Faces {
 }
 
 impl Observer for Faces {
-    fn step(&mut self, now: &Progress) -> Result<()> {
+    fn step(&mut self, now: &StepReport) -> Result<()> {
         if now.kind == StepKind::Expansion {
             let opened = self.last.iter().zip(now.active).filter(|(before, after)| **before && !**after);
             assert_eq!(opened.count(), 0, "an expansion has opened rows");

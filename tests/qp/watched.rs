@@ -5,7 +5,9 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use decks::random::Random;
 use feti_contact::error::{Error, Kind, Result};
 use feti_contact::linalg::Operator;
-use feti_contact::qp::{minimise, Judge, Limits, Observer, Progress, Qp, Solution, StepKind, Verdict};
+use feti_contact::qp::{
+    minimise, AcceptanceTest, Limits, Observer, Qp, Solution, StepKind, StepReport, Verdict,
+};
 
 use crate::dense::Dense;
 use crate::program::Program;
@@ -42,7 +44,7 @@ struct Diary {
 }
 
 impl Observer for Diary {
-    fn step(&mut self, now: &Progress) -> Result<()> {
+    fn step(&mut self, now: &StepReport) -> Result<()> {
         let size = (now.free * now.free + now.chopped * now.chopped).sqrt();
         assert!((size - now.residual).abs() <= 1e-14 * size && now.small > 0.0);
         self.steps.push((now.kind, now.counts.steps(), now.theta));
@@ -55,7 +57,7 @@ impl Observer for Diary {
 
 struct Content;
 
-impl Judge for Content {
+impl AcceptanceTest for Content {
     fn scale(&mut self, _: &[f64], _: &[f64]) -> Result<f64> {
         Ok(1.0)
     }

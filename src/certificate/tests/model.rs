@@ -18,13 +18,13 @@ pub struct DenseBody {
 }
 
 /// Rows as (entries, right-hand side, compliance).
-pub type Rows = Vec<(Vec<(usize, f64)>, f64, f64)>;
+pub type DenseRows = Vec<(Vec<(usize, f64)>, f64, f64)>;
 
 #[derive(Clone, Default)]
 pub struct DenseModel {
     pub parts: Vec<DenseBody>,
-    pub contact: Rows,
-    pub equalities: Rows,
+    pub contact: DenseRows,
+    pub equalities: DenseRows,
     /// Contact rows that carry a force.
     pub active: Vec<usize>,
     /// A rigid motion that is part of the answer, n or nothing, length: exact where elimination would lose digits.
@@ -207,7 +207,7 @@ impl DenseModel {
         self.parts.iter().map(|part| part.k.len()).sum()
     }
 
-    fn rows(rows: &Rows, n: usize) -> RowSet {
+    fn rows(rows: &DenseRows, n: usize) -> RowSet {
         let mut matrix = Csr::empty(n);
         rows.iter().for_each(|row| matrix.push_row(row.0.iter().copied()));
         RowSet {

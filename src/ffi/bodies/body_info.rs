@@ -1,7 +1,7 @@
 //! What the library knows about a body.
 
 use crate::ffi::bodies::body::body_of_order;
-use crate::ffi::boundary::{call, enter, id, Output, Target};
+use crate::ffi::boundary::{call, enter, id, OutStruct, Output};
 use crate::ffi::header::types::{
     feti_body_facts, feti_problem, FETI_ORIGIN_CANDIDATES, FETI_ORIGIN_COORDINATES, FETI_ORIGIN_EXACT,
     FETI_ORIGIN_FOUND,
@@ -56,7 +56,7 @@ pub unsafe extern "C" fn feti_body_info(p: *mut feti_problem, body: i64, out: *m
     enter(p, call!(feti_body_info(p, body, out)), |problem| {
         let facts = problem.body_facts(id(body, "body")?)?;
         // SAFETY: the caller gives `struct_size` bytes.
-        unsafe { Target::new(out, "out") }?.write(&record(&facts));
+        unsafe { OutStruct::new(out, "out") }?.write(&record(&facts));
         Ok(())
     })
 }

@@ -6,7 +6,7 @@ use std::ffi::c_char;
 use crate::error::{Error, Place};
 use crate::ffi::boundary::arrays;
 use crate::ffi::boundary::call::Call;
-use crate::ffi::boundary::record::Target;
+use crate::ffi::boundary::record::OutStruct;
 use crate::ffi::header::status::{describe, of_kind, FETI_ARGUMENT, FETI_OK};
 use crate::ffi::header::types::feti_error_detail;
 
@@ -107,7 +107,7 @@ pub unsafe extern "C" fn feti_last_error(buf: *mut c_char, cap: i64) -> i64 {
 #[no_mangle]
 pub unsafe extern "C" fn feti_last_error_detail(out: *mut feti_error_detail) -> i32 {
     // SAFETY: the caller gives `struct_size` bytes.
-    let Ok(target) = (unsafe { Target::new(out, "out") }) else {
+    let Ok(target) = (unsafe { OutStruct::new(out, "out") }) else {
         return FETI_ARGUMENT - 1;
     };
     let facts = LAST.try_with(|last| detail(last.borrow().as_ref()));

@@ -33,12 +33,12 @@ first_is_struct_size!(
 );
 
 /// The caller's struct, to be written once.
-pub struct Target<T> {
+pub struct OutStruct<T> {
     to: *mut T,
     bytes: usize,
 }
 
-impl<T: StructSize> Target<T> {
+impl<T: StructSize> OutStruct<T> {
     /// # Safety
     /// `to` is NULL or leads to an i64 that says how many bytes may be written from `to` on.
     pub unsafe fn new(to: *mut T, name: &'static str) -> Result<Self> {
@@ -83,7 +83,7 @@ mod tests {
         // SAFETY: all zero is a valid value of numbers.
         let value: feti_certificate = unsafe { std::mem::zeroed() };
         // SAFETY: the buffer is as long as the largest size under test.
-        unsafe { Target::<feti_certificate>::new(bytes.as_mut_ptr().cast(), "out") }?.write(&value);
+        unsafe { OutStruct::<feti_certificate>::new(bytes.as_mut_ptr().cast(), "out") }?.write(&value);
         Ok(bytes)
     }
 

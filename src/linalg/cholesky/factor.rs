@@ -5,7 +5,7 @@ use std::sync::Arc;
 use crate::error::Result;
 use crate::linalg::cholesky::analysis::elimination::NONE;
 use crate::linalg::cholesky::analysis::Analysis;
-use crate::linalg::cholesky::numeric::multifrontal::{self, Columns};
+use crate::linalg::cholesky::numeric::multifrontal::{self, LowerColumns};
 use crate::linalg::cholesky::triangular::Triangle;
 use crate::linalg::Symmetric;
 use crate::platform::memory::{reserved, room, zeros, PRODUCTS};
@@ -60,7 +60,7 @@ impl Analysis {
     }
 
     /// The lower triangle of `by` times the matrix in the order of elimination.
-    fn columns(&self, matrix: &Symmetric, by: f64) -> Result<Columns> {
+    fn columns(&self, matrix: &Symmetric, by: f64) -> Result<LowerColumns> {
         const WHAT: &str = "a permuted stiffness matrix";
         let n = self.order.len();
         let position = &self.position;
@@ -85,7 +85,7 @@ impl Analysis {
         // Every start has moved to the next one.
         ptr.copy_within(0..n, 1);
         ptr[0] = 0;
-        Ok(Columns { ptr, row, val })
+        Ok(LowerColumns { ptr, row, val })
     }
 
     /// The pivot at position `at`: the Schur complement of the leading block, computed afresh.

@@ -37,12 +37,12 @@ pub fn inverse_form(cholesky: &Cholesky, rows: &Csr) -> Result<Packed> {
     let mut form = Packed::zeros(rows.rows())?;
     let parts = parts(nodes);
     let run = |range: &Range<usize>| reach.part(range.clone());
-    let done: Vec<Result<Part>> = match rayon::current_thread_index() {
+    let done: Vec<Result<FormShare>> = match rayon::current_thread_index() {
         Some(_) if parts.len() > 1 => parts.par_iter().map(run).collect(),
         _ => parts.iter().map(run).collect(),
     };
     let mut above = 0;
-    let mut task = Task::new(&reach, outside(nodes, &parts))?;
+    let mut task = FormTask::new(&reach, outside(nodes, &parts))?;
     for (range, part) in parts.iter().zip(done) {
         (above..range.start).try_for_each(|s| task.eliminate(s, &mut form, |row| row as usize))?;
         let (part, root) = (part?, range.end - 1);
@@ -74,7 +74,7 @@ struct Reach<'a> {
 }
 
 /// What a subtree adds to the form, and leaves for the rows above.
-struct Part {
+struct FormShare {
     form: Packed,
     update: Pages,
 }
@@ -115,19 +115,19 @@ impl<'a> Reach<'a> {
         self.nodes.node(s).rows.len() * self.columns(s).len()
     }
 
-    fn part(&self, range: Range<usize>) -> Result<Part> {
+    fn part(&self, range: Range<usize>) -> Result<FormShare> {
         let root = range.end - 1;
         let rows = self.columns(root);
         let mut form = Packed::zeros(rows.len())?;
-        let mut task = Task::new(self, range.clone())?;
+        let mut task = FormTask::new(self, range.clone())?;
         let place = |row: u32| rows.partition_point(|&other| other < row);
         { range }.try_for_each(|s| task.eliminate(s, &mut form, place))?;
         let update = if rows.is_empty() { Pages::zeros(0, WHAT)? } else { task.updates.into_last(root) };
-        Ok(Part { form, update })
+        Ok(FormShare { form, update })
     }
 }
 
-impl Part {
+impl FormShare {
     /// `rows`: the rows of B that the form of the part has.
     fn add_to(&self, form: &mut Packed, rows: &[u32]) {
         for (i, &row) in rows.iter().enumerate() {
@@ -137,7 +137,7 @@ impl Part {
 }
 
 /// Supernodes one after the other.
-struct Task<'a> {
+struct FormTask<'a> {
     reach: &'a Reach<'a>,
     /// Row of a position within the present front.
     local: Vec<u32>,
@@ -148,7 +148,7 @@ struct Task<'a> {
     product: Pages,
 }
 
-impl<'a> Task<'a> {
+impl<'a> FormTask<'a> {
     fn new(reach: &'a Reach<'a>, sequence: impl Iterator<Item = usize> + Clone) -> Result<Self> {
         let nodes = reach.nodes;
         let mut local = reserved(nodes.order(), WHAT)?;
@@ -182,13 +182,13 @@ impl<'a> Task<'a> {
         let child = |(child, values)| {
             let rows = RowMap::new(self.reach.nodes.node(child).rows, node.end(), &self.local);
             let of = self.reach.columns(child).iter();
-            Child {
+            FormBelow {
                 values,
                 rows,
                 columns: of.map(|row| columns.partition_point(|other| other < row)).collect(),
             }
         };
-        let children: Vec<Child<'_>> = children.into_iter().map(child).collect();
+        let children: Vec<FormBelow<'_>> = children.into_iter().map(child).collect();
         let panel = &self.reach.cholesky.values[node.panel.clone()];
         let work = node.work() / node.width as f64 * columns.len() as f64;
         each(shared(work), tiles(&node, y, update), |mut tile| {
@@ -206,7 +206,7 @@ impl<'a> Task<'a> {
 }
 
 /// Some columns of Y at a supernode.
-struct Tile<'a> {
+struct FormTile<'a> {
     /// Among those of the supernode.
     columns: Range<usize>,
     /// width x columns
@@ -215,20 +215,20 @@ struct Tile<'a> {
     below: &'a mut [f64],
 }
 
-fn tiles<'a>(node: &Node<'_>, mut y: &'a mut [f64], mut update: &'a mut [f64]) -> Vec<Tile<'a>> {
+fn tiles<'a>(node: &Node<'_>, mut y: &'a mut [f64], mut update: &'a mut [f64]) -> Vec<FormTile<'a>> {
     let count = y.len() / node.width;
     let mut tiles = Vec::with_capacity(count.div_ceil(TILE));
     for first in (0..count).step_by(TILE) {
         let columns = first..count.min(first + TILE);
         let (above, rest) = y.split_at_mut(node.width * columns.len());
         let (below, other) = update.split_at_mut(node.rows.len() * columns.len());
-        tiles.push(Tile { columns, above, below });
+        tiles.push(FormTile { columns, above, below });
         (y, update) = (rest, other);
     }
     tiles
 }
 
-impl Tile<'_> {
+impl FormTile<'_> {
     /// `Y_1 <- L11^-1 Y_1`, `Y_2 <- -L21 Y_1`
     fn solve(&mut self, panel: &[f64], node: &Node<'_>) {
         let panel = MatRef::from_column_major_slice(panel, node.height(), node.width);
@@ -251,16 +251,16 @@ impl Tile<'_> {
 }
 
 /// What a child leaves, as its parent sees it.
-struct Child<'a> {
+struct FormBelow<'a> {
     values: &'a [f64],
     rows: RowMap,
     /// Its columns among those of the parent, ascending.
     columns: Vec<usize>,
 }
 
-impl Child<'_> {
+impl FormBelow<'_> {
     /// Rows of the parent's columns.
-    fn add_above(&self, tile: &mut Tile<'_>) {
+    fn add_above(&self, tile: &mut FormTile<'_>) {
         let rows = 0..self.rows.inside;
         let width = tile.above.len() / tile.columns.len();
         for (from, column) in self.columns_of(&tile.columns) {
@@ -270,7 +270,7 @@ impl Child<'_> {
     }
 
     /// Rows below them.
-    fn add_below(&self, tile: &mut Tile<'_>) {
+    fn add_below(&self, tile: &mut FormTile<'_>) {
         let rows = self.rows.inside..self.rows.to.len();
         let (width, below) = (tile.above.len(), tile.below.len());
         let (width, below) = (width / tile.columns.len(), below / tile.columns.len());

@@ -18,10 +18,10 @@ const MATRICES: usize = 8;
 pub struct SpdSolver {
     /// `D^-1/2`
     inverse_root: Vec<f64>,
-    factor: Factor,
+    factor: SpdFactor,
 }
 
-enum Factor {
+enum SpdFactor {
     Cholesky(Llt<f64>),
     /// Columns `v / sqrt(eigenvalue)` of the eigenvectors kept, `W+ = T T'`, and the eigenvectors cut off.
     Pseudo {
@@ -37,7 +37,7 @@ impl SpdSolver {
         let inverse_root: Vec<f64> = scale.iter().map(|s| s.sqrt().recip()).collect();
         let scaled = Mat::from_fn(w.rows, w.cols, |i, j| inverse_root[i] * w.get(i, j) * inverse_root[j]);
         let factor = match Llt::new(scaled.as_ref(), Side::Lower) {
-            Ok(llt) if regular(&llt) => Factor::Cholesky(llt),
+            Ok(llt) if regular(&llt) => SpdFactor::Cholesky(llt),
             _ => eigenvectors(&scaled)?,
         };
         Ok(Self { inverse_root, factor })
@@ -48,33 +48,33 @@ impl SpdSolver {
         let _room = room(PRODUCTS + MATRICES * w.data.len() * size_of::<f64>(), "a dense coarse matrix")?;
         let view = MatRef::from_column_major_slice(&w.data, w.rows, w.cols);
         let llt = Llt::new(view, Side::Lower).ok().filter(regular);
-        Ok(llt.map(|llt| Self { inverse_root: vec![1.0; w.rows], factor: Factor::Cholesky(llt) }))
+        Ok(llt.map(|llt| Self { inverse_root: vec![1.0; w.rows], factor: SpdFactor::Cholesky(llt) }))
     }
 
     /// `W+ = T T'`, T = `kept`, of a matrix with that kernel.
     pub fn of_parts(kept: Matrix, kernel: Matrix) -> Self {
-        Self { inverse_root: vec![1.0; kept.rows], factor: Factor::Pseudo { kept, kernel } }
+        Self { inverse_root: vec![1.0; kept.rows], factor: SpdFactor::Pseudo { kept, kernel } }
     }
 
     /// T of `W+ = T T'`, where it is no Cholesky factor; scales of 1.
     pub fn kept(&self) -> Option<&Matrix> {
         match &self.factor {
-            Factor::Cholesky(_) => None,
-            Factor::Pseudo { kept, .. } => Some(kept),
+            SpdFactor::Cholesky(_) => None,
+            SpdFactor::Pseudo { kept, .. } => Some(kept),
         }
     }
 
     /// Dimension of the kernel that was cut off.
     pub fn deficiency(&self) -> usize {
         match &self.factor {
-            Factor::Cholesky(_) => 0,
-            Factor::Pseudo { kernel, .. } => kernel.cols,
+            SpdFactor::Cholesky(_) => 0,
+            SpdFactor::Pseudo { kernel, .. } => kernel.cols,
         }
     }
 
     /// Basis of the kernel that was cut off, n x deficiency.
     pub fn kernel(&self) -> Matrix {
-        let Factor::Pseudo { kernel, .. } = &self.factor else {
+        let SpdFactor::Pseudo { kernel, .. } = &self.factor else {
             return Matrix { rows: self.inverse_root.len(), ..Matrix::default() };
         };
         let mut basis = kernel.clone();
@@ -90,11 +90,11 @@ impl SpdSolver {
         let b = scaled(b);
         let mut x = vec![0.0; b.len()];
         match &self.factor {
-            Factor::Cholesky(llt) => {
+            SpdFactor::Cholesky(llt) => {
                 x.copy_from_slice(&b);
                 llt.solve_in_place(MatMut::from_column_major_slice_mut(&mut x, b.len(), 1));
             }
-            Factor::Pseudo { kept, .. } => kept.mul_add(1.0, &kept.mul_transposed(&b), &mut x),
+            SpdFactor::Pseudo { kept, .. } => kept.mul_add(1.0, &kept.mul_transposed(&b), &mut x),
         }
         scaled(&x)
     }
@@ -105,7 +105,7 @@ fn regular(llt: &Llt<f64>) -> bool {
     (0..l.nrows()).all(|i| l[(i, i)] * l[(i, i)] > RANK_TOLERANCE)
 }
 
-fn eigenvectors(w: &Mat<f64>) -> Result<Factor> {
+fn eigenvectors(w: &Mat<f64>) -> Result<SpdFactor> {
     let eigen = SelfAdjointEigen::new(w.as_ref(), Side::Lower)
         .map_err(|_| Error::new(Kind::Internal, "the eigenvalues of a coarse matrix did not converge"))?;
     let none = Matrix { rows: w.nrows(), ..Matrix::default() };
@@ -117,7 +117,7 @@ fn eigenvectors(w: &Mat<f64>) -> Result<Factor> {
         let column: Vec<f64> = (0..w.nrows()).map(|i| eigen.U()[(i, j)] / length).collect();
         to.push_col(&column);
     }
-    Ok(Factor::Pseudo { kept, kernel })
+    Ok(SpdFactor::Pseudo { kept, kernel })
 }
 
 #[cfg(test)]

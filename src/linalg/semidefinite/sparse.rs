@@ -18,7 +18,7 @@ const PER_ROW: usize = 512;
 const PER_ENTRY: usize = 16;
 
 /// `G'`, and which of its rows make up `s^2 W = G_F G_F'`.
-pub struct Rows<'a> {
+pub struct FaceRows<'a> {
     pub g_transposed: &'a Csr,
     pub held: &'a [bool],
     /// s
@@ -33,19 +33,19 @@ pub struct PseudoInverse {
     order: usize,
     /// Of all parts that are not dense, with the unit matrix in place of those.
     regular: Option<Cholesky>,
-    dense: Vec<Part>,
+    dense: Vec<SingularPart>,
     /// Some motions are held so weakly that rounding of `G_F v` matters in `W+ G_F v`.
     pub weak: bool,
 }
 
-struct Part {
+struct SingularPart {
     rows: Vec<usize>,
     inverse: SpdSolver,
 }
 
 impl PseudoInverse {
     /// `w` has the pattern that was analysed; its largest diagonal entry is about 1 where no row is held.
-    pub fn new(w: &Symmetric, analysis: &Arc<Analysis>, rows_of_g: &Rows) -> Result<Self> {
+    pub fn new(w: &Symmetric, analysis: &Arc<Analysis>, rows_of_g: &FaceRows) -> Result<Self> {
         let _room = room(PER_ROW * w.order() + PER_ENTRY * w.val.len(), "the parts of a matrix")?;
         let (part_of, count) = components(w);
         let mut parts = vec![Vec::new(); count];
@@ -70,14 +70,14 @@ impl PseudoInverse {
             let size = rows.iter().map(|&row| rows_of_g.whole[row]).sum::<f64>().sqrt();
             let (inverse, weakly) = resisted::inverse(&block(w, &rows)?, &own, rows_of_g.rounding * size)?;
             weak |= weakly;
-            singular.push(Part { rows, inverse });
+            singular.push(SingularPart { rows, inverse });
         }
         Ok(Self { order: w.order(), regular, dense: singular, weak })
     }
 
     /// `x += a N N'b`, N the kernel.
     pub fn add_kernel_part(&self, a: f64, b: &[f64], x: &mut [f64]) {
-        for Part { rows, inverse } in self.dense.iter().filter(|part| part.inverse.deficiency() > 0) {
+        for SingularPart { rows, inverse } in self.dense.iter().filter(|part| part.inverse.deficiency() > 0) {
             let (kernel, mut part) = (inverse.kernel(), vec![0.0; rows.len()]);
             let own: Vec<f64> = rows.iter().map(|&row| b[row]).collect();
             kernel.mul_add(a, &kernel.mul_transposed(&own), &mut part);
@@ -91,7 +91,7 @@ impl PseudoInverse {
         if let Some(regular) = &self.regular {
             regular.solve(&mut x)?;
         }
-        for Part { rows, inverse } in &self.dense {
+        for SingularPart { rows, inverse } in &self.dense {
             let own: Vec<f64> = rows.iter().map(|&row| b[row]).collect();
             rows.iter().zip(inverse.solve(&own)).for_each(|(&row, v)| x[row] = v);
         }
@@ -107,7 +107,7 @@ impl PseudoInverse {
     pub fn basis(&self) -> Matrix {
         let mut apart = vec![false; self.order];
         let mut basis = Matrix { rows: self.order, ..Matrix::default() };
-        for Part { rows, inverse } in &self.dense {
+        for SingularPart { rows, inverse } in &self.dense {
             let Some(kept) = inverse.kept() else { continue };
             for j in 0..kept.cols {
                 let mut column = vec![0.0; self.order];
@@ -127,7 +127,7 @@ impl PseudoInverse {
     /// Basis of the kernel, n x deficiency.
     pub fn kernel(&self) -> Matrix {
         let mut basis = Matrix { rows: self.order, ..Matrix::default() };
-        for Part { rows, inverse } in self.dense.iter().filter(|part| part.inverse.deficiency() > 0) {
+        for SingularPart { rows, inverse } in self.dense.iter().filter(|part| part.inverse.deficiency() > 0) {
             let own = inverse.kernel();
             for j in 0..own.cols {
                 let mut column = vec![0.0; self.order];
@@ -139,7 +139,7 @@ impl PseudoInverse {
     }
 }
 
-impl Rows<'_> {
+impl FaceRows<'_> {
     /// `G_F'` over the columns of each part that is wanted, in units of s.
     fn by_part(&self, part_of: &[usize], wanted: &[bool]) -> Vec<Csr> {
         let (mut local, mut parts) = (vec![0; part_of.len()], vec![Csr::empty(0); wanted.len()]);
@@ -218,7 +218,7 @@ mod tests {
         let w = Gram::of(&g).unwrap().sum(&g, &held).unwrap();
         let whole: Vec<f64> = (0..w.order()).map(|k| w.val[w.ptr[k + 1] - 1]).collect();
         let analysis = Arc::new(Analysis::new(&w, &vec![false; w.order()]).unwrap());
-        let rows = Rows { g_transposed: &g, held: &held, unit: 1.0, whole: &whole, rounding: 1e-14 };
+        let rows = FaceRows { g_transposed: &g, held: &held, unit: 1.0, whole: &whole, rounding: 1e-14 };
         let pseudo = PseudoInverse::new(&w, &analysis, &rows).unwrap();
         assert!(pseudo.regular.is_some() && pseudo.dense.len() == 4, "{}", pseudo.dense.len());
         let kernel = pseudo.kernel();

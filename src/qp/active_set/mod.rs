@@ -10,7 +10,7 @@ use crate::linalg::vector::{axpy, dot, norm};
 use crate::linalg::Entries;
 use crate::qp::coarse::Coarse;
 use crate::qp::projection::project;
-use crate::qp::{Counts, Judge, Qp, Solution, Verdict};
+use crate::qp::{AcceptanceTest, Counts, Qp, Solution, Verdict};
 
 pub use face::Face;
 
@@ -42,7 +42,12 @@ impl Direct<'_> {
 }
 
 /// Goes on from `from` and its active set: solved when the judge accepts, else stalled with the point given.
-pub fn active_set(qp: Qp, direct: Direct, from: &Solution, judge: &mut dyn Judge) -> Result<Solution> {
+pub fn active_set(
+    qp: Qp,
+    direct: Direct,
+    from: &Solution,
+    judge: &mut dyn AcceptanceTest,
+) -> Result<Solution> {
     let mut run = Run::new(qp, direct, from)?;
     let (settled, ended) = match run.settle() {
         Ok(settled) => (settled, Verdict::Stalled),

@@ -48,7 +48,7 @@ pub fn nearest_point(of: Polyhedron) -> Result<Nearest> {
     let entries = |i: usize| matrix.row(i).filter(|(_, v)| *v != 0.0);
     let columns = |&i: &usize| entries(i).map(|entry| entry.0);
     let (part_of, count) = joined(target.len(), rows.iter().map(columns));
-    let (mut local, mut parts) = (vec![0; target.len()], vec![Part::default(); count]);
+    let (mut local, mut parts) = (vec![0; target.len()], vec![ConnectedColumns::default(); count]);
     for (j, &part) in part_of.iter().enumerate() {
         (local[j], parts[part].rows.cols) = (parts[part].rows.cols, parts[part].rows.cols + 1);
         parts[part].target.push(target[j] / unit);
@@ -80,7 +80,7 @@ pub fn nearest_point(of: Polyhedron) -> Result<Nearest> {
 
 /// Columns that rows connect, with rows of unit length.
 #[derive(Clone)]
-struct Part {
+struct ConnectedColumns {
     rows: Csr,
     gap: Vec<f64>,
     noise: Vec<f64>,
@@ -89,14 +89,14 @@ struct Part {
     row: Vec<(usize, f64)>,
 }
 
-impl Default for Part {
+impl Default for ConnectedColumns {
     fn default() -> Self {
         let (gap, noise, target, row) = Default::default();
         Self { rows: Csr::empty(0), gap, noise, target, row }
     }
 }
 
-impl Part {
+impl ConnectedColumns {
     fn nearest(&self, rounding: f64) -> Result<(Active<'_>, Vec<Vec<(usize, f64)>>)> {
         let (size, mut left_out) = (norm(&self.target), vec![false; self.gap.len()]);
         let at_origin = |a: &[f64]| norm(a) <= ROUNDING * size && self.gap.iter().all(|gap| *gap >= 0.0);
@@ -143,7 +143,7 @@ impl Part {
 
 /// Rows met, `N = Q R` the matrix of their normals, their forces >= 0 and `a = a0 - N force`.
 struct Active<'a> {
-    of: &'a Part,
+    of: &'a ConnectedColumns,
     rows: Vec<usize>,
     q: Matrix,
     /// Columns of R.
@@ -153,7 +153,7 @@ struct Active<'a> {
 }
 
 impl<'a> Active<'a> {
-    fn new(of: &'a Part) -> Self {
+    fn new(of: &'a ConnectedColumns) -> Self {
         let q = Matrix { rows: of.target.len(), ..Matrix::default() };
         Self { of, rows: Vec::new(), q, r: Vec::new(), force: Vec::new(), a: of.target.clone() }
     }

@@ -5,9 +5,9 @@ use crate::error::Result;
 use crate::linalg::vector::{axpy, norm};
 use crate::qp::coarse::Coarse;
 use crate::qp::paper::bound::Proportioning;
-use crate::qp::paper::sizes::Sizes;
+use crate::qp::paper::sizes::PaperSizes;
 use crate::qp::paper::{Parameters, Quadratic, StepOne};
-use crate::qp::{Counts, Judge, Observer, Progress, Qp, Solution, Verdict};
+use crate::qp::{AcceptanceTest, Counts, Observer, Qp, Solution, StepReport, Verdict};
 
 /// How often Step 2 is tightened when the judge does not accept.
 const TIGHTENINGS: usize = 6;
@@ -17,11 +17,11 @@ pub fn algorithm_3(
     qp: Qp,
     start: &[f64],
     parameters: &Parameters,
-    judge: &mut dyn Judge,
+    judge: &mut dyn AcceptanceTest,
     observer: &mut dyn Observer,
 ) -> Result<Solution> {
     let mut q = Quadratic::theta(qp);
-    let sizes = Sizes::new(&mut q, parameters.units, judge)?;
+    let sizes = PaperSizes::new(&mut q, parameters.units, judge)?;
     let mut outer = Outer::new(q, start, parameters, sizes);
     let verdict = outer.run(judge, observer).or_else(Verdict::of_refusal)?;
     let (alpha, scale) = (outer.alpha(), judge.scale(&outer.x, &outer.alpha())?);
@@ -61,7 +61,7 @@ enum Inner {
 
 impl<'a> Outer<'a> {
     /// Step 0.
-    fn new(q: Quadratic<'a>, start: &[f64], parameters: &Parameters, sizes: Sizes) -> Self {
+    fn new(q: Quadratic<'a>, start: &[f64], parameters: &Parameters, sizes: PaperSizes) -> Self {
         let rho = parameters.rho_0 * sizes.penalty;
         let m = parameters.m.unwrap_or(parameters.rho_0 / 100.0);
         Self {
@@ -82,7 +82,7 @@ impl<'a> Outer<'a> {
     }
 
     /// Algorithm 3.
-    fn run(&mut self, judge: &mut dyn Judge, observer: &mut dyn Observer) -> Result<Verdict> {
+    fn run(&mut self, judge: &mut dyn AcceptanceTest, observer: &mut dyn Observer) -> Result<Verdict> {
         let mut tightenings = 0;
         for _ in 0..self.parameters.outer {
             // Step 1
@@ -165,7 +165,7 @@ impl<'a> Outer<'a> {
     }
 }
 
-fn progress<'a>(run: &'a Proportioning, small: f64) -> Progress<'a> {
+fn progress<'a>(run: &'a Proportioning, small: f64) -> StepReport<'a> {
     let point = &run.point;
-    Progress::new(run.last, &run.counts, &point.split, run.q.energy(&point.x, &point.g), small)
+    StepReport::new(run.last, &run.counts, &point.split, run.q.energy(&point.x, &point.g), small)
 }

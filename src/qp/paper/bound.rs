@@ -3,7 +3,7 @@
 use crate::error::Result;
 use crate::linalg::vector::{axpy, dot};
 use crate::qp::gradient::{at_bound, Split};
-use crate::qp::paper::face::Face;
+use crate::qp::paper::face::PaperFace;
 use crate::qp::paper::variants::{extrapolate, feasible, monotone, Moved};
 use crate::qp::paper::{Quadratic, Variant};
 use crate::qp::{Counts, StepKind};
@@ -38,14 +38,14 @@ impl<'a> Point<'a> {
     }
 
     /// Conjugate gradients that start here, on the face I = A(x).
-    fn face(&self) -> Face {
-        Face::new(self.x.clone(), self.g.clone(), self.split.active.clone(), self.split.free.clone())
+    fn face(&self) -> PaperFace {
+        PaperFace::new(self.x.clone(), self.g.clone(), self.split.active.clone(), self.split.free.clone())
     }
 }
 
 /// How Algorithm 1 is carried out.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Rule {
+pub struct PaperRule {
     /// Gamma > 0 of the proportionality test.
     pub gamma: f64,
     pub variant: Variant,
@@ -55,7 +55,7 @@ pub struct Rule {
 
 /// What a step came to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Step {
+enum BoundStep {
     /// A conjugate gradient step, one that met a bound, or a proportioning step.
     Done(StepKind),
     /// theta does not curve along the direction.
@@ -66,17 +66,17 @@ enum Step {
 pub struct Proportioning<'a, 'q> {
     pub q: &'q mut Quadratic<'a>,
     pub point: Point<'a>,
-    pub rule: Rule,
+    pub rule: PaperRule,
     pub counts: Counts,
     /// The step that led to the point.
     pub last: StepKind,
-    face: Option<Face>,
+    face: Option<PaperFace>,
     largest_curvature: f64,
 }
 
 impl<'a, 'q> Proportioning<'a, 'q> {
     /// Starts at the point nearest to `start`, with one product for its gradient.
-    pub fn new(q: &'q mut Quadratic<'a>, start: Vec<f64>, rule: Rule) -> Result<Self> {
+    pub fn new(q: &'q mut Quadratic<'a>, start: Vec<f64>, rule: PaperRule) -> Result<Self> {
         let x = q.projection(start);
         let g = q.gradient(&x)?;
         let point = Point::new(q.qp.bounded, x, g);
@@ -90,8 +90,8 @@ impl<'a, 'q> Proportioning<'a, 'q> {
         while !enough(self)? {
             let step = if self.explores() { self.explore()? } else { self.proportion()? };
             match step {
-                Step::Flat => return Ok(false),
-                Step::Done(kind) => self.count(kind),
+                BoundStep::Flat => return Ok(false),
+                BoundStep::Done(kind) => self.count(kind),
             }
         }
         Ok(true)
@@ -104,40 +104,40 @@ impl<'a, 'q> Proportioning<'a, 'q> {
     }
 
     /// Proportioning: the exact minimum along `d = -g^C` frees indices of the active set.
-    fn proportion(&mut self) -> Result<Step> {
+    fn proportion(&mut self) -> Result<BoundStep> {
         self.face = None;
         let image = self.q.product(&self.point.split.chopped)?;
         let Some(a) = self.minimum_along(&self.point.split.chopped.clone(), &image) else {
-            return Ok(Step::Flat);
+            return Ok(BoundStep::Flat);
         };
         let (mut x, mut g) = (self.point.x.clone(), self.point.g.clone());
         axpy(-a, &self.point.split.chopped, &mut x);
         axpy(-a, &image, &mut g);
         self.point.move_to(x, g);
-        Ok(Step::Done(StepKind::Release))
+        Ok(BoundStep::Done(StepKind::Release))
     }
 
     /// One conjugate gradient step on the face; the variant says what happens at its bounds.
-    fn explore(&mut self) -> Result<Step> {
+    fn explore(&mut self) -> Result<BoundStep> {
         let mut face = self.face.take().unwrap_or_else(|| self.point.face());
         let image = self.q.product(&face.p)?;
         let curvature = self.curvature(&face.p, &image);
-        let Some(curvature) = curvature else { return Ok(Step::Flat) };
+        let Some(curvature) = curvature else { return Ok(BoundStep::Flat) };
         let a = face.square / curvature;
         let mut y = face.y.clone();
         axpy(-a, &face.p, &mut y);
         if !self.point.is_feasible(&y) {
-            return self.beyond_a_bound(face, a, y, &image).map(|()| Step::Done(StepKind::Expansion));
+            return self.beyond_a_bound(face, a, y, &image).map(|()| BoundStep::Done(StepKind::Expansion));
         }
         let left = face.advance(a, y, &image);
         face.feasible = true;
         self.point.move_to(face.y.clone(), face.g.clone());
         self.face = Some(face).filter(|face| left && face.held == self.point.split.active);
-        Ok(Step::Done(StepKind::ConjugateGradient))
+        Ok(BoundStep::Done(StepKind::ConjugateGradient))
     }
 
     /// The step to `y = y^i - a p` from y^i leaves the bounds; `image` = H p.
-    fn beyond_a_bound(&mut self, face: Face, a: f64, y: Vec<f64>, image: &[f64]) -> Result<()> {
+    fn beyond_a_bound(&mut self, face: PaperFace, a: f64, y: Vec<f64>, image: &[f64]) -> Result<()> {
         let bounded = self.q.qp.bounded;
         match self.rule.variant {
             Variant::Feasible => self.take(feasible(bounded, &face, image).0),

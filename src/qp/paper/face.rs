@@ -3,7 +3,7 @@
 use crate::linalg::vector::{axpy, dot};
 
 /// Conjugate gradients for min theta(y), y in W_I, I = A(x^k). y is the point itself while it is feasible.
-pub(super) struct Face {
+pub(super) struct PaperFace {
     pub y: Vec<f64>,
     pub g: Vec<f64>,
     /// I
@@ -15,7 +15,7 @@ pub(super) struct Face {
     pub feasible: bool,
 }
 
-impl Face {
+impl PaperFace {
     /// At y with the gradient g; p is the part of it on the face.
     pub fn new(y: Vec<f64>, g: Vec<f64>, held: Vec<bool>, p: Vec<f64>) -> Self {
         let square = dot(&p, &p);

@@ -20,7 +20,7 @@ mod sizes;
 mod variants;
 
 pub use augmented_lagrangian::algorithm_3;
-pub use bound::{Point, Proportioning, Rule};
+pub use bound::{PaperRule, Point, Proportioning};
 pub use quadratic::Quadratic;
 pub use variants::Variant;
 
@@ -41,7 +41,7 @@ pub struct Parameters {
     pub mu_0: f64,
     /// Problems with bounds alone that are solved at most.
     pub outer: usize,
-    pub rule: Rule,
+    pub rule: PaperRule,
     pub units: Units,
     pub step_1: StepOne,
     /// Projected gradient and `|D x - d|` are sufficiently small (Step 2) at this part of what `units` say.

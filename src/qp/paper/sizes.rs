@@ -6,9 +6,9 @@ use crate::linalg::random::scattered;
 use crate::linalg::vector::{axpy, norm};
 use crate::qp::coarse::Coarse;
 use crate::qp::paper::{Quadratic, Units};
-use crate::qp::Judge;
+use crate::qp::AcceptanceTest;
 
-pub struct Sizes {
+pub struct PaperSizes {
     /// Unit of rho.
     pub penalty: f64,
     /// Unit of M.
@@ -26,8 +26,8 @@ pub struct Sizes {
 const ITERATIONS: usize = 10;
 const CHANGE: f64 = 0.1;
 
-impl Sizes {
-    pub fn new(q: &mut Quadratic, units: Units, judge: &mut dyn Judge) -> Result<Self> {
+impl PaperSizes {
+    pub fn new(q: &mut Quadratic, units: Units, judge: &mut dyn AcceptanceTest) -> Result<Self> {
         match units {
             Units::Printed => Ok(Self::printed(q)),
             Units::Relative => Self::relative(q, judge),
@@ -41,7 +41,7 @@ impl Sizes {
 
     /// |A| and |D| by power iteration. The gradient is measured against the gaps at l = D'(D D')+ d, the reference
     /// that depends on no choice of K+; d against itself, at least against the forces such gaps stand for.
-    fn relative(q: &mut Quadratic, judge: &mut dyn Judge) -> Result<Self> {
+    fn relative(q: &mut Quadratic, judge: &mut dyn AcceptanceTest) -> Result<Self> {
         let m = q.qp.b.len();
         let a = largest(m, &mut |v| q.product(v))?;
         let square = largest(m, &mut |v| {
@@ -63,7 +63,7 @@ impl Sizes {
 }
 
 /// The scale of the gaps at `l = D'(D D')+ d`, with `alpha = argmin |A l - b - D'alpha|`.
-fn reference(q: &mut Quadratic, judge: &mut dyn Judge) -> Result<f64> {
+fn reference(q: &mut Quadratic, judge: &mut dyn AcceptanceTest) -> Result<f64> {
     let mut coarse = Coarse::new(q.qp.g_transposed, q.qp.rounding)?;
     let all = vec![false; q.qp.b.len()];
     let y = coarse.on(&all)?.solve(q.qp.e)?;

@@ -3,7 +3,7 @@
 use crate::error::Result;
 use crate::linalg::vector::axpy;
 use crate::qp::gradient::feasible_step;
-use crate::qp::paper::face::Face;
+use crate::qp::paper::face::PaperFace;
 use crate::qp::paper::Quadratic;
 
 /// Trial steps of the extrapolating variant at most.
@@ -23,12 +23,12 @@ pub enum Variant {
 pub(super) struct Moved {
     pub x: Vec<f64>,
     pub g: Vec<f64>,
-    pub face: Option<Face>,
+    pub face: Option<PaperFace>,
 }
 
 /// `x^{k+1} = y^{i-1} - a~ p`, a~ the largest feasible step (corrected index): the active set grows. Gives a~, too;
 /// `image` = H p.
-pub(super) fn feasible(bounded: &[bool], face: &Face, image: &[f64]) -> (Moved, f64) {
+pub(super) fn feasible(bounded: &[bool], face: &PaperFace, image: &[f64]) -> (Moved, f64) {
     let hits = |i: &usize| bounded[*i] && face.p[*i] > 0.0;
     let step = feasible_step(&face.y, &face.p, |i| bounded[i]);
     let (mut x, mut g) = (face.y.clone(), face.g.clone());
@@ -44,7 +44,7 @@ pub(super) fn feasible(bounded: &[bool], face: &Face, image: &[f64]) -> (Moved, 
 /// projected, until theta rises; every trial takes a product.
 pub(super) fn extrapolate(
     q: &mut Quadratic,
-    face: &Face,
+    face: &PaperFace,
     mut step: f64,
     extrapolation: f64,
     moved: &mut Moved,
@@ -75,7 +75,7 @@ pub(super) fn extrapolate(
 pub(super) fn monotone(
     q: &mut Quadratic,
     (x, g): (&[f64], &[f64]),
-    mut face: Face,
+    mut face: PaperFace,
     (a, y): (f64, Vec<f64>),
     image: &[f64],
 ) -> Result<Option<Moved>> {

@@ -19,7 +19,7 @@ use crate::error::Result;
 use crate::linalg::vector::norm;
 use crate::qp::coarse::Coarse;
 use crate::qp::projection::project;
-use crate::qp::{Counts, Judge, Limits, Observer, Progress, Qp, Solution, StepKind, Verdict};
+use crate::qp::{AcceptanceTest, Counts, Limits, Observer, Qp, Solution, StepKind, StepReport, Verdict};
 use balance::{balance, Balance};
 use iterate::Iterate;
 use steps::Step;
@@ -37,7 +37,7 @@ pub fn minimise(
     qp: Qp,
     start: &[f64],
     limits: Limits,
-    judge: &mut dyn Judge,
+    judge: &mut dyn AcceptanceTest,
     observer: &mut dyn Observer,
 ) -> Result<Solution> {
     let mut coarse = Coarse::new(qp.g_transposed, qp.rounding)?;
@@ -97,7 +97,7 @@ fn first_point(qp: &Qp, coarse: &mut Coarse, start: &[f64]) -> Result<Option<Vec
 fn proportioning(
     mut it: Iterate,
     limits: Limits,
-    judge: &mut dyn Judge,
+    judge: &mut dyn AcceptanceTest,
     observer: &mut dyn Observer,
 ) -> Result<Solution> {
     // S7
@@ -114,7 +114,7 @@ fn run(
     it: &mut Iterate,
     mut stop: Stop,
     limits: Limits,
-    judge: &mut dyn Judge,
+    judge: &mut dyn AcceptanceTest,
     observer: &mut dyn Observer,
 ) -> Result<Verdict> {
     loop {
@@ -174,7 +174,7 @@ impl Iterate<'_> {
         norm(&image) > FAR_OFF * norm(self.qp.b)
     }
 
-    fn progress(&self, kind: StepKind, small: f64) -> Progress<'_> {
-        Progress::new(kind, &self.counts, &self.split, self.theta(), small)
+    fn progress(&self, kind: StepKind, small: f64) -> StepReport<'_> {
+        StepReport::new(kind, &self.counts, &self.split, self.theta(), small)
     }
 }

@@ -19,7 +19,7 @@ use crate::qp::projection::project;
 use crate::qp::proportioning::Stop;
 use crate::qp::smalbe::augmented::{Augmented, Violation};
 use crate::qp::smalbe::mprgp::{Bounded, Move, Rule};
-use crate::qp::{Counts, Judge, Limits, Observer, Progress, Qp, Solution, StepKind, Verdict};
+use crate::qp::{AcceptanceTest, Counts, Limits, Observer, Qp, Solution, StepKind, StepReport, Verdict};
 
 /// Step of gradient projection in units of 1 / |H|.
 const GRADIENT_STEP: f64 = 1.5;
@@ -42,7 +42,7 @@ pub fn smalbe(
     qp: Qp,
     start: &[f64],
     limits: Limits,
-    judge: &mut dyn Judge,
+    judge: &mut dyn AcceptanceTest,
     observer: &mut dyn Observer,
 ) -> Result<Solution> {
     let mut al = Lagrangian::new(qp, start)?;
@@ -101,7 +101,7 @@ impl<'a> Lagrangian<'a> {
     fn run(
         &mut self,
         limits: &Limits,
-        judge: &mut dyn Judge,
+        judge: &mut dyn AcceptanceTest,
         observer: &mut dyn Observer,
     ) -> Result<Verdict> {
         self.scale = judge.scale(&self.point.x, self.alpha())?;
@@ -240,14 +240,14 @@ impl<'a> Lagrangian<'a> {
     }
 
     /// Counts the step and describes the point it led to.
-    fn progress(&mut self, kind: StepKind, small: f64) -> Progress<'_> {
+    fn progress(&mut self, kind: StepKind, small: f64) -> StepReport<'_> {
         let counts = &mut self.map.counts;
         match kind {
             StepKind::ConjugateGradient => counts.conjugate_gradient += 1,
             StepKind::Expansion => counts.expansions += 1,
             StepKind::Release => counts.releases += 1,
         }
-        Progress::new(kind, &self.map.counts, &self.point.split, self.theta(), small)
+        StepReport::new(kind, &self.map.counts, &self.point.split, self.theta(), small)
     }
 
     /// The nearest point on `G x = e` with the same active rows; x itself where there is none.

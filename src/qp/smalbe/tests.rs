@@ -7,7 +7,7 @@ struct Lenient {
     allowed: usize,
 }
 
-impl Judge for Lenient {
+impl AcceptanceTest for Lenient {
     fn scale(&mut self, _: &[f64], _: &[f64]) -> Result<f64> {
         Ok(1.0)
     }
@@ -18,7 +18,7 @@ impl Judge for Lenient {
 }
 
 impl Observer for Lenient {
-    fn step(&mut self, now: &Progress) -> Result<()> {
+    fn step(&mut self, now: &StepReport) -> Result<()> {
         if now.counts.steps() < self.allowed {
             Ok(())
         } else {

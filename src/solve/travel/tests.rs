@@ -2,13 +2,13 @@ use super::*;
 use crate::qp::undetermined;
 
 /// Blocks of four unknowns, (x, y) of two points, that slide along x, y and turn; unknowns of unequal weight.
-struct Blocks {
+struct FreeBlocks {
     null_space: Matrix,
     count: usize,
     metric: Vec<f64>,
 }
 
-impl Blocks {
+impl FreeBlocks {
     fn new(count: usize) -> Self {
         let metric: Vec<f64> = (0..4 * count).map(|i| 1.0 + (i % 3) as f64).collect();
         let null_space =
@@ -57,7 +57,7 @@ impl Blocks {
 /// Block 0 stands on two closed rows and slides along x; a wall stops it on the way back, at x = 0.25.
 #[test]
 fn a_block_slides_back_as_far_as_the_wall_allows_whatever_the_start() {
-    let blocks = Blocks::new(1);
+    let blocks = FreeBlocks::new(1);
     let mut rows = Csr::empty(4);
     rows.push_row([(1, -1.0)]);
     rows.push_row([(3, -1.0)]);
@@ -79,7 +79,7 @@ fn a_block_slides_back_as_far_as_the_wall_allows_whatever_the_start() {
 /// Loose blocks: each goes back by itself, and the second answer is where the first is.
 #[test]
 fn three_hundred_loose_blocks_go_back_and_stay() {
-    let blocks = Blocks::new(300);
+    let blocks = FreeBlocks::new(300);
     let mut rows = Csr::empty(1200);
     let (mut gaps, mut lambda) = (Vec::<f64>::new(), Vec::<f64>::new());
     for p in 0..300 {

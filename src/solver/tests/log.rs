@@ -23,11 +23,11 @@ fn spring(floats: bool) -> Problem {
     problem
 }
 
-type Lines = Arc<Mutex<Vec<(LogLevel, String)>>>;
+type Book = Arc<Mutex<Vec<(LogLevel, String)>>>;
 
 /// Keeps the lines, and answers `reply` to line `when`.
-fn listen(problem: &mut Problem, most: LogLevel, when: usize, reply: i32) -> Lines {
-    let lines = Lines::default();
+fn listen(problem: &mut Problem, most: LogLevel, when: usize, reply: i32) -> Book {
+    let lines = Book::default();
     let book = Arc::clone(&lines);
     let tell = move |level: LogLevel, text: &str| {
         let mut book = book.lock().unwrap();
@@ -42,7 +42,7 @@ fn listen(problem: &mut Problem, most: LogLevel, when: usize, reply: i32) -> Lin
     lines
 }
 
-fn told(lines: &Lines) -> Vec<(LogLevel, String)> {
+fn told(lines: &Book) -> Vec<(LogLevel, String)> {
     std::mem::take(&mut *lines.lock().unwrap())
 }
 

@@ -33,11 +33,11 @@ fn chains(threads: i64) -> Problem {
     problem
 }
 
-type Heard = Arc<Mutex<Vec<(ThreadId, Progress)>>>;
+type Diary = Arc<Mutex<Vec<(ThreadId, Progress)>>>;
 
 /// Keeps what is heard, and cancels at call `when`.
-fn listen(problem: &mut Problem, when: usize) -> Heard {
-    let heard = Heard::default();
+fn listen(problem: &mut Problem, when: usize) -> Diary {
+    let heard = Diary::default();
     let book = Arc::clone(&heard);
     problem.on_progress(Some(Box::new(move |now| {
         let mut book = book.lock().unwrap();

@@ -21,17 +21,17 @@ use crate::platform::Interrupt;
 const WHAT: &str = "a factorisation";
 
 /// The lower triangle of K in the order of elimination, by columns, rows of a column in any order.
-pub struct Columns {
+pub struct LowerColumns {
     pub ptr: Vec<usize>,
     pub row: Vec<u32>,
     pub val: Vec<f64>,
 }
 
 /// A factor, or the position of a pivot that is not positive.
-type Factor<T> = std::result::Result<T, usize>;
+type Pivoted<T> = std::result::Result<T, usize>;
 
 /// L by panels.
-pub fn factorize(nodes: &Supernodes, matrix: &Columns) -> Result<Factor<Pages>> {
+pub fn factorize(nodes: &Supernodes, matrix: &LowerColumns) -> Result<Pivoted<Pages>> {
     let mut values = Pages::zeros(nodes.values(), "a Cholesky factor")?;
     let subtrees = subtrees(nodes);
     let tasks = split(nodes, &subtrees, &mut values);
@@ -89,7 +89,7 @@ fn split<'a>(
 /// Supernodes eliminated one after the other.
 struct Task<'a> {
     nodes: &'a Supernodes,
-    matrix: &'a Columns,
+    matrix: &'a LowerColumns,
     /// Row of a position within the present front.
     local: Vec<u32>,
     updates: Updates<'a>,
@@ -99,7 +99,7 @@ struct Task<'a> {
 
 impl<'a> Task<'a> {
     fn new(
-        (nodes, matrix): (&'a Supernodes, &'a Columns),
+        (nodes, matrix): (&'a Supernodes, &'a LowerColumns),
         sequence: impl Iterator<Item = usize>,
         interrupt: &'a Interrupt,
     ) -> Result<Self> {
@@ -113,7 +113,7 @@ impl<'a> Task<'a> {
     }
 
     /// All supernodes of a subtree, whose panels these are; gives the update of its root.
-    fn eliminate_subtree(mut self, subtree: Range<usize>, panels: &mut [f64]) -> Result<Factor<Pages>> {
+    fn eliminate_subtree(mut self, subtree: Range<usize>, panels: &mut [f64]) -> Result<Pivoted<Pages>> {
         let first = self.nodes.first_value(subtree.start);
         for s in subtree.clone() {
             self.interrupt.check()?;
@@ -127,7 +127,7 @@ impl<'a> Task<'a> {
     }
 
     /// Supernodes above all subtrees.
-    fn eliminate_shared(&mut self, range: Range<usize>, values: &mut [f64]) -> Result<Factor<()>> {
+    fn eliminate_shared(&mut self, range: Range<usize>, values: &mut [f64]) -> Result<Pivoted<()>> {
         for s in range {
             self.interrupt.check()?;
             let node = self.nodes.node(s);
@@ -139,7 +139,7 @@ impl<'a> Task<'a> {
     }
 
     /// Factorises the panel of s and forms its update.
-    fn eliminate(&mut self, s: usize, panel: &mut [f64], shared: bool) -> Factor<()> {
+    fn eliminate(&mut self, s: usize, panel: &mut [f64], shared: bool) -> Pivoted<()> {
         let node = self.nodes.node(s);
         panel.fill(0.0);
         self.scatter(&node, panel);

@@ -12,14 +12,14 @@ use crate::platform::pages::Pages;
 /// own on the other, that of its level, even or odd: nothing is moved.
 pub struct Updates<'a> {
     nodes: &'a Supernodes,
-    waiting: Vec<(usize, Place)>,
+    waiting: Vec<(usize, KeptUpdate)>,
     stacks: [Pages; 2],
     tops: [usize; 2],
     /// Values that the stacks still need, for every supernode to come.
     needs: IntoIter<[usize; 2]>,
 }
 
-enum Place {
+enum KeptUpdate {
     Stack(Range<usize>),
     /// Formed by another task.
     Apart(Pages),
@@ -46,7 +46,7 @@ impl<'a> Updates<'a> {
 
     /// Takes over what another task has left for the parent of s.
     pub fn push(&mut self, s: usize, update: Pages) {
-        self.waiting.push((s, Place::Apart(update)));
+        self.waiting.push((s, KeptUpdate::Apart(update)));
     }
 
     /// Room for the update of s, the next of the sequence, and the children of s with theirs.
@@ -59,8 +59,8 @@ impl<'a> Updates<'a> {
         let [even, odd] = &mut self.stacks;
         let (own, others) = if level == 0 { (even, odd) } else { (odd, even) };
         let children = self.waiting[first..].iter().map(|(child, place)| match place {
-            Place::Stack(range) => (*child, &others[range.clone()]),
-            Place::Apart(values) => (*child, &values[..]),
+            KeptUpdate::Stack(range) => (*child, &others[range.clone()]),
+            KeptUpdate::Apart(values) => (*child, &values[..]),
         });
         (&mut own[self.tops[level]..self.tops[level] + len], children.collect())
     }
@@ -70,13 +70,13 @@ impl<'a> Updates<'a> {
         let first = self.first_child(s);
         let level = self.nodes.level(s) % 2;
         for (_, place) in self.waiting.drain(first..) {
-            if let Place::Stack(range) = place {
+            if let KeptUpdate::Stack(range) = place {
                 self.tops[1 - level] = self.tops[1 - level].min(range.start);
             }
         }
         let place = self.tops[level]..self.tops[level] + len;
         self.tops[level] = place.end;
-        self.waiting.push((s, Place::Stack(place)));
+        self.waiting.push((s, KeptUpdate::Stack(place)));
     }
 
     /// The update of the root of a subtree, the last that waits.
