@@ -202,6 +202,23 @@ fn no_modules_of_a_folder_import_each_other_in_a_circle() {
     assert_eq!(circles::circles(&all), [""; 0]);
 }
 
+/// docs/pictures/layers.svg has each layer by its name, at a height.
+#[test]
+fn the_picture_shows_every_layer_above_those_that_it_uses() {
+    let picture = concat!(env!("CARGO_MANIFEST_DIR"), "/docs/pictures/layers.svg");
+    let picture = fs::read_to_string(picture).unwrap();
+    let height = |layer: &str| -> f64 {
+        let named = format!(">{layer}</text>");
+        let text = picture.lines().find(|line| line.ends_with(&named)).unwrap_or_else(|| panic!("no {layer}"));
+        text.split("y=\"").nth(1).and_then(|rest| rest.split('"').next()).unwrap().parse().unwrap()
+    };
+    for (layer, below) in ALLOWED {
+        for used in below {
+            assert!(height(layer) < height(used), "{layer} is drawn below {used}");
+        }
+    }
+}
+
 #[test]
 fn an_upward_or_sideways_import_is_named_with_its_line() {
     let upward = "//! crate::solver in a comment\nuse crate::error::Result;\nuse crate::solver::Problem;\n";
