@@ -4,6 +4,8 @@
 # make fuzz      random calls, texts and files under AddressSanitizer, SECONDS=600 each target; TARGETS="calls file" picks some
 # make sanitize  C and Fortran drivers under AddressSanitizer     make loom      registry and pools in all orders of two threads
 # make coverage  lines of src/ffi that the tests run              make overhead  what the C ABI costs on the smallest problem
+# make mutants   wrong changes of src, one after the other, that the Rust tests have to notice (about half an hour);
+#                CHANGES="17 52" picks some, CHANGES=--places tells where they are
 # make counts    applications of F against a linear solve, deck by deck (some minutes); DECKS="slab two" picks some
 # make bench     time and memory against CHOLMOD, Clarabel and OSQP (some minutes); DECKS="4k 40k" picks some
 # make scaling   time and memory as unknowns, contact rows, bodies, threads grow: pictures in docs (some minutes);
@@ -26,7 +28,7 @@ FCFLAGS ?= -O2 -Wall
 RELEASE   := $(or $(CARGO_TARGET_DIR),target)/release
 STAGE     := $(CURDIR)/build/stage
 
-.PHONY: all lib data setup demo battery bits test metis fuzz sanitize loom coverage overhead counts bench scaling paper docs
+.PHONY: all lib data setup demo battery bits test metis fuzz sanitize loom coverage mutants overhead counts bench scaling paper docs
 .PHONY: abi licences packaging stage install uninstall lint fmt clean
 .DELETE_ON_ERROR:
 all: lib
@@ -166,6 +168,9 @@ sanitize: setup stage data build/ctest/CMakeCache.txt
 coverage: setup stage data build/ctest/CMakeCache.txt
 	cmake --build build/ctest
 	@tools/coverage/run.sh $(CURDIR)/build/coverage $(CURDIR)/build/ctest
+
+mutants:
+	@CARGO=$(CARGO) python3 tools/mutants/run.py $(CHANGES)
 
 overhead: setup stage data build/ctest/CMakeCache.txt
 	@cmake --build build/ctest --target c_overhead > /dev/null

@@ -109,4 +109,16 @@ mod tests {
         assert_eq!(grouping.leaders, [3, 0, 1]);
         assert_eq!(grouping.member, [Some((1, 1.0)), Some((2, 1.0)), Some((2, 1.0)), Some((0, 1.0))]);
     }
+
+    /// Unit rows turned against each other by so much: 1e-13 is rounding, 1e-11 and 1e-10 are two directions.
+    #[test]
+    fn rows_are_parallel_to_rounding_alone() {
+        for (turned, groups) in [(0.0, 1), (1e-13, 1), (1e-11, 2), (1e-10, 2)] {
+            let mut matrix = Csr::empty(2);
+            matrix.push_row([(0, 0.6), (1, 0.8)]);
+            matrix.push_row([(0, 0.6 - 0.8 * turned), (1, 0.8 + 0.6 * turned)]);
+            let grouping = Grouping::of(&matrix, 2, &[1.0; 2], |_| false);
+            assert_eq!(grouping.leaders.len(), groups, "{turned:e}");
+        }
+    }
 }

@@ -163,3 +163,24 @@ impl Watch {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::sync::atomic::AtomicUsize;
+
+    /// One task after the other; the first one is where another thread cancels.
+    #[test]
+    fn no_body_is_begun_after_a_cancel() {
+        let (begun, mut watch) = (AtomicUsize::new(0), Host::default().watch(1e300, Phases::default()));
+        let stops = watch.stops.clone();
+        let task = |_| {
+            begun.fetch_add(1, Ordering::Relaxed);
+            stops.cancel();
+            Ok(())
+        };
+        let ended = watch.every_body(&SetupPart::of(1, vec![1.0; 4], 1.0), task, |_, ()| {});
+        assert_eq!(ended.unwrap_err().kind, Kind::Cancelled);
+        assert_eq!(begun.into_inner(), 1);
+    }
+}

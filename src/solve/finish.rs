@@ -248,6 +248,7 @@ impl SplitPoint {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::certificate::Entry;
     use crate::qp::Solution;
     use crate::solve::certifier::tests::two_springs;
 
@@ -295,5 +296,27 @@ mod tests {
             assert_eq!(point.forces(&[true, true]), [2.0, 0.0]);
             assert_eq!(point.active(recovery), [false, true]);
         });
+    }
+
+    #[test]
+    fn a_corrected_answer_takes_no_place_where_one_entry_is_worse() {
+        let of = |ratio: f64| Entry { ratio, ..Entry::default() };
+        let with = |all: f64, balance: f64| Certificate {
+            equilibrium: of(all),
+            balance: of(balance),
+            duality_gap: of(all),
+            ..Certificate::default()
+        };
+        for (new, old, better) in [
+            (with(0.09, 0.09), with(0.2, 0.2), true),    // much better
+            (with(0.2, 0.21), with(0.2, 0.2), true),     // as good but for rounding
+            (with(0.0, 0.3), with(0.2, 0.2), false),     // worse in its balance alone
+            (with(0.3, 0.0), with(0.2, 0.2), false),     // worse but for its balance
+            (with(0.15, 0.15), with(0.2, 0.1), false),   // better at its worst, but not by much
+            (with(9e-5, 9e-5), with(0.0, 1e-9), true),   // both are rounding
+            (with(2.0, 2.0), with(100.0, 100.0), false), // much better, and does not pass
+        ] {
+            assert_eq!(is_better(&new, &old), better, "{new:?} {old:?}");
+        }
     }
 }

@@ -46,3 +46,26 @@ impl Operator for Interruptible<'_> {
         self.operator.product(x, y, &in_parallel)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::error::Kind;
+    use crate::solve::certifier::tests::two_springs;
+
+    #[test]
+    fn no_product_is_begun_after_a_cancel() {
+        for begun in [false, true] {
+            two_springs(0.0, |judge, solved| {
+                let stops = judge.recovery.faces.stops;
+                let f = Interruptible::new(&judge.recovery.ready.dual, stops.clone(), 1);
+                let mut image = vec![0.0; 2];
+                if begun {
+                    f.try_apply(&solved.x, &mut image).unwrap();
+                }
+                stops.cancel();
+                assert_eq!(f.try_apply(&solved.x, &mut image).unwrap_err().kind, Kind::Cancelled);
+            });
+        }
+    }
+}

@@ -4,6 +4,7 @@ mod answers;
 mod bodies;
 mod coordinates;
 mod digits;
+mod given;
 mod rows;
 
 use bodies::{bar, chain, cube, frame, held, membrane};

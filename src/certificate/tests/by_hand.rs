@@ -37,6 +37,22 @@ fn the_exact_answer_passes_in_any_unit_and_each_fault_is_named() {
     }
 }
 
+/// Spring 4 loaded by 2 and tied to .25: mu = 1. Without its force the spring stands at .5, and all but the tie holds there.
+#[test]
+fn a_tie_that_is_left_open_is_seen_by_its_own_entry_alone() {
+    for unit in [1.0, 1e-20, 2.1e11] {
+        let parts = vec![chain(&[], &[(0, 4.0 * unit)]).loaded(&[(0, 2.0 * unit)])];
+        let model = Model { parts, equalities: vec![(vec![(0, 1.0)], 0.25, 0.0)], ..Model::default() };
+        let with =
+            |u, mu: f64| model.certificate(&Point { u: vec![u], lambda: Vec::new(), mu: vec![mu * unit] });
+        assert!(with(0.25, 1.0).passed());
+        let open = with(0.5, 0.0);
+        assert!(!open.passed() && open.equality.ratio > 1.0 && open.equality.place == Some(0), "{open:?}");
+        let others = open.entries().into_iter().filter(|entry| entry.ratio > 1.0);
+        assert_eq!(others.count(), 1, "{open:?}");
+    }
+}
+
 /// Springs 4 and 4 in a line, D = (8, 4), the end pushed by 2 and held back by 1: `|f| + |r| = (2 + 1) / 2`, `|delta|_D^2 = 8/16 + 4/4`.
 #[test]
 fn leverage_is_how_many_times_forces_exceed_what_they_deform() {

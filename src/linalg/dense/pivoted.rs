@@ -181,4 +181,12 @@ mod tests {
             );
         }
     }
+
+    #[test]
+    fn a_pivot_of_1e_10_counts_and_one_of_1e_12_is_weak() {
+        for (pivot, rank) in [(1e-9, 2), (1e-10, 2), (1e-12, 1), (1e-13, 1)] {
+            let a = Matrix { rows: 2, cols: 2, data: vec![1.0, 1.0, 1.0, 1.0 + pivot] };
+            assert_eq!(PivotedCholesky::new(a).unwrap().unwrap().rank(), rank, "{pivot:e}");
+        }
+    }
 }

@@ -1,10 +1,12 @@
 //! Who watches a setup or a solve.
 
+use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex};
 use std::thread::{self, ThreadId};
+use std::time::Duration;
 
 use crate::error::Kind;
-use crate::solver::{Modes, Problem, Progress, Reply, RowKind, RowsInput, SparseInput, Storage};
+use crate::solver::{Modes, Outcome, Problem, Progress, Reply, RowKind, RowsInput, SparseInput, Storage};
 
 const BODIES: usize = 4;
 const DOFS: usize = 600;
@@ -88,4 +90,22 @@ fn what_a_cancelled_setup_has_factorised_is_kept() {
         problem.solve().unwrap();
         assert_eq!(problem.work().factorisations, BODIES);
     }
+}
+
+/// The host takes longer over each step than the whole call may take.
+#[test]
+fn a_solve_ends_with_the_step_in_which_the_time_is_over() {
+    let mut problem = chains(1);
+    problem.set_f64("time_limit", 0.02).unwrap();
+    let steps = Arc::new(AtomicUsize::new(0));
+    let book = Arc::clone(&steps);
+    problem.on_progress(Some(Box::new(move |now| {
+        if now.step.is_some() {
+            book.fetch_add(1, Ordering::Relaxed);
+            thread::sleep(Duration::from_millis(25));
+        }
+        Reply::Continue
+    })));
+    assert_eq!(problem.solve().unwrap().outcome, Outcome::Time);
+    assert!((1..=BODIES).contains(&steps.load(Ordering::Relaxed)), "one for each island");
 }
