@@ -188,3 +188,17 @@ fn random_contradictions_are_never_solved_and_most_are_named() {
     assert_none(&faults);
     assert!(unnamed <= 4, "{unnamed} of 200 are not named");
 }
+
+/// x_1 = 1 and x_2 = -t: the nearest x >= 0 leaves t of |e|. Up to 1e-10 the projection takes it for rounding.
+#[test]
+fn equalities_that_bounds_leave_open_by_more_than_rounding_are_named() {
+    for (t, named) in [(1e-14, false), (5e-10, true), (1e-8, true), (1.0, true)] {
+        let program = Program::new(Dense::diagonal(&[1.0; 2]), &[0.0; 2])
+            .with_equalities(&[&[1.0, 0.0], &[0.0, 1.0]], &[1.0, -t]);
+        let Verdict::Infeasible { margin, .. } = program.minimise().verdict else {
+            assert!(!named, "{t:e}");
+            continue;
+        };
+        assert!(named && (margin * 1f64.hypot(t) / t - 1.0).abs() < 1e-6, "{t:e} {margin:e}");
+    }
+}

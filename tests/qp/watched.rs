@@ -153,6 +153,26 @@ fn the_observer_sees_every_step_with_a_functional_that_falls_and_may_end_the_run
     assert_eq!(failed.unwrap_err().kind, Kind::Callback);
 }
 
+#[test]
+fn a_run_ends_with_the_last_step_that_it_may_take() {
+    let program = program(5);
+    let g_transposed = program.g_transposed();
+    let qp = Qp {
+        a: &program.a,
+        b: &program.b,
+        g_transposed: &g_transposed,
+        rounding: 1e-14,
+        e: &program.e,
+        bounded: &program.bounded,
+        preconditioner: None,
+    };
+    for steps in [1, 2, 5] {
+        let limits = Limits { tolerance: 1e-12, gamma: 1.0, steps };
+        let ended = minimise(qp, &[0.0; 24], limits, &mut Content, &mut Diary::default()).unwrap();
+        assert_eq!((ended.verdict, ended.counts.steps()), (Verdict::StepLimit, steps));
+    }
+}
+
 /// The first point is what one product leaves.
 fn first_point(program: &Program, start: &[f64]) -> Vec<f64> {
     run(program, start, 1, Kind::Cancelled, &mut Diary::default()).unwrap().x

@@ -12,6 +12,7 @@ the list does not fit the sources, or the copy does not build or fails without a
 import json
 import os
 import re
+import resource
 import shutil
 import signal
 import subprocess
@@ -29,8 +30,9 @@ GOAL = 0.9
 LEFT_OUT = {"layering", "licences", "cholmod"}
 # Sizes of the long tests, where nothing else is asked for; one thread for each change that runs.
 SIZES = {"BATTERY": "200", "LIARS": "130", "RUST_TEST_THREADS": "1", "RUST_BACKTRACE": "0"}
-# A program hangs after so many times its time without any change, and some seconds.
-PATIENCE, AT_LEAST = 5, 30
+# A program hangs after so many times the processor time it takes without any change, and some seconds; one that waits after
+# so many times this by the clock, for the machine may have other work.
+PATIENCE, AT_LEAST, WAITING = 5, 10, 10
 
 SWITCH = """
 /// Whether change number `n` of tools/mutants/list.txt is on: that of the variable MUTANT.
@@ -171,7 +173,8 @@ def build():
 def run(program, number, limit):
     """The first test that fails, or how else the program ends; nothing where all is well."""
     environment = {**SIZES, **os.environ, "MUTANT": str(number), "CARGO_MANIFEST_DIR": str(WORK / "tree")}
-    child = subprocess.Popen([program], cwd=WORK / "tree", env=environment, stdout=subprocess.PIPE,
+    limited = ["sh", "-c", 'ulimit -t "$1"; exec "$0"', program, f"{limit:.0f}"]
+    child = subprocess.Popen(limited, cwd=WORK / "tree", env=environment, stdout=subprocess.PIPE,
                              stderr=subprocess.DEVNULL, text=True, errors="replace", start_new_session=True)
 
     def end():
@@ -181,7 +184,7 @@ def run(program, number, limit):
             pass
 
     late = threading.Event()
-    timer = threading.Timer(limit, lambda: (late.set(), end()))
+    timer = threading.Timer(WAITING * limit, lambda: (late.set(), end()))
     timer.start()
     last = failed = None
     for line in child.stdout:
@@ -196,9 +199,15 @@ def run(program, number, limit):
     child.stdout.close()
     if failed:
         return failed
-    if late.is_set():
+    if late.is_set() or status in (-signal.SIGXCPU, -signal.SIGKILL):
         return f"{last} (more than {limit:.0f} s)"
     return f"{last} (ends with {status})" if status else None
+
+
+def processor_time():
+    """Of all programs that have ended, seconds."""
+    used = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return used.ru_utime + used.ru_stime
 
 
 def judged(change, programs):
@@ -222,11 +231,11 @@ def main(arguments):
     programs, times = build(), {}
     print(f"{len(programs)} test programs, {len(changes)} switches: built in {time.monotonic() - begun:.0f} s", flush=True)
     for name, program in programs.items():
-        started = time.monotonic()
+        started = processor_time()
         failed = run(program, 0, 3600)
         if failed:
             raise Misfit(f"without any change {name}: {failed} fails")
-        times[name] = time.monotonic() - started
+        times[name] = processor_time() - started
     order = sorted(times, key=times.get)
     print("without any change all pass: " + ", ".join(f"{name} {times[name]:.1f} s" for name in order), flush=True)
     programs = {name: (programs[name], PATIENCE * times[name] + AT_LEAST) for name in order}
