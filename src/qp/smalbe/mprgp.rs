@@ -272,15 +272,4 @@ mod tests {
         assert!(matches!(kind(0.01, -1.99, [true, true]), Move::Release));
         assert!(matches!(kind(0.01, -1.99, [true, false]), Move::ConjugateGradient));
     }
-
-    /// Whatever rounding leaves of x - t p there, t = x / p.
-    #[test]
-    fn a_row_that_meets_its_bound_is_at_it_exactly() {
-        for (i, j) in (1..100).flat_map(|i| (1..100).map(move |j| (f64::from(i), f64::from(j)))) {
-            let (x, p) = (0.1 * i, 0.3 * j);
-            let mut point = Bounded::new(&[true], vec![x]);
-            assert!(!point.advance(x / p, &[p], &[0.0]), "the face changes");
-            assert_eq!((point.x[0], point.active[0]), (0.0, true), "{x} {p}");
-        }
-    }
 }
