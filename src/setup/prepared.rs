@@ -86,7 +86,7 @@ impl Prepared {
     }
 
     /// Drops what was computed of revisions that are no longer: all but what serves those to come.
-    pub(super) fn follow(&mut self, model: &Model) {
+    pub fn follow(&mut self, model: &Model) {
         if self.duals(model).is_none() {
             self.release();
         }

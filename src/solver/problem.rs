@@ -162,13 +162,15 @@ impl Problem {
         self.prepared.work
     }
 
-    /// Room for setup, solve and check, for as long as the result is kept.
-    pub fn working_room(&self) -> Result<Room> {
+    /// Room for setup, solve and check, for as long as the result is kept; what no longer holds makes room first.
+    pub fn working_room(&mut self) -> Result<Room> {
+        self.prepared.follow(&self.model);
         self.prepared.working_room(&self.model)
     }
 
     /// The same for a call that needs the setup alone: none where it is there.
-    pub fn setup_room(&self) -> Result<Option<Room>> {
+    pub fn setup_room(&mut self) -> Result<Option<Room>> {
+        self.prepared.follow(&self.model);
         self.prepared.setup_room(&self.model)
     }
 }
