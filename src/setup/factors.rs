@@ -18,7 +18,8 @@ use crate::linalg::{Multiple, Symmetric};
 use crate::model::{GivenBody, Model};
 use crate::platform::threads;
 use crate::progress::{Log, LogLevel, Phase, SetupPart, Watch};
-use crate::setup::operators::{check_memory, Operators};
+use crate::setup::memory_limit::check_memory;
+use crate::setup::operators::Operators;
 use crate::setup::prepared::{Inverse, Prepared};
 
 /// Analyses of one pattern that a body looks at before it makes one of its own.

@@ -4,6 +4,7 @@ mod build;
 mod factors;
 mod host;
 mod islands;
+mod memory_limit;
 mod operators;
 mod preconditioner;
 mod prepared;

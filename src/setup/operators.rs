@@ -1,9 +1,9 @@
-//! Which bodies get an explicit dual operator, and whether factors and operators fit into memory.
+//! Which bodies get an explicit dual operator.
 
 use crate::dual::{all_bytes, implicit_bodies, Size};
-use crate::error::{Error, Kind, Result};
+use crate::error::Result;
 use crate::model::{OperatorForm, Settings};
-use crate::platform::memory::available;
+use crate::setup::memory_limit::{check_memory, memory_limit};
 
 /// The local dual operators as they are to be made.
 pub struct Operators {
@@ -60,18 +60,4 @@ fn implicit(settings: &Settings, sizes: &[Size], factor_bytes: usize) -> Vec<boo
 
 fn options(settings: &Settings) -> Options {
     (settings.dual_operator, memory_limit(settings))
-}
-
-fn memory_limit(settings: &Settings) -> Option<usize> {
-    usize::try_from(settings.memory_limit).ok().filter(|limit| *limit > 0)
-}
-
-/// Bytes that are there and more against the limit of the host, and those to come against what the system would give.
-pub fn check_memory(settings: &Settings, kept: usize, more: usize) -> Result<()> {
-    let needed = kept.saturating_add(more);
-    if let Some(limit) = memory_limit(settings).filter(|limit| needed > *limit) {
-        let what = format!("factors and dual operators take {needed} bytes, memory_limit is {limit}");
-        return Err(Error::new(Kind::Memory, what).value(needed as f64).limit(limit as f64));
-    }
-    available(more, "factors and dual operators")
 }

@@ -3,6 +3,7 @@
 mod answer;
 mod case;
 mod certifier;
+mod contradiction;
 mod diagnosis;
 mod every_island;
 mod fallback;

@@ -1,13 +1,11 @@
-//! Before any product with F: the gap of every group of parallel rows, and rows that contradict each other.
+//! The gaps that the rows of the dual have.
 
 use crate::constraints::RowKind;
-use crate::error::{Error, Result};
-use crate::linalg::vector::{dot, norm, norm_max};
-use crate::linalg::{Csr, Operator};
+use crate::error::Result;
 use crate::progress::Stops;
-use crate::qp::{minimise, AcceptanceTest, Limits, Observer, Qp, StepReport};
 use crate::setup::Ready;
 use crate::solve::case::Case;
+use crate::solve::contradiction::contradiction;
 use crate::solve::diagnosis::Contradictions;
 use crate::solve::gaps::Gaps;
 
@@ -15,20 +13,8 @@ use crate::solve::gaps::Gaps;
 const EQUAL: f64 = 1e-10;
 /// ... and so are those that differ by rounding of how far loads and rows move the bodies.
 const ROUNDING: f64 = 64.0 * f64::EPSILON;
-/// A gap so many times as large as all motion that rows demand takes part in no contradiction that could be proved.
-const BEYOND: f64 = 1e6;
 /// A gap so many times as large as all motion that loads make and rows demand is far.
 pub const FAR: f64 = 1e4;
-
-/// What the search leaves of 1 where rows that contradict each other are worth a closer look: some displacement 1e3 times as
-/// large as the largest gap would leave as much.
-const UNCERTAIN: f64 = 1e-6;
-
-/// Multiplications that a method which ends may take before the one for many rows.
-const SMALL: usize = 100_000_000;
-
-/// Multiplications the search for contradictions may take.
-const WORK: usize = 200_000_000;
 
 /// Gaps of all groups; refuses rows whose gaps no displacement satisfies. `moved` is how far the loads move a row at most.
 pub fn presolve(case: Case, moved: f64, stops: &Stops) -> Result<Gaps> {
@@ -76,109 +62,4 @@ pub fn presolve(case: Case, moved: f64, stops: &Stops) -> Result<Gaps> {
     gaps.far =
         gaps.value.iter().zip(&gaps.bounded).map(|(c, bounded)| *bounded && *c > FAR * reach).collect();
     Ok(gaps)
-}
-
-/// `min |D^-1/2 B'w|^2 + (1 + c'w)^2` over w >= 0 on contact rows is zero exactly where rows contradict each
-/// other (c scaled to largest entry 1, far rows left out); B has unit rows, and no compliant ones: they give way to any other row.
-/// No product with F is needed.
-fn contradiction(case: Case, gaps: &Gaps, stops: &Stops) -> Result<Option<Error>> {
-    let rows = &case.ready.rows;
-    let demand =
-        |group: usize| if gaps.bounded[group] { -gaps.value[group] } else { gaps.value[group].abs() };
-    let rigid = |group: &usize| rows.compliance[*group] == 0.0;
-    let size = (0..gaps.value.len()).filter(rigid).map(demand).fold(0.0, f64::max);
-    let near = |group: &usize| gaps.value[*group] <= BEYOND * size;
-    let rigid: Vec<usize> = (0..gaps.value.len()).filter(rigid).filter(near).collect();
-    if size == 0.0 {
-        return Ok(None); // u = 0 satisfies them all
-    }
-    let claims = Contradictions::new(case, gaps);
-    let rigid = claims.among(rigid);
-    if rigid.work() <= SMALL {
-        return claims.proved_among(&rigid);
-    }
-    let bounded: Vec<bool> = rigid.groups.iter().map(|&group| gaps.bounded[group]).collect();
-    let mut c: Vec<f64> = rigid.groups.iter().map(|&group| gaps.value[group]).collect();
-    let size = norm_max(&c);
-    c.iter_mut().for_each(|c| *c /= size);
-    let mut matrix = Csr::empty(rows.scaled.cols);
-    rigid.groups.iter().for_each(|&group| matrix.push_row(rows.scaled.row(group)));
-    let a = Alternative { matrix: &matrix, metric: &rows.metric, c: &c };
-    let b: Vec<f64> = c.iter().map(|c| -c).collect();
-    let none = Csr { ptr: vec![0; c.len() + 1], ..Csr::default() };
-    let qp = Qp {
-        a: &a,
-        b: &b,
-        g_transposed: &none,
-        rounding: 1e-14,
-        e: &[],
-        bounded: &bounded,
-        preconditioner: None,
-    };
-    let steps = (WORK / (4 * matrix.val.len() + c.len() + 1)).clamp(1000, 200_000);
-    let limits = Limits { tolerance: 1e-14, gamma: 1.0, steps };
-    let mut judge = Unjudged { scale: norm(&b) };
-    let solution = minimise(qp, &vec![0.0; c.len()], limits, &mut judge, &mut UnlessCancelled(stops))?;
-    stops.check_cancelled()?;
-    if left(&a, &solution.x) > UNCERTAIN {
-        return Ok(None);
-    }
-    let mut w = vec![0.0; gaps.value.len()];
-    rigid.groups.iter().zip(&solution.x).for_each(|(&group, x)| w[group] = *x);
-    match claims.proved(&w)? {
-        Some(error) => Ok(Some(error)),
-        None => claims.proved_among(&rigid),
-    }
-}
-
-/// `w -> B D^-1 B'w + c (c'w)`
-struct Alternative<'a> {
-    matrix: &'a Csr,
-    metric: &'a [f64],
-    c: &'a [f64],
-}
-
-impl Operator for Alternative<'_> {
-    fn order(&self) -> usize {
-        self.c.len()
-    }
-
-    fn apply(&self, w: &[f64], y: &mut [f64]) {
-        let mut v = vec![0.0; self.metric.len()];
-        self.matrix.mul_transposed_add(1.0, w, &mut v);
-        v.iter_mut().zip(self.metric).for_each(|(v, d)| *v /= d);
-        self.matrix.mul(&v, y);
-        let demanded = dot(self.c, w);
-        y.iter_mut().zip(self.c).for_each(|(y, c)| *y += c * demanded);
-    }
-}
-
-/// `|D^-1/2 B'w|^2 + (1 + c'w)^2`, 1 / (1 + |u|_D^2 / max |c|^2) for the shortest u that satisfies the rows.
-fn left(a: &Alternative, w: &[f64]) -> f64 {
-    let mut image = vec![0.0; w.len()];
-    a.apply(w, &mut image);
-    dot(w, &image) + 2.0 * dot(a.c, w) + 1.0
-}
-
-/// The combination found is examined afterwards.
-struct Unjudged {
-    scale: f64,
-}
-
-impl AcceptanceTest for Unjudged {
-    fn scale(&mut self, _: &[f64], _: &[f64]) -> Result<f64> {
-        Ok(self.scale)
-    }
-
-    fn accepts(&mut self, _: &[f64], _: &[f64]) -> Result<bool> {
-        Ok(true)
-    }
-}
-
-struct UnlessCancelled<'a>(&'a Stops);
-
-impl Observer for UnlessCancelled<'_> {
-    fn step(&mut self, _: &StepReport) -> Result<()> {
-        self.0.check_cancelled()
-    }
 }

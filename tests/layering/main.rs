@@ -209,7 +209,8 @@ fn the_picture_shows_every_layer_above_those_that_it_uses() {
     let picture = fs::read_to_string(picture).unwrap();
     let height = |layer: &str| -> f64 {
         let named = format!(">{layer}</text>");
-        let text = picture.lines().find(|line| line.ends_with(&named)).unwrap_or_else(|| panic!("no {layer}"));
+        let text =
+            picture.lines().find(|line| line.ends_with(&named)).unwrap_or_else(|| panic!("no {layer}"));
         text.split("y=\"").nth(1).and_then(|rest| rest.split('"').next()).unwrap().parse().unwrap()
     };
     for (layer, below) in ALLOWED {

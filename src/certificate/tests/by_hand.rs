@@ -42,9 +42,11 @@ fn the_exact_answer_passes_in_any_unit_and_each_fault_is_named() {
 fn a_tie_that_is_left_open_is_seen_by_its_own_entry_alone() {
     for unit in [1.0, 1e-20, 2.1e11] {
         let parts = vec![chain(&[], &[(0, 4.0 * unit)]).loaded(&[(0, 2.0 * unit)])];
-        let model = DenseModel { parts, equalities: vec![(vec![(0, 1.0)], 0.25, 0.0)], ..DenseModel::default() };
-        let with =
-            |u, mu: f64| model.certificate(&DenseAnswer { u: vec![u], lambda: Vec::new(), mu: vec![mu * unit] });
+        let model =
+            DenseModel { parts, equalities: vec![(vec![(0, 1.0)], 0.25, 0.0)], ..DenseModel::default() };
+        let with = |u, mu: f64| {
+            model.certificate(&DenseAnswer { u: vec![u], lambda: Vec::new(), mu: vec![mu * unit] })
+        };
         assert!(with(0.25, 1.0).passed());
         let open = with(0.5, 0.0);
         assert!(!open.passed() && open.equality.ratio > 1.0 && open.equality.place == Some(0), "{open:?}");
