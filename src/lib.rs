@@ -62,7 +62,10 @@
 //! | [`qp`] | Sections 4 and 5: knows no bodies |
 //! | [`certificate`] | how right an answer is, by matrices and rows alone |
 //! | `progress` | what the host hears of a call, and how it ends one |
-//! | [`solver`] | register, set up, solve, certify, report |
+//! | `model` | what the host has given; nothing is computed |
+//! | `setup` | what is computed of it once, for any load and gap |
+//! | `solve` | presolve, methods, recovery, diagnosis: the answer |
+//! | [`solver`] | the problem of a host: one of each of these |
 //! | [`ffi`] | the C interface |
 
 pub mod body;

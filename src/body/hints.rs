@@ -14,7 +14,7 @@ use crate::body::search::Search;
 use crate::body::spectrum::Doubt;
 use crate::error::{Error, Kind, Result};
 use crate::linalg::{Matrix, Multiple};
-use crate::platform::memory::{room, PRODUCTS};
+use crate::platform::memory::{headroom, PRODUCTS};
 
 /// Where rigid motions are mixed, their terms may cancel to this part of them.
 const MIXED: f64 = 16.0;
@@ -28,7 +28,7 @@ impl GeneralizedInverse {
         fixing: Option<&[usize]>,
     ) -> Result<Plan> {
         let n = k.order();
-        let _room = room(64 * n * size_of::<f64>() + PRODUCTS, "the null space of a body")?;
+        let _room = headroom(64 * n * size_of::<f64>() + PRODUCTS, "the null space of a body")?;
         let parts: Vec<_> =
             rigid.members.iter().map(Vec::as_slice).zip(rigid.counts.iter().copied()).collect();
         let KernelByParts { kernel, counts, candidates, next } = kernel_by_parts(&k, &rigid.modes, &parts)?;

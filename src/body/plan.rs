@@ -10,7 +10,7 @@ use crate::body::search::Search;
 use crate::body::symbolic::{Layout, Symbolic};
 use crate::error::{Error, Kind, Result};
 use crate::linalg::Multiple;
-use crate::platform::memory::{room, PRODUCTS};
+use crate::platform::memory::{headroom, PRODUCTS};
 
 /// How K+ will be made.
 pub enum Plan {
@@ -32,7 +32,7 @@ impl GeneralizedInverse {
         fixing: Option<&[usize]>,
     ) -> Result<Plan> {
         let per_dof = (8 * input.vectors.cols + 24) * size_of::<f64>();
-        let _room = room(k.order() * per_dof + PRODUCTS, "the null space of a body")?;
+        let _room = headroom(k.order() * per_dof + PRODUCTS, "the null space of a body")?;
         let (root, given) = (k.roots()?, fixing.is_some());
         let Verified { basis: null_space, error } = verified(&k, &root, input, tolerance)?;
         let fixing = match fixing {

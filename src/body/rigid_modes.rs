@@ -4,7 +4,7 @@ use crate::error::{Error, Result};
 use crate::linalg::graph::components;
 use crate::linalg::vector::{first_non_finite, norm};
 use crate::linalg::{Matrix, SpdSolver, Symmetric};
-use crate::platform::memory::{copied, reserved, room, zeros};
+use crate::platform::memory::{copied, headroom, reserved, zeros};
 
 /// Per dof: what it moves and where it sits.
 #[derive(Debug, Clone)]
@@ -73,7 +73,7 @@ impl Coordinates {
     /// The six rigid modes of every connected part that is no single spring at a wall, those that move nothing left out:
     /// modes j of all parts in column j, n x (up to 6).
     pub fn rigid_modes(&self, stiffness: &Symmetric) -> Result<RigidModes> {
-        let _room = room(self.len() * PER_DOF, "the rigid modes of a body")?;
+        let _room = headroom(self.len() * PER_DOF, "the rigid modes of a body")?;
         let (part_of, parts) = components(stiffness);
         let mut members = vec![Vec::new(); parts];
         part_of.iter().enumerate().for_each(|(dof, &part)| members[part].push(dof));
@@ -82,7 +82,7 @@ impl Coordinates {
 
     /// The same for a body whose parts are not known: it counts as one.
     pub fn rigid_modes_of_one(&self, stiff: impl Fn(usize) -> bool) -> Result<Matrix> {
-        let _room = room(self.len() * PER_DOF, "the rigid modes of a body")?;
+        let _room = headroom(self.len() * PER_DOF, "the rigid modes of a body")?;
         Ok(self.motions(vec![(0..self.len()).collect()], stiff)?.modes)
     }
 

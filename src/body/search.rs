@@ -24,7 +24,7 @@ use crate::linalg::dense::spectrum::symmetric_eigen;
 use crate::linalg::graph::components;
 use crate::linalg::vector::ratio;
 use crate::linalg::{Analysis, Breakdown, Cholesky, Matrix, Multiple};
-use crate::platform::memory::{copied, reserved, room, PRODUCTS};
+use crate::platform::memory::{copied, headroom, reserved, PRODUCTS};
 
 /// Dofs eliminated last in each part, at first.
 const LAST: usize = 24;
@@ -80,7 +80,7 @@ enum Attempt {
 impl Search {
     /// `fixing`: the dofs to hold in K+, where the host has given them.
     pub fn new(k: Multiple, tolerance: f64, fixing: Option<&[usize]>) -> Result<Self> {
-        let _room = room(k.order() * PER_DOF, "the connected parts of a body")?;
+        let _room = headroom(k.order() * PER_DOF, "the connected parts of a body")?;
         let (part_of, parts) = components(&k.matrix);
         let mut members = vec![Vec::new(); parts];
         part_of.iter().enumerate().for_each(|(dof, &part)| members[part].push(dof));
@@ -300,7 +300,8 @@ impl Search {
     /// parts in column j.
     fn inverse(&self, factor: Cholesky, soft: &[Soft], vectors: Matrix) -> Result<GeneralizedInverse> {
         let (n, r) = (self.k.order(), soft.iter().map(|part| part.vectors.cols).sum::<usize>());
-        let _room = room((2 * r + 8 * vectors.cols + 24) * n * size_of::<f64>() + PRODUCTS, "a null space")?;
+        let _room =
+            headroom((2 * r + 8 * vectors.cols + 24) * n * size_of::<f64>() + PRODUCTS, "a null space")?;
         let root = self.k.roots()?;
         let fixing = self.fixing_of(soft, &vectors, &root)?;
         let parts: Vec<Trailing<'_>> = (self.last.iter().zip(soft).zip(&fixing))

@@ -6,7 +6,7 @@ use crate::body::symmetry::{may_differ, unsymmetric};
 use crate::error::{Error, Kind, Result};
 use crate::linalg::vector::first_non_finite;
 use crate::linalg::{Csr, Symmetric};
-use crate::platform::memory::{reserved, room};
+use crate::platform::memory::{headroom, reserved};
 
 /// Bytes of row pointers and diagonals that come and go in the conversion of a matrix, per row.
 const PER_ROW: usize = 96;
@@ -24,7 +24,7 @@ pub fn from_split(input: SparseInput<'_>, diag: &[f64], tolerance: f64) -> Resul
 
 fn from_rows(input: SparseInput<'_>, diag: Option<&[f64]>, tolerance: f64) -> Result<Symmetric> {
     check_order(input.ptr.len() - 1)?;
-    let _room = room(input.ptr.len() * PER_ROW, "a stiffness matrix")?;
+    let _room = headroom(input.ptr.len() * PER_ROW, "a stiffness matrix")?;
     let k = match lower_triangle(input, diag, tolerance)? {
         Some(lower) => lower,
         None => with_diagonal(lower_of(sorted(input, diag)?, input.storage, tolerance)?)?,
@@ -45,7 +45,7 @@ fn lower_of(rows: Csr, storage: Storage, tolerance: f64) -> Result<Csr> {
 /// Checks and converts a column-major n x n matrix with leading dimension `ld`; zeros are not stored.
 pub fn from_dense(n: usize, k: &[f64], ld: usize, storage: Storage, tolerance: f64) -> Result<Symmetric> {
     check_order(n)?;
-    let _room = room(n * PER_ROW, "a stiffness matrix")?;
+    let _room = headroom(n * PER_ROW, "a stiffness matrix")?;
     let mut rows = Csr::empty(n);
     let stored = |i: usize| match storage {
         Storage::Full => 0..n,

@@ -7,7 +7,7 @@ use crate::constraints::accumulator::Accumulator;
 use crate::error::Result;
 use crate::linalg::graph::components;
 use crate::linalg::{Csr, Symmetric};
-use crate::platform::memory::{reserved, room};
+use crate::platform::memory::{headroom, reserved};
 
 /// Rows of a cluster at most; mortar rows chain over a whole surface.
 const LARGEST: usize = 32;
@@ -42,7 +42,7 @@ impl Decoupling {
     /// hardly differ from combinations of equality rows stay as they are.
     pub fn of(given: UnitRows) -> Result<(Self, Csr)> {
         let (matrix, m) = (given.matrix, given.matrix.rows());
-        let _room = room(64 * (matrix.val.len() + m + matrix.cols), WHAT)?;
+        let _room = headroom(64 * (matrix.val.len() + m + matrix.cols), WHAT)?;
         let mut work = Orthogonalisation::new(given)?;
         let mut cluster_of = reserved(matrix.cols, WHAT)?;
         cluster_of.resize(matrix.cols, None);

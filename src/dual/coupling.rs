@@ -9,7 +9,7 @@ use crate::linalg::graph::components;
 use crate::linalg::semidefinite::sparse::{dense_inverse, uncouple};
 use crate::linalg::sparse::gram::Gram;
 use crate::linalg::{Analysis, Cholesky, Csr, SpdSolver, Symmetric};
-use crate::platform::memory::{copied, reserved, room};
+use crate::platform::memory::{copied, headroom, reserved};
 
 /// A pivot below this means that the rows of its block may depend on each other.
 const SINGULAR: f64 = 1e-8;
@@ -134,7 +134,7 @@ impl Coupling {
         if !self.suspect.contains(&true) {
             return Ok(Vec::new());
         }
-        let _room = room(48 * (w.order() + w.val.len()), "the blocks of a face")?;
+        let _room = headroom(48 * (w.order() + w.val.len()), "the blocks of a face")?;
         let coupled = (0..w.order()).map(|i| w.lower_row(i).filter(|(_, v)| *v != 0.0));
         let mut pattern = Symmetric::new(vec![0], Vec::new(), Vec::new());
         for row in coupled {

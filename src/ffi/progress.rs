@@ -100,7 +100,7 @@ fn told(now: &Progress) -> feti_progress {
             None => 0,
             Some(StepKind::ConjugateGradient) => FETI_STEP_CONJUGATE_GRADIENT,
             Some(StepKind::Expansion) => FETI_STEP_EXPANSION,
-            Some(StepKind::Release) => FETI_STEP_RELEASE,
+            Some(StepKind::Proportioning) => FETI_STEP_RELEASE,
         },
         steps: now.steps as i64,
         products: now.products as i64,

@@ -113,7 +113,7 @@ impl<I: Index> HostRows<I> {
             // SAFETY: rows + 1 positions by the caller's word.
             let ptr = unsafe { pointers(self.row_ptr, rows, base) }?;
             let entries = ptr.last().copied().unwrap_or(0);
-            let _room = problem.room_for_rows(rows, entries)?;
+            let _room = problem.headroom_for_rows(rows, entries)?;
             let body = if self.body.is_null() {
                 None
             } else {

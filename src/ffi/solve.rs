@@ -23,7 +23,7 @@ use crate::solver::{Certificate, Report, Sizes};
 #[no_mangle]
 pub extern "C" fn feti_setup(p: *mut feti_problem) -> i32 {
     enter(p, call!(feti_setup(p)), |problem| {
-        let _room = problem.working_room()?;
+        let _room = problem.working_headroom()?;
         problem.setup()
     })
 }
@@ -68,7 +68,7 @@ pub unsafe extern "C" fn feti_solve(p: *mut feti_problem, info: *mut feti_info) 
         if problem.settings().fault_injection == 1 {
             panic!("fault injected on request");
         }
-        let _room = problem.working_room()?;
+        let _room = problem.working_headroom()?;
         let solved = problem.solve();
         // groups of bodies may have an answer where another has none
         found = problem.report().cloned();
@@ -121,7 +121,7 @@ pub unsafe extern "C" fn feti_check(
         };
         // SAFETY: `struct_size` bytes by the caller's word.
         let target = unsafe { OutStruct::new(out, "out") }?;
-        let _room = problem.working_room()?;
+        let _room = problem.working_headroom()?;
         target.write(&certificate(&problem.check(u, lambda, mu)?));
         Ok(())
     })

@@ -46,7 +46,7 @@ pub unsafe extern "C" fn feti_body_kplus(
         // SAFETY: shapes by the caller's word.
         let (x, output) = unsafe { (input(x, x_entries, "x")?, Output::new(y, y_entries, "y")?) };
         (0..nrhs).try_for_each(|k| check_finite(&x[k * ldx..k * ldx + n], k * ldx, "x"))?;
-        let _room = problem.setup_room()?;
+        let _room = problem.setup_headroom()?;
         // At most y_entries, which column_major has bounded.
         let mut columns = zeros(n * nrhs, "a result")?;
         for (k, column) in columns.chunks_exact_mut(n.max(1)).enumerate() {
@@ -78,7 +78,7 @@ pub unsafe extern "C" fn feti_dual_apply(p: *mut feti_problem, m: i64, x: *const
         let m = all_rows(problem, m)?;
         // SAFETY: shapes by the caller's word.
         let (x, output) = unsafe { (finite_input(x, m, "x")?, Output::new(y, m, "y")?) };
-        let _room = problem.working_room()?;
+        let _room = problem.working_headroom()?;
         let mut product = zeros(m, "a result")?;
         problem.dual_apply(x, &mut product)?;
         output.write(&product);
@@ -104,7 +104,7 @@ pub unsafe extern "C" fn feti_dual_rhs(p: *mut feti_problem, m: i64, d: *mut f64
         let m = all_rows(problem, m)?;
         // SAFETY: room for m numbers by the caller's word.
         let output = unsafe { Output::new(d, m, "d") }?;
-        let _room = problem.working_room()?;
+        let _room = problem.working_headroom()?;
         let mut rhs = zeros(m, "a result")?;
         problem.dual_rhs(&mut rhs)?;
         output.write(&rhs);

@@ -3,7 +3,7 @@
 use crate::constraints::{RowKind, RowSet, RowsInput};
 use crate::error::{Error, Proof, Result};
 use crate::model::contents::Model;
-use crate::platform::memory::{self, Room};
+use crate::platform::memory::{self, Headroom};
 
 /// Bytes per entry of B and H: the host's rows, the scaled ones and those by bodies, each while it grows.
 pub const PER_ENTRY: usize = 128;
@@ -49,10 +49,10 @@ impl Model {
     }
 
     /// Room for so many more rows: those that are there may move while their arrays grow.
-    pub fn room_for_rows(&self, rows: usize, entries: usize) -> Result<Room> {
+    pub fn headroom_for_rows(&self, rows: usize, entries: usize) -> Result<Headroom> {
         let present = self.contact.matrix.col.len().max(self.equalities.matrix.col.len());
         let bytes = present.saturating_add(entries).saturating_mul(PER_ENTRY);
-        memory::room(bytes.saturating_add(rows.saturating_mul(PER_ENTRY)), "constraint rows")
+        memory::headroom(bytes.saturating_add(rows.saturating_mul(PER_ENTRY)), "constraint rows")
     }
 
     /// Rows without entries must hold by themselves.

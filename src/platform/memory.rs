@@ -2,7 +2,7 @@
 //!
 //! Large arrays are reserved one by one, with [`zeros`], [`reserved`] and [`copied`], the largest with
 //! [`Pages`](super::pages::Pages). Where many small pieces or foreign
-//! code allocate, [`room`] proves beforehand that there is enough, and keeps the large arrays of other threads from taking it.
+//! code allocate, [`headroom`] proves beforehand that there is enough, and keeps the large arrays of other threads from taking it.
 
 use std::cell::Cell;
 use std::marker::PhantomData;
@@ -30,7 +30,7 @@ thread_local! {
 
 /// A part of the memory kept free for small pieces, until dropped, on the thread that asked for it.
 #[derive(Debug)]
-pub struct Room {
+pub struct Headroom {
     bytes: usize,
     /// It is a part of another room of this thread.
     inner: bool,
@@ -40,19 +40,19 @@ pub struct Room {
 }
 
 /// Room for `bytes` in small pieces, or `Kind::Memory` naming `what` they were for.
-pub fn room(bytes: usize, what: &str) -> Result<Room> {
+pub fn headroom(bytes: usize, what: &str) -> Result<Headroom> {
     let left = INSIDE.get().checked_sub(bytes);
     if let Some(left) = left {
         INSIDE.set(left);
-        return Ok(Room { bytes, inner: true, inside: 0, thread: PhantomData });
+        return Ok(Headroom { bytes, inner: true, inside: 0, thread: PhantomData });
     }
     proved(bytes, what)
 }
 
 /// The same with as much again as `inside` says, for the rooms that this thread asks for while it lasts.
-pub fn room_with(bytes: usize, inside: usize, what: &str) -> Result<Room> {
+pub fn headroom_with(bytes: usize, inside: usize, what: &str) -> Result<Headroom> {
     if INSIDE.get() > 0 {
-        return room(bytes, what);
+        return headroom(bytes, what);
     }
     let mut room = proved(bytes.saturating_add(inside), what)?;
     room.inside = inside;
@@ -60,7 +60,7 @@ pub fn room_with(bytes: usize, inside: usize, what: &str) -> Result<Room> {
     Ok(room)
 }
 
-fn proved(bytes: usize, what: &str) -> Result<Room> {
+fn proved(bytes: usize, what: &str) -> Result<Headroom> {
     let mut promised = PROMISED.load(Ordering::Relaxed);
     loop {
         let with_this = promised.saturating_add(bytes);
@@ -70,14 +70,14 @@ fn proved(bytes: usize, what: &str) -> Result<Room> {
         match PROMISED.compare_exchange(promised, with_this, Ordering::Relaxed, Ordering::Relaxed) {
             Ok(_) => {
                 PROVED.set(PROVED.get() + bytes);
-                return Ok(Room { bytes, inner: false, inside: 0, thread: PhantomData });
+                return Ok(Headroom { bytes, inner: false, inside: 0, thread: PhantomData });
             }
             Err(changed) => promised = changed,
         }
     }
 }
 
-impl Drop for Room {
+impl Drop for Headroom {
     fn drop(&mut self) {
         if self.inner {
             INSIDE.set(INSIDE.get() + self.bytes);
@@ -137,7 +137,7 @@ pub fn copied<T: Copy>(values: &[T], what: &str) -> Result<Vec<T>> {
 
 /// Checks that `bytes` could be had now, without keeping them.
 pub fn available(bytes: usize, what: &str) -> Result<()> {
-    room(bytes, what).map(drop)
+    headroom(bytes, what).map(drop)
 }
 
 pub fn refusal(bytes: usize, what: &str) -> Error {
@@ -150,18 +150,18 @@ mod tests {
 
     #[test]
     fn what_no_machine_has_is_refused_with_its_size() {
-        for error in [room(1 << 60, "a body").unwrap_err(), zeros(1 << 57, "a body").unwrap_err()] {
+        for error in [headroom(1 << 60, "a body").unwrap_err(), zeros(1 << 57, "a body").unwrap_err()] {
             assert_eq!((error.kind, error.place.value), (Kind::Memory, Some((1_u64 << 60) as f64)));
         }
-        assert!(room(usize::MAX, "a body").is_err());
-        assert!(room(1 << 20, "a body").is_ok());
+        assert!(headroom(usize::MAX, "a body").is_err());
+        assert!(headroom(1 << 20, "a body").is_ok());
     }
 
     #[test]
     fn rooms_inside_another_are_parts_of_it_and_larger_ones_are_proved() {
-        let outer = room_with(1 << 20, 1 << 16, "a solve").unwrap();
+        let outer = headroom_with(1 << 20, 1 << 16, "a solve").unwrap();
         assert_eq!((outer.bytes, INSIDE.get()), ((1 << 20) + (1 << 16), 1 << 16));
-        let (small, large) = (room(1 << 15, "a body").unwrap(), room(1 << 16, "a body").unwrap());
+        let (small, large) = (headroom(1 << 15, "a body").unwrap(), headroom(1 << 16, "a body").unwrap());
         assert!(small.inner && !large.inner && INSIDE.get() == 1 << 15);
         drop((small, large));
         assert_eq!(INSIDE.get(), 1 << 16);
@@ -172,9 +172,9 @@ mod tests {
     #[test]
     fn a_room_is_promised_until_it_is_dropped_and_a_refused_one_is_not() {
         let large = 1 << 30;
-        let kept = room(large, "a body").unwrap();
+        let kept = headroom(large, "a body").unwrap();
         assert!(PROMISED.load(Ordering::Relaxed) >= large);
-        assert!(room(1 << 60, "a body").is_err());
+        assert!(headroom(1 << 60, "a body").is_err());
         drop(kept);
         assert!(PROMISED.load(Ordering::Relaxed) < large);
     }

@@ -9,7 +9,7 @@ use rayon::prelude::*;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 
 use crate::error::{Error, Result};
-use crate::platform::memory::room;
+use crate::platform::memory::headroom;
 use crate::platform::pools::Pools;
 
 static POOLS: Pools<ThreadPool> = Pools { made: Mutex::new(Vec::new()) };
@@ -178,7 +178,7 @@ fn largest_pool(threads: usize) -> Option<Arc<ThreadPool>> {
 
 fn pool(threads: usize) -> Option<Arc<ThreadPool>> {
     POOLS.get(std::process::id(), threads, || {
-        let starting = room(threads * STARTED + STARTING, "threads").ok()?;
+        let starting = headroom(threads * STARTED + STARTING, "threads").ok()?;
         let builder = ThreadPoolBuilder::new().num_threads(threads).stack_size(STACK);
         let pool = builder.thread_name(|_| THREAD_NAME.to_owned()).build().ok()?;
         // Every thread takes its heap now, while there is room for it.

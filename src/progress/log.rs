@@ -63,7 +63,7 @@ impl Log {
         let kind = match kind {
             StepKind::ConjugateGradient => "conjugate gradients",
             StepKind::Expansion => "expansion",
-            StepKind::Release => "release",
+            StepKind::Proportioning => "release",
         };
         self.say(LogLevel::Step, || {
             format!(

@@ -45,7 +45,7 @@ pub enum StepKind {
     ConjugateGradient,
     Expansion,
     /// The proportioning step: rows leave the active set.
-    Release,
+    Proportioning,
 }
 
 /// Where the method stands after a step.

@@ -8,7 +8,7 @@ use crate::linalg::semidefinite::sparse::{FaceRows, PseudoInverse, SINGULAR};
 use crate::linalg::sparse::gram::Gram;
 use crate::linalg::vector::{axpy, norm_max, power_of_two_below};
 use crate::linalg::{Analysis, Cholesky, Csr, Matrix};
-use crate::platform::memory::room;
+use crate::platform::memory::headroom;
 
 pub struct Coarse<'a> {
     /// `G'`, m x r.
@@ -188,7 +188,7 @@ pub fn undetermined(g_transposed: &Csr, held: &[bool], rounding: f64) -> Result<
     let mut coarse = Coarse::new(g_transposed, rounding)?;
     let (dimension, face) = (coarse.dimension(), coarse.on(held)?);
     let Some(solver) = face.pseudo() else { return Matrix::zeros(dimension, 0) };
-    let _room = room(4 * size_of::<f64>() * dimension * solver.deficiency(), "open motions")?;
+    let _room = headroom(4 * size_of::<f64>() * dimension * solver.deficiency(), "open motions")?;
     Ok(solver.kernel().reduced(DROP * rounding))
 }
 

@@ -11,7 +11,7 @@ use crate::linalg::graph::joined;
 use crate::linalg::vector::power_of_two_below;
 use crate::linalg::Csr;
 use crate::model::Model;
-use crate::platform::memory::{copied, reserved, room, zeros};
+use crate::platform::memory::{copied, headroom, reserved, zeros};
 
 const WHAT: &str = "groups of bodies";
 
@@ -146,7 +146,7 @@ pub fn islands(model: &Model) -> Result<Vec<Island>> {
         let finite = (0..rows.len()).filter(|&i| rows.is_finite(i));
         finite.map(move |i| rows.matrix.row(i).map(move |(j, _)| body_of(j)))
     });
-    let _room = room(2 * size_of::<usize>() * bodies, WHAT)?;
+    let _room = headroom(2 * size_of::<usize>() * bodies, WHAT)?;
     let (of_body, count) = joined(bodies, touched);
     let mut islands: Vec<Island> = (0..count).map(|_| Island::empty()).collect();
     let mut start = reserved(bodies, WHAT)?;

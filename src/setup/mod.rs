@@ -2,6 +2,7 @@
 
 mod build;
 mod factors;
+mod headroom;
 mod host;
 mod islands;
 mod memory_limit;
@@ -9,7 +10,6 @@ mod operators;
 mod preconditioner;
 mod prepared;
 mod ready;
-mod room;
 mod rows;
 mod scaling;
 

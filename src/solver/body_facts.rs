@@ -4,7 +4,7 @@ use crate::body::{Doubt, Modes};
 use crate::error::{Error, Kind, Result};
 use crate::linalg::graph;
 use crate::linalg::Symmetric;
-use crate::platform::memory::room;
+use crate::platform::memory::headroom;
 use crate::setup::Duals;
 use crate::solver::problem::Problem;
 
@@ -70,7 +70,7 @@ impl Problem {
         const PER_DOF: usize = 2 * size_of::<usize>();
         let missing = || Error::new(Kind::State, "the stiffness matrix has not been given").body(body);
         let k = self.model.given(body)?.body.stiffness.as_ref().ok_or_else(missing)?;
-        let _room = room(k.order() * PER_DOF, "the connected parts of a body")?;
+        let _room = headroom(k.order() * PER_DOF, "the connected parts of a body")?;
         Ok(graph::components(k))
     }
 

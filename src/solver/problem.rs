@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 
 use crate::error::{Error, Kind, Result};
 use crate::model::{Model, StartFrom};
-use crate::platform::memory::Room;
+use crate::platform::memory::Headroom;
 use crate::progress::{Host, Listener, Log, LogLevel, LogListener, Phase, PhaseReport, Phases, Watch};
 use crate::setup::{Prepared, Work};
 use crate::solve::{solve_islands, Answer, Report, Solved};
@@ -163,14 +163,14 @@ impl Problem {
     }
 
     /// Room for setup, solve and check, for as long as the result is kept; what no longer holds makes room first.
-    pub fn working_room(&mut self) -> Result<Room> {
+    pub fn working_headroom(&mut self) -> Result<Headroom> {
         self.prepared.follow(&self.model);
-        self.prepared.working_room(&self.model)
+        self.prepared.working_headroom(&self.model)
     }
 
     /// The same for a call that needs the setup alone: none where it is there.
-    pub fn setup_room(&mut self) -> Result<Option<Room>> {
+    pub fn setup_headroom(&mut self) -> Result<Option<Headroom>> {
         self.prepared.follow(&self.model);
-        self.prepared.setup_room(&self.model)
+        self.prepared.setup_headroom(&self.model)
     }
 }

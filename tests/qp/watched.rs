@@ -137,7 +137,7 @@ fn the_observer_sees_every_step_with_a_functional_that_falls_and_may_end_the_run
     let count = |kind| diary.steps.iter().filter(|step| step.0 == kind).count();
     assert_eq!(count(StepKind::ConjugateGradient), solution.counts.conjugate_gradient);
     assert_eq!(count(StepKind::Expansion), solution.counts.expansions);
-    assert_eq!(count(StepKind::Release), solution.counts.releases);
+    assert_eq!(count(StepKind::Proportioning), solution.counts.releases);
     assert!(diary.steps.iter().enumerate().all(|(k, step)| step.1 == k + 1));
     assert!(diary.steps.windows(2).all(|two| two[1].2 <= two[0].2 + 1e-12 * two[0].2.abs()));
     let last = diary.steps.last().unwrap().2;

@@ -83,7 +83,7 @@ pub unsafe extern "C" fn feti_body_null_space_get(
         let (body, n) = body_of_order(problem, body, n)?;
         // SAFETY: `r` leads to one number by the caller's word.
         let dimension = unsafe { Output::new(r, 1, "r") }?;
-        let _room = problem.setup_room()?;
+        let _room = problem.setup_headroom()?;
         let (found, columns) = problem.null_space(body)?;
         if !basis.is_null() {
             // SAFETY: as above; checked by Output::new, and set by the caller where there is a basis.
@@ -122,7 +122,7 @@ pub unsafe extern "C" fn feti_body_null_space_get(
 pub unsafe extern "C" fn feti_body_fixing(p: *mut feti_problem, body: i64, r: i64, dof: *mut i64) -> i32 {
     enter(p, call!(feti_body_fixing(p, body, r, dof)), |problem| {
         let body = id(body, "body")?;
-        let _room = problem.setup_room()?;
+        let _room = problem.setup_headroom()?;
         let fixing = problem.fixing_dofs(body)?;
         same(r, fixing.len(), "r", "the dimension of the null space is").map_err(|error| error.body(body))?;
         // SAFETY: r numbers by the caller's word.

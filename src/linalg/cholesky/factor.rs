@@ -8,7 +8,7 @@ use crate::linalg::cholesky::analysis::Analysis;
 use crate::linalg::cholesky::numeric::multifrontal::{self, LowerColumns};
 use crate::linalg::cholesky::triangular::Triangle;
 use crate::linalg::Symmetric;
-use crate::platform::memory::{reserved, room, zeros, PRODUCTS};
+use crate::platform::memory::{headroom, reserved, zeros, PRODUCTS};
 use crate::platform::pages::Pages;
 
 /// The factor L with its analysis.
@@ -53,7 +53,7 @@ impl Analysis {
         by: f64,
     ) -> Result<std::result::Result<Cholesky, usize>> {
         let lists = 3 * self.nodes.bytes() + 4 * self.order.len() * size_of::<usize>();
-        let _room = room(lists + PRODUCTS, "a factorisation")?;
+        let _room = headroom(lists + PRODUCTS, "a factorisation")?;
         let columns = self.columns(matrix, by)?;
         let values = multifrontal::factorize(&self.nodes, &columns)?;
         Ok(values.map(|values| Cholesky { analysis: Arc::clone(self), values, held: Vec::new() }))

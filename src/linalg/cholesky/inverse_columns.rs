@@ -7,7 +7,7 @@ use faer::{Accum, MatMut, MatRef, Par};
 use crate::error::Result;
 use crate::linalg::cholesky::analysis::elimination::NONE;
 use crate::linalg::{Cholesky, Csr, Matrix};
-use crate::platform::memory::{reserved, room, zeros, PRODUCTS};
+use crate::platform::memory::{headroom, reserved, zeros, PRODUCTS};
 
 /// Right-hand sides solved for at a time: L is read twice for all of them.
 const TOGETHER: usize = 32;
@@ -98,7 +98,7 @@ fn paths(cholesky: &Cholesky, rows: &Csr, which: impl Iterator<Item = usize>) ->
 /// `K_ff^-1 b_j'` in the order of elimination, right on the paths in `met`.
 fn solutions(cholesky: &Cholesky, rows: &Csr, which: &[usize], met: &[bool]) -> Result<Matrix> {
     let (n, r) = (cholesky.analysis.order.len(), which.len());
-    let _room = room(PRODUCTS, WHAT)?;
+    let _room = headroom(PRODUCTS, WHAT)?;
     let (mut x, mut work) = (Matrix::zeros(n, r)?, zeros(n * r, WHAT)?);
     for (j, &row) in which.iter().enumerate() {
         let entries = rows.row(row).map(|(dof, v)| (cholesky.position(dof), v));

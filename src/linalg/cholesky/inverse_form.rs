@@ -18,7 +18,7 @@ use crate::linalg::cholesky::analysis::subtrees::{each, outside, parts, shared};
 use crate::linalg::cholesky::analysis::supernodes::{Node, Supernodes};
 use crate::linalg::cholesky::numeric::updates::{RowMap, Updates};
 use crate::linalg::{Cholesky, Csr, Packed};
-use crate::platform::memory::{reserved, room, PRODUCTS};
+use crate::platform::memory::{headroom, reserved, PRODUCTS};
 use crate::platform::pages::Pages;
 use crate::platform::Interrupt;
 
@@ -32,7 +32,7 @@ const BLOCK: usize = 192;
 /// `rows` (m x n, over all dofs of the body) gives the m x m matrix.
 pub fn inverse_form(cholesky: &Cholesky, rows: &Csr) -> Result<Packed> {
     let nodes = &cholesky.analysis.nodes;
-    let _room = room(small_pieces(nodes, rows) + PRODUCTS, WHAT)?;
+    let _room = headroom(small_pieces(nodes, rows) + PRODUCTS, WHAT)?;
     let reach = Reach::of(cholesky, rows)?;
     let mut form = Packed::zeros(rows.rows())?;
     let parts = parts(nodes);

@@ -10,7 +10,7 @@ use faer::{MatMut, MatRef, Par, Spec};
 
 use crate::error::Result;
 use crate::linalg::Matrix;
-use crate::platform::memory::{refusal, reserved, room, zeros, PRODUCTS};
+use crate::platform::memory::{headroom, refusal, reserved, zeros, PRODUCTS};
 
 /// A pivot of the matrix scaled to unit diagonal below this is none, as far as the entries are known, which may be little, ...
 const SINGULAR: f64 = 1e-11;
@@ -48,7 +48,7 @@ impl PivotedCholesky {
         }
         let mut inverse = order.clone();
         let need = cholesky_in_place_scratch::<usize, f64>(n, Par::Seq, Spec::<PivLltParams, f64>::default());
-        let _room = room(PRODUCTS, "a dense factor")?;
+        let _room = headroom(PRODUCTS, "a dense factor")?;
         let mut workspace = MemBuffer::try_new(need)
             .map_err(|_| refusal(need.unaligned_bytes_required(), "a dense factor"))?;
         let done = cholesky_in_place(
@@ -101,7 +101,7 @@ impl PivotedCholesky {
         let n = self.factor.rows;
         let leading = MatRef::from_column_major_slice(&self.factor.data, n, n);
         let leading = leading.submatrix(0, 0, self.rank, self.rank);
-        let _room = room(PRODUCTS, "a solution")?;
+        let _room = headroom(PRODUCTS, "a solution")?;
         let mut view = MatMut::from_column_major_slice_mut(&mut y.data, self.rank, b.cols);
         solve_lower_triangular_in_place(leading, view.as_mut(), Par::Seq);
         solve_upper_triangular_in_place(leading.transpose(), view.as_mut(), Par::Seq);

@@ -5,11 +5,11 @@ use faer::{MatRef, Side};
 
 use crate::error::{Error, Kind, Result};
 use crate::linalg::Matrix;
-use crate::platform::memory::{room, PRODUCTS};
+use crate::platform::memory::{headroom, PRODUCTS};
 
 /// Eigenvalues of the symmetric matrix `a`, ascending, with the eigenvectors as columns.
 pub fn symmetric_eigen(a: &Matrix) -> Result<(Vec<f64>, Matrix)> {
-    let _room = room(PRODUCTS + 8 * a.data.len() * size_of::<f64>(), "the eigenvalues of a matrix")?;
+    let _room = headroom(PRODUCTS + 8 * a.data.len() * size_of::<f64>(), "the eigenvalues of a matrix")?;
     let view = MatRef::from_column_major_slice(&a.data, a.rows, a.cols);
     let eigen = SelfAdjointEigen::new(view, Side::Lower)
         .map_err(|_| Error::new(Kind::Internal, "the eigenvalues of a Schur complement did not converge"))?;

@@ -5,7 +5,7 @@ use faer::{Mat, MatMut, MatRef, Side};
 
 use crate::error::{Error, Kind, Result};
 use crate::linalg::Matrix;
-use crate::platform::memory::{room, PRODUCTS};
+use crate::platform::memory::{headroom, PRODUCTS};
 
 /// Relative size of a pivot or an eigenvalue below which the matrix counts as singular.
 const RANK_TOLERANCE: f64 = 1e-11;
@@ -33,7 +33,7 @@ enum SpdFactor {
 impl SpdSolver {
     /// `scale[i]` > 0 is what W_ii is large or small against.
     pub fn new(w: &Matrix, scale: &[f64]) -> Result<Self> {
-        let _room = room(PRODUCTS + MATRICES * w.data.len() * size_of::<f64>(), "a dense coarse matrix")?;
+        let _room = headroom(PRODUCTS + MATRICES * w.data.len() * size_of::<f64>(), "a dense coarse matrix")?;
         let inverse_root: Vec<f64> = scale.iter().map(|s| s.sqrt().recip()).collect();
         let scaled = Mat::from_fn(w.rows, w.cols, |i, j| inverse_root[i] * w.get(i, j) * inverse_root[j]);
         let factor = match Llt::new(scaled.as_ref(), Side::Lower) {
@@ -45,7 +45,7 @@ impl SpdSolver {
 
     /// By Cholesky, where W, with its largest diagonal entry about 1, is safely regular.
     pub fn regular(w: &Matrix) -> Result<Option<Self>> {
-        let _room = room(PRODUCTS + MATRICES * w.data.len() * size_of::<f64>(), "a dense coarse matrix")?;
+        let _room = headroom(PRODUCTS + MATRICES * w.data.len() * size_of::<f64>(), "a dense coarse matrix")?;
         let view = MatRef::from_column_major_slice(&w.data, w.rows, w.cols);
         let llt = Llt::new(view, Side::Lower).ok().filter(regular);
         Ok(llt.map(|llt| Self { inverse_root: vec![1.0; w.rows], factor: SpdFactor::Cholesky(llt) }))

@@ -2,7 +2,7 @@
 
 use crate::error::Result;
 use crate::linalg::{Csr, Symmetric};
-use crate::platform::memory::{copied, room, zeros};
+use crate::platform::memory::{copied, headroom, zeros};
 
 /// Bytes per product of two entries of a row, and per row and column, while their lists grow.
 const PER_PRODUCT: usize = 24;
@@ -21,7 +21,7 @@ impl Gram {
     pub fn of(rows: &Csr) -> Result<Self> {
         let products = rows.ptr.windows(2).map(|row| (row[1] - row[0]).pow(2)).sum::<usize>();
         let lists = products.saturating_mul(PER_PRODUCT);
-        let _room = room(lists.saturating_add((rows.rows() + rows.cols) * PER_ROW), "a Gram matrix")?;
+        let _room = headroom(lists.saturating_add((rows.rows() + rows.cols) * PER_ROW), "a Gram matrix")?;
         let pattern = pattern(rows)?;
         let (mut ptr, mut position) = (vec![0], Vec::new());
         for i in 0..rows.rows() {

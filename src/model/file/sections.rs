@@ -126,7 +126,7 @@ impl SectionContent {
             Self::Rows { kind, ptr, unknown, val, rhs, inv_k } => {
                 once(&mut known.rows[kind as usize])?;
                 let (body, dof) = known.places(&unknown)?;
-                let _room = model.room_for_rows(rhs.len(), val.len())?;
+                let _room = model.headroom_for_rows(rhs.len(), val.len())?;
                 let rows = RowsInput { ptr: &ptr, body: Some(&body), dof: &dof, val: &val, rhs: Some(&rhs) };
                 model.add_rows(kind, rows)?;
                 model.set_compliance(kind, 0, &inv_k)

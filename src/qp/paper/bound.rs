@@ -80,7 +80,7 @@ impl<'a, 'q> Proportioning<'a, 'q> {
         let x = q.projection(start);
         let g = q.gradient(&x)?;
         let point = Point::new(q.qp.bounded, x, g);
-        let (counts, last) = (Counts::default(), StepKind::Release);
+        let (counts, last) = (Counts::default(), StepKind::Proportioning);
         Ok(Self { q, point, rule, counts, last, face: None, largest_curvature: 0.0 })
     }
 
@@ -114,7 +114,7 @@ impl<'a, 'q> Proportioning<'a, 'q> {
         axpy(-a, &self.point.split.chopped, &mut x);
         axpy(-a, &image, &mut g);
         self.point.move_to(x, g);
-        Ok(BoundStep::Done(StepKind::Release))
+        Ok(BoundStep::Done(StepKind::Proportioning))
     }
 
     /// One conjugate gradient step on the face; the variant says what happens at its bounds.
@@ -181,7 +181,7 @@ impl<'a, 'q> Proportioning<'a, 'q> {
         match kind {
             StepKind::ConjugateGradient => self.counts.conjugate_gradient += 1,
             StepKind::Expansion => self.counts.expansions += 1,
-            StepKind::Release => self.counts.releases += 1,
+            StepKind::Proportioning => self.counts.releases += 1,
         }
     }
 }

@@ -148,7 +148,7 @@ fn run(
                     it.alpha = alpha;
                     return Ok(verdict);
                 }
-                StepKind::Release
+                StepKind::Proportioning
             }
             Step::Unbounded { .. } | Step::Stuck if judge.accepts(&it.x, &it.alpha)? => {
                 return Ok(Verdict::Solved);
@@ -157,7 +157,7 @@ fn run(
             Step::Stuck => return Ok(Verdict::Stalled),
             Step::ConjugateGradient => StepKind::ConjugateGradient,
             Step::Expansion => StepKind::Expansion,
-            Step::Release => StepKind::Release,
+            Step::Proportioning => StepKind::Proportioning,
         };
         observer.step(&it.progress(kind, small))?;
         if it.counts.steps() >= limits.steps {

@@ -26,7 +26,7 @@ const GRADIENT_STEP: f64 = 1.5;
 pub enum Step {
     ConjugateGradient,
     Expansion,
-    Release,
+    Proportioning,
     /// The point is optimal with this multiplier of `G x = e`, where the least-squares one is not.
     Vertex {
         alpha: Vec<f64>,
@@ -209,7 +209,7 @@ impl Iterate<'_> {
     pub fn proportion(&mut self, small: f64) -> Result<Step> {
         let step = if std::mem::take(&mut self.cuts) > 0 { None } else { self.free_pulling(small)? };
         let step = step.map_or_else(|| self.project_gradient(small), Ok)?;
-        self.counts.releases += usize::from(matches!(step, Step::Release));
+        self.counts.releases += usize::from(matches!(step, Step::Proportioning));
         self.settle()?;
         Ok(step)
     }
@@ -230,14 +230,14 @@ impl Iterate<'_> {
         // a preconditioned direction has its length, any other must have been measured
         let own = (pressed && self.qp.preconditioner.is_some()).then_some(1.0);
         let step = match length.or(own) {
-            Some(t) if self.expand(&p, t)? => Step::Release,
+            Some(t) if self.expand(&p, t)? => Step::Proportioning,
             None if !pressed => self.step_along(p, false)?,
             _ => Step::Stuck,
         };
         match step {
             Step::Stuck => self.back_to_face(before).map(|()| None),
             Step::Unbounded { .. } => Ok(Some(step)),
-            _ => Ok(Some(Step::Release)),
+            _ => Ok(Some(Step::Proportioning)),
         }
     }
 
@@ -300,7 +300,7 @@ impl Iterate<'_> {
         self.keep(&s, &image);
         self.settled = false;
         self.move_to(x, g)?;
-        Ok(Step::Release)
+        Ok(Step::Proportioning)
     }
 }
 

@@ -167,7 +167,7 @@ impl<'a> Lagrangian<'a> {
             let kind = match self.point.step(&mut self.map, &rule)? {
                 Move::ConjugateGradient => StepKind::ConjugateGradient,
                 Move::Expansion => StepKind::Expansion,
-                Move::Release => StepKind::Release,
+                Move::Proportioning => StepKind::Proportioning,
                 Move::Unbounded { .. } if self.point.split.norm() <= self.noise => {
                     return Ok(Some(Verdict::Inaccurate));
                 }
@@ -245,7 +245,7 @@ impl<'a> Lagrangian<'a> {
         match kind {
             StepKind::ConjugateGradient => counts.conjugate_gradient += 1,
             StepKind::Expansion => counts.expansions += 1,
-            StepKind::Release => counts.releases += 1,
+            StepKind::Proportioning => counts.releases += 1,
         }
         StepReport::new(kind, &self.map.counts, &self.point.split, self.theta(), small)
     }

@@ -23,7 +23,7 @@ pub trait Hessian {
 pub enum Move {
     ConjugateGradient,
     Expansion,
-    Release,
+    Proportioning,
     /// q falls without end along `-p`.
     Unbounded {
         p: Vec<f64>,
@@ -118,7 +118,7 @@ impl<'a> Bounded<'a> {
         }
         self.advance(t, &p, &image);
         self.conjugate = None;
-        Ok(Move::Release)
+        Ok(Move::Proportioning)
     }
 
     /// `p = z - (z'H p_old / p_old'H p_old) p_old`, z the preconditioned g^F.
@@ -248,7 +248,7 @@ mod tests {
                 match point.step(&mut h, &RULE).unwrap() {
                     Move::ConjugateGradient => kinds[0] += 1,
                     Move::Expansion => kinds[1] += 1,
-                    Move::Release => kinds[2] += 1,
+                    Move::Proportioning => kinds[2] += 1,
                     Move::Unbounded { p } => panic!("H is positive definite, {p:?}"),
                 }
                 assert!(q(&point.x, &point.g) <= before + 1e-13 * before.abs(), "wave {wave}");
@@ -269,7 +269,7 @@ mod tests {
         };
         // g^F = 2 on a row that is free to move, on one with x / step = 0.01 / 0.375, on one without a bound
         assert!(matches!(kind(3.0, 1.0, [true, true]), Move::ConjugateGradient));
-        assert!(matches!(kind(0.01, -1.99, [true, true]), Move::Release));
+        assert!(matches!(kind(0.01, -1.99, [true, true]), Move::Proportioning));
         assert!(matches!(kind(0.01, -1.99, [true, false]), Move::ConjugateGradient));
     }
 }

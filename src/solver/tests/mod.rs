@@ -2,12 +2,12 @@
 
 mod body_facts;
 mod file;
+mod headroom;
 mod log;
 mod numbering;
 mod outcome;
 mod response;
 mod results;
-mod room;
 mod rows;
 mod sharing;
 mod states;

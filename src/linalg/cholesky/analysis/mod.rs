@@ -11,7 +11,7 @@ pub mod supernodes;
 use crate::error::Result;
 use crate::linalg::sparse::graph::Graph;
 use crate::linalg::Symmetric;
-use crate::platform::memory::{reserved, room, Room};
+use crate::platform::memory::{headroom, reserved, Headroom};
 use elimination::NONE;
 use ordering::nested_dissection;
 use supernodes::Supernodes;
@@ -32,7 +32,7 @@ pub struct Analysis {
 
 impl Analysis {
     pub fn new(matrix: &Symmetric, held: &[bool]) -> Result<Self> {
-        let _room = analysis_room(matrix)?;
+        let _room = analysis_headroom(matrix)?;
         let graph = Graph::of(matrix)?;
         let order = nested_dissection(&graph, held)?;
         Self::in_order(&graph, &order)
@@ -41,7 +41,7 @@ impl Analysis {
     /// For `matrix` with the dofs `last` eliminated last, in this order; `graph`, which it may have more couplings
     /// than among those dofs, decides on the order of the others.
     pub fn ending(graph: &Symmetric, matrix: &Symmetric, last: &[usize]) -> Result<Self> {
-        let _room = analysis_room(matrix)?;
+        let _room = analysis_headroom(matrix)?;
         let mut is_last = vec![false; matrix.order()];
         last.iter().for_each(|&dof| is_last[dof] = true);
         let mut order = nested_dissection(&Graph::of(graph)?, &is_last)?;
@@ -51,7 +51,7 @@ impl Analysis {
 
     /// Of the block of the dofs in `order`, eliminated in this order.
     pub fn of_leading(matrix: &Symmetric, order: &[usize]) -> Result<Self> {
-        let _room = analysis_room(matrix)?;
+        let _room = analysis_headroom(matrix)?;
         Self::in_order(&Graph::of(matrix)?, order)
     }
 
@@ -70,6 +70,9 @@ impl Analysis {
     }
 }
 
-fn analysis_room(matrix: &Symmetric) -> Result<Room> {
-    room(matrix.order() * ANALYSIS_PER_DOF + matrix.val.len() * ANALYSIS_PER_ENTRY, "the ordering of a body")
+fn analysis_headroom(matrix: &Symmetric) -> Result<Headroom> {
+    headroom(
+        matrix.order() * ANALYSIS_PER_DOF + matrix.val.len() * ANALYSIS_PER_ENTRY,
+        "the ordering of a body",
+    )
 }

@@ -3,7 +3,7 @@
 
 use crate::error::Result;
 use crate::model::{Model, PER_ENTRY};
-use crate::platform::memory::{self, Room, PRODUCTS};
+use crate::platform::memory::{self, Headroom, PRODUCTS};
 use crate::setup::prepared::Prepared;
 
 /// Bytes per unknown: loads, displacements, reactions and the certificate, about 16 vectors at a time.
@@ -19,7 +19,7 @@ const PER_MODE: usize = 320;
 
 impl Prepared {
     /// Room for setup, solve and check, for as long as the result is kept.
-    pub fn working_room(&self, model: &Model) -> Result<Room> {
+    pub fn working_headroom(&self, model: &Model) -> Result<Headroom> {
         let rows = model.contact.len() + model.equalities.len();
         // A body without stiffness is refused before anything is made of its size.
         let dofs: usize = model.bodies.iter().filter_map(|given| given.body.k()).map(|k| k.order()).sum();
@@ -30,15 +30,15 @@ impl Prepared {
         let coarse_entries = entries.saturating_mul(most).min(rows.saturating_mul(modes));
         let bytes = dofs * PER_DOF + rows * PER_ROW + entries * PER_ENTRY + modes * PER_MODE + PRODUCTS;
         let bytes = bytes.saturating_add(coarse_entries.saturating_mul(PER_COARSE_ENTRY));
-        memory::room_with(bytes, INSIDE, "the vectors of a solve")
+        memory::headroom_with(bytes, INSIDE, "the vectors of a solve")
     }
 
     /// The same for a call that needs the setup alone: none where it is there.
-    pub fn setup_room(&self, model: &Model) -> Result<Option<Room>> {
+    pub fn setup_headroom(&self, model: &Model) -> Result<Option<Headroom>> {
         if self.is_up_to_date(model) {
             return Ok(None);
         }
-        self.working_room(model).map(Some)
+        self.working_headroom(model).map(Some)
     }
 
     /// Dimension of the null space of a body; six rigid motions where it has not been found yet.

@@ -11,5 +11,5 @@ fn the_room_of_many_bodies_grows_with_their_number() {
         let k = SparseInput { ptr: &[0, 1], col: &[0], val: &[1.0], storage: Storage::Lower };
         problem.set_stiffness(body, k).unwrap();
     }
-    assert!(problem.working_room().is_ok());
+    assert!(problem.working_headroom().is_ok());
 }
