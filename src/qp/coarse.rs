@@ -60,7 +60,7 @@ impl<'a> Coarse<'a> {
     pub fn on(&mut self, held: &[bool]) -> Result<OnFace<'_>> {
         let selected = usize::from(held.contains(&true));
         if let Some((gram, analysis)) = &self.gram {
-            if !self.faces[selected].as_ref().is_some_and(|face| face.held == held) {
+            if self.faces[selected].as_ref().is_none_or(|face| face.held != held) {
                 let mut w = gram.sum(self.g_transposed, held)?;
                 w.val.iter_mut().for_each(|v| *v /= self.unit * self.unit);
                 let (unit, whole, rounding) = (self.unit, &self.whole[..], self.rounding);
