@@ -29,15 +29,11 @@ fn bits(problem: &mut Problem, deck: &Deck) -> u64 {
 fn told(ended: &Result<Report>) -> String {
     match ended {
         Ok(report) => {
-            let timeless = Report {
-                seconds_setup: 0.0,
-                seconds_solve: 0.0,
-                factor_bytes: 0,
-                operator_bytes: 0,
-                phases: Vec::new(),
-                ..report.clone()
-            };
-            format!("{timeless:?}")
+            let Report { outcome, body, certificate, counts, work, sizes, .. } = report;
+            let figures = [report.unheld, report.gap_scale, report.energy];
+            let more = (report.floating_modes, report.active, report.undetermined, report.finished);
+            let operators = [report.explicit_operators, report.implicit_operators];
+            format!("{outcome:?} {body:?} {certificate:?} {counts:?} {work:?} {sizes:?} {figures:?} {more:?} {operators:?}")
         }
         Err(error) => format!("{error} {:?}", error.place),
     }

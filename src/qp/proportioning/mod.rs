@@ -104,9 +104,9 @@ fn proportioning(
     let scale = judge.scale(&it.x, &it.alpha)?;
     let stop = Stop::new(limits.tolerance * scale);
     let verdict = run(&mut it, stop, limits, judge, observer).or_else(Verdict::of_refusal)?;
-    let undetermined = it.coarse.on(&it.split.active)?.deficiency();
     it.counts.coarse_solves = it.coarse.solves;
     it.counts.coarse_factorisations = it.coarse.factorisations;
+    let undetermined = it.coarse.on(&it.split.active)?.deficiency();
     Ok(Solution { undetermined, scale, x: it.x, alpha: it.alpha, verdict, counts: it.counts })
 }
 
