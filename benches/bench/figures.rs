@@ -45,6 +45,7 @@ const TWO: Program = Program::Ours(2);
 pub fn of(deck: &'static str, runs: &Runs) -> Vec<Figure> {
     let cholmod = |quantity| (Program::Cholmod(1), quantity);
     let parts = |quantity| (Program::Parts, quantity);
+    let faer = |threads, quantity| (Program::Faer(threads), quantity);
     let first = (ONE, "first_cpu");
     let wall = (TWO, "first_wall");
     let figures = [
@@ -54,6 +55,11 @@ pub fn of(deck: &'static str, runs: &Runs) -> Vec<Figure> {
         ("F/factorisation", parts("dual_operator_cpu"), parts("factorisation_cpu")),
         ("second_step/first,cpu", (ONE, "second_cpu"), first),
         ("peak_memory/CHOLMOD", (ONE, "peak"), cholmod("peak")),
+        ("factorisation/faer's,1_thread_cpu", (Program::Factor(1), "cpu"), faer(1, "cpu")),
+        ("factorisation/faer's,2_threads_wall", (Program::Factor(2), "wall"), faer(2, "wall")),
+        ("first_factorisation/faer's,1_thread_cpu", (Program::Factor(1), "first_cpu"), faer(1, "first_cpu")),
+        ("entries_of_L/faer's", (Program::Factor(1), "entries"), faer(1, "entries")),
+        ("memory_of_factorisation/faer's", (Program::Factor(1), "memory"), faer(1, "memory")),
         ("Clarabel/solve,cpu", (Program::Clarabel, "cpu"), first),
         ("OSQP/solve,cpu", (Program::Osqp, "cpu"), first),
         ("F_product/triad", (Program::Bandwidth, "product"), (Program::Bandwidth, "triad")),
@@ -79,6 +85,7 @@ fn goal(name: &str, deck: &str) -> Goal {
         ("F/factorisation", "144k") => Most(0.18),
         ("second_step/first,cpu", "40k" | "144k") => Most(0.08),
         ("peak_memory/CHOLMOD", _) => Most(1.1),
+        ("factorisation/faer's,1_thread_cpu" | "factorisation/faer's,2_threads_wall", _) => Most(1.0),
         ("Clarabel/solve,cpu", _) => Least(15.0),
         ("OSQP/solve,cpu", _) => Least(25.0),
         ("F_product/triad", _) => Least(0.7),

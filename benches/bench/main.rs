@@ -1,5 +1,5 @@
 //! A whole contact solve against one analysis and factorisation of K by CHOLMOD, and against two solvers of quadratic
-//! programs. One line a figure,
+//! programs; and the factorisation of K alone against faer's. One line a figure,
 //!
 //! ```text
 //! bench <deck> <figure> <value> goal <g> ok|short
@@ -11,6 +11,7 @@
 mod clock;
 #[path = "../../tests/support/compiler.rs"]
 mod compiler;
+mod factors;
 mod figures;
 #[path = "../../tests/support/hand_over.rs"]
 mod hand_over;
@@ -57,6 +58,7 @@ fn child(kind: &str, deck: &str, threads: &str) -> Result<(), String> {
     match kind {
         "ours" => ours::run(build()?, threads.parse().map_err(|_| "no number of threads")?),
         "parts" => parts::run(&build()?).map_err(|error| error.to_string()),
+        "factor" => factors::run(&build()?, threads.parse().map_err(|_| "no number of threads")?),
         _ => parts::bandwidth().map_err(|error| error.to_string()),
     }
 }
@@ -119,6 +121,10 @@ fn measure(case: &Case, runs: &mut Runs, peers: &Peers) -> Result<String, String
             }
         }
         Model::OneBody(_) => ours.to_vec(),
+        Model::Clamped(_) => {
+            peers.write(case)?;
+            vec![Program::Factor(1), Program::Faer(1), Program::Factor(2), Program::Faer(2)]
+        }
         Model::Flat(..) | Model::Cube(_) | Model::Cut(_) => ours[..1].to_vec(),
     };
     let mut blas = String::new();
@@ -159,9 +165,12 @@ fn agree(case: &Case, runs: &Runs) -> Result<(), String> {
 fn details(case: &Case, runs: &Runs, blas: &str) {
     let median = |program, quantity: &str| runs.median(case.name, program, quantity);
     let ours = Program::Ours(1);
-    let text: Vec<String> = ["dofs", "rows", "closed", "products", "implicit", "second_products"]
+    let text: Vec<String> = ["dofs", "rows", "closed", "products", "implicit", "second_products", "entries"]
         .iter()
-        .filter_map(|quantity| Some(format!("{quantity} {}", median(ours, quantity)?)))
+        .filter_map(|quantity| {
+            let count = median(ours, quantity).or_else(|| median(Program::Factor(1), quantity))?;
+            Some(format!("{quantity} {count}"))
+        })
         .collect();
     println!("    {}, {} rounds", text.join(", "), case.rounds);
     let times = [
@@ -179,6 +188,10 @@ fn details(case: &Case, runs: &Runs, blas: &str) {
         (Program::Parts, "dual_operator_cpu"),
         (Program::Cholmod(1), "analyse_cpu"),
         (Program::Cholmod(1), "factorise_cpu"),
+        (Program::Factor(1), "cpu"),
+        (Program::Faer(1), "cpu"),
+        (Program::Factor(2), "wall"),
+        (Program::Faer(2), "wall"),
         (Program::Clarabel, "cpu"),
         (Program::Osqp, "cpu"),
     ];

@@ -61,7 +61,7 @@ fn measure(body: &Body, rows: &Csr) -> Result<([f64; NAMES.len()], usize)> {
     Ok((seconds, analysis.entries()))
 }
 
-fn stiffness(body: &Body) -> Result<Symmetric> {
+pub fn stiffness(body: &Body) -> Result<Symmetric> {
     let k = &body.stiffness;
     let col: Vec<i64> = k.col.iter().map(|&j| j as i64).collect();
     from_sparse(SparseInput { ptr: &k.ptr, col: &col, val: &k.val, storage: Storage::Full }, 1e-10)

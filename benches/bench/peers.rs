@@ -1,12 +1,13 @@
-//! The programs that are run: this one again, CHOLMOD in C, Clarabel and OSQP from Python.
+//! The programs that are run: this one again, CHOLMOD in C, faer's Cholesky, Clarabel and OSQP from Python.
 
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use crate::compiler::compiler;
+use crate::factors;
 use crate::matrix;
-use crate::problems::{Case, PEERS};
+use crate::problems::{Case, Model, PEERS};
 use crate::runs::{output, Program};
 
 const ROOT: &str = env!("CARGO_MANIFEST_DIR");
@@ -42,7 +43,7 @@ impl Peers {
         self.python.is_some()
     }
 
-    /// The files that the peers read for a deck.
+    /// The files that the peers read for a deck; builds faer's program for those it is measured on.
     pub fn write(&self, case: &Case) -> Result<(), String> {
         let deck = case.model.build();
         let text = |error: std::io::Error| format!("{}: {error}", case.name);
@@ -50,11 +51,17 @@ impl Peers {
         if case.name == PEERS {
             matrix::write(&deck, false, &self.problem(case.name)).map_err(text)?;
         }
+        if let Model::Clamped(_) = case.model {
+            self.build_faer()?;
+            let order = factors::order(&deck).map_err(|error| error.to_string())?;
+            let bytes: Vec<u8> = order.iter().flat_map(|dof| dof.to_ne_bytes()).collect();
+            fs::write(self.order(case.name), bytes).map_err(text)?;
+        }
         Ok(())
     }
 
     pub fn remove(&self, case: &Case) {
-        for path in [self.matrix(case.name), self.problem(case.name)] {
+        for path in [self.matrix(case.name), self.problem(case.name), self.order(case.name)] {
             // What is not there need not be removed.
             let _ = fs::remove_file(path);
         }
@@ -66,6 +73,23 @@ impl Peers {
 
     fn problem(&self, deck: &str) -> PathBuf {
         self.folder.join(format!("{deck}.problem"))
+    }
+
+    /// The dofs in the order of elimination.
+    fn order(&self, deck: &str) -> PathBuf {
+        self.folder.join(format!("{deck}.order"))
+    }
+
+    /// Where faer's program is built.
+    fn faer(&self) -> PathBuf {
+        self.folder.join("faer")
+    }
+
+    fn build_faer(&self) -> Result<(), String> {
+        let mut cargo = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
+        cargo.args(["build", "--release", "--locked", "--quiet", "--manifest-path"]);
+        cargo.arg(Path::new(ROOT).join("benches/faer/Cargo.toml"));
+        output(cargo.arg("--target-dir").arg(self.faer())).map(|_| ())
     }
 
     /// The command of one run.
@@ -80,9 +104,15 @@ impl Peers {
             Program::Ours(threads) => own("ours", threads),
             Program::Parts => own("parts", 1),
             Program::Bandwidth => own("bandwidth", 1),
+            Program::Factor(threads) => own("factor", threads),
             Program::Cholmod(_) => {
                 let mut command = Command::new(&self.cholmod);
                 command.arg(self.matrix(deck));
+                Ok(command)
+            }
+            Program::Faer(threads) => {
+                let mut command = Command::new(self.faer().join("release/factorise-by-faer"));
+                command.arg(self.matrix(deck)).arg(self.order(deck)).arg(threads.to_string());
                 Ok(command)
             }
             Program::Clarabel | Program::Osqp => {

@@ -1,6 +1,6 @@
 //! The decks of the benchmark.
 
-use decks::{Blocks, Cube, Deck};
+use decks::{Block, Blocks, Cube, Deck};
 
 /// A deck by its generator.
 #[derive(Clone, Copy, PartialEq)]
@@ -16,6 +16,8 @@ pub enum Model {
     /// One cube of `CUT`^3 elements, cut into side^3 bodies: the same solution whatever the side, lengths and all
     /// displacements times the side.
     Cut(usize),
+    /// One body of so many cubic elements along each edge, clamped at x = 0, for a factorisation alone.
+    Clamped([usize; 3]),
 }
 
 /// Elements along the edge of a cube that is cut: so many that 1, 2, 3 and 4 divide them.
@@ -32,7 +34,7 @@ pub struct Case {
 pub const PEERS: &str = "40k_peers";
 
 /// Small decks first: a figure that short runs leave noisy gets more of them.
-pub const CASES: [Case; 7] = [
+pub const CASES: [Case; 12] = [
     Case { name: "4k", model: Model::Blocks(8), rounds: 11 },
     Case { name: "13k", model: Model::Blocks(12), rounds: 7 },
     Case { name: "40k", model: Model::Blocks(18), rounds: 5 },
@@ -40,6 +42,11 @@ pub const CASES: [Case; 7] = [
     Case { name: "one_body", model: Model::OneBody(35), rounds: 1 },
     Case { name: "64_bodies", model: Model::Cube(4), rounds: 3 },
     Case { name: PEERS, model: Model::Blocks(18), rounds: 1 },
+    Case { name: "cube_4k", model: Model::Clamped([10; 3]), rounds: 15 },
+    Case { name: "cube_14k", model: Model::Clamped([16; 3]), rounds: 9 },
+    Case { name: "cube_40k", model: Model::Clamped([23; 3]), rounds: 5 },
+    Case { name: "plate_40k", model: Model::Clamped([66, 66, 2]), rounds: 7 },
+    Case { name: "bar_41k", model: Model::Clamped([80, 12, 12]), rounds: 7 },
 ];
 
 /// Decks of the scaling, beside those above. The flat ones have about as many unknowns as 40k.
@@ -76,6 +83,7 @@ impl Model {
                 let gap = side as f64 * Cube::default().gap;
                 Cube { subdomains: [side; 3], elements: CUT / side, gap, ..Cube::default() }.build()
             }
+            Model::Clamped(elements) => clamped(elements),
         }
     }
 
@@ -89,6 +97,7 @@ impl Model {
             Model::OneBody(elements) => cubes(1, elements),
             Model::Cube(side) => cubes(side, 8),
             Model::Cut(side) => cubes(side, CUT / side),
+            Model::Clamped([x, y, z]) => 3 * x * (y + 1) * (z + 1),
         }
     }
 }
@@ -104,4 +113,10 @@ fn one_body(elements: usize) -> Deck {
         deck.contact.push(&entries, gap);
     }
     deck
+}
+
+fn clamped(elements: [usize; 3]) -> Deck {
+    let size = elements.map(|count| count as f64);
+    let block = Block { elements, size, ..Block::default() };
+    Deck::new("clamped", vec![block.part(|at| at[0] == 0).body])
 }

@@ -17,6 +17,10 @@ pub enum Program {
     Cholmod(usize),
     /// The parts of the setup.
     Parts,
+    /// The numeric factorisation of one K on so many threads.
+    Factor(usize),
+    /// The same by faer, in the same order of elimination.
+    Faer(usize),
     /// Bytes per second of an explicit product.
     Bandwidth,
     Clarabel,
@@ -29,6 +33,8 @@ impl Program {
             Program::Ours(threads) => format!("ours_{threads}"),
             Program::Cholmod(threads) => format!("cholmod_{threads}"),
             Program::Parts => "parts".into(),
+            Program::Factor(threads) => format!("factor_{threads}"),
+            Program::Faer(threads) => format!("faer_{threads}"),
             Program::Bandwidth => "bandwidth".into(),
             Program::Clarabel => "clarabel".into(),
             Program::Osqp => "osqp".into(),
@@ -38,6 +44,7 @@ impl Program {
     fn threads(self) -> usize {
         match self {
             Program::Ours(threads) | Program::Cholmod(threads) => threads,
+            Program::Factor(threads) | Program::Faer(threads) => threads,
             _ => 1,
         }
     }
