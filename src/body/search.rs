@@ -296,8 +296,7 @@ impl Search {
         factor.extended(&parts)
     }
 
-    /// K+ from the same factor: r of the dofs t held, the others without their springs. `vectors`: the null vectors j of all
-    /// parts in column j.
+    /// K+ from the same factor: r of the dofs t held, the others without springs. `vectors`: null vectors j of all parts in column j.
     fn inverse(&self, factor: Cholesky, soft: &[Soft], vectors: Matrix) -> Result<GeneralizedInverse> {
         let (n, r) = (self.k.order(), soft.iter().map(|part| part.vectors.cols).sum::<usize>());
         let _room =
