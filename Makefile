@@ -10,6 +10,7 @@
 # make bench     time and memory against CHOLMOD, faer, Clarabel and OSQP (some minutes); DECKS="4k 40k" picks some
 # make scaling   time and memory as unknowns, contact rows, bodies, threads grow: pictures in docs (some minutes);
 #                SWEEPS="rows bodies" picks some, a number among them leaves out decks of more unknowns
+# make growth    how time grows with the number of loose or glued bodies (some minutes); DECKS="tower wall" picks some
 # make paper     the paper's problems by its own method and by the default: table, pictures (seconds)
 # make docs      the book, manual pages, pages of the Fortran modules and of the crate: build/docs/index.html (some minutes)
 # make abi       writes the baseline of the binary interface (abi)        make uninstall  removes what install has put
@@ -28,7 +29,7 @@ FCFLAGS ?= -O2 -Wall
 RELEASE   := $(or $(CARGO_TARGET_DIR),target)/release
 STAGE     := $(CURDIR)/build/stage
 
-.PHONY: all lib data setup demo battery bits test metis fuzz sanitize loom coverage mutants overhead counts bench scaling paper docs
+.PHONY: all lib data setup demo battery bits test metis fuzz sanitize loom coverage mutants overhead counts bench growth scaling paper docs
 .PHONY: abi licences packaging stage install uninstall lint fmt clean
 .DELETE_ON_ERROR:
 all: lib
@@ -214,6 +215,9 @@ docs: $(TOOLS)/mdbook-$(MDBOOK) $(TOOLS)/ford/installed
 # ---- measurements
 counts:
 	$(CARGO) bench --bench counts --locked -- $(DECKS)
+
+growth:
+	$(CARGO) bench --bench growth --locked --quiet -- $(DECKS)
 
 bench:
 	@tools/setup.sh python3-venv

@@ -9,6 +9,8 @@
 //! | [`blocks`] | two stacked elastic blocks, matching grids: the benchmark |
 //! | [`stack`] | stacked bodies on non-matching grids, node-to-segment rows |
 //! | [`cube`] | an elastic body cut into subdomains, glued by equalities, on an obstacle |
+//! | [`masonry`] | towers, walls and heaps of many loose blocks |
+//! | [`pieces`] | the benchmark cut into glued pieces |
 //! | [`small`] | one to three unknowns, solved by hand |
 //! | [`battery`] | random small hard problems whose outcome is known by construction |
 //! | [`varied`] | random small problems of bodies and rows of unequal size, with a known answer |
@@ -28,7 +30,9 @@ pub mod dd;
 pub mod dense;
 pub mod elements;
 pub mod hard;
+pub mod masonry;
 pub mod membrane;
+pub mod pieces;
 pub mod random;
 pub mod second;
 pub mod small;
