@@ -7,38 +7,6 @@ use crate::model::words::{
     FinishBy, Method, OperatorForm, PaperStep1, PaperUnits, Preconditioning, StartFrom, Word,
 };
 
-/// Values of all options; the table says what they mean. `Settings::new` has the defaults.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct Settings {
-    pub tolerance: f64,
-    pub certificate_tolerance: f64,
-    pub gamma: f64,
-    pub time_limit: f64,
-    pub symmetry_tolerance: f64,
-    pub null_space_tolerance: f64,
-    pub max_steps: i64,
-    pub memory_limit: i64,
-    pub threads: i64,
-    pub index_base: i64,
-    pub fault_injection: i64,
-    pub preconditioner: Preconditioning,
-    pub dual_operator: OperatorForm,
-    pub method: Method,
-    pub start: StartFrom,
-    pub direct_limit: i64,
-    pub finish: FinishBy,
-    pub paper_units: PaperUnits,
-    pub paper_step_1: PaperStep1,
-    pub paper_alpha: f64,
-    pub paper_beta: f64,
-    pub paper_rho_0: f64,
-    pub paper_eta_0: f64,
-    pub paper_m: f64,
-    pub paper_mu_0: f64,
-    pub paper_extrapolation: f64,
-    pub paper_outer: i64,
-}
-
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum OptionValue {
     F64(f64),
@@ -60,124 +28,102 @@ pub struct OptionInfo {
 enum Location {
     F64(fn(&mut Settings) -> &mut f64),
     I64(fn(&mut Settings) -> &mut i64),
-    Word(fn(&mut Settings) -> &mut dyn Word),
+    Str(fn(&mut Settings) -> &mut dyn Word),
 }
-
-type Range = std::ops::RangeInclusive<f64>;
 
 const NO_LIMIT: f64 = 1e300;
 /// 2^53: every whole number up to here is a double.
 const MANY: f64 = 9_007_199_254_740_992.0;
+/// Of words.
+const NO_RANGE: std::ops::RangeInclusive<f64> = 0.0..=0.0;
 
-const fn real(
-    name: &'static CStr,
-    default: f64,
-    range: Range,
-    field: fn(&mut Settings) -> &mut f64,
-    doc: &'static CStr,
-) -> OptionInfo {
-    let (minimum, maximum) = (*range.start(), *range.end());
-    OptionInfo {
-        name,
-        doc,
-        default: OptionValue::F64(default),
-        minimum,
-        maximum,
-        field: Location::F64(field),
+const fn c_text(terminated: &'static str) -> &'static CStr {
+    match CStr::from_bytes_with_nul(terminated.as_bytes()) {
+        Ok(text) => text,
+        Err(_) => c"",
     }
 }
 
-const fn whole(
-    name: &'static CStr,
-    default: i64,
-    range: Range,
-    field: fn(&mut Settings) -> &mut i64,
-    doc: &'static CStr,
-) -> OptionInfo {
-    let (minimum, maximum) = (*range.start(), *range.end());
-    OptionInfo {
-        name,
-        doc,
-        default: OptionValue::I64(default),
-        minimum,
-        maximum,
-        field: Location::I64(field),
-    }
-}
-
-macro_rules! word {
-    ($name:literal, $field:ident: $kind:ty, $doc:literal) => {
-        OptionInfo {
-            name: $name,
-            doc: $doc,
-            default: OptionValue::Str(<$kind>::WORDS[0]),
-            minimum: 0.0,
-            maximum: 0.0,
-            field: Location::Word(|settings| &mut settings.$field),
+/// From one line for each option: [`Settings`] with a field for it, and its place in the list [`OPTIONS`].
+macro_rules! settings {
+    ($($field:ident: $kind:ty = $value:ident($default:expr), $range:expr, $doc:literal;)+) => {
+        /// Values of all options; the table says what they mean. `Settings::new` has the defaults.
+        #[derive(Debug, Clone, PartialEq, Default)]
+        pub struct Settings {
+            $(pub $field: $kind,)+
         }
+
+        static OPTIONS: &[OptionInfo] = &[$(OptionInfo {
+            name: c_text(concat!(stringify!($field), "\0")),
+            doc: $doc,
+            default: OptionValue::$value($default),
+            minimum: *$range.start(),
+            maximum: *$range.end(),
+            field: Location::$value(|settings| &mut settings.$field),
+        },)+];
     };
 }
 
-static OPTIONS: [OptionInfo; 27] = [
-    real(c"tolerance", 1e-12, 1e-14..=1e-2, |s| &mut s.tolerance,
-        c"The dual of each group of bodies is solved until its projected gradient, a gap, is this small against how far its bodies move along the rows and the gaps within that reach; then until the certificate passes."),
-    real(c"certificate_tolerance", 1e-8, 1e-14..=1e-1, |s| &mut s.certificate_tolerance,
-        c"Every entry of the certificate must be this small, for every body and row against its own forces and deformation, for the answer to count as solved."),
-    real(c"gamma", 1.0, 1e-3..=1e3, |s| &mut s.gamma,
-        c"Gamma of the proportionality test: how much larger than the error on the current face the error of having chosen it may be."),
-    real(c"time_limit", NO_LIMIT, 0.0..=NO_LIMIT, |s| &mut s.time_limit,
-        c"Seconds of wall time after which a solve ends with FETI_TIME and the best answer so far."),
-    real(c"symmetry_tolerance", 1e-10, 0.0..=1e-2, |s| &mut s.symmetry_tolerance,
-        c"Full storage: |K_ij - K_ji| may be this large against sqrt(K_ii K_jj); the two are averaged."),
-    real(c"null_space_tolerance", 1e-8, 1e-15..=1e-2, |s| &mut s.null_space_tolerance,
-        c"A given null space R is accepted when |K R| is this small against |K||R| in the metric of diag K."),
-    whole(c"max_steps", 10_000, 1.0..=MANY, |s| &mut s.max_steps,
-        c"Steps of the dual method after which a solve ends with FETI_ITERATIONS and the best answer so far, unless the direct method completes it (option direct_limit)."),
-    whole(c"memory_limit", 0, 0.0..=MANY, |s| &mut s.memory_limit,
-        c"Bytes that factors and dual operators may take; 0: no limit. Dual operators that do not fit become implicit (option dual_operator); exceeding it nevertheless is FETI_MEMORY before anything is allocated."),
-    whole(c"threads", 0, 0.0..=4096.0, |s| &mut s.threads,
-        c"Threads of the setup and of costly products with the dual operator (at most one for 500 unknowns and four for a CPU); 0: as many as the CPUs this process may use. The answer has the same bits for any number."),
-    whole(c"index_base", 0, 0.0..=1.0, |s| &mut s.index_base,
-        c"What numbers in error texts count from: 0 for C, 1 for Fortran."),
-    whole(c"fault_injection", 0, 0.0..=1.0, |s| &mut s.fault_injection,
-        c"1: the next feti_solve fails inside with FETI_INTERNAL, so that a host can test its own reaction."),
-    word!(c"preconditioner", preconditioner: Preconditioning,
-        c"Preconditioner of the dual: automatic (lumped where products with F are dear, else none); none; lumped (stiffness of the constrained dofs, the others held); dirichlet (the others free: fewer steps, one more factorisation of each body). A body whose stiffness the host keeps enters with its diagonal."),
-    word!(c"dual_operator", dual_operator: OperatorForm,
-        c"How the dual operator of a body is kept: explicit (its entries: a product reads 4 m^2 bytes for m rows); implicit (a product takes two triangular solves: less memory, slower); automatic (by a model of the time, explicit for a body whose stiffness the host keeps, and implicit where memory_limit leaves no room)."),
-    word!(c"method", method: Method,
-        c"Method for the dual: proportioning on its feasible set, with smalbe to fall back on; smalbe, an augmented Lagrangian, for comparison; paper-..., Algorithm 3 of the paper with Algorithm 1 in one of its variants, without preconditioner and fallback."),
-    word!(c"start", start: StartFrom,
-        c"Where a solve starts: cold (no forces: the same input gives the same bits) or previous (forces and active set of the last answer for these rows); feti_start_from comes before either."),
-    whole(c"direct_limit", 1000, 0.0..=MANY, |s| &mut s.direct_limit,
-        c"Forces and floating modes together up to which the dual may be solved by dense factors on the active set, where the iteration gives up or option finish asks for it; 0: never."),
-    word!(c"finish", finish: FinishBy,
-        c"What follows a solve: direct (dense factors on the active set found and corrections from K, B, f, c: errors fall to rounding; kept only where the certificate is no worse); none; automatic (direct where a body is ill-conditioned or rows join bodies of very different stiffness or deformation, so that the certificate alone would leave errors that matter)."),
-    word!(c"paper_units", paper_units: PaperUnits,
-        c"Methods paper-...: what their parameters are relative to. relative: rho_0 in |A|/|D|^2, M in |A|/|D|, eta_0 in the size of d, for the scaled rows; printed: the units of the host, its basis R, tolerance relative to |b| and |d|."),
-    word!(c"paper_step_1", paper_step_1: PaperStep1,
-        c"Methods paper-...: when Step 1 ends. printed: |g^P| <= M |D x - d|; corrected: not on this account once |D x - d| is as small as asked, |g^P| must be so too."),
-    real(c"paper_alpha", 0.1, 1e-6..=0.999, |s| &mut s.paper_alpha,
-        c"alpha of Algorithm 3: the bound eta on |D x - d| is multiplied by it where it was kept."),
-    real(c"paper_beta", 100.0, 1.001..=1e6, |s| &mut s.paper_beta,
-        c"beta of Algorithm 3: the penalty rho is multiplied by it where eta was exceeded."),
-    real(c"paper_rho_0", 100.0, 1e-30..=1e30, |s| &mut s.paper_rho_0,
-        c"rho_0 of Algorithm 3: the first penalty."),
-    real(c"paper_eta_0", 1e-3, 1e-30..=1e30, |s| &mut s.paper_eta_0,
-        c"eta_0 of Algorithm 3: the first bound on |D x - d|."),
-    real(c"paper_m", 0.0, 0.0..=1e30, |s| &mut s.paper_m,
-        c"M of Algorithm 3: the inner problem is solved until |g^P| <= M |D x - d|; 0: rho_0 / 100."),
-    real(c"paper_mu_0", 0.0, -1e30..=1e30, |s| &mut s.paper_mu_0,
-        c"mu^0 of Algorithm 3: every entry of the first multiplier."),
-    real(c"paper_extrapolation", 5.0, 1.01..=1e3, |s| &mut s.paper_extrapolation,
-        c"Method paper-extrapolating: factor from one trial step beyond a bound to the next."),
-    whole(c"paper_outer", 60, 1.0..=1e6, |s| &mut s.paper_outer,
-        c"Problems with bounds alone that the methods paper-... solve before they end with FETI_ITERATIONS."),
-];
+settings! {
+    tolerance: f64 = F64(1e-12), 1e-14..=1e-2,
+        c"The dual of each group of bodies is solved until its projected gradient, a gap, is this small against how far its bodies move along the rows and the gaps within that reach; then until the certificate passes.";
+    certificate_tolerance: f64 = F64(1e-8), 1e-14..=1e-1,
+        c"Every entry of the certificate must be this small, for every body and row against its own forces and deformation, for the answer to count as solved.";
+    gamma: f64 = F64(1.0), 1e-3..=1e3,
+        c"Gamma of the proportionality test: how much larger than the error on the current face the error of having chosen it may be.";
+    time_limit: f64 = F64(NO_LIMIT), 0.0..=NO_LIMIT,
+        c"Seconds of wall time after which a solve ends with FETI_TIME and the best answer so far.";
+    symmetry_tolerance: f64 = F64(1e-10), 0.0..=1e-2,
+        c"Full storage: |K_ij - K_ji| may be this large against sqrt(K_ii K_jj); the two are averaged.";
+    null_space_tolerance: f64 = F64(1e-8), 1e-15..=1e-2,
+        c"A given null space R is accepted when |K R| is this small against |K||R| in the metric of diag K.";
+    max_steps: i64 = I64(10_000), 1.0..=MANY,
+        c"Steps of the dual method after which a solve ends with FETI_ITERATIONS and the best answer so far, unless the direct method completes it (option direct_limit).";
+    memory_limit: i64 = I64(0), 0.0..=MANY,
+        c"Bytes that factors and dual operators may take; 0: no limit. Dual operators that do not fit become implicit (option dual_operator); exceeding it nevertheless is FETI_MEMORY before anything is allocated.";
+    threads: i64 = I64(0), 0.0..=4096.0,
+        c"Threads of the setup and of costly products with the dual operator (at most one for 500 unknowns and four for a CPU); 0: as many as the CPUs this process may use. The answer has the same bits for any number.";
+    index_base: i64 = I64(0), 0.0..=1.0,
+        c"What numbers in error texts count from: 0 for C, 1 for Fortran.";
+    fault_injection: i64 = I64(0), 0.0..=1.0,
+        c"1: the next feti_solve fails inside with FETI_INTERNAL, so that a host can test its own reaction.";
+    preconditioner: Preconditioning = Str(Preconditioning::WORDS[0]), NO_RANGE,
+        c"Preconditioner of the dual: automatic (lumped where products with F are dear, else none); none; lumped (stiffness of the constrained dofs, the others held); dirichlet (the others free: fewer steps, one more factorisation of each body). A body whose stiffness the host keeps enters with its diagonal.";
+    dual_operator: OperatorForm = Str(OperatorForm::WORDS[0]), NO_RANGE,
+        c"How the dual operator of a body is kept: explicit (its entries: a product reads 4 m^2 bytes for m rows); implicit (a product takes two triangular solves: less memory, slower); automatic (by a model of the time, explicit for a body whose stiffness the host keeps, and implicit where memory_limit leaves no room).";
+    method: Method = Str(Method::WORDS[0]), NO_RANGE,
+        c"Method for the dual: proportioning on its feasible set, with smalbe to fall back on; smalbe, an augmented Lagrangian, for comparison; paper-..., Algorithm 3 of the paper with Algorithm 1 in one of its variants, without preconditioner and fallback.";
+    start: StartFrom = Str(StartFrom::WORDS[0]), NO_RANGE,
+        c"Where a solve starts: cold (no forces: the same input gives the same bits) or previous (forces and active set of the last answer for these rows); feti_start_from comes before either.";
+    direct_limit: i64 = I64(1000), 0.0..=MANY,
+        c"Forces and floating modes together up to which the dual may be solved by dense factors on the active set, where the iteration gives up or option finish asks for it; 0: never.";
+    finish: FinishBy = Str(FinishBy::WORDS[0]), NO_RANGE,
+        c"What follows a solve: direct (dense factors on the active set found and corrections from K, B, f, c: errors fall to rounding; kept only where the certificate is no worse); none; automatic (direct where a body is ill-conditioned or rows join bodies of very different stiffness or deformation, so that the certificate alone would leave errors that matter).";
+    paper_units: PaperUnits = Str(PaperUnits::WORDS[0]), NO_RANGE,
+        c"Methods paper-...: what their parameters are relative to. relative: rho_0 in |A|/|D|^2, M in |A|/|D|, eta_0 in the size of d, for the scaled rows; printed: the units of the host, its basis R, tolerance relative to |b| and |d|.";
+    paper_step_1: PaperStep1 = Str(PaperStep1::WORDS[0]), NO_RANGE,
+        c"Methods paper-...: when Step 1 ends. printed: |g^P| <= M |D x - d|; corrected: not on this account once |D x - d| is as small as asked, |g^P| must be so too.";
+    paper_alpha: f64 = F64(0.1), 1e-6..=0.999,
+        c"alpha of Algorithm 3: the bound eta on |D x - d| is multiplied by it where it was kept.";
+    paper_beta: f64 = F64(100.0), 1.001..=1e6,
+        c"beta of Algorithm 3: the penalty rho is multiplied by it where eta was exceeded.";
+    paper_rho_0: f64 = F64(100.0), 1e-30..=1e30,
+        c"rho_0 of Algorithm 3: the first penalty.";
+    paper_eta_0: f64 = F64(1e-3), 1e-30..=1e30,
+        c"eta_0 of Algorithm 3: the first bound on |D x - d|.";
+    paper_m: f64 = F64(0.0), 0.0..=1e30,
+        c"M of Algorithm 3: the inner problem is solved until |g^P| <= M |D x - d|; 0: rho_0 / 100.";
+    paper_mu_0: f64 = F64(0.0), -1e30..=1e30,
+        c"mu^0 of Algorithm 3: every entry of the first multiplier.";
+    paper_extrapolation: f64 = F64(5.0), 1.01..=1e3,
+        c"Method paper-extrapolating: factor from one trial step beyond a bound to the next.";
+    paper_outer: i64 = I64(60), 1.0..=1e6,
+        c"Problems with bounds alone that the methods paper-... solve before they end with FETI_ITERATIONS.";
+}
 
 /// All options, in the order of their listing.
 pub fn options() -> &'static [OptionInfo] {
-    &OPTIONS
+    OPTIONS
 }
 
 impl Settings {
@@ -211,7 +157,7 @@ impl Settings {
 
     pub fn set_str(&mut self, name: &str, value: &str) -> Result<()> {
         let option = find(name)?;
-        let Location::Word(field) = &option.field else { return Err(wrong_type(option)) };
+        let Location::Str(field) = &option.field else { return Err(wrong_type(option)) };
         let field = field(self);
         if field.take(value.as_bytes()) {
             return Ok(());
@@ -223,24 +169,37 @@ impl Settings {
 
     pub fn get_f64(&self, name: &str) -> Result<f64> {
         let option = find(name)?;
-        let Location::F64(field) = &option.field else { return Err(wrong_type(option)) };
-        Ok(*field(&mut self.clone()))
+        let OptionValue::F64(value) = option.value(self) else { return Err(wrong_type(option)) };
+        Ok(value)
     }
 
     pub fn get_i64(&self, name: &str) -> Result<i64> {
         let option = find(name)?;
-        let Location::I64(field) = &option.field else { return Err(wrong_type(option)) };
-        Ok(*field(&mut self.clone()))
+        let OptionValue::I64(value) = option.value(self) else { return Err(wrong_type(option)) };
+        Ok(value)
     }
 
     pub fn get_str(&self, name: &str) -> Result<String> {
         let option = find(name)?;
-        let Location::Word(field) = &option.field else { return Err(wrong_type(option)) };
-        Ok(field(&mut self.clone()).word().to_string_lossy().into_owned())
+        let OptionValue::Str(word) = option.value(self) else { return Err(wrong_type(option)) };
+        Ok(word.to_string_lossy().into_owned())
     }
 }
 
-fn find(name: &str) -> Result<&'static OptionInfo> {
+impl OptionInfo {
+    /// Its value in these settings.
+    pub(super) fn value(&self, settings: &Settings) -> OptionValue {
+        let settings = &mut settings.clone();
+        match self.field {
+            Location::F64(field) => OptionValue::F64(*field(settings)),
+            Location::I64(field) => OptionValue::I64(*field(settings)),
+            Location::Str(field) => OptionValue::Str(field(settings).word()),
+        }
+    }
+}
+
+/// The option of this name.
+pub fn find(name: &str) -> Result<&'static OptionInfo> {
     options().iter().find(|option| option.name.to_bytes() == name.as_bytes()).ok_or_else(|| {
         let names: Vec<_> = options().iter().map(|o| o.name.to_string_lossy()).collect();
         Error::argument("name", format!("there is no option \"{name}\"; there are {}", names.join(", ")))
@@ -261,10 +220,8 @@ fn check(option: &OptionInfo, value: f64) -> Result<()> {
         return Ok(());
     }
     let (name, low, high) = (option.name.to_string_lossy(), option.minimum, option.maximum);
-    let limit = if value < low { low } else { high };
-    Err(Error::argument("value", format!("option \"{name}\" takes {low:e} to {high:e}, not {value:e}"))
-        .value(value)
-        .limit(limit))
+    let what = format!("option \"{name}\" takes {low:e} to {high:e}, not {value:e}");
+    Err(Error::argument("value", what).value(value).limit(if value < low { low } else { high }))
 }
 
 #[cfg(test)]

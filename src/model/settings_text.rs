@@ -1,7 +1,7 @@
 //! Options as a text: `tolerance=1e-8 threads=4`.
 
 use crate::error::{Error, Kind, Result};
-use crate::model::settings::{options, OptionValue, Settings};
+use crate::model::settings::{find, options, OptionInfo, OptionValue, Settings};
 
 /// One `name = value` of a text, with the bytes at which they begin.
 #[derive(Debug, PartialEq)]
@@ -36,22 +36,16 @@ impl Settings {
 
     /// The value as a text, of whatever type the option is.
     fn set_by_type(&mut self, name: &str, value: &str) -> Result<()> {
-        let option = options().iter().find(|option| option.name.to_bytes() == name.as_bytes());
         let wrong = |kind: &str| {
             Error::argument("value", format!("option \"{name}\" is {kind}, which \"{value}\" is not"))
         };
-        match option.map(|option| option.default) {
-            Some(OptionValue::I64(_)) => {
-                self.set_i64(name, value.parse().map_err(|_| wrong("a whole number"))?)
-            }
-            Some(OptionValue::Str(_)) => self.set_str(name, value),
-            // Fortran writes 1d-8
-            _ => {
+        match find(name)?.default {
+            OptionValue::I64(_) => self.set_i64(name, value.parse().map_err(|_| wrong("a whole number"))?),
+            OptionValue::Str(_) => self.set_str(name, value),
+            OptionValue::F64(_) => {
+                // Fortran writes 1d-8
                 let number = value.replace(['d', 'D'], "e").parse();
-                self.set_f64(
-                    name,
-                    if option.is_some() { number.map_err(|_| wrong("a number"))? } else { 0.0 },
-                )
+                self.set_f64(name, number.map_err(|_| wrong("a number"))?)
             }
         }
     }
@@ -59,25 +53,17 @@ impl Settings {
     /// The options that differ from their defaults, as a text for `set_text`. What texts count from is not among them:
     /// it belongs to the host.
     pub fn changes(&self) -> String {
-        let mut items = Vec::new();
-        for option in options().iter().filter(|option| option.name != c"index_base") {
+        let of_host = |option: &OptionInfo| option.name == c"index_base";
+        let changed = |option: &&OptionInfo| !of_host(option) && option.value(self) != option.default;
+        let item = |option: &OptionInfo| {
             let name = option.name.to_string_lossy();
-            let differs = match option.default {
-                OptionValue::F64(default) => self
-                    .get_f64(&name)
-                    .ok()
-                    .filter(|value| *value != default)
-                    .map(|value| format!("{value:e}")),
-                OptionValue::I64(default) => {
-                    self.get_i64(&name).ok().filter(|value| *value != default).map(|value| value.to_string())
-                }
-                OptionValue::Str(default) => {
-                    self.get_str(&name).ok().filter(|value| value.as_bytes() != default.to_bytes())
-                }
-            };
-            items.extend(differs.map(|value| format!("{name}={value}")));
-        }
-        items.join(" ")
+            match option.value(self) {
+                OptionValue::F64(value) => format!("{name}={value:e}"),
+                OptionValue::I64(value) => format!("{name}={value}"),
+                OptionValue::Str(word) => format!("{name}={}", word.to_string_lossy()),
+            }
+        };
+        options().iter().filter(changed).map(item).collect::<Vec<_>>().join(" ")
     }
 }
 
