@@ -11,7 +11,10 @@ pub trait Word {
 }
 
 macro_rules! words {
-    ($(#[$doc:meta])* $name:ident: $first:ident = $first_word:literal $(, $other:ident = $word:literal)+) => {
+    ($(
+        $(#[$doc:meta])*
+        $name:ident: $first:ident = $first_word:literal $(, $other:ident = $word:literal)+;
+    )+) => {$(
         $(#[$doc])*
         #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
         pub enum $name {
@@ -39,43 +42,25 @@ macro_rules! words {
                 Self::WORDS
             }
         }
-    };
+    )+};
 }
 
 words! {
     /// `preconditioner`
-    Preconditioning: Automatic = c"automatic", None = c"none", Lumped = c"lumped", Dirichlet = c"dirichlet"
-}
-
-words! {
+    Preconditioning: Automatic = c"automatic", None = c"none", Lumped = c"lumped", Dirichlet = c"dirichlet";
     /// `dual_operator`
-    OperatorForm: Automatic = c"automatic", Explicit = c"explicit", Implicit = c"implicit"
-}
-
-words! {
+    OperatorForm: Automatic = c"automatic", Explicit = c"explicit", Implicit = c"implicit";
     /// `method`
     Method: Proportioning = c"proportioning", Smalbe = c"smalbe", PaperFeasible = c"paper-feasible",
-    PaperMonotone = c"paper-monotone", PaperExtrapolating = c"paper-extrapolating"
-}
-
-words! {
+    PaperMonotone = c"paper-monotone", PaperExtrapolating = c"paper-extrapolating";
     /// `start`
-    StartFrom: Cold = c"cold", Previous = c"previous"
-}
-
-words! {
+    StartFrom: Cold = c"cold", Previous = c"previous";
     /// `finish`
-    FinishBy: Automatic = c"automatic", None = c"none", Direct = c"direct"
-}
-
-words! {
+    FinishBy: Automatic = c"automatic", None = c"none", Direct = c"direct";
     /// `paper_units`
-    PaperUnits: Relative = c"relative", Printed = c"printed"
-}
-
-words! {
+    PaperUnits: Relative = c"relative", Printed = c"printed";
     /// `paper_step_1`
-    PaperStep1: Corrected = c"corrected", Printed = c"printed"
+    PaperStep1: Corrected = c"corrected", Printed = c"printed";
 }
 
 #[cfg(test)]
