@@ -76,16 +76,13 @@ impl fmt::Display for Place {
             ("byte", self.byte),
         ];
         let mut separator = "";
-        for (name, number) in parts.iter().filter_map(|(name, n)| n.map(|n| (name, n))) {
+        for (name, number) in parts {
+            let Some(number) = number else { continue };
             let number = i64::try_from(number).unwrap_or(i64::MAX).saturating_add(self.base);
             write!(out, "{separator}{name} {number}")?;
             separator = ", ";
         }
-        if separator.is_empty() {
-            Ok(())
-        } else {
-            out.write_str(": ")
-        }
+        out.write_str(if separator.is_empty() { "" } else { ": " })
     }
 }
 
@@ -97,6 +94,17 @@ pub struct Error {
     pub what: String,
     pub place: Box<Place>,
     pub proof: Option<Box<Proof>>,
+}
+
+/// A method for each of these fields of [`Place`]: the same error with it.
+macro_rules! with_places {
+    ($($(#[$doc:meta])* $field:ident: $number:ty),+ $(,)?) => {$(
+        $(#[$doc])*
+        pub fn $field(mut self, $field: $number) -> Self {
+            self.place.$field = Some($field);
+            self
+        }
+    )+};
 }
 
 pub type Result<T> = std::result::Result<T, Error>;
@@ -111,50 +119,17 @@ impl Error {
         Self::new(Kind::Argument(argument), what)
     }
 
-    pub fn body(mut self, body: usize) -> Self {
-        self.place.body = Some(body);
-        self
-    }
-
-    pub fn component(mut self, component: usize) -> Self {
-        self.place.component = Some(component);
-        self
-    }
-
-    pub fn dof(mut self, dof: usize) -> Self {
-        self.place.dof = Some(dof);
-        self
-    }
-
-    pub fn row(mut self, row: usize) -> Self {
-        self.place.row = Some(row);
-        self
-    }
-
-    pub fn entry(mut self, entry: usize) -> Self {
-        self.place.entry = Some(entry);
-        self
-    }
-
-    pub fn byte(mut self, byte: usize) -> Self {
-        self.place.byte = Some(byte);
-        self
-    }
-
-    /// The number found is the index `number`, from 0.
-    pub fn index(mut self, number: i64) -> Self {
-        self.place.index = Some(number);
-        self
-    }
-
-    pub fn value(mut self, value: f64) -> Self {
-        self.place.value = Some(value);
-        self
-    }
-
-    pub fn limit(mut self, limit: f64) -> Self {
-        self.place.limit = Some(limit);
-        self
+    with_places! {
+        body: usize,
+        component: usize,
+        dof: usize,
+        row: usize,
+        entry: usize,
+        byte: usize,
+        /// The number found is the index `index`, from 0.
+        index: i64,
+        value: f64,
+        limit: f64,
     }
 
     pub fn proved_by(mut self, proof: Proof) -> Self {
