@@ -2,9 +2,7 @@
 //! the default environment and gives the host's back, also after a panic. Threads started inside inherit the default;
 //! functions of the host run in the host's.
 
-#[cfg(target_arch = "x86_64")]
 use std::cell::Cell;
-#[cfg(target_arch = "x86_64")]
 use std::sync::atomic::{AtomicU32, Ordering};
 
 /// Runs `work` with all traps masked, rounding to nearest, denormal numbers kept.
@@ -26,7 +24,6 @@ fn apart<T>(work: impl FnOnce() -> T) -> T {
     work()
 }
 
-#[cfg(target_arch = "x86_64")]
 thread_local! {
     /// The host's control and status word while the library runs on this thread; none on a thread of the library.
     static HOST: Cell<Option<u32>> = const { Cell::new(None) };
@@ -34,11 +31,9 @@ thread_local! {
 
 /// The environment of the host in the call that runs on a problem, for its functions on threads of the library.
 pub struct Environment {
-    #[cfg(target_arch = "x86_64")]
     mxcsr: AtomicU32,
 }
 
-#[cfg(target_arch = "x86_64")]
 impl Environment {
     pub fn new() -> Self {
         Self { mxcsr: AtomicU32::new(mxcsr::DEFAULT) }
@@ -64,11 +59,9 @@ impl Environment {
 /// The host's word is put back when this is dropped; calls may be nested through functions of the host.
 struct HostEnvironment {
     /// What HOST held before.
-    #[cfg(target_arch = "x86_64")]
     outer: Option<u32>,
 }
 
-#[cfg(target_arch = "x86_64")]
 impl HostEnvironment {
     fn replace() -> Self {
         let outer = HOST.replace(Some(mxcsr::read()));
@@ -77,7 +70,6 @@ impl HostEnvironment {
     }
 }
 
-#[cfg(target_arch = "x86_64")]
 impl Drop for HostEnvironment {
     fn drop(&mut self) {
         HOST.replace(self.outer).into_iter().for_each(mxcsr::write);
@@ -86,11 +78,9 @@ impl Drop for HostEnvironment {
 
 /// The library's word is put back when this is dropped.
 struct DefaultEnvironment {
-    #[cfg(target_arch = "x86_64")]
     mxcsr: u32,
 }
 
-#[cfg(target_arch = "x86_64")]
 impl DefaultEnvironment {
     fn suspend() -> Self {
         let ours = Self { mxcsr: mxcsr::read() };
@@ -99,7 +89,6 @@ impl DefaultEnvironment {
     }
 }
 
-#[cfg(target_arch = "x86_64")]
 impl Drop for DefaultEnvironment {
     fn drop(&mut self) {
         HOST.set(Some(mxcsr::read()));
@@ -109,30 +98,14 @@ impl Drop for DefaultEnvironment {
 
 /// Processors whose environment is left as it is.
 #[cfg(not(target_arch = "x86_64"))]
-impl HostEnvironment {
-    fn replace() -> Self {
-        Self {}
-    }
-}
+mod mxcsr {
+    pub const DEFAULT: u32 = 0;
 
-#[cfg(not(target_arch = "x86_64"))]
-impl Environment {
-    pub fn new() -> Self {
-        Self {}
+    pub fn read() -> u32 {
+        DEFAULT
     }
 
-    pub fn note(&self) {}
-
-    pub fn within<T>(&self, work: impl FnOnce() -> T) -> T {
-        apart(work)
-    }
-}
-
-#[cfg(not(target_arch = "x86_64"))]
-impl DefaultEnvironment {
-    fn suspend() -> Self {
-        Self {}
-    }
+    pub fn write(_: u32) {}
 }
 
 #[cfg(target_arch = "x86_64")]
