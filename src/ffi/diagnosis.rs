@@ -1,8 +1,7 @@
 //! Why there is no solution, and what an answer leaves open.
 
-use crate::error::Result;
 use crate::ffi::bodies::body_of_order;
-use crate::ffi::boundary::{call, count, enter, OutStruct, Output};
+use crate::ffi::boundary::{call, count, enter, known, OutStruct, Output};
 use crate::ffi::header::status::{of_kind, of_outcome};
 use crate::ffi::header::types::{feti_findings, feti_problem, FETI_EQUALITY, FETI_INEQUALITY};
 use crate::ffi::rows::row_kind;
@@ -62,7 +61,11 @@ pub unsafe extern "C" fn feti_diagnosis_rows(
         let (kind, cap) = (row_kind(kind)?, self::count(cap, "cap")?);
         // SAFETY: the caller gives room for one number, and for `cap` numbers or NULL.
         let (number, rows, weights) = unsafe {
-            (Output::new(count, 1, "count")?, room(row, cap, "row")?, room(weight, cap, "weight")?)
+            (
+                Output::new(count, 1, "count")?,
+                Output::optional(row, cap, "row")?,
+                Output::optional(weight, cap, "weight")?,
+            )
         };
         let findings = problem.findings()?;
         number.set(findings.rows(kind).count() as i64);
@@ -72,15 +75,6 @@ pub unsafe extern "C" fn feti_diagnosis_rows(
         }
         Ok(())
     })
-}
-
-/// Room for `cap` numbers; NULL drops them.
-///
-/// # Safety
-/// `to` is NULL or has room for `cap` numbers until the call returns.
-unsafe fn room<T: Copy>(to: *mut T, cap: usize, name: &'static str) -> Result<Output<T>> {
-    // SAFETY: by the caller's word.
-    unsafe { Output::new(to, if to.is_null() { 0 } else { cap }, name) }
 }
 
 /// Lists the equality rows that are combinations of the other equality rows, found when asked for.
@@ -107,8 +101,8 @@ pub unsafe extern "C" fn feti_diagnosis_dependent(
     enter(p, call!(feti_diagnosis_dependent(p, cap, count, row)), |problem| {
         let cap = self::count(cap, "cap")?;
         // SAFETY: the caller gives room for one number, and for `cap` numbers or NULL.
-        let list = unsafe { (Output::new(count, 1, "count")?, room(row, cap, "row")?) };
-        write_list(&problem.dependent_equalities()?, cap, list);
+        let list = unsafe { (Output::new(count, 1, "count")?, Output::optional(row, cap, "row")?) };
+        write_list(&problem.dependent_equalities()?, list);
         Ok(())
     })
 }
@@ -136,16 +130,16 @@ pub unsafe extern "C" fn feti_diagnosis_untouched(
     enter(p, call!(feti_diagnosis_untouched(p, cap, count, body)), |problem| {
         let cap = self::count(cap, "cap")?;
         // SAFETY: the caller gives room for one number, and for `cap` numbers or NULL.
-        let list = unsafe { (Output::new(count, 1, "count")?, room(body, cap, "body")?) };
-        write_list(&problem.findings()?.untouched, cap, list);
+        let list = unsafe { (Output::new(count, 1, "count")?, Output::optional(body, cap, "body")?) };
+        write_list(&problem.findings()?.untouched, list);
         Ok(())
     })
 }
 
 /// Writes how many there are, and those that there is room for.
-fn write_list(numbers: &[usize], cap: usize, (count, list): (Output<i64>, Output<i64>)) {
+fn write_list(numbers: &[usize], (count, list): (Output<i64>, Output<i64>)) {
     count.set(numbers.len() as i64);
-    numbers.iter().take(cap).enumerate().for_each(|(k, &number)| list.write_at(k, &[number as i64]));
+    numbers.iter().enumerate().for_each(|(k, &number)| list.write_at(k, &[number as i64]));
 }
 
 /// Reads a rigid motion that the last answer leaves undetermined: which body, and how it moves.
@@ -171,7 +165,8 @@ pub unsafe extern "C" fn feti_diagnosis_undetermined(
 ) -> i32 {
     enter(p, call!(feti_diagnosis_undetermined(p, k, body, motion)), |problem| {
         // SAFETY: room by the caller's word.
-        let (fastest, motion) = unsafe { (room(body, 1, "body")?, room(motion, 6, "motion")?) };
+        let (fastest, motion) =
+            unsafe { (Output::optional(body, 1, "body")?, Output::optional(motion, 6, "motion")?) };
         let open = problem.open_motion(count(k, "k")?)?;
         fastest.write_at(0, &[open.body as i64]);
         motion.write_at(0, &open.motion.unwrap_or([f64::NAN; 6]));
@@ -236,7 +231,6 @@ pub unsafe extern "C" fn feti_diagnosis_motion(p: *mut feti_problem, body: i64, 
 }
 
 fn described(from: &Findings) -> feti_findings {
-    let number = |value: Option<usize>| value.map_or(-1, |value| value as i64);
     feti_findings {
         struct_size: size_of::<feti_findings>() as i64,
         status: match &from.end {
@@ -248,19 +242,19 @@ fn described(from: &Findings) -> feti_findings {
             Some(RowKind::Inequality) => FETI_INEQUALITY,
             Some(RowKind::Equality) => FETI_EQUALITY,
         },
-        body: number(from.place.body),
-        component: number(from.place.component),
-        dof: number(from.place.dof),
-        row: number(from.place.row),
+        body: known(from.place.body),
+        component: known(from.place.component),
+        dof: known(from.place.dof),
+        row: known(from.place.row),
         rows_involved: from.contradicting() as i64,
         undetermined: from.undetermined as i64,
         redundant_rows: from.redundant.len() as i64,
         untouched_bodies: from.untouched.len() as i64,
-        untouched_body: number(from.untouched.first().copied()),
+        untouched_body: known(from.untouched.first().copied()),
         margin: from.margin().unwrap_or(f64::NAN),
         motion: from.motion.unwrap_or([f64::NAN; 6]),
         unheld: from.unheld,
         doubtful_bodies: from.doubtful.len() as i64,
-        doubtful_body: number(from.doubtful.first().copied()),
+        doubtful_body: known(from.doubtful.first().copied()),
     }
 }

@@ -2,9 +2,9 @@
 
 use std::ffi::{c_void, CString};
 
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::ffi::boundary::fpu;
-use crate::ffi::boundary::{call, enter};
+use crate::ffi::boundary::{call, enter, meaning};
 use crate::ffi::header::types::{
     feti_log_fn, feti_problem, FETI_LOG_NONE, FETI_LOG_PHASE, FETI_LOG_RESULT, FETI_LOG_STEP,
 };
@@ -36,7 +36,7 @@ pub unsafe extern "C" fn feti_on_log(
     user: *mut c_void,
 ) -> i32 {
     enter(p, call!(feti_on_log(p, callback, level, user)), |problem| {
-        let user = User::new(user);
+        let user = User(user);
         let level = log_level(level)?;
         let listener = level.zip(callback).map(|(most, callback)| -> (LogLevel, LogListener) {
             let tell = move |level: LogLevel, text: &str| {
@@ -52,15 +52,12 @@ pub unsafe extern "C" fn feti_on_log(
 }
 
 fn log_level(level: i32) -> Result<Option<LogLevel>> {
-    match level {
-        FETI_LOG_NONE => Ok(None),
-        FETI_LOG_RESULT => Ok(Some(LogLevel::Result)),
-        FETI_LOG_PHASE => Ok(Some(LogLevel::Phase)),
-        FETI_LOG_STEP => Ok(Some(LogLevel::Step)),
-        _ => {
-            let (low, high) = (FETI_LOG_NONE, FETI_LOG_STEP);
-            let text = format!("{level} is no level: they go from {low} to {high}");
-            Err(Error::argument("level", text).value(f64::from(level)).limit(f64::from(high)))
-        }
-    }
+    let known = [
+        (FETI_LOG_NONE, None),
+        (FETI_LOG_RESULT, Some(LogLevel::Result)),
+        (FETI_LOG_PHASE, Some(LogLevel::Phase)),
+        (FETI_LOG_STEP, Some(LogLevel::Step)),
+    ];
+    let not = format!("no level: they go from {FETI_LOG_NONE} to {FETI_LOG_STEP}");
+    meaning(level, "level", &known, &not).map_err(|error| error.limit(f64::from(FETI_LOG_STEP)))
 }

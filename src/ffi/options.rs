@@ -3,9 +3,8 @@
 use std::ffi::c_char;
 use std::ptr;
 
-use crate::error::Error;
 use crate::ffi::boundary::{
-    call, check_text_room, copy_text, enter, text, without_problem, OutStruct, Output,
+    call, check_text_room, copy_text, enter, entry_at, text, without_problem, OutStruct, Output,
 };
 use crate::ffi::header::types::{
     feti_option, feti_problem, FETI_OPTION_F64, FETI_OPTION_I64, FETI_OPTION_STR,
@@ -197,10 +196,7 @@ pub extern "C" fn feti_option_count() -> i64 {
 #[no_mangle]
 pub unsafe extern "C" fn feti_option_at(k: i64, out: *mut feti_option) -> i32 {
     without_problem(call!(feti_option_at(k, out)), || {
-        let table = options();
-        let found = usize::try_from(k).ok().and_then(|k| table.get(k));
-        let info = found
-            .ok_or_else(|| Error::argument("k", format!("there are {} options", table.len())).index(k))?;
+        let info = entry_at(options(), k, "options")?;
         // SAFETY: the caller gives `struct_size` bytes.
         unsafe { OutStruct::new(out, "out") }?.write(&described(info));
         Ok(())

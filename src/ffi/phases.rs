@@ -1,7 +1,6 @@
 //! Where the time of a call went, and the memory that is kept.
 
-use crate::error::Error;
-use crate::ffi::boundary::{call, enter, OutStruct, Output};
+use crate::ffi::boundary::{call, enter, entry_at, OutStruct, Output};
 use crate::ffi::header::types::{feti_phase, feti_problem};
 
 /// Number of phases of a setup and a solve.
@@ -42,9 +41,7 @@ pub unsafe extern "C" fn feti_phase_count(p: *mut feti_problem, count: *mut i64)
 pub unsafe extern "C" fn feti_phase_at(p: *mut feti_problem, k: i64, out: *mut feti_phase) -> i32 {
     enter(p, call!(feti_phase_at(p, k, out)), |problem| {
         let phases = problem.phases();
-        let found = usize::try_from(k).ok().and_then(|k| phases.get(k));
-        let phase = found
-            .ok_or_else(|| Error::argument("k", format!("there are {} phases", phases.len())).index(k))?;
+        let phase = entry_at(&phases, k, "phases")?;
         // SAFETY: the caller gives `struct_size` bytes.
         unsafe { OutStruct::new(out, "out") }?.write(&feti_phase {
             struct_size: size_of::<feti_phase>() as i64,

@@ -74,7 +74,7 @@ pub unsafe extern "C" fn feti_on_progress(
 
 /// The host's pointer, which the library only hands back.
 #[derive(Clone, Copy)]
-pub(super) struct User(*mut c_void);
+pub(super) struct User(pub(super) *mut c_void);
 
 // SAFETY: never followed here; the host's function gets it on the thread on which the host calls the library, or, by the
 // host's word (`concurrent` of feti_body_operator), on any.
@@ -83,10 +83,6 @@ unsafe impl Send for User {}
 unsafe impl Sync for User {}
 
 impl User {
-    pub fn new(user: *mut c_void) -> Self {
-        Self(user)
-    }
-
     pub fn get(self) -> *mut c_void {
         self.0
     }

@@ -211,10 +211,10 @@ pub unsafe extern "C" fn feti_counts(
         // SAFETY: NULL or room for one number by the caller's word.
         let outputs = unsafe {
             [
-                Output::optional(bodies, "bodies")?,
-                Output::optional(dofs, "dofs")?,
-                Output::optional(rows, "rows")?,
-                Output::optional(eqs, "eqs")?,
+                Output::optional(bodies, 1, "bodies")?,
+                Output::optional(dofs, 1, "dofs")?,
+                Output::optional(rows, 1, "rows")?,
+                Output::optional(eqs, 1, "eqs")?,
             ]
         };
         let counts = problem.sizes();

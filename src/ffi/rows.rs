@@ -1,8 +1,8 @@
 //! Rows of `B u <= c` and `H u = h`, numbered per kind from 0.
 
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::ffi::boundary::{
-    base, call, count, enter, id, input, input_or_none, numbers, pointers, Call, Index, Output,
+    base, call, count, enter, id, input, input_or_none, meaning, numbers, pointers, Call, Index, Output,
 };
 use crate::ffi::header::types::{feti_problem, FETI_EQUALITY, FETI_INEQUALITY};
 use crate::solver::{RowKind, RowsInput};
@@ -109,25 +109,21 @@ impl<I: Index> HostRows<I> {
         enter(p, call, |problem| {
             let (kind, rows, base) = (row_kind(self.kind)?, count(self.rows, "rows")?, base(self.base)?);
             // SAFETY: NULL or room for one number by the caller's word.
-            let first = unsafe { Output::optional(self.first, "first") }?;
+            let first = unsafe { Output::optional(self.first, 1, "first") }?;
             // SAFETY: rows + 1 positions by the caller's word.
             let ptr = unsafe { pointers(self.row_ptr, rows, base) }?;
             let entries = ptr.last().copied().unwrap_or(0);
             let _room = problem.headroom_for_rows(rows, entries)?;
-            let body = if self.body.is_null() {
-                None
-            } else {
-                // SAFETY: the last position is the number of entries.
-                Some(unsafe { numbers(self.body, entries, base, "body") }?)
-            };
+            let given = (!self.body.is_null()).then_some(self.body);
+            // SAFETY: the last position is the number of entries.
+            let body = given.map(|body| unsafe { numbers(body, entries, base, "body") }).transpose()?;
             // SAFETY: the last position is the number of entries.
             let (dof, val) =
                 unsafe { (numbers(self.dof, entries, base, "dof")?, input(self.val, entries, "val")?) };
             // SAFETY: NULL or one number per row by the caller's word.
             let rhs = unsafe { input_or_none(self.rhs, rows, "rhs") }?;
-            let added = problem
-                .add_rows(kind, RowsInput { ptr: &ptr, body: body.as_deref(), dof: &dof, val, rhs })?;
-            first.set(added as i64);
+            let given = RowsInput { ptr: &ptr, body: body.as_deref(), dof: &dof, val, rhs };
+            first.set(problem.add_rows(kind, given)? as i64);
             Ok(())
         })
     }
@@ -212,12 +208,6 @@ pub extern "C" fn feti_rows_clear(p: *mut feti_problem, kind: i32) -> i32 {
 }
 
 pub(super) fn row_kind(kind: i32) -> Result<RowKind> {
-    match kind {
-        FETI_INEQUALITY => Ok(RowKind::Inequality),
-        FETI_EQUALITY => Ok(RowKind::Equality),
-        _ => {
-            let text = format!("{kind} is neither FETI_INEQUALITY nor FETI_EQUALITY");
-            Err(Error::argument("kind", text).value(f64::from(kind)))
-        }
-    }
+    let known = [(FETI_INEQUALITY, RowKind::Inequality), (FETI_EQUALITY, RowKind::Equality)];
+    meaning(kind, "kind", &known, "neither FETI_INEQUALITY nor FETI_EQUALITY")
 }

@@ -1,6 +1,6 @@
 //! Setup, solve, and the verdict on an answer.
 
-use crate::ffi::boundary::{call, enter, enter_with_status, finite_input, same, OutStruct};
+use crate::ffi::boundary::{call, enter, enter_with_status, finite_input, known, same, OutStruct};
 use crate::ffi::header::status::of_outcome;
 use crate::ffi::header::types::{feti_certificate, feti_info, feti_problem};
 use crate::solver::{Certificate, Report, Sizes};
@@ -173,7 +173,6 @@ fn info_of(status: i32, sizes: Sizes, report: Option<&Report>) -> feti_info {
 }
 
 fn certificate(from: &Certificate) -> feti_certificate {
-    let place = |place: Option<usize>| place.map_or(-1, |place| place as i64);
     feti_certificate {
         struct_size: size_of::<feti_certificate>() as i64,
         passed: i32::from(from.passed()),
@@ -187,11 +186,11 @@ fn certificate(from: &Certificate) -> feti_certificate {
         negative_force: from.negative_force.figure,
         complementarity: from.complementarity.figure,
         duality_gap: from.duality_gap.figure,
-        equilibrium_body: place(from.equilibrium.place),
-        balance_body: place(from.balance.place),
-        penetration_row: place(from.penetration.place),
-        equality_row: place(from.equality.place),
-        force_row: place(from.negative_force.place),
-        complementarity_row: place(from.complementarity.place),
+        equilibrium_body: known(from.equilibrium.place),
+        balance_body: known(from.balance.place),
+        penetration_row: known(from.penetration.place),
+        equality_row: known(from.equality.place),
+        force_row: known(from.negative_force.place),
+        complementarity_row: known(from.complementarity.place),
     }
 }

@@ -3,7 +3,6 @@
 use crate::ffi::boundary::{call, enter, id, input, same, Output};
 use crate::ffi::header::types::feti_problem;
 use crate::ffi::rows::row_kind;
-use crate::solver::RowKind;
 
 /// Gives start values for the next solve.
 ///
@@ -30,11 +29,7 @@ pub unsafe extern "C" fn feti_start_from(
 ) -> i32 {
     enter(p, call!(feti_start_from(p, kind, rows, lambda)), |problem| {
         let kind = row_kind(kind)?;
-        let counts = problem.sizes();
-        let expected = match kind {
-            RowKind::Inequality => counts.rows,
-            RowKind::Equality => counts.equalities,
-        };
+        let expected = problem.rows(kind).len();
         let rows = same(rows, expected, "rows", "the number of rows of this kind is")?;
         // SAFETY: one number per row by the caller's word.
         problem.start_from(kind, unsafe { input(lambda, rows, "lambda") }?)

@@ -1,7 +1,7 @@
 //! Bodies: their size, coordinates and load.
 
-use crate::error::{Error, Result};
-use crate::ffi::boundary::{call, column_major, count, enter, id, input, same, Output};
+use crate::error::Result;
+use crate::ffi::boundary::{call, column_major, count, enter, id, input, meaning, same, Output};
 use crate::ffi::header::types::{feti_problem, FETI_ALL};
 use crate::solver::Problem;
 
@@ -60,10 +60,7 @@ pub unsafe extern "C" fn feti_body_coordinates(
 ) -> i32 {
     enter(p, call!(feti_body_coordinates(p, body, dim, n, node, dir, xyz, ld)), |problem| {
         let (body, n) = body_of_order(problem, body, n)?;
-        let dim = match dim {
-            1..=3 => dim as usize,
-            _ => return Err(Error::argument("dim", format!("{dim} is not 1, 2 or 3")).value(f64::from(dim))),
-        };
+        let dim = meaning(dim, "dim", &[(1, 1), (2, 2), (3, 3)], "not 1, 2 or 3")?;
         let (entries, ld) = column_major(dim, n, ld, "ld")?;
         // SAFETY: shapes by the caller's word.
         let (node, dir) = unsafe { (input(node, n, "node")?, input(dir, n, "dir")?) };

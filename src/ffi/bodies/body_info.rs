@@ -1,7 +1,7 @@
 //! What the library knows about a body.
 
 use crate::ffi::bodies::body::body_of_order;
-use crate::ffi::boundary::{call, enter, id, OutStruct, Output};
+use crate::ffi::boundary::{call, enter, id, known, OutStruct, Output};
 use crate::ffi::header::types::{
     feti_body_facts, feti_problem, FETI_ORIGIN_CANDIDATES, FETI_ORIGIN_COORDINATES, FETI_ORIGIN_EXACT,
     FETI_ORIGIN_FOUND,
@@ -62,7 +62,6 @@ pub unsafe extern "C" fn feti_body_info(p: *mut feti_problem, body: i64, out: *m
 }
 
 fn record(facts: &BodyFacts) -> feti_body_facts {
-    let known = |number: Option<usize>| number.map_or(-1, |number| number as i64);
     let factors = facts.factors.as_ref();
     // NaN where there are no doubts
     let largest = |of: fn(&Doubt) -> f64| {

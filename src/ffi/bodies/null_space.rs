@@ -1,8 +1,8 @@
 //! Null spaces of the bodies: the columns of R span all u with K u = 0.
 
-use crate::error::{Error, Result};
+use crate::error::Error;
 use crate::ffi::bodies::body::body_of_order;
-use crate::ffi::boundary::{call, column_major, count, enter, id, input, numbers, same, Output};
+use crate::ffi::boundary::{call, column_major, count, enter, id, input, meaning, numbers, same, Output};
 use crate::ffi::header::types::{feti_problem, FETI_CANDIDATES, FETI_EXACT};
 use crate::platform::memory::reserved;
 use crate::solver::Modes;
@@ -37,22 +37,13 @@ pub unsafe extern "C" fn feti_body_null_space(
 ) -> i32 {
     enter(p, call!(feti_body_null_space(p, body, r, n, basis, ldr, flags)), |problem| {
         let (body, n) = body_of_order(problem, body, n)?;
-        let (r, modes) = (count(r, "r")?, modes_of(flags)?);
+        let r = count(r, "r")?;
+        let known = [(FETI_EXACT, Modes::Exact), (FETI_CANDIDATES, Modes::Candidates)];
+        let modes = meaning(flags, "flags", &known, "neither FETI_EXACT nor FETI_CANDIDATES")?;
         let (entries, ldr) = column_major(n, r, ldr, "ldr")?;
         // SAFETY: ldr (r - 1) + n entries by the caller's word.
         problem.set_null_space(body, n, r, unsafe { input(basis, entries, "basis") }?, ldr, modes)
     })
-}
-
-fn modes_of(flags: i32) -> Result<Modes> {
-    match flags {
-        FETI_EXACT => Ok(Modes::Exact),
-        FETI_CANDIDATES => Ok(Modes::Candidates),
-        _ => {
-            let text = format!("{flags} is neither FETI_EXACT nor FETI_CANDIDATES");
-            Err(Error::argument("flags", text).value(f64::from(flags)))
-        }
-    }
 }
 
 /// Reads the null space of a body that the library works with.

@@ -7,7 +7,7 @@ use crate::error::{Error, Kind, Result};
 use crate::ffi::bodies::body::body_of_order;
 use crate::ffi::boundary::fpu::Environment;
 use crate::ffi::boundary::handle;
-use crate::ffi::boundary::{call, enter, input};
+use crate::ffi::boundary::{call, enter, input, meaning};
 use crate::ffi::header::types::{feti_operator_fn, feti_problem};
 use crate::ffi::progress::User;
 use crate::solver::{HostFunctions, HostProduct};
@@ -62,15 +62,13 @@ pub unsafe extern "C" fn feti_body_operator(
         let slot = handle::find(p).ok_or_else(|| Error::new(Kind::Internal, "a problem without handle"))?;
         let product = |function: feti_operator_fn, name| -> Result<HostProduct> {
             let function = function.ok_or_else(|| Error::argument(name, "NULL").body(number))?;
-            let host = Function { function, user: User::new(user), body, n };
+            let host = Function { function, user: User(user), body, n };
             Ok(host.product(Arc::clone(&slot.shared)))
         };
         let (kplus, k) = (product(kplus, "kplus")?, product(k, "k")?);
-        if !(0..=1).contains(&concurrent) {
-            let what = format!("{concurrent} is neither 0 nor 1");
-            return Err(Error::argument("concurrent", what).body(number).value(f64::from(concurrent)));
-        }
-        problem.set_operator(number, diagonal, HostFunctions { kplus, k, concurrent: concurrent == 1 })
+        let concurrent = meaning(concurrent, "concurrent", &[(0, false), (1, true)], "neither 0 nor 1");
+        let concurrent = concurrent.map_err(|error| error.body(number))?;
+        problem.set_operator(number, diagonal, HostFunctions { kplus, k, concurrent })
     })
 }
 

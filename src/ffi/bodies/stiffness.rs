@@ -1,9 +1,9 @@
 //! Stiffness matrices of bodies: by rows, with a diagonal of their own, dense.
 
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::ffi::bodies::body::body_of_order;
 use crate::ffi::boundary::{
-    base, borrowed, call, column_major, enter, input, numbers, pointers, Call, Index,
+    base, borrowed, call, column_major, enter, input, meaning, numbers, pointers, Call, Index,
 };
 use crate::ffi::header::types::{feti_problem, FETI_BORROW, FETI_COPY, FETI_FULL, FETI_LOWER, FETI_UPPER};
 use crate::solver::{Columns, Problem, SparseInput, Storage};
@@ -200,7 +200,9 @@ impl<I: Index> SparseMatrix<I> {
         enter(p, call, |problem| {
             let (body, n) = body_of_order(problem, body, self.n)?;
             let (base, storage) = (base(self.base)?, storage_of(self.storage)?);
-            let borrow = may_borrow(self.flags)? && diag.is_none() && storage == Storage::Lower;
+            let flags = [(FETI_COPY, false), (FETI_BORROW, true)];
+            let borrow = meaning(self.flags, "flags", &flags, "neither FETI_COPY nor FETI_BORROW")?;
+            let borrow = borrow && diag.is_none() && storage == Storage::Lower;
             // SAFETY: n numbers by the caller's word.
             let diag = diag.map(|diag| unsafe { input(diag, n, "diag") }).transpose()?;
             // SAFETY: n + 1 positions by the caller's word.
@@ -270,7 +272,7 @@ pub unsafe extern "C" fn feti_body_stiffness_dense(
     enter(p, call!(feti_body_stiffness_dense(p, body, n, k, ld, storage, flags)), |problem| {
         let (body, n) = body_of_order(problem, body, n)?;
         let storage = storage_of(storage)?;
-        copy_only(flags)?;
+        meaning(flags, "flags", &[(FETI_COPY, ())], "not FETI_COPY")?;
         let (entries, ld) = column_major(n, n, ld, "ld")?;
         // SAFETY: ld (n - 1) + n entries by the caller's word.
         problem.set_stiffness_dense(body, n, unsafe { input(k, entries, "k") }?, ld, storage)
@@ -278,31 +280,6 @@ pub unsafe extern "C" fn feti_body_stiffness_dense(
 }
 
 fn storage_of(storage: i32) -> Result<Storage> {
-    match storage {
-        FETI_FULL => Ok(Storage::Full),
-        FETI_LOWER => Ok(Storage::Lower),
-        FETI_UPPER => Ok(Storage::Upper),
-        _ => {
-            let text = format!("{storage} is none of FETI_FULL, FETI_LOWER, FETI_UPPER");
-            Err(Error::argument("storage", text).value(f64::from(storage)))
-        }
-    }
-}
-
-fn may_borrow(flags: i32) -> Result<bool> {
-    match flags {
-        FETI_COPY => Ok(false),
-        FETI_BORROW => Ok(true),
-        _ => {
-            let text = format!("{flags} is neither FETI_COPY nor FETI_BORROW");
-            Err(Error::argument("flags", text).value(f64::from(flags)))
-        }
-    }
-}
-
-fn copy_only(flags: i32) -> Result<()> {
-    if flags == FETI_COPY {
-        return Ok(());
-    }
-    Err(Error::argument("flags", format!("{flags} is not FETI_COPY")).value(f64::from(flags)))
+    let known = [(FETI_FULL, Storage::Full), (FETI_LOWER, Storage::Lower), (FETI_UPPER, Storage::Upper)];
+    meaning(storage, "storage", &known, "none of FETI_FULL, FETI_LOWER, FETI_UPPER")
 }

@@ -35,6 +35,18 @@ pub fn same(value: i64, expected: usize, name: &'static str, what: &str) -> Resu
     Err(Error::argument(name, text).value(value as f64).limit(expected as f64))
 }
 
+/// What a number stands for that must be one of a few; of another one the text says that it is `not`.
+pub fn meaning<T: Copy>(value: i32, name: &'static str, known: &[(i32, T)], not: &str) -> Result<T> {
+    let found = known.iter().find(|(number, _)| *number == value).map(|(_, meaning)| *meaning);
+    found.ok_or_else(|| Error::argument(name, format!("{value} is {not}")).value(f64::from(value)))
+}
+
+/// Entry `k` of a list of `what`.
+pub fn entry_at<'a, T>(list: &'a [T], k: i64, what: &str) -> Result<&'a T> {
+    let found = usize::try_from(k).ok().and_then(|k| list.get(k));
+    found.ok_or_else(|| Error::argument("k", format!("there are {} {what}", list.len())).index(k))
+}
+
 /// Entries of a column-major array of `rows` x `columns` with leading dimension `ld`: ld (columns - 1) + rows.
 pub fn column_major(rows: usize, columns: usize, ld: i64, name: &'static str) -> Result<(usize, usize)> {
     let ld = count(ld, name)?;
@@ -148,10 +160,10 @@ impl<T: Copy> Output<T> {
     }
 
     /// # Safety
-    /// `to` is NULL or has room for one number until the call returns.
-    pub unsafe fn optional(to: *mut T, name: &'static str) -> Result<Self> {
+    /// `to` is NULL or has room for `len` numbers until the call returns.
+    pub unsafe fn optional(to: *mut T, len: usize, name: &'static str) -> Result<Self> {
         // SAFETY: by the caller's word; NULL has room for none.
-        unsafe { Self::new(to, usize::from(!to.is_null()), name) }
+        unsafe { Self::new(to, if to.is_null() { 0 } else { len }, name) }
     }
 
     /// Writes from `values` what there is room for, from entry `at` on.

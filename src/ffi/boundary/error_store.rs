@@ -6,7 +6,7 @@ use std::ffi::c_char;
 use crate::error::{Error, Place};
 use crate::ffi::boundary::arrays;
 use crate::ffi::boundary::call::Call;
-use crate::ffi::boundary::record::OutStruct;
+use crate::ffi::boundary::record::{known, OutStruct};
 use crate::ffi::header::status::{describe, of_kind, FETI_ARGUMENT, FETI_OK};
 use crate::ffi::header::types::feti_error_detail;
 
@@ -49,7 +49,6 @@ impl Record {
 /// The struct of the header; without a record its status is FETI_OK and no number applies.
 fn detail(record: Option<&Record>) -> feti_error_detail {
     let place = record.map(|record| record.place).unwrap_or_default();
-    let number = |value: Option<usize>| value.map_or(-1, |value| value as i64);
     let index = place.index.map(|index| index.saturating_add(place.base) as f64);
     let mut function = [0; 40];
     let name = record.map_or("", |record| record.function);
@@ -60,11 +59,11 @@ fn detail(record: Option<&Record>) -> feti_error_detail {
         struct_size: size_of::<feti_error_detail>() as i64,
         status: record.map_or(FETI_OK, |record| record.status),
         argument: record.map_or(0, |record| record.argument),
-        body: number(place.body),
-        component: number(place.component),
-        dof: number(place.dof),
-        row: number(place.row),
-        entry: number(place.byte.or(place.entry)),
+        body: known(place.body),
+        component: known(place.component),
+        dof: known(place.dof),
+        row: known(place.row),
+        entry: known(place.byte.or(place.entry)),
         value: index.or(place.value).unwrap_or(f64::NAN),
         limit: place.limit.unwrap_or(f64::NAN),
         function,

@@ -1,7 +1,7 @@
 //! Index arrays of the host, 32 or 64 bits, counted from 0 or 1, converted once.
 
 use crate::error::{Error, Result};
-use crate::ffi::boundary::arrays::input;
+use crate::ffi::boundary::arrays::{input, meaning};
 use crate::platform::memory::reserved;
 
 /// The integer types of index arrays.
@@ -33,10 +33,7 @@ impl Index for i64 {
 
 /// What the index arrays of a call count from: 0 or 1.
 pub fn base(value: i32) -> Result<i64> {
-    match value {
-        0 | 1 => Ok(i64::from(value)),
-        _ => Err(Error::argument("base", format!("{value} is neither 0 nor 1")).value(f64::from(value))),
-    }
+    meaning(value, "base", &[(0, 0), (1, 1)], "neither 0 nor 1")
 }
 
 /// Argument `row_ptr`: `rows` + 1 positions, the first one `base`, not decreasing; from 0 in the result.

@@ -69,6 +69,11 @@ impl<T: StructSize> OutStruct<T> {
     }
 }
 
+/// A number of a result struct: -1 where there is none.
+pub fn known(number: Option<usize>) -> i64 {
+    number.map_or(-1, |number| number as i64)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
