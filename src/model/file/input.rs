@@ -192,6 +192,16 @@ impl<R: Read> Input<R> {
         Ok(values)
     }
 
+    /// Their number, and as many numbers of N bytes each.
+    pub fn counted<T, const N: usize>(
+        &mut self,
+        open: &mut OpenSection,
+        number: impl Fn([u8; N]) -> T,
+    ) -> Result<Vec<T>> {
+        let len = self.size(open)?;
+        self.array(open, len, number)
+    }
+
     pub fn reals(&mut self, open: &mut OpenSection, len: usize) -> Result<Vec<f64>> {
         self.array(open, len, f64::from_le_bytes)
     }
@@ -199,7 +209,6 @@ impl<R: Read> Input<R> {
     /// Row pointers: `rows` + 1 numbers from 0 to `entries`, not decreasing.
     pub fn pointers(&mut self, open: &mut OpenSection, rows: usize, entries: usize) -> Result<Vec<usize>> {
         let at = self.at;
-        let saturated = |bytes| usize::try_from(u64::from_le_bytes(bytes)).unwrap_or(usize::MAX);
         let pointers = self.array(open, rows + 1, saturated)?;
         if pointers[0] != 0 || pointers[rows] != entries {
             let what = format!("the rows of {} do not go from 0 to {entries}", open.name());
@@ -247,6 +256,11 @@ impl<R: Read> Input<R> {
         error.what = format!("{name}, written by {wrote}: {}", error.what);
         error.byte(position(open.start))
     }
+}
+
+/// An index or a size; one that this machine has not is the largest, which no call takes.
+pub fn saturated(bytes: [u8; 8]) -> usize {
+    usize::try_from(u64::from_le_bytes(bytes)).unwrap_or(usize::MAX)
 }
 
 fn damaged(at: u64, what: impl Into<String>) -> Error {

@@ -4,7 +4,6 @@
 pub mod format;
 mod input;
 mod read;
-mod sections;
 pub mod write;
 
 use std::fs::{self, File, OpenOptions};

@@ -1,14 +1,17 @@
-//! A problem from a file: everything goes through the calls that a host would make.
+//! A problem from a file: what its sections say, and the calls of a host that they stand for.
 
 use std::io::Read;
 
-use crate::error::Result;
+use crate::body::{Modes, SparseInput, Storage};
+use crate::constraints::{RowKind, RowsInput};
+use crate::error::{Error, Kind, Result};
 use crate::model::contents::Model;
 use crate::model::file::format::{
     Tag, BODY, COORDINATES, FIXING, LOAD, NULL_SPACE, NUMBERING, OPTIONS, ROWS, STIFFNESS,
 };
-use crate::model::file::input::Input;
-use crate::model::file::sections::{Offsets, SectionContent};
+use crate::model::file::input::{saturated, Input, OpenSection};
+use crate::model::file::write::{CANDIDATES, EQUALITY, EXACT, INEQUALITY};
+use crate::platform::memory::reserved;
 
 /// Reads a problem of `length` bytes.
 pub fn read(source: impl Read, length: u64) -> Result<Model> {
@@ -17,17 +20,174 @@ pub fn read(source: impl Read, length: u64) -> Result<Model> {
     let mut offsets = Offsets::default();
     while !input.is_at_its_end() {
         let mut open = input.open()?;
-        if !is_known(open.tag) {
+        let Some(content) = SectionContent::read(&mut input, &mut open)? else {
             input.skip(&mut open)?;
             continue;
-        }
-        let part = SectionContent::read(&mut input, &mut open)?;
+        };
         input.close(&mut open)?;
-        part.hand_over(&mut model, &mut offsets).map_err(|error| input.refused(error, &open))?;
+        let handed_over = content.hand_over(open.tag, &mut model, &mut offsets);
+        handed_over.map_err(|error| input.refused(error, &open))?;
     }
     Ok(model)
 }
 
-fn is_known(tag: Tag) -> bool {
-    [OPTIONS, BODY, STIFFNESS, NULL_SPACE, COORDINATES, FIXING, LOAD, NUMBERING, ROWS].contains(&tag)
+/// A section that has been read.
+enum SectionContent {
+    Options(String),
+    Body { n: usize },
+    Stiffness { ptr: Vec<usize>, col: Vec<i64>, val: Vec<f64> },
+    NullSpace { n: usize, r: usize, modes: Modes, basis: Vec<f64> },
+    Coordinates { places: Vec<f64>, directions: Vec<i32> },
+    Fixing(Vec<usize>),
+    Load(Vec<f64>),
+    Numbering(Vec<i64>),
+    Rows { kind: RowKind, ptr: Vec<usize>, unknown: Vec<u64>, val: Vec<f64>, rhs: Vec<f64>, inv_k: Vec<f64> },
+}
+
+/// First unknown of every body among all and their end, and which sections of the last body have come.
+#[derive(Default)]
+struct Offsets {
+    ends: Vec<u64>,
+    seen: Vec<Tag>,
+    rows: [bool; 2],
+    options: bool,
+}
+
+impl SectionContent {
+    /// None of a section that this library does not know.
+    fn read<R: Read>(input: &mut Input<R>, open: &mut OpenSection) -> Result<Option<Self>> {
+        Ok(Some(match open.tag {
+            OPTIONS => Self::Options(input.text(open)?),
+            BODY => Self::Body { n: input.size(open)? },
+            STIFFNESS => Self::stiffness(input, open)?,
+            NULL_SPACE => Self::null_space(input, open)?,
+            COORDINATES => {
+                let n = input.size(open)?;
+                let places = input.reals(open, 3 * n)?;
+                Self::Coordinates { places, directions: input.array(open, n, i32::from_le_bytes)? }
+            }
+            FIXING => Self::Fixing(input.counted(open, saturated)?),
+            LOAD => Self::Load(input.counted(open, f64::from_le_bytes)?),
+            NUMBERING => Self::Numbering(input.counted(open, i64::from_le_bytes)?),
+            ROWS => Self::rows(input, open)?,
+            _ => return Ok(None),
+        }))
+    }
+
+    fn stiffness<R: Read>(input: &mut Input<R>, open: &mut OpenSection) -> Result<Self> {
+        let (n, entries) = (input.size(open)?, input.size(open)?);
+        let ptr = input.pointers(open, n, entries)?;
+        let val = input.reals(open, entries)?;
+        let col = input.array(open, entries, |bytes| i64::from(u32::from_le_bytes(bytes)))?;
+        Ok(Self::Stiffness { ptr, col, val })
+    }
+
+    fn null_space<R: Read>(input: &mut Input<R>, open: &mut OpenSection) -> Result<Self> {
+        let (n, r) = (input.size(open)?, input.size(open)?);
+        let modes = match input.number(open)? {
+            EXACT => Modes::Exact,
+            CANDIDATES => Modes::Candidates,
+            number => return Err(input.wrong(open, &format!("{number} is no kind of null space"))),
+        };
+        let basis = input.reals(open, n.saturating_mul(r))?;
+        Ok(Self::NullSpace { n, r, modes, basis })
+    }
+
+    fn rows<R: Read>(input: &mut Input<R>, open: &mut OpenSection) -> Result<Self> {
+        let kind = match input.number(open)? {
+            INEQUALITY => RowKind::Inequality,
+            EQUALITY => RowKind::Equality,
+            number => return Err(input.wrong(open, &format!("{number} is no kind of rows"))),
+        };
+        let (rows, entries) = (input.size(open)?, input.size(open)?);
+        let ptr = input.pointers(open, rows, entries)?;
+        let unknown = input.array(open, entries, u64::from_le_bytes)?;
+        let (val, rhs) = (input.reals(open, entries)?, input.reals(open, rows)?);
+        Ok(Self::Rows { kind, ptr, unknown, val, rhs, inv_k: input.reals(open, rows)? })
+    }
+
+    /// Makes the call of a host.
+    fn hand_over(self, tag: Tag, model: &mut Model, known: &mut Offsets) -> Result<()> {
+        if ![OPTIONS, BODY, ROWS].contains(&tag) {
+            known.once(tag)?;
+        }
+        let body = known.ends.len().wrapping_sub(1);
+        match self {
+            Self::Options(text) => {
+                once(&mut known.options)?;
+                model.set_text(&text)
+            }
+            Self::Body { n } => {
+                known.add_body(n)?;
+                model.add_body(n).map(drop)
+            }
+            Self::Stiffness { ptr, col, val } => {
+                let lower = SparseInput { ptr: &ptr, col: &col, val: &val, storage: Storage::Lower };
+                model.set_stiffness(body, lower)
+            }
+            Self::NullSpace { n, r, modes, basis } => model.set_null_space(body, n, r, &basis, n, modes),
+            // of the labels of the nodes nothing is kept
+            Self::Coordinates { places, directions } => {
+                model.set_coordinates(body, 3, &directions, &directions, &places, 3)
+            }
+            Self::Fixing(dofs) => model.set_fixing(body, Some(&dofs)),
+            Self::Load(f) => model.set_load(body, &f),
+            Self::Numbering(numbers) => model.set_numbering(body, &numbers),
+            Self::Rows { kind, ptr, unknown, val, rhs, inv_k } => {
+                once(&mut known.rows[kind as usize])?;
+                let (body, dof) = known.places(&unknown)?;
+                let _room = model.headroom_for_rows(rhs.len(), val.len())?;
+                let rows = RowsInput { ptr: &ptr, body: Some(&body), dof: &dof, val: &val, rhs: Some(&rhs) };
+                model.add_rows(kind, rows)?;
+                model.set_compliance(kind, 0, &inv_k)
+            }
+        }
+    }
+}
+
+fn once(seen: &mut bool) -> Result<()> {
+    if std::mem::replace(seen, true) {
+        return Err(Error::new(Kind::Io, "this comes twice"));
+    }
+    Ok(())
+}
+
+impl Offsets {
+    /// A section of the last body.
+    fn once(&mut self, tag: Tag) -> Result<()> {
+        if self.ends.is_empty() {
+            return Err(Error::new(Kind::Io, "there is no body before it"));
+        }
+        if self.seen.contains(&tag) {
+            return Err(Error::new(Kind::Io, "this comes twice").body(self.ends.len() - 1));
+        }
+        self.seen.push(tag);
+        Ok(())
+    }
+
+    fn add_body(&mut self, n: usize) -> Result<()> {
+        if self.rows != [false; 2] {
+            return Err(Error::new(Kind::Io, "a body after the rows"));
+        }
+        let end = self.ends.last().copied().unwrap_or(0).saturating_add(n as u64);
+        if end > isize::MAX as u64 / 8 {
+            return Err(Error::new(Kind::Io, "the bodies have more unknowns than an array entries"));
+        }
+        self.ends.push(end);
+        self.seen.clear();
+        Ok(())
+    }
+
+    /// Body and dof of unknowns that count through all bodies; one beyond the last body is left to the call to refuse.
+    fn places(&self, unknown: &[u64]) -> Result<(Vec<i64>, Vec<i64>)> {
+        let what = "the rows of a problem file";
+        let (mut body, mut dof) = (reserved(unknown.len(), what)?, reserved(unknown.len(), what)?);
+        for &number in unknown {
+            let p = self.ends.partition_point(|end| *end <= number);
+            let first = p.checked_sub(1).map_or(0, |before| self.ends[before]);
+            body.push(p as i64);
+            dof.push(i64::try_from(number - first).unwrap_or(i64::MAX));
+        }
+        Ok((body, dof))
+    }
 }

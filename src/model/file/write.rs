@@ -26,7 +26,6 @@ enum Piece<'a> {
     Columns(&'a [u32]),
     Directions(&'a [i32]),
     Reals(&'a [f64]),
-    Places(&'a [[f64; 3]]),
     Text(String),
 }
 
@@ -43,7 +42,6 @@ impl Piece<'_> {
             Self::Columns(columns) => 4 * columns.len(),
             Self::Directions(directions) => 4 * directions.len(),
             Self::Reals(reals) => 8 * reals.len(),
-            Self::Places(places) => 24 * places.len(),
             Self::Text(text) => text.len(),
         };
         bytes as u64
@@ -56,7 +54,6 @@ impl Piece<'_> {
             Self::Columns(columns) => blocks(columns, |column| column.to_le_bytes(), out),
             Self::Directions(directions) => blocks(directions, |direction| direction.to_le_bytes(), out),
             Self::Reals(reals) => blocks(reals, |real| real.to_le_bytes(), out),
-            Self::Places(places) => blocks(places.as_flattened(), |real| real.to_le_bytes(), out),
             Self::Text(text) => out.write_all(text.as_bytes()),
         }
     }
@@ -144,7 +141,7 @@ fn sections(model: &Model) -> impl Iterator<Item = Section<'_>> {
 }
 
 fn of_body(given: &GivenBody) -> impl Iterator<Item = Section<'_>> {
-    use Piece::{Columns, Directions, Number, Numbers, Places, Reals};
+    use Piece::{Columns, Directions, Number, Numbers, Reals};
     let body = &given.body;
     let n = Number(body.order as u64);
     let order = Some(Section { tag: BODY, pieces: vec![n] });
@@ -160,7 +157,8 @@ fn of_body(given: &GivenBody) -> impl Iterator<Item = Section<'_>> {
         Section { tag: NULL_SPACE, pieces: sizes.into_iter().chain([Reals(&r.vectors.data)]).collect() }
     });
     let coordinates = body.coordinates.as_ref().map(|given| {
-        let pieces = vec![count(given.len()), Places(given.places()), Directions(given.directions())];
+        let places = Reals(given.places().as_flattened());
+        let pieces = vec![count(given.len()), places, Directions(given.directions())];
         Section { tag: COORDINATES, pieces }
     });
     let fixing = body.fixing.as_ref().map(|dofs| unknowns(FIXING, dofs));
