@@ -30,10 +30,8 @@ impl Model {
         let most = i64::MAX as usize - first;
         if n > most {
             let what = "the unknowns of all bodies together exceed 64 bits";
-            return Err(Error::new(Kind::Overflow, what)
-                .body(self.bodies.len())
-                .value(n as f64)
-                .limit(most as f64));
+            let error = Error::new(Kind::Overflow, what).body(self.bodies.len());
+            return Err(error.value(n as f64).limit(most as f64));
         }
         self.revisions.rows += 1;
         self.offsets.push(first + n);
@@ -53,10 +51,8 @@ impl Model {
     ) -> Result<()> {
         self.check_length(body, "n", n)?;
         if r > n {
-            return Err(Error::argument("r", format!("{r} null vectors of {n} unknowns"))
-                .body(body)
-                .value(r as f64)
-                .limit(n as f64));
+            let what = format!("{r} null vectors of {n} unknowns");
+            return Err(Error::argument("r", what).body(body).value(r as f64).limit(n as f64));
         }
         if r > 0 {
             check_ld("ldr", ldr, n).map_err(|e| e.body(body))?;
@@ -84,11 +80,8 @@ impl Model {
         let beyond = dofs.into_iter().flatten().enumerate().find(|(_, dof)| **dof >= order);
         if let Some((entry, &dof)) = beyond {
             let what = format!("the dof is outside the {order} unknowns");
-            return Err(Error::argument("dof", what)
-                .body(body)
-                .entry(entry)
-                .index(dof as i64)
-                .limit(order as f64));
+            let error = Error::argument("dof", what).body(body).entry(entry);
+            return Err(error.index(dof as i64).limit(order as f64));
         }
         let unchanged = self.given(body)?.body.fixing.as_deref() == dofs;
         let given = self.change(body, Change::unless(unchanged, Change::Fixing))?;
@@ -108,9 +101,8 @@ impl Model {
     ) -> Result<()> {
         self.check_length(body, "n", node.len())?;
         if !(1..=3).contains(&dim) {
-            return Err(Error::argument("dim", "space has 1, 2 or 3 dimensions")
-                .body(body)
-                .value(dim as f64));
+            let error = Error::argument("dim", "space has 1, 2 or 3 dimensions");
+            return Err(error.body(body).value(dim as f64));
         }
         check_ld("ld", ld, dim).map_err(|e| e.body(body))?;
         let coordinates = Coordinates::new(dim, dir, xyz, ld).map_err(|e| e.body(body))?;

@@ -86,14 +86,12 @@ impl Model {
 
     /// New values for the pattern given last, in the order of the host; the analysis is kept.
     pub fn set_values(&mut self, body: usize, val: &[f64]) -> Result<()> {
-        let new = self.new_values(body, None, val).map_err(|e| e.body(body))?;
-        self.keep_values(body, new)
+        self.give_values(body, None, val)
     }
 
     /// The same for a matrix without its diagonal `diag`, length n.
     pub fn set_values_split(&mut self, body: usize, diag: &[f64], val: &[f64]) -> Result<()> {
-        let new = self.new_values(body, Some(diag), val).map_err(|e| e.body(body))?;
-        self.keep_values(body, new)
+        self.give_values(body, Some(diag), val)
     }
 
     fn new_values(&self, body: usize, diag: Option<&[f64]>, val: &[f64]) -> Result<Vec<f64>> {
@@ -121,10 +119,11 @@ impl Model {
         }
     }
 
-    fn keep_values(&mut self, body: usize, val: Vec<f64>) -> Result<()> {
+    fn give_values(&mut self, body: usize, diag: Option<&[f64]>, val: &[f64]) -> Result<()> {
+        let new = self.new_values(body, diag, val).map_err(|e| e.body(body))?;
         let stiffness = self.bodies[body].body.stiffness.as_mut();
         let k = Arc::make_mut(stiffness.ok_or_else(|| not_given(body))?);
-        let old = std::mem::replace(&mut k.val, val.into());
+        let old = std::mem::replace(&mut k.val, new.into());
         if let Err(error) = check_diagonal(k) {
             k.val = old;
             return Err(error.body(body));
