@@ -41,8 +41,7 @@ pub struct Headroom {
 
 /// Room for `bytes` in small pieces, or `Kind::Memory` naming `what` they were for.
 pub fn headroom(bytes: usize, what: &str) -> Result<Headroom> {
-    let left = INSIDE.get().checked_sub(bytes);
-    if let Some(left) = left {
+    if let Some(left) = INSIDE.get().checked_sub(bytes) {
         INSIDE.set(left);
         return Ok(Headroom { bytes, inner: true, inside: 0, thread: PhantomData });
     }
@@ -118,10 +117,7 @@ pub fn zeros(len: usize, what: &str) -> Result<Vec<f64>> {
 pub fn reserved<T>(len: usize, what: &str) -> Result<Vec<T>> {
     let bytes = len.saturating_mul(size_of::<T>());
     let mut values = Vec::new();
-    let had = values.try_reserve_exact(len).is_ok();
-    if !had {
-        return Err(refusal(bytes, what));
-    }
+    values.try_reserve_exact(len).map_err(|_| refusal(bytes, what))?;
     if bytes >= LARGE {
         ensure_spare(bytes, what)?;
     }

@@ -99,12 +99,6 @@ pub enum TaskEvent<T, M = ()> {
 /// The calling thread hears of itself after this time.
 const PATIENCE: Duration = Duration::from_millis(500);
 
-/// What a task sends to the calling thread.
-enum Sent<T, M> {
-    Ended(usize, Result<T>),
-    Said(M),
-}
-
 /// Begins tasks in their order while the calling thread hears of every result as it comes, in any order, between those it
 /// runs itself. All tasks are run; returns the error of the first by number.
 pub fn run_heard<T: Send>(
@@ -122,25 +116,25 @@ pub fn run_telling<T: Send, M: Send>(
     hear: &mut dyn FnMut(TaskEvent<T, M>),
 ) -> Result<()> {
     let mut first: Option<(usize, Error)> = None;
-    let mut sort = |sent: Option<Sent<T, M>>| match sent {
-        None => hear(TaskEvent::Nothing),
-        Some(Sent::Said(what)) => hear(TaskEvent::Said(what)),
-        Some(Sent::Ended(k, Ok(value))) => hear(TaskEvent::Done(k, value)),
-        Some(Sent::Ended(k, Err(error))) if first.as_ref().is_none_or(|(at, _)| k < *at) => {
+    let mut sort = |event: TaskEvent<Result<T>, M>| match event {
+        TaskEvent::Nothing => hear(TaskEvent::Nothing),
+        TaskEvent::Said(what) => hear(TaskEvent::Said(what)),
+        TaskEvent::Done(k, Ok(value)) => hear(TaskEvent::Done(k, value)),
+        TaskEvent::Done(k, Err(error)) if first.as_ref().is_none_or(|(at, _)| k < *at) => {
             first = Some((k, error));
         }
-        Some(Sent::Ended(..)) => {}
+        TaskEvent::Done(..) => {}
     };
     let (sender, sent) = channel();
-    let run = |k: usize, sender: &Sender<Sent<T, M>>| {
-        let ended = task(k, &|what| drop(sender.send(Sent::Said(what))));
-        drop(sender.send(Sent::Ended(k, ended)));
+    let run = |k: usize, sender: &Sender<TaskEvent<Result<T>, M>>| {
+        let ended = task(k, &|what| drop(sender.send(TaskEvent::Said(what))));
+        drop(sender.send(TaskEvent::Done(k, ended)));
     };
     let (own, others): (Vec<usize>, Vec<usize>) = tasks.order.iter().partition(|&&k| (tasks.on_caller)(k));
     match pool_for(if others.is_empty() { 0 } else { tasks.threads }) {
         None => tasks.order.iter().for_each(|&k| {
             run(k, &sender);
-            sent.try_iter().for_each(|sent| sort(Some(sent)));
+            sent.try_iter().for_each(&mut sort);
         }),
         Some(pool) => pool.in_place_scope(|scope| {
             for k in others {
@@ -150,13 +144,13 @@ pub fn run_telling<T: Send, M: Send>(
             }
             for k in own {
                 run(k, &sender);
-                sent.try_iter().for_each(|sent| sort(Some(sent)));
+                sent.try_iter().for_each(&mut sort);
             }
             drop(sender);
             loop {
                 match sent.recv_timeout(PATIENCE) {
-                    Ok(sent) => sort(Some(sent)),
-                    Err(RecvTimeoutError::Timeout) => sort(None),
+                    Ok(event) => sort(event),
+                    Err(RecvTimeoutError::Timeout) => sort(TaskEvent::Nothing),
                     Err(RecvTimeoutError::Disconnected) => break,
                 }
             }
