@@ -58,12 +58,10 @@ pub fn column_major(rows: usize, columns: usize, ld: i64, name: &'static str) ->
         return Ok((0, ld));
     };
     let entries = ld.checked_mul(before).and_then(|entries| entries.checked_add(rows));
-    match entries.filter(|entries| *entries <= isize::MAX as usize / 8) {
-        Some(entries) => Ok((entries, ld)),
-        None => {
-            Err(Error::argument(name, format!("{columns} columns of {ld} entries: no array has so many")))
-        }
-    }
+    let entries = entries.filter(|entries| *entries <= isize::MAX as usize / 8).ok_or_else(|| {
+        Error::argument(name, format!("{columns} columns of {ld} entries: no array has so many"))
+    })?;
+    Ok((entries, ld))
 }
 
 /// True when so many bytes are left: for small things, at whose failed allocation Rust would end the process.

@@ -39,10 +39,12 @@ impl Record {
         Self { status, argument: 0, function: call.function, place: Place::default(), text }
     }
 
-    /// Makes this the last error of the thread.
-    pub fn publish(self) {
+    /// Makes this the last error of the thread; gives its status.
+    pub fn publish(self) -> i32 {
+        let status = self.status;
         // A thread that is being torn down has no last error to keep.
         let _ = LAST.try_with(|last| last.replace(Some(self)));
+        status
     }
 }
 

@@ -50,7 +50,7 @@ pub fn enter_with_status(
             Ok(Err(error)) => Record::of_error(call, &error),
         };
         slot.keep_error(record.clone());
-        publish(record)
+        record.publish()
     })
 }
 
@@ -58,7 +58,7 @@ pub fn enter_with_status(
 pub fn without_problem(call: Call, work: impl FnOnce() -> Result<()>) -> i32 {
     fpu::in_default_environment(|| match caught(work) {
         Ok(()) => FETI_OK,
-        Err(error) => publish(Record::of_error(call, &error)),
+        Err(error) => Record::of_error(call, &error).publish(),
     })
 }
 
@@ -69,45 +69,23 @@ pub fn refuse(call: Call, refusal: &Refusal) -> i32 {
         Refusal::Busy => FETI_BUSY,
         Refusal::Broken => FETI_INTERNAL,
     };
-    publish(Record::of_status(call, status))
-}
-
-fn publish(record: Record) -> i32 {
-    let status = record.status;
-    record.publish();
-    status
+    Record::of_status(call, status).publish()
 }
 
 thread_local! {
     /// Depth of [`caught`] on this thread.
-    static DEPTH: Cell<u32> = const { Cell::new(0) };
+    static DEPTH: Cell<i32> = const { Cell::new(0) };
     /// Where the last silenced panic of this thread happened.
     static PANIC_PLACE: RefCell<String> = const { RefCell::new(String::new()) };
-}
-
-/// Counts `caught` up, and down again when it is left in whatever way.
-struct Depth;
-
-impl Depth {
-    fn enter() -> Self {
-        let _ = DEPTH.try_with(|depth| depth.set(depth.get() + 1));
-        Self
-    }
-}
-
-impl Drop for Depth {
-    fn drop(&mut self) {
-        let _ = DEPTH.try_with(|depth| depth.set(depth.get() - 1));
-    }
 }
 
 /// Runs `work`; a panic becomes an error of kind Internal. What `work` had under its hands must not be used afterwards.
 pub fn caught<T>(work: impl FnOnce() -> Result<T>) -> Result<T> {
     install_hook();
-    let outcome = {
-        let _depth = Depth::enter();
-        panic::catch_unwind(AssertUnwindSafe(work))
-    };
+    let go_deeper = |by: i32| DEPTH.try_with(|depth| depth.set(depth.get() + by));
+    let _ = go_deeper(1);
+    let outcome = panic::catch_unwind(AssertUnwindSafe(work));
+    let _ = go_deeper(-1);
     outcome.unwrap_or_else(|payload| Err(Error::new(Kind::Internal, panic_text(payload.as_ref()))))
 }
 
