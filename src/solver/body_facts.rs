@@ -77,11 +77,8 @@ impl Problem {
     pub fn body_facts(&self, body: usize) -> Result<BodyFacts> {
         let given = self.model.given(body)?;
         let n = given.body.order;
-        let components = match &given.body.stiffness {
-            None => None,
-            Some(_) => Some(self.components(body)?.1),
-        };
         let k = given.body.stiffness.as_deref();
+        let components = k.map(|_| self.components(body)).transpose()?.map(|(_, number)| number);
         let origin = match (&given.body.null_space, &given.body.coordinates) {
             (Some(r), _) if r.modes == Modes::Exact => Origin::Given,
             (Some(_), _) => Origin::Candidates,

@@ -24,9 +24,8 @@ impl Problem {
         for (argument, values, expected) in lengths {
             if values.len() != expected {
                 let what = format!("the problem has {expected}, not {}", values.len());
-                return Err(Error::argument(argument, what)
-                    .value(values.len() as f64)
-                    .limit(expected as f64));
+                let error = Error::argument(argument, what);
+                return Err(error.value(values.len() as f64).limit(expected as f64));
             }
         }
         let mut all: Option<Certificate> = None;

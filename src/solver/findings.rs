@@ -110,15 +110,11 @@ impl Findings {
 fn redundant(model: &Model, duals: &Duals) -> Vec<(usize, f64)> {
     let mut all = Vec::new();
     for ready in &duals.islands {
-        let rows = &ready.rows;
-        let leaders = &rows.scaling.grouping.leaders;
-        let repeats = rows.scaling.grouping.members().filter(|(i, (group, _))| leaders[*group] != *i);
-        all.extend(repeats.map(|(i, (group, sign))| {
-            (
-                ready.island.in_stack(model.contact.len(), i),
-                sign * rows.scaling.scale[leaders[group]] / rows.scaling.scale[i],
-            )
-        }));
+        let (scale, grouping) = (&ready.rows.scaling.scale, &ready.rows.scaling.grouping);
+        let leaders = &grouping.leaders;
+        let repeats = grouping.members().filter(|(i, (group, _))| leaders[*group] != *i);
+        let row = |i: usize| ready.island.in_stack(model.contact.len(), i);
+        all.extend(repeats.map(|(i, (group, sign))| (row(i), sign * scale[leaders[group]] / scale[i])));
     }
     all.sort_by_key(|(row, _)| *row);
     all

@@ -7,7 +7,6 @@ mod history;
 mod problem;
 mod products;
 mod results;
-mod start_values;
 mod states;
 #[cfg(test)]
 mod tests;

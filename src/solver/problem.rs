@@ -49,23 +49,21 @@ impl Problem {
 
     /// Null spaces, factors and dual operators, as far as they are not there yet.
     pub fn setup(&mut self) -> Result<()> {
-        self.watched(|problem, watch| {
+        self.watched("setup", |problem, watch| {
             if !problem.prepared.is_up_to_date(&problem.model) {
                 watch.phases = Phases::default();
                 begin(&mut watch.log, &problem.model, "setup")?;
             }
-            let done = problem.prepared.set_up(&problem.model, watch);
-            problem.logged("setup", done, watch)
+            problem.prepared.set_up(&problem.model, watch)
         })
     }
 
     /// Solves (10)-(11) for the present loads and gaps. An answer is kept even when it is incomplete; the
     /// report says how good it is. Where a group of bodies has none, the error says why and those of the others are kept.
     pub fn solve(&mut self) -> Result<Report> {
-        self.watched(|problem, watch| {
+        self.watched("solve", |problem, watch| {
             begin(&mut watch.log, &problem.model, "solve")?;
-            let done = problem.solve_watched(watch);
-            problem.logged("solve", done, watch)
+            problem.solve_watched(watch)
         })
     }
 
@@ -117,24 +115,19 @@ impl Problem {
         self.history.of(self.model.revisions.rows)
     }
 
-    /// Runs `work` under watch.
-    fn watched<T>(&mut self, work: impl FnOnce(&mut Self, &mut Watch) -> Result<T>) -> Result<T> {
+    /// Runs `work` under watch. Its outcome is told: the phases that are left, or the failure, which is kept as well.
+    fn watched<T>(&mut self, call: &str, work: impl FnOnce(&mut Self, &mut Watch) -> Result<T>) -> Result<T> {
         let mut watch = self.host.watch(self.model.settings.time_limit, self.phases);
-        let outcome = work(self, &mut watch);
-        self.phases = self.host.ended(watch);
+        let outcome = work(self, &mut watch).and_then(|done| {
+            watch.log.phases(&self.prepared.phases(&self.model, &watch.phases), usize::MAX)?;
+            Ok(done)
+        });
         if let Err(error) = &outcome {
+            watch.log.failure(call, error, self.model.settings.index_base);
             self.findings = Some(Findings::of_error(&self.model, &self.prepared, error));
         }
+        self.phases = self.host.ended(watch);
         outcome
-    }
-
-    /// The outcome of a call, told: the phases that are left, or the failure.
-    fn logged<T>(&self, call: &str, done: Result<T>, watch: &mut Watch) -> Result<T> {
-        match &done {
-            Ok(_) => watch.log.phases(&self.prepared.phases(&self.model, &watch.phases), usize::MAX)?,
-            Err(error) => watch.log.failure(call, error, self.model.settings.index_base),
-        }
-        done
     }
 
     /// The function that hears of every body in every part of a setup and of every step of a solve from now on.

@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use crate::error::Result;
-use crate::model::{Model, Word};
+use crate::model::{Model, Sizes, Word};
 use crate::progress::{Log, LogLevel};
 use crate::setup::{Duals, Prepared, Ready};
 use crate::solve::{Outcome, Report};
@@ -11,15 +11,11 @@ use crate::solve::{Outcome, Report};
 /// Sizes and options, before anything is done.
 pub fn begin(log: &mut Log, model: &Model, call: &str) -> Result<()> {
     log.told = 0;
-    let counts = model.sizes();
+    let (Sizes { bodies, dofs, rows, equalities }, version) = (model.sizes(), env!("CARGO_PKG_VERSION"));
     log.say(LogLevel::Phase, || {
         format!(
-            "feti-contact {}: {call}: {} bodies, {} unknowns, {} contact rows, {} equality rows",
-            env!("CARGO_PKG_VERSION"),
-            counts.bodies,
-            counts.dofs,
-            counts.rows,
-            counts.equalities
+            "feti-contact {version}: {call}: {bodies} bodies, {dofs} unknowns, {rows} contact rows, \
+             {equalities} equality rows"
         )
     })?;
     log.say(LogLevel::Phase, || match model.settings.changes() {
@@ -35,12 +31,10 @@ pub fn result(log: &mut Log, report: &Report) -> Result<()> {
         let what = "warning: a small part of the load, below 1e-7 of it, is held by no row";
         log.say(LogLevel::Result, || what.to_owned())?;
     }
-    if report.undetermined > 0 {
+    let open = report.undetermined;
+    if open > 0 {
         log.say(LogLevel::Result, || {
-            format!(
-                "warning: {} motions are left open: neither rows nor loads determine them",
-                report.undetermined
-            )
+            format!("warning: {open} motions are left open: neither rows nor loads determine them")
         })?;
     }
     Ok(())
