@@ -31,14 +31,21 @@ impl Interrupt {
         work()
     }
 
+    /// Ends what looks at it from now on.
+    pub fn set(&self) {
+        self.0.iter().for_each(|flag| flag.store(true, Ordering::Relaxed));
+    }
+
     pub fn check(&self) -> Result<()> {
         match &self.0 {
-            Some(flag) if flag.load(Ordering::Relaxed) => {
-                Err(Error::new(Kind::Cancelled, "cancelled by the host"))
-            }
+            Some(flag) if flag.load(Ordering::Relaxed) => Err(cancelled()),
             _ => Ok(()),
         }
     }
+}
+
+pub fn cancelled() -> Error {
+    Error::new(Kind::Cancelled, "cancelled by the host")
 }
 
 /// Sets the interrupt that was there before, also when the work panics.

@@ -1,15 +1,17 @@
 //! When a call has to end: the host's wish to cancel it, its time limit.
 
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::AtomicBool;
 use std::sync::Arc;
 use std::time::Instant;
 
 use crate::error::{Error, Kind, Result};
+use crate::platform::Interrupt;
 
 /// When to end; asked before every body of a setup and every product of a solve.
 #[derive(Clone)]
 pub struct Stops {
-    cancelled: Arc<AtomicBool>,
+    /// Set by any thread, it ends whatever runs.
+    pub interrupt: Interrupt,
     started: Instant,
     /// Seconds.
     limit: f64,
@@ -18,7 +20,7 @@ pub struct Stops {
 impl Stops {
     /// Of a call that begins now and ends after `limit` seconds.
     pub fn new(cancelled: Arc<AtomicBool>, limit: f64) -> Self {
-        Self { cancelled, started: Instant::now(), limit }
+        Self { interrupt: Interrupt::new(cancelled), started: Instant::now(), limit }
     }
 
     /// Of nobody.
@@ -29,14 +31,11 @@ impl Stops {
 
     /// Ends whatever runs.
     pub fn cancel(&self) {
-        self.cancelled.store(true, Ordering::Relaxed);
+        self.interrupt.set();
     }
 
     pub fn check_cancelled(&self) -> Result<()> {
-        if self.cancelled.load(Ordering::Relaxed) {
-            return Err(cancelled());
-        }
-        Ok(())
+        self.interrupt.check()
     }
 
     pub fn check(&self) -> Result<()> {
@@ -47,16 +46,7 @@ impl Stops {
         Ok(())
     }
 
-    /// Set by any thread, it ends whatever runs.
-    pub fn flag(&self) -> Arc<AtomicBool> {
-        Arc::clone(&self.cancelled)
-    }
-
     pub fn seconds(&self) -> f64 {
         self.started.elapsed().as_secs_f64()
     }
-}
-
-pub fn cancelled() -> Error {
-    Error::new(Kind::Cancelled, "cancelled by the host")
 }

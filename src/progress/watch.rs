@@ -4,13 +4,13 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::Arc;
 
 use crate::error::{Error, Kind, Result};
+use crate::platform::interrupt::cancelled;
 use crate::platform::threads::{self, TaskEvent, Tasks};
-use crate::platform::Interrupt;
 use crate::progress::listener::{Listener, Progress, Reply};
 use crate::progress::log::{Log, LogLevel};
 use crate::progress::phases::Phases;
 use crate::progress::steps::{Told, Voice};
-use crate::progress::stops::{cancelled, Stops};
+use crate::progress::stops::Stops;
 use crate::qp::Counts;
 
 /// The host's functions and its wish to cancel, kept between calls.
@@ -103,8 +103,8 @@ impl Watch {
         task: impl Fn(usize) -> Result<T> + Sync,
         mut keep: impl FnMut(usize, T),
     ) -> Result<()> {
-        let (stops, interrupt) = (self.stops.clone(), Interrupt::new(self.stops.flag()));
-        let guarded = |k| stops.check_cancelled().and_then(|()| interrupt.during(|| task(k)));
+        let stops = self.stops.clone();
+        let guarded = |k| stops.check_cancelled().and_then(|()| stops.interrupt.during(|| task(k)));
         let (begun, all) = (self.fraction, part.weights.iter().sum::<f64>());
         let (mut done, mut told) = (0.0, Ok(()));
         let mut order: Vec<usize> = (0..part.weights.len()).collect();
