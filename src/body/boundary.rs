@@ -10,25 +10,17 @@ use crate::linalg::{Analysis, Csr, Operator, Packed, Symmetric};
 /// `scale K_bb`: the other dofs held.
 pub fn lumped(k: &Symmetric, scale: f64, boundary: &[usize]) -> Result<Box<dyn Operator + Send>> {
     let local = positions(k.order(), boundary);
-    let mut part = Symmetric::new(vec![0], Vec::new(), Vec::new());
+    let mut part = Symmetric::empty();
     for &dof in boundary {
-        for (j, v) in k.lower_row(dof).filter_map(|(j, v)| Some((local[j]?, v))) {
-            part.col.push(j as u32);
-            part.val.push(scale * v);
-        }
-        part.ptr.push(part.col.len());
+        part.push_row(k.lower_row(dof).filter_map(|(j, v)| Some((local[j]?, scale * v))));
     }
     Ok(Box::new(part))
 }
 
 /// `scale D_bb` of a body whose stiffness the host keeps.
 pub fn diagonal(k: &HostOperator, scale: f64, boundary: &[usize]) -> Result<Box<dyn Operator + Send>> {
-    let mut part = Symmetric::new(vec![0], Vec::new(), Vec::new());
-    for (row, &dof) in boundary.iter().enumerate() {
-        part.col.push(row as u32);
-        part.val.push(scale * k.diagonal(dof));
-        part.ptr.push(row + 1);
-    }
+    let mut part = Symmetric::empty();
+    boundary.iter().enumerate().for_each(|(row, &dof)| part.push_row([(row, scale * k.diagonal(dof))]));
     Ok(Box::new(part))
 }
 

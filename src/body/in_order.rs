@@ -49,16 +49,14 @@ fn by_rows(input: SparseInput, diag: Option<&[f64]>, tolerance: f64) -> Result<O
     let (n, entries) = (input.ptr.len() - 1, input.val.len());
     let full = input.storage == Storage::Full;
     let stored = n + if full { entries / 2 } else { entries };
-    let (ptr, col, val) = (reserved(n + 1, WHAT)?, reserved(stored, WHAT)?, reserved(stored, WHAT)?);
     let mut rows = LowerRows {
         input,
         diag,
         tolerance,
-        lower: Symmetric::new(ptr, col, val),
+        lower: Symmetric::with_room(n, stored, WHAT)?,
         next: reserved(n, WHAT)?,
         root: reserved(n, WHAT)?,
     };
-    rows.lower.ptr.push(0);
     let is_of_this_form = (0..n).all(|i| rows.take(i).is_some());
     let is_paired = rows.next.iter().zip(&input.ptr[1..]).all(|(next, end)| next == end);
     Ok((is_of_this_form && is_paired).then_some(rows.lower))

@@ -35,10 +35,7 @@ pub fn supported(k: &Multiple, last: &[Vec<usize>], between: &[usize]) -> Result
     mates.resize(k.order(), &[]);
     last.iter().for_each(|last| last.iter().for_each(|&dof| mates[dof] = last));
     let coupled: usize = last.iter().map(|last| last.len() * (last.len() + 1) / 2).sum();
-    let mut ptr = reserved(k.order() + 1, WHAT)?;
-    let mut col = reserved(k.matrix.col.len() + coupled, WHAT)?;
-    let mut val = reserved(k.matrix.col.len() + coupled, WHAT)?;
-    ptr.push(0);
+    let mut sum = Symmetric::with_room(k.order(), k.matrix.col.len() + coupled, WHAT)?;
     let (mut row, mut left_out) = (Vec::new(), between.iter().copied().peekable());
     for i in 0..k.order() {
         row.clear();
@@ -56,11 +53,9 @@ pub fn supported(k: &Multiple, last: &[Vec<usize>], between: &[usize]) -> Result
             row.sort_unstable_by_key(|entry| entry.0);
             row.last_mut().into_iter().for_each(|diagonal| diagonal.1 += k.metric(i, 1.0));
         }
-        col.extend(row.iter().map(|entry| entry.0 as u32));
-        val.extend(row.iter().map(|entry| entry.1));
-        ptr.push(col.len());
+        sum.push_row(row.iter().copied());
     }
-    Ok(Symmetric::new(ptr, col, val))
+    Ok(sum)
 }
 
 #[cfg(test)]

@@ -193,22 +193,10 @@ fn entry(rows: &Csr, i: usize, j: usize) -> f64 {
 /// The lower triangle with every diagonal entry stored.
 fn with_diagonal(lower: Csr) -> Result<Symmetric> {
     let n = lower.rows();
-    let mut k = Symmetric::new(
-        reserved(n + 1, "a stiffness matrix")?,
-        reserved(lower.col.len() + n, "a stiffness matrix")?,
-        reserved(lower.col.len() + n, "a stiffness matrix")?,
-    );
-    k.ptr.push(0);
+    let mut k = Symmetric::with_room(n, lower.col.len() + n, "a stiffness matrix")?;
     for i in 0..n {
-        for (j, v) in lower.row(i) {
-            k.col.push(j as u32);
-            k.val.push(v);
-        }
-        if lower.row(i).last().is_none_or(|e| e.0 != i) {
-            k.col.push(i as u32);
-            k.val.push(0.0);
-        }
-        k.ptr.push(k.col.len());
+        let without = lower.row(i).last().is_none_or(|e| e.0 != i);
+        k.push_row(lower.row(i).chain(without.then_some((i, 0.0))));
     }
     Ok(k)
 }

@@ -119,7 +119,7 @@ impl Decoupling {
 fn clusters(given: UnitRows) -> Result<Vec<Vec<usize>>> {
     let mut last = reserved(given.matrix.cols, WHAT)?;
     last.resize(given.matrix.cols, None);
-    let mut joined = Symmetric::new(vec![0], Vec::new(), Vec::new());
+    let mut joined = Symmetric::empty();
     let is_rigid = |i: &usize| given.compliance[*i] == 0.0;
     for i in 0..given.equalities {
         let mut neighbours = vec![i];
@@ -128,10 +128,8 @@ fn clusters(given: UnitRows) -> Result<Vec<Vec<usize>>> {
         }
         neighbours.sort_unstable();
         neighbours.dedup();
-        joined.col.to_mut().extend(neighbours.into_iter().map(|j| j as u32));
-        joined.ptr.push(joined.col.len());
+        joined.push_row(neighbours.into_iter().map(|j| (j, 1.0)));
     }
-    joined.val.to_mut().resize(joined.col.len(), 1.0);
     let (cluster, count) = components(&joined);
     let mut clusters = vec![Vec::new(); count];
     (0..given.equalities).filter(is_rigid).for_each(|i| clusters[cluster[i]].push(i));

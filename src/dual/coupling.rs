@@ -9,7 +9,7 @@ use crate::linalg::graph::components;
 use crate::linalg::semidefinite::sparse::{dense_inverse, uncouple};
 use crate::linalg::sparse::gram::Gram;
 use crate::linalg::{Analysis, Cholesky, Csr, SpdSolver, Symmetric};
-use crate::platform::memory::{copied, headroom, reserved};
+use crate::platform::memory::{copied, headroom};
 
 /// A pivot below this means that the rows of its block may depend on each other.
 const SINGULAR: f64 = 1e-8;
@@ -135,16 +135,7 @@ impl Coupling {
             return Ok(Vec::new());
         }
         let _room = headroom(48 * (w.order() + w.val.len()), "the blocks of a face")?;
-        let coupled = (0..w.order()).map(|i| w.lower_row(i).filter(|(_, v)| *v != 0.0));
-        let mut pattern = Symmetric::new(vec![0], Vec::new(), Vec::new());
-        for row in coupled {
-            for (j, v) in row {
-                pattern.col.push(j as u32);
-                pattern.val.push(v);
-            }
-            pattern.ptr.push(pattern.col.len());
-        }
-        let (block, count) = components(&pattern);
+        let (block, count) = components(w);
         let mut blocks = vec![Vec::new(); count];
         let suspects = (0..block.len()).filter(|&i| self.suspect[i] && !held[i]);
         suspects.for_each(|i| blocks[block[i]].push(i));
@@ -198,16 +189,9 @@ fn coupled(w: &Symmetric) -> Result<(Vec<usize>, Symmetric)> {
     let mut number = vec![0; feels.len()];
     rows.iter().enumerate().for_each(|(at, &i)| number[i] = at);
     let count = rows.iter().map(|&i| entries(i).count()).sum();
-    let (mut col, mut val) = (reserved(count, "coupled rows")?, reserved(count, "coupled rows")?);
-    let mut ptr = vec![0];
-    for &i in &rows {
-        for (j, v) in entries(i) {
-            col.push(number[j] as u32);
-            val.push(v);
-        }
-        ptr.push(col.len());
-    }
-    Ok((rows, Symmetric::new(ptr, col, val)))
+    let mut among = Symmetric::with_room(rows.len(), count, "coupled rows")?;
+    rows.iter().for_each(|&i| among.push_row(entries(i).map(|(j, v)| (number[j], v))));
+    Ok((rows, among))
 }
 
 fn shift(w: &mut Symmetric, i: usize, by: f64) {

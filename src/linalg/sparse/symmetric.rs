@@ -25,6 +25,28 @@ impl Symmetric {
         Self { ptr, col: col.into(), val: val.into() }
     }
 
+    /// No rows yet.
+    pub fn empty() -> Self {
+        Self::new(vec![0], Vec::new(), Vec::new())
+    }
+
+    /// The same with room for so many.
+    pub fn with_room(rows: usize, entries: usize, what: &str) -> Result<Self> {
+        let mut ptr = reserved(rows + 1, what)?;
+        ptr.push(0);
+        Ok(Self::new(ptr, reserved(entries, what)?, reserved(entries, what)?))
+    }
+
+    /// Appends a row of the lower triangle, columns ascending.
+    pub fn push_row(&mut self, entries: impl IntoIterator<Item = (usize, f64)>) {
+        let (col, val) = (self.col.to_mut(), self.val.to_mut());
+        for (j, v) in entries {
+            col.push(j as u32);
+            val.push(v);
+        }
+        self.ptr.push(col.len());
+    }
+
     pub fn order(&self) -> usize {
         self.ptr.len() - 1
     }
@@ -42,12 +64,7 @@ impl Symmetric {
 
     /// `D_ii` of the metric in which all of K is measured: `K_ii`, or `without` for a dof that has no stiffness.
     pub fn metric(&self, i: usize, without: f64) -> f64 {
-        let diagonal = self.diagonal(i);
-        if diagonal > 0.0 {
-            diagonal
-        } else {
-            without
-        }
+        Some(self.diagonal(i)).filter(|diagonal| *diagonal > 0.0).unwrap_or(without)
     }
 
     /// Bytes that the library keeps for it.
@@ -102,21 +119,7 @@ impl Symmetric {
     fn accumulate_with_terms(&self, by: f64, x: &[f64], y: &mut [f64], terms: &mut [f64]) {
         y.fill(0.0);
         terms.fill(0.0);
-        for i in 0..self.order() {
-            let (off, last) = (self.ptr[i], self.ptr[i + 1] - 1);
-            let mut sum = by * self.val[last] * x[i];
-            let mut size = sum.abs();
-            for (&j, &k_ij) in self.col[off..last].iter().zip(&self.val[off..last]) {
-                let (j, k_ij) = (j as usize, by * k_ij);
-                let (own, mate) = (k_ij * x[j], k_ij * x[i]);
-                sum += own;
-                size += own.abs();
-                y[j] += mate;
-                terms[j] += mate.abs();
-            }
-            y[i] += sum;
-            terms[i] += size;
-        }
+        self.accumulate_rows::<1>(by, x.as_chunks().0, y.as_chunks_mut().0, terms.as_chunks_mut().0);
     }
 
     /// The same for some columns at once, given and returned by rows; y and terms are zero.
@@ -195,12 +198,7 @@ impl Multiple {
 
     /// As that of the matrix; `without` is not multiplied.
     pub fn metric(&self, i: usize, without: f64) -> f64 {
-        let diagonal = self.by * self.matrix.diagonal(i);
-        if diagonal > 0.0 {
-            diagonal
-        } else {
-            without
-        }
+        Some(self.by * self.matrix.diagonal(i)).filter(|diagonal| *diagonal > 0.0).unwrap_or(without)
     }
 
     /// Square roots of the metric, 1 for a dof that has no stiffness.
