@@ -6,7 +6,6 @@ use crate::error::Result;
 use crate::linalg::cholesky::analysis::elimination::NONE;
 use crate::linalg::cholesky::analysis::Analysis;
 use crate::linalg::cholesky::numeric::multifrontal::{self, LowerColumns};
-use crate::linalg::cholesky::triangular::Triangle;
 use crate::linalg::Symmetric;
 use crate::platform::memory::{headroom, reserved, zeros, PRODUCTS};
 use crate::platform::pages::Pages;
@@ -117,10 +116,6 @@ impl Analysis {
 }
 
 impl Cholesky {
-    pub(super) fn triangle(&self) -> Triangle<'_> {
-        Triangle { nodes: &self.analysis.nodes, values: &self.values }
-    }
-
     /// Position of a dof in the elimination, `NONE` for held dofs.
     pub(super) fn position(&self, dof: usize) -> usize {
         if self.held.binary_search(&dof).is_ok() {
@@ -150,10 +145,9 @@ impl Cholesky {
         let mut y = reserved(order.len(), "a right-hand side")?;
         y.extend(order.iter().map(|&dof| x[dof]));
         self.held.iter().for_each(|&dof| y[self.analysis.position[dof]] = 0.0);
-        let triangle = self.triangle();
-        let mut workspace = triangle.workspace()?;
-        triangle.forward(&mut y, &mut workspace);
-        triangle.backward(&mut y, &mut workspace);
+        let mut workspace = self.workspace()?;
+        self.forward(&mut y, &mut workspace);
+        self.backward(&mut y, &mut workspace);
         x.fill(0.0);
         y.iter().zip(order).for_each(|(y, &dof)| x[dof] = *y);
         Ok(())

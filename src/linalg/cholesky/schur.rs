@@ -81,9 +81,8 @@ impl Cholesky {
                 }
             }
         }
-        let triangle = self.triangle();
-        let mut workspace = triangle.workspace()?;
-        (0..columns).for_each(|c| triangle.backward(y.col_mut(c), &mut workspace));
+        let mut workspace = self.workspace()?;
+        (0..columns).for_each(|c| self.backward(y.col_mut(c), &mut workspace));
         let mut x = Matrix::zeros(self.analysis.position.len(), columns)?;
         for c in 0..columns {
             let column = x.col_mut(c);

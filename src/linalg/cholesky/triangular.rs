@@ -1,28 +1,22 @@
 //! Solutions with L and L' for one right-hand side: L is read once each, at the speed of the memory.
 
 use crate::error::Result;
-use crate::linalg::cholesky::analysis::supernodes::{Node, Supernodes};
+use crate::linalg::Cholesky;
 use crate::platform::memory::zeros;
 
 /// Columns taken at a time: the vector is read once for all of them.
 const COLUMNS: usize = 4;
 
-/// Panels of L with their supernodes.
-pub struct Triangle<'a> {
-    pub nodes: &'a Supernodes,
-    pub values: &'a [f64],
-}
-
-impl Triangle<'_> {
+impl Cholesky {
     /// Values that a solution works in.
-    pub fn workspace(&self) -> Result<Vec<f64>> {
-        let highest = self.nodes.nodes().map(|node| node.height()).max().unwrap_or(0);
+    pub(super) fn workspace(&self) -> Result<Vec<f64>> {
+        let highest = self.analysis.nodes.nodes().map(|node| node.height()).max().unwrap_or(0);
         zeros(highest, "a solution")
     }
 
     /// `y <- L^-1 y`, in the order of elimination.
-    pub fn forward(&self, y: &mut [f64], workspace: &mut [f64]) {
-        for node in self.nodes.nodes() {
+    pub(super) fn forward(&self, y: &mut [f64], workspace: &mut [f64]) {
+        for node in self.analysis.nodes.nodes() {
             let front = &mut workspace[..node.height()];
             front[..node.width].copy_from_slice(&y[node.begin..node.end()]);
             front[node.width..].fill(0.0);
@@ -33,20 +27,15 @@ impl Triangle<'_> {
     }
 
     /// `y <- L^-T y`, in the order of elimination.
-    pub fn backward(&self, y: &mut [f64], workspace: &mut [f64]) {
-        for node in self.nodes.nodes().rev() {
-            let front = gathered(&node, y, workspace);
+    pub(super) fn backward(&self, y: &mut [f64], workspace: &mut [f64]) {
+        for node in self.analysis.nodes.nodes().rev() {
+            let front = &mut workspace[..node.height()];
+            front[..node.width].copy_from_slice(&y[node.begin..node.end()]);
+            front[node.width..].iter_mut().zip(node.rows).for_each(|(v, &row)| *v = y[row as usize]);
             substitute(&self.values[node.panel.clone()], node.width, front);
             y[node.begin..node.end()].copy_from_slice(&front[..node.width]);
         }
     }
-}
-
-fn gathered<'w>(node: &Node<'_>, y: &[f64], workspace: &'w mut [f64]) -> &'w mut [f64] {
-    let front = &mut workspace[..node.height()];
-    front[..node.width].copy_from_slice(&y[node.begin..node.end()]);
-    front[node.width..].iter_mut().zip(node.rows).for_each(|(v, &row)| *v = y[row as usize]);
-    front
 }
 
 /// `x_1 <- L11^-1 x_1`, `x_2 <- x_2 - L21 x_1`; the panel is height x width.
