@@ -19,11 +19,7 @@ pub fn given_dofs(null_space: &Matrix, root: &[f64], given: &[usize]) -> Result<
     if r == 0 {
         return Ok(Vec::new());
     }
-    let mut held = Matrix::zeros(r, r)?;
-    for (i, &dof) in given.iter().enumerate() {
-        (0..r).for_each(|j| held.set(i, j, root[dof] * null_space.get(dof, j)));
-    }
-    let (values, _) = right_singular(&held)?;
+    let values = singular_values(null_space, root, given)?;
     if values[r - 1].is_nan() || values[r - 1] <= REGULAR * values[0] {
         let what = "the fixing dofs do not hold every motion of the null space".to_string();
         return Err(refused(what).dof(given[0]).value(values[r - 1]).limit(REGULAR * values[0]));
@@ -41,17 +37,15 @@ pub fn hold_as_well(null_space: &Matrix, root: &[f64], dofs: &[usize], chosen: &
     if dofs.len() != chosen.len() {
         return Ok(false);
     }
-    Ok(softest(null_space, root, dofs)? >= AS_WELL * softest(null_space, root, chosen)?)
+    let softest = |values: Vec<f64>| values.last().copied().unwrap_or(f64::INFINITY);
+    let (own, best) = (singular_values(null_space, root, dofs)?, singular_values(null_space, root, chosen)?);
+    Ok(softest(own) >= AS_WELL * softest(best))
 }
 
-/// Smallest singular value of the rows `dofs` of `D^1/2 R`, as many as R has columns.
-fn softest(null_space: &Matrix, root: &[f64], dofs: &[usize]) -> Result<f64> {
-    let r = dofs.len();
-    let mut held = Matrix::zeros(r, r)?;
-    for (i, &dof) in dofs.iter().enumerate() {
-        (0..r).for_each(|j| held.set(i, j, root[dof] * null_space.get(dof, j)));
-    }
-    Ok(right_singular(&held)?.0.last().copied().unwrap_or(f64::INFINITY))
+/// Of the rows `dofs` of `D^1/2 R`, as many as R has columns; descending.
+fn singular_values(null_space: &Matrix, root: &[f64], dofs: &[usize]) -> Result<Vec<f64>> {
+    let entry = |at: usize, j: usize| root[dofs[at]] * null_space.get(dofs[at], j);
+    Ok(right_singular(&Matrix::from_fn(dofs.len(), dofs.len(), entry)?)?.0)
 }
 
 /// Pivoted QR of `(D^1/2 R)'` (r x n): dof by dof the column with the largest part orthogonal to those

@@ -6,7 +6,8 @@ use crate::body::fixing::{fixing_dofs, given_dofs};
 use crate::body::generalized_inverse::{GeneralizedInverse, Known};
 use crate::body::misfit::{Misfit, Retry};
 use crate::body::null_space::{
-    kernel_by_parts, verified_by_parts, FreePart, KernelByParts, Verified, CANDIDATE, ROUNDING,
+    kernel_by_parts, one_column_each, verified_by_parts, FreePart, KernelByParts, Verified, CANDIDATE,
+    ROUNDING,
 };
 use crate::body::plan::Plan;
 use crate::body::rigid_modes::RigidModes;
@@ -70,24 +71,21 @@ impl GeneralizedInverse {
         let root = k.roots()?;
         let part = |(dofs, &count): (_, &usize)| FreePart { dofs: Vec::as_slice(dofs), count, tolerance };
         let parts: Vec<FreePart<'_>> = rigid.members.iter().zip(counts).map(part).collect();
-        let Verified { basis, error } = verified_by_parts(&k, &root, vectors, &parts)?;
-        let (mut null_space, mut chosen, mut at) =
-            (Matrix::zeros(k.order(), counts.iter().sum())?, Vec::new(), 0);
-        for FreePart { dofs, count, .. } in parts {
-            let (mut own, first) = (Matrix::zeros(dofs.len(), count)?, at);
-            for j in 0..count {
-                own.col_mut(j).iter_mut().zip(dofs).for_each(|(v, &i)| *v = basis.get(i, j));
-                own.col(j).iter().zip(dofs).for_each(|(v, &i)| null_space.set(i, first + j, *v));
-                at += 1;
-            }
-            if fixing.is_none() {
-                let roots: Vec<f64> = dofs.iter().map(|&i| root[i]).collect();
-                chosen.extend(fixing_dofs(&own, &roots)?.into_iter().map(|own| dofs[own]));
+        let Verified { basis, error } = verified_by_parts(&k, vectors, &parts)?;
+        let parts: Vec<_> = parts.iter().map(|part| (part.dofs, part.count)).collect();
+        let null_space = one_column_each(&basis, &parts)?;
+        let mut held = Vec::new();
+        match fixing {
+            Some(given) => held = given_dofs(&null_space, &root, given)?,
+            None => {
+                for (dofs, count) in parts {
+                    let own = Matrix::from_fn(dofs.len(), count, |at, j| basis.get(dofs[at], j))?;
+                    let roots: Vec<f64> = dofs.iter().map(|&i| root[i]).collect();
+                    held.extend(fixing_dofs(&own, &roots)?.into_iter().map(|own| dofs[own]));
+                }
             }
         }
-        let given = fixing.map(|given| given_dofs(&null_space, &root, given)).transpose()?;
-        let (held, given) = (given.is_some(), given.unwrap_or(chosen));
-        Ok(Plan::Known(Known { doubt, ..Known::of(k, null_space, error, given, held) }))
+        Ok(Plan::Known(Known { doubt, ..Known::of(k, null_space, error, held, fixing.is_some()) }))
     }
 }
 

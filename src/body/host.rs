@@ -7,7 +7,7 @@ use crate::body::null_space::Products;
 use crate::error::{Error, Kind, Result};
 use crate::linalg::vector::first_non_finite;
 use crate::linalg::{Csr, Matrix, Packed};
-use crate::platform::memory::{copied, reserved, zeros};
+use crate::platform::memory::{copied, zeros};
 use crate::platform::Interrupt;
 
 /// Right-hand sides of one call.
@@ -140,13 +140,6 @@ impl HostMultiple {
         Ok(())
     }
 
-    /// Square roots of the metric, 1 for a dof that has no stiffness.
-    pub fn roots(&self) -> Result<Vec<f64>> {
-        let mut roots = reserved(self.operator.order(), "the metric of a body")?;
-        roots.extend((0..self.operator.order()).map(|i| self.metric(i, 1.0).sqrt()));
-        Ok(roots)
-    }
-
     /// `B K+ B'` for the rows B (m x n) of this body: the entries below the diagonal, column by column.
     pub fn inverse_form(&self, rows: &Csr) -> Result<Packed> {
         let m = rows.rows();
@@ -188,10 +181,6 @@ impl HostMultiple {
 /// Measured by `D |X|`, as the entries of K are not known.
 impl Products for HostMultiple {
     const TERMS: &'static str = "D |R|";
-
-    fn order(&self) -> usize {
-        self.operator.order()
-    }
 
     fn metric(&self, i: usize, without: f64) -> f64 {
         Some(self.operator.diagonal(i) / self.unit).filter(|d| *d > 0.0).unwrap_or(without)

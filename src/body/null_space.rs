@@ -42,7 +42,6 @@ const CANCELLED: f64 = 1e-12;
 pub trait Products {
     /// What the products with R are measured against, in words.
     const TERMS: &'static str;
-    fn order(&self) -> usize;
     /// `K_ii`, or `without` for a dof that has no stiffness.
     fn metric(&self, i: usize, without: f64) -> f64;
     /// `K X`, and the terms that its rounding errors are measured against.
@@ -51,10 +50,6 @@ pub trait Products {
 
 impl Products for Multiple {
     const TERMS: &'static str = "|K||R|";
-
-    fn order(&self) -> usize {
-        self.order()
-    }
 
     fn metric(&self, i: usize, without: f64) -> f64 {
         self.metric(i, without)
@@ -72,26 +67,19 @@ pub struct Verified {
     pub error: f64,
 }
 
-/// Basis of the null space with `R'DR = I`; `root` is `D^1/2`.
-pub fn verified<K: Products>(
-    k: &K,
-    root: &[f64],
-    input: &NullSpaceInput,
-    tolerance: f64,
-) -> Result<Verified> {
+/// Basis of the null space with `R'DR = I`: one part of all dofs.
+pub fn verified<K: Products>(k: &K, input: &NullSpaceInput, tolerance: f64) -> Result<Verified> {
+    let dofs: Vec<usize> = (0..input.vectors.rows).collect();
+    let exact = |vectors: &Matrix| {
+        verified_by_parts(k, vectors, &[FreePart { dofs: &dofs, count: vectors.cols, tolerance }])
+    };
     match input.modes {
-        Modes::Exact => exact(k, root, &input.vectors, tolerance),
+        Modes::Exact => exact(&input.vectors),
         Modes::Candidates => {
-            let kernel = kernel_within(k, &input.vectors)?;
-            exact(k, root, &kernel, tolerance)
+            let found = kernel_by_parts(k, &input.vectors, &[(&dofs, input.vectors.cols)])?;
+            exact(&found.kernel.columns(0..found.counts[0]))
         }
     }
-}
-
-/// One part of all dofs.
-fn exact<K: Products>(k: &K, root: &[f64], vectors: &Matrix, tolerance: f64) -> Result<Verified> {
-    let dofs: Vec<usize> = (0..k.order()).collect();
-    verified_by_parts(k, root, vectors, &[FreePart { dofs: &dofs, count: vectors.cols, tolerance }])
 }
 
 /// Dofs that share no stiffness with the others.
@@ -104,25 +92,18 @@ pub struct FreePart<'a> {
 
 /// `|A z| <= tolerance | |A| |z| |`, or rounding, for an orthonormal basis z of the span of `D^1/2 R`, part by part: column
 /// j of `vectors` has the null vectors j of all parts. The cost grows with the number of parts, not with its square.
-pub fn verified_by_parts<K: Products>(
-    k: &K,
-    root: &[f64],
-    vectors: &Matrix,
-    parts: &[FreePart<'_>],
-) -> Result<Verified> {
+pub fn verified_by_parts<K: Products>(k: &K, vectors: &Matrix, parts: &[FreePart<'_>]) -> Result<Verified> {
+    let root = |i: usize| k.metric(i, 1.0).sqrt();
     let mut basis = Matrix::zeros(vectors.rows, vectors.cols)?;
     for &FreePart { dofs, count, .. } in parts {
-        let mut own = Matrix::zeros(dofs.len(), count)?;
-        for j in 0..count {
-            own.col_mut(j).iter_mut().zip(dofs).for_each(|(v, &i)| *v = root[i] * vectors.get(i, j));
-        }
+        let own = Matrix::from_fn(dofs.len(), count, |at, j| root(dofs[at]) * vectors.get(dofs[at], j))?;
         let own = own.orthonormalised(DEPENDENT);
         if own.cols < count {
             let what = format!("the {count} vectors span {} dimensions only", own.cols);
             return Err(Error::new(Kind::NullSpace, what).value(own.cols as f64).limit(count as f64));
         }
         for j in 0..count {
-            own.col(j).iter().zip(dofs).for_each(|(v, &i)| basis.set(i, j, v / root[i]));
+            own.col(j).iter().zip(dofs).for_each(|(v, &i)| basis.set(i, j, v / root(i)));
         }
     }
     let (image, terms) = k.mul_columns(&basis)?;
@@ -149,11 +130,16 @@ pub fn verified_by_parts<K: Products>(
     Ok(Verified { basis, error })
 }
 
-/// One part of all dofs.
-fn kernel_within<K: Products>(k: &K, candidates: &Matrix) -> Result<Matrix> {
-    let dofs: Vec<usize> = (0..k.order()).collect();
-    let found = kernel_by_parts(k, candidates, &[(&dofs, candidates.cols)])?;
-    Ok(Matrix { rows: k.order(), cols: found.counts[0], data: found.kernel.data })
+/// The null vectors of all parts, n x r, from those in common columns. `parts`: dofs and number of null vectors.
+pub fn one_column_each(vectors: &Matrix, parts: &[(&[usize], usize)]) -> Result<Matrix> {
+    let (mut all, mut at) = (Matrix::zeros(vectors.rows, parts.iter().map(|part| part.1).sum())?, 0);
+    for &(dofs, count) in parts {
+        for j in 0..count {
+            dofs.iter().for_each(|&i| all.set(i, at, vectors.get(i, j)));
+            at += 1;
+        }
+    }
+    Ok(all)
 }
 
 /// What K does to candidates.
@@ -178,10 +164,7 @@ pub fn kernel_by_parts<K: Products>(
     let mut spans = reserved(parts.len(), "a null space")?;
     let mut all = Matrix::zeros(candidates.rows, candidates.cols)?;
     for &(dofs, count) in parts {
-        let mut own = Matrix::zeros(dofs.len(), count)?;
-        for j in 0..count {
-            own.col_mut(j).iter_mut().zip(dofs).for_each(|(v, &i)| *v = candidates.get(i, j));
-        }
+        let own = Matrix::from_fn(dofs.len(), count, |at, j| candidates.get(dofs[at], j))?;
         let own = own.orthonormalised(DEPENDENT);
         (0..own.cols).for_each(|j| own.col(j).iter().zip(dofs).for_each(|(v, &i)| all.set(i, j, *v)));
         spans.push(own);
@@ -190,11 +173,8 @@ pub fn kernel_by_parts<K: Products>(
     all.data.fill(0.0);
     let mut found = KernelByParts { kernel: all, counts: Vec::new(), candidates: 0, next: f64::INFINITY };
     for (&(dofs, _), span) in parts.iter().zip(&spans) {
-        let mut resisted = Matrix::zeros(dofs.len(), span.cols)?;
-        for j in 0..span.cols {
-            let column = resisted.col_mut(j);
-            column.iter_mut().zip(dofs).for_each(|(v, &i)| *v = image.get(i, j) / k.metric(i, 1.0));
-        }
+        let of = |at: usize, j: usize| image.get(dofs[at], j) / k.metric(dofs[at], 1.0);
+        let resisted = Matrix::from_fn(dofs.len(), span.cols, of)?;
         found.candidates += span.cols;
         found.counts.push(0);
         if span.cols == 0 || dofs.len() < span.cols {
@@ -269,7 +249,7 @@ mod tests {
     }
 
     fn verified(k: &Multiple, input: &NullSpaceInput, tolerance: f64) -> Result<Matrix> {
-        super::verified(k, &k.roots()?, input, tolerance).map(|found| found.basis)
+        super::verified(k, input, tolerance).map(|found| found.basis)
     }
 
     fn translation(n: usize, modes: Modes) -> NullSpaceInput {

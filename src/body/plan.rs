@@ -34,7 +34,7 @@ impl GeneralizedInverse {
         let per_dof = (8 * input.vectors.cols + 24) * size_of::<f64>();
         let _room = headroom(k.order() * per_dof + PRODUCTS, "the null space of a body")?;
         let (root, given) = (k.roots()?, fixing.is_some());
-        let Verified { basis: null_space, error } = verified(&k, &root, input, tolerance)?;
+        let Verified { basis: null_space, error } = verified(&k, input, tolerance)?;
         let fixing = match fixing {
             Some(given) => given_dofs(&null_space, &root, given)?,
             None => fixing_dofs(&null_space, &root)?,

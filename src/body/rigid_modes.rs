@@ -114,10 +114,7 @@ impl Coordinates {
     pub fn rigid_motion(&self, v: &[f64]) -> Option<[f64; 6]> {
         let all: Vec<usize> = (0..self.len()).collect();
         let (centre, size) = self.extent(&all);
-        let mut modes = Matrix::zeros(self.len(), 6).ok()?;
-        for mode in 0..6 {
-            all.iter().for_each(|&i| modes.col_mut(mode)[i] = self.motion(i, mode, centre, size));
-        }
+        let modes = Matrix::from_fn(self.len(), 6, |i, mode| self.motion(i, mode, centre, size)).ok()?;
         let mut normal = Matrix::zeros(6, 6).ok()?;
         (0..6).for_each(|j| normal.col_mut(j).copy_from_slice(&modes.mul_transposed(modes.col(j))));
         let scale: [f64; 6] =

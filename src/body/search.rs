@@ -13,7 +13,7 @@ use crate::body::fixing::{fixing_dofs, given_dofs};
 use crate::body::generalized_inverse::{Factorised, GeneralizedInverse};
 use crate::body::last::{between_parts, spread, supported};
 use crate::body::misfit::Misfit;
-use crate::body::null_space::{largest, verified_by_parts, FreePart, Verified};
+use crate::body::null_space::{largest, one_column_each, verified_by_parts, FreePart, Verified};
 use crate::body::overflow::refuse_overflow;
 use crate::body::probe::{known_to, probe, MOST_ROUNDING, SINGULAR};
 use crate::body::spectrum::{cut, measured, to_measure, unclear, Doubt, MotionVerdict, Ritz};
@@ -213,10 +213,7 @@ impl Search {
         let mut schur = factor.trailing(last)?;
         let d = |i: usize| self.k.metric(last[i], 1.0);
         (0..m).for_each(|i| schur.set(i, i, schur.get(i, i) - d(i)));
-        let mut scaled = Matrix::zeros(m, m)?;
-        for j in 0..m {
-            (0..m).for_each(|i| scaled.set(i, j, schur.get(i, j) / (d(i) * d(j)).sqrt()));
-        }
+        let scaled = Matrix::from_fn(m, m, |i, j| schur.get(i, j) / (d(i) * d(j)).sqrt())?;
         refuse_overflow(&scaled.data, |at| last[at % m])?;
         let (values, vectors) = symmetric_eigen(&scaled)?;
         Ok(End { schur, values, vectors })
@@ -234,7 +231,7 @@ impl Search {
         }
         let part = |(members, q): (_, &usize)| (Vec::as_slice(members), *q);
         let parts: Vec<_> = self.members.iter().zip(&candidates).map(part).collect();
-        let first = ends.iter().zip(&candidates).map(|(end, q): (&End, _)| first_columns(&end.vectors, *q));
+        let first = ends.iter().zip(&candidates).map(|(end, q): (&End, _)| end.vectors.columns(0..*q));
         let ritz = measured(&self.k, self.digits, &parts, self.extended(factor, first)?)?;
         let parts = ends.into_iter().zip(&self.last).zip(ritz);
         parts.map(|((end, last), ritz)| self.decided(end, last, &ritz)).collect()
@@ -262,20 +259,20 @@ impl Search {
         let Some(softest) = ritz.values.first() else {
             // nothing is soft, or the eigenvalues at t have told
             let (dimension, gap) = cut(&values).unwrap_or((0, f64::INFINITY));
-            return soft(first_columns(&vectors, dimension), gap, 0.0, None);
+            return soft(vectors.columns(0..dimension), gap, 0.0, None);
         };
         let doubt = |motions, free| ritz.doubt(self.digits, motions, free);
         let dof = last[largest(vectors.col(0), |_| 1.0)];
         match ritz.judged(self.digits) {
             MotionVerdict::Free { dimension, gap } => {
                 let (measured, mut turned) =
-                    (first_columns(&vectors, ritz.values.len()), Matrix::zeros(last.len(), dimension)?);
+                    (vectors.columns(0..ritz.values.len()), Matrix::zeros(last.len(), dimension)?);
                 (0..dimension).for_each(|j| measured.mul_add(1.0, ritz.turn.col(j), turned.col_mut(j)));
                 let rounding = ritz.noise[..dimension].iter().fold(0.0, |most: f64, v| most.max(*v));
                 soft(turned, gap, rounding, doubt(dimension, true))
             }
             MotionVerdict::Held { doubtful, gap } => {
-                soft(first_columns(&vectors, 0), gap, 0.0, doubt(doubtful, false))
+                soft(vectors.columns(0..0), gap, 0.0, doubt(doubtful, false))
             }
             MotionVerdict::Indefinite => Err(Breakdown { dof, relative_pivot: *softest }.indefinite()),
             MotionVerdict::Unclear => Err(unclear(self.digits).dof(dof).value(*softest)),
@@ -317,9 +314,9 @@ impl Search {
             FreePart { dofs: Vec::as_slice(dofs), count: part.vectors.cols, tolerance }
         };
         let parts: Vec<FreePart<'_>> = self.members.iter().zip(soft).map(part).collect();
-        let Verified { basis, .. } = verified_by_parts(&self.k, &root, &vectors, &parts)?;
+        let Verified { basis, .. } = verified_by_parts(&self.k, &vectors, &parts)?;
         let counts: Vec<_> = parts.iter().map(|part| (part.dofs, part.count)).collect();
-        let null_space = self.one_column_each(&basis, soft)?;
+        let null_space = one_column_each(&basis, &counts)?;
         let fixing = fixing.concat();
         let softness = probe(&factor, &self.k, &fixing, null_space.cols)?;
         let error = known_to(&factor, &self.k, &basis, &counts)?;
@@ -356,23 +353,12 @@ impl Search {
         Ok(vectors)
     }
 
-    /// The null vectors of all parts, n x r, from those in common columns.
-    fn one_column_each(&self, vectors: &Matrix, soft: &[Soft]) -> Result<Matrix> {
-        let r = soft.iter().map(|part| part.vectors.cols).sum();
-        let (mut all, mut at) = (Matrix::zeros(self.k.order(), r)?, 0);
-        for (part, dofs) in soft.iter().zip(&self.members) {
-            for j in 0..part.vectors.cols {
-                dofs.iter().for_each(|&i| all.set(i, at, vectors.get(i, j)));
-                at += 1;
-            }
-        }
-        Ok(all)
-    }
-
     /// The fixing dofs of every part.
     fn fixing_of(&self, soft: &[Soft], vectors: &Matrix, root: &[f64]) -> Result<Vec<Vec<usize>>> {
         if let Some(given) = &self.fixing {
-            let given = given_dofs(&self.one_column_each(vectors, soft)?, root, given)?;
+            let counts = soft.iter().map(|part| part.vectors.cols);
+            let parts: Vec<_> = self.members.iter().map(Vec::as_slice).zip(counts).collect();
+            let given = given_dofs(&one_column_each(vectors, &parts)?, root, given)?;
             let among = |last: &Vec<usize>| given.iter().copied().filter(|dof| last.contains(dof)).collect();
             return Ok(self.last.iter().map(among).collect());
         }
@@ -393,8 +379,4 @@ impl Search {
         let relative_pivot = if whole { 2.0 * relative_pivot - 1.0 } else { relative_pivot };
         (Breakdown { dof, relative_pivot }).refused().map_or(Ok(Attempt::Missed(dof)), Err)
     }
-}
-
-fn first_columns(matrix: &Matrix, count: usize) -> Matrix {
-    Matrix { rows: matrix.rows, cols: count, data: matrix.data[..matrix.rows * count].to_vec() }
 }

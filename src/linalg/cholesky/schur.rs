@@ -20,20 +20,9 @@ impl Cholesky {
     /// `L_tt L_tt'` of the dofs t (m x m): the Schur complement of the matrix that was factorised.
     pub fn trailing(&self, dofs: &[usize]) -> Result<Matrix> {
         let m = dofs.len();
-        let mut l = Matrix::zeros(m, m)?;
-        for k in 0..m {
-            for j in k..m {
-                let at = self.entry(dofs[j], dofs[k]);
-                l.set(j, k, at.map_or(0.0, |at| self.values[at]));
-            }
-        }
-        let mut schur = Matrix::zeros(m, m)?;
-        for k in 0..m {
-            for j in 0..m {
-                schur.set(j, k, (0..=j.min(k)).map(|q| l.get(j, q) * l.get(k, q)).sum());
-            }
-        }
-        Ok(schur)
+        let lower = |j: usize, k: usize| if j < k { None } else { self.entry(dofs[j], dofs[k]) };
+        let l = Matrix::from_fn(m, m, |j, k| lower(j, k).map_or(0.0, |at| self.values[at]))?;
+        Matrix::from_fn(m, m, |j, k| (0..=j.min(k)).map(|q| l.get(j, q) * l.get(k, q)).sum())
     }
 
     /// The factor with the trailing dofs of every part factorised anew and some of them held. `Err` names a dof at

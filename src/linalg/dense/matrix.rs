@@ -1,5 +1,7 @@
 //! Small dense matrices: null spaces (n x r, r a handful) and coarse matrices (r x r).
 
+use std::ops::Range;
+
 use crate::error::Result;
 use crate::linalg::vector::{axpy, dot, norm};
 use crate::platform::memory::zeros;
@@ -15,6 +17,21 @@ pub struct Matrix {
 impl Matrix {
     pub fn zeros(rows: usize, cols: usize) -> Result<Self> {
         Ok(Self { rows, cols, data: zeros(rows.saturating_mul(cols), "a dense matrix")? })
+    }
+
+    /// With `entry(i, j)` in row i of column j.
+    pub fn from_fn(rows: usize, cols: usize, entry: impl Fn(usize, usize) -> f64) -> Result<Self> {
+        let mut matrix = Self::zeros(rows, cols)?;
+        for j in 0..cols {
+            matrix.col_mut(j).iter_mut().enumerate().for_each(|(i, v)| *v = entry(i, j));
+        }
+        Ok(matrix)
+    }
+
+    /// Some neighbouring columns.
+    pub fn columns(&self, range: Range<usize>) -> Self {
+        let data = self.data[range.start * self.rows..range.end * self.rows].to_vec();
+        Self { rows: self.rows, cols: range.len(), data }
     }
 
     pub fn col(&self, j: usize) -> &[f64] {

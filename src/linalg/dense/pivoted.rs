@@ -92,12 +92,8 @@ impl PivotedCholesky {
 
     /// One solution of `A X = B` (n x k) where there is one, that which is 0 on the rows beyond the rank.
     pub fn solve(&self, b: &Matrix) -> Result<Matrix> {
-        let mut y = Matrix::zeros(self.rank, b.cols)?;
-        for j in 0..b.cols {
-            for (k, &i) in self.order[..self.rank].iter().enumerate() {
-                y.set(k, j, b.get(i, j) * self.inverse_root[i]);
-            }
-        }
+        let scaled = |i: usize, j: usize| b.get(i, j) * self.inverse_root[i];
+        let mut y = Matrix::from_fn(self.rank, b.cols, |k, j| scaled(self.order[k], j))?;
         let n = self.factor.rows;
         let leading = MatRef::from_column_major_slice(&self.factor.data, n, n);
         let leading = leading.submatrix(0, 0, self.rank, self.rank);

@@ -13,10 +13,7 @@ pub fn symmetric_eigen(a: &Matrix) -> Result<(Vec<f64>, Matrix)> {
     let view = MatRef::from_column_major_slice(&a.data, a.rows, a.cols);
     let eigen = SelfAdjointEigen::new(view, Side::Lower)
         .map_err(|_| Error::new(Kind::Internal, "the eigenvalues of a Schur complement did not converge"))?;
-    let mut vectors = Matrix::zeros(a.rows, a.cols)?;
-    for j in 0..a.cols {
-        (0..a.rows).for_each(|i| vectors.set(i, j, eigen.U()[(i, j)]));
-    }
+    let vectors = Matrix::from_fn(a.rows, a.cols, |i, j| eigen.U()[(i, j)])?;
     Ok(((0..a.cols).map(|j| eigen.S()[j]).collect(), vectors))
 }
 
@@ -26,11 +23,6 @@ pub fn right_singular(a: &Matrix) -> Result<(Vec<f64>, Matrix)> {
     let svd = view
         .thin_svd()
         .map_err(|_| Error::new(Kind::Internal, "the singular values of K R did not converge"))?;
-    let mut vectors = Matrix::zeros(a.cols, a.cols)?;
-    for j in 0..a.cols {
-        for i in 0..a.cols {
-            vectors.set(i, j, svd.V()[(i, j)]);
-        }
-    }
+    let vectors = Matrix::from_fn(a.cols, a.cols, |i, j| svd.V()[(i, j)])?;
     Ok(((0..a.cols).map(|j| svd.S()[j]).collect(), vectors))
 }

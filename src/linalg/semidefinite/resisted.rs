@@ -21,12 +21,7 @@ pub fn inverse(w: &Matrix, g_transposed: &Csr, limit: f64) -> Result<(SpdSolver,
     }
     let (values, vectors) = symmetric_eigen(w)?;
     let certain = values.partition_point(|value| *value <= UNCERTAIN);
-    let part = |columns: std::ops::Range<usize>| Matrix {
-        rows: w.rows,
-        cols: columns.len(),
-        data: vectors.data[columns.start * w.rows..columns.end * w.rows].to_vec(),
-    };
-    let (mut motions, mut kept) = (part(0..certain), part(certain..w.cols));
+    let (mut motions, mut kept) = (vectors.columns(0..certain), vectors.columns(certain..w.cols));
     for (j, value) in values[certain..].iter().enumerate() {
         kept.col_mut(j).iter_mut().for_each(|v| *v /= value.sqrt());
     }
@@ -61,8 +56,7 @@ fn conjugate(n: &mut [f64], kept: &Matrix, g_transposed: &Csr) {
 /// Singular values of `G_F N` with its right singular vectors; 0 where all are below the limit.
 fn singular(motions: &Matrix, g_transposed: &Csr, limit: f64) -> Result<(Vec<f64>, Matrix)> {
     let d = motions.cols;
-    let mut turned = Matrix::zeros(d, d)?;
-    (0..d).for_each(|j| turned.set(j, j, 1.0));
+    let mut turned = Matrix::from_fn(d, d, |i, j| f64::from(u8::from(i == j)))?;
     let images: Vec<Vec<f64>> = (0..d).map(|j| product(g_transposed, motions.col(j))).collect();
     let lengths: Vec<f64> = images.iter().map(|image| norm(image)).collect();
     if norm(&lengths) <= limit {
@@ -72,12 +66,9 @@ fn singular(motions: &Matrix, g_transposed: &Csr, limit: f64) -> Result<(Vec<f64
     while done < g_transposed.rows() {
         // values and vectors of the rows so far, in place of these rows
         let some = (g_transposed.rows() - done).min(4 * d + ROWS);
-        let mut stacked = Matrix::zeros(d + some, d)?;
-        for j in 0..d {
-            let column = stacked.col_mut(j);
-            (0..d).for_each(|k| column[k] = values[k] * turned.get(j, k));
-            column[d..].copy_from_slice(&images[j][done..done + some]);
-        }
+        let entry =
+            |i: usize, j: usize| if i < d { values[i] * turned.get(j, i) } else { images[j][done + i - d] };
+        let stacked = Matrix::from_fn(d + some, d, entry)?;
         (values, turned) = right_singular(&stacked)?;
         done += some;
     }

@@ -109,11 +109,7 @@ impl PseudoInverse {
         let mut basis = Matrix { rows: self.order, ..Matrix::default() };
         for SingularPart { rows, inverse } in &self.dense {
             let Some(kept) = inverse.kept() else { continue };
-            for j in 0..kept.cols {
-                let mut column = vec![0.0; self.order];
-                rows.iter().zip(kept.col(j)).for_each(|(&row, v)| column[row] = *v);
-                basis.push_col(&column);
-            }
+            push_columns(kept, rows, &mut basis);
             rows.iter().for_each(|&row| apart[row] = true);
         }
         for row in (0..self.order).filter(|&row| !apart[row]) {
@@ -127,15 +123,17 @@ impl PseudoInverse {
     /// Basis of the kernel, n x deficiency.
     pub fn kernel(&self) -> Matrix {
         let mut basis = Matrix { rows: self.order, ..Matrix::default() };
-        for SingularPart { rows, inverse } in self.dense.iter().filter(|part| part.inverse.deficiency() > 0) {
-            let own = inverse.kernel();
-            for j in 0..own.cols {
-                let mut column = vec![0.0; self.order];
-                rows.iter().zip(own.col(j)).for_each(|(&row, v)| column[row] = *v);
-                basis.push_col(&column);
-            }
-        }
+        self.dense.iter().for_each(|part| push_columns(&part.inverse.kernel(), &part.rows, &mut basis));
         basis
+    }
+}
+
+/// Appends the columns of a part, which has these rows.
+fn push_columns(part: &Matrix, rows: &[usize], basis: &mut Matrix) {
+    for j in 0..part.cols {
+        let mut column = vec![0.0; basis.rows];
+        rows.iter().zip(part.col(j)).for_each(|(&row, v)| column[row] = *v);
+        basis.push_col(&column);
     }
 }
 
