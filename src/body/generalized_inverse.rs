@@ -2,16 +2,15 @@
 //! (15): `K+ = P [F^-1 0; 0 0] P'`.
 //! Symmetric and reflexive (`K K+ K = K`, `K+ K K+ = K+`), not the Moore-Penrose inverse.
 
+use std::fmt;
 use std::sync::Arc;
 
-use crate::body::factor::Factor;
 use crate::body::fixing::hold_as_well;
-use crate::body::misfit::{Misfit, Retry};
 use crate::body::null_space::ROUNDING as KNOWN;
-use crate::body::probe::{known_to, missing_mode, probe};
+use crate::body::probe::{known_to, missing_mode, probe, Factor};
 use crate::body::spectrum::Doubt;
-use crate::body::symbolic::Symbolic;
 use crate::error::{Error, Kind, Result};
+use crate::linalg::cholesky::{inverse_columns, inverse_form};
 use crate::linalg::{Analysis, Csr, Matrix, Multiple, Packed};
 
 #[derive(Clone)]
@@ -61,6 +60,46 @@ pub struct Known {
     pub(super) retry: Option<Retry>,
 }
 
+/// Rigid motions that do not all fit K.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Misfit {
+    pub fit: usize,
+    pub of: usize,
+    /// The least `|D^-1 K v|` of a unit vector v among the others.
+    pub next: f64,
+}
+
+impl fmt::Display for Misfit {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { fit, of, next } = self;
+        write!(out, "{fit} of {of} rigid motions of these coordinates fit K, the next leaves |K R| = {next:.1e} |D||R|")
+    }
+}
+
+/// How the null space is sought in K where K turns out to have more null vectors than rigid motions that fit.
+pub(super) struct Retry {
+    pub misfit: Misfit,
+    pub tolerance: f64,
+    pub fixing: Option<Vec<usize>>,
+}
+
+/// The symbolic side of a factorisation, done once for all bodies and all values of one pattern: what the analysis of a body
+/// depends on besides the pattern of K.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Layout {
+    /// Dofs that are held.
+    Held(Vec<usize>),
+    /// Dofs of every connected part that are eliminated last, and the entries of K between parts, which are 0 and left
+    /// out.
+    Last { dofs: Vec<Vec<usize>>, between: Vec<usize> },
+}
+
+/// A symbolic analysis with what it was made for.
+pub struct Symbolic {
+    pub layout: Arc<Layout>,
+    pub analysis: Arc<Analysis>,
+}
+
 impl GeneralizedInverse {
     /// (15): `x = K+ b`, both of length n; F^-1 on the free dofs, 0 on those held.
     pub fn apply(&self, b: &[f64], x: &mut [f64]) -> Result<()> {
@@ -75,27 +114,39 @@ impl GeneralizedInverse {
 
     /// Entries of the factor; 0 where the host has it.
     pub fn entries(&self) -> usize {
-        self.factor.entries()
+        match &self.factor {
+            Factor::Own(factor) => factor.analysis.entries(),
+            Factor::Host(_) => 0,
+        }
     }
 
-    /// It must be applied on the thread that calls the library.
+    /// It must be applied on the thread alone that calls the library.
     pub fn on_caller(&self) -> bool {
-        self.factor.on_caller()
+        matches!(&self.factor, Factor::Host(host) if host.operator.on_caller())
     }
 
     /// Where its factor lies: the same for all that share it.
     pub fn factor_address(&self) -> usize {
-        self.factor.address()
+        match &self.factor {
+            Factor::Own(factor) => Arc::as_ptr(factor) as usize,
+            Factor::Host(host) => Arc::as_ptr(&host.operator) as usize,
+        }
     }
 
     /// The columns `which` of `B K+ B'`, m x `which.len()`.
     pub fn inverse_columns(&self, rows: &Csr, which: &[usize]) -> Result<Matrix> {
-        self.factor.inverse_columns(rows, which)
+        match &self.factor {
+            Factor::Own(factor) => inverse_columns(factor, rows, which),
+            Factor::Host(host) => host.inverse_columns(rows, which),
+        }
     }
 
     /// `B K+ B'` for the rows B (m x n) of this body.
     pub fn inverse_form(&self, rows: &Csr) -> Result<Packed> {
-        self.factor.inverse_form(rows)
+        match &self.factor {
+            Factor::Own(factor) => inverse_form(factor, rows),
+            Factor::Host(host) => host.inverse_form(rows),
+        }
     }
 
     /// The error of a null space that K does not map to zero but for rounding, as far as the factor enlarges it.

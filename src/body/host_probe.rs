@@ -2,11 +2,10 @@
 //! both positive semidefinite, `K K+ K = K`. Looked at with a few fixed vectors: what is wrong for most is found. Forces are
 //! measured in the metric `D^-1`, displacements in D, so that no figure has a unit.
 
-use crate::body::factor::Factor;
 use crate::body::generalized_inverse::GeneralizedInverse;
 use crate::body::host::HostMultiple;
 use crate::body::null_space::{largest, verified, NullSpaceInput, Products, Verified, ROUNDING as KNOWN};
-use crate::body::probe::{PROBE, UNLIKELY};
+use crate::body::probe::{Factor, PROBE, UNLIKELY};
 use crate::error::{Error, Kind, Result};
 use crate::linalg::random::Random;
 use crate::linalg::vector::{axpy, dot, ratio, weighted_norm};

@@ -1,8 +1,7 @@
 //! Matrices by rows of ascending columns, those in full with entries on both sides of the diagonal: the lower triangle
 //! straight from the arrays of the host. Whatever else it gives, right or wrong, is for [`stiffness`](super::stiffness).
 
-use crate::body::storage::{SparseInput, Storage};
-use crate::body::symmetry::may_differ;
+use crate::body::storage::{may_differ, SparseInput, Storage};
 use crate::error::Result;
 use crate::linalg::Symmetric;
 use crate::platform::memory::{reserved, zeros};

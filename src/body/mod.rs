@@ -4,9 +4,7 @@
 mod alike;
 mod borrowed;
 mod boundary;
-mod breakdown;
 mod digits;
-mod factor;
 mod fixing;
 mod generalized_inverse;
 mod given;
@@ -15,9 +13,7 @@ mod host;
 mod host_probe;
 mod in_order;
 mod last;
-mod misfit;
 mod null_space;
-mod overflow;
 mod plan;
 mod probe;
 mod rigid_modes;
@@ -25,8 +21,6 @@ mod search;
 mod spectrum;
 mod stiffness;
 mod storage;
-mod symbolic;
-mod symmetry;
 mod values;
 
 pub use alike::{
@@ -35,17 +29,15 @@ pub use alike::{
 pub use borrowed::{from_borrowed, Columns};
 pub use boundary::{diagonal, dirichlet, dirichlet_bytes, lumped};
 pub use digits::Digits;
-pub use generalized_inverse::{Factorised, GeneralizedInverse};
+pub use generalized_inverse::{Factorised, GeneralizedInverse, Layout, Misfit, Symbolic};
 pub use given::Stiffness;
 pub use host::{HostFunctions, HostMultiple, HostOperator, HostProduct, TOGETHER};
-pub use misfit::Misfit;
 pub use null_space::{Modes, NullSpaceInput};
 pub use plan::Plan;
 pub use rigid_modes::Coordinates;
 pub use spectrum::Doubt;
 pub use stiffness::{check_diagonal, check_finite, from_dense, from_sparse, from_split};
 pub use storage::{SparseInput, Storage};
-pub use symbolic::{Layout, Symbolic};
 pub use values::{Form, Places};
 
 use std::sync::Arc;

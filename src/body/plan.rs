@@ -3,11 +3,9 @@
 use std::sync::Arc;
 
 use crate::body::fixing::{fixing_dofs, given_dofs};
-use crate::body::generalized_inverse::{Factorised, GeneralizedInverse, Known};
-use crate::body::misfit::Retry;
+use crate::body::generalized_inverse::{Factorised, GeneralizedInverse, Known, Layout, Retry, Symbolic};
 use crate::body::null_space::{verified, NullSpaceInput, Verified, ROUNDING as KNOWN};
 use crate::body::search::Search;
-use crate::body::symbolic::{Layout, Symbolic};
 use crate::error::{Error, Kind, Result};
 use crate::linalg::Multiple;
 use crate::platform::memory::{headroom, PRODUCTS};

@@ -1,14 +1,18 @@
-//! What a factor and a null space are worth, tried out after every factorisation.
+//! What K+ is made of, a factor of the library or the host's own, and what a factor and a null space are worth, tried out after
+//! every factorisation.
 
-use crate::body::factor::Factor;
-use crate::body::null_space::{largest, ROUNDING as KNOWN};
-use crate::body::overflow::overflow;
+use std::sync::Arc;
+
+use crate::body::host::HostMultiple;
+use crate::body::null_space::{largest, overflow, ROUNDING as KNOWN};
 use crate::error::{Error, Kind, Result};
 use crate::linalg::random::Random;
 use crate::linalg::vector::weighted_norm;
-use crate::linalg::{Matrix, Multiple};
+use crate::linalg::{Breakdown, Cholesky, Matrix, Multiple};
 use crate::platform::memory::zeros;
 
+/// A pivot below minus this, relative to its diagonal entry, is no rounding error: a(u, u) >= 0 of (4) is violated.
+const NEGATIVE_PIVOT: f64 = 1e-10;
 /// K with the dofs held is singular when some v has `|A v|` below this against `| |A| |v| |`.
 pub(super) const SINGULAR: f64 = 1e-13;
 /// Random numbers have `n^-1/2` of their length along a given direction; this many times less is not expected. (A mode
@@ -22,6 +26,36 @@ const SAMPLE: f64 = 16.0;
 const MOST_ERROR: f64 = 1e-7;
 /// More than this of a row or a load is no rounding, however little is known of R: it is told as marginal.
 pub(super) const MOST_ROUNDING: f64 = 1e-9;
+
+#[derive(Clone)]
+pub(super) enum Factor {
+    /// Of K without the dofs held; bodies with the same matrix and the same dofs held share it.
+    Own(Arc<Cholesky>),
+    /// Known by its products.
+    Host(HostMultiple),
+}
+
+impl Factor {
+    /// `x <- K+ x`
+    pub fn solve(&self, x: &mut [f64]) -> Result<()> {
+        match self {
+            Self::Own(factor) => factor.solve(x),
+            Self::Host(host) => host.solve_in_place(x),
+        }
+    }
+}
+
+impl Breakdown {
+    /// The error for a pivot so negative that K is indefinite.
+    pub(super) fn refused(&self) -> Option<Error> {
+        (self.relative_pivot < -NEGATIVE_PIVOT).then(|| self.indefinite())
+    }
+
+    pub(super) fn indefinite(&self) -> Error {
+        let what = format!("the stiffness matrix is indefinite: pivot {:.1e} K_ii", self.relative_pivot);
+        Error::new(Kind::Indefinite, what).dof(self.dof).value(self.relative_pivot).limit(0.0)
+    }
+}
 
 /// A factorisation that ends without complaint proves nothing: solve for a known right-hand side b, and look for a
 /// null vector v that vanishes on the fixing dofs by inverse iteration on A. The first step finds v by the part of b

@@ -8,16 +8,14 @@
 use std::sync::Arc;
 
 use crate::body::digits::Digits;
-use crate::body::factor::Factor;
 use crate::body::fixing::{fixing_dofs, given_dofs};
-use crate::body::generalized_inverse::{Factorised, GeneralizedInverse};
+use crate::body::generalized_inverse::{Factorised, GeneralizedInverse, Layout, Misfit, Symbolic};
 use crate::body::last::{between_parts, spread, supported};
-use crate::body::misfit::Misfit;
-use crate::body::null_space::{largest, one_column_each, verified_by_parts, FreePart, Verified};
-use crate::body::overflow::refuse_overflow;
-use crate::body::probe::{known_to, probe, MOST_ROUNDING, SINGULAR};
+use crate::body::null_space::{
+    largest, one_column_each, refuse_overflow, verified_by_parts, FreePart, Verified,
+};
+use crate::body::probe::{known_to, probe, Factor, MOST_ROUNDING, SINGULAR};
 use crate::body::spectrum::{cut, measured, to_measure, unclear, Doubt, MotionVerdict, Ritz};
-use crate::body::symbolic::{Layout, Symbolic};
 use crate::error::{Error, Kind, Result};
 use crate::linalg::cholesky::Trailing;
 use crate::linalg::dense::spectrum::symmetric_eigen;

@@ -1,8 +1,7 @@
 //! The host's stiffness matrix, checked and brought into one form: the lower triangle by sorted rows.
 
 use crate::body::in_order::lower_triangle;
-use crate::body::storage::{SparseInput, Storage};
-use crate::body::symmetry::{may_differ, unsymmetric};
+use crate::body::storage::{may_differ, unsymmetric, SparseInput, Storage};
 use crate::error::{Error, Kind, Result};
 use crate::linalg::vector::first_non_finite;
 use crate::linalg::{Csr, Symmetric};

@@ -1,4 +1,6 @@
-//! How a host stores the entries of a stiffness matrix.
+//! How a host stores the entries of a stiffness matrix, and how far that may be from symmetric.
+
+use crate::error::Error;
 
 /// Which entries the host hands over.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -16,4 +18,19 @@ pub struct SparseInput<'a> {
     pub col: &'a [i64],
     pub val: &'a [f64],
     pub storage: Storage,
+}
+
+/// How far `K_ij` and `K_ji` may be apart, given the square roots of their diagonal entries.
+pub(super) fn may_differ(tolerance: f64, root_i: f64, root_j: f64) -> f64 {
+    tolerance * root_i * root_j
+}
+
+/// `lonely`: one of the two rows has nothing beside its diagonal.
+pub(super) fn unsymmetric(lonely: bool, (i, j): (usize, usize), difference: f64, limit: f64) -> Error {
+    let what = if lonely {
+        "an identity row meets a full column: eliminate supports symmetrically".to_owned()
+    } else {
+        format!("|K_ij - K_ji| = {:.1e} exceeds {limit:.1e}: the matrix is not symmetric", difference.abs())
+    };
+    Error::argument("val", what).row(i).dof(j).value(difference.abs()).limit(limit)
 }

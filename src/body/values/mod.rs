@@ -1,8 +1,7 @@
 //! New values for a matrix whose pattern is there: where each of them goes, and the checks of the first time.
 
 use crate::body::stiffness::check_finite;
-use crate::body::storage::{SparseInput, Storage};
-use crate::body::symmetry::{may_differ, unsymmetric};
+use crate::body::storage::{may_differ, unsymmetric, SparseInput, Storage};
 use crate::error::{Error, Result};
 use crate::linalg::vector::first_non_finite;
 use crate::linalg::Symmetric;
