@@ -151,7 +151,7 @@ impl FaceCoupling {
 
     /// `z <- W_F+ z` on the rows that are not held, 0 on the others.
     pub fn solve(&self, z: &mut [f64]) -> Result<()> {
-        clear(&self.held, z);
+        z.iter_mut().zip(&self.held).filter(|(_, held)| **held).for_each(|(z, _)| *z = 0.0);
         let mut own: Vec<f64> = self.rows.iter().map(|&i| z[i]).collect();
         let mut parts = Vec::with_capacity(self.dense.len());
         for block in &self.dense {
@@ -170,10 +170,6 @@ impl FaceCoupling {
         let at = self.dense.binary_search_by_key(&rows[0], |block| block.rows[0]).ok()?;
         self.dense.get(at).filter(|block| block.rows == rows)
     }
-}
-
-fn clear(held: &[bool], z: &mut [f64]) {
-    z.iter_mut().zip(held).filter(|(_, held)| **held).for_each(|(z, _)| *z = 0.0);
 }
 
 /// The rows with an entry of W beside the diagonal that is more than rounding, and W among them without the others.

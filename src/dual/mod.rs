@@ -10,7 +10,6 @@
 
 mod cost;
 mod coupling;
-mod entries;
 mod multiples;
 mod operator;
 mod preconditioner;
@@ -84,45 +83,23 @@ pub struct BodyShare {
 
 /// A dual problem whose operators `F_p` are yet to be assembled, body by body, in any order.
 pub struct Draft {
-    parts: Vec<BodyShare>,
-    /// Rows that touch each body, and their entries over its unknowns.
-    local: Vec<(Vec<usize>, Csr)>,
-    multiples: Vec<Multiples>,
-    distinct: Vec<Csr>,
-    /// What the operators of other rows serve for; none where the operator is implicit.
-    reuse: Vec<Option<Reuse>>,
+    /// Without operators.
+    subdomains: Vec<Subdomain>,
+    /// The rows B of each body, and what the operators of other rows serve for; none where the operator is implicit.
+    distinct: Vec<(Csr, Option<Reuse>)>,
 }
 
 impl Draft {
     /// `matrix` is B, m x n.
-    pub fn new(mut parts: Vec<BodyShare>, matrix: &Csr) -> Self {
+    pub fn new(parts: Vec<BodyShare>, matrix: &Csr) -> Self {
         let local = cut(parts.iter().map(|part| part.range.clone()).collect(), matrix);
-        let (multiples, distinct): (Vec<_>, Vec<_>) =
-            local.iter().map(|(_, matrix)| Multiples::of(matrix)).unzip();
-        let reuse = |(part, rows): (&mut BodyShare, &Csr)| {
-            let kept = part.kept.take();
-            (!part.implicit).then(|| Reuse::of(kept, rows))
-        };
-        let reuse = parts.iter_mut().zip(&distinct).map(reuse).collect();
-        Self { parts, local, multiples, distinct, reuse }
-    }
-
-    /// `B K_p+ B'` of body p, none where it is implicit; asked for once.
-    pub fn assemble(&self, p: usize) -> Result<Option<Packed>> {
-        let explicit = self.reuse[p].as_ref();
-        explicit.map(|reuse| reuse.operator(&self.parts[p].kplus, &self.distinct[p])).transpose()
-    }
-
-    /// The dual problem with the operators that have been assembled; `compliance` is the diagonal of C, m entries. `balanced`:
-    /// `|G_p|` is in [1, 2) for every body that rows touch; else it is that of R_p as it is.
-    pub fn finish(self, operators: Vec<Option<Packed>>, compliance: Vec<f64>, balanced: bool) -> Dual {
-        let columns = self.reuse.iter().flatten().map(Reuse::columns).sum();
-        let operators = operators.into_iter().zip(self.multiples);
+        let (mut subdomains, mut distinct) =
+            (Vec::with_capacity(parts.len()), Vec::with_capacity(parts.len()));
         let mut first = 0;
-        let mut subdomains = Vec::with_capacity(self.parts.len());
-        for ((part, (rows, matrix)), (operator, multiples)) in
-            self.parts.into_iter().zip(self.local).zip(operators)
-        {
+        for (part, (rows, matrix)) in parts.into_iter().zip(local) {
+            let (multiples, own) = Multiples::of(&matrix);
+            let reuse = (!part.implicit).then(|| Reuse::of(part.kept, &own));
+            distinct.push((own, reuse));
             let modes = first..first + part.kplus.null_space.cols;
             first = modes.end;
             subdomains.push(Subdomain {
@@ -133,12 +110,28 @@ impl Draft {
                 rows,
                 matrix,
                 multiples,
-                operator,
+                operator: None,
                 by: part.by,
                 work: part.size.work(part.implicit),
             });
         }
-        let mut coarse = coarse(&subdomains, compliance.len(), first);
+        Self { subdomains, distinct }
+    }
+
+    /// `B K_p+ B'` of body p, none where it is implicit; asked for once.
+    pub fn assemble(&self, p: usize) -> Result<Option<Packed>> {
+        let (rows, reuse) = &self.distinct[p];
+        reuse.as_ref().map(|reuse| reuse.operator(&self.subdomains[p].kplus, rows)).transpose()
+    }
+
+    /// The dual problem with the operators that have been assembled; `compliance` is the diagonal of C, m entries. `balanced`:
+    /// `|G_p|` is in [1, 2) for every body that rows touch; else it is that of R_p as it is.
+    pub fn finish(self, operators: Vec<Option<Packed>>, compliance: Vec<f64>, balanced: bool) -> Dual {
+        let columns = self.distinct.iter().filter_map(|(_, reuse)| reuse.as_ref()).map(Reuse::columns).sum();
+        let mut subdomains = self.subdomains;
+        subdomains.iter_mut().zip(operators).for_each(|(s, operator)| s.operator = operator);
+        let modes = subdomains.last().map_or(0, |s| s.modes.end);
+        let mut coarse = coarse(&subdomains, compliance.len(), modes);
         if balanced {
             scale_by_body(&mut subdomains, &mut coarse);
         }

@@ -1,9 +1,10 @@
 //! Products with F, body by body: with the entries of `F_p = B_p K_p+ B_p'` where they are there (explicit), else by
-//! two triangular solves, `F_p x = B_p (K_p+ (B_p'x))` (implicit).
+//! two triangular solves, `F_p x = B_p (K_p+ (B_p'x))` (implicit). And entries of F, gathered from the operators of the bodies
+//! and the compliance of the rows.
 
 use crate::dual::{Dual, InParallel, Subdomain};
 use crate::error::Result;
-use crate::linalg::Operator;
+use crate::linalg::{Csr, Entries, Matrix, Operator};
 use crate::platform::memory::zeros;
 
 const WHAT: &str = "a product with the dual operator";
@@ -84,5 +85,98 @@ impl Operator for Dual {
 
     fn bytes_kept(&self) -> usize {
         self.subdomains.iter().filter_map(|s| s.operator.as_ref()).map(Operator::bytes_kept).sum()
+    }
+}
+
+impl Entries for Dual {
+    /// Entries that an implicit operator does not have are assembled for these rows alone.
+    fn add_block(&self, rows: &[usize], block: &mut Matrix) -> Result<()> {
+        for s in &self.subdomains {
+            // (number in the block, number in the body) of the rows both have
+            let common = rows.iter().enumerate();
+            let common: Vec<(usize, usize)> =
+                common.filter_map(|(k, i)| Some((k, s.rows.binary_search(i).ok()?))).collect();
+            s.add_common(&common, block)?;
+        }
+        rows.iter().enumerate().for_each(|(k, &i)| block.col_mut(k)[k] += self.compliance[i]);
+        Ok(())
+    }
+}
+
+impl Subdomain {
+    /// Adds the lower triangle of F_p on the rows common to block and body.
+    fn add_common(&self, common: &[(usize, usize)], block: &mut Matrix) -> Result<()> {
+        if let Some(explicit) = &self.operator {
+            let entry = |i, j| self.multiples.entry(i, j, |i, j| explicit.get(i, j));
+            add(common, |k, l| self.by * entry(common[k].1, common[l].1), block);
+            return Ok(());
+        }
+        if common.is_empty() {
+            return Ok(());
+        }
+        let mut selected = Csr::empty(self.matrix.cols);
+        common.iter().for_each(|&(_, i)| selected.push_row(self.matrix.row(i)));
+        let assembled = self.kplus.inverse_form(&selected)?;
+        add(common, |k, l| self.by * assembled.get(k, l), block);
+        Ok(())
+    }
+}
+
+/// Adds entries (k, l), k >= l, of the common rows to the block.
+fn add(common: &[(usize, usize)], entry: impl Fn(usize, usize) -> f64, block: &mut Matrix) {
+    for (at, &(l, _)) in common.iter().enumerate() {
+        let column = block.col_mut(l);
+        common.iter().enumerate().skip(at).for_each(|(k, &(row, _))| column[row] += entry(k, at));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::body::{GeneralizedInverse, Modes, NullSpaceInput};
+    use crate::dual::{BodyShare, Draft, Size};
+    use crate::linalg::{Operator, Symmetric};
+    use std::sync::Arc;
+
+    /// Two chains of 8 springs, held at one end, with rows of their own and between them.
+    fn dual(implicit: bool) -> Dual {
+        let n = 8;
+        let ptr = (0..=n).map(|i| (2 * i as usize).saturating_sub(1)).collect();
+        let col: Vec<_> = (0..n).flat_map(|i| [i - 1, i]).skip(1).map(|j: i32| j as u32).collect();
+        let val: Vec<_> = (0..n).flat_map(|_| [-1.0, 2.0]).skip(1).collect();
+        let k = Symmetric::new(ptr, col, val);
+        let none = NullSpaceInput { vectors: Matrix::zeros(8, 0).unwrap(), modes: Modes::Exact };
+        let part = |p: usize| {
+            let made = GeneralizedInverse::plan(k.clone().into(), &none, 1e-8).unwrap().execute().unwrap();
+            let (range, size) = (8 * p..8 * p + 8, Size::default());
+            BodyShare { range, kplus: Arc::new(made.inverse), by: 1.0, kept: None, size, implicit }
+        };
+        let mut rows = Csr::empty(16);
+        rows.push_row([(2, 1.0), (9, -0.5)]);
+        rows.push_row([(0, 1.0), (7, 0.3)]);
+        rows.push_row([(12, 2.0)]);
+        rows.push_row([(5, 1.0), (6, -1.0), (15, 1.0)]);
+        let compliance = vec![0.0, 0.1, 0.0, 0.2];
+        let draft = Draft::new(vec![part(0), part(1)], &rows);
+        let operators = (0..2).map(|p| draft.assemble(p).unwrap()).collect();
+        draft.finish(operators, compliance, true)
+    }
+
+    #[test]
+    fn the_entries_of_any_rows_are_those_that_products_with_unit_vectors_give() {
+        for (implicit, rows) in [(false, vec![0, 1, 2, 3]), (true, vec![0, 1, 2, 3]), (true, vec![0, 3])] {
+            let dual = dual(implicit);
+            assert_eq!(dual.implicit_bodies(), if implicit { 2 } else { 0 });
+            let mut block = Matrix::zeros(rows.len(), rows.len()).unwrap();
+            dual.add_block(&rows, &mut block).unwrap();
+            for (l, &j) in rows.iter().enumerate() {
+                let (mut unit, mut image) = ([0.0; 4], [0.0; 4]);
+                unit[j] = 1.0;
+                dual.try_apply(&unit, &mut image).unwrap();
+                for (k, &i) in rows.iter().enumerate().skip(l) {
+                    assert!((block.get(k, l) - image[i]).abs() < 1e-13, "({i}, {j})");
+                }
+            }
+        }
     }
 }
