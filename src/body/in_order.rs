@@ -3,8 +3,9 @@
 
 use crate::body::storage::{may_differ, SparseInput, Storage};
 use crate::error::Result;
+use crate::linalg::vector::filled;
 use crate::linalg::Symmetric;
-use crate::platform::memory::{reserved, zeros};
+use crate::platform::memory::{copied, reserved, zeros};
 
 const WHAT: &str = "a stiffness matrix";
 
@@ -110,19 +111,15 @@ impl LowerRows<'_> {
 /// Storage of the upper triangle: its columns are the rows of the lower one.
 fn by_columns(input: SparseInput, diag: Option<&[f64]>) -> Result<Option<Symmetric>> {
     let n = input.ptr.len() - 1;
-    let mut ptr: Vec<usize> = reserved(n + 1, WHAT)?;
-    ptr.resize(n + 1, 0);
+    let mut ptr = filled(n + 1, 0_usize, WHAT)?;
     for i in 0..n {
         let Some(row) = row(&input, diag, i).filter(|row| row.left == 0) else { return Ok(None) };
         row.col.iter().for_each(|&j| ptr[j as usize + 1] += 1);
         ptr[i + 1] += usize::from(!row.given);
     }
     (0..n).for_each(|j| ptr[j + 1] += ptr[j]);
-    let mut next = reserved(n, WHAT)?;
-    next.extend_from_slice(&ptr[..n]);
-    let mut col = reserved(ptr[n], WHAT)?;
-    col.resize(ptr[n], 0);
-    let mut val = zeros(ptr[n], WHAT)?;
+    let mut next = copied(&ptr[..n], WHAT)?;
+    let (mut col, mut val) = (filled(ptr[n], 0, WHAT)?, zeros(ptr[n], WHAT)?);
     for i in 0..n {
         // rows before i have filled row i of the lower triangle up to its diagonal
         (col[next[i]], val[next[i]]) = (i as u32, diag.map_or(0.0, |diag| diag[i]));

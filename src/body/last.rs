@@ -1,6 +1,7 @@
 //! The dofs t that the search eliminates last in every connected part, and K with springs at them.
 
 use crate::error::Result;
+use crate::linalg::vector::filled;
 use crate::linalg::{Multiple, Symmetric};
 use crate::platform::memory::reserved;
 
@@ -31,8 +32,7 @@ pub fn between_parts(k: &Symmetric, part_of: &[usize]) -> Result<Vec<usize>> {
 /// `K + E D_tt E'` without the entries between parts, all dofs t of one part coupled.
 pub fn supported(k: &Multiple, last: &[Vec<usize>], between: &[usize]) -> Result<Symmetric> {
     const WHAT: &str = "a supported stiffness matrix";
-    let mut mates: Vec<&[usize]> = reserved(k.order(), WHAT)?;
-    mates.resize(k.order(), &[]);
+    let mut mates = filled::<&[usize]>(k.order(), &[], WHAT)?;
     last.iter().for_each(|last| last.iter().for_each(|&dof| mates[dof] = last));
     let coupled: usize = last.iter().map(|last| last.len() * (last.len() + 1) / 2).sum();
     let mut sum = Symmetric::with_room(k.order(), k.matrix.col.len() + coupled, WHAT)?;

@@ -6,8 +6,9 @@
 use crate::constraints::accumulator::Accumulator;
 use crate::error::Result;
 use crate::linalg::graph::components;
+use crate::linalg::vector::filled;
 use crate::linalg::{Csr, Symmetric};
-use crate::platform::memory::{headroom, reserved};
+use crate::platform::memory::headroom;
 
 /// Rows of a cluster at most; mortar rows chain over a whole surface.
 const LARGEST: usize = 32;
@@ -44,8 +45,7 @@ impl Decoupling {
         let (matrix, m) = (given.matrix, given.matrix.rows());
         let _room = headroom(64 * (matrix.val.len() + m + matrix.cols), WHAT)?;
         let mut work = Orthogonalisation::new(given)?;
-        let mut cluster_of = reserved(matrix.cols, WHAT)?;
-        cluster_of.resize(matrix.cols, None);
+        let mut cluster_of = filled(matrix.cols, None, WHAT)?;
         let clusters = clusters(given)?;
         for (number, cluster) in clusters.iter().enumerate() {
             if work.orthonormalise(cluster) {
@@ -117,8 +117,7 @@ impl Decoupling {
 
 /// Rigid equality rows that share unknowns, up to `LARGEST` of them, each group ascending.
 fn clusters(given: UnitRows) -> Result<Vec<Vec<usize>>> {
-    let mut last = reserved(given.matrix.cols, WHAT)?;
-    last.resize(given.matrix.cols, None);
+    let mut last = filled(given.matrix.cols, None, WHAT)?;
     let mut joined = Symmetric::empty();
     let is_rigid = |i: &usize| given.compliance[*i] == 0.0;
     for i in 0..given.equalities {
@@ -148,8 +147,7 @@ struct Orthogonalisation<'a> {
 
 impl<'a> Orthogonalisation<'a> {
     fn new(given: UnitRows<'a>) -> Result<Self> {
-        let mut changed = reserved(given.matrix.rows(), WHAT)?;
-        changed.resize(given.matrix.rows(), None);
+        let changed = filled(given.matrix.rows(), None, WHAT)?;
         Ok(Self { given, changed, sum: Accumulator::new(given.matrix.cols)? })
     }
 

@@ -3,7 +3,7 @@
 use crate::body::stiffness::check_finite;
 use crate::body::storage::{may_differ, unsymmetric, SparseInput, Storage};
 use crate::error::{Error, Result};
-use crate::linalg::vector::first_non_finite;
+use crate::linalg::vector::{filled, first_non_finite};
 use crate::linalg::Symmetric;
 use crate::platform::memory::{reserved, zeros};
 
@@ -205,8 +205,7 @@ impl Places {
 
     /// First value of every row of the host, where columns ascend.
     fn starts(&self, k: &Symmetric) -> Result<Vec<usize>> {
-        let mut starts = reserved(k.order() + 1, WHAT)?;
-        starts.resize(k.order() + 1, 0);
+        let mut starts = filled(k.order() + 1, 0, WHAT)?;
         for i in 0..k.order() {
             starts[i + 1] += usize::from(!self.apart);
             for &j in &k.col[k.ptr[i]..k.ptr[i + 1] - 1] {
@@ -222,13 +221,9 @@ impl Places {
 
 impl Listed {
     fn of(input: SparseInput<'_>, k: &Symmetric) -> Result<Self> {
-        let none = |len: usize| -> Result<Vec<usize>> {
-            let mut places = reserved(len, WHAT)?;
-            places.resize(len, NONE);
-            Ok(places)
-        };
         let full = input.storage == Storage::Full;
-        let (mut own, mut mate) = (none(k.col.len())?, none(if full { k.col.len() } else { 0 })?);
+        let mut own = filled(k.col.len(), NONE, WHAT)?;
+        let mut mate = filled(if full { k.col.len() } else { 0 }, NONE, WHAT)?;
         for i in 0..k.order() {
             for at in input.ptr[i]..input.ptr[i + 1] {
                 let j = input.col[at] as usize;
@@ -247,11 +242,7 @@ impl Listed {
 }
 
 fn value(val: &[f64], at: usize) -> f64 {
-    if at == NONE {
-        0.0
-    } else {
-        val[at]
-    }
+    val.get(at).copied().unwrap_or(0.0)
 }
 
 #[cfg(test)]

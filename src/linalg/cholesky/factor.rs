@@ -6,8 +6,9 @@ use crate::error::Result;
 use crate::linalg::cholesky::analysis::elimination::NONE;
 use crate::linalg::cholesky::analysis::Analysis;
 use crate::linalg::cholesky::numeric::multifrontal::{self, LowerColumns};
-use crate::linalg::Symmetric;
-use crate::platform::memory::{headroom, reserved, zeros, PRODUCTS};
+use crate::linalg::sparse::csr::by_columns;
+use crate::linalg::{Csr, Symmetric};
+use crate::platform::memory::{headroom, reserved, PRODUCTS};
 use crate::platform::pages::Pages;
 
 /// The factor L with its analysis.
@@ -60,30 +61,15 @@ impl Analysis {
 
     /// The lower triangle of `by` times the matrix in the order of elimination.
     fn columns(&self, matrix: &Symmetric, by: f64) -> Result<LowerColumns> {
-        const WHAT: &str = "a permuted stiffness matrix";
-        let n = self.order.len();
         let position = &self.position;
         let entries = || {
             (0..matrix.order()).filter(|&i| position[i] != NONE).flat_map(move |i| {
                 let row = matrix.lower_row(i).filter(|&(j, _)| position[j] != NONE);
-                row.map(move |(j, v)| (position[i].max(position[j]) as u32, position[i].min(position[j]), v))
+                let places = row.map(move |(j, v)| (position[i], position[j], v));
+                places.map(move |(i, j, v)| (i.max(j) as u32, i.min(j), by * v))
             })
         };
-        let mut ptr = reserved(n + 1, WHAT)?;
-        ptr.resize(n + 1, 0);
-        entries().for_each(|(_, column, _)| ptr[column + 1] += 1);
-        (0..n).for_each(|j| ptr[j + 1] += ptr[j]);
-        let mut row = reserved(ptr[n], WHAT)?;
-        row.resize(ptr[n], 0);
-        let mut val = zeros(ptr[n], WHAT)?;
-        for (i, j, v) in entries() {
-            row[ptr[j]] = i;
-            val[ptr[j]] = by * v;
-            ptr[j] += 1;
-        }
-        // Every start has moved to the next one.
-        ptr.copy_within(0..n, 1);
-        ptr[0] = 0;
+        let (ptr, row, val) = by_columns(self.order.len(), entries, "a permuted stiffness matrix")?;
         Ok(LowerColumns { ptr, row, val })
     }
 
@@ -123,6 +109,15 @@ impl Cholesky {
         } else {
             self.analysis.position[dof]
         }
+    }
+
+    /// Entries of row i of B at their positions in the elimination, without held dofs.
+    pub(super) fn eliminated<'a>(
+        &'a self,
+        rows: &'a Csr,
+        i: usize,
+    ) -> impl Iterator<Item = (usize, f64)> + 'a {
+        rows.row(i).map(|(dof, v)| (self.position(dof), v)).filter(|(at, _)| *at != NONE)
     }
 
     /// Pivots `L_ii^2` with their dofs, in the order of elimination.

@@ -6,8 +6,10 @@ use faer::{Accum, MatMut, MatRef, Par};
 
 use crate::error::Result;
 use crate::linalg::cholesky::analysis::elimination::NONE;
+use crate::linalg::cholesky::analysis::supernodes::Node;
+use crate::linalg::vector::filled;
 use crate::linalg::{Cholesky, Csr, Matrix};
-use crate::platform::memory::{headroom, reserved, zeros, PRODUCTS};
+use crate::platform::memory::{headroom, zeros, PRODUCTS};
 
 /// Right-hand sides solved for at a time: L is read twice for all of them.
 const TOGETHER: usize = 32;
@@ -23,19 +25,16 @@ pub fn inverse_columns(cholesky: &Cholesky, rows: &Csr, which: &[usize]) -> Resu
         for j in 0..which.len() {
             let (x, column) = (x.col(j), columns.col_mut(first * TOGETHER + j));
             for (i, value) in column.iter_mut().enumerate() {
-                let entries = rows.row(i).map(|(dof, v)| (cholesky.position(dof), v));
-                *value = entries.filter(|(at, _)| *at != NONE).map(|(at, v)| v * x[at]).sum();
+                *value = cholesky.eliminated(rows, i).map(|(at, v)| v * x[at]).sum();
             }
         }
     }
     Ok(columns)
 }
 
-/// One supernode of L: rows `begin..begin + width`, then those of the pattern.
+/// L at one supernode: the rows of its columns, then those below.
 struct Panel<'a> {
-    begin: usize,
-    width: usize,
-    pattern: &'a [u32],
+    node: Node<'a>,
     top: MatRef<'a, f64>,
     bottom: MatRef<'a, f64>,
 }
@@ -46,34 +45,35 @@ impl<'a> Panel<'a> {
         let panel = &cholesky.values[node.panel.clone()];
         let panel = MatRef::from_column_major_slice(panel, node.height(), node.width);
         let (top, bottom) = panel.split_at_row(node.width);
-        Self { begin: node.begin, width: node.width, pattern: node.rows, top, bottom }
+        Self { node, top, bottom }
     }
 
     /// `x_own <- L11^-1 x_own`, `x_below <- x_below - L21 x_own`
     fn eliminate(&self, x: &mut Matrix, work: &mut [f64]) {
-        let (n, r, height) = (x.rows, x.cols, self.pattern.len());
+        let (n, r, height) = (x.rows, x.cols, self.node.rows.len());
         let mut x = MatMut::from_column_major_slice_mut(&mut x.data, n, r);
-        let mut own = x.as_mut().subrows_mut(self.begin, self.width);
+        let mut own = x.as_mut().subrows_mut(self.node.begin, self.node.width);
         solve_lower_triangular_in_place(self.top, own.as_mut(), Par::Seq);
         let mut change = MatMut::from_column_major_slice_mut(&mut work[..height * r], height, r);
         matmul(change.as_mut(), Accum::Replace, self.bottom, own.as_ref(), 1.0, Par::Seq);
         for j in 0..r {
-            self.pattern.iter().enumerate().for_each(|(i, &row)| x[(row as usize, j)] -= change[(i, j)]);
+            self.node.rows.iter().enumerate().for_each(|(i, &row)| x[(row as usize, j)] -= change[(i, j)]);
         }
     }
 
     /// `x_own <- L11^-T (x_own - L21' x_below)`
     fn substitute(&self, x: &mut Matrix, work: &mut [f64]) {
-        let (n, r, height) = (x.rows, x.cols, self.pattern.len());
+        let (n, r, height) = (x.rows, x.cols, self.node.rows.len());
         let mut below = MatMut::from_column_major_slice_mut(&mut work[..height * r], height, r);
         for j in 0..r {
-            self.pattern
+            self.node
+                .rows
                 .iter()
                 .enumerate()
                 .for_each(|(i, &row)| below[(i, j)] = x.data[row as usize + j * n]);
         }
         let mut x = MatMut::from_column_major_slice_mut(&mut x.data, n, r);
-        let mut own = x.as_mut().subrows_mut(self.begin, self.width);
+        let mut own = x.as_mut().subrows_mut(self.node.begin, self.node.width);
         matmul(own.as_mut(), Accum::Add, self.bottom.transpose(), below.as_ref(), -1.0, Par::Seq);
         solve_upper_triangular_in_place(self.top.transpose(), own, Par::Seq);
     }
@@ -82,11 +82,9 @@ impl<'a> Panel<'a> {
 /// True for the supernodes on the way from the entries of these rows of B to the root.
 fn paths(cholesky: &Cholesky, rows: &Csr, which: impl Iterator<Item = usize>) -> Result<Vec<bool>> {
     let nodes = &cholesky.analysis.nodes;
-    let mut meets = reserved(nodes.count(), WHAT)?;
-    meets.resize(nodes.count(), false);
-    for dof in which.flat_map(|i| rows.row(i).map(|entry| entry.0)) {
-        let at = cholesky.position(dof);
-        let mut s = if at == NONE { NONE } else { nodes.of_column(at) };
+    let mut meets = filled(nodes.count(), false, WHAT)?;
+    for (at, _) in which.flat_map(|i| cholesky.eliminated(rows, i)) {
+        let mut s = nodes.of_column(at);
         while s != NONE && !meets[s] {
             meets[s] = true;
             s = nodes.parent(s);
@@ -101,8 +99,7 @@ fn solutions(cholesky: &Cholesky, rows: &Csr, which: &[usize], met: &[bool]) -> 
     let _room = headroom(PRODUCTS, WHAT)?;
     let (mut x, mut work) = (Matrix::zeros(n, r)?, zeros(n * r, WHAT)?);
     for (j, &row) in which.iter().enumerate() {
-        let entries = rows.row(row).map(|(dof, v)| (cholesky.position(dof), v));
-        entries.filter(|(at, _)| *at != NONE).for_each(|(at, v)| x.set(at, j, v));
+        cholesky.eliminated(rows, row).for_each(|(at, v)| x.set(at, j, v));
     }
     let own = paths(cholesky, rows, which.iter().copied())?;
     for s in (0..own.len()).filter(|&s| own[s]) {

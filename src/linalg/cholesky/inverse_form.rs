@@ -17,8 +17,9 @@ use crate::linalg::cholesky::analysis::elimination::NONE;
 use crate::linalg::cholesky::analysis::subtrees::{each, outside, parts, shared};
 use crate::linalg::cholesky::analysis::supernodes::{Node, Supernodes};
 use crate::linalg::cholesky::numeric::updates::{RowMap, Updates};
+use crate::linalg::vector::filled;
 use crate::linalg::{Cholesky, Csr, Packed};
-use crate::platform::memory::{headroom, reserved, PRODUCTS};
+use crate::platform::memory::{headroom, PRODUCTS};
 use crate::platform::pages::Pages;
 use crate::platform::Interrupt;
 
@@ -32,7 +33,9 @@ const BLOCK: usize = 192;
 /// `rows` (m x n, over all dofs of the body) gives the m x m matrix.
 pub fn inverse_form(cholesky: &Cholesky, rows: &Csr) -> Result<Packed> {
     let nodes = &cholesky.analysis.nodes;
-    let _room = headroom(small_pieces(nodes, rows) + PRODUCTS, WHAT)?;
+    // lists by supernode, by dof and by entry of B, which grow piece by piece
+    let small_pieces = 96 * nodes.count() + 8 * nodes.order() + 96 * rows.col.len();
+    let _room = headroom(small_pieces + PRODUCTS, WHAT)?;
     let reach = Reach::of(cholesky, rows)?;
     let mut form = Packed::zeros(rows.rows())?;
     let parts = parts(nodes);
@@ -46,19 +49,17 @@ pub fn inverse_form(cholesky: &Cholesky, rows: &Csr) -> Result<Packed> {
     for (range, part) in parts.iter().zip(done) {
         (above..range.start).try_for_each(|s| task.eliminate(s, &mut form, |row| row as usize))?;
         let (part, root) = (part?, range.end - 1);
-        part.add_to(&mut form, reach.columns(root));
-        if !reach.columns(root).is_empty() {
+        let rows = &reach.columns[root];
+        for (i, &row) in rows.iter().enumerate() {
+            (0..=i).for_each(|j| form.add(row as usize, rows[j] as usize, part.form.get(i, j)));
+        }
+        if !rows.is_empty() {
             task.updates.push(root, part.update);
         }
         above = range.end;
     }
     (above..nodes.count()).try_for_each(|s| task.eliminate(s, &mut form, |row| row as usize))?;
     Ok(form)
-}
-
-/// Bytes of the lists by supernode, by dof and by entry of B, which grow piece by piece.
-fn small_pieces(nodes: &Supernodes, rows: &Csr) -> usize {
-    96 * nodes.count() + 8 * nodes.order() + 96 * rows.col.len()
 }
 
 /// Which supernodes see which rows of B.
@@ -82,18 +83,13 @@ struct FormShare {
 impl<'a> Reach<'a> {
     fn of(cholesky: &'a Cholesky, rows: &Csr) -> Result<Self> {
         let nodes = &cholesky.analysis.nodes;
-        let mut own: Vec<Vec<(u32, u32, f64)>> = reserved(nodes.count(), WHAT)?;
-        own.resize(nodes.count(), Vec::new());
+        let mut own: Vec<Vec<(u32, u32, f64)>> = filled(nodes.count(), Vec::new(), WHAT)?;
         for i in 0..rows.rows() {
-            for (dof, value) in rows.row(i) {
-                let at = cholesky.position(dof);
-                if at != NONE {
-                    own[nodes.of_column(at)].push((i as u32, at as u32, value));
-                }
+            for (at, value) in cholesky.eliminated(rows, i) {
+                own[nodes.of_column(at)].push((i as u32, at as u32, value));
             }
         }
-        let mut columns: Vec<Vec<u32>> = reserved(nodes.count(), WHAT)?;
-        columns.resize(nodes.count(), Vec::new());
+        let mut columns: Vec<Vec<u32>> = filled(nodes.count(), Vec::new(), WHAT)?;
         for s in 0..nodes.count() {
             columns[s].extend(own[s].iter().map(|entry| entry.0));
             columns[s].sort_unstable();
@@ -106,33 +102,20 @@ impl<'a> Reach<'a> {
         Ok(Self { cholesky, nodes, own, columns, interrupt: Interrupt::present() })
     }
 
-    fn columns(&self, s: usize) -> &[u32] {
-        &self.columns[s]
-    }
-
     /// Values that s leaves for the rows below its columns.
     fn update_len(&self, s: usize) -> usize {
-        self.nodes.node(s).rows.len() * self.columns(s).len()
+        self.nodes.node(s).rows.len() * self.columns[s].len()
     }
 
     fn part(&self, range: Range<usize>) -> Result<FormShare> {
         let root = range.end - 1;
-        let rows = self.columns(root);
+        let rows = &self.columns[root];
         let mut form = Packed::zeros(rows.len())?;
         let mut task = FormTask::new(self, range.clone())?;
         let place = |row: u32| rows.partition_point(|&other| other < row);
         { range }.try_for_each(|s| task.eliminate(s, &mut form, place))?;
         let update = if rows.is_empty() { Pages::zeros(0, WHAT)? } else { task.updates.into_last(root) };
         Ok(FormShare { form, update })
-    }
-}
-
-impl FormShare {
-    /// `rows`: the rows of B that the form of the part has.
-    fn add_to(&self, form: &mut Packed, rows: &[u32]) {
-        for (i, &row) in rows.iter().enumerate() {
-            (0..=i).for_each(|j| form.add(row as usize, rows[j] as usize, self.form.get(i, j)));
-        }
     }
 }
 
@@ -151,12 +134,11 @@ struct FormTask<'a> {
 impl<'a> FormTask<'a> {
     fn new(reach: &'a Reach<'a>, sequence: impl Iterator<Item = usize> + Clone) -> Result<Self> {
         let nodes = reach.nodes;
-        let mut local = reserved(nodes.order(), WHAT)?;
-        local.resize(nodes.order(), 0);
-        let seen = sequence.filter(|&s| !reach.columns(s).is_empty());
+        let local = filled(nodes.order(), 0, WHAT)?;
+        let seen = sequence.filter(|&s| !reach.columns[s].is_empty());
         let updates = Updates::new(nodes, seen.clone(), |s| reach.update_len(s), WHAT)?;
-        let y = seen.clone().map(|s| nodes.node(s).width * reach.columns(s).len()).max().unwrap_or(0);
-        let side = seen.map(|s| reach.columns(s).len().min(TILE)).max().unwrap_or(0);
+        let y = seen.clone().map(|s| nodes.node(s).width * reach.columns[s].len()).max().unwrap_or(0);
+        let side = seen.map(|s| reach.columns[s].len().min(TILE)).max().unwrap_or(0);
         let (y, product) = (Pages::zeros(y, WHAT)?, Pages::zeros(side * side, WHAT)?);
         Ok(Self { reach, local, updates, y, product })
     }
@@ -164,7 +146,7 @@ impl<'a> FormTask<'a> {
     /// `Y_s <- L_ss^-1 (Y_s)` with what the children leave, its products, and what is left for the rows below; `place`
     /// is where a row of B stands in the form.
     fn eliminate(&mut self, s: usize, form: &mut Packed, place: impl Fn(u32) -> usize) -> Result<()> {
-        let columns = self.reach.columns(s);
+        let columns = &self.reach.columns[s];
         if columns.is_empty() {
             return Ok(());
         }
@@ -181,7 +163,7 @@ impl<'a> FormTask<'a> {
         let (update, children) = self.updates.open(s, len);
         let child = |(child, values)| {
             let rows = RowMap::new(self.reach.nodes.node(child).rows, node.end(), &self.local);
-            let of = self.reach.columns(child).iter();
+            let of = self.reach.columns[child].iter();
             FormBelow {
                 values,
                 rows,

@@ -1,7 +1,8 @@
 //! Sparse matrices by rows: constraint rows B, H and the coarse matrix G'.
 
 use crate::error::Result;
-use crate::platform::memory::{reserved, zeros};
+use crate::linalg::vector::filled;
+use crate::platform::memory::zeros;
 
 /// `rows x cols`; row i holds entries `ptr[i]..ptr[i+1]`, columns ascending.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -76,27 +77,32 @@ impl Csr {
 
     /// `A'`
     pub fn transposed(&self) -> Result<Self> {
-        let mut ptr = reserved(self.cols + 1, "a transposed matrix")?;
-        ptr.resize(self.cols + 1, 0);
-        for &j in &self.col {
-            ptr[j + 1] += 1;
-        }
-        for j in 0..self.cols {
-            ptr[j + 1] += ptr[j];
-        }
-        let mut next = ptr.clone();
-        let mut col = reserved(self.col.len(), "a transposed matrix")?;
-        col.resize(self.col.len(), 0);
-        let mut val = zeros(self.val.len(), "a transposed matrix")?;
-        for i in 0..self.rows() {
-            for (j, v) in self.row(i) {
-                col[next[j]] = i;
-                val[next[j]] = v;
-                next[j] += 1;
-            }
-        }
+        let entries = || (0..self.rows()).flat_map(|i| self.row(i).map(move |(j, v)| (i, j, v)));
+        let (ptr, col, val) = by_columns(self.cols, entries, "a transposed matrix")?;
         Ok(Self { cols: self.rows(), ptr, col, val })
     }
+}
+
+/// Entries (row, column, value) sorted by their n columns, those of one in the order in which they come: where each column
+/// starts, rows, values.
+pub fn by_columns<R: Copy + Default, I: Iterator<Item = (R, usize, f64)>>(
+    n: usize,
+    entries: impl Fn() -> I,
+    what: &str,
+) -> Result<(Vec<usize>, Vec<R>, Vec<f64>)> {
+    let mut ptr = filled(n + 1, 0, what)?;
+    entries().for_each(|(_, column, _)| ptr[column + 1] += 1);
+    (0..n).for_each(|j| ptr[j + 1] += ptr[j]);
+    let (mut row, mut val) = (filled(ptr[n], R::default(), what)?, zeros(ptr[n], what)?);
+    for (i, j, v) in entries() {
+        row[ptr[j]] = i;
+        val[ptr[j]] = v;
+        ptr[j] += 1;
+    }
+    // Every start has moved to the next one.
+    ptr.copy_within(0..n, 1);
+    ptr[0] = 0;
+    Ok((ptr, row, val))
 }
 
 #[cfg(test)]

@@ -2,6 +2,7 @@
 
 use crate::error::{Error, Kind, Result};
 use crate::linalg::hash::{hash, START};
+use crate::linalg::vector::filled;
 use crate::linalg::Symmetric;
 use crate::platform::memory::reserved;
 
@@ -19,20 +20,15 @@ impl Graph {
         if u32::try_from(n).is_err() {
             return Err(Error::new(Kind::Overflow, "a body has more than 2^32 unknowns"));
         }
-        let mut ptr = reserved(n + 1, WHAT)?;
-        ptr.resize(n + 1, 0);
+        let mut ptr = filled(n + 1, 0, WHAT)?;
         for i in 0..n {
             for (j, _) in matrix.lower_row(i) {
                 ptr[i + 1] += 1;
                 ptr[j + 1] += usize::from(i != j);
             }
         }
-        for i in 0..n {
-            ptr[i + 1] += ptr[i];
-        }
-        let mut next = ptr.clone();
-        let mut adj = reserved(ptr[n], WHAT)?;
-        adj.resize(ptr[n], 0);
+        (0..n).for_each(|i| ptr[i + 1] += ptr[i]);
+        let (mut next, mut adj) = (ptr.clone(), filled(ptr[n], 0, WHAT)?);
         // Row i writes its lower part before any later row appends to it: ascending without a sort.
         for i in 0..n {
             for (j, _) in matrix.lower_row(i) {
@@ -63,8 +59,7 @@ impl Graph {
         let mut by_key = reserved(n, WHAT)?;
         by_key.extend((0..n).map(|i| (self.key(i), i as u32)));
         by_key.sort_unstable();
-        let mut leader: Vec<u32> = reserved(n, WHAT)?;
-        leader.resize(n, 0);
+        let mut leader: Vec<u32> = filled(n, 0, WHAT)?;
         for same_key in by_key.chunk_by(|a, b| a.0 == b.0) {
             for (at, &(_, i)) in same_key.iter().enumerate() {
                 let alike = |j: u32| self.neighbours(j as usize) == self.neighbours(i as usize);

@@ -4,6 +4,7 @@ use std::ops::Range;
 
 use crate::error::Result;
 use crate::linalg::sparse::graph::Graph;
+use crate::linalg::vector::filled;
 use crate::platform::memory::reserved;
 
 const WHAT: &str = "the pattern of a Cholesky factor";
@@ -21,8 +22,7 @@ pub struct Blocks {
 impl Blocks {
     pub fn of(graph: &Graph, order: &[usize]) -> Result<Self> {
         let mut range: Vec<Range<usize>> = reserved(order.len(), WHAT)?;
-        let mut block_of: Vec<u32> = reserved(graph.order(), WHAT)?;
-        block_of.resize(graph.order(), u32::MAX);
+        let mut block_of = filled(graph.order(), u32::MAX, WHAT)?;
         for (k, &dof) in order.iter().enumerate() {
             match range.last_mut() {
                 Some(last) if graph.neighbours(dof) == graph.neighbours(order[k - 1]) => last.end = k + 1,
@@ -30,8 +30,7 @@ impl Blocks {
             }
             block_of[dof] = (range.len() - 1) as u32;
         }
-        let mut seen: Vec<u32> = reserved(range.len(), WHAT)?;
-        seen.resize(range.len(), u32::MAX);
+        let mut seen = filled(range.len(), u32::MAX, WHAT)?;
         let (mut ptr, mut adj) = (reserved(range.len() + 1, WHAT)?, Vec::new());
         ptr.push(0);
         for (own, range) in range.iter().enumerate() {
@@ -69,8 +68,7 @@ impl Blocks {
 
     /// The blocks in another sequence.
     pub fn permuted(&self, sequence: &[usize]) -> Result<Self> {
-        let mut new: Vec<u32> = reserved(sequence.len(), WHAT)?;
-        new.resize(sequence.len(), 0);
+        let mut new: Vec<u32> = filled(sequence.len(), 0, WHAT)?;
         sequence.iter().enumerate().for_each(|(at, &block)| new[block] = at as u32);
         let (mut ptr, mut adj) = (reserved(sequence.len() + 1, WHAT)?, reserved(self.adj.len(), WHAT)?);
         ptr.push(0);

@@ -10,8 +10,9 @@ pub mod supernodes;
 
 use crate::error::Result;
 use crate::linalg::sparse::graph::Graph;
+use crate::linalg::vector::filled;
 use crate::linalg::Symmetric;
-use crate::platform::memory::{headroom, reserved, Headroom};
+use crate::platform::memory::{headroom, Headroom};
 use elimination::NONE;
 use ordering::nested_dissection;
 use supernodes::Supernodes;
@@ -58,8 +59,7 @@ impl Analysis {
     /// `order` lists the dofs to eliminate.
     fn in_order(graph: &Graph, order: &[usize]) -> Result<Self> {
         let (order, nodes) = Supernodes::of(graph, order)?;
-        let mut position = reserved(graph.order(), "the order of a body")?;
-        position.resize(graph.order(), NONE);
+        let mut position = filled(graph.order(), NONE, "the order of a body")?;
         order.iter().enumerate().for_each(|(at, &dof)| position[dof] = at);
         Ok(Self { order, position, nodes })
     }

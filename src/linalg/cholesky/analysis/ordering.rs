@@ -4,6 +4,7 @@ use crate::error::{Error, Kind, Result};
 #[cfg(feature = "metis")]
 use crate::linalg::cholesky::analysis::metis::dissect;
 use crate::linalg::sparse::graph::{joined, Graph};
+use crate::linalg::vector::filled;
 use crate::platform::memory::reserved;
 #[cfg(not(feature = "metis"))]
 use feral as dissect;
@@ -13,8 +14,7 @@ use feral as dissect;
 pub fn nested_dissection(graph: &Graph, held: &[bool]) -> Result<Vec<usize>> {
     let (node, first) = graph.nodes()?;
     let order = order_nodes(graph, &node, &first)?;
-    let mut rank = reserved(order.len(), "the ordering of a body")?;
-    rank.resize(order.len(), 0);
+    let mut rank = filled(order.len(), 0, "the ordering of a body")?;
     order.iter().enumerate().for_each(|(at, &node)| rank[node] = at);
     let mut dofs = reserved(node.len(), "the ordering of a body")?;
     dofs.extend((0..node.len()).filter(|&dof| !held[dof]));
@@ -66,8 +66,7 @@ fn dissect_parts(ptr: &[i32], adj: &[i32]) -> Result<Vec<usize>> {
     let mut order: Vec<usize> = reserved(nodes, "the ordering of a body")?;
     order.extend(0..nodes);
     order.sort_by_key(|&i| part[i]);
-    let mut number = reserved(nodes, "the ordering of a body")?;
-    number.resize(nodes, None);
+    let mut number = filled(nodes, None, "the ordering of a body")?;
     for own in order.chunk_by_mut(|&i, &j| part[i] == part[j]) {
         let (from, to) = among(own, ptr, adj, &mut number)?;
         if !is_complete(own.len(), &to) {

@@ -14,7 +14,8 @@ use crate::linalg::cholesky::analysis::subtrees::{outside, shared, subtrees};
 use crate::linalg::cholesky::analysis::supernodes::{Node, Supernodes};
 use crate::linalg::cholesky::numeric::front::{self, Tile};
 use crate::linalg::cholesky::numeric::updates::{self, RowMap, Updates};
-use crate::platform::memory::{refusal, reserved};
+use crate::linalg::vector::filled;
+use crate::platform::memory::refusal;
 use crate::platform::pages::Pages;
 use crate::platform::Interrupt;
 
@@ -103,8 +104,7 @@ impl<'a> Task<'a> {
         sequence: impl Iterator<Item = usize>,
         interrupt: &'a Interrupt,
     ) -> Result<Self> {
-        let mut local = reserved(nodes.order(), WHAT)?;
-        local.resize(nodes.order(), 0);
+        let local = filled(nodes.order(), 0, WHAT)?;
         let need = front::scratch();
         let workspace =
             MemBuffer::try_new(need).map_err(|_| refusal(need.unaligned_bytes_required(), WHAT))?;

@@ -10,8 +10,8 @@ mod product;
 mod x86;
 
 use crate::error::Result;
+use crate::linalg::vector::filled;
 use crate::linalg::{Entries, Matrix, Operator};
-use crate::platform::memory::reserved;
 
 /// Rows and columns of a tile: a line of the cache.
 const SIDE: usize = 8;
@@ -44,9 +44,8 @@ impl Packed {
 
     pub fn zeros(order: usize) -> Result<Self> {
         let columns = order.div_ceil(SIDE);
-        let mut data = reserved(tiles(columns), "an explicit dual operator")?;
-        data.resize(tiles(columns), Tile([[0.0; SIDE]; SIDE]));
-        Ok(Self { order, columns, tiles: data })
+        let tiles = filled(tiles(columns), Tile([[0.0; SIDE]; SIDE]), "an explicit dual operator")?;
+        Ok(Self { order, columns, tiles })
     }
 
     /// `A_ij += value`, any order of i and j.
