@@ -1,6 +1,7 @@
 //! Bodies that are the same, and matrices with the same pattern: found by keys, proved entry by entry.
 
 use crate::body::null_space::NullSpaceInput;
+use crate::body::rigid_modes::Coordinates;
 use crate::body::Body;
 use crate::linalg::hash::{hash, START};
 use crate::linalg::Symmetric;
@@ -25,17 +26,17 @@ pub fn same_matrix(a: &Symmetric, b: &Symmetric) -> bool {
 
 /// Whether the host has said the same about both besides the matrix and the load.
 fn same_input(a: &Body, b: &Body) -> bool {
-    let null_space = match (&a.null_space, &b.null_space) {
-        (Some(a), Some(b)) => same_vectors(a, b),
+    a.fixing == b.fixing
+        && same_option(&a.null_space, &b.null_space, same_vectors)
+        && same_option(&a.coordinates, &b.coordinates, Coordinates::same)
+}
+
+fn same_option<T>(a: &Option<T>, b: &Option<T>, same: fn(&T, &T) -> bool) -> bool {
+    match (a, b) {
+        (Some(a), Some(b)) => same(a, b),
         (None, None) => true,
         _ => false,
-    };
-    let coordinates = match (&a.coordinates, &b.coordinates) {
-        (Some(a), Some(b)) => a.same(b),
-        (None, None) => true,
-        _ => false,
-    };
-    a.fixing == b.fixing && null_space && coordinates
+    }
 }
 
 pub fn same_vectors(a: &NullSpaceInput, b: &NullSpaceInput) -> bool {

@@ -1,6 +1,6 @@
 //! What of a displacement is deformation: all but the rigid motions of the bodies that the rows leave them.
 
-use crate::certificate::field::{touched, Field};
+use crate::certificate::field::Field;
 use crate::certificate::{Data, NOISE};
 use crate::error::Result;
 use crate::linalg::vector::{axpy, norm, norm_max, power_of_two_below};
@@ -70,7 +70,7 @@ fn without_motions(field: &Field) -> Vec<f64> {
         for p in 0..data.bodies.len() {
             amplitudes.extend(fitted(field, p).into_iter().map(|a| a * weights[p]));
         }
-        let joints = joints(data, &first, &weights);
+        let joints = joints(field, &first, &weights);
         let kept = project(&joints, amplitudes);
         for (p, body) in data.bodies.iter().enumerate() {
             let a: Vec<f64> = kept[first[p]..first[p + 1]].iter().map(|b| b / weights[p]).collect();
@@ -108,16 +108,16 @@ fn fitted(field: &Field, p: usize) -> Vec<f64> {
 }
 
 /// `H R` of the rigid equality rows that join two or more bodies, each of length 1, m x (modes of all bodies).
-fn joints(data: &Data, first: &[usize], weights: &[f64]) -> Csr {
-    let rows = data.equalities;
-    let mut joints = Csr::empty(first[data.bodies.len()]);
+fn joints(field: &Field, first: &[usize], weights: &[f64]) -> Csr {
+    let rows = field.data.equalities;
+    let mut joints = Csr::empty(first[field.data.bodies.len()]);
     for i in (0..rows.len()).filter(|i| rows.compliance[*i] == 0.0) {
-        if touched(data, rows, i).nth(1).is_none() {
+        if field.touched(rows, i).nth(1).is_none() {
             continue;
         }
         let mut entries = Vec::new();
-        for p in touched(data, rows, i) {
-            let body = &data.bodies[p];
+        for p in field.touched(rows, i) {
+            let body = &field.data.bodies[p];
             let range = body.range();
             let own = rows.matrix.row(i).filter(|(j, _)| range.contains(j));
             let own: Vec<(usize, f64)> = own.map(|(j, v)| (j - range.start, v)).collect();

@@ -34,7 +34,7 @@ pub(super) fn by_rounding(
     for &(kind, i, _) in &failing {
         asked += 1;
         let compliance = response.compliance_of(kind, i)?;
-        let row = &mut rows.of(kind)[i];
+        let row = &mut rows.rows[kind as usize][i];
         row.gap_limit +=
             NOISE * (work * compliance).sqrt() + forces.idle_at(field, kind, i) * compliance.sqrt();
         if !(row.gap_ratio() <= 1.0) {
@@ -42,18 +42,16 @@ pub(super) fn by_rounding(
         }
     }
     // those that come after one that fails are not known
-    let skipped: HashSet<(bool, usize)> =
-        failing.drain(asked..).map(|(kind, i, _)| (kind == RowKind::Equality, i)).collect();
-    rows.judge_gaps(limit, certificate, |kind, i| !skipped.contains(&(kind == RowKind::Equality, i)));
+    let skipped: HashSet<(RowKind, usize)> = failing.drain(asked..).map(|(kind, i, _)| (kind, i)).collect();
+    rows.judge_gaps(limit, certificate, |kind, i| !skipped.contains(&(kind, i)));
     Ok(())
 }
 
 /// Rows whose gaps fail, with their ratios, the worst first.
 fn failing(rows: &Measured) -> Vec<(RowKind, usize, f64)> {
-    let contact = rows.contact.iter().enumerate().map(|(i, row)| (RowKind::Inequality, i, row.gap_ratio()));
-    let equalities =
-        rows.equalities.iter().enumerate().map(|(i, row)| (RowKind::Equality, i, row.gap_ratio()));
-    let mut failing: Vec<_> = contact.chain(equalities).filter(|(_, _, ratio)| !(*ratio <= 1.0)).collect();
+    let all = rows.rows.iter().flat_map(|rows| rows.iter().enumerate());
+    let ratios = all.map(|(i, row)| (row.kind, i, row.gap_ratio()));
+    let mut failing: Vec<_> = ratios.filter(|(_, _, ratio)| !(*ratio <= 1.0)).collect();
     failing.sort_by(|a, b| b.2.total_cmp(&a.2));
     failing
 }

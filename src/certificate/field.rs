@@ -77,7 +77,15 @@ impl<'a> Field<'a> {
 
     /// The bodies that row i touches, ascending.
     pub fn touched<'s>(&'s self, rows: &'s RowSet, i: usize) -> impl Iterator<Item = usize> + 's {
-        touched(self.data, rows, i)
+        let mut end = 0;
+        rows.matrix.row(i).filter_map(move |(j, _)| {
+            if j < end {
+                return None;
+            }
+            let p = self.data.bodies.partition_point(|body| body.start <= j) - 1;
+            end = self.range(p).end;
+            Some(p)
+        })
     }
 }
 
@@ -92,22 +100,4 @@ fn moving(body: &BodyData) -> Result<HashSet<u32>> {
         moving.extend(body.grounded.iter().filter(|j| moves(**j as usize)));
     }
     Ok(moving)
-}
-
-/// The body that has unknown j.
-pub(super) fn body_of(data: &Data, j: usize) -> usize {
-    data.bodies.partition_point(|body| body.start <= j) - 1
-}
-
-/// The bodies that row i touches, ascending.
-pub(super) fn touched<'s>(data: &'s Data, rows: &'s RowSet, i: usize) -> impl Iterator<Item = usize> + 's {
-    let mut end = 0;
-    rows.matrix.row(i).filter_map(move |(j, _)| {
-        if j < end {
-            return None;
-        }
-        let p = body_of(data, j);
-        end = data.bodies[p].range().end;
-        Some(p)
-    })
 }

@@ -9,7 +9,7 @@ use crate::linalg::vector::{ratio, weighted_norm};
 
 /// A row with what it is measured against.
 pub(super) struct JudgedRow {
-    kind: RowKind,
+    pub kind: RowKind,
     /// lambda_i or mu_i, force.
     force: f64,
     /// `c_i + C_i lambda_i - b_i u`, length.
@@ -29,10 +29,8 @@ pub(super) struct JudgedRow {
 impl JudgedRow {
     fn new(field: &Field, deformation: &Deformation, forces: &Forces, kind: RowKind, i: usize) -> Self {
         let rows = field.rows(kind);
-        let (scale, multipliers) = match kind {
-            RowKind::Inequality => (field.scales[0][i], field.answer.lambda),
-            RowKind::Equality => (field.scales[1][i], field.answer.mu),
-        };
+        let scale = field.scales[kind as usize][i];
+        let multipliers = [field.answer.lambda, field.answer.mu][kind as usize];
         let force = multipliers[i];
         let empty = rows.matrix.row(i).next().is_none();
         let given_way = if scale > 0.0 { (force.abs() / scale) / scale / field.unit } else { 0.0 };
@@ -111,30 +109,22 @@ fn worse(a: f64, b: f64) -> f64 {
     }
 }
 
-/// All rows of the island.
+/// All rows of the island: contact rows, equality rows.
 pub(super) struct Measured {
-    pub contact: Vec<JudgedRow>,
-    pub equalities: Vec<JudgedRow>,
+    pub rows: [Vec<JudgedRow>; 2],
 }
 
 impl Measured {
     pub fn new(field: &Field, deformation: &Deformation, forces: &Forces) -> Self {
         let row = |kind, i| JudgedRow::new(field, deformation, forces, kind, i);
         let of = |kind| (0..field.rows(kind).len()).map(|i| row(kind, i)).collect();
-        Self { contact: of(RowKind::Inequality), equalities: of(RowKind::Equality) }
-    }
-
-    pub fn of(&mut self, kind: RowKind) -> &mut Vec<JudgedRow> {
-        match kind {
-            RowKind::Inequality => &mut self.contact,
-            RowKind::Equality => &mut self.equalities,
-        }
+        Self { rows: [RowKind::Inequality, RowKind::Equality].map(of) }
     }
 
     /// The entries of the rows.
     pub fn judge(&mut self, limit: f64, certificate: &mut Certificate) {
         self.judge_gaps(limit, certificate, |_, _| true);
-        certificate.negative_force = worst(&self.contact, limit, JudgedRow::sign, |_| true);
+        certificate.negative_force = worst(&self.rows[0], limit, JudgedRow::sign, |_, _| true);
     }
 
     /// The entries of gaps, by the rows `counts` names.
@@ -144,37 +134,35 @@ impl Measured {
         certificate: &mut Certificate,
         counts: impl Fn(RowKind, usize) -> bool,
     ) {
-        let contact = |i: usize| counts(RowKind::Inequality, i);
-        certificate.penetration = worst(&self.contact, limit, JudgedRow::violation, contact);
-        certificate.complementarity = worst(&self.contact, limit, JudgedRow::complementarity, contact);
-        let equalities = |i: usize| counts(RowKind::Equality, i);
-        certificate.equality = worst(&self.equalities, limit, JudgedRow::violation, equalities);
+        let [contact, equalities] = &self.rows;
+        certificate.penetration = worst(contact, limit, JudgedRow::violation, &counts);
+        certificate.complementarity = worst(contact, limit, JudgedRow::complementarity, &counts);
+        certificate.equality = worst(equalities, limit, JudgedRow::violation, &counts);
     }
 
     /// The largest unevenness of a row.
     pub fn unevenness(&self) -> f64 {
-        self.contact.iter().chain(&self.equalities).map(|row| row.unevenness).fold(0.0, f64::max)
+        self.rows.iter().flatten().map(|row| row.unevenness).fold(0.0, f64::max)
     }
 
     /// What counts as zero at every contact row.
     pub fn limits(&self) -> Vec<RowJudgement> {
-        self.contact.iter().map(|row| RowJudgement { gap: row.gap_limit, force: row.force_limit }).collect()
+        self.rows[0].iter().map(|row| RowJudgement { gap: row.gap_limit, force: row.force_limit }).collect()
     }
 
     /// `|S L|` over all rows with the deformation of their own unknowns alone, (force x length)^1/2.
     pub fn length(&self, field: &Field) -> f64 {
-        let all: Vec<f64> = self.contact.iter().chain(&self.equalities).map(|row| row.weighed).collect();
+        let all: Vec<f64> = self.rows.iter().flatten().map(|row| row.weighed).collect();
         weighted_norm(&all, |_| 1.0) * field.unit.sqrt()
     }
 
     /// `eta_p = |S v|_p / |S^-1 lambda|_p` of every body; both in units of force.
     pub fn force_errors(&self, field: &Field) -> Vec<BodyJudgement> {
         let mut parts = vec![(Vec::new(), Vec::new()); field.data.bodies.len()];
-        for (kind, rows) in [(RowKind::Inequality, &self.contact), (RowKind::Equality, &self.equalities)] {
-            let scales = &field.scales[kind as usize];
+        for (rows, scales) in self.rows.iter().zip(&field.scales) {
             for (i, row) in rows.iter().enumerate().filter(|(i, _)| scales[*i] > 0.0) {
                 let (moved, force) = (field.unit * (scales[i] * row.natural()), row.force / scales[i]);
-                for p in field.touched(field.rows(kind), i) {
+                for p in field.touched(field.rows(row.kind), i) {
                     parts[p].0.push(moved);
                     parts[p].1.push(force);
                 }
@@ -190,10 +178,10 @@ fn worst(
     rows: &[JudgedRow],
     limit: f64,
     measure: fn(&JudgedRow) -> f64,
-    counts: impl Fn(usize) -> bool,
+    counts: impl Fn(RowKind, usize) -> bool,
 ) -> Entry {
     let mut worst = Entry::default();
-    for (i, row) in rows.iter().enumerate().filter(|(i, _)| counts(*i)) {
+    for (i, row) in rows.iter().enumerate().filter(|(i, row)| counts(row.kind, *i)) {
         worst.replace_if_worse(Entry::new(measure(row), limit, Some(i)));
     }
     worst

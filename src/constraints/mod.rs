@@ -20,7 +20,7 @@ use crate::linalg::vector::first_non_finite;
 use crate::linalg::Csr;
 use crate::platform::memory::{copied, zeros};
 
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum RowKind {
     /// `B u <= c`, multipliers lambda >= 0.
     Inequality,
@@ -140,20 +140,15 @@ impl RowSet {
         Ok(())
     }
 
-    /// Refuses rows with entries that have no scale.
+    /// Refuses rows with entries that have no scale: it is 0.
     pub fn check_scales(&self, kind: RowKind, scales: &[f64]) -> Result<()> {
-        match self.without_scale(scales) {
+        match (0..self.len()).find(|&i| scales[i] == 0.0 && !self.is_empty_row(i)) {
             Some(i) => {
                 let what = format!("the square of this {}, b D^-1 b', over- or underflows", kind.name());
                 Err(Error::new(Kind::Overflow, what).row(i))
             }
             None => Ok(()),
         }
-    }
-
-    /// The first row with entries whose scale is 0.
-    pub fn without_scale(&self, scales: &[f64]) -> Option<usize> {
-        (0..self.len()).find(|&i| scales[i] == 0.0 && !self.is_empty_row(i))
     }
 
     pub fn is_empty_row(&self, i: usize) -> bool {
