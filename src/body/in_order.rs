@@ -3,9 +3,8 @@
 
 use crate::body::storage::{may_differ, SparseInput, Storage};
 use crate::error::Result;
-use crate::linalg::vector::filled;
 use crate::linalg::Symmetric;
-use crate::platform::memory::{copied, reserved, zeros};
+use crate::platform::memory::{copied, filled, reserved, zeros};
 
 const WHAT: &str = "a stiffness matrix";
 

@@ -1,9 +1,8 @@
 //! The dofs t that the search eliminates last in every connected part, and K with springs at them.
 
 use crate::error::Result;
-use crate::linalg::vector::filled;
 use crate::linalg::{Multiple, Symmetric};
-use crate::platform::memory::reserved;
+use crate::platform::memory::{filled, reserved};
 
 /// One of the dofs from each of `count` stretches of equal length, at random with a fixed seed; all when there are no more.
 pub fn spread(dofs: &[usize], count: usize) -> Vec<usize> {

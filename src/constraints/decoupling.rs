@@ -6,9 +6,8 @@
 use crate::constraints::accumulator::Accumulator;
 use crate::error::Result;
 use crate::linalg::graph::components;
-use crate::linalg::vector::filled;
 use crate::linalg::{Csr, Symmetric};
-use crate::platform::memory::headroom;
+use crate::platform::memory::{filled, headroom};
 
 /// Rows of a cluster at most; mortar rows chain over a whole surface.
 const LARGEST: usize = 32;

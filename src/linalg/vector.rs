@@ -1,15 +1,5 @@
 //! Loops over vectors, always in the order of the entries: the same bits on any number of threads.
 
-use crate::error::Result;
-use crate::platform::memory::reserved;
-
-/// `len` times the same, or `Kind::Memory` naming `what` they were for.
-pub fn filled<T: Clone>(len: usize, value: T, what: &str) -> Result<Vec<T>> {
-    let mut values = reserved(len, what)?;
-    values.resize(len, value);
-    Ok(values)
-}
-
 /// `x'y`
 pub fn dot(x: &[f64], y: &[f64]) -> f64 {
     x.iter().zip(y).map(|(a, b)| a * b).sum()

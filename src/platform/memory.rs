@@ -108,8 +108,13 @@ pub fn ensure_spare(bytes: usize, what: &str) -> Result<()> {
 
 /// `len` zeros, or `Kind::Memory` naming `what` they were for.
 pub fn zeros(len: usize, what: &str) -> Result<Vec<f64>> {
+    filled(len, 0.0, what)
+}
+
+/// So many times one value.
+pub fn filled<T: Clone>(len: usize, value: T, what: &str) -> Result<Vec<T>> {
     let mut values = reserved(len, what)?;
-    values.resize(len, 0.0);
+    values.resize(len, value);
     Ok(values)
 }
 

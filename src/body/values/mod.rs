@@ -3,9 +3,9 @@
 use crate::body::stiffness::check_finite;
 use crate::body::storage::{may_differ, unsymmetric, SparseInput, Storage};
 use crate::error::{Error, Result};
-use crate::linalg::vector::{filled, first_non_finite};
+use crate::linalg::vector::first_non_finite;
 use crate::linalg::Symmetric;
-use crate::platform::memory::{reserved, zeros};
+use crate::platform::memory::{filled, reserved, zeros};
 
 const WHAT: &str = "new values of a stiffness matrix";
 /// Position of an entry that the host does not give.
@@ -242,7 +242,11 @@ impl Listed {
 }
 
 fn value(val: &[f64], at: usize) -> f64 {
-    val.get(at).copied().unwrap_or(0.0)
+    if at == NONE {
+        0.0
+    } else {
+        val[at]
+    }
 }
 
 #[cfg(test)]

@@ -7,9 +7,8 @@ use faer::{Accum, MatMut, MatRef, Par};
 use crate::error::Result;
 use crate::linalg::cholesky::analysis::elimination::NONE;
 use crate::linalg::cholesky::analysis::supernodes::Node;
-use crate::linalg::vector::filled;
 use crate::linalg::{Cholesky, Csr, Matrix};
-use crate::platform::memory::{headroom, zeros, PRODUCTS};
+use crate::platform::memory::{filled, headroom, zeros, PRODUCTS};
 
 /// Right-hand sides solved for at a time: L is read twice for all of them.
 const TOGETHER: usize = 32;

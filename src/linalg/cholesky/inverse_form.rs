@@ -17,9 +17,8 @@ use crate::linalg::cholesky::analysis::elimination::NONE;
 use crate::linalg::cholesky::analysis::subtrees::{each, outside, parts, shared};
 use crate::linalg::cholesky::analysis::supernodes::{Node, Supernodes};
 use crate::linalg::cholesky::numeric::updates::{RowMap, Updates};
-use crate::linalg::vector::filled;
 use crate::linalg::{Cholesky, Csr, Packed};
-use crate::platform::memory::{headroom, PRODUCTS};
+use crate::platform::memory::{filled, headroom, PRODUCTS};
 use crate::platform::pages::Pages;
 use crate::platform::Interrupt;
 

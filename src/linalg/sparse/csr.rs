@@ -1,8 +1,7 @@
 //! Sparse matrices by rows: constraint rows B, H and the coarse matrix G'.
 
 use crate::error::Result;
-use crate::linalg::vector::filled;
-use crate::platform::memory::zeros;
+use crate::platform::memory::{filled, zeros};
 
 /// `rows x cols`; row i holds entries `ptr[i]..ptr[i+1]`, columns ascending.
 #[derive(Debug, Clone, Default, PartialEq)]

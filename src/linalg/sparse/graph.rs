@@ -2,9 +2,8 @@
 
 use crate::error::{Error, Kind, Result};
 use crate::linalg::hash::{hash, START};
-use crate::linalg::vector::filled;
 use crate::linalg::Symmetric;
-use crate::platform::memory::reserved;
+use crate::platform::memory::{filled, reserved};
 
 const WHAT: &str = "the graph of a body";
 

@@ -4,8 +4,7 @@ use std::ops::Range;
 
 use crate::error::Result;
 use crate::linalg::sparse::graph::Graph;
-use crate::linalg::vector::filled;
-use crate::platform::memory::reserved;
+use crate::platform::memory::{filled, reserved};
 
 const WHAT: &str = "the pattern of a Cholesky factor";
 

@@ -10,9 +10,8 @@ pub mod supernodes;
 
 use crate::error::Result;
 use crate::linalg::sparse::graph::Graph;
-use crate::linalg::vector::filled;
 use crate::linalg::Symmetric;
-use crate::platform::memory::{headroom, Headroom};
+use crate::platform::memory::{filled, headroom, Headroom};
 use elimination::NONE;
 use ordering::nested_dissection;
 use supernodes::Supernodes;

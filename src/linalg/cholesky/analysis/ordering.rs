@@ -4,8 +4,7 @@ use crate::error::{Error, Kind, Result};
 #[cfg(feature = "metis")]
 use crate::linalg::cholesky::analysis::metis::dissect;
 use crate::linalg::sparse::graph::{joined, Graph};
-use crate::linalg::vector::filled;
-use crate::platform::memory::reserved;
+use crate::platform::memory::{filled, reserved};
 #[cfg(not(feature = "metis"))]
 use feral as dissect;
 

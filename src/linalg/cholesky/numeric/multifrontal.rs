@@ -14,8 +14,7 @@ use crate::linalg::cholesky::analysis::subtrees::{outside, shared, subtrees};
 use crate::linalg::cholesky::analysis::supernodes::{Node, Supernodes};
 use crate::linalg::cholesky::numeric::front::{self, Tile};
 use crate::linalg::cholesky::numeric::updates::{self, RowMap, Updates};
-use crate::linalg::vector::filled;
-use crate::platform::memory::refusal;
+use crate::platform::memory::{filled, refusal};
 use crate::platform::pages::Pages;
 use crate::platform::Interrupt;
 

@@ -10,8 +10,8 @@ mod product;
 mod x86;
 
 use crate::error::Result;
-use crate::linalg::vector::filled;
 use crate::linalg::{Entries, Matrix, Operator};
+use crate::platform::memory::filled;
 
 /// Rows and columns of a tile: a line of the cache.
 const SIDE: usize = 8;
