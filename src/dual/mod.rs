@@ -63,6 +63,8 @@ pub struct Dual {
     compliance: Vec<f64>,
     /// `G'` = B R, m x r.
     pub coarse: Csr,
+    /// First mode of each body.
+    pub blocks: Vec<usize>,
     /// What became of the columns of all `F_p`.
     pub columns: ColumnCounts,
 }
@@ -135,7 +137,8 @@ impl Draft {
         if balanced {
             scale_by_body(&mut subdomains, &mut coarse);
         }
-        Dual { subdomains, compliance, coarse, columns }
+        let blocks = subdomains.iter().map(|own| own.modes.start).collect();
+        Dual { subdomains, compliance, coarse, blocks, columns }
     }
 }
 

@@ -36,6 +36,8 @@ pub struct Qp<'a> {
     pub a: &'a dyn Operator,
     pub b: &'a [f64],
     pub g_transposed: &'a Csr,
+    /// First columns of the blocks of G, ascending: modes that belong together. Empty: each column by itself.
+    pub blocks: &'a [usize],
     /// A motion a is free when `|G_F a| <= rounding |G| |a|`: how far G is known, at least 64 eps.
     pub rounding: f64,
     pub e: &'a [f64],

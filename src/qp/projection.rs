@@ -148,12 +148,13 @@ mod tests {
             a: &a,
             b: &[0.0; 3],
             g_transposed: &g_transposed,
+            blocks: &[],
             rounding: 1e-14,
             e: &[1.0],
             bounded: &[true; 3],
             preconditioner: None,
         };
-        let mut coarse = Coarse::new(&g_transposed, 1e-14).unwrap();
+        let mut coarse = Coarse::new(&g_transposed, &[], 1e-14).unwrap();
         let found = project(&qp, &mut coarse, &[0.8, 0.6, -1.0], &[false; 3]).unwrap().unwrap();
         for (value, expected) in found.point.iter().zip([0.6, 0.4, 0.0]) {
             assert!((value - expected).abs() < 1e-14);

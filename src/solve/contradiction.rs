@@ -51,6 +51,7 @@ pub fn contradiction(case: Case, gaps: &Gaps, stops: &Stops) -> Result<Option<Er
         a: &a,
         b: &b,
         g_transposed: &none,
+        blocks: &[],
         rounding: 1e-14,
         e: &[],
         bounded: &bounded,

@@ -39,13 +39,13 @@ impl<'a> Recovery<'a> {
         let dual = &self.ready.dual;
         let load: Vec<f64> = self.scaled.load.iter().map(|f| f * self.ready.island.unit).collect();
         let held = without_force(self.ready, &load, &answer.lambda, &answer.mu);
-        let free = qp::undetermined(&dual.coarse, &held, dual.rounding())?;
+        let free = qp::undetermined(&dual.coarse, &dual.blocks, &held, dual.rounding())?;
         if free.cols == 0 {
             return Ok(None);
         }
         let mut u = deformed.to_vec();
         let open = self.gaps_left(&[&u], x);
-        let mut alpha = qp::fitted(&dual.coarse, &held, &open, dual.rounding())?;
+        let mut alpha = qp::fitted(&dual.coarse, &dual.blocks, &held, &open, dual.rounding())?;
         let add = |mut motion: Vec<f64>, u: &mut [f64]| -> Result<()> {
             if exact {
                 self.clean(&mut motion, u)?;

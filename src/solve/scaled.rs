@@ -57,11 +57,11 @@ impl Scaled {
     }
 
     pub fn qp<'a>(&'a self, ready: &'a Ready, a: &'a dyn Operator) -> Qp<'a> {
-        let g_transposed = &ready.dual.coarse;
+        let (g_transposed, blocks) = (&ready.dual.coarse, &ready.dual.blocks[..]);
         let preconditioner = ready.preconditioner.as_ref().map(|(_, m)| m as &dyn qp::Preconditioner);
         let (b, e, bounded, rounding) =
             (&self.d, &self.resultants, &self.gaps.bounded, ready.dual.rounding());
-        Qp { a, b, g_transposed, rounding, e, bounded, preconditioner }
+        Qp { a, b, g_transposed, blocks, rounding, e, bounded, preconditioner }
     }
 }
 

@@ -62,7 +62,8 @@ impl Problem {
             let lambda = ready.island.contact.gather(&answer.lambda);
             let mu = ready.island.equalities.gather(&answer.mu);
             let held = without_force(ready, &ready.island.loads(&self.model)?, &lambda, &mu);
-            let motions = qp::undetermined(&ready.dual.coarse, &held, ready.dual.rounding())?;
+            let motions =
+                qp::undetermined(&ready.dual.coarse, &ready.dual.blocks, &held, ready.dual.rounding())?;
             all.extend((0..motions.cols).map(|j| (k, motions.col(j).to_vec())));
         }
         Ok(all)

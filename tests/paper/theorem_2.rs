@@ -64,6 +64,7 @@ fn run(program: &Program, gamma: f64, variant: Variant, limit: usize) -> Option<
     (0..m).for_each(|_| none.push_row([]));
     let bounded = vec![true; m];
     let qp = Qp {
+        blocks: &[],
         a: &program.a,
         b: &program.b,
         g_transposed: &none,

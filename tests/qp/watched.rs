@@ -72,6 +72,7 @@ fn run(program: &Program, start: &[f64], products: usize, then: Kind, diary: &mu
     let a = Limited { a: &program.a, left: AtomicUsize::new(products), then };
     let g_transposed = program.g_transposed();
     let qp = Qp {
+        blocks: &[],
         a: &a,
         b: &program.b,
         g_transposed: &g_transposed,
@@ -158,6 +159,7 @@ fn a_run_ends_with_the_last_step_that_it_may_take() {
     let program = program(5);
     let g_transposed = program.g_transposed();
     let qp = Qp {
+        blocks: &[],
         a: &program.a,
         b: &program.b,
         g_transposed: &g_transposed,

@@ -7,6 +7,7 @@
 //! | [`far`] | a row whose gap is never closed |
 //! | [`presolve`] | rows that contradict each other beside one that is far away |
 //! | [`long`] | rows over all unknowns of a large body |
+//! | [`loose`] | towers, walls and heaps of many loose bodies |
 //! | [`groups`] | groups of bodies that no row joins |
 //! | [`travel`] | a body that travels much further than it deforms |
 //! | [`penalty`] | displacements prescribed by penalty |
@@ -21,6 +22,7 @@ mod groups;
 #[path = "../support/hand_over.rs"]
 mod hand_over;
 mod long;
+mod loose;
 mod mixed;
 mod penalty;
 mod plane;

@@ -2,9 +2,10 @@
 
 use std::sync::Arc;
 
-use crate::error::Result;
+use crate::error::{Error, Kind, Result};
 use crate::linalg::cholesky::analysis::elimination::NONE;
 use crate::linalg::cholesky::analysis::Analysis;
+use crate::linalg::cholesky::numeric::front::HELD;
 use crate::linalg::cholesky::numeric::multifrontal::{self, LowerColumns};
 use crate::linalg::sparse::csr::by_columns;
 use crate::linalg::{Csr, Symmetric};
@@ -52,10 +53,30 @@ impl Analysis {
         matrix: &Symmetric,
         by: f64,
     ) -> Result<std::result::Result<Cholesky, usize>> {
+        self.pivoted(matrix, by, 0.0)
+    }
+
+    /// L of a positive semidefinite matrix with unit diagonal but for the unknowns whose pivot is at most `hold`, ascending: they
+    /// are 0 in every solution, as if they were not there.
+    pub fn holding(self: &Arc<Self>, matrix: &Symmetric, hold: f64) -> Result<(Cholesky, Vec<usize>)> {
+        let factor = self.pivoted(matrix, 1.0, hold)?;
+        let factor = factor.map_err(|_| Error::new(Kind::Internal, "a coarse matrix is not finite"))?;
+        let mut held: Vec<usize> =
+            factor.pivots().filter(|(_, pivot)| *pivot >= 0.5 * HELD).map(|(dof, _)| dof).collect();
+        held.sort_unstable();
+        Ok((factor, held))
+    }
+
+    fn pivoted(
+        self: &Arc<Self>,
+        matrix: &Symmetric,
+        by: f64,
+        hold: f64,
+    ) -> Result<std::result::Result<Cholesky, usize>> {
         let lists = 3 * self.nodes.bytes() + 4 * self.order.len() * size_of::<usize>();
         let _room = headroom(lists + PRODUCTS, "a factorisation")?;
         let columns = self.columns(matrix, by)?;
-        let values = multifrontal::factorize(&self.nodes, &columns)?;
+        let values = multifrontal::factorize(&self.nodes, &columns, hold)?;
         Ok(values.map(|values| Cholesky { analysis: Arc::clone(self), values, held: Vec::new() }))
     }
 

@@ -13,12 +13,27 @@ const REFINEMENTS: usize = 2;
 /// Rows reduced at a time, in addition to as many as there are motions, and in units of their number.
 const ROWS: usize = 64;
 
+/// What the rows resist, `T'W T = I`, the kernel of the rest, and whether some of T is held weakly.
+pub struct Parts {
+    /// T, r x rank.
+    pub kept: Matrix,
+    /// Orthonormal, r x deficiency.
+    pub kernel: Matrix,
+    pub weak: bool,
+}
+
 /// Inverse of `w`, and whether it has motions that are held weakly; `g_transposed` is `G_F'` of the same scale. A motion
 /// a is free when `|G_F a| <= limit |a|`: the kernel of the inverse.
 pub fn inverse(w: &Matrix, g_transposed: &Csr, limit: f64) -> Result<(SpdSolver, bool)> {
     if let Some(regular) = SpdSolver::regular(w)? {
         return Ok((regular, false));
     }
+    let Parts { kept, kernel, weak } = parts(w, g_transposed, limit)?;
+    Ok((SpdSolver::of_parts(kept, kernel), weak))
+}
+
+/// T and the kernel of `w`, whose largest diagonal entry is about 1.
+pub fn parts(w: &Matrix, g_transposed: &Csr, limit: f64) -> Result<Parts> {
     let (values, vectors) = symmetric_eigen(w)?;
     let certain = values.partition_point(|value| *value <= UNCERTAIN);
     let (mut motions, mut kept) = (vectors.columns(0..certain), vectors.columns(certain..w.cols));
@@ -28,21 +43,27 @@ pub fn inverse(w: &Matrix, g_transposed: &Csr, limit: f64) -> Result<(SpdSolver,
     for _ in 0..REFINEMENTS {
         (0..motions.cols).for_each(|j| conjugate(motions.col_mut(j), &kept, g_transposed));
     }
-    let (resistance, turned) = singular(&motions, g_transposed, limit)?;
-    let mut kernel = Matrix { rows: w.rows, ..Matrix::default() };
-    let mut weak = false;
+    let (kernel, weak) = sorted(&motions, g_transposed, limit)?;
+    (0..weak.cols).for_each(|j| kept.push_col(weak.col(j)));
+    Ok(Parts { kept, kernel, weak: weak.cols > 0 })
+}
+
+/// Of orthonormal motions those that are free, and a basis V of the others, `V'W V = I`.
+pub fn sorted(motions: &Matrix, g_transposed: &Csr, limit: f64) -> Result<(Matrix, Matrix)> {
+    let (resistance, turned) = singular(motions, g_transposed, limit)?;
+    let none = Matrix { rows: motions.rows, ..Matrix::default() };
+    let (mut free, mut weak) = (none.clone(), none);
     for (j, resistance) in resistance.iter().enumerate() {
-        let mut motion = vec![0.0; w.rows];
+        let mut motion = vec![0.0; motions.rows];
         motions.mul_add(1.0, turned.col(j), &mut motion);
         if *resistance <= limit {
-            kernel.push_col(&motion);
+            free.push_col(&motion);
         } else {
-            weak = true;
             motion.iter_mut().for_each(|v| *v /= resistance);
-            kept.push_col(&motion);
+            weak.push_col(&motion);
         }
     }
-    Ok((SpdSolver::of_parts(kept, kernel), weak))
+    Ok((free, weak))
 }
 
 /// `n <- n - T T'W n`: then `T'W n = 0`, where `T'W T = I`.

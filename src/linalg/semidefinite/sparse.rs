@@ -4,7 +4,7 @@
 use std::sync::Arc;
 
 use crate::error::Result;
-use crate::linalg::semidefinite::resisted;
+use crate::linalg::semidefinite::{resisted, GeneralInverse};
 use crate::linalg::sparse::graph::components;
 use crate::linalg::{Analysis, Cholesky, Csr, Matrix, SpdSolver, Symmetric};
 use crate::platform::memory::headroom;
@@ -34,8 +34,7 @@ pub struct PseudoInverse {
     /// Of all parts that are not dense, with the unit matrix in place of those.
     regular: Option<Cholesky>,
     dense: Vec<SingularPart>,
-    /// Some motions are held so weakly that rounding of `G_F v` matters in `W+ G_F v`.
-    pub weak: bool,
+    weak: bool,
 }
 
 struct SingularPart {
@@ -44,24 +43,21 @@ struct SingularPart {
 }
 
 impl PseudoInverse {
-    /// `w` has the pattern that was analysed; its largest diagonal entry is about 1 where no row is held.
-    pub fn new(w: &Symmetric, analysis: &Arc<Analysis>, rows_of_g: &FaceRows) -> Result<Self> {
+    /// `w` has the pattern that was analysed; its largest diagonal entry is about 1 where no row is held. None where a part that is
+    /// not small is singular.
+    pub fn new(w: &Symmetric, analysis: &Arc<Analysis>, rows_of_g: &FaceRows) -> Result<Option<Self>> {
         let _room = headroom(PER_ROW * w.order() + PER_ENTRY * w.val.len(), "the parts of a matrix")?;
         let (part_of, count) = components(w);
         let mut parts = vec![Vec::new(); count];
         part_of.iter().enumerate().for_each(|(row, &part)| parts[part].push(row));
-        let mut dense: Vec<bool> = parts.iter().map(|rows| rows.len() <= SMALL).collect();
+        let dense: Vec<bool> = parts.iter().map(|rows| rows.len() <= SMALL).collect();
         let mut regular = None;
-        while regular.is_none() && dense.contains(&false) {
+        if dense.contains(&false) {
             let mut rest = w.copied("the parts of a matrix")?;
             uncouple(&mut rest, |row| dense[part_of[row]]);
             match analysis.attempt(&rest, 1.0)? {
                 Ok(factor) if factor.smallest_pivot() > SINGULAR => regular = Some(factor),
-                Ok(factor) => factor
-                    .pivots()
-                    .filter(|(_, pivot)| *pivot <= SINGULAR)
-                    .for_each(|(row, _)| dense[part_of[row]] = true),
-                Err(at) => dense[part_of[analysis.order[at]]] = true,
+                _ => return Ok(None),
             }
         }
         let own = rows_of_g.by_part(&part_of, &dense);
@@ -72,11 +68,12 @@ impl PseudoInverse {
             weak |= weakly;
             singular.push(SingularPart { rows, inverse });
         }
-        Ok(Self { order: w.order(), regular, dense: singular, weak })
+        Ok(Some(Self { order: w.order(), regular, dense: singular, weak }))
     }
+}
 
-    /// `x += a N N'b`, N the kernel.
-    pub fn add_kernel_part(&self, a: f64, b: &[f64], x: &mut [f64]) {
+impl GeneralInverse for PseudoInverse {
+    fn add_kernel_part(&self, a: f64, b: &[f64], x: &mut [f64]) {
         for SingularPart { rows, inverse } in self.dense.iter().filter(|part| part.inverse.deficiency() > 0) {
             let (kernel, mut part) = (inverse.kernel(), vec![0.0; rows.len()]);
             let own: Vec<f64> = rows.iter().map(|&row| b[row]).collect();
@@ -85,8 +82,7 @@ impl PseudoInverse {
         }
     }
 
-    /// The solution of minimum norm.
-    pub fn solve(&self, b: &[f64]) -> Result<Vec<f64>> {
+    fn solve(&self, b: &[f64]) -> Result<Vec<f64>> {
         let mut x = b.to_vec();
         if let Some(regular) = &self.regular {
             regular.solve(&mut x)?;
@@ -98,13 +94,12 @@ impl PseudoInverse {
         Ok(x)
     }
 
-    /// Dimension of the kernel.
-    pub fn deficiency(&self) -> usize {
+    fn deficiency(&self) -> usize {
         self.dense.iter().map(|part| part.inverse.deficiency()).sum()
     }
 
     /// Basis of all but the kernel, n x rank: `T'W T = I` on the parts with a kernel or weakly held, units elsewhere.
-    pub fn basis(&self) -> Matrix {
+    fn basis(&self) -> Matrix {
         let mut apart = vec![false; self.order];
         let mut basis = Matrix { rows: self.order, ..Matrix::default() };
         for SingularPart { rows, inverse } in &self.dense {
@@ -120,11 +115,14 @@ impl PseudoInverse {
         basis
     }
 
-    /// Basis of the kernel, n x deficiency.
-    pub fn kernel(&self) -> Matrix {
+    fn kernel(&self) -> Matrix {
         let mut basis = Matrix { rows: self.order, ..Matrix::default() };
         self.dense.iter().for_each(|part| push_columns(&part.inverse.kernel(), &part.rows, &mut basis));
         basis
+    }
+
+    fn is_weak(&self) -> bool {
+        self.weak
     }
 }
 
@@ -210,14 +208,14 @@ mod tests {
     }
 
     #[test]
-    fn singular_parts_small_and_large_beside_regular_ones_are_solved_and_counted() {
-        let g = chains(&[(100, true), (80, false), (3, true), (2, false), (1, false), (70, true)]);
+    fn small_singular_parts_beside_large_regular_ones_are_solved_and_counted() {
+        let g = chains(&[(100, true), (60, false), (3, true), (2, false), (1, false), (70, true)]);
         let held = vec![false; g.rows()];
         let w = Gram::of(&g).unwrap().sum(&g, &held).unwrap();
         let whole: Vec<f64> = (0..w.order()).map(|k| w.val[w.ptr[k + 1] - 1]).collect();
         let analysis = Arc::new(Analysis::new(&w, &vec![false; w.order()]).unwrap());
         let rows = FaceRows { g_transposed: &g, held: &held, unit: 1.0, whole: &whole, rounding: 1e-14 };
-        let pseudo = PseudoInverse::new(&w, &analysis, &rows).unwrap();
+        let pseudo = PseudoInverse::new(&w, &analysis, &rows).unwrap().unwrap();
         assert!(pseudo.regular.is_some() && pseudo.dense.len() == 4, "{}", pseudo.dense.len());
         let kernel = pseudo.kernel();
         assert_eq!((pseudo.deficiency(), kernel.cols), (3, 3));
@@ -233,5 +231,21 @@ mod tests {
         w.mul(&x, &mut again);
         assert!(again.iter().zip(&image).all(|(a, b)| (a - b).abs() < 1e-10));
         assert!((0..kernel.cols).all(|j| kernel.mul_transposed(&x)[j].abs() < 1e-9), "not of minimum norm");
+    }
+
+    #[test]
+    fn a_large_singular_part_is_left_to_others() {
+        let g = chains(&[(80, false), (100, true)]);
+        let held = vec![false; g.rows()];
+        let w = Gram::of(&g).unwrap().sum(&g, &held).unwrap();
+        let analysis = Arc::new(Analysis::new(&w, &vec![false; w.order()]).unwrap());
+        let rows = FaceRows {
+            g_transposed: &g,
+            held: &held,
+            unit: 1.0,
+            whole: &vec![1.0; w.order()],
+            rounding: 1e-14,
+        };
+        assert!(PseudoInverse::new(&w, &analysis, &rows).unwrap().is_none());
     }
 }

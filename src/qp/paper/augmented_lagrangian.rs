@@ -27,7 +27,7 @@ pub fn algorithm_3(
     let (alpha, scale) = (outer.alpha(), judge.scale(&outer.x, &outer.alpha())?);
     let active: Vec<bool> =
         outer.x.iter().zip(qp.bounded).map(|(x, bounded)| *bounded && *x == 0.0).collect();
-    let undetermined = Coarse::new(qp.g_transposed, qp.rounding)?.on(&active)?.deficiency();
+    let undetermined = Coarse::new(qp.g_transposed, qp.blocks, qp.rounding)?.on(&active)?.deficiency();
     Ok(Solution { x: outer.x, alpha, undetermined, scale, verdict, counts: outer.counts })
 }
 

@@ -41,7 +41,7 @@ pub fn weighted(qp: &Qp, weights: &[f64]) -> Result<(Vec<f64>, Vec<f64>)> {
         Some(found) => found,
         None => {
             let scaled = Qp { g_transposed: &g_transposed, e: &e, ..*qp };
-            lawson_hanson(&scaled, &mut Coarse::new(&g_transposed, qp.rounding)?)?
+            lawson_hanson(&scaled, &mut Coarse::new(&g_transposed, qp.blocks, qp.rounding)?)?
         }
     };
     Ok((point, a.iter().zip(weights).map(|(a, w)| a / w).collect()))
@@ -152,12 +152,13 @@ mod tests {
             a: &a,
             b: &vec![0.0; m],
             g_transposed: &g_transposed,
+            blocks: &[],
             rounding: 1e-14,
             e: &e,
             bounded: &vec![true; m],
             preconditioner: None,
         };
-        let coarse = &mut Coarse::new(&g_transposed, 1e-14).unwrap();
+        let coarse = &mut Coarse::new(&g_transposed, &[], 1e-14).unwrap();
         let found = balance(&qp, coarse).unwrap();
         let (_, other) = lawson_hanson(&qp, coarse).unwrap();
         assert!(found.residual.iter().zip(&other).all(|(a, b)| (a - b).abs() < 1e-14));

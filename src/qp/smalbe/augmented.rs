@@ -152,12 +152,13 @@ mod tests {
             a: &a,
             b: &b,
             g_transposed: &g_transposed,
+            blocks: &[],
             rounding: 1e-14,
             e: &[1.0],
             bounded: &bounded,
             preconditioner: None,
         };
-        let augmented = Augmented::new(qp, Coarse::new(&g_transposed, 1e-14).unwrap()).unwrap();
+        let augmented = Augmented::new(qp, Coarse::new(&g_transposed, &[], 1e-14).unwrap()).unwrap();
         assert!((7.0..=1.05 * 7.0).contains(&augmented.largest), "{}", augmented.largest);
         assert!(augmented.counts.products < ITERATIONS);
     }
@@ -176,12 +177,13 @@ mod tests {
             a: &a,
             b: &b,
             g_transposed: &g_transposed,
+            blocks: &[],
             rounding: 1e-14,
             e: &[],
             bounded: &bounded,
             preconditioner: None,
         };
-        let largest = Augmented::new(qp, Coarse::new(&g_transposed, 1e-14).unwrap()).unwrap().largest;
+        let largest = Augmented::new(qp, Coarse::new(&g_transposed, &[], 1e-14).unwrap()).unwrap().largest;
         assert!((30.0..=1.05 * 30.0).contains(&largest), "{largest}");
     }
 }

@@ -35,7 +35,7 @@ impl FreeBlocks {
             g_transposed.push_row(row.into_iter().enumerate().filter(|(_, v)| *v != 0.0));
         }
         let held: Vec<bool> = lambda.iter().map(|lambda| *lambda <= 0.0).collect();
-        let amplitudes = undetermined(&g_transposed, &held, 1.5e-14).unwrap();
+        let amplitudes = undetermined(&g_transposed, &[], &held, 1.5e-14).unwrap();
         let open = OpenMotions {
             bodies: &bodies,
             amplitudes: &amplitudes,

@@ -48,16 +48,20 @@ pub fn update_column(b: usize, j: usize) -> Range<usize> {
     column + (j - t * TILE)..column + height
 }
 
+/// What a pivot becomes that is held: the unknown of its row is 0 in every solution, as if row and column were not there.
+pub const HELD: f64 = 1e200;
+
 /// Workspace of the dense kernels.
 pub fn scratch() -> StackReq {
     cholesky_in_place_scratch::<f64>(BLOCK, Par::Seq, Default::default())
 }
 
 /// Factorises the panel, height x width, column-major. `parallel`: tiles are shared among the threads of the present
-/// pool. `Err`: the column whose pivot is not positive.
+/// pool. Pivots up to `hold` are held, where it is positive. `Err`: the column whose pivot is not positive.
 pub fn factorize(
     panel: &mut [f64],
     width: usize,
+    hold: f64,
     workspace: &mut MemBuffer,
     parallel: bool,
 ) -> Result<(), usize> {
@@ -66,7 +70,7 @@ pub fn factorize(
     while first < width {
         let block = BLOCK.min(width - first);
         let (own, later) = panel[first * height..].split_at_mut(block * height);
-        factorize_block(own, height, first, workspace, parallel).map_err(|at| first + at)?;
+        factorize_block(own, (height, first), hold, workspace, parallel).map_err(|at| first + at)?;
         let own = MatRef::from_column_major_slice(own, height, block);
         let tiles = later[..(width - first - block) * height].chunks_mut(TILE * height).enumerate();
         each(parallel, tiles.collect(), |(t, tile)| {
@@ -130,8 +134,8 @@ fn tiles(mut update: &mut [f64], b: usize) -> Vec<Tile<'_>> {
 /// One block of columns, `height` x a few, from row `first` on: the triangle, then the rows below.
 fn factorize_block(
     columns: &mut [f64],
-    height: usize,
-    first: usize,
+    (height, first): (usize, usize),
+    hold: f64,
     workspace: &mut MemBuffer,
     parallel: bool,
 ) -> Result<(), usize> {
@@ -140,9 +144,11 @@ fn factorize_block(
     let (_, rows) = columns.split_at_row_mut(first);
     let (mut top, below) = rows.split_at_row_mut(width);
     let stack = MemStack::new(workspace);
-    match cholesky_in_place(top.as_mut(), Default::default(), Par::Seq, stack, Default::default()) {
-        Ok(_) => {}
-        Err(LltError::NonPositivePivot { index }) => return Err(index),
+    if hold > 0.0 {
+        factorize_holding(top.as_mut(), hold)?;
+    } else {
+        let done = cholesky_in_place(top.as_mut(), Default::default(), Par::Seq, stack, Default::default());
+        done.map_err(|LltError::NonPositivePivot { index }| index)?;
     }
     let top = top.as_ref();
     let mut parts = Vec::new();
@@ -155,6 +161,25 @@ fn factorize_block(
     parts.push(rest);
     // X L' = A is L X' = A'
     each(parallel, parts, |part| solve_lower_triangular_in_place(top, part.transpose_mut(), Par::Seq));
+    Ok(())
+}
+
+/// L of a small block, column by column; pivots up to `hold` are held.
+fn factorize_holding(mut a: MatMut<'_, f64>, hold: f64) -> Result<(), usize> {
+    let n = a.ncols();
+    for j in 0..n {
+        let pivot = a[(j, j)];
+        if pivot.is_nan() {
+            return Err(j);
+        }
+        let root = if pivot > hold { pivot.sqrt() } else { HELD.sqrt() };
+        a[(j, j)] = root;
+        (j + 1..n).for_each(|i| a[(i, j)] /= root);
+        for k in j + 1..n {
+            let v = a[(k, j)];
+            (k..n).for_each(|i| a[(i, k)] -= v * a[(i, j)]);
+        }
+    }
     Ok(())
 }
 

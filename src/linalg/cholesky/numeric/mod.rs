@@ -1,5 +1,5 @@
 //! The numeric factorisation.
 
-mod front;
+pub mod front;
 pub mod multifrontal;
 pub mod updates;

@@ -30,12 +30,12 @@ pub struct LowerColumns {
 /// A factor, or the position of a pivot that is not positive.
 type Pivoted<T> = std::result::Result<T, usize>;
 
-/// L by panels.
-pub fn factorize(nodes: &Supernodes, matrix: &LowerColumns) -> Result<Pivoted<Pages>> {
+/// L by panels; pivots up to `hold` are held, where it is positive.
+pub fn factorize(nodes: &Supernodes, matrix: &LowerColumns, hold: f64) -> Result<Pivoted<Pages>> {
     let mut values = Pages::zeros(nodes.values(), "a Cholesky factor")?;
     let subtrees = subtrees(nodes);
     let tasks = split(nodes, &subtrees, &mut values);
-    let (whole, interrupt) = ((nodes, matrix), Interrupt::present());
+    let (whole, interrupt) = ((nodes, matrix, hold), Interrupt::present());
     let run = |(range, panels): (Range<usize>, &mut [f64])| {
         Task::new(whole, range.clone(), &interrupt)?.eliminate_subtree(range, panels)
     };
@@ -90,6 +90,7 @@ fn split<'a>(
 struct Task<'a> {
     nodes: &'a Supernodes,
     matrix: &'a LowerColumns,
+    hold: f64,
     /// Row of a position within the present front.
     local: Vec<u32>,
     updates: Updates<'a>,
@@ -99,7 +100,7 @@ struct Task<'a> {
 
 impl<'a> Task<'a> {
     fn new(
-        (nodes, matrix): (&'a Supernodes, &'a LowerColumns),
+        (nodes, matrix, hold): (&'a Supernodes, &'a LowerColumns, f64),
         sequence: impl Iterator<Item = usize>,
         interrupt: &'a Interrupt,
     ) -> Result<Self> {
@@ -108,7 +109,7 @@ impl<'a> Task<'a> {
         let workspace =
             MemBuffer::try_new(need).map_err(|_| refusal(need.unaligned_bytes_required(), WHAT))?;
         let updates = Updates::new(nodes, sequence, |s| update_len(nodes, s), WHAT)?;
-        Ok(Self { nodes, matrix, local, updates, workspace, interrupt })
+        Ok(Self { nodes, matrix, hold, local, updates, workspace, interrupt })
     }
 
     /// All supernodes of a subtree, whose panels these are; gives the update of its root.
@@ -150,7 +151,8 @@ impl<'a> Task<'a> {
         };
         let children: Vec<Child<'_>> = children.into_iter().map(child).collect();
         children.iter().for_each(|child| child.add_to_panel(panel, node.height()));
-        front::factorize(panel, node.width, &mut self.workspace, shared).map_err(|at| node.begin + at)?;
+        front::factorize(panel, node.width, self.hold, &mut self.workspace, shared)
+            .map_err(|at| node.begin + at)?;
         front::update(panel, node.width, update, shared, |tile| {
             children.iter().for_each(|child| child.add_to_tile(tile, node.width));
         });

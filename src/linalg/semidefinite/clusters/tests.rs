@@ -1,0 +1,66 @@
+//! Stones that slide, in a chain.
+
+use super::*;
+use crate::linalg::random::scattered;
+use crate::linalg::semidefinite::GeneralInverse;
+use crate::linalg::vector::{axpy, dot, norm};
+
+/// Stones of two modes (across, up) in a chain: rows hold neighbours together upwards, every third pair across; the
+/// first to the ground upwards, every fifth row by `weak`.
+fn stones(count: usize, weak: f64) -> Csr {
+    let mut g = Csr::empty(2 * count);
+    let random = scattered(4 * count);
+    g.push_row([(1, 0.9)]);
+    for k in 1..count {
+        let size = if k % 5 == 0 { weak } else { 1.0 + random[k] };
+        let turn = |k: usize| (0.6, if k.is_multiple_of(2) { 0.8 } else { -0.8 });
+        let ((a, b), (c, d)) = (turn(k - 1), turn(k));
+        // up is (a, b) in the modes of a stone, across (-b, a)
+        g.push_row([
+            (2 * k - 2, -size * a),
+            (2 * k - 1, -size * b),
+            (2 * k, size * c),
+            (2 * k + 1, size * d),
+        ]);
+        if k % 3 == 0 {
+            g.push_row([(2 * k - 2, b), (2 * k - 1, -a), (2 * k, -d), (2 * k + 1, c)]);
+        }
+    }
+    g
+}
+
+fn whole(g: &Csr) -> Vec<f64> {
+    let mut whole = vec![0.0; g.cols];
+    g.col.iter().zip(&g.val).for_each(|(&k, v)| whole[k] += v * v);
+    whole
+}
+
+#[test]
+fn a_chain_of_stones_that_slide_is_solved_with_minimum_norm() {
+    for weak in [1.0, 1e-3, 1e-6] {
+        let g = stones(60, weak);
+        let starts: Vec<usize> = (0..60).map(|k| 2 * k).collect();
+        let held = vec![false; g.rows()];
+        let mut blocks = Blocks::new(&g, &starts, 1.0).unwrap();
+        let inverse = blocks.inverse(&held, &whole(&g), 1e-14).unwrap();
+        let kernel = inverse.kernel();
+        assert_eq!((inverse.deficiency(), kernel.cols), (120 - g.rows(), 120 - g.rows()), "{weak}");
+        let image = |a: &[f64]| {
+            let mut image = vec![0.0; g.rows()];
+            g.mul(a, &mut image);
+            image
+        };
+        assert!((0..kernel.cols).all(|j| norm(&image(kernel.col(j))) < 1e-13), "{weak}");
+        let y: Vec<f64> = (0..120).map(|i| (1.0 + i as f64).sin()).collect();
+        let forces = image(&y);
+        let mut b = vec![0.0; 120];
+        g.mul_transposed_add(1.0, &forces, &mut b);
+        let x = inverse.solve(&b).unwrap();
+        let mut rest = forces.clone();
+        axpy(-1.0, &image(&x), &mut rest);
+        assert!(norm(&rest) < 1e-14 / weak * norm(&forces), "{weak}: {:e}", norm(&rest));
+        assert!((0..kernel.cols).all(|j| dot(kernel.col(j), &x).abs() < 1e-9), "{weak}: not of minimum norm");
+        let basis = inverse.basis();
+        assert_eq!(basis.cols, g.rows());
+    }
+}
