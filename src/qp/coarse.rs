@@ -27,6 +27,8 @@ pub struct Coarse<'a> {
     by_blocks: Option<Blocks>,
     /// The face of all rows, and the last other one.
     faces: [Option<CoarseFace>; 2],
+    /// Of `G l = e` in the last projection on the polyhedron.
+    pub last_multiplier: Option<Vec<f64>>,
     pub solves: usize,
     pub factorisations: usize,
 }
@@ -52,8 +54,6 @@ impl<'a> Coarse<'a> {
         let unit = power_of_two_below(norm_max(&whole).sqrt());
         whole.iter_mut().for_each(|v| *v /= unit * unit);
         let gram = if whole.is_empty() { None } else { Some(analysed(g_transposed)?) };
-        let faces = [None, None];
-        let (by_blocks, solves, factorisations) = (None, 0, 0);
         Ok(Self {
             g_transposed,
             blocks,
@@ -61,10 +61,11 @@ impl<'a> Coarse<'a> {
             unit,
             whole,
             gram,
-            by_blocks,
-            faces,
-            solves,
-            factorisations,
+            by_blocks: None,
+            faces: [None, None],
+            last_multiplier: None,
+            solves: 0,
+            factorisations: 0,
         })
     }
 

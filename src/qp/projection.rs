@@ -16,6 +16,8 @@ const NEWTON_STEPS: usize = 100;
 /// `|e - G l| <= ACCURACY (|e| + |G||l|)` is accepted; `STAGNATED` where no step improves it any more.
 const ACCURACY: f64 = 1e-12;
 const STAGNATED: f64 = 1e-10;
+/// Where `|e - G l|` is more of `|e| + |G||l|` the start is worth a solution without bounds.
+const FAR: f64 = 0.5;
 
 /// A sum this small against its terms is zero: where the bounds leave one point only, all rows must reach them.
 const ROUNDING: f64 = 8.0 * f64::EPSILON;
@@ -57,10 +59,16 @@ impl Trial {
         }
     }
 
+    /// `phi(beta) = 1/2 |l|^2 - e'beta`
+    fn phi(&self, qp: &Qp) -> f64 {
+        0.5 * dot(&self.point, &self.point) - dot(qp.e, &self.beta)
+    }
+
     /// J4: without what rounding has left of `e - G l`, where the bounds allow that.
     fn done(self, qp: &Qp, coarse: &mut Coarse) -> Result<Projected> {
         let mut point = self.point.clone();
         let held: Vec<bool> = point.iter().map(|l| *l == 0.0).collect();
+        coarse.last_multiplier = Some(self.beta.clone());
         let step = coarse.on(&held)?.solve(&self.residual)?;
         for i in (0..point.len()).filter(|&i| !held[i]) {
             point[i] += qp.g_transposed.row_dot(i, &step);
@@ -77,6 +85,12 @@ pub fn project(qp: &Qp, coarse: &mut Coarse, y: &[f64], held: &[bool]) -> Result
         return Ok(Some(Projected { point: now.point, multiplier: now.beta }));
     }
     let mut error = now.error(qp);
+    for beta in starts(qp, coarse, y, held, error)? {
+        let next = Trial::new(qp, y, held, beta);
+        if next.phi(qp) < now.phi(qp) {
+            (error, now) = (next.error(qp), next);
+        }
+    }
     for _ in 0..NEWTON_STEPS {
         // J2
         if error <= ACCURACY {
@@ -99,6 +113,20 @@ pub fn project(qp: &Qp, coarse: &mut Coarse, y: &[f64], held: &[bool]) -> Result
         (now, error) = (next, next_error);
     }
     Ok(None)
+}
+
+/// J1: other multipliers to begin with than 0: that of the last projection and, where 0 meets little of e, that without any bound,
+/// for forces that add up over many bodies enter one row after the other from 0.
+fn starts(qp: &Qp, coarse: &mut Coarse, y: &[f64], held: &[bool], error: f64) -> Result<Vec<Vec<f64>>> {
+    let mut starts = Vec::new();
+    if error > FAR {
+        let mut rest = qp.e.to_vec();
+        let free: Vec<f64> = y.iter().zip(held).map(|(y, held)| if *held { 0.0 } else { *y }).collect();
+        qp.g_transposed.mul_transposed_add(-1.0, &free, &mut rest);
+        starts.push(coarse.on(held)?.solve(&rest)?);
+    }
+    starts.extend(coarse.last_multiplier.clone());
+    Ok(starts)
 }
 
 /// J3: exact minimum of phi over `beta + t step`, t > 0: phi' is piecewise linear and does not fall, its slope is
