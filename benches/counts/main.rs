@@ -5,7 +5,7 @@
 //! count <deck> F <applications> linear <applications> ratio <r> goal <g> ok|short
 //! ```
 //!
-//! then how F grows with the size and with the accuracy, and a closing line with the number short. Arguments:
+//! then how F grows with the size and with the accuracy, the coarse solves per product, and a closing line with the number short. Arguments:
 //! parts of the names of the decks to run, none for all. Exit code 1 when a deck is not solved; a short one
 //! alone leaves it 0.
 
@@ -31,7 +31,13 @@ struct Tally {
     failed: usize,
     /// Decks on which SMALBE-M is not as far behind as expected.
     near: usize,
+    /// Of the decks with a coarse problem.
+    products: usize,
+    coarse_solves: usize,
 }
+
+/// Coarse solves per product with F, on the average of the decks that have a coarse problem.
+const COARSE_SOLVES: f64 = 3.0;
 
 fn main() -> ExitCode {
     let wanted: Vec<String> =
@@ -53,7 +59,10 @@ fn main() -> ExitCode {
     if wants(table::TIGHTER) {
         tally.tighter();
     }
-    let Tally { lines, short, failed, near } = tally;
+    if wanted.is_empty() {
+        tally.coarse_solves();
+    }
+    let Tally { lines, short, failed, near, .. } = tally;
     println!(
         "counts: {lines} lines, {short} short, {failed} failed; SMALBE nearer than its goal on {near} decks"
     );
@@ -84,6 +93,10 @@ impl Tally {
         let reasons = verdict::reasons(case, measurement);
         self.short += usize::from(!reasons.is_empty());
         self.near += usize::from(verdict::smalbe_is_near(case, measurement));
+        if measurement.coarse_solves > 0 {
+            self.products += measurement.products;
+            self.coarse_solves += measurement.coarse_solves;
+        }
         println!("{}", verdict::line(case, measurement, &reasons));
         flush();
     }
@@ -123,6 +136,14 @@ impl Tally {
                 self.fail(table::TIGHTER, &fault);
             }
         }
+    }
+
+    fn coarse_solves(&mut self) {
+        self.lines += 1;
+        let ratio = self.coarse_solves as f64 / self.products as f64;
+        let word = if ratio > COARSE_SOLVES { "short" } else { "ok" };
+        self.short += usize::from(ratio > COARSE_SOLVES);
+        println!("coarse solves per product {ratio:.2} goal {COARSE_SOLVES:.2} {word}");
     }
 
     fn compare(&mut self, what: &str, from: usize, to: usize, goal: f64) {

@@ -28,8 +28,10 @@ pub struct Iterate<'a> {
     pub expected: Option<f64>,
     /// How many projected steps in a row had to be cut short.
     pub cuts: usize,
-    /// L: running bound of the curvature of theta, 1.1 max |P A p|^2 / p'A p.
+    /// L: running bound of the curvature of theta.
     pub curvature: f64,
+    /// `p'A p` and A p of the last product that L has been taken from.
+    pub observed: Option<(f64, Vec<f64>)>,
     pub counts: Counts,
 }
 
@@ -46,6 +48,7 @@ impl<'a> Iterate<'a> {
             expected: None,
             cuts: 0,
             curvature: 0.0,
+            observed: None,
             counts: Counts::default(),
             qp,
             coarse,

@@ -15,10 +15,14 @@ const ROUNDING: f64 = 1e-10;
 const FAR: f64 = 0.1;
 /// A direction of which the kept ones leave less than this part is lost to rounding.
 const LOST: f64 = 1e-7;
+/// What the kept directions leave less of than this part is projected once more: rounding of the first projection counts in it.
+const CANCELLED: f64 = 0.1;
 /// So many projected steps in a row that had to be cut short are followed by one to the bound.
 const CUTS: usize = 3;
 /// Steps shorter than this against x are not kept.
 const SHORT: f64 = 1e-6;
+/// Of L above the largest curvature met.
+const MARGIN: f64 = 1.1;
 /// Step of gradient projection in units of 1 / L.
 const GRADIENT_STEP: f64 = 1.5;
 
@@ -80,8 +84,9 @@ impl Iterate<'_> {
         if !self.kept.is_empty() {
             let mut p = z.clone();
             self.kept.make_conjugate(&mut p);
-            self.project_on_face(&mut p)?;
-            self.project_on_face(&mut p)?;
+            if norm(&p) < CANCELLED * norm(&z) {
+                self.project_on_face(&mut p)?;
+            }
             if norm(&p) > LOST * norm(&z) && dot(&self.r, &p) > 0.0 {
                 return Ok(p);
             }
@@ -99,7 +104,7 @@ impl Iterate<'_> {
         }
         let image = self.product(&p)?;
         let curvature = dot(&p, &image);
-        self.observe_curvature(&p, &image)?;
+        self.observe_curvature(&p, &image);
         // P5: no curvature
         let singular =
             norm(&self.split.free) > self.noise() && curvature <= SINGULAR * self.curvature * dot(&p, &p);
@@ -139,7 +144,7 @@ impl Iterate<'_> {
             return Ok(false);
         }
         let image = self.product(&s)?;
-        self.observe_curvature(&s, &image)?;
+        self.observe_curvature(&s, &image);
         let curvature = dot(&s, &image);
         let flat = curvature <= SINGULAR * self.curvature * dot(&s, &s);
         let best = if flat { f64::INFINITY } else { -slope / curvature };
@@ -179,14 +184,20 @@ impl Iterate<'_> {
         Ok(())
     }
 
-    /// `L = max(L, 1.1 |P A p|^2 / p'A p)`, while the gradient is more than rounding.
-    fn observe_curvature(&mut self, p: &[f64], image: &[f64]) -> Result<()> {
+    /// `L = max(L, 1.1 p'A p / p'p)`, p in the kernel of G, while the gradient is more than rounding.
+    fn observe_curvature(&mut self, p: &[f64], image: &[f64]) {
         let energy = dot(p, image);
         if self.split.norm() > self.noise() && energy > 0.0 {
-            let mut projected = image.to_vec();
-            let none = vec![false; p.len()];
-            self.coarse.project(&none, &mut projected)?;
-            self.curvature = self.curvature.max(1.1 * dot(&projected, &projected) / energy);
+            self.curvature = self.curvature.max(MARGIN * energy / dot(p, p));
+            self.observed = Some((energy, image.to_vec()));
+        }
+    }
+
+    /// `L = max(L, 1.1 |P A p|^2 / p'A p)` of the last p observed: nearer to the largest curvature, for one coarse solve.
+    fn sharpen_curvature(&mut self) -> Result<()> {
+        if let Some((energy, mut image)) = self.observed.take().filter(|(energy, _)| *energy > 0.0) {
+            self.coarse.project(&vec![false; image.len()], &mut image)?;
+            self.curvature = self.curvature.max(MARGIN * dot(&image, &image) / energy);
         }
         Ok(())
     }
@@ -253,8 +264,9 @@ impl Iterate<'_> {
             let projected: Vec<f64> =
                 self.split.free.iter().zip(&self.split.chopped).map(|(f, c)| f + c).collect();
             let image = self.product(&projected)?;
-            self.observe_curvature(&projected, &image)?;
+            self.observed = Some((dot(&projected, &image), image));
         }
+        self.sharpen_curvature()?;
         // without curvature any length will do
         let step = if self.curvature > 0.0 { GRADIENT_STEP / self.curvature } else { 1.0 };
         let mut y = self.x.clone();
@@ -275,7 +287,7 @@ impl Iterate<'_> {
     /// P11: exact minimum of theta over `x + t s`, t in [0, max(1, first bound)].
     fn search_along(&mut self, s: Vec<f64>) -> Result<Step> {
         let image = self.product(&s)?;
-        self.observe_curvature(&s, &image)?;
+        self.observe_curvature(&s, &image);
         let (slope, curvature) = (dot(&self.r, &s), dot(&s, &image));
         if slope >= 0.0 {
             return Ok(Step::Stuck);
