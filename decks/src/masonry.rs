@@ -78,13 +78,16 @@ pub fn heap(blocks: usize, seed: u64) -> Deck {
     let width = 4 * (blocks as f64).sqrt() as usize + 6;
     let (mut top, mut stones) = (vec![0; width], Vec::new());
     while stones.len() < blocks {
-        let size = [2 + random.below(4), 1 + random.below(3)];
-        let x = random.below(width - size[0] + 1);
-        let y = top[x..x + size[0]].iter().copied().max().unwrap_or(0);
-        let mean = top.iter().sum::<usize>() / width;
-        if y > mean + 6 || top[x] != y || top[x + size[0] - 1] != y {
-            continue;
-        }
+        let mut place = || {
+            let size = [2 + random.below(4), 1 + random.below(3)];
+            let x = random.below(width - size[0] + 1);
+            let y = top[x..x + size[0]].iter().copied().max().unwrap_or(0);
+            (y, x, size)
+        };
+        // the lowest of some places
+        let tried: Vec<_> = (0..width).map(|_| place()).collect();
+        let supported = |&(y, x, size): &(usize, usize, [usize; 2])| top[x] == y && top[x + size[0] - 1] == y;
+        let Some((y, x, size)) = tried.into_iter().filter(supported).min() else { continue };
         top[x..x + size[0]].fill(y + size[1]);
         let lifted = if random.chance(0.05) { EDGE * size[0] as f64 } else { 0.0 };
         stones.push(Stone { at: [x, y], size, lifted });
