@@ -52,6 +52,12 @@
 #define FETI_CANDIDATES 1
 
 /**
+ * Null-space flag: motions that K resists softly, if at all; what they are and what resists them
+ * is computed from K.
+ */
+#define FETI_SOFT 2
+
+/**
  * Stiffness flag: the matrix is copied.
  */
 #define FETI_COPY 0
@@ -63,7 +69,8 @@
 #define FETI_BORROW 1
 
 /**
- * Null space of a body: vectors of the host that span it (FETI_EXACT).
+ * Null space of a body: vectors of the host that span it (FETI_EXACT), or soft motions
+ * (FETI_SOFT).
  */
 #define FETI_ORIGIN_EXACT 1
 
@@ -1217,12 +1224,16 @@ int32_t feti_problem_read(struct feti_problem *p, const char *path);
 int32_t feti_on_log(struct feti_problem *p, feti_log_fn callback, int32_t level, void *user);
 
 /**
- * Gives a basis of the null space of a body, or candidates for it.
+ * Gives a basis of the null space of a body, candidates for it, or motions that K resists softly.
  *
  * The basis is copied; calling again replaces it. Never called: the coordinates of the unknowns
  * give candidates (feti_body_coordinates), and without coordinates the library finds the null
- * space from K. That `K R = 0` holds is checked in feti_setup. After a failure the body keeps what
- * it had.
+ * space from K. That `K R = 0` holds is checked in feti_setup. With FETI_SOFT it need not hold:
+ * weak springs, rounding of the entries of K and geometric stiffness may resist or drive the
+ * motions. The columns then choose the fixing unknowns; the motions, and the stiffness against
+ * them, are computed from K and taken into account exactly. FETI_UNSUPPORTED from feti_setup where
+ * K+ is the host's (feti_body_operator); FETI_INDEFINITE from feti_solve where the contact leaves
+ * a motion that is driven. After a failure the body keeps what it had.
  *
  * @param[in] p     (scalar) the handle
  * @param[in] body  (scalar) number of the body, from 0
@@ -1230,7 +1241,7 @@ int32_t feti_on_log(struct feti_problem *p, feti_log_fn callback, int32_t level,
  * @param[in] n     (scalar) unknowns of the body
  * @param[in] basis (ldr * r) column-major: R_ij is basis[i + ldr j]; may be NULL when r = 0
  * @param[in] ldr   (scalar) >= n
- * @param[in] flags (scalar) FETI_EXACT or FETI_CANDIDATES
+ * @param[in] flags (scalar) FETI_EXACT, FETI_CANDIDATES or FETI_SOFT
  *
  * Safety: The array has the given shape.
  */

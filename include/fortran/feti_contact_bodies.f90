@@ -70,7 +70,8 @@ contains
   !> Motions that cost the body no energy, K R = 0: the columns of R(n,r), length per unit amplitude.
   !>
   !> flags: FETI_EXACT, R spans the whole null space (r = 0: K is not singular); FETI_CANDIDATES, the null space
-  !> lies inside the span of R and the library finds which part is left by the supports. Either is verified.
+  !> lies inside the span of R and the library finds which part is left by the supports. Either is verified. FETI_SOFT,
+  !> weak springs, rounding or geometric stiffness resist or drive these motions: K decides what they are.
   !> Never called for a body without coordinates: the library finds the null space from K.
   recursive subroutine body_null_space(p, body, R, flags, stat, errmsg)
     type(feti_problem), intent(in) :: p

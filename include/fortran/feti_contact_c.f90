@@ -26,12 +26,15 @@ module feti_contact_c
   integer(c_int32_t), parameter, public :: FETI_EXACT = 0_c_int32_t
   !> Null-space flag: the null space lies in the span of the columns; the library selects.
   integer(c_int32_t), parameter, public :: FETI_CANDIDATES = 1_c_int32_t
+  !> Null-space flag: motions that K resists softly, if at all; what they are and what resists them is
+  !> computed from K.
+  integer(c_int32_t), parameter, public :: FETI_SOFT = 2_c_int32_t
   !> Stiffness flag: the matrix is copied.
   integer(c_int32_t), parameter, public :: FETI_COPY = 0_c_int32_t
   !> Stiffness flag: the values, and columns in 32 bits from 0, stay where the host has them, where their form
   !> allows it.
   integer(c_int32_t), parameter, public :: FETI_BORROW = 1_c_int32_t
-  !> Null space of a body: vectors of the host that span it (FETI_EXACT).
+  !> Null space of a body: vectors of the host that span it (FETI_EXACT), or soft motions (FETI_SOFT).
   integer(c_int32_t), parameter, public :: FETI_ORIGIN_EXACT = 1_c_int32_t
   !> Null space of a body: sought among vectors of the host (FETI_CANDIDATES).
   integer(c_int32_t), parameter, public :: FETI_ORIGIN_CANDIDATES = 2_c_int32_t
@@ -929,11 +932,16 @@ module feti_contact_c
       integer(c_int32_t) :: feti_on_log
     end function feti_on_log
 
-    !> Gives a basis of the null space of a body, or candidates for it.
+    !> Gives a basis of the null space of a body, candidates for it, or motions that K resists softly.
     !>
     !> The basis is copied; calling again replaces it. Never called: the coordinates of the unknowns give
     !> candidates (feti_body_coordinates), and without coordinates the library finds the null space from K.
-    !> That `K R = 0` holds is checked in feti_setup. After a failure the body keeps what it had.
+    !> That `K R = 0` holds is checked in feti_setup. With FETI_SOFT it need not hold: weak springs, rounding
+    !> of the entries of K and geometric stiffness may resist or drive the motions. The columns then choose
+    !> the fixing unknowns; the motions, and the stiffness against them, are computed from K and taken into
+    !> account exactly. FETI_UNSUPPORTED from feti_setup where K+ is the host's (feti_body_operator);
+    !> FETI_INDEFINITE from feti_solve where the contact leaves a motion that is driven. After a failure the
+    !> body keeps what it had.
     !>
     !> @param[in] p     (scalar) the handle
     !> @param[in] body  (scalar) number of the body, from 0
@@ -941,7 +949,7 @@ module feti_contact_c
     !> @param[in] n     (scalar) unknowns of the body
     !> @param[in] basis (ldr * r) column-major: R_ij is basis[i + ldr j]; may be NULL when r = 0
     !> @param[in] ldr   (scalar) >= n
-    !> @param[in] flags (scalar) FETI_EXACT or FETI_CANDIDATES
+    !> @param[in] flags (scalar) FETI_EXACT, FETI_CANDIDATES or FETI_SOFT
     !>
     !> Safety: The array has the given shape.
     function feti_body_null_space(p, body, r, n, basis, ldr, flags) bind(C, name="feti_body_null_space")

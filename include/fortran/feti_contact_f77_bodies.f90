@@ -109,8 +109,8 @@ recursive subroutine ftbvdn(ip, ibody, n, a, lda, ierr)
   ierr = told(feti_body_values_dense(handle(ip), from_zero(ibody), wide(n), a, wide(lda)))
 end subroutine
 
-!> Null space r(ldr,nr) of a body. iflag: FTEXCT, the columns span it (nr = 0: none, r is not read), or FTCAND, it lies in
-!> their span.
+!> Null space r(ldr,nr) of a body. iflag: FTEXCT, the columns span it (nr = 0: none, r is not read), FTCAND, it lies in
+!> their span, or FTSOFT, they are motions that K resists softly.
 recursive subroutine ftbnul(ip, ibody, nr, n, r, ldr, iflag, ierr)
   use feti_contact_f77_base
   implicit none

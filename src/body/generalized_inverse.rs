@@ -8,6 +8,7 @@ use std::sync::Arc;
 use crate::body::fixing::hold_as_well;
 use crate::body::null_space::ROUNDING as KNOWN;
 use crate::body::probe::{known_to, missing_mode, probe, Factor};
+use crate::body::soft::soft_motions;
 use crate::body::spectrum::Doubt;
 use crate::error::{Error, Kind, Result};
 use crate::linalg::cholesky::{inverse_columns, inverse_form};
@@ -17,6 +18,9 @@ use crate::linalg::{Analysis, Csr, Matrix, Multiple, Packed};
 pub struct GeneralizedInverse {
     /// `R_p`, n x r, with `R'DR = I`.
     pub null_space: Matrix,
+    /// `lambda_j = r_j'K r_j` of motions that K resists softly, 0 of the others; none where it resists none. K+ is that of a
+    /// K without it: see `soft`.
+    pub stiffness: Vec<f64>,
     /// Rounding of its vectors, against the fastest dof of each, no unit: what a row or a load has less of is nothing.
     pub rounding: f64,
     /// How far they are known, at least `rounding`: a motion that rows resist by less than this may be none.
@@ -53,6 +57,8 @@ pub struct Known {
     pub(super) fixing: Vec<usize>,
     /// The fixing dofs are those of the host.
     pub(super) given: bool,
+    /// K may resist the vectors, which need not be exact.
+    pub(super) soft: bool,
     pub(super) symbolic: Option<Arc<Symbolic>>,
     /// What rounding of the entries resists of it.
     pub(super) doubt: Option<Doubt>,
@@ -149,6 +155,15 @@ impl GeneralizedInverse {
         }
     }
 
+    /// The motions of the vectors that it has, and what K resists of them.
+    pub(super) fn softened(mut self, k: &Multiple) -> Result<Self> {
+        let dofs: Vec<usize> = (0..k.order()).collect();
+        let parts = [(&dofs[..], self.null_space.cols)];
+        (self.null_space, self.stiffness) = soft_motions(&self.factor, k, self.null_space, &parts)?;
+        self.error = known_to(&self.factor, k, &self.null_space, &parts)?;
+        Ok(self)
+    }
+
     /// The error of a null space that K does not map to zero but for rounding, as far as the factor enlarges it.
     pub(super) fn measured(mut self, k: &Multiple) -> Result<Self> {
         if self.error > KNOWN {
@@ -162,7 +177,8 @@ impl GeneralizedInverse {
 impl Known {
     /// `given`: the fixing dofs are those of the host.
     pub(super) fn of(k: Multiple, null_space: Matrix, error: f64, fixing: Vec<usize>, given: bool) -> Self {
-        Self { k, null_space, error, fixing, given, symbolic: None, doubt: None, retry: None }
+        let (soft, symbolic, doubt, retry) = (false, None, None, None);
+        Self { k, null_space, error, fixing, given, soft, symbolic, doubt, retry }
     }
 
     /// Dofs chosen for other values hold this body, too, unless much worse than its own would.
@@ -196,11 +212,12 @@ impl Known {
             let missing = || missing_mode(breakdown.dof, breakdown.relative_pivot, self.null_space.cols);
             breakdown.refused().unwrap_or_else(missing)
         })?;
-        let Self { k, null_space, error, fixing, doubt, .. } = self;
+        let Self { k, null_space, error, fixing, doubt, soft, .. } = self;
         let factor = Factor::Own(Arc::new(factor));
         let softness = probe(&factor, &k, &fixing, null_space.cols)?;
         let inverse = GeneralizedInverse {
             null_space,
+            stiffness: Vec::new(),
             rounding: KNOWN,
             error,
             fixing,
@@ -210,7 +227,7 @@ impl Known {
             misfit: None,
             factor,
         };
-        let inverse = inverse.measured(&k)?;
+        let inverse = if soft { inverse.softened(&k) } else { inverse.measured(&k) }?;
         Ok(Factorised { inverse, symbolic, further_analyses: 0, factorisations: 1 })
     }
 }

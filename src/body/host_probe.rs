@@ -29,6 +29,7 @@ impl GeneralizedInverse {
         Probe::new(&k, &null_space)?.judge()?;
         Ok(Self {
             null_space,
+            stiffness: Vec::new(),
             rounding: KNOWN,
             error,
             fixing: Vec::new(),

@@ -18,6 +18,7 @@ mod plan;
 mod probe;
 mod rigid_modes;
 mod search;
+mod soft;
 mod spectrum;
 mod stiffness;
 mod storage;

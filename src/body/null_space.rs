@@ -16,6 +16,8 @@ pub enum Modes {
     Exact,
     /// The null space lies in their span.
     Candidates,
+    /// Motions that K resists softly, if at all: they need not be exact, and choose the unknowns held.
+    Soft,
 }
 
 /// n x r, any scaling of the columns.
@@ -81,6 +83,10 @@ pub fn verified<K: Products>(k: &K, input: &NullSpaceInput, tolerance: f64) -> R
             let found = kernel_by_parts(k, &input.vectors, &[(&dofs, input.vectors.cols)])?;
             exact(&found.kernel.columns(0..found.counts[0]))
         }
+        Modes::Soft => {
+            let part = FreePart { dofs: &dofs, count: input.vectors.cols, tolerance: 0.0 };
+            Ok(Verified { basis: orthonormal_by_parts(k, &input.vectors, &[part])?, error: ROUNDING })
+        }
     }
 }
 
@@ -95,19 +101,7 @@ pub struct FreePart<'a> {
 /// `|A z| <= tolerance | |A| |z| |`, or rounding, for an orthonormal basis z of the span of `D^1/2 R`, part by part: column
 /// j of `vectors` has the null vectors j of all parts. The cost grows with the number of parts, not with its square.
 pub fn verified_by_parts<K: Products>(k: &K, vectors: &Matrix, parts: &[FreePart<'_>]) -> Result<Verified> {
-    let root = |i: usize| k.metric(i, 1.0).sqrt();
-    let mut basis = Matrix::zeros(vectors.rows, vectors.cols)?;
-    for &FreePart { dofs, count, .. } in parts {
-        let own = Matrix::from_fn(dofs.len(), count, |at, j| root(dofs[at]) * vectors.get(dofs[at], j))?;
-        let own = own.orthonormalised(DEPENDENT);
-        if own.cols < count {
-            let what = format!("the {count} vectors span {} dimensions only", own.cols);
-            return Err(Error::new(Kind::NullSpace, what).value(own.cols as f64).limit(count as f64));
-        }
-        for j in 0..count {
-            own.col(j).iter().zip(dofs).for_each(|(v, &i)| basis.set(i, j, v / root(i)));
-        }
-    }
+    let basis = orthonormal_by_parts(k, vectors, parts)?;
     let (image, terms) = k.mul_columns(&basis)?;
     let mut error = ROUNDING;
     let weight = |i: usize| 1.0 / k.metric(i, 1.0);
@@ -130,6 +124,24 @@ pub fn verified_by_parts<K: Products>(k: &K, vectors: &Matrix, parts: &[FreePart
         }
     }
     Ok(Verified { basis, error })
+}
+
+/// A basis of the span with `R'DR = I`, part by part.
+pub fn orthonormal_by_parts<K: Products>(k: &K, vectors: &Matrix, parts: &[FreePart<'_>]) -> Result<Matrix> {
+    let root = |i: usize| k.metric(i, 1.0).sqrt();
+    let mut basis = Matrix::zeros(vectors.rows, vectors.cols)?;
+    for &FreePart { dofs, count, .. } in parts {
+        let own = Matrix::from_fn(dofs.len(), count, |at, j| root(dofs[at]) * vectors.get(dofs[at], j))?;
+        let own = own.orthonormalised(DEPENDENT);
+        if own.cols < count {
+            let what = format!("the {count} vectors span {} dimensions only", own.cols);
+            return Err(Error::new(Kind::NullSpace, what).value(own.cols as f64).limit(count as f64));
+        }
+        for j in 0..count {
+            own.col(j).iter().zip(dofs).for_each(|(v, &i)| basis.set(i, j, v / root(i)));
+        }
+    }
+    Ok(basis)
 }
 
 /// The null vectors of all parts, n x r, from those in common columns. `parts`: dofs and number of null vectors.

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use crate::body::fixing::{fixing_dofs, given_dofs};
 use crate::body::generalized_inverse::{Factorised, GeneralizedInverse, Known, Layout, Retry, Symbolic};
-use crate::body::null_space::{verified, NullSpaceInput, Verified, ROUNDING as KNOWN};
+use crate::body::null_space::{verified, Modes, NullSpaceInput, Verified, ROUNDING as KNOWN};
 use crate::body::search::Search;
 use crate::error::{Error, Kind, Result};
 use crate::linalg::Multiple;
@@ -37,7 +37,8 @@ impl GeneralizedInverse {
             Some(given) => given_dofs(&null_space, &root, given)?,
             None => fixing_dofs(&null_space, &root)?,
         };
-        Ok(Plan::Known(Known::of(k, null_space, error, fixing, given)))
+        let soft = input.modes == Modes::Soft;
+        Ok(Plan::Known(Known { soft, ..Known::of(k, null_space, error, fixing, given) }))
     }
 
     /// The same where nothing is known about the null space.
@@ -99,10 +100,16 @@ impl Plan {
     /// plan, where it has one and the other did not have to be sought.
     pub fn with_factor_of(self, other: &GeneralizedInverse) -> Result<GeneralizedInverse> {
         match self {
-            Self::Known(Known { k, null_space, error, doubt, .. }) if other.gap.is_none() => {
+            Self::Known(Known { k, null_space, error, doubt, soft, .. }) if other.gap.is_none() => {
                 let doubts = doubt.into_iter().collect();
-                let own = GeneralizedInverse { null_space, rounding: KNOWN, error, doubts, ..other.clone() };
-                own.measured(&k)
+                let (rounding, stiffness) = (KNOWN, Vec::new());
+                let own =
+                    GeneralizedInverse { null_space, stiffness, rounding, error, doubts, ..other.clone() };
+                if soft {
+                    own.softened(&k)
+                } else {
+                    own.measured(&k)
+                }
             }
             Self::Known(_) | Self::Search(_) => Ok(other.clone()),
         }

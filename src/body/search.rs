@@ -320,6 +320,7 @@ impl Search {
         let error = known_to(&factor, &self.k, &basis, &counts)?;
         Ok(GeneralizedInverse {
             null_space,
+            stiffness: Vec::new(),
             rounding: error.min(MOST_ROUNDING),
             error,
             fixing,

@@ -3,11 +3,13 @@
 use crate::certificate::deformation::Deformation;
 use crate::certificate::energy::Energies;
 use crate::certificate::field::Field;
-use crate::certificate::{positive, share, Certificate, Entry, NOISE};
+use crate::certificate::{positive, share, BodyData, Certificate, Entry, NOISE};
 use crate::constraints::{RowKind, RowSet};
 use crate::error::Result;
+use crate::linalg::twofold::Twofold;
 use crate::linalg::vector::{ratio, weighted_norm};
 use crate::linalg::Matrix;
+use crate::platform::memory::filled;
 
 /// The part of the forces of the island that rounding may excuse in the equilibrium of one body: where a body has moved so
 /// far that its strain is lost, the answer is not known.
@@ -234,13 +236,25 @@ fn balance(field: &Field, forces: &Forces, p: usize) -> Result<f64> {
     let mut resultants = body.null_space.mul_transposed(&rest);
     let weight = field.unit / body.unit;
     let ratio = share(weighted_norm(&resultants, |_| weight), allowed);
-    if ratio <= 1.0 {
+    if ratio <= 1.0 && !body.soft {
         return Ok(ratio);
     }
-    let resisted = resisted(field, p)?;
     let u = field.free(p, |j| field.answer.u[j]);
-    resultants.iter_mut().zip(resisted.mul_transposed(&u)).for_each(|(left, held)| *left -= held);
+    let held = if body.soft { held_softly(body, &u)? } else { resisted(field, p)?.mul_transposed(&u) };
+    resultants.iter_mut().zip(held).for_each(|(left, held)| *left -= held);
     Ok(share(weighted_norm(&resultants, |_| weight), allowed))
+}
+
+/// `(K R)'u` of a body, r, in twice the digits: of a weak spring its terms leave little, and where K R is rounding of R it adds up
+/// to nothing, however far u is.
+fn held_softly(body: &BodyData, u: &[f64]) -> Result<Vec<f64>> {
+    let by_motion = |k: usize| {
+        let mut image = filled(u.len(), Twofold::default(), "the balance of a body")?;
+        body.stiffness.add_twofold(1.0, body.null_space.col(k), &mut image)?;
+        let image: Vec<f64> = image.into_iter().map(Twofold::value).collect();
+        Ok(Twofold::dot(&image, u))
+    };
+    (0..body.null_space.cols).map(by_motion).collect()
 }
 
 /// `K R` of body p, n_p x r, force / length; 0 where it is rounding.

@@ -66,6 +66,8 @@ pub struct BodyData<'a> {
     pub load: Option<&'a [f64]>,
     /// R_p, n_p x r, no unit, with `R'DR = unit`.
     pub null_space: &'a Matrix,
+    /// K resists or drives motions of R, which are exact: `(K R)'u` is part of their balance.
+    pub soft: bool,
     /// Force / length, also the metric of dofs without stiffness.
     pub unit: f64,
     /// Unknowns of the body held so stiffly that their neighbours count for nothing, ascending: see [`grounded`].

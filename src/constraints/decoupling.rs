@@ -78,8 +78,9 @@ impl Decoupling {
         c
     }
 
-    /// `lambda = L'^-1 lambda'`
+    /// `lambda = L'^-1 lambda'`, without what follows the rows.
     pub fn solve_transposed(&self, mut x: Vec<f64>) -> Vec<f64> {
+        x.truncate(self.rows.rows());
         for i in (0..x.len()).rev() {
             let value = x[i] / self.diagonal(i);
             x[i] = value;
@@ -88,9 +89,9 @@ impl Decoupling {
         x
     }
 
-    /// `c = L c'`
+    /// `c = L c'`, without what follows the rows.
     pub fn apply(&self, c: &[f64]) -> Vec<f64> {
-        (0..c.len()).map(|i| self.rows.row_dot(i, c)).collect()
+        (0..self.rows.rows()).map(|i| self.rows.row_dot(i, c)).collect()
     }
 
     /// `lambda' = L'lambda`

@@ -14,6 +14,7 @@ mod multiples;
 mod operator;
 mod preconditioner;
 mod reuse;
+mod springs;
 
 pub use cost::{all_bytes, implicit_bodies, Size};
 pub use coupling::dependent_rows;
@@ -26,6 +27,7 @@ use std::sync::Arc;
 use crate::body::GeneralizedInverse;
 use crate::dual::multiples::Multiples;
 use crate::dual::reuse::Reuse;
+use crate::dual::springs::{add_springs, driven};
 use crate::error::Result;
 use crate::linalg::vector::{dot, norm_max, power_of_two_below, weighted_norm};
 use crate::linalg::{Csr, Packed};
@@ -65,6 +67,10 @@ pub struct Dual {
     pub coarse: Csr,
     /// First mode of each body.
     pub blocks: Vec<usize>,
+    /// Springs of the bodies: the last rows, of no unknown, which the host does not know.
+    pub springs: usize,
+    /// Modes that K drives, with the stiffness against them, < 0, for G lambda and alpha as they are here.
+    pub driven: Vec<(usize, f64)>,
     /// What became of the columns of all `F_p`.
     pub columns: ColumnCounts,
 }
@@ -128,17 +134,20 @@ impl Draft {
 
     /// The dual problem with the operators that have been assembled; `compliance` is the diagonal of C, m entries. `balanced`:
     /// `|G_p|` is in [1, 2) for every body that rows touch; else it is that of R_p as it is.
-    pub fn finish(self, operators: Vec<Option<Packed>>, compliance: Vec<f64>, balanced: bool) -> Dual {
+    pub fn finish(self, operators: Vec<Option<Packed>>, mut compliance: Vec<f64>, balanced: bool) -> Dual {
         let columns = self.distinct.iter().filter_map(|(_, reuse)| reuse.as_ref()).map(Reuse::columns).sum();
         let mut subdomains = self.subdomains;
         subdomains.iter_mut().zip(operators).for_each(|(s, operator)| s.operator = operator);
         let modes = subdomains.last().map_or(0, |s| s.modes.end);
         let mut coarse = coarse(&subdomains, compliance.len(), modes);
+        let springs = add_springs(&subdomains, &mut coarse);
+        compliance.resize(compliance.len() + springs, 1.0);
         if balanced {
             scale_by_body(&mut subdomains, &mut coarse);
         }
+        let driven = driven(&subdomains);
         let blocks = subdomains.iter().map(|own| own.modes.start).collect();
-        Dual { subdomains, compliance, coarse, blocks, columns }
+        Dual { subdomains, compliance, coarse, blocks, springs, driven, columns }
     }
 }
 

@@ -53,8 +53,12 @@ impl Preconditioner {
         Ok(Self { rows, compliance, weight, stiffness, coupling, face: Mutex::new(None) })
     }
 
-    /// `z = M_F r` on the rows that are not held, 0 on the others.
+    /// `z = M_F r` on the rows that are not held, 0 on the others. On springs of bodies, the last rows, F is 1 and so is M_F.
     pub fn apply(&self, held: &[bool], r: &[f64], z: &mut [f64]) -> Result<()> {
+        let rows = self.compliance.len();
+        let ((held, _), (r, springs)) = (held.split_at(rows), r.split_at(rows));
+        let (z, rest) = z.split_at_mut(rows);
+        rest.copy_from_slice(springs);
         z.fill(0.0);
         let selected = self.select(held)?;
         let Some(face) = selected.as_ref() else { return Ok(()) };

@@ -57,6 +57,10 @@ fn host_inverse(body: &Body, tolerance: f64) -> Result<GeneralizedInverse> {
     }
     let k = HostMultiple { operator, unit: body.unit() };
     if let Some(given) = &body.null_space {
+        if given.modes == Modes::Soft {
+            let what = "soft motions were given, and K+ of this body is the host's";
+            return Err(Error::new(Kind::Unsupported, what));
+        }
         return GeneralizedInverse::of_host(k, given, tolerance);
     }
     let missing = || Error::new(Kind::State, "the null space has not been given");

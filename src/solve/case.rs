@@ -35,6 +35,7 @@ impl<'a> Case<'a> {
                 stiffness: body.k().ok_or_else(missing)?,
                 load: body.load.as_deref(),
                 null_space: &inverse.kplus.null_space,
+                soft: inverse.kplus.stiffness.iter().any(|stiffness| *stiffness != 0.0),
                 unit: body.without(island.unit),
                 grounded: &inverse.grounded,
             });

@@ -4,6 +4,7 @@ use std::ops::Range;
 
 use crate::constraints::RowKind;
 use crate::linalg::vector::weighted_norm;
+use crate::linalg::Operator;
 use crate::setup::Ready;
 
 /// A force below this part of all forces on each of the bodies that its row touches is rounding, and holds no motion; ...
@@ -11,7 +12,7 @@ const ROUNDING: f64 = 1e-12;
 /// ... on bodies without load, whose forces may be nothing but rounding of those of others, so is one below this part of all forces.
 const IDLE: f64 = 64.0 * f64::EPSILON;
 
-/// Groups of contact rows of which none carries a force, but for rounding; `load` is that of all unknowns, force.
+/// Rows of the dual: groups of contact rows of which none carries a force, but for rounding; `load` is that of all unknowns, force.
 pub fn without_force(ready: &Ready, load: &[f64], lambda: &[f64], mu: &[f64]) -> Vec<bool> {
     let (rows, island) = (&ready.rows, &ready.island);
     let mut push = vec![0.0; load.len()];
@@ -35,5 +36,6 @@ pub fn without_force(ready: &Ready, load: &[f64], lambda: &[f64], mu: &[f64]) ->
             held[group] = false;
         }
     }
+    held.resize(ready.dual.order(), false);
     held
 }

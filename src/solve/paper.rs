@@ -59,7 +59,7 @@ pub struct HostUnits {
     parameters: Parameters,
     /// 2^p
     unit: f64,
-    /// s_i of every group.
+    /// s_i of every group, 1 of springs of bodies.
     scale: Vec<f64>,
     /// T with `R_host = R T` of every body, and its place among all modes.
     basis: Vec<(std::ops::Range<usize>, Matrix)>,
@@ -68,7 +68,8 @@ pub struct HostUnits {
 impl HostUnits {
     pub fn new(case: Case, gaps: &Gaps, parameters: Parameters) -> Result<Self> {
         let ready = case.ready;
-        let scale = gaps.holder.iter().map(|&i| ready.rows.scaling.scale[i]).collect();
+        let mut scale: Vec<f64> = gaps.holder.iter().map(|&i| ready.rows.scaling.scale[i]).collect();
+        scale.resize(ready.dual.order(), 1.0);
         let mut basis = Vec::with_capacity(ready.island.bodies.len());
         let Island { bodies, ranges, unit, .. } = &ready.island;
         for (k, (&p, range)) in bodies.iter().zip(ranges).enumerate() {

@@ -2,6 +2,7 @@
 
 use crate::constraints::RowKind;
 use crate::error::Result;
+use crate::linalg::Operator;
 use crate::progress::Stops;
 use crate::setup::Ready;
 use crate::solve::case::Case;
@@ -18,7 +19,7 @@ pub const FAR: f64 = 1e4;
 
 /// Gaps of all groups; refuses rows whose gaps no displacement satisfies. `moved` is how far the loads move a row at most.
 pub fn presolve(case: Case, moved: f64, stops: &Stops) -> Result<Gaps> {
-    let Ready { rows, island, .. } = case.ready;
+    let Ready { rows, island, dual, .. } = case.ready;
     let rhs = island.contact.rows.rhs.iter().chain(&island.equalities.rows.rhs);
     let scaled: Vec<f64> = rhs.zip(&rows.scaling.scale).map(|(c, s)| c * s).collect();
     let leaders = &rows.scaling.grouping.leaders;
@@ -61,5 +62,6 @@ pub fn presolve(case: Case, moved: f64, stops: &Stops) -> Result<Gaps> {
     gaps.dual = rows.scaling.decoupling.solve(gaps.value.clone());
     gaps.far =
         gaps.value.iter().zip(&gaps.bounded).map(|(c, bounded)| *bounded && *c > FAR * reach).collect();
+    gaps.add_springs(dual.order());
     Ok(gaps)
 }

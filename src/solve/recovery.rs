@@ -142,11 +142,11 @@ impl<'a> Recovery<'a> {
         Ok(left.into_iter().map(Twofold::value).collect())
     }
 
-    /// `c + C x - B u` of the rows of the dual, u being the sum of `parts`.
+    /// `c + C x - B u` of the rows of the dual, u being the sum of `parts`; 0 of springs of bodies, which are part of K.
     pub fn gaps_left(&self, parts: &[&[f64]], x: &[f64]) -> Vec<f64> {
         let rows = &self.ready.rows;
         let (lambda, mu) = self.forces_of_host(x);
-        rows.scaling.lengths_to_dual(&self.scaled.gaps.holder, |holder| {
+        let mut left = rows.scaling.lengths_to_dual(&self.scaled.gaps.holder, |holder| {
             let (set, i, force) = match holder.checked_sub(rows.contact) {
                 None => (self.data.contact, holder, lambda[holder]),
                 Some(i) => (self.data.equalities, i, mu[i]),
@@ -157,7 +157,9 @@ impl<'a> Recovery<'a> {
                 set.matrix.row(i).for_each(|(j, v)| left.add_product(-v, part[j]));
             }
             left.value()
-        })
+        });
+        left.resize(x.len(), 0.0);
+        left
     }
 
     /// Of every body, whether the motion is larger than v and K resists it by rounding alone, if need be once it is cleaned.

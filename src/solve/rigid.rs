@@ -98,6 +98,7 @@ mod tests {
             stiffness,
             load: None,
             null_space: &null_space,
+            soft: false,
             unit: 1.0,
             grounded: &[],
         });

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use crate::error::Result;
+use crate::linalg::Operator;
 use crate::setup::Ready;
 use crate::solve::answer::Answer;
 
@@ -30,11 +31,13 @@ impl Start {
         if multipliers == [None, None] {
             multipliers = self.previous.as_deref().map_or([None, None], |a| [Some(&a.lambda), Some(&a.mu)]);
         }
-        ready.rows.scaling.forces_to_dual(|i| {
+        let mut x = ready.rows.scaling.forces_to_dual(|i| {
             let (kind, row) = ready.island.kind_and_row(i);
             // where the last solve has left none
             let known = multipliers[kind as usize].map(|all| all[row]).filter(|v| v.is_finite());
             known.unwrap_or(0.0)
-        })
+        })?;
+        x.resize(ready.dual.order(), 0.0);
+        Ok(x)
     }
 }

@@ -80,8 +80,8 @@ impl Problem {
         let k = given.body.stiffness.as_deref();
         let components = k.map(|_| self.components(body)).transpose()?.map(|(_, number)| number);
         let origin = match (&given.body.null_space, &given.body.coordinates) {
-            (Some(r), _) if r.modes == Modes::Exact => Origin::Given,
-            (Some(_), _) => Origin::Candidates,
+            (Some(r), _) if r.modes == Modes::Candidates => Origin::Candidates,
+            (Some(_), _) => Origin::Given,
             // where coordinates did not fit
             (None, _)
                 if self.prepared.inverse(&self.model, body).is_some_and(|of| of.kplus.misfit.is_some()) =>

@@ -261,6 +261,7 @@ impl DenseModel {
                 stiffness: (&matrices[p]).into(),
                 load: Some(&part.load),
                 null_space: &spaces[p],
+                soft: false,
                 unit: part.unit(),
                 grounded: &grounded[p],
             });

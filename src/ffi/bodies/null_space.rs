@@ -3,15 +3,18 @@
 use crate::error::Error;
 use crate::ffi::bodies::body::body_of_order;
 use crate::ffi::boundary::{call, column_major, count, enter, id, input, meaning, numbers, same, Output};
-use crate::ffi::header::types::{feti_problem, FETI_CANDIDATES, FETI_EXACT};
+use crate::ffi::header::types::{feti_problem, FETI_CANDIDATES, FETI_EXACT, FETI_SOFT};
 use crate::platform::memory::reserved;
 use crate::solver::Modes;
 
-/// Gives a basis of the null space of a body, or candidates for it.
+/// Gives a basis of the null space of a body, candidates for it, or motions that K resists softly.
 ///
 /// The basis is copied; calling again replaces it. Never called: the coordinates of the unknowns give candidates
 /// (feti_body_coordinates), and without coordinates the library finds the null space from K. That `K R = 0` holds is
-/// checked in feti_setup. After a failure the body keeps what it had.
+/// checked in feti_setup. With FETI_SOFT it need not hold: weak springs, rounding of the entries of K and geometric stiffness
+/// may resist or drive the motions. The columns then choose the fixing unknowns; the motions, and the stiffness against
+/// them, are computed from K and taken into account exactly. FETI_UNSUPPORTED from feti_setup where K+ is the host's
+/// (feti_body_operator); FETI_INDEFINITE from feti_solve where the contact leaves a motion that is driven. After a failure the body keeps what it had.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|
@@ -21,7 +24,7 @@ use crate::solver::Modes;
 /// | `n` | in | scalar | unknowns of the body |
 /// | `basis` | in | ldr * r | column-major: R_ij is basis[i + ldr j]; may be NULL when r = 0 |
 /// | `ldr` | in | scalar | >= n |
-/// | `flags` | in | scalar | FETI_EXACT or FETI_CANDIDATES |
+/// | `flags` | in | scalar | FETI_EXACT, FETI_CANDIDATES or FETI_SOFT |
 ///
 /// # Safety
 /// The array has the given shape.
@@ -38,8 +41,9 @@ pub unsafe extern "C" fn feti_body_null_space(
     enter(p, call!(feti_body_null_space(p, body, r, n, basis, ldr, flags)), |problem| {
         let (body, n) = body_of_order(problem, body, n)?;
         let r = count(r, "r")?;
-        let known = [(FETI_EXACT, Modes::Exact), (FETI_CANDIDATES, Modes::Candidates)];
-        let modes = meaning(flags, "flags", &known, "neither FETI_EXACT nor FETI_CANDIDATES")?;
+        let known =
+            [(FETI_EXACT, Modes::Exact), (FETI_CANDIDATES, Modes::Candidates), (FETI_SOFT, Modes::Soft)];
+        let modes = meaning(flags, "flags", &known, "none of FETI_EXACT, FETI_CANDIDATES, FETI_SOFT")?;
         let (entries, ldr) = column_major(n, r, ldr, "ldr")?;
         // SAFETY: ldr (r - 1) + n entries by the caller's word.
         problem.set_null_space(body, n, r, unsafe { input(basis, entries, "basis") }?, ldr, modes)

@@ -19,13 +19,15 @@ pub const FETI_UPPER: i32 = 2;
 pub const FETI_EXACT: i32 = 0;
 /// Null-space flag: the null space lies in the span of the columns; the library selects.
 pub const FETI_CANDIDATES: i32 = 1;
+/// Null-space flag: motions that K resists softly, if at all; what they are and what resists them is computed from K.
+pub const FETI_SOFT: i32 = 2;
 
 /// Stiffness flag: the matrix is copied.
 pub const FETI_COPY: i32 = 0;
 /// Stiffness flag: the values, and columns in 32 bits from 0, stay where the host has them, where their form allows it.
 pub const FETI_BORROW: i32 = 1;
 
-/// Null space of a body: vectors of the host that span it (FETI_EXACT).
+/// Null space of a body: vectors of the host that span it (FETI_EXACT), or soft motions (FETI_SOFT).
 pub const FETI_ORIGIN_EXACT: i32 = 1;
 /// Null space of a body: sought among vectors of the host (FETI_CANDIDATES).
 pub const FETI_ORIGIN_CANDIDATES: i32 = 2;

@@ -10,7 +10,7 @@ use crate::model::file::format::{
     Tag, BODY, COORDINATES, FIXING, LOAD, NULL_SPACE, NUMBERING, OPTIONS, ROWS, STIFFNESS,
 };
 use crate::model::file::input::{saturated, Input, OpenSection};
-use crate::model::file::write::{CANDIDATES, EQUALITY, EXACT, INEQUALITY};
+use crate::model::file::write::{CANDIDATES, EQUALITY, EXACT, INEQUALITY, SOFT};
 use crate::platform::memory::reserved;
 
 /// Reads a problem of `length` bytes.
@@ -87,6 +87,7 @@ impl SectionContent {
         let modes = match input.number(open)? {
             EXACT => Modes::Exact,
             CANDIDATES => Modes::Candidates,
+            SOFT => Modes::Soft,
             number => return Err(input.wrong(open, &format!("{number} is no kind of null space"))),
         };
         let basis = input.reals(open, n.saturating_mul(r))?;

@@ -13,6 +13,7 @@ use crate::model::file::format::{
 /// Numbers of the format.
 pub const EXACT: u64 = 0;
 pub const CANDIDATES: u64 = 1;
+pub const SOFT: u64 = 2;
 pub const INEQUALITY: u64 = 1;
 pub const EQUALITY: u64 = 2;
 
@@ -152,7 +153,11 @@ fn of_body(given: &GivenBody) -> impl Iterator<Item = Section<'_>> {
         Section { tag: STIFFNESS, pieces: sizes.into_iter().chain(arrays).collect() }
     });
     let null_space = body.null_space.as_ref().map(|r| {
-        let modes = if r.modes == Modes::Exact { EXACT } else { CANDIDATES };
+        let modes = match r.modes {
+            Modes::Exact => EXACT,
+            Modes::Candidates => CANDIDATES,
+            Modes::Soft => SOFT,
+        };
         let sizes = [count(r.vectors.rows), count(r.vectors.cols), Number(modes)];
         Section { tag: NULL_SPACE, pieces: sizes.into_iter().chain([Reals(&r.vectors.data)]).collect() }
     });

@@ -1,0 +1,176 @@
+//! Rigid motions that K resists softly: weak springs, rounding of its entries, geometric stiffness. With the unknowns x held
+//! and k free, as in (14)-(15),
+//!
+//! ```text
+//! R = [-K_kk^-1 K_kx; I] R_x,   K = K_0 + E_x S_x E_x',   K_0 R = 0,   R_x'S_x R_x = R'K R = diag(lambda)
+//! ```
+//!
+//! exactly, for the K given. K_0 floats, K+ of (15) is one of its generalised inverses, and S_x are springs at the unknowns that
+//! are held, where K+ is 0: beside `u = K+ (f - B'l) + R a` they resist a with the forces `lambda_j a_j`, and nothing else.
+
+use crate::body::null_space::{orthonormal_by_parts, FreePart, ROUNDING};
+use crate::body::probe::Factor;
+use crate::error::Result;
+use crate::linalg::dense::spectrum::symmetric_eigen;
+use crate::linalg::twofold::Twofold;
+use crate::linalg::{Matrix, Multiple};
+use crate::platform::memory::filled;
+
+const WHAT: &str = "the soft motions of a body";
+
+/// Dofs of every part and the number of its motions, which are in the first columns.
+type Parts<'a> = [(&'a [usize], usize)];
+
+/// What K does to motions.
+struct Resistance {
+    /// `K R`, rounded once.
+    image: Matrix,
+    /// `64 eps |r|'|K||r|`, part after part: less of `r'K r` is rounding.
+    noise: Vec<f64>,
+}
+
+/// Whether K resists some of the motions by more than rounding.
+pub fn are_resisted(k: &Multiple, r: &Matrix, parts: &Parts) -> Result<bool> {
+    let found = Resistance::of(k, r, parts)?;
+    Ok(found.diagonal(r, parts).iter().zip(&found.noise).any(|(stiffness, noise)| stiffness.abs() > *noise))
+}
+
+/// R of the span of `vectors` at the unknowns held, `R'DR = I` and R'K R diagonal in every part; and lambda, part after part, 0
+/// where it is rounding.
+pub fn soft_motions(
+    factor: &Factor,
+    k: &Multiple,
+    vectors: Matrix,
+    parts: &Parts,
+) -> Result<(Matrix, Vec<f64>)> {
+    let r = corrected(factor, k, vectors)?;
+    let mut r = corrected(factor, k, orthonormal(k, &r, parts)?)?;
+    let found = Resistance::of(k, &r, parts)?;
+    for &(dofs, count) in parts.iter().filter(|part| part.1 > 0) {
+        let (_, turn) = symmetric_eigen(&found.stiffness(&r, dofs, count)?)?;
+        let mut row = vec![0.0; count];
+        for &i in dofs {
+            (0..count).for_each(|b| row[b] = (0..count).map(|a| r.get(i, a) * turn.get(a, b)).sum());
+            (0..count).for_each(|b| r.set(i, b, row[b]));
+        }
+    }
+    let found = Resistance::of(k, &r, parts)?;
+    let known = found.diagonal(&r, parts).into_iter().zip(&found.noise);
+    let lambda = known.map(|(stiffness, noise)| if stiffness.abs() > *noise { stiffness } else { 0.0 });
+    Ok((r, lambda.collect()))
+}
+
+/// `R - K+ K R`, which is `[-K_kk^-1 K_kx; I] R_x` whatever R has at the other unknowns.
+fn corrected(factor: &Factor, k: &Multiple, mut r: Matrix) -> Result<Matrix> {
+    for j in 0..r.cols {
+        let mut image = product(k, r.col(j))?;
+        factor.solve(&mut image)?;
+        r.col_mut(j).iter_mut().zip(&image).for_each(|(r, x)| *r -= x);
+    }
+    Ok(r)
+}
+
+/// A basis of the span with `R'DR = I` in every part.
+fn orthonormal(k: &Multiple, r: &Matrix, parts: &Parts) -> Result<Matrix> {
+    let part = |&(dofs, count): &(_, usize)| FreePart { dofs, count, tolerance: 0.0 };
+    orthonormal_by_parts(k, r, &parts.iter().map(part).collect::<Vec<_>>())
+}
+
+/// `K v` in twice the digits: what is left of a soft motion is far below its terms.
+fn product(k: &Multiple, v: &[f64]) -> Result<Vec<f64>> {
+    let mut image = filled(v.len(), Twofold::default(), WHAT)?;
+    k.matrix.add_twofold(k.by, v, &mut image);
+    Ok(image.into_iter().map(Twofold::value).collect())
+}
+
+impl Resistance {
+    fn of(k: &Multiple, r: &Matrix, parts: &Parts) -> Result<Self> {
+        let (mut image, terms) = k.mul_columns(r)?;
+        for j in 0..r.cols {
+            image.col_mut(j).copy_from_slice(&product(k, r.col(j))?);
+        }
+        let size = |dofs: &[usize], j: usize| -> f64 {
+            dofs.iter().map(|&i| r.get(i, j).abs() * terms.get(i, j)).sum()
+        };
+        let noise = parts.iter().flat_map(|&(dofs, count)| (0..count).map(move |j| ROUNDING * size(dofs, j)));
+        Ok(Self { noise: noise.collect(), image })
+    }
+
+    /// `r_a'K r_b` over the dofs of a part.
+    fn entry(&self, r: &Matrix, dofs: &[usize], a: usize, b: usize) -> f64 {
+        let mut sum = Twofold::default();
+        dofs.iter().for_each(|&i| sum.add_product(r.get(i, a), self.image.get(i, b)));
+        sum.value()
+    }
+
+    /// `R'K R` of a part.
+    fn stiffness(&self, r: &Matrix, dofs: &[usize], count: usize) -> Result<Matrix> {
+        let entry = |a, b| self.entry(r, dofs, a, b);
+        Matrix::from_fn(count, count, |a, b| 0.5 * (entry(a, b) + entry(b, a)))
+    }
+
+    /// `r_j'K r_j`, part after part.
+    fn diagonal(&self, r: &Matrix, parts: &Parts) -> Vec<f64> {
+        let of = |&(dofs, count): &(&[usize], usize)| -> Vec<f64> {
+            (0..count).map(|j| self.entry(r, dofs, j, j)).collect()
+        };
+        parts.iter().flat_map(of).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::body::{GeneralizedInverse, Modes, NullSpaceInput};
+    use crate::linalg::Symmetric;
+
+    /// A chain of unit springs between n dofs, with a spring to the ground at either end.
+    fn chain(n: usize, ground: [f64; 2]) -> Multiple {
+        let mut k = Symmetric::empty();
+        for i in 0..n {
+            let own = f64::from(u8::from(i > 0)) + f64::from(u8::from(i + 1 < n));
+            let held = if i == 0 { ground[0] } else { 0.0 } + if i + 1 == n { ground[1] } else { 0.0 };
+            k.push_row((i > 0).then(|| (i - 1, -1.0)).into_iter().chain([(i, own + held)]));
+        }
+        k.into()
+    }
+
+    fn soft(k: &Multiple) -> GeneralizedInverse {
+        let n = k.order();
+        let vectors = Matrix::from_fn(n, 1, |i, _| 1.0 + 0.01 * i as f64).unwrap();
+        let input = NullSpaceInput { vectors, modes: Modes::Soft };
+        GeneralizedInverse::plan(k.clone(), &input, 1e-8).unwrap().execute().unwrap().inverse
+    }
+
+    /// K_0 = K - E_x S_x E_x' maps R to zero, with S_x = lambda / R_x^2 and R'DR = 1; R of a chain with a force at x alone is
+    /// linear on either side of it.
+    #[test]
+    fn motion_and_stiffness_are_those_of_dense_arithmetic() {
+        for ground in [1e-12, 1e-9, 1e-6, 1e-3, -1e-6] {
+            // as the diagonal has them
+            let springs = [ground, 3.0 * ground].map(|spring| (1.0 + spring) - 1.0);
+            let (n, k) = (7, chain(7, springs));
+            let inverse = soft(&k);
+            let (r, x) = (inverse.null_space.col(0), inverse.fixing[0]);
+            let (mut image, mut length) = (vec![0.0; n], 0.0);
+            k.mul(r, &mut image);
+            (0..n).for_each(|i| length += k.metric(i, 1.0) * r[i] * r[i]);
+            assert!((length - 1.0).abs() < 1e-13);
+            image[x] = 0.0;
+            assert!(image.iter().all(|v| v.abs() < 1e-15), "{ground:e}: {image:?}");
+            // springs in series with the chain on either side of x
+            let series = |spring: f64, links: usize| 1.0 / (1.0 / spring + links as f64);
+            let held = series(springs[0], x) + series(springs[1], n - 1 - x);
+            let expected = held * r[x] * r[x];
+            let found = inverse.stiffness[0];
+            assert!((found / expected - 1.0).abs() < 1e-12, "{ground:e}: {found:e} {expected:e}");
+        }
+    }
+
+    #[test]
+    fn what_is_rounding_of_the_entries_terms_is_no_stiffness() {
+        assert_eq!(soft(&chain(7, [0.0; 2])).stiffness, [0.0]);
+        assert_eq!(soft(&chain(7, [1e-16, 0.0])).stiffness, [0.0]);
+        assert!(soft(&chain(7, [1e-12, 0.0])).stiffness[0] > 0.0);
+    }
+}

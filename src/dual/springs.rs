@@ -1,0 +1,32 @@
+//! What K does to soft motions: springs that resist some, and forces that drive others.
+
+use crate::dual::Subdomain;
+use crate::linalg::Csr;
+
+/// The springs at the unknowns held of K+ that resist soft motions, `lambda_j a_j^2 / 2` with the amplitude a_j: compliant rows
+/// `a_j = mu / lambda_j` of no unknown, of which F has the diagonal alone and G one entry. Scaled by `lambda_j^1/2`.
+pub fn add_springs(subdomains: &[Subdomain], coarse: &mut Csr) -> usize {
+    let before = coarse.rows();
+    for s in subdomains {
+        let resisted = s.soft_modes().filter(|(_, stiffness)| *stiffness > 0.0);
+        resisted.for_each(|(mode, stiffness)| coarse.push_row([(mode, stiffness.sqrt())]));
+    }
+    coarse.rows() - before
+}
+
+/// Modes that K drives, with the stiffness against them for amplitudes as they are divided by the size of their body.
+pub fn driven(subdomains: &[Subdomain]) -> Vec<(usize, f64)> {
+    let of = |s: &Subdomain| {
+        let driven = s.soft_modes().filter(|(_, stiffness)| *stiffness < 0.0);
+        driven.map(|(mode, stiffness)| (mode, stiffness / (s.size * s.size))).collect::<Vec<_>>()
+    };
+    subdomains.iter().flat_map(of).collect()
+}
+
+impl Subdomain {
+    /// Modes with the stiffness against them, in the unit of forces of all bodies.
+    fn soft_modes(&self) -> impl Iterator<Item = (usize, f64)> + '_ {
+        let stiffness = self.kplus.stiffness.iter().map(|stiffness| stiffness / self.by);
+        self.modes.clone().zip(stiffness)
+    }
+}

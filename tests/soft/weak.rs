@@ -1,0 +1,173 @@
+//! Springs and rounding of 1e-12 to 1e-4 of K.
+
+use decks::{Deck, Rows};
+use feti_contact::solver::Modes;
+
+use crate::{column, difference, given, oracle, rounded, solved, with_springs, Solved};
+
+/// Shares of the largest K_ii, by decades.
+fn decades() -> impl Iterator<Item = f64> {
+    (-12..=-4).map(|decade| 10f64.powi(decade))
+}
+
+/// Right to 1e-8 against the dense answer, in at most 1.2 times as many products as without what resists the motions.
+fn claim(failed: &mut Vec<String>, what: &str, deck: &Deck, found: &Solved, plain: usize) {
+    let closed: Vec<usize> = (0..found.lambda.len()).filter(|&i| found.lambda[i] > 0.0).collect();
+    match oracle::solve(deck, &closed) {
+        Err(error) => failed.push(format!("{what}: {error}")),
+        Ok(truth) => {
+            let (forces, u) = (difference(&found.lambda, &truth.lambda), difference(&found.u, &truth.u));
+            println!("{what}: forces {forces:.1e} u {u:.1e} products {} of {plain}", found.products);
+            if !(forces <= 1e-8 && u <= 1e-8) {
+                failed.push(format!("{what}: forces {forces:.1e} u {u:.1e}"));
+            }
+        }
+    }
+    if found.products as f64 > (1.2 * plain as f64).ceil() {
+        failed.push(format!("{what}: {} products, {plain} without", found.products));
+    }
+}
+
+fn assert_all(what: &str, blocks: usize, change: impl Fn(Deck, f64) -> Deck) {
+    let mut failed = Vec::new();
+    let plain = solved(&mut given(&column(blocks), Modes::Exact)).unwrap().products;
+    for share in decades() {
+        let (deck, what) = (change(column(blocks), share), format!("{what} {share:e}, {blocks} blocks"));
+        match solved(&mut given(&deck, Modes::Soft)) {
+            Ok(found) => claim(&mut failed, &what, &deck, &found, plain),
+            Err(error) => failed.push(format!("{what}: {error}")),
+        }
+    }
+    assert!(failed.is_empty(), "{}", failed.join("\n"));
+}
+
+#[test]
+fn weak_springs_of_any_stiffness_under_soft_motions_give_the_forces_of_the_dense_answer() {
+    [1, 3].into_iter().for_each(|blocks| assert_all("springs", blocks, with_springs));
+}
+
+#[test]
+fn rounded_entries_and_weak_springs_under_soft_motions_give_the_forces_of_the_dense_answer() {
+    for blocks in [1, 3] {
+        assert_all("rounded to 10", blocks, |deck, share| rounded(with_springs(deck, share), 10));
+    }
+}
+
+#[test]
+fn rounded_entries_under_soft_motions_give_the_forces_of_the_dense_answer() {
+    let mut failed = Vec::new();
+    for blocks in [1, 3] {
+        let plain = solved(&mut given(&column(blocks), Modes::Exact)).unwrap().products;
+        for digits in 8..=12 {
+            let (deck, what) = (rounded(column(blocks), digits), format!("{digits} digits, {blocks} blocks"));
+            let found = solved(&mut given(&deck, Modes::Soft)).unwrap();
+            claim(&mut failed, &what, &deck, &found, plain);
+        }
+    }
+    assert!(failed.is_empty(), "{}", failed.join("\n"));
+}
+
+/// Nothing but the springs holds the load from aside: the blocks travel up to 1e4 times as far as they deform.
+#[test]
+fn a_load_that_weak_springs_alone_hold_is_held_by_them() {
+    let mut failed = Vec::new();
+    for decade in -8..=-4 {
+        let (share, mut deck) = (10f64.powi(decade), column(3));
+        deck.equalities = Rows::none(deck.dofs());
+        let deck = with_springs(deck, share);
+        match solved(&mut given(&deck, Modes::Soft)) {
+            Ok(found) => claim(&mut failed, &format!("held by springs {share:e}"), &deck, &found, 100),
+            Err(error) => failed.push(format!("{share:e}: {error}")),
+        }
+    }
+    assert!(failed.is_empty(), "{}", failed.join("\n"));
+}
+
+#[test]
+fn motions_that_nothing_resists_are_solved_as_an_exact_null_space() {
+    let (exact, soft) =
+        [Modes::Exact, Modes::Soft].map(|modes| solved(&mut given(&column(3), modes)).unwrap()).into();
+    assert!(difference(&soft.lambda, &exact.lambda) <= 1e-12 && difference(&soft.u, &exact.u) <= 1e-12);
+    assert_eq!(soft.products, exact.products);
+}
+
+/// Motions that are wrong by 1e-3 choose the same unknowns.
+#[test]
+fn soft_motions_need_not_be_exact() {
+    let deck = with_springs(column(2), 1e-9);
+    let mut wrong = deck.clone();
+    for body in &mut wrong.bodies {
+        for motion in body.null_space.iter_mut().flatten() {
+            motion.iter_mut().enumerate().for_each(|(i, v)| *v += 1e-3 * (i as f64).sin());
+        }
+    }
+    let [right, found] = [deck, wrong].map(|deck| solved(&mut given(&deck, Modes::Soft)).unwrap());
+    assert!(difference(&found.lambda, &right.lambda) <= 1e-10 && difference(&found.u, &right.u) <= 1e-10);
+}
+
+/// Forces times 1e7, lengths times 1e-3, K as both ask.
+#[test]
+fn units_change_nothing() {
+    let deck = with_springs(rounded(column(2), 10), 1e-8);
+    let (force, length) = (1e7, 1e-3);
+    let mut other = deck.clone();
+    for body in &mut other.bodies {
+        body.stiffness.val.iter_mut().for_each(|v| *v *= force / length);
+        body.load.iter_mut().for_each(|f| *f *= force);
+    }
+    other.contact.rhs.iter_mut().for_each(|c| *c *= length);
+    let [one, other] = [deck, other].map(|deck| solved(&mut given(&deck, Modes::Soft)).unwrap());
+    let scaled = |x: &[f64], by: f64| x.iter().map(|x| x * by).collect::<Vec<_>>();
+    assert!(difference(&other.lambda, &scaled(&one.lambda, force)) <= 1e-10);
+    assert!(difference(&other.u, &scaled(&one.u, length)) <= 1e-10);
+    assert_eq!(other.products, one.products);
+}
+
+#[test]
+fn any_number_of_threads_gives_the_same_bits() {
+    let deck = with_springs(rounded(column(4), 10), 1e-7);
+    let with = |threads: i64| {
+        let mut problem = given(&deck, Modes::Soft);
+        problem.set_i64("threads", threads).unwrap();
+        let found = solved(&mut problem).unwrap();
+        found.u.iter().chain(&found.lambda).map(|v| v.to_bits()).collect::<Vec<_>>()
+    };
+    assert!(with(1) == with(2) && with(1) == with(4));
+}
+
+/// What the host sees has its own rows alone, and the certificate of the answer is that of another code.
+#[test]
+fn springs_of_bodies_are_no_rows_of_the_host() {
+    let deck = with_springs(column(2), 1e-6);
+    let mut problem = given(&deck, Modes::Soft);
+    let found = solved(&mut problem).unwrap();
+    assert_eq!((found.lambda.len(), found.mu.len()), (deck.contact.len(), deck.equalities.len()));
+    assert_eq!(problem.gaps().unwrap().len(), deck.contact.len());
+    let certificate = problem.check(&found.u, &found.lambda, &found.mu).unwrap();
+    assert!(certificate.passed());
+    let mut wrong = found.lambda.clone();
+    wrong[0] *= 1.0 + 1e-6;
+    assert!(!problem.check(&found.u, &wrong, &found.mu).unwrap().passed());
+}
+
+#[test]
+fn every_method_and_option_knows_springs() {
+    let deck = with_springs(column(2), 1e-6);
+    let right = solved(&mut given(&deck, Modes::Soft)).unwrap();
+    for (option, value) in [
+        ("method", "smalbe"),
+        ("method", "paper-monotone"),
+        ("preconditioner", "lumped"),
+        ("preconditioner", "dirichlet"),
+        ("finish", "direct"),
+        ("dual_operator", "implicit"),
+        ("start", "previous"),
+    ] {
+        let mut problem = given(&deck, Modes::Soft);
+        problem.set_str(option, value).unwrap();
+        problem.solve().unwrap();
+        let found = solved(&mut problem).unwrap();
+        let error = difference(&found.lambda, &right.lambda);
+        assert!(error <= 1e-8, "{option} {value}: {error:.1e}");
+    }
+}
