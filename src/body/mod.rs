@@ -14,6 +14,7 @@ mod host_probe;
 mod in_order;
 mod last;
 mod null_space;
+mod part;
 mod plan;
 mod probe;
 mod rigid_modes;

@@ -14,8 +14,10 @@ use crate::body::last::{between_parts, spread, supported};
 use crate::body::null_space::{
     largest, one_column_each, refuse_overflow, verified_by_parts, FreePart, Verified,
 };
+use crate::body::part::{End, Soft};
 use crate::body::probe::{known_to, probe, Factor, MOST_ROUNDING, SINGULAR};
-use crate::body::spectrum::{cut, measured, to_measure, unclear, Doubt, MotionVerdict, Ritz};
+use crate::body::soft::{are_resisted, soft_motions};
+use crate::body::spectrum::{cut, may_be_weak, measured, to_measure};
 use crate::error::{Error, Kind, Result};
 use crate::linalg::cholesky::Trailing;
 use crate::linalg::dense::spectrum::symmetric_eigen;
@@ -49,24 +51,6 @@ pub struct Search {
     /// What the analysis depends on besides the pattern of K.
     pub(super) layout: Arc<Layout>,
     pub(super) symbolic: Option<Arc<Symbolic>>,
-}
-
-/// The end of the elimination of one part, and the eigenvalues of `D_tt^-1/2 S D_tt^-1/2` with their vectors, m x m.
-struct End {
-    schur: Matrix,
-    values: Vec<f64>,
-    vectors: Matrix,
-}
-
-/// What one part moves like without stiffness.
-struct Soft {
-    schur: Matrix,
-    /// m x r, the null vectors at t times D^1/2.
-    vectors: Matrix,
-    gap: f64,
-    /// What rounding of the entries may have left of `v'K v / v'D v`, no unit.
-    rounding: f64,
-    doubt: Option<Doubt>,
 }
 
 /// An attempt ends with K+, or at a dof that t must have.
@@ -232,7 +216,7 @@ impl Search {
         let first = ends.iter().zip(&candidates).map(|(end, q): (&End, _)| end.vectors.columns(0..*q));
         let ritz = measured(&self.k, self.digits, &parts, self.extended(factor, first)?)?;
         let parts = ends.into_iter().zip(&self.last).zip(ritz);
-        parts.map(|((end, last), ritz)| self.decided(end, last, &ritz)).collect()
+        parts.map(|((end, last), ritz)| end.decided(self.digits, last, &ritz)).collect()
     }
 
     /// Number of the motions to be measured.
@@ -242,39 +226,14 @@ impl Search {
             return Ok(to_measure(values));
         }
         self.definite(values[0] / values[values.len() - 1].abs().max(1.0), end, last)?;
-        Ok(0)
+        let weak = cut.is_some_and(|(dimension, _)| may_be_weak(values, dimension));
+        Ok(if weak { to_measure(values) } else { 0 })
     }
 
     /// An error where the softest motion of a part is resisted by so much less than nothing.
     fn definite(&self, relative_pivot: f64, end: &End, last: &[usize]) -> Result<()> {
         let dof = last[largest(end.vectors.col(0), |_| 1.0)];
         (Breakdown { dof, relative_pivot }).refused().map_or(Ok(()), Err)
-    }
-
-    fn decided(&self, end: End, last: &[usize], ritz: &Ritz) -> Result<Soft> {
-        let End { schur, values, vectors } = end;
-        let soft = |vectors, gap, rounding, doubt| Ok(Soft { schur, vectors, gap, rounding, doubt });
-        let Some(softest) = ritz.values.first() else {
-            // nothing is soft, or the eigenvalues at t have told
-            let (dimension, gap) = cut(&values).unwrap_or((0, f64::INFINITY));
-            return soft(vectors.columns(0..dimension), gap, 0.0, None);
-        };
-        let doubt = |motions, free| ritz.doubt(self.digits, motions, free);
-        let dof = last[largest(vectors.col(0), |_| 1.0)];
-        match ritz.judged(self.digits) {
-            MotionVerdict::Free { dimension, gap } => {
-                let (measured, mut turned) =
-                    (vectors.columns(0..ritz.values.len()), Matrix::zeros(last.len(), dimension)?);
-                (0..dimension).for_each(|j| measured.mul_add(1.0, ritz.turn.col(j), turned.col_mut(j)));
-                let rounding = ritz.noise[..dimension].iter().fold(0.0, |most: f64, v| most.max(*v));
-                soft(turned, gap, rounding, doubt(dimension, true))
-            }
-            MotionVerdict::Held { doubtful, gap } => {
-                soft(vectors.columns(0..0), gap, 0.0, doubt(doubtful, false))
-            }
-            MotionVerdict::Indefinite => Err(Breakdown { dof, relative_pivot: *softest }.indefinite()),
-            MotionVerdict::Unclear => Err(unclear(self.digits).dof(dof).value(*softest)),
-        }
     }
 
     /// Motions at t times D^1/2, extended without forces at the other dofs: column c has motion c of every part.
@@ -308,19 +267,20 @@ impl Search {
         let factor = Factor::Own(Arc::new(factor));
         let vectors = self.resisted_evenly(&factor, vectors)?;
         let part = |(dofs, part): (_, &Soft)| {
-            let tolerance = self.tolerance.max(part.rounding);
+            let tolerance = if part.weak > 0 { f64::INFINITY } else { self.tolerance.max(part.rounding) };
             FreePart { dofs: Vec::as_slice(dofs), count: part.vectors.cols, tolerance }
         };
         let parts: Vec<FreePart<'_>> = self.members.iter().zip(soft).map(part).collect();
         let Verified { basis, .. } = verified_by_parts(&self.k, &vectors, &parts)?;
         let counts: Vec<_> = parts.iter().map(|part| (part.dofs, part.count)).collect();
+        let (basis, stiffness) = self.resisted_softly(&factor, soft, basis, &counts)?;
         let null_space = one_column_each(&basis, &counts)?;
         let fixing = fixing.concat();
         let softness = probe(&factor, &self.k, &fixing, null_space.cols)?;
         let error = known_to(&factor, &self.k, &basis, &counts)?;
         Ok(GeneralizedInverse {
             null_space,
-            stiffness: Vec::new(),
+            stiffness,
             rounding: error.min(MOST_ROUNDING),
             error,
             fixing,
@@ -330,6 +290,24 @@ impl Search {
             doubts: soft.iter().filter_map(|part| part.doubt).collect(),
             factor,
         })
+    }
+
+    /// The motions that weak springs hold, and what these are: those that no gap tells from a null space are among its vectors.
+    fn resisted_softly(
+        &self,
+        factor: &Factor,
+        soft: &[Soft],
+        basis: Matrix,
+        parts: &[(&[usize], usize)],
+    ) -> Result<(Matrix, Vec<f64>)> {
+        let weak = soft.iter().any(|part| part.weak > 0);
+        if !weak && (self.digits.is_some() || !are_resisted(&self.k, &basis, parts)?) {
+            return Ok((basis, Vec::new()));
+        }
+        let (motions, mut stiffness) = soft_motions(factor, &self.k, basis, parts)?;
+        // what drives a motion by so little is rounding, unless the host knows better
+        stiffness.iter_mut().for_each(|stiffness| *stiffness = stiffness.max(0.0));
+        Ok((motions, stiffness))
     }
 
     /// Where rounding of the entries resists the null vectors r, all of it acts at the dofs t. What it is at the least lies

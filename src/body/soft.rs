@@ -32,7 +32,7 @@ struct Resistance {
 /// Whether K resists some of the motions by more than rounding.
 pub fn are_resisted(k: &Multiple, r: &Matrix, parts: &Parts) -> Result<bool> {
     let found = Resistance::of(k, r, parts)?;
-    Ok(found.diagonal(r, parts).iter().zip(&found.noise).any(|(stiffness, noise)| stiffness.abs() > *noise))
+    Ok(found.diagonal(r, parts).iter().zip(&found.noise).any(|(stiffness, noise)| *stiffness > *noise))
 }
 
 /// R of the span of `vectors` at the unknowns held, `R'DR = I` and R'K R diagonal in every part; and lambda, part after part, 0

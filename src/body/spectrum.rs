@@ -26,6 +26,10 @@ const DEVIATIONS: f64 = 5.0;
 const UNKNOWN: f64 = 1e-3;
 /// Rounding of so much of the softest other motion changes forces no more than the certificate lets them be wrong.
 const TRIFLE: f64 = 1e-6;
+/// Weak springs of a host hold the six rigid motions of a part, ...
+const RIGID: usize = 6;
+/// ... and resist them by less than this: 1e-6 of K at every unknown.
+const WEAK: f64 = 1e-5;
 /// theta below minus this is no rounding of products, whatever digits the entries have.
 const NEGATIVE: f64 = 1e-10;
 
@@ -105,6 +109,11 @@ pub fn cut(values: &[f64]) -> Option<(usize, f64)> {
     }
     let gaps = (1..m).filter(|&k| relative(k - 1) < SOFT).map(|k| (k, relative(k) / relative(k - 1)));
     gaps.reduce(|best, gap| if gap.1 > best.1 { gap } else { best }).filter(|(_, gap)| *gap >= GAP)
+}
+
+/// Whether motions beyond the softest `dimension` at t may be held by weak springs alone.
+pub fn may_be_weak(values: &[f64], dimension: usize) -> bool {
+    values.get(dimension).is_some_and(|value| *value < MEASURED * values[values.len() - 1])
 }
 
 /// How many of the softest motions at t are to be measured; none where none is soft.
@@ -216,6 +225,21 @@ impl Ritz {
         MotionVerdict::Held { doubtful, gap: values[0] / noise[0] }
     }
 
+    /// The first motions, by those that were measured.
+    pub fn turned(&self, measured: &Matrix, count: usize) -> Result<Matrix> {
+        let mut turned = Matrix::zeros(measured.rows, count)?;
+        (0..count).for_each(|j| measured.mul_add(1.0, self.turn.col(j), turned.col_mut(j)));
+        Ok(turned)
+    }
+
+    /// Motions that springs alone hold, so weak that they stand apart from the next one, beyond the first `free` ones.
+    pub fn weak(&self, free: usize) -> usize {
+        let values = &self.values;
+        let apart = |q: &usize| values[q - 1] <= WEAK && values[*q] >= GAP * values[q - 1].max(ROUNDING);
+        let most = (free + 1..values.len()).take_while(|q| *q <= RIGID).filter(apart).last();
+        most.map_or(0, |q| q - free)
+    }
+
     /// What is said of the first motions: of free ones where entries of all digits would make them supports, or where
     /// rounding is no trifle against the next one.
     pub fn doubt(&self, digits: Option<Digits>, motions: usize, free: bool) -> Option<Doubt> {
@@ -256,6 +280,20 @@ mod tests {
         let all = vec![noise; values.len()];
         let turn = Matrix::default();
         Ritz { values: values.to_vec(), products: vec![1e-15; all.len()], noise: all, turn }.judged(digits)
+    }
+
+    #[test]
+    fn weak_springs_end_where_motions_stand_apart_and_a_slender_body_has_none() {
+        let weak = |values: &[f64], free| {
+            let (noise, turn) = (vec![1e-15; values.len()], Matrix::default());
+            Ritz { values: values.to_vec(), products: noise.clone(), noise, turn }.weak(free)
+        };
+        assert_eq!(weak(&[1e-9, 2e-9, 3e-7, 1e-3], 0), 3);
+        assert_eq!(weak(&[0.0, 2e-9, 3e-7, 1e-3], 1), 2);
+        assert_eq!(weak(&[1e-12, 1e-8, 1e-8, 1e-3], 0), 3);
+        assert_eq!(weak(&[1e-7, 4e-6, 3e-5, 1e-3], 0), 0);
+        assert_eq!(weak(&[1e-4, 2e-1], 0), 0);
+        assert_eq!(weak(&[1e-9; 8], 0), 0);
     }
 
     #[test]

@@ -3,7 +3,7 @@
 use decks::{Deck, Rows};
 use feti_contact::solver::Modes;
 
-use crate::{column, difference, given, oracle, rounded, solved, with_springs, Solved};
+use crate::{column, difference, given, hand_over, oracle, rounded, solved, with_springs, Solved};
 
 /// Shares of the largest K_ii, by decades.
 fn decades() -> impl Iterator<Item = f64> {
@@ -17,7 +17,11 @@ fn claim(failed: &mut Vec<String>, what: &str, deck: &Deck, found: &Solved, plai
         Err(error) => failed.push(format!("{what}: {error}")),
         Ok(truth) => {
             let (forces, u) = (difference(&found.lambda, &truth.lambda), difference(&found.u, &truth.u));
-            println!("{what}: forces {forces:.1e} u {u:.1e} products {} of {plain}", found.products);
+            let most = truth.u.iter().fold(0.0, |m: f64, u| m.max(u.abs()));
+            println!(
+                "{what}: |u| {most:.1e} forces {forces:.1e} u {u:.1e} products {} of {plain}",
+                found.products
+            );
             if !(forces <= 1e-8 && u <= 1e-8) {
                 failed.push(format!("{what}: forces {forces:.1e} u {u:.1e}"));
             }
@@ -170,4 +174,24 @@ fn every_method_and_option_knows_springs() {
         let error = difference(&found.lambda, &right.lambda);
         assert!(error <= 1e-8, "{option} {value}: {error:.1e}");
     }
+}
+
+/// Without a word of the host.
+#[test]
+fn weak_springs_that_nobody_tells_of_are_found() {
+    let mut failed = Vec::new();
+    for blocks in [1, 3] {
+        let plain = solved(&mut hand_over::without_null_spaces(&column(blocks)).unwrap()).unwrap().products;
+        for share in decades().filter(|share| *share < 2e-6) {
+            let (deck, what) =
+                (with_springs(column(blocks), share), format!("found {share:e}, {blocks} blocks"));
+            let mut problem = hand_over::without_null_spaces(&deck).unwrap();
+            match solved(&mut problem) {
+                Ok(found) => claim(&mut failed, &what, &deck, &found, plain),
+                Err(error) => failed.push(format!("{what}: {error}")),
+            }
+            println!("{:?}", problem.null_space(0).unwrap().0);
+        }
+    }
+    assert!(failed.is_empty(), "{}", failed.join("\n"));
 }

@@ -1,0 +1,77 @@
+//! One connected part at the end of its elimination: which of its softest motions are its null space, and which of the others
+//! weak springs hold.
+
+use crate::body::digits::Digits;
+use crate::body::null_space::largest;
+use crate::body::spectrum::{cut, unclear, Doubt, MotionVerdict, Ritz};
+use crate::error::Result;
+use crate::linalg::{Breakdown, Matrix};
+
+/// The end of the elimination of one part, and the eigenvalues of `D_tt^-1/2 S D_tt^-1/2` with their vectors, m x m.
+pub struct End {
+    pub schur: Matrix,
+    pub values: Vec<f64>,
+    pub vectors: Matrix,
+}
+
+/// What one part moves like without stiffness.
+pub struct Soft {
+    pub schur: Matrix,
+    /// m x r, the null vectors at t times D^1/2.
+    pub vectors: Matrix,
+    pub gap: f64,
+    /// Weak springs hold the last ones.
+    pub weak: usize,
+    /// What rounding of the entries may have left of `v'K v / v'D v`, no unit.
+    pub rounding: f64,
+    pub doubt: Option<Doubt>,
+}
+
+impl End {
+    /// `ritz`: the softest motions measured, none where no question is left. `last`: the dofs t.
+    pub fn decided(self, digits: Option<Digits>, last: &[usize], ritz: &Ritz) -> Result<Soft> {
+        let measured = self.vectors.columns(0..ritz.values.len());
+        let mut soft = self.null_vectors(digits, &measured, last, ritz)?;
+        let free = soft.vectors.cols;
+        let told = soft.doubt.is_none() && (digits.is_none() || free == 0);
+        soft.weak = if told { ritz.weak(free) } else { 0 };
+        if soft.weak > 0 {
+            let q = free + soft.weak;
+            (soft.vectors, soft.gap) = (ritz.turned(&measured, q)?, ritz.values[q] / ritz.values[q - 1]);
+        }
+        Ok(soft)
+    }
+
+    fn null_vectors(
+        self,
+        digits: Option<Digits>,
+        measured: &Matrix,
+        last: &[usize],
+        ritz: &Ritz,
+    ) -> Result<Soft> {
+        let Self { schur, values, vectors } = self;
+        let dof = last[largest(vectors.col(0), |_| 1.0)];
+        let soft = |vectors, gap, rounding, doubt| Ok(Soft { schur, vectors, weak: 0, gap, rounding, doubt });
+        // nothing is soft, or the eigenvalues at t have told
+        let told = cut(&values).filter(|_| digits.is_none() || ritz.values.is_empty());
+        if let Some((dimension, gap)) = told {
+            return soft(vectors.columns(0..dimension), gap, 0.0, None);
+        }
+        let Some(softest) = ritz.values.first() else {
+            return soft(vectors.columns(0..0), f64::INFINITY, 0.0, None);
+        };
+        let doubt = |motions, free| ritz.doubt(digits, motions, free);
+        match ritz.judged(digits) {
+            MotionVerdict::Free { dimension, gap } => {
+                let turned = ritz.turned(measured, dimension)?;
+                let rounding = ritz.noise[..dimension].iter().fold(0.0, |most: f64, v| most.max(*v));
+                soft(turned, gap, rounding, doubt(dimension, true))
+            }
+            MotionVerdict::Held { doubtful, gap } => {
+                soft(vectors.columns(0..0), gap, 0.0, doubt(doubtful, false))
+            }
+            MotionVerdict::Indefinite => Err(Breakdown { dof, relative_pivot: *softest }.indefinite()),
+            MotionVerdict::Unclear => Err(unclear(digits).dof(dof).value(*softest)),
+        }
+    }
+}
