@@ -51,11 +51,14 @@ pub fn solve_islands(model: &Model, prepared: &Prepared, start: &Start, watch: &
 /// A reason why one island has no answer leaves the others theirs; any other failure is one of the whole call.
 fn of_itself(end: Result<Solved>) -> Result<std::result::Result<Solved, Error>> {
     match end {
-        Err(error) if !matches!(error.kind, Kind::LoadNotHeld | Kind::GapsContradict | Kind::Cancelled) => {
-            Err(error)
-        }
+        Err(error) if !is_of_itself(&error) => Err(error),
         end => Ok(end),
     }
+}
+
+fn is_of_itself(error: &Error) -> bool {
+    use Kind::{Cancelled, GapsContradict, Indefinite, LoadNotHeld};
+    matches!(error.kind, LoadNotHeld | GapsContradict | Indefinite | Cancelled)
 }
 
 /// What an island says to the thread that listens to all.

@@ -12,10 +12,10 @@ use crate::qp::{Direct, Solution, Verdict};
 use crate::solve::case::Case;
 use crate::solve::certifier::Certifier;
 use crate::solve::diagnosis::{Contradictions, Unheld, MARGINAL, ROUNDING};
+use crate::solve::driven::solve_driven;
 use crate::solve::fallback::MethodOptions;
 use crate::solve::finish::{finish, is_to_finish};
 use crate::solve::interruptible::Interruptible;
-use crate::solve::near::solve_near;
 use crate::solve::paper::{parameters, HostUnits};
 use crate::solve::presolve::presolve;
 use crate::solve::recovery::{Ending, Faces, Recovery};
@@ -104,7 +104,7 @@ fn attempt(
         Some(given) if given.units == Units::Printed => {
             HostUnits::new(case, &dual.gaps, given)?.solve(qp, start, &mut judge, steps)?
         }
-        _ => solve_near(&MethodOptions { settings, direct }, qp, start, &mut judge, steps)?,
+        _ => solve_driven(case, &MethodOptions { settings, direct }, qp, start, &mut judge, steps)?,
     };
     let solution = match solution {
         Solution { verdict: Verdict::Infeasible { .. }, .. } if dual.unheld.is_none() => {

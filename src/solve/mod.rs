@@ -5,6 +5,7 @@ mod case;
 mod certifier;
 mod contradiction;
 mod diagnosis;
+mod driven;
 mod every_island;
 mod fallback;
 mod finish;

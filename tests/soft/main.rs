@@ -3,8 +3,10 @@
 //!
 //! | module | claims |
 //! |---|---|
+//! | [`driven`] | negative stiffness of rho from .007 to .9, and of no minimum |
 //! | [`weak`] | springs and rounding of 1e-12 to 1e-4 of K: forces, products, units, threads |
 
+mod driven;
 #[path = "../support/hand_over.rs"]
 mod hand_over;
 mod oracle;
@@ -21,6 +23,11 @@ const SIZE: [f64; 3] = [2.0, 1.0, 1.0];
 /// A column of floating blocks on the ground, pressed from above and aside, one row per pair of nodes; a node at the foot of
 /// each is held sideways.
 pub fn column(blocks: usize) -> Deck {
+    column_on(blocks, 0..=ELEMENTS[0], 0.15)
+}
+
+/// The same with rows at these nodes of every joint alone; the load grows by `slope` from node to node.
+pub fn column_on(blocks: usize, joint: std::ops::RangeInclusive<usize>, slope: f64) -> Deck {
     let block = |p: usize| Block {
         dimension: 2,
         elements: ELEMENTS,
@@ -34,14 +41,14 @@ pub fn column(blocks: usize) -> Deck {
     for (p, body) in bodies.iter_mut().enumerate() {
         for x in 0..=nx {
             let share = if x == 0 || x == nx { 0.5 } else { 1.0 };
-            body.load[node(x, ny) + 1] = -1e-3 * share * (1.0 + 0.15 * x as f64 + 0.1 * p as f64);
+            body.load[node(x, ny) + 1] = -1e-3 * share * (1.0 + slope * x as f64 + 0.1 * p as f64);
         }
-        body.load[node(0, ny)] = 3e-4;
+        body.load[node(0, ny)] = 2e-3 * slope;
     }
     let mut deck = Deck::new(format!("column of {blocks}"), bodies);
     for p in 0..blocks {
         let (own, below) = (deck.offset(p), if p > 0 { Some(deck.offset(p - 1)) } else { None });
-        for x in 0..=nx {
+        for x in joint.clone() {
             let gap = if x == 3 { 2e-3 } else { 0.0 };
             let foot = (own + node(x, 0) + 1, -1.0);
             match below {
