@@ -26,6 +26,8 @@ pub struct Certifier<'a> {
     pub astray: bool,
     /// The point is to be one from which another run starts.
     pub is_rough: bool,
+    /// One that passes is to be settled as well.
+    pub is_strict: bool,
     /// Ratio of the worst entry of the point refused last.
     missed: Option<f64>,
 }
@@ -45,8 +47,19 @@ struct Accepted {
 impl<'a> Certifier<'a> {
     pub fn new(recovery: Recovery<'a>) -> Self {
         let (far, reached, spent) = (Vec::new(), Vec::new(), Duration::ZERO);
-        let (drive, astray, is_rough) = (Vec::new(), false, false);
-        Self { recovery, accepted: None, spent, far, reached, drive, astray, is_rough, missed: None }
+        let (drive, astray, is_rough, is_strict) = (Vec::new(), false, false, false);
+        Self {
+            recovery,
+            accepted: None,
+            spent,
+            far,
+            reached,
+            drive,
+            astray,
+            is_rough,
+            is_strict,
+            missed: None,
+        }
     }
 
     /// The answer of a solution; that of the point just accepted is there already.
@@ -131,7 +144,7 @@ impl AcceptanceTest for Certifier<'_> {
             self.accepted = Some(Accepted { point, alpha_at_rest, deformed, recovered, judgement });
         }
         self.reached = reached;
-        self.astray = !passed && self.is_astray(alpha);
+        self.astray = (!passed || self.is_strict) && self.is_astray(alpha);
         // those rows come first: without them there is nothing to make better
         Ok(passed || !self.reached.is_empty() || self.astray)
     }

@@ -26,6 +26,8 @@ use crate::solve::near::solve_near;
 const ROUNDS: usize = 60;
 /// `tolerance` of the first round, which has to find the rows: another one follows.
 const ROUGH: f64 = 1e-5;
+/// Rounds after which an answer that passes is the last, though its amplitudes still change.
+const STRICT: usize = 3;
 /// A part of a free motion that is more than rounding.
 const PART: f64 = 1e-6;
 /// Rounds that come no nearer to each other have no end.
@@ -68,7 +70,7 @@ pub fn solve_driven(
         let means = MethodOptions { settings: if is_rough { &rough } else { means.settings }, ..*means };
         let e = driven.resultants(qp.e, &b);
         judge.drive = driven.amplitudes(&b);
-        judge.is_rough = is_rough;
+        (judge.is_rough, judge.is_strict) = (is_rough, changes.len() < STRICT);
         let solution = solve_near(&means, Qp { e: &e, ..qp }, &start, judge, steps)?;
         counts = counts + solution.counts;
         let solution = Solution { counts, ..solution };

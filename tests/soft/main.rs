@@ -49,7 +49,7 @@ pub fn column_on(blocks: usize, joint: std::ops::RangeInclusive<usize>, slope: f
     for p in 0..blocks {
         let (own, below) = (deck.offset(p), if p > 0 { Some(deck.offset(p - 1)) } else { None });
         for x in joint.clone() {
-            let gap = if x == 3 { 2e-3 } else { 0.0 };
+            let gap = if x == 2 { 2e-3 } else { 0.0 };
             let foot = (own + node(x, 0) + 1, -1.0);
             match below {
                 Some(below) => deck.contact.push(&[(below + node(x, ny) + 1, 1.0), foot], gap),
