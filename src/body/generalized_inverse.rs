@@ -8,7 +8,7 @@ use std::sync::Arc;
 use crate::body::fixing::hold_as_well;
 use crate::body::null_space::ROUNDING as KNOWN;
 use crate::body::probe::{known_to, missing_mode, probe, Factor};
-use crate::body::soft::soft_motions;
+use crate::body::soft::{known_to_entries, soft_motions};
 use crate::body::spectrum::Doubt;
 use crate::error::{Error, Kind, Result};
 use crate::linalg::cholesky::{inverse_columns, inverse_form};
@@ -160,7 +160,7 @@ impl GeneralizedInverse {
         let dofs: Vec<usize> = (0..k.order()).collect();
         let parts = [(&dofs[..], self.null_space.cols)];
         (self.null_space, self.stiffness) = soft_motions(&self.factor, k, self.null_space, &parts)?;
-        self.error = known_to(&self.factor, k, &self.null_space, &parts)?;
+        self.error = known_to_entries(&self.factor, k, &self.null_space)?;
         Ok(self)
     }
 

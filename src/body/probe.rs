@@ -21,9 +21,9 @@ pub(super) const UNLIKELY: f64 = 1e3;
 /// Largest residual of a solve with the factor, relative to its terms.
 pub(super) const PROBE: f64 = 1e-8;
 /// Rounding errors of R may be so many times those of the sample that is taken of them, ...
-const SAMPLE: f64 = 16.0;
+pub(super) const SAMPLE: f64 = 16.0;
 /// ... and what is more against the fastest dof is none.
-const MOST_ERROR: f64 = 1e-7;
+pub(super) const MOST_ERROR: f64 = 1e-7;
 /// More than this of a row or a load is no rounding, however little is known of R: it is told as marginal.
 pub(super) const MOST_ROUNDING: f64 = 1e-9;
 

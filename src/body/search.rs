@@ -16,7 +16,7 @@ use crate::body::null_space::{
 };
 use crate::body::part::{End, Soft};
 use crate::body::probe::{known_to, probe, Factor, MOST_ROUNDING, SINGULAR};
-use crate::body::soft::{are_resisted, soft_motions};
+use crate::body::soft::{are_resisted, known_to_entries, soft_motions};
 use crate::body::spectrum::{cut, may_be_weak, measured, to_measure};
 use crate::error::{Error, Kind, Result};
 use crate::linalg::cholesky::Trailing;
@@ -277,7 +277,10 @@ impl Search {
         let null_space = one_column_each(&basis, &counts)?;
         let fixing = fixing.concat();
         let softness = probe(&factor, &self.k, &fixing, null_space.cols)?;
-        let error = known_to(&factor, &self.k, &basis, &counts)?;
+        let error = match stiffness.is_empty() {
+            true => known_to(&factor, &self.k, &basis, &counts)?,
+            false => known_to_entries(&factor, &self.k, &basis)?,
+        };
         Ok(GeneralizedInverse {
             null_space,
             stiffness,

@@ -9,10 +9,12 @@
 //! are held, where K+ is 0: beside `u = K+ (f - B'l) + R a` they resist a with the forces `lambda_j a_j`, and nothing else.
 
 use crate::body::null_space::{orthonormal_by_parts, FreePart, ROUNDING};
-use crate::body::probe::Factor;
+use crate::body::probe::{Factor, MOST_ERROR, SAMPLE};
 use crate::error::Result;
 use crate::linalg::dense::spectrum::symmetric_eigen;
+use crate::linalg::random::Random;
 use crate::linalg::twofold::Twofold;
+use crate::linalg::vector::norm_max;
 use crate::linalg::{Matrix, Multiple};
 use crate::platform::memory::filled;
 
@@ -68,6 +70,18 @@ fn corrected(factor: &Factor, k: &Multiple, mut r: Matrix) -> Result<Matrix> {
         r.col_mut(j).iter_mut().zip(&image).for_each(|(r, x)| *r -= x);
     }
     Ok(r)
+}
+
+/// How far R of [`soft_motions`] is known, against the fastest dof: what K+ makes of rounding of the entries of K, by a sample.
+pub fn known_to_entries(factor: &Factor, k: &Multiple, r: &Matrix) -> Result<f64> {
+    let (_, terms) = k.mul_columns(r)?;
+    let (mut random, mut worst) = (Random::default(), ROUNDING);
+    for j in 0..r.cols {
+        let mut moved = random.vector(r.rows, |i| f64::EPSILON * terms.get(i, j))?;
+        factor.solve(&mut moved)?;
+        worst = worst.max(SAMPLE * norm_max(&moved) / norm_max(r.col(j)));
+    }
+    Ok(worst.min(MOST_ERROR))
 }
 
 /// A basis of the span with `R'DR = I` in every part.
