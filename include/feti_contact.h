@@ -451,6 +451,15 @@ typedef struct feti_findings {
    * The first of them, -1: none.
    */
   int64_t doubtful_body;
+  /**
+   * Bodies with rigid motions that K resists or drives softly: weak springs, rounding, geometric
+   * stiffness.
+   */
+  int64_t soft_bodies;
+  /**
+   * The first of them, -1: none.
+   */
+  int64_t soft_body;
 } feti_findings;
 
 /**

@@ -426,6 +426,10 @@ module feti_contact_c
     integer(c_int64_t) :: doubtful_bodies
     !> The first of them, -1: none.
     integer(c_int64_t) :: doubtful_body
+    !> Bodies with rigid motions that K resists or drives softly: weak springs, rounding, geometric stiffness.
+    integer(c_int64_t) :: soft_bodies
+    !> The first of them, -1: none.
+    integer(c_int64_t) :: soft_body
   end type feti_findings
 
   public :: feti_body_add

@@ -90,6 +90,7 @@ contains
       findings%row = findings%row + 1
       findings%untouched_body = findings%untouched_body + 1
       findings%doubtful_body = findings%doubtful_body + 1
+      findings%soft_body = findings%soft_body + 1
     end if
     call finish(status, stat, errmsg)
   end subroutine

@@ -118,6 +118,11 @@ impl GeneralizedInverse {
         self.factor.solve(x)
     }
 
+    /// K resists or drives some motion of the null space.
+    pub fn is_soft(&self) -> bool {
+        self.stiffness.iter().any(|stiffness| *stiffness != 0.0)
+    }
+
     /// Entries of the factor; 0 where the host has it.
     pub fn entries(&self) -> usize {
         match &self.factor {

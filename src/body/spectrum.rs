@@ -29,7 +29,7 @@ const TRIFLE: f64 = 1e-6;
 /// Weak springs of a host hold the six rigid motions of a part, ...
 const RIGID: usize = 6;
 /// ... and resist them by less than this: 1e-6 of K at every unknown.
-const WEAK: f64 = 1e-5;
+pub const WEAK: f64 = 1e-5;
 /// theta below minus this is no rounding of products, whatever digits the entries have.
 const NEGATIVE: f64 = 1e-10;
 

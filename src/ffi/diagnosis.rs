@@ -256,5 +256,7 @@ fn described(from: &Findings) -> feti_findings {
         unheld: from.unheld,
         doubtful_bodies: from.doubtful.len() as i64,
         doubtful_body: known(from.doubtful.first().copied()),
+        soft_bodies: from.soft.len() as i64,
+        soft_body: known(from.soft.first().copied()),
     }
 }

@@ -280,6 +280,17 @@ impl Prepared {
                 let text = || format!("warning: body {number}: {misfit}; its null space was sought in K");
                 log.say(LogLevel::Result, text)?;
             }
+            if kplus.is_soft() {
+                let soft = kplus.stiffness.iter().filter(|stiffness| **stiffness != 0.0);
+                let least = soft.clone().fold(f64::INFINITY, |least: f64, stiffness| least.min(*stiffness));
+                let text = || {
+                    format!(
+                        "body {number}: K resists {} motions softly, by {least:.1e} of its stiffness or more",
+                        soft.count()
+                    )
+                };
+                log.say(LogLevel::Result, text)?;
+            }
             for doubt in &kplus.doubts {
                 log.say(LogLevel::Result, || format!("warning: body {number}: {doubt}"))?;
             }

@@ -35,7 +35,7 @@ impl<'a> Case<'a> {
                 stiffness: body.k().ok_or_else(missing)?,
                 load: body.load.as_deref(),
                 null_space: &inverse.kplus.null_space,
-                soft: inverse.kplus.stiffness.iter().any(|stiffness| *stiffness != 0.0),
+                soft: inverse.kplus.is_soft(),
                 unit: body.without(island.unit),
                 grounded: &inverse.grounded,
             });

@@ -31,6 +31,8 @@ pub struct Findings {
     pub untouched: Vec<usize>,
     /// Bodies with motions that may be resisted by nothing but the rounding of the entries of K: `doubts` of their facts.
     pub doubtful: Vec<usize>,
+    /// Bodies with motions that K resists or drives softly.
+    pub soft: Vec<usize>,
     /// Number of contact rows.
     contact: usize,
 }
@@ -52,7 +54,8 @@ impl Findings {
                 findings.kind = Some(kind_and_row(*heaviest, findings.contact).0);
             }
             Some(Proof::Motion { v, .. }) => {
-                findings.unheld = error.place.value.unwrap_or(0.0);
+                let unheld = error.place.value.filter(|_| error.kind == Kind::LoadNotHeld);
+                findings.unheld = unheld.unwrap_or(0.0);
                 findings.motion = error.place.body.and_then(|body| rigid_motion(model, body, v));
             }
             None => {}
@@ -73,6 +76,7 @@ impl Findings {
             redundant: duals.map(|duals| redundant(model, duals)).unwrap_or_default(),
             untouched: duals.map(|duals| untouched(model, duals)).unwrap_or_default(),
             doubtful: doubtful(model, prepared),
+            soft: soft(model, prepared),
             contact: model.contact.len(),
         }
     }
@@ -124,6 +128,12 @@ fn redundant(model: &Model, duals: &Duals) -> Vec<(usize, f64)> {
 fn doubtful(model: &Model, prepared: &Prepared) -> Vec<usize> {
     let doubts = |p: &usize| prepared.inverse(model, *p).is_some_and(|of| !of.kplus.doubts.is_empty());
     (0..model.bodies.len()).filter(doubts).collect()
+}
+
+/// Bodies with soft motions.
+fn soft(model: &Model, prepared: &Prepared) -> Vec<usize> {
+    let soft = |p: &usize| prepared.inverse(model, *p).is_some_and(|of| of.kplus.is_soft());
+    (0..model.bodies.len()).filter(soft).collect()
 }
 
 /// Bodies that no row with entries touches, or only such as never close.

@@ -5,7 +5,7 @@ use decks::Deck;
 use feti_contact::error::Kind;
 use feti_contact::solver::Modes;
 
-use crate::{add_diagonal, column_on, difference, given, oracle, solved, ELEMENTS};
+use crate::{add_diagonal, column_on, difference, given, hand_over, oracle, solved, ELEMENTS};
 
 fn narrow(blocks: usize) -> Deck {
     column_on(blocks, 3..=5, 1e-3)
@@ -66,7 +66,7 @@ fn driven_motions_give_the_forces_of_the_dense_answer() {
     let mut failed = Vec::new();
     for blocks in [1, 2, 3] {
         let deck = narrow(blocks);
-        let plain = solved(&mut given(&deck, Modes::Exact)).unwrap();
+        let plain = solved(&mut hand_over::problem(&deck).unwrap()).unwrap();
         let most = critical(&deck, &closed(&plain.lambda));
         for rho in [0.007, 0.03, 0.3, 0.9] {
             let deck = with_drive(deck.clone(), rho * most);
@@ -99,7 +99,7 @@ fn driven_motions_give_the_forces_of_the_dense_answer() {
 fn an_answer_that_is_no_minimum_is_refused_with_its_motion() {
     for blocks in [1, 2, 3] {
         let deck = narrow(blocks);
-        let plain = solved(&mut given(&deck, Modes::Exact)).unwrap();
+        let plain = solved(&mut hand_over::problem(&deck).unwrap()).unwrap();
         let most = critical(&deck, &closed(&plain.lambda));
         for rho in [1.1, 2.1] {
             let mut problem = given(&with_drive(deck.clone(), rho * most), Modes::Soft);

@@ -371,4 +371,8 @@ pub struct feti_findings {
     pub doubtful_bodies: i64,
     /// The first of them, -1: none.
     pub doubtful_body: i64,
+    /// Bodies with rigid motions that K resists or drives softly: weak springs, rounding, geometric stiffness.
+    pub soft_bodies: i64,
+    /// The first of them, -1: none.
+    pub soft_body: i64,
 }
