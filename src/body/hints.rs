@@ -11,7 +11,7 @@ use crate::body::null_space::{
 use crate::body::plan::Plan;
 use crate::body::rigid_modes::RigidModes;
 use crate::body::search::Search;
-use crate::body::spectrum::{Doubt, WEAK};
+use crate::body::spectrum::{Doubt, NEGATIVE, WEAK};
 use crate::error::{Error, Kind, Result};
 use crate::linalg::{Matrix, Multiple};
 use crate::platform::memory::{headroom, PRODUCTS};
@@ -53,7 +53,7 @@ impl GeneralizedInverse {
             let all = (rigid, &rigid.counts[..]);
             let planned = Self::known(k, &rigid.modes, all, (f64::INFINITY, None), fixing)?;
             return Ok(match planned {
-                Plan::Known(known) => Plan::Known(Known { soft: true, ..known }),
+                Plan::Known(known) => Plan::Known(Known { soft: Some(NEGATIVE), ..known }),
                 other => other,
             });
         }

@@ -31,7 +31,7 @@ const RIGID: usize = 6;
 /// ... and resist them by less than this: 1e-6 of K at every unknown.
 pub const WEAK: f64 = 1e-5;
 /// theta below minus this is no rounding of products, whatever digits the entries have.
-const NEGATIVE: f64 = 1e-10;
+pub const NEGATIVE: f64 = 1e-10;
 
 /// Motions that K resists by no more than the rounding of its entries may have left.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -135,3 +135,25 @@ fn the_answer_with_driven_motions_is_the_same_for_any_number_of_threads() {
     };
     assert!(with(1) == with(2) && with(1) == with(4));
 }
+
+/// Faces that are too large for dense factors: the rounds go on by themselves.
+#[test]
+fn driven_motions_need_no_dense_factors() {
+    let deck = narrow(2);
+    let plain = solved(&mut hand_over::problem(&deck).unwrap()).unwrap();
+    let most = critical(&deck, &closed(&plain.lambda));
+    let without = |rho: f64| {
+        let mut problem = given(&with_drive(deck.clone(), rho * most), Modes::Soft);
+        problem.set_i64("direct_limit", 0).unwrap();
+        solved(&mut problem)
+    };
+    for rho in [0.03, 0.3, 0.5] {
+        let found = without(rho).unwrap();
+        let truth = oracle::solve(&with_drive(deck.clone(), rho * most), &closed(&found.lambda)).unwrap();
+        let error = difference(&found.lambda, &truth.lambda);
+        println!("rho {rho} without dense factors: {error:.1e} products {}", found.products);
+        assert!(error <= 1e-8, "rho {rho}: {error:.1e}");
+    }
+    let error = without(1.3).err().expect("no minimum");
+    assert_eq!(error.kind, Kind::Indefinite, "{error}");
+}

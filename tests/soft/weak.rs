@@ -1,9 +1,11 @@
 //! Springs and rounding of 1e-12 to 1e-4 of K.
 
-use decks::{Deck, Rows};
-use feti_contact::solver::Modes;
+use decks::{masonry, Deck, Rows};
+use feti_contact::solver::{Modes, Outcome};
 
-use crate::{column, difference, given, hand_over, oracle, rounded, solved, with_springs, Solved};
+use crate::{
+    add_diagonal, column, difference, given, hand_over, oracle, rounded, solved, with_springs, Solved,
+};
 
 /// Shares of the largest K_ii, by decades.
 fn decades() -> impl Iterator<Item = f64> {
@@ -214,6 +216,40 @@ fn weak_springs_under_coordinates_are_soft_motions() {
         match solved(&mut problem) {
             Ok(found) => claim(&mut failed, &what, &deck, &found, plain),
             Err(error) => failed.push(format!("{what}: {error}")),
+        }
+    }
+    assert!(failed.is_empty(), "{}", failed.join("\n"));
+}
+
+/// Towers, walls and heaps, most bodies free to slide but for the springs.
+#[test]
+fn many_loose_bodies_on_weak_springs_are_solved() {
+    let mut failed = Vec::new();
+    for (what, plain) in
+        [("tower", masonry::tower(30)), ("wall", masonry::wall(6, 1e-4)), ("heap", masonry::heap(40, 3))]
+    {
+        for share in [1e-10, 1e-8, 1e-6] {
+            let mut deck = plain.clone();
+            for body in &mut deck.bodies {
+                let largest = body.stiffness.diagonal().into_iter().fold(0.0, f64::max);
+                (0..body.dofs()).for_each(|dof| add_diagonal(body, dof, share * largest));
+            }
+            for told in [true, false] {
+                let mut problem = if told {
+                    given(&deck, Modes::Soft)
+                } else {
+                    hand_over::without_null_spaces(&deck).unwrap()
+                };
+                match problem.solve() {
+                    Ok(report) => {
+                        println!("{what} {share:e} {told}: {:?} {}", report.outcome, report.counts.products);
+                        if report.outcome != Outcome::Solved {
+                            failed.push(format!("{what} {share:e} {told}: {:?}", report.outcome));
+                        }
+                    }
+                    Err(error) => failed.push(format!("{what} {share:e} {told}: {error}")),
+                }
+            }
         }
     }
     assert!(failed.is_empty(), "{}", failed.join("\n"));
