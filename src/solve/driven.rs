@@ -28,6 +28,8 @@ const ROUNDS: usize = 60;
 const ROUGH: f64 = 1e-5;
 /// Rounds after which an answer that passes is the last, though its amplitudes still change.
 const STRICT: usize = 3;
+/// The same without a step of Newton.
+const STRICT_ALONE: usize = 20;
 /// A part of a free motion that is more than rounding.
 const PART: f64 = 1e-6;
 /// Rounds that come no nearer to each other have no end.
@@ -65,17 +67,20 @@ pub fn solve_driven(
     let rough = Settings { tolerance: means.settings.tolerance.max(ROUGH), ..means.settings.clone() };
     let (mut b, mut start, mut counts) = (vec![0.0; driven.modes.len()], start.to_vec(), Counts::default());
     let (mut last, mut suspect, mut changes) = (None, None, Vec::new());
+    let mut dense = means.direct.limit > 0;
     loop {
-        let is_rough = changes.is_empty() && means.direct.limit > 0;
+        let is_rough = changes.is_empty() && dense;
         let means = MethodOptions { settings: if is_rough { &rough } else { means.settings }, ..*means };
         let e = driven.resultants(qp.e, &b);
         judge.drive = driven.amplitudes(&b);
-        (judge.is_rough, judge.is_strict) = (is_rough, changes.len() < STRICT);
+        let strict = if dense { STRICT } else { STRICT_ALONE };
+        (judge.is_rough, judge.is_strict) = (is_rough, changes.len() < strict);
         let solution = solve_near(&means, Qp { e: &e, ..qp }, &start, judge, steps)?;
         counts = counts + solution.counts;
         let solution = Solution { counts, ..solution };
         let held = qp.at_bound(&solution.x);
         let feedback = Feedback::of(&means, qp, &held, &driven)?;
+        dense = feedback.is_some();
         let falling = driven.unstable(qp, &held, feedback.as_ref())?;
         match (&solution.verdict, falling.or(suspect)) {
             (Verdict::Solved, Some((v, rate))) if !judge.astray || last.as_ref() == Some(&held) => {
@@ -92,6 +97,9 @@ pub fn solve_driven(
         changes.push(norm(&change));
         if !judge.astray {
             return Ok(solution);
+        }
+        if changes.len() == ROUNDS {
+            return Ok(Solution { verdict: Verdict::Stalled, ..solution });
         }
         if let Some(rate) = endless(&changes) {
             return Err(indefinite(case, &solution.alpha, rate));
@@ -111,7 +119,7 @@ pub fn solve_driven(
 fn endless(changes: &[f64]) -> Option<f64> {
     let of = |pair: &[f64]| pair[1] / pair[0];
     let least = changes.windows(2).rev().take(PATIENCE).map(of).fold(f64::INFINITY, f64::min);
-    (changes.len() > PATIENCE && least >= 1.0 || changes.len() == ROUNDS).then_some(least)
+    (changes.len() > PATIENCE && least >= 1.0).then_some(least)
 }
 
 impl Driven {

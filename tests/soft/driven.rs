@@ -152,7 +152,8 @@ fn driven_motions_need_no_dense_factors() {
         let truth = oracle::solve(&with_drive(deck.clone(), rho * most), &closed(&found.lambda)).unwrap();
         let error = difference(&found.lambda, &truth.lambda);
         println!("rho {rho} without dense factors: {error:.1e} products {}", found.products);
-        assert!(error <= 1e-8, "rho {rho}: {error:.1e}");
+        // certified to 1e-8 of the forces on a body; an error of a grows by 1 / (1 - rho)
+        assert!(error <= 1e-8 / (1.0 - rho), "rho {rho}: {error:.1e}");
     }
     let error = without(1.3).err().expect("no minimum");
     assert_eq!(error.kind, Kind::Indefinite, "{error}");
