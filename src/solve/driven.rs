@@ -66,7 +66,7 @@ pub fn solve_driven(
     }
     let rough = Settings { tolerance: means.settings.tolerance.max(ROUGH), ..means.settings.clone() };
     let (mut b, mut start, mut counts) = (vec![0.0; driven.modes.len()], start.to_vec(), Counts::default());
-    let (mut last, mut suspect, mut changes) = (None, None, Vec::new());
+    let (mut last, mut suspect, mut changes) = (None, None, Vec::<f64>::new());
     let mut dense = means.direct.limit > 0;
     loop {
         let is_rough = changes.is_empty() && dense;
@@ -82,15 +82,19 @@ pub fn solve_driven(
         let feedback = Feedback::of(&means, qp, &held, &driven)?;
         dense = feedback.is_some();
         let falling = driven.unstable(qp, &held, feedback.as_ref())?;
-        match (&solution.verdict, falling.or(suspect)) {
-            (Verdict::Solved, Some((v, rate))) if !judge.astray || last.as_ref() == Some(&held) => {
-                return Err(indefinite(case, &v, rate));
+        match &solution.verdict {
+            Verdict::Solved if !judge.astray || last.as_ref() == Some(&held) => {
+                if let Some((v, rate)) = falling {
+                    return Err(indefinite(case, &v, rate));
+                }
             }
-            (Verdict::Solved, falling) => suspect = falling,
-            (Verdict::StepLimit | Verdict::TimeLimit | Verdict::Cancelled, _) | (_, None) => {
-                return Ok(solution)
-            }
-            (_, Some((v, rate))) => return Err(indefinite(case, &v, rate)),
+            Verdict::Solved => suspect = falling,
+            Verdict::StepLimit | Verdict::TimeLimit | Verdict::Cancelled => return Ok(solution),
+            // what drives the motions further than rows hold them, unless the load alone does
+            _ => match falling.or(suspect).filter(|_| !changes.is_empty()) {
+                Some((v, rate)) => return Err(indefinite(case, &v, rate)),
+                None => return Ok(solution),
+            },
         }
         let next = driven.forced(&solution.alpha);
         let change: Vec<f64> = next.iter().zip(&b).map(|(next, b)| next - b).collect();

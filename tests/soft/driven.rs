@@ -158,3 +158,12 @@ fn driven_motions_need_no_dense_factors() {
     let error = without(1.3).err().expect("no minimum");
     assert_eq!(error.kind, Kind::Indefinite, "{error}");
 }
+
+/// A push aside that neither rows nor K hold: no answer, by one name or the other.
+#[test]
+fn a_load_along_a_driven_motion_that_nothing_resists_has_no_answer() {
+    let mut deck = narrow(1);
+    deck.equalities = decks::Rows::none(deck.dofs());
+    let error = solved(&mut given(&with_drive(deck, 1e-6), Modes::Soft)).err().expect("no minimum");
+    assert!(matches!(error.kind, Kind::Indefinite | Kind::LoadNotHeld), "{error}");
+}
