@@ -246,7 +246,8 @@
 #define FETI_NULL_SPACE -8
 
 /**
- * A stiffness matrix has a negative or a vanishing pivot outside its null space.
+ * A stiffness matrix has a negative or a vanishing pivot outside its null space, or drives a soft
+ * motion further than the contact resists it.
  */
 #define FETI_INDEFINITE -9
 
@@ -426,9 +427,10 @@ typedef struct feti_findings {
    */
   int64_t untouched_body;
   /**
-   * How clearly there is no solution, above 0 and at most 1: after FETI_LOAD_NOT_HELD the share of
-   * the resultant of the load that nothing holds, after FETI_GAPS_CONTRADICT |w'c| over |w|'|c| for
-   * the weights w; else NaN.
+   * How clearly there is no solution, above 0 and at most 1: after FETI_INDEFINITE of a driven
+   * motion 1 - 1 / rho, rho what drives it over what resists it; after FETI_LOAD_NOT_HELD the share
+   * of the resultant of the load that nothing holds, after FETI_GAPS_CONTRADICT |w'c| over |w|'|c|
+   * for the weights w; else NaN.
    */
   double margin;
   /**
@@ -1134,8 +1136,9 @@ int32_t feti_diagnosis_undetermined_motion(struct feti_problem *p,
  * Reads the rigid motion with which a body escapes, unknown by unknown.
  *
  * The load does work on it, and no row resists. It is scaled to largest entry 1 over all bodies;
- * bodies that stay have zeros. FETI_STATE unless the last solve ended with FETI_LOAD_NOT_HELD.
- * After a failure nothing is written.
+ * bodies that stay have zeros. After FETI_INDEFINITE the motion that K drives further than closed
+ * rows resist. FETI_STATE unless the last solve ended with one of both and a motion. After a
+ * failure nothing is written.
  *
  * @param[in]  p    (scalar) the handle
  * @param[in]  body (scalar) number of the body, from 0
@@ -1908,8 +1911,9 @@ int32_t feti_setup(struct feti_problem *p);
  * FETI_STALLED where steps no longer reduce the error; FETI_INACCURATE where the certificate does
  * not pass; FETI_MARGINAL where a part of the load, below 1e-7 of it, is not held. A status below
  * 0 comes without one for the group of bodies it is about. FETI_LOAD_NOT_HELD where no contact
- * force balances the load; FETI_GAPS_CONTRADICT where rows contradict each other; feti_diagnosis
- * has the proof of either. It runs feti_setup when it is due, and fails as that does.
+ * force balances the load; FETI_GAPS_CONTRADICT where rows contradict each other; FETI_INDEFINITE
+ * where K drives a soft motion further than closed rows resist it; feti_diagnosis has the proof of
+ * each. It runs feti_setup when it is due, and fails as that does.
  *
  * @param[in]     p    (scalar) the handle
  * @param[in,out] info (scalar) `struct_size` set, at least 16; may be NULL

@@ -190,7 +190,8 @@ contains
       size(v, kind=c_int64_t), v), stat, errmsg)
   end subroutine
 
-  !> Rigid motion with which a body escapes, v(n), largest entry over all bodies 1; after FETI_LOAD_NOT_HELD.
+  !> Rigid motion with which a body escapes, v(n), largest entry over all bodies 1; after FETI_LOAD_NOT_HELD, or
+  !> FETI_INDEFINITE of a motion that K drives.
   recursive subroutine diagnosis_motion(p, body, v, stat, errmsg)
     type(feti_problem), intent(in) :: p
     integer, intent(in) :: body

@@ -209,7 +209,8 @@ pub unsafe extern "C" fn feti_diagnosis_undetermined_motion(
 /// Reads the rigid motion with which a body escapes, unknown by unknown.
 ///
 /// The load does work on it, and no row resists. It is scaled to largest entry 1 over all bodies; bodies that stay have
-/// zeros. FETI_STATE unless the last solve ended with FETI_LOAD_NOT_HELD. After a failure nothing is written.
+/// zeros. After FETI_INDEFINITE the motion that K drives further than closed rows resist. FETI_STATE unless the last solve ended
+/// with one of both and a motion. After a failure nothing is written.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|

@@ -35,7 +35,8 @@ pub const FETI_LOAD_NOT_HELD: i32 = -6;
 pub const FETI_GAPS_CONTRADICT: i32 = -7;
 /// The null space of a body is not what was claimed, or was not found.
 pub const FETI_NULL_SPACE: i32 = -8;
-/// A stiffness matrix has a negative or a vanishing pivot outside its null space.
+/// A stiffness matrix has a negative or a vanishing pivot outside its null space, or drives a soft motion further than the contact
+/// resists it.
 pub const FETI_INDEFINITE: i32 = -9;
 /// A file could not be read or written.
 pub const FETI_IO: i32 = -10;

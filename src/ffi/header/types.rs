@@ -358,7 +358,8 @@ pub struct feti_findings {
     pub untouched_bodies: i64,
     /// The first of them, -1: none.
     pub untouched_body: i64,
-    /// How clearly there is no solution, above 0 and at most 1: after FETI_LOAD_NOT_HELD the share of the resultant of
+    /// How clearly there is no solution, above 0 and at most 1: after FETI_INDEFINITE of a driven motion 1 - 1 / rho, rho what drives
+    /// it over what resists it; after FETI_LOAD_NOT_HELD the share of the resultant of
     /// the load that nothing holds, after FETI_GAPS_CONTRADICT |w'c| over |w|'|c| for the weights w; else NaN.
     pub margin: f64,
     /// Rigid motion of the body that escapes: velocity of the origin and rotation about the axes; NaN without
