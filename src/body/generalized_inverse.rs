@@ -57,8 +57,8 @@ pub struct Known {
     pub(super) fixing: Vec<usize>,
     /// The fixing dofs are those of the host.
     pub(super) given: bool,
-    /// K may resist or drive the vectors, which need not be exact: what drives them by no more than this part of K is rounding.
-    pub(super) soft: Option<f64>,
+    /// K may resist or drive the vectors, which need not be exact.
+    pub(super) soft: bool,
     pub(super) symbolic: Option<Arc<Symbolic>>,
     /// What rounding of the entries resists of it.
     pub(super) doubt: Option<Doubt>,
@@ -160,15 +160,11 @@ impl GeneralizedInverse {
         }
     }
 
-    /// The motions of the vectors that it has, and what K resists of them; what drives them by no more than `rounding` is none.
-    pub(super) fn softened(mut self, k: &Multiple, rounding: f64) -> Result<Self> {
+    /// The motions of the vectors that it has, and what K resists of them.
+    pub(super) fn softened(mut self, k: &Multiple) -> Result<Self> {
         let dofs: Vec<usize> = (0..k.order()).collect();
         let parts = [(&dofs[..], self.null_space.cols)];
         (self.null_space, self.stiffness) = soft_motions(&self.factor, k, self.null_space, &parts)?;
-        self.stiffness
-            .iter_mut()
-            .filter(|stiffness| (-rounding..0.0).contains(*stiffness))
-            .for_each(|s| *s = 0.0);
         self.error = known_to_entries(&self.factor, k, &self.null_space)?;
         Ok(self)
     }
@@ -186,7 +182,7 @@ impl GeneralizedInverse {
 impl Known {
     /// `given`: the fixing dofs are those of the host.
     pub(super) fn of(k: Multiple, null_space: Matrix, error: f64, fixing: Vec<usize>, given: bool) -> Self {
-        let (soft, symbolic, doubt, retry) = (None, None, None, None);
+        let (soft, symbolic, doubt, retry) = (false, None, None, None);
         Self { k, null_space, error, fixing, given, soft, symbolic, doubt, retry }
     }
 
@@ -236,10 +232,7 @@ impl Known {
             misfit: None,
             factor,
         };
-        let inverse = match soft {
-            Some(rounding) => inverse.softened(&k, rounding),
-            None => inverse.measured(&k),
-        }?;
+        let inverse = if soft { inverse.softened(&k) } else { inverse.measured(&k) }?;
         Ok(Factorised { inverse, symbolic, further_analyses: 0, factorisations: 1 })
     }
 }

@@ -11,13 +11,11 @@ use crate::body::null_space::{
 use crate::body::plan::Plan;
 use crate::body::rigid_modes::RigidModes;
 use crate::body::search::Search;
-use crate::body::spectrum::{Doubt, NEGATIVE, WEAK};
+use crate::body::spectrum::Doubt;
 use crate::error::{Error, Kind, Result};
 use crate::linalg::{Matrix, Multiple};
 use crate::platform::memory::{headroom, PRODUCTS};
 
-/// Motions of the parts of a body that may be soft, at most.
-const MOST: usize = 60;
 /// Where rigid motions are mixed, their terms may cancel to this part of them.
 const MIXED: f64 = 16.0;
 
@@ -39,25 +37,13 @@ impl GeneralizedInverse {
             return Self::known(k, &kernel, (rigid, &counts), (tolerance, None), fixing);
         }
         let misfit = Misfit { fit, of: candidates, next };
-        let digits = Digits::of(&k.matrix)?;
-        let has_few_digits = digits.is_some();
-        if let Some(digits) = digits {
+        if let Some(digits) = Digits::of(&k.matrix)? {
             if let Some(doubt) = explained(&k, digits, rigid)? {
                 let told = Some(doubt).filter(|doubt| doubt.resisted > CANDIDATE);
                 let tolerance = tolerance.max(MIXED * doubt.resisted);
                 let counts = &rigid.counts;
                 return Self::known(k, &rigid.modes, (rigid, counts), (tolerance, told), fixing);
             }
-        }
-        if is_weak(&k, rigid)? {
-            let all = (rigid, &rigid.counts[..]);
-            let planned = Self::known(k, &rigid.modes, all, (f64::INFINITY, None), fixing)?;
-            return Ok(match planned {
-                Plan::Known(known) => Plan::Known(Known { soft: Some(NEGATIVE), ..known }),
-                other => other,
-            });
-        }
-        if has_few_digits {
             return Ok(Plan::Search(Search::new(k, tolerance, fixing)?.instead_of(misfit)));
         }
         let given = fixing.map(<[usize]>::to_vec);
@@ -100,14 +86,6 @@ impl GeneralizedInverse {
         }
         Ok(Plan::Known(Known { doubt, ..Known::of(k, null_space, error, held, fixing.is_some()) }))
     }
-}
-
-/// Whether K resists every rigid motion at each dof by so little that only weak springs can do it.
-fn is_weak(k: &Multiple, rigid: &RigidModes) -> Result<bool> {
-    let (image, terms) = k.mul_columns(&rigid.modes)?;
-    let weak = |(image, terms): (&f64, &f64)| image.abs() <= WEAK * terms;
-    let motions = rigid.counts.iter().sum::<usize>();
-    Ok((1..=MOST).contains(&motions) && image.data.iter().zip(&terms.data).all(weak))
 }
 
 /// Whether K resists every rigid motion by no more than rounding of its entries may have left, at each dof.

@@ -37,7 +37,7 @@ impl GeneralizedInverse {
             Some(given) => given_dofs(&null_space, &root, given)?,
             None => fixing_dofs(&null_space, &root)?,
         };
-        let soft = (input.modes == Modes::Soft).then_some(0.0);
+        let soft = input.modes == Modes::Soft;
         Ok(Plan::Known(Known { soft, ..Known::of(k, null_space, error, fixing, given) }))
     }
 
@@ -105,9 +105,10 @@ impl Plan {
                 let (rounding, stiffness) = (KNOWN, Vec::new());
                 let own =
                     GeneralizedInverse { null_space, stiffness, rounding, error, doubts, ..other.clone() };
-                match soft {
-                    Some(rounding) => own.softened(&k, rounding),
-                    None => own.measured(&k),
+                if soft {
+                    own.softened(&k)
+                } else {
+                    own.measured(&k)
                 }
             }
             Self::Known(_) | Self::Search(_) => Ok(other.clone()),

@@ -29,9 +29,9 @@ const TRIFLE: f64 = 1e-6;
 /// Weak springs of a host hold the six rigid motions of a part, ...
 const RIGID: usize = 6;
 /// ... and resist them by less than this: 1e-6 of K at every unknown.
-pub const WEAK: f64 = 1e-5;
+const WEAK: f64 = 1e-5;
 /// theta below minus this is no rounding of products, whatever digits the entries have.
-pub const NEGATIVE: f64 = 1e-10;
+const NEGATIVE: f64 = 1e-10;
 
 /// Motions that K resists by no more than the rounding of its entries may have left.
 #[derive(Debug, Clone, Copy, PartialEq)]

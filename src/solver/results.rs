@@ -100,6 +100,11 @@ impl Problem {
             Some(Proof::Motion { v, .. }) => v.get(self.model.range(body)),
             _ => None,
         }
-        .ok_or_else(|| Error::new(Kind::State, "the last solve has found neither a load that nothing holds nor a motion that K drives"))
+        .ok_or_else(|| {
+            Error::new(
+                Kind::State,
+                "the last solve has found neither a load that nothing holds nor a motion that K drives",
+            )
+        })
     }
 }

@@ -201,26 +201,6 @@ fn weak_springs_that_nobody_tells_of_are_found() {
     assert!(failed.is_empty(), "{}", failed.join("\n"));
 }
 
-/// Coordinates say which motions are rigid, K what holds them.
-#[test]
-fn weak_springs_under_coordinates_are_soft_motions() {
-    let mut failed = Vec::new();
-    let plain = solved(&mut hand_over::without_null_spaces(&column(3)).unwrap()).unwrap().products;
-    for share in decades().filter(|share| *share < 2e-6) {
-        let (deck, what) = (with_springs(column(3), share), format!("coordinates {share:e}"));
-        let mut problem = hand_over::without_null_spaces(&deck).unwrap();
-        for (p, body) in deck.bodies.iter().enumerate() {
-            let places: Vec<f64> = body.coordinates.iter().flat_map(|at| at[..2].to_vec()).collect();
-            problem.set_coordinates(p, 2, &body.node, &body.direction, &places, 2).unwrap();
-        }
-        match solved(&mut problem) {
-            Ok(found) => claim(&mut failed, &what, &deck, &found, plain),
-            Err(error) => failed.push(format!("{what}: {error}")),
-        }
-    }
-    assert!(failed.is_empty(), "{}", failed.join("\n"));
-}
-
 /// Towers, walls and heaps, most bodies free to slide but for the springs.
 #[test]
 fn many_loose_bodies_on_weak_springs_are_solved() {
