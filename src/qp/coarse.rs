@@ -12,6 +12,9 @@ use crate::linalg::vector::{axpy, norm_max, power_of_two_below};
 use crate::linalg::{Analysis, Cholesky, Csr, Matrix};
 use crate::platform::memory::headroom;
 
+/// A pivot of W_F, its largest diagonal entry in [1, 4), below which a motion is held weakly.
+const WEAK: f64 = 1e-4;
+
 pub struct Coarse<'a> {
     /// `G'`, m x r.
     g_transposed: &'a Csr,
@@ -198,7 +201,11 @@ impl OnFace<'_> {
 
     /// Some motions are held so weakly that rounding of `G_F v` matters in `W_F+ G_F v`.
     fn is_weak(&self) -> bool {
-        self.singular().is_some_and(GeneralInverse::is_weak)
+        match self.solver {
+            Some(Solver::Cholesky(factor)) => factor.smallest_pivot() < WEAK,
+            Some(Solver::Singular(solver)) => solver.is_weak(),
+            None => false,
+        }
     }
 
     fn singular(&self) -> Option<&dyn GeneralInverse> {

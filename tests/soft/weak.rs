@@ -82,7 +82,7 @@ fn a_load_that_weak_springs_alone_hold_is_held_by_them() {
         deck.equalities = Rows::none(deck.dofs());
         let deck = with_springs(deck, share);
         match solved(&mut given(&deck, Modes::Soft)) {
-            Ok(found) => claim(&mut failed, &format!("held by springs {share:e}"), &deck, &found, 100),
+            Ok(found) => claim(&mut failed, &format!("held by springs {share:e}"), &deck, &found, 20),
             Err(error) => failed.push(format!("{share:e}: {error}")),
         }
     }
@@ -203,7 +203,7 @@ fn weak_springs_that_nobody_tells_of_are_found() {
 
 /// Towers, walls and heaps, most bodies free to slide but for the springs.
 #[test]
-fn many_loose_bodies_on_weak_springs_are_solved() {
+fn many_loose_bodies_on_weak_springs_are_solved_in_few_products() {
     let mut failed = Vec::new();
     for (what, plain) in
         [("tower", masonry::tower(30)), ("wall", masonry::wall(6, 1e-4)), ("heap", masonry::heap(40, 3))]
@@ -222,9 +222,9 @@ fn many_loose_bodies_on_weak_springs_are_solved() {
                 };
                 match problem.solve() {
                     Ok(report) => {
-                        println!("{what} {share:e} {told}: {:?} {}", report.outcome, report.counts.products);
-                        if report.outcome != Outcome::Solved {
-                            failed.push(format!("{what} {share:e} {told}: {:?}", report.outcome));
+                        let (outcome, products) = (report.outcome, report.counts.products);
+                        if outcome != Outcome::Solved || products > 60 {
+                            failed.push(format!("{what} {share:e} {told}: {outcome:?} {products}"));
                         }
                     }
                     Err(error) => failed.push(format!("{what} {share:e} {told}: {error}")),
