@@ -45,7 +45,7 @@ const COMPARISONS: [Comparison; 7] = [
         grown: || masonry::wall(24, 1e-4),
         goal: 20.0,
     },
-    Comparison { name: "heap", base: || masonry::wall(22, 1e-4), grown: || masonry::heap(500, 1), goal: 3.0 },
+    Comparison { name: "heap", base: || masonry::wall(18, 1e-4), grown: || masonry::heap(500, 1), goal: 3.0 },
     Comparison { name: "apart", base: || masonry::wall(24, 1e-4), grown: || masonry::apart(2000), goal: 3.0 },
     Comparison { name: "pieces", base: || pieces(true), grown: || pieces(false), goal: 1.5 },
 ];

@@ -9,7 +9,7 @@ use crate::linalg::cholesky::numeric::front::HELD;
 use crate::linalg::cholesky::numeric::multifrontal::{self, LowerColumns};
 use crate::linalg::sparse::csr::by_columns;
 use crate::linalg::{Csr, Symmetric};
-use crate::platform::memory::{headroom, reserved, PRODUCTS};
+use crate::platform::memory::{headroom, reserved, zeros, PRODUCTS};
 use crate::platform::pages::Pages;
 
 /// The factor L with its analysis.
@@ -161,11 +161,28 @@ impl Cholesky {
         let mut y = reserved(order.len(), "a right-hand side")?;
         y.extend(order.iter().map(|&dof| x[dof]));
         self.held.iter().for_each(|&dof| y[self.analysis.position[dof]] = 0.0);
-        let mut workspace = self.workspace()?;
-        self.forward(&mut y, &mut workspace);
-        self.backward(&mut y, &mut workspace);
+        let (mut workspace, all) = (self.workspace()?, 0..self.analysis.nodes.count());
+        self.forward(all.clone(), &mut y, &mut workspace);
+        self.backward(all, &mut y, &mut workspace);
         x.fill(0.0);
         y.iter().zip(order).for_each(|(y, &dof)| x[dof] = *y);
+        Ok(())
+    }
+
+    /// `x <- K_ss^-1 x_s` on the dofs s below `dof` in the elimination tree, 0 on all others: what a motion that stands for a pivot
+    /// of 0 moves.
+    pub fn solve_below(&self, dof: usize, x: &mut [f64]) -> Result<()> {
+        let (order, at) = (&self.analysis.order, self.analysis.position[dof]);
+        let nodes = self.analysis.nodes.subtree(self.analysis.nodes.of_column(at));
+        let mut y = zeros(order.len(), "a right-hand side")?;
+        let below = self.analysis.nodes.node(nodes.start).begin..at;
+        below.clone().for_each(|i| y[i] = x[order[i]]);
+        let mut workspace = self.workspace()?;
+        self.forward(nodes.clone(), &mut y, &mut workspace);
+        y[at..].fill(0.0);
+        self.backward(nodes, &mut y, &mut workspace);
+        x.fill(0.0);
+        below.for_each(|i| x[order[i]] = y[i]);
         Ok(())
     }
 }
@@ -205,6 +222,27 @@ mod tests {
         assert_eq!(x[40], 0.0);
         matrix.mul(&x, &mut r);
         assert!((0..289).filter(|&i| i != 40).all(|i| (r[i] - b[i]).abs() < 1e-11));
+    }
+
+    #[test]
+    fn the_solution_below_a_dof_satisfies_the_equations_of_what_it_moves_and_moves_nothing_else() {
+        let matrix = grid(17, 0.1);
+        let factor = Arc::new(Analysis::new(&matrix, &[false; 289]).unwrap())
+            .factorize(&matrix, 1.0)
+            .unwrap()
+            .unwrap();
+        let b: Vec<f64> = (0..289).map(|i| 1.0 + (i as f64).sin()).collect();
+        let moved = |dof: usize| {
+            let (mut x, mut r) = (b.clone(), vec![0.0; 289]);
+            factor.solve_below(dof, &mut x).unwrap();
+            matrix.mul(&x, &mut r);
+            assert!((0..289).filter(|&i| x[i] != 0.0).all(|i| (r[i] - b[i]).abs() < 1e-11), "{dof}");
+            assert_eq!(x[dof], 0.0);
+            x.iter().filter(|v| **v != 0.0).count()
+        };
+        let order = &factor.analysis.order;
+        assert_eq!((moved(order[0]), moved(order[288])), (0, 288));
+        assert!((0..289).all(|dof| moved(dof) <= factor.analysis.position[dof]));
     }
 
     #[test]

@@ -71,7 +71,8 @@ impl Cholesky {
             }
         }
         let mut workspace = self.workspace()?;
-        (0..columns).for_each(|c| self.backward(y.col_mut(c), &mut workspace));
+        (0..columns)
+            .for_each(|c| self.backward(0..self.analysis.nodes.count(), y.col_mut(c), &mut workspace));
         let mut x = Matrix::zeros(self.analysis.position.len(), columns)?;
         for c in 0..columns {
             let column = x.col_mut(c);

@@ -1,5 +1,7 @@
 //! Solutions with L and L' for one right-hand side: L is read once each, at the speed of the memory.
 
+use std::ops::Range;
+
 use crate::error::Result;
 use crate::linalg::Cholesky;
 use crate::platform::memory::zeros;
@@ -14,9 +16,9 @@ impl Cholesky {
         zeros(highest, "a solution")
     }
 
-    /// `y <- L^-1 y`, in the order of elimination.
-    pub(super) fn forward(&self, y: &mut [f64], workspace: &mut [f64]) {
-        for node in self.analysis.nodes.nodes() {
+    /// `y <- L^-1 y`, in the order of elimination, for the columns of some supernodes that no others come before.
+    pub(super) fn forward(&self, nodes: Range<usize>, y: &mut [f64], workspace: &mut [f64]) {
+        for node in nodes.map(|s| self.analysis.nodes.node(s)) {
             let front = &mut workspace[..node.height()];
             front[..node.width].copy_from_slice(&y[node.begin..node.end()]);
             front[node.width..].fill(0.0);
@@ -26,9 +28,9 @@ impl Cholesky {
         }
     }
 
-    /// `y <- L^-T y`, in the order of elimination.
-    pub(super) fn backward(&self, y: &mut [f64], workspace: &mut [f64]) {
-        for node in self.analysis.nodes.nodes().rev() {
+    /// `y <- L^-T y`, in the order of elimination, for the columns of some supernodes.
+    pub(super) fn backward(&self, nodes: Range<usize>, y: &mut [f64], workspace: &mut [f64]) {
+        for node in nodes.rev().map(|s| self.analysis.nodes.node(s)) {
             let front = &mut workspace[..node.height()];
             front[..node.width].copy_from_slice(&y[node.begin..node.end()]);
             front[node.width..].iter_mut().zip(node.rows).for_each(|(v, &row)| *v = y[row as usize]);

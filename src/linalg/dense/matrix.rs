@@ -81,6 +81,9 @@ impl Matrix {
             let column = self.col(j).to_vec();
             for other in (0..self.cols).filter(|other| *other != j) {
                 let part = self.get(pivot, other);
+                if part == 0.0 {
+                    continue;
+                }
                 axpy(-part, &column, self.col_mut(other));
                 self.set(pivot, other, 0.0);
             }

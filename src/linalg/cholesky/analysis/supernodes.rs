@@ -122,6 +122,12 @@ impl Supernodes {
         self.level[s] as usize
     }
 
+    /// Supernode s and all below it: in postorder, those just before it that lie deeper.
+    pub fn subtree(&self, s: usize) -> Range<usize> {
+        let deeper = (0..s).rev().take_while(|&below| self.level[below] > self.level[s]).count();
+        s - deeper..s + 1
+    }
+
     /// The supernode of a column.
     pub fn of_column(&self, column: usize) -> usize {
         self.begin.partition_point(|&begin| begin <= column) - 1

@@ -12,6 +12,8 @@ use crate::linalg::{Cholesky, Csr, Matrix, Symmetric};
 const MOVES: f64 = 1e-9;
 /// The images of the motions held become accurate to rounding in a few corrections; at most so many.
 const CORRECTIONS: usize = 8;
+/// The first ones are made on what is eliminated before the unknown held: a free motion moves nothing else.
+const BELOW: usize = 2;
 
 /// `W+` of one face.
 pub struct ClusterInverse {
@@ -144,18 +146,23 @@ impl ClusterInverse {
             n[at] = 1.0;
             w.mul(&n, &mut image);
             let mut last = f64::INFINITY;
-            for _ in 0..CORRECTIONS {
+            for pass in 0..CORRECTIONS {
                 at_rest(&mut image);
-                self.factor.solve(&mut image)?;
+                if pass < BELOW {
+                    self.factor.solve_below(at, &mut image)?;
+                } else {
+                    self.factor.solve(&mut image)?;
+                }
                 at_rest(&mut image);
                 axpy(-1.0, &image, &mut n);
                 turned.mul(&n, &mut along);
-                image.fill(0.0);
-                turned.mul_transposed_add(1.0, &along, &mut image);
-                if norm(&along) > 0.5 * last {
+                let left = norm(&along);
+                if left <= rounding * norm(&n) || pass >= BELOW && left > 0.5 * last {
                     break;
                 }
-                last = norm(&along);
+                last = left;
+                image.fill(0.0);
+                turned.mul_transposed_add(1.0, &along, &mut image);
             }
             let amplitudes = self.of_blocks(&n);
             let least = MOVES * norm_max(&amplitudes);
