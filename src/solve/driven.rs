@@ -105,7 +105,7 @@ pub fn solve_driven(
         if changes.len() == ROUNDS {
             return Ok(Solution { verdict: Verdict::Stalled, ..solution });
         }
-        if let Some(rate) = endless(&changes) {
+        if let Some(rate) = endless(&changes).filter(|_| last.as_ref() == Some(&held)) {
             return Err(indefinite(case, &solution.alpha, rate));
         }
         match feedback.filter(|feedback| feedback.rate() < 1.0) {
@@ -119,7 +119,8 @@ pub fn solve_driven(
     }
 }
 
-/// The rate of rounds that come no nearer to each other.
+/// The rate of rounds that come no nearer to each other. On one face that proves that the energy falls: the displacements of two
+/// rounds differ by a motion v that keeps its rows closed, `v'K v = d_k+1'd_k - |d_k+1|^2`, d the changes of b.
 fn endless(changes: &[f64]) -> Option<f64> {
     let of = |pair: &[f64]| pair[1] / pair[0];
     let least = changes.windows(2).rev().take(PATIENCE).map(of).fold(f64::INFINITY, f64::min);
