@@ -160,8 +160,17 @@ impl GeneralizedInverse {
         }
     }
 
+    /// What K makes of the vectors: `soft` motions, or a null space.
+    pub(super) fn judged_by(self, k: &Multiple, soft: bool) -> Result<Self> {
+        if soft {
+            self.softened(k)
+        } else {
+            self.measured(k)
+        }
+    }
+
     /// The motions of the vectors that it has, and what K resists of them.
-    pub(super) fn softened(mut self, k: &Multiple) -> Result<Self> {
+    fn softened(mut self, k: &Multiple) -> Result<Self> {
         let dofs: Vec<usize> = (0..k.order()).collect();
         let parts = [(&dofs[..], self.null_space.cols)];
         (self.null_space, self.stiffness) = soft_motions(&self.factor, k, self.null_space, &parts)?;
@@ -170,7 +179,7 @@ impl GeneralizedInverse {
     }
 
     /// The error of a null space that K does not map to zero but for rounding, as far as the factor enlarges it.
-    pub(super) fn measured(mut self, k: &Multiple) -> Result<Self> {
+    fn measured(mut self, k: &Multiple) -> Result<Self> {
         if self.error > KNOWN {
             let dofs: Vec<usize> = (0..k.order()).collect();
             self.error = known_to(&self.factor, k, &self.null_space, &[(&dofs, self.null_space.cols)])?;
@@ -232,7 +241,7 @@ impl Known {
             misfit: None,
             factor,
         };
-        let inverse = if soft { inverse.softened(&k) } else { inverse.measured(&k) }?;
+        let inverse = inverse.judged_by(&k, soft)?;
         Ok(Factorised { inverse, symbolic, further_analyses: 0, factorisations: 1 })
     }
 }

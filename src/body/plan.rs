@@ -105,11 +105,7 @@ impl Plan {
                 let (rounding, stiffness) = (KNOWN, Vec::new());
                 let own =
                     GeneralizedInverse { null_space, stiffness, rounding, error, doubts, ..other.clone() };
-                if soft {
-                    own.softened(&k)
-                } else {
-                    own.measured(&k)
-                }
+                own.judged_by(&k, soft)
             }
             Self::Known(_) | Self::Search(_) => Ok(other.clone()),
         }

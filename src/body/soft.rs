@@ -10,6 +10,7 @@
 
 use crate::body::null_space::{orthonormal_by_parts, FreePart, ROUNDING};
 use crate::body::probe::{Factor, MOST_ERROR, SAMPLE};
+use crate::body::spectrum::symmetric;
 use crate::error::Result;
 use crate::linalg::dense::spectrum::symmetric_eigen;
 use crate::linalg::random::Random;
@@ -50,11 +51,7 @@ pub fn soft_motions(
     let found = Resistance::of(k, &r, parts)?;
     for &(dofs, count) in parts.iter().filter(|part| part.1 > 0) {
         let (_, turn) = symmetric_eigen(&found.stiffness(&r, dofs, count)?)?;
-        let mut row = vec![0.0; count];
-        for &i in dofs {
-            (0..count).for_each(|b| row[b] = (0..count).map(|a| r.get(i, a) * turn.get(a, b)).sum());
-            (0..count).for_each(|b| r.set(i, b, row[b]));
-        }
+        r.turn_rows(dofs, &turn);
     }
     let found = Resistance::of(k, &r, parts)?;
     let known = found.diagonal(&r, parts).into_iter().zip(&found.noise);
@@ -119,8 +116,7 @@ impl Resistance {
 
     /// `R'K R` of a part.
     fn stiffness(&self, r: &Matrix, dofs: &[usize], count: usize) -> Result<Matrix> {
-        let entry = |a, b| self.entry(r, dofs, a, b);
-        Matrix::from_fn(count, count, |a, b| 0.5 * (entry(a, b) + entry(b, a)))
+        symmetric(count, |a, b| self.entry(r, dofs, a, b))
     }
 
     /// `r_j'K r_j`, part after part.

@@ -139,12 +139,8 @@ pub fn measured(
         let metric =
             |a: usize, b: usize| dofs.iter().map(|&i| x.get(i, a) * k.metric(i, 1.0) * x.get(i, b)).sum();
         let stiff = |a: usize, b: usize| dofs.iter().map(|&i| x.get(i, a) * image.get(i, b)).sum();
-        let turn = turned(&filled(q, metric)?, &filled(q, stiff)?)?;
-        let mut row = vec![0.0; q];
-        for &i in dofs {
-            (0..q).for_each(|b| row[b] = (0..q).map(|a| x.get(i, a) * turn.get(a, b)).sum());
-            (0..q).for_each(|b| x.set(i, b, row[b]));
-        }
+        let turn = turned(&symmetric(q, metric)?, &symmetric(q, stiff)?)?;
+        x.turn_rows(dofs, &turn);
         turns.push(turn);
     }
     let (image, terms) = k.mul_columns(&x)?;
@@ -165,7 +161,8 @@ pub fn measured(
     Ok(all)
 }
 
-fn filled(q: usize, entry: impl Fn(usize, usize) -> f64) -> Result<Matrix> {
+/// The symmetric part of q x q entries.
+pub fn symmetric(q: usize, entry: impl Fn(usize, usize) -> f64) -> Result<Matrix> {
     let mut matrix = Matrix::zeros(q, q)?;
     for a in 0..q {
         for b in 0..=a {
@@ -189,7 +186,7 @@ fn turned(m: &Matrix, a: &Matrix) -> Result<Matrix> {
     }
     let mut image = Matrix::zeros(q, q)?;
     (0..q).for_each(|j| a.mul_add(1.0, unit.col(j), image.col_mut(j)));
-    let (_, vectors) = symmetric_eigen(&filled(q, |a, b| dot(unit.col(a), image.col(b)))?)?;
+    let (_, vectors) = symmetric_eigen(&symmetric(q, |a, b| dot(unit.col(a), image.col(b)))?)?;
     let mut turn = Matrix::zeros(q, q)?;
     (0..q).for_each(|j| unit.mul_add(1.0, vectors.col(j), turn.col_mut(j)));
     Ok(turn)

@@ -42,7 +42,11 @@ struct CoarseFace {
 }
 
 enum Solver {
-    Cholesky(Cholesky),
+    Cholesky {
+        factor: Cholesky,
+        /// Of some motion: see `WEAK`.
+        weak: bool,
+    },
     /// Minimum norm.
     Singular(Box<dyn GeneralInverse>),
 }
@@ -95,9 +99,11 @@ impl<'a> Coarse<'a> {
         if let Some((gram, analysis)) = &self.gram {
             let mut w = gram.sum(g_transposed, held)?;
             w.val.iter_mut().for_each(|v| *v /= unit * unit);
-            match analysis.attempt(&w, 1.0)? {
-                Ok(factor) if factor.smallest_pivot() > SINGULAR => return Ok(Solver::Cholesky(factor)),
-                _ => {}
+            if let Ok(factor) = analysis.attempt(&w, 1.0)? {
+                let smallest = factor.smallest_pivot();
+                if smallest > SINGULAR {
+                    return Ok(Solver::Cholesky { factor, weak: smallest < WEAK });
+                }
             }
             let rows = FaceRows { g_transposed, held, unit, whole, rounding };
             if let Some(inverse) = PseudoInverse::new(&w, analysis, &rows)? {
@@ -118,28 +124,21 @@ impl<'a> Coarse<'a> {
         /// Rounding of `G_F v` is large against what weakly held motions have of it; of what is left of v it is not.
         const PASSES: usize = 3;
         let mut rest: Vec<f64> = v.iter().zip(held).map(|(v, held)| if *held { 0.0 } else { *v }).collect();
-        let (g_transposed, dimension) = (self.g_transposed, self.dimension());
-        let image = |x: &[f64]| {
-            let mut image = vec![0.0; dimension];
-            g_transposed.mul_transposed_add(1.0, x, &mut image);
-            image
-        };
+        let g_transposed = self.g_transposed;
         let mut face = self.on(held)?;
-        let mut alpha = face.solve(&image(&rest))?;
+        let mut alpha = face.solve(&g_transposed.mul_transposed(&rest))?;
         for _ in 1..if face.is_weak() { PASSES } else { 1 } {
             for i in (0..v.len()).filter(|&i| !held[i]) {
                 rest[i] = v[i] - g_transposed.row_dot(i, &alpha);
             }
-            axpy(1.0, &face.solve(&image(&rest))?, &mut alpha);
+            axpy(1.0, &face.solve(&g_transposed.mul_transposed(&rest))?, &mut alpha);
         }
         Ok(alpha)
     }
 
     /// `G x`
     pub fn image(&self, x: &[f64]) -> Vec<f64> {
-        let mut image = vec![0.0; self.dimension()];
-        self.g_transposed.mul_transposed_add(1.0, x, &mut image);
-        image
+        self.g_transposed.mul_transposed(x)
     }
 
     /// `v <- P_F v`: held entries to zero, then `v_F - G_F' W_F+ G_F v_F`.
@@ -171,7 +170,7 @@ impl OnFace<'_> {
         let Some(solver) = self.solver else { return Ok(vec![0.0; rhs.len()]) };
         let mut x = self.in_units(rhs);
         match solver {
-            Solver::Cholesky(factor) => factor.solve(&mut x)?,
+            Solver::Cholesky { factor, .. } => factor.solve(&mut x)?,
             Solver::Singular(solver) => x = solver.solve(&x)?,
         }
         Ok(self.in_units(&x))
@@ -202,7 +201,7 @@ impl OnFace<'_> {
     /// Some motions are held so weakly that rounding of `G_F v` matters in `W_F+ G_F v`.
     fn is_weak(&self) -> bool {
         match self.solver {
-            Some(Solver::Cholesky(factor)) => factor.smallest_pivot() < WEAK,
+            Some(Solver::Cholesky { weak, .. }) => *weak,
             Some(Solver::Singular(solver)) => solver.is_weak(),
             None => false,
         }

@@ -46,6 +46,13 @@ pub struct Qp<'a> {
 }
 
 impl Qp<'_> {
+    /// `e - G x`
+    pub fn left(&self, x: &[f64]) -> Vec<f64> {
+        let mut left = self.e.to_vec();
+        self.g_transposed.mul_transposed_add(-1.0, x, &mut left);
+        left
+    }
+
     /// (21): bounded rows of x at zero.
     pub fn at_bound(&self, x: &[f64]) -> Vec<bool> {
         gradient::at_bound(self.bounded, x)

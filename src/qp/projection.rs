@@ -42,9 +42,7 @@ impl Trial {
                 }
             })
             .collect();
-        let mut residual = qp.e.to_vec();
-        qp.g_transposed.mul_transposed_add(-1.0, &point, &mut residual);
-        Self { beta, point, residual }
+        Self { beta, residual: qp.left(&point), point }
     }
 
     /// `|e - G l|` against `|e| + |G||l|`
@@ -120,10 +118,8 @@ pub fn project(qp: &Qp, coarse: &mut Coarse, y: &[f64], held: &[bool]) -> Result
 fn starts(qp: &Qp, coarse: &mut Coarse, y: &[f64], held: &[bool], error: f64) -> Result<Vec<Vec<f64>>> {
     let mut starts = Vec::new();
     if error > FAR {
-        let mut rest = qp.e.to_vec();
         let free: Vec<f64> = y.iter().zip(held).map(|(y, held)| if *held { 0.0 } else { *y }).collect();
-        qp.g_transposed.mul_transposed_add(-1.0, &free, &mut rest);
-        starts.push(coarse.on(held)?.solve(&rest)?);
+        starts.push(coarse.on(held)?.solve(&qp.left(&free))?);
     }
     starts.extend(coarse.last_multiplier.clone());
     Ok(starts)

@@ -5,7 +5,10 @@ use decks::Deck;
 use feti_contact::error::Kind;
 use feti_contact::solver::Modes;
 
-use crate::{add_diagonal, column_on, difference, given, hand_over, oracle, solved, ELEMENTS};
+use crate::{
+    add_diagonal, assert_same_bits_for_any_threads, column_on, difference, given, hand_over, oracle, solved,
+    ELEMENTS,
+};
 
 fn narrow(blocks: usize) -> Deck {
     column_on(blocks, 3..=5, 1e-3)
@@ -126,14 +129,7 @@ fn a_driven_motion_that_nothing_resists_is_no_minimum() {
 
 #[test]
 fn the_answer_with_driven_motions_is_the_same_for_any_number_of_threads() {
-    let deck = with_drive(narrow(3), 1e-4);
-    let with = |threads: i64| {
-        let mut problem = given(&deck, Modes::Soft);
-        problem.set_i64("threads", threads).unwrap();
-        let found = solved(&mut problem).unwrap();
-        found.u.iter().chain(&found.lambda).map(|v| v.to_bits()).collect::<Vec<_>>()
-    };
-    assert!(with(1) == with(2) && with(1) == with(4));
+    assert_same_bits_for_any_threads(&with_drive(narrow(3), 1e-4));
 }
 
 /// Faces that are too large for dense factors: the rounds go on by themselves.

@@ -118,6 +118,16 @@ pub fn solved(problem: &mut Problem) -> Result<Solved> {
     })
 }
 
+pub fn assert_same_bits_for_any_threads(deck: &Deck) {
+    let with = |threads: i64| {
+        let mut problem = given(deck, Modes::Soft);
+        problem.set_i64("threads", threads).unwrap();
+        let found = solved(&mut problem).unwrap();
+        found.u.iter().chain(&found.lambda).map(|v| v.to_bits()).collect::<Vec<_>>()
+    };
+    assert!(with(1) == with(2) && with(1) == with(4));
+}
+
 /// max |x_i - y_i| / max |y_i|
 pub fn difference(x: &[f64], y: &[f64]) -> f64 {
     let largest = |x: &mut dyn Iterator<Item = f64>| {

@@ -4,7 +4,8 @@ use decks::{masonry, Deck, Rows};
 use feti_contact::solver::{Modes, Outcome};
 
 use crate::{
-    add_diagonal, column, difference, given, hand_over, oracle, rounded, solved, with_springs, Solved,
+    add_diagonal, assert_same_bits_for_any_threads, column, difference, given, hand_over, oracle, rounded,
+    solved, with_springs, Solved,
 };
 
 /// Shares of the largest K_ii, by decades.
@@ -131,14 +132,7 @@ fn units_change_nothing() {
 
 #[test]
 fn any_number_of_threads_gives_the_same_bits() {
-    let deck = with_springs(rounded(column(4), 10), 1e-7);
-    let with = |threads: i64| {
-        let mut problem = given(&deck, Modes::Soft);
-        problem.set_i64("threads", threads).unwrap();
-        let found = solved(&mut problem).unwrap();
-        found.u.iter().chain(&found.lambda).map(|v| v.to_bits()).collect::<Vec<_>>()
-    };
-    assert!(with(1) == with(2) && with(1) == with(4));
+    assert_same_bits_for_any_threads(&with_springs(rounded(column(4), 10), 1e-7));
 }
 
 /// What the host sees has its own rows alone, and the certificate of the answer is that of another code.

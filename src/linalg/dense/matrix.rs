@@ -57,6 +57,25 @@ impl Matrix {
         self.cols += 1;
     }
 
+    /// Appends the columns of a part, which has these rows; 0 elsewhere.
+    pub fn push_part(&mut self, part: &Matrix, rows: &[usize]) {
+        for j in 0..part.cols {
+            let mut column = vec![0.0; self.rows];
+            rows.iter().zip(part.col(j)).for_each(|(&row, v)| column[row] = *v);
+            self.push_col(&column);
+        }
+    }
+
+    /// `A T` in these rows, in the first columns; T is square.
+    pub fn turn_rows(&mut self, rows: &[usize], turn: &Matrix) {
+        let mut row = vec![0.0; turn.cols];
+        for &i in rows {
+            (0..turn.cols)
+                .for_each(|b| row[b] = (0..turn.rows).map(|a| self.get(i, a) * turn.get(a, b)).sum());
+            (0..turn.cols).for_each(|b| self.set(i, b, row[b]));
+        }
+    }
+
     /// `y += a A x`
     pub fn mul_add(&self, a: f64, x: &[f64], y: &mut [f64]) {
         for (j, x) in x.iter().enumerate() {

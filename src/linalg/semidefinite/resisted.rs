@@ -68,8 +68,7 @@ pub fn sorted(motions: &Matrix, g_transposed: &Csr, limit: f64) -> Result<(Matri
 
 /// `n <- n - T T'W n`: then `T'W n = 0`, where `T'W T = I`.
 fn conjugate(n: &mut [f64], kept: &Matrix, g_transposed: &Csr) {
-    let mut image = vec![0.0; n.len()];
-    g_transposed.mul_transposed_add(1.0, &product(g_transposed, n), &mut image);
+    let image = g_transposed.mul_transposed(&product(g_transposed, n));
     let part = kept.mul_transposed(&image);
     kept.mul_add(-1.0, &part, n);
 }

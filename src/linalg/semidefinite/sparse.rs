@@ -104,7 +104,7 @@ impl GeneralInverse for PseudoInverse {
         let mut basis = Matrix { rows: self.order, ..Matrix::default() };
         for SingularPart { rows, inverse } in &self.dense {
             let Some(kept) = inverse.kept() else { continue };
-            push_columns(kept, rows, &mut basis);
+            basis.push_part(kept, rows);
             rows.iter().for_each(|&row| apart[row] = true);
         }
         for row in (0..self.order).filter(|&row| !apart[row]) {
@@ -117,21 +117,12 @@ impl GeneralInverse for PseudoInverse {
 
     fn kernel(&self) -> Matrix {
         let mut basis = Matrix { rows: self.order, ..Matrix::default() };
-        self.dense.iter().for_each(|part| push_columns(&part.inverse.kernel(), &part.rows, &mut basis));
+        self.dense.iter().for_each(|part| basis.push_part(&part.inverse.kernel(), &part.rows));
         basis
     }
 
     fn is_weak(&self) -> bool {
         self.weak
-    }
-}
-
-/// Appends the columns of a part, which has these rows.
-fn push_columns(part: &Matrix, rows: &[usize], basis: &mut Matrix) {
-    for j in 0..part.cols {
-        let mut column = vec![0.0; basis.rows];
-        rows.iter().zip(part.col(j)).for_each(|(&row, v)| column[row] = *v);
-        basis.push_col(&column);
     }
 }
 

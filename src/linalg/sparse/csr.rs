@@ -65,6 +65,13 @@ impl Csr {
         }
     }
 
+    /// `A' x`
+    pub fn mul_transposed(&self, x: &[f64]) -> Vec<f64> {
+        let mut y = vec![0.0; self.cols];
+        self.mul_transposed_add(1.0, x, &mut y);
+        y
+    }
+
     /// `y += |A|' |x|`
     pub fn mul_transposed_abs_add(&self, x: &[f64], y: &mut [f64]) {
         for (i, x) in x.iter().enumerate() {

@@ -127,7 +127,7 @@ impl<'a> Run<'a> {
         let mut last = f64::INFINITY;
         for _ in 0..REFINEMENTS {
             let force = face.rows().iter().map(|&i| -self.r[i]).collect();
-            let (step, turn) = face.solve(force, &self.rest())?;
+            let (step, turn) = face.solve(force, &self.qp.left(&self.x))?;
             face.rows().iter().zip(&step).for_each(|(&i, s)| self.x[i] += s);
             axpy(1.0, &turn, &mut self.alpha);
             self.refresh()?;
@@ -140,16 +140,9 @@ impl<'a> Run<'a> {
         let force = face.rows().iter().map(|&i| self.r[i] * self.r[i]).sum::<f64>().sqrt();
         let mut terms = vec![0.0; self.alpha.len()];
         self.qp.g_transposed.mul_transposed_abs_add(&self.x, &mut terms);
-        let balanced = norm(&self.rest()) <= MET * (norm(self.qp.e) + norm(&terms));
+        let balanced = norm(&self.qp.left(&self.x)) <= MET * (norm(self.qp.e) + norm(&terms));
         let size = face.rows().iter().map(|&i| self.terms[i] * self.terms[i]).sum::<f64>().sqrt();
         Ok((balanced && force <= MET * size).then_some(face))
-    }
-
-    /// `e - G x`
-    fn rest(&self) -> Vec<f64> {
-        let mut rest = self.qp.e.to_vec();
-        self.qp.g_transposed.mul_transposed_add(-1.0, &self.x, &mut rest);
-        rest
     }
 
     /// r of x and alpha.

@@ -75,7 +75,7 @@ fn lawson_hanson(qp: &Qp, coarse: &mut Coarse) -> Result<(Vec<f64>, Vec<f64>)> {
     let mut held: Vec<bool> = qp.bounded.to_vec();
     let mut point = least_squares(qp, coarse, &held)?;
     for _ in 0..3 * m + 3 {
-        let residual = residual(qp, &point);
+        let residual = qp.left(&point);
         let Some(best) = most_correlated(qp, &held, &residual) else {
             return Ok((point, residual));
         };
@@ -98,15 +98,8 @@ fn lawson_hanson(qp: &Qp, coarse: &mut Coarse) -> Result<(Vec<f64>, Vec<f64>)> {
             }
         }
     }
-    let residual = residual(qp, &point);
+    let residual = qp.left(&point);
     Ok((point, residual))
-}
-
-/// `e - G l`
-fn residual(qp: &Qp, point: &[f64]) -> Vec<f64> {
-    let mut residual = qp.e.to_vec();
-    qp.g_transposed.mul_transposed_add(-1.0, point, &mut residual);
-    residual
 }
 
 /// The held row that reduces the residual fastest.

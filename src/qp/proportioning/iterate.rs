@@ -93,9 +93,7 @@ impl<'a> Iterate<'a> {
         if self.alpha.is_empty() {
             return Ok(());
         }
-        let mut rest = self.qp.e.to_vec();
-        self.qp.g_transposed.mul_transposed_add(-1.0, &self.x, &mut rest);
-        let step = self.coarse.on(&self.split.active)?.solve(&rest)?;
+        let step = self.coarse.on(&self.split.active)?.solve(&self.qp.left(&self.x))?;
         let mut x = self.x.clone();
         for i in (0..x.len()).filter(|&i| !self.split.active[i]) {
             x[i] += self.qp.g_transposed.row_dot(i, &step);

@@ -75,8 +75,8 @@ impl Iterate<'_> {
     }
 
     /// P3: `z = P_F M_F P_F phi`, conjugate to the kept directions; z itself, and none kept, where rounding is all
-    /// that they leave of it. One projection leaves components that make conjugate gradients diverge below 1e-8: what is
-    /// returned has been projected twice at least.
+    /// that they leave of it. One projection of what is nearly cancelled leaves components that make conjugate gradients diverge
+    /// below 1e-8: that is projected once more.
     fn direction(&mut self) -> Result<Vec<f64>> {
         let mut z = self.split.free.clone();
         self.precondition(&mut z)?;

@@ -78,9 +78,9 @@ impl GeneralInverse for ClusterInverse {
         let mut basis = self.none();
         for (k, block) in self.blocks.iter().enumerate() {
             let columns: Vec<usize> = (self.starts[k]..self.starts[k + 1]).collect();
-            push(&block.free, &columns, &mut basis);
+            basis.push_part(&block.free, &columns);
         }
-        self.clusters.iter().for_each(|cluster| push(&cluster.free, &cluster.columns, &mut basis));
+        self.clusters.iter().for_each(|cluster| basis.push_part(&cluster.free, &cluster.columns));
         basis
     }
 
@@ -90,10 +90,10 @@ impl GeneralInverse for ClusterInverse {
         for (k, block) in self.blocks.iter().enumerate() {
             let columns: Vec<usize> = (self.starts[k]..self.starts[k + 1]).collect();
             for j in (0..block.resisted.cols).filter(|j| !self.is_held(columns[*j])) {
-                push(&block.resisted.columns(j..j + 1), &columns, &mut basis);
+                basis.push_part(&block.resisted.columns(j..j + 1), &columns);
             }
         }
-        self.clusters.iter().for_each(|cluster| push(&cluster.weak, &cluster.columns, &mut basis));
+        self.clusters.iter().for_each(|cluster| basis.push_part(&cluster.weak, &cluster.columns));
         basis
     }
 
@@ -213,13 +213,4 @@ fn add(motions: &Matrix, y: &[f64], columns: &[usize], x: &mut [f64]) {
     let mut own = vec![0.0; columns.len()];
     motions.mul_add(1.0, y, &mut own);
     columns.iter().zip(own).for_each(|(&column, v)| x[column] += v);
-}
-
-/// Appends the motions of some columns.
-fn push(part: &Matrix, columns: &[usize], basis: &mut Matrix) {
-    for j in 0..part.cols {
-        let mut column = vec![0.0; basis.rows];
-        columns.iter().zip(part.col(j)).for_each(|(&at, v)| column[at] = *v);
-        basis.push_col(&column);
-    }
 }
