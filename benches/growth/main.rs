@@ -106,6 +106,8 @@ fn solved(deck: &Deck) -> Result<(f64, Report), String> {
     let mut problem = hand_over::problem(deck).map_err(text)?;
     problem.set_i64("threads", 1).map_err(text)?;
     let clock = Clock::start();
+    // as every call of the C interface does
+    let _room = problem.working_headroom().map_err(text)?;
     let report = problem.solve().map_err(text)?;
     match report.outcome {
         Outcome::Solved => Ok((clock.lap().cpu, report)),

@@ -17,6 +17,8 @@ const SPARE: usize = 2 << 20;
 pub const LARGE: usize = 4 << 10;
 /// Work arrays of faer's products, made on the first product of every thread.
 pub const PRODUCTS: usize = 5 << 20;
+/// For the rooms inside one that many small matrices are made in, one after the other.
+pub const SMALL_MATRICES: usize = PRODUCTS + (1 << 20);
 
 /// Sum of all rooms in use.
 static PROMISED: AtomicUsize = AtomicUsize::new(0);
@@ -50,12 +52,9 @@ pub fn headroom(bytes: usize, what: &str) -> Result<Headroom> {
 
 /// The same with as much again as `inside` says, for the rooms that this thread asks for while it lasts.
 pub fn headroom_with(bytes: usize, inside: usize, what: &str) -> Result<Headroom> {
-    if INSIDE.get() > 0 {
-        return headroom(bytes, what);
-    }
-    let mut room = proved(bytes.saturating_add(inside), what)?;
+    let mut room = headroom(bytes.saturating_add(inside), what)?;
     room.inside = inside;
-    INSIDE.set(inside);
+    INSIDE.set(INSIDE.get() + inside);
     Ok(room)
 }
 
@@ -78,11 +77,11 @@ fn proved(bytes: usize, what: &str) -> Result<Headroom> {
 
 impl Drop for Headroom {
     fn drop(&mut self) {
+        INSIDE.set(INSIDE.get() - self.inside);
         if self.inner {
             INSIDE.set(INSIDE.get() + self.bytes);
             return;
         }
-        INSIDE.set(INSIDE.get().saturating_sub(self.inside));
         PROVED.set(PROVED.get() - self.bytes);
         PROMISED.fetch_sub(self.bytes, Ordering::Relaxed);
     }
@@ -165,6 +164,9 @@ mod tests {
         let (small, large) = (headroom(1 << 15, "a body").unwrap(), headroom(1 << 16, "a body").unwrap());
         assert!(small.inner && !large.inner && INSIDE.get() == 1 << 15);
         drop((small, large));
+        let part = headroom_with(1 << 13, 1 << 14, "a body").unwrap();
+        assert!(part.inner && INSIDE.get() == (1 << 16) - (1 << 13));
+        drop(part);
         assert_eq!(INSIDE.get(), 1 << 16);
         drop(outer);
         assert_eq!(INSIDE.get(), 0);

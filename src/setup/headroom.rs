@@ -3,7 +3,7 @@
 
 use crate::error::Result;
 use crate::model::{Model, PER_ENTRY};
-use crate::platform::memory::{self, Headroom, PRODUCTS};
+use crate::platform::memory::{self, Headroom, PRODUCTS, SMALL_MATRICES};
 use crate::setup::prepared::Prepared;
 
 /// Bytes per unknown: loads, displacements, reactions and the certificate, about 16 vectors at a time.
@@ -13,7 +13,7 @@ const PER_ROW: usize = 640 + 2 * size_of::<f64>() * crate::qp::KEPT;
 /// Bytes per entry of `G' = B R`, while it grows.
 const PER_COARSE_ENTRY: usize = 64;
 /// Bytes for the rooms that parts of a call ask for on the thread that called.
-const INSIDE: usize = PRODUCTS + (1 << 20);
+const INSIDE: usize = SMALL_MATRICES;
 /// Bytes per rigid mode: vectors of the coarse problem. Its matrices, sparse or dense, have rooms of their own.
 const PER_MODE: usize = 320;
 

@@ -7,7 +7,7 @@ use crate::error::Result;
 use crate::linalg::semidefinite::{resisted, GeneralInverse};
 use crate::linalg::sparse::graph::components;
 use crate::linalg::{Analysis, Cholesky, Csr, Matrix, SpdSolver, Symmetric};
-use crate::platform::memory::headroom;
+use crate::platform::memory::{headroom_with, SMALL_MATRICES};
 
 /// A pivot of a matrix with its largest diagonal entry about 1 below this means that it is singular.
 pub const SINGULAR: f64 = 1e-11;
@@ -46,7 +46,8 @@ impl PseudoInverse {
     /// `w` has the pattern that was analysed; its largest diagonal entry is about 1 where no row is held. None where a part that is
     /// not small is singular.
     pub fn new(w: &Symmetric, analysis: &Arc<Analysis>, rows_of_g: &FaceRows) -> Result<Option<Self>> {
-        let _room = headroom(PER_ROW * w.order() + PER_ENTRY * w.val.len(), "the parts of a matrix")?;
+        let lists = PER_ROW * w.order() + PER_ENTRY * w.val.len();
+        let _room = headroom_with(lists, SMALL_MATRICES, "the parts of a matrix")?;
         let (part_of, count) = components(w);
         let mut parts = vec![Vec::new(); count];
         part_of.iter().enumerate().for_each(|(row, &part)| parts[part].push(row));

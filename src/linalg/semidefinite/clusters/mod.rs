@@ -18,7 +18,7 @@ use crate::error::Result;
 use crate::linalg::semidefinite::resisted::sorted;
 use crate::linalg::sparse::gram::Gram;
 use crate::linalg::{Analysis, Csr, Matrix};
-use crate::platform::memory::headroom;
+use crate::platform::memory::{headroom, headroom_with, SMALL_MATRICES};
 use block::Block;
 use inverse::{Cluster, ClusterInverse, Motion};
 
@@ -67,6 +67,7 @@ impl Blocks {
 
     /// `W+` over the rows that are not held. A motion a is free when `|G_F a| <= rounding |G| |a|`, |G| of all rows.
     pub fn inverse(&mut self, held: &[bool], whole: &[f64], rounding: f64) -> Result<ClusterInverse> {
+        let _room = headroom_with(0, SMALL_MATRICES, WHAT)?;
         let count = self.starts.len() - 1;
         let blocks: Vec<Arc<Block>> =
             (0..count).map(|k| self.block(k, held, whole, rounding)).collect::<Result<_>>()?;
