@@ -169,6 +169,13 @@ impl Cholesky {
         Ok(())
     }
 
+    /// The dofs below `dof` in the elimination tree.
+    pub fn below(&self, dof: usize) -> Vec<usize> {
+        let at = self.analysis.position[dof];
+        let nodes = self.analysis.nodes.subtree(self.analysis.nodes.of_column(at));
+        self.analysis.order[self.analysis.nodes.node(nodes.start).begin..at].to_vec()
+    }
+
     /// `x <- K_ss^-1 x_s` on the dofs s below `dof` in the elimination tree, 0 on all others: what a motion that stands for a pivot
     /// of 0 moves.
     pub fn solve_below(&self, dof: usize, x: &mut [f64]) -> Result<()> {

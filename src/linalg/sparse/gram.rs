@@ -40,14 +40,19 @@ impl Gram {
         &self.pattern
     }
 
-    /// The sum over the rows that are not left out.
+    /// The sum over the rows that are not left out, each with weight 1.
     pub fn sum(&self, rows: &Csr, leave_out: &[bool]) -> Result<Symmetric> {
+        self.weighted(rows, |i| if leave_out[i] { 0.0 } else { 1.0 })
+    }
+
+    /// `sum_i w_i g_i' g_i`
+    pub fn weighted(&self, rows: &Csr, weight: impl Fn(usize) -> f64) -> Result<Symmetric> {
         let mut val = zeros(self.pattern.val.len(), "a Gram matrix")?;
-        for i in (0..rows.rows()).filter(|&i| !leave_out[i]) {
+        for (i, w) in (0..rows.rows()).map(|i| (i, weight(i))).filter(|(_, w)| *w != 0.0) {
             let mut at = self.ptr[i];
             for (k, a) in rows.row(i) {
                 for (_, b) in rows.row(i).take_while(|(l, _)| *l <= k) {
-                    val[self.position[at] as usize] += a * b;
+                    val[self.position[at] as usize] += w * a * b;
                     at += 1;
                 }
             }

@@ -86,7 +86,7 @@ impl Blocks {
             held: at_rest,
             clusters: Vec::new(),
         };
-        let motions = inverse.motions(&w, &turned, (whole, rounding))?;
+        let motions = inverse.motions(&turned, (whole, rounding))?;
         for members in inverse.clusters_of(&motions, held.len()) {
             let cluster = self.cluster(&members, &motions, held, (whole, rounding))?;
             inverse.weak |= cluster.weak.cols > 0;
@@ -151,9 +151,7 @@ impl Blocks {
         let columns: Vec<usize> = blocks.iter().flat_map(|&k| self.columns(k)).collect();
         let mut together = Matrix { rows: columns.len(), ..Matrix::default() };
         for &at in members {
-            together.push_col(
-                &columns.iter().map(|&column| motions[at].amplitudes[column]).collect::<Vec<f64>>(),
-            );
+            together.push_col(&motions[at].on(&columns));
         }
         let mut rows: Vec<usize> =
             blocks.iter().flat_map(|&k| self.met.row(k)).map(|(i, _)| i).filter(|&i| !held[i]).collect();
