@@ -3,6 +3,7 @@
 use crate::linalg::vector::{dot, norm};
 
 /// Of the gradient g at a point x >= 0, m entries each.
+#[derive(Clone)]
 pub struct Split {
     /// A(x) of (21): bounded rows at zero. The others are F(x).
     pub active: Vec<bool>,

@@ -229,14 +229,15 @@ impl Iterate<'_> {
     /// direction presses some of them on, it is projected. `None`, and nothing done, where it does not lead down:
     /// always where `G x = e` leaves no motion on that face, whose gradient is `small` then.
     fn free_pulling(&mut self, small: f64) -> Result<Option<Step>> {
-        let before = self.split.active.clone();
-        (0..before.len()).for_each(|i| self.split.active[i] &= self.split.chopped[i] == 0.0);
+        let before = (self.split.clone(), self.alpha.clone(), self.r.clone());
+        (0..self.x.len()).for_each(|i| self.split.active[i] &= self.split.chopped[i] == 0.0);
         self.update_on_face()?;
         if norm(&self.split.free) <= small {
-            return self.back_to_face(before).map(|()| None);
+            (self.split, self.alpha, self.r) = before;
+            return Ok(None);
         }
         let p = self.direction()?;
-        let pressed = (0..before.len()).any(|i| before[i] && !self.split.active[i] && p[i] > 0.0);
+        let pressed = (0..p.len()).any(|i| before.0.active[i] && !self.split.active[i] && p[i] > 0.0);
         let length = self.expected.filter(|t| pressed || self.feasible_step(&p, 0.0) < *t);
         // a preconditioned direction has its length, any other must have been measured
         let own = (pressed && self.qp.preconditioner.is_some()).then_some(1.0);
@@ -246,15 +247,13 @@ impl Iterate<'_> {
             _ => Step::Stuck,
         };
         match step {
-            Step::Stuck => self.back_to_face(before).map(|()| None),
+            Step::Stuck => {
+                (self.split, self.alpha, self.r) = before;
+                Ok(None)
+            }
             Step::Unbounded { .. } => Ok(Some(step)),
             _ => Ok(Some(Step::Proportioning)),
         }
-    }
-
-    fn back_to_face(&mut self, active: Vec<bool>) -> Result<()> {
-        self.split.active = active;
-        self.update_on_face()
     }
 
     /// P10: gradient projection on the whole feasible set, with an exact line search.
