@@ -92,6 +92,22 @@ impl<'a> Coarse<'a> {
         Ok(OnFace { unit: self.unit, solver, solves: &mut self.solves })
     }
 
+    /// `G D G' + rho I`, D = diag(`weights`) >= 0; none where there are no modes, or D leaves one of them to nothing.
+    pub fn weighted(&mut self, weights: &[f64], rho: f64) -> Result<Option<Weighted>> {
+        /// Of its diagonal entry in `G G'`: what weights that vanish do not resist is held by this part.
+        const HELD: f64 = 1e-10;
+        let Some((gram, analysis)) = &self.gram else { return Ok(None) };
+        let mut w = gram.weighted(self.g_transposed, |i| weights[i])?;
+        w.val.iter_mut().for_each(|v| *v /= self.unit * self.unit);
+        for (k, whole) in self.whole.iter().enumerate() {
+            let held = if *whole > 0.0 { HELD * whole } else { 1.0 };
+            w.val[w.ptr[k + 1] - 1] += rho / (self.unit * self.unit) + held;
+        }
+        self.factorisations += 1;
+        let factor = analysis.attempt(&w, 1.0)?.ok();
+        Ok(factor.map(|factor| Weighted { factor, unit: self.unit }))
+    }
+
     /// `W_F^-1`, or W_F+ where some motions are free or held weakly: by dense parts where these are small.
     fn solver(&mut self, held: &[bool]) -> Result<Solver> {
         let (g_transposed, unit, whole, rounding) =
@@ -152,6 +168,21 @@ impl<'a> Coarse<'a> {
             v[i] -= self.g_transposed.row_dot(i, &alpha);
         }
         Ok(())
+    }
+}
+
+/// `G D G' + rho I` of all rows.
+pub struct Weighted {
+    factor: Cholesky,
+    unit: f64,
+}
+
+impl Weighted {
+    pub fn solve(&self, rhs: &[f64]) -> Result<Vec<f64>> {
+        let mut x: Vec<f64> = rhs.iter().map(|x| x / self.unit).collect();
+        self.factor.solve(&mut x)?;
+        x.iter_mut().for_each(|x| *x /= self.unit);
+        Ok(x)
     }
 }
 

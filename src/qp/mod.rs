@@ -10,6 +10,7 @@ mod acceptance;
 mod active_set;
 mod coarse;
 mod gradient;
+mod interior;
 mod nearest;
 pub mod paper;
 mod projection;

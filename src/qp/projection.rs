@@ -1,9 +1,11 @@
 //! `PROJ(y) = argmin |l - y|` over `l_i >= 0 (i bounded), G l = e`: a semismooth Newton method in the
-//! coarse space, `l(beta) = clip(y + G'beta)`, on the convex `phi(beta) = 1/2 |l|^2 - e'beta`, with an exact line search.
+//! coarse space, `l(beta) = clip(y + G'beta)`, on the convex `phi(beta) = 1/2 |l|^2 - e'beta`, with an exact line search. Where
+//! thousands of loose bodies let one row after the other stop its steps, an interior point method shows the face.
 
 use crate::error::Result;
 use crate::linalg::vector::{axpy, dot, norm};
 use crate::qp::coarse::Coarse;
+use crate::qp::interior::Interior;
 use crate::qp::Qp;
 
 /// The nearest point and the multiplier beta of `G l = e`.
@@ -13,6 +15,9 @@ pub struct Projected {
 }
 
 const NEWTON_STEPS: usize = 100;
+/// Newton steps that rows cut to less than this part of them, so many of which are followed by a look into the interior.
+const CUT: f64 = 0.9;
+const PATIENCE: usize = 4;
 /// `|e - G l| <= ACCURACY (|e| + |G||l|)` is accepted; `STAGNATED` where no step improves it any more.
 const ACCURACY: f64 = 1e-12;
 const STAGNATED: f64 = 1e-10;
@@ -89,10 +94,19 @@ pub fn project(qp: &Qp, coarse: &mut Coarse, y: &[f64], held: &[bool]) -> Result
             (error, now) = (next.error(qp), next);
         }
     }
+    let mut cuts = 0;
     for _ in 0..NEWTON_STEPS {
         // J2
         if error <= ACCURACY {
             return now.done(qp, coarse).map(Some);
+        }
+        if cuts == PATIENCE {
+            cuts += 1;
+            let interior = Interior { qp, y, held, delta: 1.0, rho: 0.0 };
+            let next = Trial::new(qp, y, held, interior.minimise(coarse, now.beta.clone())?.multiplier);
+            if next.phi(qp) < now.phi(qp) {
+                (error, now) = (next.error(qp), next);
+            }
         }
         // J3: Newton
         let face: Vec<bool> =
@@ -101,6 +115,7 @@ pub fn project(qp: &Qp, coarse: &mut Coarse, y: &[f64], held: &[bool]) -> Result
         let Some(t) = minimum_along(qp, y, held, &now, &step) else {
             return if error <= STAGNATED { now.done(qp, coarse).map(Some) } else { Ok(None) };
         };
+        cuts += usize::from(t < CUT);
         let mut beta = now.beta.clone();
         axpy(t, &step, &mut beta);
         let next = Trial::new(qp, y, held, beta);
