@@ -1,4 +1,4 @@
-//! The wish of another thread that a long computation ends: set for a task, looked at inside its loops.
+//! When a long computation has to end: another thread wishes it, or its time is over. Set for a task, looked at inside its loops.
 
 use std::cell::RefCell;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -7,17 +7,29 @@ use std::sync::Arc;
 use crate::error::{Error, Kind, Result};
 
 thread_local! {
-    static PRESENT: RefCell<Interrupt> = const { RefCell::new(Interrupt(None)) };
+    static PRESENT: RefCell<Interrupt> = const { RefCell::new(Interrupt { flag: None, time: None }) };
 }
 
-/// Ends the computations that look at it once its flag is true; without a flag none. A computation that goes on on
-/// several threads takes the one of the thread it began on with it.
-#[derive(Debug, Clone, Default)]
-pub struct Interrupt(Option<Arc<AtomicBool>>);
+/// Seconds since a call has begun.
+pub type Clock = Arc<dyn Fn() -> f64 + Send + Sync>;
+
+/// Ends the computations that look at it once its flag is true or its clock shows more than its limit; without either
+/// none. A computation that goes on on several threads takes the one of the thread it began on with it.
+#[derive(Clone, Default)]
+pub struct Interrupt {
+    flag: Option<Arc<AtomicBool>>,
+    /// The limit in seconds.
+    time: Option<(Clock, f64)>,
+}
 
 impl Interrupt {
     pub fn new(flag: Arc<AtomicBool>) -> Self {
-        Self(Some(flag))
+        Self { flag: Some(flag), time: None }
+    }
+
+    /// The same, which also ends what looks at it after `limit` seconds.
+    pub fn after(self, limit: f64, clock: Clock) -> Self {
+        Self { time: Some((clock, limit)), ..self }
     }
 
     /// That of the task on this thread.
@@ -33,15 +45,31 @@ impl Interrupt {
 
     /// Ends what looks at it from now on.
     pub fn set(&self) {
-        self.0.iter().for_each(|flag| flag.store(true, Ordering::Relaxed));
+        self.flag.iter().for_each(|flag| flag.store(true, Ordering::Relaxed));
     }
 
     pub fn check(&self) -> Result<()> {
-        match &self.0 {
-            Some(flag) if flag.load(Ordering::Relaxed) => Err(cancelled()),
+        if self.flag.as_ref().is_some_and(|flag| flag.load(Ordering::Relaxed)) {
+            return Err(cancelled());
+        }
+        match &self.time {
+            Some((clock, limit)) if clock() > *limit => {
+                Err(Error::new(Kind::TimeOver, "the time is over").limit(*limit))
+            }
             _ => Ok(()),
         }
     }
+}
+
+/// Refuses what the task on this thread is about to do, once it has to end. Asked before every costly part of a loop: a product, a
+/// factorisation, a system solved with its factor.
+pub fn check() -> Result<()> {
+    PRESENT.with_borrow(Interrupt::check)
+}
+
+/// Runs what an answer is told by, which is done also where there is no time for more.
+pub fn never<T>(work: impl FnOnce() -> T) -> T {
+    Interrupt::default().during(work)
 }
 
 pub fn cancelled() -> Error {
@@ -65,12 +93,22 @@ mod tests {
     fn a_task_sees_its_own_interrupt_and_the_one_before_comes_back() {
         let (outer, inner) = (Arc::new(AtomicBool::new(false)), Arc::new(AtomicBool::new(true)));
         Interrupt::new(Arc::clone(&outer)).during(|| {
-            let ended = Interrupt::new(inner).during(|| Interrupt::present().check());
+            let ended = Interrupt::new(inner).during(check);
             assert_eq!(ended.unwrap_err().kind, Kind::Cancelled);
-            assert!(Interrupt::present().check().is_ok());
+            assert!(check().is_ok());
             outer.store(true, Ordering::Relaxed);
-            assert!(Interrupt::present().check().is_err());
+            assert!(check().is_err());
+            assert!(never(check).is_ok());
         });
-        assert!(Interrupt::present().check().is_ok());
+        assert!(check().is_ok());
+    }
+
+    #[test]
+    fn a_task_ends_after_its_limit_and_not_at_it() {
+        for (seconds, ends) in [(0.0, false), (2.0, false), (2.5, true)] {
+            let clock: Clock = Arc::new(move || seconds);
+            let ended = Interrupt::default().after(2.0, clock).during(check);
+            assert_eq!(ended.err().map(|error| error.kind), ends.then_some(Kind::TimeOver), "{seconds}");
+        }
     }
 }

@@ -17,7 +17,7 @@ pub fn solve_islands(model: &Model, prepared: &Prepared, start: &Start, watch: &
     let (stops, threads) = (watch.stops.clone(), model.threads());
     let solve = |k: usize, voice: &mut dyn Voice| {
         let case = Case { model, prepared, ready: &islands[k] };
-        solve_island(case, k, start.scaled(case.ready)?, &stops, voice)
+        stops.interrupt.during(|| solve_island(case, k, start.scaled(case.ready)?, &stops, voice))
     };
     if islands.len() == 1 || threads == 1 {
         return (0..islands.len()).map(|k| of_itself(solve(k, watch))).collect();
@@ -57,8 +57,8 @@ fn of_itself(end: Result<Solved>) -> Result<std::result::Result<Solved, Error>> 
 }
 
 fn is_of_itself(error: &Error) -> bool {
-    use Kind::{Cancelled, GapsContradict, Indefinite, LoadNotHeld};
-    matches!(error.kind, LoadNotHeld | GapsContradict | Indefinite | Cancelled)
+    use Kind::{Cancelled, GapsContradict, Indefinite, LoadNotHeld, TimeOver};
+    matches!(error.kind, LoadNotHeld | GapsContradict | Indefinite | Cancelled | TimeOver)
 }
 
 /// What an island says to the thread that listens to all.

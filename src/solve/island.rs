@@ -6,6 +6,7 @@ use crate::error::{Error, Result};
 use crate::linalg::vector::norm_max;
 use crate::linalg::Operator;
 use crate::model::Model;
+use crate::platform::interrupt;
 use crate::progress::{Steps, Stops, Voice};
 use crate::qp::paper::Units;
 use crate::qp::{Direct, Solution, Verdict};
@@ -56,7 +57,7 @@ pub fn solve_island(
     stops: &Stops,
     voice: &mut dyn Voice,
 ) -> Result<Solved> {
-    let mut dual = scaled(case, stops)?;
+    let mut dual = scaled(case)?;
     loop {
         match attempt(case, number, &dual, &start, stops, voice)? {
             Tried::Ended(solved) => return Ok(*solved),
@@ -77,13 +78,14 @@ pub fn solve_island(
 }
 
 /// The loads and gaps of the host as the dual takes them; refuses rows whose gaps no displacement satisfies.
-pub fn scaled(case: Case, stops: &Stops) -> Result<Scaled> {
+pub fn scaled(case: Case) -> Result<Scaled> {
     let ready = case.ready;
     let mut load = ready.island.loads(case.model)?;
     load.iter_mut().for_each(|f| *f /= ready.island.unit);
+    interrupt::check()?;
     let moved = ready.moved(case.threads(), &load)?;
     let farthest = moved.iter().map(|own| norm_max(own)).fold(0.0, f64::max);
-    let gaps = presolve(case, farthest, stops)?;
+    let gaps = presolve(case, farthest)?;
     Ok(Scaled::new(ready, load, moved, gaps))
 }
 
@@ -96,9 +98,9 @@ fn attempt(
     voice: &mut dyn Voice,
 ) -> Result<Tried> {
     let (settings, ready) = (&case.model.settings, case.ready);
-    let f = Interruptible::new(&ready.dual, stops.clone(), ready.product_threads(case.threads()));
+    let f = Interruptible::new(&ready.dual, ready.product_threads(case.threads()));
     let (qp, direct) = (dual.qp(ready, &f), direct(case)?);
-    let mut judge = Certifier::new(Recovery::new(case, dual, Faces { qp, direct, stops })?);
+    let mut judge = Certifier::new(Recovery::new(case, dual, Faces { qp, direct })?);
     let steps = &mut Steps::new(number, ready.island.unit, &dual.gaps.bounded, stops.clone(), voice);
     let solution = match parameters(settings) {
         Some(given) if given.units == Units::Printed => {
@@ -113,7 +115,8 @@ fn attempt(
         solution => solution,
     };
     let (judging, recovering) = (judge.spent, Instant::now());
-    let mut ending = judge.ending(solution)?;
+    // an answer there is comes with its displacements and its certificate
+    let mut ending = interrupt::never(|| judge.ending(solution))?;
     let recovery = &judge.recovery;
     recovery.bring_to_rest(&mut ending, false)?;
     let is_solved = ending.solution.verdict == Verdict::Solved;
@@ -124,7 +127,7 @@ fn attempt(
     }
     if let Some(taken) = dual.unheld.as_ref().filter(|taken| taken.load.is_some()) {
         // what the host is told is about its own load
-        ending.judgement = recovery.judged_on(&case.data()?, &ending.recovered)?;
+        ending.judgement = interrupt::never(|| recovery.judged_on(&case.data()?, &ending.recovered))?;
         let is_marginal = taken.share > ROUNDING || !ending.judgement.certificate.passed();
         outcome = match outcome {
             Outcome::Solved if taken.share > MARGINAL => Outcome::Inaccurate,
@@ -158,8 +161,13 @@ fn outcome(case: Case, dual: &Scaled, solution: &Solution) -> Result<Outcome> {
         Verdict::Unbounded { p } => {
             let w: Vec<f64> = p.iter().map(|p| -p).collect();
             let w = case.ready.rows.scaling.decoupling.solve_transposed(w);
-            let proved = Contradictions::new(case, &dual.gaps).proved(&w)?;
-            proved.map_or(Ok(Outcome::Stalled), Err)
+            match Contradictions::new(case, &dual.gaps).proved(&w) {
+                Ok(proved) => proved.map_or(Ok(Outcome::Stalled), Err),
+                Err(error) if Verdict::of_refusal(error.clone())? == Verdict::Cancelled => {
+                    Ok(Outcome::Cancelled)
+                }
+                Err(_) => Ok(Outcome::Time),
+            }
         }
     }
 }

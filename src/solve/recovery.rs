@@ -8,7 +8,6 @@ use crate::error::Result;
 use crate::linalg::twofold::Twofold;
 use crate::linalg::vector::{axpy, weighted_norm};
 use crate::platform::memory::copied;
-use crate::progress::Stops;
 use crate::qp::{Direct, Qp, Solution};
 use crate::setup::Ready;
 use crate::solve::case::Case;
@@ -30,11 +29,10 @@ impl Recovered {
     }
 }
 
-/// What solutions on faces of the dual are made with, and when that has to end.
+/// What solutions on faces of the dual are made with.
 pub struct Faces<'a> {
     pub qp: Qp<'a>,
     pub direct: Direct<'a>,
-    pub stops: &'a Stops,
 }
 
 /// What a solve ends with.

@@ -106,7 +106,8 @@ fn proportioning(
     let verdict = run(&mut it, stop, limits, judge, observer).or_else(Verdict::of_refusal)?;
     it.counts.coarse_solves = it.coarse.solves;
     it.counts.coarse_factorisations = it.coarse.factorisations;
-    let undetermined = it.coarse.on(&it.split.active)?.deficiency();
+    let open = it.coarse.on(&it.split.active).map(|face| face.deficiency());
+    let (undetermined, verdict) = verdict.with(open, 0)?;
     Ok(Solution { undetermined, scale, x: it.x, alpha: it.alpha, verdict, counts: it.counts })
 }
 

@@ -257,9 +257,11 @@ impl<'a> Lagrangian<'a> {
     }
 
     fn solution(mut self, verdict: Verdict) -> Result<Solution> {
-        let x = self.on_equalities()?;
+        let nearest = self.on_equalities();
+        let (x, verdict) = verdict.with(nearest, self.point.x.clone())?;
         let coarse = &mut self.map.coarse;
-        let undetermined = coarse.on(&self.point.split.active)?.deficiency();
+        let open = coarse.on(&self.point.split.active).map(|face| face.deficiency());
+        let (undetermined, verdict) = verdict.with(open, 0)?;
         let (coarse_solves, coarse_factorisations) = (coarse.solves, coarse.factorisations);
         let counts = Counts { coarse_solves, coarse_factorisations, ..self.map.counts };
         let (scale, alpha) = (self.scale, self.alpha().to_vec());
