@@ -165,12 +165,12 @@ fn project(a: &Csr, mut b: Vec<f64>) -> Result<Vec<f64>> {
     let mut size = norm(&s);
     let end = (STOP * size).max(8.0 * f64::EPSILON * norm(&b));
     let mut image = vec![0.0; a.rows()];
-    for _ in 0..2 * a.cols + 50 {
+    for step in 0..2 * a.cols + 50 {
         // also where it is no number
         if !(size > end) {
             break;
         }
-        interrupt::check()?;
+        interrupt::reached("conjugate gradients on motions that joints leave", step)?;
         a.mul(&direction, &mut image);
         let step = (size / norm(&image)).powi(2);
         if !step.is_finite() {

@@ -1,17 +1,21 @@
 //! When a long computation has to end: another thread wishes it, or its time is over. Set for a task, looked at inside its loops.
 
-use std::cell::RefCell;
+use std::cell::{Cell, RefCell};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::Arc;
 
 use crate::error::{Error, Kind, Result};
 
 thread_local! {
-    static PRESENT: RefCell<Interrupt> = const { RefCell::new(Interrupt { flag: None, time: None }) };
+    static PRESENT: RefCell<Interrupt> = const { RefCell::new(Interrupt { flag: None, time: None, hearer: None }) };
+    static PART: Cell<&'static str> = const { Cell::new("") };
 }
 
 /// Seconds since a call has begun.
 pub type Clock = Arc<dyn Fn() -> f64 + Send + Sync>;
+
+/// Hears how far a loop is: the part of the call that it belongs to, what it counts, and how many of those are done.
+pub type Hearer = Arc<dyn Fn(&'static str, &'static str, usize) -> Result<()> + Send + Sync>;
 
 /// Ends the computations that look at it once its flag is true or its clock shows more than its limit; without either
 /// none. A computation that goes on on several threads takes the one of the thread it began on with it.
@@ -20,16 +24,22 @@ pub struct Interrupt {
     flag: Option<Arc<AtomicBool>>,
     /// The limit in seconds.
     time: Option<(Clock, f64)>,
+    hearer: Option<Hearer>,
 }
 
 impl Interrupt {
     pub fn new(flag: Arc<AtomicBool>) -> Self {
-        Self { flag: Some(flag), time: None }
+        Self { flag: Some(flag), ..Self::default() }
     }
 
     /// The same, which also ends what looks at it after `limit` seconds.
     pub fn after(self, limit: f64, clock: Clock) -> Self {
         Self { time: Some((clock, limit)), ..self }
+    }
+
+    /// The same, with somebody who hears how far the loops are; an error of his ends them.
+    pub fn heard_by(self, hearer: Hearer) -> Self {
+        Self { hearer: Some(hearer), ..self }
     }
 
     /// That of the task on this thread.
@@ -67,6 +77,20 @@ pub fn check() -> Result<()> {
     PRESENT.with_borrow(Interrupt::check)
 }
 
+/// The same in a loop that may take long: it says that `count` of `what` are done.
+pub fn reached(what: &'static str, count: usize) -> Result<()> {
+    check()?;
+    // who hears it may run other tasks on this thread
+    let hearer = PRESENT.with_borrow(|present| present.hearer.clone());
+    hearer.map_or(Ok(()), |hearer| hearer(PART.get(), what, count))
+}
+
+/// Runs `work` as the part of the call that `name` names.
+pub fn part<T>(name: &'static str, work: impl FnOnce() -> T) -> T {
+    let _before = RestorePart(PART.replace(name));
+    work()
+}
+
 /// Runs what an answer is told by, which is done also where there is no time for more.
 pub fn never<T>(work: impl FnOnce() -> T) -> T {
     Interrupt::default().during(work)
@@ -82,6 +106,15 @@ struct Restore(Interrupt);
 impl Drop for Restore {
     fn drop(&mut self) {
         PRESENT.set(std::mem::take(&mut self.0));
+    }
+}
+
+/// The same for the part.
+struct RestorePart(&'static str);
+
+impl Drop for RestorePart {
+    fn drop(&mut self) {
+        PART.set(self.0);
     }
 }
 
@@ -101,6 +134,25 @@ mod tests {
             assert!(never(check).is_ok());
         });
         assert!(check().is_ok());
+    }
+
+    #[test]
+    fn a_loop_says_how_far_it_is_in_its_part() {
+        let hearer: Hearer = Arc::new(|part, what, count| {
+            assert_eq!((part, what), (if count < 3 { "inner" } else { "outer" }, "rounds"));
+            if count < 4 {
+                Ok(())
+            } else {
+                Err(Error::new(Kind::Callback, "enough"))
+            }
+        });
+        Interrupt::default().heard_by(hearer).during(|| {
+            part("outer", || {
+                part("inner", || reached("rounds", 2)).unwrap();
+                reached("rounds", 3).unwrap();
+                assert_eq!(reached("rounds", 4).unwrap_err().kind, Kind::Callback);
+            });
+        });
     }
 
     #[test]

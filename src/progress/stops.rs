@@ -1,7 +1,7 @@
 //! When a call has to end: the host's wish to cancel it, its time limit.
 
 use std::sync::atomic::AtomicBool;
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Instant;
 
 use crate::error::Result;
@@ -25,6 +25,22 @@ impl Stops {
     #[cfg(test)]
     pub fn never() -> Self {
         Self::new(Arc::default(), f64::INFINITY, from_now())
+    }
+
+    /// What the tasks of the call run under where `say` gets lines on how far their loops are: one after a second at most, and after
+    /// a tenth of the time so far.
+    pub fn heard(&self, say: impl Fn(String) -> Result<()> + Send + Sync + 'static) -> Interrupt {
+        let (clock, last) = (Arc::clone(&self.clock), Mutex::new(self.seconds()));
+        let hearer = move |part: &'static str, what: &'static str, count: usize| {
+            let now = clock();
+            let mut last = last.lock().unwrap_or_else(PoisonError::into_inner);
+            if now - *last < f64::max(1.0, 0.1 * now) {
+                return Ok(());
+            }
+            *last = now;
+            say(format!("{part}: {count} {what} after {now:.0} seconds"))
+        };
+        self.interrupt.clone().heard_by(Arc::new(hearer))
     }
 
     /// Ends whatever runs.

@@ -3,6 +3,7 @@
 
 use crate::error::Result;
 use crate::linalg::vector::{axpy, dot, norm};
+use crate::platform::interrupt;
 use crate::qp::coarse::Coarse;
 use crate::qp::Qp;
 
@@ -89,7 +90,8 @@ pub fn project(qp: &Qp, coarse: &mut Coarse, y: &[f64], held: &[bool]) -> Result
             (error, now) = (next.error(qp), next);
         }
     }
-    for _ in 0..NEWTON_STEPS {
+    for step in 0..NEWTON_STEPS {
+        interrupt::reached("Newton steps of a projection", step)?;
         // J2
         if error <= ACCURACY {
             return now.done(qp, coarse).map(Some);

@@ -39,6 +39,9 @@ pub struct Solved {
 /// How every island ended: with an answer, or with the named reason why it has none.
 pub type Ends = Vec<std::result::Result<Solved, Error>>;
 
+/// What the log calls S11.
+const DIAGNOSIS: &str = "forces nearest to the load";
+
 /// One try at an island.
 enum Tried {
     Ended(Box<Solved>),
@@ -59,16 +62,17 @@ pub fn solve_island(
 ) -> Result<Solved> {
     let mut dual = scaled(case)?;
     loop {
-        match attempt(case, number, &dual, &start, stops, voice)? {
+        match interrupt::part("dual solve", || attempt(case, number, &dual, &start, stops, voice))? {
             Tried::Ended(solved) => return Ok(*solved),
             Tried::NotHeld { far } => {
                 let (data, ready) = (case.data()?, case.ready);
-                let least = Unheld::least(&data, ready, &dual, &far)?;
+                let least = interrupt::part(DIAGNOSIS, || Unheld::least(&data, ready, &dual, &far))?;
                 if let Some(error) = least.proof(case, &dual)? {
                     return Err(error);
                 }
                 let share = least.share;
-                let relative = Unheld::relative(&data, ready, &dual, &far)?.filter(Unheld::is_little);
+                let relative = interrupt::part(DIAGNOSIS, || Unheld::relative(&data, ready, &dual, &far))?;
+                let relative = relative.filter(Unheld::is_little);
                 let left = relative.unwrap_or(least);
                 dual.take(case, &left.x, left.load_to_take(share), share)?;
                 start = left.x;
@@ -85,7 +89,7 @@ pub fn scaled(case: Case) -> Result<Scaled> {
     interrupt::check()?;
     let moved = ready.moved(case.threads(), &load)?;
     let farthest = moved.iter().map(|own| norm_max(own)).fold(0.0, f64::max);
-    let gaps = presolve(case, farthest)?;
+    let gaps = interrupt::part("presolve", || presolve(case, farthest))?;
     Ok(Scaled::new(ready, load, moved, gaps))
 }
 

@@ -4,6 +4,7 @@ use crate::certificate::BodyData;
 use crate::error::{Kind, Result};
 use crate::linalg::vector::axpy;
 use crate::linalg::Matrix;
+use crate::platform::interrupt;
 use crate::qp::{self, Verdict};
 use crate::setup::Island;
 use crate::solve::held::without_force;
@@ -72,7 +73,8 @@ impl<'a> Recovery<'a> {
                 forces[i] = 0.0;
             }
         }
-        let Some(change) = self.way_to_rest(&u, &forces, free)? else { return Ok(None) };
+        let way = interrupt::part("least travel", || self.way_to_rest(&u, &forces, free))?;
+        let Some(change) = way else { return Ok(None) };
         add(change.u, &mut u)?;
         for k in 0..self.data.bodies.len() {
             let modes = dual.modes_of(k);
@@ -108,7 +110,9 @@ impl<'a> Recovery<'a> {
             lambda,
         };
         match travel(&open, u) {
-            Err(error) if matches!(error.kind, Kind::Cancelled | Kind::TimeOver) => Err(error),
+            Err(error) if matches!(error.kind, Kind::Cancelled | Kind::TimeOver | Kind::Callback) => {
+                Err(error)
+            }
             way => Ok(way.ok()),
         }
     }

@@ -55,7 +55,7 @@ impl Problem {
         self.watched("setup", f64::INFINITY, |problem, watch| {
             if !problem.prepared.is_up_to_date(&problem.model) {
                 watch.phases = Phases::default();
-                begin(&mut watch.log, &problem.model, "setup")?;
+                begin(&watch.log, &problem.model, "setup")?;
             }
             problem.prepared.set_up(&problem.model, watch)
         })
@@ -65,7 +65,7 @@ impl Problem {
     /// report says how good it is. Where a group of bodies has none, the error says why and those of the others are kept.
     pub fn solve(&mut self) -> Result<Report> {
         self.watched("solve", self.model.settings.time_limit, |problem, watch| {
-            begin(&mut watch.log, &problem.model, "solve")?;
+            begin(&watch.log, &problem.model, "solve")?;
             problem.solve_watched(watch)
         })
     }
@@ -80,7 +80,7 @@ impl Problem {
         prepared.set_up(model, watch)?;
         prepared.set_up_preconditioner(model, watch)?;
         watch.log.phases(&prepared.phases(model, &watch.phases), Phase::DualSolve as usize)?;
-        method(&mut watch.log, model, prepared, start.name())?;
+        method(&watch.log, model, prepared, start.name())?;
         let solving = Instant::now();
         let ends = solve_islands(model, prepared, &start, watch)?;
         let sum = |time: fn(&Solved) -> Duration| ends.iter().flatten().map(time).sum::<Duration>();
@@ -98,7 +98,7 @@ impl Problem {
             (None, Some(report)) => {
                 let report = report.clone();
                 watch.log.phases(&report.phases, usize::MAX)?;
-                result(&mut watch.log, &report)?;
+                result(&watch.log, &report)?;
                 self.findings = Some(Findings::of_report(&self.model, &self.prepared, &report));
                 Ok(report)
             }
@@ -152,7 +152,7 @@ impl Problem {
 
     /// The function that gets lines of text up to a level from now on.
     pub fn on_log(&mut self, listener: Option<(LogLevel, LogListener)>) {
-        self.host.log = Log { host: listener, told: 0 };
+        self.host.log = Log::new(listener);
     }
 
     /// Set to true by any thread, it ends the setup or the solve that runs; the next one begins by clearing it.

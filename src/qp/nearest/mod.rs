@@ -108,6 +108,7 @@ impl ConnectedColumns {
             let Some(p) = violated.filter(|_| !at_origin(&active.a)) else {
                 return Ok((active, contradictions));
             };
+            interrupt::reached("rows admitted to a nearest point", round)?;
             if let Some(weights) = active.admit(p)? {
                 contradictions.push(weights);
                 left_out[p] = true;

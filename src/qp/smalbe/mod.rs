@@ -14,6 +14,7 @@ mod mprgp;
 
 use crate::error::Result;
 use crate::linalg::vector::{axpy, dot, norm};
+use crate::platform::interrupt;
 use crate::qp::coarse::Coarse;
 use crate::qp::projection::project;
 use crate::qp::proportioning::Stop;
@@ -77,7 +78,7 @@ impl<'a> Lagrangian<'a> {
     fn new(qp: Qp<'a>, start: &[f64]) -> Result<Self> {
         let mut coarse = Coarse::new(qp.g_transposed, qp.blocks, qp.rounding)?;
         let none = vec![false; start.len()];
-        let first = project(&qp, &mut coarse, start, &none)?;
+        let first = interrupt::part("first feasible point", || project(&qp, &mut coarse, start, &none))?;
         let point = Bounded::new(qp.bounded, first.map_or_else(|| start.to_vec(), |first| first.point));
         let map = Augmented::new(qp, coarse)?;
         let mut al = Self {

@@ -1,13 +1,13 @@
 //! What is still done once a solve has to end: by a clock that runs out, or a host that cancels, right after a chosen look at it.
 
 use std::sync::atomic::{AtomicUsize, Ordering};
-use std::sync::Arc;
+use std::sync::{Arc, Mutex};
 
 use decks::{masonry, Deck};
 
 use crate::error::{Error, Kind};
 use crate::platform::tally;
-use crate::solver::{Modes, Outcome, Problem, Report, RowKind, RowsInput, SparseInput, Storage};
+use crate::solver::{LogLevel, Modes, Outcome, Problem, Report, RowKind, RowsInput, SparseInput, Storage};
 
 /// Who ends the solve.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -103,10 +103,11 @@ fn pushed_aside(mut deck: Deck) -> Deck {
     deck
 }
 
-/// Two more rows that no displacement satisfies.
+/// Three more rows, no two of which contradict each other, that no displacement satisfies.
 fn contradicting(mut deck: Deck) -> Deck {
-    deck.contact.push(&[(0, 1.0)], -1e-3);
+    deck.contact.push(&[(0, 1.0), (2, 1.0)], -1e-3);
     deck.contact.push(&[(0, -1.0)], -1e-3);
+    deck.contact.push(&[(2, -1.0)], -1e-3);
     deck
 }
 
@@ -138,5 +139,39 @@ fn at_most_one_of_them_follows_on_many_loose_bodies() {
 fn at_most_one_of_them_follows_where_the_modes_are_many() {
     for stop in [Stop::Time, Stop::Host] {
         all_ended(&pushed_aside(masonry::chain(510)), "", stop, false);
+    }
+}
+
+/// The clock goes on by half a second with every look.
+#[test]
+fn parts_that_take_long_say_how_far_they_are_and_the_longer_they_take_the_more_seldom() {
+    for (deck, part, of) in [
+        (masonry::wall(4, 1e-4), "first feasible point", "Newton steps of a projection"),
+        (masonry::wall(4, 1e-4), "dual solve", "Newton steps of a projection"),
+        (pushed_aside(masonry::wall(3, 0.0)), "first feasible point", "rows admitted to a nearest point"),
+        (pushed_aside(masonry::chain(501)), "first feasible point", "rows admitted to the nearest forces"),
+        (
+            pushed_aside(masonry::wall(3, 0.0)),
+            "forces nearest to the load",
+            "rows admitted to a nearest point",
+        ),
+        (contradicting(masonry::wall(3, 0.0)), "presolve", "rows admitted to a nearest point"),
+    ] {
+        let mut problem = problem(&deck, "time_limit=1e300");
+        let (looks, lines) = (Arc::new(AtomicUsize::new(0)), Arc::new(Mutex::new(Vec::new())));
+        let (counted, book) = (Arc::clone(&looks), Arc::clone(&lines));
+        problem.set_clock(Some(Arc::new(move || 0.5 * counted.fetch_add(1, Ordering::Relaxed) as f64)));
+        let tell = move |_: LogLevel, text: &str| {
+            book.lock().unwrap().push(text.to_owned());
+            0
+        };
+        problem.on_log(Some((LogLevel::Phase, Box::new(tell))));
+        let _ = problem.solve();
+        let lines = lines.lock().unwrap();
+        let (begins, ends) = (format!("{part}: "), " seconds");
+        let told = |line: &&String| line.starts_with(&begins) && line.contains(of) && line.ends_with(ends);
+        assert!(lines.iter().any(|line| told(&line)), "{}: no {part}, {of} in {lines:?}", deck.name);
+        let most = 30.0 + 10.0 * (looks.load(Ordering::Relaxed) as f64).ln();
+        assert!((lines.len() as f64) < most, "{}: {} lines", deck.name, lines.len());
     }
 }
