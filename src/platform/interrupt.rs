@@ -42,6 +42,11 @@ impl Interrupt {
         Self { hearer: Some(hearer), ..self }
     }
 
+    /// The same for other threads, where nobody hears how far the loops are.
+    pub fn unheard(self) -> Self {
+        Self { hearer: None, ..self }
+    }
+
     /// That of the task on this thread.
     pub fn present() -> Self {
         PRESENT.with_borrow(Self::clone)
@@ -49,8 +54,13 @@ impl Interrupt {
 
     /// Runs `work` on this thread under this interrupt.
     pub fn during<T>(&self, work: impl FnOnce() -> T) -> T {
-        let _before = Restore(PRESENT.replace(self.clone()));
+        let _before = self.enter();
         work()
+    }
+
+    /// That of the task on this thread from now on, until what is returned is dropped.
+    pub fn enter(&self) -> Entered {
+        Entered(PRESENT.replace(self.clone()))
     }
 
     /// Ends what looks at it from now on.
@@ -91,7 +101,8 @@ pub fn part<T>(name: &'static str, work: impl FnOnce() -> T) -> T {
     work()
 }
 
-/// Runs what an answer is told by, which is done also where there is no time for more.
+/// Runs what is done also where there is no time for more: what an answer is told by, and functions of the host, which may use other
+/// problems.
 pub fn never<T>(work: impl FnOnce() -> T) -> T {
     Interrupt::default().during(work)
 }
@@ -100,10 +111,10 @@ pub fn cancelled() -> Error {
     Error::new(Kind::Cancelled, "cancelled by the host")
 }
 
-/// Sets the interrupt that was there before, also when the work panics.
-struct Restore(Interrupt);
+/// Of one that is present: dropped, also by a panic, it sets the interrupt that was there before.
+pub struct Entered(Interrupt);
 
-impl Drop for Restore {
+impl Drop for Entered {
     fn drop(&mut self) {
         PRESENT.set(std::mem::take(&mut self.0));
     }

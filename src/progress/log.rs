@@ -4,6 +4,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 
 use crate::error::{Error, Kind, Result};
+use crate::platform::interrupt;
 use crate::progress::listener::Progress;
 use crate::progress::phases::PhaseReport;
 use crate::qp::StepKind;
@@ -50,7 +51,7 @@ impl Log {
         let Some((_, listener)) = host.as_mut().filter(|(most, _)| level <= *most) else {
             return Ok(());
         };
-        match listener(level, &text()) {
+        match interrupt::never(|| listener(level, &text())) {
             0 => Ok(()),
             number => {
                 let what = format!("the log function of the host returned {number}");

@@ -4,7 +4,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::Arc;
 
 use crate::error::{Error, Kind, Result};
-use crate::platform::interrupt::{cancelled, Clock};
+use crate::platform::interrupt::{self, cancelled, Clock};
 use crate::platform::threads::{self, TaskEvent, Tasks};
 use crate::progress::listener::{Listener, Progress, Reply};
 use crate::progress::log::{Log, LogLevel};
@@ -156,7 +156,7 @@ impl Watch {
 
     fn tell(&mut self, now: &Progress) -> Result<()> {
         let Some(listener) = &mut self.listener else { return Ok(()) };
-        match listener(now) {
+        match interrupt::never(|| listener(now)) {
             Reply::Continue => Ok(()),
             Reply::Cancel => Err(cancelled()),
             Reply::Failed(number) => {
