@@ -1219,12 +1219,14 @@ int32_t feti_problem_read(struct feti_problem *p, const char *path);
  * Names the function that gets what setups and solves tell in words.
  *
  * Level FETI_LOG_RESULT: one line for each solve, and warnings; FETI_LOG_PHASE: also sizes,
- * options, method, fallbacks and a line for each phase with its time and bytes; FETI_LOG_STEP:
- * also a line for each step. The function is called on the thread that called the library, in that
- * thread's floating-point environment, until another one or NULL is given. It returns 0 to go on;
- * any other number ends the call with FETI_CALLBACK, the number in the error detail, and no
- * results. Calls on the same problem from inside return FETI_BUSY, except feti_cancel and
- * feti_problem_error. It must not end by longjmp or an exception.
+ * options, method, fallbacks and a line for each phase with its time and bytes, and how far the
+ * first feasible point, projections, nearest points and certificates are that take long: a line
+ * after a second at most, and after a tenth of the time so far; FETI_LOG_STEP: also a line for
+ * each step. The function is called on the thread that called the library, in that thread's
+ * floating-point environment, until another one or NULL is given. It returns 0 to go on; any other
+ * number ends the call with FETI_CALLBACK, the number in the error detail, and no results. Calls
+ * on the same problem from inside return FETI_BUSY, except feti_cancel and feti_problem_error. It
+ * must not end by longjmp or an exception.
  *
  * @param[in] p        (scalar) the handle
  * @param[in] callback (scalar) the function; NULL: none
@@ -1891,11 +1893,11 @@ int32_t feti_setup(struct feti_problem *p);
  * Minimises 1/2 u'Ku - f'u subject to `B u <= c` and `H u = h`.
  *
  * The answer is kept until the next solve and read with feti_displacement, feti_multipliers and
- * the like; there is one when the status is not negative, unless the call was cancelled before the
- * first step. `info` is written in any case, with NaN for figures that a failure left unknown.
- * After a failure all that was given is kept and can be corrected, except after FETI_INTERNAL.
- * Where rows and loads leave motions open (`undetermined`), the answer is the one nearest to rest
- * that keeps the rows: the least sum of `K_ii u_i^2`.
+ * the like; there is one when the status is not negative, unless the call was cancelled or its
+ * time was over before the first step. `info` is written in any case, with NaN for figures that a
+ * failure left unknown. After a failure all that was given is kept and can be corrected, except
+ * after FETI_INTERNAL. Where rows and loads leave motions open (`undetermined`), the answer is the
+ * one nearest to rest that keeps the rows: the least sum of `K_ii u_i^2`.
  *
  * Groups of bodies that no row with a finite gap joins are problems of their own, each solved to
  * its own accuracy and several at a time where there are threads. The worst status of all groups
@@ -1906,14 +1908,15 @@ int32_t feti_setup(struct feti_problem *p);
  * of a group without an answer is FETI_STATE; what is read for all bodies or rows at once is NaN
  * there, in feti_active FETI_ROW_UNKNOWN.
  *
- * A status above 0 comes with an answer. FETI_ITERATIONS at the limit of option max_steps;
- * FETI_TIME at the limit of option time_limit; FETI_CANCELLED where the host has cancelled;
- * FETI_STALLED where steps no longer reduce the error; FETI_INACCURATE where the certificate does
- * not pass; FETI_MARGINAL where a part of the load, below 1e-7 of it, is not held. A status below
- * 0 comes without one for the group of bodies it is about. FETI_LOAD_NOT_HELD where no contact
- * force balances the load; FETI_GAPS_CONTRADICT where rows contradict each other; FETI_INDEFINITE
- * where K drives a soft motion further than closed rows resist it; feti_diagnosis has the proof of
- * each. It runs feti_setup when it is due, and fails as that does.
+ * A status above 0 comes with an answer, but for such ends. FETI_ITERATIONS at the limit of option
+ * max_steps; FETI_TIME at the limit of option time_limit, which counts from the call, with a setup
+ * that is due; FETI_CANCELLED where the host has cancelled; FETI_STALLED where steps no longer
+ * reduce the error; FETI_INACCURATE where the certificate does not pass; FETI_MARGINAL where a
+ * part of the load, below 1e-7 of it, is not held. A status below 0 comes without one for the
+ * group of bodies it is about. FETI_LOAD_NOT_HELD where no contact force balances the load;
+ * FETI_GAPS_CONTRADICT where rows contradict each other; FETI_INDEFINITE where K drives a soft
+ * motion further than closed rows resist it; feti_diagnosis has the proof of each. It runs
+ * feti_setup when it is due, and fails as that does.
  *
  * @param[in]     p    (scalar) the handle
  * @param[in,out] info (scalar) `struct_size` set, at least 16; may be NULL

@@ -7,8 +7,8 @@ use crate::body::null_space::Products;
 use crate::error::{Error, Kind, Result};
 use crate::linalg::vector::first_non_finite;
 use crate::linalg::{Csr, Matrix, Packed};
+use crate::platform::interrupt;
 use crate::platform::memory::{copied, zeros};
-use crate::platform::Interrupt;
 
 /// Right-hand sides of one call.
 pub const TOGETHER: usize = 32;
@@ -96,8 +96,8 @@ impl HostOperator {
         y.fill(0.0);
         let failed = |what: String| Error::new(Kind::Callback, what).body(self.body);
         for (x, y) in x.chunks(n * TOGETHER).zip(y.chunks_mut(n * TOGETHER)) {
-            Interrupt::present().check()?;
-            let number = function(x, x.len() / n, y);
+            interrupt::check()?;
+            let number = interrupt::never(|| function(x, x.len() / n, y));
             if number != 0 {
                 let what = format!("the host's function for the products with {name} returned {number}");
                 return Err(failed(what).value(f64::from(number)));

@@ -9,6 +9,7 @@ use crate::body::search::Search;
 use crate::error::{Error, Kind, Result};
 use crate::linalg::Multiple;
 use crate::platform::memory::{headroom, PRODUCTS};
+use crate::platform::tally;
 
 /// How K+ will be made.
 pub enum Plan {
@@ -113,6 +114,7 @@ impl Plan {
 
     /// Factorises and probes. Where coordinates have promised fewer null vectors than K has, these are sought in K.
     pub fn execute(mut self) -> Result<Factorised> {
+        tally::costly();
         if self.symbolic().is_none() {
             let symbolic = self.analyse()?;
             self.set_analysis(symbolic);

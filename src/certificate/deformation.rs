@@ -5,6 +5,7 @@ use crate::certificate::{Data, NOISE};
 use crate::error::Result;
 use crate::linalg::vector::{axpy, norm, norm_max, power_of_two_below};
 use crate::linalg::{Csr, Matrix};
+use crate::platform::interrupt;
 
 /// The gradient against the first one, where the projection ends.
 const STOP: f64 = 1e-13;
@@ -21,19 +22,19 @@ pub(super) struct Deformation {
 
 impl Deformation {
     pub fn new(field: &Field) -> Result<Self> {
-        let own = own(field);
+        let own = own(field)?;
         let joined = with_neighbours(field, &own)?;
         Ok(Self { own, joined })
     }
 }
 
 /// `|r_j| / K_jj` of grounded unknowns, `|u - R a|` of the others.
-fn own(field: &Field) -> Vec<f64> {
-    let mut own = without_motions(field);
+fn own(field: &Field) -> Result<Vec<f64>> {
+    let mut own = without_motions(field)?;
     for j in (0..own.len()).filter(|j| field.grounded[*j]) {
         own[j] = field.push[j].abs() / field.unit / field.metric[j];
     }
-    own
+    Ok(own)
 }
 
 /// `max(delta_j, 1/2 sum_k |K_jk| delta_k / K_jj)`, for a single unknown may be at rest by symmetry; of grounded unknowns
@@ -55,7 +56,7 @@ fn with_neighbours(field: &Field, own: &[f64]) -> Result<Vec<f64>> {
 /// `|u - R a|`, n, length. a is the fit by the rigid motions, least squares in D without the grounded unknowns, that rigid
 /// equality rows which join bodies do not resist, `H R a = 0`; rows that hold one body alone do not count. `|u|` on bodies
 /// without a null space.
-fn without_motions(field: &Field) -> Vec<f64> {
+fn without_motions(field: &Field) -> Result<Vec<f64>> {
     let data = field.data;
     let mut left = field.answer.u.to_vec();
     let mut first = Vec::with_capacity(data.bodies.len() + 1);
@@ -71,14 +72,14 @@ fn without_motions(field: &Field) -> Vec<f64> {
             amplitudes.extend(fitted(field, p).into_iter().map(|a| a * weights[p]));
         }
         let joints = joints(field, &first, &weights);
-        let kept = project(&joints, amplitudes);
+        let kept = project(&joints, amplitudes)?;
         for (p, body) in data.bodies.iter().enumerate() {
             let a: Vec<f64> = kept[first[p]..first[p + 1]].iter().map(|b| b / weights[p]).collect();
             body.null_space.mul_add(-1.0, &a, &mut left[body.range()]);
         }
     }
     left.iter_mut().for_each(|v| *v = v.abs());
-    left
+    Ok(left)
 }
 
 /// `(unit_p / unit_0)^1/2`, no unit: what an amplitude of body p counts for, `|R_p a_p|_D = unit_p^1/2 |a_p|`.
@@ -148,7 +149,7 @@ fn resisted(entries: &[(usize, f64)], motions: &Matrix) -> Vec<f64> {
 
 /// `b - A^+ A b`, the part of b in the kernel of A: conjugate gradients for least squares, from zero. They end where the
 /// gradient is rounding of `A b`: what A hardly resists, because R is not exact, is no joint.
-fn project(a: &Csr, mut b: Vec<f64>) -> Vec<f64> {
+fn project(a: &Csr, mut b: Vec<f64>) -> Result<Vec<f64>> {
     // exact: squares neither over- nor underflow
     let unit = power_of_two_below(norm_max(&b));
     b.iter_mut().for_each(|b| *b /= unit);
@@ -164,11 +165,12 @@ fn project(a: &Csr, mut b: Vec<f64>) -> Vec<f64> {
     let mut size = norm(&s);
     let end = (STOP * size).max(8.0 * f64::EPSILON * norm(&b));
     let mut image = vec![0.0; a.rows()];
-    for _ in 0..2 * a.cols + 50 {
+    for step in 0..2 * a.cols + 50 {
         // also where it is no number
         if !(size > end) {
             break;
         }
+        interrupt::reached("conjugate gradients on motions that joints leave", step)?;
         a.mul(&direction, &mut image);
         let step = (size / norm(&image)).powi(2);
         if !step.is_finite() {
@@ -183,7 +185,7 @@ fn project(a: &Csr, mut b: Vec<f64>) -> Vec<f64> {
         size = next;
     }
     b.iter_mut().for_each(|b| *b *= unit);
-    b
+    Ok(b)
 }
 
 #[cfg(test)]
@@ -197,7 +199,7 @@ mod tests {
         a.push_row([(0, half), (1, -half)]);
         a.push_row([(1, half), (2, -half)]);
         a.push_row([(0, half), (2, -half)]);
-        let kept = project(&a, vec![1.0, 2.0, 6.0, 7.0]);
+        let kept = project(&a, vec![1.0, 2.0, 6.0, 7.0]).unwrap();
         assert!(kept.iter().zip([3.0, 3.0, 3.0, 7.0]).all(|(b, e)| (b - e).abs() < 1e-14), "{kept:?}");
     }
 
@@ -208,7 +210,7 @@ mod tests {
         let half = 0.5_f64.sqrt();
         a.push_row([(0, half), (1, -half)]);
         a.push_row([(0, half), (1, -half * (1.0 + 1e-12))]);
-        let kept = project(&a, vec![1e6, 1e6 + 1.0]);
+        let kept = project(&a, vec![1e6, 1e6 + 1.0]).unwrap();
         assert!(kept.iter().all(|b| (b - 1e6 - 0.5).abs() < 1e-5), "{kept:?}");
     }
 }

@@ -32,6 +32,7 @@ use crate::error::Result;
 use crate::linalg::vector::{dot, norm_max, power_of_two_below, weighted_norm};
 use crate::linalg::{Csr, Packed};
 use crate::platform::memory::zeros;
+use crate::platform::tally;
 
 /// G is not known better than this.
 const ROUNDING: f64 = 64.0 * f64::EPSILON;
@@ -220,6 +221,7 @@ impl Dual {
         alpha: &[f64],
         in_parallel: &InParallel<Vec<f64>>,
     ) -> Result<Vec<f64>> {
+        tally::costly();
         let images = in_parallel(self.subdomains.len(), &|p| self.subdomains[p].product(x))?;
         let mut distances = vec![0.0; x.len()];
         for ((s, moved), image) in self.subdomains.iter().zip(moved).zip(&images) {

@@ -6,6 +6,7 @@ use crate::dual::{Dual, InParallel, Subdomain};
 use crate::error::Result;
 use crate::linalg::{Csr, Entries, Matrix, Operator};
 use crate::platform::memory::zeros;
+use crate::platform::tally;
 
 const WHAT: &str = "a product with the dual operator";
 
@@ -33,6 +34,7 @@ impl Dual {
     /// The operator of (12)-(13): `y = F x = C x + sum_p B_p K_p+ B_p' x`. The products of the bodies run in any order,
     /// their sum is formed body after body. An error leaves y as it was.
     pub fn product(&self, x: &[f64], y: &mut [f64], in_parallel: &InParallel<Vec<f64>>) -> Result<()> {
+        tally::costly();
         let images = in_parallel(self.subdomains.len(), &|p| self.subdomains[p].product(x))?;
         y.iter_mut().zip(x).zip(&self.compliance).for_each(|((y, x), c)| *y = c * x);
         for (s, image) in self.subdomains.iter().zip(&images) {

@@ -8,6 +8,7 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 use crate::dual::coupling::{Coupling, FaceCoupling};
 use crate::error::Result;
 use crate::linalg::{Csr, Operator};
+use crate::platform::{interrupt, tally};
 
 /// The constrained dofs of one body.
 pub struct Boundary {
@@ -55,6 +56,9 @@ impl Preconditioner {
 
     /// `z = M_F r` on the rows that are not held, 0 on the others. On springs of bodies, the last rows, F is 1 and so is M_F.
     pub fn apply(&self, held: &[bool], r: &[f64], z: &mut [f64]) -> Result<()> {
+        // a face that is new has factors of its own
+        interrupt::check()?;
+        tally::costly();
         let rows = self.compliance.len();
         let ((held, _), (r, springs)) = (held.split_at(rows), r.split_at(rows));
         let (z, rest) = z.split_at_mut(rows);

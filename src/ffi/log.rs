@@ -14,7 +14,8 @@ use crate::solver::{LogLevel, LogListener};
 /// Names the function that gets what setups and solves tell in words.
 ///
 /// Level FETI_LOG_RESULT: one line for each solve, and warnings; FETI_LOG_PHASE: also sizes, options, method, fallbacks and a line for
-/// each phase with its time and bytes; FETI_LOG_STEP: also a line for each step. The function is called on the thread that called the
+/// each phase with its time and bytes, and how far the first feasible point, projections, nearest points and certificates are that take
+/// long: a line after a second at most, and after a tenth of the time so far; FETI_LOG_STEP: also a line for each step. The function is called on the thread that called the
 /// library, in that thread's floating-point environment, until another one or NULL is given. It returns 0 to go on; any other number
 /// ends the call with FETI_CALLBACK, the number in the error detail, and no results. Calls on the same problem from inside return
 /// FETI_BUSY, except feti_cancel and feti_problem_error. It must not end by longjmp or an exception.

@@ -31,7 +31,7 @@ pub extern "C" fn feti_setup(p: *mut feti_problem) -> i32 {
 /// Minimises 1/2 u'Ku - f'u subject to `B u <= c` and `H u = h`.
 ///
 /// The answer is kept until the next solve and read with feti_displacement, feti_multipliers and the like; there is one
-/// when the status is not negative, unless the call was cancelled before the first step. `info` is written in any case,
+/// when the status is not negative, unless the call was cancelled or its time was over before the first step. `info` is written in any case,
 /// with NaN for figures that a failure left unknown. After a failure all that was given is kept and can be corrected,
 /// except after FETI_INTERNAL. Where rows and loads leave motions open (`undetermined`), the answer is the one nearest to
 /// rest that keeps the rows: the least sum of `K_ii u_i^2`.
@@ -43,8 +43,8 @@ pub extern "C" fn feti_setup(p: *mut feti_problem) -> i32 {
 /// and the other groups keep their answers: `info` has what they came to. What is read for one body of a group without an
 /// answer is FETI_STATE; what is read for all bodies or rows at once is NaN there, in feti_active FETI_ROW_UNKNOWN.
 ///
-/// A status above 0 comes with an answer. FETI_ITERATIONS at the limit of option max_steps; FETI_TIME at the limit of
-/// option time_limit; FETI_CANCELLED where the host has cancelled; FETI_STALLED where steps no longer reduce the error;
+/// A status above 0 comes with an answer, but for such ends. FETI_ITERATIONS at the limit of option max_steps; FETI_TIME at the limit
+/// of option time_limit, which counts from the call, with a setup that is due; FETI_CANCELLED where the host has cancelled; FETI_STALLED where steps no longer reduce the error;
 /// FETI_INACCURATE where the certificate does not pass; FETI_MARGINAL where a part of the load, below 1e-7 of it, is not
 /// held. A status below 0 comes without one for the group of bodies it is about. FETI_LOAD_NOT_HELD where no contact force
 /// balances the load; FETI_GAPS_CONTRADICT where rows contradict each other; FETI_INDEFINITE where K drives a soft motion

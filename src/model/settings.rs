@@ -72,7 +72,7 @@ settings! {
     gamma: f64 = F64(1.0), 1e-3..=1e3,
         c"Gamma of the proportionality test: how much larger than the error on the current face the error of having chosen it may be.";
     time_limit: f64 = F64(NO_LIMIT), 0.0..=NO_LIMIT,
-        c"Seconds of wall time after which a solve ends with FETI_TIME and the best answer so far.";
+        c"Seconds of wall time after which a solve, with the setup that it makes, ends with FETI_TIME and the best answer so far, if there is one yet.";
     symmetry_tolerance: f64 = F64(1e-10), 0.0..=1e-2,
         c"Full storage: |K_ij - K_ji| may be this large against sqrt(K_ii K_jj); the two are averaged.";
     null_space_tolerance: f64 = F64(1e-8), 1e-15..=1e-2,

@@ -7,6 +7,7 @@ pub mod memory;
 pub mod pages;
 mod pools;
 mod sync;
+pub mod tally;
 pub mod threads;
 
 pub(crate) use fork::instant;

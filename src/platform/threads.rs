@@ -9,6 +9,7 @@ use rayon::prelude::*;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 
 use crate::error::{Error, Result};
+use crate::platform::interrupt::Interrupt;
 use crate::platform::memory::headroom;
 use crate::platform::pools::Pools;
 
@@ -42,8 +43,8 @@ pub fn count(asked: i64, occupied: usize) -> usize {
     }
 }
 
-/// Runs tasks `0..count`, which may share their own work among the threads, and returns their results in order; the
-/// first error in order wins. Where the system does not
+/// Runs tasks `0..count`, which may share their own work among the threads, under the interrupt of this thread, and returns their results
+/// in order; the first error in order wins. Where the system does not
 /// give so many threads, fewer do the same.
 pub fn run<T: Send>(
     threads: usize,
@@ -52,7 +53,10 @@ pub fn run<T: Send>(
 ) -> Result<Vec<T>> {
     let pool = if count < 1 { None } else { pool_for(threads) };
     let results: Vec<Result<T>> = match pool {
-        Some(pool) => pool.install(|| (0..count).into_par_iter().map(&task).collect()),
+        Some(pool) => {
+            let present = Interrupt::present().unheard();
+            pool.install(|| (0..count).into_par_iter().map_init(|| present.enter(), |_, k| task(k)).collect())
+        }
         None => (0..count).map(&task).collect(),
     };
     results.into_iter().collect()
@@ -131,6 +135,7 @@ pub fn run_telling<T: Send, M: Send>(
         drop(sender.send(TaskEvent::Done(k, ended)));
     };
     let (own, others): (Vec<usize>, Vec<usize>) = tasks.order.iter().partition(|&&k| (tasks.on_caller)(k));
+    let present = Interrupt::present().unheard();
     match pool_for(if others.is_empty() { 0 } else { tasks.threads }) {
         None => tasks.order.iter().for_each(|&k| {
             run(k, &sender);
@@ -138,9 +143,9 @@ pub fn run_telling<T: Send, M: Send>(
         }),
         Some(pool) => pool.in_place_scope(|scope| {
             for k in others {
-                let (sender, run) = (sender.clone(), &run);
+                let (sender, run, present) = (sender.clone(), &run, &present);
                 // The calling thread listens until the last sender is gone: it is never sent into the void.
-                scope.spawn(move |_| run(k, &sender));
+                scope.spawn(move |_| present.during(|| run(k, &sender)));
             }
             for k in own {
                 run(k, &sender);
@@ -249,6 +254,22 @@ mod tests {
         assert_eq!(pools.get(7, 29, || None).as_deref(), Some(&29), "the one of the last call is gone");
         let there: Vec<_> = pools.made.lock().unwrap().iter().map(|(p, size, _)| (*p, *size)).collect();
         assert_eq!(there, [(1, 2), (7, 27), (7, 28), (7, 2), (7, 29)]);
+    }
+
+    /// Whatever else the threads of a pool run meanwhile.
+    #[test]
+    fn tasks_on_other_threads_are_those_of_the_call_that_began_them() {
+        use crate::platform::interrupt::check;
+        let cancelled = Interrupt::new(std::sync::Arc::new(AtomicBool::new(true)));
+        for threads in [1, 2] {
+            let ended = cancelled.during(|| run(threads, 8, |_| check()));
+            assert_eq!(ended.unwrap_err().kind, Kind::Cancelled);
+            let order: Vec<usize> = (0..8).collect();
+            let tasks = Tasks { threads, order: &order, on_caller: &|_| false };
+            let ended = cancelled.during(|| run_heard(tasks, |_| check(), &mut |_| {}));
+            assert_eq!(ended.unwrap_err().kind, Kind::Cancelled);
+            assert!(run(threads, 8, |_| check()).is_ok());
+        }
     }
 
     #[test]

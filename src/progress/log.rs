@@ -1,6 +1,10 @@
 //! Lines of text for the host: phases, steps, and whatever others have to say.
 
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
+
 use crate::error::{Error, Kind, Result};
+use crate::platform::interrupt;
 use crate::progress::listener::Progress;
 use crate::progress::phases::PhaseReport;
 use crate::qp::StepKind;
@@ -19,20 +23,35 @@ pub enum LogLevel {
 /// Gets the level and the text of a line, without its end; 0 goes on, any other number ends the call.
 pub type LogListener = Box<dyn FnMut(LogLevel, &str) -> i32 + Send + Sync>;
 
-/// The host's function during a call.
-#[derive(Default)]
+/// The host's function, for all who have something to say; clones are the same log.
+#[derive(Clone, Default)]
 pub struct Log {
-    pub host: Option<(LogLevel, LogListener)>,
+    host: Arc<Mutex<Option<(LogLevel, LogListener)>>>,
     /// Phases that have been told.
-    pub told: usize,
+    told: Arc<AtomicUsize>,
 }
 
 impl Log {
-    pub fn say(&mut self, level: LogLevel, text: impl FnOnce() -> String) -> Result<()> {
-        let Some((_, listener)) = self.host.as_mut().filter(|(most, _)| level <= *most) else {
+    pub fn new(host: Option<(LogLevel, LogListener)>) -> Self {
+        Self { host: Arc::new(Mutex::new(host)), ..Self::default() }
+    }
+
+    /// No phase of the call that begins has been told.
+    pub fn begin(&self) {
+        self.told.store(0, Ordering::Relaxed);
+    }
+
+    /// Whether somebody hears lines of this level.
+    pub fn is_heard(&self, level: LogLevel) -> bool {
+        self.host.lock().is_ok_and(|host| host.as_ref().is_some_and(|(most, _)| level <= *most))
+    }
+
+    pub fn say(&self, level: LogLevel, text: impl FnOnce() -> String) -> Result<()> {
+        let mut host = self.host.lock().unwrap_or_else(PoisonError::into_inner);
+        let Some((_, listener)) = host.as_mut().filter(|(most, _)| level <= *most) else {
             return Ok(());
         };
-        match listener(level, &text()) {
+        match interrupt::never(|| listener(level, &text())) {
             0 => Ok(()),
             number => {
                 let what = format!("the log function of the host returned {number}");
@@ -42,11 +61,9 @@ impl Log {
     }
 
     /// The first `until` phases, each once; those that had nothing to do are left out.
-    pub fn phases(&mut self, phases: &[PhaseReport], until: usize) -> Result<()> {
+    pub fn phases(&self, phases: &[PhaseReport], until: usize) -> Result<()> {
         let until = until.min(phases.len());
-        while self.told < until {
-            let phase = phases[self.told];
-            self.told += 1;
+        for phase in &phases[self.told.fetch_max(until, Ordering::Relaxed).min(until)..until] {
             if phase.seconds == 0.0 {
                 continue;
             }
@@ -58,7 +75,7 @@ impl Log {
         Ok(())
     }
 
-    pub fn step(&mut self, now: &Progress) -> Result<()> {
+    pub fn step(&self, now: &Progress) -> Result<()> {
         let Some(kind) = now.step else { return Ok(()) };
         let kind = match kind {
             StepKind::ConjugateGradient => "conjugate gradients",
@@ -74,7 +91,7 @@ impl Log {
     }
 
     /// One line on a call that gave no answer. What the function says to this changes nothing.
-    pub fn failure(&mut self, call: &str, error: &Error, base: i64) {
+    pub fn failure(&self, call: &str, error: &Error, base: i64) {
         if error.kind != Kind::Callback {
             let error = error.clone().counted_from(base);
             let _ = self.say(LogLevel::Result, || format!("{call} failed: {error}"));

@@ -4,13 +4,13 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::Arc;
 
 use crate::error::{Error, Kind, Result};
-use crate::platform::interrupt::cancelled;
+use crate::platform::interrupt::{self, cancelled, Clock};
 use crate::platform::threads::{self, TaskEvent, Tasks};
 use crate::progress::listener::{Listener, Progress, Reply};
 use crate::progress::log::{Log, LogLevel};
 use crate::progress::phases::Phases;
 use crate::progress::steps::{Told, Voice};
-use crate::progress::stops::Stops;
+use crate::progress::stops::{from_now, Stops};
 use crate::qp::Counts;
 
 /// The host's functions and its wish to cancel, kept between calls.
@@ -19,6 +19,8 @@ pub struct Host {
     cancelled: Arc<AtomicBool>,
     pub listener: Option<Listener>,
     pub log: Log,
+    /// What shows the seconds of a call; none: wall time from its beginning.
+    pub clock: Option<Clock>,
 }
 
 impl Host {
@@ -30,7 +32,8 @@ impl Host {
     /// Begins a call, which ends after `limit` seconds; `phases` are those of the calls before.
     pub fn watch(&mut self, limit: f64, phases: Phases) -> Watch {
         self.cancelled.store(false, Ordering::Relaxed);
-        let stops = Stops::new(self.canceller(), limit);
+        let clock = self.clock.clone().unwrap_or_else(from_now);
+        let stops = Stops::new(self.canceller(), limit, clock);
         let (listener, log) = (self.listener.take(), std::mem::take(&mut self.log));
         Watch { stops, listener, log, phases, fraction: 0.0, islands: Vec::new() }
     }
@@ -104,7 +107,7 @@ impl Watch {
         mut keep: impl FnMut(usize, T),
     ) -> Result<()> {
         let stops = self.stops.clone();
-        let guarded = |k| stops.check_cancelled().and_then(|()| stops.interrupt.during(|| task(k)));
+        let guarded = |k| stops.check().and_then(|()| stops.interrupt.during(|| task(k)));
         let (begun, all) = (self.fraction, part.weights.iter().sum::<f64>());
         let (mut done, mut told) = (0.0, Ok(()));
         let mut order: Vec<usize> = (0..part.weights.len()).collect();
@@ -148,12 +151,12 @@ impl Watch {
             theta: f64::NAN,
             seconds: self.stops.seconds(),
         })?;
-        self.stops.check_cancelled()
+        self.stops.check()
     }
 
     fn tell(&mut self, now: &Progress) -> Result<()> {
         let Some(listener) = &mut self.listener else { return Ok(()) };
-        match listener(now) {
+        match interrupt::never(|| listener(now)) {
             Reply::Continue => Ok(()),
             Reply::Cancel => Err(cancelled()),
             Reply::Failed(number) => {

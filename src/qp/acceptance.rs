@@ -100,6 +100,14 @@ impl Verdict {
             _ => Err(error),
         }
     }
+
+    /// What was found for a solution that ends so; where the host or the time has refused it, `otherwise` and the verdict of that.
+    pub fn with<T>(self, found: Result<T>, otherwise: T) -> Result<(T, Self)> {
+        match found {
+            Ok(found) => Ok((found, self)),
+            Err(error) => Ok((otherwise, Self::of_refusal(error)?)),
+        }
+    }
 }
 
 #[derive(Debug, Clone)]
@@ -112,4 +120,14 @@ pub struct Solution {
     pub scale: f64,
     pub verdict: Verdict,
     pub counts: Counts,
+}
+
+impl Solution {
+    /// What another method found, or, where the host or the time has refused it, this solution with the verdict of that.
+    pub fn unless(self, found: Result<Self>) -> Result<Self> {
+        match found {
+            Ok(found) => Ok(found),
+            Err(error) => Ok(Self { verdict: Verdict::of_refusal(error)?, ..self }),
+        }
+    }
 }

@@ -11,6 +11,7 @@ use crate::linalg::sparse::gram::Gram;
 use crate::linalg::vector::{axpy, norm_max, power_of_two_below};
 use crate::linalg::{Analysis, Cholesky, Csr, Matrix};
 use crate::platform::memory::headroom;
+use crate::platform::{interrupt, tally};
 
 /// A pivot of W_F, its largest diagonal entry in [1, 4), below which a motion is held weakly.
 const WEAK: f64 = 1e-4;
@@ -81,10 +82,12 @@ impl<'a> Coarse<'a> {
         self.whole.len()
     }
 
-    /// The space on the rows that are not held: `W_F` is factorised, unless that has just been done.
+    /// The space on the rows that are not held: `W_F` is factorised, unless that has just been done or the host or the time forbids it.
     pub fn on(&mut self, held: &[bool]) -> Result<OnFace<'_>> {
         let selected = usize::from(held.contains(&true));
         if self.gram.is_some() && self.faces[selected].as_ref().is_none_or(|face| face.held != held) {
+            interrupt::check()?;
+            tally::costly();
             self.faces[selected] = Some(CoarseFace { held: held.to_vec(), solver: self.solver(held)? });
             self.factorisations += 1;
         }
@@ -97,6 +100,8 @@ impl<'a> Coarse<'a> {
         /// Of its diagonal entry in `G G'`: what weights that vanish do not resist is held by this part.
         const HELD: f64 = 1e-10;
         let Some((gram, analysis)) = &self.gram else { return Ok(None) };
+        interrupt::check()?;
+        tally::costly();
         let mut w = gram.weighted(self.g_transposed, |i| weights[i])?;
         w.val.iter_mut().for_each(|v| *v /= self.unit * self.unit);
         for (k, whole) in self.whole.iter().enumerate() {
@@ -179,6 +184,8 @@ pub struct Weighted {
 
 impl Weighted {
     pub fn solve(&self, rhs: &[f64]) -> Result<Vec<f64>> {
+        interrupt::check()?;
+        tally::costly();
         let mut x: Vec<f64> = rhs.iter().map(|x| x / self.unit).collect();
         self.factor.solve(&mut x)?;
         x.iter_mut().for_each(|x| *x /= self.unit);
@@ -199,6 +206,8 @@ impl OnFace<'_> {
     pub fn solve(&mut self, rhs: &[f64]) -> Result<Vec<f64>> {
         *self.solves += 1;
         let Some(solver) = self.solver else { return Ok(vec![0.0; rhs.len()]) };
+        interrupt::check()?;
+        tally::costly();
         let mut x = self.in_units(rhs);
         match solver {
             Solver::Cholesky { factor, .. } => factor.solve(&mut x)?,

@@ -4,6 +4,7 @@
 
 use crate::error::Result;
 use crate::linalg::vector::{axpy, norm};
+use crate::platform::interrupt;
 use crate::qp::coarse::{Coarse, Weighted};
 use crate::qp::Qp;
 
@@ -38,7 +39,8 @@ impl Interior<'_> {
     /// Near the minimum, as far as the steps and rounding allow.
     pub fn minimise(&self, coarse: &mut Coarse, multiplier: Vec<f64>) -> Result<Point> {
         let mut at = self.start(multiplier);
-        for _ in 0..STEPS {
+        for step in 0..STEPS {
+            interrupt::reached("steps into the interior", step)?;
             let (mean, left) = (self.mean(&at.force, &at.slack), self.left(&at));
             let mut terms = vec![0.0; left.len()];
             self.qp.g_transposed.mul_transposed_abs_add(&at.force, &mut terms);

@@ -4,6 +4,7 @@
 
 use crate::error::Result;
 use crate::linalg::vector::{axpy, dot, norm};
+use crate::platform::interrupt;
 use crate::qp::coarse::Coarse;
 use crate::qp::interior::Interior;
 use crate::qp::Qp;
@@ -95,7 +96,8 @@ pub fn project(qp: &Qp, coarse: &mut Coarse, y: &[f64], held: &[bool]) -> Result
         }
     }
     let mut cuts = 0;
-    for _ in 0..NEWTON_STEPS {
+    for step in 0..NEWTON_STEPS {
+        interrupt::reached("Newton steps of a projection", step)?;
         // J2
         if error <= ACCURACY {
             return now.done(qp, coarse).map(Some);

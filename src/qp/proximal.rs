@@ -11,6 +11,7 @@
 use crate::error::{Error, Kind, Result};
 use crate::linalg::vector::{norm, ratio};
 use crate::linalg::{Csr, Matrix, PivotedCholesky};
+use crate::platform::{interrupt, tally};
 use crate::qp::{nearest_point, Direct, Polyhedron, Qp, Solution, Verdict};
 
 /// Searches at most.
@@ -74,6 +75,8 @@ impl<'a> Searches<'a> {
             .iter()
             .map(|square| positive(WEAK * ratio(*square, positive(compliance))).sqrt())
             .collect();
+        interrupt::check()?;
+        tally::costly();
         let Some(factor) = PivotedCholesky::new(a)?.map(PivotedCholesky::in_full) else { return Ok(None) };
         let (v, rank) = (factor.root()?, factor.rank());
         let free: Vec<usize> = all.iter().copied().filter(|&i| !qp.bounded[i]).collect();

@@ -61,7 +61,7 @@ impl Prepared {
         watch.phases.ended(Phase::Factorisation, begun);
         ended?;
         self.share(&representatives);
-        self.tell_doubts(model, &pending, &mut watch.log)?;
+        self.tell_doubts(model, &pending, &watch.log)?;
         Ok(operators)
     }
 
@@ -272,7 +272,7 @@ impl Prepared {
     }
 
     /// What rounding of the entries leaves open about the null spaces of these bodies.
-    fn tell_doubts(&self, model: &Model, bodies: &[usize], log: &mut Log) -> Result<()> {
+    fn tell_doubts(&self, model: &Model, bodies: &[usize], log: &Log) -> Result<()> {
         for &p in bodies {
             let number = p as i64 + model.settings.index_base;
             let Some(kplus) = self.bodies[p].inverse.as_ref().map(|of| &of.kplus) else { continue };

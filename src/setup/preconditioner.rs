@@ -8,8 +8,8 @@ use crate::error::{Error, Kind, Result};
 use crate::linalg::{Operator, Symmetric};
 use crate::model::{Model, Preconditioning};
 use crate::platform::memory::reserved;
-use crate::platform::threads;
-use crate::progress::{Phase, Watch};
+use crate::platform::{tally, threads};
+use crate::progress::{Phase, Stops, Watch};
 use crate::setup::islands::Island;
 use crate::setup::prepared::Prepared;
 use crate::setup::ready::Ready;
@@ -42,8 +42,10 @@ impl Prepared {
         for (ready, &asked) in duals.islands.iter().zip(&asked) {
             made.push(match asked {
                 Preconditioning::Automatic | Preconditioning::None => None,
-                Preconditioning::Lumped => Some((asked, preconditioner(model, ready, lumped)?)),
-                Preconditioning::Dirichlet => Some((asked, preconditioner(model, ready, dirichlet)?)),
+                Preconditioning::Lumped => Some((asked, preconditioner(model, ready, lumped, &watch.stops)?)),
+                Preconditioning::Dirichlet => {
+                    Some((asked, preconditioner(model, ready, dirichlet, &watch.stops)?))
+                }
             });
         }
         let islands = self.duals.iter_mut().flat_map(|duals| &mut duals.islands);
@@ -65,14 +67,21 @@ fn wanted(model: &Model, ready: &Ready) -> Preconditioning {
     }
 }
 
-fn preconditioner(model: &Model, ready: &Ready, stiffness: BoundaryStiffness) -> Result<Preconditioner> {
+fn preconditioner(
+    model: &Model,
+    ready: &Ready,
+    stiffness: BoundaryStiffness,
+    stops: &Stops,
+) -> Result<Preconditioner> {
     let Island { bodies, ranges, unit, .. } = &ready.island;
     let constrained = constrained(&ready.rows.matrix, ranges);
     let boundaries = threads::run(model.threads(), ranges.len(), |k| {
         let (p, local) = (bodies[k], &constrained[k]);
         let missing = || Error::new(Kind::Internal, "a body without stiffness was set up");
+        stops.check()?;
+        tally::costly();
         let made = match model.bodies[p].body.k().ok_or_else(missing)? {
-            Stiffness::Matrix(k) => stiffness(k, 1.0 / unit, local),
+            Stiffness::Matrix(k) => stops.interrupt.during(|| stiffness(k, 1.0 / unit, local)),
             Stiffness::Host(k) => diagonal(k, 1.0 / unit, local),
         };
         let stiffness = made.map_err(|e| e.body(p))?;

@@ -5,6 +5,7 @@ use std::time::{Duration, Instant};
 use crate::certificate::Judgement;
 use crate::error::Result;
 use crate::linalg::vector::norm;
+use crate::platform::interrupt;
 use crate::platform::memory::copied;
 use crate::qp::{AcceptanceTest, Solution, Verdict};
 use crate::solve::finish::finish;
@@ -95,6 +96,8 @@ impl AcceptanceTest for Certifier<'_> {
     /// `|sum_p |B'_p u_p|| + |c'|`: lengths, whatever the choice of K+. Gaps count up to how far bodies move, and are moved
     /// by rows that demand it: no gap that is never closed makes others seem small, and rows left out do not count.
     fn scale(&mut self, x: &[f64], alpha: &[f64]) -> Result<f64> {
+        // as dear as a product
+        interrupt::check()?;
         let recovery = &self.recovery;
         let mut distances = recovery.ready.distances(recovery.threads, &recovery.scaled.moved, x, alpha)?;
         let Gaps { dual, bounded, .. } = &recovery.scaled.gaps;
@@ -113,6 +116,7 @@ impl AcceptanceTest for Certifier<'_> {
             self.accepted = None;
             return Ok(true);
         }
+        interrupt::check()?;
         let (begun, recovery) = (Instant::now(), &self.recovery);
         let deformed = recovery.deformed(x)?;
         let mut recovered = recovery.recover(&deformed, x, alpha);
@@ -215,9 +219,9 @@ pub(super) mod tests {
         prepared.set_up(model, &mut watch).unwrap();
         let ready = &prepared.done(model).unwrap().islands[0];
         let case = Case { model, prepared: &prepared, ready };
-        let dual = scaled(case, &watch.stops).unwrap();
+        let dual = scaled(case).unwrap();
         let (qp, direct) = (dual.qp(ready, &ready.dual), direct(case).unwrap());
-        let recovery = Recovery::new(case, &dual, Faces { qp, direct, stops: &watch.stops }).unwrap();
+        let recovery = Recovery::new(case, &dual, Faces { qp, direct }).unwrap();
         work(&mut Certifier::new(recovery));
     }
 

@@ -3,7 +3,7 @@
 use crate::error::{Error, Result};
 use crate::linalg::vector::{dot, norm, norm_max};
 use crate::linalg::{Csr, Operator};
-use crate::progress::Stops;
+use crate::platform::interrupt;
 use crate::qp::{minimise, AcceptanceTest, Limits, Observer, Qp, StepReport};
 use crate::solve::case::Case;
 use crate::solve::diagnosis::Contradictions;
@@ -22,7 +22,7 @@ const WORK: usize = 200_000_000;
 /// `min |D^-1/2 B'w|^2 + (1 + c'w)^2` over w >= 0 on contact rows is zero exactly where rows contradict each
 /// other (c scaled to largest entry 1, far rows left out); B has unit rows, and no compliant ones: they give way to any other row.
 /// No product with F is needed.
-pub fn contradiction(case: Case, gaps: &Gaps, stops: &Stops) -> Result<Option<Error>> {
+pub fn contradiction(case: Case, gaps: &Gaps) -> Result<Option<Error>> {
     let rows = &case.ready.rows;
     let demand =
         |group: usize| if gaps.bounded[group] { -gaps.value[group] } else { gaps.value[group].abs() };
@@ -60,8 +60,8 @@ pub fn contradiction(case: Case, gaps: &Gaps, stops: &Stops) -> Result<Option<Er
     let steps = (WORK / (4 * matrix.val.len() + c.len() + 1)).clamp(1000, 200_000);
     let limits = Limits { tolerance: 1e-14, gamma: 1.0, steps };
     let mut judge = Unjudged { scale: norm(&b) };
-    let solution = minimise(qp, &vec![0.0; c.len()], limits, &mut judge, &mut UnlessCancelled(stops))?;
-    stops.check_cancelled()?;
+    let solution = minimise(qp, &vec![0.0; c.len()], limits, &mut judge, &mut Unheard)?;
+    interrupt::check()?;
     if left(&a, &solution.x) > UNCERTAIN {
         return Ok(None);
     }
@@ -117,10 +117,11 @@ impl AcceptanceTest for Unjudged {
     }
 }
 
-struct UnlessCancelled<'a>(&'a Stops);
+/// The host hears no step of this search, only how far it is.
+struct Unheard;
 
-impl Observer for UnlessCancelled<'_> {
-    fn step(&mut self, _: &StepReport) -> Result<()> {
-        self.0.check_cancelled()
+impl Observer for Unheard {
+    fn step(&mut self, now: &StepReport) -> Result<()> {
+        interrupt::reached("steps", now.counts.steps())
     }
 }

@@ -20,7 +20,7 @@ use crate::qp::{self, Counts, Face, Qp, Solution, Verdict};
 use crate::solve::case::Case;
 use crate::solve::certifier::Certifier;
 use crate::solve::fallback::MethodOptions;
-use crate::solve::near::solve_near;
+use crate::solve::near::{or_last, solve_near};
 
 /// Rounds at most.
 const ROUNDS: usize = 60;
@@ -66,7 +66,7 @@ pub fn solve_driven(
     }
     let rough = Settings { tolerance: means.settings.tolerance.max(ROUGH), ..means.settings.clone() };
     let (mut b, mut start, mut counts) = (vec![0.0; driven.modes.len()], start.to_vec(), Counts::default());
-    let (mut last, mut suspect, mut changes) = (None, None, Vec::<f64>::new());
+    let (mut last, mut before, mut suspect, mut changes) = (None, None, None, Vec::<f64>::new());
     let mut dense = means.direct.limit > 0;
     loop {
         let is_rough = changes.is_empty() && dense;
@@ -75,13 +75,23 @@ pub fn solve_driven(
         judge.drive = driven.amplitudes(&b);
         let strict = if dense { STRICT } else { STRICT_ALONE };
         (judge.is_rough, judge.is_strict) = (is_rough, changes.len() < strict);
-        let solution = solve_near(&means, Qp { e: &e, ..qp }, &start, judge, steps)?;
+        let found = solve_near(&means, Qp { e: &e, ..qp }, &start, judge, steps);
+        let solution = or_last(found, before.take())?;
         counts = counts + solution.counts;
         let solution = Solution { counts, ..solution };
+        if let Verdict::StepLimit | Verdict::TimeLimit | Verdict::Cancelled = solution.verdict {
+            return Ok(solution);
+        }
         let held = qp.at_bound(&solution.x);
-        let feedback = Feedback::of(&means, qp, &held, &driven)?;
+        let known = Feedback::of(&means, qp, &held, &driven).and_then(|feedback| {
+            let falling = driven.unstable(qp, &held, feedback.as_ref())?;
+            Ok((feedback, falling))
+        });
+        let (feedback, falling) = match known {
+            Ok(known) => known,
+            Err(error) => return Ok(Solution { verdict: Verdict::of_refusal(error)?, ..solution }),
+        };
         dense = feedback.is_some();
-        let falling = driven.unstable(qp, &held, feedback.as_ref())?;
         match &solution.verdict {
             Verdict::Solved if !judge.astray || last.as_ref() == Some(&held) => {
                 if let Some((v, rate)) = falling {
@@ -89,7 +99,6 @@ pub fn solve_driven(
                 }
             }
             Verdict::Solved => suspect = falling,
-            Verdict::StepLimit | Verdict::TimeLimit | Verdict::Cancelled => return Ok(solution),
             // what drives the motions further than rows hold them, unless the load alone does
             _ => match falling.or(suspect).filter(|_| !changes.is_empty()) {
                 Some((v, rate)) => return Err(indefinite(case, &v, rate)),
@@ -113,9 +122,9 @@ pub fn solve_driven(
                 b = feedback.settled(&b, &change);
                 start = feedback.point(qp, &driven.resultants(qp.e, &b))?;
             }
-            None => (b, start) = (next, solution.x),
+            None => (b, start) = (next, solution.x.clone()),
         }
-        last = Some(held);
+        (last, before) = (Some(held), Some(solution));
     }
 }
 

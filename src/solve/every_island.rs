@@ -1,11 +1,13 @@
 //! Every island is solved by itself, several at a time where there are threads.
 
 use std::cmp::Reverse;
+use std::sync::mpsc::channel;
+use std::sync::Arc;
 
 use crate::error::{Error, Kind, Result};
 use crate::model::Model;
 use crate::platform::threads::{self, TaskEvent, Tasks};
-use crate::progress::{Told, Voice, Watch};
+use crate::progress::{LogLevel, Told, Voice, Watch};
 use crate::setup::Prepared;
 use crate::solve::case::Case;
 use crate::solve::island::{solve_island, Ends, Solved};
@@ -15,12 +17,23 @@ use crate::solve::start::Start;
 pub fn solve_islands(model: &Model, prepared: &Prepared, start: &Start, watch: &mut Watch) -> Result<Ends> {
     let islands = &prepared.done(model)?.islands;
     let (stops, threads) = (watch.stops.clone(), model.threads());
-    let solve = |k: usize, voice: &mut dyn Voice| {
+    let (is_heard, count) = (watch.log.is_heard(LogLevel::Phase), islands.len());
+    let solve = |k: usize, say: &Say, voice: &mut dyn Voice| {
         let case = Case { model, prepared, ready: &islands[k] };
-        solve_island(case, k, start.scaled(case.ready)?, &stops, voice)
+        let (say, of) = (
+            Arc::clone(say),
+            if count == 1 { String::new() } else { format!("group {} of {count}, ", k + 1) },
+        );
+        let interrupt = match is_heard {
+            true => stops.heard(move |line| say(format!("{of}{line}"))),
+            false => stops.interrupt.clone(),
+        };
+        interrupt.during(|| solve_island(case, k, start.scaled(case.ready)?, &stops, voice))
     };
-    if islands.len() == 1 || threads == 1 {
-        return (0..islands.len()).map(|k| of_itself(solve(k, watch))).collect();
+    if count == 1 || threads == 1 {
+        let log = watch.log.clone();
+        let say: Say = Arc::new(move |line| log.say(LogLevel::Phase, || line));
+        return (0..count).map(|k| of_itself(solve(k, &say, watch))).collect();
     }
     let bodies = |k: usize| islands[k].island.bodies.iter().map(|&p| &model.bodies[p].body);
     let on_caller = |k: usize| bodies(k).any(|body| body.k().is_some_and(|k| k.on_caller()));
@@ -28,17 +41,28 @@ pub fn solve_islands(model: &Model, prepared: &Prepared, start: &Start, watch: &
     order.sort_by_key(|&k| Reverse(islands[k].dual.product_work()));
     let mut ends: Vec<Option<_>> = islands.iter().map(|_| None).collect();
     let mut told = Ok(());
-    let solve = |k: usize, say: &dyn Fn(Message)| Ok(solve(k, &mut Apart { say }));
+    let (sender, lines) = channel();
+    let line: Say = Arc::new(move |line| {
+        drop(sender.send(line));
+        Ok(())
+    });
+    let solve = |k: usize, say: &dyn Fn(Message)| Ok(solve(k, &line, &mut Apart { say }));
     let tasks = Tasks { threads, order: &order, on_caller: &on_caller };
-    threads::run_telling(tasks, solve, &mut |heard| match heard {
-        TaskEvent::Done(k, end) => ends[k] = Some(end),
-        TaskEvent::Said(message) if told.is_ok() => {
-            told = message.pass_on(watch);
-            if told.is_err() {
-                stops.cancel();
+    threads::run_telling(tasks, solve, &mut |heard| {
+        let mut heard_of = lines.try_iter().map(Message::Line).collect::<Vec<_>>();
+        match heard {
+            TaskEvent::Done(k, end) => ends[k] = Some(end),
+            TaskEvent::Said(message) => heard_of.push(message),
+            TaskEvent::Nothing => {}
+        }
+        for message in heard_of {
+            if told.is_ok() {
+                told = message.pass_on(watch);
+                if told.is_err() {
+                    stops.cancel();
+                }
             }
         }
-        _ => {}
     })?;
     if let Err(error) = told {
         if error.kind != Kind::Cancelled {
@@ -47,6 +71,9 @@ pub fn solve_islands(model: &Model, prepared: &Prepared, start: &Start, watch: &
     }
     ends.into_iter().flatten().map(of_itself).collect()
 }
+
+/// Takes a line on how far the loops of an island are.
+type Say = Arc<dyn Fn(String) -> Result<()> + Send + Sync>;
 
 /// A reason why one island has no answer leaves the others theirs; any other failure is one of the whole call.
 fn of_itself(end: Result<Solved>) -> Result<std::result::Result<Solved, Error>> {
@@ -57,8 +84,8 @@ fn of_itself(end: Result<Solved>) -> Result<std::result::Result<Solved, Error>> 
 }
 
 fn is_of_itself(error: &Error) -> bool {
-    use Kind::{Cancelled, GapsContradict, Indefinite, LoadNotHeld};
-    matches!(error.kind, LoadNotHeld | GapsContradict | Indefinite | Cancelled)
+    use Kind::{Cancelled, GapsContradict, Indefinite, LoadNotHeld, TimeOver};
+    matches!(error.kind, LoadNotHeld | GapsContradict | Indefinite | Cancelled | TimeOver)
 }
 
 /// What an island says to the thread that listens to all.

@@ -87,7 +87,8 @@ fn or_directly(
     let next = active_set(qp, direct, &solution, judge);
     let best = better(solution, next)?;
     if is_incomplete(&best) && direct.limit > 0 {
-        return Ok(judge.mended(&best)?.unwrap_or(best));
+        let mended = judge.mended(&best).map(|mended| mended.unwrap_or_else(|| best.clone()));
+        return best.unless(mended);
     }
     Ok(best)
 }
@@ -106,7 +107,7 @@ pub fn gave_up(solution: &Solution) -> bool {
 fn better(first: Solution, second: Result<Solution>) -> Result<Solution> {
     let second = match second {
         Ok(second) => second,
-        Err(error) => return Ok(Solution { verdict: Verdict::of_refusal(error)?, ..first }),
+        refused => return first.unless(refused),
     };
     let counts = first.counts + second.counts;
     Ok(match second.verdict {

@@ -7,6 +7,7 @@ use crate::certificate::{Certificate, NOISE};
 use crate::error::{Kind, Result};
 use crate::linalg::vector::{axpy, weighted_norm};
 use crate::model::{FinishBy, Method, Settings};
+use crate::platform::interrupt;
 use crate::qp::{Face, Verdict};
 use crate::solve::gaps::Gaps;
 use crate::solve::recovery::{Ending, Faces, Recovery};
@@ -68,7 +69,7 @@ struct Finish<'a, 'b> {
 impl Finish<'_, '_> {
     /// Active sets one after the other, until one confirms itself or comes again.
     fn run(&mut self) -> Result<()> {
-        let Faces { qp, direct, stops } = &self.recovery.faces;
+        let Faces { qp, direct } = &self.recovery.faces;
         let mut active = qp.at_bound(&self.ending.solution.x);
         let mut point = SplitPoint::of(self.recovery, self.ending, self.delicate)?;
         let mut visited: Vec<Vec<bool>> = Vec::new();
@@ -77,7 +78,6 @@ impl Finish<'_, '_> {
             if rows.len() + point.alpha.len() > direct.limit {
                 break;
             }
-            stops.check()?;
             let Some(mut face) = Face::new(*qp, direct.entries, rows)? else { break };
             self.ending.solution.counts.direct += 1;
             point.hold(&active);
@@ -99,6 +99,7 @@ impl Finish<'_, '_> {
     fn correct(&mut self, point: &mut SplitPoint, face: &Face) -> Result<()> {
         let mut last = f64::INFINITY;
         for _ in 0..CORRECTIONS {
+            interrupt::check()?;
             let size = point.correct(self.recovery, face)?;
             self.keep(point, face)?;
             if size >= 0.5 * last {

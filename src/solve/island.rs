@@ -6,6 +6,7 @@ use crate::error::{Error, Result};
 use crate::linalg::vector::norm_max;
 use crate::linalg::Operator;
 use crate::model::Model;
+use crate::platform::interrupt;
 use crate::progress::{Steps, Stops, Voice};
 use crate::qp::paper::Units;
 use crate::qp::{Direct, Solution, Verdict};
@@ -38,6 +39,9 @@ pub struct Solved {
 /// How every island ended: with an answer, or with the named reason why it has none.
 pub type Ends = Vec<std::result::Result<Solved, Error>>;
 
+/// What the log calls S11.
+const DIAGNOSIS: &str = "forces nearest to the load";
+
 /// One try at an island.
 enum Tried {
     Ended(Box<Solved>),
@@ -56,18 +60,19 @@ pub fn solve_island(
     stops: &Stops,
     voice: &mut dyn Voice,
 ) -> Result<Solved> {
-    let mut dual = scaled(case, stops)?;
+    let mut dual = scaled(case)?;
     loop {
-        match attempt(case, number, &dual, &start, stops, voice)? {
+        match interrupt::part("dual solve", || attempt(case, number, &dual, &start, stops, voice))? {
             Tried::Ended(solved) => return Ok(*solved),
             Tried::NotHeld { far } => {
                 let (data, ready) = (case.data()?, case.ready);
-                let least = Unheld::least(&data, ready, &dual, &far)?;
+                let least = interrupt::part(DIAGNOSIS, || Unheld::least(&data, ready, &dual, &far))?;
                 if let Some(error) = least.proof(case, &dual)? {
                     return Err(error);
                 }
                 let share = least.share;
-                let relative = Unheld::relative(&data, ready, &dual, &far)?.filter(Unheld::is_little);
+                let relative = interrupt::part(DIAGNOSIS, || Unheld::relative(&data, ready, &dual, &far))?;
+                let relative = relative.filter(Unheld::is_little);
                 let left = relative.unwrap_or(least);
                 dual.take(case, &left.x, left.load_to_take(share), share)?;
                 start = left.x;
@@ -77,13 +82,14 @@ pub fn solve_island(
 }
 
 /// The loads and gaps of the host as the dual takes them; refuses rows whose gaps no displacement satisfies.
-pub fn scaled(case: Case, stops: &Stops) -> Result<Scaled> {
+pub fn scaled(case: Case) -> Result<Scaled> {
     let ready = case.ready;
     let mut load = ready.island.loads(case.model)?;
     load.iter_mut().for_each(|f| *f /= ready.island.unit);
+    interrupt::check()?;
     let moved = ready.moved(case.threads(), &load)?;
     let farthest = moved.iter().map(|own| norm_max(own)).fold(0.0, f64::max);
-    let gaps = presolve(case, farthest, stops)?;
+    let gaps = interrupt::part("presolve", || presolve(case, farthest))?;
     Ok(Scaled::new(ready, load, moved, gaps))
 }
 
@@ -96,9 +102,9 @@ fn attempt(
     voice: &mut dyn Voice,
 ) -> Result<Tried> {
     let (settings, ready) = (&case.model.settings, case.ready);
-    let f = Interruptible::new(&ready.dual, stops.clone(), ready.product_threads(case.threads()));
+    let f = Interruptible::new(&ready.dual, ready.product_threads(case.threads()));
     let (qp, direct) = (dual.qp(ready, &f), direct(case)?);
-    let mut judge = Certifier::new(Recovery::new(case, dual, Faces { qp, direct, stops })?);
+    let mut judge = Certifier::new(Recovery::new(case, dual, Faces { qp, direct })?);
     let steps = &mut Steps::new(number, ready.island.unit, &dual.gaps.bounded, stops.clone(), voice);
     let solution = match parameters(settings) {
         Some(given) if given.units == Units::Printed => {
@@ -113,7 +119,8 @@ fn attempt(
         solution => solution,
     };
     let (judging, recovering) = (judge.spent, Instant::now());
-    let mut ending = judge.ending(solution)?;
+    // an answer there is comes with its displacements and its certificate
+    let mut ending = interrupt::never(|| judge.ending(solution))?;
     let recovery = &judge.recovery;
     recovery.bring_to_rest(&mut ending, false)?;
     let is_solved = ending.solution.verdict == Verdict::Solved;
@@ -124,7 +131,7 @@ fn attempt(
     }
     if let Some(taken) = dual.unheld.as_ref().filter(|taken| taken.load.is_some()) {
         // what the host is told is about its own load
-        ending.judgement = recovery.judged_on(&case.data()?, &ending.recovered)?;
+        ending.judgement = interrupt::never(|| recovery.judged_on(&case.data()?, &ending.recovered))?;
         let is_marginal = taken.share > ROUNDING || !ending.judgement.certificate.passed();
         outcome = match outcome {
             Outcome::Solved if taken.share > MARGINAL => Outcome::Inaccurate,
@@ -158,8 +165,13 @@ fn outcome(case: Case, dual: &Scaled, solution: &Solution) -> Result<Outcome> {
         Verdict::Unbounded { p } => {
             let w: Vec<f64> = p.iter().map(|p| -p).collect();
             let w = case.ready.rows.scaling.decoupling.solve_transposed(w);
-            let proved = Contradictions::new(case, &dual.gaps).proved(&w)?;
-            proved.map_or(Ok(Outcome::Stalled), Err)
+            match Contradictions::new(case, &dual.gaps).proved(&w) {
+                Ok(proved) => proved.map_or(Ok(Outcome::Stalled), Err),
+                Err(error) if Verdict::of_refusal(error.clone())? == Verdict::Cancelled => {
+                    Ok(Outcome::Cancelled)
+                }
+                Err(_) => Ok(Outcome::Time),
+            }
         }
     }
 }

@@ -4,7 +4,7 @@
 
 use crate::error::Result;
 use crate::progress::Steps;
-use crate::qp::{DirectOnRows, Judged, Qp, Restricted, Solution, Verdict};
+use crate::qp::{Counts, DirectOnRows, Judged, Qp, Restricted, Solution, Verdict};
 use crate::solve::certifier::Certifier;
 use crate::solve::diagnosis::Unheld;
 use crate::solve::fallback::{gave_up, solve_dual, MethodOptions};
@@ -20,7 +20,7 @@ pub fn solve_near(
 ) -> Result<Solution> {
     let (ready, scaled) = (judge.recovery.ready, judge.recovery.scaled);
     let (gaps, mut far) = (&scaled.gaps.value, scaled.gaps.far.clone());
-    let (mut start, mut before, mut given_up) = (start.to_vec(), Default::default(), None);
+    let (mut start, mut before, mut given_up, mut last) = (start.to_vec(), Counts::default(), None, None);
     while far.contains(&true) {
         let rows: Vec<usize> = (0..far.len()).filter(|&i| !far[i]).collect();
         let (near, block) = (Restricted::new(qp, &rows), DirectOnRows { whole: means.direct, rows: &rows });
@@ -28,14 +28,9 @@ pub fn solve_near(
         judge.far.clone_from(&far);
         judge.reached.clear();
         let means = MethodOptions { direct: block.direct(), ..*means };
-        let solution = solve_dual(
-            &means,
-            near.qp(),
-            &near.start(&start),
-            &mut Judged { whole: judge, on: &near },
-            steps,
-        )?;
-        let solution = near.whole(solution);
+        let mut judged = Judged { whole: judge, on: &near };
+        let found = solve_dual(&means, near.qp(), &near.start(&start), &mut judged, steps);
+        let solution = or_last(found.map(|solution| near.whole(solution)), last.take())?;
         before = before + solution.counts;
         match &solution.verdict {
             Verdict::Infeasible { .. }
@@ -51,17 +46,26 @@ pub fn solve_near(
             _ if judge.reached.is_empty() => return Ok(Solution { counts: before, ..solution }),
             _ => {
                 judge.reached.iter().for_each(|&i| far[i] = false);
-                start = solution.x;
+                start.clone_from(&solution.x);
+                last = Some(solution);
             }
         }
     }
     steps.set_bounded(qp.bounded);
     judge.far.clear();
     judge.reached.clear();
-    let solution = solve_dual(means, qp, &start, judge, steps)?;
+    let solution = or_last(solve_dual(means, qp, &start, judge, steps), last)?;
     let counts = before + solution.counts;
     let solution = given_up.filter(|_| gave_up(&solution)).unwrap_or(solution);
     Ok(Solution { counts, ..solution })
+}
+
+/// What was found, or, where the host or the time has refused it, the solution of the round before: its work has been counted.
+pub fn or_last(found: Result<Solution>, last: Option<Solution>) -> Result<Solution> {
+    match last {
+        Some(last) => Solution { counts: Counts::default(), ..last }.unless(found),
+        None => found,
+    }
 }
 
 /// Of the rows that are far the nearest, and those up to `FAR` times as far, are so no longer.

@@ -3,7 +3,6 @@
 use crate::constraints::RowKind;
 use crate::error::Result;
 use crate::linalg::Operator;
-use crate::progress::Stops;
 use crate::setup::Ready;
 use crate::solve::case::Case;
 use crate::solve::contradiction::contradiction;
@@ -18,7 +17,7 @@ const ROUNDING: f64 = 64.0 * f64::EPSILON;
 pub const FAR: f64 = 1e4;
 
 /// Gaps of all groups; refuses rows whose gaps no displacement satisfies. `moved` is how far the loads move a row at most.
-pub fn presolve(case: Case, moved: f64, stops: &Stops) -> Result<Gaps> {
+pub fn presolve(case: Case, moved: f64) -> Result<Gaps> {
     let Ready { rows, island, dual, .. } = case.ready;
     let rhs = island.contact.rows.rhs.iter().chain(&island.equalities.rows.rhs);
     let scaled: Vec<f64> = rhs.zip(&rows.scaling.scale).map(|(c, s)| c * s).collect();
@@ -56,7 +55,7 @@ pub fn presolve(case: Case, moved: f64, stops: &Stops) -> Result<Gaps> {
             }
         }
     }
-    if let Some(error) = contradiction(case, &gaps, stops)? {
+    if let Some(error) = contradiction(case, &gaps)? {
         return Err(error);
     }
     gaps.dual = rows.scaling.decoupling.solve(gaps.value.clone());

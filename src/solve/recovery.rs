@@ -7,8 +7,8 @@ use crate::certificate::{certify, BodyData, Candidate, Data, Judgement, Unasked}
 use crate::error::Result;
 use crate::linalg::twofold::Twofold;
 use crate::linalg::vector::{axpy, weighted_norm};
+use crate::platform::interrupt;
 use crate::platform::memory::copied;
-use crate::progress::Stops;
 use crate::qp::{Direct, Qp, Solution};
 use crate::setup::Ready;
 use crate::solve::case::Case;
@@ -30,11 +30,10 @@ impl Recovered {
     }
 }
 
-/// What solutions on faces of the dual are made with, and when that has to end.
+/// What solutions on faces of the dual are made with.
 pub struct Faces<'a> {
     pub qp: Qp<'a>,
     pub direct: Direct<'a>,
-    pub stops: &'a Stops,
 }
 
 /// What a solve ends with.
@@ -60,6 +59,9 @@ pub struct Recovery<'a> {
     /// Rounding grows by more than 1 / `SOFT` in K+ of a body.
     pub soft: bool,
 }
+
+/// What the log calls the judgement of an answer.
+const CERTIFICATE: &str = "certificate";
 
 /// Least `softness` of a K+ whose losses do not matter.
 const SOFT: f64 = 1e-4;
@@ -182,12 +184,13 @@ impl<'a> Recovery<'a> {
     /// The same by data with other loads, but for rounding of those.
     pub fn judged_on(&self, data: &Data, answer: &Recovered) -> Result<Judgement> {
         let Self { ready, threads, work, .. } = self;
-        certify(data, answer.view(), &mut ByInverse { data, ready, threads: *threads, work })
+        let mut response = ByInverse { data, ready, threads: *threads, work };
+        interrupt::part(CERTIFICATE, || certify(data, answer.view(), &mut response))
     }
 
     /// The same where rounding of the loads excuses nothing, and K+ is not asked.
     pub fn judged_strictly(&self, answer: &Recovered) -> Result<Judgement> {
-        certify(&self.data, answer.view(), &mut Unasked)
+        interrupt::part(CERTIFICATE, || certify(&self.data, answer.view(), &mut Unasked))
     }
 
     /// The answer of a solution.

@@ -1,10 +1,11 @@
 //! Answers whose forces leave motions open are brought to rest: of them all the one of least travel is told.
 
 use crate::certificate::BodyData;
-use crate::error::Result;
+use crate::error::{Kind, Result};
 use crate::linalg::vector::axpy;
 use crate::linalg::Matrix;
-use crate::qp;
+use crate::platform::interrupt;
+use crate::qp::{self, Verdict};
 use crate::setup::Island;
 use crate::solve::held::without_force;
 use crate::solve::recovery::{Ending, Recovered, Recovery};
@@ -12,14 +13,26 @@ use crate::solve::travel::{travel, Moving, OpenMotions, Shift};
 
 impl<'a> Recovery<'a> {
     /// Of the answers that differ by motions which nothing resists the one of least travel takes the place of this one,
-    /// unless this one alone passes. `exact`: motions are cleaned of the errors of R.
+    /// unless this one alone passes. `exact`: motions are cleaned of the errors of R. Ended by the host or the time, it leaves what
+    /// there was, and says so in the verdict.
     pub fn bring_to_rest(&self, ending: &mut Ending, exact: bool) -> Result<()> {
         if ending.solution.undetermined == 0 {
             return Ok(());
         }
-        let at_rest = self.at_rest(&ending.recovered, &ending.solution.x, &ending.deformed, exact)?;
-        let Some((recovered, alpha)) = at_rest else { return Ok(()) };
-        let judgement = self.judged(&recovered)?;
+        let at_rest = self.at_rest(&ending.recovered, &ending.solution.x, &ending.deformed, exact);
+        let judged = at_rest.and_then(|at_rest| {
+            let Some((recovered, alpha)) = at_rest else { return Ok(None) };
+            let judgement = self.judged(&recovered)?;
+            Ok(Some((recovered, alpha, judgement)))
+        });
+        let judged = match judged {
+            Ok(judged) => judged,
+            Err(error) => {
+                ending.solution.verdict = Verdict::of_refusal(error)?;
+                return Ok(());
+            }
+        };
+        let Some((recovered, alpha, judgement)) = judged else { return Ok(()) };
         if judgement.certificate.passed() || !ending.judgement.certificate.passed() {
             ending.solution.alpha = alpha;
             (ending.recovered, ending.judgement) = (recovered, judgement);
@@ -60,7 +73,8 @@ impl<'a> Recovery<'a> {
                 forces[i] = 0.0;
             }
         }
-        let Some(change) = self.way_to_rest(&u, &forces, free) else { return Ok(None) };
+        let way = interrupt::part("least travel", || self.way_to_rest(&u, &forces, free))?;
+        let Some(change) = way else { return Ok(None) };
         add(change.u, &mut u)?;
         for k in 0..self.data.bodies.len() {
             let modes = dual.modes_of(k);
@@ -70,7 +84,7 @@ impl<'a> Recovery<'a> {
     }
 
     /// What brings u to rest by the free motions; none where rounding leaves no way.
-    fn way_to_rest(&self, u: &[f64], lambda: &[f64], mut free: Matrix) -> Option<Shift> {
+    fn way_to_rest(&self, u: &[f64], lambda: &[f64], mut free: Matrix) -> Result<Option<Shift>> {
         let (dual, Island { ranges, .. }) = (&self.ready.dual, &self.ready.island);
         for j in 0..free.cols {
             let own = dual.amplitudes(free.col(j));
@@ -95,6 +109,11 @@ impl<'a> Recovery<'a> {
             compliance: &contact.compliance,
             lambda,
         };
-        travel(&open, u).ok()
+        match travel(&open, u) {
+            Err(error) if matches!(error.kind, Kind::Cancelled | Kind::TimeOver | Kind::Callback) => {
+                Err(error)
+            }
+            way => Ok(way.ok()),
+        }
     }
 }

@@ -9,6 +9,7 @@ use crate::linalg::twofold::Twofold;
 use crate::linalg::vector::axpy;
 use crate::linalg::{Analysis, Cholesky, Symmetric};
 use crate::platform::memory::{copied, zeros};
+use crate::platform::{interrupt, tally};
 
 const WHAT: &str = "a rigid motion";
 
@@ -23,6 +24,8 @@ pub enum Cleaner {
 impl Cleaner {
     fn new(body: &BodyData, error: f64) -> Result<Self> {
         let Stiffness::Matrix(k) = body.stiffness else { return Ok(Self::Impossible) };
+        interrupt::check()?;
+        tally::costly();
         let shifted = shifted(k, f64::EPSILON / error)?;
         let analysis = Arc::new(Analysis::new(&shifted, &vec![false; k.order()])?);
         let factor = analysis.factorize(&shifted, 1.0 / body.unit)?;

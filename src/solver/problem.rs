@@ -7,6 +7,8 @@ use std::time::{Duration, Instant};
 
 use crate::error::{Error, Kind, Result};
 use crate::model::{Model, StartFrom};
+#[cfg(test)]
+use crate::platform::interrupt::Clock;
 use crate::platform::memory::Headroom;
 use crate::progress::{Host, Listener, Log, LogLevel, LogListener, Phase, PhaseReport, Phases, Watch};
 use crate::setup::{Prepared, Work};
@@ -49,10 +51,11 @@ impl Problem {
 
     /// Null spaces, factors and dual operators, as far as they are not there yet.
     pub fn setup(&mut self) -> Result<()> {
-        self.watched("setup", |problem, watch| {
+        // the limit is that of a solve, which may follow
+        self.watched("setup", f64::INFINITY, |problem, watch| {
             if !problem.prepared.is_up_to_date(&problem.model) {
                 watch.phases = Phases::default();
-                begin(&mut watch.log, &problem.model, "setup")?;
+                begin(&watch.log, &problem.model, "setup")?;
             }
             problem.prepared.set_up(&problem.model, watch)
         })
@@ -61,8 +64,8 @@ impl Problem {
     /// Solves (10)-(11) for the present loads and gaps. An answer is kept even when it is incomplete; the
     /// report says how good it is. Where a group of bodies has none, the error says why and those of the others are kept.
     pub fn solve(&mut self) -> Result<Report> {
-        self.watched("solve", |problem, watch| {
-            begin(&mut watch.log, &problem.model, "solve")?;
+        self.watched("solve", self.model.settings.time_limit, |problem, watch| {
+            begin(&watch.log, &problem.model, "solve")?;
             problem.solve_watched(watch)
         })
     }
@@ -77,7 +80,7 @@ impl Problem {
         prepared.set_up(model, watch)?;
         prepared.set_up_preconditioner(model, watch)?;
         watch.log.phases(&prepared.phases(model, &watch.phases), Phase::DualSolve as usize)?;
-        method(&mut watch.log, model, prepared, start.name())?;
+        method(&watch.log, model, prepared, start.name())?;
         let solving = Instant::now();
         let ends = solve_islands(model, prepared, &start, watch)?;
         let sum = |time: fn(&Solved) -> Duration| ends.iter().flatten().map(time).sum::<Duration>();
@@ -95,7 +98,7 @@ impl Problem {
             (None, Some(report)) => {
                 let report = report.clone();
                 watch.log.phases(&report.phases, usize::MAX)?;
-                result(&mut watch.log, &report)?;
+                result(&watch.log, &report)?;
                 self.findings = Some(Findings::of_report(&self.model, &self.prepared, &report));
                 Ok(report)
             }
@@ -115,9 +118,15 @@ impl Problem {
         self.history.of(self.model.revisions.rows)
     }
 
-    /// Runs `work` under watch. Its outcome is told: the phases that are left, or the failure, which is kept as well.
-    fn watched<T>(&mut self, call: &str, work: impl FnOnce(&mut Self, &mut Watch) -> Result<T>) -> Result<T> {
-        let mut watch = self.host.watch(self.model.settings.time_limit, self.phases);
+    /// Runs `work` under watch, for `limit` seconds. Its outcome is told: the phases that are left, or the failure, which is kept as
+    /// well.
+    fn watched<T>(
+        &mut self,
+        call: &str,
+        limit: f64,
+        work: impl FnOnce(&mut Self, &mut Watch) -> Result<T>,
+    ) -> Result<T> {
+        let mut watch = self.host.watch(limit, self.phases);
         let outcome = work(self, &mut watch).and_then(|done| {
             watch.log.phases(&self.prepared.phases(&self.model, &watch.phases), usize::MAX)?;
             Ok(done)
@@ -135,9 +144,15 @@ impl Problem {
         self.host.listener = listener;
     }
 
+    /// What shows the seconds of the calls to come.
+    #[cfg(test)]
+    pub(super) fn set_clock(&mut self, clock: Option<Clock>) {
+        self.host.clock = clock;
+    }
+
     /// The function that gets lines of text up to a level from now on.
     pub fn on_log(&mut self, listener: Option<(LogLevel, LogListener)>) {
-        self.host.log = Log { host: listener, told: 0 };
+        self.host.log = Log::new(listener);
     }
 
     /// Set to true by any thread, it ends the setup or the solve that runs; the next one begins by clearing it.

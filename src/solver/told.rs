@@ -9,8 +9,8 @@ use crate::setup::{Duals, Prepared, Ready};
 use crate::solve::{Outcome, Report};
 
 /// Sizes and options, before anything is done.
-pub fn begin(log: &mut Log, model: &Model, call: &str) -> Result<()> {
-    log.told = 0;
+pub fn begin(log: &Log, model: &Model, call: &str) -> Result<()> {
+    log.begin();
     let (Sizes { bodies, dofs, rows, equalities }, version) = (model.sizes(), env!("CARGO_PKG_VERSION"));
     log.say(LogLevel::Phase, || {
         format!(
@@ -25,7 +25,7 @@ pub fn begin(log: &mut Log, model: &Model, call: &str) -> Result<()> {
 }
 
 /// One line on an answer, and warnings.
-pub fn result(log: &mut Log, report: &Report) -> Result<()> {
+pub fn result(log: &Log, report: &Report) -> Result<()> {
     log.say(LogLevel::Result, || result_line(report))?;
     if report.outcome == Outcome::Marginal {
         let what = "warning: a small part of the load, below 1e-7 of it, is held by no row";
@@ -79,7 +79,7 @@ fn result_line(report: &Report) -> String {
 }
 
 /// How the dual is going to be solved.
-pub fn method(log: &mut Log, model: &Model, prepared: &Prepared, started: &str) -> Result<()> {
+pub fn method(log: &Log, model: &Model, prepared: &Prepared, started: &str) -> Result<()> {
     let Duals { islands, operators, .. } = prepared.done(model)?;
     let of_island = |ready: &Ready| ready.preconditioning().word().to_string_lossy();
     let mut preconditioners: Vec<_> = islands.iter().map(of_island).collect();

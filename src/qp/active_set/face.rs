@@ -10,6 +10,7 @@
 
 use crate::error::Result;
 use crate::linalg::{Entries, Matrix, PivotedCholesky, SpdSolver};
+use crate::platform::{interrupt, tally};
 use crate::qp::coarse::Coarse;
 use crate::qp::Qp;
 
@@ -33,6 +34,7 @@ pub struct Face<'a> {
 impl<'a> Face<'a> {
     /// `None`: A_FF is not positive semidefinite.
     pub fn new(qp: Qp<'a>, entries: &dyn Entries, rows: Vec<usize>) -> Result<Option<Self>> {
+        interrupt::check()?;
         let n = rows.len();
         let mut h = Matrix::zeros(n, n)?;
         entries.add_block(&rows, &mut h)?;
@@ -48,6 +50,8 @@ impl<'a> Face<'a> {
                 }
             }
         }
+        interrupt::check()?;
+        tally::costly();
         let Some(factor) = PivotedCholesky::new(h)? else { return Ok(None) };
         let (spread, coarse) = eliminated(&factor, &modes)?;
         Ok(Some(Self { qp, rows, factor, spread, penalty, basis, undetermined, coarse }))

@@ -54,7 +54,8 @@ pub fn active_set(
         Err(error) if error.kind == Kind::Memory => (false, Verdict::Stalled),
         Err(error) => (false, Verdict::of_refusal(error)?),
     };
-    let undetermined = run.coarse.on(&qp.at_bound(&run.x))?.deficiency();
+    let open = run.coarse.on(&qp.at_bound(&run.x)).map(|face| face.deficiency());
+    let (undetermined, ended) = ended.with(open, 0)?;
     let counts = Counts {
         coarse_solves: run.coarse.solves,
         coarse_factorisations: run.coarse.factorisations,

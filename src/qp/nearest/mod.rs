@@ -5,6 +5,7 @@ use crate::error::{Error, Kind, Result};
 use crate::linalg::graph::joined;
 use crate::linalg::vector::{axpy, dot, norm, norm_max, power_of_two_below};
 use crate::linalg::{Csr, Matrix};
+use crate::platform::interrupt;
 
 /// A unit row with less than this outside of the span of active rows depends on them.
 const DEPENDENT: f64 = 1e-11;
@@ -107,7 +108,8 @@ impl ConnectedColumns {
             let Some(p) = violated.filter(|_| !at_origin(&active.a)) else {
                 return Ok((active, contradictions));
             };
-            if let Some(weights) = active.admit(p) {
+            interrupt::reached("rows admitted to a nearest point", round)?;
+            if let Some(weights) = active.admit(p)? {
                 contradictions.push(weights);
                 left_out[p] = true;
             }
@@ -165,9 +167,10 @@ impl<'a> Active<'a> {
 
     /// Makes the violated row p active; rows whose force would turn negative on the way leave. Where it cannot be met: its
     /// weight and those of the active rows that contradict it.
-    fn admit(&mut self, p: usize) -> Option<Vec<(usize, f64)>> {
+    fn admit(&mut self, p: usize) -> Result<Option<Vec<(usize, f64)>>> {
         let mut own = 0.0;
         loop {
+            interrupt::check()?;
             let (along, outside) = self.split(p);
             let turn = self.back(along.clone());
             let reach = norm(&outside);
@@ -183,7 +186,7 @@ impl<'a> Active<'a> {
             if step == f64::INFINITY {
                 self.settle();
                 let against = self.rows.iter().zip(&turn).map(|(&i, turn)| (i, -turn));
-                return Some(std::iter::once((p, 1.0)).chain(against).collect());
+                return Ok(Some(std::iter::once((p, 1.0)).chain(against).collect()));
             }
             axpy(-step, &turn, &mut self.force);
             own += step;
@@ -195,7 +198,7 @@ impl<'a> Active<'a> {
                 None => {
                     self.push(p, along, outside, own);
                     self.settle();
-                    return None;
+                    return Ok(None);
                 }
             }
         }

@@ -24,10 +24,12 @@ pub fn algorithm_3(
     let sizes = PaperSizes::new(&mut q, parameters.units, judge)?;
     let mut outer = Outer::new(q, start, parameters, sizes);
     let verdict = outer.run(judge, observer).or_else(Verdict::of_refusal)?;
-    let (alpha, scale) = (outer.alpha(), judge.scale(&outer.x, &outer.alpha())?);
+    let alpha = outer.alpha();
+    let (scale, verdict) = verdict.with(judge.scale(&outer.x, &alpha), f64::NAN)?;
     let active: Vec<bool> =
         outer.x.iter().zip(qp.bounded).map(|(x, bounded)| *bounded && *x == 0.0).collect();
-    let undetermined = Coarse::new(qp.g_transposed, qp.blocks, qp.rounding)?.on(&active)?.deficiency();
+    let mut coarse = Coarse::new(qp.g_transposed, qp.blocks, qp.rounding)?;
+    let (undetermined, verdict) = verdict.with(coarse.on(&active).map(|face| face.deficiency()), 0)?;
     Ok(Solution { x: outer.x, alpha, undetermined, scale, verdict, counts: outer.counts })
 }
 

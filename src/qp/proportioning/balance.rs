@@ -5,6 +5,7 @@
 use crate::error::{Kind, Result};
 use crate::linalg::vector::{norm, ratio};
 use crate::linalg::Csr;
+use crate::platform::interrupt;
 use crate::qp::coarse::Coarse;
 use crate::qp::{nearest_point, Polyhedron, Qp};
 
@@ -74,7 +75,8 @@ fn lawson_hanson(qp: &Qp, coarse: &mut Coarse) -> Result<(Vec<f64>, Vec<f64>)> {
     let m = qp.b.len();
     let mut held: Vec<bool> = qp.bounded.to_vec();
     let mut point = least_squares(qp, coarse, &held)?;
-    for _ in 0..3 * m + 3 {
+    for round in 0..3 * m + 3 {
+        interrupt::reached("rows admitted to the nearest forces", round)?;
         let residual = qp.left(&point);
         let Some(best) = most_correlated(qp, &held, &residual) else {
             return Ok((point, residual));

@@ -17,6 +17,7 @@ mod stop;
 
 use crate::error::Result;
 use crate::linalg::vector::norm;
+use crate::platform::interrupt;
 use crate::qp::coarse::Coarse;
 use crate::qp::projection::project;
 use crate::qp::{AcceptanceTest, Counts, Limits, Observer, Qp, Solution, StepKind, StepReport, Verdict};
@@ -33,6 +34,9 @@ const ROUNDING: f64 = 1e-12;
 /// Forces of a start that move so many times as far as loads and gaps are not worth while.
 const FAR_OFF: f64 = 1e3;
 
+/// What the log calls S6.
+const FIRST_POINT: &str = "first feasible point";
+
 pub fn minimise(
     qp: Qp,
     start: &[f64],
@@ -41,11 +45,11 @@ pub fn minimise(
     observer: &mut dyn Observer,
 ) -> Result<Solution> {
     let mut coarse = Coarse::new(qp.g_transposed, qp.blocks, qp.rounding)?;
-    let first = match first_point(&qp, &mut coarse, start)? {
+    let first = match interrupt::part(FIRST_POINT, || first_point(&qp, &mut coarse, start))? {
         Some(first) => first,
         // S6.2
         None => {
-            let found = balance(&qp, &mut coarse)?;
+            let found = interrupt::part(FIRST_POINT, || balance(&qp, &mut coarse))?;
             if found.margin > ROUNDING {
                 return Ok(infeasible(&qp, &coarse, found));
             }
@@ -67,10 +71,10 @@ pub fn minimise(
 /// The verdict where no x balances e, for a method that does not ask.
 pub fn not_held(qp: &Qp, start: &[f64]) -> Result<Option<Solution>> {
     let mut coarse = Coarse::new(qp.g_transposed, qp.blocks, qp.rounding)?;
-    if first_point(qp, &mut coarse, start)?.is_some() {
+    if interrupt::part(FIRST_POINT, || first_point(qp, &mut coarse, start))?.is_some() {
         return Ok(None);
     }
-    let found = balance(qp, &mut coarse)?;
+    let found = interrupt::part(FIRST_POINT, || balance(qp, &mut coarse))?;
     Ok((found.margin > ROUNDING).then(|| infeasible(qp, &coarse, found)))
 }
 
@@ -106,7 +110,8 @@ fn proportioning(
     let verdict = run(&mut it, stop, limits, judge, observer).or_else(Verdict::of_refusal)?;
     it.counts.coarse_solves = it.coarse.solves;
     it.counts.coarse_factorisations = it.coarse.factorisations;
-    let undetermined = it.coarse.on(&it.split.active)?.deficiency();
+    let open = it.coarse.on(&it.split.active).map(|face| face.deficiency());
+    let (undetermined, verdict) = verdict.with(open, 0)?;
     Ok(Solution { undetermined, scale, x: it.x, alpha: it.alpha, verdict, counts: it.counts })
 }
 

@@ -14,6 +14,7 @@ mod mprgp;
 
 use crate::error::Result;
 use crate::linalg::vector::{axpy, dot, norm};
+use crate::platform::interrupt;
 use crate::qp::coarse::Coarse;
 use crate::qp::projection::project;
 use crate::qp::proportioning::Stop;
@@ -77,7 +78,7 @@ impl<'a> Lagrangian<'a> {
     fn new(qp: Qp<'a>, start: &[f64]) -> Result<Self> {
         let mut coarse = Coarse::new(qp.g_transposed, qp.blocks, qp.rounding)?;
         let none = vec![false; start.len()];
-        let first = project(&qp, &mut coarse, start, &none)?;
+        let first = interrupt::part("first feasible point", || project(&qp, &mut coarse, start, &none))?;
         let point = Bounded::new(qp.bounded, first.map_or_else(|| start.to_vec(), |first| first.point));
         let map = Augmented::new(qp, coarse)?;
         let mut al = Self {
@@ -257,9 +258,11 @@ impl<'a> Lagrangian<'a> {
     }
 
     fn solution(mut self, verdict: Verdict) -> Result<Solution> {
-        let x = self.on_equalities()?;
+        let nearest = self.on_equalities();
+        let (x, verdict) = verdict.with(nearest, self.point.x.clone())?;
         let coarse = &mut self.map.coarse;
-        let undetermined = coarse.on(&self.point.split.active)?.deficiency();
+        let open = coarse.on(&self.point.split.active).map(|face| face.deficiency());
+        let (undetermined, verdict) = verdict.with(open, 0)?;
         let (coarse_solves, coarse_factorisations) = (coarse.solves, coarse.factorisations);
         let counts = Counts { coarse_solves, coarse_factorisations, ..self.map.counts };
         let (scale, alpha) = (self.scale, self.alpha().to_vec());

@@ -1,6 +1,7 @@
 //! Tests of whole problems, where they need to see inside.
 
 mod body_facts;
+mod clock;
 mod file;
 mod headroom;
 mod log;
