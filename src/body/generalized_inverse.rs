@@ -243,7 +243,7 @@ impl Known {
             fixing: self.fixing.clone(),
             gap: None,
             softness,
-            doubts: self.doubt.clone().into_iter().collect(),
+            doubts: self.doubt.into_iter().collect(),
             misfit: None,
             factor,
         };
