@@ -31,15 +31,19 @@ pub fn given_dofs(null_space: &Matrix, root: &[f64], given: &[usize]) -> Result<
 /// of K+ grows with its inverse square, so that rounding costs no more than one digit.
 const AS_WELL: f64 = 0.3;
 
-/// Whether `dofs`, found for other values of K, hold the null space nearly as well as `chosen`, found for these. It
-/// compares the smallest singular values of the rows of `D^1/2 R` of both.
+/// Whether `dofs`, found for other values of K, hold the null space nearly as well as `chosen`, found for these.
 pub fn hold_as_well(null_space: &Matrix, root: &[f64], dofs: &[usize], chosen: &[usize]) -> Result<bool> {
+    Ok(held_against(null_space, root, dofs, chosen)? >= AS_WELL)
+}
+
+/// How well `dofs` hold the null space against `chosen`: the smallest singular values of the rows of `D^1/2 R` of both.
+pub fn held_against(null_space: &Matrix, root: &[f64], dofs: &[usize], chosen: &[usize]) -> Result<f64> {
     if dofs.len() != chosen.len() {
-        return Ok(false);
+        return Ok(0.0);
     }
     let softest = |values: Vec<f64>| values.last().copied().unwrap_or(f64::INFINITY);
     let (own, best) = (singular_values(null_space, root, dofs)?, singular_values(null_space, root, chosen)?);
-    Ok(softest(own) >= AS_WELL * softest(best))
+    Ok(if dofs.is_empty() { 1.0 } else { softest(own) / softest(best) })
 }
 
 /// Of the rows `dofs` of `D^1/2 R`, as many as R has columns; descending.

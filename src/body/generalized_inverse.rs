@@ -7,12 +7,12 @@ use std::sync::Arc;
 
 use crate::body::fixing::hold_as_well;
 use crate::body::null_space::ROUNDING as KNOWN;
-use crate::body::probe::{known_to, missing_mode, probe, Factor};
+use crate::body::probe::{known_to, probe, Factor};
 use crate::body::soft::{known_to_entries, soft_motions};
 use crate::body::spectrum::Doubt;
-use crate::error::{Error, Kind, Result};
+use crate::error::Result;
 use crate::linalg::cholesky::{inverse_columns, inverse_form};
-use crate::linalg::{Analysis, Csr, Matrix, Multiple, Packed};
+use crate::linalg::{Analysis, Cholesky, Csr, Matrix, Multiple, Packed};
 
 #[derive(Clone)]
 pub struct GeneralizedInverse {
@@ -218,31 +218,36 @@ impl Known {
     }
 
     /// Factorises F of (14) and probes; refuses a K that is indefinite, against (4), or more singular than its null
-    /// space says.
-    pub fn execute(self) -> Result<Factorised> {
-        let missing = || Error::new(Kind::Internal, "a body was not analysed");
-        let symbolic = self.symbolic.ok_or_else(missing)?;
-        let factor = symbolic.analysis.factorize(&self.k.matrix, self.k.by)?.map_err(|breakdown| {
-            let missing = || missing_mode(breakdown.dof, breakdown.relative_pivot, self.null_space.cols);
-            breakdown.refused().unwrap_or_else(missing)
-        })?;
-        let Self { k, null_space, error, fixing, doubt, soft, .. } = self;
+    /// space says. Soft motions are given other dofs to follow, or more, where K asks for them.
+    pub fn execute(mut self) -> Result<Factorised> {
+        let most = self.most_motions();
+        let (symbolic, factor, mut further) = self.factorised(most)?;
+        let (mut symbolic, mut inverse) = (symbolic, self.made(factor)?);
+        if let Some(better) = self.better(&inverse)? {
+            self.hold(inverse.null_space, better)?;
+            let (other, factor, more) = self.factorised(most)?;
+            (symbolic, inverse) = (other, self.made(factor)?);
+            further += 1 + more;
+        }
+        Ok(Factorised { inverse, symbolic, further_analyses: further, factorisations: 1 + further })
+    }
+
+    fn made(&self, factor: Cholesky) -> Result<GeneralizedInverse> {
         let factor = Factor::Own(Arc::new(factor));
-        let softness = probe(&factor, &k, &fixing, null_space.cols)?;
+        let softness = probe(&factor, &self.k, &self.fixing, self.null_space.cols)?;
         let inverse = GeneralizedInverse {
-            null_space,
+            null_space: self.null_space.clone(),
             stiffness: Vec::new(),
             rounding: KNOWN,
-            error,
-            fixing,
+            error: self.error,
+            fixing: self.fixing.clone(),
             gap: None,
             softness,
-            doubts: doubt.into_iter().collect(),
+            doubts: self.doubt.into_iter().collect(),
             misfit: None,
             factor,
         };
-        let inverse = inverse.judged_by(&k, soft)?;
-        Ok(Factorised { inverse, symbolic, further_analyses: 0, factorisations: 1 })
+        inverse.judged_by(&self.k, self.soft)
     }
 }
 
@@ -250,6 +255,7 @@ impl Known {
 mod tests {
     use super::*;
     use crate::body::null_space::{Modes, NullSpaceInput};
+    use crate::error::Kind;
     use crate::linalg::Symmetric;
 
     /// Plane grid of springs, n x n dofs, free: null space = constants, on each of `parts` copies.

@@ -8,6 +8,7 @@ mod digits;
 mod fixing;
 mod generalized_inverse;
 mod given;
+mod held;
 mod hints;
 mod host;
 mod host_probe;

@@ -98,10 +98,12 @@ impl Plan {
     }
 
     /// K+ with the factor, already probed, of the same matrix with the same dofs held. The null space is that of the
-    /// plan, where it has one and the other did not have to be sought.
+    /// plan, where it has one and the other did not have to be sought, or holds further dofs.
     pub fn with_factor_of(self, other: &GeneralizedInverse) -> Result<GeneralizedInverse> {
         match self {
-            Self::Known(Known { k, null_space, error, doubt, soft, .. }) if other.gap.is_none() => {
+            Self::Known(Known { k, null_space, error, doubt, soft, .. })
+                if other.gap.is_none() && other.null_space.cols == null_space.cols =>
+            {
                 let doubts = doubt.into_iter().collect();
                 let (rounding, stiffness) = (KNOWN, Vec::new());
                 let own =

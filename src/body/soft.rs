@@ -177,6 +177,47 @@ mod tests {
         }
     }
 
+    /// `R'DR = I`, `R'K R = diag(lambda)`, and `K R` is 0 but at the dofs held.
+    fn assert_soft(k: &Multiple, inverse: &GeneralizedInverse) {
+        let (n, r) = (k.order(), &inverse.null_space);
+        for a in 0..r.cols {
+            let mut image = vec![0.0; n];
+            k.mul(r.col(a), &mut image);
+            for b in 0..r.cols {
+                let (equal, mut metric, mut energy) = (f64::from(u8::from(a == b)), 0.0, 0.0);
+                (0..n).for_each(|i| metric += k.metric(i, 1.0) * r.get(i, a) * r.get(i, b));
+                (0..n).for_each(|i| energy += image[i] * r.get(i, b));
+                assert!(
+                    (metric - equal).abs() < 1e-13 && (energy - equal * inverse.stiffness[a]).abs() < 1e-14
+                );
+            }
+            inverse.fixing.iter().for_each(|&x| image[x] = 0.0);
+            assert!(image.iter().all(|v| v.abs() < 1e-15), "{image:?}");
+        }
+    }
+
+    /// A spring of -0.3 drives one end against the 0.2 of five links to the dof held for one motion: F is indefinite with it alone.
+    #[test]
+    fn where_a_driven_body_bends_between_the_dofs_held_another_is_held() {
+        let k = chain(7, [-0.3, 0.0]);
+        let inverse = soft(&k);
+        assert_eq!((inverse.null_space.cols, inverse.fixing.len()), (2, 2));
+        assert_soft(&k, &inverse);
+        assert!(inverse.stiffness.iter().any(|v| *v < 0.0) && inverse.stiffness.iter().any(|v| *v > 0.0));
+    }
+
+    /// The same with all but 0.2: F is all but singular with that dof, and regular with another.
+    #[test]
+    fn a_dof_that_leaves_a_driven_body_all_but_loose_is_exchanged() {
+        for less in [1e-3, 1e-6, 1e-9] {
+            let k = chain(7, [-0.2 * (1.0 - less), 0.0]);
+            let inverse = soft(&k);
+            assert_eq!(inverse.null_space.cols, 1);
+            assert_soft(&k, &inverse);
+            assert!(inverse.stiffness[0] < 0.0 && inverse.softness > 1e-3, "{:e}", inverse.softness);
+        }
+    }
+
     #[test]
     fn what_is_rounding_of_the_entries_terms_is_no_stiffness() {
         assert_eq!(soft(&chain(7, [0.0; 2])).stiffness, [0.0]);

@@ -16,7 +16,7 @@ endfunction()
 
 set(silent sh "${PROJECT_ROOT}/tests/cmake/silent.sh")
 set(same_numbers sh "${PROJECT_ROOT}/tests/examples/twins.sh")
-file(GLOB examples CONFIGURE_DEPENDS "${PROJECT_ROOT}/examples_fortran/0*.f90" "${PROJECT_ROOT}/examples_fortran/0*.f")
+file(GLOB examples CONFIGURE_DEPENDS "${PROJECT_ROOT}/examples_fortran/[0-9]*.f90" "${PROJECT_ROOT}/examples_fortran/[0-9]*.f")
 foreach(path IN LISTS examples)
   get_filename_component(example "${path}" NAME_WE)
   flang_claim("example ${example} reaches the reference and prints the numbers of its twin in C"

@@ -97,6 +97,25 @@ fn driven_motions_give_the_forces_of_the_dense_answer() {
     assert!(failed.is_empty(), "{}", failed.join("\n"));
 }
 
+/// Drives at the feet, which rows hold: K held at one unknown for each motion given is indefinite all the same.
+#[test]
+fn further_unknowns_are_held_where_those_of_the_motions_leave_a_driven_body_indefinite() {
+    for share in [0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9] {
+        let mut deck = narrow(1);
+        let diagonal = deck.bodies[0].stiffness.diagonal();
+        for dof in [3, 4, 5].map(|node| 2 * node + 1) {
+            add_diagonal(&mut deck.bodies[0], dof, -share * diagonal[dof]);
+        }
+        let mut problem = given(&deck, Modes::Soft);
+        let found = solved(&mut problem).unwrap();
+        let truth = oracle::solve(&deck, &closed(&found.lambda)).unwrap();
+        let motions = problem.body_facts(0).unwrap().factors.unwrap().null_space;
+        let (forces, u) = (difference(&found.lambda, &truth.lambda), difference(&found.u, &truth.u));
+        println!("share {share}: {motions} motions, forces {forces:.1e} u {u:.1e}");
+        assert!(motions > 3 && forces <= 1e-11 && u <= 1e-11);
+    }
+}
+
 /// One block alone drives itself, the one in the middle by the last unknowns.
 #[test]
 fn an_answer_that_is_no_minimum_is_refused_with_its_motion() {

@@ -13,8 +13,10 @@ use crate::solver::Modes;
 /// (feti_body_coordinates), and without coordinates the library finds the null space from K. That `K R = 0` holds is
 /// checked in feti_setup. With FETI_SOFT it need not hold: weak springs, rounding of the entries of K and geometric stiffness
 /// may resist or drive the motions. The columns then choose the fixing unknowns; the motions, and the stiffness against
-/// them, are computed from K and taken into account exactly. FETI_UNSUPPORTED from feti_setup where K+ is the host's
-/// (feti_body_operator); FETI_INDEFINITE from feti_solve where the contact leaves a motion that is driven. After a failure the body keeps what it had.
+/// them, are computed from K and taken into account exactly. Where K drives the body between these unknowns, up to six more
+/// are fixed, each with a column of its own (feti_body_null_space_get). FETI_UNSUPPORTED from feti_setup where K+ is the
+/// host's (feti_body_operator); FETI_INDEFINITE from feti_setup where K drives more than that, from feti_solve where the
+/// contact leaves a motion that is driven. After a failure the body keeps what it had.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|

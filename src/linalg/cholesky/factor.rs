@@ -97,30 +97,45 @@ impl Analysis {
     /// The pivot at position `at`: the Schur complement of the leading block, computed afresh.
     fn breakdown(&self, matrix: &Symmetric, by: f64, at: usize) -> Result<Breakdown> {
         let dof = self.order[at];
+        let diagonal = by * matrix.diagonal(dof);
+        Ok(match self.before(matrix, by, at)? {
+            Ok((column, x)) => {
+                let explained: f64 = (0..x.len()).map(|i| x[i] * column[i]).sum();
+                let relative_pivot = if diagonal > 0.0 { (diagonal - explained) / diagonal } else { 0.0 };
+                Breakdown { dof, relative_pivot }
+            }
+            Err(earlier) => earlier,
+        })
+    }
+
+    /// The dof that moves furthest, in the metric of the diagonal, in the motion v with v'K v = its pivot that ends at `dof`.
+    pub fn fastest(&self, matrix: &Symmetric, by: f64, dof: usize) -> Result<usize> {
+        let Ok((_, mut x)) = self.before(matrix, by, self.position[dof])? else { return Ok(dof) };
+        x[dof] = 1.0;
+        let far = |i: usize| matrix.diagonal(i) * x[i] * x[i];
+        Ok((0..x.len()).fold(dof, |best, i| if far(i) > far(best) { i } else { best }))
+    }
+
+    /// `K_:a` and `K_ll^-1 K_la`, a the dof at position `at` and l those before it.
+    fn before(&self, matrix: &Symmetric, by: f64, at: usize) -> Result<Before> {
         let leading = Arc::new(Self::of_leading(matrix, &self.order[..at])?);
         let mut column = vec![0.0; matrix.order()];
         let mut unit = column.clone();
-        unit[dof] = 1.0;
+        unit[self.order[at]] = 1.0;
         matrix.mul(&unit, &mut column);
         column.iter_mut().for_each(|v| *v *= by);
         let mut x = column.clone();
         (0..x.len()).filter(|&i| leading.position[i] == NONE).for_each(|i| x[i] = 0.0);
-        let diagonal = by * matrix.diagonal(dof);
-        let relative_pivot = match leading.factorize(matrix, by)? {
-            Ok(factor) => {
-                factor.solve(&mut x)?;
-                let explained: f64 = (0..x.len()).map(|i| x[i] * column[i]).sum();
-                if diagonal > 0.0 {
-                    (diagonal - explained) / diagonal
-                } else {
-                    0.0
-                }
-            }
-            Err(earlier) => return Ok(earlier),
-        };
-        Ok(Breakdown { dof, relative_pivot })
+        match leading.factorize(matrix, by)? {
+            Ok(factor) => factor.solve(&mut x)?,
+            Err(earlier) => return Ok(Err(earlier)),
+        }
+        Ok(Ok((column, x)))
     }
 }
+
+/// A column and what the dofs before it make of it, or where these break down.
+type Before = std::result::Result<(Vec<f64>, Vec<f64>), Breakdown>;
 
 impl Cholesky {
     /// Position of a dof in the elimination, `NONE` for held dofs.

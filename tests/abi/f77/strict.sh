@@ -56,4 +56,4 @@ $fc -fdefault-integer-8 -std=f2018 -Wall -pedantic -Werror -I"$1" free.f90 -o fr
 ./free || fail "the include file and the library have different numbers"
 printf "      PROGRAM FIXED\n      IMPLICIT NONE\n      INCLUDE 'feti_contact_f77.inc'\n      END\n" > fixed.f
 $fc -std=legacy -Wall -Werror -I"$1" -c fixed.f
-$fc -std=legacy -Wall -Werror -I"$1" -c "$2"/../../../examples_fortran/0*.f
+$fc -std=legacy -Wall -Werror -I"$1" -c "$2"/../../../examples_fortran/[0-9]*.f

@@ -1,0 +1,78 @@
+//! The dofs held for soft motions. One for each motion given keeps F of (14) definite while K drives these motions weakly. Where K
+//! drives them more, F is indefinite or nearly so, and other dofs are held, or more of them: what follows one more is one more soft
+//! motion, and K is taken as exactly as before.
+
+use std::sync::Arc;
+
+use crate::body::fixing::{fixing_dofs, held_against};
+use crate::body::generalized_inverse::{GeneralizedInverse, Known, Layout, Symbolic};
+use crate::body::probe::missing_mode;
+use crate::error::{Error, Kind, Result};
+use crate::linalg::{Cholesky, Matrix};
+use crate::platform::memory::zeros;
+
+/// Most dofs that are held beyond one for each motion given: as many as a body has rigid motions.
+const FURTHER: usize = 6;
+/// Others are held where these hold the motions that follow them by less than this part of what the best dofs do: K+ grows by the
+/// inverse square.
+const LOOSE: f64 = 0.03;
+
+impl Known {
+    /// The factor of F, its analysis, and how often further dofs had to be held.
+    pub(super) fn factorised(&mut self, most: usize) -> Result<(Arc<Symbolic>, Cholesky, usize)> {
+        let missing = || Error::new(Kind::Internal, "a body was not analysed");
+        let mut further = 0;
+        loop {
+            let symbolic = self.symbolic.clone().ok_or_else(missing)?;
+            let breakdown = match symbolic.analysis.factorize(&self.k.matrix, self.k.by)? {
+                Ok(factor) => return Ok((symbolic, factor, further)),
+                Err(breakdown) => breakdown,
+            };
+            let missing = || missing_mode(breakdown.dof, breakdown.relative_pivot, self.null_space.cols);
+            let error = breakdown.refused().unwrap_or_else(missing);
+            if error.kind != Kind::Indefinite || self.null_space.cols >= most {
+                return Err(error);
+            }
+            self.hold_also(symbolic.analysis.fastest(&self.k.matrix, self.k.by, breakdown.dof)?)?;
+            further += 1;
+        }
+    }
+
+    /// Motions that this body may have in all.
+    pub(super) fn most_motions(&self) -> usize {
+        self.null_space.cols + if self.is_free_to_choose() { FURTHER } else { 0 }
+    }
+
+    fn is_free_to_choose(&self) -> bool {
+        self.soft && !self.given
+    }
+
+    /// The dofs that hold the motions of this K+ best, where those that they follow are loose.
+    pub(super) fn better(&self, made: &GeneralizedInverse) -> Result<Option<Vec<usize>>> {
+        if !self.is_free_to_choose() || made.stiffness.iter().all(|stiffness| *stiffness >= 0.0) {
+            return Ok(None);
+        }
+        let root = self.k.roots()?;
+        let best = fixing_dofs(&made.null_space, &root)?;
+        let is_loose = held_against(&made.null_space, &root, &self.fixing, &best)? < LOOSE;
+        Ok(is_loose.then_some(best))
+    }
+
+    /// Holds these dofs, for motions that they hold.
+    pub(super) fn hold(&mut self, null_space: Matrix, fixing: Vec<usize>) -> Result<()> {
+        (self.null_space, self.fixing) = (null_space, fixing);
+        let layout = Arc::new(Layout::Held(self.fixing.clone()));
+        self.symbolic = Some(Arc::new(Symbolic { layout, analysis: self.analyse()? }));
+        Ok(())
+    }
+
+    /// Holds one dof more.
+    fn hold_also(&mut self, dof: usize) -> Result<()> {
+        let mut unit = zeros(self.null_space.rows, "a soft motion")?;
+        unit[dof] = 1.0;
+        let (mut null_space, mut fixing) = (self.null_space.clone(), self.fixing.clone());
+        null_space.push_col(&unit);
+        fixing.push(dof);
+        self.hold(null_space, fixing)
+    }
+}
