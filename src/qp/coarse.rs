@@ -5,16 +5,13 @@ use std::sync::Arc;
 
 use crate::error::Result;
 use crate::linalg::semidefinite::clusters::Blocks;
-use crate::linalg::semidefinite::sparse::{FaceRows, PseudoInverse, SINGULAR};
+use crate::linalg::semidefinite::sparse::{FaceRows, PseudoInverse, SINGULAR, WEAK};
 use crate::linalg::semidefinite::GeneralInverse;
 use crate::linalg::sparse::gram::Gram;
-use crate::linalg::vector::{axpy, norm_max, power_of_two_below};
+use crate::linalg::vector::{axpy, norm, norm_max, power_of_two_below};
 use crate::linalg::{Analysis, Cholesky, Csr, Matrix};
 use crate::platform::memory::headroom;
 use crate::platform::{interrupt, tally};
-
-/// A pivot of W_F, its largest diagonal entry in [1, 4), below which a motion is held weakly.
-const WEAK: f64 = 1e-4;
 
 pub struct Coarse<'a> {
     /// `G'`, m x r.
@@ -29,6 +26,8 @@ pub struct Coarse<'a> {
     gram: Option<(Gram, Arc<Analysis>)>,
     /// Made for the first face that leaves much of the space free.
     by_blocks: Option<Blocks>,
+    /// The last such face left motions free: the next one is likely to.
+    left_free: bool,
     /// The face of all rows, and the last other one.
     faces: [Option<CoarseFace>; 2],
     /// Of `G l = e` in the last projection on the polyhedron.
@@ -70,6 +69,7 @@ impl<'a> Coarse<'a> {
             whole,
             gram,
             by_blocks: None,
+            left_free: false,
             faces: [None, None],
             last_multiplier: None,
             solves: 0,
@@ -117,7 +117,7 @@ impl<'a> Coarse<'a> {
     fn solver(&mut self, held: &[bool]) -> Result<Solver> {
         let (g_transposed, unit, whole, rounding) =
             (self.g_transposed, self.unit, &self.whole[..], self.rounding);
-        if let Some((gram, analysis)) = &self.gram {
+        if let Some((gram, analysis)) = self.gram.as_ref().filter(|_| !self.left_free) {
             let mut w = gram.sum(g_transposed, held)?;
             w.val.iter_mut().for_each(|v| *v /= unit * unit);
             if let Ok(factor) = analysis.attempt(&w, 1.0)? {
@@ -136,6 +136,7 @@ impl<'a> Coarse<'a> {
             None => Blocks::new(g_transposed, self.blocks, unit)?,
         };
         let inverse = by_blocks.inverse(held, whole, rounding)?;
+        self.left_free = inverse.deficiency() > 0;
         self.by_blocks = Some(by_blocks);
         Ok(Solver::Singular(Box::new(inverse)))
     }
@@ -144,15 +145,24 @@ impl<'a> Coarse<'a> {
     pub fn multiplier(&mut self, held: &[bool], v: &[f64]) -> Result<Vec<f64>> {
         /// Rounding of `G_F v` is large against what weakly held motions have of it; of what is left of v it is not.
         const PASSES: usize = 3;
+        /// Rest of `G_F (v - G'alpha)` times the inverse root of the smallest eigenvalue of W_F to be expected, against what is left
+        /// of v: more would be error.
+        const AMPLIFIED: f64 = 1e3;
+        const ERROR: f64 = 0.1;
+        let (g_transposed, unit) = (self.g_transposed, self.unit);
         let mut rest: Vec<f64> = v.iter().zip(held).map(|(v, held)| if *held { 0.0 } else { *v }).collect();
-        let g_transposed = self.g_transposed;
+        let mut image = g_transposed.mul_transposed(&rest);
         let mut face = self.on(held)?;
-        let mut alpha = face.solve(&g_transposed.mul_transposed(&rest))?;
-        for _ in 1..if face.is_weak() { PASSES } else { 1 } {
+        let mut alpha = face.solve(&image)?;
+        for _ in 1..PASSES {
             for i in (0..v.len()).filter(|&i| !held[i]) {
                 rest[i] = v[i] - g_transposed.row_dot(i, &alpha);
             }
-            axpy(1.0, &face.solve(&g_transposed.mul_transposed(&rest))?, &mut alpha);
+            image = g_transposed.mul_transposed(&rest);
+            if !face.is_weak() && AMPLIFIED * norm(&image) <= ERROR * unit * norm(&rest) {
+                break;
+            }
+            axpy(1.0, &face.solve(&image)?, &mut alpha);
         }
         Ok(alpha)
     }
@@ -226,6 +236,13 @@ impl OnFace<'_> {
         Ok(x)
     }
 
+    /// `x += N N'b`, N the kernel of `W_F`: the part of b along motions that the face leaves free.
+    pub fn add_free_part(&self, b: &[f64], x: &mut [f64]) {
+        if let Some(solver) = self.singular() {
+            solver.add_kernel_part(1.0, b, x);
+        }
+    }
+
     /// Dimension of the kernel of `W_F`.
     pub fn deficiency(&self) -> usize {
         self.singular().map_or(0, GeneralInverse::deficiency)
@@ -260,26 +277,33 @@ impl OnFace<'_> {
     }
 }
 
-/// Basis of the free motions, `|G_F a| <= rounding |G| |a|`, r x deficiency: what the rows that are not held do not resist.
-pub fn undetermined(g_transposed: &Csr, blocks: &[usize], held: &[bool], rounding: f64) -> Result<Matrix> {
-    /// Entries of a basis vector below this, in units of `rounding`, are rounding.
-    const DROP: f64 = 16.0;
-    let mut coarse = Coarse::new(g_transposed, blocks, rounding)?;
-    let (dimension, face) = (coarse.dimension(), coarse.on(held)?);
-    let Some(solver) = face.singular() else { return Matrix::zeros(dimension, 0) };
-    let _room = headroom(4 * size_of::<f64>() * dimension * solver.deficiency(), "open motions")?;
-    Ok(solver.kernel().reduced(DROP * rounding))
+/// The coarse space on the face of an answer.
+pub struct AnswerFace<'a> {
+    coarse: Coarse<'a>,
+    held: &'a [bool],
 }
 
-/// `argmin |r_F - G_F'alpha|` on the rows that are not held, alpha of minimum norm.
-pub fn fitted(
-    g_transposed: &Csr,
-    blocks: &[usize],
-    held: &[bool],
-    r: &[f64],
-    rounding: f64,
-) -> Result<Vec<f64>> {
-    Coarse::new(g_transposed, blocks, rounding)?.multiplier(held, r)
+impl<'a> AnswerFace<'a> {
+    /// See [`Coarse::new`].
+    pub fn new(g_transposed: &'a Csr, blocks: &'a [usize], held: &'a [bool], rounding: f64) -> Result<Self> {
+        Ok(Self { coarse: Coarse::new(g_transposed, blocks, rounding)?, held })
+    }
+
+    /// Basis of the free motions, `|G_F a| <= rounding |G| |a|`, r x deficiency: what the rows that are not held do not resist.
+    pub fn undetermined(&mut self) -> Result<Matrix> {
+        /// Entries of a basis vector below this, in units of `rounding`, are rounding.
+        const DROP: f64 = 16.0;
+        let (dimension, rounding) = (self.coarse.dimension(), self.coarse.rounding);
+        let face = self.coarse.on(self.held)?;
+        let Some(solver) = face.singular() else { return Matrix::zeros(dimension, 0) };
+        let _room = headroom(4 * size_of::<f64>() * dimension * solver.deficiency(), "open motions")?;
+        Ok(solver.kernel().reduced(DROP * rounding))
+    }
+
+    /// `argmin |r_F - G_F'alpha|` on the rows that are not held, alpha of minimum norm.
+    pub fn fitted(&mut self, r: &[f64]) -> Result<Vec<f64>> {
+        self.coarse.multiplier(self.held, r)
+    }
 }
 
 fn analysed(g_transposed: &Csr) -> Result<(Gram, Arc<Analysis>)> {

@@ -21,7 +21,7 @@ mod smalbe;
 
 pub use acceptance::{AcceptanceTest, Limits, Observer, Solution, StepKind, StepReport, Verdict};
 pub use active_set::{active_set, Direct, Face};
-pub use coarse::{fitted, undetermined};
+pub use coarse::AnswerFace;
 pub use nearest::{nearest_point, Nearest, Polyhedron};
 pub use proportioning::{minimise, not_held, weighted, KEPT};
 pub use proximal::proximal;

@@ -19,6 +19,8 @@ const NEWTON_STEPS: usize = 100;
 /// Newton steps that rows cut to less than this part of them, so many of which are followed by a look into the interior.
 const CUT: f64 = 0.9;
 const PATIENCE: usize = 4;
+/// Newton steps after it, from a multiplier that is near the right one if there is any.
+const FURTHER_STEPS: usize = 30;
 /// `|e - G l| <= ACCURACY (|e| + |G||l|)` is accepted; `STAGNATED` where no step improves it any more.
 const ACCURACY: f64 = 1e-12;
 const STAGNATED: f64 = 1e-10;
@@ -95,15 +97,15 @@ pub fn project(qp: &Qp, coarse: &mut Coarse, y: &[f64], held: &[bool]) -> Result
             (error, now) = (next.error(qp), next);
         }
     }
-    let mut cuts = 0;
-    for step in 0..NEWTON_STEPS {
+    let (mut cuts, mut step, mut end) = (0, 0, NEWTON_STEPS);
+    while step < end {
         interrupt::reached("Newton steps of a projection", step)?;
         // J2
         if error <= ACCURACY {
             return now.done(qp, coarse).map(Some);
         }
         if cuts == PATIENCE {
-            cuts += 1;
+            (cuts, end) = (cuts + 1, end.min(step + FURTHER_STEPS));
             let interior = Interior { qp, y, held, delta: 1.0, rho: 0.0 };
             let next = Trial::new(qp, y, held, interior.minimise(coarse, now.beta.clone())?.multiplier);
             if next.phi(qp) < now.phi(qp) {
@@ -113,19 +115,19 @@ pub fn project(qp: &Qp, coarse: &mut Coarse, y: &[f64], held: &[bool]) -> Result
         // J3: Newton
         let face: Vec<bool> =
             (0..y.len()).map(|i| held[i] || (qp.bounded[i] && now.point[i] <= 0.0)).collect();
-        let step = coarse.on(&face)?.solve_regularised(&now.residual)?;
-        let Some(t) = minimum_along(qp, y, held, &now, &step) else {
+        let direction = coarse.on(&face)?.solve_regularised(&now.residual)?;
+        let Some(t) = minimum_along(qp, y, held, &now, &direction) else {
             return if error <= STAGNATED { now.done(qp, coarse).map(Some) } else { Ok(None) };
         };
         cuts += usize::from(t < CUT);
         let mut beta = now.beta.clone();
-        axpy(t, &step, &mut beta);
+        axpy(t, &direction, &mut beta);
         let next = Trial::new(qp, y, held, beta);
         let next_error = next.error(qp);
         if error <= STAGNATED && next_error >= error {
             return now.done(qp, coarse).map(Some);
         }
-        (now, error) = (next, next_error);
+        (now, error, step) = (next, next_error, step + 1);
     }
     Ok(None)
 }

@@ -16,7 +16,7 @@ use crate::linalg::vector::{norm, norm_max};
 use crate::linalg::Matrix;
 use crate::model::Settings;
 use crate::progress::Steps;
-use crate::qp::{self, Counts, Face, Qp, Solution, Verdict};
+use crate::qp::{AnswerFace, Counts, Face, Qp, Solution, Verdict};
 use crate::solve::case::Case;
 use crate::solve::certifier::Certifier;
 use crate::solve::fallback::MethodOptions;
@@ -167,7 +167,7 @@ impl Driven {
         held: &[bool],
         feedback: Option<&Feedback>,
     ) -> Result<Option<(Vec<f64>, f64)>> {
-        let free = qp::undetermined(qp.g_transposed, qp.blocks, held, qp.rounding)?;
+        let free = AnswerFace::new(qp.g_transposed, qp.blocks, held, qp.rounding)?.undetermined()?;
         for j in 0..free.cols {
             let v = free.col(j);
             if self.modes.iter().any(|&mode| v[mode].abs() > PART * norm_max(v)) {

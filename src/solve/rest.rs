@@ -5,7 +5,7 @@ use crate::error::{Kind, Result};
 use crate::linalg::vector::axpy;
 use crate::linalg::Matrix;
 use crate::platform::interrupt;
-use crate::qp::{self, Verdict};
+use crate::qp::{AnswerFace, Verdict};
 use crate::setup::Island;
 use crate::solve::held::without_force;
 use crate::solve::recovery::{Ending, Recovered, Recovery};
@@ -52,13 +52,14 @@ impl<'a> Recovery<'a> {
         let dual = &self.ready.dual;
         let load: Vec<f64> = self.scaled.load.iter().map(|f| f * self.ready.island.unit).collect();
         let held = without_force(self.ready, &load, &answer.lambda, &answer.mu);
-        let free = qp::undetermined(&dual.coarse, &dual.blocks, &held, dual.rounding())?;
+        let mut face = AnswerFace::new(&dual.coarse, &dual.blocks, &held, dual.rounding())?;
+        let free = face.undetermined()?;
         if free.cols == 0 {
             return Ok(None);
         }
         let mut u = deformed.to_vec();
         let open = self.gaps_left(&[&u], x);
-        let mut alpha = qp::fitted(&dual.coarse, &dual.blocks, &held, &open, dual.rounding())?;
+        let mut alpha = face.fitted(&open)?;
         let add = |mut motion: Vec<f64>, u: &mut [f64]| -> Result<()> {
             if exact {
                 self.clean(&mut motion, u)?;

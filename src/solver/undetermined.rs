@@ -6,7 +6,7 @@ use crate::dual::dependent_rows;
 use crate::error::{Error, Kind, Result};
 use crate::linalg::Csr;
 use crate::platform::memory::zeros;
-use crate::qp;
+use crate::qp::AnswerFace;
 use crate::solve::without_force;
 use crate::solver::findings::rigid_motion;
 use crate::solver::problem::Problem;
@@ -62,8 +62,9 @@ impl Problem {
             let lambda = ready.island.contact.gather(&answer.lambda);
             let mu = ready.island.equalities.gather(&answer.mu);
             let held = without_force(ready, &ready.island.loads(&self.model)?, &lambda, &mu);
+            let dual = &ready.dual;
             let motions =
-                qp::undetermined(&ready.dual.coarse, &ready.dual.blocks, &held, ready.dual.rounding())?;
+                AnswerFace::new(&dual.coarse, &dual.blocks, &held, dual.rounding())?.undetermined()?;
             all.extend((0..motions.cols).map(|j| (k, motions.col(j).to_vec())));
         }
         Ok(all)

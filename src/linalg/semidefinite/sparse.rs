@@ -11,6 +11,8 @@ use crate::platform::memory::{headroom_with, SMALL_MATRICES};
 
 /// A pivot of a matrix with its largest diagonal entry about 1 below this means that it is singular.
 pub const SINGULAR: f64 = 1e-11;
+/// Below this, that a motion is held weakly.
+pub const WEAK: f64 = 1e-4;
 /// Parts up to this order are dense from the start.
 const SMALL: usize = 64;
 /// Bytes of the lists of the parts and of small parts, per row and per entry.
@@ -62,7 +64,8 @@ impl PseudoInverse {
             }
         }
         let own = rows_of_g.by_part(&part_of, &dense);
-        let (mut singular, mut weak) = (Vec::new(), false);
+        let mut weak = regular.as_ref().is_some_and(|factor| factor.smallest_pivot() < WEAK);
+        let mut singular = Vec::new();
         for ((rows, own), _) in parts.into_iter().zip(own).zip(&dense).filter(|(_, dense)| **dense) {
             let size = rows.iter().map(|&row| rows_of_g.whole[row]).sum::<f64>().sqrt();
             let (inverse, weakly) = resisted::inverse(&block(w, &rows)?, &own, rows_of_g.rounding * size)?;

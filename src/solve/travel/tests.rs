@@ -1,5 +1,5 @@
 use super::*;
-use crate::qp::undetermined;
+use crate::qp::AnswerFace;
 
 /// Blocks of four unknowns, (x, y) of two points, that slide along x, y and turn; unknowns of unequal weight.
 struct FreeBlocks {
@@ -35,7 +35,7 @@ impl FreeBlocks {
             g_transposed.push_row(row.into_iter().enumerate().filter(|(_, v)| *v != 0.0));
         }
         let held: Vec<bool> = lambda.iter().map(|lambda| *lambda <= 0.0).collect();
-        let amplitudes = undetermined(&g_transposed, &[], &held, 1.5e-14).unwrap();
+        let amplitudes = AnswerFace::new(&g_transposed, &[], &held, 1.5e-14).unwrap().undetermined().unwrap();
         let open = OpenMotions {
             bodies: &bodies,
             amplitudes: &amplitudes,

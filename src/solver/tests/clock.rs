@@ -151,7 +151,7 @@ fn parts_that_take_long_say_how_far_they_are_and_the_longer_they_take_the_more_s
         (pushed_aside(masonry::wall(3, 0.0)), "first feasible point", "rows admitted to a nearest point"),
         (pushed_aside(masonry::chain(501)), "first feasible point", "rows admitted to the nearest forces"),
         (
-            pushed_aside(masonry::wall(3, 0.0)),
+            pushed_aside(masonry::wall(6, 0.0)),
             "forces nearest to the load",
             "rows admitted to a nearest point",
         ),

@@ -16,6 +16,7 @@ use std::sync::Arc;
 
 use crate::error::Result;
 use crate::linalg::semidefinite::resisted::sorted;
+use crate::linalg::semidefinite::sparse::WEAK;
 use crate::linalg::sparse::gram::Gram;
 use crate::linalg::{Analysis, Csr, Matrix};
 use crate::platform::memory::{headroom, headroom_with, SMALL_MATRICES};
@@ -80,7 +81,7 @@ impl Blocks {
         let (factor, at_rest) = self.analysis.holding(&w, HOLD)?;
         let mut inverse = ClusterInverse {
             starts: self.starts.clone(),
-            weak: blocks.iter().any(|block| block.weak),
+            weak: factor.smallest_pivot() < WEAK || blocks.iter().any(|block| block.weak),
             blocks,
             factor,
             held: at_rest,
