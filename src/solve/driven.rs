@@ -7,238 +7,314 @@
 //! ```
 //!
 //! over the driven motions alone, so that one step of Newton ends it: `b + (I - P)^-1 (P b + p - b)`. The largest eigenvalue rho of P
-//! is below 1 exactly where the answer is a minimum among those with the rows F closed. Where the face is too large for dense
-//! factors the rounds go on by themselves, and rho is their rate.
+//! is below 1 exactly where K is positive definite along the rows F. Where it is not, the energy falls along a motion that keeps F
+//! closed: the next round begins where another row ends that motion, and where none does the energy has no least value. The energy of
+//! the answers falls from round to round but for the step of Newton, which looks at no row; where it has led up, the same way is gone as
+//! far as rows let it. Where the face is too large for dense factors the rounds go on by themselves, and rho is their rate.
 
 use crate::error::{Error, Kind, Proof, Result};
-use crate::linalg::dense::spectrum::symmetric_eigen;
-use crate::linalg::vector::{norm, norm_max};
-use crate::linalg::Matrix;
+use crate::linalg::vector::{axpy, dot, norm_max};
 use crate::model::Settings;
 use crate::progress::Steps;
-use crate::qp::{AnswerFace, Counts, Face, Qp, Solution, Verdict};
+use crate::qp::{AcceptanceTest, Counts, Qp, Solution, Verdict};
 use crate::solve::case::Case;
 use crate::solve::certifier::Certifier;
 use crate::solve::fallback::MethodOptions;
+use crate::solve::feedback::{Driven, Feedback};
 use crate::solve::near::{or_last, solve_near};
+use crate::solve::recovery::Recovery;
+use crate::solve::sliding::Sliding;
 
 /// Rounds at most.
 const ROUNDS: usize = 60;
 /// `tolerance` of the first round, which has to find the rows: another one follows.
 const ROUGH: f64 = 1e-5;
-/// Rounds after which an answer that passes is the last, though its amplitudes still change.
-const STRICT: usize = 3;
-/// The same without a step of Newton.
+/// Rounds on the face of the one before after which an answer that passes is the last, though its amplitudes still change.
+const STRICT: usize = 2;
+/// Rounds after which it is so without a step of Newton.
 const STRICT_ALONE: usize = 20;
-/// A part of a free motion that is more than rounding.
-const PART: f64 = 1e-6;
-/// Rounds that come no nearer to each other have no end.
-const PATIENCE: usize = 4;
+/// Rounds with steps of Newton on the face of the one before after which rounding is all that is left between them.
+const MENDED: usize = 4;
+/// An energy is no higher than another by less than this part of its terms.
+const SAME: f64 = 1e-9;
 
-/// The driven motions of an island: modes, and the roots of what drives them.
-struct Driven {
-    modes: Vec<usize>,
-    roots: Vec<f64>,
+/// Where a round begins.
+struct Step {
+    b: Vec<f64>,
+    x: Vec<f64>,
+    /// The step has looked at no row: its answer may have more energy.
+    is_trial: bool,
 }
 
-/// What the driven motions of one face do to each other.
-struct Feedback<'a> {
-    face: Face<'a>,
-    /// Eigenvalues of P, ascending, and its eigenvectors.
-    rates: Vec<f64>,
-    vectors: Matrix,
-    /// `(S+ + G_F F_FF^-1 G_F')^-1 S-^1/2`, r x d.
-    motions: Matrix,
+/// An answer of a round.
+struct Round<'a> {
+    x: Vec<f64>,
+    alpha: Vec<f64>,
+    held: Vec<bool>,
+    /// `S-^1/2 a`, and how much more that is than b of the round.
+    next: Vec<f64>,
+    change: Vec<f64>,
+    /// `1/2 u'K u - f'u` but for a constant, and the size of its terms.
+    energy: f64,
+    terms: f64,
+    is_rough: bool,
+    /// None where the face is too large for dense factors.
+    feedback: Option<Feedback<'a>>,
+}
+
+/// What the rounds so far have found.
+#[derive(Default)]
+struct Known<'a> {
+    rounds: usize,
+    /// Rounds on the face of the one before.
+    same: usize,
+    /// The last one but for trials that led up.
+    last: Option<Round<'a>>,
+}
+
+/// How a round goes on.
+enum Next {
+    Step(Step),
+    /// Rounding is all that is left between rounds: by the data of the host, or else so.
+    Mend(Step),
+    End(Verdict),
+}
+
+/// What rounds are judged by.
+struct Search<'a, 'b> {
+    case: Case<'a>,
+    means: &'b MethodOptions<'a>,
+    qp: Qp<'a>,
+    driven: &'b Driven,
+    recovery: &'b Recovery<'a>,
 }
 
 /// Solves the dual of (10)-(11) with the motions that K drives, if there are any.
-pub fn solve_driven(
-    case: Case,
-    means: &MethodOptions,
-    qp: Qp,
+pub fn solve_driven<'a>(
+    case: Case<'a>,
+    means: &MethodOptions<'a>,
+    qp: Qp<'a>,
     start: &[f64],
-    judge: &mut Certifier,
+    judge: &mut Certifier<'a>,
     steps: &mut Steps,
 ) -> Result<Solution> {
-    let driven = Driven::of(case);
+    let driven = Driven::of(case.ready);
     if driven.modes.is_empty() {
         return solve_near(means, qp, start, judge, steps);
     }
     let rough = Settings { tolerance: means.settings.tolerance.max(ROUGH), ..means.settings.clone() };
-    let (mut b, mut start, mut counts) = (vec![0.0; driven.modes.len()], start.to_vec(), Counts::default());
-    let (mut last, mut before, mut suspect, mut changes) = (None, None, None, Vec::<f64>::new());
-    let mut dense = means.direct.limit > 0;
+    let (mut step, mut counts) = (Step::first(&driven, start.to_vec()), Counts::default());
+    let (mut known, mut before) = (Known::default(), None);
     loop {
-        let is_rough = changes.is_empty() && dense;
-        let means = MethodOptions { settings: if is_rough { &rough } else { means.settings }, ..*means };
-        let e = driven.resultants(qp.e, &b);
-        judge.drive = driven.amplitudes(&b);
-        let strict = if dense { STRICT } else { STRICT_ALONE };
-        (judge.is_rough, judge.is_strict) = (is_rough, changes.len() < strict);
-        let found = solve_near(&means, Qp { e: &e, ..qp }, &start, judge, steps);
-        let solution = or_last(found, before.take())?;
+        judge.is_rough = known.rounds == 0 && means.direct.limit > 0;
+        judge.is_strict = known.is_strict();
+        judge.drive = driven.amplitudes(&step.b);
+        let settings = if judge.is_rough { &rough } else { means.settings };
+        let e = driven.resultants(qp.e, &step.b);
+        let with = MethodOptions { settings, ..*means };
+        let found = solve_near(&with, Qp { e: &e, ..qp }, &step.x, judge, steps);
+        let mut solution = or_last(found, before.take())?;
         counts = counts + solution.counts;
-        let solution = Solution { counts, ..solution };
+        solution.counts = counts;
         if let Verdict::StepLimit | Verdict::TimeLimit | Verdict::Cancelled = solution.verdict {
             return Ok(solution);
         }
-        let held = qp.at_bound(&solution.x);
-        let known = Feedback::of(&means, qp, &held, &driven).and_then(|feedback| {
-            let falling = driven.unstable(qp, &held, feedback.as_ref())?;
-            Ok((feedback, falling))
-        });
-        let (feedback, falling) = match known {
-            Ok(known) => known,
-            Err(error) => return Ok(Solution { verdict: Verdict::of_refusal(error)?, ..solution }),
+        let search = Search { case, means, qp, driven: &driven, recovery: &judge.recovery };
+        let next = match &solution.verdict {
+            Verdict::Solved => search.after(&mut known, &step, &solution, (judge.astray, judge.is_rough)),
+            _ => search.without_answer(&mut known, &step, &solution),
         };
-        dense = feedback.is_some();
-        match &solution.verdict {
-            Verdict::Solved if !judge.astray || last.as_ref() == Some(&held) => {
-                if let Some((v, rate)) = falling {
-                    return Err(indefinite(case, &v, rate));
-                }
-            }
-            Verdict::Solved => suspect = falling,
-            // what drives the motions further than rows hold them, unless the load alone does
-            _ => match falling.or(suspect).filter(|_| !changes.is_empty()) {
-                Some((v, rate)) => return Err(indefinite(case, &v, rate)),
-                None => return Ok(solution),
+        match next {
+            Ok(Next::Step(next)) => step = next,
+            Ok(Next::Mend(next)) => match judge.mended(&solution) {
+                Ok(Some(mended)) => return Ok(mended),
+                Ok(None) => step = next,
+                Err(error) => return Ok(Solution { verdict: Verdict::of_refusal(error)?, ..solution }),
             },
+            Ok(Next::End(verdict)) => return Ok(Solution { verdict, ..solution }),
+            Err(error) => return Ok(Solution { verdict: Verdict::of_refusal(error)?, ..solution }),
         }
-        let next = driven.forced(&solution.alpha);
-        let change: Vec<f64> = next.iter().zip(&b).map(|(next, b)| next - b).collect();
-        changes.push(norm(&change));
-        if !judge.astray {
-            return Ok(solution);
-        }
-        if changes.len() == ROUNDS {
-            return Ok(Solution { verdict: Verdict::Stalled, ..solution });
-        }
-        if let Some(rate) = endless(&changes).filter(|_| last.as_ref() == Some(&held)) {
-            return Err(indefinite(case, &solution.alpha, rate));
-        }
-        match feedback.filter(|feedback| feedback.rate() < 1.0) {
-            Some(feedback) => {
-                b = feedback.settled(&b, &change);
-                start = feedback.point(qp, &driven.resultants(qp.e, &b))?;
-            }
-            None => (b, start) = (next, solution.x.clone()),
-        }
-        (last, before) = (Some(held), Some(solution));
+        before = Some(solution);
     }
 }
 
-/// The rate of rounds that come no nearer to each other. On one face that proves that the energy falls: the displacements of two
-/// rounds differ by a motion v that keeps its rows closed, `v'K v = d_k+1'd_k - |d_k+1|^2`, d the changes of b.
-fn endless(changes: &[f64]) -> Option<f64> {
-    let of = |pair: &[f64]| pair[1] / pair[0];
-    let least = changes.windows(2).rev().take(PATIENCE).map(of).fold(f64::INFINITY, f64::min);
-    (changes.len() > PATIENCE && least >= 1.0).then_some(least)
+impl Step {
+    /// a = 0
+    fn first(driven: &Driven, x: Vec<f64>) -> Self {
+        Self { b: vec![0.0; driven.modes.len()], x, is_trial: false }
+    }
 }
 
-impl Driven {
-    fn of(case: Case) -> Self {
-        let driven = &case.ready.dual.driven;
-        let modes = driven.iter().map(|(mode, _)| *mode).collect();
-        Self { modes, roots: driven.iter().map(|(_, stiffness)| (-stiffness).sqrt()).collect() }
+impl Known<'_> {
+    /// An answer that passes has to be settled as well.
+    fn is_strict(&self) -> bool {
+        match &self.last {
+            Some(Round { feedback: None, .. }) => self.rounds < STRICT_ALONE,
+            _ => self.same < STRICT,
+        }
     }
+}
 
-    /// `S-^1/2 a`
-    fn forced(&self, alpha: &[f64]) -> Vec<f64> {
-        self.modes.iter().zip(&self.roots).map(|(&mode, root)| root * alpha[mode]).collect()
+impl Round<'_> {
+    /// Has more energy than another.
+    fn is_above(&self, other: &Round) -> bool {
+        !other.is_rough && self.energy > other.energy + SAME * (self.terms + other.terms)
     }
+}
 
-    /// `S-^-1/2 b`
-    fn amplitudes(&self, b: &[f64]) -> Vec<f64> {
-        b.iter().zip(&self.roots).map(|(b, root)| b / root).collect()
-    }
-
-    /// `e + S-^1/2 b`
-    fn resultants(&self, e: &[f64], b: &[f64]) -> Vec<f64> {
-        let mut all = e.to_vec();
-        self.modes.iter().zip(self.roots.iter().zip(b)).for_each(|(&mode, (root, b))| all[mode] += root * b);
-        all
-    }
-
-    /// A motion along which the energy falls while the rows of a face stay closed, with its rate.
-    fn unstable(
+impl<'a> Search<'a, '_> {
+    /// What follows a round with an answer; an error proves that there is no minimum.
+    fn after(
         &self,
-        qp: Qp,
-        held: &[bool],
-        feedback: Option<&Feedback>,
-    ) -> Result<Option<(Vec<f64>, f64)>> {
-        let free = AnswerFace::new(qp.g_transposed, qp.blocks, held, qp.rounding)?.undetermined()?;
-        for j in 0..free.cols {
-            let v = free.col(j);
-            if self.modes.iter().any(|&mode| v[mode].abs() > PART * norm_max(v)) {
-                return Ok(Some((v.to_vec(), f64::INFINITY)));
+        known: &mut Known<'a>,
+        step: &Step,
+        solution: &Solution,
+        (astray, is_rough): (bool, bool),
+    ) -> Result<Next> {
+        let round = Round { is_rough, ..self.round(step, solution)? };
+        known.rounds += 1;
+        let is_same = known.last.as_ref().is_some_and(|last| last.held == round.held);
+        known.same = if is_same { known.same + 1 } else { 0 };
+        let falling = self.falling(&round, known.last.as_ref().filter(|_| is_same))?;
+        match &falling {
+            Some((motion, rate)) if !astray => return Err(indefinite(self.case, &motion.v, *rate)),
+            _ if !astray => return Ok(Next::End(Verdict::Solved)),
+            None if known.same > MENDED && round.feedback.is_some() => {
+                return Ok(Next::End(Verdict::Stalled))
+            }
+            _ if known.rounds >= ROUNDS => return Ok(Next::End(Verdict::Stalled)),
+            _ => {}
+        }
+        if let Some(last) = known.last.as_ref().filter(|last| step.is_trial && round.is_above(last)) {
+            return Ok(Next::Step(self.back(last)?));
+        }
+        let next = match falling {
+            Some((motion, rate)) => self.along(&round, &motion, rate)?,
+            None => self.settled(&round)?,
+        };
+        let is_to_mend = next.is_trial && known.same == MENDED;
+        known.last = Some(round);
+        Ok(if is_to_mend { Next::Mend(next) } else { Next::Step(next) })
+    }
+
+    /// What follows a round without an answer: forces hold no load of it where the energy falls without end.
+    fn without_answer(&self, known: &mut Known<'a>, step: &Step, solution: &Solution) -> Result<Next> {
+        if known.rounds == 0 {
+            return Ok(Next::End(solution.verdict.clone()));
+        }
+        known.rounds += 1;
+        if let Verdict::Infeasible { .. } = solution.verdict {
+            let e = self.driven.resultants(self.qp.e, &step.b);
+            let left = Qp { e: &e, ..self.qp }.left(&solution.x);
+            let motion = Sliding::of(self.recovery, vec![0.0; solution.x.len()], left)?;
+            let bounded = self.qp.bounded;
+            let u = vec![0.0; motion.v.len()];
+            if motion.falls(self.recovery, bounded)? && motion.reach(self.recovery, &u, bounded).is_infinite()
+            {
+                return Err(indefinite(self.case, &motion.v, f64::INFINITY));
             }
         }
-        Ok(feedback
-            .filter(|feedback| feedback.rate() >= 1.0)
-            .map(|feedback| (feedback.motion(), feedback.rate())))
+        match &known.last {
+            _ if known.rounds >= ROUNDS || !step.is_trial => Ok(Next::End(Verdict::Stalled)),
+            Some(last) if !last.is_rough => Ok(Next::Step(self.back(last)?)),
+            _ => Ok(Next::Step(Step::first(self.driven, solution.x.clone()))),
+        }
+    }
+
+    fn round(&self, step: &Step, solution: &Solution) -> Result<Round<'a>> {
+        let Solution { x, alpha, .. } = solution;
+        let held = self.qp.at_bound(x);
+        let next = self.driven.forced(alpha);
+        let change = next.iter().zip(&step.b).map(|(next, b)| next - b).collect();
+        let parts = [0.5 * dot(self.qp.b, x), -0.5 * dot(self.qp.e, alpha), 0.5 * dot(&next, &step.b)];
+        let driven = -0.5 * dot(&next, &next);
+        let energy = parts.iter().sum::<f64>() + driven;
+        let terms = parts.iter().map(|part| part.abs()).sum::<f64>() - driven;
+        let feedback = Feedback::of(self.means.direct, self.qp, &held, self.driven)?;
+        Ok(Round {
+            x: x.clone(),
+            alpha: alpha.clone(),
+            held,
+            next,
+            change,
+            energy,
+            terms,
+            is_rough: false,
+            feedback,
+        })
+    }
+
+    /// A motion along which the energy falls while the rows of the face stay closed, with its rate; `last` had the same face.
+    fn falling(&self, round: &Round, last: Option<&Round>) -> Result<Option<(Sliding, f64)>> {
+        let found = match self.driven.free(self.qp, &round.held)? {
+            Some(alpha) => Some((vec![0.0; round.x.len()], alpha, f64::INFINITY)),
+            None => match (&round.feedback, last) {
+                (Some(feedback), _) => (feedback.rate() >= 1.0).then(|| feedback.motion(round.x.len())),
+                (None, Some(last)) => {
+                    let minus = |x: &[f64], y: &[f64]| x.iter().zip(y).map(|(x, y)| x - y).collect();
+                    let rate = (dot(&round.change, &round.change) / dot(&last.change, &last.change)).sqrt();
+                    (rate >= 1.0).then(|| (minus(&round.x, &last.x), minus(&round.alpha, &last.alpha), rate))
+                }
+                (None, None) => None,
+            },
+        };
+        let Some((x, alpha, rate)) = found else { return Ok(None) };
+        let mut motion = Sliding::of(self.recovery, x, alpha)?;
+        if dot(&round.change, &self.driven.forced(&motion.alpha)) < 0.0 {
+            motion.turn();
+        }
+        Ok(motion.falls(self.recovery, &round.held)?.then_some((motion, rate)))
+    }
+
+    /// On from where another row ends a motion along which the energy falls.
+    fn along(&self, round: &Round, motion: &Sliding, rate: f64) -> Result<Step> {
+        let reach = motion.reach(self.recovery, &self.displacements(round)?, &round.held);
+        if reach.is_infinite() {
+            return Err(indefinite(self.case, &motion.v, rate));
+        }
+        Ok(self.moved(round, motion, reach))
+    }
+
+    /// On from where the face has its answer.
+    fn settled(&self, round: &Round) -> Result<Step> {
+        let Some(feedback) = round.feedback.as_ref().filter(|feedback| feedback.rate() < 1.0) else {
+            return Ok(Step { b: round.next.clone(), x: round.x.clone(), is_trial: false });
+        };
+        let b = feedback.settled(&round.next, &round.change);
+        let (x, _) = feedback.point(self.qp, &self.driven.resultants(self.qp.e, &b))?;
+        let x = (0..x.len()).map(|i| if self.qp.bounded[i] { x[i].max(0.0) } else { x[i] }).collect();
+        Ok(Step { b, x, is_trial: true })
+    }
+
+    /// The step of [`settled`](Self::settled) as far as rows let it.
+    fn back(&self, round: &Round) -> Result<Step> {
+        let plain = Step { b: round.next.clone(), x: round.x.clone(), is_trial: false };
+        let Some(feedback) = &round.feedback else { return Ok(plain) };
+        let b = feedback.settled(&round.next, &round.change);
+        let (mut x, mut alpha) = feedback.point(self.qp, &self.driven.resultants(self.qp.e, &b))?;
+        axpy(-1.0, &round.x, &mut x);
+        axpy(-1.0, &round.alpha, &mut alpha);
+        let motion = Sliding::of(self.recovery, x, alpha)?;
+        let reach = motion.reach(self.recovery, &self.displacements(round)?, &round.held);
+        Ok(self.moved(round, &motion, reach.min(1.0)))
+    }
+
+    fn moved(&self, round: &Round, motion: &Sliding, by: f64) -> Step {
+        let mut b = round.next.clone();
+        axpy(by, &self.driven.forced(&motion.alpha), &mut b);
+        Step { b, x: round.x.clone(), is_trial: false }
+    }
+
+    fn displacements(&self, round: &Round) -> Result<Vec<f64>> {
+        Ok(self.recovery.recover(&self.recovery.deformed(&round.x)?, &round.x, &round.alpha).u)
     }
 }
 
-impl<'a> Feedback<'a> {
-    /// None where the face is too large for dense factors.
-    fn of(means: &MethodOptions<'a>, qp: Qp<'a>, held: &[bool], driven: &Driven) -> Result<Option<Self>> {
-        let rows: Vec<usize> = (0..held.len()).filter(|&i| !held[i]).collect();
-        if rows.len() + qp.e.len() > means.direct.limit {
-            return Ok(None);
-        }
-        let n = rows.len();
-        let Some(face) = Face::new(qp, means.direct.entries, rows)? else { return Ok(None) };
-        let d = driven.modes.len();
-        let mut motions = Matrix::zeros(qp.e.len(), d)?;
-        for (j, (&mode, root)) in driven.modes.iter().zip(&driven.roots).enumerate() {
-            let mut e = vec![0.0; qp.e.len()];
-            e[mode] = *root;
-            motions.col_mut(j).copy_from_slice(&face.solve(vec![0.0; n], &e)?.1);
-        }
-        let p = |i: usize, j: usize| driven.roots[i] * motions.get(driven.modes[i], j);
-        let (rates, vectors) = symmetric_eigen(&Matrix::from_fn(d, d, |i, j| 0.5 * (p(i, j) + p(j, i)))?)?;
-        Ok(Some(Self { face, rates, vectors, motions }))
-    }
-
-    /// rho
-    fn rate(&self) -> f64 {
-        self.rates.last().copied().unwrap_or(0.0)
-    }
-
-    /// The motion of rho.
-    fn motion(&self) -> Vec<f64> {
-        let mut v = vec![0.0; self.motions.rows];
-        self.motions.mul_add(1.0, self.vectors.col(self.vectors.cols - 1), &mut v);
-        v
-    }
-
-    /// `b + (I - P)^-1 (P b + p - b)`
-    fn settled(&self, b: &[f64], change: &[f64]) -> Vec<f64> {
-        let parts = self.vectors.mul_transposed(change);
-        let parts: Vec<f64> = parts.iter().zip(&self.rates).map(|(part, rate)| part / (1.0 - rate)).collect();
-        let mut settled = b.to_vec();
-        self.vectors.mul_add(1.0, &parts, &mut settled);
-        settled
-    }
-
-    /// x of the face for these resultants.
-    fn point(&self, qp: Qp, e: &[f64]) -> Result<Vec<f64>> {
-        let force = self.face.rows().iter().map(|&i| qp.b[i]).collect();
-        let mut x = vec![0.0; qp.b.len()];
-        self.face.rows().iter().zip(self.face.solve(force, e)?.0).for_each(|(&i, v)| {
-            x[i] = if qp.bounded[i] { v.max(0.0) } else { v };
-        });
-        Ok(x)
-    }
-}
-
-/// The error that names the motion R alpha, and the body that it moves most.
-fn indefinite(case: Case, alpha: &[f64], rate: f64) -> Error {
+/// The error that names a motion along which the energy falls while closed rows stay closed, and the body that it moves most.
+fn indefinite(case: Case, own: &[f64], rate: f64) -> Error {
     let (ready, model) = (case.ready, case.model);
-    let own = ready.dual.rigid_motion(alpha, ready.island.unknowns());
     let mut v = vec![0.0; model.sizes().dofs];
-    ready.island.scatter(model, &own, &mut v);
+    ready.island.scatter(model, own, &mut v);
     let largest = norm_max(&v);
     v.iter_mut().for_each(|v| *v /= largest);
     let fastest = (0..v.len()).fold(0, |best, i| if v[i].abs() > v[best].abs() { i } else { best });

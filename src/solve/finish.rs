@@ -9,6 +9,7 @@ use crate::linalg::vector::{axpy, weighted_norm};
 use crate::model::{FinishBy, Method, Settings};
 use crate::platform::interrupt;
 use crate::qp::{Face, Verdict};
+use crate::solve::feedback::{Driven, Feedback};
 use crate::solve::gaps::Gaps;
 use crate::solve::recovery::{Ending, Faces, Recovery};
 
@@ -45,7 +46,8 @@ fn is_delicate(recovery: &Recovery, ending: &Ending) -> bool {
 /// the time, or short of memory, it leaves what there was: that is solved.
 pub fn finish(recovery: &Recovery, ending: &mut Ending) -> Result<bool> {
     let delicate = is_delicate(recovery, ending);
-    let mut finish = Finish { recovery, ending, delicate, replaced: false };
+    let driven = Driven::of(recovery.ready);
+    let mut finish = Finish { recovery, ending, delicate, replaced: false, driven };
     match finish.run() {
         Ok(()) => {}
         Err(error) if error.kind == Kind::Memory => {}
@@ -64,6 +66,7 @@ struct Finish<'a, 'b> {
     /// Rounding of K on rigid motions is no strain; elsewhere K is taken as it stands.
     delicate: bool,
     replaced: bool,
+    driven: Driven,
 }
 
 impl Finish<'_, '_> {
@@ -78,12 +81,13 @@ impl Finish<'_, '_> {
             if rows.len() + point.alpha.len() > direct.limit {
                 break;
             }
-            let Some(mut face) = Face::new(*qp, direct.entries, rows)? else { break };
+            let Some(face) = Face::new(*qp, direct.entries, rows)? else { break };
+            let mut face = Feedback::on(face, point.alpha.len(), &self.driven)?;
             self.ending.solution.counts.direct += 1;
             point.hold(&active);
             self.correct(&mut point, &face)?;
-            if face.is_truncated() {
-                face = face.in_full()?;
+            if face.face.is_truncated() {
+                face = Feedback::on(face.face.in_full()?, point.alpha.len(), &self.driven)?;
                 self.correct(&mut point, &face)?;
             }
             if !self.delicate && self.ending.judgement.certificate.worst() <= ROUNDING {
@@ -96,12 +100,12 @@ impl Finish<'_, '_> {
 
     /// Corrections on one face as long as each is less than half the one before; every answer on the way that is no worse
     /// than the one there is takes its place.
-    fn correct(&mut self, point: &mut SplitPoint, face: &Face) -> Result<()> {
+    fn correct(&mut self, point: &mut SplitPoint, face: &Feedback) -> Result<()> {
         let mut last = f64::INFINITY;
         for _ in 0..CORRECTIONS {
             interrupt::check()?;
-            let size = point.correct(self.recovery, face)?;
-            self.keep(point, face)?;
+            let size = point.correct(self.recovery, &self.driven, face)?;
+            self.keep(point, &face.face)?;
             if size >= 0.5 * last {
                 break;
             }
@@ -213,7 +217,8 @@ impl SplitPoint {
 
     /// Solves (10)-(11) on the face for the loads and gaps that are left, `f - K u - B'x` and `c + C x - B u`: errors of
     /// F and of K+ fall with every correction. Its length, `|.|_D`.
-    fn correct(&mut self, recovery: &Recovery, face: &Face) -> Result<f64> {
+    fn correct(&mut self, recovery: &Recovery, driven: &Driven, feedback: &Feedback) -> Result<f64> {
+        let face = &feedback.face;
         let (dual, rows) = (&recovery.ready.dual, &recovery.ready.rows);
         let mut load = recovery.load_left(&self.v, &self.x)?;
         let left = self.gaps_left(recovery);
@@ -221,7 +226,7 @@ impl SplitPoint {
         face.rows().iter().for_each(|&i| gaps[i] = left[i]);
         let d = dual.rhs(&recovery.ready.moved(recovery.threads, &load)?, &gaps);
         let force = face.rows().iter().map(|&i| d[i]).collect();
-        let (step, turn) = face.solve(force, &dual.resultants(&load))?;
+        let (step, turn) = feedback.solve(driven, force, &dual.resultants(&load))?;
         let mut forces = vec![0.0; self.x.len()];
         face.rows().iter().zip(step).for_each(|(&i, step)| forces[i] = step);
         rows.take_forces(&forces, &mut load);
@@ -280,7 +285,10 @@ mod tests {
                 point.hold(&[0, 1].map(|i| !rows.contains(&i)));
                 let Faces { qp, direct, .. } = &recovery.faces;
                 let face = Face::new(*qp, direct.entries, rows.clone()).unwrap().unwrap();
-                let mut finish = Finish { recovery, ending: &mut ending, delicate: false, replaced: false };
+                let driven = Driven::of(recovery.ready);
+                let face = Feedback::on(face, 0, &driven).unwrap();
+                let mut finish =
+                    Finish { recovery, ending: &mut ending, delicate: false, replaced: false, driven };
                 finish.correct(&mut point, &face).unwrap();
                 assert_eq!(finish.replaced, right, "{rows:?}");
                 assert_eq!(ending.recovered.lambda == [2.0, 0.0], right, "{rows:?}");

@@ -8,6 +8,7 @@ mod diagnosis;
 mod driven;
 mod every_island;
 mod fallback;
+mod feedback;
 mod finish;
 mod gaps;
 mod held;
@@ -22,6 +23,7 @@ mod response;
 mod rest;
 mod rigid;
 mod scaled;
+mod sliding;
 mod start;
 mod travel;
 

@@ -1,5 +1,5 @@
 //! Random hard problems whose outcome is known by construction, marginal ones where rounding may decide, problems solved
-//! by hand, and decks of modest size: what a whole solve must find.
+//! by hand, bodies that all but float, and decks of modest size: what a whole solve must find.
 
 mod bits;
 #[path = "../support/hand_over.rs"]
@@ -8,6 +8,7 @@ mod hard;
 mod history;
 mod marginal;
 mod modest;
+mod rounded;
 mod second;
 mod small;
 mod varied;

@@ -87,7 +87,6 @@ fn driven_motions_give_the_forces_of_the_dense_answer() {
                 "rho {rho}, {blocks} blocks: forces {forces:.1e} u {u:.1e} products {} of {}, drive {:.1e}",
                 found.products, plain.products, rho * most
             );
-            println!("{line}");
             let few = rho > 0.03 || found.products <= 2 * plain.products;
             if !(forces <= 1e-8 && u <= 1e-8 && few) {
                 failed.push(line);
@@ -111,7 +110,6 @@ fn further_unknowns_are_held_where_those_of_the_motions_leave_a_driven_body_inde
         let truth = oracle::solve(&deck, &closed(&found.lambda)).unwrap();
         let motions = problem.body_facts(0).unwrap().factors.unwrap().null_space;
         let (forces, u) = (difference(&found.lambda, &truth.lambda), difference(&found.u, &truth.u));
-        println!("share {share}: {motions} motions, forces {forces:.1e} u {u:.1e}");
         assert!(motions > 3 && forces <= 1e-11 && u <= 1e-11);
     }
 }
@@ -127,7 +125,6 @@ fn an_answer_that_is_no_minimum_is_refused_with_its_motion() {
             let mut problem = given(&with_drive(deck.clone(), rho * most), Modes::Soft);
             let error = solved(&mut problem).err().expect("no minimum");
             assert_eq!(error.kind, Kind::Indefinite, "{error}");
-            println!("rho {rho}: {error}");
             let body = error.place.body.unwrap();
             let v = problem.escaping_motion(body).unwrap();
             // a tilt of the block about its foot moves its top aside
@@ -166,7 +163,6 @@ fn driven_motions_need_no_dense_factors() {
         let found = without(rho).unwrap();
         let truth = oracle::solve(&with_drive(deck.clone(), rho * most), &closed(&found.lambda)).unwrap();
         let error = difference(&found.lambda, &truth.lambda);
-        println!("rho {rho} without dense factors: {error:.1e} products {}", found.products);
         // certified to 1e-8 of the forces on a body; an error of a grows by 1 / (1 - rho)
         assert!(error <= 1e-8 / (1.0 - rho), "rho {rho}: {error:.1e}");
     }

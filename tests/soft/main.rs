@@ -4,12 +4,16 @@
 //! | module | claims |
 //! |---|---|
 //! | [`driven`] | negative stiffness of rho from .007 to .9, and of no minimum |
+//! | [`random`] | driven problems against all their stationary points |
+//! | [`units`] | units of forces and lengths, problem files |
 //! | [`weak`] | springs and rounding of 1e-12 to 1e-4 of K: forces, products, units, threads |
 
 mod driven;
 #[path = "../support/hand_over.rs"]
 mod hand_over;
 mod oracle;
+mod random;
+mod units;
 mod weak;
 
 use decks::{Block, Body, Deck};

@@ -1,0 +1,78 @@
+//! Motions of an answer that keep its closed rows closed: whether the energy falls along them, and how far open rows let them go.
+
+use crate::error::Result;
+use crate::linalg::twofold::Twofold;
+use crate::linalg::vector::{axpy, norm_max};
+use crate::linalg::Csr;
+use crate::platform::memory::{filled, zeros};
+use crate::solve::recovery::Recovery;
+
+const WHAT: &str = "a motion along closed rows";
+/// A row that moves by less than this part of what the fastest unknown could make of it does not move.
+const STILL: f64 = 1e-9;
+/// The same of a closed row, which may be known by a method's tolerance alone: what it makes of the energy is counted.
+const CLOSED: f64 = 1e-5;
+
+/// `v = R alpha - K+ B'x`, x on the rows F alone.
+pub struct Sliding {
+    /// Over the unknowns of the island, length.
+    pub v: Vec<f64>,
+    x: Vec<f64>,
+    pub alpha: Vec<f64>,
+}
+
+impl Sliding {
+    pub fn of(recovery: &Recovery, x: Vec<f64>, alpha: Vec<f64>) -> Result<Self> {
+        let mut forces = zeros(recovery.scaled.load.len(), WHAT)?;
+        recovery.ready.rows.take_forces(&x, &mut forces);
+        let mut v = recovery.inverse(&forces)?;
+        axpy(1.0, &recovery.ready.dual.rigid_motion(&alpha, v.len()), &mut v);
+        Ok(Self { v, x, alpha })
+    }
+
+    /// The other way.
+    pub fn turn(&mut self) {
+        for part in [&mut self.v, &mut self.x, &mut self.alpha] {
+            part.iter_mut().for_each(|v| *v = -*v);
+        }
+    }
+
+    /// `v'K v + x'C x < 0` by the matrices of the host, and by more than what the rows F have moved makes of it.
+    pub fn falls(&self, recovery: &Recovery, held: &[bool]) -> Result<bool> {
+        let (rows, unit) = (&recovery.ready.rows, recovery.ready.island.unit);
+        let mut image = filled(self.v.len(), Twofold::default(), WHAT)?;
+        for body in &recovery.data.bodies {
+            body.stiffness.add_twofold(1.0 / unit, &self.v[body.range()], &mut image[body.range()])?;
+        }
+        let mut energy = Twofold::default();
+        self.v.iter().zip(image).for_each(|(v, image)| energy.add_product(*v, image.value()));
+        let mut moved = 0.0;
+        for i in (0..rows.groups()).filter(|&i| !held[i]) {
+            let (given, compliance) = (rows.matrix.row_dot(i, &self.v), rows.compliance[i]);
+            let left = (given - compliance * self.x[i]).abs();
+            if left > CLOSED * self.size(&rows.matrix, i) {
+                return Ok(false);
+            }
+            energy.add_product(self.x[i], compliance * self.x[i]);
+            moved += left * self.x[i].abs();
+        }
+        Ok(energy.value() < -2.0 * moved)
+    }
+
+    /// The largest t with `u + t v` within the rows that are held; infinite where none of them ends the motion.
+    pub fn reach(&self, recovery: &Recovery, u: &[f64], held: &[bool]) -> f64 {
+        let (rows, gaps) = (&recovery.ready.rows.scaled, &recovery.scaled.gaps.value);
+        let mut reach = f64::INFINITY;
+        for i in (0..rows.rows()).filter(|&i| held[i]) {
+            let closing = rows.row_dot(i, &self.v);
+            if closing > STILL * self.size(rows, i) {
+                reach = reach.min((gaps[i] - rows.row_dot(i, u)).max(0.0) / closing);
+            }
+        }
+        reach
+    }
+    /// The most that the row could move.
+    fn size(&self, rows: &Csr, i: usize) -> f64 {
+        norm_max(&self.v) * rows.row(i).map(|(_, b)| b.abs()).sum::<f64>()
+    }
+}
