@@ -55,3 +55,22 @@ fn walls_towers_and_heaps_carry_their_weight_in_any_unit_with_any_threads_and_sl
     }
     claims.end();
 }
+
+/// Many bodies that slide or fly, rows that are there twice, faces that leave hundreds of motions free: the forces come in about as
+/// many products as those of a wall, on the way of the first method.
+#[test]
+fn heaps_of_any_seed_take_no_more_products_than_a_few_walls() {
+    let mut claims = Claims::default();
+    let products = |deck: &Deck, claims: &mut Claims| {
+        on_threads(deck, 1, claims).map_or(0, |answer| answer.report.counts.products)
+    };
+    let wall = products(&masonry::wall(14, 1e-4), &mut claims);
+    for seed in [1, 3, 4, 11, 12] {
+        let deck = masonry::heap(250, seed);
+        let of_heap = products(&deck, &mut claims);
+        claims.claim(of_heap <= 6 * wall, || format!("seed {seed}: {of_heap} products, a wall takes {wall}"));
+    }
+    let tower = products(&masonry::tower(600), &mut claims);
+    claims.claim(tower <= 2 * wall, || format!("tower: {tower} products, a wall takes {wall}"));
+    claims.end();
+}

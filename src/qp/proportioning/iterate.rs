@@ -16,6 +16,8 @@ pub struct Iterate<'a> {
     pub g: Vec<f64>,
     /// Least-squares multiplier of `G x = e` on the face: `argmin |g_F - G_F'alpha|`.
     pub alpha: Vec<f64>,
+    /// A multiplier of the last gradient projection: alpha has its part along motions that the face leaves free.
+    pub reference: Option<Vec<f64>>,
     /// `r = g - G'alpha`
     pub r: Vec<f64>,
     /// (21), and r in its parts (22), (23).
@@ -41,6 +43,7 @@ impl<'a> Iterate<'a> {
         let mut iterate = Self {
             g: vec![0.0; m],
             alpha: vec![0.0; qp.e.len()],
+            reference: None,
             r: vec![0.0; m],
             split: Split::of(vec![false; m]),
             kept: Conjugate::default(),
@@ -114,9 +117,15 @@ impl<'a> Iterate<'a> {
     pub fn update_on_face(&mut self) -> Result<()> {
         self.r.copy_from_slice(&self.g);
         if !self.alpha.is_empty() {
-            self.alpha = self.coarse.multiplier(&self.split.active, &self.g)?;
+            let fitted = self.coarse.multiplier(&self.split.active, &self.g)?;
+            self.alpha.clone_from(&fitted);
+            if let Some(reference) = &self.reference {
+                self.coarse.on(&self.split.active)?.add_free_part(reference, &mut self.alpha);
+            }
             for i in 0..self.x.len() {
-                self.r[i] -= self.qp.g_transposed.row_dot(i, &self.alpha);
+                // free rows see nothing of free motions, and shall see nothing of their rounding errors
+                let alpha = if self.split.active[i] { &self.alpha } else { &fitted };
+                self.r[i] -= self.qp.g_transposed.row_dot(i, alpha);
             }
         }
         self.split.update_on_face(&self.r);

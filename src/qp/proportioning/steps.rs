@@ -273,9 +273,10 @@ impl Iterate<'_> {
         let none = vec![false; y.len()];
         let Some(projected) = project(&self.qp, &mut self.coarse, &y, &none)? else { return Ok(Step::Stuck) };
         let s = difference(&projected.point, &self.x);
+        let mut alpha = self.alpha.clone();
+        axpy(1.0 / step, &projected.multiplier, &mut alpha);
+        self.reference = Some(alpha.clone());
         if norm(&s) <= small * step {
-            let mut alpha = self.alpha.clone();
-            axpy(1.0 / step, &projected.multiplier, &mut alpha);
             let g = std::mem::take(&mut self.g);
             self.move_to(projected.point, g)?; // rows that are zero but for rounding become active
             return Ok(Step::Vertex { alpha });
@@ -298,7 +299,8 @@ impl Iterate<'_> {
             return Ok(Step::Unbounded { p });
         }
         let minimum = if flat { f64::INFINITY } else { -slope / curvature };
-        let t = minimum.min(bound.max(1.0));
+        // all of it where theta falls that far: rows come to their bound
+        let t = if (0.5..1.0).contains(&minimum) { 1.0 } else { minimum.min(bound.max(1.0)) };
         let (mut x, mut g) = (std::mem::take(&mut self.x), std::mem::take(&mut self.g));
         axpy(t, &s, &mut x);
         axpy(t, &image, &mut g);
