@@ -16,7 +16,7 @@ mod steps;
 mod stop;
 
 use crate::error::Result;
-use crate::linalg::vector::norm;
+use crate::linalg::vector::{norm, norm_max};
 use crate::platform::interrupt;
 use crate::qp::coarse::Coarse;
 use crate::qp::projection::project;
@@ -31,6 +31,8 @@ pub use stop::Stop;
 
 /// What no x balances of e is rounding of e where it is less than this part of it.
 const ROUNDING: f64 = 1e-12;
+/// An entry of x below this part of the largest holds no motion.
+const NO_FORCE: f64 = 1e-15;
 /// Forces of a start that move so many times as far as loads and gaps are not worth while.
 const FAR_OFF: f64 = 1e3;
 
@@ -110,7 +112,9 @@ fn proportioning(
     let verdict = run(&mut it, stop, limits, judge, observer).or_else(Verdict::of_refusal)?;
     it.counts.coarse_solves = it.coarse.solves;
     it.counts.coarse_factorisations = it.coarse.factorisations;
-    let open = it.coarse.on(&it.split.active).map(|face| face.deficiency());
+    let none = NO_FORCE * norm_max(&it.x);
+    let held: Vec<bool> = it.x.iter().zip(it.qp.bounded).map(|(x, bounded)| *bounded && *x <= none).collect();
+    let open = it.coarse.on(&held).map(|face| face.deficiency());
     let (undetermined, verdict) = verdict.with(open, 0)?;
     Ok(Solution { undetermined, scale, x: it.x, alpha: it.alpha, verdict, counts: it.counts })
 }
