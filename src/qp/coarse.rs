@@ -145,11 +145,10 @@ impl<'a> Coarse<'a> {
     pub fn multiplier(&mut self, held: &[bool], v: &[f64]) -> Result<Vec<f64>> {
         /// Rounding of `G_F v` is large against what weakly held motions have of it; of what is left of v it is not.
         const PASSES: usize = 3;
-        /// Rest of `G_F (v - G'alpha)` times the inverse root of the smallest eigenvalue of W_F to be expected, against what is left
-        /// of v: more would be error.
-        const AMPLIFIED: f64 = 1e3;
+        /// Rest of `G_F (v - G'alpha)` times the inverse root of the smallest eigenvalue of W_F to be expected, r in a chain of r
+        /// motions, against what is left of v: more would be error.
         const ERROR: f64 = 0.1;
-        let (g_transposed, unit) = (self.g_transposed, self.unit);
+        let (g_transposed, unit, amplified) = (self.g_transposed, self.unit, self.dimension() as f64);
         let mut rest: Vec<f64> = v.iter().zip(held).map(|(v, held)| if *held { 0.0 } else { *v }).collect();
         let mut image = g_transposed.mul_transposed(&rest);
         let mut face = self.on(held)?;
@@ -159,7 +158,7 @@ impl<'a> Coarse<'a> {
                 rest[i] = v[i] - g_transposed.row_dot(i, &alpha);
             }
             image = g_transposed.mul_transposed(&rest);
-            if !face.is_weak() && AMPLIFIED * norm(&image) <= ERROR * unit * norm(&rest) {
+            if !face.is_weak() && amplified * norm(&image) <= ERROR * unit * norm(&rest) {
                 break;
             }
             axpy(1.0, &face.solve(&image)?, &mut alpha);

@@ -1,11 +1,14 @@
 //! The current point, its gradient and its parts on the face: Section 4 on the feasible set of (12).
 
 use crate::error::Result;
-use crate::linalg::vector::{axpy, norm_max};
+use crate::linalg::vector::{axpy, norm, norm_max};
 use crate::qp::coarse::Coarse;
 use crate::qp::gradient::{feasible_step, Split};
 use crate::qp::proportioning::conjugate::Conjugate;
 use crate::qp::{Counts, Qp};
+
+/// Free motions that go so many times as far as all others follow from a load that is all but not held.
+const FAR_AWAY: f64 = 1e6;
 
 pub struct Iterate<'a> {
     pub qp: Qp<'a>,
@@ -18,6 +21,8 @@ pub struct Iterate<'a> {
     pub alpha: Vec<f64>,
     /// A multiplier of the last gradient projection: alpha has its part along motions that the face leaves free.
     pub reference: Option<Vec<f64>>,
+    /// Gradient projections so far.
+    pub projections: usize,
     /// `r = g - G'alpha`
     pub r: Vec<f64>,
     /// (21), and r in its parts (22), (23).
@@ -44,6 +49,7 @@ impl<'a> Iterate<'a> {
             g: vec![0.0; m],
             alpha: vec![0.0; qp.e.len()],
             reference: None,
+            projections: 0,
             r: vec![0.0; m],
             split: Split::of(vec![false; m]),
             kept: Conjugate::default(),
@@ -120,7 +126,11 @@ impl<'a> Iterate<'a> {
             let fitted = self.coarse.multiplier(&self.split.active, &self.g)?;
             self.alpha.clone_from(&fitted);
             if let Some(reference) = &self.reference {
-                self.coarse.on(&self.split.active)?.add_free_part(reference, &mut self.alpha);
+                let mut free = vec![0.0; fitted.len()];
+                self.coarse.on(&self.split.active)?.add_free_part(reference, &mut free);
+                if norm(&free) <= FAR_AWAY * norm(&fitted) {
+                    axpy(1.0, &free, &mut self.alpha);
+                }
             }
             for i in 0..self.x.len() {
                 // free rows see nothing of free motions, and shall see nothing of their rounding errors

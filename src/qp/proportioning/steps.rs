@@ -21,6 +21,8 @@ const CANCELLED: f64 = 0.1;
 const CUTS: usize = 3;
 /// Steps shorter than this against x are not kept.
 const SHORT: f64 = 1e-6;
+/// After so many gradient projections free motions are those of the last one: it alone would go on without.
+const PROJECTIONS: usize = 3;
 /// Of L above the largest curvature met.
 const MARGIN: f64 = 1.1;
 /// Step of gradient projection in units of 1 / L.
@@ -275,7 +277,10 @@ impl Iterate<'_> {
         let s = difference(&projected.point, &self.x);
         let mut alpha = self.alpha.clone();
         axpy(1.0 / step, &projected.multiplier, &mut alpha);
-        self.reference = Some(alpha.clone());
+        self.projections += 1;
+        if self.projections > PROJECTIONS {
+            self.reference = Some(alpha.clone());
+        }
         if norm(&s) <= small * step {
             let g = std::mem::take(&mut self.g);
             self.move_to(projected.point, g)?; // rows that are zero but for rounding become active
@@ -299,8 +304,12 @@ impl Iterate<'_> {
             return Ok(Step::Unbounded { p });
         }
         let minimum = if flat { f64::INFINITY } else { -slope / curvature };
-        // all of it where theta falls that far: rows come to their bound
-        let t = if (0.5..1.0).contains(&minimum) { 1.0 } else { minimum.min(bound.max(1.0)) };
+        // all of it where theta falls that far and projections go on: rows come to their bound
+        let t = if self.reference.is_some() && (0.5..1.0).contains(&minimum) {
+            1.0
+        } else {
+            minimum.min(bound.max(1.0))
+        };
         let (mut x, mut g) = (std::mem::take(&mut self.x), std::mem::take(&mut self.g));
         axpy(t, &s, &mut x);
         axpy(t, &image, &mut g);
