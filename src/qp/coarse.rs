@@ -5,13 +5,14 @@ use std::sync::Arc;
 
 use crate::error::Result;
 use crate::linalg::semidefinite::clusters::Blocks;
+use crate::linalg::semidefinite::faces::FaceFactors;
 use crate::linalg::semidefinite::sparse::{FaceRows, PseudoInverse, SINGULAR, WEAK};
 use crate::linalg::semidefinite::GeneralInverse;
-use crate::linalg::sparse::gram::Gram;
 use crate::linalg::vector::{axpy, norm, norm_max, power_of_two_below};
-use crate::linalg::{Analysis, Cholesky, Csr, Matrix};
+use crate::linalg::{Cholesky, Csr, Matrix};
 use crate::platform::memory::headroom;
 use crate::platform::{interrupt, tally};
+use crate::qp::Qp;
 
 pub struct Coarse<'a> {
     /// `G'`, m x r.
@@ -23,7 +24,9 @@ pub struct Coarse<'a> {
     unit: f64,
     /// Diagonal of the whole `G G' / s^2`: the largest entry in [1, 4).
     whole: Vec<f64>,
-    gram: Option<(Gram, Arc<Analysis>)>,
+    bounded: Vec<bool>,
+    /// None where there are no modes.
+    factors: Option<FaceFactors>,
     /// Made for the first face that leaves much of the space free.
     by_blocks: Option<Blocks>,
     /// The last such face left motions free: the next one is likely to.
@@ -43,7 +46,7 @@ struct CoarseFace {
 
 enum Solver {
     Cholesky {
-        factor: Cholesky,
+        factor: Arc<Cholesky>,
         /// Of some motion: see `WEAK`.
         weak: bool,
     },
@@ -52,22 +55,31 @@ enum Solver {
 }
 
 impl<'a> Coarse<'a> {
-    /// The rows of G of stiff and of soft bodies are of one size; `rounding` is how far they are known against it.
-    pub fn new(g_transposed: &'a Csr, blocks: &'a [usize], rounding: f64) -> Result<Self> {
+    pub fn of(qp: &Qp<'a>) -> Result<Self> {
+        Self::new(qp.g_transposed, qp.blocks, qp.bounded, qp.rounding)
+    }
+
+    /// The rows of G of stiff and of soft bodies are of one size; `rounding` is how far they are known against it. Faces hold rows
+    /// that are `bounded`.
+    fn new(g_transposed: &'a Csr, blocks: &'a [usize], bounded: &[bool], rounding: f64) -> Result<Self> {
         let mut whole = vec![0.0; g_transposed.cols];
         for (&k, v) in g_transposed.col.iter().zip(&g_transposed.val) {
             whole[k] += v * v;
         }
         let unit = power_of_two_below(norm_max(&whole).sqrt());
         whole.iter_mut().for_each(|v| *v /= unit * unit);
-        let gram = if whole.is_empty() { None } else { Some(analysed(g_transposed)?) };
+        let factors = match whole.len() {
+            0 => None,
+            _ => Some(FaceFactors::new(g_transposed, bounded.to_vec())?),
+        };
         Ok(Self {
             g_transposed,
             blocks,
             rounding,
             unit,
             whole,
-            gram,
+            bounded: bounded.to_vec(),
+            factors,
             by_blocks: None,
             left_free: false,
             faces: [None, None],
@@ -85,9 +97,10 @@ impl<'a> Coarse<'a> {
     /// The space on the rows that are not held: `W_F` is factorised, unless that has just been done or the host or the time forbids it.
     pub fn on(&mut self, held: &[bool]) -> Result<OnFace<'_>> {
         let selected = usize::from(held.contains(&true));
-        if self.gram.is_some() && self.faces[selected].as_ref().is_none_or(|face| face.held != held) {
+        if self.factors.is_some() && self.faces[selected].as_ref().is_none_or(|face| face.held != held) {
             interrupt::check()?;
             tally::costly();
+            self.faces[selected] = None;
             self.faces[selected] = Some(CoarseFace { held: held.to_vec(), solver: self.solver(held)? });
             self.factorisations += 1;
         }
@@ -99,17 +112,17 @@ impl<'a> Coarse<'a> {
     pub fn weighted(&mut self, weights: &[f64], rho: f64) -> Result<Option<Weighted>> {
         /// Of its diagonal entry in `G G'`: what weights that vanish do not resist is held by this part.
         const HELD: f64 = 1e-10;
-        let Some((gram, analysis)) = &self.gram else { return Ok(None) };
+        let Some(factors) = &self.factors else { return Ok(None) };
         interrupt::check()?;
         tally::costly();
-        let mut w = gram.weighted(self.g_transposed, |i| weights[i])?;
+        let mut w = factors.gram().weighted(self.g_transposed, |i| weights[i])?;
         w.val.iter_mut().for_each(|v| *v /= self.unit * self.unit);
         for (k, whole) in self.whole.iter().enumerate() {
             let held = if *whole > 0.0 { HELD * whole } else { 1.0 };
             w.val[w.ptr[k + 1] - 1] += rho / (self.unit * self.unit) + held;
         }
         self.factorisations += 1;
-        let factor = analysis.attempt(&w, 1.0)?.ok();
+        let factor = factors.analysis().attempt(&w, 1.0)?.ok();
         Ok(factor.map(|factor| Weighted { factor, unit: self.unit }))
     }
 
@@ -117,25 +130,26 @@ impl<'a> Coarse<'a> {
     fn solver(&mut self, held: &[bool]) -> Result<Solver> {
         let (g_transposed, unit, whole, rounding) =
             (self.g_transposed, self.unit, &self.whole[..], self.rounding);
-        if let Some((gram, analysis)) = self.gram.as_ref().filter(|_| !self.left_free) {
-            let mut w = gram.sum(g_transposed, held)?;
-            w.val.iter_mut().for_each(|v| *v /= unit * unit);
-            if let Ok(factor) = analysis.attempt(&w, 1.0)? {
+        if let Some(factors) = self.factors.as_mut().filter(|_| !self.left_free) {
+            let by = 1.0 / (unit * unit);
+            if let Ok(factor) = factors.factor(g_transposed, held, (by, 0.0), |_| ())? {
                 let smallest = factor.smallest_pivot();
                 if smallest > SINGULAR {
                     return Ok(Solver::Cholesky { factor, weak: smallest < WEAK });
                 }
             }
+            let mut w = factors.gram().sum(g_transposed, held)?;
+            w.val.iter_mut().for_each(|v| *v *= by);
             let rows = FaceRows { g_transposed, held, unit, whole, rounding };
-            if let Some(inverse) = PseudoInverse::new(&w, analysis, &rows)? {
+            if let Some(inverse) = PseudoInverse::new(&w, factors.analysis(), &rows)? {
                 return Ok(Solver::Singular(Box::new(inverse)));
             }
         }
         let mut by_blocks = match self.by_blocks.take() {
             Some(by_blocks) => by_blocks,
-            None => Blocks::new(g_transposed, self.blocks, unit)?,
+            None => Blocks::new(g_transposed, self.blocks, &self.bounded, (unit, whole, rounding))?,
         };
-        let inverse = by_blocks.inverse(held, whole, rounding)?;
+        let inverse = by_blocks.inverse(held)?;
         self.left_free = inverse.deficiency() > 0;
         self.by_blocks = Some(by_blocks);
         Ok(Solver::Singular(Box::new(inverse)))
@@ -283,9 +297,11 @@ pub struct AnswerFace<'a> {
 }
 
 impl<'a> AnswerFace<'a> {
-    /// See [`Coarse::new`].
+    /// `rounding`: how far rows of G are known.
     pub fn new(g_transposed: &'a Csr, blocks: &'a [usize], held: &'a [bool], rounding: f64) -> Result<Self> {
-        Ok(Self { coarse: Coarse::new(g_transposed, blocks, rounding)?, held })
+        // no other face will follow
+        let all = vec![true; held.len()];
+        Ok(Self { coarse: Coarse::new(g_transposed, blocks, &all, rounding)?, held })
     }
 
     /// Basis of the free motions, `|G_F a| <= rounding |G| |a|`, r x deficiency: what the rows that are not held do not resist.
@@ -303,12 +319,6 @@ impl<'a> AnswerFace<'a> {
     pub fn fitted(&mut self, r: &[f64]) -> Result<Vec<f64>> {
         self.coarse.multiplier(self.held, r)
     }
-}
-
-fn analysed(g_transposed: &Csr) -> Result<(Gram, Arc<Analysis>)> {
-    let gram = Gram::of(g_transposed)?;
-    let analysis = Analysis::new(gram.pattern(), &vec![false; g_transposed.cols])?;
-    Ok((gram, Arc::new(analysis)))
 }
 
 #[cfg(test)]

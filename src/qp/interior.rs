@@ -191,7 +191,7 @@ mod tests {
             bounded: &[true; 3],
             preconditioner: None,
         };
-        let mut coarse = Coarse::new(&g_transposed, &[], 1e-14).unwrap();
+        let mut coarse = Coarse::of(&qp).unwrap();
         let near = |found: &[f64], known: &[f64]| found.iter().zip(known).all(|(a, b)| (a - b).abs() < 1e-5);
         let simplex = Interior { qp: &qp, y: &[0.8, 0.6, -1.0], held: &[false; 3], delta: 1.0, rho: 0.0 };
         let found = simplex.minimise(&mut coarse, vec![0.0; 2]).unwrap();

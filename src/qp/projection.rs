@@ -3,7 +3,7 @@
 //! thousands of loose bodies let one row after the other stop its steps, an interior point method shows the face.
 
 use crate::error::Result;
-use crate::linalg::vector::{axpy, dot, norm};
+use crate::linalg::vector::{axpy, dot, norm, ratio};
 use crate::platform::interrupt;
 use crate::qp::coarse::Coarse;
 use crate::qp::interior::Interior;
@@ -24,6 +24,8 @@ const FURTHER_STEPS: usize = 30;
 /// `|e - G l| <= ACCURACY (|e| + |G||l|)` is accepted; `STAGNATED` where no step improves it any more.
 const ACCURACY: f64 = 1e-12;
 const STAGNATED: f64 = 1e-10;
+/// Against `|e| + |G||y|` it is at most this: forces of an e that nothing balances grow until their own rounding hides it.
+const MET: f64 = 1e-6;
 /// Where `|e - G l|` is more of `|e| + |G||l|` the start is worth a solution without bounds.
 const FAR: f64 = 0.5;
 
@@ -55,14 +57,7 @@ impl Trial {
 
     /// `|e - G l|` against `|e| + |G||l|`
     fn error(&self, qp: &Qp) -> f64 {
-        let mut terms = vec![0.0; qp.e.len()];
-        qp.g_transposed.mul_transposed_abs_add(&self.point, &mut terms);
-        let size = norm(qp.e) + norm(&terms);
-        if size > 0.0 {
-            norm(&self.residual) / size
-        } else {
-            0.0
-        }
+        ratio(norm(&self.residual), norm(qp.e) + norm(&terms(qp, &self.point)))
     }
 
     /// `phi(beta) = 1/2 |l|^2 - e'beta`
@@ -84,6 +79,13 @@ impl Trial {
     }
 }
 
+/// `|G||l|`
+fn terms(qp: &Qp, l: &[f64]) -> Vec<f64> {
+    let mut terms = vec![0.0; qp.e.len()];
+    qp.g_transposed.mul_transposed_abs_add(l, &mut terms);
+    terms
+}
+
 /// J1 to J4 of docs/method.md. `None`: no such point was found. Entries in `held` stay zero.
 pub fn project(qp: &Qp, coarse: &mut Coarse, y: &[f64], held: &[bool]) -> Result<Option<Projected>> {
     let mut now = Trial::new(qp, y, held, vec![0.0; qp.e.len()]);
@@ -97,11 +99,13 @@ pub fn project(qp: &Qp, coarse: &mut Coarse, y: &[f64], held: &[bool]) -> Result
             (error, now) = (next.error(qp), next);
         }
     }
+    let given = norm(qp.e) + norm(&terms(qp, y));
+    let is_met = |now: &Trial| norm(&now.residual) <= MET * given;
     let (mut cuts, mut step, mut end) = (0, 0, NEWTON_STEPS);
     while step < end {
         interrupt::reached("Newton steps of a projection", step)?;
         // J2
-        if error <= ACCURACY {
+        if error <= ACCURACY && is_met(&now) {
             return now.done(qp, coarse).map(Some);
         }
         if cuts == PATIENCE {
@@ -117,7 +121,11 @@ pub fn project(qp: &Qp, coarse: &mut Coarse, y: &[f64], held: &[bool]) -> Result
             (0..y.len()).map(|i| held[i] || (qp.bounded[i] && now.point[i] <= 0.0)).collect();
         let direction = coarse.on(&face)?.solve_regularised(&now.residual)?;
         let Some(t) = minimum_along(qp, y, held, &now, &direction) else {
-            return if error <= STAGNATED { now.done(qp, coarse).map(Some) } else { Ok(None) };
+            return if error <= STAGNATED && is_met(&now) {
+                now.done(qp, coarse).map(Some)
+            } else {
+                Ok(None)
+            };
         };
         cuts += usize::from(t < CUT);
         let mut beta = now.beta.clone();
@@ -125,7 +133,7 @@ pub fn project(qp: &Qp, coarse: &mut Coarse, y: &[f64], held: &[bool]) -> Result
         let next = Trial::new(qp, y, held, beta);
         let next_error = next.error(qp);
         if error <= STAGNATED && next_error >= error {
-            return now.done(qp, coarse).map(Some);
+            return if is_met(&now) { now.done(qp, coarse).map(Some) } else { Ok(None) };
         }
         (now, error, step) = (next, next_error, step + 1);
     }
@@ -197,7 +205,7 @@ mod tests {
             bounded: &[true; 3],
             preconditioner: None,
         };
-        let mut coarse = Coarse::new(&g_transposed, &[], 1e-14).unwrap();
+        let mut coarse = Coarse::of(&qp).unwrap();
         let found = project(&qp, &mut coarse, &[0.8, 0.6, -1.0], &[false; 3]).unwrap().unwrap();
         for (value, expected) in found.point.iter().zip([0.6, 0.4, 0.0]) {
             assert!((value - expected).abs() < 1e-14);

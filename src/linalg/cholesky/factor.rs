@@ -2,14 +2,14 @@
 
 use std::sync::Arc;
 
-use crate::error::{Error, Kind, Result};
+use crate::error::Result;
 use crate::linalg::cholesky::analysis::elimination::NONE;
 use crate::linalg::cholesky::analysis::Analysis;
 use crate::linalg::cholesky::numeric::front::HELD;
 use crate::linalg::cholesky::numeric::multifrontal::{self, LowerColumns};
 use crate::linalg::sparse::csr::by_columns;
 use crate::linalg::{Csr, Symmetric};
-use crate::platform::memory::{headroom, reserved, zeros, PRODUCTS};
+use crate::platform::memory::{headroom, reserved, zeros, Headroom, PRODUCTS};
 use crate::platform::pages::Pages;
 
 /// The factor L with its analysis.
@@ -56,38 +56,38 @@ impl Analysis {
         self.pivoted(matrix, by, 0.0)
     }
 
-    /// L of a positive semidefinite matrix with unit diagonal but for the unknowns whose pivot is at most `hold`, ascending: they
-    /// are 0 in every solution, as if they were not there.
-    pub fn holding(self: &Arc<Self>, matrix: &Symmetric, hold: f64) -> Result<(Cholesky, Vec<usize>)> {
-        let factor = self.pivoted(matrix, 1.0, hold)?;
-        let factor = factor.map_err(|_| Error::new(Kind::Internal, "a coarse matrix is not finite"))?;
-        let mut held: Vec<usize> =
-            factor.pivots().filter(|(_, pivot)| *pivot >= 0.5 * HELD).map(|(dof, _)| dof).collect();
-        held.sort_unstable();
-        Ok((factor, held))
-    }
-
-    fn pivoted(
+    /// As `attempt`; pivots up to `hold` are held, where it is positive.
+    pub fn pivoted(
         self: &Arc<Self>,
         matrix: &Symmetric,
         by: f64,
         hold: f64,
     ) -> Result<std::result::Result<Cholesky, usize>> {
-        let lists = 3 * self.nodes.bytes() + 4 * self.order.len() * size_of::<usize>();
-        let _room = headroom(lists + PRODUCTS, "a factorisation")?;
-        let columns = self.columns(matrix, by)?;
+        let _room = self.factorisation_headroom()?;
+        let columns = self.columns(matrix, by, |_| true)?;
         let values = multifrontal::factorize(&self.nodes, &columns, hold)?;
         Ok(values.map(|values| Cholesky { analysis: Arc::clone(self), values, held: Vec::new() }))
     }
 
-    /// The lower triangle of `by` times the matrix in the order of elimination.
-    fn columns(&self, matrix: &Symmetric, by: f64) -> Result<LowerColumns> {
+    pub(super) fn factorisation_headroom(&self) -> Result<Headroom> {
+        let lists = 3 * self.nodes.bytes() + 4 * self.order.len() * size_of::<usize>();
+        headroom(lists + PRODUCTS, "a factorisation")
+    }
+
+    /// The lower triangle of `by` times the matrix in the order of elimination, of the columns at some positions.
+    pub(super) fn columns(
+        &self,
+        matrix: &Symmetric,
+        by: f64,
+        wanted: impl Fn(usize) -> bool + Copy,
+    ) -> Result<LowerColumns> {
         let position = &self.position;
         let entries = || {
             (0..matrix.order()).filter(|&i| position[i] != NONE).flat_map(move |i| {
                 let row = matrix.lower_row(i).filter(|&(j, _)| position[j] != NONE);
                 let places = row.map(move |(j, v)| (position[i], position[j], v));
-                places.map(move |(i, j, v)| (i.max(j) as u32, i.min(j), by * v))
+                let places = places.map(move |(i, j, v)| (i.max(j) as u32, i.min(j), by * v));
+                places.filter(move |(_, column, _)| wanted(*column))
             })
         };
         let (ptr, row, val) = by_columns(self.order.len(), entries, "a permuted stiffness matrix")?;
@@ -163,6 +163,14 @@ impl Cholesky {
             (0..node.width).map(move |i| self.values[start + i * height + i].powi(2))
         });
         self.analysis.order.iter().copied().zip(pivots)
+    }
+
+    /// The unknowns whose pivots have been held, ascending: they are 0 in every solution, as if they were not there.
+    pub fn at_rest(&self) -> Vec<usize> {
+        let held = self.pivots().filter(|(_, pivot)| *pivot >= 0.5 * HELD);
+        let mut held: Vec<usize> = held.map(|(dof, _)| dof).collect();
+        held.sort_unstable();
+        held
     }
 
     /// Smallest pivot `L_ii^2`.

@@ -8,6 +8,7 @@
 //! | `factor` | L with its analysis, `K_ff^-1 x` |
 //! | `triangular` | solutions with L and L' |
 //! | `inverse_form`, `inverse_columns` | `B K_ff^-1 B'`, some columns of it |
+//! | `renewal` | L of matrices that differ in some columns |
 //! | `schur` | the Schur complement of the dofs eliminated last |
 
 mod analysis;
@@ -15,6 +16,7 @@ mod factor;
 mod inverse_columns;
 mod inverse_form;
 mod numeric;
+mod renewal;
 mod schur;
 mod triangular;
 
@@ -23,4 +25,5 @@ pub use analysis::Analysis;
 pub use factor::{Breakdown, Cholesky};
 pub use inverse_columns::inverse_columns;
 pub use inverse_form::inverse_form;
+pub use renewal::Renewal;
 pub use schur::Trailing;

@@ -2,6 +2,7 @@
 
 pub mod clusters;
 pub mod dense;
+pub mod faces;
 mod resisted;
 pub mod sparse;
 

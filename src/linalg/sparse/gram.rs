@@ -42,13 +42,22 @@ impl Gram {
 
     /// The sum over the rows that are not left out, each with weight 1.
     pub fn sum(&self, rows: &Csr, leave_out: &[bool]) -> Result<Symmetric> {
-        self.weighted(rows, |i| if leave_out[i] { 0.0 } else { 1.0 })
+        self.sum_of(rows, (0..rows.rows()).filter(|&i| !leave_out[i]))
+    }
+
+    /// The sum over some rows, each with weight 1.
+    pub fn sum_of(&self, rows: &Csr, some: impl Iterator<Item = usize>) -> Result<Symmetric> {
+        self.of_rows(rows, some.map(|i| (i, 1.0)))
     }
 
     /// `sum_i w_i g_i' g_i`
     pub fn weighted(&self, rows: &Csr, weight: impl Fn(usize) -> f64) -> Result<Symmetric> {
+        self.of_rows(rows, (0..rows.rows()).map(|i| (i, weight(i))).filter(|(_, w)| *w != 0.0))
+    }
+
+    fn of_rows(&self, rows: &Csr, weighted: impl Iterator<Item = (usize, f64)>) -> Result<Symmetric> {
         let mut val = zeros(self.pattern.val.len(), "a Gram matrix")?;
-        for (i, w) in (0..rows.rows()).map(|i| (i, weight(i))).filter(|(_, w)| *w != 0.0) {
+        for (i, w) in weighted {
             let mut at = self.ptr[i];
             for (k, a) in rows.row(i) {
                 for (_, b) in rows.row(i).take_while(|(l, _)| *l <= k) {

@@ -87,7 +87,7 @@ struct Run<'a> {
 impl<'a> Run<'a> {
     fn new(qp: Qp<'a>, direct: Direct<'a>, from: &Solution) -> Result<Self> {
         Ok(Self {
-            coarse: Coarse::new(qp.g_transposed, qp.blocks, qp.rounding)?,
+            coarse: Coarse::of(&qp)?,
             active: qp.at_bound(&from.x),
             x: from.x.clone(),
             alpha: from.alpha.clone(),

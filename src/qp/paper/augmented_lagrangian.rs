@@ -28,7 +28,7 @@ pub fn algorithm_3(
     let (scale, verdict) = verdict.with(judge.scale(&outer.x, &alpha), f64::NAN)?;
     let active: Vec<bool> =
         outer.x.iter().zip(qp.bounded).map(|(x, bounded)| *bounded && *x == 0.0).collect();
-    let mut coarse = Coarse::new(qp.g_transposed, qp.blocks, qp.rounding)?;
+    let mut coarse = Coarse::of(&qp)?;
     let (undetermined, verdict) = verdict.with(coarse.on(&active).map(|face| face.deficiency()), 0)?;
     Ok(Solution { x: outer.x, alpha, undetermined, scale, verdict, counts: outer.counts })
 }

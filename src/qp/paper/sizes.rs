@@ -64,7 +64,7 @@ impl PaperSizes {
 
 /// The scale of the gaps at `l = D'(D D')+ d`, with `alpha = argmin |A l - b - D'alpha|`.
 fn reference(q: &mut Quadratic, judge: &mut dyn AcceptanceTest) -> Result<f64> {
-    let mut coarse = Coarse::new(q.qp.g_transposed, q.qp.blocks, q.qp.rounding)?;
+    let mut coarse = Coarse::of(&q.qp)?;
     let all = vec![false; q.qp.b.len()];
     let y = coarse.on(&all)?.solve(q.qp.e)?;
     let l: Vec<f64> = (0..all.len()).map(|i| q.qp.g_transposed.row_dot(i, &y)).collect();

@@ -1,23 +1,26 @@
 //! `min |e - G l|` over `l_i >= 0 (i bounded)`. Its residual `a` decides whether the equalities can be met at all: `G_i'a <= 0` on
 //! bounded rows, `= 0` on free ones, `e'a = |a|^2`. Where G has few columns a is found as the point of the cone of those that
-//! is nearest to e, which ends and loses no digits to `G G'`; else by Lawson and Hanson's method.
+//! is nearest to e, which ends and loses no digits to `G G'`; else on the rows that an interior point method shows to have a force.
 
 use crate::error::{Kind, Result};
-use crate::linalg::vector::{norm, ratio};
+use crate::linalg::vector::{norm, norm_max, ratio};
 use crate::linalg::Csr;
 use crate::platform::interrupt;
 use crate::qp::coarse::Coarse;
+use crate::qp::interior::{Interior, Point};
 use crate::qp::{nearest_point, Polyhedron, Qp};
 
 /// A correlation with the residual below this fraction of its terms counts as zero.
 const ZERO: f64 = 1e-12;
+/// A row that the residual meets by more than this part of their lengths is pressed.
+const PRESSED: f64 = 1e-9;
 /// Modes of a problem for which a square matrix of them, and one rotation of it per row and mode, are cheap.
 const FEW: usize = 1500;
 
 pub struct Balance {
     pub point: Vec<f64>,
-    /// `a = e - G l`: `G_i'a <= 0` on bounded rows, `= 0` on free ones, `e'a = |a|^2`; only nearly so where Lawson and Hanson's
-    /// method has not converged.
+    /// `a = e - G l`: `G_i'a <= 0` on bounded rows, `= 0` on free ones, `e'a = |a|^2`; only nearly so where these rows have
+    /// not been found.
     pub residual: Vec<f64>,
     /// `|a| / |e|`
     pub margin: f64,
@@ -26,7 +29,7 @@ pub struct Balance {
 pub fn balance(qp: &Qp, coarse: &mut Coarse) -> Result<Balance> {
     let (point, residual) = match in_cone(qp.g_transposed, qp.bounded, qp.e)? {
         Some(found) => found,
-        None => lawson_hanson(qp, coarse)?,
+        None => identified(qp, coarse)?,
     };
     Ok(Balance { margin: margin(qp, &residual), point, residual })
 }
@@ -42,7 +45,7 @@ pub fn weighted(qp: &Qp, weights: &[f64]) -> Result<(Vec<f64>, Vec<f64>)> {
         Some(found) => found,
         None => {
             let scaled = Qp { g_transposed: &g_transposed, e: &e, ..*qp };
-            lawson_hanson(&scaled, &mut Coarse::new(&g_transposed, qp.blocks, qp.rounding)?)?
+            identified(&scaled, &mut Coarse::of(&scaled)?)?
         }
     };
     Ok((point, a.iter().zip(weights).map(|(a, w)| a / w).collect()))
@@ -70,62 +73,64 @@ fn in_cone(g_transposed: &Csr, bounded: &[bool], e: &[f64]) -> Result<Option<(Ve
     Ok(Some((forces, a)))
 }
 
-/// l and a where Lawson and Hanson's method ends, or has taken its rounds.
-fn lawson_hanson(qp: &Qp, coarse: &mut Coarse) -> Result<(Vec<f64>, Vec<f64>)> {
-    let m = qp.b.len();
-    let mut held: Vec<bool> = qp.bounded.to_vec();
-    let mut point = least_squares(qp, coarse, &held)?;
-    for round in 0..3 * m + 3 {
+/// l and a of many modes: a look into the interior shows the rows with a force; a is what these leave of e, orthogonal to them.
+/// Rows that it presses on join them, all at a time.
+fn identified(qp: &Qp, coarse: &mut Coarse) -> Result<(Vec<f64>, Vec<f64>)> {
+    /// What makes forces unique, against what they leave by the largest column of G.
+    const UNIQUE: f64 = 1e-8;
+    const ROUNDS: usize = 30;
+    let mut squares = vec![0.0; qp.e.len()];
+    qp.g_transposed.col.iter().zip(&qp.g_transposed.val).for_each(|(&mode, v)| squares[mode] += v * v);
+    let (y, none) = (vec![0.0; qp.b.len()], vec![false; qp.b.len()]);
+    let interior = Interior { qp, y: &y, held: &none, delta: UNIQUE * norm_max(&squares), rho: 1.0 };
+    let Point { force, slack, .. } = interior.minimise(coarse, vec![0.0; qp.e.len()])?;
+    let (most, steepest) = (norm_max(&force), norm_max(&slack));
+    let has_none = |i: usize| qp.bounded[i] && force[i] * steepest <= slack[i] * most;
+    let mut held: Vec<bool> = (0..force.len()).map(has_none).collect();
+    for round in 0..ROUNDS {
         interrupt::reached("rows admitted to the nearest forces", round)?;
-        let residual = qp.left(&point);
-        let Some(best) = most_correlated(qp, &held, &residual) else {
-            return Ok((point, residual));
-        };
-        held[best] = false;
-        loop {
-            let target = least_squares(qp, coarse, &held)?;
-            let negative = |i: &usize| qp.bounded[*i] && !held[*i] && target[*i] <= 0.0;
-            let blocking = (0..m).filter(negative).map(|i| point[i] / (point[i] - target[i]));
-            let t = blocking.fold(1.0, f64::min);
-            let inside = t == 1.0;
-            for i in 0..m {
-                point[i] += t * (target[i] - point[i]);
-                if qp.bounded[i] && !held[i] && (target[i] <= 0.0 && point[i] <= ZERO * target[i].abs()) {
-                    point[i] = 0.0;
-                    held[i] = true;
-                }
-            }
-            if inside {
+        let point = least_squares(qp, coarse, &held)?;
+        let a = qp.left(&point);
+        let pressed = pressed(qp, &held, &a);
+        let is_balanced = norm(&a) <= ZERO * norm(qp.e);
+        if is_balanced || pressed.is_empty() {
+            // forces that pull prove nothing where nothing is left
+            if is_balanced && (0..point.len()).any(|i| qp.bounded[i] && point[i] < 0.0) {
                 break;
             }
+            return Ok((
+                point.iter().zip(qp.bounded).map(|(l, b)| if *b { l.max(0.0) } else { *l }).collect(),
+                a,
+            ));
         }
+        pressed.into_iter().for_each(|i| held[i] = false);
     }
-    let residual = qp.left(&point);
-    Ok((point, residual))
+    let left = qp.left(&force);
+    Ok((force, left))
 }
 
-/// The held row that reduces the residual fastest.
-fn most_correlated(qp: &Qp, held: &[bool], residual: &[f64]) -> Option<usize> {
-    let size = norm(residual);
-    if size <= ZERO * norm(qp.e) {
-        return None;
-    }
-    let correlation = |i: usize| {
-        let length = qp.g_transposed.row(i).map(|(_, v)| v * v).sum::<f64>().sqrt();
-        (qp.g_transposed.row_dot(i, residual), length)
+/// The held rows that a presses on, `G_i'a > 0` by more than rounding.
+fn pressed(qp: &Qp, held: &[bool], a: &[f64]) -> Vec<usize> {
+    let size = norm(a);
+    let presses = |i: &usize| {
+        let length = qp.g_transposed.row(*i).map(|(_, v)| v * v).sum::<f64>().sqrt();
+        qp.g_transposed.row_dot(*i, a) > PRESSED * length * size
     };
-    (0..held.len())
-        .filter(|&i| held[i])
-        .map(|i| (i, correlation(i)))
-        .filter(|(_, (c, length))| *c > 1e-9 * length * size)
-        .max_by(|(_, (a, la)), (_, (b, lb))| (a / la).total_cmp(&(b / lb)))
-        .map(|(i, _)| i)
+    (0..held.len()).filter(|&i| held[i]).filter(presses).collect()
 }
 
 /// `G_P' (G_P G_P')+ e` on the rows P that are not held, zero elsewhere.
 fn least_squares(qp: &Qp, coarse: &mut Coarse, held: &[bool]) -> Result<Vec<f64>> {
-    let alpha = coarse.on(held)?.solve(qp.e)?;
-    Ok((0..held.len()).map(|i| if held[i] { 0.0 } else { qp.g_transposed.row_dot(i, &alpha) }).collect())
+    /// The second one takes out the rounding of the first, of weakly held motions the third that of the second.
+    const PASSES: usize = 3;
+    let (mut face, mut point) = (coarse.on(held)?, vec![0.0; held.len()]);
+    for _ in 0..PASSES {
+        let alpha = face.solve(&qp.left(&point))?;
+        for i in (0..held.len()).filter(|&i| !held[i]) {
+            point[i] += qp.g_transposed.row_dot(i, &alpha);
+        }
+    }
+    Ok(point)
 }
 
 /// `|a| / |e|`: how far the equalities are from being met.
@@ -138,7 +143,7 @@ mod tests {
     use super::*;
     use crate::linalg::{Csr, Packed};
 
-    /// By the cone, and the same by Lawson and Hanson.
+    /// By the cone, and the same by the rows that have a force.
     fn solve(columns: &[[f64; 2]], e: [f64; 2]) -> Balance {
         let mut g_transposed = Csr::empty(2);
         columns.iter().for_each(|c| g_transposed.push_row([(0, c[0]), (1, c[1])]));
@@ -153,9 +158,9 @@ mod tests {
             bounded: &vec![true; m],
             preconditioner: None,
         };
-        let coarse = &mut Coarse::new(&g_transposed, &[], 1e-14).unwrap();
+        let coarse = &mut Coarse::of(&qp).unwrap();
         let found = balance(&qp, coarse).unwrap();
-        let (_, other) = lawson_hanson(&qp, coarse).unwrap();
+        let (_, other) = identified(&qp, coarse).unwrap();
         assert!(found.residual.iter().zip(&other).all(|(a, b)| (a - b).abs() < 1e-14));
         found
     }

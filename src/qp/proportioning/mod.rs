@@ -46,7 +46,7 @@ pub fn minimise(
     judge: &mut dyn AcceptanceTest,
     observer: &mut dyn Observer,
 ) -> Result<Solution> {
-    let mut coarse = Coarse::new(qp.g_transposed, qp.blocks, qp.rounding)?;
+    let mut coarse = Coarse::of(&qp)?;
     let first = match interrupt::part(FIRST_POINT, || first_point(&qp, &mut coarse, start))? {
         Some(first) => first,
         // S6.2
@@ -72,7 +72,7 @@ pub fn minimise(
 
 /// The verdict where no x balances e, for a method that does not ask.
 pub fn not_held(qp: &Qp, start: &[f64]) -> Result<Option<Solution>> {
-    let mut coarse = Coarse::new(qp.g_transposed, qp.blocks, qp.rounding)?;
+    let mut coarse = Coarse::of(&qp)?;
     if interrupt::part(FIRST_POINT, || first_point(qp, &mut coarse, start))?.is_some() {
         return Ok(None);
     }

@@ -158,7 +158,7 @@ mod tests {
             bounded: &bounded,
             preconditioner: None,
         };
-        let augmented = Augmented::new(qp, Coarse::new(&g_transposed, &[], 1e-14).unwrap()).unwrap();
+        let augmented = Augmented::new(qp, Coarse::of(&qp).unwrap()).unwrap();
         assert!((7.0..=1.05 * 7.0).contains(&augmented.largest), "{}", augmented.largest);
         assert!(augmented.counts.products < ITERATIONS);
     }
@@ -183,7 +183,7 @@ mod tests {
             bounded: &bounded,
             preconditioner: None,
         };
-        let largest = Augmented::new(qp, Coarse::new(&g_transposed, &[], 1e-14).unwrap()).unwrap().largest;
+        let largest = Augmented::new(qp, Coarse::of(&qp).unwrap()).unwrap().largest;
         assert!((30.0..=1.05 * 30.0).contains(&largest), "{largest}");
     }
 }

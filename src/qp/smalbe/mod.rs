@@ -76,7 +76,7 @@ struct Lagrangian<'a> {
 impl<'a> Lagrangian<'a> {
     /// At the feasible point nearest to `start`.
     fn new(qp: Qp<'a>, start: &[f64]) -> Result<Self> {
-        let mut coarse = Coarse::new(qp.g_transposed, qp.blocks, qp.rounding)?;
+        let mut coarse = Coarse::of(&qp)?;
         let none = vec![false; start.len()];
         let first = interrupt::part("first feasible point", || project(&qp, &mut coarse, start, &none))?;
         let point = Bounded::new(qp.bounded, first.map_or_else(|| start.to_vec(), |first| first.point));

@@ -14,7 +14,7 @@ use crate::linalg::cholesky::analysis::subtrees::{outside, shared, subtrees};
 use crate::linalg::cholesky::analysis::supernodes::{Node, Supernodes};
 use crate::linalg::cholesky::numeric::front::{self, Tile};
 use crate::linalg::cholesky::numeric::updates::{self, RowMap, Updates};
-use crate::platform::memory::{filled, refusal};
+use crate::platform::memory::{copied, filled, refusal};
 use crate::platform::pages::Pages;
 use crate::platform::Interrupt;
 
@@ -56,6 +56,56 @@ pub fn factorize(nodes: &Supernodes, matrix: &LowerColumns, hold: f64) -> Result
         above = range.end;
     }
     Ok(task.eliminate_shared(above..nodes.count(), &mut values)?.map(|()| values))
+}
+
+/// Updates that supernodes leave for those which other factorisations do anew, ascending.
+pub struct Kept(Vec<(usize, Vec<f64>)>);
+
+/// As `factorize`, on one thread; keeps the updates of supernodes outside `renewed` for those in it: with each these are all above it.
+pub fn factorize_keeping(
+    nodes: &Supernodes,
+    matrix: &LowerColumns,
+    hold: f64,
+    renewed: &[usize],
+) -> Result<Pivoted<(Pages, Kept)>> {
+    let mut values = Pages::zeros(nodes.values(), "a Cholesky factor")?;
+    let interrupt = Interrupt::present();
+    let mut task = Task::new((nodes, matrix, hold), 0..nodes.count(), &interrupt)?;
+    let is_renewed = |s: usize| renewed.binary_search(&s).is_ok();
+    let mut kept = Vec::new();
+    for s in 0..nodes.count() {
+        if let Err(at) = task.eliminate_shared(s..s + 1, &mut values)? {
+            return Ok(Err(at));
+        }
+        if !is_renewed(s) && is_renewed(nodes.parent(s)) {
+            kept.push((s, copied(task.updates.last(), WHAT)?));
+        }
+    }
+    Ok(Ok((values, Kept(kept))))
+}
+
+/// The panels of some supernodes, and of all above each, anew.
+pub fn renew(
+    nodes: &Supernodes,
+    matrix: &LowerColumns,
+    hold: f64,
+    renewed: &[usize],
+    Kept(kept): &Kept,
+    values: &mut [f64],
+) -> Result<Pivoted<()>> {
+    let interrupt = Interrupt::present();
+    let mut task = Task::new((nodes, matrix, hold), renewed.iter().copied(), &interrupt)?;
+    let mut by_parent: Vec<&(usize, Vec<f64>)> = kept.iter().collect();
+    by_parent.sort_by_key(|(child, _)| nodes.parent(*child));
+    for &s in renewed {
+        let first = by_parent.partition_point(|(child, _)| nodes.parent(*child) < s);
+        let own = by_parent[first..].iter().take_while(|(child, _)| nodes.parent(*child) == s);
+        own.for_each(|(child, update)| task.updates.lend(*child, update));
+        if let Err(at) = task.eliminate_shared(s..s + 1, values)? {
+            return Ok(Err(at));
+        }
+    }
+    Ok(Ok(()))
 }
 
 /// Bytes that the factorisation takes on one thread besides L and the matrix.

@@ -12,17 +12,19 @@ use crate::platform::pages::Pages;
 /// own on the other, that of its level, even or odd: nothing is moved.
 pub struct Updates<'a> {
     nodes: &'a Supernodes,
-    waiting: Vec<(usize, KeptUpdate)>,
+    waiting: Vec<(usize, KeptUpdate<'a>)>,
     stacks: [Pages; 2],
     tops: [usize; 2],
     /// Values that the stacks still need, for every supernode to come.
     needs: IntoIter<[usize; 2]>,
 }
 
-enum KeptUpdate {
+enum KeptUpdate<'a> {
     Stack(Range<usize>),
     /// Formed by another task.
     Apart(Pages),
+    /// Kept since another factorisation.
+    Lent(&'a [f64]),
 }
 
 impl<'a> Updates<'a> {
@@ -49,18 +51,36 @@ impl<'a> Updates<'a> {
         self.waiting.push((s, KeptUpdate::Apart(update)));
     }
 
+    /// Takes what another factorisation has left of a child of the supernode that comes next.
+    pub fn lend(&mut self, child: usize, update: &'a [f64]) {
+        self.waiting.push((child, KeptUpdate::Lent(update)));
+    }
+
+    /// The update that waits last.
+    pub fn last(&self) -> &[f64] {
+        match self.waiting.last() {
+            Some((s, KeptUpdate::Stack(range))) => &self.stacks[self.nodes.level(*s) % 2][range.clone()],
+            Some((_, KeptUpdate::Apart(values))) => values,
+            Some((_, KeptUpdate::Lent(values))) => values,
+            None => &[],
+        }
+    }
+
     /// Room for the update of s, the next of the sequence, and the children of s with theirs.
     pub fn open(&mut self, s: usize, len: usize) -> (&mut [f64], Vec<(usize, &[f64])>) {
         for (stack, need) in self.stacks.iter_mut().zip(self.needs.next().into_iter().flatten()) {
             stack.truncate(need);
         }
         let first = self.first_child(s);
+        // the same sums whatever is lent
+        self.waiting[first..].sort_unstable_by_key(|(child, _)| *child);
         let level = self.nodes.level(s) % 2;
         let [even, odd] = &mut self.stacks;
         let (own, others) = if level == 0 { (even, odd) } else { (odd, even) };
         let children = self.waiting[first..].iter().map(|(child, place)| match place {
             KeptUpdate::Stack(range) => (*child, &others[range.clone()]),
             KeptUpdate::Apart(values) => (*child, &values[..]),
+            KeptUpdate::Lent(values) => (*child, *values),
         });
         (&mut own[self.tops[level]..self.tops[level] + len], children.collect())
     }

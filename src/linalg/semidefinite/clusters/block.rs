@@ -12,6 +12,24 @@ pub struct Block {
 }
 
 impl Block {
+    /// So much of `T'W_pp T = I` may rows add that faces hold or not.
+    const ADDED: f64 = 1e3;
+
+    /// By the rows that all faces have, where these resist all motions of the block well, and other rows, which faces may hold, do not
+    /// resist them far better; none where every face has its own.
+    pub fn for_all_faces(common: Csr, others: &Csr, limit: f64) -> Result<Option<Self>> {
+        let block = Self::new(common, limit)?;
+        let added = |i: usize| {
+            let row = others.row(i);
+            let turned = |j: usize| row.clone().map(|(k, v)| v * block.resisted.get(k, j)).sum::<f64>();
+            (0..block.resisted.cols).map(|j| turned(j).powi(2)).sum::<f64>()
+        };
+        let is_held = block.free.cols == 0 && !block.weak;
+        let serves =
+            others.rows() == 0 || (is_held && (0..others.rows()).map(added).sum::<f64>() <= Self::ADDED);
+        Ok(serves.then_some(block))
+    }
+
     /// Of `G_F'` on the columns of the block.
     pub fn new(own: Csr, limit: f64) -> Result<Self> {
         let r = own.cols;

@@ -8,20 +8,22 @@
 
 mod block;
 mod inverse;
+mod motions;
 #[cfg(test)]
 mod tests;
 
 use std::ops::Range;
 use std::sync::Arc;
 
-use crate::error::Result;
+use crate::error::{Error, Kind, Result};
+use crate::linalg::semidefinite::faces::FaceFactors;
 use crate::linalg::semidefinite::resisted::sorted;
 use crate::linalg::semidefinite::sparse::WEAK;
-use crate::linalg::sparse::gram::Gram;
-use crate::linalg::{Analysis, Csr, Matrix};
+use crate::linalg::{Csr, Matrix};
 use crate::platform::memory::{headroom, headroom_with, SMALL_MATRICES};
 use block::Block;
-use inverse::{Cluster, ClusterInverse, Motion};
+use inverse::{Cluster, ClusterInverse};
+use motions::{ByColumn, Images, Motion};
 
 /// Pivots of T'W T, with unit diagonal, up to this are held: the factor of the rest is accurate, motions resisted by little
 /// are told from free ones afterwards.
@@ -34,21 +36,38 @@ pub struct Blocks {
     starts: Vec<usize>,
     /// G' with an entry for every column of a block that a row meets, m x r, in units of s.
     rows: Csr,
+    by_column: ByColumn,
     /// The rows that meet each block.
     met: Csr,
-    gram: Gram,
-    analysis: Arc<Analysis>,
-    /// Blocks as they were for the rows that they met last.
+    /// Diagonal of `G G' / s^2`.
+    whole: Vec<f64>,
+    rounding: f64,
+    /// Blocks with a T for all faces.
+    fixed: Vec<Option<Arc<Block>>>,
+    /// Other blocks as they were for the rows that they met last.
     known: Vec<Option<(Vec<usize>, Arc<Block>)>>,
+    /// Rows that faces may hold, and those that meet a block without a T for all faces.
+    varying: Vec<usize>,
+    /// `G_F'T` of the last face, with the pattern of all rows.
+    turned: Csr,
+    factors: FaceFactors,
+    /// Those of the last face.
+    motions: Vec<Motion>,
 }
 
 impl Blocks {
-    /// `starts`: first columns of the blocks, ascending; none where every column is one. `unit`: s.
-    pub fn new(g_transposed: &Csr, starts: &[usize], unit: f64) -> Result<Self> {
+    /// `starts`: first columns of the blocks, ascending; none where every column is one. Faces hold rows that are `bounded`. `unit`: s;
+    /// `whole`: diagonal of `G G' / s^2`. A motion a is free when `|G_F a| <= rounding |G| |a|`, |G| of all rows.
+    pub fn new(
+        g_transposed: &Csr,
+        starts: &[usize],
+        bounded: &[bool],
+        (unit, whole, rounding): (f64, &[f64], f64),
+    ) -> Result<Self> {
         let mut starts = if starts.is_empty() { (0..g_transposed.cols).collect() } else { starts.to_vec() };
         starts.push(g_transposed.cols);
         let (mut rows, mut blocks_of) = (Csr::empty(g_transposed.cols), Csr::empty(starts.len() - 1));
-        let _room = headroom(64 * g_transposed.val.len().saturating_mul(6), WHAT)?;
+        let _room = headroom(128 * g_transposed.val.len().saturating_mul(6), WHAT)?;
         for i in 0..g_transposed.rows() {
             let block = |(column, _): (usize, f64)| starts.partition_point(|start| *start <= column) - 1;
             let mut met: Vec<usize> = g_transposed.row(i).map(block).collect();
@@ -60,39 +79,67 @@ impl Blocks {
             }));
             blocks_of.push_row(met.into_iter().map(|k| (k, 1.0)));
         }
-        let gram = Gram::of(&rows)?;
-        let analysis = Arc::new(Analysis::new(gram.pattern(), &vec![false; rows.cols])?);
-        let known = starts.iter().map(|_| None).collect();
-        Ok(Self { met: blocks_of.transposed()?, starts, rows, gram, analysis, known })
+        let met = blocks_of.transposed()?;
+        let mut fixed = Vec::with_capacity(met.rows());
+        for (k, columns) in starts.windows(2).enumerate() {
+            let own =
+                |of: bool| of_block(&rows, met.row(k).map(|(i, _)| i).filter(|&i| bounded[i] == of), columns);
+            let size = whole[columns[0]..columns[1]].iter().sum::<f64>().sqrt();
+            fixed.push(Block::for_all_faces(own(false), &own(true), rounding * size)?.map(Arc::new));
+        }
+        let varies = |i: usize| bounded[i] || blocks_of.row(i).any(|(k, _)| fixed[k].is_none());
+        let is_varying: Vec<bool> = (0..rows.rows()).map(varies).collect();
+        let mut blocks = Self {
+            by_column: ByColumn::of(&rows)?,
+            turned: rows.clone(),
+            known: vec![None; met.rows()],
+            varying: (0..rows.rows()).filter(|&i| is_varying[i]).collect(),
+            factors: FaceFactors::new(&rows, is_varying)?,
+            whole: whole.to_vec(),
+            starts,
+            rows,
+            met,
+            rounding,
+            fixed,
+            motions: Vec::new(),
+        };
+        (0..blocks.rows.rows()).for_each(|i| blocks.turn(i, &[], false));
+        Ok(blocks)
     }
 
-    /// `W+` over the rows that are not held. A motion a is free when `|G_F a| <= rounding |G| |a|`, |G| of all rows.
-    pub fn inverse(&mut self, held: &[bool], whole: &[f64], rounding: f64) -> Result<ClusterInverse> {
+    /// `W+` over the rows that are not held.
+    pub fn inverse(&mut self, held: &[bool]) -> Result<ClusterInverse> {
         let _room = headroom_with(0, SMALL_MATRICES, WHAT)?;
-        let count = self.starts.len() - 1;
         let blocks: Vec<Arc<Block>> =
-            (0..count).map(|k| self.block(k, held, whole, rounding)).collect::<Result<_>>()?;
-        let turned = self.turned(&blocks, held);
-        let mut w = self.gram.sum(&turned, held)?;
-        for (k, block) in blocks.iter().enumerate() {
-            (self.starts[k] + block.resisted.cols..self.starts[k + 1])
-                .for_each(|i| w.val[w.ptr[i + 1] - 1] = 1.0);
-        }
-        let (factor, at_rest) = self.analysis.holding(&w, HOLD)?;
+            (0..self.known.len()).map(|k| self.block(k, held)).collect::<Result<_>>()?;
+        let varying = std::mem::take(&mut self.varying);
+        varying.iter().for_each(|&i| self.turn(i, &blocks, held[i]));
+        self.varying = varying;
+        let starts = &self.starts;
+        let factor = self.factors.factor(&self.turned, held, (1.0, HOLD), |w| {
+            for (k, block) in blocks.iter().enumerate() {
+                let none = starts[k] + block.resisted.cols..starts[k + 1];
+                none.for_each(|i| w.val[w.ptr[i + 1] - 1] = 1.0);
+            }
+        })?;
+        let factor = factor.map_err(|_| Error::new(Kind::Internal, "a coarse matrix is not finite"))?;
         let mut inverse = ClusterInverse {
-            starts: self.starts.clone(),
+            starts: starts.clone(),
             weak: factor.smallest_pivot() < WEAK || blocks.iter().any(|block| block.weak),
             blocks,
+            held: factor.at_rest(),
             factor,
-            held: at_rest,
             clusters: Vec::new(),
         };
-        let motions = inverse.motions(&turned, (whole, rounding))?;
+        let images = Images::new(&self.turned, &self.by_column);
+        let motions = inverse.motions(images, (&self.whole, self.rounding), &self.motions)?;
+        let mut local = vec![None; self.rows.cols];
         for members in inverse.clusters_of(&motions, held.len()) {
-            let cluster = self.cluster(&members, &motions, held, (whole, rounding))?;
+            let cluster = self.cluster(&members, &motions, held, &mut local)?;
             inverse.weak |= cluster.weak.cols > 0;
             inverse.clusters.push(cluster);
         }
+        self.motions = motions;
         Ok(inverse)
     }
 
@@ -101,49 +148,44 @@ impl Blocks {
     }
 
     /// T and Z of one block; as before where the same rows are left.
-    fn block(&mut self, k: usize, held: &[bool], whole: &[f64], rounding: f64) -> Result<Arc<Block>> {
+    fn block(&mut self, k: usize, held: &[bool]) -> Result<Arc<Block>> {
+        if let Some(fixed) = &self.fixed[k] {
+            return Ok(Arc::clone(fixed));
+        }
         let left: Vec<usize> = self.met.row(k).map(|(i, _)| i).filter(|&i| !held[i]).collect();
         if let Some((_, block)) = self.known[k].as_ref().filter(|(rows, _)| *rows == left) {
             return Ok(Arc::clone(block));
         }
-        let columns = self.columns(k);
-        let mut own = Csr::empty(columns.len());
-        for &i in &left {
-            let entries = self.rows.row(i).filter(|(column, _)| columns.contains(column));
-            own.push_row(entries.map(|(column, v)| (column - columns.start, v)));
-        }
-        let size = whole[columns.clone()].iter().sum::<f64>().sqrt();
-        let block = Arc::new(Block::new(own, rounding * size)?);
+        let own = of_block(&self.rows, left.iter().copied(), &self.starts[k..k + 2]);
+        let size = self.whole[self.columns(k)].iter().sum::<f64>().sqrt();
+        let block = Arc::new(Block::new(own, self.rounding * size)?);
         self.known[k] = Some((left, Arc::clone(&block)));
         Ok(block)
     }
 
-    /// `(G_F'T)`, with the pattern of all rows.
-    fn turned(&self, blocks: &[Arc<Block>], held: &[bool]) -> Csr {
-        let mut turned = self.rows.clone();
-        turned.val.fill(0.0);
-        for i in (0..held.len()).filter(|&i| !held[i]) {
-            let range = self.rows.ptr[i]..self.rows.ptr[i + 1];
-            let mut at = range.start;
-            while at < range.end {
-                let k = self.starts.partition_point(|start| *start <= self.rows.col[at]) - 1;
-                let own = at..at + self.columns(k).len();
-                let resisted = &blocks[k].resisted;
+    /// Row i of `G_F'T`, 0 where it is held; with no blocks, as far as T is that of all faces.
+    fn turn(&mut self, i: usize, blocks: &[Arc<Block>], held: bool) {
+        let range = self.rows.ptr[i]..self.rows.ptr[i + 1];
+        self.turned.val[range.clone()].fill(0.0);
+        let mut at = if held { range.end } else { range.start };
+        while at < range.end {
+            let k = self.starts.partition_point(|start| *start <= self.rows.col[at]) - 1;
+            let own = at..at + self.columns(k).len();
+            if let Some(Block { resisted, .. }) = blocks.get(k).or(self.fixed[k].as_ref()).map(Arc::as_ref) {
                 let values = resisted.mul_transposed(&self.rows.val[own.clone()]);
-                turned.val[own.start..own.start + resisted.cols].copy_from_slice(&values);
-                at = own.end;
+                self.turned.val[own.start..own.start + resisted.cols].copy_from_slice(&values);
             }
+            at = own.end;
         }
-        turned
     }
 
-    /// The motions that some unknowns held stand for.
+    /// The motions that some unknowns held stand for. `local`: none, and none afterwards.
     fn cluster(
         &self,
         members: &[usize],
         motions: &[Motion],
         held: &[bool],
-        (whole, rounding): (&[f64], f64),
+        local: &mut [Option<usize>],
     ) -> Result<Cluster> {
         let mut blocks: Vec<usize> =
             members.iter().flat_map(|&at| motions[at].blocks.iter().copied()).collect();
@@ -159,12 +201,23 @@ impl Blocks {
         rows.sort_unstable();
         rows.dedup();
         let mut own = Csr::empty(columns.len());
+        columns.iter().enumerate().for_each(|(at, &column)| local[column] = Some(at));
         for i in rows {
-            let entries = self.rows.row(i);
-            own.push_row(entries.filter_map(|(column, v)| Some((columns.binary_search(&column).ok()?, v))));
+            own.push_row(self.rows.row(i).filter_map(|(column, v)| Some((local[column]?, v))));
         }
-        let size = columns.iter().map(|&column| whole[column]).sum::<f64>().sqrt();
-        let (free, weak) = sorted(&together.orthonormalised(0.0), &own, rounding * size)?;
+        columns.iter().for_each(|&column| local[column] = None);
+        let size = columns.iter().map(|&column| self.whole[column]).sum::<f64>().sqrt();
+        let (free, weak) = sorted(&together.orthonormalised(0.0), &own, self.rounding * size)?;
         Ok(Cluster { columns, free, weak })
     }
+}
+
+/// The entries of some rows in the columns of one block, which begin and end there.
+fn of_block(rows: &Csr, some: impl Iterator<Item = usize>, columns: &[usize]) -> Csr {
+    let mut own = Csr::empty(columns[1] - columns[0]);
+    for i in some {
+        let entries = rows.row(i).filter(|(column, _)| (columns[0]..columns[1]).contains(column));
+        own.push_row(entries.map(|(column, v)| (column - columns[0], v)));
+    }
+    own
 }

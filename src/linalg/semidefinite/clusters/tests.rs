@@ -41,8 +41,8 @@ fn a_chain_of_stones_that_slide_is_solved_with_minimum_norm() {
         let g = stones(60, weak);
         let starts: Vec<usize> = (0..60).map(|k| 2 * k).collect();
         let held = vec![false; g.rows()];
-        let mut blocks = Blocks::new(&g, &starts, 1.0).unwrap();
-        let inverse = blocks.inverse(&held, &whole(&g), 1e-14).unwrap();
+        let mut blocks = Blocks::new(&g, &starts, &vec![false; g.rows()], (1.0, &whole(&g), 1e-14)).unwrap();
+        let inverse = blocks.inverse(&held).unwrap();
         let kernel = inverse.kernel();
         assert_eq!((inverse.deficiency(), kernel.cols), (120 - g.rows(), 120 - g.rows()), "{weak}");
         let image = |a: &[f64]| {

@@ -1,0 +1,223 @@
+//! The motions that the unknowns held stand for, and what rows have along them.
+
+use crate::error::Result;
+use crate::linalg::semidefinite::clusters::inverse::ClusterInverse;
+use crate::linalg::sparse::csr::by_columns;
+use crate::linalg::vector::{norm, norm_max};
+use crate::linalg::Csr;
+
+/// A cluster moves with a motion when it has more than this part of its largest entry.
+const MOVES: f64 = 1e-9;
+/// The images of the motions held become accurate to rounding in a few corrections; at most so many.
+const CORRECTIONS: usize = 8;
+/// The first ones are made on what is eliminated before the unknown held: a free motion moves nothing else.
+const BELOW: usize = 2;
+/// Entries of a motion below this part of its largest are rounding.
+const ROUNDING: f64 = 0.25 * f64::EPSILON;
+
+/// The motion that one unknown held stands for, the blocks that it moves and the rows that resist it.
+pub struct Motion {
+    /// The unknown held.
+    at: usize,
+    /// What moves with it: n.
+    n: Vec<(usize, f64)>,
+    /// Of the blocks that move at all, ascending.
+    columns: Vec<usize>,
+    amplitudes: Vec<f64>,
+    pub blocks: Vec<usize>,
+    pub rows: Vec<usize>,
+}
+
+impl ClusterInverse {
+    /// `T n` for each unknown held: n is 1 there, 0 where others are held, and has no image elsewhere: `G_F'T n = 0`. Those found
+    /// `before` on another face are so here where they have none.
+    pub fn motions(
+        &self,
+        mut images: Images,
+        (whole, rounding): (&[f64], f64),
+        before: &[Motion],
+    ) -> Result<Vec<Motion>> {
+        let mut motions = Vec::with_capacity(self.held.len());
+        let as_before = before.iter().map(|motion| motion.at).eq(self.held.iter().copied());
+        let mut n = vec![0.0; images.turned.cols];
+        for (j, &at) in self.held.iter().enumerate() {
+            let mut moved = Vec::new();
+            if as_before {
+                moved.extend(before[j].n.iter().map(|(k, _)| *k));
+                before[j].n.iter().for_each(|&(k, v)| n[k] = v);
+            }
+            if !as_before || images.of(&n, &moved) > rounding * length(&n, &moved) {
+                moved.iter().for_each(|&k| n[k] = 0.0);
+                moved = self.corrected(at, &mut n, &mut images, rounding)?;
+            }
+            motions.push(self.motion(at, &n, &moved, (&images.along, &images.resisting), (whole, rounding)));
+            moved.iter().for_each(|&k| n[k] = 0.0);
+        }
+        Ok(motions)
+    }
+
+    /// Corrects n, 1 where an unknown is held, until it has no image; the unknowns that it moves, ascending.
+    fn corrected(&self, at: usize, n: &mut [f64], images: &mut Images, rounding: f64) -> Result<Vec<usize>> {
+        let below = self.factor.below(at);
+        n[at] = 1.0;
+        let (mut moved, mut last, mut image) = (vec![at], f64::INFINITY, vec![0.0; n.len()]);
+        for pass in 0.. {
+            let left = images.of(n, &moved);
+            let stagnates = pass > BELOW && left > 0.5 * last;
+            if left <= rounding * length(n, &moved) || stagnates || pass == CORRECTIONS {
+                break;
+            }
+            last = left;
+            images.back(&mut image);
+            self.held.iter().for_each(|&i| image[i] = 0.0);
+            if pass < BELOW {
+                self.factor.solve_below(at, &mut image)?;
+                moved = below.iter().copied().chain([at]).collect();
+            } else {
+                self.factor.solve(&mut image)?;
+                moved = (0..n.len()).collect();
+            }
+            self.held.iter().for_each(|&i| image[i] = 0.0);
+            moved.iter().for_each(|&k| n[k] -= std::mem::take(&mut image[k]));
+            let least = ROUNDING * moved.iter().fold(0.0, |largest: f64, &k| largest.max(n[k].abs()));
+            moved.retain(|&k| {
+                let moves = n[k].abs() > least;
+                n[k] = if moves { n[k] } else { 0.0 };
+                moves
+            });
+            moved.sort_unstable();
+        }
+        Ok(moved)
+    }
+
+    /// The motion `T n` of n, 0 but on the unknowns `moved`, and of what the rows have `along` it.
+    fn motion(
+        &self,
+        at: usize,
+        n: &[f64],
+        moved: &[usize],
+        (along, resisting): (&[f64], &[usize]),
+        (whole, rounding): (&[f64], f64),
+    ) -> Motion {
+        let block_of = |k: &usize| self.starts.partition_point(|start| start <= k) - 1;
+        let mut blocks: Vec<usize> = moved.iter().map(block_of).collect();
+        blocks.dedup();
+        let (mut columns, mut amplitudes) = (Vec::new(), Vec::new());
+        for &k in &blocks {
+            let (own, resisted) = (self.starts[k]..self.starts[k + 1], &self.blocks[k].resisted);
+            let mut part = vec![0.0; own.len()];
+            resisted.mul_add(1.0, &n[own.start..own.start + resisted.cols], &mut part);
+            columns.extend(own);
+            amplitudes.extend(part);
+        }
+        let part = |k: &usize| {
+            let at = columns.partition_point(|column| *column < self.starts[*k]);
+            &amplitudes[at..at + self.starts[*k + 1] - self.starts[*k]]
+        };
+        let least = MOVES * norm_max(&amplitudes);
+        blocks.retain(|k| norm_max(part(k)) > least);
+        let size = blocks.iter().map(|&k| whole[self.starts[k]..self.starts[k + 1]].iter().sum::<f64>());
+        let least = rounding * size.sum::<f64>().sqrt() * norm(&amplitudes);
+        let rows = resisting.iter().copied().filter(|&i| along[i].abs() > least).collect();
+        let n = moved.iter().map(|&k| (k, n[k])).collect();
+        Motion { at, n, columns, amplitudes, blocks, rows }
+    }
+
+    /// Motions that move one block, or that one of so many rows resists, belong together: their numbers, cluster by cluster.
+    pub fn clusters_of(&self, motions: &[Motion], rows: usize) -> Vec<Vec<usize>> {
+        let mut first = vec![None; self.blocks.len() + rows];
+        let mut cluster: Vec<usize> = (0..motions.len()).collect();
+        let root = |cluster: &[usize], mut at: usize| {
+            while cluster[at] != at {
+                at = cluster[at];
+            }
+            at
+        };
+        for (at, motion) in motions.iter().enumerate() {
+            let rows = motion.rows.iter().map(|&i| self.blocks.len() + i);
+            for place in motion.blocks.iter().copied().chain(rows) {
+                let (a, b) = (root(&cluster, *first[place].get_or_insert(at)), root(&cluster, at));
+                cluster[a.max(b)] = a.min(b);
+            }
+        }
+        let mut clusters = vec![Vec::new(); motions.len()];
+        (0..motions.len()).for_each(|at| clusters[root(&cluster, at)].push(at));
+        clusters.retain(|members| !members.is_empty());
+        clusters
+    }
+}
+
+impl Motion {
+    /// On some columns.
+    pub fn on(&self, columns: &[usize]) -> Vec<f64> {
+        let amplitude = |column| self.columns.binary_search(column).map_or(0.0, |at| self.amplitudes[at]);
+        columns.iter().map(amplitude).collect()
+    }
+}
+
+/// Where the entries of a matrix by rows are, by columns.
+pub struct ByColumn {
+    ptr: Vec<usize>,
+    /// Row of an entry, and its place among the values.
+    entry: Vec<(u32, u32)>,
+}
+
+impl ByColumn {
+    pub fn of(rows: &Csr) -> Result<Self> {
+        let entries = || (0..rows.rows()).flat_map(|i| (rows.ptr[i]..rows.ptr[i + 1]).map(move |at| (i, at)));
+        let by = || entries().map(|(i, at)| ((i as u32, at as u32), rows.col[at], 0.0));
+        let (ptr, entry, _) = by_columns(rows.cols, by, "the coarse space")?;
+        Ok(Self { ptr, entry })
+    }
+
+    fn column(&self, k: usize) -> impl Iterator<Item = (usize, usize)> + '_ {
+        self.entry[self.ptr[k]..self.ptr[k + 1]].iter().map(|&(i, at)| (i as usize, at as usize))
+    }
+}
+
+/// What rows have along a motion.
+pub struct Images<'a> {
+    /// `G_F'T`
+    turned: &'a Csr,
+    by_column: &'a ByColumn,
+    along: Vec<f64>,
+    /// The rows with an entry along it at all, ascending.
+    resisting: Vec<usize>,
+    seen: Vec<bool>,
+}
+
+impl<'a> Images<'a> {
+    pub fn new(turned: &'a Csr, by_column: &'a ByColumn) -> Self {
+        let m = turned.rows();
+        Self { turned, by_column, along: vec![0.0; m], resisting: Vec::new(), seen: vec![false; m] }
+    }
+
+    /// `G_F'T n`, n on some unknowns; its length.
+    fn of(&mut self, n: &[f64], unknowns: &[usize]) -> f64 {
+        let Self { turned, by_column, along, resisting, seen } = self;
+        resisting.drain(..).for_each(|i| along[i] = 0.0);
+        for &k in unknowns {
+            for (i, at) in by_column.column(k).filter(|(_, at)| turned.val[*at] != 0.0) {
+                along[i] += turned.val[at] * n[k];
+                if !std::mem::replace(&mut seen[i], true) {
+                    resisting.push(i);
+                }
+            }
+        }
+        resisting.iter().for_each(|&i| seen[i] = false);
+        resisting.sort_unstable();
+        length(along, resisting)
+    }
+
+    /// `y += T'G_F` of the last images.
+    fn back(&self, y: &mut [f64]) {
+        for &i in &self.resisting {
+            self.turned.row(i).for_each(|(k, v)| y[k] += self.along[i] * v);
+        }
+    }
+}
+
+/// |x| of some entries.
+fn length(x: &[f64], entries: &[usize]) -> f64 {
+    entries.iter().map(|&i| x[i] * x[i]).sum::<f64>().sqrt()
+}
