@@ -27,6 +27,7 @@ pub fn same_matrix(a: &Symmetric, b: &Symmetric) -> bool {
 /// Whether the host has said the same about both besides the matrix and the load.
 fn same_input(a: &Body, b: &Body) -> bool {
     a.fixing == b.fixing
+        && a.soft_coordinates == b.soft_coordinates
         && same_option(&a.null_space, &b.null_space, same_vectors)
         && same_option(&a.coordinates, &b.coordinates, Coordinates::same)
 }
