@@ -99,6 +99,16 @@ mod tests {
     }
 
     #[test]
+    fn equal_coordinates_of_soft_motions_and_of_candidates_say_different_things() {
+        let placed = |soft_coordinates: bool| {
+            let coordinates = Some(Coordinates::new(1, &[1, 1], &[0.0, 1.0], 1).unwrap());
+            let stiffness = Some(std::sync::Arc::new(chain(1.0)));
+            Body { order: 2, stiffness, coordinates, soft_coordinates, ..Body::default() }
+        };
+        assert!(same_body(&placed(true), &placed(true)) && !same_body(&placed(true), &placed(false)));
+    }
+
+    #[test]
     fn the_sign_of_a_zero_makes_a_difference() {
         assert!(same_matrix(&chain(1.0), &chain(1.0)) && !same_matrix(&chain(0.0), &chain(-0.0)));
     }
