@@ -978,14 +978,13 @@ int32_t feti_body_coordinates(struct feti_problem *p,
  * motions that K resists softly.
  *
  * Holds for all coordinates that the body gets (feti_body_coordinates), before this call or after
- * it; never called: FETI_CANDIDATES. With FETI_SOFT weak springs, rounding of the entries of K and
- * geometric stiffness may resist or drive the motions, which need not be exact; those that
- * supports in K hold are left out. What the motions are, and the stiffness against them, is
- * computed from K and taken into account exactly, as of motions given to feti_body_null_space with
- * that flag: see there, also for what follows where K drives the body, or is singular beyond these
- * motions. Nothing depends on it where there are no coordinates, or a null space was given.
- * FETI_UNSUPPORTED from feti_setup where K+ is the host's (feti_body_operator). After a failure
- * the body keeps what it had.
+ * it; never called: FETI_CANDIDATES. With FETI_SOFT weak springs, rounding of the entries of K,
+ * geometric stiffness and supports may resist or drive the motions, which need not be exact. What
+ * the motions are, and the stiffness against them, is computed from K and taken into account
+ * exactly, as of motions given to feti_body_null_space with that flag: see there, also for what
+ * follows where K drives the body, or is singular beyond these motions. Nothing depends on it
+ * where there are no coordinates, or a null space was given. FETI_UNSUPPORTED from feti_setup
+ * where K+ is the host's (feti_body_operator). After a failure the body keeps what it had.
  *
  * @param[in] p     (scalar) the handle
  * @param[in] body  (scalar) number of the body, from 0

@@ -18,9 +18,6 @@ use crate::error::{Error, Kind, Result};
 use crate::linalg::{Matrix, Multiple};
 use crate::platform::memory::{headroom, PRODUCTS};
 
-/// A rigid motion with a larger `|D^-1 K v|` than this of `|v|` is no soft one: supports hold it. Should K drive it all the same,
-/// further dofs are held.
-const HELD: f64 = 0.1;
 /// Where rigid motions are mixed, their terms may cancel to this part of them.
 const MIXED: f64 = 16.0;
 
@@ -63,10 +60,12 @@ impl GeneralizedInverse {
         }
     }
 
-    /// The rigid motions of coordinates as soft ones, but for those that supports hold.
+    /// The rigid motions of coordinates as soft ones. Supports of 1e30 on the diagonal are all that is seen of motions that move them
+    /// in the metric D: those that do not are told apart before.
     pub fn plan_soft(k: Multiple, rigid: &RigidModes, fixing: Option<&[usize]>) -> Result<Plan> {
         let _room = headroom(64 * k.order() * size_of::<f64>() + PRODUCTS, "the soft motions of a body")?;
-        let KernelByParts { kernel, counts, .. } = kernel_by_parts(&k, &rigid.modes, &rigid.parts(), HELD)?;
+        let KernelByParts { kernel, counts, .. } =
+            kernel_by_parts(&k, &rigid.modes, &rigid.parts(), f64::INFINITY)?;
         match Self::known(k, &kernel, (rigid, &counts), (f64::INFINITY, None), fixing)? {
             Plan::Known(known) => Ok(Plan::Known(Known { soft: true, ..known })),
             other => Ok(other),

@@ -71,14 +71,16 @@ fn driven_bodies_have_their_answer_with_soft_coordinates_and_none_with_candidate
     }
 }
 
-/// A support of 1 to 1e20 times K, beside the rows, holds two motions of a block, springs of 1e-7 the others.
+/// Supports of 1 to 1e30 times K at a node or two, beside the rows, and springs of 1e-7.
 #[test]
-fn motions_that_supports_hold_are_no_soft_ones_and_the_others_are() {
-    for support in [1.0, 1e3, 1e20] {
+fn supports_may_hold_some_soft_motions_or_all() {
+    for (support, nodes) in
+        [1.0, 1e3, 1e20, 1e30].into_iter().flat_map(|support| [(support, 1), (support, 2)])
+    {
         let mut deck = with_springs(column(2), 1e-7);
         let largest = deck.bodies[0].stiffness.diagonal().into_iter().fold(0.0, f64::max);
-        let node = 2 * (ELEMENTS[0] + 1);
-        for dof in [2 * node, 2 * node + 1] {
+        let first = 2 * (ELEMENTS[0] + 1);
+        for dof in (0..nodes).flat_map(|node| [first + 8 * node, first + 8 * node + 1]) {
             add_diagonal(&mut deck.bodies[0], dof, support * largest);
         }
         let mut problem = placed(&deck, true, 0.0);
