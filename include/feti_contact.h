@@ -950,8 +950,8 @@ int32_t feti_body_add(struct feti_problem *p, int64_t n, int64_t *body);
  *
  * The data is copied; calling again replaces it. Never called, and no null space given: the
  * library finds the null space from K. A null space that was given (feti_body_null_space) goes
- * before it. Shells and beams repeat nodes with rotations. After a failure the body keeps what it
- * had.
+ * before it. Where K resists or drives the rigid motions: feti_body_coordinates_flags. Shells and
+ * beams repeat nodes with rotations. After a failure the body keeps what it had.
  *
  * @param[in] p    (scalar) the handle
  * @param[in] body (scalar) number of the body, from 0
@@ -972,6 +972,25 @@ int32_t feti_body_coordinates(struct feti_problem *p,
                               const int32_t *dir,
                               const double *xyz,
                               int64_t ld);
+
+/**
+ * Says what the rigid motions of the coordinates of a body are: candidates for its null space, or
+ * motions that K resists softly.
+ *
+ * Holds for all coordinates that the body gets (feti_body_coordinates), before this call or after
+ * it; never called: FETI_CANDIDATES. With FETI_SOFT weak springs, rounding of the entries of K,
+ * geometric stiffness and supports may resist or drive the motions, which need not be exact. What
+ * the motions are, and the stiffness against them, is computed from K and taken into account
+ * exactly, as of motions given to feti_body_null_space with that flag: see there, also for what
+ * follows where K drives the body, or is singular beyond these motions. Nothing depends on it
+ * where there are no coordinates, or a null space was given. FETI_UNSUPPORTED from feti_setup
+ * where K+ is the host's (feti_body_operator). After a failure the body keeps what it had.
+ *
+ * @param[in] p     (scalar) the handle
+ * @param[in] body  (scalar) number of the body, from 0
+ * @param[in] flags (scalar) FETI_CANDIDATES or FETI_SOFT
+ */
+int32_t feti_body_coordinates_flags(struct feti_problem *p, int64_t body, int32_t flags);
 
 /**
  * Gives the load of a body.

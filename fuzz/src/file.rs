@@ -5,7 +5,8 @@ use feti_contact::solver::Problem;
 
 use super::bytes::Bytes;
 
-const TAGS: [&[u8; 4]; 9] = [b"OPTS", b"BODY", b"STIF", b"NULL", b"COOR", b"FIXD", b"LOAD", b"ROWS", b"none"];
+const TAGS: [&[u8; 4]; 10] =
+    [b"OPTS", b"BODY", b"STIF", b"NULL", b"COOR", b"COOF", b"FIXD", b"LOAD", b"ROWS", b"none"];
 /// Problems with more unknowns or rows are not solved.
 const LARGEST: usize = 64;
 

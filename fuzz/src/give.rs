@@ -106,6 +106,13 @@ pub fn coordinates(host: &mut Host, body: usize) {
     if host.done(status, &[]) {
         host.changed();
     }
+    if host.bytes.chance(64) {
+        let flags = if host.bytes.chance(128) { FETI_SOFT } else { FETI_CANDIDATES };
+        let status = feti_body_coordinates_flags(host.handle(), body, host.code(flags));
+        if host.done(status, &[]) {
+            host.changed();
+        }
+    }
 }
 
 /// The load of a body: `f`, or any numbers.

@@ -71,6 +71,7 @@ module feti_contact
     feti_body_null_space => body_null_space, &
     feti_body_null_space_get => body_null_space_get, &
     feti_body_coordinates => body_coordinates, &
+    feti_body_coordinates_flags => body_coordinates_flags, &
     feti_body_fixing_set => body_fixing_set, &
     feti_body_load => body_load
   use feti_contact_stiffness, only: &

@@ -11,6 +11,7 @@ module feti_contact_bodies
     c_body_add => feti_body_add, &
     c_body_components => feti_body_components, &
     c_body_coordinates => feti_body_coordinates, &
+    c_body_coordinates_flags => feti_body_coordinates_flags, &
     c_body_fixing_set => feti_body_fixing_set, &
     c_body_info => feti_body_info, &
     c_body_load => feti_body_load, &
@@ -21,7 +22,7 @@ module feti_contact_bodies
   implicit none
   private
   public :: body_add, body_null_space, body_null_space_get
-  public :: body_coordinates, body_fixing_set, body_load
+  public :: body_coordinates, body_coordinates_flags, body_fixing_set, body_load
   public :: body_numbering, body_components, body_info, feti_body_facts
 
   !> Load, force; without one f = 0. A second call replaces the first.
@@ -143,6 +144,18 @@ contains
     else
       call coordinates_int32(p, body, int(node, int32), int(dir, int32), xyz, stat, errmsg)
     end if
+  end subroutine
+
+  !> What the rigid motions of the coordinates of a body are, of those that it has and of those to come. flags: FETI_CANDIDATES,
+  !> as without this call; FETI_SOFT, weak springs, rounding or geometric stiffness resist or drive them: K decides what they are.
+  recursive subroutine body_coordinates_flags(p, body, flags, stat, errmsg)
+    type(feti_problem), intent(in) :: p
+    integer, intent(in) :: body
+    integer(c_int32_t), intent(in) :: flags
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+
+    call finish(c_body_coordinates_flags(handle_of(p), int(body - 1, c_int64_t), flags), stat, errmsg)
   end subroutine
 
   !> The unknowns that K+ holds, dof(r), r the dimension of the null space; of size 0: those the library would choose. They

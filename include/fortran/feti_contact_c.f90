@@ -435,6 +435,7 @@ module feti_contact_c
 
   public :: feti_body_add
   public :: feti_body_coordinates
+  public :: feti_body_coordinates_flags
   public :: feti_body_load
   public :: feti_body_components
   public :: feti_body_info
@@ -600,8 +601,9 @@ module feti_contact_c
     !> made.
     !>
     !> The data is copied; calling again replaces it. Never called, and no null space given: the library finds
-    !> the null space from K. A null space that was given (feti_body_null_space) goes before it. Shells and
-    !> beams repeat nodes with rotations. After a failure the body keeps what it had.
+    !> the null space from K. A null space that was given (feti_body_null_space) goes before it. Where K
+    !> resists or drives the rigid motions: feti_body_coordinates_flags. Shells and beams repeat nodes with
+    !> rotations. After a failure the body keeps what it had.
     !>
     !> @param[in] p    (scalar) the handle
     !> @param[in] body (scalar) number of the body, from 0
@@ -625,6 +627,29 @@ module feti_contact_c
       integer(c_int64_t), value :: ld
       integer(c_int32_t) :: feti_body_coordinates
     end function feti_body_coordinates
+
+    !> Says what the rigid motions of the coordinates of a body are: candidates for its null space, or motions
+    !> that K resists softly.
+    !>
+    !> Holds for all coordinates that the body gets (feti_body_coordinates), before this call or after it;
+    !> never called: FETI_CANDIDATES. With FETI_SOFT weak springs, rounding of the entries of K, geometric
+    !> stiffness and supports may resist or drive the motions, which need not be exact. What the motions are,
+    !> and the stiffness against them, is computed from K and taken into account exactly, as of motions given
+    !> to feti_body_null_space with that flag: see there, also for what follows where K drives the body, or is
+    !> singular beyond these motions. Nothing depends on it where there are no coordinates, or a null space
+    !> was given. FETI_UNSUPPORTED from feti_setup where K+ is the host's (feti_body_operator). After a
+    !> failure the body keeps what it had.
+    !>
+    !> @param[in] p     (scalar) the handle
+    !> @param[in] body  (scalar) number of the body, from 0
+    !> @param[in] flags (scalar) FETI_CANDIDATES or FETI_SOFT
+    function feti_body_coordinates_flags(p, body, flags) bind(C, name="feti_body_coordinates_flags")
+      import
+      type(c_ptr), value :: p
+      integer(c_int64_t), value :: body
+      integer(c_int32_t), value :: flags
+      integer(c_int32_t) :: feti_body_coordinates_flags
+    end function feti_body_coordinates_flags
 
     !> Gives the load of a body.
     !>

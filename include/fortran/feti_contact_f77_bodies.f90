@@ -164,6 +164,17 @@ recursive subroutine ftbxyz(ip, ibody, idim, n, node, idir, xyz, ldx, ierr)
     directions, xyz, wide(ldx)))
 end subroutine
 
+!> What the rigid motions of these places are. iflag: FTCAND, candidates for the null space, as without this call; FTSOFT,
+!> motions that K resists softly.
+recursive subroutine ftbxyf(ip, ibody, iflag, ierr)
+  use feti_contact_f77_base
+  implicit none
+  integer, intent(in) :: ip, ibody, iflag
+  integer, intent(out) :: ierr
+
+  ierr = told(feti_body_coordinates_flags(handle(ip), from_zero(ibody), narrow(iflag)))
+end subroutine
+
 !> Load of a body, f(n), force; holds until it is given again. ibody = FTALL: of all, in the host's numbers.
 recursive subroutine ftblod(ip, ibody, n, f, ierr)
   use feti_contact_f77_base

@@ -27,6 +27,7 @@ pub fn same_matrix(a: &Symmetric, b: &Symmetric) -> bool {
 /// Whether the host has said the same about both besides the matrix and the load.
 fn same_input(a: &Body, b: &Body) -> bool {
     a.fixing == b.fixing
+        && a.soft_coordinates == b.soft_coordinates
         && same_option(&a.null_space, &b.null_space, same_vectors)
         && same_option(&a.coordinates, &b.coordinates, Coordinates::same)
 }
@@ -95,6 +96,16 @@ mod tests {
         assert_eq!(input_key(&said(ones.clone())), input_key(&said(ones.clone())));
         assert_ne!(input_key(&said(ones.clone())), input_key(&said(turned)));
         assert_ne!(input_key(&said(ones)), input_key(&Body::default()));
+    }
+
+    #[test]
+    fn equal_coordinates_of_soft_motions_and_of_candidates_say_different_things() {
+        let placed = |soft_coordinates: bool| {
+            let coordinates = Some(Coordinates::new(1, &[1, 1], &[0.0, 1.0], 1).unwrap());
+            let stiffness = Some(std::sync::Arc::new(chain(1.0)));
+            Body { order: 2, stiffness, coordinates, soft_coordinates, ..Body::default() }
+        };
+        assert!(same_body(&placed(true), &placed(true)) && !same_body(&placed(true), &placed(false)));
     }
 
     #[test]

@@ -53,15 +53,24 @@ impl Digits {
             let count = beside().filter(|entry| uses(entry.0)).count();
             count > 0 && count as f64 >= USED * beside().count() as f64
         };
-        let digits = decimal(&sampled);
+        let found = Self::among(&sampled, used);
+        Ok(if found.is_some() && sums_are_exact(k)? { None } else { found })
+    }
+
+    /// The same of entries that are not exact, whatever speaks for it: K drives a motion.
+    pub fn of_rounded(k: &Symmetric) -> Option<Self> {
+        Self::among(&sampled(k), |_| true)
+    }
+
+    fn among(sampled: &[(f64, bool)], used: impl Fn(&dyn Fn(f64) -> bool) -> bool) -> Option<Self> {
+        let digits = decimal(sampled);
         let digits = digits.filter(|&digits| digits >= FEWEST && used(&|v| !has(v, digits - 2)));
         let single = sampled.iter().all(|&(v, _)| f64::from(v as f32) == v) && used(&|v| bits(v) >= BITS);
         // large numbers in single precision are whole ones, of few digits
-        let found = match digits {
+        match digits {
             Some(digits) if digits == FEWEST || !single => Some(Self::Decimal(digits)),
             _ => single.then_some(Self::Single),
-        };
-        Ok(if found.is_some() && sums_are_exact(k)? { None } else { found })
+        }
     }
 
     /// The distance between numbers with these digits next to `v`, in units of v; the largest error is half of it.
@@ -70,6 +79,11 @@ impl Digits {
             Self::Decimal(digits) => 10f64.powi(v.abs().log10().floor() as i32 + 1 - digits as i32),
             Self::Single => 2f64.powi(v.abs().log2().floor() as i32 - 23),
         }
+    }
+
+    /// The largest distance between numbers with these digits, against the smaller of them.
+    pub fn relative(self) -> f64 {
+        self.unit(1.0)
     }
 
     /// Standard deviation of `v'E v` for each of `count` motions v, E the rounding of the entries in the rows of one part:

@@ -6,9 +6,9 @@ use std::fmt;
 use std::sync::Arc;
 
 use crate::body::fixing::hold_as_well;
-use crate::body::null_space::ROUNDING as KNOWN;
+use crate::body::null_space::{one_column_each, ROUNDING as KNOWN};
 use crate::body::probe::{known_to, probe, Factor};
-use crate::body::soft::{known_to_entries, soft_motions};
+use crate::body::soft::{known_to_entries, soft_motions, Apart};
 use crate::body::spectrum::Doubt;
 use crate::error::Result;
 use crate::linalg::cholesky::{inverse_columns, inverse_form};
@@ -171,9 +171,10 @@ impl GeneralizedInverse {
 
     /// The motions of the vectors that it has, and what K resists of them.
     fn softened(mut self, k: &Multiple) -> Result<Self> {
-        let dofs: Vec<usize> = (0..k.order()).collect();
-        let parts = [(&dofs[..], self.null_space.cols)];
-        (self.null_space, self.stiffness) = soft_motions(&self.factor, k, self.null_space, &parts)?;
+        let Apart { vectors, parts } = Apart::of(k, &self.null_space)?;
+        let parts: Vec<_> = parts.iter().map(|(dofs, count)| (&dofs[..], *count)).collect();
+        let (motions, stiffness) = soft_motions(&self.factor, k, vectors, &parts)?;
+        (self.null_space, self.stiffness) = (one_column_each(&motions, &parts)?, stiffness);
         self.error = known_to_entries(&self.factor, k, &self.null_space)?;
         Ok(self)
     }

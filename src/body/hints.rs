@@ -1,3 +1,5 @@
+//! Null spaces and soft motions from coordinates.
+//!
 //! Coordinates are hints: where all their rigid motions fit K, the null space is known before the factorisation. Where K
 //! resists some of them and yet is singular without these (places of another state, a body of revolution), it is sought in K.
 
@@ -29,9 +31,8 @@ impl GeneralizedInverse {
     ) -> Result<Plan> {
         let n = k.order();
         let _room = headroom(64 * n * size_of::<f64>() + PRODUCTS, "the null space of a body")?;
-        let parts: Vec<_> =
-            rigid.members.iter().map(Vec::as_slice).zip(rigid.counts.iter().copied()).collect();
-        let KernelByParts { kernel, counts, candidates, next } = kernel_by_parts(&k, &rigid.modes, &parts)?;
+        let KernelByParts { kernel, counts, candidates, next } =
+            kernel_by_parts(&k, &rigid.modes, &rigid.parts(), CANDIDATE)?;
         let fit = counts.iter().sum();
         if fit == candidates {
             return Self::known(k, &kernel, (rigid, &counts), (tolerance, None), fixing);
@@ -56,6 +57,18 @@ impl GeneralizedInverse {
                 Ok(Plan::Search(Search::new(k, tolerance, fixing)?.instead_of(misfit)))
             }
             other => other,
+        }
+    }
+
+    /// The rigid motions of coordinates as soft ones. Supports of 1e30 on the diagonal are all that is seen of motions that move them
+    /// in the metric D: those that do not are told apart before.
+    pub fn plan_soft(k: Multiple, rigid: &RigidModes, fixing: Option<&[usize]>) -> Result<Plan> {
+        let _room = headroom(64 * k.order() * size_of::<f64>() + PRODUCTS, "the soft motions of a body")?;
+        let KernelByParts { kernel, counts, .. } =
+            kernel_by_parts(&k, &rigid.modes, &rigid.parts(), f64::INFINITY)?;
+        match Self::known(k, &kernel, (rigid, &counts), (f64::INFINITY, None), fixing)? {
+            Plan::Known(known) => Ok(Plan::Known(Known { soft: true, ..known })),
+            other => Ok(other),
         }
     }
 

@@ -61,6 +61,8 @@ pub struct Body {
     pub null_space: Option<NullSpaceInput>,
     /// Places of the dofs: candidates for the null space when none is given.
     pub coordinates: Option<Coordinates>,
+    /// Their rigid motions are soft ones, not candidates.
+    pub soft_coordinates: bool,
     /// Dofs held in `K_p+`; chosen by the library when not given.
     pub fixing: Option<Vec<usize>>,
     /// `f_p`, length n, force; zero until given.
@@ -72,6 +74,14 @@ impl Body {
     pub fn k(&self) -> Option<Stiffness<'_>> {
         let matrix = self.stiffness.as_deref().map(Stiffness::Matrix);
         matrix.or_else(|| self.operator.as_deref().map(Stiffness::Host))
+    }
+
+    /// The host tells of motions that K resists softly.
+    pub fn has_soft_motions(&self) -> bool {
+        match &self.null_space {
+            Some(given) => given.modes == Modes::Soft,
+            None => self.coordinates.is_some() && self.soft_coordinates,
+        }
     }
 
     /// The power of two below the largest `K_ii`, 1 where there is none, force / length: dividing by it is exact, so powers

@@ -80,7 +80,7 @@ pub fn verified<K: Products>(k: &K, input: &NullSpaceInput, tolerance: f64) -> R
     match input.modes {
         Modes::Exact => exact(&input.vectors),
         Modes::Candidates => {
-            let found = kernel_by_parts(k, &input.vectors, &[(&dofs, input.vectors.cols)])?;
+            let found = kernel_by_parts(k, &input.vectors, &[(&dofs, input.vectors.cols)], CANDIDATE)?;
             exact(&found.kernel.columns(0..found.counts[0]))
         }
         Modes::Soft => {
@@ -158,22 +158,23 @@ pub fn one_column_each(vectors: &Matrix, parts: &[(&[usize], usize)]) -> Result<
 
 /// What K does to candidates.
 pub struct KernelByParts {
-    /// Null vectors j of all parts in column j.
+    /// Motions j of all parts in column j.
     pub kernel: Matrix,
     /// Of every part.
     pub counts: Vec<usize>,
     /// Dimension of the span of the candidates of all parts.
     pub candidates: usize,
-    /// The least `|D^-1 K v|` of a unit vector v among those that are no null vectors.
+    /// The least `|D^-1 K v|` of a unit vector v among the others.
     pub next: f64,
 }
 
-/// The part of the span of the candidates that `D^-1 K` maps to zero, part by part: from the singular values of `D^-1 K Q`,
+/// The part of the span of the candidates with `|D^-1 K v| <= limit |v|`, part by part: from the singular values of `D^-1 K Q`,
 /// Q an orthonormal basis of the span. `parts`: dofs and number of candidates, which are in the first columns.
 pub fn kernel_by_parts<K: Products>(
     k: &K,
     candidates: &Matrix,
     parts: &[(&[usize], usize)],
+    limit: f64,
 ) -> Result<KernelByParts> {
     let mut spans = reserved(parts.len(), "a null space")?;
     let mut all = Matrix::zeros(candidates.rows, candidates.cols)?;
@@ -197,7 +198,7 @@ pub fn kernel_by_parts<K: Products>(
         refuse_overflow(&resisted.data, |at| dofs[at % dofs.len()])?;
         let (values, vectors) = right_singular(&resisted)?;
         for (j, value) in values.iter().enumerate() {
-            if *value > CANDIDATE {
+            if *value > limit {
                 found.next = found.next.min(*value);
                 continue;
             }

@@ -24,6 +24,13 @@ pub struct RigidModes {
     pub counts: Vec<usize>,
 }
 
+impl RigidModes {
+    /// Dofs of every part and the number of its modes.
+    pub fn parts(&self) -> Vec<(&[usize], usize)> {
+        self.members.iter().map(Vec::as_slice).zip(self.counts.iter().copied()).collect()
+    }
+}
+
 /// What may be left of a rigid motion that is taken apart.
 const RIGID: f64 = 1e-6;
 

@@ -30,6 +30,8 @@ use crate::platform::memory::{copied, headroom, reserved, PRODUCTS};
 const LAST: usize = 24;
 /// More than this in one part are not tried.
 const MOST: usize = 400;
+/// Rounding of entries in a pivot that cancels, against that of one of them.
+const PIVOT: f64 = 10.0;
 /// Bytes of labels, lists and vectors, per dof.
 const PER_DOF: usize = 256;
 
@@ -150,25 +152,30 @@ impl Search {
                     if let Some(part) = self.members.iter().position(|all| all.binary_search(&dof).is_ok()) {
                         self.last[part].push(dof);
                     }
-                    let parts = (self.members, self.last, self.between);
+                    let (parts, digits) = ((self.members, self.last, self.between), self.digits);
                     self = Self::with(self.k, self.tolerance, self.fixing, parts, 2 * self.count)?;
+                    self.digits = self.digits.or(digits);
                 }
             }
         }
     }
 
-    fn attempt(&self, analysis: &Arc<Analysis>) -> Result<Attempt> {
+    fn attempt(&mut self, analysis: &Arc<Analysis>) -> Result<Attempt> {
         let supported = supported(&self.k, &self.last, &self.between)?;
         let factor = match analysis.factorize(&supported, 1.0)? {
             Ok(factor) => factor,
             Err(breakdown) => return self.missed_or_indefinite(breakdown),
         };
         let relative = |(dof, pivot)| Breakdown { dof, relative_pivot: pivot / supported.diagonal(dof) };
-        if let Some(breakdown) = factor.pivots().map(relative).find(|pivot| pivot.relative_pivot < SINGULAR) {
+        let below = |limit: f64| factor.pivots().map(relative).find(|pivot| pivot.relative_pivot < limit);
+        if let Some(breakdown) = below(SINGULAR) {
             return self.missed_or_indefinite(breakdown);
         }
+        if let Some(Breakdown { dof, .. }) = below(self.rounded_pivot()).filter(|_| 2 * self.count <= MOST) {
+            return Ok(Attempt::Missed(dof));
+        }
         drop(supported);
-        let soft = self.soft(&factor)?;
+        let soft = self.soft_as_written(&factor)?;
         for ((last, members), part) in self.last.iter().zip(&self.members).zip(&soft) {
             if 2 * part.vectors.cols > last.len() && last.len() < members.len() {
                 return Ok(Attempt::Missed(last[0]));
@@ -199,6 +206,17 @@ impl Search {
         refuse_overflow(&scaled.data, |at| last[at % m])?;
         let (values, vectors) = symmetric_eigen(&scaled)?;
         Ok(End { schur, values, vectors })
+    }
+
+    /// The same. Entries that drive a motion are not exact, whatever speaks for it: it is judged once more by their digits.
+    fn soft_as_written(&mut self, factor: &Cholesky) -> Result<Vec<Soft>> {
+        match self.soft(factor) {
+            Err(Error { kind: Kind::Indefinite, .. }) if self.digits.is_none() => {
+                self.digits = Digits::of_rounded(&self.k.matrix);
+                self.soft(factor)
+            }
+            found => found,
+        }
     }
 
     /// The null space of every part at t: from the eigenvalues at t where they leave no question, else from the softest
@@ -352,11 +370,23 @@ impl Search {
 
     /// A pivot of `K + E D_tt E'` that is not positive: K is indefinite, or t does not resist a motion of the null space,
     /// which it does where it has all dofs of the part.
-    fn missed_or_indefinite(&self, Breakdown { dof, relative_pivot }: Breakdown) -> Result<Attempt> {
+    fn missed_or_indefinite(&mut self, Breakdown { dof, relative_pivot }: Breakdown) -> Result<Attempt> {
         let mut parts = self.members.iter().zip(&self.last);
         let whole =
             parts.any(|(members, last)| members.len() == last.len() && last.binary_search(&dof).is_ok());
         let relative_pivot = if whole { 2.0 * relative_pivot - 1.0 } else { relative_pivot };
-        (Breakdown { dof, relative_pivot }).refused().map_or(Ok(Attempt::Missed(dof)), Err)
+        let Some(error) = (Breakdown { dof, relative_pivot }).refused() else {
+            return Ok(Attempt::Missed(dof));
+        };
+        self.digits = self.digits.or_else(|| Digits::of_rounded(&self.k.matrix));
+        if relative_pivot < -self.rounded_pivot() {
+            return Err(error);
+        }
+        Ok(Attempt::Missed(dof))
+    }
+
+    /// What rounding of the entries may make of a relative pivot that is 0: such a motion belongs to t.
+    fn rounded_pivot(&self) -> f64 {
+        self.digits.map_or(SINGULAR, |digits| PIVOT * digits.relative())
     }
 }

@@ -13,16 +13,47 @@ use crate::body::probe::{Factor, MOST_ERROR, SAMPLE};
 use crate::body::spectrum::symmetric;
 use crate::error::Result;
 use crate::linalg::dense::spectrum::symmetric_eigen;
+use crate::linalg::graph::{components, joined};
 use crate::linalg::random::Random;
 use crate::linalg::twofold::Twofold;
 use crate::linalg::vector::norm_max;
 use crate::linalg::{Matrix, Multiple};
-use crate::platform::memory::filled;
+use crate::platform::memory::{filled, zeros};
 
 const WHAT: &str = "the soft motions of a body";
 
 /// Dofs of every part and the number of its motions, which are in the first columns.
 type Parts<'a> = [(&'a [usize], usize)];
+
+/// Motions in common columns, those of parts that no stiffness and no motion joins: the motions of one resist none of another.
+pub struct Apart {
+    pub vectors: Matrix,
+    /// Dofs and number of motions, part after part.
+    pub parts: Vec<(Vec<usize>, usize)>,
+}
+
+impl Apart {
+    /// `motions`: n x r, each in a column of its own.
+    pub fn of(k: &Multiple, motions: &Matrix) -> Result<Self> {
+        let (part_of, count) = components(&k.matrix);
+        let moved =
+            |j: usize| (0..motions.rows).filter(move |&i| motions.get(i, j) != 0.0).map(|i| part_of[i]);
+        let (group_of, groups) = joined(count, (0..motions.cols).map(moved));
+        let mut parts = vec![(Vec::new(), 0); groups];
+        part_of.iter().enumerate().for_each(|(i, &part)| parts[group_of[part]].0.push(i));
+        let mut vectors = Matrix::zeros(motions.rows, 0)?;
+        let empty = zeros(motions.rows, WHAT)?;
+        for j in 0..motions.cols {
+            let (dofs, count) = &mut parts[moved(j).next().map_or(0, |part| group_of[part])];
+            if vectors.cols == *count {
+                vectors.push_col(&empty);
+            }
+            dofs.iter().for_each(|&i| vectors.set(i, *count, motions.get(i, j)));
+            *count += 1;
+        }
+        Ok(Self { vectors, parts })
+    }
+}
 
 /// What K does to motions.
 struct Resistance {

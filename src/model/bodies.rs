@@ -112,6 +112,13 @@ impl Model {
         Ok(())
     }
 
+    /// Whether the rigid motions of the coordinates, given before or after, are soft ones; else they are candidates.
+    pub fn set_soft_coordinates(&mut self, body: usize, soft: bool) -> Result<()> {
+        let unchanged = self.given(body)?.body.soft_coordinates == soft;
+        self.change(body, Change::unless(unchanged, Change::Motions))?.body.soft_coordinates = soft;
+        Ok(())
+    }
+
     /// `f_p`, length n, force.
     pub fn set_load(&mut self, body: usize, f: &[f64]) -> Result<()> {
         self.check_length(body, "n", f.len())?;

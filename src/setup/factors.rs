@@ -328,6 +328,9 @@ fn plan(body: &Body, tolerance: f64) -> Result<Plan> {
         return GeneralizedInverse::search(k, tolerance, fixing);
     };
     let rigid = coordinates.rigid_modes(&k.matrix)?;
+    if body.soft_coordinates {
+        return GeneralizedInverse::plan_soft(k, &rigid, fixing);
+    }
     GeneralizedInverse::plan_near(k, &rigid, tolerance, fixing)
 }
 

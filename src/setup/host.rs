@@ -56,11 +56,11 @@ fn host_inverse(body: &Body, tolerance: f64) -> Result<GeneralizedInverse> {
         return Err(Error::new(Kind::Unsupported, what));
     }
     let k = HostMultiple { operator, unit: body.unit() };
+    if body.has_soft_motions() {
+        let what = "soft motions were given, and K+ of this body is the host's";
+        return Err(Error::new(Kind::Unsupported, what));
+    }
     if let Some(given) = &body.null_space {
-        if given.modes == Modes::Soft {
-            let what = "soft motions were given, and K+ of this body is the host's";
-            return Err(Error::new(Kind::Unsupported, what));
-        }
         return GeneralizedInverse::of_host(k, given, tolerance);
     }
     let missing = || Error::new(Kind::State, "the null space has not been given");

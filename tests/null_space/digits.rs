@@ -5,7 +5,7 @@ use decks::{Block, Csr};
 use feti_contact::error::Kind;
 use feti_contact::solver::{Digits, Doubt};
 
-use crate::bodies::{bar, chain, cube, held, membrane};
+use crate::bodies::{assembled, bar, chain, cube, held, membrane};
 use crate::{assert_dimension, left_over, registered, warnings};
 
 pub fn printed(k: &Csr, digits: usize) -> Csr {
@@ -160,5 +160,54 @@ fn each_of_many_floating_parts_has_its_motions() {
             .basis
             .chunks_exact(k.rows)
             .all(|r| r.iter().filter(|v| **v != 0.0).count() <= one.rows));
+    }
+}
+
+/// Rows of one element that sum to 0 with all their digits say nothing of its rotation, which rounding drives.
+#[test]
+fn rounding_that_drives_a_motion_is_no_indefinite_stiffness_though_rows_sum_to_zero() {
+    let mut driven = 0;
+    for (block, dimension) in [(quads(1), 3), (cube(1), 6)] {
+        let k = block.stiffness();
+        for turn in 0..400 {
+            let scaled: Vec<f64> = k.val.iter().map(|v| v * (1.0 + 0.0217 * f64::from(turn))).collect();
+            for digits in [8, 9] {
+                let k = printed(&Csr { val: scaled.clone(), ..k.clone() }, digits);
+                let (found, doubts, _) = set_up(&k);
+                assert_eq!(found, dimension, "{turn}, {digits} digits");
+                driven += usize::from(rows_sum_to_zero(&k) && !doubts.is_empty());
+            }
+        }
+    }
+    assert!(driven > 5, "{driven}");
+}
+
+fn rows_sum_to_zero(k: &Csr) -> bool {
+    let still = |i: usize| {
+        let (sum, size) =
+            k.row(i).fold((0.0, 0.0), |(sum, size): (f64, f64), (_, v)| (sum + v, size + v.abs()));
+        sum.abs() <= 1e-15 * size
+    };
+    (0..k.rows).all(still)
+}
+
+/// A node that one bar ties to a block of 162 unknowns, of which 24 are eliminated last: what rounding leaves of its swing is a
+/// negative pivot at every other angle.
+#[test]
+fn a_swing_that_rounding_drives_is_a_motion_and_no_indefinite_stiffness() {
+    let block = quads(8);
+    let k = block.stiffness();
+    for turn in 0..100 {
+        let (sin, cos) = (0.1 + 0.0137 * f64::from(turn)).sin_cos();
+        let t = [-cos, -sin, cos, sin];
+        let bar = Csr::from_dense(4, &t.iter().flat_map(|a| t.map(|b| 1e5 * a * b)).collect::<Vec<_>>());
+        let n = k.rows;
+        let around = (0..n).map(|i| if i < 74 { i } else { i + 2 }).collect();
+        let parts = [(&k, 1.0, around), (&bar, 1.0, vec![40, 41, 74, 75])];
+        for digits in [8, 9, 17] {
+            let k = printed(&assembled(n + 2, &parts), digits);
+            let (found, ..) = set_up(&k);
+            assert_eq!(found, 4, "{turn}, {digits} digits");
+        }
     }
 }

@@ -94,6 +94,28 @@ fn a_null_space_that_is_none_or_lacks_a_mode_is_refused() {
     assert_says(&refused(|_| {}, give(&modes)), Kind::NullSpace, "not a null space");
 }
 
+/// What K makes of soft motions takes the entries of K.
+#[test]
+fn soft_motions_of_a_body_whose_inverse_is_the_hosts_are_refused() {
+    let deck = cube();
+    let body = &deck.bodies[BODY];
+    let (n, modes) = (body.dofs(), body.modes());
+    let soft = |problem: &mut Problem| {
+        problem.set_null_space(BODY, n, modes.len(), &modes.concat(), n, Modes::Soft).unwrap();
+    };
+    assert_says(&refused(|_| {}, soft), Kind::Unsupported, "soft motions were given");
+    let mut problem = hand_over::without_null_spaces(&deck).unwrap();
+    let host = hosts_of(&deck, Form::Held).swap_remove(BODY);
+    problem.set_operator(BODY, &host.diagonal(), host.functions(false)).unwrap();
+    problem.set_coordinates(BODY, 3, &body.node, &body.direction, &body.coordinates.concat(), 3).unwrap();
+    problem.set_soft_coordinates(BODY, true).unwrap();
+    let error = problem.setup().unwrap_err();
+    assert_eq!(error.place.body, Some(BODY));
+    assert_says(&error, Kind::Unsupported, "soft motions were given");
+    problem.set_soft_coordinates(BODY, false).unwrap();
+    problem.setup().unwrap();
+}
+
 #[test]
 fn what_is_no_number_is_named_with_its_dof() {
     let error = refused(|host| host.kplus[9] = f64::NAN, as_given);

@@ -10,7 +10,7 @@ use crate::{
     ELEMENTS,
 };
 
-fn narrow(blocks: usize) -> Deck {
+pub fn narrow(blocks: usize) -> Deck {
     column_on(blocks, 3..=5, 1e-3)
 }
 
@@ -21,7 +21,7 @@ fn driven(deck: &Deck) -> Vec<usize> {
     (0..deck.bodies.len()).flat_map(|p| corners.map(|node| deck.offset(p) + 2 * node)).collect()
 }
 
-fn with_drive(mut deck: Deck, drive: f64) -> Deck {
+pub fn with_drive(mut deck: Deck, drive: f64) -> Deck {
     for dof in driven(&deck) {
         let p = (0..deck.bodies.len()).rfind(|&p| deck.offset(p) <= dof).unwrap();
         let own = dof - deck.offset(p);
@@ -60,7 +60,7 @@ fn critical(deck: &Deck, closed: &[usize]) -> f64 {
     1.0 / eigenvalues(moved, dofs.len()).into_iter().fold(0.0, f64::max)
 }
 
-fn closed(lambda: &[f64]) -> Vec<usize> {
+pub fn closed(lambda: &[f64]) -> Vec<usize> {
     (0..lambda.len()).filter(|&i| lambda[i] > 0.0).collect()
 }
 

@@ -3,11 +3,13 @@
 //!
 //! | module | claims |
 //! |---|---|
+//! | [`coordinates`] | rigid motions of coordinates, with and without supports, resisted or driven |
 //! | [`driven`] | negative stiffness of rho from .007 to .9, and of no minimum |
 //! | [`random`] | driven problems against all their stationary points |
 //! | [`units`] | units of forces and lengths, problem files |
 //! | [`weak`] | springs and rounding of 1e-12 to 1e-4 of K: forces, products, units, threads |
 
+mod coordinates;
 mod driven;
 #[path = "../support/hand_over.rs"]
 mod hand_over;

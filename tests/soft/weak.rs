@@ -1,11 +1,12 @@
 //! Springs and rounding of 1e-12 to 1e-4 of K.
 
+use decks::random::Random;
 use decks::{masonry, Deck, Rows};
 use feti_contact::solver::{Modes, Outcome};
 
 use crate::{
-    add_diagonal, assert_same_bits_for_any_threads, column, difference, given, hand_over, oracle, rounded,
-    solved, with_springs, Solved,
+    add_diagonal, assert_same_bits_for_any_threads, column, column_on, difference, given, hand_over, oracle,
+    rounded, solved, with_springs, Solved, ELEMENTS,
 };
 
 /// Shares of the largest K_ii, by decades.
@@ -88,6 +89,44 @@ fn a_load_that_weak_springs_alone_hold_is_held_by_them() {
         }
     }
     assert!(failed.is_empty(), "{}", failed.join("\n"));
+}
+
+/// A column of up to 10 blocks, its loads, aside and down, and its gaps at random.
+fn random_column(seed: u64) -> Deck {
+    let mut random = Random::new(seed);
+    let [nx, ny, _] = ELEMENTS;
+    let mut deck = column_on(1 + seed as usize % 10, 0..=nx, random.between(0.0, 0.3));
+    for body in &mut deck.bodies {
+        for x in 0..=nx {
+            let node = 2 * (ny * (nx + 1) + x);
+            body.load[node] += random.between(-1.5e-4, 1.5e-4);
+            body.load[node + 1] *= random.between(0.5, 1.5);
+        }
+    }
+    let gap = |gap: &mut f64| *gap = if random.chance(0.3) { random.between(0.0, 3e-3) } else { 0.0 };
+    deck.contact.rhs.iter_mut().for_each(gap);
+    deck
+}
+
+/// The unknowns of springs have 1 in F and all but nothing beside it: one eigenvalue more for the conjugate gradients, which takes one
+/// step, or two where stiffer springs spread it. Of the 8 products of a block alone 1.2 times as many leave room for one.
+#[test]
+fn springs_cost_a_product_or_two_of_random_columns() {
+    let decks: Vec<Deck> = (0..50).map(random_column).collect();
+    let products = |deck: &Deck, modes| solved(&mut given(deck, modes)).unwrap().products;
+    let plain: Vec<usize> = decks.iter().map(|deck| products(deck, Modes::Exact)).collect();
+    for decade in -12..=-5 {
+        let with = |deck: &Deck| products(&with_springs(deck.clone(), 10f64.powi(decade)), Modes::Soft);
+        let found: Vec<usize> = decks.iter().map(with).collect();
+        let mut ratios: Vec<f64> = found.iter().zip(&plain).map(|(a, b)| *a as f64 / *b as f64).collect();
+        ratios.sort_by(f64::total_cmp);
+        println!("1e{decade}: median {:.3}, worst {:.3}", ratios[25], ratios[49]);
+        assert!(ratios[25] <= 1.13, "1e{decade}: {}", ratios[25]);
+        for (seed, (found, plain)) in found.into_iter().zip(plain.iter().copied()).enumerate() {
+            let most = if plain < 10 { plain + 2 } else { 12 * plain / 10 };
+            assert!(found <= most, "1e{decade}, {seed}: {found} of {plain}");
+        }
+    }
 }
 
 #[test]

@@ -2,7 +2,7 @@
 
 use crate::error::Result;
 use crate::ffi::boundary::{call, column_major, count, enter, id, input, meaning, same, Output};
-use crate::ffi::header::types::{feti_problem, FETI_ALL};
+use crate::ffi::header::types::{feti_problem, FETI_ALL, FETI_CANDIDATES, FETI_SOFT};
 use crate::solver::Problem;
 
 /// Adds a body with `n` unknowns.
@@ -31,7 +31,8 @@ pub unsafe extern "C" fn feti_body_add(p: *mut feti_problem, n: i64, body: *mut 
 /// Gives position and direction of every unknown of a body, from which candidates for its null space are made.
 ///
 /// The data is copied; calling again replaces it. Never called, and no null space given: the library finds the null space
-/// from K. A null space that was given (feti_body_null_space) goes before it. Shells and beams repeat nodes with rotations.
+/// from K. A null space that was given (feti_body_null_space) goes before it. Where K resists or drives the rigid motions:
+/// feti_body_coordinates_flags. Shells and beams repeat nodes with rotations.
 /// After a failure the body keeps what it had.
 ///
 /// | argument | in/out | shape | rule |
@@ -66,6 +67,29 @@ pub unsafe extern "C" fn feti_body_coordinates(
         let (node, dir) = unsafe { (input(node, n, "node")?, input(dir, n, "dir")?) };
         // SAFETY: ld (n - 1) + dim coordinates by the caller's word.
         problem.set_coordinates(body, dim, node, dir, unsafe { input(xyz, entries, "xyz") }?, ld)
+    })
+}
+
+/// Says what the rigid motions of the coordinates of a body are: candidates for its null space, or motions that K resists softly.
+///
+/// Holds for all coordinates that the body gets (feti_body_coordinates), before this call or after it; never called: FETI_CANDIDATES.
+/// With FETI_SOFT weak springs, rounding of the entries of K, geometric stiffness and supports may resist or drive the motions, which
+/// need not be exact. What the motions are, and the stiffness against them, is computed from K and
+/// taken into account exactly, as of motions given to feti_body_null_space with that flag: see there, also for what follows where K
+/// drives the body, or is singular beyond these motions. Nothing depends on it where there are no coordinates, or a null space was
+/// given. FETI_UNSUPPORTED from feti_setup where K+ is the host's (feti_body_operator). After a failure the body keeps what it had.
+///
+/// | argument | in/out | shape | rule |
+/// |---|---|---|---|
+/// | `p` | in | scalar | the handle |
+/// | `body` | in | scalar | number of the body, from 0 |
+/// | `flags` | in | scalar | FETI_CANDIDATES or FETI_SOFT |
+#[no_mangle]
+pub extern "C" fn feti_body_coordinates_flags(p: *mut feti_problem, body: i64, flags: i32) -> i32 {
+    enter(p, call!(feti_body_coordinates_flags(p, body, flags)), |problem| {
+        let known = [(FETI_CANDIDATES, false), (FETI_SOFT, true)];
+        let soft = meaning(flags, "flags", &known, "neither FETI_CANDIDATES nor FETI_SOFT")?;
+        problem.set_soft_coordinates(id(body, "body")?, soft)
     })
 }
 

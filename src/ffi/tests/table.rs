@@ -61,6 +61,7 @@ pub fn statuses(p: *mut feti_problem) -> Vec<(&'static str, i32)> {
         feti_body_null_space(0, 0, 0, null(), 0, 0);
         feti_body_null_space_get(0, 0, null_mut(), null_mut(), 0);
         feti_body_coordinates(0, 0, 0, null(), null(), null(), 0);
+        feti_body_coordinates_flags(0, 0);
         feti_body_load(0, 0, null());
         feti_body_operator(0, 0, null(), None, None, 0, null_mut());
         feti_rows_add_i32(0, 0, null(), null(), null(), null(), 0, null(), null_mut());

@@ -25,6 +25,7 @@ pub const BODY: Tag = *b"BODY";
 pub const STIFFNESS: Tag = *b"STIF";
 pub const NULL_SPACE: Tag = *b"NULL";
 pub const COORDINATES: Tag = *b"COOR";
+pub const COORDINATES_FLAGS: Tag = *b"COOF";
 pub const FIXING: Tag = *b"FIXD";
 pub const LOAD: Tag = *b"LOAD";
 pub const NUMBERING: Tag = *b"NUMB";

@@ -7,7 +7,7 @@ use crate::constraints::{RowKind, RowsInput};
 use crate::error::{Error, Kind, Result};
 use crate::model::contents::Model;
 use crate::model::file::format::{
-    Tag, BODY, COORDINATES, FIXING, LOAD, NULL_SPACE, NUMBERING, OPTIONS, ROWS, STIFFNESS,
+    Tag, BODY, COORDINATES, COORDINATES_FLAGS, FIXING, LOAD, NULL_SPACE, NUMBERING, OPTIONS, ROWS, STIFFNESS,
 };
 use crate::model::file::input::{saturated, Input, OpenSection};
 use crate::model::file::write::{CANDIDATES, EQUALITY, EXACT, INEQUALITY, SOFT};
@@ -38,6 +38,7 @@ enum SectionContent {
     Stiffness { ptr: Vec<usize>, col: Vec<i64>, val: Vec<f64> },
     NullSpace { n: usize, r: usize, modes: Modes, basis: Vec<f64> },
     Coordinates { places: Vec<f64>, directions: Vec<i32> },
+    CoordinatesFlags { soft: bool },
     Fixing(Vec<usize>),
     Load(Vec<f64>),
     Numbering(Vec<i64>),
@@ -66,6 +67,10 @@ impl SectionContent {
                 let places = input.reals(open, 3 * n)?;
                 Self::Coordinates { places, directions: input.array(open, n, i32::from_le_bytes)? }
             }
+            COORDINATES_FLAGS => match input.number(open)? {
+                number @ (CANDIDATES | SOFT) => Self::CoordinatesFlags { soft: number == SOFT },
+                number => return Err(input.wrong(open, &format!("{number} is no kind of rigid motions"))),
+            },
             FIXING => Self::Fixing(input.counted(open, saturated)?),
             LOAD => Self::Load(input.counted(open, f64::from_le_bytes)?),
             NUMBERING => Self::Numbering(input.counted(open, i64::from_le_bytes)?),
@@ -131,6 +136,7 @@ impl SectionContent {
             Self::Coordinates { places, directions } => {
                 model.set_coordinates(body, 3, &directions, &directions, &places, 3)
             }
+            Self::CoordinatesFlags { soft } => model.set_soft_coordinates(body, soft),
             Self::Fixing(dofs) => model.set_fixing(body, Some(&dofs)),
             Self::Load(f) => model.set_load(body, &f),
             Self::Numbering(numbers) => model.set_numbering(body, &numbers),

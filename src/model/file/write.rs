@@ -6,8 +6,8 @@ use crate::body::Modes;
 use crate::constraints::{RowKind, RowSet};
 use crate::model::contents::{GivenBody, Model};
 use crate::model::file::format::{
-    self, padding, section_length, Crc, Tag, BODY, COORDINATES, FIXING, FORMAT, HEADER, LOAD, MAGIC,
-    NULL_SPACE, NUMBERING, OPTIONS, ROWS, STIFFNESS,
+    self, padding, section_length, Crc, Tag, BODY, COORDINATES, COORDINATES_FLAGS, FIXING, FORMAT, HEADER,
+    LOAD, MAGIC, NULL_SPACE, NUMBERING, OPTIONS, ROWS, STIFFNESS,
 };
 
 /// Numbers of the format.
@@ -166,10 +166,11 @@ fn of_body(given: &GivenBody) -> impl Iterator<Item = Section<'_>> {
         let pieces = vec![count(given.len()), places, Directions(given.directions())];
         Section { tag: COORDINATES, pieces }
     });
+    let flags = body.soft_coordinates.then(|| Section { tag: COORDINATES_FLAGS, pieces: vec![Number(SOFT)] });
     let fixing = body.fixing.as_ref().map(|dofs| unknowns(FIXING, dofs));
     let load = body.load.as_ref().map(|f| Section { tag: LOAD, pieces: vec![count(f.len()), Reals(f)] });
     let numbering = given.numbers.as_ref().map(|numbers| unknowns(NUMBERING, numbers));
-    [order, stiffness, null_space, coordinates, fixing, load, numbering].into_iter().flatten()
+    [order, stiffness, null_space, coordinates, flags, fixing, load, numbering].into_iter().flatten()
 }
 
 fn unknowns(tag: Tag, numbers: &[usize]) -> Section<'_> {

@@ -57,6 +57,41 @@ static void check_both(const char *folder, const char *name, const int64_t *free
     case_free(&data);
 }
 
+/* A spring 2 on the ground and, across a gap of 1, a block joined by 4, driven by .25 at its near end and pressed by 6:
+   u = -25/7; -32/7, -85/14, lambda = 50/7, by hand. K of the block is indefinite, and the spring holds what it drives. */
+static void a_driven_block_is_held_by_the_spring(void)
+{
+    const double spring[1] = { 2.0 }, block[4] = { 3.75, -4.0, -4.0, 4.0 }, load[2] = { 0.0, -6.0 }, gap[1] = { 1.0 };
+    const double row[2] = { 1.0, -1.0 }, place[2] = { 5.0, 6.0 };
+    const int32_t node[2] = { 1, 2 }, dir[2] = { 1, 1 }, ptr[2] = { 0, 2 }, of[2] = { 0, 1 }, dof[2] = { 0, 0 };
+    feti_body_facts facts = { .struct_size = sizeof facts };
+    feti_problem *p = NULL;
+    int64_t body;
+    double u[2], lambda[1];
+
+    MUST(feti_problem_create(&p));
+    MUST(feti_body_add(p, 1, &body));
+    MUST(feti_body_stiffness_dense(p, body, 1, spring, 1, FETI_FULL, FETI_COPY));
+    MUST(feti_body_null_space(p, body, 0, 1, NULL, 1, FETI_EXACT));
+    MUST(feti_body_add(p, 2, &body));
+    MUST(feti_body_stiffness_dense(p, body, 2, block, 2, FETI_FULL, FETI_COPY));
+    MUST(feti_body_load(p, body, 2, load));
+    MUST(feti_rows_add_i32(p, FETI_INEQUALITY, 1, ptr, of, dof, row, 0, gap, NULL));
+    MUST(feti_body_coordinates_flags(p, body, FETI_SOFT)); /* before the coordinates: it waits for them */
+    MUST(feti_body_coordinates(p, body, 1, 2, node, dir, place, 1));
+    OK(feti_solve(p, NULL));
+    OK(feti_displacement(p, body, 2, u));
+    OK(feti_multipliers(p, FETI_INEQUALITY, 1, lambda));
+    CHECK(fabs(u[0] + 32.0 / 7.0) <= 1e-12 && fabs(u[1] + 85.0 / 14.0) <= 1e-12, "u = %.15g %.15g", u[0], u[1]);
+    CHECK(fabs(lambda[0] - 50.0 / 7.0) <= 1e-12, "lambda = %.15g", lambda[0]);
+    OK(feti_body_info(p, body, &facts));
+    CHECK(facts.origin == FETI_ORIGIN_COORDINATES && facts.null_space == 1, "origin %lld, dimension %lld",
+          (long long)facts.origin, (long long)facts.null_space);
+    OK(feti_body_coordinates_flags(p, body, FETI_CANDIDATES));
+    EXPECT(FETI_INDEFINITE, feti_solve(p, NULL));
+    OK(feti_problem_destroy(&p));
+}
+
 int main(int argc, char **argv)
 {
     static const int64_t plane_free[] = { 3, 3 }, plane_held[] = { 1, 0 };
@@ -65,5 +100,6 @@ int main(int argc, char **argv)
     if (argc < 2) return 2;
     check_both(argv[1], "hertz_cylinder", plane_free, plane_held);
     check_both(argv[1], "three_bodies", space_free, space_held);
+    a_driven_block_is_held_by_the_spring();
     return check_result();
 }

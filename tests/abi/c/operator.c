@@ -273,6 +273,28 @@ static void wrong_arguments_and_functions(void)
     OK(feti_problem_destroy(&p));
 }
 
+static void soft_motions_of_a_host_s_own_inverse_are_not_supported(void)
+{
+    feti_problem *p = small_problem();
+    one_spring spring = { 2.0, 0.5 };
+    const double diag[1] = { 2.0 };
+    const int32_t one[1] = { 1 };
+
+    OK(feti_body_coordinates_flags(p, SPRING, FETI_SOFT));
+    OK(feti_body_coordinates(p, SPRING, 1, 1, one, one, diag, 1));
+    OK(GIVE(p, SPRING, 1, diag, spring_kplus, spring_k, 0));
+    check_small_answer(p, "soft coordinates behind a null space");
+    OK(feti_problem_destroy(&p));
+    OK(feti_problem_create(&p));
+    int64_t body;
+    OK(feti_body_add(p, 1, &body));
+    OK(feti_body_coordinates(p, SPRING, 1, 1, one, one, diag, 1));
+    OK(feti_body_coordinates_flags(p, SPRING, FETI_SOFT));
+    OK(GIVE(p, SPRING, 1, diag, spring_kplus, spring_k, 0));
+    EXPECT(FETI_UNSUPPORTED, feti_setup(p));
+    OK(feti_problem_destroy(&p));
+}
+
 static void a_missing_null_space_is_named(void)
 {
     feti_problem *p = NULL;
@@ -292,6 +314,7 @@ int main(int argc, char **argv)
 {
     if (argc < 2) return 2;
     wrong_arguments_and_functions();
+    soft_motions_of_a_host_s_own_inverse_are_not_supported();
     a_missing_null_space_is_named();
     for (int c = 2; c < argc; c++) {
         case_data data;

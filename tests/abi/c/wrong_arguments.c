@@ -32,6 +32,16 @@ static void sizes(feti_problem *p)
     REFUSED(p, 5, ANY, ANY, ANY, ANY, "feti_body_stiffness_dense", "", feti_body_stiffness_dense(p, BLOCK, 2, BLOCK_VAL, 1, FETI_FULL, FETI_COPY));
 }
 
+static void flags_of_coordinates(feti_problem *p)
+{
+    static const char *const NAME = "feti_body_coordinates_flags";
+
+    REFUSED(p, 2, ANY, ANY, ANY, ANY, NAME, "", feti_body_coordinates_flags(p, 2, FETI_SOFT));
+    REFUSED(p, 2, ANY, ANY, ANY, ANY, NAME, "", feti_body_coordinates_flags(p, -1, FETI_SOFT));
+    REFUSED(p, 3, ANY, ANY, ANY, ANY, NAME, "FETI_SOFT", feti_body_coordinates_flags(p, BLOCK, FETI_EXACT));
+    REFUSED(p, 3, ANY, ANY, ANY, ANY, NAME, "FETI_SOFT", feti_body_coordinates_flags(p, BLOCK, 3));
+}
+
 static void fixing(feti_problem *p)
 {
     const int64_t far[1] = { 2 }, below[1] = { -1 };
@@ -168,6 +178,7 @@ int main(void)
     feti_problem *problem = small_problem();
     check_small_answer(problem, "handing over");
     sizes(problem);
+    flags_of_coordinates(problem);
     fixing(problem);
     fixing_dofs_are_taken(problem);
     flags(problem);

@@ -31,6 +31,7 @@ static void every_function(int32_t expected, feti_problem *h)
     EXPECT(expected, give_block_mode(h));
     EXPECT(expected, feti_body_null_space_get(h, BLOCK, 2, &i, x, 2));
     EXPECT(expected, feti_body_coordinates(h, SPRING, 1, 1, (int32_t[1]){ 1 }, (int32_t[1]){ 1 }, x, 1));
+    EXPECT(expected, feti_body_coordinates_flags(h, SPRING, FETI_SOFT));
     EXPECT(expected, give_block_load(h));
     EXPECT(expected, feti_body_operator(h, SPRING, 1, SPRING_VAL, multiply_spring, multiply_spring, 0, NULL));
     EXPECT(expected, give_row(h));

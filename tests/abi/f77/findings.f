@@ -115,6 +115,19 @@ C     The bar alone before a wall, its motion found from coordinates.
       CALL OK(IERR, 'FTDISP')
       CALL SAME(U(1), -0.1D0, 'a bar before a wall')
       CALL SAME(U(2), -0.3D0, 'a bar before a wall')
+C     Driven by 5 at the wall, which holds it: the force is 10.5.
+      A(1) = 4.5D1
+      CALL FTBVDN(IP, IB, 2, A, 2, IERR)
+      CALL OK(IERR, 'FTBVDN')
+      CALL FTSOLV(IP, 1, INFO, 0, X, IERR)
+      CALL HOLDS(IERR .EQ. FTEIND, 'a driven bar')
+      CALL FTBXYF(IP, IB, FTSOFT, IERR)
+      CALL OK(IERR, 'FTBXYF')
+      CALL FTSOLV(IP, 1, INFO, 0, X, IERR)
+      CALL OK(IERR, 'FTSOLV')
+      CALL FTMULT(IP, FTKINE, 1, R, IERR)
+      CALL OK(IERR, 'FTMULT')
+      CALL SAME(R(1), 10.5D0, 'a driven bar before a wall')
       CALL FTFREE(IP, IERR)
       CALL OK(IERR, 'FTFREE')
       END

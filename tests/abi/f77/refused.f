@@ -51,6 +51,8 @@ C     Bodies: number, unknowns, storage, columns, null space, node.
       CALL NOT(IERR, FTEARG - 4, 'n is 100000000')
       CALL FTBXYZ(IP, 2, 4, 2, IBOD, IBOD, R, 4, IERR)
       CALL NOT(IERR, FTEARG - 3, ' ')
+      CALL FTBXYF(IP, 2, FTEXCT, IERR)
+      CALL NOT(IERR, FTEARG - 3, 'FETI_SOFT')
       CALL FTBLOD(IP, 2, 3, R, IERR)
       CALL NOT(IERR, FTEARG - 3, ' ')
       CALL FTBFIX(IP, 2, -1, IS, IERR)

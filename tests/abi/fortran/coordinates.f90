@@ -9,8 +9,35 @@ program coordinates
 
   call check_both('hertz_cylinder', [3, 3], [1, 0])
   call check_both('three_bodies', [6, 6, 6], [0, 3, 3])
+  call a_driven_block_is_held_by_the_spring
 
 contains
+
+  !> A spring 2 on the ground and, across a gap of 1, a block joined by 4, driven by .25 at its near end and pressed by 6:
+  !> u = -25/7; -32/7, -85/14, by hand. K of the block is indefinite, and the spring holds what it drives.
+  subroutine a_driven_block_is_held_by_the_spring
+    type(feti_problem) :: p
+    integer :: spring, block, stat
+    real(dp) :: u(2)
+
+    call feti_problem_create(p)
+    call feti_body_add(p, 1, spring)
+    call feti_body_stiffness(p, spring, reshape([2.0_dp], [1, 1]), FETI_FULL)
+    call feti_body_add(p, 2, block)
+    call feti_body_stiffness(p, block, reshape([3.75_dp, -4.0_dp, -4.0_dp, 4.0_dp], [2, 2]), FETI_FULL)
+    call feti_body_load(p, block, [0.0_dp, -6.0_dp])
+    call feti_rows_add(p, FETI_INEQUALITY, [1, 3], [spring, block], [1, 1], [1.0_dp, -1.0_dp], [1.0_dp])
+    call feti_body_coordinates(p, block, [1, 2], [1, 1], reshape([5.0_dp, 6.0_dp], [1, 2]))
+    call feti_solve(p, stat=stat)
+    call require(stat == FETI_INDEFINITE, 'a driven block whose motion is a candidate is not refused')
+    call feti_body_coordinates_flags(p, block, FETI_SOFT)
+    call feti_solve(p)
+    call feti_displacement(p, block, u)
+    call require(largest(u + [32.0_dp / 7, 85.0_dp / 14]) <= 1e-12_dp, 'a driven block goes elsewhere')
+    call feti_body_coordinates_flags(p, block, FETI_EXACT, stat)
+    call require(stat == FETI_ARGUMENT - 3, 'coordinates are taken as an exact null space')
+    call feti_problem_destroy(p)
+  end subroutine
 
   !> free, held: dimensions of the null spaces without supports and with the supported unknowns struck out.
   subroutine check_both(name, free, held)

@@ -111,6 +111,7 @@ const ENTRIES: &[Entry] = &[
     // Where a name stands for something else.
     ("feti_body_add.n", Role::Positive, "3"),
     ("feti_body_coordinates.ld", Role::Leading, "1"),
+    ("feti_body_coordinates_flags.flags", Role::Choice, "FETI_SOFT"),
     ("feti_body_fixing_set.r", Role::Free, "1"),
     ("feti_body_load.body", Role::BodyOrAll, "1"),
     ("feti_body_null_space.r", Role::Free, "1"),

@@ -31,6 +31,20 @@ fn numbers_of_the_host_come_back_and_rows_go_by_them() {
 }
 
 #[test]
+fn what_the_coordinates_are_comes_back_and_a_file_says_nothing_of_candidates() {
+    let mut problem = small();
+    problem.set_soft_coordinates(1, true).unwrap();
+    let bytes = problem.write_bytes().unwrap();
+    let back = read(&bytes).unwrap();
+    assert!(!back.bodies[0].body.soft_coordinates && back.bodies[1].body.soft_coordinates);
+    assert_eq!(back.write_bytes().unwrap(), bytes, "written again it is the same file");
+    problem.set_soft_coordinates(1, false).unwrap();
+    assert_eq!(problem.write_bytes().unwrap(), small().write_bytes().unwrap());
+    let said = [of_section(b"BODY", 0, &numbers(&[2])), of_section(b"COOF", 0, &numbers(&[1]))];
+    assert!(!read(&of_sections(FORMAT, &said)).unwrap().bodies[0].body.soft_coordinates);
+}
+
+#[test]
 fn a_body_given_by_functions_is_not_written_and_the_old_file_stays() {
     let folder = folder("functions");
     let path = folder.join("problem.feti");
