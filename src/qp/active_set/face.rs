@@ -129,7 +129,7 @@ fn modes(qp: &Qp, rows: &[usize], basis: Option<&Matrix>) -> Result<Matrix> {
 fn resisted(qp: &Qp, rows: &[usize]) -> Result<(Option<Matrix>, usize)> {
     let mut held = vec![true; qp.g_transposed.rows()];
     rows.iter().for_each(|&i| held[i] = false);
-    let mut coarse = Coarse::of(&qp)?;
+    let mut coarse = Coarse::of(qp)?;
     let on_face = coarse.on(&held)?;
     Ok((on_face.basis(), on_face.deficiency()))
 }

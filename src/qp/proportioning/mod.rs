@@ -72,7 +72,7 @@ pub fn minimise(
 
 /// The verdict where no x balances e, for a method that does not ask.
 pub fn not_held(qp: &Qp, start: &[f64]) -> Result<Option<Solution>> {
-    let mut coarse = Coarse::of(&qp)?;
+    let mut coarse = Coarse::of(qp)?;
     if interrupt::part(FIRST_POINT, || first_point(qp, &mut coarse, start))?.is_some() {
         return Ok(None);
     }
