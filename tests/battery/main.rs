@@ -2,6 +2,8 @@
 //! by hand, bodies that all but float, and decks of modest size: what a whole solve must find.
 
 mod bits;
+#[path = "../support/face.rs"]
+mod face;
 #[path = "../support/hand_over.rs"]
 mod hand_over;
 mod hard;

@@ -14,13 +14,15 @@ use feti_contact::error::{Error, Kind, Proof, Result};
 use feti_contact::solver::{Modes, Outcome, Problem};
 
 use crate::varied::{answer, CONDITION};
-use crate::{hand_over, some_seeds};
+use crate::{face, hand_over, some_seeds};
 
 /// Number of problems of the ordinary run, one for this many of the others.
 const SHARE: u64 = 2;
 /// Of the problems of a class this part may have no answer.
 const UNSOLVED: f64 = 0.01;
 const LINES: usize = 60;
+/// Pivots of the conditions that are rounding.
+const SINGULAR: f64 = 1e-24;
 /// What a row moves by rounding, against its largest entry and the fastest unknown.
 const STILL: f64 = 1e-8;
 
@@ -88,67 +90,10 @@ fn problem(deck: &Deck, told: Told) -> Result<Problem> {
     Ok(problem)
 }
 
-/// `[K B_F' H'; B_F -C; H -C]`, F the rows with a force; none where they are singular.
+/// The optimality conditions on the rows with a force; none where they are singular.
 fn on_face(deck: &Deck, forces: &[f64]) -> Option<Answer> {
-    let n = deck.dofs();
     let closed: Vec<usize> = (0..forces.len()).filter(|&i| forces[i] > 0.0).collect();
-    let all = closed.iter().map(|&i| (&deck.contact, i));
-    let rows: Vec<_> = all.chain((0..deck.equalities.len()).map(|i| (&deck.equalities, i))).collect();
-    let size = n + rows.len();
-    let (mut a, mut b) = (vec![vec![Dd::ZERO; size]; size], vec![Dd::ZERO; size]);
-    for (p, body) in deck.bodies.iter().enumerate() {
-        let first = deck.offset(p);
-        for i in 0..body.dofs() {
-            body.stiffness.row(i).for_each(|(j, v)| a[first + i][first + j] = v.into());
-            b[first + i] = body.load[i].into();
-        }
-    }
-    for (k, &(set, i)) in rows.iter().enumerate() {
-        for (j, v) in set.matrix.row(i) {
-            (a[n + k][j], a[j][n + k]) = (v.into(), v.into());
-        }
-        a[n + k][n + k] = (-set.compliance[i]).into();
-        b[n + k] = set.rhs[i].into();
-    }
-    let x = eliminated(a, b)?;
-    let mut lambda = vec![0.0; forces.len()];
-    closed.iter().zip(&x[n..]).for_each(|(&i, force)| lambda[i] = *force);
-    Some(Answer { u: x[..n].to_vec(), lambda, mu: x[n + closed.len()..].to_vec() })
-}
-
-/// Gauss with pivots of columns, rows and columns scaled to unit size.
-fn eliminated(mut a: Vec<Vec<Dd>>, mut b: Vec<Dd>) -> Option<Vec<f64>> {
-    let n = b.len();
-    let size: Vec<f64> =
-        a.iter().map(|row| row.iter().map(|v| v.value().abs()).fold(0.0, f64::max).sqrt()).collect();
-    if size.contains(&0.0) {
-        return None;
-    }
-    for i in 0..n {
-        (0..n).for_each(|j| a[i][j] = a[i][j] / Dd::product(size[i], size[j]));
-        b[i] = b[i] / size[i].into();
-    }
-    for k in 0..n {
-        let best = (k..n).max_by(|&i, &j| a[i][k].abs().value().total_cmp(&a[j][k].abs().value()))?;
-        a.swap(k, best);
-        b.swap(k, best);
-        if a[k][k].value().abs() < 1e-24 {
-            return None;
-        }
-        let (pivot, rest) = a[k..].split_first_mut()?;
-        for (i, row) in rest.iter_mut().enumerate().filter(|(_, row)| row[k].value() != 0.0) {
-            let factor = row[k] / pivot[k];
-            (k..n).for_each(|j| row[j] = row[j] - factor * pivot[j]);
-            b[k + 1 + i] = b[k + 1 + i] - factor * b[k];
-        }
-    }
-    let mut x = vec![Dd::ZERO; n];
-    for k in (0..n).rev() {
-        let mut rest = b[k];
-        (k + 1..n).for_each(|j| rest = rest - a[k][j] * x[j]);
-        x[k] = rest / a[k][k];
-    }
-    Some((0..n).map(|i| (x[i] / size[i].into()).value()).collect())
+    face::answer(deck, &closed, SINGULAR)
 }
 
 /// Forces of the truth push, and no row is passed, but for what the yardstick overlooks.

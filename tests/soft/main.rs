@@ -11,6 +11,8 @@
 
 mod coordinates;
 mod driven;
+#[path = "../support/face.rs"]
+mod face;
 #[path = "../support/hand_over.rs"]
 mod hand_over;
 mod oracle;
