@@ -1,5 +1,5 @@
 //! The coarse space of a face: `W_F = G_F G_F'` over the rows F that are not held at their bound, r x r and
-//! sparse. Its pattern is analysed once for all faces.
+//! sparse. Its pattern is analysed once for all faces, and what they share is factorised once.
 
 use std::sync::Arc;
 
@@ -24,6 +24,7 @@ pub struct Coarse<'a> {
     unit: f64,
     /// Diagonal of the whole `G G' / s^2`: the largest entry in [1, 4).
     whole: Vec<f64>,
+    /// Rows that faces may hold.
     bounded: Vec<bool>,
     /// None where there are no modes.
     factors: Option<FaceFactors>,
@@ -55,6 +56,7 @@ enum Solver {
 }
 
 impl<'a> Coarse<'a> {
+    /// That of a problem.
     pub fn of(qp: &Qp<'a>) -> Result<Self> {
         Self::new(qp.g_transposed, qp.blocks, qp.bounded, qp.rounding)
     }

@@ -89,19 +89,18 @@ fn identified(qp: &Qp, coarse: &mut Coarse) -> Result<(Vec<f64>, Vec<f64>)> {
     let mut held: Vec<bool> = (0..force.len()).map(has_none).collect();
     for round in 0..ROUNDS {
         interrupt::reached("rows admitted to the nearest forces", round)?;
-        let point = least_squares(qp, coarse, &held)?;
+        let mut point = least_squares(qp, coarse, &held, &force)?;
         let a = qp.left(&point);
         let pressed = pressed(qp, &held, &a);
         let is_balanced = norm(&a) <= ZERO * norm(qp.e);
         if is_balanced || pressed.is_empty() {
-            // forces that pull prove nothing where nothing is left
-            if is_balanced && (0..point.len()).any(|i| qp.bounded[i] && point[i] < 0.0) {
+            let pulls: Vec<usize> = (0..point.len()).filter(|&i| qp.bounded[i] && point[i] < 0.0).collect();
+            // where nothing is left forces that pull prove nothing
+            if is_balanced && !pulls.is_empty() {
                 break;
             }
-            return Ok((
-                point.iter().zip(qp.bounded).map(|(l, b)| if *b { l.max(0.0) } else { *l }).collect(),
-                a,
-            ));
+            pulls.into_iter().for_each(|i| point[i] = 0.0);
+            return Ok((point, a));
         }
         pressed.into_iter().for_each(|i| held[i] = false);
     }
@@ -119,11 +118,13 @@ fn pressed(qp: &Qp, held: &[bool], a: &[f64]) -> Vec<usize> {
     (0..held.len()).filter(|&i| held[i]).filter(presses).collect()
 }
 
-/// `G_P' (G_P G_P')+ e` on the rows P that are not held, zero elsewhere.
-fn least_squares(qp: &Qp, coarse: &mut Coarse, held: &[bool]) -> Result<Vec<f64>> {
+/// Of the forces of least |e - G l| on the rows that are not held, zero elsewhere, those nearest to `start`.
+fn least_squares(qp: &Qp, coarse: &mut Coarse, held: &[bool], start: &[f64]) -> Result<Vec<f64>> {
     /// The second one takes out the rounding of the first, of weakly held motions the third that of the second.
     const PASSES: usize = 3;
-    let (mut face, mut point) = (coarse.on(held)?, vec![0.0; held.len()]);
+    let mut point: Vec<f64> =
+        start.iter().zip(held).map(|(force, held)| if *held { 0.0 } else { *force }).collect();
+    let mut face = coarse.on(held)?;
     for _ in 0..PASSES {
         let alpha = face.solve(&qp.left(&point))?;
         for i in (0..held.len()).filter(|&i| !held[i]) {
