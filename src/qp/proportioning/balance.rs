@@ -12,6 +12,9 @@ use crate::qp::{nearest_point, Polyhedron, Qp};
 
 /// A correlation with the residual below this fraction of its terms counts as zero.
 const ZERO: f64 = 1e-12;
+/// What makes forces unique in a look into the interior: for the rows with a force, and where these do not tell, for a itself.
+const UNIQUE: f64 = 1e-8;
+const HARDLY_UNIQUE: f64 = 1e-12;
 /// A row that the residual meets by more than this part of their lengths is pressed.
 const PRESSED: f64 = 1e-9;
 /// Modes of a problem for which a square matrix of them, and one rotation of it per row and mode, are cheap.
@@ -76,14 +79,8 @@ fn in_cone(g_transposed: &Csr, bounded: &[bool], e: &[f64]) -> Result<Option<(Ve
 /// l and a of many modes: a look into the interior shows the rows with a force; a is what these leave of e, orthogonal to them.
 /// Rows that it presses on join them, all at a time.
 fn identified(qp: &Qp, coarse: &mut Coarse) -> Result<(Vec<f64>, Vec<f64>)> {
-    /// What makes forces unique, against what they leave by the largest column of G.
-    const UNIQUE: f64 = 1e-8;
     const ROUNDS: usize = 30;
-    let mut squares = vec![0.0; qp.e.len()];
-    qp.g_transposed.col.iter().zip(&qp.g_transposed.val).for_each(|(&mode, v)| squares[mode] += v * v);
-    let (y, none) = (vec![0.0; qp.b.len()], vec![false; qp.b.len()]);
-    let interior = Interior { qp, y: &y, held: &none, delta: UNIQUE * norm_max(&squares), rho: 1.0 };
-    let Point { force, slack, .. } = interior.minimise(coarse, vec![0.0; qp.e.len()])?;
+    let Point { force, slack, .. } = inside(qp, coarse, UNIQUE)?;
     let (most, steepest) = (norm_max(&force), norm_max(&slack));
     let has_none = |i: usize| qp.bounded[i] && force[i] * steepest <= slack[i] * most;
     let mut held: Vec<bool> = (0..force.len()).map(has_none).collect();
@@ -93,6 +90,10 @@ fn identified(qp: &Qp, coarse: &mut Coarse) -> Result<(Vec<f64>, Vec<f64>)> {
         let a = qp.left(&point);
         let pressed = pressed(qp, &held, &a);
         let is_balanced = norm(&a) <= ZERO * norm(qp.e);
+        // least squares leave no more than there is, but where the face is all but singular
+        if norm(&a) > norm(qp.e) {
+            break;
+        }
         if is_balanced || pressed.is_empty() {
             let pulls: Vec<usize> = (0..point.len()).filter(|&i| qp.bounded[i] && point[i] < 0.0).collect();
             // where nothing is left forces that pull prove nothing
@@ -104,8 +105,18 @@ fn identified(qp: &Qp, coarse: &mut Coarse) -> Result<(Vec<f64>, Vec<f64>)> {
         }
         pressed.into_iter().for_each(|i| held[i] = false);
     }
-    let left = qp.left(&force);
-    Ok((force, left))
+    let Point { force, multiplier, .. } = inside(qp, coarse, HARDLY_UNIQUE)?;
+    Ok((force, multiplier))
+}
+
+/// The interior point of `|e - G l|^2 + delta |l|^2`, delta in units of the largest diagonal entry of `G G'`: its a has
+/// `G_i'a <= delta l_i`.
+fn inside(qp: &Qp, coarse: &mut Coarse, delta: f64) -> Result<Point> {
+    let mut squares = vec![0.0; qp.e.len()];
+    qp.g_transposed.col.iter().zip(&qp.g_transposed.val).for_each(|(&mode, v)| squares[mode] += v * v);
+    let (y, none) = (vec![0.0; qp.b.len()], vec![false; qp.b.len()]);
+    let interior = Interior { qp, y: &y, held: &none, delta: delta * norm_max(&squares), rho: 1.0 };
+    interior.minimise(coarse, vec![0.0; qp.e.len()])
 }
 
 /// The held rows that a presses on, `G_i'a > 0` by more than rounding.
