@@ -96,6 +96,11 @@ impl<'a> Coarse<'a> {
         self.whole.len()
     }
 
+    /// The largest diagonal entry of `G G'`.
+    pub fn largest(&self) -> f64 {
+        self.unit * self.unit * norm_max(&self.whole)
+    }
+
     /// The space on the rows that are not held: `W_F` is factorised, unless that has just been done or the host or the time forbids it.
     pub fn on(&mut self, held: &[bool]) -> Result<OnFace<'_>> {
         let selected = usize::from(held.contains(&true));

@@ -112,10 +112,8 @@ fn identified(qp: &Qp, coarse: &mut Coarse) -> Result<(Vec<f64>, Vec<f64>)> {
 /// The interior point of `|e - G l|^2 + delta |l|^2`, delta in units of the largest diagonal entry of `G G'`: its a has
 /// `G_i'a <= delta l_i`.
 fn inside(qp: &Qp, coarse: &mut Coarse, delta: f64) -> Result<Point> {
-    let mut squares = vec![0.0; qp.e.len()];
-    qp.g_transposed.col.iter().zip(&qp.g_transposed.val).for_each(|(&mode, v)| squares[mode] += v * v);
     let (y, none) = (vec![0.0; qp.b.len()], vec![false; qp.b.len()]);
-    let interior = Interior { qp, y: &y, held: &none, delta: delta * norm_max(&squares), rho: 1.0 };
+    let interior = Interior { qp, y: &y, held: &none, delta: delta * coarse.largest(), rho: 1.0 };
     interior.minimise(coarse, vec![0.0; qp.e.len()])
 }
 

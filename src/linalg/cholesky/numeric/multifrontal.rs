@@ -58,7 +58,7 @@ pub fn factorize(nodes: &Supernodes, matrix: &LowerColumns, hold: f64) -> Result
     Ok(task.eliminate_shared(above..nodes.count(), &mut values)?.map(|()| values))
 }
 
-/// Updates that supernodes leave for those which other factorisations do anew, ascending.
+/// Updates that supernodes leave for those which other factorisations do anew, in the order of these.
 pub struct Kept(Vec<(usize, Vec<f64>)>);
 
 /// As `factorize`, on one thread; keeps the updates of supernodes outside `renewed` for those in it: with each these are all above it.
@@ -81,6 +81,7 @@ pub fn factorize_keeping(
             kept.push((s, copied(task.updates.last(), WHAT)?));
         }
     }
+    kept.sort_by_key(|(child, _)| nodes.parent(*child));
     Ok(Ok((values, Kept(kept))))
 }
 
@@ -95,11 +96,9 @@ pub fn renew(
 ) -> Result<Pivoted<()>> {
     let interrupt = Interrupt::present();
     let mut task = Task::new((nodes, matrix, hold), renewed.iter().copied(), &interrupt)?;
-    let mut by_parent: Vec<&(usize, Vec<f64>)> = kept.iter().collect();
-    by_parent.sort_by_key(|(child, _)| nodes.parent(*child));
     for &s in renewed {
-        let first = by_parent.partition_point(|(child, _)| nodes.parent(*child) < s);
-        let own = by_parent[first..].iter().take_while(|(child, _)| nodes.parent(*child) == s);
+        let first = kept.partition_point(|(child, _)| nodes.parent(*child) < s);
+        let own = kept[first..].iter().take_while(|(child, _)| nodes.parent(*child) == s);
         own.for_each(|(child, update)| task.updates.lend(*child, update));
         if let Err(at) = task.eliminate_shared(s..s + 1, values)? {
             return Ok(Err(at));

@@ -51,9 +51,11 @@ impl<'a> Updates<'a> {
         self.waiting.push((s, KeptUpdate::Apart(update)));
     }
 
-    /// Takes what another factorisation has left of a child of the supernode that comes next.
+    /// Takes what another factorisation has left of a child of the supernode that comes next, among the others in their order: the
+    /// same sums whatever is lent.
     pub fn lend(&mut self, child: usize, update: &'a [f64]) {
-        self.waiting.push((child, KeptUpdate::Lent(update)));
+        let before = self.waiting.iter().rposition(|(other, _)| *other < child);
+        self.waiting.insert(before.map_or(0, |at| at + 1), (child, KeptUpdate::Lent(update)));
     }
 
     /// The update that waits last.
@@ -72,8 +74,6 @@ impl<'a> Updates<'a> {
             stack.truncate(need);
         }
         let first = self.first_child(s);
-        // the same sums whatever is lent
-        self.waiting[first..].sort_unstable_by_key(|(child, _)| *child);
         let level = self.nodes.level(s) % 2;
         let [even, odd] = &mut self.stacks;
         let (own, others) = if level == 0 { (even, odd) } else { (odd, even) };

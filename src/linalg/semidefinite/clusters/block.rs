@@ -2,6 +2,7 @@
 
 use crate::error::Result;
 use crate::linalg::semidefinite::resisted::{parts, Parts};
+use crate::linalg::vector::dot;
 use crate::linalg::{Csr, Matrix};
 
 /// What the rows resist of the motions of one block, `T'W_pp T = I`, and what they leave free: r_p x rank and the rest.
@@ -16,13 +17,12 @@ impl Block {
     const ADDED: f64 = 1e3;
 
     /// By the rows that all faces have, where these resist all motions of the block well, and other rows, which faces may hold, do not
-    /// resist them far better; none where every face has its own.
+    /// resist them far better; none where every face has its own. All columns of the block are stored.
     pub fn for_all_faces(common: Csr, others: &Csr, limit: f64) -> Result<Option<Self>> {
         let block = Self::new(common, limit)?;
         let added = |i: usize| {
-            let row = others.row(i);
-            let turned = |j: usize| row.clone().map(|(k, v)| v * block.resisted.get(k, j)).sum::<f64>();
-            (0..block.resisted.cols).map(|j| turned(j).powi(2)).sum::<f64>()
+            let turned = block.resisted.mul_transposed(&others.val[others.ptr[i]..others.ptr[i + 1]]);
+            dot(&turned, &turned)
         };
         let is_held = block.free.cols == 0 && !block.weak;
         let serves =
