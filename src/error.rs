@@ -52,6 +52,7 @@ pub struct Place {
     pub base: i64,
     pub body: Option<usize>,
     pub component: Option<usize>,
+    pub element: Option<usize>,
     pub dof: Option<usize>,
     pub row: Option<usize>,
     pub entry: Option<usize>,
@@ -70,6 +71,7 @@ impl fmt::Display for Place {
         let parts = [
             ("body", self.body),
             ("component", self.component),
+            ("element", self.element),
             ("dof", self.dof),
             ("row", self.row),
             ("entry", self.entry),
@@ -122,6 +124,7 @@ impl Error {
     with_places! {
         body: usize,
         component: usize,
+        element: usize,
         dof: usize,
         row: usize,
         entry: usize,

@@ -71,10 +71,12 @@
 pub mod body;
 pub mod certificate;
 pub mod constraints;
+mod decomposition;
 pub mod dual;
 pub mod error;
 pub mod ffi;
 pub mod linalg;
+mod mesh;
 mod model;
 pub mod platform;
 mod progress;

@@ -32,6 +32,7 @@ pub mod elements;
 pub mod hard;
 pub mod masonry;
 pub mod membrane;
+pub mod mesh;
 pub mod pieces;
 pub mod random;
 pub mod second;

@@ -84,7 +84,7 @@ impl fmt::Display for Misfit {
 
 /// How the null space is sought in K where K turns out to have more null vectors than rigid motions that fit.
 pub(super) struct Retry {
-    pub misfit: Misfit,
+    pub misfit: Option<Misfit>,
     pub tolerance: f64,
     pub fixing: Option<Vec<usize>>,
 }

@@ -1,5 +1,6 @@
-//! K as the host has given it: by its entries, or by its products.
+//! K as the host has given it: by its entries, by elements, or by its products.
 
+use crate::body::assembled::Assembled;
 use crate::body::host::HostOperator;
 use crate::error::Result;
 use crate::linalg::twofold::Twofold;
@@ -10,6 +11,7 @@ use crate::platform::memory::zeros;
 pub enum Stiffness<'a> {
     Matrix(&'a Symmetric),
     Host(&'a HostOperator),
+    Assembled(&'a Assembled),
 }
 
 impl Stiffness<'_> {
@@ -17,6 +19,7 @@ impl Stiffness<'_> {
         match self {
             Self::Matrix(k) => k.order(),
             Self::Host(k) => k.order(),
+            Self::Assembled(k) => k.order(),
         }
     }
 
@@ -25,6 +28,7 @@ impl Stiffness<'_> {
         match self {
             Self::Matrix(k) => k.metric(i, without),
             Self::Host(k) => k.metric(i, without),
+            Self::Assembled(k) => Some(k.diagonal(i)).filter(|diagonal| *diagonal > 0.0).unwrap_or(without),
         }
     }
 
@@ -33,6 +37,7 @@ impl Stiffness<'_> {
         match self {
             Self::Matrix(k) => k.largest_diagonal(),
             Self::Host(k) => (0..k.order()).map(|i| k.diagonal(i)).fold(0.0, f64::max),
+            Self::Assembled(k) => (0..k.order()).map(|i| k.diagonal(i)).fold(0.0, f64::max),
         }
     }
 
@@ -41,6 +46,7 @@ impl Stiffness<'_> {
         match self {
             Self::Matrix(k) => k.mul(x, y),
             Self::Host(k) => k.mul(x, y)?,
+            Self::Assembled(k) => k.mul(x, y)?,
         }
         Ok(())
     }
@@ -51,6 +57,7 @@ impl Stiffness<'_> {
         match self {
             Self::Matrix(k) => k.mul_with_terms(x, y, terms),
             Self::Host(k) => k.mul_with_terms(x, y, terms)?,
+            Self::Assembled(k) => k.mul_with_terms(x, y, terms)?,
         }
         Ok(())
     }
@@ -59,6 +66,7 @@ impl Stiffness<'_> {
     pub fn add_twofold(&self, by: f64, x: &[f64], y: &mut [Twofold]) -> Result<()> {
         match self {
             Self::Matrix(k) => k.add_twofold(by, x, y),
+            Self::Assembled(k) => k.add_twofold(by, x, y)?,
             Self::Host(k) => {
                 let mut image = zeros(x.len(), "a product with K")?;
                 k.mul(x, &mut image)?;

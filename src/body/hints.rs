@@ -50,9 +50,10 @@ impl GeneralizedInverse {
         let given = fixing.map(<[usize]>::to_vec);
         let planned = Self::known(k.clone(), &kernel, (rigid, &counts), (tolerance, None), fixing);
         match planned {
-            Ok(Plan::Known(known)) => {
-                Ok(Plan::Known(Known { retry: Some(Retry { misfit, tolerance, fixing: given }), ..known }))
-            }
+            Ok(Plan::Known(known)) => Ok(Plan::Known(Known {
+                retry: Some(Retry { misfit: Some(misfit), tolerance, fixing: given }),
+                ..known
+            })),
             Err(Error { kind: Kind::NullSpace, .. }) => {
                 Ok(Plan::Search(Search::new(k, tolerance, fixing)?.instead_of(misfit)))
             }

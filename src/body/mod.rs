@@ -2,6 +2,7 @@
 //! of (14)-(15).
 
 mod alike;
+mod assembled;
 mod borrowed;
 mod boundary;
 mod digits;
@@ -29,6 +30,7 @@ mod values;
 pub use alike::{
     input_key, pattern_key, same_bits, same_body, same_matrix, same_pattern, same_vectors, value_key,
 };
+pub use assembled::Assembled;
 pub use borrowed::{from_borrowed, Columns};
 pub use boundary::{diagonal, dirichlet, dirichlet_bytes, lumped};
 pub use digits::Digits;
@@ -57,6 +59,8 @@ pub struct Body {
     pub stiffness: Option<Arc<Symmetric>>,
     /// Instead of it: a `K_p` that the host keeps.
     pub operator: Option<Arc<HostOperator>>,
+    /// Instead of either: a `K_p` that is the sum of the matrices of pieces.
+    pub assembled: Option<Arc<Assembled>>,
     /// `R_p` or vectors that may span it; found by the library without them and without coordinates.
     pub null_space: Option<NullSpaceInput>,
     /// Places of the dofs: candidates for the null space when none is given.
@@ -73,7 +77,8 @@ impl Body {
     /// `K_p` in the form the host has given it, once it has.
     pub fn k(&self) -> Option<Stiffness<'_>> {
         let matrix = self.stiffness.as_deref().map(Stiffness::Matrix);
-        matrix.or_else(|| self.operator.as_deref().map(Stiffness::Host))
+        let host = || self.operator.as_deref().map(Stiffness::Host);
+        matrix.or_else(host).or_else(|| self.assembled.as_deref().map(Stiffness::Assembled))
     }
 
     /// The host tells of motions that K resists softly.

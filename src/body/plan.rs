@@ -49,6 +49,16 @@ impl GeneralizedInverse {
 }
 
 impl Plan {
+    /// The null space is sought in K where it turns out to have more motions than were planned with, as in a piece with a hinge.
+    pub fn or_search(self, tolerance: f64) -> Self {
+        match self {
+            Self::Known(known) if known.retry.is_none() => {
+                Self::Known(Known { retry: Some(Retry { misfit: None, tolerance, fixing: None }), ..known })
+            }
+            planned => planned,
+        }
+    }
+
     /// Takes over the way of elimination of another body with the same pattern, or of this one with other values, where
     /// it serves here as well. Its analysis is wanted from whoever has it, by `set_analysis`.
     pub fn follow(&mut self, layout: &Layout) -> Result<bool> {
@@ -140,7 +150,12 @@ fn sought(k: Multiple, retry: Retry, error: Error) -> Result<Factorised> {
         return Err(error);
     }
     let Retry { misfit, tolerance, fixing } = retry;
-    let mut made = Search::new(k, tolerance, fixing.as_deref())?.instead_of(misfit).execute()?;
+    let search = Search::new(k, tolerance, fixing.as_deref())?;
+    let search = match misfit {
+        Some(misfit) => search.instead_of(misfit),
+        None => search,
+    };
+    let mut made = search.execute()?;
     made.factorisations += 1;
     Ok(made)
 }

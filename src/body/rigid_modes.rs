@@ -59,6 +59,17 @@ impl Coordinates {
         self.direction.len()
     }
 
+    /// Those of some dofs.
+    pub fn of(&self, dofs: &[u32]) -> Result<Self> {
+        let (mut direction, mut place) = (
+            reserved(dofs.len(), "the coordinates of a body")?,
+            reserved(dofs.len(), "the coordinates of a body")?,
+        );
+        direction.extend(dofs.iter().map(|&dof| self.direction[dof as usize]));
+        place.extend(dofs.iter().map(|&dof| self.place[dof as usize]));
+        Ok(Self { direction, place })
+    }
+
     /// Per dof: 1-3 a displacement, 4-6 a rotation.
     pub fn directions(&self) -> &[i32] {
         &self.direction

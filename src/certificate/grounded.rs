@@ -2,6 +2,7 @@
 
 use crate::body::Stiffness;
 use crate::error::Result;
+use crate::linalg::Symmetric;
 use crate::platform::memory::zeros;
 
 /// K_jj against T_j. Chains, trusses, beams and solids, also where they are a million times as stiff as what they stand on,
@@ -12,16 +13,31 @@ const GROUNDED: f64 = 1e3;
 /// K_jj is force / length. One without neighbours is grounded when it has a stiffness at all. Ascending; none of a body that
 /// is known by its products only. Belongs to the matrix: once for all answers.
 pub fn grounded(k: Stiffness) -> Result<Vec<u32>> {
-    let Stiffness::Matrix(k) = k else { return Ok(Vec::new()) };
-    let mut neighbours = zeros(k.order(), "the stiffness of neighbours")?;
-    for i in 0..k.order() {
-        for (j, k_ij) in k.lower_row(i).filter(|(j, _)| *j != i) {
-            neighbours[j] += through(k_ij, k.diagonal(i));
-            neighbours[i] += through(k_ij, k.diagonal(j));
+    let (order, mut neighbours) = (k.order(), zeros(k.order(), "the stiffness of neighbours")?);
+    let diagonal = |i: usize| match k {
+        Stiffness::Matrix(k) => k.diagonal(i),
+        Stiffness::Assembled(k) => k.diagonal(i),
+        Stiffness::Host(_) => 0.0,
+    };
+    let couple = |i: usize, j: usize, k_ij: f64| {
+        if i != j {
+            neighbours[j] += through(k_ij, diagonal(i));
+            neighbours[i] += through(k_ij, diagonal(j));
         }
+    };
+    match k {
+        Stiffness::Matrix(k) => each_entry(k, couple),
+        // what two pieces add to one entry counts as two neighbours
+        Stiffness::Assembled(k) => k.each_entry(couple),
+        Stiffness::Host(_) => return Ok(Vec::new()),
     }
-    let is_grounded = |j: &usize| k.diagonal(*j) > GROUNDED * neighbours[*j];
-    Ok((0..k.order()).filter(is_grounded).map(|j| j as u32).collect())
+    let is_grounded = |j: &usize| diagonal(*j) > GROUNDED * neighbours[*j];
+    Ok((0..order).filter(is_grounded).map(|j| j as u32).collect())
+}
+
+/// Row, column and value of every entry of the lower triangle.
+fn each_entry(k: &Symmetric, mut visit: impl FnMut(usize, usize, f64)) {
+    (0..k.order()).for_each(|i| k.lower_row(i).for_each(|(j, v)| visit(i, j, v)));
 }
 
 /// `k_ij^2 / k_ii`, force / length; the square alone might overflow.
@@ -36,7 +52,6 @@ fn through(k_ij: f64, k_ii: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::linalg::Symmetric;
 
     /// Springs between n unknowns, and what holds single ones.
     fn chain(springs: &[f64], held: &[(usize, f64)]) -> Symmetric {

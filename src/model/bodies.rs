@@ -6,6 +6,7 @@ use crate::body::{same_vectors, Body, Coordinates, HostFunctions, HostOperator, 
 use crate::error::{Error, Kind, Result};
 use crate::linalg::vector::first_non_finite;
 use crate::linalg::Matrix;
+use crate::mesh::Mesh;
 use crate::model::contents::{Change, GivenBody, Model};
 use crate::platform::memory::copied;
 
@@ -139,7 +140,7 @@ impl Model {
         let operator = HostOperator::new(body, copied(diagonal, "the diagonal of a body")?, functions);
         let slot = self.change(body, Change::Pattern)?;
         slot.body.operator = Some(Arc::new(operator));
-        slot.body.stiffness = None;
+        (slot.body.stiffness, slot.body.assembled, slot.mesh) = (None, None, None);
         slot.form = None;
         slot.spoiled = false;
         Ok(())
@@ -153,6 +154,10 @@ impl Model {
         }
         for (p, given) in self.bodies.iter().enumerate() {
             let body = &given.body;
+            if let Some(element) = given.mesh.as_ref().and_then(Mesh::first_missing) {
+                let what = "the matrix of this element has not been given";
+                return Err(Error::new(Kind::State, what).body(p).element(element));
+            }
             if body.k().is_none() {
                 return refused(p, "the stiffness matrix has not been given");
             }

@@ -3,10 +3,13 @@
 
 use std::collections::HashMap;
 use std::ops::Range;
+use std::sync::Arc;
 
 use crate::body::{Body, Form};
 use crate::constraints::{RowKind, RowSet};
 use crate::error::{Error, Result};
+use crate::mesh::Mesh;
+use crate::model::parts::Parts;
 use crate::model::settings::Settings;
 use crate::platform::threads;
 
@@ -21,6 +24,8 @@ pub struct Model {
     /// The unknown behind every number of the host: body and dof.
     pub unknowns: HashMap<usize, (usize, usize)>,
     pub revisions: Revisions,
+    /// Where the bodies are pieces of those of the host: of which.
+    pub parts: Option<Arc<Parts>>,
 }
 
 /// Counted up with every call that gives anew what they name, be it what it was.
@@ -60,6 +65,8 @@ pub enum Change {
 #[derive(Default)]
 pub struct GivenBody {
     pub body: Body,
+    /// Its elements, where it was given by them.
+    pub mesh: Option<Mesh>,
     /// How its matrix was given.
     pub form: Option<Form>,
     /// The host has rewritten the values it keeps, and they were refused: there is no matrix.
@@ -89,6 +96,7 @@ impl Model {
             equalities: RowSet::default(),
             unknowns: HashMap::new(),
             revisions: Revisions::default(),
+            parts: None,
         }
     }
 
@@ -178,6 +186,16 @@ impl Model {
             .body(body)
             .value(n as f64)
             .limit(order as f64))
+    }
+
+    /// The host's number of a body, which may be a piece of one.
+    pub fn name(&self, body: usize) -> usize {
+        self.parts.as_ref().map_or(body, |parts| parts.parts[body].body)
+    }
+
+    /// A body is a piece of one of the host.
+    pub fn is_piece(&self, body: usize) -> bool {
+        self.parts.as_ref().is_some_and(|parts| parts.parts[body].piece.is_some())
     }
 
     /// Unknowns of a body among all.

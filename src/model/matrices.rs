@@ -74,6 +74,7 @@ impl Model {
         let given = self.change(body, change)?;
         given.body.stiffness = Some(Arc::new(stiffness));
         given.body.operator = None;
+        (given.body.assembled, given.mesh) = (None, None);
         given.form = Some(form);
         given.spoiled = false;
         Ok(())
@@ -187,6 +188,7 @@ fn not_given(body: usize) -> Error {
 fn another_call(body: usize, form: &Form) -> Error {
     let (given, call) = match form {
         Form::Dense(_) => ("dense", "feti_body_values_dense"),
+        Form::Elements(_) => ("by elements", "feti_body_element"),
         Form::Sparse(places) if places.is_split() => ("with a diagonal of its own", "feti_body_values_split"),
         Form::Sparse(_) => ("by rows", "feti_body_values"),
     };

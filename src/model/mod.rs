@@ -4,13 +4,16 @@ mod bodies;
 mod contents;
 pub mod file;
 mod matrices;
+mod meshes;
 mod numbering;
+mod parts;
 mod row_sets;
 mod settings;
 mod settings_text;
 mod words;
 
 pub use contents::{BodyRevisions, GivenBody, Model, Revisions, Sizes};
+pub use parts::{Part, Parts};
 pub use row_sets::{kind_and_row, proof_of_rows, PER_ENTRY};
 pub use settings::{options, OptionInfo, OptionValue, Settings};
 pub use words::{FinishBy, Method, OperatorForm, PaperStep1, PaperUnits, Preconditioning, StartFrom, Word};

@@ -14,6 +14,7 @@ use crate::setup::operators::Operators;
 use crate::setup::prepared::{Duals, Prepared};
 use crate::setup::ready::Ready;
 use crate::setup::rows::DualRows;
+use crate::setup::whole::Whole;
 
 impl Prepared {
     /// True where factors and dual operators are as the options want them.
@@ -57,7 +58,10 @@ impl Prepared {
     pub fn refresh_gaps(&mut self, model: &Model) {
         let (contact, equalities) = (&model.contact.rhs, &model.equalities.rhs);
         let islands = self.duals.iter_mut().flat_map(|duals| &mut duals.islands);
-        islands.for_each(|ready| ready.island.refresh(contact, equalities));
+        for ready in islands {
+            ready.island.refresh(contact, equalities);
+            ready.whole.iter_mut().for_each(|whole| whole.island.refresh(contact, equalities));
+        }
     }
 
     /// Forms F and G of every island.
@@ -99,7 +103,10 @@ impl Prepared {
             let dual = draft.finish(made, rows.compliance.clone(), !rows.coupled);
             self.work.columns_computed += dual.columns.computed;
             self.work.columns_kept += dual.columns.kept;
-            ready.push(Ready { island, dual, rows, preconditioner: None });
+            let inverse = |part: usize| self.bodies.get(part).and_then(|own| own.inverse.as_ref());
+            let of_part = |part: usize| inverse(part).map(|of| (&of.kplus, &of.grounded));
+            let whole = Whole::of(model, &island, &of_part)?;
+            ready.push(Ready { island, dual, rows, whole, preconditioner: None });
         }
         Ok(Duals { of: model.revisions, islands: ready, operators, island_of })
     }

@@ -274,7 +274,7 @@ impl Prepared {
     /// What rounding of the entries leaves open about the null spaces of these bodies.
     fn tell_doubts(&self, model: &Model, bodies: &[usize], log: &Log) -> Result<()> {
         for &p in bodies {
-            let number = p as i64 + model.settings.index_base;
+            let number = model.name(p) as i64 + model.settings.index_base;
             let Some(kplus) = self.bodies[p].inverse.as_ref().map(|of| &of.kplus) else { continue };
             if let Some(misfit) = kplus.misfit {
                 let text = || format!("warning: body {number}: {misfit}; its null space was sought in K");
@@ -303,7 +303,11 @@ impl Prepared {
 fn plans(model: &Model, pending: &[usize], watch: &mut Watch) -> Result<Vec<Plan>> {
     let tolerance = model.settings.null_space_tolerance;
     let part = SetupPart::of(model.threads(), weights(model, pending), NULL_SPACES);
-    let find = |k: usize| plan(&model.bodies[pending[k]].body, tolerance).map_err(|e| e.body(pending[k]));
+    let find = |k: usize| {
+        let (p, body) = (pending[k], &model.bodies[pending[k]].body);
+        let planned = plan(body, tolerance).map_err(|e| e.body(p))?;
+        Ok(if model.is_piece(p) { planned.or_search(tolerance) } else { planned })
+    };
     let mut plans: Vec<Option<Plan>> = pending.iter().map(|_| None).collect();
     watch.every_body(&part, find, |k, plan| plans[k] = Some(plan))?;
     Ok(plans.into_iter().flatten().collect())

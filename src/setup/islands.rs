@@ -146,8 +146,15 @@ pub fn islands(model: &Model) -> Result<Vec<Island>> {
         let finite = (0..rows.len()).filter(|&i| rows.is_finite(i));
         finite.map(move |i| rows.matrix.row(i).map(move |(j, _)| body_of(j)))
     });
-    let _room = headroom(2 * size_of::<usize>() * bodies, WHAT)?;
-    let (of_body, count) = joined(bodies, touched);
+    let _room = headroom(3 * size_of::<usize>() * bodies, WHAT)?;
+    let (mut of_body, mut count) = joined(bodies, touched);
+    if let Some(parts) = &model.parts {
+        // the pieces of one body belong together, also where nothing glues them
+        let pieces = parts.first.windows(2).map(|range| (range[0]..range[1]).map(|part| of_body[part]));
+        let (joint, all) = joined(count, pieces);
+        of_body.iter_mut().for_each(|island| *island = joint[*island]);
+        count = all;
+    }
     let mut islands: Vec<Island> = (0..count).map(|_| Island::empty()).collect();
     let mut start = reserved(bodies, WHAT)?;
     for (p, &island) in of_body.iter().enumerate() {

@@ -12,7 +12,9 @@ mod prepared;
 mod ready;
 mod rows;
 mod scaling;
+mod whole;
 
 pub use islands::{Island, Members};
 pub use prepared::{Duals, Inverse, Prepared, Work};
 pub use ready::Ready;
+pub use whole::Whole;

@@ -83,6 +83,7 @@ fn preconditioner(
         let made = match model.bodies[p].body.k().ok_or_else(missing)? {
             Stiffness::Matrix(k) => stops.interrupt.during(|| stiffness(k, 1.0 / unit, local)),
             Stiffness::Host(k) => diagonal(k, 1.0 / unit, local),
+            Stiffness::Assembled(_) => Err(missing()),
         };
         let stiffness = made.map_err(|e| e.body(p))?;
         Ok(Boundary { dofs: local.iter().map(|j| j + ranges[k].start).collect(), stiffness })

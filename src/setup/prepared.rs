@@ -74,6 +74,16 @@ impl Prepared {
         self.duals.as_ref().filter(|duals| duals.of == model.revisions)
     }
 
+    /// The dual problems made last, of whatever revision.
+    pub fn made_last(&self) -> Option<&Duals> {
+        self.duals.as_ref()
+    }
+
+    /// Drops all that has been computed: the bodies have other numbers.
+    pub fn forget(&mut self) {
+        (self.bodies, self.duals) = (Vec::new(), None);
+    }
+
     /// The same where a setup has just been done.
     pub fn done(&self, model: &Model) -> Result<&Duals> {
         self.duals(model).ok_or_else(|| Error::new(Kind::Internal, "the setup left nothing"))

@@ -7,6 +7,7 @@ use crate::platform::memory::reserved;
 use crate::platform::threads;
 use crate::setup::islands::Island;
 use crate::setup::rows::DualRows;
+use crate::setup::whole::Whole;
 
 /// Multiplications of a product with F, a tenth of a millisecond, from which on several threads save time.
 const PARALLEL_PAYS: usize = 1 << 18;
@@ -16,6 +17,8 @@ pub struct Ready {
     pub island: Island,
     pub dual: Dual,
     pub rows: DualRows,
+    /// The island with the bodies of the host, where its own are pieces of them.
+    pub whole: Option<Whole>,
     /// The preconditioner and which one of the options it is.
     pub preconditioner: Option<(Preconditioning, Preconditioner)>,
 }

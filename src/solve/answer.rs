@@ -53,7 +53,7 @@ impl Answer {
         for (ready, end) in prepared.done(model)?.islands.iter().zip(ends) {
             match end {
                 Ok(solved) => {
-                    let own = ready.island.named(solved.ending.judgement.certificate);
+                    let own = named(model, ready, solved.ending.judgement.certificate);
                     match &mut all {
                         None => all = Some(own),
                         Some(all) => all.merge(&own),
@@ -86,7 +86,11 @@ impl Answer {
         let alpha = ready.dual.amplitudes(&solution.alpha);
         for (k, &p) in island.bodies.iter().enumerate() {
             self.alpha[p] = alpha[ready.dual.modes_of(k)].to_vec();
-            self.force_errors[p] = judgement.bodies[k].force_error;
+            let judged = match &ready.whole {
+                Some(whole) => whole.island.bodies.binary_search(&model.name(p)).unwrap_or(k),
+                None => k,
+            };
+            self.force_errors[p] = judgement.bodies[judged].force_error;
         }
         let report = &mut self.report;
         if outcome > report.outcome {
@@ -128,6 +132,18 @@ impl Answer {
             self.alpha[p] = vec![f64::NAN; ready.dual.modes_of(k).len()];
         }
     }
+}
+
+/// A certificate with the numbers of the host.
+pub fn named(model: &Model, ready: &Ready, own: Certificate) -> Certificate {
+    if let Some(whole) = &ready.whole {
+        return whole.island.named(own);
+    }
+    let mut named = ready.island.named(own);
+    for entry in [&mut named.equilibrium, &mut named.balance] {
+        entry.place.iter_mut().for_each(|body| *body = model.name(*body));
+    }
+    named
 }
 
 /// By what the certificate takes for zero at every row: closed with a force, open with a gap, weak with neither.

@@ -27,7 +27,7 @@ mod sliding;
 mod start;
 mod travel;
 
-pub use answer::Answer;
+pub use answer::{named, Answer};
 pub use case::Case;
 pub use every_island::solve_islands;
 pub use held::without_force;

@@ -3,10 +3,11 @@
 
 use std::cell::{Cell, RefCell};
 
-use crate::certificate::{certify, BodyData, Candidate, Data, Judgement, Unasked};
+use crate::certificate::{certify, BodyData, Candidate, Data, Judgement, Response, Unasked};
 use crate::error::Result;
 use crate::linalg::twofold::Twofold;
 use crate::linalg::vector::{axpy, weighted_norm};
+use crate::model::Model;
 use crate::platform::interrupt;
 use crate::platform::memory::copied;
 use crate::qp::{Direct, Qp, Solution};
@@ -47,6 +48,7 @@ pub struct Ending {
 
 /// Recovers and judges the answers of one island.
 pub struct Recovery<'a> {
+    model: &'a Model,
     pub ready: &'a Ready,
     pub scaled: &'a Scaled,
     pub data: Data<'a>,
@@ -79,6 +81,7 @@ impl<'a> Recovery<'a> {
         };
         let soft = ready.island.bodies.iter().any(is_soft);
         Ok(Self {
+            model: case.model,
             ready,
             scaled,
             data,
@@ -185,12 +188,23 @@ impl<'a> Recovery<'a> {
     pub fn judged_on(&self, data: &Data, answer: &Recovered) -> Result<Judgement> {
         let Self { ready, threads, work, .. } = self;
         let mut response = ByInverse { data, ready, threads: *threads, work };
-        interrupt::part(CERTIFICATE, || certify(data, answer.view(), &mut response))
+        self.certified(data, answer, &mut response)
+    }
+
+    /// Where bodies are cut the answer of the host is judged: K+ of its bodies, which rounding might be excused by, is not known.
+    fn certified(&self, data: &Data, answer: &Recovered, response: &mut dyn Response) -> Result<Judgement> {
+        let Some(whole) = &self.ready.whole else {
+            return interrupt::part(CERTIFICATE, || certify(data, answer.view(), response));
+        };
+        let (u, loads) = (whole.mean(&answer.u)?, whole.loads(data)?);
+        let mu = &answer.mu[..whole.island.equalities.numbers.len()];
+        let answer = Candidate { u: &u, lambda: &answer.lambda, mu };
+        interrupt::part(CERTIFICATE, || certify(&whole.data(self.model, &loads)?, answer, &mut Unasked))
     }
 
     /// The same where rounding of the loads excuses nothing, and K+ is not asked.
     pub fn judged_strictly(&self, answer: &Recovered) -> Result<Judgement> {
-        interrupt::part(CERTIFICATE, || certify(&self.data, answer.view(), &mut Unasked))
+        self.certified(&self.data, answer, &mut Unasked)
     }
 
     /// The answer of a solution.

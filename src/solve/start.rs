@@ -34,7 +34,8 @@ impl Start {
         let mut x = ready.rows.scaling.forces_to_dual(|i| {
             let (kind, row) = ready.island.kind_and_row(i);
             // where the last solve has left none
-            let known = multipliers[kind as usize].map(|all| all[row]).filter(|v| v.is_finite());
+            let known =
+                multipliers[kind as usize].and_then(|all| all.get(row).copied()).filter(|v| v.is_finite());
             known.unwrap_or(0.0)
         })?;
         x.resize(ready.dual.order(), 0.0);

@@ -1,11 +1,14 @@
 //! What is known about one body.
 
-use crate::body::{Doubt, Modes};
+use std::ops::Range;
+
+use crate::body::{Assembled, Doubt, Modes};
 use crate::error::{Error, Kind, Result};
 use crate::linalg::graph;
 use crate::linalg::Symmetric;
 use crate::platform::memory::headroom;
-use crate::setup::Duals;
+use crate::setup::{Duals, Inverse};
+use crate::solver::decomposed::null_space_of;
 use crate::solver::problem::Problem;
 
 /// What the null space of a body comes from.
@@ -29,6 +32,8 @@ pub struct BodyFacts {
     pub entries: Option<usize>,
     /// Connected parts of K.
     pub components: Option<usize>,
+    /// Pieces that it is cut into, 1 for a body that is not.
+    pub pieces: usize,
     /// Bytes that the library keeps for K.
     pub matrix_bytes: usize,
     /// Values and columns of K lie with the host.
@@ -69,7 +74,12 @@ impl Problem {
     pub fn components(&self, body: usize) -> Result<(Vec<usize>, usize)> {
         const PER_DOF: usize = 2 * size_of::<usize>();
         let missing = || Error::new(Kind::State, "the stiffness matrix has not been given").body(body);
-        let k = self.model.given(body)?.body.stiffness.as_ref().ok_or_else(missing)?;
+        let given = &self.model.given(body)?.body;
+        if let Some(k) = &given.assembled {
+            let _room = headroom(k.order() * PER_DOF, "the connected parts of a body")?;
+            return Ok(k.components());
+        }
+        let k = given.stiffness.as_ref().ok_or_else(missing)?;
         let _room = headroom(k.order() * PER_DOF, "the connected parts of a body")?;
         Ok(graph::components(k))
     }
@@ -77,28 +87,28 @@ impl Problem {
     pub fn body_facts(&self, body: usize) -> Result<BodyFacts> {
         let given = self.model.given(body)?;
         let n = given.body.order;
-        let k = given.body.stiffness.as_deref();
-        let components = k.map(|_| self.components(body)).transpose()?.map(|(_, number)| number);
+        let (k, cut) = (given.body.stiffness.as_deref(), given.body.assembled.as_deref());
+        let known = k.is_some() || cut.is_some();
+        let components = known.then(|| self.components(body)).transpose()?.map(|(_, number)| number);
         let origin = match (&given.body.null_space, &given.body.coordinates) {
             (Some(r), _) if r.modes == Modes::Candidates => Origin::Candidates,
             (Some(_), _) => Origin::Given,
             // where coordinates did not fit
-            (None, _)
-                if self.prepared.inverse(&self.model, body).is_some_and(|of| of.kplus.misfit.is_some()) =>
-            {
-                Origin::Found
-            }
+            (None, _) if self.inverses(body).any(|of| of.kplus.misfit.is_some()) => Origin::Found,
             (None, Some(_)) => Origin::Coordinates,
             (None, None) => Origin::Found,
         };
         let operator = self.prepared.duals(&self.model).map(|Duals { operators, .. }| {
-            (!operators.implicit[body]).then(|| operators.sizes[body].bytes(false))
+            let mut parts = self.parts_of(body);
+            let explicit = parts.clone().all(|part| !operators.implicit[part]);
+            explicit.then(|| parts.by_ref().map(|part| operators.sizes[part].bytes(false)).sum())
         });
         Ok(BodyFacts {
             unknowns: n,
             entries: given.form.as_ref().map(|form| form.entries(n)),
             components,
-            matrix_bytes: k.map_or(0, Symmetric::bytes),
+            pieces: cut.map_or(1, |k| k.pieces().len()),
+            matrix_bytes: k.map_or(0, Symmetric::bytes) + cut.map_or(0, Assembled::bytes),
             borrowed: k.map_or([false; 2], |k| [k.val.is_of_host(), k.col.is_of_host()]),
             origin,
             factors: self.factors_of(body),
@@ -108,16 +118,45 @@ impl Problem {
     }
 
     fn factors_of(&self, body: usize) -> Option<Factors> {
-        let inverse = |p: usize| self.prepared.inverse(&self.model, p);
-        let of = inverse(body)?;
-        let address = |p: usize| inverse(p).map(|of| of.kplus.factor_address());
+        let first = self.inverses(body).next()?;
+        let address = |p: usize| self.inverses(p).next().map(|of| of.kplus.factor_address());
+        let own = self.only_part(body);
+        let null_space = match own {
+            Some(_) => first.kplus.null_space.cols,
+            None => null_space_of(&self.prepared, self.parts()?, body)?.cols,
+        };
+        let others = 0..self.model.bodies.len();
         Some(Factors {
-            null_space: of.kplus.null_space.cols,
-            gap: of.kplus.gap,
-            doubts: of.kplus.doubts.clone(),
-            entries: of.kplus.entries(),
-            bytes: of.bytes,
-            shared_with: (0..self.model.bodies.len()).find(|&p| p != body && address(p) == address(body)),
+            null_space,
+            gap: first.kplus.gap.filter(|_| own.is_some()),
+            doubts: self.inverses(body).flat_map(|of| of.kplus.doubts.iter().cloned()).collect(),
+            entries: self.inverses(body).map(|of| of.kplus.entries()).sum(),
+            bytes: self.inverses(body).map(|of| of.bytes).sum(),
+            shared_with: others.clone().find(|&p| own.is_some() && p != body && address(p) == address(body)),
         })
+    }
+
+    /// The parts that stand for a body.
+    fn parts_of(&self, body: usize) -> Range<usize> {
+        self.parts().map_or(body..body + 1, |parts| parts.of(body))
+    }
+
+    /// K+ of the parts of a body, as it is now.
+    fn inverses(&self, body: usize) -> impl Iterator<Item = &Inverse> + '_ {
+        let solved = self.solved();
+        let now = solved.bodies.get(self.parts_of(body).start).map(|given| given.revisions);
+        let current = now == Some(self.model.bodies[body].revisions);
+        let parts = self.parts_of(body).filter(move |_| current);
+        parts.filter_map(|part| self.prepared.inverse(self.solved(), part))
+    }
+
+    /// Forces that hold the held unknowns 0, 1, ... of a body given by elements, `K_hf u`, force; 0 for one that no element has.
+    /// What prescribed values of held unknowns and loads on them add is for the host to say.
+    pub fn held_forces(&self, body: usize, forces: &mut [f64]) -> Result<()> {
+        let given = self.model.given(body)?;
+        let missing = || Error::new(Kind::State, "the body was not given by its elements").body(body);
+        let mesh = given.mesh.as_ref().ok_or_else(missing)?;
+        mesh.held_forces(self.displacement(body)?, forces);
+        Ok(())
     }
 }

@@ -2,11 +2,12 @@
 
 use std::cell::Cell;
 
-use crate::certificate::{certify, Candidate, Certificate, Entry};
+use crate::certificate::{certify, Candidate, Certificate, Entry, Unasked};
 use crate::constraints::RowKind;
 use crate::error::{Error, Kind, Result};
 use crate::model::Model;
-use crate::solve::{ByInverse, Case};
+use crate::solve::{named, ByInverse, Case};
+use crate::solver::decomposed::solved;
 use crate::solver::problem::Problem;
 
 impl Problem {
@@ -16,10 +17,12 @@ impl Problem {
         if self.prepared.duals(&self.model).is_none() {
             self.setup()?;
         }
-        let Self { model, prepared, .. } = self;
-        model.check_empty_rows()?;
+        self.decompose()?;
+        let Self { model: host, decomposition, prepared, .. } = self;
+        let model = solved(host, decomposition);
+        host.check_empty_rows()?;
         prepared.refresh_gaps(model);
-        let counts = model.sizes();
+        let counts = host.sizes();
         let lengths = [("n", u, counts.dofs), ("rows", lambda, counts.rows), ("eqs", mu, counts.equalities)];
         for (argument, values, expected) in lengths {
             if values.len() != expected {
@@ -28,22 +31,33 @@ impl Problem {
                 return Err(error.value(values.len() as f64).limit(expected as f64));
             }
         }
+        let copies = model.parts.as_ref().map(|parts| parts.spread(u)).transpose()?;
+        let u = copies.as_deref().unwrap_or(u);
         let mut all: Option<Certificate> = None;
         for ready in &prepared.done(model)?.islands {
             let island = &ready.island;
             let own = island.gather(model, u)?;
-            let (lambda, mu) = (island.contact.gather(lambda), island.equalities.gather(mu));
+            let equalities =
+                ready.whole.as_ref().map_or(&island.equalities, |whole| &whole.island.equalities);
+            let (lambda, mu) = (island.contact.gather(lambda), equalities.gather(mu));
             let answer = Candidate { u: &own, lambda: &lambda, mu: &mu };
             let (data, work) = (Case { model, prepared, ready }.data()?, Cell::new(None));
             let mut response = ByInverse { data: &data, ready, threads: model.threads(), work: &work };
-            let own = island.named(certify(&data, answer, &mut response)?.certificate);
+            let judged = match &ready.whole {
+                None => certify(&data, answer, &mut response)?,
+                Some(whole) => {
+                    let (u, loads) = (whole.mean(&own)?, whole.loads(&data)?);
+                    certify(&whole.data(model, &loads)?, Candidate { u: &u, ..answer }, &mut Unasked)?
+                }
+            };
+            let own = named(model, ready, judged.certificate);
             match &mut all {
                 None => all = Some(own),
                 Some(all) => all.merge(&own),
             }
         }
         let mut all = all.ok_or_else(|| Error::new(Kind::Internal, "a problem without bodies was set up"))?;
-        all.complementarity = without_force(model, lambda, all.complementarity);
+        all.complementarity = without_force(host, lambda, all.complementarity);
         Ok(all)
     }
 }

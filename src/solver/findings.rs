@@ -45,7 +45,8 @@ impl Findings {
         findings
     }
 
-    pub fn of_error(model: &Model, prepared: &Prepared, error: &Error) -> Self {
+    /// `model` is what was solved; the error is about the bodies of the host.
+    pub fn of_error(host: &Model, model: &Model, prepared: &Prepared, error: &Error) -> Self {
         let mut findings = Self::new(model, prepared, Err(error.kind));
         findings.place = *error.place;
         findings.proof = error.proof.as_deref().cloned();
@@ -56,7 +57,7 @@ impl Findings {
             Some(Proof::Motion { v, .. }) => {
                 let unheld = error.place.value.filter(|_| error.kind == Kind::LoadNotHeld);
                 findings.unheld = unheld.unwrap_or(0.0);
-                findings.motion = error.place.body.and_then(|body| rigid_motion(model, body, v));
+                findings.motion = error.place.body.and_then(|body| rigid_motion(host, body, v));
             }
             None => {}
         }

@@ -2,6 +2,7 @@
 
 mod body_facts;
 mod check;
+mod decomposed;
 mod findings;
 mod history;
 mod problem;

@@ -5,6 +5,7 @@ use std::sync::atomic::AtomicBool;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
+use crate::decomposition::Decomposition;
 use crate::error::{Error, Kind, Result};
 use crate::model::{Model, StartFrom};
 #[cfg(test)]
@@ -13,6 +14,7 @@ use crate::platform::memory::Headroom;
 use crate::progress::{Host, Listener, Log, LogLevel, LogListener, Phase, PhaseReport, Phases, Watch};
 use crate::setup::{Prepared, Work};
 use crate::solve::{solve_islands, Answer, Report, Solved};
+use crate::solver::decomposed::{answer_of_host, of_host, solved};
 use crate::solver::findings::Findings;
 use crate::solver::history::{Current, History};
 use crate::solver::told::{begin, method, result};
@@ -22,6 +24,8 @@ use crate::solver::told::{begin, method, result};
 #[derive(Default)]
 pub struct Problem {
     pub(super) model: Model,
+    /// The pieces that are solved in place of bodies that are cut.
+    pub(super) decomposition: Option<Decomposition>,
     pub(super) prepared: Prepared,
     pub(super) history: History,
     pub(super) findings: Option<Findings>,
@@ -53,11 +57,14 @@ impl Problem {
     pub fn setup(&mut self) -> Result<()> {
         // the limit is that of a solve, which may follow
         self.watched("setup", f64::INFINITY, |problem, watch| {
-            if !problem.prepared.is_up_to_date(&problem.model) {
+            problem.decompose()?;
+            let Self { model, decomposition, prepared, .. } = problem;
+            let solved = solved(model, decomposition);
+            if !prepared.is_up_to_date(solved) {
                 watch.phases = Phases::default();
-                begin(&watch.log, &problem.model, "setup")?;
+                begin(&watch.log, model, "setup")?;
             }
-            problem.prepared.set_up(&problem.model, watch)
+            prepared.set_up(solved, watch).map_err(|e| problem.of_host(e))
         })
     }
 
@@ -76,19 +83,23 @@ impl Problem {
         let previous = self.model.settings.start == StartFrom::Previous;
         let start = self.history().take_start(previous);
         watch.phases = Phases::default();
-        let Self { model, prepared, history, .. } = self;
-        prepared.set_up(model, watch)?;
-        prepared.set_up_preconditioner(model, watch)?;
+        self.decompose()?;
+        let Self { model, decomposition, prepared, history, .. } = self;
+        let (host, model) = (&*model, solved(model, decomposition));
+        let told = |error| of_host(host, decomposition, error);
+        prepared.set_up(model, watch).map_err(told)?;
+        prepared.set_up_preconditioner(model, watch).map_err(told)?;
         watch.log.phases(&prepared.phases(model, &watch.phases), Phase::DualSolve as usize)?;
         method(&watch.log, model, prepared, start.name())?;
         let solving = Instant::now();
-        let ends = solve_islands(model, prepared, &start, watch)?;
+        let ends = solve_islands(model, prepared, &start, watch).map_err(told)?;
         let sum = |time: fn(&Solved) -> Duration| ends.iter().flatten().map(time).sum::<Duration>();
         let (judging, recovering) = (sum(|end| end.judging), sum(|end| end.recovering));
-        let failure = ends.iter().find_map(|end| end.as_ref().err().cloned());
+        let failure = ends.iter().find_map(|end| end.as_ref().err().cloned()).map(told);
         watch.phases.add(Phase::DualSolve, solving.elapsed());
         watch.phases.move_time(Phase::DualSolve, Phase::Recovery, judging + recovering);
-        if let Some(mut answer) = Answer::new(model, prepared, ends)? {
+        if let Some(answer) = Answer::new(model, prepared, ends)? {
+            let mut answer = answer_of_host(host, model, prepared, answer)?;
             answer.report.seconds_setup = (solving - started).as_secs_f64();
             answer.report.seconds_solve = solving.elapsed().as_secs_f64();
             answer.report.phases = prepared.phases(model, &watch.phases);
@@ -99,7 +110,7 @@ impl Problem {
                 let report = report.clone();
                 watch.log.phases(&report.phases, usize::MAX)?;
                 result(&watch.log, &report)?;
-                self.findings = Some(Findings::of_report(&self.model, &self.prepared, &report));
+                self.findings = Some(self.found(Findings::of_report(self.solved(), &self.prepared, &report)));
                 Ok(report)
             }
             (failure, _) => {
@@ -133,7 +144,8 @@ impl Problem {
         });
         if let Err(error) = &outcome {
             watch.log.failure(call, error, self.model.settings.index_base);
-            self.findings = Some(Findings::of_error(&self.model, &self.prepared, error));
+            self.findings =
+                Some(self.found(Findings::of_error(&self.model, self.solved(), &self.prepared, error)));
         }
         self.phases = self.host.ended(watch);
         outcome
@@ -172,13 +184,19 @@ impl Problem {
 
     /// Room for setup, solve and check, for as long as the result is kept; what no longer holds makes room first.
     pub fn working_headroom(&mut self) -> Result<Headroom> {
-        self.prepared.follow(&self.model);
-        self.prepared.working_headroom(&self.model)
+        self.follow();
+        self.prepared.working_headroom(solved(&self.model, &self.decomposition))
     }
 
     /// The same for a call that needs the setup alone: none where it is there.
     pub fn setup_headroom(&mut self) -> Result<Option<Headroom>> {
-        self.prepared.follow(&self.model);
-        self.prepared.setup_headroom(&self.model)
+        self.follow();
+        self.prepared.setup_headroom(solved(&self.model, &self.decomposition))
+    }
+
+    /// What is no longer true of the bodies makes room. What is missing is told by the call that needs it.
+    fn follow(&mut self) {
+        drop(self.decompose());
+        self.prepared.follow(solved(&self.model, &self.decomposition));
     }
 }

@@ -4,19 +4,31 @@ use crate::error::{Error, Kind, Result};
 use crate::linalg::Operator;
 use crate::platform::memory::zeros;
 use crate::setup::Inverse;
+use crate::solver::decomposed::null_space_of;
 use crate::solver::problem::Problem;
 
 impl Problem {
     fn inverse(&mut self, body: usize) -> Result<&Inverse> {
-        self.model.given(body)?;
+        self.check_whole_body(body)?;
         self.setup()?;
         let missing = || Error::new(Kind::Internal, "the setup left a body without factors");
-        self.prepared.inverse(&self.model, body).ok_or_else(missing)
+        let part = self.only_part(body).ok_or_else(missing)?;
+        self.prepared.inverse(self.solved(), part).ok_or_else(missing)
     }
 
     /// Dimension r of the null space of a body and its basis as the library uses it: n x r column-major,
     /// orthonormal in the metric of diag K / 2^p.
     pub fn null_space(&mut self, body: usize) -> Result<(usize, &[f64])> {
+        if self.check_whole_body(body).is_err() {
+            self.model.given(body)?;
+            self.setup()?;
+            let missing = || Error::new(Kind::Internal, "the setup left a body without null space");
+            let basis = self
+                .parts()
+                .and_then(|parts| null_space_of(&self.prepared, parts, body))
+                .ok_or_else(missing)?;
+            return Ok((basis.cols, &basis.data));
+        }
         let basis = &self.inverse(body)?.kplus.null_space;
         Ok((basis.cols, &basis.data))
     }
@@ -24,6 +36,9 @@ impl Problem {
     /// How far the null space the library found stands apart: softest other motion against the stiffest of it, in the
     /// metric of diag K, both at least 1e-14 of the largest; none where the host gave vectors or coordinates.
     pub fn null_space_gap(&mut self, body: usize) -> Result<Option<f64>> {
+        if self.model.given(body)?.body.assembled.is_some() {
+            return Ok(None);
+        }
         Ok(self.inverse(body)?.kplus.gap)
     }
 
@@ -51,6 +66,7 @@ impl Problem {
     pub fn dual_apply(&mut self, x: &[f64], y: &mut [f64]) -> Result<()> {
         self.check_rows(x.len())?;
         self.check_rows(y.len())?;
+        self.check_nothing_cut()?;
         self.setup()?;
         let compliance = self.model.contact.compliance.iter().chain(&self.model.equalities.compliance);
         y.iter_mut().zip(x).zip(compliance).for_each(|((y, x), c)| *y = c * x);
@@ -68,6 +84,7 @@ impl Problem {
     /// `d = B K+ f - c` of (13), contact rows first, length; -infinity for rows that never close.
     pub fn dual_rhs(&mut self, d: &mut [f64]) -> Result<()> {
         self.check_rows(d.len())?;
+        self.check_nothing_cut()?;
         self.setup()?;
         let gaps = self.model.contact.rhs.iter().chain(&self.model.equalities.rhs);
         d.iter_mut().zip(gaps).for_each(|(d, c)| *d = -c);
@@ -81,6 +98,11 @@ impl Problem {
             along.for_each(|(i, length)| d[ready.island.in_stack(contact, i)] += length);
         }
         Ok(())
+    }
+
+    /// F of bodies that are cut is not known: it would be that of the pieces on their glue.
+    fn check_nothing_cut(&self) -> Result<()> {
+        (0..self.model.bodies.len()).try_for_each(|body| self.check_whole_body(body))
     }
 
     fn check_rows(&self, m: usize) -> Result<()> {

@@ -22,7 +22,8 @@ impl Problem {
     fn answer_on(&self, body: usize) -> Result<&Answer> {
         self.model.given(body)?;
         let answer = self.answer()?;
-        if answer.failed[self.prepared.done(&self.model)?.island_of[body]] {
+        let part = self.parts().map_or(body, |parts| parts.first[body]);
+        if answer.failed[self.prepared.done(&self.model)?.island_of[part]] {
             let what = "the group of bodies that this one belongs to has no answer";
             return Err(Error::new(Kind::State, what).body(body));
         }
@@ -60,7 +61,8 @@ impl Problem {
         let mut all = zeros(answer.u.len(), "a reaction")?;
         for (of, multipliers) in [(RowKind::Inequality, &answer.lambda), (RowKind::Equality, &answer.mu)] {
             if kind.is_none_or(|kind| kind == of) {
-                self.model.rows(of).matrix.mul_transposed_add(-1.0, multipliers, &mut all);
+                let rows = self.model.rows(of);
+                rows.matrix.mul_transposed_add(-1.0, &multipliers[..rows.len()], &mut all);
             }
         }
         Ok(all)
@@ -76,7 +78,7 @@ impl Problem {
         let answer = self.answer()?;
         Ok(match kind {
             RowKind::Inequality => &answer.lambda,
-            RowKind::Equality => &answer.mu,
+            RowKind::Equality => &answer.mu[..self.model.equalities.len()],
         })
     }
 

@@ -36,8 +36,11 @@ impl Problem {
         };
         let ready = &self.prepared.done(&self.model)?.islands[*island];
         let own = ready.dual.rigid_motion(amplitudes, ready.island.unknowns());
-        let mut v = zeros(self.model.sizes().dofs, "an open motion")?;
-        ready.island.scatter(&self.model, &own, &mut v);
+        let mut v = zeros(self.solved().sizes().dofs, "an open motion")?;
+        ready.island.scatter(self.solved(), &own, &mut v);
+        if let Some(parts) = self.parts() {
+            v = parts.mean(&v)?;
+        }
         let fastest = (0..v.len()).fold(0, |best, i| if v[i].abs() > v[best].abs() { i } else { best });
         let largest = v.get(fastest).copied().unwrap_or(1.0);
         v.iter_mut().for_each(|v| *v /= largest);
@@ -61,7 +64,7 @@ impl Problem {
         for (k, (ready, _)) in islands.filter(|(_, (_, failed))| !**failed) {
             let lambda = ready.island.contact.gather(&answer.lambda);
             let mu = ready.island.equalities.gather(&answer.mu);
-            let held = without_force(ready, &ready.island.loads(&self.model)?, &lambda, &mu);
+            let held = without_force(ready, &ready.island.loads(self.solved())?, &lambda, &mu);
             let dual = &ready.dual;
             let motions =
                 AnswerFace::new(&dual.coarse, &dual.blocks, &held, dual.rounding())?.undetermined()?;
@@ -89,6 +92,7 @@ impl Problem {
             let leader = |at: usize| ready.rows.scaling.grouping.leaders[groups[at]] - ready.rows.contact;
             dependent.extend(found.map(|at| ready.island.equalities.numbers[leader(at)]));
         }
+        dependent.retain(|row| *row < self.model.equalities.len());
         dependent.sort_unstable();
         Ok(dependent)
     }

@@ -18,16 +18,17 @@ use std::path::{Path, PathBuf};
 use source::{line_of, occurrences, paths, test_modules, test_ranges, without_text, words, Named};
 
 /// What each layer may name; every layer may name itself.
-const ALLOWED: [(&str, &[&str]); 14] = [
+const ALLOWED: [(&str, &[&str]); 15] = [
     ("error", &[]),
     ("platform", &["error"]),
     ("linalg", &["error", "platform"]),
+    ("mesh", &["error", "platform", "linalg"]),
     ("body", &["error", "platform", "linalg"]),
     ("constraints", &["error", "platform", "linalg"]),
     ("dual", &["error", "platform", "linalg", "body", "constraints"]),
     ("qp", &["error", "platform", "linalg"]),
     ("certificate", &["error", "platform", "linalg", "body", "constraints"]),
-    ("model", &["error", "platform", "linalg", "body", "constraints"]),
+    ("model", &["error", "platform", "linalg", "mesh", "body", "constraints"]),
     ("progress", &["error", "platform", "qp"]),
     (
         "setup",

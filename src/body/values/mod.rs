@@ -16,6 +16,8 @@ const NONE: usize = usize::MAX;
 pub enum Form {
     Sparse(Places),
     Dense(Storage),
+    /// By elements, with so many entries together.
+    Elements(usize),
 }
 
 impl Form {
@@ -26,6 +28,7 @@ impl Form {
             Self::Sparse(places) => places.entries,
             Self::Dense(Storage::Full) => n * n,
             Self::Dense(_) => n * (n + 1) / 2,
+            Self::Elements(entries) => *entries,
         }
     }
 }

@@ -1,0 +1,145 @@
+//! K of a body that is cut: the sum of the matrices of its pieces, known by its products.
+
+use std::sync::Arc;
+
+use crate::error::Result;
+use crate::linalg::twofold::Twofold;
+use crate::linalg::{graph, Symmetric};
+use crate::platform::memory::{filled, zeros};
+
+const WHAT: &str = "a product with K";
+
+/// `K = sum_s A_s K_s A_s'`, A_s the unknowns of piece s.
+#[derive(Debug)]
+pub struct Assembled {
+    /// Unknowns of each piece, ascending, and its matrix over them, force / length.
+    pieces: Vec<(Arc<[u32]>, Arc<Symmetric>)>,
+    /// `K_ii`
+    diagonal: Vec<f64>,
+}
+
+impl Assembled {
+    /// Of a body with n unknowns, each of which some piece has.
+    pub fn new(n: usize, pieces: impl Iterator<Item = (Arc<[u32]>, Arc<Symmetric>)>) -> Result<Self> {
+        let (pieces, mut diagonal): (Vec<_>, _) = (pieces.collect(), zeros(n, "a stiffness matrix")?);
+        for (dofs, k) in &pieces {
+            dofs.iter().enumerate().for_each(|(i, &dof)| diagonal[dof as usize] += k.diagonal(i));
+        }
+        Ok(Self { pieces, diagonal })
+    }
+
+    pub fn order(&self) -> usize {
+        self.diagonal.len()
+    }
+
+    pub fn diagonal(&self, i: usize) -> f64 {
+        self.diagonal[i]
+    }
+
+    /// `y = K x`
+    pub fn mul(&self, x: &[f64], y: &mut [f64]) -> Result<()> {
+        y.fill(0.0);
+        self.each_piece(x, |dofs, k, x, image| {
+            k.mul(x, image);
+            dofs.iter().zip(image).for_each(|(&dof, v)| y[dof as usize] += *v);
+        })
+    }
+
+    /// `y = K x` and `terms = sum_s A_s |K_s| |A_s'x|`
+    pub fn mul_with_terms(&self, x: &[f64], y: &mut [f64], terms: &mut [f64]) -> Result<()> {
+        y.fill(0.0);
+        terms.fill(0.0);
+        let mut own = zeros(self.largest(), WHAT)?;
+        self.each_piece(x, |dofs, k, x, image| {
+            let own = &mut own[..dofs.len()];
+            k.mul_with_terms(x, image, own);
+            for ((&dof, v), t) in dofs.iter().zip(image.iter()).zip(own.iter()) {
+                y[dof as usize] += v;
+                terms[dof as usize] += t;
+            }
+        })
+    }
+
+    /// `y += by K x` in twice the digits, by a power of two.
+    pub fn add_twofold(&self, by: f64, x: &[f64], y: &mut [Twofold]) -> Result<()> {
+        let mut own = filled(self.largest(), Twofold::default(), WHAT)?;
+        self.each_piece(x, |dofs, k, x, _| {
+            let own = &mut own[..dofs.len()];
+            own.iter_mut().zip(dofs).for_each(|(own, &dof)| *own = y[dof as usize]);
+            k.add_twofold(by, x, own);
+            own.iter().zip(dofs).for_each(|(own, &dof)| y[dof as usize] = *own);
+        })
+    }
+
+    /// Numbers of the unknowns of each piece.
+    pub fn pieces(&self) -> impl ExactSizeIterator<Item = usize> + '_ {
+        self.pieces.iter().map(|(dofs, _)| dofs.len())
+    }
+
+    /// The connected part of every unknown, numbered by their first unknowns, and their number. Entries that are 0 connect nothing.
+    pub fn components(&self) -> (Vec<usize>, usize) {
+        let rows = self.pieces.iter().flat_map(|(dofs, k)| {
+            let joined =
+                move |i: usize| k.lower_row(i).filter(|(_, v)| *v != 0.0).map(|(j, _)| dofs[j] as usize);
+            (0..dofs.len()).map(joined)
+        });
+        graph::joined(self.order(), rows)
+    }
+
+    /// Bytes that the library keeps for it.
+    pub fn bytes(&self) -> usize {
+        let of_pieces = self.pieces.iter().map(|(dofs, k)| size_of_val(&dofs[..]) + k.bytes()).sum::<usize>();
+        of_pieces + size_of_val(&self.diagonal[..])
+    }
+
+    /// Row, column and value of every entry of the lower triangles of the pieces.
+    pub fn each_entry(&self, mut visit: impl FnMut(usize, usize, f64)) {
+        for (dofs, k) in &self.pieces {
+            for (i, &dof) in dofs.iter().enumerate() {
+                k.lower_row(i).for_each(|(j, v)| visit(dof as usize, dofs[j] as usize, v));
+            }
+        }
+    }
+
+    /// `work(dofs, K_s, A_s'x, room)` for piece after piece.
+    fn each_piece(
+        &self,
+        x: &[f64],
+        mut work: impl FnMut(&[u32], &Symmetric, &[f64], &mut [f64]),
+    ) -> Result<()> {
+        let (mut own, mut room) = (zeros(self.largest(), WHAT)?, zeros(self.largest(), WHAT)?);
+        for (dofs, k) in &self.pieces {
+            let (own, room) = (&mut own[..dofs.len()], &mut room[..dofs.len()]);
+            own.iter_mut().zip(dofs.iter()).for_each(|(own, &dof)| *own = x[dof as usize]);
+            work(dofs, k, own, room);
+        }
+        Ok(())
+    }
+
+    /// Unknowns of the largest piece.
+    fn largest(&self) -> usize {
+        self.pieces.iter().map(|(dofs, _)| dofs.len()).max().unwrap_or(0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A spring of 2 between unknowns 0 and 2 and one of 3 between 1 and 2.
+    #[test]
+    fn products_are_those_of_the_sum_of_the_pieces() {
+        let spring = |k: f64| Arc::new(Symmetric::new(vec![0, 1, 3], vec![0, 0, 1], vec![k, -k, k]));
+        let pieces = [(Arc::from([0, 2]), spring(2.0)), (Arc::from([1, 2]), spring(3.0))];
+        let k = Assembled::new(3, pieces.into_iter()).unwrap();
+        assert_eq!((0..3).map(|i| k.diagonal(i)).collect::<Vec<_>>(), [2.0, 3.0, 5.0]);
+        let (mut y, mut terms) = ([0.0; 3], [0.0; 3]);
+        k.mul_with_terms(&[1.0, 2.0, 4.0], &mut y, &mut terms).unwrap();
+        assert_eq!((y, terms), ([-6.0, -6.0, 12.0], [10.0, 18.0, 28.0]));
+        k.mul(&[1.0, 2.0, 4.0], &mut y).unwrap();
+        assert_eq!(y, [-6.0, -6.0, 12.0]);
+        let mut twofold = [Twofold::from(1.0); 3];
+        k.add_twofold(-0.5, &[1.0, 2.0, 4.0], &mut twofold).unwrap();
+        assert_eq!(twofold.map(Twofold::value), [4.0, 4.0, -5.0]);
+    }
+}

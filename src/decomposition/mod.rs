@@ -1,0 +1,61 @@
+//! The secondary decomposition of the paper (Section 2): bodies given by elements are cut into pieces, which equality rows glue
+//! together. A host sees its bodies; all that is solved is a model whose bodies are the pieces.
+
+mod back;
+mod bodies;
+mod copies;
+mod rows;
+
+use std::sync::Arc;
+
+use crate::error::Result;
+use crate::model::{Model, Revisions};
+
+pub use back::of_host;
+use bodies::{loads, parts};
+use copies::Copies;
+use rows::rows;
+
+/// The problem of a host with pieces in place of the bodies that are cut.
+pub struct Decomposition {
+    /// What is solved. Its revisions are those of the host's model.
+    pub model: Model,
+    copies: Vec<Option<Copies>>,
+    of: Revisions,
+}
+
+impl Decomposition {
+    /// None where no body is cut: then the host's model is solved as it is.
+    pub fn of(host: &Model) -> Result<Option<Self>> {
+        if host.bodies.iter().all(|given| given.body.assembled.is_none()) {
+            return Ok(None);
+        }
+        let (bodies, mut all) = parts(host)?;
+        all.equalities = host.equalities.len();
+        let copies =
+            (0..host.bodies.len()).map(|body| Copies::of(host, &all, body)).collect::<Result<Vec<_>>>()?;
+        let mut model = Model::new();
+        model.offsets.clone_from(&all.starts);
+        model.bodies = bodies;
+        (model.contact, model.equalities) = rows(host, &all, &copies)?;
+        model.revisions = host.revisions;
+        model.parts = Some(Arc::new(all));
+        let mut made = Self { model, copies, of: host.revisions };
+        made.refresh(host)?;
+        Ok(Some(made))
+    }
+
+    /// Bodies and rows are those of the host as they are now.
+    pub fn is_of(&self, host: &Model) -> bool {
+        self.of == host.revisions
+    }
+
+    /// Takes over what may change without a new setup: options, loads, right-hand sides.
+    pub fn refresh(&mut self, host: &Model) -> Result<()> {
+        let Some(parts) = self.model.parts.clone() else { return Ok(()) };
+        self.model.settings = host.settings.clone();
+        self.model.contact.rhs.copy_from_slice(&host.contact.rhs);
+        self.model.equalities.rhs[..parts.equalities].copy_from_slice(&host.equalities.rhs);
+        loads(host, &parts, &self.copies, &mut self.model)
+    }
+}

@@ -1,0 +1,49 @@
+//! Rows of the host over the unknowns of the pieces, and the rows that glue the copies of an unknown together.
+
+use std::sync::Arc;
+
+use crate::constraints::RowSet;
+use crate::error::Result;
+use crate::linalg::Csr;
+use crate::model::{Model, Parts};
+
+use super::copies::Copies;
+
+const WHAT: &str = "the rows of pieces";
+
+/// Contact rows and equality rows of the host, after these the glue.
+pub fn rows(host: &Model, parts: &Parts, copies: &[Option<Copies>]) -> Result<(RowSet, RowSet)> {
+    let place = |j: usize| {
+        let body = parts.offsets[1..].partition_point(|end| *end <= j);
+        let dof = j - parts.offsets[body];
+        match &copies[body] {
+            Some(copies) => copies.first_stiff(parts, dof),
+            None => parts.starts[parts.first[body]] + dof,
+        }
+    };
+    let (contact, mut equalities) =
+        (moved(&host.contact, parts, place)?, moved(&host.equalities, parts, place)?);
+    let matrix = Arc::make_mut(&mut equalities.matrix);
+    for copies in copies.iter().flatten() {
+        for pair in (0..copies.order()).flat_map(|dof| copies.all(dof).windows(2)) {
+            matrix.push_row([(pair[0].1, 1.0), (pair[1].1, -1.0)]);
+        }
+    }
+    let all = matrix.rows();
+    equalities.rhs.resize(all, 0.0);
+    equalities.compliance.resize(all, 0.0);
+    Ok((contact, equalities))
+}
+
+/// The same rows over unknowns at other places.
+fn moved(rows: &RowSet, parts: &Parts, place: impl Fn(usize) -> usize) -> Result<RowSet> {
+    let mut moved = rows.copied(WHAT)?;
+    let mut matrix = Csr::empty(parts.starts.last().copied().unwrap_or(0));
+    for i in 0..rows.len() {
+        let mut entries: Vec<(usize, f64)> = rows.matrix.row(i).map(|(j, v)| (place(j), v)).collect();
+        entries.sort_unstable_by_key(|entry| entry.0);
+        matrix.push_row(entries);
+    }
+    moved.matrix = Arc::new(matrix);
+    Ok(moved)
+}

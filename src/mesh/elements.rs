@@ -1,0 +1,237 @@
+//! Element matrices as they come: each once in a pass, checked, added to its piece, and forgotten.
+
+use crate::error::{Error, Kind, Result};
+use crate::mesh::connectivity::{Connectivity, Place};
+use crate::mesh::held::HeldRows;
+use crate::mesh::piece::{pieces, Piece};
+use crate::platform::memory::filled;
+
+/// How the host stores the matrices of a block of elements.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ElementStorage {
+    /// n x n column-major, n^2 numbers each.
+    Full,
+    /// The lower triangle column by column, n (n + 1) / 2 numbers each; the upper triangle row by row is the same.
+    Lower,
+    /// The upper triangle column by column, n (n + 1) / 2 numbers each.
+    Upper,
+}
+
+impl ElementStorage {
+    /// Numbers for an element of n unknowns.
+    pub fn len(self, n: usize) -> usize {
+        match self {
+            Self::Full => n * n,
+            Self::Lower | Self::Upper => n * (n + 1) / 2,
+        }
+    }
+
+    /// Where entry (i, j) is.
+    fn at(self, n: usize, i: usize, j: usize) -> usize {
+        match self {
+            Self::Full => i + n * j,
+            Self::Lower => {
+                let (i, j) = (i.max(j), i.min(j));
+                i + j * (2 * n - j - 1) / 2
+            }
+            Self::Upper => {
+                let (i, j) = (i.min(j), i.max(j));
+                i + j * (j + 1) / 2
+            }
+        }
+    }
+}
+
+/// The matrix of one element, n x n.
+#[derive(Clone, Copy)]
+pub struct ElementMatrix<'a> {
+    pub values: &'a [f64],
+    pub n: usize,
+    /// Of a full matrix: from one column to the next.
+    pub ld: usize,
+    pub storage: ElementStorage,
+}
+
+impl ElementMatrix<'_> {
+    fn position(&self, i: usize, j: usize) -> usize {
+        match self.storage {
+            ElementStorage::Full => i + self.ld * j,
+            packed => packed.at(self.n, i, j),
+        }
+    }
+
+    pub fn get(&self, i: usize, j: usize) -> f64 {
+        self.values[self.position(i, j)]
+    }
+
+    /// Finite, and symmetric as far as `|k_ij - k_ji| <= tolerance max((|k_ii| |k_jj|)^1/2, |k_ij|, |k_ji|)`.
+    fn check(&self, tolerance: f64) -> Result<()> {
+        for j in 0..self.n {
+            for i in j..self.n {
+                let (one, other) = (self.get(i, j), self.get(j, i));
+                if !(one.is_finite() && other.is_finite()) {
+                    let (i, j) = if one.is_finite() { (j, i) } else { (i, j) };
+                    let error = Error::argument("ke", "the entry is not a finite number");
+                    return Err(error.row(i).entry(self.position(i, j)));
+                }
+                if one != other {
+                    let size = self.get(i, i).abs().sqrt() * self.get(j, j).abs().sqrt();
+                    let limit = tolerance * size.max(one.abs()).max(other.abs());
+                    let apart = (one - other).abs();
+                    if apart > limit {
+                        let what = format!(
+                            "|ke_ij - ke_ji| = {apart:.1e} exceeds {limit:.1e}: the matrix is not symmetric"
+                        );
+                        return Err(Error::argument("ke", what)
+                            .row(i)
+                            .entry(self.position(i, j))
+                            .value(apart)
+                            .limit(limit));
+                    }
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+/// A body by its elements.
+#[derive(Debug, Default)]
+pub struct Mesh {
+    connectivity: Connectivity,
+    /// Once the first matrix has come.
+    cut: Option<Cut>,
+    /// Passes that are complete.
+    passes: u64,
+}
+
+/// The pieces with what has been added to them.
+#[derive(Debug)]
+struct Cut {
+    piece_of: Vec<u32>,
+    pieces: Vec<Piece>,
+    held: HeldRows,
+    /// Elements of this pass.
+    given: Vec<bool>,
+    missing: usize,
+}
+
+impl Mesh {
+    pub fn new(connectivity: Connectivity) -> Self {
+        Self { connectivity, cut: None, passes: 0 }
+    }
+
+    pub fn connectivity(&self) -> &Connectivity {
+        &self.connectivity
+    }
+
+    /// Whether the body is cut already, or left whole.
+    pub fn is_cut(&self) -> bool {
+        self.cut.is_some()
+    }
+
+    /// The piece of every element, from now on.
+    pub fn cut(&mut self, piece_of: Vec<u32>) -> Result<()> {
+        let pieces = pieces(&self.connectivity, &piece_of)?;
+        let elements = self.connectivity.elements();
+        let (held, given) =
+            (HeldRows::new(&self.connectivity)?, filled(elements, false, "the elements of a body")?);
+        self.cut = Some(Cut { piece_of, pieces, held, given, missing: elements });
+        Ok(())
+    }
+
+    /// Begins another pass: what has come is forgotten.
+    pub fn begin(&mut self) -> Result<()> {
+        self.cut.as_mut().map_or(Ok(()), Cut::begin)
+    }
+
+    /// The pieces, once every element has come.
+    pub fn pieces(&self) -> Option<&[Piece]> {
+        self.cut.as_ref().filter(|cut| cut.missing == 0).map(|cut| &cut.pieces[..])
+    }
+
+    /// The first element that has not come in this pass.
+    pub fn first_missing(&self) -> Option<usize> {
+        match &self.cut {
+            None => (self.connectivity.elements() > 0).then_some(0),
+            Some(cut) => cut.given.iter().position(|given| !given),
+        }
+    }
+
+    /// Passes that are complete.
+    pub fn passes(&self) -> u64 {
+        self.passes
+    }
+
+    /// The matrices of the elements from `first` on: all of them, or none where one is refused. The first one after a complete
+    /// pass begins the next.
+    pub fn add<'a>(
+        &mut self,
+        first: usize,
+        matrices: impl Iterator<Item = ElementMatrix<'a>> + Clone,
+        tolerance: f64,
+    ) -> Result<()> {
+        let missing = || Error::new(Kind::Internal, "elements came before the body was cut");
+        let cut = self.cut.as_mut().ok_or_else(missing)?;
+        let again = cut.missing == 0;
+        for (e, ke) in matrices.clone().enumerate().map(|(k, ke)| (first + k, ke)) {
+            let elements = self.connectivity.elements();
+            if e >= elements {
+                let what = format!("the body has {elements} elements");
+                return Err(Error::argument("e", what).element(e).index(e as i64).limit(elements as f64));
+            }
+            let size = self.connectivity.size(e);
+            if ke.n != size {
+                let what = format!("the element joins {size} unknowns, its matrix has {} rows", ke.n);
+                return Err(Error::argument("n", what).element(e).value(ke.n as f64).limit(size as f64));
+            }
+            if cut.given[e] && !again {
+                return Err(Error::new(Kind::State, "the element has been given already").element(e));
+            }
+            ke.check(tolerance).map_err(|error| error.element(e))?;
+        }
+        if again {
+            cut.begin()?;
+        }
+        for (e, ke) in matrices.enumerate().map(|(k, ke)| (first + k, ke)) {
+            let places: Vec<Place> = self.connectivity.places(e).collect();
+            cut.add(e, &places, |i, j| ke.get(i, j));
+        }
+        self.passes += u64::from(cut.missing == 0);
+        Ok(())
+    }
+
+    /// `K_hf u` of the held unknowns 0, 1, ..., force; 0 for one that no element has.
+    pub fn held_forces(&self, u: &[f64], forces: &mut [f64]) {
+        forces.fill(0.0);
+        let Some(cut) = &self.cut else { return };
+        for (k, number) in self.connectivity.held().iter().enumerate() {
+            if let Some(force) = usize::try_from(*number).ok().and_then(|number| forces.get_mut(number)) {
+                *force = cut.held.force(k, u);
+            }
+        }
+    }
+
+    /// Bytes that are kept besides the matrices of the pieces.
+    pub fn bytes(&self) -> usize {
+        let cut = |cut: &Cut| size_of_val(&cut.piece_of[..]) + cut.given.len() + cut.held.bytes();
+        self.connectivity.bytes() + self.cut.as_ref().map_or(0, cut)
+    }
+}
+
+impl Cut {
+    /// Begins another pass.
+    fn begin(&mut self) -> Result<()> {
+        self.given.fill(false);
+        self.missing = self.given.len();
+        self.held.clear();
+        self.pieces.iter_mut().try_for_each(Piece::clear)
+    }
+
+    fn add(&mut self, e: usize, places: &[Place], ke: impl Fn(usize, usize) -> f64) {
+        self.pieces[self.piece_of[e] as usize].add(places, &ke);
+        self.held.add(places, &ke);
+        self.given[e] = true;
+        self.missing -= 1;
+    }
+}

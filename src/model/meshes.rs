@@ -1,0 +1,181 @@
+//! Bodies by their elements: connectivity first, then the matrices, pass by pass.
+
+use std::sync::Arc;
+
+use crate::body::{Assembled, Form};
+use crate::error::{Error, Kind, Result};
+use crate::mesh::{cut, pieces_for, Connectivity, ElementMatrix, ElementStorage, Elements, Mesh, Piece};
+use crate::model::bodies::check_ld;
+use crate::model::contents::{Change, GivenBody, Model};
+use crate::platform::memory::{filled, reserved};
+
+const WHAT: &str = "the elements of a body";
+
+impl Model {
+    /// The elements of a body: e joins `dof[ptr[e]..ptr[e + 1]]`, from 0; -1 - k is the held unknown k, whose row and column
+    /// are left out. A matrix or functions given before are replaced. What the body has already stays, and a new pass begins.
+    pub fn set_mesh(&mut self, body: usize, ptr: &[usize], dof: &[i64]) -> Result<()> {
+        let order = self.order(body)?;
+        if ptr.len() < 2 {
+            let what = "a body has at least one element";
+            return Err(Error::argument("elements", what).body(body).value(0.0).limit(1.0));
+        }
+        let old = self.bodies[body].mesh.as_mut().filter(|mesh| mesh.connectivity().is(order, ptr, dof));
+        if let Some(mesh) = old {
+            mesh.begin()?;
+            return Ok(());
+        }
+        let connectivity = Connectivity::new(order, ptr, dof).map_err(|e| e.body(body))?;
+        let given = self.change(body, Change::Pattern)?;
+        given.without_matrix();
+        given.body.operator = None;
+        given.form = Some(Form::Elements(ptr.windows(2).map(|pair| (pair[1] - pair[0]).pow(2)).sum()));
+        given.spoiled = false;
+        given.mesh = Some(Mesh::new(connectivity));
+        Ok(())
+    }
+
+    /// The matrix of element e, n x n column-major with leading dimension `ld`.
+    pub fn add_element(&mut self, body: usize, e: usize, n: usize, ke: &[f64], ld: usize) -> Result<()> {
+        check_ld("ld", ld, n).map_err(|error| error.body(body).element(e))?;
+        let matrix = ElementMatrix { values: ke, n, ld, storage: ElementStorage::Full };
+        self.add(body, e, std::iter::once(matrix))
+    }
+
+    /// The matrices of `count` elements from `first` on, one after the other.
+    pub fn add_elements(
+        &mut self,
+        body: usize,
+        first: usize,
+        count: usize,
+        ke: &[f64],
+        storage: ElementStorage,
+    ) -> Result<()> {
+        let expected = self.values_of_elements(body, first, count, storage)?;
+        if ke.len() != expected {
+            let what = format!("the elements have {expected} entries, not {}", ke.len());
+            return Err(Error::argument("nnz", what)
+                .body(body)
+                .value(ke.len() as f64)
+                .limit(expected as f64));
+        }
+        let sizes = sizes(self.mesh(body)?, first, count)?;
+        let mut begin = 0;
+        let matrices = sizes.iter().map(move |&n| {
+            let values = &ke[begin..begin + storage.len(n)];
+            begin += values.len();
+            ElementMatrix { values, n, ld: n, storage }
+        });
+        self.add(body, first, matrices)
+    }
+
+    /// Numbers that the matrices of so many elements take.
+    pub fn values_of_elements(
+        &self,
+        body: usize,
+        first: usize,
+        count: usize,
+        storage: ElementStorage,
+    ) -> Result<usize> {
+        let sizes = sizes(self.mesh(body)?, first, count).map_err(|e| e.body(body))?;
+        Ok(sizes.iter().map(|n| storage.len(*n)).sum())
+    }
+
+    fn mesh(&self, body: usize) -> Result<&Mesh> {
+        let missing = || {
+            let what =
+                "the elements have not been given: a call of feti_body_mesh comes before their matrices";
+            Error::new(Kind::State, what).body(body)
+        };
+        self.given(body)?.mesh.as_ref().ok_or_else(missing)
+    }
+
+    fn add<'a>(
+        &mut self,
+        body: usize,
+        first: usize,
+        matrices: impl Iterator<Item = ElementMatrix<'a>> + Clone,
+    ) -> Result<()> {
+        if !self.mesh(body)?.is_cut() {
+            let piece_of = self.cut_of(body)?;
+            self.bodies[body].mesh.iter_mut().try_for_each(|mesh| mesh.cut(piece_of.clone()))?;
+        }
+        let tolerance = self.settings.symmetry_tolerance;
+        let Some(mesh) = self.bodies[body].mesh.as_mut() else { return Ok(()) };
+        mesh.add(first, matrices, tolerance).map_err(|e| e.body(body))?;
+        if mesh.pieces().is_some() {
+            self.change(body, Change::Values)?.assemble()?;
+        } else {
+            self.bodies[body].without_matrix();
+        }
+        Ok(())
+    }
+
+    /// The piece of every element, as the options and the coordinates that are there have it.
+    fn cut_of(&self, body: usize) -> Result<Vec<u32>> {
+        let mesh = self.mesh(body)?.connectivity();
+        let pieces = match usize::try_from(self.settings.pieces) {
+            Ok(0) | Err(_) => pieces_for(mesh.unknowns()),
+            Ok(wanted) => wanted,
+        };
+        if pieces <= 1 {
+            return filled(mesh.elements(), 0, WHAT);
+        }
+        let (mut ptr, mut dof) = (reserved(mesh.elements() + 1, WHAT)?, Vec::new());
+        ptr.push(0);
+        for e in 0..mesh.elements() {
+            dof.extend(mesh.free(e));
+            ptr.push(dof.len());
+        }
+        let elements = Elements { ptr: &ptr, dof: &dof, unknowns: mesh.unknowns() };
+        let places = self.bodies[body].body.coordinates.as_ref().map(|all| all.places());
+        let centres = places.map(|places| centres(&elements, places)).transpose()?;
+        cut(&elements, centres.as_deref(), pieces)
+    }
+}
+
+impl GivenBody {
+    /// Its matrix is not known, or no longer.
+    fn without_matrix(&mut self) {
+        (self.body.stiffness, self.body.assembled) = (None, None);
+    }
+
+    /// All elements have come: the matrix of the body is that of its only piece, or the sum of those of all.
+    fn assemble(&mut self) -> Result<()> {
+        self.without_matrix();
+        match self.mesh.as_ref().and_then(Mesh::pieces) {
+            Some([whole]) => self.body.stiffness = Some(Arc::clone(&whole.stiffness)),
+            Some(pieces) => {
+                let parts =
+                    pieces.iter().map(|Piece { dofs, stiffness }| (Arc::clone(dofs), Arc::clone(stiffness)));
+                self.body.assembled = Some(Arc::new(Assembled::new(self.body.order, parts)?));
+            }
+            None => {}
+        }
+        Ok(())
+    }
+}
+
+/// Sizes of so many elements, which the mesh must have.
+fn sizes(mesh: &Mesh, first: usize, count: usize) -> Result<Vec<usize>> {
+    let all = mesh.connectivity();
+    if first.checked_add(count).is_none_or(|end| end > all.elements()) {
+        let what = format!("the body has {} elements", all.elements());
+        return Err(Error::argument("count", what).value(count as f64).limit(all.elements() as f64));
+    }
+    let mut sizes = reserved(count, WHAT)?;
+    sizes.extend((first..first + count).map(|e| all.size(e)));
+    Ok(sizes)
+}
+
+/// Means of the places of the unknowns of each element, length.
+fn centres(elements: &Elements, places: &[[f64; 3]]) -> Result<Vec<[f64; 3]>> {
+    let mut centres = reserved(elements.ptr.len() - 1, WHAT)?;
+    for range in elements.ptr.windows(2) {
+        let dofs = &elements.dof[range[0]..range[1]];
+        let share = 1.0 / dofs.len().max(1) as f64;
+        let along = |axis: usize| dofs.iter().map(|&dof| share * places[dof as usize][axis]).sum();
+        centres.push(std::array::from_fn(along));
+    }
+    Ok(centres)
+}

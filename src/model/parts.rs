@@ -1,0 +1,79 @@
+//! Which bodies of the host the bodies of a model are pieces of.
+
+use std::ops::Range;
+use std::sync::Arc;
+
+use crate::body::Assembled;
+use crate::error::Result;
+use crate::platform::memory::{reserved, zeros};
+
+const WHAT: &str = "the pieces of bodies";
+
+/// The bodies of the host, the parts that stand for each of them, and what these have of its unknowns.
+#[derive(Debug, Default)]
+pub struct Parts {
+    /// First part of every body of the host, and the number of all parts.
+    pub first: Vec<usize>,
+    /// First unknown of every body of the host, and their end.
+    pub offsets: Vec<usize>,
+    /// First unknown of every part, and their end.
+    pub starts: Vec<usize>,
+    pub parts: Vec<Part>,
+    /// K of the bodies that are cut.
+    pub assembled: Vec<Option<Arc<Assembled>>>,
+    /// Number of the host's equality rows: those that follow are glue.
+    pub equalities: usize,
+}
+
+/// One part.
+#[derive(Debug)]
+pub struct Part {
+    /// Body of the host.
+    pub body: usize,
+    /// Its unknowns among those of the body, ascending, and its share of each, the shares of all copies together 1; none: all.
+    pub piece: Option<(Arc<[u32]>, Vec<f64>)>,
+}
+
+impl Parts {
+    /// Parts of a body of the host.
+    pub fn of(&self, body: usize) -> Range<usize> {
+        self.first[body]..self.first[body + 1]
+    }
+
+    /// The body of the host is cut.
+    pub fn is_cut(&self, body: usize) -> bool {
+        self.assembled[body].is_some()
+    }
+
+    /// Unknown i of a part among those of its body, and the part's share of it.
+    pub fn place(&self, part: usize, i: usize) -> (usize, f64) {
+        match &self.parts[part].piece {
+            Some((dofs, shares)) => (dofs[i] as usize, shares[i]),
+            None => (i, 1.0),
+        }
+    }
+
+    /// Values over the unknowns of all parts for those of the host's bodies: every copy has the value.
+    pub fn spread(&self, of_host: &[f64]) -> Result<Vec<f64>> {
+        let mut all = reserved(self.starts.last().copied().unwrap_or(0), WHAT)?;
+        for part in 0..self.parts.len() {
+            let offset = self.offsets[self.parts[part].body];
+            let unknowns = self.starts[part + 1] - self.starts[part];
+            all.extend((0..unknowns).map(|i| of_host[offset + self.place(part, i).0]));
+        }
+        Ok(all)
+    }
+
+    /// The other way round: the mean of the copies by their shares.
+    pub fn mean(&self, of_parts: &[f64]) -> Result<Vec<f64>> {
+        let mut all = zeros(self.offsets.last().copied().unwrap_or(0), WHAT)?;
+        for part in 0..self.parts.len() {
+            let offset = self.offsets[self.parts[part].body];
+            for (i, v) in of_parts[self.starts[part]..self.starts[part + 1]].iter().enumerate() {
+                let (dof, share) = self.place(part, i);
+                all[offset + dof] += share * v;
+            }
+        }
+        Ok(all)
+    }
+}

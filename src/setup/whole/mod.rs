@@ -1,0 +1,207 @@
+//! An island whose bodies are cut, as the host knows it: its answers are judged by the bodies and the rows of the host.
+
+mod null_space;
+
+use std::sync::Arc;
+
+use crate::body::GeneralizedInverse;
+use crate::certificate::{grounded, BodyData, Data};
+use crate::constraints::{RowKind, RowSet};
+use crate::error::{Error, Kind, Result};
+use crate::linalg::vector::power_of_two_below;
+use crate::linalg::{Csr, Matrix};
+use crate::model::{Model, Parts};
+use crate::platform::memory::{copied, reserved, zeros};
+use crate::setup::islands::{Island, Members};
+use null_space::null_space;
+
+const WHAT: &str = "bodies that are cut";
+
+/// The bodies of an island with all their pieces.
+pub struct Whole {
+    /// Bodies and rows by the numbers of the host, over the unknowns of the host's bodies.
+    pub island: Island,
+    bodies: Vec<WholeBody>,
+    /// Of every unknown of the pieces: the unknown here, and its share of it.
+    place: Vec<(usize, f64)>,
+}
+
+/// What the certificate has to know of a body.
+struct WholeBody {
+    null_space: Basis,
+    grounded: Arc<[u32]>,
+    soft: bool,
+    /// Its only part, where it is not cut.
+    part: Option<usize>,
+}
+
+enum Basis {
+    /// Of a body that is not cut.
+    Known(Arc<GeneralizedInverse>),
+    Found(Matrix),
+}
+
+impl Basis {
+    fn vectors(&self) -> &Matrix {
+        match self {
+            Self::Known(kplus) => &kplus.null_space,
+            Self::Found(vectors) => vectors,
+        }
+    }
+}
+
+/// K+ and grounded unknowns of a part.
+pub type OfPart<'a> = dyn Fn(usize) -> Option<(&'a Arc<GeneralizedInverse>, &'a Arc<[u32]>)> + 'a;
+
+impl Whole {
+    /// None of an island without pieces.
+    pub fn of(model: &Model, cut: &Island, of_part: &OfPart) -> Result<Option<Self>> {
+        let Some(parts) = model.parts.as_ref() else { return Ok(None) };
+        if cut.bodies.iter().all(|&part| parts.parts[part].piece.is_none()) {
+            return Ok(None);
+        }
+        let mut bodies: Vec<usize> = cut.bodies.iter().map(|&part| parts.parts[part].body).collect();
+        bodies.dedup();
+        let (mut ranges, mut end) = (reserved(bodies.len(), WHAT)?, 0);
+        for &body in &bodies {
+            ranges.push(end..end + parts.offsets[body + 1] - parts.offsets[body]);
+            end = ranges.last().map_or(0, |range: &std::ops::Range<usize>| range.end);
+        }
+        let mut place = reserved(cut.unknowns(), WHAT)?;
+        for (&part, range) in cut.bodies.iter().zip(&cut.ranges) {
+            let start = bodies.binary_search(&parts.parts[part].body).map_or(0, |at| ranges[at].start);
+            place.extend((0..range.len()).map(|i| {
+                let (dof, share) = parts.place(part, i);
+                (start + dof, share)
+            }));
+        }
+        let of_host = |kind| members(cut.members(kind), end, kind, parts, &place);
+        let (contact, equalities) = (of_host(RowKind::Inequality)?, of_host(RowKind::Equality)?);
+        let stiffness = |body: &usize| match &parts.assembled[*body] {
+            Some(k) => (0..k.order()).map(|i| k.diagonal(i)).fold(0.0, f64::max),
+            None => model.bodies[parts.first[*body]].body.k().map_or(0.0, |k| k.largest_diagonal()),
+        };
+        let unit = power_of_two_below(bodies.iter().map(stiffness).fold(0.0, f64::max));
+        let island = Island { bodies, ranges, contact, equalities, unit };
+        let bodies = island
+            .bodies
+            .iter()
+            .map(|&body| whole_body(model, parts, body, of_part))
+            .collect::<Result<_>>()?;
+        Ok(Some(Self { island, bodies, place }))
+    }
+
+    /// The mean of the copies of every unknown, by their shares; also the sum of loads that were shared out.
+    pub fn mean(&self, of_pieces: &[f64]) -> Result<Vec<f64>> {
+        self.gathered(of_pieces, |share| share)
+    }
+
+    /// The sum of the loads of the copies of every unknown.
+    pub fn loads(&self, data: &Data) -> Result<Vec<f64>> {
+        let mut all = zeros(self.place.len(), WHAT)?;
+        for body in &data.bodies {
+            body.load.iter().for_each(|load| all[body.range()].copy_from_slice(load));
+        }
+        self.gathered(&all, |_| 1.0)
+    }
+
+    fn gathered(&self, of_pieces: &[f64], weight: fn(f64) -> f64) -> Result<Vec<f64>> {
+        let mut all = zeros(self.island.unknowns(), WHAT)?;
+        self.place.iter().zip(of_pieces).for_each(|((j, share), v)| all[*j] += weight(*share) * v);
+        Ok(all)
+    }
+
+    /// The island as the certificate sees it; `loads` over its unknowns.
+    pub fn data<'a>(&'a self, model: &'a Model, loads: &'a [f64]) -> Result<Data<'a>> {
+        let missing = || Error::new(Kind::State, "a body has not been set up");
+        let parts = model.parts.as_ref().ok_or_else(missing)?;
+        let mut bodies = reserved(self.bodies.len(), WHAT)?;
+        for ((&body, own), range) in self.island.bodies.iter().zip(&self.bodies).zip(&self.island.ranges) {
+            let stiffness = match (&parts.assembled[body], own.part) {
+                (Some(k), _) => Some(crate::body::Stiffness::Assembled(k)),
+                (None, Some(part)) => model.bodies[part].body.k(),
+                (None, None) => None,
+            };
+            let stiffness = stiffness.ok_or_else(missing)?;
+            let largest = stiffness.largest_diagonal();
+            bodies.push(BodyData {
+                start: range.start,
+                stiffness,
+                load: Some(&loads[range.clone()]),
+                null_space: own.null_space.vectors(),
+                soft: own.soft,
+                unit: if largest > 0.0 { power_of_two_below(largest) } else { self.island.unit },
+                grounded: &own.grounded,
+            });
+        }
+        let limit = model.settings.certificate_tolerance;
+        Ok(Data {
+            bodies,
+            contact: &self.island.contact.rows,
+            equalities: &self.island.equalities.rows,
+            limit,
+        })
+    }
+
+    /// The null space of a body of the host, n x r.
+    pub fn null_space(&self, body: usize) -> Option<&Matrix> {
+        let at = self.island.bodies.binary_search(&body).ok()?;
+        Some(self.bodies[at].null_space.vectors())
+    }
+
+    /// `alpha = R'D u / unit` of a body of the host, r: u is `R alpha` but for a motion that is normal to R.
+    pub fn amplitudes(&self, model: &Model, body: usize, u: &[f64]) -> Vec<f64> {
+        let (Some(vectors), Some(parts)) = (self.null_space(body), &model.parts) else { return Vec::new() };
+        let Some(k) = &parts.assembled[body] else { return Vec::new() };
+        let unit = power_of_two_below((0..k.order()).map(|i| k.diagonal(i)).fold(0.0, f64::max));
+        let weight = |i: usize| Some(k.diagonal(i) / unit).filter(|d| *d > 0.0).unwrap_or(1.0);
+        let weighed: Vec<f64> = u.iter().enumerate().map(|(i, u)| weight(i) * u).collect();
+        vectors.mul_transposed(&weighed)
+    }
+}
+
+/// The rows of the host over the unknowns of its bodies.
+fn members(
+    cut: &Members,
+    unknowns: usize,
+    kind: RowKind,
+    parts: &Parts,
+    place: &[(usize, f64)],
+) -> Result<Members> {
+    let of_host = |number: &&usize| kind == RowKind::Inequality || **number < parts.equalities;
+    let numbers: Vec<usize> = cut.numbers.iter().take_while(of_host).copied().collect();
+    let mut matrix = Csr::empty(unknowns);
+    for i in 0..numbers.len() {
+        let mut entries: Vec<(usize, f64)> = cut.rows.matrix.row(i).map(|(j, v)| (place[j].0, v)).collect();
+        entries.sort_unstable_by_key(|entry| entry.0);
+        matrix.push_row(entries);
+    }
+    let rhs = copied(&cut.rows.rhs[..numbers.len()], WHAT)?;
+    let compliance = copied(&cut.rows.compliance[..numbers.len()], WHAT)?;
+    Ok(Members { rows: RowSet { matrix: Arc::new(matrix), rhs, compliance }, numbers })
+}
+
+fn whole_body(model: &Model, parts: &Parts, body: usize, of_part: &OfPart) -> Result<WholeBody> {
+    let missing = || Error::new(Kind::State, "a body has not been set up").body(body);
+    let Some(k) = &parts.assembled[body] else {
+        let part = parts.first[body];
+        let (kplus, grounded) = of_part(part).ok_or_else(missing)?;
+        let (soft, grounded) = (kplus.is_soft(), Arc::clone(grounded));
+        return Ok(WholeBody {
+            null_space: Basis::Known(Arc::clone(kplus)),
+            grounded,
+            soft,
+            part: Some(part),
+        });
+    };
+    let mut soft = false;
+    let mut bases = reserved(parts.of(body).len(), WHAT)?;
+    for part in parts.of(body) {
+        let (kplus, _) = of_part(part).ok_or_else(missing)?;
+        soft |= kplus.is_soft();
+        bases.push(&kplus.null_space);
+    }
+    let vectors = null_space(model, parts, body, &bases)?;
+    let grounded = grounded(crate::body::Stiffness::Assembled(k))?.into();
+    Ok(WholeBody { null_space: Basis::Found(vectors), grounded, soft, part: None })
+}

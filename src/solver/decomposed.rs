@@ -1,0 +1,149 @@
+//! Between the problem of the host and the one that is solved, in which pieces stand for the bodies that are cut.
+
+use crate::decomposition::{self, Decomposition};
+use crate::error::{Error, Kind, Result};
+use crate::linalg::Matrix;
+use crate::model::{Model, Parts};
+use crate::setup::{Prepared, Whole};
+use crate::solve::Answer;
+use crate::solver::findings::Findings;
+use crate::solver::problem::Problem;
+
+impl Problem {
+    /// What is solved: the model of the host, or that of the pieces as they were at the last call that used them.
+    pub(super) fn solved(&self) -> &Model {
+        solved(&self.model, &self.decomposition)
+    }
+
+    /// The parts of the bodies, where some body is cut.
+    pub(super) fn parts(&self) -> Option<&Parts> {
+        self.decomposition.as_ref().and_then(|of| of.model.parts.as_deref())
+    }
+
+    /// The number of the only part of a body, by which its factors are known; none of one that is cut.
+    pub(super) fn only_part(&self, body: usize) -> Option<usize> {
+        match self.parts() {
+            None => Some(body),
+            Some(parts) if parts.is_cut(body) => None,
+            Some(parts) => Some(parts.first[body]),
+        }
+    }
+
+    /// Pieces, rows, loads and options as the host has them now.
+    pub(super) fn decompose(&mut self) -> Result<()> {
+        self.model.check_complete()?;
+        match &mut self.decomposition {
+            Some(known) if known.is_of(&self.model) => known.refresh(&self.model),
+            None if self.model.bodies.iter().all(|given| given.body.assembled.is_none()) => Ok(()),
+            _ => {
+                let made = Decomposition::of(&self.model)?;
+                if numbers(&made, &self.model) != numbers(&self.decomposition, &self.model) {
+                    self.prepared.forget();
+                }
+                self.decomposition = made;
+                Ok(())
+            }
+        }
+    }
+
+    /// An error about pieces as one about bodies.
+    pub(super) fn of_host(&self, error: Error) -> Error {
+        of_host(&self.model, &self.decomposition, error)
+    }
+
+    /// What was found about pieces as what is known of bodies.
+    pub(super) fn found(&self, findings: Findings) -> Findings {
+        match self.parts() {
+            Some(_) => findings_of_host(&self.model, self.solved(), findings),
+            None => findings,
+        }
+    }
+
+    /// A body that is cut has no factor of its own.
+    pub(super) fn check_whole_body(&self, body: usize) -> Result<()> {
+        if self.model.given(body)?.body.assembled.is_none() {
+            return Ok(());
+        }
+        let what = "the body is cut into pieces and has no K+ of its own: option pieces = 1, set before its elements, leaves it whole";
+        Err(Error::new(Kind::State, what).body(body))
+    }
+}
+
+/// First parts of all bodies.
+fn numbers(decomposition: &Option<Decomposition>, host: &Model) -> Vec<usize> {
+    match decomposition.as_ref().and_then(|of| of.model.parts.as_deref()) {
+        Some(parts) => parts.first.clone(),
+        None => (0..=host.bodies.len()).collect(),
+    }
+}
+
+pub fn solved<'a>(host: &'a Model, decomposition: &'a Option<Decomposition>) -> &'a Model {
+    decomposition.as_ref().map_or(host, |of| &of.model)
+}
+
+pub fn of_host(host: &Model, decomposition: &Option<Decomposition>, error: Error) -> Error {
+    match decomposition.as_ref().and_then(|of| of.model.parts.as_deref()) {
+        Some(parts) => decomposition::of_host(parts, host.contact.len(), error),
+        None => error,
+    }
+}
+
+/// The answer of the pieces as one of the host's bodies. Forces of the glue stay behind those of the host's equality rows.
+pub fn answer_of_host(
+    host: &Model,
+    solved: &Model,
+    prepared: &Prepared,
+    mut answer: Answer,
+) -> Result<Answer> {
+    let Some(parts) = solved.parts.as_deref() else { return Ok(answer) };
+    answer.u = parts.mean(&answer.u)?;
+    let gap = |i: usize| host.contact.open_gap(i, &answer.u, answer.lambda[i]);
+    let gaps = (0..host.contact.len()).map(gap).collect();
+    answer.gaps = gaps;
+    let bodies = 0..host.bodies.len();
+    let of_first = |body: usize| answer.force_errors[parts.first[body]];
+    answer.force_errors = bodies.clone().map(of_first).collect();
+    let amplitudes = |body: usize| match whole_of(prepared, parts, body).filter(|_| parts.is_cut(body)) {
+        Some(whole) => whole.amplitudes(solved, body, &answer.u[host.range(body)]),
+        None => answer.alpha[parts.first[body]].clone(),
+    };
+    answer.alpha = bodies.map(amplitudes).collect();
+    let report = &mut answer.report;
+    report.sizes = host.sizes();
+    report.body = report.body.map(|part| parts.parts[part].body);
+    report.floating_modes = answer.alpha.iter().map(Vec::len).sum();
+    Ok(answer)
+}
+
+/// The island of a body as the host knows it, where it holds pieces.
+fn whole_of<'a>(prepared: &'a Prepared, parts: &Parts, body: usize) -> Option<&'a Whole> {
+    let duals = prepared.made_last()?;
+    duals.islands[duals.island_of[parts.first[body]]].whole.as_ref()
+}
+
+pub fn null_space_of<'a>(prepared: &'a Prepared, parts: &Parts, body: usize) -> Option<&'a Matrix> {
+    whole_of(prepared, parts, body)?.null_space(body)
+}
+
+fn findings_of_host(host: &Model, solved: &Model, mut findings: Findings) -> Findings {
+    let bodies = |numbers: &[usize]| {
+        let mut bodies: Vec<usize> = numbers.iter().map(|part| solved.name(*part)).collect();
+        bodies.dedup();
+        bodies
+    };
+    (findings.doubtful, findings.soft) = (bodies(&findings.doubtful), bodies(&findings.soft));
+    findings.untouched = untouched(host);
+    findings.redundant.retain(|(row, _)| *row < host.contact.len() + host.equalities.len());
+    findings
+}
+
+/// Bodies of the host that none of its rows touches, or only such as never close.
+fn untouched(host: &Model) -> Vec<usize> {
+    let mut touched = vec![false; host.bodies.len()];
+    for rows in [&host.contact, &host.equalities] {
+        for (j, _) in (0..rows.len()).filter(|&i| rows.is_finite(i)).flat_map(|i| rows.matrix.row(i)) {
+            touched[host.offsets[1..].partition_point(|end| *end <= j)] = true;
+        }
+    }
+    (0..touched.len()).filter(|&body| !touched[body]).collect()
+}
