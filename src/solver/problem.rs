@@ -7,14 +7,14 @@ use std::time::{Duration, Instant};
 
 use crate::decomposition::Decomposition;
 use crate::error::{Error, Kind, Result};
-use crate::model::{Model, StartFrom};
+use crate::model::{Model, Parts, StartFrom};
 #[cfg(test)]
 use crate::platform::interrupt::Clock;
 use crate::platform::memory::Headroom;
 use crate::progress::{Host, Listener, Log, LogLevel, LogListener, Phase, PhaseReport, Phases, Watch};
 use crate::setup::{Prepared, Work};
 use crate::solve::{solve_islands, Answer, Report, Solved};
-use crate::solver::decomposed::{answer_of_host, of_host, solved};
+use crate::solver::decomposed::{answer_of_host, findings_of_host, numbers, of_host, solved};
 use crate::solver::findings::Findings;
 use crate::solver::history::{Current, History};
 use crate::solver::told::{begin, method, result};
@@ -198,5 +198,66 @@ impl Problem {
     fn follow(&mut self) {
         drop(self.decompose());
         self.prepared.follow(solved(&self.model, &self.decomposition));
+    }
+}
+
+/// Between the bodies of the host and the pieces that are solved in place of those that are cut.
+impl Problem {
+    /// What is solved: the model of the host, or that of the pieces as they were at the last call that used them.
+    pub(super) fn solved(&self) -> &Model {
+        solved(&self.model, &self.decomposition)
+    }
+
+    /// The parts of the bodies, where some body is cut.
+    pub(super) fn parts(&self) -> Option<&Parts> {
+        self.decomposition.as_ref().and_then(|of| of.model.parts.as_deref())
+    }
+
+    /// The number of the only part of a body, by which its factors are known; none of one that is cut.
+    pub(super) fn only_part(&self, body: usize) -> Option<usize> {
+        match self.parts() {
+            None => Some(body),
+            Some(parts) if parts.is_cut(body) => None,
+            Some(parts) => Some(parts.first[body]),
+        }
+    }
+
+    /// Pieces, rows, loads and options as the host has them now.
+    pub(super) fn decompose(&mut self) -> Result<()> {
+        self.model.check_complete()?;
+        match &mut self.decomposition {
+            Some(known) if known.is_of(&self.model) => known.refresh(&self.model),
+            None if self.model.bodies.iter().all(|given| given.body.assembled.is_none()) => Ok(()),
+            _ => {
+                let made = Decomposition::of(&self.model)?;
+                if numbers(&made, &self.model) != numbers(&self.decomposition, &self.model) {
+                    self.prepared.forget();
+                }
+                self.decomposition = made;
+                Ok(())
+            }
+        }
+    }
+
+    /// An error about pieces as one about bodies.
+    pub(super) fn of_host(&self, error: Error) -> Error {
+        of_host(&self.model, &self.decomposition, error)
+    }
+
+    /// What was found about pieces as what is known of bodies.
+    pub(super) fn found(&self, findings: Findings) -> Findings {
+        match self.parts() {
+            Some(_) => findings_of_host(&self.model, self.solved(), findings),
+            None => findings,
+        }
+    }
+
+    /// A body that is cut has no factor of its own.
+    pub(super) fn check_whole_body(&self, body: usize) -> Result<()> {
+        if self.model.given(body)?.body.assembled.is_none() {
+            return Ok(());
+        }
+        let what = "the body is cut into pieces and has no K+ of its own: option pieces = 1, set before its elements, leaves it whole";
+        Err(Error::new(Kind::State, what).body(body))
     }
 }
