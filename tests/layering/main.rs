@@ -68,6 +68,7 @@ const ALLOWED: [(&str, &[&str]); 16] = [
             "error",
             "platform",
             "linalg",
+            "mesh",
             "body",
             "constraints",
             "dual",

@@ -118,3 +118,14 @@ pub fn apart(a: &[f64], b: &[f64]) -> f64 {
     let norm = |v: &mut dyn Iterator<Item = f64>| v.map(|v| v * v).sum::<f64>().sqrt();
     norm(&mut a.iter().zip(b).map(|(a, b)| a - b)) / norm(&mut b.iter().copied())
 }
+
+/// Two blocks of n^3 hexahedra each, the lower one clamped at its bottom, the upper one loose.
+pub fn blocks(n: usize) -> Model {
+    let mut random = decks::random::Random::new(3);
+    let mut block = |low: f64| {
+        let mut mesh = Mesh::grid([n; 3], |[x, y, z]| [x, y, z + low]);
+        mesh.young.iter_mut().for_each(|young| *young = 1.0 + 1e-3 * random.between(0.0, 1.0));
+        mesh
+    };
+    Model::stacked(block(0.0), block(1.0), |at| at[2] == 0.0)
+}

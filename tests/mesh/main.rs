@@ -1,20 +1,11 @@
 //! Bodies given by their elements, whole and cut: one problem, one answer.
 
 mod bodies;
+mod passes;
+mod proofs;
+mod shapes;
 
-use bodies::{apart, solved, Model};
-use decks::mesh::Mesh;
-
-/// Two blocks of n^3 hexahedra each, the lower one clamped at its bottom, the upper one loose.
-fn blocks(n: usize) -> Model {
-    let mut random = decks::random::Random::new(3);
-    let mut block = |low: f64| {
-        let mut mesh = Mesh::grid([n; 3], |[x, y, z]| [x, y, z + low]);
-        mesh.young.iter_mut().for_each(|young| *young = 1.0 + 1e-3 * random.between(0.0, 1.0));
-        mesh
-    };
-    Model::stacked(block(0.0), block(1.0), |at| at[2] == 0.0)
-}
+use bodies::{apart, blocks, solved};
 
 #[test]
 fn a_body_that_is_cut_has_the_answer_of_the_whole_one() {
@@ -31,4 +22,65 @@ fn a_body_that_is_cut_has_the_answer_of_the_whole_one() {
             assert!(apart(&own, &u) < 1e-7, "{pieces}: {:e}", apart(&own, &u));
         }
     }
+}
+
+#[test]
+fn the_host_sees_its_bodies_and_not_their_pieces() {
+    let model = blocks(5);
+    let (mut whole, mut cut) = (model.by_elements(1, true).unwrap(), model.by_elements(12, true).unwrap());
+    let (u, lambda, _) = solved(&mut whole);
+    solved(&mut cut);
+    assert_eq!(cut.sizes(), whole.sizes());
+    let [cut_report, whole_report] = [&cut, &whole].map(|problem| problem.report().unwrap().clone());
+    assert_eq!((cut_report.sizes, cut_report.floating_modes), (whole_report.sizes, 6));
+    assert_eq!((cut_report.active, cut_report.undetermined), (whole_report.active, 0));
+    for body in 0..2 {
+        let [facts, other] = [&cut, &whole].map(|problem| problem.body_facts(body).unwrap());
+        assert!((2..=12).contains(&facts.pieces) && other.pieces == 1, "{}", facts.pieces);
+        assert_eq!((facts.unknowns, facts.entries), (other.unknowns, other.entries));
+        assert_eq!((facts.components, facts.origin), (Some(1), other.origin));
+        assert_eq!(facts.factors.unwrap().null_space, other.factors.unwrap().null_space);
+        assert!(facts.force_error.unwrap() < 1e-6);
+        let (r, n) = cut.null_space(body).map(|(r, basis)| (r, basis.len())).unwrap();
+        assert_eq!((r, n), (6 * body, 6 * body * facts.unknowns));
+        assert_eq!(cut.amplitudes(body).unwrap().len(), 6 * body);
+        let [mut own, mut others] = [vec![0.0; facts.unknowns], vec![0.0; facts.unknowns]];
+        cut.reaction(None, body, &mut own).unwrap();
+        whole.reaction(None, body, &mut others).unwrap();
+        assert!(apart(&own, &others) < 1e-7);
+    }
+    assert!(cut.gaps().unwrap().iter().zip(whole.gaps().unwrap()).all(|(a, b)| (a - b).abs() < 1e-9));
+    assert_eq!(cut.active().unwrap(), whole.active().unwrap());
+    assert_eq!(cut.findings().unwrap().untouched, [0; 0]);
+    // the certificate of another code's answer, and of a wrong one
+    assert!(cut.check(&u, &lambda, &[]).unwrap().passed());
+    let mut wrong = u.clone();
+    wrong[u.len() - 1] += 1e-4 * u.iter().fold(0.0, |most: f64, u| most.max(u.abs()));
+    assert!(!cut.check(&wrong, &lambda, &[]).unwrap().passed());
+    for refused in [cut.kplus(1, &u[..u.len() - 450].to_vec(), &mut []).is_err(), cut.dual_rhs(&mut vec![0.0; lambda.len()]).is_err()] {
+        assert!(refused);
+    }
+}
+
+#[test]
+fn load_steps_states_and_threads_give_the_bits_of_a_first_solve() {
+    let model = blocks(5);
+    let mut cut = model.by_elements(9, true).unwrap();
+    cut.set_i64("threads", 1).unwrap();
+    let (first, ..) = solved(&mut cut);
+    let state = cut.save_state().unwrap();
+    let more: Vec<f64> = model.loads[1].iter().map(|f| 1.5 * f).collect();
+    cut.set_load(1, &more).unwrap();
+    let (second, ..) = solved(&mut cut);
+    assert!(apart(&second, &first) > 1e-2);
+    cut.restore_state(state).unwrap();
+    assert_eq!(cut.displacements().unwrap(), first, "the answer comes back");
+    for threads in [2, 4] {
+        cut.set_i64("threads", threads).unwrap();
+        assert_eq!(solved(&mut cut).0, first);
+    }
+    assert_eq!(cut.work().factorisations, cut.body_facts(0).unwrap().pieces + cut.body_facts(1).unwrap().pieces);
+    cut.set_str("start", "previous").unwrap();
+    assert!(apart(&solved(&mut cut).0, &first) < 1e-8);
+    assert!(cut.report().unwrap().counts.products < 20, "{:?}", cut.report().unwrap().counts);
 }
