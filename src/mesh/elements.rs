@@ -108,6 +108,7 @@ pub struct Mesh {
 /// The pieces with what has been added to them.
 #[derive(Debug)]
 struct Cut {
+    wanted: i64,
     piece_of: Vec<u32>,
     pieces: Vec<Piece>,
     held: HeldRows,
@@ -125,18 +126,18 @@ impl Mesh {
         &self.connectivity
     }
 
-    /// Whether the body is cut already, or left whole.
-    pub fn is_cut(&self) -> bool {
-        self.cut.is_some()
+    /// For how many pieces the body has been cut, or left whole; none before the first matrix.
+    pub fn wanted(&self) -> Option<i64> {
+        self.cut.as_ref().map(|cut| cut.wanted)
     }
 
-    /// The piece of every element, from now on.
-    pub fn cut(&mut self, piece_of: Vec<u32>) -> Result<()> {
+    /// The piece of every element, from now on; `wanted`: the option that they follow.
+    pub fn cut(&mut self, piece_of: Vec<u32>, wanted: i64) -> Result<()> {
         let pieces = pieces(&self.connectivity, &piece_of)?;
         let elements = self.connectivity.elements();
         let (held, given) =
             (HeldRows::new(&self.connectivity)?, filled(elements, false, "the elements of a body")?);
-        self.cut = Some(Cut { piece_of, pieces, held, given, missing: elements });
+        self.cut = Some(Cut { wanted, piece_of, pieces, held, given, missing: elements });
         Ok(())
     }
 

@@ -20,10 +20,11 @@ impl Model {
             let what = "a body has at least one element";
             return Err(Error::argument("elements", what).body(body).value(0.0).limit(1.0));
         }
-        let old = self.bodies[body].mesh.as_mut().filter(|mesh| mesh.connectivity().is(order, ptr, dof));
-        if let Some(mesh) = old {
-            mesh.begin()?;
-            return Ok(());
+        let wanted = self.settings.pieces;
+        let serves = |mesh: &Mesh| mesh.wanted() == Some(wanted) && mesh.connectivity().is(order, ptr, dof);
+        if self.bodies[body].mesh.as_ref().is_some_and(serves) {
+            self.bodies[body].without_matrix();
+            return self.bodies[body].mesh.as_mut().map_or(Ok(()), Mesh::begin);
         }
         let connectivity = Connectivity::new(order, ptr, dof).map_err(|e| e.body(body))?;
         let given = self.change(body, Change::Pattern)?;
@@ -96,12 +97,15 @@ impl Model {
         first: usize,
         matrices: impl Iterator<Item = ElementMatrix<'a>> + Clone,
     ) -> Result<()> {
-        if !self.mesh(body)?.is_cut() {
-            let piece_of = self.cut_of(body)?;
-            self.bodies[body].mesh.iter_mut().try_for_each(|mesh| mesh.cut(piece_of.clone()))?;
-        }
-        let tolerance = self.settings.symmetry_tolerance;
+        let cut = match self.mesh(body)?.wanted() {
+            Some(_) => None,
+            None => Some(self.cut_of(body)?),
+        };
+        let (tolerance, wanted) = (self.settings.symmetry_tolerance, self.settings.pieces);
         let Some(mesh) = self.bodies[body].mesh.as_mut() else { return Ok(()) };
+        if let Some(piece_of) = cut {
+            mesh.cut(piece_of, wanted)?;
+        }
         mesh.add(first, matrices, tolerance).map_err(|e| e.body(body))?;
         if mesh.pieces().is_some() {
             self.change(body, Change::Values)?.assemble()?;

@@ -33,7 +33,10 @@ fn the_host_sees_its_bodies_and_not_their_pieces() {
     assert_eq!(cut.sizes(), whole.sizes());
     let [cut_report, whole_report] = [&cut, &whole].map(|problem| problem.report().unwrap().clone());
     assert_eq!((cut_report.sizes, cut_report.floating_modes), (whole_report.sizes, 6));
-    assert_eq!((cut_report.active, cut_report.undetermined), (whole_report.active, 0));
+    assert_eq!(
+        (cut_report.active, cut_report.undetermined),
+        (whole_report.active, whole_report.undetermined)
+    );
     for body in 0..2 {
         let [facts, other] = [&cut, &whole].map(|problem| problem.body_facts(body).unwrap());
         assert!((2..=12).contains(&facts.pieces) && other.pieces == 1, "{}", facts.pieces);
@@ -57,7 +60,10 @@ fn the_host_sees_its_bodies_and_not_their_pieces() {
     let mut wrong = u.clone();
     wrong[u.len() - 1] += 1e-4 * u.iter().fold(0.0, |most: f64, u| most.max(u.abs()));
     assert!(!cut.check(&wrong, &lambda, &[]).unwrap().passed());
-    for refused in [cut.kplus(1, &u[..u.len() - 450].to_vec(), &mut []).is_err(), cut.dual_rhs(&mut vec![0.0; lambda.len()]).is_err()] {
+    for refused in [
+        cut.kplus(1, &u[..u.len() - 450].to_vec(), &mut []).is_err(),
+        cut.dual_rhs(&mut vec![0.0; lambda.len()]).is_err(),
+    ] {
         assert!(refused);
     }
 }
@@ -68,7 +74,7 @@ fn load_steps_states_and_threads_give_the_bits_of_a_first_solve() {
     let mut cut = model.by_elements(9, true).unwrap();
     cut.set_i64("threads", 1).unwrap();
     let (first, ..) = solved(&mut cut);
-    let state = cut.save_state().unwrap();
+    let (state, factorised) = (cut.save_state().unwrap(), cut.work().factorisations);
     let more: Vec<f64> = model.loads[1].iter().map(|f| 1.5 * f).collect();
     cut.set_load(1, &more).unwrap();
     let (second, ..) = solved(&mut cut);
@@ -79,7 +85,7 @@ fn load_steps_states_and_threads_give_the_bits_of_a_first_solve() {
         cut.set_i64("threads", threads).unwrap();
         assert_eq!(solved(&mut cut).0, first);
     }
-    assert_eq!(cut.work().factorisations, cut.body_facts(0).unwrap().pieces + cut.body_facts(1).unwrap().pieces);
+    assert_eq!(cut.work().factorisations, factorised);
     cut.set_str("start", "previous").unwrap();
     assert!(apart(&solved(&mut cut).0, &first) < 1e-8);
     assert!(cut.report().unwrap().counts.products < 20, "{:?}", cut.report().unwrap().counts);

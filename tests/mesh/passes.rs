@@ -62,7 +62,10 @@ fn an_element_is_refused_with_its_number_and_nothing_is_lost() {
     other.add_body(2).unwrap();
     assert_eq!(other.add_element(0, 0, 2, &spring(1.0), 2).unwrap_err().kind, Kind::State, "before the mesh");
     let unknown = other.set_mesh(0, &[0, 2], &[0, 2]).unwrap_err();
-    assert_eq!((unknown.kind, unknown.place.element, unknown.place.index), (Kind::Argument("dof"), Some(0), Some(2)));
+    assert_eq!(
+        (unknown.kind, unknown.place.element, unknown.place.index),
+        (Kind::Argument("dof"), Some(0), Some(2))
+    );
 }
 
 #[test]

@@ -22,7 +22,7 @@ fn a_load_that_nothing_holds_is_named_with_the_motion_of_the_body() {
     });
     assert!(apart(&told[1].0, &told[0].0) < 1e-6, "{:e}", apart(&told[1].0, &told[0].0));
     assert_eq!(told[1].1, vec![0.0; told[1].1.len()]);
-    assert!(told[1].2[2] > 0.9 && apart(&told[1].2, &told[0].2) < 1e-6);
+    assert!(apart(&told[1].2, &told[0].2) < 1e-6, "{:?} {:?}", told[1].2, told[0].2);
 }
 
 #[test]
@@ -30,13 +30,25 @@ fn gaps_that_contradict_each_other_are_told_by_rows_of_the_host() {
     let model = blocks(3);
     let mut problem = model.by_elements(6, true).unwrap();
     let top = model.bodies[1].numbers().1 as i64 - 1;
-    let rows = RowsInput { ptr: &[0, 1, 2], body: Some(&[1, 1]), dof: &[top, top], val: &[1.0, -1.0], rhs: Some(&[1.0, -2.0]) };
+    let rows = RowsInput {
+        ptr: &[0, 1, 2],
+        body: Some(&[1, 1]),
+        dof: &[top, top],
+        val: &[1.0, -1.0],
+        rhs: Some(&[1.0, -2.0]),
+    };
     let first = problem.add_rows(RowKind::Inequality, rows).unwrap();
     let error = problem.solve().unwrap_err();
     assert_eq!(error.kind, Kind::GapsContradict, "{error}");
     let Some(Proof::Rows { weights, .. }) = error.proof.as_deref() else { panic!("{error:?}") };
     assert_eq!(weights.iter().map(|at| at.0).collect::<Vec<_>>(), [first, first + 1]);
-    let equal = RowsInput { ptr: &[0, 1, 2], body: Some(&[1, 1]), dof: &[top, top], val: &[1.0, 1.0], rhs: Some(&[1.0, 2.0]) };
+    let equal = RowsInput {
+        ptr: &[0, 1, 2],
+        body: Some(&[1, 1]),
+        dof: &[top, top],
+        val: &[1.0, 1.0],
+        rhs: Some(&[1.0, 2.0]),
+    };
     let mut problem = model.by_elements(6, true).unwrap();
     problem.add_rows(RowKind::Equality, equal).unwrap();
     let error = problem.solve().unwrap_err();

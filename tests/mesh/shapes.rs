@@ -65,7 +65,7 @@ fn a_thin_plate_and_a_ring() {
     let ring = |low: f64| {
         Mesh::grid([24, 2, 2], move |[x, y, z]| {
             let (turn, radius) = (std::f64::consts::TAU * x, 1.0 + 0.2 * y);
-            [radius * turn.cos(), radius * turn.sin(), 0.2 * z + low]
+            [radius * turn.cos(), -radius * turn.sin(), 0.2 * z + low]
         })
         .closed()
     };
@@ -100,7 +100,10 @@ fn elements_of_any_size_isolated_unknowns_and_two_parts_in_one_body() {
         add(&mut ptr, &mut dof, &own);
     }
     // every unknown of both parts on the bottom to the ground, and a strut between the parts
-    let bottom: Vec<i64> = (0..mesh.nodes.len()).filter(|&k| mesh.nodes[k][2] == 0.0).flat_map(|k| 3 * k as i64..3 * k as i64 + 3).collect();
+    let bottom: Vec<i64> = (0..mesh.nodes.len())
+        .filter(|&k| mesh.nodes[k][2] == 0.0)
+        .flat_map(|k| 3 * k as i64..3 * k as i64 + 3)
+        .collect();
     for &j in bottom.iter().chain(&bottom.iter().map(|j| j + cubes as i64).collect::<Vec<_>>()) {
         add(&mut ptr, &mut dof, &[j]);
     }
@@ -122,7 +125,13 @@ fn elements_of_any_size_isolated_unknowns_and_two_parts_in_one_body() {
         let mut load = vec![0.0; unknowns];
         (load[top as usize], load[7], load[cubes + 9]) = (-1.0, 0.3, 0.2);
         problem.set_load(body, &load).unwrap();
-        let row = feti_contact::solver::RowsInput { ptr: &[0, 1], body: None, dof: &[top], val: &[-1.0], rhs: Some(&[0.1]) };
+        let row = feti_contact::solver::RowsInput {
+            ptr: &[0, 1],
+            body: None,
+            dof: &[top],
+            val: &[-1.0],
+            rhs: Some(&[0.1]),
+        };
         problem.add_rows(feti_contact::solver::RowKind::Inequality, row).unwrap();
         problem
     };
