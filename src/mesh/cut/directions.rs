@@ -1,0 +1,172 @@
+//! In which direction a set of elements is cut by planes: the one in which fewest unknowns are cut through.
+
+use super::graph::Graph;
+use super::incidence::WHAT;
+use crate::error::Result;
+use crate::linalg::dense::spectrum::symmetric_eigen;
+use crate::linalg::Matrix;
+use crate::platform::memory::reserved;
+
+/// Directions are judged by so many elements of a set, taken evenly from all.
+const SAMPLE: usize = 8192;
+
+pub type Point = [f64; 3];
+pub type Frame = [Point; 3];
+
+pub const AXES: Frame = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+
+/// What a set of elements is judged by: the whole graph, the centre of each vertex, and the label of those in the set.
+pub struct Set<'a> {
+    pub graph: &'a Graph,
+    pub centres: &'a [Point],
+    pub label: &'a [u32],
+    pub members: &'a [u32],
+}
+
+/// Lengths are in elements: 1 is one layer.
+pub struct Choice {
+    pub direction: Point,
+    /// In the direction, and in two others normal to it.
+    pub lengths: Point,
+}
+
+impl Set<'_> {
+    /// The best of the axes of the coordinates, of the mesh (`of_mesh`) and of inertia; none where every plane has nearly all on one side.
+    pub fn direction(&self, of_mesh: &Frame) -> Result<Option<Choice>> {
+        let step = self.members.len().div_ceil(SAMPLE).max(1);
+        let mut sample = reserved(self.members.len() / step + 1, WHAT)?;
+        sample.extend(self.members.iter().step_by(step).copied());
+        let mut keys = reserved(sample.len(), WHAT)?;
+        let mut best: Option<(f64, usize, Frame, Point)> = None;
+        for frame in [AXES, *of_mesh, self.of_inertia(&sample)?] {
+            let cuts = frame.map(|axis| self.crossing(&sample, &axis, &mut keys));
+            let least = (0..3).min_by(|&i, &j| cuts[i].total_cmp(&cuts[j])).unwrap_or(0);
+            if cuts[least] < best.as_ref().map_or(f64::INFINITY, |best| 0.99 * best.0) {
+                best = Some((cuts[least], least, frame, cuts));
+            }
+        }
+        let Some((_, least, frame, cuts)) = best else { return Ok(None) };
+        let inside = self.inside(&sample);
+        let at = |i: usize| (least + i) % 3;
+        let lengths = [0, 1, 2].map(|i| (inside / cuts[at(i)]).max(1.0));
+        let extents = [0, 1, 2].map(|i| self.extent(&sample, &frame[at(i)]));
+        Ok(Some(Choice { direction: tilted([0, 1, 2].map(|i| frame[at(i)]), extents, lengths), lengths }))
+    }
+
+    /// Unknowns shared across the plane through the middle of the sample; infinite where less than a quarter lies on one side.
+    fn crossing(&self, sample: &[u32], axis: &Point, keys: &mut Vec<f64>) -> f64 {
+        keys.clear();
+        keys.extend(sample.iter().map(|&i| dot(axis, &self.centres[i as usize])));
+        let half = keys.len() / 2;
+        let (_, &mut middle, _) = keys.select_nth_unstable_by(half, f64::total_cmp);
+        let below = &|i: usize| dot(axis, &self.centres[i]) < middle;
+        let count = sample.iter().filter(|&&i| below(i as usize)).count();
+        if 4 * count < sample.len() {
+            return f64::INFINITY;
+        }
+        let of = |i: usize| self.within(i).filter(move |&(j, _)| below(i) != below(j));
+        0.5 * sample
+            .iter()
+            .map(|&i| of(i as usize).map(|(_, share)| f64::from(share)).sum::<f64>())
+            .sum::<f64>()
+    }
+
+    /// The sample times the unknowns that neighbours in the set share on the average.
+    fn inside(&self, sample: &[u32]) -> f64 {
+        let (mut sum, mut count) = (0.0, 0.0);
+        for (_, share) in sample.iter().flat_map(|&i| self.within(i as usize)) {
+            sum += f64::from(share);
+            count += 1.0;
+        }
+        sample.len() as f64 * sum / f64::max(count, 1.0)
+    }
+
+    fn within(&self, i: usize) -> impl Iterator<Item = (usize, u32)> + '_ {
+        self.graph.around(i).filter(move |&(j, _)| self.label[j] == self.label[i])
+    }
+
+    fn extent(&self, sample: &[u32], axis: &Point) -> f64 {
+        let key = |&i: &u32| dot(axis, &self.centres[i as usize]);
+        let (low, high) = sample
+            .iter()
+            .map(key)
+            .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(x), high.max(x)));
+        high - low
+    }
+
+    /// Principal axes of the centres.
+    fn of_inertia(&self, sample: &[u32]) -> Result<Frame> {
+        let mut mean = [0.0; 3];
+        for &i in sample {
+            (0..3).for_each(|k| mean[k] += self.centres[i as usize][k] / sample.len() as f64);
+        }
+        let mut moments = Matrix::from_fn(3, 3, |_, _| 0.0)?;
+        for &i in sample {
+            let x = minus(&self.centres[i as usize], &mean);
+            (0..9).for_each(|k| moments.data[k] += x[k / 3] * x[k % 3]);
+        }
+        let (_, vectors) = symmetric_eigen(&moments)?;
+        Ok([2, 1, 0].map(|j| [0, 1, 2].map(|i| vectors.data[3 * j + i])))
+    }
+}
+
+/// The three directions in which most neighbours of a mesh of bricks lie, however it is turned.
+pub fn of_mesh(graph: &Graph, centres: &[Point]) -> Result<Frame> {
+    const EDGES: usize = 300;
+    let step = graph.count().div_ceil(EDGES / 3).max(1);
+    let mut edges: Vec<Point> = reserved(EDGES * 8, WHAT)?;
+    for i in (0..graph.count()).step_by(step) {
+        let edge = |(j, _): (usize, u32)| unit(minus(&centres[j], &centres[i]));
+        edges.extend(graph.around(i).take(8).filter_map(edge));
+    }
+    let most = |allowed: &dyn Fn(&Point) -> bool| -> Option<Point> {
+        let along = |a: &Point| edges.iter().map(|b| dot(a, b).powi(32)).sum::<f64>();
+        let scored = edges.iter().filter(|a| allowed(a)).map(|a| (along(a), *a));
+        scored
+            .fold(None, |best: Option<(f64, Point)>, new| match best {
+                Some(old) if new.0 <= old.0 => Some(old),
+                _ => Some(new),
+            })
+            .map(|(_, a)| a)
+    };
+    let Some(first) = most(&|_| true) else { return Ok(AXES) };
+    let other = most(&|a| dot(a, &first).abs() < 0.5).unwrap_or_else(|| smallest_axis(&first));
+    let Some(third) = unit(cross(&first, &other)) else { return Ok(AXES) };
+    Ok([first, cross(&third, &first), third])
+}
+
+/// The axis of the coordinates that is farthest from being along `a`.
+fn smallest_axis(a: &Point) -> Point {
+    let least = (0..3).min_by(|&i, &j| a[i].abs().total_cmp(&a[j].abs())).unwrap_or(0);
+    AXES[least]
+}
+
+/// The first direction, so little inclined that a layer cut through is cut through by rows, and a row between two elements.
+fn tilted(frame: Frame, extents: Point, lengths: Point) -> Point {
+    let mut direction = frame[0];
+    let mut step = extents[0] / lengths[0];
+    for i in 1..3 {
+        if extents[i] > 1e-6 * extents[0] {
+            (0..3).for_each(|k| direction[k] += 0.25 * step / extents[i] * frame[i][k]);
+            step *= 0.25 / lengths[i];
+        }
+    }
+    direction
+}
+
+pub fn dot(a: &Point, b: &Point) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+fn minus(a: &Point, b: &Point) -> Point {
+    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
+}
+
+fn cross(a: &Point, b: &Point) -> Point {
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+}
+
+fn unit(a: Point) -> Option<Point> {
+    let norm = dot(&a, &a).sqrt();
+    (norm > 0.0).then(|| a.map(|x| x / norm))
+}
