@@ -81,6 +81,26 @@ impl Model {
         Ok(sizes.iter().map(|n| storage.len(*n)).sum())
     }
 
+    /// Number of unknowns of an element, those that are held included.
+    pub fn size_of_element(&self, body: usize, e: usize) -> Result<usize> {
+        self.check_element(body, e, "e")?;
+        Ok(self.mesh(body)?.connectivity().size(e))
+    }
+
+    /// The body has an element with this number, the first of a block.
+    pub fn check_first_element(&self, body: usize, first: usize) -> Result<()> {
+        self.check_element(body, first, "first")
+    }
+
+    fn check_element(&self, body: usize, e: usize, argument: &'static str) -> Result<()> {
+        let elements = self.mesh(body)?.connectivity().elements();
+        if e < elements {
+            return Ok(());
+        }
+        let what = format!("the body has {elements} elements");
+        Err(Error::argument(argument, what).body(body).index(e as i64).limit(elements as f64))
+    }
+
     fn mesh(&self, body: usize) -> Result<&Mesh> {
         let missing = || {
             let what =

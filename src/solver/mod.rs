@@ -19,6 +19,7 @@ pub use crate::certificate::{Certificate, Entry};
 pub use crate::constraints::{RowKind, RowsInput};
 pub use crate::error::Proof;
 pub use crate::linalg::Borrowed;
+pub use crate::mesh::ElementStorage;
 pub use crate::model::{options, Model, OptionInfo, OptionValue, Settings, Sizes};
 pub use crate::progress::{Listener, LogLevel, LogListener, PhaseReport, Progress, Reply};
 pub use crate::qp::StepKind;
