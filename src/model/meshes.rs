@@ -20,7 +20,7 @@ impl Model {
             let what = "a body has at least one element";
             return Err(Error::argument("elements", what).body(body).value(0.0).limit(1.0));
         }
-        let old = self.bodies[body].mesh.as_mut().filter(|mesh| mesh.connectivity().is(order, ptr, dof));
+        let old = self.bodies[body].mesh.as_mut().filter(|mesh| mesh.has_elements() && mesh.connectivity().is(order, ptr, dof));
         if let Some(mesh) = old {
             mesh.begin()?;
             return Ok(());
@@ -107,7 +107,7 @@ impl Model {
                 "the elements have not been given: a call of feti_body_mesh comes before their matrices";
             Error::new(Kind::State, what).body(body)
         };
-        self.given(body)?.mesh.as_ref().ok_or_else(missing)
+        self.given(body)?.mesh.as_ref().filter(|mesh| mesh.has_elements()).ok_or_else(missing)
     }
 
     fn add<'a>(
@@ -161,7 +161,7 @@ impl GivenBody {
     }
 
     /// All elements have come: the matrix of the body is that of its only piece, or the sum of those of all.
-    fn assemble(&mut self) -> Result<()> {
+    pub fn assemble(&mut self) -> Result<()> {
         self.without_matrix();
         match self.mesh.as_ref().and_then(Mesh::pieces) {
             Some([whole]) => self.body.stiffness = Some(Arc::clone(&whole.stiffness)),

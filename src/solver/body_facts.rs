@@ -172,7 +172,7 @@ impl Problem {
     pub fn held_forces(&self, body: usize, forces: &mut [f64]) -> Result<()> {
         let given = self.model.given(body)?;
         let missing = || Error::new(Kind::State, "the body was not given by its elements").body(body);
-        let mesh = given.mesh.as_ref().ok_or_else(missing)?;
+        let mesh = given.mesh.as_ref().filter(|mesh| mesh.has_elements()).ok_or_else(missing)?;
         mesh.held_forces(self.displacement(body)?, forces);
         Ok(())
     }
