@@ -20,7 +20,10 @@ impl Model {
             let what = "a body has at least one element";
             return Err(Error::argument("elements", what).body(body).value(0.0).limit(1.0));
         }
-        let old = self.bodies[body].mesh.as_mut().filter(|mesh| mesh.has_elements() && mesh.connectivity().is(order, ptr, dof));
+        let old = self.bodies[body]
+            .mesh
+            .as_mut()
+            .filter(|mesh| mesh.has_elements() && mesh.connectivity().is(order, ptr, dof));
         if let Some(mesh) = old {
             mesh.begin()?;
             return Ok(());

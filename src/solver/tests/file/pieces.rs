@@ -93,7 +93,8 @@ fn pieces_that_contradict_themselves_are_refused() {
     refused(&alone);
     let unmet = numbers(&[1, 1, 1, 0, 1, 0, 0, 1, 1.0_f64.to_bits()]);
     let unmet = [unmet, 0_u32.to_le_bytes().to_vec()].concat();
-    let bytes = of_sections(FORMAT, &[of_section(b"BODY", 0, &numbers(&[2])), of_section(b"PIEC", 0, &unmet)]);
+    let bytes =
+        of_sections(FORMAT, &[of_section(b"BODY", 0, &numbers(&[2])), of_section(b"PIEC", 0, &unmet)]);
     let error = refused(&bytes);
     assert!(error.what.contains("no piece has the unknown") && error.place.dof == Some(1), "{error}");
 }
