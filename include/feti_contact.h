@@ -369,6 +369,11 @@ typedef struct feti_body_facts {
    * What the rounding of the entries may make of it; NaN where there are none.
    */
   double softness_of_rounding;
+  /**
+   * Pieces that the body is cut into, once all its elements have been given; 1 for one that is not
+   * cut.
+   */
+  int64_t pieces;
 } feti_body_facts;
 
 /**
@@ -512,6 +517,10 @@ typedef struct feti_error_detail {
    * Name of the function that failed, NUL terminated.
    */
   char function[40];
+  /**
+   * Element of the body, -1: does not apply.
+   */
+  int64_t element;
 } feti_error_detail;
 
 /**
@@ -1169,6 +1178,205 @@ int32_t feti_diagnosis_undetermined_motion(struct feti_problem *p,
 int32_t feti_diagnosis_motion(struct feti_problem *p, int64_t body, int64_t n, double *v);
 
 /**
+ * Says which unknowns the elements of a body join, with 32-bit indices: the first step of giving K
+ * by elements.
+ *
+ * The matrices follow, by feti_body_element or feti_body_elements, each element once: all of K, in
+ * elements of any size (springs to ground, penalties and multi-point constraints are small ones).
+ * Nothing is kept of an element: its matrix is added to that of the body or, where the body is
+ * cut, to that of its piece. Loads, rows, results, certificate and diagnosis are those of the
+ * body; the pieces show in feti_body_info and feti_body_pieces alone.
+ *
+ * What the cut depends on comes before the first matrix: option `pieces` and the coordinates
+ * (feti_body_coordinates); without coordinates it goes by the elements that unknowns share. Null
+ * spaces of pieces come from the coordinates or are sought in K; a given null space of the whole
+ * body (feti_body_null_space) does not serve them. Of a body that is cut feti_body_kplus,
+ * feti_body_fixing, feti_dual_apply and feti_dual_rhs are FETI_STATE.
+ *
+ * A number below `base` is a held unknown, as equation numbers of older codes have it: row and
+ * column are left out of K, and `base` - 1 - k is the held unknown k (with base 0: -1, -2, ...;
+ * with base 1: 0, -1, ...). All may have one number where nobody asks for feti_body_held_forces.
+ * Where values are prescribed for them the host moves ke u0 to the load.
+ *
+ * A matrix or functions given before are replaced. The same connectivity again begins a new pass
+ * on the old pattern and cut. FETI_OVERFLOW beyond 2^32 - 1 unknowns and held ones. FETI_STATE
+ * from feti_setup and feti_solve where elements are missing, with the first of them. After a
+ * failure the body keeps what it had.
+ *
+ * @param[in] p        (scalar) the handle
+ * @param[in] body     (scalar) number of the body, from 0
+ * @param[in] elements (scalar) number of elements, > 0
+ * @param[in] ptr      (elements + 1) element e joins the entries `ptr[e]` to `ptr[e + 1] - 1` of
+ *                     `dof`; starts with `base`
+ * @param[in] dof      (ptr[elements] - base) unknowns in the order of the rows of the matrices,
+ *                     counted from `base`; below it: held
+ * @param[in] base     (scalar) 0 or 1: what `ptr` and `dof` count from
+ *
+ * Safety: The arrays have the given shapes.
+ */
+int32_t feti_body_mesh_i32(struct feti_problem *p,
+                           int64_t body,
+                           int64_t elements,
+                           const int32_t *ptr,
+                           const int32_t *dof,
+                           int32_t base);
+
+/**
+ * Says which unknowns the elements of a body join, with 64-bit indices: the first step of giving K
+ * by elements.
+ *
+ * The matrices follow, by feti_body_element or feti_body_elements, each element once: all of K, in
+ * elements of any size (springs to ground, penalties and multi-point constraints are small ones).
+ * Nothing is kept of an element: its matrix is added to that of the body or, where the body is
+ * cut, to that of its piece. Loads, rows, results, certificate and diagnosis are those of the
+ * body; the pieces show in feti_body_info and feti_body_pieces alone.
+ *
+ * What the cut depends on comes before the first matrix: option `pieces` and the coordinates
+ * (feti_body_coordinates); without coordinates it goes by the elements that unknowns share. Null
+ * spaces of pieces come from the coordinates or are sought in K; a given null space of the whole
+ * body (feti_body_null_space) does not serve them. Of a body that is cut feti_body_kplus,
+ * feti_body_fixing, feti_dual_apply and feti_dual_rhs are FETI_STATE.
+ *
+ * A number below `base` is a held unknown, as equation numbers of older codes have it: row and
+ * column are left out of K, and `base` - 1 - k is the held unknown k (with base 0: -1, -2, ...;
+ * with base 1: 0, -1, ...). All may have one number where nobody asks for feti_body_held_forces.
+ * Where values are prescribed for them the host moves ke u0 to the load.
+ *
+ * A matrix or functions given before are replaced. The same connectivity again begins a new pass
+ * on the old pattern and cut. FETI_OVERFLOW beyond 2^32 - 1 unknowns and held ones. FETI_STATE
+ * from feti_setup and feti_solve where elements are missing, with the first of them. After a
+ * failure the body keeps what it had.
+ *
+ * @param[in] p        (scalar) the handle
+ * @param[in] body     (scalar) number of the body, from 0
+ * @param[in] elements (scalar) number of elements, > 0
+ * @param[in] ptr      (elements + 1) element e joins the entries `ptr[e]` to `ptr[e + 1] - 1` of
+ *                     `dof`; starts with `base`
+ * @param[in] dof      (ptr[elements] - base) unknowns in the order of the rows of the matrices,
+ *                     counted from `base`; below it: held
+ * @param[in] base     (scalar) 0 or 1: what `ptr` and `dof` count from
+ *
+ * Safety: The arrays have the given shapes.
+ */
+int32_t feti_body_mesh_i64(struct feti_problem *p,
+                           int64_t body,
+                           int64_t elements,
+                           const int64_t *ptr,
+                           const int64_t *dof,
+                           int32_t base);
+
+/**
+ * Adds the stiffness matrix of one element, from the host's own assembly loop.
+ *
+ * The matrix is added at once and not kept. It must be symmetric within option symmetry_tolerance
+ * and is averaged; it may be indefinite, only what has been added up is judged, by feti_setup.
+ * Elements come in any order, each once: FETI_STATE for one that has come already, and before
+ * feti_body_mesh. With the last one the matrix of the body is complete, and the next element
+ * begins a new pass: new values on the old pattern and cut, with no analysis, as in a Newton loop.
+ * Until that pass is complete the body has no matrix. Threads that assemble side by side meet
+ * FETI_BUSY: they hand over blocks, by feti_body_elements. An error names the element. After a
+ * failure nothing of the element is added.
+ *
+ * @param[in] p    (scalar) the handle
+ * @param[in] body (scalar) number of the body, from 0
+ * @param[in] e    (scalar) number of the element, from 0
+ * @param[in] n    (scalar) unknowns that the element joins, held ones included
+ * @param[in] ke   (ld * n) column-major: ke_ij is ke[i + ld j], force per length
+ * @param[in] ld   (scalar) >= n
+ *
+ * Safety: The array has the given shape.
+ */
+int32_t feti_body_element(struct feti_problem *p,
+                          int64_t body,
+                          int64_t e,
+                          int64_t n,
+                          const double *ke,
+                          int64_t ld);
+
+/**
+ * Adds the stiffness matrices of a block of elements, one after the other.
+ *
+ * As feti_body_element for each of them. With FETI_FULL every matrix is n x n, column-major. With
+ * FETI_LOWER it is the lower triangle column by column, as in the elemental format of MUMPS (the
+ * upper triangle row by row is the same), with FETI_UPPER the upper triangle column by column: n
+ * (n + 1) / 2 numbers. The n of an element is that of feti_body_mesh; feti_body_elements_size
+ * tells how many numbers a block has. FETI_STATE for an element that has come already, and before
+ * feti_body_mesh. An error names the element; its entry counts within the matrix of that element.
+ * After a failure none of the block is added.
+ *
+ * @param[in] p       (scalar) the handle
+ * @param[in] body    (scalar) number of the body, from 0
+ * @param[in] first   (scalar) number of the first element, from 0
+ * @param[in] count   (scalar) number of elements
+ * @param[in] ke      (sum of n^2 or n (n + 1) / 2) entries of the matrices, force per length
+ * @param[in] storage (scalar) FETI_FULL, FETI_LOWER or FETI_UPPER
+ *
+ * Safety: The array has the given shape.
+ */
+int32_t feti_body_elements(struct feti_problem *p,
+                           int64_t body,
+                           int64_t first,
+                           int64_t count,
+                           const double *ke,
+                           int32_t storage);
+
+/**
+ * Tells how many numbers the matrices of a block of elements take in feti_body_elements.
+ *
+ * FETI_STATE before feti_body_mesh. After a failure nothing is written.
+ *
+ * @param[in]  p       (scalar) the handle
+ * @param[in]  body    (scalar) number of the body, from 0
+ * @param[in]  first   (scalar) number of the first element, from 0
+ * @param[in]  count   (scalar) number of elements
+ * @param[in]  storage (scalar) FETI_FULL, FETI_LOWER or FETI_UPPER
+ * @param[out] nnz     (scalar) sum of n^2, or of n (n + 1) / 2 for the triangles
+ *
+ * Safety: `nnz` has room for one number.
+ */
+int32_t feti_body_elements_size(struct feti_problem *p,
+                                int64_t body,
+                                int64_t first,
+                                int64_t count,
+                                int32_t storage,
+                                int64_t *nnz);
+
+/**
+ * Reads what the held unknowns of a body take up in the last answer: K_hf u, their rows of K times
+ * the displacement.
+ *
+ * Held unknowns are those with numbers below `base` in feti_body_mesh_i32 or _i64, k for the
+ * number `base` - 1 - k. The force is that with which the supports hold the body, but for what
+ * prescribed values add (ke u0, which the host has moved to the load) and for loads on the held
+ * unknowns themselves, which the host takes off. FETI_STATE for a body that was not given by its
+ * elements, and before a solve has given an answer. After a failure nothing is written.
+ *
+ * @param[in]  p    (scalar) the handle
+ * @param[in]  body (scalar) number of the body, from 0
+ * @param[in]  n    (scalar) held unknowns that are asked for: 0 to n - 1
+ * @param[out] r    (n) force; 0 for a number that no element has
+ *
+ * Safety: The array has the given shape.
+ */
+int32_t feti_body_held_forces(struct feti_problem *p, int64_t body, int64_t n, double *r);
+
+/**
+ * Tells the piece of every unknown of a body, for pictures and for choosing option `pieces`.
+ *
+ * Pieces count from 0; an unknown of several pieces has the first of them. All are 0 in a body
+ * that is not cut. FETI_STATE before its matrix, or all of its elements, have been given. After a
+ * failure nothing is written.
+ *
+ * @param[in]  p     (scalar) the handle
+ * @param[in]  body  (scalar) number of the body, from 0
+ * @param[in]  n     (scalar) unknowns of the body
+ * @param[out] piece (n) piece of each unknown, from 0
+ *
+ * Safety: The array has the given shape.
+ */
+int32_t feti_body_pieces(struct feti_problem *p, int64_t body, int64_t n, int64_t *piece);
+
+/**
  * Text of the calling thread's last error.
  *
  * The text is cut to fit, always NUL terminated when `cap` > 0. Returns the full length without
@@ -1203,7 +1411,9 @@ int32_t feti_last_error_detail(struct feti_error_detail *out);
  * same folder and renamed when it is complete: after a failure an old file is as it was, and
  * nothing else is left. FETI_IO with path, operation and the words of the system; FETI_UNSUPPORTED
  * with the body where functions of the host stand for a matrix (feti_body_operator): no file holds
- * them. Borrowed matrices are written as they are at that moment.
+ * them. Borrowed matrices are written as they are at that moment. Of a body that is cut
+ * (feti_body_mesh_i32) the pieces are written, not the elements; FETI_STATE where elements of a
+ * body are missing.
  *
  * @param[in] p    (scalar) the handle
  * @param[in] path (text) name of the file; an old one is replaced
@@ -1314,7 +1524,8 @@ int32_t feti_body_null_space_get(struct feti_problem *p,
  * Reads the fixing unknowns of a body: with them fixed, K has full rank.
  *
  * Runs feti_setup when it is due. FETI_UNSUPPORTED where K+ is the host's (feti_body_operator).
- * After a failure nothing is written.
+ * FETI_STATE for a body that is cut (feti_body_mesh_i32 or _i64). After a failure nothing is
+ * written.
  *
  * @param[in]  p    (scalar) the handle
  * @param[in]  body (scalar) number of the body, from 0
@@ -2234,8 +2445,8 @@ int32_t feti_body_stiffness_dense(struct feti_problem *p,
 /**
  * Applies the generalised inverse of a body, `Y = K+ X`.
  *
- * Runs feti_setup when it is due. X and Y may be the same array. After a failure nothing is
- * written.
+ * Runs feti_setup when it is due. X and Y may be the same array. FETI_STATE for a body that is cut
+ * (feti_body_mesh_i32 or _i64). After a failure nothing is written.
  *
  * @param[in]  p    (scalar) the handle
  * @param[in]  body (scalar) number of the body, from 0
@@ -2261,8 +2472,8 @@ int32_t feti_body_kplus(struct feti_problem *p,
  * Applies the dual operator, `y = F x` with `F = [B; H] K+ [B; H]' + C`.
  *
  * C = diag(1/k) is the compliance of the rows (feti_rows_compliance), 0 for rigid ones. Runs
- * feti_setup when it is due. `x` and `y` may be the same array. After a failure nothing is
- * written.
+ * feti_setup when it is due. `x` and `y` may be the same array. FETI_STATE where a body is cut
+ * (feti_body_mesh_i32 or _i64). After a failure nothing is written.
  *
  * @param[in]  p (scalar) the handle
  * @param[in]  m (scalar) inequality rows + equality rows
@@ -2276,7 +2487,8 @@ int32_t feti_dual_apply(struct feti_problem *p, int64_t m, const double *x, doub
 /**
  * Reads the right-hand side of the dual problem, `d = [B; H] K+ f - [c; h]`.
  *
- * Runs feti_setup when it is due. After a failure nothing is written.
+ * Runs feti_setup when it is due. FETI_STATE where a body is cut (feti_body_mesh_i32 or _i64).
+ * After a failure nothing is written.
  *
  * @param[in]  p (scalar) the handle
  * @param[in]  m (scalar) inequality rows + equality rows

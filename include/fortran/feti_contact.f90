@@ -81,6 +81,13 @@ module feti_contact
     feti_body_values => body_values, &
     feti_body_values_borrow => body_values_borrow, &
     feti_body_values_split => body_values_split
+  use feti_contact_elements, only: &
+    feti_body_mesh => body_mesh, &
+    feti_body_element => body_element, &
+    feti_body_elements => body_elements, &
+    feti_body_elements_size => body_elements_size, &
+    feti_body_held_forces => body_held_forces, &
+    feti_body_pieces => body_pieces
   use feti_contact_operators, only: &
     feti_body_operator => body_operator
   use feti_contact_rows, only: &

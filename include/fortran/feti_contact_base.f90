@@ -115,6 +115,8 @@ module feti_contact_base
     real(c_double) :: value = 0, limit = 0
     !> Name of the C function, blank padded.
     character(len=40) :: function = ''
+    !> Element of the body; 0: does not apply.
+    integer(c_int64_t) :: element = 0
   end type
 
 contains
@@ -233,6 +235,7 @@ contains
       detail%value = found%value
       detail%limit = found%limit
       detail%function = f_text(c_loc(found%function))
+      detail%element = found%element + 1
     end if
     call finish(status, stat, errmsg)
   end subroutine

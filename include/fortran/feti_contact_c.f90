@@ -143,6 +143,8 @@ module feti_contact_c
     real(c_double) :: limit
     !> Name of the function that failed, NUL terminated.
     character(kind=c_char) :: function(40)
+    !> Element of the body, -1: does not apply.
+    integer(c_int64_t) :: element
   end type feti_error_detail
 
   !> An option: name, text, default and range.
@@ -297,6 +299,8 @@ module feti_contact_c
     real(c_double) :: softness
     !> What the rounding of the entries may make of it; NaN where there are none.
     real(c_double) :: softness_of_rounding
+    !> Pieces that the body is cut into, once all its elements have been given; 1 for one that is not cut.
+    integer(c_int64_t) :: pieces
   end type feti_body_facts
 
   !> Time and memory of a phase of a setup or a solve.
@@ -446,6 +450,13 @@ module feti_contact_c
   public :: feti_diagnosis_undetermined
   public :: feti_diagnosis_undetermined_motion
   public :: feti_diagnosis_motion
+  public :: feti_body_mesh_i32
+  public :: feti_body_mesh_i64
+  public :: feti_body_element
+  public :: feti_body_elements
+  public :: feti_body_elements_size
+  public :: feti_body_held_forces
+  public :: feti_body_pieces
   public :: feti_last_error
   public :: feti_last_error_detail
   public :: feti_problem_write
@@ -862,6 +873,225 @@ module feti_contact_c
       integer(c_int32_t) :: feti_diagnosis_motion
     end function feti_diagnosis_motion
 
+    !> Says which unknowns the elements of a body join, with 32-bit indices: the first step of giving K by
+    !> elements.
+    !>
+    !> The matrices follow, by feti_body_element or feti_body_elements, each element once: all of K, in
+    !> elements of any size (springs to ground, penalties and multi-point constraints are small ones). Nothing
+    !> is kept of an element: its matrix is added to that of the body or, where the body is cut, to that of
+    !> its piece. Loads, rows, results, certificate and diagnosis are those of the body; the pieces show in
+    !> feti_body_info and feti_body_pieces alone.
+    !>
+    !> What the cut depends on comes before the first matrix: option `pieces` and the coordinates
+    !> (feti_body_coordinates); without coordinates it goes by the elements that unknowns share. Null spaces
+    !> of pieces come from the coordinates or are sought in K; a given null space of the whole body
+    !> (feti_body_null_space) does not serve them. Of a body that is cut feti_body_kplus, feti_body_fixing,
+    !> feti_dual_apply and feti_dual_rhs are FETI_STATE.
+    !>
+    !> A number below `base` is a held unknown, as equation numbers of older codes have it: row and column are
+    !> left out of K, and `base` - 1 - k is the held unknown k (with base 0: -1, -2, ...; with base 1: 0, -1,
+    !> ...). All may have one number where nobody asks for feti_body_held_forces. Where values are prescribed
+    !> for them the host moves ke u0 to the load.
+    !>
+    !> A matrix or functions given before are replaced. The same connectivity again begins a new pass on the
+    !> old pattern and cut. FETI_OVERFLOW beyond 2^32 - 1 unknowns and held ones. FETI_STATE from feti_setup
+    !> and feti_solve where elements are missing, with the first of them. After a failure the body keeps what
+    !> it had.
+    !>
+    !> @param[in] p        (scalar) the handle
+    !> @param[in] body     (scalar) number of the body, from 0
+    !> @param[in] elements (scalar) number of elements, > 0
+    !> @param[in] ptr      (elements + 1) element e joins the entries `ptr[e]` to `ptr[e + 1] - 1` of `dof`;
+    !>                     starts with `base`
+    !> @param[in] dof      (ptr[elements] - base) unknowns in the order of the rows of the matrices, counted
+    !>                     from `base`; below it: held
+    !> @param[in] base     (scalar) 0 or 1: what `ptr` and `dof` count from
+    !>
+    !> Safety: The arrays have the given shapes.
+    function feti_body_mesh_i32(p, body, elements, ptr, dof, base) bind(C, name="feti_body_mesh_i32")
+      import
+      type(c_ptr), value :: p
+      integer(c_int64_t), value :: body
+      integer(c_int64_t), value :: elements
+      integer(c_int32_t), intent(in) :: ptr(*)
+      integer(c_int32_t), intent(in) :: dof(*)
+      integer(c_int32_t), value :: base
+      integer(c_int32_t) :: feti_body_mesh_i32
+    end function feti_body_mesh_i32
+
+    !> Says which unknowns the elements of a body join, with 64-bit indices: the first step of giving K by
+    !> elements.
+    !>
+    !> The matrices follow, by feti_body_element or feti_body_elements, each element once: all of K, in
+    !> elements of any size (springs to ground, penalties and multi-point constraints are small ones). Nothing
+    !> is kept of an element: its matrix is added to that of the body or, where the body is cut, to that of
+    !> its piece. Loads, rows, results, certificate and diagnosis are those of the body; the pieces show in
+    !> feti_body_info and feti_body_pieces alone.
+    !>
+    !> What the cut depends on comes before the first matrix: option `pieces` and the coordinates
+    !> (feti_body_coordinates); without coordinates it goes by the elements that unknowns share. Null spaces
+    !> of pieces come from the coordinates or are sought in K; a given null space of the whole body
+    !> (feti_body_null_space) does not serve them. Of a body that is cut feti_body_kplus, feti_body_fixing,
+    !> feti_dual_apply and feti_dual_rhs are FETI_STATE.
+    !>
+    !> A number below `base` is a held unknown, as equation numbers of older codes have it: row and column are
+    !> left out of K, and `base` - 1 - k is the held unknown k (with base 0: -1, -2, ...; with base 1: 0, -1,
+    !> ...). All may have one number where nobody asks for feti_body_held_forces. Where values are prescribed
+    !> for them the host moves ke u0 to the load.
+    !>
+    !> A matrix or functions given before are replaced. The same connectivity again begins a new pass on the
+    !> old pattern and cut. FETI_OVERFLOW beyond 2^32 - 1 unknowns and held ones. FETI_STATE from feti_setup
+    !> and feti_solve where elements are missing, with the first of them. After a failure the body keeps what
+    !> it had.
+    !>
+    !> @param[in] p        (scalar) the handle
+    !> @param[in] body     (scalar) number of the body, from 0
+    !> @param[in] elements (scalar) number of elements, > 0
+    !> @param[in] ptr      (elements + 1) element e joins the entries `ptr[e]` to `ptr[e + 1] - 1` of `dof`;
+    !>                     starts with `base`
+    !> @param[in] dof      (ptr[elements] - base) unknowns in the order of the rows of the matrices, counted
+    !>                     from `base`; below it: held
+    !> @param[in] base     (scalar) 0 or 1: what `ptr` and `dof` count from
+    !>
+    !> Safety: The arrays have the given shapes.
+    function feti_body_mesh_i64(p, body, elements, ptr, dof, base) bind(C, name="feti_body_mesh_i64")
+      import
+      type(c_ptr), value :: p
+      integer(c_int64_t), value :: body
+      integer(c_int64_t), value :: elements
+      integer(c_int64_t), intent(in) :: ptr(*)
+      integer(c_int64_t), intent(in) :: dof(*)
+      integer(c_int32_t), value :: base
+      integer(c_int32_t) :: feti_body_mesh_i64
+    end function feti_body_mesh_i64
+
+    !> Adds the stiffness matrix of one element, from the host's own assembly loop.
+    !>
+    !> The matrix is added at once and not kept. It must be symmetric within option symmetry_tolerance and is
+    !> averaged; it may be indefinite, only what has been added up is judged, by feti_setup. Elements come in
+    !> any order, each once: FETI_STATE for one that has come already, and before feti_body_mesh. With the
+    !> last one the matrix of the body is complete, and the next element begins a new pass: new values on the
+    !> old pattern and cut, with no analysis, as in a Newton loop. Until that pass is complete the body has no
+    !> matrix. Threads that assemble side by side meet FETI_BUSY: they hand over blocks, by
+    !> feti_body_elements. An error names the element. After a failure nothing of the element is added.
+    !>
+    !> @param[in] p    (scalar) the handle
+    !> @param[in] body (scalar) number of the body, from 0
+    !> @param[in] e    (scalar) number of the element, from 0
+    !> @param[in] n    (scalar) unknowns that the element joins, held ones included
+    !> @param[in] ke   (ld * n) column-major: ke_ij is ke[i + ld j], force per length
+    !> @param[in] ld   (scalar) >= n
+    !>
+    !> Safety: The array has the given shape.
+    function feti_body_element(p, body, e, n, ke, ld) bind(C, name="feti_body_element")
+      import
+      type(c_ptr), value :: p
+      integer(c_int64_t), value :: body
+      integer(c_int64_t), value :: e
+      integer(c_int64_t), value :: n
+      real(c_double), intent(in) :: ke(*)
+      integer(c_int64_t), value :: ld
+      integer(c_int32_t) :: feti_body_element
+    end function feti_body_element
+
+    !> Adds the stiffness matrices of a block of elements, one after the other.
+    !>
+    !> As feti_body_element for each of them. With FETI_FULL every matrix is n x n, column-major. With
+    !> FETI_LOWER it is the lower triangle column by column, as in the elemental format of MUMPS (the upper
+    !> triangle row by row is the same), with FETI_UPPER the upper triangle column by column: n (n + 1) / 2
+    !> numbers. The n of an element is that of feti_body_mesh; feti_body_elements_size tells how many numbers
+    !> a block has. FETI_STATE for an element that has come already, and before feti_body_mesh. An error names
+    !> the element; its entry counts within the matrix of that element. After a failure none of the block is
+    !> added.
+    !>
+    !> @param[in] p       (scalar) the handle
+    !> @param[in] body    (scalar) number of the body, from 0
+    !> @param[in] first   (scalar) number of the first element, from 0
+    !> @param[in] count   (scalar) number of elements
+    !> @param[in] ke      (sum of n^2 or n (n + 1) / 2) entries of the matrices, force per length
+    !> @param[in] storage (scalar) FETI_FULL, FETI_LOWER or FETI_UPPER
+    !>
+    !> Safety: The array has the given shape.
+    function feti_body_elements(p, body, first, count, ke, storage) bind(C, name="feti_body_elements")
+      import
+      type(c_ptr), value :: p
+      integer(c_int64_t), value :: body
+      integer(c_int64_t), value :: first
+      integer(c_int64_t), value :: count
+      real(c_double), intent(in) :: ke(*)
+      integer(c_int32_t), value :: storage
+      integer(c_int32_t) :: feti_body_elements
+    end function feti_body_elements
+
+    !> Tells how many numbers the matrices of a block of elements take in feti_body_elements.
+    !>
+    !> FETI_STATE before feti_body_mesh. After a failure nothing is written.
+    !>
+    !> @param[in]  p       (scalar) the handle
+    !> @param[in]  body    (scalar) number of the body, from 0
+    !> @param[in]  first   (scalar) number of the first element, from 0
+    !> @param[in]  count   (scalar) number of elements
+    !> @param[in]  storage (scalar) FETI_FULL, FETI_LOWER or FETI_UPPER
+    !> @param[out] nnz     (scalar) sum of n^2, or of n (n + 1) / 2 for the triangles
+    !>
+    !> Safety: `nnz` has room for one number.
+    function feti_body_elements_size(p, body, first, count, storage, nnz) &
+        bind(C, name="feti_body_elements_size")
+      import
+      type(c_ptr), value :: p
+      integer(c_int64_t), value :: body
+      integer(c_int64_t), value :: first
+      integer(c_int64_t), value :: count
+      integer(c_int32_t), value :: storage
+      integer(c_int64_t), intent(out) :: nnz
+      integer(c_int32_t) :: feti_body_elements_size
+    end function feti_body_elements_size
+
+    !> Reads what the held unknowns of a body take up in the last answer: K_hf u, their rows of K times the
+    !> displacement.
+    !>
+    !> Held unknowns are those with numbers below `base` in feti_body_mesh_i32 or _i64, k for the number
+    !> `base` - 1 - k. The force is that with which the supports hold the body, but for what prescribed values
+    !> add (ke u0, which the host has moved to the load) and for loads on the held unknowns themselves, which
+    !> the host takes off. FETI_STATE for a body that was not given by its elements, and before a solve has
+    !> given an answer. After a failure nothing is written.
+    !>
+    !> @param[in]  p    (scalar) the handle
+    !> @param[in]  body (scalar) number of the body, from 0
+    !> @param[in]  n    (scalar) held unknowns that are asked for: 0 to n - 1
+    !> @param[out] r    (n) force; 0 for a number that no element has
+    !>
+    !> Safety: The array has the given shape.
+    function feti_body_held_forces(p, body, n, r) bind(C, name="feti_body_held_forces")
+      import
+      type(c_ptr), value :: p
+      integer(c_int64_t), value :: body
+      integer(c_int64_t), value :: n
+      real(c_double), intent(out) :: r(*)
+      integer(c_int32_t) :: feti_body_held_forces
+    end function feti_body_held_forces
+
+    !> Tells the piece of every unknown of a body, for pictures and for choosing option `pieces`.
+    !>
+    !> Pieces count from 0; an unknown of several pieces has the first of them. All are 0 in a body that is
+    !> not cut. FETI_STATE before its matrix, or all of its elements, have been given. After a failure nothing
+    !> is written.
+    !>
+    !> @param[in]  p     (scalar) the handle
+    !> @param[in]  body  (scalar) number of the body, from 0
+    !> @param[in]  n     (scalar) unknowns of the body
+    !> @param[out] piece (n) piece of each unknown, from 0
+    !>
+    !> Safety: The array has the given shape.
+    function feti_body_pieces(p, body, n, piece) bind(C, name="feti_body_pieces")
+      import
+      type(c_ptr), value :: p
+      integer(c_int64_t), value :: body
+      integer(c_int64_t), value :: n
+      integer(c_int64_t), intent(out) :: piece(*)
+      integer(c_int32_t) :: feti_body_pieces
+    end function feti_body_pieces
+
     !> Text of the calling thread's last error.
     !>
     !> The text is cut to fit, always NUL terminated when `cap` > 0. Returns the full length without the NUL,
@@ -901,7 +1131,8 @@ module feti_contact_c
     !> renamed when it is complete: after a failure an old file is as it was, and nothing else is left.
     !> FETI_IO with path, operation and the words of the system; FETI_UNSUPPORTED with the body where
     !> functions of the host stand for a matrix (feti_body_operator): no file holds them. Borrowed matrices
-    !> are written as they are at that moment.
+    !> are written as they are at that moment. Of a body that is cut (feti_body_mesh_i32) the pieces are
+    !> written, not the elements; FETI_STATE where elements of a body are missing.
     !>
     !> @param[in] p    (scalar) the handle
     !> @param[in] path (text) name of the file; an old one is replaced
@@ -1023,8 +1254,8 @@ module feti_contact_c
 
     !> Reads the fixing unknowns of a body: with them fixed, K has full rank.
     !>
-    !> Runs feti_setup when it is due. FETI_UNSUPPORTED where K+ is the host's (feti_body_operator). After a
-    !> failure nothing is written.
+    !> Runs feti_setup when it is due. FETI_UNSUPPORTED where K+ is the host's (feti_body_operator).
+    !> FETI_STATE for a body that is cut (feti_body_mesh_i32 or _i64). After a failure nothing is written.
     !>
     !> @param[in]  p    (scalar) the handle
     !> @param[in]  body (scalar) number of the body, from 0
@@ -2093,7 +2324,8 @@ module feti_contact_c
 
     !> Applies the generalised inverse of a body, `Y = K+ X`.
     !>
-    !> Runs feti_setup when it is due. X and Y may be the same array. After a failure nothing is written.
+    !> Runs feti_setup when it is due. X and Y may be the same array. FETI_STATE for a body that is cut
+    !> (feti_body_mesh_i32 or _i64). After a failure nothing is written.
     !>
     !> @param[in]  p    (scalar) the handle
     !> @param[in]  body (scalar) number of the body, from 0
@@ -2121,7 +2353,8 @@ module feti_contact_c
     !> Applies the dual operator, `y = F x` with `F = [B; H] K+ [B; H]' + C`.
     !>
     !> C = diag(1/k) is the compliance of the rows (feti_rows_compliance), 0 for rigid ones. Runs feti_setup
-    !> when it is due. `x` and `y` may be the same array. After a failure nothing is written.
+    !> when it is due. `x` and `y` may be the same array. FETI_STATE where a body is cut (feti_body_mesh_i32
+    !> or _i64). After a failure nothing is written.
     !>
     !> @param[in]  p (scalar) the handle
     !> @param[in]  m (scalar) inequality rows + equality rows
@@ -2140,7 +2373,8 @@ module feti_contact_c
 
     !> Reads the right-hand side of the dual problem, `d = [B; H] K+ f - [c; h]`.
     !>
-    !> Runs feti_setup when it is due. After a failure nothing is written.
+    !> Runs feti_setup when it is due. FETI_STATE where a body is cut (feti_body_mesh_i32 or _i64). After a
+    !> failure nothing is written.
     !>
     !> @param[in]  p (scalar) the handle
     !> @param[in]  m (scalar) inequality rows + equality rows

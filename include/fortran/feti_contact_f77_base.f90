@@ -21,6 +21,10 @@ module feti_contact_f77_base
   interface stiffness_split
     procedure feti_body_stiffness_split_i32, feti_body_stiffness_split_i64
   end interface
+  !> Elements, with the index arrays of the host.
+  interface mesh_of_body
+    procedure feti_body_mesh_i32, feti_body_mesh_i64
+  end interface
   !> Numbers of the host, in its INTEGER.
   interface numbering
     procedure feti_body_numbering_i32, feti_body_numbering_i64

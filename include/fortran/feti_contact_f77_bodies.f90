@@ -231,7 +231,7 @@ recursive subroutine ftbkpl(ip, ibody, n, nrhs, x, ldx, y, ldy, ierr)
   ierr = told(feti_body_kplus(handle(ip), from_zero(ibody), wide(n), wide(nrhs), x, wide(ldx), y, wide(ldy)))
 end subroutine
 
-!> A body as it is given, and what the last setup has made of it: ifact(ni), rfact(nr), positions FTBUNK to FTBSHL, FTBENT to
+!> A body as it is given, and what the last setup has made of it: ifact(ni), rfact(nr), positions FTBUNK to FTBPCE, FTBENT to
 !> FTBSRN; -1 or NaN: not there yet.
 recursive subroutine ftbinf(ip, ibody, ni, ifact, nr, rfact, ierr)
   use feti_contact_f77_base
@@ -246,7 +246,7 @@ recursive subroutine ftbinf(ip, ibody, ni, ifact, nr, rfact, ierr)
   ierr = told(feti_body_info(handle(ip), from_zero(ibody), found))
   if (ierr /= FETI_OK) return
   call give([found%unknowns, found%components, found%origin, found%null_space, found%shared_with + 1, &
-    found%explicit_operator, found%soft_free, found%soft_held], ni, ifact)
+    found%explicit_operator, found%soft_free, found%soft_held, found%pieces], ni, ifact)
   call give_reals([real(found%entries, c_double), real(found%matrix_bytes, c_double), real(found%factor_entries, c_double), &
     real(found%factor_bytes, c_double), real(found%operator_bytes, c_double), found%gap, found%force_error, found%softness, &
     found%softness_of_rounding], nr, rfact)

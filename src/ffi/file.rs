@@ -12,7 +12,8 @@ use crate::ffi::header::types::feti_problem;
 /// functions of the host. docs/file_format.md describes every byte. The file is written under another name in the same folder and
 /// renamed when it is complete: after a failure an old file is as it was, and nothing else is left. FETI_IO with path,
 /// operation and the words of the system; FETI_UNSUPPORTED with the body where functions of the host stand for a matrix
-/// (feti_body_operator): no file holds them. Borrowed matrices are written as they are at that moment.
+/// (feti_body_operator): no file holds them. Borrowed matrices are written as they are at that moment. Of a body that is cut
+/// (feti_body_mesh_i32) the pieces are written, not the elements; FETI_STATE where elements of a body are missing.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|

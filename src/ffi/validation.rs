@@ -12,7 +12,8 @@ use crate::solver::Problem;
 
 /// Applies the generalised inverse of a body, `Y = K+ X`.
 ///
-/// Runs feti_setup when it is due. X and Y may be the same array. After a failure nothing is written.
+/// Runs feti_setup when it is due. X and Y may be the same array. FETI_STATE for a body that is cut (feti_body_mesh_i32 or
+/// _i64). After a failure nothing is written.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|
@@ -61,7 +62,8 @@ pub unsafe extern "C" fn feti_body_kplus(
 
 /// Applies the dual operator, `y = F x` with `F = [B; H] K+ [B; H]' + C`.
 ///
-/// C = diag(1/k) is the compliance of the rows (feti_rows_compliance), 0 for rigid ones. Runs feti_setup when it is due. `x` and `y` may be the same array. After a failure nothing is written.
+/// C = diag(1/k) is the compliance of the rows (feti_rows_compliance), 0 for rigid ones. Runs feti_setup when it is due. `x` and `y` may be the same array.
+/// FETI_STATE where a body is cut (feti_body_mesh_i32 or _i64). After a failure nothing is written.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|
@@ -88,7 +90,8 @@ pub unsafe extern "C" fn feti_dual_apply(p: *mut feti_problem, m: i64, x: *const
 
 /// Reads the right-hand side of the dual problem, `d = [B; H] K+ f - [c; h]`.
 ///
-/// Runs feti_setup when it is due. After a failure nothing is written.
+/// Runs feti_setup when it is due. FETI_STATE where a body is cut (feti_body_mesh_i32 or _i64). After a failure nothing is
+/// written.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|

@@ -4,7 +4,7 @@ use crate::error::{Error, Kind, Result};
 use crate::mesh::connectivity::{Connectivity, Place};
 use crate::mesh::held::HeldRows;
 use crate::mesh::piece::{pieces, Piece};
-use crate::platform::memory::filled;
+use crate::platform::memory::{filled, reserved};
 
 /// How the host stores the matrices of a block of elements.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -103,6 +103,8 @@ pub struct Mesh {
     cut: Option<Cut>,
     /// Passes that are complete.
     passes: u64,
+    /// The elements are those of the host; not so of a body that came from a file.
+    elements_known: bool,
 }
 
 /// The pieces with what has been added to them.
@@ -119,7 +121,22 @@ struct Cut {
 
 impl Mesh {
     pub fn new(connectivity: Connectivity) -> Self {
-        Self { connectivity, cut: None, passes: 0 }
+        Self { connectivity, cut: None, passes: 0, elements_known: true }
+    }
+
+    /// A body of which nothing but its pieces is known, one element of the connectivity for each.
+    pub fn of_pieces(connectivity: Connectivity, pieces: Vec<Piece>) -> Result<Self> {
+        const WHAT: &str = "the pieces of a body";
+        let mut piece_of = reserved(pieces.len(), WHAT)?;
+        piece_of.extend(0..pieces.len() as u32);
+        let given = filled(pieces.len(), true, WHAT)?;
+        let cut = Cut { wanted: 0, piece_of, pieces, held: HeldRows::default(), given, missing: 0 };
+        Ok(Self { connectivity, cut: Some(cut), passes: 1, elements_known: false })
+    }
+
+    /// False where nothing but the pieces is known: no element can be added.
+    pub fn has_elements(&self) -> bool {
+        self.elements_known
     }
 
     pub fn connectivity(&self) -> &Connectivity {

@@ -21,7 +21,9 @@ impl Model {
             return Err(Error::argument("elements", what).body(body).value(0.0).limit(1.0));
         }
         let wanted = self.settings.pieces;
-        let serves = |mesh: &Mesh| mesh.wanted() == Some(wanted) && mesh.connectivity().is(order, ptr, dof);
+        let serves = |mesh: &Mesh| {
+            mesh.has_elements() && mesh.wanted() == Some(wanted) && mesh.connectivity().is(order, ptr, dof)
+        };
         if self.bodies[body].mesh.as_ref().is_some_and(serves) {
             self.bodies[body].without_matrix();
             return self.bodies[body].mesh.as_mut().map_or(Ok(()), Mesh::begin);
@@ -82,13 +84,33 @@ impl Model {
         Ok(sizes.iter().map(|n| storage.len(*n)).sum())
     }
 
+    /// Number of unknowns of an element, those that are held included.
+    pub fn size_of_element(&self, body: usize, e: usize) -> Result<usize> {
+        self.check_element(body, e, "e")?;
+        Ok(self.mesh(body)?.connectivity().size(e))
+    }
+
+    /// The body has an element with this number, the first of a block.
+    pub fn check_first_element(&self, body: usize, first: usize) -> Result<()> {
+        self.check_element(body, first, "first")
+    }
+
+    fn check_element(&self, body: usize, e: usize, argument: &'static str) -> Result<()> {
+        let elements = self.mesh(body)?.connectivity().elements();
+        if e < elements {
+            return Ok(());
+        }
+        let what = format!("the body has {elements} elements");
+        Err(Error::argument(argument, what).body(body).index(e as i64).limit(elements as f64))
+    }
+
     fn mesh(&self, body: usize) -> Result<&Mesh> {
         let missing = || {
             let what =
                 "the elements have not been given: a call of feti_body_mesh comes before their matrices";
             Error::new(Kind::State, what).body(body)
         };
-        self.given(body)?.mesh.as_ref().ok_or_else(missing)
+        self.given(body)?.mesh.as_ref().filter(|mesh| mesh.has_elements()).ok_or_else(missing)
     }
 
     fn add<'a>(
@@ -145,7 +167,7 @@ impl GivenBody {
     }
 
     /// All elements have come: the matrix of the body is that of its only piece, or the sum of those of all.
-    fn assemble(&mut self) -> Result<()> {
+    pub fn assemble(&mut self) -> Result<()> {
         self.without_matrix();
         match self.mesh.as_ref().and_then(Mesh::pieces) {
             Some([whole]) => self.body.stiffness = Some(Arc::clone(&whole.stiffness)),

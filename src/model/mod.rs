@@ -7,6 +7,7 @@ mod matrices;
 mod meshes;
 mod numbering;
 mod parts;
+mod pieces;
 mod row_sets;
 mod settings;
 mod settings_text;

@@ -6,7 +6,8 @@ use crate::body::{Assembled, Doubt, Modes};
 use crate::error::{Error, Kind, Result};
 use crate::linalg::graph;
 use crate::linalg::Symmetric;
-use crate::platform::memory::headroom;
+use crate::mesh::Mesh;
+use crate::platform::memory::{filled, headroom};
 use crate::setup::{Duals, Inverse};
 use crate::solver::decomposed::null_space_of;
 use crate::solver::problem::Problem;
@@ -150,12 +151,28 @@ impl Problem {
         parts.filter_map(|part| self.prepared.inverse(self.solved(), part))
     }
 
+    /// The piece of every unknown of a body, of several the first; 0 in a body that is not cut.
+    pub fn pieces(&self, body: usize) -> Result<Vec<u32>> {
+        const WHAT: &str = "the pieces of unknowns";
+        let missing = || Error::new(Kind::State, "the stiffness matrix has not been given").body(body);
+        let given = self.model.given(body)?;
+        if given.body.k().is_none() {
+            return Err(missing());
+        }
+        let mut piece_of = filled(given.body.order, 0, WHAT)?;
+        let pieces = given.mesh.as_ref().and_then(Mesh::pieces).unwrap_or_default();
+        for (number, piece) in pieces.iter().enumerate().rev() {
+            piece.dofs.iter().for_each(|&dof| piece_of[dof as usize] = number as u32);
+        }
+        Ok(piece_of)
+    }
+
     /// Forces that hold the held unknowns 0, 1, ... of a body given by elements, `K_hf u`, force; 0 for one that no element has.
     /// What prescribed values of held unknowns and loads on them add is for the host to say.
     pub fn held_forces(&self, body: usize, forces: &mut [f64]) -> Result<()> {
         let given = self.model.given(body)?;
         let missing = || Error::new(Kind::State, "the body was not given by its elements").body(body);
-        let mesh = given.mesh.as_ref().ok_or_else(missing)?;
+        let mesh = given.mesh.as_ref().filter(|mesh| mesh.has_elements()).ok_or_else(missing)?;
         mesh.held_forces(self.displacement(body)?, forces);
         Ok(())
     }

@@ -1,9 +1,9 @@
 # ---- bodies: values, forms of a matrix, numbering
-foreach(driver values borrow numbering)
+foreach(driver values borrow numbering elements)
   add_executable(c_${driver} c/${driver}.c)
   target_link_libraries(c_${driver} PRIVATE handover_c)
 endforeach()
-foreach(driver values numbering)
+foreach(driver values numbering elements)
   add_executable(fortran_${driver} fortran/${driver}.f90)
   set_target_properties(fortran_${driver} PROPERTIES Fortran_MODULE_DIRECTORY "${CMAKE_CURRENT_BINARY_DIR}/${driver}_modules")
   target_link_libraries(fortran_${driver} PRIVATE handover_fortran)
@@ -19,3 +19,9 @@ claim_clean("valgrind finds nothing in the C driver of new values" $<TARGET_FILE
 claim_clean("valgrind finds nothing in the C driver of borrowed values" $<TARGET_FILE:c_borrow>)
 claim_clean("valgrind finds nothing in the C driver of numbers" $<TARGET_FILE:c_numbering>)
 claim_clean("valgrind finds nothing in the Fortran driver of new and borrowed values" $<TARGET_FILE:fortran_values>)
+claim_silent("C: bodies by their elements, whole and cut, have the answer of their matrices, what is refused loses nothing"
+             $<TARGET_FILE:c_elements>)
+claim_silent("Fortran: bodies by their elements, whole and cut, have the answer of their matrices, what is refused loses nothing"
+             $<TARGET_FILE:fortran_elements>)
+claim_clean("valgrind finds nothing in the C driver of elements" $<TARGET_FILE:c_elements>)
+claim_clean("valgrind finds nothing in the Fortran driver of elements" $<TARGET_FILE:fortran_elements>)

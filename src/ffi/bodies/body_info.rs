@@ -92,5 +92,6 @@ fn record(facts: &BodyFacts) -> feti_body_facts {
         soft_held: known(factors.map(|factors| factors.soft(false))),
         softness: largest(|doubt| doubt.resisted),
         softness_of_rounding: largest(|doubt| doubt.rounding),
+        pieces: facts.pieces as i64,
     }
 }

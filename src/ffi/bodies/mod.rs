@@ -2,6 +2,7 @@
 
 mod body;
 mod body_info;
+mod elements;
 mod null_space;
 mod numbering;
 mod operator;
@@ -10,6 +11,7 @@ mod values;
 
 pub use body::*;
 pub use body_info::*;
+pub use elements::*;
 pub use null_space::*;
 pub use numbering::*;
 pub use operator::*;

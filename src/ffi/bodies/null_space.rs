@@ -103,8 +103,8 @@ pub unsafe extern "C" fn feti_body_null_space_get(
 
 /// Reads the fixing unknowns of a body: with them fixed, K has full rank.
 ///
-/// Runs feti_setup when it is due. FETI_UNSUPPORTED where K+ is the host's (feti_body_operator). After a failure
-/// nothing is written.
+/// Runs feti_setup when it is due. FETI_UNSUPPORTED where K+ is the host's (feti_body_operator). FETI_STATE for a body that is
+/// cut (feti_body_mesh_i32 or _i64). After a failure nothing is written.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|

@@ -69,6 +69,7 @@ fn detail(record: Option<&Record>) -> feti_error_detail {
         value: index.or(place.value).unwrap_or(f64::NAN),
         limit: place.limit.unwrap_or(f64::NAN),
         function,
+        element: known(place.element),
     }
 }
 

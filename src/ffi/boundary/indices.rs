@@ -41,13 +41,37 @@ pub fn base(value: i32) -> Result<i64> {
 /// # Safety
 /// `from` leads to `rows` + 1 numbers that nobody writes to during the call.
 pub unsafe fn pointers<I: Index>(from: *const I, rows: usize, base: i64) -> Result<Vec<usize>> {
+    // SAFETY: by the caller's word.
+    unsafe { positions(from, rows, base, ("row_ptr", Error::row)) }
+}
+
+/// Argument `ptr`: the same of elements.
+///
+/// # Safety
+/// As for [`pointers`].
+pub unsafe fn element_pointers<I: Index>(from: *const I, elements: usize, base: i64) -> Result<Vec<usize>> {
+    // SAFETY: by the caller's word.
+    unsafe { positions(from, elements, base, ("ptr", Error::element)) }
+}
+
+/// `named`: the argument, and where its error is.
+///
+/// # Safety
+/// As for [`pointers`].
+unsafe fn positions<I: Index>(
+    from: *const I,
+    rows: usize,
+    base: i64,
+    named: (&'static str, fn(Error, usize) -> Error),
+) -> Result<Vec<usize>> {
+    let (name, at) = named;
     // SAFETY: by the caller's word; without rows the array is not looked at.
-    let given = unsafe { input(from, if rows == 0 { 0 } else { rows + 1 }, "row_ptr") }?;
+    let given = unsafe { input(from, if rows == 0 { 0 } else { rows + 1 }, name) }?;
     let mut positions = reserved(rows + 1, "an index array")?;
     positions.push(0);
     if given.first().is_some_and(|first| first.wide() != base) {
-        let text = format!("row_ptr starts with {}, with base {base} it starts with {base}", given[0].wide());
-        return Err(Error::argument("row_ptr", text).row(0).value(given[0].wide() as f64).limit(base as f64));
+        let text = format!("{name} starts with {}, with base {base} it starts with {base}", given[0].wide());
+        return Err(at(Error::argument(name, text), 0).value(given[0].wide() as f64).limit(base as f64));
     }
     for (row, pair) in given.windows(2).enumerate() {
         let (start, end) = (pair[0].wide(), pair[1].wide());
@@ -55,8 +79,8 @@ pub unsafe fn pointers<I: Index>(from: *const I, rows: usize, base: i64) -> Resu
         match position {
             Ok(position) if end >= start && position <= isize::MAX as usize / 8 => positions.push(position),
             _ => {
-                let text = format!("row_ptr goes from {start} to {end}");
-                return Err(Error::argument("row_ptr", text).row(row).value(end as f64).limit(start as f64));
+                let text = format!("{name} goes from {start} to {end}");
+                return Err(at(Error::argument(name, text), row).value(end as f64).limit(start as f64));
             }
         }
     }

@@ -37,6 +37,8 @@ pub struct feti_error_detail {
     pub limit: f64,
     /// Name of the function that failed, NUL terminated.
     pub function: [c_char; 40],
+    /// Element of the body, -1: does not apply.
+    pub element: i64,
 }
 
 /// An option: name, text, default and range.
@@ -192,6 +194,8 @@ pub struct feti_body_facts {
     pub softness: f64,
     /// What the rounding of the entries may make of it; NaN where there are none.
     pub softness_of_rounding: f64,
+    /// Pieces that the body is cut into, once all its elements have been given; 1 for one that is not cut.
+    pub pieces: i64,
 }
 
 /// Time and memory of a phase of a setup or a solve.

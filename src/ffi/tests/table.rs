@@ -4,9 +4,10 @@ use std::ptr::{null, null_mut};
 
 use super::super::*;
 
-pub const SOURCES: [&str; 20] = [
+pub const SOURCES: [&str; 21] = [
     include_str!("../bodies/body.rs"),
     include_str!("../bodies/body_info.rs"),
+    include_str!("../bodies/elements.rs"),
     include_str!("../diagnosis.rs"),
     include_str!("../boundary/error_store.rs"),
     include_str!("../file.rs"),
@@ -54,6 +55,13 @@ pub fn statuses(p: *mut feti_problem) -> Vec<(&'static str, i32)> {
         feti_body_values(0, 0, null());
         feti_body_values_split(0, 0, null(), 0, null());
         feti_body_values_dense(0, 0, null(), 0);
+        feti_body_mesh_i32(0, 0, null(), null(), 0);
+        feti_body_mesh_i64(0, 0, null(), null(), 0);
+        feti_body_element(0, 0, 0, null(), 0);
+        feti_body_elements(0, 0, 0, null(), 0);
+        feti_body_elements_size(0, 0, 0, 0, null_mut());
+        feti_body_held_forces(0, 0, null_mut());
+        feti_body_pieces(0, 0, null_mut());
         feti_body_components(0, 0, null_mut());
         feti_body_info(0, null_mut());
         feti_body_numbering_i32(0, 0, null(), 0);

@@ -23,6 +23,7 @@ pub type Tag = [u8; 4];
 pub const OPTIONS: Tag = *b"OPTS";
 pub const BODY: Tag = *b"BODY";
 pub const STIFFNESS: Tag = *b"STIF";
+pub const PIECES: Tag = *b"PIEC";
 pub const NULL_SPACE: Tag = *b"NULL";
 pub const COORDINATES: Tag = *b"COOR";
 pub const COORDINATES_FLAGS: Tag = *b"COOF";

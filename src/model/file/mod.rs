@@ -13,6 +13,7 @@ use std::process;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use crate::error::{Error, Kind, Result};
+use crate::mesh::Mesh;
 use crate::model::bodies::SPOILED;
 use crate::model::contents::Model;
 use crate::platform::memory::reserved;
@@ -74,13 +75,18 @@ impl Model {
         self.revisions.rows += rows + 1;
     }
 
-    /// The library has all that it was given: no functions in place of a matrix, no values that were refused.
+    /// The library has all that it was given: no functions in place of a matrix, no values that were refused, no
+    /// pass over elements that has just begun.
     fn check_kept(&self) -> Result<()> {
         for (p, given) in self.bodies.iter().enumerate() {
             if given.body.operator.is_some() {
                 let what =
                     "the body is given by functions of the host (feti_body_operator): no file holds them";
                 return Err(Error::new(Kind::Unsupported, what).body(p));
+            }
+            if let Some(element) = given.mesh.as_ref().and_then(Mesh::first_missing) {
+                let what = "the matrix of this element has not been given: no file holds a part of a body";
+                return Err(Error::new(Kind::State, what).body(p).element(element));
             }
             if given.spoiled {
                 return Err(Error::new(Kind::State, SPOILED).body(p));

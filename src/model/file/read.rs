@@ -7,10 +7,12 @@ use crate::constraints::{RowKind, RowsInput};
 use crate::error::{Error, Kind, Result};
 use crate::model::contents::Model;
 use crate::model::file::format::{
-    Tag, BODY, COORDINATES, COORDINATES_FLAGS, FIXING, LOAD, NULL_SPACE, NUMBERING, OPTIONS, ROWS, STIFFNESS,
+    Tag, BODY, COORDINATES, COORDINATES_FLAGS, FIXING, LOAD, NULL_SPACE, NUMBERING, OPTIONS, PIECES, ROWS,
+    STIFFNESS,
 };
 use crate::model::file::input::{saturated, Input, OpenSection};
 use crate::model::file::write::{CANDIDATES, EQUALITY, EXACT, INEQUALITY, SOFT};
+use crate::model::pieces::PiecesInput;
 use crate::platform::memory::reserved;
 
 /// Reads a problem of `length` bytes.
@@ -36,6 +38,7 @@ enum SectionContent {
     Options(String),
     Body { n: usize },
     Stiffness { ptr: Vec<usize>, col: Vec<i64>, val: Vec<f64> },
+    Pieces(PiecesInput),
     NullSpace { n: usize, r: usize, modes: Modes, basis: Vec<f64> },
     Coordinates { places: Vec<f64>, directions: Vec<i32> },
     CoordinatesFlags { soft: bool },
@@ -61,6 +64,7 @@ impl SectionContent {
             OPTIONS => Self::Options(input.text(open)?),
             BODY => Self::Body { n: input.size(open)? },
             STIFFNESS => Self::stiffness(input, open)?,
+            PIECES => Self::pieces(input, open)?,
             NULL_SPACE => Self::null_space(input, open)?,
             COORDINATES => {
                 let n = input.size(open)?;
@@ -85,6 +89,19 @@ impl SectionContent {
         let val = input.reals(open, entries)?;
         let col = input.array(open, entries, |bytes| i64::from(u32::from_le_bytes(bytes)))?;
         Ok(Self::Stiffness { ptr, col, val })
+    }
+
+    fn pieces<R: Read>(input: &mut Input<R>, open: &mut OpenSection) -> Result<Self> {
+        let (pieces, rows, entries) = (input.size(open)?, input.size(open)?, input.size(open)?);
+        if pieces == 0 {
+            return Err(input.wrong(open, "a body has at least one piece"));
+        }
+        let first = input.pointers(open, pieces, rows)?;
+        let dof = input.array(open, rows, i64::from_le_bytes)?;
+        let ptr = input.pointers(open, rows, entries)?;
+        let val = input.reals(open, entries)?;
+        let col = input.array(open, entries, u32::from_le_bytes)?;
+        Ok(Self::Pieces(PiecesInput { first, dof, ptr, col, val }))
     }
 
     fn null_space<R: Read>(input: &mut Input<R>, open: &mut OpenSection) -> Result<Self> {
@@ -128,8 +145,13 @@ impl SectionContent {
                 model.add_body(n).map(drop)
             }
             Self::Stiffness { ptr, col, val } => {
+                known.not_with(PIECES)?;
                 let lower = SparseInput { ptr: &ptr, col: &col, val: &val, storage: Storage::Lower };
                 model.set_stiffness(body, lower)
+            }
+            Self::Pieces(given) => {
+                known.not_with(STIFFNESS)?;
+                model.set_pieces(body, &given)
             }
             Self::NullSpace { n, r, modes, basis } => model.set_null_space(body, n, r, &basis, n, modes),
             // of the labels of the nodes nothing is kept
@@ -169,6 +191,14 @@ impl Offsets {
             return Err(Error::new(Kind::Io, "this comes twice").body(self.ends.len() - 1));
         }
         self.seen.push(tag);
+        Ok(())
+    }
+
+    /// K has come in one way alone.
+    fn not_with(&self, other: Tag) -> Result<()> {
+        if self.seen.contains(&other) {
+            return Err(Error::new(Kind::Io, "the body has a matrix and pieces").body(self.ends.len() - 1));
+        }
         Ok(())
     }
 

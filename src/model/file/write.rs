@@ -4,10 +4,11 @@ use std::io::{self, Write};
 
 use crate::body::Modes;
 use crate::constraints::{RowKind, RowSet};
+use crate::mesh::{Mesh, Piece as MeshPiece};
 use crate::model::contents::{GivenBody, Model};
 use crate::model::file::format::{
     self, padding, section_length, Crc, Tag, BODY, COORDINATES, COORDINATES_FLAGS, FIXING, FORMAT, HEADER,
-    LOAD, MAGIC, NULL_SPACE, NUMBERING, OPTIONS, ROWS, STIFFNESS,
+    LOAD, MAGIC, NULL_SPACE, NUMBERING, OPTIONS, PIECES, ROWS, STIFFNESS,
 };
 
 /// Numbers of the format.
@@ -24,7 +25,11 @@ const BLOCK: usize = 8192;
 enum Piece<'a> {
     Number(u64),
     Numbers(&'a [usize]),
+    /// These numbers with another one added to each.
+    Shifted(&'a [usize], usize),
     Columns(&'a [u32]),
+    /// Unknowns, 8 bytes each.
+    Dofs(&'a [u32]),
     Directions(&'a [i32]),
     Reals(&'a [f64]),
     Text(String),
@@ -40,6 +45,8 @@ impl Piece<'_> {
         let bytes = match self {
             Self::Number(_) => 8,
             Self::Numbers(numbers) => 8 * numbers.len(),
+            Self::Shifted(numbers, _) => 8 * numbers.len(),
+            Self::Dofs(dofs) => 8 * dofs.len(),
             Self::Columns(columns) => 4 * columns.len(),
             Self::Directions(directions) => 4 * directions.len(),
             Self::Reals(reals) => 8 * reals.len(),
@@ -52,6 +59,8 @@ impl Piece<'_> {
         match self {
             Self::Number(number) => out.write_all(&number.to_le_bytes()),
             Self::Numbers(numbers) => blocks(numbers, |number| (*number as u64).to_le_bytes(), out),
+            Self::Shifted(numbers, by) => blocks(numbers, |number| ((number + by) as u64).to_le_bytes(), out),
+            Self::Dofs(dofs) => blocks(dofs, |dof| u64::from(*dof).to_le_bytes(), out),
             Self::Columns(columns) => blocks(columns, |column| column.to_le_bytes(), out),
             Self::Directions(directions) => blocks(directions, |direction| direction.to_le_bytes(), out),
             Self::Reals(reals) => blocks(reals, |real| real.to_le_bytes(), out),
@@ -152,6 +161,7 @@ fn of_body(given: &GivenBody) -> impl Iterator<Item = Section<'_>> {
         let arrays = [Numbers(&k.ptr), Reals(&k.val), Columns(&k.col)];
         Section { tag: STIFFNESS, pieces: sizes.into_iter().chain(arrays).collect() }
     });
+    let pieces = body.assembled.as_ref().and(given.mesh.as_ref()).and_then(Mesh::pieces).map(of_pieces);
     let null_space = body.null_space.as_ref().map(|r| {
         let modes = match r.modes {
             Modes::Exact => EXACT,
@@ -170,7 +180,29 @@ fn of_body(given: &GivenBody) -> impl Iterator<Item = Section<'_>> {
     let fixing = body.fixing.as_ref().map(|dofs| unknowns(FIXING, dofs));
     let load = body.load.as_ref().map(|f| Section { tag: LOAD, pieces: vec![count(f.len()), Reals(f)] });
     let numbering = given.numbers.as_ref().map(|numbers| unknowns(NUMBERING, numbers));
-    [order, stiffness, null_space, coordinates, flags, fixing, load, numbering].into_iter().flatten()
+    [order, stiffness, pieces, null_space, coordinates, flags, fixing, load, numbering].into_iter().flatten()
+}
+
+/// Numbers of unknowns, pieces, their unknowns, their entries; first unknown of each; unknowns; rows; values; columns.
+fn of_pieces(of: &[MeshPiece]) -> Section<'_> {
+    use Piece::{Columns, Dofs, Number, Reals, Shifted};
+    let ends = |size: fn(&MeshPiece) -> usize| {
+        of.iter().scan(0, move |end, piece| {
+            *end += size(piece);
+            Some(*end)
+        })
+    };
+    let (rows, entries) = (|p: &MeshPiece| p.dofs.len(), |p: &MeshPiece| p.stiffness.val.len());
+    let last = |size| ends(size).last().unwrap_or(0) as u64;
+    let mut pieces = vec![Number(of.len() as u64), Number(last(rows)), Number(last(entries)), Number(0)];
+    pieces.extend(ends(rows).map(|end| Number(end as u64)));
+    pieces.extend(of.iter().map(|piece| Dofs(&piece.dofs)));
+    pieces.push(Number(0));
+    let begins = std::iter::once(0).chain(ends(entries));
+    pieces.extend(of.iter().zip(begins).map(|(piece, begin)| Shifted(&piece.stiffness.ptr[1..], begin)));
+    pieces.extend(of.iter().map(|piece| Reals(&piece.stiffness.val)));
+    pieces.extend(of.iter().map(|piece| Columns(&piece.stiffness.col)));
+    Section { tag: PIECES, pieces }
 }
 
 fn unknowns(tag: Tag, numbers: &[usize]) -> Section<'_> {

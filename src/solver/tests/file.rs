@@ -1,6 +1,7 @@
 //! Round trips, truncated, changed and hostile files.
 
 mod given;
+mod pieces;
 
 use crate::error::{Error, Kind};
 use crate::model::file::format::{padding, Crc, FORMAT, HEADER, LOAD, MAGIC};

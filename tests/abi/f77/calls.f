@@ -16,6 +16,7 @@ C     Every subroutine of the face with status 0, its result compared.
       CALL HOLDS(IP .EQ. 0, 'FTFREE leaves IP')
       CALL PLACES
       CALL KEPT
+      CALL ELEMS
       END
 
 C     Options, names, version.

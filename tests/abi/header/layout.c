@@ -9,7 +9,7 @@
 #define OFFSET(type, member, bytes) \
     _Static_assert(offsetof(type, member) == (bytes), "offset of " #type "." #member)
 
-SIZE(feti_error_detail, 112);
+SIZE(feti_error_detail, 120);
 OFFSET(feti_error_detail, struct_size, 0);
 OFFSET(feti_error_detail, status, 8);
 OFFSET(feti_error_detail, argument, 12);
@@ -18,6 +18,7 @@ OFFSET(feti_error_detail, entry, 48);
 OFFSET(feti_error_detail, value, 56);
 OFFSET(feti_error_detail, limit, 64);
 OFFSET(feti_error_detail, function, 72);
+OFFSET(feti_error_detail, element, 112);
 
 SIZE(feti_option, 72);
 OFFSET(feti_option, struct_size, 0);
@@ -102,7 +103,7 @@ OFFSET(feti_findings, doubtful_body, 160);
 OFFSET(feti_findings, soft_bodies, 168);
 OFFSET(feti_findings, soft_body, 176);
 
-SIZE(feti_body_facts, 152);
+SIZE(feti_body_facts, 160);
 OFFSET(feti_body_facts, struct_size, 0);
 OFFSET(feti_body_facts, unknowns, 8);
 OFFSET(feti_body_facts, borrowed, 40);
@@ -114,6 +115,7 @@ OFFSET(feti_body_facts, soft_free, 120);
 OFFSET(feti_body_facts, soft_held, 128);
 OFFSET(feti_body_facts, softness, 136);
 OFFSET(feti_body_facts, softness_of_rounding, 144);
+OFFSET(feti_body_facts, pieces, 152);
 
 struct layout {
     const char *type;
@@ -121,14 +123,14 @@ struct layout {
 };
 
 static const struct layout in_c[] = {
-    {"feti_error_detail", sizeof(feti_error_detail), offsetof(feti_error_detail, function)},
+    {"feti_error_detail", sizeof(feti_error_detail), offsetof(feti_error_detail, element)},
     {"feti_option", sizeof(feti_option), offsetof(feti_option, default_str)},
     {"feti_info", sizeof(feti_info), offsetof(feti_info, operator_bytes)},
     {"feti_certificate", sizeof(feti_certificate), offsetof(feti_certificate, complementarity_row)},
     {"feti_progress", sizeof(feti_progress), offsetof(feti_progress, fraction)},
     {"feti_findings", sizeof(feti_findings), offsetof(feti_findings, soft_body)},
     {"feti_phase", sizeof(feti_phase), offsetof(feti_phase, name)},
-    {"feti_body_facts", sizeof(feti_body_facts), offsetof(feti_body_facts, softness_of_rounding)},
+    {"feti_body_facts", sizeof(feti_body_facts), offsetof(feti_body_facts, pieces)},
 };
 enum { TYPES = sizeof in_c / sizeof in_c[0] };
 

@@ -1,0 +1,250 @@
+!> 14 A block by its elements, cut into pieces by the library.
+!>
+!> A block of 1 m x 1 m x 1 m (E = 2.1e5 MN/m^2, nu = .3) is clamped on its face x = 0; 10 MN on its top press it onto a rigid,
+!> slightly curved obstacle below it. The host has an assembly loop and equation numbers, in which held unknowns are 0, -1, ...,
+!> and no sparse matrix: it hands over one element after the other.
+!>
+!> Solved twice: cut into eight pieces (option pieces), and as a whole. Displacements are the same; the forces of the clamp,
+!> which feti_body_held_forces tells, and those of the obstacle balance the load.
+program block_by_elements
+  use demo, only: demo_error, demo_line, demo_stop, demo_value, picture_folder
+  use feti_contact
+  implicit none
+  integer, parameter :: dp = kind(1.0d0)
+  integer, parameter :: n = 10, line = n + 1, nodes = line**3, elements = n**3, own = 24
+
+  !> Answer of one solve: u by equations, forces of the rows on the nodes of the bottom, of the clamp, piece of every equation.
+  type :: answer
+    real(dp), allocatable :: u(:), contact(:), clamp(:)
+    integer, allocatable :: piece(:)
+    integer :: pieces
+    type(feti_info) :: info
+  end type
+
+  integer :: equation(3, nodes), unknowns, held
+  type(answer) :: cut, whole
+  real(dp) :: contact, clamp
+  integer :: a, d
+
+  unknowns = 0
+  held = 0
+  do a = 1, nodes
+    do d = 1, 3
+      if (mod(a - 1, line) == 0) then
+        equation(d, a) = -held
+        held = held + 1
+      else
+        unknowns = unknowns + 1
+        equation(d, a) = unknowns
+      end if
+    end do
+  end do
+  call solve(8, cut)
+  call solve(1, whole)
+
+  contact = sum(cut%contact)
+  clamp = sum(cut%clamp(3::3)) ! the held unknowns of a node are x, y, z
+  call demo_value('elements', real(elements, dp), '-')
+  call demo_value('held unknowns', real(held, dp), '-')
+  call demo_value('pieces', real(cut%pieces, dp), '-')
+  call demo_value('pieces of the whole block', real(whole%pieces, dp), '-')
+  call demo_value('load', -10.0_dp, 'MN')
+  call demo_value('force of the obstacle', contact, 'MN')
+  call demo_value('force of the clamp', clamp, 'MN')
+  call demo_value('nodes in contact', real(count(cut%contact > 1e-6_dp), dp), '-')
+  call demo_value('largest settlement', -1e6_dp * minval([(at(cut%u, a, 3), a = 1, nodes)]), 'um')
+  call draw(picture_folder(), cut)
+  call demo_line('14_block_by_elements', cut%info, demo_error(cut%u, whole%u), whole%info%status == FETI_OK .and. &
+    cut%pieces == 8 .and. whole%pieces == 1 .and. abs(contact + clamp - 10) <= 1e-6_dp)
+
+contains
+
+  !> Node (i, j, k) of the block, i, j, k from 0.
+  pure integer function node(i, j, k)
+    integer, intent(in) :: i, j, k
+
+    node = i + line * (j + line * k) + 1
+  end function
+
+  !> Its place, m.
+  pure function place(a) result(x)
+    integer, intent(in) :: a
+    real(dp) :: x(3)
+
+    x = real([mod(a - 1, line), mod((a - 1) / line, line), (a - 1) / line**2], dp) / n
+  end function
+
+  !> Corner c of element e; it lies at bit 0, 1, 2 of c along x, y, z.
+  pure integer function corner(e, c)
+    integer, intent(in) :: e, c
+
+    corner = node(mod(e - 1, n) + ibits(c, 0, 1), mod((e - 1) / n, n) + ibits(c, 1, 1), (e - 1) / n**2 + ibits(c, 2, 1))
+  end function
+
+  !> Stiffness of a cube of edge 1 / n, 2 x 2 x 2 Gauss points.
+  pure subroutine element(ke)
+    real(dp), intent(out) :: ke(own, own)
+    real(dp), parameter :: young = 2.1e5_dp, nu = 0.3_dp
+    real(dp), parameter :: mu = young / (2 * (1 + nu)), la = young * nu / ((1 + nu) * (1 - 2 * nu))
+    real(dp), parameter :: weight = 1 / (8.0_dp * n)
+    real(dp) :: g(3, 0:7), k
+    integer :: point, c, a, b, p, q
+
+    ke = 0
+    do point = 0, 7
+      do c = 0, 7
+        do a = 0, 2
+          g(a + 1, c) = 2 * ibits(c, a, 1) - 1
+          do b = 0, 2
+            if (b /= a) g(a + 1, c) = g(a + 1, c) * 0.5_dp * (1 + merge(1, -1, ibits(c, b, 1) == ibits(point, b, 1)) / sqrt(3.0_dp))
+          end do
+        end do
+      end do
+      do q = 0, own - 1
+        do p = 0, own - 1
+          associate (a => g(:, p / 3), b => g(:, q / 3))
+            k = la * a(mod(p, 3) + 1) * b(mod(q, 3) + 1) + mu * a(mod(q, 3) + 1) * b(mod(p, 3) + 1)
+            if (mod(p, 3) == mod(q, 3)) k = k + mu * (a(1) * b(1) + a(2) * b(2) + a(3) * b(3))
+          end associate
+          ke(p + 1, q + 1) = ke(p + 1, q + 1) + weight * k
+        end do
+      end do
+    end do
+  end subroutine
+
+  !> Where every equation is: the cut and the rigid motions of the pieces follow from it.
+  subroutine give_coordinates(problem, body)
+    type(feti_problem), intent(in) :: problem
+    integer, intent(in) :: body
+    integer :: label(unknowns), dir(unknowns), a, d
+    real(dp) :: xyz(3, unknowns)
+
+    do a = 1, nodes
+      do d = 1, 3
+        if (equation(d, a) < 1) cycle
+        label(equation(d, a)) = a
+        dir(equation(d, a)) = d
+        xyz(:, equation(d, a)) = place(a)
+      end do
+    end do
+    call feti_body_coordinates(problem, body, label, dir, xyz)
+  end subroutine
+
+  !> Equations of the 24 unknowns of every element, then its matrix: the assembly loop of the host.
+  subroutine give_elements(problem, body)
+    type(feti_problem), intent(in) :: problem
+    integer, intent(in) :: body
+    integer :: ptr(elements + 1), e, c
+    integer, allocatable :: dof(:)
+    real(dp) :: ke(own, own)
+
+    allocate (dof(own * elements))
+    ptr = [(own * e + 1, e = 0, elements)]
+    do e = 1, elements
+      do c = 0, 7
+        dof(ptr(e) + 3 * c:ptr(e) + 3 * c + 2) = equation(:, corner(e, c))
+      end do
+    end do
+    call feti_body_mesh(problem, body, ptr, dof)
+    do e = 1, elements
+      call element(ke)
+      call feti_body_element(problem, body, e, ke)
+    end do
+  end subroutine
+
+  !> 10 MN down, on the nodes of the top that are free; rows -u_z <= gap on those of the bottom. Held nodes have neither.
+  subroutine give_load_and_obstacle(problem, body)
+    type(feti_problem), intent(in) :: problem
+    integer, intent(in) :: body
+    real(dp) :: load(unknowns), gap
+    integer :: i, j
+
+    load = 0
+    do j = 0, n
+      do i = 1, n
+        gap = 1e-5_dp + 1e-4_dp * ((real(i, dp) / n - 0.7_dp)**2 + (real(j, dp) / n - 0.5_dp)**2)
+        load(equation(3, node(i, j, n))) = -10.0_dp / (n * line)
+        call feti_rows_add(problem, FETI_INEQUALITY, [1, 2], [body], [equation(3, node(i, j, 0))], [-1.0_dp], [gap])
+      end do
+    end do
+    call feti_body_load(problem, body, load)
+  end subroutine
+
+  subroutine solve(pieces, found)
+    integer, intent(in) :: pieces
+    type(answer), intent(out) :: found
+    type(feti_problem) :: problem
+    type(feti_body_facts) :: facts
+    integer :: body
+
+    allocate (found%u(unknowns), found%contact(n * line), found%clamp(held), found%piece(unknowns))
+    call feti_problem_create(problem)
+    call feti_set(problem, 'pieces', pieces)
+    call feti_body_add(problem, unknowns, body)
+    call give_coordinates(problem, body)
+    call give_elements(problem, body)
+    call give_load_and_obstacle(problem, body)
+    call feti_solve(problem, found%info)
+    call feti_displacement(problem, body, found%u)
+    call feti_multipliers(problem, FETI_INEQUALITY, found%contact)
+    call feti_body_held_forces(problem, body, found%clamp)
+    call feti_body_info(problem, body, facts)
+    call feti_body_pieces(problem, body, found%piece)
+    found%pieces = int(facts%pieces)
+    call feti_problem_destroy(problem)
+  end subroutine
+
+  !> Value of unknown d of node a, 0 where it is held.
+  pure real(dp) function at(u, a, d)
+    real(dp), intent(in) :: u(:)
+    integer, intent(in) :: a, d
+
+    at = 0
+    if (equation(d, a) > 0) at = u(equation(d, a))
+  end function
+
+  !> The deformed block as legacy VTK: displacement, contact force and piece of every node; the clamp is in no piece, 0.
+  subroutine draw(folder, found)
+    character(len=*), intent(in) :: folder
+    type(answer), intent(in) :: found
+    integer, parameter :: around(8) = [0, 1, 3, 2, 4, 5, 7, 6] ! VTK goes around the bottom, then around the top
+    integer :: unit, status, a, c, d, e, piece, j
+    real(dp) :: force(0:n, nodes / line)
+
+    open (newunit=unit, file=folder // '/block_in_pieces_fortran.vtk', action='write', status='replace', iostat=status)
+    if (status /= 0) call demo_stop('the picture cannot be written')
+    write (unit, '(a)') '# vtk DataFile Version 3.0', 'a block in pieces', 'ASCII', 'DATASET UNSTRUCTURED_GRID'
+    write (unit, '(a, i0, a)') 'POINTS ', nodes, ' double'
+    do a = 1, nodes
+      write (unit, '(3es17.8e3)') place(a) + [(at(found%u, a, d), d = 1, 3)]
+    end do
+    write (unit, '(a, 2(1x, i0))') 'CELLS', elements, 9 * elements
+    do e = 1, elements
+      write (unit, '(9(i0, 1x))') 8, (corner(e, around(c)) - 1, c = 1, 8)
+    end do
+    write (unit, '(a, i0)') 'CELL_TYPES ', elements
+    write (unit, '(i0)') (12, e = 1, elements)
+    write (unit, '(a, i0)') 'POINT_DATA ', nodes
+    write (unit, '(a)') 'VECTORS displacement double'
+    do a = 1, nodes
+      write (unit, '(3es17.8e3)') (at(found%u, a, d), d = 1, 3)
+    end do
+    write (unit, '(a)') 'VECTORS contact_force double'
+    force = 0 ! line by line of nodes, the first `line` of which are those of the bottom
+    do j = 1, line
+      force(1:, j) = found%contact(n * (j - 1) + 1:n * j)
+    end do
+    do j = 1, size(force, 2)
+      write (unit, '(3es17.8e3)') (0.0_dp, 0.0_dp, force(d, j), d = 0, n)
+    end do
+    write (unit, '(a)') 'SCALARS piece int 1', 'LOOKUP_TABLE default'
+    do a = 1, nodes
+      piece = 0
+      if (equation(1, a) > 0) piece = found%piece(equation(1, a))
+      write (unit, '(i0)') piece
+    end do
+    close (unit)
+    print '(3a)', 'picture ', folder, '/block_in_pieces_fortran.vtk'
+  end subroutine
+
+end program
