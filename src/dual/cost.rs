@@ -16,7 +16,7 @@ use crate::linalg::Packed;
 /// Products with F of a solve and some load steps.
 const PRODUCTS: f64 = 50.0;
 const REACH: f64 = 0.4;
-const RATE: f64 = 2.0;
+const RATE: f64 = 8.0;
 
 /// What a body and its F_p are measured by.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]

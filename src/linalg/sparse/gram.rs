@@ -2,7 +2,7 @@
 
 use crate::error::Result;
 use crate::linalg::{Csr, Symmetric};
-use crate::platform::memory::{copied, headroom, zeros};
+use crate::platform::memory::{copied, filled, headroom, zeros};
 
 /// Bytes per product of two entries of a row, and per row and column, while their lists grow.
 const PER_PRODUCT: usize = 24;
@@ -22,17 +22,14 @@ impl Gram {
         let products = rows.ptr.windows(2).map(|row| (row[1] - row[0]).pow(2)).sum::<usize>();
         let lists = products.saturating_mul(PER_PRODUCT);
         let _room = headroom(lists.saturating_add((rows.rows() + rows.cols) * PER_ROW), "a Gram matrix")?;
-        let pattern = pattern(rows)?;
-        let (mut ptr, mut position) = (vec![0], Vec::new());
-        for i in 0..rows.rows() {
-            for (k, _) in rows.row(i) {
-                let row = &pattern.col[pattern.ptr[k]..pattern.ptr[k + 1]];
-                for (l, _) in rows.row(i).take_while(|(l, _)| *l <= k) {
-                    position.push((pattern.ptr[k] + row.partition_point(|&col| (col as usize) < l)) as u32);
-                }
-            }
-            ptr.push(position.len());
+        let by_column = rows.transposed()?;
+        let pattern = pattern(rows, &by_column)?;
+        let mut ptr = vec![0];
+        for row in rows.ptr.windows(2) {
+            let entries = row[1] - row[0];
+            ptr.push(ptr[ptr.len() - 1] + entries * (entries + 1) / 2);
         }
+        let position = positions(rows, &by_column, &pattern, &ptr)?;
         Ok(Self { pattern, ptr, position })
     }
 
@@ -73,8 +70,7 @@ impl Gram {
 }
 
 /// Lower triangle of the columns that meet in some row, with zeros.
-fn pattern(rows: &Csr) -> Result<Symmetric> {
-    let by_column = rows.transposed()?;
+fn pattern(rows: &Csr, by_column: &Csr) -> Result<Symmetric> {
     let (mut ptr, mut col, mut seen) = (vec![0], Vec::new(), vec![usize::MAX; rows.cols]);
     for k in 0..rows.cols {
         let start = col.len();
@@ -93,6 +89,24 @@ fn pattern(rows: &Csr) -> Result<Symmetric> {
     }
     let val = zeros(col.len(), "a Gram matrix")?;
     Ok(Symmetric::new(ptr, col, val))
+}
+
+/// Where the products of the entries of each row go, column by column: the row of the pattern is spread out once for all rows that
+/// meet it.
+fn positions(rows: &Csr, by_column: &Csr, pattern: &Symmetric, ptr: &[usize]) -> Result<Vec<u32>> {
+    let mut position = filled(ptr[rows.rows()], 0, "a Gram matrix")?;
+    // place of a column in the present row of the pattern, entries of each row that are done
+    let (mut place, mut done) = (vec![0; rows.cols], vec![0; rows.rows()]);
+    for k in 0..rows.cols {
+        (pattern.ptr[k]..pattern.ptr[k + 1]).for_each(|at| place[pattern.col[at] as usize] = at as u32);
+        for (i, _) in by_column.row(k) {
+            let first = ptr[i] + done[i] * (done[i] + 1) / 2;
+            done[i] += 1;
+            let columns = rows.row(i).map(|(l, _)| l).take(done[i]);
+            columns.zip(&mut position[first..]).for_each(|(l, at)| *at = place[l]);
+        }
+    }
+    Ok(position)
 }
 
 #[cfg(test)]

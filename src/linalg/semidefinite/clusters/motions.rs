@@ -12,6 +12,8 @@ const MOVES: f64 = 1e-9;
 const CORRECTIONS: usize = 8;
 /// The first ones are made on what is eliminated before the unknown held: a free motion moves nothing else.
 const BELOW: usize = 2;
+/// What moves one unknown in so many is seen row by row.
+const MANY: usize = 8;
 /// Entries of a motion below this part of its largest are rounding.
 const ROUNDING: f64 = 0.25 * f64::EPSILON;
 
@@ -196,6 +198,17 @@ impl<'a> Images<'a> {
     fn of(&mut self, n: &[f64], unknowns: &[usize]) -> f64 {
         let Self { turned, by_column, along, resisting, seen } = self;
         resisting.drain(..).for_each(|i| along[i] = 0.0);
+        if MANY * unknowns.len() > n.len() {
+            // row by row G_F'T is read in the order in which it lies
+            for i in 0..along.len() {
+                let mut entries = turned.row(i).filter(|(k, v)| *v != 0.0 && n[*k] != 0.0).peekable();
+                if entries.peek().is_some() {
+                    along[i] = entries.map(|(k, v)| v * n[k]).sum();
+                    resisting.push(i);
+                }
+            }
+            return length(along, resisting);
+        }
         for &k in unknowns {
             for (i, at) in by_column.column(k).filter(|(_, at)| turned.val[*at] != 0.0) {
                 along[i] += turned.val[at] * n[k];
