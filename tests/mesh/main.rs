@@ -61,7 +61,7 @@ fn the_host_sees_its_bodies_and_not_their_pieces() {
     wrong[u.len() - 1] += 1e-4 * u.iter().fold(0.0, |most: f64, u| most.max(u.abs()));
     assert!(!cut.check(&wrong, &lambda, &[]).unwrap().passed());
     for refused in [
-        cut.kplus(1, &u[..u.len() - 450].to_vec(), &mut []).is_err(),
+        cut.kplus(1, &u[..u.len() - 450], &mut []).is_err(),
         cut.dual_rhs(&mut vec![0.0; lambda.len()]).is_err(),
     ] {
         assert!(refused);

@@ -50,7 +50,7 @@ fn layers_of_very_different_stiffness() {
             let mut mesh = cube(4, low);
             for (e, nodes) in mesh.elements.iter().enumerate() {
                 let layer = (4.0 * (mesh.nodes[nodes[0]][2] - low)).round() as usize;
-                mesh.young[e] = if layer % 2 == 0 { 1.0 } else { contrast };
+                mesh.young[e] = if layer.is_multiple_of(2) { 1.0 } else { contrast };
             }
             mesh
         };

@@ -22,9 +22,9 @@ use incidence::{Incidence, NONE, WHAT};
 use sections::sections;
 
 /// Bodies with fewer unknowns are not worth a cut.
-const WORTH: usize = 40_000;
+const WORTH: usize = 60_000;
 /// Unknowns of a piece.
-const PIECE: usize = 1000;
+const PIECE: f64 = 1100.0;
 /// Times that what has come loose of a piece is looked for.
 const MENDINGS: usize = 4;
 
@@ -35,12 +35,12 @@ pub struct Elements<'a> {
     pub unknowns: usize,
 }
 
-/// How many pieces a body of so many unknowns is cut into, 1: none.
+/// How many pieces a body of so many unknowns is cut into, 1: none. A cube is cut as often along each edge.
 pub fn pieces_for(unknowns: usize) -> usize {
     if unknowns < WORTH {
         1
     } else {
-        unknowns / PIECE
+        ((unknowns as f64 / PIECE).cbrt().round() as usize).pow(3)
     }
 }
 
