@@ -164,6 +164,11 @@ impl<'a> Coarse<'a> {
 
     /// `argmin |v_F - G_F'alpha|`, alpha of minimum norm.
     pub fn multiplier(&mut self, held: &[bool], v: &[f64]) -> Result<Vec<f64>> {
+        Ok(self.fitted(held, v)?.0)
+    }
+
+    /// `alpha = argmin |v_F - G_F'alpha|` of minimum norm, and what is left of v on F, 0 on the rows that are held.
+    pub fn fitted(&mut self, held: &[bool], v: &[f64]) -> Result<(Vec<f64>, Vec<f64>)> {
         /// Rounding of `G_F v` is large against what weakly held motions have of it; of what is left of v it is not.
         const PASSES: usize = 3;
         /// Rest of `G_F (v - G'alpha)` times the inverse root of the smallest eigenvalue of W_F to be expected, r in a chain of r
@@ -174,17 +179,20 @@ impl<'a> Coarse<'a> {
         let mut image = g_transposed.mul_transposed(&rest);
         let mut face = self.on(held)?;
         let mut alpha = face.solve(&image)?;
-        for _ in 1..PASSES {
+        for pass in 1.. {
+            image.fill(0.0);
+            // every row of G' is read once for both
             for i in (0..v.len()).filter(|&i| !held[i]) {
                 rest[i] = v[i] - g_transposed.row_dot(i, &alpha);
+                g_transposed.row(i).for_each(|(k, g)| image[k] += rest[i] * g);
             }
-            image = g_transposed.mul_transposed(&rest);
-            if !face.is_weak() && amplified * norm(&image) <= ERROR * unit * norm(&rest) {
+            let known = !face.is_weak() && amplified * norm(&image) <= ERROR * unit * norm(&rest);
+            if known || pass == PASSES {
                 break;
             }
             axpy(1.0, &face.solve(&image)?, &mut alpha);
         }
-        Ok(alpha)
+        Ok((alpha, rest))
     }
 
     /// `G x`
@@ -194,13 +202,10 @@ impl<'a> Coarse<'a> {
 
     /// `v <- P_F v`: held entries to zero, then `v_F - G_F' W_F+ G_F v_F`.
     pub fn project(&mut self, held: &[bool], v: &mut [f64]) -> Result<()> {
-        v.iter_mut().zip(held).filter(|(_, held)| **held).for_each(|(v, _)| *v = 0.0);
         if self.dimension() == 0 {
-            return Ok(());
-        }
-        let alpha = self.multiplier(held, v)?;
-        for i in (0..v.len()).filter(|&i| !held[i]) {
-            v[i] -= self.g_transposed.row_dot(i, &alpha);
+            v.iter_mut().zip(held).filter(|(_, held)| **held).for_each(|(v, _)| *v = 0.0);
+        } else {
+            v.copy_from_slice(&self.fitted(held, v)?.1);
         }
         Ok(())
     }

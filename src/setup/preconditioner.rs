@@ -18,6 +18,9 @@ use crate::setup::ready::Ready;
 /// subdomains it saves a hundred products and takes the time of 3e4 operations for each row to set up; on two bodies in
 /// contact it saves few.
 const LUMPED_PAYS: usize = 300;
+/// The same where most rows are glue: a step costs some 2000 operations for each row beside the product, in the coarse problem and
+/// the vectors, and half of the steps are saved.
+const LUMPED_PAYS_ON_GLUE: usize = 50;
 
 /// `scale` times the stiffness of the constrained dofs of a body.
 type BoundaryStiffness = fn(&Symmetric, f64, &[usize]) -> Result<Box<dyn Operator + Send>>;
@@ -59,12 +62,17 @@ fn wanted(model: &Model, ready: &Ready) -> Preconditioning {
     let of_host = |&p: &usize| model.bodies[p].body.operator.is_some();
     match model.settings.preconditioner {
         Preconditioning::Automatic if ready.island.bodies.iter().all(of_host) => Preconditioning::None,
-        Preconditioning::Automatic if ready.dual.product_work() > LUMPED_PAYS * ready.rows.matrix.rows() => {
-            Preconditioning::Lumped
-        }
+        Preconditioning::Automatic if lumped_pays(ready) => Preconditioning::Lumped,
         Preconditioning::Automatic => Preconditioning::None,
         asked => asked,
     }
+}
+
+fn lumped_pays(ready: &Ready) -> bool {
+    let rows = ready.rows.matrix.rows();
+    let glued = rows > 2 * ready.rows.contact;
+    let least = if glued { LUMPED_PAYS_ON_GLUE } else { LUMPED_PAYS };
+    ready.dual.product_work() > least * rows
 }
 
 fn preconditioner(

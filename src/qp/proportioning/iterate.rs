@@ -121,10 +121,12 @@ impl<'a> Iterate<'a> {
 
     /// The same on the active set as it stands: rows at zero may count as free.
     pub fn update_on_face(&mut self) -> Result<()> {
-        self.r.copy_from_slice(&self.g);
-        if !self.alpha.is_empty() {
-            let fitted = self.coarse.multiplier(&self.split.active, &self.g)?;
-            self.alpha.clone_from(&fitted);
+        if self.alpha.is_empty() {
+            self.r.copy_from_slice(&self.g);
+        } else {
+            // free rows see nothing of free motions, and shall see nothing of their rounding errors
+            let (fitted, rest) = self.coarse.fitted(&self.split.active, &self.g)?;
+            (self.alpha, self.r) = (fitted.clone(), rest);
             if let Some(reference) = &self.reference {
                 let mut free = vec![0.0; fitted.len()];
                 self.coarse.on(&self.split.active)?.add_free_part(reference, &mut free);
@@ -132,10 +134,8 @@ impl<'a> Iterate<'a> {
                     axpy(1.0, &free, &mut self.alpha);
                 }
             }
-            for i in 0..self.x.len() {
-                // free rows see nothing of free motions, and shall see nothing of their rounding errors
-                let alpha = if self.split.active[i] { &self.alpha } else { &fitted };
-                self.r[i] -= self.qp.g_transposed.row_dot(i, alpha);
+            for i in (0..self.x.len()).filter(|&i| self.split.active[i]) {
+                self.r[i] = self.g[i] - self.qp.g_transposed.row_dot(i, &self.alpha);
             }
         }
         self.split.update_on_face(&self.r);
