@@ -59,6 +59,7 @@
 //! | [`body`] | one body: K_p, R_p, fixing dofs, K_p+ |
 //! | [`constraints`] | B u <= c, H u = h: rows, their compliance and scaling |
 //! | [`dual`] | F, d, G, e and the way back |
+//! | [`mesh`] | how a body of many elements is cut into pieces |
 //! | [`qp`] | Sections 4 and 5: knows no bodies |
 //! | [`certificate`] | how right an answer is, by matrices and rows alone |
 //! | `progress` | what the host hears of a call, and how it ends one |
@@ -75,6 +76,7 @@ pub mod dual;
 pub mod error;
 pub mod ffi;
 pub mod linalg;
+pub mod mesh;
 mod model;
 pub mod platform;
 mod progress;

@@ -1,0 +1,187 @@
+//! The graph of what is cut: elements, or groups of them, that are neighbours by a face.
+
+use std::cmp::{Ordering, Reverse};
+use std::collections::BinaryHeap;
+
+use super::incidence::{Incidence, Neighbours, NONE, WHAT};
+use crate::error::Result;
+use crate::platform::interrupt;
+use crate::platform::memory::{copied, ensure_spare, filled, refusal, reserved};
+
+/// The part of the most unknowns that an element shares with a neighbour from which on it has a face with another. An edge has
+/// at most 2/3 of those of a face (linear tetrahedra), a triangle 3/4 of those of a quadrangle (pyramids, wedges).
+const FACE: (u32, u32) = (3, 4);
+
+/// The neighbours of `i` are `to[ptr[i]..ptr[i+1]]`, with how many unknowns they share in `edge`.
+pub struct Graph {
+    pub ptr: Vec<usize>,
+    pub to: Vec<u32>,
+    pub edge: Vec<u32>,
+    /// Of the pieces the sums of these are to be equal.
+    pub weight: Vec<f64>,
+}
+
+impl Graph {
+    pub fn of(incidence: &Incidence) -> Result<Self> {
+        let count = incidence.count();
+        let mut room = Neighbours::room(count)?;
+        let mut most: Vec<u32> = filled(count, 0, WHAT)?;
+        for e in 0..count {
+            if e % 4096 == 0 {
+                interrupt::check()?;
+            }
+            let mut here = 0;
+            incidence.neighbours(e, &mut room, |_, share| here = here.max(share));
+            most[e] = here;
+        }
+        let (mut ptr, mut to, mut edge) = (reserved(count + 1, WHAT)?, Vec::new(), Vec::new());
+        let mut here: Vec<(u32, u32)> = Vec::new();
+        ptr.push(0);
+        for e in 0..count {
+            if e % 4096 == 0 {
+                interrupt::check()?;
+            }
+            here.clear();
+            incidence.neighbours(e, &mut room, |f, share| {
+                if FACE.1 * share >= FACE.0 * most[e].min(most[f as usize]) {
+                    here.push((f, share));
+                }
+            });
+            enlarge(&mut to, here.len())?;
+            enlarge(&mut edge, here.len())?;
+            to.extend(here.iter().map(|h| h.0));
+            edge.extend(here.iter().map(|h| h.1));
+            ptr.push(to.len());
+        }
+        Ok(Self { ptr, to, edge, weight: weights(incidence)? })
+    }
+
+    pub fn count(&self) -> usize {
+        self.weight.len()
+    }
+
+    pub fn copy(&self) -> Result<Self> {
+        let (ptr, to) = (copied(&self.ptr, WHAT)?, copied(&self.to, WHAT)?);
+        Ok(Self { ptr, to, edge: copied(&self.edge, WHAT)?, weight: copied(&self.weight, WHAT)? })
+    }
+
+    /// Neighbours with the unknowns shared.
+    pub fn around(&self, i: usize) -> impl Iterator<Item = (usize, u32)> + '_ {
+        let range = self.ptr[i]..self.ptr[i + 1];
+        self.to[range.clone()].iter().map(|&j| j as usize).zip(self.edge[range].iter().copied())
+    }
+
+    /// Connected parts of those with one label: the part of each, numbered by their first, and the weights of the parts.
+    pub fn parts(&self, label: &[u32]) -> Result<(Vec<u32>, Vec<f64>)> {
+        let mut part: Vec<u32> = filled(self.count(), NONE, WHAT)?;
+        let (mut weights, mut queue) = (Vec::new(), reserved(self.count(), WHAT)?);
+        for first in 0..self.count() {
+            if part[first] != NONE {
+                continue;
+            }
+            let (number, mut weight) = (weights.len() as u32, 0.0);
+            part[first] = number;
+            queue.push(first as u32);
+            while let Some(i) = queue.pop() {
+                weight += self.weight[i as usize];
+                for &j in &self.to[self.ptr[i as usize]..self.ptr[i as usize + 1]] {
+                    if part[j as usize] == NONE && label[j as usize] == label[i as usize] {
+                        part[j as usize] = number;
+                        queue.push(j);
+                    }
+                }
+            }
+            weights.push(weight);
+        }
+        Ok((part, weights))
+    }
+
+    /// The graph of the vertices `some` alone, numbered in their order. `place` is room for a number of every vertex, all `NONE`
+    /// before and after.
+    pub fn of_some(&self, some: &[u32], place: &mut [u32]) -> Result<Self> {
+        some.iter().enumerate().for_each(|(at, &i)| place[i as usize] = at as u32);
+        let entries = some.iter().map(|&i| self.ptr[i as usize + 1] - self.ptr[i as usize]).sum();
+        let (mut ptr, mut to) = (reserved(some.len() + 1, WHAT)?, reserved(entries, WHAT)?);
+        let (mut edge, mut weight) = (reserved(entries, WHAT)?, reserved(some.len(), WHAT)?);
+        ptr.push(0);
+        for &i in some {
+            for (j, share) in self.around(i as usize).filter(|&(j, _)| place[j] != NONE) {
+                to.push(place[j]);
+                edge.push(share);
+            }
+            ptr.push(to.len());
+            weight.push(self.weight[i as usize]);
+        }
+        some.iter().for_each(|&i| place[i as usize] = NONE);
+        Ok(Self { ptr, to, edge, weight })
+    }
+}
+
+/// Room for `more` entries; half as many again as there are where it has to be made.
+fn enlarge(list: &mut Vec<u32>, more: usize) -> Result<()> {
+    if list.capacity() - list.len() >= more {
+        return Ok(());
+    }
+    let bytes = size_of::<u32>() * (list.len() + list.len() / 2 + more);
+    ensure_spare(bytes, WHAT)?;
+    list.try_reserve_exact(list.len() / 2 + more + 1024).map_err(|_| refusal(bytes, WHAT))
+}
+
+/// The unknowns of an element over the most elements that one of its nodes has: equal for equal elements, at the surface of the
+/// body as inside.
+fn weights(incidence: &Incidence) -> Result<Vec<f64>> {
+    let mut weights = reserved(incidence.count(), WHAT)?;
+    for e in 0..incidence.count() {
+        let most = incidence.nodes(e).iter().map(|&n| incidence.elements(n).len()).max().unwrap_or(1);
+        weights.push(f64::from(incidence.size(e).max(1)) / most.max(1) as f64);
+    }
+    Ok(weights)
+}
+
+/// How many of `pieces` each part gets: in proportion to its weight, at least one, at most as many as it has vertices.
+pub fn shares(weights: &[f64], vertices: &[usize], pieces: usize) -> Result<Vec<usize>> {
+    let total: f64 = weights.iter().sum();
+    let mut shares = filled(weights.len(), 1, WHAT)?;
+    let mut left = pieces.saturating_sub(weights.len());
+    // whole pieces first, then one by one to the part whose pieces are the largest
+    for part in 0..shares.len() {
+        let wish = (pieces as f64 * weights[part] / total) as usize;
+        let more = wish.min(vertices[part]).saturating_sub(1).min(left);
+        shares[part] += more;
+        left -= more;
+    }
+    let need = |part: usize, share: usize| Need(weights[part] / share as f64, Reverse(part));
+    let open = (0..shares.len()).filter(|&part| shares[part] < vertices[part]);
+    let mut by_need: BinaryHeap<Need> = open.map(|part| need(part, shares[part])).collect();
+    while let Some(Need(_, Reverse(part))) = by_need.pop().filter(|_| left > 0) {
+        shares[part] += 1;
+        left -= 1;
+        if shares[part] < vertices[part] {
+            by_need.push(need(part, shares[part]));
+        }
+    }
+    Ok(shares)
+}
+
+/// A part and the weight of its pieces.
+struct Need(f64, Reverse<usize>);
+
+impl Ord for Need {
+    fn cmp(&self, other: &Self) -> Ordering {
+        self.0.total_cmp(&other.0).then(self.1.cmp(&other.1))
+    }
+}
+
+impl PartialOrd for Need {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl PartialEq for Need {
+    fn eq(&self, other: &Self) -> bool {
+        self.cmp(other) == Ordering::Equal
+    }
+}
+
+impl Eq for Need {}

@@ -1,0 +1,141 @@
+//! The cut of one body into pieces that hang together by faces, of about equal size, with few unknowns in more than one of them.
+//!
+//! Elements that lie in others go with them (`hosts`). What is left is cut into slabs by planes where the centres are known, or
+//! through the graph of its faces (`sections`, `halves`); then scraps are given to neighbours (`scraps`), and single elements are
+//! moved while that makes fewer unknowns common (`refine`).
+
+mod coarse;
+mod directions;
+mod graph;
+mod halves;
+mod hosts;
+mod incidence;
+mod refine;
+mod scraps;
+mod sections;
+mod smooth;
+#[cfg(test)]
+mod tests;
+
+use crate::error::{Error, Kind, Result};
+use crate::platform::interrupt;
+use crate::platform::memory::{filled, reserved};
+use graph::{shares, Graph};
+use incidence::{Incidence, NONE, WHAT};
+
+/// Elements by the unknowns they join (held unknowns left out): those of element `e` are `dof[ptr[e]..ptr[e+1]]`, each less than
+/// `unknowns`.
+pub struct Elements<'a> {
+    pub ptr: &'a [usize],
+    pub dof: &'a [u32],
+    pub unknowns: usize,
+}
+
+/// Bodies below this are faster whole.
+const WHOLE: usize = 40_000;
+/// Unknowns of a piece.
+const PIECE: usize = 1_000;
+
+/// How many pieces a body of so many unknowns is cut into.
+pub fn pieces_for(unknowns: usize) -> usize {
+    if unknowns < WHOLE {
+        1
+    } else {
+        unknowns / PIECE
+    }
+}
+
+/// The piece of every element, numbered from 0 without gaps: `pieces` of them, fewer where there are not so many elements, more
+/// where the body has more parts that share no face (one piece each); 1 leaves it whole.
+///
+/// `centres`: of the elements in any unit, where they are known; entries that are no numbers count as not known.
+pub fn cut(elements: &Elements, centres: Option<&[[f64; 3]]>, pieces: usize) -> Result<Vec<u32>> {
+    let all = Incidence::of(elements)?;
+    if centres.is_some_and(|centres| centres.len() != all.count()) {
+        return Err(Error::new(Kind::Argument("centres"), "there is not one centre for each element"));
+    }
+    if pieces <= 1 {
+        return filled(all.count(), 0, WHAT);
+    }
+    let host = hosts::hosts(&all)?;
+    let mut kept = reserved(all.count(), WHAT)?;
+    kept.extend((0..all.count() as u32).filter(|&e| host[e as usize] == NONE));
+    let incidence = all.of_some(&kept)?;
+    drop(all);
+    let centres = centres.map(|centres| scaled(centres, &kept)).transpose()?.flatten();
+    let piece = cut_all(&incidence, centres.as_deref(), pieces)?;
+    with_guests(&host, &kept, &piece)
+}
+
+/// The pieces of elements none of which goes with another.
+fn cut_all(incidence: &Incidence, centres: Option<&[[f64; 3]]>, pieces: usize) -> Result<Vec<u32>> {
+    let graph = Graph::of(incidence)?;
+    let (mut piece, weights) = graph.parts(&filled(graph.count(), 0, WHAT)?)?;
+    let mut vertices = filled(weights.len(), 0, WHAT)?;
+    piece.iter().for_each(|&part| vertices[part as usize] += 1);
+    let shares = shares(&weights, &vertices, pieces)?;
+    let count = shares.iter().sum();
+    match centres {
+        Some(_) => sections::sections(&graph, centres, &mut piece, &shares)?,
+        None => sections::by_levels(&graph, &mut piece, &shares)?,
+    }
+    scraps::give(&graph, &mut piece, count)?;
+    refine::refine(incidence, &graph, &mut piece, count)?;
+    scraps::give(&graph, &mut piece, count)?;
+    numbered(&mut piece, count)?;
+    Ok(piece)
+}
+
+/// Centres of the elements `kept`, moved and scaled by a power of two so that the largest entry is about 1; none where one is no
+/// number.
+fn scaled(centres: &[[f64; 3]], kept: &[u32]) -> Result<Option<Vec<[f64; 3]>>> {
+    let mut points = reserved(kept.len(), WHAT)?;
+    points.extend(kept.iter().map(|&e| centres[e as usize]));
+    if points.iter().flatten().any(|x: &f64| !x.is_finite()) {
+        return Ok(None);
+    }
+    let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
+    for x in &points {
+        (0..3).for_each(|k| (low[k], high[k]) = (low[k].min(x[k]), high[k].max(x[k])));
+    }
+    let largest = (0..3).map(|k| 0.5 * high[k] - 0.5 * low[k]).fold(0.0, f64::max);
+    if !(largest > f64::MIN_POSITIVE) {
+        return Ok(None);
+    }
+    // the exponent alone: scaling changes no digit
+    let unit = f64::from_bits(largest.to_bits() & !((1_u64 << 52) - 1));
+    for x in &mut points {
+        (0..3).for_each(|k| x[k] = (x[k] - (0.5 * low[k] + 0.5 * high[k])) / unit);
+    }
+    Ok(Some(points))
+}
+
+/// Elements that go with others get their pieces, by way of hosts that have hosts; those without unknowns the first.
+fn with_guests(host: &[u32], kept: &[u32], piece: &[u32]) -> Result<Vec<u32>> {
+    let mut all = filled(host.len(), NONE, WHAT)?;
+    kept.iter().zip(piece).for_each(|(&e, &p)| all[e as usize] = p);
+    for e in 0..host.len() {
+        let mut last = e;
+        while all[last] == NONE && host[last] as usize != last {
+            last = host[last] as usize;
+        }
+        let found = if all[last] == NONE { 0 } else { all[last] };
+        let mut next = e;
+        while all[next] == NONE {
+            all[next] = found;
+            next = host[next] as usize;
+        }
+    }
+    Ok(all)
+}
+
+/// Numbers without gaps, in their order.
+fn numbered(piece: &mut [u32], count: usize) -> Result<()> {
+    interrupt::check()?;
+    let mut number: Vec<u32> = filled(count, NONE, WHAT)?;
+    piece.iter().for_each(|&p| number[p as usize] = 0);
+    let used = number.iter_mut().filter(|number| **number == 0);
+    used.zip(0..).for_each(|(number, next)| *number = next);
+    piece.iter_mut().for_each(|p| *p = number[*p as usize]);
+    Ok(())
+}
