@@ -84,7 +84,7 @@ settings! {
     threads: i64 = I64(0), 0.0..=4096.0,
         c"Threads of the setup and of costly products with the dual operator (at most one for 500 unknowns and four for a CPU); 0: as many as the CPUs this process may use. The answer has the same bits for any number.";
     pieces: i64 = I64(0), 0.0..=1e6,
-        c"Pieces that a body given by its elements is cut into, from the first element matrix on: 0: chosen by its size, one below 60000 unknowns; 1: none is cut; n: about n each.";
+        c"Pieces that a body given by its elements is cut into, from the first element matrix on: 0: chosen by its size, one below 40000 unknowns; 1: none is cut; n: about n each.";
     index_base: i64 = I64(0), 0.0..=1.0,
         c"What numbers in error texts count from: 0 for C, 1 for Fortran.";
     fault_injection: i64 = I64(0), 0.0..=1.0,

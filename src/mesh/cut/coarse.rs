@@ -36,7 +36,8 @@ pub fn projected<T: Copy>(values: &[T], coarse: &[u32]) -> Result<Vec<T>> {
     Ok(fine)
 }
 
-/// Pairs of neighbours, those first that share most of what they have, lighter before heavier; the number of each pair.
+/// Pairs of neighbours, those first that share most of what they have, lighter before heavier, in the order of the
+/// host, whose neighbours tend to follow each other; the number of each pair.
 fn matched(graph: &Graph, most: f64) -> Result<(Vec<u32>, usize)> {
     let mut coarse: Vec<u32> = filled(graph.count(), NONE, WHAT)?;
     let mut count = 0;

@@ -1,7 +1,7 @@
 //! In which direction a set of elements is cut by planes: the one in which fewest unknowns are cut through.
 
 use super::graph::Graph;
-use super::incidence::WHAT;
+use super::incidence::{mixed, WHAT};
 use crate::error::Result;
 use crate::linalg::dense::spectrum::symmetric_eigen;
 use crate::linalg::Matrix;
@@ -35,40 +35,48 @@ impl Set<'_> {
     pub fn direction(&self, of_mesh: &Frame) -> Result<Option<Choice>> {
         let step = self.members.len().div_ceil(SAMPLE).max(1);
         let mut sample = reserved(self.members.len() / step + 1, WHAT)?;
-        sample.extend(self.members.iter().step_by(step).copied());
+        // one of every few: not each time the same one, which could miss every other layer
+        let one = |(at, few): (usize, &[u32])| few[(mixed(at as u64) % few.len() as u64) as usize];
+        sample.extend(self.members.chunks(step).enumerate().map(one));
         let mut keys = reserved(sample.len(), WHAT)?;
-        let mut best: Option<(f64, usize, Frame, Point)> = None;
+        let mut best: Option<(usize, Frame, [(f64, f64); 3])> = None;
         for frame in [AXES, *of_mesh, self.of_inertia(&sample)?] {
             let cuts = frame.map(|axis| self.crossing(&sample, &axis, &mut keys));
-            let least = (0..3).min_by(|&i, &j| cuts[i].total_cmp(&cuts[j])).unwrap_or(0);
-            if cuts[least] < best.as_ref().map_or(f64::INFINITY, |best| 0.99 * best.0) {
-                best = Some((cuts[least], least, frame, cuts));
+            let least = (0..3).min_by(|&i, &j| cuts[i].0.total_cmp(&cuts[j].0)).unwrap_or(0);
+            if cuts[least].0 < best.as_ref().map_or(f64::INFINITY, |best| 0.99 * best.2[best.0].0) {
+                best = Some((least, frame, cuts));
             }
         }
-        let Some((_, least, frame, cuts)) = best else { return Ok(None) };
+        let Some((least, frame, cuts)) = best else { return Ok(None) };
         let inside = self.inside(&sample);
         let at = |i: usize| (least + i) % 3;
-        let lengths = [0, 1, 2].map(|i| (inside / cuts[at(i)]).max(1.0));
+        let lengths = [0, 1, 2].map(|i| (inside / cuts[at(i)].0).max(1.0));
         let extents = [0, 1, 2].map(|i| self.extent(&sample, &frame[at(i)]));
-        Ok(Some(Choice { direction: tilted([0, 1, 2].map(|i| frame[at(i)]), extents, lengths), lengths }))
+        let direction = tilted([0, 1, 2].map(|i| frame[at(i)]), cuts[least].1, extents, lengths);
+        Ok(Some(Choice { direction, lengths }))
     }
 
-    /// Unknowns shared across the plane through the middle of the sample; infinite where less than a quarter lies on one side.
-    fn crossing(&self, sample: &[u32], axis: &Point, keys: &mut Vec<f64>) -> f64 {
+    /// Unknowns shared across the plane through the middle of the sample, infinite where less than a quarter lies on one side; and
+    /// the mean distance of the neighbours there.
+    fn crossing(&self, sample: &[u32], axis: &Point, keys: &mut Vec<f64>) -> (f64, f64) {
+        let key = |i: usize| dot(axis, &self.centres[i]);
         keys.clear();
-        keys.extend(sample.iter().map(|&i| dot(axis, &self.centres[i as usize])));
+        keys.extend(sample.iter().map(|&i| key(i as usize)));
         let half = keys.len() / 2;
         let (_, &mut middle, _) = keys.select_nth_unstable_by(half, f64::total_cmp);
-        let below = &|i: usize| dot(axis, &self.centres[i]) < middle;
-        let count = sample.iter().filter(|&&i| below(i as usize)).count();
-        if 4 * count < sample.len() {
-            return f64::INFINITY;
+        let (mut below, mut across, mut distance, mut count) = (0, 0.0, 0.0, 0.0);
+        for &i in sample.iter().filter(|&&i| key(i as usize) < middle) {
+            below += 1;
+            for (j, share) in self.within(i as usize).filter(|&(j, _)| key(j) >= middle) {
+                across += f64::from(share);
+                distance += key(j) - key(i as usize);
+                count += 1.0;
+            }
         }
-        let of = |i: usize| self.within(i).filter(move |&(j, _)| below(i) != below(j));
-        0.5 * sample
-            .iter()
-            .map(|&i| of(i as usize).map(|(_, share)| f64::from(share)).sum::<f64>())
-            .sum::<f64>()
+        if 4 * below < sample.len() {
+            return (f64::INFINITY, 0.0);
+        }
+        (across, distance / f64::max(count, 1.0))
     }
 
     /// The sample times the unknowns that neighbours in the set share on the average.
@@ -142,13 +150,15 @@ fn smallest_axis(a: &Point) -> Point {
 }
 
 /// The first direction, so little inclined that a layer cut through is cut through by rows, and a row between two elements.
-fn tilted(frame: Frame, extents: Point, lengths: Point) -> Point {
+/// `step` is the distance of two layers.
+fn tilted(frame: Frame, mut step: f64, extents: Point, lengths: Point) -> Point {
+    const SLOPE: f64 = 0.05;
     let mut direction = frame[0];
-    let mut step = extents[0] / lengths[0];
     for i in 1..3 {
-        if extents[i] > 1e-6 * extents[0] {
-            (0..3).for_each(|k| direction[k] += 0.25 * step / extents[i] * frame[i][k]);
-            step *= 0.25 / lengths[i];
+        // a flat body has no third direction
+        if extents[i] > 1e-9 * extents[0] {
+            (0..3).for_each(|k| direction[k] += SLOPE * step / extents[i] * frame[i][k]);
+            step *= SLOPE / lengths[i];
         }
     }
     direction

@@ -1,11 +1,12 @@
 //! The graph of what is cut: elements, or groups of them, that are neighbours by a face.
 
-use std::cmp::Reverse;
+use std::cmp::{Ordering, Reverse};
+use std::collections::BinaryHeap;
 
 use super::incidence::{Incidence, Neighbours, NONE, WHAT};
 use crate::error::Result;
 use crate::platform::interrupt;
-use crate::platform::memory::{filled, reserved};
+use crate::platform::memory::{copied, ensure_spare, filled, refusal, reserved};
 
 /// The part of the most unknowns that an element shares with a neighbour from which on it has a face with another. An edge has
 /// at most 2/3 of those of a face (linear tetrahedra), a triangle 3/4 of those of a quadrangle (pyramids, wedges).
@@ -30,20 +31,26 @@ impl Graph {
                 interrupt::check()?;
             }
             let mut here = 0;
-            incidence.neighbours(e, &mut room, |_, share| {
-                here = here.max(share);
-            });
+            incidence.neighbours(e, &mut room, |_, share| here = here.max(share));
             most[e] = here;
         }
         let (mut ptr, mut to, mut edge) = (reserved(count + 1, WHAT)?, Vec::new(), Vec::new());
+        let mut here: Vec<(u32, u32)> = Vec::new();
         ptr.push(0);
         for e in 0..count {
+            if e % 4096 == 0 {
+                interrupt::check()?;
+            }
+            here.clear();
             incidence.neighbours(e, &mut room, |f, share| {
                 if FACE.1 * share >= FACE.0 * most[e].min(most[f as usize]) {
-                    to.push(f);
-                    edge.push(share);
+                    here.push((f, share));
                 }
             });
+            enlarge(&mut to, here.len())?;
+            enlarge(&mut edge, here.len())?;
+            to.extend(here.iter().map(|h| h.0));
+            edge.extend(here.iter().map(|h| h.1));
             ptr.push(to.len());
         }
         Ok(Self { ptr, to, edge, weight: weights(incidence)? })
@@ -51,6 +58,11 @@ impl Graph {
 
     pub fn count(&self) -> usize {
         self.weight.len()
+    }
+
+    pub fn copy(&self) -> Result<Self> {
+        let (ptr, to) = (copied(&self.ptr, WHAT)?, copied(&self.to, WHAT)?);
+        Ok(Self { ptr, to, edge: copied(&self.edge, WHAT)?, weight: copied(&self.weight, WHAT)? })
     }
 
     /// Neighbours with the unknowns shared.
@@ -105,6 +117,16 @@ impl Graph {
     }
 }
 
+/// Room for `more` entries; half as many again as there are where it has to be made.
+fn enlarge(list: &mut Vec<u32>, more: usize) -> Result<()> {
+    if list.capacity() - list.len() >= more {
+        return Ok(());
+    }
+    let bytes = size_of::<u32>() * (list.len() + list.len() / 2 + more);
+    ensure_spare(bytes, WHAT)?;
+    list.try_reserve_exact(list.len() / 2 + more + 1024).map_err(|_| refusal(bytes, WHAT))
+}
+
 /// The unknowns of an element over the most elements that one of its nodes has: equal for equal elements, at the surface of the
 /// body as inside.
 fn weights(incidence: &Incidence) -> Result<Vec<f64>> {
@@ -117,38 +139,49 @@ fn weights(incidence: &Incidence) -> Result<Vec<f64>> {
 }
 
 /// How many of `pieces` each part gets: in proportion to its weight, at least one, at most as many as it has vertices.
-pub fn shares(weights: &[f64], vertices: &[usize], pieces: usize) -> Vec<usize> {
+pub fn shares(weights: &[f64], vertices: &[usize], pieces: usize) -> Result<Vec<usize>> {
     let total: f64 = weights.iter().sum();
-    let wish = |part: usize| pieces as f64 * weights[part] / total;
-    let mut shares: Vec<usize> =
-        (0..weights.len()).map(|part| (wish(part) as usize).clamp(1, vertices[part])).collect();
-    let mut left = pieces.saturating_sub(shares.iter().sum());
-    let mut by_need: Vec<usize> = (0..weights.len()).collect();
-    let need = |shares: &[usize], part: usize| wish(part) - shares[part] as f64;
-    by_need.sort_by(|&a, &b| need(&shares, b).total_cmp(&need(&shares, a)));
-    while left > 0 {
-        let before = left;
-        for &part in &by_need {
-            if left > 0 && shares[part] < vertices[part] {
-                shares[part] += 1;
-                left -= 1;
-            }
-        }
-        if left == before {
-            break;
+    let mut shares = filled(weights.len(), 1, WHAT)?;
+    let mut left = pieces.saturating_sub(weights.len());
+    // whole pieces first, then one by one to the part whose pieces are the largest
+    for part in 0..shares.len() {
+        let wish = (pieces as f64 * weights[part] / total) as usize;
+        let more = wish.min(vertices[part]).saturating_sub(1).min(left);
+        shares[part] += more;
+        left -= more;
+    }
+    let need = |part: usize, share: usize| Need(weights[part] / share as f64, Reverse(part));
+    let open = (0..shares.len()).filter(|&part| shares[part] < vertices[part]);
+    let mut by_need: BinaryHeap<Need> = open.map(|part| need(part, shares[part])).collect();
+    while let Some(Need(_, Reverse(part))) = by_need.pop().filter(|_| left > 0) {
+        shares[part] += 1;
+        left -= 1;
+        if shares[part] < vertices[part] {
+            by_need.push(need(part, shares[part]));
         }
     }
-    // those rounded up to one are paid for by the largest
-    by_need.sort_by_key(|&part| Reverse(shares[part]));
-    let mut over = shares.iter().sum::<usize>().saturating_sub(pieces);
-    while over > 0 {
-        let Some(largest) =
-            (0..shares.len()).filter(|&part| shares[part] > 1).max_by_key(|&part| shares[part])
-        else {
-            break;
-        };
-        shares[largest] -= 1;
-        over -= 1;
-    }
-    shares
+    Ok(shares)
 }
+
+/// A part and the weight of its pieces.
+struct Need(f64, Reverse<usize>);
+
+impl Ord for Need {
+    fn cmp(&self, other: &Self) -> Ordering {
+        self.0.total_cmp(&other.0).then(self.1.cmp(&other.1))
+    }
+}
+
+impl PartialOrd for Need {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl PartialEq for Need {
+    fn eq(&self, other: &Self) -> bool {
+        self.cmp(other) == Ordering::Equal
+    }
+}
+
+impl Eq for Need {}

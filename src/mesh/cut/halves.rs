@@ -15,9 +15,9 @@ const SMALL: usize = 100;
 /// Starts that are tried there.
 const TRIALS: usize = 12;
 /// A side may leave its weight by this part of the smaller one.
-const SLACK: f64 = 0.02;
+const SLACK: f64 = 0.01;
 /// Moves without a better cut after which a round ends.
-const PATIENCE: usize = 60;
+const PATIENCE: usize = 100;
 const ROUNDS: usize = 4;
 
 /// Whether each vertex lies in the second part; the first has about `fraction` of the weight.
@@ -131,18 +131,20 @@ impl<'a> Refinement<'a> {
 
     /// Whether the cut or the weights got better.
     fn round(&mut self) -> bool {
+        // of equal gains the last one: moves go on where one was made
         let mut heap = BinaryHeap::new();
+        let mut pushed = self.graph.count();
         for i in 0..self.graph.count() {
             let (gain, outside) = self.gain(i);
             self.gain[i] = gain;
             self.moved[i] = false;
             if outside {
-                heap.push((gain, std::cmp::Reverse(i as u32)));
+                heap.push((gain, heap.len(), i as u32));
             }
         }
         let (mut moves, mut kept): (Vec<usize>, usize) = (Vec::new(), 0);
         let (mut cut, mut best) = (0_i64, (self.excess(), 0_i64));
-        while let Some((gain, std::cmp::Reverse(i))) = heap.pop() {
+        while let Some((gain, _, i)) = heap.pop() {
             let i = i as usize;
             if self.moved[i] || gain != self.gain[i] || !self.may_move(i) {
                 continue;
@@ -155,7 +157,8 @@ impl<'a> Refinement<'a> {
                 if !self.moved[j] {
                     let change = 2 * i64::from(share);
                     self.gain[j] += if self.side[j] == self.side[i] { -change } else { change };
-                    heap.push((self.gain[j], std::cmp::Reverse(j as u32)));
+                    heap.push((self.gain[j], pushed, j as u32));
+                    pushed += 1;
                 }
             }
             if (self.excess(), cut) < best {

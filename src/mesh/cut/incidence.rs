@@ -162,8 +162,8 @@ fn keys(elements: &Elements) -> Result<Vec<u64>> {
     Ok(key)
 }
 
-/// The finaliser of splitmix64.
-fn mixed(x: u64) -> u64 {
+/// The finaliser of splitmix64: a number without pattern for each.
+pub fn mixed(x: u64) -> u64 {
     let x = x.wrapping_mul(0x9e37_79b9_7f4a_7c15);
     let x = (x ^ (x >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
     let x = (x ^ (x >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);

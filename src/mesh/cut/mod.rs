@@ -1,8 +1,8 @@
-//! A body into pieces: connected through faces, of about equal size, with few unknowns between them. The same for any number of
-//! threads, and in any unit.
+//! The cut of one body into pieces that hang together by faces, of about equal size, with few unknowns in more than one of them.
 //!
-//! Elements that lie in others, or are much smaller (springs, penalties, constraints), go with these. The rest is a graph: neighbours
-//! share a face. It is cut by planes where centres are known, as long as both sides hang together, else by the graph itself.
+//! Elements that lie in others go with them (`hosts`). What is left is cut into slabs by planes where the centres are known, or
+//! through the graph of its faces (`sections`, `halves`); then scraps are given to neighbours (`scraps`), and single elements are
+//! moved while that makes fewer unknowns common (`refine`).
 
 mod coarse;
 mod directions;
@@ -10,122 +10,132 @@ mod graph;
 mod halves;
 mod hosts;
 mod incidence;
+mod refine;
+mod scraps;
 mod sections;
+mod smooth;
 #[cfg(test)]
 mod tests;
 
-use crate::error::Result;
+use crate::error::{Error, Kind, Result};
+use crate::platform::interrupt;
 use crate::platform::memory::{filled, reserved};
 use graph::{shares, Graph};
-use hosts::hosts;
 use incidence::{Incidence, NONE, WHAT};
-use sections::sections;
 
-/// Bodies with fewer unknowns are not worth a cut.
-const WORTH: usize = 60_000;
-/// Unknowns of a piece.
-const PIECE: f64 = 1100.0;
-/// Times that what has come loose of a piece is looked for.
-const MENDINGS: usize = 4;
-
-/// Elements by the unknowns that they join: e has `dof[ptr[e]..ptr[e + 1]]`, held unknowns left out.
+/// Elements by the unknowns they join (held unknowns left out): those of element `e` are `dof[ptr[e]..ptr[e+1]]`, each less than
+/// `unknowns`.
 pub struct Elements<'a> {
     pub ptr: &'a [usize],
     pub dof: &'a [u32],
     pub unknowns: usize,
 }
 
-/// How many pieces a body of so many unknowns is cut into, 1: none. A cube is cut as often along each edge.
+/// Bodies below this are faster whole.
+const WHOLE: usize = 40_000;
+/// Unknowns of a piece.
+const PIECE: f64 = 1200.0;
+
+/// How many pieces a body of so many unknowns is cut into. A cube is cut as often along each edge.
 pub fn pieces_for(unknowns: usize) -> usize {
-    if unknowns < WORTH {
+    if unknowns < WHOLE {
         1
     } else {
         ((unknowns as f64 / PIECE).cbrt().round() as usize).pow(3)
     }
 }
 
-/// The piece of every element, numbered from 0 without gaps: about `pieces` of them, at least one for each part of the body.
-/// `centres`: of the elements, length, where coordinates are known.
+/// The piece of every element, numbered from 0 without gaps: `pieces` of them, fewer where there are not so many elements, more
+/// where the body has more parts that share no face (one piece each); 1 leaves it whole.
+///
+/// `centres`: of the elements in any unit, where they are known; entries that are no numbers count as not known.
 pub fn cut(elements: &Elements, centres: Option<&[[f64; 3]]>, pieces: usize) -> Result<Vec<u32>> {
     let all = Incidence::of(elements)?;
-    let host = hosts(&all)?;
-    let mut kept: Vec<u32> = reserved(host.len(), WHAT)?;
-    kept.extend((0..host.len() as u32).filter(|e| host[*e as usize] == NONE));
-    let graph = Graph::of(&all.of_some(&kept)?)?;
-    let mut own = reserved(if centres.is_some() { kept.len() } else { 0 }, WHAT)?;
-    own.extend(centres.iter().flat_map(|centres| kept.iter().map(|&e| centres[e as usize])));
+    if centres.is_some_and(|centres| centres.len() != all.count()) {
+        return Err(Error::new(Kind::Argument("centres"), "there is not one centre for each element"));
+    }
+    if pieces <= 1 {
+        return filled(all.count(), 0, WHAT);
+    }
+    let host = hosts::hosts(&all)?;
+    let mut kept = reserved(all.count(), WHAT)?;
+    kept.extend((0..all.count() as u32).filter(|&e| host[e as usize] == NONE));
+    let incidence = all.of_some(&kept)?;
+    drop(all);
+    let centres = centres.map(|centres| scaled(centres, &kept)).transpose()?.flatten();
+    let piece = cut_all(&incidence, centres.as_deref(), pieces)?;
+    with_guests(&host, &kept, &piece)
+}
+
+/// The pieces of elements none of which goes with another.
+fn cut_all(incidence: &Incidence, centres: Option<&[[f64; 3]]>, pieces: usize) -> Result<Vec<u32>> {
+    let graph = Graph::of(incidence)?;
     let (mut piece, weights) = graph.parts(&filled(graph.count(), 0, WHAT)?)?;
     let mut vertices = filled(weights.len(), 0, WHAT)?;
     piece.iter().for_each(|&part| vertices[part as usize] += 1);
-    let shares = shares(&weights, &vertices, pieces);
-    sections(&graph, centres.map(|_| &own[..]), &mut piece, &shares)?;
-    mend(&graph, &mut piece)?;
-    let mut of_all = filled(host.len(), NONE, WHAT)?;
-    kept.iter().zip(&piece).for_each(|(&e, &piece)| of_all[e as usize] = piece);
+    let shares = shares(&weights, &vertices, pieces)?;
+    let count = shares.iter().sum();
+    match centres {
+        Some(_) => sections::sections(&graph, centres, &mut piece, &shares)?,
+        None => sections::by_levels(&graph, &mut piece, &shares)?,
+    }
+    scraps::give(&graph, &mut piece, count)?;
+    refine::refine(incidence, &graph, &mut piece, count)?;
+    scraps::give(&graph, &mut piece, count)?;
+    numbered(&mut piece, count)?;
+    Ok(piece)
+}
+
+/// Centres of the elements `kept`, moved and scaled by a power of two so that the largest entry is about 1; none where one is no
+/// number.
+fn scaled(centres: &[[f64; 3]], kept: &[u32]) -> Result<Option<Vec<[f64; 3]>>> {
+    let mut points = reserved(kept.len(), WHAT)?;
+    points.extend(kept.iter().map(|&e| centres[e as usize]));
+    if points.iter().flatten().any(|x: &f64| !x.is_finite()) {
+        return Ok(None);
+    }
+    let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
+    for x in &points {
+        (0..3).for_each(|k| (low[k], high[k]) = (low[k].min(x[k]), high[k].max(x[k])));
+    }
+    let largest = (0..3).map(|k| 0.5 * high[k] - 0.5 * low[k]).fold(0.0, f64::max);
+    if !(largest > f64::MIN_POSITIVE) {
+        return Ok(None);
+    }
+    // the exponent alone: scaling changes no digit
+    let unit = f64::from_bits(largest.to_bits() & !((1_u64 << 52) - 1));
+    for x in &mut points {
+        (0..3).for_each(|k| x[k] = (x[k] - (0.5 * low[k] + 0.5 * high[k])) / unit);
+    }
+    Ok(Some(points))
+}
+
+/// Elements that go with others get their pieces, by way of hosts that have hosts; those without unknowns the first.
+fn with_guests(host: &[u32], kept: &[u32], piece: &[u32]) -> Result<Vec<u32>> {
+    let mut all = filled(host.len(), NONE, WHAT)?;
+    kept.iter().zip(piece).for_each(|(&e, &p)| all[e as usize] = p);
     for e in 0..host.len() {
-        let mut with = e;
-        while host[with] != NONE && host[with] as usize != with {
-            with = host[with] as usize;
+        let mut last = e;
+        while all[last] == NONE && host[last] as usize != last {
+            last = host[last] as usize;
         }
-        of_all[e] = of_all[with];
+        let found = if all[last] == NONE { 0 } else { all[last] };
+        let mut next = e;
+        while all[next] == NONE {
+            all[next] = found;
+            next = host[next] as usize;
+        }
     }
-    number(&mut of_all)?;
-    Ok(of_all)
+    Ok(all)
 }
 
-/// What has come loose of a piece joins the piece that it shares most unknowns with.
-fn mend(graph: &Graph, piece: &mut [u32]) -> Result<()> {
-    for _ in 0..MENDINGS {
-        let (fragment, weights) = graph.parts(piece)?;
-        let count = piece.iter().max().map_or(0, |last| *last as usize + 1);
-        let mut largest = filled(count, NONE, WHAT)?;
-        for (&own, &of) in fragment.iter().zip(piece.iter()) {
-            let best = &mut largest[of as usize];
-            if *best == NONE || weights[own as usize] > weights[*best as usize] {
-                *best = own;
-            }
-        }
-        let is_loose = |i: usize, piece: &[u32]| largest[piece[i] as usize] != fragment[i];
-        let mut bonds = Vec::new();
-        for i in (0..graph.count()).filter(|&i| is_loose(i, piece)) {
-            let outside = graph.around(i).filter(|&(j, _)| piece[j] != piece[i] && !is_loose(j, piece));
-            bonds.extend(outside.map(|(j, share)| (fragment[i], piece[j], share)));
-        }
-        if bonds.is_empty() {
-            return Ok(());
-        }
-        bonds.sort_unstable();
-        let mut best = filled(weights.len(), (0, NONE), WHAT)?;
-        for alike in bonds.chunk_by(|a, b| (a.0, a.1) == (b.0, b.1)) {
-            let (of, to, shared) =
-                (alike[0].0 as usize, alike[0].1, alike.iter().map(|bond| bond.2).sum::<u32>());
-            if shared > best[of].0 {
-                best[of] = (shared, to);
-            }
-        }
-        for (own, of) in fragment.iter().zip(piece.iter_mut()) {
-            if best[*own as usize].1 != NONE {
-                *of = best[*own as usize].1;
-            }
-        }
-    }
-    Ok(())
-}
-
-/// Numbers without gaps, in the order of the first element; elements without unknowns that may move are of the first piece.
-fn number(piece: &mut [u32]) -> Result<()> {
-    let count = piece.iter().filter(|piece| **piece != NONE).max().map_or(0, |last| *last as usize + 1);
-    let (mut new, mut next) = (filled(count, NONE, WHAT)?, 0);
-    for own in piece.iter_mut() {
-        let Some(number) = new.get_mut(*own as usize) else {
-            *own = 0;
-            continue;
-        };
-        if *number == NONE {
-            *number = next;
-            next += 1;
-        }
-        *own = *number;
-    }
+/// Numbers without gaps, in their order.
+fn numbered(piece: &mut [u32], count: usize) -> Result<()> {
+    interrupt::check()?;
+    let mut number: Vec<u32> = filled(count, NONE, WHAT)?;
+    piece.iter().for_each(|&p| number[p as usize] = 0);
+    let used = number.iter_mut().filter(|number| **number == 0);
+    used.zip(0..).for_each(|(number, next)| *number = next);
+    piece.iter_mut().for_each(|p| *p = number[*p as usize]);
     Ok(())
 }

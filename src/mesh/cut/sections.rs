@@ -1,9 +1,12 @@
 //! The cut by planes: a set of elements into slabs, each of these again, until every set is a piece.
 
+use super::coarse::{coarsen, projected};
 use super::directions::{dot, of_mesh, Choice, Frame, Point, Set};
 use super::graph::Graph;
 use super::halves::halves;
 use super::incidence::{NONE, WHAT};
+use super::scraps::give;
+use super::smooth::smooth;
 use crate::error::Result;
 use crate::platform::interrupt;
 use crate::platform::memory::{filled, reserved};
@@ -12,6 +15,9 @@ use crate::platform::memory::{filled, reserved};
 const SNAP: f64 = 0.015;
 /// A slab may have this part of its weight apart from the rest of it, which neighbours take over later.
 const APART: f64 = 0.02;
+
+/// Groups of elements to a piece where the graph alone is cut.
+const GROUPS: usize = 150;
 
 /// Vertices `from..to` of the order, to be the pieces from `first` on, `pieces` of them.
 struct Task {
@@ -31,7 +37,8 @@ struct Sections<'a> {
     keys: Vec<(f64, u32)>,
 }
 
-/// Cuts the vertices of `piece` = `first`, all of one part, into `pieces`: by planes where there are centres, else by the graph.
+/// Cuts each part, the vertices with its number in `piece`, into its share of pieces: by planes where there are centres, else by
+/// the graph.
 pub fn sections(graph: &Graph, centres: Option<&[Point]>, piece: &mut [u32], shares: &[usize]) -> Result<()> {
     let frame = centres.map_or(Ok(super::directions::AXES), |centres| of_mesh(graph, centres))?;
     let count = graph.count();
@@ -57,6 +64,33 @@ pub fn sections(graph: &Graph, centres: Option<&[Point]>, piece: &mut [u32], sha
             all.split(&task, &mut tasks)?;
         }
     }
+    Ok(())
+}
+
+/// The same without centres: groups of elements are cut, then each finer group and at last element goes where it shares most.
+pub fn by_levels(graph: &Graph, piece: &mut [u32], shares: &[usize]) -> Result<()> {
+    let enough = GROUPS * shares.iter().sum::<usize>();
+    let levels = coarsen(graph.copy()?, enough.max(2000))?;
+    // a group lies in one part: it was made along faces
+    let mut label = filled(graph.count(), 0, WHAT)?;
+    label.copy_from_slice(piece);
+    for level in levels.iter().filter(|level| !level.coarse.is_empty()) {
+        let groups = level.coarse.iter().max().map_or(0, |&last| last as usize + 1);
+        let mut of_groups = filled(groups, 0, WHAT)?;
+        level.coarse.iter().zip(&label).for_each(|(&c, &l)| of_groups[c as usize] = l);
+        label = of_groups;
+    }
+    let Some((last, finer)) = levels.split_last() else { return Ok(()) };
+    let count = shares.iter().sum();
+    sections(&last.graph, None, &mut label, shares)?;
+    give(&last.graph, &mut label, count)?;
+    smooth(&last.graph, &mut label, count)?;
+    for level in finer.iter().rev() {
+        label = projected(&label, &level.coarse)?;
+        give(&level.graph, &mut label, count)?;
+        smooth(&level.graph, &mut label, count)?;
+    }
+    piece.copy_from_slice(&label);
     Ok(())
 }
 

@@ -1,0 +1,58 @@
+//! Vertices of a graph, groups of elements, go to the neighbouring piece that they share more with.
+
+use super::graph::Graph;
+use super::incidence::WHAT;
+use crate::error::Result;
+use crate::platform::interrupt;
+use crate::platform::memory::filled;
+
+/// No vertex goes to a piece that would then be heavier than this times the mean.
+const FULL: f64 = 1.05;
+const ROUNDS: usize = 6;
+
+pub fn smooth(graph: &Graph, piece: &mut [u32], count: usize) -> Result<()> {
+    let mut weight = filled(count, 0.0, WHAT)?;
+    (0..graph.count()).for_each(|i| weight[piece[i] as usize] += graph.weight[i]);
+    let most = FULL * weight.iter().sum::<f64>() / count as f64;
+    let mut near: Vec<(u32, i64)> = Vec::new();
+    for _ in 0..ROUNDS {
+        interrupt::check()?;
+        let mut moves = 0;
+        for i in 0..graph.count() {
+            shared(graph, piece, i, &mut near);
+            let (from, own) = (piece[i], graph.weight[i]);
+            let here = near.iter().find(|n| n.0 == from).map_or(0, |n| n.1);
+            let heavy = weight[from as usize] > most;
+            let better = |&&(to, share): &&(u32, i64)| {
+                let after = weight[to as usize] + own;
+                let lighter = after < weight[from as usize];
+                to != from
+                    && (after <= most || heavy && lighter)
+                    && (share > here || lighter && (share == here || heavy))
+            };
+            let best = near.iter().filter(better).max_by_key(|n| (n.1, std::cmp::Reverse(n.0)));
+            // a vertex that its piece has nothing else of would leave it empty
+            if let Some(&(to, _)) = best.filter(|_| here > 0) {
+                piece[i] = to;
+                weight[from as usize] -= own;
+                weight[to as usize] += own;
+                moves += 1;
+            }
+        }
+        if moves == 0 {
+            break;
+        }
+    }
+    Ok(())
+}
+
+/// What a vertex shares with each piece around it.
+fn shared(graph: &Graph, piece: &[u32], i: usize, near: &mut Vec<(u32, i64)>) {
+    near.clear();
+    for (j, share) in graph.around(i) {
+        match near.iter_mut().find(|n| n.0 == piece[j]) {
+            Some(n) => n.1 += i64::from(share),
+            None => near.push((piece[j], i64::from(share))),
+        }
+    }
+}
