@@ -2,7 +2,7 @@
 //! of threads.
 
 /// Entries from which a sum is formed in parts: one sum waits for every addition, parts go at the speed of the memory.
-const LONG: usize = 4096;
+const LONG: usize = 16384;
 /// Parts of a long sum.
 const PARTS: usize = 16;
 
