@@ -36,6 +36,16 @@ impl Assembled {
         self.diagonal[i]
     }
 
+    /// `D_ii` of the metric in which all of K is measured: `K_ii`, or `without` for a dof that has no stiffness.
+    pub fn metric(&self, i: usize, without: f64) -> f64 {
+        Some(self.diagonal[i]).filter(|diagonal| *diagonal > 0.0).unwrap_or(without)
+    }
+
+    /// `max K_ii`
+    pub fn largest_diagonal(&self) -> f64 {
+        self.diagonal.iter().copied().fold(0.0, f64::max)
+    }
+
     /// `y = K x`
     pub fn mul(&self, x: &[f64], y: &mut [f64]) -> Result<()> {
         y.fill(0.0);

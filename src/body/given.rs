@@ -28,7 +28,7 @@ impl Stiffness<'_> {
         match self {
             Self::Matrix(k) => k.metric(i, without),
             Self::Host(k) => k.metric(i, without),
-            Self::Assembled(k) => Some(k.diagonal(i)).filter(|diagonal| *diagonal > 0.0).unwrap_or(without),
+            Self::Assembled(k) => k.metric(i, without),
         }
     }
 
@@ -37,7 +37,7 @@ impl Stiffness<'_> {
         match self {
             Self::Matrix(k) => k.largest_diagonal(),
             Self::Host(k) => (0..k.order()).map(|i| k.diagonal(i)).fold(0.0, f64::max),
-            Self::Assembled(k) => (0..k.order()).map(|i| k.diagonal(i)).fold(0.0, f64::max),
+            Self::Assembled(k) => k.largest_diagonal(),
         }
     }
 

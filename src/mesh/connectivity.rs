@@ -106,11 +106,6 @@ impl Connectivity {
             && self.entries.iter().map(|e| host(*e)).eq(dof.iter().copied())
     }
 
-    /// Bytes that are kept.
-    pub fn bytes(&self) -> usize {
-        size_of_val(&self.ptr[..]) + size_of_val(&self.entries[..]) + size_of_val(&self.held[..])
-    }
-
     fn range(&self, element: usize) -> Range<usize> {
         self.ptr[element]..self.ptr[element + 1]
     }

@@ -101,8 +101,6 @@ pub struct Mesh {
     connectivity: Connectivity,
     /// Once the first matrix has come.
     cut: Option<Cut>,
-    /// Passes that are complete.
-    passes: u64,
     /// The elements are those of the host; not so of a body that came from a file.
     elements_known: bool,
 }
@@ -121,7 +119,7 @@ struct Cut {
 
 impl Mesh {
     pub fn new(connectivity: Connectivity) -> Self {
-        Self { connectivity, cut: None, passes: 0, elements_known: true }
+        Self { connectivity, cut: None, elements_known: true }
     }
 
     /// A body of which nothing but its pieces is known, one element of the connectivity for each.
@@ -131,7 +129,7 @@ impl Mesh {
         piece_of.extend(0..pieces.len() as u32);
         let given = filled(pieces.len(), true, WHAT)?;
         let cut = Cut { wanted: 0, piece_of, pieces, held: HeldRows::default(), given, missing: 0 };
-        Ok(Self { connectivity, cut: Some(cut), passes: 1, elements_known: false })
+        Ok(Self { connectivity, cut: Some(cut), elements_known: false })
     }
 
     /// False where nothing but the pieces is known: no element can be added.
@@ -176,11 +174,6 @@ impl Mesh {
         }
     }
 
-    /// Passes that are complete.
-    pub fn passes(&self) -> u64 {
-        self.passes
-    }
-
     /// The matrices of the elements from `first` on: all of them, or none where one is refused. The first one after a complete
     /// pass begins the next.
     pub fn add<'a>(
@@ -215,7 +208,6 @@ impl Mesh {
             let places: Vec<Place> = self.connectivity.places(e).collect();
             cut.add(e, &places, |i, j| ke.get(i, j));
         }
-        self.passes += u64::from(cut.missing == 0);
         Ok(())
     }
 
@@ -228,12 +220,6 @@ impl Mesh {
                 *force = cut.held.force(k, u);
             }
         }
-    }
-
-    /// Bytes that are kept besides the matrices of the pieces.
-    pub fn bytes(&self) -> usize {
-        let cut = |cut: &Cut| size_of_val(&cut.piece_of[..]) + cut.given.len() + cut.held.bytes();
-        self.connectivity.bytes() + self.cut.as_ref().map_or(0, cut)
     }
 }
 

@@ -61,9 +61,4 @@ impl HeldRows {
         let row = self.ptr[k]..self.ptr[k + 1];
         self.col[row.clone()].iter().zip(&self.val[row]).map(|(&j, v)| v * u[j as usize]).sum()
     }
-
-    /// Bytes that are kept.
-    pub fn bytes(&self) -> usize {
-        size_of_val(&self.ptr[..]) + size_of_val(&self.col[..]) + size_of_val(&self.val[..])
-    }
 }

@@ -193,13 +193,10 @@ impl<'a> Recovery<'a> {
 
     /// Where bodies are cut the answer of the host is judged: K+ of its bodies, which rounding might be excused by, is not known.
     fn certified(&self, data: &Data, answer: &Recovered, response: &mut dyn Response) -> Result<Judgement> {
-        let Some(whole) = &self.ready.whole else {
-            return interrupt::part(CERTIFICATE, || certify(data, answer.view(), response));
-        };
-        let (u, loads) = (whole.mean(&answer.u)?, whole.loads(data)?);
-        let mu = &answer.mu[..whole.island.equalities.numbers.len()];
-        let answer = Candidate { u: &u, lambda: &answer.lambda, mu };
-        interrupt::part(CERTIFICATE, || certify(&whole.data(self.model, &loads)?, answer, &mut Unasked))
+        interrupt::part(CERTIFICATE, || match &self.ready.whole {
+            Some(whole) => whole.judged(self.model, data, answer.view()),
+            None => certify(data, answer.view(), response),
+        })
     }
 
     /// The same where rounding of the loads excuses nothing, and K+ is not asked.

@@ -2,7 +2,7 @@
 
 use std::cell::Cell;
 
-use crate::certificate::{certify, Candidate, Certificate, Entry, Unasked};
+use crate::certificate::{certify, Candidate, Certificate, Entry};
 use crate::constraints::RowKind;
 use crate::error::{Error, Kind, Result};
 use crate::model::Model;
@@ -45,10 +45,7 @@ impl Problem {
             let mut response = ByInverse { data: &data, ready, threads: model.threads(), work: &work };
             let judged = match &ready.whole {
                 None => certify(&data, answer, &mut response)?,
-                Some(whole) => {
-                    let (u, loads) = (whole.mean(&own)?, whole.loads(&data)?);
-                    certify(&whole.data(model, &loads)?, Candidate { u: &u, ..answer }, &mut Unasked)?
-                }
+                Some(whole) => whole.judged(model, &data, answer)?,
             };
             let own = named(model, ready, judged.certificate);
             match &mut all {

@@ -71,18 +71,6 @@ pub fn findings_of_host(host: &Model, solved: &Model, mut findings: Findings) ->
         bodies
     };
     (findings.doubtful, findings.soft) = (bodies(&findings.doubtful), bodies(&findings.soft));
-    findings.untouched = untouched(host);
     findings.redundant.retain(|(row, _)| *row < host.contact.len() + host.equalities.len());
     findings
-}
-
-/// Bodies of the host that none of its rows touches, or only such as never close.
-fn untouched(host: &Model) -> Vec<usize> {
-    let mut touched = vec![false; host.bodies.len()];
-    for rows in [&host.contact, &host.equalities] {
-        for (j, _) in (0..rows.len()).filter(|&i| rows.is_finite(i)).flat_map(|i| rows.matrix.row(i)) {
-            touched[host.offsets[1..].partition_point(|end| *end <= j)] = true;
-        }
-    }
-    (0..touched.len()).filter(|&body| !touched[body]).collect()
 }

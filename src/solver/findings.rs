@@ -3,7 +3,7 @@
 use crate::constraints::RowKind;
 use crate::error::{Error, Kind, Place, Proof};
 use crate::model::{kind_and_row, Model};
-use crate::setup::{Duals, Prepared, Ready};
+use crate::setup::{Duals, Prepared};
 use crate::solve::{Outcome, Report};
 
 #[derive(Debug, Clone, PartialEq)]
@@ -38,8 +38,8 @@ pub struct Findings {
 }
 
 impl Findings {
-    pub fn of_report(model: &Model, prepared: &Prepared, report: &Report) -> Self {
-        let mut findings = Self::new(model, prepared, Ok(report.outcome));
+    pub fn of_report(host: &Model, model: &Model, prepared: &Prepared, report: &Report) -> Self {
+        let mut findings = Self::new(host, model, prepared, Ok(report.outcome));
         (findings.undetermined, findings.unheld) = (report.undetermined, report.unheld);
         findings.place.body = report.body;
         findings
@@ -47,7 +47,7 @@ impl Findings {
 
     /// `model` is what was solved; the error is about the bodies of the host.
     pub fn of_error(host: &Model, model: &Model, prepared: &Prepared, error: &Error) -> Self {
-        let mut findings = Self::new(model, prepared, Err(error.kind));
+        let mut findings = Self::new(host, model, prepared, Err(error.kind));
         findings.place = *error.place;
         findings.proof = error.proof.as_deref().cloned();
         match &findings.proof {
@@ -64,7 +64,12 @@ impl Findings {
         findings
     }
 
-    fn new(model: &Model, prepared: &Prepared, end: std::result::Result<Outcome, Kind>) -> Self {
+    fn new(
+        host: &Model,
+        model: &Model,
+        prepared: &Prepared,
+        end: std::result::Result<Outcome, Kind>,
+    ) -> Self {
         let duals = prepared.duals(model);
         Self {
             end,
@@ -75,7 +80,7 @@ impl Findings {
             undetermined: 0,
             unheld: 0.0,
             redundant: duals.map(|duals| redundant(model, duals)).unwrap_or_default(),
-            untouched: duals.map(|duals| untouched(model, duals)).unwrap_or_default(),
+            untouched: duals.map(|_| untouched(host)).unwrap_or_default(),
             doubtful: doubtful(model, prepared),
             soft: soft(model, prepared),
             contact: model.contact.len(),
@@ -137,15 +142,15 @@ fn soft(model: &Model, prepared: &Prepared) -> Vec<usize> {
     (0..model.bodies.len()).filter(soft).collect()
 }
 
-/// Bodies that no row with entries touches, or only such as never close.
-fn untouched(model: &Model, duals: &Duals) -> Vec<usize> {
-    let mut touched = vec![false; model.bodies.len()];
-    for Ready { island, rows, .. } in &duals.islands {
-        for &j in &rows.scaled.col {
-            touched[island.bodies[island.body_of(j)]] = true;
+/// Bodies of the host that none of its rows touches, or only such as never close.
+fn untouched(host: &Model) -> Vec<usize> {
+    let mut touched = vec![false; host.bodies.len()];
+    for rows in [&host.contact, &host.equalities] {
+        for (j, _) in (0..rows.len()).filter(|&i| rows.is_finite(i)).flat_map(|i| rows.matrix.row(i)) {
+            touched[host.offsets[1..].partition_point(|end| *end <= j)] = true;
         }
     }
-    (0..touched.len()).filter(|&p| !touched[p]).collect()
+    (0..touched.len()).filter(|&body| !touched[body]).collect()
 }
 
 /// A motion of all unknowns on one body, where it has coordinates: velocity of the origin (length) and rotation about the axes.

@@ -110,7 +110,12 @@ impl Problem {
                 let report = report.clone();
                 watch.log.phases(&report.phases, usize::MAX)?;
                 result(&watch.log, &report)?;
-                self.findings = Some(self.found(Findings::of_report(self.solved(), &self.prepared, &report)));
+                self.findings = Some(self.found(Findings::of_report(
+                    &self.model,
+                    self.solved(),
+                    &self.prepared,
+                    &report,
+                )));
                 Ok(report)
             }
             (failure, _) => {

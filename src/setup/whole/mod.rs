@@ -5,7 +5,7 @@ mod null_space;
 use std::sync::Arc;
 
 use crate::body::GeneralizedInverse;
-use crate::certificate::{grounded, BodyData, Data};
+use crate::certificate::{certify, grounded, BodyData, Candidate, Data, Judgement, Unasked};
 use crate::constraints::{RowKind, RowSet};
 use crate::error::{Error, Kind, Result};
 use crate::linalg::vector::power_of_two_below;
@@ -78,7 +78,7 @@ impl Whole {
         let of_host = |kind| members(cut.members(kind), end, kind, parts, &place);
         let (contact, equalities) = (of_host(RowKind::Inequality)?, of_host(RowKind::Equality)?);
         let stiffness = |body: &usize| match &parts.assembled[*body] {
-            Some(k) => (0..k.order()).map(|i| k.diagonal(i)).fold(0.0, f64::max),
+            Some(k) => k.largest_diagonal(),
             None => model.bodies[parts.first[*body]].body.k().map_or(0.0, |k| k.largest_diagonal()),
         };
         let unit = power_of_two_below(bodies.iter().map(stiffness).fold(0.0, f64::max));
@@ -91,13 +91,21 @@ impl Whole {
         Ok(Some(Self { island, bodies, place }))
     }
 
-    /// The mean of the copies of every unknown, by their shares; also the sum of loads that were shared out.
-    pub fn mean(&self, of_pieces: &[f64]) -> Result<Vec<f64>> {
+    /// The judgement of an answer of the pieces by bodies and rows of the host; `data`: the pieces with their loads. What rounding might
+    /// be excused by, K+ of the bodies, is not known.
+    pub fn judged(&self, model: &Model, data: &Data, answer: Candidate) -> Result<Judgement> {
+        let (u, loads) = (self.mean(answer.u)?, self.loads(data)?);
+        let mu = &answer.mu[..self.island.equalities.numbers.len()];
+        certify(&self.data(model, &loads)?, Candidate { u: &u, mu, ..answer }, &mut Unasked)
+    }
+
+    /// The mean of the copies of every unknown, by their shares.
+    fn mean(&self, of_pieces: &[f64]) -> Result<Vec<f64>> {
         self.gathered(of_pieces, |share| share)
     }
 
     /// The sum of the loads of the copies of every unknown.
-    pub fn loads(&self, data: &Data) -> Result<Vec<f64>> {
+    fn loads(&self, data: &Data) -> Result<Vec<f64>> {
         let mut all = zeros(self.place.len(), WHAT)?;
         for body in &data.bodies {
             body.load.iter().for_each(|load| all[body.range()].copy_from_slice(load));
@@ -112,7 +120,7 @@ impl Whole {
     }
 
     /// The island as the certificate sees it; `loads` over its unknowns.
-    pub fn data<'a>(&'a self, model: &'a Model, loads: &'a [f64]) -> Result<Data<'a>> {
+    fn data<'a>(&'a self, model: &'a Model, loads: &'a [f64]) -> Result<Data<'a>> {
         let missing = || Error::new(Kind::State, "a body has not been set up");
         let parts = model.parts.as_ref().ok_or_else(missing)?;
         let mut bodies = reserved(self.bodies.len(), WHAT)?;
@@ -153,9 +161,8 @@ impl Whole {
     pub fn amplitudes(&self, model: &Model, body: usize, u: &[f64]) -> Vec<f64> {
         let (Some(vectors), Some(parts)) = (self.null_space(body), &model.parts) else { return Vec::new() };
         let Some(k) = &parts.assembled[body] else { return Vec::new() };
-        let unit = power_of_two_below((0..k.order()).map(|i| k.diagonal(i)).fold(0.0, f64::max));
-        let weight = |i: usize| Some(k.diagonal(i) / unit).filter(|d| *d > 0.0).unwrap_or(1.0);
-        let weighed: Vec<f64> = u.iter().enumerate().map(|(i, u)| weight(i) * u).collect();
+        let unit = power_of_two_below(k.largest_diagonal());
+        let weighed: Vec<f64> = u.iter().enumerate().map(|(i, u)| k.metric(i, unit) / unit * u).collect();
         vectors.mul_transposed(&weighed)
     }
 }

@@ -47,8 +47,8 @@ pub fn null_space(model: &Model, parts: &Parts, body: usize, bases: &[&Matrix]) 
 /// `R'DR = unit`
 fn orthonormal(parts: &Parts, body: usize, mut vectors: Matrix) -> Matrix {
     let Some(k) = &parts.assembled[body] else { return vectors };
-    let unit = power_of_two_below((0..k.order()).map(|i| k.diagonal(i)).fold(0.0, f64::max));
-    let root = |i: usize| Some(k.diagonal(i) / unit).filter(|d| *d > 0.0).unwrap_or(1.0).sqrt();
+    let unit = power_of_two_below(k.largest_diagonal());
+    let root = |i: usize| (k.metric(i, unit) / unit).sqrt();
     for j in 0..vectors.cols {
         vectors.col_mut(j).iter_mut().enumerate().for_each(|(i, v)| *v *= root(i));
     }
