@@ -5,6 +5,7 @@
 use std::fmt;
 use std::sync::Arc;
 
+use crate::body::carried::{self, Carried, Motions};
 use crate::body::fixing::hold_as_well;
 use crate::body::null_space::{one_column_each, ROUNDING as KNOWN};
 use crate::body::probe::{known_to, probe, Factor};
@@ -18,8 +19,8 @@ use crate::linalg::{Analysis, Cholesky, Csr, Matrix, Multiple, Packed};
 pub struct GeneralizedInverse {
     /// `R_p`, n x r, with `R'DR = I`.
     pub null_space: Matrix,
-    /// `lambda_j = r_j'K r_j` of motions that K resists softly, 0 of the others; none where it resists none. K+ is that of a
-    /// K without it: see `soft`.
+    /// `lambda_j = r_j'K r_j` of motions that K resists softly or that are carried, 0 of the others; none where it resists none. K+ is
+    /// that of a K without it: see `soft` and `carried`.
     pub stiffness: Vec<f64>,
     /// Rounding of its vectors, against the fastest dof of each, no unit: what a row or a load has less of is nothing.
     pub rounding: f64,
@@ -36,6 +37,8 @@ pub struct GeneralizedInverse {
     /// Coordinates that did not fit: the null space was sought in K.
     pub misfit: Option<Misfit>,
     pub(super) factor: Factor,
+    /// What is taken from K+ for the motions that are carried, the last ones.
+    pub(super) carried: Option<Arc<Carried>>,
 }
 
 /// `K_p+` of a body and what it took.
@@ -59,6 +62,8 @@ pub struct Known {
     pub(super) given: bool,
     /// K may resist or drive the vectors, which need not be exact.
     pub(super) soft: bool,
+    /// Rigid motions that the coarse problem gets whether K resists them or not.
+    pub(super) rigid: Option<Matrix>,
     pub(super) symbolic: Option<Arc<Symbolic>>,
     /// What rounding of the entries resists of it.
     pub(super) doubt: Option<Doubt>,
@@ -115,12 +120,25 @@ impl GeneralizedInverse {
 
     /// `x <- K+ x`
     pub fn apply_in_place(&self, x: &mut [f64]) -> Result<()> {
-        self.factor.solve(x)
+        match &self.carried {
+            Some(carried) => carried.apply_in_place(x, |x| self.factor.solve(x)),
+            None => self.factor.solve(x),
+        }
     }
 
     /// K resists or drives some motion of the null space.
     pub fn is_soft(&self) -> bool {
-        self.stiffness.iter().any(|stiffness| *stiffness != 0.0)
+        self.stiffness.iter().take(self.own_motions()).any(|stiffness| *stiffness != 0.0)
+    }
+
+    /// Motions that are not carried.
+    pub(super) fn own_motions(&self) -> usize {
+        self.null_space.cols - self.carried.as_ref().map_or(0, |carried| carried.count())
+    }
+
+    /// The null space without the motions that are carried.
+    pub fn free_motions(&self) -> Matrix {
+        self.null_space.columns(0..self.own_motions())
     }
 
     /// Entries of the factor; 0 where the host has it.
@@ -146,27 +164,47 @@ impl GeneralizedInverse {
 
     /// The columns `which` of `B K+ B'`, m x `which.len()`.
     pub fn inverse_columns(&self, rows: &Csr, which: &[usize]) -> Result<Matrix> {
-        match &self.factor {
-            Factor::Own(factor) => inverse_columns(factor, rows, which),
-            Factor::Host(host) => host.inverse_columns(rows, which),
-        }
+        let mut columns = match &self.factor {
+            Factor::Own(factor) => inverse_columns(factor, rows, which)?,
+            Factor::Host(host) => host.inverse_columns(rows, which)?,
+        };
+        self.carried.iter().try_for_each(|carried| carried.take_from_columns(rows, which, &mut columns))?;
+        Ok(columns)
     }
 
     /// `B K+ B'` for the rows B (m x n) of this body.
     pub fn inverse_form(&self, rows: &Csr) -> Result<Packed> {
-        match &self.factor {
-            Factor::Own(factor) => inverse_form(factor, rows),
-            Factor::Host(host) => host.inverse_form(rows),
+        let mut form = match &self.factor {
+            Factor::Own(factor) => inverse_form(factor, rows)?,
+            Factor::Host(host) => host.inverse_form(rows)?,
+        };
+        self.carried.iter().try_for_each(|carried| carried.take_from_form(rows, &mut form))?;
+        Ok(form)
+    }
+
+    /// What K makes of the vectors: `soft` motions, or a null space; `rigid` motions are carried.
+    pub(super) fn judged_by(self, k: &Multiple, soft: bool, rigid: Option<&Matrix>) -> Result<Self> {
+        let judged = if soft { self.softened(k)? } else { self.measured(k)? };
+        match rigid {
+            Some(rigid) => judged.with_carried(k, rigid),
+            None => Ok(judged),
         }
     }
 
-    /// What K makes of the vectors: `soft` motions, or a null space.
-    pub(super) fn judged_by(self, k: &Multiple, soft: bool) -> Result<Self> {
-        if soft {
-            self.softened(k)
-        } else {
-            self.measured(k)
+    /// The rigid motions that K resists are carried: [`carried`](crate::body::carried).
+    pub(super) fn with_carried(mut self, k: &Multiple, rigid: &Matrix) -> Result<Self> {
+        if self.null_space.cols == rigid.cols || self.is_soft() {
+            return Ok(self);
         }
+        if let Some(Motions { carried, vectors, stiffness }) =
+            carried::motions(&self.factor, k, &self.null_space, rigid)?
+        {
+            self.stiffness = vec![0.0; self.null_space.cols];
+            self.stiffness.extend(stiffness);
+            (0..vectors.cols).for_each(|j| self.null_space.push_col(vectors.col(j)));
+            self.carried = Some(Arc::new(carried));
+        }
+        Ok(self)
     }
 
     /// The motions of the vectors that it has, and what K resists of them.
@@ -192,8 +230,8 @@ impl GeneralizedInverse {
 impl Known {
     /// `given`: the fixing dofs are those of the host.
     pub(super) fn of(k: Multiple, null_space: Matrix, error: f64, fixing: Vec<usize>, given: bool) -> Self {
-        let (soft, symbolic, doubt, retry) = (false, None, None, None);
-        Self { k, null_space, error, fixing, given, soft, symbolic, doubt, retry }
+        let (soft, rigid, symbolic, doubt, retry) = (false, None, None, None, None);
+        Self { k, null_space, error, fixing, given, soft, rigid, symbolic, doubt, retry }
     }
 
     /// Dofs chosen for other values hold this body, too, unless much worse than its own would.
@@ -247,8 +285,9 @@ impl Known {
             doubts: self.doubt.into_iter().collect(),
             misfit: None,
             factor,
+            carried: None,
         };
-        inverse.judged_by(&self.k, self.soft)
+        inverse.judged_by(&self.k, self.soft, self.rigid.as_ref())
     }
 }
 

@@ -38,6 +38,7 @@ impl GeneralizedInverse {
             doubts: Vec::new(),
             misfit: None,
             factor: Factor::Host(k),
+            carried: None,
         })
     }
 }

@@ -5,6 +5,7 @@ mod alike;
 mod assembled;
 mod borrowed;
 mod boundary;
+mod carried;
 mod digits;
 mod fixing;
 mod generalized_inverse;

@@ -4,7 +4,10 @@ use std::sync::Arc;
 
 use crate::body::fixing::{fixing_dofs, given_dofs};
 use crate::body::generalized_inverse::{Factorised, GeneralizedInverse, Known, Layout, Retry, Symbolic};
-use crate::body::null_space::{verified, Modes, NullSpaceInput, Verified, ROUNDING as KNOWN};
+use crate::body::null_space::{
+    one_column_each, verified, Modes, NullSpaceInput, Verified, ROUNDING as KNOWN,
+};
+use crate::body::rigid_modes::RigidModes;
 use crate::body::search::Search;
 use crate::error::{Error, Kind, Result};
 use crate::linalg::Multiple;
@@ -59,6 +62,16 @@ impl Plan {
         }
     }
 
+    /// Rigid motions that the coarse problem is to have, whether K resists them or not.
+    pub fn carrying(self, rigid: &RigidModes) -> Result<Self> {
+        Ok(match self {
+            Self::Known(known) => {
+                Self::Known(Known { rigid: Some(one_column_each(&rigid.modes, &rigid.parts())?), ..known })
+            }
+            planned => planned,
+        })
+    }
+
     /// Takes over the way of elimination of another body with the same pattern, or of this one with other values, where
     /// it serves here as well. Its analysis is wanted from whoever has it, by `set_analysis`.
     pub fn follow(&mut self, layout: &Layout) -> Result<bool> {
@@ -111,14 +124,15 @@ impl Plan {
     /// plan, where it has one and the other did not have to be sought, or holds further dofs.
     pub fn with_factor_of(self, other: &GeneralizedInverse) -> Result<GeneralizedInverse> {
         match self {
-            Self::Known(Known { k, null_space, error, doubt, soft, .. })
-                if other.gap.is_none() && other.null_space.cols == null_space.cols =>
+            Self::Known(Known { k, null_space, error, doubt, soft, rigid, .. })
+                if other.gap.is_none() && other.own_motions() == null_space.cols =>
             {
                 let doubts = doubt.into_iter().collect();
                 let (rounding, stiffness) = (KNOWN, Vec::new());
+                let (carried, other) = (None, other.clone());
                 let own =
-                    GeneralizedInverse { null_space, stiffness, rounding, error, doubts, ..other.clone() };
-                own.judged_by(&k, soft)
+                    GeneralizedInverse { null_space, stiffness, rounding, error, doubts, carried, ..other };
+                own.judged_by(&k, soft, rigid.as_ref())
             }
             Self::Known(_) | Self::Search(_) => Ok(other.clone()),
         }

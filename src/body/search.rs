@@ -310,6 +310,7 @@ impl Search {
             misfit: None,
             doubts: soft.iter().filter_map(|part| part.doubt).collect(),
             factor,
+            carried: None,
         })
     }
 

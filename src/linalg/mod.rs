@@ -27,6 +27,7 @@ pub use dense::pivoted::PivotedCholesky;
 pub use semidefinite::dense::SpdSolver;
 pub use sparse::csr::Csr;
 pub use sparse::graph;
+pub use sparse::runs::Runs;
 pub use sparse::symmetric::{Multiple, Symmetric};
 
 use crate::error::Result;

@@ -1,6 +1,8 @@
 //! Loops over vectors, always in the order of the entries, sums of long ones in a fixed number of parts: the same bits on any number
 //! of threads.
 
+use crate::platform::threads::{parts, parts_of};
+
 /// Entries from which a sum is formed in parts: one sum waits for every addition, parts go at the speed of the memory.
 const LONG: usize = 16384;
 /// Parts of a long sum.
@@ -11,12 +13,41 @@ pub fn dot(x: &[f64], y: &[f64]) -> f64 {
     if x.len() < LONG {
         return x.iter().zip(y).map(|(a, b)| a * b).sum();
     }
+    dot_in_parts(x, y)
+}
+
+fn dot_in_parts(x: &[f64], y: &[f64]) -> f64 {
     let ((x, x_rest), (y, y_rest)) = (x.as_chunks::<PARTS>(), y.as_chunks::<PARTS>());
     let mut sums = [0.0; PARTS];
     for (x, y) in x.iter().zip(y) {
         (0..PARTS).for_each(|k| sums[k] += x[k] * y[k]);
     }
     sums.iter().sum::<f64>() + x_rest.iter().zip(y_rest).map(|(a, b)| a * b).sum::<f64>()
+}
+
+/// Rows of a part of a loop over several long vectors.
+const PART: usize = LONG;
+
+/// `x_k'y` of several vectors.
+pub fn dots(x: &[&[f64]], y: &[f64]) -> Vec<f64> {
+    if y.len() < LONG {
+        return x.iter().map(|x| dot(x, y)).collect();
+    }
+    let of_part = parts(y.len().div_ceil(PART), |part| {
+        let rows = PART * part..y.len().min(PART * (part + 1));
+        x.iter().map(|x| dot_in_parts(&x[rows.clone()], &y[rows.clone()])).collect::<Vec<f64>>()
+    });
+    let mut sums = vec![0.0; x.len()];
+    of_part.iter().for_each(|part| axpy(1.0, part, &mut sums));
+    sums
+}
+
+/// `y += sum_k a_k x_k`
+pub fn add_multiples(a: &[f64], x: &[&[f64]], y: &mut [f64]) {
+    parts_of(y.chunks_mut(PART).collect(), |part, y| {
+        let rows = PART * part..PART * part + y.len();
+        a.iter().zip(x).for_each(|(a, x)| axpy(*a, &x[rows.clone()], y));
+    });
 }
 
 /// `|x|_2`

@@ -1,5 +1,6 @@
 //! The library's own threads: as many as the host asks for, made when first needed, never rayon's global pool.
 
+use std::cell::Cell;
 use std::hint::black_box;
 use std::sync::mpsc::{channel, RecvTimeoutError, Sender};
 use std::sync::{Arc, Mutex};
@@ -60,6 +61,42 @@ pub fn run<T: Send>(
         None => (0..count).map(&task).collect(),
     };
     results.into_iter().collect()
+}
+
+thread_local! {
+    /// Threads that loops over long vectors may use.
+    static TEAM: Cell<usize> = const { Cell::new(1) };
+}
+
+/// Does some work in which [`parts`] may share loops among so many threads.
+pub fn with_team<T>(threads: usize, work: impl FnOnce() -> T) -> T {
+    struct Before(usize);
+    impl Drop for Before {
+        fn drop(&mut self) {
+            TEAM.set(self.0);
+        }
+    }
+    let _before = Before(TEAM.replace(threads));
+    work()
+}
+
+/// Results of the parts `0..count` of a loop, in order. Which parts there are must not depend on the number of threads, and none may
+/// wait or fail.
+pub fn parts<T: Send>(count: usize, part: impl Fn(usize) -> T + Sync) -> Vec<T> {
+    match if count > 1 { pool_for(TEAM.get()) } else { None } {
+        Some(pool) => pool.install(|| (0..count).into_par_iter().map(&part).collect()),
+        None => (0..count).map(&part).collect(),
+    }
+}
+
+/// The same where every part works on a piece of its own: piece k of `pieces` goes to part k.
+pub fn parts_of<P: Send, T: Send>(pieces: Vec<P>, part: impl Fn(usize, P) -> T + Sync) -> Vec<T> {
+    match if pieces.len() > 1 { pool_for(TEAM.get()) } else { None } {
+        Some(pool) => {
+            pool.install(|| pieces.into_par_iter().enumerate().map(|(k, piece)| part(k, piece)).collect())
+        }
+        None => pieces.into_iter().enumerate().map(|(k, piece)| part(k, piece)).collect(),
+    }
 }
 
 /// The same where the calling thread runs the tasks `on_caller` itself.

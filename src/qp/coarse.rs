@@ -1,18 +1,22 @@
 //! The coarse space of a face: `W_F = G_F G_F'` over the rows F that are not held at their bound, r x r and
 //! sparse. Its pattern is analysed once for all faces, and what they share is factorised once.
 
+mod space;
+
 use std::sync::Arc;
 
 use crate::error::Result;
 use crate::linalg::semidefinite::clusters::Blocks;
-use crate::linalg::semidefinite::faces::FaceFactors;
 use crate::linalg::semidefinite::sparse::{FaceRows, PseudoInverse, SINGULAR, WEAK};
 use crate::linalg::semidefinite::GeneralInverse;
-use crate::linalg::vector::{axpy, norm, norm_max, power_of_two_below};
-use crate::linalg::{Cholesky, Csr, Matrix};
+use crate::linalg::vector::{axpy, norm, norm_max};
+use crate::linalg::{Cholesky, Csr, Matrix, Runs};
 use crate::platform::memory::headroom;
 use crate::platform::{interrupt, tally};
 use crate::qp::Qp;
+use space::Space;
+
+pub use space::KeptSpace;
 
 pub struct Coarse<'a> {
     /// `G'`, m x r.
@@ -20,17 +24,10 @@ pub struct Coarse<'a> {
     blocks: &'a [usize],
     /// A motion a is free when `|G_F a| <= rounding |G| |a|`.
     rounding: f64,
-    /// The power of two s that W is divided by twice.
-    unit: f64,
-    /// Diagonal of the whole `G G' / s^2`: the largest entry in [1, 4).
-    whole: Vec<f64>,
-    /// Rows that faces may hold.
-    bounded: Vec<bool>,
-    /// None where there are no modes.
-    factors: Option<FaceFactors>,
-    /// Made for the first face that leaves much of the space free.
-    by_blocks: Option<Blocks>,
-    /// The last such face left motions free: the next one is likely to.
+    space: Space,
+    /// Where the space goes in the end.
+    kept: Option<&'a KeptSpace>,
+    /// The last face that left much of the space free left motions free: the next one is likely to.
     left_free: bool,
     /// The face of all rows, and the last other one.
     faces: [Option<CoarseFace>; 2],
@@ -56,55 +53,51 @@ enum Solver {
 }
 
 impl<'a> Coarse<'a> {
-    /// That of a problem.
+    /// That of a problem; the rows of G of stiff and of soft bodies are of one size.
     pub fn of(qp: &Qp<'a>) -> Result<Self> {
-        Self::new(qp.g_transposed, qp.blocks, qp.bounded, qp.rounding)
+        let kept = qp.kept.and_then(|kept| kept.take(qp.g_transposed, qp.bounded));
+        let space = kept.map_or_else(|| Space::new(qp.g_transposed, qp.bounded), Ok)?;
+        let mut coarse = Self::on_space(space, qp.g_transposed, qp.blocks, qp.rounding);
+        coarse.kept = qp.kept;
+        Ok(coarse)
     }
 
-    /// The rows of G of stiff and of soft bodies are of one size; `rounding` is how far they are known against it. Faces hold rows
-    /// that are `bounded`.
-    fn new(g_transposed: &'a Csr, blocks: &'a [usize], bounded: &[bool], rounding: f64) -> Result<Self> {
-        let mut whole = vec![0.0; g_transposed.cols];
-        for (&k, v) in g_transposed.col.iter().zip(&g_transposed.val) {
-            whole[k] += v * v;
-        }
-        let unit = power_of_two_below(norm_max(&whole).sqrt());
-        whole.iter_mut().for_each(|v| *v /= unit * unit);
-        let factors = match whole.len() {
-            0 => None,
-            _ => Some(FaceFactors::new(g_transposed, bounded.to_vec())?),
-        };
-        Ok(Self {
+    /// `rounding` is how far rows of G are known against their size.
+    fn on_space(space: Space, g_transposed: &'a Csr, blocks: &'a [usize], rounding: f64) -> Self {
+        Self {
             g_transposed,
             blocks,
             rounding,
-            unit,
-            whole,
-            bounded: bounded.to_vec(),
-            factors,
-            by_blocks: None,
+            space,
+            kept: None,
             left_free: false,
             faces: [None, None],
             last_multiplier: None,
             solves: 0,
             factorisations: 0,
-        })
+        }
+    }
+
+    /// `G'`
+    pub fn rows(&self) -> &Runs {
+        &self.space.rows
     }
 
     /// Dimension r of the coarse space.
     pub fn dimension(&self) -> usize {
-        self.whole.len()
+        self.space.whole.len()
     }
 
     /// The largest diagonal entry of `G G'`.
     pub fn largest(&self) -> f64 {
-        self.unit * self.unit * norm_max(&self.whole)
+        self.space.unit * self.space.unit * norm_max(&self.space.whole)
     }
 
     /// The space on the rows that are not held: `W_F` is factorised, unless that has just been done or the host or the time forbids it.
     pub fn on(&mut self, held: &[bool]) -> Result<OnFace<'_>> {
         let selected = usize::from(held.contains(&true));
-        if self.factors.is_some() && self.faces[selected].as_ref().is_none_or(|face| face.held != held) {
+        if self.space.factors.is_some() && self.faces[selected].as_ref().is_none_or(|face| face.held != held)
+        {
             interrupt::check()?;
             tally::costly();
             self.faces[selected] = None;
@@ -112,32 +105,33 @@ impl<'a> Coarse<'a> {
             self.factorisations += 1;
         }
         let solver = self.faces[selected].as_ref().map(|face| &face.solver);
-        Ok(OnFace { unit: self.unit, solver, solves: &mut self.solves })
+        Ok(OnFace { unit: self.space.unit, solver, solves: &mut self.solves })
     }
 
     /// `G D G' + rho I`, D = diag(`weights`) >= 0; none where there are no modes, or D leaves one of them to nothing.
     pub fn weighted(&mut self, weights: &[f64], rho: f64) -> Result<Option<Weighted>> {
         /// Of its diagonal entry in `G G'`: what weights that vanish do not resist is held by this part.
         const HELD: f64 = 1e-10;
-        let Some(factors) = &self.factors else { return Ok(None) };
+        let Space { factors: Some(factors), unit, whole, .. } = &self.space else { return Ok(None) };
         interrupt::check()?;
         tally::costly();
         let mut w = factors.gram().weighted(self.g_transposed, |i| weights[i])?;
-        w.val.iter_mut().for_each(|v| *v /= self.unit * self.unit);
-        for (k, whole) in self.whole.iter().enumerate() {
+        w.val.iter_mut().for_each(|v| *v /= unit * unit);
+        for (k, whole) in whole.iter().enumerate() {
             let held = if *whole > 0.0 { HELD * whole } else { 1.0 };
-            w.val[w.ptr[k + 1] - 1] += rho / (self.unit * self.unit) + held;
+            w.val[w.ptr[k + 1] - 1] += rho / (unit * unit) + held;
         }
         self.factorisations += 1;
         let factor = factors.analysis().attempt(&w, 1.0)?.ok();
-        Ok(factor.map(|factor| Weighted { factor, unit: self.unit }))
+        Ok(factor.map(|factor| Weighted { factor, unit: *unit }))
     }
 
     /// `W_F^-1`, or W_F+ where some motions are free or held weakly: by dense parts where these are small.
     fn solver(&mut self, held: &[bool]) -> Result<Solver> {
-        let (g_transposed, unit, whole, rounding) =
-            (self.g_transposed, self.unit, &self.whole[..], self.rounding);
-        if let Some(factors) = self.factors.as_mut().filter(|_| !self.left_free) {
+        let (g_transposed, rounding) = (self.g_transposed, self.rounding);
+        let Space { unit, whole, factors, bounded, by_blocks, .. } = &mut self.space;
+        let (unit, whole) = (*unit, &whole[..]);
+        if let Some(factors) = factors.as_mut().filter(|_| !self.left_free) {
             let by = 1.0 / (unit * unit);
             if let Ok(factor) = factors.factor(g_transposed, held, (by, 0.0), |_| ())? {
                 let smallest = factor.smallest_pivot();
@@ -152,13 +146,13 @@ impl<'a> Coarse<'a> {
                 return Ok(Solver::Singular(Box::new(inverse)));
             }
         }
-        let mut by_blocks = match self.by_blocks.take() {
-            Some(by_blocks) => by_blocks,
-            None => Blocks::new(g_transposed, self.blocks, &self.bounded, (unit, whole, rounding))?,
+        let mut known = match by_blocks.take() {
+            Some(known) => known,
+            None => Blocks::new(g_transposed, self.blocks, bounded, (unit, whole, rounding))?,
         };
-        let inverse = by_blocks.inverse(held)?;
+        let inverse = known.inverse(held)?;
         self.left_free = inverse.deficiency() > 0;
-        self.by_blocks = Some(by_blocks);
+        *by_blocks = Some(known);
         Ok(Solver::Singular(Box::new(inverse)))
     }
 
@@ -174,18 +168,14 @@ impl<'a> Coarse<'a> {
         /// Rest of `G_F (v - G'alpha)` times the inverse root of the smallest eigenvalue of W_F to be expected, r in a chain of r
         /// motions, against what is left of v: more would be error.
         const ERROR: f64 = 0.1;
-        let (g_transposed, unit, amplified) = (self.g_transposed, self.unit, self.dimension() as f64);
+        let amplified = self.dimension() as f64;
         let mut rest: Vec<f64> = v.iter().zip(held).map(|(v, held)| if *held { 0.0 } else { *v }).collect();
-        let mut image = g_transposed.mul_transposed(&rest);
-        let mut face = self.on(held)?;
-        let mut alpha = face.solve(&image)?;
+        let image = self.image(&rest);
+        let mut alpha = self.on(held)?.solve(&image)?;
         for pass in 1.. {
-            image.fill(0.0);
-            // every row of G' is read once for both
-            for i in (0..v.len()).filter(|&i| !held[i]) {
-                rest[i] = v[i] - g_transposed.row_dot(i, &alpha);
-                g_transposed.row(i).for_each(|(k, g)| image[k] += rest[i] * g);
-            }
+            let image = self.space.rows.residual(held, v, &alpha, &mut rest);
+            let unit = self.space.unit;
+            let mut face = self.on(held)?;
             let known = !face.is_weak() && amplified * norm(&image) <= ERROR * unit * norm(&rest);
             if known || pass == PASSES {
                 break;
@@ -197,7 +187,17 @@ impl<'a> Coarse<'a> {
 
     /// `G x`
     pub fn image(&self, x: &[f64]) -> Vec<f64> {
-        self.g_transposed.mul_transposed(x)
+        self.space.rows.mul_transposed(x)
+    }
+
+    /// `e - G x`
+    pub fn left(&self, e: &[f64], x: &[f64]) -> Vec<f64> {
+        self.space.rows.mul_transposed_add(-1.0, x, e.to_vec())
+    }
+
+    /// `|G||x|`
+    pub fn terms(&self, x: &[f64]) -> Vec<f64> {
+        self.space.rows.mul_transposed_abs(x)
     }
 
     /// `v <- P_F v`: held entries to zero, then `v_F - G_F' W_F+ G_F v_F`.
@@ -208,6 +208,15 @@ impl<'a> Coarse<'a> {
             v.copy_from_slice(&self.fitted(held, v)?.1);
         }
         Ok(())
+    }
+}
+
+impl Drop for Coarse<'_> {
+    fn drop(&mut self) {
+        if let Some(kept) = self.kept {
+            self.faces = [None, None];
+            kept.keep(std::mem::take(&mut self.space));
+        }
     }
 }
 
@@ -312,8 +321,13 @@ impl<'a> AnswerFace<'a> {
     /// `rounding`: how far rows of G are known.
     pub fn new(g_transposed: &'a Csr, blocks: &'a [usize], held: &'a [bool], rounding: f64) -> Result<Self> {
         // no other face will follow
-        let all = vec![true; held.len()];
-        Ok(Self { coarse: Coarse::new(g_transposed, blocks, &all, rounding)?, held })
+        let space = Space::new(g_transposed, &vec![true; held.len()])?;
+        Ok(Self { coarse: Coarse::on_space(space, g_transposed, blocks, rounding), held })
+    }
+
+    /// Of a problem, with what its methods know of the space.
+    pub fn of(qp: &Qp<'a>, held: &'a [bool]) -> Result<Self> {
+        Ok(Self { coarse: Coarse::of(qp)?, held })
     }
 
     /// Basis of the free motions, `|G_F a| <= rounding |G| |a|`, r x deficiency: what the rows that are not held do not resist.

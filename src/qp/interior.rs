@@ -190,6 +190,7 @@ mod tests {
             e: &[1.0, 0.0],
             bounded: &[true; 3],
             preconditioner: None,
+            kept: None,
         };
         let mut coarse = Coarse::of(&qp).unwrap();
         let near = |found: &[f64], known: &[f64]| found.iter().zip(known).all(|(a, b)| (a - b).abs() < 1e-5);

@@ -21,7 +21,7 @@ mod smalbe;
 
 pub use acceptance::{AcceptanceTest, Limits, Observer, Solution, StepKind, StepReport, Verdict};
 pub use active_set::{active_set, Direct, Face};
-pub use coarse::AnswerFace;
+pub use coarse::{AnswerFace, KeptSpace};
 pub use nearest::{nearest_point, Nearest, Polyhedron};
 pub use proportioning::{minimise, not_held, weighted, KEPT};
 pub use proximal::proximal;
@@ -44,6 +44,8 @@ pub struct Qp<'a> {
     pub e: &'a [f64],
     pub bounded: &'a [bool],
     pub preconditioner: Option<&'a dyn Preconditioner>,
+    /// Where what faces of this G share is kept from one method and one solve to the next.
+    pub kept: Option<&'a KeptSpace>,
 }
 
 impl Qp<'_> {

@@ -32,6 +32,14 @@ const FAR: f64 = 0.5;
 /// A sum this small against its terms is zero: where the bounds leave one point only, all rows must reach them.
 const ROUNDING: f64 = 8.0 * f64::EPSILON;
 
+/// The point y that is projected; entries in `held` stay zero.
+#[derive(Clone, Copy)]
+struct Target<'a> {
+    qp: &'a Qp<'a>,
+    y: &'a [f64],
+    held: &'a [bool],
+}
+
 struct Trial {
     beta: Vec<f64>,
     point: Vec<f64>,
@@ -40,24 +48,26 @@ struct Trial {
 }
 
 impl Trial {
-    fn new(qp: &Qp, y: &[f64], held: &[bool], beta: Vec<f64>) -> Self {
-        let point: Vec<f64> = (0..y.len())
-            .map(|i| {
-                let value = y[i] + qp.g_transposed.row_dot(i, &beta);
-                let rounding = ROUNDING * (y[i].abs() + qp.g_transposed.row_dot_abs(i, &beta));
-                if held[i] || (qp.bounded[i] && value <= rounding) {
-                    0.0
-                } else {
-                    value
-                }
-            })
-            .collect();
-        Self { beta, residual: qp.left(&point), point }
+    fn new(Target { qp, y, held }: Target, coarse: &Coarse, beta: Vec<f64>) -> Self {
+        let rows = coarse.rows();
+        let point = rows.each_row(|i| {
+            if held[i] {
+                return 0.0;
+            }
+            let value = y[i] + rows.row_dot(i, &beta);
+            let is_zero = || value <= ROUNDING * (y[i].abs() + rows.row_dot_abs(i, &beta));
+            if qp.bounded[i] && is_zero() {
+                0.0
+            } else {
+                value
+            }
+        });
+        Self { beta, residual: coarse.left(qp.e, &point), point }
     }
 
     /// `|e - G l|` against `|e| + |G||l|`
-    fn error(&self, qp: &Qp) -> f64 {
-        ratio(norm(&self.residual), norm(qp.e) + norm(&terms(qp, &self.point)))
+    fn error(&self, qp: &Qp, coarse: &Coarse) -> f64 {
+        ratio(norm(&self.residual), norm(qp.e) + norm(&coarse.terms(&self.point)))
     }
 
     /// `phi(beta) = 1/2 |l|^2 - e'beta`
@@ -71,35 +81,32 @@ impl Trial {
         let held: Vec<bool> = point.iter().map(|l| *l == 0.0).collect();
         coarse.last_multiplier = Some(self.beta.clone());
         let step = coarse.on(&held)?.solve(&self.residual)?;
-        for i in (0..point.len()).filter(|&i| !held[i]) {
-            point[i] += qp.g_transposed.row_dot(i, &step);
-        }
+        let rows = coarse.rows();
+        rows.change_rows(&mut point, |i, l| {
+            if !held[i] {
+                *l += rows.row_dot(i, &step);
+            }
+        });
         let inside = (0..point.len()).all(|i| !qp.bounded[i] || point[i] >= 0.0);
         Ok(Projected { point: if inside { point } else { self.point }, multiplier: self.beta })
     }
 }
 
-/// `|G||l|`
-fn terms(qp: &Qp, l: &[f64]) -> Vec<f64> {
-    let mut terms = vec![0.0; qp.e.len()];
-    qp.g_transposed.mul_transposed_abs_add(l, &mut terms);
-    terms
-}
-
 /// J1 to J4 of docs/method.md. `None`: no such point was found. Entries in `held` stay zero.
 pub fn project(qp: &Qp, coarse: &mut Coarse, y: &[f64], held: &[bool]) -> Result<Option<Projected>> {
-    let mut now = Trial::new(qp, y, held, vec![0.0; qp.e.len()]);
+    let target = Target { qp, y, held };
+    let mut now = Trial::new(target, coarse, vec![0.0; qp.e.len()]);
     if qp.e.is_empty() {
         return Ok(Some(Projected { point: now.point, multiplier: now.beta }));
     }
-    let mut error = now.error(qp);
-    for beta in starts(qp, coarse, y, held, error)? {
-        let next = Trial::new(qp, y, held, beta);
+    let mut error = now.error(qp, coarse);
+    for beta in target.starts(coarse, error)? {
+        let next = Trial::new(target, coarse, beta);
         if next.phi(qp) < now.phi(qp) {
-            (error, now) = (next.error(qp), next);
+            (error, now) = (next.error(qp, coarse), next);
         }
     }
-    let given = norm(qp.e) + norm(&terms(qp, y));
+    let given = norm(qp.e) + norm(&coarse.terms(y));
     let is_met = |now: &Trial| norm(&now.residual) <= MET * given;
     let (mut cuts, mut step, mut end) = (0, 0, NEWTON_STEPS);
     while step < end {
@@ -111,16 +118,17 @@ pub fn project(qp: &Qp, coarse: &mut Coarse, y: &[f64], held: &[bool]) -> Result
         if cuts == PATIENCE {
             (cuts, end) = (cuts + 1, end.min(step + FURTHER_STEPS));
             let interior = Interior { qp, y, held, delta: 1.0, rho: 0.0 };
-            let next = Trial::new(qp, y, held, interior.minimise(coarse, now.beta.clone())?.multiplier);
+            let inside = interior.minimise(coarse, now.beta.clone())?;
+            let next = Trial::new(target, coarse, inside.multiplier);
             if next.phi(qp) < now.phi(qp) {
-                (error, now) = (next.error(qp), next);
+                (error, now) = (next.error(qp, coarse), next);
             }
         }
         // J3: Newton
         let face: Vec<bool> =
             (0..y.len()).map(|i| held[i] || (qp.bounded[i] && now.point[i] <= 0.0)).collect();
         let direction = coarse.on(&face)?.solve_regularised(&now.residual)?;
-        let Some(t) = minimum_along(qp, y, held, &now, &direction) else {
+        let Some(t) = target.minimum_along(coarse, &now, &direction) else {
             return if error <= STAGNATED && is_met(&now) {
                 now.done(qp, coarse).map(Some)
             } else {
@@ -130,8 +138,8 @@ pub fn project(qp: &Qp, coarse: &mut Coarse, y: &[f64], held: &[bool]) -> Result
         cuts += usize::from(t < CUT);
         let mut beta = now.beta.clone();
         axpy(t, &direction, &mut beta);
-        let next = Trial::new(qp, y, held, beta);
-        let next_error = next.error(qp);
+        let next = Trial::new(target, coarse, beta);
+        let next_error = next.error(qp, coarse);
         if error <= STAGNATED && next_error >= error {
             return if is_met(&now) { now.done(qp, coarse).map(Some) } else { Ok(None) };
         }
@@ -140,47 +148,57 @@ pub fn project(qp: &Qp, coarse: &mut Coarse, y: &[f64], held: &[bool]) -> Result
     Ok(None)
 }
 
-/// J1: other multipliers to begin with than 0: that of the last projection and, where 0 meets little of e, that without any bound,
-/// for forces that add up over many bodies enter one row after the other from 0.
-fn starts(qp: &Qp, coarse: &mut Coarse, y: &[f64], held: &[bool], error: f64) -> Result<Vec<Vec<f64>>> {
-    let mut starts = Vec::new();
-    if error > FAR {
-        let free: Vec<f64> = y.iter().zip(held).map(|(y, held)| if *held { 0.0 } else { *y }).collect();
-        starts.push(coarse.on(held)?.solve(&qp.left(&free))?);
+impl Target<'_> {
+    /// J1: other multipliers to begin with than 0: that of the last projection and, where 0 meets little of e, that without any bound,
+    /// for forces that add up over many bodies enter one row after the other from 0.
+    fn starts(&self, coarse: &mut Coarse, error: f64) -> Result<Vec<Vec<f64>>> {
+        let mut starts = Vec::new();
+        if error > FAR {
+            let free = self.y.iter().zip(self.held).map(|(y, held)| if *held { 0.0 } else { *y });
+            let left = coarse.left(self.qp.e, &free.collect::<Vec<f64>>());
+            starts.push(coarse.on(self.held)?.solve(&left)?);
+        }
+        starts.extend(coarse.last_multiplier.clone());
+        Ok(starts)
     }
-    starts.extend(coarse.last_multiplier.clone());
-    Ok(starts)
-}
 
-/// J3: exact minimum of phi over `beta + t step`, t > 0: phi' is piecewise linear and does not fall, its slope is
-/// the sum of `(G'step)_i^2` over the rows that are not at their bound. `None`: phi falls without end.
-fn minimum_along(qp: &Qp, y: &[f64], held: &[bool], now: &Trial, step: &[f64]) -> Option<f64> {
-    let (mut slope, mut whole, mut turns) = (0.0, 0.0, Vec::new());
-    for i in (0..y.len()).filter(|&i| !held[i]) {
-        let q = qp.g_transposed.row_dot(i, step);
-        let v = y[i] + qp.g_transposed.row_dot(i, &now.beta);
-        whole += q * q;
-        let inside = !qp.bounded[i] || v > 0.0 || (v == 0.0 && q > 0.0);
-        slope += if inside { q * q } else { 0.0 };
-        if qp.bounded[i] && v != 0.0 && (v < 0.0) == (q > 0.0) && q != 0.0 {
-            turns.push((-v / q, if inside { -q * q } else { q * q }));
+    /// J3: exact minimum of phi over `beta + t step`, t > 0: phi' is piecewise linear and does not fall, its slope is
+    /// the sum of `(G'step)_i^2` over the rows that are not at their bound. `None`: phi falls without end.
+    fn minimum_along(&self, coarse: &Coarse, now: &Trial, step: &[f64]) -> Option<f64> {
+        let Target { qp, y, held } = self;
+        let rows = coarse.rows();
+        let images = rows.each_row(|i| if held[i] { 0.0 } else { rows.row_dot(i, step) });
+        let (mut slope, mut whole, mut turns) = (0.0, 0.0, Vec::new());
+        for i in (0..y.len()).filter(|&i| !held[i]) {
+            let q = images[i];
+            whole += q * q;
+            if !qp.bounded[i] {
+                slope += q * q;
+                continue;
+            }
+            let v = y[i] + rows.row_dot(i, &now.beta);
+            let inside = v > 0.0 || (v == 0.0 && q > 0.0);
+            slope += if inside { q * q } else { 0.0 };
+            if v != 0.0 && (v < 0.0) == (q > 0.0) && q != 0.0 {
+                turns.push((-v / q, if inside { -q * q } else { q * q }));
+            }
         }
-    }
-    turns.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let none = 1e-14 * whole;
-    let (mut at, mut derivative) = (0.0, -dot(&now.residual, step));
-    let flat = 1e-12 * derivative;
-    for (t, change) in turns {
-        let there = derivative + slope * (t - at);
-        if there >= 0.0 && slope > none {
-            break;
+        turns.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let none = 1e-14 * whole;
+        let (mut at, mut derivative) = (0.0, -dot(&now.residual, step));
+        let flat = 1e-12 * derivative;
+        for (t, change) in turns {
+            let there = derivative + slope * (t - at);
+            if there >= 0.0 && slope > none {
+                break;
+            }
+            (at, derivative, slope) = (t, there.min(0.0), slope + change);
         }
-        (at, derivative, slope) = (t, there.min(0.0), slope + change);
-    }
-    if slope > none {
-        Some(at - derivative / slope)
-    } else {
-        (at > 0.0 && derivative >= flat).then_some(at)
+        if slope > none {
+            Some(at - derivative / slope)
+        } else {
+            (at > 0.0 && derivative >= flat).then_some(at)
+        }
     }
 }
 
@@ -204,6 +222,7 @@ mod tests {
             e: &[1.0],
             bounded: &[true; 3],
             preconditioner: None,
+            kept: None,
         };
         let mut coarse = Coarse::of(&qp).unwrap();
         let found = project(&qp, &mut coarse, &[0.8, 0.6, -1.0], &[false; 3]).unwrap().unwrap();

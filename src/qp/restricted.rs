@@ -30,7 +30,7 @@ impl<'a> Restricted<'a> {
     pub fn qp(&self) -> Qp<'_> {
         let preconditioner = self.whole.preconditioner.is_some().then_some(self as &dyn Preconditioner);
         let (b, g_transposed, bounded) = (&self.b, &self.g_transposed, &self.bounded);
-        Qp { a: self, b, g_transposed, bounded, preconditioner, ..self.whole }
+        Qp { a: self, b, g_transposed, bounded, preconditioner, kept: None, ..self.whole }
     }
 
     /// The entries of x on the rows.

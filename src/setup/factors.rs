@@ -305,8 +305,7 @@ fn plans(model: &Model, pending: &[usize], watch: &mut Watch) -> Result<Vec<Plan
     let part = SetupPart::of(model.threads(), weights(model, pending), NULL_SPACES);
     let find = |k: usize| {
         let (p, body) = (pending[k], &model.bodies[pending[k]].body);
-        let planned = plan(body, tolerance).map_err(|e| e.body(p))?;
-        Ok(if model.is_piece(p) { planned.or_search(tolerance) } else { planned })
+        plan(body, tolerance, model.is_piece(p)).map_err(|e| e.body(p))
     };
     let mut plans: Vec<Option<Plan>> = pending.iter().map(|_| None).collect();
     watch.every_body(&part, find, |k, plan| plans[k] = Some(plan))?;
@@ -320,7 +319,7 @@ fn weights(model: &Model, bodies: &[usize]) -> Vec<f64> {
 }
 
 /// Null space and fixing dofs of a body, found before anything is factorised.
-fn plan(body: &Body, tolerance: f64) -> Result<Plan> {
+fn plan(body: &Body, tolerance: f64, is_piece: bool) -> Result<Plan> {
     let missing = || Error::new(Kind::Internal, "a body without stiffness was set up");
     let matrix = Arc::clone(body.stiffness.as_ref().ok_or_else(missing)?);
     let k = Multiple { matrix, by: 1.0 / body.unit() };
@@ -332,10 +331,14 @@ fn plan(body: &Body, tolerance: f64) -> Result<Plan> {
         return GeneralizedInverse::search(k, tolerance, fixing);
     };
     let rigid = coordinates.rigid_modes(&k.matrix)?;
-    if body.soft_coordinates {
-        return GeneralizedInverse::plan_soft(k, &rigid, fixing);
+    let planned = match body.soft_coordinates {
+        true => GeneralizedInverse::plan_soft(k, &rigid, fixing)?,
+        false => GeneralizedInverse::plan_near(k, &rigid, tolerance, fixing)?,
+    };
+    if is_piece {
+        return planned.or_search(tolerance).carrying(&rigid);
     }
-    GeneralizedInverse::plan_near(k, &rigid, tolerance, fixing)
+    Ok(planned)
 }
 
 fn same_stiffness(model: &Model, p: usize, q: usize) -> bool {

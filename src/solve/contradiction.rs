@@ -56,6 +56,7 @@ pub fn contradiction(case: Case, gaps: &Gaps) -> Result<Option<Error>> {
         e: &[],
         bounded: &bounded,
         preconditioner: None,
+        kept: None,
     };
     let steps = (WORK / (4 * matrix.val.len() + c.len() + 1)).clamp(1000, 200_000);
     let limits = Limits { tolerance: 1e-14, gamma: 1.0, steps };

@@ -53,7 +53,7 @@ impl Driven {
 
     /// A driven motion that the rows of a face do not resist.
     pub fn free(&self, qp: Qp, held: &[bool]) -> Result<Option<Vec<f64>>> {
-        let free = AnswerFace::new(qp.g_transposed, qp.blocks, held, qp.rounding)?.undetermined()?;
+        let free = AnswerFace::of(&qp, held)?.undetermined()?;
         let is_driven = |v: &[f64]| self.modes.iter().any(|&mode| v[mode].abs() > PART * norm_max(v));
         Ok((0..free.cols).map(|j| free.col(j)).find(|v| is_driven(v)).map(<[f64]>::to_vec))
     }

@@ -6,7 +6,7 @@ use crate::error::{Error, Result};
 use crate::linalg::vector::norm_max;
 use crate::linalg::Operator;
 use crate::model::Model;
-use crate::platform::interrupt;
+use crate::platform::{interrupt, threads};
 use crate::progress::{Steps, Stops, Voice};
 use crate::qp::paper::Units;
 use crate::qp::{Direct, Solution, Verdict};
@@ -54,6 +54,16 @@ enum Tried {
 /// Solves (10)-(11) on one island, number `number`: the dual from x = `start`, the displacements, the certificate. The named reason
 /// why there is no answer is an error. What rounding has made of a load that nothing holds is taken from it.
 pub fn solve_island(
+    case: Case,
+    number: usize,
+    start: Vec<f64>,
+    stops: &Stops,
+    voice: &mut dyn Voice,
+) -> Result<Solved> {
+    threads::with_team(case.threads(), || solve_held(case, number, start, stops, voice))
+}
+
+fn solve_held(
     case: Case,
     number: usize,
     mut start: Vec<f64>,

@@ -94,7 +94,8 @@ impl HostUnits {
         let b: Vec<f64> = qp.b.iter().zip(&self.scale).map(|(b, s)| b / s).collect();
         let d_transposed = self.equalities(qp.g_transposed);
         let d: Vec<f64> = self.to_host_basis(qp.e).iter().map(|d| d * self.unit).collect();
-        let host = Qp { a: &a, b: &b, g_transposed: &d_transposed, e: &d, preconditioner: None, ..qp };
+        let host =
+            Qp { a: &a, b: &b, g_transposed: &d_transposed, e: &d, preconditioner: None, kept: None, ..qp };
         let start: Vec<f64> = start.iter().zip(&self.scale).map(|(x, s)| x * s * self.unit).collect();
         let mut judge = InHostUnits { units: self, inner: judge };
         let mut observer = WithoutUnit { unit: self.unit, inner: observer };

@@ -52,7 +52,7 @@ impl<'a> Recovery<'a> {
         let dual = &self.ready.dual;
         let load: Vec<f64> = self.scaled.load.iter().map(|f| f * self.ready.island.unit).collect();
         let held = without_force(self.ready, &load, &answer.lambda, &answer.mu);
-        let mut face = AnswerFace::new(&dual.coarse, &dual.blocks, &held, dual.rounding())?;
+        let mut face = AnswerFace::of(&self.faces.qp, &held)?;
         let free = face.undetermined()?;
         if free.cols == 0 {
             return Ok(None);

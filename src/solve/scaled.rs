@@ -61,7 +61,7 @@ impl Scaled {
         let preconditioner = ready.preconditioner.as_ref().map(|(_, m)| m as &dyn qp::Preconditioner);
         let (b, e, bounded, rounding) =
             (&self.d, &self.resultants, &self.gaps.bounded, ready.dual.rounding());
-        Qp { a, b, g_transposed, blocks, rounding, e, bounded, preconditioner }
+        Qp { a, b, g_transposed, blocks, rounding, e, bounded, preconditioner, kept: Some(&ready.kept) }
     }
 }
 

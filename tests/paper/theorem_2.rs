@@ -72,6 +72,7 @@ fn run(program: &Program, gamma: f64, variant: Variant, limit: usize) -> Option<
         e: &[],
         bounded: &bounded,
         preconditioner: None,
+        kept: None,
     };
     let mut q = Quadratic::theta(qp);
     let rule = PaperRule { gamma, variant, extrapolation: 5.0 };

@@ -38,7 +38,7 @@ impl Observer for Silent {
 
 fn qp<'a>(program: &'a Program, a: &'a dyn Operator, g_transposed: &'a Csr) -> Qp<'a> {
     let (b, e, bounded) = (&program.b, &program.e, &program.bounded);
-    Qp { a, b, g_transposed, blocks: &[], rounding: 1e-14, e, bounded, preconditioner: None }
+    Qp { a, b, g_transposed, blocks: &[], rounding: 1e-14, e, bounded, preconditioner: None, kept: None }
 }
 
 fn run(program: &Program, start: &[f64], limits: Limits) -> Solution {

@@ -80,6 +80,7 @@ fn run(program: &Program, start: &[f64], products: usize, then: Kind, diary: &mu
         e: &program.e,
         bounded: &program.bounded,
         preconditioner: None,
+        kept: None,
     };
     let limits = Limits { tolerance: 1e-12, gamma: 1.0, steps: 5000 };
     minimise(qp, start, limits, &mut Content, diary)
@@ -167,6 +168,7 @@ fn a_run_ends_with_the_last_step_that_it_may_take() {
         e: &program.e,
         bounded: &program.bounded,
         preconditioner: None,
+        kept: None,
     };
     for steps in [1, 2, 5] {
         let limits = Limits { tolerance: 1e-12, gamma: 1.0, steps };

@@ -1,8 +1,10 @@
 //! Gram matrices `sum_i w_i g_i' g_i` of sparse rows g_i: the coarse matrix of a face, the coupling of rows.
 
+use std::collections::HashMap;
+
 use crate::error::Result;
 use crate::linalg::{Csr, Symmetric};
-use crate::platform::memory::{copied, filled, headroom, zeros};
+use crate::platform::memory::{copied, filled, headroom, reserved, zeros};
 
 /// Bytes per product of two entries of a row, and per row and column, while their lists grow.
 const PER_PRODUCT: usize = 24;
@@ -11,7 +13,9 @@ const PER_ROW: usize = 24;
 /// Where the products of the entries of each row go: the pattern is found once, the values follow the weights.
 pub struct Gram {
     pattern: Symmetric,
-    /// Per row of the rows given: positions in the values of the pattern of its products (k, l), l <= k.
+    /// Kind of each row: rows of one kind have entries in the same columns, as those that glue two pieces have.
+    kind: Vec<u32>,
+    /// Per kind: positions in the values of the pattern of its products (k, l), l <= k.
     ptr: Vec<usize>,
     position: Vec<u32>,
 }
@@ -19,18 +23,19 @@ pub struct Gram {
 impl Gram {
     /// `rows` is m x r; the Gram matrix is r x r with its whole diagonal stored.
     pub fn of(rows: &Csr) -> Result<Self> {
-        let products = rows.ptr.windows(2).map(|row| (row[1] - row[0]).pow(2)).sum::<usize>();
+        let (kind, kinds) = kinds(rows)?;
+        let products = kinds.ptr.windows(2).map(|row| (row[1] - row[0]).pow(2)).sum::<usize>();
         let lists = products.saturating_mul(PER_PRODUCT);
-        let _room = headroom(lists.saturating_add((rows.rows() + rows.cols) * PER_ROW), "a Gram matrix")?;
-        let by_column = rows.transposed()?;
-        let pattern = pattern(rows, &by_column)?;
+        let _room = headroom(lists.saturating_add((kinds.rows() + kinds.cols) * PER_ROW), "a Gram matrix")?;
+        let by_column = kinds.transposed()?;
+        let pattern = pattern(&kinds, &by_column)?;
         let mut ptr = vec![0];
-        for row in rows.ptr.windows(2) {
+        for row in kinds.ptr.windows(2) {
             let entries = row[1] - row[0];
             ptr.push(ptr[ptr.len() - 1] + entries * (entries + 1) / 2);
         }
-        let position = positions(rows, &by_column, &pattern, &ptr)?;
-        Ok(Self { pattern, ptr, position })
+        let position = positions(&kinds, &by_column, &pattern, &ptr)?;
+        Ok(Self { pattern, kind, ptr, position })
     }
 
     pub fn pattern(&self) -> &Symmetric {
@@ -55,7 +60,7 @@ impl Gram {
     fn of_rows(&self, rows: &Csr, weighted: impl Iterator<Item = (usize, f64)>) -> Result<Symmetric> {
         let mut val = zeros(self.pattern.val.len(), "a Gram matrix")?;
         for (i, w) in weighted {
-            let mut at = self.ptr[i];
+            let mut at = self.ptr[self.kind[i] as usize];
             for (k, a) in rows.row(i) {
                 for (_, b) in rows.row(i).take_while(|(l, _)| *l <= k) {
                     val[self.position[at] as usize] += w * a * b;
@@ -67,6 +72,34 @@ impl Gram {
             (copied(&self.pattern.ptr, "a Gram matrix")?, copied(&self.pattern.col, "a Gram matrix")?);
         Ok(Symmetric::new(ptr, col, val))
     }
+}
+
+/// The kind of every row, and one row of each kind, by their first appearance; of these the columns alone are meant.
+fn kinds(rows: &Csr) -> Result<(Vec<u32>, Csr)> {
+    const WHAT: &str = "a Gram matrix";
+    let columns = |i: usize| &rows.col[rows.ptr[i]..rows.ptr[i + 1]];
+    let _room = headroom((PER_ROW + size_of::<usize>() + size_of::<u32>()) * rows.rows(), WHAT)?;
+    let mut kind: Vec<u32> = Vec::with_capacity(rows.rows());
+    let mut first = Vec::new();
+    let mut known: HashMap<&[usize], u32> = HashMap::new();
+    for i in 0..rows.rows() {
+        // those of one face of a piece follow each other
+        let before = i.checked_sub(1).filter(|&before| columns(before) == columns(i)).map(|at| kind[at]);
+        kind.push(before.unwrap_or_else(|| {
+            *known.entry(columns(i)).or_insert_with(|| {
+                first.push(i);
+                first.len() as u32 - 1
+            })
+        }));
+    }
+    let entries = first.iter().map(|&i| columns(i).len()).sum();
+    let (mut ptr, mut col) = (reserved(first.len() + 1, WHAT)?, reserved(entries, WHAT)?);
+    ptr.push(0);
+    for i in first {
+        col.extend_from_slice(columns(i));
+        ptr.push(col.len());
+    }
+    Ok((kind, Csr { cols: rows.cols, ptr, val: zeros(col.len(), WHAT)?, col }))
 }
 
 /// Lower triangle of the columns that meet in some row, with zeros.

@@ -3,4 +3,5 @@
 pub mod csr;
 pub mod gram;
 pub mod graph;
+pub mod runs;
 pub mod symmetric;

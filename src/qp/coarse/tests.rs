@@ -4,6 +4,11 @@ use super::*;
 use crate::linalg::random::scattered;
 use crate::linalg::vector::{dot, norm};
 
+/// The coarse space of single columns.
+fn coarse<'a>(g_transposed: &'a Csr, bounded: &[bool], rounding: f64) -> Coarse<'a> {
+    Coarse::on_space(Space::new(g_transposed, bounded).unwrap(), g_transposed, &[], rounding)
+}
+
 fn undetermined(g_transposed: &Csr, held: &[bool], rounding: f64) -> Result<Matrix> {
     AnswerFace::new(g_transposed, &[], held, rounding)?.undetermined()
 }
@@ -14,7 +19,7 @@ fn the_projected_vector_lies_on_the_face_and_in_the_kernel_of_g() {
     for v in [1.0, 2.0, -1.0, 3.0] {
         g_transposed.push_row([(0, v)]);
     }
-    let mut coarse = Coarse::new(&g_transposed, &[], &[true; 4], 1e-14).unwrap();
+    let mut coarse = coarse(&g_transposed, &[true; 4], 1e-14);
     let mut v = [1.0, 1.0, 1.0, 1.0];
     coarse.project(&[false, true, false, false], &mut v).unwrap();
     assert_eq!(v[1], 0.0);
@@ -29,7 +34,7 @@ fn a_face_without_a_mode_has_a_kernel_and_its_solution_minimum_norm() {
     let mut g_transposed = Csr::empty(2);
     g_transposed.push_row([(0, 1.0), (1, 1.0)]);
     g_transposed.push_row([(0, 1.0), (1, -1.0)]);
-    let mut coarse = Coarse::new(&g_transposed, &[], &[true; 2], 1e-14).unwrap();
+    let mut coarse = coarse(&g_transposed, &[true; 2], 1e-14);
     let mut face = coarse.on(&[false, true]).unwrap();
     assert_eq!(face.deficiency(), 1);
     let x = face.solve(&[1.0, 1.0]).unwrap();
@@ -71,7 +76,7 @@ fn flat(weak: [f64; 3], next: &mut impl FnMut() -> f64) -> Vec<[f64; 6]> {
 fn assert_free(g_transposed: &Csr, rounding: f64, t: &Matrix, expected: &[usize], accuracy: f64) {
     let held = vec![false; g_transposed.rows()];
     let free = undetermined(g_transposed, &held, rounding).unwrap();
-    let mut coarse = Coarse::new(g_transposed, &[], &held, rounding).unwrap();
+    let mut coarse = coarse(g_transposed, &held, rounding);
     let face = coarse.on(&held).unwrap();
     assert_eq!((free.cols, face.deficiency()), (expected.len(), expected.len()));
     for j in 0..free.cols {
@@ -113,7 +118,7 @@ fn a_motion_that_is_resisted_by_little_is_resisted_and_its_forces_are_found() {
         let g_transposed = turned(&rows, &t);
         assert_free(&g_transposed, 1.5e-14, &t, &[4], 1e-3 * 1e-12 / weak);
         // nothing is left of G'alpha, though rounding of G G'alpha is large against the weak part of it
-        let mut coarse = Coarse::new(&g_transposed, &[], &[false; 300], 1.5e-14).unwrap();
+        let mut coarse = coarse(&g_transposed, &[false; 300], 1.5e-14);
         let alpha = [1.0, -2.0, 0.5, 3.0, 1.0, 0.1];
         let mut v: Vec<f64> = (0..300).map(|i| g_transposed.row_dot(i, &alpha)).collect();
         coarse.project(&[false; 300], &mut v).unwrap();

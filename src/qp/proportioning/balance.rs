@@ -47,7 +47,7 @@ pub fn weighted(qp: &Qp, weights: &[f64]) -> Result<(Vec<f64>, Vec<f64>)> {
     let (point, a) = match in_cone(&g_transposed, qp.bounded, &e)? {
         Some(found) => found,
         None => {
-            let scaled = Qp { g_transposed: &g_transposed, e: &e, ..*qp };
+            let scaled = Qp { g_transposed: &g_transposed, e: &e, kept: None, ..*qp };
             identified(&scaled, &mut Coarse::of(&scaled)?)?
         }
     };
@@ -167,6 +167,7 @@ mod tests {
             e: &e,
             bounded: &vec![true; m],
             preconditioner: None,
+            kept: None,
         };
         let coarse = &mut Coarse::of(&qp).unwrap();
         let found = balance(&qp, coarse).unwrap();

@@ -2,12 +2,14 @@
 //! on the present face and in the kernel of G, so that theta is minimised over their span without any product: P8 and P13 of
 //! docs/method.md.
 
-use crate::linalg::vector::{axpy, dot, norm, norm_max, power_of_two_below};
+use crate::linalg::vector::{add_multiples, axpy, dot, dots, norm, norm_max, power_of_two_below};
 
 /// More directions than this cost more than the products they save.
 pub const MOST: usize = 100;
 /// A direction whose curvature is all but in the span of the others tells nothing new.
 const NEW: f64 = 1e-10;
+/// Directions whose energy product is below this part of their energies are conjugate but for rounding.
+const ROUNDED: f64 = 1e-12;
 /// Entries of a row below this part of the largest are nothing but rounding: the row depends on others that are held.
 const ROUNDING: f64 = 1e-13;
 
@@ -23,19 +25,18 @@ pub struct Conjugate {
 impl Conjugate {
     /// `z <- z - sum p_i (A p_i)'z / sigma`
     pub fn make_conjugate(&self, z: &mut [f64]) {
-        for (p, image) in &self.pairs {
-            axpy(-dot(image, z) / self.curvature, p, z);
-        }
+        let shares = self.shares(&self.images(), z, -1.0);
+        add_multiples(&shares, &self.directions(), z);
     }
 
-    /// Takes (p, A p) in; the part that is not conjugate to the others is removed.
+    /// Takes (p, A p) in; a part that is not conjugate to the others is removed.
     pub fn push(&mut self, p: &[f64], image: &[f64]) {
         let (mut p, mut image) = (p.to_vec(), image.to_vec());
         let whole = dot(&p, &image);
-        for (other, of_other) in &self.pairs {
-            let share = dot(other, &image) / self.curvature;
-            axpy(-share, other, &mut p);
-            axpy(-share, of_other, &mut image);
+        let shares = self.shares(&self.directions(), &image, -1.0);
+        if norm_max(&shares) > ROUNDED * (whole / self.curvature).sqrt() {
+            add_multiples(&shares, &self.directions(), &mut p);
+            add_multiples(&shares, &self.images(), &mut image);
         }
         let curvature = dot(&p, &image);
         if whole > 0.0 && curvature > NEW * whole {
@@ -54,12 +55,23 @@ impl Conjugate {
     /// `d = sum p_i p_i'g / sigma` and A d: `x - d` has the least theta on x + span. `None` without directions.
     pub fn minimiser(&self, g: &[f64]) -> Option<(Vec<f64>, Vec<f64>)> {
         let (mut d, mut image) = (vec![0.0; g.len()], vec![0.0; g.len()]);
-        for (p, of_p) in &self.pairs {
-            let share = dot(p, g) / self.curvature;
-            axpy(share, p, &mut d);
-            axpy(share, of_p, &mut image);
-        }
+        let shares = self.shares(&self.directions(), g, 1.0);
+        add_multiples(&shares, &self.directions(), &mut d);
+        add_multiples(&shares, &self.images(), &mut image);
         (!self.pairs.is_empty()).then_some((d, image))
+    }
+
+    /// `a v_i'z / sigma`
+    fn shares(&self, v: &[&[f64]], z: &[f64], a: f64) -> Vec<f64> {
+        dots(v, z).iter().map(|share| a * share / self.curvature).collect()
+    }
+
+    fn directions(&self) -> Vec<&[f64]> {
+        self.pairs.iter().map(|(p, _)| &p[..]).collect()
+    }
+
+    fn images(&self) -> Vec<&[f64]> {
+        self.pairs.iter().map(|(_, image)| &image[..]).collect()
     }
 
     pub fn is_empty(&self) -> bool {

@@ -102,11 +102,14 @@ impl<'a> Iterate<'a> {
         if self.alpha.is_empty() {
             return Ok(());
         }
-        let step = self.coarse.on(&self.split.active)?.solve(&self.qp.left(&self.x))?;
-        let mut x = self.x.clone();
-        for i in (0..x.len()).filter(|&i| !self.split.active[i]) {
-            x[i] += self.qp.g_transposed.row_dot(i, &step);
-        }
+        let left = self.coarse.left(self.qp.e, &self.x);
+        let step = self.coarse.on(&self.split.active)?.solve(&left)?;
+        let (mut x, rows) = (self.x.clone(), self.coarse.rows());
+        rows.change_rows(&mut x, |i, x| {
+            if !self.split.active[i] {
+                *x += rows.row_dot(i, &step);
+            }
+        });
         if (0..x.len()).all(|i| self.split.active[i] || !self.qp.bounded[i] || x[i] > 0.0) {
             self.x = x;
         }
@@ -135,7 +138,7 @@ impl<'a> Iterate<'a> {
                 }
             }
             for i in (0..self.x.len()).filter(|&i| self.split.active[i]) {
-                self.r[i] = self.g[i] - self.qp.g_transposed.row_dot(i, &self.alpha);
+                self.r[i] = self.g[i] - self.coarse.rows().row_dot(i, &self.alpha);
             }
         }
         self.split.update_on_face(&self.r);

@@ -157,6 +157,7 @@ mod tests {
             e: &[1.0],
             bounded: &bounded,
             preconditioner: None,
+            kept: None,
         };
         let augmented = Augmented::new(qp, Coarse::of(&qp).unwrap()).unwrap();
         assert!((7.0..=1.05 * 7.0).contains(&augmented.largest), "{}", augmented.largest);
@@ -182,6 +183,7 @@ mod tests {
             e: &[],
             bounded: &bounded,
             preconditioner: None,
+            kept: None,
         };
         let largest = Augmented::new(qp, Coarse::of(&qp).unwrap()).unwrap().largest;
         assert!((30.0..=1.05 * 30.0).contains(&largest), "{largest}");

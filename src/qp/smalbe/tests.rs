@@ -50,6 +50,7 @@ fn far_more_than_a_hundred_outer_iterations_are_taken_where_they_are_needed() {
         e: &[1.0],
         bounded: &vec![true; m],
         preconditioner: None,
+        kept: None,
     };
     let mut al = Lagrangian::new(qp, &vec![0.0; m]).unwrap();
     let (mut judge, mut observer) = (Lenient { allowed: 0 }, Lenient { allowed: LIMITS.steps });
@@ -80,6 +81,7 @@ fn gradient_alpha_and_theta_follow_all_steps_without_a_product_of_their_own() {
         e: &e,
         bounded: &bounded,
         preconditioner: None,
+        kept: None,
     };
     for allowed in 1..30 {
         let mut al = Lagrangian::new(qp, &vec![0.0; m]).unwrap();

@@ -206,7 +206,7 @@ fn whole_body(model: &Model, parts: &Parts, body: usize, of_part: &OfPart) -> Re
     for part in parts.of(body) {
         let (kplus, _) = of_part(part).ok_or_else(missing)?;
         soft |= kplus.is_soft();
-        bases.push(&kplus.null_space);
+        bases.push(kplus.free_motions());
     }
     let vectors = null_space(model, parts, body, &bases)?;
     let grounded = grounded(crate::body::Stiffness::Assembled(k))?.into();

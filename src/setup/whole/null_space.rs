@@ -14,7 +14,7 @@ const ROUNDING: f64 = 1e-12;
 const DEPENDENT: f64 = 1e-8;
 
 /// R of a body, n x r, `R'DR = unit`, unit the power of two below its largest `K_ii`, by the null spaces of its pieces.
-pub fn null_space(model: &Model, parts: &Parts, body: usize, bases: &[&Matrix]) -> Result<Matrix> {
+pub fn null_space(model: &Model, parts: &Parts, body: usize, bases: &[Matrix]) -> Result<Matrix> {
     let order = parts.offsets[body + 1] - parts.offsets[body];
     let mut blocks = reserved(bases.len(), WHAT)?;
     let mut modes = 0;
@@ -65,7 +65,7 @@ fn sizes(model: &Model, parts: &Parts, body: usize) -> Vec<f64> {
 }
 
 /// `G'` of the glue of the body alone, rows by modes: `s (R_c - R_d)` for copies c and d of an unknown, `s^-2 = 1/K_cc + 1/K_dd`.
-fn glued(model: &Model, parts: &Parts, body: usize, (bases, blocks): (&[&Matrix], &[usize])) -> Result<Csr> {
+fn glued(model: &Model, parts: &Parts, body: usize, (bases, blocks): (&[Matrix], &[usize])) -> Result<Csr> {
     let range = parts.of(body);
     let unknowns = parts.starts[range.start]..parts.starts[range.end];
     let modes = bases.iter().map(|basis| basis.cols).sum();

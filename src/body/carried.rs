@@ -1,0 +1,233 @@
+//! Rigid motions that K resists firmly, taken into the coarse problem all the same. A piece whose supports are eliminated has no null
+//! space, and its softest motions, nearly rigid ones, would be left to the iteration, which takes two to three times the
+//! products then. With the rigid motions Z that are no null vectors, D-orthogonal to R_0 that are, and L = D Z,
+//!
+//! ```text
+//! T = K+ L,  S = (L'T)^-1,  R_c = T S,   K_c+ = K+ - T S T',   L'K_c+ = 0,   R_c'K R_c = S
+//! u = K_c+ (f - B'l) + R_0 a_0 + R_c a_c,   R_0'(f - B'l) = 0,   S a_c = R_c'(f - B'l)
+//! ```
+//!
+//! exactly: S are springs as those of [`soft`](crate::body::soft) motions, with the functionals L in the place of unknowns held.
+
+use crate::body::probe::Factor;
+use crate::body::spectrum::symmetric;
+use crate::error::Result;
+use crate::linalg::dense::spectrum::symmetric_eigen;
+use crate::linalg::vector::{axpy, dot, norm};
+use crate::linalg::{Csr, Matrix, Multiple, Packed};
+
+/// Motions of which null vectors leave less of their length are null vectors.
+const DEPENDENT: f64 = 1e-6;
+/// Compliances L'T so far apart are not told from rounding: supports of 1e12 K_ii, say.
+const APART: f64 = 1e-8;
+
+/// C with `C C' = T S T'`, n x q.
+#[derive(Clone)]
+pub struct Carried {
+    c: Matrix,
+}
+
+/// The motions R_c, n x q, with `R'DR = I` and `R_c'K R_c = diag(stiffness)`, beside R_0.
+pub struct Motions {
+    pub carried: Carried,
+    pub vectors: Matrix,
+    pub stiffness: Vec<f64>,
+}
+
+/// Of the rigid motions, in columns of their own; none where none is left, K drives one, or rounding hides them.
+pub(super) fn motions(
+    factor: &Factor,
+    k: &Multiple,
+    null_space: &Matrix,
+    rigid: &Matrix,
+) -> Result<Option<Motions>> {
+    let root = k.roots()?;
+    let null = scaled(null_space, |i| root[i])?;
+    let mut z = without(scaled(rigid, |i| root[i])?.orthonormalised(DEPENDENT), &null)?;
+    for j in (0..z.cols).filter(|&j| norm(z.col(j)) <= DEPENDENT).collect::<Vec<_>>() {
+        z.col_mut(j).fill(0.0);
+    }
+    let l = scaled(&z.orthonormalised(DEPENDENT), |i| root[i])?;
+    let mut c = l.clone();
+    for j in 0..c.cols {
+        factor.solve(c.col_mut(j))?;
+    }
+    let (compliance, v) = symmetric_eigen(&symmetric(c.cols, |a, b| dot(l.col(a), c.col(b)))?)?;
+    let most = compliance.iter().fold(0.0, |most: f64, value| most.max(*value));
+    if compliance.iter().any(|value| value.is_nan() || *value <= APART * most) || c.cols == 0 {
+        return Ok(None);
+    }
+    let all: Vec<usize> = (0..c.rows).collect();
+    c.turn_rows(&all, &v);
+    for (j, value) in compliance.iter().enumerate() {
+        c.col_mut(j).iter_mut().for_each(|c| *c /= value.sqrt());
+    }
+    // R_c = C Q, Q'C'D C Q = I and Q'Q = diag(stiffness), but for null vectors
+    let y = without(scaled(&c, |i| root[i])?, &null)?;
+    let (square, turn) = symmetric_eigen(&symmetric(y.cols, |a, b| dot(y.col(a), y.col(b)))?)?;
+    if square.iter().any(|value| value.is_nan() || *value <= 0.0) {
+        return Ok(None);
+    }
+    let mut vectors = scaled(&y, |i| 1.0 / root[i])?;
+    vectors.turn_rows(&all, &turn);
+    for (j, value) in square.iter().enumerate() {
+        vectors.col_mut(j).iter_mut().for_each(|v| *v /= value.sqrt());
+    }
+    let stiffness = square.iter().map(|value| 1.0 / value).collect();
+    Ok(Some(Motions { carried: Carried { c }, vectors, stiffness }))
+}
+
+impl Carried {
+    /// Number q of motions.
+    pub fn count(&self) -> usize {
+        self.c.cols
+    }
+
+    /// `x <- K+ x - C C'x`, by solutions with K+.
+    pub fn apply_in_place(&self, x: &mut [f64], solve: impl FnOnce(&mut [f64]) -> Result<()>) -> Result<()> {
+        let shares = self.c.mul_transposed(x);
+        solve(x)?;
+        self.c.mul_add(-1.0, &shares, x);
+        Ok(())
+    }
+
+    /// `B C`, m x q.
+    fn images(&self, rows: &Csr) -> Result<Matrix> {
+        Matrix::from_fn(rows.rows(), self.c.cols, |i, j| rows.row_dot(i, self.c.col(j)))
+    }
+
+    /// Takes `B C C'B'` from `B K+ B'`.
+    pub fn take_from_form(&self, rows: &Csr, form: &mut Packed) -> Result<()> {
+        let images = self.images(rows)?;
+        let m = images.rows;
+        let mut gram = Matrix::zeros(m, m)?;
+        for j in 0..m {
+            let column = &mut gram.col_mut(j)[j..];
+            (0..images.cols).for_each(|k| axpy(-images.get(j, k), &images.col(k)[j..], column));
+        }
+        form.add_lower(&(0..m).collect::<Vec<_>>(), &gram.data);
+        Ok(())
+    }
+
+    /// The same from the columns `which` of it.
+    pub fn take_from_columns(&self, rows: &Csr, which: &[usize], columns: &mut Matrix) -> Result<()> {
+        let images = self.images(rows)?;
+        for (at, &j) in which.iter().enumerate() {
+            (0..images.cols).for_each(|k| axpy(-images.get(j, k), images.col(k), columns.col_mut(at)));
+        }
+        Ok(())
+    }
+}
+
+/// Rows times numbers.
+fn scaled(matrix: &Matrix, by: impl Fn(usize) -> f64) -> Result<Matrix> {
+    Matrix::from_fn(matrix.rows, matrix.cols, |i, j| by(i) * matrix.get(i, j))
+}
+
+/// The part of y that is orthogonal to orthonormal columns.
+fn without(mut y: Matrix, basis: &Matrix) -> Result<Matrix> {
+    for _ in 0..2 {
+        for j in 0..y.cols {
+            let shares = basis.mul_transposed(y.col(j));
+            basis.mul_add(-1.0, &shares, y.col_mut(j));
+        }
+    }
+    Ok(y)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::body::{GeneralizedInverse, Modes, NullSpaceInput};
+    use crate::linalg::random::Random;
+    use crate::linalg::Symmetric;
+    use std::sync::Arc;
+
+    /// Two chains of n unit springs, each with a spring to the ground at its first dof, or none.
+    fn chains(n: usize, ground: [f64; 2]) -> Multiple {
+        let mut k = Symmetric::empty();
+        for (chain, ground) in ground.into_iter().enumerate() {
+            for i in 0..n {
+                let joints = f64::from(u8::from(i > 0)) + f64::from(u8::from(i + 1 < n));
+                let own = joints + if i == 0 { ground } else { 0.0 };
+                let before = (i > 0).then(|| (chain * n + i - 1, -1.0));
+                k.push_row(before.into_iter().chain([(chain * n + i, own)]));
+            }
+        }
+        k.into()
+    }
+
+    /// Translations of each chain.
+    fn rigid(n: usize, which: &[usize]) -> Matrix {
+        Matrix::from_fn(2 * n, which.len(), |i, j| f64::from(u8::from(i / n == which[j]))).unwrap()
+    }
+
+    fn made(k: &Multiple, null_space: Matrix) -> GeneralizedInverse {
+        let input = NullSpaceInput { vectors: null_space, modes: Modes::Exact };
+        GeneralizedInverse::plan(k.clone(), &input, 1e-8).unwrap().execute().unwrap().inverse
+    }
+
+    /// `u = K_c+ f + R a` with `S a = R'f` solves K u = f; the first chain is held, the second floats.
+    #[test]
+    fn springs_and_what_is_left_of_k_plus_give_the_displacement_of_k() {
+        let (n, k) = (7, chains(7, [0.5, 0.0]));
+        let inverse = made(&k, rigid(n, &[1]));
+        let inverse = inverse.with_carried(&k, &rigid(n, &[0, 1])).unwrap();
+        assert_eq!((inverse.null_space.cols, inverse.stiffness.len()), (2, 2));
+        assert!(inverse.stiffness[0] == 0.0 && inverse.stiffness[1] > 0.0 && !inverse.is_soft());
+        assert_eq!(inverse.free_motions().cols, 1);
+        // a load that the second chain has in balance
+        let mut f: Vec<f64> = (0..2 * n).map(|i| (i as f64).sin()).collect();
+        let unheld = f[n..].iter().sum::<f64>() / n as f64;
+        f[n..].iter_mut().for_each(|f| *f -= unheld);
+        let mut u = vec![0.0; 2 * n];
+        inverse.apply(&f, &mut u).unwrap();
+        let r = inverse.null_space.col(1);
+        axpy(dot(r, &f) / inverse.stiffness[1], r, &mut u);
+        let mut image = vec![0.0; 2 * n];
+        k.mul(&u, &mut image);
+        assert!(image.iter().zip(&f).all(|(a, b)| (a - b).abs() < 1e-13), "{image:?}");
+        // the springs hold what has no part along L, the translation of the first chain in the metric D
+        let moved: f64 = {
+            inverse.apply(&f, &mut u).unwrap();
+            (0..n).map(|i| k.metric(i, 1.0) * u[i]).sum()
+        };
+        assert!(moved.abs() < 1e-13, "{moved:e}");
+    }
+
+    #[test]
+    fn operators_are_those_of_what_is_left_of_k_plus() {
+        let (n, k) = (7, chains(7, [0.5, 2.0]));
+        let inverse = made(&k, Matrix::zeros(2 * n, 0).unwrap());
+        let inverse = Arc::new(inverse.with_carried(&k, &rigid(n, &[0, 1])).unwrap());
+        let (mut rows, mut random) = (Csr::empty(2 * n), Random::default());
+        for i in 0..5 {
+            let v = random.vector(2 * n, |_| 1.0).unwrap();
+            rows.push_row([(i, v[0]), (i + 3, v[1]), (2 * n - 1 - i, v[2])]);
+        }
+        let form = inverse.inverse_form(&rows).unwrap();
+        let columns = inverse.inverse_columns(&rows, &[1, 4]).unwrap();
+        for j in 0..5 {
+            let (mut b, mut x) = (vec![0.0; 2 * n], vec![0.0; 2 * n]);
+            rows.row(j).for_each(|(dof, v)| b[dof] = v);
+            inverse.apply(&b, &mut x).unwrap();
+            for i in 0..5 {
+                assert!((rows.row_dot(i, &x) - form.get(i, j)).abs() < 1e-13);
+            }
+            if let Some(at) = [1, 4].iter().position(|which| *which == j) {
+                assert!((0..5).all(|i| (rows.row_dot(i, &x) - columns.get(i, at)).abs() < 1e-13));
+            }
+        }
+    }
+
+    #[test]
+    fn no_motion_is_carried_where_there_is_none_or_rounding_hides_it() {
+        let n = 7;
+        let floating = chains(n, [0.0; 2]);
+        let inverse = made(&floating, rigid(n, &[0, 1])).with_carried(&floating, &rigid(n, &[0, 1])).unwrap();
+        assert_eq!((inverse.null_space.cols, inverse.stiffness.len()), (2, 0));
+        let stiff = chains(n, [1e20, 1.0]);
+        let inverse = made(&stiff, Matrix::zeros(2 * n, 0).unwrap());
+        assert_eq!(inverse.with_carried(&stiff, &rigid(n, &[0, 1])).unwrap().null_space.cols, 0);
+    }
+}
