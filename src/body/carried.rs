@@ -221,13 +221,31 @@ mod tests {
     }
 
     #[test]
-    fn no_motion_is_carried_where_there_is_none_or_rounding_hides_it() {
-        let n = 7;
-        let floating = chains(n, [0.0; 2]);
-        let inverse = made(&floating, rigid(n, &[0, 1])).with_carried(&floating, &rigid(n, &[0, 1])).unwrap();
+    fn a_body_that_floats_carries_no_motion() {
+        let (n, k) = (7, chains(7, [0.0; 2]));
+        let inverse = made(&k, rigid(n, &[0, 1])).with_carried(&k, &rigid(n, &[0, 1])).unwrap();
         assert_eq!((inverse.null_space.cols, inverse.stiffness.len()), (2, 0));
-        let stiff = chains(n, [1e20, 1.0]);
-        let inverse = made(&stiff, Matrix::zeros(2 * n, 0).unwrap());
-        assert_eq!(inverse.with_carried(&stiff, &rigid(n, &[0, 1])).unwrap().null_space.cols, 0);
+    }
+
+    /// `K^-1 = K_c+ + R S^-1 R'`, also where a support is all that the metric sees of a motion.
+    #[test]
+    fn supports_of_any_stiffness_leave_k_plus_as_exact_as_it_was() {
+        let n = 7;
+        for ground in [1e-6, 1.0, 1e6, 1e20] {
+            let k = chains(n, [ground, 1.0]);
+            let plain = made(&k, Matrix::zeros(2 * n, 0).unwrap());
+            let inverse = plain.clone().with_carried(&k, &rigid(n, &[0, 1])).unwrap();
+            assert_eq!(inverse.stiffness.len(), 2);
+            let f: Vec<f64> = (0..2 * n).map(|i| (i as f64).cos()).collect();
+            let [mut u, mut expected] = [vec![0.0; 2 * n], vec![0.0; 2 * n]];
+            plain.apply(&f, &mut expected).unwrap();
+            inverse.apply(&f, &mut u).unwrap();
+            for j in 0..2 {
+                let r = inverse.null_space.col(j);
+                axpy(dot(r, &f) / inverse.stiffness[j], r, &mut u);
+            }
+            let most = norm(&expected);
+            assert!(u.iter().zip(&expected).all(|(a, b)| (a - b).abs() <= 1e-13 * most), "{ground:e}");
+        }
     }
 }
