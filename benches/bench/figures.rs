@@ -48,6 +48,9 @@ pub fn of(deck: &'static str, runs: &Runs) -> Vec<Figure> {
     let faer = |threads, quantity| (Program::Faer(threads), quantity);
     let first = (ONE, "first_cpu");
     let wall = (TWO, "first_wall");
+    let cut = |threads, quantity| (Program::Cut(threads), quantity);
+    let later = |quantity| (Program::Later, quantity);
+    let pieces = |number| (Program::Pieces(number), "first_dual_solve_wall");
     let figures = [
         ("solve/CHOLMOD,1_thread_cpu", first, cholmod("cpu")),
         ("solve/CHOLMOD,2_threads_wall", wall, (Program::Cholmod(2), "wall")),
@@ -63,6 +66,16 @@ pub fn of(deck: &'static str, runs: &Runs) -> Vec<Figure> {
         ("Clarabel/solve,cpu", (Program::Clarabel, "cpu"), first),
         ("OSQP/solve,cpu", (Program::Osqp, "cpu"), first),
         ("F_product/triad", (Program::Bandwidth, "product"), (Program::Bandwidth, "triad")),
+        ("cut/CHOLMOD,1_thread_cpu", cut(1, "whole_cpu"), cholmod("cpu")),
+        ("cut/CHOLMOD,2_threads_wall", cut(2, "whole_wall"), (Program::Cholmod(2), "wall")),
+        ("cut/uncut,1_thread_cpu", cut(1, "whole_cpu"), first),
+        ("cut,2_threads/1_thread,wall", cut(2, "whole_wall"), cut(1, "whole_wall")),
+        ("cut,peak_memory/CHOLMOD", cut(1, "peak"), cholmod("peak")),
+        ("cut,peak_memory/CHOLMOD", cut(2, "peak"), (Program::Cholmod(2), "peak")),
+        ("cut,second_step/first,cpu", later("second_cpu"), later("first_cpu")),
+        ("cut,cold_step/first,cpu", later("third_cpu"), later("first_cpu")),
+        ("cut,contact/linear,products", later("products"), later("linear_products")),
+        ("cut,dual_solve,1458_pieces/432,wall", pieces(729), pieces(216)),
     ];
     let figure = |(name, over, under)| {
         let value = runs.ratio(deck, over, under)?;
@@ -84,13 +97,33 @@ fn goal(name: &str, deck: &str) -> Goal {
         ("F/factorisation", "40k") => Most(0.15),
         ("F/factorisation", "144k") => Most(0.18),
         ("second_step/first,cpu", "40k" | "144k") => Most(0.08),
-        ("peak_memory/CHOLMOD", _) => Most(1.1),
+        ("peak_memory/CHOLMOD", "4k" | "13k" | "40k" | "144k") => Most(1.1),
         ("factorisation/faer's,1_thread_cpu" | "factorisation/faer's,2_threads_wall", _) => Most(1.0),
         ("Clarabel/solve,cpu", _) => Least(15.0),
         ("OSQP/solve,cpu", _) => Least(25.0),
         ("F_product/triad", _) => Least(0.7),
-        _ => Goal::None,
+        ("solve/CHOLMOD,2_threads_wall", "300k_cut") => Most(1.0),
+        ("solve/CHOLMOD,2_threads_wall", "578k_cut") => Most(1.1),
+        _ => goal_of_cut(name, deck),
     }
+}
+
+/// Of bodies that are handed over by their elements.
+fn goal_of_cut(name: &str, deck: &str) -> Goal {
+    let most = match (name, deck) {
+        ("cut/CHOLMOD,1_thread_cpu", "144k_cut") => 0.35,
+        ("cut/CHOLMOD,2_threads_wall", "300k_cut") => 0.30,
+        ("cut/CHOLMOD,2_threads_wall", "578k_cut") => 0.18,
+        ("cut/uncut,1_thread_cpu", "140k_cut") => 0.12,
+        ("cut,2_threads/1_thread,wall", "144k_cut") => 0.62,
+        ("cut,peak_memory/CHOLMOD", "144k_cut") => 0.38,
+        ("cut,peak_memory/CHOLMOD", "578k_cut") => 0.27,
+        ("cut,second_step/first,cpu", "140k_cut") => 0.4,
+        ("cut,contact/linear,products", "144k_cut") => 1.4,
+        ("cut,dual_solve,1458_pieces/432,wall", _) => 1.5,
+        _ => return Goal::None,
+    };
+    Goal::Most(most)
 }
 
 /// Figures of two decks.
