@@ -41,6 +41,27 @@ impl Figure {
 const ONE: Program = Program::Ours(1);
 const TWO: Program = Program::Ours(2);
 
+/// A quantity of one program over one of another.
+type Ratio = (&'static str, (Program, &'static str), (Program, &'static str));
+
+/// Of bodies that are handed over by their elements.
+const OF_CUT: [Ratio; 10] = [
+    ("cut/CHOLMOD,1_thread_cpu", (Program::Cut(1), "whole_cpu"), (Program::Cholmod(1), "cpu")),
+    ("cut/CHOLMOD,2_threads_wall", (Program::Cut(2), "whole_wall"), (Program::Cholmod(2), "wall")),
+    ("cut/uncut,1_thread_cpu", (Program::Cut(1), "whole_cpu"), (ONE, "first_cpu")),
+    ("cut,2_threads/1_thread,wall", (Program::Cut(2), "whole_wall"), (Program::Cut(1), "whole_wall")),
+    ("cut,peak_memory/CHOLMOD", (Program::Cut(1), "peak"), (Program::Cholmod(1), "peak")),
+    ("cut,peak_memory/CHOLMOD", (Program::Cut(2), "peak"), (Program::Cholmod(2), "peak")),
+    ("cut,second_step/first,cpu", (Program::Later, "second_cpu"), (Program::Later, "first_cpu")),
+    ("cut,cold_step/first,cpu", (Program::Later, "third_cpu"), (Program::Later, "first_cpu")),
+    ("cut,contact/linear,products", (Program::Later, "products"), (Program::Later, "linear_products")),
+    (
+        "cut,dual_solve,1458_pieces/432,wall",
+        (Program::Pieces(729), "first_dual_solve_wall"),
+        (Program::Pieces(216), "first_dual_solve_wall"),
+    ),
+];
+
 /// Figures of one deck, as far as its runs give them.
 pub fn of(deck: &'static str, runs: &Runs) -> Vec<Figure> {
     let cholmod = |quantity| (Program::Cholmod(1), quantity);
@@ -48,9 +69,6 @@ pub fn of(deck: &'static str, runs: &Runs) -> Vec<Figure> {
     let faer = |threads, quantity| (Program::Faer(threads), quantity);
     let first = (ONE, "first_cpu");
     let wall = (TWO, "first_wall");
-    let cut = |threads, quantity| (Program::Cut(threads), quantity);
-    let later = |quantity| (Program::Later, quantity);
-    let pieces = |number| (Program::Pieces(number), "first_dual_solve_wall");
     let figures = [
         ("solve/CHOLMOD,1_thread_cpu", first, cholmod("cpu")),
         ("solve/CHOLMOD,2_threads_wall", wall, (Program::Cholmod(2), "wall")),
@@ -66,22 +84,12 @@ pub fn of(deck: &'static str, runs: &Runs) -> Vec<Figure> {
         ("Clarabel/solve,cpu", (Program::Clarabel, "cpu"), first),
         ("OSQP/solve,cpu", (Program::Osqp, "cpu"), first),
         ("F_product/triad", (Program::Bandwidth, "product"), (Program::Bandwidth, "triad")),
-        ("cut/CHOLMOD,1_thread_cpu", cut(1, "whole_cpu"), cholmod("cpu")),
-        ("cut/CHOLMOD,2_threads_wall", cut(2, "whole_wall"), (Program::Cholmod(2), "wall")),
-        ("cut/uncut,1_thread_cpu", cut(1, "whole_cpu"), first),
-        ("cut,2_threads/1_thread,wall", cut(2, "whole_wall"), cut(1, "whole_wall")),
-        ("cut,peak_memory/CHOLMOD", cut(1, "peak"), cholmod("peak")),
-        ("cut,peak_memory/CHOLMOD", cut(2, "peak"), (Program::Cholmod(2), "peak")),
-        ("cut,second_step/first,cpu", later("second_cpu"), later("first_cpu")),
-        ("cut,cold_step/first,cpu", later("third_cpu"), later("first_cpu")),
-        ("cut,contact/linear,products", later("products"), later("linear_products")),
-        ("cut,dual_solve,1458_pieces/432,wall", pieces(729), pieces(216)),
     ];
     let figure = |(name, over, under)| {
         let value = runs.ratio(deck, over, under)?;
         Some(Figure { deck, name, value, goal: goal(name, deck) })
     };
-    figures.into_iter().filter_map(figure).collect()
+    figures.into_iter().chain(OF_CUT).filter_map(figure).collect()
 }
 
 /// Up to which value a figure is good enough, or from which on.
@@ -136,6 +144,24 @@ pub fn between(runs: &Runs) -> Vec<Figure> {
     [
         growth.map(|pair| figure("144k/40k", "growth/CHOLMOD's,cpu", pair, Goal::Most(1.25))),
         bodies.map(|pair| figure("64_bodies/144k", "solve_per_dof,cpu", pair, Goal::Most(1.0))),
+    ]
+    .into_iter()
+    .flatten()
+    .collect()
+}
+
+/// How time and memory of bodies by their elements grow.
+pub fn of_growth(runs: &Runs) -> Vec<Figure> {
+    const GIGABYTE: f64 = 1e9;
+    const DECK: &str = "989k_cut";
+    let of = |deck, quantity| runs.median(deck, Program::Cut(2), quantity);
+    let per_dof = |deck, quantity| Some(of(deck, quantity)? / of(deck, "dofs")?);
+    let growth = |quantity| Some(per_dof(DECK, quantity)? / per_dof("300k_cut", quantity)?);
+    let figure = |name, value: Option<f64>, goal| Some(Figure { deck: DECK, name, value: value?, goal });
+    [
+        figure("cut,time_per_dof/300k's,2_threads_wall", growth("whole_wall"), Goal::Most(1.2)),
+        figure("cut,peak_memory_per_dof/300k's", growth("peak"), Goal::None),
+        figure("cut,peak_memory,GB", of(DECK, "peak").map(|bytes| bytes / GIGABYTE), Goal::Most(3.5)),
     ]
     .into_iter()
     .flatten()

@@ -44,7 +44,7 @@ pub struct Case {
 pub const PEERS: &str = "40k_peers";
 
 /// Small decks first: a figure that short runs leave noisy gets more of them.
-pub const CASES: [Case; 14] = [
+pub const CASES: [Case; 16] = [
     Case { name: "4k", model: Model::Blocks(8), rounds: 11 },
     Case { name: "13k", model: Model::Blocks(12), rounds: 7 },
     Case { name: "40k", model: Model::Blocks(18), rounds: 5 },
@@ -59,10 +59,12 @@ pub const CASES: [Case; 14] = [
     Case { name: "cube_40k", model: Model::Clamped([23; 3]), rounds: 5 },
     Case { name: "plate_40k", model: Model::Clamped([66, 66, 2]), rounds: 7 },
     Case { name: "bar_41k", model: Model::Clamped([80, 12, 12]), rounds: 7 },
+    Case { name: "300k_cut", model: Model::Varied(36), rounds: 1 },
+    Case { name: "578k_cut", model: Model::Varied(45), rounds: 1 },
 ];
 
 /// Decks of the scaling, beside those above. The flat ones have about as many unknowns as 40k.
-pub const POINTS: [Case; 11] = [
+pub const POINTS: [Case; 12] = [
     point("2k", Model::Blocks(6)),
     point("92k", Model::Blocks(24)),
     point("729_rows", Model::Flat(26, 9)),
@@ -74,6 +76,7 @@ pub const POINTS: [Case; 11] = [
     point("cut_8", Model::Cut(2)),
     point("cut_27", Model::Cut(3)),
     point("cut_64", Model::Cut(4)),
+    point("989k_cut", Model::Varied(54)),
 ];
 
 const fn point(name: &'static str, model: Model) -> Case {
@@ -87,12 +90,14 @@ pub fn case(name: &str) -> Option<&'static Case> {
 impl Case {
     /// What is run, in the order in which the programs take turns.
     pub fn programs(&self) -> Vec<Program> {
-        use Program::{Cholmod, Clarabel, Cut, Factor, Faer, Later, Osqp, Ours, Parts};
+        use Program::{Cholmod, Clarabel, Cut, Factor, Faer, Later, Osqp, Ours, Parts, Pieces};
         match self.model {
             Model::Blocks(_) if self.name == PEERS => vec![Ours(1), Clarabel, Osqp],
             Model::Blocks(_) => vec![Ours(1), Cholmod(1), Ours(2), Cholmod(2), Parts],
             Model::OneBody(_) => vec![Ours(1), Ours(2)],
-            Model::Varied(_) => vec![Cut(1), Cholmod(1), Cut(2), Ours(1), Later],
+            Model::Varied(28) => vec![Cut(1), Cholmod(1), Cut(2), Ours(1), Later],
+            Model::Varied(36) => vec![Cut(2), Cholmod(2), Ours(2), Cut(1), Pieces(216), Pieces(729)],
+            Model::Varied(_) => vec![Cut(2), Cholmod(2), Ours(2), Cut(1)],
             Model::VariedBody(_) => vec![Cut(1), Ours(1), Cut(2), Later],
             Model::Clamped(_) => vec![Factor(1), Faer(1), Factor(2), Faer(2)],
             Model::Flat(..) | Model::Cube(_) | Model::Cut(_) => vec![Ours(1)],
