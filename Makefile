@@ -7,9 +7,9 @@
 # make mutants   wrong changes of src, one after the other, that the Rust tests have to notice (about half an hour);
 #                CHANGES="17 52" picks some, CHANGES=--places tells where they are
 # make counts    applications of F against a linear solve, deck by deck (some minutes); DECKS="slab two" picks some
-# make bench     time and memory against CHOLMOD, faer, Clarabel and OSQP (some minutes); DECKS="4k 40k" picks some
-# make scaling   time and memory as unknowns, contact rows, bodies, threads grow: pictures in docs (some minutes);
-#                SWEEPS="rows bodies" picks some, a number among them leaves out decks of more unknowns
+# make bench     time and memory against CHOLMOD, faer, Clarabel and OSQP (some 20 minutes, 11 GB); DECKS="4k 40k" picks some
+# make scaling   time and memory as unknowns, contact rows, bodies, pieces, threads grow: pictures in docs (some minutes);
+#                SWEEPS="rows cut" picks some, a number among them leaves out decks of more unknowns
 # make growth    how time grows with the number of loose or glued bodies (some minutes); DECKS="tower wall" picks some
 # make paper     the paper's problems by its own method and by the default: table, pictures (seconds)
 # make docs      the book, manual pages, pages of the Fortran modules and of the crate: build/docs/index.html (some minutes)

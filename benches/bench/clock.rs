@@ -25,6 +25,14 @@ pub struct Lap {
     pub cpu: f64,
 }
 
+impl std::ops::Add for Lap {
+    type Output = Self;
+
+    fn add(self, other: Self) -> Self {
+        Self { wall: self.wall + other.wall, cpu: self.cpu + other.cpu }
+    }
+}
+
 pub struct Clock {
     wall: Instant,
     cpu: f64,

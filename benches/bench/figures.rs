@@ -41,6 +41,27 @@ impl Figure {
 const ONE: Program = Program::Ours(1);
 const TWO: Program = Program::Ours(2);
 
+/// A quantity of one program over one of another.
+type Ratio = (&'static str, (Program, &'static str), (Program, &'static str));
+
+/// Of bodies that are handed over by their elements.
+const OF_CUT: [Ratio; 10] = [
+    ("cut/CHOLMOD,1_thread_cpu", (Program::Cut(1), "whole_cpu"), (Program::Cholmod(1), "cpu")),
+    ("cut/CHOLMOD,2_threads_wall", (Program::Cut(2), "whole_wall"), (Program::Cholmod(2), "wall")),
+    ("cut/uncut,1_thread_cpu", (Program::Cut(1), "whole_cpu"), (ONE, "first_cpu")),
+    ("cut,2_threads/1_thread,wall", (Program::Cut(2), "whole_wall"), (Program::Cut(1), "whole_wall")),
+    ("cut,peak_memory/CHOLMOD", (Program::Cut(1), "peak"), (Program::Cholmod(1), "peak")),
+    ("cut,peak_memory/CHOLMOD", (Program::Cut(2), "peak"), (Program::Cholmod(2), "peak")),
+    ("cut,second_step/first,cpu", (Program::Later, "second_cpu"), (Program::Later, "first_cpu")),
+    ("cut,cold_step/first,cpu", (Program::Later, "third_cpu"), (Program::Later, "first_cpu")),
+    ("cut,contact/linear,products", (Program::Later, "products"), (Program::Later, "linear_products")),
+    (
+        "cut,dual_solve,1458_pieces/432,wall",
+        (Program::Pieces(729), "first_dual_solve_wall"),
+        (Program::Pieces(216), "first_dual_solve_wall"),
+    ),
+];
+
 /// Figures of one deck, as far as its runs give them.
 pub fn of(deck: &'static str, runs: &Runs) -> Vec<Figure> {
     let cholmod = |quantity| (Program::Cholmod(1), quantity);
@@ -68,7 +89,7 @@ pub fn of(deck: &'static str, runs: &Runs) -> Vec<Figure> {
         let value = runs.ratio(deck, over, under)?;
         Some(Figure { deck, name, value, goal: goal(name, deck) })
     };
-    figures.into_iter().filter_map(figure).collect()
+    figures.into_iter().chain(OF_CUT).filter_map(figure).collect()
 }
 
 /// Up to which value a figure is good enough, or from which on.
@@ -84,13 +105,33 @@ fn goal(name: &str, deck: &str) -> Goal {
         ("F/factorisation", "40k") => Most(0.15),
         ("F/factorisation", "144k") => Most(0.18),
         ("second_step/first,cpu", "40k" | "144k") => Most(0.08),
-        ("peak_memory/CHOLMOD", _) => Most(1.1),
+        ("peak_memory/CHOLMOD", "4k" | "13k" | "40k" | "144k") => Most(1.1),
         ("factorisation/faer's,1_thread_cpu" | "factorisation/faer's,2_threads_wall", _) => Most(1.0),
         ("Clarabel/solve,cpu", _) => Least(15.0),
         ("OSQP/solve,cpu", _) => Least(25.0),
         ("F_product/triad", _) => Least(0.7),
-        _ => Goal::None,
+        ("solve/CHOLMOD,2_threads_wall", "300k_cut") => Most(1.0),
+        ("solve/CHOLMOD,2_threads_wall", "578k_cut") => Most(1.1),
+        _ => goal_of_cut(name, deck),
     }
+}
+
+/// Of bodies that are handed over by their elements.
+fn goal_of_cut(name: &str, deck: &str) -> Goal {
+    let most = match (name, deck) {
+        ("cut/CHOLMOD,1_thread_cpu", "144k_cut") => 0.35,
+        ("cut/CHOLMOD,2_threads_wall", "300k_cut") => 0.30,
+        ("cut/CHOLMOD,2_threads_wall", "578k_cut") => 0.18,
+        ("cut/uncut,1_thread_cpu", "140k_cut") => 0.12,
+        ("cut,2_threads/1_thread,wall", "144k_cut") => 0.62,
+        ("cut,peak_memory/CHOLMOD", "144k_cut") => 0.38,
+        ("cut,peak_memory/CHOLMOD", "578k_cut") => 0.27,
+        ("cut,second_step/first,cpu", "140k_cut") => 0.4,
+        ("cut,contact/linear,products", "144k_cut") => 1.4,
+        ("cut,dual_solve,1458_pieces/432,wall", _) => 1.5,
+        _ => return Goal::None,
+    };
+    Goal::Most(most)
 }
 
 /// Figures of two decks.
@@ -103,6 +144,24 @@ pub fn between(runs: &Runs) -> Vec<Figure> {
     [
         growth.map(|pair| figure("144k/40k", "growth/CHOLMOD's,cpu", pair, Goal::Most(1.25))),
         bodies.map(|pair| figure("64_bodies/144k", "solve_per_dof,cpu", pair, Goal::Most(1.0))),
+    ]
+    .into_iter()
+    .flatten()
+    .collect()
+}
+
+/// How time and memory of bodies by their elements grow.
+pub fn of_growth(runs: &Runs) -> Vec<Figure> {
+    const GIGABYTE: f64 = 1e9;
+    const DECK: &str = "989k_cut";
+    let of = |deck, quantity| runs.median(deck, Program::Cut(2), quantity);
+    let per_dof = |deck, quantity| Some(of(deck, quantity)? / of(deck, "dofs")?);
+    let growth = |quantity| Some(per_dof(DECK, quantity)? / per_dof("300k_cut", quantity)?);
+    let figure = |name, value: Option<f64>, goal| Some(Figure { deck: DECK, name, value: value?, goal });
+    [
+        figure("cut,time_per_dof/300k's,2_threads_wall", growth("whole_wall"), Goal::Most(1.2)),
+        figure("cut,peak_memory_per_dof/300k's", growth("peak"), Goal::None),
+        figure("cut,peak_memory,GB", of(DECK, "peak").map(|bytes| bytes / GIGABYTE), Goal::Most(3.5)),
     ]
     .into_iter()
     .flatten()

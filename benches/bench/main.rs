@@ -11,6 +11,8 @@
 mod clock;
 #[path = "../../tests/support/compiler.rs"]
 mod compiler;
+mod cut;
+mod details;
 mod factors;
 mod figures;
 #[path = "../../tests/support/hand_over.rs"]
@@ -25,6 +27,7 @@ mod plot;
 mod problems;
 mod runs;
 mod scaling;
+mod steps;
 
 use std::io::Write;
 use std::path::Path;
@@ -54,9 +57,14 @@ fn main() -> ExitCode {
 
 /// One run in this process.
 fn child(kind: &str, deck: &str, threads: &str) -> Result<(), String> {
-    let build = || problems::case(deck).map(|case| case.model.build()).ok_or("no such deck");
+    let model = || problems::case(deck).map(|case| case.model).ok_or("no such deck");
+    let build = || model().map(Model::build);
+    let by_elements = || model()?.by_elements().ok_or_else(|| "no deck by elements".to_string());
     match kind {
         "ours" => ours::run(build()?, threads.parse().map_err(|_| "no number of threads")?),
+        "cut" => cut::run(by_elements()?, 0, threads.parse().map_err(|_| "no number of threads")?),
+        "pieces" => cut::run(by_elements()?, threads.parse().map_err(|_| "no number of pieces")?, 2),
+        "later" => cut::later(by_elements),
         "parts" => parts::run(&build()?).map_err(|error| error.to_string()),
         "factor" => factors::run(&build()?, threads.parse().map_err(|_| "no number of threads")?),
         _ => parts::bandwidth().map_err(|error| error.to_string()),
@@ -77,7 +85,7 @@ fn benchmark(wanted: &[&str]) -> Result<(), String> {
         match measure(case, &mut runs, &peers) {
             Ok(blas) => {
                 judge(figures::of(case.name, &runs));
-                details(case, &runs, &blas);
+                details::print(case, &runs, &blas);
             }
             Err(why) => {
                 failed += 1;
@@ -110,28 +118,15 @@ fn print(figures: &[Figure]) -> usize {
 
 /// All programs of a deck in turn, as often as the deck says; gives the BLAS in use.
 fn measure(case: &Case, runs: &mut Runs, peers: &Peers) -> Result<String, String> {
-    let ours = [Program::Ours(1), Program::Ours(2)];
-    let programs = match case.model {
-        Model::Blocks(_) => {
-            peers.write(case)?;
-            if case.name == PEERS {
-                vec![ours[0], Program::Clarabel, Program::Osqp]
-            } else {
-                vec![ours[0], Program::Cholmod(1), ours[1], Program::Cholmod(2), Program::Parts]
-            }
-        }
-        Model::OneBody(_) => ours.to_vec(),
-        Model::Clamped(_) => {
-            peers.write(case)?;
-            vec![Program::Factor(1), Program::Faer(1), Program::Factor(2), Program::Faer(2)]
-        }
-        Model::Flat(..) | Model::Cube(_) | Model::Cut(_) => ours[..1].to_vec(),
-    };
+    let programs = case.programs();
+    if programs.iter().any(|program| program.reads_files()) {
+        peers.write(case)?;
+    }
     let mut blas = String::new();
     for round in 1..=case.rounds {
-        for &program in &programs {
+        for &program in programs.iter().filter(|program| round == 1 || !program.is_run_once()) {
             let text = runs.run(case.name, program, round, peers)?;
-            if program == Program::Cholmod(2) {
+            if matches!(program, Program::Cholmod(_)) {
                 blas = text;
             }
         }
@@ -140,72 +135,30 @@ fn measure(case: &Case, runs: &mut Runs, peers: &Peers) -> Result<String, String
     Ok(blas)
 }
 
-/// Every run of ours gives the same bits, and the energy of the peers that found a solution is that of ours.
+/// Every run of the same bodies gives the same bits, and the energy of other bodies and of the peers that found a solution
+/// is the same as far as they are exact.
 fn agree(case: &Case, runs: &Runs) -> Result<(), String> {
     const ENERGY: f64 = 1e-4;
+    const ENERGY_OF_PIECES: f64 = 1e-9;
     let of = |program: Program, quantity: &str| runs.values(case.name, program, quantity);
-    let ours = |quantity: &str| [1, 2].map(|threads| of(Program::Ours(threads), quantity)).concat();
-    let (bits, energies) = (ours("bits"), ours("energy"));
-    if bits.iter().any(|sum| *sum != bits[0]) {
-        return Err("1 and 2 threads give different bits".into());
+    let whole = [Program::Ours(1), Program::Ours(2)];
+    let cut = [Program::Cut(1), Program::Cut(2), Program::Later];
+    for programs in [&whole[..], &cut] {
+        let bits: Vec<f64> = programs.iter().flat_map(|&program| of(program, "bits")).collect();
+        if bits.iter().any(|sum| *sum != bits[0]) {
+            return Err("1 and 2 threads give different bits".into());
+        }
     }
-    for peer in [Program::Clarabel, Program::Osqp] {
-        let solved =
-            of(peer, "solved").into_iter().zip(of(peer, "energy")).filter(|(solved, _)| *solved == 1.0);
-        for (_, energy) in solved {
-            if (energy - energies[0]).abs() > ENERGY * energy.abs() {
-                return Err(format!("energy {:e}, that of {} {energy:e}", energies[0], peer.name()));
+    let Some(ours) = whole.iter().flat_map(|&program| of(program, "energy")).next() else { return Ok(()) };
+    let others = [Program::Clarabel, Program::Osqp].map(|peer| (peer, ENERGY)).into_iter();
+    let pieces = case.programs().into_iter().filter(|program| program.is_by_elements());
+    for (program, limit) in others.chain(pieces.map(|program| (program, ENERGY_OF_PIECES))) {
+        let found = |k: usize| of(program, "solved").get(k).is_none_or(|solved| *solved == 1.0);
+        for (_, energy) in of(program, "energy").into_iter().enumerate().filter(|(k, _)| found(*k)) {
+            if (energy - ours).abs() > limit * energy.abs() {
+                return Err(format!("energy {ours:e}, that of {} {energy:e}", program.name()));
             }
         }
     }
     Ok(())
-}
-
-/// Medians in seconds, and what was solved.
-fn details(case: &Case, runs: &Runs, blas: &str) {
-    let median = |program, quantity: &str| runs.median(case.name, program, quantity);
-    let ours = Program::Ours(1);
-    let text: Vec<String> = ["dofs", "rows", "closed", "products", "implicit", "second_products", "entries"]
-        .iter()
-        .filter_map(|quantity| {
-            let count = median(ours, quantity).or_else(|| median(Program::Factor(1), quantity))?;
-            Some(format!("{quantity} {count}"))
-        })
-        .collect();
-    println!("    {}, {} rounds", text.join(", "), case.rounds);
-    let times = [
-        (ours, "first_cpu"),
-        (ours, "first_analysis_wall"),
-        (ours, "first_factorisation_wall"),
-        (ours, "first_dual_operators_wall"),
-        (ours, "first_dual_solve_wall"),
-        (ours, "second_cpu"),
-        (Program::Parts, "ordering_cpu"),
-        (Program::Parts, "analysis_cpu"),
-        (Program::Parts, "plan_cpu"),
-        (Program::Parts, "execute_cpu"),
-        (Program::Parts, "factorisation_cpu"),
-        (Program::Parts, "dual_operator_cpu"),
-        (Program::Cholmod(1), "analyse_cpu"),
-        (Program::Cholmod(1), "factorise_cpu"),
-        (Program::Factor(1), "cpu"),
-        (Program::Faer(1), "cpu"),
-        (Program::Factor(2), "wall"),
-        (Program::Faer(2), "wall"),
-        (Program::Clarabel, "cpu"),
-        (Program::Osqp, "cpu"),
-    ];
-    for peer in [Program::Clarabel, Program::Osqp] {
-        if median(peer, "solved") == Some(0.0) {
-            println!("    {} found no solution in its time: its ratio is a lower bound", peer.name());
-        }
-    }
-    for (program, quantity) in times {
-        if let Some(seconds) = median(program, quantity) {
-            println!("    {} {quantity} {seconds:.3} s", program.name());
-        }
-    }
-    if !blas.is_empty() {
-        println!("    {blas}");
-    }
 }

@@ -1,7 +1,7 @@
 //! The matrix that CHOLMOD factorises, in the file that `cholmod.c` reads; the problem, in that which `peers.py` reads.
 
 use std::fs::File;
-use std::io::{BufWriter, Result, Write};
+use std::io::{BufWriter, Error, Result, Write};
 use std::path::Path;
 
 use decks::{Body, Deck};
@@ -23,6 +23,8 @@ pub fn write(deck: &Deck, regular: bool, path: &Path) -> Result<()> {
         }
         offset += body.dofs();
     }
+    // no pointer is larger
+    i32::try_from(row.len()).map_err(|_| Error::other("K has more entries than numbers of 32 bits count"))?;
     let mut file = BufWriter::new(File::create(path)?);
     sizes(&mut file, offset, row.len())?;
     ptr.iter().chain(&row).try_for_each(|i| file.write_all(&i.to_ne_bytes()))?;

@@ -102,6 +102,9 @@ impl Peers {
         };
         match program {
             Program::Ours(threads) => own("ours", threads),
+            Program::Cut(threads) => own("cut", threads),
+            Program::Pieces(pieces) => own("pieces", pieces),
+            Program::Later => own("later", 1),
             Program::Parts => own("parts", 1),
             Program::Bandwidth => own("bandwidth", 1),
             Program::Factor(threads) => own("factor", threads),

@@ -1,6 +1,8 @@
 //! The decks of the benchmark.
 
-use decks::{Block, Blocks, Cube, Deck};
+use decks::{Block, Blocks, ByElements, Cube, Deck};
+
+use crate::runs::Program;
 
 /// A deck by its generator.
 #[derive(Clone, Copy, PartialEq)]
@@ -11,6 +13,10 @@ pub enum Model {
     Flat(usize, usize),
     /// The upper of such blocks on a rigid obstacle in the place of the lower one.
     OneBody(usize),
+    /// Blocks whose modulus differs from element to element, by matrices or by elements.
+    Varied(usize),
+    /// The upper of them on the obstacle.
+    VariedBody(usize),
     /// A cube cut into side^3 bodies of 8^3 elements, glued, on an obstacle.
     Cube(usize),
     /// One cube of `CUT`^3 elements, cut into side^3 bodies: the same solution whatever the side, lengths and all
@@ -19,6 +25,10 @@ pub enum Model {
     /// One body of so many cubic elements along each edge, clamped at x = 0, for a factorisation alone.
     Clamped([usize; 3]),
 }
+
+/// How far the modulus of an element is from that of its body: enough for no two pieces to be alike.
+const VARIATION: f64 = 1e-3;
+const SEED: u64 = 1;
 
 /// Elements along the edge of a cube that is cut: so many that 1, 2, 3 and 4 divide them.
 const CUT: usize = 24;
@@ -34,12 +44,14 @@ pub struct Case {
 pub const PEERS: &str = "40k_peers";
 
 /// Small decks first: a figure that short runs leave noisy gets more of them.
-pub const CASES: [Case; 12] = [
+pub const CASES: [Case; 16] = [
     Case { name: "4k", model: Model::Blocks(8), rounds: 11 },
     Case { name: "13k", model: Model::Blocks(12), rounds: 7 },
     Case { name: "40k", model: Model::Blocks(18), rounds: 5 },
     Case { name: "144k", model: Model::Blocks(28), rounds: 3 },
     Case { name: "one_body", model: Model::OneBody(35), rounds: 1 },
+    Case { name: "144k_cut", model: Model::Varied(28), rounds: 3 },
+    Case { name: "140k_cut", model: Model::VariedBody(35), rounds: 1 },
     Case { name: "64_bodies", model: Model::Cube(4), rounds: 3 },
     Case { name: PEERS, model: Model::Blocks(18), rounds: 1 },
     Case { name: "cube_4k", model: Model::Clamped([10; 3]), rounds: 15 },
@@ -47,10 +59,12 @@ pub const CASES: [Case; 12] = [
     Case { name: "cube_40k", model: Model::Clamped([23; 3]), rounds: 5 },
     Case { name: "plate_40k", model: Model::Clamped([66, 66, 2]), rounds: 7 },
     Case { name: "bar_41k", model: Model::Clamped([80, 12, 12]), rounds: 7 },
+    Case { name: "300k_cut", model: Model::Varied(36), rounds: 1 },
+    Case { name: "578k_cut", model: Model::Varied(45), rounds: 1 },
 ];
 
 /// Decks of the scaling, beside those above. The flat ones have about as many unknowns as 40k.
-pub const POINTS: [Case; 11] = [
+pub const POINTS: [Case; 12] = [
     point("2k", Model::Blocks(6)),
     point("92k", Model::Blocks(24)),
     point("729_rows", Model::Flat(26, 9)),
@@ -62,6 +76,7 @@ pub const POINTS: [Case; 11] = [
     point("cut_8", Model::Cut(2)),
     point("cut_27", Model::Cut(3)),
     point("cut_64", Model::Cut(4)),
+    point("989k_cut", Model::Varied(54)),
 ];
 
 const fn point(name: &'static str, model: Model) -> Case {
@@ -72,12 +87,32 @@ pub fn case(name: &str) -> Option<&'static Case> {
     CASES.iter().chain(&POINTS).find(|case| case.name == name)
 }
 
+impl Case {
+    /// What is run, in the order in which the programs take turns.
+    pub fn programs(&self) -> Vec<Program> {
+        use Program::{Cholmod, Clarabel, Cut, Factor, Faer, Later, Osqp, Ours, Parts, Pieces};
+        match self.model {
+            Model::Blocks(_) if self.name == PEERS => vec![Ours(1), Clarabel, Osqp],
+            Model::Blocks(_) => vec![Ours(1), Cholmod(1), Ours(2), Cholmod(2), Parts],
+            Model::OneBody(_) => vec![Ours(1), Ours(2)],
+            Model::Varied(28) => vec![Cut(1), Cholmod(1), Cut(2), Ours(1), Later],
+            Model::Varied(36) => vec![Cut(2), Cholmod(2), Ours(2), Cut(1), Pieces(216), Pieces(729)],
+            Model::Varied(_) => vec![Cut(2), Cholmod(2), Ours(2), Cut(1)],
+            Model::VariedBody(_) => vec![Cut(1), Ours(1), Cut(2), Later],
+            Model::Clamped(_) => vec![Factor(1), Faer(1), Factor(2), Faer(2)],
+            Model::Flat(..) | Model::Cube(_) | Model::Cut(_) => vec![Ours(1)],
+        }
+    }
+}
+
 impl Model {
     pub fn build(self) -> Deck {
         match self {
-            Model::Blocks(elements) => Blocks { elements, ..Blocks::default() }.build(),
-            Model::Flat(across, layers) => Blocks { elements: across, ..Blocks::default() }.layered(layers),
-            Model::OneBody(elements) => one_body(elements),
+            Model::Blocks(elements) => blocks(elements).build(),
+            Model::Flat(across, layers) => blocks(across).layered(layers),
+            Model::OneBody(elements) => one_body(blocks(elements).build()),
+            Model::Varied(elements) => blocks(elements).varied(VARIATION, SEED),
+            Model::VariedBody(elements) => one_body(blocks(elements).varied(VARIATION, SEED)),
             Model::Cube(side) => Cube { subdomains: [side; 3], elements: 8, ..Cube::default() }.build(),
             Model::Cut(side) => {
                 let gap = side as f64 * Cube::default().gap;
@@ -87,14 +122,26 @@ impl Model {
         }
     }
 
+    /// The same problem as that of [`Model::build`], of those that differ from element to element.
+    pub fn by_elements(self) -> Option<ByElements> {
+        match self {
+            Model::Varied(elements) => Some(blocks(elements).varied_by_elements(VARIATION, SEED)),
+            Model::VariedBody(elements) => {
+                let mut pair = blocks(elements).varied_by_elements(VARIATION, SEED);
+                Some(ByElements { deck: one_body(pair.deck), bodies: vec![pair.bodies.remove(1)] })
+            }
+            _ => None,
+        }
+    }
+
     /// Unknowns of all bodies, without building them.
     pub fn unknowns(self) -> usize {
         let stacked = |across: usize, layers: usize| 3 * (across + 1).pow(2) * (2 * layers + 1);
         let cubes = |side: usize, elements: usize| 3 * side.pow(3) * (elements + 1).pow(3);
         match self {
-            Model::Blocks(elements) => stacked(elements, elements),
+            Model::Blocks(elements) | Model::Varied(elements) => stacked(elements, elements),
             Model::Flat(across, layers) => stacked(across, layers),
-            Model::OneBody(elements) => cubes(1, elements),
+            Model::OneBody(elements) | Model::VariedBody(elements) => cubes(1, elements),
             Model::Cube(side) => cubes(side, 8),
             Model::Cut(side) => cubes(side, CUT / side),
             Model::Clamped([x, y, z]) => 3 * x * (y + 1) * (z + 1),
@@ -102,11 +149,14 @@ impl Model {
     }
 }
 
+fn blocks(elements: usize) -> Blocks {
+    Blocks { elements, ..Blocks::default() }
+}
+
 /// The upper of two blocks, -u <= gap instead of u_lower - u <= gap.
-fn one_body(elements: usize) -> Deck {
-    let mut pair = Blocks { elements, ..Blocks::default() }.build();
+fn one_body(mut pair: Deck) -> Deck {
     let first = pair.offset(1);
-    let mut deck = Deck::new(format!("one_body_{elements}"), vec![pair.bodies.remove(1)]);
+    let mut deck = Deck::new("one_body", vec![pair.bodies.remove(1)]);
     for (row, &gap) in pair.contact.rhs.iter().enumerate() {
         let upper = pair.contact.matrix.row(row).filter(|entry| entry.0 >= first);
         let entries: Vec<_> = upper.map(|(dof, value)| (dof - first, value)).collect();

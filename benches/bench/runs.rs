@@ -13,6 +13,12 @@ use crate::peers::Peers;
 pub enum Program {
     /// The contact solve on so many threads.
     Ours(usize),
+    /// The same of bodies that are handed over by their elements, and cut as the library chooses.
+    Cut(usize),
+    /// The same on two threads, each body cut into about so many pieces.
+    Pieces(usize),
+    /// Load steps of bodies by their elements on one thread, and a linear solve.
+    Later,
     /// CHOLMOD's analysis and factorisation on so many threads.
     Cholmod(usize),
     /// The parts of the setup.
@@ -31,6 +37,9 @@ impl Program {
     pub fn name(self) -> String {
         match self {
             Program::Ours(threads) => format!("ours_{threads}"),
+            Program::Cut(threads) => format!("cut_{threads}"),
+            Program::Pieces(pieces) => format!("pieces_{pieces}"),
+            Program::Later => "later".into(),
             Program::Cholmod(threads) => format!("cholmod_{threads}"),
             Program::Parts => "parts".into(),
             Program::Factor(threads) => format!("factor_{threads}"),
@@ -41,9 +50,26 @@ impl Program {
         }
     }
 
+    /// What `Peers::write` writes for a deck.
+    pub fn reads_files(self) -> bool {
+        use Program::{Cholmod, Clarabel, Faer, Osqp};
+        matches!(self, Cholmod(_) | Faer(_) | Clarabel | Osqp)
+    }
+
+    /// Bodies come by their elements.
+    pub fn is_by_elements(self) -> bool {
+        matches!(self, Program::Cut(_) | Program::Pieces(_) | Program::Later)
+    }
+
+    /// Of counts and of times that are compared with others of the same run: no round but the first.
+    pub fn is_run_once(self) -> bool {
+        self == Program::Later
+    }
+
     fn threads(self) -> usize {
         match self {
-            Program::Ours(threads) | Program::Cholmod(threads) => threads,
+            Program::Ours(threads) | Program::Cut(threads) | Program::Cholmod(threads) => threads,
+            Program::Pieces(_) => 2,
             Program::Factor(threads) | Program::Faer(threads) => threads,
             _ => 1,
         }

@@ -11,6 +11,7 @@ use std::io::Write;
 use std::path::Path;
 use std::thread::available_parallelism;
 
+use crate::figures;
 use crate::peers::Peers;
 use crate::pictures;
 use crate::problems::{self, Case, Model};
@@ -36,8 +37,10 @@ pub struct Sweep {
 
 /// `threads` is the one sweep whose decks are solved on 1, 2, 4, ... threads instead.
 pub const THREADS: &str = "threads";
+/// Bodies by their elements on two threads; no pictures.
+const CUT: &str = "cut";
 
-const SWEEPS: [Sweep; 4] = [
+const SWEEPS: [Sweep; 5] = [
     Sweep { name: "dofs", label: "unknowns, two blocks", decks: &["2k", "4k", "13k", "40k", "92k", "144k"] },
     Sweep {
         name: "rows",
@@ -50,6 +53,7 @@ const SWEEPS: [Sweep; 4] = [
         decks: &["cut_1", "cut_8", "cut_27", "cut_64"],
     },
     Sweep { name: THREADS, label: "threads", decks: &["144k", "one_body", "64_bodies"] },
+    Sweep { name: CUT, label: "unknowns, two blocks", decks: &["144k_cut", "300k_cut", "989k_cut"] },
 ];
 
 pub fn run(words: &[&str]) -> Result<(), String> {
@@ -75,6 +79,7 @@ pub fn run(words: &[&str]) -> Result<(), String> {
             println!("picture {path}");
         }
     }
+    figures::of_growth(&runs).iter().for_each(|figure| println!("{}", figure.line()));
     println!("scaling: {failed} failed; raw figures in {}", runs.path.display());
     if failed > 0 {
         return Err(format!("{failed} decks failed"));
@@ -84,10 +89,10 @@ pub fn run(words: &[&str]) -> Result<(), String> {
 
 impl Sweep {
     pub fn programs(&self) -> Vec<Program> {
-        if self.name == THREADS {
-            thread_counts().into_iter().map(Program::Ours).collect()
-        } else {
-            vec![OURS, UNIT]
+        match self.name {
+            THREADS => thread_counts().into_iter().map(Program::Ours).collect(),
+            CUT => vec![Program::Cut(2)],
+            _ => vec![OURS, UNIT],
         }
     }
 
@@ -119,11 +124,11 @@ impl Sweep {
         };
         let three = |value: Option<f64>| value.map(|value| format!("{value:.3}"));
         let median = |program: Program, quantity: &str| runs.median(case.name, program, quantity);
-        for quantity in ["bodies", "dofs", "rows", "equalities", "closed", "products"] {
-            line(quantity, median(OURS, quantity).map(|count| count.to_string()));
+        for quantity in ["bodies", "pieces", "dofs", "rows", "equalities", "closed", "products"] {
+            line(quantity, median(programs[0], quantity).map(|count| count.to_string()));
         }
         for &program in programs {
-            let clock = if self.name == THREADS { "wall" } else { "cpu" };
+            let clock = if matches!(self.name, THREADS | CUT) { "wall" } else { "cpu" };
             let time = if program == UNIT { clock.to_string() } else { format!("first_{clock}") };
             let peak = median(program, "peak").map(|bytes| bytes / MEGABYTE);
             line(&format!("{},{clock}_s", program.name()), three(median(program, &time)));

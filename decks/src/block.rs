@@ -90,8 +90,7 @@ impl Block {
     /// elements around a node always in ascending order, so that K is symmetric to the last bit.
     pub fn stiffness(&self) -> Csr {
         let d = self.dimension;
-        let edges: Vec<f64> = (0..d).map(|a| self.size[a] / self.elements[a] as f64).collect();
-        let element = elasticity(&edges, self.young, self.poisson);
+        let element = self.element();
         let mut matrix = Csr::empty(d * self.nodes());
         for at in self.grids() {
             let gathered = self.gather(at, &element);
@@ -105,6 +104,12 @@ impl Block {
             }
         }
         matrix
+    }
+
+    /// Stiffness of an element whose factor is 1, node by node in tensor order.
+    pub fn element(&self) -> Vec<f64> {
+        let edges: Vec<f64> = (0..self.dimension).map(|a| self.size[a] / self.elements[a] as f64).collect();
+        elasticity(&edges, self.young, self.poisson)
     }
 
     /// The d x d blocks (by rows) of the stiffness between the node `at` and its neighbours, ascending.
@@ -134,6 +139,12 @@ impl Block {
     /// Number of elements.
     pub fn volume(&self) -> usize {
         self.elements[..self.dimension].iter().product()
+    }
+
+    /// Lowest grid position of an element.
+    pub fn low(&self, element: usize) -> [usize; 3] {
+        let [nx, ny, _] = self.elements;
+        [element % nx, element / nx % ny, element / (nx * ny)]
     }
 
     /// What `young` is multiplied by in the element whose lowest node is at `low`.
@@ -195,6 +206,16 @@ impl Block {
     /// The block as a body without load, all dofs of the nodes `clamped` names eliminated. A clamped set
     /// must be empty or hold the body: a face, or three nodes that are not in line.
     pub fn part(&self, clamped: impl Fn([usize; 3]) -> bool) -> Part {
+        let mut part = self.outline(clamped);
+        let stiffness = self.stiffness();
+        let keep: Vec<usize> = (0..stiffness.rows).filter(|&dof| part.number[dof].is_some()).collect();
+        let all = keep.len() == stiffness.rows;
+        part.body.stiffness = if all { stiffness } else { stiffness.restricted(&keep) };
+        part
+    }
+
+    /// The same without an entry in its stiffness.
+    pub fn outline(&self, clamped: impl Fn([usize; 3]) -> bool) -> Part {
         let d = self.dimension;
         let keep: Vec<usize> = (self.grids().enumerate())
             .filter(|&(_, at)| !clamped(at))
@@ -204,11 +225,9 @@ impl Block {
         for (new, &old) in keep.iter().enumerate() {
             number[old] = Some(new);
         }
-        let stiffness = self.stiffness();
-        let all = keep.len() == number.len();
         let body = Body {
-            stiffness: if all { stiffness } else { stiffness.restricted(&keep) },
-            null_space: all.then(|| self.rigid_modes()),
+            stiffness: Csr::zero(keep.len()),
+            null_space: (keep.len() == number.len()).then(|| self.rigid_modes()),
             load: vec![0.0; keep.len()],
             coordinates: keep.iter().map(|dof| self.position(self.grid(dof / d))).collect(),
             node: keep.iter().map(|dof| (dof / d + 1) as i32).collect(),

@@ -1,7 +1,8 @@
 //! The benchmark: two stacked elastic blocks on matching grids, about half of the interface in contact.
 
+use crate::block::Part;
 use crate::random::Random;
-use crate::{Block, Deck};
+use crate::{Block, ByElements, Deck, Elements};
 
 /// Unit cubes of elements^3 hexahedra, nu = 0.3. The lower one (modulus E) is clamped at its bottom, its
 /// clamped dofs eliminated; the upper one (2 E) floats and is pressed down on a patch of its top. All
@@ -38,6 +39,16 @@ impl Blocks {
         self.deck(self.elements, &self.varied_blocks(variation, seed))
     }
 
+    /// [`Blocks::varied`] by its elements: the same problem, and the same K to the last bit once they are added up.
+    pub fn varied_by_elements(&self, variation: f64, seed: u64) -> ByElements {
+        let blocks = self.varied_blocks(variation, seed);
+        let parts = [blocks[0].outline(is_clamped), blocks[1].outline(|_| false)];
+        let numbers = parts.each_ref().map(|part| part.number.clone());
+        let deck = self.join(self.elements, &blocks, parts);
+        let bodies = blocks.into_iter().zip(numbers).map(|(block, number)| Elements::new(block, number));
+        ByElements { deck, bodies: bodies.collect() }
+    }
+
     /// Lower and upper block of [`Blocks::varied`].
     pub fn varied_blocks(&self, variation: f64, seed: u64) -> [Block; 2] {
         let mut random = Random::new(seed);
@@ -59,10 +70,13 @@ impl Blocks {
         })
     }
 
-    fn deck(&self, layers: usize, [lower, upper]: &[Block; 2]) -> Deck {
+    fn deck(&self, layers: usize, blocks: &[Block; 2]) -> Deck {
+        self.join(layers, blocks, [blocks[0].part(is_clamped), blocks[1].floating()])
+    }
+
+    /// The bodies with load and rows.
+    fn join(&self, layers: usize, [lower, upper]: &[Block; 2], [bottom, mut top]: [Part; 2]) -> Deck {
         let n = self.elements;
-        let bottom = lower.part(|at| at[2] == 0);
-        let mut top = upper.floating();
         self.press(upper, &mut top.body.load);
         let mut deck = Deck::new(format!("blocks_{n}_{layers}"), vec![bottom.body, top.body]);
         let offset = deck.offset(1);
@@ -89,6 +103,11 @@ impl Blocks {
             }
         }
     }
+}
+
+/// The bottom of the lower block.
+fn is_clamped(at: [usize; 3]) -> bool {
+    at[2] == 0
 }
 
 #[cfg(test)]

@@ -7,6 +7,7 @@
 //! |---|---|
 //! | [`membrane`] | two membranes on an edge, one floating (Problem 1 of the paper) |
 //! | [`blocks`] | two stacked elastic blocks, matching grids: the benchmark |
+//! | [`by_elements`] | the benchmark by its elements, as a host without a sparse matrix has it |
 //! | [`stack`] | stacked bodies on non-matching grids, node-to-segment rows |
 //! | [`cube`] | an elastic body cut into subdomains, glued by equalities, on an obstacle |
 //! | [`masonry`] | towers, walls and heaps of many loose blocks |
@@ -23,6 +24,7 @@ pub mod battery;
 mod battery_tests;
 pub mod block;
 pub mod blocks;
+pub mod by_elements;
 pub mod cube;
 #[cfg(test)]
 mod cube_tests;
@@ -47,6 +49,7 @@ mod yardstick_tests;
 
 pub use block::Block;
 pub use blocks::Blocks;
+pub use by_elements::{ByElements, Elements};
 pub use cube::{Cube, Glue, Moduli};
 pub use membrane::Membrane;
 pub use sparse::Csr;

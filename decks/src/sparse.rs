@@ -16,6 +16,11 @@ impl Csr {
         Csr { rows: 0, cols, ptr: vec![0], col: Vec::new(), val: Vec::new() }
     }
 
+    /// n x n without an entry.
+    pub fn zero(n: usize) -> Csr {
+        Csr { rows: n, cols: n, ptr: vec![0; n + 1], col: Vec::new(), val: Vec::new() }
+    }
+
     /// n x n from `n * n` values by rows; zeros are stored, so that the diagonal always is.
     pub fn from_dense(n: usize, values: &[f64]) -> Csr {
         assert_eq!(values.len(), n * n, "a dense {n} x {n} matrix");
