@@ -131,9 +131,14 @@ impl GeneralizedInverse {
         self.stiffness.iter().take(self.own_motions()).any(|stiffness| *stiffness != 0.0)
     }
 
-    /// Motions that are not carried.
+    /// Motions that are carried, the last ones.
+    pub fn carried_motions(&self) -> usize {
+        self.carried.as_ref().map_or(0, |carried| carried.count())
+    }
+
+    /// Motions that are not.
     pub(super) fn own_motions(&self) -> usize {
-        self.null_space.cols - self.carried.as_ref().map_or(0, |carried| carried.count())
+        self.null_space.cols - self.carried_motions()
     }
 
     /// The null space without the motions that are carried.

@@ -1,6 +1,6 @@
 //! What K does to soft motions: springs that resist some, and forces that drive others.
 
-use crate::dual::Subdomain;
+use crate::dual::{Dual, Subdomain};
 use crate::linalg::Csr;
 
 /// The springs at the unknowns held of K+ that resist soft motions, `lambda_j a_j^2 / 2` with the amplitude a_j: compliant rows
@@ -21,6 +21,24 @@ pub fn driven(subdomains: &[Subdomain]) -> Vec<(usize, f64)> {
         driven.map(|(mode, stiffness)| (mode, stiffness / (s.size * s.size))).collect::<Vec<_>>()
     };
     subdomains.iter().flat_map(of).collect()
+}
+
+impl Dual {
+    /// Amplitudes with those of carried motions as the forces x of their springs have them: the forces on these bodies are in balance
+    /// then whatever is left of the multiplier alpha.
+    pub fn balanced(&self, x: &[f64], alpha: &[f64]) -> Vec<f64> {
+        let (mut alpha, mut row) = (alpha.to_vec(), self.coarse.rows() - self.springs);
+        for s in &self.subdomains {
+            let carried = s.modes.end - s.kplus.carried_motions();
+            for (mode, _) in s.soft_modes().filter(|(_, stiffness)| *stiffness > 0.0) {
+                if mode >= carried {
+                    alpha[mode] = x[row] / self.coarse.row(row).map(|(_, entry)| entry).sum::<f64>();
+                }
+                row += 1;
+            }
+        }
+        alpha
+    }
 }
 
 impl Subdomain {

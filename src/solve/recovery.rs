@@ -95,7 +95,8 @@ impl<'a> Recovery<'a> {
 
     /// (17) and lambda = 2^p S L'^-1 x on the rows that carry the multipliers of their groups, for u but for its motion.
     pub fn recover(&self, deformed: &[f64], x: &[f64], alpha: &[f64]) -> Recovered {
-        let mut u = self.ready.dual.rigid_motion(alpha, deformed.len());
+        let dual = &self.ready.dual;
+        let mut u = dual.rigid_motion(&dual.balanced(x, alpha), deformed.len());
         axpy(1.0, deformed, &mut u);
         self.with_forces(u, x)
     }

@@ -58,8 +58,11 @@ impl<'a> Recovery<'a> {
             return Ok(None);
         }
         let mut u = deformed.to_vec();
-        let open = self.gaps_left(&[&u], x);
-        let mut alpha = face.fitted(&open)?;
+        let mut open = self.gaps_left(&[&u], x);
+        // (F x)_s = x_s on the springs of bodies
+        let springs = open.len() - dual.springs..;
+        open[springs.clone()].copy_from_slice(&x[springs]);
+        let mut alpha = dual.balanced(x, &face.fitted(&open)?);
         let add = |mut motion: Vec<f64>, u: &mut [f64]| -> Result<()> {
             if exact {
                 self.clean(&mut motion, u)?;

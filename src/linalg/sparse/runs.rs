@@ -10,6 +10,8 @@ use crate::platform::threads::{parts, parts_of};
 
 /// Rows of a part of a loop at least: shorter loops are one part, in the order of the rows.
 const PART: usize = 16384;
+/// Columns of a run at most: the motions of a body in space.
+const WIDTH: usize = 6;
 /// Parts at most: each keeps a sum over all columns of its own.
 const PARTS: usize = 16;
 
@@ -28,17 +30,20 @@ pub struct Runs {
 impl Runs {
     pub fn of(matrix: &Csr) -> Result<Self> {
         const WHAT: &str = "the coarse matrix";
-        let begins =
-            |at: usize, row: usize| at == matrix.ptr[row] || matrix.col[at] != matrix.col[at - 1] + 1;
-        let entries = |row: usize| matrix.ptr[row]..matrix.ptr[row + 1];
-        let count = (0..matrix.rows()).map(|i| entries(i).filter(|&at| begins(at, i)).count()).sum();
-        let (mut ptr, mut column) = (reserved(matrix.ptr.len(), WHAT)?, reserved(count, WHAT)?);
-        let (mut start, mut val) = (reserved(count + 1, WHAT)?, reserved(matrix.val.len(), WHAT)?);
+        // most rows have one run or two
+        let likely = 2 * matrix.rows() + 1;
+        let (mut ptr, mut column) = (reserved(matrix.ptr.len(), WHAT)?, reserved(likely, WHAT)?);
+        let (mut start, mut val) = (reserved(likely, WHAT)?, reserved(matrix.val.len(), WHAT)?);
         ptr.push(0);
-        for i in 0..matrix.rows() {
-            for at in entries(i).filter(|&at| begins(at, i)) {
-                column.push(matrix.col[at] as u32);
-                start.push(at);
+        for row in matrix.ptr.windows(2) {
+            let mut begin = row[0];
+            for at in row[0]..row[1] {
+                let goes_on = at > begin && at < begin + WIDTH && matrix.col[at] == matrix.col[at - 1] + 1;
+                if !goes_on {
+                    begin = at;
+                    column.push(matrix.col[at] as u32);
+                    start.push(at);
+                }
             }
             ptr.push(column.len());
         }
@@ -74,7 +79,11 @@ impl Runs {
     pub fn row_dot(&self, i: usize, x: &[f64]) -> f64 {
         let mut sum = -0.0;
         for (values, column) in self.row(i) {
-            values.iter().zip(&x[column..]).for_each(|(v, x)| sum += v * x);
+            let x = &x[column..column + values.len()];
+            match (values.first_chunk::<WIDTH>(), x.first_chunk::<WIDTH>()) {
+                (Some(values), Some(x)) => (0..WIDTH).for_each(|k| sum += values[k] * x[k]),
+                _ => values.iter().zip(x).for_each(|(v, x)| sum += v * x),
+            }
         }
         sum
     }
@@ -91,7 +100,11 @@ impl Runs {
     #[inline]
     fn add_row(&self, i: usize, a: f64, y: &mut [f64]) {
         for (values, column) in self.row(i) {
-            y[column..].iter_mut().zip(values).for_each(|(y, v)| *y += a * v);
+            let y = &mut y[column..column + values.len()];
+            match (values.first_chunk::<WIDTH>(), y.first_chunk_mut::<WIDTH>()) {
+                (Some(values), Some(y)) => (0..WIDTH).for_each(|k| y[k] += a * values[k]),
+                _ => y.iter_mut().zip(values).for_each(|(y, v)| *y += a * v),
+            }
         }
     }
 
