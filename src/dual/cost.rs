@@ -3,12 +3,12 @@
 //!
 //! ```text
 //! explicit:  4 m^2      F_p packed, after an assembly of A operations, RATE of them in the time of a byte
-//! implicit:  16 l       L_p twice
+//! implicit:  16 l       L_p twice; 10 l where the cache keeps it for the second time
 //! A = s (2 m l + n m^2 / 2)        Y = L^-1 P B', then Y'Y; a supernode sees the share s = min(1, REACH m / n^2/3) of m
 //! ```
 //!
-//! so that F_p is assembled where `A / RATE + 4 m^2 N <= 16 l N`. REACH and RATE are fitted to the assembly of one face
-//! and of all faces of cubes of 375 to 20000 unknowns and agree with it to a factor of 2. All that enters are counts: the
+//! so that F_p is assembled where `A / RATE + 4 m^2 N` is no more than N times what L takes. REACH and RATE are fitted to the assembly of
+//! one face and of all faces of cubes of 375 to 20000 unknowns and agree with it to a factor of 2. All that enters are counts: the
 //! choice is the same on any machine.
 
 use crate::linalg::Packed;
@@ -16,7 +16,10 @@ use crate::linalg::Packed;
 /// Products with F of a solve and some load steps.
 const PRODUCTS: f64 = 50.0;
 const REACH: f64 = 0.4;
-const RATE: f64 = 8.0;
+const RATE: f64 = 5.0;
+/// Bytes of a factor that the cache keeps from its solution forwards to that backwards, and the share of them that counts again.
+const CACHE: f64 = 8e6;
+const AGAIN: f64 = 0.25;
 
 /// What a body and its F_p are measured by.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -62,7 +65,9 @@ impl Size {
             return false;
         }
         let read = |multiplications: usize| (size_of::<f64>() * multiplications) as f64;
-        let (explicit, implicit) = (0.5 * read(self.work(false)), read(self.work(true)));
+        let factor = read(self.entries);
+        let again = if factor <= CACHE { AGAIN } else { 1.0 };
+        let (explicit, implicit) = (0.5 * read(self.work(false)), (1.0 + again) * factor);
         self.assembly() / RATE + PRODUCTS * explicit > PRODUCTS * implicit
     }
 }

@@ -25,7 +25,10 @@ pub fn null_space(model: &Model, parts: &Parts, body: usize, bases: &[Matrix]) -
     if modes == 0 {
         return Matrix::zeros(order, 0);
     }
-    let (glue, sizes) = (glued(model, parts, body, (bases, &blocks))?, sizes(model, parts, body));
+    let units: Vec<f64> = parts.of(body).map(|part| model.bodies[part].body.unit()).collect();
+    // motions are divided by it, so that those of stiff and of soft pieces weigh alike
+    let sizes: Vec<f64> = units.iter().map(|unit| unit.sqrt()).collect();
+    let glue = glued(model, parts, body, &Motions { bases, blocks: &blocks, units: &units, sizes: &sizes })?;
     let held = filled(glue.rows(), false, WHAT)?;
     let amplitudes = AnswerFace::new(&glue, &blocks, &held, ROUNDING)?.undetermined()?;
     let mut vectors = Matrix::zeros(order, 0)?;
@@ -59,24 +62,30 @@ fn orthonormal(parts: &Parts, body: usize, mut vectors: Matrix) -> Matrix {
     basis
 }
 
-/// Root of the unit of each piece: its motions are divided by it, so that those of stiff and of soft pieces weigh alike.
-fn sizes(model: &Model, parts: &Parts, body: usize) -> Vec<f64> {
-    parts.of(body).map(|part| model.bodies[part].body.unit().sqrt()).collect()
+/// Of the pieces of a body.
+struct Motions<'a> {
+    bases: &'a [Matrix],
+    /// First column of each basis among all modes.
+    blocks: &'a [usize],
+    /// Unit of K, and what motions are divided by.
+    units: &'a [f64],
+    sizes: &'a [f64],
 }
 
 /// `G'` of the glue of the body alone, rows by modes: `s (R_c - R_d)` for copies c and d of an unknown, `s^-2 = 1/K_cc + 1/K_dd`.
-fn glued(model: &Model, parts: &Parts, body: usize, (bases, blocks): (&[Matrix], &[usize])) -> Result<Csr> {
+fn glued(model: &Model, parts: &Parts, body: usize, own: &Motions) -> Result<Csr> {
+    let Motions { bases, blocks, units, sizes } = own;
     let range = parts.of(body);
     let unknowns = parts.starts[range.start]..parts.starts[range.end];
     let modes = bases.iter().map(|basis| basis.cols).sum();
-    let (sizes, mut glue) = (sizes(model, parts, body), Csr::empty(modes));
+    let mut glue = Csr::empty(modes);
     let rows = &model.equalities.matrix;
     for row in parts.equalities..rows.rows() {
         let (mut entries, mut give) = (Vec::new(), 0.0);
         for (j, v) in rows.row(row).filter(|(j, _)| unknowns.contains(j)) {
             let k = parts.starts[range.start..range.end].partition_point(|start| *start <= j) - 1;
             let (i, own) = (j - parts.starts[range.start + k], &model.bodies[range.start + k].body);
-            give += 1.0 / own.k().map_or(1.0, |stiffness| stiffness.metric(i, own.unit()));
+            give += 1.0 / own.k().map_or(1.0, |stiffness| stiffness.metric(i, units[k]));
             entries.extend(
                 (0..bases[k].cols).map(|mode| (blocks[k] + mode, v * bases[k].get(i, mode) / sizes[k])),
             );
