@@ -167,7 +167,7 @@ impl Whole {
     }
 }
 
-/// The rows of the host over the unknowns of its bodies.
+/// The rows between bodies of the host over their unknowns.
 fn members(
     cut: &Members,
     unknowns: usize,
@@ -175,7 +175,7 @@ fn members(
     parts: &Parts,
     place: &[(usize, f64)],
 ) -> Result<Members> {
-    let of_host = |number: &&usize| kind == RowKind::Inequality || **number < parts.equalities;
+    let of_host = |number: &&usize| kind == RowKind::Inequality || **number < parts.judged();
     let numbers: Vec<usize> = cut.numbers.iter().take_while(of_host).copied().collect();
     let mut matrix = Csr::empty(unknowns);
     for i in 0..numbers.len() {

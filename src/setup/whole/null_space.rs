@@ -71,7 +71,7 @@ fn glued(model: &Model, parts: &Parts, body: usize, (bases, blocks): (&[&Matrix]
     let modes = bases.iter().map(|basis| basis.cols).sum();
     let (sizes, mut glue) = (sizes(model, parts, body), Csr::empty(modes));
     let rows = &model.equalities.matrix;
-    for row in parts.equalities..rows.rows() {
+    for row in parts.judged()..rows.rows() {
         let (mut entries, mut give) = (Vec::new(), 0.0);
         for (j, v) in rows.row(row).filter(|(j, _)| unknowns.contains(j)) {
             let k = parts.starts[range.start..range.end].partition_point(|start| *start <= j) - 1;
