@@ -1,12 +1,19 @@
 //! From the pieces back to the bodies of the host: why there is no answer, and where.
 
-use crate::error::{Error, Proof};
+use crate::error::{Error, Kind, Proof};
+use crate::mesh::Mesh;
 use crate::model::{contradiction, kind_and_row, Model, Parts};
 
 /// An error about pieces as one about bodies of the host.
 pub fn of_host(host: &Model, parts: &Parts, mut error: Error) -> Error {
     if let Some(part) = error.place.body.filter(|part| *part < parts.parts.len()) {
-        error.place.body = Some(parts.parts[part].body);
+        let body = parts.parts[part].body;
+        error.place.body = Some(body);
+        if error.kind == Kind::Memory && parts.is_cut(body) {
+            // a piece is known to the host by its elements
+            let mesh: Option<&Mesh> = host.bodies[body].mesh.as_ref();
+            error.place.element = mesh.and_then(|mesh| mesh.first_of(part - parts.first[body]));
+        }
         let unknowns = parts.starts[part + 1] - parts.starts[part];
         let dof = error.place.dof.filter(|dof| *dof < unknowns);
         error.place.dof = dof.map(|dof| parts.place(part, dof).0).or(error.place.dof);

@@ -40,7 +40,8 @@ impl Decomposition {
         all.equalities = host.equalities.len();
         all.joints = joints.iter().map(|joint| joint.number).collect();
         let copies =
-            (0..host.bodies.len()).map(|body| Copies::of(host, &all, body)).collect::<Result<Vec<_>>>()?;
+            (0..host.bodies.len()).map(|body| Copies::of(host, &all, body).map_err(|e| e.body(body)));
+        let copies = copies.collect::<Result<Vec<_>>>()?;
         let mut model = Model::new();
         model.offsets.clone_from(&all.starts);
         model.bodies = bodies;

@@ -86,7 +86,7 @@ impl Whole {
         let bodies = island
             .bodies
             .iter()
-            .map(|&body| whole_body(model, parts, body, of_part))
+            .map(|&body| whole_body(model, parts, body, of_part).map_err(|e| e.body(parts.first[body])))
             .collect::<Result<_>>()?;
         Ok(Some(Self { island, bodies, place }))
     }
@@ -189,7 +189,7 @@ fn members(
 }
 
 fn whole_body(model: &Model, parts: &Parts, body: usize, of_part: &OfPart) -> Result<WholeBody> {
-    let missing = || Error::new(Kind::State, "a body has not been set up").body(body);
+    let missing = || Error::new(Kind::State, "a body has not been set up");
     let Some(k) = &parts.assembled[body] else {
         let part = parts.first[body];
         let (kplus, grounded) = of_part(part).ok_or_else(missing)?;
