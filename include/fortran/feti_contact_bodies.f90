@@ -36,7 +36,8 @@ module feti_contact_bodies
 
   !> The host's own numbers of the unknowns of a body, number(n), from 1, each naming one unknown of all bodies; int32 or
   !> int64. Then calls without a body (feti_body_load, feti_displacement, feti_reaction, feti_rows_add) go by these numbers;
-  !> all bodies have some, or none.
+  !> all bodies have some, or none. With option glue = 1, set before, unknowns of several bodies that have one number move
+  !> together; a load on it is that of the first, a reaction the sum over all of them.
   interface body_numbering
     module procedure numbering_int32, numbering_int64
   end interface

@@ -349,7 +349,7 @@ module feti_contact_c
     integer(c_int64_t) :: balance_body
     !> Row with the worst penetration, from 0, -1: none.
     integer(c_int64_t) :: penetration_row
-    !> Equality row with the worst error, from 0, -1: none.
+    !> Equality row with the worst error, from 0, -1: none, or glue of unknowns with one number (option glue).
     integer(c_int64_t) :: equality_row
     !> Row with the worst negative force, from 0, -1: none.
     integer(c_int64_t) :: force_row
@@ -666,8 +666,9 @@ module feti_contact_c
     !>
     !> The load is copied and holds until it is given again; a body without one has zero load. With FETI_ALL
     !> the array holds the loads of all bodies: by the host's numbers where they have some, entries of no
-    !> unknown not looked at; else one body after the other. FETI_STATE with FETI_ALL where some bodies have
-    !> numbers of the host and others have none. After a failure the loads are as they were.
+    !> unknown not looked at; else one body after the other. Of unknowns with one number (option glue) that of
+    !> the first body has the load. FETI_STATE with FETI_ALL where some bodies have numbers of the host and
+    !> others have none. After a failure the loads are as they were.
     !>
     !> @param[in] p    (scalar) the handle
     !> @param[in] body (scalar) number of the body, from 0, or FETI_ALL
@@ -745,8 +746,10 @@ module feti_contact_c
     !> redundant rows.
     !>
     !> Weights w, largest 1, prove a contradiction: with the rows of both kinds the sum of w b is 0 and the
-    !> sum of w c is negative, w > 0 for inequalities. The weight of a redundant row is its multiple of the
-    !> row that it repeats. FETI_STATE before the first solve. After a failure nothing is written.
+    !> sum of w c is negative, w > 0 for inequalities; where unknowns with one number are glued (option glue)
+    !> it is 0 over the numbers, and feti_last_error names some of them. The weight of a redundant row is its
+    !> multiple of the row that it repeats. FETI_STATE before the first solve. After a failure nothing is
+    !> written.
     !>
     !> @param[in]  p      (scalar) the handle
     !> @param[in]  kind   (scalar) FETI_INEQUALITY or FETI_EQUALITY
@@ -1301,10 +1304,17 @@ module feti_contact_c
     !> numbers then: FETI_STATE names one that has not. The numbers are copied; calling again replaces them.
     !> Rows that are there stay on their unknowns. After a failure the body keeps the numbers it had.
     !>
+    !> With option glue = 1, set before, unknowns of several bodies may have one number: they move together,
+    !> by equality rows that only the library sees. The host's rows, their multipliers and the counts stay
+    !> what they are. With FETI_ALL a load on such a number is that of its first body, a displacement that of
+    !> all of them, and a reaction the sum over them; rows whose bodies are NULL act on the first. The last
+    !> answer goes with a change of such numbers.
+    !>
     !> @param[in] p      (scalar) the handle
     !> @param[in] body   (scalar) number of the body, from 0
     !> @param[in] n      (scalar) unknowns of the body
-    !> @param[in] number (n) number of each unknown, counted from `base`, none that of another unknown
+    !> @param[in] number (n) number of each unknown, counted from `base`, none that of another unknown of the
+    !>                   body, nor, without option glue, of another body
     !> @param[in] base   (scalar) 0 or 1: what the numbers count from
     !>
     !> Safety: The array has the given shape.
@@ -1326,10 +1336,17 @@ module feti_contact_c
     !> numbers then: FETI_STATE names one that has not. The numbers are copied; calling again replaces them.
     !> Rows that are there stay on their unknowns. After a failure the body keeps the numbers it had.
     !>
+    !> With option glue = 1, set before, unknowns of several bodies may have one number: they move together,
+    !> by equality rows that only the library sees. The host's rows, their multipliers and the counts stay
+    !> what they are. With FETI_ALL a load on such a number is that of its first body, a displacement that of
+    !> all of them, and a reaction the sum over them; rows whose bodies are NULL act on the first. The last
+    !> answer goes with a change of such numbers.
+    !>
     !> @param[in] p      (scalar) the handle
     !> @param[in] body   (scalar) number of the body, from 0
     !> @param[in] n      (scalar) unknowns of the body
-    !> @param[in] number (n) number of each unknown, counted from `base`, none that of another unknown
+    !> @param[in] number (n) number of each unknown, counted from `base`, none that of another unknown of the
+    !>                   body, nor, without option glue, of another body
     !> @param[in] base   (scalar) 0 or 1: what the numbers count from
     !>
     !> Safety: The array has the given shape.
@@ -1685,6 +1702,10 @@ module feti_contact_c
 
     !> Reads the force of the rows on a body, -B'lambda, -H'mu or both: `K u = f + r`.
     !>
+    !> By kinds it is that of the host's rows. Both together hold the force of the glue as well where unknowns
+    !> of several bodies have one number (option glue): what these bodies do to each other. It cancels in the
+    !> sum over them, which FETI_ALL gives.
+    !>
     !> With FETI_ALL the forces on all bodies: by the host's numbers where they have some, entries of no
     !> unknown as they were; else one body after the other; NaN where rows act on bodies whose group has no
     !> answer (feti_solve). FETI_STATE before a solve has given an answer, for a body whose group has none,
@@ -2007,9 +2028,10 @@ module feti_contact_c
     !> Verifies an answer against the problem as it is given now: any answer, also another code's.
     !>
     !> Every figure is that of the worst body or the worst row, measured against its own forces and
-    !> deformation, and is named with it. Rows that never close, c = +infinity, are left out: what is given
-    !> for their lambda counts as 0. Keeps nothing of the answer: that of the last solve stays. Runs
-    !> feti_setup when it is due, for the null spaces. After a failure nothing is written.
+    !> deformation, and is named with it. Glue (option glue) is judged as equality rows are; the forces in it
+    !> are not given: they are those that serve the answer best. Rows that never close, c = +infinity, are
+    !> left out: what is given for their lambda counts as 0. Keeps nothing of the answer: that of the last
+    !> solve stays. Runs feti_setup when it is due, for the null spaces. After a failure nothing is written.
     !>
     !> @param[in]     p      (scalar) the handle
     !> @param[in]     n      (scalar) unknowns of all bodies
@@ -2354,7 +2376,7 @@ module feti_contact_c
     !>
     !> C = diag(1/k) is the compliance of the rows (feti_rows_compliance), 0 for rigid ones. Runs feti_setup
     !> when it is due. `x` and `y` may be the same array. FETI_STATE where a body is cut (feti_body_mesh_i32
-    !> or _i64). After a failure nothing is written.
+    !> or _i64) or unknowns are glued (option glue). After a failure nothing is written.
     !>
     !> @param[in]  p (scalar) the handle
     !> @param[in]  m (scalar) inequality rows + equality rows
@@ -2373,8 +2395,8 @@ module feti_contact_c
 
     !> Reads the right-hand side of the dual problem, `d = [B; H] K+ f - [c; h]`.
     !>
-    !> Runs feti_setup when it is due. FETI_STATE where a body is cut (feti_body_mesh_i32 or _i64). After a
-    !> failure nothing is written.
+    !> Runs feti_setup when it is due. FETI_STATE where a body is cut (feti_body_mesh_i32 or _i64) or unknowns
+    !> are glued (option glue). After a failure nothing is written.
     !>
     !> @param[in]  p (scalar) the handle
     !> @param[in]  m (scalar) inequality rows + equality rows

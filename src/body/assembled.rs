@@ -19,13 +19,18 @@ pub struct Assembled {
 }
 
 impl Assembled {
-    /// Of a body with n unknowns, each of which some piece has.
-    pub fn new(n: usize, pieces: impl Iterator<Item = (Arc<[u32]>, Arc<Symmetric>)>) -> Result<Self> {
-        let (pieces, mut diagonal): (Vec<_>, _) = (pieces.collect(), zeros(n, "a stiffness matrix")?);
+    /// Each unknown belongs to some piece; `diagonal` is as many zeros as there are unknowns, `room_for` them.
+    pub fn new(mut diagonal: Vec<f64>, pieces: impl Iterator<Item = (Arc<[u32]>, Arc<Symmetric>)>) -> Self {
+        let pieces: Vec<_> = pieces.collect();
         for (dofs, k) in &pieces {
             dofs.iter().enumerate().for_each(|(i, &dof)| diagonal[dof as usize] += k.diagonal(i));
         }
-        Ok(Self { pieces, diagonal })
+        Self { pieces, diagonal }
+    }
+
+    /// What a body of n unknowns takes besides its pieces.
+    pub fn room_for(n: usize) -> Result<Vec<f64>> {
+        zeros(n, "a stiffness matrix")
     }
 
     pub fn order(&self) -> usize {
@@ -141,7 +146,7 @@ mod tests {
     fn products_are_those_of_the_sum_of_the_pieces() {
         let spring = |k: f64| Arc::new(Symmetric::new(vec![0, 1, 3], vec![0, 0, 1], vec![k, -k, k]));
         let pieces = [(Arc::from([0, 2]), spring(2.0)), (Arc::from([1, 2]), spring(3.0))];
-        let k = Assembled::new(3, pieces.into_iter()).unwrap();
+        let k = Assembled::new(vec![0.0; 3], pieces.into_iter());
         assert_eq!((0..3).map(|i| k.diagonal(i)).collect::<Vec<_>>(), [2.0, 3.0, 5.0]);
         let (mut y, mut terms) = ([0.0; 3], [0.0; 3]);
         k.mul_with_terms(&[1.0, 2.0, 4.0], &mut y, &mut terms).unwrap();

@@ -1,25 +1,62 @@
 //! From the pieces back to the bodies of the host: why there is no answer, and where.
 
-use crate::error::{Error, Proof};
-use crate::model::Parts;
+use crate::error::{Error, Kind, Proof};
+use crate::mesh::Mesh;
+use crate::model::{contradiction, kind_and_row, Model, Parts};
 
-/// An error about pieces as one about bodies of the host with `contact` contact rows.
-pub fn of_host(parts: &Parts, contact: usize, mut error: Error) -> Error {
+/// An error about pieces as one about bodies of the host.
+pub fn of_host(host: &Model, parts: &Parts, mut error: Error) -> Error {
     if let Some(part) = error.place.body.filter(|part| *part < parts.parts.len()) {
-        error.place.body = Some(parts.parts[part].body);
+        let body = parts.parts[part].body;
+        error.place.body = Some(body);
+        if error.kind == Kind::Memory && parts.is_cut(body) {
+            // a piece is known to the host by its elements
+            let mesh: Option<&Mesh> = host.bodies[body].mesh.as_ref();
+            error.place.element = mesh.and_then(|mesh| mesh.first_of(part - parts.first[body]));
+        }
         let unknowns = parts.starts[part + 1] - parts.starts[part];
         let dof = error.place.dof.filter(|dof| *dof < unknowns);
         error.place.dof = dof.map(|dof| parts.place(part, dof).0).or(error.place.dof);
     }
+    let contact = host.contact.len();
     let rows = contact + parts.equalities;
+    let (glued, all) = match error.proof.as_deref() {
+        Some(Proof::Rows { weights, .. }) => (glued(parts, rows, weights), weights.len()),
+        _ => (Vec::new(), 0),
+    };
     error.proof = error.proof.map(|proof| Box::new(proof_of_host(parts, rows, *proof)));
-    if let Some(Proof::Rows { heaviest, .. }) = error.proof.as_deref() {
-        error.place.row = Some(heaviest.checked_sub(contact).unwrap_or(*heaviest));
+    if let Some(Proof::Rows { heaviest, weights, .. }) = error.proof.as_deref() {
+        let (kind, row) = kind_and_row(*heaviest, contact);
+        error.place.row = Some(row);
+        if weights.len() < all {
+            let base = host.settings.index_base;
+            let numbers: Vec<i64> = glued.iter().map(|number| *number as i64 + base).collect();
+            error.what = contradiction(kind, weights.len().saturating_sub(1), &numbers);
+            error.place.index = glued.first().map(|number| *number as i64);
+        }
     }
     error
 }
 
-/// A motion of the pieces moves all copies alike; glue adds nothing to a combination of rows that is 0, for it is 0 on a body.
+/// The numbers whose joints take part in a combination of rows, each once, that with the largest weight first.
+fn glued(parts: &Parts, rows: usize, weights: &[(usize, f64)]) -> Vec<usize> {
+    let of_joint = |(row, weight): &(usize, f64)| {
+        let number = row.checked_sub(rows).and_then(|k| parts.joints.get(k));
+        number.map(|number| (*number, weight.abs()))
+    };
+    let mut found: Vec<(usize, f64)> = weights.iter().filter_map(of_joint).collect();
+    found.sort_by(|a, b| b.1.total_cmp(&a.1));
+    let mut numbers = Vec::new();
+    for (number, _) in found {
+        if !numbers.contains(&number) {
+            numbers.push(number);
+        }
+    }
+    numbers
+}
+
+/// A motion of the pieces moves all copies alike; their glue adds nothing to a combination of rows that is 0, for it is 0 on a body.
+/// That of joints has no number of the host: its weights follow from those of the other rows.
 fn proof_of_host(parts: &Parts, rows: usize, proof: Proof) -> Proof {
     match proof {
         Proof::Motion { margin, v } => match parts.mean(&v) {

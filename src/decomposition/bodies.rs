@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use crate::body::{check_diagonal, Body};
-use crate::error::Result;
+use crate::error::{Error, Kind, Result};
 use crate::mesh::{Mesh, Piece};
 use crate::model::{GivenBody, Model, Part, Parts};
 use crate::platform::memory::{copied, filled, reserved, zeros};
@@ -22,7 +22,7 @@ pub fn parts(host: &Model) -> Result<(Vec<GivenBody>, Parts)> {
         all.assembled.push(given.body.assembled.clone());
         let pieces = given.mesh.as_ref().and_then(Mesh::pieces).filter(|_| given.body.assembled.is_some());
         let made = match pieces {
-            Some(pieces) => pieces_of(given, body, pieces)?,
+            Some(pieces) => pieces_of(given, body, pieces).map_err(|e| e.body(body))?,
             None => vec![(whole(given)?, Part { body, piece: None })],
         };
         for (own, part) in made {
@@ -54,7 +54,15 @@ fn whole(given: &GivenBody) -> Result<Body> {
 fn pieces_of(given: &GivenBody, body: usize, pieces: &[Piece]) -> Result<Vec<(Body, Part)>> {
     let mut copies = filled(given.body.order, 0u32, WHAT)?;
     pieces.iter().flat_map(|piece| piece.dofs.iter()).for_each(|&dof| copies[dof as usize] += 1);
-    pieces.iter().map(|piece| piece_of(given, body, piece, &copies)).collect()
+    let first_of = |number| given.mesh.as_ref().and_then(|mesh| mesh.first_of(number));
+    let named = |number, mut error: Error| {
+        if error.kind == Kind::Memory {
+            error.place.element = first_of(number);
+        }
+        error
+    };
+    let made = pieces.iter().enumerate();
+    made.map(|(k, piece)| piece_of(given, body, piece, &copies).map_err(|e| named(k, e))).collect()
 }
 
 /// A piece: its null space comes from the coordinates of its unknowns, or from its matrix; that of the body does not serve it.
@@ -62,8 +70,8 @@ fn pieces_of(given: &GivenBody, body: usize, pieces: &[Piece]) -> Result<Vec<(Bo
 fn piece_of(given: &GivenBody, body: usize, piece: &Piece, copies: &[u32]) -> Result<(Body, Part)> {
     let Piece { dofs, stiffness } = piece;
     check_diagonal(stiffness).map_err(|e| match e.place.dof {
-        Some(i) => e.dof(dofs[i] as usize).body(body),
-        None => e.body(body),
+        Some(i) => e.dof(dofs[i] as usize),
+        None => e,
     })?;
     let coordinates = given.body.coordinates.as_ref().map(|all| all.of(dofs)).transpose()?;
     let own = Body {

@@ -1,5 +1,6 @@
 //! The secondary decomposition of the paper (Section 2): bodies given by elements are cut into pieces, which equality rows glue
-//! together. A host sees its bodies; all that is solved is a model whose bodies are the pieces.
+//! together. A host sees its bodies; all that is solved is a model whose bodies are the pieces. In the same way unknowns of several
+//! bodies are glued to which the host gave one number; these rows join bodies of the host, and answers are judged by them.
 
 mod back;
 mod bodies;
@@ -25,19 +26,26 @@ pub struct Decomposition {
 }
 
 impl Decomposition {
-    /// None where no body is cut: then the host's model is solved as it is.
+    /// Some body is cut, or unknowns of several bodies are glued; else the host's model is solved as it is.
+    pub fn is_due(host: &Model) -> bool {
+        host.shares_numbers() || host.bodies.iter().any(|given| given.body.assembled.is_some())
+    }
+
+    /// None where it is not due.
     pub fn of(host: &Model) -> Result<Option<Self>> {
-        if host.bodies.iter().all(|given| given.body.assembled.is_none()) {
+        if !Self::is_due(host) {
             return Ok(None);
         }
-        let (bodies, mut all) = parts(host)?;
+        let ((bodies, mut all), joints) = (parts(host)?, host.joints()?);
         all.equalities = host.equalities.len();
+        all.joints = joints.iter().map(|joint| joint.number).collect();
         let copies =
-            (0..host.bodies.len()).map(|body| Copies::of(host, &all, body)).collect::<Result<Vec<_>>>()?;
+            (0..host.bodies.len()).map(|body| Copies::of(host, &all, body).map_err(|e| e.body(body)));
+        let copies = copies.collect::<Result<Vec<_>>>()?;
         let mut model = Model::new();
         model.offsets.clone_from(&all.starts);
         model.bodies = bodies;
-        (model.contact, model.equalities) = rows(host, &all, &copies)?;
+        (model.contact, model.equalities) = rows(host, &joints, &all, &copies)?;
         model.revisions = host.revisions;
         model.parts = Some(Arc::new(all));
         let mut made = Self { model, copies, of: host.revisions };

@@ -5,14 +5,19 @@ use std::sync::Arc;
 use crate::constraints::RowSet;
 use crate::error::Result;
 use crate::linalg::Csr;
-use crate::model::{Model, Parts};
+use crate::model::{Joint, Model, Parts};
 
 use super::copies::Copies;
 
 const WHAT: &str = "the rows of pieces";
 
-/// Contact rows and equality rows of the host, after these the glue.
-pub fn rows(host: &Model, parts: &Parts, copies: &[Option<Copies>]) -> Result<(RowSet, RowSet)> {
+/// Contact rows and equality rows of the host, after these the glue: that of joints, that of pieces.
+pub fn rows(
+    host: &Model,
+    joints: &[Joint],
+    parts: &Parts,
+    copies: &[Option<Copies>],
+) -> Result<(RowSet, RowSet)> {
     let place = |j: usize| {
         let body = parts.offsets[1..].partition_point(|end| *end <= j);
         let dof = j - parts.offsets[body];
@@ -24,6 +29,9 @@ pub fn rows(host: &Model, parts: &Parts, copies: &[Option<Copies>]) -> Result<(R
     let (contact, mut equalities) =
         (moved(&host.contact, parts, place)?, moved(&host.equalities, parts, place)?);
     let matrix = Arc::make_mut(&mut equalities.matrix);
+    for Joint { ends: [before, after], .. } in joints {
+        matrix.push_row([(place(*before), 1.0), (place(*after), -1.0)]);
+    }
     for copies in copies.iter().flatten() {
         for pair in (0..copies.order()).flat_map(|dof| copies.all(dof).windows(2)) {
             matrix.push_row([(pair[0].1, 1.0), (pair[1].1, -1.0)]);

@@ -34,7 +34,8 @@ pub unsafe extern "C" fn feti_diagnosis(p: *mut feti_problem, out: *mut feti_fin
 /// Lists the rows of one kind that contradict each other, with their weights; without a contradiction the redundant rows.
 ///
 /// Weights w, largest 1, prove a contradiction: with the rows of both kinds the sum of w b is 0 and the sum of w c is
-/// negative, w > 0 for inequalities. The weight of a redundant row is its multiple of the row that it repeats. FETI_STATE
+/// negative, w > 0 for inequalities; where unknowns with one number are glued (option glue) it is 0 over the numbers, and
+/// feti_last_error names some of them. The weight of a redundant row is its multiple of the row that it repeats. FETI_STATE
 /// before the first solve. After a failure nothing is written.
 ///
 /// | argument | in/out | shape | rule |

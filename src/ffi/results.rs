@@ -43,6 +43,9 @@ pub unsafe extern "C" fn feti_displacement(p: *mut feti_problem, body: i64, n: i
 
 /// Reads the force of the rows on a body, -B'lambda, -H'mu or both: `K u = f + r`.
 ///
+/// By kinds it is that of the host's rows. Both together hold the force of the glue as well where unknowns of several bodies
+/// have one number (option glue): what these bodies do to each other. It cancels in the sum over them, which FETI_ALL gives.
+///
 /// With FETI_ALL the forces on all bodies: by the host's numbers where they have some, entries of no unknown as they were;
 /// else one body after the other; NaN where rows act on bodies whose group has no answer (feti_solve). FETI_STATE before a
 /// solve has given an answer, for a body whose group has none, and with FETI_ALL where some bodies have numbers of the host
@@ -71,7 +74,8 @@ pub unsafe extern "C" fn feti_reaction(
         if body == FETI_ALL {
             // SAFETY: room for n numbers by the caller's word.
             let output = unsafe { Output::new(r, whole(problem, n)?, "r") }?;
-            return problem.spread(&problem.reactions(kind)?, |at, value| output.write_at(at, &[value]));
+            let all = problem.summed(problem.reactions(kind)?)?;
+            return problem.spread(&all, |at, value| output.write_at(at, &[value]));
         }
         let (body, n) = body_of_order(problem, body, n)?;
         // SAFETY: room for n numbers by the caller's word.

@@ -84,7 +84,8 @@ pub unsafe extern "C" fn feti_solve(p: *mut feti_problem, info: *mut feti_info) 
 /// Verifies an answer against the problem as it is given now: any answer, also another code's.
 ///
 /// Every figure is that of the worst body or the worst row, measured against its own forces and deformation, and is named
-/// with it. Rows that never close, c = +infinity, are left out: what is given for their lambda counts as 0. Keeps nothing of
+/// with it. Glue (option glue) is judged as equality rows are; the forces in it are not given: they are those that serve the
+/// answer best. Rows that never close, c = +infinity, are left out: what is given for their lambda counts as 0. Keeps nothing of
 /// the answer: that of the last solve stays. Runs feti_setup when it is due, for the null spaces. After a failure nothing is written.
 ///
 /// | argument | in/out | shape | rule |

@@ -63,7 +63,8 @@ pub unsafe extern "C" fn feti_body_kplus(
 /// Applies the dual operator, `y = F x` with `F = [B; H] K+ [B; H]' + C`.
 ///
 /// C = diag(1/k) is the compliance of the rows (feti_rows_compliance), 0 for rigid ones. Runs feti_setup when it is due. `x` and `y` may be the same array.
-/// FETI_STATE where a body is cut (feti_body_mesh_i32 or _i64). After a failure nothing is written.
+/// FETI_STATE where a body is cut (feti_body_mesh_i32 or _i64) or unknowns are glued (option glue). After a failure nothing is
+/// written.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|
@@ -90,7 +91,8 @@ pub unsafe extern "C" fn feti_dual_apply(p: *mut feti_problem, m: i64, x: *const
 
 /// Reads the right-hand side of the dual problem, `d = [B; H] K+ f - [c; h]`.
 ///
-/// Runs feti_setup when it is due. FETI_STATE where a body is cut (feti_body_mesh_i32 or _i64). After a failure nothing is
+/// Runs feti_setup when it is due. FETI_STATE where a body is cut (feti_body_mesh_i32 or _i64) or unknowns are glued (option
+/// glue). After a failure nothing is
 /// written.
 ///
 /// | argument | in/out | shape | rule |

@@ -166,6 +166,23 @@ impl Mesh {
         self.cut.as_ref().filter(|cut| cut.missing == 0).map(|cut| &cut.pieces[..])
     }
 
+    /// So many elements, none of which has come in this pass, complete it; after a complete one they begin the next.
+    pub fn is_complete_with(&self, elements: usize) -> bool {
+        let left = |cut: &Cut| if cut.missing == 0 { cut.given.len() } else { cut.missing };
+        self.cut.as_ref().is_some_and(|cut| left(cut) == elements)
+    }
+
+    /// The first element of a piece; none of a body of which nothing but its pieces is known.
+    pub fn first_of(&self, piece: usize) -> Option<usize> {
+        let cut = self.cut.as_ref().filter(|_| self.elements_known)?;
+        cut.piece_of.iter().position(|of| *of as usize == piece)
+    }
+
+    /// The body is cut into several pieces.
+    pub fn is_cut(&self) -> bool {
+        self.cut.as_ref().is_some_and(|cut| cut.pieces.len() > 1)
+    }
+
     /// The first element that has not come in this pass.
     pub fn first_missing(&self) -> Option<usize> {
         match &self.cut {
@@ -202,7 +219,7 @@ impl Mesh {
             ke.check(tolerance).map_err(|error| error.element(e))?;
         }
         if again {
-            cut.begin()?;
+            cut.begin().map_err(|error| error.element(first))?;
         }
         for (e, ke) in matrices.enumerate().map(|(k, ke)| (first + k, ke)) {
             let places: Vec<Place> = self.connectivity.places(e).collect();
@@ -224,12 +241,17 @@ impl Mesh {
 }
 
 impl Cut {
-    /// Begins another pass.
+    /// Begins another pass, or leaves all as it is where there is no memory for it.
     fn begin(&mut self) -> Result<()> {
+        let mut cleared = reserved(self.pieces.len(), "the pieces of a body")?;
+        for piece in &self.pieces {
+            cleared.push(piece.cleared()?);
+        }
+        self.pieces.iter_mut().zip(cleared).for_each(|(piece, cleared)| piece.stiffness = cleared);
         self.given.fill(false);
         self.missing = self.given.len();
         self.held.clear();
-        self.pieces.iter_mut().try_for_each(Piece::clear)
+        Ok(())
     }
 
     fn add(&mut self, e: usize, places: &[Place], ke: impl Fn(usize, usize) -> f64) {

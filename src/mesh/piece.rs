@@ -6,7 +6,7 @@ use crate::error::Result;
 use crate::linalg::Symmetric;
 use crate::mesh::connectivity::{Connectivity, Place};
 use crate::mesh::pattern::Local;
-use crate::platform::memory::{filled, reserved};
+use crate::platform::memory::{copied, filled, reserved};
 
 const WHAT: &str = "the pieces of a body";
 
@@ -43,17 +43,11 @@ impl Piece {
         }
     }
 
-    /// Takes back all that was added. The pattern stays.
-    pub fn clear(&mut self) -> Result<()> {
-        let zeros = filled(self.stiffness.val.len(), 0.0, WHAT)?;
-        match Arc::get_mut(&mut self.stiffness) {
-            Some(own) => own.val = zeros.into(),
-            None => {
-                let Symmetric { ptr, col, .. } = &*self.stiffness;
-                self.stiffness = Arc::new(Symmetric::new(ptr.clone(), col.clone(), zeros));
-            }
-        }
-        Ok(())
+    /// A matrix of this pattern, all zero; others may keep the one that is there.
+    pub fn cleared(&self) -> Result<Arc<Symmetric>> {
+        let Symmetric { ptr, col, val } = &*self.stiffness;
+        let (ptr, col) = (copied(ptr, WHAT)?, copied(col, WHAT)?);
+        Ok(Arc::new(Symmetric::new(ptr, col, filled(val.len(), 0.0, WHAT)?)))
     }
 }
 

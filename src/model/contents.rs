@@ -109,7 +109,9 @@ impl Model {
     }
 
     pub fn set_i64(&mut self, name: &str, value: i64) -> Result<()> {
-        self.settings.set_i64(name, value)
+        let before = self.settings.glue;
+        self.settings.set_i64(name, value)?;
+        self.check_glue("value").inspect_err(|_| self.settings.glue = before)
     }
 
     pub fn set_str(&mut self, name: &str, value: &str) -> Result<()> {
@@ -118,7 +120,9 @@ impl Model {
 
     /// Sets options by a text such as `tolerance=1e-8 threads=4`: all of them or none.
     pub fn set_text(&mut self, text: &str) -> Result<()> {
-        self.settings.set_text(text)
+        let before = self.settings.clone();
+        self.settings.set_text(text)?;
+        self.check_glue("text").inspect_err(|_| self.settings = before)
     }
 
     pub fn get_f64(&self, name: &str) -> Result<f64> {

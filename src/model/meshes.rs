@@ -25,8 +25,9 @@ impl Model {
             mesh.has_elements() && mesh.wanted() == Some(wanted) && mesh.connectivity().is(order, ptr, dof)
         };
         if self.bodies[body].mesh.as_ref().is_some_and(serves) {
+            self.bodies[body].mesh.as_mut().map_or(Ok(()), Mesh::begin).map_err(|e| e.body(body))?;
             self.bodies[body].without_matrix();
-            return self.bodies[body].mesh.as_mut().map_or(Ok(()), Mesh::begin);
+            return Ok(());
         }
         let connectivity = Connectivity::new(order, ptr, dof).map_err(|e| e.body(body))?;
         let given = self.change(body, Change::Pattern)?;
@@ -62,7 +63,7 @@ impl Model {
                 .value(ke.len() as f64)
                 .limit(expected as f64));
         }
-        let sizes = sizes(self.mesh(body)?, first, count)?;
+        let sizes = sizes(self.mesh(body)?, first, count).map_err(|e| e.body(body).element(first))?;
         let mut begin = 0;
         let matrices = sizes.iter().map(move |&n| {
             let values = &ke[begin..begin + storage.len(n)];
@@ -80,7 +81,7 @@ impl Model {
         count: usize,
         storage: ElementStorage,
     ) -> Result<usize> {
-        let sizes = sizes(self.mesh(body)?, first, count).map_err(|e| e.body(body))?;
+        let sizes = sizes(self.mesh(body)?, first, count).map_err(|e| e.body(body).element(first))?;
         Ok(sizes.iter().map(|n| storage.len(*n)).sum())
     }
 
@@ -119,18 +120,23 @@ impl Model {
         first: usize,
         matrices: impl Iterator<Item = ElementMatrix<'a>> + Clone,
     ) -> Result<()> {
+        let named = |e: Error| e.body(body).element(first);
         let cut = match self.mesh(body)?.wanted() {
             Some(_) => None,
-            None => Some(self.cut_of(body)?),
+            None => Some(self.cut_of(body).map_err(named)?),
         };
         let (tolerance, wanted) = (self.settings.symmetry_tolerance, self.settings.pieces);
         let Some(mesh) = self.bodies[body].mesh.as_mut() else { return Ok(()) };
         if let Some(piece_of) = cut {
-            mesh.cut(piece_of, wanted)?;
+            mesh.cut(piece_of, wanted).map_err(named)?;
         }
+        // before the pass is complete, so that an element that is refused may come again
+        let completes = mesh.is_complete_with(matrices.clone().count());
+        let room = if completes { self.bodies[body].room_for_matrix().map_err(named)? } else { Vec::new() };
+        let Some(mesh) = self.bodies[body].mesh.as_mut() else { return Ok(()) };
         mesh.add(first, matrices, tolerance).map_err(|e| e.body(body))?;
-        if mesh.pieces().is_some() {
-            self.change(body, Change::Values)?.assemble()?;
+        if completes {
+            self.change(body, Change::Values)?.assemble(room);
         } else {
             self.bodies[body].without_matrix();
         }
@@ -147,7 +153,8 @@ impl Model {
         if pieces <= 1 {
             return filled(mesh.elements(), 0, WHAT);
         }
-        let (mut ptr, mut dof) = (reserved(mesh.elements() + 1, WHAT)?, Vec::new());
+        let free = (0..mesh.elements()).map(|e| mesh.free(e).count()).sum();
+        let (mut ptr, mut dof) = (reserved(mesh.elements() + 1, WHAT)?, reserved(free, WHAT)?);
         ptr.push(0);
         for e in 0..mesh.elements() {
             dof.extend(mesh.free(e));
@@ -166,19 +173,26 @@ impl GivenBody {
         (self.body.stiffness, self.body.assembled) = (None, None);
     }
 
-    /// All elements have come: the matrix of the body is that of its only piece, or the sum of those of all.
-    pub fn assemble(&mut self) -> Result<()> {
+    /// What its matrix takes besides those of its pieces.
+    pub fn room_for_matrix(&self) -> Result<Vec<f64>> {
+        if self.mesh.as_ref().is_some_and(Mesh::is_cut) {
+            return Assembled::room_for(self.body.order);
+        }
+        Ok(Vec::new())
+    }
+
+    /// All elements have come: the matrix of the body is that of its only piece, or the sum of those of all, with the room for it.
+    pub fn assemble(&mut self, room: Vec<f64>) {
         self.without_matrix();
         match self.mesh.as_ref().and_then(Mesh::pieces) {
             Some([whole]) => self.body.stiffness = Some(Arc::clone(&whole.stiffness)),
             Some(pieces) => {
                 let parts =
                     pieces.iter().map(|Piece { dofs, stiffness }| (Arc::clone(dofs), Arc::clone(stiffness)));
-                self.body.assembled = Some(Arc::new(Assembled::new(self.body.order, parts)?));
+                self.body.assembled = Some(Arc::new(Assembled::new(room, parts)));
             }
             None => {}
         }
-        Ok(())
     }
 }
 

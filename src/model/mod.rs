@@ -3,6 +3,7 @@
 mod bodies;
 mod contents;
 pub mod file;
+mod joints;
 mod matrices;
 mod meshes;
 mod numbering;
@@ -14,7 +15,8 @@ mod settings_text;
 mod words;
 
 pub use contents::{BodyRevisions, GivenBody, Model, Revisions, Sizes};
+pub use joints::Joint;
 pub use parts::{Part, Parts};
-pub use row_sets::{kind_and_row, proof_of_rows, PER_ENTRY};
+pub use row_sets::{contradiction, kind_and_row, proof_of_rows, PER_ENTRY};
 pub use settings::{options, OptionInfo, OptionValue, Settings};
 pub use words::{FinishBy, Method, OperatorForm, PaperStep1, PaperUnits, Preconditioning, StartFrom, Word};

@@ -9,18 +9,23 @@ use crate::platform::memory::{refusal, reserved};
 const TOO_LARGE: usize = isize::MAX as usize / size_of::<f64>();
 
 impl Model {
-    /// The numbers of a body, each used once in all bodies.
+    /// The numbers of a body, each used once in all bodies; once in each where unknowns with one number are glued.
     fn checked_numbers(&self, body: usize, numbers: &[i64]) -> Result<Vec<usize>> {
         let refused = |dof: usize, what: &str| {
             let error = Error::argument("number", what).body(body).dof(dof).entry(dof);
             Err(error.index(numbers[dof]))
         };
-        let mut checked = reserved(numbers.len(), "the numbers of a body")?;
+        let (glued, mut checked) =
+            (self.settings.glue == 1, reserved(numbers.len(), "the numbers of a body")?);
         for (dof, &number) in numbers.iter().enumerate() {
             match usize::try_from(number).ok().filter(|number| *number < TOO_LARGE) {
                 None => return refused(dof, "no array has such an entry"),
-                Some(number) if self.unknowns.get(&number).is_some_and(|(other, _)| *other != body) => {
-                    return refused(dof, "the number is that of an unknown of another body");
+                Some(number)
+                    if !glued && self.unknowns.get(&number).is_some_and(|(other, _)| *other != body) =>
+                {
+                    let what = "the number is that of an unknown of another body; with option glue = 1, set before, \
+                                the two move together";
+                    return refused(dof, what);
                 }
                 Some(number) => checked.push(number),
             }
@@ -32,19 +37,42 @@ impl Model {
         again.min().map_or(Ok(checked), |dof| refused(dof, "another unknown of the body has this number"))
     }
 
-    /// The host's numbers of the unknowns of a body, from 0, distinct over all bodies. Calling again replaces them.
+    /// The host's numbers of the unknowns of a body, from 0, distinct within the body, and over all bodies where none are glued.
+    /// Calling again replaces them.
     pub fn set_numbering(&mut self, body: usize, numbers: &[i64]) -> Result<()> {
         self.check_length(body, "n", numbers.len())?;
         let numbers = self.checked_numbers(body, numbers)?;
-        let unknowns = &mut self.unknowns;
+        if self.bodies[body].numbers.as_ref() == Some(&numbers) {
+            return Ok(());
+        }
+        let (was_shared, unknowns) = (self.shares_numbers(), &mut self.unknowns);
         let bytes = numbers.len() * size_of::<(usize, (usize, usize))>();
         unknowns.try_reserve(numbers.len()).map_err(|_| refusal(bytes, "the numbers of the unknowns"))?;
         for old in self.bodies[body].numbers.iter().flatten() {
-            unknowns.remove(old);
+            if unknowns.get(old).is_some_and(|(first, _)| *first == body) {
+                unknowns.remove(old);
+            }
         }
-        unknowns.extend(numbers.iter().enumerate().map(|(dof, &number)| (number, (body, dof))));
         self.bodies[body].numbers = Some(numbers);
+        // what the body gives up may be a number of others
+        let claiming = if was_shared { 0..self.bodies.len() } else { body..body + 1 };
+        for p in claiming {
+            for (dof, &number) in self.bodies[p].numbers.iter().flatten().enumerate() {
+                let first = unknowns.entry(number).or_insert((p, dof));
+                *first = (*first).min((p, dof));
+            }
+        }
+        if was_shared || self.shares_numbers() {
+            self.revisions.rows += 1;
+            self.revisions.bodies += 1;
+        }
         Ok(())
+    }
+
+    /// Unknowns of several bodies have one number.
+    pub fn shares_numbers(&self) -> bool {
+        let all = self.bodies.iter().filter_map(|given| given.numbers.as_ref());
+        all.map(Vec::len).sum::<usize>() > self.unknowns.len()
     }
 
     /// Whether the bodies have numbers: all or none.
@@ -78,39 +106,46 @@ impl Model {
         Err(Error::argument("n", what).value(n as f64).limit(end as f64))
     }
 
-    /// `work` on every unknown: its body, its dof, and its place in an array over all unknowns.
-    fn each_unknown(&self, mut work: impl FnMut(usize, usize, usize)) -> Result<()> {
-        let (numbered, mut place) = (self.is_numbered()?, 0);
+    /// `work` on every unknown: its body, its dof, its place in an array over all unknowns, which is none where an unknown of a
+    /// body before has the same number.
+    fn each_unknown(&self, mut work: impl FnMut(usize, usize, Option<usize>)) -> Result<()> {
+        let (numbered, shared, mut place) = (self.is_numbered()?, self.shares_numbers(), 0);
         for (body, given) in self.bodies.iter().enumerate() {
             for dof in 0..given.body.order {
-                let number = given.numbers.as_ref().filter(|_| numbered).map(|numbers| numbers[dof]);
-                work(body, dof, number.unwrap_or(place));
+                let number =
+                    given.numbers.as_ref().filter(|_| numbered).map_or(place, |numbers| numbers[dof]);
+                let again = shared && self.unknowns.get(&number) != Some(&(body, dof));
+                work(body, dof, (!again).then_some(number));
                 place += 1;
             }
         }
         Ok(())
     }
 
-    /// Gives the values of all bodies, one after the other, with their places in an array over all unknowns.
+    /// Gives the values of all bodies, one after the other, with their places in an array over all unknowns; where several
+    /// have one number the first of them.
     pub fn spread(&self, values: &[f64], mut to: impl FnMut(usize, f64)) -> Result<()> {
         let mut values = values.iter();
-        self.each_unknown(|_, _, place| values.next().into_iter().for_each(|v| to(place, *v)))
+        self.each_unknown(|_, _, place| {
+            values.next().zip(place).into_iter().for_each(|(v, place)| to(place, *v));
+        })
     }
 
-    /// The loads of all bodies, force; entries of `f` that belong to no unknown are not looked at.
+    /// The loads of all bodies, force; entries of `f` that belong to no unknown are not looked at. Of several unknowns with one
+    /// number the first has the load.
     pub fn set_all_loads(&mut self, f: &[f64]) -> Result<()> {
         self.check_whole(f.len())?;
         let mut loads = reserved(self.bodies.len(), "the loads")?;
         for given in &self.bodies {
             loads.push(reserved(given.body.order, "a load")?);
         }
-        self.each_unknown(|body, _, place| loads[body].push(f[place]))?;
+        self.each_unknown(|body, _, place| loads[body].push(place.map_or(0.0, |place| f[place])))?;
         for (body, load) in loads.iter().enumerate() {
             if let Some(dof) = first_non_finite(load) {
                 let mut entry = dof;
                 self.each_unknown(|p, i, place| {
                     if (p, i) == (body, dof) {
-                        entry = place;
+                        entry = place.unwrap_or(dof);
                     }
                 })?;
                 let error = Error::argument("f", "the entry is not a finite number");

@@ -21,8 +21,10 @@ pub struct Parts {
     pub parts: Vec<Part>,
     /// K of the bodies that are cut.
     pub assembled: Vec<Option<Arc<Assembled>>>,
-    /// Number of the host's equality rows: those that follow are glue.
+    /// Number of the host's equality rows: those that follow are glue, first that of the joints.
     pub equalities: usize,
+    /// Numbers of the host that unknowns of several bodies have, one for each row that glues two of these.
+    pub joints: Vec<usize>,
 }
 
 /// One part.
@@ -38,6 +40,11 @@ impl Parts {
     /// Parts of a body of the host.
     pub fn of(&self, body: usize) -> Range<usize> {
         self.first[body]..self.first[body + 1]
+    }
+
+    /// Number of equality rows between bodies of the host, by which answers are judged: those that follow glue pieces.
+    pub fn judged(&self) -> usize {
+        self.equalities + self.joints.len()
     }
 
     /// The body of the host is cut.

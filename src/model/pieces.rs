@@ -41,7 +41,9 @@ impl Model {
         slot.form = Some(Form::Elements(given.val.len()));
         slot.spoiled = false;
         slot.mesh = Some(mesh);
-        slot.assemble()
+        let room = slot.room_for_matrix()?;
+        slot.assemble(room);
+        Ok(())
     }
 }
 

@@ -78,6 +78,28 @@ pub fn proof_of_rows(margin: f64, mut weights: Vec<(usize, f64)>, heaviest: usiz
     Proof::Rows { margin, weights, heaviest }
 }
 
+/// What a proof says in words: a row of this kind contradicts so many others and the glue of unknowns with these numbers.
+pub fn contradiction(kind: RowKind, others: usize, glued: &[i64]) -> String {
+    let mut all = vec![format!("this {}", kind.name())];
+    match others {
+        0 if !glued.is_empty() => {}
+        1 => all.push("another row".to_owned()),
+        _ => all.push(format!("{others} others")),
+    }
+    match glued {
+        [] => {}
+        [number] => all.push(format!("the glue of the unknowns with number {number}")),
+        [number, rest @ ..] => {
+            all.push(format!(
+                "the glue of the unknowns with number {number} and {} other numbers",
+                rest.len()
+            ));
+        }
+    }
+    let last = all.pop().unwrap_or_default();
+    format!("{} and {last} contradict each other: no displacement satisfies them", all.join(", "))
+}
+
 /// Kind of a row of the stack of all contact rows and all equality rows, and its number among those.
 pub fn kind_and_row(i: usize, contact: usize) -> (RowKind, usize) {
     if i < contact {

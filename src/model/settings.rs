@@ -85,6 +85,8 @@ settings! {
         c"Threads of the setup and of costly products with the dual operator (at most one for 500 unknowns and four for a CPU); 0: as many as the CPUs this process may use. The answer has the same bits for any number.";
     pieces: i64 = I64(0), 0.0..=1e6,
         c"Pieces that a body given by its elements is cut into, from the first element matrix on: 0: chosen by its size, one below 40000 unknowns; 1: none is cut; n: about n each.";
+    glue: i64 = I64(0), 0.0..=1.0,
+        c"What a number of the host (feti_body_numbering) is that unknowns of several bodies have, from the next call of that function on: 0: refused; 1: these unknowns move together, by equality rows that only the library sees.";
     index_base: i64 = I64(0), 0.0..=1.0,
         c"What numbers in error texts count from: 0 for C, 1 for Fortran.";
     fault_injection: i64 = I64(0), 0.0..=1.0,

@@ -25,6 +25,10 @@ pub trait AcceptanceTest {
     fn missed(&self) -> Option<f64> {
         None
     }
+    /// It judges by better data than A and b: a residual of zero might be refused.
+    fn has_better_data(&self) -> bool {
+        false
+    }
     /// A solution that was not accepted, mended by better data than A and b until it is; none where that fails.
     fn mended(&mut self, _: &Solution) -> Result<Option<Solution>> {
         Ok(None)

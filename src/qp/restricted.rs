@@ -135,6 +135,10 @@ impl AcceptanceTest for Judged<'_> {
         self.whole.missed()
     }
 
+    fn has_better_data(&self) -> bool {
+        self.whole.has_better_data()
+    }
+
     fn length(&self) -> Option<f64> {
         self.whole.length()
     }

@@ -267,7 +267,7 @@ impl Prepared {
         if kept > 0 && check_memory(settings, there, more.saturating_add(kept)).is_err() {
             self.bodies.iter_mut().filter_map(|own| own.inverse.as_mut()).for_each(|of| of.operator = None);
         }
-        check_memory(settings, there, more)?;
+        check_memory(settings, there, more).map_err(|error| operators.named(error))?;
         Ok(operators)
     }
 

@@ -1,7 +1,7 @@
 //! Which bodies get an explicit dual operator.
 
 use crate::dual::{all_bytes, implicit_bodies, Size};
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::model::{OperatorForm, Settings};
 use crate::setup::memory_limit::{check_memory, memory_limit};
 
@@ -41,9 +41,19 @@ impl Operators {
             || implicit(settings, &self.sizes, self.factor_bytes) == self.implicit
     }
 
+    /// The error that there is too little memory for them and the factors, with the body that takes most.
+    pub fn named(&self, mut error: Error) -> Error {
+        let bytes =
+            |p: usize| self.sizes[p].entries * size_of::<f64>() + self.sizes[p].bytes(self.implicit[p]);
+        let largest = (0..self.sizes.len()).fold(0, |most, p| if bytes(p) > bytes(most) { p } else { most });
+        error.what += "; those of this body take most";
+        error.body(largest)
+    }
+
     /// `more` bytes besides factors and operators that are there, against the limit of the host.
     pub fn check_more(&self, settings: &Settings, more: usize) -> Result<()> {
         check_memory(settings, self.factor_bytes.saturating_add(self.bytes()), more)
+            .map_err(|e| self.named(e))
     }
 }
 

@@ -134,14 +134,19 @@ impl Answer {
     }
 }
 
-/// A certificate with the numbers of the host.
+/// A certificate with the numbers of the host; glue has none.
 pub fn named(model: &Model, ready: &Ready, own: Certificate) -> Certificate {
-    if let Some(whole) = &ready.whole {
-        return whole.island.named(own);
+    let mut named = match &ready.whole {
+        Some(whole) => whole.island.named(own),
+        None => ready.island.named(own),
+    };
+    if ready.whole.is_none() {
+        for entry in [&mut named.equilibrium, &mut named.balance] {
+            entry.place.iter_mut().for_each(|body| *body = model.name(*body));
+        }
     }
-    let mut named = ready.island.named(own);
-    for entry in [&mut named.equilibrium, &mut named.balance] {
-        entry.place.iter_mut().for_each(|body| *body = model.name(*body));
+    if let Some(parts) = &model.parts {
+        named.equality.place.take_if(|row| *row >= parts.equalities);
     }
     named
 }

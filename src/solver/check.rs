@@ -8,11 +8,12 @@ use crate::error::{Error, Kind, Result};
 use crate::model::Model;
 use crate::solve::{named, ByInverse, Case};
 use crate::solver::decomposed::solved;
+use crate::solver::joints::with_glue;
 use crate::solver::problem::Problem;
 
 impl Problem {
     /// The certificate of any answer, also another code's: u over all unknowns, multipliers of contact and
-    /// equality rows. A setup that is there serves, whatever the options have become: the last answer stays.
+    /// equality rows; the forces of glue are those that serve it best. A setup that is there serves, whatever the options have become: the last answer stays.
     pub fn check(&mut self, u: &[f64], lambda: &[f64], mu: &[f64]) -> Result<Certificate> {
         if self.prepared.duals(&self.model).is_none() {
             self.setup()?;
@@ -31,6 +32,7 @@ impl Problem {
                 return Err(error.value(values.len() as f64).limit(expected as f64));
             }
         }
+        let mu = &with_glue(host, u, lambda, mu)?[..];
         let copies = model.parts.as_ref().map(|parts| parts.spread(u)).transpose()?;
         let u = copies.as_deref().unwrap_or(u);
         let mut all: Option<Certificate> = None;

@@ -22,12 +22,13 @@ pub fn solved<'a>(host: &'a Model, decomposition: &'a Option<Decomposition>) -> 
 
 pub fn of_host(host: &Model, decomposition: &Option<Decomposition>, error: Error) -> Error {
     match decomposition.as_ref().and_then(|of| of.model.parts.as_deref()) {
-        Some(parts) => decomposition::of_host(parts, host.contact.len(), error),
+        Some(parts) => decomposition::of_host(host, parts, error),
         None => error,
     }
 }
 
-/// The answer of the pieces as one of the host's bodies. Forces of the glue stay behind those of the host's equality rows.
+/// The answer of the pieces as one of the host's bodies. Forces of the glue stay behind those of the host's equality rows: first those
+/// of joints.
 pub fn answer_of_host(
     host: &Model,
     solved: &Model,

@@ -142,12 +142,20 @@ fn soft(model: &Model, prepared: &Prepared) -> Vec<usize> {
     (0..model.bodies.len()).filter(soft).collect()
 }
 
-/// Bodies of the host that none of its rows touches, or only such as never close.
+/// Bodies of the host that no glue and none of its rows touches, or only such as never close.
 fn untouched(host: &Model) -> Vec<usize> {
     let mut touched = vec![false; host.bodies.len()];
     for rows in [&host.contact, &host.equalities] {
         for (j, _) in (0..rows.len()).filter(|&i| rows.is_finite(i)).flat_map(|i| rows.matrix.row(i)) {
             touched[host.offsets[1..].partition_point(|end| *end <= j)] = true;
+        }
+    }
+    if host.shares_numbers() {
+        for (body, given) in host.bodies.iter().enumerate() {
+            let first = |number| host.unknowns.get(number).map(|unknown| unknown.0);
+            for other in given.numbers.iter().flatten().filter_map(first).filter(|other| *other != body) {
+                (touched[body], touched[other]) = (true, true);
+            }
         }
     }
     (0..touched.len()).filter(|&body| !touched[body]).collect()

@@ -5,6 +5,7 @@ mod check;
 mod decomposed;
 mod findings;
 mod history;
+mod joints;
 mod problem;
 mod products;
 mod results;

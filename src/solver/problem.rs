@@ -24,7 +24,7 @@ use crate::solver::told::{begin, method, result};
 #[derive(Default)]
 pub struct Problem {
     pub(super) model: Model,
-    /// The pieces that are solved in place of bodies that are cut.
+    /// What is solved in place of bodies that are cut, and with the glue of joints.
     pub(super) decomposition: Option<Decomposition>,
     pub(super) prepared: Prepared,
     pub(super) history: History,
@@ -232,7 +232,7 @@ impl Problem {
         self.model.check_complete()?;
         match &mut self.decomposition {
             Some(known) if known.is_of(&self.model) => known.refresh(&self.model),
-            None if self.model.bodies.iter().all(|given| given.body.assembled.is_none()) => Ok(()),
+            None if !Decomposition::is_due(&self.model) => Ok(()),
             _ => {
                 let made = Decomposition::of(&self.model)?;
                 if numbers(&made, &self.model) != numbers(&self.decomposition, &self.model) {

@@ -5,6 +5,7 @@ use crate::error::{Error, Kind, Proof, Result};
 use crate::platform::memory::zeros;
 use crate::solve::{Answer, Report, RowState};
 use crate::solver::findings::Findings;
+use crate::solver::joints::add_glue;
 use crate::solver::problem::Problem;
 
 impl Problem {
@@ -40,7 +41,7 @@ impl Problem {
         Ok(&self.answer()?.u)
     }
 
-    /// Force of the rows on the body: `-B'lambda`, `-H'mu`, or both, so that `K u = f + r`.
+    /// Force of the rows on the body: `-B'lambda`, `-H'mu`, or both with that of the glue, so that `K u = f + r`.
     /// Those on all bodies are kept for the next body.
     pub fn reaction(&mut self, kind: Option<RowKind>, body: usize, r: &mut [f64]) -> Result<()> {
         self.model.check_length(body, "n", r.len())?;
@@ -64,6 +65,9 @@ impl Problem {
                 let rows = self.model.rows(of);
                 rows.matrix.mul_transposed_add(-1.0, &multipliers[..rows.len()], &mut all);
             }
+        }
+        if kind.is_none() {
+            add_glue(&self.model, &answer.mu[self.model.equalities.len()..], &mut all)?;
         }
         Ok(all)
     }

@@ -1,6 +1,7 @@
 //! Bodies given by their elements, whole and cut: one problem, one answer.
 
 mod bodies;
+mod glue;
 mod passes;
 mod proofs;
 mod shapes;

@@ -66,6 +66,32 @@ fn an_indefinite_body_is_named_with_its_unknown() {
     assert!(error.place.dof.unwrap() < model.bodies[1].numbers().1);
 }
 
+/// What takes most memory is named: a body, and of one that is cut the first element of its piece.
+#[test]
+fn a_limit_of_memory_names_the_piece_that_exceeds_it_and_loses_nothing() {
+    let model = blocks(4);
+    for (pieces, is_cut) in [(1, false), (3, true)] {
+        let (answer, ..) = solved(&mut model.by_elements(pieces, true).unwrap());
+        let mut problem = model.by_elements(pieces, true).unwrap();
+        problem.set_i64("memory_limit", 1000).unwrap();
+        for error in [problem.setup().unwrap_err(), problem.solve().unwrap_err()] {
+            assert_eq!((error.kind, error.place.limit), (Kind::Memory, Some(1000.0)), "{error}");
+            let body = error.place.body.unwrap();
+            assert!(body < 2 && error.place.element.is_some() == is_cut, "{error}");
+            let Some(element) = error.place.element else { continue };
+            let (ptr, dof) = model.bodies[body].connectivity();
+            let piece_of = problem.pieces(body).unwrap();
+            // an unknown of several pieces has the first one: that of an element is its highest
+            let of = |e: usize| {
+                dof[ptr[e]..ptr[e + 1]].iter().filter(|j| **j >= 0).map(|j| piece_of[*j as usize]).max()
+            };
+            assert!((0..element).all(|e| of(e) != of(element)), "{error}");
+        }
+        problem.set_i64("memory_limit", 0).unwrap();
+        assert_eq!(solved(&mut problem).0, answer);
+    }
+}
+
 #[test]
 fn motions_left_open_are_those_of_the_bodies() {
     // nothing but normal forces on a flat plane: the upper body may slide and turn

@@ -97,8 +97,8 @@ pub extern "C" fn feti_body_coordinates_flags(p: *mut feti_problem, body: i64, f
 ///
 /// The load is copied and holds until it is given again; a body without one has zero load. With FETI_ALL the array
 /// holds the loads of all bodies: by the host's numbers where they have some, entries of no unknown not looked at; else
-/// one body after the other. FETI_STATE with FETI_ALL where some bodies have numbers of the host and others
-/// have none. After a failure the loads are as they were.
+/// one body after the other. Of unknowns with one number (option glue) that of the first body has the load. FETI_STATE with
+/// FETI_ALL where some bodies have numbers of the host and others have none. After a failure the loads are as they were.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|

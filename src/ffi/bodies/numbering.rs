@@ -12,12 +12,17 @@ use crate::ffi::header::types::feti_problem;
 /// The numbers are copied; calling again replaces them. Rows that are there stay on their unknowns. After a failure the body
 /// keeps the numbers it had.
 ///
+/// With option glue = 1, set before, unknowns of several bodies may have one number: they move together, by equality rows that
+/// only the library sees. The host's rows, their multipliers and the counts stay what they are. With FETI_ALL a load on such a
+/// number is that of its first body, a displacement that of all of them, and a reaction the sum over them; rows whose bodies are
+/// NULL act on the first. The last answer goes with a change of such numbers.
+///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|
 /// | `p` | in | scalar | the handle |
 /// | `body` | in | scalar | number of the body, from 0 |
 /// | `n` | in | scalar | unknowns of the body |
-/// | `number` | in | n | number of each unknown, counted from `base`, none that of another unknown |
+/// | `number` | in | n | number of each unknown, counted from `base`, none that of another unknown of the body, nor, without option glue, of another body |
 /// | `base` | in | scalar | 0 or 1: what the numbers count from |
 ///
 /// # Safety
@@ -43,12 +48,17 @@ pub unsafe extern "C" fn feti_body_numbering_i32(
 /// The numbers are copied; calling again replaces them. Rows that are there stay on their unknowns. After a failure the body
 /// keeps the numbers it had.
 ///
+/// With option glue = 1, set before, unknowns of several bodies may have one number: they move together, by equality rows that
+/// only the library sees. The host's rows, their multipliers and the counts stay what they are. With FETI_ALL a load on such a
+/// number is that of its first body, a displacement that of all of them, and a reaction the sum over them; rows whose bodies are
+/// NULL act on the first. The last answer goes with a change of such numbers.
+///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|
 /// | `p` | in | scalar | the handle |
 /// | `body` | in | scalar | number of the body, from 0 |
 /// | `n` | in | scalar | unknowns of the body |
-/// | `number` | in | n | number of each unknown, counted from `base`, none that of another unknown |
+/// | `number` | in | n | number of each unknown, counted from `base`, none that of another unknown of the body, nor, without option glue, of another body |
 /// | `base` | in | scalar | 0 or 1: what the numbers count from |
 ///
 /// # Safety

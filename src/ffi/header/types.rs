@@ -247,7 +247,7 @@ pub struct feti_certificate {
     pub balance_body: i64,
     /// Row with the worst penetration, from 0, -1: none.
     pub penetration_row: i64,
-    /// Equality row with the worst error, from 0, -1: none.
+    /// Equality row with the worst error, from 0, -1: none, or glue of unknowns with one number (option glue).
     pub equality_row: i64,
     /// Row with the worst negative force, from 0, -1: none.
     pub force_row: i64,

@@ -137,7 +137,11 @@ fn run(
                 }
                 continue;
             }
-            if stop.tighten_by(judge.missed()) {
+            let missed = judge.missed();
+            if stop.stays(missed) && judge.has_better_data() {
+                return Ok(Verdict::Inaccurate);
+            }
+            if stop.tighten_by(missed) {
                 continue;
             }
             it.refresh()?;

@@ -10,6 +10,8 @@ const TRAVEL: f64 = 10.0;
 const MISSED: f64 = 1e3;
 /// How often the tolerance is tightened when the judge does not accept.
 const TIGHTENINGS: usize = 8;
+/// A refusal that is still so large against the one before does not follow the residual.
+const STAYS: f64 = 0.5;
 
 /// When the residual is small enough, or no longer worth reducing.
 pub struct Stop {
@@ -18,6 +20,8 @@ pub struct Stop {
     pub noise: f64,
     tightenings: usize,
     refined: bool,
+    /// What the last refusal told.
+    missed: Option<f64>,
     /// Smallest residual of the current face, the count of steps when it was met, and that face.
     best: f64,
     met: usize,
@@ -31,6 +35,7 @@ impl Stop {
             noise: 1.0,
             tightenings: 0,
             refined: false,
+            missed: None,
             best: f64::INFINITY,
             met: 0,
             face: Vec::new(),
@@ -60,7 +65,13 @@ impl Stop {
         refines
     }
 
-    /// P1.3: at the first two refusals, by as much as they tell; false where that is more than steps without rounding could mend.
+    /// P1.3: what the point is refused for is about as large as at the refusal before, when the residual was larger.
+    pub fn stays(&mut self, missed: Option<f64>) -> bool {
+        let before = std::mem::replace(&mut self.missed, missed);
+        missed.zip(before).is_some_and(|(now, before)| now > STAYS * before)
+    }
+
+    /// P1.4: at the first two refusals, by as much as they tell; false where that is more than steps without rounding could mend.
     pub fn tighten_by(&mut self, missed: Option<f64>) -> bool {
         let missed = missed.filter(|missed| *missed < MISSED && self.tightenings < 2);
         if let Some(missed) = missed {
@@ -70,7 +81,7 @@ impl Stop {
         missed.is_some()
     }
 
-    /// P1.4: the verdict; none where target and allowance for rounding have become a tenth, and the run goes on.
+    /// P1.5: the verdict; none where target and allowance for rounding have become a tenth, and the run goes on.
     pub fn tighten(&mut self, accepted: bool) -> Option<Verdict> {
         if accepted {
             return Some(Verdict::Solved);

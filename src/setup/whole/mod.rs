@@ -86,7 +86,7 @@ impl Whole {
         let bodies = island
             .bodies
             .iter()
-            .map(|&body| whole_body(model, parts, body, of_part))
+            .map(|&body| whole_body(model, parts, body, of_part).map_err(|e| e.body(parts.first[body])))
             .collect::<Result<_>>()?;
         Ok(Some(Self { island, bodies, place }))
     }
@@ -167,7 +167,7 @@ impl Whole {
     }
 }
 
-/// The rows of the host over the unknowns of its bodies.
+/// The rows between bodies of the host over their unknowns.
 fn members(
     cut: &Members,
     unknowns: usize,
@@ -175,7 +175,7 @@ fn members(
     parts: &Parts,
     place: &[(usize, f64)],
 ) -> Result<Members> {
-    let of_host = |number: &&usize| kind == RowKind::Inequality || **number < parts.equalities;
+    let of_host = |number: &&usize| kind == RowKind::Inequality || **number < parts.judged();
     let numbers: Vec<usize> = cut.numbers.iter().take_while(of_host).copied().collect();
     let mut matrix = Csr::empty(unknowns);
     for i in 0..numbers.len() {
@@ -189,7 +189,7 @@ fn members(
 }
 
 fn whole_body(model: &Model, parts: &Parts, body: usize, of_part: &OfPart) -> Result<WholeBody> {
-    let missing = || Error::new(Kind::State, "a body has not been set up").body(body);
+    let missing = || Error::new(Kind::State, "a body has not been set up");
     let Some(k) = &parts.assembled[body] else {
         let part = parts.first[body];
         let (kplus, grounded) = of_part(part).ok_or_else(missing)?;

@@ -80,7 +80,7 @@ fn glued(model: &Model, parts: &Parts, body: usize, own: &Motions) -> Result<Csr
     let modes = bases.iter().map(|basis| basis.cols).sum();
     let mut glue = Csr::empty(modes);
     let rows = &model.equalities.matrix;
-    for row in parts.equalities..rows.rows() {
+    for row in parts.judged()..rows.rows() {
         let (mut entries, mut give) = (Vec::new(), 0.0);
         for (j, v) in rows.row(row).filter(|(j, _)| unknowns.contains(j)) {
             let k = parts.starts[range.start..range.end].partition_point(|start| *start <= j) - 1;

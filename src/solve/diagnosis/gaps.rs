@@ -8,7 +8,7 @@ use crate::error::{Error, Kind, Result};
 use crate::linalg::twofold::Twofold;
 use crate::linalg::vector::{norm, norm_max, weighted_norm};
 use crate::linalg::Csr;
-use crate::model::proof_of_rows;
+use crate::model::{contradiction, proof_of_rows};
 use crate::qp::{nearest_point, Polyhedron};
 use crate::solve::case::Case;
 use crate::solve::gaps::Gaps;
@@ -174,11 +174,7 @@ impl<'a> Contradictions<'a> {
         let heavier = |best, at| if weight(at) >= weight(best) { at } else { best };
         let heaviest = weights.iter().fold(&weights[0], heavier).0;
         let (kind, row) = ready.island.kind_and_row(heaviest);
-        let what = match weights.len() - 1 {
-            1 => format!("this {} and another row contradict each other", kind.name()),
-            others => format!("this {} and {others} others contradict each other", kind.name()),
-        };
-        let what = format!("{what}: no displacement satisfies them");
+        let what = contradiction(kind, weights.len() - 1, &[]);
         let error = Error::new(Kind::GapsContradict, what).row(row).value(-excess).limit(0.0);
         let place = |i: usize| ready.island.in_stack(model.contact.len(), i);
         let of_host = weights.iter().map(|&(i, w)| (place(i), w * ready.rows.scaling.scale[i])).collect();

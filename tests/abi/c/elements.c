@@ -266,6 +266,18 @@ static void passes(const answer *wanted)
     OK(feti_problem_destroy(&p));
 }
 
+/* The last error names this element, or none (-1), and has the word. */
+static void check_named(int64_t element, const char *word)
+{
+    feti_error_detail detail = { .struct_size = sizeof detail };
+    char text[512] = "";
+
+    feti_last_error(text, sizeof text);
+    OK(feti_last_error_detail(&detail));
+    CHECK(detail.element == element, "element %lld named, expected %lld: %s", (long long)detail.element, (long long)element, text);
+    CHECK(strstr(text, word) != NULL, "the text does not say '%s': %s", word, text);
+}
+
 /* What has no meaning for a body that is cut, and for one that was not given by its elements. */
 static void not_of_a_cut_body(void)
 {
@@ -274,6 +286,7 @@ static void not_of_a_cut_body(void)
     feti_problem *p = by_elements(PIECES, 1, FULL, 0, 0);
 
     EXPECT(FETI_STATE, feti_body_kplus(p, BAR, BAR_N, 1, x, BAR_N, y, BAR_N));
+    check_named(-1, "cut into pieces and has no K+ of its own: option pieces = 1, set before its elements, leaves it whole");
     EXPECT(FETI_STATE, feti_body_fixing(p, BAR, 1, dof));
     EXPECT(FETI_STATE, feti_dual_apply(p, 1, x, y));
     EXPECT(FETI_STATE, feti_dual_rhs(p, 1, y));
@@ -289,18 +302,6 @@ static void not_of_a_cut_body(void)
     (void)solved(p, 0);
     EXPECT(FETI_STATE, feti_body_held_forces(p, POST, 1, y));
     OK(feti_problem_destroy(&p));
-}
-
-/* The last error names this element, or none (-1), and has the word. */
-static void check_named(int64_t element, const char *word)
-{
-    feti_error_detail detail = { .struct_size = sizeof detail };
-    char text[512] = "";
-
-    feti_last_error(text, sizeof text);
-    OK(feti_last_error_detail(&detail));
-    CHECK(detail.element == element, "element %lld named, expected %lld: %s", (long long)detail.element, (long long)element, text);
-    CHECK(strstr(text, word) != NULL, "the text does not say '%s': %s", word, text);
 }
 
 static void refused_connectivity(feti_problem *p)

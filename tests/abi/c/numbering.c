@@ -63,6 +63,69 @@ static void without_numbers(void)
     OK(feti_problem_destroy(&p));
 }
 
+/* Block[0] has the number of the spring, 4, and no row joins them: u = -3 of both, -4.5 of block[1], which is pulled by -6. What the
+   spring takes, r = K u - f = -6, the block gives. */
+static void glued(void)
+{
+    static const int32_t block_number[2] = { 4, 2 };
+    const double f[5] = { NAN, NAN, -6.0, NAN, 0.0 }, none[2] = { 0.0, 0.0 };
+    const double u_by_hand[WHOLE] = { 7.0, 7.0, -4.5, 7.0, -3.0, 7.0 }, r_by_hand[WHOLE] = { 7.0, 7.0, 0.0, 7.0, 0.0, 7.0 };
+    double r[2], u[3] = { -3.0, -3.0, -4.5 };
+    int64_t rows = -1, equalities = -1;
+    feti_certificate found = { .struct_size = sizeof found };
+    feti_problem *p = small_problem();
+
+    OK(feti_rows_clear(p, FETI_INEQUALITY));
+    OK(feti_body_numbering_i32(p, SPRING, 1, SPRING_NUMBER, 0));
+    EXPECT(FETI_ARGUMENT - 4, feti_body_numbering_i32(p, BLOCK, 2, block_number, 0));
+    check_last_error(p, &(expectation){ FETI_ARGUMENT - 4, BLOCK, 0, ANY, 0, "feti_body_numbering_i32", "option glue = 1" });
+    OK(feti_set_i64(p, "glue", 1));
+    OK(feti_body_numbering_i32(p, BLOCK, 2, block_number, 0));
+    EXPECT(FETI_ARGUMENT - 3, feti_set_i64(p, "glue", 0));
+    OK(feti_body_load(p, BLOCK, 2, none));
+    OK(feti_body_load(p, FETI_ALL, 5, f));
+    check_whole(p, WHOLE, u_by_hand, r_by_hand, "glued");
+    OK(feti_reaction(p, 0, SPRING, 1, r));
+    CHECK(fabs(r[0] + 6.0) <= 1e-9, "the glue pulls the spring with %g", r[0]);
+    OK(feti_reaction(p, 0, BLOCK, 2, r));
+    CHECK(fabs(r[0] - 6.0) <= 1e-9 && r[1] == 0.0, "the glue holds the block with %g %g", r[0], r[1]);
+    OK(feti_reaction(p, FETI_EQUALITY, BLOCK, 2, r));
+    CHECK(r[0] == 0.0 && r[1] == 0.0, "rows that are not there hold the block with %g %g", r[0], r[1]);
+    OK(feti_counts(p, NULL, NULL, &rows, &equalities));
+    CHECK(rows == 0 && equalities == 0, "%lld and %lld rows", (long long)rows, (long long)equalities);
+    OK(feti_check(p, 3, u, 0, NULL, 0, NULL, &found));
+    CHECK(found.passed == 1, "the answer by hand is refused: %g", found.worst);
+    u[0] = -3.1;
+    OK(feti_check(p, 3, u, 0, NULL, 0, NULL, &found));
+    CHECK(found.passed == 0 && found.equality > found.limit && found.equality_row == -1, "copies apart: %g, row %lld",
+          found.equality, (long long)found.equality_row);
+    EXPECT(FETI_STATE, feti_dual_rhs(p, 0, r));
+    check_last_error(p, &(expectation){ FETI_STATE, ANY, ANY, ANY, ANY, "feti_dual_rhs", "glued" });
+    OK(feti_problem_destroy(&p));
+}
+
+/* Both copies held by rows of the host at different places: rows and number are named, as numbers of the host. */
+static void held_against_the_glue(void)
+{
+    static const int32_t block_number[2] = { 4, 2 }, ptr[3] = { 0, 1, 2 }, body[2] = { SPRING, BLOCK }, dof[2] = { 0, 0 };
+    const double ones[2] = { 1.0, 1.0 }, apart[2] = { -1.0, -2.0 };
+    feti_error_detail detail = { .struct_size = sizeof detail };
+    int64_t count = 0, row[4] = { -1, -1, -1, -1 };
+    feti_problem *p = small_problem();
+
+    OK(feti_set_i64(p, "glue", 1));
+    OK(feti_body_numbering_i32(p, SPRING, 1, SPRING_NUMBER, 0));
+    OK(feti_body_numbering_i32(p, BLOCK, 2, block_number, 0));
+    OK(feti_rows_add_i32(p, FETI_EQUALITY, 2, ptr, body, dof, ones, 0, apart, NULL));
+    EXPECT(FETI_GAPS_CONTRADICT, feti_solve(p, NULL));
+    check_last_error(p, &(expectation){ FETI_GAPS_CONTRADICT, ANY, ANY, ANY, ANY, "feti_solve", "glue of the unknowns with number 4" });
+    OK(feti_last_error_detail(&detail));
+    CHECK(detail.value == 4.0 && detail.row >= 0 && detail.row < 2, "number %g, row %lld", detail.value, (long long)detail.row);
+    OK(feti_diagnosis_rows(p, FETI_EQUALITY, 4, &count, row, NULL));
+    CHECK(count == 2 && row[0] == 0 && row[1] == 1, "%lld rows, %lld and %lld", (long long)count, (long long)row[0], (long long)row[1]);
+    OK(feti_problem_destroy(&p));
+}
+
 /* Refused numbers are named; those of before stay. */
 static void wrong_numbers(void)
 {
@@ -155,6 +218,8 @@ int main(void)
 {
     numbered();
     without_numbers();
+    glued();
+    held_against_the_glue();
     wrong_numbers();
     parts_and_facts();
     return check_result();

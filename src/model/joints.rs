@@ -1,0 +1,60 @@
+//! Unknowns of different bodies that move together because the host gave them one number (option `glue`).
+
+use std::collections::HashMap;
+
+use crate::error::{Error, Kind, Result};
+use crate::model::contents::Model;
+use crate::platform::memory::{refusal, reserved};
+
+const WHAT: &str = "unknowns with one number";
+
+/// Two unknowns that move together.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Joint {
+    /// Their number.
+    pub number: usize,
+    /// Their places among the unknowns of all bodies one after the other, ascending.
+    pub ends: [usize; 2],
+}
+
+impl Model {
+    /// One joint less for every number than unknowns have it: each with that of the body before, by bodies.
+    pub fn joints(&self) -> Result<Vec<Joint>> {
+        let numbered = self.bodies.iter().filter_map(|given| given.numbers.as_ref());
+        let count = numbered.map(Vec::len).sum::<usize>() - self.unknowns.len();
+        let (mut joints, mut last) = (reserved(count, WHAT)?, HashMap::new());
+        let bytes = count * size_of::<(usize, usize)>();
+        last.try_reserve(count).map_err(|_| refusal(bytes, WHAT))?;
+        if count == 0 {
+            return Ok(joints);
+        }
+        for (body, given) in self.bodies.iter().enumerate() {
+            for (dof, &number) in given.numbers.iter().flatten().enumerate() {
+                let place = self.offsets[body] + dof;
+                let first = self.unknowns.get(&number).map_or(place, |(p, i)| self.offsets[*p] + i);
+                if first < place {
+                    let before = last.insert(number, place).unwrap_or(first);
+                    joints.push(Joint { number, ends: [before, place] });
+                }
+            }
+        }
+        Ok(joints)
+    }
+
+    /// Values over all unknowns, where several have one number their sum at the first of them.
+    pub fn summed(&self, mut values: Vec<f64>) -> Result<Vec<f64>> {
+        for Joint { ends: [before, place], .. } in self.joints()?.into_iter().rev() {
+            values[before] += values[place];
+        }
+        Ok(values)
+    }
+
+    /// Unknowns that have one number are glued: the option stays while there are some.
+    pub(super) fn check_glue(&self, argument: &'static str) -> Result<()> {
+        if self.settings.glue == 1 || !self.shares_numbers() {
+            return Ok(());
+        }
+        let what = "option \"glue\" stays 1 while unknowns of several bodies have one number";
+        Err(Error::new(Kind::Argument(argument), what))
+    }
+}

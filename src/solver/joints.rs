@@ -1,0 +1,43 @@
+//! The forces of the glue between bodies of the host, which has no rows for them.
+
+use crate::error::Result;
+use crate::model::{Joint, Model};
+use crate::platform::memory::{copied, filled, zeros};
+
+const WHAT: &str = "forces of glue";
+
+/// Multipliers of equality rows of the host with those of the joints after them, by which the answer comes nearest to equilibrium:
+/// what loads, K u and rows leave of an unknown goes on to the next one with its number, and at the last of them it stays.
+pub fn with_glue(host: &Model, u: &[f64], lambda: &[f64], mu: &[f64]) -> Result<Vec<f64>> {
+    let (mut all, joints) = (copied(mu, WHAT)?, host.joints()?);
+    if joints.is_empty() {
+        return Ok(all);
+    }
+    let mut left = zeros(u.len(), WHAT)?;
+    for (body, given) in host.bodies.iter().enumerate() {
+        let range = host.range(body);
+        let own = &mut left[range.clone()];
+        given.body.k().map_or(Ok(()), |k| k.mul(&u[range], own))?;
+        own.iter_mut().for_each(|f| *f = -*f);
+        own.iter_mut().zip(given.body.load.iter().flatten()).for_each(|(left, f)| *left += f);
+    }
+    for (rows, forces) in [(&host.contact, lambda), (&host.equalities, mu)] {
+        let mut carried = filled(rows.len(), 0.0, WHAT)?;
+        (0..rows.len()).filter(|&i| rows.is_finite(i)).for_each(|i| carried[i] = forces[i]);
+        rows.matrix.mul_transposed_add(-1.0, &carried, &mut left);
+    }
+    for Joint { ends: [before, after], .. } in joints {
+        all.push(left[before]);
+        left[after] += left[before];
+    }
+    Ok(all)
+}
+
+/// Adds the forces of the joints on all bodies, `mu` one for each.
+pub fn add_glue(host: &Model, mu: &[f64], forces: &mut [f64]) -> Result<()> {
+    for (Joint { ends: [before, after], .. }, mu) in host.joints()?.into_iter().zip(mu) {
+        forces[before] -= mu;
+        forces[after] += mu;
+    }
+    Ok(())
+}
