@@ -27,17 +27,27 @@ impl Dual {
     /// Amplitudes with those of carried motions as the forces x of their springs have them: the forces on these bodies are in balance
     /// then whatever is left of the multiplier alpha.
     pub fn balanced(&self, x: &[f64], alpha: &[f64]) -> Vec<f64> {
-        let (mut alpha, mut row) = (alpha.to_vec(), self.coarse.rows() - self.springs);
-        for s in &self.subdomains {
-            let carried = s.modes.end - s.kplus.carried_motions();
-            for (mode, _) in s.soft_modes().filter(|(_, stiffness)| *stiffness > 0.0) {
-                if mode >= carried {
-                    alpha[mode] = x[row] / self.coarse.row(row).map(|(_, entry)| entry).sum::<f64>();
-                }
-                row += 1;
-            }
-        }
+        let mut alpha = alpha.to_vec();
+        self.carried().for_each(|(row, mode, entry)| alpha[mode] = x[row] / entry);
         alpha
+    }
+
+    /// Gives the springs of carried motions the forces that balance those of the other rows, `G x = e`.
+    pub fn load_springs(&self, e: &[f64], x: &mut [f64]) {
+        self.carried().for_each(|(row, ..)| x[row] = 0.0);
+        let mut left = e.to_vec();
+        self.coarse.mul_transposed_add(-1.0, x, &mut left);
+        self.carried().for_each(|(row, mode, entry)| x[row] = left[mode] / entry);
+    }
+
+    /// Row, mode and entry of G of the springs of carried motions.
+    fn carried(&self) -> impl Iterator<Item = (usize, usize, f64)> + '_ {
+        let springs = self.subdomains.iter().flat_map(|s| {
+            let first = s.modes.end - s.kplus.carried_motions();
+            s.soft_modes().filter(|(_, stiffness)| *stiffness > 0.0).map(move |(mode, _)| mode >= first)
+        });
+        let rows = (self.coarse.rows() - self.springs..).zip(springs).filter(|(_, carried)| *carried);
+        rows.flat_map(|(row, _)| self.coarse.row(row).map(move |(mode, entry)| (row, mode, entry)))
     }
 }
 

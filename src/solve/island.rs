@@ -71,6 +71,9 @@ fn solve_held(
     voice: &mut dyn Voice,
 ) -> Result<Solved> {
     let mut dual = scaled(case)?;
+    if start.iter().any(|x| *x != 0.0) {
+        case.ready.dual.load_springs(&dual.resultants, &mut start);
+    }
     loop {
         match interrupt::part("dual solve", || attempt(case, number, &dual, &start, stops, voice))? {
             Tried::Ended(solved) => return Ok(*solved),
