@@ -23,7 +23,7 @@ impl Random {
 
     /// One of 0..n, n at most 2^32.
     pub fn below(&mut self, n: usize) -> usize {
-        ((self.bits() >> 32) * n as u64 >> 32) as usize
+        (((self.bits() >> 32) * n as u64) >> 32) as usize
     }
 
     /// Of size 1/2 to 3/2 and either sign. Mere signs would cancel along many motions of few dofs.

@@ -38,13 +38,14 @@ fn pairs(graph: &Weighted, heaviest: i32, random: &mut Random) -> Vec<u32> {
         if partner[v] != NONE {
             continue;
         }
-        let (mut best, mut rating) = (v as u32, f64::NEG_INFINITY);
+        // The partner so far, the weight of its edge and its own.
+        let (mut best, mut edge, mut node) = (v as u32, -1, 1);
         for k in graph.range(v) {
             let u = graph.adj[k] as usize;
             if partner[u] == NONE && graph.node[v] + graph.node[u] <= heaviest {
-                let rated = f64::from(graph.edge[k]) / f64::from(graph.node[u]);
-                if rated > rating {
-                    (best, rating) = (u as u32, rated);
+                let [against, rated] = [(edge, graph.node[u]), (graph.edge[k], node)].map(product);
+                if rated > against {
+                    (best, edge, node) = (u as u32, graph.edge[k], graph.node[u]);
                 }
             }
         }
@@ -56,6 +57,10 @@ fn pairs(graph: &Weighted, heaviest: i32, random: &mut Random) -> Vec<u32> {
         pair_neighbours_of_one(graph, heaviest, &mut partner);
     }
     partner
+}
+
+fn product((a, b): (i32, i32)) -> i64 {
+    i64::from(a) * i64::from(b)
 }
 
 /// All nodes by chance, those with few neighbours before those with more: they have fewer partners to choose from.

@@ -9,8 +9,8 @@ use crate::linalg::random::Random;
 /// Nodes of the coarsest graph: an eighth of those given, within these bounds.
 const COARSEST: (usize, usize) = (40, 100);
 /// Bisections that are tried on the coarsest graph; fewer below so many nodes.
-const TRIALS: usize = 8;
-const TRIALS_OF_FEW: usize = 4;
+const TRIALS: usize = 5;
+const TRIALS_OF_FEW: usize = 3;
 const FEW: usize = 2000;
 /// Graphs of more nodes are coarsened to an eighth; from there several runs, each with pairs of its own, are tried.
 const LARGE: usize = 3000;
