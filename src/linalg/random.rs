@@ -21,6 +21,11 @@ impl Random {
         self.0
     }
 
+    /// One of 0..n, n at most 2^32.
+    pub fn below(&mut self, n: usize) -> usize {
+        (((self.bits() >> 32) * n as u64) >> 32) as usize
+    }
+
     /// Of size 1/2 to 3/2 and either sign. Mere signs would cancel along many motions of few dofs.
     fn number(&mut self) -> f64 {
         const UNIT: f64 = 1.0 / (1_u64 << 52) as f64;

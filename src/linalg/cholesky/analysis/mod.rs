@@ -1,6 +1,8 @@
 //! The symbolic analysis: order of elimination, elimination tree, pattern of L.
 
 mod blocks;
+#[cfg(any(test, not(feature = "metis")))]
+mod dissection;
 pub mod elimination;
 #[cfg(feature = "metis")]
 mod metis;

@@ -1,0 +1,172 @@
+//! Nested dissection of large graphs: a separator comes last, after the two parts that it leaves, each ordered in the same
+//! way; small parts by minimum degree.
+
+mod bisection;
+mod coarsening;
+mod leaves;
+mod multilevel;
+mod separator;
+mod weighted;
+
+use separator::{Separator, BETWEEN};
+use weighted::Weighted;
+
+use crate::error::Result;
+use crate::platform::memory::filled;
+
+const WHAT: &str = "the ordering of a body";
+/// Nodes that are not dissected.
+const LEAF: usize = 120;
+
+/// A part of the graph: its nodes, and where they begin in the order.
+struct Part {
+    graph: Weighted,
+    own: Vec<u32>,
+    begin: usize,
+}
+
+/// Nodes in the order of their elimination; the neighbours of node i, without itself, are `adj[ptr[i]..ptr[i + 1]]`. Parts
+/// that no separator divides are left to `undivided`, which takes and gives the same.
+pub fn dissect(
+    ptr: &[i32],
+    adj: &[i32],
+    undivided: impl Fn(&[i32], &[i32]) -> Result<Vec<usize>>,
+) -> Result<Vec<usize>> {
+    let nodes = ptr.len() - 1;
+    let mut order = filled(nodes, 0, WHAT)?;
+    let mut number = filled(nodes, u32::MAX, WHAT)?;
+    let whole = Part { graph: Weighted::of(ptr, adj), own: (0..nodes as u32).collect(), begin: 0 };
+    let mut parts = vec![whole];
+    while let Some(mut part) = parts.pop() {
+        let size = part.own.len();
+        if size <= LEAF {
+            leaves::minimum_degree(ptr, adj, &mut part.own, &mut number);
+        } else if let Some(found) = multilevel::separator(&part.graph).filter(divides) {
+            parts.extend(part.divided(&found.side, &mut order));
+            continue;
+        } else {
+            let (ptr, adj) = signed(&part.graph);
+            part.own = undivided(&ptr, &adj)?.into_iter().map(|v| part.own[v]).collect();
+        }
+        put(part.own.into_iter(), &mut order[part.begin..part.begin + size]);
+    }
+    Ok(order)
+}
+
+impl Part {
+    /// Both sides; what is between them is put at the end of the order of the part.
+    fn divided(self, side: &[u8], order: &mut [usize]) -> [Part; 2] {
+        let mut at = self.begin;
+        let parts = [0, 1].map(|which| {
+            let (graph, inside) = self.graph.part(side, which);
+            let begin = at;
+            at += inside.len();
+            Part { graph, own: inside.into_iter().map(|v| self.own[v as usize]).collect(), begin }
+        });
+        let between = self.own.iter().zip(side).filter(|(_, &side)| side == BETWEEN);
+        put(between.map(|(&v, _)| v), &mut order[at..self.begin + self.own.len()]);
+        parts
+    }
+}
+
+fn put(nodes: impl Iterator<Item = u32>, order: &mut [usize]) {
+    order.iter_mut().zip(nodes).for_each(|(at, v)| *at = v as usize);
+}
+
+/// No part is empty, or nearly the whole.
+fn divides(found: &Separator) -> bool {
+    let [a, b, between] = found.weight.map(i64::from);
+    a.min(b) > 0 && 20 * a.max(b) <= 19 * (a + b + between)
+}
+
+fn signed(graph: &Weighted) -> (Vec<i32>, Vec<i32>) {
+    let signed = |values: &[u32]| values.iter().map(|&value| value as i32).collect();
+    (signed(&graph.ptr), signed(&graph.adj))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A grid of so many nodes in each direction, all of an element coupled.
+    fn grid(size: [i32; 3]) -> (Vec<i32>, Vec<i32>) {
+        let [nx, ny, nz] = size;
+        let (mut ptr, mut adj) = (vec![0], Vec::new());
+        for i in 0..nx * ny * nz {
+            let at = [i % nx, i / nx % ny, i / (nx * ny)];
+            for k in (0..27).filter(|&k| k != 13) {
+                let other = [at[0] + k % 3 - 1, at[1] + k / 3 % 3 - 1, at[2] + k / 9 - 1];
+                if other.iter().zip(size).all(|(v, end)| (0..end).contains(v)) {
+                    adj.push(other[0] + nx * (other[1] + ny * other[2]));
+                }
+            }
+            ptr.push(adj.len() as i32);
+        }
+        (ptr, adj)
+    }
+
+    fn none_left(_: &[i32], _: &[i32]) -> Result<Vec<usize>> {
+        panic!("a part was not divided")
+    }
+
+    /// By hand: no fewer nodes than those of a plane divide a box in halves.
+    #[test]
+    fn separators_of_boxes_are_planes() {
+        for (size, plane) in [([20, 20, 20], 400), ([60, 11, 11], 121), ([50, 50, 2], 100)] {
+            let (ptr, adj) = grid(size);
+            let found = multilevel::separator(&Weighted::of(&ptr, &adj)).unwrap();
+            let [a, b, between] = found.weight;
+            assert!(between == plane && 5 * (a - b).abs() <= a + b, "{size:?}: {:?}", found.weight);
+        }
+    }
+
+    #[test]
+    fn nothing_on_one_side_has_a_neighbour_on_the_other() {
+        let (ptr, adj) = grid([17, 13, 12]);
+        let graph = Weighted::of(&ptr, &adj);
+        let side = multilevel::separator(&graph).unwrap().side;
+        let crosses = |v: usize| graph.around(v).any(|u| side[u] + side[v] == 1);
+        assert!(!(0..graph.count()).any(crosses));
+    }
+
+    #[test]
+    fn every_node_is_ordered_once_also_in_parts_and_around_hubs() {
+        let (ptr, adj) = grid([14, 12, 9]);
+        let n = ptr.len() as i32 - 1;
+        // the same twice, not connected
+        let twice = |values: &[i32], by: i32| -> Vec<i32> {
+            values.iter().copied().chain(values.iter().map(|value| value + by)).collect()
+        };
+        let mut both = twice(&ptr, ptr[n as usize]);
+        both.remove(n as usize);
+        // every tenth node is the hub of nine
+        let star = |i: i32| if i % 10 == 0 { i + 1..i + 10 } else { i - i % 10..i - i % 10 + 1 };
+        let stars: Vec<i32> = (0..3000).flat_map(star).collect();
+        let mut ends = vec![0];
+        (0..3000).for_each(|i| ends.push(ends[i as usize] + star(i).len() as i32));
+        for (ptr, adj) in [(both, twice(&adj, n)), (ends, stars), (ptr, adj)] {
+            let mut order = dissect(&ptr, &adj, none_left).unwrap();
+            order.sort_unstable();
+            assert!(order.into_iter().eq(0..ptr.len() - 1));
+        }
+    }
+
+    #[test]
+    fn parts_that_nothing_divides_are_left_to_the_other_order() {
+        let n = 150;
+        let ptr: Vec<i32> = (0..=n).map(|i| i * (n - 1)).collect();
+        let adj: Vec<i32> = (0..n).flat_map(|i| (0..n).filter(move |&j| j != i)).collect();
+        let backwards = |ptr: &[i32], _: &[i32]| Ok((0..ptr.len() - 1).rev().collect());
+        assert!(dissect(&ptr, &adj, backwards).unwrap().into_iter().eq((0..n as usize).rev()));
+    }
+
+    /// Nodes 0 to 2 of a path; node 0 has three neighbours more, outside.
+    #[test]
+    fn neighbours_that_come_later_count_in_the_degree() {
+        let ptr = [0, 4, 6, 7, 8, 9, 10];
+        let adj = [1, 3, 4, 5, 0, 2, 1, 0, 0, 0];
+        let (mut own, mut number) = ([0, 1, 2], [u32::MAX; 6]);
+        leaves::minimum_degree(&ptr, &adj, &mut own, &mut number);
+        assert_eq!((own, number), ([2, 1, 0], [u32::MAX; 6]));
+    }
+}

@@ -1,0 +1,53 @@
+//! A small separator of a graph, by way of coarser and coarser graphs (Karypis-Kumar (METIS)).
+
+use super::bisection::Bisection;
+use super::coarsening::{levels, Level};
+use super::separator::{Separator, BETWEEN};
+use super::weighted::Weighted;
+use crate::linalg::random::Random;
+
+/// Nodes of the coarsest graph: an eighth of those given, within these bounds.
+const COARSEST: (usize, usize) = (40, 100);
+/// Bisections that are tried on the coarsest graph; fewer below so many nodes.
+const TRIALS: usize = 5;
+const TRIALS_OF_FEW: usize = 3;
+const FEW: usize = 2000;
+/// Graphs of more nodes are coarsened to an eighth; from there several runs, each with pairs of its own, are tried.
+const LARGE: usize = 3000;
+const RUNS: usize = 4;
+
+/// The best separator that was found: a function of the graph alone.
+pub fn separator(graph: &Weighted) -> Option<Separator> {
+    let random = &mut Random::default();
+    if graph.count() < LARGE {
+        return from_the_coarsest(graph, random);
+    }
+    let levels = levels(graph, graph.count() / 8, heaviest(graph), random);
+    let coarse = levels.last().map_or(graph, |level| &level.graph);
+    let found = (0..RUNS).filter_map(|_| from_the_coarsest(coarse, random));
+    Some(refined(graph, &levels, found.min_by(|a, b| a.cost().total_cmp(&b.cost()))?))
+}
+
+/// Nodes of a coarse graph that get much heavier than the others leave it no good halves.
+fn heaviest(graph: &Weighted) -> i32 {
+    (1.5 * f64::from(graph.total()) / COARSEST.1 as f64).ceil() as i32
+}
+
+fn from_the_coarsest(graph: &Weighted, random: &mut Random) -> Option<Separator> {
+    let few = (graph.count() / 8).clamp(COARSEST.0, COARSEST.1);
+    let levels = levels(graph, few, heaviest(graph), random);
+    let coarse = levels.last().map_or(graph, |level| &level.graph);
+    let trials = if graph.count() < FEW { TRIALS_OF_FEW } else { TRIALS };
+    let most = Separator::most(coarse);
+    let found = (0..trials).map(|_| Bisection::grown(coarse, most, random)).min_by_key(|found| found.cut)?;
+    let coarsest = Separator::new(coarse, found.with_separator(BETWEEN)).improved(coarse);
+    Some(refined(graph, &levels, coarsest))
+}
+
+/// From the last level to the graph itself, improved on each.
+fn refined(graph: &Weighted, levels: &[Level], coarsest: Separator) -> Separator {
+    let finer = |k: usize| if k == 0 { graph } else { &levels[k - 1].graph };
+    (0..levels.len())
+        .rev()
+        .fold(coarsest, |found, k| found.on_finer(finer(k), &levels[k].node).improved(finer(k)))
+}

@@ -1,0 +1,208 @@
+//! Nodes between two sides of a graph, made fewer by sweeps: one side advances, node by node, over the other.
+//!
+//! A separator of a solid is no local affair: a plane that is tilted, or one layer off, becomes better only when all of it has
+//! moved. So a sweep goes one way (Karypis-Kumar (METIS), the refinement of METIS_NodeND), and on for as many moves as a
+//! whole layer takes; where both sides advance in turns, every node goes back and forth.
+
+use std::collections::BinaryHeap;
+
+use super::weighted::Weighted;
+
+/// The side of a node of the separator.
+pub const BETWEEN: u8 = 2;
+/// Sides that get heavier than half of all by this factor are not kept.
+const IMBALANCE: f64 = 1.2;
+const SWEEPS: usize = 16;
+
+pub struct Separator {
+    /// 0, 1 or `BETWEEN` for every node.
+    pub side: Vec<u8>,
+    /// Of both sides and of what is between them.
+    pub weight: [i32; 3],
+}
+
+impl Separator {
+    pub fn new(graph: &Weighted, side: Vec<u8>) -> Self {
+        let mut weight = [0; 3];
+        side.iter().zip(&graph.node).for_each(|(&side, node)| weight[side as usize] += node);
+        Self { side, weight }
+    }
+
+    /// Less is better: the weight between the sides, somewhat more where these differ.
+    pub fn cost(&self) -> f64 {
+        let [a, b, between] = self.weight.map(f64::from);
+        let difference = (a - b) / (a + b + 1.0);
+        between * (1.0 + difference * difference)
+    }
+
+    /// Of the same nodes on a finer graph.
+    pub fn on_finer(&self, finer: &Weighted, coarse: &[u32]) -> Self {
+        Self::new(finer, coarse.iter().map(|&v| self.side[v as usize]).collect())
+    }
+
+    /// What a side of `graph` may weigh.
+    pub fn most(graph: &Weighted) -> i32 {
+        (IMBALANCE * f64::from(graph.total()) / 2.0).ceil() as i32
+    }
+
+    /// Sweeps to either side in turns, until none is of use.
+    pub fn improved(self, graph: &Weighted) -> Self {
+        let between = (0..graph.count() as u32).filter(|&v| self.side[v as usize] == BETWEEN).collect();
+        let mut sweeps = Sweeps {
+            most: Self::most(graph),
+            graph,
+            between,
+            beyond: vec![0; graph.count()],
+            moved: vec![false; graph.count()],
+            queue: BinaryHeap::new(),
+            moves: Vec::new(),
+            joined: Vec::new(),
+            found: self,
+        };
+        let mut to = usize::from(sweeps.found.weight[0] > sweeps.found.weight[1]);
+        let mut in_vain = 0;
+        for _ in 0..SWEEPS {
+            in_vain = if sweeps.improves(to) { 0 } else { in_vain + 1 };
+            if in_vain == 2 {
+                break;
+            }
+            to = 1 - to;
+        }
+        sweeps.found
+    }
+}
+
+struct Sweeps<'a> {
+    graph: &'a Weighted,
+    most: i32,
+    found: Separator,
+    /// Nodes of the separator.
+    between: Vec<u32>,
+    /// Of a node of the separator, the weight of its neighbours on the side that retreats.
+    beyond: Vec<i32>,
+    moved: Vec<bool>,
+    /// Nodes of the separator by what it loses when they leave it; what is no longer true is skipped.
+    queue: BinaryHeap<(i32, u32)>,
+    /// Nodes that left the separator, with the number of those in `joined` before.
+    moves: Vec<(u32, usize)>,
+    /// Nodes that joined it.
+    joined: Vec<u32>,
+}
+
+impl Sweeps<'_> {
+    /// One sweep: side `to` advances; the best state on the way stays. False without success.
+    fn improves(&mut self, to: usize) -> bool {
+        self.queue.clear();
+        self.moves.clear();
+        self.joined.clear();
+        for k in 0..self.between.len() {
+            self.measure(self.between[k] as usize, to);
+        }
+        let layer = 2 * self.between.len() + 30;
+        let before = self.quality();
+        let (mut best, mut kept) = (before, 0);
+        while self.moves.len() <= kept + layer {
+            let Some(v) = self.next() else { break };
+            if self.found.weight[to] + self.graph.node[v] > self.most {
+                break;
+            }
+            self.advance(v, to);
+            let reached = self.quality();
+            if reached < best {
+                (best, kept) = (reached, self.moves.len());
+            }
+        }
+        self.moves.iter().for_each(|&(v, _)| self.moved[v as usize] = false);
+        self.between.extend(&self.joined);
+        self.take_back(kept, to);
+        self.between.retain(|&v| self.found.side[v as usize] == BETWEEN);
+        self.between.sort_unstable();
+        self.between.dedup();
+        best < before
+    }
+
+    /// Less is better.
+    fn quality(&self) -> (i32, f64) {
+        let [a, b, _] = self.found.weight;
+        ((a.max(b) - self.most).max(0), self.found.cost())
+    }
+
+    fn next(&mut self) -> Option<usize> {
+        while let Some((gain, v)) = self.queue.pop() {
+            let v = v as usize;
+            if self.found.side[v] == BETWEEN && !self.moved[v] && gain == self.gain(v) {
+                return Some(v);
+            }
+        }
+        None
+    }
+
+    /// What the separator loses when a node leaves it.
+    fn gain(&self, v: usize) -> i32 {
+        self.graph.node[v].wrapping_sub(self.beyond[v])
+    }
+
+    fn enqueue(&mut self, v: usize) {
+        if !self.moved[v] {
+            self.queue.push((self.gain(v), v as u32));
+        }
+    }
+
+    /// What is beyond a node of the separator, anew.
+    fn measure(&mut self, v: usize, to: usize) {
+        let (graph, retreating) = (self.graph, 1 - to as u8);
+        let neighbours = graph.around(v).filter(|&u| self.found.side[u] == retreating);
+        self.beyond[v] = neighbours.map(|u| graph.node[u]).sum();
+        self.enqueue(v);
+    }
+
+    /// A node of the separator goes to side `to`; its neighbours on the other side join the separator.
+    fn advance(&mut self, v: usize, to: usize) {
+        let (graph, retreating) = (self.graph, 1 - to);
+        let begin = self.joined.len();
+        self.moves.push((v as u32, begin));
+        self.moved[v] = true;
+        self.found.give(graph.node[v], BETWEEN as usize, to);
+        self.found.side[v] = to as u8;
+        for u in graph.around(v) {
+            if self.found.side[u] as usize == retreating {
+                self.found.side[u] = BETWEEN;
+                self.found.give(graph.node[u], retreating, BETWEEN as usize);
+                self.joined.push(u as u32);
+            }
+        }
+        for k in begin..self.joined.len() {
+            let u = self.joined[k] as usize;
+            for w in graph.around(u) {
+                if self.found.side[w] == BETWEEN {
+                    self.beyond[w] = self.beyond[w].wrapping_sub(graph.node[u]);
+                    self.enqueue(w);
+                }
+            }
+        }
+        // Nodes that have joined were not measured before: what the loop above has made of them has no meaning.
+        for k in begin..self.joined.len() {
+            self.measure(self.joined[k] as usize, to);
+        }
+    }
+
+    /// Takes all moves back but the first `kept`.
+    fn take_back(&mut self, kept: usize, to: usize) {
+        let graph = self.graph;
+        for (v, begin) in self.moves.drain(kept..).rev() {
+            self.found.side[v as usize] = BETWEEN;
+            self.found.give(graph.node[v as usize], to, BETWEEN as usize);
+            for u in self.joined.drain(begin..) {
+                self.found.side[u as usize] = 1 - to as u8;
+                self.found.give(graph.node[u as usize], BETWEEN as usize, 1 - to);
+            }
+        }
+    }
+}
+
+impl Separator {
+    fn give(&mut self, weight: i32, from: usize, to: usize) {
+        self.weight[from] -= weight;
+        self.weight[to] += weight;
+    }
+}
