@@ -4,7 +4,7 @@
 use crate::platform::threads::{parts, parts_of};
 
 /// Entries from which a sum is formed in parts: one sum waits for every addition, parts go at the speed of the memory.
-const LONG: usize = 16384;
+pub const LONG: usize = 16384;
 /// Parts of a long sum.
 const PARTS: usize = 16;
 

@@ -2,7 +2,7 @@
 //! on the present face and in the kernel of G, so that theta is minimised over their span without any product: P8 and P13 of
 //! docs/method.md.
 
-use crate::linalg::vector::{add_multiples, axpy, dot, dots, norm, norm_max, power_of_two_below};
+use crate::linalg::vector::{add_multiples, axpy, dot, dots, norm, norm_max, power_of_two_below, LONG};
 
 /// More directions than this cost more than the products they save.
 pub const MOST: usize = 100;
@@ -13,10 +13,13 @@ const ROUNDED: f64 = 1e-12;
 /// Entries of a row below this part of the largest are nothing but rounding: the row depends on others that are held.
 const ROUNDING: f64 = 1e-13;
 
+/// A direction and its image.
+type Pair = (Vec<f64>, Vec<f64>);
+
 #[derive(Default)]
 pub struct Conjugate {
     /// Pairs (p, A p), oldest first.
-    pairs: Vec<(Vec<f64>, Vec<f64>)>,
+    pairs: Vec<Pair>,
     /// sigma: the power of two below the Rayleigh quotient of the first direction, so that powers of two in A
     /// change no bit of the rest.
     curvature: f64,
@@ -25,18 +28,23 @@ pub struct Conjugate {
 impl Conjugate {
     /// `z <- z - sum p_i (A p_i)'z / sigma`
     pub fn make_conjugate(&self, z: &mut [f64]) {
-        let shares = self.shares(&self.images(), z, -1.0);
-        add_multiples(&shares, &self.directions(), z);
+        for pairs in self.groups(z.len()) {
+            let shares = self.shares(&images(pairs), z, -1.0);
+            add_multiples(&shares, &directions(pairs), z);
+        }
     }
 
     /// Takes (p, A p) in; a part that is not conjugate to the others is removed.
     pub fn push(&mut self, p: &[f64], image: &[f64]) {
         let (mut p, mut image) = (p.to_vec(), image.to_vec());
         let whole = dot(&p, &image);
-        let shares = self.shares(&self.directions(), &image, -1.0);
-        if norm_max(&shares) > ROUNDED * (whole / self.curvature).sqrt() {
-            add_multiples(&shares, &self.directions(), &mut p);
-            add_multiples(&shares, &self.images(), &mut image);
+        for pairs in self.groups(p.len()) {
+            let shares = self.shares(&directions(pairs), &image, -1.0);
+            let rounded = ROUNDED * (whole / self.curvature).sqrt();
+            if p.len() < LONG || norm_max(&shares) > rounded {
+                add_multiples(&shares, &directions(pairs), &mut p);
+                add_multiples(&shares, &images(pairs), &mut image);
+            }
         }
         let curvature = dot(&p, &image);
         if whole > 0.0 && curvature > NEW * whole {
@@ -55,23 +63,21 @@ impl Conjugate {
     /// `d = sum p_i p_i'g / sigma` and A d: `x - d` has the least theta on x + span. `None` without directions.
     pub fn minimiser(&self, g: &[f64]) -> Option<(Vec<f64>, Vec<f64>)> {
         let (mut d, mut image) = (vec![0.0; g.len()], vec![0.0; g.len()]);
-        let shares = self.shares(&self.directions(), g, 1.0);
-        add_multiples(&shares, &self.directions(), &mut d);
-        add_multiples(&shares, &self.images(), &mut image);
+        let shares = self.shares(&directions(&self.pairs), g, 1.0);
+        add_multiples(&shares, &directions(&self.pairs), &mut d);
+        add_multiples(&shares, &images(&self.pairs), &mut image);
         (!self.pairs.is_empty()).then_some((d, image))
+    }
+
+    /// Directions that are taken from a vector at a time: all from a long one, which is read once for them; one after the other from a
+    /// short one, where rounding of the one before is seen by the next.
+    fn groups(&self, length: usize) -> std::slice::Chunks<'_, Pair> {
+        self.pairs.chunks(if length < LONG { 1 } else { MOST })
     }
 
     /// `a v_i'z / sigma`
     fn shares(&self, v: &[&[f64]], z: &[f64], a: f64) -> Vec<f64> {
         dots(v, z).iter().map(|share| a * share / self.curvature).collect()
-    }
-
-    fn directions(&self) -> Vec<&[f64]> {
-        self.pairs.iter().map(|(p, _)| &p[..]).collect()
-    }
-
-    fn images(&self) -> Vec<&[f64]> {
-        self.pairs.iter().map(|(_, image)| &image[..]).collect()
     }
 
     pub fn is_empty(&self) -> bool {
@@ -107,6 +113,14 @@ impl Conjugate {
         self.pairs.pop();
         self.pairs.iter_mut().for_each(|(p, _)| p[i] = 0.0);
     }
+}
+
+fn directions(pairs: &[Pair]) -> Vec<&[f64]> {
+    pairs.iter().map(|(p, _)| &p[..]).collect()
+}
+
+fn images(pairs: &[Pair]) -> Vec<&[f64]> {
+    pairs.iter().map(|(_, image)| &image[..]).collect()
 }
 
 #[cfg(test)]
