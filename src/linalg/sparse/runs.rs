@@ -4,12 +4,13 @@
 use std::ops::Range;
 
 use crate::error::Result;
+use crate::linalg::vector::LONG;
 use crate::linalg::Csr;
 use crate::platform::memory::reserved;
 use crate::platform::threads::{parts, parts_of};
 
 /// Rows of a part of a loop at least: shorter loops are one part, in the order of the rows.
-const PART: usize = 16384;
+const PART: usize = LONG;
 /// Columns of a run at most: the motions of a body in space.
 const WIDTH: usize = 6;
 /// Parts at most: each keeps a sum over all columns of its own.
@@ -30,23 +31,16 @@ pub struct Runs {
 impl Runs {
     pub fn of(matrix: &Csr) -> Result<Self> {
         const WHAT: &str = "the coarse matrix";
-        // most rows have one run or two
-        let likely = 2 * matrix.rows() + 1;
-        let (mut ptr, mut column) = (reserved(matrix.ptr.len(), WHAT)?, reserved(likely, WHAT)?);
-        let (mut start, mut val) = (reserved(likely, WHAT)?, reserved(matrix.val.len(), WHAT)?);
+        let count = begins(matrix).count();
+        let (mut ptr, mut column) = (reserved(matrix.ptr.len(), WHAT)?, reserved(count, WHAT)?);
+        let (mut start, mut val) = (reserved(count + 1, WHAT)?, reserved(matrix.val.len(), WHAT)?);
         ptr.push(0);
-        for row in matrix.ptr.windows(2) {
-            let mut begin = row[0];
-            for at in row[0]..row[1] {
-                let goes_on = at > begin && at < begin + WIDTH && matrix.col[at] == matrix.col[at - 1] + 1;
-                if !goes_on {
-                    begin = at;
-                    column.push(matrix.col[at] as u32);
-                    start.push(at);
-                }
-            }
-            ptr.push(column.len());
+        for (row, at) in begins(matrix) {
+            ptr.resize(row + 1, column.len());
+            column.push(matrix.col[at] as u32);
+            start.push(at);
         }
+        ptr.resize(matrix.ptr.len(), column.len());
         start.push(matrix.val.len());
         val.extend_from_slice(&matrix.val);
         Ok(Self { cols: matrix.cols, ptr, column, start, val })
@@ -194,6 +188,21 @@ impl Runs {
         images.for_each(|image| sum.iter_mut().zip(image).for_each(|(sum, v)| *sum += v));
         sum
     }
+}
+
+/// The row of every run and its first entry.
+fn begins(matrix: &Csr) -> impl Iterator<Item = (usize, usize)> + '_ {
+    (0..matrix.rows()).flat_map(move |row| {
+        let (entries, mut begin) = (matrix.ptr[row]..matrix.ptr[row + 1], None);
+        entries.filter_map(move |at| {
+            let goes_on = |begin: usize| at < begin + WIDTH && matrix.col[at] == matrix.col[at - 1] + 1;
+            if begin.is_some_and(goes_on) {
+                return None;
+            }
+            begin = Some(at);
+            Some((row, at))
+        })
+    })
 }
 
 #[cfg(test)]
