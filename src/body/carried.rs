@@ -15,6 +15,7 @@ use crate::error::Result;
 use crate::linalg::dense::spectrum::symmetric_eigen;
 use crate::linalg::vector::{axpy, dot, norm};
 use crate::linalg::{Csr, Matrix, Multiple, Packed};
+use crate::platform::memory::zeros;
 
 /// Motions of which null vectors leave less of their length are null vectors.
 const DEPENDENT: f64 = 1e-6;
@@ -87,6 +88,34 @@ impl Carried {
     /// Number q of motions.
     pub fn count(&self) -> usize {
         self.c.cols
+    }
+
+    /// C~ for a K~+ near to K+, so that `K~+ - C~ C~'` is semidefinite as `K+ - C C'` is: with `L = K C`, whose `L'C = 1`,
+    /// `C~ C~' = T (L'T)^-1 T'`, `T = K~+ L`. None where K~+ is not near enough.
+    pub fn near(&self, k: &Multiple, solve: impl Fn(&mut [f64]) -> Result<()>) -> Result<Option<Self>> {
+        let mut l = Matrix::zeros(self.c.rows, self.c.cols)?;
+        (0..l.cols).for_each(|j| k.mul(self.c.col(j), l.col_mut(j)));
+        let mut t = l.clone();
+        for j in 0..t.cols {
+            solve(t.col_mut(j))?;
+        }
+        let (values, turn) = symmetric_eigen(&symmetric(t.cols, |a, b| dot(l.col(a), t.col(b)))?)?;
+        if values.iter().any(|value| value.is_nan() || *value < 0.5) {
+            return Ok(None);
+        }
+        let all: Vec<usize> = (0..t.rows).collect();
+        t.turn_rows(&all, &turn);
+        for (j, value) in values.iter().enumerate() {
+            t.col_mut(j).iter_mut().for_each(|t| *t /= value.sqrt());
+        }
+        Ok(Some(Self { c: t }))
+    }
+
+    /// `C C'b`
+    pub fn motions_under(&self, load: &[f64]) -> Result<Vec<f64>> {
+        let mut motions = zeros(load.len(), "a displacement")?;
+        self.c.mul_add(1.0, &self.c.mul_transposed(load), &mut motions);
+        Ok(motions)
     }
 
     /// `x <- K+ x - C C'x`, by solutions with K+.
@@ -171,6 +200,30 @@ mod tests {
     fn made(k: &Multiple, null_space: Matrix) -> GeneralizedInverse {
         let input = NullSpaceInput { vectors: null_space, modes: Modes::Exact };
         GeneralizedInverse::plan(k.clone(), &input, 1e-8).unwrap().execute().unwrap().inverse
+    }
+
+    /// `L'(K~+ - C~ C~')L = 0` as it is for K+, whatever the compliance L'K+ L; else the dual operator might not be semidefinite.
+    #[test]
+    fn a_rounded_k_plus_has_no_force_against_the_motions_that_are_carried() {
+        let (n, k) = (20, chains(20, [0.002, 0.0]));
+        let inverse = made(&k, rigid(n, &[1])).with_carried(&k, &rigid(n, &[0, 1])).unwrap();
+        let exact = inverse.clone();
+        let inverse = inverse.rounded(&k).unwrap();
+        assert!(inverse.is_rounded());
+        let l: Vec<f64> = (0..2 * n).map(|i| if i < n { k.metric(i, 1.0) } else { 0.0 }).collect();
+        let (mut own, mut near, mut refined) = (l.clone(), l.clone(), l.clone());
+        exact.factor.solve(&mut own).unwrap();
+        inverse.approximate_in_place(&mut near).unwrap();
+        inverse.apply_in_place(&mut refined).unwrap();
+        let compliance = dot(&l, &own);
+        assert!(dot(&l, &near).abs() < 1e-13 * compliance, "{:e} of {compliance:e}", dot(&l, &near));
+        assert!(dot(&l, &refined).abs() < 1e-13 * compliance);
+        let mut load: Vec<f64> = (0..2 * n).map(|i| (i as f64).cos()).collect();
+        let mut expected = load.clone();
+        inverse.apply_in_place(&mut load).unwrap();
+        exact.apply_in_place(&mut expected).unwrap();
+        axpy(-1.0, &expected, &mut load);
+        assert!(norm(&load) < 1e-12 * norm(&expected), "{:e}", norm(&load) / norm(&expected));
     }
 
     /// `u = K_c+ f + R a` with `S a = R'f` solves K u = f; the first chain is held, the second floats.

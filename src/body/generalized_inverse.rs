@@ -6,14 +6,14 @@ use std::fmt;
 use std::sync::Arc;
 
 use crate::body::carried::{self, Carried, Motions};
-use crate::body::fixing::hold_as_well;
 use crate::body::null_space::{one_column_each, ROUNDING as KNOWN};
-use crate::body::probe::{known_to, probe, Factor};
+use crate::body::probe::{known_to, Factor};
+use crate::body::rounded::Rounded;
 use crate::body::soft::{known_to_entries, soft_motions, Apart};
 use crate::body::spectrum::Doubt;
 use crate::error::Result;
 use crate::linalg::cholesky::{inverse_columns, inverse_form};
-use crate::linalg::{Analysis, Cholesky, Csr, Matrix, Multiple, Packed};
+use crate::linalg::{Analysis, Csr, Matrix, Multiple, Packed};
 
 #[derive(Clone)]
 pub struct GeneralizedInverse {
@@ -39,6 +39,8 @@ pub struct GeneralizedInverse {
     pub(super) factor: Factor,
     /// What is taken from K+ for the motions that are carried, the last ones.
     pub(super) carried: Option<Arc<Carried>>,
+    /// The same for K~+ of a rounded factor.
+    pub(super) near: Option<Arc<Carried>>,
 }
 
 /// `K_p+` of a body and what it took.
@@ -50,25 +52,6 @@ pub struct Factorised {
     pub further_analyses: usize,
     /// Numeric factorisations, also those that missed a motion of the null space.
     pub factorisations: usize,
-}
-
-/// The null space is known before the factorisation.
-pub struct Known {
-    pub(super) k: Multiple,
-    pub(super) null_space: Matrix,
-    pub(super) error: f64,
-    pub(super) fixing: Vec<usize>,
-    /// The fixing dofs are those of the host.
-    pub(super) given: bool,
-    /// K may resist or drive the vectors, which need not be exact.
-    pub(super) soft: bool,
-    /// Rigid motions that the coarse problem gets whether K resists them or not.
-    pub(super) rigid: Option<Matrix>,
-    pub(super) symbolic: Option<Arc<Symbolic>>,
-    /// What rounding of the entries resists of it.
-    pub(super) doubt: Option<Doubt>,
-    /// Where it may lack a vector.
-    pub(super) retry: Option<Retry>,
 }
 
 /// Rigid motions that do not all fit K.
@@ -85,13 +68,6 @@ impl fmt::Display for Misfit {
         let Self { fit, of, next } = self;
         write!(out, "{fit} of {of} rigid motions of these coordinates fit K, the next leaves |K R| = {next:.1e} |D||R|")
     }
-}
-
-/// How the null space is sought in K where K turns out to have more null vectors than rigid motions that fit.
-pub(super) struct Retry {
-    pub misfit: Option<Misfit>,
-    pub tolerance: f64,
-    pub fixing: Option<Vec<usize>>,
 }
 
 /// The symbolic side of a factorisation, done once for all bodies and all values of one pattern: what the analysis of a body
@@ -120,10 +96,63 @@ impl GeneralizedInverse {
 
     /// `x <- K+ x`
     pub fn apply_in_place(&self, x: &mut [f64]) -> Result<()> {
-        match &self.carried {
-            Some(carried) => carried.apply_in_place(x, |x| self.factor.solve(x)),
-            None => self.factor.solve(x),
+        match (&self.carried, &self.near, &self.factor) {
+            (Some(carried), Some(near), Factor::Rounded(rounded)) => {
+                // the motions that are carried, which K may hardly resist, are never made and taken back
+                let motions = carried.motions_under(x)?;
+                rounded.solve_without(&motions, x, |x| near.apply_in_place(x, |x| rounded.approximate(x)))
+            }
+            (Some(carried), ..) => carried.apply_in_place(x, |x| self.factor.solve(x)),
+            (None, ..) => self.factor.solve(x),
         }
+    }
+
+    /// `x <- K~+ x` by a rounded factor without corrections, else `K+ x`.
+    pub fn approximate_in_place(&self, x: &mut [f64]) -> Result<()> {
+        match &self.near {
+            Some(carried) => carried.apply_in_place(x, |x| self.factor.approximate(x)),
+            None if self.carried.is_some() => self.apply_in_place(x),
+            None => self.factor.approximate(x),
+        }
+    }
+
+    /// The factor is in single precision, and solutions are refined.
+    pub fn is_rounded(&self) -> bool {
+        matches!(&self.factor, Factor::Rounded(_))
+    }
+
+    /// Bytes that rounding has spared.
+    pub fn bytes_saved(&self) -> usize {
+        match &self.factor {
+            Factor::Rounded(rounded) => rounded.factor.value_bytes(),
+            Factor::Own(_) | Factor::Host(_) => 0,
+        }
+    }
+
+    /// With its factor rounded to single precision, where K allows it.
+    pub fn rounded(mut self, k: &Multiple) -> Result<Self> {
+        let rounded = match &self.factor {
+            Factor::Own(factor) => Rounded::of(factor, k, &self.fixing, self.softness)?,
+            Factor::Rounded(_) | Factor::Host(_) => None,
+        };
+        if let Some(rounded) = rounded {
+            let own = std::mem::replace(&mut self.factor, Factor::Rounded(Arc::new(rounded)));
+            self.find_near(k)?;
+            if self.carried.is_some() && self.near.is_none() {
+                self.factor = own;
+            }
+        }
+        Ok(self)
+    }
+
+    /// What K~+ has to do with the motions that are carried.
+    pub(super) fn find_near(&mut self, k: &Multiple) -> Result<()> {
+        let near = |carried: &Arc<Carried>| carried.near(k, |x| self.factor.approximate(x));
+        self.near = match &self.carried {
+            Some(carried) if self.is_rounded() => near(carried)?.map(Arc::new),
+            _ => None,
+        };
+        Ok(())
     }
 
     /// K resists or drives some motion of the null space.
@@ -150,6 +179,7 @@ impl GeneralizedInverse {
     pub fn entries(&self) -> usize {
         match &self.factor {
             Factor::Own(factor) => factor.analysis.entries(),
+            Factor::Rounded(rounded) => rounded.factor.analysis.entries(),
             Factor::Host(_) => 0,
         }
     }
@@ -163,6 +193,7 @@ impl GeneralizedInverse {
     pub fn factor_address(&self) -> usize {
         match &self.factor {
             Factor::Own(factor) => Arc::as_ptr(factor) as usize,
+            Factor::Rounded(rounded) => Arc::as_ptr(rounded) as usize,
             Factor::Host(host) => Arc::as_ptr(&host.operator) as usize,
         }
     }
@@ -171,6 +202,7 @@ impl GeneralizedInverse {
     pub fn inverse_columns(&self, rows: &Csr, which: &[usize]) -> Result<Matrix> {
         let mut columns = match &self.factor {
             Factor::Own(factor) => inverse_columns(factor, rows, which)?,
+            Factor::Rounded(rounded) => rounded.inverse_columns(rows, which)?,
             Factor::Host(host) => host.inverse_columns(rows, which)?,
         };
         self.carried.iter().try_for_each(|carried| carried.take_from_columns(rows, which, &mut columns))?;
@@ -181,6 +213,7 @@ impl GeneralizedInverse {
     pub fn inverse_form(&self, rows: &Csr) -> Result<Packed> {
         let mut form = match &self.factor {
             Factor::Own(factor) => inverse_form(factor, rows)?,
+            Factor::Rounded(rounded) => rounded.inverse_form(rows)?,
             Factor::Host(host) => host.inverse_form(rows)?,
         };
         self.carried.iter().try_for_each(|carried| carried.take_from_form(rows, &mut form))?;
@@ -229,70 +262,6 @@ impl GeneralizedInverse {
             self.error = known_to(&self.factor, k, &self.null_space, &[(&dofs, self.null_space.cols)])?;
         }
         Ok(self)
-    }
-}
-
-impl Known {
-    /// `given`: the fixing dofs are those of the host.
-    pub(super) fn of(k: Multiple, null_space: Matrix, error: f64, fixing: Vec<usize>, given: bool) -> Self {
-        let (soft, rigid, symbolic, doubt, retry) = (false, None, None, None, None);
-        Self { k, null_space, error, fixing, given, soft, rigid, symbolic, doubt, retry }
-    }
-
-    /// Dofs chosen for other values hold this body, too, unless much worse than its own would.
-    pub(super) fn follow(&mut self, dofs: &[usize]) -> Result<bool> {
-        let sorted = |dofs: &[usize]| {
-            let mut dofs = dofs.to_vec();
-            dofs.sort_unstable();
-            dofs
-        };
-        let same = sorted(dofs) == sorted(&self.fixing);
-        if !same && (self.given || !hold_as_well(&self.null_space, &self.k.roots()?, dofs, &self.fixing)?) {
-            return Ok(false);
-        }
-        self.fixing = dofs.to_vec();
-        Ok(true)
-    }
-
-    /// (14): F is K without the rows and columns of the fixing dofs.
-    pub(super) fn analyse(&self) -> Result<Arc<Analysis>> {
-        let mut held = vec![false; self.k.order()];
-        self.fixing.iter().for_each(|&dof| held[dof] = true);
-        Ok(Arc::new(Analysis::new(&self.k.matrix, &held)?))
-    }
-
-    /// Factorises F of (14) and probes; refuses a K that is indefinite, against (4), or more singular than its null
-    /// space says. Soft motions are given other dofs to follow, or more, where K asks for them.
-    pub fn execute(mut self) -> Result<Factorised> {
-        let most = self.most_motions();
-        let (symbolic, factor, mut further) = self.factorised(most)?;
-        let (mut symbolic, mut inverse) = (symbolic, self.made(factor)?);
-        if let Some(better) = self.better(&inverse)? {
-            self.hold(inverse.null_space, better)?;
-            let (other, factor, more) = self.factorised(most)?;
-            (symbolic, inverse) = (other, self.made(factor)?);
-            further += 1 + more;
-        }
-        Ok(Factorised { inverse, symbolic, further_analyses: further, factorisations: 1 + further })
-    }
-
-    fn made(&self, factor: Cholesky) -> Result<GeneralizedInverse> {
-        let factor = Factor::Own(Arc::new(factor));
-        let softness = probe(&factor, &self.k, &self.fixing, self.null_space.cols)?;
-        let inverse = GeneralizedInverse {
-            null_space: self.null_space.clone(),
-            stiffness: Vec::new(),
-            rounding: KNOWN,
-            error: self.error,
-            fixing: self.fixing.clone(),
-            gap: None,
-            softness,
-            doubts: self.doubt.into_iter().collect(),
-            misfit: None,
-            factor,
-            carried: None,
-        };
-        inverse.judged_by(&self.k, self.soft, self.rigid.as_ref())
     }
 }
 

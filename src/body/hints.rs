@@ -5,7 +5,8 @@
 
 use crate::body::digits::Digits;
 use crate::body::fixing::{fixing_dofs, given_dofs};
-use crate::body::generalized_inverse::{GeneralizedInverse, Known, Misfit, Retry};
+use crate::body::generalized_inverse::{GeneralizedInverse, Misfit};
+use crate::body::known::{Known, Retry};
 use crate::body::null_space::{
     kernel_by_parts, one_column_each, verified_by_parts, FreePart, KernelByParts, Verified, CANDIDATE,
     ROUNDING,

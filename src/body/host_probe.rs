@@ -39,6 +39,7 @@ impl GeneralizedInverse {
             misfit: None,
             factor: Factor::Host(k),
             carried: None,
+            near: None,
         })
     }
 }

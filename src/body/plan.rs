@@ -3,7 +3,8 @@
 use std::sync::Arc;
 
 use crate::body::fixing::{fixing_dofs, given_dofs};
-use crate::body::generalized_inverse::{Factorised, GeneralizedInverse, Known, Layout, Retry, Symbolic};
+use crate::body::generalized_inverse::{Factorised, GeneralizedInverse, Layout, Symbolic};
+use crate::body::known::{Known, Retry};
 use crate::body::null_space::{
     one_column_each, verified, Modes, NullSpaceInput, Verified, ROUNDING as KNOWN,
 };
@@ -132,7 +133,9 @@ impl Plan {
                 let (carried, other) = (None, other.clone());
                 let own =
                     GeneralizedInverse { null_space, stiffness, rounding, error, doubts, carried, ..other };
-                own.judged_by(&k, soft, rigid.as_ref())
+                let mut own = own.judged_by(&k, soft, rigid.as_ref())?;
+                own.find_near(&k)?;
+                Ok(own)
             }
             Self::Known(_) | Self::Search(_) => Ok(other.clone()),
         }

@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use crate::body::host::HostMultiple;
 use crate::body::null_space::{largest, overflow, ROUNDING as KNOWN};
+use crate::body::rounded::Rounded;
 use crate::error::{Error, Kind, Result};
 use crate::linalg::random::Random;
 use crate::linalg::vector::weighted_norm;
@@ -31,6 +32,7 @@ pub(super) const MOST_ROUNDING: f64 = 1e-9;
 pub(super) enum Factor {
     /// Of K without the dofs held; bodies with the same matrix and the same dofs held share it.
     Own(Arc<Cholesky>),
+    Rounded(Arc<Rounded>),
     /// Known by its products.
     Host(HostMultiple),
 }
@@ -40,7 +42,16 @@ impl Factor {
     pub fn solve(&self, x: &mut [f64]) -> Result<()> {
         match self {
             Self::Own(factor) => factor.solve(x),
+            Self::Rounded(rounded) => rounded.solve(x),
             Self::Host(host) => host.solve_in_place(x),
+        }
+    }
+
+    /// The same, but for rounding of the factor.
+    pub fn approximate(&self, x: &mut [f64]) -> Result<()> {
+        match self {
+            Self::Rounded(rounded) => rounded.approximate(x),
+            Self::Own(_) | Self::Host(_) => self.solve(x),
         }
     }
 }

@@ -311,6 +311,7 @@ impl Search {
             doubts: soft.iter().filter_map(|part| part.doubt).collect(),
             factor,
             carried: None,
+            near: None,
         })
     }
 

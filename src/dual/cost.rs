@@ -3,7 +3,7 @@
 //!
 //! ```text
 //! explicit:  4 m^2      F_p packed, after an assembly of A operations, RATE of them in the time of a byte
-//! implicit:  16 l       L_p twice; 10 l where the cache keeps it for the second time
+//! implicit:  16 l       L_p twice; 10 l where the cache keeps it for the second time, half of both in single precision
 //! A = s (2 m l + n m^2 / 2)        Y = L^-1 P B', then Y'Y; a supernode sees the share s = min(1, REACH m / n^2/3) of m
 //! ```
 //!
@@ -30,6 +30,10 @@ pub struct Size {
     pub unknowns: usize,
     /// Entries of the factor; 0 where the host has it.
     pub entries: usize,
+    /// Its entries are going to be rounded to single precision, unless the operator is assembled.
+    pub single: bool,
+    /// They have been.
+    pub rounded: bool,
 }
 
 impl Size {
@@ -64,8 +68,11 @@ impl Size {
         if self.entries == 0 {
             return false;
         }
+        if self.rounded {
+            return true;
+        }
         let read = |multiplications: usize| (size_of::<f64>() * multiplications) as f64;
-        let factor = read(self.entries);
+        let factor = read(self.entries) * if self.single { 0.5 } else { 1.0 };
         let again = if factor <= CACHE { AGAIN } else { 1.0 };
         let (explicit, implicit) = (0.5 * read(self.work(false)), (1.0 + again) * factor);
         self.assembly() / RATE + PRODUCTS * explicit > PRODUCTS * implicit
@@ -101,19 +108,19 @@ mod tests {
 
     /// A cube of 20000 unknowns with so many rows.
     fn body(rows: usize) -> Size {
-        Size { rows, unknowns: 20_000, entries: 7_000_000 }
+        Size { rows, unknowns: 20_000, entries: 7_000_000, ..Size::default() }
     }
 
     #[test]
     fn one_face_is_assembled_and_all_faces_of_a_small_cube_are_not() {
-        let small = Size { rows: 1116, unknowns: 2187, entries: 507_000 };
+        let small = Size { rows: 1116, unknowns: 2187, entries: 507_000, ..Size::default() };
         assert_eq!(implicit_bodies(&[body(0), body(361), small], None), [false, false, true]);
     }
 
     /// Blocks of rows: `A = s (2 m l + n m^2 / 2)` with s = min(1, 0.4 m / n^(2/3)).
     #[test]
     fn the_work_of_the_assembly_is_the_one_of_the_model() {
-        let size = Size { rows: 10, unknowns: 1000, entries: 2000 };
+        let size = Size { rows: 10, unknowns: 1000, entries: 2000, ..Size::default() };
         assert!((size.assembly() - 0.04 * (40_000.0 + 50_000.0)).abs() < 1e-9);
     }
 
@@ -131,7 +138,7 @@ mod tests {
     /// K+ of the host: no entries are known.
     #[test]
     fn an_operator_of_the_host_is_assembled_as_long_as_there_is_room() {
-        let host = Size { rows: 5000, unknowns: 20_000, entries: 0 };
+        let host = Size { rows: 5000, unknowns: 20_000, ..Size::default() };
         let explicit = all_bytes(&[host], &[false]);
         assert_eq!(implicit_bodies(&[host], None), [false]);
         assert_eq!(implicit_bodies(&[host], Some(explicit)), [false]);

@@ -18,6 +18,7 @@ mod springs;
 
 pub use cost::{all_bytes, implicit_bodies, Size};
 pub use coupling::dependent_rows;
+pub use operator::Accuracy;
 pub use preconditioner::{constrained, Boundary, Preconditioner};
 pub use reuse::{ColumnCounts, Kept};
 
@@ -213,7 +214,7 @@ impl Dual {
     }
 
     /// `sum_p |B_p u_p|`, row by row: how far the bodies move along the rows at (x, alpha), by
-    /// `B_p u_p = B_p K_p+ f_p - F_p x + G_p'alpha`. The same for every choice of K+.
+    /// `B_p u_p = B_p K_p+ f_p - F_p x + G_p'alpha`. The same for every choice of K+, and known as the factors are.
     pub fn distances(
         &self,
         moved: &[Vec<f64>],
@@ -222,7 +223,8 @@ impl Dual {
         in_parallel: &InParallel<Vec<f64>>,
     ) -> Result<Vec<f64>> {
         tally::costly();
-        let images = in_parallel(self.subdomains.len(), &|p| self.subdomains[p].product(x))?;
+        let images =
+            in_parallel(self.subdomains.len(), &|p| self.subdomains[p].product(x, Accuracy::OfFactors))?;
         let mut distances = vec![0.0; x.len()];
         for ((s, moved), image) in self.subdomains.iter().zip(moved).zip(&images) {
             for ((&i, moved), image) in s.rows.iter().zip(moved).zip(image) {

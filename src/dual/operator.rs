@@ -10,9 +10,17 @@ use crate::platform::tally;
 
 const WHAT: &str = "a product with the dual operator";
 
+/// Of products with F.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Accuracy {
+    Full,
+    /// That of the factors, which may be rounded.
+    OfFactors,
+}
+
 impl Subdomain {
     /// `F_p x`, x over all rows of B, the product over those of the body.
-    pub(super) fn product(&self, x: &[f64]) -> Result<Vec<f64>> {
+    pub(super) fn product(&self, x: &[f64], by: Accuracy) -> Result<Vec<f64>> {
         if let Some(explicit) = &self.operator {
             let local = self.multiples.gather(&self.rows, x);
             let mut image = vec![0.0; local.len()];
@@ -22,7 +30,10 @@ impl Subdomain {
         let local: Vec<f64> = self.rows.iter().map(|&i| x[i]).collect();
         let mut moved = zeros(self.range.len(), WHAT)?;
         self.matrix.mul_transposed_add(1.0, &local, &mut moved);
-        self.kplus.apply_in_place(&mut moved)?;
+        match by {
+            Accuracy::Full => self.kplus.apply_in_place(&mut moved)?,
+            Accuracy::OfFactors => self.kplus.approximate_in_place(&mut moved)?,
+        }
         let mut image = vec![0.0; local.len()];
         self.matrix.mul(&moved, &mut image);
         image.iter_mut().for_each(|v| *v *= self.by);
@@ -33,9 +44,15 @@ impl Subdomain {
 impl Dual {
     /// The operator of (12)-(13): `y = F x = C x + sum_p B_p K_p+ B_p' x`. The products of the bodies run in any order,
     /// their sum is formed body after body. An error leaves y as it was.
-    pub fn product(&self, x: &[f64], y: &mut [f64], in_parallel: &InParallel<Vec<f64>>) -> Result<()> {
+    pub fn product(
+        &self,
+        x: &[f64],
+        y: &mut [f64],
+        by: Accuracy,
+        in_parallel: &InParallel<Vec<f64>>,
+    ) -> Result<()> {
         tally::costly();
-        let images = in_parallel(self.subdomains.len(), &|p| self.subdomains[p].product(x))?;
+        let images = in_parallel(self.subdomains.len(), &|p| self.subdomains[p].product(x, by))?;
         y.iter_mut().zip(x).zip(&self.compliance).for_each(|((y, x), c)| *y = c * x);
         for (s, image) in self.subdomains.iter().zip(&images) {
             s.rows.iter().zip(image).for_each(|(&i, v)| y[i] += v);
@@ -82,7 +99,15 @@ impl Operator for Dual {
     }
 
     fn try_apply(&self, x: &[f64], y: &mut [f64]) -> Result<()> {
-        self.product(x, y, &|count, task| (0..count).map(task).collect())
+        self.product(x, y, Accuracy::Full, &|count, task| (0..count).map(task).collect())
+    }
+
+    fn approximate(&self, x: &[f64], y: &mut [f64]) -> Result<()> {
+        self.product(x, y, Accuracy::OfFactors, &|count, task| (0..count).map(task).collect())
+    }
+
+    fn has_approximation(&self) -> bool {
+        self.subdomains.iter().any(|s| s.operator.is_none() && s.kplus.is_rounded())
     }
 
     fn bytes_kept(&self) -> usize {

@@ -43,6 +43,14 @@ pub trait Operator: Sync {
         self.apply(x, y);
         Ok(())
     }
+    /// A cheaper product with an operator near to A, symmetric and as definite: that with A itself where there is none.
+    fn approximate(&self, x: &[f64], y: &mut [f64]) -> Result<()> {
+        self.try_apply(x, y)
+    }
+    /// There is one.
+    fn has_approximation(&self) -> bool {
+        false
+    }
     /// Bytes of its entries; 0 for an operator that keeps none.
     fn bytes_kept(&self) -> usize {
         0

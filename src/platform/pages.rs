@@ -15,9 +15,15 @@ const SMALL: usize = 512 << 10;
 /// Less than that is not given back before an array is dropped.
 const FEW: usize = 256 << 10;
 
-/// An array of doubles.
-pub struct Pages {
-    start: NonNull<f64>,
+/// A number of which all bits zero are 0.
+pub trait Number: Copy + Send + Sync + 'static {}
+
+impl Number for f64 {}
+impl Number for f32 {}
+
+/// An array of numbers, doubles where nothing else is said.
+pub struct Pages<T: Number = f64> {
+    start: NonNull<T>,
     len: usize,
     /// Bytes of the pages, 0 where the allocator gave the array.
     mapped: usize,
@@ -25,23 +31,23 @@ pub struct Pages {
     layout: Layout,
 }
 
-// SAFETY: it owns its doubles as a `Vec` does.
-unsafe impl Send for Pages {}
-// SAFETY: it owns its doubles as a `Vec` does.
-unsafe impl Sync for Pages {}
+// SAFETY: it owns its numbers as a `Vec` does.
+unsafe impl<T: Number> Send for Pages<T> {}
+// SAFETY: it owns its numbers as a `Vec` does.
+unsafe impl<T: Number> Sync for Pages<T> {}
 
-impl Pages {
+impl<T: Number> Pages<T> {
     /// `len` zeros, or `Kind::Memory` naming `what` they were for.
     pub fn zeros(len: usize, what: &str) -> Result<Self> {
-        let bytes = len.saturating_mul(size_of::<f64>());
+        let bytes = len.saturating_mul(size_of::<T>());
         let refused = || refusal(bytes, what);
-        let layout = Layout::array::<f64>(len).map_err(|_| refused())?;
+        let layout = Layout::array::<T>(len).map_err(|_| refused())?;
         let apart = bytes >= SMALL && cfg!(target_os = "linux");
         let mapped = if apart { bytes.checked_next_multiple_of(PAGE).ok_or_else(refused)? } else { 0 };
         let start = match bytes {
             0 => NonNull::dangling(),
-            _ if apart => map(mapped, true).ok_or_else(refused)?,
-            // SAFETY: there are more bytes than none. All bits zero is the double 0.
+            _ if apart => map(mapped, true).ok_or_else(refused)?.cast(),
+            // SAFETY: there are more bytes than none. All bits zero is the number 0.
             _ => NonNull::new(unsafe { alloc_zeroed(layout) }.cast()).ok_or_else(refused)?,
         };
         let pages = Self { start, len, mapped, layout };
@@ -54,36 +60,36 @@ impl Pages {
     /// Keeps the first `len` values; pages that they do not need go back to the system, where they are many.
     pub fn truncate(&mut self, len: usize) {
         self.len = len.min(self.len);
-        let kept = (self.len * size_of::<f64>()).next_multiple_of(PAGE).max(PAGE);
+        let kept = (self.len * size_of::<T>()).next_multiple_of(PAGE).max(PAGE);
         if kept + FEW <= self.mapped {
             // SAFETY: whole pages of this array behind those that are kept.
-            unsafe { unmap(self.start.byte_add(kept), self.mapped - kept) };
+            unsafe { unmap(self.start.cast::<f64>().byte_add(kept), self.mapped - kept) };
             self.mapped = kept;
         }
     }
 }
 
-impl Deref for Pages {
-    type Target = [f64];
+impl<T: Number> Deref for Pages<T> {
+    type Target = [T];
 
-    fn deref(&self) -> &[f64] {
-        // SAFETY: `len` doubles that belong to this array; all bits of a fresh page are zero, which is the double 0.
+    fn deref(&self) -> &[T] {
+        // SAFETY: `len` numbers that belong to this array; all bits of a fresh page are zero, which is the number 0.
         unsafe { from_raw_parts(self.start.as_ptr(), self.len) }
     }
 }
 
-impl DerefMut for Pages {
-    fn deref_mut(&mut self) -> &mut [f64] {
+impl<T: Number> DerefMut for Pages<T> {
+    fn deref_mut(&mut self) -> &mut [T] {
         // SAFETY: as for `deref`, and nobody else sees them.
         unsafe { from_raw_parts_mut(self.start.as_ptr(), self.len) }
     }
 }
 
-impl Drop for Pages {
+impl<T: Number> Drop for Pages<T> {
     fn drop(&mut self) {
         if self.mapped > 0 {
             // SAFETY: the pages of this array, mapped by `map`.
-            unsafe { unmap(self.start, self.mapped) };
+            unsafe { unmap(self.start.cast(), self.mapped) };
         } else if self.layout.size() > 0 {
             // SAFETY: the allocator gave it with this layout.
             unsafe { dealloc(self.start.as_ptr().cast(), self.layout) };
@@ -112,7 +118,7 @@ mod tests {
     #[test]
     fn what_no_machine_has_is_refused_with_its_size() {
         for len in [1 << 57, usize::MAX] {
-            let error = Pages::zeros(len, "a body").err().unwrap();
+            let error = Pages::<f64>::zeros(len, "a body").err().unwrap();
             assert_eq!(error.kind, Kind::Memory);
         }
     }

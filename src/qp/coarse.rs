@@ -1,8 +1,6 @@
 //! The coarse space of a face: `W_F = G_F G_F'` over the rows F that are not held at their bound, r x r and
 //! sparse. Its pattern is analysed once for all faces, and what they share is factorised once.
 
-mod space;
-
 use std::sync::Arc;
 
 use crate::error::Result;
@@ -13,10 +11,8 @@ use crate::linalg::vector::{axpy, norm, norm_max};
 use crate::linalg::{Cholesky, Csr, Matrix, Runs};
 use crate::platform::memory::headroom;
 use crate::platform::{interrupt, tally};
+use crate::qp::between_solves::{BetweenSolves, Space};
 use crate::qp::Qp;
-use space::Space;
-
-pub use space::KeptSpace;
 
 pub struct Coarse<'a> {
     /// `G'`, m x r.
@@ -26,7 +22,7 @@ pub struct Coarse<'a> {
     rounding: f64,
     space: Space,
     /// Where the space goes in the end.
-    kept: Option<&'a KeptSpace>,
+    kept: Option<&'a BetweenSolves>,
     /// The last face that left much of the space free left motions free: the next one is likely to.
     left_free: bool,
     /// The face of all rows, and the last other one.
@@ -55,7 +51,7 @@ enum Solver {
 impl<'a> Coarse<'a> {
     /// That of a problem; the rows of G of stiff and of soft bodies are of one size.
     pub fn of(qp: &Qp<'a>) -> Result<Self> {
-        let kept = qp.kept.and_then(|kept| kept.take(qp.g_transposed, qp.bounded));
+        let kept = qp.kept.and_then(|kept| kept.take_space(qp.g_transposed, qp.bounded));
         let space = kept.map_or_else(|| Space::new(qp.g_transposed, qp.bounded), Ok)?;
         let mut coarse = Self::on_space(space, qp.g_transposed, qp.blocks, qp.rounding);
         coarse.kept = qp.kept;

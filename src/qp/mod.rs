@@ -8,7 +8,9 @@
 
 mod acceptance;
 mod active_set;
+mod between_solves;
 mod coarse;
+mod conjugate;
 mod gradient;
 mod interior;
 mod nearest;
@@ -21,9 +23,11 @@ mod smalbe;
 
 pub use acceptance::{AcceptanceTest, Limits, Observer, Solution, StepKind, StepReport, Verdict};
 pub use active_set::{active_set, Direct, Face};
-pub use coarse::{AnswerFace, KeptSpace};
+pub use between_solves::BetweenSolves;
+pub use coarse::AnswerFace;
+pub use conjugate::MOST as KEPT;
 pub use nearest::{nearest_point, Nearest, Polyhedron};
-pub use proportioning::{minimise, not_held, weighted, KEPT};
+pub use proportioning::{minimise, not_held, weighted};
 pub use proximal::proximal;
 pub use restricted::{DirectOnRows, Judged, Restricted};
 pub use smalbe::smalbe;
@@ -44,8 +48,8 @@ pub struct Qp<'a> {
     pub e: &'a [f64],
     pub bounded: &'a [bool],
     pub preconditioner: Option<&'a dyn Preconditioner>,
-    /// Where what faces of this G share is kept from one method and one solve to the next.
-    pub kept: Option<&'a KeptSpace>,
+    /// Where one method and one solve leave to the next what faces of this G share, and directions with their images.
+    pub kept: Option<&'a BetweenSolves>,
 }
 
 impl Qp<'_> {

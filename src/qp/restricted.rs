@@ -82,6 +82,17 @@ impl Operator for Restricted<'_> {
         y.copy_from_slice(&gather(self.rows, &image));
         Ok(())
     }
+
+    fn approximate(&self, x: &[f64], y: &mut [f64]) -> Result<()> {
+        let mut image = vec![0.0; self.whole.b.len()];
+        self.whole.a.approximate(&self.spread(x), &mut image)?;
+        y.copy_from_slice(&gather(self.rows, &image));
+        Ok(())
+    }
+
+    fn has_approximation(&self) -> bool {
+        self.whole.a.has_approximation()
+    }
 }
 
 impl Preconditioner for Restricted<'_> {

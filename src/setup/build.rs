@@ -9,7 +9,7 @@ use crate::error::{Error, Kind, Result};
 use crate::model::{Method, Model, Preconditioning, Settings};
 use crate::platform::memory::reserved;
 use crate::progress::{Phase, SetupPart, Watch};
-use crate::qp::KeptSpace;
+use crate::qp::BetweenSolves;
 use crate::setup::islands::{islands, Island, Members};
 use crate::setup::operators::Operators;
 use crate::setup::prepared::{Duals, Prepared};
@@ -107,7 +107,14 @@ impl Prepared {
             let inverse = |part: usize| self.bodies.get(part).and_then(|own| own.inverse.as_ref());
             let of_part = |part: usize| inverse(part).map(|of| (&of.kplus, &of.grounded));
             let whole = Whole::of(model, &island, &of_part)?;
-            ready.push(Ready { island, dual, rows, whole, preconditioner: None, kept: KeptSpace::default() });
+            ready.push(Ready {
+                island,
+                dual,
+                rows,
+                whole,
+                preconditioner: None,
+                kept: BetweenSolves::default(),
+            });
         }
         Ok(Duals { of: model.revisions, islands: ready, operators, island_of })
     }

@@ -8,25 +8,25 @@ use std::sync::{Arc, Mutex};
 use std::time::Instant;
 
 use crate::body::{
-    input_key, pattern_key, same_body, same_matrix, same_pattern, value_key, Body, GeneralizedInverse,
-    Layout, Plan, Symbolic,
+    input_key, pattern_key, same_body, same_matrix, same_pattern, value_key, Layout, Plan, Symbolic,
 };
 use crate::certificate::grounded;
 use crate::dual::{Kept, Size};
 use crate::error::{Error, Kind, Result};
-use crate::linalg::{Multiple, Symmetric};
-use crate::model::{GivenBody, Model};
+use crate::linalg::Symmetric;
+use crate::model::Model;
 use crate::platform::threads;
 use crate::progress::{Log, LogLevel, Phase, SetupPart, Watch};
 use crate::setup::memory_limit::check_memory;
 use crate::setup::operators::Operators;
+use crate::setup::plans::{plans, weights};
 use crate::setup::prepared::{Inverse, Prepared};
+use crate::setup::rounding::{self, may_be_rounded};
 
 /// Analyses of one pattern that a body looks at before it makes one of its own.
 const TRIED: usize = 8;
 
-/// Fractions of a setup that are done with the null spaces, the analyses and the factorisations, on the average of many.
-const NULL_SPACES: f64 = 0.05;
+/// Fractions of a setup that are done with the analyses and the factorisations, on the average of many.
 const ANALYSED: f64 = 0.3;
 const FACTORISED: f64 = 0.9;
 
@@ -55,12 +55,17 @@ impl Prepared {
         let factors = self.factors_for(model, &pending, &plans);
         let own = plans.iter().zip(&factors).filter(|(_, factor)| factor.is_none());
         let bytes = own.map(|(plan, _)| plan.bytes()).sum();
-        let operators =
+        let mut operators =
             self.operators(model, rows, &self.entries(&representatives, &pending, &plans), bytes)?;
-        let ended = self.execute(model, (&pending, plans, factors), watch);
+        let given: HashMap<usize, usize> =
+            pending.iter().zip(&factors).filter_map(|(p, factor)| Some((*p, (*factor)?))).collect();
+        let owner = |p: usize| given.get(&representatives[p]).copied().unwrap_or(representatives[p]);
+        let rounded = may_be_rounded(model, &operators, owner);
+        let ended = self.execute(model, (&pending, plans, factors), &rounded, watch);
         watch.phases.ended(Phase::Factorisation, begun);
         ended?;
         self.share(&representatives);
+        operators.factor_bytes = self.bytes_of_factors();
         self.tell_doubts(model, &pending, &watch.log)?;
         Ok(operators)
     }
@@ -81,6 +86,7 @@ impl Prepared {
         &mut self,
         model: &Model,
         (pending, plans, factors): Planned,
+        rounded: &[bool],
         watch: &mut Watch,
     ) -> Result<()> {
         let (mut own, mut others) = (Vec::new(), Vec::new());
@@ -99,11 +105,15 @@ impl Prepared {
         let make = |k: usize| {
             let plan = own[k].2.lock().ok().and_then(|mut plan| plan.take());
             let plan = plan.ok_or_else(|| Error::new(Kind::Internal, "a body was factorised twice"))?;
-            let made = plan.execute().map_err(|e| e.body(own[k].0))?;
-            Ok((made, grounded_in(own[k].3.as_ref())?))
+            let (p, matrix) = (own[k].0, own[k].3.as_ref());
+            let mut made = plan.execute().map_err(|e| e.body(p))?;
+            if let Some(matrix) = matrix.filter(|_| rounded[p]) {
+                made.inverse = rounding::rounded(made.inverse, matrix, model.bodies[p].body.unit())?;
+            }
+            Ok((made, grounded_in(matrix)?))
         };
         watch.every_body(&part, make, |k, (made, grounded)| {
-            let (p, bytes) = (own[k].0, own[k].1);
+            let (p, bytes) = (own[k].0, own[k].1.saturating_sub(made.inverse.bytes_saved()));
             self.work.analyses += made.further_analyses;
             self.work.factorisations += made.factorisations;
             self.bodies[p].symbolic = Some(made.symbolic);
@@ -254,12 +264,13 @@ impl Prepared {
         more: usize,
     ) -> Result<Operators> {
         let (settings, there) = (&model.settings, self.bytes_of_factors());
-        let size = |((&rows, given), &entries): ((&usize, &GivenBody), &usize)| Size {
-            rows,
-            unknowns: given.body.order,
-            entries,
+        let size = |p: usize| {
+            let there = self.bodies[p].inverse.as_ref();
+            let rounded = there.is_some_and(|inverse| inverse.kplus.is_rounded());
+            let single = model.is_piece(p) && there.is_none();
+            Size { rows: rows[p], unknowns: model.bodies[p].body.order, entries: entries[p], single, rounded }
         };
-        let sizes: Vec<Size> = rows.iter().zip(&model.bodies).zip(entries).map(size).collect();
+        let sizes: Vec<Size> = (0..rows.len()).map(size).collect();
         let operators = Operators::new(settings, sizes, there.saturating_add(more));
         let more = more.saturating_add(operators.bytes());
         let inverses = self.bodies.iter().filter_map(|own| own.inverse.as_ref());
@@ -297,48 +308,6 @@ impl Prepared {
         }
         Ok(())
     }
-}
-
-/// Null spaces and fixing dofs of the pending bodies.
-fn plans(model: &Model, pending: &[usize], watch: &mut Watch) -> Result<Vec<Plan>> {
-    let tolerance = model.settings.null_space_tolerance;
-    let part = SetupPart::of(model.threads(), weights(model, pending), NULL_SPACES);
-    let find = |k: usize| {
-        let (p, body) = (pending[k], &model.bodies[pending[k]].body);
-        plan(body, tolerance, model.is_piece(p)).map_err(|e| e.body(p))
-    };
-    let mut plans: Vec<Option<Plan>> = pending.iter().map(|_| None).collect();
-    watch.every_body(&part, find, |k, plan| plans[k] = Some(plan))?;
-    Ok(plans.into_iter().flatten().collect())
-}
-
-/// Entries of K of these bodies.
-fn weights(model: &Model, bodies: &[usize]) -> Vec<f64> {
-    let entries = |&p: &usize| model.bodies[p].body.stiffness.as_ref().map_or(1, |k| k.col.len());
-    bodies.iter().map(|p| entries(p) as f64).collect()
-}
-
-/// Null space and fixing dofs of a body, found before anything is factorised.
-fn plan(body: &Body, tolerance: f64, is_piece: bool) -> Result<Plan> {
-    let missing = || Error::new(Kind::Internal, "a body without stiffness was set up");
-    let matrix = Arc::clone(body.stiffness.as_ref().ok_or_else(missing)?);
-    let k = Multiple { matrix, by: 1.0 / body.unit() };
-    let fixing = body.fixing.as_deref();
-    if let Some(given) = &body.null_space {
-        return GeneralizedInverse::plan_with(k, given, tolerance, fixing);
-    }
-    let Some(coordinates) = &body.coordinates else {
-        return GeneralizedInverse::search(k, tolerance, fixing);
-    };
-    let rigid = coordinates.rigid_modes(&k.matrix)?;
-    let planned = match body.soft_coordinates {
-        true => GeneralizedInverse::plan_soft(k, &rigid, fixing)?,
-        false => GeneralizedInverse::plan_near(k, &rigid, tolerance, fixing)?,
-    };
-    if is_piece {
-        return planned.or_search(tolerance).carrying(&rigid);
-    }
-    Ok(planned)
 }
 
 fn same_stiffness(model: &Model, p: usize, q: usize) -> bool {

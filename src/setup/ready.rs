@@ -5,7 +5,7 @@ use crate::error::Result;
 use crate::model::Preconditioning;
 use crate::platform::memory::reserved;
 use crate::platform::threads;
-use crate::qp::KeptSpace;
+use crate::qp::BetweenSolves;
 use crate::setup::islands::Island;
 use crate::setup::rows::DualRows;
 use crate::setup::whole::Whole;
@@ -22,8 +22,8 @@ pub struct Ready {
     pub whole: Option<Whole>,
     /// The preconditioner and which one of the options it is.
     pub preconditioner: Option<(Preconditioning, Preconditioner)>,
-    /// What solves know of the coarse problem.
-    pub kept: KeptSpace,
+    /// What one solve leaves to the next.
+    pub kept: BetweenSolves,
 }
 
 impl Ready {

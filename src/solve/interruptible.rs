@@ -1,6 +1,6 @@
 //! Products with F, which end where the host wants to.
 
-use crate::dual::Dual;
+use crate::dual::{Accuracy, Dual};
 use crate::error::Result;
 use crate::linalg::Operator;
 use crate::platform::{interrupt, threads};
@@ -16,6 +16,15 @@ impl<'a> Interruptible<'a> {
     pub fn new(operator: &'a Dual, threads: usize) -> Self {
         Self { operator, threads }
     }
+
+    fn product(&self, x: &[f64], y: &mut [f64], by: Accuracy) -> Result<()> {
+        interrupt::check()?;
+        let on_caller = |p: usize| self.operator.multiplies_on_caller(p);
+        let in_parallel = |count, task: &(dyn Fn(usize) -> _ + Sync)| {
+            threads::run_apart(self.threads, count, on_caller, task)
+        };
+        self.operator.product(x, y, by, &in_parallel)
+    }
 }
 
 impl Operator for Interruptible<'_> {
@@ -28,12 +37,15 @@ impl Operator for Interruptible<'_> {
     }
 
     fn try_apply(&self, x: &[f64], y: &mut [f64]) -> Result<()> {
-        interrupt::check()?;
-        let on_caller = |p: usize| self.operator.multiplies_on_caller(p);
-        let in_parallel = |count, task: &(dyn Fn(usize) -> _ + Sync)| {
-            threads::run_apart(self.threads, count, on_caller, task)
-        };
-        self.operator.product(x, y, &in_parallel)
+        self.product(x, y, Accuracy::Full)
+    }
+
+    fn approximate(&self, x: &[f64], y: &mut [f64]) -> Result<()> {
+        self.product(x, y, Accuracy::OfFactors)
+    }
+
+    fn has_approximation(&self) -> bool {
+        self.operator.has_approximation()
     }
 }
 

@@ -91,3 +91,26 @@ fn load_steps_states_and_threads_give_the_bits_of_a_first_solve() {
     assert!(apart(&solved(&mut cut).0, &first) < 1e-8);
     assert!(cut.report().unwrap().counts.products < 20, "{:?}", cut.report().unwrap().counts);
 }
+
+#[test]
+fn factors_in_single_precision_take_less_memory_and_give_the_same_answer() {
+    let model = blocks(9);
+    let made = |operator: &str| {
+        let mut problem = model.by_elements(8, true).unwrap();
+        problem.set_str("dual_operator", operator).unwrap();
+        problem.set_f64("certificate_tolerance", 1e-9).unwrap();
+        problem
+    };
+    let (mut double, mut single) = (made("explicit"), made("implicit"));
+    let [(u, lambda, energy), (own, forces, own_energy)] = [&mut double, &mut single].map(solved);
+    assert!((own_energy - energy).abs() <= 1e-11 * energy.abs(), "{own_energy:e} {energy:e}");
+    assert!(apart(&forces, &lambda) < 1e-8 && apart(&own, &u) < 1e-8, "{:e}", apart(&own, &u));
+    let [double_bytes, single_bytes] = [&double, &single].map(|of| of.report().unwrap().factor_bytes);
+    assert!(5 * single_bytes < 4 * double_bytes, "{single_bytes} of {double_bytes}");
+    let [products, others] = [&single, &double].map(|of| of.report().unwrap().counts.products);
+    assert!(products <= others + 5, "{products} products, {others} in double precision");
+    for threads in [1, 2, 4] {
+        single.set_i64("threads", threads).unwrap();
+        assert_eq!(solved(&mut single).0, own);
+    }
+}

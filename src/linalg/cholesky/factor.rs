@@ -10,13 +10,19 @@ use crate::linalg::cholesky::numeric::multifrontal::{self, LowerColumns};
 use crate::linalg::sparse::csr::by_columns;
 use crate::linalg::{Csr, Symmetric};
 use crate::platform::memory::{headroom, reserved, zeros, Headroom, PRODUCTS};
-use crate::platform::pages::Pages;
+use crate::platform::pages::{Number, Pages};
 
-/// The factor L with its analysis.
-pub struct Cholesky {
+/// An entry of L as it is kept. All sums are doubles.
+pub trait Entry: Number + Into<f64> {}
+
+impl Entry for f64 {}
+impl Entry for f32 {}
+
+/// The factor L with its analysis; its entries are doubles where nothing else is said.
+pub struct Cholesky<T: Entry = f64> {
     pub analysis: Arc<Analysis>,
     /// The panels of all supernodes.
-    pub(super) values: Pages,
+    pub(super) values: Pages<T>,
     /// Dofs in the order of elimination whose rows and columns of L are those of the identity, ascending.
     pub(super) held: Vec<usize>,
 }
@@ -178,18 +184,11 @@ impl Cholesky {
         self.pivots().fold(f64::INFINITY, |smallest, (_, pivot)| smallest.min(pivot))
     }
 
-    /// `x <- K_ff^-1 x` on the free dofs; x has the length of the body, held entries become 0.
-    pub fn solve(&self, x: &mut [f64]) -> Result<()> {
-        let order = &self.analysis.order;
-        let mut y = reserved(order.len(), "a right-hand side")?;
-        y.extend(order.iter().map(|&dof| x[dof]));
-        self.held.iter().for_each(|&dof| y[self.analysis.position[dof]] = 0.0);
-        let (mut workspace, all) = (self.workspace()?, 0..self.analysis.nodes.count());
-        self.forward(all.clone(), &mut y, &mut workspace);
-        self.backward(all, &mut y, &mut workspace);
-        x.fill(0.0);
-        y.iter().zip(order).for_each(|(y, &dof)| x[dof] = *y);
-        Ok(())
+    /// L rounded to half the bytes.
+    pub fn rounded(&self) -> Result<Cholesky<f32>> {
+        let mut values = Pages::zeros(self.values.len(), "a rounded Cholesky factor")?;
+        values.iter_mut().zip(&*self.values).for_each(|(rounded, value)| *rounded = *value as f32);
+        Ok(Cholesky { analysis: Arc::clone(&self.analysis), values, held: self.held.clone() })
     }
 
     /// The dofs below `dof` in the elimination tree.
@@ -213,6 +212,27 @@ impl Cholesky {
         self.backward(nodes, &mut y, &mut workspace);
         x.fill(0.0);
         below.for_each(|i| x[order[i]] = y[i]);
+        Ok(())
+    }
+}
+
+impl<T: Entry> Cholesky<T> {
+    /// Bytes of the entries of L.
+    pub fn value_bytes(&self) -> usize {
+        self.values.len() * size_of::<T>()
+    }
+
+    /// `x <- K_ff^-1 x` on the free dofs; x has the length of the body, held entries become 0.
+    pub fn solve(&self, x: &mut [f64]) -> Result<()> {
+        let order = &self.analysis.order;
+        let mut y = reserved(order.len(), "a right-hand side")?;
+        y.extend(order.iter().map(|&dof| x[dof]));
+        self.held.iter().for_each(|&dof| y[self.analysis.position[dof]] = 0.0);
+        let (mut workspace, all) = (self.workspace()?, 0..self.analysis.nodes.count());
+        self.forward(all.clone(), &mut y, &mut workspace);
+        self.backward(all, &mut y, &mut workspace);
+        x.fill(0.0);
+        y.iter().zip(order).for_each(|(y, &dof)| x[dof] = *y);
         Ok(())
     }
 }

@@ -3,13 +3,15 @@
 use std::ops::Range;
 
 use crate::error::Result;
-use crate::linalg::Cholesky;
+use crate::linalg::cholesky::factor::{Cholesky, Entry};
 use crate::platform::memory::zeros;
 
 /// Columns taken at a time: the vector is read once for all of them.
 const COLUMNS: usize = 4;
+/// Entries of a column that are asked for at a time.
+const AHEAD: usize = 32;
 
-impl Cholesky {
+impl<T: Entry> Cholesky<T> {
     /// Values that a solution works in.
     pub(super) fn workspace(&self) -> Result<Vec<f64>> {
         let highest = self.analysis.nodes.nodes().map(|node| node.height()).max().unwrap_or(0);
@@ -22,7 +24,7 @@ impl Cholesky {
             let front = &mut workspace[..node.height()];
             front[..node.width].copy_from_slice(&y[node.begin..node.end()]);
             front[node.width..].fill(0.0);
-            eliminate(&self.values[node.panel.clone()], node.width, front);
+            by_vectors::<T, Forward>(&self.values[node.panel.clone()], node.width, front);
             y[node.begin..node.end()].copy_from_slice(&front[..node.width]);
             node.rows.iter().zip(&front[node.width..]).for_each(|(&row, v)| y[row as usize] += v);
         }
@@ -34,14 +36,64 @@ impl Cholesky {
             let front = &mut workspace[..node.height()];
             front[..node.width].copy_from_slice(&y[node.begin..node.end()]);
             front[node.width..].iter_mut().zip(node.rows).for_each(|(v, &row)| *v = y[row as usize]);
-            substitute(&self.values[node.panel.clone()], node.width, front);
+            by_vectors::<T, Backward>(&self.values[node.panel.clone()], node.width, front);
             y[node.begin..node.end()].copy_from_slice(&front[..node.width]);
         }
     }
 }
 
-/// `x_1 <- L11^-1 x_1`, `x_2 <- x_2 - L21 x_1`; the panel is height x width.
-fn eliminate(panel: &[f64], width: usize, x: &mut [f64]) {
+/// Asks the memory for the lines of so many entries, of the next columns: these are too short to be foreseen by the processor.
+#[inline(always)]
+fn ask_for<T>(entries: *const T) {
+    #[cfg(target_arch = "x86_64")]
+    for line in 0..AHEAD * size_of::<T>() / 64 {
+        use std::arch::x86_64::{_mm_prefetch, _MM_HINT_T0};
+        // SAFETY: SSE is part of x86-64; nothing is read or written, wherever it points
+        unsafe { _mm_prefetch::<_MM_HINT_T0>(entries.cast::<i8>().wrapping_add(64 * line)) };
+    }
+}
+
+/// What is done with a panel, height x width.
+trait Step {
+    fn take<T: Entry>(panel: &[T], width: usize, x: &mut [f64]);
+}
+
+struct Forward;
+struct Backward;
+
+impl Step for Forward {
+    #[inline(always)]
+    fn take<T: Entry>(panel: &[T], width: usize, x: &mut [f64]) {
+        eliminate(panel, width, x);
+    }
+}
+
+impl Step for Backward {
+    #[inline(always)]
+    fn take<T: Entry>(panel: &[T], width: usize, x: &mut [f64]) {
+        substitute(panel, width, x);
+    }
+}
+
+/// The same bits by the vector instructions that the processor has: single precision has to be converted as fast as it is read.
+fn by_vectors<T: Entry, S: Step>(panel: &[T], width: usize, x: &mut [f64]) {
+    #[cfg(target_arch = "x86_64")]
+    if std::arch::is_x86_feature_detected!("avx2") {
+        // SAFETY: the processor has AVX2
+        return unsafe { by_avx2::<T, S>(panel, width, x) };
+    }
+    S::take(panel, width, x);
+}
+
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx2")]
+fn by_avx2<T: Entry, S: Step>(panel: &[T], width: usize, x: &mut [f64]) {
+    S::take(panel, width, x);
+}
+
+/// `x_1 <- L11^-1 x_1`, `x_2 <- x_2 - L21 x_1`.
+#[inline(always)]
+fn eliminate<T: Entry>(panel: &[T], width: usize, x: &mut [f64]) {
     let height = x.len();
     let mut j = 0;
     while j < width {
@@ -49,29 +101,36 @@ fn eliminate(panel: &[f64], width: usize, x: &mut [f64]) {
         let columns = &panel[j * height..(j + count) * height];
         for k in 0..count {
             let column = &columns[k * height..(k + 1) * height];
-            let v = x[j + k] * column[j + k].recip();
+            let v = x[j + k] * column[j + k].into().recip();
             x[j + k] = v;
-            (j + k + 1..j + count).for_each(|i| x[i] -= column[i] * v);
+            (j + k + 1..j + count).for_each(|i| x[i] -= column[i].into() * v);
         }
         let (own, below) = x.split_at_mut(j + count);
         let own = &own[j..];
         let column = |k: usize| &columns[k * height + j + count..(k + 1) * height];
         if let [a, b, c, d] = *own {
-            let rest = column(0).iter().zip(column(1)).zip(column(2)).zip(column(3));
-            below.iter_mut().zip(rest).for_each(|(x, (((la, lb), lc), ld))| {
-                *x -= (la * a + lb * b) + (lc * c + ld * d);
-            });
+            for (at, below) in below.chunks_mut(AHEAD).enumerate() {
+                let at = at * AHEAD;
+                let column = |k: usize| &column(k)[at..at + below.len()];
+                (0..COLUMNS).for_each(|k| ask_for::<T>(column(k).as_ptr().wrapping_add(COLUMNS * height)));
+                let rest = column(0).iter().zip(column(1)).zip(column(2)).zip(column(3));
+                below.iter_mut().zip(rest).for_each(|(x, (((la, lb), lc), ld))| {
+                    let [la, lb, lc, ld] = [*la, *lb, *lc, *ld].map(T::into);
+                    *x -= (la * a + lb * b) + (lc * c + ld * d);
+                });
+            }
         } else {
             for (k, v) in own.iter().enumerate() {
-                below.iter_mut().zip(column(k)).for_each(|(x, l)| *x -= l * v);
+                below.iter_mut().zip(column(k)).for_each(|(x, l)| *x -= (*l).into() * v);
             }
         }
         j += count;
     }
 }
 
-/// `x_1 <- L11^-T (x_1 - L21' x_2)`; the panel is height x width.
-fn substitute(panel: &[f64], width: usize, x: &mut [f64]) {
+/// `x_1 <- L11^-T (x_1 - L21' x_2)`.
+#[inline(always)]
+fn substitute<T: Entry>(panel: &[T], width: usize, x: &mut [f64]) {
     let height = x.len();
     let mut end = width;
     while end > 0 {
@@ -89,15 +148,16 @@ fn substitute(panel: &[f64], width: usize, x: &mut [f64]) {
         }
         for k in (0..count).rev() {
             let column = &columns[k * height + j..k * height + end];
-            let known: f64 = (k + 1..count).map(|i| column[i] * own[i]).sum();
-            own[k] = (own[k] - known) * column[k].recip();
+            let known: f64 = (k + 1..count).map(|i| column[i].into() * own[i]).sum();
+            own[k] = (own[k] - known) * column[k].into().recip();
         }
         end = j;
     }
 }
 
 /// Products of some columns with x, in eight partial sums each.
-fn dots<const N: usize>(columns: [&[f64]; N], x: &[f64]) -> [f64; N] {
+#[inline(always)]
+fn dots<T: Entry, const N: usize>(columns: [&[T]; N], x: &[f64]) -> [f64; N] {
     const LANES: usize = 8;
     let mut sums = [[0.0; LANES]; N];
     let whole = x.len() / LANES * LANES;
@@ -105,12 +165,12 @@ fn dots<const N: usize>(columns: [&[f64]; N], x: &[f64]) -> [f64; N] {
         let x: &[f64; LANES] = x[at..at + LANES].try_into().unwrap_or(&[0.0; LANES]);
         for (sums, column) in sums.iter_mut().zip(&columns) {
             let column = &column[at..at + LANES];
-            (0..LANES).for_each(|lane| sums[lane] += column[lane] * x[lane]);
+            (0..LANES).for_each(|lane| sums[lane] += column[lane].into() * x[lane]);
         }
     }
     let mut dots = sums.map(|sums| sums.iter().sum::<f64>());
     for (dot, column) in dots.iter_mut().zip(&columns) {
-        *dot += column[whole..].iter().zip(&x[whole..]).map(|(l, x)| l * x).sum::<f64>();
+        *dot += column[whole..].iter().zip(&x[whole..]).map(|(l, x)| (*l).into() * x).sum::<f64>();
     }
     dots
 }

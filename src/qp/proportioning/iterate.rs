@@ -3,8 +3,9 @@
 use crate::error::Result;
 use crate::linalg::vector::{axpy, norm, norm_max};
 use crate::qp::coarse::Coarse;
+use crate::qp::conjugate::Conjugate;
 use crate::qp::gradient::{feasible_step, Split};
-use crate::qp::proportioning::conjugate::Conjugate;
+use crate::qp::proportioning::drift::Drift;
 use crate::qp::{Counts, Qp};
 
 /// Free motions that go so many times as far as all others follow from a load that is all but not held.
@@ -39,6 +40,8 @@ pub struct Iterate<'a> {
     pub curvature: f64,
     /// `p'A p` and A p of the last product that L has been taken from.
     pub observed: Option<(f64, Vec<f64>)>,
+    /// How far the updates of g may have left A x - b.
+    pub drift: Drift,
     pub counts: Counts,
 }
 
@@ -58,31 +61,60 @@ impl<'a> Iterate<'a> {
             cuts: 0,
             curvature: 0.0,
             observed: None,
+            drift: Drift::default(),
             counts: Counts::default(),
             qp,
             coarse,
             x,
         };
-        iterate.refresh()?;
+        let x = std::mem::take(&mut iterate.x);
+        let image = iterate.product(&x)?;
+        iterate.drift.add(1.0, &image);
+        (iterate.x, iterate.g) = (x, image);
+        axpy(-1.0, qp.b, &mut iterate.g);
+        iterate.update()?;
         Ok(iterate)
     }
 
-    /// `A v`, counted. Where A refuses it, the iterate is as before: every caller asks for its product first.
+    /// `A v`, or what is near to it, counted. Where A refuses it, the iterate is as before: every caller asks for its product first.
     pub fn product(&mut self, v: &[f64]) -> Result<Vec<f64>> {
         let mut image = vec![0.0; v.len()];
-        self.qp.a.try_apply(v, &mut image)?;
+        self.qp.a.approximate(v, &mut image)?;
         self.counts.products += 1;
         Ok(image)
     }
 
-    /// Recomputes the gradient from x, without the rounding errors of its updates.
+    /// Recomputes the gradient from x, without the errors of its updates.
     pub fn refresh(&mut self) -> Result<()> {
-        let x = std::mem::take(&mut self.x);
-        let image = self.product(&x);
-        self.x = x;
-        self.g = image?;
-        axpy(-1.0, self.qp.b, &mut self.g);
-        self.update()
+        let mut g = vec![0.0; self.x.len()];
+        self.qp.a.try_apply(&self.x, &mut g)?;
+        self.counts.products += 1;
+        axpy(-1.0, self.qp.b, &mut g);
+        self.g = g;
+        let before = self.r.clone();
+        self.update()?;
+        let errors = (0..before.len()).filter(|&i| !self.split.active[i]).map(|i| self.r[i] - before[i]);
+        self.drift.measured(norm(&errors.collect::<Vec<_>>()), self.counts.steps());
+        Ok(())
+    }
+
+    /// Directions of an earlier solve on this face, along which there is something left to gain.
+    pub fn go_on_with(&mut self, mut directions: Conjugate) -> Result<()> {
+        let held = (0..self.x.len()).filter(|&i| self.split.active[i] && directions.moves(i));
+        held.collect::<Vec<_>>().into_iter().for_each(|i| directions.hold(i));
+        (self.kept, self.settled) = (directions, false);
+        self.settle()
+    }
+
+    /// P0: the gradient anew, where its updates by products near to those with A may have left as much of it as counts.
+    pub fn refresh_if_stale(&mut self, small: f64) -> Result<()> {
+        let counts = self.split.norm().max(small);
+        if self.qp.a.has_approximation() && self.drift.is_felt(counts, self.counts.steps()) {
+            self.refresh()?;
+            self.settled = false;
+            self.settle()?;
+        }
+        Ok(())
     }
 
     /// Takes the point `x` with its gradient; directions that leave the new face are not kept.

@@ -6,11 +6,12 @@
 //! |---|---|
 //! | `balance` | first point where none is near: can `G l = e` hold? |
 //! | `iterate` | point, gradient, face |
-//! | `steps`, `conjugate` | conjugate gradients, expansion, proportioning step; the directions kept |
+//! | `drift` | when the gradient is computed anew, where products are approximate |
+//! | `steps` | conjugate gradients, expansion, proportioning step |
 //! | `stop` | when the residual is small enough |
 
 mod balance;
-mod conjugate;
+mod drift;
 mod iterate;
 mod steps;
 mod stop;
@@ -18,6 +19,7 @@ mod stop;
 use crate::error::Result;
 use crate::linalg::vector::{norm, norm_max};
 use crate::platform::interrupt;
+use crate::qp::between_solves::BetweenSolves;
 use crate::qp::coarse::Coarse;
 use crate::qp::projection::project;
 use crate::qp::{AcceptanceTest, Counts, Limits, Observer, Qp, Solution, StepKind, StepReport, Verdict};
@@ -26,7 +28,6 @@ use iterate::Iterate;
 use steps::Step;
 
 pub use balance::weighted;
-pub use conjugate::MOST as KEPT;
 pub use stop::Stop;
 
 /// What no x balances of e is rounding of e where it is less than this part of it.
@@ -46,6 +47,9 @@ pub fn minimise(
     judge: &mut dyn AcceptanceTest,
     observer: &mut dyn Observer,
 ) -> Result<Solution> {
+    let is_warm = start.iter().any(|x| *x != 0.0);
+    // a cold start has the same bits whatever was solved before it
+    let directions = qp.kept.and_then(BetweenSolves::take_directions).filter(|_| is_warm);
     let mut coarse = Coarse::of(&qp)?;
     let first = match interrupt::part(FIRST_POINT, || first_point(&qp, &mut coarse, start))? {
         Some(first) => first,
@@ -60,13 +64,14 @@ pub fn minimise(
     };
     // S6.3
     let mut it = Iterate::new(qp, coarse, first)?;
-    if start.iter().any(|x| *x != 0.0) && it.is_far_off() {
+    if is_warm && it.is_far_off() {
         if let Some(cold) = project(&qp, &mut it.coarse, &vec![0.0; start.len()], &vec![false; start.len()])?
         {
             it.x = cold.point;
             it.refresh()?;
         }
     }
+    directions.map_or(Ok(()), |directions| it.go_on_with(directions))?;
     proportioning(it, limits, judge, observer)
 }
 
@@ -116,6 +121,7 @@ fn proportioning(
     let held: Vec<bool> = it.x.iter().zip(it.qp.bounded).map(|(x, bounded)| *bounded && *x <= none).collect();
     let open = it.coarse.on(&held).map(|face| face.deficiency());
     let (undetermined, verdict) = verdict.with(open, 0)?;
+    it.qp.kept.iter().for_each(|kept| kept.keep_directions(std::mem::take(&mut it.kept)));
     Ok(Solution { undetermined, scale, x: it.x, alpha: it.alpha, verdict, counts: it.counts })
 }
 
@@ -129,6 +135,7 @@ fn run(
     loop {
         // P1 of docs/method.md: the stop
         let small = stop.residual + stop.noise * it.noise();
+        it.refresh_if_stale(small)?;
         if it.split.norm() <= small || stop.plateau(it) {
             it.rebalance()?;
             if judge.accepts(&it.x, &it.alpha)? {
@@ -178,6 +185,9 @@ fn run(
         }
     }
 }
+
+#[cfg(test)]
+mod tests;
 
 impl Iterate<'_> {
     /// The forces move everything so much farther than loads and gaps do that they belong to other loads: what they would leave

@@ -66,7 +66,7 @@ impl Iterate<'_> {
 
     /// P8: minimises theta over the kept directions, without any product: rows that meet their bound join the
     /// active set one by one.
-    fn settle(&mut self) -> Result<()> {
+    pub fn settle(&mut self) -> Result<()> {
         while !self.settled {
             let Some((d, image)) = self.kept.minimiser(&self.r) else { break };
             let bound = self.feasible_step(&d, 0.0);
@@ -160,6 +160,7 @@ impl Iterate<'_> {
             axpy(best, &s, &mut x);
         }
         axpy(length, &image, &mut g);
+        self.drift.add(length, &image);
         self.keep(&s, &image);
         self.settled = false;
         self.move_to(x, g)?;
@@ -214,6 +215,7 @@ impl Iterate<'_> {
             x[i] = if hits { 0.0 } else { y };
         }
         axpy(-t, image, &mut g);
+        self.drift.add(t, image);
         self.move_to(x, g)
     }
 
@@ -313,6 +315,7 @@ impl Iterate<'_> {
         let (mut x, mut g) = (std::mem::take(&mut self.x), std::mem::take(&mut self.g));
         axpy(t, &s, &mut x);
         axpy(t, &image, &mut g);
+        self.drift.add(t, &image);
         let smallest = 1e-15 * crate::linalg::vector::norm_max(&x);
         for (x, bounded) in x.iter_mut().zip(self.qp.bounded) {
             if *bounded && *x <= smallest {

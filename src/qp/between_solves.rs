@@ -1,12 +1,14 @@
-//! What the coarse problems of all faces of one G share, and where it is kept from one solve to the next.
+//! What one solve leaves to the next, with other loads and gaps: what the coarse problems of all faces of one G share, and the
+//! directions of its steps with their images.
 
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use crate::error::Result;
 use crate::linalg::semidefinite::clusters::Blocks;
 use crate::linalg::semidefinite::faces::FaceFactors;
 use crate::linalg::vector::{norm_max, power_of_two_below};
 use crate::linalg::{Csr, Runs};
+use crate::qp::conjugate::Conjugate;
 
 /// Depends on G and on which rows faces may hold, not on loads and gaps.
 #[derive(Default)]
@@ -25,9 +27,12 @@ pub struct Space {
     pub by_blocks: Option<Blocks>,
 }
 
-/// The space of a problem while no method uses it: what it is given for, its blocks and its rounding, must not change.
+/// While no method uses them. What they are given for, A, the blocks of G and its rounding, must not change.
 #[derive(Default)]
-pub struct KeptSpace(Mutex<Option<Space>>);
+pub struct BetweenSolves {
+    space: Mutex<Option<Space>>,
+    directions: Mutex<Option<Conjugate>>,
+}
 
 impl Space {
     pub fn new(g_transposed: &Csr, bounded: &[bool]) -> Result<Self> {
@@ -52,14 +57,25 @@ impl Space {
     }
 }
 
-impl KeptSpace {
+impl BetweenSolves {
     /// Takes the space that is kept, if it is that of these rows.
-    pub fn take(&self, g_transposed: &Csr, bounded: &[bool]) -> Option<Space> {
-        let mut kept = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        kept.take_if(|space| space.bounded == bounded && space.rows.is_of(g_transposed))
+    pub fn take_space(&self, g_transposed: &Csr, bounded: &[bool]) -> Option<Space> {
+        locked(&self.space).take_if(|space| space.bounded == bounded && space.rows.is_of(g_transposed))
     }
 
     pub fn keep(&self, space: Space) {
-        *self.0.lock().unwrap_or_else(PoisonError::into_inner) = Some(space);
+        *locked(&self.space) = Some(space);
     }
+
+    pub fn take_directions(&self) -> Option<Conjugate> {
+        locked(&self.directions).take()
+    }
+
+    pub fn keep_directions(&self, directions: Conjugate) {
+        *locked(&self.directions) = Some(directions);
+    }
+}
+
+fn locked<T>(kept: &Mutex<T>) -> MutexGuard<'_, T> {
+    kept.lock().unwrap_or_else(PoisonError::into_inner)
 }

@@ -80,6 +80,11 @@ impl Conjugate {
         dots(v, z).iter().map(|share| a * share / self.curvature).collect()
     }
 
+    /// Some direction has an entry in row i.
+    pub fn moves(&self, i: usize) -> bool {
+        self.pairs.iter().any(|(p, _)| p[i] != 0.0)
+    }
+
     pub fn is_empty(&self) -> bool {
         self.pairs.is_empty()
     }

@@ -1,0 +1,102 @@
+//! A body whose null space is known before the factorisation: F of (14) is K without the rows and columns of its fixing dofs.
+
+use std::sync::Arc;
+
+use crate::body::fixing::hold_as_well;
+use crate::body::generalized_inverse::{Factorised, GeneralizedInverse, Misfit, Symbolic};
+use crate::body::null_space::ROUNDING as KNOWN;
+use crate::body::probe::{probe, Factor};
+use crate::body::spectrum::Doubt;
+use crate::error::Result;
+use crate::linalg::{Analysis, Cholesky, Matrix, Multiple};
+
+/// The null space is known before the factorisation.
+pub struct Known {
+    pub(super) k: Multiple,
+    pub(super) null_space: Matrix,
+    pub(super) error: f64,
+    pub(super) fixing: Vec<usize>,
+    /// The fixing dofs are those of the host.
+    pub(super) given: bool,
+    /// K may resist or drive the vectors, which need not be exact.
+    pub(super) soft: bool,
+    /// Rigid motions that the coarse problem gets whether K resists them or not.
+    pub(super) rigid: Option<Matrix>,
+    pub(super) symbolic: Option<Arc<Symbolic>>,
+    /// What rounding of the entries resists of it.
+    pub(super) doubt: Option<Doubt>,
+    /// Where it may lack a vector.
+    pub(super) retry: Option<Retry>,
+}
+
+/// How the null space is sought in K where K turns out to have more null vectors than rigid motions that fit.
+pub(super) struct Retry {
+    pub misfit: Option<Misfit>,
+    pub tolerance: f64,
+    pub fixing: Option<Vec<usize>>,
+}
+
+impl Known {
+    /// `given`: the fixing dofs are those of the host.
+    pub(super) fn of(k: Multiple, null_space: Matrix, error: f64, fixing: Vec<usize>, given: bool) -> Self {
+        let (soft, rigid, symbolic, doubt, retry) = (false, None, None, None, None);
+        Self { k, null_space, error, fixing, given, soft, rigid, symbolic, doubt, retry }
+    }
+
+    /// Dofs chosen for other values hold this body, too, unless much worse than its own would.
+    pub(super) fn follow(&mut self, dofs: &[usize]) -> Result<bool> {
+        let sorted = |dofs: &[usize]| {
+            let mut dofs = dofs.to_vec();
+            dofs.sort_unstable();
+            dofs
+        };
+        let same = sorted(dofs) == sorted(&self.fixing);
+        if !same && (self.given || !hold_as_well(&self.null_space, &self.k.roots()?, dofs, &self.fixing)?) {
+            return Ok(false);
+        }
+        self.fixing = dofs.to_vec();
+        Ok(true)
+    }
+
+    /// (14): F is K without the rows and columns of the fixing dofs.
+    pub(super) fn analyse(&self) -> Result<Arc<Analysis>> {
+        let mut held = vec![false; self.k.order()];
+        self.fixing.iter().for_each(|&dof| held[dof] = true);
+        Ok(Arc::new(Analysis::new(&self.k.matrix, &held)?))
+    }
+
+    /// Factorises F of (14) and probes; refuses a K that is indefinite, against (4), or more singular than its null
+    /// space says. Soft motions are given other dofs to follow, or more, where K asks for them.
+    pub fn execute(mut self) -> Result<Factorised> {
+        let most = self.most_motions();
+        let (symbolic, factor, mut further) = self.factorised(most)?;
+        let (mut symbolic, mut inverse) = (symbolic, self.made(factor)?);
+        if let Some(better) = self.better(&inverse)? {
+            self.hold(inverse.null_space, better)?;
+            let (other, factor, more) = self.factorised(most)?;
+            (symbolic, inverse) = (other, self.made(factor)?);
+            further += 1 + more;
+        }
+        Ok(Factorised { inverse, symbolic, further_analyses: further, factorisations: 1 + further })
+    }
+
+    fn made(&self, factor: Cholesky) -> Result<GeneralizedInverse> {
+        let factor = Factor::Own(Arc::new(factor));
+        let softness = probe(&factor, &self.k, &self.fixing, self.null_space.cols)?;
+        let inverse = GeneralizedInverse {
+            null_space: self.null_space.clone(),
+            stiffness: Vec::new(),
+            rounding: KNOWN,
+            error: self.error,
+            fixing: self.fixing.clone(),
+            gap: None,
+            softness,
+            doubts: self.doubt.into_iter().collect(),
+            misfit: None,
+            factor,
+            carried: None,
+            near: None,
+        };
+        inverse.judged_by(&self.k, self.soft, self.rigid.as_ref())
+    }
+}

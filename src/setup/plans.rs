@@ -1,0 +1,54 @@
+//! How K+ of the bodies is going to be made: null spaces and fixing dofs, found before anything is factorised.
+
+use std::sync::Arc;
+
+use crate::body::{Body, GeneralizedInverse, Plan};
+use crate::error::{Error, Kind, Result};
+use crate::linalg::Multiple;
+use crate::model::Model;
+use crate::progress::{SetupPart, Watch};
+
+/// Fraction of a setup that is done with the null spaces, on the average of many.
+const NULL_SPACES: f64 = 0.05;
+
+/// Null spaces and fixing dofs of the pending bodies.
+pub(super) fn plans(model: &Model, pending: &[usize], watch: &mut Watch) -> Result<Vec<Plan>> {
+    let tolerance = model.settings.null_space_tolerance;
+    let part = SetupPart::of(model.threads(), weights(model, pending), NULL_SPACES);
+    let find = |k: usize| {
+        let (p, body) = (pending[k], &model.bodies[pending[k]].body);
+        plan(body, tolerance, model.is_piece(p)).map_err(|e| e.body(p))
+    };
+    let mut plans: Vec<Option<Plan>> = pending.iter().map(|_| None).collect();
+    watch.every_body(&part, find, |k, plan| plans[k] = Some(plan))?;
+    Ok(plans.into_iter().flatten().collect())
+}
+
+/// Entries of K of these bodies.
+pub(super) fn weights(model: &Model, bodies: &[usize]) -> Vec<f64> {
+    let entries = |&p: &usize| model.bodies[p].body.stiffness.as_ref().map_or(1, |k| k.col.len());
+    bodies.iter().map(|p| entries(p) as f64).collect()
+}
+
+/// Null space and fixing dofs of a body, found before anything is factorised.
+fn plan(body: &Body, tolerance: f64, is_piece: bool) -> Result<Plan> {
+    let missing = || Error::new(Kind::Internal, "a body without stiffness was set up");
+    let matrix = Arc::clone(body.stiffness.as_ref().ok_or_else(missing)?);
+    let k = Multiple { matrix, by: 1.0 / body.unit() };
+    let fixing = body.fixing.as_deref();
+    if let Some(given) = &body.null_space {
+        return GeneralizedInverse::plan_with(k, given, tolerance, fixing);
+    }
+    let Some(coordinates) = &body.coordinates else {
+        return GeneralizedInverse::search(k, tolerance, fixing);
+    };
+    let rigid = coordinates.rigid_modes(&k.matrix)?;
+    let planned = match body.soft_coordinates {
+        true => GeneralizedInverse::plan_soft(k, &rigid, fixing)?,
+        false => GeneralizedInverse::plan_near(k, &rigid, tolerance, fixing)?,
+    };
+    if is_piece {
+        return planned.or_search(tolerance).carrying(&rigid);
+    }
+    Ok(planned)
+}

@@ -1,0 +1,30 @@
+//! Which factors are rounded to single precision: those of the pieces of a body that is cut, wherever they serve products alone, whose
+//! time is that of reading them.
+
+use std::sync::Arc;
+
+use crate::body::GeneralizedInverse;
+use crate::error::Result;
+use crate::linalg::{Multiple, Symmetric};
+use crate::model::Model;
+use crate::setup::operators::Operators;
+
+/// True for the bodies whose factor may be rounded; `owner` is the body whose factor another one has.
+pub(super) fn may_be_rounded(
+    model: &Model,
+    operators: &Operators,
+    owner: impl Fn(usize) -> usize,
+) -> Vec<bool> {
+    let mut rounded: Vec<bool> = (0..model.bodies.len()).map(|p| model.is_piece(p)).collect();
+    (0..rounded.len()).filter(|&p| !operators.implicit[p]).for_each(|p| rounded[owner(p)] = false);
+    rounded
+}
+
+/// K+ with its factor rounded, where K allows it.
+pub(super) fn rounded(
+    inverse: GeneralizedInverse,
+    matrix: &Arc<Symmetric>,
+    unit: f64,
+) -> Result<GeneralizedInverse> {
+    inverse.rounded(&Multiple { matrix: Arc::clone(matrix), by: 1.0 / unit })
+}
