@@ -108,7 +108,8 @@ impl Prepared {
             let (p, matrix) = (own[k].0, own[k].3.as_ref());
             let mut made = plan.execute().map_err(|e| e.body(p))?;
             if let Some(matrix) = matrix.filter(|_| rounded[p]) {
-                made.inverse = rounding::rounded(made.inverse, matrix, model.bodies[p].body.unit())?;
+                let rounded = rounding::rounded(made.inverse, matrix, model.bodies[p].body.unit());
+                made.inverse = rounded.map_err(|e| e.body(p))?;
             }
             Ok((made, grounded_in(matrix)?))
         };
