@@ -135,3 +135,33 @@ impl Solution {
         }
     }
 }
+
+#[cfg(test)]
+pub mod tests {
+    use super::*;
+
+    /// Accepts every point whose residual is as small as asked; sees `allowed` steps.
+    pub struct Lenient {
+        pub allowed: usize,
+    }
+
+    impl AcceptanceTest for Lenient {
+        fn scale(&mut self, _: &[f64], _: &[f64]) -> Result<f64> {
+            Ok(1.0)
+        }
+
+        fn accepts(&mut self, _: &[f64], _: &[f64]) -> Result<bool> {
+            Ok(true)
+        }
+    }
+
+    impl Observer for Lenient {
+        fn step(&mut self, now: &StepReport) -> Result<()> {
+            if now.counts.steps() < self.allowed {
+                Ok(())
+            } else {
+                Err(Error::new(Kind::Cancelled, "enough"))
+            }
+        }
+    }
+}

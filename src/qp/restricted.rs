@@ -53,6 +53,19 @@ impl<'a> Restricted<'a> {
         (self.spread(&x) == solution.x).then_some(Solution { x, ..solution })
     }
 
+    /// The part on the rows of a product over all of them; an error leaves y as it was.
+    fn product(
+        &self,
+        x: &[f64],
+        y: &mut [f64],
+        of_all: impl Fn(&[f64], &mut [f64]) -> Result<()>,
+    ) -> Result<()> {
+        let mut image = vec![0.0; self.whole.b.len()];
+        of_all(&self.spread(x), &mut image)?;
+        y.copy_from_slice(&gather(self.rows, &image));
+        Ok(())
+    }
+
     /// Entries on the rows, and 0 on the others.
     pub fn spread(&self, own: &[f64]) -> Vec<f64> {
         let mut all = vec![0.0; self.whole.b.len()];
@@ -77,17 +90,11 @@ impl Operator for Restricted<'_> {
     }
 
     fn try_apply(&self, x: &[f64], y: &mut [f64]) -> Result<()> {
-        let mut image = vec![0.0; self.whole.b.len()];
-        self.whole.a.try_apply(&self.spread(x), &mut image)?;
-        y.copy_from_slice(&gather(self.rows, &image));
-        Ok(())
+        self.product(x, y, |x, image| self.whole.a.try_apply(x, image))
     }
 
     fn approximate(&self, x: &[f64], y: &mut [f64]) -> Result<()> {
-        let mut image = vec![0.0; self.whole.b.len()];
-        self.whole.a.approximate(&self.spread(x), &mut image)?;
-        y.copy_from_slice(&gather(self.rows, &image));
-        Ok(())
+        self.product(x, y, |x, image| self.whole.a.approximate(x, image))
     }
 
     fn has_approximation(&self) -> bool {

@@ -1,31 +1,6 @@
 use super::*;
-use crate::error::{Error, Kind};
 use crate::linalg::{Csr, Packed};
-
-/// Accepts every point whose residual is as small as asked; sees `allowed` steps.
-struct Lenient {
-    allowed: usize,
-}
-
-impl AcceptanceTest for Lenient {
-    fn scale(&mut self, _: &[f64], _: &[f64]) -> Result<f64> {
-        Ok(1.0)
-    }
-
-    fn accepts(&mut self, _: &[f64], _: &[f64]) -> Result<bool> {
-        Ok(true)
-    }
-}
-
-impl Observer for Lenient {
-    fn step(&mut self, now: &StepReport) -> Result<()> {
-        if now.counts.steps() < self.allowed {
-            Ok(())
-        } else {
-            Err(Error::new(Kind::Cancelled, "enough"))
-        }
-    }
-}
+use crate::qp::acceptance::tests::Lenient;
 
 const LIMITS: Limits = Limits { tolerance: 1e-10, gamma: 1.0, steps: 10_000 };
 
