@@ -5,8 +5,8 @@ use std::sync::Arc;
 
 use crate::error::Result;
 use crate::linalg::semidefinite::clusters::Blocks;
-use crate::linalg::semidefinite::sparse::{FaceRows, PseudoInverse, SINGULAR, WEAK};
-use crate::linalg::semidefinite::GeneralInverse;
+use crate::linalg::semidefinite::sparse::{FaceRows, PseudoInverse, WEAK};
+use crate::linalg::semidefinite::{is_regular, GeneralInverse};
 use crate::linalg::vector::{axpy, norm, norm_max};
 use crate::linalg::{Cholesky, Csr, Matrix, Runs};
 use crate::platform::memory::headroom;
@@ -131,7 +131,7 @@ impl<'a> Coarse<'a> {
             let by = 1.0 / (unit * unit);
             if let Ok(factor) = factors.factor(g_transposed, held, (by, 0.0), |_| ())? {
                 let smallest = factor.smallest_pivot();
-                if smallest > SINGULAR {
+                if is_regular(whole.len(), smallest, |x| factor.solve(x))? {
                     return Ok(Solver::Cholesky { factor, weak: smallest < WEAK });
                 }
             }

@@ -2,6 +2,7 @@
 
 mod bodies;
 mod glue;
+mod motions;
 mod passes;
 mod proofs;
 mod shapes;

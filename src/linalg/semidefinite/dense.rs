@@ -4,11 +4,9 @@ use faer::linalg::solvers::{Llt, SelfAdjointEigen, Solve};
 use faer::{Mat, MatMut, MatRef, Side};
 
 use crate::error::{Error, Kind, Result};
+use crate::linalg::semidefinite::{is_regular, SINGULAR};
 use crate::linalg::Matrix;
 use crate::platform::memory::{headroom, PRODUCTS};
-
-/// Relative size of a pivot or an eigenvalue below which the matrix counts as singular.
-const RANK_TOLERANCE: f64 = 1e-11;
 
 /// Matrices of the size of W at a time, the eigenvectors while they grow among them.
 const MATRICES: usize = 8;
@@ -37,7 +35,7 @@ impl SpdSolver {
         let inverse_root: Vec<f64> = scale.iter().map(|s| s.sqrt().recip()).collect();
         let scaled = Mat::from_fn(w.rows, w.cols, |i, j| inverse_root[i] * w.get(i, j) * inverse_root[j]);
         let factor = match Llt::new(scaled.as_ref(), Side::Lower) {
-            Ok(llt) if regular(&llt) => SpdFactor::Cholesky(llt),
+            Ok(llt) if smallest_pivot(&llt) > SINGULAR => SpdFactor::Cholesky(llt),
             _ => eigenvectors(&scaled)?,
         };
         Ok(Self { inverse_root, factor })
@@ -47,8 +45,14 @@ impl SpdSolver {
     pub fn regular(w: &Matrix) -> Result<Option<Self>> {
         let _room = headroom(PRODUCTS + MATRICES * w.data.len() * size_of::<f64>(), "a dense coarse matrix")?;
         let view = MatRef::from_column_major_slice(&w.data, w.rows, w.cols);
-        let llt = Llt::new(view, Side::Lower).ok().filter(regular);
-        Ok(llt.map(|llt| Self { inverse_root: vec![1.0; w.rows], factor: SpdFactor::Cholesky(llt) }))
+        let Ok(llt) = Llt::new(view, Side::Lower) else { return Ok(None) };
+        let pivot = smallest_pivot(&llt);
+        let solver = Self { inverse_root: vec![1.0; w.rows], factor: SpdFactor::Cholesky(llt) };
+        let is_regular = is_regular(w.rows, pivot, |x| {
+            x.copy_from_slice(&solver.solve(x));
+            Ok(())
+        })?;
+        Ok(is_regular.then_some(solver))
     }
 
     /// `W+ = T T'`, T = `kept`, of a matrix with that kernel.
@@ -100,9 +104,9 @@ impl SpdSolver {
     }
 }
 
-fn regular(llt: &Llt<f64>) -> bool {
+fn smallest_pivot(llt: &Llt<f64>) -> f64 {
     let l = llt.L();
-    (0..l.nrows()).all(|i| l[(i, i)] * l[(i, i)] > RANK_TOLERANCE)
+    (0..l.nrows()).fold(f64::INFINITY, |smallest, i| smallest.min(l[(i, i)] * l[(i, i)]))
 }
 
 fn eigenvectors(w: &Mat<f64>) -> Result<SpdFactor> {
@@ -112,8 +116,7 @@ fn eigenvectors(w: &Mat<f64>) -> Result<SpdFactor> {
     let (mut kept, mut kernel) = (none.clone(), none);
     for j in 0..w.ncols() {
         let value = eigen.S()[j];
-        let (to, length) =
-            if value > RANK_TOLERANCE { (&mut kept, value.sqrt()) } else { (&mut kernel, 1.0) };
+        let (to, length) = if value > SINGULAR { (&mut kept, value.sqrt()) } else { (&mut kernel, 1.0) };
         let column: Vec<f64> = (0..w.nrows()).map(|i| eigen.U()[(i, j)] / length).collect();
         to.push_col(&column);
     }

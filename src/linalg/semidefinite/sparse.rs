@@ -4,14 +4,12 @@
 use std::sync::Arc;
 
 use crate::error::Result;
-use crate::linalg::semidefinite::{resisted, GeneralInverse};
+use crate::linalg::semidefinite::{is_regular, resisted, GeneralInverse};
 use crate::linalg::sparse::graph::components;
 use crate::linalg::{Analysis, Cholesky, Csr, Matrix, SpdSolver, Symmetric};
 use crate::platform::memory::{headroom_with, SMALL_MATRICES};
 
-/// A pivot of a matrix with its largest diagonal entry about 1 below this means that it is singular.
-pub const SINGULAR: f64 = 1e-11;
-/// Below this, that a motion is held weakly.
+/// A pivot of a matrix with its largest diagonal entry about 1 below this means that a motion is held weakly.
 pub const WEAK: f64 = 1e-4;
 /// Parts up to this order are dense from the start.
 const SMALL: usize = 64;
@@ -58,10 +56,11 @@ impl PseudoInverse {
         if dense.contains(&false) {
             let mut rest = w.copied("the parts of a matrix")?;
             uncouple(&mut rest, |row| dense[part_of[row]]);
-            match analysis.attempt(&rest, 1.0)? {
-                Ok(factor) if factor.smallest_pivot() > SINGULAR => regular = Some(factor),
-                _ => return Ok(None),
+            let Ok(factor) = analysis.attempt(&rest, 1.0)? else { return Ok(None) };
+            if !is_regular(w.order(), factor.smallest_pivot(), |x| factor.solve(x))? {
+                return Ok(None);
             }
+            regular = Some(factor);
         }
         let own = rows_of_g.by_part(&part_of, &dense);
         let mut weak = regular.as_ref().is_some_and(|factor| factor.smallest_pivot() < WEAK);

@@ -139,6 +139,31 @@ fn rows_that_are_rounding_alone_hold_nothing() {
     assert_eq!(undetermined(&g_transposed, &held, 1.5e-14).unwrap().cols, 6);
 }
 
+/// In a chain of single columns the motion that all rows leave free moves one column by 1e-3 or 1e-4 of the others, another by the square of it.
+#[test]
+fn a_motion_that_is_free_is_found_however_little_it_moves_some_columns() {
+    let mut next = random();
+    for (n, little) in [(8, 1e-3), (8, 1e-4), (100, 1e-3), (100, 1e-4)] {
+        for _ in 0..20 {
+            let mut motion = vec![1.0; n];
+            let at = |x: f64| (((0.5 + x) * n as f64) as usize).min(n - 1);
+            (motion[at(next())], motion[at(next())]) = (little, little * little);
+            let mut g_transposed = Csr::empty(n);
+            for first in 0..n - 1 {
+                for _ in 0..3 {
+                    let columns = first..n.min(first + 4);
+                    let row: Vec<f64> = columns.clone().map(|_| next()).collect();
+                    let own = &motion[columns.clone()];
+                    let part = dot(&row, own) / dot(own, own);
+                    g_transposed.push_row(columns.zip(row.iter().zip(own).map(|(v, m)| v - part * m)));
+                }
+            }
+            let held = vec![false; g_transposed.rows()];
+            assert_eq!(undetermined(&g_transposed, &held, 1.5e-14).unwrap().cols, 1, "{n} {little:e}");
+        }
+    }
+}
+
 /// Two blocks in a flat contact, the lower one on the ground by few rows; modes of the stiff one divided by one number.
 #[test]
 fn a_body_a_million_times_stiffer_counts_alike() {

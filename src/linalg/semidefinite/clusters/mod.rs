@@ -19,15 +19,16 @@ use crate::error::{Error, Kind, Result};
 use crate::linalg::semidefinite::faces::FaceFactors;
 use crate::linalg::semidefinite::resisted::sorted;
 use crate::linalg::semidefinite::sparse::WEAK;
-use crate::linalg::{Csr, Matrix};
+use crate::linalg::semidefinite::{is_regular, DOUBTFUL};
+use crate::linalg::{Cholesky, Csr, Matrix, Symmetric};
 use crate::platform::memory::{headroom, headroom_with, SMALL_MATRICES};
 use block::Block;
 use inverse::{Cluster, ClusterInverse};
 use motions::{ByColumn, Images, Motion};
 
-/// Pivots of T'W T, with unit diagonal, up to this are held: the factor of the rest is accurate, motions resisted by little
-/// are told from free ones afterwards.
-const HOLD: f64 = 1e-8;
+/// Pivots of T'W T, with unit diagonal, up to the first of these are held, or up to the second where that leaves a free motion: the
+/// factor of the rest is accurate, motions resisted by little are told from free ones afterwards.
+const HOLD: [f64; 2] = [1e-8, DOUBTFUL];
 const WHAT: &str = "the coarse space";
 
 /// G' by blocks, with the pattern of T'W T and what is known of single blocks.
@@ -115,18 +116,40 @@ impl Blocks {
         let varying = std::mem::take(&mut self.varying);
         varying.iter().for_each(|&i| self.turn(i, &blocks, held[i]));
         self.varying = varying;
-        let starts = &self.starts;
-        let factor = self.factors.factor(&self.turned, held, (1.0, HOLD), |w| {
+        let starts = self.starts.clone();
+        let complete = |w: &mut Symmetric| {
             for (k, block) in blocks.iter().enumerate() {
                 let none = starts[k] + block.resisted.cols..starts[k + 1];
                 none.for_each(|i| w.val[w.ptr[i + 1] - 1] = 1.0);
             }
-        })?;
-        let factor = factor.map_err(|_| Error::new(Kind::Internal, "a coarse matrix is not finite"))?;
+        };
+        let infinite = |_| Error::new(Kind::Internal, "a coarse matrix is not finite");
+        let (order, turned) = (self.rows.cols, &self.turned);
+        let factor = self.factors.factor(turned, held, (1.0, HOLD[0]), complete)?.map_err(infinite)?;
+        let is_certain = factor.smallest_pivot() > DOUBTFUL;
+        if is_regular(order, factor.smallest_pivot(), |x| factor.solve(x))? {
+            let inverse = self.by_factor(factor, &blocks, held)?;
+            if is_certain || inverse.clusters.iter().all(|cluster| cluster.weak.cols == 0) {
+                return Ok(inverse);
+            }
+        }
+        let mut w = self.factors.gram().sum(&self.turned, held)?;
+        complete(&mut w);
+        let factor = self.factors.analysis().pivoted(&w, 1.0, HOLD[1])?.map_err(infinite)?;
+        self.by_factor(Arc::new(factor), &blocks, held)
+    }
+
+    /// W+ by the factor of T'W T with the motions of the unknowns that it holds.
+    fn by_factor(
+        &mut self,
+        factor: Arc<Cholesky>,
+        blocks: &[Arc<Block>],
+        held: &[bool],
+    ) -> Result<ClusterInverse> {
         let mut inverse = ClusterInverse {
-            starts: starts.clone(),
+            starts: self.starts.clone(),
             weak: factor.smallest_pivot() < WEAK || blocks.iter().any(|block| block.weak),
-            blocks,
+            blocks: blocks.to_vec(),
             held: factor.at_rest(),
             factor,
             clusters: Vec::new(),

@@ -58,7 +58,8 @@ impl ClusterInverse {
         Ok(motions)
     }
 
-    /// Corrects n, 1 where an unknown is held, until it has no image; the unknowns that it moves, ascending.
+    /// Corrects n, 1 where an unknown is held, until it has no image; the unknowns that it moves, ascending. Against that 1, and not
+    /// against the largest entries: these may be common to several motions, whose difference is what the cluster has.
     fn corrected(&self, at: usize, n: &mut [f64], images: &mut Images, rounding: f64) -> Result<Vec<usize>> {
         let below = self.factor.below(at);
         n[at] = 1.0;
@@ -66,7 +67,7 @@ impl ClusterInverse {
         for pass in 0.. {
             let left = images.of(n, &moved);
             let stagnates = pass > BELOW && left > 0.5 * last;
-            if left <= rounding * length(n, &moved) || stagnates || pass == CORRECTIONS {
+            if left <= rounding || stagnates || pass == CORRECTIONS {
                 break;
             }
             last = left;

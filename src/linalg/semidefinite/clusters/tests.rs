@@ -64,3 +64,29 @@ fn a_chain_of_stones_that_slide_is_solved_with_minimum_norm() {
         assert_eq!(basis.cols, g.rows());
     }
 }
+
+/// Rows that leave one motion of n unknowns free, which moves i by `little` of the others and j by the square of it.
+fn all_but_ending(n: usize, (i, j): (usize, usize), little: f64) -> Csr {
+    let mut motion = vec![1.0; n];
+    (motion[i], motion[j]) = (little, little * little);
+    let mut g = Csr::empty(n);
+    for numbers in scattered(n * 3 * n).chunks(n) {
+        let part = dot(numbers, &motion) / dot(&motion, &motion);
+        g.push_row(numbers.iter().zip(&motion).map(|(v, m)| v - part * m).enumerate());
+    }
+    g
+}
+
+/// Where i and j come last in the elimination, the pivot before them is the square of `little`, and the last one rounding over its fourth power.
+#[test]
+fn a_motion_that_all_but_ends_before_its_last_unknown_is_free() {
+    let n = 8;
+    for little in [1e-2, 3e-3, 1e-3, 3e-4, 1e-4] {
+        for (i, j) in (0..n * n).map(|at| (at / n, at % n)).filter(|(i, j)| i != j) {
+            let g = all_but_ending(n, (i, j), little);
+            let (starts, held) = ((0..n).collect::<Vec<_>>(), vec![false; g.rows()]);
+            let mut blocks = Blocks::new(&g, &starts, &held, (1.0, &whole(&g), 1.5e-14)).unwrap();
+            assert_eq!(blocks.inverse(&held).unwrap().deficiency(), 1, "{little:e} {i} {j}");
+        }
+    }
+}
