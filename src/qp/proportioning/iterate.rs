@@ -84,7 +84,8 @@ impl<'a> Iterate<'a> {
         Ok(image)
     }
 
-    /// Recomputes the gradient from x, without the errors of its updates.
+    /// Recomputes the gradient from x, without the errors of its updates. Where products are near to those with A only, these have left
+    /// something to gain along the kept directions, which later directions have no part of.
     pub fn refresh(&mut self) -> Result<()> {
         let mut g = vec![0.0; self.x.len()];
         self.qp.a.try_apply(&self.x, &mut g)?;
@@ -95,7 +96,8 @@ impl<'a> Iterate<'a> {
         self.update()?;
         let errors = (0..before.len()).filter(|&i| !self.split.active[i]).map(|i| self.r[i] - before[i]);
         self.drift.measured(norm(&errors.collect::<Vec<_>>()), self.counts.steps());
-        Ok(())
+        self.settled &= !self.qp.a.has_approximation();
+        self.settle()
     }
 
     /// Directions of an earlier solve on this face, along which there is something left to gain.
@@ -111,8 +113,6 @@ impl<'a> Iterate<'a> {
         let counts = self.split.norm().max(small);
         if self.qp.a.has_approximation() && self.drift.is_felt(counts, self.counts.steps()) {
             self.refresh()?;
-            self.settled = false;
-            self.settle()?;
         }
         Ok(())
     }
