@@ -5,7 +5,8 @@ use std::sync::Arc;
 use crate::error::Result;
 use crate::linalg::twofold::Twofold;
 use crate::linalg::{graph, Symmetric};
-use crate::platform::memory::{filled, zeros};
+use crate::platform::memory::{filled, reserved, zeros};
+use crate::platform::threads;
 
 const WHAT: &str = "a product with K";
 
@@ -53,37 +54,49 @@ impl Assembled {
 
     /// `y = K x`
     pub fn mul(&self, x: &[f64], y: &mut [f64]) -> Result<()> {
+        let images = self.of_pieces(x, |k, own| {
+            let mut image = zeros(own.len(), WHAT)?;
+            k.mul(own, &mut image);
+            Ok(image)
+        })?;
         y.fill(0.0);
-        self.each_piece(x, |dofs, k, x, image| {
-            k.mul(x, image);
-            dofs.iter().zip(image).for_each(|(&dof, v)| y[dof as usize] += *v);
-        })
+        for ((dofs, _), image) in self.pieces.iter().zip(images) {
+            dofs.iter().zip(image).for_each(|(&dof, v)| y[dof as usize] += v);
+        }
+        Ok(())
     }
 
     /// `y = K x` and `terms = sum_s A_s |K_s| |A_s'x|`
     pub fn mul_with_terms(&self, x: &[f64], y: &mut [f64], terms: &mut [f64]) -> Result<()> {
+        let images = self.of_pieces(x, |k, own| {
+            let (mut image, mut size) = (zeros(own.len(), WHAT)?, zeros(own.len(), WHAT)?);
+            k.mul_with_terms(own, &mut image, &mut size);
+            Ok((image, size))
+        })?;
         y.fill(0.0);
         terms.fill(0.0);
-        let mut own = zeros(self.largest(), WHAT)?;
-        self.each_piece(x, |dofs, k, x, image| {
-            let own = &mut own[..dofs.len()];
-            k.mul_with_terms(x, image, own);
-            for ((&dof, v), t) in dofs.iter().zip(image.iter()).zip(own.iter()) {
+        for ((dofs, _), (image, size)) in self.pieces.iter().zip(images) {
+            for ((&dof, v), t) in dofs.iter().zip(image).zip(size) {
                 y[dof as usize] += v;
                 terms[dof as usize] += t;
             }
-        })
+        }
+        Ok(())
     }
 
     /// `y += by K x` in twice the digits, by a power of two.
     pub fn add_twofold(&self, by: f64, x: &[f64], y: &mut [Twofold]) -> Result<()> {
-        let mut own = filled(self.largest(), Twofold::default(), WHAT)?;
-        self.each_piece(x, |dofs, k, x, _| {
-            let own = &mut own[..dofs.len()];
-            own.iter_mut().zip(dofs).for_each(|(own, &dof)| *own = y[dof as usize]);
-            k.add_twofold(by, x, own);
-            own.iter().zip(dofs).for_each(|(own, &dof)| y[dof as usize] = *own);
-        })
+        let largest = self.largest();
+        let (mut own, mut sums) = (zeros(largest, WHAT)?, filled(largest, Twofold::default(), WHAT)?);
+        for (dofs, k) in &self.pieces {
+            let (own, sums) = (&mut own[..dofs.len()], &mut sums[..dofs.len()]);
+            for ((own, sum), &dof) in own.iter_mut().zip(sums.iter_mut()).zip(dofs.iter()) {
+                (*own, *sum) = (x[dof as usize], y[dof as usize]);
+            }
+            k.add_twofold(by, own, sums);
+            sums.iter().zip(dofs.iter()).for_each(|(sum, &dof)| y[dof as usize] = *sum);
+        }
+        Ok(())
     }
 
     /// Numbers of the unknowns of each piece.
@@ -116,19 +129,19 @@ impl Assembled {
         }
     }
 
-    /// `work(dofs, K_s, A_s'x, room)` for piece after piece.
-    fn each_piece(
+    /// `work(K_s, A_s'x)` of every piece, in their order.
+    fn of_pieces<T: Send>(
         &self,
         x: &[f64],
-        mut work: impl FnMut(&[u32], &Symmetric, &[f64], &mut [f64]),
-    ) -> Result<()> {
-        let (mut own, mut room) = (zeros(self.largest(), WHAT)?, zeros(self.largest(), WHAT)?);
-        for (dofs, k) in &self.pieces {
-            let (own, room) = (&mut own[..dofs.len()], &mut room[..dofs.len()]);
-            own.iter_mut().zip(dofs.iter()).for_each(|(own, &dof)| *own = x[dof as usize]);
-            work(dofs, k, own, room);
-        }
-        Ok(())
+        work: impl Fn(&Symmetric, &[f64]) -> Result<T> + Sync,
+    ) -> Result<Vec<T>> {
+        let of_piece = |s: usize| {
+            let (dofs, k) = &self.pieces[s];
+            let mut own = reserved(dofs.len(), WHAT)?;
+            own.extend(dofs.iter().map(|&dof| x[dof as usize]));
+            work(k, &own)
+        };
+        threads::parts(self.pieces.len(), of_piece).into_iter().collect()
     }
 
     /// Unknowns of the largest piece.

@@ -113,15 +113,16 @@ fn smaller(a: f64, b: f64) -> f64 {
 
 /// `|f|_{D^-1} + |r|_{D^-1}` over the unknowns of body p in row i, force; 0 unless all of them are grounded.
 fn at_grounded(field: &Field, rows: &RowSet, i: usize, p: usize) -> f64 {
-    let (start, mut there) = (field.range(p).start, vec![0.0; field.range(p).len()]);
-    let own = rows.matrix.row(i).map(|(j, _)| j).filter(|j| field.range(p).contains(j));
-    if !own.clone().all(|j| field.grounded[j]) {
+    let range = field.range(p);
+    let own: Vec<usize> = rows.matrix.row(i).map(|(j, _)| j).filter(|j| range.contains(j)).collect();
+    if !own.iter().all(|&j| field.grounded[j]) {
         return 0.0;
     }
-    own.clone().for_each(|j| there[j - start] = field.load(p, j));
-    let load = field.size(p, &there);
-    own.for_each(|j| there[j - start] = field.push[j]);
-    load + field.size(p, &there)
+    let size = |of: &dyn Fn(usize) -> f64| {
+        let forces: Vec<f64> = own.iter().map(|&j| of(j)).collect();
+        weighted_norm(&forces, |at| 1.0 / field.metric[own[at]])
+    };
+    size(&|j| field.load(p, j)) + size(&|j| field.push[j])
 }
 
 /// The forces that the motion asked for by the rows and by grounded unknowns would take where it is asked for, force:
