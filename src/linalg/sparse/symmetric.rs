@@ -9,7 +9,7 @@ use crate::linalg::{Array, Matrix, Operator};
 use crate::platform::memory::{copied, reserved};
 
 /// Columns that take one pass over the matrix.
-const TOGETHER: usize = 3;
+const TOGETHER: usize = 8;
 
 /// Symmetric `n x n`; row i holds the entries with column <= i, ascending, the diagonal last.
 #[derive(Debug, Clone, PartialEq)]
@@ -122,8 +122,37 @@ impl Symmetric {
         self.accumulate_rows::<1>(by, x.as_chunks().0, y.as_chunks_mut().0, terms.as_chunks_mut().0);
     }
 
-    /// The same for some columns at once, given and returned by rows; y and terms are zero.
+    /// The same for some columns at once, given and returned by rows; y and terms are zero. The same bits by the vector instructions that
+    /// the processor has.
     fn accumulate_rows<const N: usize>(
+        &self,
+        by: f64,
+        x: &[[f64; N]],
+        y: &mut [[f64; N]],
+        terms: &mut [[f64; N]],
+    ) {
+        #[cfg(target_arch = "x86_64")]
+        if N > 1 && std::arch::is_x86_feature_detected!("avx2") {
+            // SAFETY: the processor has AVX2
+            return unsafe { self.accumulate_rows_by_avx2(by, x, y, terms) };
+        }
+        self.accumulate_rows_by(by, x, y, terms);
+    }
+
+    #[cfg(target_arch = "x86_64")]
+    #[target_feature(enable = "avx2")]
+    fn accumulate_rows_by_avx2<const N: usize>(
+        &self,
+        by: f64,
+        x: &[[f64; N]],
+        y: &mut [[f64; N]],
+        terms: &mut [[f64; N]],
+    ) {
+        self.accumulate_rows_by(by, x, y, terms);
+    }
+
+    #[inline(always)]
+    fn accumulate_rows_by<const N: usize>(
         &self,
         by: f64,
         x: &[[f64; N]],
