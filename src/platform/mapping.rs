@@ -2,26 +2,21 @@
 
 use std::ptr::NonNull;
 
-/// Blocks from this size on get large pages, where the system has them on request.
-#[cfg(target_os = "linux")]
-const LARGE_PAGES: usize = 8 << 20;
 /// A multiple of the pages of all systems: those of Linux have 4, 16 or 64 KiB.
 pub const PAGE: usize = 64 << 10;
 
-/// Fresh pages of so many bytes. Those to be `used` are cleared all at once where they are few; for many, large pages are
-/// asked for: clearing small ones when they are touched first takes a sixth of a factorisation.
+/// Fresh pages of so many bytes. For those to be `used` large pages are asked for, where the system has them on request: clearing small
+/// ones when they are touched first takes a sixth of a factorisation.
 #[cfg(target_os = "linux")]
 pub fn map(bytes: usize, used: bool) -> Option<NonNull<f64>> {
     let access = libc::PROT_READ | libc::PROT_WRITE;
-    let many = bytes >= LARGE_PAGES;
-    let at_once = if used && !many { libc::MAP_POPULATE } else { 0 };
-    let kind = libc::MAP_PRIVATE | libc::MAP_ANONYMOUS | at_once;
+    let kind = libc::MAP_PRIVATE | libc::MAP_ANONYMOUS;
     // SAFETY: new pages at an address that the system chooses.
     let start = unsafe { libc::mmap(std::ptr::null_mut(), bytes, access, kind, -1, 0) };
     if start == libc::MAP_FAILED {
         return None;
     }
-    if used && many {
+    if used {
         // SAFETY: the pages just mapped; the advice does not change what they hold. Where it is refused nothing happens.
         unsafe { libc::madvise(start, bytes, libc::MADV_HUGEPAGE) };
     }

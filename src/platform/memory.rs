@@ -13,8 +13,9 @@ use crate::platform::mapping::could_have;
 
 /// Bytes that are always left for small pieces: texts, maps, the growth of the heap by the allocator.
 const SPARE: usize = 2 << 20;
-/// Reservations from this size on must leave what is spare.
-pub const LARGE: usize = 4 << 10;
+/// Reservations from this size on must leave what is spare: to find out takes two calls of the system, as long as it takes to fill a
+/// smaller array.
+pub const LARGE: usize = 32 << 10;
 /// Work arrays of faer's products, made on the first product of every thread.
 pub const PRODUCTS: usize = 5 << 20;
 /// For the rooms inside one that many small matrices are made in, one after the other.
