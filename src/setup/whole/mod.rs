@@ -12,6 +12,7 @@ use crate::linalg::vector::power_of_two_below;
 use crate::linalg::{Csr, Matrix};
 use crate::model::{Model, Parts};
 use crate::platform::memory::{copied, reserved, zeros};
+use crate::platform::threads;
 use crate::setup::islands::{Island, Members};
 use null_space::null_space;
 
@@ -51,7 +52,7 @@ impl Basis {
 }
 
 /// K+ and grounded unknowns of a part.
-pub type OfPart<'a> = dyn Fn(usize) -> Option<(&'a Arc<GeneralizedInverse>, &'a Arc<[u32]>)> + 'a;
+pub type OfPart<'a> = dyn Fn(usize) -> Option<(&'a Arc<GeneralizedInverse>, &'a Arc<[u32]>)> + Sync + 'a;
 
 impl Whole {
     /// None of an island without pieces.
@@ -83,11 +84,10 @@ impl Whole {
         };
         let unit = power_of_two_below(bodies.iter().map(stiffness).fold(0.0, f64::max));
         let island = Island { bodies, ranges, contact, equalities, unit };
-        let bodies = island
-            .bodies
-            .iter()
-            .map(|&body| whole_body(model, parts, body, of_part).map_err(|e| e.body(parts.first[body])))
-            .collect::<Result<_>>()?;
+        let bodies = threads::run(model.threads(), island.bodies.len(), |k| {
+            let body = island.bodies[k];
+            whole_body(model, parts, body, of_part).map_err(|e| e.body(parts.first[body]))
+        })?;
         Ok(Some(Self { island, bodies, place }))
     }
 
