@@ -176,6 +176,7 @@ mod tests {
     use crate::body::{GeneralizedInverse, Modes, NullSpaceInput};
     use crate::linalg::random::Random;
     use crate::linalg::Symmetric;
+    use crate::platform::slabs::Slabs;
     use std::sync::Arc;
 
     /// Two chains of n unit springs, each with a spring to the ground at its first dof, or none.
@@ -208,7 +209,7 @@ mod tests {
         let (n, k) = (20, chains(20, [0.002, 0.0]));
         let inverse = made(&k, rigid(n, &[1])).with_carried(&k, &rigid(n, &[0, 1])).unwrap();
         let exact = inverse.clone();
-        let inverse = inverse.rounded(&k).unwrap();
+        let inverse = inverse.rounded(&k, &Slabs::of(0).unwrap()).unwrap();
         assert!(inverse.is_rounded());
         let l: Vec<f64> = (0..2 * n).map(|i| if i < n { k.metric(i, 1.0) } else { 0.0 }).collect();
         let (mut own, mut near, mut refined) = (l.clone(), l.clone(), l.clone());

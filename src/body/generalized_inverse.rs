@@ -14,6 +14,7 @@ use crate::body::spectrum::Doubt;
 use crate::error::Result;
 use crate::linalg::cholesky::{inverse_columns, inverse_form};
 use crate::linalg::{Analysis, Csr, Matrix, Multiple, Packed};
+use crate::platform::slabs::Slabs;
 
 #[derive(Clone)]
 pub struct GeneralizedInverse {
@@ -129,10 +130,10 @@ impl GeneralizedInverse {
         }
     }
 
-    /// With its factor rounded to single precision, where K allows it.
-    pub fn rounded(mut self, k: &Multiple) -> Result<Self> {
+    /// With its factor rounded to single precision, in `slabs`, where K allows it.
+    pub fn rounded(mut self, k: &Multiple, slabs: &Slabs) -> Result<Self> {
         let rounded = match &self.factor {
-            Factor::Own(factor) => Rounded::of(factor, k, &self.fixing, self.softness)?,
+            Factor::Own(factor) => Rounded::of(factor, k, &self.fixing, self.softness, slabs)?,
             Factor::Rounded(_) | Factor::Host(_) => None,
         };
         if let Some(rounded) = rounded {

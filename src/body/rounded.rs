@@ -13,6 +13,7 @@ use crate::linalg::vector::{axpy, weighted_norm};
 use crate::linalg::{Cholesky, Csr, Matrix, Multiple, Packed};
 use crate::platform::interrupt;
 use crate::platform::memory::{copied, zeros};
+use crate::platform::slabs::Slabs;
 
 /// Rounding of L, as a part of its entries.
 const SINGLE: f64 = f32::EPSILON as f64 / 2.0;
@@ -37,12 +38,19 @@ pub struct Rounded {
 
 impl Rounded {
     /// None where rounding of L would be felt: matrices of stiffness too different. `softness`: `|f| / | |K||K+ f| |` of a random load.
-    pub fn of(factor: &Cholesky, k: &Multiple, held: &[usize], softness: f64) -> Result<Option<Self>> {
+    /// The rounded L lies in `slabs`.
+    pub fn of(
+        factor: &Cholesky,
+        k: &Multiple,
+        held: &[usize],
+        softness: f64,
+        slabs: &Slabs,
+    ) -> Result<Option<Self>> {
         if !(softness * SHARE > SINGLE && factor.smallest_pivot() > TINY && factor.at_rest().is_empty()) {
             return Ok(None);
         }
         let rounding = f64::EPSILON * (1.0 / softness).max(4.0);
-        let rounded = Self { factor: factor.rounded()?, k: k.clone(), held: held.to_vec(), rounding };
+        let rounded = Self { factor: factor.rounded(slabs)?, k: k.clone(), held: held.to_vec(), rounding };
         // a load that stretches all dofs alike
         let load: Vec<f64> = (0..k.order()).map(|i| k.metric(i, 1.0).sqrt()).collect();
         let mut x = copied(&load, WHAT)?;
@@ -173,8 +181,8 @@ mod tests {
     #[test]
     fn refined_solutions_are_those_of_the_factor_in_double_precision() {
         let k = chain(60, 0.3);
-        let factor = factor(&k);
-        let rounded = Rounded::of(&factor, &k, &[], 1e-3).unwrap().expect("such a chain allows it");
+        let (factor, slabs) = (factor(&k), Slabs::of(0).unwrap());
+        let rounded = Rounded::of(&factor, &k, &[], 1e-3, &slabs).unwrap().expect("such a chain allows it");
         let load = Random::default().vector(60, |_| 1.0).unwrap();
         let solutions = [
             |f: &Cholesky, _: &Rounded, x: &mut [f64]| f.solve(x),
@@ -193,8 +201,8 @@ mod tests {
     #[test]
     fn entries_and_columns_of_dual_operators_are_refined() {
         let k = chain(40, 1.0);
-        let factor = factor(&k);
-        let rounded = Rounded::of(&factor, &k, &[], 1e-3).unwrap().unwrap();
+        let (factor, slabs) = (factor(&k), Slabs::of(0).unwrap());
+        let rounded = Rounded::of(&factor, &k, &[], 1e-3, &slabs).unwrap().unwrap();
         let mut rows = Csr::empty(40);
         rows.push_row([(3, 1.0), (17, -1.0)]);
         rows.push_row([(39, 2.0)]);
@@ -211,7 +219,11 @@ mod tests {
     fn a_factor_whose_rounding_would_be_felt_is_not_rounded() {
         for (ground, softness) in [(1e-7, 1.0), (1e-7, 1e-7), (1.0, 1e-6), (1.0, f64::NAN)] {
             let k = chain(30, ground);
-            assert!(Rounded::of(&factor(&k), &k, &[], softness).unwrap().is_none(), "{ground} {softness}");
+            let slabs = Slabs::of(0).unwrap();
+            assert!(
+                Rounded::of(&factor(&k), &k, &[], softness, &slabs).unwrap().is_none(),
+                "{ground} {softness}"
+            );
         }
     }
 }

@@ -6,6 +6,7 @@ mod mapping;
 pub mod memory;
 pub mod pages;
 mod pools;
+pub mod slabs;
 mod sync;
 pub mod tally;
 pub mod threads;

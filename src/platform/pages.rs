@@ -5,6 +5,7 @@ use std::alloc::{alloc_zeroed, dealloc, Layout};
 use std::ops::{Deref, DerefMut};
 use std::ptr::NonNull;
 use std::slice::{from_raw_parts, from_raw_parts_mut};
+use std::sync::Arc;
 
 use crate::error::Result;
 use crate::platform::mapping::{map, unmap, PAGE};
@@ -30,6 +31,8 @@ pub struct Pages<T: Number = f64> {
     mapped: usize,
     /// What the allocator gave.
     layout: Layout,
+    /// The array that it is a part of.
+    whole: Option<Arc<Pages>>,
 }
 
 // SAFETY: it owns its numbers as a `Vec` does.
@@ -51,11 +54,21 @@ impl<T: Number> Pages<T> {
             // SAFETY: there are more bytes than none. All bits zero is the number 0.
             _ => NonNull::new(unsafe { alloc_zeroed(layout) }.cast()).ok_or_else(refused)?,
         };
-        let pages = Self { start, len, mapped, layout };
+        let pages = Self { start, len, mapped, layout, whole: None };
         if bytes >= LARGE {
             ensure_spare(bytes, what)?;
         }
         Ok(pages)
+    }
+
+    /// `len` numbers of `whole`, which lives as long as they do, from the byte `at` on.
+    ///
+    /// # Safety
+    /// They lie in `whole`, in their alignment, and nobody else sees them.
+    pub(super) unsafe fn part_of(whole: &Arc<Pages>, at: usize, len: usize) -> Self {
+        // SAFETY: within `whole`, as the caller promises
+        let start = unsafe { whole.start.byte_add(at) }.cast();
+        Self { start, len, mapped: 0, layout: Layout::new::<()>(), whole: Some(Arc::clone(whole)) }
     }
 
     /// Keeps the first `len` values; pages that they do not need go back to the system, where they are many.
@@ -88,6 +101,9 @@ impl<T: Number> DerefMut for Pages<T> {
 
 impl<T: Number> Drop for Pages<T> {
     fn drop(&mut self) {
+        if self.whole.is_some() {
+            return;
+        }
         if self.mapped > 0 {
             // SAFETY: the pages of this array, mapped by `map`.
             unsafe { unmap(self.start.cast(), self.mapped) };

@@ -13,15 +13,16 @@ use crate::body::{
 use crate::certificate::grounded;
 use crate::dual::{Kept, Size};
 use crate::error::{Error, Kind, Result};
-use crate::linalg::Symmetric;
+use crate::linalg::{Multiple, Symmetric};
 use crate::model::Model;
+use crate::platform::slabs::Slabs;
 use crate::platform::threads;
 use crate::progress::{Log, LogLevel, Phase, SetupPart, Watch};
 use crate::setup::memory_limit::check_memory;
 use crate::setup::operators::Operators;
 use crate::setup::plans::{plans, weights};
 use crate::setup::prepared::{Inverse, Prepared};
-use crate::setup::rounding::{self, may_be_rounded};
+use crate::setup::rounding::may_be_rounded;
 
 /// Analyses of one pattern that a body looks at before it makes one of its own.
 const TRIED: usize = 8;
@@ -102,14 +103,16 @@ impl Prepared {
         // operations grow with the power 3/2 of the entries
         let weights = own.iter().map(|(_, bytes, ..)| (*bytes as f64).powf(1.5)).collect();
         let part = SetupPart::of(model.threads(), weights, FACTORISED);
+        let slabs =
+            Slabs::of(own.iter().filter(|(p, ..)| rounded[*p]).map(|(_, bytes, ..)| bytes / 2).sum())?;
         let make = |k: usize| {
             let plan = own[k].2.lock().ok().and_then(|mut plan| plan.take());
             let plan = plan.ok_or_else(|| Error::new(Kind::Internal, "a body was factorised twice"))?;
             let (p, matrix) = (own[k].0, own[k].3.as_ref());
             let mut made = plan.execute().map_err(|e| e.body(p))?;
             if let Some(matrix) = matrix.filter(|_| rounded[p]) {
-                let rounded = rounding::rounded(made.inverse, matrix, model.bodies[p].body.unit());
-                made.inverse = rounded.map_err(|e| e.body(p))?;
+                let k = Multiple { matrix: Arc::clone(matrix), by: 1.0 / model.bodies[p].body.unit() };
+                made.inverse = made.inverse.rounded(&k, &slabs).map_err(|e| e.body(p))?;
             }
             Ok((made, grounded_in(matrix)?))
         };

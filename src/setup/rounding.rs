@@ -1,11 +1,6 @@
 //! Which factors are rounded to single precision: those of the pieces of a body that is cut, wherever they serve products alone, whose
 //! time is that of reading them.
 
-use std::sync::Arc;
-
-use crate::body::GeneralizedInverse;
-use crate::error::Result;
-use crate::linalg::{Multiple, Symmetric};
 use crate::model::Model;
 use crate::setup::operators::Operators;
 
@@ -18,13 +13,4 @@ pub(super) fn may_be_rounded(
     let mut rounded: Vec<bool> = (0..model.bodies.len()).map(|p| model.is_piece(p)).collect();
     (0..rounded.len()).filter(|&p| !operators.implicit[p]).for_each(|p| rounded[owner(p)] = false);
     rounded
-}
-
-/// K+ with its factor rounded, where K allows it.
-pub(super) fn rounded(
-    inverse: GeneralizedInverse,
-    matrix: &Arc<Symmetric>,
-    unit: f64,
-) -> Result<GeneralizedInverse> {
-    inverse.rounded(&Multiple { matrix: Arc::clone(matrix), by: 1.0 / unit })
 }

@@ -11,6 +11,7 @@ use crate::linalg::sparse::csr::by_columns;
 use crate::linalg::{Csr, Symmetric};
 use crate::platform::memory::{headroom, reserved, zeros, Headroom, PRODUCTS};
 use crate::platform::pages::{Number, Pages};
+use crate::platform::slabs::Slabs;
 
 /// An entry of L as it is kept. All sums are doubles.
 pub trait Entry: Number + Into<f64> {}
@@ -184,9 +185,9 @@ impl Cholesky {
         self.pivots().fold(f64::INFINITY, |smallest, (_, pivot)| smallest.min(pivot))
     }
 
-    /// L rounded to half the bytes.
-    pub fn rounded(&self) -> Result<Cholesky<f32>> {
-        let mut values = Pages::zeros(self.values.len(), "a rounded Cholesky factor")?;
+    /// L rounded to half the bytes, which come from `slabs`.
+    pub fn rounded(&self, slabs: &Slabs) -> Result<Cholesky<f32>> {
+        let mut values = slabs.zeros(self.values.len(), "a rounded Cholesky factor")?;
         values.iter_mut().zip(&*self.values).for_each(|(rounded, value)| *rounded = *value as f32);
         Ok(Cholesky { analysis: Arc::clone(&self.analysis), values, held: self.held.clone() })
     }
