@@ -51,6 +51,41 @@ pub fn friction(
     Ok(run.solution(verdict))
 }
 
+/// Products of the linear problem in which the states of an answer, its slip directions and slips are known: what friction is
+/// measured against.
+pub fn known_face(
+    problem: FrictionProblem,
+    limits: FrictionLimits,
+    answer: &FrictionSolution,
+    observer: &mut dyn FrictionObserver,
+) -> Result<usize> {
+    let (mut run, first) = Run::new(problem, limits, FrictionStart::default(), observer)?;
+    let g = run.gradient(&answer.x)?;
+    let r = run.gaps(&g, &answer.alpha);
+    run.counts.products = 0;
+    let model = run.model(Face::at(problem.cones, &answer.x, &r, RHO))?;
+    let (x, mut g) = (first.point, run.gradient(&vec![0.0; r.len()])?);
+    run.small = limits.tolerance * run.size_of_gaps(&g)?;
+    g = run.gradient(&x)?;
+    let alpha = run.turned(&model, &x, &g, &vec![0.0; problem.e.len()])?;
+    let start = run.point(Laws { cones: problem.cones, rho: RHO }, x, g, alpha)?;
+    let preconditioner = problem.preconditioner.map(|m| m.on(&model.face)).transpose()?;
+    let size = norm(&model.reduced(model.face.residual(&start.x, &start.r))?);
+    let (mut there, mut rest) = ((start.x.clone(), start.r.clone()), 1.0);
+    while rest * size > run.small && run.counts.products < limits.products {
+        let v = run.direction(&model, preconditioner.as_deref(), (&there.0, &there.1))?;
+        if !run.keep(v, &start, &model)? {
+            break;
+        }
+        let step = run.pairs.minimise(&model, model.face.residual(&start.x, &start.r))?;
+        rest = step.rest;
+        there = (start.x.clone(), start.r.clone());
+        axpy(1.0, &step.dx, &mut there.0);
+        axpy(1.0, &step.dg, &mut there.1);
+    }
+    Ok(run.counts.products + 1)
+}
+
 impl<'a> Run<'a, '_> {
     fn solve(
         &mut self,

@@ -23,7 +23,7 @@ mod start;
 
 pub use cones::{Cones, Force, Node, Place};
 pub use coordinates::{Coordinate, Law};
-pub use end::friction;
+pub use end::{friction, known_face};
 pub use face::{Face, State};
 pub use pairs::Pairs;
 
