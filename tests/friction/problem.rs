@@ -4,7 +4,7 @@ use feti_contact::error::Result;
 use feti_contact::linalg::{Csr, Matrix};
 use feti_contact::qp::friction::{
     friction, Cones, FrictionLimits, FrictionObserver, FrictionProblem, FrictionReport, FrictionSolution,
-    FrictionStart, Node, Pairs,
+    FrictionStart, Node,
 };
 use feti_contact::qp::{AcceptanceTest, Direct};
 
@@ -84,9 +84,6 @@ impl Given {
         friction(self.problem(), self.limits(tolerance, limit), start, &mut Content, &mut Content).unwrap()
     }
 
-    pub fn with(&self, pairs: Pairs) -> FrictionSolution {
-        self.from(FrictionStart { pairs, ..FrictionStart::default() }, 1e-10, 400)
-    }
 
     /// `|x - NAT(x - r)|, |G x - e|`: what the laws miss at an answer, against `|d|` and `|e|`.
     pub fn missed(&self, found: &FrictionSolution) -> (f64, f64) {

@@ -16,14 +16,16 @@ use crate::qp::{AcceptanceTest, Direct, Verdict};
 
 /// rho at first: rows have the compliance `b K_d^-1 b' + C = 1`.
 const RHO: f64 = 0.2;
-/// In these multiples where the merit is not halved for long; the path along smoothed laws comes after the first.
+/// In these multiples where the merit is not halved for long; with the first two comes a path along smoothed laws, before
+/// them where the merit is far from zero.
 const MULTIPLES: [f64; 5] = [5.0, 0.2, 25.0, 0.04, 1.0];
 /// A merit above this part of the scale is no better than the start.
 const FAR: f64 = 1e-3;
-/// Products of the path at most.
-const PATH: usize = 60;
-/// rho of the paths with dense matrices.
-const DENSE: [f64; 3] = [RHO, 5.0 * RHO, 0.2 * RHO];
+/// By how much the bounds are relaxed on these paths, in units of eps, and products of each at most: the first is the shorter way, the
+/// second goes on near to sliding.
+const PATHS: [(f64, usize); 2] = [(0.0, 60), (1.0, 100)];
+/// rho of the paths with dense matrices, and by how much bounds are relaxed.
+const DENSE: [(f64, f64); 4] = [(RHO, 0.0), (RHO, 1.0), (5.0 * RHO, 1.0), (RHO, 3.0)];
 /// Each time that the answer is not accepted the laws are to be met this much better, ...
 const TIGHTER: f64 = 0.1;
 /// ... so many times at most.
@@ -126,17 +128,22 @@ impl<'a> Run<'a, '_> {
     fn otherwise(&mut self, direct: Option<Direct>, start: &Point, stalled: Point) -> Result<Point> {
         let mut now = stalled;
         for (count, multiple) in MULTIPLES.into_iter().enumerate() {
-            self.tried.restarts += 1;
-            now = self.again(start, now, multiple * RHO)?;
-            if self.is_over(&now) {
-                return Ok(now);
-            }
-            if count == 0 {
-                self.tried.paths += 1;
-                now = self.from_path(start, RHO, Solves::Pairs { products: PATH })?;
-            }
-            if self.is_over(&now) {
-                return Ok(now);
+            let far = now.merit > FAR * self.scale;
+            for by_path in [far, !far] {
+                match PATHS.get(count).filter(|_| by_path) {
+                    Some(&(relaxed, products)) => {
+                        self.tried.paths += 1;
+                        now = self.from_path(start, (RHO, relaxed), Solves::Pairs { products })?;
+                    }
+                    None if by_path => {}
+                    None => {
+                        self.tried.restarts += 1;
+                        now = self.again(start, now, multiple * RHO)?;
+                    }
+                }
+                if self.is_over(&now) {
+                    return Ok(now);
+                }
             }
         }
         for second in [Self::without_friction, Self::sticking] {
@@ -148,9 +155,9 @@ impl<'a> Run<'a, '_> {
             }
         }
         if let Some(dense) = direct.map(|direct| Dense::new(&self.problem, direct)).transpose()?.flatten() {
-            for rho in DENSE {
+            for how in DENSE {
                 self.tried.dense_paths += 1;
-                now = self.from_path(start, rho, Solves::Dense(&dense))?;
+                now = self.from_path(start, how, Solves::Dense(&dense))?;
                 if self.is_over(&now) {
                     break;
                 }
@@ -173,10 +180,10 @@ impl<'a> Run<'a, '_> {
     }
 
     /// Newton's method from the end of a path that begins at the start.
-    fn from_path(&mut self, start: &Point, rho: f64, how: Solves) -> Result<Point> {
+    fn from_path(&mut self, start: &Point, (rho, relaxed): (f64, f64), how: Solves) -> Result<Point> {
         let laws = Laws { cones: self.problem.cones, rho };
         let begun = self.point(laws, start.x.clone(), start.g.clone(), start.alpha.clone())?;
-        let end = self.path(laws, begun, how)?;
+        let end = self.path(laws, begun, relaxed, how)?;
         if end.merit <= self.small {
             return Ok(end);
         }

@@ -7,7 +7,7 @@ use crate::qp::friction::direct::Dense;
 use crate::qp::friction::face::Model;
 use crate::qp::friction::newton::{Laws, Point, Run};
 use crate::qp::friction::pairs::Step;
-use crate::qp::friction::smooth::{face, missed};
+use crate::qp::friction::smooth::{face, missed, Smoothing};
 
 /// The first eps, of the largest force there is or is to be expected.
 const FIRST: f64 = 0.3;
@@ -26,7 +26,7 @@ const SHORTEST: f64 = 1e-4;
 
 impl Run<'_, '_> {
     /// From `now` until the laws are met or eps has ended; by pairs, at most `products` more, or by dense systems.
-    pub fn path(&mut self, laws: Laws, mut now: Point, how: Solves) -> Result<Point> {
+    pub fn path(&mut self, laws: Laws, mut now: Point, relaxed: f64, how: Solves) -> Result<Point> {
         let Laws { cones, rho } = laws;
         let root = (now.x.len() as f64).sqrt();
         let end = match how {
@@ -39,7 +39,8 @@ impl Run<'_, '_> {
             if now.merit <= self.small || eps <= SMALLEST * first || self.counts.products >= end {
                 break;
             }
-            let model = self.model(face(cones, &now.x, &now.r, rho, eps))?;
+            let by = Smoothing { eps, relaxed };
+            let model = self.model(face(cones, &now.x, &now.r, rho, by))?;
             let step = match how {
                 Solves::Pairs { .. } => self.enough(&model, &now)?,
                 Solves::Dense(dense) => {
@@ -48,7 +49,7 @@ impl Run<'_, '_> {
                 }
             };
             self.tried.newton += 1;
-            let (next, t, left) = self.shortened(laws, &model, &now, &step, eps)?;
+            let (next, t, left) = self.shortened(laws, &model, &now, &step, by)?;
             now = next;
             if left <= eps * root {
                 eps *= if t == 1.0 { SHRINKS } else { SHRINKS_LESS };
@@ -84,10 +85,10 @@ impl Run<'_, '_> {
         model: &Model,
         now: &Point,
         step: &Step,
-        eps: f64,
+        by: Smoothing,
     ) -> Result<(Point, f64, f64)> {
         let Laws { cones, rho } = laws;
-        let before = missed(cones, &now.x, &now.r, rho, eps);
+        let before = missed(cones, &now.x, &now.r, rho, by);
         let along = |t: f64| {
             let (mut x, mut g) = (now.x.clone(), now.g.clone());
             axpy(t, &step.dx, &mut x);
@@ -101,7 +102,7 @@ impl Run<'_, '_> {
             let (x, g) = along(t);
             let alpha: Vec<f64> =
                 now.alpha.iter().zip(&there).map(|(now, there)| now + t * (there - now)).collect();
-            let left = missed(cones, &x, &self.gaps(&g, &alpha), rho, eps);
+            let left = missed(cones, &x, &self.gaps(&g, &alpha), rho, by);
             if left <= (1.0 - FALLS * t) * before || t <= SHORTEST {
                 let next = self.point(laws, x, g, alpha)?;
                 let next = if next.merit.is_finite() { next } else { now.clone() };

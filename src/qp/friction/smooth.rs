@@ -2,13 +2,22 @@
 //! own, and no state is decided before eps is small.
 //!
 //! ```text
-//! x_n = phi(xi_n),   x_t = c(|xi_t|) xi_t/|xi_t|,   c(s) = s + phi(-s - b) - phi(s - b),   b = bound + mu phi(xi_n)
+//! x_n = phi(xi_n),   x_t = c(|xi_t|) xi_t/|xi_t|,   c(s) = s + phi(-s - b) - phi(s - b),   b = bound + mu phi(xi_n) + relaxed eps
 //! ```
+//!
+//! c < b: a load near to sliding would ask for endless slip, or for more than there is, without the last part of b.
 
 use crate::linalg::vector::dot;
 use crate::qp::friction::cones::{direction, length, Cones, Node};
 use crate::qp::friction::coordinates::{Coordinate, Law};
 use crate::qp::friction::face::{Face, State};
+
+#[derive(Clone, Copy)]
+pub struct Smoothing {
+    /// A force.
+    pub eps: f64,
+    pub relaxed: f64,
+}
 
 /// Weights below are those of held values; it keeps dampings finite.
 const SMALLEST: f64 = 1e-100;
@@ -62,11 +71,11 @@ impl Disc {
 }
 
 /// The linear model of the smoothed laws at x and r.
-pub fn face(cones: &Cones, x: &[f64], r: &[f64], rho: f64, eps: f64) -> Face {
+pub fn face(cones: &Cones, x: &[f64], r: &[f64], rho: f64, by: Smoothing) -> Face {
     let xi: Vec<f64> = x.iter().zip(r).map(|(x, r)| x - rho * r).collect();
     let mut face = Face::empty(cones, rho);
     for node in cones.nodes() {
-        push(&mut face, node, (x, r, &xi), eps);
+        push(&mut face, node, (x, r, &xi), by);
     }
     face.finish(cones);
     face
@@ -77,7 +86,8 @@ pub fn face(cones: &Cones, x: &[f64], r: &[f64], rho: f64, eps: f64) -> Face {
 /// ```text
 /// c' dr_u + (1 - c')/rho dx_u - mu dc/db (dx_n + R_n)/rho = -R_u/rho,   k dr_v + (1 - k)/rho dx_v = -R_v/rho,   k = c/|xi_t|
 /// ```
-fn push(face: &mut Face, node: &Node, (x, r, xi): (&[f64], &[f64], &[f64]), eps: f64) {
+fn push(face: &mut Face, node: &Node, (x, r, xi): (&[f64], &[f64], &[f64]), by: Smoothing) {
+    let eps = by.eps;
     let (rho, now, trial) = (face.rho, node.of(x), node.of(xi));
     let (mut normal, mut missed) = (0.0, 0.0);
     if let Some(row) = node.normal {
@@ -88,7 +98,7 @@ fn push(face: &mut Face, node: &Node, (x, r, xi): (&[f64], &[f64], &[f64]), eps:
         let shift = r[row] + damping * now.normal - missed / (rho * p);
         face.coordinates.push(Coordinate::row(row, Law::Free { damping, shift }));
     }
-    let limit = node.limit(normal);
+    let limit = node.limit(normal) + by.relaxed * eps;
     let size = length(trial.tangential);
     let disc = Disc::of(size, limit, eps);
     let coupling = node.mu * disc.by_limit / disc.drop;
@@ -108,13 +118,14 @@ fn push(face: &mut Face, node: &Node, (x, r, xi): (&[f64], &[f64], &[f64]), eps:
 }
 
 /// `|x - smoothed NAT(xi)|` with rho r on free rows: a force.
-pub fn missed(cones: &Cones, x: &[f64], r: &[f64], rho: f64, eps: f64) -> f64 {
+pub fn missed(cones: &Cones, x: &[f64], r: &[f64], rho: f64, by: Smoothing) -> f64 {
+    let eps = by.eps;
     let xi: Vec<f64> = x.iter().zip(r).map(|(x, r)| x - rho * r).collect();
     let mut square: f64 = cones.free().iter().map(|&row| (rho * r[row]).powi(2)).sum();
     for node in cones.nodes() {
         let (now, trial) = (node.of(x), node.of(&xi));
         let normal = node.normal.map_or(0.0, |_| phi(trial.normal, eps));
-        let disc = Disc::of(length(trial.tangential), node.limit(normal), eps);
+        let disc = Disc::of(length(trial.tangential), node.limit(normal) + by.relaxed * eps, eps);
         square += (now.normal - normal).powi(2);
         square += (0..2).map(|k| (now.tangential[k] - disc.ratio * trial.tangential[k]).powi(2)).sum::<f64>();
     }
