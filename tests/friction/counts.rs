@@ -16,7 +16,12 @@ fn counts(deck: Deck) -> (usize, usize) {
     let linear = known_face(given.problem(), given.limits(1e-9, 0), &found, &mut Content).unwrap();
     let (own, of) = (found.counts.products, linear);
     let (b, mu, load) = (deck.blocks, deck.mu, deck.load);
-    println!("{}D {b} mu {mu} load {load}: {own} / {of} = {:.2}, {:?}", deck.dim, own as f64 / of as f64, found.tried);
+    println!(
+        "{}D {b} mu {mu} load {load}: {own} / {of} = {:.2}, {:?}",
+        deck.dim,
+        own as f64 / of as f64,
+        found.tried
+    );
     (own, of)
 }
 
@@ -43,7 +48,8 @@ fn decks(sizes: [(usize, usize); 2]) -> Vec<Deck> {
 
 #[test]
 fn friction_costs_little_more_than_the_linear_problem_of_its_states() {
-    let some: Vec<Deck> = decks([(2, 16), (3, 4)]).into_iter().filter(|deck| deck.mu > 0.1 || deck.blocks == 1).collect();
+    let some: Vec<Deck> =
+        decks([(2, 16), (3, 4)]).into_iter().filter(|deck| deck.mu > 0.1 || deck.blocks == 1).collect();
     let (_, _, ratios) = compared(&some);
     assert!(ratios[ratios.len() / 2] <= 1.3, "median {}", ratios[ratios.len() / 2]);
     assert!(ratios[ratios.len() - 1] <= 2.0, "worst {}", ratios[ratios.len() - 1]);
@@ -67,7 +73,10 @@ fn thin_plates_with_little_friction_are_solved() {
             for load in [0.1, 0.3, 0.8, 0.97] {
                 let given = Deck::new(2, n, blocks, mu, load).given();
                 let found = given.from(FrictionStart::default(), 1e-9, 1000);
-                println!("{n} {blocks} mu {mu} load {load}: {:?} {} {:?}", found.verdict, found.counts.products, found.tried);
+                println!(
+                    "{n} {blocks} mu {mu} load {load}: {:?} {} {:?}",
+                    found.verdict, found.counts.products, found.tried
+                );
                 unsolved += usize::from(found.verdict != Verdict::Solved);
             }
         }

@@ -49,7 +49,13 @@ impl Block {
         let h: Vec<f64> = (0..dim).map(|a| lengths[a] / elements[a] as f64).collect();
         let count: usize = elements.iter().map(|n| n + 1).product();
         let digits = |mut k: usize, base: &dyn Fn(usize) -> usize| -> Vec<usize> {
-            (0..dim).map(|a| { let digit = k % base(a); k /= base(a); digit }).collect()
+            (0..dim)
+                .map(|a| {
+                    let digit = k % base(a);
+                    k /= base(a);
+                    digit
+                })
+                .collect()
         };
         let number = |at: &[usize]| (0..dim).rev().fold(0, |k, a| k * (elements[a] + 1) + at[a]);
         let points = (0..count)
@@ -79,33 +85,45 @@ impl Block {
     /// Nodes of the upper face with their weights at a place.
     fn above(&self, place: &[f64]) -> Vec<(usize, f64)> {
         let dim = place.len() + 1;
-        let cells: Vec<(usize, f64)> = (0..dim - 1).map(|a| {
-            let n = self.elements[a];
-            let t = (place[a] * n as f64).clamp(0.0, n as f64);
-            let i = ((t + 1e-12).floor() as usize).min(n - 1);
-            (i, t - i as f64)
-        }).collect();
-        (0..1usize << (dim - 1)).filter_map(|c| {
-            let bit = |a: usize| c >> a & 1;
-            let weight: f64 = (0..dim - 1).map(|a| if bit(a) == 1 { cells[a].1 } else { 1.0 - cells[a].1 }).product();
-            let at = |a: usize| if a + 1 < dim { cells[a].0 + bit(a) } else { self.elements[a] };
-            let number = (0..dim).rev().fold(0, |k, a| k * (self.elements[a] + 1) + at(a));
-            (weight > 1e-12).then_some((number, weight))
-        }).collect()
+        let cells: Vec<(usize, f64)> = (0..dim - 1)
+            .map(|a| {
+                let n = self.elements[a];
+                let t = (place[a] * n as f64).clamp(0.0, n as f64);
+                let i = ((t + 1e-12).floor() as usize).min(n - 1);
+                (i, t - i as f64)
+            })
+            .collect();
+        (0..1usize << (dim - 1))
+            .filter_map(|c| {
+                let bit = |a: usize| c >> a & 1;
+                let weight: f64 =
+                    (0..dim - 1).map(|a| if bit(a) == 1 { cells[a].1 } else { 1.0 - cells[a].1 }).product();
+                let at = |a: usize| if a + 1 < dim { cells[a].0 + bit(a) } else { self.elements[a] };
+                let number = (0..dim).rev().fold(0, |k, a| k * (self.elements[a] + 1) + at(a));
+                (weight > 1e-12).then_some((number, weight))
+            })
+            .collect()
     }
 
     /// Rigid motions, columns over the unknowns.
     fn motions(&self) -> Vec<Vec<f64>> {
         let dim = self.points[0].len();
         let n = self.points.len();
-        let mean: Vec<f64> = (0..dim).map(|a| self.points.iter().map(|p| p[a]).sum::<f64>() / n as f64).collect();
+        let mean: Vec<f64> =
+            (0..dim).map(|a| self.points.iter().map(|p| p[a]).sum::<f64>() / n as f64).collect();
         let mut motions: Vec<Vec<f64>> =
             (0..dim).map(|a| (0..dim * n).map(|i| f64::from(u8::from(i % dim == a))).collect()).collect();
         for a in 0..dim {
             for b in 0..a {
                 let turn = |i: usize| {
                     let p = &self.points[i / dim];
-                    if i % dim == a { p[b] - mean[b] } else if i % dim == b { mean[a] - p[a] } else { 0.0 }
+                    if i % dim == a {
+                        p[b] - mean[b]
+                    } else if i % dim == b {
+                        mean[a] - p[a]
+                    } else {
+                        0.0
+                    }
                 };
                 motions.push((0..dim * n).map(turn).collect());
             }
@@ -116,18 +134,22 @@ impl Block {
     /// Share of each node in the block, or in its upper face.
     fn share(&self, upper: bool) -> Vec<f64> {
         let dim = self.elements.len();
-        let mut share: Vec<f64> = (0..self.points.len()).map(|mut k| {
-            (0..dim).map(|a| {
-                let i = k % (self.elements[a] + 1);
-                k /= self.elements[a] + 1;
-                let last = i == self.elements[a];
-                match (upper && a + 1 == dim, last || i == 0) {
-                    (true, _) => f64::from(u8::from(last)),
-                    (false, true) => 0.5,
-                    (false, false) => 1.0,
-                }
-            }).product()
-        }).collect();
+        let mut share: Vec<f64> = (0..self.points.len())
+            .map(|mut k| {
+                (0..dim)
+                    .map(|a| {
+                        let i = k % (self.elements[a] + 1);
+                        k /= self.elements[a] + 1;
+                        let last = i == self.elements[a];
+                        match (upper && a + 1 == dim, last || i == 0) {
+                            (true, _) => f64::from(u8::from(last)),
+                            (false, true) => 0.5,
+                            (false, false) => 1.0,
+                        }
+                    })
+                    .product()
+            })
+            .collect();
         let sum: f64 = share.iter().sum();
         share.iter_mut().for_each(|v| *v /= sum);
         share
@@ -145,7 +167,10 @@ fn element(h: &[f64], young: f64) -> Matrix {
     let mut k = Matrix::zeros(dim * corners, dim * corners).unwrap();
     for point in 0..corners {
         let slope = |c: usize, a: usize| -> f64 {
-            let others: f64 = (0..dim).filter(|b| *b != a).map(|b| 0.5 * (1.0 + sign(c, b) * sign(point, b) * place)).product();
+            let others: f64 = (0..dim)
+                .filter(|b| *b != a)
+                .map(|b| 0.5 * (1.0 + sign(c, b) * sign(point, b) * place))
+                .product();
             sign(c, a) / h[a] * others
         };
         for p in 0..corners {
@@ -174,8 +199,11 @@ impl Deck {
         let (length, force) = self.units;
         let n = self.elements;
         let counts = if self.blocks == 1 { vec![n] } else { vec![n, (3 * n / 4).max(2), (n - 1).max(2)] };
-        let blocks: Vec<Block> = counts.iter().enumerate()
-            .map(|(b, &n)| Block::new(dim, n, self.height, if b == 1 { self.contrast } else { 1.0 })).collect();
+        let blocks: Vec<Block> = counts
+            .iter()
+            .enumerate()
+            .map(|(b, &n)| Block::new(dim, n, self.height, if b == 1 { self.contrast } else { 1.0 }))
+            .collect();
         let mut first = vec![0];
         blocks.iter().for_each(|block| first.push(first[first.len() - 1] + block.k.rows));
         let (mut rows, mut gaps, mut nodes): (Vec<Row>, Vec<f64>, Vec<Vec<usize>>) = Default::default();
@@ -187,7 +215,12 @@ impl Deck {
                     let own = (first[b] + dim * i, 1.0);
                     let others = below.iter().map(|(k, w)| (first[b - 1] + dim * k, -w));
                     let all = std::iter::once(own).chain(others);
-                    rows.push(all.flat_map(|(at, w)| direction.iter().enumerate().map(move |(c, d)| (at + c, w * d))).collect());
+                    rows.push(
+                        all.flat_map(|(at, w)| {
+                            direction.iter().enumerate().map(move |(c, d)| (at + c, w * d))
+                        })
+                        .collect(),
+                    );
                     gaps.push(gap);
                     rows.len() - 1
                 };
@@ -308,7 +341,8 @@ fn add_product(a: &Matrix, b: &Matrix, sum: &mut Matrix) {
 /// `K_ss - K_si K_ii^-1 K_is`
 fn schur(k: &Matrix, s: &[usize]) -> Matrix {
     let inner: Vec<usize> = (0..k.rows).filter(|i| s.binary_search(i).is_err()).collect();
-    let part = |a: &[usize], b: &[usize]| Matrix::from_fn(a.len(), b.len(), |i, j| k.get(a[i], b[j])).unwrap();
+    let part =
+        |a: &[usize], b: &[usize]| Matrix::from_fn(a.len(), b.len(), |i, j| k.get(a[i], b[j])).unwrap();
     let mut schur = part(s, s);
     if inner.is_empty() {
         return schur;

@@ -54,8 +54,8 @@ impl FacePreconditioner for OfMatrices {
             Law::Free { damping, .. } => Some(damping),
             Law::Held { .. } => None,
         };
-        let free: Vec<(usize, Coordinate, f64)> = face.coordinates.iter().enumerate()
-            .filter_map(|(k, at)| Some((k, *at, damping(at)?))).collect();
+        let free: Vec<(usize, Coordinate, f64)> =
+            face.coordinates.iter().enumerate().filter_map(|(k, at)| Some((k, *at, damping(at)?))).collect();
         let n = free.len();
         let mut h = Matrix::zeros(n, n)?;
         for (j, (_, at, _)) in free.iter().enumerate() {

@@ -43,11 +43,14 @@ pub fn answers(given: &Given) -> Vec<Vec<f64>> {
     let count: usize = choices.iter().map(Vec::len).product();
     let mut found: Vec<Vec<f64>> = Vec::new();
     for mut number in 0..count {
-        let states: Vec<(bool, Tangential)> = choices.iter().map(|choices| {
-            let state = choices[number % choices.len()];
-            number /= choices.len();
-            state
-        }).collect();
+        let states: Vec<(bool, Tangential)> = choices
+            .iter()
+            .map(|choices| {
+                let state = choices[number % choices.len()];
+                number /= choices.len();
+                state
+            })
+            .collect();
         let (mut a, mut b) = (vec![vec![0.0; m + r]; m + r], vec![0.0; m + r]);
         // r = 0 at first
         for i in 0..m {
@@ -83,14 +86,19 @@ pub fn answers(given: &Given) -> Vec<Vec<f64>> {
 }
 
 fn choices_of(node: &Node) -> Vec<(bool, Tangential)> {
-    let mut choices = vec![(true, Tangential::Stick), (true, Tangential::Slip(1.0)), (false, Tangential::Slip(0.0))];
+    let mut choices =
+        vec![(true, Tangential::Stick), (true, Tangential::Slip(1.0)), (false, Tangential::Slip(0.0))];
     if node.mu > 0.0 || node.bound > 0.0 {
         choices.push((true, Tangential::Slip(-1.0)));
     }
     if node.bound > 0.0 {
         choices.pop();
         choices[2] = (false, Tangential::Slip(1.0));
-        choices.extend([(true, Tangential::Slip(-1.0)), (false, Tangential::Slip(-1.0)), (false, Tangential::Stick)]);
+        choices.extend([
+            (true, Tangential::Slip(-1.0)),
+            (false, Tangential::Slip(-1.0)),
+            (false, Tangential::Stick),
+        ]);
     }
     choices
 }

@@ -18,10 +18,12 @@ fn given(n: usize, part: f64) -> (Given, Vec<f64>) {
     let by = |x: f64| -2.0 / std::f64::consts::PI * (primitive(x + 0.5 * h) - primitive(x - 0.5 * h)) / h;
     let entry = |i: usize, j: usize| if i % 2 == j % 2 { by(place[i / 2] - place[j / 2]) } else { 0.0 };
     let f = Matrix::from_fn(2 * n, 2 * n, entry).unwrap();
-    let d: Vec<f64> = (0..2 * n).map(|i| if i % 2 == 0 { -place[i / 2] * place[i / 2] } else { 0.0 }).collect();
+    let d: Vec<f64> =
+        (0..2 * n).map(|i| if i % 2 == 0 { -place[i / 2] * place[i / 2] } else { 0.0 }).collect();
     let nodes = (0..n).map(|i| Node::new(Some(2 * i), &[2 * i + 1], MU, 0.0).unwrap()).collect();
     let unit = 1.0 / (n as f64).sqrt();
-    let g: Vec<Vec<f64>> = (0..2).map(|c| (0..2 * n).map(|i| if i % 2 == c { unit } else { 0.0 }).collect()).collect();
+    let g: Vec<Vec<f64>> =
+        (0..2).map(|c| (0..2 * n).map(|i| if i % 2 == c { unit } else { 0.0 }).collect()).collect();
     let pressed = 0.5 * std::f64::consts::PI;
     let e = vec![unit * pressed, unit * part * MU * pressed];
     let identity = Matrix::from_fn(2 * n, 2 * n, |i, j| f64::from(u8::from(i == j))).unwrap();

@@ -84,7 +84,6 @@ impl Given {
         friction(self.problem(), self.limits(tolerance, limit), start, &mut Content, &mut Content).unwrap()
     }
 
-
     /// `|x - NAT(x - r)|, |G x - e|`: what the laws miss at an answer, against `|d|` and `|e|`.
     pub fn missed(&self, found: &FrictionSolution) -> (f64, f64) {
         let mut r = vec![0.0; self.d.len()];

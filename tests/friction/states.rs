@@ -39,7 +39,11 @@ fn a_coercive_node_has_one_or_three_states_and_one_of_them_is_found() {
             let all = answers(&given);
             let found = given.solved();
             assert!(all.len() == 1 || all.len() == 3, "{all:?}");
-            assert!(found.verdict == Verdict::Solved && is_one_of(&found.x, &all, 1e-8), "{mu} {:?}", given.d);
+            assert!(
+                found.verdict == Verdict::Solved && is_one_of(&found.x, &all, 1e-8),
+                "{mu} {:?}",
+                given.d
+            );
         }
     }
 }
@@ -51,7 +55,8 @@ fn a_floating_node_rests_where_it_can_and_nothing_is_claimed_where_it_cannot() {
     for _ in 0..750 {
         let node = Node::new(Some(0), &[1], 2.0, 0.0).unwrap();
         let (d, e) = (random.vector(2), random.next());
-        let given = Given::new(matrix([[1.0, -0.8], [-0.8, 1.0]]), d, vec![node]).floating(&[vec![0.0, 1.0]], vec![e]);
+        let given = Given::new(matrix([[1.0, -0.8], [-0.8, 1.0]]), d, vec![node])
+            .floating(&[vec![0.0, 1.0]], vec![e]);
         let n = given.d[0] + 0.8 * e;
         let can = n >= 0.0 && e.abs() <= 2.0 * n;
         let found = given.solved();
@@ -97,7 +102,11 @@ fn answers_of_floating_nodes_in_the_plane_are_among_all_combinations_of_states()
         let (f, d) = (random.positive(2 * k, 0.1), random.vector(2 * k));
         // one motion normal to the surface, one along it
         let g: Vec<Vec<f64>> = (0..2)
-            .map(|mode| (0..2 * k).map(|i| if i % 2 == mode { 1.0 / (k as f64).sqrt() } else { 0.1 * random.next() }).collect())
+            .map(|mode| {
+                (0..2 * k)
+                    .map(|i| if i % 2 == mode { 1.0 / (k as f64).sqrt() } else { 0.1 * random.next() })
+                    .collect()
+            })
             .collect();
         let e = vec![1.0, 0.9 * mu * random.next()];
         compared(&Given::new(f, d, nodes(k, mu, 0.0)).floating(&g, e), 1e-6, &mut count);

@@ -48,7 +48,8 @@ mod tests {
 
     #[test]
     fn a_column_that_depends_on_others_is_not_used_and_the_rest_is_orthogonal() {
-        let data = vec![1.0, 0.0, 1e6, 1.0, 2.0, 0.0, 1e-6, 0.0, 1.0, 2.0, 1e6 + 1.0, 2.0, 0.0, 0.0, 0.0, 0.0];
+        let data =
+            vec![1.0, 0.0, 1e6, 1.0, 2.0, 0.0, 1e-6, 0.0, 1.0, 2.0, 1e6 + 1.0, 2.0, 0.0, 0.0, 0.0, 0.0];
         let a = Matrix { rows: 4, cols: 4, data };
         let b = [1.0, 2.0, 3.0, 5.0];
         let c = least_squares(&a, &b, 1e-12).unwrap();

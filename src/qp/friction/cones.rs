@@ -139,9 +139,17 @@ impl Cones {
             match taken.get_mut(row) {
                 Some(taken) if !*taken => *taken = true,
                 Some(_) => {
-                    return Err(Error::new(Kind::Argument("nodes"), format!("row {row} is in two places of nodes")))
+                    return Err(Error::new(
+                        Kind::Argument("nodes"),
+                        format!("row {row} is in two places of nodes"),
+                    ))
                 }
-                None => return Err(Error::new(Kind::Argument("nodes"), format!("row {row} of a node is beyond all rows"))),
+                None => {
+                    return Err(Error::new(
+                        Kind::Argument("nodes"),
+                        format!("row {row} of a node is beyond all rows"),
+                    ))
+                }
             }
         }
         let free = (0..order).filter(|&row| !taken[row]).collect();

@@ -8,7 +8,7 @@ use crate::qp::friction::direct::Dense;
 use crate::qp::friction::face::{Face, State};
 use crate::qp::friction::nearest::{project, Projected};
 use crate::qp::friction::newton::{Laws, Point, Run};
-use crate::qp::friction::path::Solves;
+use crate::qp::friction::path::{Solves, Way};
 use crate::qp::friction::{
     FrictionLimits, FrictionObserver, FrictionProblem, FrictionSolution, FrictionStart,
 };
@@ -21,9 +21,13 @@ const RHO: f64 = 0.2;
 const MULTIPLES: [f64; 5] = [5.0, 0.2, 25.0, 0.04, 1.0];
 /// A merit above this part of the scale is no better than the start.
 const FAR: f64 = 1e-3;
-/// By how much the bounds are relaxed on these paths, in units of eps, and products of each at most: the first is the shorter way, the
-/// second goes on near to sliding.
-const PATHS: [(f64, usize); 2] = [(0.0, 60), (1.0, 100)];
+/// The first path ends where states are known, the second goes on near to sliding.
+const PATHS: [Way; 2] = [
+    Way { relaxed: 0.0, last: 1e-3, solves: Solves::Pairs { products: 60 } },
+    Way { relaxed: 1.0, last: LAST, solves: Solves::Pairs { products: 100 } },
+];
+/// eps of the first that is rounding.
+const LAST: f64 = 1e-14;
 /// rho of the paths with dense matrices, and by how much bounds are relaxed.
 const DENSE: [(f64, f64); 4] = [(RHO, 0.0), (RHO, 1.0), (5.0 * RHO, 1.0), (RHO, 3.0)];
 /// Each time that the answer is not accepted the laws are to be met this much better, ...
@@ -67,7 +71,7 @@ pub fn known_face(
     run.counts.products = 0;
     let model = run.model(Face::at(problem.cones, &answer.x, &r, RHO))?;
     let (x, mut g) = (first.point, run.gradient(&vec![0.0; r.len()])?);
-    run.small = limits.tolerance * run.size_of_gaps(&g)?;
+    run.measure(&g, limits.tolerance)?;
     g = run.gradient(&x)?;
     let alpha = run.turned(&model, &x, &g, &vec![0.0; problem.e.len()])?;
     let start = run.point(Laws { cones: problem.cones, rho: RHO }, x, g, alpha)?;
@@ -96,17 +100,19 @@ impl<'a> Run<'a, '_> {
         judge: &mut dyn AcceptanceTest,
     ) -> Result<Verdict> {
         let g = self.gradient(&first.point)?;
-        self.scale = self.size_of_gaps(&g)?;
-        self.small = limits.tolerance * self.scale;
+        self.measure(&g, limits.tolerance)?;
         let laws = Laws { cones: self.problem.cones, rho: RHO };
         let start = self.begin(laws, &first.point, &g, &alpha)?;
         self.last.clone_from(&start);
+        if !(start.merit.is_finite() && self.small.is_finite()) {
+            return Ok(Verdict::Stalled);
+        }
         let mut now = self.newton(laws, start.clone())?;
         for refusals in 0.. {
-            if now.merit > self.small {
+            if !self.is_met(&now) {
                 now = self.otherwise(limits.direct, &start, now)?;
             }
-            if now.merit > self.small {
+            if !self.is_met(&now) {
                 let over = self.counts.products >= self.limit;
                 return Ok(if over { Verdict::StepLimit } else { Verdict::Stalled });
             }
@@ -131,9 +137,9 @@ impl<'a> Run<'a, '_> {
             let far = now.merit > FAR * self.scale;
             for by_path in [far, !far] {
                 match PATHS.get(count).filter(|_| by_path) {
-                    Some(&(relaxed, products)) => {
+                    Some(&way) => {
                         self.tried.paths += 1;
-                        now = self.from_path(start, (RHO, relaxed), Solves::Pairs { products })?;
+                        now = self.from_path(start, RHO, way)?;
                     }
                     None if by_path => {}
                     None => {
@@ -155,9 +161,10 @@ impl<'a> Run<'a, '_> {
             }
         }
         if let Some(dense) = direct.map(|direct| Dense::new(&self.problem, direct)).transpose()?.flatten() {
-            for how in DENSE {
+            for (rho, relaxed) in DENSE {
                 self.tried.dense_paths += 1;
-                now = self.from_path(start, how, Solves::Dense(&dense))?;
+                now =
+                    self.from_path(start, rho, Way { relaxed, last: LAST, solves: Solves::Dense(&dense) })?;
                 if self.is_over(&now) {
                     break;
                 }
@@ -167,7 +174,7 @@ impl<'a> Run<'a, '_> {
     }
 
     fn is_over(&self, now: &Point) -> bool {
-        now.merit <= self.small || self.counts.products >= self.limit
+        self.is_met(now) || self.counts.products >= self.limit
     }
 
     /// With another rho, from where it stands or, if that is far from an answer, from the start.
@@ -180,11 +187,11 @@ impl<'a> Run<'a, '_> {
     }
 
     /// Newton's method from the end of a path that begins at the start.
-    fn from_path(&mut self, start: &Point, (rho, relaxed): (f64, f64), how: Solves) -> Result<Point> {
+    fn from_path(&mut self, start: &Point, rho: f64, way: Way) -> Result<Point> {
         let laws = Laws { cones: self.problem.cones, rho };
         let begun = self.point(laws, start.x.clone(), start.g.clone(), start.alpha.clone())?;
-        let end = self.path(laws, begun, relaxed, how)?;
-        if end.merit <= self.small {
+        let end = self.path(laws, begun, way)?;
+        if self.is_met(&end) {
             return Ok(end);
         }
         self.newton(laws, end)

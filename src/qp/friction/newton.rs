@@ -65,7 +65,7 @@ impl Run<'_, '_> {
         if self.pairs.count() > 0 {
             now = self.without_products(laws, now)?;
         }
-        while now.merit > self.small && self.counts.products < self.limit.min(since + PATIENCE) {
+        while !self.is_met(&now) && self.counts.products < self.limit.min(since + PATIENCE) {
             let model = self.model(Face::at(laws.cones, &now.x, &now.r, laws.rho))?;
             let Some((next, falls)) = self.step(laws, &model, &now)? else { break };
             self.tried.newton += 1;
@@ -102,7 +102,7 @@ impl Run<'_, '_> {
     /// Steps to new faces by the pairs there are, as long as the merit falls.
     fn without_products(&mut self, laws: Laws, mut now: Point) -> Result<Point> {
         for _ in 0..INNER_STEPS {
-            if now.merit <= self.small {
+            if self.is_met(&now) {
                 break;
             }
             let model = self.model(Face::at(laws.cones, &now.x, &now.r, laws.rho))?;
@@ -142,6 +142,11 @@ impl Run<'_, '_> {
         // a step that is no number goes nowhere
         let best = if best.merit < f64::INFINITY { best } else { now.clone() };
         Ok((best, false))
+    }
+
+    /// The laws are met; never by what is no number.
+    pub fn is_met(&self, now: &Point) -> bool {
+        now.merit <= self.small
     }
 
     pub fn model(&mut self, face: Face) -> Result<Model> {

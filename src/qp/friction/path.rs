@@ -14,34 +14,33 @@ const FIRST: f64 = 0.3;
 /// eps becomes so much of what it was after a full step, and after a shorter one.
 const SHRINKS: f64 = 0.5;
 const SHRINKS_LESS: f64 = 0.6;
-const SMALLEST: f64 = 1e-14;
 /// Systems solved at most.
 const SYSTEMS: usize = 120;
 /// Directions of one system at most, and what they may leave of its residual.
 const DIRECTIONS: usize = 10;
-const LEFT: f64 = 0.1;
+const LEFT: f64 = 0.3;
 /// A step of length t takes off the residual at least this part of t.
 const FALLS: f64 = 0.1;
 const SHORTEST: f64 = 1e-4;
 
 impl Run<'_, '_> {
     /// From `now` until the laws are met or eps has ended; by pairs, at most `products` more, or by dense systems.
-    pub fn path(&mut self, laws: Laws, mut now: Point, relaxed: f64, how: Solves) -> Result<Point> {
+    pub fn path(&mut self, laws: Laws, mut now: Point, way: Way) -> Result<Point> {
         let Laws { cones, rho } = laws;
         let root = (now.x.len() as f64).sqrt();
-        let end = match how {
+        let end = match way.solves {
             Solves::Pairs { products } => self.limit.min(self.counts.products + products),
             Solves::Dense(_) => usize::MAX,
         };
         let first = FIRST * norm_max(&now.x).max(rho * self.scale / root);
         let mut eps = first;
         for _ in 0..SYSTEMS {
-            if now.merit <= self.small || eps <= SMALLEST * first || self.counts.products >= end {
+            if self.is_met(&now) || eps <= way.last * first || self.counts.products >= end {
                 break;
             }
-            let by = Smoothing { eps, relaxed };
+            let by = Smoothing { eps, relaxed: way.relaxed };
             let model = self.model(face(cones, &now.x, &now.r, rho, by))?;
-            let step = match how {
+            let step = match way.solves {
                 Solves::Pairs { .. } => self.enough(&model, &now)?,
                 Solves::Dense(dense) => {
                     self.counts.direct += 1;
@@ -111,6 +110,14 @@ impl Run<'_, '_> {
             t *= 0.5;
         }
     }
+}
+
+/// A path: by how much bounds are relaxed, in units of eps, and the part of the first eps where it ends.
+#[derive(Clone, Copy)]
+pub struct Way<'d> {
+    pub relaxed: f64,
+    pub last: f64,
+    pub solves: Solves<'d>,
 }
 
 /// How the systems of a path are solved.

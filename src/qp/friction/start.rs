@@ -50,8 +50,15 @@ impl<'a, 'w> Run<'a, 'w> {
         Ok(g)
     }
 
+    /// The length that gaps are measured against, and the merit that counts as zero: rounding of d counts as such.
+    pub fn measure(&mut self, g: &[f64], tolerance: f64) -> Result<()> {
+        self.scale = self.size_of_gaps(g)?;
+        self.small = (tolerance * self.scale).max(4.0 * f64::EPSILON * norm(self.problem.b).max(norm(g)));
+        Ok(())
+    }
+
     /// N, `|P d|`, or `|P (F x - d)|` where that is 0.
-    pub fn size_of_gaps(&mut self, g: &[f64]) -> Result<f64> {
+    fn size_of_gaps(&mut self, g: &[f64]) -> Result<f64> {
         let mut d = self.problem.b.to_vec();
         let whole = norm(&d);
         self.without_motions(&mut d)?;
