@@ -5,7 +5,7 @@ use feti_contact::linalg::{Csr, Matrix, PivotedCholesky};
 use feti_contact::qp::friction::{Cones, Node};
 
 use crate::dense::{Dense, OfMatrices};
-use crate::problem::Given;
+use crate::problem::{Given, Parts};
 
 #[derive(Clone, Copy, Debug)]
 pub struct Deck {
@@ -291,6 +291,7 @@ fn dual(
     let mut d: Vec<f64> = gaps.iter().zip(&scale).map(|(gap, s)| -gap * s).collect();
     let mut g_rows: Vec<Vec<f64>> = Vec::new();
     let mut e = Vec::new();
+    let mut boundaries = Vec::new();
     for (p, k) in k.iter().enumerate() {
         let (from, size) = (first[p], k.rows);
         let own = Matrix::from_fn(size, m, |i, j| b.get(from + i, j)).unwrap();
@@ -309,6 +310,7 @@ fn dual(
         let mut forces = Matrix::zeros(touched.len(), m).unwrap();
         (0..m).for_each(|j| schur.mul_add(1.0, on_touched.col(j), forces.col_mut(j)));
         add_product(&on_touched, &forces, &mut middle);
+        boundaries.push((touched.iter().map(|i| from + i).collect(), schur));
         let before = g_rows.len();
         for motion in &motions[p] {
             let size = motion.iter().enumerate().map(|(i, v)| v * v * diagonal[from + i]).sum::<f64>().sqrt();
@@ -327,7 +329,14 @@ fn dual(
         g_transposed.push_row(entries);
     }
     let preconditioner = Some(OfMatrices { coupling, middle });
-    Given { f: Dense(f), d, g_transposed, e, cones: Cones::new(m, cones).unwrap(), preconditioner }
+    let mut by_rows = Csr::empty(n);
+    for i in 0..m {
+        let column = b.col(i);
+        by_rows.push_row((0..n).filter(|&j| column[j] != 0.0).map(|j| (j, column[j])));
+    }
+    let parts = Some(Parts { b: by_rows, metric: diagonal, boundaries });
+    let cones = Cones::new(m, cones).unwrap();
+    Given { f: Dense(f), d, g_transposed, e, cones, preconditioner, parts }
 }
 
 /// `sum += A'B`

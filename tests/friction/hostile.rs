@@ -33,20 +33,8 @@ fn without_friction_the_answer_is_that_of_half_lines() {
         let k = 1 + case % 6;
         let (f, d) = (random.positive(2 * k, 0.2), random.vector(2 * k));
         let with = |tangents: bool| -> Vec<Node> {
-            (0..k)
-                .map(|i| {
-                    Node::new(Some(i), if tangents { &[0][..] } else { &[] }, 0.0, 0.0)
-                        .map(|node| node)
-                        .and_then(|_| {
-                            if tangents {
-                                Node::new(Some(i), &[k + i], 0.0, 0.0)
-                            } else {
-                                Node::new(Some(i), &[], 0.0, 0.0)
-                            }
-                        })
-                        .unwrap()
-                })
-                .collect()
+            let tangent = |i: usize| if tangents { vec![k + i] } else { Vec::new() };
+            (0..k).map(|i| Node::new(Some(i), &tangent(i), 0.0, 0.0).unwrap()).collect()
         };
         let given = Given::new(f.clone(), d.clone(), with(true));
         let found = given.solved();

@@ -17,6 +17,17 @@ pub struct Given {
     pub e: Vec<f64>,
     pub cones: Cones,
     pub preconditioner: Option<OfMatrices>,
+    pub parts: Option<Parts>,
+}
+
+/// What the preconditioner of the dual layer is made of.
+pub struct Parts {
+    /// m x n, scaled.
+    pub b: Csr,
+    /// diag K
+    pub metric: Vec<f64>,
+    /// Constrained unknowns of each body with their Schur complement.
+    pub boundaries: Vec<(Vec<usize>, Matrix)>,
 }
 
 pub struct Content;
@@ -46,7 +57,7 @@ impl Given {
         let mut g_transposed = Csr::empty(0);
         d.iter().for_each(|_| g_transposed.push_row([]));
         let cones = Cones::new(d.len(), nodes).unwrap();
-        Self { f: Dense(f), d, g_transposed, e: Vec::new(), cones, preconditioner: None }
+        Self { f: Dense(f), d, g_transposed, e: Vec::new(), cones, preconditioner: None, parts: None }
     }
 
     /// With G, r x m, and e.

@@ -41,7 +41,7 @@ impl Node {
         if tangents.len() > 2 {
             return wrong("a node of friction has at most two tangential rows");
         }
-        if !(mu >= 0.0 && mu < f64::INFINITY && bound >= 0.0) {
+        if !((0.0..f64::INFINITY).contains(&mu) && bound >= 0.0) {
             return wrong("a coefficient or bound of friction is negative or no number");
         }
         if mu > 0.0 && normal.is_none() && !tangents.is_empty() {

@@ -139,7 +139,7 @@ impl<'a> Run<'a, '_> {
                 match PATHS.get(count).filter(|_| by_path) {
                     Some(&way) => {
                         self.tried.paths += 1;
-                        now = self.from_path(start, RHO, way)?;
+                        now = self.along_path(start, RHO, way)?;
                     }
                     None if by_path => {}
                     None => {
@@ -164,7 +164,7 @@ impl<'a> Run<'a, '_> {
             for (rho, relaxed) in DENSE {
                 self.tried.dense_paths += 1;
                 now =
-                    self.from_path(start, rho, Way { relaxed, last: LAST, solves: Solves::Dense(&dense) })?;
+                    self.along_path(start, rho, Way { relaxed, last: LAST, solves: Solves::Dense(&dense) })?;
                 if self.is_over(&now) {
                     break;
                 }
@@ -187,7 +187,7 @@ impl<'a> Run<'a, '_> {
     }
 
     /// Newton's method from the end of a path that begins at the start.
-    fn from_path(&mut self, start: &Point, rho: f64, way: Way) -> Result<Point> {
+    fn along_path(&mut self, start: &Point, rho: f64, way: Way) -> Result<Point> {
         let laws = Laws { cones: self.problem.cones, rho };
         let begun = self.point(laws, start.x.clone(), start.g.clone(), start.alpha.clone())?;
         let end = self.path(laws, begun, way)?;

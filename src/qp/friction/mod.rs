@@ -20,12 +20,14 @@ mod pairs;
 mod path;
 mod smooth;
 mod start;
+mod supports;
 
 pub use cones::{Cones, Force, Node, Place};
 pub use coordinates::{Coordinate, Law};
 pub use end::{friction, known_face};
 pub use face::{Face, State};
 pub use pairs::Pairs;
+pub use supports::Supported;
 
 use crate::error::Result;
 use crate::linalg::{Csr, Operator};

@@ -53,6 +53,9 @@ pub fn project(
     let mut terms = vec![0.0; problem.e.len()];
     problem.g_transposed.mul_transposed_abs_add(y, &mut terms);
     let scale = norm(problem.e) + norm(&terms);
+    if !scale.is_finite() {
+        return Ok(now.done(false));
+    }
     let against = if norm(problem.e) > 0.0 { norm(problem.e) } else { scale };
     for step in 0..STEPS {
         interrupt::reached("Newton steps of a projection on cones", step)?;
