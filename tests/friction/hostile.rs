@@ -288,3 +288,69 @@ fn enormous_coefficients_are_stick_and_gaps_that_never_close_are_open() {
     let cones = Cones::new(2, vec![Node::new(Some(0), &[1], 0.5, 0.0).unwrap()]).unwrap();
     assert_eq!((cones.order(), cones.free().len()), (2, 0));
 }
+
+/// Refuses so many answers.
+struct Strict(usize);
+
+impl feti_contact::qp::AcceptanceTest for Strict {
+    fn scale(&mut self, _: &[f64], _: &[f64]) -> Result<f64> {
+        Ok(1.0)
+    }
+
+    fn accepts(&mut self, _: &[f64], _: &[f64]) -> Result<bool> {
+        self.0 = self.0.saturating_sub(1);
+        Ok(self.0 == 0)
+    }
+}
+
+#[test]
+fn an_answer_that_is_refused_becomes_better_or_is_said_to_be_inaccurate() {
+    let given = block().given();
+    let run = |refusals: usize| {
+        let limits = given.limits(1e-6, 0);
+        friction(given.problem(), limits, FrictionStart::default(), &mut Strict(refusals), &mut Content)
+            .unwrap()
+    };
+    let (first, third) = (run(1), run(3));
+    assert_eq!((&first.verdict, &third.verdict), (&Verdict::Solved, &Verdict::Solved));
+    assert!(third.merit < 0.2 * first.merit && third.counts.products > first.counts.products);
+    assert_eq!(run(100).verdict, Verdict::Inaccurate);
+}
+
+/// A tower of blocks, three motions each, that touch in two nodes; a chain of modes that no small part of W holds apart.
+#[test]
+fn a_tower_of_many_blocks_stands() {
+    let mut random = Random::new(11);
+    for blocks in [5, 40, 200] {
+        let (m, r) = (4 * blocks, 3 * blocks);
+        let mut g = feti_contact::linalg::Csr::empty(r);
+        // rows (normal, tangential) of the two nodes below block p, over the motions of p and p - 1
+        for p in 0..blocks {
+            for (x, along) in [(-0.5, false), (-0.5, true), (0.5, false), (0.5, true)] {
+                let of =
+                    |y: f64, sign: f64| if along { [sign, 0.0, -sign * y] } else { [0.0, sign, sign * x] };
+                let below = if p > 0 { of(0.5, -1.0).to_vec() } else { Vec::new() };
+                let above = of(-0.5, 1.0);
+                let first = if p > 0 { 3 * (p - 1) } else { 0 };
+                g.push_row(below.into_iter().chain(above).enumerate().map(|(k, v)| (first + k, -0.5 * v)));
+            }
+        }
+        // weight, and a push that friction holds
+        let e: Vec<f64> = (0..r).map(|k| [0.002, -0.5, 0.0][k % 3] / blocks as f64).collect();
+        let f = Matrix::from_fn(m, m, |i, j| match i.abs_diff(j) {
+            0 => 1.0,
+            2 => 0.3,
+            _ => 0.0,
+        })
+        .unwrap();
+        let d: Vec<f64> =
+            (0..m).map(|i| if i % 2 == 0 { -1e-4 * (1.0 + random.next()) } else { 0.0 }).collect();
+        let nodes =
+            (0..2 * blocks).map(|i| Node::new(Some(2 * i), &[2 * i + 1], 0.4, 0.0).unwrap()).collect();
+        let mut given = Given::new(f, d, nodes);
+        (given.g_transposed, given.e) = (g, e);
+        let found = given.from(FrictionStart::default(), 1e-9, 0);
+        println!("{blocks} blocks: {} products {:?}", found.counts.products, found.tried);
+        right(&given, &found, "tower");
+    }
+}

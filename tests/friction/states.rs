@@ -114,3 +114,24 @@ fn answers_of_floating_nodes_in_the_plane_are_among_all_combinations_of_states()
     println!("{count:?}");
     assert!(count[0] >= 80 && count[1] <= 2, "{count:?}");
 }
+
+/// Larger coefficients and as many as 8 nodes; what is not solved although there are answers is told.
+#[test]
+#[ignore]
+fn many_more_answers_are_among_all_combinations_of_states() {
+    let mut random = Random::new(10);
+    let (mut plain, mut floating) = ([0; 3], [0; 3]);
+    for case in 0..400 {
+        let k = 3 + case % 4 + 2 * usize::from(case % 40 == 0);
+        let mu = [0.1, 0.6, 1.2, 2.5][case / 4 % 4];
+        let (f, d) = (random.positive(2 * k, [0.3, 0.01][case % 2]), random.vector(2 * k));
+        compared(&Given::new(f.clone(), d.clone(), nodes(k, mu, 0.0)), 1e-5, &mut plain);
+        let g: Vec<Vec<f64>> = (0..2)
+            .map(|mode| (0..2 * k).map(|i| if i % 2 == mode { 0.4 } else { 0.1 * random.next() }).collect())
+            .collect();
+        let e = vec![1.0, 0.95 * mu * random.next()];
+        compared(&Given::new(f, d, nodes(k, mu, 0.0)).floating(&g, e), 1e-5, &mut floating);
+    }
+    println!("solved, unsolved, without answer: held {plain:?}, floating {floating:?}");
+    assert!(plain[1] + floating[1] <= 8, "{plain:?} {floating:?}");
+}

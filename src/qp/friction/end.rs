@@ -1,6 +1,6 @@
 //! The method from start to verdict: what is tried, in which order, and the answer.
 
-use crate::error::Result;
+use crate::error::{Kind, Result};
 use crate::linalg::vector::{axpy, norm, ratio};
 use crate::qp::friction::cones::Cones;
 use crate::qp::friction::coordinates::Law;
@@ -21,6 +21,8 @@ const RHO: f64 = 0.2;
 const MULTIPLES: [f64; 5] = [5.0, 0.2, 25.0, 0.04, 1.0];
 /// A merit above this part of the scale is no better than the start.
 const FAR: f64 = 1e-3;
+/// One below it may be as good as rounding allows.
+const NEAR: f64 = 1e-7;
 /// The first path ends where states are known, the second goes on near to sliding.
 const PATHS: [Way; 2] = [
     Way { relaxed: 0.0, last: 1e-3, solves: Solves::Pairs { products: 60 } },
@@ -45,7 +47,8 @@ pub fn friction(
 ) -> Result<FrictionSolution> {
     let alpha = start.alpha.map_or_else(|| vec![0.0; problem.e.len()], <[f64]>::to_vec);
     let (mut run, first) = Run::new(problem, limits, start, observer)?;
-    run.last = Point { x: first.point.clone(), alpha: alpha.clone(), ..Point::default() };
+    run.last =
+        Point { x: first.point.clone(), alpha: alpha.clone(), merit: f64::INFINITY, ..Point::default() };
     if !first.met {
         let margin = ratio(norm(&first.left), norm(problem.e));
         return Ok(run.solution(Verdict::Infeasible { direction: first.left, margin }));
@@ -109,6 +112,14 @@ impl<'a> Run<'a, '_> {
         }
         let mut now = self.newton(laws, start.clone())?;
         for refusals in 0.. {
+            if !self.is_met(&now) && now.merit <= NEAR * self.scale {
+                // rounding may be all that is left
+                let near = self.finished(now.clone())?;
+                if judge.accepts(&near.x, &near.alpha)? {
+                    self.last = near;
+                    break;
+                }
+            }
             if !self.is_met(&now) {
                 now = self.otherwise(limits.direct, &start, now)?;
             }
@@ -160,7 +171,9 @@ impl<'a> Run<'a, '_> {
                 return Ok(now);
             }
         }
-        if let Some(dense) = direct.map(|direct| Dense::new(&self.problem, direct)).transpose()?.flatten() {
+        let dense = direct.map(|direct| Dense::new(&self.problem, direct)).transpose();
+        let dense = dense.or_else(|error| if error.kind == Kind::Memory { Ok(None) } else { Err(error) })?;
+        if let Some(dense) = dense.flatten() {
             for (rho, relaxed) in DENSE {
                 self.tried.dense_paths += 1;
                 now =
@@ -252,7 +265,13 @@ impl<'a> Run<'a, '_> {
     /// The answer: exact zeros, forces exactly within the cones, gaps by a product of their own.
     fn finished(&mut self, now: Point) -> Result<Point> {
         let laws = Laws { cones: self.problem.cones, rho: RHO };
-        let inside = project(&self.problem, laws.cones, self.motions.as_ref(), &now.x)?;
+        let mut y = now.x.clone();
+        // open nodes by their gaps: exactly 0 in the end
+        for row in laws.cones.nodes().iter().filter_map(|node| node.normal) {
+            let trial = now.x[row] - RHO * now.r[row];
+            y[row] = if trial <= 0.0 { trial.min(y[row]) } else { y[row] };
+        }
+        let inside = project(&self.problem, laws.cones, self.motions.as_ref(), &y)?;
         let x = if inside.met { inside.point } else { now.x };
         let g = self.gradient(&x)?;
         let model = self.model(Face::at(laws.cones, &x, &self.gaps(&g, &now.alpha), RHO))?;

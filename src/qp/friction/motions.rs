@@ -10,6 +10,7 @@ use crate::linalg::semidefinite::GeneralInverse;
 use crate::linalg::sparse::gram::Gram;
 use crate::linalg::vector::{norm_max, power_of_two_below};
 use crate::linalg::{Analysis, Cholesky, Csr, Symmetric};
+use crate::platform::memory::{headroom_with, SMALL_MATRICES};
 use crate::platform::{interrupt, tally};
 use crate::qp::friction::coordinates::{self, Coordinate};
 use crate::qp::friction::FrictionProblem;
@@ -95,6 +96,12 @@ impl<'a> Motions<'a> {
         Ok(factor.map(|factor| Inverse { rows, weights, unit, solver: Solver::Cholesky(factor) }))
     }
 
+    /// Of the rows of a face, as they are and weighted.
+    fn bytes(&self) -> usize {
+        2 * (self.pattern.val.len() * (size_of::<f64>() + size_of::<usize>())
+            + self.pattern.ptr.len() * size_of::<usize>())
+    }
+
     fn in_units(&self, w: &mut Symmetric) {
         w.val.iter_mut().for_each(|v| *v /= self.unit * self.unit);
     }
@@ -102,6 +109,7 @@ impl<'a> Motions<'a> {
     fn inverse(&self, rows: Csr, weights: Vec<f64>, rounding: f64) -> Result<Inverse> {
         interrupt::check()?;
         tally::costly();
+        let _room = headroom_with(self.bytes(), SMALL_MATRICES, "the coarse space of a face")?;
         let mut weighted = rows.clone();
         for (i, weight) in weights.iter().enumerate() {
             weighted.val[rows.ptr[i]..rows.ptr[i + 1]].iter_mut().for_each(|v| *v *= weight);

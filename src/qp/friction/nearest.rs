@@ -19,6 +19,9 @@ const ACCEPTED: f64 = 1e-8;
 const STEPS: usize = 100;
 /// Of the trace of `G G'`: what the cones leave of the matrix may be singular.
 const SHIFT: f64 = 1e-6;
+/// The same for the last steps.
+const ROUNDING: f64 = 1e-13;
+const POLISHES: usize = 2;
 /// Armijo's part of the slope, and the shortest step.
 const SLOPE: f64 = 1e-4;
 const SHORTEST: f64 = 1e-10;
@@ -61,20 +64,48 @@ pub fn project(
         interrupt::reached("Newton steps of a projection on cones", step)?;
         let error = norm(&now.left);
         if error <= ACCURACY * scale {
-            return Ok(now.done(true));
+            return Ok(polished(problem, motions, y, now)?.done(true));
         }
         if !now.phi.is_finite() || norm(&now.beta) > ENDLESS * (norm(y) + norm(problem.e)) {
             return Ok(now.done(false));
         }
-        let (coordinates, weights) = derivative(problem.cones, &now.places);
         let shift = SHIFT * (error / against).min(1.0);
-        let Some(matrix) = motions.shifted(&coordinates, weights, shift)? else { break };
-        let direction = matrix.solve(&now.left)?;
+        let Some(direction) = direction(problem, motions, &now, shift)? else { break };
         let Some(next) = armijo(problem, y, &now, &direction) else { break };
         now = next;
     }
     let met = norm(&now.left) <= ACCEPTED * scale;
     Ok(now.done(met))
+}
+
+fn direction(
+    problem: &FrictionProblem,
+    motions: &Motions,
+    now: &Trial,
+    shift: f64,
+) -> Result<Option<Vec<f64>>> {
+    let (coordinates, weights) = derivative(problem.cones, &now.places);
+    let matrix = motions.shifted(&coordinates, weights, shift)?;
+    matrix.map(|matrix| matrix.solve(&now.left)).transpose()
+}
+
+/// Without what rounding leaves of `e - G l`: what motions that are held weakly make of it is not small.
+fn polished(problem: &FrictionProblem, motions: &Motions, y: &[f64], mut now: Trial) -> Result<Trial> {
+    for _ in 0..POLISHES {
+        let error = norm(&now.left);
+        if error == 0.0 {
+            break;
+        }
+        let Some(direction) = direction(problem, motions, &now, ROUNDING)? else { break };
+        let mut beta = now.beta.clone();
+        axpy(1.0, &direction, &mut beta);
+        let next = trial(problem, y, beta);
+        if !(norm(&next.left) < 0.5 * error) {
+            break;
+        }
+        now = next;
+    }
+    Ok(now)
 }
 
 fn trial(problem: &FrictionProblem, y: &[f64], beta: Vec<f64>) -> Trial {

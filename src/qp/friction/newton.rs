@@ -53,7 +53,7 @@ pub struct Run<'a, 'w> {
     /// `|P d|`, what gaps are measured against, and the merit that counts as zero.
     pub scale: f64,
     pub small: f64,
-    /// The last point that was reached.
+    /// The best point that was reached.
     pub last: Point,
     pub observer: &'w mut dyn FrictionObserver,
 }
@@ -70,7 +70,7 @@ impl Run<'_, '_> {
             let Some((next, falls)) = self.step(laws, &model, &now)? else { break };
             self.tried.newton += 1;
             now = if falls { self.without_products(laws, next)? } else { next };
-            self.last.clone_from(&now);
+            self.reached(&now);
             if now.merit < 0.5 * best {
                 (best, since) = (now.merit, self.counts.products);
             }
@@ -147,6 +147,13 @@ impl Run<'_, '_> {
     /// The laws are met; never by what is no number.
     pub fn is_met(&self, now: &Point) -> bool {
         now.merit <= self.small
+    }
+
+    /// The best point is kept for the case that nothing leads to an answer.
+    pub fn reached(&mut self, now: &Point) {
+        if !(self.last.merit <= now.merit) {
+            self.last.clone_from(now);
+        }
     }
 
     pub fn model(&mut self, face: Face) -> Result<Model> {

@@ -53,7 +53,7 @@ impl<'a, 'w> Run<'a, 'w> {
     /// The length that gaps are measured against, and the merit that counts as zero: rounding of d counts as such.
     pub fn measure(&mut self, g: &[f64], tolerance: f64) -> Result<()> {
         self.scale = self.size_of_gaps(g)?;
-        self.small = (tolerance * self.scale).max(4.0 * f64::EPSILON * norm(self.problem.b).max(norm(g)));
+        self.small = (tolerance * self.scale).max(64.0 * f64::EPSILON * norm(self.problem.b).max(norm(g)));
         Ok(())
     }
 
