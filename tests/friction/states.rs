@@ -125,12 +125,12 @@ fn many_more_answers_are_among_all_combinations_of_states() {
         let k = 3 + case % 4 + 2 * usize::from(case % 40 == 0);
         let mu = [0.1, 0.6, 1.2, 2.5][case / 4 % 4];
         let (f, d) = (random.positive(2 * k, [0.3, 0.01][case % 2]), random.vector(2 * k));
-        compared(&Given::new(f.clone(), d.clone(), nodes(k, mu, 0.0)), 1e-5, &mut plain);
+        compared(&Given::new(f.clone(), d.clone(), nodes(k, mu, 0.0)), 1e-3, &mut plain);
         let g: Vec<Vec<f64>> = (0..2)
             .map(|mode| (0..2 * k).map(|i| if i % 2 == mode { 0.4 } else { 0.1 * random.next() }).collect())
             .collect();
         let e = vec![1.0, 0.95 * mu * random.next()];
-        compared(&Given::new(f, d, nodes(k, mu, 0.0)).floating(&g, e), 1e-5, &mut floating);
+        compared(&Given::new(f, d, nodes(k, mu, 0.0)).floating(&g, e), 1e-3, &mut floating);
     }
     println!("solved, unsolved, without answer: held {plain:?}, floating {floating:?}");
     assert!(plain[1] + floating[1] <= 8, "{plain:?} {floating:?}");

@@ -105,6 +105,7 @@ impl<'a> Run<'a, '_> {
         let g = self.gradient(&first.point)?;
         self.measure(&g, limits.tolerance)?;
         let laws = Laws { cones: self.problem.cones, rho: RHO };
+        self.allow_for_balance(laws, &first.point)?;
         let start = self.begin(laws, &first.point, &g, &alpha)?;
         self.last.clone_from(&start);
         if !(start.merit.is_finite() && self.small.is_finite()) {

@@ -77,7 +77,7 @@ impl<'a> Motions<'a> {
         self.inverse(self.in_coordinates(coordinates, through), weights, CUT.max(self.rounding))
     }
 
-    /// Factor of `A w^2 A' + shift tr(G G') I`; none where it is not positive definite.
+    /// Factor of `A w^2 A' + shift max diag(G G') I`; none where it is not positive definite.
     pub fn shifted(
         &self,
         coordinates: &[Coordinate],
@@ -89,7 +89,7 @@ impl<'a> Motions<'a> {
         let rows = self.in_coordinates(coordinates, true);
         let mut w = self.gram.weighted(&rows, |i| weights[i] * weights[i])?;
         self.in_units(&mut w);
-        let shift = shift * self.whole.iter().sum::<f64>();
+        let shift = shift * norm_max(&self.whole);
         (0..w.order()).for_each(|k| w.val[w.ptr[k + 1] - 1] += shift);
         let factor = self.analysis.attempt(&w, 1.0)?.ok();
         let unit = self.unit;

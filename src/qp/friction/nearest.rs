@@ -17,8 +17,13 @@ use crate::qp::friction::FrictionProblem;
 const ACCURACY: f64 = 1e-12;
 const ACCEPTED: f64 = 1e-8;
 const STEPS: usize = 100;
-/// Of the trace of `G G'`: what the cones leave of the matrix may be singular.
+/// Of the largest diagonal entry of `G G'`: what the cones leave of the matrix may be singular. At first; less after every whole
+/// step, more after short ones.
 const SHIFT: f64 = 1e-6;
+const LESS: f64 = 0.1;
+const MORE: f64 = 10.0;
+const SHORT: f64 = 0.1;
+const SHIFTS: (f64, f64) = (1e-14, 1e-2);
 /// The same for the last steps.
 const ROUNDING: f64 = 1e-13;
 const POLISHES: usize = 2;
@@ -59,7 +64,7 @@ pub fn project(
     if !scale.is_finite() {
         return Ok(now.done(false));
     }
-    let against = if norm(problem.e) > 0.0 { norm(problem.e) } else { scale };
+    let mut shift = SHIFT;
     for step in 0..STEPS {
         interrupt::reached("Newton steps of a projection on cones", step)?;
         let error = norm(&now.left);
@@ -69,9 +74,16 @@ pub fn project(
         if !now.phi.is_finite() || norm(&now.beta) > ENDLESS * (norm(y) + norm(problem.e)) {
             return Ok(now.done(false));
         }
-        let shift = SHIFT * (error / against).min(1.0);
         let Some(direction) = direction(problem, motions, &now, shift)? else { break };
-        let Some(next) = armijo(problem, y, &now, &direction) else { break };
+        let Some((next, t)) = armijo(problem, y, &now, &direction) else { break };
+        shift *= if t == 1.0 {
+            LESS
+        } else if t < SHORT {
+            MORE
+        } else {
+            1.0
+        };
+        shift = shift.clamp(SHIFTS.0, SHIFTS.1);
         now = next;
     }
     let met = norm(&now.left) <= ACCEPTED * scale;
@@ -125,14 +137,14 @@ fn trial(problem: &FrictionProblem, y: &[f64], beta: Vec<f64>) -> Trial {
 }
 
 /// The first of the steps 1, 1/2, ... after which phi has fallen.
-fn armijo(problem: &FrictionProblem, y: &[f64], now: &Trial, direction: &[f64]) -> Option<Trial> {
+fn armijo(problem: &FrictionProblem, y: &[f64], now: &Trial, direction: &[f64]) -> Option<(Trial, f64)> {
     let (slope, mut t) = (-dot(&now.left, direction), 1.0);
     while t > SHORTEST {
         let mut beta = now.beta.clone();
         axpy(t, direction, &mut beta);
         let next = trial(problem, y, beta);
         if next.phi <= now.phi + SLOPE * t * slope + 4.0 * f64::EPSILON * now.phi.abs() {
-            return Some(next);
+            return Some((next, t));
         }
         t *= 0.5;
     }

@@ -257,13 +257,18 @@ impl Run<'_, '_> {
     pub fn point(&mut self, laws: Laws, x: Vec<f64>, g: Vec<f64>, alpha: Vec<f64>) -> Result<Point> {
         let r = self.gaps(&g, &alpha);
         let law = laws.cones.law(&x, &r, laws.rho);
-        let mut square = dot(&law, &law);
-        if let Some(all_rows) = &self.all_rows {
-            let mut left = self.problem.e.to_vec();
-            self.problem.g_transposed.mul_transposed_add(-1.0, &x, &mut left);
-            square += dot(&left, &all_rows.solve(&left)?).max(0.0);
-            self.counts.coarse_solves += 1;
-        }
+        let square = dot(&law, &law) + self.balance_missed(&x)?;
         Ok(Point { x, g, alpha, r, merit: square.sqrt() / laws.rho })
+    }
+
+    /// `|G'(G G')^+ (G x - e)|^2`
+    pub fn balance_missed(&mut self, x: &[f64]) -> Result<f64> {
+        let Some(all_rows) = &self.all_rows else { return Ok(0.0) };
+        let mut left = self.problem.e.to_vec();
+        self.problem.g_transposed.mul_transposed_add(-1.0, x, &mut left);
+        self.counts.coarse_solves += 1;
+        // what is no number stays so
+        let square = dot(&left, &all_rows.solve(&left)?);
+        Ok(if square < 0.0 { 0.0 } else { square })
     }
 }

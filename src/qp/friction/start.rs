@@ -57,6 +57,14 @@ impl<'a, 'w> Run<'a, 'w> {
         Ok(())
     }
 
+    /// The merit that rounding of `G x = e` leaves: directions keep it as it is at the start.
+    pub fn allow_for_balance(&mut self, laws: Laws, x: &[f64]) -> Result<()> {
+        const TIMES: f64 = 4.0;
+        let floor = TIMES * self.balance_missed(x)?.sqrt() / laws.rho;
+        self.small = if floor > self.small { floor } else { self.small };
+        Ok(())
+    }
+
     /// N, `|P d|`, or `|P (F x - d)|` where that is 0.
     fn size_of_gaps(&mut self, g: &[f64]) -> Result<f64> {
         let mut d = self.problem.b.to_vec();
