@@ -1,6 +1,6 @@
 //! Products with F against those of a linear solve whose states are known: same start, preconditioner, stop and last products.
 
-use feti_contact::qp::friction::{known_face, FrictionStart};
+use feti_contact::qp::friction::{known_face, FrictionStart, Pairs};
 use feti_contact::qp::Verdict;
 
 use crate::deck::Deck;
@@ -72,7 +72,8 @@ fn thin_plates_with_little_friction_are_solved() {
         for mu in [0.02, 0.05, 0.1] {
             for load in [0.1, 0.3, 0.8, 0.97] {
                 let given = Deck::new(2, n, blocks, mu, load).given();
-                let found = given.from(FrictionStart::default(), 1e-9, 1000);
+                let limit = std::env::var("DIRECT").map_or(1000, |limit| limit.parse().unwrap());
+                let found = given.from(FrictionStart::default(), 1e-9, limit);
                 println!(
                     "{n} {blocks} mu {mu} load {load}: {:?} {} {:?}",
                     found.verdict, found.counts.products, found.tried
@@ -82,4 +83,30 @@ fn thin_plates_with_little_friction_are_solved() {
         }
     }
     assert!(unsolved == 0, "{unsolved}");
+}
+
+/// A push that grows, falls and turns round, slips kept from step to step: warm starts with the pairs of earlier steps.
+#[test]
+fn nine_steps_of_a_loop_cost_less_than_cold_linear_problems() {
+    for deck in [Deck::new(2, 16, 1, 0.6, 0.0), Deck::new(3, 4, 1, 0.6, 0.0)] {
+        let (mut own, mut linear, mut slips) = (0, 0, Vec::new());
+        let (mut x, mut alpha, mut pairs) = (None, None, Pairs::default());
+        for load in [0.3, 0.6, 0.9, 0.6, 0.3, 0.0, -0.3, -0.6, -0.9] {
+            let mut given = Deck { load, ..deck }.given();
+            slips.resize(given.d.len(), 0.0);
+            given.d.iter_mut().zip(&slips).for_each(|(d, slip)| *d -= slip);
+            let start = FrictionStart { x: x.as_deref(), alpha: alpha.as_deref(), pairs };
+            let found = given.from(start, 1e-9, 0);
+            assert_eq!(found.verdict, Verdict::Solved, "{load} {} {:?}", found.merit, found.tried);
+            let known = known_face(given.problem(), given.limits(1e-9, 0), &found, &mut Content).unwrap();
+            println!("push {load}: {} / {known}", found.counts.products);
+            (own, linear) = (own + found.counts.products, linear + known);
+            let r = given.gaps(&found);
+            let tangents = given.cones.nodes().iter().flat_map(|node| node.tangents().to_vec());
+            tangents.for_each(|row| slips[row] -= r[row]);
+            (x, alpha, pairs) = (Some(found.x), Some(found.alpha), found.pairs);
+        }
+        println!("{own} / {linear}");
+        assert!(own < linear, "{own} {linear}");
+    }
 }

@@ -95,13 +95,19 @@ impl Given {
         friction(self.problem(), self.limits(tolerance, limit), start, &mut Content, &mut Content).unwrap()
     }
 
-    /// `|x - NAT(x - r)|, |G x - e|`: what the laws miss at an answer, against `|d|` and `|e|`.
-    pub fn missed(&self, found: &FrictionSolution) -> (f64, f64) {
+    /// `r = F x - d - G'alpha`
+    pub fn gaps(&self, found: &FrictionSolution) -> Vec<f64> {
         let mut r = vec![0.0; self.d.len()];
         self.f.0.mul_add(1.0, &found.x, &mut r);
         for (i, r) in r.iter_mut().enumerate() {
             *r -= self.d[i] + self.g_transposed.row_dot(i, &found.alpha);
         }
+        r
+    }
+
+    /// `|x - NAT(x - r)|, |G x - e|`: what the laws miss at an answer, against `|d|` and `|e|`.
+    pub fn missed(&self, found: &FrictionSolution) -> (f64, f64) {
+        let r = self.gaps(found);
         let law = self.cones.law(&found.x, &r, 1.0);
         let mut left = self.e.clone();
         self.g_transposed.mul_transposed_add(-1.0, &found.x, &mut left);
