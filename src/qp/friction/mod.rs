@@ -16,6 +16,7 @@ mod face;
 mod motions;
 mod nearest;
 mod newton;
+mod otherwise;
 mod pairs;
 mod path;
 mod smooth;

@@ -10,6 +10,8 @@ use crate::qp::friction::pairs::{Pairs, Step};
 use crate::qp::friction::{FrictionObserver, FrictionProblem, FrictionReport, OnFace, Tried};
 use crate::qp::Counts;
 
+/// rho at first: rows have the compliance `b K_d^-1 b' + C = 1`.
+pub const RHO: f64 = 0.2;
 /// Directions on one face at most.
 const DIRECTIONS: usize = 10;
 /// What is left of the linear residual where the model counts as solved: then it goes uphill rather than on.
