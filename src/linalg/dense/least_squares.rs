@@ -48,8 +48,9 @@ mod tests {
 
     #[test]
     fn a_column_that_depends_on_others_is_not_used_and_the_rest_is_orthogonal() {
-        let data =
-            vec![1.0, 0.0, 1e6, 1.0, 2.0, 0.0, 1e-6, 0.0, 1.0, 2.0, 1e6 + 1.0, 2.0, 0.0, 0.0, 0.0, 0.0];
+        // the third is the first and a millionth of the second
+        let columns = [[1.0, 0.0, 2.0, 1.0], [2e6, 0.0, 0.0, 1e6], [3.0, 0.0, 2.0, 2.0], [0.0; 4]];
+        let data = columns.concat();
         let a = Matrix { rows: 4, cols: 4, data };
         let b = [1.0, 2.0, 3.0, 5.0];
         let c = least_squares(&a, &b, 1e-12).unwrap();
