@@ -56,38 +56,52 @@ pub fn project(
     y: &[f64],
 ) -> Result<Projected> {
     let problem = &FrictionProblem { cones, ..*problem };
-    let mut now = trial(problem, y, vec![0.0; problem.e.len()]);
-    let Some(motions) = motions else { return Ok(now.done(true)) };
+    let first = trial(problem, y, vec![0.0; problem.e.len()]);
+    let Some(motions) = motions else { return Ok(first.done(true)) };
     let mut terms = vec![0.0; problem.e.len()];
     problem.g_transposed.mul_transposed_abs_add(y, &mut terms);
     let scale = norm(problem.e) + norm(&terms);
     if !scale.is_finite() {
-        return Ok(now.done(false));
+        return Ok(first.done(false));
     }
-    let mut shift = SHIFT;
+    let (end, nearest) = descended(problem, motions, y, first, scale)?;
+    let error = norm(&end.left);
+    if error <= ACCURACY * scale {
+        return Ok(polished(problem, motions, y, end)?.done(true));
+    }
+    Ok(if error <= ACCEPTED * scale { end.done(true) } else { nearest })
+}
+
+/// Where Newton's method ends, and the point that has come nearest to `G x = e`: where nothing does, phi falls without end.
+fn descended(
+    problem: &FrictionProblem,
+    motions: &Motions,
+    y: &[f64],
+    first: Trial,
+    scale: f64,
+) -> Result<(Trial, Projected)> {
+    let (mut now, mut shift) = (first, SHIFT);
+    let mut nearest = Projected { point: now.point.clone(), left: now.left.clone(), met: false };
     for step in 0..STEPS {
         interrupt::reached("Newton steps of a projection on cones", step)?;
-        let error = norm(&now.left);
-        if error <= ACCURACY * scale {
-            return Ok(polished(problem, motions, y, now)?.done(true));
-        }
-        if !now.phi.is_finite() || norm(&now.beta) > ENDLESS * (norm(y) + norm(problem.e)) {
-            return Ok(now.done(false));
+        let endless = norm(&now.beta) > ENDLESS * (norm(y) + norm(problem.e));
+        if norm(&now.left) <= ACCURACY * scale || endless || !now.phi.is_finite() {
+            break;
         }
         let Some(direction) = direction(problem, motions, &now, shift)? else { break };
         let Some((next, t)) = armijo(problem, y, &now, &direction) else { break };
-        shift *= if t == 1.0 {
-            LESS
-        } else if t < SHORT {
-            MORE
-        } else {
-            1.0
+        let by = match t {
+            1.0 => LESS,
+            t if t < SHORT => MORE,
+            _ => 1.0,
         };
-        shift = shift.clamp(SHIFTS.0, SHIFTS.1);
+        shift = (by * shift).clamp(SHIFTS.0, SHIFTS.1);
         now = next;
+        if norm(&now.left) < norm(&nearest.left) {
+            (nearest.point, nearest.left) = (now.point.clone(), now.left.clone());
+        }
     }
-    let met = norm(&now.left) <= ACCEPTED * scale;
-    Ok(now.done(met))
+    Ok((now, nearest))
 }
 
 fn direction(
