@@ -15,12 +15,14 @@ mod operator;
 mod preconditioner;
 mod reuse;
 mod springs;
+mod turned;
 
 pub use cost::{all_bytes, implicit_bodies, Size};
 pub use coupling::dependent_rows;
 pub use operator::Accuracy;
 pub use preconditioner::{constrained, Boundary, Preconditioner};
 pub use reuse::{ColumnCounts, Kept};
+pub use turned::{TurnedFace, TurnedRow};
 
 use std::ops::Range;
 use std::sync::Arc;

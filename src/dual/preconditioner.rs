@@ -70,6 +70,15 @@ impl Preconditioner {
         face.solve(z)?;
         let mut moved = vec![0.0; self.weight.len()];
         self.rows.mul_transposed_add(1.0, z, &mut moved);
+        let force = self.stiffened(moved);
+        for (i, (z, c)) in z.iter_mut().zip(&self.compliance).enumerate() {
+            *z = self.rows.row_dot(i, &force) + c * *z;
+        }
+        face.solve(z)
+    }
+
+    /// `D^-1/2 S_b D^-1/2 v` over the constrained unknowns.
+    pub(super) fn stiffened(&self, mut moved: Vec<f64>) -> Vec<f64> {
         moved.iter_mut().zip(&self.weight).for_each(|(v, weight)| *v *= weight);
         let mut force = vec![0.0; moved.len()];
         let (mut from, mut to) = (&moved[..], &mut force[..]);
@@ -80,10 +89,16 @@ impl Preconditioner {
             (from, to) = (rest, others);
         }
         force.iter_mut().zip(&self.weight).for_each(|(v, weight)| *v *= weight);
-        for (i, (z, c)) in z.iter_mut().zip(&self.compliance).enumerate() {
-            *z = self.rows.row_dot(i, &force) + c * *z;
-        }
-        face.solve(z)
+        force
+    }
+
+    /// `B D^-1/2` over the constrained unknowns.
+    pub(super) fn rows(&self) -> &Csr {
+        &self.rows
+    }
+
+    pub(super) fn compliance(&self) -> &[f64] {
+        &self.compliance
     }
 
     /// Bytes of the stiffness S_b of all bodies.

@@ -11,6 +11,7 @@ mod active_set;
 mod between_solves;
 mod coarse;
 mod conjugate;
+pub mod friction;
 mod gradient;
 mod interior;
 mod nearest;

@@ -1,0 +1,72 @@
+//! `argmin |A c - b|` of a dense matrix that may be short of rank, by QR with pivots.
+
+use faer::linalg::solvers::ColPivQr;
+use faer::Mat;
+
+use crate::error::Result;
+use crate::linalg::vector::{axpy, dot, norm};
+use crate::linalg::Matrix;
+use crate::platform::memory::{headroom, zeros, PRODUCTS};
+
+/// Matrices of the size of A at a time: A, its reflectors, Q, R.
+const MATRICES: usize = 5;
+
+/// c with zeros for columns that depend on others: a pivot of A with columns of unit length below `cut` times the first is none.
+pub fn least_squares(a: &Matrix, b: &[f64], cut: f64) -> Result<Vec<f64>> {
+    let _room = headroom(PRODUCTS + MATRICES * a.data.len() * size_of::<f64>(), "a least squares problem")?;
+    let mut c = zeros(a.cols, "a least squares problem")?;
+    let lengths: Vec<f64> = (0..a.cols).map(|j| norm(a.col(j))).collect();
+    if a.rows == 0 || a.cols == 0 || !lengths.iter().all(|length| length.is_finite()) {
+        return Ok(c);
+    }
+    let unit = |j: usize| if lengths[j] > 0.0 { lengths[j] } else { 1.0 };
+    let units: Vec<f64> = (0..a.cols).map(unit).collect();
+    let scaled = Mat::from_fn(a.rows, a.cols, |i, j| a.get(i, j) / units[j]);
+    let qr = ColPivQr::new(scaled.as_ref());
+    let (q, r) = (qr.compute_thin_Q(), qr.thin_R());
+    let (order, _) = qr.P().arrays();
+    let first = r[(0, 0)].abs();
+    let found = a.rows.min(a.cols);
+    let rank = (0..found).find(|&k| !(r[(k, k)].abs() > cut * first)).unwrap_or(found);
+    let column = |k: usize| q.col(k).try_as_col_major().map_or(&[][..], |column| column.as_slice());
+    let mut y: Vec<f64> = (0..rank).map(|k| dot(column(k), b)).collect();
+    for k in (0..rank).rev() {
+        y[k] /= r[(k, k)];
+        let above: Vec<f64> = (0..k).map(|i| r[(i, k)]).collect();
+        let part = y[k];
+        axpy(-part, &above, &mut y[..k]);
+    }
+    for (k, y) in y.into_iter().enumerate() {
+        c[order[k]] = y / units[order[k]];
+    }
+    Ok(c)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_column_that_depends_on_others_is_not_used_and_the_rest_is_orthogonal() {
+        // the third is the first and a millionth of the second
+        let columns = [[1.0, 0.0, 2.0, 1.0], [2e6, 0.0, 0.0, 1e6], [3.0, 0.0, 2.0, 2.0], [0.0; 4]];
+        let data = columns.concat();
+        let a = Matrix { rows: 4, cols: 4, data };
+        let b = [1.0, 2.0, 3.0, 5.0];
+        let c = least_squares(&a, &b, 1e-12).unwrap();
+        assert!(c.iter().filter(|c| **c != 0.0).count() == 2 && c[3] == 0.0, "{c:?}");
+        let mut rest = b;
+        a.mul_add(-1.0, &c, &mut rest);
+        for j in 0..4 {
+            assert!(dot(a.col(j), &rest).abs() <= 1e-12 * norm(a.col(j)) * norm(&b), "{rest:?}");
+        }
+    }
+
+    #[test]
+    fn a_square_system_is_solved_and_nothing_gives_nothing() {
+        let a = Matrix { rows: 2, cols: 2, data: vec![0.0, 2.0, 1.0, 1.0] };
+        let c = least_squares(&a, &[3.0, 5.0], 1e-12).unwrap();
+        assert!((c[0] - 1.0).abs() < 1e-15 && (c[1] - 3.0).abs() < 1e-15);
+        assert!(least_squares(&Matrix::default(), &[], 1e-12).unwrap().is_empty());
+    }
+}

@@ -1,0 +1,189 @@
+//! The sets that forces lie in: free rows, half lines, and nodes with a disc or a cone of friction, with their projections.
+
+use crate::error::{Error, Kind, Result};
+
+/// One contact node. A half line, contact without friction, is one without tangential rows.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Node {
+    /// Its normal row, n >= 0; none: the bound acts alone.
+    pub normal: Option<usize>,
+    tangents: [usize; 2],
+    /// Number of tangential rows: 0, 1 or 2.
+    count: usize,
+    /// Coefficient and bound of friction in scaled units, `|t| <= bound + mu n`.
+    pub mu: f64,
+    pub bound: f64,
+}
+
+/// Forces of one node: n, 0 without a normal row, and t, 0 where there is no row.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Force {
+    pub normal: f64,
+    pub tangential: [f64; 2],
+}
+
+/// Where the orthogonal projection on a cone has ended.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Place {
+    /// The force is in the set.
+    Inside,
+    /// On the surface `|t| = bound + mu n`, n > 0: along the force, `ratio` the length of t now and before.
+    Surface { along: [f64; 2], ratio: f64 },
+    /// n = 0, |t| < bound as it was.
+    Open,
+    /// n = 0, |t| = bound.
+    Rim { along: [f64; 2], ratio: f64 },
+}
+
+impl Node {
+    pub fn new(normal: Option<usize>, tangents: &[usize], mu: f64, bound: f64) -> Result<Self> {
+        let wrong = |what: &str| Err(Error::new(Kind::Argument("nodes"), what));
+        if tangents.len() > 2 {
+            return wrong("a node of friction has at most two tangential rows");
+        }
+        if !((0.0..f64::INFINITY).contains(&mu) && bound >= 0.0) {
+            return wrong("a coefficient or bound of friction is negative or no number");
+        }
+        if mu > 0.0 && normal.is_none() && !tangents.is_empty() {
+            return wrong("a coefficient of friction needs a normal row");
+        }
+        let mut rows = [0; 2];
+        rows[..tangents.len()].copy_from_slice(tangents);
+        Ok(Self { normal, tangents: rows, count: tangents.len(), mu, bound })
+    }
+
+    pub fn tangents(&self) -> &[usize] {
+        &self.tangents[..self.count]
+    }
+
+    pub fn of(&self, x: &[f64]) -> Force {
+        let mut tangential = [0.0; 2];
+        self.tangents().iter().zip(&mut tangential).for_each(|(&row, t)| *t = x[row]);
+        Force { normal: self.normal.map_or(0.0, |row| x[row]), tangential }
+    }
+
+    pub fn put(&self, force: Force, x: &mut [f64]) {
+        self.normal.into_iter().for_each(|row| x[row] = force.normal);
+        self.tangents().iter().zip(force.tangential).for_each(|(&row, t)| x[row] = t);
+    }
+
+    /// `bound + mu n`
+    pub fn limit(&self, normal: f64) -> f64 {
+        if normal > 0.0 && self.normal.is_some() {
+            self.bound + self.mu * normal
+        } else {
+            self.bound
+        }
+    }
+
+    /// PI, the nearest point of the cone.
+    pub fn nearest(&self, force: Force) -> (Force, Place) {
+        let Force { normal: n, tangential } = force;
+        let length = length(tangential);
+        if n >= 0.0 && length <= self.limit(n) {
+            return (force, Place::Inside);
+        }
+        let along = direction(tangential);
+        let shortened = |normal: f64, limit: f64| {
+            let ratio = if length > 0.0 { limit / length } else { 0.0 };
+            (Force { normal, tangential: along.map(|u| limit * u) }, ratio)
+        };
+        let on_surface = (n + self.mu * (length - self.bound)) / (1.0 + self.mu * self.mu);
+        if self.normal.is_some() && length > self.bound + self.mu * n && on_surface > 0.0 {
+            let (force, ratio) = shortened(on_surface, self.bound + self.mu * on_surface);
+            return (force, Place::Surface { along, ratio });
+        }
+        if length <= self.bound {
+            return (Force { normal: 0.0, tangential }, Place::Open);
+        }
+        let (force, ratio) = shortened(0.0, self.bound);
+        (force, Place::Rim { along, ratio })
+    }
+
+    /// NAT, the law of Coulomb: `(n+, min(|t|, b) t/|t|)`, `b = bound + mu n+`.
+    pub fn natural(&self, trial: Force) -> Force {
+        let (normal, length) = (trial.normal.max(0.0), length(trial.tangential));
+        let limit = self.limit(normal);
+        let by = if length > limit { limit / length } else { 1.0 };
+        Force { normal, tangential: trial.tangential.map(|t| by * t) }
+    }
+}
+
+pub fn length(tangential: [f64; 2]) -> f64 {
+    tangential[0].hypot(tangential[1])
+}
+
+/// `t / |t|`; the first direction where t = 0.
+pub fn direction(tangential: [f64; 2]) -> [f64; 2] {
+    let length = length(tangential);
+    if length > 0.0 {
+        tangential.map(|t| t / length)
+    } else {
+        [1.0, 0.0]
+    }
+}
+
+/// The sets of all m rows.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Cones {
+    order: usize,
+    nodes: Vec<Node>,
+    /// Rows of no node: free.
+    free: Vec<usize>,
+}
+
+impl Cones {
+    pub fn new(order: usize, nodes: Vec<Node>) -> Result<Self> {
+        let mut taken = vec![false; order];
+        for &row in nodes.iter().flat_map(|node| node.normal.iter().chain(node.tangents())) {
+            match taken.get_mut(row) {
+                Some(taken) if !*taken => *taken = true,
+                Some(_) => {
+                    return Err(Error::new(
+                        Kind::Argument("nodes"),
+                        format!("row {row} is in two places of nodes"),
+                    ))
+                }
+                None => {
+                    return Err(Error::new(
+                        Kind::Argument("nodes"),
+                        format!("row {row} of a node is beyond all rows"),
+                    ))
+                }
+            }
+        }
+        let free = (0..order).filter(|&row| !taken[row]).collect();
+        Ok(Self { order, nodes, free })
+    }
+
+    /// m
+    pub fn order(&self) -> usize {
+        self.order
+    }
+
+    pub fn nodes(&self) -> &[Node] {
+        &self.nodes
+    }
+
+    pub fn free(&self) -> &[usize] {
+        &self.free
+    }
+
+    /// The same rows without friction: tangential rows carry nothing.
+    pub fn frictionless(&self) -> Self {
+        let without = |node: &Node| Node { mu: 0.0, bound: 0.0, ..*node };
+        Self { nodes: self.nodes.iter().map(without).collect(), free: self.free.clone(), order: self.order }
+    }
+
+    /// `x - NAT(x - rho r)` on the nodes, `rho r` on free rows: zero exactly where the laws hold.
+    pub fn law(&self, x: &[f64], r: &[f64], rho: f64) -> Vec<f64> {
+        let trial: Vec<f64> = x.iter().zip(r).map(|(x, r)| x - rho * r).collect();
+        let mut law: Vec<f64> = r.iter().map(|r| rho * r).collect();
+        for node in &self.nodes {
+            let (now, natural) = (node.of(x), node.natural(node.of(&trial)));
+            let tangential = [0, 1].map(|k| now.tangential[k] - natural.tangential[k]);
+            node.put(Force { normal: now.normal - natural.normal, tangential }, &mut law);
+        }
+        law
+    }
+}

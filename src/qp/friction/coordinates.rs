@@ -1,0 +1,85 @@
+//! Coordinates of the forces of a node: the normal one, then those along and across the slip. In each the linear model of the laws
+//! holds a value of x or is an equation of gaps and slips.
+
+use crate::linalg::Csr;
+use crate::qp::friction::cones::Cones;
+
+/// What the linear model asks in one coordinate; `s = w'x - coupling x_n`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Law {
+    /// `s = value`
+    Held { value: f64 },
+    /// `w'r + damping s = shift`, damping >= 0.
+    Free { damping: f64, shift: f64 },
+}
+
+/// One vector w of an orthonormal basis of the forces, that of one row or of two tangential rows of a node.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Coordinate {
+    /// Rows with their entries in w.
+    pub rows: [usize; 2],
+    pub along: [f64; 2],
+    /// How much of the normal coordinate of the node, so many places before this one, is in s.
+    pub coupling: Option<(usize, f64)>,
+    pub law: Law,
+}
+
+impl Coordinate {
+    pub fn row(row: usize, law: Law) -> Self {
+        Self { rows: [row; 2], along: [1.0, 0.0], coupling: None, law }
+    }
+
+    /// `w'x`
+    pub fn of(&self, x: &[f64]) -> f64 {
+        self.along[0] * x[self.rows[0]] + self.along[1] * x[self.rows[1]]
+    }
+
+    /// `x += y w`
+    pub fn add(&self, y: f64, x: &mut [f64]) {
+        x[self.rows[0]] += self.along[0] * y;
+        x[self.rows[1]] += self.along[1] * y;
+    }
+
+    pub fn is_free(&self) -> bool {
+        matches!(self.law, Law::Free { .. })
+    }
+
+    /// `1 / (1 + rho damping)`, 0 where a value is held: what an equation weighs, as a force.
+    pub fn weight(&self, rho: f64) -> f64 {
+        match self.law {
+            Law::Held { .. } => 0.0,
+            Law::Free { damping, .. } => 1.0 / (1.0 + rho * damping),
+        }
+    }
+}
+
+/// Every row by itself, in the order of the coordinates of a face: those of nodes by node, then free rows.
+pub fn of_rows(cones: &Cones) -> Vec<Coordinate> {
+    let of_nodes = cones.nodes().iter().flat_map(|node| node.normal.iter().chain(node.tangents()));
+    let equation = Law::Free { damping: 0.0, shift: 0.0 };
+    of_nodes.chain(cones.free()).map(|&row| Coordinate::row(row, equation)).collect()
+}
+
+/// Rows of G' of every coordinate, the pattern that all faces share: for a normal coordinate with the columns of the whole node, as
+/// friction couples it with the others.
+pub fn pattern(cones: &Cones, g_transposed: &Csr) -> Csr {
+    let mut pattern = Csr::empty(g_transposed.cols);
+    let columns_of = |rows: &mut dyn Iterator<Item = usize>| {
+        let mut columns: Vec<usize> = rows.flat_map(|i| g_transposed.row(i).map(|(j, _)| j)).collect();
+        columns.sort_unstable();
+        columns.dedup();
+        columns
+    };
+    for node in cones.nodes() {
+        let tangential = columns_of(&mut node.tangents().iter().copied());
+        if node.normal.is_some() {
+            let all = columns_of(&mut node.normal.into_iter().chain(node.tangents().iter().copied()));
+            pattern.push_row(all.into_iter().map(|j| (j, 0.0)));
+        }
+        node.tangents().iter().for_each(|_| pattern.push_row(tangential.iter().map(|&j| (j, 0.0))));
+    }
+    for &row in cones.free() {
+        pattern.push_row(g_transposed.row(row).map(|(j, _)| (j, 0.0)));
+    }
+    pattern
+}

@@ -1,0 +1,162 @@
+//! The method from start to verdict, and the linear problem that it is measured against.
+
+use crate::error::Result;
+use crate::linalg::vector::{axpy, norm, ratio};
+use crate::qp::friction::cones::Cones;
+use crate::qp::friction::face::Face;
+use crate::qp::friction::nearest::{project, Projected};
+use crate::qp::friction::newton::{Laws, Point, Run, RHO};
+use crate::qp::friction::{
+    FrictionLimits, FrictionObserver, FrictionProblem, FrictionSolution, FrictionStart,
+};
+use crate::qp::{AcceptanceTest, Verdict};
+
+/// One below it may be as good as rounding allows.
+const NEAR: f64 = 1e-7;
+/// Each time that the answer is not accepted the laws are to be met this much better, ...
+const TIGHTER: f64 = 0.1;
+/// ... so many times at most.
+const REFUSALS: usize = 3;
+
+/// An answer of the laws of friction, or why there is none.
+pub fn friction(
+    problem: FrictionProblem,
+    limits: FrictionLimits,
+    start: FrictionStart,
+    judge: &mut dyn AcceptanceTest,
+    observer: &mut dyn FrictionObserver,
+) -> Result<FrictionSolution> {
+    let alpha = start.alpha.map_or_else(|| vec![0.0; problem.e.len()], <[f64]>::to_vec);
+    let (mut run, first) = Run::new(problem, limits, start, observer)?;
+    run.last =
+        Point { x: first.point.clone(), alpha: alpha.clone(), merit: f64::INFINITY, ..Point::default() };
+    if !first.met {
+        let margin = ratio(norm(&first.left), norm(problem.e));
+        return Ok(run.solution(Verdict::Infeasible { direction: first.left, margin }));
+    }
+    let verdict = match run.solve(limits, (first, alpha), judge) {
+        Ok(verdict) => verdict,
+        Err(error) => Verdict::of_refusal(error)?,
+    };
+    Ok(run.solution(verdict))
+}
+
+/// Products of the linear problem in which the states of an answer, its slip directions and slips are known: what friction is
+/// measured against.
+pub fn known_face(
+    problem: FrictionProblem,
+    limits: FrictionLimits,
+    answer: &FrictionSolution,
+    observer: &mut dyn FrictionObserver,
+) -> Result<usize> {
+    let (mut run, first) = Run::new(problem, limits, FrictionStart::default(), observer)?;
+    let g = run.gradient(&answer.x)?;
+    let r = run.gaps(&g, &answer.alpha);
+    run.counts.products = 0;
+    let model = run.model(Face::at(problem.cones, &answer.x, &r, RHO))?;
+    let (x, mut g) = (first.point, run.gradient(&vec![0.0; r.len()])?);
+    run.measure(&g, limits.tolerance)?;
+    g = run.gradient(&x)?;
+    let alpha = run.turned(&model, &x, &g, &vec![0.0; problem.e.len()])?;
+    let start = run.point(Laws { cones: problem.cones, rho: RHO }, x, g, alpha)?;
+    let preconditioner = problem.preconditioner.map(|m| m.on(&model.face)).transpose()?;
+    let size = norm(&model.reduced(model.face.residual(&start.x, &start.r))?);
+    let (mut there, mut rest) = ((start.x.clone(), start.r.clone()), 1.0);
+    while rest * size > run.small && run.counts.products < limits.products {
+        let v = run.direction(&model, preconditioner.as_deref(), (&there.0, &there.1))?;
+        if !run.keep(v, &start, &model)? {
+            break;
+        }
+        let step = run.pairs.minimise(&model, model.face.residual(&start.x, &start.r))?;
+        rest = step.rest;
+        there = (start.x.clone(), start.r.clone());
+        axpy(1.0, &step.dx, &mut there.0);
+        axpy(1.0, &step.dg, &mut there.1);
+    }
+    Ok(run.counts.products + 1)
+}
+
+impl<'a> Run<'a, '_> {
+    fn solve(
+        &mut self,
+        limits: FrictionLimits,
+        (first, alpha): (Projected, Vec<f64>),
+        judge: &mut dyn AcceptanceTest,
+    ) -> Result<Verdict> {
+        let g = self.gradient(&first.point)?;
+        self.measure(&g, limits.tolerance)?;
+        let laws = Laws { cones: self.problem.cones, rho: RHO };
+        self.allow_for_balance(laws, &first.point)?;
+        let start = self.begin(laws, &first.point, &g, &alpha)?;
+        self.last.clone_from(&start);
+        if !(start.merit.is_finite() && self.small.is_finite()) {
+            return Ok(Verdict::Stalled);
+        }
+        let mut now = self.newton(laws, start.clone())?;
+        for _ in 0..=REFUSALS {
+            // rounding may be all that is left
+            let near = now.merit <= NEAR * self.scale;
+            if (near || self.is_met(&now)) && self.is_accepted(now.clone(), judge)? {
+                return Ok(Verdict::Solved);
+            }
+            if self.is_met(&now) {
+                self.small *= TIGHTER;
+                now = self.newton(laws, now)?;
+                continue;
+            }
+            now = self.otherwise(limits.direct, &start, now)?;
+            if !self.is_met(&now) {
+                let over = self.counts.products >= self.limit;
+                return Ok(if over { Verdict::StepLimit } else { Verdict::Stalled });
+            }
+        }
+        Ok(Verdict::Inaccurate)
+    }
+
+    /// The last word on a point; it is the answer then.
+    fn is_accepted(&mut self, now: Point, judge: &mut dyn AcceptanceTest) -> Result<bool> {
+        let answer = self.finished(now)?;
+        let accepted = judge.accepts(&answer.x, &answer.alpha)?;
+        if accepted {
+            self.last = answer;
+        }
+        Ok(accepted)
+    }
+
+    /// The answer: exact zeros, forces exactly within the cones, gaps by a product of their own.
+    fn finished(&mut self, now: Point) -> Result<Point> {
+        let laws = Laws { cones: self.problem.cones, rho: RHO };
+        let mut y = now.x.clone();
+        // open nodes by their gaps: exactly 0 in the end
+        for row in laws.cones.nodes().iter().filter_map(|node| node.normal) {
+            let trial = now.x[row] - RHO * now.r[row];
+            y[row] = if trial <= 0.0 { trial.min(y[row]) } else { y[row] };
+        }
+        let inside = project(&self.problem, laws.cones, self.motions.as_ref(), &y)?;
+        let x = if inside.met { inside.point } else { now.x };
+        let g = self.gradient(&x)?;
+        let model = self.model(Face::at(laws.cones, &x, &self.gaps(&g, &now.alpha), RHO))?;
+        let turned = self.turned(&model, &x, &g, &now.alpha)?;
+        let (as_is, turned) =
+            (self.point(laws, x.clone(), g.clone(), now.alpha)?, self.point(laws, x, g, turned)?);
+        Ok(if turned.merit < as_is.merit { turned } else { as_is })
+    }
+
+    fn solution(self, verdict: Verdict) -> FrictionSolution {
+        let Point { x, alpha, r, merit, .. } = self.last;
+        let cones: &'a Cones = self.problem.cones;
+        let states = if r.len() == x.len() { Face::at(cones, &x, &r, RHO).states } else { Vec::new() };
+        let merit = ratio(merit, self.scale);
+        FrictionSolution {
+            x,
+            alpha,
+            states,
+            scale: self.scale,
+            merit,
+            verdict,
+            counts: self.counts,
+            tried: self.tried,
+            pairs: self.pairs,
+        }
+    }
+}

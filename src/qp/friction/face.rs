@@ -1,0 +1,198 @@
+//! A face: the states of all nodes and the linear model of the laws there, `L x = ...` where values are held, `W'r + D s = ...`
+//! elsewhere, with the coarse spaces G W and G Z.
+
+use crate::error::Result;
+use crate::qp::friction::cones::{direction, length, Cones};
+use crate::qp::friction::coordinates::{Coordinate, Law};
+use crate::qp::friction::motions::{Inverse, Motions};
+
+/// A bound below this part of the largest force is none.
+const NOTHING: f64 = 1e-14;
+
+/// How a node of friction is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum State {
+    /// No bound, no tangential force.
+    Open,
+    Stick,
+    Slip,
+}
+
+/// All m coordinates and their laws; what a preconditioner needs to know of a face.
+pub struct Face {
+    pub coordinates: Vec<Coordinate>,
+    /// Of each node.
+    pub states: Vec<State>,
+    pub closed: Vec<bool>,
+    pub rho: f64,
+}
+
+impl Face {
+    /// That of `xi = x - rho r`.
+    pub fn at(cones: &Cones, x: &[f64], r: &[f64], rho: f64) -> Self {
+        let xi: Vec<f64> = x.iter().zip(r).map(|(x, r)| x - rho * r).collect();
+        let nothing = NOTHING * crate::linalg::vector::norm_max(x);
+        let mut face = Self::empty(cones, rho);
+        for node in cones.nodes() {
+            let trial = node.of(&xi);
+            let closed = node.normal.is_some() && trial.normal > 0.0;
+            let limit = node.limit(trial.normal);
+            let size = length(trial.tangential);
+            let state = match () {
+                () if limit <= nothing => State::Open,
+                () if size > limit => State::Slip,
+                () => State::Stick,
+            };
+            let normal = if closed { EQUATION } else { Law::Held { value: 0.0 } };
+            face.coordinates.extend(node.normal.map(|row| Coordinate::row(row, normal)));
+            let coupling = Some((1, node.mu)).filter(|_| closed && state == State::Slip);
+            let (along, first, second) = match state {
+                State::Open => ([1.0, 0.0], Law::Held { value: 0.0 }, Law::Held { value: 0.0 }),
+                State::Stick => ([1.0, 0.0], EQUATION, EQUATION),
+                State::Slip => {
+                    let damping = (size - limit) / (limit * rho);
+                    let across = Law::Free { damping, shift: 0.0 };
+                    (direction(trial.tangential), Law::Held { value: node.bound }, across)
+                }
+            };
+            face.push_tangents(node.tangents(), along, coupling, [first, second]);
+            face.states.push(state);
+            face.closed.push(closed);
+        }
+        face.finish(cones);
+        face
+    }
+
+    pub fn empty(cones: &Cones, rho: f64) -> Self {
+        let nodes = cones.nodes().len();
+        let (states, closed) = (Vec::with_capacity(nodes), Vec::with_capacity(nodes));
+        Self { coordinates: Vec::with_capacity(cones.order()), states, closed, rho }
+    }
+
+    /// The coordinates along `along`, with this coupling, and across.
+    pub fn push_tangents(
+        &mut self,
+        tangents: &[usize],
+        along: [f64; 2],
+        coupling: Option<(usize, f64)>,
+        [first, second]: [Law; 2],
+    ) {
+        match *tangents {
+            [row] => {
+                let along = [along[0], 0.0];
+                self.coordinates.push(Coordinate { rows: [row; 2], along, coupling, law: first });
+            }
+            [one, two] => {
+                let rows = [one, two];
+                self.coordinates.push(Coordinate { rows, along, coupling, law: first });
+                let across = [-along[1], along[0]];
+                self.coordinates.push(Coordinate { rows, along: across, coupling: None, law: second });
+            }
+            _ => {}
+        }
+    }
+
+    pub fn finish(&mut self, cones: &Cones) {
+        self.coordinates.extend(cones.free().iter().map(|&row| Coordinate::row(row, EQUATION)));
+    }
+
+    pub fn weights(&self) -> Vec<f64> {
+        self.coordinates.iter().map(|coordinate| coordinate.weight(self.rho)).collect()
+    }
+
+    /// `s = w'x - coupling x_n` of coordinate k.
+    pub fn slack(&self, k: usize, x: &[f64]) -> f64 {
+        let coordinate = &self.coordinates[k];
+        let of_normal =
+            coordinate.coupling.map_or(0.0, |(before, by)| by * self.coordinates[k - before].of(x));
+        coordinate.of(x) - of_normal
+    }
+
+    /// In free coordinates `W'(g - G'a) + D s - shift`, in held ones `(s - value) / rho`; `r = g - G'a`.
+    pub fn residual(&self, x: &[f64], r: &[f64]) -> Vec<f64> {
+        let of = |k: usize| match self.coordinates[k].law {
+            Law::Held { value } => (self.slack(k, x) - value) / self.rho,
+            Law::Free { damping: 0.0, shift } => self.coordinates[k].of(r) - shift,
+            Law::Free { damping, shift } => self.coordinates[k].of(r) + damping * self.slack(k, x) - shift,
+        };
+        (0..self.coordinates.len()).map(of).collect()
+    }
+
+    /// The part of it that is linear: of `(v, F v)`.
+    pub fn image(&self, v: &[f64], fv: &[f64]) -> Vec<f64> {
+        let of = |k: usize| match self.coordinates[k].law {
+            Law::Held { .. } => self.slack(k, v) / self.rho,
+            Law::Free { damping: 0.0, .. } => self.coordinates[k].of(fv),
+            Law::Free { damping, .. } => self.coordinates[k].of(fv) + damping * self.slack(k, v),
+        };
+        (0..self.coordinates.len()).map(of).collect()
+    }
+
+    /// `x += Z y` over the free coordinates: what is held follows the normal forces.
+    pub fn add(&self, y: &[f64], x: &mut [f64]) {
+        for (k, coordinate) in self.coordinates.iter().enumerate() {
+            let own = if coordinate.is_free() { y[k] } else { 0.0 };
+            let drawn = coordinate.coupling.map_or(0.0, |(before, by)| by * y[k - before]);
+            coordinate.add(own + drawn, x);
+        }
+    }
+}
+
+const EQUATION: Law = Law::Free { damping: 0.0, shift: 0.0 };
+
+/// A face with its coarse spaces.
+pub struct Model {
+    pub face: Face,
+    weights: Vec<f64>,
+    /// `(A w^2 A')^+`, A = G W, and the same with G Z; none without modes.
+    coarse: Option<(Inverse, Inverse)>,
+}
+
+impl Model {
+    pub fn new(face: Face, motions: Option<&Motions>) -> Result<Self> {
+        let weights = face.weights();
+        let coarse = match motions {
+            Some(motions) => Some((
+                motions.on(&face.coordinates, weights.clone(), false)?,
+                motions.on(&face.coordinates, weights.clone(), true)?,
+            )),
+            None => None,
+        };
+        Ok(Self { face, weights, coarse })
+    }
+
+    /// `da = (A w^2 A')^+ A w^2 q` of a residual, r entries.
+    pub fn turn(&self, residual: &[f64]) -> Result<Vec<f64>> {
+        let Some((plain, _)) = &self.coarse else { return Ok(Vec::new()) };
+        plain.solve(&plain.weighted_image(residual))
+    }
+
+    /// Free coordinates of a residual less `A'da`.
+    pub fn turned(&self, residual: &mut [f64]) -> Result<()> {
+        let Some((plain, _)) = &self.coarse else { return Ok(()) };
+        let turn = self.turn(residual)?;
+        for (k, q) in residual.iter_mut().enumerate().filter(|(k, _)| self.weights[*k] != 0.0) {
+            *q -= plain.row_dot(k, &turn);
+        }
+        Ok(())
+    }
+
+    /// `[first; P w q]`: what is left of a residual whatever a is, all as lengths.
+    pub fn reduced(&self, mut residual: Vec<f64>) -> Result<Vec<f64>> {
+        self.turned(&mut residual)?;
+        for (k, q) in residual.iter_mut().enumerate().filter(|(k, _)| self.weights[*k] != 0.0) {
+            *q *= self.weights[k];
+        }
+        Ok(residual)
+    }
+
+    /// `y <- y - w^2 A_Z'(A_Z w^2 A_Z')^+ (A_Z y + more)`
+    pub fn balance(&self, y: &mut [f64], more: Option<&[f64]>) -> Result<()> {
+        let Some((_, through)) = &self.coarse else { return Ok(()) };
+        let mut image = through.image(y);
+        more.into_iter().flatten().zip(&mut image).for_each(|(more, image)| *image += more);
+        let beta = through.solve(&image)?;
+        through.add_weighted(-1.0, &beta, y);
+        Ok(())
+    }
+}

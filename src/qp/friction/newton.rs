@@ -1,0 +1,276 @@
+//! The semismooth Newton method: the linear model of a face is minimised over all pairs kept, each step adds one.
+
+use crate::error::Result;
+use crate::linalg::vector::{axpy, dot, norm};
+use crate::platform::{interrupt, tally};
+use crate::qp::friction::cones::Cones;
+use crate::qp::friction::face::{Face, Model, State};
+use crate::qp::friction::motions::{Inverse, Motions};
+use crate::qp::friction::pairs::{Pairs, Step};
+use crate::qp::friction::{FrictionObserver, FrictionProblem, FrictionReport, OnFace, Tried};
+use crate::qp::Counts;
+
+/// rho at first: rows have the compliance `b K_d^-1 b' + C = 1`.
+pub const RHO: f64 = 0.2;
+/// Directions on one face at most.
+const DIRECTIONS: usize = 10;
+/// What is left of the linear residual where the model counts as solved: then it goes uphill rather than on.
+const SOLVED: f64 = 1e-2;
+/// Lengths of the trials of a step, and of one without a product.
+const TRIALS: [f64; 4] = [1.0, 0.5, 0.25, 0.1];
+const INNER_TRIALS: [f64; 2] = [1.0, 0.3];
+const INNER_STEPS: usize = 3;
+/// A step of length t takes off the merit at least this part of t.
+const FALLS: f64 = 0.01;
+/// Products within which the merit is to be halved.
+const PATIENCE: usize = 8;
+
+/// The laws that hold, and the number by which forces and lengths are compared: rho > 0, no unit.
+#[derive(Clone, Copy)]
+pub struct Laws<'c> {
+    pub cones: &'c Cones,
+    pub rho: f64,
+}
+
+/// x with `G x = e`, `g = F x - d`, `r = g - G'alpha` and how far the laws are from being met.
+#[derive(Clone, Default)]
+pub struct Point {
+    pub x: Vec<f64>,
+    pub g: Vec<f64>,
+    pub alpha: Vec<f64>,
+    pub r: Vec<f64>,
+    pub merit: f64,
+}
+
+pub struct Run<'a, 'w> {
+    pub problem: FrictionProblem<'a>,
+    pub motions: Option<Motions<'a>>,
+    /// `(G G')^+`
+    pub all_rows: Option<Inverse>,
+    pub pairs: Pairs,
+    pub counts: Counts,
+    pub tried: Tried,
+    /// Products at most.
+    pub limit: usize,
+    /// `|P d|`, what gaps are measured against, and the merit that counts as zero.
+    pub scale: f64,
+    pub small: f64,
+    /// The best point that was reached.
+    pub last: Point,
+    pub observer: &'w mut dyn FrictionObserver,
+}
+
+impl Run<'_, '_> {
+    /// From `now` until the laws are met, or their merit is not halved within so many products.
+    pub fn newton(&mut self, laws: Laws, mut now: Point) -> Result<Point> {
+        let (mut best, mut since) = (now.merit, self.counts.products);
+        if self.pairs.count() > 0 {
+            now = self.without_products(laws, now)?;
+        }
+        while !self.is_met(&now) && self.counts.products < self.limit.min(since + PATIENCE) {
+            let model = self.model(Face::at(laws.cones, &now.x, &now.r, laws.rho))?;
+            let Some((next, falls)) = self.step(laws, &model, &now)? else { break };
+            self.tried.newton += 1;
+            now = if falls { self.without_products(laws, next)? } else { next };
+            self.reached(&now);
+            if now.merit < 0.5 * best {
+                (best, since) = (now.merit, self.counts.products);
+            }
+        }
+        Ok(now)
+    }
+
+    /// One direction after the other joins the pairs, until a trial makes the merit fall or the model is solved; whether it fell.
+    fn step(&mut self, laws: Laws, model: &Model, now: &Point) -> Result<Option<(Point, bool)>> {
+        let preconditioner = self.problem.preconditioner.map(|m| m.on(&model.face)).transpose()?;
+        let mut there = (now.x.clone(), now.r.clone());
+        for count in 1..=DIRECTIONS {
+            let v = self.direction(model, preconditioner.as_deref(), (&there.0, &there.1))?;
+            if !self.keep(v, now, model)? {
+                return Ok(None);
+            }
+            let step = self.pairs.minimise(model, model.face.residual(&now.x, &now.r))?;
+            let (best, falls) = self.best_trial(laws, model, now, &step, &TRIALS)?;
+            if falls || step.rest < SOLVED || count == DIRECTIONS || self.counts.products >= self.limit {
+                return Ok(Some((best, falls)));
+            }
+            there = (now.x.clone(), now.r.clone());
+            axpy(1.0, &step.dx, &mut there.0);
+            axpy(1.0, &step.dg, &mut there.1);
+        }
+        Ok(None)
+    }
+
+    /// Steps to new faces by the pairs there are, as long as the merit falls.
+    fn without_products(&mut self, laws: Laws, mut now: Point) -> Result<Point> {
+        for _ in 0..INNER_STEPS {
+            if self.is_met(&now) {
+                break;
+            }
+            let model = self.model(Face::at(laws.cones, &now.x, &now.r, laws.rho))?;
+            let step = self.pairs.minimise(&model, model.face.residual(&now.x, &now.r))?;
+            let (next, falls) = self.best_trial(laws, &model, &now, &step, &INNER_TRIALS)?;
+            if !falls {
+                break;
+            }
+            now = next;
+        }
+        Ok(now)
+    }
+
+    /// The first trial whose merit falls enough, else the best one; a comes from the old face at the new point.
+    fn best_trial(
+        &mut self,
+        laws: Laws,
+        model: &Model,
+        now: &Point,
+        step: &Step,
+        lengths: &[f64],
+    ) -> Result<(Point, bool)> {
+        let mut best = Point { merit: f64::INFINITY, ..now.clone() };
+        for &t in lengths {
+            let (mut x, mut g) = (now.x.clone(), now.g.clone());
+            axpy(t, &step.dx, &mut x);
+            axpy(t, &step.dg, &mut g);
+            let alpha = self.turned(model, &x, &g, &now.alpha)?;
+            let next = self.point(laws, x, g, alpha)?;
+            if next.merit <= (1.0 - FALLS * t) * now.merit {
+                return Ok((next, true));
+            }
+            if next.merit < best.merit {
+                best = next;
+            }
+        }
+        // a step that is no number goes nowhere
+        let best = if best.merit < f64::INFINITY { best } else { now.clone() };
+        Ok((best, false))
+    }
+
+    /// The laws are met; never by what is no number.
+    pub fn is_met(&self, now: &Point) -> bool {
+        now.merit <= self.small
+    }
+
+    /// The best point is kept for the case that nothing leads to an answer.
+    pub fn reached(&mut self, now: &Point) {
+        if !(self.last.merit <= now.merit) {
+            self.last.clone_from(now);
+        }
+    }
+
+    pub fn model(&mut self, face: Face) -> Result<Model> {
+        self.counts.coarse_factorisations += 2 * usize::from(self.motions.is_some());
+        Model::new(face, self.motions.as_ref())
+    }
+
+    /// The direction from a point with x and r: `v = v0 + Z y`, `G v = 0`.
+    ///
+    /// ```text
+    /// v0 = -rho first;   y = -Q Q M (q - A'da);   y -= w^2 A_Z'(A_Z w^2 A_Z')^+ (G v0 + A_Z y);   v -= G'(G G')^+ G v
+    /// ```
+    pub fn direction(
+        &mut self,
+        model: &Model,
+        preconditioner: Option<&(dyn OnFace + '_)>,
+        (x, r): (&[f64], &[f64]),
+    ) -> Result<Vec<f64>> {
+        let face = &model.face;
+        let mut q = face.residual(x, r);
+        let mut v = vec![0.0; x.len()];
+        for (q, coordinate) in q.iter_mut().zip(&face.coordinates).filter(|(_, at)| !at.is_free()) {
+            coordinate.add(-face.rho * *q, &mut v);
+            *q = 0.0;
+        }
+        model.turned(&mut q)?;
+        let mut y: Vec<f64> =
+            q.iter().zip(&face.coordinates).map(|(q, at)| q * at.weight(face.rho)).collect();
+        if let Some(preconditioner) = preconditioner {
+            interrupt::check()?;
+            tally::costly();
+            self.counts.preconditioned += 1;
+            preconditioner.apply(&q, &mut y)?;
+        }
+        y.iter_mut().for_each(|y| *y = -*y);
+        model.balance(&mut y, None)?;
+        model.balance(&mut y, None)?;
+        let image = self.problem.g_transposed.mul_transposed(&v);
+        model.balance(&mut y, Some(&image))?;
+        face.add(&y, &mut v);
+        self.without_motions(&mut v)?;
+        Ok(v)
+    }
+
+    /// `v <- v - G'(G G')^+ G v`
+    pub fn without_motions(&mut self, v: &mut [f64]) -> Result<()> {
+        let Some(all_rows) = &self.all_rows else { return Ok(()) };
+        let beta = all_rows.solve(&self.problem.g_transposed.mul_transposed(v))?;
+        self.counts.coarse_solves += 1;
+        v.iter_mut().enumerate().for_each(|(i, v)| *v -= self.problem.g_transposed.row_dot(i, &beta));
+        Ok(())
+    }
+
+    /// The pair of a direction, of length 1, and its image: the only product of a step. False: there is no direction.
+    pub fn keep(&mut self, mut v: Vec<f64>, now: &Point, model: &Model) -> Result<bool> {
+        let size = norm(&v);
+        if !(size > 0.0 && size < f64::INFINITY) {
+            return Ok(false);
+        }
+        v.iter_mut().for_each(|v| *v /= size);
+        let image = self.product(&v)?;
+        self.pairs.keep(&v, &image)?;
+        let of = |state: State| model.face.states.iter().filter(|own| **own == state).count();
+        let report = FrictionReport {
+            products: self.counts.products,
+            newton: self.tried.newton,
+            merit: now.merit,
+            small: self.small,
+            closed: model.face.closed.iter().filter(|closed| **closed).count(),
+            sticking: of(State::Stick),
+            slipping: of(State::Slip),
+        };
+        self.observer.step(&report)?;
+        Ok(true)
+    }
+
+    /// `F v`, counted.
+    pub fn product(&mut self, v: &[f64]) -> Result<Vec<f64>> {
+        interrupt::check()?;
+        tally::costly();
+        let mut image = vec![0.0; v.len()];
+        self.problem.a.try_apply(v, &mut image)?;
+        self.counts.products += 1;
+        Ok(image)
+    }
+
+    /// `a + da` of a face at x and g.
+    pub fn turned(&mut self, model: &Model, x: &[f64], g: &[f64], alpha: &[f64]) -> Result<Vec<f64>> {
+        let turn = model.turn(&model.face.residual(x, &self.gaps(g, alpha)))?;
+        self.counts.coarse_solves += 1;
+        Ok(alpha.iter().zip(turn).map(|(alpha, turn)| alpha + turn).collect())
+    }
+
+    /// `r = g - G'a`
+    pub fn gaps(&self, g: &[f64], alpha: &[f64]) -> Vec<f64> {
+        let g_transposed = self.problem.g_transposed;
+        g.iter().enumerate().map(|(i, g)| g - g_transposed.row_dot(i, alpha)).collect()
+    }
+
+    /// `merit = |r_E ; (x - NAT(xi))/rho ; G'(G G')^+ (G x - e)/rho|`
+    pub fn point(&mut self, laws: Laws, x: Vec<f64>, g: Vec<f64>, alpha: Vec<f64>) -> Result<Point> {
+        let r = self.gaps(&g, &alpha);
+        let law = laws.cones.law(&x, &r, laws.rho);
+        let square = dot(&law, &law) + self.balance_missed(&x)?;
+        Ok(Point { x, g, alpha, r, merit: square.sqrt() / laws.rho })
+    }
+
+    /// `|G'(G G')^+ (G x - e)|^2`
+    pub fn balance_missed(&mut self, x: &[f64]) -> Result<f64> {
+        let Some(all_rows) = &self.all_rows else { return Ok(0.0) };
+        let mut left = self.problem.e.to_vec();
+        self.problem.g_transposed.mul_transposed_add(-1.0, x, &mut left);
+        self.counts.coarse_solves += 1;
+        // what is no number stays so
+        let square = dot(&left, &all_rows.solve(&left)?);
+        Ok(if square < 0.0 { 0.0 } else { square })
+    }
+}

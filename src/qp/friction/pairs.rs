@@ -1,0 +1,76 @@
+//! Directions kept with their images under F, which serve all states of the nodes, coefficients, bounds and loads.
+
+use std::collections::VecDeque;
+
+use crate::error::Result;
+use crate::linalg::dense::least_squares::least_squares;
+use crate::linalg::vector::{axpy, norm};
+use crate::linalg::Matrix;
+use crate::platform::memory::copied;
+use crate::platform::{interrupt, tally};
+use crate::qp::friction::face::Model;
+
+/// Pairs kept; the oldest goes first.
+const MOST: usize = 200;
+/// Columns of unit length that keep less than this beside the others depend on them.
+const CUT: f64 = 1e-12;
+
+/// What earlier solves leave to later ones with the same F, G and rows.
+#[derive(Debug, Default)]
+pub struct Pairs {
+    kept: VecDeque<(Vec<f64>, Vec<f64>)>,
+}
+
+/// The combination of all pairs that the linear model likes best.
+pub struct Step {
+    pub dx: Vec<f64>,
+    pub dg: Vec<f64>,
+    /// What it leaves of the residual, as a part.
+    pub rest: f64,
+}
+
+impl Pairs {
+    pub fn count(&self) -> usize {
+        self.kept.len()
+    }
+
+    /// Those of m rows; none of others.
+    pub fn of_order(self, order: usize) -> Self {
+        if self.kept.iter().all(|(v, _)| v.len() == order) {
+            self
+        } else {
+            Self::default()
+        }
+    }
+
+    pub fn keep(&mut self, v: &[f64], fv: &[f64]) -> Result<()> {
+        if self.kept.len() >= MOST {
+            self.kept.pop_front();
+        }
+        self.kept.push_back((copied(v, "a direction")?, copied(fv, "a direction")?));
+        Ok(())
+    }
+
+    /// `dx = V c`, `c = argmin | [L V; P w (W'F V + D S V)] c + [first; P w q] |`.
+    pub fn minimise(&self, model: &Model, residual: Vec<f64>) -> Result<Step> {
+        interrupt::check()?;
+        tally::costly();
+        let m = residual.len();
+        let target = model.reduced(residual)?;
+        let mut images = Matrix::zeros(m, self.kept.len())?;
+        for (j, (v, fv)) in self.kept.iter().enumerate() {
+            images.col_mut(j).copy_from_slice(&model.reduced(model.face.image(v, fv))?);
+        }
+        let wanted: Vec<f64> = target.iter().map(|target| -target).collect();
+        let c = least_squares(&images, &wanted, CUT)?;
+        let mut left = target;
+        images.mul_add(1.0, &c, &mut left);
+        let rest = norm(&left) / norm(&wanted).max(f64::MIN_POSITIVE);
+        let (mut dx, mut dg) = (vec![0.0; m], vec![0.0; m]);
+        for (c, (v, fv)) in c.iter().zip(&self.kept).filter(|(c, _)| **c != 0.0) {
+            axpy(*c, v, &mut dx);
+            axpy(*c, fv, &mut dg);
+        }
+        Ok(Step { dx, dg, rest })
+    }
+}

@@ -1,0 +1,128 @@
+//! Newton's method along the smoothed laws, eps from large to small: what is left where the laws themselves make Newton's method go round
+//! in circles.
+
+use crate::error::Result;
+use crate::linalg::vector::{axpy, norm_max};
+use crate::qp::friction::direct::Dense;
+use crate::qp::friction::face::Model;
+use crate::qp::friction::newton::{Laws, Point, Run};
+use crate::qp::friction::pairs::Step;
+use crate::qp::friction::smooth::{face, missed, Smoothing};
+
+/// The first eps, of the largest force there is or is to be expected.
+const FIRST: f64 = 0.3;
+/// eps becomes so much of what it was after a full step, and after a shorter one.
+const SHRINKS: f64 = 0.5;
+const SHRINKS_LESS: f64 = 0.6;
+/// Systems solved at most.
+const SYSTEMS: usize = 120;
+/// Directions of one system at most, and what they may leave of its residual.
+const DIRECTIONS: usize = 10;
+const LEFT: f64 = 0.3;
+/// A step of length t takes off the residual at least this part of t.
+const FALLS: f64 = 0.1;
+const SHORTEST: f64 = 1e-4;
+
+impl Run<'_, '_> {
+    /// From `now` until the laws are met or eps has ended; by pairs, at most `products` more, or by dense systems.
+    pub fn path(&mut self, laws: Laws, mut now: Point, way: Way) -> Result<Point> {
+        let Laws { cones, rho } = laws;
+        let root = (now.x.len() as f64).sqrt();
+        let end = match way.solves {
+            Solves::Pairs { products } => self.limit.min(self.counts.products + products),
+            Solves::Dense(_) => usize::MAX,
+        };
+        let first = FIRST * norm_max(&now.x).max(rho * self.scale / root);
+        let mut eps = first;
+        for _ in 0..SYSTEMS {
+            if self.is_met(&now) || eps <= way.last * first || self.counts.products >= end {
+                break;
+            }
+            let by = Smoothing { eps, relaxed: way.relaxed };
+            let model = self.model(face(cones, &now.x, &now.r, rho, by))?;
+            let step = match way.solves {
+                Solves::Pairs { .. } => self.enough(&model, &now)?,
+                Solves::Dense(dense) => {
+                    self.counts.direct += 1;
+                    dense.step(&self.problem, &model.face, &now)?
+                }
+            };
+            self.tried.newton += 1;
+            let (next, t, left) = self.shortened(laws, &model, &now, &step, by)?;
+            now = next;
+            if left <= eps * root {
+                eps *= if t == 1.0 { SHRINKS } else { SHRINKS_LESS };
+            }
+        }
+        Ok(now)
+    }
+
+    /// Directions join the pairs until they leave little of the residual.
+    pub fn enough(&mut self, model: &Model, now: &Point) -> Result<Step> {
+        let preconditioner = self.problem.preconditioner.map(|m| m.on(&model.face)).transpose()?;
+        let mut step = self.pairs.minimise(model, model.face.residual(&now.x, &now.r))?;
+        for _ in 0..DIRECTIONS {
+            if step.rest <= LEFT || self.counts.products >= self.limit {
+                break;
+            }
+            let (mut x, mut r) = (now.x.clone(), now.r.clone());
+            axpy(1.0, &step.dx, &mut x);
+            axpy(1.0, &step.dg, &mut r);
+            let v = self.direction(model, preconditioner.as_deref(), (&x, &r))?;
+            if !self.keep(v, now, model)? {
+                break;
+            }
+            step = self.pairs.minimise(model, model.face.residual(&now.x, &now.r))?;
+        }
+        Ok(step)
+    }
+
+    /// The first of the steps 1, 1/2, ... that takes enough off the residual, or the shortest; with its length and residual.
+    fn shortened(
+        &mut self,
+        laws: Laws,
+        model: &Model,
+        now: &Point,
+        step: &Step,
+        by: Smoothing,
+    ) -> Result<(Point, f64, f64)> {
+        let Laws { cones, rho } = laws;
+        let before = missed(cones, &now.x, &now.r, rho, by);
+        let along = |t: f64| {
+            let (mut x, mut g) = (now.x.clone(), now.g.clone());
+            axpy(t, &step.dx, &mut x);
+            axpy(t, &step.dg, &mut g);
+            (x, g)
+        };
+        let (x, g) = along(1.0);
+        let there = self.turned(model, &x, &g, &now.alpha)?;
+        let mut t = 1.0;
+        loop {
+            let (x, g) = along(t);
+            let alpha: Vec<f64> =
+                now.alpha.iter().zip(&there).map(|(now, there)| now + t * (there - now)).collect();
+            let left = missed(cones, &x, &self.gaps(&g, &alpha), rho, by);
+            if left <= (1.0 - FALLS * t) * before || t <= SHORTEST {
+                let next = self.point(laws, x, g, alpha)?;
+                let next = if next.merit.is_finite() { next } else { now.clone() };
+                return Ok((next, t, left));
+            }
+            t *= 0.5;
+        }
+    }
+}
+
+/// A path: by how much bounds are relaxed, in units of eps, and the part of the first eps where it ends.
+#[derive(Clone, Copy)]
+pub struct Way<'d> {
+    pub relaxed: f64,
+    pub last: f64,
+    pub solves: Solves<'d>,
+}
+
+/// How the systems of a path are solved.
+#[derive(Clone, Copy)]
+pub enum Solves<'d> {
+    Pairs { products: usize },
+    Dense(&'d Dense),
+}

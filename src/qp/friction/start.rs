@@ -1,0 +1,91 @@
+//! Where the method begins: x within the cones, a that fits its face, the length that gaps are measured against.
+
+use crate::error::Result;
+use crate::linalg::vector::{dot, norm};
+use crate::qp::friction::coordinates::of_rows;
+use crate::qp::friction::face::Face;
+use crate::qp::friction::motions::Motions;
+use crate::qp::friction::nearest::{project, Projected};
+use crate::qp::friction::newton::{Laws, Point, Run};
+use crate::qp::friction::{FrictionLimits, FrictionObserver, FrictionProblem, FrictionStart, Tried};
+use crate::qp::Counts;
+
+/// `|P d|` below this part of `|d|` is none.
+const NOTHING: f64 = 1e-14;
+
+impl<'a, 'w> Run<'a, 'w> {
+    /// The method and the first x; none where no force within the cones balances the load, with what is left of it.
+    pub fn new(
+        problem: FrictionProblem<'a>,
+        limits: FrictionLimits,
+        start: FrictionStart,
+        observer: &'w mut dyn FrictionObserver,
+    ) -> Result<(Self, Projected)> {
+        let motions = Motions::of(&problem)?;
+        let rows = of_rows(problem.cones);
+        let all_rows = motions.as_ref().map(|motions| motions.of_all_rows(&rows)).transpose()?;
+        let y = start.x.map_or_else(|| vec![0.0; problem.b.len()], <[f64]>::to_vec);
+        let mut run = Self {
+            pairs: start.pairs.of_order(y.len()),
+            counts: Counts::default(),
+            tried: Tried::default(),
+            limit: limits.products,
+            scale: 0.0,
+            small: 0.0,
+            last: Point::default(),
+            problem,
+            motions,
+            all_rows,
+            observer,
+        };
+        run.counts.coarse_factorisations += usize::from(run.all_rows.is_some());
+        let first = project(&problem, problem.cones, run.motions.as_ref(), &y)?;
+        Ok((run, first))
+    }
+
+    /// `F x - d`
+    pub fn gradient(&mut self, x: &[f64]) -> Result<Vec<f64>> {
+        let mut g = if x.iter().all(|x| *x == 0.0) { vec![0.0; x.len()] } else { self.product(x)? };
+        g.iter_mut().zip(self.problem.b).for_each(|(g, d)| *g -= d);
+        Ok(g)
+    }
+
+    /// The length that gaps are measured against, and the merit that counts as zero: rounding of d counts as such.
+    pub fn measure(&mut self, g: &[f64], tolerance: f64) -> Result<()> {
+        self.scale = self.size_of_gaps(g)?;
+        self.small = (tolerance * self.scale).max(64.0 * f64::EPSILON * norm(self.problem.b).max(norm(g)));
+        Ok(())
+    }
+
+    /// The merit that rounding of `G x = e` leaves: directions keep it as it is at the start.
+    pub fn allow_for_balance(&mut self, laws: Laws, x: &[f64]) -> Result<()> {
+        const TIMES: f64 = 4.0;
+        let floor = TIMES * self.balance_missed(x)?.sqrt() / laws.rho;
+        self.small = if floor > self.small { floor } else { self.small };
+        Ok(())
+    }
+
+    /// N, `|P d|`, or `|P (F x - d)|` where that is 0.
+    fn size_of_gaps(&mut self, g: &[f64]) -> Result<f64> {
+        let mut d = self.problem.b.to_vec();
+        let whole = norm(&d);
+        self.without_motions(&mut d)?;
+        if dot(&d, &d).sqrt() > NOTHING * whole {
+            return Ok(norm(&d));
+        }
+        let mut g = g.to_vec();
+        let whole = whole.max(norm(&g));
+        self.without_motions(&mut g)?;
+        Ok(if norm(&g) > NOTHING * whole { norm(&g) } else { 0.0 })
+    }
+
+    /// x and g with a in two passes, `a += da` with the face of (x, 0), then with that of (x, r).
+    pub fn begin(&mut self, laws: Laws, x: &[f64], g: &[f64], alpha: &[f64]) -> Result<Point> {
+        let none = vec![0.0; x.len()];
+        let first = self.model(Face::at(laws.cones, x, &none, laws.rho))?;
+        let alpha = self.turned(&first, x, g, alpha)?;
+        let second = self.model(Face::at(laws.cones, x, &self.gaps(g, &alpha), laws.rho))?;
+        let alpha = self.turned(&second, x, g, &alpha)?;
+        self.point(laws, x.to_vec(), g.to_vec(), alpha)
+    }
+}
