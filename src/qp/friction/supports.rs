@@ -13,6 +13,14 @@ pub struct Supported<'a> {
     b: Vec<f64>,
     g_transposed: Csr,
     cones: Cones,
+    preconditioner: Option<OfRows<'a>>,
+}
+
+/// M of the rows, and kappa for the supports.
+struct OfRows<'a> {
+    rows: &'a dyn FacePreconditioner,
+    kappa: f64,
+    count: usize,
 }
 
 impl<'a> Supported<'a> {
@@ -23,7 +31,9 @@ impl<'a> Supported<'a> {
         let mut g_transposed = of.g_transposed.clone();
         (0..of.e.len()).for_each(|k| g_transposed.push_row([(k, 1.0)]));
         let cones = Cones::new(b.len(), of.cones.nodes().to_vec())?;
-        Ok(Self { of, kappa, b, g_transposed, cones })
+        let of_rows = |rows| OfRows { rows, kappa, count: of.b.len() };
+        let preconditioner = of.preconditioner.map(of_rows);
+        Ok(Self { of, kappa, b, g_transposed, cones, preconditioner })
     }
 
     pub fn problem(&self) -> FrictionProblem<'_> {
@@ -32,7 +42,7 @@ impl<'a> Supported<'a> {
             b: &self.b,
             g_transposed: &self.g_transposed,
             cones: &self.cones,
-            preconditioner: self.of.preconditioner.map(|_| self as &dyn FacePreconditioner),
+            preconditioner: self.preconditioner.as_ref().map(|of_rows| of_rows as &dyn FacePreconditioner),
             ..self.of
         }
     }
@@ -48,13 +58,14 @@ impl Operator for Supported<'_> {
         self.b.len()
     }
 
-    /// F and, for the supports, `1/kappa`.
+    /// y is not a number where memory refused the product.
     fn apply(&self, x: &[f64], y: &mut [f64]) {
-        let (rows, supports) = y.split_at_mut(self.of.b.len());
-        self.of.a.apply(&x[..rows.len()], rows);
-        supports.iter_mut().zip(&x[rows.len()..]).for_each(|(y, x)| *y = x / self.kappa);
+        if self.try_apply(x, y).is_err() {
+            y.fill(f64::NAN);
+        }
     }
 
+    /// F and, for the supports, `1/kappa`.
     fn try_apply(&self, x: &[f64], y: &mut [f64]) -> Result<()> {
         let (rows, supports) = y.split_at_mut(self.of.b.len());
         self.of.a.try_apply(&x[..rows.len()], rows)?;
@@ -63,28 +74,23 @@ impl Operator for Supported<'_> {
     }
 }
 
-/// M of the rows, and kappa for the supports.
+/// M of one face.
 struct OnSupported<'a> {
     rows: Box<dyn OnFace + 'a>,
     kappa: f64,
     count: usize,
 }
 
-impl FacePreconditioner for Supported<'_> {
+impl FacePreconditioner for OfRows<'_> {
     fn on<'b>(&'b self, face: &Face) -> Result<Box<dyn OnFace + 'b>> {
-        let count = self.of.b.len();
+        let &Self { rows, kappa, count } = self;
         let own = Face {
             coordinates: copied(&face.coordinates[..count], "a face")?,
             states: copied(&face.states, "a face")?,
             closed: copied(&face.closed, "a face")?,
             rho: face.rho,
         };
-        match self.of.preconditioner {
-            Some(preconditioner) => {
-                Ok(Box::new(OnSupported { rows: preconditioner.on(&own)?, kappa: self.kappa, count }))
-            }
-            None => Ok(Box::new(Identity)),
-        }
+        Ok(Box::new(OnSupported { rows: rows.on(&own)?, kappa, count }))
     }
 }
 
@@ -93,15 +99,6 @@ impl OnFace for OnSupported<'_> {
         let (rows, supports) = z.split_at_mut(self.count);
         self.rows.apply(&q[..self.count], rows)?;
         supports.iter_mut().zip(&q[self.count..]).for_each(|(z, q)| *z = self.kappa * q);
-        Ok(())
-    }
-}
-
-struct Identity;
-
-impl OnFace for Identity {
-    fn apply(&self, q: &[f64], z: &mut [f64]) -> Result<()> {
-        z.copy_from_slice(q);
         Ok(())
     }
 }
