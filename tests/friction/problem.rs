@@ -1,6 +1,7 @@
 //! A problem by its matrices, solved; judges that accept.
 
 use feti_contact::error::Result;
+use feti_contact::linalg::vector::norm;
 use feti_contact::linalg::{Csr, Matrix};
 use feti_contact::qp::friction::{
     friction, Cones, FrictionLimits, FrictionObserver, FrictionProblem, FrictionReport, FrictionSolution,
@@ -111,7 +112,6 @@ impl Given {
         let law = self.cones.law(&found.x, &r, 1.0);
         let mut left = self.e.clone();
         self.g_transposed.mul_transposed_add(-1.0, &found.x, &mut left);
-        let norm = |v: &[f64]| v.iter().map(|v| v * v).sum::<f64>().sqrt();
         let against = |v: f64, whole: f64| if v == 0.0 { 0.0 } else { v / whole };
         (against(norm(&law), norm(&self.d)), against(norm(&left), norm(&self.e)))
     }

@@ -70,22 +70,27 @@ impl Model {
         for (body, load) in self.loads.iter().enumerate() {
             problem.set_load(body, load)?;
         }
-        let (mut ptr, mut body, mut dof, mut val, mut gap) = (vec![0], vec![], vec![], vec![], vec![]);
-        for (entries, c) in &self.rows {
-            for (p, j, v) in entries {
-                body.push(*p as i64);
-                dof.push(*j as i64);
-                val.push(*v);
-            }
-            ptr.push(dof.len());
-            gap.push(*c);
-        }
-        problem.add_rows(
-            RowKind::Inequality,
-            RowsInput { ptr: &ptr, body: Some(&body), dof: &dof, val: &val, rhs: Some(&gap) },
-        )?;
-        Ok(())
+        give_rows(problem, RowKind::Inequality, &self.rows)
     }
+}
+
+/// Rows by their entries and right-hand sides.
+pub type Rows = [(Vec<(usize, usize, f64)>, f64)];
+
+pub fn give_rows(problem: &mut Problem, kind: RowKind, rows: &Rows) -> Result<()> {
+    let (mut ptr, mut body, mut dof, mut val, mut rhs) = (vec![0], vec![], vec![], vec![], vec![]);
+    for (entries, c) in rows {
+        for (p, j, v) in entries {
+            body.push(*p as i64);
+            dof.push(*j as i64);
+            val.push(*v);
+        }
+        ptr.push(dof.len());
+        rhs.push(*c);
+    }
+    problem
+        .add_rows(kind, RowsInput { ptr: &ptr, body: Some(&body), dof: &dof, val: &val, rhs: Some(&rhs) })?;
+    Ok(())
 }
 
 pub fn give_elements(problem: &mut Problem, body: usize, mesh: &Mesh) -> Result<()> {

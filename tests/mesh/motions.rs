@@ -1,9 +1,9 @@
 //! Motions that closed rows leave open are found by the pieces of a body that is cut as by the whole of it.
 
 use decks::mesh::Mesh;
-use feti_contact::solver::{Outcome, Problem, RowKind, RowsInput};
+use feti_contact::solver::{Outcome, Problem, RowKind};
 
-use crate::bodies::{apart, solved, Model};
+use crate::bodies::{apart, give_rows, solved, Model};
 
 /// Two blocks of 2 to 5 elements along each edge, of varied E, the lower one held at z = 0 or, for every other seed, at x = 0; and into
 /// how many pieces each is cut.
@@ -24,21 +24,13 @@ fn random(seed: u64) -> (Model, i64) {
 fn glued(model: &Model, pieces: i64, axes: &[usize], rows: impl Fn(usize) -> bool) -> Problem {
     let mut problem = model.by_elements(pieces, true).unwrap();
     problem.clear_rows(RowKind::Inequality);
-    let (mut ptr, mut body, mut dof, mut val, mut gap) = (vec![0], vec![], vec![], vec![], vec![]);
-    for ((entries, c), axis) in (0..model.rows.len())
-        .filter(|&i| rows(i))
-        .flat_map(|i| axes.iter().map(move |axis| (&model.rows[i], axis)))
-    {
-        for (p, j, v) in entries {
-            body.push(*p as i64);
-            dof.push((*j + axis - 2) as i64);
-            val.push(*v);
-        }
-        ptr.push(dof.len());
-        gap.push(*c);
-    }
-    let rows = RowsInput { ptr: &ptr, body: Some(&body), dof: &dof, val: &val, rhs: Some(&gap) };
-    problem.add_rows(RowKind::Equality, rows).unwrap();
+    let along = |(entries, c): &(Vec<(usize, usize, f64)>, f64), axis: usize| {
+        (entries.iter().map(|&(p, j, v)| (p, j + axis - 2, v)).collect(), *c)
+    };
+    let chosen = (0..model.rows.len()).filter(|&i| rows(i));
+    let all: Vec<_> =
+        chosen.flat_map(|i| axes.iter().map(move |&axis| along(&model.rows[i], axis))).collect();
+    give_rows(&mut problem, RowKind::Equality, &all).unwrap();
     problem
 }
 
