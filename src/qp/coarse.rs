@@ -6,7 +6,7 @@ use std::sync::Arc;
 use crate::error::Result;
 use crate::linalg::semidefinite::clusters::Blocks;
 use crate::linalg::semidefinite::sparse::{FaceRows, PseudoInverse, WEAK};
-use crate::linalg::semidefinite::{is_regular, GeneralInverse};
+use crate::linalg::semidefinite::{is_regular_factor, GeneralInverse};
 use crate::linalg::vector::{axpy, norm, norm_max};
 use crate::linalg::{Cholesky, Csr, Matrix, Runs};
 use crate::platform::memory::headroom;
@@ -130,9 +130,9 @@ impl<'a> Coarse<'a> {
         if let Some(factors) = factors.as_mut().filter(|_| !self.left_free) {
             let by = 1.0 / (unit * unit);
             if let Ok(factor) = factors.factor(g_transposed, held, (by, 0.0), |_| ())? {
-                let smallest = factor.smallest_pivot();
-                if is_regular(whole.len(), smallest, |x| factor.solve(x))? {
-                    return Ok(Solver::Cholesky { factor, weak: smallest < WEAK });
+                if is_regular_factor(&factor)? {
+                    let weak = factor.smallest_pivot() < WEAK;
+                    return Ok(Solver::Cholesky { factor, weak });
                 }
             }
             let mut w = factors.gram().sum(g_transposed, held)?;

@@ -9,7 +9,7 @@ pub mod sparse;
 use crate::error::Result;
 use crate::linalg::random::scattered;
 use crate::linalg::vector::norm;
-use crate::linalg::Matrix;
+use crate::linalg::{Cholesky, Matrix};
 
 /// A pivot of a matrix with its largest diagonal entry about 1 up to this means that it is singular.
 pub const SINGULAR: f64 = 1e-11;
@@ -20,7 +20,7 @@ pub const DOUBTFUL: f64 = 1e-5;
 
 /// No motion is free: L L', the factor computed of W, is W but for some 1e-16 of each, so along a free motion it has no more. Its
 /// smallest eigenvalue is found by inverse iteration, where pivots leave a doubt.
-pub fn is_regular(
+fn is_regular(
     order: usize,
     smallest_pivot: f64,
     mut solve: impl FnMut(&mut [f64]) -> Result<()>,
@@ -38,6 +38,11 @@ pub fn is_regular(
         eigenvalue = 1.0 / norm(&x);
     }
     Ok(eigenvalue > FREE)
+}
+
+/// The same of a sparse factor.
+pub fn is_regular_factor(factor: &Cholesky) -> Result<bool> {
+    is_regular(factor.analysis.position.len(), factor.smallest_pivot(), |x| factor.solve(x))
 }
 
 /// `W+` of a matrix that is singular or all but so.

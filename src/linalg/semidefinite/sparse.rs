@@ -4,7 +4,7 @@
 use std::sync::Arc;
 
 use crate::error::Result;
-use crate::linalg::semidefinite::{is_regular, resisted, GeneralInverse};
+use crate::linalg::semidefinite::{is_regular_factor, resisted, GeneralInverse};
 use crate::linalg::sparse::graph::components;
 use crate::linalg::{Analysis, Cholesky, Csr, Matrix, SpdSolver, Symmetric};
 use crate::platform::memory::{headroom_with, SMALL_MATRICES};
@@ -57,7 +57,7 @@ impl PseudoInverse {
             let mut rest = w.copied("the parts of a matrix")?;
             uncouple(&mut rest, |row| dense[part_of[row]]);
             let Ok(factor) = analysis.attempt(&rest, 1.0)? else { return Ok(None) };
-            if !is_regular(w.order(), factor.smallest_pivot(), |x| factor.solve(x))? {
+            if !is_regular_factor(&factor)? {
                 return Ok(None);
             }
             regular = Some(factor);

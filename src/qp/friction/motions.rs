@@ -6,7 +6,7 @@ use std::sync::Arc;
 use crate::error::Result;
 use crate::linalg::semidefinite::clusters::Blocks;
 use crate::linalg::semidefinite::sparse::{FaceRows, PseudoInverse};
-use crate::linalg::semidefinite::{is_regular, GeneralInverse};
+use crate::linalg::semidefinite::{is_regular_factor, GeneralInverse};
 use crate::linalg::sparse::gram::Gram;
 use crate::linalg::vector::{norm_max, power_of_two_below};
 use crate::linalg::{Analysis, Cholesky, Csr, Symmetric};
@@ -122,7 +122,7 @@ impl<'a> Motions<'a> {
 
     fn solver(&self, w: &Symmetric, weighted: &Csr, rounding: f64) -> Result<Solver> {
         if let Ok(factor) = self.analysis.attempt(w, 1.0)? {
-            if is_regular(w.order(), factor.smallest_pivot(), |x| factor.solve(x))? {
+            if is_regular_factor(&factor)? {
                 return Ok(Solver::Cholesky(factor));
             }
         }

@@ -19,7 +19,7 @@ use crate::error::{Error, Kind, Result};
 use crate::linalg::semidefinite::faces::FaceFactors;
 use crate::linalg::semidefinite::resisted::sorted;
 use crate::linalg::semidefinite::sparse::WEAK;
-use crate::linalg::semidefinite::{is_regular, DOUBTFUL};
+use crate::linalg::semidefinite::{is_regular_factor, DOUBTFUL};
 use crate::linalg::{Cholesky, Csr, Matrix, Symmetric};
 use crate::platform::memory::{headroom, headroom_with, SMALL_MATRICES};
 use block::Block;
@@ -124,10 +124,9 @@ impl Blocks {
             }
         };
         let infinite = |_| Error::new(Kind::Internal, "a coarse matrix is not finite");
-        let (order, turned) = (self.rows.cols, &self.turned);
-        let factor = self.factors.factor(turned, held, (1.0, HOLD[0]), complete)?.map_err(infinite)?;
+        let factor = self.factors.factor(&self.turned, held, (1.0, HOLD[0]), complete)?.map_err(infinite)?;
         let is_certain = factor.smallest_pivot() > DOUBTFUL;
-        if is_regular(order, factor.smallest_pivot(), |x| factor.solve(x))? {
+        if is_regular_factor(&factor)? {
             let inverse = self.by_factor(factor, &blocks, held)?;
             if is_certain || inverse.clusters.iter().all(|cluster| cluster.weak.cols == 0) {
                 return Ok(inverse);
