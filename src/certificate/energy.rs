@@ -51,7 +51,7 @@ impl Energies {
     /// Adds the rows. A row without force does no work, however far it is: 0 x infinity is 0.
     pub fn add_rows(&mut self, field: &Field) {
         for (kind, forces) in
-            [(RowKind::Inequality, field.answer.lambda), (RowKind::Equality, field.answer.mu)]
+            [RowKind::Inequality, RowKind::Equality].map(|kind| (kind, field.answer.forces(kind)))
         {
             let rows = field.rows(kind);
             for (i, force) in forces.iter().enumerate().filter(|(_, force)| **force != 0.0) {

@@ -43,6 +43,12 @@ pub struct Certificate {
     pub negative_force: Entry,
     /// Open gap or force, whichever is less of what it may be, worst row.
     pub complementarity: Entry,
+    /// `(|lambda_t| - b)_+`, `b = bound + mu lambda_n`, worst node with friction.
+    pub friction_cone: Entry,
+    /// Force that is missing or across where a node slips, worst node with friction.
+    pub friction_work: Entry,
+    /// Slip where the force is within its bound, worst node with friction.
+    pub friction_stick: Entry,
     /// `|u'K u - f'u + c'lambda + h'mu + lambda'C lambda + mu'C mu|`
     pub duality_gap: Entry,
     /// `1/2 u'K u - f'u + 1/2 lambda'C lambda + 1/2 mu'C mu`, force x length: what is minimised, springs of compliant rows
@@ -51,7 +57,7 @@ pub struct Certificate {
 }
 
 impl Certificate {
-    pub fn entries(&self) -> [Entry; 7] {
+    pub fn entries(&self) -> [Entry; 10] {
         [
             self.equilibrium,
             self.balance,
@@ -59,6 +65,9 @@ impl Certificate {
             self.equality,
             self.negative_force,
             self.complementarity,
+            self.friction_cone,
+            self.friction_work,
+            self.friction_stick,
             self.duality_gap,
         ]
     }
@@ -90,6 +99,9 @@ impl Certificate {
         self.equality.replace_if_worse(other.equality);
         self.negative_force.replace_if_worse(other.negative_force);
         self.complementarity.replace_if_worse(other.complementarity);
+        self.friction_cone.replace_if_worse(other.friction_cone);
+        self.friction_work.replace_if_worse(other.friction_work);
+        self.friction_stick.replace_if_worse(other.friction_stick);
         self.duality_gap.replace_if_worse(other.duality_gap);
         self.energy += other.energy;
     }

@@ -17,12 +17,12 @@ pub(super) struct Field<'a> {
     pub metric: Vec<f64>,
     /// Grounded unknowns, n.
     pub grounded: Vec<bool>,
-    /// r = B'lambda + H'mu, n, force.
+    /// r = B'lambda + H'mu + T'lambda_t, n, force.
     pub push: Vec<f64>,
-    /// `|B'||lambda| + |H'||mu|`, n, force.
+    /// `|B'||lambda| + |H'||mu| + |T'||lambda_t|`, n, force.
     pub push_terms: Vec<f64>,
-    /// `s_i / U^1/2` of contact and equality rows, no unit.
-    pub scales: [Vec<f64>; 2],
+    /// `s_i / U^1/2` of contact, equality and tangential rows, no unit.
+    pub scales: [Vec<f64>; 3],
 }
 
 impl<'a> Field<'a> {
@@ -32,7 +32,8 @@ impl<'a> Field<'a> {
         let unit = power_of_two_below(norm_max(&metric));
         metric.iter_mut().for_each(|d| *d /= unit);
         let (mut push, mut push_terms) = (vec![0.0; n], vec![0.0; n]);
-        for (rows, multipliers) in [(data.contact, answer.lambda), (data.equalities, answer.mu)] {
+        for kind in RowKind::ALL {
+            let (rows, multipliers) = (data.rows(kind), answer.forces(kind));
             rows.matrix.mul_transposed_add(1.0, multipliers, &mut push);
             rows.matrix.mul_transposed_abs_add(multipliers, &mut push_terms);
         }
@@ -42,15 +43,12 @@ impl<'a> Field<'a> {
             let held = body.grounded.iter().filter(|j| !moving.contains(j));
             held.for_each(|j| grounded[body.start + *j as usize] = true);
         }
-        let scales = [data.contact, data.equalities].map(|rows| row_scales(rows, &metric, unit));
+        let scales = RowKind::ALL.map(|kind| row_scales(data.rows(kind), &metric, unit));
         Ok(Self { data, answer, unit, metric, grounded, push, push_terms, scales })
     }
 
     pub fn rows(&self, kind: RowKind) -> &'a RowSet {
-        match kind {
-            RowKind::Inequality => self.data.contact,
-            RowKind::Equality => self.data.equalities,
-        }
+        self.data.rows(kind)
     }
 
     /// Unknowns of body p among all.

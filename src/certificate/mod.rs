@@ -20,7 +20,7 @@ mod rows;
 use std::ops::Range;
 
 use crate::body::Stiffness;
-use crate::constraints::{RowKind, RowSet};
+use crate::constraints::{FrictionNode, RowKind, RowSet};
 use crate::error::Result;
 use crate::linalg::Matrix;
 
@@ -44,11 +44,23 @@ pub struct Data<'a> {
     pub contact: &'a RowSet,
     /// `H u = h`, q x n.
     pub equalities: &'a RowSet,
+    /// T of nodes with friction, with s_old as right-hand sides, t x n.
+    pub tangential: &'a RowSet,
+    /// Their laws, with the numbers that contact rows and tangential rows have here.
+    pub nodes: &'a [FrictionNode],
     /// tol, no unit: what every figure may be.
     pub limit: f64,
 }
 
-impl Data<'_> {
+impl<'a> Data<'a> {
+    pub fn rows(&self, kind: RowKind) -> &'a RowSet {
+        match kind {
+            RowKind::Inequality => self.contact,
+            RowKind::Equality => self.equalities,
+            RowKind::Tangential => self.tangential,
+        }
+    }
+
     /// Grounded unknowns of all bodies.
     pub fn grounded(&self) -> impl Iterator<Item = usize> + '_ {
         self.bodies.iter().flat_map(|body| body.grounded.iter().map(|j| body.start + *j as usize))
@@ -90,6 +102,18 @@ pub struct Candidate<'a> {
     pub lambda: &'a [f64],
     /// q, force.
     pub mu: &'a [f64],
+    /// t, force.
+    pub tangential: &'a [f64],
+}
+
+impl<'a> Candidate<'a> {
+    pub fn forces(&self, kind: RowKind) -> &'a [f64] {
+        match kind {
+            RowKind::Inequality => self.lambda,
+            RowKind::Equality => self.mu,
+            RowKind::Tangential => self.tangential,
+        }
+    }
 }
 
 /// What loads and unit forces of rows move, by K+: asked for only where rounding of the loads may excuse a gap.
@@ -122,6 +146,8 @@ pub struct Judgement {
     pub bodies: Vec<BodyJudgement>,
     /// Of every contact row.
     pub contact: Vec<RowJudgement>,
+    /// Of every node with friction.
+    pub nodes: Vec<FrictionState>,
     /// `|S L|` over all rows, (force x length)^1/2: the lengths that gaps are measured against, without any travel.
     pub length: f64,
     /// The largest `(|f| + |r|)_{D^-1} / |delta|_D` of a body, no unit: the certificate overlooks errors of a deformation that are
@@ -149,6 +175,21 @@ pub struct RowJudgement {
     pub force: f64,
 }
 
+/// What a node with friction does.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum FrictionState {
+    /// It may carry no tangential force.
+    Open,
+    /// It carries a force within its bound and does not slip.
+    Stick,
+    /// It slips along a force that reaches its bound.
+    Slip,
+    /// It does not slip and its force reaches its bound, to rounding.
+    Weak,
+    /// The bodies of the node are in a group that has no answer.
+    Unknown,
+}
+
 /// The judgement of an answer. Fails where the host does, that has the products with K.
 pub fn certify(data: &Data, answer: Candidate, response: &mut dyn Response) -> Result<Judgement> {
     let field = Field::new(data, answer)?;
@@ -169,7 +210,8 @@ pub fn certify(data: &Data, answer: Candidate, response: &mut dyn Response) -> R
     let bodies = rows.force_errors(&field);
     let (length, leverage) = (rows.length(&field), forces.leverage);
     let unevenness = rows.unevenness();
-    Ok(Judgement { certificate, bodies, contact: rows.limits(), length, leverage, unevenness })
+    let nodes = vec![FrictionState::Open; data.nodes.len()];
+    Ok(Judgement { certificate, bodies, contact: rows.limits(), nodes, length, leverage, unevenness })
 }
 
 /// `D = diag K` over all unknowns, force / length.

@@ -30,8 +30,7 @@ impl JudgedRow {
     fn new(field: &Field, deformation: &Deformation, forces: &Forces, kind: RowKind, i: usize) -> Self {
         let rows = field.rows(kind);
         let scale = field.scales[kind as usize][i];
-        let multipliers = [field.answer.lambda, field.answer.mu][kind as usize];
-        let force = multipliers[i];
+        let force = field.answer.forces(kind)[i];
         let empty = rows.matrix.row(i).next().is_none();
         let given_way = if scale > 0.0 { (force.abs() / scale) / scale / field.unit } else { 0.0 };
         // what all forces on its unknowns together would move there: those that cancel do nothing but by their rounding
@@ -64,6 +63,7 @@ impl JudgedRow {
         let violation = match self.kind {
             RowKind::Inequality => positive(-self.open),
             RowKind::Equality => self.open.abs(),
+            RowKind::Tangential => 0.0,
         };
         share(violation, self.gap_limit)
     }
@@ -89,6 +89,7 @@ impl JudgedRow {
         match self.kind {
             RowKind::Inequality => self.open.min(self.given_way * self.force.signum()).abs(),
             RowKind::Equality => self.open.abs(),
+            RowKind::Tangential => 0.0,
         }
     }
 
@@ -97,6 +98,7 @@ impl JudgedRow {
         match self.kind {
             RowKind::Inequality => worse(self.violation(), self.complementarity()),
             RowKind::Equality => self.violation(),
+            RowKind::Tangential => 0.0,
         }
     }
 }
@@ -109,16 +111,16 @@ fn worse(a: f64, b: f64) -> f64 {
     }
 }
 
-/// All rows of the island: contact rows, equality rows.
+/// All rows of the island: contact rows, equality rows, tangential rows.
 pub(super) struct Measured {
-    pub rows: [Vec<JudgedRow>; 2],
+    pub rows: [Vec<JudgedRow>; 3],
 }
 
 impl Measured {
     pub fn new(field: &Field, deformation: &Deformation, forces: &Forces) -> Self {
         let row = |kind, i| JudgedRow::new(field, deformation, forces, kind, i);
         let of = |kind| (0..field.rows(kind).len()).map(|i| row(kind, i)).collect();
-        Self { rows: [RowKind::Inequality, RowKind::Equality].map(of) }
+        Self { rows: RowKind::ALL.map(of) }
     }
 
     /// The entries of the rows.
@@ -134,7 +136,7 @@ impl Measured {
         certificate: &mut Certificate,
         counts: impl Fn(RowKind, usize) -> bool,
     ) {
-        let [contact, equalities] = &self.rows;
+        let [contact, equalities, _] = &self.rows;
         certificate.penetration = worst(contact, limit, JudgedRow::violation, &counts);
         certificate.complementarity = worst(contact, limit, JudgedRow::complementarity, &counts);
         certificate.equality = worst(equalities, limit, JudgedRow::violation, &counts);

@@ -7,9 +7,11 @@
 
 mod accumulator;
 mod decoupling;
+mod friction;
 mod grouping;
 
 pub use decoupling::{Decoupling, UnitRows};
+pub use friction::{Friction, FrictionInput, FrictionNode};
 pub use grouping::Grouping;
 
 use std::sync::Arc;
@@ -26,6 +28,8 @@ pub enum RowKind {
     Inequality,
     /// `H u = h`, multipliers mu of any sign.
     Equality,
+    /// Tangential rows T of nodes with friction, with the slip `s = T u - s_old - C_t lambda_t`.
+    Tangential,
 }
 
 /// Rows as they arrived, counting from 0; without `body` the dofs count through all bodies.
@@ -111,12 +115,18 @@ impl RowSet {
             entries.retain(|entry| entry.1 != 0.0);
             added.push_row(entries);
         }
+        let compliance = zeros(rows, "constraint rows")?;
+        self.append(&Self { matrix: Arc::new(added), rhs, compliance }, offsets)
+    }
+
+    /// Appends rows over the same unknowns; returns the number of the first.
+    pub fn append(&mut self, more: &Self, offsets: &[usize]) -> Result<usize> {
         let first = self.len();
         let matrix = Arc::make_mut(&mut self.matrix);
-        (0..rows).for_each(|i| matrix.push_row(added.row(i)));
+        (0..more.len()).for_each(|i| matrix.push_row(more.matrix.row(i)));
         matrix.cols = offsets.last().copied().unwrap_or(0);
-        self.rhs.extend(rhs);
-        self.compliance.resize(self.rhs.len(), 0.0);
+        self.rhs.extend(&more.rhs);
+        self.compliance.extend(&more.compliance);
         Ok(first)
     }
 
@@ -164,6 +174,7 @@ impl RowSet {
             match kind {
                 RowKind::Inequality => force.max(0.0),
                 RowKind::Equality => force,
+                RowKind::Tangential => 0.0,
             }
         })
     }
@@ -188,6 +199,7 @@ impl RowSet {
         let fails = |i: usize| match kind {
             RowKind::Inequality => self.rhs[i] < 0.0,
             RowKind::Equality => self.rhs[i] != 0.0,
+            RowKind::Tangential => false,
         };
         match (0..self.len()).find(|&i| empty(i) && fails(i)) {
             Some(i) => Err(Error::new(Kind::GapsContradict, format!("this {} has no entries", kind.name()))
@@ -200,10 +212,13 @@ impl RowSet {
 }
 
 impl RowKind {
+    pub const ALL: [Self; 3] = [Self::Inequality, Self::Equality, Self::Tangential];
+
     pub fn name(self) -> &'static str {
         match self {
             Self::Inequality => "contact row",
             Self::Equality => "equality row",
+            Self::Tangential => "tangential row",
         }
     }
 }
@@ -213,7 +228,7 @@ fn check_rhs(kind: RowKind, rhs: &[f64], first: usize) -> Result<()> {
     let never = |c: f64| kind == RowKind::Inequality && c == f64::INFINITY;
     let what = match kind {
         RowKind::Inequality => "the gap is neither a finite number nor +infinity",
-        RowKind::Equality => "the entry is not a finite number",
+        RowKind::Equality | RowKind::Tangential => "the entry is not a finite number",
     };
     match rhs.iter().position(|c| !c.is_finite() && !never(*c)) {
         None => Ok(()),

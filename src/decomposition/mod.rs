@@ -45,7 +45,7 @@ impl Decomposition {
         let mut model = Model::new();
         model.offsets.clone_from(&all.starts);
         model.bodies = bodies;
-        (model.contact, model.equalities) = rows(host, &joints, &all, &copies)?;
+        (model.contact, model.equalities, model.friction) = rows(host, &joints, &all, &copies)?;
         model.revisions = host.revisions;
         model.parts = Some(Arc::new(all));
         let mut made = Self { model, copies, of: host.revisions };
@@ -58,12 +58,14 @@ impl Decomposition {
         self.of == host.revisions
     }
 
-    /// Takes over what may change without a new setup: options, loads, right-hand sides.
+    /// Takes over what may change without a new setup: options, loads, right-hand sides, laws of friction.
     pub fn refresh(&mut self, host: &Model) -> Result<()> {
         let Some(parts) = self.model.parts.clone() else { return Ok(()) };
         self.model.settings = host.settings.clone();
         self.model.contact.rhs.copy_from_slice(&host.contact.rhs);
         self.model.equalities.rhs[..parts.equalities].copy_from_slice(&host.equalities.rhs);
+        self.model.friction.rows.rhs.copy_from_slice(&host.friction.rows.rhs);
+        self.model.friction.nodes.clone_from(&host.friction.nodes);
         loads(host, &parts, &self.copies, &mut self.model)
     }
 }

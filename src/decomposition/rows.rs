@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::constraints::RowSet;
+use crate::constraints::{Friction, RowSet};
 use crate::error::Result;
 use crate::linalg::Csr;
 use crate::model::{Joint, Model, Parts};
@@ -11,13 +11,13 @@ use super::copies::Copies;
 
 const WHAT: &str = "the rows of pieces";
 
-/// Contact rows and equality rows of the host, after these the glue: that of joints, that of pieces.
+/// Contact rows of the host; its equality rows, after these the glue: that of joints, that of pieces; its nodes with friction.
 pub fn rows(
     host: &Model,
     joints: &[Joint],
     parts: &Parts,
     copies: &[Option<Copies>],
-) -> Result<(RowSet, RowSet)> {
+) -> Result<(RowSet, RowSet, Friction)> {
     let place = |j: usize| {
         let body = parts.offsets[1..].partition_point(|end| *end <= j);
         let dof = j - parts.offsets[body];
@@ -40,7 +40,9 @@ pub fn rows(
     let all = matrix.rows();
     equalities.rhs.resize(all, 0.0);
     equalities.compliance.resize(all, 0.0);
-    Ok((contact, equalities))
+    let mut friction = host.friction.copied(WHAT)?;
+    friction.rows = moved(&host.friction.rows, parts, place)?;
+    Ok((contact, equalities, friction))
 }
 
 /// The same rows over unknowns at other places.

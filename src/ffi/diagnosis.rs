@@ -240,7 +240,7 @@ fn described(from: &Findings) -> feti_findings {
             Err(kind) => of_kind(*kind, &["p", "info"]).0,
         },
         kind: match from.kind {
-            None => 0,
+            None | Some(RowKind::Tangential) => 0,
             Some(RowKind::Inequality) => FETI_INEQUALITY,
             Some(RowKind::Equality) => FETI_EQUALITY,
         },

@@ -6,7 +6,7 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use crate::body::{Body, Form};
-use crate::constraints::{RowKind, RowSet};
+use crate::constraints::{Friction, RowKind, RowSet};
 use crate::error::{Error, Result};
 use crate::mesh::Mesh;
 use crate::model::parts::Parts;
@@ -21,6 +21,8 @@ pub struct Model {
     pub offsets: Vec<usize>,
     pub contact: RowSet,
     pub equalities: RowSet,
+    /// Nodes of contact rows with friction, and their tangential rows.
+    pub friction: Friction,
     /// The unknown behind every number of the host: body and dof.
     pub unknowns: HashMap<usize, (usize, usize)>,
     pub revisions: Revisions,
@@ -84,6 +86,10 @@ pub struct Sizes {
     pub dofs: usize,
     pub rows: usize,
     pub equalities: usize,
+    /// Nodes with friction.
+    pub nodes: usize,
+    /// Their tangential rows.
+    pub tangential: usize,
 }
 
 impl Model {
@@ -94,6 +100,7 @@ impl Model {
             offsets: vec![0],
             contact: RowSet::default(),
             equalities: RowSet::default(),
+            friction: Friction::default(),
             unknowns: HashMap::new(),
             revisions: Revisions::default(),
             parts: None,
@@ -143,6 +150,8 @@ impl Model {
             dofs: self.offsets[self.bodies.len()],
             rows: self.contact.len(),
             equalities: self.equalities.len(),
+            nodes: self.friction.len(),
+            tangential: self.friction.rows.len(),
         }
     }
 
@@ -155,6 +164,7 @@ impl Model {
         match kind {
             RowKind::Inequality => &self.contact,
             RowKind::Equality => &self.equalities,
+            RowKind::Tangential => &self.friction.rows,
         }
     }
 
@@ -162,6 +172,7 @@ impl Model {
         match kind {
             RowKind::Inequality => &mut self.contact,
             RowKind::Equality => &mut self.equalities,
+            RowKind::Tangential => &mut self.friction.rows,
         }
     }
 

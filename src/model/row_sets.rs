@@ -1,6 +1,6 @@
 //! Contact rows and equality rows: given, changed, dropped.
 
-use crate::constraints::{RowKind, RowSet, RowsInput};
+use crate::constraints::{Friction, FrictionInput, RowKind, RowSet, RowsInput};
 use crate::error::{Error, Proof, Result};
 use crate::model::contents::Model;
 use crate::platform::memory::{self, Headroom};
@@ -17,11 +17,10 @@ impl Model {
             None => self.places_of(rows.ptr, rows.dof)?,
         };
         let rows = RowsInput { dof: places.as_deref().unwrap_or(rows.dof), ..rows };
-        let present = match kind {
-            RowKind::Inequality => &mut self.contact,
-            RowKind::Equality => &mut self.equalities,
-        };
-        let first = present.add(kind, rows, &self.offsets)?;
+        let offsets = std::mem::take(&mut self.offsets);
+        let added = self.rows_mut(kind).add(kind, rows, &offsets);
+        self.offsets = offsets;
+        let first = added?;
         self.revisions.rows += 1;
         Ok(first)
     }
@@ -42,9 +41,63 @@ impl Model {
         Ok(())
     }
 
-    /// Drops all rows of one kind.
+    /// Drops all rows of one kind, with contact rows all nodes with friction.
     pub fn clear_rows(&mut self, kind: RowKind) {
         *self.rows_mut(kind) = RowSet::default();
+        if kind != RowKind::Equality {
+            self.friction = Friction::default();
+        }
+        self.revisions.rows += 1;
+    }
+
+    /// Adds nodes with friction and returns the number of the first. Without `body` their tangential rows go by the host's
+    /// numbers of the unknowns, where there are some.
+    pub fn add_friction(&mut self, input: FrictionInput) -> Result<usize> {
+        let places = match input.rows.body {
+            Some(_) => None,
+            None => self.places_of(input.rows.ptr, input.rows.dof)?,
+        };
+        let rows = RowsInput { dof: places.as_deref().unwrap_or(input.rows.dof), ..input.rows };
+        let first = self.friction.add(FrictionInput { rows, ..input }, &self.contact, &self.offsets)?;
+        self.revisions.rows += 1;
+        Ok(first)
+    }
+
+    /// New coefficients (no unit), bounds (force) or both of so many nodes; what is absent stays.
+    pub fn set_friction_law(
+        &mut self,
+        first: usize,
+        count: usize,
+        coefficient: Option<&[f64]>,
+        bound: Option<&[f64]>,
+    ) -> Result<()> {
+        if self.friction.set_law(first, count, coefficient, bound, &self.contact)? {
+            self.revisions.laws += 1;
+        }
+        Ok(())
+    }
+
+    /// Elastic stick, `s = T u - s_old - C_t lambda_t`: C_t >= 0, length / force, one of each node; 0 for rigid ones.
+    pub fn set_friction_compliance(&mut self, first: usize, inv_kt: &[f64]) -> Result<()> {
+        self.friction.set_compliance(first, inv_kt)?;
+        self.revisions.laws += 1;
+        Ok(())
+    }
+
+    /// s_old of so many nodes, (dim, nodes), length: the slip at which the step begins.
+    pub fn set_friction_reference(
+        &mut self,
+        first: usize,
+        count: usize,
+        dim: usize,
+        s_old: &[f64],
+    ) -> Result<()> {
+        self.friction.set_reference(first, count, dim, s_old)
+    }
+
+    /// Drops all nodes with friction; their contact rows stay.
+    pub fn clear_friction(&mut self) {
+        self.friction = Friction::default();
         self.revisions.rows += 1;
     }
 

@@ -57,11 +57,10 @@ impl Prepared {
 
     /// Gives the islands the gaps as they are now.
     pub fn refresh_gaps(&mut self, model: &Model) {
-        let (contact, equalities) = (&model.contact.rhs, &model.equalities.rhs);
         let islands = self.duals.iter_mut().flat_map(|duals| &mut duals.islands);
         for ready in islands {
-            ready.island.refresh(contact, equalities);
-            ready.whole.iter_mut().for_each(|whole| whole.island.refresh(contact, equalities));
+            ready.island.refresh(model);
+            ready.whole.iter_mut().for_each(|whole| whole.island.refresh(model));
         }
     }
 
@@ -148,7 +147,7 @@ fn assembled(settings: &Settings) -> f64 {
 
 /// A compliance times the stiffness of the bodies must be a number.
 fn check_compliance(island: &Island) -> Result<()> {
-    for kind in [RowKind::Inequality, RowKind::Equality] {
+    for kind in [RowKind::Inequality, RowKind::Equality, RowKind::Tangential] {
         let Members { numbers, rows } = island.members(kind);
         if let Some(row) = rows.compliance.iter().position(|c| !(c * island.unit).is_finite()) {
             let what = format!("the compliance of this {} times max K_ii overflows", kind.name());

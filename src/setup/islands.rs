@@ -5,7 +5,7 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use crate::certificate::{Certificate, Entry};
-use crate::constraints::{RowKind, RowSet};
+use crate::constraints::{Friction, FrictionNode, RowKind, RowSet};
 use crate::error::Result;
 use crate::linalg::graph::joined;
 use crate::linalg::vector::power_of_two_below;
@@ -23,6 +23,7 @@ pub struct Island {
     pub ranges: Vec<Range<usize>>,
     pub contact: Members,
     pub equalities: Members,
+    pub friction: Nodes,
     /// 2^p, p = floor(log2 max K_ii), force / length: forces are divided by it.
     pub unit: f64,
 }
@@ -34,6 +35,17 @@ pub struct Members {
     pub numbers: Vec<usize>,
     /// Over the unknowns of the island.
     pub rows: RowSet,
+}
+
+/// Nodes with friction in an island, those that may carry a tangential force some time.
+#[derive(Default)]
+pub struct Nodes {
+    /// Their numbers among all nodes, ascending.
+    pub numbers: Vec<usize>,
+    /// With the contact rows and tangential rows of the island.
+    pub nodes: Vec<FrictionNode>,
+    /// Tangential rows, those without entries left out.
+    pub tangential: Members,
 }
 
 impl Island {
@@ -50,31 +62,39 @@ impl Island {
         match kind {
             RowKind::Inequality => &self.contact,
             RowKind::Equality => &self.equalities,
+            RowKind::Tangential => &self.friction.tangential,
         }
     }
 
-    /// Kind and number among all rows of its kind of row i of the stack: contact rows, then equality rows.
+    /// Kind of row i of the stack, contact rows, equality rows, tangential rows, and its place among those of its kind.
+    pub fn kind_and_place(&self, i: usize) -> (RowKind, usize) {
+        let (contact, equalities) = (self.contact.numbers.len(), self.equalities.numbers.len());
+        match (i.checked_sub(contact), i.checked_sub(contact + equalities)) {
+            (None, _) => (RowKind::Inequality, i),
+            (Some(k), None) => (RowKind::Equality, k),
+            (_, Some(k)) => (RowKind::Tangential, k),
+        }
+    }
+
+    /// Kind and number among all rows of its kind of row i of the stack.
     pub fn kind_and_row(&self, i: usize) -> (RowKind, usize) {
-        match i.checked_sub(self.contact.numbers.len()) {
-            None => (RowKind::Inequality, self.contact.numbers[i]),
-            Some(k) => (RowKind::Equality, self.equalities.numbers[k]),
-        }
+        let (kind, place) = self.kind_and_place(i);
+        (kind, self.members(kind).numbers[place])
     }
 
-    /// Number of row i of the stack among all contact rows of the host, `contact` of them, and all equality rows.
+    /// Number of row i of the stack among all contact rows of the host, `contact` of them, and all equality rows; tangential
+    /// rows are not in it.
     pub fn in_stack(&self, contact: usize, i: usize) -> usize {
         match self.kind_and_row(i) {
             (RowKind::Inequality, row) => row,
-            (RowKind::Equality, row) => contact + row,
+            (RowKind::Equality | RowKind::Tangential, row) => contact + row,
         }
     }
 
     /// The set of row i of the stack, and its place there.
     pub fn row(&self, i: usize) -> (&RowSet, usize) {
-        match i.checked_sub(self.contact.numbers.len()) {
-            None => (&self.contact.rows, i),
-            Some(k) => (&self.equalities.rows, k),
-        }
+        let (kind, place) = self.kind_and_place(i);
+        (&self.members(kind).rows, place)
     }
 
     /// The loads of its bodies one after the other, force.
@@ -113,16 +133,42 @@ impl Island {
             equality: at(own.equality, equalities),
             negative_force: at(own.negative_force, contact),
             complementarity: at(own.complementarity, contact),
+            friction_cone: at(own.friction_cone, &self.friction.numbers),
+            friction_work: at(own.friction_work, &self.friction.numbers),
+            friction_stick: at(own.friction_stick, &self.friction.numbers),
             ..own
         }
     }
 
-    /// Takes over the right-hand sides of the host.
-    pub fn refresh(&mut self, contact: &[f64], equalities: &[f64]) {
-        for (members, rhs) in [(&mut self.contact, contact), (&mut self.equalities, equalities)] {
+    /// Takes over the right-hand sides and the laws of friction of the host.
+    pub fn refresh(&mut self, model: &Model) {
+        for (members, kind) in [
+            (&mut self.contact, RowKind::Inequality),
+            (&mut self.equalities, RowKind::Equality),
+            (&mut self.friction.tangential, RowKind::Tangential),
+        ] {
+            let rhs = &model.rows(kind).rhs;
             members.rows.rhs.iter_mut().zip(&members.numbers).for_each(|(c, &i)| *c = rhs[i]);
         }
+        for (own, &number) in self.friction.nodes.iter_mut().zip(&self.friction.numbers) {
+            let (coefficient, bound) = law(model, number);
+            *own = FrictionNode { coefficient, bound, ..*own };
+        }
     }
+}
+
+/// Coefficient and bound of a node; the constant force of a contact row without entries is part of the bound.
+fn law(model: &Model, number: usize) -> (f64, f64) {
+    let FrictionNode { normal, coefficient, bound, .. } = model.friction.nodes[number];
+    let alone = normal.filter(|&row| model.contact.is_empty_row(row)).map_or(0.0, |row| {
+        let compliance = model.contact.compliance[row];
+        if compliance > 0.0 {
+            (-model.contact.rhs[row] / compliance).max(0.0)
+        } else {
+            0.0
+        }
+    });
+    (coefficient, bound + coefficient * alone)
 }
 
 impl Members {
@@ -148,6 +194,13 @@ pub fn islands(model: &Model) -> Result<Vec<Island>> {
     });
     let _room = headroom(3 * size_of::<usize>() * bodies, WHAT)?;
     let (mut of_body, mut count) = joined(bodies, touched);
+    let acting = acting(model);
+    if !acting.is_empty() {
+        let nodes = acting.iter().map(|&node| unknowns_of(model, node).map(|j| of_body[body_of(j)]));
+        let (joint, all) = joined(count, nodes);
+        of_body.iter_mut().for_each(|island| *island = joint[*island]);
+        count = all;
+    }
     if let Some(parts) = &model.parts {
         // the pieces of one body belong together, also where nothing glues them
         let pieces = parts.first.windows(2).map(|range| (range[0]..range[1]).map(|part| of_body[part]));
@@ -164,6 +217,7 @@ pub fn islands(model: &Model) -> Result<Vec<Island>> {
         island.bodies.push(p);
         island.ranges.push(range);
     }
+    let place = |j: usize| start[body_of(j)] + j - offsets[body_of(j)];
     for (kind, rows) in all.into_iter().enumerate() {
         let mut numbers: Vec<Vec<usize>> = vec![Vec::new(); count];
         for i in (0..rows.len()).filter(|&i| rows.is_finite(i)) {
@@ -171,17 +225,62 @@ pub fn islands(model: &Model) -> Result<Vec<Island>> {
                 numbers[of_body[body_of(j)]].push(i);
             }
         }
-        let place = |j: usize| start[body_of(j)] + j - offsets[body_of(j)];
         for (island, numbers) in islands.iter_mut().zip(numbers) {
             let rows = restricted(rows, &numbers, island.unknowns(), place)?;
             *[&mut island.contact, &mut island.equalities][kind] = Members { numbers, rows };
         }
     }
+    nodes(model, &acting, &mut islands, |j| of_body[body_of(j)], place)?;
     for island in &mut islands {
         let stiffness = island.bodies.iter().filter_map(|&p| model.bodies[p].body.k());
         island.unit = power_of_two_below(stiffness.map(|k| k.largest_diagonal()).fold(0.0, f64::max));
     }
     Ok(islands)
+}
+
+/// Nodes with friction that may carry a tangential force, and have a tangential row with entries.
+fn acting(model: &Model) -> Vec<usize> {
+    let Friction { nodes, rows, .. } = &model.friction;
+    let is_felt = |node: &usize| nodes[*node].rows().any(|row| !rows.is_empty_row(row));
+    (0..nodes.len()).filter(|&node| model.friction.acts(node, &model.contact)).filter(is_felt).collect()
+}
+
+/// Unknowns that the rows of a node touch.
+fn unknowns_of(model: &Model, node: usize) -> impl Iterator<Item = usize> + '_ {
+    let Friction { nodes, rows, .. } = &model.friction;
+    let own = nodes[node].rows().flat_map(|row| rows.matrix.row(row));
+    let normal = nodes[node].normal.filter(|&row| model.contact.is_finite(row));
+    own.chain(normal.into_iter().flat_map(|row| model.contact.matrix.row(row))).map(|(j, _)| j)
+}
+
+/// Gives the islands the nodes that act.
+fn nodes(
+    model: &Model,
+    acting: &[usize],
+    islands: &mut [Island],
+    island_of: impl Fn(usize) -> usize,
+    place: impl Fn(usize) -> usize + Copy,
+) -> Result<()> {
+    let all = &model.friction;
+    for &number in acting {
+        let Some(first) = unknowns_of(model, number).next() else { continue };
+        let island = &mut islands[island_of(first)];
+        let own = &mut island.friction;
+        let first = own.tangential.numbers.len();
+        let given = all.nodes[number];
+        own.tangential.numbers.extend(given.rows().filter(|&row| !all.rows.is_empty_row(row)));
+        let count = own.tangential.numbers.len() - first;
+        let normal = given.normal.and_then(|row| island.contact.numbers.binary_search(&row).ok());
+        let (coefficient, bound) = law(model, number);
+        own.numbers.push(number);
+        own.nodes.push(FrictionNode { normal, first, count, coefficient, bound });
+    }
+    for island in islands.iter_mut().filter(|island| !island.friction.numbers.is_empty()) {
+        let numbers = std::mem::take(&mut island.friction.tangential.numbers);
+        let rows = restricted(&all.rows, &numbers, island.unknowns(), place)?;
+        island.friction.tangential = Members { numbers, rows };
+    }
+    Ok(())
 }
 
 /// These rows over the unknowns of an island; all rows share their entries with those of the host.
@@ -204,8 +303,8 @@ fn restricted(
 
 impl Island {
     fn empty() -> Self {
-        let (contact, equalities) = (Members::default(), Members::default());
-        Self { bodies: Vec::new(), ranges: Vec::new(), contact, equalities, unit: 1.0 }
+        let (contact, equalities, friction) = Default::default();
+        Self { bodies: Vec::new(), ranges: Vec::new(), contact, equalities, friction, unit: 1.0 }
     }
 }
 

@@ -1,6 +1,6 @@
 //! The answers of all islands put together.
 
-use crate::certificate::{Certificate, RowJudgement};
+use crate::certificate::{Certificate, FrictionState, RowJudgement};
 use crate::constraints::{RowKind, RowSet};
 use crate::error::Result;
 use crate::model::Model;
@@ -16,6 +16,11 @@ pub struct Answer {
     pub u: Vec<f64>,
     pub lambda: Vec<f64>,
     pub mu: Vec<f64>,
+    /// Of tangential rows, (dim, nodes).
+    pub tangential: Vec<f64>,
+    /// Slips `T u - s_old - C_t lambda_t`, length, (dim, nodes).
+    pub slips: Vec<f64>,
+    pub friction: Vec<FrictionState>,
     /// Amplitudes of the rigid modes of every body.
     pub alpha: Vec<Vec<f64>>,
     /// c + C lambda - B u, length.
@@ -43,6 +48,9 @@ impl Answer {
             u: zeros(counts.dofs, "an answer")?,
             lambda,
             mu,
+            tangential: zeros(counts.tangential, "an answer")?,
+            slips: Vec::new(),
+            friction: vec![FrictionState::Open; counts.nodes],
             alpha: vec![Vec::new(); counts.bodies],
             gaps: Vec::new(),
             states: vec![RowState::Open; counts.rows],
@@ -69,8 +77,21 @@ impl Answer {
         (answer.report.certificate, answer.report.energy) = (certificate, certificate.energy);
         let gap = |i: usize| model.contact.open_gap(i, &answer.u, answer.lambda[i]);
         answer.gaps = (0..counts.rows).map(gap).collect();
+        let count = |state| answer.friction.iter().filter(|own| **own == state).count();
+        answer.report.sticking = count(FrictionState::Stick);
+        answer.report.slipping = count(FrictionState::Slip);
+        answer.slips = answer.slips_of(model);
         answer.report.active = answer.states.iter().filter(|state| **state == RowState::Closed).count();
         Ok(Some(answer))
+    }
+
+    /// lambda, mu or lambda_t, force.
+    pub fn forces(&self, kind: RowKind) -> &[f64] {
+        match kind {
+            RowKind::Inequality => &self.lambda,
+            RowKind::Equality => &self.mu,
+            RowKind::Tangential => &self.tangential,
+        }
     }
 
     /// The answer of an island, and what it took.
@@ -83,6 +104,10 @@ impl Answer {
         island.contact.scatter(&recovered.lambda, &mut self.lambda);
         island.contact.scatter(&states, &mut self.states);
         island.equalities.scatter(&recovered.mu, &mut self.mu);
+        island.friction.tangential.scatter(&recovered.tangential, &mut self.tangential);
+        for (&number, state) in island.friction.numbers.iter().zip(&judgement.nodes) {
+            self.friction[number] = *state;
+        }
         let alpha = ready.dual.amplitudes(&solution.alpha);
         for (k, &p) in island.bodies.iter().enumerate() {
             self.alpha[p] = alpha[ready.dual.modes_of(k)].to_vec();
@@ -121,12 +146,20 @@ impl Answer {
         stored(contact, &self.lambda) + stored(&model.equalities, &self.mu)
     }
 
+    /// `T u - s_old - C_t lambda_t` of all tangential rows, of the displacements there are.
+    pub fn slips_of(&self, model: &Model) -> Vec<f64> {
+        let rows = &model.friction.rows;
+        (0..rows.len()).map(|i| -rows.open_gap(i, &self.u, self.tangential[i])).collect()
+    }
+
     fn leave_out(&mut self, model: &Model, ready: &Ready) {
         let island = &ready.island;
         island.scatter(model, &vec![f64::NAN; island.unknowns()], &mut self.u);
         let none = |members: &Members| vec![f64::NAN; members.numbers.len()];
         island.contact.scatter(&none(&island.contact), &mut self.lambda);
         island.equalities.scatter(&none(&island.equalities), &mut self.mu);
+        island.friction.tangential.scatter(&none(&island.friction.tangential), &mut self.tangential);
+        island.friction.numbers.iter().for_each(|&node| self.friction[node] = FrictionState::Unknown);
         island.contact.scatter(&vec![RowState::Unknown; island.contact.numbers.len()], &mut self.states);
         for (k, &p) in island.bodies.iter().enumerate() {
             self.alpha[p] = vec![f64::NAN; ready.dual.modes_of(k).len()];

@@ -1,6 +1,7 @@
 //! One island with the data of the host.
 
 use crate::certificate::{BodyData, Data};
+use crate::constraints::RowKind;
 use crate::error::{Error, Kind, Result};
 use crate::model::Model;
 use crate::setup::{Island, Prepared, Ready};
@@ -41,7 +42,7 @@ impl<'a> Case<'a> {
             });
         }
         let limit = model.settings.certificate_tolerance;
-        let (contact, equalities) = (&island.contact.rows, &island.equalities.rows);
-        Ok(Data { bodies, contact, equalities, limit })
+        let [contact, equalities, tangential] = RowKind::ALL.map(|kind| &island.members(kind).rows);
+        Ok(Data { bodies, contact, equalities, tangential, nodes: &island.friction.nodes, limit })
     }
 }

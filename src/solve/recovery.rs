@@ -4,6 +4,7 @@
 use std::cell::{Cell, RefCell};
 
 use crate::certificate::{certify, BodyData, Candidate, Data, Judgement, Response, Unasked};
+use crate::constraints::RowKind;
 use crate::error::Result;
 use crate::linalg::twofold::Twofold;
 use crate::linalg::vector::{axpy, weighted_norm};
@@ -23,11 +24,13 @@ pub struct Recovered {
     pub u: Vec<f64>,
     pub lambda: Vec<f64>,
     pub mu: Vec<f64>,
+    /// Of tangential rows.
+    pub tangential: Vec<f64>,
 }
 
 impl Recovered {
     pub fn view(&self) -> Candidate<'_> {
-        Candidate { u: &self.u, lambda: &self.lambda, mu: &self.mu }
+        Candidate { u: &self.u, lambda: &self.lambda, mu: &self.mu, tangential: &self.tangential }
     }
 }
 
@@ -120,27 +123,28 @@ impl<'a> Recovery<'a> {
 
     /// An answer of u and x.
     pub fn with_forces(&self, u: Vec<f64>, x: &[f64]) -> Recovered {
-        let (lambda, mu) = self.forces_of_host(x);
-        Recovered { u, lambda, mu }
+        let [lambda, mu, tangential] = self.forces_of_host(x);
+        Recovered { u, lambda, mu, tangential }
     }
 
-    /// `lambda = 2^p S L'^-1 x` and mu, on the rows that carry the multipliers of their groups.
-    pub fn forces_of_host(&self, x: &[f64]) -> (Vec<f64>, Vec<f64>) {
+    /// `lambda = 2^p S L'^-1 x`, mu and lambda_t, on the rows that carry the multipliers of their groups.
+    pub fn forces_of_host(&self, x: &[f64]) -> [Vec<f64>; 3] {
         let rows = &self.ready.rows;
         let mut lambda = rows.scaling.forces_to_host(x, &self.scaled.gaps.holder);
-        let mu = lambda.split_off(rows.contact);
-        (lambda, mu)
+        let mut mu = lambda.split_off(rows.contact);
+        let tangential = mu.split_off(self.data.equalities.len());
+        [lambda, mu, tangential]
     }
 
-    /// `f - K u - B'lambda - H'mu` in units of 2^p, for the forces of x.
+    /// `f - K u - B'lambda - H'mu - T'lambda_t` in units of 2^p, for the forces of x.
     pub fn load_left(&self, u: &[f64], x: &[f64]) -> Result<Vec<f64>> {
         let unit = self.ready.island.unit;
         let mut left: Vec<Twofold> = self.scaled.load.iter().map(|&f| f.into()).collect();
         for body in &self.data.bodies {
             body.stiffness.add_twofold(-1.0 / unit, &u[body.range()], &mut left[body.range()])?;
         }
-        let (lambda, mu) = self.forces_of_host(x);
-        for (rows, forces) in [(self.data.contact, lambda), (self.data.equalities, mu)] {
+        for (kind, forces) in RowKind::ALL.into_iter().zip(self.forces_of_host(x)) {
+            let rows = self.data.rows(kind);
             for (i, force) in forces.iter().enumerate().filter(|(_, force)| **force != 0.0) {
                 rows.matrix.row(i).for_each(|(j, v)| left[j].add_product(-v, force / unit));
             }
@@ -151,12 +155,10 @@ impl<'a> Recovery<'a> {
     /// `c + C x - B u` of the rows of the dual, u being the sum of `parts`; 0 of springs of bodies, which are part of K.
     pub fn gaps_left(&self, parts: &[&[f64]], x: &[f64]) -> Vec<f64> {
         let rows = &self.ready.rows;
-        let (lambda, mu) = self.forces_of_host(x);
+        let forces = self.forces_of_host(x);
         let mut left = rows.scaling.lengths_to_dual(&self.scaled.gaps.holder, |holder| {
-            let (set, i, force) = match holder.checked_sub(rows.contact) {
-                None => (self.data.contact, holder, lambda[holder]),
-                Some(i) => (self.data.equalities, i, mu[i]),
-            };
+            let (kind, i) = self.ready.island.kind_and_place(holder);
+            let (set, force) = (self.data.rows(kind), forces[kind as usize][i]);
             let mut left = Twofold::from(set.rhs[i]);
             left.add_product(set.compliance[i], force);
             for part in parts {

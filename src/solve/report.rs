@@ -50,6 +50,12 @@ pub struct Report {
     pub floating_modes: usize,
     /// Contact rows that are closed.
     pub active: usize,
+    /// Nodes with friction that stick, and that slip.
+    pub sticking: usize,
+    pub slipping: usize,
+    /// Newton steps for friction, and starts that they took: 0 without friction.
+    pub newton: usize,
+    pub starts: usize,
     /// Rigid motions that no closed row resists: u is one of many.
     pub undetermined: usize,
     /// The largest share of the load of bodies that move together which nothing holds: |resultant| / |load|, no unit.
@@ -89,6 +95,10 @@ impl Report {
             sizes: model.sizes(),
             floating_modes: sum(Dual::modes),
             active: 0,
+            sticking: 0,
+            slipping: 0,
+            newton: 0,
+            starts: 0,
             undetermined: 0,
             unheld: 0.0,
             counts: qp::Counts::default(),

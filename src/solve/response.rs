@@ -35,10 +35,7 @@ impl Response for ByInverse<'_> {
     }
 
     fn compliance_of(&mut self, kind: RowKind, row: usize) -> Result<f64> {
-        let rows = match kind {
-            RowKind::Inequality => self.data.contact,
-            RowKind::Equality => self.data.equalities,
-        };
+        let rows = self.data.rows(kind);
         let mut force = zeros(self.unknowns(), "the force of a row")?;
         rows.matrix.row(row).for_each(|(j, b)| force[j] = b);
         self.work_of(force)

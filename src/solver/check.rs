@@ -12,9 +12,15 @@ use crate::solver::joints::with_glue;
 use crate::solver::problem::Problem;
 
 impl Problem {
-    /// The certificate of any answer, also another code's: u over all unknowns, multipliers of contact and
-    /// equality rows; the forces of glue are those that serve it best. A setup that is there serves, whatever the options have become: the last answer stays.
+    /// The certificate of any answer without friction, also another code's.
     pub fn check(&mut self, u: &[f64], lambda: &[f64], mu: &[f64]) -> Result<Certificate> {
+        let tangential = vec![0.0; self.model.friction.rows.len()];
+        self.check_with_friction(Candidate { u, lambda, mu, tangential: &tangential })
+    }
+
+    /// The certificate of any answer: u over all unknowns, multipliers of contact, equality and tangential rows; the forces of glue are those that serve it best. A setup that is there serves, whatever the options have become: the last answer stays.
+    pub fn check_with_friction(&mut self, answer: Candidate) -> Result<Certificate> {
+        let Candidate { u, lambda, mu, tangential } = answer;
         if self.prepared.duals(&self.model).is_none() {
             self.setup()?;
         }
@@ -24,7 +30,12 @@ impl Problem {
         host.check_empty_rows()?;
         prepared.refresh_gaps(model);
         let counts = host.sizes();
-        let lengths = [("n", u, counts.dofs), ("rows", lambda, counts.rows), ("eqs", mu, counts.equalities)];
+        let lengths = [
+            ("n", u, counts.dofs),
+            ("rows", lambda, counts.rows),
+            ("eqs", mu, counts.equalities),
+            ("nodes", tangential, counts.tangential),
+        ];
         for (argument, values, expected) in lengths {
             if values.len() != expected {
                 let what = format!("the problem has {expected}, not {}", values.len());
@@ -32,7 +43,7 @@ impl Problem {
                 return Err(error.value(values.len() as f64).limit(expected as f64));
             }
         }
-        let mu = &with_glue(host, u, lambda, mu)?[..];
+        let mu = &with_glue(host, answer)?[..];
         let copies = model.parts.as_ref().map(|parts| parts.spread(u)).transpose()?;
         let u = copies.as_deref().unwrap_or(u);
         let mut all: Option<Certificate> = None;
@@ -42,7 +53,8 @@ impl Problem {
             let equalities =
                 ready.whole.as_ref().map_or(&island.equalities, |whole| &whole.island.equalities);
             let (lambda, mu) = (island.contact.gather(lambda), equalities.gather(mu));
-            let answer = Candidate { u: &own, lambda: &lambda, mu: &mu };
+            let tangential = island.friction.tangential.gather(tangential);
+            let answer = Candidate { u: &own, lambda: &lambda, mu: &mu, tangential: &tangential };
             let (data, work) = (Case { model, prepared, ready }.data()?, Cell::new(None));
             let mut response = ByInverse { data: &data, ready, threads: model.threads(), work: &work };
             let judged = match &ready.whole {

@@ -40,6 +40,7 @@ pub fn answer_of_host(
     let gap = |i: usize| host.contact.open_gap(i, &answer.u, answer.lambda[i]);
     let gaps = (0..host.contact.len()).map(gap).collect();
     answer.gaps = gaps;
+    answer.slips = answer.slips_of(host);
     let bodies = 0..host.bodies.len();
     let of_first = |body: usize| answer.force_errors[parts.first[body]];
     answer.force_errors = bodies.clone().map(of_first).collect();

@@ -1,5 +1,7 @@
 //! The forces of the glue between bodies of the host, which has no rows for them.
 
+use crate::certificate::Candidate;
+use crate::constraints::RowKind;
 use crate::error::Result;
 use crate::model::{Joint, Model};
 use crate::platform::memory::{copied, filled, zeros};
@@ -8,8 +10,9 @@ const WHAT: &str = "forces of glue";
 
 /// Multipliers of equality rows of the host with those of the joints after them, by which the answer comes nearest to equilibrium:
 /// what loads, K u and rows leave of an unknown goes on to the next one with its number, and at the last of them it stays.
-pub fn with_glue(host: &Model, u: &[f64], lambda: &[f64], mu: &[f64]) -> Result<Vec<f64>> {
-    let (mut all, joints) = (copied(mu, WHAT)?, host.joints()?);
+pub fn with_glue(host: &Model, answer: Candidate) -> Result<Vec<f64>> {
+    let u = answer.u;
+    let (mut all, joints) = (copied(answer.mu, WHAT)?, host.joints()?);
     if joints.is_empty() {
         return Ok(all);
     }
@@ -21,7 +24,8 @@ pub fn with_glue(host: &Model, u: &[f64], lambda: &[f64], mu: &[f64]) -> Result<
         own.iter_mut().for_each(|f| *f = -*f);
         own.iter_mut().zip(given.body.load.iter().flatten()).for_each(|(left, f)| *left += f);
     }
-    for (rows, forces) in [(&host.contact, lambda), (&host.equalities, mu)] {
+    for kind in RowKind::ALL {
+        let (rows, forces) = (host.rows(kind), answer.forces(kind));
         let mut carried = filled(rows.len(), 0.0, WHAT)?;
         (0..rows.len()).filter(|&i| rows.is_finite(i)).for_each(|i| carried[i] = forces[i]);
         rows.matrix.mul_transposed_add(-1.0, &carried, &mut left);

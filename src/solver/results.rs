@@ -1,5 +1,6 @@
 //! What the host reads after a solve.
 
+use crate::certificate::FrictionState;
 use crate::constraints::RowKind;
 use crate::error::{Error, Kind, Proof, Result};
 use crate::platform::memory::zeros;
@@ -60,9 +61,9 @@ impl Problem {
     pub fn reactions(&self, kind: Option<RowKind>) -> Result<Vec<f64>> {
         let answer = self.answer()?;
         let mut all = zeros(answer.u.len(), "a reaction")?;
-        for (of, multipliers) in [(RowKind::Inequality, &answer.lambda), (RowKind::Equality, &answer.mu)] {
+        for of in RowKind::ALL {
             if kind.is_none_or(|kind| kind == of) {
-                let rows = self.model.rows(of);
+                let (rows, multipliers) = (self.model.rows(of), answer.forces(of));
                 rows.matrix.mul_transposed_add(-1.0, &multipliers[..rows.len()], &mut all);
             }
         }
@@ -83,12 +84,22 @@ impl Problem {
         Ok(match kind {
             RowKind::Inequality => &answer.lambda,
             RowKind::Equality => &answer.mu[..self.model.equalities.len()],
+            RowKind::Tangential => &answer.tangential,
         })
     }
 
     /// Open gaps c + C lambda - B u, length.
     pub fn gaps(&self) -> Result<&[f64]> {
         Ok(&self.answer()?.gaps)
+    }
+
+    /// Slips `T u - s_old - C_t lambda_t` of all nodes with friction, length, (dim, nodes).
+    pub fn slips(&self) -> Result<&[f64]> {
+        Ok(&self.answer()?.slips)
+    }
+
+    pub fn friction_states(&self) -> Result<&[FrictionState]> {
+        Ok(&self.answer()?.friction)
     }
 
     pub fn active(&self) -> Result<&[RowState]> {

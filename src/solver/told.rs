@@ -11,11 +11,13 @@ use crate::solve::{Outcome, Report};
 /// Sizes and options, before anything is done.
 pub fn begin(log: &Log, model: &Model, call: &str) -> Result<()> {
     log.begin();
-    let (Sizes { bodies, dofs, rows, equalities }, version) = (model.sizes(), env!("CARGO_PKG_VERSION"));
+    let (sizes, version) = (model.sizes(), env!("CARGO_PKG_VERSION"));
+    let Sizes { bodies, dofs, rows, equalities, nodes, .. } = sizes;
     log.say(LogLevel::Phase, || {
+        let friction = if nodes > 0 { format!(", {nodes} nodes with friction") } else { String::new() };
         format!(
             "feti-contact {version}: {call}: {bodies} bodies, {dofs} unknowns, {rows} contact rows, \
-             {equalities} equality rows"
+             {equalities} equality rows{friction}"
         )
     })?;
     log.say(LogLevel::Phase, || match model.settings.changes() {

@@ -31,8 +31,18 @@ impl Spread {
     }
 }
 
-const ENTRIES: [&str; 7] =
-    ["equilibrium", "balance", "penetration", "equality", "negative force", "complementarity", "duality gap"];
+const ENTRIES: [&str; 10] = [
+    "equilibrium",
+    "balance",
+    "penetration",
+    "equality",
+    "negative force",
+    "complementarity",
+    "friction cone",
+    "friction work",
+    "friction stick",
+    "duality gap",
+];
 
 #[test]
 #[ignore = "prints figures, judges nothing"]

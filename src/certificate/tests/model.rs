@@ -267,8 +267,16 @@ impl DenseModel {
             });
             start += part.k.len();
         }
-        let data = Data { bodies, contact: &contact, equalities: &equalities, limit: LIMIT };
-        let answer = Candidate { u: &point.u, lambda: &point.lambda, mu: &point.mu };
+        let tangential = RowSet::default();
+        let data = Data {
+            bodies,
+            contact: &contact,
+            equalities: &equalities,
+            tangential: &tangential,
+            nodes: &[],
+            limit: LIMIT,
+        };
+        let answer = Candidate { u: &point.u, lambda: &point.lambda, mu: &point.mu, tangential: &[] };
         let mut response = ByElimination(self, 0);
         let judgement = certify(&data, answer, &mut response).unwrap();
         (judgement, response.1)

@@ -13,7 +13,7 @@ use crate::linalg::{Csr, Matrix};
 use crate::model::{Model, Parts};
 use crate::platform::memory::{copied, reserved, zeros};
 use crate::platform::threads;
-use crate::setup::islands::{Island, Members};
+use crate::setup::islands::{Island, Members, Nodes};
 use null_space::null_space;
 
 const WHAT: &str = "bodies that are cut";
@@ -83,7 +83,13 @@ impl Whole {
             None => model.bodies[parts.first[*body]].body.k().map_or(0.0, |k| k.largest_diagonal()),
         };
         let unit = power_of_two_below(bodies.iter().map(stiffness).fold(0.0, f64::max));
-        let island = Island { bodies, ranges, contact, equalities, unit };
+        let Nodes { numbers, nodes, .. } = &cut.friction;
+        let friction = Nodes {
+            numbers: numbers.clone(),
+            nodes: nodes.clone(),
+            tangential: of_host(RowKind::Tangential)?,
+        };
+        let island = Island { bodies, ranges, contact, equalities, friction, unit };
         let bodies = threads::run(model.threads(), island.bodies.len(), |k| {
             let body = island.bodies[k];
             whole_body(model, parts, body, of_part).map_err(|e| e.body(parts.first[body]))
@@ -147,6 +153,8 @@ impl Whole {
             bodies,
             contact: &self.island.contact.rows,
             equalities: &self.island.equalities.rows,
+            tangential: &self.island.friction.tangential.rows,
+            nodes: &self.island.friction.nodes,
             limit,
         })
     }
@@ -175,7 +183,7 @@ fn members(
     parts: &Parts,
     place: &[(usize, f64)],
 ) -> Result<Members> {
-    let of_host = |number: &&usize| kind == RowKind::Inequality || **number < parts.judged();
+    let of_host = |number: &&usize| kind != RowKind::Equality || **number < parts.judged();
     let numbers: Vec<usize> = cut.numbers.iter().take_while(of_host).copied().collect();
     let mut matrix = Csr::empty(unknowns);
     for i in 0..numbers.len() {

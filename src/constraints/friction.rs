@@ -1,0 +1,303 @@
+//! Contact nodes with friction: a normal row, one or two tangential rows, a coefficient and a bound.
+
+use std::ops::Range;
+
+use crate::constraints::{RowKind, RowSet, RowsInput};
+use crate::error::{Error, Result};
+use crate::platform::memory::filled;
+
+/// The law of one node: `|lambda_t| <= bound + coefficient x lambda_n`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FrictionNode {
+    /// Its contact row; none: the bound acts alone.
+    pub normal: Option<usize>,
+    /// The first of its tangential rows, and how many there are.
+    pub first: usize,
+    pub count: usize,
+    /// mu >= 0, no unit.
+    pub coefficient: f64,
+    /// Force >= 0.
+    pub bound: f64,
+}
+
+impl FrictionNode {
+    /// Its tangential rows.
+    pub fn rows(&self) -> Range<usize> {
+        self.first..self.first + self.count
+    }
+
+    /// `bound + coefficient x lambda_n`, force, for the forces of all contact rows.
+    pub fn limit(&self, lambda: &[f64]) -> f64 {
+        let normal = self.normal.map_or(0.0, |row| lambda[row].max(0.0));
+        self.bound + if normal > 0.0 { self.coefficient * normal } else { 0.0 }
+    }
+}
+
+/// All nodes with friction; node i has the tangential rows `i x dim` to `(i + 1) x dim`.
+#[derive(Debug, Default)]
+pub struct Friction {
+    /// Tangential rows of a node: 1 in the plane, 2 in space; 0 without nodes.
+    pub dim: usize,
+    pub nodes: Vec<FrictionNode>,
+    /// T, with s_old as right-hand sides and C_t as compliances, one for all rows of a node. What is left of a gap
+    /// (`open_gap`) is minus the slip: `-s = s_old + C_t lambda_t - T u`.
+    pub rows: RowSet,
+}
+
+/// Nodes as they arrived; `rows` are the tangential ones, dim for each node, without right-hand sides.
+#[derive(Debug, Clone, Copy)]
+pub struct FrictionInput<'a> {
+    pub dim: usize,
+    /// Contact row of each node, counting from 0; -1: none.
+    pub normal: &'a [i64],
+    pub rows: RowsInput<'a>,
+    /// Zeros when absent.
+    pub coefficient: Option<&'a [f64]>,
+    /// Force; zeros when absent.
+    pub bound: Option<&'a [f64]>,
+}
+
+/// Rows of one node whose lengths differ by more than this have different factors of the host.
+const FACTORS: f64 = 1e3;
+
+impl Friction {
+    pub fn len(&self) -> usize {
+        self.nodes.len()
+    }
+
+    /// The node may carry a tangential force some time: a bound holds it, or its contact row may close.
+    pub fn acts(&self, node: usize, contact: &RowSet) -> bool {
+        let FrictionNode { normal, bound, .. } = self.nodes[node];
+        bound > 0.0 || normal.is_some_and(|row| contact.is_finite(row))
+    }
+
+    /// The same nodes, their entries shared, for `what`.
+    pub fn copied(&self, what: &str) -> Result<Self> {
+        Ok(Self { dim: self.dim, nodes: self.nodes.clone(), rows: self.rows.copied(what)? })
+    }
+
+    /// Appends nodes; returns the number of the first. Nothing is kept on an error.
+    pub fn add(&mut self, input: FrictionInput, contact: &RowSet, offsets: &[usize]) -> Result<usize> {
+        let (first, count) = (self.len(), input.normal.len());
+        if !(1..=2).contains(&input.dim) || (first > 0 && input.dim != self.dim) {
+            let what = match first {
+                0 => "a node has one or two tangential rows".to_owned(),
+                _ => format!("the nodes that are there have {} tangential rows each", self.dim),
+            };
+            return Err(Error::argument("dim", what).value(input.dim as f64));
+        }
+        let normal = self.normals(input.normal, contact)?;
+        let coefficient = values_of(input.coefficient, "coefficient", count, first)?;
+        let bound = values_of(input.bound, "bound", count, first)?;
+        for (k, row) in normal.iter().enumerate() {
+            if row.is_none() && coefficient[k] > 0.0 {
+                let what = "a coefficient of friction needs a contact row";
+                return Err(Error::argument("normal_row", what).entry(k));
+            }
+        }
+        let mut rows = RowSet::default();
+        rows.add(RowKind::Tangential, input.rows, offsets)?;
+        for (k, row) in normal.iter().enumerate() {
+            let own = (k * input.dim..(k + 1) * input.dim).map(|i| length(&rows, i));
+            check_factors(own.chain(row.map(|row| length(contact, row))), k)?;
+        }
+        self.dim = input.dim;
+        self.rows.append(&rows, offsets)?;
+        let node = |(k, normal)| FrictionNode {
+            normal,
+            first: (first + k) * input.dim,
+            count: input.dim,
+            coefficient: coefficient[k],
+            bound: bound[k],
+        };
+        self.nodes.extend(normal.into_iter().enumerate().map(node));
+        Ok(first)
+    }
+
+    /// Contact rows of new nodes, each of one node alone.
+    fn normals(&self, given: &[i64], contact: &RowSet) -> Result<Vec<Option<usize>>> {
+        let mut taken = filled(contact.len(), false, "friction")?;
+        self.nodes.iter().filter_map(|node| node.normal).for_each(|row| taken[row] = true);
+        let mut normals = Vec::with_capacity(given.len());
+        for (k, &row) in given.iter().enumerate() {
+            if row == -1 {
+                normals.push(None);
+                continue;
+            }
+            let known = usize::try_from(row).ok().filter(|&row| row < contact.len());
+            let number = known.ok_or_else(|| {
+                let what = format!("there are {} contact rows, and no such one among them", contact.len());
+                Error::argument("normal_row", what).entry(k).index(row)
+            })?;
+            if std::mem::replace(&mut taken[number], true) {
+                let what = "this contact row has a node of friction already";
+                return Err(Error::argument("normal_row", what).entry(k).row(number));
+            }
+            normals.push(Some(number));
+        }
+        Ok(normals)
+    }
+
+    /// New coefficients, bounds, or both, of the nodes from `first` on. True where a node begins or ends to act.
+    pub fn set_law(
+        &mut self,
+        first: usize,
+        count: usize,
+        coefficient: Option<&[f64]>,
+        bound: Option<&[f64]>,
+        contact: &RowSet,
+    ) -> Result<bool> {
+        self.check_nodes(first, count)?;
+        let given = |values: Option<&[f64]>, name| match values {
+            Some(_) => values_of(values, name, count, first).map(Some),
+            None => Ok(None),
+        };
+        let (coefficient, bound) = (given(coefficient, "coefficient")?, given(bound, "bound")?);
+        let without = |k: usize| self.nodes[first + k].normal.is_none();
+        if let Some(k) = (0..count).find(|&k| without(k) && coefficient.as_ref().is_some_and(|c| c[k] > 0.0))
+        {
+            let what = "a coefficient of friction needs a contact row";
+            return Err(Error::argument("coefficient", what).entry(k).index((first + k) as i64));
+        }
+        let acted: Vec<bool> = (first..first + count).map(|node| self.acts(node, contact)).collect();
+        for (k, node) in self.nodes[first..first + count].iter_mut().enumerate() {
+            coefficient.iter().for_each(|coefficient| node.coefficient = coefficient[k]);
+            bound.iter().for_each(|bound| node.bound = bound[k]);
+        }
+        Ok(acted.iter().enumerate().any(|(k, acted)| *acted != self.acts(first + k, contact)))
+    }
+
+    /// C_t >= 0, length / force, of the nodes from `first` on.
+    pub fn set_compliance(&mut self, first: usize, inv_kt: &[f64]) -> Result<()> {
+        self.check_nodes(first, inv_kt.len())?;
+        if let Some(at) = inv_kt.iter().position(|v| !(v.is_finite() && *v >= 0.0)) {
+            let what = "the compliance 1/k is not a finite number >= 0";
+            return Err(Error::argument("inv_kt", what).entry(at).value(inv_kt[at]));
+        }
+        let dim = self.dim;
+        let target = &mut self.rows.compliance[first * dim..(first + inv_kt.len()) * dim];
+        target.iter_mut().enumerate().for_each(|(i, c)| *c = inv_kt[i / dim]);
+        Ok(())
+    }
+
+    /// s_old, length, (dim, nodes): of the nodes from `first` on.
+    pub fn set_reference(&mut self, first: usize, count: usize, dim: usize, s_old: &[f64]) -> Result<()> {
+        self.check_nodes(first, count)?;
+        if count > 0 && dim != self.dim {
+            let what = format!("the nodes have {} tangential rows each", self.dim);
+            return Err(Error::argument("dim", what).value(dim as f64).limit(self.dim as f64));
+        }
+        let from = first * self.dim;
+        for (at, slip) in s_old.iter().enumerate() {
+            let what = if !slip.is_finite() {
+                "the slip is not a finite number"
+            } else if *slip != 0.0 && self.rows.is_empty_row(from + at) {
+                "a row without entries never slips"
+            } else {
+                continue;
+            };
+            return Err(Error::argument("s_old", what).entry(at).value(*slip));
+        }
+        self.rows.rhs[from..from + s_old.len()].copy_from_slice(s_old);
+        Ok(())
+    }
+
+    fn check_nodes(&self, first: usize, count: usize) -> Result<()> {
+        let (nodes, end) = (self.len(), first.saturating_add(count));
+        if end <= nodes {
+            return Ok(());
+        }
+        let argument = if first < nodes { "nodes" } else { "first" };
+        let what = format!("there are {nodes} nodes with friction");
+        Err(Error::argument(argument, what).value(end as f64).limit(nodes as f64))
+    }
+}
+
+/// `|b|` of a row.
+fn length(rows: &RowSet, i: usize) -> f64 {
+    rows.matrix.row(i).map(|(_, v)| v * v).sum::<f64>().sqrt()
+}
+
+/// Rows without entries have no factor.
+fn check_factors(lengths: impl Iterator<Item = f64>, node: usize) -> Result<()> {
+    let (mut least, mut most) = (f64::INFINITY, 0.0f64);
+    lengths.filter(|length| *length > 0.0).for_each(|v| (least, most) = (least.min(v), most.max(v)));
+    if most <= FACTORS * least {
+        return Ok(());
+    }
+    let what = "rows of this node have different factors: the contact row and the tangential rows of a node are to be multiplied by one number";
+    Err(Error::argument("val", what).entry(node).value(most / least).limit(FACTORS))
+}
+
+/// One value >= 0 of each node; zeros when absent.
+fn values_of(given: Option<&[f64]>, name: &'static str, count: usize, first: usize) -> Result<Vec<f64>> {
+    let Some(values) = given else { return filled(count, 0.0, "friction") };
+    match values.iter().position(|v| !(v.is_finite() && *v >= 0.0)) {
+        Some(at) => {
+            let what = format!("the {name} of friction is not a finite number >= 0");
+            Err(Error::argument(name, what).entry(at).index((first + at) as i64).value(values[at]))
+        }
+        None => Ok(values.to_vec()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::error::Kind;
+
+    fn contact() -> RowSet {
+        let mut contact = RowSet::default();
+        let rows = RowsInput { ptr: &[0, 1, 2], body: None, dof: &[0, 2], val: &[1.0, 1.0], rhs: None };
+        contact.add(RowKind::Inequality, rows, &[0, 4]).unwrap();
+        contact
+    }
+
+    fn input<'a>(normal: &'a [i64], coefficient: &'a [f64], val: &'a [f64]) -> FrictionInput<'a> {
+        let ptr: &[usize] = if normal.len() == 1 { &[0, 1] } else { &[0, 1, 2] };
+        let rows = RowsInput { ptr, body: None, dof: &[1, 3], val, rhs: None };
+        let rows = RowsInput { dof: &rows.dof[..normal.len()], val: &val[..normal.len()], ..rows };
+        FrictionInput { dim: 1, normal, rows, coefficient: Some(coefficient), bound: None }
+    }
+
+    #[test]
+    fn a_refused_node_is_named_and_leaves_nothing_behind() {
+        let (contact, mut friction) = (contact(), Friction::default());
+        let mut refused = |given: FrictionInput| friction.add(given, &contact, &[0, 4]).unwrap_err();
+        for (error, argument, entry) in [
+            (refused(input(&[0, 2], &[0.5; 2], &[1.0; 2])), "normal_row", 1),
+            (refused(input(&[1, 1], &[0.5; 2], &[1.0; 2])), "normal_row", 1),
+            (refused(input(&[0, -2], &[0.5; 2], &[1.0; 2])), "normal_row", 1),
+            (refused(input(&[0, -1], &[0.5; 2], &[1.0; 2])), "normal_row", 1),
+            (refused(input(&[0, 1], &[0.5, -0.1], &[1.0; 2])), "coefficient", 1),
+            (refused(input(&[0, 1], &[f64::NAN, 0.1], &[1.0; 2])), "coefficient", 0),
+            (refused(input(&[0, 1], &[0.5; 2], &[1.0, 2e3])), "val", 1),
+        ] {
+            assert_eq!((error.kind, error.place.entry), (Kind::Argument(argument), Some(entry)));
+        }
+        assert_eq!((friction.len(), friction.rows.len(), friction.dim), (0, 0, 0));
+        assert_eq!(friction.add(input(&[1], &[0.5], &[1.0]), &contact, &[0, 4]).unwrap(), 0);
+        let taken = friction.add(input(&[1], &[0.5], &[1.0]), &contact, &[0, 4]).unwrap_err();
+        assert_eq!((taken.kind, taken.place.row), (Kind::Argument("normal_row"), Some(1)));
+        let other = FrictionInput { dim: 2, ..input(&[0], &[0.5], &[1.0]) };
+        assert_eq!(friction.add(other, &contact, &[0, 4]).unwrap_err().kind, Kind::Argument("dim"));
+    }
+
+    #[test]
+    fn laws_compliances_and_slips_are_those_of_the_nodes_named() {
+        let (contact, mut friction) = (contact(), Friction::default());
+        friction.add(input(&[0, -1], &[0.5, 0.0], &[1.0; 2]), &contact, &[0, 4]).unwrap();
+        assert!(!friction.set_law(0, 1, Some(&[0.25]), None, &contact).unwrap());
+        assert!(friction.set_law(1, 1, None, Some(&[3.0]), &contact).unwrap());
+        let refused = friction.set_law(1, 1, Some(&[0.1]), None, &contact).unwrap_err();
+        assert_eq!(refused.kind, Kind::Argument("coefficient"));
+        friction.set_compliance(1, &[0.125]).unwrap();
+        friction.set_reference(0, 2, 1, &[1.0, 2.0]).unwrap();
+        assert_eq!(friction.set_reference(0, 2, 2, &[1.0; 4]).unwrap_err().kind, Kind::Argument("dim"));
+        assert_eq!(friction.set_compliance(2, &[1.0]).unwrap_err().kind, Kind::Argument("first"));
+        assert_eq!(friction.set_compliance(1, &[1.0; 2]).unwrap_err().kind, Kind::Argument("nodes"));
+        assert_eq!((friction.rows.rhs, friction.rows.compliance), (vec![1.0, 2.0], vec![0.0, 0.125]));
+        let bounds: Vec<_> = friction.nodes.iter().map(|node| (node.coefficient, node.bound)).collect();
+        assert_eq!(bounds, [(0.25, 0.0), (0.0, 3.0)]);
+    }
+}
