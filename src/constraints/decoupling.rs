@@ -3,6 +3,8 @@
 //! same; forces of contact rows keep their sign, for no row is combined with a contact row. A contact row on one of
 //! several glued dofs so weighs as all of them together, however soft its own is.
 
+use std::ops::Range;
+
 use crate::constraints::accumulator::Accumulator;
 use crate::error::Result;
 use crate::linalg::graph::components;
@@ -24,13 +26,15 @@ pub struct Decoupling {
     rows: Csr,
 }
 
-/// Rows for which `B D^-1 B' + C` has the diagonal 1, equality rows first.
+/// Rows for which `B D^-1 B' + C` has the diagonal 1, in the mean of those of a node: equality rows, contact rows, tangential rows.
 #[derive(Debug, Clone, Copy)]
 pub struct UnitRows<'a> {
     /// B, m x n.
     pub matrix: &'a Csr,
     /// Number of equality rows.
     pub equalities: usize,
+    /// The tangential rows of each node with friction.
+    pub nodes: &'a [Range<usize>],
     /// Diagonal of C, no unit.
     pub compliance: &'a [f64],
     /// D over the unknowns.
@@ -52,12 +56,18 @@ impl Decoupling {
                 touched.for_each(|(j, _)| cluster_of[j] = Some(number));
             }
         }
-        for i in given.equalities..m {
+        let equalities_at = |i: usize| -> Vec<usize> {
             let mut met: Vec<usize> = matrix.row(i).filter_map(|(j, _)| cluster_of[j]).collect();
             met.sort_unstable();
             met.dedup();
-            let equalities: Vec<usize> = met.iter().flat_map(|&c| clusters[c].iter().copied()).collect();
-            work.clear_contact_row(i, &equalities);
+            met.iter().flat_map(|&c| clusters[c].iter().copied()).collect()
+        };
+        let tangential = given.nodes.first().map_or(m, |node| node.start);
+        for i in given.equalities..tangential {
+            work.clear_contact_row(i, &equalities_at(i));
+        }
+        for node in given.nodes {
+            work.clear_node(node.clone(), equalities_at);
         }
         Ok(work.finish())
     }
@@ -67,6 +77,11 @@ impl Decoupling {
         let mut rows = Csr::empty(matrix.rows());
         (0..matrix.rows()).for_each(|i| rows.push_row([(i, 1.0)]));
         (Self { rows }, matrix.clone())
+    }
+
+    /// What the force of row i is a part of, `lambda_i = x_i / l_ii`, where no row after it is combined with it.
+    pub fn factor(&self, i: usize) -> f64 {
+        self.diagonal(i)
     }
 
     /// `c' = L^-1 c`
@@ -174,6 +189,26 @@ impl<'a> Orthogonalisation<'a> {
         }
     }
 
+    /// One factor for both rows of a node, so that a disc of forces stays one; both rows or none.
+    fn clear_node(&mut self, node: Range<usize>, equalities_at: impl Fn(usize) -> Vec<usize>) {
+        let mut squares = 0.0;
+        for i in node.clone() {
+            self.cleared(i, &equalities_at(i));
+            let square = self.sum.square(self.given.metric);
+            let before: f64 = self.given.matrix.row(i).map(|(j, v)| v * v / self.given.metric[j]).sum();
+            if square <= REMAINDER * REMAINDER * before {
+                return;
+            }
+            squares += square + self.given.compliance[i];
+        }
+        let factor = (squares / node.len() as f64).sqrt();
+        for i in node {
+            // the sum holds one row at a time
+            let parts = self.cleared(i, &equalities_at(i));
+            self.store(i, parts, factor);
+        }
+    }
+
     /// Leaves `b_i - sum l_k b'_k` in the sum and gives the l_k that are not zero: Gram-Schmidt, twice.
     fn cleared(&mut self, i: usize, against: &[usize]) -> Combination {
         let matrix = self.given.matrix;
@@ -260,7 +295,7 @@ mod tests {
     }
 
     fn decoupled(matrix: &Csr, equalities: usize, compliance: &[f64], metric: &[f64]) -> (Decoupling, Csr) {
-        Decoupling::of(UnitRows { matrix, equalities, compliance, metric }).unwrap()
+        Decoupling::of(UnitRows { matrix, equalities, nodes: &[], compliance, metric }).unwrap()
     }
 
     /// Four copies of a node in a chain, a contact row on the softest: it pushes all of them.

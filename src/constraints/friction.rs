@@ -26,6 +26,11 @@ impl FrictionNode {
         self.first..self.first + self.count
     }
 
+    /// A bound, or a coefficient with a contact row, as they are now.
+    pub fn has_friction(&self) -> bool {
+        self.bound > 0.0 || (self.coefficient > 0.0 && self.normal.is_some())
+    }
+
     /// `bound + coefficient x lambda_n`, force, for the forces of all contact rows.
     pub fn limit(&self, lambda: &[f64]) -> f64 {
         let normal = self.normal.map_or(0.0, |row| lambda[row].max(0.0));

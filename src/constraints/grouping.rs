@@ -8,7 +8,7 @@ use crate::linalg::Csr;
 /// Two rows are parallel when their unit vectors differ by less than this.
 const PARALLEL: f64 = 1e-12;
 
-/// Rows stacked, contact rows first, and which of them share a direction.
+/// Rows stacked, contact rows, equality rows, tangential rows, and which of them share a direction.
 #[derive(Debug, Clone, Default)]
 pub struct Grouping {
     /// First row of every group; an equality row where the group has one.
@@ -19,17 +19,23 @@ pub struct Grouping {
 
 impl Grouping {
     /// `matrix` holds rows that are rigid of unit length in the metric `D^-1`, D = `metric`, and others; the
-    /// first `contact` are contact rows. Opposite contact rows are two groups: they bound the same gap from two
-    /// sides. A compliant row is a group of its own: parallel springs share a gap, not a force.
-    pub fn of(matrix: &Csr, contact: usize, metric: &[f64], compliant: impl Fn(usize) -> bool) -> Self {
+    /// first `contact` are contact rows, those from `tangential` on tangential rows. Opposite contact rows are two groups: they
+    /// bound the same gap from two sides. A row that stays `alone` is a group of its own: parallel springs share a gap, not a
+    /// force, and so do tangential rows, whose nodes have laws of their own.
+    pub fn of(
+        matrix: &Csr,
+        (contact, tangential): (usize, usize),
+        metric: &[f64],
+        alone: impl Fn(usize) -> bool,
+    ) -> Self {
         let mut grouping = Self { leaders: Vec::new(), member: vec![None; matrix.rows()] };
         let mut known: HashMap<&[usize], Vec<usize>> = HashMap::new();
-        for i in (contact..matrix.rows()).chain(0..contact) {
+        for i in (contact..tangential).chain(0..contact).chain(tangential..matrix.rows()) {
             let columns = &matrix.col[matrix.ptr[i]..matrix.ptr[i + 1]];
             if columns.is_empty() {
                 continue;
             }
-            if compliant(i) {
+            if i >= tangential || alone(i) {
                 grouping.member[i] = Some((grouping.leaders.len(), 1.0));
                 grouping.leaders.push(i);
                 continue;
@@ -54,12 +60,12 @@ impl Grouping {
         self.member.iter().enumerate().filter_map(|(i, member)| member.map(|member| (i, member)))
     }
 
-    /// Kind of the multiplier of a group.
-    pub fn kind(&self, group: usize, contact: usize) -> RowKind {
-        if self.leaders[group] < contact {
-            RowKind::Inequality
-        } else {
-            RowKind::Equality
+    /// Kind of the multiplier of a group, whose leader is a contact row, a tangential row, or neither.
+    pub fn kind(&self, group: usize, contact: usize, tangential: usize) -> RowKind {
+        match self.leaders[group] {
+            leader if leader < contact => RowKind::Inequality,
+            leader if leader < tangential => RowKind::Equality,
+            _ => RowKind::Tangential,
         }
     }
 }
@@ -86,10 +92,10 @@ mod tests {
         matrix.push_row([(0, 0.6), (1, 0.8)]);
         matrix.push_row([]);
         matrix.push_row([(0, 1.0)]);
-        let grouping = Grouping::of(&matrix, 4, &[1.0; 2], |_| false);
+        let grouping = Grouping::of(&matrix, (4, 5), &[1.0; 2], |_| false);
         assert_eq!(grouping.leaders, [4, 0, 1]);
         assert_eq!(grouping.member, [Some((1, 1.0)), Some((2, 1.0)), Some((1, 1.0)), None, Some((0, 1.0))]);
-        assert_eq!(grouping.kind(0, 4), RowKind::Equality);
+        assert_eq!(grouping.kind(0, 4, 5), RowKind::Equality);
     }
 
     #[test]
@@ -97,7 +103,7 @@ mod tests {
         let mut matrix = Csr::empty(1);
         matrix.push_row([(0, -1.0)]);
         matrix.push_row([(0, 1.0)]);
-        let grouping = Grouping::of(&matrix, 1, &[1.0], |_| false);
+        let grouping = Grouping::of(&matrix, (1, 2), &[1.0], |_| false);
         assert_eq!(grouping.member, [Some((0, -1.0)), Some((0, 1.0))]);
     }
 
@@ -105,9 +111,19 @@ mod tests {
     fn a_compliant_row_stays_alone() {
         let mut matrix = Csr::empty(1);
         (0..4).for_each(|_| matrix.push_row([(0, 1.0)]));
-        let grouping = Grouping::of(&matrix, 3, &[1.0], |i| i == 0 || i == 3);
+        let grouping = Grouping::of(&matrix, (3, 4), &[1.0], |i| i == 0 || i == 3);
         assert_eq!(grouping.leaders, [3, 0, 1]);
         assert_eq!(grouping.member, [Some((1, 1.0)), Some((2, 1.0)), Some((2, 1.0)), Some((0, 1.0))]);
+    }
+
+    #[test]
+    fn a_tangential_row_stays_alone_and_comes_last() {
+        let mut matrix = Csr::empty(1);
+        (0..4).for_each(|_| matrix.push_row([(0, 1.0)]));
+        let grouping = Grouping::of(&matrix, (1, 2), &[1.0], |_| false);
+        assert_eq!(grouping.leaders, [1, 2, 3]);
+        assert_eq!(grouping.member, [Some((0, 1.0)), Some((0, 1.0)), Some((1, 1.0)), Some((2, 1.0))]);
+        assert_eq!(grouping.kind(1, 1, 2), RowKind::Tangential);
     }
 
     /// Unit rows turned against each other by so much: 1e-13 is rounding, 1e-11 and 1e-10 are two directions.
@@ -117,7 +133,7 @@ mod tests {
             let mut matrix = Csr::empty(2);
             matrix.push_row([(0, 0.6), (1, 0.8)]);
             matrix.push_row([(0, 0.6 - 0.8 * turned), (1, 0.8 + 0.6 * turned)]);
-            let grouping = Grouping::of(&matrix, 2, &[1.0; 2], |_| false);
+            let grouping = Grouping::of(&matrix, (2, 2), &[1.0; 2], |_| false);
             assert_eq!(grouping.leaders.len(), groups, "{turned:e}");
         }
     }

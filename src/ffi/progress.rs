@@ -8,7 +8,7 @@ use crate::ffi::boundary::{call, enter, refuse};
 use crate::ffi::header::status::FETI_OK;
 use crate::ffi::header::types::{
     feti_problem, feti_progress, feti_progress_fn, FETI_PHASE_SETUP, FETI_PHASE_SOLVE,
-    FETI_STEP_CONJUGATE_GRADIENT, FETI_STEP_EXPANSION, FETI_STEP_RELEASE,
+    FETI_STEP_CONJUGATE_GRADIENT, FETI_STEP_EXPANSION, FETI_STEP_NEWTON, FETI_STEP_RELEASE,
 };
 use crate::solver::{Listener, Progress, Reply, StepKind};
 
@@ -97,6 +97,7 @@ fn told(now: &Progress) -> feti_progress {
             Some(StepKind::ConjugateGradient) => FETI_STEP_CONJUGATE_GRADIENT,
             Some(StepKind::Expansion) => FETI_STEP_EXPANSION,
             Some(StepKind::Proportioning) => FETI_STEP_RELEASE,
+            Some(StepKind::Newton) => FETI_STEP_NEWTON,
         },
         steps: now.steps as i64,
         products: now.products as i64,

@@ -81,6 +81,7 @@ impl Log {
             StepKind::ConjugateGradient => "conjugate gradients",
             StepKind::Expansion => "expansion",
             StepKind::Proportioning => "release",
+            StepKind::Newton => "newton",
         };
         self.say(LogLevel::Step, || {
             format!(

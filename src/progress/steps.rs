@@ -3,7 +3,8 @@
 use crate::error::Result;
 use crate::progress::listener::Progress;
 use crate::progress::stops::Stops;
-use crate::qp::{self, Counts, Observer};
+use crate::qp::friction::{FrictionObserver, FrictionReport};
+use crate::qp::{self, Counts, Observer, StepKind};
 
 /// A step in one island.
 #[derive(Clone, Copy)]
@@ -53,13 +54,45 @@ impl<'a> Steps<'a> {
     }
 }
 
-impl Observer for Steps<'_> {
-    fn step(&mut self, now: &qp::StepReport) -> Result<()> {
-        if now.counts.steps() < self.last.steps() || now.counts.products < self.last.products {
+impl Steps<'_> {
+    /// The work so far, with that of the methods before.
+    fn counted(&mut self, now: Counts) -> Counts {
+        if now.steps() < self.last.steps() || now.products < self.last.products {
             self.before = self.before + self.last;
         }
-        self.last = *now.counts;
-        let counts = self.before + self.last;
+        self.last = now;
+        self.before + self.last
+    }
+
+    fn tell(&mut self, counts: Counts, progress: Progress) -> Result<()> {
+        self.voice.step(Told { island: self.island, counts, progress })?;
+        self.stops.check()
+    }
+}
+
+impl FrictionObserver for Steps<'_> {
+    fn step(&mut self, now: &FrictionReport) -> Result<()> {
+        let counts = Counts { products: now.products, newton: now.newton, ..Counts::default() };
+        let counts = self.counted(counts);
+        let progress = Progress {
+            step: Some(StepKind::Newton),
+            fraction: f64::NAN,
+            steps: counts.steps(),
+            products: counts.products,
+            active: now.closed,
+            residual: now.merit / now.small,
+            free: f64::NAN,
+            chopped: f64::NAN,
+            theta: f64::NAN,
+            seconds: self.stops.seconds(),
+        };
+        self.tell(counts, progress)
+    }
+}
+
+impl Observer for Steps<'_> {
+    fn step(&mut self, now: &qp::StepReport) -> Result<()> {
+        let counts = self.counted(*now.counts);
         let against_stop = |size: f64| size / now.small;
         let progress = Progress {
             step: Some(now.kind),
@@ -73,7 +106,6 @@ impl Observer for Steps<'_> {
             theta: self.unit * now.theta,
             seconds: self.stops.seconds(),
         };
-        self.voice.step(Told { island: self.island, counts, progress })?;
-        self.stops.check()
+        self.tell(counts, progress)
     }
 }

@@ -50,6 +50,8 @@ pub enum StepKind {
     Expansion,
     /// The proportioning step: rows leave the active set.
     Proportioning,
+    /// A direction of the Newton method for friction.
+    Newton,
 }
 
 /// Where the method stands after a step.

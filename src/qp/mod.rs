@@ -92,6 +92,9 @@ pub struct Counts {
     pub direct: usize,
     /// Problems with bounds alone: outer iterations of an augmented Lagrangian.
     pub outer: usize,
+    /// Newton steps for friction, and the starts that they took.
+    pub newton: usize,
+    pub starts: usize,
 }
 
 impl std::ops::Add for Counts {
@@ -108,12 +111,14 @@ impl std::ops::Add for Counts {
             preconditioned: self.preconditioned + other.preconditioned,
             direct: self.direct + other.direct,
             outer: self.outer + other.outer,
+            newton: self.newton + other.newton,
+            starts: self.starts + other.starts,
         }
     }
 }
 
 impl Counts {
     pub fn steps(&self) -> usize {
-        self.conjugate_gradient + self.expansions + self.releases
+        self.conjugate_gradient + self.expansions + self.releases + self.newton
     }
 }

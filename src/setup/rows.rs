@@ -21,6 +21,8 @@ pub struct DualRows {
     pub coupled: bool,
     /// Number of contact rows.
     pub contact: usize,
+    /// The first tangential row of the stack.
+    pub tangential: usize,
     /// A row joins bodies whose stiffnesses there are far apart.
     pub uneven: bool,
 }
@@ -45,18 +47,27 @@ fn is_uneven(rows: &Csr, metric: &[f64], island: &Island) -> bool {
     })
 }
 
+/// `s_t = 1/rms(1/s_k)` for all rows of a node: discs of forces stay discs.
+fn one_scale(scales: &mut [f64]) {
+    let square = scales.iter().map(|s| s.powi(-2)).sum::<f64>() / scales.len() as f64;
+    scales.fill(square.sqrt().recip());
+}
+
 impl DualRows {
     /// Of an island; `metric` is D / 2^p over its unknowns. `coupled` rows are those of the host but for their scales.
     pub fn of(island: &Island, metric: Vec<f64>, coupled: bool) -> Result<Self> {
         let mut all = Csr::empty(metric.len());
         let (mut scale, mut compliances) = (Vec::new(), Vec::new());
-        for kind in [RowKind::Inequality, RowKind::Equality] {
+        for kind in RowKind::ALL {
             let Members { numbers, rows } = island.members(kind);
-            let scales = row_scales(rows, &metric, island.unit);
+            let mut scales = row_scales(rows, &metric, island.unit);
             rows.check_scales(kind, &scales).map_err(|e| match e.place.row {
                 Some(row) => e.row(numbers[row]),
                 None => e,
             })?;
+            if kind == RowKind::Tangential {
+                island.friction.nodes.iter().for_each(|node| one_scale(&mut scales[node.rows()]));
+            }
             for (i, s) in scales.iter().enumerate() {
                 all.push_row(rows.matrix.row(i).map(|(j, v)| (j, s * v)));
                 compliances.push(s * s * (island.unit * rows.compliance[i]));
@@ -64,17 +75,27 @@ impl DualRows {
             scale.extend(scales);
         }
         let contact = island.contact.numbers.len();
-        let grouping = Grouping::of(&all, contact, &metric, |i| compliances[i] > 0.0);
+        let tangential = contact + island.equalities.numbers.len();
+        let grouping = Grouping::of(&all, (contact, tangential), &metric, |i| compliances[i] > 0.0);
         let mut scaled = Csr::empty(metric.len());
         grouping.leaders.iter().for_each(|&leader| scaled.push_row(all.row(leader)));
         let compliance: Vec<f64> = grouping.leaders.iter().map(|&leader| compliances[leader]).collect();
-        let equalities = grouping.leaders.iter().filter(|&&leader| leader >= contact).count();
-        let given = UnitRows { matrix: &scaled, equalities, compliance: &compliance, metric: &metric };
+        let equalities = grouping.leaders.iter().filter(|leader| (contact..tangential).contains(leader)).count();
+        let first = grouping.leaders.iter().filter(|&&leader| leader < tangential).count();
+        let nodes = island.friction.nodes.iter().map(|node| first + node.first..first + node.rows().end);
+        let nodes: Vec<_> = nodes.collect();
+        let given = UnitRows {
+            matrix: &scaled,
+            equalities,
+            nodes: &nodes,
+            compliance: &compliance,
+            metric: &metric,
+        };
         let (decoupling, matrix) = if coupled { Decoupling::none(&scaled) } else { Decoupling::of(given)? };
         let compliance = decoupling.compliance(&compliance);
         let uneven = is_uneven(&scaled, &metric, island);
         let scaling = Scaling { unit: island.unit, scale, grouping, decoupling };
-        Ok(Self { scaled, matrix, compliance, metric, scaling, coupled, contact, uneven })
+        Ok(Self { scaled, matrix, compliance, metric, scaling, coupled, contact, tangential, uneven })
     }
 
     pub fn groups(&self) -> usize {
@@ -88,6 +109,6 @@ impl DualRows {
 
     /// Kind of the multiplier of a group.
     pub fn kind(&self, group: usize) -> RowKind {
-        self.scaling.grouping.kind(group, self.contact)
+        self.scaling.grouping.kind(group, self.contact, self.tangential)
     }
 }

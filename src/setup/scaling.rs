@@ -21,6 +21,11 @@ pub struct Scaling {
 }
 
 impl Scaling {
+    /// Force of a holder over the x of its group, a contact row or a tangential one.
+    pub fn force_of(&self, group: usize, holder: usize) -> f64 {
+        self.scale[holder] * self.unit / self.decoupling.factor(group)
+    }
+
     /// x of forces lambda of the rows of the stack.
     pub fn forces_to_dual(&self, lambda: impl Fn(usize) -> f64) -> Result<Vec<f64>> {
         let mut x = zeros(self.grouping.leaders.len(), "multipliers")?;

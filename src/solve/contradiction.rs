@@ -1,5 +1,6 @@
 //! The search for rows that contradict each other, before any product with F.
 
+use crate::constraints::RowKind;
 use crate::error::{Error, Result};
 use crate::linalg::vector::{dot, norm, norm_max};
 use crate::linalg::{Csr, Operator};
@@ -26,7 +27,7 @@ pub fn contradiction(case: Case, gaps: &Gaps) -> Result<Option<Error>> {
     let rows = &case.ready.rows;
     let demand =
         |group: usize| if gaps.bounded[group] { -gaps.value[group] } else { gaps.value[group].abs() };
-    let rigid = |group: &usize| rows.compliance[*group] == 0.0;
+    let rigid = |group: &usize| rows.compliance[*group] == 0.0 && rows.kind(*group) != RowKind::Tangential;
     let size = (0..gaps.value.len()).filter(rigid).map(demand).fold(0.0, f64::max);
     let near = |group: &usize| gaps.value[*group] <= BEYOND * size;
     let rigid: Vec<usize> = (0..gaps.value.len()).filter(rigid).filter(near).collect();

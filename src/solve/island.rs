@@ -16,6 +16,7 @@ use crate::solve::diagnosis::{Contradictions, Unheld, MARGINAL, ROUNDING};
 use crate::solve::driven::solve_driven;
 use crate::solve::fallback::MethodOptions;
 use crate::solve::finish::{finish, is_to_finish};
+use crate::solve::friction::solve_with_friction;
 use crate::solve::interruptible::Interruptible;
 use crate::solve::paper::{parameters, HostUnits};
 use crate::solve::presolve::presolve;
@@ -120,8 +121,11 @@ fn attempt(
     let mut judge = Certifier::new(Recovery::new(case, dual, Faces { qp, direct })?);
     let steps = &mut Steps::new(number, ready.island.unit, &dual.gaps.bounded, stops.clone(), voice);
     let solution = match parameters(settings) {
-        Some(given) if given.units == Units::Printed => {
+        Some(given) if given.units == Units::Printed && !case.has_friction() => {
             HostUnits::new(case, &dual.gaps, given)?.solve(qp, start, &mut judge, steps)?
+        }
+        _ if case.has_friction() => {
+            solve_with_friction(&MethodOptions { settings, direct }, qp, start, &mut judge, steps)?
         }
         _ => solve_driven(case, &MethodOptions { settings, direct }, qp, start, &mut judge, steps)?,
     };
@@ -135,9 +139,11 @@ fn attempt(
     // an answer there is comes with its displacements and its certificate
     let mut ending = interrupt::never(|| judge.ending(solution))?;
     let recovery = &judge.recovery;
-    recovery.bring_to_rest(&mut ending, false)?;
+    if !case.has_friction() {
+        recovery.bring_to_rest(&mut ending, false)?;
+    }
     let is_solved = ending.solution.verdict == Verdict::Solved;
-    let finished = is_solved && is_to_finish(settings, recovery, &ending) && finish(recovery, &mut ending)?;
+    let finished = is_solved && !case.has_friction() && is_to_finish(settings, recovery, &ending) && finish(recovery, &mut ending)?;
     let mut outcome = outcome(case, dual, &ending.solution)?;
     if outcome == Outcome::Solved && !ending.judgement.certificate.passed() {
         outcome = Outcome::Inaccurate;

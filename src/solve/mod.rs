@@ -10,6 +10,7 @@ mod every_island;
 mod fallback;
 mod feedback;
 mod finish;
+mod friction;
 mod gaps;
 mod held;
 mod interruptible;

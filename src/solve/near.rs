@@ -21,7 +21,9 @@ pub fn solve_near(
     let (ready, scaled) = (judge.recovery.ready, judge.recovery.scaled);
     let (gaps, mut far) = (&scaled.gaps.value, scaled.gaps.far.clone());
     let (mut start, mut before, mut given_up, mut last) = (start.to_vec(), Counts::default(), None, None);
+    let comes_in = |far: &[bool]| (0..far.len()).any(|i| far[i] && gaps[i] < f64::INFINITY);
     while far.contains(&true) {
+        let is_last = !comes_in(&far);
         let rows: Vec<usize> = (0..far.len()).filter(|&i| !far[i]).collect();
         let (near, block) = (Restricted::new(qp, &rows), DirectOnRows { whole: means.direct, rows: &rows });
         steps.set_bounded(near.bounded());
@@ -33,6 +35,10 @@ pub fn solve_near(
         let solution = or_last(found.map(|solution| near.whole(solution)), last.take())?;
         before = before + solution.counts;
         match &solution.verdict {
+            _ if is_last => {
+                let solution = given_up.filter(|_| gave_up(&solution)).unwrap_or(solution);
+                return Ok(Solution { counts: before, ..solution });
+            }
             Verdict::Infeasible { .. }
                 if Unheld::least(&judge.recovery.data, ready, scaled, &far)?.is_little() =>
             {
@@ -68,8 +74,8 @@ pub fn or_last(found: Result<Solution>, last: Option<Solution>) -> Result<Soluti
     }
 }
 
-/// Of the rows that are far the nearest, and those up to `FAR` times as far, are so no longer.
-fn take_in_nearest(far: &mut [bool], gaps: &[f64]) {
+/// Of the rows that are far the nearest, and those up to `FAR` times as far, are so no longer; rows that never close stay out.
+pub fn take_in_nearest(far: &mut [bool], gaps: &[f64]) {
     let nearest = (0..far.len()).filter(|&i| far[i]).map(|i| gaps[i]).fold(f64::INFINITY, f64::min);
-    far.iter_mut().zip(gaps).for_each(|(far, gap)| *far &= *gap > FAR * nearest);
+    far.iter_mut().zip(gaps).for_each(|(far, gap)| *far &= !(*gap <= FAR * nearest && *gap < f64::INFINITY));
 }

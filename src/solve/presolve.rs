@@ -19,28 +19,32 @@ pub const FAR: f64 = 1e4;
 /// Gaps of all groups; refuses rows whose gaps no displacement satisfies. `moved` is how far the loads move a row at most.
 pub fn presolve(case: Case, moved: f64) -> Result<Gaps> {
     let Ready { rows, island, dual, .. } = case.ready;
-    let rhs = island.contact.rows.rhs.iter().chain(&island.equalities.rows.rhs);
+    let rhs = RowKind::ALL.into_iter().flat_map(|kind| &island.members(kind).rows.rhs);
     let scaled: Vec<f64> = rhs.zip(&rows.scaling.scale).map(|(c, s)| c * s).collect();
     let leaders = &rows.scaling.grouping.leaders;
-    let kinds = (0..leaders.len()).map(|group| rows.kind(group));
+    let idle = idle(case);
+    let is_bounded = |group: usize| rows.kind(group) == RowKind::Inequality || idle[leaders[group]];
     let mut gaps = Gaps {
-        value: leaders.iter().map(|&i| scaled[i]).collect(),
+        value: leaders.iter().map(|&i| if idle[i] { f64::INFINITY } else { scaled[i] }).collect(),
         dual: Vec::new(),
         holder: leaders.clone(),
-        bounded: kinds.map(|kind| kind == RowKind::Inequality).collect(),
+        bounded: (0..leaders.len()).map(is_bounded).collect(),
         far: Vec::new(),
     };
+    let rubs = rubbing(case);
     let demand = |(i, c): (usize, &f64)| if i < rows.contact { (-c).max(0.0) } else { c.abs() };
     let reach = scaled.iter().enumerate().map(demand).fold(moved, f64::max);
     let slack = |a: f64, b: f64| EQUAL * a.abs().max(b.abs()) + ROUNDING * reach;
-    for (i, member) in rows.scaling.grouping.member.iter().enumerate() {
+    for (i, member) in rows.scaling.grouping.member[..rows.tangential].iter().enumerate() {
         let Some((group, sign)) = *member else { continue };
         let gap = sign * gaps.value[group];
         let slack = slack(gap, scaled[i]);
         let contradicts = if i >= rows.contact {
             (gap - scaled[i]).abs() > slack
         } else if gaps.bounded[group] {
-            if scaled[i] < gap {
+            // of equal gaps that of a node with friction carries the force
+            let is_tighter = scaled[i] < gap || (scaled[i] == gap && rubs[i] && !rubs[gaps.holder[group]]);
+            if is_tighter {
                 (gaps.value[group], gaps.holder[group]) = (scaled[i], i);
             }
             false
@@ -58,9 +62,28 @@ pub fn presolve(case: Case, moved: f64) -> Result<Gaps> {
     if let Some(error) = contradiction(case, &gaps)? {
         return Err(error);
     }
-    gaps.dual = rows.scaling.decoupling.solve(gaps.value.clone());
+    let finite = gaps.value.iter().map(|gap| if *gap < f64::INFINITY { *gap } else { 0.0 });
+    gaps.dual = rows.scaling.decoupling.solve(finite.collect());
     gaps.far =
         gaps.value.iter().zip(&gaps.bounded).map(|(c, bounded)| *bounded && *c > FAR * reach).collect();
     gaps.add_springs(dual.order());
     Ok(gaps)
+}
+
+/// Rows of the stack that are tangential ones of a node without friction: they never carry a force, as if their gaps were infinite.
+fn idle(case: Case) -> Vec<bool> {
+    let (rows, island) = (&case.ready.rows, case.island());
+    let mut idle = vec![false; rows.scaling.scale.len()];
+    for node in island.friction.nodes.iter().filter(|node| !node.has_friction()) {
+        node.rows().for_each(|row| idle[rows.tangential + row] = true);
+    }
+    idle
+}
+
+/// Contact rows of nodes with friction.
+fn rubbing(case: Case) -> Vec<bool> {
+    let mut rubbing = vec![false; case.ready.rows.contact];
+    let nodes = case.island().friction.nodes.iter().filter(|node| node.has_friction());
+    nodes.filter_map(|node| node.normal).for_each(|row| rubbing[row] = true);
+    rubbing
 }

@@ -63,6 +63,8 @@ pub struct Recovery<'a> {
     cleaners: RefCell<Vec<Option<Cleaner>>>,
     /// Rounding grows by more than 1 / `SOFT` in K+ of a body.
     pub soft: bool,
+    /// Some node has friction: slips tell one answer from another.
+    pub friction: bool,
 }
 
 /// What the log calls the judgement of an answer.
@@ -93,6 +95,7 @@ impl<'a> Recovery<'a> {
             work: Cell::new(None),
             cleaners,
             soft,
+            friction: case.has_friction(),
         })
     }
 

@@ -49,9 +49,12 @@ impl<'a> Recovery<'a> {
         deformed: &[f64],
         exact: bool,
     ) -> Result<Option<(Recovered, Vec<f64>)>> {
+        if self.friction {
+            return Ok(None);
+        }
         let dual = &self.ready.dual;
         let load: Vec<f64> = self.scaled.load.iter().map(|f| f * self.ready.island.unit).collect();
-        let held = without_force(self.ready, &load, &answer.lambda, &answer.mu);
+        let held = without_force(self.ready, &load, answer.view());
         let mut face = AnswerFace::of(&self.faces.qp, &held)?;
         let free = face.undetermined()?;
         if free.cols == 0 {

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use crate::constraints::RowKind;
 use crate::error::Result;
 use crate::linalg::Operator;
 use crate::setup::Ready;
@@ -9,8 +10,8 @@ use crate::solve::answer::Answer;
 
 /// Where a solve starts.
 pub struct Start {
-    /// Multipliers of contact and equality rows, force.
-    pub given: [Option<Vec<f64>>; 2],
+    /// Multipliers of contact, equality and tangential rows, force.
+    pub given: [Option<Vec<f64>>; 3],
     /// The last answer for the rows.
     pub previous: Option<Arc<Answer>>,
 }
@@ -19,17 +20,18 @@ impl Start {
     /// What it comes from.
     pub fn name(&self) -> &'static str {
         match (&self.given, &self.previous) {
-            ([None, None], None) => "cold",
-            ([None, None], Some(_)) => "previous",
+            ([None, None, None], None) => "cold",
+            ([None, None, None], Some(_)) => "previous",
             _ => "given",
         }
     }
 
     /// `x = L'lambda / (S 2^p)` of an island, parallel rows together; multipliers that are not there are zero.
     pub fn scaled(&self, ready: &Ready) -> Result<Vec<f64>> {
-        let mut multipliers = [self.given[0].as_deref(), self.given[1].as_deref()];
-        if multipliers == [None, None] {
-            multipliers = self.previous.as_deref().map_or([None, None], |a| [Some(&a.lambda), Some(&a.mu)]);
+        let mut multipliers = RowKind::ALL.map(|kind| self.given[kind as usize].as_deref());
+        if multipliers == [None; 3] {
+            let previous = self.previous.as_deref();
+            multipliers = RowKind::ALL.map(|kind| previous.map(|answer| answer.forces(kind)));
         }
         let mut x = ready.rows.scaling.forces_to_dual(|i| {
             let (kind, row) = ready.island.kind_and_row(i);

@@ -12,8 +12,8 @@ pub struct History {
     pub current: Option<Current>,
     /// Which rows it is about: their revision.
     rows: u64,
-    /// Start of the next solve, given by the host: multipliers of contact and equality rows, force.
-    pub start: [Option<Vec<f64>>; 2],
+    /// Start of the next solve, given by the host: multipliers of contact, equality and tangential rows, force.
+    pub start: [Option<Vec<f64>>; 3],
     /// The last answer for the present rows; it outlives a change of a matrix.
     pub previous: Option<Arc<Answer>>,
     pub states: BTreeMap<usize, State>,
@@ -55,7 +55,7 @@ impl History {
     /// Of these rows, by their revision: multipliers of others are none of theirs.
     pub fn of(&mut self, rows: u64) -> &mut Self {
         if self.rows != rows {
-            (self.rows, self.start, self.previous) = (rows, [None, None], None);
+            (self.rows, self.start, self.previous) = (rows, [None, None, None], None);
         }
         self
     }

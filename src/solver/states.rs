@@ -57,7 +57,7 @@ impl Problem {
         model.revisions.laws += u64::from(!same);
         (model.contact, model.equalities) = (contact, equalities);
         model.bodies.iter_mut().zip(loads).for_each(|(given, load)| given.body.load = load);
-        history.of(model.revisions.rows).start = [None, None];
+        history.of(model.revisions.rows).start = [None, None, None];
         let answer = previous.clone().filter(|_| fits);
         history.current = answer.map(|answer| Current::new(answer, prepared.made));
         history.previous = previous;

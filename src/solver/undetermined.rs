@@ -1,6 +1,7 @@
 //! What an answer leaves open: rigid motions that no closed row and no equality resists, and on which the load does no
 //! work; equality rows that depend on each other and share their forces.
 
+use crate::certificate::Candidate;
 use crate::constraints::RowKind;
 use crate::dual::dependent_rows;
 use crate::error::{Error, Kind, Result};
@@ -64,7 +65,9 @@ impl Problem {
         for (k, (ready, _)) in islands.filter(|(_, (_, failed))| !**failed) {
             let lambda = ready.island.contact.gather(&answer.lambda);
             let mu = ready.island.equalities.gather(&answer.mu);
-            let held = without_force(ready, &ready.island.loads(self.solved())?, &lambda, &mu);
+            let tangential = ready.island.friction.tangential.gather(&answer.tangential);
+            let answer = Candidate { u: &[], lambda: &lambda, mu: &mu, tangential: &tangential };
+            let held = without_force(ready, &ready.island.loads(self.solved())?, answer);
             let dual = &ready.dual;
             let motions =
                 AnswerFace::new(&dual.coarse, &dual.blocks, &held, dual.rounding())?.undetermined()?;

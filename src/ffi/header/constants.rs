@@ -56,6 +56,8 @@ pub const FETI_STEP_CONJUGATE_GRADIENT: i32 = 1;
 pub const FETI_STEP_EXPANSION: i32 = 2;
 /// Kind of a step: rows got a force.
 pub const FETI_STEP_RELEASE: i32 = 3;
+/// Kind of a step: a direction of the Newton method for friction.
+pub const FETI_STEP_NEWTON: i32 = 4;
 
 /// Level of a log: nothing.
 pub const FETI_LOG_NONE: i32 = 0;

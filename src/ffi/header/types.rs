@@ -264,7 +264,7 @@ pub struct feti_progress {
     /// FETI_PHASE_SETUP (a body has been analysed or factorised, its dual operator or the preconditioner made, or half a
     /// second has passed) or FETI_PHASE_SOLVE.
     pub phase: i32,
-    /// FETI_STEP_CONJUGATE_GRADIENT, FETI_STEP_EXPANSION or FETI_STEP_RELEASE; 0 in the setup.
+    /// FETI_STEP_CONJUGATE_GRADIENT, FETI_STEP_EXPANSION, FETI_STEP_RELEASE or, with friction, FETI_STEP_NEWTON; 0 in the setup.
     pub step: i32,
     /// Steps so far.
     pub steps: i64,

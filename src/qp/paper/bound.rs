@@ -182,6 +182,7 @@ impl<'a, 'q> Proportioning<'a, 'q> {
             StepKind::ConjugateGradient => self.counts.conjugate_gradient += 1,
             StepKind::Expansion => self.counts.expansions += 1,
             StepKind::Proportioning => self.counts.releases += 1,
+            StepKind::Newton => self.counts.newton += 1,
         }
     }
 }

@@ -247,6 +247,7 @@ impl<'a> Lagrangian<'a> {
             StepKind::ConjugateGradient => counts.conjugate_gradient += 1,
             StepKind::Expansion => counts.expansions += 1,
             StepKind::Proportioning => counts.releases += 1,
+            StepKind::Newton => counts.newton += 1,
         }
         StepReport::new(kind, &self.map.counts, &self.point.split, self.theta(), small)
     }
