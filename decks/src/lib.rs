@@ -124,6 +124,38 @@ impl Rows {
     }
 }
 
+/// Contact nodes with friction, `dim` tangential rows each.
+#[derive(Clone, Debug)]
+pub struct Friction {
+    /// 1 in the plane, 2 in space.
+    pub dim: usize,
+    /// The contact row of each node; none: the bound acts alone.
+    pub normal: Vec<Option<usize>>,
+    /// T, `dim` rows for each node, with s_old as right-hand sides and C_t as compliances.
+    pub rows: Rows,
+    /// mu of each node, no unit.
+    pub coefficient: Vec<f64>,
+    /// Bound of each node, force.
+    pub bound: Vec<f64>,
+}
+
+impl Friction {
+    /// No nodes over `dofs` unknowns.
+    pub fn none(dim: usize, dofs: usize) -> Friction {
+        let (normal, coefficient, bound) = (Vec::new(), Vec::new(), Vec::new());
+        Friction { dim, normal, rows: Rows::none(dofs), coefficient, bound }
+    }
+
+    /// Appends a node; its tangential rows begin at s_old = 0.
+    pub fn push(&mut self, normal: Option<usize>, rows: &[&[(usize, f64)]], coefficient: f64, bound: f64) {
+        assert_eq!(rows.len(), self.dim);
+        rows.iter().for_each(|row| self.rows.push(row, 0.0));
+        self.normal.push(normal);
+        self.coefficient.push(coefficient);
+        self.bound.push(bound);
+    }
+}
+
 /// A whole problem: nodal values stand for the functions of (6), struck out dofs for the prescribed displacements
 /// (7), contact rows for the linearised non-interpenetration (8); its solution is the discrete (9).
 #[derive(Clone, Debug)]
@@ -134,13 +166,15 @@ pub struct Deck {
     pub contact: Rows,
     /// H u = h.
     pub equalities: Rows,
+    pub friction: Friction,
 }
 
 impl Deck {
     /// `bodies` with no rows yet.
     pub fn new(name: impl Into<String>, bodies: Vec<Body>) -> Deck {
         let dofs = bodies.iter().map(Body::dofs).sum();
-        Deck { name: name.into(), bodies, contact: Rows::none(dofs), equalities: Rows::none(dofs) }
+        let (contact, equalities) = (Rows::none(dofs), Rows::none(dofs));
+        Deck { name: name.into(), bodies, contact, equalities, friction: Friction::none(1, dofs) }
     }
 
     /// Unknowns of all bodies together.

@@ -80,17 +80,13 @@ impl DualRows {
         let mut scaled = Csr::empty(metric.len());
         grouping.leaders.iter().for_each(|&leader| scaled.push_row(all.row(leader)));
         let compliance: Vec<f64> = grouping.leaders.iter().map(|&leader| compliances[leader]).collect();
-        let equalities = grouping.leaders.iter().filter(|leader| (contact..tangential).contains(leader)).count();
+        let equalities =
+            grouping.leaders.iter().filter(|leader| (contact..tangential).contains(leader)).count();
         let first = grouping.leaders.iter().filter(|&&leader| leader < tangential).count();
         let nodes = island.friction.nodes.iter().map(|node| first + node.first..first + node.rows().end);
         let nodes: Vec<_> = nodes.collect();
-        let given = UnitRows {
-            matrix: &scaled,
-            equalities,
-            nodes: &nodes,
-            compliance: &compliance,
-            metric: &metric,
-        };
+        let given =
+            UnitRows { matrix: &scaled, equalities, nodes: &nodes, compliance: &compliance, metric: &metric };
         let (decoupling, matrix) = if coupled { Decoupling::none(&scaled) } else { Decoupling::of(given)? };
         let compliance = decoupling.compliance(&compliance);
         let uneven = is_uneven(&scaled, &metric, island);

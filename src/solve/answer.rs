@@ -78,7 +78,8 @@ impl Answer {
         let gap = |i: usize| model.contact.open_gap(i, &answer.u, answer.lambda[i]);
         answer.gaps = (0..counts.rows).map(gap).collect();
         let count = |state| answer.friction.iter().filter(|own| **own == state).count();
-        (answer.report.newton, answer.report.starts) = (answer.report.counts.newton, answer.report.counts.starts);
+        (answer.report.newton, answer.report.starts) =
+            (answer.report.counts.newton, answer.report.counts.starts);
         answer.report.sticking = count(FrictionState::Stick);
         answer.report.slipping = count(FrictionState::Slip);
         answer.slips = answer.slips_of(model);

@@ -31,8 +31,11 @@ const CANCELLING: Range<f64> = 1e4..1e9;
 const UNEVEN: f64 = 100.0;
 
 /// Whether the answer of an island is to be finished, as option `finish` has it. `automatic`: where an error that passes the
-/// certificate may be large elsewhere.
+/// certificate may be large elsewhere. Answers with friction end with exact forces on exact states as they are.
 pub fn is_to_finish(settings: &Settings, recovery: &Recovery, ending: &Ending) -> bool {
+    if recovery.friction {
+        return false;
+    }
     let default = settings.method == Method::Proportioning && settings.finish == FinishBy::Automatic;
     let overlooked = ending.judgement.unevenness > UNEVEN;
     settings.finish == FinishBy::Direct || default && (overlooked || is_delicate(recovery, ending))

@@ -32,8 +32,7 @@ pub fn without_force(ready: &Ready, load: &[f64], answer: Candidate) -> Vec<bool
         (ROUNDING * (own + size(&push, range))).max(idle)
     };
     let nothing: Vec<f64> = island.ranges.iter().map(nothing).collect();
-    let mut held: Vec<bool> =
-        (0..rows.groups()).map(|group| rows.kind(group) != RowKind::Equality).collect();
+    let mut held: Vec<bool> = (0..rows.groups()).map(|group| rows.kind(group) != RowKind::Equality).collect();
     for (i, (group, _)) in rows.scaling.grouping.members().filter(|(i, _)| *i < rows.contact) {
         let bodies = island.contact.rows.matrix.row(i).map(|(j, _)| nothing[island.body_of(j)]);
         if lambda[i] > rows.scaling.scale[i] * bodies.fold(f64::INFINITY, f64::min) {

@@ -50,6 +50,11 @@ enum Tried {
     NotHeld {
         far: Vec<bool>,
     },
+    /// The same with friction: the forces within the cones that come nearest, and what they leave of e.
+    NotHeldByFriction {
+        x: Vec<f64>,
+        rest: Vec<f64>,
+    },
 }
 
 /// Solves (10)-(11) on one island, number `number`: the dual from x = `start`, the displacements, the certificate. The named reason
@@ -91,6 +96,14 @@ fn solve_held(
                 dual.take(case, &left.x, left.load_to_take(share), share)?;
                 start = left.x;
             }
+            Tried::NotHeldByFriction { x, rest } => {
+                let left = Unheld::of(&case.data()?, case.ready, &dual, x, &rest);
+                if let Some(error) = left.proof(case, &dual)? {
+                    return Err(error);
+                }
+                dual.take(case, &left.x, left.load_to_take(left.share), left.share)?;
+                start = left.x;
+            }
         }
     }
 }
@@ -130,8 +143,11 @@ fn attempt(
         _ => solve_driven(case, &MethodOptions { settings, direct }, qp, start, &mut judge, steps)?,
     };
     let solution = match solution {
-        Solution { verdict: Verdict::Infeasible { .. }, .. } if dual.unheld.is_none() => {
-            return Ok(Tried::NotHeld { far: judge.far });
+        Solution { verdict: Verdict::Infeasible { direction, .. }, x, .. } if dual.unheld.is_none() => {
+            return Ok(match case.has_friction() {
+                true => Tried::NotHeldByFriction { x, rest: direction },
+                false => Tried::NotHeld { far: judge.far },
+            });
         }
         solution => solution,
     };
@@ -139,11 +155,9 @@ fn attempt(
     // an answer there is comes with its displacements and its certificate
     let mut ending = interrupt::never(|| judge.ending(solution))?;
     let recovery = &judge.recovery;
-    if !case.has_friction() {
-        recovery.bring_to_rest(&mut ending, false)?;
-    }
+    recovery.bring_to_rest(&mut ending, false)?;
     let is_solved = ending.solution.verdict == Verdict::Solved;
-    let finished = is_solved && !case.has_friction() && is_to_finish(settings, recovery, &ending) && finish(recovery, &mut ending)?;
+    let finished = is_solved && is_to_finish(settings, recovery, &ending) && finish(recovery, &mut ending)?;
     let mut outcome = outcome(case, dual, &ending.solution)?;
     if outcome == Outcome::Solved && !ending.judgement.certificate.passed() {
         outcome = Outcome::Inaccurate;

@@ -16,8 +16,8 @@ mod told;
 mod undetermined;
 
 pub use crate::body::{Columns, Digits, Doubt, HostFunctions, HostProduct, Modes, SparseInput, Storage};
-pub use crate::certificate::{Certificate, Entry};
-pub use crate::constraints::{RowKind, RowsInput};
+pub use crate::certificate::{Candidate, Certificate, Entry, FrictionState};
+pub use crate::constraints::{FrictionInput, RowKind, RowsInput};
 pub use crate::error::Proof;
 pub use crate::linalg::Borrowed;
 pub use crate::mesh::ElementStorage;

@@ -1,8 +1,8 @@
 //! Hands a deck to the solver as a host would.
 
-use decks::{Body, Csr, Deck, Rows};
+use decks::{Body, Csr, Deck, Friction, Rows};
 use feti_contact::error::Result;
-use feti_contact::solver::{Modes, Problem, RowKind, RowsInput, SparseInput, Storage};
+use feti_contact::solver::{FrictionInput, Modes, Problem, RowKind, RowsInput, SparseInput, Storage};
 
 /// Registers stiffness, exact null space and load of every body, then both kinds of rows.
 pub fn problem(deck: &Deck) -> Result<Problem> {
@@ -23,6 +23,7 @@ pub fn without_null_spaces(deck: &Deck) -> Result<Problem> {
     }
     add_rows(&mut problem, RowKind::Inequality, &deck.contact)?;
     add_rows(&mut problem, RowKind::Equality, &deck.equalities)?;
+    add_friction(&mut problem, &deck.friction)?;
     Ok(problem)
 }
 
@@ -42,6 +43,23 @@ pub fn add_rows(problem: &mut Problem, kind: RowKind, rows: &Rows) -> Result<()>
         problem.set_compliance(kind, first, &rows.compliance)?;
     }
     Ok(())
+}
+
+pub fn add_friction(problem: &mut Problem, nodes: &Friction) -> Result<()> {
+    if nodes.normal.is_empty() {
+        return Ok(());
+    }
+    let normal: Vec<i64> = nodes.normal.iter().map(|row| row.map_or(-1, |row| row as i64)).collect();
+    let (matrix, dof) = (&nodes.rows.matrix, columns(&nodes.rows.matrix));
+    let rows = RowsInput { ptr: &matrix.ptr, body: None, dof: &dof, val: &matrix.val, rhs: None };
+    let (coefficient, bound) = (Some(&nodes.coefficient[..]), Some(&nodes.bound[..]));
+    let first =
+        problem.add_friction(FrictionInput { dim: nodes.dim, normal: &normal, rows, coefficient, bound })?;
+    let of_nodes: Vec<f64> = nodes.rows.compliance.iter().step_by(nodes.dim).copied().collect();
+    if of_nodes.iter().any(|inv_kt| *inv_kt > 0.0) {
+        problem.set_friction_compliance(first, &of_nodes)?;
+    }
+    problem.set_friction_reference(first, normal.len(), nodes.dim, &nodes.rows.rhs)
 }
 
 /// Columns of a matrix in the integers of the interface.

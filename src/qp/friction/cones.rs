@@ -175,6 +175,12 @@ impl Cones {
         Self { nodes: self.nodes.iter().map(without).collect(), free: self.free.clone(), order: self.order }
     }
 
+    /// The same with coefficients so many times as large.
+    pub fn wider(&self, by: f64) -> Self {
+        let nodes = self.nodes.iter().map(|node| Node { mu: by * node.mu, ..*node }).collect();
+        Self { nodes, free: self.free.clone(), order: self.order }
+    }
+
     /// `x - NAT(x - rho r)` on the nodes, `rho r` on free rows: zero exactly where the laws hold.
     pub fn law(&self, x: &[f64], r: &[f64], rho: f64) -> Vec<f64> {
         let trial: Vec<f64> = x.iter().zip(r).map(|(x, r)| x - rho * r).collect();

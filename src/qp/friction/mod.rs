@@ -22,6 +22,7 @@ mod path;
 mod smooth;
 mod start;
 mod supports;
+mod unheld;
 
 pub use cones::{Cones, Force, Node, Place};
 pub use coordinates::{Coordinate, Law};

@@ -96,6 +96,11 @@ impl<'a> Motions<'a> {
         Ok(factor.map(|factor| Inverse { rows, weights, unit, solver: Solver::Cholesky(factor) }))
     }
 
+    /// The largest diagonal entry of `G G'`.
+    pub fn size(&self) -> f64 {
+        norm_max(&self.whole) * self.unit * self.unit
+    }
+
     /// Of the rows of a face, as they are and weighted.
     fn bytes(&self) -> usize {
         2 * (self.pattern.val.len() * (size_of::<f64>() + size_of::<usize>())

@@ -166,7 +166,7 @@ fn armijo(problem: &FrictionProblem, y: &[f64], now: &Trial, direction: &[f64]) 
 }
 
 /// PI' as a sum of `weight^2 v v'`: v is a coordinate, drawing the one along the force with it on the surface of a cone.
-fn derivative(cones: &Cones, places: &[Place]) -> (Vec<Coordinate>, Vec<f64>) {
+pub fn derivative(cones: &Cones, places: &[Place]) -> (Vec<Coordinate>, Vec<f64>) {
     let held = Law::Held { value: 0.0 };
     let (mut face, mut weights) = (Face::empty(cones, 1.0), Vec::with_capacity(cones.order()));
     for (node, place) in cones.nodes().iter().zip(places) {

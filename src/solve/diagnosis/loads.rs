@@ -1,6 +1,7 @@
 //! Loads that no forces of the rows hold: how much of them, on which bodies, and whether that is proved.
 
 use crate::certificate::Data;
+use crate::constraints::{FrictionNode, RowKind};
 use crate::error::{Error, Kind, Proof, Result};
 use crate::linalg::graph::{components, joined};
 use crate::linalg::twofold::Twofold;
@@ -70,7 +71,7 @@ impl Unheld {
     }
 
     /// Of the forces x of the dual, which leave `rest` = e - G x.
-    fn of(data: &Data, ready: &Ready, scaled: &Scaled, x: Vec<f64>, rest: &[f64]) -> Self {
+    pub fn of(data: &Data, ready: &Ready, scaled: &Scaled, x: Vec<f64>, rest: &[f64]) -> Self {
         let (island, metric) = (&ready.island, &ready.rows.metric);
         let as_load = |resultants: &[f64]| ready.dual.load_of(resultants, island.unknowns(), metric);
         let sizes = |load: &[f64]| -> Vec<f64> {
@@ -142,7 +143,7 @@ impl Unheld {
             let mut work = Twofold::default();
             scaled.load.iter().zip(&own).for_each(|(f, v)| work.add_product(*f, *v));
             let resisted = BEYOND * (resistance(ready, &own) + strain(case, &own)?);
-            if work.value() > size * resisted {
+            if work.value() - bounded(ready, &own) > size * resisted {
                 let mut v = zeros(case.model.sizes().dofs, "a motion")?;
                 island.scatter(case.model, &own, &mut v);
                 return Ok(Some(self.named(case, v)));
@@ -185,8 +186,7 @@ pub fn free(data: &Data, mut load: Vec<f64>) -> Vec<f64> {
 fn clusters(ready: &Ready, x: &[f64], left: &[f64]) -> (Vec<usize>, usize) {
     let (rows, island) = (&ready.rows, &ready.island);
     let forces = rows.scaling.decoupling.solve_transposed(x.to_vec());
-    let joins =
-        (0..forces.len()).filter(|&i| forces[i] != 0.0 || rows.scaling.grouping.leaders[i] >= rows.contact);
+    let joins = (0..forces.len()).filter(|&i| forces[i] != 0.0 || rows.kind(i) == RowKind::Equality);
     let bodies = joins.map(|i| {
         let touched = rows.scaled.row(i).map(|(j, _)| island.body_of(j));
         touched.filter(|&p| left[p] > 0.0)
@@ -194,17 +194,36 @@ fn clusters(ready: &Ready, x: &[f64], left: &[f64]) -> (Vec<usize>, usize) {
     joined(left.len(), bodies)
 }
 
-/// `|(S B v)_+, S_H H v|` by the rows of the host.
+/// `|(S (B v + mu |T v|))_+, S_H H v|` by the rows of the host: forces within their cones do no more work.
 fn resistance(ready: &Ready, v: &[f64]) -> f64 {
-    let along = |i: usize| {
-        let ((rows, k), mut sum) = (ready.island.row(i), Twofold::default());
-        rows.matrix.row(k).for_each(|(j, b)| sum.add_product(b, v[j]));
-        sum.value()
-    };
-    let is_contact = |i: usize| i < ready.rows.contact;
-    let resists = |(i, s): (usize, &f64)| s * if is_contact(i) { along(i).max(0.0) } else { along(i) };
-    let all: Vec<f64> = ready.rows.scaling.scale.iter().enumerate().map(resists).collect();
+    let rows = &ready.rows;
+    let mut all: Vec<f64> = (0..rows.tangential).map(|i| along(ready, i, v)).collect();
+    for node in &ready.island.friction.nodes {
+        node.normal.iter().for_each(|&row| all[row] += node.coefficient * slip(ready, node, v));
+    }
+    all[..rows.contact].iter_mut().for_each(|resists| *resists = resists.max(0.0));
+    all.iter_mut().zip(&rows.scaling.scale).for_each(|(resists, s)| *resists *= s);
     weighted_norm(&all, |_| 1.0)
+}
+
+/// `sum bound |T v|` in units of 2^p: the work that bounds of friction may do.
+fn bounded(ready: &Ready, v: &[f64]) -> f64 {
+    let nodes = ready.island.friction.nodes.iter();
+    let work = nodes.map(|node| if node.bound > 0.0 { node.bound * slip(ready, node, v) } else { 0.0 });
+    work.sum::<f64>() / ready.island.unit
+}
+
+/// `|T v|` of a node.
+fn slip(ready: &Ready, node: &FrictionNode, v: &[f64]) -> f64 {
+    let slips: Vec<f64> = node.rows().map(|row| along(ready, ready.rows.tangential + row, v)).collect();
+    weighted_norm(&slips, |_| 1.0)
+}
+
+/// `b v` of a row of the stack.
+fn along(ready: &Ready, i: usize, v: &[f64]) -> f64 {
+    let ((rows, k), mut sum) = (ready.island.row(i), Twofold::default());
+    rows.matrix.row(k).for_each(|(j, b)| sum.add_product(b, v[j]));
+    sum.value()
 }
 
 /// `|K v|_{D^-1}` in units of 2^p.

@@ -20,7 +20,8 @@ struct DualNode {
 fn dual_node(ready: &Ready, gaps: &Gaps, node: &FrictionNode) -> DualNode {
     let (rows, scaling) = (&ready.rows, &ready.rows.scaling);
     let group_of = |row: usize| scaling.grouping.member[row].map(|(group, _)| group);
-    let carries = |row: &usize| group_of(*row).filter(|&group| gaps.bounded[group] && gaps.holder[group] == *row);
+    let carries =
+        |row: &usize| group_of(*row).filter(|&group| gaps.bounded[group] && gaps.holder[group] == *row);
     let normal = node.normal.and_then(|row| carries(&row));
     let tangents: Vec<usize> = node.rows().filter_map(|row| group_of(rows.tangential + row)).collect();
     let of = |group: usize| scaling.force_of(group, gaps.holder[group]);

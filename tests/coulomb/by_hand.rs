@@ -1,0 +1,102 @@
+//! Problems that are solved by hand.
+
+use decks::{Body, Csr, Deck};
+use feti_contact::error::Kind;
+use feti_contact::solver::{FrictionState, Outcome, Problem, RowKind};
+
+use crate::hand_over;
+
+/// A point on springs `k` along x and y, pressed onto a wall below by `press` and pushed along it by `push`: contact row
+/// `-u_y <= 0`, tangential row `u_x`.
+fn point(k: [f64; 2], press: f64, push: f64, mu: f64, bound: f64) -> Deck {
+    let mut stiffness = Csr::empty(2);
+    stiffness.push_row(&[(0, k[0])]);
+    stiffness.push_row(&[(1, k[1])]);
+    let null_space =
+        (0..2).filter(|&i| k[i] == 0.0).map(|i| vec![[1.0, 0.0][i], [0.0, 1.0][i]]).collect::<Vec<_>>();
+    let body = Body {
+        stiffness,
+        null_space: Some(null_space).filter(|modes| !modes.is_empty()),
+        load: vec![push, -press],
+        coordinates: vec![[0.0; 3]; 2],
+        node: vec![1; 2],
+        direction: vec![1, 2],
+    };
+    let mut deck = Deck::new("point", vec![body]);
+    deck.contact.push(&[(1, -1.0)], 0.0);
+    deck.friction.push(Some(0), &[&[(0, 1.0)]], mu, bound);
+    deck
+}
+
+fn solved(deck: &Deck) -> Problem {
+    let mut problem = hand_over::problem(deck).unwrap();
+    let report = problem.solve().unwrap();
+    assert_eq!(report.outcome, Outcome::Solved, "{:?}", report.certificate);
+    problem
+}
+
+fn near(found: &[f64], wanted: &[f64]) {
+    let size = wanted.iter().fold(1e-3, |most: f64, v| most.max(v.abs()));
+    assert_eq!(found.len(), wanted.len());
+    assert!(found.iter().zip(wanted).all(|(a, b)| (a - b).abs() <= 1e-10 * size), "{found:?} for {wanted:?}");
+}
+
+#[test]
+fn a_point_sticks_below_mu_and_slips_above() {
+    for (push, state, force) in
+        [(0.4, FrictionState::Stick, 0.4), (0.8, FrictionState::Slip, 0.5), (-0.8, FrictionState::Slip, -0.5)]
+    {
+        let problem = solved(&point([2.0, 3.0], 1.0, push, 0.5, 0.0));
+        near(problem.multipliers(RowKind::Inequality).unwrap(), &[1.0]);
+        near(problem.multipliers(RowKind::Tangential).unwrap(), &[force]);
+        near(problem.displacements().unwrap(), &[(push - force) / 2.0, 0.0]);
+        near(problem.slips().unwrap(), &[(push - force) / 2.0]);
+        assert_eq!(problem.friction_states().unwrap(), [state], "{push}");
+    }
+}
+
+#[test]
+fn a_point_without_springs_is_held_by_friction_up_to_mu() {
+    let problem = solved(&point([0.0, 0.0], 1.0, 0.49999, 0.5, 0.0));
+    near(problem.multipliers(RowKind::Tangential).unwrap(), &[0.49999]);
+    let error = hand_over::problem(&point([0.0, 0.0], 1.0, 0.50001, 0.5, 0.0)).unwrap().solve().unwrap_err();
+    assert_eq!(error.kind, Kind::LoadNotHeld, "{error}");
+}
+
+/// The spring across the wall could press as much as friction needs: that it does not is known by no balance of forces.
+#[test]
+fn a_point_on_a_spring_across_the_wall_slides_beyond_mu() {
+    let problem = solved(&point([0.0, 3.0], 1.0, 0.49999, 0.5, 0.0));
+    near(problem.multipliers(RowKind::Tangential).unwrap(), &[0.49999]);
+    let report = hand_over::problem(&point([0.0, 3.0], 1.0, 0.50001, 0.5, 0.0)).unwrap().solve().unwrap();
+    assert_eq!(report.outcome, Outcome::Stalled);
+}
+
+#[test]
+fn a_bound_acts_at_an_open_point_too() {
+    let problem = solved(&point([2.0, 3.0], -1.0, 0.8, 0.5, 0.3));
+    near(problem.multipliers(RowKind::Inequality).unwrap(), &[0.0]);
+    near(problem.multipliers(RowKind::Tangential).unwrap(), &[0.3]);
+    near(problem.displacements().unwrap(), &[0.25, 1.0 / 3.0]);
+}
+
+#[test]
+fn slip_begins_at_the_reference_and_elastic_stick_gives_way() {
+    let mut deck = point([2.0, 3.0], 1.0, 0.4, 0.5, 0.0);
+    deck.friction.rows.rhs[0] = 0.1; // sticks at u = 0.1: 0.4 - 2 x 0.1 = 0.2
+    near(solved(&deck).multipliers(RowKind::Tangential).unwrap(), &[0.2]);
+    deck.friction.rows.rhs[0] = 0.0;
+    deck.friction.rows.compliance[0] = 0.5; // u = 0.5 t, 2 u + t = 0.4
+    let problem = solved(&deck);
+    near(problem.multipliers(RowKind::Tangential).unwrap(), &[0.2]);
+    near(problem.displacements().unwrap(), &[0.1, 0.0]);
+    near(problem.slips().unwrap(), &[0.0]);
+}
+
+#[test]
+fn without_a_coefficient_there_is_no_tangential_force() {
+    let problem = solved(&point([2.0, 3.0], 1.0, 0.8, 0.0, 0.0));
+    near(problem.multipliers(RowKind::Tangential).unwrap(), &[0.0]);
+    near(problem.displacements().unwrap(), &[0.4, 0.0]);
+    assert_eq!(problem.friction_states().unwrap(), [FrictionState::Open]);
+}
