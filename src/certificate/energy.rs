@@ -19,9 +19,10 @@ pub(super) struct Energies {
     /// `||f| + |B'||lambda| + |H'||mu||_{D^-1}^2`: f - r is known to rounding of its terms, so u is known to rounding of what
     /// each of them would move.
     forces: f64,
-    /// `lambda'C lambda + mu'C mu`, twice the energy of the compliant rows.
+    /// `lambda'C lambda + mu'C mu + lambda_t'C_t lambda_t`, twice the energy of the compliant rows.
     stored: f64,
-    /// `c'lambda + h'mu + lambda'C lambda + mu'C mu`, and the same of absolute values.
+    /// `c'lambda + h'mu + s_old'lambda_t`, twice the energy of the compliant rows and `b |s|` of the nodes with friction, and the same
+    /// of absolute values.
     constrained: f64,
     constrained_size: f64,
     /// There are forces.
@@ -50,9 +51,7 @@ impl Energies {
 
     /// Adds the rows. A row without force does no work, however far it is: 0 x infinity is 0.
     pub fn add_rows(&mut self, field: &Field) {
-        for (kind, forces) in
-            [RowKind::Inequality, RowKind::Equality].map(|kind| (kind, field.answer.forces(kind)))
-        {
+        for (kind, forces) in RowKind::ALL.map(|kind| (kind, field.answer.forces(kind))) {
             let rows = field.rows(kind);
             for (i, force) in forces.iter().enumerate().filter(|(_, force)| **force != 0.0) {
                 let (work, stored) = (force * rows.rhs[i], rows.compliance[i] * force * force);
@@ -63,8 +62,16 @@ impl Energies {
         }
     }
 
-    /// `|u'K u - f'u + c'lambda + h'mu + lambda'C lambda + mu'C mu|` against `tol` of the sum of their sizes and rounding; V
-    /// is the work of the loads, as far as it is known.
+    /// Adds what nodes with friction dissipate, force x length.
+    pub fn add_slips(&mut self, dissipated: impl Iterator<Item = f64>) {
+        for work in dissipated {
+            self.constrained += work;
+            self.constrained_size += work.abs();
+        }
+    }
+
+    /// `|u'K u - f'u + c'lambda + h'mu + lambda'C lambda + mu'C mu|`, with friction and `s_old'lambda_t + lambda_t'C_t lambda_t + b |s|` of
+    /// every node, against `tol` of the sum of their sizes and rounding; V is the work of the loads, as far as it is known.
     pub fn entry(&self, limit: f64, work_of_loads: f64) -> Entry {
         let noise = NOISE * (self.terms + self.forces.max(work_of_loads) + self.stored);
         // energies of forces whose squares underflow are not known
@@ -74,7 +81,7 @@ impl Energies {
         Entry::new(share(gap.abs(), limit * size + noise), limit, None)
     }
 
-    /// `1/2 u'K u - f'u + 1/2 lambda'C lambda + 1/2 mu'C mu`
+    /// `1/2 u'K u - f'u + 1/2 lambda'C lambda + 1/2 mu'C mu + 1/2 lambda_t'C_t lambda_t`, without what friction dissipates.
     pub fn minimised(&self) -> f64 {
         0.5 * self.strain - self.work + 0.5 * self.stored
     }

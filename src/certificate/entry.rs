@@ -7,7 +7,7 @@ pub struct Entry {
     pub figure: f64,
     /// What is violated over what is allowed, no unit: the condition holds when this is at most 1.
     pub ratio: f64,
-    /// Body or row; none where nothing is violated, and none of the duality gap.
+    /// Body, row or node with friction; none where nothing is violated, and none of the duality gap.
     pub place: Option<usize>,
 }
 
@@ -45,14 +45,15 @@ pub struct Certificate {
     pub complementarity: Entry,
     /// `(|lambda_t| - b)_+`, `b = bound + mu lambda_n`, worst node with friction.
     pub friction_cone: Entry,
-    /// Force that is missing or across where a node slips, worst node with friction.
+    /// `|lambda_t - P_b(lambda_t + k s)|`: force that is missing or across where a node slips, slip where it sticks, worst node
+    /// with friction.
     pub friction_work: Entry,
-    /// Slip where the force is within its bound, worst node with friction.
+    /// `|s| (b - |lambda_t|)_+ / b`: slip where the force is within its bound, worst node with friction.
     pub friction_stick: Entry,
-    /// `|u'K u - f'u + c'lambda + h'mu + lambda'C lambda + mu'C mu|`
+    /// `|u'K u - f'u + c'lambda + h'mu + s_old'lambda_t + lambda'C lambda + mu'C mu + lambda_t'C_t lambda_t + sum b |s||`
     pub duality_gap: Entry,
-    /// `1/2 u'K u - f'u + 1/2 lambda'C lambda + 1/2 mu'C mu`, force x length: what is minimised, springs of compliant rows
-    /// included.
+    /// `1/2 u'K u - f'u + 1/2 lambda'C lambda + 1/2 mu'C mu + 1/2 lambda_t'C_t lambda_t`, force x length: springs of compliant rows
+    /// included, without what friction dissipates. What is minimised where there is no friction.
     pub energy: f64,
 }
 
@@ -84,9 +85,9 @@ impl Certificate {
         self.entries().iter().all(|entry| entry.ratio <= 1.0)
     }
 
-    /// Forces and equilibrium pass, a gap or an energy does not: rounding of the loads may have moved it.
+    /// Forces and equilibrium pass, a gap, a slip or an energy does not: rounding of the loads may have moved it.
     pub(super) fn only_motions_fail(&self) -> bool {
-        let forces = [self.equilibrium, self.balance, self.negative_force];
+        let forces = [self.equilibrium, self.balance, self.negative_force, self.friction_cone];
         !self.passed() && forces.iter().all(|entry| entry.ratio <= 1.0)
     }
 

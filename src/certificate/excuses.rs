@@ -14,9 +14,9 @@ use crate::certificate::{Certificate, Response, NOISE};
 use crate::constraints::RowKind;
 use crate::error::Result;
 
-/// Judges once more with `64 eps (V phi_i)^1/2`, length, added to what the gaps that fail may be, `64 eps A phi_i^1/2` where the row
-/// touches a body without load or forces, and `64 eps V` to the rounding of the energies. The worst row comes first, and the
-/// first that still fails is the last.
+/// Judges once more with `64 eps (V phi_i)^1/2`, length, added to what the gaps and slips that fail may be, `64 eps A phi_i^1/2` where
+/// the row touches a body without load or forces, and `64 eps V` to the rounding of the energies. The worst row or node comes
+/// first, and the first that still fails is the last.
 pub(super) fn by_rounding(
     field: &Field,
     forces: &Forces,
@@ -33,11 +33,12 @@ pub(super) fn by_rounding(
     let mut asked = 0;
     for &(kind, i, _) in &failing {
         asked += 1;
-        let compliance = response.compliance_of(kind, i)?;
-        let row = &mut rows.rows[kind as usize][i];
-        row.gap_limit +=
-            NOISE * (work * compliance).sqrt() + forces.idle_at(field, kind, i) * compliance.sqrt();
-        if !(row.gap_ratio() <= 1.0) {
+        for row in rows.rows_of(kind, i) {
+            let compliance = response.compliance_of(kind, row)?;
+            rows.rows[kind as usize][row].gap_limit +=
+                NOISE * (work * compliance).sqrt() + forces.idle_at(field, kind, row) * compliance.sqrt();
+        }
+        if !(rows.gap_ratio(kind, i) <= 1.0) {
             break;
         }
     }
@@ -47,10 +48,9 @@ pub(super) fn by_rounding(
     Ok(())
 }
 
-/// Rows whose gaps fail, with their ratios, the worst first.
+/// Rows whose gaps and nodes whose slips fail, with their ratios, the worst first.
 fn failing(rows: &Measured) -> Vec<(RowKind, usize, f64)> {
-    let all = rows.rows.iter().flat_map(|rows| rows.iter().enumerate());
-    let ratios = all.map(|(i, row)| (row.kind, i, row.gap_ratio()));
+    let ratios = rows.all().map(|(kind, i)| (kind, i, rows.gap_ratio(kind, i)));
     let mut failing: Vec<_> = ratios.filter(|(_, _, ratio)| !(*ratio <= 1.0)).collect();
     failing.sort_by(|a, b| b.2.total_cmp(&a.2));
     failing

@@ -126,7 +126,7 @@ fn at_grounded(field: &Field, rows: &RowSet, i: usize, p: usize) -> f64 {
 }
 
 /// The forces that the motion asked for by the rows and by grounded unknowns would take where it is asked for, force:
-/// `|S c_-| + |S_H h|` and `|D^1/2 f_j / K_jj|` with the largest D of the body that is not grounded. A body that is moved, not
+/// `|S c_-| + |S_H h|`, `|S_T s_old|` of nodes with friction that may hold, and `|D^1/2 f_j / K_jj|` with the largest D of the body that is not grounded. A body that is moved, not
 /// loaded, has no other measure of its strain.
 fn asked(field: &Field) -> f64 {
     let by_rows = |kind: RowKind, motion: fn(f64) -> f64| {
@@ -141,7 +141,15 @@ fn asked(field: &Field) -> f64 {
     });
     let by_support = norm_of(by_support.collect());
     let contact = by_rows(RowKind::Inequality, |c| c.min(0.0));
-    contact + by_rows(RowKind::Equality, |h| h) + by_support
+    contact + by_rows(RowKind::Equality, |h| h) + by_support + by_friction(field)
+}
+
+/// `|S_T s_old|` of the nodes that may carry a tangential force.
+fn by_friction(field: &Field) -> f64 {
+    let kind = RowKind::Tangential;
+    let (rows, scale) = (field.rows(kind), &field.scales[kind as usize]);
+    let holding = field.data.nodes.iter().filter(|node| node.limit(field.answer.lambda) > 0.0);
+    field.unit * norm_of(holding.flat_map(|node| node.rows()).map(|i| scale[i] * rows.rhs[i]).collect())
 }
 
 /// `|x|`, however small or large.

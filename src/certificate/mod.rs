@@ -1,9 +1,9 @@
-//! The certificate: how well an answer (u, lambda, mu) of one island satisfies the optimality conditions of (10)-(11),
+//! The certificate: how well an answer (u, lambda, mu, lambda_t) of one island satisfies the optimality conditions of (10)-(11),
 //! computed from the host's own matrices. An island is a set of bodies with all the rows among them. Every measure is
-//! local, of one body or of one row: what is large elsewhere excuses nothing here. The same in any units and for any scaling
+//! local, of one body, of one row or of one node with friction: what is large elsewhere excuses nothing here. The same in any units and for any scaling
 //! of the rows.
 //!
-//! C = diag(1/k) is the compliance of the rows, D = diag K, r = B'lambda + H'mu, `s_i = (b_i D^-1 b_i' + C_i)^-1/2`, tol the
+//! C = diag(1/k) is the compliance of the rows, D = diag K, r = B'lambda + H'mu + T'lambda_t, `s_i = (b_i D^-1 b_i' + C_i)^-1/2`, tol the
 //! limit. Forces are measured by `|f|_{D^-1}`, lengths by `|u|_D`. All three are kept in units of U, the power of two below
 //! max D: `(sum U/D f^2)^1/2` is a force, `(sum D/U u^2)^1/2` a length, `s_i / U^1/2` a number that is the same to the last
 //! bit in units that differ by powers of two.
@@ -14,6 +14,7 @@ mod entry;
 mod excuses;
 mod field;
 mod forces;
+mod friction;
 mod grounded;
 mod rows;
 
@@ -161,8 +162,9 @@ pub struct Judgement {
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct BodyJudgement {
     /// `eta_p = |S v|_p / |S^-1 lambda|_p` over the rows that touch the body, no unit: estimated relative error of its
-    /// forces; 0 without forces and violations. v is `min(g_i, lambda_i / s_i^2)` of a contact row with the open gap g_i, and
-    /// the error of an equality row.
+    /// forces; 0 without forces and violations. v is `min(g_i, lambda_i / s_i^2)` of a contact row with the open gap g_i, the
+    /// error of an equality row, and `(lambda_t - P_b(lambda_t + s_i^2 s)) / s_i^2` of a node with friction, P_b being the projection
+    /// on the disc of its forces.
     pub force_error: f64,
 }
 
@@ -201,6 +203,7 @@ pub fn certify(data: &Data, answer: Candidate, response: &mut dyn Response) -> R
         forces::judge(&field, &forces, p, &mut certificate, &mut energies)?;
     }
     energies.add_rows(&field);
+    energies.add_slips(rows.dissipated());
     rows.judge(data.limit, &mut certificate);
     certificate.duality_gap = energies.entry(data.limit, 0.0);
     certificate.energy = energies.minimised();
@@ -210,7 +213,7 @@ pub fn certify(data: &Data, answer: Candidate, response: &mut dyn Response) -> R
     let bodies = rows.force_errors(&field);
     let (length, leverage) = (rows.length(&field), forces.leverage);
     let unevenness = rows.unevenness();
-    let nodes = vec![FrictionState::Open; data.nodes.len()];
+    let nodes = rows.states();
     Ok(Judgement { certificate, bodies, contact: rows.limits(), nodes, length, leverage, unevenness })
 }
 
@@ -230,6 +233,15 @@ fn positive(x: f64) -> f64 {
         0.0
     } else {
         x
+    }
+}
+
+/// The larger of the two; what is no number stays none.
+fn worse(a: f64, b: f64) -> f64 {
+    if a >= b || a.is_nan() {
+        a
+    } else {
+        b
     }
 }
 

@@ -1,9 +1,13 @@
-//! Penetration, equality, sign and complementarity, every row for itself.
+//! Penetration, equality, sign and complementarity, every row for itself, and friction, every node.
+
+use std::ops::Range;
 
 use crate::certificate::deformation::Deformation;
 use crate::certificate::field::Field;
 use crate::certificate::forces::Forces;
-use crate::certificate::{positive, share, BodyJudgement, Certificate, Entry, RowJudgement, NOISE};
+use crate::certificate::friction::{judged, JudgedNode};
+use crate::certificate::{positive, share, worse, BodyJudgement, Certificate, Entry, FrictionState};
+use crate::certificate::{RowJudgement, NOISE};
 use crate::constraints::RowKind;
 use crate::linalg::vector::{ratio, weighted_norm};
 
@@ -11,9 +15,11 @@ use crate::linalg::vector::{ratio, weighted_norm};
 pub(super) struct JudgedRow {
     pub kind: RowKind,
     /// lambda_i or mu_i, force.
-    force: f64,
-    /// `c_i + C_i lambda_i - b_i u`, length.
-    open: f64,
+    pub force: f64,
+    /// `c_i + C_i lambda_i - b_i u`, length; of a tangential row minus the slip.
+    pub open: f64,
+    /// What tells the error of the force of a tangential row, length: that of its node along it.
+    slipping: f64,
     /// `|lambda_i| / s_i^2`, length: what an error of the force as large as itself would do to the gap.
     given_way: f64,
     /// `s_i (|b_i| delta + |lambda_i| / s_i^2) / U^1/2` with the deformation of its own unknowns alone, length.
@@ -21,7 +27,7 @@ pub(super) struct JudgedRow {
     /// What a gap may differ from zero by, length; not known of a row without scale.
     pub gap_limit: f64,
     /// What a force may, force.
-    force_limit: f64,
+    pub force_limit: f64,
     /// `weighed` as a multiple of the deformation of the body deformed least that the row touches, no unit; 0 without force.
     unevenness: f64,
 }
@@ -55,7 +61,8 @@ impl JudgedRow {
         let (open, weighed) = (rows.open_gap(i, field.answer.u, force), scale * own);
         let closed = force.abs() > force_limit;
         let unevenness = if closed { ratio(weighed, forces.least_deformation(field, kind, i)) } else { 0.0 };
-        Self { kind, force, open, given_way, weighed, gap_limit, force_limit, unevenness }
+        let slipping = 0.0;
+        Self { kind, force, open, slipping, given_way, weighed, gap_limit, force_limit, unevenness }
     }
 
     /// `(b_i u - c_i - C_i lambda_i)_+`, or the error of an equality row, against what it may be; no unit.
@@ -84,17 +91,18 @@ impl JudgedRow {
         closed.min(idle)
     }
 
-    /// The violation that tells the error of its force: `min(g_i, lambda_i / s_i^2)` or the error of an equality row, length.
+    /// The violation that tells the error of its force: `min(g_i, lambda_i / s_i^2)`, the error of an equality row, or the part
+    /// of a node with friction along its row, length.
     fn natural(&self) -> f64 {
         match self.kind {
             RowKind::Inequality => self.open.min(self.given_way * self.force.signum()).abs(),
             RowKind::Equality => self.open.abs(),
-            RowKind::Tangential => 0.0,
+            RowKind::Tangential => self.slipping,
         }
     }
 
-    /// The worse of what is violated in its gap; no unit.
-    pub fn gap_ratio(&self) -> f64 {
+    /// The worse of what is violated in its gap, no unit; that of tangential rows is known of their node alone.
+    fn gap_ratio(&self) -> f64 {
         match self.kind {
             RowKind::Inequality => worse(self.violation(), self.complementarity()),
             RowKind::Equality => self.violation(),
@@ -103,33 +111,75 @@ impl JudgedRow {
     }
 }
 
-fn worse(a: f64, b: f64) -> f64 {
-    if a >= b || a.is_nan() {
-        a
-    } else {
-        b
-    }
-}
-
-/// All rows of the island: contact rows, equality rows, tangential rows.
+/// All rows of the island, contact rows, equality rows, tangential rows, and its nodes with friction.
+///
+/// What is judged for itself is named by kind and number: that of a row, with `Tangential` that of a node.
 pub(super) struct Measured {
     pub rows: [Vec<JudgedRow>; 3],
+    nodes: Vec<JudgedNode>,
 }
 
 impl Measured {
     pub fn new(field: &Field, deformation: &Deformation, forces: &Forces) -> Self {
         let row = |kind, i| JudgedRow::new(field, deformation, forces, kind, i);
         let of = |kind| (0..field.rows(kind).len()).map(|i| row(kind, i)).collect();
-        Self { rows: RowKind::ALL.map(of) }
+        let mut rows = RowKind::ALL.map(of);
+        let nodes = judged(field, &rows);
+        for node in &nodes {
+            let of_node = &field.scales[RowKind::Tangential as usize][node.rows()];
+            let scale = of_node.iter().copied().fold(f64::INFINITY, f64::min);
+            let natural = node.natural(1.0 / scale / scale / field.unit);
+            let own = rows[RowKind::Tangential as usize][node.rows()].iter_mut();
+            own.zip(natural).for_each(|(row, part)| row.slipping = part.abs());
+        }
+        Self { rows, nodes }
     }
 
-    /// The entries of the rows.
+    /// What is judged for itself.
+    pub fn all(&self) -> impl Iterator<Item = (RowKind, usize)> + '_ {
+        let [contact, equalities, _] = &self.rows;
+        let counts = [contact.len(), equalities.len(), self.nodes.len()];
+        RowKind::ALL.into_iter().zip(counts).flat_map(|(kind, count)| (0..count).map(move |i| (kind, i)))
+    }
+
+    /// Its rows among those of its kind.
+    pub fn rows_of(&self, kind: RowKind, i: usize) -> Range<usize> {
+        match kind {
+            RowKind::Tangential => self.nodes[i].rows(),
+            _ => i..i + 1,
+        }
+    }
+
+    /// The worse of what its gap or its slip violates; no unit.
+    pub fn gap_ratio(&self, kind: RowKind, i: usize) -> f64 {
+        match kind {
+            RowKind::Tangential => self.nodes[i].gap_ratio(self.slip_limit(&self.nodes[i])),
+            _ => self.rows[kind as usize][i].gap_ratio(),
+        }
+    }
+
+    /// What the slip of a node may differ from zero by, length: the most that one of its rows may.
+    fn slip_limit(&self, node: &JudgedNode) -> f64 {
+        self.rows[RowKind::Tangential as usize][node.rows()].iter().map(|row| row.gap_limit).fold(0.0, worse)
+    }
+
+    /// `b |s|` of all nodes, force x length.
+    pub fn dissipated(&self) -> impl Iterator<Item = f64> + '_ {
+        self.nodes.iter().map(|node| node.dissipated(self.slip_limit(node)))
+    }
+
+    pub fn states(&self) -> Vec<FrictionState> {
+        self.nodes.iter().map(|node| node.state(self.slip_limit(node))).collect()
+    }
+
+    /// The entries of the rows and nodes.
     pub fn judge(&mut self, limit: f64, certificate: &mut Certificate) {
         self.judge_gaps(limit, certificate, |_, _| true);
-        certificate.negative_force = worst(&self.rows[0], limit, JudgedRow::sign, |_, _| true);
+        certificate.negative_force = worst(&self.rows[0], limit, JudgedRow::sign, |_| true);
+        certificate.friction_cone = worst(&self.nodes, limit, JudgedNode::outside, |_| true);
     }
 
-    /// The entries of gaps, by the rows `counts` names.
+    /// The entries of gaps and slips, by the rows and nodes `counts` names.
     pub fn judge_gaps(
         &self,
         limit: f64,
@@ -137,9 +187,16 @@ impl Measured {
         counts: impl Fn(RowKind, usize) -> bool,
     ) {
         let [contact, equalities, _] = &self.rows;
-        certificate.penetration = worst(contact, limit, JudgedRow::violation, &counts);
-        certificate.complementarity = worst(contact, limit, JudgedRow::complementarity, &counts);
-        certificate.equality = worst(equalities, limit, JudgedRow::violation, &counts);
+        let touches = |i| counts(RowKind::Inequality, i);
+        certificate.penetration = worst(contact, limit, JudgedRow::violation, touches);
+        certificate.complementarity = worst(contact, limit, JudgedRow::complementarity, touches);
+        let joins = |i| counts(RowKind::Equality, i);
+        certificate.equality = worst(equalities, limit, JudgedRow::violation, joins);
+        let rubs = |i| counts(RowKind::Tangential, i);
+        let unlawful = |node: &JudgedNode| node.unlawful(self.slip_limit(node));
+        certificate.friction_work = worst(&self.nodes, limit, unlawful, rubs);
+        let loose = |node: &JudgedNode| node.loose(self.slip_limit(node));
+        certificate.friction_stick = worst(&self.nodes, limit, loose, rubs);
     }
 
     /// The largest unevenness of a row.
@@ -176,15 +233,10 @@ impl Measured {
     }
 }
 
-fn worst(
-    rows: &[JudgedRow],
-    limit: f64,
-    measure: fn(&JudgedRow) -> f64,
-    counts: impl Fn(RowKind, usize) -> bool,
-) -> Entry {
+fn worst<T>(all: &[T], limit: f64, measure: impl Fn(&T) -> f64, counts: impl Fn(usize) -> bool) -> Entry {
     let mut worst = Entry::default();
-    for (i, row) in rows.iter().enumerate().filter(|(i, row)| counts(row.kind, *i)) {
-        worst.replace_if_worse(Entry::new(measure(row), limit, Some(i)));
+    for (i, one) in all.iter().enumerate().filter(|(i, _)| counts(*i)) {
+        worst.replace_if_worse(Entry::new(measure(one), limit, Some(i)));
     }
     worst
 }

@@ -53,7 +53,7 @@ fn result_line(report: &Report) -> String {
         Outcome::Marginal => "marginal",
     };
     let certificate = &report.certificate;
-    let figures = [
+    let mut figures = vec![
         ("equilibrium", &certificate.equilibrium),
         ("balance", &certificate.balance),
         ("penetration", &certificate.penetration),
@@ -62,6 +62,17 @@ fn result_line(report: &Report) -> String {
         ("complementarity", &certificate.complementarity),
         ("duality gap", &certificate.duality_gap),
     ];
+    if report.sizes.nodes > 0 {
+        let before_gap = figures.len() - 1;
+        figures.splice(
+            before_gap..before_gap,
+            [
+                ("friction cone", &certificate.friction_cone),
+                ("friction work", &certificate.friction_work),
+                ("friction stick", &certificate.friction_stick),
+            ],
+        );
+    }
     let mut line = format!(
         "{ended}: {} steps, {} products, {} of {} contact rows closed; certificate",
         report.counts.steps(),
