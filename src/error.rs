@@ -13,6 +13,8 @@ pub enum Kind {
     State,
     /// The load has a component that no contact force can balance: the dual (12) is infeasible.
     LoadNotHeld,
+    /// Bodies slide steadily: friction holds a part of the load, and no rest was found.
+    Slides,
     /// Rows of `B u <= c`, `H u = h` contradict each other.
     GapsContradict,
     /// A given null space is not one, or is incomplete.

@@ -10,7 +10,7 @@ use crate::qp::friction::unheld::{unheld, Unheld};
 use crate::qp::friction::{
     FrictionLimits, FrictionObserver, FrictionProblem, FrictionSolution, FrictionStart,
 };
-use crate::qp::{AcceptanceTest, Verdict};
+use crate::qp::{AcceptanceTest, Counts, Verdict};
 
 /// One below it may be as good as rounding allows.
 const NEAR: f64 = 1e-7;
@@ -150,6 +150,7 @@ impl<'a> Run<'a, '_> {
         let cones: &'a Cones = self.problem.cones;
         let states = if r.len() == x.len() { Face::at(cones, &x, &r, RHO).states } else { Vec::new() };
         let merit = ratio(merit, self.scale);
+        let counts = Counts { newton: self.tried.newton, starts: self.tried.starts(), ..self.counts };
         FrictionSolution {
             x,
             alpha,
@@ -157,7 +158,7 @@ impl<'a> Run<'a, '_> {
             scale: self.scale,
             merit,
             verdict,
-            counts: self.counts,
+            counts,
             tried: self.tried,
             pairs: self.pairs,
         }

@@ -116,6 +116,14 @@ pub struct Tried {
     pub sticking: bool,
 }
 
+impl Tried {
+    /// Ways that were begun, the first one included.
+    pub fn starts(&self) -> usize {
+        let others = self.restarts + self.paths + self.dense_paths;
+        1 + others + usize::from(self.frictionless) + usize::from(self.sticking)
+    }
+}
+
 /// A verdict of `Infeasible` means here: PROJ_C found no force within the cones that balances the load; no proof.
 pub struct FrictionSolution {
     pub x: Vec<f64>,

@@ -1,22 +1,26 @@
 //! An island with friction: its dual is solved by the Newton method of `qp::friction`, on the rows that matter.
 
 mod laws;
+mod slides;
 
 use crate::error::Result;
 use crate::progress::Steps;
 use crate::qp::friction::{
-    friction, Cones, FrictionLimits, FrictionProblem, FrictionSolution, FrictionStart, Tried,
+    friction, Cones, FrictionLimits, FrictionProblem, FrictionSolution, FrictionStart,
 };
 use crate::qp::{AnswerFace, Counts, DirectOnRows, Judged, Qp, Restricted, Solution, Verdict};
 use crate::setup::Ready;
+use crate::solve::case::Case;
 use crate::solve::certifier::Certifier;
 use crate::solve::fallback::MethodOptions;
 use crate::solve::friction::laws::{cones, OfBodies};
+use crate::solve::friction::slides::{shown, Shown};
 use crate::solve::gaps::Gaps;
 use crate::solve::near::take_in_nearest;
 
 /// Solves the dual with the laws of friction for the rows that matter; the forces of the others are 0.
 pub fn solve_with_friction(
+    case: Case,
     means: &MethodOptions,
     qp: Qp,
     start: &[f64],
@@ -31,8 +35,8 @@ pub fn solve_with_friction(
         steps.set_bounded(near.bounded());
         judge.far.clone_from(&far);
         judge.reached.clear();
-        let found = on_rows(means, (&near, &rows), &start, judge, steps)?;
-        let counts = before + counts(&found);
+        let (found, counts) = on_rows(case, means, (&near, &rows), &start, judge, steps)?;
+        let counts = before + counts;
         let solution = solution(ready, &qp, gaps, near.spread(&found.x), found, counts)?;
         let is_left_out = (0..far.len()).any(|i| far[i] && gaps.value[i] < f64::INFINITY);
         match &solution.verdict {
@@ -49,12 +53,13 @@ pub fn solve_with_friction(
 
 /// The method on some of the rows. Pairs of earlier solves serve where the start is not 0.
 fn on_rows(
+    case: Case,
     means: &MethodOptions,
     (near, rows): (&Restricted, &[usize]),
     start: &[f64],
     judge: &mut Certifier,
     steps: &mut Steps,
-) -> Result<FrictionSolution> {
+) -> Result<(FrictionSolution, Counts)> {
     let (ready, gaps) = (judge.recovery.ready, &judge.recovery.scaled.gaps);
     let cones: Cones = cones(ready, gaps, rows)?;
     let preconditioner = ready.preconditioner.as_ref().map(|(_, of)| OfBodies { of, rows });
@@ -86,14 +91,26 @@ fn on_rows(
     };
     let mut judged = Judged { whole: judge, on: near };
     let mut found = friction(problem, limits, start, &mut judged, steps)?;
+    let mut counts = found.counts;
+    if found.verdict == Verdict::Stalled {
+        steps.line(format!("weak supports after {} products: no rest was found", counts.products))?;
+        match shown(problem, limits, steps, &mut counts) {
+            Ok(Shown::Slides(slide)) => return Err(slide.named(case, counts.starts)?),
+            Ok(Shown::Rest { x, alpha }) => {
+                let pairs = std::mem::take(&mut found.pairs);
+                let start = FrictionStart { x: Some(&x), alpha: Some(&alpha), pairs };
+                let next = friction(problem, limits, start, &mut judged, steps)?;
+                counts = counts + next.counts;
+                if next.verdict != Verdict::Stalled {
+                    found = next;
+                }
+            }
+            Ok(Shown::Nothing) => {}
+            Err(error) => found.verdict = Verdict::of_refusal(error)?,
+        }
+    }
     ready.kept.keep_pairs(rows, std::mem::take(&mut found.pairs));
-    Ok(found)
-}
-
-fn counts(found: &FrictionSolution) -> Counts {
-    let Tried { newton, restarts, paths, dense_paths, frictionless, sticking } = found.tried;
-    let others = restarts + paths + dense_paths + usize::from(frictionless) + usize::from(sticking);
-    Counts { newton, starts: 1 + others, ..found.counts }
+    Ok((found, counts))
 }
 
 /// The same as the solution of any method; motions that neither closed rows nor nodes with a bound resist are undetermined.
