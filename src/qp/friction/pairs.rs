@@ -1,6 +1,7 @@
 //! Directions kept with their images under F, which serve all states of the nodes, coefficients, bounds and loads.
 
 use std::collections::VecDeque;
+use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use crate::error::Result;
 use crate::linalg::dense::least_squares::least_squares;
@@ -19,6 +20,27 @@ const CUT: f64 = 1e-12;
 #[derive(Debug, Default)]
 pub struct Pairs {
     kept: VecDeque<(Vec<f64>, Vec<f64>)>,
+}
+
+/// Pairs of some rows of a problem, while no solve uses them.
+#[derive(Default)]
+pub struct PairsBetween {
+    kept: Mutex<Option<(Vec<usize>, Pairs)>>,
+}
+
+impl PairsBetween {
+    /// Those of these rows; those of others are dropped.
+    pub fn take(&self, rows: &[usize]) -> Option<Pairs> {
+        self.locked().take().filter(|(of, _)| of == rows).map(|(_, pairs)| pairs)
+    }
+
+    pub fn keep(&self, rows: &[usize], pairs: Pairs) {
+        *self.locked() = Some((rows.to_vec(), pairs));
+    }
+
+    fn locked(&self) -> MutexGuard<'_, Option<(Vec<usize>, Pairs)>> {
+        self.kept.lock().unwrap_or_else(PoisonError::into_inner)
+    }
 }
 
 /// The combination of all pairs that the linear model likes best.

@@ -82,7 +82,7 @@ fn on_rows(
         direct: (means.direct.limit > 0).then(|| block.direct()),
     };
     let start = near.start(start);
-    let kept = ready.kept.take_pairs(rows);
+    let kept = ready.pairs.take(rows);
     let is_warm = start.iter().any(|x| *x != 0.0);
     let start = FrictionStart {
         x: is_warm.then_some(&start[..]),
@@ -109,7 +109,7 @@ fn on_rows(
             Err(error) => found.verdict = Verdict::of_refusal(error)?,
         }
     }
-    ready.kept.keep_pairs(rows, std::mem::take(&mut found.pairs));
+    ready.pairs.keep(rows, std::mem::take(&mut found.pairs));
     Ok((found, counts))
 }
 
