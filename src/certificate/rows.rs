@@ -126,11 +126,8 @@ impl Measured {
         let mut rows = RowKind::ALL.map(of);
         let nodes = judged(field, &rows);
         for node in &nodes {
-            let of_node = &field.scales[RowKind::Tangential as usize][node.rows()];
-            let scale = of_node.iter().copied().fold(f64::INFINITY, f64::min);
-            let natural = node.natural(1.0 / scale / scale / field.unit);
             let own = rows[RowKind::Tangential as usize][node.rows()].iter_mut();
-            own.zip(natural).for_each(|(row, part)| row.slipping = part.abs());
+            own.zip(node.natural(field.unit)).for_each(|(row, part)| row.slipping = part.abs());
         }
         Self { rows, nodes }
     }

@@ -79,7 +79,7 @@ impl DenseModel {
                 );
                 *along = next;
             }
-            if change <= 4e-16 {
+            if change <= 1e-13 {
                 return answer;
             }
         }
