@@ -4,7 +4,7 @@
 use std::ops::Range;
 
 use crate::certificate::field::Field;
-use crate::certificate::rows::JudgedRow;
+use crate::certificate::row::JudgedRow;
 use crate::certificate::{positive, share, worse, FrictionState, NOISE};
 use crate::constraints::{FrictionNode, RowKind};
 use crate::linalg::vector::weighted_norm;
