@@ -53,26 +53,18 @@ fn result_line(report: &Report) -> String {
         Outcome::Marginal => "marginal",
     };
     let certificate = &report.certificate;
-    let mut figures = vec![
+    let figures = [
         ("equilibrium", &certificate.equilibrium),
         ("balance", &certificate.balance),
         ("penetration", &certificate.penetration),
         ("equality", &certificate.equality),
         ("negative force", &certificate.negative_force),
         ("complementarity", &certificate.complementarity),
+        ("friction cone", &certificate.friction_cone),
+        ("friction work", &certificate.friction_work),
+        ("friction stick", &certificate.friction_stick),
         ("duality gap", &certificate.duality_gap),
     ];
-    if report.sizes.nodes > 0 {
-        let before_gap = figures.len() - 1;
-        figures.splice(
-            before_gap..before_gap,
-            [
-                ("friction cone", &certificate.friction_cone),
-                ("friction work", &certificate.friction_work),
-                ("friction stick", &certificate.friction_stick),
-            ],
-        );
-    }
     let mut line = format!(
         "{ended}: {} steps, {} products, {} of {} contact rows closed; certificate",
         report.counts.steps(),
@@ -80,7 +72,8 @@ fn result_line(report: &Report) -> String {
         report.active,
         report.sizes.rows
     );
-    for (name, entry) in figures {
+    let told = |name: &str| report.sizes.nodes > 0 || !name.starts_with("friction");
+    for (name, entry) in figures.into_iter().filter(|(name, _)| told(name)) {
         let _ = write!(line, " {name} {:.1e},", entry.figure);
     }
     let _ = write!(
