@@ -6,7 +6,7 @@ use crate::ffi::boundary::{call, enter, id, same, Output};
 use crate::ffi::header::types::{
     feti_problem, FETI_ALL, FETI_ROW_CLOSED, FETI_ROW_OPEN, FETI_ROW_UNKNOWN, FETI_ROW_WEAK,
 };
-use crate::ffi::rows::row_kind;
+use crate::ffi::rows::multiplier_kind;
 use crate::platform::memory::{reserved, zeros};
 use crate::solver::RowState;
 
@@ -41,9 +41,9 @@ pub unsafe extern "C" fn feti_displacement(p: *mut feti_problem, body: i64, n: i
     })
 }
 
-/// Reads the force of the rows on a body, -B'lambda, -H'mu or both: `K u = f + r`.
+/// Reads the force of the rows on a body, -B'lambda, -H'mu, -T'lambda_t or all of them: `K u = f + r`.
 ///
-/// By kinds it is that of the host's rows. Both together hold the force of the glue as well where unknowns of several bodies
+/// By kinds it is that of the host's rows. All together hold the force of the glue as well where unknowns of several bodies
 /// have one number (option glue): what these bodies do to each other. It cancels in the sum over them, which FETI_ALL gives.
 ///
 /// With FETI_ALL the forces on all bodies: by the host's numbers where they have some, entries of no unknown as they were;
@@ -54,7 +54,7 @@ pub unsafe extern "C" fn feti_displacement(p: *mut feti_problem, body: i64, n: i
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|
 /// | `p` | in | scalar | the handle |
-/// | `kind` | in | scalar | FETI_INEQUALITY, FETI_EQUALITY, or 0 for both |
+/// | `kind` | in | scalar | FETI_INEQUALITY, FETI_EQUALITY, FETI_TANGENTIAL, or 0 for all |
 /// | `body` | in | scalar | number of the body, from 0, or FETI_ALL |
 /// | `n` | in | scalar | unknowns of the body; with FETI_ALL at least the largest number + 1, without numbers all unknowns |
 /// | `r` | out | n | force |
@@ -70,7 +70,7 @@ pub unsafe extern "C" fn feti_reaction(
     r: *mut f64,
 ) -> i32 {
     enter(p, call!(feti_reaction(p, kind, body, n, r)), |problem| {
-        let kind = if kind == 0 { None } else { Some(row_kind(kind)?) };
+        let kind = if kind == 0 { None } else { Some(multiplier_kind(kind)?) };
         if body == FETI_ALL {
             // SAFETY: room for n numbers by the caller's word.
             let output = unsafe { Output::new(r, whole(problem, n)?, "r") }?;
@@ -110,7 +110,7 @@ pub unsafe extern "C" fn feti_amplitudes(p: *mut feti_problem, body: i64, r: i64
     })
 }
 
-/// Reads the multipliers: lambda of `B u <= c`, or mu of `H u = h`.
+/// Reads the multipliers: lambda of `B u <= c`, mu of `H u = h`, or lambda_t of the nodes with friction, node after node.
 ///
 /// NaN for rows on bodies whose group has no answer (feti_solve), 0 for rows that never close. FETI_STATE before a solve has
 /// given an answer. After a failure nothing is written.
@@ -118,8 +118,8 @@ pub unsafe extern "C" fn feti_amplitudes(p: *mut feti_problem, body: i64, r: i64
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|
 /// | `p` | in | scalar | the handle |
-/// | `kind` | in | scalar | FETI_INEQUALITY or FETI_EQUALITY |
-/// | `rows` | in | scalar | number of rows of the kind |
+/// | `kind` | in | scalar | FETI_INEQUALITY, FETI_EQUALITY or FETI_TANGENTIAL |
+/// | `rows` | in | scalar | number of rows of the kind; of tangential ones dim for each node |
 /// | `lambda` | out | rows | force, >= 0 for inequalities |
 ///
 /// # Safety
@@ -132,7 +132,7 @@ pub unsafe extern "C" fn feti_multipliers(
     lambda: *mut f64,
 ) -> i32 {
     enter(p, call!(feti_multipliers(p, kind, rows, lambda)), |problem| {
-        let multipliers = problem.multipliers(row_kind(kind)?)?;
+        let multipliers = problem.multipliers(multiplier_kind(kind)?)?;
         // SAFETY: room for one number per row by the caller's word.
         unsafe { copy(multipliers, rows, ("rows", ROWS), lambda, "lambda") }
     })
@@ -236,7 +236,7 @@ const ROWS: &str = "the number of rows is";
 ///
 /// # Safety
 /// `to` has room for `given` numbers.
-unsafe fn copy<T: Copy>(
+pub(super) unsafe fn copy<T: Copy>(
     values: &[T],
     given: i64,
     size: (&'static str, &str),

@@ -39,6 +39,8 @@ pub struct feti_error_detail {
     pub function: [c_char; 40],
     /// Element of the body, -1: does not apply.
     pub element: i64,
+    /// Node with friction, -1: does not apply.
+    pub node: i64,
 }
 
 /// An option: name, text, default and range.
@@ -148,6 +150,22 @@ pub struct feti_info {
     pub factor_bytes: i64,
     /// Bytes of the explicit dual operators.
     pub operator_bytes: i64,
+    /// Relative size of a tangential force beyond its bound, of the worst node with friction.
+    pub friction_cone: f64,
+    /// Relative work that friction does not do: force that is missing or across where a node slips, of the worst node.
+    pub friction_work: f64,
+    /// Relative slip where the force is within its bound, of the worst node.
+    pub friction_stick: f64,
+    /// Nodes with friction.
+    pub nodes: i64,
+    /// Nodes that stick in the answer.
+    pub sticking: i64,
+    /// Nodes that slip in the answer.
+    pub slipping: i64,
+    /// Newton steps of friction.
+    pub friction_steps: i64,
+    /// Starts that they took, over all groups of bodies with friction.
+    pub friction_starts: i64,
 }
 
 /// A body as it is given, and what the last setup has made of it; what is not there yet is -1 or NaN.
@@ -227,9 +245,9 @@ pub struct feti_certificate {
     pub limit: f64,
     /// Largest entry over what it is allowed: <= 1 passes.
     pub worst: f64,
-    /// Relative error of equilibrium `K u + B'lambda + H'mu = f`, worst body.
+    /// Relative error of equilibrium `K u + B'lambda + H'mu + T'lambda_t = f`, worst body.
     pub equilibrium: f64,
-    /// Relative error of the balance `R'(f - B'lambda - H'mu) = 0`, worst floating body.
+    /// Relative error of the balance `R'(f - B'lambda - H'mu - T'lambda_t) = 0`, worst floating body.
     pub balance: f64,
     /// Relative penetration: positive part of `B u - c - C lambda`, C = diag(1/k) being the compliance of the rows, worst row.
     pub penetration: f64,
@@ -253,6 +271,20 @@ pub struct feti_certificate {
     pub force_row: i64,
     /// Row with the worst complementarity, from 0, -1: none.
     pub complementarity_row: i64,
+    /// Relative size of a tangential force beyond its bound, `(|lambda_t| - b)_+` with b = bound + coefficient lambda_n, worst node
+    /// with friction.
+    pub friction_cone: f64,
+    /// Relative size of `b |s| - lambda_t's`, the work that friction does not do: zero only with a stick inside the bound and a
+    /// slip s along the force; worst node.
+    pub friction_work: f64,
+    /// Relative size of the slip where the force is within its bound, worst node.
+    pub friction_stick: f64,
+    /// Node with the worst force beyond its bound, from 0, -1: none.
+    pub friction_cone_node: i64,
+    /// Node with the worst work, from 0, -1: none.
+    pub friction_work_node: i64,
+    /// Node with the worst slip, from 0, -1: none.
+    pub friction_stick_node: i64,
 }
 
 /// Where a setup or a solve stands.
