@@ -167,6 +167,11 @@
 #define FETI_STEP_RELEASE 3
 
 /**
+ * Kind of a step: a direction of the Newton method for friction.
+ */
+#define FETI_STEP_NEWTON 4
+
+/**
  * Level of a log: nothing.
  */
 #define FETI_LOG_NONE 0
@@ -674,7 +679,8 @@ typedef struct feti_progress {
    */
   int32_t phase;
   /**
-   * FETI_STEP_CONJUGATE_GRADIENT, FETI_STEP_EXPANSION or FETI_STEP_RELEASE; 0 in the setup.
+   * FETI_STEP_CONJUGATE_GRADIENT, FETI_STEP_EXPANSION, FETI_STEP_RELEASE or, with friction,
+   * FETI_STEP_NEWTON; 0 in the setup.
    */
   int32_t step;
   /**

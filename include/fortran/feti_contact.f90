@@ -35,6 +35,7 @@ module feti_contact
     FETI_FRICTION_OPEN, FETI_FRICTION_STICK, FETI_FRICTION_SLIP, FETI_FRICTION_WEAK, FETI_FRICTION_UNKNOWN, &
     ! phases and kinds of steps that a progress function hears of
     FETI_PHASE_SETUP, FETI_PHASE_SOLVE, FETI_STEP_CONJUGATE_GRADIENT, FETI_STEP_EXPANSION, FETI_STEP_RELEASE, &
+    FETI_STEP_NEWTON, &
     ! levels of a log
     FETI_LOG_NONE, FETI_LOG_RESULT, FETI_LOG_PHASE, FETI_LOG_STEP, &
     ! status: solved; usable but incomplete; failed

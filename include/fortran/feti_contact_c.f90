@@ -72,6 +72,8 @@ module feti_contact_c
   integer(c_int32_t), parameter, public :: FETI_STEP_EXPANSION = 2_c_int32_t
   !> Kind of a step: rows got a force.
   integer(c_int32_t), parameter, public :: FETI_STEP_RELEASE = 3_c_int32_t
+  !> Kind of a step: a direction of the Newton method for friction.
+  integer(c_int32_t), parameter, public :: FETI_STEP_NEWTON = 4_c_int32_t
   !> Level of a log: nothing.
   integer(c_int32_t), parameter, public :: FETI_LOG_NONE = 0_c_int32_t
   !> Level of a log: one line for each solve, and warnings.
@@ -409,7 +411,8 @@ module feti_contact_c
     !> FETI_PHASE_SETUP (a body has been analysed or factorised, its dual operator or the preconditioner made,
     !> or half a second has passed) or FETI_PHASE_SOLVE.
     integer(c_int32_t) :: phase
-    !> FETI_STEP_CONJUGATE_GRADIENT, FETI_STEP_EXPANSION or FETI_STEP_RELEASE; 0 in the setup.
+    !> FETI_STEP_CONJUGATE_GRADIENT, FETI_STEP_EXPANSION, FETI_STEP_RELEASE or, with friction,
+    !> FETI_STEP_NEWTON; 0 in the setup.
     integer(c_int32_t) :: step
     !> Steps so far.
     integer(c_int64_t) :: steps
