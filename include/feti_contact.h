@@ -1733,43 +1733,6 @@ int32_t feti_friction_reference(struct feti_problem *p,
 int32_t feti_friction_commit(struct feti_problem *p);
 
 /**
- * Reads the slips of the last answer, `s = T u - s_old - C_t lambda_t` with the s_old of that
- * solve.
- *
- * A slip has the sign of its force lambda_t (feti_multipliers with FETI_TANGENTIAL). NaN for nodes
- * on bodies whose group has no answer (feti_solve). FETI_STATE before a solve has given an answer.
- * After a failure nothing is written.
- *
- * @param[in]  p     (scalar) the handle
- * @param[in]  nodes (scalar) number of nodes with friction
- * @param[in]  dim   (scalar) tangential rows of a node, 1 or 2; not looked at without nodes
- * @param[out] slip  (dim * nodes) node after node, length
- *
- * Safety: The array has the given shape.
- */
-int32_t feti_friction_slips(struct feti_problem *p, int64_t nodes, int32_t dim, double *slip);
-
-/**
- * Reads the states of the nodes in the last answer: what the certificate takes for zero at a node
- * decides.
- *
- * FETI_FRICTION_OPEN where the bound is zero, and nothing but that: a node with `bound` > 0 sticks
- * or slips though its contact is open; FETI_FRICTION_STICK with a force within its bound;
- * FETI_FRICTION_SLIP with a slip along a force that reaches its bound; FETI_FRICTION_WEAK with a
- * force that reaches its bound and no slip, to rounding; FETI_FRICTION_UNKNOWN for nodes on bodies
- * whose group has no answer (feti_solve). FETI_STATE before a solve has given an answer. After a
- * failure nothing is written.
- *
- * @param[in]  p     (scalar) the handle
- * @param[in]  nodes (scalar) number of nodes with friction
- * @param[out] state (nodes) FETI_FRICTION_OPEN, FETI_FRICTION_STICK, FETI_FRICTION_SLIP,
- *                   FETI_FRICTION_WEAK or FETI_FRICTION_UNKNOWN
- *
- * Safety: The array has the given shape.
- */
-int32_t feti_friction_states(struct feti_problem *p, int64_t nodes, int32_t *state);
-
-/**
  * Removes all nodes with friction; their contact rows stay.
  *
  * Numbering starts again at 0, and the next nodes may have another dim. feti_rows_clear with
@@ -2319,6 +2282,43 @@ int32_t feti_gaps(struct feti_problem *p, int64_t rows, double *slack);
  * Safety: The array has the given shape.
  */
 int32_t feti_active(struct feti_problem *p, int64_t rows, int32_t *state);
+
+/**
+ * Reads the slips of the last answer, `s = T u - s_old - C_t lambda_t` with the s_old of that
+ * solve.
+ *
+ * A slip has the sign of its force lambda_t (feti_multipliers with FETI_TANGENTIAL). NaN for nodes
+ * on bodies whose group has no answer (feti_solve). FETI_STATE before a solve has given an answer.
+ * After a failure nothing is written.
+ *
+ * @param[in]  p     (scalar) the handle
+ * @param[in]  nodes (scalar) number of nodes with friction
+ * @param[in]  dim   (scalar) tangential rows of a node, 1 or 2; not looked at without nodes
+ * @param[out] slip  (dim * nodes) node after node, length
+ *
+ * Safety: The array has the given shape.
+ */
+int32_t feti_friction_slips(struct feti_problem *p, int64_t nodes, int32_t dim, double *slip);
+
+/**
+ * Reads the states of the nodes in the last answer: what the certificate takes for zero at a node
+ * decides.
+ *
+ * FETI_FRICTION_OPEN where the bound is zero, and nothing but that: a node with `bound` > 0 sticks
+ * or slips though its contact is open; FETI_FRICTION_STICK with a force within its bound;
+ * FETI_FRICTION_SLIP with a slip along a force that reaches its bound; FETI_FRICTION_WEAK with a
+ * force that reaches its bound and no slip, to rounding; FETI_FRICTION_UNKNOWN for nodes on bodies
+ * whose group has no answer (feti_solve). FETI_STATE before a solve has given an answer. After a
+ * failure nothing is written.
+ *
+ * @param[in]  p     (scalar) the handle
+ * @param[in]  nodes (scalar) number of nodes with friction
+ * @param[out] state (nodes) FETI_FRICTION_OPEN, FETI_FRICTION_STICK, FETI_FRICTION_SLIP,
+ *                   FETI_FRICTION_WEAK or FETI_FRICTION_UNKNOWN
+ *
+ * Safety: The array has the given shape.
+ */
+int32_t feti_friction_states(struct feti_problem *p, int64_t nodes, int32_t *state);
 
 /**
  * Reads the size of the problem as it is given now.

@@ -133,6 +133,56 @@ module feti_contact_c
   !> earlier call.
   integer(c_int32_t), parameter, public :: FETI_ARGUMENT = -100_c_int32_t
 
+  !> What the last solve, or the last setup that failed, has found out about the problem. Numbers count from
+  !> 0.
+  type, bind(C), public :: feti_findings
+    !> Set by the caller: size of the struct in bytes.
+    integer(c_int64_t) :: struct_size
+    !> Status it ended with.
+    integer(c_int32_t) :: status
+    !> FETI_INEQUALITY or FETI_EQUALITY: kind of the contradicting rows' `row`; 0: none.
+    integer(c_int32_t) :: kind
+    !> Body that escapes or was refused; of several groups of bodies the first of the one that ended with this
+    !> status; -1: none.
+    integer(c_int64_t) :: body
+    !> Connected part of the body that escapes, where it has several, -1: does not apply.
+    integer(c_int64_t) :: component
+    !> Unknown of the body that moves fastest or was refused, -1: none.
+    integer(c_int64_t) :: dof
+    !> After FETI_GAPS_CONTRADICT the row with the largest weight, else a row that was refused, -1: none.
+    integer(c_int64_t) :: row
+    !> Rows of both kinds that contradict each other; feti_diagnosis_rows lists them.
+    integer(c_int64_t) :: rows_involved
+    !> Rigid motions that neither loads nor rows determine.
+    integer(c_int64_t) :: undetermined
+    !> Rows of both kinds that repeat the direction of another one.
+    integer(c_int64_t) :: redundant_rows
+    !> Bodies that no row touches.
+    integer(c_int64_t) :: untouched_bodies
+    !> The first of them, -1: none.
+    integer(c_int64_t) :: untouched_body
+    !> How clearly there is no solution, above 0 and at most 1: after FETI_INDEFINITE of a driven motion 1 - 1
+    !> / rho, rho what drives it over what resists it; after FETI_LOAD_NOT_HELD the share of the resultant of
+    !> the load that nothing holds, after FETI_GAPS_CONTRADICT |w'c| over |w|'|c| for the weights w; else NaN.
+    real(c_double) :: margin
+    !> Rigid motion of the body that escapes: velocity of the origin and rotation about the axes; NaN without
+    !> coordinates. feti_diagnosis_motion has it for every unknown.
+    real(c_double) :: motion(6)
+    !> The largest share of the load of bodies that move together which nothing holds, |resultant| / |load| in
+    !> the metric of diag K: above 1e-7 after FETI_LOAD_NOT_HELD; with an answer rounding of the load,
+    !> FETI_MARGINAL above 1e-10.
+    real(c_double) :: unheld
+    !> Bodies with motions that only the rounding of the entries of K may resist; feti_body_info has their
+    !> numbers.
+    integer(c_int64_t) :: doubtful_bodies
+    !> The first of them, -1: none.
+    integer(c_int64_t) :: doubtful_body
+    !> Bodies with rigid motions that K resists or drives softly: weak springs, rounding, geometric stiffness.
+    integer(c_int64_t) :: soft_bodies
+    !> The first of them, -1: none.
+    integer(c_int64_t) :: soft_body
+  end type feti_findings
+
   !> What went wrong, where and by how much. Numbers count from 0.
   type, bind(C), public :: feti_error_detail
     !> Set by the caller: size of the struct in bytes.
@@ -435,56 +485,6 @@ module feti_contact_c
     real(c_double) :: fraction
   end type feti_progress
 
-  !> What the last solve, or the last setup that failed, has found out about the problem. Numbers count from
-  !> 0.
-  type, bind(C), public :: feti_findings
-    !> Set by the caller: size of the struct in bytes.
-    integer(c_int64_t) :: struct_size
-    !> Status it ended with.
-    integer(c_int32_t) :: status
-    !> FETI_INEQUALITY or FETI_EQUALITY: kind of the contradicting rows' `row`; 0: none.
-    integer(c_int32_t) :: kind
-    !> Body that escapes or was refused; of several groups of bodies the first of the one that ended with this
-    !> status; -1: none.
-    integer(c_int64_t) :: body
-    !> Connected part of the body that escapes, where it has several, -1: does not apply.
-    integer(c_int64_t) :: component
-    !> Unknown of the body that moves fastest or was refused, -1: none.
-    integer(c_int64_t) :: dof
-    !> After FETI_GAPS_CONTRADICT the row with the largest weight, else a row that was refused, -1: none.
-    integer(c_int64_t) :: row
-    !> Rows of both kinds that contradict each other; feti_diagnosis_rows lists them.
-    integer(c_int64_t) :: rows_involved
-    !> Rigid motions that neither loads nor rows determine.
-    integer(c_int64_t) :: undetermined
-    !> Rows of both kinds that repeat the direction of another one.
-    integer(c_int64_t) :: redundant_rows
-    !> Bodies that no row touches.
-    integer(c_int64_t) :: untouched_bodies
-    !> The first of them, -1: none.
-    integer(c_int64_t) :: untouched_body
-    !> How clearly there is no solution, above 0 and at most 1: after FETI_INDEFINITE of a driven motion 1 - 1
-    !> / rho, rho what drives it over what resists it; after FETI_LOAD_NOT_HELD the share of the resultant of
-    !> the load that nothing holds, after FETI_GAPS_CONTRADICT |w'c| over |w|'|c| for the weights w; else NaN.
-    real(c_double) :: margin
-    !> Rigid motion of the body that escapes: velocity of the origin and rotation about the axes; NaN without
-    !> coordinates. feti_diagnosis_motion has it for every unknown.
-    real(c_double) :: motion(6)
-    !> The largest share of the load of bodies that move together which nothing holds, |resultant| / |load| in
-    !> the metric of diag K: above 1e-7 after FETI_LOAD_NOT_HELD; with an answer rounding of the load,
-    !> FETI_MARGINAL above 1e-10.
-    real(c_double) :: unheld
-    !> Bodies with motions that only the rounding of the entries of K may resist; feti_body_info has their
-    !> numbers.
-    integer(c_int64_t) :: doubtful_bodies
-    !> The first of them, -1: none.
-    integer(c_int64_t) :: doubtful_body
-    !> Bodies with rigid motions that K resists or drives softly: weak springs, rounding, geometric stiffness.
-    integer(c_int64_t) :: soft_bodies
-    !> The first of them, -1: none.
-    integer(c_int64_t) :: soft_body
-  end type feti_findings
-
   public :: feti_body_add
   public :: feti_body_coordinates
   public :: feti_body_coordinates_flags
@@ -515,8 +515,6 @@ module feti_contact_c
   public :: feti_friction_compliance
   public :: feti_friction_reference
   public :: feti_friction_commit
-  public :: feti_friction_slips
-  public :: feti_friction_states
   public :: feti_friction_clear
   public :: feti_on_log
   public :: feti_body_null_space
@@ -548,6 +546,8 @@ module feti_contact_c
   public :: feti_multipliers
   public :: feti_gaps
   public :: feti_active
+  public :: feti_friction_slips
+  public :: feti_friction_states
   public :: feti_counts
   public :: feti_rows_add_i32
   public :: feti_rows_add_i64
@@ -1428,50 +1428,6 @@ module feti_contact_c
       integer(c_int32_t) :: feti_friction_commit
     end function feti_friction_commit
 
-    !> Reads the slips of the last answer, `s = T u - s_old - C_t lambda_t` with the s_old of that solve.
-    !>
-    !> A slip has the sign of its force lambda_t (feti_multipliers with FETI_TANGENTIAL). NaN for nodes on
-    !> bodies whose group has no answer (feti_solve). FETI_STATE before a solve has given an answer. After a
-    !> failure nothing is written.
-    !>
-    !> @param[in]  p     (scalar) the handle
-    !> @param[in]  nodes (scalar) number of nodes with friction
-    !> @param[in]  dim   (scalar) tangential rows of a node, 1 or 2; not looked at without nodes
-    !> @param[out] slip  (dim * nodes) node after node, length
-    !>
-    !> Safety: The array has the given shape.
-    function feti_friction_slips(p, nodes, dim, slip) bind(C, name="feti_friction_slips")
-      import
-      type(c_ptr), value :: p
-      integer(c_int64_t), value :: nodes
-      integer(c_int32_t), value :: dim
-      real(c_double), intent(out) :: slip(*)
-      integer(c_int32_t) :: feti_friction_slips
-    end function feti_friction_slips
-
-    !> Reads the states of the nodes in the last answer: what the certificate takes for zero at a node
-    !> decides.
-    !>
-    !> FETI_FRICTION_OPEN where the bound is zero, and nothing but that: a node with `bound` > 0 sticks or
-    !> slips though its contact is open; FETI_FRICTION_STICK with a force within its bound; FETI_FRICTION_SLIP
-    !> with a slip along a force that reaches its bound; FETI_FRICTION_WEAK with a force that reaches its
-    !> bound and no slip, to rounding; FETI_FRICTION_UNKNOWN for nodes on bodies whose group has no answer
-    !> (feti_solve). FETI_STATE before a solve has given an answer. After a failure nothing is written.
-    !>
-    !> @param[in]  p     (scalar) the handle
-    !> @param[in]  nodes (scalar) number of nodes with friction
-    !> @param[out] state (nodes) FETI_FRICTION_OPEN, FETI_FRICTION_STICK, FETI_FRICTION_SLIP,
-    !>                   FETI_FRICTION_WEAK or FETI_FRICTION_UNKNOWN
-    !>
-    !> Safety: The array has the given shape.
-    function feti_friction_states(p, nodes, state) bind(C, name="feti_friction_states")
-      import
-      type(c_ptr), value :: p
-      integer(c_int64_t), value :: nodes
-      integer(c_int32_t), intent(out) :: state(*)
-      integer(c_int32_t) :: feti_friction_states
-    end function feti_friction_states
-
     !> Removes all nodes with friction; their contact rows stay.
     !>
     !> Numbering starts again at 0, and the next nodes may have another dim. feti_rows_clear with
@@ -2120,6 +2076,50 @@ module feti_contact_c
       integer(c_int32_t), intent(out) :: state(*)
       integer(c_int32_t) :: feti_active
     end function feti_active
+
+    !> Reads the slips of the last answer, `s = T u - s_old - C_t lambda_t` with the s_old of that solve.
+    !>
+    !> A slip has the sign of its force lambda_t (feti_multipliers with FETI_TANGENTIAL). NaN for nodes on
+    !> bodies whose group has no answer (feti_solve). FETI_STATE before a solve has given an answer. After a
+    !> failure nothing is written.
+    !>
+    !> @param[in]  p     (scalar) the handle
+    !> @param[in]  nodes (scalar) number of nodes with friction
+    !> @param[in]  dim   (scalar) tangential rows of a node, 1 or 2; not looked at without nodes
+    !> @param[out] slip  (dim * nodes) node after node, length
+    !>
+    !> Safety: The array has the given shape.
+    function feti_friction_slips(p, nodes, dim, slip) bind(C, name="feti_friction_slips")
+      import
+      type(c_ptr), value :: p
+      integer(c_int64_t), value :: nodes
+      integer(c_int32_t), value :: dim
+      real(c_double), intent(out) :: slip(*)
+      integer(c_int32_t) :: feti_friction_slips
+    end function feti_friction_slips
+
+    !> Reads the states of the nodes in the last answer: what the certificate takes for zero at a node
+    !> decides.
+    !>
+    !> FETI_FRICTION_OPEN where the bound is zero, and nothing but that: a node with `bound` > 0 sticks or
+    !> slips though its contact is open; FETI_FRICTION_STICK with a force within its bound; FETI_FRICTION_SLIP
+    !> with a slip along a force that reaches its bound; FETI_FRICTION_WEAK with a force that reaches its
+    !> bound and no slip, to rounding; FETI_FRICTION_UNKNOWN for nodes on bodies whose group has no answer
+    !> (feti_solve). FETI_STATE before a solve has given an answer. After a failure nothing is written.
+    !>
+    !> @param[in]  p     (scalar) the handle
+    !> @param[in]  nodes (scalar) number of nodes with friction
+    !> @param[out] state (nodes) FETI_FRICTION_OPEN, FETI_FRICTION_STICK, FETI_FRICTION_SLIP,
+    !>                   FETI_FRICTION_WEAK or FETI_FRICTION_UNKNOWN
+    !>
+    !> Safety: The array has the given shape.
+    function feti_friction_states(p, nodes, state) bind(C, name="feti_friction_states")
+      import
+      type(c_ptr), value :: p
+      integer(c_int64_t), value :: nodes
+      integer(c_int32_t), intent(out) :: state(*)
+      integer(c_int32_t) :: feti_friction_states
+    end function feti_friction_states
 
     !> Reads the size of the problem as it is given now.
     !>

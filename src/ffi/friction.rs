@@ -1,16 +1,11 @@
-//! Nodes with friction: a contact row, tangential rows, a law; and what they do in the answer.
+//! Nodes with friction: a contact row, tangential rows, a law, and where a load step begins.
 
 use crate::error::{Error, Result};
 use crate::ffi::boundary::{
     base, call, count, enter, id, input, input_or_none, numbers, pointers, same, Call, Index, Output,
 };
-use crate::ffi::header::types::{
-    feti_problem, FETI_FRICTION_OPEN, FETI_FRICTION_SLIP, FETI_FRICTION_STICK, FETI_FRICTION_UNKNOWN,
-    FETI_FRICTION_WEAK,
-};
-use crate::ffi::results::copy;
-use crate::platform::memory::reserved;
-use crate::solver::{FrictionInput, FrictionState, Problem, RowsInput};
+use crate::ffi::header::types::feti_problem;
+use crate::solver::{FrictionInput, Problem, RowsInput};
 
 /// Adds nodes with friction, with 32-bit indices.
 ///
@@ -310,67 +305,6 @@ pub extern "C" fn feti_friction_commit(p: *mut feti_problem) -> i32 {
     enter(p, call!(feti_friction_commit(p)), |problem| problem.commit_friction())
 }
 
-/// Reads the slips of the last answer, `s = T u - s_old - C_t lambda_t` with the s_old of that solve.
-///
-/// A slip has the sign of its force lambda_t (feti_multipliers with FETI_TANGENTIAL). NaN for nodes on bodies whose group has no answer
-/// (feti_solve). FETI_STATE before a solve has given an answer. After a failure nothing is written.
-///
-/// | argument | in/out | shape | rule |
-/// |---|---|---|---|
-/// | `p` | in | scalar | the handle |
-/// | `nodes` | in | scalar | number of nodes with friction |
-/// | `dim` | in | scalar | tangential rows of a node, 1 or 2; not looked at without nodes |
-/// | `slip` | out | dim * nodes | node after node, length |
-///
-/// # Safety
-/// The array has the given shape.
-#[no_mangle]
-pub unsafe extern "C" fn feti_friction_slips(
-    p: *mut feti_problem,
-    nodes: i64,
-    dim: i32,
-    slip: *mut f64,
-) -> i32 {
-    enter(p, call!(feti_friction_slips(p, nodes, dim, slip)), |problem| {
-        let (slips, len) = (problem.slips()?, all_nodes(problem, nodes, dim)?);
-        // SAFETY: room for dim numbers for each node by the caller's word.
-        unsafe { Output::new(slip, len, "slip") }?.write(slips);
-        Ok(())
-    })
-}
-
-/// Reads the states of the nodes in the last answer: what the certificate takes for zero at a node decides.
-///
-/// FETI_FRICTION_OPEN where the bound is zero, and nothing but that: a node with `bound` > 0 sticks or slips though its contact is open;
-/// FETI_FRICTION_STICK with a force within its bound; FETI_FRICTION_SLIP with a slip along a force that reaches its bound;
-/// FETI_FRICTION_WEAK with a force that reaches its bound and no slip, to rounding; FETI_FRICTION_UNKNOWN for nodes on bodies whose
-/// group has no answer (feti_solve). FETI_STATE before a solve has given an answer. After a failure nothing is written.
-///
-/// | argument | in/out | shape | rule |
-/// |---|---|---|---|
-/// | `p` | in | scalar | the handle |
-/// | `nodes` | in | scalar | number of nodes with friction |
-/// | `state` | out | nodes | FETI_FRICTION_OPEN, FETI_FRICTION_STICK, FETI_FRICTION_SLIP, FETI_FRICTION_WEAK or FETI_FRICTION_UNKNOWN |
-///
-/// # Safety
-/// The array has the given shape.
-#[no_mangle]
-pub unsafe extern "C" fn feti_friction_states(p: *mut feti_problem, nodes: i64, state: *mut i32) -> i32 {
-    enter(p, call!(feti_friction_states(p, nodes, state)), |problem| {
-        let states = problem.friction_states()?;
-        let mut numbers = reserved(states.len(), "a result")?;
-        numbers.extend(states.iter().map(|state| match state {
-            FrictionState::Open => FETI_FRICTION_OPEN,
-            FrictionState::Stick => FETI_FRICTION_STICK,
-            FrictionState::Slip => FETI_FRICTION_SLIP,
-            FrictionState::Weak => FETI_FRICTION_WEAK,
-            FrictionState::Unknown => FETI_FRICTION_UNKNOWN,
-        }));
-        // SAFETY: room for one number per node by the caller's word.
-        unsafe { copy(&numbers, nodes, ("nodes", NODES), state, "state") }
-    })
-}
-
 /// Removes all nodes with friction; their contact rows stay.
 ///
 /// Numbering starts again at 0, and the next nodes may have another dim. feti_rows_clear with FETI_INEQUALITY removes them too.
@@ -387,7 +321,7 @@ pub extern "C" fn feti_friction_clear(p: *mut feti_problem) -> i32 {
     })
 }
 
-const NODES: &str = "the number of nodes with friction is";
+pub(super) const NODES: &str = "the number of nodes with friction is";
 
 /// Tangential rows of a node.
 fn dimension(dim: i32) -> Result<usize> {
