@@ -56,6 +56,8 @@ pub struct Place {
     pub component: Option<usize>,
     pub element: Option<usize>,
     pub dof: Option<usize>,
+    /// Node with friction.
+    pub node: Option<usize>,
     pub row: Option<usize>,
     pub entry: Option<usize>,
     /// Position in a text or a file.
@@ -75,6 +77,7 @@ impl fmt::Display for Place {
             ("component", self.component),
             ("element", self.element),
             ("dof", self.dof),
+            ("node", self.node),
             ("row", self.row),
             ("entry", self.entry),
             ("byte", self.byte),
@@ -128,6 +131,7 @@ impl Error {
         component: usize,
         element: usize,
         dof: usize,
+        node: usize,
         row: usize,
         entry: usize,
         byte: usize,

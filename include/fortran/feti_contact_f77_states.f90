@@ -1,7 +1,7 @@
 !> FORTRAN 77 face: starts, saved states, diagnosis. Bodies, unknowns, rows, motions and states count from 1, 0: none.
 !> See docs/fortran77.md.
 
-!> Start values of the next solve alone: multipliers of the m rows of a kind, rlam(m), force.
+!> Start values of the next solve alone: multipliers of the m rows of a kind, rlam(m), force. Of kind FTKTAN idim for each node.
 recursive subroutine ftstrt(ip, kind, m, rlam, ierr)
   use feti_contact_f77_base
   implicit none
@@ -12,7 +12,7 @@ recursive subroutine ftstrt(ip, kind, m, rlam, ierr)
   ierr = told(feti_start_from(handle(ip), narrow(kind), wide(m), rlam))
 end subroutine
 
-!> Saves loads, gaps, multipliers and contact state; id: the number of the state.
+!> Saves loads, gaps, friction, multipliers and contact state; id: the number of the state.
 recursive subroutine ftssav(ip, id, ierr)
   use feti_contact_f77_base
   implicit none

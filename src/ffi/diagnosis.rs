@@ -59,7 +59,8 @@ pub unsafe extern "C" fn feti_diagnosis_rows(
     weight: *mut f64,
 ) -> i32 {
     enter(p, call!(feti_diagnosis_rows(p, kind, cap, count, row, weight)), |problem| {
-        let (kind, cap) = (row_kind(kind)?, self::count(cap, "cap")?);
+        let kind = row_kind(kind, "which neither contradict nor repeat each other")?;
+        let cap = self::count(cap, "cap")?;
         // SAFETY: the caller gives room for one number, and for `cap` numbers or NULL.
         let (number, rows, weights) = unsafe {
             (

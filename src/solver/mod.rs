@@ -4,6 +4,7 @@ mod body_facts;
 mod check;
 mod decomposed;
 mod findings;
+mod friction;
 mod history;
 mod joints;
 mod problem;
