@@ -2878,10 +2878,10 @@ int32_t feti_body_kplus(struct feti_problem *p,
 /**
  * Applies the dual operator, `y = F x` with `F = [B; H] K+ [B; H]' + C`.
  *
- * C = diag(1/k) is the compliance of the rows (feti_rows_compliance), 0 for rigid ones. Runs
- * feti_setup when it is due. `x` and `y` may be the same array. FETI_STATE where a body is cut
- * (feti_body_mesh_i32 or _i64) or unknowns are glued (option glue). After a failure nothing is
- * written.
+ * C = diag(1/k) is the compliance of the rows (feti_rows_compliance), 0 for rigid ones. Tangential
+ * rows of nodes with friction are not in it. Runs feti_setup when it is due. `x` and `y` may be
+ * the same array. FETI_STATE where a body is cut (feti_body_mesh_i32 or _i64) or unknowns are
+ * glued (option glue). After a failure nothing is written.
  *
  * @param[in]  p (scalar) the handle
  * @param[in]  m (scalar) inequality rows + equality rows
