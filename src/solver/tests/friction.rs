@@ -169,3 +169,14 @@ fn a_start_with_tangential_forces_is_used_up_and_dropped_with_the_nodes() {
     problem.clear_friction();
     assert!(problem.history().start.iter().all(Option::is_none));
 }
+
+#[test]
+fn the_operators_to_validate_are_those_of_the_other_rows() {
+    let mut problem = block();
+    let (mut image, mut rhs) = ([9.0; 2], [9.0; 2]);
+    problem.dual_apply(&[3.0, 5.0], &mut image).unwrap();
+    near(&image, &[1.5, 0.0]);
+    problem.dual_rhs(&mut rhs).unwrap();
+    near(&rhs[..1], &[2.0]);
+    assert_eq!(rhs[1], f64::NEG_INFINITY);
+}
