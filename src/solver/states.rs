@@ -56,6 +56,7 @@ impl Problem {
             && model.equalities.same_but_rhs(&equalities)
             && model.friction.same_but_law(&model.contact, &friction, &contact);
         let is_set_up = prepared.duals(model).is_some();
+        prepared.forget_pairs();
         let fits = same && state.answered && state.bodies == model.revisions.bodies && is_set_up;
         let previous = state.previous.clone();
         model.revisions.laws += u64::from(!same);

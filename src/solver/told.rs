@@ -66,11 +66,12 @@ fn result_line(report: &Report) -> String {
         ("duality gap", &certificate.duality_gap),
     ];
     let mut line = format!(
-        "{ended}: {} steps, {} products, {} of {} contact rows closed; certificate",
+        "{ended}: {} steps, {} products, {} of {} contact rows closed{}; certificate",
         report.counts.steps(),
         report.counts.products,
         report.active,
-        report.sizes.rows
+        report.sizes.rows,
+        friction(report)
     );
     let told = |name: &str| report.sizes.nodes > 0 || !name.starts_with("friction");
     for (name, entry) in figures.into_iter().filter(|(name, _)| told(name)) {
@@ -82,6 +83,18 @@ fn result_line(report: &Report) -> String {
         certificate.limit, report.seconds_setup, report.seconds_solve
     );
     line
+}
+
+/// What the nodes with friction do, and what it took to find out.
+fn friction(report: &Report) -> String {
+    match (report.sizes.nodes, report.starts) {
+        (0, _) => String::new(),
+        (nodes, 0) => format!(", {nodes} nodes without friction"),
+        (nodes, starts) => format!(
+            ", {} of {nodes} nodes stick and {} slip ({} Newton steps, {starts} starts)",
+            report.sticking, report.slipping, report.newton
+        ),
+    }
 }
 
 /// How the dual is going to be solved.

@@ -38,6 +38,11 @@ impl PairsBetween {
         *self.locked() = Some((rows.to_vec(), pairs));
     }
 
+    /// The next solve is to be as if none had been before.
+    pub fn forget(&self) {
+        *self.locked() = None;
+    }
+
     fn locked(&self) -> MutexGuard<'_, Option<(Vec<usize>, Pairs)>> {
         self.kept.lock().unwrap_or_else(PoisonError::into_inner)
     }
