@@ -11,8 +11,8 @@ use crate::solver::{FrictionInput, Problem, RowsInput};
 ///
 /// A node has a normal row b_n, which is a contact row that is there (feti_rows_add_i32, feti_rows_add_i64), and dim tangential
 /// rows T, dim = 1 in the plane and 2 in space. Its tangential force lambda_t acts on the bodies as -T'lambda_t, its slip is
-/// `s = T u - s_old - C_t lambda_t`: the motion of the body with positive entries against the other one. |lambda_t| <= b with b = bound
-/// + coefficient lambda_n; the node sticks, s = 0, or slips along the force, `lambda_t = b s / |s|`: slip and force have one sign.
+/// `s = T u - s_old - C_t lambda_t`: the motion of the body with positive entries against the other one. |lambda_t| <= b with
+/// b = bound + coefficient lambda_n; the node sticks, s = 0, or slips along the force, `lambda_t = b s / |s|`: slip and force have one sign.
 /// Coefficient 0 is friction of Tresca, bound 0 of Coulomb; `bound` acts at open nodes too.
 ///
 /// Contact row and tangential rows of a node are to be multiplied by one factor (that of an area, of a unit): lengths that differ by
@@ -78,8 +78,8 @@ pub unsafe extern "C" fn feti_friction_add_i32(
 ///
 /// A node has a normal row b_n, which is a contact row that is there (feti_rows_add_i32, feti_rows_add_i64), and dim tangential
 /// rows T, dim = 1 in the plane and 2 in space. Its tangential force lambda_t acts on the bodies as -T'lambda_t, its slip is
-/// `s = T u - s_old - C_t lambda_t`: the motion of the body with positive entries against the other one. |lambda_t| <= b with b = bound
-/// + coefficient lambda_n; the node sticks, s = 0, or slips along the force, `lambda_t = b s / |s|`: slip and force have one sign.
+/// `s = T u - s_old - C_t lambda_t`: the motion of the body with positive entries against the other one. |lambda_t| <= b with
+/// b = bound + coefficient lambda_n; the node sticks, s = 0, or slips along the force, `lambda_t = b s / |s|`: slip and force have one sign.
 /// Coefficient 0 is friction of Tresca, bound 0 of Coulomb; `bound` acts at open nodes too.
 ///
 /// Contact row and tangential rows of a node are to be multiplied by one factor (that of an area, of a unit): lengths that differ by
