@@ -34,6 +34,15 @@ pub struct BetweenSolves {
     space: Mutex<Option<Space>>,
     directions: Mutex<Option<Conjugate>>,
     pairs: Mutex<Option<(Vec<usize>, Pairs)>>,
+    answer: Mutex<Option<DualAnswer>>,
+}
+
+/// The last answer with friction, for measurements.
+pub struct DualAnswer {
+    /// Those that took part.
+    pub rows: Vec<usize>,
+    pub x: Vec<f64>,
+    pub alpha: Vec<f64>,
 }
 
 impl Space {
@@ -80,6 +89,14 @@ impl BetweenSolves {
 
     pub fn keep_pairs(&self, rows: &[usize], pairs: Pairs) {
         *locked(&self.pairs) = Some((rows.to_vec(), pairs));
+    }
+
+    pub fn keep_answer(&self, answer: DualAnswer) {
+        *locked(&self.answer) = Some(answer);
+    }
+
+    pub fn take_answer(&self) -> Option<DualAnswer> {
+        locked(&self.answer).take()
     }
 
     /// Drops directions and pairs: the next solve is to be as if none had been before.

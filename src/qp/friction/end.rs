@@ -44,19 +44,19 @@ pub fn friction(
     Ok(run.solution(verdict))
 }
 
-/// Products of the linear problem in which the states of an answer, its slip directions and slips are known: what friction is
-/// measured against.
+/// Products of the linear problem in which the states of an answer (x, alpha), its slip directions and slips are known: what
+/// friction is measured against.
 pub fn known_face(
     problem: FrictionProblem,
     limits: FrictionLimits,
-    answer: &FrictionSolution,
+    (x, alpha): (&[f64], &[f64]),
     observer: &mut dyn FrictionObserver,
 ) -> Result<usize> {
     let (mut run, first) = Run::new(problem, limits, FrictionStart::default(), observer)?;
-    let g = run.gradient(&answer.x)?;
-    let r = run.gaps(&g, &answer.alpha);
+    let g = run.gradient(x)?;
+    let r = run.gaps(&g, alpha);
     run.counts.products = 0;
-    let model = run.model(Face::at(problem.cones, &answer.x, &r, RHO))?;
+    let model = run.model(Face::at(problem.cones, x, &r, RHO))?;
     let (x, mut g) = (first.point, run.gradient(&vec![0.0; r.len()])?);
     run.measure(&g, limits.tolerance)?;
     g = run.gradient(&x)?;
