@@ -24,7 +24,7 @@ mod smalbe;
 
 pub use acceptance::{AcceptanceTest, Limits, Observer, Solution, StepKind, StepReport, Verdict};
 pub use active_set::{active_set, Direct, Face};
-pub use between_solves::BetweenSolves;
+pub use between_solves::{BetweenSolves, DualAnswer};
 pub use coarse::AnswerFace;
 pub use conjugate::MOST as KEPT;
 pub use nearest::{nearest_point, Nearest, Polyhedron};

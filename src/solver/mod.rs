@@ -6,6 +6,7 @@ mod decomposed;
 mod findings;
 mod history;
 mod joints;
+mod known;
 mod problem;
 mod products;
 mod results;
