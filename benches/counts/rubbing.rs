@@ -78,6 +78,9 @@ fn cube(subdomains: [usize; 3], elements: usize, clamp: bool, mu: f64) -> Case {
     Case { name, build: Box::new(move || rubbing::cube(&model, mu, load)) }
 }
 
+/// Height of each of three blocks: higher ones are tipped over by the push.
+const LOW: f64 = 0.25;
+
 /// Two and three blocks, the upper ones floating, on grids that do not match: 81 to 1000 nodes.
 fn stacks() -> Vec<Case> {
     let mut cases = Vec::new();
@@ -99,6 +102,7 @@ fn stacks() -> Vec<Case> {
                     bodies,
                     in_plane: in_plane.to_vec(),
                     layers: layers.to_vec(),
+                    thickness: if bodies == 3 { LOW } else { 0.5 },
                     ..Stack::default()
                 };
                 let name = format!("rub_stack_{bodies}_n{}_mu{mu}_load{load}", in_plane[0]);
