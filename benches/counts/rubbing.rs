@@ -50,7 +50,7 @@ fn floating() -> Vec<Case> {
 /// Subdomains on the obstacle: cubes whose every part floats, clamped at x = 0 or held by friction alone, and slabs.
 fn glued() -> Vec<Case> {
     let mut cases = Vec::new();
-    let sizes = [(2, 4), (3, 4), (4, 4), (5, 4), (2, 8), (3, 8), (4, 8)];
+    let sizes = [(2, 4), (3, 4), (4, 4), (5, 4), (2, 8), (3, 8), (4, 8), (5, 8)];
     for (side, h) in sizes {
         for clamp in [true, false] {
             let mus: &[f64] = if (side, h) == (3, 4) { &[0.1, 0.3, 1.0] } else { &[0.3] };
