@@ -7,6 +7,7 @@ mod findings;
 mod friction;
 mod history;
 mod joints;
+mod known;
 mod problem;
 mod products;
 mod results;

@@ -28,7 +28,7 @@ pub use cones::{Cones, Force, Node, Place};
 pub use coordinates::{Coordinate, Law};
 pub use end::{friction, known_face};
 pub use face::{Face, State};
-pub use pairs::{Pairs, PairsBetween};
+pub use pairs::{DualAnswer, Pairs, PairsBetween};
 pub use supports::Supported;
 
 use crate::error::Result;

@@ -26,26 +26,43 @@ pub struct Pairs {
 #[derive(Default)]
 pub struct PairsBetween {
     kept: Mutex<Option<(Vec<usize>, Pairs)>>,
+    answer: Mutex<Option<DualAnswer>>,
+}
+
+/// The last answer with friction, for measurements.
+pub struct DualAnswer {
+    /// Those that took part.
+    pub rows: Vec<usize>,
+    pub x: Vec<f64>,
+    pub alpha: Vec<f64>,
 }
 
 impl PairsBetween {
     /// Those of these rows; those of others are dropped.
     pub fn take(&self, rows: &[usize]) -> Option<Pairs> {
-        self.locked().take().filter(|(of, _)| of == rows).map(|(_, pairs)| pairs)
+        locked(&self.kept).take().filter(|(of, _)| of == rows).map(|(_, pairs)| pairs)
     }
 
     pub fn keep(&self, rows: &[usize], pairs: Pairs) {
-        *self.locked() = Some((rows.to_vec(), pairs));
+        *locked(&self.kept) = Some((rows.to_vec(), pairs));
     }
 
     /// The next solve is to be as if none had been before.
     pub fn forget(&self) {
-        *self.locked() = None;
+        *locked(&self.kept) = None;
     }
 
-    fn locked(&self) -> MutexGuard<'_, Option<(Vec<usize>, Pairs)>> {
-        self.kept.lock().unwrap_or_else(PoisonError::into_inner)
+    pub fn keep_answer(&self, answer: DualAnswer) {
+        *locked(&self.answer) = Some(answer);
     }
+
+    pub fn take_answer(&self) -> Option<DualAnswer> {
+        locked(&self.answer).take()
+    }
+}
+
+fn locked<T>(kept: &Mutex<T>) -> MutexGuard<'_, T> {
+    kept.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 /// The combination of all pairs that the linear model likes best.

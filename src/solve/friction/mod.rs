@@ -1,22 +1,23 @@
 //! An island with friction: its dual is solved by the Newton method of `qp::friction`, on the rows that matter.
 
+mod known;
 mod laws;
 mod slides;
 
 use crate::error::Result;
 use crate::progress::Steps;
-use crate::qp::friction::{
-    friction, Cones, FrictionLimits, FrictionProblem, FrictionSolution, FrictionStart,
-};
+use crate::qp::friction::{friction, Cones, DualAnswer, FrictionLimits, FrictionSolution, FrictionStart};
 use crate::qp::{AnswerFace, Counts, DirectOnRows, Judged, Qp, Restricted, Solution, Verdict};
 use crate::setup::Ready;
 use crate::solve::case::Case;
 use crate::solve::certifier::Certifier;
 use crate::solve::fallback::MethodOptions;
-use crate::solve::friction::laws::{cones, OfBodies};
+use crate::solve::friction::laws::{cones, problem, OfBodies};
 use crate::solve::friction::slides::{shown, Shown};
 use crate::solve::gaps::Gaps;
 use crate::solve::near::take_in_nearest;
+
+pub use known::on_known_states;
 
 /// Solves the dual with the laws of friction for the rows that matter; the forces of the others are 0.
 pub fn solve_with_friction(
@@ -63,17 +64,7 @@ fn on_rows(
     let (ready, gaps) = (judge.recovery.ready, &judge.recovery.scaled.gaps);
     let cones: Cones = cones(ready, gaps, rows)?;
     let preconditioner = ready.preconditioner.as_ref().map(|(_, of)| OfBodies { of, rows });
-    let qp = near.qp();
-    let problem = FrictionProblem {
-        a: qp.a,
-        b: qp.b,
-        g_transposed: qp.g_transposed,
-        blocks: qp.blocks,
-        rounding: qp.rounding,
-        e: qp.e,
-        cones: &cones,
-        preconditioner: preconditioner.as_ref().map(|of| of as _),
-    };
+    let problem = problem(near.qp(), &cones, preconditioner.as_ref());
     let block = DirectOnRows { whole: means.direct, rows };
     let most = usize::try_from(means.settings.max_steps).unwrap_or(usize::MAX);
     let limits = FrictionLimits {
@@ -110,6 +101,11 @@ fn on_rows(
         }
     }
     ready.pairs.keep(rows, std::mem::take(&mut found.pairs));
+    ready.pairs.keep_answer(DualAnswer {
+        rows: rows.to_vec(),
+        x: found.x.clone(),
+        alpha: found.alpha.clone(),
+    });
     Ok((found, counts))
 }
 
