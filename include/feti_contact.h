@@ -309,6 +309,11 @@
 #define FETI_OVERFLOW -13
 
 /**
+ * Bodies slide steadily: friction holds only a part of the load, and no rest was found.
+ */
+#define FETI_SLIDES -14
+
+/**
  * Argument k refused is FETI_ARGUMENT - k, k from 1 with the handle as 1; FETI_ARGUMENT itself:
  * data of an earlier call.
  */
@@ -503,6 +508,10 @@ typedef struct feti_findings {
    * The first of them, -1: none.
    */
   int64_t soft_body;
+  /**
+   * After FETI_SLIDES what friction holds of the load along the motion, as a part of it; else NaN.
+   */
+  double capacity;
 } feti_findings;
 
 /**
@@ -1153,12 +1162,13 @@ int32_t feti_body_info(struct feti_problem *p, int64_t body, struct feti_body_fa
 /**
  * What the last solve, or the last setup that failed, has found out about the problem.
  *
- * After FETI_LOAD_NOT_HELD: the body that escapes, its motion and the margin. After
- * FETI_GAPS_CONTRADICT: the rows that contradict each other. Of several groups of bodies without
- * an answer the first is told of. After FETI_INDEFINITE, FETI_NULL_SPACE and the like: the body
- * and the unknown. With an answer: motions left undetermined, redundant rows, bodies that no row
- * touches. Kept until the next solve or the next setup that fails; FETI_STATE before the first.
- * After a failure nothing is written.
+ * After FETI_LOAD_NOT_HELD: the body that escapes, its motion and the margin. After FETI_SLIDES:
+ * the body that slides, its motion and the capacity of friction. After FETI_GAPS_CONTRADICT: the
+ * rows that contradict each other. Of several groups of bodies without an answer the first is told
+ * of. After FETI_INDEFINITE, FETI_NULL_SPACE and the like: the body and the unknown. With an
+ * answer: motions left undetermined, redundant rows, bodies that no row touches. Kept until the
+ * next solve or the next setup that fails; FETI_STATE before the first. After a failure nothing is
+ * written.
  *
  * @param[in]     p   (scalar) the handle
  * @param[in,out] out (scalar) `struct_size` set, at least 16
@@ -1266,9 +1276,9 @@ int32_t feti_diagnosis_undetermined_motion(struct feti_problem *p,
  * Reads the rigid motion with which a body escapes, unknown by unknown.
  *
  * The load does work on it, and no row resists. It is scaled to largest entry 1 over all bodies;
- * bodies that stay have zeros. After FETI_INDEFINITE the motion that K drives further than closed
- * rows resist. FETI_STATE unless the last solve ended with one of both and a motion. After a
- * failure nothing is written.
+ * bodies that stay have zeros. After FETI_SLIDES the motion that friction resists too little,
+ * after FETI_INDEFINITE the one that K drives further than closed rows resist. FETI_STATE unless
+ * the last solve ended with one of these and a motion. After a failure nothing is written.
  *
  * @param[in]  p    (scalar) the handle
  * @param[in]  body (scalar) number of the body, from 0
@@ -2502,9 +2512,10 @@ int32_t feti_setup(struct feti_problem *p);
  * reduce the error; FETI_INACCURATE where the certificate does not pass; FETI_MARGINAL where a
  * part of the load, below 1e-7 of it, is not held. A status below 0 comes without one for the
  * group of bodies it is about. FETI_LOAD_NOT_HELD where no contact force balances the load;
- * FETI_GAPS_CONTRADICT where rows contradict each other; FETI_INDEFINITE where K drives a soft
- * motion further than closed rows resist it; feti_diagnosis has the proof of each. It runs
- * feti_setup when it is due, and fails as that does.
+ * FETI_SLIDES where friction holds only a part of it and no rest was found; FETI_GAPS_CONTRADICT
+ * where rows contradict each other; FETI_INDEFINITE where K drives a soft motion further than
+ * closed rows resist it; feti_diagnosis has the proof of each. It runs feti_setup when it is due,
+ * and fails as that does.
  *
  * @param[in]     p    (scalar) the handle
  * @param[in,out] info (scalar) `struct_size` set, at least 16; may be NULL

@@ -219,7 +219,7 @@ impl<'a> Host<'a> {
     /// Every status is one of the header, a right handle is found, and nothing fails inside.
     pub fn note(&mut self, status: i32) {
         self.digest.feed(status as u64);
-        let known = (FETI_OVERFLOW..=FETI_MARGINAL).contains(&status)
+        let known = (FETI_SLIDES..=FETI_MARGINAL).contains(&status)
             || (FETI_ARGUMENT - 12..=FETI_ARGUMENT).contains(&status);
         assert!(known, "status {status}");
         assert!(status != FETI_HANDLE || self.spoilt, "the handle was right");

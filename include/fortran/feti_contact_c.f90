@@ -129,6 +129,8 @@ module feti_contact_c
   integer(c_int32_t), parameter, public :: FETI_UNSUPPORTED = -12_c_int32_t
   !> A number, or a product of numbers that were given, does not fit its type.
   integer(c_int32_t), parameter, public :: FETI_OVERFLOW = -13_c_int32_t
+  !> Bodies slide steadily: friction holds only a part of the load, and no rest was found.
+  integer(c_int32_t), parameter, public :: FETI_SLIDES = -14_c_int32_t
   !> Argument k refused is FETI_ARGUMENT - k, k from 1 with the handle as 1; FETI_ARGUMENT itself: data of an
   !> earlier call.
   integer(c_int32_t), parameter, public :: FETI_ARGUMENT = -100_c_int32_t
@@ -181,6 +183,8 @@ module feti_contact_c
     integer(c_int64_t) :: soft_bodies
     !> The first of them, -1: none.
     integer(c_int64_t) :: soft_body
+    !> After FETI_SLIDES what friction holds of the load along the motion, as a part of it; else NaN.
+    real(c_double) :: capacity
   end type feti_findings
 
   !> What went wrong, where and by how much. Numbers count from 0.
@@ -783,11 +787,12 @@ module feti_contact_c
 
     !> What the last solve, or the last setup that failed, has found out about the problem.
     !>
-    !> After FETI_LOAD_NOT_HELD: the body that escapes, its motion and the margin. After FETI_GAPS_CONTRADICT:
-    !> the rows that contradict each other. Of several groups of bodies without an answer the first is told
-    !> of. After FETI_INDEFINITE, FETI_NULL_SPACE and the like: the body and the unknown. With an answer:
-    !> motions left undetermined, redundant rows, bodies that no row touches. Kept until the next solve or the
-    !> next setup that fails; FETI_STATE before the first. After a failure nothing is written.
+    !> After FETI_LOAD_NOT_HELD: the body that escapes, its motion and the margin. After FETI_SLIDES: the body
+    !> that slides, its motion and the capacity of friction. After FETI_GAPS_CONTRADICT: the rows that
+    !> contradict each other. Of several groups of bodies without an answer the first is told of. After
+    !> FETI_INDEFINITE, FETI_NULL_SPACE and the like: the body and the unknown. With an answer: motions left
+    !> undetermined, redundant rows, bodies that no row touches. Kept until the next solve or the next setup
+    !> that fails; FETI_STATE before the first. After a failure nothing is written.
     !>
     !> @param[in]     p   (scalar) the handle
     !> @param[in,out] out (scalar) `struct_size` set, at least 16
@@ -915,9 +920,9 @@ module feti_contact_c
     !> Reads the rigid motion with which a body escapes, unknown by unknown.
     !>
     !> The load does work on it, and no row resists. It is scaled to largest entry 1 over all bodies; bodies
-    !> that stay have zeros. After FETI_INDEFINITE the motion that K drives further than closed rows resist.
-    !> FETI_STATE unless the last solve ended with one of both and a motion. After a failure nothing is
-    !> written.
+    !> that stay have zeros. After FETI_SLIDES the motion that friction resists too little, after
+    !> FETI_INDEFINITE the one that K drives further than closed rows resist. FETI_STATE unless the last solve
+    !> ended with one of these and a motion. After a failure nothing is written.
     !>
     !> @param[in]  p    (scalar) the handle
     !> @param[in]  body (scalar) number of the body, from 0
@@ -2324,9 +2329,10 @@ module feti_contact_c
     !> is due; FETI_CANCELLED where the host has cancelled; FETI_STALLED where steps no longer reduce the
     !> error; FETI_INACCURATE where the certificate does not pass; FETI_MARGINAL where a part of the load,
     !> below 1e-7 of it, is not held. A status below 0 comes without one for the group of bodies it is about.
-    !> FETI_LOAD_NOT_HELD where no contact force balances the load; FETI_GAPS_CONTRADICT where rows contradict
-    !> each other; FETI_INDEFINITE where K drives a soft motion further than closed rows resist it;
-    !> feti_diagnosis has the proof of each. It runs feti_setup when it is due, and fails as that does.
+    !> FETI_LOAD_NOT_HELD where no contact force balances the load; FETI_SLIDES where friction holds only a
+    !> part of it and no rest was found; FETI_GAPS_CONTRADICT where rows contradict each other;
+    !> FETI_INDEFINITE where K drives a soft motion further than closed rows resist it; feti_diagnosis has the
+    !> proof of each. It runs feti_setup when it is due, and fails as that does.
     !>
     !> @param[in]     p    (scalar) the handle
     !> @param[in,out] info (scalar) `struct_size` set, at least 16; may be NULL

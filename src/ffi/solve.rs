@@ -49,7 +49,7 @@ pub extern "C" fn feti_setup(p: *mut feti_problem) -> i32 {
 /// of option time_limit, which counts from the call, with a setup that is due; FETI_CANCELLED where the host has cancelled; FETI_STALLED where steps no longer reduce the error;
 /// FETI_INACCURATE where the certificate does not pass; FETI_MARGINAL where a part of the load, below 1e-7 of it, is not
 /// held. A status below 0 comes without one for the group of bodies it is about. FETI_LOAD_NOT_HELD where no contact force
-/// balances the load; FETI_GAPS_CONTRADICT where rows contradict each other; FETI_INDEFINITE where K drives a soft motion
+/// balances the load; FETI_SLIDES where friction holds only a part of it and no rest was found; FETI_GAPS_CONTRADICT where rows contradict each other; FETI_INDEFINITE where K drives a soft motion
 /// further than closed rows resist it; feti_diagnosis has the proof of each. It runs feti_setup when it is due, and fails as
 /// that does.
 ///

@@ -47,4 +47,6 @@ pub struct feti_findings {
     pub soft_bodies: i64,
     /// The first of them, -1: none.
     pub soft_body: i64,
+    /// After FETI_SLIDES what friction holds of the load along the motion, as a part of it; else NaN.
+    pub capacity: f64,
 }

@@ -90,7 +90,7 @@ OFFSET(feti_progress, theta, 64);
 OFFSET(feti_progress, seconds, 72);
 OFFSET(feti_progress, fraction, 80);
 
-SIZE(feti_findings, 184);
+SIZE(feti_findings, 192);
 OFFSET(feti_findings, struct_size, 0);
 OFFSET(feti_findings, status, 8);
 OFFSET(feti_findings, kind, 12);
@@ -110,6 +110,7 @@ OFFSET(feti_findings, doubtful_bodies, 152);
 OFFSET(feti_findings, doubtful_body, 160);
 OFFSET(feti_findings, soft_bodies, 168);
 OFFSET(feti_findings, soft_body, 176);
+OFFSET(feti_findings, capacity, 184);
 
 SIZE(feti_body_facts, 160);
 OFFSET(feti_body_facts, struct_size, 0);
@@ -136,7 +137,7 @@ static const struct layout in_c[] = {
     {"feti_info", sizeof(feti_info), offsetof(feti_info, friction_starts)},
     {"feti_certificate", sizeof(feti_certificate), offsetof(feti_certificate, friction_stick_node)},
     {"feti_progress", sizeof(feti_progress), offsetof(feti_progress, fraction)},
-    {"feti_findings", sizeof(feti_findings), offsetof(feti_findings, soft_body)},
+    {"feti_findings", sizeof(feti_findings), offsetof(feti_findings, capacity)},
     {"feti_phase", sizeof(feti_phase), offsetof(feti_phase, name)},
     {"feti_body_facts", sizeof(feti_body_facts), offsetof(feti_body_facts, pieces)},
 };

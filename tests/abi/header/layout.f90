@@ -23,7 +23,7 @@ subroutine layout_in_fortran(size, last) bind(C, name="layout_in_fortran")
     distance(c_loc(info), c_loc(info%friction_starts)), &
     distance(c_loc(certificate), c_loc(certificate%friction_stick_node)), &
     distance(c_loc(progress), c_loc(progress%fraction)), &
-    distance(c_loc(findings), c_loc(findings%soft_body)), &
+    distance(c_loc(findings), c_loc(findings%capacity)), &
     distance(c_loc(phase), c_loc(phase%name)), &
     distance(c_loc(facts), c_loc(facts%pieces))]
 
