@@ -15,12 +15,11 @@
            [ -1'A^-1    1'A^-1 1 ]
 
    The loads P and Q act at the far point of the upper cylinder: nothing but contact and friction holds it. The far point of the
-   lower one is held by two equality rows. How a force along one direction moves the surface along the other is left out of
-   A: it is the same in both cylinders, and no row sees it.
+   lower one is held by two equality rows. How a force along one direction moves the surface along the other is left out: it
+   moves both surfaces alike, and no row sees it.
 
    Steps of the push, in parts of mu P: 0 (pressed alone), .3, .6, .9, back by steps of .45 to -.9, and to .9 again. After each step
-   feti_friction_commit, so that the next counts its slips from there. The steps to and fro start from the forces of the one
-   before.
+   feti_friction_commit, so that the next counts its slips from there.
 
    Units: N, mm, MPa; 1 mm thick. */
 #include <math.h>
@@ -265,7 +264,6 @@ int main(int argc, char **argv)
     add_cylinders(problem, &c);
     add_pairs(problem, &c);
     for (int step = 0; step < STEPS; step++) {
-        if (step == TURN) CALL(feti_set_text(problem, "start=previous"));
         solve_step(problem, &c, step, &found[step], &info);
         right = right && info.status == FETI_OK && info.worst <= 1.0;
         sums = fmax(sums, found[step].sums);

@@ -15,12 +15,11 @@
 !>         [ -1'A^-1    1'A^-1 1 ]
 !>
 !> The loads P and Q act at the far point of the upper cylinder: nothing but contact and friction holds it. The far point of the
-!> lower one is held by two equality rows. How a force along one direction moves the surface along the other is left out of
-!> A: it is the same in both cylinders, and no row sees it.
+!> lower one is held by two equality rows. How a force along one direction moves the surface along the other is left out: it
+!> moves both surfaces alike, and no row sees it.
 !>
 !> Steps of the push, in parts of mu P: 0 (pressed alone), .3, .6, .9, back by steps of .45 to -.9, and to .9 again. After each step
-!> feti_friction_commit, so that the next counts its slips from there. The steps to and fro start from the forces of the one
-!> before.
+!> feti_friction_commit, so that the next counts its slips from there.
 !>
 !> Units: N, mm, MPa; 1 mm thick.
 program cattaneo_and_mindlin
@@ -63,7 +62,6 @@ program cattaneo_and_mindlin
   right = .true.
   sums = 0
   do step = 1, steps
-    if (step == turn) call feti_set(problem, 'start', 'previous')
     call solve_step(step, found(step))
     right = right .and. info%status == FETI_OK .and. info%worst <= 1
     sums = max(sums, found(step)%sums)
