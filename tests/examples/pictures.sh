@@ -29,7 +29,7 @@ while read -r picture; do
            esac
            for part in "$@" '<svg ' '</svg>' '<polyline' '<circle'; do
                grep -q "$part" "$picture" || { echo "$picture lacks $part"; exit 1; }
-               ! grep -qi '[ "=,-]nan\|[ "=,-]inf[^a-z]' "$picture" || { echo "$picture has numbers that are not finite"; exit 1; }
-           done ;;
+           done
+           ! grep -qi '[ "=,-]nan\|[ "=,-]inf[^a-z]' "$picture" || { echo "$picture has numbers that are not finite"; exit 1; } ;;
     esac
 done <"$list"
