@@ -17,7 +17,7 @@
 !> 4. The same with friction. The slip function of a node is s = radius times its angle about the axis of the die, its tangential
 !>    row the gradient T = radius/r t', t across n. What has slipped since the load step began, s_begin - s(u), goes to
 !>    feti_friction_reference in every iteration, and K holds how the tangential forces turn, -lambda_t radius/r^2 (n t' + t n').
-!>    Near to 8 mm these terms make K indefinite, whatever the step: this part ends at 6 mm.
+!>    This part ends at 6 mm: near to 8 mm bars that friction presses together buckle, and K is indefinite however small the step.
 program newton_loop
   use demo
   use feti_contact
