@@ -16,8 +16,9 @@
       that would be less than LEAST ends the program: at a limit load no step is small enough.
    4. The same with friction. The slip function of a node is s = RADIUS times its angle about the axis of the die, its tangential
       row the gradient T = RADIUS/r t', t across n. What has slipped since the load step began, s_begin - s(u), goes to
-      feti_friction_reference in every iteration, and K holds how the tangential forces turn, -lambda_t RADIUS/r^2 (n t' + t n'). This part ends
-      at 6 mm: near to 8 mm bars that friction presses together buckle, and K is indefinite however small the step. */
+      feti_friction_reference in every iteration, and K holds how the tangential forces turn, -lambda_t RADIUS/r^2 (n t' + t n').
+      This part ends at 6 mm: near to 8 mm bars that friction presses together buckle, and K is indefinite however small the
+      step. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
