@@ -137,7 +137,7 @@ fn of_error(drawn: &Drawn, error: &Error) -> (End, String) {
         return (End::Wrong, format!("without a motion, {text}"));
     };
     let (resisted, free) = judge::proof(&drawn.deck, v);
-    if !(resisted <= 1e-6 && free > 0.0 && resisted < free) {
+    if !(free > 1e5 * resisted) {
         return (End::Wrong, format!("no proof: {resisted:e} resisted, {free:e} free, {text}"));
     }
     match enumeration::answers(&drawn.deck) {
@@ -178,4 +178,47 @@ fn problems_with_friction_are_solved_rightly_or_not_at_all() {
     let of = |end: End| count.get(&end).copied().unwrap_or(0);
     let allowed = UNSOLVED * (of(End::Solved) + of(End::NotHeld) + of(End::Unsolved)) as f64;
     assert!(of(End::Wrong) == 0 && of(End::Unsolved) as f64 <= allowed, "{table}");
+}
+
+/// The motion that proves it was once that of bodies of equal stiffness.
+#[test]
+fn stacks_of_unequal_bodies_slide_beyond_what_friction_holds() {
+    for seed in [14, 65, 116, 133, 150, 201, 218, 235, 269, 303, 320] {
+        let drawn = case(seed, &SIZES);
+        let (end, text) = ended(&drawn);
+        assert!(drawn.known == Known::NotHeld && end == End::NotHeld, "{seed}: {text}");
+    }
+}
+
+/// One problem in full: BATTERY_SEED, BATTERY_MIXTURE.
+#[test]
+#[ignore]
+fn one_problem_in_full() {
+    let seed = asked("BATTERY_SEED").unwrap_or(FIRST);
+    let drawn = case(seed, sizes());
+    println!("{seed} {} {:?}", drawn.class, drawn.known);
+    for rows in [&drawn.deck.contact, &drawn.deck.friction.rows, &drawn.deck.equalities] {
+        for i in 0..rows.len() {
+            println!(
+                "{:?} rhs {:e} C {:e}",
+                rows.matrix.row(i).collect::<Vec<_>>(),
+                rows.rhs[i],
+                rows.compliance[i]
+            );
+        }
+        println!();
+    }
+    println!(
+        "{:?} {:?} {:?}",
+        drawn.deck.friction.normal, drawn.deck.friction.coefficient, drawn.deck.friction.bound
+    );
+    drawn
+        .deck
+        .bodies
+        .iter()
+        .for_each(|body| println!("{:?} {:?} {:?}", body.load, body.null_space, body.stiffness.diagonal()));
+    if let Some(all) = enumeration::answers(&drawn.deck) {
+        println!("answers {:?}, doubtful {}", all.answers, all.doubtful);
+    }
+    println!("{:?}", ended(&drawn));
 }

@@ -11,6 +11,8 @@ pub struct Answer {
 }
 
 const ROUNDING: f64 = 1e-13;
+/// Bodies without a load have at least this part of the forces of all: what rounding of these leaves on them is nothing.
+const UNLOADED: f64 = 1e-7;
 
 struct Judge<'a> {
     deck: &'a Deck,
@@ -89,6 +91,12 @@ impl<'a> Judge<'a> {
             for (i, j) in range.enumerate() {
                 let by_k: f64 = body.stiffness.row(i).map(|(k, v)| (v * u[j - i + k]).abs()).sum();
                 self.rounding.push(ROUNDING * (by_k + body.load[i].abs() + sizes[j]));
+            }
+        }
+        let all = norm(&self.forces);
+        for (force, body) in self.forces.iter_mut().zip(&self.deck.bodies) {
+            if body.load.iter().all(|f| *f == 0.0) {
+                *force = force.max(UNLOADED * all);
             }
         }
     }
@@ -280,45 +288,41 @@ fn keep(worst: &mut (f64, String), what: f64, of: f64, name: impl Fn() -> String
     }
 }
 
-/// Whether a motion of all bodies proves that nothing holds the load: it strains nothing, no row resists it, and the load does
-/// more work on it than bounds of friction; the parts of that work which are resisted, and which are free.
+/// How far a motion of all bodies is from a proof that nothing holds the load: what of it rows and K resist, in the metric of
+/// diag K, and the work of the load that bounds of friction leave, over the size of the load in that metric.
 pub fn proof(deck: &Deck, v: &[f64]) -> (f64, f64) {
+    let nothing = |rows: &Rows| vec![0.0; rows.len()];
+    let along = nothing(&deck.friction.rows);
+    let (lambda, mu) = (nothing(&deck.contact), nothing(&deck.equalities));
+    let answer = Answer { u: v.to_vec(), lambda, along, mu };
+    let judge = Judge::new(deck, &answer);
     let load = deck.load();
     let work: f64 = load.iter().zip(v).map(|(f, v)| f * v).sum();
-    let size: f64 = load.iter().zip(v).map(|(f, v)| (f * v).abs()).sum();
-    let mut strained = 0.0f64;
+    let (mut strained, mut pushed) = (Vec::new(), Vec::new());
     let mut first = 0;
     for body in &deck.bodies {
-        let own = &v[first..first + body.dofs()];
-        first += body.dofs();
-        let k = &body.stiffness;
-        for (i, by) in k.times(own).iter().enumerate() {
-            let all: f64 = k.row(i).map(|(j, k)| (k * own[j]).abs()).sum();
-            strained = strained.max(part(by.abs(), all));
-        }
+        let own = first..first + body.dofs();
+        first = own.end;
+        let moves = v[own.clone()].iter().any(|v| *v != 0.0);
+        pushed.extend(load[own.clone()].iter().map(|f| if moves { *f } else { 0.0 }));
+        strained.extend(body.stiffness.times(&v[own]));
     }
-    let along = |rows: &Rows, i: usize| rows.matrix.row(i).map(|(j, b)| b * v[j]).sum::<f64>();
-    let length = |rows: &Rows, i: usize| rows.matrix.row(i).map(|(j, b)| (b * v[j]).abs()).sum::<f64>();
-    let (mut resists, mut sizes) = (Vec::new(), Vec::new());
-    for i in 0..deck.contact.len() {
-        resists.push(along(&deck.contact, i));
-        sizes.push(length(&deck.contact, i));
-    }
+    let moved = |rows: &Rows, i: usize| rows.matrix.row(i).map(|(j, b)| b * v[j]).sum::<f64>();
+    let mut resists: Vec<f64> = (0..deck.contact.len()).map(|i| moved(&deck.contact, i)).collect();
     let nodes = &deck.friction;
     let mut bounded = 0.0;
     for i in 0..nodes.normal.len() {
         let own = i * nodes.dim..(i + 1) * nodes.dim;
-        let slip = norm(&own.clone().map(|k| along(&nodes.rows, k)).collect::<Vec<_>>());
+        let slip = norm(&own.map(|k| moved(&nodes.rows, k)).collect::<Vec<_>>());
         bounded += nodes.bound[i] * slip;
-        if let Some(row) = nodes.normal[i] {
-            resists[row] += nodes.coefficient[i] * slip;
-            sizes[row] +=
-                nodes.coefficient[i] * norm(&own.map(|k| length(&nodes.rows, k)).collect::<Vec<_>>());
-        }
+        nodes.normal[i].iter().for_each(|&row| resists[row] += nodes.coefficient[i] * slip);
     }
-    let rows = resists.iter().zip(&sizes).map(|(r, s)| part(r.max(0.0), *s)).fold(0.0, f64::max);
-    let ties = (0..deck.equalities.len())
-        .map(|i| part(along(&deck.equalities, i).abs(), length(&deck.equalities, i)))
-        .fold(0.0, f64::max);
-    (rows.max(ties).max(strained), (work - bounded) / size)
+    let scaled = |rows: &Rows, i: usize, by: f64| {
+        let square: f64 = rows.matrix.row(i).map(|(j, b)| b * b / judge.metric[j]).sum();
+        part(by, (square + rows.compliance[i]).sqrt())
+    };
+    let by_rows = resists.iter().enumerate().map(|(i, by)| scaled(&deck.contact, i, by.max(0.0)));
+    let ties = (0..deck.equalities.len()).map(|i| scaled(&deck.equalities, i, moved(&deck.equalities, i)));
+    let resisted = norm(&by_rows.chain(ties).collect::<Vec<_>>()) + judge.over(&strained, 0);
+    (resisted, (work - bounded) / judge.over(&pushed, 0))
 }

@@ -5,7 +5,8 @@ mod laws;
 use crate::error::Result;
 use crate::progress::Steps;
 use crate::qp::friction::{
-    friction, Cones, FrictionLimits, FrictionProblem, FrictionSolution, FrictionStart, Tried,
+    friction, unheld, Cones, FacePreconditioner, FrictionLimits, FrictionProblem, FrictionSolution,
+    FrictionStart, Tried,
 };
 use crate::qp::{AnswerFace, Counts, DirectOnRows, Judged, Qp, Restricted, Solution, Verdict};
 use crate::setup::Ready;
@@ -14,6 +15,7 @@ use crate::solve::fallback::MethodOptions;
 use crate::solve::friction::laws::{cones, OfBodies};
 use crate::solve::gaps::Gaps;
 use crate::solve::near::take_in_nearest;
+use crate::solve::scaled::Scaled;
 
 /// Solves the dual with the laws of friction for the rows that matter; the forces of the others are 0.
 pub fn solve_with_friction(
@@ -47,6 +49,24 @@ pub fn solve_with_friction(
     }
 }
 
+/// The forces of rows that are not `far`, within their cones, that leave least of the load, `|D R c|_{D^-1}`, and `e - G x`.
+pub fn nearest_forces(ready: &Ready, scaled: &Scaled, far: &[bool]) -> Result<(Vec<f64>, Vec<f64>)> {
+    let rows: Vec<usize> = (0..far.len()).filter(|&i| !far[i]).collect();
+    let near = Restricted::new(scaled.qp(ready, &ready.dual), &rows);
+    let cones = cones(ready, &scaled.gaps, &rows)?;
+    let (x, rest) = unheld(&friction_problem(near.qp(), &cones, None), &ready.dual.sizes_of_modes())?;
+    Ok((near.spread(&x), rest))
+}
+
+fn friction_problem<'a>(
+    qp: Qp<'a>,
+    cones: &'a Cones,
+    preconditioner: Option<&'a dyn FacePreconditioner>,
+) -> FrictionProblem<'a> {
+    let Qp { a, b, g_transposed, blocks, rounding, e, .. } = qp;
+    FrictionProblem { a, b, g_transposed, blocks, rounding, e, cones, preconditioner }
+}
+
 /// The method on some of the rows. Pairs of earlier solves serve where the start is not 0.
 fn on_rows(
     means: &MethodOptions,
@@ -58,17 +78,7 @@ fn on_rows(
     let (ready, gaps) = (judge.recovery.ready, &judge.recovery.scaled.gaps);
     let cones: Cones = cones(ready, gaps, rows)?;
     let preconditioner = ready.preconditioner.as_ref().map(|(_, of)| OfBodies { of, rows });
-    let qp = near.qp();
-    let problem = FrictionProblem {
-        a: qp.a,
-        b: qp.b,
-        g_transposed: qp.g_transposed,
-        blocks: qp.blocks,
-        rounding: qp.rounding,
-        e: qp.e,
-        cones: &cones,
-        preconditioner: preconditioner.as_ref().map(|of| of as _),
-    };
+    let problem = friction_problem(near.qp(), &cones, preconditioner.as_ref().map(|of| of as _));
     let block = DirectOnRows { whole: means.direct, rows };
     let most = usize::try_from(means.settings.max_steps).unwrap_or(usize::MAX);
     let limits = FrictionLimits {
