@@ -6,4 +6,5 @@ mod drawn;
 mod enumeration;
 #[path = "../support/hand_over.rs"]
 mod hand_over;
+mod invariance;
 mod judge;
