@@ -130,6 +130,7 @@ battery:
 	BATTERY=$(N) $(CARGO) test --release --locked --test battery -- \
 	    every_random_problem no_marginal every_varied_problem small_problems_of_the_battery every_hard_problem \
 	    an_answer_does_not_depend
+	BATTERY=$(N) $(CARGO) test --release --locked --test coulomb -- problems_with_friction
 
 # The bits of many answers, a line for 100: `make bits > before`, then again after a change that is to keep them.
 bits:

@@ -16,7 +16,7 @@ use crate::solve::diagnosis::{Contradictions, Unheld, MARGINAL, ROUNDING};
 use crate::solve::driven::solve_driven;
 use crate::solve::fallback::MethodOptions;
 use crate::solve::finish::{finish, is_to_finish};
-use crate::solve::friction::solve_with_friction;
+use crate::solve::friction::{nearest_forces, solve_with_friction};
 use crate::solve::interruptible::Interruptible;
 use crate::solve::paper::{parameters, HostUnits};
 use crate::solve::presolve::presolve;
@@ -50,10 +50,9 @@ enum Tried {
     NotHeld {
         far: Vec<bool>,
     },
-    /// The same with friction: the forces within the cones that come nearest, and what they leave of e.
+    /// The same with friction.
     NotHeldByFriction {
-        x: Vec<f64>,
-        rest: Vec<f64>,
+        far: Vec<bool>,
     },
 }
 
@@ -96,7 +95,8 @@ fn solve_held(
                 dual.take(case, &left.x, left.load_to_take(share), share)?;
                 start = left.x;
             }
-            Tried::NotHeldByFriction { x, rest } => {
+            Tried::NotHeldByFriction { far } => {
+                let (x, rest) = interrupt::part(DIAGNOSIS, || nearest_forces(case.ready, &dual, &far))?;
                 let left = Unheld::of(&case.data()?, case.ready, &dual, x, &rest);
                 if let Some(error) = left.proof(case, &dual)? {
                     return Err(error);
@@ -143,9 +143,9 @@ fn attempt(
         _ => solve_driven(case, &MethodOptions { settings, direct }, qp, start, &mut judge, steps)?,
     };
     let solution = match solution {
-        Solution { verdict: Verdict::Infeasible { direction, .. }, x, .. } if dual.unheld.is_none() => {
+        Solution { verdict: Verdict::Infeasible { .. }, .. } if dual.unheld.is_none() => {
             return Ok(match case.has_friction() {
-                true => Tried::NotHeldByFriction { x, rest: direction },
+                true => Tried::NotHeldByFriction { far: judge.far },
                 false => Tried::NotHeld { far: judge.far },
             });
         }

@@ -32,7 +32,11 @@ pub fn presolve(case: Case, moved: f64) -> Result<Gaps> {
         far: Vec::new(),
     };
     let rubs = rubbing(case);
-    let demand = |(i, c): (usize, &f64)| if i < rows.contact { (-c).max(0.0) } else { c.abs() };
+    let demand = |(i, c): (usize, &f64)| match i {
+        _ if idle[i] => 0.0,
+        _ if i < rows.contact => (-c).max(0.0),
+        _ => c.abs(),
+    };
     let reach = scaled.iter().enumerate().map(demand).fold(moved, f64::max);
     let slack = |a: f64, b: f64| EQUAL * a.abs().max(b.abs()) + ROUNDING * reach;
     for (i, member) in rows.scaling.grouping.member[..rows.tangential].iter().enumerate() {

@@ -6,7 +6,6 @@ use crate::qp::friction::cones::Cones;
 use crate::qp::friction::face::Face;
 use crate::qp::friction::nearest::{project, Projected};
 use crate::qp::friction::newton::{Laws, Point, Run, RHO};
-use crate::qp::friction::unheld::{unheld, Unheld};
 use crate::qp::friction::{
     FrictionLimits, FrictionObserver, FrictionProblem, FrictionSolution, FrictionStart,
 };
@@ -31,11 +30,9 @@ pub fn friction(
     let (mut run, first) = Run::new(problem, limits, start, observer)?;
     run.last =
         Point { x: first.point.clone(), alpha: alpha.clone(), merit: f64::INFINITY, ..Point::default() };
-    if let Some(motions) = run.motions.as_ref().filter(|_| !first.met) {
-        let Unheld { forces, left } = unheld(&problem, motions)?;
-        let margin = ratio(norm(&left), norm(problem.e));
-        run.last.x = forces;
-        return Ok(run.solution(Verdict::Infeasible { direction: left, margin }));
+    if !first.met {
+        let margin = ratio(norm(&first.left), norm(problem.e));
+        return Ok(run.solution(Verdict::Infeasible { direction: first.left, margin }));
     }
     let verdict = match run.solve(limits, (first, alpha), judge) {
         Ok(verdict) => verdict,

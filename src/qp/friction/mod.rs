@@ -30,6 +30,7 @@ pub use end::{friction, known_face};
 pub use face::{Face, State};
 pub use pairs::{DualAnswer, Pairs, PairsBetween};
 pub use supports::Supported;
+pub use unheld::unheld;
 
 use crate::error::Result;
 use crate::linalg::{Csr, Operator};

@@ -5,7 +5,8 @@
 //! ```
 //!
 //! with `G'beta` in the polar cone but for delta times the forces: a motion that no force within the cones resists by more than that.
-//! Coefficients are a little larger than they are, so that friction as it is does not resist the motion at all.
+//! Coefficients are a little larger than they are, so that friction as it is does not resist the motion at all; what is left of
+//! delta is taken from the motion. G and e are weighted, mode by mode.
 
 use crate::error::Result;
 use crate::linalg::vector::{axpy, dot, norm};
@@ -22,17 +23,15 @@ const LAST: f64 = 1e-13;
 const STEPS: usize = 30;
 /// What is added to coefficients, of them.
 const WIDER: f64 = 1e-6;
-/// Of |e|.
+/// Of |e|: what is solved as well as may be, and what is solved.
 const ACCURACY: f64 = 1e-14;
+const ACCEPTED: f64 = 1e-5;
 /// Armijo's part of the slope, and the shortest step.
 const SLOPE: f64 = 1e-4;
 const SHORTEST: f64 = 1e-6;
-
-pub struct Unheld {
-    pub forces: Vec<f64>,
-    /// beta, r entries.
-    pub left: Vec<f64>,
-}
+/// Rounds that take what rows resist from the motion, and the shift of their matrices.
+const ROUNDS: usize = 4;
+const SHIFT: f64 = 1e-13;
 
 struct Trial {
     beta: Vec<f64>,
@@ -43,28 +42,74 @@ struct Trial {
     phi: f64,
 }
 
-pub fn unheld(problem: &FrictionProblem, motions: &Motions) -> Result<Unheld> {
+/// The forces, and `e - G l`, that are nearest in the norm of `weights`, one for each mode.
+pub fn unheld(problem: &FrictionProblem, weights: &[f64]) -> Result<(Vec<f64>, Vec<f64>)> {
+    let mut g_transposed = problem.g_transposed.clone();
+    g_transposed.col.iter().zip(&mut g_transposed.val).for_each(|(&mode, v)| *v *= weights[mode]);
+    let e: Vec<f64> = problem.e.iter().zip(weights).map(|(e, w)| w * e).collect();
     let wider = problem.cones.wider(1.0 + WIDER);
-    let problem = &FrictionProblem { cones: &wider, ..*problem };
-    let mut shift = FIRST;
-    let mut now = trial(problem, vec![0.0; problem.e.len()], shift * motions.size());
+    let problem = &FrictionProblem { cones: &wider, g_transposed: &g_transposed, e: &e, ..*problem };
+    let Some(motions) = Motions::of(problem)? else { return Ok((vec![0.0; problem.b.len()], e)) };
+    let (mut shift, mut best) = (FIRST, trial(problem, vec![0.0; e.len()], motions.size()));
+    let mut beta = best.beta.clone();
     while shift >= LAST {
-        let delta = shift * motions.size();
-        now = trial(problem, now.beta, delta);
-        for step in 0..STEPS {
-            interrupt::reached("Newton steps of the nearest forces", step)?;
-            if norm(&now.slope) <= ACCURACY * norm(problem.e) {
-                break;
-            }
-            let (coordinates, weights) = derivative(problem.cones, &now.places);
-            let Some(matrix) = motions.shifted(&coordinates, weights, shift)? else { break };
-            let direction: Vec<f64> = matrix.solve(&now.slope)?.iter().map(|d| -delta * d).collect();
-            let Some(next) = armijo(problem, &now, &direction, delta) else { break };
-            now = next;
+        let now = nearest(problem, &motions, beta, shift)?;
+        if !(norm(&now.slope) <= ACCEPTED * norm(&e)) {
+            break;
         }
+        // where forces stay as they are, beta changes with delta
+        beta = now.beta.clone();
+        let change = if shift < FIRST { LESS } else { 0.0 };
+        beta.iter_mut().zip(&best.beta).for_each(|(beta, before)| *beta += change * (*beta - before));
+        best = now;
         shift *= LESS;
     }
-    Ok(Unheld { forces: now.forces, left: now.beta })
+    let left = settled(problem, &motions, best.beta)?;
+    Ok((best.forces, left.iter().zip(weights).map(|(beta, w)| beta / w).collect()))
+}
+
+/// Newton's method for one delta, of the largest diagonal entry of `G G'`.
+fn nearest(problem: &FrictionProblem, motions: &Motions, beta: Vec<f64>, shift: f64) -> Result<Trial> {
+    let delta = shift * motions.size();
+    let mut now = trial(problem, beta, delta);
+    for step in 0..STEPS {
+        interrupt::reached("Newton steps of the nearest forces", step)?;
+        if norm(&now.slope) <= ACCURACY * norm(problem.e) {
+            break;
+        }
+        let (coordinates, weights) = derivative(problem.cones, &now.places);
+        let Some(matrix) = motions.shifted(&coordinates, weights, shift)? else { break };
+        let direction: Vec<f64> = matrix.solve(&now.slope)?.iter().map(|d| -delta * d).collect();
+        let Some(next) = armijo(problem, &now, &direction, delta) else { break };
+        now = next;
+    }
+    Ok(now)
+}
+
+/// The motion without what normal rows with their friction, and free rows, resist of it: delta times their forces.
+fn settled(problem: &FrictionProblem, motions: &Motions, mut beta: Vec<f64>) -> Result<Vec<f64>> {
+    for _ in 0..ROUNDS {
+        let v: Vec<f64> = (0..problem.b.len()).map(|i| problem.g_transposed.row_dot(i, &beta)).collect();
+        let (mut places, mut resists) = (Vec::new(), Vec::new());
+        for node in problem.cones.nodes() {
+            let force = node.of(&v);
+            let size = norm(&force.tangential);
+            let along = if size > 0.0 { force.tangential.map(|t| t / size) } else { [1.0, 0.0] };
+            let by = force.normal + node.mu * size;
+            let resisted = node.normal.is_some() && by > 0.0;
+            places.push(match resisted {
+                true => Place::Surface { along, ratio: 0.0 },
+                false => Place::Rim { along, ratio: 0.0 },
+            });
+            resists.extend(node.normal.map(|_| if resisted { by } else { 0.0 }));
+            resists.resize(resists.len() + node.tangents().len(), 0.0);
+        }
+        let (coordinates, weights) = derivative(problem.cones, &places);
+        resists.extend(coordinates[resists.len()..].iter().map(|free| v[free.rows[0]]));
+        let Some(matrix) = motions.shifted(&coordinates, weights, SHIFT)? else { break };
+        axpy(-1.0, &matrix.solve(&matrix.weighted_image(&resists))?, &mut beta);
+    }
+    Ok(beta)
 }
 
 /// `phi(beta) = |beta|^2/2 + delta |PI(G'beta / delta)|^2/2 - e'beta`, with PI on cones that hold their bounds as well:

@@ -6,7 +6,9 @@ mod slides;
 
 use crate::error::Result;
 use crate::progress::Steps;
-use crate::qp::friction::{friction, Cones, DualAnswer, FrictionLimits, FrictionSolution, FrictionStart};
+use crate::qp::friction::{
+    friction, unheld, Cones, DualAnswer, FrictionLimits, FrictionSolution, FrictionStart,
+};
 use crate::qp::{AnswerFace, Counts, DirectOnRows, Judged, Qp, Restricted, Solution, Verdict};
 use crate::setup::Ready;
 use crate::solve::case::Case;
@@ -16,6 +18,7 @@ use crate::solve::friction::laws::{cones, problem, OfBodies};
 use crate::solve::friction::slides::{shown, Shown};
 use crate::solve::gaps::Gaps;
 use crate::solve::near::take_in_nearest;
+use crate::solve::scaled::Scaled;
 
 pub use known::on_known_states;
 
@@ -50,6 +53,15 @@ pub fn solve_with_friction(
         }
         before = solution.counts;
     }
+}
+
+/// The forces of rows that are not `far`, within their cones, that leave least of the load, `|D R c|_{D^-1}`, and `e - G x`.
+pub fn nearest_forces(ready: &Ready, scaled: &Scaled, far: &[bool]) -> Result<(Vec<f64>, Vec<f64>)> {
+    let rows: Vec<usize> = (0..far.len()).filter(|&i| !far[i]).collect();
+    let near = Restricted::new(scaled.qp(ready, &ready.dual), &rows);
+    let cones = cones(ready, &scaled.gaps, &rows)?;
+    let (x, rest) = unheld(&problem(near.qp(), &cones, None), &ready.dual.sizes_of_modes())?;
+    Ok((near.spread(&x), rest))
 }
 
 /// The method on some of the rows. Pairs of earlier solves serve where the start is not 0.
