@@ -7,7 +7,6 @@ use crate::error::Result;
 use crate::linalg::dense::least_squares::least_squares;
 use crate::linalg::vector::{axpy, norm};
 use crate::linalg::Matrix;
-use crate::platform::memory::copied;
 use crate::platform::{interrupt, tally};
 use crate::qp::friction::face::Model;
 
@@ -15,11 +14,23 @@ use crate::qp::friction::face::Model;
 const MOST: usize = 200;
 /// Columns of unit length that keep less than this beside the others depend on them.
 const CUT: f64 = 1e-12;
+/// Rounding of a product, of its size.
+const NOISE: f64 = 16.0 * f64::EPSILON;
 
 /// What earlier solves leave to later ones with the same F, G and rows.
 #[derive(Debug, Default)]
 pub struct Pairs {
-    kept: VecDeque<(Vec<f64>, Vec<f64>)>,
+    kept: VecDeque<Pair>,
+}
+
+/// A direction of length 1 with its image.
+#[derive(Debug)]
+pub struct Pair {
+    pub v: Vec<f64>,
+    /// `F v`
+    pub image: Vec<f64>,
+    /// `|G'(G G')^+ G v|`, what rounding has left of it.
+    pub unbalanced: f64,
 }
 
 /// Pairs of some rows of a problem, while no solve uses them.
@@ -80,40 +91,44 @@ impl Pairs {
 
     /// Those of m rows; none of others.
     pub fn of_order(self, order: usize) -> Self {
-        if self.kept.iter().all(|(v, _)| v.len() == order) {
+        if self.kept.iter().all(|pair| pair.v.len() == order) {
             self
         } else {
             Self::default()
         }
     }
 
-    pub fn keep(&mut self, v: &[f64], fv: &[f64]) -> Result<()> {
+    pub fn keep(&mut self, pair: Pair) {
         if self.kept.len() >= MOST {
             self.kept.pop_front();
         }
-        self.kept.push_back((copied(v, "a direction")?, copied(fv, "a direction")?));
-        Ok(())
+        self.kept.push_back(pair);
     }
 
-    /// `dx = V c`, `c = argmin | [L V; P w (W'F V + D S V)] c + [first; P w q] |`.
+    /// `dx = V c`, `c = argmin | [L V; P w (W'F V + D S V); N] c + [first; P w q; 0] |`, N = diag what rounding has
+    /// made of `G v` and `F v`: pairs of other steps, far larger than this one, would promise what they cannot keep.
     pub fn minimise(&self, model: &Model, residual: Vec<f64>) -> Result<Step> {
         interrupt::check()?;
         tally::costly();
         let m = residual.len();
         let target = model.reduced(residual)?;
-        let mut images = Matrix::zeros(m, self.kept.len())?;
-        for (j, (v, fv)) in self.kept.iter().enumerate() {
-            images.col_mut(j).copy_from_slice(&model.reduced(model.face.image(v, fv))?);
+        let pairs = self.kept.len();
+        let mut images = Matrix::zeros(m + pairs, pairs)?;
+        for (j, Pair { v, image, unbalanced }) in self.kept.iter().enumerate() {
+            images.col_mut(j)[..m].copy_from_slice(&model.reduced(model.face.image(v, image))?);
+            images.set(m + j, j, NOISE * (norm(image) + 1.0) + unbalanced / model.face.rho);
         }
-        let wanted: Vec<f64> = target.iter().map(|target| -target).collect();
+        let mut wanted: Vec<f64> = target.iter().map(|target| -target).collect();
+        wanted.resize(m + pairs, 0.0);
         let c = least_squares(&images, &wanted, CUT)?;
         let mut left = target;
+        left.resize(m + pairs, 0.0);
         images.mul_add(1.0, &c, &mut left);
         let rest = norm(&left) / norm(&wanted).max(f64::MIN_POSITIVE);
         let (mut dx, mut dg) = (vec![0.0; m], vec![0.0; m]);
-        for (c, (v, fv)) in c.iter().zip(&self.kept).filter(|(c, _)| **c != 0.0) {
-            axpy(*c, v, &mut dx);
-            axpy(*c, fv, &mut dg);
+        for (c, pair) in c.iter().zip(&self.kept).filter(|(c, _)| **c != 0.0) {
+            axpy(*c, &pair.v, &mut dx);
+            axpy(*c, &pair.image, &mut dg);
         }
         Ok(Step { dx, dg, rest })
     }
