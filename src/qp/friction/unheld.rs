@@ -11,7 +11,7 @@
 use crate::error::Result;
 use crate::linalg::vector::{axpy, dot, norm};
 use crate::platform::interrupt;
-use crate::qp::friction::cones::Place;
+use crate::qp::friction::cones::{Force, Node, Place};
 use crate::qp::friction::motions::Motions;
 use crate::qp::friction::nearest::derivative;
 use crate::qp::friction::FrictionProblem;
@@ -32,6 +32,8 @@ const SHORTEST: f64 = 1e-6;
 /// Rounds that take what rows resist from the motion, and the shift of their matrices.
 const ROUNDS: usize = 4;
 const SHIFT: f64 = 1e-13;
+/// Rows that give way by less than so many times what others resist are to stay as they are, nodes that slip by less are not to slip.
+const NEAR: f64 = 10.0;
 
 struct Trial {
     beta: Vec<f64>,
@@ -51,21 +53,45 @@ pub fn unheld(problem: &FrictionProblem, weights: &[f64]) -> Result<(Vec<f64>, V
     let problem = &FrictionProblem { cones: &wider, g_transposed: &g_transposed, e: &e, ..*problem };
     let Some(motions) = Motions::of(problem)? else { return Ok((vec![0.0; problem.b.len()], e)) };
     let (mut shift, mut best) = (FIRST, trial(problem, vec![0.0; e.len()], motions.size()));
-    let mut beta = best.beta.clone();
+    let mut before = best.beta.clone();
+    let is_solved = |now: &Trial| norm(&now.slope) <= ACCEPTED * norm(&e);
     while shift >= LAST {
-        let now = nearest(problem, &motions, beta, shift)?;
-        if !(norm(&now.slope) <= ACCEPTED * norm(&e)) {
+        // where forces stay as they are, beta changes with delta
+        let mut beta = best.beta.clone();
+        beta.iter_mut().zip(&before).for_each(|(beta, before)| *beta += LESS * (*beta - before));
+        let mut now = nearest(problem, &motions, beta, shift)?;
+        if !is_solved(&now) {
+            now = nearest(problem, &motions, best.beta.clone(), shift)?;
+        }
+        if !is_solved(&now) {
             break;
         }
-        // where forces stay as they are, beta changes with delta
-        beta = now.beta.clone();
-        let change = if shift < FIRST { LESS } else { 0.0 };
-        beta.iter_mut().zip(&best.beta).for_each(|(beta, before)| *beta += change * (*beta - before));
+        before = if shift < FIRST { best.beta } else { now.beta.clone() };
         best = now;
         shift *= LESS;
     }
     let left = settled(problem, &motions, best.beta)?;
     Ok((best.forces, left.iter().zip(weights).map(|(beta, w)| beta / w).collect()))
+}
+
+/// What a node makes of a motion.
+struct Resisted {
+    force: Force,
+    /// Where it slips, and how far.
+    along: [f64; 2],
+    slip: f64,
+    /// What its normal row resists together with friction; below 0 it gives way.
+    by: f64,
+}
+
+impl Resisted {
+    fn of(node: &Node, v: &[f64]) -> Self {
+        let force = node.of(v);
+        let slip = norm(&force.tangential);
+        let along = if slip > 0.0 { force.tangential.map(|t| t / slip) } else { [1.0, 0.0] };
+        let by = if node.normal.is_some() { force.normal + node.mu * slip } else { 0.0 };
+        Self { force, along, slip, by }
+    }
 }
 
 /// Newton's method for one delta, of the largest diagonal entry of `G G'`.
@@ -88,21 +114,25 @@ fn nearest(problem: &FrictionProblem, motions: &Motions, beta: Vec<f64>, shift: 
 
 /// The motion without what normal rows with their friction, and free rows, resist of it: delta times their forces.
 fn settled(problem: &FrictionProblem, motions: &Motions, mut beta: Vec<f64>) -> Result<Vec<f64>> {
+    let mut near = None;
     for _ in 0..ROUNDS {
         let v: Vec<f64> = (0..problem.b.len()).map(|i| problem.g_transposed.row_dot(i, &beta)).collect();
+        let nodes: Vec<Resisted> = problem.cones.nodes().iter().map(|node| Resisted::of(node, &v)).collect();
+        let near = *near.get_or_insert_with(|| NEAR * nodes.iter().map(|node| node.by).fold(0.0, f64::max));
         let (mut places, mut resists) = (Vec::new(), Vec::new());
-        for node in problem.cones.nodes() {
-            let force = node.of(&v);
-            let size = norm(&force.tangential);
-            let along = if size > 0.0 { force.tangential.map(|t| t / size) } else { [1.0, 0.0] };
-            let by = force.normal + node.mu * size;
-            let resisted = node.normal.is_some() && by > 0.0;
-            places.push(match resisted {
-                true => Place::Surface { along, ratio: 0.0 },
-                false => Place::Rim { along, ratio: 0.0 },
-            });
-            resists.extend(node.normal.map(|_| if resisted { by } else { 0.0 }));
-            resists.resize(resists.len() + node.tangents().len(), 0.0);
+        for (node, now) in problem.cones.nodes().iter().zip(&nodes) {
+            let Resisted { force, along, slip, by } = *now;
+            let ratio = 0.0;
+            let (place, of) = match by >= -near {
+                true if slip <= near => {
+                    (Place::Inside, [force.normal, force.tangential[0], force.tangential[1]])
+                }
+                true if node.normal.is_some() => (Place::Surface { along, ratio }, [by, 0.0, 0.0]),
+                _ => (Place::Rim { along, ratio }, [0.0; 3]),
+            };
+            places.push(place);
+            resists.extend(node.normal.map(|_| of[0]));
+            resists.extend_from_slice(&of[1..=node.tangents().len()]);
         }
         let (coordinates, weights) = derivative(problem.cones, &places);
         resists.extend(coordinates[resists.len()..].iter().map(|free| v[free.rows[0]]));
