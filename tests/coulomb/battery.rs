@@ -130,6 +130,9 @@ fn told_otherwise(drawn: &Drawn, problem: &Problem, found: &Answer) -> Option<St
 
 fn of_error(drawn: &Drawn, error: &Error) -> (End, String) {
     let text = format!("{:?}: {error}", error.kind);
+    if error.kind == Kind::Slides {
+        return of_slide(drawn, text);
+    }
     if error.kind != Kind::LoadNotHeld || drawn.known == Known::Answer {
         return (End::Wrong, text);
     }
@@ -145,6 +148,17 @@ fn of_error(drawn: &Drawn, error: &Error) -> (End, String) {
             (End::Wrong, format!("has an answer, {text}"))
         }
         _ => (End::NotHeld, text),
+    }
+}
+
+/// A slide and a rest may both exist: a rest that is there was not found.
+fn of_slide(drawn: &Drawn, text: String) -> (End, String) {
+    let rests = enumeration::answers(&drawn.deck).is_some_and(|found| !found.answers.is_empty());
+    match drawn.known {
+        Known::NotHeld => (End::NotHeld, text),
+        Known::Answer => (End::Unsolved, text),
+        Known::Nothing if rests => (End::Unsolved, text),
+        Known::Nothing => (End::Open, text),
     }
 }
 
