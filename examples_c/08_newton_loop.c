@@ -13,7 +13,12 @@
    1. Small displacements: K stays, only normals change. One factorisation in all, whatever the number of iterations.
    2. Large displacements: feti_body_values gives K on its old pattern. One factorisation per iteration, no analysis.
    3. A load step that fails is rejected: feti_state_restore brings back rows, gaps and forces, the step is halved. A step
-      that would be less than LEAST ends the program: at a limit load no step is small enough. */
+      that would be less than LEAST ends the program: at a limit load no step is small enough.
+   4. The same with friction. The slip function of a node is s = RADIUS times its angle about the axis of the die, its tangential
+      row the gradient T = RADIUS/r t', t across n. What has slipped since the load step began, s_begin - s(u), goes to
+      feti_friction_reference in every iteration, and K holds how the tangential forces turn, -lambda_t RADIUS/r^2 (n t' + t n').
+      This part ends at 6 mm: near to 8 mm bars that friction presses together buckle, and K is indefinite however small the
+      step. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -23,6 +28,7 @@
 
 enum { NX = 24, NY = 4, LINE = NY + 1, NODES = (NX - 1) * LINE, N = 2 * NODES, ROWS = NX - 1, MOST = 8 };
 static const double EA = 1000.0 /* N */, RADIUS = 10.0 /* mm */, DEPTH = 8.0 /* mm */, LEAST = 0.01 /* mm */;
+static const double MU = 0.3 /* - */, LESS = 6.0 /* mm, the depth with friction */;
 
 /* Lower triangle of K by rows: node (i, j) knows the nodes left of it, below it, and itself. */
 typedef struct {
@@ -111,15 +117,31 @@ static double from_axis(const double *u, double depth, int i, double n[2])
     return r;
 }
 
-/* The forces of the rows bend with the normals: -lambda (I - n n') / r. */
-static void add_curvature(const double *u, const double *lambda, double depth, matrix *k)
+/* What the loop knows of friction: without it mu is 0 and so are the forces. Slips are RADIUS times an angle, mm. */
+typedef struct {
+    double mu, lambda_t[ROWS], s_begin[ROWS];
+} friction;
+
+/* Slip function of top node i; its direction t, and r. */
+static double slip_function(const double *u, double depth, int i, double t[2], double *r)
+{
+    double n[2];
+
+    *r = from_axis(u, depth, i, n);
+    t[0] = -n[1], t[1] = n[0];
+    return RADIUS * atan2(n[1], n[0]);
+}
+
+/* The forces of the rows turn with normals and tangents: -lambda/r t t' - lambda_t RADIUS/r^2 (n t' + t n'). */
+static void add_curvature(const double *u, const double *lambda, const friction *rub, double depth, matrix *k)
 {
     for (int i = 1; i < NX; i++) {
         const int dof = 2 * node_at(i, NY);
         double n[2];
-        const double bend = lambda[i - 1] / from_axis(u, depth, i, n);
+        const double r = from_axis(u, depth, i, n), t[2] = { -n[1], n[0] };
+        const double bend = lambda[i - 1] / r, turn = rub->lambda_t[i - 1] * RADIUS / (r * r);
         for (int c = 0; c < 2; c++)
-            for (int d = 0; d < 2; d++) add(k, dof + c, dof + d, -bend * ((c == d) - n[c] * n[d]));
+            for (int d = 0; d < 2; d++) add(k, dof + c, dof + d, -bend * t[c] * t[d] - turn * (n[c] * t[d] + t[c] * n[d]));
     }
 }
 
@@ -143,6 +165,24 @@ static void give_rows(feti_problem *problem, const double *u, const double *from
     ptr[ROWS] = 2 * ROWS;
     CALL(feti_rows_clear(problem, FETI_INEQUALITY));
     CALL(feti_rows_add_i32(problem, FETI_INEQUALITY, ROWS, ptr, NULL, dof, val, 0, gap, NULL));
+}
+
+/* A tangential row beside each contact row, and what has slipped in this load step before u. */
+static void give_friction(feti_problem *problem, const double *u, const friction *rub, double depth)
+{
+    int32_t row[ROWS], ptr[ROWS + 1], dof[2 * ROWS];
+    double val[2 * ROWS], coefficient[ROWS], s_old[ROWS];
+
+    for (int i = 1; i < NX; i++) {
+        const int at = 2 * (i - 1);
+        double t[2], r;
+        s_old[i - 1] = rub->s_begin[i - 1] - slip_function(u, depth, i, t, &r);
+        row[i - 1] = i - 1, ptr[i - 1] = at, coefficient[i - 1] = rub->mu;
+        for (int d = 0; d < 2; d++) dof[at + d] = 2 * node_at(i, NY) + d, val[at + d] = RADIUS / r * t[d];
+    }
+    ptr[ROWS] = 2 * ROWS;
+    CALL(feti_friction_add_i32(problem, ROWS, 1, row, ptr, NULL, dof, val, 0, coefficient, NULL, NULL));
+    CALL(feti_friction_reference(problem, 0, ROWS, 1, s_old));
 }
 
 static double largest(const double *x)
@@ -188,8 +228,8 @@ static cost with_fixed_tangent(feti_problem *problem, double depth, double *u, f
 
 /* Newton's method at a depth of the die. Returns FETI_OK, or what the library says to a step that is too large, or
    FETI_ITERATIONS. `quadratic`: no change was more than its predecessor squared, once that was small. */
-static int32_t newton(feti_problem *problem, matrix *k, double depth, double *u, double *lambda, cost *sum, feti_info *info,
-                      int *quadratic)
+static int32_t newton(feti_problem *problem, matrix *k, double depth, double *u, double *lambda, friction *rub, cost *sum,
+                      feti_info *info, int *quadratic)
 {
     double change = 1.0;
 
@@ -202,10 +242,15 @@ static int32_t newton(feti_problem *problem, matrix *k, double depth, double *u,
         int32_t status;
         assemble(u, k, f);
         for (int i = 0; i < N; i++) f[i] = -f[i];
-        add_curvature(u, lambda, depth, k);
-        CALL(feti_body_values(problem, 0, k->ptr[N], k->val));
+        add_curvature(u, lambda, rub, depth, k);
+        status = feti_body_values(problem, 0, k->ptr[N], k->val);
+        if (status != FETI_OK) return status; /* FETI_INDEFINITE: a diagonal entry is negative, the step is too large */
         CALL(feti_body_load(problem, 0, N, f));
         give_rows(problem, u, u, depth);
+        if (rub->mu > 0.0) {
+            give_friction(problem, u, rub, depth);
+            CALL(feti_start_from(problem, FETI_TANGENTIAL, ROWS, rub->lambda_t));
+        }
         CALL(feti_start_from(problem, FETI_INEQUALITY, ROWS, lambda)); /* the pairs are those of the last iterate */
         status = feti_solve(problem, info);
         if (status < 0) *info = before; /* the counts of a call that failed are zero */
@@ -213,8 +258,11 @@ static int32_t newton(feti_problem *problem, matrix *k, double depth, double *u,
         if (status != FETI_OK) return status;
         CALL(feti_displacement(problem, 0, N, d));
         CALL(feti_multipliers(problem, FETI_INEQUALITY, ROWS, lambda));
+        if (rub->mu > 0.0) CALL(feti_multipliers(problem, FETI_TANGENTIAL, ROWS, rub->lambda_t));
         for (int i = 0; i < N; i++) u[i] += d[i];
         change = largest(d);
+        if (rub->mu > 0.0)
+            printf("%5d %12.1e %9d %9d\n", sum->iterations, fmax(change, 1e-9), (int)info->sticking, (int)info->slipping);
         if (last < 1e-2 && change > 10.0 * last * last + 1e-12) *quadratic = 0;
         if (change < 1e-6) return FETI_OK;
     }
@@ -222,7 +270,7 @@ static int32_t newton(feti_problem *problem, matrix *k, double depth, double *u,
 }
 
 /* Largest force that the bars and the die leave unbalanced, and depth of penetration: both zero in the solution. */
-static double unbalanced(matrix *k, const double *u, const double *lambda, double depth, double *force)
+static double unbalanced(matrix *k, const double *u, const double *lambda, const friction *rub, double depth, double *force)
 {
     double internal[N], inside = 0.0, size;
 
@@ -232,23 +280,71 @@ static double unbalanced(matrix *k, const double *u, const double *lambda, doubl
     for (int i = 1; i < NX; i++) {
         const int top = 2 * node_at(i, NY);
         double n[2];
-        inside = fmax(inside, RADIUS - from_axis(u, depth, i, n));
-        for (int d = 0; d < 2; d++) internal[top + d] -= lambda[i - 1] * n[d];
-        *force -= lambda[i - 1] * n[1];
+        const double r = from_axis(u, depth, i, n), t[2] = { -n[1], n[0] };
+        inside = fmax(inside, RADIUS - r);
+        for (int d = 0; d < 2; d++) {
+            const double on_node = lambda[i - 1] * n[d] - rub->lambda_t[i - 1] * RADIUS / r * t[d];
+            internal[top + d] -= on_node;
+            if (d == 1) *force -= on_node;
+        }
     }
     return fmax(largest(internal) / size, inside / RADIUS);
+}
+
+/* Presses the strip to a depth by load steps, halved where one fails; prints a line for each. What is left unbalanced. */
+static double press(feti_problem *problem, matrix *k, double to, friction *rub, feti_info *info, double *force, int *right)
+{
+    double u[N] = { 0.0 }, lambda[ROWS] = { 0.0 }, saved_u[N], saved_lambda[ROWS], depth = 0.0, step = to;
+    int steps = 0, rejected = 0, quadratic;
+    friction saved_rub;
+    int64_t state;
+    cost sum;
+
+    CALL(feti_body_load(problem, 0, N, u));
+    give_rows(problem, u, u, 0.0);
+    while (depth < to && step >= LEAST) {
+        int32_t status;
+        for (int i = 1; i < NX; i++) {
+            double t[2], r;
+            rub->s_begin[i - 1] = slip_function(u, depth, i, t, &r);
+        }
+        CALL(feti_state_save(problem, &state));
+        memcpy(saved_u, u, sizeof u);
+        memcpy(saved_lambda, lambda, sizeof lambda);
+        saved_rub = *rub;
+        status = newton(problem, k, depth + step, u, lambda, rub, &sum, info, &quadratic);
+        if (status == FETI_OK) {
+            depth += step, steps++;
+            *right = *right && quadratic && sum.factorisations == sum.iterations && sum.analyses == 0;
+            unbalanced(k, u, lambda, rub, depth, force);
+            printf("step to %.4f mm: %d iterations, %d factorisations, %d analyses, force %.4f N\n", depth, sum.iterations,
+                   sum.factorisations, sum.analyses, *force);
+        } else {
+            printf("step to %.4f mm: %s after %d iterations, halved\n", depth + step, feti_status_name(status), sum.iterations);
+            CALL(feti_state_restore(problem, state));
+            memcpy(u, saved_u, sizeof u);
+            memcpy(lambda, saved_lambda, sizeof lambda);
+            *rub = saved_rub;
+            step /= 2.0, rejected++;
+        }
+        CALL(feti_state_drop(problem, state));
+    }
+    demo_value("load steps", steps, "-");
+    demo_value("rejected load steps", rejected, "-");
+    *right = *right && depth == to;
+    return unbalanced(k, u, lambda, rub, depth, force);
 }
 
 int main(void)
 {
     static matrix k;
-    double u[N] = { 0.0 }, saved_u[N], lambda[ROWS] = { 0.0 }, saved_lambda[ROWS], f[N], force;
-    double depth = 0.0, step = DEPTH, error;
+    double u[N] = { 0.0 }, f[N], force, error;
+    friction none = { .mu = 0.0 }, rub = { .mu = MU };
     feti_problem *problem = NULL;
     feti_info info = { .struct_size = sizeof info };
     cost sum;
-    int64_t body, state;
-    int rejected = 0, steps = 0, right = 1, quadratic;
+    int64_t body;
+    int right = 1;
 
     make_pattern(&k);
     assemble(u, &k, f);
@@ -263,35 +359,13 @@ int main(void)
     demo_value("  analyses", sum.analyses, "-");
     right = right && sum.factorisations == 1 && sum.analyses == 1;
 
-    memset(u, 0, sizeof u);
-    CALL(feti_body_load(problem, body, N, u));
-    give_rows(problem, u, u, 0.0);
-    while (depth < DEPTH && step >= LEAST) {
-        int32_t status;
-        CALL(feti_state_save(problem, &state));
-        memcpy(saved_u, u, sizeof u);
-        memcpy(saved_lambda, lambda, sizeof lambda);
-        status = newton(problem, &k, depth + step, u, lambda, &sum, &info, &quadratic);
-        if (status == FETI_OK) {
-            depth += step, steps++;
-            right = right && quadratic && sum.factorisations == sum.iterations && sum.analyses == 0;
-            unbalanced(&k, u, lambda, depth, &force);
-            printf("step to %.4f mm: %d iterations, %d factorisations, %d analyses, force %.4f N\n", depth, sum.iterations,
-                   sum.factorisations, sum.analyses, force);
-        } else {
-            printf("step to %.4f mm: %s after %d iterations, halved\n", depth + step, feti_status_name(status), sum.iterations);
-            CALL(feti_state_restore(problem, state));
-            memcpy(u, saved_u, sizeof u);
-            memcpy(lambda, saved_lambda, sizeof lambda);
-            step /= 2.0, rejected++;
-        }
-        CALL(feti_state_drop(problem, state));
-    }
-    CALL(feti_problem_destroy(&problem));
-
-    error = unbalanced(&k, u, lambda, depth, &force);
-    demo_value("load steps", steps, "-");
-    demo_value("rejected load steps", rejected, "-");
+    error = press(problem, &k, DEPTH, &none, &info, &force, &right);
     demo_value("force on the die", force, "N");
-    return demo_line("08_newton_loop", &info, error, right && rejected > 0 && depth == DEPTH);
+    printf("with friction: iteration, |d| / mm, nodes that stick, that slip\n");
+    error = fmax(error, press(problem, &k, LESS, &rub, &info, &force, &right));
+    demo_value("force on the die", force, "N");
+    demo_value("nodes that stick", (double)info.sticking, "-");
+    demo_value("nodes that slip", (double)info.slipping, "-");
+    CALL(feti_problem_destroy(&problem));
+    return demo_line("08_newton_loop", &info, error, right);
 }

@@ -54,7 +54,8 @@ void demo_value(const char *name, double value, const char *unit)
 int demo_line(const char *example, const feti_info *info, double error, int ok)
 {
     const double entry[] = { info->equilibrium, info->balance, info->penetration, info->equality,
-                             info->negative_force, info->complementarity, info->duality_gap };
+                             info->negative_force, info->complementarity, info->duality_gap, info->friction_cone,
+                             info->friction_work, info->friction_stick };
     double largest = 0.0;
 
     for (size_t k = 0; k < sizeof entry / sizeof entry[0]; k++) largest = fmax(largest, entry[k]);

@@ -12,7 +12,7 @@ typedef struct {
     const char *title, *x_name, *y_name, *points_name, *curve_name;
     int64_t points, samples;
     const double *x, *y;             /* points */
-    const double *curve_x, *curve_y; /* samples */
+    const double *curve_x, *curve_y; /* samples; NaN: another curve begins behind it */
 } picture;
 
 /* Writes folder/name and prints "picture folder/name". Returns 0, or -1 when the file cannot be written. */

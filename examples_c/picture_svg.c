@@ -5,9 +5,9 @@
 
 enum { WIDTH = 720, HEIGHT = 480, LEFT = 80, RIGHT = 20, TOP = 48, BOTTOM = 64, TICKS = 6 };
 
-/* The plotted range: x from low to high over the width, y from 0 to top over the height. */
+/* The plotted range: x from low to high over the width, y from bottom <= 0 to top over the height. */
 typedef struct {
-    double low, high, top;
+    double low, high, bottom, top;
 } frame;
 
 static double place_x(const frame *range, double x)
@@ -17,7 +17,7 @@ static double place_x(const frame *range, double x)
 
 static double place_y(const frame *range, double y)
 {
-    return HEIGHT - BOTTOM - y / range->top * (HEIGHT - TOP - BOTTOM);
+    return HEIGHT - BOTTOM - (y - range->bottom) / (range->top - range->bottom) * (HEIGHT - TOP - BOTTOM);
 }
 
 /* A round step (1, 2 or 5 times a power of ten) that divides the length into at most TICKS parts. */
@@ -28,40 +28,42 @@ static double round_step(double length)
     return step * (parts <= 1.0 ? 1.0 : parts <= 2.0 ? 2.0 : parts <= 5.0 ? 5.0 : 10.0);
 }
 
+/* fmin and fmax leave out what is NaN. */
+static void take(frame *range, double x, double y)
+{
+    range->low = fmin(range->low, x);
+    range->high = fmax(range->high, x);
+    range->bottom = fmin(range->bottom, y);
+    range->top = fmax(range->top, y);
+}
+
 static frame range_of(const picture *plot)
 {
-    frame range = { plot->curve_x[0], plot->curve_x[0], 0.0 };
+    frame range = { plot->curve_x[0], plot->curve_x[0], 0.0, 0.0 };
     double step;
 
-    for (int64_t i = 0; i < plot->samples; i++) {
-        range.low = fmin(range.low, plot->curve_x[i]);
-        range.high = fmax(range.high, plot->curve_x[i]);
-        range.top = fmax(range.top, plot->curve_y[i]);
-    }
-    for (int64_t i = 0; i < plot->points; i++) {
-        range.low = fmin(range.low, plot->x[i]);
-        range.high = fmax(range.high, plot->x[i]);
-        range.top = fmax(range.top, plot->y[i]);
-    }
-    step = round_step(range.top);
+    for (int64_t i = 0; i < plot->samples; i++) take(&range, plot->curve_x[i], plot->curve_y[i]);
+    for (int64_t i = 0; i < plot->points; i++) take(&range, plot->x[i], plot->y[i]);
+    step = round_step(range.top - range.bottom);
     range.top = step * ceil(1.02 * range.top / step);
+    range.bottom = step * floor(1.02 * range.bottom / step);
     return range;
 }
 
 static void draw_axes(FILE *file, const picture *plot, const frame *range)
 {
-    const double step_x = round_step(range->high - range->low), step_y = round_step(range->top);
-    const double bottom = place_y(range, 0.0);
+    const double step_x = round_step(range->high - range->low), step_y = round_step(range->top - range->bottom);
+    const double bottom = place_y(range, range->bottom);
 
     fprintf(file, "<g stroke=\"#ccc\" font-size=\"13\">\n");
     for (double x = step_x * ceil(range->low / step_x); x <= range->high + 1e-9 * step_x; x += step_x)
         fprintf(file, "<line x1=\"%.1f\" y1=\"%d\" x2=\"%.1f\" y2=\"%.1f\"/><text x=\"%.1f\" y=\"%.1f\" "
                 "text-anchor=\"middle\" stroke=\"none\">%g</text>\n", place_x(range, x), TOP, place_x(range, x), bottom,
                 place_x(range, x), bottom + 18.0, fabs(x) < 1e-9 * step_x ? 0.0 : x);
-    for (double y = 0.0; y <= range->top + 1e-9 * step_y; y += step_y)
+    for (double y = range->bottom; y <= range->top + 1e-9 * step_y; y += step_y)
         fprintf(file, "<line x1=\"%d\" y1=\"%.1f\" x2=\"%d\" y2=\"%.1f\"/><text x=\"%d\" y=\"%.1f\" "
                 "text-anchor=\"end\" stroke=\"none\">%g</text>\n", LEFT, place_y(range, y), WIDTH - RIGHT,
-                place_y(range, y), LEFT - 6, place_y(range, y) + 4.0, y);
+                place_y(range, y), LEFT - 6, place_y(range, y) + 4.0, fabs(y) < 1e-9 * step_y ? 0.0 : y);
     fprintf(file, "</g>\n<text x=\"%d\" y=\"28\" font-size=\"17\" text-anchor=\"middle\">%s</text>\n", WIDTH / 2,
             plot->title);
     fprintf(file, "<text x=\"%d\" y=\"%d\" text-anchor=\"middle\">%s</text>\n", (LEFT + WIDTH - RIGHT) / 2,
@@ -74,7 +76,12 @@ static void draw_data(FILE *file, const picture *plot, const frame *range)
 {
     fprintf(file, "<polyline fill=\"none\" stroke=\"#1f5fa8\" stroke-width=\"2\" points=\"");
     for (int64_t i = 0; i < plot->samples; i++)
-        fprintf(file, "%.2f,%.2f ", place_x(range, plot->curve_x[i]), place_y(range, plot->curve_y[i]));
+        if (isnan(plot->curve_x[i])) {
+            if (i + 1 < plot->samples)
+                fprintf(file, "\"/>\n<polyline fill=\"none\" stroke=\"#1f5fa8\" stroke-width=\"2\" points=\"");
+        } else {
+            fprintf(file, "%.2f,%.2f ", place_x(range, plot->curve_x[i]), place_y(range, plot->curve_y[i]));
+        }
     fprintf(file, "\"/>\n<g fill=\"#c03a1d\">\n");
     for (int64_t i = 0; i < plot->points; i++)
         fprintf(file, "<circle cx=\"%.2f\" cy=\"%.2f\" r=\"3.2\"/>\n", place_x(range, plot->x[i]),

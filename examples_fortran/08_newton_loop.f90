@@ -14,6 +14,10 @@
 !> 2. Large displacements: feti_body_values gives K on its old pattern. One factorisation per iteration, no analysis.
 !> 3. A load step that fails is rejected: feti_state_restore brings back rows, gaps and forces, the step is halved. A step
 !>    that would be less than least ends the program: at a limit load no step is small enough.
+!> 4. The same with friction. The slip function of a node is s = radius times its angle about the axis of the die, its tangential
+!>    row the gradient T = radius/r t', t across n. What has slipped since the load step began, s_begin - s(u), goes to
+!>    feti_friction_reference in every iteration, and K holds how the tangential forces turn, -lambda_t radius/r^2 (n t' + t n').
+!>    This part ends at 6 mm: near to 8 mm bars that friction presses together buckle, and K is indefinite however small the step.
 program newton_loop
   use demo
   use feti_contact
@@ -21,6 +25,7 @@ program newton_loop
   integer, parameter :: dp = kind(1.0d0)
   integer, parameter :: nx = 24, ny = 4, nodes = (nx - 1) * (ny + 1), n = 2 * nodes, rows = nx - 1, most = 8
   real(dp), parameter :: ea = 1000, radius = 10, full_depth = 8, least = 0.01_dp   ! N, mm, mm, mm
+  real(dp), parameter :: with_friction = 0.3_dp, less_depth = 6   ! -, mm: coefficient, the depth with friction
 
   !> Lower triangle of K by rows: node (i, j) knows the nodes left of it, below it, and itself.
   integer :: ptr(n + 1), col(10 * n), entries
@@ -34,12 +39,15 @@ program newton_loop
   type(feti_problem) :: problem
   type(feti_info) :: info
   type(cost) :: spent
-  real(dp) :: u(n), saved_u(n), lambda(rows), saved_lambda(rows), f(n), none(n, 0), depth, step, force, error
-  integer :: body, state, stat, steps, rejected
-  logical :: right, quadratic
+  real(dp) :: u(n), lambda(rows), f(n), none(n, 0), depth, force, error, before_error
+  integer :: body
+  logical :: right
+
+  ! What the loop knows of friction: without it mu is 0 and so are the forces. Slips are radius times an angle, mm.
+  real(dp) :: mu, lambda_t(rows), s_begin(rows)
 
   u = 0
-  lambda = 0
+  mu = 0
   call make_pattern
   call assemble(u, f)
   call feti_problem_create(problem)
@@ -53,43 +61,17 @@ program newton_loop
   call demo_value('  analyses', real(spent%analyses, dp), '-')
   right = spent%factorisations == 1 .and. spent%analyses == 1
 
-  u = 0
-  depth = 0
-  step = full_depth
-  steps = 0
-  rejected = 0
-  call feti_body_load(problem, body, u)
-  call give_rows(u, 0.0_dp)
-  do while (depth < full_depth .and. step >= least)
-    call feti_state_save(problem, state)
-    saved_u = u
-    saved_lambda = lambda
-    call newton(depth + step, stat, quadratic)
-    if (stat == FETI_OK) then
-      depth = depth + step
-      steps = steps + 1
-      right = right .and. quadratic .and. spent%factorisations == spent%iterations .and. spent%analyses == 0
-      call unbalanced(force, error)
-      print '(a, f6.4, 3(a, i0), a, f0.4, a)', 'step to ', depth, ' mm: ', spent%iterations, ' iterations, ', &
-        spent%factorisations, ' factorisations, ', spent%analyses, ' analyses, force ', force, ' N'
-    else
-      print '(a, f6.4, 3a, i0, a)', 'step to ', depth + step, ' mm: ', feti_status_name(stat), ' after ', &
-        spent%iterations, ' iterations, halved'
-      call feti_state_restore(problem, state)
-      u = saved_u
-      lambda = saved_lambda
-      step = step / 2
-      rejected = rejected + 1
-    end if
-    call feti_state_drop(problem, state)
-  end do
-  call feti_problem_destroy(problem)
-
-  call unbalanced(force, error)
-  call demo_value('load steps', real(steps, dp), '-')
-  call demo_value('rejected load steps', real(rejected, dp), '-')
+  call press(full_depth)
+  before_error = error
   call demo_value('force on the die', force, 'N')
-  call demo_line('08_newton_loop', info, error, right .and. rejected > 0 .and. depth >= full_depth)
+  mu = with_friction
+  print '(a)', 'with friction: iteration, |d| / mm, nodes that stick, that slip'
+  call press(less_depth)
+  call demo_value('force on the die', force, 'N')
+  call demo_value('nodes that stick', real(info%sticking, dp), '-')
+  call demo_value('nodes that slip', real(info%slipping, dp), '-')
+  call feti_problem_destroy(problem)
+  call demo_line('08_newton_loop', info, max(error, before_error), right)
 
 contains
 
@@ -113,6 +95,55 @@ contains
     end do
   end subroutine
 
+  !> Presses the strip to a depth by load steps, halved where one fails; prints a line for each. Force on the die, and what is left
+  !> unbalanced.
+  subroutine press(to)
+    real(dp), intent(in) :: to
+    real(dp) :: saved_u(n), saved_lambda(rows), saved_lambda_t(rows), step
+    integer :: state, stat, steps, rejected
+    logical :: quadratic
+
+    u = 0
+    lambda = 0
+    lambda_t = 0
+    depth = 0
+    step = to
+    steps = 0
+    rejected = 0
+    call feti_body_load(problem, body, u)
+    call give_rows(u, 0.0_dp)
+    do while (depth < to .and. step >= least)
+      s_begin = slip_functions(depth)
+      call feti_state_save(problem, state)
+      saved_u = u
+      saved_lambda = lambda
+      saved_lambda_t = lambda_t
+      call newton(depth + step, stat, quadratic)
+      if (stat == FETI_OK) then
+        depth = depth + step
+        steps = steps + 1
+        right = right .and. quadratic .and. spent%factorisations == spent%iterations .and. spent%analyses == 0
+        call unbalanced(force, error)
+        print '(a, f6.4, 3(a, i0), a, f0.4, a)', 'step to ', depth, ' mm: ', spent%iterations, ' iterations, ', &
+          spent%factorisations, ' factorisations, ', spent%analyses, ' analyses, force ', force, ' N'
+      else
+        print '(a, f6.4, 3a, i0, a)', 'step to ', depth + step, ' mm: ', feti_status_name(stat), ' after ', &
+          spent%iterations, ' iterations, halved'
+        call feti_state_restore(problem, state)
+        u = saved_u
+        lambda = saved_lambda
+        lambda_t = saved_lambda_t
+        step = step / 2
+        rejected = rejected + 1
+      end if
+      call feti_state_drop(problem, state)
+    end do
+    call demo_value('load steps', real(steps, dp), '-')
+    call demo_value('rejected load steps', real(rejected, dp), '-')
+    right = right .and. depth >= to
+    call unbalanced(force, error)
+  end subroutine
+
   !> Newton's method at a depth of the die. stat: FETI_OK, or what the library says to a step that is too large, or
   !> FETI_ITERATIONS. fast: no change was more than its predecessor squared, once that was small.
   subroutine newton(at_depth, stat, fast)
@@ -130,9 +161,14 @@ contains
       before = info
       call assemble(u, f)
       call add_curvature(at_depth)
-      call feti_body_values(problem, body, val(:entries))
+      call feti_body_values(problem, body, val(:entries), stat=stat)
+      if (stat /= FETI_OK) return   ! FETI_INDEFINITE: a diagonal entry is negative, the step is too large
       call feti_body_load(problem, body, -f)
       call give_rows(u, at_depth)
+      if (mu > 0) then
+        call give_friction(at_depth)
+        call feti_start_from(problem, FETI_TANGENTIAL, lambda_t)
+      end if
       call feti_start_from(problem, FETI_INEQUALITY, lambda)   ! the pairs are those of the last iterate
       call feti_solve(problem, info, stat=stat)
       if (stat < 0) info = before   ! the counts of a call that failed are zero
@@ -140,8 +176,10 @@ contains
       if (stat /= FETI_OK) return
       call feti_displacement(problem, body, d)
       call feti_multipliers(problem, FETI_INEQUALITY, lambda)
+      if (mu > 0) call feti_multipliers(problem, FETI_TANGENTIAL, lambda_t)
       u = u + d
       change = maxval(abs(d))
+      if (mu > 0) print '(i5, 6x, a, 2i10)', spent%iterations, power_of_ten(max(change, 1e-9_dp)), info%sticking, info%slipping
       if (last < 1e-2_dp .and. change > 10 * last**2 + 1e-12_dp) fast = .false.
       if (change < 1e-6_dp) return
     end do
@@ -259,18 +297,33 @@ contains
     normal = normal / r
   end subroutine
 
-  !> The forces of the rows bend with the normals: -lambda (I - n n') / r.
+  !> Slip functions of the top nodes.
+  function slip_functions(at_depth) result(s)
+    real(dp), intent(in) :: at_depth
+    real(dp) :: s(rows), normal(2), r
+    integer :: i
+
+    do i = 1, rows
+      call from_axis(at_depth, i, r, normal)
+      s(i) = radius * atan2(normal(2), normal(1))
+    end do
+  end function
+
+  !> The forces of the rows turn with normals and tangents: -lambda/r t t' - lambda_t radius/r^2 (n t' + t n').
   subroutine add_curvature(at_depth)
     real(dp), intent(in) :: at_depth
-    real(dp) :: normal(2), r
+    real(dp) :: normal(2), along(2), r, bend, turn
     integer :: i, c, d, top
 
     do i = 1, nx - 1
       call from_axis(at_depth, i, r, normal)
+      along = [-normal(2), normal(1)]
+      bend = lambda(i) / r
+      turn = lambda_t(i) * radius / r**2
       top = 2 * node_at(i, ny) - 2
       do c = 1, 2
         do d = 1, 2
-          call add(top + c, top + d, -lambda(i) / r * (merge(1, 0, c == d) - normal(c) * normal(d)))
+          call add(top + c, top + d, -bend * along(c) * along(d) - turn * (normal(c) * along(d) + along(c) * normal(d)))
         end do
       end do
     end do
@@ -295,10 +348,27 @@ contains
       reshape(dof, [2 * rows]), reshape(b, [2 * rows]), gap)
   end subroutine
 
+  !> A tangential row beside each contact row, and what has slipped in this load step before u.
+  subroutine give_friction(at_depth)
+    real(dp), intent(in) :: at_depth
+    real(dp) :: normal(2), r, along(2, rows)
+    integer :: i, k, top, dof(2, rows)
+
+    do i = 1, rows
+      call from_axis(at_depth, i, r, normal)
+      top = 2 * node_at(i, ny) - 2
+      dof(:, i) = top + [1, 2]
+      along(:, i) = radius / r * [-normal(2), normal(1)]
+    end do
+    call feti_friction_add(problem, [(k, k=1, rows)], [(2 * k + 1, k=0, rows)], [(body, k=1, 2 * rows)], &
+      reshape(dof, [2 * rows]), reshape(along, [2 * rows]), [(mu, k=1, rows)])
+    call feti_friction_reference(problem, 1, reshape(s_begin - slip_functions(at_depth), [1, rows]))
+  end subroutine
+
   !> Largest force that bars and die leave unbalanced, and depth of penetration, relative: both zero in the solution.
   subroutine unbalanced(total, largest)
     real(dp), intent(out) :: total, largest
-    real(dp) :: normal(2), r, inside, size
+    real(dp) :: normal(2), on_node(2), r, inside, size
     integer :: i, top
 
     call assemble(u, f)
@@ -309,8 +379,9 @@ contains
       call from_axis(depth, i, r, normal)
       top = 2 * node_at(i, ny)
       inside = max(inside, radius - r)
-      f(top - 1:top) = f(top - 1:top) - lambda(i) * normal
-      total = total - lambda(i) * normal(2)
+      on_node = lambda(i) * normal - lambda_t(i) * radius / r * [-normal(2), normal(1)]
+      f(top - 1:top) = f(top - 1:top) - on_node
+      total = total - on_node(2)
     end do
     largest = max(maxval(abs(f)) / size, inside / radius)
   end subroutine

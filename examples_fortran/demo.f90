@@ -72,7 +72,7 @@ contains
     character(len=12) :: seconds
 
     largest = max(info%equilibrium, info%balance, info%penetration, info%equality, info%negative_force, &
-      info%complementarity, info%duality_gap)
+      info%complementarity, info%duality_gap, info%friction_cone, info%friction_work, info%friction_stick)
     ok = agrees .and. info%status == FETI_OK .and. info%worst <= 1 .and. error <= 1e-7_dp
     write (seconds, '(f12.3)') info%seconds_setup + info%seconds_solve
     print '(3a, 3(a, i0), 7a)', 'demo ', example, ' fortran', ' unknowns ', info%dofs, ' rows ', info%rows, &

@@ -1,6 +1,7 @@
 !> Pictures of the answer: an SVG plot of points against a curve, and a VTK file that ParaView opens.
 module picture
   use case_reader, only: contact_case, dp
+  use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
   implicit none
   private
   public :: picture_svg, picture_vtk
@@ -8,23 +9,29 @@ module picture
   ! The sheet and its margins, in SVG units.
   real(dp), parameter :: width = 720, height = 480, left = 80, right = 20, top = 48, bottom = 64
 
-  !> The plotted range: x from low to high over the width, y from 0 to ceiling over the height.
+  !> The plotted range: x from low to high over the width, y from bottom <= 0 to ceiling over the height.
   type :: frame
-    real(dp) :: low, high, ceiling
+    real(dp) :: low, high, bottom, ceiling
   end type
 
 contains
 
-  !> Writes folder/name: points (x, y), the curve (curve_x, curve_y) called theory, title, names of the axes with units.
+  !> Writes folder/name: points (x, y), the curve (curve_x, curve_y) called theory, title, names of the axes with units. Behind a
+  !> NaN another curve begins.
   subroutine picture_svg(folder, name, title, x_name, y_name, theory, x, y, curve_x, curve_y)
     character(len=*), intent(in) :: folder, name, title, x_name, y_name, theory
     real(dp), intent(in) :: x(:), y(:), curve_x(:), curve_y(:)
+    character(len=*), parameter :: line = '<polyline fill="none" stroke="#1f5fa8" stroke-width="2" points="'
     type(frame) :: range
+    real(dp) :: step
     integer :: unit, i
 
-    range = frame(min(minval(x), minval(curve_x)), max(maxval(x), maxval(curve_x)), &
-      max(maxval(y), maxval(curve_y)))
-    range%ceiling = round_step(range%ceiling) * ceiling(1.02_dp * range%ceiling / round_step(range%ceiling))
+    associate (all_x => [x, pack(curve_x, .not. ieee_is_nan(curve_x))], all_y => [y, pack(curve_y, .not. ieee_is_nan(curve_y))])
+      range = frame(minval(all_x), maxval(all_x), min(0.0_dp, minval(all_y)), maxval(all_y))
+    end associate
+    step = round_step(range%ceiling - range%bottom)
+    range%ceiling = step * ceiling(1.02_dp * range%ceiling / step)
+    range%bottom = step * floor(1.02_dp * range%bottom / step)
     call open_picture(folder, name, unit)
     write (unit, '(a)') '<svg xmlns="http://www.w3.org/2000/svg" width="720" height="480" viewBox="0 0 720 480" ' // &
       'font-family="sans-serif" font-size="14">', '<rect width="100%" height="100%" fill="#fff"/>'
@@ -32,9 +39,13 @@ contains
     call write_text(unit, (left + width - right) / 2, height - 18, x_name)
     write (unit, '(3a)') '<text transform="translate(20 232) rotate(-90)" text-anchor="middle">', y_name, '</text>'
     call draw_axes(unit, range)
-    write (unit, '(a)') '<polyline fill="none" stroke="#1f5fa8" stroke-width="2" points="'
+    write (unit, '(a)') line
     do i = 1, size(curve_x)
-      write (unit, '(f0.2, a, f0.2)') place_x(range, curve_x(i)), ',', place_y(range, curve_y(i))
+      if (.not. ieee_is_nan(curve_x(i))) then
+        write (unit, '(f0.2, a, f0.2)') place_x(range, curve_x(i)), ',', place_y(range, curve_y(i))
+      else if (i < size(curve_x)) then
+        write (unit, '(a)') '"/>', line
+      end if
     end do
     write (unit, '(a)') '"/>'
     do i = 1, size(x)
@@ -146,8 +157,8 @@ contains
       call draw_line(unit, place_x(range, i * step), top, place_x(range, i * step), height - bottom)
       call write_text(unit, place_x(range, i * step), height - bottom + 18, figure(i * step))
     end do
-    step = round_step(range%ceiling)
-    do i = 0, nint(range%ceiling / step)
+    step = round_step(range%ceiling - range%bottom)
+    do i = nint(range%bottom / step), nint(range%ceiling / step)
       call draw_line(unit, left, place_y(range, i * step), width - right, place_y(range, i * step))
       call write_text(unit, left - 28, place_y(range, i * step) + 4, figure(i * step))
     end do
@@ -208,7 +219,7 @@ contains
     type(frame), intent(in) :: range
     real(dp), intent(in) :: y
 
-    place_y = height - bottom - y / range%ceiling * (height - top - bottom)
+    place_y = height - bottom - (y - range%bottom) / (range%ceiling - range%bottom) * (height - top - bottom)
   end function
 
   !> Opens folder/name for writing and prints its name.

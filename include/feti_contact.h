@@ -21,6 +21,12 @@
 #define FETI_EQUALITY 2
 
 /**
+ * Kind of rows: tangential rows of nodes with friction (feti_friction_add_i32,
+ * feti_friction_add_i64).
+ */
+#define FETI_TANGENTIAL 3
+
+/**
  * In place of a body: all bodies, by the host's numbers of feti_body_numbering_i32 or _i64 where
  * they have some.
  */
@@ -111,6 +117,31 @@
 #define FETI_ROW_UNKNOWN 3
 
 /**
+ * State of a node with friction: its bound is zero, it carries no tangential force.
+ */
+#define FETI_FRICTION_OPEN 0
+
+/**
+ * State of a node with friction: it sticks, its force is within its bound.
+ */
+#define FETI_FRICTION_STICK 1
+
+/**
+ * State of a node with friction: it slips along a force that reaches its bound.
+ */
+#define FETI_FRICTION_SLIP 2
+
+/**
+ * State of a node with friction: its force reaches its bound to rounding, and it does not slip.
+ */
+#define FETI_FRICTION_WEAK 3
+
+/**
+ * State of a node with friction: unknown, the bodies it touches are in a group that has no answer.
+ */
+#define FETI_FRICTION_UNKNOWN 4
+
+/**
  * Phase of a call that feti_on_progress tells of: a part of the setup is done.
  */
 #define FETI_PHASE_SETUP 1
@@ -134,6 +165,11 @@
  * Kind of a step: rows got a force.
  */
 #define FETI_STEP_RELEASE 3
+
+/**
+ * Kind of a step: a direction of the Newton method for friction.
+ */
+#define FETI_STEP_NEWTON 4
 
 /**
  * Level of a log: nothing.
@@ -271,6 +307,11 @@
  * A number, or a product of numbers that were given, does not fit its type.
  */
 #define FETI_OVERFLOW -13
+
+/**
+ * Bodies slide steadily: friction holds only a part of the load, and no rest was found.
+ */
+#define FETI_SLIDES -14
 
 /**
  * Argument k refused is FETI_ARGUMENT - k, k from 1 with the handle as 1; FETI_ARGUMENT itself:
@@ -467,6 +508,10 @@ typedef struct feti_findings {
    * The first of them, -1: none.
    */
   int64_t soft_body;
+  /**
+   * After FETI_SLIDES what friction holds of the load along the motion, as a part of it; else NaN.
+   */
+  double capacity;
 } feti_findings;
 
 /**
@@ -521,6 +566,10 @@ typedef struct feti_error_detail {
    * Element of the body, -1: does not apply.
    */
   int64_t element;
+  /**
+   * Node with friction, -1: does not apply.
+   */
+  int64_t node;
 } feti_error_detail;
 
 /**
@@ -639,7 +688,8 @@ typedef struct feti_progress {
    */
   int32_t phase;
   /**
-   * FETI_STEP_CONJUGATE_GRADIENT, FETI_STEP_EXPANSION or FETI_STEP_RELEASE; 0 in the setup.
+   * FETI_STEP_CONJUGATE_GRADIENT, FETI_STEP_EXPANSION, FETI_STEP_RELEASE or, with friction,
+   * FETI_STEP_NEWTON; 0 in the setup.
    */
   int32_t step;
   /**
@@ -851,6 +901,39 @@ typedef struct feti_info {
    * Bytes of the explicit dual operators.
    */
   int64_t operator_bytes;
+  /**
+   * Relative size of a tangential force beyond its bound, of the worst node with friction.
+   */
+  double friction_cone;
+  /**
+   * Relative work that friction does not do: force that is missing or across where a node slips, of
+   * the worst node.
+   */
+  double friction_work;
+  /**
+   * Relative slip where the force is within its bound, of the worst node.
+   */
+  double friction_stick;
+  /**
+   * Nodes with friction.
+   */
+  int64_t nodes;
+  /**
+   * Nodes that stick in the answer.
+   */
+  int64_t sticking;
+  /**
+   * Nodes that slip in the answer.
+   */
+  int64_t slipping;
+  /**
+   * Newton steps of friction.
+   */
+  int64_t friction_steps;
+  /**
+   * Starts that they took, over all groups of bodies with friction.
+   */
+  int64_t friction_starts;
 } feti_info;
 
 /**
@@ -880,11 +963,11 @@ typedef struct feti_certificate {
    */
   double worst;
   /**
-   * Relative error of equilibrium `K u + B'lambda + H'mu = f`, worst body.
+   * Relative error of equilibrium `K u + B'lambda + H'mu + T'lambda_t = f`, worst body.
    */
   double equilibrium;
   /**
-   * Relative error of the balance `R'(f - B'lambda - H'mu) = 0`, worst floating body.
+   * Relative error of the balance `R'(f - B'lambda - H'mu - T'lambda_t) = 0`, worst floating body.
    */
   double balance;
   /**
@@ -934,6 +1017,32 @@ typedef struct feti_certificate {
    * Row with the worst complementarity, from 0, -1: none.
    */
   int64_t complementarity_row;
+  /**
+   * Relative size of a tangential force beyond its bound, `(|lambda_t| - b)_+` with b = bound +
+   * coefficient lambda_n, worst node with friction.
+   */
+  double friction_cone;
+  /**
+   * Relative size of `b |s| - lambda_t's`, the work that friction does not do: zero only with a
+   * stick inside the bound and a slip s along the force; worst node.
+   */
+  double friction_work;
+  /**
+   * Relative size of the slip where the force is within its bound, worst node.
+   */
+  double friction_stick;
+  /**
+   * Node with the worst force beyond its bound, from 0, -1: none.
+   */
+  int64_t friction_cone_node;
+  /**
+   * Node with the worst work, from 0, -1: none.
+   */
+  int64_t friction_work_node;
+  /**
+   * Node with the worst slip, from 0, -1: none.
+   */
+  int64_t friction_stick_node;
 } feti_certificate;
 
 #ifdef __cplusplus
@@ -1053,12 +1162,13 @@ int32_t feti_body_info(struct feti_problem *p, int64_t body, struct feti_body_fa
 /**
  * What the last solve, or the last setup that failed, has found out about the problem.
  *
- * After FETI_LOAD_NOT_HELD: the body that escapes, its motion and the margin. After
- * FETI_GAPS_CONTRADICT: the rows that contradict each other. Of several groups of bodies without
- * an answer the first is told of. After FETI_INDEFINITE, FETI_NULL_SPACE and the like: the body
- * and the unknown. With an answer: motions left undetermined, redundant rows, bodies that no row
- * touches. Kept until the next solve or the next setup that fails; FETI_STATE before the first.
- * After a failure nothing is written.
+ * After FETI_LOAD_NOT_HELD: the body that escapes, its motion and the margin. After FETI_SLIDES:
+ * the body that slides, its motion and the capacity of friction. After FETI_GAPS_CONTRADICT: the
+ * rows that contradict each other. Of several groups of bodies without an answer the first is told
+ * of. After FETI_INDEFINITE, FETI_NULL_SPACE and the like: the body and the unknown. With an
+ * answer: motions left undetermined, redundant rows, bodies that no row touches. Kept until the
+ * next solve or the next setup that fails; FETI_STATE before the first. After a failure nothing is
+ * written.
  *
  * @param[in]     p   (scalar) the handle
  * @param[in,out] out (scalar) `struct_size` set, at least 16
@@ -1166,9 +1276,9 @@ int32_t feti_diagnosis_undetermined_motion(struct feti_problem *p,
  * Reads the rigid motion with which a body escapes, unknown by unknown.
  *
  * The load does work on it, and no row resists. It is scaled to largest entry 1 over all bodies;
- * bodies that stay have zeros. After FETI_INDEFINITE the motion that K drives further than closed
- * rows resist. FETI_STATE unless the last solve ended with one of both and a motion. After a
- * failure nothing is written.
+ * bodies that stay have zeros. After FETI_SLIDES the motion that friction resists too little,
+ * after FETI_INDEFINITE the one that K drives further than closed rows resist. FETI_STATE unless
+ * the last solve ended with one of these and a motion. After a failure nothing is written.
  *
  * @param[in]  p    (scalar) the handle
  * @param[in]  body (scalar) number of the body, from 0
@@ -1445,6 +1555,202 @@ int32_t feti_problem_write(struct feti_problem *p, const char *path);
  * Safety: `path` is NUL terminated.
  */
 int32_t feti_problem_read(struct feti_problem *p, const char *path);
+
+/**
+ * Adds nodes with friction, with 32-bit indices.
+ *
+ * A node has a normal row b_n, which is a contact row that is there (feti_rows_add_i32,
+ * feti_rows_add_i64), and dim tangential rows T, dim = 1 in the plane and 2 in space. Its
+ * tangential force lambda_t acts on the bodies as -T'lambda_t, its slip is `s = T u - s_old - C_t
+ * lambda_t`: the motion of the body with positive entries against the other one. |lambda_t| <= b
+ * with b = bound + coefficient lambda_n; the node sticks, s = 0, or slips along the force,
+ * `lambda_t = b s / |s|`: slip and force have one sign. Coefficient 0 is friction of Tresca, bound
+ * 0 of Coulomb; `bound` acts at open nodes too.
+ *
+ * Contact row and tangential rows of a node are to be multiplied by one factor (that of an area,
+ * of a unit): lengths that differ by more than 1e3 are refused. Tangential rows may be oblique,
+ * and may have no entries. `normal_row` is the number of a contact row, never of an equality row,
+ * and of one node alone. A pair of body and unknown that comes twice in a row is summed. s_old and
+ * C_t are zero (feti_friction_reference, feti_friction_compliance). The data are copied, the nodes
+ * numbered behind those that are there; all nodes have the same dim. Factors of the bodies stay,
+ * the last answer does not. FETI_STATE where `body` is NULL and some bodies have numbers of the
+ * host, others have none. After a failure nothing is added.
+ *
+ * @param[in]  p           (scalar) the handle
+ * @param[in]  nodes       (scalar) number of nodes, 0 adds none
+ * @param[in]  dim         (scalar) tangential rows of a node, 1 or 2
+ * @param[in]  normal_row  (nodes) contact row of each node, counted from `base`; `base` - 1: none,
+ *                         the bound acts alone
+ * @param[in]  row_ptr     (dim * nodes + 1) tangential row i, dim of them for each node, holds the
+ *                         entries `row_ptr[i]` to `row_ptr[i + 1] - 1`; starts with `base`
+ * @param[in]  body        (row_ptr[dim * nodes] - base) body of each entry, counted from `base`;
+ *                         NULL: `dof` is the host's number of the unknown
+ *                         (feti_body_numbering_i32), without numbers it counts through all bodies
+ * @param[in]  dof         (row_ptr[dim * nodes] - base) unknown of each entry, counted from `base`
+ * @param[in]  val         (row_ptr[dim * nodes] - base) entries of T
+ * @param[in]  base        (scalar) 0 or 1: what `normal_row`, `row_ptr`, `body` and `dof` count
+ *                         from
+ * @param[in]  coefficient (nodes) coefficient of friction, >= 0, no unit; 0 without a contact row;
+ *                         NULL: zeros
+ * @param[in]  bound       (nodes) bound without contact force, >= 0, force; NULL: zeros
+ * @param[out] first       (scalar) number of the first node added, from 0; may be NULL
+ *
+ * Safety: The arrays have the given shapes.
+ */
+int32_t feti_friction_add_i32(struct feti_problem *p,
+                              int64_t nodes,
+                              int32_t dim,
+                              const int32_t *normal_row,
+                              const int32_t *row_ptr,
+                              const int32_t *body,
+                              const int32_t *dof,
+                              const double *val,
+                              int32_t base,
+                              const double *coefficient,
+                              const double *bound,
+                              int64_t *first);
+
+/**
+ * Adds nodes with friction, with 64-bit indices.
+ *
+ * A node has a normal row b_n, which is a contact row that is there (feti_rows_add_i32,
+ * feti_rows_add_i64), and dim tangential rows T, dim = 1 in the plane and 2 in space. Its
+ * tangential force lambda_t acts on the bodies as -T'lambda_t, its slip is `s = T u - s_old - C_t
+ * lambda_t`: the motion of the body with positive entries against the other one. |lambda_t| <= b
+ * with b = bound + coefficient lambda_n; the node sticks, s = 0, or slips along the force,
+ * `lambda_t = b s / |s|`: slip and force have one sign. Coefficient 0 is friction of Tresca, bound
+ * 0 of Coulomb; `bound` acts at open nodes too.
+ *
+ * Contact row and tangential rows of a node are to be multiplied by one factor (that of an area,
+ * of a unit): lengths that differ by more than 1e3 are refused. Tangential rows may be oblique,
+ * and may have no entries. `normal_row` is the number of a contact row, never of an equality row,
+ * and of one node alone. A pair of body and unknown that comes twice in a row is summed. s_old and
+ * C_t are zero (feti_friction_reference, feti_friction_compliance). The data are copied, the nodes
+ * numbered behind those that are there; all nodes have the same dim. Factors of the bodies stay,
+ * the last answer does not. FETI_STATE where `body` is NULL and some bodies have numbers of the
+ * host, others have none. After a failure nothing is added.
+ *
+ * @param[in]  p           (scalar) the handle
+ * @param[in]  nodes       (scalar) number of nodes, 0 adds none
+ * @param[in]  dim         (scalar) tangential rows of a node, 1 or 2
+ * @param[in]  normal_row  (nodes) contact row of each node, counted from `base`; `base` - 1: none,
+ *                         the bound acts alone
+ * @param[in]  row_ptr     (dim * nodes + 1) tangential row i, dim of them for each node, holds the
+ *                         entries `row_ptr[i]` to `row_ptr[i + 1] - 1`; starts with `base`
+ * @param[in]  body        (row_ptr[dim * nodes] - base) body of each entry, counted from `base`;
+ *                         NULL: `dof` is the host's number of the unknown
+ *                         (feti_body_numbering_i32), without numbers it counts through all bodies
+ * @param[in]  dof         (row_ptr[dim * nodes] - base) unknown of each entry, counted from `base`
+ * @param[in]  val         (row_ptr[dim * nodes] - base) entries of T
+ * @param[in]  base        (scalar) 0 or 1: what `normal_row`, `row_ptr`, `body` and `dof` count
+ *                         from
+ * @param[in]  coefficient (nodes) coefficient of friction, >= 0, no unit; 0 without a contact row;
+ *                         NULL: zeros
+ * @param[in]  bound       (nodes) bound without contact force, >= 0, force; NULL: zeros
+ * @param[out] first       (scalar) number of the first node added, from 0; may be NULL
+ *
+ * Safety: The arrays have the given shapes.
+ */
+int32_t feti_friction_add_i64(struct feti_problem *p,
+                              int64_t nodes,
+                              int32_t dim,
+                              const int64_t *normal_row,
+                              const int64_t *row_ptr,
+                              const int64_t *body,
+                              const int64_t *dof,
+                              const double *val,
+                              int32_t base,
+                              const double *coefficient,
+                              const double *bound,
+                              int64_t *first);
+
+/**
+ * Replaces the law of nodes: coefficients, bounds, or both.
+ *
+ * What is NULL stays as it is. The numbers are copied; factors of the bodies and the last answer
+ * stay, but for a node that may carry no force before and some after, or the reverse: that drops
+ * the answer. After a failure all laws are as they were.
+ *
+ * @param[in] p           (scalar) the handle
+ * @param[in] first       (scalar) first node to change, from 0
+ * @param[in] nodes       (scalar) number of nodes to change
+ * @param[in] coefficient (nodes) coefficient of friction, >= 0, no unit; 0 without a contact row;
+ *                        NULL: it stays
+ * @param[in] bound       (nodes) bound without contact force, >= 0, force; NULL: it stays
+ *
+ * Safety: The arrays have the given shapes.
+ */
+int32_t feti_friction_law(struct feti_problem *p,
+                          int64_t first,
+                          int64_t nodes,
+                          const double *coefficient,
+                          const double *bound);
+
+/**
+ * Makes the stick of nodes elastic, `s = T u - s_old - C_t lambda_t` with C_t = 1/k_t.
+ *
+ * A node that sticks then gives way by C_t lambda_t. Nodes that are added are rigid, C_t = 0; a
+ * node whose rows are multiplied by t has a compliance times t^2. The numbers are copied and stay
+ * until they are replaced or the nodes are cleared; factors of the bodies stay, the last answer
+ * does not. After a failure all compliances are as they were.
+ *
+ * @param[in] p      (scalar) the handle
+ * @param[in] first  (scalar) first node to change, from 0
+ * @param[in] nodes  (scalar) number of nodes to change
+ * @param[in] inv_kt (nodes) 1/k_t >= 0, length / force, for all tangential rows of the node; 0:
+ *                   rigid
+ *
+ * Safety: The array has the given shape.
+ */
+int32_t feti_friction_compliance(struct feti_problem *p, int64_t first, int64_t nodes, const double *inv_kt);
+
+/**
+ * Gives s_old, what the slips of nodes are counted from: T u - C_t lambda_t at the beginning of
+ * the load step.
+ *
+ * Nodes that are added have zeros; feti_friction_commit takes s_old from the answer. A host that
+ * solves for the increment of a Newton iteration gives T (u_begin - u_k). The numbers are copied;
+ * factors of the bodies and the last answer stay, with the slips it had. After a failure all of
+ * them are as they were.
+ *
+ * @param[in] p     (scalar) the handle
+ * @param[in] first (scalar) first node to change, from 0
+ * @param[in] nodes (scalar) number of nodes to change
+ * @param[in] dim   (scalar) tangential rows of a node, 1 or 2; not looked at without nodes
+ * @param[in] s_old (dim * nodes) node after node, length; 0 for rows without entries
+ *
+ * Safety: The array has the given shape.
+ */
+int32_t feti_friction_reference(struct feti_problem *p,
+                                int64_t first,
+                                int64_t nodes,
+                                int32_t dim,
+                                const double *s_old);
+
+/**
+ * Ends a load step: s_old becomes what the last answer has reached, `T u - C_t lambda_t`, at every
+ * node, open ones too.
+ *
+ * To be called once a step is accepted, before or after the loads of the next one are given. The
+ * answer stays as it was, with the slips of its step; so does where the next solve starts. A
+ * second call does what the first did. To take a step back, save the state before it
+ * (feti_state_save). FETI_STATE before a solve has given an answer, where a group of bodies has
+ * none, and where the answer is not certified (a status of feti_solve other than FETI_OK and
+ * FETI_MARGINAL). After a failure s_old is as it was.
+ *
+ * @param[in] p (scalar) the handle
+ */
+int32_t feti_friction_commit(struct feti_problem *p);
+
+/**
+ * Removes all nodes with friction; their contact rows stay.
+ *
+ * Numbering starts again at 0, and the next nodes may have another dim. feti_rows_clear with
+ * FETI_INEQUALITY removes them too. Factors of the bodies stay, the last answer does not.
+ *
+ * @param[in] p (scalar) the handle
+ */
+int32_t feti_friction_clear(struct feti_problem *p);
 
 /**
  * Names the function that gets what setups and solves tell in words.
@@ -1901,9 +2207,10 @@ int32_t feti_on_progress(struct feti_problem *p, feti_progress_fn callback, void
 int32_t feti_displacement(struct feti_problem *p, int64_t body, int64_t n, double *u);
 
 /**
- * Reads the force of the rows on a body, -B'lambda, -H'mu or both: `K u = f + r`.
+ * Reads the force of the rows on a body, -B'lambda, -H'mu, -T'lambda_t or all of them: `K u = f +
+ * r`.
  *
- * By kinds it is that of the host's rows. Both together hold the force of the glue as well where
+ * By kinds it is that of the host's rows. All together hold the force of the glue as well where
  * unknowns of several bodies have one number (option glue): what these bodies do to each other. It
  * cancels in the sum over them, which FETI_ALL gives.
  *
@@ -1914,7 +2221,7 @@ int32_t feti_displacement(struct feti_problem *p, int64_t body, int64_t n, doubl
  * none. After a failure nothing is written.
  *
  * @param[in]  p    (scalar) the handle
- * @param[in]  kind (scalar) FETI_INEQUALITY, FETI_EQUALITY, or 0 for both
+ * @param[in]  kind (scalar) FETI_INEQUALITY, FETI_EQUALITY, FETI_TANGENTIAL, or 0 for all
  * @param[in]  body (scalar) number of the body, from 0, or FETI_ALL
  * @param[in]  n    (scalar) unknowns of the body; with FETI_ALL at least the largest number + 1,
  *                  without numbers all unknowns
@@ -1941,14 +2248,15 @@ int32_t feti_reaction(struct feti_problem *p, int32_t kind, int64_t body, int64_
 int32_t feti_amplitudes(struct feti_problem *p, int64_t body, int64_t r, double *alpha);
 
 /**
- * Reads the multipliers: lambda of `B u <= c`, or mu of `H u = h`.
+ * Reads the multipliers: lambda of `B u <= c`, mu of `H u = h`, or lambda_t of the nodes with
+ * friction, node after node.
  *
  * NaN for rows on bodies whose group has no answer (feti_solve), 0 for rows that never close.
  * FETI_STATE before a solve has given an answer. After a failure nothing is written.
  *
  * @param[in]  p      (scalar) the handle
- * @param[in]  kind   (scalar) FETI_INEQUALITY or FETI_EQUALITY
- * @param[in]  rows   (scalar) number of rows of the kind
+ * @param[in]  kind   (scalar) FETI_INEQUALITY, FETI_EQUALITY or FETI_TANGENTIAL
+ * @param[in]  rows   (scalar) number of rows of the kind; of tangential ones dim for each node
  * @param[out] lambda (rows) force, >= 0 for inequalities
  *
  * Safety: The array has the given shape.
@@ -1984,6 +2292,43 @@ int32_t feti_gaps(struct feti_problem *p, int64_t rows, double *slack);
  * Safety: The array has the given shape.
  */
 int32_t feti_active(struct feti_problem *p, int64_t rows, int32_t *state);
+
+/**
+ * Reads the slips of the last answer, `s = T u - s_old - C_t lambda_t` with the s_old of that
+ * solve.
+ *
+ * A slip has the sign of its force lambda_t (feti_multipliers with FETI_TANGENTIAL). NaN for nodes
+ * on bodies whose group has no answer (feti_solve). FETI_STATE before a solve has given an answer.
+ * After a failure nothing is written.
+ *
+ * @param[in]  p     (scalar) the handle
+ * @param[in]  nodes (scalar) number of nodes with friction
+ * @param[in]  dim   (scalar) tangential rows of a node, 1 or 2; not looked at without nodes
+ * @param[out] slip  (dim * nodes) node after node, length
+ *
+ * Safety: The array has the given shape.
+ */
+int32_t feti_friction_slips(struct feti_problem *p, int64_t nodes, int32_t dim, double *slip);
+
+/**
+ * Reads the states of the nodes in the last answer: what the certificate takes for zero at a node
+ * decides.
+ *
+ * FETI_FRICTION_OPEN where the bound is zero, and nothing but that: a node with `bound` > 0 sticks
+ * or slips though its contact is open; FETI_FRICTION_STICK with a force within its bound;
+ * FETI_FRICTION_SLIP with a slip along a force that reaches its bound; FETI_FRICTION_WEAK with a
+ * force that reaches its bound and no slip, to rounding; FETI_FRICTION_UNKNOWN for nodes on bodies
+ * whose group has no answer (feti_solve). FETI_STATE before a solve has given an answer. After a
+ * failure nothing is written.
+ *
+ * @param[in]  p     (scalar) the handle
+ * @param[in]  nodes (scalar) number of nodes with friction
+ * @param[out] state (nodes) FETI_FRICTION_OPEN, FETI_FRICTION_STICK, FETI_FRICTION_SLIP,
+ *                   FETI_FRICTION_WEAK or FETI_FRICTION_UNKNOWN
+ *
+ * Safety: The array has the given shape.
+ */
+int32_t feti_friction_states(struct feti_problem *p, int64_t nodes, int32_t *state);
 
 /**
  * Reads the size of the problem as it is given now.
@@ -2115,7 +2460,8 @@ int32_t feti_rows_compliance(struct feti_problem *p,
 /**
  * Removes all rows of a kind.
  *
- * Numbering of that kind starts again at 0. Factors of the bodies stay.
+ * Numbering of that kind starts again at 0. With the inequality rows go all nodes with friction
+ * (feti_friction_clear), whose contact rows they are. Factors of the bodies stay.
  *
  * @param[in] p    (scalar) the handle
  * @param[in] kind (scalar) FETI_INEQUALITY or FETI_EQUALITY
@@ -2166,9 +2512,10 @@ int32_t feti_setup(struct feti_problem *p);
  * reduce the error; FETI_INACCURATE where the certificate does not pass; FETI_MARGINAL where a
  * part of the load, below 1e-7 of it, is not held. A status below 0 comes without one for the
  * group of bodies it is about. FETI_LOAD_NOT_HELD where no contact force balances the load;
- * FETI_GAPS_CONTRADICT where rows contradict each other; FETI_INDEFINITE where K drives a soft
- * motion further than closed rows resist it; feti_diagnosis has the proof of each. It runs
- * feti_setup when it is due, and fails as that does.
+ * FETI_SLIDES where friction holds only a part of it and no rest was found; FETI_GAPS_CONTRADICT
+ * where rows contradict each other; FETI_INDEFINITE where K drives a soft motion further than
+ * closed rows resist it; feti_diagnosis has the proof of each. It runs feti_setup when it is due,
+ * and fails as that does.
  *
  * @param[in]     p    (scalar) the handle
  * @param[in,out] info (scalar) `struct_size` set, at least 16; may be NULL
@@ -2178,14 +2525,16 @@ int32_t feti_setup(struct feti_problem *p);
 int32_t feti_solve(struct feti_problem *p, struct feti_info *info);
 
 /**
- * Verifies an answer against the problem as it is given now: any answer, also another code's.
+ * Verifies an answer without tangential forces against the problem as it is given now: any answer,
+ * also another code's.
  *
  * Every figure is that of the worst body or the worst row, measured against its own forces and
  * deformation, and is named with it. Glue (option glue) is judged as equality rows are; the forces
  * in it are not given: they are those that serve the answer best. Rows that never close, c =
- * +infinity, are left out: what is given for their lambda counts as 0. Keeps nothing of the
- * answer: that of the last solve stays. Runs feti_setup when it is due, for the null spaces. After
- * a failure nothing is written.
+ * +infinity, are left out: what is given for their lambda counts as 0. At nodes with friction
+ * (feti_friction_add_i32 or _i64) the tangential force counts as 0: feti_check_friction takes it.
+ * Keeps nothing of the answer: that of the last solve stays. Runs feti_setup when it is due, for
+ * the null spaces. After a failure nothing is written.
  *
  * @param[in]     p      (scalar) the handle
  * @param[in]     n      (scalar) unknowns of all bodies
@@ -2208,6 +2557,41 @@ int32_t feti_check(struct feti_problem *p,
                    struct feti_certificate *out);
 
 /**
+ * Verifies an answer with tangential forces against the problem as it is given now: any answer,
+ * also another code's.
+ *
+ * As feti_check; the figures of friction judge, node by node, the forces lambda_t by the law and
+ * the slip `T u - s_old - C_t lambda_t` by the s_old that is there now: after feti_friction_commit
+ * that of the next step. Nodes that may carry no force (bound 0, no contact row that may close)
+ * are left out. After a failure nothing is written.
+ *
+ * @param[in]     p        (scalar) the handle
+ * @param[in]     n        (scalar) unknowns of all bodies
+ * @param[in]     u        (n) displacement, body after body, length
+ * @param[in]     rows     (scalar) number of inequality rows
+ * @param[in]     lambda   (rows) multipliers of `B u <= c`, force
+ * @param[in]     eqs      (scalar) number of equality rows
+ * @param[in]     mu       (eqs) multipliers of `H u = h`, force
+ * @param[in]     nodes    (scalar) number of nodes with friction
+ * @param[in]     dim      (scalar) tangential rows of a node, 1 or 2; not looked at without nodes
+ * @param[in]     lambda_t (dim * nodes) multipliers of the tangential rows, node after node, force
+ * @param[in,out] out      (scalar) `struct_size` set, at least 16
+ *
+ * Safety: The arrays have the given shapes, `out` leads to `struct_size` writable bytes.
+ */
+int32_t feti_check_friction(struct feti_problem *p,
+                            int64_t n,
+                            const double *u,
+                            int64_t rows,
+                            const double *lambda,
+                            int64_t eqs,
+                            const double *mu,
+                            int64_t nodes,
+                            int32_t dim,
+                            const double *lambda_t,
+                            struct feti_certificate *out);
+
+/**
  * Gives start values for the next solve.
  *
  * That solve starts from these multipliers, whatever option start says, and uses them up, whatever
@@ -2216,8 +2600,8 @@ int32_t feti_check(struct feti_problem *p,
  * from zero. A change of rows or bodies drops the values. After a failure earlier values stay.
  *
  * @param[in] p      (scalar) the handle
- * @param[in] kind   (scalar) FETI_INEQUALITY or FETI_EQUALITY
- * @param[in] rows   (scalar) number of rows of the kind
+ * @param[in] kind   (scalar) FETI_INEQUALITY, FETI_EQUALITY or FETI_TANGENTIAL
+ * @param[in] rows   (scalar) number of rows of the kind; of tangential ones dim for each node
  * @param[in] lambda (rows) force; a negative one of an inequality counts as zero
  *
  * Safety: The array has the given shape.
@@ -2225,11 +2609,12 @@ int32_t feti_check(struct feti_problem *p,
 int32_t feti_start_from(struct feti_problem *p, int32_t kind, int64_t rows, const double *lambda);
 
 /**
- * Saves loads, rows, multipliers and the contact state under a number.
+ * Saves loads, rows, friction, multipliers and the contact state under a number.
  *
- * Factors are not copied and the entries of the rows are shared, so that it costs no more than the
- * vectors. States live until they are dropped or the problem is destroyed; numbers are never used
- * again. After a failure nothing is saved.
+ * Of nodes with friction the laws, the compliances and s_old. Factors are not copied and the
+ * entries of the rows are shared, so that it costs no more than the vectors. States live until
+ * they are dropped or the problem is destroyed; numbers are never used again. After a failure
+ * nothing is saved.
  *
  * @param[in]  p  (scalar) the handle
  * @param[out] id (scalar) number of the state, from 0
@@ -2241,12 +2626,12 @@ int32_t feti_state_save(struct feti_problem *p, int64_t *id);
 /**
  * Goes back to a saved state: after a load step that was rejected.
  *
- * Loads and rows, with right-hand sides and compliances, are as they were, and so is the answer
- * unless a matrix or the rows have changed since; with option start = previous the next solve
- * continues from the saved multipliers, with start = cold it gives the bits it would have given
- * then. Matrices, null spaces and options stay as they are now; start values that were not used
- * yet are dropped. The state stays saved. FETI_STATE when bodies were added since; after a failure
- * nothing is changed.
+ * Loads and rows, with right-hand sides and compliances, and nodes with friction, with laws and
+ * s_old, are as they were, and so is the answer unless a matrix or the rows have changed since;
+ * with option start = previous the next solve continues from the saved multipliers, with start =
+ * cold it gives the bits it would have given then. Matrices, null spaces and options stay as they
+ * are now; start values that were not used yet are dropped. The state stays saved. FETI_STATE when
+ * bodies were added since; after a failure nothing is changed.
  *
  * @param[in] p  (scalar) the handle
  * @param[in] id (scalar) number of the state
@@ -2493,10 +2878,10 @@ int32_t feti_body_kplus(struct feti_problem *p,
 /**
  * Applies the dual operator, `y = F x` with `F = [B; H] K+ [B; H]' + C`.
  *
- * C = diag(1/k) is the compliance of the rows (feti_rows_compliance), 0 for rigid ones. Runs
- * feti_setup when it is due. `x` and `y` may be the same array. FETI_STATE where a body is cut
- * (feti_body_mesh_i32 or _i64) or unknowns are glued (option glue). After a failure nothing is
- * written.
+ * C = diag(1/k) is the compliance of the rows (feti_rows_compliance), 0 for rigid ones. Tangential
+ * rows of nodes with friction are not in it. Runs feti_setup when it is due. `x` and `y` may be
+ * the same array. FETI_STATE where a body is cut (feti_body_mesh_i32 or _i64) or unknowns are
+ * glued (option glue). After a failure nothing is written.
  *
  * @param[in]  p (scalar) the handle
  * @param[in]  m (scalar) inequality rows + equality rows

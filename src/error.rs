@@ -13,6 +13,8 @@ pub enum Kind {
     State,
     /// The load has a component that no contact force can balance: the dual (12) is infeasible.
     LoadNotHeld,
+    /// Bodies slide steadily: friction holds a part of the load, and no rest was found.
+    Slides,
     /// Rows of `B u <= c`, `H u = h` contradict each other.
     GapsContradict,
     /// A given null space is not one, or is incomplete.
@@ -54,6 +56,8 @@ pub struct Place {
     pub component: Option<usize>,
     pub element: Option<usize>,
     pub dof: Option<usize>,
+    /// Node with friction.
+    pub node: Option<usize>,
     pub row: Option<usize>,
     pub entry: Option<usize>,
     /// Position in a text or a file.
@@ -73,6 +77,7 @@ impl fmt::Display for Place {
             ("component", self.component),
             ("element", self.element),
             ("dof", self.dof),
+            ("node", self.node),
             ("row", self.row),
             ("entry", self.entry),
             ("byte", self.byte),
@@ -126,6 +131,7 @@ impl Error {
         component: usize,
         element: usize,
         dof: usize,
+        node: usize,
         row: usize,
         entry: usize,
         byte: usize,

@@ -8,7 +8,7 @@ const COUNTS: [&str; 8] =
     ["dofs", "pieces", "rows", "closed", "products", "implicit", "second_products", "entries"];
 
 /// Medians in seconds.
-const TIMES: [(Program, &str); 34] = [
+const TIMES: [(Program, &str); 37] = [
     (Program::Cut(1), "hand_over_cpu"),
     (Program::Cut(1), "cut_cpu"),
     (Program::Cut(1), "first_cpu"),
@@ -27,6 +27,9 @@ const TIMES: [(Program, &str); 34] = [
     (Program::Ours(1), "first_dual_operators_wall"),
     (Program::Ours(1), "first_dual_solve_wall"),
     (Program::Ours(1), "second_cpu"),
+    (Program::Frictionless, "first_cpu"),
+    (Program::Frictionless, "first_dual_operators_wall"),
+    (Program::Frictionless, "first_dual_solve_wall"),
     (Program::Parts, "ordering_cpu"),
     (Program::Parts, "analysis_cpu"),
     (Program::Parts, "plan_cpu"),

@@ -62,6 +62,7 @@ fn child(kind: &str, deck: &str, threads: &str) -> Result<(), String> {
     let by_elements = || model()?.by_elements().ok_or_else(|| "no deck by elements".to_string());
     match kind {
         "ours" => ours::run(build()?, threads.parse().map_err(|_| "no number of threads")?),
+        "frictionless" => ours::run(model()?.frictionless(), 1),
         "cut" => cut::run(by_elements()?, 0, threads.parse().map_err(|_| "no number of threads")?),
         "pieces" => cut::run(by_elements()?, threads.parse().map_err(|_| "no number of pieces")?, 2),
         "later" => cut::later(by_elements),

@@ -102,6 +102,7 @@ impl Peers {
         };
         match program {
             Program::Ours(threads) => own("ours", threads),
+            Program::Frictionless => own("frictionless", 1),
             Program::Cut(threads) => own("cut", threads),
             Program::Pieces(pieces) => own("pieces", pieces),
             Program::Later => own("later", 1),

@@ -1,6 +1,6 @@
 //! The decks of the benchmark.
 
-use decks::{Block, Blocks, ByElements, Cube, Deck};
+use decks::{rubbing, Block, Blocks, ByElements, Cube, Deck};
 
 use crate::runs::Program;
 
@@ -9,6 +9,8 @@ use crate::runs::Program;
 pub enum Model {
     /// Two stacked blocks of so many elements along each edge: what the goals are set for.
     Blocks(usize),
+    /// The same with friction, the upper one pushed along: about a third of the closed nodes slip.
+    Rubbing(usize),
     /// Two flat ones: elements along x and y, layers of each block.
     Flat(usize, usize),
     /// The upper of such blocks on a rigid obstacle in the place of the lower one.
@@ -30,6 +32,10 @@ pub enum Model {
 const VARIATION: f64 = 1e-3;
 const SEED: u64 = 1;
 
+/// Coefficient of friction, and the push as a part of the load that makes the upper block slide.
+const COEFFICIENT: f64 = 0.3;
+const PUSH: f64 = 0.5;
+
 /// Elements along the edge of a cube that is cut: so many that 1, 2, 3 and 4 divide them.
 const CUT: usize = 24;
 
@@ -44,11 +50,13 @@ pub struct Case {
 pub const PEERS: &str = "40k_peers";
 
 /// Small decks first: a figure that short runs leave noisy gets more of them.
-pub const CASES: [Case; 16] = [
+pub const CASES: [Case; 18] = [
     Case { name: "4k", model: Model::Blocks(8), rounds: 11 },
     Case { name: "13k", model: Model::Blocks(12), rounds: 7 },
     Case { name: "40k", model: Model::Blocks(18), rounds: 5 },
     Case { name: "144k", model: Model::Blocks(28), rounds: 3 },
+    Case { name: "40k_friction", model: Model::Rubbing(18), rounds: 5 },
+    Case { name: "144k_friction", model: Model::Rubbing(28), rounds: 3 },
     Case { name: "one_body", model: Model::OneBody(35), rounds: 1 },
     Case { name: "144k_cut", model: Model::Varied(28), rounds: 3 },
     Case { name: "140k_cut", model: Model::VariedBody(35), rounds: 1 },
@@ -90,10 +98,11 @@ pub fn case(name: &str) -> Option<&'static Case> {
 impl Case {
     /// What is run, in the order in which the programs take turns.
     pub fn programs(&self) -> Vec<Program> {
-        use Program::{Cholmod, Clarabel, Cut, Factor, Faer, Later, Osqp, Ours, Parts, Pieces};
+        use Program::{Cholmod, Clarabel, Cut, Factor, Faer, Frictionless, Later, Osqp, Ours, Parts, Pieces};
         match self.model {
             Model::Blocks(_) if self.name == PEERS => vec![Ours(1), Clarabel, Osqp],
             Model::Blocks(_) => vec![Ours(1), Cholmod(1), Ours(2), Cholmod(2), Parts],
+            Model::Rubbing(_) => vec![Ours(1), Frictionless, Ours(2)],
             Model::OneBody(_) => vec![Ours(1), Ours(2)],
             Model::Varied(28) => vec![Cut(1), Cholmod(1), Cut(2), Ours(1), Later],
             Model::Varied(36) => vec![Cut(2), Cholmod(2), Ours(2), Cut(1), Pieces(216), Pieces(729)],
@@ -109,6 +118,7 @@ impl Model {
     pub fn build(self) -> Deck {
         match self {
             Model::Blocks(elements) => blocks(elements).build(),
+            Model::Rubbing(elements) => rubbing::blocks(&blocks(elements), COEFFICIENT, PUSH),
             Model::Flat(across, layers) => blocks(across).layered(layers),
             Model::OneBody(elements) => one_body(blocks(elements).build()),
             Model::Varied(elements) => blocks(elements).varied(VARIATION, SEED),
@@ -119,6 +129,14 @@ impl Model {
                 Cube { subdomains: [side; 3], elements: CUT / side, gap, ..Cube::default() }.build()
             }
             Model::Clamped(elements) => clamped(elements),
+        }
+    }
+
+    /// Without friction, and without the push, which nothing else holds.
+    pub fn frictionless(self) -> Deck {
+        match self {
+            Model::Rubbing(elements) => Model::Blocks(elements).build(),
+            other => other.build(),
         }
     }
 
@@ -139,7 +157,9 @@ impl Model {
         let stacked = |across: usize, layers: usize| 3 * (across + 1).pow(2) * (2 * layers + 1);
         let cubes = |side: usize, elements: usize| 3 * side.pow(3) * (elements + 1).pow(3);
         match self {
-            Model::Blocks(elements) | Model::Varied(elements) => stacked(elements, elements),
+            Model::Blocks(elements) | Model::Rubbing(elements) | Model::Varied(elements) => {
+                stacked(elements, elements)
+            }
             Model::Flat(across, layers) => stacked(across, layers),
             Model::OneBody(elements) | Model::VariedBody(elements) => cubes(1, elements),
             Model::Cube(side) => cubes(side, 8),

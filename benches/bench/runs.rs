@@ -13,6 +13,8 @@ use crate::peers::Peers;
 pub enum Program {
     /// The contact solve on so many threads.
     Ours(usize),
+    /// That of the same deck without friction, on one thread.
+    Frictionless,
     /// The same of bodies that are handed over by their elements, and cut as the library chooses.
     Cut(usize),
     /// The same on two threads, each body cut into about so many pieces.
@@ -37,6 +39,7 @@ impl Program {
     pub fn name(self) -> String {
         match self {
             Program::Ours(threads) => format!("ours_{threads}"),
+            Program::Frictionless => "frictionless".into(),
             Program::Cut(threads) => format!("cut_{threads}"),
             Program::Pieces(pieces) => format!("pieces_{pieces}"),
             Program::Later => "later".into(),

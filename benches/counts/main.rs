@@ -14,6 +14,7 @@ mod hand_over;
 mod linear;
 mod load_steps;
 mod measure;
+mod rubbing;
 mod table;
 mod verdict;
 
@@ -39,6 +40,9 @@ struct Tally {
 /// Coarse solves per product with F, on the average of the decks that have a coarse problem.
 const COARSE_SOLVES: f64 = 3.0;
 
+/// Products of nine steps with friction, warm, against linear problems that start cold.
+const LOOP: f64 = 1.0;
+
 fn main() -> ExitCode {
     let wanted: Vec<String> =
         std::env::args().skip(1).filter(|argument| !argument.starts_with('-')).collect();
@@ -61,6 +65,10 @@ fn main() -> ExitCode {
     }
     if wanted.is_empty() {
         tally.coarse_solves();
+    }
+    rubbing::groups().into_iter().for_each(|group| tally.friction(&group, &wants));
+    for (name, build) in rubbing::loops().into_iter().filter(|(name, _)| wants(name)) {
+        tally.friction_loop(name, &*build);
     }
     let Tally { lines, short, failed, near, .. } = tally;
     println!(
@@ -154,6 +162,59 @@ impl Tally {
         let word = if short { "short" } else { "ok" };
         println!("{what} F {from} to {to} ratio {ratio:.2} goal {goal:.2} {word}");
         flush();
+    }
+
+    /// A line for each deck with friction, and one for all of the group that were asked for.
+    fn friction(&mut self, group: &rubbing::Group, wants: &dyn Fn(&str) -> bool) {
+        let mut measured = Vec::new();
+        for case in group.cases.iter().filter(|case| wants(&case.name) || wants(group.name)) {
+            self.lines += 1;
+            match case.measure() {
+                Ok(measurement) => {
+                    self.short += usize::from(measurement.ratio() > group.worst);
+                    println!("{}", measurement.lines(&case.name, group.worst));
+                    flush();
+                    measured.push(measurement);
+                }
+                Err(fault) => self.fail(&case.name, &fault),
+            }
+        }
+        let mut ratios: Vec<f64> = measured.iter().map(rubbing::Measurement::ratio).collect();
+        ratios.sort_by(f64::total_cmp);
+        let Some(worst) = ratios.last() else { return };
+        let median = ratios[ratios.len() / 2];
+        self.lines += 1;
+        self.short += usize::from(median > group.median);
+        let word = if median > group.median { "short" } else { "ok" };
+        println!(
+            "friction {} decks {} F {} linear {} worst {worst:.2} median {median:.2} goal {:.2} {word}",
+            group.name,
+            measured.len(),
+            measured.iter().map(|m| m.products).sum::<usize>(),
+            measured.iter().map(|m| m.linear).sum::<usize>(),
+            group.median,
+        );
+        flush();
+    }
+
+    /// Nine pushes, warm, against linear problems that start cold.
+    fn friction_loop(&mut self, name: &str, build: &dyn Fn(f64) -> decks::Deck) {
+        match rubbing::measure_loop(build) {
+            Ok((products, linear)) => {
+                self.lines += 1;
+                let ratio = products as f64 / linear as f64;
+                let word = if ratio > LOOP { "short" } else { "ok" };
+                self.short += usize::from(ratio > LOOP);
+                println!(
+                    "loop {name} F {products} linear cold {linear} ratio {ratio:.2} goal {LOOP:.2} {word}"
+                );
+                flush();
+            }
+            Err(fault) => {
+                self.lines += 1;
+                self.fail(name, &fault);
+            }
+        }
     }
 
     fn fail(&mut self, name: &str, fault: &str) {

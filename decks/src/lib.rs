@@ -11,6 +11,7 @@
 //! | [`stack`] | stacked bodies on non-matching grids, node-to-segment rows |
 //! | [`cube`] | an elastic body cut into subdomains, glued by equalities, on an obstacle |
 //! | [`masonry`] | towers, walls and heaps of many loose blocks |
+//! | [`rubbing`] | bodies with friction: pressed together and pushed along each other |
 //! | [`pieces`] | the benchmark cut into glued pieces |
 //! | [`small`] | one to three unknowns, solved by hand |
 //! | [`battery`] | random small hard problems whose outcome is known by construction |
@@ -37,6 +38,7 @@ pub mod membrane;
 pub mod mesh;
 pub mod pieces;
 pub mod random;
+pub mod rubbing;
 pub mod second;
 pub mod small;
 pub mod sparse;

@@ -47,9 +47,10 @@ pub fn solve(host: &mut Host) {
     }
 }
 
-/// u, lambda, mu of the last answer.
-fn answer(host: &Host) -> [Vec<f64>; 3] {
+/// u, lambda, mu, lambda_t of the last answer.
+fn answer(host: &Host) -> [Vec<f64>; 4] {
     let [mut u, mut lambda, mut mu] = [Vec::new(), vec![0.0; host.rows[0]], vec![0.0; host.rows[1]]];
+    let mut tangential = vec![0.0; host.nodes * host.dim];
     // SAFETY: every array has the length that is named.
     unsafe {
         for (k, body) in host.bodies.iter().enumerate() {
@@ -59,20 +60,26 @@ fn answer(host: &Host) -> [Vec<f64>; 3] {
         }
         assert_eq!(feti_multipliers(host.p, KINDS[0], host.rows[0] as i64, lambda.as_mut_ptr()), FETI_OK);
         assert_eq!(feti_multipliers(host.p, KINDS[1], host.rows[1] as i64, mu.as_mut_ptr()), FETI_OK);
+        let (rows, to) = (tangential.len() as i64, tangential.as_mut_ptr());
+        assert_eq!(feti_multipliers(host.p, FETI_TANGENTIAL, rows, to), FETI_OK);
     }
-    [u, lambda, mu]
+    [u, lambda, mu, tangential]
 }
 
-/// The answer is finite, and feti_check accepts what feti_solve has accepted.
+/// The answer is finite, and feti_check_friction accepts what feti_solve has accepted.
 fn certify(host: &mut Host) {
-    let [u, lambda, mu] = answer(host);
-    assert!([&u, &lambda, &mu].into_iter().flatten().all(|value| value.is_finite()), "an infinite answer");
+    let [u, lambda, mu, tangential] = answer(host);
+    assert!(
+        [&u, &lambda, &mu, &tangential].into_iter().flatten().all(|value| value.is_finite()),
+        "an infinite answer"
+    );
     host.plain();
     let mut out = sized!(host, feti_certificate);
     let [n, rows, eqs] = [u.len() as i64, lambda.len() as i64, mu.len() as i64];
+    let (nodes, dim, t) = (host.nodes as i64, host.dim as i32, tangential.as_ptr());
+    let (u, lambda, mu) = (u.as_ptr(), lambda.as_ptr(), mu.as_ptr());
     // SAFETY: every array has the length that is named.
-    let status =
-        unsafe { feti_check(host.p, n, u.as_ptr(), rows, lambda.as_ptr(), eqs, mu.as_ptr(), &mut out) };
+    let status = unsafe { feti_check_friction(host.p, n, u, rows, lambda, eqs, mu, nodes, dim, t, &mut out) };
     host.note(status);
     // Functions of the host that have counted to their end are no answer.
     let ended = status == FETI_CALLBACK && host.may_refuse;
@@ -111,6 +118,7 @@ pub fn results(host: &mut Host) {
         let status = feti_active(host.handle(), host.known(host.rows[0]), host.out(&mut state));
         host.done(status, &[&state]);
     }
+    super::friction::results(host);
     if let Some(body) = pick(host) {
         of_body(host, body);
     }

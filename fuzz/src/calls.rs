@@ -4,7 +4,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use super::buffers::Digest;
 use super::host::Host;
-use super::{ask, give, scenes, stiffness, whole};
+use super::{ask, friction, give, scenes, stiffness, whole};
 
 /// Sequences run, and those of them in which a solve was certified (status FETI_OK, accepted by feti_check).
 pub static SEQUENCES: AtomicU64 = AtomicU64::new(0);
@@ -45,7 +45,7 @@ fn sequence(data: &[u8]) -> (Digest, u64) {
 }
 
 fn one(host: &mut Host) {
-    let call = host.bytes.below(40);
+    let call = host.bytes.below(43);
     match call {
         0 => {
             host.destroy();
@@ -90,6 +90,7 @@ fn one(host: &mut Host) {
         }
         37 => whole::log(host),
         38 => whole::options(host),
+        40..=42 => friction::one(host),
         _ => {
             let which = host.bytes.below(3);
             scenes::hand_over(host, which);

@@ -5,8 +5,8 @@ use feti_contact::solver::Problem;
 
 use super::bytes::Bytes;
 
-const TAGS: [&[u8; 4]; 10] =
-    [b"OPTS", b"BODY", b"STIF", b"NULL", b"COOR", b"COOF", b"FIXD", b"LOAD", b"ROWS", b"none"];
+const TAGS: [&[u8; 4]; 11] =
+    [b"OPTS", b"BODY", b"STIF", b"NULL", b"COOR", b"COOF", b"FIXD", b"LOAD", b"ROWS", b"none", b"FRIC"];
 /// Problems with more unknowns or rows are not solved.
 const LARGEST: usize = 64;
 
@@ -57,7 +57,7 @@ pub fn run(data: &[u8]) {
             error.kind
         );
         let counts = problem.sizes();
-        assert_eq!(counts.bodies + counts.rows + counts.equalities, 0);
+        assert_eq!(counts.bodies + counts.rows + counts.equalities + counts.nodes, 0);
         return;
     }
     let written = problem.write_bytes().expect("a problem that was read is written");
@@ -65,7 +65,7 @@ pub fn run(data: &[u8]) {
     back.read_bytes(&written).expect("what was written is read");
     assert!(back.write_bytes().expect("it is written again") == written, "other bytes");
     let counts = problem.sizes();
-    if counts.dofs <= LARGEST && counts.rows + counts.equalities <= LARGEST {
+    if counts.dofs <= LARGEST && counts.rows + counts.equalities + counts.tangential <= LARGEST {
         solve(problem);
     }
 }

@@ -243,6 +243,9 @@ pub fn rows_clear(host: &mut Host) {
     if host.done(status, &[]) {
         let kind = KINDS.iter().position(|k| *k == code).expect("an unknown kind was taken");
         host.rows[kind] = 0;
+        if kind == 0 {
+            (host.nodes, host.dim) = (0, 0);
+        }
         host.changed();
     }
 }
@@ -281,7 +284,7 @@ pub fn states(host: &mut Host) {
             0 | 3 => {
                 let status = feti_state_save(host.handle(), host.out(&mut number));
                 if host.done(status, &[&number]) {
-                    host.states.push((number.cells[0], host.rows));
+                    host.states.push((number.cells[0], host.rows, (host.nodes, host.dim)));
                 }
             }
             1 => {
@@ -289,7 +292,8 @@ pub fn states(host: &mut Host) {
                 let status = feti_state_restore(p, id);
                 if host.done(status, &[]) {
                     let state = host.states.iter().find(|state| state.0 == id);
-                    host.rows = state.expect("no state with this number was saved").1;
+                    let state = state.expect("no state with this number was saved");
+                    (host.rows, (host.nodes, host.dim)) = (state.1, state.2);
                     host.changed();
                 }
             }

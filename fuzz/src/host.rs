@@ -26,6 +26,9 @@ pub struct Host<'a> {
     pub bodies: Vec<Model>,
     /// Rows of each kind.
     pub rows: [usize; 2],
+    /// Nodes with friction, and the tangential rows of one.
+    pub nodes: usize,
+    pub dim: usize,
     /// What the library may look at until a body gets another matrix.
     pub lent: Vec<Lent>,
     /// A body has numbers of the host.
@@ -33,8 +36,8 @@ pub struct Host<'a> {
     /// A function of the host may report a failure.
     pub may_refuse: bool,
     pub listener: Option<Box<super::whole::Listener>>,
-    /// Numbers of saved states, and the rows of each kind that come back with them.
-    pub states: Vec<(i64, [usize; 2])>,
+    /// Numbers of saved states, and the rows of each kind and nodes that come back with them.
+    pub states: Vec<(i64, [usize; 2], (usize, usize))>,
     /// What the host of [`super::give::progress`] counts; an address that stays.
     pub watcher: Box<super::give::Watcher>,
     pub digest: Digest,
@@ -57,6 +60,8 @@ impl<'a> Host<'a> {
             dead: std::ptr::null_mut(),
             bodies: Vec::new(),
             rows: [0; 2],
+            nodes: 0,
+            dim: 0,
             lent: Vec::new(),
             numbered: false,
             may_refuse: false,
@@ -79,6 +84,7 @@ impl<'a> Host<'a> {
         assert_eq!(unsafe { feti_problem_create(&mut self.p) }, FETI_OK);
         (self.bodies, self.rows, self.states) = (Vec::new(), [0; 2], Vec::new());
         (self.kept, self.injected) = (None, false);
+        (self.nodes, self.dim) = (0, 0);
         (self.lent, self.numbered, self.may_refuse, self.listener) = (Vec::new(), false, false, None);
     }
 
@@ -213,7 +219,7 @@ impl<'a> Host<'a> {
     /// Every status is one of the header, a right handle is found, and nothing fails inside.
     pub fn note(&mut self, status: i32) {
         self.digest.feed(status as u64);
-        let known = (FETI_OVERFLOW..=FETI_MARGINAL).contains(&status)
+        let known = (FETI_SLIDES..=FETI_MARGINAL).contains(&status)
             || (FETI_ARGUMENT - 12..=FETI_ARGUMENT).contains(&status);
         assert!(known, "status {status}");
         assert!(status != FETI_HANDLE || self.spoilt, "the handle was right");
@@ -236,6 +242,10 @@ impl<'a> Host<'a> {
                 let mut lambda = Out::<f64>::new(rows);
                 feed(feti_multipliers(self.p, kind, rows as i64, lambda.cells.as_mut_ptr()), &lambda);
             }
+            let rows = self.nodes * self.dim;
+            let mut tangential = Out::<f64>::new(rows);
+            let to = tangential.cells.as_mut_ptr();
+            feed(feti_multipliers(self.p, FETI_TANGENTIAL, rows as i64, to), &tangential);
             let mut slack = Out::<f64>::new(self.rows[0]);
             feed(feti_gaps(self.p, self.rows[0] as i64, slack.cells.as_mut_ptr()), &slack);
             for (k, body) in self.bodies.iter().enumerate().filter(|(_, body)| body.n <= LARGEST) {

@@ -10,6 +10,7 @@
 //! | `scenes` | whole problems that have a solution |
 //! | `give`, `ask` | the calls that change a problem, and those that read it |
 //! | `stiffness` | matrices in every form, copied or lent, their new values, functions of the host |
+//! | `friction` | nodes with friction |
 //! | `whole` | calls over all bodies, numbers of the host, facts, log, options by one text |
 //! | `calls` | the target: a sequence of them |
 //! | `text` | the target: options by name and by text |
@@ -20,6 +21,7 @@ pub mod buffers;
 pub mod bytes;
 pub mod calls;
 pub mod file;
+pub mod friction;
 pub mod give;
 pub mod host;
 pub mod models;

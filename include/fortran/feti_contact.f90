@@ -28,18 +28,22 @@
 module feti_contact
   use feti_contact_c, only: &
     ! kinds of rows, storage of K, null spaces, states of contact rows, types of options
-    FETI_INEQUALITY, FETI_EQUALITY, FETI_FULL, FETI_LOWER, FETI_UPPER, FETI_EXACT, FETI_CANDIDATES, FETI_SOFT, &
+    FETI_INEQUALITY, FETI_EQUALITY, FETI_TANGENTIAL, FETI_FULL, FETI_LOWER, FETI_UPPER, FETI_EXACT, FETI_CANDIDATES, FETI_SOFT, &
     FETI_COPY, FETI_BORROW, FETI_ALL, FETI_ORIGIN_EXACT, FETI_ORIGIN_CANDIDATES, FETI_ORIGIN_COORDINATES, FETI_ORIGIN_FOUND, &
     FETI_ROW_OPEN, FETI_ROW_CLOSED, FETI_ROW_WEAK, FETI_ROW_UNKNOWN, FETI_OPTION_F64, FETI_OPTION_I64, FETI_OPTION_STR, &
+    ! states of nodes with friction
+    FETI_FRICTION_OPEN, FETI_FRICTION_STICK, FETI_FRICTION_SLIP, FETI_FRICTION_WEAK, FETI_FRICTION_UNKNOWN, &
     ! phases and kinds of steps that a progress function hears of
     FETI_PHASE_SETUP, FETI_PHASE_SOLVE, FETI_STEP_CONJUGATE_GRADIENT, FETI_STEP_EXPANSION, FETI_STEP_RELEASE, &
+    FETI_STEP_NEWTON, &
     ! levels of a log
     FETI_LOG_NONE, FETI_LOG_RESULT, FETI_LOG_PHASE, FETI_LOG_STEP, &
     ! status: solved; usable but incomplete; failed
     FETI_OK, &
     FETI_ITERATIONS, FETI_TIME, FETI_CANCELLED, FETI_STALLED, FETI_INACCURATE, FETI_MARGINAL, &
     FETI_MEMORY, FETI_HANDLE, FETI_BUSY, FETI_CALLBACK, FETI_STATE, FETI_LOAD_NOT_HELD, FETI_GAPS_CONTRADICT, &
-    FETI_NULL_SPACE, FETI_INDEFINITE, FETI_IO, FETI_INTERNAL, FETI_UNSUPPORTED, FETI_OVERFLOW, FETI_ARGUMENT, &
+    FETI_NULL_SPACE, FETI_INDEFINITE, FETI_IO, FETI_INTERNAL, FETI_UNSUPPORTED, FETI_OVERFLOW, FETI_SLIDES, &
+    FETI_ARGUMENT, &
     FETI_CONTACT_VERSION_MAJOR, FETI_CONTACT_VERSION_MINOR, FETI_CONTACT_VERSION_PATCH
   use feti_contact_base, only: feti_problem, feti_error_detail, feti_progress, &
     feti_progress_procedure => progress_procedure, &
@@ -95,6 +99,15 @@ module feti_contact
     feti_rows_rhs => rows_rhs, &
     feti_rows_compliance => rows_compliance, &
     feti_rows_clear => rows_clear
+  use feti_contact_friction, only: &
+    feti_friction_add => friction_add, &
+    feti_friction_law => friction_law, &
+    feti_friction_compliance => friction_compliance, &
+    feti_friction_reference => friction_reference, &
+    feti_friction_commit => friction_commit, &
+    feti_friction_slips => friction_slips, &
+    feti_friction_states => friction_states, &
+    feti_friction_clear => friction_clear
   use feti_contact_progress, only: &
     feti_on_progress => on_progress, &
     feti_cancel => cancel
@@ -118,6 +131,7 @@ module feti_contact
     feti_setup => setup, &
     feti_solve => solve, &
     feti_check => check, &
+    feti_check_friction => check_friction, &
     feti_counts => counts, &
     feti_displacement => displacement, &
     feti_reaction => reaction, &

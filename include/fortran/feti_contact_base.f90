@@ -32,7 +32,7 @@ module feti_contact_base
   public :: problem_create, problem_destroy, problem_error
   public :: last_error, last_error_detail, status_name, status_text
   public :: version, version_number
-  public :: handle_of, body_index, finish, refuse, c_text, f_text
+  public :: handle_of, body_index, address_of, finish, refuse, c_text, f_text
 
   abstract interface
     !> A function of the host that hears of every step: 0 goes on, > 0 cancels, < 0 reports a failure of its own.
@@ -115,8 +115,8 @@ module feti_contact_base
     real(c_double) :: value = 0, limit = 0
     !> Name of the C function, blank padded.
     character(len=40) :: function = ''
-    !> Element of the body; 0: does not apply.
-    integer(c_int64_t) :: element = 0
+    !> Element of the body, node with friction; 0: does not apply.
+    integer(c_int64_t) :: element = 0, node = 0
   end type
 
 contains
@@ -236,6 +236,7 @@ contains
       detail%limit = found%limit
       detail%function = f_text(c_loc(found%function))
       detail%element = found%element + 1
+      detail%node = found%node + 1
     end if
     call finish(status, stat, errmsg)
   end subroutine
@@ -281,6 +282,15 @@ contains
 
     body_index = int(body, c_int64_t) - 1
     if (body < 1) body_index = body_index - 1
+  end function
+
+  !> Address of an array that may be absent, NULL then.
+  recursive type(c_ptr) function address_of(values)
+    real(c_double), intent(in), contiguous, optional, target :: values(:)
+
+    address_of = c_null_ptr
+    if (.not. present(values)) return
+    if (size(values) > 0) address_of = c_loc(values)
   end function
 
   !> The listener of a problem whose handle has just been accepted by the library.

@@ -13,6 +13,8 @@ module feti_contact_c
   integer(c_int32_t), parameter, public :: FETI_INEQUALITY = 1_c_int32_t
   !> Kind of rows: `H u = h`.
   integer(c_int32_t), parameter, public :: FETI_EQUALITY = 2_c_int32_t
+  !> Kind of rows: tangential rows of nodes with friction (feti_friction_add_i32, feti_friction_add_i64).
+  integer(c_int32_t), parameter, public :: FETI_TANGENTIAL = 3_c_int32_t
   !> In place of a body: all bodies, by the host's numbers of feti_body_numbering_i32 or _i64 where they have
   !> some.
   integer(c_int64_t), parameter, public :: FETI_ALL = -1_c_int64_t
@@ -50,6 +52,16 @@ module feti_contact_c
   integer(c_int32_t), parameter, public :: FETI_ROW_WEAK = 2_c_int32_t
   !> State of a row: unknown, the bodies it touches are in a group that has no answer.
   integer(c_int32_t), parameter, public :: FETI_ROW_UNKNOWN = 3_c_int32_t
+  !> State of a node with friction: its bound is zero, it carries no tangential force.
+  integer(c_int32_t), parameter, public :: FETI_FRICTION_OPEN = 0_c_int32_t
+  !> State of a node with friction: it sticks, its force is within its bound.
+  integer(c_int32_t), parameter, public :: FETI_FRICTION_STICK = 1_c_int32_t
+  !> State of a node with friction: it slips along a force that reaches its bound.
+  integer(c_int32_t), parameter, public :: FETI_FRICTION_SLIP = 2_c_int32_t
+  !> State of a node with friction: its force reaches its bound to rounding, and it does not slip.
+  integer(c_int32_t), parameter, public :: FETI_FRICTION_WEAK = 3_c_int32_t
+  !> State of a node with friction: unknown, the bodies it touches are in a group that has no answer.
+  integer(c_int32_t), parameter, public :: FETI_FRICTION_UNKNOWN = 4_c_int32_t
   !> Phase of a call that feti_on_progress tells of: a part of the setup is done.
   integer(c_int32_t), parameter, public :: FETI_PHASE_SETUP = 1_c_int32_t
   !> Phase of a call that feti_on_progress tells of: a step of the dual method is done.
@@ -60,6 +72,8 @@ module feti_contact_c
   integer(c_int32_t), parameter, public :: FETI_STEP_EXPANSION = 2_c_int32_t
   !> Kind of a step: rows got a force.
   integer(c_int32_t), parameter, public :: FETI_STEP_RELEASE = 3_c_int32_t
+  !> Kind of a step: a direction of the Newton method for friction.
+  integer(c_int32_t), parameter, public :: FETI_STEP_NEWTON = 4_c_int32_t
   !> Level of a log: nothing.
   integer(c_int32_t), parameter, public :: FETI_LOG_NONE = 0_c_int32_t
   !> Level of a log: one line for each solve, and warnings.
@@ -115,9 +129,63 @@ module feti_contact_c
   integer(c_int32_t), parameter, public :: FETI_UNSUPPORTED = -12_c_int32_t
   !> A number, or a product of numbers that were given, does not fit its type.
   integer(c_int32_t), parameter, public :: FETI_OVERFLOW = -13_c_int32_t
+  !> Bodies slide steadily: friction holds only a part of the load, and no rest was found.
+  integer(c_int32_t), parameter, public :: FETI_SLIDES = -14_c_int32_t
   !> Argument k refused is FETI_ARGUMENT - k, k from 1 with the handle as 1; FETI_ARGUMENT itself: data of an
   !> earlier call.
   integer(c_int32_t), parameter, public :: FETI_ARGUMENT = -100_c_int32_t
+
+  !> What the last solve, or the last setup that failed, has found out about the problem. Numbers count from
+  !> 0.
+  type, bind(C), public :: feti_findings
+    !> Set by the caller: size of the struct in bytes.
+    integer(c_int64_t) :: struct_size
+    !> Status it ended with.
+    integer(c_int32_t) :: status
+    !> FETI_INEQUALITY or FETI_EQUALITY: kind of the contradicting rows' `row`; 0: none.
+    integer(c_int32_t) :: kind
+    !> Body that escapes or was refused; of several groups of bodies the first of the one that ended with this
+    !> status; -1: none.
+    integer(c_int64_t) :: body
+    !> Connected part of the body that escapes, where it has several, -1: does not apply.
+    integer(c_int64_t) :: component
+    !> Unknown of the body that moves fastest or was refused, -1: none.
+    integer(c_int64_t) :: dof
+    !> After FETI_GAPS_CONTRADICT the row with the largest weight, else a row that was refused, -1: none.
+    integer(c_int64_t) :: row
+    !> Rows of both kinds that contradict each other; feti_diagnosis_rows lists them.
+    integer(c_int64_t) :: rows_involved
+    !> Rigid motions that neither loads nor rows determine.
+    integer(c_int64_t) :: undetermined
+    !> Rows of both kinds that repeat the direction of another one.
+    integer(c_int64_t) :: redundant_rows
+    !> Bodies that no row touches.
+    integer(c_int64_t) :: untouched_bodies
+    !> The first of them, -1: none.
+    integer(c_int64_t) :: untouched_body
+    !> How clearly there is no solution, above 0 and at most 1: after FETI_INDEFINITE of a driven motion 1 - 1
+    !> / rho, rho what drives it over what resists it; after FETI_LOAD_NOT_HELD the share of the resultant of
+    !> the load that nothing holds, after FETI_GAPS_CONTRADICT |w'c| over |w|'|c| for the weights w; else NaN.
+    real(c_double) :: margin
+    !> Rigid motion of the body that escapes: velocity of the origin and rotation about the axes; NaN without
+    !> coordinates. feti_diagnosis_motion has it for every unknown.
+    real(c_double) :: motion(6)
+    !> The largest share of the load of bodies that move together which nothing holds, |resultant| / |load| in
+    !> the metric of diag K: above 1e-7 after FETI_LOAD_NOT_HELD; with an answer rounding of the load,
+    !> FETI_MARGINAL above 1e-10.
+    real(c_double) :: unheld
+    !> Bodies with motions that only the rounding of the entries of K may resist; feti_body_info has their
+    !> numbers.
+    integer(c_int64_t) :: doubtful_bodies
+    !> The first of them, -1: none.
+    integer(c_int64_t) :: doubtful_body
+    !> Bodies with rigid motions that K resists or drives softly: weak springs, rounding, geometric stiffness.
+    integer(c_int64_t) :: soft_bodies
+    !> The first of them, -1: none.
+    integer(c_int64_t) :: soft_body
+    !> After FETI_SLIDES what friction holds of the load along the motion, as a part of it; else NaN.
+    real(c_double) :: capacity
+  end type feti_findings
 
   !> What went wrong, where and by how much. Numbers count from 0.
   type, bind(C), public :: feti_error_detail
@@ -145,6 +213,8 @@ module feti_contact_c
     character(kind=c_char) :: function(40)
     !> Element of the body, -1: does not apply.
     integer(c_int64_t) :: element
+    !> Node with friction, -1: does not apply.
+    integer(c_int64_t) :: node
   end type feti_error_detail
 
   !> An option: name, text, default and range.
@@ -253,6 +323,23 @@ module feti_contact_c
     integer(c_int64_t) :: factor_bytes
     !> Bytes of the explicit dual operators.
     integer(c_int64_t) :: operator_bytes
+    !> Relative size of a tangential force beyond its bound, of the worst node with friction.
+    real(c_double) :: friction_cone
+    !> Relative work that friction does not do: force that is missing or across where a node slips, of the
+    !> worst node.
+    real(c_double) :: friction_work
+    !> Relative slip where the force is within its bound, of the worst node.
+    real(c_double) :: friction_stick
+    !> Nodes with friction.
+    integer(c_int64_t) :: nodes
+    !> Nodes that stick in the answer.
+    integer(c_int64_t) :: sticking
+    !> Nodes that slip in the answer.
+    integer(c_int64_t) :: slipping
+    !> Newton steps of friction.
+    integer(c_int64_t) :: friction_steps
+    !> Starts that they took, over all groups of bodies with friction.
+    integer(c_int64_t) :: friction_starts
   end type feti_info
 
   !> A body as it is given, and what the last setup has made of it; what is not there yet is -1 or NaN.
@@ -328,9 +415,9 @@ module feti_contact_c
     real(c_double) :: limit
     !> Largest entry over what it is allowed: <= 1 passes.
     real(c_double) :: worst
-    !> Relative error of equilibrium `K u + B'lambda + H'mu = f`, worst body.
+    !> Relative error of equilibrium `K u + B'lambda + H'mu + T'lambda_t = f`, worst body.
     real(c_double) :: equilibrium
-    !> Relative error of the balance `R'(f - B'lambda - H'mu) = 0`, worst floating body.
+    !> Relative error of the balance `R'(f - B'lambda - H'mu - T'lambda_t) = 0`, worst floating body.
     real(c_double) :: balance
     !> Relative penetration: positive part of `B u - c - C lambda`, C = diag(1/k) being the compliance of the
     !> rows, worst row.
@@ -355,6 +442,20 @@ module feti_contact_c
     integer(c_int64_t) :: force_row
     !> Row with the worst complementarity, from 0, -1: none.
     integer(c_int64_t) :: complementarity_row
+    !> Relative size of a tangential force beyond its bound, `(|lambda_t| - b)_+` with b = bound + coefficient
+    !> lambda_n, worst node with friction.
+    real(c_double) :: friction_cone
+    !> Relative size of `b |s| - lambda_t's`, the work that friction does not do: zero only with a stick
+    !> inside the bound and a slip s along the force; worst node.
+    real(c_double) :: friction_work
+    !> Relative size of the slip where the force is within its bound, worst node.
+    real(c_double) :: friction_stick
+    !> Node with the worst force beyond its bound, from 0, -1: none.
+    integer(c_int64_t) :: friction_cone_node
+    !> Node with the worst work, from 0, -1: none.
+    integer(c_int64_t) :: friction_work_node
+    !> Node with the worst slip, from 0, -1: none.
+    integer(c_int64_t) :: friction_stick_node
   end type feti_certificate
 
   !> Where a setup or a solve stands.
@@ -364,7 +465,8 @@ module feti_contact_c
     !> FETI_PHASE_SETUP (a body has been analysed or factorised, its dual operator or the preconditioner made,
     !> or half a second has passed) or FETI_PHASE_SOLVE.
     integer(c_int32_t) :: phase
-    !> FETI_STEP_CONJUGATE_GRADIENT, FETI_STEP_EXPANSION or FETI_STEP_RELEASE; 0 in the setup.
+    !> FETI_STEP_CONJUGATE_GRADIENT, FETI_STEP_EXPANSION, FETI_STEP_RELEASE or, with friction,
+    !> FETI_STEP_NEWTON; 0 in the setup.
     integer(c_int32_t) :: step
     !> Steps so far.
     integer(c_int64_t) :: steps
@@ -386,56 +488,6 @@ module feti_contact_c
     !> solve.
     real(c_double) :: fraction
   end type feti_progress
-
-  !> What the last solve, or the last setup that failed, has found out about the problem. Numbers count from
-  !> 0.
-  type, bind(C), public :: feti_findings
-    !> Set by the caller: size of the struct in bytes.
-    integer(c_int64_t) :: struct_size
-    !> Status it ended with.
-    integer(c_int32_t) :: status
-    !> FETI_INEQUALITY or FETI_EQUALITY: kind of the contradicting rows' `row`; 0: none.
-    integer(c_int32_t) :: kind
-    !> Body that escapes or was refused; of several groups of bodies the first of the one that ended with this
-    !> status; -1: none.
-    integer(c_int64_t) :: body
-    !> Connected part of the body that escapes, where it has several, -1: does not apply.
-    integer(c_int64_t) :: component
-    !> Unknown of the body that moves fastest or was refused, -1: none.
-    integer(c_int64_t) :: dof
-    !> After FETI_GAPS_CONTRADICT the row with the largest weight, else a row that was refused, -1: none.
-    integer(c_int64_t) :: row
-    !> Rows of both kinds that contradict each other; feti_diagnosis_rows lists them.
-    integer(c_int64_t) :: rows_involved
-    !> Rigid motions that neither loads nor rows determine.
-    integer(c_int64_t) :: undetermined
-    !> Rows of both kinds that repeat the direction of another one.
-    integer(c_int64_t) :: redundant_rows
-    !> Bodies that no row touches.
-    integer(c_int64_t) :: untouched_bodies
-    !> The first of them, -1: none.
-    integer(c_int64_t) :: untouched_body
-    !> How clearly there is no solution, above 0 and at most 1: after FETI_INDEFINITE of a driven motion 1 - 1
-    !> / rho, rho what drives it over what resists it; after FETI_LOAD_NOT_HELD the share of the resultant of
-    !> the load that nothing holds, after FETI_GAPS_CONTRADICT |w'c| over |w|'|c| for the weights w; else NaN.
-    real(c_double) :: margin
-    !> Rigid motion of the body that escapes: velocity of the origin and rotation about the axes; NaN without
-    !> coordinates. feti_diagnosis_motion has it for every unknown.
-    real(c_double) :: motion(6)
-    !> The largest share of the load of bodies that move together which nothing holds, |resultant| / |load| in
-    !> the metric of diag K: above 1e-7 after FETI_LOAD_NOT_HELD; with an answer rounding of the load,
-    !> FETI_MARGINAL above 1e-10.
-    real(c_double) :: unheld
-    !> Bodies with motions that only the rounding of the entries of K may resist; feti_body_info has their
-    !> numbers.
-    integer(c_int64_t) :: doubtful_bodies
-    !> The first of them, -1: none.
-    integer(c_int64_t) :: doubtful_body
-    !> Bodies with rigid motions that K resists or drives softly: weak springs, rounding, geometric stiffness.
-    integer(c_int64_t) :: soft_bodies
-    !> The first of them, -1: none.
-    integer(c_int64_t) :: soft_body
-  end type feti_findings
 
   public :: feti_body_add
   public :: feti_body_coordinates
@@ -461,6 +513,13 @@ module feti_contact_c
   public :: feti_last_error_detail
   public :: feti_problem_write
   public :: feti_problem_read
+  public :: feti_friction_add_i32
+  public :: feti_friction_add_i64
+  public :: feti_friction_law
+  public :: feti_friction_compliance
+  public :: feti_friction_reference
+  public :: feti_friction_commit
+  public :: feti_friction_clear
   public :: feti_on_log
   public :: feti_body_null_space
   public :: feti_body_null_space_get
@@ -491,6 +550,8 @@ module feti_contact_c
   public :: feti_multipliers
   public :: feti_gaps
   public :: feti_active
+  public :: feti_friction_slips
+  public :: feti_friction_states
   public :: feti_counts
   public :: feti_rows_add_i32
   public :: feti_rows_add_i64
@@ -500,6 +561,7 @@ module feti_contact_c
   public :: feti_setup
   public :: feti_solve
   public :: feti_check
+  public :: feti_check_friction
   public :: feti_start_from
   public :: feti_state_save
   public :: feti_state_restore
@@ -725,11 +787,12 @@ module feti_contact_c
 
     !> What the last solve, or the last setup that failed, has found out about the problem.
     !>
-    !> After FETI_LOAD_NOT_HELD: the body that escapes, its motion and the margin. After FETI_GAPS_CONTRADICT:
-    !> the rows that contradict each other. Of several groups of bodies without an answer the first is told
-    !> of. After FETI_INDEFINITE, FETI_NULL_SPACE and the like: the body and the unknown. With an answer:
-    !> motions left undetermined, redundant rows, bodies that no row touches. Kept until the next solve or the
-    !> next setup that fails; FETI_STATE before the first. After a failure nothing is written.
+    !> After FETI_LOAD_NOT_HELD: the body that escapes, its motion and the margin. After FETI_SLIDES: the body
+    !> that slides, its motion and the capacity of friction. After FETI_GAPS_CONTRADICT: the rows that
+    !> contradict each other. Of several groups of bodies without an answer the first is told of. After
+    !> FETI_INDEFINITE, FETI_NULL_SPACE and the like: the body and the unknown. With an answer: motions left
+    !> undetermined, redundant rows, bodies that no row touches. Kept until the next solve or the next setup
+    !> that fails; FETI_STATE before the first. After a failure nothing is written.
     !>
     !> @param[in]     p   (scalar) the handle
     !> @param[in,out] out (scalar) `struct_size` set, at least 16
@@ -857,9 +920,9 @@ module feti_contact_c
     !> Reads the rigid motion with which a body escapes, unknown by unknown.
     !>
     !> The load does work on it, and no row resists. It is scaled to largest entry 1 over all bodies; bodies
-    !> that stay have zeros. After FETI_INDEFINITE the motion that K drives further than closed rows resist.
-    !> FETI_STATE unless the last solve ended with one of both and a motion. After a failure nothing is
-    !> written.
+    !> that stay have zeros. After FETI_SLIDES the motion that friction resists too little, after
+    !> FETI_INDEFINITE the one that K drives further than closed rows resist. FETI_STATE unless the last solve
+    !> ended with one of these and a motion. After a failure nothing is written.
     !>
     !> @param[in]  p    (scalar) the handle
     !> @param[in]  body (scalar) number of the body, from 0
@@ -1171,6 +1234,216 @@ module feti_contact_c
       character(kind=c_char), intent(in) :: path(*)
       integer(c_int32_t) :: feti_problem_read
     end function feti_problem_read
+
+    !> Adds nodes with friction, with 32-bit indices.
+    !>
+    !> A node has a normal row b_n, which is a contact row that is there (feti_rows_add_i32,
+    !> feti_rows_add_i64), and dim tangential rows T, dim = 1 in the plane and 2 in space. Its tangential
+    !> force lambda_t acts on the bodies as -T'lambda_t, its slip is `s = T u - s_old - C_t lambda_t`: the
+    !> motion of the body with positive entries against the other one. |lambda_t| <= b with b = bound +
+    !> coefficient lambda_n; the node sticks, s = 0, or slips along the force, `lambda_t = b s / |s|`: slip
+    !> and force have one sign. Coefficient 0 is friction of Tresca, bound 0 of Coulomb; `bound` acts at open
+    !> nodes too.
+    !>
+    !> Contact row and tangential rows of a node are to be multiplied by one factor (that of an area, of a
+    !> unit): lengths that differ by more than 1e3 are refused. Tangential rows may be oblique, and may have
+    !> no entries. `normal_row` is the number of a contact row, never of an equality row, and of one node
+    !> alone. A pair of body and unknown that comes twice in a row is summed. s_old and C_t are zero
+    !> (feti_friction_reference, feti_friction_compliance). The data are copied, the nodes numbered behind
+    !> those that are there; all nodes have the same dim. Factors of the bodies stay, the last answer does
+    !> not. FETI_STATE where `body` is NULL and some bodies have numbers of the host, others have none. After
+    !> a failure nothing is added.
+    !>
+    !> @param[in]  p           (scalar) the handle
+    !> @param[in]  nodes       (scalar) number of nodes, 0 adds none
+    !> @param[in]  dim         (scalar) tangential rows of a node, 1 or 2
+    !> @param[in]  normal_row  (nodes) contact row of each node, counted from `base`; `base` - 1: none, the
+    !>                         bound acts alone
+    !> @param[in]  row_ptr     (dim * nodes + 1) tangential row i, dim of them for each node, holds the
+    !>                         entries `row_ptr[i]` to `row_ptr[i + 1] - 1`; starts with `base`
+    !> @param[in]  body        (row_ptr[dim * nodes] - base) body of each entry, counted from `base`; NULL:
+    !>                         `dof` is the host's number of the unknown (feti_body_numbering_i32), without
+    !>                         numbers it counts through all bodies
+    !> @param[in]  dof         (row_ptr[dim * nodes] - base) unknown of each entry, counted from `base`
+    !> @param[in]  val         (row_ptr[dim * nodes] - base) entries of T
+    !> @param[in]  base        (scalar) 0 or 1: what `normal_row`, `row_ptr`, `body` and `dof` count from
+    !> @param[in]  coefficient (nodes) coefficient of friction, >= 0, no unit; 0 without a contact row; NULL:
+    !>                         zeros
+    !> @param[in]  bound       (nodes) bound without contact force, >= 0, force; NULL: zeros
+    !> @param[out] first       (scalar) number of the first node added, from 0; may be NULL
+    !>
+    !> Safety: The arrays have the given shapes.
+    function feti_friction_add_i32(p, nodes, dim, normal_row, row_ptr, body, dof, val, base, coefficient, &
+        bound, first) bind(C, name="feti_friction_add_i32")
+      import
+      type(c_ptr), value :: p
+      integer(c_int64_t), value :: nodes
+      integer(c_int32_t), value :: dim
+      integer(c_int32_t), intent(in) :: normal_row(*)
+      integer(c_int32_t), intent(in) :: row_ptr(*)
+      type(c_ptr), value :: body
+      integer(c_int32_t), intent(in) :: dof(*)
+      real(c_double), intent(in) :: val(*)
+      integer(c_int32_t), value :: base
+      type(c_ptr), value :: coefficient
+      type(c_ptr), value :: bound
+      type(c_ptr), value :: first
+      integer(c_int32_t) :: feti_friction_add_i32
+    end function feti_friction_add_i32
+
+    !> Adds nodes with friction, with 64-bit indices.
+    !>
+    !> A node has a normal row b_n, which is a contact row that is there (feti_rows_add_i32,
+    !> feti_rows_add_i64), and dim tangential rows T, dim = 1 in the plane and 2 in space. Its tangential
+    !> force lambda_t acts on the bodies as -T'lambda_t, its slip is `s = T u - s_old - C_t lambda_t`: the
+    !> motion of the body with positive entries against the other one. |lambda_t| <= b with b = bound +
+    !> coefficient lambda_n; the node sticks, s = 0, or slips along the force, `lambda_t = b s / |s|`: slip
+    !> and force have one sign. Coefficient 0 is friction of Tresca, bound 0 of Coulomb; `bound` acts at open
+    !> nodes too.
+    !>
+    !> Contact row and tangential rows of a node are to be multiplied by one factor (that of an area, of a
+    !> unit): lengths that differ by more than 1e3 are refused. Tangential rows may be oblique, and may have
+    !> no entries. `normal_row` is the number of a contact row, never of an equality row, and of one node
+    !> alone. A pair of body and unknown that comes twice in a row is summed. s_old and C_t are zero
+    !> (feti_friction_reference, feti_friction_compliance). The data are copied, the nodes numbered behind
+    !> those that are there; all nodes have the same dim. Factors of the bodies stay, the last answer does
+    !> not. FETI_STATE where `body` is NULL and some bodies have numbers of the host, others have none. After
+    !> a failure nothing is added.
+    !>
+    !> @param[in]  p           (scalar) the handle
+    !> @param[in]  nodes       (scalar) number of nodes, 0 adds none
+    !> @param[in]  dim         (scalar) tangential rows of a node, 1 or 2
+    !> @param[in]  normal_row  (nodes) contact row of each node, counted from `base`; `base` - 1: none, the
+    !>                         bound acts alone
+    !> @param[in]  row_ptr     (dim * nodes + 1) tangential row i, dim of them for each node, holds the
+    !>                         entries `row_ptr[i]` to `row_ptr[i + 1] - 1`; starts with `base`
+    !> @param[in]  body        (row_ptr[dim * nodes] - base) body of each entry, counted from `base`; NULL:
+    !>                         `dof` is the host's number of the unknown (feti_body_numbering_i32), without
+    !>                         numbers it counts through all bodies
+    !> @param[in]  dof         (row_ptr[dim * nodes] - base) unknown of each entry, counted from `base`
+    !> @param[in]  val         (row_ptr[dim * nodes] - base) entries of T
+    !> @param[in]  base        (scalar) 0 or 1: what `normal_row`, `row_ptr`, `body` and `dof` count from
+    !> @param[in]  coefficient (nodes) coefficient of friction, >= 0, no unit; 0 without a contact row; NULL:
+    !>                         zeros
+    !> @param[in]  bound       (nodes) bound without contact force, >= 0, force; NULL: zeros
+    !> @param[out] first       (scalar) number of the first node added, from 0; may be NULL
+    !>
+    !> Safety: The arrays have the given shapes.
+    function feti_friction_add_i64(p, nodes, dim, normal_row, row_ptr, body, dof, val, base, coefficient, &
+        bound, first) bind(C, name="feti_friction_add_i64")
+      import
+      type(c_ptr), value :: p
+      integer(c_int64_t), value :: nodes
+      integer(c_int32_t), value :: dim
+      integer(c_int64_t), intent(in) :: normal_row(*)
+      integer(c_int64_t), intent(in) :: row_ptr(*)
+      type(c_ptr), value :: body
+      integer(c_int64_t), intent(in) :: dof(*)
+      real(c_double), intent(in) :: val(*)
+      integer(c_int32_t), value :: base
+      type(c_ptr), value :: coefficient
+      type(c_ptr), value :: bound
+      type(c_ptr), value :: first
+      integer(c_int32_t) :: feti_friction_add_i64
+    end function feti_friction_add_i64
+
+    !> Replaces the law of nodes: coefficients, bounds, or both.
+    !>
+    !> What is NULL stays as it is. The numbers are copied; factors of the bodies and the last answer stay,
+    !> but for a node that may carry no force before and some after, or the reverse: that drops the answer.
+    !> After a failure all laws are as they were.
+    !>
+    !> @param[in] p           (scalar) the handle
+    !> @param[in] first       (scalar) first node to change, from 0
+    !> @param[in] nodes       (scalar) number of nodes to change
+    !> @param[in] coefficient (nodes) coefficient of friction, >= 0, no unit; 0 without a contact row; NULL:
+    !>                        it stays
+    !> @param[in] bound       (nodes) bound without contact force, >= 0, force; NULL: it stays
+    !>
+    !> Safety: The arrays have the given shapes.
+    function feti_friction_law(p, first, nodes, coefficient, bound) bind(C, name="feti_friction_law")
+      import
+      type(c_ptr), value :: p
+      integer(c_int64_t), value :: first
+      integer(c_int64_t), value :: nodes
+      type(c_ptr), value :: coefficient
+      type(c_ptr), value :: bound
+      integer(c_int32_t) :: feti_friction_law
+    end function feti_friction_law
+
+    !> Makes the stick of nodes elastic, `s = T u - s_old - C_t lambda_t` with C_t = 1/k_t.
+    !>
+    !> A node that sticks then gives way by C_t lambda_t. Nodes that are added are rigid, C_t = 0; a node
+    !> whose rows are multiplied by t has a compliance times t^2. The numbers are copied and stay until they
+    !> are replaced or the nodes are cleared; factors of the bodies stay, the last answer does not. After a
+    !> failure all compliances are as they were.
+    !>
+    !> @param[in] p      (scalar) the handle
+    !> @param[in] first  (scalar) first node to change, from 0
+    !> @param[in] nodes  (scalar) number of nodes to change
+    !> @param[in] inv_kt (nodes) 1/k_t >= 0, length / force, for all tangential rows of the node; 0: rigid
+    !>
+    !> Safety: The array has the given shape.
+    function feti_friction_compliance(p, first, nodes, inv_kt) bind(C, name="feti_friction_compliance")
+      import
+      type(c_ptr), value :: p
+      integer(c_int64_t), value :: first
+      integer(c_int64_t), value :: nodes
+      real(c_double), intent(in) :: inv_kt(*)
+      integer(c_int32_t) :: feti_friction_compliance
+    end function feti_friction_compliance
+
+    !> Gives s_old, what the slips of nodes are counted from: T u - C_t lambda_t at the beginning of the load
+    !> step.
+    !>
+    !> Nodes that are added have zeros; feti_friction_commit takes s_old from the answer. A host that solves
+    !> for the increment of a Newton iteration gives T (u_begin - u_k). The numbers are copied; factors of the
+    !> bodies and the last answer stay, with the slips it had. After a failure all of them are as they were.
+    !>
+    !> @param[in] p     (scalar) the handle
+    !> @param[in] first (scalar) first node to change, from 0
+    !> @param[in] nodes (scalar) number of nodes to change
+    !> @param[in] dim   (scalar) tangential rows of a node, 1 or 2; not looked at without nodes
+    !> @param[in] s_old (dim * nodes) node after node, length; 0 for rows without entries
+    !>
+    !> Safety: The array has the given shape.
+    function feti_friction_reference(p, first, nodes, dim, s_old) bind(C, name="feti_friction_reference")
+      import
+      type(c_ptr), value :: p
+      integer(c_int64_t), value :: first
+      integer(c_int64_t), value :: nodes
+      integer(c_int32_t), value :: dim
+      real(c_double), intent(in) :: s_old(*)
+      integer(c_int32_t) :: feti_friction_reference
+    end function feti_friction_reference
+
+    !> Ends a load step: s_old becomes what the last answer has reached, `T u - C_t lambda_t`, at every node,
+    !> open ones too.
+    !>
+    !> To be called once a step is accepted, before or after the loads of the next one are given. The answer
+    !> stays as it was, with the slips of its step; so does where the next solve starts. A second call does
+    !> what the first did. To take a step back, save the state before it (feti_state_save). FETI_STATE before
+    !> a solve has given an answer, where a group of bodies has none, and where the answer is not certified (a
+    !> status of feti_solve other than FETI_OK and FETI_MARGINAL). After a failure s_old is as it was.
+    !>
+    !> @param[in] p (scalar) the handle
+    function feti_friction_commit(p) bind(C, name="feti_friction_commit")
+      import
+      type(c_ptr), value :: p
+      integer(c_int32_t) :: feti_friction_commit
+    end function feti_friction_commit
+
+    !> Removes all nodes with friction; their contact rows stay.
+    !>
+    !> Numbering starts again at 0, and the next nodes may have another dim. feti_rows_clear with
+    !> FETI_INEQUALITY removes them too. Factors of the bodies stay, the last answer does not.
+    !>
+    !> @param[in] p (scalar) the handle
+    function feti_friction_clear(p) bind(C, name="feti_friction_clear")
+      import
+      type(c_ptr), value :: p
+      integer(c_int32_t) :: feti_friction_clear
+    end function feti_friction_clear
 
     !> Names the function that gets what setups and solves tell in words.
     !>
@@ -1700,9 +1973,9 @@ module feti_contact_c
       integer(c_int32_t) :: feti_displacement
     end function feti_displacement
 
-    !> Reads the force of the rows on a body, -B'lambda, -H'mu or both: `K u = f + r`.
+    !> Reads the force of the rows on a body, -B'lambda, -H'mu, -T'lambda_t or all of them: `K u = f + r`.
     !>
-    !> By kinds it is that of the host's rows. Both together hold the force of the glue as well where unknowns
+    !> By kinds it is that of the host's rows. All together hold the force of the glue as well where unknowns
     !> of several bodies have one number (option glue): what these bodies do to each other. It cancels in the
     !> sum over them, which FETI_ALL gives.
     !>
@@ -1713,7 +1986,7 @@ module feti_contact_c
     !> nothing is written.
     !>
     !> @param[in]  p    (scalar) the handle
-    !> @param[in]  kind (scalar) FETI_INEQUALITY, FETI_EQUALITY, or 0 for both
+    !> @param[in]  kind (scalar) FETI_INEQUALITY, FETI_EQUALITY, FETI_TANGENTIAL, or 0 for all
     !> @param[in]  body (scalar) number of the body, from 0, or FETI_ALL
     !> @param[in]  n    (scalar) unknowns of the body; with FETI_ALL at least the largest number + 1, without
     !>                  numbers all unknowns
@@ -1750,14 +2023,15 @@ module feti_contact_c
       integer(c_int32_t) :: feti_amplitudes
     end function feti_amplitudes
 
-    !> Reads the multipliers: lambda of `B u <= c`, or mu of `H u = h`.
+    !> Reads the multipliers: lambda of `B u <= c`, mu of `H u = h`, or lambda_t of the nodes with friction,
+    !> node after node.
     !>
     !> NaN for rows on bodies whose group has no answer (feti_solve), 0 for rows that never close. FETI_STATE
     !> before a solve has given an answer. After a failure nothing is written.
     !>
     !> @param[in]  p      (scalar) the handle
-    !> @param[in]  kind   (scalar) FETI_INEQUALITY or FETI_EQUALITY
-    !> @param[in]  rows   (scalar) number of rows of the kind
+    !> @param[in]  kind   (scalar) FETI_INEQUALITY, FETI_EQUALITY or FETI_TANGENTIAL
+    !> @param[in]  rows   (scalar) number of rows of the kind; of tangential ones dim for each node
     !> @param[out] lambda (rows) force, >= 0 for inequalities
     !>
     !> Safety: The array has the given shape.
@@ -1807,6 +2081,50 @@ module feti_contact_c
       integer(c_int32_t), intent(out) :: state(*)
       integer(c_int32_t) :: feti_active
     end function feti_active
+
+    !> Reads the slips of the last answer, `s = T u - s_old - C_t lambda_t` with the s_old of that solve.
+    !>
+    !> A slip has the sign of its force lambda_t (feti_multipliers with FETI_TANGENTIAL). NaN for nodes on
+    !> bodies whose group has no answer (feti_solve). FETI_STATE before a solve has given an answer. After a
+    !> failure nothing is written.
+    !>
+    !> @param[in]  p     (scalar) the handle
+    !> @param[in]  nodes (scalar) number of nodes with friction
+    !> @param[in]  dim   (scalar) tangential rows of a node, 1 or 2; not looked at without nodes
+    !> @param[out] slip  (dim * nodes) node after node, length
+    !>
+    !> Safety: The array has the given shape.
+    function feti_friction_slips(p, nodes, dim, slip) bind(C, name="feti_friction_slips")
+      import
+      type(c_ptr), value :: p
+      integer(c_int64_t), value :: nodes
+      integer(c_int32_t), value :: dim
+      real(c_double), intent(out) :: slip(*)
+      integer(c_int32_t) :: feti_friction_slips
+    end function feti_friction_slips
+
+    !> Reads the states of the nodes in the last answer: what the certificate takes for zero at a node
+    !> decides.
+    !>
+    !> FETI_FRICTION_OPEN where the bound is zero, and nothing but that: a node with `bound` > 0 sticks or
+    !> slips though its contact is open; FETI_FRICTION_STICK with a force within its bound; FETI_FRICTION_SLIP
+    !> with a slip along a force that reaches its bound; FETI_FRICTION_WEAK with a force that reaches its
+    !> bound and no slip, to rounding; FETI_FRICTION_UNKNOWN for nodes on bodies whose group has no answer
+    !> (feti_solve). FETI_STATE before a solve has given an answer. After a failure nothing is written.
+    !>
+    !> @param[in]  p     (scalar) the handle
+    !> @param[in]  nodes (scalar) number of nodes with friction
+    !> @param[out] state (nodes) FETI_FRICTION_OPEN, FETI_FRICTION_STICK, FETI_FRICTION_SLIP,
+    !>                   FETI_FRICTION_WEAK or FETI_FRICTION_UNKNOWN
+    !>
+    !> Safety: The array has the given shape.
+    function feti_friction_states(p, nodes, state) bind(C, name="feti_friction_states")
+      import
+      type(c_ptr), value :: p
+      integer(c_int64_t), value :: nodes
+      integer(c_int32_t), intent(out) :: state(*)
+      integer(c_int32_t) :: feti_friction_states
+    end function feti_friction_states
 
     !> Reads the size of the problem as it is given now.
     !>
@@ -1957,7 +2275,8 @@ module feti_contact_c
 
     !> Removes all rows of a kind.
     !>
-    !> Numbering of that kind starts again at 0. Factors of the bodies stay.
+    !> Numbering of that kind starts again at 0. With the inequality rows go all nodes with friction
+    !> (feti_friction_clear), whose contact rows they are. Factors of the bodies stay.
     !>
     !> @param[in] p    (scalar) the handle
     !> @param[in] kind (scalar) FETI_INEQUALITY or FETI_EQUALITY
@@ -2010,9 +2329,10 @@ module feti_contact_c
     !> is due; FETI_CANCELLED where the host has cancelled; FETI_STALLED where steps no longer reduce the
     !> error; FETI_INACCURATE where the certificate does not pass; FETI_MARGINAL where a part of the load,
     !> below 1e-7 of it, is not held. A status below 0 comes without one for the group of bodies it is about.
-    !> FETI_LOAD_NOT_HELD where no contact force balances the load; FETI_GAPS_CONTRADICT where rows contradict
-    !> each other; FETI_INDEFINITE where K drives a soft motion further than closed rows resist it;
-    !> feti_diagnosis has the proof of each. It runs feti_setup when it is due, and fails as that does.
+    !> FETI_LOAD_NOT_HELD where no contact force balances the load; FETI_SLIDES where friction holds only a
+    !> part of it and no rest was found; FETI_GAPS_CONTRADICT where rows contradict each other;
+    !> FETI_INDEFINITE where K drives a soft motion further than closed rows resist it; feti_diagnosis has the
+    !> proof of each. It runs feti_setup when it is due, and fails as that does.
     !>
     !> @param[in]     p    (scalar) the handle
     !> @param[in,out] info (scalar) `struct_size` set, at least 16; may be NULL
@@ -2025,13 +2345,16 @@ module feti_contact_c
       integer(c_int32_t) :: feti_solve
     end function feti_solve
 
-    !> Verifies an answer against the problem as it is given now: any answer, also another code's.
+    !> Verifies an answer without tangential forces against the problem as it is given now: any answer, also
+    !> another code's.
     !>
     !> Every figure is that of the worst body or the worst row, measured against its own forces and
     !> deformation, and is named with it. Glue (option glue) is judged as equality rows are; the forces in it
     !> are not given: they are those that serve the answer best. Rows that never close, c = +infinity, are
-    !> left out: what is given for their lambda counts as 0. Keeps nothing of the answer: that of the last
-    !> solve stays. Runs feti_setup when it is due, for the null spaces. After a failure nothing is written.
+    !> left out: what is given for their lambda counts as 0. At nodes with friction (feti_friction_add_i32 or
+    !> _i64) the tangential force counts as 0: feti_check_friction takes it. Keeps nothing of the answer: that
+    !> of the last solve stays. Runs feti_setup when it is due, for the null spaces. After a failure nothing
+    !> is written.
     !>
     !> @param[in]     p      (scalar) the handle
     !> @param[in]     n      (scalar) unknowns of all bodies
@@ -2056,6 +2379,44 @@ module feti_contact_c
       integer(c_int32_t) :: feti_check
     end function feti_check
 
+    !> Verifies an answer with tangential forces against the problem as it is given now: any answer, also
+    !> another code's.
+    !>
+    !> As feti_check; the figures of friction judge, node by node, the forces lambda_t by the law and the slip
+    !> `T u - s_old - C_t lambda_t` by the s_old that is there now: after feti_friction_commit that of the
+    !> next step. Nodes that may carry no force (bound 0, no contact row that may close) are left out. After a
+    !> failure nothing is written.
+    !>
+    !> @param[in]     p        (scalar) the handle
+    !> @param[in]     n        (scalar) unknowns of all bodies
+    !> @param[in]     u        (n) displacement, body after body, length
+    !> @param[in]     rows     (scalar) number of inequality rows
+    !> @param[in]     lambda   (rows) multipliers of `B u <= c`, force
+    !> @param[in]     eqs      (scalar) number of equality rows
+    !> @param[in]     mu       (eqs) multipliers of `H u = h`, force
+    !> @param[in]     nodes    (scalar) number of nodes with friction
+    !> @param[in]     dim      (scalar) tangential rows of a node, 1 or 2; not looked at without nodes
+    !> @param[in]     lambda_t (dim * nodes) multipliers of the tangential rows, node after node, force
+    !> @param[in,out] out      (scalar) `struct_size` set, at least 16
+    !>
+    !> Safety: The arrays have the given shapes, `out` leads to `struct_size` writable bytes.
+    function feti_check_friction(p, n, u, rows, lambda, eqs, mu, nodes, dim, lambda_t, out) &
+        bind(C, name="feti_check_friction")
+      import
+      type(c_ptr), value :: p
+      integer(c_int64_t), value :: n
+      real(c_double), intent(in) :: u(*)
+      integer(c_int64_t), value :: rows
+      real(c_double), intent(in) :: lambda(*)
+      integer(c_int64_t), value :: eqs
+      real(c_double), intent(in) :: mu(*)
+      integer(c_int64_t), value :: nodes
+      integer(c_int32_t), value :: dim
+      real(c_double), intent(in) :: lambda_t(*)
+      type(feti_certificate), intent(inout) :: out
+      integer(c_int32_t) :: feti_check_friction
+    end function feti_check_friction
+
     !> Gives start values for the next solve.
     !>
     !> That solve starts from these multipliers, whatever option start says, and uses them up, whatever it
@@ -2064,8 +2425,8 @@ module feti_contact_c
     !> change of rows or bodies drops the values. After a failure earlier values stay.
     !>
     !> @param[in] p      (scalar) the handle
-    !> @param[in] kind   (scalar) FETI_INEQUALITY or FETI_EQUALITY
-    !> @param[in] rows   (scalar) number of rows of the kind
+    !> @param[in] kind   (scalar) FETI_INEQUALITY, FETI_EQUALITY or FETI_TANGENTIAL
+    !> @param[in] rows   (scalar) number of rows of the kind; of tangential ones dim for each node
     !> @param[in] lambda (rows) force; a negative one of an inequality counts as zero
     !>
     !> Safety: The array has the given shape.
@@ -2078,11 +2439,11 @@ module feti_contact_c
       integer(c_int32_t) :: feti_start_from
     end function feti_start_from
 
-    !> Saves loads, rows, multipliers and the contact state under a number.
+    !> Saves loads, rows, friction, multipliers and the contact state under a number.
     !>
-    !> Factors are not copied and the entries of the rows are shared, so that it costs no more than the
-    !> vectors. States live until they are dropped or the problem is destroyed; numbers are never used again.
-    !> After a failure nothing is saved.
+    !> Of nodes with friction the laws, the compliances and s_old. Factors are not copied and the entries of
+    !> the rows are shared, so that it costs no more than the vectors. States live until they are dropped or
+    !> the problem is destroyed; numbers are never used again. After a failure nothing is saved.
     !>
     !> @param[in]  p  (scalar) the handle
     !> @param[out] id (scalar) number of the state, from 0
@@ -2097,11 +2458,12 @@ module feti_contact_c
 
     !> Goes back to a saved state: after a load step that was rejected.
     !>
-    !> Loads and rows, with right-hand sides and compliances, are as they were, and so is the answer unless a
-    !> matrix or the rows have changed since; with option start = previous the next solve continues from the
-    !> saved multipliers, with start = cold it gives the bits it would have given then. Matrices, null spaces
-    !> and options stay as they are now; start values that were not used yet are dropped. The state stays
-    !> saved. FETI_STATE when bodies were added since; after a failure nothing is changed.
+    !> Loads and rows, with right-hand sides and compliances, and nodes with friction, with laws and s_old,
+    !> are as they were, and so is the answer unless a matrix or the rows have changed since; with option
+    !> start = previous the next solve continues from the saved multipliers, with start = cold it gives the
+    !> bits it would have given then. Matrices, null spaces and options stay as they are now; start values
+    !> that were not used yet are dropped. The state stays saved. FETI_STATE when bodies were added since;
+    !> after a failure nothing is changed.
     !>
     !> @param[in] p  (scalar) the handle
     !> @param[in] id (scalar) number of the state
@@ -2374,9 +2736,10 @@ module feti_contact_c
 
     !> Applies the dual operator, `y = F x` with `F = [B; H] K+ [B; H]' + C`.
     !>
-    !> C = diag(1/k) is the compliance of the rows (feti_rows_compliance), 0 for rigid ones. Runs feti_setup
-    !> when it is due. `x` and `y` may be the same array. FETI_STATE where a body is cut (feti_body_mesh_i32
-    !> or _i64) or unknowns are glued (option glue). After a failure nothing is written.
+    !> C = diag(1/k) is the compliance of the rows (feti_rows_compliance), 0 for rigid ones. Tangential rows
+    !> of nodes with friction are not in it. Runs feti_setup when it is due. `x` and `y` may be the same
+    !> array. FETI_STATE where a body is cut (feti_body_mesh_i32 or _i64) or unknowns are glued (option glue).
+    !> After a failure nothing is written.
     !>
     !> @param[in]  p (scalar) the handle
     !> @param[in]  m (scalar) inequality rows + equality rows

@@ -33,6 +33,10 @@ module feti_contact_f77_base
   interface add_rows
     procedure feti_rows_add_i32, feti_rows_add_i64
   end interface
+  !> Nodes with friction, with the index arrays of the host.
+  interface add_friction
+    procedure feti_friction_add_i32, feti_friction_add_i64
+  end interface
 
   !> The face's own statuses in the order FTEISZ, FTEDSZ, FTEFIT.
   character(len=*), parameter :: own_text(3) = [character(len=110) :: &
@@ -153,6 +157,21 @@ contains
     do k = 1, min(n, size(found))
       x(k) = found(k)
     end do
+  end subroutine
+
+  !> A certificate: icert(ni), rcert(nr).
+  recursive subroutine give_certificate(found, ni, icert, nr, rcert)
+    type(feti_certificate), intent(in) :: found
+    integer, intent(in) :: ni, nr
+    integer, intent(inout) :: icert(*)
+    real(c_double), intent(inout) :: rcert(*)
+
+    call give([int(found%passed, c_int64_t), found%equilibrium_body + 1, found%balance_body + 1, found%penetration_row + 1, &
+      found%equality_row + 1, found%force_row + 1, found%complementarity_row + 1, found%friction_cone_node + 1, &
+      found%friction_work_node + 1, found%friction_stick_node + 1], ni, icert)
+    call give_reals([found%worst, found%equilibrium, found%balance, found%penetration, found%equality, found%negative_force, &
+      found%complementarity, found%duality_gap, found%limit, found%friction_cone, found%friction_work, found%friction_stick], &
+      nr, rcert)
   end subroutine
 
   !> The host's status: argument k of the C function is argument place(k) of the subroutine; absent: the same one.

@@ -99,7 +99,7 @@ recursive subroutine ftperr(ip, text, l, ierr)
   if (ierr == FETI_OK) text = f_text(c_loc(buffer))
 end subroutine
 
-!> Facts of the thread's last error: idet(ni) and rdet(nr), positions FTDSTA to FTDELM, FTDVAL, FTDLIM; name: the C function,
+!> Facts of the thread's last error: idet(ni) and rdet(nr), positions FTDSTA to FTDNOD, FTDVAL, FTDLIM; name: the C function,
 !> whose arguments idet(FTDARG) counts. Numbers count from 1, 0: does not apply.
 recursive subroutine ftedet(ni, idet, nr, rdet, name, ierr)
   use feti_contact_f77_base
@@ -115,7 +115,8 @@ recursive subroutine ftedet(ni, idet, nr, rdet, name, ierr)
   ierr = told(feti_last_error_detail(found))
   if (ierr /= FETI_OK) return
   call give([int(found%status, c_int64_t), int(found%argument, c_int64_t), found%body + 1, found%component + 1, &
-    found%dof + 1, found%row + 1, found%entry + 1, found%element + 1], ni, idet)
+    found%dof + 1, found%row + 1, found%entry + 1, found%element + 1, found%node + 1], &
+    ni, idet)
   call give_reals([found%value, found%limit], nr, rdet)
   name = f_text(c_loc(found%function))
 end subroutine

@@ -11,7 +11,7 @@ recursive subroutine ftstup(ip, ierr)
   ierr = told(feti_setup(handle(ip)))
 end subroutine
 
-!> Solves. info(ni), rinfo(nr): what was done, positions FTISTA to FTIKEP, FTRWOR to FTROPR, as many as there is room for,
+!> Solves. info(ni), rinfo(nr): what was done, positions FTISTA to FTISTR, FTRWOR to FTRSTK, as many as there is room for,
 !> written whatever the status.
 recursive subroutine ftsolv(ip, ni, info, nr, rinfo, ierr)
   use feti_contact_f77_base
@@ -27,15 +27,16 @@ recursive subroutine ftsolv(ip, ni, info, nr, rinfo, ierr)
   call give([int(found%status, c_int64_t), found%bodies, found%dofs, found%rows, found%equalities, found%floating_modes, &
     found%active, found%undetermined, found%steps, found%cg_steps, found%expansions, found%releases, &
     found%dual_applications, found%coarse_solves, found%factorisations, found%analyses, found%direct_solves, &
-    found%finished, found%explicit_operators, found%implicit_operators, found%columns_computed, found%columns_kept], &
-    ni, info)
+    found%finished, found%explicit_operators, found%implicit_operators, found%columns_computed, found%columns_kept, &
+    found%nodes, found%sticking, found%slipping, found%friction_steps, found%friction_starts], ni, info)
   call give_reals([found%worst, found%equilibrium, found%balance, found%penetration, found%equality, &
     found%negative_force, found%complementarity, found%duality_gap, found%energy, found%seconds_setup, &
-    found%seconds_solve, real(found%factor_bytes, c_double), real(found%operator_bytes, c_double)], nr, rinfo)
+    found%seconds_solve, real(found%factor_bytes, c_double), real(found%operator_bytes, c_double), &
+    found%friction_cone, found%friction_work, found%friction_stick], nr, rinfo)
 end subroutine
 
 !> Verifies any answer, also another code's: u(n) of all bodies, rlam(m), rmu(me). icert(ni), rcert(nr): positions FTVPAS to
-!> FTVCPL, FTRWOR to FTRGAP and FTRLIM.
+!> FTVSTK, FTRWOR to FTRGAP, FTRLIM and FTVRCO to FTVRST. The tangential forces of nodes with friction count as 0.
 recursive subroutine ftchk(ip, n, u, m, rlam, me, rmu, ni, icert, nr, rcert, ierr)
   use feti_contact_f77_base
   implicit none
@@ -48,11 +49,23 @@ recursive subroutine ftchk(ip, n, u, m, rlam, me, rmu, ni, icert, nr, rcert, ier
 
   found%struct_size = storage_size(found, c_int64_t) / 8
   ierr = told(feti_check(handle(ip), wide(n), u, wide(m), rlam, wide(me), rmu, found))
-  if (ierr < FETI_OK) return
-  call give([int(found%passed, c_int64_t), found%equilibrium_body + 1, found%balance_body + 1, found%penetration_row + 1, &
-    found%equality_row + 1, found%force_row + 1, found%complementarity_row + 1], ni, icert)
-  call give_reals([found%worst, found%equilibrium, found%balance, found%penetration, found%equality, &
-    found%negative_force, found%complementarity, found%duality_gap, found%limit], nr, rcert)
+  if (ierr >= FETI_OK) call give_certificate(found, ni, icert, nr, rcert)
+end subroutine
+
+!> The same with the tangential forces rlt(idim,nd) of the nd nodes with friction.
+recursive subroutine ftchkf(ip, n, u, m, rlam, me, rmu, nd, idim, rlt, ni, icert, nr, rcert, ierr)
+  use feti_contact_f77_base
+  implicit none
+  integer, intent(in) :: ip, n, m, me, nd, idim, ni, nr
+  real(c_double), intent(in) :: u(*), rlam(*), rmu(*), rlt(*)
+  integer, intent(inout) :: icert(*)
+  real(c_double), intent(inout) :: rcert(*)
+  integer, intent(out) :: ierr
+  type(feti_certificate) :: found
+
+  found%struct_size = storage_size(found, c_int64_t) / 8
+  ierr = told(feti_check_friction(handle(ip), wide(n), u, wide(m), rlam, wide(me), rmu, wide(nd), narrow(idim), rlt, found))
+  if (ierr >= FETI_OK) call give_certificate(found, ni, icert, nr, rcert)
 end subroutine
 
 !> Numbers of bodies, of unknowns of all bodies, of contact rows, of equality rows.
@@ -85,7 +98,7 @@ recursive subroutine ftdisp(ip, ibody, n, u, ierr)
   ierr = told(feti_displacement(handle(ip), body_or_all(ibody), wide(n), u))
 end subroutine
 
-!> Force of the rows of a kind (0: both) on a body, r(n): K u = f + r.
+!> Force of the rows of a kind (0: all) on a body, r(n): K u = f + r.
 recursive subroutine ftreac(ip, kind, ibody, n, r, ierr)
   use feti_contact_f77_base
   implicit none
@@ -107,7 +120,7 @@ recursive subroutine ftampl(ip, ibody, nr, alpha, ierr)
   ierr = told(feti_amplitudes(handle(ip), from_zero(ibody), wide(nr), alpha))
 end subroutine
 
-!> Multipliers of the m rows of a kind, rlam(m), force; >= 0 for contact rows.
+!> Multipliers of the m rows of a kind, rlam(m), force; >= 0 for contact rows. Of kind FTKTAN idim for each node.
 recursive subroutine ftmult(ip, kind, m, rlam, ierr)
   use feti_contact_f77_base
   implicit none

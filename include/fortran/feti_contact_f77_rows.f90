@@ -57,7 +57,7 @@ recursive subroutine ftrcmp(ip, kind, ifirst, m, cinv, ierr)
   ierr = told(feti_rows_compliance(handle(ip), narrow(kind), from_zero(ifirst), wide(m), cinv))
 end subroutine
 
-!> Removes all rows of a kind.
+!> Removes all rows of a kind, with the contact rows all nodes with friction.
 recursive subroutine ftrclr(ip, kind, ierr)
   use feti_contact_f77_base
   implicit none

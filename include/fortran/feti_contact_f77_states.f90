@@ -1,7 +1,7 @@
 !> FORTRAN 77 face: starts, saved states, diagnosis. Bodies, unknowns, rows, motions and states count from 1, 0: none.
 !> See docs/fortran77.md.
 
-!> Start values of the next solve alone: multipliers of the m rows of a kind, rlam(m), force.
+!> Start values of the next solve alone: multipliers of the m rows of a kind, rlam(m), force. Of kind FTKTAN idim for each node.
 recursive subroutine ftstrt(ip, kind, m, rlam, ierr)
   use feti_contact_f77_base
   implicit none
@@ -12,7 +12,7 @@ recursive subroutine ftstrt(ip, kind, m, rlam, ierr)
   ierr = told(feti_start_from(handle(ip), narrow(kind), wide(m), rlam))
 end subroutine
 
-!> Saves loads, gaps, multipliers and contact state; id: the number of the state.
+!> Saves loads, gaps, friction, multipliers and contact state; id: the number of the state.
 recursive subroutine ftssav(ip, id, ierr)
   use feti_contact_f77_base
   implicit none
@@ -46,7 +46,7 @@ recursive subroutine ftsdrp(ip, id, ierr)
 end subroutine
 
 !> What the last solve, or the last setup that failed, has found out: idiag(ni) and rdiag(nr), positions FTGSTA to FTGDBD,
-!> FTGMAR, FTGMOT to FTGMOT + 5 and FTGUNH.
+!> FTGMAR, FTGMOT to FTGMOT + 5, FTGUNH and FTGCAP.
 recursive subroutine ftdiag(ip, ni, idiag, nr, rdiag, ierr)
   use feti_contact_f77_base
   implicit none
@@ -62,7 +62,7 @@ recursive subroutine ftdiag(ip, ni, idiag, nr, rdiag, ierr)
   call give([int(found%status, c_int64_t), int(found%kind, c_int64_t), found%body + 1, found%component + 1, found%dof + 1, &
     found%row + 1, found%rows_involved, found%undetermined, found%redundant_rows, found%untouched_bodies, &
     found%untouched_body + 1, found%doubtful_bodies, found%doubtful_body + 1], ni, idiag)
-  call give_reals([found%margin, found%motion, found%unheld], nr, rdiag)
+  call give_reals([found%margin, found%motion, found%unheld, found%capacity], nr, rdiag)
 end subroutine
 
 !> Rows of a kind that contradict each other with their weights, without a contradiction the redundant rows: n there are, the

@@ -13,6 +13,7 @@ module feti_contact_results
     c_body_fixing => feti_body_fixing, &
     c_body_kplus => feti_body_kplus, &
     c_check => feti_check, &
+    c_check_friction => feti_check_friction, &
     c_counts => feti_counts, &
     c_displacement => feti_displacement, &
     c_dual_apply => feti_dual_apply, &
@@ -28,7 +29,7 @@ module feti_contact_results
   implicit none
   private
   public :: feti_info, feti_certificate
-  public :: setup, solve, check, counts, feti_phase, phase_count, phase_at
+  public :: setup, solve, check, check_friction, counts, feti_phase, phase_count, phase_at
   public :: displacement, reaction, amplitudes, multipliers, gaps, active
   public :: body_fixing, body_kplus, dual_apply, dual_rhs
 
@@ -51,12 +52,22 @@ module feti_contact_results
     module procedure displacement_one, displacement_all
   end interface
 
-  !> Force of the rows on a body, -B'lambda (kind FETI_INEQUALITY), -H'mu (FETI_EQUALITY) or both (0): K u = f + r.
+  !> Force of the rows on a body, -B'lambda (kind FETI_INEQUALITY), -H'mu (FETI_EQUALITY), -T'lambda_t (FETI_TANGENTIAL) or all
+  !> of them (0): K u = f + r.
   !>
   !> call feti_reaction(p, kind, body, r): r(n) on a body.
   !> call feti_reaction(p, kind, r): on all bodies, as feti_displacement.
   interface reaction
     module procedure reaction_one, reaction_all
+  end interface
+
+  !> Contact forces lambda >= 0 (kind FETI_INEQUALITY), forces mu of the equality rows (FETI_EQUALITY) or lambda_t of the
+  !> nodes with friction (FETI_TANGENTIAL), force.
+  !>
+  !> call feti_multipliers(p, kind, lambda): lambda(rows); of nodes with friction lambda(dim * nodes), node after node.
+  !> call feti_multipliers(p, kind, lambda): lambda(dim, nodes), with FETI_TANGENTIAL.
+  interface multipliers
+    module procedure multipliers_rows, multipliers_nodes
   end interface
 
   !> State of each contact row, int32 or int64: FETI_ROW_OPEN, FETI_ROW_CLOSED, FETI_ROW_WEAK (closed without a clear force)
@@ -130,7 +141,7 @@ contains
 
   !> Verifies any answer, also another code's: u (all bodies one after the other, length), lambda (force, one per
   !> contact row), mu (force, one per equality row; may have size 0). Rows and bodies in the certificate count from
-  !> 1, 0: none.
+  !> 1, 0: none. The tangential forces of nodes with friction count as 0: feti_check_friction takes them.
   recursive subroutine check(p, u, lambda, mu, certificate, stat, errmsg)
     type(feti_problem), intent(in) :: p
     real(real64), intent(in), contiguous :: u(:), lambda(:), mu(:)
@@ -142,15 +153,40 @@ contains
     certificate%struct_size = c_sizeof(certificate)
     status = c_check(handle_of(p), size(u, kind=c_int64_t), u, size(lambda, kind=c_int64_t), lambda, &
       size(mu, kind=c_int64_t), mu, certificate)
-    if (status >= FETI_OK) then
-      certificate%equilibrium_body = certificate%equilibrium_body + 1
-      certificate%balance_body = certificate%balance_body + 1
-      certificate%penetration_row = certificate%penetration_row + 1
-      certificate%equality_row = certificate%equality_row + 1
-      certificate%force_row = certificate%force_row + 1
-      certificate%complementarity_row = certificate%complementarity_row + 1
-    end if
+    if (status >= FETI_OK) call count_from_one(certificate)
     call finish(status, stat, errmsg)
+  end subroutine
+
+  !> The same with the tangential forces lambda_t(dim,nodes) of the nodes with friction, which count from 1 in the
+  !> certificate as well.
+  recursive subroutine check_friction(p, u, lambda, mu, lambda_t, certificate, stat, errmsg)
+    type(feti_problem), intent(in) :: p
+    real(real64), intent(in), contiguous :: u(:), lambda(:), mu(:), lambda_t(:, :)
+    type(feti_certificate), intent(inout) :: certificate
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+    integer(c_int32_t) :: status
+
+    certificate%struct_size = c_sizeof(certificate)
+    status = c_check_friction(handle_of(p), size(u, kind=c_int64_t), u, size(lambda, kind=c_int64_t), lambda, &
+      size(mu, kind=c_int64_t), mu, size(lambda_t, 2, c_int64_t), size(lambda_t, 1, c_int32_t), lambda_t, certificate)
+    if (status >= FETI_OK) call count_from_one(certificate)
+    call finish(status, stat, errmsg)
+  end subroutine
+
+  !> Bodies, rows and nodes of a certificate as Fortran counts them.
+  recursive subroutine count_from_one(certificate)
+    type(feti_certificate), intent(inout) :: certificate
+
+    certificate%equilibrium_body = certificate%equilibrium_body + 1
+    certificate%balance_body = certificate%balance_body + 1
+    certificate%penetration_row = certificate%penetration_row + 1
+    certificate%equality_row = certificate%equality_row + 1
+    certificate%force_row = certificate%force_row + 1
+    certificate%complementarity_row = certificate%complementarity_row + 1
+    certificate%friction_cone_node = certificate%friction_cone_node + 1
+    certificate%friction_work_node = certificate%friction_work_node + 1
+    certificate%friction_stick_node = certificate%friction_stick_node + 1
   end subroutine
 
   !> Numbers of bodies, of unknowns of all bodies, of contact rows and of equality rows.
@@ -227,8 +263,8 @@ contains
       stat, errmsg)
   end subroutine
 
-  !> Contact forces lambda >= 0 (kind FETI_INEQUALITY) or forces mu of the equality rows (FETI_EQUALITY), force.
-  recursive subroutine multipliers(p, kind, lambda, stat, errmsg)
+  !> One after the other.
+  recursive subroutine multipliers_rows(p, kind, lambda, stat, errmsg)
     type(feti_problem), intent(in) :: p
     integer(c_int32_t), intent(in) :: kind
     real(real64), intent(inout), contiguous :: lambda(:)
@@ -237,6 +273,17 @@ contains
 
     call finish(c_multipliers(handle_of(p), kind, size(lambda, kind=c_int64_t), lambda), &
       stat, errmsg)
+  end subroutine
+
+  !> Those of nodes with friction, (dim, nodes).
+  recursive subroutine multipliers_nodes(p, kind, lambda, stat, errmsg)
+    type(feti_problem), intent(in) :: p
+    integer(c_int32_t), intent(in) :: kind
+    real(real64), intent(inout), contiguous :: lambda(:, :)
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+
+    call finish(c_multipliers(handle_of(p), kind, size(lambda, kind=c_int64_t), lambda), stat, errmsg)
   end subroutine
 
   !> Open gaps c - B u of the contact rows, of compliant ones c + lambda/k - B u, length.

@@ -5,7 +5,7 @@
 module feti_contact_rows
   use, intrinsic :: iso_c_binding, only: c_int32_t, c_int64_t, c_loc, c_null_ptr, c_ptr
   use, intrinsic :: iso_fortran_env, only: int32, int64, real64
-  use feti_contact_base, only: feti_problem, finish, handle_of, refuse
+  use feti_contact_base, only: address_of, feti_problem, finish, handle_of, refuse
   use feti_contact_c, only: FETI_OK, &
     c_rows_add_i32 => feti_rows_add_i32, &
     c_rows_add_i64 => feti_rows_add_i64, &
@@ -184,15 +184,6 @@ contains
     fault = 'feti_rows_add: rhs has not one entry per row'
   end subroutine
 
-  !> Address of the right-hand sides, NULL where absent.
-  recursive type(c_ptr) function address_of(rhs)
-    real(real64), intent(in), contiguous, optional, target :: rhs(:)
-
-    address_of = c_null_ptr
-    if (.not. present(rhs)) return
-    if (size(rhs) > 0) address_of = c_loc(rhs)
-  end function
-
   !> New right-hand sides, rhs(:), length, for the rows first, first+1, ... of a kind.
   recursive subroutine rows_rhs(p, kind, first, rhs, stat, errmsg)
     type(feti_problem), intent(in) :: p
@@ -220,7 +211,7 @@ contains
       size(inv_k, kind=c_int64_t), inv_k), stat, errmsg)
   end subroutine
 
-  !> Removes all rows of a kind.
+  !> Removes all rows of a kind, with the contact rows all nodes with friction.
   recursive subroutine rows_clear(p, kind, stat, errmsg)
     type(feti_problem), intent(in) :: p
     integer(c_int32_t), intent(in) :: kind

@@ -23,11 +23,30 @@ module feti_contact_states
   public :: diagnosis, diagnosis_rows, diagnosis_motion
   public :: diagnosis_dependent, diagnosis_untouched, diagnosis_undetermined, diagnosis_undetermined_motion
 
+  !> Start values for the next solve alone: lambda of kind FETI_INEQUALITY, mu of FETI_EQUALITY or lambda_t of FETI_TANGENTIAL,
+  !> force. Rows with a zero start without force. A change of rows or bodies drops them.
+  !>
+  !> call feti_start_from(p, kind, lambda): lambda(rows); of nodes with friction lambda(dim * nodes), node after node.
+  !> call feti_start_from(p, kind, lambda): lambda(dim, nodes), with FETI_TANGENTIAL.
+  interface start_from
+    module procedure start_from_rows, start_from_nodes
+  end interface
+
 contains
 
-  !> Start values for the next solve alone: lambda of kind FETI_INEQUALITY or mu of FETI_EQUALITY, force. Rows with a
-  !> zero start without force. A change of rows or bodies drops them.
-  recursive subroutine start_from(p, kind, lambda, stat, errmsg)
+  !> Those of nodes with friction, (dim, nodes).
+  recursive subroutine start_from_nodes(p, kind, lambda, stat, errmsg)
+    type(feti_problem), intent(in) :: p
+    integer(c_int32_t), intent(in) :: kind
+    real(real64), intent(in), contiguous :: lambda(:, :)
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+
+    call finish(c_start_from(handle_of(p), kind, size(lambda, kind=c_int64_t), lambda), stat, errmsg)
+  end subroutine
+
+  !> One after the other.
+  recursive subroutine start_from_rows(p, kind, lambda, stat, errmsg)
     type(feti_problem), intent(in) :: p
     integer(c_int32_t), intent(in) :: kind
     real(real64), intent(in), contiguous :: lambda(:)
@@ -37,7 +56,7 @@ contains
     call finish(c_start_from(handle_of(p), kind, size(lambda, kind=c_int64_t), lambda), stat, errmsg)
   end subroutine
 
-  !> Saves loads, rows, multipliers and contact state under the number id (from 1).
+  !> Saves loads, rows, friction, multipliers and contact state under the number id (from 1).
   recursive subroutine state_save(p, id, stat, errmsg)
     type(feti_problem), intent(in) :: p
     integer, intent(inout) :: id
@@ -51,7 +70,7 @@ contains
     call finish(status, stat, errmsg)
   end subroutine
 
-  !> Goes back to a saved state, which stays saved: loads and rows with their gaps and compliances.
+  !> Goes back to a saved state, which stays saved: loads, rows with their gaps and compliances, friction with its laws and s_old.
   !> FETI_STATE when bodies were added since.
   recursive subroutine state_restore(p, id, stat, errmsg)
     type(feti_problem), intent(in) :: p

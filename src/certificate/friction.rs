@@ -4,7 +4,7 @@
 use std::ops::Range;
 
 use crate::certificate::field::Field;
-use crate::certificate::rows::JudgedRow;
+use crate::certificate::row::JudgedRow;
 use crate::certificate::{positive, share, worse, FrictionState, NOISE};
 use crate::constraints::{FrictionNode, RowKind};
 use crate::linalg::vector::weighted_norm;
@@ -21,8 +21,10 @@ pub(super) struct JudgedNode {
     slip: [f64; 2],
     /// b, force.
     bound: f64,
-    /// The largest b of the nodes on the bodies that this one touches, force.
+    /// The largest `b / s_i` of the nodes on the bodies that this one touches, times its own s_i, force.
     largest: f64,
+    /// s_i of the row that weighs most, `/ U^1/2`, no unit.
+    scale: f64,
     /// What its force may be off by: the largest `tol Lambda_i` of its rows and rounding of lambda_t, force.
     force_limit: f64,
     /// What b may be off by: mu x what the normal force may, force.
@@ -36,7 +38,8 @@ pub(super) fn judged(field: &Field, rows: &[Vec<JudgedRow>; 3]) -> Vec<JudgedNod
     let (nodes, lambda) = (field.data.nodes, field.answer.lambda);
     let mut largest = vec![0.0; field.data.bodies.len()];
     for node in nodes {
-        let bound = node.limit(lambda);
+        // factors of nodes differ: by what their rows weigh bounds are comparable
+        let bound = node.limit(lambda) / scale(field, node);
         bodies(field, node).for_each(|p| largest[p] = f64::max(largest[p], bound));
     }
     let [contact, _, tangential] = rows;
@@ -50,13 +53,20 @@ pub(super) fn judged(field: &Field, rows: &[Vec<JudgedRow>; 3]) -> Vec<JudgedNod
             force,
             slip,
             bound: node.limit(lambda),
-            largest: bodies(field, node).map(|p| largest[p]).fold(0.0, f64::max),
+            largest: scale(field, node) * bodies(field, node).map(|p| largest[p]).fold(0.0, f64::max),
+            scale: scale(field, node),
             force_limit: own.iter().map(|row| row.force_limit).fold(0.0, worse) + rounding,
             bound_limit: node.normal.map_or(0.0, |row| node.coefficient * contact[row].force_limit),
             limit: field.data.limit,
         }
     };
     nodes.iter().map(of).collect()
+}
+
+/// `s_i / U^1/2` of its row that weighs most, no unit.
+fn scale(field: &Field, node: &FrictionNode) -> f64 {
+    let scales = &field.scales[RowKind::Tangential as usize][node.rows()];
+    scales.iter().copied().fold(f64::INFINITY, f64::min)
 }
 
 /// Bodies that the rows of a node touch, some of them more than once.
@@ -132,9 +142,10 @@ impl JudgedNode {
         }
     }
 
-    /// `(lambda_t - P_b(lambda_t + s / a)) a`, length, a being what a unit force moves: what tells the error of the force, as
-    /// `min(g_i, a lambda_i)` of a contact row.
-    pub fn natural(&self, moved: f64) -> [f64; 2] {
+    /// `(lambda_t - P_b(lambda_t + s_i^2 s)) / s_i^2`, length: what tells the error of the force, as `min(g_i, lambda_i / s_i^2)` of a
+    /// contact row. `unit`: U, force / length.
+    pub fn natural(&self, unit: f64) -> [f64; 2] {
+        let moved = 1.0 / self.scale / self.scale / unit;
         let lawful = held(self.force, self.slip.map(|part| part / moved), self.bound);
         [0, 1].map(|k| (self.force[k] - lawful[k]) * moved)
     }

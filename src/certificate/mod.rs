@@ -16,6 +16,7 @@ mod field;
 mod forces;
 mod friction;
 mod grounded;
+mod row;
 mod rows;
 
 use std::ops::Range;

@@ -76,6 +76,25 @@ impl Friction {
         bound > 0.0 || normal.is_some_and(|row| contact.is_finite(row))
     }
 
+    /// Rows and compliances are those of the other, and the same nodes may carry a force, each with its contact row.
+    pub fn same_but_law(&self, contact: &RowSet, other: &Self, other_contact: &RowSet) -> bool {
+        let node = |k: usize| {
+            self.nodes[k].normal == other.nodes[k].normal
+                && self.acts(k, contact) == other.acts(k, other_contact)
+        };
+        let counts = (self.dim, self.len()) == (other.dim, other.len());
+        counts && self.rows.same_but_rhs(&other.rows) && (0..self.len()).all(node)
+    }
+
+    /// `T u - C_t lambda_t`, length, (dim, nodes): the slips s_old with which the answer would be one without slip; 0 for rows
+    /// without entries.
+    pub fn reached(&self, u: &[f64], tangential: &[f64]) -> Result<Vec<f64>> {
+        let mut rows = self.rows.copied("friction")?;
+        rows.rhs.fill(0.0);
+        let slip = |i: usize| if rows.is_empty_row(i) { 0.0 } else { -rows.open_gap(i, u, tangential[i]) };
+        Ok((0..rows.len()).map(slip).collect())
+    }
+
     /// The same nodes, their entries shared, for `what`.
     pub fn copied(&self, what: &str) -> Result<Self> {
         Ok(Self { dim: self.dim, nodes: self.nodes.clone(), rows: self.rows.copied(what)? })
@@ -92,21 +111,23 @@ impl Friction {
             return Err(Error::argument("dim", what).value(input.dim as f64));
         }
         let normal = self.normals(input.normal, contact)?;
-        let coefficient = values_of(input.coefficient, "coefficient", count, first)?;
-        let bound = values_of(input.bound, "bound", count, first)?;
+        let coefficient = values_of(input.coefficient, "coefficient", count, 0)?;
+        let bound = values_of(input.bound, "bound", count, 0)?;
         for (k, row) in normal.iter().enumerate() {
             if row.is_none() && coefficient[k] > 0.0 {
                 let what = "a coefficient of friction needs a contact row";
-                return Err(Error::argument("normal_row", what).entry(k));
+                return Err(Error::argument("normal_row", what).node(k).entry(k));
             }
         }
         let mut rows = RowSet::default();
-        rows.add(RowKind::Tangential, input.rows, offsets)?;
+        rows.add(RowKind::Tangential, input.rows, offsets).map_err(|error| of_node(error, input.dim))?;
         for (k, row) in normal.iter().enumerate() {
             let own = (k * input.dim..(k + 1) * input.dim).map(|i| length(&rows, i));
             check_factors(own.chain(row.map(|row| length(contact, row))), k)?;
         }
-        self.dim = input.dim;
+        if count > 0 {
+            self.dim = input.dim;
+        }
         self.rows.append(&rows, offsets)?;
         let node = |(k, normal)| FrictionNode {
             normal,
@@ -132,11 +153,11 @@ impl Friction {
             let known = usize::try_from(row).ok().filter(|&row| row < contact.len());
             let number = known.ok_or_else(|| {
                 let what = format!("there are {} contact rows, and no such one among them", contact.len());
-                Error::argument("normal_row", what).entry(k).index(row)
+                Error::argument("normal_row", what).node(k).entry(k).index(row)
             })?;
             if std::mem::replace(&mut taken[number], true) {
                 let what = "this contact row has a node of friction already";
-                return Err(Error::argument("normal_row", what).entry(k).row(number));
+                return Err(Error::argument("normal_row", what).node(k).row(number).entry(k));
             }
             normals.push(Some(number));
         }
@@ -162,7 +183,7 @@ impl Friction {
         if let Some(k) = (0..count).find(|&k| without(k) && coefficient.as_ref().is_some_and(|c| c[k] > 0.0))
         {
             let what = "a coefficient of friction needs a contact row";
-            return Err(Error::argument("coefficient", what).entry(k).index((first + k) as i64));
+            return Err(Error::argument("coefficient", what).node(first + k).entry(k));
         }
         let acted: Vec<bool> = (first..first + count).map(|node| self.acts(node, contact)).collect();
         for (k, node) in self.nodes[first..first + count].iter_mut().enumerate() {
@@ -177,7 +198,7 @@ impl Friction {
         self.check_nodes(first, inv_kt.len())?;
         if let Some(at) = inv_kt.iter().position(|v| !(v.is_finite() && *v >= 0.0)) {
             let what = "the compliance 1/k is not a finite number >= 0";
-            return Err(Error::argument("inv_kt", what).entry(at).value(inv_kt[at]));
+            return Err(Error::argument("inv_kt", what).node(first + at).entry(at).value(inv_kt[at]));
         }
         let dim = self.dim;
         let target = &mut self.rows.compliance[first * dim..(first + inv_kt.len()) * dim];
@@ -188,10 +209,7 @@ impl Friction {
     /// s_old, length, (dim, nodes): of the nodes from `first` on.
     pub fn set_reference(&mut self, first: usize, count: usize, dim: usize, s_old: &[f64]) -> Result<()> {
         self.check_nodes(first, count)?;
-        if count > 0 && dim != self.dim {
-            let what = format!("the nodes have {} tangential rows each", self.dim);
-            return Err(Error::argument("dim", what).value(dim as f64).limit(self.dim as f64));
-        }
+        self.check_dim(dim, count)?;
         let from = first * self.dim;
         for (at, slip) in s_old.iter().enumerate() {
             let what = if !slip.is_finite() {
@@ -201,13 +219,23 @@ impl Friction {
             } else {
                 continue;
             };
-            return Err(Error::argument("s_old", what).entry(at).value(*slip));
+            return Err(Error::argument("s_old", what).node(first + at / dim).entry(at).value(*slip));
         }
         self.rows.rhs[from..from + s_old.len()].copy_from_slice(s_old);
         Ok(())
     }
 
-    fn check_nodes(&self, first: usize, count: usize) -> Result<()> {
+    /// `dim` of a call about so many nodes is theirs.
+    pub fn check_dim(&self, dim: usize, count: usize) -> Result<()> {
+        if count == 0 || dim == self.dim {
+            return Ok(());
+        }
+        let what = format!("the nodes have {} tangential rows each", self.dim);
+        Err(Error::argument("dim", what).value(dim as f64).limit(self.dim as f64))
+    }
+
+    /// So many nodes from `first` on are there.
+    pub fn check_nodes(&self, first: usize, count: usize) -> Result<()> {
         let (nodes, end) = (self.len(), first.saturating_add(count));
         if end <= nodes {
             return Ok(());
@@ -231,7 +259,15 @@ fn check_factors(lengths: impl Iterator<Item = f64>, node: usize) -> Result<()> 
         return Ok(());
     }
     let what = "rows of this node have different factors: the contact row and the tangential rows of a node are to be multiplied by one number";
-    Err(Error::argument("val", what).entry(node).value(most / least).limit(FACTORS))
+    Err(Error::argument("val", what).node(node).value(most / least).limit(FACTORS))
+}
+
+/// An error of one of the tangential rows of nodes that are added.
+fn of_node(error: Error, dim: usize) -> Error {
+    match error.place.row {
+        Some(row) => error.node(row / dim),
+        None => error,
+    }
 }
 
 /// One value >= 0 of each node; zeros when absent.
@@ -240,7 +276,7 @@ fn values_of(given: Option<&[f64]>, name: &'static str, count: usize, first: usi
     match values.iter().position(|v| !(v.is_finite() && *v >= 0.0)) {
         Some(at) => {
             let what = format!("the {name} of friction is not a finite number >= 0");
-            Err(Error::argument(name, what).entry(at).index((first + at) as i64).value(values[at]))
+            Err(Error::argument(name, what).node(first + at).entry(at).value(values[at]))
         }
         None => Ok(values.to_vec()),
     }
@@ -269,7 +305,7 @@ mod tests {
     fn a_refused_node_is_named_and_leaves_nothing_behind() {
         let (contact, mut friction) = (contact(), Friction::default());
         let mut refused = |given: FrictionInput| friction.add(given, &contact, &[0, 4]).unwrap_err();
-        for (error, argument, entry) in [
+        for (error, argument, node) in [
             (refused(input(&[0, 2], &[0.5; 2], &[1.0; 2])), "normal_row", 1),
             (refused(input(&[1, 1], &[0.5; 2], &[1.0; 2])), "normal_row", 1),
             (refused(input(&[0, -2], &[0.5; 2], &[1.0; 2])), "normal_row", 1),
@@ -277,8 +313,9 @@ mod tests {
             (refused(input(&[0, 1], &[0.5, -0.1], &[1.0; 2])), "coefficient", 1),
             (refused(input(&[0, 1], &[f64::NAN, 0.1], &[1.0; 2])), "coefficient", 0),
             (refused(input(&[0, 1], &[0.5; 2], &[1.0, 2e3])), "val", 1),
+            (refused(input(&[0, 1], &[0.5; 2], &[1.0, f64::NAN])), "val", 1),
         ] {
-            assert_eq!((error.kind, error.place.entry), (Kind::Argument(argument), Some(entry)));
+            assert_eq!((error.kind, error.place.node), (Kind::Argument(argument), Some(node)));
         }
         assert_eq!((friction.len(), friction.rows.len(), friction.dim), (0, 0, 0));
         assert_eq!(friction.add(input(&[1], &[0.5], &[1.0]), &contact, &[0, 4]).unwrap(), 0);

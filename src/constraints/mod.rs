@@ -9,10 +9,12 @@ mod accumulator;
 mod decoupling;
 mod friction;
 mod grouping;
+mod kind;
 
 pub use decoupling::{Decoupling, UnitRows};
 pub use friction::{Friction, FrictionInput, FrictionNode};
 pub use grouping::Grouping;
+pub use kind::RowKind;
 
 use std::sync::Arc;
 
@@ -21,16 +23,6 @@ use crate::linalg::twofold::Twofold;
 use crate::linalg::vector::first_non_finite;
 use crate::linalg::Csr;
 use crate::platform::memory::{copied, zeros};
-
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum RowKind {
-    /// `B u <= c`, multipliers lambda >= 0.
-    Inequality,
-    /// `H u = h`, multipliers mu of any sign.
-    Equality,
-    /// Tangential rows T of nodes with friction, with the slip `s = T u - s_old - C_t lambda_t`.
-    Tangential,
-}
 
 /// Rows as they arrived, counting from 0; without `body` the dofs count through all bodies.
 #[derive(Debug, Clone, Copy)]
@@ -207,18 +199,6 @@ impl RowSet {
                 .value(self.rhs[i])
                 .limit(0.0)),
             None => Ok(()),
-        }
-    }
-}
-
-impl RowKind {
-    pub const ALL: [Self; 3] = [Self::Inequality, Self::Equality, Self::Tangential];
-
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Inequality => "contact row",
-            Self::Equality => "equality row",
-            Self::Tangential => "tangential row",
         }
     }
 }

@@ -9,7 +9,8 @@ use crate::solver::{Findings, RowKind};
 
 /// What the last solve, or the last setup that failed, has found out about the problem.
 ///
-/// After FETI_LOAD_NOT_HELD: the body that escapes, its motion and the margin. After FETI_GAPS_CONTRADICT: the rows that
+/// After FETI_LOAD_NOT_HELD: the body that escapes, its motion and the margin. After FETI_SLIDES: the body that slides, its motion and
+/// the capacity of friction. After FETI_GAPS_CONTRADICT: the rows that
 /// contradict each other. Of several groups of bodies without an answer the first is told of. After FETI_INDEFINITE, FETI_NULL_SPACE and the like: the body and the unknown. With an answer:
 /// motions left undetermined, redundant rows, bodies that no row touches. Kept until the next solve or the next setup that
 /// fails; FETI_STATE before the first. After a failure nothing is written.
@@ -59,7 +60,8 @@ pub unsafe extern "C" fn feti_diagnosis_rows(
     weight: *mut f64,
 ) -> i32 {
     enter(p, call!(feti_diagnosis_rows(p, kind, cap, count, row, weight)), |problem| {
-        let (kind, cap) = (row_kind(kind)?, self::count(cap, "cap")?);
+        let kind = row_kind(kind, "which neither contradict nor repeat each other")?;
+        let cap = self::count(cap, "cap")?;
         // SAFETY: the caller gives room for one number, and for `cap` numbers or NULL.
         let (number, rows, weights) = unsafe {
             (
@@ -210,8 +212,8 @@ pub unsafe extern "C" fn feti_diagnosis_undetermined_motion(
 /// Reads the rigid motion with which a body escapes, unknown by unknown.
 ///
 /// The load does work on it, and no row resists. It is scaled to largest entry 1 over all bodies; bodies that stay have
-/// zeros. After FETI_INDEFINITE the motion that K drives further than closed rows resist. FETI_STATE unless the last solve ended
-/// with one of both and a motion. After a failure nothing is written.
+/// zeros. After FETI_SLIDES the motion that friction resists too little, after FETI_INDEFINITE the one that K drives further than
+/// closed rows resist. FETI_STATE unless the last solve ended with one of these and a motion. After a failure nothing is written.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|
@@ -260,5 +262,6 @@ fn described(from: &Findings) -> feti_findings {
         doubtful_body: known(from.doubtful.first().copied()),
         soft_bodies: from.soft.len() as i64,
         soft_body: known(from.soft.first().copied()),
+        capacity: from.capacity.unwrap_or(f64::NAN),
     }
 }

@@ -5,7 +5,7 @@
 //! | `header/` | structs, constants and status numbers of the header |
 //! | `boundary/` | what surrounds the functions: handles, panics, errors, arrays of the host |
 //! | `bodies/` | the functions of bodies |
-//! | `problem`, `file`, `options`, `rows`, `solve`, `phases`, `progress`, `log`, `state`, `diagnosis`, `results`, `validation` | the other functions |
+//! | `problem`, `file`, `options`, `rows`, `friction`, `solve`, `phases`, `progress`, `log`, `state`, `diagnosis`, `results`, `validation` | the other functions |
 //!
 //! The generator of the header and of the Fortran interfaces reads these files: each exported function has a table of
 //! its arguments, in which the word NULL in the rule says that the pointer may be NULL.
@@ -17,6 +17,7 @@ mod bodies;
 mod boundary;
 mod diagnosis;
 mod file;
+mod friction;
 mod header;
 mod log;
 mod options;
@@ -32,6 +33,8 @@ mod validation;
 #[cfg(test)]
 mod error_tests;
 #[cfg(test)]
+mod friction_tests;
+#[cfg(test)]
 mod panic_tests;
 #[cfg(test)]
 mod tests;
@@ -40,6 +43,7 @@ pub use bodies::*;
 pub use boundary::{feti_last_error, feti_last_error_detail};
 pub use diagnosis::*;
 pub use file::*;
+pub use friction::*;
 pub use header::status::*;
 pub use header::types::*;
 pub use log::*;

@@ -3,12 +3,15 @@
 use crate::error::Result;
 use crate::ffi::bodies::{body_of_order, whole};
 use crate::ffi::boundary::{call, enter, id, same, Output};
+use crate::ffi::friction::{all_nodes, NODES};
 use crate::ffi::header::types::{
-    feti_problem, FETI_ALL, FETI_ROW_CLOSED, FETI_ROW_OPEN, FETI_ROW_UNKNOWN, FETI_ROW_WEAK,
+    feti_problem, FETI_ALL, FETI_FRICTION_OPEN, FETI_FRICTION_SLIP, FETI_FRICTION_STICK,
+    FETI_FRICTION_UNKNOWN, FETI_FRICTION_WEAK, FETI_ROW_CLOSED, FETI_ROW_OPEN, FETI_ROW_UNKNOWN,
+    FETI_ROW_WEAK,
 };
-use crate::ffi::rows::row_kind;
+use crate::ffi::rows::multiplier_kind;
 use crate::platform::memory::{reserved, zeros};
-use crate::solver::RowState;
+use crate::solver::{FrictionState, RowState};
 
 /// Reads the displacement of a body.
 ///
@@ -41,9 +44,9 @@ pub unsafe extern "C" fn feti_displacement(p: *mut feti_problem, body: i64, n: i
     })
 }
 
-/// Reads the force of the rows on a body, -B'lambda, -H'mu or both: `K u = f + r`.
+/// Reads the force of the rows on a body, -B'lambda, -H'mu, -T'lambda_t or all of them: `K u = f + r`.
 ///
-/// By kinds it is that of the host's rows. Both together hold the force of the glue as well where unknowns of several bodies
+/// By kinds it is that of the host's rows. All together hold the force of the glue as well where unknowns of several bodies
 /// have one number (option glue): what these bodies do to each other. It cancels in the sum over them, which FETI_ALL gives.
 ///
 /// With FETI_ALL the forces on all bodies: by the host's numbers where they have some, entries of no unknown as they were;
@@ -54,7 +57,7 @@ pub unsafe extern "C" fn feti_displacement(p: *mut feti_problem, body: i64, n: i
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|
 /// | `p` | in | scalar | the handle |
-/// | `kind` | in | scalar | FETI_INEQUALITY, FETI_EQUALITY, or 0 for both |
+/// | `kind` | in | scalar | FETI_INEQUALITY, FETI_EQUALITY, FETI_TANGENTIAL, or 0 for all |
 /// | `body` | in | scalar | number of the body, from 0, or FETI_ALL |
 /// | `n` | in | scalar | unknowns of the body; with FETI_ALL at least the largest number + 1, without numbers all unknowns |
 /// | `r` | out | n | force |
@@ -70,7 +73,7 @@ pub unsafe extern "C" fn feti_reaction(
     r: *mut f64,
 ) -> i32 {
     enter(p, call!(feti_reaction(p, kind, body, n, r)), |problem| {
-        let kind = if kind == 0 { None } else { Some(row_kind(kind)?) };
+        let kind = if kind == 0 { None } else { Some(multiplier_kind(kind)?) };
         if body == FETI_ALL {
             // SAFETY: room for n numbers by the caller's word.
             let output = unsafe { Output::new(r, whole(problem, n)?, "r") }?;
@@ -110,7 +113,7 @@ pub unsafe extern "C" fn feti_amplitudes(p: *mut feti_problem, body: i64, r: i64
     })
 }
 
-/// Reads the multipliers: lambda of `B u <= c`, or mu of `H u = h`.
+/// Reads the multipliers: lambda of `B u <= c`, mu of `H u = h`, or lambda_t of the nodes with friction, node after node.
 ///
 /// NaN for rows on bodies whose group has no answer (feti_solve), 0 for rows that never close. FETI_STATE before a solve has
 /// given an answer. After a failure nothing is written.
@@ -118,8 +121,8 @@ pub unsafe extern "C" fn feti_amplitudes(p: *mut feti_problem, body: i64, r: i64
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|
 /// | `p` | in | scalar | the handle |
-/// | `kind` | in | scalar | FETI_INEQUALITY or FETI_EQUALITY |
-/// | `rows` | in | scalar | number of rows of the kind |
+/// | `kind` | in | scalar | FETI_INEQUALITY, FETI_EQUALITY or FETI_TANGENTIAL |
+/// | `rows` | in | scalar | number of rows of the kind; of tangential ones dim for each node |
 /// | `lambda` | out | rows | force, >= 0 for inequalities |
 ///
 /// # Safety
@@ -132,7 +135,7 @@ pub unsafe extern "C" fn feti_multipliers(
     lambda: *mut f64,
 ) -> i32 {
     enter(p, call!(feti_multipliers(p, kind, rows, lambda)), |problem| {
-        let multipliers = problem.multipliers(row_kind(kind)?)?;
+        let multipliers = problem.multipliers(multiplier_kind(kind)?)?;
         // SAFETY: room for one number per row by the caller's word.
         unsafe { copy(multipliers, rows, ("rows", ROWS), lambda, "lambda") }
     })
@@ -186,6 +189,67 @@ pub unsafe extern "C" fn feti_active(p: *mut feti_problem, rows: i64, state: *mu
         }));
         // SAFETY: room for one number per row by the caller's word.
         unsafe { copy(&numbers, rows, ("rows", ROWS), state, "state") }
+    })
+}
+
+/// Reads the slips of the last answer, `s = T u - s_old - C_t lambda_t` with the s_old of that solve.
+///
+/// A slip has the sign of its force lambda_t (feti_multipliers with FETI_TANGENTIAL). NaN for nodes on bodies whose group has no answer
+/// (feti_solve). FETI_STATE before a solve has given an answer. After a failure nothing is written.
+///
+/// | argument | in/out | shape | rule |
+/// |---|---|---|---|
+/// | `p` | in | scalar | the handle |
+/// | `nodes` | in | scalar | number of nodes with friction |
+/// | `dim` | in | scalar | tangential rows of a node, 1 or 2; not looked at without nodes |
+/// | `slip` | out | dim * nodes | node after node, length |
+///
+/// # Safety
+/// The array has the given shape.
+#[no_mangle]
+pub unsafe extern "C" fn feti_friction_slips(
+    p: *mut feti_problem,
+    nodes: i64,
+    dim: i32,
+    slip: *mut f64,
+) -> i32 {
+    enter(p, call!(feti_friction_slips(p, nodes, dim, slip)), |problem| {
+        let (slips, len) = (problem.slips()?, all_nodes(problem, nodes, dim)?);
+        // SAFETY: room for dim numbers for each node by the caller's word.
+        unsafe { Output::new(slip, len, "slip") }?.write(slips);
+        Ok(())
+    })
+}
+
+/// Reads the states of the nodes in the last answer: what the certificate takes for zero at a node decides.
+///
+/// FETI_FRICTION_OPEN where the bound is zero, and nothing but that: a node with `bound` > 0 sticks or slips though its contact is open;
+/// FETI_FRICTION_STICK with a force within its bound; FETI_FRICTION_SLIP with a slip along a force that reaches its bound;
+/// FETI_FRICTION_WEAK with a force that reaches its bound and no slip, to rounding; FETI_FRICTION_UNKNOWN for nodes on bodies whose
+/// group has no answer (feti_solve). FETI_STATE before a solve has given an answer. After a failure nothing is written.
+///
+/// | argument | in/out | shape | rule |
+/// |---|---|---|---|
+/// | `p` | in | scalar | the handle |
+/// | `nodes` | in | scalar | number of nodes with friction |
+/// | `state` | out | nodes | FETI_FRICTION_OPEN, FETI_FRICTION_STICK, FETI_FRICTION_SLIP, FETI_FRICTION_WEAK or FETI_FRICTION_UNKNOWN |
+///
+/// # Safety
+/// The array has the given shape.
+#[no_mangle]
+pub unsafe extern "C" fn feti_friction_states(p: *mut feti_problem, nodes: i64, state: *mut i32) -> i32 {
+    enter(p, call!(feti_friction_states(p, nodes, state)), |problem| {
+        let states = problem.friction_states()?;
+        let mut numbers = reserved(states.len(), "a result")?;
+        numbers.extend(states.iter().map(|state| match state {
+            FrictionState::Open => FETI_FRICTION_OPEN,
+            FrictionState::Stick => FETI_FRICTION_STICK,
+            FrictionState::Slip => FETI_FRICTION_SLIP,
+            FrictionState::Weak => FETI_FRICTION_WEAK,
+            FrictionState::Unknown => FETI_FRICTION_UNKNOWN,
+        }));
+        // SAFETY: room for one number per node by the caller's word.
+        unsafe { copy(&numbers, nodes, ("nodes", NODES), state, "state") }
     })
 }
 

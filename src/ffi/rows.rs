@@ -1,10 +1,10 @@
 //! Rows of `B u <= c` and `H u = h`, numbered per kind from 0.
 
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::ffi::boundary::{
     base, call, count, enter, id, input, input_or_none, meaning, numbers, pointers, Call, Index, Output,
 };
-use crate::ffi::header::types::{feti_problem, FETI_EQUALITY, FETI_INEQUALITY};
+use crate::ffi::header::types::{feti_problem, FETI_EQUALITY, FETI_INEQUALITY, FETI_TANGENTIAL};
 use crate::solver::{RowKind, RowsInput};
 
 /// Adds rows of `B u <= c` or `H u = h`, with 32-bit indices.
@@ -107,7 +107,8 @@ impl<I: Index> HostRows<I> {
     /// The arrays have the documented shapes.
     unsafe fn add(&self, p: *mut feti_problem, call: Call) -> i32 {
         enter(p, call, |problem| {
-            let (kind, rows, base) = (row_kind(self.kind)?, count(self.rows, "rows")?, base(self.base)?);
+            let kind = row_kind(self.kind, "feti_friction_add_i32 or _i64 adds them with these")?;
+            let (rows, base) = (count(self.rows, "rows")?, base(self.base)?);
             // SAFETY: NULL or room for one number by the caller's word.
             let first = unsafe { Output::optional(self.first, 1, "first") }?;
             // SAFETY: rows + 1 positions by the caller's word.
@@ -153,7 +154,8 @@ pub unsafe extern "C" fn feti_rows_rhs(
     rhs: *const f64,
 ) -> i32 {
     enter(p, call!(feti_rows_rhs(p, kind, first, rows, rhs)), |problem| {
-        let (kind, first, rows) = (row_kind(kind)?, id(first, "first")?, count(rows, "rows")?);
+        let kind = row_kind(kind, "their s_old is given by feti_friction_reference")?;
+        let (first, rows) = (id(first, "first")?, count(rows, "rows")?);
         // SAFETY: one number per row by the caller's word.
         problem.set_rhs(kind, first, unsafe { input(rhs, rows, "rhs") }?)
     })
@@ -185,7 +187,8 @@ pub unsafe extern "C" fn feti_rows_compliance(
     inv_k: *const f64,
 ) -> i32 {
     enter(p, call!(feti_rows_compliance(p, kind, first, rows, inv_k)), |problem| {
-        let (kind, first, rows) = (row_kind(kind)?, id(first, "first")?, count(rows, "rows")?);
+        let kind = row_kind(kind, "theirs are given by feti_friction_compliance")?;
+        let (first, rows) = (id(first, "first")?, count(rows, "rows")?);
         // SAFETY: one number per row by the caller's word.
         problem.set_compliance(kind, first, unsafe { input(inv_k, rows, "inv_k") }?)
     })
@@ -193,7 +196,8 @@ pub unsafe extern "C" fn feti_rows_compliance(
 
 /// Removes all rows of a kind.
 ///
-/// Numbering of that kind starts again at 0. Factors of the bodies stay.
+/// Numbering of that kind starts again at 0. With the inequality rows go all nodes with friction (feti_friction_clear), whose
+/// contact rows they are. Factors of the bodies stay.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|
@@ -202,12 +206,27 @@ pub unsafe extern "C" fn feti_rows_compliance(
 #[no_mangle]
 pub extern "C" fn feti_rows_clear(p: *mut feti_problem, kind: i32) -> i32 {
     enter(p, call!(feti_rows_clear(p, kind)), |problem| {
-        problem.clear_rows(row_kind(kind)?);
+        problem.clear_rows(row_kind(kind, "feti_friction_clear removes their nodes")?);
         Ok(())
     })
 }
 
-pub(super) fn row_kind(kind: i32) -> Result<RowKind> {
+/// A kind of rows that are given by rows; of tangential ones the text says what is to be called `instead`.
+pub(super) fn row_kind(kind: i32, instead: &str) -> Result<RowKind> {
+    if kind == FETI_TANGENTIAL {
+        let what = format!("FETI_TANGENTIAL: tangential rows belong to nodes with friction, {instead}");
+        return Err(Error::argument("kind", what).value(f64::from(kind)));
+    }
     let known = [(FETI_INEQUALITY, RowKind::Inequality), (FETI_EQUALITY, RowKind::Equality)];
     meaning(kind, "kind", &known, "neither FETI_INEQUALITY nor FETI_EQUALITY")
+}
+
+/// A kind of rows that have multipliers.
+pub(super) fn multiplier_kind(kind: i32) -> Result<RowKind> {
+    let known = [
+        (FETI_INEQUALITY, RowKind::Inequality),
+        (FETI_EQUALITY, RowKind::Equality),
+        (FETI_TANGENTIAL, RowKind::Tangential),
+    ];
+    meaning(kind, "kind", &known, "none of FETI_INEQUALITY, FETI_EQUALITY and FETI_TANGENTIAL")
 }

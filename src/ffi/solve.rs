@@ -1,9 +1,11 @@
 //! Setup, solve, and the verdict on an answer.
 
+use crate::error::Result;
 use crate::ffi::boundary::{call, enter, enter_with_status, finite_input, known, same, OutStruct};
+use crate::ffi::friction::all_nodes;
 use crate::ffi::header::status::of_outcome;
 use crate::ffi::header::types::{feti_certificate, feti_info, feti_problem};
-use crate::solver::{Certificate, Report, Sizes};
+use crate::solver::{Candidate, Certificate, Problem, Report, Sizes};
 
 /// Prepares the solve: null spaces, factors of the bodies, the dual operator.
 ///
@@ -47,7 +49,7 @@ pub extern "C" fn feti_setup(p: *mut feti_problem) -> i32 {
 /// of option time_limit, which counts from the call, with a setup that is due; FETI_CANCELLED where the host has cancelled; FETI_STALLED where steps no longer reduce the error;
 /// FETI_INACCURATE where the certificate does not pass; FETI_MARGINAL where a part of the load, below 1e-7 of it, is not
 /// held. A status below 0 comes without one for the group of bodies it is about. FETI_LOAD_NOT_HELD where no contact force
-/// balances the load; FETI_GAPS_CONTRADICT where rows contradict each other; FETI_INDEFINITE where K drives a soft motion
+/// balances the load; FETI_SLIDES where friction holds only a part of it and no rest was found; FETI_GAPS_CONTRADICT where rows contradict each other; FETI_INDEFINITE where K drives a soft motion
 /// further than closed rows resist it; feti_diagnosis has the proof of each. It runs feti_setup when it is due, and fails as
 /// that does.
 ///
@@ -81,11 +83,12 @@ pub unsafe extern "C" fn feti_solve(p: *mut feti_problem, info: *mut feti_info) 
     status
 }
 
-/// Verifies an answer against the problem as it is given now: any answer, also another code's.
+/// Verifies an answer without tangential forces against the problem as it is given now: any answer, also another code's.
 ///
 /// Every figure is that of the worst body or the worst row, measured against its own forces and deformation, and is named
 /// with it. Glue (option glue) is judged as equality rows are; the forces in it are not given: they are those that serve the
-/// answer best. Rows that never close, c = +infinity, are left out: what is given for their lambda counts as 0. Keeps nothing of
+/// answer best. Rows that never close, c = +infinity, are left out: what is given for their lambda counts as 0. At nodes with
+/// friction (feti_friction_add_i32 or _i64) the tangential force counts as 0: feti_check_friction takes it. Keeps nothing of
 /// the answer: that of the last solve stays. Runs feti_setup when it is due, for the null spaces. After a failure nothing is written.
 ///
 /// | argument | in/out | shape | rule |
@@ -113,20 +116,85 @@ pub unsafe extern "C" fn feti_check(
     out: *mut feti_certificate,
 ) -> i32 {
     enter(p, call!(feti_check(p, n, u, rows, lambda, eqs, mu, out)), |problem| {
-        let counts = problem.sizes();
-        let n = same(n, counts.dofs, "n", "the number of unknowns of all bodies is")?;
-        let rows = same(rows, counts.rows, "rows", "the number of inequality rows is")?;
-        let eqs = same(eqs, counts.equalities, "eqs", "the number of equality rows is")?;
         // SAFETY: shapes by the caller's word.
-        let (u, lambda, mu) = unsafe {
-            (finite_input(u, n, "u")?, finite_input(lambda, rows, "lambda")?, finite_input(mu, eqs, "mu")?)
-        };
+        let (u, lambda, mu) = unsafe { answer_to_check(problem, (n, u), (rows, lambda), (eqs, mu)) }?;
         // SAFETY: `struct_size` bytes by the caller's word.
         let target = unsafe { OutStruct::new(out, "out") }?;
         let _room = problem.working_headroom()?;
         target.write(&certificate(&problem.check(u, lambda, mu)?));
         Ok(())
     })
+}
+
+/// Verifies an answer with tangential forces against the problem as it is given now: any answer, also another code's.
+///
+/// As feti_check; the figures of friction judge, node by node, the forces lambda_t by the law and the slip
+/// `T u - s_old - C_t lambda_t` by the s_old that is there now: after feti_friction_commit that of the next step. Nodes that may
+/// carry no force (bound 0, no contact row that may close) are left out. After a failure nothing is written.
+///
+/// | argument | in/out | shape | rule |
+/// |---|---|---|---|
+/// | `p` | in | scalar | the handle |
+/// | `n` | in | scalar | unknowns of all bodies |
+/// | `u` | in | n | displacement, body after body, length |
+/// | `rows` | in | scalar | number of inequality rows |
+/// | `lambda` | in | rows | multipliers of `B u <= c`, force |
+/// | `eqs` | in | scalar | number of equality rows |
+/// | `mu` | in | eqs | multipliers of `H u = h`, force |
+/// | `nodes` | in | scalar | number of nodes with friction |
+/// | `dim` | in | scalar | tangential rows of a node, 1 or 2; not looked at without nodes |
+/// | `lambda_t` | in | dim * nodes | multipliers of the tangential rows, node after node, force |
+/// | `out` | in/out | scalar | `struct_size` set, at least 16 |
+///
+/// # Safety
+/// The arrays have the given shapes, `out` leads to `struct_size` writable bytes.
+#[no_mangle]
+pub unsafe extern "C" fn feti_check_friction(
+    p: *mut feti_problem,
+    n: i64,
+    u: *const f64,
+    rows: i64,
+    lambda: *const f64,
+    eqs: i64,
+    mu: *const f64,
+    nodes: i64,
+    dim: i32,
+    lambda_t: *const f64,
+    out: *mut feti_certificate,
+) -> i32 {
+    let call = call!(feti_check_friction(p, n, u, rows, lambda, eqs, mu, nodes, dim, lambda_t, out));
+    enter(p, call, |problem| {
+        // SAFETY: shapes by the caller's word.
+        let (u, lambda, mu) = unsafe { answer_to_check(problem, (n, u), (rows, lambda), (eqs, mu)) }?;
+        let len = all_nodes(problem, nodes, dim)?;
+        // SAFETY: dim numbers for each node by the caller's word.
+        let tangential = unsafe { finite_input(lambda_t, len, "lambda_t") }?;
+        // SAFETY: `struct_size` bytes by the caller's word.
+        let target = unsafe { OutStruct::new(out, "out") }?;
+        let _room = problem.working_headroom()?;
+        target.write(&certificate(&problem.check_with_friction(Candidate { u, lambda, mu, tangential })?));
+        Ok(())
+    })
+}
+
+/// Displacement and multipliers of contact and equality rows, with their sizes.
+///
+/// # Safety
+/// The arrays have as many numbers as said.
+unsafe fn answer_to_check<'a>(
+    problem: &Problem,
+    (n, u): (i64, *const f64),
+    (rows, lambda): (i64, *const f64),
+    (eqs, mu): (i64, *const f64),
+) -> Result<(&'a [f64], &'a [f64], &'a [f64])> {
+    let counts = problem.sizes();
+    let n = same(n, counts.dofs, "n", "the number of unknowns of all bodies is")?;
+    let rows = same(rows, counts.rows, "rows", "the number of inequality rows is")?;
+    let eqs = same(eqs, counts.equalities, "eqs", "the number of equality rows is")?;
+    // SAFETY: shapes by the caller's word.
+    unsafe {
+        Ok((finite_input(u, n, "u")?, finite_input(lambda, rows, "lambda")?, finite_input(mu, eqs, "mu")?))
+    }
 }
 
 /// How a solve went by its report; without one counts are zero, figures NaN.
@@ -171,6 +239,14 @@ fn info_of(status: i32, sizes: Sizes, report: Option<&Report>) -> feti_info {
         implicit_operators: count(|report| report.implicit_operators),
         factor_bytes: count(|report| report.factor_bytes),
         operator_bytes: count(|report| report.operator_bytes),
+        friction_cone: figure(|report| report.certificate.friction_cone.figure),
+        friction_work: figure(|report| report.certificate.friction_work.figure),
+        friction_stick: figure(|report| report.certificate.friction_stick.figure),
+        nodes: sizes.nodes as i64,
+        sticking: count(|report| report.sticking),
+        slipping: count(|report| report.slipping),
+        friction_steps: count(|report| report.newton),
+        friction_starts: count(|report| report.starts),
     }
 }
 
@@ -194,5 +270,11 @@ fn certificate(from: &Certificate) -> feti_certificate {
         equality_row: known(from.equality.place),
         force_row: known(from.negative_force.place),
         complementarity_row: known(from.complementarity.place),
+        friction_cone: from.friction_cone.figure,
+        friction_work: from.friction_work.figure,
+        friction_stick: from.friction_stick.figure,
+        friction_cone_node: known(from.friction_cone.place),
+        friction_work_node: known(from.friction_work.place),
+        friction_stick_node: known(from.friction_stick.place),
     }
 }

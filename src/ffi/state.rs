@@ -2,7 +2,7 @@
 
 use crate::ffi::boundary::{call, enter, id, input, same, Output};
 use crate::ffi::header::types::feti_problem;
-use crate::ffi::rows::row_kind;
+use crate::ffi::rows::multiplier_kind;
 
 /// Gives start values for the next solve.
 ///
@@ -14,8 +14,8 @@ use crate::ffi::rows::row_kind;
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|
 /// | `p` | in | scalar | the handle |
-/// | `kind` | in | scalar | FETI_INEQUALITY or FETI_EQUALITY |
-/// | `rows` | in | scalar | number of rows of the kind |
+/// | `kind` | in | scalar | FETI_INEQUALITY, FETI_EQUALITY or FETI_TANGENTIAL |
+/// | `rows` | in | scalar | number of rows of the kind; of tangential ones dim for each node |
 /// | `lambda` | in | rows | force; a negative one of an inequality counts as zero |
 ///
 /// # Safety
@@ -28,7 +28,7 @@ pub unsafe extern "C" fn feti_start_from(
     lambda: *const f64,
 ) -> i32 {
     enter(p, call!(feti_start_from(p, kind, rows, lambda)), |problem| {
-        let kind = row_kind(kind)?;
+        let kind = multiplier_kind(kind)?;
         let expected = problem.rows(kind).len();
         let rows = same(rows, expected, "rows", "the number of rows of this kind is")?;
         // SAFETY: one number per row by the caller's word.
@@ -36,9 +36,9 @@ pub unsafe extern "C" fn feti_start_from(
     })
 }
 
-/// Saves loads, rows, multipliers and the contact state under a number.
+/// Saves loads, rows, friction, multipliers and the contact state under a number.
 ///
-/// Factors are not copied and the entries of the rows are shared, so that it costs no more than the vectors. States live until they are dropped or the problem is
+/// Of nodes with friction the laws, the compliances and s_old. Factors are not copied and the entries of the rows are shared, so that it costs no more than the vectors. States live until they are dropped or the problem is
 /// destroyed; numbers are never used again. After a failure nothing is saved.
 ///
 /// | argument | in/out | shape | rule |
@@ -60,7 +60,7 @@ pub unsafe extern "C" fn feti_state_save(p: *mut feti_problem, id: *mut i64) -> 
 
 /// Goes back to a saved state: after a load step that was rejected.
 ///
-/// Loads and rows, with right-hand sides and compliances, are as they were, and so is the answer unless a matrix or the
+/// Loads and rows, with right-hand sides and compliances, and nodes with friction, with laws and s_old, are as they were, and so is the answer unless a matrix or the
 /// rows have changed since; with option start = previous the next solve continues from the saved multipliers, with
 /// start = cold it gives the bits it would have given then. Matrices, null spaces and options stay as they are now; start
 /// values that were not used yet are dropped. The state stays saved. FETI_STATE when bodies were added since; after a

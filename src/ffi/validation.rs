@@ -1,5 +1,5 @@
 //! The operators of the method, for comparison with other codes: contact rows first, then equality rows, in the host's
-//! order and scaling.
+//! order and scaling; tangential rows of nodes with friction are left out.
 
 use crate::error::Result;
 use crate::ffi::bodies::body_of_order;
@@ -62,7 +62,7 @@ pub unsafe extern "C" fn feti_body_kplus(
 
 /// Applies the dual operator, `y = F x` with `F = [B; H] K+ [B; H]' + C`.
 ///
-/// C = diag(1/k) is the compliance of the rows (feti_rows_compliance), 0 for rigid ones. Runs feti_setup when it is due. `x` and `y` may be the same array.
+/// C = diag(1/k) is the compliance of the rows (feti_rows_compliance), 0 for rigid ones. Tangential rows of nodes with friction are not in it. Runs feti_setup when it is due. `x` and `y` may be the same array.
 /// FETI_STATE where a body is cut (feti_body_mesh_i32 or _i64) or unknowns are glued (option glue). After a failure nothing is
 /// written.
 ///

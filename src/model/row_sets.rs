@@ -95,6 +95,12 @@ impl Model {
         self.friction.set_reference(first, count, dim, s_old)
     }
 
+    /// So many nodes are there, and have `dim` tangential rows each.
+    pub fn check_friction_nodes(&self, first: usize, count: usize, dim: usize) -> Result<()> {
+        self.friction.check_nodes(first, count)?;
+        self.friction.check_dim(dim, count)
+    }
+
     /// Drops all nodes with friction; their contact rows stay.
     pub fn clear_friction(&mut self) {
         self.friction = Friction::default();
@@ -103,7 +109,7 @@ impl Model {
 
     /// Room for so many more rows: those that are there may move while their arrays grow.
     pub fn headroom_for_rows(&self, rows: usize, entries: usize) -> Result<Headroom> {
-        let present = self.contact.matrix.col.len().max(self.equalities.matrix.col.len());
+        let present = RowKind::ALL.iter().map(|kind| self.rows(*kind).matrix.col.len()).max().unwrap_or(0);
         let bytes = present.saturating_add(entries).saturating_mul(PER_ENTRY);
         memory::headroom(bytes.saturating_add(rows.saturating_mul(PER_ENTRY)), "constraint rows")
     }

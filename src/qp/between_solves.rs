@@ -9,7 +9,6 @@ use crate::linalg::semidefinite::faces::FaceFactors;
 use crate::linalg::vector::{norm_max, power_of_two_below};
 use crate::linalg::{Csr, Runs};
 use crate::qp::conjugate::Conjugate;
-use crate::qp::friction::Pairs;
 
 /// Depends on G and on which rows faces may hold, not on loads and gaps.
 #[derive(Default)]
@@ -33,7 +32,6 @@ pub struct Space {
 pub struct BetweenSolves {
     space: Mutex<Option<Space>>,
     directions: Mutex<Option<Conjugate>>,
-    pairs: Mutex<Option<(Vec<usize>, Pairs)>>,
 }
 
 impl Space {
@@ -71,21 +69,6 @@ impl BetweenSolves {
 
     pub fn take_directions(&self) -> Option<Conjugate> {
         locked(&self.directions).take()
-    }
-
-    /// Pairs of these rows; those of others are dropped.
-    pub fn take_pairs(&self, rows: &[usize]) -> Option<Pairs> {
-        locked(&self.pairs).take().filter(|(of, _)| of == rows).map(|(_, pairs)| pairs)
-    }
-
-    pub fn keep_pairs(&self, rows: &[usize], pairs: Pairs) {
-        *locked(&self.pairs) = Some((rows.to_vec(), pairs));
-    }
-
-    /// Drops directions and pairs: the next solve is to be as if none had been before.
-    pub fn forget_directions(&self) {
-        *locked(&self.directions) = None;
-        *locked(&self.pairs) = None;
     }
 
     pub fn keep_directions(&self, directions: Conjugate) {

@@ -9,6 +9,7 @@ use crate::error::{Error, Kind, Result};
 use crate::model::{Method, Model, Preconditioning, Settings};
 use crate::platform::memory::reserved;
 use crate::progress::{Phase, SetupPart, Watch};
+use crate::qp::friction::PairsBetween;
 use crate::qp::BetweenSolves;
 use crate::setup::islands::{islands, Island, Members};
 use crate::setup::operators::Operators;
@@ -113,6 +114,7 @@ impl Prepared {
                 whole,
                 preconditioner: None,
                 kept: BetweenSolves::default(),
+                pairs: PairsBetween::default(),
             });
         }
         Ok(Duals { of: model.revisions, islands: ready, operators, island_of })

@@ -79,6 +79,11 @@ impl Prepared {
         self.duals.as_ref()
     }
 
+    /// Drops the pairs of friction that solves have left: the next one depends on none of them.
+    pub fn forget_pairs(&mut self) {
+        self.duals.iter().flat_map(|duals| &duals.islands).for_each(|ready| ready.pairs.forget());
+    }
+
     /// Drops all that has been computed: the bodies have other numbers.
     pub fn forget(&mut self) {
         (self.bodies, self.duals) = (Vec::new(), None);

@@ -5,6 +5,7 @@ use crate::error::Result;
 use crate::model::Preconditioning;
 use crate::platform::memory::reserved;
 use crate::platform::threads;
+use crate::qp::friction::PairsBetween;
 use crate::qp::BetweenSolves;
 use crate::setup::islands::Island;
 use crate::setup::rows::DualRows;
@@ -24,6 +25,8 @@ pub struct Ready {
     pub preconditioner: Option<(Preconditioning, Preconditioner)>,
     /// What one solve leaves to the next.
     pub kept: BetweenSolves,
+    /// The same for friction.
+    pub pairs: PairsBetween,
 }
 
 impl Ready {

@@ -84,8 +84,8 @@ fn of_itself(end: Result<Solved>) -> Result<std::result::Result<Solved, Error>> 
 }
 
 fn is_of_itself(error: &Error) -> bool {
-    use Kind::{Cancelled, GapsContradict, Indefinite, LoadNotHeld, TimeOver};
-    matches!(error.kind, LoadNotHeld | GapsContradict | Indefinite | Cancelled | TimeOver)
+    use Kind::{Cancelled, GapsContradict, Indefinite, LoadNotHeld, Slides, TimeOver};
+    matches!(error.kind, LoadNotHeld | Slides | GapsContradict | Indefinite | Cancelled | TimeOver)
 }
 
 /// What an island says to the thread that listens to all.

@@ -138,7 +138,7 @@ fn attempt(
             HostUnits::new(case, &dual.gaps, given)?.solve(qp, start, &mut judge, steps)?
         }
         _ if case.has_friction() => {
-            solve_with_friction(&MethodOptions { settings, direct }, qp, start, &mut judge, steps)?
+            solve_with_friction(case, &MethodOptions { settings, direct }, qp, start, &mut judge, steps)?
         }
         _ => solve_driven(case, &MethodOptions { settings, direct }, qp, start, &mut judge, steps)?,
     };

@@ -24,6 +24,8 @@ pub struct Findings {
     /// The largest share of the load of bodies that move together which nothing holds: |resultant| / |load|, no unit. With an
     /// answer it has been taken for rounding of the load.
     pub unheld: f64,
+    /// What friction holds of the load along the motion of a slide, as a part, no unit.
+    pub capacity: Option<f64>,
     /// Rows that repeat the direction of another one, contact rows before equality rows, each with its multiple
     /// of that one.
     pub redundant: Vec<(usize, f64)>,
@@ -55,8 +57,9 @@ impl Findings {
                 findings.kind = Some(kind_and_row(*heaviest, findings.contact).0);
             }
             Some(Proof::Motion { v, .. }) => {
-                let unheld = error.place.value.filter(|_| error.kind == Kind::LoadNotHeld);
-                findings.unheld = unheld.unwrap_or(0.0);
+                let value = |kind| error.place.value.filter(|_| error.kind == kind);
+                findings.unheld = value(Kind::LoadNotHeld).unwrap_or(0.0);
+                findings.capacity = value(Kind::Slides);
                 findings.motion = error.place.body.and_then(|body| rigid_motion(host, body, v));
             }
             None => {}
@@ -79,6 +82,7 @@ impl Findings {
             motion: None,
             undetermined: 0,
             unheld: 0.0,
+            capacity: None,
             redundant: duals.map(|duals| redundant(model, duals)).unwrap_or_default(),
             untouched: duals.map(|_| untouched(host)).unwrap_or_default(),
             doubtful: doubtful(model, prepared),

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use crate::constraints::{RowKind, RowSet};
+use crate::constraints::{Friction, RowKind, RowSet};
 use crate::solve::{Answer, Start};
 
 #[derive(Default)]
@@ -40,6 +40,8 @@ pub struct State {
     pub loads: Vec<Option<Vec<f64>>>,
     /// Contact and equality rows, with c, h and 1/k.
     pub rows: [RowSet; 2],
+    /// Nodes with friction: their laws, tangential rows, s_old and compliances.
+    pub friction: Friction,
     pub previous: Option<Arc<Answer>>,
     /// `previous` was the answer for exactly these data.
     pub answered: bool,

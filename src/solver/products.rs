@@ -1,9 +1,10 @@
 //! The operators that the host may validate: null spaces, K+, F, d.
 
+use crate::constraints::RowKind;
 use crate::error::{Error, Kind, Result};
 use crate::linalg::Operator;
 use crate::platform::memory::zeros;
-use crate::setup::Inverse;
+use crate::setup::{Inverse, Island};
 use crate::solver::decomposed::null_space_of;
 use crate::solver::problem::Problem;
 
@@ -62,7 +63,7 @@ impl Problem {
     }
 
     /// `y = F x` of (12), compliance of the rows included, contact rows first; x force, y length. Rows that never close
-    /// carry no force and move nothing: 0.
+    /// carry no force and move nothing: 0. Tangential rows are not in it.
     pub fn dual_apply(&mut self, x: &[f64], y: &mut [f64]) -> Result<()> {
         self.check_rows(x.len())?;
         self.check_rows(y.len())?;
@@ -72,11 +73,13 @@ impl Problem {
         y.iter_mut().zip(x).zip(compliance).for_each(|((y, x), c)| *y = c * x);
         let contact = self.model.contact.len();
         for ready in &self.prepared.done(&self.model)?.islands {
-            let (scaling, place) = (&ready.rows.scaling, |i| ready.island.in_stack(contact, i));
-            let forces = scaling.forces_to_dual(|i| x[place(i)])?;
+            let (scaling, place) = (&ready.rows.scaling, |i| in_stack(&ready.island, contact, i));
+            let forces = scaling.forces_to_dual(|i| place(i).map_or(0.0, |at| x[at]))?;
             let mut image = zeros(forces.len(), "a product with F")?;
             ready.dual.try_apply(&forces, &mut image)?;
-            scaling.lengths_to_host(&image).for_each(|(i, length)| y[place(i)] = length);
+            for (i, length) in scaling.lengths_to_host(&image) {
+                place(i).into_iter().for_each(|at| y[at] = length);
+            }
         }
         Ok(())
     }
@@ -94,8 +97,9 @@ impl Problem {
             load.iter_mut().for_each(|f| *f /= ready.island.unit);
             let moved = ready.moved(self.model.threads(), &load)?;
             let moved = ready.dual.rhs(&moved, &vec![0.0; ready.rows.groups()]);
-            let along = ready.rows.scaling.lengths_to_host(&moved);
-            along.for_each(|(i, length)| d[ready.island.in_stack(contact, i)] += length);
+            for (i, length) in ready.rows.scaling.lengths_to_host(&moved) {
+                in_stack(&ready.island, contact, i).into_iter().for_each(|at| d[at] += length);
+            }
         }
         Ok(())
     }
@@ -118,4 +122,9 @@ impl Problem {
         let what = format!("the problem has {expected} rows, not {m}");
         Err(Error::argument("m", what).value(m as f64).limit(expected as f64))
     }
+}
+
+/// Place of row i of an island among all contact rows and all equality rows of the host; none of a tangential row.
+fn in_stack(island: &Island, contact: usize, i: usize) -> Option<usize> {
+    (island.kind_and_row(i).0 != RowKind::Tangential).then(|| island.in_stack(contact, i))
 }

@@ -10,7 +10,7 @@ use crate::solver::joints::add_glue;
 use crate::solver::problem::Problem;
 
 impl Problem {
-    fn answer(&self) -> Result<&Answer> {
+    pub(super) fn answer(&self) -> Result<&Answer> {
         let what = "there is no answer yet: solve first (a change of bodies or rows drops the last one)";
         self.current().map(|current| &*current.answer).ok_or_else(|| Error::new(Kind::State, what))
     }

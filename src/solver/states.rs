@@ -23,13 +23,14 @@ impl Problem {
         Ok(())
     }
 
-    /// Keeps loads, rows, multipliers and active set under a number that is never used again.
+    /// Keeps loads, rows, friction, multipliers and active set under a number that is never used again.
     pub fn save_state(&mut self) -> Result<usize> {
         let loads = self.model.bodies.iter().map(|given| copy_of(given.body.load.as_ref()));
         let state = State {
             bodies: self.model.revisions.bodies,
             loads: loads.collect::<Result<_>>()?,
             rows: [self.model.contact.copied(WHAT)?, self.model.equalities.copied(WHAT)?],
+            friction: self.model.friction.copied(WHAT)?,
             previous: self.history().previous.clone(),
             answered: self.current().is_some(),
         };
@@ -39,7 +40,7 @@ impl Problem {
         Ok(history.saved - 1)
     }
 
-    /// Loads, rows and multipliers as they were; matrices stay as they are now. The state is kept. The answer
+    /// Loads, rows, friction and multipliers as they were; matrices stay as they are now. The state is kept. The answer
     /// comes back as well unless matrices, rows or compliances differ, or what they were set up to is gone.
     pub fn restore_state(&mut self, number: usize) -> Result<()> {
         let Self { model, prepared, history, .. } = self;
@@ -50,12 +51,16 @@ impl Problem {
         }
         let loads = state.loads.iter().map(|load| copy_of(load.as_ref())).collect::<Result<Vec<_>>>()?;
         let [contact, equalities] = [state.rows[0].copied(WHAT)?, state.rows[1].copied(WHAT)?];
-        let same = model.contact.same_but_rhs(&contact) && model.equalities.same_but_rhs(&equalities);
+        let friction = state.friction.copied(WHAT)?;
+        let same = model.contact.same_but_rhs(&contact)
+            && model.equalities.same_but_rhs(&equalities)
+            && model.friction.same_but_law(&model.contact, &friction, &contact);
         let is_set_up = prepared.duals(model).is_some();
+        prepared.forget_pairs();
         let fits = same && state.answered && state.bodies == model.revisions.bodies && is_set_up;
         let previous = state.previous.clone();
         model.revisions.laws += u64::from(!same);
-        (model.contact, model.equalities) = (contact, equalities);
+        (model.contact, model.equalities, model.friction) = (contact, equalities, friction);
         model.bodies.iter_mut().zip(loads).for_each(|(given, load)| given.body.load = load);
         history.of(model.revisions.rows).start = [None, None, None];
         let answer = previous.clone().filter(|_| fits);

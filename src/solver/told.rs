@@ -53,34 +53,28 @@ fn result_line(report: &Report) -> String {
         Outcome::Marginal => "marginal",
     };
     let certificate = &report.certificate;
-    let mut figures = vec![
+    let figures = [
         ("equilibrium", &certificate.equilibrium),
         ("balance", &certificate.balance),
         ("penetration", &certificate.penetration),
         ("equality", &certificate.equality),
         ("negative force", &certificate.negative_force),
         ("complementarity", &certificate.complementarity),
+        ("friction cone", &certificate.friction_cone),
+        ("friction work", &certificate.friction_work),
+        ("friction stick", &certificate.friction_stick),
         ("duality gap", &certificate.duality_gap),
     ];
-    if report.sizes.nodes > 0 {
-        let before_gap = figures.len() - 1;
-        figures.splice(
-            before_gap..before_gap,
-            [
-                ("friction cone", &certificate.friction_cone),
-                ("friction work", &certificate.friction_work),
-                ("friction stick", &certificate.friction_stick),
-            ],
-        );
-    }
     let mut line = format!(
-        "{ended}: {} steps, {} products, {} of {} contact rows closed; certificate",
+        "{ended}: {} steps, {} products, {} of {} contact rows closed{}; certificate",
         report.counts.steps(),
         report.counts.products,
         report.active,
-        report.sizes.rows
+        report.sizes.rows,
+        friction(report)
     );
-    for (name, entry) in figures {
+    let told = |name: &str| report.sizes.nodes > 0 || !name.starts_with("friction");
+    for (name, entry) in figures.into_iter().filter(|(name, _)| told(name)) {
         let _ = write!(line, " {name} {:.1e},", entry.figure);
     }
     let _ = write!(
@@ -89,6 +83,18 @@ fn result_line(report: &Report) -> String {
         certificate.limit, report.seconds_setup, report.seconds_solve
     );
     line
+}
+
+/// What the nodes with friction do, and what it took to find out.
+fn friction(report: &Report) -> String {
+    match (report.sizes.nodes, report.starts) {
+        (0, _) => String::new(),
+        (nodes, 0) => format!(", {nodes} nodes without friction"),
+        (nodes, starts) => format!(
+            ", {} of {nodes} nodes stick and {} slip ({} Newton steps, {starts} starts)",
+            report.sticking, report.slipping, report.newton
+        ),
+    }
 }
 
 /// How the dual is going to be solved.

@@ -68,8 +68,11 @@ fn a_point_without_springs_is_held_by_friction_up_to_mu() {
 fn a_point_on_a_spring_across_the_wall_slides_beyond_mu() {
     let problem = solved(&point([0.0, 3.0], 1.0, 0.49999, 0.5, 0.0));
     near(problem.multipliers(RowKind::Tangential).unwrap(), &[0.49999]);
-    let report = hand_over::problem(&point([0.0, 3.0], 1.0, 0.50001, 0.5, 0.0)).unwrap().solve().unwrap();
-    assert_eq!(report.outcome, Outcome::Stalled);
+    let mut problem = hand_over::problem(&point([0.0, 3.0], 1.0, 0.625, 0.5, 0.0)).unwrap();
+    let error = problem.solve().unwrap_err();
+    assert_eq!((error.kind, error.place.body, error.place.dof), (Kind::Slides, Some(0), Some(0)), "{error}");
+    let capacity = problem.findings().unwrap().capacity.unwrap();
+    assert!((capacity - 0.8).abs() < 1e-6, "{capacity}");
 }
 
 #[test]

@@ -18,7 +18,7 @@ int32_t iteration(feti_problem *p, int64_t body, int64_t nnz, const double *val,
     feti_info info = { .struct_size = sizeof info };
     int32_t status;
 
-#include "newton_1.inc"
+#include "fragment_1.inc"
     return status;
 }
 
@@ -28,7 +28,7 @@ int32_t load_step(feti_problem *p, int32_t (*newton)(feti_problem *), double *si
     int64_t state;
     int32_t status;
 
-#include "newton_2.inc"
+#include "fragment_2.inc"
     *size = step;
     return status;
 }
@@ -38,7 +38,7 @@ int32_t soft_motions(feti_problem *p, int64_t body, int64_t n, const double *x, 
     int32_t status;
     int64_t k;
 
-#include "newton_4.inc"
+#include "fragment_4.inc"
     return status;
 }
 
@@ -47,6 +47,6 @@ int32_t soft_coordinates(feti_problem *p, int64_t body, int32_t dim, int64_t n, 
 {
     int32_t status;
 
-#include "newton_5.inc"
+#include "fragment_5.inc"
     return status;
 }

@@ -10,5 +10,5 @@ subroutine iteration(p, body, val, f, row_ptr, body_of, dof, val_of_rows, gap, l
   integer, intent(out) :: stat
   type(feti_info) :: info
 
-  include 'newton_3.inc'
+  include 'fragment_3.inc'
 end subroutine

@@ -1,9 +1,10 @@
 #!/bin/sh
 # pictures.sh FOLDER: every VTK file below the folder is complete (as many points, cells, types and vectors as announced,
-# corners within the points, finite numbers), every SVG file is closed and has a title, axes with units and a legend.
+# corners within the points, finite numbers), every SVG file is closed and has finite numbers, axes with units and a legend.
 set -eu
-find "$1" -name '*.vtk' -o -name '*.svg' | sort >"$1/list"
-[ "$(grep -c 'vtk$' "$1/list")" -ge 2 ] && [ "$(grep -c 'svg$' "$1/list")" -ge 1 ] || { echo "pictures are missing:"; cat "$1/list"; exit 1; }
+list=$1/list
+find "$1" -name '*.vtk' -o -name '*.svg' | sort >"$list"
+[ "$(grep -c 'vtk$' "$1/list")" -ge 2 ] && [ "$(grep -c 'svg$' "$1/list")" -ge 3 ] || { echo "pictures are missing:"; cat "$1/list"; exit 1; }
 while read -r picture; do
     case $picture in
     *.vtk) awk '
@@ -20,8 +21,15 @@ while read -r picture; do
         part != "" { lines++ }
         part == "CELLS" { numbers += NF; for (k = 2; k <= NF; k++) if ($k < 0 || $k >= points) bad = 1; if (NF != $1 + 1) bad = 1 }
         END { finish(); want("vector fields", vectors, 2); exit bad || points < 1 || cells < 1 }' "$picture" || { echo "$picture"; exit 1; } ;;
-    *.svg) for part in '<svg ' '</svg>' 'pressure / MPa' 'x / mm' 'Hertz' '<polyline' '<circle'; do
+    *.svg) case $picture in
+           */hertz*) set -- 'pressure / MPa' 'x / mm' 'Hertz' ;;
+           */cattaneo_mindlin_shear*) set -- 'shear / (mu p0)' 'x / mm' 'Cattaneo, Mindlin' ;;
+           */cattaneo_mindlin_loop*) set -- 'push / (mu P)' 'shift / um' 'Cattaneo, Mindlin' ;;
+           *) echo "$picture is not expected"; exit 1 ;;
+           esac
+           for part in "$@" '<svg ' '</svg>' '<polyline' '<circle'; do
                grep -q "$part" "$picture" || { echo "$picture lacks $part"; exit 1; }
-           done ;;
+           done
+           ! grep -qi '[ "=,-]nan\|[ "=,-]inf[^a-z]' "$picture" || { echo "$picture has numbers that are not finite"; exit 1; } ;;
     esac
-done <"$1/list"
+done <"$list"

@@ -13,7 +13,8 @@ fn counts(deck: Deck) -> (usize, usize) {
     assert_eq!(found.verdict, Verdict::Solved, "{deck:?} {} {:?}", found.merit, found.tried);
     let (laws, balance) = given.missed(&found);
     assert!(laws < 1e-6 && balance < 1e-10, "{deck:?} {laws:e} {balance:e}");
-    let linear = known_face(given.problem(), given.limits(1e-9, 0), &found, &mut Content).unwrap();
+    let linear =
+        known_face(given.problem(), given.limits(1e-9, 0), (&found.x, &found.alpha), &mut Content).unwrap();
     let (own, of) = (found.counts.products, linear);
     let (b, mu, load) = (deck.blocks, deck.mu, deck.load);
     println!(
@@ -98,7 +99,9 @@ fn nine_steps_of_a_loop_cost_less_than_cold_linear_problems() {
             let start = FrictionStart { x: x.as_deref(), alpha: alpha.as_deref(), pairs };
             let found = given.from(start, 1e-9, 0);
             assert_eq!(found.verdict, Verdict::Solved, "{load} {} {:?}", found.merit, found.tried);
-            let known = known_face(given.problem(), given.limits(1e-9, 0), &found, &mut Content).unwrap();
+            let known =
+                known_face(given.problem(), given.limits(1e-9, 0), (&found.x, &found.alpha), &mut Content)
+                    .unwrap();
             println!("push {load}: {} / {known}", found.counts.products);
             (own, linear) = (own + found.counts.products, linear + known);
             let r = given.gaps(&found);

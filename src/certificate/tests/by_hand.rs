@@ -14,7 +14,7 @@ fn spring(unit: f64, c: f64) -> DenseModel {
 }
 
 fn point(u: f64, lambda: f64) -> DenseAnswer {
-    DenseAnswer { u: vec![u], lambda: vec![lambda], mu: vec![] }
+    DenseAnswer { u: vec![u], lambda: vec![lambda], mu: vec![], tangential: vec![] }
 }
 
 #[test]
@@ -45,7 +45,12 @@ fn a_tie_that_is_left_open_is_seen_by_its_own_entry_alone() {
         let model =
             DenseModel { parts, equalities: vec![(vec![(0, 1.0)], 0.25, 0.0)], ..DenseModel::default() };
         let with = |u, mu: f64| {
-            model.certificate(&DenseAnswer { u: vec![u], lambda: Vec::new(), mu: vec![mu * unit] })
+            model.certificate(&DenseAnswer {
+                u: vec![u],
+                lambda: Vec::new(),
+                mu: vec![mu * unit],
+                tangential: vec![],
+            })
         };
         assert!(with(0.25, 1.0).passed());
         let open = with(0.5, 0.0);
@@ -62,7 +67,7 @@ fn leverage_is_how_many_times_forces_exceed_what_they_deform() {
         let parts = vec![chain(&[4.0 * unit], &[(0, 4.0 * unit)]).loaded(&[(1, 2.0 * unit)])];
         let model = DenseModel { parts, contact: vec![(vec![(1, 1.0)], 0.5, 0.0)], ..DenseModel::default() };
         let leverage = |u: [f64; 2]| {
-            let point = DenseAnswer { u: u.to_vec(), lambda: vec![unit], mu: vec![] };
+            let point = DenseAnswer { u: u.to_vec(), lambda: vec![unit], mu: vec![], tangential: vec![] };
             model.judged(&point).0.leverage
         };
         assert!((leverage([0.25, 0.5]) - 1.5f64.sqrt()).abs() < 1e-12);
@@ -80,7 +85,10 @@ fn unevenness_is_how_many_times_a_row_is_deformed_more_than_a_body_that_it_touch
         let model = DenseModel { parts: vec![body(), body()], equalities, ..DenseModel::default() };
         let unevenness = |mu: f64| {
             let u = vec![0.00025, 0.0005, 0.25, 0.5];
-            model.judged(&DenseAnswer { u, lambda: vec![], mu: vec![mu * unit] }).0.unevenness
+            model
+                .judged(&DenseAnswer { u, lambda: vec![], mu: vec![mu * unit], tangential: vec![] })
+                .0
+                .unevenness
         };
         let expected = 2f64.sqrt() * 0.501 / (0.001 * 1.5f64.sqrt());
         assert!((unevenness(0.001) / expected - 1.0).abs() < 1e-12, "{} {expected}", unevenness(0.001));
@@ -95,7 +103,10 @@ fn a_spring_of_one_unknown_makes_no_row_uneven() {
     let model =
         DenseModel { parts, contact: vec![(vec![(0, 1.0), (2, -1.0)], 0.0, 0.0)], ..DenseModel::default() };
     let unevenness = |u: [f64; 3]| {
-        model.judged(&DenseAnswer { u: u.to_vec(), lambda: vec![1.0], mu: vec![] }).0.unevenness
+        model
+            .judged(&DenseAnswer { u: u.to_vec(), lambda: vec![1.0], mu: vec![], tangential: vec![] })
+            .0
+            .unevenness
     };
     let found = unevenness([-0.25, 0.25, 0.5]);
     assert!(found > 0.0 && found < 2.0, "{found}");
@@ -127,7 +138,12 @@ fn no_distance_excuses_forces_that_do_not_balance() {
             parts: vec![chain(&[1.0], &[]).loaded(&[(0, 0.5), (1, 0.5)])],
             ..DenseModel::default()
         };
-        let certificate = model.certificate(&DenseAnswer { u: vec![far; 2], lambda: vec![], mu: vec![] });
+        let certificate = model.certificate(&DenseAnswer {
+            u: vec![far; 2],
+            lambda: vec![],
+            mu: vec![],
+            tangential: vec![],
+        });
         assert!(!certificate.passed() && certificate.balance.ratio > 1.0, "{far:e}");
     }
 }
@@ -138,7 +154,9 @@ fn no_distance_excuses_a_strain_that_is_missing() {
         parts: vec![chain(&[1.0], &[]).loaded(&[(0, 1.0), (1, -1.0)])],
         ..DenseModel::default()
     };
-    let with = |u: [f64; 2]| model.certificate(&DenseAnswer { u: u.to_vec(), lambda: vec![], mu: vec![] });
+    let with = |u: [f64; 2]| {
+        model.certificate(&DenseAnswer { u: u.to_vec(), lambda: vec![], mu: vec![], tangential: vec![] })
+    };
     for far in [0.0, 1.0, 1e10, 1e13, 1e16, 1e20] {
         assert!(with([far; 2]).equilibrium.ratio > 1.0, "{far:e}");
     }
@@ -217,6 +235,7 @@ fn units_that_differ_by_powers_of_two_change_no_bit() {
                 u: scaled(&answer.u, f / k),
                 lambda: scaled(&answer.lambda, f * error),
                 mu: scaled(&answer.mu, f),
+                tangential: vec![],
             };
             let (judgement, _) = model(k, f).judged(&point);
             (judgement.certificate.entries(), judgement.bodies)

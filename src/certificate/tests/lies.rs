@@ -104,7 +104,8 @@ fn subdomains_glued_together_move_as_one() {
         ];
         let equalities = vec![(vec![(2, 1.0), (3, -1.0)], 0.0, 0.0), (vec![(5, 2.0), (6, -2.0)], 0.0, 0.0)];
         let contact = vec![(vec![(8, 1.0), (9, -1.0)], far, 0.0)];
-        let model = DenseModel { parts, contact, equalities, active: vec![0], travel: vec![far; 9] };
+        let model =
+            DenseModel { parts, contact, equalities, active: vec![0], travel: vec![far; 9], nodes: vec![] };
         let name = format!("glued {far:e}");
         model.refuses_wrong_forces(&name);
         if far <= 1.0 {
@@ -157,7 +158,7 @@ fn far_rows_excuse_nothing() {
         let mut wrong = model.answer();
         wrong.lambda[1] = 1e-5;
         model.refused(&format!("{name}, a force across the gap"), &wrong);
-        let open = DenseAnswer { u: vec![0.0; 7], lambda: vec![0.0; 3], mu: vec![] };
+        let open = DenseAnswer { u: vec![0.0; 7], lambda: vec![0.0; 3], mu: vec![], tangential: vec![] };
         model.refused(&format!("{name}, nothing at all"), &open);
     }
 }

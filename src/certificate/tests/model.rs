@@ -1,5 +1,6 @@
 //! Small dense models: their right answers by elimination, and the certificate of any other.
 
+use super::nodes::DenseNode;
 use super::*;
 use crate::linalg::vector::power_of_two_below;
 use crate::linalg::{Csr, Symmetric};
@@ -7,7 +8,7 @@ use crate::linalg::{Csr, Symmetric};
 pub const LIMIT: f64 = 1e-8;
 
 /// A dense matrix by rows.
-type Dense = Vec<Vec<f64>>;
+pub type Dense = Vec<Vec<f64>>;
 
 #[derive(Clone)]
 pub struct DenseBody {
@@ -29,6 +30,8 @@ pub struct DenseModel {
     pub active: Vec<usize>,
     /// A rigid motion that is part of the answer, n or nothing, length: exact where elimination would lose digits.
     pub travel: Vec<f64>,
+    /// Nodes with friction; their tangential rows are numbered through.
+    pub nodes: Vec<DenseNode>,
 }
 
 #[derive(Clone, Debug)]
@@ -36,6 +39,7 @@ pub struct DenseAnswer {
     pub u: Vec<f64>,
     pub lambda: Vec<f64>,
     pub mu: Vec<f64>,
+    pub tangential: Vec<f64>,
 }
 
 /// A chain of springs between unknowns, and springs to the ground.
@@ -116,7 +120,7 @@ impl DenseBody {
 }
 
 /// The solution of a symmetric system scaled to unit diagonal, refined.
-fn solve(a: &Dense, b: &[f64]) -> Vec<f64> {
+pub fn solve(a: &Dense, b: &[f64]) -> Vec<f64> {
     let n = a.len();
     let scale: Vec<f64> = (0..n).map(|i| if a[i][i] > 0.0 { a[i][i] } else { 1.0 }.sqrt().recip()).collect();
     let largest = |i: usize| (0..n).map(|j| (a[i][j] * scale[j]).abs()).fold(0.0, f64::max);
@@ -195,7 +199,12 @@ impl Response for ByElimination<'_> {
 
     fn compliance_of(&mut self, kind: RowKind, row: usize) -> Result<f64> {
         self.1 += 1;
-        let rows = if kind == RowKind::Equality { &self.0.equalities } else { &self.0.contact };
+        let tangential = self.0.tangential();
+        let rows = match kind {
+            RowKind::Inequality => &self.0.contact,
+            RowKind::Equality => &self.0.equalities,
+            RowKind::Tangential => &tangential,
+        };
         let mut load = vec![0.0; self.0.unknowns()];
         rows[row].0.iter().for_each(|&(j, v)| load[j] = v);
         Ok(self.work(&load))
@@ -207,7 +216,7 @@ impl DenseModel {
         self.parts.iter().map(|part| part.k.len()).sum()
     }
 
-    fn rows(rows: &DenseRows, n: usize) -> RowSet {
+    pub fn rows(rows: &DenseRows, n: usize) -> RowSet {
         let mut matrix = Csr::empty(n);
         rows.iter().for_each(|row| matrix.push_row(row.0.iter().copied()));
         RowSet {
@@ -215,36 +224,6 @@ impl DenseModel {
             rhs: rows.iter().map(|row| row.1).collect(),
             compliance: rows.iter().map(|row| row.2).collect(),
         }
-    }
-
-    /// With the forces of the active rows alone.
-    pub fn answer(&self) -> DenseAnswer {
-        let n = self.unknowns();
-        let rows: Vec<_> = self.active.iter().map(|&i| &self.contact[i]).chain(&self.equalities).collect();
-        let m = rows.len();
-        let mut a = vec![vec![0.0; n + m]; n + m];
-        let (mut b, mut start) = (vec![0.0; n + m], 0);
-        for part in &self.parts {
-            for i in 0..part.k.len() {
-                a[start + i][start..start + part.k.len()].copy_from_slice(&part.k[i]);
-                b[start + i] = part.load[i];
-            }
-            start += part.k.len();
-        }
-        for (i, (entries, rhs, compliance)) in rows.iter().enumerate() {
-            for &(j, v) in entries {
-                a[n + i][j] = v;
-                a[j][n + i] = v;
-            }
-            a[n + i][n + i] = -compliance;
-            b[n + i] =
-                rhs - entries.iter().map(|&(j, v)| v * self.travel.get(j).unwrap_or(&0.0)).sum::<f64>();
-        }
-        let mut x = solve(&a, &b);
-        x.iter_mut().zip(&self.travel).for_each(|(x, t)| *x += t);
-        let mut lambda = vec![0.0; self.contact.len()];
-        self.active.iter().enumerate().for_each(|(k, &i)| lambda[i] = x[n + k]);
-        DenseAnswer { u: x[..n].to_vec(), lambda, mu: x[n + self.active.len()..].to_vec() }
     }
 
     /// The judgement, and how often K+ has been asked for.
@@ -267,16 +246,18 @@ impl DenseModel {
             });
             start += part.k.len();
         }
-        let tangential = RowSet::default();
+        let (tangential, nodes) = (Self::rows(&self.tangential(), n), self.laws());
         let data = Data {
             bodies,
             contact: &contact,
             equalities: &equalities,
             tangential: &tangential,
-            nodes: &[],
+            nodes: &nodes,
             limit: LIMIT,
         };
-        let answer = Candidate { u: &point.u, lambda: &point.lambda, mu: &point.mu, tangential: &[] };
+        let none = vec![0.0; tangential.len()];
+        let tangential = if point.tangential.is_empty() { &none } else { &point.tangential };
+        let answer = Candidate { u: &point.u, lambda: &point.lambda, mu: &point.mu, tangential };
         let mut response = ByElimination(self, 0);
         let judgement = certify(&data, answer, &mut response).unwrap();
         (judgement, response.1)
@@ -292,8 +273,12 @@ impl DenseModel {
         let certificate = self.certificate(&right);
         assert!(certificate.worst() <= 0.5, "{name}: {certificate:#?} {right:?}");
         let digits = |v: &Vec<f64>| v.iter().map(|v| format!("{v:.14e}").parse().unwrap()).collect();
-        let rounded =
-            DenseAnswer { u: digits(&right.u), lambda: digits(&right.lambda), mu: digits(&right.mu) };
+        let rounded = DenseAnswer {
+            u: digits(&right.u),
+            lambda: digits(&right.lambda),
+            mu: digits(&right.mu),
+            tangential: digits(&right.tangential),
+        };
         let certificate = self.certificate(&rounded);
         assert!(certificate.passed(), "{name} in 15 digits: {certificate:#?} {right:?}");
         right
@@ -309,7 +294,12 @@ impl DenseModel {
         let right = self.accepted(name);
         let times = |by: f64| {
             let scaled = |v: &[f64]| v.iter().map(|v| by * v).collect::<Vec<_>>();
-            DenseAnswer { u: right.u.clone(), lambda: scaled(&right.lambda), mu: scaled(&right.mu) }
+            DenseAnswer {
+                u: right.u.clone(),
+                lambda: scaled(&right.lambda),
+                mu: scaled(&right.mu),
+                tangential: scaled(&right.tangential),
+            }
         };
         for by in [1.5, 1.0 + 1e-5, 0.0, -1.0] {
             self.refused(&format!("{name}, all forces x {by}"), &times(by));

@@ -70,6 +70,7 @@ fn detail(record: Option<&Record>) -> feti_error_detail {
         limit: place.limit.unwrap_or(f64::NAN),
         function,
         element: known(place.element),
+        node: known(place.node),
     }
 }
 

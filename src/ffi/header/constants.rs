@@ -4,6 +4,8 @@
 pub const FETI_INEQUALITY: i32 = 1;
 /// Kind of rows: `H u = h`.
 pub const FETI_EQUALITY: i32 = 2;
+/// Kind of rows: tangential rows of nodes with friction (feti_friction_add_i32, feti_friction_add_i64).
+pub const FETI_TANGENTIAL: i32 = 3;
 
 /// In place of a body: all bodies, by the host's numbers of feti_body_numbering_i32 or _i64 where they have some.
 pub const FETI_ALL: i64 = -1;
@@ -44,6 +46,17 @@ pub const FETI_ROW_CLOSED: i32 = 1;
 pub const FETI_ROW_WEAK: i32 = 2;
 /// State of a row: unknown, the bodies it touches are in a group that has no answer.
 pub const FETI_ROW_UNKNOWN: i32 = 3;
+
+/// State of a node with friction: its bound is zero, it carries no tangential force.
+pub const FETI_FRICTION_OPEN: i32 = 0;
+/// State of a node with friction: it sticks, its force is within its bound.
+pub const FETI_FRICTION_STICK: i32 = 1;
+/// State of a node with friction: it slips along a force that reaches its bound.
+pub const FETI_FRICTION_SLIP: i32 = 2;
+/// State of a node with friction: its force reaches its bound to rounding, and it does not slip.
+pub const FETI_FRICTION_WEAK: i32 = 3;
+/// State of a node with friction: unknown, the bodies it touches are in a group that has no answer.
+pub const FETI_FRICTION_UNKNOWN: i32 = 4;
 
 /// Phase of a call that feti_on_progress tells of: a part of the setup is done.
 pub const FETI_PHASE_SETUP: i32 = 1;

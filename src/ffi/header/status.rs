@@ -46,6 +46,8 @@ pub const FETI_INTERNAL: i32 = -11;
 pub const FETI_UNSUPPORTED: i32 = -12;
 /// A number, or a product of numbers that were given, does not fit its type.
 pub const FETI_OVERFLOW: i32 = -13;
+/// Bodies slide steadily: friction holds only a part of the load, and no rest was found.
+pub const FETI_SLIDES: i32 = -14;
 /// Argument k refused is FETI_ARGUMENT - k, k from 1 with the handle as 1; FETI_ARGUMENT itself: data of an earlier call.
 pub const FETI_ARGUMENT: i32 = -100;
 
@@ -53,7 +55,7 @@ pub const FETI_ARGUMENT: i32 = -100;
 const MOST_ARGUMENTS: i32 = 99;
 
 /// (number, name, text)
-const TABLE: [(i32, &CStr, &CStr); 21] = [
+const TABLE: [(i32, &CStr, &CStr); 22] = [
     (FETI_OK, c"FETI_OK", c"done"),
     (FETI_ITERATIONS, c"FETI_ITERATIONS", c"stopped at the limit on steps before the tolerance was met"),
     (FETI_TIME, c"FETI_TIME", c"stopped at the time limit before the tolerance was met"),
@@ -74,6 +76,7 @@ const TABLE: [(i32, &CStr, &CStr); 21] = [
     (FETI_INTERNAL, c"FETI_INTERNAL", c"the library contradicts itself; the problem can only be destroyed"),
     (FETI_UNSUPPORTED, c"FETI_UNSUPPORTED", c"the request is valid but not available"),
     (FETI_OVERFLOW, c"FETI_OVERFLOW", c"a number, or a product of numbers that were given, does not fit its type"),
+    (FETI_SLIDES, c"FETI_SLIDES", c"bodies slide: friction holds only a part of the load, and no rest was found"),
     (FETI_ARGUMENT, c"FETI_ARGUMENT", c"an argument was refused: its position is FETI_ARGUMENT minus the status, 0 for data of an earlier call"),
 ];
 
@@ -88,6 +91,7 @@ pub(in crate::ffi) fn of_kind(kind: Kind, arguments: &[&str]) -> (i32, i32) {
         Kind::Memory => FETI_MEMORY,
         Kind::State => FETI_STATE,
         Kind::LoadNotHeld => FETI_LOAD_NOT_HELD,
+        Kind::Slides => FETI_SLIDES,
         Kind::GapsContradict => FETI_GAPS_CONTRADICT,
         Kind::NullSpace => FETI_NULL_SPACE,
         Kind::Indefinite => FETI_INDEFINITE,
@@ -199,7 +203,7 @@ mod tests {
         }
         assert_eq!(describe(-104).0, c"FETI_ARGUMENT");
         assert_eq!(describe(-199).0, c"FETI_ARGUMENT");
-        for unknown in [7, -14, -99, -200, i32::MIN, i32::MAX] {
+        for unknown in [7, -15, -99, -200, i32::MIN, i32::MAX] {
             assert_eq!(describe(unknown).0, c"FETI_UNKNOWN");
         }
     }

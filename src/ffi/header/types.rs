@@ -4,6 +4,7 @@
 use std::ffi::{c_char, c_void};
 
 pub use crate::ffi::header::constants::*;
+pub use crate::ffi::header::findings::feti_findings;
 
 /// A problem: bodies, rows, settings, factors and the last answer. The handle is a counter, never an address.
 #[repr(C)]
@@ -39,6 +40,8 @@ pub struct feti_error_detail {
     pub function: [c_char; 40],
     /// Element of the body, -1: does not apply.
     pub element: i64,
+    /// Node with friction, -1: does not apply.
+    pub node: i64,
 }
 
 /// An option: name, text, default and range.
@@ -148,6 +151,22 @@ pub struct feti_info {
     pub factor_bytes: i64,
     /// Bytes of the explicit dual operators.
     pub operator_bytes: i64,
+    /// Relative size of a tangential force beyond its bound, of the worst node with friction.
+    pub friction_cone: f64,
+    /// Relative work that friction does not do: force that is missing or across where a node slips, of the worst node.
+    pub friction_work: f64,
+    /// Relative slip where the force is within its bound, of the worst node.
+    pub friction_stick: f64,
+    /// Nodes with friction.
+    pub nodes: i64,
+    /// Nodes that stick in the answer.
+    pub sticking: i64,
+    /// Nodes that slip in the answer.
+    pub slipping: i64,
+    /// Newton steps of friction.
+    pub friction_steps: i64,
+    /// Starts that they took, over all groups of bodies with friction.
+    pub friction_starts: i64,
 }
 
 /// A body as it is given, and what the last setup has made of it; what is not there yet is -1 or NaN.
@@ -227,9 +246,9 @@ pub struct feti_certificate {
     pub limit: f64,
     /// Largest entry over what it is allowed: <= 1 passes.
     pub worst: f64,
-    /// Relative error of equilibrium `K u + B'lambda + H'mu = f`, worst body.
+    /// Relative error of equilibrium `K u + B'lambda + H'mu + T'lambda_t = f`, worst body.
     pub equilibrium: f64,
-    /// Relative error of the balance `R'(f - B'lambda - H'mu) = 0`, worst floating body.
+    /// Relative error of the balance `R'(f - B'lambda - H'mu - T'lambda_t) = 0`, worst floating body.
     pub balance: f64,
     /// Relative penetration: positive part of `B u - c - C lambda`, C = diag(1/k) being the compliance of the rows, worst row.
     pub penetration: f64,
@@ -253,6 +272,20 @@ pub struct feti_certificate {
     pub force_row: i64,
     /// Row with the worst complementarity, from 0, -1: none.
     pub complementarity_row: i64,
+    /// Relative size of a tangential force beyond its bound, `(|lambda_t| - b)_+` with b = bound + coefficient lambda_n, worst node
+    /// with friction.
+    pub friction_cone: f64,
+    /// Relative size of `b |s| - lambda_t's`, the work that friction does not do: zero only with a stick inside the bound and a
+    /// slip s along the force; worst node.
+    pub friction_work: f64,
+    /// Relative size of the slip where the force is within its bound, worst node.
+    pub friction_stick: f64,
+    /// Node with the worst force beyond its bound, from 0, -1: none.
+    pub friction_cone_node: i64,
+    /// Node with the worst work, from 0, -1: none.
+    pub friction_work_node: i64,
+    /// Node with the worst slip, from 0, -1: none.
+    pub friction_stick_node: i64,
 }
 
 /// Where a setup or a solve stands.
@@ -333,51 +366,3 @@ pub type feti_operator_fn = Option<
         ldy: i64,
     ) -> i32,
 >;
-
-/// What the last solve, or the last setup that failed, has found out about the problem. Numbers count from 0.
-#[repr(C)]
-#[derive(Debug, Clone, Copy)]
-pub struct feti_findings {
-    /// Set by the caller: size of the struct in bytes.
-    pub struct_size: i64,
-    /// Status it ended with.
-    pub status: i32,
-    /// FETI_INEQUALITY or FETI_EQUALITY: kind of the contradicting rows' `row`; 0: none.
-    pub kind: i32,
-    /// Body that escapes or was refused; of several groups of bodies the first of the one that ended with this status; -1: none.
-    pub body: i64,
-    /// Connected part of the body that escapes, where it has several, -1: does not apply.
-    pub component: i64,
-    /// Unknown of the body that moves fastest or was refused, -1: none.
-    pub dof: i64,
-    /// After FETI_GAPS_CONTRADICT the row with the largest weight, else a row that was refused, -1: none.
-    pub row: i64,
-    /// Rows of both kinds that contradict each other; feti_diagnosis_rows lists them.
-    pub rows_involved: i64,
-    /// Rigid motions that neither loads nor rows determine.
-    pub undetermined: i64,
-    /// Rows of both kinds that repeat the direction of another one.
-    pub redundant_rows: i64,
-    /// Bodies that no row touches.
-    pub untouched_bodies: i64,
-    /// The first of them, -1: none.
-    pub untouched_body: i64,
-    /// How clearly there is no solution, above 0 and at most 1: after FETI_INDEFINITE of a driven motion 1 - 1 / rho, rho what drives
-    /// it over what resists it; after FETI_LOAD_NOT_HELD the share of the resultant of
-    /// the load that nothing holds, after FETI_GAPS_CONTRADICT |w'c| over |w|'|c| for the weights w; else NaN.
-    pub margin: f64,
-    /// Rigid motion of the body that escapes: velocity of the origin and rotation about the axes; NaN without
-    /// coordinates. feti_diagnosis_motion has it for every unknown.
-    pub motion: [f64; 6],
-    /// The largest share of the load of bodies that move together which nothing holds, |resultant| / |load| in the metric of diag K:
-    /// above 1e-7 after FETI_LOAD_NOT_HELD; with an answer rounding of the load, FETI_MARGINAL above 1e-10.
-    pub unheld: f64,
-    /// Bodies with motions that only the rounding of the entries of K may resist; feti_body_info has their numbers.
-    pub doubtful_bodies: i64,
-    /// The first of them, -1: none.
-    pub doubtful_body: i64,
-    /// Bodies with rigid motions that K resists or drives softly: weak springs, rounding, geometric stiffness.
-    pub soft_bodies: i64,
-    /// The first of them, -1: none.
-    pub soft_body: i64,
-}

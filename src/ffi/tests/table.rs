@@ -4,13 +4,14 @@ use std::ptr::{null, null_mut};
 
 use super::super::*;
 
-pub const SOURCES: [&str; 21] = [
+pub const SOURCES: [&str; 22] = [
     include_str!("../bodies/body.rs"),
     include_str!("../bodies/body_info.rs"),
     include_str!("../bodies/elements.rs"),
     include_str!("../diagnosis.rs"),
     include_str!("../boundary/error_store.rs"),
     include_str!("../file.rs"),
+    include_str!("../friction.rs"),
     include_str!("../log.rs"),
     include_str!("../bodies/null_space.rs"),
     include_str!("../bodies/numbering.rs"),
@@ -77,6 +78,15 @@ pub fn statuses(p: *mut feti_problem) -> Vec<(&'static str, i32)> {
         feti_rows_rhs(0, 0, 0, null());
         feti_rows_compliance(0, 0, 0, null());
         feti_rows_clear(0);
+        feti_friction_add_i32(0, 0, null(), null(), null(), null(), null(), 0, null(), null(), null_mut());
+        feti_friction_add_i64(0, 0, null(), null(), null(), null(), null(), 0, null(), null(), null_mut());
+        feti_friction_law(0, 0, null(), null());
+        feti_friction_compliance(0, 0, null());
+        feti_friction_reference(0, 0, 0, null());
+        feti_friction_commit();
+        feti_friction_slips(0, 0, null_mut());
+        feti_friction_states(0, null_mut());
+        feti_friction_clear();
         feti_setup(); feti_solve(null_mut());
         feti_phase_count(null_mut()); feti_phase_at(0, null_mut());
         feti_cancel();
@@ -95,6 +105,7 @@ pub fn statuses(p: *mut feti_problem) -> Vec<(&'static str, i32)> {
         feti_diagnosis_undetermined(0, null_mut(), null_mut());
         feti_diagnosis_undetermined_motion(0, 0, 0, null_mut());
         feti_check(0, null(), 0, null(), 0, null(), null_mut());
+        feti_check_friction(0, null(), 0, null(), 0, null(), 0, 0, null(), null_mut());
         feti_displacement(0, 0, null_mut());
         feti_reaction(0, 0, 0, null_mut());
         feti_amplitudes(0, 0, null_mut());

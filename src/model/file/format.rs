@@ -31,6 +31,7 @@ pub const FIXING: Tag = *b"FIXD";
 pub const LOAD: Tag = *b"LOAD";
 pub const NUMBERING: Tag = *b"NUMB";
 pub const ROWS: Tag = *b"ROWS";
+pub const FRICTION: Tag = *b"FRIC";
 
 /// Zero bytes between a payload of so many bytes and its checksum.
 pub fn padding(length: u64) -> u64 {

@@ -97,7 +97,7 @@ impl Model {
 
     fn check_empty(&self) -> Result<()> {
         let counts = self.sizes();
-        if counts.bodies + counts.rows + counts.equalities == 0 {
+        if counts.bodies + counts.rows + counts.equalities + counts.nodes == 0 {
             return Ok(());
         }
         let what = format!("a file is read into an empty problem; this one has {} bodies", counts.bodies);

@@ -3,12 +3,12 @@
 use std::io::Read;
 
 use crate::body::{Modes, SparseInput, Storage};
-use crate::constraints::{RowKind, RowsInput};
+use crate::constraints::{FrictionInput, RowKind, RowsInput};
 use crate::error::{Error, Kind, Result};
 use crate::model::contents::Model;
 use crate::model::file::format::{
-    Tag, BODY, COORDINATES, COORDINATES_FLAGS, FIXING, LOAD, NULL_SPACE, NUMBERING, OPTIONS, PIECES, ROWS,
-    STIFFNESS,
+    Tag, BODY, COORDINATES, COORDINATES_FLAGS, FIXING, FRICTION, LOAD, NULL_SPACE, NUMBERING, OPTIONS,
+    PIECES, ROWS, STIFFNESS,
 };
 use crate::model::file::input::{saturated, Input, OpenSection};
 use crate::model::file::write::{CANDIDATES, EQUALITY, EXACT, INEQUALITY, SOFT};
@@ -46,6 +46,20 @@ enum SectionContent {
     Load(Vec<f64>),
     Numbering(Vec<i64>),
     Rows { kind: RowKind, ptr: Vec<usize>, unknown: Vec<u64>, val: Vec<f64>, rhs: Vec<f64>, inv_k: Vec<f64> },
+    Friction(Nodes),
+}
+
+/// Nodes with friction, as a section has them.
+struct Nodes {
+    dim: usize,
+    normal: Vec<i64>,
+    ptr: Vec<usize>,
+    unknown: Vec<u64>,
+    val: Vec<f64>,
+    coefficient: Vec<f64>,
+    bound: Vec<f64>,
+    inv_kt: Vec<f64>,
+    s_old: Vec<f64>,
 }
 
 /// First unknown of every body among all and their end, and which sections of the last body have come.
@@ -54,6 +68,7 @@ struct Offsets {
     ends: Vec<u64>,
     seen: Vec<Tag>,
     rows: [bool; 2],
+    friction: bool,
     options: bool,
 }
 
@@ -79,6 +94,7 @@ impl SectionContent {
             LOAD => Self::Load(input.counted(open, f64::from_le_bytes)?),
             NUMBERING => Self::Numbering(input.counted(open, i64::from_le_bytes)?),
             ROWS => Self::rows(input, open)?,
+            FRICTION => Self::friction(input, open)?,
             _ => return Ok(None),
         }))
     }
@@ -129,9 +145,28 @@ impl SectionContent {
         Ok(Self::Rows { kind, ptr, unknown, val, rhs, inv_k: input.reals(open, rows)? })
     }
 
+    fn friction<R: Read>(input: &mut Input<R>, open: &mut OpenSection) -> Result<Self> {
+        let dim = match input.size(open)? {
+            dim @ 1..=2 => dim,
+            dim => return Err(input.wrong(open, &format!("{dim} is no number of tangential rows of a node"))),
+        };
+        let (nodes, entries) = (input.size(open)?, input.size(open)?);
+        Ok(Self::Friction(Nodes {
+            dim,
+            normal: input.array(open, nodes, i64::from_le_bytes)?,
+            ptr: input.pointers(open, dim * nodes, entries)?,
+            unknown: input.array(open, entries, u64::from_le_bytes)?,
+            val: input.reals(open, entries)?,
+            coefficient: input.reals(open, nodes)?,
+            bound: input.reals(open, nodes)?,
+            inv_kt: input.reals(open, nodes)?,
+            s_old: input.reals(open, dim * nodes)?,
+        }))
+    }
+
     /// Makes the call of a host.
     fn hand_over(self, tag: Tag, model: &mut Model, known: &mut Offsets) -> Result<()> {
-        if ![OPTIONS, BODY, ROWS].contains(&tag) {
+        if ![OPTIONS, BODY, ROWS, FRICTION].contains(&tag) {
             known.once(tag)?;
         }
         let body = known.ends.len().wrapping_sub(1);
@@ -164,13 +199,38 @@ impl SectionContent {
             Self::Numbering(numbers) => model.set_numbering(body, &numbers),
             Self::Rows { kind, ptr, unknown, val, rhs, inv_k } => {
                 once(&mut known.rows[kind as usize])?;
+                if known.friction {
+                    return Err(Error::new(Kind::Io, "rows after the nodes with friction"));
+                }
                 let (body, dof) = known.places(&unknown)?;
                 let _room = model.headroom_for_rows(rhs.len(), val.len())?;
                 let rows = RowsInput { ptr: &ptr, body: Some(&body), dof: &dof, val: &val, rhs: Some(&rhs) };
                 model.add_rows(kind, rows)?;
                 model.set_compliance(kind, 0, &inv_k)
             }
+            Self::Friction(nodes) => {
+                once(&mut known.friction)?;
+                nodes.hand_over(model, known)
+            }
         }
+    }
+}
+
+impl Nodes {
+    fn hand_over(&self, model: &mut Model, known: &Offsets) -> Result<()> {
+        let (body, dof) = known.places(&self.unknown)?;
+        let _room = model.headroom_for_rows(self.s_old.len(), self.val.len())?;
+        let rows = RowsInput { ptr: &self.ptr, body: Some(&body), dof: &dof, val: &self.val, rhs: None };
+        let (coefficient, bound) = (Some(&self.coefficient[..]), Some(&self.bound[..]));
+        model.add_friction(FrictionInput {
+            dim: self.dim,
+            normal: &self.normal,
+            rows,
+            coefficient,
+            bound,
+        })?;
+        model.set_friction_compliance(0, &self.inv_kt)?;
+        model.set_friction_reference(0, self.normal.len(), self.dim, &self.s_old)
     }
 }
 
@@ -203,7 +263,7 @@ impl Offsets {
     }
 
     fn add_body(&mut self, n: usize) -> Result<()> {
-        if self.rows != [false; 2] {
+        if self.rows != [false; 2] || self.friction {
             return Err(Error::new(Kind::Io, "a body after the rows"));
         }
         let end = self.ends.last().copied().unwrap_or(0).saturating_add(n as u64);

@@ -3,12 +3,12 @@
 use std::io::{self, Write};
 
 use crate::body::Modes;
-use crate::constraints::{RowKind, RowSet};
+use crate::constraints::{Friction, RowKind, RowSet};
 use crate::mesh::{Mesh, Piece as MeshPiece};
 use crate::model::contents::{GivenBody, Model};
 use crate::model::file::format::{
-    self, padding, section_length, Crc, Tag, BODY, COORDINATES, COORDINATES_FLAGS, FIXING, FORMAT, HEADER,
-    LOAD, MAGIC, NULL_SPACE, NUMBERING, OPTIONS, PIECES, ROWS, STIFFNESS,
+    self, padding, section_length, Crc, Tag, BODY, COORDINATES, COORDINATES_FLAGS, FIXING, FORMAT, FRICTION,
+    HEADER, LOAD, MAGIC, NULL_SPACE, NUMBERING, OPTIONS, PIECES, ROWS, STIFFNESS,
 };
 
 /// Numbers of the format.
@@ -25,6 +25,8 @@ const BLOCK: usize = 8192;
 enum Piece<'a> {
     Number(u64),
     Numbers(&'a [usize]),
+    /// Numbers, some of them -1.
+    Signed(Vec<i64>),
     /// These numbers with another one added to each.
     Shifted(&'a [usize], usize),
     Columns(&'a [u32]),
@@ -32,6 +34,8 @@ enum Piece<'a> {
     Dofs(&'a [u32]),
     Directions(&'a [i32]),
     Reals(&'a [f64]),
+    /// Numbers that are gathered.
+    Gathered(Vec<f64>),
     Text(String),
 }
 
@@ -45,11 +49,13 @@ impl Piece<'_> {
         let bytes = match self {
             Self::Number(_) => 8,
             Self::Numbers(numbers) => 8 * numbers.len(),
+            Self::Signed(numbers) => 8 * numbers.len(),
             Self::Shifted(numbers, _) => 8 * numbers.len(),
             Self::Dofs(dofs) => 8 * dofs.len(),
             Self::Columns(columns) => 4 * columns.len(),
             Self::Directions(directions) => 4 * directions.len(),
             Self::Reals(reals) => 8 * reals.len(),
+            Self::Gathered(reals) => 8 * reals.len(),
             Self::Text(text) => text.len(),
         };
         bytes as u64
@@ -59,11 +65,13 @@ impl Piece<'_> {
         match self {
             Self::Number(number) => out.write_all(&number.to_le_bytes()),
             Self::Numbers(numbers) => blocks(numbers, |number| (*number as u64).to_le_bytes(), out),
+            Self::Signed(numbers) => blocks(numbers, |number| number.to_le_bytes(), out),
             Self::Shifted(numbers, by) => blocks(numbers, |number| ((number + by) as u64).to_le_bytes(), out),
             Self::Dofs(dofs) => blocks(dofs, |dof| u64::from(*dof).to_le_bytes(), out),
             Self::Columns(columns) => blocks(columns, |column| column.to_le_bytes(), out),
             Self::Directions(directions) => blocks(directions, |direction| direction.to_le_bytes(), out),
             Self::Reals(reals) => blocks(reals, |real| real.to_le_bytes(), out),
+            Self::Gathered(reals) => blocks(reals, |real| real.to_le_bytes(), out),
             Self::Text(text) => out.write_all(text.as_bytes()),
         }
     }
@@ -141,13 +149,13 @@ pub fn write(model: &Model, out: &mut impl Write) -> io::Result<()> {
     sections(model).try_for_each(|section| section.write(out))
 }
 
-/// The sections of a body follow its BODY; rows come last.
+/// The sections of a body follow its BODY; then come rows, at last nodes with friction.
 fn sections(model: &Model) -> impl Iterator<Item = Section<'_>> {
     let options = Section { tag: OPTIONS, pieces: vec![Piece::Text(model.settings.changes())] };
     let bodies = model.bodies.iter().flat_map(of_body);
     let contact = rows(INEQUALITY, model.rows(RowKind::Inequality));
     let equalities = rows(EQUALITY, model.rows(RowKind::Equality));
-    std::iter::once(options).chain(bodies).chain(contact).chain(equalities)
+    std::iter::once(options).chain(bodies).chain(contact).chain(equalities).chain(friction(&model.friction))
 }
 
 fn of_body(given: &GivenBody) -> impl Iterator<Item = Section<'_>> {
@@ -207,6 +215,26 @@ fn of_pieces(of: &[MeshPiece]) -> Section<'_> {
 
 fn unknowns(tag: Tag, numbers: &[usize]) -> Section<'_> {
     Section { tag, pieces: vec![Piece::Number(numbers.len() as u64), Piece::Numbers(numbers)] }
+}
+
+fn friction(friction: &Friction) -> Option<Section<'_>> {
+    use Piece::{Gathered, Number, Numbers, Reals, Signed};
+    let (nodes, rows) = (&friction.nodes, &friction.rows);
+    let matrix = &rows.matrix;
+    let pieces = vec![
+        Number(friction.dim as u64),
+        Number(nodes.len() as u64),
+        Number(matrix.val.len() as u64),
+        Signed(nodes.iter().map(|node| node.normal.map_or(-1, |row| row as i64)).collect()),
+        Numbers(&matrix.ptr),
+        Numbers(&matrix.col),
+        Reals(&matrix.val),
+        Gathered(nodes.iter().map(|node| node.coefficient).collect()),
+        Gathered(nodes.iter().map(|node| node.bound).collect()),
+        Gathered(nodes.iter().map(|node| rows.compliance[node.first]).collect()),
+        Reals(&rows.rhs),
+    ];
+    (!nodes.is_empty()).then_some(Section { tag: FRICTION, pieces })
 }
 
 fn rows(kind: u64, rows: &RowSet) -> Option<Section<'_>> {

@@ -9,7 +9,7 @@ use crate::qp::friction::newton::{Laws, Point, Run, RHO};
 use crate::qp::friction::{
     FrictionLimits, FrictionObserver, FrictionProblem, FrictionSolution, FrictionStart,
 };
-use crate::qp::{AcceptanceTest, Verdict};
+use crate::qp::{AcceptanceTest, Counts, Verdict};
 
 /// One below it may be as good as rounding allows.
 const NEAR: f64 = 1e-7;
@@ -41,19 +41,19 @@ pub fn friction(
     Ok(run.solution(verdict))
 }
 
-/// Products of the linear problem in which the states of an answer, its slip directions and slips are known: what friction is
-/// measured against.
+/// Products of the linear problem in which the states of an answer (x, alpha), its slip directions and slips are known: what
+/// friction is measured against.
 pub fn known_face(
     problem: FrictionProblem,
     limits: FrictionLimits,
-    answer: &FrictionSolution,
+    (x, alpha): (&[f64], &[f64]),
     observer: &mut dyn FrictionObserver,
 ) -> Result<usize> {
     let (mut run, first) = Run::new(problem, limits, FrictionStart::default(), observer)?;
-    let g = run.gradient(&answer.x)?;
-    let r = run.gaps(&g, &answer.alpha);
+    let g = run.gradient(x)?;
+    let r = run.gaps(&g, alpha);
     run.counts.products = 0;
-    let model = run.model(Face::at(problem.cones, &answer.x, &r, RHO))?;
+    let model = run.model(Face::at(problem.cones, x, &r, RHO))?;
     let (x, mut g) = (first.point, run.gradient(&vec![0.0; r.len()])?);
     run.measure(&g, limits.tolerance)?;
     g = run.gradient(&x)?;
@@ -95,14 +95,19 @@ impl<'a> Run<'a, '_> {
         let mut now = self.newton(laws, start.clone())?;
         for _ in 0..=REFUSALS {
             // rounding may be all that is left
-            let near = now.merit <= NEAR * self.scale;
-            if (near || self.is_met(&now)) && self.is_accepted(now.clone(), judge)? {
-                return Ok(Verdict::Solved);
-            }
-            if self.is_met(&now) {
-                self.small *= TIGHTER;
-                now = self.newton(laws, now)?;
-                continue;
+            let (near, met) = (now.merit <= NEAR * self.scale, self.is_met(&now));
+            if near || met {
+                let answer = self.finished(&now)?;
+                if judge.accepts(&answer.x, &answer.alpha)? {
+                    self.last = answer;
+                    return Ok(Verdict::Solved);
+                }
+                // g of steps that were far larger than what is left has their rounding, the last product has not
+                if met {
+                    self.small *= TIGHTER;
+                    now = self.newton(laws, answer)?;
+                    continue;
+                }
             }
             now = self.otherwise(limits.direct, &start, now)?;
             if !self.is_met(&now) {
@@ -113,18 +118,8 @@ impl<'a> Run<'a, '_> {
         Ok(Verdict::Inaccurate)
     }
 
-    /// The last word on a point; it is the answer then.
-    fn is_accepted(&mut self, now: Point, judge: &mut dyn AcceptanceTest) -> Result<bool> {
-        let answer = self.finished(now)?;
-        let accepted = judge.accepts(&answer.x, &answer.alpha)?;
-        if accepted {
-            self.last = answer;
-        }
-        Ok(accepted)
-    }
-
     /// The answer: exact zeros, forces exactly within the cones, gaps by a product of their own.
-    fn finished(&mut self, now: Point) -> Result<Point> {
+    fn finished(&mut self, now: &Point) -> Result<Point> {
         let laws = Laws { cones: self.problem.cones, rho: RHO };
         let mut y = now.x.clone();
         // open nodes by their gaps: exactly 0 in the end
@@ -133,12 +128,12 @@ impl<'a> Run<'a, '_> {
             y[row] = if trial <= 0.0 { trial.min(y[row]) } else { y[row] };
         }
         let inside = project(&self.problem, laws.cones, self.motions.as_ref(), &y)?;
-        let x = if inside.met { inside.point } else { now.x };
+        let x = if inside.met { inside.point } else { now.x.clone() };
         let g = self.gradient(&x)?;
         let model = self.model(Face::at(laws.cones, &x, &self.gaps(&g, &now.alpha), RHO))?;
         let turned = self.turned(&model, &x, &g, &now.alpha)?;
         let (as_is, turned) =
-            (self.point(laws, x.clone(), g.clone(), now.alpha)?, self.point(laws, x, g, turned)?);
+            (self.point(laws, x.clone(), g.clone(), now.alpha.clone())?, self.point(laws, x, g, turned)?);
         Ok(if turned.merit < as_is.merit { turned } else { as_is })
     }
 
@@ -147,6 +142,7 @@ impl<'a> Run<'a, '_> {
         let cones: &'a Cones = self.problem.cones;
         let states = if r.len() == x.len() { Face::at(cones, &x, &r, RHO).states } else { Vec::new() };
         let merit = ratio(merit, self.scale);
+        let counts = Counts { newton: self.tried.newton, starts: self.tried.starts(), ..self.counts };
         FrictionSolution {
             x,
             alpha,
@@ -154,7 +150,7 @@ impl<'a> Run<'a, '_> {
             scale: self.scale,
             merit,
             verdict,
-            counts: self.counts,
+            counts,
             tried: self.tried,
             pairs: self.pairs,
         }

@@ -28,7 +28,7 @@ pub use cones::{Cones, Force, Node, Place};
 pub use coordinates::{Coordinate, Law};
 pub use end::{friction, known_face};
 pub use face::{Face, State};
-pub use pairs::Pairs;
+pub use pairs::{DualAnswer, Pairs, PairsBetween};
 pub use supports::Supported;
 pub use unheld::unheld;
 
@@ -115,6 +115,14 @@ pub struct Tried {
     /// Starts from the answer without friction, and from that with all closed nodes sticking.
     pub frictionless: bool,
     pub sticking: bool,
+}
+
+impl Tried {
+    /// Ways that were begun, the first one included.
+    pub fn starts(&self) -> usize {
+        let others = self.restarts + self.paths + self.dense_paths;
+        1 + others + usize::from(self.frictionless) + usize::from(self.sticking)
+    }
 }
 
 /// A verdict of `Infeasible` means here: PROJ_C found no force within the cones that balances the load; no proof.

@@ -6,7 +6,7 @@ use crate::platform::{interrupt, tally};
 use crate::qp::friction::cones::Cones;
 use crate::qp::friction::face::{Face, Model, State};
 use crate::qp::friction::motions::{Inverse, Motions};
-use crate::qp::friction::pairs::{Pairs, Step};
+use crate::qp::friction::pairs::{Pair, Pairs, Step};
 use crate::qp::friction::{FrictionObserver, FrictionProblem, FrictionReport, OnFace, Tried};
 use crate::qp::Counts;
 
@@ -216,8 +216,12 @@ impl Run<'_, '_> {
             return Ok(false);
         }
         v.iter_mut().for_each(|v| *v /= size);
+        // of a direction that was much longer more was left
+        self.without_motions(&mut v)?;
+        let none = vec![0.0; self.problem.e.len()];
+        let unbalanced = self.imbalance(&v, &none)?.sqrt();
         let image = self.product(&v)?;
-        self.pairs.keep(&v, &image)?;
+        self.pairs.keep(Pair { v, image, unbalanced });
         let of = |state: State| model.face.states.iter().filter(|own| **own == state).count();
         let report = FrictionReport {
             products: self.counts.products,
@@ -265,8 +269,13 @@ impl Run<'_, '_> {
 
     /// `|G'(G G')^+ (G x - e)|^2`
     pub fn balance_missed(&mut self, x: &[f64]) -> Result<f64> {
+        self.imbalance(x, self.problem.e)
+    }
+
+    /// The same for any e.
+    fn imbalance(&mut self, x: &[f64], e: &[f64]) -> Result<f64> {
         let Some(all_rows) = &self.all_rows else { return Ok(0.0) };
-        let mut left = self.problem.e.to_vec();
+        let mut left = e.to_vec();
         self.problem.g_transposed.mul_transposed_add(-1.0, x, &mut left);
         self.counts.coarse_solves += 1;
         // what is no number stays so

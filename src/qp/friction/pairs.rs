@@ -1,12 +1,12 @@
 //! Directions kept with their images under F, which serve all states of the nodes, coefficients, bounds and loads.
 
 use std::collections::VecDeque;
+use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use crate::error::Result;
 use crate::linalg::dense::least_squares::least_squares;
 use crate::linalg::vector::{axpy, norm};
 use crate::linalg::Matrix;
-use crate::platform::memory::copied;
 use crate::platform::{interrupt, tally};
 use crate::qp::friction::face::Model;
 
@@ -14,11 +14,66 @@ use crate::qp::friction::face::Model;
 const MOST: usize = 200;
 /// Columns of unit length that keep less than this beside the others depend on them.
 const CUT: f64 = 1e-12;
+/// Rounding of a product, of its size.
+const NOISE: f64 = 16.0 * f64::EPSILON;
 
 /// What earlier solves leave to later ones with the same F, G and rows.
 #[derive(Debug, Default)]
 pub struct Pairs {
-    kept: VecDeque<(Vec<f64>, Vec<f64>)>,
+    kept: VecDeque<Pair>,
+}
+
+/// A direction of length 1 with its image.
+#[derive(Debug)]
+pub struct Pair {
+    pub v: Vec<f64>,
+    /// `F v`
+    pub image: Vec<f64>,
+    /// `|G'(G G')^+ G v|`, what rounding has left of it.
+    pub unbalanced: f64,
+}
+
+/// Pairs of some rows of a problem, while no solve uses them.
+#[derive(Default)]
+pub struct PairsBetween {
+    kept: Mutex<Option<(Vec<usize>, Pairs)>>,
+    answer: Mutex<Option<DualAnswer>>,
+}
+
+/// The last answer with friction, for measurements.
+pub struct DualAnswer {
+    /// Those that took part.
+    pub rows: Vec<usize>,
+    pub x: Vec<f64>,
+    pub alpha: Vec<f64>,
+}
+
+impl PairsBetween {
+    /// Those of these rows; those of others are dropped.
+    pub fn take(&self, rows: &[usize]) -> Option<Pairs> {
+        locked(&self.kept).take().filter(|(of, _)| of == rows).map(|(_, pairs)| pairs)
+    }
+
+    pub fn keep(&self, rows: &[usize], pairs: Pairs) {
+        *locked(&self.kept) = Some((rows.to_vec(), pairs));
+    }
+
+    /// The next solve is to be as if none had been before.
+    pub fn forget(&self) {
+        *locked(&self.kept) = None;
+    }
+
+    pub fn keep_answer(&self, answer: DualAnswer) {
+        *locked(&self.answer) = Some(answer);
+    }
+
+    pub fn take_answer(&self) -> Option<DualAnswer> {
+        locked(&self.answer).take()
+    }
+}
+
+fn locked<T>(kept: &Mutex<T>) -> MutexGuard<'_, T> {
+    kept.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 /// The combination of all pairs that the linear model likes best.
@@ -36,40 +91,44 @@ impl Pairs {
 
     /// Those of m rows; none of others.
     pub fn of_order(self, order: usize) -> Self {
-        if self.kept.iter().all(|(v, _)| v.len() == order) {
+        if self.kept.iter().all(|pair| pair.v.len() == order) {
             self
         } else {
             Self::default()
         }
     }
 
-    pub fn keep(&mut self, v: &[f64], fv: &[f64]) -> Result<()> {
+    pub fn keep(&mut self, pair: Pair) {
         if self.kept.len() >= MOST {
             self.kept.pop_front();
         }
-        self.kept.push_back((copied(v, "a direction")?, copied(fv, "a direction")?));
-        Ok(())
+        self.kept.push_back(pair);
     }
 
-    /// `dx = V c`, `c = argmin | [L V; P w (W'F V + D S V)] c + [first; P w q] |`.
+    /// `dx = V c`, `c = argmin | [L V; P w (W'F V + D S V); N] c + [first; P w q; 0] |`, N = diag what rounding has
+    /// made of `G v` and `F v`: pairs of other steps, far larger than this one, would promise what they cannot keep.
     pub fn minimise(&self, model: &Model, residual: Vec<f64>) -> Result<Step> {
         interrupt::check()?;
         tally::costly();
         let m = residual.len();
         let target = model.reduced(residual)?;
-        let mut images = Matrix::zeros(m, self.kept.len())?;
-        for (j, (v, fv)) in self.kept.iter().enumerate() {
-            images.col_mut(j).copy_from_slice(&model.reduced(model.face.image(v, fv))?);
+        let pairs = self.kept.len();
+        let mut images = Matrix::zeros(m + pairs, pairs)?;
+        for (j, Pair { v, image, unbalanced }) in self.kept.iter().enumerate() {
+            images.col_mut(j)[..m].copy_from_slice(&model.reduced(model.face.image(v, image))?);
+            images.set(m + j, j, NOISE * (norm(image) + 1.0) + unbalanced / model.face.rho);
         }
-        let wanted: Vec<f64> = target.iter().map(|target| -target).collect();
+        let mut wanted: Vec<f64> = target.iter().map(|target| -target).collect();
+        wanted.resize(m + pairs, 0.0);
         let c = least_squares(&images, &wanted, CUT)?;
         let mut left = target;
+        left.resize(m + pairs, 0.0);
         images.mul_add(1.0, &c, &mut left);
         let rest = norm(&left) / norm(&wanted).max(f64::MIN_POSITIVE);
         let (mut dx, mut dg) = (vec![0.0; m], vec![0.0; m]);
-        for (c, (v, fv)) in c.iter().zip(&self.kept).filter(|(c, _)| **c != 0.0) {
-            axpy(*c, v, &mut dx);
-            axpy(*c, fv, &mut dg);
+        for (c, pair) in c.iter().zip(&self.kept).filter(|(c, _)| **c != 0.0) {
+            axpy(*c, &pair.v, &mut dx);
+            axpy(*c, &pair.image, &mut dg);
         }
         Ok(Step { dx, dg, rest })
     }

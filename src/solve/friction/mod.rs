@@ -1,24 +1,30 @@
 //! An island with friction: its dual is solved by the Newton method of `qp::friction`, on the rows that matter.
 
+mod known;
 mod laws;
+mod slides;
 
 use crate::error::Result;
 use crate::progress::Steps;
 use crate::qp::friction::{
-    friction, unheld, Cones, FacePreconditioner, FrictionLimits, FrictionProblem, FrictionSolution,
-    FrictionStart, Tried,
+    friction, unheld, Cones, DualAnswer, FrictionLimits, FrictionSolution, FrictionStart,
 };
 use crate::qp::{AnswerFace, Counts, DirectOnRows, Judged, Qp, Restricted, Solution, Verdict};
 use crate::setup::Ready;
+use crate::solve::case::Case;
 use crate::solve::certifier::Certifier;
 use crate::solve::fallback::MethodOptions;
-use crate::solve::friction::laws::{cones, OfBodies};
+use crate::solve::friction::laws::{cones, problem, OfBodies};
+use crate::solve::friction::slides::{shown, Shown};
 use crate::solve::gaps::Gaps;
 use crate::solve::near::take_in_nearest;
 use crate::solve::scaled::Scaled;
 
+pub use known::on_known_states;
+
 /// Solves the dual with the laws of friction for the rows that matter; the forces of the others are 0.
 pub fn solve_with_friction(
+    case: Case,
     means: &MethodOptions,
     qp: Qp,
     start: &[f64],
@@ -33,8 +39,8 @@ pub fn solve_with_friction(
         steps.set_bounded(near.bounded());
         judge.far.clone_from(&far);
         judge.reached.clear();
-        let found = on_rows(means, (&near, &rows), &start, judge, steps)?;
-        let counts = before + counts(&found);
+        let (found, counts) = on_rows(case, means, (&near, &rows), &start, judge, steps)?;
+        let counts = before + counts;
         let solution = solution(ready, &qp, gaps, near.spread(&found.x), found, counts)?;
         let is_left_out = (0..far.len()).any(|i| far[i] && gaps.value[i] < f64::INFINITY);
         match &solution.verdict {
@@ -54,31 +60,23 @@ pub fn nearest_forces(ready: &Ready, scaled: &Scaled, far: &[bool]) -> Result<(V
     let rows: Vec<usize> = (0..far.len()).filter(|&i| !far[i]).collect();
     let near = Restricted::new(scaled.qp(ready, &ready.dual), &rows);
     let cones = cones(ready, &scaled.gaps, &rows)?;
-    let (x, rest) = unheld(&friction_problem(near.qp(), &cones, None), &ready.dual.sizes_of_modes())?;
+    let (x, rest) = unheld(&problem(near.qp(), &cones, None), &ready.dual.sizes_of_modes())?;
     Ok((near.spread(&x), rest))
-}
-
-fn friction_problem<'a>(
-    qp: Qp<'a>,
-    cones: &'a Cones,
-    preconditioner: Option<&'a dyn FacePreconditioner>,
-) -> FrictionProblem<'a> {
-    let Qp { a, b, g_transposed, blocks, rounding, e, .. } = qp;
-    FrictionProblem { a, b, g_transposed, blocks, rounding, e, cones, preconditioner }
 }
 
 /// The method on some of the rows. Pairs of earlier solves serve where the start is not 0.
 fn on_rows(
+    case: Case,
     means: &MethodOptions,
     (near, rows): (&Restricted, &[usize]),
     start: &[f64],
     judge: &mut Certifier,
     steps: &mut Steps,
-) -> Result<FrictionSolution> {
+) -> Result<(FrictionSolution, Counts)> {
     let (ready, gaps) = (judge.recovery.ready, &judge.recovery.scaled.gaps);
     let cones: Cones = cones(ready, gaps, rows)?;
     let preconditioner = ready.preconditioner.as_ref().map(|(_, of)| OfBodies { of, rows });
-    let problem = friction_problem(near.qp(), &cones, preconditioner.as_ref().map(|of| of as _));
+    let problem = problem(near.qp(), &cones, preconditioner.as_ref());
     let block = DirectOnRows { whole: means.direct, rows };
     let most = usize::try_from(means.settings.max_steps).unwrap_or(usize::MAX);
     let limits = FrictionLimits {
@@ -87,7 +85,7 @@ fn on_rows(
         direct: (means.direct.limit > 0).then(|| block.direct()),
     };
     let start = near.start(start);
-    let kept = ready.kept.take_pairs(rows);
+    let kept = ready.pairs.take(rows);
     let is_warm = start.iter().any(|x| *x != 0.0);
     let start = FrictionStart {
         x: is_warm.then_some(&start[..]),
@@ -96,14 +94,31 @@ fn on_rows(
     };
     let mut judged = Judged { whole: judge, on: near };
     let mut found = friction(problem, limits, start, &mut judged, steps)?;
-    ready.kept.keep_pairs(rows, std::mem::take(&mut found.pairs));
-    Ok(found)
-}
-
-fn counts(found: &FrictionSolution) -> Counts {
-    let Tried { newton, restarts, paths, dense_paths, frictionless, sticking } = found.tried;
-    let others = restarts + paths + dense_paths + usize::from(frictionless) + usize::from(sticking);
-    Counts { newton, starts: 1 + others, ..found.counts }
+    let mut counts = found.counts;
+    if found.verdict == Verdict::Stalled {
+        steps.line(format!("weak supports after {} products: no rest was found", counts.products))?;
+        match shown(problem, limits, steps, &mut counts) {
+            Ok(Shown::Slides(slide)) => return Err(slide.named(case, counts.starts)?),
+            Ok(Shown::Rest { x, alpha }) => {
+                let pairs = std::mem::take(&mut found.pairs);
+                let start = FrictionStart { x: Some(&x), alpha: Some(&alpha), pairs };
+                let next = friction(problem, limits, start, &mut judged, steps)?;
+                counts = counts + next.counts;
+                if next.verdict != Verdict::Stalled {
+                    found = next;
+                }
+            }
+            Ok(Shown::Nothing) => {}
+            Err(error) => found.verdict = Verdict::of_refusal(error)?,
+        }
+    }
+    ready.pairs.keep(rows, std::mem::take(&mut found.pairs));
+    ready.pairs.keep_answer(DualAnswer {
+        rows: rows.to_vec(),
+        x: found.x.clone(),
+        alpha: found.alpha.clone(),
+    });
+    Ok((found, counts))
 }
 
 /// The same as the solution of any method; motions that neither closed rows nor nodes with a bound resist are undetermined.

@@ -1,5 +1,6 @@
 //! Round trips, truncated, changed and hostile files.
 
+mod friction;
 mod given;
 mod pieces;
 
@@ -222,6 +223,10 @@ fn lengths_that_the_file_does_not_hold_are_refused_before_anything_is_reserved()
             (b"ROWS", vec![1, huge, 0, 0]),
             (b"ROWS", vec![1, 1, huge, 0, huge]),
             (b"ROWS", vec![2, huge, huge, 0, 0]),
+            (b"FRIC", vec![1, huge, 0, 0]),
+            (b"FRIC", vec![2, huge, huge, 0, 0]),
+            (b"FRIC", vec![1, 1, huge, 0, 0, huge]),
+            (b"FRIC", vec![huge, 1, 1, 0, 0, 0]),
         ] {
             let error = refused(&of_sections(FORMAT, &[body(2), of_section(tag, 0, &numbers(&payload))]));
             assert_eq!(error.kind, Kind::Io, "{error}");

@@ -3,6 +3,7 @@
 mod body_facts;
 mod clock;
 mod file;
+mod friction;
 mod glue;
 mod headroom;
 mod log;

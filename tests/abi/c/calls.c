@@ -136,6 +136,8 @@ static void prepare(const char *name, feti_problem *p)
     static const double away[2] = { 0.0, 6.0 };
     static const double diagonal[2] = { 4.0, 4.0 }, beside[1] = { -4.0 }, dense[4] = { 4.0, -4.0, -4.0, 4.0 };
     static const int32_t row_ptr[3] = { 0, 0, 1 }, col[1] = { 0 };
+    static const int32_t normal_row[1] = { 0 }, tangent_ptr[2] = { 0, 2 }, tangent_body[2] = { 0, 1 }, tangent_dof[2] = { 0, 1 };
+    static const double tangent[2] = { 1.0, -1.0 };
     static const int32_t element_ptr[2] = { 0, 2 }, joined[2] = { 0, 1 };
     int64_t id;
 
@@ -143,6 +145,8 @@ static void prepare(const char *name, feti_problem *p)
         MUST(feti_body_mesh_i32(p, 1, 1, element_ptr, joined, 0));
         MUST(feti_body_element(p, 1, 0, 2, dense, 2));
     }
+    if (strncmp(name, "feti_friction_", 14) == 0 || strcmp(name, "feti_check_friction") == 0)
+        MUST(feti_friction_add_i32(p, 1, 1, normal_row, tangent_ptr, tangent_body, tangent_dof, tangent, 0, NULL, NULL, NULL));
     if (strncmp(name, "feti_state_", 11) == 0) MUST(feti_state_save(p, &id));
     if (strncmp(name, "feti_diagnosis_undetermined", 27) == 0) give_loose_body(p);
     if (strcmp(name, "feti_diagnosis_motion") == 0) MUST(feti_body_load(p, 1, 2, away));

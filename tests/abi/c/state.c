@@ -141,7 +141,7 @@ static void what_does_not_fit_is_refused(void)
     double u;
     char text[256];
 
-    EXPECT(FETI_ARGUMENT - 2, feti_start_from(problem, 3, 1, start));
+    EXPECT(FETI_ARGUMENT - 2, feti_start_from(problem, 9, 1, start));
     EXPECT(FETI_ARGUMENT - 3, feti_start_from(problem, FETI_INEQUALITY, 2, start));
     EXPECT(FETI_ARGUMENT - 3, feti_start_from(problem, FETI_INEQUALITY, -1, start));
     EXPECT(FETI_ARGUMENT - 4, feti_start_from(problem, FETI_INEQUALITY, 1, nan_start));

@@ -17,6 +17,7 @@ C     Every subroutine of the face with status 0, its result compared.
       CALL PLACES
       CALL KEPT
       CALL ELEMS
+      CALL RUBS
       END
 
 C     Options, names, version.

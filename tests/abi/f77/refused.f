@@ -58,7 +58,7 @@ C     Bodies: number, unknowns, storage, columns, null space, node.
       CALL FTBFIX(IP, 2, -1, IS, IERR)
       CALL NOT(IERR, FTEARG - 3, ' ')
 C     Rows: with bodies and without the positions differ.
-      CALL FTROWS(IP, 3, 1, IPTR, IBOD, ICOL, A, C, N, IERR)
+      CALL FTROWS(IP, 9, 1, IPTR, IBOD, ICOL, A, C, N, IERR)
       CALL NOT(IERR, FTEARG - 2, 'EQUALITY')
       IBOD(1) = 4
       CALL FTROWS(IP, FTKINE, 1, IPTR, IBOD, ICOL, A, C, N, IERR)

@@ -74,7 +74,7 @@ for bytes in 4 8; do
     into "fixed_$bytes" "$flags" "$root"/tests/abi/f77/*.f
     for name in three_bodies calls watched refused; do
         parts=
-        [ $name != calls ] || parts="fixed_$bytes/findings.o fixed_$bytes/kept.o fixed_$bytes/elements.o fixed_$bytes/numbers.o"
+        [ $name != calls ] || parts="fixed_$bytes/findings.o fixed_$bytes/kept.o fixed_$bytes/elements.o fixed_$bytes/numbers.o fixed_$bytes/friction.o"
         # shellcheck disable=SC2086
         run "$fc" fixed_$bytes/$name.o $parts fixed_$bytes/small.o fixed_$bytes/reader.o f77_$bytes/*.o $link -o bin/f77_${name}_$bytes
     done

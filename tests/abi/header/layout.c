@@ -9,7 +9,7 @@
 #define OFFSET(type, member, bytes) \
     _Static_assert(offsetof(type, member) == (bytes), "offset of " #type "." #member)
 
-SIZE(feti_error_detail, 120);
+SIZE(feti_error_detail, 128);
 OFFSET(feti_error_detail, struct_size, 0);
 OFFSET(feti_error_detail, status, 8);
 OFFSET(feti_error_detail, argument, 12);
@@ -19,6 +19,7 @@ OFFSET(feti_error_detail, value, 56);
 OFFSET(feti_error_detail, limit, 64);
 OFFSET(feti_error_detail, function, 72);
 OFFSET(feti_error_detail, element, 112);
+OFFSET(feti_error_detail, node, 120);
 
 SIZE(feti_option, 72);
 OFFSET(feti_option, struct_size, 0);
@@ -30,7 +31,7 @@ OFFSET(feti_option, name, 48);
 OFFSET(feti_option, doc, 56);
 OFFSET(feti_option, default_str, 64);
 
-SIZE(feti_info, 288);
+SIZE(feti_info, 352);
 OFFSET(feti_info, struct_size, 0);
 OFFSET(feti_info, status, 8);
 OFFSET(feti_info, bodies, 16);
@@ -53,6 +54,10 @@ OFFSET(feti_info, explicit_operators, 256);
 OFFSET(feti_info, implicit_operators, 264);
 OFFSET(feti_info, factor_bytes, 272);
 OFFSET(feti_info, operator_bytes, 280);
+OFFSET(feti_info, friction_cone, 288);
+OFFSET(feti_info, friction_stick, 304);
+OFFSET(feti_info, nodes, 312);
+OFFSET(feti_info, friction_starts, 344);
 
 SIZE(feti_phase, 32);
 OFFSET(feti_phase, struct_size, 0);
@@ -60,7 +65,7 @@ OFFSET(feti_phase, bytes, 8);
 OFFSET(feti_phase, seconds, 16);
 OFFSET(feti_phase, name, 24);
 
-SIZE(feti_certificate, 136);
+SIZE(feti_certificate, 184);
 OFFSET(feti_certificate, struct_size, 0);
 OFFSET(feti_certificate, passed, 8);
 OFFSET(feti_certificate, limit, 16);
@@ -69,6 +74,9 @@ OFFSET(feti_certificate, equilibrium, 32);
 OFFSET(feti_certificate, duality_gap, 80);
 OFFSET(feti_certificate, equilibrium_body, 88);
 OFFSET(feti_certificate, complementarity_row, 128);
+OFFSET(feti_certificate, friction_cone, 136);
+OFFSET(feti_certificate, friction_cone_node, 160);
+OFFSET(feti_certificate, friction_stick_node, 176);
 
 SIZE(feti_progress, 88);
 OFFSET(feti_progress, struct_size, 0);
@@ -82,7 +90,7 @@ OFFSET(feti_progress, theta, 64);
 OFFSET(feti_progress, seconds, 72);
 OFFSET(feti_progress, fraction, 80);
 
-SIZE(feti_findings, 184);
+SIZE(feti_findings, 192);
 OFFSET(feti_findings, struct_size, 0);
 OFFSET(feti_findings, status, 8);
 OFFSET(feti_findings, kind, 12);
@@ -102,6 +110,7 @@ OFFSET(feti_findings, doubtful_bodies, 152);
 OFFSET(feti_findings, doubtful_body, 160);
 OFFSET(feti_findings, soft_bodies, 168);
 OFFSET(feti_findings, soft_body, 176);
+OFFSET(feti_findings, capacity, 184);
 
 SIZE(feti_body_facts, 160);
 OFFSET(feti_body_facts, struct_size, 0);
@@ -123,12 +132,12 @@ struct layout {
 };
 
 static const struct layout in_c[] = {
-    {"feti_error_detail", sizeof(feti_error_detail), offsetof(feti_error_detail, element)},
+    {"feti_error_detail", sizeof(feti_error_detail), offsetof(feti_error_detail, node)},
     {"feti_option", sizeof(feti_option), offsetof(feti_option, default_str)},
-    {"feti_info", sizeof(feti_info), offsetof(feti_info, operator_bytes)},
-    {"feti_certificate", sizeof(feti_certificate), offsetof(feti_certificate, complementarity_row)},
+    {"feti_info", sizeof(feti_info), offsetof(feti_info, friction_starts)},
+    {"feti_certificate", sizeof(feti_certificate), offsetof(feti_certificate, friction_stick_node)},
     {"feti_progress", sizeof(feti_progress), offsetof(feti_progress, fraction)},
-    {"feti_findings", sizeof(feti_findings), offsetof(feti_findings, soft_body)},
+    {"feti_findings", sizeof(feti_findings), offsetof(feti_findings, capacity)},
     {"feti_phase", sizeof(feti_phase), offsetof(feti_phase, name)},
     {"feti_body_facts", sizeof(feti_body_facts), offsetof(feti_body_facts, pieces)},
 };

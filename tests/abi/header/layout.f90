@@ -18,12 +18,12 @@ subroutine layout_in_fortran(size, last) bind(C, name="layout_in_fortran")
 
   size = int([c_sizeof(detail), c_sizeof(option), c_sizeof(info), c_sizeof(certificate), &
     c_sizeof(progress), c_sizeof(findings), c_sizeof(phase), c_sizeof(facts)], c_int64_t)
-  last = [distance(c_loc(detail), c_loc(detail%element)), &
+  last = [distance(c_loc(detail), c_loc(detail%node)), &
     distance(c_loc(option), c_loc(option%default_str)), &
-    distance(c_loc(info), c_loc(info%operator_bytes)), &
-    distance(c_loc(certificate), c_loc(certificate%complementarity_row)), &
+    distance(c_loc(info), c_loc(info%friction_starts)), &
+    distance(c_loc(certificate), c_loc(certificate%friction_stick_node)), &
     distance(c_loc(progress), c_loc(progress%fraction)), &
-    distance(c_loc(findings), c_loc(findings%soft_body)), &
+    distance(c_loc(findings), c_loc(findings%capacity)), &
     distance(c_loc(phase), c_loc(phase%name)), &
     distance(c_loc(facts), c_loc(facts%pieces))]
 

@@ -41,6 +41,7 @@ pub fn of_contents(role: Role, right: &str) -> Vec<String> {
         Role::NotNegative => vec!["@_[0] = NAN".to_string(), at_last("INFINITY"), at_last("-1e-300")],
         Role::Positions => vec!["@_[0] = 1".to_string(), "@_[0] = -1".to_string(), at_last("-1")],
         Role::Indices => vec!["@_[0] = -1".to_string(), at_last("99")],
+        Role::Rows => vec!["@_[0] = -2".to_string(), at_last("99")],
         Role::Unknowns => vec![at_last("99")],
         Role::Distinct => vec!["@_[0] = -1".to_string(), at_last("@_[0]")],
         Role::Directions => vec!["@_[0] = 0".to_string(), at_last("7")],

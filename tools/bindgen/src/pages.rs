@@ -44,7 +44,7 @@ fn list(api: &Api) -> String {
 }
 
 /// Source files with what their functions are about, in the order in which a host meets them.
-const SUBJECTS: [(&str, &str); 21] = [
+const SUBJECTS: [(&str, &str); 22] = [
     ("problem", "Problems"),
     ("body", "Bodies"),
     ("stiffness", "Stiffness matrices"),
@@ -53,6 +53,7 @@ const SUBJECTS: [(&str, &str); 21] = [
     ("null_space", "Null spaces"),
     ("numbering", "Numbers of the host"),
     ("rows", "Rows"),
+    ("friction", "Friction"),
     ("options", "Options"),
     ("solve", "Setup, solution, certificate"),
     ("results", "Results"),

@@ -1,0 +1,31 @@
+//! The linear problem on the states that a solve with friction has ended with: a measurement, no part of a solve.
+
+use crate::error::Result;
+use crate::model::Settings;
+use crate::qp::friction::{known_face, FrictionLimits, FrictionObserver, FrictionReport};
+use crate::qp::{Qp, Restricted};
+use crate::setup::Ready;
+use crate::solve::friction::laws::{cones, problem, OfBodies};
+use crate::solve::gaps::Gaps;
+
+/// Products with F of conjugate gradients in which closed and sticking nodes, slip directions and slips of the last answer are known:
+/// cold, with the preconditioner, rows and tolerance of that solve. None where no solve has left an answer since.
+pub fn on_known_states(ready: &Ready, settings: &Settings, qp: Qp, gaps: &Gaps) -> Result<Option<usize>> {
+    let Some(answer) = ready.pairs.take_answer() else { return Ok(None) };
+    let near = Restricted::new(qp, &answer.rows);
+    let cones = cones(ready, gaps, &answer.rows)?;
+    let preconditioner = ready.preconditioner.as_ref().map(|(_, of)| OfBodies { of, rows: &answer.rows });
+    let problem = problem(near.qp(), &cones, preconditioner.as_ref());
+    let products = usize::try_from(settings.max_steps).unwrap_or(usize::MAX);
+    let limits = FrictionLimits { tolerance: settings.tolerance, products, direct: None };
+    known_face(problem, limits, (&answer.x, &answer.alpha), &mut Silent).map(Some)
+}
+
+/// Hears of the products and does not end them.
+struct Silent;
+
+impl FrictionObserver for Silent {
+    fn step(&mut self, _: &FrictionReport) -> Result<()> {
+        Ok(())
+    }
+}

@@ -1,0 +1,142 @@
+//! What friction does not hold though forces within the cones balance the load: weak elastic supports of all motions show it. What they
+//! carry falls with their stiffness kappa where there is a rest, and stays where the bodies slide.
+
+use crate::error::{Error, Kind, Proof, Result};
+use crate::linalg::vector::{axpy, dot, norm, norm_max};
+use crate::platform::memory::zeros;
+use crate::progress::Steps;
+use crate::qp::friction::{friction, FrictionLimits, FrictionProblem, FrictionStart, Supported};
+use crate::qp::{AcceptanceTest, Counts, Verdict};
+use crate::solve::case::Case;
+
+/// Stiffness of the supports, no unit: rows have the compliance 1, the modes of a body `|G_p| = 1`.
+const WEAK: [f64; 2] = [1e-3, 1e-5];
+/// What the supports carry has stayed where it differs by less than this part.
+const STAYS: f64 = 0.05;
+/// Less than this part of the load is nothing.
+const NOTHING: f64 = 1e-6;
+/// A slide is steady where rates of rows that carry forces, and forces that are not along the slip, are below this part of the largest.
+const STEADY: f64 = 1e-2;
+
+/// What weak supports have shown.
+pub enum Shown {
+    Slides(Slide),
+    /// Forces and amplitudes near to those of a rest.
+    Rest {
+        x: Vec<f64>,
+        alpha: Vec<f64>,
+    },
+    Nothing,
+}
+
+/// A steady slide: forces at their bounds hold a part of the load.
+pub struct Slide {
+    /// Amplitudes of its motion.
+    alpha: Vec<f64>,
+    /// What friction holds of the load along the motion, as a part, no unit.
+    capacity: f64,
+}
+
+/// What the supports show of a problem of which the method has found no answer; their work is added to `counts`.
+pub fn shown(
+    problem: FrictionProblem,
+    limits: FrictionLimits,
+    steps: &mut Steps,
+    counts: &mut Counts,
+) -> Result<Shown> {
+    let (rows, modes) = (problem.b.len(), problem.e.len());
+    if modes == 0 {
+        return Ok(Shown::Nothing);
+    }
+    let mut start: Option<Vec<f64>> = None;
+    let mut carried: Vec<Vec<f64>> = Vec::new();
+    for kappa in WEAK {
+        let supported = Supported::new(problem, kappa)?;
+        let begin = FrictionStart { x: start.as_deref(), ..FrictionStart::default() };
+        let limits = FrictionLimits { direct: None, ..limits };
+        let found = friction(supported.problem(), limits, begin, &mut Content, steps)?;
+        *counts = *counts + found.counts;
+        if found.verdict != Verdict::Solved {
+            return match found.verdict {
+                Verdict::Cancelled => Err(Error::new(Kind::Cancelled, "cancelled by the host")),
+                Verdict::TimeLimit => Err(Error::new(Kind::TimeOver, "the time limit is reached")),
+                _ => Ok(Shown::Nothing),
+            };
+        }
+        carried.push(supported.unheld(&found.x).to_vec());
+        start = Some(found.x);
+    }
+    let (Some(x), [first, last]) = (start, &carried[..]) else { return Ok(Shown::Nothing) };
+    let alpha: Vec<f64> = last.iter().map(|left| left / WEAK[1]).collect();
+    let mut change = last.clone();
+    axpy(-1.0, first, &mut change);
+    let stays = norm(&change) <= STAYS * norm(last) && norm(last) > NOTHING * norm(problem.e);
+    let x = x[..rows].to_vec();
+    if !stays {
+        return Ok(Shown::Rest { x, alpha });
+    }
+    if !is_steady(&problem, &x, &alpha) {
+        return Ok(Shown::Nothing);
+    }
+    let driving = dot(problem.e, &alpha);
+    let capacity = 1.0 - dot(last, &alpha) / driving;
+    Ok(Shown::Slides(Slide { alpha, capacity }))
+}
+
+/// Nodes that carry forces stay closed or open no gap, and their tangential forces are at their bounds along the slip.
+fn is_steady(problem: &FrictionProblem, x: &[f64], alpha: &[f64]) -> bool {
+    let rate = |row: usize| problem.g_transposed.row_dot(row, alpha);
+    let rates: Vec<f64> = (0..x.len()).map(rate).collect();
+    let small = STEADY * norm_max(&rates);
+    let nodes = problem.cones.nodes();
+    let largest = nodes.iter().map(|node| node.limit(node.of(x).normal)).fold(0.0, f64::max);
+    small > 0.0
+        && nodes.iter().all(|node| {
+            let (force, rate) = (node.of(x), node.of(&rates));
+            let limit = node.limit(force.normal);
+            let slip = rate.tangential[0].hypot(rate.tangential[1]);
+            let parts_well = force.normal <= STEADY * largest || rate.normal.abs() <= small;
+            let is_along = (0..2).all(|k| {
+                let along = limit * rate.tangential[k] / slip;
+                (force.tangential[k] - along).abs() <= STEADY * largest
+            });
+            parts_well && (slip <= small || is_along)
+        })
+        && problem.cones.free().iter().all(|&row| rates[row].abs() <= small)
+}
+
+impl Slide {
+    /// The error that names the body that slides fastest, its motion, and what friction holds.
+    pub fn named(&self, case: Case, starts: usize) -> Result<Error> {
+        let (ready, island) = (case.ready, case.island());
+        let own = ready.dual.rigid_motion(&self.alpha, island.unknowns());
+        let mut v = zeros(case.model.sizes().dofs, "a motion")?;
+        island.scatter(case.model, &own, &mut v);
+        let fastest = (0..v.len()).fold(0, |best, i| if v[i].abs() > v[best].abs() { i } else { best });
+        let body = case.model.offsets[1..].partition_point(|end| *end <= fastest);
+        let dof = fastest - case.model.offsets[body];
+        let sense = if v[fastest] > 0.0 { "positive" } else { "negative" };
+        let largest = v[fastest].abs();
+        v.iter_mut().for_each(|v| *v /= largest);
+        let what = format!(
+            "the body slides: friction holds {:.6} of the load along this motion, fastest at this dof, in the {sense} sense; \
+             no rest was found from {starts} starts",
+            self.capacity
+        );
+        let error = Error::new(Kind::Slides, what).body(body).dof(dof).value(self.capacity).limit(1.0);
+        Ok(error.proved_by(Proof::Motion { margin: 1.0 - self.capacity, v }))
+    }
+}
+
+/// The supported problem is judged by its laws alone.
+struct Content;
+
+impl AcceptanceTest for Content {
+    fn scale(&mut self, _: &[f64], _: &[f64]) -> Result<f64> {
+        Ok(1.0)
+    }
+
+    fn accepts(&mut self, _: &[f64], _: &[f64]) -> Result<bool> {
+        Ok(true)
+    }
+}

@@ -1,0 +1,24 @@
+//! From one load step to the next: the slip that was reached is where the next step begins.
+
+use crate::error::{Error, Kind, Result};
+use crate::solve::Outcome;
+use crate::solver::problem::Problem;
+
+impl Problem {
+    /// `s_old := T u - C_t lambda_t` at every node, open ones too, of the last answer, which must be certified. The answer stays,
+    /// with the slips it had; a second time does what the first did.
+    pub fn commit_friction(&mut self) -> Result<()> {
+        let answer = self.answer()?;
+        if answer.failed.contains(&true) {
+            let what = "a group of bodies has no answer: no step has ended that friction could go on from";
+            return Err(Error::new(Kind::State, what));
+        }
+        if !matches!(answer.report.outcome, Outcome::Solved | Outcome::Marginal) {
+            let what = "the last answer is not certified: no step has ended that friction could go on from";
+            return Err(Error::new(Kind::State, what));
+        }
+        let reached = self.model.friction.reached(&answer.u, &answer.tangential)?;
+        let (nodes, dim) = (self.model.friction.len(), self.model.friction.dim);
+        self.model.set_friction_reference(0, nodes, dim, &reached)
+    }
+}
