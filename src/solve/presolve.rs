@@ -15,6 +15,8 @@ const EQUAL: f64 = 1e-10;
 const ROUNDING: f64 = 64.0 * f64::EPSILON;
 /// A gap so many times as large as all motion that loads make and rows demand is far.
 pub const FAR: f64 = 1e4;
+/// With friction, where gaps of open rows are part of what the laws are measured against.
+const FAR_WITH_FRICTION: f64 = 1e2;
 
 /// Gaps of all groups; refuses rows whose gaps no displacement satisfies. `moved` is how far the loads move a row at most.
 pub fn presolve(case: Case, moved: f64) -> Result<Gaps> {
@@ -67,9 +69,10 @@ pub fn presolve(case: Case, moved: f64) -> Result<Gaps> {
         return Err(error);
     }
     let finite = gaps.value.iter().map(|gap| if *gap < f64::INFINITY { *gap } else { 0.0 });
+    let far = if case.has_friction() { FAR_WITH_FRICTION } else { FAR };
     gaps.dual = rows.scaling.decoupling.solve(finite.collect());
     gaps.far =
-        gaps.value.iter().zip(&gaps.bounded).map(|(c, bounded)| *bounded && *c > FAR * reach).collect();
+        gaps.value.iter().zip(&gaps.bounded).map(|(c, bounded)| *bounded && *c > far * reach).collect();
     gaps.add_springs(dual.order());
     Ok(gaps)
 }

@@ -15,8 +15,9 @@ use crate::judge::{self, Answer};
 /// larger problems, ask for others.
 const PROBLEMS: u64 = 1500;
 const FIRST: u64 = 0;
-/// An answer whose worst error is beyond this part of what is there is wrong.
-const RIGHT: f64 = 1e-6;
+/// An answer whose worst error is beyond this part of what is there is wrong: a thousand times what the certificate allows, which
+/// has lengths of single unknowns where the judge has norms of bodies.
+const RIGHT: f64 = 1e-5;
 /// This part of those that have an answer may be left unsolved.
 const UNSOLVED: f64 = 0.01;
 
@@ -201,6 +202,15 @@ fn stacks_of_unequal_bodies_slide_beyond_what_friction_holds() {
         let drawn = case(seed, &SIZES);
         let (end, text) = ended(&drawn);
         assert!(drawn.known == Known::NotHeld && end == End::NotHeld, "{seed}: {text}");
+    }
+}
+
+/// A row so far off that it never closes was once part of what gaps are measured against.
+#[test]
+fn rows_far_off_do_not_blur_what_is_near() {
+    for seed in [385, 1150, 1269, 1371] {
+        let (end, text) = ended(&case(seed, &SIZES));
+        assert!(end == End::Solved, "{seed}: {text}");
     }
 }
 
