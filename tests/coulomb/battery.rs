@@ -18,6 +18,8 @@ const FIRST: u64 = 0;
 /// An answer whose worst error is beyond this part of what is there is wrong: a thousand times what the certificate allows, which
 /// has lengths of single unknowns where the judge has norms of bodies.
 const RIGHT: f64 = 1e-5;
+/// What equality rows resist of the motion of a slide, which weak supports have shown, is below this part of it.
+const STEADY: f64 = 1e-3;
 /// This part of those that have an answer may be left unsolved.
 const UNSOLVED: f64 = 0.01;
 
@@ -132,7 +134,7 @@ fn told_otherwise(drawn: &Drawn, problem: &Problem, found: &Answer) -> Option<St
 fn of_error(drawn: &Drawn, error: &Error) -> (End, String) {
     let text = format!("{:?}: {error}", error.kind);
     if error.kind == Kind::Slides {
-        return of_slide(drawn, text);
+        return of_slide(drawn, error, text);
     }
     if error.kind != Kind::LoadNotHeld || drawn.known == Known::Answer {
         return (End::Wrong, text);
@@ -152,13 +154,32 @@ fn of_error(drawn: &Drawn, error: &Error) -> (End, String) {
     }
 }
 
-/// A slide and a rest may both exist: a rest that is there was not found.
-fn of_slide(drawn: &Drawn, text: String) -> (End, String) {
-    let rests = enumeration::answers(&drawn.deck).is_some_and(|found| !found.answers.is_empty());
+/// The motion of a slide is a rigid one that equalities allow and the load drives. A slide and a rest may both exist: a rest that is
+/// there was not found; where there is no slide that was wrong.
+fn of_slide(drawn: &Drawn, error: &Error, text: String) -> (End, String) {
+    let Some(Proof::Motion { v, .. }) = error.proof.as_deref() else {
+        return (End::Wrong, format!("without a motion, {text}"));
+    };
+    let (resisted, driven) = judge::slide(&drawn.deck, v);
+    if !(resisted <= STEADY && driven > 0.0) {
+        return (End::Wrong, format!("{resisted:e} resisted, {driven:e} driven, {text}"));
+    }
+    let (rests, slides) = (enumeration::answers(&drawn.deck), enumeration::slides(&drawn.deck));
+    if let Some((slides, false)) = slides {
+        if slides.is_empty() {
+            return (End::Wrong, format!("no slide, {text}"));
+        }
+        let capacity = error.place.value.unwrap_or(f64::NAN);
+        let near = slides.iter().any(|part| (part - capacity).abs() <= 0.02);
+        let floating = drawn.deck.bodies.iter().filter(|body| !body.modes().is_empty()).count();
+        if floating == 1 && !near {
+            return (End::Wrong, format!("slides that hold {slides:?}, {text}"));
+        }
+    }
     match drawn.known {
         Known::NotHeld => (End::NotHeld, text),
         Known::Answer => (End::Unsolved, text),
-        Known::Nothing if rests => (End::Unsolved, text),
+        Known::Nothing if rests.is_some_and(|found| !found.answers.is_empty()) => (End::Unsolved, text),
         Known::Nothing => (End::Open, text),
     }
 }
@@ -243,6 +264,7 @@ fn one_problem_in_full() {
         .for_each(|body| println!("{:?} {:?} {:?}", body.load, body.null_space, body.stiffness.diagonal()));
     if let Some(all) = enumeration::answers(&drawn.deck) {
         println!("answers {:?}, doubtful {}", all.answers, all.doubtful);
+        println!("slides {:?}", enumeration::slides(&drawn.deck));
     }
     println!("{:?}", ended(&drawn));
 }

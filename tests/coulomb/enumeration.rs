@@ -44,8 +44,27 @@ struct Dual {
     unit: Vec<f64>,
 }
 
-/// `None` where there are too many, or a node has two tangential rows.
+/// Of supports of all motions, where forces that move rows by 1 are 1, and the part of the load above which what they carry is a slide.
+const WEAK: f64 = 1e-6;
+const SLIDES: f64 = 1e-3;
+
+/// Rests; `None` where there are too many states, or a node has two tangential rows.
 pub fn answers(deck: &Deck) -> Option<Enumerated> {
+    let (all, doubtful) = of_all_states(deck, 0.0)?;
+    Some(Enumerated { answers: all.into_iter().map(|(forces, _)| forces).collect(), doubtful })
+}
+
+/// The parts of the load along the motion which friction holds in slides that weak supports show, and whether others may be there.
+pub fn slides(deck: &Deck) -> Option<(Vec<f64>, bool)> {
+    let (all, doubtful) = of_all_states(deck, WEAK)?;
+    let e = Dual::new(deck).e;
+    let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+    let moving = all.iter().filter(|(_, a)| WEAK * size(a) > SLIDES * size(&e));
+    Some((moving.map(|(_, a)| 1.0 - WEAK * dot(a, a) / dot(&e, a)).collect(), doubtful))
+}
+
+/// Forces and amplitudes of motions of all states that meet all laws, with supports of the stiffness kappa.
+fn of_all_states(deck: &Deck, kappa: f64) -> Option<(Vec<(Vec<f64>, Vec<f64>)>, bool)> {
     let places = places(deck);
     let count = places.iter().try_fold(1usize, |count, place| count.checked_mul(place.choices.len()))?;
     if count > MOST || (deck.friction.dim != 1 && !deck.friction.normal.is_empty()) {
@@ -53,7 +72,7 @@ pub fn answers(deck: &Deck) -> Option<Enumerated> {
     }
     let dual = Dual::new(deck);
     let (m, r) = (dual.d.len(), dual.e.len());
-    let mut found = Enumerated { answers: Vec::new(), doubtful: false };
+    let (mut found, mut doubtful): (Vec<(Vec<f64>, Vec<f64>)>, bool) = (Vec::new(), false);
     for mut number in 0..count {
         let (mut a, mut b) = (vec![vec![0.0; m + r]; m + r], vec![0.0; m + r]);
         for i in 0..m {
@@ -63,6 +82,7 @@ pub fn answers(deck: &Deck) -> Option<Enumerated> {
                 a[m + k][i] = dual.g[k][i];
             }
         }
+        (0..r).for_each(|k| a[m + k][m + k] = kappa);
         b[..m].copy_from_slice(&dual.d);
         b[m..].copy_from_slice(&dual.e);
         let mut states = Vec::new();
@@ -87,20 +107,20 @@ pub fn answers(deck: &Deck) -> Option<Enumerated> {
                 let x: &[f64] = &x;
                 if dual.meets(&places, &states, x) {
                     let forces: Vec<f64> = (0..m).map(|i| x[i] * dual.unit[i]).collect();
-                    let size = size(x);
+                    let size = size(&x[..m]);
                     let same = |other: &Vec<f64>| {
                         (0..m).all(|i| ((other[i] - forces[i]) / dual.unit[i]).abs() <= 1e-6 * size)
                     };
-                    if !found.answers.iter().any(same) {
-                        found.answers.push(forces);
+                    if !found.iter().any(|(other, _)| same(other)) {
+                        found.push((forces, x[m..].to_vec()));
                     }
                 }
             }
-            Ends::Many => found.doubtful = true,
+            Ends::Many => doubtful = true,
             Ends::None => {}
         }
     }
-    Some(found)
+    Some((found, doubtful))
 }
 
 /// How far forces are from the nearest of some answers, as a part of the largest; each force in the unit of its row.
@@ -249,7 +269,7 @@ impl Dual {
     }
 
     fn meets(&self, places: &[Place], states: &[(State, State)], x: &[f64]) -> bool {
-        let none = NONE * size(x).max(size(&self.d));
+        let none = NONE * size(&x[..self.d.len()]).max(size(&self.d));
         places.iter().zip(states).all(|(place, &(normal, along))| {
             let is_right = place.normal.is_none_or(|n| match normal {
                 State::Open => self.gap(x, n) >= -none || place.choices.iter().all(|c| c.0 == State::Open),

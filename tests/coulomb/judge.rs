@@ -106,6 +106,11 @@ impl<'a> Judge<'a> {
         v.iter().enumerate().map(|(i, v)| v * v / self.metric[first + i]).sum::<f64>().sqrt()
     }
 
+    /// `|v|` in the metric of diag K.
+    fn moved(&self, v: &[f64]) -> f64 {
+        v.iter().zip(&self.metric).map(|(v, d)| v * v * d).sum::<f64>().sqrt()
+    }
+
     fn not_rigid(&self, body: &Body, first: usize) -> f64 {
         let metric = &self.metric[first..first + body.dofs()];
         let dot =
@@ -325,4 +330,22 @@ pub fn proof(deck: &Deck, v: &[f64]) -> (f64, f64) {
     let ties = (0..deck.equalities.len()).map(|i| scaled(&deck.equalities, i, moved(&deck.equalities, i)));
     let resisted = norm(&by_rows.chain(ties).collect::<Vec<_>>()) + judge.over(&strained, 0);
     (resisted, (work - bounded) / judge.over(&pushed, 0))
+}
+
+/// What K and equality rows resist of a motion, as a part of it in the metric of diag K, and the work of the load on it.
+pub fn slide(deck: &Deck, v: &[f64]) -> (f64, f64) {
+    let mut free = deck.clone();
+    // contact rows and friction left out
+    free.contact.rhs.clear();
+    free.contact.matrix = decks::Csr::empty(deck.dofs());
+    free.friction = decks::Friction::none(deck.friction.dim, deck.dofs());
+    let (resisted, work) = proof(&free, v);
+    let nothing = |rows: &Rows| vec![0.0; rows.len()];
+    let answer = Answer {
+        u: v.to_vec(),
+        lambda: nothing(&free.contact),
+        along: nothing(&free.friction.rows),
+        mu: nothing(&free.equalities),
+    };
+    (resisted / Judge::new(&free, &answer).moved(v), work)
 }
