@@ -20,6 +20,8 @@ const FIRST: u64 = 0;
 const RIGHT: f64 = 1e-5;
 /// What equality rows resist of the motion of a slide, which weak supports have shown, is below this part of it.
 const STEADY: f64 = 1e-3;
+/// Where motions can turn, what friction holds depends on how supports of different motions compare: it is known to this.
+const CAPACITY: f64 = 0.1;
 /// This part of those that have an answer may be left unsolved.
 const UNSOLVED: f64 = 0.01;
 
@@ -170,7 +172,7 @@ fn of_slide(drawn: &Drawn, error: &Error, text: String) -> (End, String) {
             return (End::Wrong, format!("no slide, {text}"));
         }
         let capacity = error.place.value.unwrap_or(f64::NAN);
-        let near = slides.iter().any(|part| (part - capacity).abs() <= 0.02);
+        let near = slides.iter().any(|part| (part - capacity).abs() <= CAPACITY);
         let floating = drawn.deck.bodies.iter().filter(|body| !body.modes().is_empty()).count();
         if floating == 1 && !near {
             return (End::Wrong, format!("slides that hold {slides:?}, {text}"));
