@@ -123,15 +123,18 @@ fn of_all_states(deck: &Deck, kappa: f64) -> Option<(Vec<(Vec<f64>, Vec<f64>)>, 
     Some((found, doubtful))
 }
 
-/// How far forces are from the nearest of some answers, as a part of the largest; each force in the unit of its row.
+/// How far forces are from the nearest of some answers, as a part of the largest, which is not nothing beside the load; each force in
+/// the unit of its row.
 pub fn distance(deck: &Deck, answers: &[Vec<f64>], forces: &[f64]) -> f64 {
-    let unit = units(deck);
+    let (unit, metric) = (units(deck), metric(deck));
+    let load: Vec<f64> = deck.load().iter().zip(&metric).map(|(f, d)| f / d.sqrt()).collect();
+    let least = NONE * size(&load);
     let scaled = |x: &[f64]| x.iter().zip(&unit).map(|(x, unit)| x / unit).collect::<Vec<f64>>();
     let own = scaled(forces);
     let from = |answer: &Vec<f64>| {
         let other = scaled(answer);
         let difference: Vec<f64> = own.iter().zip(&other).map(|(a, b)| a - b).collect();
-        let (difference, size) = (size(&difference), size(&other));
+        let (difference, size) = (size(&difference), size(&other).max(least));
         if difference == 0.0 {
             0.0
         } else {
