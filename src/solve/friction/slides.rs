@@ -80,6 +80,10 @@ pub fn shown(
     }
     let driving = dot(problem.e, &alpha);
     let capacity = 1.0 - dot(last, &alpha) / driving;
+    // forces that drive the motion themselves are no friction that gives way
+    if !(0.0..1.0).contains(&capacity) {
+        return Ok(Shown::Nothing);
+    }
     Ok(Shown::Slides(Slide { alpha, capacity }))
 }
 
