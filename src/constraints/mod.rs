@@ -160,15 +160,18 @@ impl RowSet {
     /// The forces of springs without entries: `-c <= lambda/k` gives lambda = max(0, -k c), `-h = mu/k` gives
     /// mu = -k h; 0 for all other rows.
     pub fn forces_without_entries(&self, kind: RowKind) -> impl Iterator<Item = f64> + '_ {
-        (0..self.len()).map(move |i| {
-            let alone = self.is_empty_row(i) && self.compliance[i] > 0.0;
-            let force = if alone { -self.rhs[i] / self.compliance[i] } else { 0.0 };
-            match kind {
-                RowKind::Inequality => force.max(0.0),
-                RowKind::Equality => force,
-                RowKind::Tangential => 0.0,
-            }
-        })
+        (0..self.len()).map(move |i| self.force_without_entries(kind, i))
+    }
+
+    /// That of row i.
+    pub fn force_without_entries(&self, kind: RowKind, i: usize) -> f64 {
+        let alone = self.is_empty_row(i) && self.compliance[i] > 0.0;
+        let force = if alone { -self.rhs[i] / self.compliance[i] } else { 0.0 };
+        match kind {
+            RowKind::Inequality => force.max(0.0),
+            RowKind::Equality => force,
+            RowKind::Tangential => 0.0,
+        }
     }
 
     /// `c_i + C_i lambda_i - b_i u`: what is left of the gap when the row gives way to its force. In twice the digits: the

@@ -149,7 +149,7 @@ fn assembled(settings: &Settings) -> f64 {
 
 /// A compliance times the stiffness of the bodies must be a number.
 fn check_compliance(island: &Island) -> Result<()> {
-    for kind in [RowKind::Inequality, RowKind::Equality, RowKind::Tangential] {
+    for kind in RowKind::ALL {
         let Members { numbers, rows } = island.members(kind);
         if let Some(row) = rows.compliance.iter().position(|c| !(c * island.unit).is_finite()) {
             let what = format!("the compliance of this {} times max K_ii overflows", kind.name());

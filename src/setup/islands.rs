@@ -160,14 +160,7 @@ impl Island {
 /// Coefficient and bound of a node; the constant force of a contact row without entries is part of the bound.
 fn law(model: &Model, number: usize) -> (f64, f64) {
     let FrictionNode { normal, coefficient, bound, .. } = model.friction.nodes[number];
-    let alone = normal.filter(|&row| model.contact.is_empty_row(row)).map_or(0.0, |row| {
-        let compliance = model.contact.compliance[row];
-        if compliance > 0.0 {
-            (-model.contact.rhs[row] / compliance).max(0.0)
-        } else {
-            0.0
-        }
-    });
+    let alone = normal.map_or(0.0, |row| model.contact.force_without_entries(RowKind::Inequality, row));
     (coefficient, bound + coefficient * alone)
 }
 
