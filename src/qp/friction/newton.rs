@@ -22,8 +22,11 @@ const INNER_TRIALS: [f64; 2] = [1.0, 0.3];
 const INNER_STEPS: usize = 3;
 /// A step of length t takes off the merit at least this part of t.
 const FALLS: f64 = 0.01;
-/// Products within which the merit is to be halved.
-const PATIENCE: usize = 8;
+/// The merit is to fall to this part of the best one before so many more steps, or so many more products, have been made: what takes
+/// longer goes round in circles.
+const ENOUGH: f64 = 0.8;
+const STEPS: usize = 4;
+const PRODUCTS: usize = 8;
 
 /// The laws that hold, and the number by which forces and lengths are compared: rho > 0, no unit.
 #[derive(Clone, Copy)]
@@ -61,20 +64,23 @@ pub struct Run<'a, 'w> {
 }
 
 impl Run<'_, '_> {
-    /// From `now` until the laws are met, or their merit is not halved within so many products.
+    /// From `now` until the laws are met, or their merit falls too slowly.
     pub fn newton(&mut self, laws: Laws, mut now: Point) -> Result<Point> {
-        let (mut best, mut since) = (now.merit, self.counts.products);
+        let mut best = (now.merit, self.tried.newton, self.counts.products);
         if self.pairs.count() > 0 {
             now = self.without_products(laws, now)?;
         }
-        while !self.is_met(&now) && self.counts.products < self.limit.min(since + PATIENCE) {
+        while !self.is_met(&now)
+            && self.tried.newton < best.1 + STEPS
+            && self.counts.products < self.limit.min(best.2 + PRODUCTS)
+        {
             let model = self.model(Face::at(laws.cones, &now.x, &now.r, laws.rho))?;
             let Some((next, falls)) = self.step(laws, &model, &now)? else { break };
             self.tried.newton += 1;
             now = if falls { self.without_products(laws, next)? } else { next };
             self.reached(&now);
-            if now.merit < 0.5 * best {
-                (best, since) = (now.merit, self.counts.products);
+            if now.merit < ENOUGH * best.0 {
+                best = (now.merit, self.tried.newton, self.counts.products);
             }
         }
         Ok(now)

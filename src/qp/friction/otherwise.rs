@@ -10,7 +10,7 @@ use crate::qp::friction::newton::{Laws, Point, Run, RHO};
 use crate::qp::friction::path::{Solves, Way};
 use crate::qp::Direct;
 
-/// rho in these multiples where the merit is not halved for long; with the first two comes a path along smoothed laws, before
+/// rho in these multiples where the merit falls too slowly; with the first two comes a path along smoothed laws, before
 /// them where the merit is far from zero.
 const MULTIPLES: [f64; 5] = [5.0, 0.2, 25.0, 0.04, 1.0];
 /// A merit above this part of the scale is no better than the start.
