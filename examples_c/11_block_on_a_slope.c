@@ -180,7 +180,7 @@ int main(void)
     add_spring(problem);
     for (int k = 1; k < 3; k++) {
         right = escape(problem, above[k], FETI_SLIDES, &capacity) && right;
-        right = right && fabs(capacity - MU / tan(above[k] * DEGREE)) <= 1e-4;
+        right = right && fabs(capacity - MU / tan(above[k] * DEGREE)) <= 1e-5;
     }
     CALL(feti_problem_destroy(&problem));
     return demo_line("11_block_on_a_slope", &info, error, right);

@@ -54,7 +54,7 @@ program block_on_a_slope
   call add_spring
   do i = 2, size(above)
     call escape(above(i), FETI_SLIDES)
-    right = right .and. abs(capacity - coefficient / tan(above(i) * degree)) <= 1e-4_dp
+    right = right .and. abs(capacity - coefficient / tan(above(i) * degree)) <= 1e-5_dp
   end do
   call feti_problem_destroy(problem)
   call demo_line('11_block_on_a_slope', info, error, right)

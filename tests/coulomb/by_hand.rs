@@ -1,7 +1,7 @@
 //! Problems that are solved by hand.
 
 use decks::{Body, Csr, Deck};
-use feti_contact::error::Kind;
+use feti_contact::error::{Kind, Proof};
 use feti_contact::solver::{FrictionState, Outcome, Problem, RowKind};
 
 use crate::hand_over;
@@ -72,7 +72,37 @@ fn a_point_on_a_spring_across_the_wall_slides_beyond_mu() {
     let error = problem.solve().unwrap_err();
     assert_eq!((error.kind, error.place.body, error.place.dof), (Kind::Slides, Some(0), Some(0)), "{error}");
     let capacity = problem.findings().unwrap().capacity.unwrap();
-    assert!((capacity - 0.8).abs() < 1e-6, "{capacity}");
+    assert!((capacity - 0.8).abs() < 1e-10, "{capacity}");
+}
+
+/// A train of two cars: springs within them, a joint between them, the load on the second, the brake on the first.
+#[test]
+fn the_motion_of_a_slide_keeps_joints_and_its_capacity_is_right() {
+    let car = |k: f64, load: [f64; 2]| Body {
+        stiffness: [[(0, k), (1, -k)], [(0, -k), (1, k)]].iter().fold(Csr::empty(2), |mut own, row| {
+            own.push_row(row);
+            own
+        }),
+        null_space: Some(vec![vec![1.0, 1.0]]),
+        load: load.to_vec(),
+        coordinates: vec![[0.0; 3]; 2],
+        node: vec![1, 2],
+        direction: vec![1, 1],
+    };
+    let wheel = point([0.0, 3.0], 1.0, 0.0, 0.5, 0.0).bodies.remove(0);
+    let mut deck = Deck::new("train", vec![wheel, car(2.0, [0.0, 0.0]), car(7.0, [0.0, 0.625])]);
+    deck.contact.push(&[(1, -1.0)], 0.0);
+    deck.friction.push(Some(0), &[&[(0, 1.0)]], 0.5, 0.0);
+    deck.equalities.push(&[(0, 1.0), (2, -1.0)], 0.0);
+    deck.equalities.push(&[(3, 1.0), (4, -1.0)], 0.0);
+    let mut problem = hand_over::problem(&deck).unwrap();
+    let error = problem.solve().unwrap_err();
+    assert_eq!(error.kind, Kind::Slides, "{error}");
+    let findings = problem.findings().unwrap();
+    assert!((findings.capacity.unwrap() - 0.8).abs() < 1e-7, "{:?}", findings.capacity);
+    let Some(Proof::Motion { v: motion, .. }) = &findings.proof else { panic!("{:?}", findings.proof) };
+    assert!((motion[0] - motion[2]).abs() < 1e-7 && (motion[3] - motion[4]).abs() < 1e-7, "{motion:?}");
+    assert!(motion[0].abs() > 0.5 && motion[1] == 0.0, "{motion:?}");
 }
 
 #[test]

@@ -67,24 +67,26 @@ pub fn shown(
         start = Some(found.x);
     }
     let (Some(x), [first, last]) = (start, &carried[..]) else { return Ok(Shown::Nothing) };
-    let alpha: Vec<f64> = last.iter().map(|left| left / WEAK[1]).collect();
     let mut change = last.clone();
     axpy(-1.0, first, &mut change);
     let stays = norm(&change) <= STAYS * norm(last) && norm(last) > NOTHING * norm(problem.e);
     let x = x[..rows].to_vec();
     if !stays {
+        let alpha = last.iter().map(|left| left / WEAK[1]).collect();
         return Ok(Shown::Rest { x, alpha });
     }
-    if !is_steady(&problem, &x, &alpha) {
+    // the bodies' own deformation is of order kappa beside the slide
+    let mut motion = last.clone();
+    axpy(WEAK[1] / (WEAK[0] - WEAK[1]), &change, &mut motion);
+    if !is_steady(&problem, &x, &motion) {
         return Ok(Shown::Nothing);
     }
-    let driving = dot(problem.e, &alpha);
-    let capacity = 1.0 - dot(last, &alpha) / driving;
+    let capacity = 1.0 - dot(&motion, &motion) / dot(problem.e, &motion);
     // forces that drive the motion themselves are no friction that gives way
     if !(0.0..1.0).contains(&capacity) {
         return Ok(Shown::Nothing);
     }
-    Ok(Shown::Slides(Slide { alpha, capacity }))
+    Ok(Shown::Slides(Slide { alpha: motion, capacity }))
 }
 
 /// Nodes that carry forces stay closed or open no gap, and their tangential forces are at their bounds along the slip.
