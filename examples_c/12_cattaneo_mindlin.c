@@ -261,6 +261,7 @@ int main(int argc, char **argv)
     int right = 1;
 
     CALL(feti_problem_create(&problem));
+    CALL(feti_set_str(problem, "start", "previous")); /* each step begins from the forces of the last one */
     add_cylinders(problem, &c);
     add_pairs(problem, &c);
     for (int step = 0; step < STEPS; step++) {

@@ -57,6 +57,7 @@ program cattaneo_and_mindlin
 
   x = [(-1.5_dp * half + (i - 0.5_dp) * cell, i=1, cells)]
   call feti_problem_create(problem)
+  call feti_set(problem, 'start', 'previous')   ! each step begins from the forces of the last one
   call add_cylinders
   call add_pairs
   right = .true.

@@ -49,6 +49,11 @@ pub struct Nodes {
 }
 
 impl Island {
+    /// Some node has friction.
+    pub fn has_friction(&self) -> bool {
+        self.friction.nodes.iter().any(FrictionNode::has_friction)
+    }
+
     pub fn unknowns(&self) -> usize {
         self.ranges.last().map_or(0, |range| range.end)
     }

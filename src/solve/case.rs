@@ -1,7 +1,7 @@
 //! One island with the data of the host.
 
 use crate::certificate::{BodyData, Data};
-use crate::constraints::{FrictionNode, RowKind};
+use crate::constraints::RowKind;
 use crate::error::{Error, Kind, Result};
 use crate::model::Model;
 use crate::setup::{Island, Prepared, Ready};
@@ -25,7 +25,7 @@ impl<'a> Case<'a> {
 
     /// Some node has friction.
     pub fn has_friction(&self) -> bool {
-        self.island().friction.nodes.iter().any(FrictionNode::has_friction)
+        self.island().has_friction()
     }
 
     /// The island as the certificate sees it.

@@ -110,10 +110,18 @@ pub fn method(log: &Log, model: &Model, prepared: &Prepared, started: &str) -> R
             1 => String::new(),
             count => format!("{count} groups of bodies apart from each other, "),
         };
+        let rubbing = islands.iter().filter(|ready| ready.island.has_friction()).count();
+        let mut methods = Vec::new();
+        if rubbing < islands.len() || rubbing == 0 {
+            methods.push(model.settings.method.word().to_string_lossy().into_owned());
+        }
+        if rubbing > 0 {
+            methods.push("Newton's method with friction".to_string());
+        }
         format!(
             "method: {}, preconditioner {}, start {started}; {groups}{} multipliers, {} floating modes, \
              {} explicit and {implicit} implicit dual operators",
-            model.settings.method.word().to_string_lossy(),
+            methods.join(" and "),
             preconditioners.join(" and "),
             islands.iter().map(|ready| ready.rows.groups()).sum::<usize>(),
             islands.iter().map(|ready| ready.dual.modes()).sum::<usize>(),

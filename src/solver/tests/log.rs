@@ -2,6 +2,7 @@
 
 use std::sync::{Arc, Mutex};
 
+use crate::constraints::FrictionInput;
 use crate::error::Kind;
 use crate::solver::{LogLevel, Modes, Outcome, Problem, RowKind, RowsInput, SparseInput, Storage};
 
@@ -102,6 +103,17 @@ fn phases_come_in_their_order_between_what_is_solved_and_the_result() {
     let again: Vec<String> = self::told(&lines).into_iter().map(|line| line.1).collect();
     assert!(!again.iter().any(|line| line.starts_with("factorisation: ")), "{again:?}");
     assert!(again.iter().any(|line| line.contains("start previous")), "{again:?}");
+}
+
+#[test]
+fn the_line_of_the_method_tells_where_there_is_friction() {
+    let mut problem = spring(false);
+    let rows = RowsInput { ptr: &[0, 1], body: None, dof: &[0], val: &[1.0], rhs: None };
+    let node = FrictionInput { dim: 1, normal: &[-1], rows, coefficient: None, bound: Some(&[0.5]) };
+    problem.add_friction(node).unwrap();
+    let lines = listen(&mut problem, LogLevel::Phase, 0, 0);
+    problem.solve().unwrap();
+    assert!(told(&lines).iter().any(|line| line.1.starts_with("method: Newton's method with friction,")));
 }
 
 #[test]
