@@ -24,8 +24,9 @@ use crate::platform::Interrupt;
 
 const WHAT: &str = "the dual operator of a body";
 
-/// Columns of Y in a tile.
+/// Columns of Y in a tile, and of those that are multiplied with each other: half of a product with itself is not needed.
 const TILE: usize = 384;
+const SQUARE: usize = 160;
 /// Rows of Y solved for at a time.
 const BLOCK: usize = 192;
 
@@ -137,7 +138,7 @@ impl<'a> FormTask<'a> {
         let seen = sequence.filter(|&s| !reach.columns[s].is_empty());
         let updates = Updates::new(nodes, seen.clone(), |s| reach.update_len(s), WHAT)?;
         let y = seen.clone().map(|s| nodes.node(s).width * reach.columns[s].len()).max().unwrap_or(0);
-        let side = seen.map(|s| reach.columns[s].len().min(TILE)).max().unwrap_or(0);
+        let side = seen.map(|s| reach.columns[s].len().min(SQUARE)).max().unwrap_or(0);
         let (y, product) = (Pages::zeros(y, WHAT)?, Pages::zeros(side * side, WHAT)?);
         Ok(Self { reach, local, updates, y, product })
     }
@@ -273,9 +274,9 @@ impl FormBelow<'_> {
 
 /// `form += Y'Y`, entry (i, j) at (`places[i]`, `places[j]`); `product` holds a tile of it.
 fn add_products(y: MatRef<'_, f64>, places: &[usize], product: &mut [f64], form: &mut Packed) {
-    let tile = |first: usize| first..places.len().min(first + TILE);
-    for right in (0..places.len()).step_by(TILE).map(tile) {
-        for left in (right.start..places.len()).step_by(TILE).map(tile) {
+    let tile = |first: usize| first..places.len().min(first + SQUARE);
+    for right in (0..places.len()).step_by(SQUARE).map(tile) {
+        for left in (right.start..places.len()).step_by(SQUARE).map(tile) {
             let product = &mut product[..left.len() * right.len()];
             let to = MatMut::from_column_major_slice_mut(product, left.len(), right.len());
             let columns = |range: &Range<usize>| y.subcols(range.start, range.len());
