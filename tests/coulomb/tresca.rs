@@ -2,7 +2,6 @@
 //! minimise `x'F x/2 - d'x` with `G x = e`.
 
 use decks::Deck;
-use feti_contact::error::Kind;
 use feti_contact::solver::Outcome;
 
 use crate::battery::answer;
