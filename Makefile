@@ -26,7 +26,7 @@ endif
 CFLAGS  ?= -O2 -Wall -Wextra
 FCFLAGS ?= -O2 -Wall
 
-RELEASE   := $(or $(CARGO_TARGET_DIR),target)/release
+RELEASE   := $(or $(CARGO_TARGET_DIR),target)/$(if $(CARGO_BUILD_TARGET),$(CARGO_BUILD_TARGET)/)release
 STAGE     := $(CURDIR)/build/stage
 
 .PHONY: all lib data setup demo battery bits test metis fuzz sanitize loom coverage mutants overhead counts bench growth scaling paper docs
@@ -85,6 +85,7 @@ build/tools/bin/cargo-cinstall:
 
 packaging: build/tools/bin/cargo-cinstall
 	sh tests/packaging/offline.sh $(CURDIR) $(CURDIR)/build/offline
+	sh tests/packaging/oldest.sh $(CURDIR) $(CURDIR)/build/oldest
 	sh tests/packaging/cargo_c.sh $(CURDIR) $(CURDIR)/build/tools $(CURDIR)/build/cargo_c
 
 # The table of docs/licences.md and LICENSE-THIRD-PARTY, from Cargo.lock and the sources of the crates.
