@@ -40,6 +40,7 @@ files() {
     echo "fill|cmake/feti_contact-config-version.cmake.in|$CMAKEDIR/feti_contact-config-version.cmake"
     echo "644|cmake/feti_contact-targets.cmake|$CMAKEDIR/feti_contact-targets.cmake"
     each "$FORTRANDIR" include/fortran/*.f90 include/fortran/*.inc include/fortran/fpm.toml
+    each "$DATADIR/feti_contact/suppressions" tools/suppressions/*
     each "$DOCDIR" README.md CHANGELOG.md LICENSE-MIT LICENSE-APACHE LICENSE-THIRD-PARTY
     each "$DOCDIR/docs" docs/*.md
     each "$DOCDIR/docs/pictures" docs/pictures/*
