@@ -5,11 +5,9 @@
 set -eu
 root=$1 work=$2
 rm -rf "$work"
-mkdir -p "$work/tree/.cargo" "$work/home"
-(cd "$root" && git ls-files --cached --others --exclude-standard -z | xargs -0 sh -c 'for f; do [ ! -f "$f" ] || printf "%s\0" "$f"; done' sh \
-    | xargs -0 cp --parents -t "$work/tree")
+mkdir -p "$work/home"
+"$root/tools/vendored.sh" "$work/tree"
 cd "$work/tree"
-cargo vendor --locked vendor >.cargo/config.toml 2>../log || { cat ../log; exit 1; }
 # A network of its own, with nothing in it, where the system lets us have one.
 alone=
 ! unshare -n true 2>/dev/null || alone="unshare -n"
