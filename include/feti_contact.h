@@ -3,6 +3,123 @@
 #ifndef FETI_CONTACT_H
 #define FETI_CONTACT_H
 
+/**
+ * @file
+ * Contact problems of elastic bodies by FETI duality.
+ *
+ *   minimise 1/2 u'K u - f'u  over all u with  B u <= c  and  H u = h
+ *
+ * K is the stiffness of several bodies, floating ones included. The forces of the rows are lambda >= 0
+ * of B u <= c and mu of H u = h: K u = f - B'lambda - H'mu.
+ *
+ * Functions return a status: 0 for success, above 0 for an answer that is usable but incomplete, below
+ * 0 for a failure, whose text feti_last_error tells; exceptions are feti_version..., feti_status_...,
+ * feti_option_count and feti_last_error. Bodies, unknowns and rows count from 0; arrays of indices
+ * count from their argument base. Matrices by rows are compressed sparse rows, dense ones column-major.
+ * What is handed over is copied, unless FETI_BORROW says otherwise. The library prints nothing. A
+ * problem serves one call at a time, different problems may be used by different threads. Units are the
+ * host's: any that fit together.
+ *
+ * Example: a block of two unknowns and stiffness 4000 N/mm floats 0.5 mm before a wall, and a force of
+ * 100 N on its rear pushes it there. It prints `force 100 N, rear 0.525 mm, front 0.5 mm`.
+ * @code
+ * #include <feti_contact.h>
+ * #include <stdio.h>
+ *
+ * int main(void)
+ * {
+ *     const int32_t row_ptr[] = {0, 1, 3}, column[] = {0, 0, 1};
+ *     const int32_t entries[] = {0, 1}, block[] = {0}, front[] = {1};
+ *     const double k[] = {4000, -4000, 4000}, load[] = {100, 0}, one[] = {1}, gap[] = {0.5};
+ *     double force = 0, u[2] = {0, 0};
+ *     char text[400];
+ *     int64_t body;
+ *     feti_problem *p = NULL;
+ *     if (feti_problem_create(&p) || feti_body_add(p, 2, &body) ||
+ *         feti_body_stiffness_i32(p, body, 2, row_ptr, column, k, 0, FETI_LOWER, FETI_COPY) ||
+ *         feti_body_load(p, body, 2, load) ||
+ *         feti_rows_add_i32(p, FETI_INEQUALITY, 1, entries, block, front, one, 0, gap, NULL) ||
+ *         feti_solve(p, NULL) || feti_displacement(p, body, 2, u) ||
+ *         feti_multipliers(p, FETI_INEQUALITY, 1, &force)) {
+ *         feti_last_error(text, sizeof text);
+ *         fprintf(stderr, "%s\n", text);
+ *     }
+ *     printf("force %g N, rear %g mm, front %g mm\n", force, u[0], u[1]);
+ *     return feti_problem_destroy(&p);
+ * }
+ * @endcode
+ *
+ * Contents, in the order of the job:
+ *
+ * Problem: Begin and end a problem, to which all else belongs.
+ *     feti_problem_create feti_problem_destroy
+ *
+ * Bodies: Give each body its stiffness matrix and its load.
+ *     feti_body_add feti_body_stiffness_i32 feti_body_stiffness_i64 feti_body_stiffness_split_i32
+ *     feti_body_stiffness_split_i64 feti_body_stiffness_dense feti_body_load feti_body_numbering_i32
+ *     feti_body_numbering_i64
+ *
+ * Null spaces: Say which motions a matrix does not resist; never said, the library finds them.
+ *     feti_body_coordinates feti_body_coordinates_flags feti_body_null_space feti_body_null_space_get
+ *     feti_body_fixing_set feti_body_fixing
+ *
+ * Bodies by elements: Give the elements of a large body; the library adds them up and cuts the body into pieces.
+ *     feti_body_mesh_i32 feti_body_mesh_i64 feti_body_element feti_body_elements
+ *     feti_body_elements_size feti_body_held_forces feti_body_pieces
+ *
+ * Bodies by functions of the host: Let the host solve with its own factorisation of K.
+ *     feti_body_operator
+ *
+ * Rows: Say where bodies touch (B u <= c) and where they are joined (H u = h).
+ *     feti_rows_add_i32 feti_rows_add_i64 feti_rows_compliance feti_counts
+ *
+ * Friction: Give contact rows tangential rows and a law of friction.
+ *     feti_friction_add_i32 feti_friction_add_i64 feti_friction_law feti_friction_compliance
+ *
+ * Options: Set tolerance, threads, method and limits, by name.
+ *     feti_set_f64 feti_set_i64 feti_set_str feti_set_text feti_get_f64 feti_get_i64 feti_get_str
+ *     feti_option_count feti_option_at
+ *
+ * Solve: Compute the answer, and learn how exact it is.
+ *     feti_setup feti_solve feti_cancel
+ *
+ * Results: Read displacements, forces, gaps and states.
+ *     feti_displacement feti_multipliers feti_gaps feti_active feti_reaction feti_amplitudes
+ *     feti_friction_slips feti_friction_states
+ *
+ * Load steps: Go on with other loads and gaps; friction remembers where it slipped to.
+ *     feti_rows_rhs feti_friction_commit feti_friction_reference feti_start_from
+ *
+ * Newton's method: Give new matrices and new rows to a problem that is there.
+ *     feti_body_values feti_body_values_split feti_body_values_dense feti_rows_clear
+ *     feti_friction_clear
+ *
+ * Saved states: Go back to a step that is saved.
+ *     feti_state_save feti_state_restore feti_state_drop
+ *
+ * Diagnosis: Learn why there is no answer, and what is odd about the problem.
+ *     feti_diagnosis feti_diagnosis_motion feti_diagnosis_rows feti_diagnosis_dependent
+ *     feti_diagnosis_untouched feti_diagnosis_undetermined feti_diagnosis_undetermined_motion
+ *
+ * Facts on bodies: Learn what a body and its factor cost.
+ *     feti_body_info feti_body_components feti_phase_count feti_phase_at
+ *
+ * Progress and log: Hear of the course of a setup or a solve.
+ *     feti_on_progress feti_on_log
+ *
+ * Validation: Check an answer, also of another program; multiply by the operators of the method.
+ *     feti_check feti_check_friction feti_body_kplus feti_dual_apply feti_dual_rhs
+ *
+ * Files: Write a problem to a file and read it.
+ *     feti_problem_write feti_problem_read
+ *
+ * Errors: Learn what went wrong, where and by how much.
+ *     feti_last_error feti_last_error_detail feti_problem_error
+ *
+ * Statuses and version: What functions return, in words; the version of the library.
+ *     feti_status_name feti_status_text feti_version feti_version_number
+ */
+
 #include <stdint.h>
 
 /** Version of this header: MAJOR.MINOR.PATCH. */
@@ -10,27 +127,51 @@
 #define FETI_CONTACT_VERSION_MINOR 1
 #define FETI_CONTACT_VERSION_PATCH 0
 
-/**
- * Kind of rows: `B u <= c`.
+#ifdef __cplusplus
+extern "C" {
+#endif /* __cplusplus */
+
+/*
+ * Problem
+ * =======
+ * Begin and end a problem, to which all else belongs.
  */
-#define FETI_INEQUALITY 1
 
 /**
- * Kind of rows: `H u = h`.
+ * A problem: bodies, rows, settings, factors and the last answer. The handle is a counter, never
+ * an address.
  */
-#define FETI_EQUALITY 2
+typedef struct feti_problem feti_problem;
 
 /**
- * Kind of rows: tangential rows of nodes with friction (feti_friction_add_i32,
- * feti_friction_add_i64).
+ * Creates a problem without bodies and rows.
+ *
+ * The handle is valid until feti_problem_destroy; its number is never used again. After a failure
+ * `p` is as it was. FETI_MEMORY, without a text, where not even an empty problem finds room.
+ *
+ * @param[out] p (scalar) the handle
+ *
+ * Safety: `p` has room for a pointer.
  */
-#define FETI_TANGENTIAL 3
+int32_t feti_problem_create(struct feti_problem **p);
 
 /**
- * In place of a body: all bodies, by the host's numbers of feti_body_numbering_i32 or _i64 where
- * they have some.
+ * Destroys a problem with all it holds and sets the caller's handle to NULL.
+ *
+ * FETI_BUSY while another call on the problem runs; the problem and the handle are as before then.
+ * Every other copy of the handle gives FETI_HANDLE from now on.
+ *
+ * @param[in,out] p (scalar) the handle
+ *
+ * Safety: `p` leads to a pointer.
  */
-#define FETI_ALL -1
+int32_t feti_problem_destroy(struct feti_problem **p);
+
+/*
+ * Bodies
+ * ======
+ * Give each body its stiffness matrix and its load.
+ */
 
 /**
  * Storage: every entry of the symmetric matrix is given.
@@ -48,22 +189,6 @@
 #define FETI_UPPER 2
 
 /**
- * Null-space flag: the columns span the null space.
- */
-#define FETI_EXACT 0
-
-/**
- * Null-space flag: the null space lies in the span of the columns; the library selects.
- */
-#define FETI_CANDIDATES 1
-
-/**
- * Null-space flag: motions that K resists softly, if at all; what they are and what resists them
- * is computed from K.
- */
-#define FETI_SOFT 2
-
-/**
  * Stiffness flag: the matrix is copied.
  */
 #define FETI_COPY 0
@@ -75,979 +200,10 @@
 #define FETI_BORROW 1
 
 /**
- * Null space of a body: vectors of the host that span it (FETI_EXACT), or soft motions
- * (FETI_SOFT).
+ * In place of a body: all bodies, by the host's numbers of feti_body_numbering_i32 or _i64 where
+ * they have some.
  */
-#define FETI_ORIGIN_EXACT 1
-
-/**
- * Null space of a body: sought among vectors of the host (FETI_CANDIDATES).
- */
-#define FETI_ORIGIN_CANDIDATES 2
-
-/**
- * Null space of a body: sought among rigid motions, from coordinates.
- */
-#define FETI_ORIGIN_COORDINATES 3
-
-/**
- * Null space of a body: found from K alone.
- */
-#define FETI_ORIGIN_FOUND 4
-
-/**
- * State of a row: open, its force is zero.
- */
-#define FETI_ROW_OPEN 0
-
-/**
- * State of a row: closed, it carries a force.
- */
-#define FETI_ROW_CLOSED 1
-
-/**
- * State of a row: closed with a force that is zero to rounding, or with a force without a clear
- * sign.
- */
-#define FETI_ROW_WEAK 2
-
-/**
- * State of a row: unknown, the bodies it touches are in a group that has no answer.
- */
-#define FETI_ROW_UNKNOWN 3
-
-/**
- * State of a node with friction: its bound is zero, it carries no tangential force.
- */
-#define FETI_FRICTION_OPEN 0
-
-/**
- * State of a node with friction: it sticks, its force is within its bound.
- */
-#define FETI_FRICTION_STICK 1
-
-/**
- * State of a node with friction: it slips along a force that reaches its bound.
- */
-#define FETI_FRICTION_SLIP 2
-
-/**
- * State of a node with friction: its force reaches its bound to rounding, and it does not slip.
- */
-#define FETI_FRICTION_WEAK 3
-
-/**
- * State of a node with friction: unknown, the bodies it touches are in a group that has no answer.
- */
-#define FETI_FRICTION_UNKNOWN 4
-
-/**
- * Phase of a call that feti_on_progress tells of: a part of the setup is done.
- */
-#define FETI_PHASE_SETUP 1
-
-/**
- * Phase of a call that feti_on_progress tells of: a step of the dual method is done.
- */
-#define FETI_PHASE_SOLVE 2
-
-/**
- * Kind of a step: conjugate gradients on the face.
- */
-#define FETI_STEP_CONJUGATE_GRADIENT 1
-
-/**
- * Kind of a step: rows lost their force.
- */
-#define FETI_STEP_EXPANSION 2
-
-/**
- * Kind of a step: rows got a force.
- */
-#define FETI_STEP_RELEASE 3
-
-/**
- * Kind of a step: a direction of the Newton method for friction.
- */
-#define FETI_STEP_NEWTON 4
-
-/**
- * Level of a log: nothing.
- */
-#define FETI_LOG_NONE 0
-
-/**
- * Level of a log: one line for each solve, and warnings.
- */
-#define FETI_LOG_RESULT 1
-
-/**
- * Level of a log: also what is solved and how, and a line for each phase.
- */
-#define FETI_LOG_PHASE 2
-
-/**
- * Level of a log: also a line for each step.
- */
-#define FETI_LOG_STEP 3
-
-/**
- * Type of an option: number.
- */
-#define FETI_OPTION_F64 1
-
-/**
- * Type of an option: integer.
- */
-#define FETI_OPTION_I64 2
-
-/**
- * Type of an option: text.
- */
-#define FETI_OPTION_STR 3
-
-/**
- * Done.
- */
-#define FETI_OK 0
-
-/**
- * The limit on steps was reached; the results are those of the last step.
- */
-#define FETI_ITERATIONS 1
-
-/**
- * The time limit was reached; the results are those of the last step.
- */
-#define FETI_TIME 2
-
-/**
- * The host cancelled; the results are those of the last step, and none before the first.
- */
-#define FETI_CANCELLED 3
-
-/**
- * Steps no longer reduce the error; the results are those of the last step.
- */
-#define FETI_STALLED 4
-
-/**
- * The certificate does not pass.
- */
-#define FETI_INACCURATE 5
-
-/**
- * The answer is usable but incomplete: a small part of the load is not held.
- */
-#define FETI_MARGINAL 6
-
-/**
- * Memory could not be reserved, or option memory_limit would be exceeded.
- */
-#define FETI_MEMORY -1
-
-/**
- * The handle is NULL, destroyed, or none of the library.
- */
-#define FETI_HANDLE -2
-
-/**
- * Another call on this problem is running.
- */
-#define FETI_BUSY -3
-
-/**
- * A function of the host reported a failure.
- */
-#define FETI_CALLBACK -4
-
-/**
- * Something this call needs has not been given yet.
- */
-#define FETI_STATE -5
-
-/**
- * No contact force can balance the load.
- */
-#define FETI_LOAD_NOT_HELD -6
-
-/**
- * Rows contradict each other.
- */
-#define FETI_GAPS_CONTRADICT -7
-
-/**
- * The null space of a body is not what was claimed, or was not found.
- */
-#define FETI_NULL_SPACE -8
-
-/**
- * A stiffness matrix has a negative or a vanishing pivot outside its null space, or drives a soft
- * motion further than the contact resists it.
- */
-#define FETI_INDEFINITE -9
-
-/**
- * A file could not be read or written.
- */
-#define FETI_IO -10
-
-/**
- * The library contradicts itself; only destroy and the error functions accept the problem
- * afterwards.
- */
-#define FETI_INTERNAL -11
-
-/**
- * The request is valid but not available.
- */
-#define FETI_UNSUPPORTED -12
-
-/**
- * A number, or a product of numbers that were given, does not fit its type.
- */
-#define FETI_OVERFLOW -13
-
-/**
- * Bodies slide steadily: friction holds only a part of the load, and no rest was found.
- */
-#define FETI_SLIDES -14
-
-/**
- * Argument k refused is FETI_ARGUMENT - k, k from 1 with the handle as 1; FETI_ARGUMENT itself:
- * data of an earlier call.
- */
-#define FETI_ARGUMENT -100
-
-/**
- * A problem: bodies, rows, settings, factors and the last answer. The handle is a counter, never
- * an address.
- */
-typedef struct feti_problem feti_problem;
-
-/**
- * A body as it is given, and what the last setup has made of it; what is not there yet is -1 or
- * NaN.
- */
-typedef struct feti_body_facts {
-  /**
-   * Set by the caller: size of the struct in bytes.
-   */
-  int64_t struct_size;
-  /**
-   * Unknowns.
-   */
-  int64_t unknowns;
-  /**
-   * Entries of K as the host gave them, a diagonal of its own counted; dense: all of the storage.
-   */
-  int64_t entries;
-  /**
-   * Connected parts of K.
-   */
-  int64_t components;
-  /**
-   * Bytes that the library keeps for K.
-   */
-  int64_t matrix_bytes;
-  /**
-   * Arrays of K that stay with the host (FETI_BORROW): 0 none, 1 values, 2 values and columns.
-   */
-  int64_t borrowed;
-  /**
-   * What the null space comes from: FETI_ORIGIN_EXACT, _CANDIDATES, _COORDINATES or _FOUND.
-   */
-  int64_t origin;
-  /**
-   * Dimension of the null space.
-   */
-  int64_t null_space;
-  /**
-   * Entries of the factor.
-   */
-  int64_t factor_entries;
-  /**
-   * Bytes of the factor and, at most, of the work arrays of its computation.
-   */
-  int64_t factor_bytes;
-  /**
-   * The first other body that shares the factor, from 0, -1: none.
-   */
-  int64_t shared_with;
-  /**
-   * 1: the dual operator has its entries, 0: it is known by its products.
-   */
-  int64_t explicit_operator;
-  /**
-   * Bytes of the explicit dual operator.
-   */
-  int64_t operator_bytes;
-  /**
-   * Of a null space that was found: stiffness of the softest other motion over that of the stiffest
-   * in it; else NaN.
-   */
-  double gap;
-  /**
-   * Estimated relative error of the forces on the body in the last answer; NaN without one, also of
-   * its group of bodies alone.
-   */
-  double force_error;
-  /**
-   * Motions taken as free that K resists by no more than the rounding of its entries may make, -1
-   * before a setup.
-   */
-  int64_t soft_free;
-  /**
-   * Motions taken as supports though the rounding of the entries of K may be all that resists them:
-   * with a number above 0 give the null space, or K with more digits. -1 before a setup.
-   */
-  int64_t soft_held;
-  /**
-   * How much K resists these motions, largest v'K v over v'diag(K) v; NaN where there are none.
-   */
-  double softness;
-  /**
-   * What the rounding of the entries may make of it; NaN where there are none.
-   */
-  double softness_of_rounding;
-  /**
-   * Pieces that the body is cut into, once all its elements have been given; 1 for one that is not
-   * cut.
-   */
-  int64_t pieces;
-} feti_body_facts;
-
-/**
- * What the last solve, or the last setup that failed, has found out about the problem. Numbers
- * count from 0.
- */
-typedef struct feti_findings {
-  /**
-   * Set by the caller: size of the struct in bytes.
-   */
-  int64_t struct_size;
-  /**
-   * Status it ended with.
-   */
-  int32_t status;
-  /**
-   * FETI_INEQUALITY or FETI_EQUALITY: kind of the contradicting rows' `row`; 0: none.
-   */
-  int32_t kind;
-  /**
-   * Body that escapes or was refused; of several groups of bodies the first of the one that ended
-   * with this status; -1: none.
-   */
-  int64_t body;
-  /**
-   * Connected part of the body that escapes, where it has several, -1: does not apply.
-   */
-  int64_t component;
-  /**
-   * Unknown of the body that moves fastest or was refused, -1: none.
-   */
-  int64_t dof;
-  /**
-   * After FETI_GAPS_CONTRADICT the row with the largest weight, else a row that was refused, -1:
-   * none.
-   */
-  int64_t row;
-  /**
-   * Rows of both kinds that contradict each other; feti_diagnosis_rows lists them.
-   */
-  int64_t rows_involved;
-  /**
-   * Rigid motions that neither loads nor rows determine.
-   */
-  int64_t undetermined;
-  /**
-   * Rows of both kinds that repeat the direction of another one.
-   */
-  int64_t redundant_rows;
-  /**
-   * Bodies that no row touches.
-   */
-  int64_t untouched_bodies;
-  /**
-   * The first of them, -1: none.
-   */
-  int64_t untouched_body;
-  /**
-   * How clearly there is no solution, above 0 and at most 1: after FETI_INDEFINITE of a driven
-   * motion 1 - 1 / rho, rho what drives it over what resists it; after FETI_LOAD_NOT_HELD the share
-   * of the resultant of the load that nothing holds, after FETI_GAPS_CONTRADICT |w'c| over |w|'|c|
-   * for the weights w; else NaN.
-   */
-  double margin;
-  /**
-   * Rigid motion of the body that escapes: velocity of the origin and rotation about the axes; NaN
-   * without coordinates. feti_diagnosis_motion has it for every unknown.
-   */
-  double motion[6];
-  /**
-   * The largest share of the load of bodies that move together which nothing holds, |resultant| /
-   * |load| in the metric of diag K: above 1e-7 after FETI_LOAD_NOT_HELD; with an answer rounding of
-   * the load, FETI_MARGINAL above 1e-10.
-   */
-  double unheld;
-  /**
-   * Bodies with motions that only the rounding of the entries of K may resist; feti_body_info has
-   * their numbers.
-   */
-  int64_t doubtful_bodies;
-  /**
-   * The first of them, -1: none.
-   */
-  int64_t doubtful_body;
-  /**
-   * Bodies with rigid motions that K resists or drives softly: weak springs, rounding, geometric
-   * stiffness.
-   */
-  int64_t soft_bodies;
-  /**
-   * The first of them, -1: none.
-   */
-  int64_t soft_body;
-  /**
-   * After FETI_SLIDES what friction holds of the load along the motion, as a part of it; else NaN.
-   */
-  double capacity;
-} feti_findings;
-
-/**
- * What went wrong, where and by how much. Numbers count from 0.
- */
-typedef struct feti_error_detail {
-  /**
-   * Set by the caller: size of the struct in bytes.
-   */
-  int64_t struct_size;
-  /**
-   * Status the function returned; 0: there was no error yet.
-   */
-  int32_t status;
-  /**
-   * Position of the refused argument, from 1 with the handle as 1; 0: none.
-   */
-  int32_t argument;
-  /**
-   * Body, -1: does not apply.
-   */
-  int64_t body;
-  /**
-   * Connected part of the body, -1: does not apply.
-   */
-  int64_t component;
-  /**
-   * Degree of freedom of the body, -1: does not apply.
-   */
-  int64_t dof;
-  /**
-   * Row of the matrix or of the constraints, -1: does not apply.
-   */
-  int64_t row;
-  /**
-   * Position in the array; byte of a text or a file; -1: does not apply.
-   */
-  int64_t entry;
-  /**
-   * The number found, an index counted as in texts (option index_base); NaN: does not apply.
-   */
-  double value;
-  /**
-   * The number it had to stay within; NaN: does not apply.
-   */
-  double limit;
-  /**
-   * Name of the function that failed, NUL terminated.
-   */
-  char function[40];
-  /**
-   * Element of the body, -1: does not apply.
-   */
-  int64_t element;
-  /**
-   * Node with friction, -1: does not apply.
-   */
-  int64_t node;
-} feti_error_detail;
-
-/**
- * A function of the host that gets a line of text.
- *
- * It returns 0 to go on, any other number to report a failure of its own.
- *
- * @param[in] user  (scalar) the host's own, as given to feti_on_log; may be NULL
- * @param[in] level (scalar) FETI_LOG_RESULT, FETI_LOG_PHASE or FETI_LOG_STEP
- * @param[in] text  (text) one line in UTF-8 without its end, valid during the call
- */
-typedef int32_t (*feti_log_fn)(void *user, int32_t level, const char *text);
-
-/**
- * A function of the host that multiplies by a matrix A it keeps: Y = A X.
- *
- * It returns 0, or any other number for a failure of its own. X and Y never overlap.
- *
- * @param[in]  user (scalar) the host's own, as given to feti_body_operator; may be NULL
- * @param[in]  body (scalar) number of the body, from 0
- * @param[in]  n    (scalar) unknowns of the body
- * @param[in]  nrhs (scalar) columns of X and Y, 1 to 32
- * @param[in]  x    (ldx * nrhs) X, column-major, finite
- * @param[in]  ldx  (scalar) >= n
- * @param[out] y    (ldy * nrhs) Y, column-major; holds zeros before
- * @param[in]  ldy  (scalar) >= n
- */
-typedef int32_t (*feti_operator_fn)(void *user,
-                                    int64_t body,
-                                    int64_t n,
-                                    int64_t nrhs,
-                                    const double *x,
-                                    int64_t ldx,
-                                    double *y,
-                                    int64_t ldy);
-
-/**
- * An option: name, text, default and range.
- */
-typedef struct feti_option {
-  /**
-   * Set by the caller: size of the struct in bytes.
-   */
-  int64_t struct_size;
-  /**
-   * FETI_OPTION_F64, FETI_OPTION_I64 or FETI_OPTION_STR.
-   */
-  int32_t type;
-  /**
-   * Zero.
-   */
-  int32_t reserved;
-  /**
-   * Smallest value of a number or an integer.
-   */
-  double minimum;
-  /**
-   * Largest value of a number or an integer.
-   */
-  double maximum;
-  /**
-   * Default of a number or an integer; NaN for a text.
-   */
-  double default_f64;
-  /**
-   * Default of an integer.
-   */
-  int64_t default_i64;
-  /**
-   * Name, static.
-   */
-  const char *name;
-  /**
-   * One sentence, static.
-   */
-  const char *doc;
-  /**
-   * Default of a text, static.
-   */
-  const char *default_str;
-} feti_option;
-
-/**
- * Time and memory of a phase of a setup or a solve.
- */
-typedef struct feti_phase {
-  /**
-   * Set by the caller: size of the struct in bytes.
-   */
-  int64_t struct_size;
-  /**
-   * Bytes of what the phase has made and keeps; 0: they are not counted.
-   */
-  int64_t bytes;
-  /**
-   * Wall time in the last call that set up or solved, seconds.
-   */
-  double seconds;
-  /**
-   * Name, static.
-   */
-  const char *name;
-} feti_phase;
-
-/**
- * Where a setup or a solve stands.
- */
-typedef struct feti_progress {
-  /**
-   * Size of the struct in bytes, set by the library.
-   */
-  int64_t struct_size;
-  /**
-   * FETI_PHASE_SETUP (a body has been analysed or factorised, its dual operator or the
-   * preconditioner made, or half a second has passed) or FETI_PHASE_SOLVE.
-   */
-  int32_t phase;
-  /**
-   * FETI_STEP_CONJUGATE_GRADIENT, FETI_STEP_EXPANSION, FETI_STEP_RELEASE or, with friction,
-   * FETI_STEP_NEWTON; 0 in the setup.
-   */
-  int32_t step;
-  /**
-   * Steps so far.
-   */
-  int64_t steps;
-  /**
-   * Products with the dual operator F so far.
-   */
-  int64_t products;
-  /**
-   * Inequality rows with a force; parallel rows count once.
-   */
-  int64_t active;
-  /**
-   * Norm of the projected gradient over the one that stops the solve; NaN in the setup, as all that
-   * follow.
-   */
-  double residual;
-  /**
-   * Its part on rows with a force, over the same.
-   */
-  double residual_free;
-  /**
-   * Its part on rows without a force that want one, over the same.
-   */
-  double residual_chopped;
-  /**
-   * Dual functional 1/2 lambda'F lambda - lambda'd, force times length: every step lowers it.
-   */
-  double theta;
-  /**
-   * Seconds since the call began, also in the setup.
-   */
-  double seconds;
-  /**
-   * Part of the work of the setup that is done, from 0 to 1: an estimate that never falls; NaN in
-   * the solve.
-   */
-  double fraction;
-} feti_progress;
-
-/**
- * A function of the host that hears of every body in every part of a setup and of every step of a
- * solve.
- *
- * It returns 0 to go on, a number > 0 to cancel, a number < 0 to report a failure of its own.
- *
- * @param[in] user (scalar) the host's own, as given to feti_on_progress; may be NULL
- * @param[in] now  (scalar) valid during the call
- */
-typedef int32_t (*feti_progress_fn)(void *user, const struct feti_progress *now);
-
-/**
- * How a solve went. Counts of a call that failed early are zero, figures NaN. Where some groups of
- * bodies have an answer and others have none, counts of work, energy and figures are those of the
- * groups that have one.
- */
-typedef struct feti_info {
-  /**
-   * Set by the caller: size of the struct in bytes.
-   */
-  int64_t struct_size;
-  /**
-   * What feti_solve returned: the worst of all groups of bodies.
-   */
-  int32_t status;
-  /**
-   * Zero.
-   */
-  int32_t reserved;
-  /**
-   * Bodies.
-   */
-  int64_t bodies;
-  /**
-   * Unknowns of all bodies.
-   */
-  int64_t dofs;
-  /**
-   * Inequality rows.
-   */
-  int64_t rows;
-  /**
-   * Equality rows.
-   */
-  int64_t equalities;
-  /**
-   * Dimension of the null spaces of all bodies.
-   */
-  int64_t floating_modes;
-  /**
-   * Inequality rows that are closed in the answer.
-   */
-  int64_t active;
-  /**
-   * Motions that neither loads nor rows determine: the answer has the least sum of `K_ii u_i^2`.
-   */
-  int64_t undetermined;
-  /**
-   * Steps of the active-set method.
-   */
-  int64_t steps;
-  /**
-   * Steps of conjugate gradients on a face.
-   */
-  int64_t cg_steps;
-  /**
-   * Steps that met a bound.
-   */
-  int64_t expansions;
-  /**
-   * Steps that left a face.
-   */
-  int64_t releases;
-  /**
-   * Products with the dual operator F.
-   */
-  int64_t dual_applications;
-  /**
-   * Solutions of the coarse problem.
-   */
-  int64_t coarse_solves;
-  /**
-   * Numeric factorisations for K+ since the problem was created; equal bodies share one.
-   */
-  int64_t factorisations;
-  /**
-   * Symbolic analyses since the problem was created; bodies with one pattern share one.
-   */
-  int64_t analyses;
-  /**
-   * Largest entry of the certificate over what it is allowed, over all bodies and rows that have an
-   * answer: <= 1 passes.
-   */
-  double worst;
-  /**
-   * Relative error of equilibrium, as in feti_certificate: of the worst body.
-   */
-  double equilibrium;
-  /**
-   * Relative error of the balance, of the worst floating body.
-   */
-  double balance;
-  /**
-   * Relative penetration, of the worst row.
-   */
-  double penetration;
-  /**
-   * Relative error of the worst equality row.
-   */
-  double equality;
-  /**
-   * Relative size of a force of the wrong sign, of the worst row.
-   */
-  double negative_force;
-  /**
-   * Relative error of complementarity, of the worst row.
-   */
-  double complementarity;
-  /**
-   * Relative gap between primal and dual energy, of the worst group of bodies.
-   */
-  double duality_gap;
-  /**
-   * Energy 1/2 u'Ku - f'u and that of the springs of compliant rows, 1/2 lambda'C lambda + 1/2 mu'C
-   * mu, force times length.
-   */
-  double energy;
-  /**
-   * Seconds for null spaces and factors.
-   */
-  double seconds_setup;
-  /**
-   * Seconds for the rest.
-   */
-  double seconds_solve;
-  /**
-   * Faces on which the dual was solved directly.
-   */
-  int64_t direct_solves;
-  /**
-   * 1: the answer was finished directly (option finish); 0: that was not asked for or not needed, or
-   * brought nothing.
-   */
-  int64_t finished;
-  /**
-   * Columns of the dual operators of the bodies, one for each body that a row touches, computed
-   * since the problem was created.
-   */
-  int64_t columns_computed;
-  /**
-   * Columns kept through a change of rows or bodies since the problem was created.
-   */
-  int64_t columns_kept;
-  /**
-   * Bodies whose dual operator has its entries (option dual_operator).
-   */
-  int64_t explicit_operators;
-  /**
-   * Bodies whose dual operator is known by its products alone.
-   */
-  int64_t implicit_operators;
-  /**
-   * Bytes of the factors of all bodies and, at most, of the work arrays of their computation.
-   */
-  int64_t factor_bytes;
-  /**
-   * Bytes of the explicit dual operators.
-   */
-  int64_t operator_bytes;
-  /**
-   * Relative size of a tangential force beyond its bound, of the worst node with friction.
-   */
-  double friction_cone;
-  /**
-   * Relative work that friction does not do: force that is missing or across where a node slips, of
-   * the worst node.
-   */
-  double friction_work;
-  /**
-   * Relative slip where the force is within its bound, of the worst node.
-   */
-  double friction_stick;
-  /**
-   * Nodes with friction.
-   */
-  int64_t nodes;
-  /**
-   * Nodes that stick in the answer.
-   */
-  int64_t sticking;
-  /**
-   * Nodes that slip in the answer.
-   */
-  int64_t slipping;
-  /**
-   * Newton steps of friction.
-   */
-  int64_t friction_steps;
-  /**
-   * Starts that they took, over all groups of bodies with friction.
-   */
-  int64_t friction_starts;
-} feti_info;
-
-/**
- * Verdict on an answer, by relative figures: each is `limit` times the ratio of what the worst
- * body or row violates to what it is allowed, rounding included, and passes when it is at most
- * `limit`.
- */
-typedef struct feti_certificate {
-  /**
-   * Set by the caller: size of the struct in bytes.
-   */
-  int64_t struct_size;
-  /**
-   * 1: every entry passes.
-   */
-  int32_t passed;
-  /**
-   * Zero.
-   */
-  int32_t reserved;
-  /**
-   * Option certificate_tolerance.
-   */
-  double limit;
-  /**
-   * Largest entry over what it is allowed: <= 1 passes.
-   */
-  double worst;
-  /**
-   * Relative error of equilibrium `K u + B'lambda + H'mu + T'lambda_t = f`, worst body.
-   */
-  double equilibrium;
-  /**
-   * Relative error of the balance `R'(f - B'lambda - H'mu - T'lambda_t) = 0`, worst floating body.
-   */
-  double balance;
-  /**
-   * Relative penetration: positive part of `B u - c - C lambda`, C = diag(1/k) being the compliance
-   * of the rows, worst row.
-   */
-  double penetration;
-  /**
-   * Relative error of `H u = h + C mu`, worst row.
-   */
-  double equality;
-  /**
-   * Relative size of a negative contact force, worst row.
-   */
-  double negative_force;
-  /**
-   * Relative size of the force or of the open gap `c + C lambda - B u`, whichever is less, worst
-   * row.
-   */
-  double complementarity;
-  /**
-   * Relative gap between primal and dual energy, worst group of bodies.
-   */
-  double duality_gap;
-  /**
-   * Body of the worst equilibrium, from 0, -1: none.
-   */
-  int64_t equilibrium_body;
-  /**
-   * Body of the worst balance, from 0, -1: none.
-   */
-  int64_t balance_body;
-  /**
-   * Row with the worst penetration, from 0, -1: none.
-   */
-  int64_t penetration_row;
-  /**
-   * Equality row with the worst error, from 0, -1: none, or glue of unknowns with one number (option
-   * glue).
-   */
-  int64_t equality_row;
-  /**
-   * Row with the worst negative force, from 0, -1: none.
-   */
-  int64_t force_row;
-  /**
-   * Row with the worst complementarity, from 0, -1: none.
-   */
-  int64_t complementarity_row;
-  /**
-   * Relative size of a tangential force beyond its bound, `(|lambda_t| - b)_+` with b = bound +
-   * coefficient lambda_n, worst node with friction.
-   */
-  double friction_cone;
-  /**
-   * Relative size of `b |s| - lambda_t's`, the work that friction does not do: zero only with a
-   * stick inside the bound and a slip s along the force; worst node.
-   */
-  double friction_work;
-  /**
-   * Relative size of the slip where the force is within its bound, worst node.
-   */
-  double friction_stick;
-  /**
-   * Node with the worst force beyond its bound, from 0, -1: none.
-   */
-  int64_t friction_cone_node;
-  /**
-   * Node with the worst work, from 0, -1: none.
-   */
-  int64_t friction_work_node;
-  /**
-   * Node with the worst slip, from 0, -1: none.
-   */
-  int64_t friction_stick_node;
-} feti_certificate;
-
-#ifdef __cplusplus
-extern "C" {
-#endif /* __cplusplus */
+#define FETI_ALL -1
 
 /**
  * Adds a body with `n` unknowns.
@@ -1062,6 +218,279 @@ extern "C" {
  * Safety: `body` has room for one number.
  */
 int32_t feti_body_add(struct feti_problem *p, int64_t n, int64_t *body);
+
+/**
+ * Gives the stiffness matrix K of a body by rows, with 32-bit indices.
+ *
+ * The matrix is copied; calling again replaces pattern and values. Columns of a row may come in
+ * any order, none twice. With FETI_FULL K must be symmetric within option symmetry_tolerance and
+ * is averaged. FETI_INDEFINITE with the unknown of a diagonal entry that is negative, or 0 beside
+ * others in its row. After a failure the body keeps the matrix it had.
+ *
+ * With FETI_BORROW the values, and columns in 32 bits counted from 0, are not copied if storage is
+ * FETI_LOWER, columns ascend and every row ends with its diagonal entry; otherwise all is copied
+ * (`borrowed` of feti_body_info tells). Borrowed arrays stay readable until the matrix is replaced
+ * or the problem destroyed, and unchanged but for this: between two calls the values may be
+ * rewritten, and the next call then is feti_body_values with the same array.
+ *
+ * @param[in] p       (scalar) the handle
+ * @param[in] body    (scalar) number of the body, from 0
+ * @param[in] n       (scalar) unknowns of the body
+ * @param[in] row_ptr (n + 1) row i holds the entries `row_ptr[i]` to `row_ptr[i + 1] - 1`; starts
+ *                    with `base`
+ * @param[in] col     (row_ptr[n] - base) columns, counted from `base`
+ * @param[in] val     (row_ptr[n] - base) entries of K, force per length
+ * @param[in] base    (scalar) 0 or 1: what `row_ptr` and `col` count from
+ * @param[in] storage (scalar) FETI_FULL, FETI_LOWER or FETI_UPPER
+ * @param[in] flags   (scalar) FETI_COPY or FETI_BORROW
+ *
+ * Safety: The arrays have the given shapes.
+ */
+int32_t feti_body_stiffness_i32(struct feti_problem *p,
+                                int64_t body,
+                                int64_t n,
+                                const int32_t *row_ptr,
+                                const int32_t *col,
+                                const double *val,
+                                int32_t base,
+                                int32_t storage,
+                                int32_t flags);
+
+/**
+ * Gives the stiffness matrix K of a body by rows, with 64-bit indices.
+ *
+ * The matrix is copied; calling again replaces pattern and values. Columns of a row may come in
+ * any order, none twice. With FETI_FULL K must be symmetric within option symmetry_tolerance and
+ * is averaged. FETI_INDEFINITE with the unknown of a diagonal entry that is negative, or 0 beside
+ * others in its row. After a failure the body keeps the matrix it had.
+ *
+ * With FETI_BORROW the values, and columns in 32 bits counted from 0, are not copied if storage is
+ * FETI_LOWER, columns ascend and every row ends with its diagonal entry; otherwise all is copied
+ * (`borrowed` of feti_body_info tells). Borrowed arrays stay readable until the matrix is replaced
+ * or the problem destroyed, and unchanged but for this: between two calls the values may be
+ * rewritten, and the next call then is feti_body_values with the same array.
+ *
+ * @param[in] p       (scalar) the handle
+ * @param[in] body    (scalar) number of the body, from 0
+ * @param[in] n       (scalar) unknowns of the body
+ * @param[in] row_ptr (n + 1) row i holds the entries `row_ptr[i]` to `row_ptr[i + 1] - 1`; starts
+ *                    with `base`
+ * @param[in] col     (row_ptr[n] - base) columns, counted from `base`
+ * @param[in] val     (row_ptr[n] - base) entries of K, force per length
+ * @param[in] base    (scalar) 0 or 1: what `row_ptr` and `col` count from
+ * @param[in] storage (scalar) FETI_FULL, FETI_LOWER or FETI_UPPER
+ * @param[in] flags   (scalar) FETI_COPY or FETI_BORROW
+ *
+ * Safety: The arrays have the given shapes.
+ */
+int32_t feti_body_stiffness_i64(struct feti_problem *p,
+                                int64_t body,
+                                int64_t n,
+                                const int64_t *row_ptr,
+                                const int64_t *col,
+                                const double *val,
+                                int32_t base,
+                                int32_t storage,
+                                int32_t flags);
+
+/**
+ * Gives the stiffness matrix K of a body by rows with a diagonal of its own, with 32-bit indices.
+ *
+ * For codes that keep the diagonal apart. The matrix is copied; calling again replaces pattern and
+ * values. Columns of a row may come in any order, none twice. With FETI_FULL K must be symmetric
+ * within option symmetry_tolerance and is averaged. FETI_INDEFINITE with the unknown of a diagonal
+ * entry that is negative, or 0 beside others in its row. After a failure the body keeps the matrix
+ * it had.
+ *
+ * @param[in] p       (scalar) the handle
+ * @param[in] body    (scalar) number of the body, from 0
+ * @param[in] n       (scalar) unknowns of the body
+ * @param[in] diag    (n) K_ii, force per length
+ * @param[in] row_ptr (n + 1) row i holds the entries `row_ptr[i]` to `row_ptr[i + 1] - 1`; starts
+ *                    with `base`
+ * @param[in] col     (row_ptr[n] - base) columns, counted from `base`, none that of its row
+ * @param[in] val     (row_ptr[n] - base) entries of K beside the diagonal, force per length
+ * @param[in] base    (scalar) 0 or 1: what `row_ptr` and `col` count from
+ * @param[in] storage (scalar) FETI_FULL, FETI_LOWER or FETI_UPPER
+ * @param[in] flags   (scalar) FETI_COPY, or FETI_BORROW, which copies as well: no matrix is kept
+ *                    in this form
+ *
+ * Safety: The arrays have the given shapes.
+ */
+int32_t feti_body_stiffness_split_i32(struct feti_problem *p,
+                                      int64_t body,
+                                      int64_t n,
+                                      const double *diag,
+                                      const int32_t *row_ptr,
+                                      const int32_t *col,
+                                      const double *val,
+                                      int32_t base,
+                                      int32_t storage,
+                                      int32_t flags);
+
+/**
+ * Gives the stiffness matrix K of a body by rows with a diagonal of its own, with 64-bit indices.
+ *
+ * For codes that keep the diagonal apart. The matrix is copied; calling again replaces pattern and
+ * values. Columns of a row may come in any order, none twice. With FETI_FULL K must be symmetric
+ * within option symmetry_tolerance and is averaged. FETI_INDEFINITE with the unknown of a diagonal
+ * entry that is negative, or 0 beside others in its row. After a failure the body keeps the matrix
+ * it had.
+ *
+ * @param[in] p       (scalar) the handle
+ * @param[in] body    (scalar) number of the body, from 0
+ * @param[in] n       (scalar) unknowns of the body
+ * @param[in] diag    (n) K_ii, force per length
+ * @param[in] row_ptr (n + 1) row i holds the entries `row_ptr[i]` to `row_ptr[i + 1] - 1`; starts
+ *                    with `base`
+ * @param[in] col     (row_ptr[n] - base) columns, counted from `base`, none that of its row
+ * @param[in] val     (row_ptr[n] - base) entries of K beside the diagonal, force per length
+ * @param[in] base    (scalar) 0 or 1: what `row_ptr` and `col` count from
+ * @param[in] storage (scalar) FETI_FULL, FETI_LOWER or FETI_UPPER
+ * @param[in] flags   (scalar) FETI_COPY, or FETI_BORROW, which copies as well: no matrix is kept
+ *                    in this form
+ *
+ * Safety: The arrays have the given shapes.
+ */
+int32_t feti_body_stiffness_split_i64(struct feti_problem *p,
+                                      int64_t body,
+                                      int64_t n,
+                                      const double *diag,
+                                      const int64_t *row_ptr,
+                                      const int64_t *col,
+                                      const double *val,
+                                      int32_t base,
+                                      int32_t storage,
+                                      int32_t flags);
+
+/**
+ * Gives the stiffness matrix K of a body as a dense matrix, for boundary elements and condensed
+ * bodies.
+ *
+ * The matrix is copied; calling again replaces it. With FETI_LOWER and FETI_UPPER the other
+ * triangle is not read. FETI_INDEFINITE with the unknown of a diagonal entry that is negative, or
+ * 0 beside others in its row. After a failure the body keeps the matrix it had.
+ *
+ * @param[in] p       (scalar) the handle
+ * @param[in] body    (scalar) number of the body, from 0
+ * @param[in] n       (scalar) unknowns of the body
+ * @param[in] k       (ld * n) column-major: K_ij is k[i + ld j], force per length
+ * @param[in] ld      (scalar) >= n
+ * @param[in] storage (scalar) FETI_FULL, FETI_LOWER or FETI_UPPER
+ * @param[in] flags   (scalar) FETI_COPY
+ *
+ * Safety: The array has the given shape.
+ */
+int32_t feti_body_stiffness_dense(struct feti_problem *p,
+                                  int64_t body,
+                                  int64_t n,
+                                  const double *k,
+                                  int64_t ld,
+                                  int32_t storage,
+                                  int32_t flags);
+
+/**
+ * Gives the load of a body.
+ *
+ * The load is copied and holds until it is given again; a body without one has zero load. With
+ * FETI_ALL the array holds the loads of all bodies: by the host's numbers where they have some,
+ * entries of no unknown not looked at; else one body after the other. Of unknowns with one number
+ * (option glue) that of the first body has the load. FETI_STATE with FETI_ALL where some bodies
+ * have numbers of the host and others have none. After a failure the loads are as they were.
+ *
+ * @param[in] p    (scalar) the handle
+ * @param[in] body (scalar) number of the body, from 0, or FETI_ALL
+ * @param[in] n    (scalar) unknowns of the body; with FETI_ALL at least the largest number + 1,
+ *                 without numbers all unknowns
+ * @param[in] f    (n) force
+ *
+ * Safety: The array has the given shape.
+ */
+int32_t feti_body_load(struct feti_problem *p, int64_t body, int64_t n, const double *f);
+
+/**
+ * Gives the host's own numbers of the unknowns of a body, with 32-bit integers.
+ *
+ * A host that numbers all unknowns through gives every body its share; a number names one unknown
+ * of all bodies. Then FETI_ALL as body in feti_body_load, feti_displacement and feti_reaction
+ * means arrays in these numbers, and so do rows whose bodies are NULL in feti_rows_add_i32 and
+ * _i64. All bodies have numbers then: FETI_STATE names one that has not. The numbers are copied;
+ * calling again replaces them. Rows that are there stay on their unknowns. After a failure the
+ * body keeps the numbers it had.
+ *
+ * With option glue = 1, set before, unknowns of several bodies may have one number: they move
+ * together, by equality rows that only the library sees. The host's rows, their multipliers and
+ * the counts stay what they are. With FETI_ALL a load on such a number is that of its first body,
+ * a displacement that of all of them, and a reaction the sum over them; rows whose bodies are NULL
+ * act on the first. The last answer goes with a change of such numbers.
+ *
+ * @param[in] p      (scalar) the handle
+ * @param[in] body   (scalar) number of the body, from 0
+ * @param[in] n      (scalar) unknowns of the body
+ * @param[in] number (n) number of each unknown, counted from `base`, none that of another unknown
+ *                   of the body, nor, without option glue, of another body
+ * @param[in] base   (scalar) 0 or 1: what the numbers count from
+ *
+ * Safety: The array has the given shape.
+ */
+int32_t feti_body_numbering_i32(struct feti_problem *p,
+                                int64_t body,
+                                int64_t n,
+                                const int32_t *number,
+                                int32_t base);
+
+/**
+ * Gives the host's own numbers of the unknowns of a body, with 64-bit integers.
+ *
+ * A host that numbers all unknowns through gives every body its share; a number names one unknown
+ * of all bodies. Then FETI_ALL as body in feti_body_load, feti_displacement and feti_reaction
+ * means arrays in these numbers, and so do rows whose bodies are NULL in feti_rows_add_i32 and
+ * _i64. All bodies have numbers then: FETI_STATE names one that has not. The numbers are copied;
+ * calling again replaces them. Rows that are there stay on their unknowns. After a failure the
+ * body keeps the numbers it had.
+ *
+ * With option glue = 1, set before, unknowns of several bodies may have one number: they move
+ * together, by equality rows that only the library sees. The host's rows, their multipliers and
+ * the counts stay what they are. With FETI_ALL a load on such a number is that of its first body,
+ * a displacement that of all of them, and a reaction the sum over them; rows whose bodies are NULL
+ * act on the first. The last answer goes with a change of such numbers.
+ *
+ * @param[in] p      (scalar) the handle
+ * @param[in] body   (scalar) number of the body, from 0
+ * @param[in] n      (scalar) unknowns of the body
+ * @param[in] number (n) number of each unknown, counted from `base`, none that of another unknown
+ *                   of the body, nor, without option glue, of another body
+ * @param[in] base   (scalar) 0 or 1: what the numbers count from
+ *
+ * Safety: The array has the given shape.
+ */
+int32_t feti_body_numbering_i64(struct feti_problem *p,
+                                int64_t body,
+                                int64_t n,
+                                const int64_t *number,
+                                int32_t base);
+
+/*
+ * Null spaces
+ * ===========
+ * Say which motions a matrix does not resist; never said, the library finds them.
+ */
+
+/**
+ * Null-space flag: the columns span the null space.
+ */
+#define FETI_EXACT 0
+
+/**
+ * Null-space flag: the null space lies in the span of the columns; the library selects.
+ */
+#define FETI_CANDIDATES 1
+
+/**
+ * Null-space flag: motions that K resists softly, if at all; what they are and what resists them
+ * is computed from K.
+ */
+#define FETI_SOFT 2
 
 /**
  * Gives position and direction of every unknown of a body, from which candidates for its null
@@ -1112,182 +541,97 @@ int32_t feti_body_coordinates(struct feti_problem *p,
 int32_t feti_body_coordinates_flags(struct feti_problem *p, int64_t body, int32_t flags);
 
 /**
- * Gives the load of a body.
+ * Gives a basis of the null space of a body, candidates for it, or motions that K resists softly.
  *
- * The load is copied and holds until it is given again; a body without one has zero load. With
- * FETI_ALL the array holds the loads of all bodies: by the host's numbers where they have some,
- * entries of no unknown not looked at; else one body after the other. Of unknowns with one number
- * (option glue) that of the first body has the load. FETI_STATE with FETI_ALL where some bodies
- * have numbers of the host and others have none. After a failure the loads are as they were.
+ * The basis is copied; calling again replaces it. Never called: the coordinates of the unknowns
+ * give candidates (feti_body_coordinates), and without coordinates the library finds the null
+ * space from K. That `K R = 0` holds is checked in feti_setup. With FETI_SOFT it need not hold:
+ * weak springs, rounding of the entries of K and geometric stiffness may resist or drive the
+ * motions. The columns then choose the fixing unknowns; the motions, and the stiffness against
+ * them, are computed from K and taken into account exactly. Where K drives the body between these
+ * unknowns, up to six more are fixed, each with a column of its own (feti_body_null_space_get).
+ * FETI_UNSUPPORTED from feti_setup where K+ is the host's (feti_body_operator); FETI_INDEFINITE
+ * from feti_setup where K drives more than that, from feti_solve where the contact leaves a motion
+ * that is driven. After a failure the body keeps what it had.
  *
- * @param[in] p    (scalar) the handle
- * @param[in] body (scalar) number of the body, from 0, or FETI_ALL
- * @param[in] n    (scalar) unknowns of the body; with FETI_ALL at least the largest number + 1,
- *                 without numbers all unknowns
- * @param[in] f    (n) force
- *
- * Safety: The array has the given shape.
- */
-int32_t feti_body_load(struct feti_problem *p, int64_t body, int64_t n, const double *f);
-
-/**
- * Tells the connected part of every unknown of a body.
- *
- * A body may be in several parts that share no entry of K but zeros. They are numbered from 0 by
- * their first unknowns. FETI_STATE before the stiffness matrix is given. After a failure nothing
- * is written.
- *
- * @param[in]  p         (scalar) the handle
- * @param[in]  body      (scalar) number of the body, from 0
- * @param[in]  n         (scalar) unknowns of the body
- * @param[out] component (n) part of each unknown, from 0
+ * @param[in] p     (scalar) the handle
+ * @param[in] body  (scalar) number of the body, from 0
+ * @param[in] r     (scalar) columns; 0 with FETI_EXACT claims that K is not singular
+ * @param[in] n     (scalar) unknowns of the body
+ * @param[in] basis (ldr * r) column-major: R_ij is basis[i + ldr j]; may be NULL when r = 0
+ * @param[in] ldr   (scalar) >= n
+ * @param[in] flags (scalar) FETI_EXACT, FETI_CANDIDATES or FETI_SOFT
  *
  * Safety: The array has the given shape.
  */
-int32_t feti_body_components(struct feti_problem *p, int64_t body, int64_t n, int64_t *component);
+int32_t feti_body_null_space(struct feti_problem *p,
+                             int64_t body,
+                             int64_t r,
+                             int64_t n,
+                             const double *basis,
+                             int64_t ldr,
+                             int32_t flags);
 
 /**
- * Tells what is known about a body: its matrix, its null space, its factor, its dual operator.
+ * Reads the null space of a body that the library works with.
  *
- * Nothing is computed but the connected parts. After a failure nothing is written.
+ * Runs feti_setup when it is due. After a failure nothing is written.
  *
- * @param[in]     p    (scalar) the handle
- * @param[in]     body (scalar) number of the body, from 0
- * @param[in,out] out  (scalar) `struct_size` set, at least 16
- *
- * Safety: `out` leads to `struct_size` writable bytes.
- */
-int32_t feti_body_info(struct feti_problem *p, int64_t body, struct feti_body_facts *out);
-
-/**
- * What the last solve, or the last setup that failed, has found out about the problem.
- *
- * After FETI_LOAD_NOT_HELD: the body that escapes, its motion and the margin. After FETI_SLIDES:
- * the body that slides, its motion and the capacity of friction. After FETI_GAPS_CONTRADICT: the
- * rows that contradict each other. Of several groups of bodies without an answer the first is told
- * of. After FETI_INDEFINITE, FETI_NULL_SPACE and the like: the body and the unknown. With an
- * answer: motions left undetermined, redundant rows, bodies that no row touches. Kept until the
- * next solve or the next setup that fails; FETI_STATE before the first. After a failure nothing is
- * written.
- *
- * @param[in]     p   (scalar) the handle
- * @param[in,out] out (scalar) `struct_size` set, at least 16
- *
- * Safety: `out` leads to `struct_size` writable bytes.
- */
-int32_t feti_diagnosis(struct feti_problem *p, struct feti_findings *out);
-
-/**
- * Lists the rows of one kind that contradict each other, with their weights; without a
- * contradiction the redundant rows.
- *
- * Weights w, largest 1, prove a contradiction: with the rows of both kinds the sum of w b is 0 and
- * the sum of w c is negative, w > 0 for inequalities; where unknowns with one number are glued
- * (option glue) it is 0 over the numbers, and feti_last_error names some of them. The weight of a
- * redundant row is its multiple of the row that it repeats. FETI_STATE before the first solve.
- * After a failure nothing is written.
- *
- * @param[in]  p      (scalar) the handle
- * @param[in]  kind   (scalar) FETI_INEQUALITY or FETI_EQUALITY
- * @param[in]  cap    (scalar) rows that `row` and `weight` have room for
- * @param[out] count  (scalar) rows there are; those that fit are written
- * @param[out] row    (cap) numbers from 0, ascending; may be NULL
- * @param[out] weight (cap) no unit; may be NULL
- *
- * Safety: `count` has room for one number, `row` and `weight` are NULL or have room for `cap`
- * numbers.
- */
-int32_t feti_diagnosis_rows(struct feti_problem *p,
-                            int32_t kind,
-                            int64_t cap,
-                            int64_t *count,
-                            int64_t *row,
-                            double *weight);
-
-/**
- * Lists the equality rows that are combinations of the other equality rows, found when asked for.
- *
- * They constrain nothing, and which of them carry the forces is open. Rows that repeat another one
- * are with feti_diagnosis_rows. FETI_STATE before the first setup. After a failure nothing is
- * written.
- *
- * @param[in]  p     (scalar) the handle
- * @param[in]  cap   (scalar) rows that `row` has room for
- * @param[out] count (scalar) rows there are; those that fit are written
- * @param[out] row   (cap) numbers from 0, ascending; may be NULL
- *
- * Safety: `count` has room for one number, `row` is NULL or has room for `cap` numbers.
- */
-int32_t feti_diagnosis_dependent(struct feti_problem *p, int64_t cap, int64_t *count, int64_t *row);
-
-/**
- * Lists the bodies that no row touched in the last solve, or in the last setup that failed.
- *
- * Rows that never close, c = +infinity, do not count. FETI_STATE before the first solve. After a
- * failure nothing is written.
- *
- * @param[in]  p     (scalar) the handle
- * @param[in]  cap   (scalar) bodies that `body` has room for
- * @param[out] count (scalar) bodies there are; those that fit are written
- * @param[out] body  (cap) numbers from 0, ascending; may be NULL
- *
- * Safety: `count` has room for one number, `body` is NULL or has room for `cap` numbers.
- */
-int32_t feti_diagnosis_untouched(struct feti_problem *p, int64_t cap, int64_t *count, int64_t *body);
-
-/**
- * Reads a rigid motion that the last answer leaves undetermined: which body, and how it moves.
- *
- * `undetermined` of feti_findings says how many there are. Bodies that have nothing to do with
- * each other are in motions of their own. FETI_STATE without an answer. After a failure nothing is
- * written.
- *
- * @param[in]  p      (scalar) the handle
- * @param[in]  k      (scalar) number of the motion, from 0
- * @param[out] body   (scalar) number of the body that moves fastest, from 0; may be NULL
- * @param[out] motion (6) of this body: velocity of the origin, rotation about the axes; NaN
- *                    without coordinates; may be NULL
+ * @param[in]     p     (scalar) the handle
+ * @param[in]     body  (scalar) number of the body, from 0
+ * @param[in]     n     (scalar) unknowns of the body
+ * @param[in,out] r     (scalar) in: columns that fit in `basis`, not read without one; out:
+ *                      dimension of the null space
+ * @param[out]    basis (ldr * r) column-major; NULL: only the dimension is wanted
+ * @param[in]     ldr   (scalar) >= n, not looked at without `basis`
  *
  * Safety: The arrays have the given shapes.
  */
-int32_t feti_diagnosis_undetermined(struct feti_problem *p, int64_t k, int64_t *body, double *motion);
+int32_t feti_body_null_space_get(struct feti_problem *p,
+                                 int64_t body,
+                                 int64_t n,
+                                 int64_t *r,
+                                 double *basis,
+                                 int64_t ldr);
 
 /**
- * Reads a rigid motion that the last answer leaves undetermined, unknown by unknown.
+ * Chooses the fixing unknowns of a body in place of the library.
  *
- * It is scaled to largest entry 1 over all bodies; bodies that stay have zeros. FETI_STATE without
- * an answer. After a failure nothing is written.
+ * They change the course of the methods of the paper in printed units, and neither forces nor
+ * displacements. As many as the null space has dimensions, which feti_setup checks, and that they
+ * hold every motion of it. Calling again replaces them. After a failure the body keeps what it
+ * had.
  *
- * @param[in]  p    (scalar) the handle
- * @param[in]  k    (scalar) number of the motion, from 0
- * @param[in]  body (scalar) number of the body, from 0
- * @param[in]  n    (scalar) unknowns of the body
- * @param[out] v    (n) length, up to a factor
+ * @param[in] p    (scalar) the handle
+ * @param[in] body (scalar) number of the body, from 0
+ * @param[in] r    (scalar) dimension of the null space of the body; 0: the library chooses again
+ * @param[in] dof  (r) unknowns of the body, from 0; may be NULL when r = 0
  *
  * Safety: The array has the given shape.
  */
-int32_t feti_diagnosis_undetermined_motion(struct feti_problem *p,
-                                           int64_t k,
-                                           int64_t body,
-                                           int64_t n,
-                                           double *v);
+int32_t feti_body_fixing_set(struct feti_problem *p, int64_t body, int64_t r, const int64_t *dof);
 
 /**
- * Reads the rigid motion with which a body escapes, unknown by unknown.
+ * Reads the fixing unknowns of a body: with them fixed, K has full rank.
  *
- * The load does work on it, and no row resists. It is scaled to largest entry 1 over all bodies;
- * bodies that stay have zeros. After FETI_SLIDES the motion that friction resists too little,
- * after FETI_INDEFINITE the one that K drives further than closed rows resist. FETI_STATE unless
- * the last solve ended with one of these and a motion. After a failure nothing is written.
+ * Runs feti_setup when it is due. FETI_UNSUPPORTED where K+ is the host's (feti_body_operator).
+ * FETI_STATE for a body that is cut (feti_body_mesh_i32 or _i64). After a failure nothing is
+ * written.
  *
  * @param[in]  p    (scalar) the handle
  * @param[in]  body (scalar) number of the body, from 0
- * @param[in]  n    (scalar) unknowns of the body
- * @param[out] v    (n) length, up to a factor
+ * @param[in]  r    (scalar) dimension of the null space of the body
+ * @param[out] dof  (r) unknowns of the body, from 0
  *
  * Safety: The array has the given shape.
  */
-int32_t feti_diagnosis_motion(struct feti_problem *p, int64_t body, int64_t n, double *v);
+int32_t feti_body_fixing(struct feti_problem *p, int64_t body, int64_t r, int64_t *dof);
+
+/*
+ * Bodies by elements
+ * ==================
+ * Give the elements of a large body; the library adds them up and cuts the body into pieces.
+ */
 
 /**
  * Says which unknowns the elements of a body join, with 32-bit indices: the first step of giving K
@@ -1488,73 +832,218 @@ int32_t feti_body_held_forces(struct feti_problem *p, int64_t body, int64_t n, d
  */
 int32_t feti_body_pieces(struct feti_problem *p, int64_t body, int64_t n, int64_t *piece);
 
-/**
- * Text of the calling thread's last error.
- *
- * The text is cut to fit, always NUL terminated when `cap` > 0. Returns the full length without
- * the NUL, 0 when there was no error; a successful call does not clear the text. Never fails.
- *
- * @param[out] buf (text) room for `cap` characters; NULL asks for the length
- * @param[in]  cap (scalar) characters in `buf`, 0 with NULL
- *
- * Safety: `buf` has room for `cap` characters or is NULL.
+/*
+ * Bodies by functions of the host
+ * ===============================
+ * Let the host solve with its own factorisation of K.
  */
-int64_t feti_last_error(char *buf, int64_t cap);
 
 /**
- * Facts of the calling thread's last error: function, argument, place, value and limit.
+ * A function of the host that multiplies by a matrix A it keeps: Y = A X.
  *
- * `struct_size` is set by the caller; no more than that is written. A refusal of `out` leaves the
- * last error as it is.
+ * It returns 0, or any other number for a failure of its own. X and Y never overlap.
  *
- * @param[in,out] out (scalar) `struct_size` set, at least 16
- *
- * Safety: `out` leads to `struct_size` writable bytes.
+ * @param[in]  user (scalar) the host's own, as given to feti_body_operator; may be NULL
+ * @param[in]  body (scalar) number of the body, from 0
+ * @param[in]  n    (scalar) unknowns of the body
+ * @param[in]  nrhs (scalar) columns of X and Y, 1 to 32
+ * @param[in]  x    (ldx * nrhs) X, column-major, finite
+ * @param[in]  ldx  (scalar) >= n
+ * @param[out] y    (ldy * nrhs) Y, column-major; holds zeros before
+ * @param[in]  ldy  (scalar) >= n
  */
-int32_t feti_last_error_detail(struct feti_error_detail *out);
+typedef int32_t (*feti_operator_fn)(void *user,
+                                    int64_t body,
+                                    int64_t n,
+                                    int64_t nrhs,
+                                    const double *x,
+                                    int64_t ldx,
+                                    double *y,
+                                    int64_t ldy);
 
 /**
- * Writes all that the host has registered to one file: a bug report is a file.
+ * Names the functions of the host that multiply by the stiffness K of a body and by a generalised
+ * inverse K+ of it.
  *
- * Bodies with their matrices, null spaces, coordinates, fixing unknowns, loads and numbers of the
- * host, rows of both kinds with right-hand sides and compliances, and the options that differ from
- * their defaults, bit by bit; not the answer, start values, saved states and functions of the
- * host. docs/file_format.md describes every byte. The file is written under another name in the
- * same folder and renamed when it is complete: after a failure an old file is as it was, and
- * nothing else is left. FETI_IO with path, operation and the words of the system; FETI_UNSUPPORTED
- * with the body where functions of the host stand for a matrix (feti_body_operator): no file holds
- * them. Borrowed matrices are written as they are at that moment. Of a body that is cut
- * (feti_body_mesh_i32) the pieces are written, not the elements; FETI_STATE where elements of a
- * body are missing.
+ * The library sees no entry of K but the diagonal, which is copied, and factorises nothing. K+ is
+ * any symmetric positive semidefinite matrix with K K+ K = K: where K is not singular its inverse,
+ * else that of K with enough unknowns held (rows and columns of zeros in K+), or that of K plus a
+ * regularisation that acts on the null space alone. The null space must be given, by
+ * feti_body_null_space or feti_body_coordinates (the body then counts as connected). feti_setup
+ * tries the functions with a few fixed vectors and refuses what is wrong by name: FETI_CALLBACK (K
+ * or K+ not symmetric, K K+ K not K, a result that is no finite number), FETI_INDEFINITE,
+ * FETI_NULL_SPACE (K R not 0, a mode missing in R), with the figure and its limit in the error
+ * detail.
  *
- * @param[in] p    (scalar) the handle
- * @param[in] path (text) name of the file; an old one is replaced
+ * A function that returns anything but 0 ends the call that needed it with FETI_CALLBACK, the body
+ * and that number in the error detail; the problem stays as it was. The functions run in the
+ * host's floating-point environment; with `concurrent` 0 on the thread alone that has called the
+ * library, with 1 also on threads of the library, several at once. Inside them calls on the same
+ * problem return FETI_BUSY, except feti_cancel and feti_problem_error. They must not end by
+ * longjmp or an exception, and must give the same bits for the same X.
  *
- * Safety: `path` is NUL terminated.
+ * Calling again replaces the functions and what was computed with them: to be done whenever K has
+ * changed. A stiffness matrix given later takes their place, and they that of a matrix. After a
+ * failure the body keeps what it had.
+ *
+ * @param[in] p          (scalar) the handle
+ * @param[in] body       (scalar) number of the body, from 0
+ * @param[in] n          (scalar) unknowns of the body
+ * @param[in] diag       (n) diagonal of K, >= 0, force per length: what the body is measured by
+ * @param[in] kplus      (scalar) Y = K+ X, X force, Y length
+ * @param[in] k          (scalar) Y = K X, X length, Y force
+ * @param[in] concurrent (scalar) 0: only on the calling thread; 1: on any thread, several at once
+ * @param[in] user       (scalar) handed to the functions unchanged; may be NULL
+ *
+ * Safety: `diag` has the given shape; the functions may be called with `user` until they are
+ * replaced or the problem destroyed.
  */
-int32_t feti_problem_write(struct feti_problem *p, const char *path);
+int32_t feti_body_operator(struct feti_problem *p,
+                           int64_t body,
+                           int64_t n,
+                           const double *diag,
+                           feti_operator_fn kplus,
+                           feti_operator_fn k,
+                           int32_t concurrent,
+                           void *user);
+
+/*
+ * Rows
+ * ====
+ * Say where bodies touch (B u <= c) and where they are joined (H u = h).
+ */
 
 /**
- * Reads what feti_problem_write has written into an empty problem.
- *
- * The same solve then gives the same bits. FETI_STATE when there are bodies or rows already.
- * Options become those of the file, all others their defaults, except index_base, which stays.
- * Everything goes through the checks of the calls it stands for. FETI_IO with path and the words
- * of the system, or with the byte where a file is damaged (`entry` of feti_last_error_detail);
- * FETI_UNSUPPORTED when it holds what a later version has written. After a failure the problem is
- * as it was.
- *
- * Matrices come back by the rows of their lower triangle, columns ascending, with every diagonal
- * entry, however they were given: feti_body_values then expects the values in this order, and
- * feti_body_values_split and feti_body_values_dense return FETI_STATE until the matrix has been
- * given again.
- *
- * @param[in] p    (scalar) the handle
- * @param[in] path (text) name of the file
- *
- * Safety: `path` is NUL terminated.
+ * Kind of rows: `B u <= c`.
  */
-int32_t feti_problem_read(struct feti_problem *p, const char *path);
+#define FETI_INEQUALITY 1
+
+/**
+ * Kind of rows: `H u = h`.
+ */
+#define FETI_EQUALITY 2
+
+/**
+ * Adds rows of `B u <= c` or `H u = h`, with 32-bit indices.
+ *
+ * The rows are copied and numbered behind those of the same kind that are there. A pair of body
+ * and unknown that comes twice in a row is summed. A contact row with c = +infinity never closes:
+ * it carries no force and joins no bodies, as if it were not there, and keeps its number;
+ * feti_rows_rhs turns it on. FETI_STATE where `body` is NULL and some bodies have numbers of the
+ * host, others have none. After a failure nothing is added.
+ *
+ * @param[in]  p       (scalar) the handle
+ * @param[in]  kind    (scalar) FETI_INEQUALITY or FETI_EQUALITY
+ * @param[in]  rows    (scalar) number of rows, 0 adds none
+ * @param[in]  row_ptr (rows + 1) row i holds the entries `row_ptr[i]` to `row_ptr[i + 1] - 1`;
+ *                     starts with `base`
+ * @param[in]  body    (row_ptr[rows] - base) body of each entry, counted from `base`; NULL: `dof`
+ *                     is the host's number of the unknown (feti_body_numbering_i32), without
+ *                     numbers it counts through all bodies
+ * @param[in]  dof     (row_ptr[rows] - base) unknown of each entry, counted from `base`
+ * @param[in]  val     (row_ptr[rows] - base) entries of B or H
+ * @param[in]  base    (scalar) 0 or 1: what `row_ptr`, `body` and `dof` count from
+ * @param[in]  rhs     (rows) c or h, length; c may be +infinity; NULL: zeros
+ * @param[out] first   (scalar) number of the first row added, from 0; may be NULL
+ *
+ * Safety: The arrays have the given shapes.
+ */
+int32_t feti_rows_add_i32(struct feti_problem *p,
+                          int32_t kind,
+                          int64_t rows,
+                          const int32_t *row_ptr,
+                          const int32_t *body,
+                          const int32_t *dof,
+                          const double *val,
+                          int32_t base,
+                          const double *rhs,
+                          int64_t *first);
+
+/**
+ * Adds rows of `B u <= c` or `H u = h`, with 64-bit indices.
+ *
+ * The rows are copied and numbered behind those of the same kind that are there. A pair of body
+ * and unknown that comes twice in a row is summed. A contact row with c = +infinity never closes:
+ * it carries no force and joins no bodies, as if it were not there, and keeps its number;
+ * feti_rows_rhs turns it on. FETI_STATE where `body` is NULL and some bodies have numbers of the
+ * host, others have none. After a failure nothing is added.
+ *
+ * @param[in]  p       (scalar) the handle
+ * @param[in]  kind    (scalar) FETI_INEQUALITY or FETI_EQUALITY
+ * @param[in]  rows    (scalar) number of rows, 0 adds none
+ * @param[in]  row_ptr (rows + 1) row i holds the entries `row_ptr[i]` to `row_ptr[i + 1] - 1`;
+ *                     starts with `base`
+ * @param[in]  body    (row_ptr[rows] - base) body of each entry, counted from `base`; NULL: `dof`
+ *                     is the host's number of the unknown (feti_body_numbering_i32), without
+ *                     numbers it counts through all bodies
+ * @param[in]  dof     (row_ptr[rows] - base) unknown of each entry, counted from `base`
+ * @param[in]  val     (row_ptr[rows] - base) entries of B or H
+ * @param[in]  base    (scalar) 0 or 1: what `row_ptr`, `body` and `dof` count from
+ * @param[in]  rhs     (rows) c or h, length; c may be +infinity; NULL: zeros
+ * @param[out] first   (scalar) number of the first row added, from 0; may be NULL
+ *
+ * Safety: The arrays have the given shapes.
+ */
+int32_t feti_rows_add_i64(struct feti_problem *p,
+                          int32_t kind,
+                          int64_t rows,
+                          const int64_t *row_ptr,
+                          const int64_t *body,
+                          const int64_t *dof,
+                          const double *val,
+                          int32_t base,
+                          const double *rhs,
+                          int64_t *first);
+
+/**
+ * Makes rows compliant: each a spring, `B u - c <= lambda/k` or `H u - h = mu/k`.
+ *
+ * A contact row then carries the force k (B u - c) where that is positive: a linear law of
+ * pressure and overclosure; an equality row is an elastic support or a cohesive bond. Rows that
+ * are added are rigid, 1/k = 0. A row times t has a compliance times t^2. The numbers are copied
+ * and stay with their rows until they are replaced or the rows are cleared; factors of the bodies
+ * stay, the last answer does not. After a failure all compliances are as they were.
+ *
+ * @param[in] p     (scalar) the handle
+ * @param[in] kind  (scalar) FETI_INEQUALITY or FETI_EQUALITY
+ * @param[in] first (scalar) first row to change, from 0
+ * @param[in] rows  (scalar) number of rows to change
+ * @param[in] inv_k (rows) 1/k >= 0, length / force; 0: rigid
+ *
+ * Safety: The array has the given shape.
+ */
+int32_t feti_rows_compliance(struct feti_problem *p,
+                             int32_t kind,
+                             int64_t first,
+                             int64_t rows,
+                             const double *inv_k);
+
+/**
+ * Reads the size of the problem as it is given now.
+ *
+ * After a failure nothing is written.
+ *
+ * @param[in]  p      (scalar) the handle
+ * @param[out] bodies (scalar) bodies; may be NULL
+ * @param[out] dofs   (scalar) unknowns of all bodies; may be NULL
+ * @param[out] rows   (scalar) inequality rows; may be NULL
+ * @param[out] eqs    (scalar) equality rows; may be NULL
+ *
+ * Safety: Every pointer is NULL or has room for one number.
+ */
+int32_t feti_counts(struct feti_problem *p, int64_t *bodies, int64_t *dofs, int64_t *rows, int64_t *eqs);
+
+/*
+ * Friction
+ * ========
+ * Give contact rows tangential rows and a law of friction.
+ */
+
+/**
+ * Kind of rows: tangential rows of nodes with friction (feti_friction_add_i32,
+ * feti_friction_add_i64).
+ */
+#define FETI_TANGENTIAL 3
 
 /**
  * Adds nodes with friction, with 32-bit indices.
@@ -1704,270 +1193,72 @@ int32_t feti_friction_law(struct feti_problem *p,
  */
 int32_t feti_friction_compliance(struct feti_problem *p, int64_t first, int64_t nodes, const double *inv_kt);
 
-/**
- * Gives s_old, what the slips of nodes are counted from: T u - C_t lambda_t at the beginning of
- * the load step.
- *
- * Nodes that are added have zeros; feti_friction_commit takes s_old from the answer. A host that
- * solves for the increment of a Newton iteration gives T (u_begin - u_k). The numbers are copied;
- * factors of the bodies and the last answer stay, with the slips it had. After a failure all of
- * them are as they were.
- *
- * @param[in] p     (scalar) the handle
- * @param[in] first (scalar) first node to change, from 0
- * @param[in] nodes (scalar) number of nodes to change
- * @param[in] dim   (scalar) tangential rows of a node, 1 or 2; not looked at without nodes
- * @param[in] s_old (dim * nodes) node after node, length; 0 for rows without entries
- *
- * Safety: The array has the given shape.
+/*
+ * Options
+ * =======
+ * Set tolerance, threads, method and limits, by name.
  */
-int32_t feti_friction_reference(struct feti_problem *p,
-                                int64_t first,
-                                int64_t nodes,
-                                int32_t dim,
-                                const double *s_old);
 
 /**
- * Ends a load step: s_old becomes what the last answer has reached, `T u - C_t lambda_t`, at every
- * node, open ones too.
- *
- * To be called once a step is accepted, before or after the loads of the next one are given. The
- * answer stays as it was, with the slips of its step; so does where the next solve starts. A
- * second call does what the first did. To take a step back, save the state before it
- * (feti_state_save). FETI_STATE before a solve has given an answer, where a group of bodies has
- * none, and where the answer is not certified (a status of feti_solve other than FETI_OK and
- * FETI_MARGINAL). After a failure s_old is as it was.
- *
- * @param[in] p (scalar) the handle
+ * Type of an option: number.
  */
-int32_t feti_friction_commit(struct feti_problem *p);
+#define FETI_OPTION_F64 1
 
 /**
- * Removes all nodes with friction; their contact rows stay.
- *
- * Numbering starts again at 0, and the next nodes may have another dim. feti_rows_clear with
- * FETI_INEQUALITY removes them too. Factors of the bodies stay, the last answer does not.
- *
- * @param[in] p (scalar) the handle
+ * Type of an option: integer.
  */
-int32_t feti_friction_clear(struct feti_problem *p);
+#define FETI_OPTION_I64 2
 
 /**
- * Names the function that gets what setups and solves tell in words.
- *
- * Level FETI_LOG_RESULT: one line for each solve, and warnings; FETI_LOG_PHASE: also sizes,
- * options, method, fallbacks and a line for each phase with its time and bytes, and how far the
- * first feasible point, projections, nearest points and certificates are that take long: a line
- * after a second at most, and after a tenth of the time so far; FETI_LOG_STEP: also a line for
- * each step. The function is called on the thread that called the library, in that thread's
- * floating-point environment, until another one or NULL is given. It returns 0 to go on; any other
- * number ends the call with FETI_CALLBACK, the number in the error detail, and no results. Calls
- * on the same problem from inside return FETI_BUSY, except feti_cancel and feti_problem_error. It
- * must not end by longjmp or an exception.
- *
- * @param[in] p        (scalar) the handle
- * @param[in] callback (scalar) the function; NULL: none
- * @param[in] level    (scalar) FETI_LOG_NONE, FETI_LOG_RESULT, FETI_LOG_PHASE or FETI_LOG_STEP
- * @param[in] user     (scalar) handed to the function unchanged; may be NULL
- *
- * Safety: `callback` may be called with `user` until it is replaced or the problem destroyed.
+ * Type of an option: text.
  */
-int32_t feti_on_log(struct feti_problem *p, feti_log_fn callback, int32_t level, void *user);
+#define FETI_OPTION_STR 3
 
 /**
- * Gives a basis of the null space of a body, candidates for it, or motions that K resists softly.
- *
- * The basis is copied; calling again replaces it. Never called: the coordinates of the unknowns
- * give candidates (feti_body_coordinates), and without coordinates the library finds the null
- * space from K. That `K R = 0` holds is checked in feti_setup. With FETI_SOFT it need not hold:
- * weak springs, rounding of the entries of K and geometric stiffness may resist or drive the
- * motions. The columns then choose the fixing unknowns; the motions, and the stiffness against
- * them, are computed from K and taken into account exactly. Where K drives the body between these
- * unknowns, up to six more are fixed, each with a column of its own (feti_body_null_space_get).
- * FETI_UNSUPPORTED from feti_setup where K+ is the host's (feti_body_operator); FETI_INDEFINITE
- * from feti_setup where K drives more than that, from feti_solve where the contact leaves a motion
- * that is driven. After a failure the body keeps what it had.
- *
- * @param[in] p     (scalar) the handle
- * @param[in] body  (scalar) number of the body, from 0
- * @param[in] r     (scalar) columns; 0 with FETI_EXACT claims that K is not singular
- * @param[in] n     (scalar) unknowns of the body
- * @param[in] basis (ldr * r) column-major: R_ij is basis[i + ldr j]; may be NULL when r = 0
- * @param[in] ldr   (scalar) >= n
- * @param[in] flags (scalar) FETI_EXACT, FETI_CANDIDATES or FETI_SOFT
- *
- * Safety: The array has the given shape.
+ * An option: name, text, default and range.
  */
-int32_t feti_body_null_space(struct feti_problem *p,
-                             int64_t body,
-                             int64_t r,
-                             int64_t n,
-                             const double *basis,
-                             int64_t ldr,
-                             int32_t flags);
-
-/**
- * Reads the null space of a body that the library works with.
- *
- * Runs feti_setup when it is due. After a failure nothing is written.
- *
- * @param[in]     p     (scalar) the handle
- * @param[in]     body  (scalar) number of the body, from 0
- * @param[in]     n     (scalar) unknowns of the body
- * @param[in,out] r     (scalar) in: columns that fit in `basis`, not read without one; out:
- *                      dimension of the null space
- * @param[out]    basis (ldr * r) column-major; NULL: only the dimension is wanted
- * @param[in]     ldr   (scalar) >= n, not looked at without `basis`
- *
- * Safety: The arrays have the given shapes.
- */
-int32_t feti_body_null_space_get(struct feti_problem *p,
-                                 int64_t body,
-                                 int64_t n,
-                                 int64_t *r,
-                                 double *basis,
-                                 int64_t ldr);
-
-/**
- * Reads the fixing unknowns of a body: with them fixed, K has full rank.
- *
- * Runs feti_setup when it is due. FETI_UNSUPPORTED where K+ is the host's (feti_body_operator).
- * FETI_STATE for a body that is cut (feti_body_mesh_i32 or _i64). After a failure nothing is
- * written.
- *
- * @param[in]  p    (scalar) the handle
- * @param[in]  body (scalar) number of the body, from 0
- * @param[in]  r    (scalar) dimension of the null space of the body
- * @param[out] dof  (r) unknowns of the body, from 0
- *
- * Safety: The array has the given shape.
- */
-int32_t feti_body_fixing(struct feti_problem *p, int64_t body, int64_t r, int64_t *dof);
-
-/**
- * Chooses the fixing unknowns of a body in place of the library.
- *
- * They change the course of the methods of the paper in printed units, and neither forces nor
- * displacements. As many as the null space has dimensions, which feti_setup checks, and that they
- * hold every motion of it. Calling again replaces them. After a failure the body keeps what it
- * had.
- *
- * @param[in] p    (scalar) the handle
- * @param[in] body (scalar) number of the body, from 0
- * @param[in] r    (scalar) dimension of the null space of the body; 0: the library chooses again
- * @param[in] dof  (r) unknowns of the body, from 0; may be NULL when r = 0
- *
- * Safety: The array has the given shape.
- */
-int32_t feti_body_fixing_set(struct feti_problem *p, int64_t body, int64_t r, const int64_t *dof);
-
-/**
- * Gives the host's own numbers of the unknowns of a body, with 32-bit integers.
- *
- * A host that numbers all unknowns through gives every body its share; a number names one unknown
- * of all bodies. Then FETI_ALL as body in feti_body_load, feti_displacement and feti_reaction
- * means arrays in these numbers, and so do rows whose bodies are NULL in feti_rows_add_i32 and
- * _i64. All bodies have numbers then: FETI_STATE names one that has not. The numbers are copied;
- * calling again replaces them. Rows that are there stay on their unknowns. After a failure the
- * body keeps the numbers it had.
- *
- * With option glue = 1, set before, unknowns of several bodies may have one number: they move
- * together, by equality rows that only the library sees. The host's rows, their multipliers and
- * the counts stay what they are. With FETI_ALL a load on such a number is that of its first body,
- * a displacement that of all of them, and a reaction the sum over them; rows whose bodies are NULL
- * act on the first. The last answer goes with a change of such numbers.
- *
- * @param[in] p      (scalar) the handle
- * @param[in] body   (scalar) number of the body, from 0
- * @param[in] n      (scalar) unknowns of the body
- * @param[in] number (n) number of each unknown, counted from `base`, none that of another unknown
- *                   of the body, nor, without option glue, of another body
- * @param[in] base   (scalar) 0 or 1: what the numbers count from
- *
- * Safety: The array has the given shape.
- */
-int32_t feti_body_numbering_i32(struct feti_problem *p,
-                                int64_t body,
-                                int64_t n,
-                                const int32_t *number,
-                                int32_t base);
-
-/**
- * Gives the host's own numbers of the unknowns of a body, with 64-bit integers.
- *
- * A host that numbers all unknowns through gives every body its share; a number names one unknown
- * of all bodies. Then FETI_ALL as body in feti_body_load, feti_displacement and feti_reaction
- * means arrays in these numbers, and so do rows whose bodies are NULL in feti_rows_add_i32 and
- * _i64. All bodies have numbers then: FETI_STATE names one that has not. The numbers are copied;
- * calling again replaces them. Rows that are there stay on their unknowns. After a failure the
- * body keeps the numbers it had.
- *
- * With option glue = 1, set before, unknowns of several bodies may have one number: they move
- * together, by equality rows that only the library sees. The host's rows, their multipliers and
- * the counts stay what they are. With FETI_ALL a load on such a number is that of its first body,
- * a displacement that of all of them, and a reaction the sum over them; rows whose bodies are NULL
- * act on the first. The last answer goes with a change of such numbers.
- *
- * @param[in] p      (scalar) the handle
- * @param[in] body   (scalar) number of the body, from 0
- * @param[in] n      (scalar) unknowns of the body
- * @param[in] number (n) number of each unknown, counted from `base`, none that of another unknown
- *                   of the body, nor, without option glue, of another body
- * @param[in] base   (scalar) 0 or 1: what the numbers count from
- *
- * Safety: The array has the given shape.
- */
-int32_t feti_body_numbering_i64(struct feti_problem *p,
-                                int64_t body,
-                                int64_t n,
-                                const int64_t *number,
-                                int32_t base);
-
-/**
- * Names the functions of the host that multiply by the stiffness K of a body and by a generalised
- * inverse K+ of it.
- *
- * The library sees no entry of K but the diagonal, which is copied, and factorises nothing. K+ is
- * any symmetric positive semidefinite matrix with K K+ K = K: where K is not singular its inverse,
- * else that of K with enough unknowns held (rows and columns of zeros in K+), or that of K plus a
- * regularisation that acts on the null space alone. The null space must be given, by
- * feti_body_null_space or feti_body_coordinates (the body then counts as connected). feti_setup
- * tries the functions with a few fixed vectors and refuses what is wrong by name: FETI_CALLBACK (K
- * or K+ not symmetric, K K+ K not K, a result that is no finite number), FETI_INDEFINITE,
- * FETI_NULL_SPACE (K R not 0, a mode missing in R), with the figure and its limit in the error
- * detail.
- *
- * A function that returns anything but 0 ends the call that needed it with FETI_CALLBACK, the body
- * and that number in the error detail; the problem stays as it was. The functions run in the
- * host's floating-point environment; with `concurrent` 0 on the thread alone that has called the
- * library, with 1 also on threads of the library, several at once. Inside them calls on the same
- * problem return FETI_BUSY, except feti_cancel and feti_problem_error. They must not end by
- * longjmp or an exception, and must give the same bits for the same X.
- *
- * Calling again replaces the functions and what was computed with them: to be done whenever K has
- * changed. A stiffness matrix given later takes their place, and they that of a matrix. After a
- * failure the body keeps what it had.
- *
- * @param[in] p          (scalar) the handle
- * @param[in] body       (scalar) number of the body, from 0
- * @param[in] n          (scalar) unknowns of the body
- * @param[in] diag       (n) diagonal of K, >= 0, force per length: what the body is measured by
- * @param[in] kplus      (scalar) Y = K+ X, X force, Y length
- * @param[in] k          (scalar) Y = K X, X length, Y force
- * @param[in] concurrent (scalar) 0: only on the calling thread; 1: on any thread, several at once
- * @param[in] user       (scalar) handed to the functions unchanged; may be NULL
- *
- * Safety: `diag` has the given shape; the functions may be called with `user` until they are
- * replaced or the problem destroyed.
- */
-int32_t feti_body_operator(struct feti_problem *p,
-                           int64_t body,
-                           int64_t n,
-                           const double *diag,
-                           feti_operator_fn kplus,
-                           feti_operator_fn k,
-                           int32_t concurrent,
-                           void *user);
+typedef struct feti_option {
+  /**
+   * Set by the caller: size of the struct in bytes.
+   */
+  int64_t struct_size;
+  /**
+   * FETI_OPTION_F64, FETI_OPTION_I64 or FETI_OPTION_STR.
+   */
+  int32_t type;
+  /**
+   * Zero.
+   */
+  int32_t reserved;
+  /**
+   * Smallest value of a number or an integer.
+   */
+  double minimum;
+  /**
+   * Largest value of a number or an integer.
+   */
+  double maximum;
+  /**
+   * Default of a number or an integer; NaN for a text.
+   */
+  double default_f64;
+  /**
+   * Default of an integer.
+   */
+  int64_t default_i64;
+  /**
+   * Name, static.
+   */
+  const char *name;
+  /**
+   * One sentence, static.
+   */
+  const char *doc;
+  /**
+   * Default of a text, static.
+   */
+  const char *default_str;
+} feti_option;
 
 /**
  * Sets an option that is a number.
@@ -2085,388 +1376,204 @@ int64_t feti_option_count(void);
  */
 int32_t feti_option_at(int64_t k, struct feti_option *out);
 
-/**
- * Number of phases of a setup and a solve.
- *
- * After a failure nothing is written.
- *
- * @param[in]  p     (scalar) the handle
- * @param[out] count (scalar) the number of phases
- *
- * Safety: `count` has room for one number.
+/*
+ * Solve
+ * =====
+ * Compute the answer, and learn how exact it is.
  */
-int32_t feti_phase_count(struct feti_problem *p, int64_t *count);
 
 /**
- * Tells time and memory of a phase: rows, null spaces, analysis, factorisation, dual operators,
- * preconditioner, dual solve, recovery, in this order.
- *
- * Times are those of the last call that set up or solved, also of one that failed; a phase that
- * had nothing to do took none. What a setup keeps, later solves do not make again. After a failure
- * nothing is written.
- *
- * @param[in]     p   (scalar) the handle
- * @param[in]     k   (scalar) from 0, less than feti_phase_count
- * @param[in,out] out (scalar) `struct_size` set, at least 16
- *
- * Safety: `out` leads to `struct_size` writable bytes.
+ * How a solve went. Counts of a call that failed early are zero, figures NaN. Where some groups of
+ * bodies have an answer and others have none, counts of work, energy and figures are those of the
+ * groups that have one.
  */
-int32_t feti_phase_at(struct feti_problem *p, int64_t k, struct feti_phase *out);
-
-/**
- * Creates a problem without bodies and rows.
- *
- * The handle is valid until feti_problem_destroy; its number is never used again. After a failure
- * `p` is as it was. FETI_MEMORY, without a text, where not even an empty problem finds room.
- *
- * @param[out] p (scalar) the handle
- *
- * Safety: `p` has room for a pointer.
- */
-int32_t feti_problem_create(struct feti_problem **p);
-
-/**
- * Destroys a problem with all it holds and sets the caller's handle to NULL.
- *
- * FETI_BUSY while another call on the problem runs; the problem and the handle are as before then.
- * Every other copy of the handle gives FETI_HANDLE from now on.
- *
- * @param[in,out] p (scalar) the handle
- *
- * Safety: `p` leads to a pointer.
- */
-int32_t feti_problem_destroy(struct feti_problem **p);
-
-/**
- * Text of the problem's last error.
- *
- * May be called while another call on the problem runs. The text is cut to fit, always NUL
- * terminated when `cap` > 0; it is empty when there was no error, and a successful call does not
- * clear it.
- *
- * @param[in]  p   (scalar) the handle
- * @param[out] buf (text) room for `cap` characters; NULL with `cap` = 0 asks for the length
- * @param[in]  cap (scalar) characters in `buf`, >= 0
- * @param[out] len (scalar) full length without the terminating zero
- *
- * Safety: `buf` has room for `cap` characters, `len` for one number.
- */
-int32_t feti_problem_error(struct feti_problem *p, char *buf, int64_t cap, int64_t *len);
-
-/**
- * Cancels the setup or the solve that runs on the problem.
- *
- * May be called from any thread and from a progress function, while another call on the problem
- * runs. That call returns FETI_CANCELLED before the next product with the dual operator (in the
- * setup: before the next body, and inside the assembly of its dual operator); the results are
- * those of the last step, and there are none when it was cancelled before the first one. Without a
- * running call it does nothing: every setup and every solve begins anew. In a signal handler set a
- * flag instead and let the progress function look at it.
- *
- * @param[in] p (scalar) the handle
- */
-int32_t feti_cancel(struct feti_problem *p);
-
-/**
- * Names the function that is told of every body in every part of a setup, and of every step of a
- * solve.
- *
- * During a setup on several threads it is also called when half a second has passed without such
- * news. It is called on the thread that called the library, in that thread's floating-point
- * environment, until another one or NULL is given. It returns 0 to go on; a number > 0 ends the
- * call with FETI_CANCELLED and the results of the last step; a number < 0 ends it with
- * FETI_CALLBACK, the number in the error detail, and no results. Calls on the same problem from
- * inside return FETI_BUSY, except feti_cancel and feti_problem_error; other problems may be used.
- * It must not end by longjmp or an exception.
- *
- * @param[in] p        (scalar) the handle
- * @param[in] callback (scalar) the function; NULL: none
- * @param[in] user     (scalar) handed to the function unchanged; may be NULL
- *
- * Safety: `callback` may be called with `user` until it is replaced or the problem destroyed.
- */
-int32_t feti_on_progress(struct feti_problem *p, feti_progress_fn callback, void *user);
-
-/**
- * Reads the displacement of a body.
- *
- * With FETI_ALL the displacement of all bodies: by the host's numbers where they have some,
- * entries of no unknown as they were; else one body after the other; NaN on bodies whose group has
- * no answer (feti_solve). FETI_STATE before a solve has given an answer, for a body whose group
- * has none, and with FETI_ALL where some bodies have numbers of the host and others have none.
- * After a failure nothing is written.
- *
- * @param[in]  p    (scalar) the handle
- * @param[in]  body (scalar) number of the body, from 0, or FETI_ALL
- * @param[in]  n    (scalar) unknowns of the body; with FETI_ALL at least the largest number + 1,
- *                  without numbers all unknowns
- * @param[out] u    (n) displacement, length
- *
- * Safety: The array has the given shape.
- */
-int32_t feti_displacement(struct feti_problem *p, int64_t body, int64_t n, double *u);
-
-/**
- * Reads the force of the rows on a body, -B'lambda, -H'mu, -T'lambda_t or all of them: `K u = f +
- * r`.
- *
- * By kinds it is that of the host's rows. All together hold the force of the glue as well where
- * unknowns of several bodies have one number (option glue): what these bodies do to each other. It
- * cancels in the sum over them, which FETI_ALL gives.
- *
- * With FETI_ALL the forces on all bodies: by the host's numbers where they have some, entries of
- * no unknown as they were; else one body after the other; NaN where rows act on bodies whose group
- * has no answer (feti_solve). FETI_STATE before a solve has given an answer, for a body whose
- * group has none, and with FETI_ALL where some bodies have numbers of the host and others have
- * none. After a failure nothing is written.
- *
- * @param[in]  p    (scalar) the handle
- * @param[in]  kind (scalar) FETI_INEQUALITY, FETI_EQUALITY, FETI_TANGENTIAL, or 0 for all
- * @param[in]  body (scalar) number of the body, from 0, or FETI_ALL
- * @param[in]  n    (scalar) unknowns of the body; with FETI_ALL at least the largest number + 1,
- *                  without numbers all unknowns
- * @param[out] r    (n) force
- *
- * Safety: The array has the given shape.
- */
-int32_t feti_reaction(struct feti_problem *p, int32_t kind, int64_t body, int64_t n, double *r);
-
-/**
- * Reads the amplitudes alpha of the null space in the displacement of a body, `u = K+ (f + r) + R
- * alpha`.
- *
- * FETI_STATE before a solve has given an answer, and for a body whose group has none (feti_solve).
- * After a failure nothing is written.
- *
- * @param[in]  p     (scalar) the handle
- * @param[in]  body  (scalar) number of the body, from 0
- * @param[in]  r     (scalar) dimension of the null space of the body
- * @param[out] alpha (r) amplitudes, in the order of the columns of feti_body_null_space_get
- *
- * Safety: The array has the given shape.
- */
-int32_t feti_amplitudes(struct feti_problem *p, int64_t body, int64_t r, double *alpha);
-
-/**
- * Reads the multipliers: lambda of `B u <= c`, mu of `H u = h`, or lambda_t of the nodes with
- * friction, node after node.
- *
- * NaN for rows on bodies whose group has no answer (feti_solve), 0 for rows that never close.
- * FETI_STATE before a solve has given an answer. After a failure nothing is written.
- *
- * @param[in]  p      (scalar) the handle
- * @param[in]  kind   (scalar) FETI_INEQUALITY, FETI_EQUALITY or FETI_TANGENTIAL
- * @param[in]  rows   (scalar) number of rows of the kind; of tangential ones dim for each node
- * @param[out] lambda (rows) force, >= 0 for inequalities
- *
- * Safety: The array has the given shape.
- */
-int32_t feti_multipliers(struct feti_problem *p, int32_t kind, int64_t rows, double *lambda);
-
-/**
- * Reads what is left of the gaps, c - B u; of compliant rows c + lambda/k - B u, 0 where they
- * carry a force.
- *
- * NaN for rows on bodies whose group has no answer (feti_solve), +infinity for rows that never
- * close. FETI_STATE before a solve has given an answer. After a failure nothing is written.
- *
- * @param[in]  p     (scalar) the handle
- * @param[in]  rows  (scalar) number of inequality rows
- * @param[out] slack (rows) open gap, length; negative: penetration
- *
- * Safety: The array has the given shape.
- */
-int32_t feti_gaps(struct feti_problem *p, int64_t rows, double *slack);
-
-/**
- * Reads the state of the inequality rows: what the certificate takes for zero at a row decides.
- *
- * FETI_ROW_CLOSED with a force; FETI_ROW_OPEN with a gap and no force, and for rows that never
- * close; FETI_ROW_WEAK with neither; FETI_ROW_UNKNOWN for rows on bodies whose group has no answer
- * (feti_solve). FETI_STATE before a solve has given an answer. After a failure nothing is written.
- *
- * @param[in]  p     (scalar) the handle
- * @param[in]  rows  (scalar) number of inequality rows
- * @param[out] state (rows) FETI_ROW_OPEN, FETI_ROW_CLOSED, FETI_ROW_WEAK or FETI_ROW_UNKNOWN
- *
- * Safety: The array has the given shape.
- */
-int32_t feti_active(struct feti_problem *p, int64_t rows, int32_t *state);
-
-/**
- * Reads the slips of the last answer, `s = T u - s_old - C_t lambda_t` with the s_old of that
- * solve.
- *
- * A slip has the sign of its force lambda_t (feti_multipliers with FETI_TANGENTIAL). NaN for nodes
- * on bodies whose group has no answer (feti_solve). FETI_STATE before a solve has given an answer.
- * After a failure nothing is written.
- *
- * @param[in]  p     (scalar) the handle
- * @param[in]  nodes (scalar) number of nodes with friction
- * @param[in]  dim   (scalar) tangential rows of a node, 1 or 2; not looked at without nodes
- * @param[out] slip  (dim * nodes) node after node, length
- *
- * Safety: The array has the given shape.
- */
-int32_t feti_friction_slips(struct feti_problem *p, int64_t nodes, int32_t dim, double *slip);
-
-/**
- * Reads the states of the nodes in the last answer: what the certificate takes for zero at a node
- * decides.
- *
- * FETI_FRICTION_OPEN where the bound is zero, and nothing but that: a node with `bound` > 0 sticks
- * or slips though its contact is open; FETI_FRICTION_STICK with a force within its bound;
- * FETI_FRICTION_SLIP with a slip along a force that reaches its bound; FETI_FRICTION_WEAK with a
- * force that reaches its bound and no slip, to rounding; FETI_FRICTION_UNKNOWN for nodes on bodies
- * whose group has no answer (feti_solve). FETI_STATE before a solve has given an answer. After a
- * failure nothing is written.
- *
- * @param[in]  p     (scalar) the handle
- * @param[in]  nodes (scalar) number of nodes with friction
- * @param[out] state (nodes) FETI_FRICTION_OPEN, FETI_FRICTION_STICK, FETI_FRICTION_SLIP,
- *                   FETI_FRICTION_WEAK or FETI_FRICTION_UNKNOWN
- *
- * Safety: The array has the given shape.
- */
-int32_t feti_friction_states(struct feti_problem *p, int64_t nodes, int32_t *state);
-
-/**
- * Reads the size of the problem as it is given now.
- *
- * After a failure nothing is written.
- *
- * @param[in]  p      (scalar) the handle
- * @param[out] bodies (scalar) bodies; may be NULL
- * @param[out] dofs   (scalar) unknowns of all bodies; may be NULL
- * @param[out] rows   (scalar) inequality rows; may be NULL
- * @param[out] eqs    (scalar) equality rows; may be NULL
- *
- * Safety: Every pointer is NULL or has room for one number.
- */
-int32_t feti_counts(struct feti_problem *p, int64_t *bodies, int64_t *dofs, int64_t *rows, int64_t *eqs);
-
-/**
- * Adds rows of `B u <= c` or `H u = h`, with 32-bit indices.
- *
- * The rows are copied and numbered behind those of the same kind that are there. A pair of body
- * and unknown that comes twice in a row is summed. A contact row with c = +infinity never closes:
- * it carries no force and joins no bodies, as if it were not there, and keeps its number;
- * feti_rows_rhs turns it on. FETI_STATE where `body` is NULL and some bodies have numbers of the
- * host, others have none. After a failure nothing is added.
- *
- * @param[in]  p       (scalar) the handle
- * @param[in]  kind    (scalar) FETI_INEQUALITY or FETI_EQUALITY
- * @param[in]  rows    (scalar) number of rows, 0 adds none
- * @param[in]  row_ptr (rows + 1) row i holds the entries `row_ptr[i]` to `row_ptr[i + 1] - 1`;
- *                     starts with `base`
- * @param[in]  body    (row_ptr[rows] - base) body of each entry, counted from `base`; NULL: `dof`
- *                     is the host's number of the unknown (feti_body_numbering_i32), without
- *                     numbers it counts through all bodies
- * @param[in]  dof     (row_ptr[rows] - base) unknown of each entry, counted from `base`
- * @param[in]  val     (row_ptr[rows] - base) entries of B or H
- * @param[in]  base    (scalar) 0 or 1: what `row_ptr`, `body` and `dof` count from
- * @param[in]  rhs     (rows) c or h, length; c may be +infinity; NULL: zeros
- * @param[out] first   (scalar) number of the first row added, from 0; may be NULL
- *
- * Safety: The arrays have the given shapes.
- */
-int32_t feti_rows_add_i32(struct feti_problem *p,
-                          int32_t kind,
-                          int64_t rows,
-                          const int32_t *row_ptr,
-                          const int32_t *body,
-                          const int32_t *dof,
-                          const double *val,
-                          int32_t base,
-                          const double *rhs,
-                          int64_t *first);
-
-/**
- * Adds rows of `B u <= c` or `H u = h`, with 64-bit indices.
- *
- * The rows are copied and numbered behind those of the same kind that are there. A pair of body
- * and unknown that comes twice in a row is summed. A contact row with c = +infinity never closes:
- * it carries no force and joins no bodies, as if it were not there, and keeps its number;
- * feti_rows_rhs turns it on. FETI_STATE where `body` is NULL and some bodies have numbers of the
- * host, others have none. After a failure nothing is added.
- *
- * @param[in]  p       (scalar) the handle
- * @param[in]  kind    (scalar) FETI_INEQUALITY or FETI_EQUALITY
- * @param[in]  rows    (scalar) number of rows, 0 adds none
- * @param[in]  row_ptr (rows + 1) row i holds the entries `row_ptr[i]` to `row_ptr[i + 1] - 1`;
- *                     starts with `base`
- * @param[in]  body    (row_ptr[rows] - base) body of each entry, counted from `base`; NULL: `dof`
- *                     is the host's number of the unknown (feti_body_numbering_i32), without
- *                     numbers it counts through all bodies
- * @param[in]  dof     (row_ptr[rows] - base) unknown of each entry, counted from `base`
- * @param[in]  val     (row_ptr[rows] - base) entries of B or H
- * @param[in]  base    (scalar) 0 or 1: what `row_ptr`, `body` and `dof` count from
- * @param[in]  rhs     (rows) c or h, length; c may be +infinity; NULL: zeros
- * @param[out] first   (scalar) number of the first row added, from 0; may be NULL
- *
- * Safety: The arrays have the given shapes.
- */
-int32_t feti_rows_add_i64(struct feti_problem *p,
-                          int32_t kind,
-                          int64_t rows,
-                          const int64_t *row_ptr,
-                          const int64_t *body,
-                          const int64_t *dof,
-                          const double *val,
-                          int32_t base,
-                          const double *rhs,
-                          int64_t *first);
-
-/**
- * Replaces right-hand sides: c of `B u <= c` or h of `H u = h`.
- *
- * c = +infinity turns a contact row off, a finite c turns it on again: that drops the last answer,
- * the factors of the bodies stay. The numbers are copied. After a failure all right-hand sides are
- * as they were.
- *
- * @param[in] p     (scalar) the handle
- * @param[in] kind  (scalar) FETI_INEQUALITY or FETI_EQUALITY
- * @param[in] first (scalar) first row to change, from 0
- * @param[in] rows  (scalar) number of rows to change
- * @param[in] rhs   (rows) c or h, length; c may be +infinity
- *
- * Safety: The array has the given shape.
- */
-int32_t feti_rows_rhs(struct feti_problem *p, int32_t kind, int64_t first, int64_t rows, const double *rhs);
-
-/**
- * Makes rows compliant: each a spring, `B u - c <= lambda/k` or `H u - h = mu/k`.
- *
- * A contact row then carries the force k (B u - c) where that is positive: a linear law of
- * pressure and overclosure; an equality row is an elastic support or a cohesive bond. Rows that
- * are added are rigid, 1/k = 0. A row times t has a compliance times t^2. The numbers are copied
- * and stay with their rows until they are replaced or the rows are cleared; factors of the bodies
- * stay, the last answer does not. After a failure all compliances are as they were.
- *
- * @param[in] p     (scalar) the handle
- * @param[in] kind  (scalar) FETI_INEQUALITY or FETI_EQUALITY
- * @param[in] first (scalar) first row to change, from 0
- * @param[in] rows  (scalar) number of rows to change
- * @param[in] inv_k (rows) 1/k >= 0, length / force; 0: rigid
- *
- * Safety: The array has the given shape.
- */
-int32_t feti_rows_compliance(struct feti_problem *p,
-                             int32_t kind,
-                             int64_t first,
-                             int64_t rows,
-                             const double *inv_k);
-
-/**
- * Removes all rows of a kind.
- *
- * Numbering of that kind starts again at 0. With the inequality rows go all nodes with friction
- * (feti_friction_clear), whose contact rows they are. Factors of the bodies stay.
- *
- * @param[in] p    (scalar) the handle
- * @param[in] kind (scalar) FETI_INEQUALITY or FETI_EQUALITY
- */
-int32_t feti_rows_clear(struct feti_problem *p, int32_t kind);
+typedef struct feti_info {
+  /**
+   * Set by the caller: size of the struct in bytes.
+   */
+  int64_t struct_size;
+  /**
+   * What feti_solve returned: the worst of all groups of bodies.
+   */
+  int32_t status;
+  /**
+   * Zero.
+   */
+  int32_t reserved;
+  /**
+   * Bodies.
+   */
+  int64_t bodies;
+  /**
+   * Unknowns of all bodies.
+   */
+  int64_t dofs;
+  /**
+   * Inequality rows.
+   */
+  int64_t rows;
+  /**
+   * Equality rows.
+   */
+  int64_t equalities;
+  /**
+   * Dimension of the null spaces of all bodies.
+   */
+  int64_t floating_modes;
+  /**
+   * Inequality rows that are closed in the answer.
+   */
+  int64_t active;
+  /**
+   * Motions that neither loads nor rows determine: the answer has the least sum of `K_ii u_i^2`.
+   */
+  int64_t undetermined;
+  /**
+   * Steps of the active-set method.
+   */
+  int64_t steps;
+  /**
+   * Steps of conjugate gradients on a face.
+   */
+  int64_t cg_steps;
+  /**
+   * Steps that met a bound.
+   */
+  int64_t expansions;
+  /**
+   * Steps that left a face.
+   */
+  int64_t releases;
+  /**
+   * Products with the dual operator F.
+   */
+  int64_t dual_applications;
+  /**
+   * Solutions of the coarse problem.
+   */
+  int64_t coarse_solves;
+  /**
+   * Numeric factorisations for K+ since the problem was created; equal bodies share one.
+   */
+  int64_t factorisations;
+  /**
+   * Symbolic analyses since the problem was created; bodies with one pattern share one.
+   */
+  int64_t analyses;
+  /**
+   * Largest entry of the certificate over what it is allowed, over all bodies and rows that have an
+   * answer: <= 1 passes.
+   */
+  double worst;
+  /**
+   * Relative error of equilibrium, as in feti_certificate: of the worst body.
+   */
+  double equilibrium;
+  /**
+   * Relative error of the balance, of the worst floating body.
+   */
+  double balance;
+  /**
+   * Relative penetration, of the worst row.
+   */
+  double penetration;
+  /**
+   * Relative error of the worst equality row.
+   */
+  double equality;
+  /**
+   * Relative size of a force of the wrong sign, of the worst row.
+   */
+  double negative_force;
+  /**
+   * Relative error of complementarity, of the worst row.
+   */
+  double complementarity;
+  /**
+   * Relative gap between primal and dual energy, of the worst group of bodies.
+   */
+  double duality_gap;
+  /**
+   * Energy 1/2 u'Ku - f'u and that of the springs of compliant rows, 1/2 lambda'C lambda + 1/2 mu'C
+   * mu, force times length.
+   */
+  double energy;
+  /**
+   * Seconds for null spaces and factors.
+   */
+  double seconds_setup;
+  /**
+   * Seconds for the rest.
+   */
+  double seconds_solve;
+  /**
+   * Faces on which the dual was solved directly.
+   */
+  int64_t direct_solves;
+  /**
+   * 1: the answer was finished directly (option finish); 0: that was not asked for or not needed, or
+   * brought nothing.
+   */
+  int64_t finished;
+  /**
+   * Columns of the dual operators of the bodies, one for each body that a row touches, computed
+   * since the problem was created.
+   */
+  int64_t columns_computed;
+  /**
+   * Columns kept through a change of rows or bodies since the problem was created.
+   */
+  int64_t columns_kept;
+  /**
+   * Bodies whose dual operator has its entries (option dual_operator).
+   */
+  int64_t explicit_operators;
+  /**
+   * Bodies whose dual operator is known by its products alone.
+   */
+  int64_t implicit_operators;
+  /**
+   * Bytes of the factors of all bodies and, at most, of the work arrays of their computation.
+   */
+  int64_t factor_bytes;
+  /**
+   * Bytes of the explicit dual operators.
+   */
+  int64_t operator_bytes;
+  /**
+   * Relative size of a tangential force beyond its bound, of the worst node with friction.
+   */
+  double friction_cone;
+  /**
+   * Relative work that friction does not do: force that is missing or across where a node slips, of
+   * the worst node.
+   */
+  double friction_work;
+  /**
+   * Relative slip where the force is within its bound, of the worst node.
+   */
+  double friction_stick;
+  /**
+   * Nodes with friction.
+   */
+  int64_t nodes;
+  /**
+   * Nodes that stick in the answer.
+   */
+  int64_t sticking;
+  /**
+   * Nodes that slip in the answer.
+   */
+  int64_t slipping;
+  /**
+   * Newton steps of friction.
+   */
+  int64_t friction_steps;
+  /**
+   * Starts that they took, over all groups of bodies with friction.
+   */
+  int64_t friction_starts;
+} feti_info;
 
 /**
  * Prepares the solve: null spaces, factors of the bodies, the dual operator.
@@ -2523,6 +1630,1154 @@ int32_t feti_setup(struct feti_problem *p);
  * Safety: `info` is NULL or leads to `struct_size` writable bytes.
  */
 int32_t feti_solve(struct feti_problem *p, struct feti_info *info);
+
+/**
+ * Cancels the setup or the solve that runs on the problem.
+ *
+ * May be called from any thread and from a progress function, while another call on the problem
+ * runs. That call returns FETI_CANCELLED before the next product with the dual operator (in the
+ * setup: before the next body, and inside the assembly of its dual operator); the results are
+ * those of the last step, and there are none when it was cancelled before the first one. Without a
+ * running call it does nothing: every setup and every solve begins anew. In a signal handler set a
+ * flag instead and let the progress function look at it.
+ *
+ * @param[in] p (scalar) the handle
+ */
+int32_t feti_cancel(struct feti_problem *p);
+
+/*
+ * Results
+ * =======
+ * Read displacements, forces, gaps and states.
+ */
+
+/**
+ * State of a row: open, its force is zero.
+ */
+#define FETI_ROW_OPEN 0
+
+/**
+ * State of a row: closed, it carries a force.
+ */
+#define FETI_ROW_CLOSED 1
+
+/**
+ * State of a row: closed with a force that is zero to rounding, or with a force without a clear
+ * sign.
+ */
+#define FETI_ROW_WEAK 2
+
+/**
+ * State of a row: unknown, the bodies it touches are in a group that has no answer.
+ */
+#define FETI_ROW_UNKNOWN 3
+
+/**
+ * State of a node with friction: its bound is zero, it carries no tangential force.
+ */
+#define FETI_FRICTION_OPEN 0
+
+/**
+ * State of a node with friction: it sticks, its force is within its bound.
+ */
+#define FETI_FRICTION_STICK 1
+
+/**
+ * State of a node with friction: it slips along a force that reaches its bound.
+ */
+#define FETI_FRICTION_SLIP 2
+
+/**
+ * State of a node with friction: its force reaches its bound to rounding, and it does not slip.
+ */
+#define FETI_FRICTION_WEAK 3
+
+/**
+ * State of a node with friction: unknown, the bodies it touches are in a group that has no answer.
+ */
+#define FETI_FRICTION_UNKNOWN 4
+
+/**
+ * Reads the displacement of a body.
+ *
+ * With FETI_ALL the displacement of all bodies: by the host's numbers where they have some,
+ * entries of no unknown as they were; else one body after the other; NaN on bodies whose group has
+ * no answer (feti_solve). FETI_STATE before a solve has given an answer, for a body whose group
+ * has none, and with FETI_ALL where some bodies have numbers of the host and others have none.
+ * After a failure nothing is written.
+ *
+ * @param[in]  p    (scalar) the handle
+ * @param[in]  body (scalar) number of the body, from 0, or FETI_ALL
+ * @param[in]  n    (scalar) unknowns of the body; with FETI_ALL at least the largest number + 1,
+ *                  without numbers all unknowns
+ * @param[out] u    (n) displacement, length
+ *
+ * Safety: The array has the given shape.
+ */
+int32_t feti_displacement(struct feti_problem *p, int64_t body, int64_t n, double *u);
+
+/**
+ * Reads the multipliers: lambda of `B u <= c`, mu of `H u = h`, or lambda_t of the nodes with
+ * friction, node after node.
+ *
+ * NaN for rows on bodies whose group has no answer (feti_solve), 0 for rows that never close.
+ * FETI_STATE before a solve has given an answer. After a failure nothing is written.
+ *
+ * @param[in]  p      (scalar) the handle
+ * @param[in]  kind   (scalar) FETI_INEQUALITY, FETI_EQUALITY or FETI_TANGENTIAL
+ * @param[in]  rows   (scalar) number of rows of the kind; of tangential ones dim for each node
+ * @param[out] lambda (rows) force, >= 0 for inequalities
+ *
+ * Safety: The array has the given shape.
+ */
+int32_t feti_multipliers(struct feti_problem *p, int32_t kind, int64_t rows, double *lambda);
+
+/**
+ * Reads what is left of the gaps, c - B u; of compliant rows c + lambda/k - B u, 0 where they
+ * carry a force.
+ *
+ * NaN for rows on bodies whose group has no answer (feti_solve), +infinity for rows that never
+ * close. FETI_STATE before a solve has given an answer. After a failure nothing is written.
+ *
+ * @param[in]  p     (scalar) the handle
+ * @param[in]  rows  (scalar) number of inequality rows
+ * @param[out] slack (rows) open gap, length; negative: penetration
+ *
+ * Safety: The array has the given shape.
+ */
+int32_t feti_gaps(struct feti_problem *p, int64_t rows, double *slack);
+
+/**
+ * Reads the state of the inequality rows: what the certificate takes for zero at a row decides.
+ *
+ * FETI_ROW_CLOSED with a force; FETI_ROW_OPEN with a gap and no force, and for rows that never
+ * close; FETI_ROW_WEAK with neither; FETI_ROW_UNKNOWN for rows on bodies whose group has no answer
+ * (feti_solve). FETI_STATE before a solve has given an answer. After a failure nothing is written.
+ *
+ * @param[in]  p     (scalar) the handle
+ * @param[in]  rows  (scalar) number of inequality rows
+ * @param[out] state (rows) FETI_ROW_OPEN, FETI_ROW_CLOSED, FETI_ROW_WEAK or FETI_ROW_UNKNOWN
+ *
+ * Safety: The array has the given shape.
+ */
+int32_t feti_active(struct feti_problem *p, int64_t rows, int32_t *state);
+
+/**
+ * Reads the force of the rows on a body, -B'lambda, -H'mu, -T'lambda_t or all of them: `K u = f +
+ * r`.
+ *
+ * By kinds it is that of the host's rows. All together hold the force of the glue as well where
+ * unknowns of several bodies have one number (option glue): what these bodies do to each other. It
+ * cancels in the sum over them, which FETI_ALL gives.
+ *
+ * With FETI_ALL the forces on all bodies: by the host's numbers where they have some, entries of
+ * no unknown as they were; else one body after the other; NaN where rows act on bodies whose group
+ * has no answer (feti_solve). FETI_STATE before a solve has given an answer, for a body whose
+ * group has none, and with FETI_ALL where some bodies have numbers of the host and others have
+ * none. After a failure nothing is written.
+ *
+ * @param[in]  p    (scalar) the handle
+ * @param[in]  kind (scalar) FETI_INEQUALITY, FETI_EQUALITY, FETI_TANGENTIAL, or 0 for all
+ * @param[in]  body (scalar) number of the body, from 0, or FETI_ALL
+ * @param[in]  n    (scalar) unknowns of the body; with FETI_ALL at least the largest number + 1,
+ *                  without numbers all unknowns
+ * @param[out] r    (n) force
+ *
+ * Safety: The array has the given shape.
+ */
+int32_t feti_reaction(struct feti_problem *p, int32_t kind, int64_t body, int64_t n, double *r);
+
+/**
+ * Reads the amplitudes alpha of the null space in the displacement of a body, `u = K+ (f + r) + R
+ * alpha`.
+ *
+ * FETI_STATE before a solve has given an answer, and for a body whose group has none (feti_solve).
+ * After a failure nothing is written.
+ *
+ * @param[in]  p     (scalar) the handle
+ * @param[in]  body  (scalar) number of the body, from 0
+ * @param[in]  r     (scalar) dimension of the null space of the body
+ * @param[out] alpha (r) amplitudes, in the order of the columns of feti_body_null_space_get
+ *
+ * Safety: The array has the given shape.
+ */
+int32_t feti_amplitudes(struct feti_problem *p, int64_t body, int64_t r, double *alpha);
+
+/**
+ * Reads the slips of the last answer, `s = T u - s_old - C_t lambda_t` with the s_old of that
+ * solve.
+ *
+ * A slip has the sign of its force lambda_t (feti_multipliers with FETI_TANGENTIAL). NaN for nodes
+ * on bodies whose group has no answer (feti_solve). FETI_STATE before a solve has given an answer.
+ * After a failure nothing is written.
+ *
+ * @param[in]  p     (scalar) the handle
+ * @param[in]  nodes (scalar) number of nodes with friction
+ * @param[in]  dim   (scalar) tangential rows of a node, 1 or 2; not looked at without nodes
+ * @param[out] slip  (dim * nodes) node after node, length
+ *
+ * Safety: The array has the given shape.
+ */
+int32_t feti_friction_slips(struct feti_problem *p, int64_t nodes, int32_t dim, double *slip);
+
+/**
+ * Reads the states of the nodes in the last answer: what the certificate takes for zero at a node
+ * decides.
+ *
+ * FETI_FRICTION_OPEN where the bound is zero, and nothing but that: a node with `bound` > 0 sticks
+ * or slips though its contact is open; FETI_FRICTION_STICK with a force within its bound;
+ * FETI_FRICTION_SLIP with a slip along a force that reaches its bound; FETI_FRICTION_WEAK with a
+ * force that reaches its bound and no slip, to rounding; FETI_FRICTION_UNKNOWN for nodes on bodies
+ * whose group has no answer (feti_solve). FETI_STATE before a solve has given an answer. After a
+ * failure nothing is written.
+ *
+ * @param[in]  p     (scalar) the handle
+ * @param[in]  nodes (scalar) number of nodes with friction
+ * @param[out] state (nodes) FETI_FRICTION_OPEN, FETI_FRICTION_STICK, FETI_FRICTION_SLIP,
+ *                   FETI_FRICTION_WEAK or FETI_FRICTION_UNKNOWN
+ *
+ * Safety: The array has the given shape.
+ */
+int32_t feti_friction_states(struct feti_problem *p, int64_t nodes, int32_t *state);
+
+/*
+ * Load steps
+ * ==========
+ * Go on with other loads and gaps; friction remembers where it slipped to.
+ */
+
+/**
+ * Replaces right-hand sides: c of `B u <= c` or h of `H u = h`.
+ *
+ * c = +infinity turns a contact row off, a finite c turns it on again: that drops the last answer,
+ * the factors of the bodies stay. The numbers are copied. After a failure all right-hand sides are
+ * as they were.
+ *
+ * @param[in] p     (scalar) the handle
+ * @param[in] kind  (scalar) FETI_INEQUALITY or FETI_EQUALITY
+ * @param[in] first (scalar) first row to change, from 0
+ * @param[in] rows  (scalar) number of rows to change
+ * @param[in] rhs   (rows) c or h, length; c may be +infinity
+ *
+ * Safety: The array has the given shape.
+ */
+int32_t feti_rows_rhs(struct feti_problem *p, int32_t kind, int64_t first, int64_t rows, const double *rhs);
+
+/**
+ * Ends a load step: s_old becomes what the last answer has reached, `T u - C_t lambda_t`, at every
+ * node, open ones too.
+ *
+ * To be called once a step is accepted, before or after the loads of the next one are given. The
+ * answer stays as it was, with the slips of its step; so does where the next solve starts. A
+ * second call does what the first did. To take a step back, save the state before it
+ * (feti_state_save). FETI_STATE before a solve has given an answer, where a group of bodies has
+ * none, and where the answer is not certified (a status of feti_solve other than FETI_OK and
+ * FETI_MARGINAL). After a failure s_old is as it was.
+ *
+ * @param[in] p (scalar) the handle
+ */
+int32_t feti_friction_commit(struct feti_problem *p);
+
+/**
+ * Gives s_old, what the slips of nodes are counted from: T u - C_t lambda_t at the beginning of
+ * the load step.
+ *
+ * Nodes that are added have zeros; feti_friction_commit takes s_old from the answer. A host that
+ * solves for the increment of a Newton iteration gives T (u_begin - u_k). The numbers are copied;
+ * factors of the bodies and the last answer stay, with the slips it had. After a failure all of
+ * them are as they were.
+ *
+ * @param[in] p     (scalar) the handle
+ * @param[in] first (scalar) first node to change, from 0
+ * @param[in] nodes (scalar) number of nodes to change
+ * @param[in] dim   (scalar) tangential rows of a node, 1 or 2; not looked at without nodes
+ * @param[in] s_old (dim * nodes) node after node, length; 0 for rows without entries
+ *
+ * Safety: The array has the given shape.
+ */
+int32_t feti_friction_reference(struct feti_problem *p,
+                                int64_t first,
+                                int64_t nodes,
+                                int32_t dim,
+                                const double *s_old);
+
+/**
+ * Gives start values for the next solve.
+ *
+ * That solve starts from these multipliers, whatever option start says, and uses them up, whatever
+ * it comes to; every other solve starts as the option says. Rows with a zero start without force,
+ * so that the contact state of an earlier answer is carried over. A kind that is not given starts
+ * from zero. A change of rows or bodies drops the values. After a failure earlier values stay.
+ *
+ * @param[in] p      (scalar) the handle
+ * @param[in] kind   (scalar) FETI_INEQUALITY, FETI_EQUALITY or FETI_TANGENTIAL
+ * @param[in] rows   (scalar) number of rows of the kind; of tangential ones dim for each node
+ * @param[in] lambda (rows) force; a negative one of an inequality counts as zero
+ *
+ * Safety: The array has the given shape.
+ */
+int32_t feti_start_from(struct feti_problem *p, int32_t kind, int64_t rows, const double *lambda);
+
+/*
+ * Newton's method
+ * ===============
+ * Give new matrices and new rows to a problem that is there.
+ */
+
+/**
+ * Gives new values of a stiffness matrix on the pattern it was given with by
+ * feti_body_stiffness_i32 or _i64.
+ *
+ * The values are copied and checked as the first were. The symbolic analysis is kept, and the next
+ * setup costs a numeric factorisation of this body; values that are bit by bit those of before
+ * cost nothing. Storage is that of the first call. FETI_STATE where the matrix has not been given,
+ * or in another form. FETI_INDEFINITE with the unknown of a diagonal entry that is negative, or 0
+ * beside others in its row. After a failure the body keeps the values it had.
+ *
+ * Where the values are borrowed (FETI_BORROW) they are not copied: `val` is the array that was
+ * borrowed, rewritten by the host, or another one in its place. They count as changed, also for
+ * other bodies that borrow the same array. After a failure with the same array the body is without
+ * a matrix until it gets other values.
+ *
+ * @param[in] p    (scalar) the handle
+ * @param[in] body (scalar) number of the body, from 0
+ * @param[in] nnz  (scalar) number of values, that of the first call
+ * @param[in] val  (nnz) entries of K in the order of the first call, force per length
+ *
+ * Safety: The array has the given shape.
+ */
+int32_t feti_body_values(struct feti_problem *p, int64_t body, int64_t nnz, const double *val);
+
+/**
+ * Gives new values of a stiffness matrix that was given by feti_body_stiffness_split_i32 or _i64.
+ *
+ * As feti_body_values, for a matrix with a diagonal of its own. FETI_STATE where the matrix has
+ * not been given, or in another form. FETI_INDEFINITE with the unknown of a diagonal entry that is
+ * negative, or 0 beside others in its row. After a failure the body keeps the values it had.
+ *
+ * @param[in] p    (scalar) the handle
+ * @param[in] body (scalar) number of the body, from 0
+ * @param[in] n    (scalar) unknowns of the body
+ * @param[in] diag (n) K_ii, force per length
+ * @param[in] nnz  (scalar) number of values beside the diagonal, that of the first call
+ * @param[in] val  (nnz) entries of K beside the diagonal in the order of the first call, force per
+ *                 length
+ *
+ * Safety: The arrays have the given shapes.
+ */
+int32_t feti_body_values_split(struct feti_problem *p,
+                               int64_t body,
+                               int64_t n,
+                               const double *diag,
+                               int64_t nnz,
+                               const double *val);
+
+/**
+ * Gives new values of a dense stiffness matrix.
+ *
+ * The matrix is copied and checked as the first was, in the same storage. Where zeros stay zeros
+ * the symbolic analysis is kept. FETI_STATE where the matrix has not been given, or in another
+ * form. FETI_INDEFINITE with the unknown of a diagonal entry that is negative, or 0 beside others
+ * in its row. After a failure the body keeps the matrix it had.
+ *
+ * @param[in] p    (scalar) the handle
+ * @param[in] body (scalar) number of the body, from 0
+ * @param[in] n    (scalar) unknowns of the body
+ * @param[in] k    (ld * n) column-major: K_ij is k[i + ld j], force per length
+ * @param[in] ld   (scalar) >= n
+ *
+ * Safety: The array has the given shape.
+ */
+int32_t feti_body_values_dense(struct feti_problem *p, int64_t body, int64_t n, const double *k, int64_t ld);
+
+/**
+ * Removes all rows of a kind.
+ *
+ * Numbering of that kind starts again at 0. With the inequality rows go all nodes with friction
+ * (feti_friction_clear), whose contact rows they are. Factors of the bodies stay.
+ *
+ * @param[in] p    (scalar) the handle
+ * @param[in] kind (scalar) FETI_INEQUALITY or FETI_EQUALITY
+ */
+int32_t feti_rows_clear(struct feti_problem *p, int32_t kind);
+
+/**
+ * Removes all nodes with friction; their contact rows stay.
+ *
+ * Numbering starts again at 0, and the next nodes may have another dim. feti_rows_clear with
+ * FETI_INEQUALITY removes them too. Factors of the bodies stay, the last answer does not.
+ *
+ * @param[in] p (scalar) the handle
+ */
+int32_t feti_friction_clear(struct feti_problem *p);
+
+/*
+ * Saved states
+ * ============
+ * Go back to a step that is saved.
+ */
+
+/**
+ * Saves loads, rows, friction, multipliers and the contact state under a number.
+ *
+ * Of nodes with friction the laws, the compliances and s_old. Factors are not copied and the
+ * entries of the rows are shared, so that it costs no more than the vectors. States live until
+ * they are dropped or the problem is destroyed; numbers are never used again. After a failure
+ * nothing is saved.
+ *
+ * @param[in]  p  (scalar) the handle
+ * @param[out] id (scalar) number of the state, from 0
+ *
+ * Safety: `id` has room for one number.
+ */
+int32_t feti_state_save(struct feti_problem *p, int64_t *id);
+
+/**
+ * Goes back to a saved state: after a load step that was rejected.
+ *
+ * Loads and rows, with right-hand sides and compliances, and nodes with friction, with laws and
+ * s_old, are as they were, and so is the answer unless a matrix or the rows have changed since;
+ * with option start = previous the next solve continues from the saved multipliers, with start =
+ * cold it gives the bits it would have given then. Matrices, null spaces and options stay as they
+ * are now; start values that were not used yet are dropped. The state stays saved. FETI_STATE when
+ * bodies were added since; after a failure nothing is changed.
+ *
+ * @param[in] p  (scalar) the handle
+ * @param[in] id (scalar) number of the state
+ */
+int32_t feti_state_restore(struct feti_problem *p, int64_t id);
+
+/**
+ * Drops a saved state. After a failure nothing is dropped.
+ *
+ * @param[in] p  (scalar) the handle
+ * @param[in] id (scalar) number of the state
+ */
+int32_t feti_state_drop(struct feti_problem *p, int64_t id);
+
+/*
+ * Diagnosis
+ * =========
+ * Learn why there is no answer, and what is odd about the problem.
+ */
+
+/**
+ * What the last solve, or the last setup that failed, has found out about the problem. Numbers
+ * count from 0.
+ */
+typedef struct feti_findings {
+  /**
+   * Set by the caller: size of the struct in bytes.
+   */
+  int64_t struct_size;
+  /**
+   * Status it ended with.
+   */
+  int32_t status;
+  /**
+   * FETI_INEQUALITY or FETI_EQUALITY: kind of the contradicting rows' `row`; 0: none.
+   */
+  int32_t kind;
+  /**
+   * Body that escapes or was refused; of several groups of bodies the first of the one that ended
+   * with this status; -1: none.
+   */
+  int64_t body;
+  /**
+   * Connected part of the body that escapes, where it has several, -1: does not apply.
+   */
+  int64_t component;
+  /**
+   * Unknown of the body that moves fastest or was refused, -1: none.
+   */
+  int64_t dof;
+  /**
+   * After FETI_GAPS_CONTRADICT the row with the largest weight, else a row that was refused, -1:
+   * none.
+   */
+  int64_t row;
+  /**
+   * Rows of both kinds that contradict each other; feti_diagnosis_rows lists them.
+   */
+  int64_t rows_involved;
+  /**
+   * Rigid motions that neither loads nor rows determine.
+   */
+  int64_t undetermined;
+  /**
+   * Rows of both kinds that repeat the direction of another one.
+   */
+  int64_t redundant_rows;
+  /**
+   * Bodies that no row touches.
+   */
+  int64_t untouched_bodies;
+  /**
+   * The first of them, -1: none.
+   */
+  int64_t untouched_body;
+  /**
+   * How clearly there is no solution, above 0 and at most 1: after FETI_INDEFINITE of a driven
+   * motion 1 - 1 / rho, rho what drives it over what resists it; after FETI_LOAD_NOT_HELD the share
+   * of the resultant of the load that nothing holds, after FETI_GAPS_CONTRADICT |w'c| over |w|'|c|
+   * for the weights w; else NaN.
+   */
+  double margin;
+  /**
+   * Rigid motion of the body that escapes: velocity of the origin and rotation about the axes; NaN
+   * without coordinates. feti_diagnosis_motion has it for every unknown.
+   */
+  double motion[6];
+  /**
+   * The largest share of the load of bodies that move together which nothing holds, |resultant| /
+   * |load| in the metric of diag K: above 1e-7 after FETI_LOAD_NOT_HELD; with an answer rounding of
+   * the load, FETI_MARGINAL above 1e-10.
+   */
+  double unheld;
+  /**
+   * Bodies with motions that only the rounding of the entries of K may resist; feti_body_info has
+   * their numbers.
+   */
+  int64_t doubtful_bodies;
+  /**
+   * The first of them, -1: none.
+   */
+  int64_t doubtful_body;
+  /**
+   * Bodies with rigid motions that K resists or drives softly: weak springs, rounding, geometric
+   * stiffness.
+   */
+  int64_t soft_bodies;
+  /**
+   * The first of them, -1: none.
+   */
+  int64_t soft_body;
+  /**
+   * After FETI_SLIDES what friction holds of the load along the motion, as a part of it; else NaN.
+   */
+  double capacity;
+} feti_findings;
+
+/**
+ * What the last solve, or the last setup that failed, has found out about the problem.
+ *
+ * After FETI_LOAD_NOT_HELD: the body that escapes, its motion and the margin. After FETI_SLIDES:
+ * the body that slides, its motion and the capacity of friction. After FETI_GAPS_CONTRADICT: the
+ * rows that contradict each other. Of several groups of bodies without an answer the first is told
+ * of. After FETI_INDEFINITE, FETI_NULL_SPACE and the like: the body and the unknown. With an
+ * answer: motions left undetermined, redundant rows, bodies that no row touches. Kept until the
+ * next solve or the next setup that fails; FETI_STATE before the first. After a failure nothing is
+ * written.
+ *
+ * @param[in]     p   (scalar) the handle
+ * @param[in,out] out (scalar) `struct_size` set, at least 16
+ *
+ * Safety: `out` leads to `struct_size` writable bytes.
+ */
+int32_t feti_diagnosis(struct feti_problem *p, struct feti_findings *out);
+
+/**
+ * Reads the rigid motion with which a body escapes, unknown by unknown.
+ *
+ * The load does work on it, and no row resists. It is scaled to largest entry 1 over all bodies;
+ * bodies that stay have zeros. After FETI_SLIDES the motion that friction resists too little,
+ * after FETI_INDEFINITE the one that K drives further than closed rows resist. FETI_STATE unless
+ * the last solve ended with one of these and a motion. After a failure nothing is written.
+ *
+ * @param[in]  p    (scalar) the handle
+ * @param[in]  body (scalar) number of the body, from 0
+ * @param[in]  n    (scalar) unknowns of the body
+ * @param[out] v    (n) length, up to a factor
+ *
+ * Safety: The array has the given shape.
+ */
+int32_t feti_diagnosis_motion(struct feti_problem *p, int64_t body, int64_t n, double *v);
+
+/**
+ * Lists the rows of one kind that contradict each other, with their weights; without a
+ * contradiction the redundant rows.
+ *
+ * Weights w, largest 1, prove a contradiction: with the rows of both kinds the sum of w b is 0 and
+ * the sum of w c is negative, w > 0 for inequalities; where unknowns with one number are glued
+ * (option glue) it is 0 over the numbers, and feti_last_error names some of them. The weight of a
+ * redundant row is its multiple of the row that it repeats. FETI_STATE before the first solve.
+ * After a failure nothing is written.
+ *
+ * @param[in]  p      (scalar) the handle
+ * @param[in]  kind   (scalar) FETI_INEQUALITY or FETI_EQUALITY
+ * @param[in]  cap    (scalar) rows that `row` and `weight` have room for
+ * @param[out] count  (scalar) rows there are; those that fit are written
+ * @param[out] row    (cap) numbers from 0, ascending; may be NULL
+ * @param[out] weight (cap) no unit; may be NULL
+ *
+ * Safety: `count` has room for one number, `row` and `weight` are NULL or have room for `cap`
+ * numbers.
+ */
+int32_t feti_diagnosis_rows(struct feti_problem *p,
+                            int32_t kind,
+                            int64_t cap,
+                            int64_t *count,
+                            int64_t *row,
+                            double *weight);
+
+/**
+ * Lists the equality rows that are combinations of the other equality rows, found when asked for.
+ *
+ * They constrain nothing, and which of them carry the forces is open. Rows that repeat another one
+ * are with feti_diagnosis_rows. FETI_STATE before the first setup. After a failure nothing is
+ * written.
+ *
+ * @param[in]  p     (scalar) the handle
+ * @param[in]  cap   (scalar) rows that `row` has room for
+ * @param[out] count (scalar) rows there are; those that fit are written
+ * @param[out] row   (cap) numbers from 0, ascending; may be NULL
+ *
+ * Safety: `count` has room for one number, `row` is NULL or has room for `cap` numbers.
+ */
+int32_t feti_diagnosis_dependent(struct feti_problem *p, int64_t cap, int64_t *count, int64_t *row);
+
+/**
+ * Lists the bodies that no row touched in the last solve, or in the last setup that failed.
+ *
+ * Rows that never close, c = +infinity, do not count. FETI_STATE before the first solve. After a
+ * failure nothing is written.
+ *
+ * @param[in]  p     (scalar) the handle
+ * @param[in]  cap   (scalar) bodies that `body` has room for
+ * @param[out] count (scalar) bodies there are; those that fit are written
+ * @param[out] body  (cap) numbers from 0, ascending; may be NULL
+ *
+ * Safety: `count` has room for one number, `body` is NULL or has room for `cap` numbers.
+ */
+int32_t feti_diagnosis_untouched(struct feti_problem *p, int64_t cap, int64_t *count, int64_t *body);
+
+/**
+ * Reads a rigid motion that the last answer leaves undetermined: which body, and how it moves.
+ *
+ * `undetermined` of feti_findings says how many there are. Bodies that have nothing to do with
+ * each other are in motions of their own. FETI_STATE without an answer. After a failure nothing is
+ * written.
+ *
+ * @param[in]  p      (scalar) the handle
+ * @param[in]  k      (scalar) number of the motion, from 0
+ * @param[out] body   (scalar) number of the body that moves fastest, from 0; may be NULL
+ * @param[out] motion (6) of this body: velocity of the origin, rotation about the axes; NaN
+ *                    without coordinates; may be NULL
+ *
+ * Safety: The arrays have the given shapes.
+ */
+int32_t feti_diagnosis_undetermined(struct feti_problem *p, int64_t k, int64_t *body, double *motion);
+
+/**
+ * Reads a rigid motion that the last answer leaves undetermined, unknown by unknown.
+ *
+ * It is scaled to largest entry 1 over all bodies; bodies that stay have zeros. FETI_STATE without
+ * an answer. After a failure nothing is written.
+ *
+ * @param[in]  p    (scalar) the handle
+ * @param[in]  k    (scalar) number of the motion, from 0
+ * @param[in]  body (scalar) number of the body, from 0
+ * @param[in]  n    (scalar) unknowns of the body
+ * @param[out] v    (n) length, up to a factor
+ *
+ * Safety: The array has the given shape.
+ */
+int32_t feti_diagnosis_undetermined_motion(struct feti_problem *p,
+                                           int64_t k,
+                                           int64_t body,
+                                           int64_t n,
+                                           double *v);
+
+/*
+ * Facts on bodies
+ * ===============
+ * Learn what a body and its factor cost.
+ */
+
+/**
+ * Null space of a body: vectors of the host that span it (FETI_EXACT), or soft motions
+ * (FETI_SOFT).
+ */
+#define FETI_ORIGIN_EXACT 1
+
+/**
+ * Null space of a body: sought among vectors of the host (FETI_CANDIDATES).
+ */
+#define FETI_ORIGIN_CANDIDATES 2
+
+/**
+ * Null space of a body: sought among rigid motions, from coordinates.
+ */
+#define FETI_ORIGIN_COORDINATES 3
+
+/**
+ * Null space of a body: found from K alone.
+ */
+#define FETI_ORIGIN_FOUND 4
+
+/**
+ * A body as it is given, and what the last setup has made of it; what is not there yet is -1 or
+ * NaN.
+ */
+typedef struct feti_body_facts {
+  /**
+   * Set by the caller: size of the struct in bytes.
+   */
+  int64_t struct_size;
+  /**
+   * Unknowns.
+   */
+  int64_t unknowns;
+  /**
+   * Entries of K as the host gave them, a diagonal of its own counted; dense: all of the storage.
+   */
+  int64_t entries;
+  /**
+   * Connected parts of K.
+   */
+  int64_t components;
+  /**
+   * Bytes that the library keeps for K.
+   */
+  int64_t matrix_bytes;
+  /**
+   * Arrays of K that stay with the host (FETI_BORROW): 0 none, 1 values, 2 values and columns.
+   */
+  int64_t borrowed;
+  /**
+   * What the null space comes from: FETI_ORIGIN_EXACT, _CANDIDATES, _COORDINATES or _FOUND.
+   */
+  int64_t origin;
+  /**
+   * Dimension of the null space.
+   */
+  int64_t null_space;
+  /**
+   * Entries of the factor.
+   */
+  int64_t factor_entries;
+  /**
+   * Bytes of the factor and, at most, of the work arrays of its computation.
+   */
+  int64_t factor_bytes;
+  /**
+   * The first other body that shares the factor, from 0, -1: none.
+   */
+  int64_t shared_with;
+  /**
+   * 1: the dual operator has its entries, 0: it is known by its products.
+   */
+  int64_t explicit_operator;
+  /**
+   * Bytes of the explicit dual operator.
+   */
+  int64_t operator_bytes;
+  /**
+   * Of a null space that was found: stiffness of the softest other motion over that of the stiffest
+   * in it; else NaN.
+   */
+  double gap;
+  /**
+   * Estimated relative error of the forces on the body in the last answer; NaN without one, also of
+   * its group of bodies alone.
+   */
+  double force_error;
+  /**
+   * Motions taken as free that K resists by no more than the rounding of its entries may make, -1
+   * before a setup.
+   */
+  int64_t soft_free;
+  /**
+   * Motions taken as supports though the rounding of the entries of K may be all that resists them:
+   * with a number above 0 give the null space, or K with more digits. -1 before a setup.
+   */
+  int64_t soft_held;
+  /**
+   * How much K resists these motions, largest v'K v over v'diag(K) v; NaN where there are none.
+   */
+  double softness;
+  /**
+   * What the rounding of the entries may make of it; NaN where there are none.
+   */
+  double softness_of_rounding;
+  /**
+   * Pieces that the body is cut into, once all its elements have been given; 1 for one that is not
+   * cut.
+   */
+  int64_t pieces;
+} feti_body_facts;
+
+/**
+ * Time and memory of a phase of a setup or a solve.
+ */
+typedef struct feti_phase {
+  /**
+   * Set by the caller: size of the struct in bytes.
+   */
+  int64_t struct_size;
+  /**
+   * Bytes of what the phase has made and keeps; 0: they are not counted.
+   */
+  int64_t bytes;
+  /**
+   * Wall time in the last call that set up or solved, seconds.
+   */
+  double seconds;
+  /**
+   * Name, static.
+   */
+  const char *name;
+} feti_phase;
+
+/**
+ * Tells what is known about a body: its matrix, its null space, its factor, its dual operator.
+ *
+ * Nothing is computed but the connected parts. After a failure nothing is written.
+ *
+ * @param[in]     p    (scalar) the handle
+ * @param[in]     body (scalar) number of the body, from 0
+ * @param[in,out] out  (scalar) `struct_size` set, at least 16
+ *
+ * Safety: `out` leads to `struct_size` writable bytes.
+ */
+int32_t feti_body_info(struct feti_problem *p, int64_t body, struct feti_body_facts *out);
+
+/**
+ * Tells the connected part of every unknown of a body.
+ *
+ * A body may be in several parts that share no entry of K but zeros. They are numbered from 0 by
+ * their first unknowns. FETI_STATE before the stiffness matrix is given. After a failure nothing
+ * is written.
+ *
+ * @param[in]  p         (scalar) the handle
+ * @param[in]  body      (scalar) number of the body, from 0
+ * @param[in]  n         (scalar) unknowns of the body
+ * @param[out] component (n) part of each unknown, from 0
+ *
+ * Safety: The array has the given shape.
+ */
+int32_t feti_body_components(struct feti_problem *p, int64_t body, int64_t n, int64_t *component);
+
+/**
+ * Number of phases of a setup and a solve.
+ *
+ * After a failure nothing is written.
+ *
+ * @param[in]  p     (scalar) the handle
+ * @param[out] count (scalar) the number of phases
+ *
+ * Safety: `count` has room for one number.
+ */
+int32_t feti_phase_count(struct feti_problem *p, int64_t *count);
+
+/**
+ * Tells time and memory of a phase: rows, null spaces, analysis, factorisation, dual operators,
+ * preconditioner, dual solve, recovery, in this order.
+ *
+ * Times are those of the last call that set up or solved, also of one that failed; a phase that
+ * had nothing to do took none. What a setup keeps, later solves do not make again. After a failure
+ * nothing is written.
+ *
+ * @param[in]     p   (scalar) the handle
+ * @param[in]     k   (scalar) from 0, less than feti_phase_count
+ * @param[in,out] out (scalar) `struct_size` set, at least 16
+ *
+ * Safety: `out` leads to `struct_size` writable bytes.
+ */
+int32_t feti_phase_at(struct feti_problem *p, int64_t k, struct feti_phase *out);
+
+/*
+ * Progress and log
+ * ================
+ * Hear of the course of a setup or a solve.
+ */
+
+/**
+ * Phase of a call that feti_on_progress tells of: a part of the setup is done.
+ */
+#define FETI_PHASE_SETUP 1
+
+/**
+ * Phase of a call that feti_on_progress tells of: a step of the dual method is done.
+ */
+#define FETI_PHASE_SOLVE 2
+
+/**
+ * Kind of a step: conjugate gradients on the face.
+ */
+#define FETI_STEP_CONJUGATE_GRADIENT 1
+
+/**
+ * Kind of a step: rows lost their force.
+ */
+#define FETI_STEP_EXPANSION 2
+
+/**
+ * Kind of a step: rows got a force.
+ */
+#define FETI_STEP_RELEASE 3
+
+/**
+ * Kind of a step: a direction of the Newton method for friction.
+ */
+#define FETI_STEP_NEWTON 4
+
+/**
+ * Level of a log: nothing.
+ */
+#define FETI_LOG_NONE 0
+
+/**
+ * Level of a log: one line for each solve, and warnings.
+ */
+#define FETI_LOG_RESULT 1
+
+/**
+ * Level of a log: also what is solved and how, and a line for each phase.
+ */
+#define FETI_LOG_PHASE 2
+
+/**
+ * Level of a log: also a line for each step.
+ */
+#define FETI_LOG_STEP 3
+
+/**
+ * Where a setup or a solve stands.
+ */
+typedef struct feti_progress {
+  /**
+   * Size of the struct in bytes, set by the library.
+   */
+  int64_t struct_size;
+  /**
+   * FETI_PHASE_SETUP (a body has been analysed or factorised, its dual operator or the
+   * preconditioner made, or half a second has passed) or FETI_PHASE_SOLVE.
+   */
+  int32_t phase;
+  /**
+   * FETI_STEP_CONJUGATE_GRADIENT, FETI_STEP_EXPANSION, FETI_STEP_RELEASE or, with friction,
+   * FETI_STEP_NEWTON; 0 in the setup.
+   */
+  int32_t step;
+  /**
+   * Steps so far.
+   */
+  int64_t steps;
+  /**
+   * Products with the dual operator F so far.
+   */
+  int64_t products;
+  /**
+   * Inequality rows with a force; parallel rows count once.
+   */
+  int64_t active;
+  /**
+   * Norm of the projected gradient over the one that stops the solve; NaN in the setup, as all that
+   * follow.
+   */
+  double residual;
+  /**
+   * Its part on rows with a force, over the same.
+   */
+  double residual_free;
+  /**
+   * Its part on rows without a force that want one, over the same.
+   */
+  double residual_chopped;
+  /**
+   * Dual functional 1/2 lambda'F lambda - lambda'd, force times length: every step lowers it.
+   */
+  double theta;
+  /**
+   * Seconds since the call began, also in the setup.
+   */
+  double seconds;
+  /**
+   * Part of the work of the setup that is done, from 0 to 1: an estimate that never falls; NaN in
+   * the solve.
+   */
+  double fraction;
+} feti_progress;
+
+/**
+ * A function of the host that hears of every body in every part of a setup and of every step of a
+ * solve.
+ *
+ * It returns 0 to go on, a number > 0 to cancel, a number < 0 to report a failure of its own.
+ *
+ * @param[in] user (scalar) the host's own, as given to feti_on_progress; may be NULL
+ * @param[in] now  (scalar) valid during the call
+ */
+typedef int32_t (*feti_progress_fn)(void *user, const struct feti_progress *now);
+
+/**
+ * A function of the host that gets a line of text.
+ *
+ * It returns 0 to go on, any other number to report a failure of its own.
+ *
+ * @param[in] user  (scalar) the host's own, as given to feti_on_log; may be NULL
+ * @param[in] level (scalar) FETI_LOG_RESULT, FETI_LOG_PHASE or FETI_LOG_STEP
+ * @param[in] text  (text) one line in UTF-8 without its end, valid during the call
+ */
+typedef int32_t (*feti_log_fn)(void *user, int32_t level, const char *text);
+
+/**
+ * Names the function that is told of every body in every part of a setup, and of every step of a
+ * solve.
+ *
+ * During a setup on several threads it is also called when half a second has passed without such
+ * news. It is called on the thread that called the library, in that thread's floating-point
+ * environment, until another one or NULL is given. It returns 0 to go on; a number > 0 ends the
+ * call with FETI_CANCELLED and the results of the last step; a number < 0 ends it with
+ * FETI_CALLBACK, the number in the error detail, and no results. Calls on the same problem from
+ * inside return FETI_BUSY, except feti_cancel and feti_problem_error; other problems may be used.
+ * It must not end by longjmp or an exception.
+ *
+ * @param[in] p        (scalar) the handle
+ * @param[in] callback (scalar) the function; NULL: none
+ * @param[in] user     (scalar) handed to the function unchanged; may be NULL
+ *
+ * Safety: `callback` may be called with `user` until it is replaced or the problem destroyed.
+ */
+int32_t feti_on_progress(struct feti_problem *p, feti_progress_fn callback, void *user);
+
+/**
+ * Names the function that gets what setups and solves tell in words.
+ *
+ * Level FETI_LOG_RESULT: one line for each solve, and warnings; FETI_LOG_PHASE: also sizes,
+ * options, method, fallbacks and a line for each phase with its time and bytes, and how far the
+ * first feasible point, projections, nearest points and certificates are that take long: a line
+ * after a second at most, and after a tenth of the time so far; FETI_LOG_STEP: also a line for
+ * each step. The function is called on the thread that called the library, in that thread's
+ * floating-point environment, until another one or NULL is given. It returns 0 to go on; any other
+ * number ends the call with FETI_CALLBACK, the number in the error detail, and no results. Calls
+ * on the same problem from inside return FETI_BUSY, except feti_cancel and feti_problem_error. It
+ * must not end by longjmp or an exception.
+ *
+ * @param[in] p        (scalar) the handle
+ * @param[in] callback (scalar) the function; NULL: none
+ * @param[in] level    (scalar) FETI_LOG_NONE, FETI_LOG_RESULT, FETI_LOG_PHASE or FETI_LOG_STEP
+ * @param[in] user     (scalar) handed to the function unchanged; may be NULL
+ *
+ * Safety: `callback` may be called with `user` until it is replaced or the problem destroyed.
+ */
+int32_t feti_on_log(struct feti_problem *p, feti_log_fn callback, int32_t level, void *user);
+
+/*
+ * Validation
+ * ==========
+ * Check an answer, also of another program; multiply by the operators of the method.
+ */
+
+/**
+ * Verdict on an answer, by relative figures: each is `limit` times the ratio of what the worst
+ * body or row violates to what it is allowed, rounding included, and passes when it is at most
+ * `limit`.
+ */
+typedef struct feti_certificate {
+  /**
+   * Set by the caller: size of the struct in bytes.
+   */
+  int64_t struct_size;
+  /**
+   * 1: every entry passes.
+   */
+  int32_t passed;
+  /**
+   * Zero.
+   */
+  int32_t reserved;
+  /**
+   * Option certificate_tolerance.
+   */
+  double limit;
+  /**
+   * Largest entry over what it is allowed: <= 1 passes.
+   */
+  double worst;
+  /**
+   * Relative error of equilibrium `K u + B'lambda + H'mu + T'lambda_t = f`, worst body.
+   */
+  double equilibrium;
+  /**
+   * Relative error of the balance `R'(f - B'lambda - H'mu - T'lambda_t) = 0`, worst floating body.
+   */
+  double balance;
+  /**
+   * Relative penetration: positive part of `B u - c - C lambda`, C = diag(1/k) being the compliance
+   * of the rows, worst row.
+   */
+  double penetration;
+  /**
+   * Relative error of `H u = h + C mu`, worst row.
+   */
+  double equality;
+  /**
+   * Relative size of a negative contact force, worst row.
+   */
+  double negative_force;
+  /**
+   * Relative size of the force or of the open gap `c + C lambda - B u`, whichever is less, worst
+   * row.
+   */
+  double complementarity;
+  /**
+   * Relative gap between primal and dual energy, worst group of bodies.
+   */
+  double duality_gap;
+  /**
+   * Body of the worst equilibrium, from 0, -1: none.
+   */
+  int64_t equilibrium_body;
+  /**
+   * Body of the worst balance, from 0, -1: none.
+   */
+  int64_t balance_body;
+  /**
+   * Row with the worst penetration, from 0, -1: none.
+   */
+  int64_t penetration_row;
+  /**
+   * Equality row with the worst error, from 0, -1: none, or glue of unknowns with one number (option
+   * glue).
+   */
+  int64_t equality_row;
+  /**
+   * Row with the worst negative force, from 0, -1: none.
+   */
+  int64_t force_row;
+  /**
+   * Row with the worst complementarity, from 0, -1: none.
+   */
+  int64_t complementarity_row;
+  /**
+   * Relative size of a tangential force beyond its bound, `(|lambda_t| - b)_+` with b = bound +
+   * coefficient lambda_n, worst node with friction.
+   */
+  double friction_cone;
+  /**
+   * Relative size of `b |s| - lambda_t's`, the work that friction does not do: zero only with a
+   * stick inside the bound and a slip s along the force; worst node.
+   */
+  double friction_work;
+  /**
+   * Relative size of the slip where the force is within its bound, worst node.
+   */
+  double friction_stick;
+  /**
+   * Node with the worst force beyond its bound, from 0, -1: none.
+   */
+  int64_t friction_cone_node;
+  /**
+   * Node with the worst work, from 0, -1: none.
+   */
+  int64_t friction_work_node;
+  /**
+   * Node with the worst slip, from 0, -1: none.
+   */
+  int64_t friction_stick_node;
+} feti_certificate;
 
 /**
  * Verifies an answer without tangential forces against the problem as it is given now: any answer,
@@ -2592,264 +2847,6 @@ int32_t feti_check_friction(struct feti_problem *p,
                             struct feti_certificate *out);
 
 /**
- * Gives start values for the next solve.
- *
- * That solve starts from these multipliers, whatever option start says, and uses them up, whatever
- * it comes to; every other solve starts as the option says. Rows with a zero start without force,
- * so that the contact state of an earlier answer is carried over. A kind that is not given starts
- * from zero. A change of rows or bodies drops the values. After a failure earlier values stay.
- *
- * @param[in] p      (scalar) the handle
- * @param[in] kind   (scalar) FETI_INEQUALITY, FETI_EQUALITY or FETI_TANGENTIAL
- * @param[in] rows   (scalar) number of rows of the kind; of tangential ones dim for each node
- * @param[in] lambda (rows) force; a negative one of an inequality counts as zero
- *
- * Safety: The array has the given shape.
- */
-int32_t feti_start_from(struct feti_problem *p, int32_t kind, int64_t rows, const double *lambda);
-
-/**
- * Saves loads, rows, friction, multipliers and the contact state under a number.
- *
- * Of nodes with friction the laws, the compliances and s_old. Factors are not copied and the
- * entries of the rows are shared, so that it costs no more than the vectors. States live until
- * they are dropped or the problem is destroyed; numbers are never used again. After a failure
- * nothing is saved.
- *
- * @param[in]  p  (scalar) the handle
- * @param[out] id (scalar) number of the state, from 0
- *
- * Safety: `id` has room for one number.
- */
-int32_t feti_state_save(struct feti_problem *p, int64_t *id);
-
-/**
- * Goes back to a saved state: after a load step that was rejected.
- *
- * Loads and rows, with right-hand sides and compliances, and nodes with friction, with laws and
- * s_old, are as they were, and so is the answer unless a matrix or the rows have changed since;
- * with option start = previous the next solve continues from the saved multipliers, with start =
- * cold it gives the bits it would have given then. Matrices, null spaces and options stay as they
- * are now; start values that were not used yet are dropped. The state stays saved. FETI_STATE when
- * bodies were added since; after a failure nothing is changed.
- *
- * @param[in] p  (scalar) the handle
- * @param[in] id (scalar) number of the state
- */
-int32_t feti_state_restore(struct feti_problem *p, int64_t id);
-
-/**
- * Drops a saved state. After a failure nothing is dropped.
- *
- * @param[in] p  (scalar) the handle
- * @param[in] id (scalar) number of the state
- */
-int32_t feti_state_drop(struct feti_problem *p, int64_t id);
-
-/**
- * Name of a status, such as "FETI_LOAD_NOT_HELD".
- *
- * "FETI_ARGUMENT" for every refused argument, "FETI_UNKNOWN" for a number that is no status. The
- * text is static. Never fails.
- *
- * @param[in] status (scalar) any number
- */
-const char *feti_status_name(int32_t status);
-
-/**
- * One English sentence on a status.
- *
- * The text is static. Never fails.
- *
- * @param[in] status (scalar) any number
- */
-const char *feti_status_text(int32_t status);
-
-/**
- * Version of the library that runs, "MAJOR.MINOR.PATCH".
- *
- * The text is static. Never fails.
- */
-const char *feti_version(void);
-
-/**
- * Version of the library that runs as one number, 10000 MAJOR + 100 MINOR + PATCH.
- *
- * Never fails.
- */
-int32_t feti_version_number(void);
-
-/**
- * Gives the stiffness matrix K of a body by rows, with 32-bit indices.
- *
- * The matrix is copied; calling again replaces pattern and values. Columns of a row may come in
- * any order, none twice. With FETI_FULL K must be symmetric within option symmetry_tolerance and
- * is averaged. FETI_INDEFINITE with the unknown of a diagonal entry that is negative, or 0 beside
- * others in its row. After a failure the body keeps the matrix it had.
- *
- * With FETI_BORROW the values, and columns in 32 bits counted from 0, are not copied if storage is
- * FETI_LOWER, columns ascend and every row ends with its diagonal entry; otherwise all is copied
- * (`borrowed` of feti_body_info tells). Borrowed arrays stay readable until the matrix is replaced
- * or the problem destroyed, and unchanged but for this: between two calls the values may be
- * rewritten, and the next call then is feti_body_values with the same array.
- *
- * @param[in] p       (scalar) the handle
- * @param[in] body    (scalar) number of the body, from 0
- * @param[in] n       (scalar) unknowns of the body
- * @param[in] row_ptr (n + 1) row i holds the entries `row_ptr[i]` to `row_ptr[i + 1] - 1`; starts
- *                    with `base`
- * @param[in] col     (row_ptr[n] - base) columns, counted from `base`
- * @param[in] val     (row_ptr[n] - base) entries of K, force per length
- * @param[in] base    (scalar) 0 or 1: what `row_ptr` and `col` count from
- * @param[in] storage (scalar) FETI_FULL, FETI_LOWER or FETI_UPPER
- * @param[in] flags   (scalar) FETI_COPY or FETI_BORROW
- *
- * Safety: The arrays have the given shapes.
- */
-int32_t feti_body_stiffness_i32(struct feti_problem *p,
-                                int64_t body,
-                                int64_t n,
-                                const int32_t *row_ptr,
-                                const int32_t *col,
-                                const double *val,
-                                int32_t base,
-                                int32_t storage,
-                                int32_t flags);
-
-/**
- * Gives the stiffness matrix K of a body by rows, with 64-bit indices.
- *
- * The matrix is copied; calling again replaces pattern and values. Columns of a row may come in
- * any order, none twice. With FETI_FULL K must be symmetric within option symmetry_tolerance and
- * is averaged. FETI_INDEFINITE with the unknown of a diagonal entry that is negative, or 0 beside
- * others in its row. After a failure the body keeps the matrix it had.
- *
- * With FETI_BORROW the values, and columns in 32 bits counted from 0, are not copied if storage is
- * FETI_LOWER, columns ascend and every row ends with its diagonal entry; otherwise all is copied
- * (`borrowed` of feti_body_info tells). Borrowed arrays stay readable until the matrix is replaced
- * or the problem destroyed, and unchanged but for this: between two calls the values may be
- * rewritten, and the next call then is feti_body_values with the same array.
- *
- * @param[in] p       (scalar) the handle
- * @param[in] body    (scalar) number of the body, from 0
- * @param[in] n       (scalar) unknowns of the body
- * @param[in] row_ptr (n + 1) row i holds the entries `row_ptr[i]` to `row_ptr[i + 1] - 1`; starts
- *                    with `base`
- * @param[in] col     (row_ptr[n] - base) columns, counted from `base`
- * @param[in] val     (row_ptr[n] - base) entries of K, force per length
- * @param[in] base    (scalar) 0 or 1: what `row_ptr` and `col` count from
- * @param[in] storage (scalar) FETI_FULL, FETI_LOWER or FETI_UPPER
- * @param[in] flags   (scalar) FETI_COPY or FETI_BORROW
- *
- * Safety: The arrays have the given shapes.
- */
-int32_t feti_body_stiffness_i64(struct feti_problem *p,
-                                int64_t body,
-                                int64_t n,
-                                const int64_t *row_ptr,
-                                const int64_t *col,
-                                const double *val,
-                                int32_t base,
-                                int32_t storage,
-                                int32_t flags);
-
-/**
- * Gives the stiffness matrix K of a body by rows with a diagonal of its own, with 32-bit indices.
- *
- * For codes that keep the diagonal apart. The matrix is copied; calling again replaces pattern and
- * values. Columns of a row may come in any order, none twice. With FETI_FULL K must be symmetric
- * within option symmetry_tolerance and is averaged. FETI_INDEFINITE with the unknown of a diagonal
- * entry that is negative, or 0 beside others in its row. After a failure the body keeps the matrix
- * it had.
- *
- * @param[in] p       (scalar) the handle
- * @param[in] body    (scalar) number of the body, from 0
- * @param[in] n       (scalar) unknowns of the body
- * @param[in] diag    (n) K_ii, force per length
- * @param[in] row_ptr (n + 1) row i holds the entries `row_ptr[i]` to `row_ptr[i + 1] - 1`; starts
- *                    with `base`
- * @param[in] col     (row_ptr[n] - base) columns, counted from `base`, none that of its row
- * @param[in] val     (row_ptr[n] - base) entries of K beside the diagonal, force per length
- * @param[in] base    (scalar) 0 or 1: what `row_ptr` and `col` count from
- * @param[in] storage (scalar) FETI_FULL, FETI_LOWER or FETI_UPPER
- * @param[in] flags   (scalar) FETI_COPY, or FETI_BORROW, which copies as well: no matrix is kept
- *                    in this form
- *
- * Safety: The arrays have the given shapes.
- */
-int32_t feti_body_stiffness_split_i32(struct feti_problem *p,
-                                      int64_t body,
-                                      int64_t n,
-                                      const double *diag,
-                                      const int32_t *row_ptr,
-                                      const int32_t *col,
-                                      const double *val,
-                                      int32_t base,
-                                      int32_t storage,
-                                      int32_t flags);
-
-/**
- * Gives the stiffness matrix K of a body by rows with a diagonal of its own, with 64-bit indices.
- *
- * For codes that keep the diagonal apart. The matrix is copied; calling again replaces pattern and
- * values. Columns of a row may come in any order, none twice. With FETI_FULL K must be symmetric
- * within option symmetry_tolerance and is averaged. FETI_INDEFINITE with the unknown of a diagonal
- * entry that is negative, or 0 beside others in its row. After a failure the body keeps the matrix
- * it had.
- *
- * @param[in] p       (scalar) the handle
- * @param[in] body    (scalar) number of the body, from 0
- * @param[in] n       (scalar) unknowns of the body
- * @param[in] diag    (n) K_ii, force per length
- * @param[in] row_ptr (n + 1) row i holds the entries `row_ptr[i]` to `row_ptr[i + 1] - 1`; starts
- *                    with `base`
- * @param[in] col     (row_ptr[n] - base) columns, counted from `base`, none that of its row
- * @param[in] val     (row_ptr[n] - base) entries of K beside the diagonal, force per length
- * @param[in] base    (scalar) 0 or 1: what `row_ptr` and `col` count from
- * @param[in] storage (scalar) FETI_FULL, FETI_LOWER or FETI_UPPER
- * @param[in] flags   (scalar) FETI_COPY, or FETI_BORROW, which copies as well: no matrix is kept
- *                    in this form
- *
- * Safety: The arrays have the given shapes.
- */
-int32_t feti_body_stiffness_split_i64(struct feti_problem *p,
-                                      int64_t body,
-                                      int64_t n,
-                                      const double *diag,
-                                      const int64_t *row_ptr,
-                                      const int64_t *col,
-                                      const double *val,
-                                      int32_t base,
-                                      int32_t storage,
-                                      int32_t flags);
-
-/**
- * Gives the stiffness matrix K of a body as a dense matrix, for boundary elements and condensed
- * bodies.
- *
- * The matrix is copied; calling again replaces it. With FETI_LOWER and FETI_UPPER the other
- * triangle is not read. FETI_INDEFINITE with the unknown of a diagonal entry that is negative, or
- * 0 beside others in its row. After a failure the body keeps the matrix it had.
- *
- * @param[in] p       (scalar) the handle
- * @param[in] body    (scalar) number of the body, from 0
- * @param[in] n       (scalar) unknowns of the body
- * @param[in] k       (ld * n) column-major: K_ij is k[i + ld j], force per length
- * @param[in] ld      (scalar) >= n
- * @param[in] storage (scalar) FETI_FULL, FETI_LOWER or FETI_UPPER
- * @param[in] flags   (scalar) FETI_COPY
- *
- * Safety: The array has the given shape.
- */
-int32_t feti_body_stiffness_dense(struct feti_problem *p,
-                                  int64_t body,
-                                  int64_t n,
-                                  const double *k,
-                                  int64_t ld,
-                                  int32_t storage,
-                                  int32_t flags);
-
-/**
  * Applies the generalised inverse of a body, `Y = K+ X`.
  *
  * Runs feti_setup when it is due. X and Y may be the same array. FETI_STATE for a body that is cut
@@ -2906,71 +2903,311 @@ int32_t feti_dual_apply(struct feti_problem *p, int64_t m, const double *x, doub
  */
 int32_t feti_dual_rhs(struct feti_problem *p, int64_t m, double *d);
 
-/**
- * Gives new values of a stiffness matrix on the pattern it was given with by
- * feti_body_stiffness_i32 or _i64.
- *
- * The values are copied and checked as the first were. The symbolic analysis is kept, and the next
- * setup costs a numeric factorisation of this body; values that are bit by bit those of before
- * cost nothing. Storage is that of the first call. FETI_STATE where the matrix has not been given,
- * or in another form. FETI_INDEFINITE with the unknown of a diagonal entry that is negative, or 0
- * beside others in its row. After a failure the body keeps the values it had.
- *
- * Where the values are borrowed (FETI_BORROW) they are not copied: `val` is the array that was
- * borrowed, rewritten by the host, or another one in its place. They count as changed, also for
- * other bodies that borrow the same array. After a failure with the same array the body is without
- * a matrix until it gets other values.
- *
- * @param[in] p    (scalar) the handle
- * @param[in] body (scalar) number of the body, from 0
- * @param[in] nnz  (scalar) number of values, that of the first call
- * @param[in] val  (nnz) entries of K in the order of the first call, force per length
- *
- * Safety: The array has the given shape.
+/*
+ * Files
+ * =====
+ * Write a problem to a file and read it.
  */
-int32_t feti_body_values(struct feti_problem *p, int64_t body, int64_t nnz, const double *val);
 
 /**
- * Gives new values of a stiffness matrix that was given by feti_body_stiffness_split_i32 or _i64.
+ * Writes all that the host has registered to one file: a bug report is a file.
  *
- * As feti_body_values, for a matrix with a diagonal of its own. FETI_STATE where the matrix has
- * not been given, or in another form. FETI_INDEFINITE with the unknown of a diagonal entry that is
- * negative, or 0 beside others in its row. After a failure the body keeps the values it had.
+ * Bodies with their matrices, null spaces, coordinates, fixing unknowns, loads and numbers of the
+ * host, rows of both kinds with right-hand sides and compliances, and the options that differ from
+ * their defaults, bit by bit; not the answer, start values, saved states and functions of the
+ * host. docs/file_format.md describes every byte. The file is written under another name in the
+ * same folder and renamed when it is complete: after a failure an old file is as it was, and
+ * nothing else is left. FETI_IO with path, operation and the words of the system; FETI_UNSUPPORTED
+ * with the body where functions of the host stand for a matrix (feti_body_operator): no file holds
+ * them. Borrowed matrices are written as they are at that moment. Of a body that is cut
+ * (feti_body_mesh_i32) the pieces are written, not the elements; FETI_STATE where elements of a
+ * body are missing.
  *
  * @param[in] p    (scalar) the handle
- * @param[in] body (scalar) number of the body, from 0
- * @param[in] n    (scalar) unknowns of the body
- * @param[in] diag (n) K_ii, force per length
- * @param[in] nnz  (scalar) number of values beside the diagonal, that of the first call
- * @param[in] val  (nnz) entries of K beside the diagonal in the order of the first call, force per
- *                 length
+ * @param[in] path (text) name of the file; an old one is replaced
  *
- * Safety: The arrays have the given shapes.
+ * Safety: `path` is NUL terminated.
  */
-int32_t feti_body_values_split(struct feti_problem *p,
-                               int64_t body,
-                               int64_t n,
-                               const double *diag,
-                               int64_t nnz,
-                               const double *val);
+int32_t feti_problem_write(struct feti_problem *p, const char *path);
 
 /**
- * Gives new values of a dense stiffness matrix.
+ * Reads what feti_problem_write has written into an empty problem.
  *
- * The matrix is copied and checked as the first was, in the same storage. Where zeros stay zeros
- * the symbolic analysis is kept. FETI_STATE where the matrix has not been given, or in another
- * form. FETI_INDEFINITE with the unknown of a diagonal entry that is negative, or 0 beside others
- * in its row. After a failure the body keeps the matrix it had.
+ * The same solve then gives the same bits. FETI_STATE when there are bodies or rows already.
+ * Options become those of the file, all others their defaults, except index_base, which stays.
+ * Everything goes through the checks of the calls it stands for. FETI_IO with path and the words
+ * of the system, or with the byte where a file is damaged (`entry` of feti_last_error_detail);
+ * FETI_UNSUPPORTED when it holds what a later version has written. After a failure the problem is
+ * as it was.
+ *
+ * Matrices come back by the rows of their lower triangle, columns ascending, with every diagonal
+ * entry, however they were given: feti_body_values then expects the values in this order, and
+ * feti_body_values_split and feti_body_values_dense return FETI_STATE until the matrix has been
+ * given again.
  *
  * @param[in] p    (scalar) the handle
- * @param[in] body (scalar) number of the body, from 0
- * @param[in] n    (scalar) unknowns of the body
- * @param[in] k    (ld * n) column-major: K_ij is k[i + ld j], force per length
- * @param[in] ld   (scalar) >= n
+ * @param[in] path (text) name of the file
  *
- * Safety: The array has the given shape.
+ * Safety: `path` is NUL terminated.
  */
-int32_t feti_body_values_dense(struct feti_problem *p, int64_t body, int64_t n, const double *k, int64_t ld);
+int32_t feti_problem_read(struct feti_problem *p, const char *path);
+
+/*
+ * Errors
+ * ======
+ * Learn what went wrong, where and by how much.
+ */
+
+/**
+ * What went wrong, where and by how much. Numbers count from 0.
+ */
+typedef struct feti_error_detail {
+  /**
+   * Set by the caller: size of the struct in bytes.
+   */
+  int64_t struct_size;
+  /**
+   * Status the function returned; 0: there was no error yet.
+   */
+  int32_t status;
+  /**
+   * Position of the refused argument, from 1 with the handle as 1; 0: none.
+   */
+  int32_t argument;
+  /**
+   * Body, -1: does not apply.
+   */
+  int64_t body;
+  /**
+   * Connected part of the body, -1: does not apply.
+   */
+  int64_t component;
+  /**
+   * Degree of freedom of the body, -1: does not apply.
+   */
+  int64_t dof;
+  /**
+   * Row of the matrix or of the constraints, -1: does not apply.
+   */
+  int64_t row;
+  /**
+   * Position in the array; byte of a text or a file; -1: does not apply.
+   */
+  int64_t entry;
+  /**
+   * The number found, an index counted as in texts (option index_base); NaN: does not apply.
+   */
+  double value;
+  /**
+   * The number it had to stay within; NaN: does not apply.
+   */
+  double limit;
+  /**
+   * Name of the function that failed, NUL terminated.
+   */
+  char function[40];
+  /**
+   * Element of the body, -1: does not apply.
+   */
+  int64_t element;
+  /**
+   * Node with friction, -1: does not apply.
+   */
+  int64_t node;
+} feti_error_detail;
+
+/**
+ * Text of the calling thread's last error.
+ *
+ * The text is cut to fit, always NUL terminated when `cap` > 0. Returns the full length without
+ * the NUL, 0 when there was no error; a successful call does not clear the text. Never fails.
+ *
+ * @param[out] buf (text) room for `cap` characters; NULL asks for the length
+ * @param[in]  cap (scalar) characters in `buf`, 0 with NULL
+ *
+ * Safety: `buf` has room for `cap` characters or is NULL.
+ */
+int64_t feti_last_error(char *buf, int64_t cap);
+
+/**
+ * Facts of the calling thread's last error: function, argument, place, value and limit.
+ *
+ * `struct_size` is set by the caller; no more than that is written. A refusal of `out` leaves the
+ * last error as it is.
+ *
+ * @param[in,out] out (scalar) `struct_size` set, at least 16
+ *
+ * Safety: `out` leads to `struct_size` writable bytes.
+ */
+int32_t feti_last_error_detail(struct feti_error_detail *out);
+
+/**
+ * Text of the problem's last error.
+ *
+ * May be called while another call on the problem runs. The text is cut to fit, always NUL
+ * terminated when `cap` > 0; it is empty when there was no error, and a successful call does not
+ * clear it.
+ *
+ * @param[in]  p   (scalar) the handle
+ * @param[out] buf (text) room for `cap` characters; NULL with `cap` = 0 asks for the length
+ * @param[in]  cap (scalar) characters in `buf`, >= 0
+ * @param[out] len (scalar) full length without the terminating zero
+ *
+ * Safety: `buf` has room for `cap` characters, `len` for one number.
+ */
+int32_t feti_problem_error(struct feti_problem *p, char *buf, int64_t cap, int64_t *len);
+
+/*
+ * Statuses and version
+ * ====================
+ * What functions return, in words; the version of the library.
+ */
+
+/**
+ * Done.
+ */
+#define FETI_OK 0
+
+/**
+ * The limit on steps was reached; the results are those of the last step.
+ */
+#define FETI_ITERATIONS 1
+
+/**
+ * The time limit was reached; the results are those of the last step.
+ */
+#define FETI_TIME 2
+
+/**
+ * The host cancelled; the results are those of the last step, and none before the first.
+ */
+#define FETI_CANCELLED 3
+
+/**
+ * Steps no longer reduce the error; the results are those of the last step.
+ */
+#define FETI_STALLED 4
+
+/**
+ * The certificate does not pass.
+ */
+#define FETI_INACCURATE 5
+
+/**
+ * The answer is usable but incomplete: a small part of the load is not held.
+ */
+#define FETI_MARGINAL 6
+
+/**
+ * Memory could not be reserved, or option memory_limit would be exceeded.
+ */
+#define FETI_MEMORY -1
+
+/**
+ * The handle is NULL, destroyed, or none of the library.
+ */
+#define FETI_HANDLE -2
+
+/**
+ * Another call on this problem is running.
+ */
+#define FETI_BUSY -3
+
+/**
+ * A function of the host reported a failure.
+ */
+#define FETI_CALLBACK -4
+
+/**
+ * Something this call needs has not been given yet.
+ */
+#define FETI_STATE -5
+
+/**
+ * No contact force can balance the load.
+ */
+#define FETI_LOAD_NOT_HELD -6
+
+/**
+ * Rows contradict each other.
+ */
+#define FETI_GAPS_CONTRADICT -7
+
+/**
+ * The null space of a body is not what was claimed, or was not found.
+ */
+#define FETI_NULL_SPACE -8
+
+/**
+ * A stiffness matrix has a negative or a vanishing pivot outside its null space, or drives a soft
+ * motion further than the contact resists it.
+ */
+#define FETI_INDEFINITE -9
+
+/**
+ * A file could not be read or written.
+ */
+#define FETI_IO -10
+
+/**
+ * The library contradicts itself; only destroy and the error functions accept the problem
+ * afterwards.
+ */
+#define FETI_INTERNAL -11
+
+/**
+ * The request is valid but not available.
+ */
+#define FETI_UNSUPPORTED -12
+
+/**
+ * A number, or a product of numbers that were given, does not fit its type.
+ */
+#define FETI_OVERFLOW -13
+
+/**
+ * Bodies slide steadily: friction holds only a part of the load, and no rest was found.
+ */
+#define FETI_SLIDES -14
+
+/**
+ * Argument k refused is FETI_ARGUMENT - k, k from 1 with the handle as 1; FETI_ARGUMENT itself:
+ * data of an earlier call.
+ */
+#define FETI_ARGUMENT -100
+
+/**
+ * Name of a status, such as "FETI_LOAD_NOT_HELD".
+ *
+ * "FETI_ARGUMENT" for every refused argument, "FETI_UNKNOWN" for a number that is no status. The
+ * text is static. Never fails.
+ *
+ * @param[in] status (scalar) any number
+ */
+const char *feti_status_name(int32_t status);
+
+/**
+ * One English sentence on a status.
+ *
+ * The text is static. Never fails.
+ *
+ * @param[in] status (scalar) any number
+ */
+const char *feti_status_text(int32_t status);
+
+/**
+ * Version of the library that runs, "MAJOR.MINOR.PATCH".
+ *
+ * The text is static. Never fails.
+ */
+const char *feti_version(void);
+
+/**
+ * Version of the library that runs as one number, 10000 MAJOR + 100 MINOR + PATCH.
+ *
+ * Never fails.
+ */
+int32_t feti_version_number(void);
 
 #ifdef __cplusplus
 }  // extern "C"

@@ -9,646 +9,73 @@ module feti_contact_c
   integer(c_int32_t), parameter, public :: FETI_CONTACT_VERSION_MINOR = 1_c_int32_t
   integer(c_int32_t), parameter, public :: FETI_CONTACT_VERSION_PATCH = 0_c_int32_t
 
-  !> Kind of rows: `B u <= c`.
-  integer(c_int32_t), parameter, public :: FETI_INEQUALITY = 1_c_int32_t
-  !> Kind of rows: `H u = h`.
-  integer(c_int32_t), parameter, public :: FETI_EQUALITY = 2_c_int32_t
-  !> Kind of rows: tangential rows of nodes with friction (feti_friction_add_i32, feti_friction_add_i64).
-  integer(c_int32_t), parameter, public :: FETI_TANGENTIAL = 3_c_int32_t
-  !> In place of a body: all bodies, by the host's numbers of feti_body_numbering_i32 or _i64 where they have
-  !> some.
-  integer(c_int64_t), parameter, public :: FETI_ALL = -1_c_int64_t
+  ! Problem
+  ! =======
+  ! Begin and end a problem, to which all else belongs.
+
+  public :: feti_problem_create
+  public :: feti_problem_destroy
+
+  interface
+
+    !> Creates a problem without bodies and rows.
+    !>
+    !> The handle is valid until feti_problem_destroy; its number is never used again. After a failure `p` is
+    !> as it was. FETI_MEMORY, without a text, where not even an empty problem finds room.
+    !>
+    !> @param[out] p (scalar) the handle
+    !>
+    !> Safety: `p` has room for a pointer.
+    function feti_problem_create(p) bind(C, name="feti_problem_create")
+      import
+      type(c_ptr), intent(inout) :: p
+      integer(c_int32_t) :: feti_problem_create
+    end function feti_problem_create
+
+    !> Destroys a problem with all it holds and sets the caller's handle to NULL.
+    !>
+    !> FETI_BUSY while another call on the problem runs; the problem and the handle are as before then. Every
+    !> other copy of the handle gives FETI_HANDLE from now on.
+    !>
+    !> @param[in,out] p (scalar) the handle
+    !>
+    !> Safety: `p` leads to a pointer.
+    function feti_problem_destroy(p) bind(C, name="feti_problem_destroy")
+      import
+      type(c_ptr), intent(inout) :: p
+      integer(c_int32_t) :: feti_problem_destroy
+    end function feti_problem_destroy
+
+  end interface
+
+  ! Bodies
+  ! ======
+  ! Give each body its stiffness matrix and its load.
+
   !> Storage: every entry of the symmetric matrix is given.
   integer(c_int32_t), parameter, public :: FETI_FULL = 0_c_int32_t
   !> Storage: entries with column <= row are given.
   integer(c_int32_t), parameter, public :: FETI_LOWER = 1_c_int32_t
   !> Storage: entries with column >= row are given.
   integer(c_int32_t), parameter, public :: FETI_UPPER = 2_c_int32_t
-  !> Null-space flag: the columns span the null space.
-  integer(c_int32_t), parameter, public :: FETI_EXACT = 0_c_int32_t
-  !> Null-space flag: the null space lies in the span of the columns; the library selects.
-  integer(c_int32_t), parameter, public :: FETI_CANDIDATES = 1_c_int32_t
-  !> Null-space flag: motions that K resists softly, if at all; what they are and what resists them is
-  !> computed from K.
-  integer(c_int32_t), parameter, public :: FETI_SOFT = 2_c_int32_t
   !> Stiffness flag: the matrix is copied.
   integer(c_int32_t), parameter, public :: FETI_COPY = 0_c_int32_t
   !> Stiffness flag: the values, and columns in 32 bits from 0, stay where the host has them, where their form
   !> allows it.
   integer(c_int32_t), parameter, public :: FETI_BORROW = 1_c_int32_t
-  !> Null space of a body: vectors of the host that span it (FETI_EXACT), or soft motions (FETI_SOFT).
-  integer(c_int32_t), parameter, public :: FETI_ORIGIN_EXACT = 1_c_int32_t
-  !> Null space of a body: sought among vectors of the host (FETI_CANDIDATES).
-  integer(c_int32_t), parameter, public :: FETI_ORIGIN_CANDIDATES = 2_c_int32_t
-  !> Null space of a body: sought among rigid motions, from coordinates.
-  integer(c_int32_t), parameter, public :: FETI_ORIGIN_COORDINATES = 3_c_int32_t
-  !> Null space of a body: found from K alone.
-  integer(c_int32_t), parameter, public :: FETI_ORIGIN_FOUND = 4_c_int32_t
-  !> State of a row: open, its force is zero.
-  integer(c_int32_t), parameter, public :: FETI_ROW_OPEN = 0_c_int32_t
-  !> State of a row: closed, it carries a force.
-  integer(c_int32_t), parameter, public :: FETI_ROW_CLOSED = 1_c_int32_t
-  !> State of a row: closed with a force that is zero to rounding, or with a force without a clear sign.
-  integer(c_int32_t), parameter, public :: FETI_ROW_WEAK = 2_c_int32_t
-  !> State of a row: unknown, the bodies it touches are in a group that has no answer.
-  integer(c_int32_t), parameter, public :: FETI_ROW_UNKNOWN = 3_c_int32_t
-  !> State of a node with friction: its bound is zero, it carries no tangential force.
-  integer(c_int32_t), parameter, public :: FETI_FRICTION_OPEN = 0_c_int32_t
-  !> State of a node with friction: it sticks, its force is within its bound.
-  integer(c_int32_t), parameter, public :: FETI_FRICTION_STICK = 1_c_int32_t
-  !> State of a node with friction: it slips along a force that reaches its bound.
-  integer(c_int32_t), parameter, public :: FETI_FRICTION_SLIP = 2_c_int32_t
-  !> State of a node with friction: its force reaches its bound to rounding, and it does not slip.
-  integer(c_int32_t), parameter, public :: FETI_FRICTION_WEAK = 3_c_int32_t
-  !> State of a node with friction: unknown, the bodies it touches are in a group that has no answer.
-  integer(c_int32_t), parameter, public :: FETI_FRICTION_UNKNOWN = 4_c_int32_t
-  !> Phase of a call that feti_on_progress tells of: a part of the setup is done.
-  integer(c_int32_t), parameter, public :: FETI_PHASE_SETUP = 1_c_int32_t
-  !> Phase of a call that feti_on_progress tells of: a step of the dual method is done.
-  integer(c_int32_t), parameter, public :: FETI_PHASE_SOLVE = 2_c_int32_t
-  !> Kind of a step: conjugate gradients on the face.
-  integer(c_int32_t), parameter, public :: FETI_STEP_CONJUGATE_GRADIENT = 1_c_int32_t
-  !> Kind of a step: rows lost their force.
-  integer(c_int32_t), parameter, public :: FETI_STEP_EXPANSION = 2_c_int32_t
-  !> Kind of a step: rows got a force.
-  integer(c_int32_t), parameter, public :: FETI_STEP_RELEASE = 3_c_int32_t
-  !> Kind of a step: a direction of the Newton method for friction.
-  integer(c_int32_t), parameter, public :: FETI_STEP_NEWTON = 4_c_int32_t
-  !> Level of a log: nothing.
-  integer(c_int32_t), parameter, public :: FETI_LOG_NONE = 0_c_int32_t
-  !> Level of a log: one line for each solve, and warnings.
-  integer(c_int32_t), parameter, public :: FETI_LOG_RESULT = 1_c_int32_t
-  !> Level of a log: also what is solved and how, and a line for each phase.
-  integer(c_int32_t), parameter, public :: FETI_LOG_PHASE = 2_c_int32_t
-  !> Level of a log: also a line for each step.
-  integer(c_int32_t), parameter, public :: FETI_LOG_STEP = 3_c_int32_t
-  !> Type of an option: number.
-  integer(c_int32_t), parameter, public :: FETI_OPTION_F64 = 1_c_int32_t
-  !> Type of an option: integer.
-  integer(c_int32_t), parameter, public :: FETI_OPTION_I64 = 2_c_int32_t
-  !> Type of an option: text.
-  integer(c_int32_t), parameter, public :: FETI_OPTION_STR = 3_c_int32_t
-  !> Done.
-  integer(c_int32_t), parameter, public :: FETI_OK = 0_c_int32_t
-  !> The limit on steps was reached; the results are those of the last step.
-  integer(c_int32_t), parameter, public :: FETI_ITERATIONS = 1_c_int32_t
-  !> The time limit was reached; the results are those of the last step.
-  integer(c_int32_t), parameter, public :: FETI_TIME = 2_c_int32_t
-  !> The host cancelled; the results are those of the last step, and none before the first.
-  integer(c_int32_t), parameter, public :: FETI_CANCELLED = 3_c_int32_t
-  !> Steps no longer reduce the error; the results are those of the last step.
-  integer(c_int32_t), parameter, public :: FETI_STALLED = 4_c_int32_t
-  !> The certificate does not pass.
-  integer(c_int32_t), parameter, public :: FETI_INACCURATE = 5_c_int32_t
-  !> The answer is usable but incomplete: a small part of the load is not held.
-  integer(c_int32_t), parameter, public :: FETI_MARGINAL = 6_c_int32_t
-  !> Memory could not be reserved, or option memory_limit would be exceeded.
-  integer(c_int32_t), parameter, public :: FETI_MEMORY = -1_c_int32_t
-  !> The handle is NULL, destroyed, or none of the library.
-  integer(c_int32_t), parameter, public :: FETI_HANDLE = -2_c_int32_t
-  !> Another call on this problem is running.
-  integer(c_int32_t), parameter, public :: FETI_BUSY = -3_c_int32_t
-  !> A function of the host reported a failure.
-  integer(c_int32_t), parameter, public :: FETI_CALLBACK = -4_c_int32_t
-  !> Something this call needs has not been given yet.
-  integer(c_int32_t), parameter, public :: FETI_STATE = -5_c_int32_t
-  !> No contact force can balance the load.
-  integer(c_int32_t), parameter, public :: FETI_LOAD_NOT_HELD = -6_c_int32_t
-  !> Rows contradict each other.
-  integer(c_int32_t), parameter, public :: FETI_GAPS_CONTRADICT = -7_c_int32_t
-  !> The null space of a body is not what was claimed, or was not found.
-  integer(c_int32_t), parameter, public :: FETI_NULL_SPACE = -8_c_int32_t
-  !> A stiffness matrix has a negative or a vanishing pivot outside its null space, or drives a soft motion
-  !> further than the contact resists it.
-  integer(c_int32_t), parameter, public :: FETI_INDEFINITE = -9_c_int32_t
-  !> A file could not be read or written.
-  integer(c_int32_t), parameter, public :: FETI_IO = -10_c_int32_t
-  !> The library contradicts itself; only destroy and the error functions accept the problem afterwards.
-  integer(c_int32_t), parameter, public :: FETI_INTERNAL = -11_c_int32_t
-  !> The request is valid but not available.
-  integer(c_int32_t), parameter, public :: FETI_UNSUPPORTED = -12_c_int32_t
-  !> A number, or a product of numbers that were given, does not fit its type.
-  integer(c_int32_t), parameter, public :: FETI_OVERFLOW = -13_c_int32_t
-  !> Bodies slide steadily: friction holds only a part of the load, and no rest was found.
-  integer(c_int32_t), parameter, public :: FETI_SLIDES = -14_c_int32_t
-  !> Argument k refused is FETI_ARGUMENT - k, k from 1 with the handle as 1; FETI_ARGUMENT itself: data of an
-  !> earlier call.
-  integer(c_int32_t), parameter, public :: FETI_ARGUMENT = -100_c_int32_t
-
-  !> What the last solve, or the last setup that failed, has found out about the problem. Numbers count from
-  !> 0.
-  type, bind(C), public :: feti_findings
-    !> Set by the caller: size of the struct in bytes.
-    integer(c_int64_t) :: struct_size
-    !> Status it ended with.
-    integer(c_int32_t) :: status
-    !> FETI_INEQUALITY or FETI_EQUALITY: kind of the contradicting rows' `row`; 0: none.
-    integer(c_int32_t) :: kind
-    !> Body that escapes or was refused; of several groups of bodies the first of the one that ended with this
-    !> status; -1: none.
-    integer(c_int64_t) :: body
-    !> Connected part of the body that escapes, where it has several, -1: does not apply.
-    integer(c_int64_t) :: component
-    !> Unknown of the body that moves fastest or was refused, -1: none.
-    integer(c_int64_t) :: dof
-    !> After FETI_GAPS_CONTRADICT the row with the largest weight, else a row that was refused, -1: none.
-    integer(c_int64_t) :: row
-    !> Rows of both kinds that contradict each other; feti_diagnosis_rows lists them.
-    integer(c_int64_t) :: rows_involved
-    !> Rigid motions that neither loads nor rows determine.
-    integer(c_int64_t) :: undetermined
-    !> Rows of both kinds that repeat the direction of another one.
-    integer(c_int64_t) :: redundant_rows
-    !> Bodies that no row touches.
-    integer(c_int64_t) :: untouched_bodies
-    !> The first of them, -1: none.
-    integer(c_int64_t) :: untouched_body
-    !> How clearly there is no solution, above 0 and at most 1: after FETI_INDEFINITE of a driven motion 1 - 1
-    !> / rho, rho what drives it over what resists it; after FETI_LOAD_NOT_HELD the share of the resultant of
-    !> the load that nothing holds, after FETI_GAPS_CONTRADICT |w'c| over |w|'|c| for the weights w; else NaN.
-    real(c_double) :: margin
-    !> Rigid motion of the body that escapes: velocity of the origin and rotation about the axes; NaN without
-    !> coordinates. feti_diagnosis_motion has it for every unknown.
-    real(c_double) :: motion(6)
-    !> The largest share of the load of bodies that move together which nothing holds, |resultant| / |load| in
-    !> the metric of diag K: above 1e-7 after FETI_LOAD_NOT_HELD; with an answer rounding of the load,
-    !> FETI_MARGINAL above 1e-10.
-    real(c_double) :: unheld
-    !> Bodies with motions that only the rounding of the entries of K may resist; feti_body_info has their
-    !> numbers.
-    integer(c_int64_t) :: doubtful_bodies
-    !> The first of them, -1: none.
-    integer(c_int64_t) :: doubtful_body
-    !> Bodies with rigid motions that K resists or drives softly: weak springs, rounding, geometric stiffness.
-    integer(c_int64_t) :: soft_bodies
-    !> The first of them, -1: none.
-    integer(c_int64_t) :: soft_body
-    !> After FETI_SLIDES what friction holds of the load along the motion, as a part of it; else NaN.
-    real(c_double) :: capacity
-  end type feti_findings
-
-  !> What went wrong, where and by how much. Numbers count from 0.
-  type, bind(C), public :: feti_error_detail
-    !> Set by the caller: size of the struct in bytes.
-    integer(c_int64_t) :: struct_size
-    !> Status the function returned; 0: there was no error yet.
-    integer(c_int32_t) :: status
-    !> Position of the refused argument, from 1 with the handle as 1; 0: none.
-    integer(c_int32_t) :: argument
-    !> Body, -1: does not apply.
-    integer(c_int64_t) :: body
-    !> Connected part of the body, -1: does not apply.
-    integer(c_int64_t) :: component
-    !> Degree of freedom of the body, -1: does not apply.
-    integer(c_int64_t) :: dof
-    !> Row of the matrix or of the constraints, -1: does not apply.
-    integer(c_int64_t) :: row
-    !> Position in the array; byte of a text or a file; -1: does not apply.
-    integer(c_int64_t) :: entry
-    !> The number found, an index counted as in texts (option index_base); NaN: does not apply.
-    real(c_double) :: value
-    !> The number it had to stay within; NaN: does not apply.
-    real(c_double) :: limit
-    !> Name of the function that failed, NUL terminated.
-    character(kind=c_char) :: function(40)
-    !> Element of the body, -1: does not apply.
-    integer(c_int64_t) :: element
-    !> Node with friction, -1: does not apply.
-    integer(c_int64_t) :: node
-  end type feti_error_detail
-
-  !> An option: name, text, default and range.
-  type, bind(C), public :: feti_option
-    !> Set by the caller: size of the struct in bytes.
-    integer(c_int64_t) :: struct_size
-    !> FETI_OPTION_F64, FETI_OPTION_I64 or FETI_OPTION_STR.
-    integer(c_int32_t) :: type
-    !> Zero.
-    integer(c_int32_t) :: reserved
-    !> Smallest value of a number or an integer.
-    real(c_double) :: minimum
-    !> Largest value of a number or an integer.
-    real(c_double) :: maximum
-    !> Default of a number or an integer; NaN for a text.
-    real(c_double) :: default_f64
-    !> Default of an integer.
-    integer(c_int64_t) :: default_i64
-    !> Name, static.
-    type(c_ptr) :: name
-    !> One sentence, static.
-    type(c_ptr) :: doc
-    !> Default of a text, static.
-    type(c_ptr) :: default_str
-  end type feti_option
-
-  !> How a solve went. Counts of a call that failed early are zero, figures NaN. Where some groups of bodies
-  !> have an answer and others have none, counts of work, energy and figures are those of the groups that have
-  !> one.
-  type, bind(C), public :: feti_info
-    !> Set by the caller: size of the struct in bytes.
-    integer(c_int64_t) :: struct_size
-    !> What feti_solve returned: the worst of all groups of bodies.
-    integer(c_int32_t) :: status
-    !> Zero.
-    integer(c_int32_t) :: reserved
-    !> Bodies.
-    integer(c_int64_t) :: bodies
-    !> Unknowns of all bodies.
-    integer(c_int64_t) :: dofs
-    !> Inequality rows.
-    integer(c_int64_t) :: rows
-    !> Equality rows.
-    integer(c_int64_t) :: equalities
-    !> Dimension of the null spaces of all bodies.
-    integer(c_int64_t) :: floating_modes
-    !> Inequality rows that are closed in the answer.
-    integer(c_int64_t) :: active
-    !> Motions that neither loads nor rows determine: the answer has the least sum of `K_ii u_i^2`.
-    integer(c_int64_t) :: undetermined
-    !> Steps of the active-set method.
-    integer(c_int64_t) :: steps
-    !> Steps of conjugate gradients on a face.
-    integer(c_int64_t) :: cg_steps
-    !> Steps that met a bound.
-    integer(c_int64_t) :: expansions
-    !> Steps that left a face.
-    integer(c_int64_t) :: releases
-    !> Products with the dual operator F.
-    integer(c_int64_t) :: dual_applications
-    !> Solutions of the coarse problem.
-    integer(c_int64_t) :: coarse_solves
-    !> Numeric factorisations for K+ since the problem was created; equal bodies share one.
-    integer(c_int64_t) :: factorisations
-    !> Symbolic analyses since the problem was created; bodies with one pattern share one.
-    integer(c_int64_t) :: analyses
-    !> Largest entry of the certificate over what it is allowed, over all bodies and rows that have an answer:
-    !> <= 1 passes.
-    real(c_double) :: worst
-    !> Relative error of equilibrium, as in feti_certificate: of the worst body.
-    real(c_double) :: equilibrium
-    !> Relative error of the balance, of the worst floating body.
-    real(c_double) :: balance
-    !> Relative penetration, of the worst row.
-    real(c_double) :: penetration
-    !> Relative error of the worst equality row.
-    real(c_double) :: equality
-    !> Relative size of a force of the wrong sign, of the worst row.
-    real(c_double) :: negative_force
-    !> Relative error of complementarity, of the worst row.
-    real(c_double) :: complementarity
-    !> Relative gap between primal and dual energy, of the worst group of bodies.
-    real(c_double) :: duality_gap
-    !> Energy 1/2 u'Ku - f'u and that of the springs of compliant rows, 1/2 lambda'C lambda + 1/2 mu'C mu,
-    !> force times length.
-    real(c_double) :: energy
-    !> Seconds for null spaces and factors.
-    real(c_double) :: seconds_setup
-    !> Seconds for the rest.
-    real(c_double) :: seconds_solve
-    !> Faces on which the dual was solved directly.
-    integer(c_int64_t) :: direct_solves
-    !> 1: the answer was finished directly (option finish); 0: that was not asked for or not needed, or
-    !> brought nothing.
-    integer(c_int64_t) :: finished
-    !> Columns of the dual operators of the bodies, one for each body that a row touches, computed since the
-    !> problem was created.
-    integer(c_int64_t) :: columns_computed
-    !> Columns kept through a change of rows or bodies since the problem was created.
-    integer(c_int64_t) :: columns_kept
-    !> Bodies whose dual operator has its entries (option dual_operator).
-    integer(c_int64_t) :: explicit_operators
-    !> Bodies whose dual operator is known by its products alone.
-    integer(c_int64_t) :: implicit_operators
-    !> Bytes of the factors of all bodies and, at most, of the work arrays of their computation.
-    integer(c_int64_t) :: factor_bytes
-    !> Bytes of the explicit dual operators.
-    integer(c_int64_t) :: operator_bytes
-    !> Relative size of a tangential force beyond its bound, of the worst node with friction.
-    real(c_double) :: friction_cone
-    !> Relative work that friction does not do: force that is missing or across where a node slips, of the
-    !> worst node.
-    real(c_double) :: friction_work
-    !> Relative slip where the force is within its bound, of the worst node.
-    real(c_double) :: friction_stick
-    !> Nodes with friction.
-    integer(c_int64_t) :: nodes
-    !> Nodes that stick in the answer.
-    integer(c_int64_t) :: sticking
-    !> Nodes that slip in the answer.
-    integer(c_int64_t) :: slipping
-    !> Newton steps of friction.
-    integer(c_int64_t) :: friction_steps
-    !> Starts that they took, over all groups of bodies with friction.
-    integer(c_int64_t) :: friction_starts
-  end type feti_info
-
-  !> A body as it is given, and what the last setup has made of it; what is not there yet is -1 or NaN.
-  type, bind(C), public :: feti_body_facts
-    !> Set by the caller: size of the struct in bytes.
-    integer(c_int64_t) :: struct_size
-    !> Unknowns.
-    integer(c_int64_t) :: unknowns
-    !> Entries of K as the host gave them, a diagonal of its own counted; dense: all of the storage.
-    integer(c_int64_t) :: entries
-    !> Connected parts of K.
-    integer(c_int64_t) :: components
-    !> Bytes that the library keeps for K.
-    integer(c_int64_t) :: matrix_bytes
-    !> Arrays of K that stay with the host (FETI_BORROW): 0 none, 1 values, 2 values and columns.
-    integer(c_int64_t) :: borrowed
-    !> What the null space comes from: FETI_ORIGIN_EXACT, _CANDIDATES, _COORDINATES or _FOUND.
-    integer(c_int64_t) :: origin
-    !> Dimension of the null space.
-    integer(c_int64_t) :: null_space
-    !> Entries of the factor.
-    integer(c_int64_t) :: factor_entries
-    !> Bytes of the factor and, at most, of the work arrays of its computation.
-    integer(c_int64_t) :: factor_bytes
-    !> The first other body that shares the factor, from 0, -1: none.
-    integer(c_int64_t) :: shared_with
-    !> 1: the dual operator has its entries, 0: it is known by its products.
-    integer(c_int64_t) :: explicit_operator
-    !> Bytes of the explicit dual operator.
-    integer(c_int64_t) :: operator_bytes
-    !> Of a null space that was found: stiffness of the softest other motion over that of the stiffest in it;
-    !> else NaN.
-    real(c_double) :: gap
-    !> Estimated relative error of the forces on the body in the last answer; NaN without one, also of its
-    !> group of bodies alone.
-    real(c_double) :: force_error
-    !> Motions taken as free that K resists by no more than the rounding of its entries may make, -1 before a
-    !> setup.
-    integer(c_int64_t) :: soft_free
-    !> Motions taken as supports though the rounding of the entries of K may be all that resists them: with a
-    !> number above 0 give the null space, or K with more digits. -1 before a setup.
-    integer(c_int64_t) :: soft_held
-    !> How much K resists these motions, largest v'K v over v'diag(K) v; NaN where there are none.
-    real(c_double) :: softness
-    !> What the rounding of the entries may make of it; NaN where there are none.
-    real(c_double) :: softness_of_rounding
-    !> Pieces that the body is cut into, once all its elements have been given; 1 for one that is not cut.
-    integer(c_int64_t) :: pieces
-  end type feti_body_facts
-
-  !> Time and memory of a phase of a setup or a solve.
-  type, bind(C), public :: feti_phase
-    !> Set by the caller: size of the struct in bytes.
-    integer(c_int64_t) :: struct_size
-    !> Bytes of what the phase has made and keeps; 0: they are not counted.
-    integer(c_int64_t) :: bytes
-    !> Wall time in the last call that set up or solved, seconds.
-    real(c_double) :: seconds
-    !> Name, static.
-    type(c_ptr) :: name
-  end type feti_phase
-
-  !> Verdict on an answer, by relative figures: each is `limit` times the ratio of what the worst body or row
-  !> violates to what it is allowed, rounding included, and passes when it is at most `limit`.
-  type, bind(C), public :: feti_certificate
-    !> Set by the caller: size of the struct in bytes.
-    integer(c_int64_t) :: struct_size
-    !> 1: every entry passes.
-    integer(c_int32_t) :: passed
-    !> Zero.
-    integer(c_int32_t) :: reserved
-    !> Option certificate_tolerance.
-    real(c_double) :: limit
-    !> Largest entry over what it is allowed: <= 1 passes.
-    real(c_double) :: worst
-    !> Relative error of equilibrium `K u + B'lambda + H'mu + T'lambda_t = f`, worst body.
-    real(c_double) :: equilibrium
-    !> Relative error of the balance `R'(f - B'lambda - H'mu - T'lambda_t) = 0`, worst floating body.
-    real(c_double) :: balance
-    !> Relative penetration: positive part of `B u - c - C lambda`, C = diag(1/k) being the compliance of the
-    !> rows, worst row.
-    real(c_double) :: penetration
-    !> Relative error of `H u = h + C mu`, worst row.
-    real(c_double) :: equality
-    !> Relative size of a negative contact force, worst row.
-    real(c_double) :: negative_force
-    !> Relative size of the force or of the open gap `c + C lambda - B u`, whichever is less, worst row.
-    real(c_double) :: complementarity
-    !> Relative gap between primal and dual energy, worst group of bodies.
-    real(c_double) :: duality_gap
-    !> Body of the worst equilibrium, from 0, -1: none.
-    integer(c_int64_t) :: equilibrium_body
-    !> Body of the worst balance, from 0, -1: none.
-    integer(c_int64_t) :: balance_body
-    !> Row with the worst penetration, from 0, -1: none.
-    integer(c_int64_t) :: penetration_row
-    !> Equality row with the worst error, from 0, -1: none, or glue of unknowns with one number (option glue).
-    integer(c_int64_t) :: equality_row
-    !> Row with the worst negative force, from 0, -1: none.
-    integer(c_int64_t) :: force_row
-    !> Row with the worst complementarity, from 0, -1: none.
-    integer(c_int64_t) :: complementarity_row
-    !> Relative size of a tangential force beyond its bound, `(|lambda_t| - b)_+` with b = bound + coefficient
-    !> lambda_n, worst node with friction.
-    real(c_double) :: friction_cone
-    !> Relative size of `b |s| - lambda_t's`, the work that friction does not do: zero only with a stick
-    !> inside the bound and a slip s along the force; worst node.
-    real(c_double) :: friction_work
-    !> Relative size of the slip where the force is within its bound, worst node.
-    real(c_double) :: friction_stick
-    !> Node with the worst force beyond its bound, from 0, -1: none.
-    integer(c_int64_t) :: friction_cone_node
-    !> Node with the worst work, from 0, -1: none.
-    integer(c_int64_t) :: friction_work_node
-    !> Node with the worst slip, from 0, -1: none.
-    integer(c_int64_t) :: friction_stick_node
-  end type feti_certificate
-
-  !> Where a setup or a solve stands.
-  type, bind(C), public :: feti_progress
-    !> Size of the struct in bytes, set by the library.
-    integer(c_int64_t) :: struct_size
-    !> FETI_PHASE_SETUP (a body has been analysed or factorised, its dual operator or the preconditioner made,
-    !> or half a second has passed) or FETI_PHASE_SOLVE.
-    integer(c_int32_t) :: phase
-    !> FETI_STEP_CONJUGATE_GRADIENT, FETI_STEP_EXPANSION, FETI_STEP_RELEASE or, with friction,
-    !> FETI_STEP_NEWTON; 0 in the setup.
-    integer(c_int32_t) :: step
-    !> Steps so far.
-    integer(c_int64_t) :: steps
-    !> Products with the dual operator F so far.
-    integer(c_int64_t) :: products
-    !> Inequality rows with a force; parallel rows count once.
-    integer(c_int64_t) :: active
-    !> Norm of the projected gradient over the one that stops the solve; NaN in the setup, as all that follow.
-    real(c_double) :: residual
-    !> Its part on rows with a force, over the same.
-    real(c_double) :: residual_free
-    !> Its part on rows without a force that want one, over the same.
-    real(c_double) :: residual_chopped
-    !> Dual functional 1/2 lambda'F lambda - lambda'd, force times length: every step lowers it.
-    real(c_double) :: theta
-    !> Seconds since the call began, also in the setup.
-    real(c_double) :: seconds
-    !> Part of the work of the setup that is done, from 0 to 1: an estimate that never falls; NaN in the
-    !> solve.
-    real(c_double) :: fraction
-  end type feti_progress
+  !> In place of a body: all bodies, by the host's numbers of feti_body_numbering_i32 or _i64 where they have
+  !> some.
+  integer(c_int64_t), parameter, public :: FETI_ALL = -1_c_int64_t
 
   public :: feti_body_add
-  public :: feti_body_coordinates
-  public :: feti_body_coordinates_flags
-  public :: feti_body_load
-  public :: feti_body_components
-  public :: feti_body_info
-  public :: feti_diagnosis
-  public :: feti_diagnosis_rows
-  public :: feti_diagnosis_dependent
-  public :: feti_diagnosis_untouched
-  public :: feti_diagnosis_undetermined
-  public :: feti_diagnosis_undetermined_motion
-  public :: feti_diagnosis_motion
-  public :: feti_body_mesh_i32
-  public :: feti_body_mesh_i64
-  public :: feti_body_element
-  public :: feti_body_elements
-  public :: feti_body_elements_size
-  public :: feti_body_held_forces
-  public :: feti_body_pieces
-  public :: feti_last_error
-  public :: feti_last_error_detail
-  public :: feti_problem_write
-  public :: feti_problem_read
-  public :: feti_friction_add_i32
-  public :: feti_friction_add_i64
-  public :: feti_friction_law
-  public :: feti_friction_compliance
-  public :: feti_friction_reference
-  public :: feti_friction_commit
-  public :: feti_friction_clear
-  public :: feti_on_log
-  public :: feti_body_null_space
-  public :: feti_body_null_space_get
-  public :: feti_body_fixing
-  public :: feti_body_fixing_set
-  public :: feti_body_numbering_i32
-  public :: feti_body_numbering_i64
-  public :: feti_body_operator
-  public :: feti_set_f64
-  public :: feti_set_i64
-  public :: feti_set_str
-  public :: feti_set_text
-  public :: feti_get_f64
-  public :: feti_get_i64
-  public :: feti_get_str
-  public :: feti_option_count
-  public :: feti_option_at
-  public :: feti_phase_count
-  public :: feti_phase_at
-  public :: feti_problem_create
-  public :: feti_problem_destroy
-  public :: feti_problem_error
-  public :: feti_cancel
-  public :: feti_on_progress
-  public :: feti_displacement
-  public :: feti_reaction
-  public :: feti_amplitudes
-  public :: feti_multipliers
-  public :: feti_gaps
-  public :: feti_active
-  public :: feti_friction_slips
-  public :: feti_friction_states
-  public :: feti_counts
-  public :: feti_rows_add_i32
-  public :: feti_rows_add_i64
-  public :: feti_rows_rhs
-  public :: feti_rows_compliance
-  public :: feti_rows_clear
-  public :: feti_setup
-  public :: feti_solve
-  public :: feti_check
-  public :: feti_check_friction
-  public :: feti_start_from
-  public :: feti_state_save
-  public :: feti_state_restore
-  public :: feti_state_drop
-  public :: feti_status_name
-  public :: feti_status_text
-  public :: feti_version
-  public :: feti_version_number
   public :: feti_body_stiffness_i32
   public :: feti_body_stiffness_i64
   public :: feti_body_stiffness_split_i32
   public :: feti_body_stiffness_split_i64
   public :: feti_body_stiffness_dense
-  public :: feti_body_kplus
-  public :: feti_dual_apply
-  public :: feti_dual_rhs
-  public :: feti_body_values
-  public :: feti_body_values_split
-  public :: feti_body_values_dense
-
-  public :: feti_progress_fn
-  abstract interface
-
-    !> A function of the host that hears of every body in every part of a setup and of every step of a solve.
-    !>
-    !> It returns 0 to go on, a number > 0 to cancel, a number < 0 to report a failure of its own.
-    !>
-    !> @param[in] user (scalar) the host's own, as given to feti_on_progress; may be NULL
-    !> @param[in] now  (scalar) valid during the call
-    function feti_progress_fn(user, now) bind(C)
-      import
-      type(c_ptr), value :: user
-      type(feti_progress), intent(in) :: now
-      integer(c_int32_t) :: feti_progress_fn
-    end function feti_progress_fn
-
-  end interface
-
-  public :: feti_log_fn
-  abstract interface
-
-    !> A function of the host that gets a line of text.
-    !>
-    !> It returns 0 to go on, any other number to report a failure of its own.
-    !>
-    !> @param[in] user  (scalar) the host's own, as given to feti_on_log; may be NULL
-    !> @param[in] level (scalar) FETI_LOG_RESULT, FETI_LOG_PHASE or FETI_LOG_STEP
-    !> @param[in] text  (text) one line in UTF-8 without its end, valid during the call
-    function feti_log_fn(user, level, text) bind(C)
-      import
-      type(c_ptr), value :: user
-      integer(c_int32_t), value :: level
-      character(kind=c_char), intent(in) :: text(*)
-      integer(c_int32_t) :: feti_log_fn
-    end function feti_log_fn
-
-  end interface
-
-  public :: feti_operator_fn
-  abstract interface
-
-    !> A function of the host that multiplies by a matrix A it keeps: Y = A X.
-    !>
-    !> It returns 0, or any other number for a failure of its own. X and Y never overlap.
-    !>
-    !> @param[in]  user (scalar) the host's own, as given to feti_body_operator; may be NULL
-    !> @param[in]  body (scalar) number of the body, from 0
-    !> @param[in]  n    (scalar) unknowns of the body
-    !> @param[in]  nrhs (scalar) columns of X and Y, 1 to 32
-    !> @param[in]  x    (ldx * nrhs) X, column-major, finite
-    !> @param[in]  ldx  (scalar) >= n
-    !> @param[out] y    (ldy * nrhs) Y, column-major; holds zeros before
-    !> @param[in]  ldy  (scalar) >= n
-    function feti_operator_fn(user, body, n, nrhs, x, ldx, y, ldy) bind(C)
-      import
-      type(c_ptr), value :: user
-      integer(c_int64_t), value :: body
-      integer(c_int64_t), value :: n
-      integer(c_int64_t), value :: nrhs
-      real(c_double), intent(in) :: x(*)
-      integer(c_int64_t), value :: ldx
-      real(c_double), intent(out) :: y(*)
-      integer(c_int64_t), value :: ldy
-      integer(c_int32_t) :: feti_operator_fn
-    end function feti_operator_fn
-
-  end interface
+  public :: feti_body_load
+  public :: feti_body_numbering_i32
+  public :: feti_body_numbering_i64
 
   interface
 
@@ -669,6 +96,299 @@ module feti_contact_c
       integer(c_int64_t), intent(out) :: body
       integer(c_int32_t) :: feti_body_add
     end function feti_body_add
+
+    !> Gives the stiffness matrix K of a body by rows, with 32-bit indices.
+    !>
+    !> The matrix is copied; calling again replaces pattern and values. Columns of a row may come in any
+    !> order, none twice. With FETI_FULL K must be symmetric within option symmetry_tolerance and is averaged.
+    !> FETI_INDEFINITE with the unknown of a diagonal entry that is negative, or 0 beside others in its row.
+    !> After a failure the body keeps the matrix it had.
+    !>
+    !> With FETI_BORROW the values, and columns in 32 bits counted from 0, are not copied if storage is
+    !> FETI_LOWER, columns ascend and every row ends with its diagonal entry; otherwise all is copied
+    !> (`borrowed` of feti_body_info tells). Borrowed arrays stay readable until the matrix is replaced or the
+    !> problem destroyed, and unchanged but for this: between two calls the values may be rewritten, and the
+    !> next call then is feti_body_values with the same array.
+    !>
+    !> @param[in] p       (scalar) the handle
+    !> @param[in] body    (scalar) number of the body, from 0
+    !> @param[in] n       (scalar) unknowns of the body
+    !> @param[in] row_ptr (n + 1) row i holds the entries `row_ptr[i]` to `row_ptr[i + 1] - 1`; starts with
+    !>                    `base`
+    !> @param[in] col     (row_ptr[n] - base) columns, counted from `base`
+    !> @param[in] val     (row_ptr[n] - base) entries of K, force per length
+    !> @param[in] base    (scalar) 0 or 1: what `row_ptr` and `col` count from
+    !> @param[in] storage (scalar) FETI_FULL, FETI_LOWER or FETI_UPPER
+    !> @param[in] flags   (scalar) FETI_COPY or FETI_BORROW
+    !>
+    !> Safety: The arrays have the given shapes.
+    function feti_body_stiffness_i32(p, body, n, row_ptr, col, val, base, storage, flags) &
+        bind(C, name="feti_body_stiffness_i32")
+      import
+      type(c_ptr), value :: p
+      integer(c_int64_t), value :: body
+      integer(c_int64_t), value :: n
+      integer(c_int32_t), intent(in) :: row_ptr(*)
+      integer(c_int32_t), intent(in) :: col(*)
+      real(c_double), intent(in) :: val(*)
+      integer(c_int32_t), value :: base
+      integer(c_int32_t), value :: storage
+      integer(c_int32_t), value :: flags
+      integer(c_int32_t) :: feti_body_stiffness_i32
+    end function feti_body_stiffness_i32
+
+    !> Gives the stiffness matrix K of a body by rows, with 64-bit indices.
+    !>
+    !> The matrix is copied; calling again replaces pattern and values. Columns of a row may come in any
+    !> order, none twice. With FETI_FULL K must be symmetric within option symmetry_tolerance and is averaged.
+    !> FETI_INDEFINITE with the unknown of a diagonal entry that is negative, or 0 beside others in its row.
+    !> After a failure the body keeps the matrix it had.
+    !>
+    !> With FETI_BORROW the values, and columns in 32 bits counted from 0, are not copied if storage is
+    !> FETI_LOWER, columns ascend and every row ends with its diagonal entry; otherwise all is copied
+    !> (`borrowed` of feti_body_info tells). Borrowed arrays stay readable until the matrix is replaced or the
+    !> problem destroyed, and unchanged but for this: between two calls the values may be rewritten, and the
+    !> next call then is feti_body_values with the same array.
+    !>
+    !> @param[in] p       (scalar) the handle
+    !> @param[in] body    (scalar) number of the body, from 0
+    !> @param[in] n       (scalar) unknowns of the body
+    !> @param[in] row_ptr (n + 1) row i holds the entries `row_ptr[i]` to `row_ptr[i + 1] - 1`; starts with
+    !>                    `base`
+    !> @param[in] col     (row_ptr[n] - base) columns, counted from `base`
+    !> @param[in] val     (row_ptr[n] - base) entries of K, force per length
+    !> @param[in] base    (scalar) 0 or 1: what `row_ptr` and `col` count from
+    !> @param[in] storage (scalar) FETI_FULL, FETI_LOWER or FETI_UPPER
+    !> @param[in] flags   (scalar) FETI_COPY or FETI_BORROW
+    !>
+    !> Safety: The arrays have the given shapes.
+    function feti_body_stiffness_i64(p, body, n, row_ptr, col, val, base, storage, flags) &
+        bind(C, name="feti_body_stiffness_i64")
+      import
+      type(c_ptr), value :: p
+      integer(c_int64_t), value :: body
+      integer(c_int64_t), value :: n
+      integer(c_int64_t), intent(in) :: row_ptr(*)
+      integer(c_int64_t), intent(in) :: col(*)
+      real(c_double), intent(in) :: val(*)
+      integer(c_int32_t), value :: base
+      integer(c_int32_t), value :: storage
+      integer(c_int32_t), value :: flags
+      integer(c_int32_t) :: feti_body_stiffness_i64
+    end function feti_body_stiffness_i64
+
+    !> Gives the stiffness matrix K of a body by rows with a diagonal of its own, with 32-bit indices.
+    !>
+    !> For codes that keep the diagonal apart. The matrix is copied; calling again replaces pattern and
+    !> values. Columns of a row may come in any order, none twice. With FETI_FULL K must be symmetric within
+    !> option symmetry_tolerance and is averaged. FETI_INDEFINITE with the unknown of a diagonal entry that is
+    !> negative, or 0 beside others in its row. After a failure the body keeps the matrix it had.
+    !>
+    !> @param[in] p       (scalar) the handle
+    !> @param[in] body    (scalar) number of the body, from 0
+    !> @param[in] n       (scalar) unknowns of the body
+    !> @param[in] diag    (n) K_ii, force per length
+    !> @param[in] row_ptr (n + 1) row i holds the entries `row_ptr[i]` to `row_ptr[i + 1] - 1`; starts with
+    !>                    `base`
+    !> @param[in] col     (row_ptr[n] - base) columns, counted from `base`, none that of its row
+    !> @param[in] val     (row_ptr[n] - base) entries of K beside the diagonal, force per length
+    !> @param[in] base    (scalar) 0 or 1: what `row_ptr` and `col` count from
+    !> @param[in] storage (scalar) FETI_FULL, FETI_LOWER or FETI_UPPER
+    !> @param[in] flags   (scalar) FETI_COPY, or FETI_BORROW, which copies as well: no matrix is kept in this
+    !>                    form
+    !>
+    !> Safety: The arrays have the given shapes.
+    function feti_body_stiffness_split_i32(p, body, n, diag, row_ptr, col, val, base, storage, flags) &
+        bind(C, name="feti_body_stiffness_split_i32")
+      import
+      type(c_ptr), value :: p
+      integer(c_int64_t), value :: body
+      integer(c_int64_t), value :: n
+      real(c_double), intent(in) :: diag(*)
+      integer(c_int32_t), intent(in) :: row_ptr(*)
+      integer(c_int32_t), intent(in) :: col(*)
+      real(c_double), intent(in) :: val(*)
+      integer(c_int32_t), value :: base
+      integer(c_int32_t), value :: storage
+      integer(c_int32_t), value :: flags
+      integer(c_int32_t) :: feti_body_stiffness_split_i32
+    end function feti_body_stiffness_split_i32
+
+    !> Gives the stiffness matrix K of a body by rows with a diagonal of its own, with 64-bit indices.
+    !>
+    !> For codes that keep the diagonal apart. The matrix is copied; calling again replaces pattern and
+    !> values. Columns of a row may come in any order, none twice. With FETI_FULL K must be symmetric within
+    !> option symmetry_tolerance and is averaged. FETI_INDEFINITE with the unknown of a diagonal entry that is
+    !> negative, or 0 beside others in its row. After a failure the body keeps the matrix it had.
+    !>
+    !> @param[in] p       (scalar) the handle
+    !> @param[in] body    (scalar) number of the body, from 0
+    !> @param[in] n       (scalar) unknowns of the body
+    !> @param[in] diag    (n) K_ii, force per length
+    !> @param[in] row_ptr (n + 1) row i holds the entries `row_ptr[i]` to `row_ptr[i + 1] - 1`; starts with
+    !>                    `base`
+    !> @param[in] col     (row_ptr[n] - base) columns, counted from `base`, none that of its row
+    !> @param[in] val     (row_ptr[n] - base) entries of K beside the diagonal, force per length
+    !> @param[in] base    (scalar) 0 or 1: what `row_ptr` and `col` count from
+    !> @param[in] storage (scalar) FETI_FULL, FETI_LOWER or FETI_UPPER
+    !> @param[in] flags   (scalar) FETI_COPY, or FETI_BORROW, which copies as well: no matrix is kept in this
+    !>                    form
+    !>
+    !> Safety: The arrays have the given shapes.
+    function feti_body_stiffness_split_i64(p, body, n, diag, row_ptr, col, val, base, storage, flags) &
+        bind(C, name="feti_body_stiffness_split_i64")
+      import
+      type(c_ptr), value :: p
+      integer(c_int64_t), value :: body
+      integer(c_int64_t), value :: n
+      real(c_double), intent(in) :: diag(*)
+      integer(c_int64_t), intent(in) :: row_ptr(*)
+      integer(c_int64_t), intent(in) :: col(*)
+      real(c_double), intent(in) :: val(*)
+      integer(c_int32_t), value :: base
+      integer(c_int32_t), value :: storage
+      integer(c_int32_t), value :: flags
+      integer(c_int32_t) :: feti_body_stiffness_split_i64
+    end function feti_body_stiffness_split_i64
+
+    !> Gives the stiffness matrix K of a body as a dense matrix, for boundary elements and condensed bodies.
+    !>
+    !> The matrix is copied; calling again replaces it. With FETI_LOWER and FETI_UPPER the other triangle is
+    !> not read. FETI_INDEFINITE with the unknown of a diagonal entry that is negative, or 0 beside others in
+    !> its row. After a failure the body keeps the matrix it had.
+    !>
+    !> @param[in] p       (scalar) the handle
+    !> @param[in] body    (scalar) number of the body, from 0
+    !> @param[in] n       (scalar) unknowns of the body
+    !> @param[in] k       (ld * n) column-major: K_ij is k[i + ld j], force per length
+    !> @param[in] ld      (scalar) >= n
+    !> @param[in] storage (scalar) FETI_FULL, FETI_LOWER or FETI_UPPER
+    !> @param[in] flags   (scalar) FETI_COPY
+    !>
+    !> Safety: The array has the given shape.
+    function feti_body_stiffness_dense(p, body, n, k, ld, storage, flags) &
+        bind(C, name="feti_body_stiffness_dense")
+      import
+      type(c_ptr), value :: p
+      integer(c_int64_t), value :: body
+      integer(c_int64_t), value :: n
+      real(c_double), intent(in) :: k(*)
+      integer(c_int64_t), value :: ld
+      integer(c_int32_t), value :: storage
+      integer(c_int32_t), value :: flags
+      integer(c_int32_t) :: feti_body_stiffness_dense
+    end function feti_body_stiffness_dense
+
+    !> Gives the load of a body.
+    !>
+    !> The load is copied and holds until it is given again; a body without one has zero load. With FETI_ALL
+    !> the array holds the loads of all bodies: by the host's numbers where they have some, entries of no
+    !> unknown not looked at; else one body after the other. Of unknowns with one number (option glue) that of
+    !> the first body has the load. FETI_STATE with FETI_ALL where some bodies have numbers of the host and
+    !> others have none. After a failure the loads are as they were.
+    !>
+    !> @param[in] p    (scalar) the handle
+    !> @param[in] body (scalar) number of the body, from 0, or FETI_ALL
+    !> @param[in] n    (scalar) unknowns of the body; with FETI_ALL at least the largest number + 1, without
+    !>                 numbers all unknowns
+    !> @param[in] f    (n) force
+    !>
+    !> Safety: The array has the given shape.
+    function feti_body_load(p, body, n, f) bind(C, name="feti_body_load")
+      import
+      type(c_ptr), value :: p
+      integer(c_int64_t), value :: body
+      integer(c_int64_t), value :: n
+      real(c_double), intent(in) :: f(*)
+      integer(c_int32_t) :: feti_body_load
+    end function feti_body_load
+
+    !> Gives the host's own numbers of the unknowns of a body, with 32-bit integers.
+    !>
+    !> A host that numbers all unknowns through gives every body its share; a number names one unknown of all
+    !> bodies. Then FETI_ALL as body in feti_body_load, feti_displacement and feti_reaction means arrays in
+    !> these numbers, and so do rows whose bodies are NULL in feti_rows_add_i32 and _i64. All bodies have
+    !> numbers then: FETI_STATE names one that has not. The numbers are copied; calling again replaces them.
+    !> Rows that are there stay on their unknowns. After a failure the body keeps the numbers it had.
+    !>
+    !> With option glue = 1, set before, unknowns of several bodies may have one number: they move together,
+    !> by equality rows that only the library sees. The host's rows, their multipliers and the counts stay
+    !> what they are. With FETI_ALL a load on such a number is that of its first body, a displacement that of
+    !> all of them, and a reaction the sum over them; rows whose bodies are NULL act on the first. The last
+    !> answer goes with a change of such numbers.
+    !>
+    !> @param[in] p      (scalar) the handle
+    !> @param[in] body   (scalar) number of the body, from 0
+    !> @param[in] n      (scalar) unknowns of the body
+    !> @param[in] number (n) number of each unknown, counted from `base`, none that of another unknown of the
+    !>                   body, nor, without option glue, of another body
+    !> @param[in] base   (scalar) 0 or 1: what the numbers count from
+    !>
+    !> Safety: The array has the given shape.
+    function feti_body_numbering_i32(p, body, n, number, base) bind(C, name="feti_body_numbering_i32")
+      import
+      type(c_ptr), value :: p
+      integer(c_int64_t), value :: body
+      integer(c_int64_t), value :: n
+      integer(c_int32_t), intent(in) :: number(*)
+      integer(c_int32_t), value :: base
+      integer(c_int32_t) :: feti_body_numbering_i32
+    end function feti_body_numbering_i32
+
+    !> Gives the host's own numbers of the unknowns of a body, with 64-bit integers.
+    !>
+    !> A host that numbers all unknowns through gives every body its share; a number names one unknown of all
+    !> bodies. Then FETI_ALL as body in feti_body_load, feti_displacement and feti_reaction means arrays in
+    !> these numbers, and so do rows whose bodies are NULL in feti_rows_add_i32 and _i64. All bodies have
+    !> numbers then: FETI_STATE names one that has not. The numbers are copied; calling again replaces them.
+    !> Rows that are there stay on their unknowns. After a failure the body keeps the numbers it had.
+    !>
+    !> With option glue = 1, set before, unknowns of several bodies may have one number: they move together,
+    !> by equality rows that only the library sees. The host's rows, their multipliers and the counts stay
+    !> what they are. With FETI_ALL a load on such a number is that of its first body, a displacement that of
+    !> all of them, and a reaction the sum over them; rows whose bodies are NULL act on the first. The last
+    !> answer goes with a change of such numbers.
+    !>
+    !> @param[in] p      (scalar) the handle
+    !> @param[in] body   (scalar) number of the body, from 0
+    !> @param[in] n      (scalar) unknowns of the body
+    !> @param[in] number (n) number of each unknown, counted from `base`, none that of another unknown of the
+    !>                   body, nor, without option glue, of another body
+    !> @param[in] base   (scalar) 0 or 1: what the numbers count from
+    !>
+    !> Safety: The array has the given shape.
+    function feti_body_numbering_i64(p, body, n, number, base) bind(C, name="feti_body_numbering_i64")
+      import
+      type(c_ptr), value :: p
+      integer(c_int64_t), value :: body
+      integer(c_int64_t), value :: n
+      integer(c_int64_t), intent(in) :: number(*)
+      integer(c_int32_t), value :: base
+      integer(c_int32_t) :: feti_body_numbering_i64
+    end function feti_body_numbering_i64
+
+  end interface
+
+  ! Null spaces
+  ! ===========
+  ! Say which motions a matrix does not resist; never said, the library finds them.
+
+  !> Null-space flag: the columns span the null space.
+  integer(c_int32_t), parameter, public :: FETI_EXACT = 0_c_int32_t
+  !> Null-space flag: the null space lies in the span of the columns; the library selects.
+  integer(c_int32_t), parameter, public :: FETI_CANDIDATES = 1_c_int32_t
+  !> Null-space flag: motions that K resists softly, if at all; what they are and what resists them is
+  !> computed from K.
+  integer(c_int32_t), parameter, public :: FETI_SOFT = 2_c_int32_t
+
+  public :: feti_body_coordinates
+  public :: feti_body_coordinates_flags
+  public :: feti_body_null_space
+  public :: feti_body_null_space_get
+  public :: feti_body_fixing_set
+  public :: feti_body_fixing
+
+  interface
 
     !> Gives position and direction of every unknown of a body, from which candidates for its null space are
     !> made.
@@ -724,220 +444,119 @@ module feti_contact_c
       integer(c_int32_t) :: feti_body_coordinates_flags
     end function feti_body_coordinates_flags
 
-    !> Gives the load of a body.
+    !> Gives a basis of the null space of a body, candidates for it, or motions that K resists softly.
     !>
-    !> The load is copied and holds until it is given again; a body without one has zero load. With FETI_ALL
-    !> the array holds the loads of all bodies: by the host's numbers where they have some, entries of no
-    !> unknown not looked at; else one body after the other. Of unknowns with one number (option glue) that of
-    !> the first body has the load. FETI_STATE with FETI_ALL where some bodies have numbers of the host and
-    !> others have none. After a failure the loads are as they were.
+    !> The basis is copied; calling again replaces it. Never called: the coordinates of the unknowns give
+    !> candidates (feti_body_coordinates), and without coordinates the library finds the null space from K.
+    !> That `K R = 0` holds is checked in feti_setup. With FETI_SOFT it need not hold: weak springs, rounding
+    !> of the entries of K and geometric stiffness may resist or drive the motions. The columns then choose
+    !> the fixing unknowns; the motions, and the stiffness against them, are computed from K and taken into
+    !> account exactly. Where K drives the body between these unknowns, up to six more are fixed, each with a
+    !> column of its own (feti_body_null_space_get). FETI_UNSUPPORTED from feti_setup where K+ is the host's
+    !> (feti_body_operator); FETI_INDEFINITE from feti_setup where K drives more than that, from feti_solve
+    !> where the contact leaves a motion that is driven. After a failure the body keeps what it had.
     !>
-    !> @param[in] p    (scalar) the handle
-    !> @param[in] body (scalar) number of the body, from 0, or FETI_ALL
-    !> @param[in] n    (scalar) unknowns of the body; with FETI_ALL at least the largest number + 1, without
-    !>                 numbers all unknowns
-    !> @param[in] f    (n) force
-    !>
-    !> Safety: The array has the given shape.
-    function feti_body_load(p, body, n, f) bind(C, name="feti_body_load")
-      import
-      type(c_ptr), value :: p
-      integer(c_int64_t), value :: body
-      integer(c_int64_t), value :: n
-      real(c_double), intent(in) :: f(*)
-      integer(c_int32_t) :: feti_body_load
-    end function feti_body_load
-
-    !> Tells the connected part of every unknown of a body.
-    !>
-    !> A body may be in several parts that share no entry of K but zeros. They are numbered from 0 by their
-    !> first unknowns. FETI_STATE before the stiffness matrix is given. After a failure nothing is written.
-    !>
-    !> @param[in]  p         (scalar) the handle
-    !> @param[in]  body      (scalar) number of the body, from 0
-    !> @param[in]  n         (scalar) unknowns of the body
-    !> @param[out] component (n) part of each unknown, from 0
+    !> @param[in] p     (scalar) the handle
+    !> @param[in] body  (scalar) number of the body, from 0
+    !> @param[in] r     (scalar) columns; 0 with FETI_EXACT claims that K is not singular
+    !> @param[in] n     (scalar) unknowns of the body
+    !> @param[in] basis (ldr * r) column-major: R_ij is basis[i + ldr j]; may be NULL when r = 0
+    !> @param[in] ldr   (scalar) >= n
+    !> @param[in] flags (scalar) FETI_EXACT, FETI_CANDIDATES or FETI_SOFT
     !>
     !> Safety: The array has the given shape.
-    function feti_body_components(p, body, n, component) bind(C, name="feti_body_components")
+    function feti_body_null_space(p, body, r, n, basis, ldr, flags) bind(C, name="feti_body_null_space")
       import
       type(c_ptr), value :: p
       integer(c_int64_t), value :: body
+      integer(c_int64_t), value :: r
       integer(c_int64_t), value :: n
-      integer(c_int64_t), intent(out) :: component(*)
-      integer(c_int32_t) :: feti_body_components
-    end function feti_body_components
+      type(c_ptr), value :: basis
+      integer(c_int64_t), value :: ldr
+      integer(c_int32_t), value :: flags
+      integer(c_int32_t) :: feti_body_null_space
+    end function feti_body_null_space
 
-    !> Tells what is known about a body: its matrix, its null space, its factor, its dual operator.
+    !> Reads the null space of a body that the library works with.
     !>
-    !> Nothing is computed but the connected parts. After a failure nothing is written.
+    !> Runs feti_setup when it is due. After a failure nothing is written.
     !>
-    !> @param[in]     p    (scalar) the handle
-    !> @param[in]     body (scalar) number of the body, from 0
-    !> @param[in,out] out  (scalar) `struct_size` set, at least 16
-    !>
-    !> Safety: `out` leads to `struct_size` writable bytes.
-    function feti_body_info(p, body, out) bind(C, name="feti_body_info")
-      import
-      type(c_ptr), value :: p
-      integer(c_int64_t), value :: body
-      type(feti_body_facts), intent(inout) :: out
-      integer(c_int32_t) :: feti_body_info
-    end function feti_body_info
-
-    !> What the last solve, or the last setup that failed, has found out about the problem.
-    !>
-    !> After FETI_LOAD_NOT_HELD: the body that escapes, its motion and the margin. After FETI_SLIDES: the body
-    !> that slides, its motion and the capacity of friction. After FETI_GAPS_CONTRADICT: the rows that
-    !> contradict each other. Of several groups of bodies without an answer the first is told of. After
-    !> FETI_INDEFINITE, FETI_NULL_SPACE and the like: the body and the unknown. With an answer: motions left
-    !> undetermined, redundant rows, bodies that no row touches. Kept until the next solve or the next setup
-    !> that fails; FETI_STATE before the first. After a failure nothing is written.
-    !>
-    !> @param[in]     p   (scalar) the handle
-    !> @param[in,out] out (scalar) `struct_size` set, at least 16
-    !>
-    !> Safety: `out` leads to `struct_size` writable bytes.
-    function feti_diagnosis(p, out) bind(C, name="feti_diagnosis")
-      import
-      type(c_ptr), value :: p
-      type(feti_findings), intent(inout) :: out
-      integer(c_int32_t) :: feti_diagnosis
-    end function feti_diagnosis
-
-    !> Lists the rows of one kind that contradict each other, with their weights; without a contradiction the
-    !> redundant rows.
-    !>
-    !> Weights w, largest 1, prove a contradiction: with the rows of both kinds the sum of w b is 0 and the
-    !> sum of w c is negative, w > 0 for inequalities; where unknowns with one number are glued (option glue)
-    !> it is 0 over the numbers, and feti_last_error names some of them. The weight of a redundant row is its
-    !> multiple of the row that it repeats. FETI_STATE before the first solve. After a failure nothing is
-    !> written.
-    !>
-    !> @param[in]  p      (scalar) the handle
-    !> @param[in]  kind   (scalar) FETI_INEQUALITY or FETI_EQUALITY
-    !> @param[in]  cap    (scalar) rows that `row` and `weight` have room for
-    !> @param[out] count  (scalar) rows there are; those that fit are written
-    !> @param[out] row    (cap) numbers from 0, ascending; may be NULL
-    !> @param[out] weight (cap) no unit; may be NULL
-    !>
-    !> Safety: `count` has room for one number, `row` and `weight` are NULL or have room for `cap` numbers.
-    function feti_diagnosis_rows(p, kind, cap, count, row, weight) bind(C, name="feti_diagnosis_rows")
-      import
-      type(c_ptr), value :: p
-      integer(c_int32_t), value :: kind
-      integer(c_int64_t), value :: cap
-      integer(c_int64_t), intent(out) :: count
-      type(c_ptr), value :: row
-      type(c_ptr), value :: weight
-      integer(c_int32_t) :: feti_diagnosis_rows
-    end function feti_diagnosis_rows
-
-    !> Lists the equality rows that are combinations of the other equality rows, found when asked for.
-    !>
-    !> They constrain nothing, and which of them carry the forces is open. Rows that repeat another one are
-    !> with feti_diagnosis_rows. FETI_STATE before the first setup. After a failure nothing is written.
-    !>
-    !> @param[in]  p     (scalar) the handle
-    !> @param[in]  cap   (scalar) rows that `row` has room for
-    !> @param[out] count (scalar) rows there are; those that fit are written
-    !> @param[out] row   (cap) numbers from 0, ascending; may be NULL
-    !>
-    !> Safety: `count` has room for one number, `row` is NULL or has room for `cap` numbers.
-    function feti_diagnosis_dependent(p, cap, count, row) bind(C, name="feti_diagnosis_dependent")
-      import
-      type(c_ptr), value :: p
-      integer(c_int64_t), value :: cap
-      integer(c_int64_t), intent(out) :: count
-      type(c_ptr), value :: row
-      integer(c_int32_t) :: feti_diagnosis_dependent
-    end function feti_diagnosis_dependent
-
-    !> Lists the bodies that no row touched in the last solve, or in the last setup that failed.
-    !>
-    !> Rows that never close, c = +infinity, do not count. FETI_STATE before the first solve. After a failure
-    !> nothing is written.
-    !>
-    !> @param[in]  p     (scalar) the handle
-    !> @param[in]  cap   (scalar) bodies that `body` has room for
-    !> @param[out] count (scalar) bodies there are; those that fit are written
-    !> @param[out] body  (cap) numbers from 0, ascending; may be NULL
-    !>
-    !> Safety: `count` has room for one number, `body` is NULL or has room for `cap` numbers.
-    function feti_diagnosis_untouched(p, cap, count, body) bind(C, name="feti_diagnosis_untouched")
-      import
-      type(c_ptr), value :: p
-      integer(c_int64_t), value :: cap
-      integer(c_int64_t), intent(out) :: count
-      type(c_ptr), value :: body
-      integer(c_int32_t) :: feti_diagnosis_untouched
-    end function feti_diagnosis_untouched
-
-    !> Reads a rigid motion that the last answer leaves undetermined: which body, and how it moves.
-    !>
-    !> `undetermined` of feti_findings says how many there are. Bodies that have nothing to do with each other
-    !> are in motions of their own. FETI_STATE without an answer. After a failure nothing is written.
-    !>
-    !> @param[in]  p      (scalar) the handle
-    !> @param[in]  k      (scalar) number of the motion, from 0
-    !> @param[out] body   (scalar) number of the body that moves fastest, from 0; may be NULL
-    !> @param[out] motion (6) of this body: velocity of the origin, rotation about the axes; NaN without
-    !>                    coordinates; may be NULL
+    !> @param[in]     p     (scalar) the handle
+    !> @param[in]     body  (scalar) number of the body, from 0
+    !> @param[in]     n     (scalar) unknowns of the body
+    !> @param[in,out] r     (scalar) in: columns that fit in `basis`, not read without one; out: dimension of
+    !>                      the null space
+    !> @param[out]    basis (ldr * r) column-major; NULL: only the dimension is wanted
+    !> @param[in]     ldr   (scalar) >= n, not looked at without `basis`
     !>
     !> Safety: The arrays have the given shapes.
-    function feti_diagnosis_undetermined(p, k, body, motion) bind(C, name="feti_diagnosis_undetermined")
-      import
-      type(c_ptr), value :: p
-      integer(c_int64_t), value :: k
-      type(c_ptr), value :: body
-      type(c_ptr), value :: motion
-      integer(c_int32_t) :: feti_diagnosis_undetermined
-    end function feti_diagnosis_undetermined
-
-    !> Reads a rigid motion that the last answer leaves undetermined, unknown by unknown.
-    !>
-    !> It is scaled to largest entry 1 over all bodies; bodies that stay have zeros. FETI_STATE without an
-    !> answer. After a failure nothing is written.
-    !>
-    !> @param[in]  p    (scalar) the handle
-    !> @param[in]  k    (scalar) number of the motion, from 0
-    !> @param[in]  body (scalar) number of the body, from 0
-    !> @param[in]  n    (scalar) unknowns of the body
-    !> @param[out] v    (n) length, up to a factor
-    !>
-    !> Safety: The array has the given shape.
-    function feti_diagnosis_undetermined_motion(p, k, body, n, v) &
-        bind(C, name="feti_diagnosis_undetermined_motion")
-      import
-      type(c_ptr), value :: p
-      integer(c_int64_t), value :: k
-      integer(c_int64_t), value :: body
-      integer(c_int64_t), value :: n
-      real(c_double), intent(out) :: v(*)
-      integer(c_int32_t) :: feti_diagnosis_undetermined_motion
-    end function feti_diagnosis_undetermined_motion
-
-    !> Reads the rigid motion with which a body escapes, unknown by unknown.
-    !>
-    !> The load does work on it, and no row resists. It is scaled to largest entry 1 over all bodies; bodies
-    !> that stay have zeros. After FETI_SLIDES the motion that friction resists too little, after
-    !> FETI_INDEFINITE the one that K drives further than closed rows resist. FETI_STATE unless the last solve
-    !> ended with one of these and a motion. After a failure nothing is written.
-    !>
-    !> @param[in]  p    (scalar) the handle
-    !> @param[in]  body (scalar) number of the body, from 0
-    !> @param[in]  n    (scalar) unknowns of the body
-    !> @param[out] v    (n) length, up to a factor
-    !>
-    !> Safety: The array has the given shape.
-    function feti_diagnosis_motion(p, body, n, v) bind(C, name="feti_diagnosis_motion")
+    function feti_body_null_space_get(p, body, n, r, basis, ldr) bind(C, name="feti_body_null_space_get")
       import
       type(c_ptr), value :: p
       integer(c_int64_t), value :: body
       integer(c_int64_t), value :: n
-      real(c_double), intent(out) :: v(*)
-      integer(c_int32_t) :: feti_diagnosis_motion
-    end function feti_diagnosis_motion
+      integer(c_int64_t), intent(inout) :: r
+      type(c_ptr), value :: basis
+      integer(c_int64_t), value :: ldr
+      integer(c_int32_t) :: feti_body_null_space_get
+    end function feti_body_null_space_get
+
+    !> Chooses the fixing unknowns of a body in place of the library.
+    !>
+    !> They change the course of the methods of the paper in printed units, and neither forces nor
+    !> displacements. As many as the null space has dimensions, which feti_setup checks, and that they hold
+    !> every motion of it. Calling again replaces them. After a failure the body keeps what it had.
+    !>
+    !> @param[in] p    (scalar) the handle
+    !> @param[in] body (scalar) number of the body, from 0
+    !> @param[in] r    (scalar) dimension of the null space of the body; 0: the library chooses again
+    !> @param[in] dof  (r) unknowns of the body, from 0; may be NULL when r = 0
+    !>
+    !> Safety: The array has the given shape.
+    function feti_body_fixing_set(p, body, r, dof) bind(C, name="feti_body_fixing_set")
+      import
+      type(c_ptr), value :: p
+      integer(c_int64_t), value :: body
+      integer(c_int64_t), value :: r
+      type(c_ptr), value :: dof
+      integer(c_int32_t) :: feti_body_fixing_set
+    end function feti_body_fixing_set
+
+    !> Reads the fixing unknowns of a body: with them fixed, K has full rank.
+    !>
+    !> Runs feti_setup when it is due. FETI_UNSUPPORTED where K+ is the host's (feti_body_operator).
+    !> FETI_STATE for a body that is cut (feti_body_mesh_i32 or _i64). After a failure nothing is written.
+    !>
+    !> @param[in]  p    (scalar) the handle
+    !> @param[in]  body (scalar) number of the body, from 0
+    !> @param[in]  r    (scalar) dimension of the null space of the body
+    !> @param[out] dof  (r) unknowns of the body, from 0
+    !>
+    !> Safety: The array has the given shape.
+    function feti_body_fixing(p, body, r, dof) bind(C, name="feti_body_fixing")
+      import
+      type(c_ptr), value :: p
+      integer(c_int64_t), value :: body
+      integer(c_int64_t), value :: r
+      integer(c_int64_t), intent(out) :: dof(*)
+      integer(c_int32_t) :: feti_body_fixing
+    end function feti_body_fixing
+
+  end interface
+
+  ! Bodies by elements
+  ! ==================
+  ! Give the elements of a large body; the library adds them up and cuts the body into pieces.
+
+  public :: feti_body_mesh_i32
+  public :: feti_body_mesh_i64
+  public :: feti_body_element
+  public :: feti_body_elements
+  public :: feti_body_elements_size
+  public :: feti_body_held_forces
+  public :: feti_body_pieces
+
+  interface
 
     !> Says which unknowns the elements of a body join, with 32-bit indices: the first step of giving K by
     !> elements.
@@ -1158,82 +777,252 @@ module feti_contact_c
       integer(c_int32_t) :: feti_body_pieces
     end function feti_body_pieces
 
-    !> Text of the calling thread's last error.
-    !>
-    !> The text is cut to fit, always NUL terminated when `cap` > 0. Returns the full length without the NUL,
-    !> 0 when there was no error; a successful call does not clear the text. Never fails.
-    !>
-    !> @param[out] buf (text) room for `cap` characters; NULL asks for the length
-    !> @param[in]  cap (scalar) characters in `buf`, 0 with NULL
-    !>
-    !> Safety: `buf` has room for `cap` characters or is NULL.
-    function feti_last_error(buf, cap) bind(C, name="feti_last_error")
-      import
-      type(c_ptr), value :: buf
-      integer(c_int64_t), value :: cap
-      integer(c_int64_t) :: feti_last_error
-    end function feti_last_error
+  end interface
 
-    !> Facts of the calling thread's last error: function, argument, place, value and limit.
-    !>
-    !> `struct_size` is set by the caller; no more than that is written. A refusal of `out` leaves the last
-    !> error as it is.
-    !>
-    !> @param[in,out] out (scalar) `struct_size` set, at least 16
-    !>
-    !> Safety: `out` leads to `struct_size` writable bytes.
-    function feti_last_error_detail(out) bind(C, name="feti_last_error_detail")
-      import
-      type(feti_error_detail), intent(inout) :: out
-      integer(c_int32_t) :: feti_last_error_detail
-    end function feti_last_error_detail
+  ! Bodies by functions of the host
+  ! ===============================
+  ! Let the host solve with its own factorisation of K.
 
-    !> Writes all that the host has registered to one file: a bug report is a file.
+
+  public :: feti_operator_fn
+  abstract interface
+
+    !> A function of the host that multiplies by a matrix A it keeps: Y = A X.
     !>
-    !> Bodies with their matrices, null spaces, coordinates, fixing unknowns, loads and numbers of the host,
-    !> rows of both kinds with right-hand sides and compliances, and the options that differ from their
-    !> defaults, bit by bit; not the answer, start values, saved states and functions of the host.
-    !> docs/file_format.md describes every byte. The file is written under another name in the same folder and
-    !> renamed when it is complete: after a failure an old file is as it was, and nothing else is left.
-    !> FETI_IO with path, operation and the words of the system; FETI_UNSUPPORTED with the body where
-    !> functions of the host stand for a matrix (feti_body_operator): no file holds them. Borrowed matrices
-    !> are written as they are at that moment. Of a body that is cut (feti_body_mesh_i32) the pieces are
-    !> written, not the elements; FETI_STATE where elements of a body are missing.
+    !> It returns 0, or any other number for a failure of its own. X and Y never overlap.
     !>
-    !> @param[in] p    (scalar) the handle
-    !> @param[in] path (text) name of the file; an old one is replaced
+    !> @param[in]  user (scalar) the host's own, as given to feti_body_operator; may be NULL
+    !> @param[in]  body (scalar) number of the body, from 0
+    !> @param[in]  n    (scalar) unknowns of the body
+    !> @param[in]  nrhs (scalar) columns of X and Y, 1 to 32
+    !> @param[in]  x    (ldx * nrhs) X, column-major, finite
+    !> @param[in]  ldx  (scalar) >= n
+    !> @param[out] y    (ldy * nrhs) Y, column-major; holds zeros before
+    !> @param[in]  ldy  (scalar) >= n
+    function feti_operator_fn(user, body, n, nrhs, x, ldx, y, ldy) bind(C)
+      import
+      type(c_ptr), value :: user
+      integer(c_int64_t), value :: body
+      integer(c_int64_t), value :: n
+      integer(c_int64_t), value :: nrhs
+      real(c_double), intent(in) :: x(*)
+      integer(c_int64_t), value :: ldx
+      real(c_double), intent(out) :: y(*)
+      integer(c_int64_t), value :: ldy
+      integer(c_int32_t) :: feti_operator_fn
+    end function feti_operator_fn
+
+  end interface
+
+  public :: feti_body_operator
+
+  interface
+
+    !> Names the functions of the host that multiply by the stiffness K of a body and by a generalised inverse
+    !> K+ of it.
     !>
-    !> Safety: `path` is NUL terminated.
-    function feti_problem_write(p, path) bind(C, name="feti_problem_write")
+    !> The library sees no entry of K but the diagonal, which is copied, and factorises nothing. K+ is any
+    !> symmetric positive semidefinite matrix with K K+ K = K: where K is not singular its inverse, else that
+    !> of K with enough unknowns held (rows and columns of zeros in K+), or that of K plus a regularisation
+    !> that acts on the null space alone. The null space must be given, by feti_body_null_space or
+    !> feti_body_coordinates (the body then counts as connected). feti_setup tries the functions with a few
+    !> fixed vectors and refuses what is wrong by name: FETI_CALLBACK (K or K+ not symmetric, K K+ K not K, a
+    !> result that is no finite number), FETI_INDEFINITE, FETI_NULL_SPACE (K R not 0, a mode missing in R),
+    !> with the figure and its limit in the error detail.
+    !>
+    !> A function that returns anything but 0 ends the call that needed it with FETI_CALLBACK, the body and
+    !> that number in the error detail; the problem stays as it was. The functions run in the host's
+    !> floating-point environment; with `concurrent` 0 on the thread alone that has called the library, with 1
+    !> also on threads of the library, several at once. Inside them calls on the same problem return
+    !> FETI_BUSY, except feti_cancel and feti_problem_error. They must not end by longjmp or an exception, and
+    !> must give the same bits for the same X.
+    !>
+    !> Calling again replaces the functions and what was computed with them: to be done whenever K has
+    !> changed. A stiffness matrix given later takes their place, and they that of a matrix. After a failure
+    !> the body keeps what it had.
+    !>
+    !> @param[in] p          (scalar) the handle
+    !> @param[in] body       (scalar) number of the body, from 0
+    !> @param[in] n          (scalar) unknowns of the body
+    !> @param[in] diag       (n) diagonal of K, >= 0, force per length: what the body is measured by
+    !> @param[in] kplus      (scalar) Y = K+ X, X force, Y length
+    !> @param[in] k          (scalar) Y = K X, X length, Y force
+    !> @param[in] concurrent (scalar) 0: only on the calling thread; 1: on any thread, several at once
+    !> @param[in] user       (scalar) handed to the functions unchanged; may be NULL
+    !>
+    !> Safety: `diag` has the given shape; the functions may be called with `user` until they are replaced or
+    !> the problem destroyed.
+    function feti_body_operator(p, body, n, diag, kplus, k, concurrent, user) &
+        bind(C, name="feti_body_operator")
       import
       type(c_ptr), value :: p
-      character(kind=c_char), intent(in) :: path(*)
-      integer(c_int32_t) :: feti_problem_write
-    end function feti_problem_write
+      integer(c_int64_t), value :: body
+      integer(c_int64_t), value :: n
+      real(c_double), intent(in) :: diag(*)
+      type(c_funptr), value :: kplus
+      type(c_funptr), value :: k
+      integer(c_int32_t), value :: concurrent
+      type(c_ptr), value :: user
+      integer(c_int32_t) :: feti_body_operator
+    end function feti_body_operator
 
-    !> Reads what feti_problem_write has written into an empty problem.
+  end interface
+
+  ! Rows
+  ! ====
+  ! Say where bodies touch (B u <= c) and where they are joined (H u = h).
+
+  !> Kind of rows: `B u <= c`.
+  integer(c_int32_t), parameter, public :: FETI_INEQUALITY = 1_c_int32_t
+  !> Kind of rows: `H u = h`.
+  integer(c_int32_t), parameter, public :: FETI_EQUALITY = 2_c_int32_t
+
+  public :: feti_rows_add_i32
+  public :: feti_rows_add_i64
+  public :: feti_rows_compliance
+  public :: feti_counts
+
+  interface
+
+    !> Adds rows of `B u <= c` or `H u = h`, with 32-bit indices.
     !>
-    !> The same solve then gives the same bits. FETI_STATE when there are bodies or rows already. Options
-    !> become those of the file, all others their defaults, except index_base, which stays. Everything goes
-    !> through the checks of the calls it stands for. FETI_IO with path and the words of the system, or with
-    !> the byte where a file is damaged (`entry` of feti_last_error_detail); FETI_UNSUPPORTED when it holds
-    !> what a later version has written. After a failure the problem is as it was.
+    !> The rows are copied and numbered behind those of the same kind that are there. A pair of body and
+    !> unknown that comes twice in a row is summed. A contact row with c = +infinity never closes: it carries
+    !> no force and joins no bodies, as if it were not there, and keeps its number; feti_rows_rhs turns it on.
+    !> FETI_STATE where `body` is NULL and some bodies have numbers of the host, others have none. After a
+    !> failure nothing is added.
     !>
-    !> Matrices come back by the rows of their lower triangle, columns ascending, with every diagonal entry,
-    !> however they were given: feti_body_values then expects the values in this order, and
-    !> feti_body_values_split and feti_body_values_dense return FETI_STATE until the matrix has been given
-    !> again.
+    !> @param[in]  p       (scalar) the handle
+    !> @param[in]  kind    (scalar) FETI_INEQUALITY or FETI_EQUALITY
+    !> @param[in]  rows    (scalar) number of rows, 0 adds none
+    !> @param[in]  row_ptr (rows + 1) row i holds the entries `row_ptr[i]` to `row_ptr[i + 1] - 1`; starts
+    !>                     with `base`
+    !> @param[in]  body    (row_ptr[rows] - base) body of each entry, counted from `base`; NULL: `dof` is the
+    !>                     host's number of the unknown (feti_body_numbering_i32), without numbers it counts
+    !>                     through all bodies
+    !> @param[in]  dof     (row_ptr[rows] - base) unknown of each entry, counted from `base`
+    !> @param[in]  val     (row_ptr[rows] - base) entries of B or H
+    !> @param[in]  base    (scalar) 0 or 1: what `row_ptr`, `body` and `dof` count from
+    !> @param[in]  rhs     (rows) c or h, length; c may be +infinity; NULL: zeros
+    !> @param[out] first   (scalar) number of the first row added, from 0; may be NULL
     !>
-    !> @param[in] p    (scalar) the handle
-    !> @param[in] path (text) name of the file
-    !>
-    !> Safety: `path` is NUL terminated.
-    function feti_problem_read(p, path) bind(C, name="feti_problem_read")
+    !> Safety: The arrays have the given shapes.
+    function feti_rows_add_i32(p, kind, rows, row_ptr, body, dof, val, base, rhs, first) &
+        bind(C, name="feti_rows_add_i32")
       import
       type(c_ptr), value :: p
-      character(kind=c_char), intent(in) :: path(*)
-      integer(c_int32_t) :: feti_problem_read
-    end function feti_problem_read
+      integer(c_int32_t), value :: kind
+      integer(c_int64_t), value :: rows
+      integer(c_int32_t), intent(in) :: row_ptr(*)
+      type(c_ptr), value :: body
+      integer(c_int32_t), intent(in) :: dof(*)
+      real(c_double), intent(in) :: val(*)
+      integer(c_int32_t), value :: base
+      type(c_ptr), value :: rhs
+      type(c_ptr), value :: first
+      integer(c_int32_t) :: feti_rows_add_i32
+    end function feti_rows_add_i32
+
+    !> Adds rows of `B u <= c` or `H u = h`, with 64-bit indices.
+    !>
+    !> The rows are copied and numbered behind those of the same kind that are there. A pair of body and
+    !> unknown that comes twice in a row is summed. A contact row with c = +infinity never closes: it carries
+    !> no force and joins no bodies, as if it were not there, and keeps its number; feti_rows_rhs turns it on.
+    !> FETI_STATE where `body` is NULL and some bodies have numbers of the host, others have none. After a
+    !> failure nothing is added.
+    !>
+    !> @param[in]  p       (scalar) the handle
+    !> @param[in]  kind    (scalar) FETI_INEQUALITY or FETI_EQUALITY
+    !> @param[in]  rows    (scalar) number of rows, 0 adds none
+    !> @param[in]  row_ptr (rows + 1) row i holds the entries `row_ptr[i]` to `row_ptr[i + 1] - 1`; starts
+    !>                     with `base`
+    !> @param[in]  body    (row_ptr[rows] - base) body of each entry, counted from `base`; NULL: `dof` is the
+    !>                     host's number of the unknown (feti_body_numbering_i32), without numbers it counts
+    !>                     through all bodies
+    !> @param[in]  dof     (row_ptr[rows] - base) unknown of each entry, counted from `base`
+    !> @param[in]  val     (row_ptr[rows] - base) entries of B or H
+    !> @param[in]  base    (scalar) 0 or 1: what `row_ptr`, `body` and `dof` count from
+    !> @param[in]  rhs     (rows) c or h, length; c may be +infinity; NULL: zeros
+    !> @param[out] first   (scalar) number of the first row added, from 0; may be NULL
+    !>
+    !> Safety: The arrays have the given shapes.
+    function feti_rows_add_i64(p, kind, rows, row_ptr, body, dof, val, base, rhs, first) &
+        bind(C, name="feti_rows_add_i64")
+      import
+      type(c_ptr), value :: p
+      integer(c_int32_t), value :: kind
+      integer(c_int64_t), value :: rows
+      integer(c_int64_t), intent(in) :: row_ptr(*)
+      type(c_ptr), value :: body
+      integer(c_int64_t), intent(in) :: dof(*)
+      real(c_double), intent(in) :: val(*)
+      integer(c_int32_t), value :: base
+      type(c_ptr), value :: rhs
+      type(c_ptr), value :: first
+      integer(c_int32_t) :: feti_rows_add_i64
+    end function feti_rows_add_i64
+
+    !> Makes rows compliant: each a spring, `B u - c <= lambda/k` or `H u - h = mu/k`.
+    !>
+    !> A contact row then carries the force k (B u - c) where that is positive: a linear law of pressure and
+    !> overclosure; an equality row is an elastic support or a cohesive bond. Rows that are added are rigid,
+    !> 1/k = 0. A row times t has a compliance times t^2. The numbers are copied and stay with their rows
+    !> until they are replaced or the rows are cleared; factors of the bodies stay, the last answer does not.
+    !> After a failure all compliances are as they were.
+    !>
+    !> @param[in] p     (scalar) the handle
+    !> @param[in] kind  (scalar) FETI_INEQUALITY or FETI_EQUALITY
+    !> @param[in] first (scalar) first row to change, from 0
+    !> @param[in] rows  (scalar) number of rows to change
+    !> @param[in] inv_k (rows) 1/k >= 0, length / force; 0: rigid
+    !>
+    !> Safety: The array has the given shape.
+    function feti_rows_compliance(p, kind, first, rows, inv_k) bind(C, name="feti_rows_compliance")
+      import
+      type(c_ptr), value :: p
+      integer(c_int32_t), value :: kind
+      integer(c_int64_t), value :: first
+      integer(c_int64_t), value :: rows
+      real(c_double), intent(in) :: inv_k(*)
+      integer(c_int32_t) :: feti_rows_compliance
+    end function feti_rows_compliance
+
+    !> Reads the size of the problem as it is given now.
+    !>
+    !> After a failure nothing is written.
+    !>
+    !> @param[in]  p      (scalar) the handle
+    !> @param[out] bodies (scalar) bodies; may be NULL
+    !> @param[out] dofs   (scalar) unknowns of all bodies; may be NULL
+    !> @param[out] rows   (scalar) inequality rows; may be NULL
+    !> @param[out] eqs    (scalar) equality rows; may be NULL
+    !>
+    !> Safety: Every pointer is NULL or has room for one number.
+    function feti_counts(p, bodies, dofs, rows, eqs) bind(C, name="feti_counts")
+      import
+      type(c_ptr), value :: p
+      type(c_ptr), value :: bodies
+      type(c_ptr), value :: dofs
+      type(c_ptr), value :: rows
+      type(c_ptr), value :: eqs
+      integer(c_int32_t) :: feti_counts
+    end function feti_counts
+
+  end interface
+
+  ! Friction
+  ! ========
+  ! Give contact rows tangential rows and a law of friction.
+
+  !> Kind of rows: tangential rows of nodes with friction (feti_friction_add_i32, feti_friction_add_i64).
+  integer(c_int32_t), parameter, public :: FETI_TANGENTIAL = 3_c_int32_t
+
+  public :: feti_friction_add_i32
+  public :: feti_friction_add_i64
+  public :: feti_friction_law
+  public :: feti_friction_compliance
+
+  interface
 
     !> Adds nodes with friction, with 32-bit indices.
     !>
@@ -1393,293 +1182,54 @@ module feti_contact_c
       integer(c_int32_t) :: feti_friction_compliance
     end function feti_friction_compliance
 
-    !> Gives s_old, what the slips of nodes are counted from: T u - C_t lambda_t at the beginning of the load
-    !> step.
-    !>
-    !> Nodes that are added have zeros; feti_friction_commit takes s_old from the answer. A host that solves
-    !> for the increment of a Newton iteration gives T (u_begin - u_k). The numbers are copied; factors of the
-    !> bodies and the last answer stay, with the slips it had. After a failure all of them are as they were.
-    !>
-    !> @param[in] p     (scalar) the handle
-    !> @param[in] first (scalar) first node to change, from 0
-    !> @param[in] nodes (scalar) number of nodes to change
-    !> @param[in] dim   (scalar) tangential rows of a node, 1 or 2; not looked at without nodes
-    !> @param[in] s_old (dim * nodes) node after node, length; 0 for rows without entries
-    !>
-    !> Safety: The array has the given shape.
-    function feti_friction_reference(p, first, nodes, dim, s_old) bind(C, name="feti_friction_reference")
-      import
-      type(c_ptr), value :: p
-      integer(c_int64_t), value :: first
-      integer(c_int64_t), value :: nodes
-      integer(c_int32_t), value :: dim
-      real(c_double), intent(in) :: s_old(*)
-      integer(c_int32_t) :: feti_friction_reference
-    end function feti_friction_reference
+  end interface
 
-    !> Ends a load step: s_old becomes what the last answer has reached, `T u - C_t lambda_t`, at every node,
-    !> open ones too.
-    !>
-    !> To be called once a step is accepted, before or after the loads of the next one are given. The answer
-    !> stays as it was, with the slips of its step; so does where the next solve starts. A second call does
-    !> what the first did. To take a step back, save the state before it (feti_state_save). FETI_STATE before
-    !> a solve has given an answer, where a group of bodies has none, and where the answer is not certified (a
-    !> status of feti_solve other than FETI_OK and FETI_MARGINAL). After a failure s_old is as it was.
-    !>
-    !> @param[in] p (scalar) the handle
-    function feti_friction_commit(p) bind(C, name="feti_friction_commit")
-      import
-      type(c_ptr), value :: p
-      integer(c_int32_t) :: feti_friction_commit
-    end function feti_friction_commit
+  ! Options
+  ! =======
+  ! Set tolerance, threads, method and limits, by name.
 
-    !> Removes all nodes with friction; their contact rows stay.
-    !>
-    !> Numbering starts again at 0, and the next nodes may have another dim. feti_rows_clear with
-    !> FETI_INEQUALITY removes them too. Factors of the bodies stay, the last answer does not.
-    !>
-    !> @param[in] p (scalar) the handle
-    function feti_friction_clear(p) bind(C, name="feti_friction_clear")
-      import
-      type(c_ptr), value :: p
-      integer(c_int32_t) :: feti_friction_clear
-    end function feti_friction_clear
+  !> Type of an option: number.
+  integer(c_int32_t), parameter, public :: FETI_OPTION_F64 = 1_c_int32_t
+  !> Type of an option: integer.
+  integer(c_int32_t), parameter, public :: FETI_OPTION_I64 = 2_c_int32_t
+  !> Type of an option: text.
+  integer(c_int32_t), parameter, public :: FETI_OPTION_STR = 3_c_int32_t
 
-    !> Names the function that gets what setups and solves tell in words.
-    !>
-    !> Level FETI_LOG_RESULT: one line for each solve, and warnings; FETI_LOG_PHASE: also sizes, options,
-    !> method, fallbacks and a line for each phase with its time and bytes, and how far the first feasible
-    !> point, projections, nearest points and certificates are that take long: a line after a second at most,
-    !> and after a tenth of the time so far; FETI_LOG_STEP: also a line for each step. The function is called
-    !> on the thread that called the library, in that thread's floating-point environment, until another one
-    !> or NULL is given. It returns 0 to go on; any other number ends the call with FETI_CALLBACK, the number
-    !> in the error detail, and no results. Calls on the same problem from inside return FETI_BUSY, except
-    !> feti_cancel and feti_problem_error. It must not end by longjmp or an exception.
-    !>
-    !> @param[in] p        (scalar) the handle
-    !> @param[in] callback (scalar) the function; NULL: none
-    !> @param[in] level    (scalar) FETI_LOG_NONE, FETI_LOG_RESULT, FETI_LOG_PHASE or FETI_LOG_STEP
-    !> @param[in] user     (scalar) handed to the function unchanged; may be NULL
-    !>
-    !> Safety: `callback` may be called with `user` until it is replaced or the problem destroyed.
-    function feti_on_log(p, callback, level, user) bind(C, name="feti_on_log")
-      import
-      type(c_ptr), value :: p
-      type(c_funptr), value :: callback
-      integer(c_int32_t), value :: level
-      type(c_ptr), value :: user
-      integer(c_int32_t) :: feti_on_log
-    end function feti_on_log
+  !> An option: name, text, default and range.
+  type, bind(C), public :: feti_option
+    !> Set by the caller: size of the struct in bytes.
+    integer(c_int64_t) :: struct_size
+    !> FETI_OPTION_F64, FETI_OPTION_I64 or FETI_OPTION_STR.
+    integer(c_int32_t) :: type
+    !> Zero.
+    integer(c_int32_t) :: reserved
+    !> Smallest value of a number or an integer.
+    real(c_double) :: minimum
+    !> Largest value of a number or an integer.
+    real(c_double) :: maximum
+    !> Default of a number or an integer; NaN for a text.
+    real(c_double) :: default_f64
+    !> Default of an integer.
+    integer(c_int64_t) :: default_i64
+    !> Name, static.
+    type(c_ptr) :: name
+    !> One sentence, static.
+    type(c_ptr) :: doc
+    !> Default of a text, static.
+    type(c_ptr) :: default_str
+  end type feti_option
 
-    !> Gives a basis of the null space of a body, candidates for it, or motions that K resists softly.
-    !>
-    !> The basis is copied; calling again replaces it. Never called: the coordinates of the unknowns give
-    !> candidates (feti_body_coordinates), and without coordinates the library finds the null space from K.
-    !> That `K R = 0` holds is checked in feti_setup. With FETI_SOFT it need not hold: weak springs, rounding
-    !> of the entries of K and geometric stiffness may resist or drive the motions. The columns then choose
-    !> the fixing unknowns; the motions, and the stiffness against them, are computed from K and taken into
-    !> account exactly. Where K drives the body between these unknowns, up to six more are fixed, each with a
-    !> column of its own (feti_body_null_space_get). FETI_UNSUPPORTED from feti_setup where K+ is the host's
-    !> (feti_body_operator); FETI_INDEFINITE from feti_setup where K drives more than that, from feti_solve
-    !> where the contact leaves a motion that is driven. After a failure the body keeps what it had.
-    !>
-    !> @param[in] p     (scalar) the handle
-    !> @param[in] body  (scalar) number of the body, from 0
-    !> @param[in] r     (scalar) columns; 0 with FETI_EXACT claims that K is not singular
-    !> @param[in] n     (scalar) unknowns of the body
-    !> @param[in] basis (ldr * r) column-major: R_ij is basis[i + ldr j]; may be NULL when r = 0
-    !> @param[in] ldr   (scalar) >= n
-    !> @param[in] flags (scalar) FETI_EXACT, FETI_CANDIDATES or FETI_SOFT
-    !>
-    !> Safety: The array has the given shape.
-    function feti_body_null_space(p, body, r, n, basis, ldr, flags) bind(C, name="feti_body_null_space")
-      import
-      type(c_ptr), value :: p
-      integer(c_int64_t), value :: body
-      integer(c_int64_t), value :: r
-      integer(c_int64_t), value :: n
-      type(c_ptr), value :: basis
-      integer(c_int64_t), value :: ldr
-      integer(c_int32_t), value :: flags
-      integer(c_int32_t) :: feti_body_null_space
-    end function feti_body_null_space
+  public :: feti_set_f64
+  public :: feti_set_i64
+  public :: feti_set_str
+  public :: feti_set_text
+  public :: feti_get_f64
+  public :: feti_get_i64
+  public :: feti_get_str
+  public :: feti_option_count
+  public :: feti_option_at
 
-    !> Reads the null space of a body that the library works with.
-    !>
-    !> Runs feti_setup when it is due. After a failure nothing is written.
-    !>
-    !> @param[in]     p     (scalar) the handle
-    !> @param[in]     body  (scalar) number of the body, from 0
-    !> @param[in]     n     (scalar) unknowns of the body
-    !> @param[in,out] r     (scalar) in: columns that fit in `basis`, not read without one; out: dimension of
-    !>                      the null space
-    !> @param[out]    basis (ldr * r) column-major; NULL: only the dimension is wanted
-    !> @param[in]     ldr   (scalar) >= n, not looked at without `basis`
-    !>
-    !> Safety: The arrays have the given shapes.
-    function feti_body_null_space_get(p, body, n, r, basis, ldr) bind(C, name="feti_body_null_space_get")
-      import
-      type(c_ptr), value :: p
-      integer(c_int64_t), value :: body
-      integer(c_int64_t), value :: n
-      integer(c_int64_t), intent(inout) :: r
-      type(c_ptr), value :: basis
-      integer(c_int64_t), value :: ldr
-      integer(c_int32_t) :: feti_body_null_space_get
-    end function feti_body_null_space_get
-
-    !> Reads the fixing unknowns of a body: with them fixed, K has full rank.
-    !>
-    !> Runs feti_setup when it is due. FETI_UNSUPPORTED where K+ is the host's (feti_body_operator).
-    !> FETI_STATE for a body that is cut (feti_body_mesh_i32 or _i64). After a failure nothing is written.
-    !>
-    !> @param[in]  p    (scalar) the handle
-    !> @param[in]  body (scalar) number of the body, from 0
-    !> @param[in]  r    (scalar) dimension of the null space of the body
-    !> @param[out] dof  (r) unknowns of the body, from 0
-    !>
-    !> Safety: The array has the given shape.
-    function feti_body_fixing(p, body, r, dof) bind(C, name="feti_body_fixing")
-      import
-      type(c_ptr), value :: p
-      integer(c_int64_t), value :: body
-      integer(c_int64_t), value :: r
-      integer(c_int64_t), intent(out) :: dof(*)
-      integer(c_int32_t) :: feti_body_fixing
-    end function feti_body_fixing
-
-    !> Chooses the fixing unknowns of a body in place of the library.
-    !>
-    !> They change the course of the methods of the paper in printed units, and neither forces nor
-    !> displacements. As many as the null space has dimensions, which feti_setup checks, and that they hold
-    !> every motion of it. Calling again replaces them. After a failure the body keeps what it had.
-    !>
-    !> @param[in] p    (scalar) the handle
-    !> @param[in] body (scalar) number of the body, from 0
-    !> @param[in] r    (scalar) dimension of the null space of the body; 0: the library chooses again
-    !> @param[in] dof  (r) unknowns of the body, from 0; may be NULL when r = 0
-    !>
-    !> Safety: The array has the given shape.
-    function feti_body_fixing_set(p, body, r, dof) bind(C, name="feti_body_fixing_set")
-      import
-      type(c_ptr), value :: p
-      integer(c_int64_t), value :: body
-      integer(c_int64_t), value :: r
-      type(c_ptr), value :: dof
-      integer(c_int32_t) :: feti_body_fixing_set
-    end function feti_body_fixing_set
-
-    !> Gives the host's own numbers of the unknowns of a body, with 32-bit integers.
-    !>
-    !> A host that numbers all unknowns through gives every body its share; a number names one unknown of all
-    !> bodies. Then FETI_ALL as body in feti_body_load, feti_displacement and feti_reaction means arrays in
-    !> these numbers, and so do rows whose bodies are NULL in feti_rows_add_i32 and _i64. All bodies have
-    !> numbers then: FETI_STATE names one that has not. The numbers are copied; calling again replaces them.
-    !> Rows that are there stay on their unknowns. After a failure the body keeps the numbers it had.
-    !>
-    !> With option glue = 1, set before, unknowns of several bodies may have one number: they move together,
-    !> by equality rows that only the library sees. The host's rows, their multipliers and the counts stay
-    !> what they are. With FETI_ALL a load on such a number is that of its first body, a displacement that of
-    !> all of them, and a reaction the sum over them; rows whose bodies are NULL act on the first. The last
-    !> answer goes with a change of such numbers.
-    !>
-    !> @param[in] p      (scalar) the handle
-    !> @param[in] body   (scalar) number of the body, from 0
-    !> @param[in] n      (scalar) unknowns of the body
-    !> @param[in] number (n) number of each unknown, counted from `base`, none that of another unknown of the
-    !>                   body, nor, without option glue, of another body
-    !> @param[in] base   (scalar) 0 or 1: what the numbers count from
-    !>
-    !> Safety: The array has the given shape.
-    function feti_body_numbering_i32(p, body, n, number, base) bind(C, name="feti_body_numbering_i32")
-      import
-      type(c_ptr), value :: p
-      integer(c_int64_t), value :: body
-      integer(c_int64_t), value :: n
-      integer(c_int32_t), intent(in) :: number(*)
-      integer(c_int32_t), value :: base
-      integer(c_int32_t) :: feti_body_numbering_i32
-    end function feti_body_numbering_i32
-
-    !> Gives the host's own numbers of the unknowns of a body, with 64-bit integers.
-    !>
-    !> A host that numbers all unknowns through gives every body its share; a number names one unknown of all
-    !> bodies. Then FETI_ALL as body in feti_body_load, feti_displacement and feti_reaction means arrays in
-    !> these numbers, and so do rows whose bodies are NULL in feti_rows_add_i32 and _i64. All bodies have
-    !> numbers then: FETI_STATE names one that has not. The numbers are copied; calling again replaces them.
-    !> Rows that are there stay on their unknowns. After a failure the body keeps the numbers it had.
-    !>
-    !> With option glue = 1, set before, unknowns of several bodies may have one number: they move together,
-    !> by equality rows that only the library sees. The host's rows, their multipliers and the counts stay
-    !> what they are. With FETI_ALL a load on such a number is that of its first body, a displacement that of
-    !> all of them, and a reaction the sum over them; rows whose bodies are NULL act on the first. The last
-    !> answer goes with a change of such numbers.
-    !>
-    !> @param[in] p      (scalar) the handle
-    !> @param[in] body   (scalar) number of the body, from 0
-    !> @param[in] n      (scalar) unknowns of the body
-    !> @param[in] number (n) number of each unknown, counted from `base`, none that of another unknown of the
-    !>                   body, nor, without option glue, of another body
-    !> @param[in] base   (scalar) 0 or 1: what the numbers count from
-    !>
-    !> Safety: The array has the given shape.
-    function feti_body_numbering_i64(p, body, n, number, base) bind(C, name="feti_body_numbering_i64")
-      import
-      type(c_ptr), value :: p
-      integer(c_int64_t), value :: body
-      integer(c_int64_t), value :: n
-      integer(c_int64_t), intent(in) :: number(*)
-      integer(c_int32_t), value :: base
-      integer(c_int32_t) :: feti_body_numbering_i64
-    end function feti_body_numbering_i64
-
-    !> Names the functions of the host that multiply by the stiffness K of a body and by a generalised inverse
-    !> K+ of it.
-    !>
-    !> The library sees no entry of K but the diagonal, which is copied, and factorises nothing. K+ is any
-    !> symmetric positive semidefinite matrix with K K+ K = K: where K is not singular its inverse, else that
-    !> of K with enough unknowns held (rows and columns of zeros in K+), or that of K plus a regularisation
-    !> that acts on the null space alone. The null space must be given, by feti_body_null_space or
-    !> feti_body_coordinates (the body then counts as connected). feti_setup tries the functions with a few
-    !> fixed vectors and refuses what is wrong by name: FETI_CALLBACK (K or K+ not symmetric, K K+ K not K, a
-    !> result that is no finite number), FETI_INDEFINITE, FETI_NULL_SPACE (K R not 0, a mode missing in R),
-    !> with the figure and its limit in the error detail.
-    !>
-    !> A function that returns anything but 0 ends the call that needed it with FETI_CALLBACK, the body and
-    !> that number in the error detail; the problem stays as it was. The functions run in the host's
-    !> floating-point environment; with `concurrent` 0 on the thread alone that has called the library, with 1
-    !> also on threads of the library, several at once. Inside them calls on the same problem return
-    !> FETI_BUSY, except feti_cancel and feti_problem_error. They must not end by longjmp or an exception, and
-    !> must give the same bits for the same X.
-    !>
-    !> Calling again replaces the functions and what was computed with them: to be done whenever K has
-    !> changed. A stiffness matrix given later takes their place, and they that of a matrix. After a failure
-    !> the body keeps what it had.
-    !>
-    !> @param[in] p          (scalar) the handle
-    !> @param[in] body       (scalar) number of the body, from 0
-    !> @param[in] n          (scalar) unknowns of the body
-    !> @param[in] diag       (n) diagonal of K, >= 0, force per length: what the body is measured by
-    !> @param[in] kplus      (scalar) Y = K+ X, X force, Y length
-    !> @param[in] k          (scalar) Y = K X, X length, Y force
-    !> @param[in] concurrent (scalar) 0: only on the calling thread; 1: on any thread, several at once
-    !> @param[in] user       (scalar) handed to the functions unchanged; may be NULL
-    !>
-    !> Safety: `diag` has the given shape; the functions may be called with `user` until they are replaced or
-    !> the problem destroyed.
-    function feti_body_operator(p, body, n, diag, kplus, k, concurrent, user) &
-        bind(C, name="feti_body_operator")
-      import
-      type(c_ptr), value :: p
-      integer(c_int64_t), value :: body
-      integer(c_int64_t), value :: n
-      real(c_double), intent(in) :: diag(*)
-      type(c_funptr), value :: kplus
-      type(c_funptr), value :: k
-      integer(c_int32_t), value :: concurrent
-      type(c_ptr), value :: user
-      integer(c_int32_t) :: feti_body_operator
-    end function feti_body_operator
+  interface
 
     !> Sets an option that is a number.
     !>
@@ -1828,88 +1378,177 @@ module feti_contact_c
       integer(c_int32_t) :: feti_option_at
     end function feti_option_at
 
-    !> Number of phases of a setup and a solve.
+  end interface
+
+  ! Solve
+  ! =====
+  ! Compute the answer, and learn how exact it is.
+
+
+  !> How a solve went. Counts of a call that failed early are zero, figures NaN. Where some groups of bodies
+  !> have an answer and others have none, counts of work, energy and figures are those of the groups that have
+  !> one.
+  type, bind(C), public :: feti_info
+    !> Set by the caller: size of the struct in bytes.
+    integer(c_int64_t) :: struct_size
+    !> What feti_solve returned: the worst of all groups of bodies.
+    integer(c_int32_t) :: status
+    !> Zero.
+    integer(c_int32_t) :: reserved
+    !> Bodies.
+    integer(c_int64_t) :: bodies
+    !> Unknowns of all bodies.
+    integer(c_int64_t) :: dofs
+    !> Inequality rows.
+    integer(c_int64_t) :: rows
+    !> Equality rows.
+    integer(c_int64_t) :: equalities
+    !> Dimension of the null spaces of all bodies.
+    integer(c_int64_t) :: floating_modes
+    !> Inequality rows that are closed in the answer.
+    integer(c_int64_t) :: active
+    !> Motions that neither loads nor rows determine: the answer has the least sum of `K_ii u_i^2`.
+    integer(c_int64_t) :: undetermined
+    !> Steps of the active-set method.
+    integer(c_int64_t) :: steps
+    !> Steps of conjugate gradients on a face.
+    integer(c_int64_t) :: cg_steps
+    !> Steps that met a bound.
+    integer(c_int64_t) :: expansions
+    !> Steps that left a face.
+    integer(c_int64_t) :: releases
+    !> Products with the dual operator F.
+    integer(c_int64_t) :: dual_applications
+    !> Solutions of the coarse problem.
+    integer(c_int64_t) :: coarse_solves
+    !> Numeric factorisations for K+ since the problem was created; equal bodies share one.
+    integer(c_int64_t) :: factorisations
+    !> Symbolic analyses since the problem was created; bodies with one pattern share one.
+    integer(c_int64_t) :: analyses
+    !> Largest entry of the certificate over what it is allowed, over all bodies and rows that have an answer:
+    !> <= 1 passes.
+    real(c_double) :: worst
+    !> Relative error of equilibrium, as in feti_certificate: of the worst body.
+    real(c_double) :: equilibrium
+    !> Relative error of the balance, of the worst floating body.
+    real(c_double) :: balance
+    !> Relative penetration, of the worst row.
+    real(c_double) :: penetration
+    !> Relative error of the worst equality row.
+    real(c_double) :: equality
+    !> Relative size of a force of the wrong sign, of the worst row.
+    real(c_double) :: negative_force
+    !> Relative error of complementarity, of the worst row.
+    real(c_double) :: complementarity
+    !> Relative gap between primal and dual energy, of the worst group of bodies.
+    real(c_double) :: duality_gap
+    !> Energy 1/2 u'Ku - f'u and that of the springs of compliant rows, 1/2 lambda'C lambda + 1/2 mu'C mu,
+    !> force times length.
+    real(c_double) :: energy
+    !> Seconds for null spaces and factors.
+    real(c_double) :: seconds_setup
+    !> Seconds for the rest.
+    real(c_double) :: seconds_solve
+    !> Faces on which the dual was solved directly.
+    integer(c_int64_t) :: direct_solves
+    !> 1: the answer was finished directly (option finish); 0: that was not asked for or not needed, or
+    !> brought nothing.
+    integer(c_int64_t) :: finished
+    !> Columns of the dual operators of the bodies, one for each body that a row touches, computed since the
+    !> problem was created.
+    integer(c_int64_t) :: columns_computed
+    !> Columns kept through a change of rows or bodies since the problem was created.
+    integer(c_int64_t) :: columns_kept
+    !> Bodies whose dual operator has its entries (option dual_operator).
+    integer(c_int64_t) :: explicit_operators
+    !> Bodies whose dual operator is known by its products alone.
+    integer(c_int64_t) :: implicit_operators
+    !> Bytes of the factors of all bodies and, at most, of the work arrays of their computation.
+    integer(c_int64_t) :: factor_bytes
+    !> Bytes of the explicit dual operators.
+    integer(c_int64_t) :: operator_bytes
+    !> Relative size of a tangential force beyond its bound, of the worst node with friction.
+    real(c_double) :: friction_cone
+    !> Relative work that friction does not do: force that is missing or across where a node slips, of the
+    !> worst node.
+    real(c_double) :: friction_work
+    !> Relative slip where the force is within its bound, of the worst node.
+    real(c_double) :: friction_stick
+    !> Nodes with friction.
+    integer(c_int64_t) :: nodes
+    !> Nodes that stick in the answer.
+    integer(c_int64_t) :: sticking
+    !> Nodes that slip in the answer.
+    integer(c_int64_t) :: slipping
+    !> Newton steps of friction.
+    integer(c_int64_t) :: friction_steps
+    !> Starts that they took, over all groups of bodies with friction.
+    integer(c_int64_t) :: friction_starts
+  end type feti_info
+
+  public :: feti_setup
+  public :: feti_solve
+  public :: feti_cancel
+
+  interface
+
+    !> Prepares the solve: null spaces, factors of the bodies, the dual operator.
     !>
-    !> After a failure nothing is written.
+    !> feti_solve does it when it is due; called alone it shows errors in the bodies early. After a failure
+    !> all that was given is kept and can be corrected.
     !>
-    !> @param[in]  p     (scalar) the handle
-    !> @param[out] count (scalar) the number of phases
+    !> FETI_STATE where there is no body, or one without a matrix; FETI_NULL_SPACE where the null space of a
+    !> body is not what was claimed, or cannot be found; FETI_INDEFINITE where a matrix is indefinite, with
+    !> body, unknown and pivot; FETI_GAPS_CONTRADICT where a row without entries has a right-hand side that 0
+    !> does not satisfy; FETI_CALLBACK where a function of the host fails or is not what it must be
+    !> (feti_body_operator); FETI_UNSUPPORTED where fixing unknowns were given for a body whose matrix is
+    !> functions of the host; FETI_OVERFLOW where the square of a row, or a compliance times the largest K_ii,
+    !> over- or underflows; FETI_CANCELLED where the host has cancelled.
     !>
-    !> Safety: `count` has room for one number.
-    function feti_phase_count(p, count) bind(C, name="feti_phase_count")
+    !> @param[in] p (scalar) the handle
+    function feti_setup(p) bind(C, name="feti_setup")
       import
       type(c_ptr), value :: p
-      integer(c_int64_t), intent(out) :: count
-      integer(c_int32_t) :: feti_phase_count
-    end function feti_phase_count
+      integer(c_int32_t) :: feti_setup
+    end function feti_setup
 
-    !> Tells time and memory of a phase: rows, null spaces, analysis, factorisation, dual operators,
-    !> preconditioner, dual solve, recovery, in this order.
+    !> Minimises 1/2 u'Ku - f'u subject to `B u <= c` and `H u = h`.
     !>
-    !> Times are those of the last call that set up or solved, also of one that failed; a phase that had
-    !> nothing to do took none. What a setup keeps, later solves do not make again. After a failure nothing is
-    !> written.
+    !> The answer is kept until the next solve and read with feti_displacement, feti_multipliers and the like;
+    !> there is one when the status is not negative, unless the call was cancelled or its time was over before
+    !> the first step. `info` is written in any case, with NaN for figures that a failure left unknown. After
+    !> a failure all that was given is kept and can be corrected, except after FETI_INTERNAL. Where rows and
+    !> loads leave motions open (`undetermined`), the answer is the one nearest to rest that keeps the rows:
+    !> the least sum of `K_ii u_i^2`.
     !>
-    !> @param[in]     p   (scalar) the handle
-    !> @param[in]     k   (scalar) from 0, less than feti_phase_count
-    !> @param[in,out] out (scalar) `struct_size` set, at least 16
+    !> Groups of bodies that no row with a finite gap joins are problems of their own, each solved to its own
+    !> accuracy and several at a time where there are threads. The worst status of all groups is returned;
+    !> counts and the energy are sums, every figure of the certificate is that of the worst group. Where one
+    !> group has no answer because its load is not held or its rows contradict each other, the status,
+    !> feti_last_error and feti_diagnosis are those of the first such group, and the other groups keep their
+    !> answers: `info` has what they came to. What is read for one body of a group without an answer is
+    !> FETI_STATE; what is read for all bodies or rows at once is NaN there, in feti_active FETI_ROW_UNKNOWN.
     !>
-    !> Safety: `out` leads to `struct_size` writable bytes.
-    function feti_phase_at(p, k, out) bind(C, name="feti_phase_at")
+    !> A status above 0 comes with an answer, but for such ends. FETI_ITERATIONS at the limit of option
+    !> max_steps; FETI_TIME at the limit of option time_limit, which counts from the call, with a setup that
+    !> is due; FETI_CANCELLED where the host has cancelled; FETI_STALLED where steps no longer reduce the
+    !> error; FETI_INACCURATE where the certificate does not pass; FETI_MARGINAL where a part of the load,
+    !> below 1e-7 of it, is not held. A status below 0 comes without one for the group of bodies it is about.
+    !> FETI_LOAD_NOT_HELD where no contact force balances the load; FETI_SLIDES where friction holds only a
+    !> part of it and no rest was found; FETI_GAPS_CONTRADICT where rows contradict each other;
+    !> FETI_INDEFINITE where K drives a soft motion further than closed rows resist it; feti_diagnosis has the
+    !> proof of each. It runs feti_setup when it is due, and fails as that does.
+    !>
+    !> @param[in]     p    (scalar) the handle
+    !> @param[in,out] info (scalar) `struct_size` set, at least 16; may be NULL
+    !>
+    !> Safety: `info` is NULL or leads to `struct_size` writable bytes.
+    function feti_solve(p, info) bind(C, name="feti_solve")
       import
       type(c_ptr), value :: p
-      integer(c_int64_t), value :: k
-      type(feti_phase), intent(inout) :: out
-      integer(c_int32_t) :: feti_phase_at
-    end function feti_phase_at
-
-    !> Creates a problem without bodies and rows.
-    !>
-    !> The handle is valid until feti_problem_destroy; its number is never used again. After a failure `p` is
-    !> as it was. FETI_MEMORY, without a text, where not even an empty problem finds room.
-    !>
-    !> @param[out] p (scalar) the handle
-    !>
-    !> Safety: `p` has room for a pointer.
-    function feti_problem_create(p) bind(C, name="feti_problem_create")
-      import
-      type(c_ptr), intent(inout) :: p
-      integer(c_int32_t) :: feti_problem_create
-    end function feti_problem_create
-
-    !> Destroys a problem with all it holds and sets the caller's handle to NULL.
-    !>
-    !> FETI_BUSY while another call on the problem runs; the problem and the handle are as before then. Every
-    !> other copy of the handle gives FETI_HANDLE from now on.
-    !>
-    !> @param[in,out] p (scalar) the handle
-    !>
-    !> Safety: `p` leads to a pointer.
-    function feti_problem_destroy(p) bind(C, name="feti_problem_destroy")
-      import
-      type(c_ptr), intent(inout) :: p
-      integer(c_int32_t) :: feti_problem_destroy
-    end function feti_problem_destroy
-
-    !> Text of the problem's last error.
-    !>
-    !> May be called while another call on the problem runs. The text is cut to fit, always NUL terminated
-    !> when `cap` > 0; it is empty when there was no error, and a successful call does not clear it.
-    !>
-    !> @param[in]  p   (scalar) the handle
-    !> @param[out] buf (text) room for `cap` characters; NULL with `cap` = 0 asks for the length
-    !> @param[in]  cap (scalar) characters in `buf`, >= 0
-    !> @param[out] len (scalar) full length without the terminating zero
-    !>
-    !> Safety: `buf` has room for `cap` characters, `len` for one number.
-    function feti_problem_error(p, buf, cap, len) bind(C, name="feti_problem_error")
-      import
-      type(c_ptr), value :: p
-      type(c_ptr), value :: buf
-      integer(c_int64_t), value :: cap
-      integer(c_int64_t), intent(out) :: len
-      integer(c_int32_t) :: feti_problem_error
-    end function feti_problem_error
+      type(c_ptr), value :: info
+      integer(c_int32_t) :: feti_solve
+    end function feti_solve
 
     !> Cancels the setup or the solve that runs on the problem.
     !>
@@ -1927,27 +1566,41 @@ module feti_contact_c
       integer(c_int32_t) :: feti_cancel
     end function feti_cancel
 
-    !> Names the function that is told of every body in every part of a setup, and of every step of a solve.
-    !>
-    !> During a setup on several threads it is also called when half a second has passed without such news. It
-    !> is called on the thread that called the library, in that thread's floating-point environment, until
-    !> another one or NULL is given. It returns 0 to go on; a number > 0 ends the call with FETI_CANCELLED and
-    !> the results of the last step; a number < 0 ends it with FETI_CALLBACK, the number in the error detail,
-    !> and no results. Calls on the same problem from inside return FETI_BUSY, except feti_cancel and
-    !> feti_problem_error; other problems may be used. It must not end by longjmp or an exception.
-    !>
-    !> @param[in] p        (scalar) the handle
-    !> @param[in] callback (scalar) the function; NULL: none
-    !> @param[in] user     (scalar) handed to the function unchanged; may be NULL
-    !>
-    !> Safety: `callback` may be called with `user` until it is replaced or the problem destroyed.
-    function feti_on_progress(p, callback, user) bind(C, name="feti_on_progress")
-      import
-      type(c_ptr), value :: p
-      type(c_funptr), value :: callback
-      type(c_ptr), value :: user
-      integer(c_int32_t) :: feti_on_progress
-    end function feti_on_progress
+  end interface
+
+  ! Results
+  ! =======
+  ! Read displacements, forces, gaps and states.
+
+  !> State of a row: open, its force is zero.
+  integer(c_int32_t), parameter, public :: FETI_ROW_OPEN = 0_c_int32_t
+  !> State of a row: closed, it carries a force.
+  integer(c_int32_t), parameter, public :: FETI_ROW_CLOSED = 1_c_int32_t
+  !> State of a row: closed with a force that is zero to rounding, or with a force without a clear sign.
+  integer(c_int32_t), parameter, public :: FETI_ROW_WEAK = 2_c_int32_t
+  !> State of a row: unknown, the bodies it touches are in a group that has no answer.
+  integer(c_int32_t), parameter, public :: FETI_ROW_UNKNOWN = 3_c_int32_t
+  !> State of a node with friction: its bound is zero, it carries no tangential force.
+  integer(c_int32_t), parameter, public :: FETI_FRICTION_OPEN = 0_c_int32_t
+  !> State of a node with friction: it sticks, its force is within its bound.
+  integer(c_int32_t), parameter, public :: FETI_FRICTION_STICK = 1_c_int32_t
+  !> State of a node with friction: it slips along a force that reaches its bound.
+  integer(c_int32_t), parameter, public :: FETI_FRICTION_SLIP = 2_c_int32_t
+  !> State of a node with friction: its force reaches its bound to rounding, and it does not slip.
+  integer(c_int32_t), parameter, public :: FETI_FRICTION_WEAK = 3_c_int32_t
+  !> State of a node with friction: unknown, the bodies it touches are in a group that has no answer.
+  integer(c_int32_t), parameter, public :: FETI_FRICTION_UNKNOWN = 4_c_int32_t
+
+  public :: feti_displacement
+  public :: feti_multipliers
+  public :: feti_gaps
+  public :: feti_active
+  public :: feti_reaction
+  public :: feti_amplitudes
+  public :: feti_friction_slips
+  public :: feti_friction_states
+
+  interface
 
     !> Reads the displacement of a body.
     !>
@@ -1972,56 +1625,6 @@ module feti_contact_c
       real(c_double), intent(out) :: u(*)
       integer(c_int32_t) :: feti_displacement
     end function feti_displacement
-
-    !> Reads the force of the rows on a body, -B'lambda, -H'mu, -T'lambda_t or all of them: `K u = f + r`.
-    !>
-    !> By kinds it is that of the host's rows. All together hold the force of the glue as well where unknowns
-    !> of several bodies have one number (option glue): what these bodies do to each other. It cancels in the
-    !> sum over them, which FETI_ALL gives.
-    !>
-    !> With FETI_ALL the forces on all bodies: by the host's numbers where they have some, entries of no
-    !> unknown as they were; else one body after the other; NaN where rows act on bodies whose group has no
-    !> answer (feti_solve). FETI_STATE before a solve has given an answer, for a body whose group has none,
-    !> and with FETI_ALL where some bodies have numbers of the host and others have none. After a failure
-    !> nothing is written.
-    !>
-    !> @param[in]  p    (scalar) the handle
-    !> @param[in]  kind (scalar) FETI_INEQUALITY, FETI_EQUALITY, FETI_TANGENTIAL, or 0 for all
-    !> @param[in]  body (scalar) number of the body, from 0, or FETI_ALL
-    !> @param[in]  n    (scalar) unknowns of the body; with FETI_ALL at least the largest number + 1, without
-    !>                  numbers all unknowns
-    !> @param[out] r    (n) force
-    !>
-    !> Safety: The array has the given shape.
-    function feti_reaction(p, kind, body, n, r) bind(C, name="feti_reaction")
-      import
-      type(c_ptr), value :: p
-      integer(c_int32_t), value :: kind
-      integer(c_int64_t), value :: body
-      integer(c_int64_t), value :: n
-      real(c_double), intent(out) :: r(*)
-      integer(c_int32_t) :: feti_reaction
-    end function feti_reaction
-
-    !> Reads the amplitudes alpha of the null space in the displacement of a body, `u = K+ (f + r) + R alpha`.
-    !>
-    !> FETI_STATE before a solve has given an answer, and for a body whose group has none (feti_solve). After
-    !> a failure nothing is written.
-    !>
-    !> @param[in]  p     (scalar) the handle
-    !> @param[in]  body  (scalar) number of the body, from 0
-    !> @param[in]  r     (scalar) dimension of the null space of the body
-    !> @param[out] alpha (r) amplitudes, in the order of the columns of feti_body_null_space_get
-    !>
-    !> Safety: The array has the given shape.
-    function feti_amplitudes(p, body, r, alpha) bind(C, name="feti_amplitudes")
-      import
-      type(c_ptr), value :: p
-      integer(c_int64_t), value :: body
-      integer(c_int64_t), value :: r
-      real(c_double), intent(out) :: alpha(*)
-      integer(c_int32_t) :: feti_amplitudes
-    end function feti_amplitudes
 
     !> Reads the multipliers: lambda of `B u <= c`, mu of `H u = h`, or lambda_t of the nodes with friction,
     !> node after node.
@@ -2082,6 +1685,56 @@ module feti_contact_c
       integer(c_int32_t) :: feti_active
     end function feti_active
 
+    !> Reads the force of the rows on a body, -B'lambda, -H'mu, -T'lambda_t or all of them: `K u = f + r`.
+    !>
+    !> By kinds it is that of the host's rows. All together hold the force of the glue as well where unknowns
+    !> of several bodies have one number (option glue): what these bodies do to each other. It cancels in the
+    !> sum over them, which FETI_ALL gives.
+    !>
+    !> With FETI_ALL the forces on all bodies: by the host's numbers where they have some, entries of no
+    !> unknown as they were; else one body after the other; NaN where rows act on bodies whose group has no
+    !> answer (feti_solve). FETI_STATE before a solve has given an answer, for a body whose group has none,
+    !> and with FETI_ALL where some bodies have numbers of the host and others have none. After a failure
+    !> nothing is written.
+    !>
+    !> @param[in]  p    (scalar) the handle
+    !> @param[in]  kind (scalar) FETI_INEQUALITY, FETI_EQUALITY, FETI_TANGENTIAL, or 0 for all
+    !> @param[in]  body (scalar) number of the body, from 0, or FETI_ALL
+    !> @param[in]  n    (scalar) unknowns of the body; with FETI_ALL at least the largest number + 1, without
+    !>                  numbers all unknowns
+    !> @param[out] r    (n) force
+    !>
+    !> Safety: The array has the given shape.
+    function feti_reaction(p, kind, body, n, r) bind(C, name="feti_reaction")
+      import
+      type(c_ptr), value :: p
+      integer(c_int32_t), value :: kind
+      integer(c_int64_t), value :: body
+      integer(c_int64_t), value :: n
+      real(c_double), intent(out) :: r(*)
+      integer(c_int32_t) :: feti_reaction
+    end function feti_reaction
+
+    !> Reads the amplitudes alpha of the null space in the displacement of a body, `u = K+ (f + r) + R alpha`.
+    !>
+    !> FETI_STATE before a solve has given an answer, and for a body whose group has none (feti_solve). After
+    !> a failure nothing is written.
+    !>
+    !> @param[in]  p     (scalar) the handle
+    !> @param[in]  body  (scalar) number of the body, from 0
+    !> @param[in]  r     (scalar) dimension of the null space of the body
+    !> @param[out] alpha (r) amplitudes, in the order of the columns of feti_body_null_space_get
+    !>
+    !> Safety: The array has the given shape.
+    function feti_amplitudes(p, body, r, alpha) bind(C, name="feti_amplitudes")
+      import
+      type(c_ptr), value :: p
+      integer(c_int64_t), value :: body
+      integer(c_int64_t), value :: r
+      real(c_double), intent(out) :: alpha(*)
+      integer(c_int32_t) :: feti_amplitudes
+    end function feti_amplitudes
+
     !> Reads the slips of the last answer, `s = T u - s_old - C_t lambda_t` with the s_old of that solve.
     !>
     !> A slip has the sign of its force lambda_t (feti_multipliers with FETI_TANGENTIAL). NaN for nodes on
@@ -2126,104 +1779,18 @@ module feti_contact_c
       integer(c_int32_t) :: feti_friction_states
     end function feti_friction_states
 
-    !> Reads the size of the problem as it is given now.
-    !>
-    !> After a failure nothing is written.
-    !>
-    !> @param[in]  p      (scalar) the handle
-    !> @param[out] bodies (scalar) bodies; may be NULL
-    !> @param[out] dofs   (scalar) unknowns of all bodies; may be NULL
-    !> @param[out] rows   (scalar) inequality rows; may be NULL
-    !> @param[out] eqs    (scalar) equality rows; may be NULL
-    !>
-    !> Safety: Every pointer is NULL or has room for one number.
-    function feti_counts(p, bodies, dofs, rows, eqs) bind(C, name="feti_counts")
-      import
-      type(c_ptr), value :: p
-      type(c_ptr), value :: bodies
-      type(c_ptr), value :: dofs
-      type(c_ptr), value :: rows
-      type(c_ptr), value :: eqs
-      integer(c_int32_t) :: feti_counts
-    end function feti_counts
+  end interface
 
-    !> Adds rows of `B u <= c` or `H u = h`, with 32-bit indices.
-    !>
-    !> The rows are copied and numbered behind those of the same kind that are there. A pair of body and
-    !> unknown that comes twice in a row is summed. A contact row with c = +infinity never closes: it carries
-    !> no force and joins no bodies, as if it were not there, and keeps its number; feti_rows_rhs turns it on.
-    !> FETI_STATE where `body` is NULL and some bodies have numbers of the host, others have none. After a
-    !> failure nothing is added.
-    !>
-    !> @param[in]  p       (scalar) the handle
-    !> @param[in]  kind    (scalar) FETI_INEQUALITY or FETI_EQUALITY
-    !> @param[in]  rows    (scalar) number of rows, 0 adds none
-    !> @param[in]  row_ptr (rows + 1) row i holds the entries `row_ptr[i]` to `row_ptr[i + 1] - 1`; starts
-    !>                     with `base`
-    !> @param[in]  body    (row_ptr[rows] - base) body of each entry, counted from `base`; NULL: `dof` is the
-    !>                     host's number of the unknown (feti_body_numbering_i32), without numbers it counts
-    !>                     through all bodies
-    !> @param[in]  dof     (row_ptr[rows] - base) unknown of each entry, counted from `base`
-    !> @param[in]  val     (row_ptr[rows] - base) entries of B or H
-    !> @param[in]  base    (scalar) 0 or 1: what `row_ptr`, `body` and `dof` count from
-    !> @param[in]  rhs     (rows) c or h, length; c may be +infinity; NULL: zeros
-    !> @param[out] first   (scalar) number of the first row added, from 0; may be NULL
-    !>
-    !> Safety: The arrays have the given shapes.
-    function feti_rows_add_i32(p, kind, rows, row_ptr, body, dof, val, base, rhs, first) &
-        bind(C, name="feti_rows_add_i32")
-      import
-      type(c_ptr), value :: p
-      integer(c_int32_t), value :: kind
-      integer(c_int64_t), value :: rows
-      integer(c_int32_t), intent(in) :: row_ptr(*)
-      type(c_ptr), value :: body
-      integer(c_int32_t), intent(in) :: dof(*)
-      real(c_double), intent(in) :: val(*)
-      integer(c_int32_t), value :: base
-      type(c_ptr), value :: rhs
-      type(c_ptr), value :: first
-      integer(c_int32_t) :: feti_rows_add_i32
-    end function feti_rows_add_i32
+  ! Load steps
+  ! ==========
+  ! Go on with other loads and gaps; friction remembers where it slipped to.
 
-    !> Adds rows of `B u <= c` or `H u = h`, with 64-bit indices.
-    !>
-    !> The rows are copied and numbered behind those of the same kind that are there. A pair of body and
-    !> unknown that comes twice in a row is summed. A contact row with c = +infinity never closes: it carries
-    !> no force and joins no bodies, as if it were not there, and keeps its number; feti_rows_rhs turns it on.
-    !> FETI_STATE where `body` is NULL and some bodies have numbers of the host, others have none. After a
-    !> failure nothing is added.
-    !>
-    !> @param[in]  p       (scalar) the handle
-    !> @param[in]  kind    (scalar) FETI_INEQUALITY or FETI_EQUALITY
-    !> @param[in]  rows    (scalar) number of rows, 0 adds none
-    !> @param[in]  row_ptr (rows + 1) row i holds the entries `row_ptr[i]` to `row_ptr[i + 1] - 1`; starts
-    !>                     with `base`
-    !> @param[in]  body    (row_ptr[rows] - base) body of each entry, counted from `base`; NULL: `dof` is the
-    !>                     host's number of the unknown (feti_body_numbering_i32), without numbers it counts
-    !>                     through all bodies
-    !> @param[in]  dof     (row_ptr[rows] - base) unknown of each entry, counted from `base`
-    !> @param[in]  val     (row_ptr[rows] - base) entries of B or H
-    !> @param[in]  base    (scalar) 0 or 1: what `row_ptr`, `body` and `dof` count from
-    !> @param[in]  rhs     (rows) c or h, length; c may be +infinity; NULL: zeros
-    !> @param[out] first   (scalar) number of the first row added, from 0; may be NULL
-    !>
-    !> Safety: The arrays have the given shapes.
-    function feti_rows_add_i64(p, kind, rows, row_ptr, body, dof, val, base, rhs, first) &
-        bind(C, name="feti_rows_add_i64")
-      import
-      type(c_ptr), value :: p
-      integer(c_int32_t), value :: kind
-      integer(c_int64_t), value :: rows
-      integer(c_int64_t), intent(in) :: row_ptr(*)
-      type(c_ptr), value :: body
-      integer(c_int64_t), intent(in) :: dof(*)
-      real(c_double), intent(in) :: val(*)
-      integer(c_int32_t), value :: base
-      type(c_ptr), value :: rhs
-      type(c_ptr), value :: first
-      integer(c_int32_t) :: feti_rows_add_i64
-    end function feti_rows_add_i64
+  public :: feti_rows_rhs
+  public :: feti_friction_commit
+  public :: feti_friction_reference
+  public :: feti_start_from
+
+  interface
 
     !> Replaces right-hand sides: c of `B u <= c` or h of `H u = h`.
     !>
@@ -2248,174 +1815,45 @@ module feti_contact_c
       integer(c_int32_t) :: feti_rows_rhs
     end function feti_rows_rhs
 
-    !> Makes rows compliant: each a spring, `B u - c <= lambda/k` or `H u - h = mu/k`.
+    !> Ends a load step: s_old becomes what the last answer has reached, `T u - C_t lambda_t`, at every node,
+    !> open ones too.
     !>
-    !> A contact row then carries the force k (B u - c) where that is positive: a linear law of pressure and
-    !> overclosure; an equality row is an elastic support or a cohesive bond. Rows that are added are rigid,
-    !> 1/k = 0. A row times t has a compliance times t^2. The numbers are copied and stay with their rows
-    !> until they are replaced or the rows are cleared; factors of the bodies stay, the last answer does not.
-    !> After a failure all compliances are as they were.
-    !>
-    !> @param[in] p     (scalar) the handle
-    !> @param[in] kind  (scalar) FETI_INEQUALITY or FETI_EQUALITY
-    !> @param[in] first (scalar) first row to change, from 0
-    !> @param[in] rows  (scalar) number of rows to change
-    !> @param[in] inv_k (rows) 1/k >= 0, length / force; 0: rigid
-    !>
-    !> Safety: The array has the given shape.
-    function feti_rows_compliance(p, kind, first, rows, inv_k) bind(C, name="feti_rows_compliance")
-      import
-      type(c_ptr), value :: p
-      integer(c_int32_t), value :: kind
-      integer(c_int64_t), value :: first
-      integer(c_int64_t), value :: rows
-      real(c_double), intent(in) :: inv_k(*)
-      integer(c_int32_t) :: feti_rows_compliance
-    end function feti_rows_compliance
-
-    !> Removes all rows of a kind.
-    !>
-    !> Numbering of that kind starts again at 0. With the inequality rows go all nodes with friction
-    !> (feti_friction_clear), whose contact rows they are. Factors of the bodies stay.
-    !>
-    !> @param[in] p    (scalar) the handle
-    !> @param[in] kind (scalar) FETI_INEQUALITY or FETI_EQUALITY
-    function feti_rows_clear(p, kind) bind(C, name="feti_rows_clear")
-      import
-      type(c_ptr), value :: p
-      integer(c_int32_t), value :: kind
-      integer(c_int32_t) :: feti_rows_clear
-    end function feti_rows_clear
-
-    !> Prepares the solve: null spaces, factors of the bodies, the dual operator.
-    !>
-    !> feti_solve does it when it is due; called alone it shows errors in the bodies early. After a failure
-    !> all that was given is kept and can be corrected.
-    !>
-    !> FETI_STATE where there is no body, or one without a matrix; FETI_NULL_SPACE where the null space of a
-    !> body is not what was claimed, or cannot be found; FETI_INDEFINITE where a matrix is indefinite, with
-    !> body, unknown and pivot; FETI_GAPS_CONTRADICT where a row without entries has a right-hand side that 0
-    !> does not satisfy; FETI_CALLBACK where a function of the host fails or is not what it must be
-    !> (feti_body_operator); FETI_UNSUPPORTED where fixing unknowns were given for a body whose matrix is
-    !> functions of the host; FETI_OVERFLOW where the square of a row, or a compliance times the largest K_ii,
-    !> over- or underflows; FETI_CANCELLED where the host has cancelled.
+    !> To be called once a step is accepted, before or after the loads of the next one are given. The answer
+    !> stays as it was, with the slips of its step; so does where the next solve starts. A second call does
+    !> what the first did. To take a step back, save the state before it (feti_state_save). FETI_STATE before
+    !> a solve has given an answer, where a group of bodies has none, and where the answer is not certified (a
+    !> status of feti_solve other than FETI_OK and FETI_MARGINAL). After a failure s_old is as it was.
     !>
     !> @param[in] p (scalar) the handle
-    function feti_setup(p) bind(C, name="feti_setup")
+    function feti_friction_commit(p) bind(C, name="feti_friction_commit")
       import
       type(c_ptr), value :: p
-      integer(c_int32_t) :: feti_setup
-    end function feti_setup
+      integer(c_int32_t) :: feti_friction_commit
+    end function feti_friction_commit
 
-    !> Minimises 1/2 u'Ku - f'u subject to `B u <= c` and `H u = h`.
+    !> Gives s_old, what the slips of nodes are counted from: T u - C_t lambda_t at the beginning of the load
+    !> step.
     !>
-    !> The answer is kept until the next solve and read with feti_displacement, feti_multipliers and the like;
-    !> there is one when the status is not negative, unless the call was cancelled or its time was over before
-    !> the first step. `info` is written in any case, with NaN for figures that a failure left unknown. After
-    !> a failure all that was given is kept and can be corrected, except after FETI_INTERNAL. Where rows and
-    !> loads leave motions open (`undetermined`), the answer is the one nearest to rest that keeps the rows:
-    !> the least sum of `K_ii u_i^2`.
+    !> Nodes that are added have zeros; feti_friction_commit takes s_old from the answer. A host that solves
+    !> for the increment of a Newton iteration gives T (u_begin - u_k). The numbers are copied; factors of the
+    !> bodies and the last answer stay, with the slips it had. After a failure all of them are as they were.
     !>
-    !> Groups of bodies that no row with a finite gap joins are problems of their own, each solved to its own
-    !> accuracy and several at a time where there are threads. The worst status of all groups is returned;
-    !> counts and the energy are sums, every figure of the certificate is that of the worst group. Where one
-    !> group has no answer because its load is not held or its rows contradict each other, the status,
-    !> feti_last_error and feti_diagnosis are those of the first such group, and the other groups keep their
-    !> answers: `info` has what they came to. What is read for one body of a group without an answer is
-    !> FETI_STATE; what is read for all bodies or rows at once is NaN there, in feti_active FETI_ROW_UNKNOWN.
+    !> @param[in] p     (scalar) the handle
+    !> @param[in] first (scalar) first node to change, from 0
+    !> @param[in] nodes (scalar) number of nodes to change
+    !> @param[in] dim   (scalar) tangential rows of a node, 1 or 2; not looked at without nodes
+    !> @param[in] s_old (dim * nodes) node after node, length; 0 for rows without entries
     !>
-    !> A status above 0 comes with an answer, but for such ends. FETI_ITERATIONS at the limit of option
-    !> max_steps; FETI_TIME at the limit of option time_limit, which counts from the call, with a setup that
-    !> is due; FETI_CANCELLED where the host has cancelled; FETI_STALLED where steps no longer reduce the
-    !> error; FETI_INACCURATE where the certificate does not pass; FETI_MARGINAL where a part of the load,
-    !> below 1e-7 of it, is not held. A status below 0 comes without one for the group of bodies it is about.
-    !> FETI_LOAD_NOT_HELD where no contact force balances the load; FETI_SLIDES where friction holds only a
-    !> part of it and no rest was found; FETI_GAPS_CONTRADICT where rows contradict each other;
-    !> FETI_INDEFINITE where K drives a soft motion further than closed rows resist it; feti_diagnosis has the
-    !> proof of each. It runs feti_setup when it is due, and fails as that does.
-    !>
-    !> @param[in]     p    (scalar) the handle
-    !> @param[in,out] info (scalar) `struct_size` set, at least 16; may be NULL
-    !>
-    !> Safety: `info` is NULL or leads to `struct_size` writable bytes.
-    function feti_solve(p, info) bind(C, name="feti_solve")
+    !> Safety: The array has the given shape.
+    function feti_friction_reference(p, first, nodes, dim, s_old) bind(C, name="feti_friction_reference")
       import
       type(c_ptr), value :: p
-      type(c_ptr), value :: info
-      integer(c_int32_t) :: feti_solve
-    end function feti_solve
-
-    !> Verifies an answer without tangential forces against the problem as it is given now: any answer, also
-    !> another code's.
-    !>
-    !> Every figure is that of the worst body or the worst row, measured against its own forces and
-    !> deformation, and is named with it. Glue (option glue) is judged as equality rows are; the forces in it
-    !> are not given: they are those that serve the answer best. Rows that never close, c = +infinity, are
-    !> left out: what is given for their lambda counts as 0. At nodes with friction (feti_friction_add_i32 or
-    !> _i64) the tangential force counts as 0: feti_check_friction takes it. Keeps nothing of the answer: that
-    !> of the last solve stays. Runs feti_setup when it is due, for the null spaces. After a failure nothing
-    !> is written.
-    !>
-    !> @param[in]     p      (scalar) the handle
-    !> @param[in]     n      (scalar) unknowns of all bodies
-    !> @param[in]     u      (n) displacement, body after body, length
-    !> @param[in]     rows   (scalar) number of inequality rows
-    !> @param[in]     lambda (rows) multipliers of `B u <= c`, force
-    !> @param[in]     eqs    (scalar) number of equality rows
-    !> @param[in]     mu     (eqs) multipliers of `H u = h`, force
-    !> @param[in,out] out    (scalar) `struct_size` set, at least 16
-    !>
-    !> Safety: The arrays have the given shapes, `out` leads to `struct_size` writable bytes.
-    function feti_check(p, n, u, rows, lambda, eqs, mu, out) bind(C, name="feti_check")
-      import
-      type(c_ptr), value :: p
-      integer(c_int64_t), value :: n
-      real(c_double), intent(in) :: u(*)
-      integer(c_int64_t), value :: rows
-      real(c_double), intent(in) :: lambda(*)
-      integer(c_int64_t), value :: eqs
-      real(c_double), intent(in) :: mu(*)
-      type(feti_certificate), intent(inout) :: out
-      integer(c_int32_t) :: feti_check
-    end function feti_check
-
-    !> Verifies an answer with tangential forces against the problem as it is given now: any answer, also
-    !> another code's.
-    !>
-    !> As feti_check; the figures of friction judge, node by node, the forces lambda_t by the law and the slip
-    !> `T u - s_old - C_t lambda_t` by the s_old that is there now: after feti_friction_commit that of the
-    !> next step. Nodes that may carry no force (bound 0, no contact row that may close) are left out. After a
-    !> failure nothing is written.
-    !>
-    !> @param[in]     p        (scalar) the handle
-    !> @param[in]     n        (scalar) unknowns of all bodies
-    !> @param[in]     u        (n) displacement, body after body, length
-    !> @param[in]     rows     (scalar) number of inequality rows
-    !> @param[in]     lambda   (rows) multipliers of `B u <= c`, force
-    !> @param[in]     eqs      (scalar) number of equality rows
-    !> @param[in]     mu       (eqs) multipliers of `H u = h`, force
-    !> @param[in]     nodes    (scalar) number of nodes with friction
-    !> @param[in]     dim      (scalar) tangential rows of a node, 1 or 2; not looked at without nodes
-    !> @param[in]     lambda_t (dim * nodes) multipliers of the tangential rows, node after node, force
-    !> @param[in,out] out      (scalar) `struct_size` set, at least 16
-    !>
-    !> Safety: The arrays have the given shapes, `out` leads to `struct_size` writable bytes.
-    function feti_check_friction(p, n, u, rows, lambda, eqs, mu, nodes, dim, lambda_t, out) &
-        bind(C, name="feti_check_friction")
-      import
-      type(c_ptr), value :: p
-      integer(c_int64_t), value :: n
-      real(c_double), intent(in) :: u(*)
-      integer(c_int64_t), value :: rows
-      real(c_double), intent(in) :: lambda(*)
-      integer(c_int64_t), value :: eqs
-      real(c_double), intent(in) :: mu(*)
+      integer(c_int64_t), value :: first
       integer(c_int64_t), value :: nodes
       integer(c_int32_t), value :: dim
-      real(c_double), intent(in) :: lambda_t(*)
-      type(feti_certificate), intent(inout) :: out
-      integer(c_int32_t) :: feti_check_friction
-    end function feti_check_friction
+      real(c_double), intent(in) :: s_old(*)
+      integer(c_int32_t) :: feti_friction_reference
+    end function feti_friction_reference
 
     !> Gives start values for the next solve.
     !>
@@ -2439,340 +1877,19 @@ module feti_contact_c
       integer(c_int32_t) :: feti_start_from
     end function feti_start_from
 
-    !> Saves loads, rows, friction, multipliers and the contact state under a number.
-    !>
-    !> Of nodes with friction the laws, the compliances and s_old. Factors are not copied and the entries of
-    !> the rows are shared, so that it costs no more than the vectors. States live until they are dropped or
-    !> the problem is destroyed; numbers are never used again. After a failure nothing is saved.
-    !>
-    !> @param[in]  p  (scalar) the handle
-    !> @param[out] id (scalar) number of the state, from 0
-    !>
-    !> Safety: `id` has room for one number.
-    function feti_state_save(p, id) bind(C, name="feti_state_save")
-      import
-      type(c_ptr), value :: p
-      integer(c_int64_t), intent(out) :: id
-      integer(c_int32_t) :: feti_state_save
-    end function feti_state_save
+  end interface
 
-    !> Goes back to a saved state: after a load step that was rejected.
-    !>
-    !> Loads and rows, with right-hand sides and compliances, and nodes with friction, with laws and s_old,
-    !> are as they were, and so is the answer unless a matrix or the rows have changed since; with option
-    !> start = previous the next solve continues from the saved multipliers, with start = cold it gives the
-    !> bits it would have given then. Matrices, null spaces and options stay as they are now; start values
-    !> that were not used yet are dropped. The state stays saved. FETI_STATE when bodies were added since;
-    !> after a failure nothing is changed.
-    !>
-    !> @param[in] p  (scalar) the handle
-    !> @param[in] id (scalar) number of the state
-    function feti_state_restore(p, id) bind(C, name="feti_state_restore")
-      import
-      type(c_ptr), value :: p
-      integer(c_int64_t), value :: id
-      integer(c_int32_t) :: feti_state_restore
-    end function feti_state_restore
+  ! Newton's method
+  ! ===============
+  ! Give new matrices and new rows to a problem that is there.
 
-    !> Drops a saved state. After a failure nothing is dropped.
-    !>
-    !> @param[in] p  (scalar) the handle
-    !> @param[in] id (scalar) number of the state
-    function feti_state_drop(p, id) bind(C, name="feti_state_drop")
-      import
-      type(c_ptr), value :: p
-      integer(c_int64_t), value :: id
-      integer(c_int32_t) :: feti_state_drop
-    end function feti_state_drop
+  public :: feti_body_values
+  public :: feti_body_values_split
+  public :: feti_body_values_dense
+  public :: feti_rows_clear
+  public :: feti_friction_clear
 
-    !> Name of a status, such as "FETI_LOAD_NOT_HELD".
-    !>
-    !> "FETI_ARGUMENT" for every refused argument, "FETI_UNKNOWN" for a number that is no status. The text is
-    !> static. Never fails.
-    !>
-    !> @param[in] status (scalar) any number
-    pure function feti_status_name(status) bind(C, name="feti_status_name")
-      import
-      integer(c_int32_t), intent(in), value :: status
-      type(c_ptr) :: feti_status_name
-    end function feti_status_name
-
-    !> One English sentence on a status.
-    !>
-    !> The text is static. Never fails.
-    !>
-    !> @param[in] status (scalar) any number
-    pure function feti_status_text(status) bind(C, name="feti_status_text")
-      import
-      integer(c_int32_t), intent(in), value :: status
-      type(c_ptr) :: feti_status_text
-    end function feti_status_text
-
-    !> Version of the library that runs, "MAJOR.MINOR.PATCH".
-    !>
-    !> The text is static. Never fails.
-    pure function feti_version() bind(C, name="feti_version")
-      import
-      type(c_ptr) :: feti_version
-    end function feti_version
-
-    !> Version of the library that runs as one number, 10000 MAJOR + 100 MINOR + PATCH.
-    !>
-    !> Never fails.
-    function feti_version_number() bind(C, name="feti_version_number")
-      import
-      integer(c_int32_t) :: feti_version_number
-    end function feti_version_number
-
-    !> Gives the stiffness matrix K of a body by rows, with 32-bit indices.
-    !>
-    !> The matrix is copied; calling again replaces pattern and values. Columns of a row may come in any
-    !> order, none twice. With FETI_FULL K must be symmetric within option symmetry_tolerance and is averaged.
-    !> FETI_INDEFINITE with the unknown of a diagonal entry that is negative, or 0 beside others in its row.
-    !> After a failure the body keeps the matrix it had.
-    !>
-    !> With FETI_BORROW the values, and columns in 32 bits counted from 0, are not copied if storage is
-    !> FETI_LOWER, columns ascend and every row ends with its diagonal entry; otherwise all is copied
-    !> (`borrowed` of feti_body_info tells). Borrowed arrays stay readable until the matrix is replaced or the
-    !> problem destroyed, and unchanged but for this: between two calls the values may be rewritten, and the
-    !> next call then is feti_body_values with the same array.
-    !>
-    !> @param[in] p       (scalar) the handle
-    !> @param[in] body    (scalar) number of the body, from 0
-    !> @param[in] n       (scalar) unknowns of the body
-    !> @param[in] row_ptr (n + 1) row i holds the entries `row_ptr[i]` to `row_ptr[i + 1] - 1`; starts with
-    !>                    `base`
-    !> @param[in] col     (row_ptr[n] - base) columns, counted from `base`
-    !> @param[in] val     (row_ptr[n] - base) entries of K, force per length
-    !> @param[in] base    (scalar) 0 or 1: what `row_ptr` and `col` count from
-    !> @param[in] storage (scalar) FETI_FULL, FETI_LOWER or FETI_UPPER
-    !> @param[in] flags   (scalar) FETI_COPY or FETI_BORROW
-    !>
-    !> Safety: The arrays have the given shapes.
-    function feti_body_stiffness_i32(p, body, n, row_ptr, col, val, base, storage, flags) &
-        bind(C, name="feti_body_stiffness_i32")
-      import
-      type(c_ptr), value :: p
-      integer(c_int64_t), value :: body
-      integer(c_int64_t), value :: n
-      integer(c_int32_t), intent(in) :: row_ptr(*)
-      integer(c_int32_t), intent(in) :: col(*)
-      real(c_double), intent(in) :: val(*)
-      integer(c_int32_t), value :: base
-      integer(c_int32_t), value :: storage
-      integer(c_int32_t), value :: flags
-      integer(c_int32_t) :: feti_body_stiffness_i32
-    end function feti_body_stiffness_i32
-
-    !> Gives the stiffness matrix K of a body by rows, with 64-bit indices.
-    !>
-    !> The matrix is copied; calling again replaces pattern and values. Columns of a row may come in any
-    !> order, none twice. With FETI_FULL K must be symmetric within option symmetry_tolerance and is averaged.
-    !> FETI_INDEFINITE with the unknown of a diagonal entry that is negative, or 0 beside others in its row.
-    !> After a failure the body keeps the matrix it had.
-    !>
-    !> With FETI_BORROW the values, and columns in 32 bits counted from 0, are not copied if storage is
-    !> FETI_LOWER, columns ascend and every row ends with its diagonal entry; otherwise all is copied
-    !> (`borrowed` of feti_body_info tells). Borrowed arrays stay readable until the matrix is replaced or the
-    !> problem destroyed, and unchanged but for this: between two calls the values may be rewritten, and the
-    !> next call then is feti_body_values with the same array.
-    !>
-    !> @param[in] p       (scalar) the handle
-    !> @param[in] body    (scalar) number of the body, from 0
-    !> @param[in] n       (scalar) unknowns of the body
-    !> @param[in] row_ptr (n + 1) row i holds the entries `row_ptr[i]` to `row_ptr[i + 1] - 1`; starts with
-    !>                    `base`
-    !> @param[in] col     (row_ptr[n] - base) columns, counted from `base`
-    !> @param[in] val     (row_ptr[n] - base) entries of K, force per length
-    !> @param[in] base    (scalar) 0 or 1: what `row_ptr` and `col` count from
-    !> @param[in] storage (scalar) FETI_FULL, FETI_LOWER or FETI_UPPER
-    !> @param[in] flags   (scalar) FETI_COPY or FETI_BORROW
-    !>
-    !> Safety: The arrays have the given shapes.
-    function feti_body_stiffness_i64(p, body, n, row_ptr, col, val, base, storage, flags) &
-        bind(C, name="feti_body_stiffness_i64")
-      import
-      type(c_ptr), value :: p
-      integer(c_int64_t), value :: body
-      integer(c_int64_t), value :: n
-      integer(c_int64_t), intent(in) :: row_ptr(*)
-      integer(c_int64_t), intent(in) :: col(*)
-      real(c_double), intent(in) :: val(*)
-      integer(c_int32_t), value :: base
-      integer(c_int32_t), value :: storage
-      integer(c_int32_t), value :: flags
-      integer(c_int32_t) :: feti_body_stiffness_i64
-    end function feti_body_stiffness_i64
-
-    !> Gives the stiffness matrix K of a body by rows with a diagonal of its own, with 32-bit indices.
-    !>
-    !> For codes that keep the diagonal apart. The matrix is copied; calling again replaces pattern and
-    !> values. Columns of a row may come in any order, none twice. With FETI_FULL K must be symmetric within
-    !> option symmetry_tolerance and is averaged. FETI_INDEFINITE with the unknown of a diagonal entry that is
-    !> negative, or 0 beside others in its row. After a failure the body keeps the matrix it had.
-    !>
-    !> @param[in] p       (scalar) the handle
-    !> @param[in] body    (scalar) number of the body, from 0
-    !> @param[in] n       (scalar) unknowns of the body
-    !> @param[in] diag    (n) K_ii, force per length
-    !> @param[in] row_ptr (n + 1) row i holds the entries `row_ptr[i]` to `row_ptr[i + 1] - 1`; starts with
-    !>                    `base`
-    !> @param[in] col     (row_ptr[n] - base) columns, counted from `base`, none that of its row
-    !> @param[in] val     (row_ptr[n] - base) entries of K beside the diagonal, force per length
-    !> @param[in] base    (scalar) 0 or 1: what `row_ptr` and `col` count from
-    !> @param[in] storage (scalar) FETI_FULL, FETI_LOWER or FETI_UPPER
-    !> @param[in] flags   (scalar) FETI_COPY, or FETI_BORROW, which copies as well: no matrix is kept in this
-    !>                    form
-    !>
-    !> Safety: The arrays have the given shapes.
-    function feti_body_stiffness_split_i32(p, body, n, diag, row_ptr, col, val, base, storage, flags) &
-        bind(C, name="feti_body_stiffness_split_i32")
-      import
-      type(c_ptr), value :: p
-      integer(c_int64_t), value :: body
-      integer(c_int64_t), value :: n
-      real(c_double), intent(in) :: diag(*)
-      integer(c_int32_t), intent(in) :: row_ptr(*)
-      integer(c_int32_t), intent(in) :: col(*)
-      real(c_double), intent(in) :: val(*)
-      integer(c_int32_t), value :: base
-      integer(c_int32_t), value :: storage
-      integer(c_int32_t), value :: flags
-      integer(c_int32_t) :: feti_body_stiffness_split_i32
-    end function feti_body_stiffness_split_i32
-
-    !> Gives the stiffness matrix K of a body by rows with a diagonal of its own, with 64-bit indices.
-    !>
-    !> For codes that keep the diagonal apart. The matrix is copied; calling again replaces pattern and
-    !> values. Columns of a row may come in any order, none twice. With FETI_FULL K must be symmetric within
-    !> option symmetry_tolerance and is averaged. FETI_INDEFINITE with the unknown of a diagonal entry that is
-    !> negative, or 0 beside others in its row. After a failure the body keeps the matrix it had.
-    !>
-    !> @param[in] p       (scalar) the handle
-    !> @param[in] body    (scalar) number of the body, from 0
-    !> @param[in] n       (scalar) unknowns of the body
-    !> @param[in] diag    (n) K_ii, force per length
-    !> @param[in] row_ptr (n + 1) row i holds the entries `row_ptr[i]` to `row_ptr[i + 1] - 1`; starts with
-    !>                    `base`
-    !> @param[in] col     (row_ptr[n] - base) columns, counted from `base`, none that of its row
-    !> @param[in] val     (row_ptr[n] - base) entries of K beside the diagonal, force per length
-    !> @param[in] base    (scalar) 0 or 1: what `row_ptr` and `col` count from
-    !> @param[in] storage (scalar) FETI_FULL, FETI_LOWER or FETI_UPPER
-    !> @param[in] flags   (scalar) FETI_COPY, or FETI_BORROW, which copies as well: no matrix is kept in this
-    !>                    form
-    !>
-    !> Safety: The arrays have the given shapes.
-    function feti_body_stiffness_split_i64(p, body, n, diag, row_ptr, col, val, base, storage, flags) &
-        bind(C, name="feti_body_stiffness_split_i64")
-      import
-      type(c_ptr), value :: p
-      integer(c_int64_t), value :: body
-      integer(c_int64_t), value :: n
-      real(c_double), intent(in) :: diag(*)
-      integer(c_int64_t), intent(in) :: row_ptr(*)
-      integer(c_int64_t), intent(in) :: col(*)
-      real(c_double), intent(in) :: val(*)
-      integer(c_int32_t), value :: base
-      integer(c_int32_t), value :: storage
-      integer(c_int32_t), value :: flags
-      integer(c_int32_t) :: feti_body_stiffness_split_i64
-    end function feti_body_stiffness_split_i64
-
-    !> Gives the stiffness matrix K of a body as a dense matrix, for boundary elements and condensed bodies.
-    !>
-    !> The matrix is copied; calling again replaces it. With FETI_LOWER and FETI_UPPER the other triangle is
-    !> not read. FETI_INDEFINITE with the unknown of a diagonal entry that is negative, or 0 beside others in
-    !> its row. After a failure the body keeps the matrix it had.
-    !>
-    !> @param[in] p       (scalar) the handle
-    !> @param[in] body    (scalar) number of the body, from 0
-    !> @param[in] n       (scalar) unknowns of the body
-    !> @param[in] k       (ld * n) column-major: K_ij is k[i + ld j], force per length
-    !> @param[in] ld      (scalar) >= n
-    !> @param[in] storage (scalar) FETI_FULL, FETI_LOWER or FETI_UPPER
-    !> @param[in] flags   (scalar) FETI_COPY
-    !>
-    !> Safety: The array has the given shape.
-    function feti_body_stiffness_dense(p, body, n, k, ld, storage, flags) &
-        bind(C, name="feti_body_stiffness_dense")
-      import
-      type(c_ptr), value :: p
-      integer(c_int64_t), value :: body
-      integer(c_int64_t), value :: n
-      real(c_double), intent(in) :: k(*)
-      integer(c_int64_t), value :: ld
-      integer(c_int32_t), value :: storage
-      integer(c_int32_t), value :: flags
-      integer(c_int32_t) :: feti_body_stiffness_dense
-    end function feti_body_stiffness_dense
-
-    !> Applies the generalised inverse of a body, `Y = K+ X`.
-    !>
-    !> Runs feti_setup when it is due. X and Y may be the same array. FETI_STATE for a body that is cut
-    !> (feti_body_mesh_i32 or _i64). After a failure nothing is written.
-    !>
-    !> @param[in]  p    (scalar) the handle
-    !> @param[in]  body (scalar) number of the body, from 0
-    !> @param[in]  n    (scalar) unknowns of the body
-    !> @param[in]  nrhs (scalar) columns of X and Y
-    !> @param[in]  x    (ldx * nrhs) column-major, force
-    !> @param[in]  ldx  (scalar) >= n
-    !> @param[out] y    (ldy * nrhs) column-major, length
-    !> @param[in]  ldy  (scalar) >= n
-    !>
-    !> Safety: The arrays have the given shapes.
-    function feti_body_kplus(p, body, n, nrhs, x, ldx, y, ldy) bind(C, name="feti_body_kplus")
-      import
-      type(c_ptr), value :: p
-      integer(c_int64_t), value :: body
-      integer(c_int64_t), value :: n
-      integer(c_int64_t), value :: nrhs
-      real(c_double), intent(in) :: x(*)
-      integer(c_int64_t), value :: ldx
-      real(c_double), intent(out) :: y(*)
-      integer(c_int64_t), value :: ldy
-      integer(c_int32_t) :: feti_body_kplus
-    end function feti_body_kplus
-
-    !> Applies the dual operator, `y = F x` with `F = [B; H] K+ [B; H]' + C`.
-    !>
-    !> C = diag(1/k) is the compliance of the rows (feti_rows_compliance), 0 for rigid ones. Tangential rows
-    !> of nodes with friction are not in it. Runs feti_setup when it is due. `x` and `y` may be the same
-    !> array. FETI_STATE where a body is cut (feti_body_mesh_i32 or _i64) or unknowns are glued (option glue).
-    !> After a failure nothing is written.
-    !>
-    !> @param[in]  p (scalar) the handle
-    !> @param[in]  m (scalar) inequality rows + equality rows
-    !> @param[in]  x (m) force
-    !> @param[out] y (m) length
-    !>
-    !> Safety: The arrays have the given shapes.
-    function feti_dual_apply(p, m, x, y) bind(C, name="feti_dual_apply")
-      import
-      type(c_ptr), value :: p
-      integer(c_int64_t), value :: m
-      real(c_double), intent(in) :: x(*)
-      real(c_double), intent(out) :: y(*)
-      integer(c_int32_t) :: feti_dual_apply
-    end function feti_dual_apply
-
-    !> Reads the right-hand side of the dual problem, `d = [B; H] K+ f - [c; h]`.
-    !>
-    !> Runs feti_setup when it is due. FETI_STATE where a body is cut (feti_body_mesh_i32 or _i64) or unknowns
-    !> are glued (option glue). After a failure nothing is written.
-    !>
-    !> @param[in]  p (scalar) the handle
-    !> @param[in]  m (scalar) inequality rows + equality rows
-    !> @param[out] d (m) length
-    !>
-    !> Safety: The array has the given shape.
-    function feti_dual_rhs(p, m, d) bind(C, name="feti_dual_rhs")
-      import
-      type(c_ptr), value :: p
-      integer(c_int64_t), value :: m
-      real(c_double), intent(out) :: d(*)
-      integer(c_int32_t) :: feti_dual_rhs
-    end function feti_dual_rhs
+  interface
 
     !> Gives new values of a stiffness matrix on the pattern it was given with by feti_body_stiffness_i32 or
     !> _i64.
@@ -2851,6 +1968,1077 @@ module feti_contact_c
       integer(c_int64_t), value :: ld
       integer(c_int32_t) :: feti_body_values_dense
     end function feti_body_values_dense
+
+    !> Removes all rows of a kind.
+    !>
+    !> Numbering of that kind starts again at 0. With the inequality rows go all nodes with friction
+    !> (feti_friction_clear), whose contact rows they are. Factors of the bodies stay.
+    !>
+    !> @param[in] p    (scalar) the handle
+    !> @param[in] kind (scalar) FETI_INEQUALITY or FETI_EQUALITY
+    function feti_rows_clear(p, kind) bind(C, name="feti_rows_clear")
+      import
+      type(c_ptr), value :: p
+      integer(c_int32_t), value :: kind
+      integer(c_int32_t) :: feti_rows_clear
+    end function feti_rows_clear
+
+    !> Removes all nodes with friction; their contact rows stay.
+    !>
+    !> Numbering starts again at 0, and the next nodes may have another dim. feti_rows_clear with
+    !> FETI_INEQUALITY removes them too. Factors of the bodies stay, the last answer does not.
+    !>
+    !> @param[in] p (scalar) the handle
+    function feti_friction_clear(p) bind(C, name="feti_friction_clear")
+      import
+      type(c_ptr), value :: p
+      integer(c_int32_t) :: feti_friction_clear
+    end function feti_friction_clear
+
+  end interface
+
+  ! Saved states
+  ! ============
+  ! Go back to a step that is saved.
+
+  public :: feti_state_save
+  public :: feti_state_restore
+  public :: feti_state_drop
+
+  interface
+
+    !> Saves loads, rows, friction, multipliers and the contact state under a number.
+    !>
+    !> Of nodes with friction the laws, the compliances and s_old. Factors are not copied and the entries of
+    !> the rows are shared, so that it costs no more than the vectors. States live until they are dropped or
+    !> the problem is destroyed; numbers are never used again. After a failure nothing is saved.
+    !>
+    !> @param[in]  p  (scalar) the handle
+    !> @param[out] id (scalar) number of the state, from 0
+    !>
+    !> Safety: `id` has room for one number.
+    function feti_state_save(p, id) bind(C, name="feti_state_save")
+      import
+      type(c_ptr), value :: p
+      integer(c_int64_t), intent(out) :: id
+      integer(c_int32_t) :: feti_state_save
+    end function feti_state_save
+
+    !> Goes back to a saved state: after a load step that was rejected.
+    !>
+    !> Loads and rows, with right-hand sides and compliances, and nodes with friction, with laws and s_old,
+    !> are as they were, and so is the answer unless a matrix or the rows have changed since; with option
+    !> start = previous the next solve continues from the saved multipliers, with start = cold it gives the
+    !> bits it would have given then. Matrices, null spaces and options stay as they are now; start values
+    !> that were not used yet are dropped. The state stays saved. FETI_STATE when bodies were added since;
+    !> after a failure nothing is changed.
+    !>
+    !> @param[in] p  (scalar) the handle
+    !> @param[in] id (scalar) number of the state
+    function feti_state_restore(p, id) bind(C, name="feti_state_restore")
+      import
+      type(c_ptr), value :: p
+      integer(c_int64_t), value :: id
+      integer(c_int32_t) :: feti_state_restore
+    end function feti_state_restore
+
+    !> Drops a saved state. After a failure nothing is dropped.
+    !>
+    !> @param[in] p  (scalar) the handle
+    !> @param[in] id (scalar) number of the state
+    function feti_state_drop(p, id) bind(C, name="feti_state_drop")
+      import
+      type(c_ptr), value :: p
+      integer(c_int64_t), value :: id
+      integer(c_int32_t) :: feti_state_drop
+    end function feti_state_drop
+
+  end interface
+
+  ! Diagnosis
+  ! =========
+  ! Learn why there is no answer, and what is odd about the problem.
+
+
+  !> What the last solve, or the last setup that failed, has found out about the problem. Numbers count from
+  !> 0.
+  type, bind(C), public :: feti_findings
+    !> Set by the caller: size of the struct in bytes.
+    integer(c_int64_t) :: struct_size
+    !> Status it ended with.
+    integer(c_int32_t) :: status
+    !> FETI_INEQUALITY or FETI_EQUALITY: kind of the contradicting rows' `row`; 0: none.
+    integer(c_int32_t) :: kind
+    !> Body that escapes or was refused; of several groups of bodies the first of the one that ended with this
+    !> status; -1: none.
+    integer(c_int64_t) :: body
+    !> Connected part of the body that escapes, where it has several, -1: does not apply.
+    integer(c_int64_t) :: component
+    !> Unknown of the body that moves fastest or was refused, -1: none.
+    integer(c_int64_t) :: dof
+    !> After FETI_GAPS_CONTRADICT the row with the largest weight, else a row that was refused, -1: none.
+    integer(c_int64_t) :: row
+    !> Rows of both kinds that contradict each other; feti_diagnosis_rows lists them.
+    integer(c_int64_t) :: rows_involved
+    !> Rigid motions that neither loads nor rows determine.
+    integer(c_int64_t) :: undetermined
+    !> Rows of both kinds that repeat the direction of another one.
+    integer(c_int64_t) :: redundant_rows
+    !> Bodies that no row touches.
+    integer(c_int64_t) :: untouched_bodies
+    !> The first of them, -1: none.
+    integer(c_int64_t) :: untouched_body
+    !> How clearly there is no solution, above 0 and at most 1: after FETI_INDEFINITE of a driven motion 1 - 1
+    !> / rho, rho what drives it over what resists it; after FETI_LOAD_NOT_HELD the share of the resultant of
+    !> the load that nothing holds, after FETI_GAPS_CONTRADICT |w'c| over |w|'|c| for the weights w; else NaN.
+    real(c_double) :: margin
+    !> Rigid motion of the body that escapes: velocity of the origin and rotation about the axes; NaN without
+    !> coordinates. feti_diagnosis_motion has it for every unknown.
+    real(c_double) :: motion(6)
+    !> The largest share of the load of bodies that move together which nothing holds, |resultant| / |load| in
+    !> the metric of diag K: above 1e-7 after FETI_LOAD_NOT_HELD; with an answer rounding of the load,
+    !> FETI_MARGINAL above 1e-10.
+    real(c_double) :: unheld
+    !> Bodies with motions that only the rounding of the entries of K may resist; feti_body_info has their
+    !> numbers.
+    integer(c_int64_t) :: doubtful_bodies
+    !> The first of them, -1: none.
+    integer(c_int64_t) :: doubtful_body
+    !> Bodies with rigid motions that K resists or drives softly: weak springs, rounding, geometric stiffness.
+    integer(c_int64_t) :: soft_bodies
+    !> The first of them, -1: none.
+    integer(c_int64_t) :: soft_body
+    !> After FETI_SLIDES what friction holds of the load along the motion, as a part of it; else NaN.
+    real(c_double) :: capacity
+  end type feti_findings
+
+  public :: feti_diagnosis
+  public :: feti_diagnosis_motion
+  public :: feti_diagnosis_rows
+  public :: feti_diagnosis_dependent
+  public :: feti_diagnosis_untouched
+  public :: feti_diagnosis_undetermined
+  public :: feti_diagnosis_undetermined_motion
+
+  interface
+
+    !> What the last solve, or the last setup that failed, has found out about the problem.
+    !>
+    !> After FETI_LOAD_NOT_HELD: the body that escapes, its motion and the margin. After FETI_SLIDES: the body
+    !> that slides, its motion and the capacity of friction. After FETI_GAPS_CONTRADICT: the rows that
+    !> contradict each other. Of several groups of bodies without an answer the first is told of. After
+    !> FETI_INDEFINITE, FETI_NULL_SPACE and the like: the body and the unknown. With an answer: motions left
+    !> undetermined, redundant rows, bodies that no row touches. Kept until the next solve or the next setup
+    !> that fails; FETI_STATE before the first. After a failure nothing is written.
+    !>
+    !> @param[in]     p   (scalar) the handle
+    !> @param[in,out] out (scalar) `struct_size` set, at least 16
+    !>
+    !> Safety: `out` leads to `struct_size` writable bytes.
+    function feti_diagnosis(p, out) bind(C, name="feti_diagnosis")
+      import
+      type(c_ptr), value :: p
+      type(feti_findings), intent(inout) :: out
+      integer(c_int32_t) :: feti_diagnosis
+    end function feti_diagnosis
+
+    !> Reads the rigid motion with which a body escapes, unknown by unknown.
+    !>
+    !> The load does work on it, and no row resists. It is scaled to largest entry 1 over all bodies; bodies
+    !> that stay have zeros. After FETI_SLIDES the motion that friction resists too little, after
+    !> FETI_INDEFINITE the one that K drives further than closed rows resist. FETI_STATE unless the last solve
+    !> ended with one of these and a motion. After a failure nothing is written.
+    !>
+    !> @param[in]  p    (scalar) the handle
+    !> @param[in]  body (scalar) number of the body, from 0
+    !> @param[in]  n    (scalar) unknowns of the body
+    !> @param[out] v    (n) length, up to a factor
+    !>
+    !> Safety: The array has the given shape.
+    function feti_diagnosis_motion(p, body, n, v) bind(C, name="feti_diagnosis_motion")
+      import
+      type(c_ptr), value :: p
+      integer(c_int64_t), value :: body
+      integer(c_int64_t), value :: n
+      real(c_double), intent(out) :: v(*)
+      integer(c_int32_t) :: feti_diagnosis_motion
+    end function feti_diagnosis_motion
+
+    !> Lists the rows of one kind that contradict each other, with their weights; without a contradiction the
+    !> redundant rows.
+    !>
+    !> Weights w, largest 1, prove a contradiction: with the rows of both kinds the sum of w b is 0 and the
+    !> sum of w c is negative, w > 0 for inequalities; where unknowns with one number are glued (option glue)
+    !> it is 0 over the numbers, and feti_last_error names some of them. The weight of a redundant row is its
+    !> multiple of the row that it repeats. FETI_STATE before the first solve. After a failure nothing is
+    !> written.
+    !>
+    !> @param[in]  p      (scalar) the handle
+    !> @param[in]  kind   (scalar) FETI_INEQUALITY or FETI_EQUALITY
+    !> @param[in]  cap    (scalar) rows that `row` and `weight` have room for
+    !> @param[out] count  (scalar) rows there are; those that fit are written
+    !> @param[out] row    (cap) numbers from 0, ascending; may be NULL
+    !> @param[out] weight (cap) no unit; may be NULL
+    !>
+    !> Safety: `count` has room for one number, `row` and `weight` are NULL or have room for `cap` numbers.
+    function feti_diagnosis_rows(p, kind, cap, count, row, weight) bind(C, name="feti_diagnosis_rows")
+      import
+      type(c_ptr), value :: p
+      integer(c_int32_t), value :: kind
+      integer(c_int64_t), value :: cap
+      integer(c_int64_t), intent(out) :: count
+      type(c_ptr), value :: row
+      type(c_ptr), value :: weight
+      integer(c_int32_t) :: feti_diagnosis_rows
+    end function feti_diagnosis_rows
+
+    !> Lists the equality rows that are combinations of the other equality rows, found when asked for.
+    !>
+    !> They constrain nothing, and which of them carry the forces is open. Rows that repeat another one are
+    !> with feti_diagnosis_rows. FETI_STATE before the first setup. After a failure nothing is written.
+    !>
+    !> @param[in]  p     (scalar) the handle
+    !> @param[in]  cap   (scalar) rows that `row` has room for
+    !> @param[out] count (scalar) rows there are; those that fit are written
+    !> @param[out] row   (cap) numbers from 0, ascending; may be NULL
+    !>
+    !> Safety: `count` has room for one number, `row` is NULL or has room for `cap` numbers.
+    function feti_diagnosis_dependent(p, cap, count, row) bind(C, name="feti_diagnosis_dependent")
+      import
+      type(c_ptr), value :: p
+      integer(c_int64_t), value :: cap
+      integer(c_int64_t), intent(out) :: count
+      type(c_ptr), value :: row
+      integer(c_int32_t) :: feti_diagnosis_dependent
+    end function feti_diagnosis_dependent
+
+    !> Lists the bodies that no row touched in the last solve, or in the last setup that failed.
+    !>
+    !> Rows that never close, c = +infinity, do not count. FETI_STATE before the first solve. After a failure
+    !> nothing is written.
+    !>
+    !> @param[in]  p     (scalar) the handle
+    !> @param[in]  cap   (scalar) bodies that `body` has room for
+    !> @param[out] count (scalar) bodies there are; those that fit are written
+    !> @param[out] body  (cap) numbers from 0, ascending; may be NULL
+    !>
+    !> Safety: `count` has room for one number, `body` is NULL or has room for `cap` numbers.
+    function feti_diagnosis_untouched(p, cap, count, body) bind(C, name="feti_diagnosis_untouched")
+      import
+      type(c_ptr), value :: p
+      integer(c_int64_t), value :: cap
+      integer(c_int64_t), intent(out) :: count
+      type(c_ptr), value :: body
+      integer(c_int32_t) :: feti_diagnosis_untouched
+    end function feti_diagnosis_untouched
+
+    !> Reads a rigid motion that the last answer leaves undetermined: which body, and how it moves.
+    !>
+    !> `undetermined` of feti_findings says how many there are. Bodies that have nothing to do with each other
+    !> are in motions of their own. FETI_STATE without an answer. After a failure nothing is written.
+    !>
+    !> @param[in]  p      (scalar) the handle
+    !> @param[in]  k      (scalar) number of the motion, from 0
+    !> @param[out] body   (scalar) number of the body that moves fastest, from 0; may be NULL
+    !> @param[out] motion (6) of this body: velocity of the origin, rotation about the axes; NaN without
+    !>                    coordinates; may be NULL
+    !>
+    !> Safety: The arrays have the given shapes.
+    function feti_diagnosis_undetermined(p, k, body, motion) bind(C, name="feti_diagnosis_undetermined")
+      import
+      type(c_ptr), value :: p
+      integer(c_int64_t), value :: k
+      type(c_ptr), value :: body
+      type(c_ptr), value :: motion
+      integer(c_int32_t) :: feti_diagnosis_undetermined
+    end function feti_diagnosis_undetermined
+
+    !> Reads a rigid motion that the last answer leaves undetermined, unknown by unknown.
+    !>
+    !> It is scaled to largest entry 1 over all bodies; bodies that stay have zeros. FETI_STATE without an
+    !> answer. After a failure nothing is written.
+    !>
+    !> @param[in]  p    (scalar) the handle
+    !> @param[in]  k    (scalar) number of the motion, from 0
+    !> @param[in]  body (scalar) number of the body, from 0
+    !> @param[in]  n    (scalar) unknowns of the body
+    !> @param[out] v    (n) length, up to a factor
+    !>
+    !> Safety: The array has the given shape.
+    function feti_diagnosis_undetermined_motion(p, k, body, n, v) &
+        bind(C, name="feti_diagnosis_undetermined_motion")
+      import
+      type(c_ptr), value :: p
+      integer(c_int64_t), value :: k
+      integer(c_int64_t), value :: body
+      integer(c_int64_t), value :: n
+      real(c_double), intent(out) :: v(*)
+      integer(c_int32_t) :: feti_diagnosis_undetermined_motion
+    end function feti_diagnosis_undetermined_motion
+
+  end interface
+
+  ! Facts on bodies
+  ! ===============
+  ! Learn what a body and its factor cost.
+
+  !> Null space of a body: vectors of the host that span it (FETI_EXACT), or soft motions (FETI_SOFT).
+  integer(c_int32_t), parameter, public :: FETI_ORIGIN_EXACT = 1_c_int32_t
+  !> Null space of a body: sought among vectors of the host (FETI_CANDIDATES).
+  integer(c_int32_t), parameter, public :: FETI_ORIGIN_CANDIDATES = 2_c_int32_t
+  !> Null space of a body: sought among rigid motions, from coordinates.
+  integer(c_int32_t), parameter, public :: FETI_ORIGIN_COORDINATES = 3_c_int32_t
+  !> Null space of a body: found from K alone.
+  integer(c_int32_t), parameter, public :: FETI_ORIGIN_FOUND = 4_c_int32_t
+
+  !> A body as it is given, and what the last setup has made of it; what is not there yet is -1 or NaN.
+  type, bind(C), public :: feti_body_facts
+    !> Set by the caller: size of the struct in bytes.
+    integer(c_int64_t) :: struct_size
+    !> Unknowns.
+    integer(c_int64_t) :: unknowns
+    !> Entries of K as the host gave them, a diagonal of its own counted; dense: all of the storage.
+    integer(c_int64_t) :: entries
+    !> Connected parts of K.
+    integer(c_int64_t) :: components
+    !> Bytes that the library keeps for K.
+    integer(c_int64_t) :: matrix_bytes
+    !> Arrays of K that stay with the host (FETI_BORROW): 0 none, 1 values, 2 values and columns.
+    integer(c_int64_t) :: borrowed
+    !> What the null space comes from: FETI_ORIGIN_EXACT, _CANDIDATES, _COORDINATES or _FOUND.
+    integer(c_int64_t) :: origin
+    !> Dimension of the null space.
+    integer(c_int64_t) :: null_space
+    !> Entries of the factor.
+    integer(c_int64_t) :: factor_entries
+    !> Bytes of the factor and, at most, of the work arrays of its computation.
+    integer(c_int64_t) :: factor_bytes
+    !> The first other body that shares the factor, from 0, -1: none.
+    integer(c_int64_t) :: shared_with
+    !> 1: the dual operator has its entries, 0: it is known by its products.
+    integer(c_int64_t) :: explicit_operator
+    !> Bytes of the explicit dual operator.
+    integer(c_int64_t) :: operator_bytes
+    !> Of a null space that was found: stiffness of the softest other motion over that of the stiffest in it;
+    !> else NaN.
+    real(c_double) :: gap
+    !> Estimated relative error of the forces on the body in the last answer; NaN without one, also of its
+    !> group of bodies alone.
+    real(c_double) :: force_error
+    !> Motions taken as free that K resists by no more than the rounding of its entries may make, -1 before a
+    !> setup.
+    integer(c_int64_t) :: soft_free
+    !> Motions taken as supports though the rounding of the entries of K may be all that resists them: with a
+    !> number above 0 give the null space, or K with more digits. -1 before a setup.
+    integer(c_int64_t) :: soft_held
+    !> How much K resists these motions, largest v'K v over v'diag(K) v; NaN where there are none.
+    real(c_double) :: softness
+    !> What the rounding of the entries may make of it; NaN where there are none.
+    real(c_double) :: softness_of_rounding
+    !> Pieces that the body is cut into, once all its elements have been given; 1 for one that is not cut.
+    integer(c_int64_t) :: pieces
+  end type feti_body_facts
+
+  !> Time and memory of a phase of a setup or a solve.
+  type, bind(C), public :: feti_phase
+    !> Set by the caller: size of the struct in bytes.
+    integer(c_int64_t) :: struct_size
+    !> Bytes of what the phase has made and keeps; 0: they are not counted.
+    integer(c_int64_t) :: bytes
+    !> Wall time in the last call that set up or solved, seconds.
+    real(c_double) :: seconds
+    !> Name, static.
+    type(c_ptr) :: name
+  end type feti_phase
+
+  public :: feti_body_info
+  public :: feti_body_components
+  public :: feti_phase_count
+  public :: feti_phase_at
+
+  interface
+
+    !> Tells what is known about a body: its matrix, its null space, its factor, its dual operator.
+    !>
+    !> Nothing is computed but the connected parts. After a failure nothing is written.
+    !>
+    !> @param[in]     p    (scalar) the handle
+    !> @param[in]     body (scalar) number of the body, from 0
+    !> @param[in,out] out  (scalar) `struct_size` set, at least 16
+    !>
+    !> Safety: `out` leads to `struct_size` writable bytes.
+    function feti_body_info(p, body, out) bind(C, name="feti_body_info")
+      import
+      type(c_ptr), value :: p
+      integer(c_int64_t), value :: body
+      type(feti_body_facts), intent(inout) :: out
+      integer(c_int32_t) :: feti_body_info
+    end function feti_body_info
+
+    !> Tells the connected part of every unknown of a body.
+    !>
+    !> A body may be in several parts that share no entry of K but zeros. They are numbered from 0 by their
+    !> first unknowns. FETI_STATE before the stiffness matrix is given. After a failure nothing is written.
+    !>
+    !> @param[in]  p         (scalar) the handle
+    !> @param[in]  body      (scalar) number of the body, from 0
+    !> @param[in]  n         (scalar) unknowns of the body
+    !> @param[out] component (n) part of each unknown, from 0
+    !>
+    !> Safety: The array has the given shape.
+    function feti_body_components(p, body, n, component) bind(C, name="feti_body_components")
+      import
+      type(c_ptr), value :: p
+      integer(c_int64_t), value :: body
+      integer(c_int64_t), value :: n
+      integer(c_int64_t), intent(out) :: component(*)
+      integer(c_int32_t) :: feti_body_components
+    end function feti_body_components
+
+    !> Number of phases of a setup and a solve.
+    !>
+    !> After a failure nothing is written.
+    !>
+    !> @param[in]  p     (scalar) the handle
+    !> @param[out] count (scalar) the number of phases
+    !>
+    !> Safety: `count` has room for one number.
+    function feti_phase_count(p, count) bind(C, name="feti_phase_count")
+      import
+      type(c_ptr), value :: p
+      integer(c_int64_t), intent(out) :: count
+      integer(c_int32_t) :: feti_phase_count
+    end function feti_phase_count
+
+    !> Tells time and memory of a phase: rows, null spaces, analysis, factorisation, dual operators,
+    !> preconditioner, dual solve, recovery, in this order.
+    !>
+    !> Times are those of the last call that set up or solved, also of one that failed; a phase that had
+    !> nothing to do took none. What a setup keeps, later solves do not make again. After a failure nothing is
+    !> written.
+    !>
+    !> @param[in]     p   (scalar) the handle
+    !> @param[in]     k   (scalar) from 0, less than feti_phase_count
+    !> @param[in,out] out (scalar) `struct_size` set, at least 16
+    !>
+    !> Safety: `out` leads to `struct_size` writable bytes.
+    function feti_phase_at(p, k, out) bind(C, name="feti_phase_at")
+      import
+      type(c_ptr), value :: p
+      integer(c_int64_t), value :: k
+      type(feti_phase), intent(inout) :: out
+      integer(c_int32_t) :: feti_phase_at
+    end function feti_phase_at
+
+  end interface
+
+  ! Progress and log
+  ! ================
+  ! Hear of the course of a setup or a solve.
+
+  !> Phase of a call that feti_on_progress tells of: a part of the setup is done.
+  integer(c_int32_t), parameter, public :: FETI_PHASE_SETUP = 1_c_int32_t
+  !> Phase of a call that feti_on_progress tells of: a step of the dual method is done.
+  integer(c_int32_t), parameter, public :: FETI_PHASE_SOLVE = 2_c_int32_t
+  !> Kind of a step: conjugate gradients on the face.
+  integer(c_int32_t), parameter, public :: FETI_STEP_CONJUGATE_GRADIENT = 1_c_int32_t
+  !> Kind of a step: rows lost their force.
+  integer(c_int32_t), parameter, public :: FETI_STEP_EXPANSION = 2_c_int32_t
+  !> Kind of a step: rows got a force.
+  integer(c_int32_t), parameter, public :: FETI_STEP_RELEASE = 3_c_int32_t
+  !> Kind of a step: a direction of the Newton method for friction.
+  integer(c_int32_t), parameter, public :: FETI_STEP_NEWTON = 4_c_int32_t
+  !> Level of a log: nothing.
+  integer(c_int32_t), parameter, public :: FETI_LOG_NONE = 0_c_int32_t
+  !> Level of a log: one line for each solve, and warnings.
+  integer(c_int32_t), parameter, public :: FETI_LOG_RESULT = 1_c_int32_t
+  !> Level of a log: also what is solved and how, and a line for each phase.
+  integer(c_int32_t), parameter, public :: FETI_LOG_PHASE = 2_c_int32_t
+  !> Level of a log: also a line for each step.
+  integer(c_int32_t), parameter, public :: FETI_LOG_STEP = 3_c_int32_t
+
+  !> Where a setup or a solve stands.
+  type, bind(C), public :: feti_progress
+    !> Size of the struct in bytes, set by the library.
+    integer(c_int64_t) :: struct_size
+    !> FETI_PHASE_SETUP (a body has been analysed or factorised, its dual operator or the preconditioner made,
+    !> or half a second has passed) or FETI_PHASE_SOLVE.
+    integer(c_int32_t) :: phase
+    !> FETI_STEP_CONJUGATE_GRADIENT, FETI_STEP_EXPANSION, FETI_STEP_RELEASE or, with friction,
+    !> FETI_STEP_NEWTON; 0 in the setup.
+    integer(c_int32_t) :: step
+    !> Steps so far.
+    integer(c_int64_t) :: steps
+    !> Products with the dual operator F so far.
+    integer(c_int64_t) :: products
+    !> Inequality rows with a force; parallel rows count once.
+    integer(c_int64_t) :: active
+    !> Norm of the projected gradient over the one that stops the solve; NaN in the setup, as all that follow.
+    real(c_double) :: residual
+    !> Its part on rows with a force, over the same.
+    real(c_double) :: residual_free
+    !> Its part on rows without a force that want one, over the same.
+    real(c_double) :: residual_chopped
+    !> Dual functional 1/2 lambda'F lambda - lambda'd, force times length: every step lowers it.
+    real(c_double) :: theta
+    !> Seconds since the call began, also in the setup.
+    real(c_double) :: seconds
+    !> Part of the work of the setup that is done, from 0 to 1: an estimate that never falls; NaN in the
+    !> solve.
+    real(c_double) :: fraction
+  end type feti_progress
+
+  public :: feti_progress_fn
+  abstract interface
+
+    !> A function of the host that hears of every body in every part of a setup and of every step of a solve.
+    !>
+    !> It returns 0 to go on, a number > 0 to cancel, a number < 0 to report a failure of its own.
+    !>
+    !> @param[in] user (scalar) the host's own, as given to feti_on_progress; may be NULL
+    !> @param[in] now  (scalar) valid during the call
+    function feti_progress_fn(user, now) bind(C)
+      import
+      type(c_ptr), value :: user
+      type(feti_progress), intent(in) :: now
+      integer(c_int32_t) :: feti_progress_fn
+    end function feti_progress_fn
+
+  end interface
+
+  public :: feti_log_fn
+  abstract interface
+
+    !> A function of the host that gets a line of text.
+    !>
+    !> It returns 0 to go on, any other number to report a failure of its own.
+    !>
+    !> @param[in] user  (scalar) the host's own, as given to feti_on_log; may be NULL
+    !> @param[in] level (scalar) FETI_LOG_RESULT, FETI_LOG_PHASE or FETI_LOG_STEP
+    !> @param[in] text  (text) one line in UTF-8 without its end, valid during the call
+    function feti_log_fn(user, level, text) bind(C)
+      import
+      type(c_ptr), value :: user
+      integer(c_int32_t), value :: level
+      character(kind=c_char), intent(in) :: text(*)
+      integer(c_int32_t) :: feti_log_fn
+    end function feti_log_fn
+
+  end interface
+
+  public :: feti_on_progress
+  public :: feti_on_log
+
+  interface
+
+    !> Names the function that is told of every body in every part of a setup, and of every step of a solve.
+    !>
+    !> During a setup on several threads it is also called when half a second has passed without such news. It
+    !> is called on the thread that called the library, in that thread's floating-point environment, until
+    !> another one or NULL is given. It returns 0 to go on; a number > 0 ends the call with FETI_CANCELLED and
+    !> the results of the last step; a number < 0 ends it with FETI_CALLBACK, the number in the error detail,
+    !> and no results. Calls on the same problem from inside return FETI_BUSY, except feti_cancel and
+    !> feti_problem_error; other problems may be used. It must not end by longjmp or an exception.
+    !>
+    !> @param[in] p        (scalar) the handle
+    !> @param[in] callback (scalar) the function; NULL: none
+    !> @param[in] user     (scalar) handed to the function unchanged; may be NULL
+    !>
+    !> Safety: `callback` may be called with `user` until it is replaced or the problem destroyed.
+    function feti_on_progress(p, callback, user) bind(C, name="feti_on_progress")
+      import
+      type(c_ptr), value :: p
+      type(c_funptr), value :: callback
+      type(c_ptr), value :: user
+      integer(c_int32_t) :: feti_on_progress
+    end function feti_on_progress
+
+    !> Names the function that gets what setups and solves tell in words.
+    !>
+    !> Level FETI_LOG_RESULT: one line for each solve, and warnings; FETI_LOG_PHASE: also sizes, options,
+    !> method, fallbacks and a line for each phase with its time and bytes, and how far the first feasible
+    !> point, projections, nearest points and certificates are that take long: a line after a second at most,
+    !> and after a tenth of the time so far; FETI_LOG_STEP: also a line for each step. The function is called
+    !> on the thread that called the library, in that thread's floating-point environment, until another one
+    !> or NULL is given. It returns 0 to go on; any other number ends the call with FETI_CALLBACK, the number
+    !> in the error detail, and no results. Calls on the same problem from inside return FETI_BUSY, except
+    !> feti_cancel and feti_problem_error. It must not end by longjmp or an exception.
+    !>
+    !> @param[in] p        (scalar) the handle
+    !> @param[in] callback (scalar) the function; NULL: none
+    !> @param[in] level    (scalar) FETI_LOG_NONE, FETI_LOG_RESULT, FETI_LOG_PHASE or FETI_LOG_STEP
+    !> @param[in] user     (scalar) handed to the function unchanged; may be NULL
+    !>
+    !> Safety: `callback` may be called with `user` until it is replaced or the problem destroyed.
+    function feti_on_log(p, callback, level, user) bind(C, name="feti_on_log")
+      import
+      type(c_ptr), value :: p
+      type(c_funptr), value :: callback
+      integer(c_int32_t), value :: level
+      type(c_ptr), value :: user
+      integer(c_int32_t) :: feti_on_log
+    end function feti_on_log
+
+  end interface
+
+  ! Validation
+  ! ==========
+  ! Check an answer, also of another program; multiply by the operators of the method.
+
+
+  !> Verdict on an answer, by relative figures: each is `limit` times the ratio of what the worst body or row
+  !> violates to what it is allowed, rounding included, and passes when it is at most `limit`.
+  type, bind(C), public :: feti_certificate
+    !> Set by the caller: size of the struct in bytes.
+    integer(c_int64_t) :: struct_size
+    !> 1: every entry passes.
+    integer(c_int32_t) :: passed
+    !> Zero.
+    integer(c_int32_t) :: reserved
+    !> Option certificate_tolerance.
+    real(c_double) :: limit
+    !> Largest entry over what it is allowed: <= 1 passes.
+    real(c_double) :: worst
+    !> Relative error of equilibrium `K u + B'lambda + H'mu + T'lambda_t = f`, worst body.
+    real(c_double) :: equilibrium
+    !> Relative error of the balance `R'(f - B'lambda - H'mu - T'lambda_t) = 0`, worst floating body.
+    real(c_double) :: balance
+    !> Relative penetration: positive part of `B u - c - C lambda`, C = diag(1/k) being the compliance of the
+    !> rows, worst row.
+    real(c_double) :: penetration
+    !> Relative error of `H u = h + C mu`, worst row.
+    real(c_double) :: equality
+    !> Relative size of a negative contact force, worst row.
+    real(c_double) :: negative_force
+    !> Relative size of the force or of the open gap `c + C lambda - B u`, whichever is less, worst row.
+    real(c_double) :: complementarity
+    !> Relative gap between primal and dual energy, worst group of bodies.
+    real(c_double) :: duality_gap
+    !> Body of the worst equilibrium, from 0, -1: none.
+    integer(c_int64_t) :: equilibrium_body
+    !> Body of the worst balance, from 0, -1: none.
+    integer(c_int64_t) :: balance_body
+    !> Row with the worst penetration, from 0, -1: none.
+    integer(c_int64_t) :: penetration_row
+    !> Equality row with the worst error, from 0, -1: none, or glue of unknowns with one number (option glue).
+    integer(c_int64_t) :: equality_row
+    !> Row with the worst negative force, from 0, -1: none.
+    integer(c_int64_t) :: force_row
+    !> Row with the worst complementarity, from 0, -1: none.
+    integer(c_int64_t) :: complementarity_row
+    !> Relative size of a tangential force beyond its bound, `(|lambda_t| - b)_+` with b = bound + coefficient
+    !> lambda_n, worst node with friction.
+    real(c_double) :: friction_cone
+    !> Relative size of `b |s| - lambda_t's`, the work that friction does not do: zero only with a stick
+    !> inside the bound and a slip s along the force; worst node.
+    real(c_double) :: friction_work
+    !> Relative size of the slip where the force is within its bound, worst node.
+    real(c_double) :: friction_stick
+    !> Node with the worst force beyond its bound, from 0, -1: none.
+    integer(c_int64_t) :: friction_cone_node
+    !> Node with the worst work, from 0, -1: none.
+    integer(c_int64_t) :: friction_work_node
+    !> Node with the worst slip, from 0, -1: none.
+    integer(c_int64_t) :: friction_stick_node
+  end type feti_certificate
+
+  public :: feti_check
+  public :: feti_check_friction
+  public :: feti_body_kplus
+  public :: feti_dual_apply
+  public :: feti_dual_rhs
+
+  interface
+
+    !> Verifies an answer without tangential forces against the problem as it is given now: any answer, also
+    !> another code's.
+    !>
+    !> Every figure is that of the worst body or the worst row, measured against its own forces and
+    !> deformation, and is named with it. Glue (option glue) is judged as equality rows are; the forces in it
+    !> are not given: they are those that serve the answer best. Rows that never close, c = +infinity, are
+    !> left out: what is given for their lambda counts as 0. At nodes with friction (feti_friction_add_i32 or
+    !> _i64) the tangential force counts as 0: feti_check_friction takes it. Keeps nothing of the answer: that
+    !> of the last solve stays. Runs feti_setup when it is due, for the null spaces. After a failure nothing
+    !> is written.
+    !>
+    !> @param[in]     p      (scalar) the handle
+    !> @param[in]     n      (scalar) unknowns of all bodies
+    !> @param[in]     u      (n) displacement, body after body, length
+    !> @param[in]     rows   (scalar) number of inequality rows
+    !> @param[in]     lambda (rows) multipliers of `B u <= c`, force
+    !> @param[in]     eqs    (scalar) number of equality rows
+    !> @param[in]     mu     (eqs) multipliers of `H u = h`, force
+    !> @param[in,out] out    (scalar) `struct_size` set, at least 16
+    !>
+    !> Safety: The arrays have the given shapes, `out` leads to `struct_size` writable bytes.
+    function feti_check(p, n, u, rows, lambda, eqs, mu, out) bind(C, name="feti_check")
+      import
+      type(c_ptr), value :: p
+      integer(c_int64_t), value :: n
+      real(c_double), intent(in) :: u(*)
+      integer(c_int64_t), value :: rows
+      real(c_double), intent(in) :: lambda(*)
+      integer(c_int64_t), value :: eqs
+      real(c_double), intent(in) :: mu(*)
+      type(feti_certificate), intent(inout) :: out
+      integer(c_int32_t) :: feti_check
+    end function feti_check
+
+    !> Verifies an answer with tangential forces against the problem as it is given now: any answer, also
+    !> another code's.
+    !>
+    !> As feti_check; the figures of friction judge, node by node, the forces lambda_t by the law and the slip
+    !> `T u - s_old - C_t lambda_t` by the s_old that is there now: after feti_friction_commit that of the
+    !> next step. Nodes that may carry no force (bound 0, no contact row that may close) are left out. After a
+    !> failure nothing is written.
+    !>
+    !> @param[in]     p        (scalar) the handle
+    !> @param[in]     n        (scalar) unknowns of all bodies
+    !> @param[in]     u        (n) displacement, body after body, length
+    !> @param[in]     rows     (scalar) number of inequality rows
+    !> @param[in]     lambda   (rows) multipliers of `B u <= c`, force
+    !> @param[in]     eqs      (scalar) number of equality rows
+    !> @param[in]     mu       (eqs) multipliers of `H u = h`, force
+    !> @param[in]     nodes    (scalar) number of nodes with friction
+    !> @param[in]     dim      (scalar) tangential rows of a node, 1 or 2; not looked at without nodes
+    !> @param[in]     lambda_t (dim * nodes) multipliers of the tangential rows, node after node, force
+    !> @param[in,out] out      (scalar) `struct_size` set, at least 16
+    !>
+    !> Safety: The arrays have the given shapes, `out` leads to `struct_size` writable bytes.
+    function feti_check_friction(p, n, u, rows, lambda, eqs, mu, nodes, dim, lambda_t, out) &
+        bind(C, name="feti_check_friction")
+      import
+      type(c_ptr), value :: p
+      integer(c_int64_t), value :: n
+      real(c_double), intent(in) :: u(*)
+      integer(c_int64_t), value :: rows
+      real(c_double), intent(in) :: lambda(*)
+      integer(c_int64_t), value :: eqs
+      real(c_double), intent(in) :: mu(*)
+      integer(c_int64_t), value :: nodes
+      integer(c_int32_t), value :: dim
+      real(c_double), intent(in) :: lambda_t(*)
+      type(feti_certificate), intent(inout) :: out
+      integer(c_int32_t) :: feti_check_friction
+    end function feti_check_friction
+
+    !> Applies the generalised inverse of a body, `Y = K+ X`.
+    !>
+    !> Runs feti_setup when it is due. X and Y may be the same array. FETI_STATE for a body that is cut
+    !> (feti_body_mesh_i32 or _i64). After a failure nothing is written.
+    !>
+    !> @param[in]  p    (scalar) the handle
+    !> @param[in]  body (scalar) number of the body, from 0
+    !> @param[in]  n    (scalar) unknowns of the body
+    !> @param[in]  nrhs (scalar) columns of X and Y
+    !> @param[in]  x    (ldx * nrhs) column-major, force
+    !> @param[in]  ldx  (scalar) >= n
+    !> @param[out] y    (ldy * nrhs) column-major, length
+    !> @param[in]  ldy  (scalar) >= n
+    !>
+    !> Safety: The arrays have the given shapes.
+    function feti_body_kplus(p, body, n, nrhs, x, ldx, y, ldy) bind(C, name="feti_body_kplus")
+      import
+      type(c_ptr), value :: p
+      integer(c_int64_t), value :: body
+      integer(c_int64_t), value :: n
+      integer(c_int64_t), value :: nrhs
+      real(c_double), intent(in) :: x(*)
+      integer(c_int64_t), value :: ldx
+      real(c_double), intent(out) :: y(*)
+      integer(c_int64_t), value :: ldy
+      integer(c_int32_t) :: feti_body_kplus
+    end function feti_body_kplus
+
+    !> Applies the dual operator, `y = F x` with `F = [B; H] K+ [B; H]' + C`.
+    !>
+    !> C = diag(1/k) is the compliance of the rows (feti_rows_compliance), 0 for rigid ones. Tangential rows
+    !> of nodes with friction are not in it. Runs feti_setup when it is due. `x` and `y` may be the same
+    !> array. FETI_STATE where a body is cut (feti_body_mesh_i32 or _i64) or unknowns are glued (option glue).
+    !> After a failure nothing is written.
+    !>
+    !> @param[in]  p (scalar) the handle
+    !> @param[in]  m (scalar) inequality rows + equality rows
+    !> @param[in]  x (m) force
+    !> @param[out] y (m) length
+    !>
+    !> Safety: The arrays have the given shapes.
+    function feti_dual_apply(p, m, x, y) bind(C, name="feti_dual_apply")
+      import
+      type(c_ptr), value :: p
+      integer(c_int64_t), value :: m
+      real(c_double), intent(in) :: x(*)
+      real(c_double), intent(out) :: y(*)
+      integer(c_int32_t) :: feti_dual_apply
+    end function feti_dual_apply
+
+    !> Reads the right-hand side of the dual problem, `d = [B; H] K+ f - [c; h]`.
+    !>
+    !> Runs feti_setup when it is due. FETI_STATE where a body is cut (feti_body_mesh_i32 or _i64) or unknowns
+    !> are glued (option glue). After a failure nothing is written.
+    !>
+    !> @param[in]  p (scalar) the handle
+    !> @param[in]  m (scalar) inequality rows + equality rows
+    !> @param[out] d (m) length
+    !>
+    !> Safety: The array has the given shape.
+    function feti_dual_rhs(p, m, d) bind(C, name="feti_dual_rhs")
+      import
+      type(c_ptr), value :: p
+      integer(c_int64_t), value :: m
+      real(c_double), intent(out) :: d(*)
+      integer(c_int32_t) :: feti_dual_rhs
+    end function feti_dual_rhs
+
+  end interface
+
+  ! Files
+  ! =====
+  ! Write a problem to a file and read it.
+
+  public :: feti_problem_write
+  public :: feti_problem_read
+
+  interface
+
+    !> Writes all that the host has registered to one file: a bug report is a file.
+    !>
+    !> Bodies with their matrices, null spaces, coordinates, fixing unknowns, loads and numbers of the host,
+    !> rows of both kinds with right-hand sides and compliances, and the options that differ from their
+    !> defaults, bit by bit; not the answer, start values, saved states and functions of the host.
+    !> docs/file_format.md describes every byte. The file is written under another name in the same folder and
+    !> renamed when it is complete: after a failure an old file is as it was, and nothing else is left.
+    !> FETI_IO with path, operation and the words of the system; FETI_UNSUPPORTED with the body where
+    !> functions of the host stand for a matrix (feti_body_operator): no file holds them. Borrowed matrices
+    !> are written as they are at that moment. Of a body that is cut (feti_body_mesh_i32) the pieces are
+    !> written, not the elements; FETI_STATE where elements of a body are missing.
+    !>
+    !> @param[in] p    (scalar) the handle
+    !> @param[in] path (text) name of the file; an old one is replaced
+    !>
+    !> Safety: `path` is NUL terminated.
+    function feti_problem_write(p, path) bind(C, name="feti_problem_write")
+      import
+      type(c_ptr), value :: p
+      character(kind=c_char), intent(in) :: path(*)
+      integer(c_int32_t) :: feti_problem_write
+    end function feti_problem_write
+
+    !> Reads what feti_problem_write has written into an empty problem.
+    !>
+    !> The same solve then gives the same bits. FETI_STATE when there are bodies or rows already. Options
+    !> become those of the file, all others their defaults, except index_base, which stays. Everything goes
+    !> through the checks of the calls it stands for. FETI_IO with path and the words of the system, or with
+    !> the byte where a file is damaged (`entry` of feti_last_error_detail); FETI_UNSUPPORTED when it holds
+    !> what a later version has written. After a failure the problem is as it was.
+    !>
+    !> Matrices come back by the rows of their lower triangle, columns ascending, with every diagonal entry,
+    !> however they were given: feti_body_values then expects the values in this order, and
+    !> feti_body_values_split and feti_body_values_dense return FETI_STATE until the matrix has been given
+    !> again.
+    !>
+    !> @param[in] p    (scalar) the handle
+    !> @param[in] path (text) name of the file
+    !>
+    !> Safety: `path` is NUL terminated.
+    function feti_problem_read(p, path) bind(C, name="feti_problem_read")
+      import
+      type(c_ptr), value :: p
+      character(kind=c_char), intent(in) :: path(*)
+      integer(c_int32_t) :: feti_problem_read
+    end function feti_problem_read
+
+  end interface
+
+  ! Errors
+  ! ======
+  ! Learn what went wrong, where and by how much.
+
+
+  !> What went wrong, where and by how much. Numbers count from 0.
+  type, bind(C), public :: feti_error_detail
+    !> Set by the caller: size of the struct in bytes.
+    integer(c_int64_t) :: struct_size
+    !> Status the function returned; 0: there was no error yet.
+    integer(c_int32_t) :: status
+    !> Position of the refused argument, from 1 with the handle as 1; 0: none.
+    integer(c_int32_t) :: argument
+    !> Body, -1: does not apply.
+    integer(c_int64_t) :: body
+    !> Connected part of the body, -1: does not apply.
+    integer(c_int64_t) :: component
+    !> Degree of freedom of the body, -1: does not apply.
+    integer(c_int64_t) :: dof
+    !> Row of the matrix or of the constraints, -1: does not apply.
+    integer(c_int64_t) :: row
+    !> Position in the array; byte of a text or a file; -1: does not apply.
+    integer(c_int64_t) :: entry
+    !> The number found, an index counted as in texts (option index_base); NaN: does not apply.
+    real(c_double) :: value
+    !> The number it had to stay within; NaN: does not apply.
+    real(c_double) :: limit
+    !> Name of the function that failed, NUL terminated.
+    character(kind=c_char) :: function(40)
+    !> Element of the body, -1: does not apply.
+    integer(c_int64_t) :: element
+    !> Node with friction, -1: does not apply.
+    integer(c_int64_t) :: node
+  end type feti_error_detail
+
+  public :: feti_last_error
+  public :: feti_last_error_detail
+  public :: feti_problem_error
+
+  interface
+
+    !> Text of the calling thread's last error.
+    !>
+    !> The text is cut to fit, always NUL terminated when `cap` > 0. Returns the full length without the NUL,
+    !> 0 when there was no error; a successful call does not clear the text. Never fails.
+    !>
+    !> @param[out] buf (text) room for `cap` characters; NULL asks for the length
+    !> @param[in]  cap (scalar) characters in `buf`, 0 with NULL
+    !>
+    !> Safety: `buf` has room for `cap` characters or is NULL.
+    function feti_last_error(buf, cap) bind(C, name="feti_last_error")
+      import
+      type(c_ptr), value :: buf
+      integer(c_int64_t), value :: cap
+      integer(c_int64_t) :: feti_last_error
+    end function feti_last_error
+
+    !> Facts of the calling thread's last error: function, argument, place, value and limit.
+    !>
+    !> `struct_size` is set by the caller; no more than that is written. A refusal of `out` leaves the last
+    !> error as it is.
+    !>
+    !> @param[in,out] out (scalar) `struct_size` set, at least 16
+    !>
+    !> Safety: `out` leads to `struct_size` writable bytes.
+    function feti_last_error_detail(out) bind(C, name="feti_last_error_detail")
+      import
+      type(feti_error_detail), intent(inout) :: out
+      integer(c_int32_t) :: feti_last_error_detail
+    end function feti_last_error_detail
+
+    !> Text of the problem's last error.
+    !>
+    !> May be called while another call on the problem runs. The text is cut to fit, always NUL terminated
+    !> when `cap` > 0; it is empty when there was no error, and a successful call does not clear it.
+    !>
+    !> @param[in]  p   (scalar) the handle
+    !> @param[out] buf (text) room for `cap` characters; NULL with `cap` = 0 asks for the length
+    !> @param[in]  cap (scalar) characters in `buf`, >= 0
+    !> @param[out] len (scalar) full length without the terminating zero
+    !>
+    !> Safety: `buf` has room for `cap` characters, `len` for one number.
+    function feti_problem_error(p, buf, cap, len) bind(C, name="feti_problem_error")
+      import
+      type(c_ptr), value :: p
+      type(c_ptr), value :: buf
+      integer(c_int64_t), value :: cap
+      integer(c_int64_t), intent(out) :: len
+      integer(c_int32_t) :: feti_problem_error
+    end function feti_problem_error
+
+  end interface
+
+  ! Statuses and version
+  ! ====================
+  ! What functions return, in words; the version of the library.
+
+  !> Done.
+  integer(c_int32_t), parameter, public :: FETI_OK = 0_c_int32_t
+  !> The limit on steps was reached; the results are those of the last step.
+  integer(c_int32_t), parameter, public :: FETI_ITERATIONS = 1_c_int32_t
+  !> The time limit was reached; the results are those of the last step.
+  integer(c_int32_t), parameter, public :: FETI_TIME = 2_c_int32_t
+  !> The host cancelled; the results are those of the last step, and none before the first.
+  integer(c_int32_t), parameter, public :: FETI_CANCELLED = 3_c_int32_t
+  !> Steps no longer reduce the error; the results are those of the last step.
+  integer(c_int32_t), parameter, public :: FETI_STALLED = 4_c_int32_t
+  !> The certificate does not pass.
+  integer(c_int32_t), parameter, public :: FETI_INACCURATE = 5_c_int32_t
+  !> The answer is usable but incomplete: a small part of the load is not held.
+  integer(c_int32_t), parameter, public :: FETI_MARGINAL = 6_c_int32_t
+  !> Memory could not be reserved, or option memory_limit would be exceeded.
+  integer(c_int32_t), parameter, public :: FETI_MEMORY = -1_c_int32_t
+  !> The handle is NULL, destroyed, or none of the library.
+  integer(c_int32_t), parameter, public :: FETI_HANDLE = -2_c_int32_t
+  !> Another call on this problem is running.
+  integer(c_int32_t), parameter, public :: FETI_BUSY = -3_c_int32_t
+  !> A function of the host reported a failure.
+  integer(c_int32_t), parameter, public :: FETI_CALLBACK = -4_c_int32_t
+  !> Something this call needs has not been given yet.
+  integer(c_int32_t), parameter, public :: FETI_STATE = -5_c_int32_t
+  !> No contact force can balance the load.
+  integer(c_int32_t), parameter, public :: FETI_LOAD_NOT_HELD = -6_c_int32_t
+  !> Rows contradict each other.
+  integer(c_int32_t), parameter, public :: FETI_GAPS_CONTRADICT = -7_c_int32_t
+  !> The null space of a body is not what was claimed, or was not found.
+  integer(c_int32_t), parameter, public :: FETI_NULL_SPACE = -8_c_int32_t
+  !> A stiffness matrix has a negative or a vanishing pivot outside its null space, or drives a soft motion
+  !> further than the contact resists it.
+  integer(c_int32_t), parameter, public :: FETI_INDEFINITE = -9_c_int32_t
+  !> A file could not be read or written.
+  integer(c_int32_t), parameter, public :: FETI_IO = -10_c_int32_t
+  !> The library contradicts itself; only destroy and the error functions accept the problem afterwards.
+  integer(c_int32_t), parameter, public :: FETI_INTERNAL = -11_c_int32_t
+  !> The request is valid but not available.
+  integer(c_int32_t), parameter, public :: FETI_UNSUPPORTED = -12_c_int32_t
+  !> A number, or a product of numbers that were given, does not fit its type.
+  integer(c_int32_t), parameter, public :: FETI_OVERFLOW = -13_c_int32_t
+  !> Bodies slide steadily: friction holds only a part of the load, and no rest was found.
+  integer(c_int32_t), parameter, public :: FETI_SLIDES = -14_c_int32_t
+  !> Argument k refused is FETI_ARGUMENT - k, k from 1 with the handle as 1; FETI_ARGUMENT itself: data of an
+  !> earlier call.
+  integer(c_int32_t), parameter, public :: FETI_ARGUMENT = -100_c_int32_t
+
+  public :: feti_status_name
+  public :: feti_status_text
+  public :: feti_version
+  public :: feti_version_number
+
+  interface
+
+    !> Name of a status, such as "FETI_LOAD_NOT_HELD".
+    !>
+    !> "FETI_ARGUMENT" for every refused argument, "FETI_UNKNOWN" for a number that is no status. The text is
+    !> static. Never fails.
+    !>
+    !> @param[in] status (scalar) any number
+    pure function feti_status_name(status) bind(C, name="feti_status_name")
+      import
+      integer(c_int32_t), intent(in), value :: status
+      type(c_ptr) :: feti_status_name
+    end function feti_status_name
+
+    !> One English sentence on a status.
+    !>
+    !> The text is static. Never fails.
+    !>
+    !> @param[in] status (scalar) any number
+    pure function feti_status_text(status) bind(C, name="feti_status_text")
+      import
+      integer(c_int32_t), intent(in), value :: status
+      type(c_ptr) :: feti_status_text
+    end function feti_status_text
+
+    !> Version of the library that runs, "MAJOR.MINOR.PATCH".
+    !>
+    !> The text is static. Never fails.
+    pure function feti_version() bind(C, name="feti_version")
+      import
+      type(c_ptr) :: feti_version
+    end function feti_version
+
+    !> Version of the library that runs as one number, 10000 MAJOR + 100 MINOR + PATCH.
+    !>
+    !> Never fails.
+    function feti_version_number() bind(C, name="feti_version_number")
+      import
+      integer(c_int32_t) :: feti_version_number
+    end function feti_version_number
 
   end interface
 
