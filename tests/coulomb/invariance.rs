@@ -238,3 +238,18 @@ fn nodes_without_mu_and_bound_give_the_answer_without_friction() {
     }
     assert!(compared > 20, "{compared}");
 }
+
+/// However little is asked of the dual, an answer is one that the certificate accepts.
+#[test]
+fn a_loose_tolerance_of_the_dual_leaves_no_answer_inaccurate() {
+    let mut others = Vec::new();
+    for (seed, drawn) in drawn() {
+        let tight = solved(&drawn.deck, "");
+        for options in ["tolerance=1e-2", "tolerance=1e-5"] {
+            if let (Ok(_), Err(end)) = (&tight, solved(&drawn.deck, options)) {
+                others.push(format!("{seed} {}: {options}: {end}", drawn.class));
+            }
+        }
+    }
+    assert!(others.is_empty(), "{others:#?}");
+}

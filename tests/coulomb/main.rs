@@ -8,3 +8,4 @@ mod enumeration;
 mod hand_over;
 mod invariance;
 mod judge;
+mod tresca;
