@@ -3024,7 +3024,7 @@ typedef struct feti_error_detail {
    */
   int64_t entry;
   /**
-   * The number found, an index counted as in texts (option index_base); NaN: does not apply.
+   * The number found; an index as the host gave it, in the numbers of its call. NaN: does not apply.
    */
   double value;
   /**

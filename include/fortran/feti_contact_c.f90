@@ -2909,7 +2909,7 @@ module feti_contact_c
     integer(c_int64_t) :: row
     !> Position in the array; byte of a text or a file; -1: does not apply.
     integer(c_int64_t) :: entry
-    !> The number found, an index counted as in texts (option index_base); NaN: does not apply.
+    !> The number found; an index as the host gave it, in the numbers of its call. NaN: does not apply.
     real(c_double) :: value
     !> The number it had to stay within; NaN: does not apply.
     real(c_double) :: limit
