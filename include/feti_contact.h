@@ -509,7 +509,8 @@ int32_t feti_body_numbering_i64(struct feti_problem *p,
  * @param[in] node (n) label of the node of each unknown, any number
  * @param[in] dir  (n) 1 to 3: displacement along that axis; 4 to 6: rotation about axis 1 to 3
  * @param[in] xyz  (ld * n) coordinate k of unknown i is xyz[k + ld i], length
- * @param[in] ld   (scalar) >= dim
+ * @param[in] ld   (scalar) >= dim: distance of the coordinates of one unknown from those of the
+ *                 next, dim in an array without gaps; n, beyond 12 unknowns, is refused
  *
  * Safety: The arrays have the given shapes.
  */

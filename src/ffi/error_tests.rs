@@ -168,6 +168,30 @@ fn texts_name_what_is_wrong_and_no_base() {
     assert!(last_error().contains("with FETI_LOWER, not with FETI_FULL"), "{}", last_error());
 }
 
+/// 13 unknowns, dim = 2: an array n x dim ends before what ld = n would read.
+#[test]
+fn coordinates_with_the_leading_dimension_of_the_other_layout_are_refused_before_they_are_read() {
+    let p = Owned::new();
+    let n = 13;
+    let (node, dir, xyz) = ([1_i32; 14], [1_i32; 14], [0.5; 14 * 14]);
+    let give = |body: i64, n: i64, ld: i64, xyz: *const f64| {
+        // SAFETY: NULL is refused, the other array holds ld (n - 1) + 2 numbers.
+        unsafe { feti_body_coordinates(p.0, body, 2, n, node.as_ptr(), dir.as_ptr(), xyz, ld) }
+    };
+    for n in [n, n - 1] {
+        // SAFETY: room for one number.
+        assert_eq!(unsafe { feti_body_add(p.0, n, &mut 0) }, FETI_OK);
+    }
+    assert_eq!(give(0, n, n, std::ptr::null()), -108);
+    let text = "body 0: ld is 13, the number of unknowns: coordinates lie unknown by unknown";
+    assert!(last_error().contains(text), "{}", last_error());
+    assert_eq!((last_detail().value, last_detail().limit), (13.0, 2.0));
+    for ld in [2, n - 1, n + 1] {
+        assert_eq!(give(0, n, ld, xyz.as_ptr()), FETI_OK, "ld {ld}");
+    }
+    assert_eq!(give(1, n - 1, n - 1, xyz.as_ptr()), FETI_OK, "records of 12 numbers for each of 12 unknowns");
+}
+
 #[test]
 fn the_last_error_is_kept_per_thread_and_cut_to_its_room() {
     let p = Owned::with_body();
