@@ -509,7 +509,8 @@ int32_t feti_body_numbering_i64(struct feti_problem *p,
  * @param[in] node (n) label of the node of each unknown, any number
  * @param[in] dir  (n) 1 to 3: displacement along that axis; 4 to 6: rotation about axis 1 to 3
  * @param[in] xyz  (ld * n) coordinate k of unknown i is xyz[k + ld i], length
- * @param[in] ld   (scalar) >= dim
+ * @param[in] ld   (scalar) >= dim: distance of the coordinates of one unknown from those of the
+ *                 next, dim in an array without gaps; n, beyond 12 unknowns, is refused
  *
  * Safety: The arrays have the given shapes.
  */
@@ -3024,7 +3025,7 @@ typedef struct feti_error_detail {
    */
   int64_t entry;
   /**
-   * The number found, an index counted as in texts (option index_base); NaN: does not apply.
+   * The number found; an index as the host gave it, in the numbers of its call. NaN: does not apply.
    */
   double value;
   /**

@@ -406,7 +406,8 @@ module feti_contact_c
     !> @param[in] node (n) label of the node of each unknown, any number
     !> @param[in] dir  (n) 1 to 3: displacement along that axis; 4 to 6: rotation about axis 1 to 3
     !> @param[in] xyz  (ld * n) coordinate k of unknown i is xyz[k + ld i], length
-    !> @param[in] ld   (scalar) >= dim
+    !> @param[in] ld   (scalar) >= dim: distance of the coordinates of one unknown from those of the next, dim
+    !>                 in an array without gaps; n, beyond 12 unknowns, is refused
     !>
     !> Safety: The arrays have the given shapes.
     function feti_body_coordinates(p, body, dim, n, node, dir, xyz, ld) bind(C, name="feti_body_coordinates")
@@ -2909,7 +2910,7 @@ module feti_contact_c
     integer(c_int64_t) :: row
     !> Position in the array; byte of a text or a file; -1: does not apply.
     integer(c_int64_t) :: entry
-    !> The number found, an index counted as in texts (option index_base); NaN: does not apply.
+    !> The number found; an index as the host gave it, in the numbers of its call. NaN: does not apply.
     real(c_double) :: value
     !> The number it had to stay within; NaN: does not apply.
     real(c_double) :: limit

@@ -1,6 +1,6 @@
 //! Null spaces of the bodies: the columns of R span all u with K u = 0.
 
-use crate::error::Error;
+use crate::error::{Error, INDEX};
 use crate::ffi::bodies::body::body_of_order;
 use crate::ffi::boundary::{call, column_major, count, enter, id, input, meaning, numbers, same, Output};
 use crate::ffi::header::types::{feti_problem, FETI_CANDIDATES, FETI_EXACT, FETI_SOFT};
@@ -178,7 +178,7 @@ pub unsafe extern "C" fn feti_body_fixing_set(
         let mut dofs = reserved(r, "an index array")?;
         for (entry, &number) in given.iter().enumerate() {
             dofs.push(usize::try_from(number).map_err(|_| {
-                let text = "the dof is below the first unknown";
+                let text = format!("unknown {INDEX} is below the first one");
                 Error::argument("dof", text).body(body).entry(entry).index(number)
             })?);
         }

@@ -32,7 +32,7 @@ pub struct feti_error_detail {
     pub row: i64,
     /// Position in the array; byte of a text or a file; -1: does not apply.
     pub entry: i64,
-    /// The number found, an index counted as in texts (option index_base); NaN: does not apply.
+    /// The number found; an index as the host gave it, in the numbers of its call. NaN: does not apply.
     pub value: f64,
     /// The number it had to stay within; NaN: does not apply.
     pub limit: f64,
