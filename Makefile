@@ -6,7 +6,8 @@
 # make coverage  lines of src/ffi that the tests run              make overhead  what the C ABI costs on the smallest problem
 # make mutants   wrong changes of src, one after the other, that the Rust tests have to notice (about half an hour);
 #                CHANGES="17 52" picks some, CHANGES=--places tells where they are
-# make counts    applications of F against a linear solve, deck by deck (some minutes); DECKS="slab two" picks some
+# make counts    applications of F against a linear solve, deck by deck (some minutes); DECKS="slab two" picks some,
+#                DECKS=sequence compares friction with sequences of problems of Tresca (5 minutes)
 # make bench     time and memory against CHOLMOD, faer, Clarabel and OSQP (some 20 minutes, 11 GB); DECKS="4k 40k" picks some
 # make scaling   time and memory as unknowns, contact rows, bodies, pieces, threads grow: pictures in docs (some minutes);
 #                SWEEPS="rows cut" picks some, a number among them leaves out decks of more unknowns

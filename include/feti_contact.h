@@ -62,8 +62,8 @@
  *     feti_body_numbering_i64
  *
  * Null spaces: Give the motions that a matrix does not resist; otherwise the library finds them.
- *     feti_body_coordinates feti_body_coordinates_flags feti_body_null_space feti_body_null_space_get
- *     feti_body_fixing_set feti_body_fixing
+ *     feti_body_coordinates feti_body_coordinates_flags feti_body_null_space feti_body_no_null_space
+ *     feti_body_null_space_get feti_body_fixing_set feti_body_fixing
  *
  * Bodies by elements: Give the elements of a large body; the library assembles them and cuts the body into pieces.
  *     feti_body_mesh_i32 feti_body_mesh_i64 feti_body_element feti_body_elements
@@ -77,6 +77,7 @@
  *
  * Friction: Give contact rows tangential rows and a law of friction.
  *     feti_friction_add_i32 feti_friction_add_i64 feti_friction_law feti_friction_compliance
+ *     feti_friction_counts
  *
  * Options: Set tolerance, threads, method and limits, by name.
  *     feti_set_f64 feti_set_i64 feti_set_str feti_set_text feti_get_f64 feti_get_i64 feti_get_str
@@ -126,7 +127,7 @@
 
 /** Version of this header: MAJOR.MINOR.PATCH. */
 #define FETI_CONTACT_VERSION_MAJOR 0
-#define FETI_CONTACT_VERSION_MINOR 1
+#define FETI_CONTACT_VERSION_MINOR 2
 #define FETI_CONTACT_VERSION_PATCH 0
 
 #ifdef __cplusplus
@@ -521,7 +522,8 @@ int32_t feti_body_numbering_i64(struct feti_problem *p,
  * @param[in] node (n) label of the node of each unknown: any number
  * @param[in] dir  (n) 1 to 3: displacement along that axis; 4 to 6: rotation about axis 1 to 3
  * @param[in] xyz  (ld * n) coordinate k of unknown i is xyz[k + ld i], length
- * @param[in] ld   (scalar) >= dim
+ * @param[in] ld   (scalar) >= dim: distance of the coordinates of one unknown from those of the
+ *                 next, dim in an array without gaps; n, beyond 12 unknowns, is refused
  *
  * Safety: The arrays have the given shapes.
  */
@@ -572,7 +574,8 @@ int32_t feti_body_coordinates_flags(struct feti_problem *p, int64_t body, int32_
  *
  * @param[in] p     (scalar) the handle
  * @param[in] body  (scalar) number of the body, from 0
- * @param[in] r     (scalar) columns; 0 with FETI_EXACT claims that K is not singular
+ * @param[in] r     (scalar) columns; 0 with FETI_EXACT claims that K is not singular, as
+ *                  feti_body_no_null_space does
  * @param[in] n     (scalar) unknowns of the body
  * @param[in] basis (ldr * r) column-major: R_ij is basis[i + ldr j]; may be NULL when r = 0
  * @param[in] ldr   (scalar) >= n
@@ -587,6 +590,18 @@ int32_t feti_body_null_space(struct feti_problem *p,
                              const double *basis,
                              int64_t ldr,
                              int32_t flags);
+
+/**
+ * Says that a body has no null space: its supports hold it, K is not singular.
+ *
+ * As feti_body_null_space with no columns and FETI_EXACT; that K is not singular is checked in
+ * feti_setup. Calling feti_body_null_space afterwards replaces it. After a failure the body keeps
+ * what it had.
+ *
+ * @param[in] p    (scalar) the handle
+ * @param[in] body (scalar) number of the body, from 0
+ */
+int32_t feti_body_no_null_space(struct feti_problem *p, int64_t body);
 
 /**
  * Reads the null space that the library uses for a body.
@@ -1229,6 +1244,21 @@ int32_t feti_friction_law(struct feti_problem *p,
  * Safety: The array has the given shape.
  */
 int32_t feti_friction_compliance(struct feti_problem *p, int64_t first, int64_t nodes, const double *inv_kt);
+
+/**
+ * Reads how many nodes with friction the problem has now, and how many tangential rows each of
+ * them has.
+ *
+ * Also right after feti_problem_read: these are the sizes of the arrays of nodes, such as those of
+ * feti_friction_slips and feti_friction_states. After a failure nothing is written.
+ *
+ * @param[in]  p     (scalar) the handle
+ * @param[out] nodes (scalar) nodes with friction; may be NULL
+ * @param[out] dim   (scalar) tangential rows of a node, 1 or 2, 0 without nodes; may be NULL
+ *
+ * Safety: Every pointer is NULL or has room for one number.
+ */
+int32_t feti_friction_counts(struct feti_problem *p, int64_t *nodes, int32_t *dim);
 
 /*
  * Options
@@ -3059,8 +3089,8 @@ typedef struct feti_error_detail {
    */
   int64_t entry;
   /**
-   * The number that was found; an index counts as in error texts (option index_base); NaN: does not
-   * apply.
+   * The number that was found; an index is as the host gave it, in the base of the call; NaN: does
+   * not apply.
    */
   double value;
   /**

@@ -72,6 +72,7 @@ module feti_contact
     feti_body_info => body_info, &
     feti_body_numbering => body_numbering, &
     feti_body_null_space => body_null_space, &
+    feti_body_no_null_space => body_no_null_space, &
     feti_body_null_space_get => body_null_space_get, &
     feti_body_coordinates => body_coordinates, &
     feti_body_coordinates_flags => body_coordinates_flags, &
@@ -103,6 +104,7 @@ module feti_contact
     feti_friction_law => friction_law, &
     feti_friction_compliance => friction_compliance, &
     feti_friction_reference => friction_reference, &
+    feti_friction_counts => friction_counts, &
     feti_friction_commit => friction_commit, &
     feti_friction_slips => friction_slips, &
     feti_friction_states => friction_states, &

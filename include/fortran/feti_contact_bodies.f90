@@ -17,11 +17,12 @@ module feti_contact_bodies
     c_body_load => feti_body_load, &
     c_body_null_space => feti_body_null_space, &
     c_body_null_space_get => feti_body_null_space_get, &
+    c_body_no_null_space => feti_body_no_null_space, &
     c_body_numbering_i32 => feti_body_numbering_i32, &
     c_body_numbering_i64 => feti_body_numbering_i64
   implicit none
   private
-  public :: body_add, body_null_space, body_null_space_get
+  public :: body_add, body_null_space, body_no_null_space, body_null_space_get
   public :: body_coordinates, body_coordinates_flags, body_fixing_set, body_load
   public :: body_numbering, body_components, body_info, feti_body_facts
 
@@ -90,6 +91,16 @@ contains
     if (size(R) > 0) address = c_loc(R)
     call finish(c_body_null_space(handle_of(p), int(body - 1, c_int64_t), size(R, 2, c_int64_t), &
       size(R, 1, c_int64_t), address, size(R, 1, c_int64_t), flags), stat, errmsg)
+  end subroutine
+
+  !> The body has no null space: its supports hold it, K is not singular, which feti_setup checks.
+  recursive subroutine body_no_null_space(p, body, stat, errmsg)
+    type(feti_problem), intent(in) :: p
+    integer, intent(in) :: body
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+
+    call finish(c_body_no_null_space(handle_of(p), int(body - 1, c_int64_t)), stat, errmsg)
   end subroutine
 
   !> The null space that the library uses for a body with n unknowns: R is allocated n x r.

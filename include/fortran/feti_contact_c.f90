@@ -6,7 +6,7 @@ module feti_contact_c
   private
 
   integer(c_int32_t), parameter, public :: FETI_CONTACT_VERSION_MAJOR = 0_c_int32_t
-  integer(c_int32_t), parameter, public :: FETI_CONTACT_VERSION_MINOR = 1_c_int32_t
+  integer(c_int32_t), parameter, public :: FETI_CONTACT_VERSION_MINOR = 2_c_int32_t
   integer(c_int32_t), parameter, public :: FETI_CONTACT_VERSION_PATCH = 0_c_int32_t
 
   ! Problem
@@ -389,6 +389,7 @@ module feti_contact_c
   public :: feti_body_coordinates
   public :: feti_body_coordinates_flags
   public :: feti_body_null_space
+  public :: feti_body_no_null_space
   public :: feti_body_null_space_get
   public :: feti_body_fixing_set
   public :: feti_body_fixing
@@ -410,7 +411,8 @@ module feti_contact_c
     !> @param[in] node (n) label of the node of each unknown: any number
     !> @param[in] dir  (n) 1 to 3: displacement along that axis; 4 to 6: rotation about axis 1 to 3
     !> @param[in] xyz  (ld * n) coordinate k of unknown i is xyz[k + ld i], length
-    !> @param[in] ld   (scalar) >= dim
+    !> @param[in] ld   (scalar) >= dim: distance of the coordinates of one unknown from those of the next, dim
+    !>                 in an array without gaps; n, beyond 12 unknowns, is refused
     !>
     !> Safety: The arrays have the given shapes.
     function feti_body_coordinates(p, body, dim, n, node, dir, xyz, ld) bind(C, name="feti_body_coordinates")
@@ -465,7 +467,8 @@ module feti_contact_c
     !>
     !> @param[in] p     (scalar) the handle
     !> @param[in] body  (scalar) number of the body, from 0
-    !> @param[in] r     (scalar) columns; 0 with FETI_EXACT claims that K is not singular
+    !> @param[in] r     (scalar) columns; 0 with FETI_EXACT claims that K is not singular, as
+    !>                  feti_body_no_null_space does
     !> @param[in] n     (scalar) unknowns of the body
     !> @param[in] basis (ldr * r) column-major: R_ij is basis[i + ldr j]; may be NULL when r = 0
     !> @param[in] ldr   (scalar) >= n
@@ -483,6 +486,21 @@ module feti_contact_c
       integer(c_int32_t), value :: flags
       integer(c_int32_t) :: feti_body_null_space
     end function feti_body_null_space
+
+    !> Says that a body has no null space: its supports hold it, K is not singular.
+    !>
+    !> As feti_body_null_space with no columns and FETI_EXACT; that K is not singular is checked in
+    !> feti_setup. Calling feti_body_null_space afterwards replaces it. After a failure the body keeps what it
+    !> had.
+    !>
+    !> @param[in] p    (scalar) the handle
+    !> @param[in] body (scalar) number of the body, from 0
+    function feti_body_no_null_space(p, body) bind(C, name="feti_body_no_null_space")
+      import
+      type(c_ptr), value :: p
+      integer(c_int64_t), value :: body
+      integer(c_int32_t) :: feti_body_no_null_space
+    end function feti_body_no_null_space
 
     !> Reads the null space that the library uses for a body.
     !>
@@ -1034,6 +1052,7 @@ module feti_contact_c
   public :: feti_friction_add_i64
   public :: feti_friction_law
   public :: feti_friction_compliance
+  public :: feti_friction_counts
 
   interface
 
@@ -1200,6 +1219,24 @@ module feti_contact_c
       real(c_double), intent(in) :: inv_kt(*)
       integer(c_int32_t) :: feti_friction_compliance
     end function feti_friction_compliance
+
+    !> Reads how many nodes with friction the problem has now, and how many tangential rows each of them has.
+    !>
+    !> Also right after feti_problem_read: these are the sizes of the arrays of nodes, such as those of
+    !> feti_friction_slips and feti_friction_states. After a failure nothing is written.
+    !>
+    !> @param[in]  p     (scalar) the handle
+    !> @param[out] nodes (scalar) nodes with friction; may be NULL
+    !> @param[out] dim   (scalar) tangential rows of a node, 1 or 2, 0 without nodes; may be NULL
+    !>
+    !> Safety: Every pointer is NULL or has room for one number.
+    function feti_friction_counts(p, nodes, dim) bind(C, name="feti_friction_counts")
+      import
+      type(c_ptr), value :: p
+      type(c_ptr), value :: nodes
+      type(c_ptr), value :: dim
+      integer(c_int32_t) :: feti_friction_counts
+    end function feti_friction_counts
 
   end interface
 
@@ -2925,7 +2962,8 @@ module feti_contact_c
     integer(c_int64_t) :: row
     !> Position in the array, or of the byte in a text or a file; -1: does not apply.
     integer(c_int64_t) :: entry
-    !> The number that was found; an index counts as in error texts (option index_base); NaN: does not apply.
+    !> The number that was found; an index is as the host gave it, in the base of the call; NaN: does not
+    !> apply.
     real(c_double) :: value
     !> The limit for this number; NaN: does not apply.
     real(c_double) :: limit

@@ -122,6 +122,16 @@ recursive subroutine ftbnul(ip, ibody, nr, n, r, ldr, iflag, ierr)
     narrow(iflag)))
 end subroutine
 
+!> The body has no null space: its supports hold it, K is not singular.
+recursive subroutine ftbreg(ip, ibody, ierr)
+  use feti_contact_f77_base
+  implicit none
+  integer, intent(in) :: ip, ibody
+  integer, intent(out) :: ierr
+
+  ierr = told(feti_body_no_null_space(handle(ip), from_zero(ibody)))
+end subroutine
+
 !> Reads the null space that the library uses into r(ldr,nr). nr in: columns of r; 0: only the dimension is returned and r
 !> is unchanged; out: the dimension.
 recursive subroutine ftbnug(ip, ibody, n, nr, r, ldr, ierr)

@@ -91,6 +91,21 @@ recursive subroutine ftfcom(ip, ierr)
   ierr = told(feti_friction_commit(handle(ip)))
 end subroutine
 
+!> Number nd of nodes with friction, and idim of tangential rows of each, 1 or 2, 0 without nodes; also after a problem was read.
+recursive subroutine ftfcnt(ip, nd, idim, ierr)
+  use feti_contact_f77_base
+  implicit none
+  integer, intent(in) :: ip
+  integer, intent(inout) :: nd, idim
+  integer, intent(out) :: ierr
+  integer(c_int64_t), target :: nodes
+  integer(c_int32_t), target :: rows
+
+  ierr = told(feti_friction_counts(handle(ip), c_loc(nodes), c_loc(rows)))
+  if (ierr == FETI_OK) call fit(nodes, nd, ierr)
+  if (ierr == FETI_OK) idim = int(rows)
+end subroutine
+
 !> Slips of the nd nodes in the last answer, slip(idim,nd), length; they have the sign of their forces.
 recursive subroutine ftfslp(ip, nd, idim, slip, ierr)
   use feti_contact_f77_base

@@ -17,6 +17,7 @@ module feti_contact_friction
     c_friction_clear => feti_friction_clear, &
     c_friction_commit => feti_friction_commit, &
     c_friction_compliance => feti_friction_compliance, &
+    c_friction_counts => feti_friction_counts, &
     c_friction_law => feti_friction_law, &
     c_friction_reference => feti_friction_reference, &
     c_friction_slips => feti_friction_slips, &
@@ -24,7 +25,7 @@ module feti_contact_friction
   implicit none
   private
   public :: friction_add, friction_law, friction_compliance, friction_reference
-  public :: friction_commit, friction_slips, friction_states, friction_clear
+  public :: friction_counts, friction_commit, friction_slips, friction_states, friction_clear
 
   !> Nodes with friction, added after the nodes of earlier calls.
   !>
@@ -263,6 +264,24 @@ contains
     character(len=*), intent(inout), optional :: errmsg
 
     call finish(c_friction_commit(handle_of(p)), stat, errmsg)
+  end subroutine
+
+  !> Number of nodes with friction, and of tangential rows of each, 1 or 2, 0 without nodes; also after feti_problem_read.
+  recursive subroutine friction_counts(p, nodes, dim, stat, errmsg)
+    type(feti_problem), intent(in) :: p
+    integer, intent(out), optional :: nodes, dim
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+    integer(c_int64_t), target :: found
+    integer(c_int32_t), target :: rows
+    integer(c_int32_t) :: status
+
+    found = 0
+    rows = 0
+    status = c_friction_counts(handle_of(p), c_loc(found), c_loc(rows))
+    if (present(nodes)) nodes = int(found)
+    if (present(dim)) dim = int(rows)
+    call finish(status, stat, errmsg)
   end subroutine
 
   !> Slips s = T u - s_old - C_t lambda_t of the last answer, slip(dim,nodes), length; they have the sign of lambda_t.

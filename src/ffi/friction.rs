@@ -193,7 +193,7 @@ impl<I: Index> HostNodes<I> {
             };
             let rows = RowsInput { ptr: &ptr, body: body.as_deref(), dof: &dof, val, rhs: None };
             let given = FrictionInput { dim, normal: &normal, rows, coefficient, bound };
-            first.set(problem.add_friction(given)? as i64);
+            first.set(problem.add_friction(given).map_err(|error| error.index_from(base))? as i64);
             Ok(())
         })
     }

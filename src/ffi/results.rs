@@ -298,6 +298,32 @@ pub unsafe extern "C" fn feti_counts(
     })
 }
 
+/// Reads how many nodes with friction the problem has now, and how many tangential rows each of them has.
+///
+/// Also right after feti_problem_read: these are the sizes of the arrays of nodes, such as those of feti_friction_slips and
+/// feti_friction_states. After a failure nothing is written.
+///
+/// | argument | in/out | shape | rule |
+/// |---|---|---|---|
+/// | `p` | in | scalar | the handle |
+/// | `nodes` | out | scalar | nodes with friction; may be NULL |
+/// | `dim` | out | scalar | tangential rows of a node, 1 or 2, 0 without nodes; may be NULL |
+///
+/// # Safety
+/// Every pointer is NULL or has room for one number.
+#[no_mangle]
+pub unsafe extern "C" fn feti_friction_counts(p: *mut feti_problem, nodes: *mut i64, dim: *mut i32) -> i32 {
+    enter(p, call!(feti_friction_counts(p, nodes, dim)), |problem| {
+        // SAFETY: NULL or room for one number by the caller's word.
+        let (nodes, dim) =
+            unsafe { (Output::optional(nodes, 1, "nodes")?, Output::optional(dim, 1, "dim")?) };
+        let counts = problem.sizes();
+        nodes.set(counts.nodes as i64);
+        dim.set(counts.dim as i32);
+        Ok(())
+    })
+}
+
 const ROWS: &str = "the number of rows is";
 
 /// Copies `values` to the host, whose `size` = (name, text) must be their number.

@@ -124,7 +124,7 @@ impl<I: Index> HostRows<I> {
             // SAFETY: NULL or one number per row by the caller's word.
             let rhs = unsafe { input_or_none(self.rhs, rows, "rhs") }?;
             let given = RowsInput { ptr: &ptr, body: body.as_deref(), dof: &dof, val, rhs };
-            first.set(problem.add_rows(kind, given)? as i64);
+            first.set(problem.add_rows(kind, given).map_err(|error| error.index_from(base))? as i64);
             Ok(())
         })
     }

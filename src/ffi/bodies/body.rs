@@ -1,6 +1,6 @@
 //! Bodies: their size, coordinates and load.
 
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::ffi::boundary::{call, column_major, count, enter, id, input, meaning, same, Output};
 use crate::ffi::header::types::{feti_problem, FETI_ALL, FETI_CANDIDATES, FETI_SOFT};
 use crate::solver::Problem;
@@ -28,6 +28,9 @@ pub unsafe extern "C" fn feti_body_add(p: *mut feti_problem, n: i64, body: *mut 
     })
 }
 
+/// With more unknowns ld = n can only be meant for an array n x dim, beyond whose end would be read.
+const FEW: usize = 12;
+
 /// Gives position and direction of every unknown of a body; the library computes candidates for the null space from them.
 ///
 /// The data are copied; another call replaces them. If you give neither coordinates nor a null space, the library finds
@@ -44,7 +47,7 @@ pub unsafe extern "C" fn feti_body_add(p: *mut feti_problem, n: i64, body: *mut 
 /// | `node` | in | n | label of the node of each unknown: any number |
 /// | `dir` | in | n | 1 to 3: displacement along that axis; 4 to 6: rotation about axis 1 to 3 |
 /// | `xyz` | in | ld * n | coordinate k of unknown i is xyz[k + ld i], length |
-/// | `ld` | in | scalar | >= dim |
+/// | `ld` | in | scalar | >= dim: distance of the coordinates of one unknown from those of the next, dim in an array without gaps; n, beyond 12 unknowns, is refused |
 ///
 /// # Safety
 /// The arrays have the given shapes.
@@ -63,6 +66,13 @@ pub unsafe extern "C" fn feti_body_coordinates(
         let (body, n) = body_of_order(problem, body, n)?;
         let dim = meaning(dim, "dim", &[(1, 1), (2, 2), (3, 3)], "not 1, 2 or 3")?;
         let (entries, ld) = column_major(dim, n, ld, "ld")?;
+        if ld == n && n > FEW {
+            let text = format!(
+                "ld is {ld}, the number of unknowns: coordinates lie unknown by unknown, xyz[k + ld i], so that ld is {dim} in an \
+                 array without gaps"
+            );
+            return Err(Error::argument("ld", text).body(body).value(ld as f64).limit(dim as f64));
+        }
         // SAFETY: shapes by the caller's word.
         let (node, dir) = unsafe { (input(node, n, "node")?, input(dir, n, "dir")?) };
         // SAFETY: ld (n - 1) + dim coordinates by the caller's word.

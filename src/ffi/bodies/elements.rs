@@ -123,7 +123,8 @@ unsafe fn give<I: Index>(
         let ptr = unsafe { element_pointers(ptr, elements, base) }?;
         let entries = ptr.last().copied().unwrap_or(0);
         // SAFETY: the last position is the number of entries.
-        problem.set_mesh(body, &ptr, &unsafe { numbers(dof, entries, base, "dof") }?)
+        let dof = unsafe { numbers(dof, entries, base, "dof") }?;
+        problem.set_mesh(body, &ptr, &dof).map_err(|error| error.index_from(base))
     })
 }
 

@@ -1,6 +1,6 @@
 //! Null spaces of the bodies: the columns of R span all u with K u = 0.
 
-use crate::error::Error;
+use crate::error::{Error, INDEX};
 use crate::ffi::bodies::body::body_of_order;
 use crate::ffi::boundary::{call, column_major, count, enter, id, input, meaning, numbers, same, Output};
 use crate::ffi::header::types::{feti_problem, FETI_CANDIDATES, FETI_EXACT, FETI_SOFT};
@@ -23,7 +23,7 @@ use crate::solver::Modes;
 /// |---|---|---|---|
 /// | `p` | in | scalar | the handle |
 /// | `body` | in | scalar | number of the body, from 0 |
-/// | `r` | in | scalar | columns; 0 with FETI_EXACT claims that K is not singular |
+/// | `r` | in | scalar | columns; 0 with FETI_EXACT claims that K is not singular, as feti_body_no_null_space does |
 /// | `n` | in | scalar | unknowns of the body |
 /// | `basis` | in | ldr * r | column-major: R_ij is basis[i + ldr j]; may be NULL when r = 0 |
 /// | `ldr` | in | scalar | >= n |
@@ -50,6 +50,24 @@ pub unsafe extern "C" fn feti_body_null_space(
         let (entries, ldr) = column_major(n, r, ldr, "ldr")?;
         // SAFETY: ldr (r - 1) + n entries by the caller's word.
         problem.set_null_space(body, n, r, unsafe { input(basis, entries, "basis") }?, ldr, modes)
+    })
+}
+
+/// Says that a body has no null space: its supports hold it, K is not singular.
+///
+/// As feti_body_null_space with no columns and FETI_EXACT; that K is not singular is checked in feti_setup. Calling
+/// feti_body_null_space afterwards replaces it. After a failure the body keeps what it had.
+///
+/// | argument | in/out | shape | rule |
+/// |---|---|---|---|
+/// | `p` | in | scalar | the handle |
+/// | `body` | in | scalar | number of the body, from 0 |
+#[no_mangle]
+pub extern "C" fn feti_body_no_null_space(p: *mut feti_problem, body: i64) -> i32 {
+    enter(p, call!(feti_body_no_null_space(p, body)), |problem| {
+        let body = id(body, "body")?;
+        let n = problem.order(body)?;
+        problem.set_null_space(body, n, 0, &[], n, Modes::Exact)
     })
 }
 
@@ -161,7 +179,7 @@ pub unsafe extern "C" fn feti_body_fixing_set(
         let mut dofs = reserved(r, "an index array")?;
         for (entry, &number) in given.iter().enumerate() {
             dofs.push(usize::try_from(number).map_err(|_| {
-                let text = "the dof is below the first unknown";
+                let text = format!("unknown {INDEX} is below the first one");
                 Error::argument("dof", text).body(body).entry(entry).index(number)
             })?);
         }

@@ -84,7 +84,9 @@ unsafe fn give<I: Index>(p: *mut feti_problem, call: Call, body: i64, given: (i6
     enter(p, call, |problem| {
         let (n, number, from) = given;
         let (body, n) = body_of_order(problem, body, n)?;
+        let from = base(from)?;
         // SAFETY: n numbers by the caller's word.
-        problem.set_numbering(body, &unsafe { numbers(number, n, base(from)?, "number") }?)
+        let numbers = unsafe { numbers(number, n, from, "number") }?;
+        problem.set_numbering(body, &numbers).map_err(|error| error.index_from(from))
     })
 }

@@ -1,6 +1,6 @@
 //! Stiffness matrices of bodies: by rows, with a diagonal of their own, dense.
 
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::ffi::bodies::body::body_of_order;
 use crate::ffi::boundary::{
     base, borrowed, call, column_major, enter, input, meaning, numbers, pointers, Call, Index,
@@ -202,6 +202,7 @@ impl<I: Index> SparseMatrix<I> {
         enter(p, call, |problem| {
             let (body, n) = body_of_order(problem, body, self.n)?;
             let (base, storage) = (base(self.base)?, storage_of(self.storage)?);
+            let of_call = |error: Error| error.index_from(base);
             let flags = [(FETI_COPY, false), (FETI_BORROW, true)];
             let borrow = meaning(self.flags, "flags", &flags, "neither FETI_COPY nor FETI_BORROW")?;
             let borrow = borrow && diag.is_none() && storage == Storage::Lower;
@@ -211,17 +212,18 @@ impl<I: Index> SparseMatrix<I> {
             let ptr = unsafe { pointers(self.row_ptr, n, base) }?;
             let entries = ptr.last().copied().unwrap_or(0);
             // SAFETY: the last position is the number of entries; the arrays stay, by the caller's word.
-            if borrow && entries > 0 && unsafe { self.borrow(problem, body, &ptr, base) }? {
+            if borrow && entries > 0 && unsafe { self.borrow(problem, body, &ptr, base) }.map_err(of_call)? {
                 return Ok(());
             }
             // SAFETY: the last position is the number of entries.
             let (col, val) =
                 unsafe { (numbers(self.col, entries, base, "col")?, input(self.val, entries, "val")?) };
             let k = SparseInput { ptr: &ptr, col: &col, val, storage };
-            match diag {
+            let given = match diag {
                 None => problem.set_stiffness(body, k),
                 Some(diag) => problem.set_stiffness_split(body, diag, k),
-            }
+            };
+            given.map_err(of_call)
         })
     }
 

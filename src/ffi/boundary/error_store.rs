@@ -51,7 +51,7 @@ impl Record {
 /// The struct of the header; without a record its status is FETI_OK and no number applies.
 fn detail(record: Option<&Record>) -> feti_error_detail {
     let place = record.map(|record| record.place).unwrap_or_default();
-    let index = place.index.map(|index| index.saturating_add(place.base) as f64);
+    let index = place.given_index().map(|index| index as f64);
     let mut function = [0; 40];
     let name = record.map_or("", |record| record.function);
     for (to, from) in function[..39].iter_mut().zip(name.bytes()) {

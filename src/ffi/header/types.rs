@@ -32,7 +32,7 @@ pub struct feti_error_detail {
     pub row: i64,
     /// Position in the array, or of the byte in a text or a file; -1: does not apply.
     pub entry: i64,
-    /// The number that was found; an index counts as in error texts (option index_base); NaN: does not apply.
+    /// The number that was found; an index is as the host gave it, in the base of the call; NaN: does not apply.
     pub value: f64,
     /// The limit for this number; NaN: does not apply.
     pub limit: f64,

@@ -44,6 +44,7 @@ impl<T: Entry> Cholesky<T> {
 
 /// Asks the memory for the lines of so many entries, of the next columns: these are too short to be foreseen by the processor.
 #[inline(always)]
+#[cfg_attr(not(target_arch = "x86_64"), allow(unused_variables))]
 fn ask_for<T>(entries: *const T) {
     #[cfg(target_arch = "x86_64")]
     for line in 0..AHEAD * size_of::<T>() / 64 {

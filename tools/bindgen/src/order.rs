@@ -31,7 +31,7 @@ pub const SECTIONS: [Section; 20] = [
     ]),
     section!("Null spaces", "Give the motions that a matrix does not resist; otherwise the library finds them.", [
         FETI_EXACT, FETI_CANDIDATES, FETI_SOFT,
-        feti_body_coordinates, feti_body_coordinates_flags, feti_body_null_space,
+        feti_body_coordinates, feti_body_coordinates_flags, feti_body_null_space, feti_body_no_null_space,
         feti_body_null_space_get,
         feti_body_fixing_set, feti_body_fixing,
     ]),
@@ -49,6 +49,7 @@ pub const SECTIONS: [Section; 20] = [
     section!("Friction", "Give contact rows tangential rows and a law of friction.", [
         FETI_TANGENTIAL,
         feti_friction_add_i32, feti_friction_add_i64, feti_friction_law, feti_friction_compliance,
+        feti_friction_counts,
     ]),
     section!("Options", "Set tolerance, threads, method and limits, by name.", [
         FETI_OPTION_F64, FETI_OPTION_I64, FETI_OPTION_STR, feti_option,
