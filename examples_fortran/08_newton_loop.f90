@@ -39,7 +39,7 @@ program newton_loop
   type(feti_problem) :: problem
   type(feti_info) :: info
   type(cost) :: spent
-  real(dp) :: u(n), lambda(rows), f(n), none(n, 0), depth, force, error, before_error
+  real(dp) :: u(n), lambda(rows), f(n), depth, force, error, before_error
   integer :: body
   logical :: right
 
@@ -53,7 +53,7 @@ program newton_loop
   call feti_problem_create(problem)
   call feti_body_add(problem, n, body)
   call feti_body_stiffness(problem, body, ptr, col(:entries), val(:entries), FETI_LOWER)
-  call feti_body_null_space(problem, body, none, FETI_EXACT)   ! the ends are clamped
+  call feti_body_no_null_space(problem, body)   ! the ends are clamped
 
   call with_fixed_tangent(1.0_dp)
   call demo_value('small displacements, iterations', real(spent%iterations, dp), '-')

@@ -62,12 +62,24 @@ pub struct Place {
     pub entry: Option<usize>,
     /// Position in a text or a file.
     pub byte: Option<usize>,
-    /// The number found where it is an index; texts and details count it from `base`.
+    /// The number found where it is an index, from 0; texts ([`INDEX`]) and details have it as the host gave it.
     pub index: Option<i64>,
+    /// What `index` counts from where the arrays of the call have said so; else `base`.
+    pub index_base: Option<i64>,
     /// The number found ...
     pub value: Option<f64>,
     /// ... and the number it had to stay within.
     pub limit: Option<f64>,
+}
+
+/// Stands in a text for the index that was found.
+pub const INDEX: &str = "{index}";
+
+impl Place {
+    /// The index found, as the host gave it.
+    pub fn given_index(&self) -> Option<i64> {
+        self.index.map(|index| index.saturating_add(self.index_base.unwrap_or(self.base)))
+    }
 }
 
 impl fmt::Display for Place {
@@ -95,7 +107,7 @@ impl fmt::Display for Place {
 
 /// A failure with its place. `Display` reads "body 3, row 7: the text of what was wrong".
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
-#[error("{place}{what}")]
+#[error("{place}{}", self.told())]
 pub struct Error {
     pub kind: Kind,
     pub what: String,
@@ -141,6 +153,20 @@ impl Error {
         limit: f64,
     }
 
+    /// Indices of the call count from `base`, those of an array of the host.
+    pub fn index_from(mut self, base: i64) -> Self {
+        self.place.index_base = Some(base);
+        self
+    }
+
+    /// What was wrong, with the index as the host gave it.
+    fn told(&self) -> String {
+        match self.place.given_index() {
+            Some(index) => self.what.replace(INDEX, &index.to_string()),
+            None => self.what.clone(),
+        }
+    }
+
     pub fn proved_by(mut self, proof: Proof) -> Self {
         self.proof = Some(Box::new(proof));
         self
@@ -163,5 +189,18 @@ mod tests {
         assert_eq!(error.to_string(), "body 2, row 7: not a number");
         assert_eq!(error.counted_from(1).to_string(), "body 3, row 8: not a number");
         assert_eq!(Error::new(Kind::State, "no load").to_string(), "no load");
+    }
+
+    #[test]
+    fn an_index_is_told_as_the_host_gave_it() {
+        let error = Error::argument("col", format!("column {INDEX} is outside")).row(1).index(8);
+        assert_eq!(error.to_string(), "row 1: column 8 is outside");
+        assert_eq!(error.clone().counted_from(1).to_string(), "row 2: column 9 is outside");
+        assert_eq!(error.clone().index_from(1).to_string(), "row 1: column 9 is outside");
+        let fortran = error.index_from(1).counted_from(1);
+        assert_eq!(
+            (fortran.to_string().as_str(), fortran.place.given_index()),
+            ("row 2: column 9 is outside", Some(9))
+        );
     }
 }

@@ -185,7 +185,7 @@ impl<'a> Probe<'a> {
             return Ok(());
         }
         let what = format!(
-            "a mode is missing: the host's K has more than the {} null vectors given; one is largest at this dof \
+            "a mode is missing: the host's K has more than the {} null vectors known; one is largest at this dof \
              (|K v| = {found:.1e} |v|)",
             self.null_space.cols
         );

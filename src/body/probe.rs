@@ -136,7 +136,7 @@ pub(super) fn known_to(
 
 pub(super) fn missing_mode(dof: usize, found: f64, given: usize) -> Error {
     let what = format!(
-        "a mode is missing: the stiffness matrix has more than the {given} null vectors given; \
+        "a mode is missing: the stiffness matrix has more than the {given} null vectors known; \
          one is largest at this dof (|K v| = {found:.1e} |K||v|)"
     );
     Error::new(Kind::NullSpace, what).dof(dof).value(found).limit(SINGULAR)

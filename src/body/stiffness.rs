@@ -1,8 +1,8 @@
 //! The host's stiffness matrix, checked and brought into one form: the lower triangle by sorted rows.
 
 use crate::body::in_order::lower_triangle;
-use crate::body::storage::{may_differ, unsymmetric, SparseInput, Storage};
-use crate::error::{Error, Kind, Result};
+use crate::body::storage::{may_differ, unsymmetric, Shape, SparseInput, Storage};
+use crate::error::{Error, Kind, Result, INDEX};
 use crate::linalg::vector::first_non_finite;
 use crate::linalg::{Csr, Symmetric};
 use crate::platform::memory::{headroom, reserved};
@@ -131,7 +131,7 @@ pub fn check_finite(values: &[f64], name: &'static str, row_of: impl FnOnce(usiz
 fn column(input: &SparseInput<'_>, split: bool, i: usize, at: usize) -> Result<usize> {
     let n = input.ptr.len() - 1;
     let col = usize::try_from(input.col[at]).ok().filter(|&col| col < n).ok_or_else(|| {
-        Error::argument("col", format!("the column is outside the {n} unknowns of the body"))
+        Error::argument("col", format!("column {INDEX} is outside the {n} unknowns of the body"))
             .row(i)
             .entry(at)
             .index(input.col[at])
@@ -174,8 +174,7 @@ fn averaged(rows: &Csr, tolerance: f64) -> Result<Csr> {
             let k_ji = mates.next_if(|e| e.0 == column).map_or(0.0, |e| e.1);
             let limit = may_differ(tolerance, root[i], root[column]);
             if (k_ij - k_ji).abs() > limit {
-                let lonely = |row: usize| rows.row(row).all(|(col, v)| col == row || v == 0.0);
-                return Err(unsymmetric(lonely(i) || lonely(column), (i, column), k_ij - k_ji, limit));
+                return Err(unsymmetric((shape(rows, i, column), n), (i, column), k_ij - k_ji, limit));
             }
             lower.col.push(column);
             lower.val.push(if k_ij == k_ji { k_ij } else { 0.5 * k_ij + 0.5 * k_ji });
@@ -183,6 +182,23 @@ fn averaged(rows: &Csr, tolerance: f64) -> Result<Csr> {
         lower.ptr.push(lower.col.len());
     }
     Ok(lower)
+}
+
+/// What rows that are not symmetric in (i, j) are instead.
+fn shape(rows: &Csr, i: usize, j: usize) -> Shape {
+    let none = |row: usize, is_there: fn(usize, usize) -> bool| {
+        rows.row(row).all(|(col, v)| v == 0.0 || !is_there(row, col))
+    };
+    let nowhere = |is_there: fn(usize, usize) -> bool| (0..rows.rows()).all(|row| none(row, is_there));
+    if nowhere(|row, col| col > row) {
+        Shape::Triangle(Storage::Lower)
+    } else if nowhere(|row, col| col < row) {
+        Shape::Triangle(Storage::Upper)
+    } else if none(i, |row, col| row != col) || none(j, |row, col| row != col) {
+        Shape::Lonely
+    } else {
+        Shape::Neither
+    }
 }
 
 fn entry(rows: &Csr, i: usize, j: usize) -> f64 {
@@ -264,6 +280,22 @@ mod tests {
     fn an_identity_row_with_a_full_column_gets_its_own_advice() {
         let error = full(&[-1.0, 2.0, 0.0, 1.0]).unwrap_err();
         assert!(error.what.contains("eliminate supports symmetrically"), "{error}");
+        let chain = [1.0, -2.0, 0.0, 0.0, 4.0, -2.0, 0.0, -2.0, 4.0]; // by columns, unknown 0 supported in its row alone
+        let error = from_dense(3, &chain, 3, Storage::Full, 1e-10).unwrap_err();
+        assert!(error.what.starts_with("an identity row"), "{error}");
+    }
+
+    #[test]
+    fn a_triangle_given_as_a_full_matrix_is_told_its_storage() {
+        let lower = [2.0, -1.0, 0.0, 0.0, 2.0, -1.0, 0.0, 0.0, 2.0]; // by columns
+        let upper = [2.0, 0.0, 0.0, -1.0, 2.0, 0.0, 0.0, -1.0, 2.0];
+        for (k, says, storage) in
+            [(lower, "FETI_LOWER", Storage::Lower), (upper, "FETI_UPPER", Storage::Upper)]
+        {
+            let error = from_dense(3, &k, 3, Storage::Full, 1e-10).unwrap_err();
+            assert!(error.what.contains(says) && !error.what.contains("support"), "{error}");
+            assert!(from_dense(3, &k, 3, storage, 1e-10).is_ok());
+        }
     }
 
     #[test]

@@ -25,12 +25,44 @@ pub(super) fn may_differ(tolerance: f64, root_i: f64, root_j: f64) -> f64 {
     tolerance * root_i * root_j
 }
 
-/// `lonely`: one of the two rows has nothing beside its diagonal.
-pub(super) fn unsymmetric(lonely: bool, (i, j): (usize, usize), difference: f64, limit: f64) -> Error {
-    let what = if lonely {
-        "an identity row meets a full column: eliminate supports symmetrically".to_owned()
-    } else {
-        format!("|K_ij - K_ji| = {:.1e} exceeds {limit:.1e}: the matrix is not symmetric", difference.abs())
+/// What a matrix given with all its entries is instead of symmetric.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Shape {
+    /// All entries beside the diagonal are on one side of it: the triangle of that storage.
+    Triangle(Storage),
+    /// One of two rows that meet has nothing beside its diagonal.
+    Lonely,
+    Neither,
+}
+
+const SUPPORT: &str = "an identity row meets a full column: eliminate supports symmetrically";
+
+/// In a triangle of two unknowns a support may not have been eliminated in the other row.
+pub(super) fn unsymmetric(
+    shape: (Shape, usize),
+    (i, j): (usize, usize),
+    difference: f64,
+    limit: f64,
+) -> Error {
+    let triangle = |side: &str, storage: &str| {
+        format!("all entries beside the diagonal are {side} it: give this triangle with {storage}, not with FETI_FULL")
+    };
+    let what = match shape {
+        (Shape::Triangle(storage), n) => {
+            let (side, name) = match storage {
+                Storage::Upper => ("above", "FETI_UPPER"),
+                Storage::Lower | Storage::Full => ("below", "FETI_LOWER"),
+            };
+            let or = if n > 2 { String::new() } else { format!("; or {SUPPORT}") };
+            triangle(side, name) + &or
+        }
+        (Shape::Lonely, _) => SUPPORT.to_owned(),
+        (Shape::Neither, _) => {
+            format!(
+                "|K_ij - K_ji| = {:.1e} exceeds {limit:.1e}: the matrix is not symmetric",
+                difference.abs()
+            )
+        }
     };
     Error::argument("val", what).row(i).dof(j).value(difference.abs()).limit(limit)
 }

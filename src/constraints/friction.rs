@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use crate::constraints::{RowKind, RowSet, RowsInput};
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, INDEX};
 use crate::platform::memory::filled;
 
 /// The law of one node: `|lambda_t| <= bound + coefficient x lambda_n`.
@@ -152,7 +152,8 @@ impl Friction {
             }
             let known = usize::try_from(row).ok().filter(|&row| row < contact.len());
             let number = known.ok_or_else(|| {
-                let what = format!("there are {} contact rows, and no such one among them", contact.len());
+                let what =
+                    format!("contact row {INDEX} is not there: there are {} contact rows", contact.len());
                 Error::argument("normal_row", what).node(k).entry(k).index(row)
             })?;
             if std::mem::replace(&mut taken[number], true) {

@@ -18,7 +18,7 @@ pub use kind::RowKind;
 
 use std::sync::Arc;
 
-use crate::error::{Error, Kind, Result};
+use crate::error::{Error, Kind, Result, INDEX};
 use crate::linalg::twofold::Twofold;
 use crate::linalg::vector::first_non_finite;
 use crate::linalg::Csr;
@@ -232,18 +232,22 @@ fn values_from(values: &mut [f64], first: usize, count: usize) -> Result<&mut [f
 /// Number among all unknowns of entry `at`.
 fn unknown(input: RowsInput<'_>, at: usize, offsets: &[usize]) -> Result<usize> {
     let bodies = offsets.len() - 1;
-    let (start, end) = match input.body {
-        None => (0, offsets[bodies]),
-        Some(body) => {
-            let body = usize::try_from(body[at]).ok().filter(|&b| b < bodies).ok_or_else(|| {
-                Error::argument("body", format!("there are {bodies} bodies")).index(body[at])
-            })?;
-            (offsets[body], offsets[body + 1])
-        }
-    };
+    let body = input.body.map(|body| {
+        usize::try_from(body[at]).ok().filter(|&b| b < bodies).ok_or_else(|| {
+            let what = format!("body {INDEX} is not there: there are {bodies} bodies");
+            Error::argument("body", what).index(body[at])
+        })
+    });
+    let body = body.transpose()?;
+    let (start, end) = body.map_or((0, offsets[bodies]), |body| (offsets[body], offsets[body + 1]));
     let dof = usize::try_from(input.dof[at]).ok().filter(|&dof| dof < end - start).ok_or_else(|| {
-        let what = format!("the dof is outside the {} unknowns", end - start);
-        Error::argument("dof", what).index(input.dof[at])
+        let of = if body.is_some() { "the body" } else { "all bodies" };
+        let what = format!("unknown {INDEX} is outside the {} unknowns of {of}", end - start);
+        let error = Error::argument("dof", what).index(input.dof[at]);
+        match body {
+            Some(body) => error.body(body),
+            None => error,
+        }
     })?;
     Ok(start + dof)
 }

@@ -103,15 +103,93 @@ fn a_refused_index_is_told_as_the_host_counts() {
     for base in [0, 1] {
         assert_eq!(p.set(c"index_base", base), FETI_OK);
         assert_eq!(feti_state_drop(p.0, 4), -102);
-        assert_eq!(last_error(), "feti_state_drop: no state has this number");
+        assert_eq!(last_error(), format!("feti_state_drop: no state has the number {}", 4 + base));
         assert_eq!(last_detail().value, (4 + base) as f64);
         assert_eq!(feti_state_drop(p.0, -1), -102);
-        assert_eq!(last_error(), "feti_state_drop: id is below the first number");
+        assert_eq!(last_error(), format!("feti_state_drop: id {} is below the first number", base - 1));
         assert_eq!(last_detail().value, (base - 1) as f64);
         let (ptr, dof, val) = ([base as i32, base as i32 + 1], [base as i32 + 7], [1.0]);
         let added = add_row(p.0, &ptr, &dof, &val, base as i32);
         assert_eq!((added, last_detail().value), (-106, (7 + base) as f64));
     }
+}
+
+/// A matrix of two rows and three entries with these positions and columns.
+fn stiffness(p: *mut feti_problem, ptr: &[i32; 3], col: &[i32; 3], base: i32, storage: i32) -> i32 {
+    let val = [4.0, -4.0, 4.0];
+    // SAFETY: three positions and entries.
+    unsafe {
+        let (ptr, col, val) = (ptr.as_ptr(), col.as_ptr(), val.as_ptr());
+        feti_body_stiffness_i32(p, 0, 2, ptr, col, val, base, storage, FETI_COPY)
+    }
+}
+
+/// The base of the call and that of texts differ: C hosts whose arrays count from 1.
+#[test]
+fn an_index_of_an_array_is_told_with_the_base_of_its_call_and_with_its_body() {
+    let p = Owned::with_body();
+    assert_eq!(stiffness(p.0, &[1, 2, 4], &[1, 1, 9], 1, FETI_LOWER), -105);
+    let text =
+        "feti_body_stiffness_i32: body 0, row 1, entry 2: column 9 is outside the 2 unknowns of the body";
+    assert_eq!((last_error().as_str(), last_detail().value), (text, 9.0));
+    assert_eq!(add_row(p.0, &[1, 2], &[7], &[1.0], 1), -106);
+    let text = "feti_rows_add_i32: row 0, entry 0: unknown 7 is outside the 2 unknowns of all bodies";
+    assert_eq!((last_error().as_str(), last_detail().value), (text, 7.0));
+    let of_body = |body: i32, dof: i32| {
+        let (ptr, body, dof) = ([1, 2], [body], [dof]);
+        // SAFETY: the arrays of one row with one entry.
+        unsafe {
+            let (body, dof, val) = (body.as_ptr(), dof.as_ptr(), [1.0].as_ptr());
+            feti_rows_add_i32(p.0, FETI_EQUALITY, 1, ptr.as_ptr(), body, dof, val, 1, null_mut(), null_mut())
+        }
+    };
+    assert_eq!(of_body(4, 1), -105);
+    let text = "feti_rows_add_i32: row 0, entry 0: body 4 is not there: there are 1 bodies";
+    assert_eq!((last_error().as_str(), last_detail().value), (text, 4.0));
+    assert_eq!(of_body(1, 3), -106);
+    let text = "feti_rows_add_i32: body 0, row 0, entry 0: unknown 3 is outside the 2 unknowns of the body";
+    assert_eq!((last_error().as_str(), last_detail().body), (text, 0));
+}
+
+#[test]
+fn texts_name_what_is_wrong_and_no_base() {
+    let p = Owned::with_body();
+    // SAFETY: refused before anything is written.
+    assert_eq!(unsafe { feti_body_add(p.0, -5, &mut 0) }, -102);
+    assert_eq!(last_error(), "feti_body_add: n is -5, and must not be negative");
+    assert_eq!(stiffness(p.0, &[0, 1, 3], &[1, 1, 2], 1, FETI_LOWER), -104);
+    assert_eq!(
+        last_error(),
+        "feti_body_stiffness_i32: row 0: row_ptr starts with 0, and has to start with 1"
+    );
+    assert_eq!(stiffness(p.0, &[0, 1, 3], &[0, 0, 1], 0, 7), -108);
+    assert!(last_error().contains("storage is 7, none of FETI_FULL"), "{}", last_error());
+    assert_eq!(stiffness(p.0, &[0, 1, 3], &[0, 0, 1], 0, FETI_FULL), -106);
+    assert!(last_error().contains("with FETI_LOWER, not with FETI_FULL"), "{}", last_error());
+}
+
+/// 13 unknowns, dim = 2: an array n x dim ends before what ld = n would read.
+#[test]
+fn coordinates_with_the_leading_dimension_of_the_other_layout_are_refused_before_they_are_read() {
+    let p = Owned::new();
+    let n = 13;
+    let (node, dir, xyz) = ([1_i32; 14], [1_i32; 14], [0.5; 14 * 14]);
+    let give = |body: i64, n: i64, ld: i64, xyz: *const f64| {
+        // SAFETY: NULL is refused, the other array holds ld (n - 1) + 2 numbers.
+        unsafe { feti_body_coordinates(p.0, body, 2, n, node.as_ptr(), dir.as_ptr(), xyz, ld) }
+    };
+    for n in [n, n - 1] {
+        // SAFETY: room for one number.
+        assert_eq!(unsafe { feti_body_add(p.0, n, &mut 0) }, FETI_OK);
+    }
+    assert_eq!(give(0, n, n, std::ptr::null()), -108);
+    let text = "body 0: ld is 13, the number of unknowns: coordinates lie unknown by unknown";
+    assert!(last_error().contains(text), "{}", last_error());
+    assert_eq!((last_detail().value, last_detail().limit), (13.0, 2.0));
+    for ld in [2, n - 1, n + 1] {
+        assert_eq!(give(0, n, ld, xyz.as_ptr()), FETI_OK, "ld {ld}");
+    }
+    assert_eq!(give(1, n - 1, n - 1, xyz.as_ptr()), FETI_OK, "records of 12 numbers for each of 12 unknowns");
 }
 
 #[test]

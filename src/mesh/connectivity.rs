@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use crate::error::{Error, Kind, Result};
+use crate::error::{Error, Kind, Result, INDEX};
 use crate::platform::memory::reserved;
 
 const WHAT: &str = "the elements of a body";
@@ -48,7 +48,7 @@ impl Connectivity {
                 Ok(free) if free < unknowns => free as u32,
                 Ok(_) => {
                     let element = ptr.partition_point(|start| *start <= at) - 1;
-                    let what = format!("the dof is outside the {unknowns} unknowns of the body");
+                    let what = format!("unknown {INDEX} is outside the {unknowns} unknowns of the body");
                     let error = Error::argument("dof", what).element(element).entry(at);
                     return Err(error.index(dof).limit(unknowns as f64));
                 }

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use crate::body::{
     check_diagonal, same_vectors, Body, Coordinates, HostFunctions, HostOperator, Modes, NullSpaceInput,
 };
-use crate::error::{Error, Kind, Result};
+use crate::error::{Error, Kind, Result, INDEX};
 use crate::linalg::vector::first_non_finite;
 use crate::linalg::Matrix;
 use crate::mesh::Mesh;
@@ -82,7 +82,7 @@ impl Model {
         let order = self.order(body)?;
         let beyond = dofs.into_iter().flatten().enumerate().find(|(_, dof)| **dof >= order);
         if let Some((entry, &dof)) = beyond {
-            let what = format!("the dof is outside the {order} unknowns");
+            let what = format!("unknown {INDEX} is outside the {order} unknowns of the body");
             let error = Error::argument("dof", what).body(body).entry(entry);
             return Err(error.index(dof as i64).limit(order as f64));
         }

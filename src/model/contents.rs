@@ -90,6 +90,8 @@ pub struct Sizes {
     pub nodes: usize,
     /// Their tangential rows.
     pub tangential: usize,
+    /// Tangential rows of a node, 0 without nodes.
+    pub dim: usize,
 }
 
 impl Model {
@@ -152,6 +154,7 @@ impl Model {
             equalities: self.equalities.len(),
             nodes: self.friction.len(),
             tangential: self.friction.rows.len(),
+            dim: if self.friction.len() == 0 { 0 } else { self.friction.dim },
         }
     }
 

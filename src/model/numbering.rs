@@ -1,6 +1,6 @@
 //! The host's own numbers of the unknowns, over all bodies; without them the bodies count one after the other.
 
-use crate::error::{Error, Kind, Result};
+use crate::error::{Error, Kind, Result, INDEX};
 use crate::linalg::vector::first_non_finite;
 use crate::model::contents::Model;
 use crate::platform::memory::{refusal, reserved};
@@ -19,7 +19,7 @@ impl Model {
             (self.settings.glue == 1, reserved(numbers.len(), "the numbers of a body")?);
         for (dof, &number) in numbers.iter().enumerate() {
             match usize::try_from(number).ok().filter(|number| *number < TOO_LARGE) {
-                None => return refused(dof, "no array has such an entry"),
+                None => return refused(dof, "no array has an entry {index}"),
                 Some(number)
                     if !glued && self.unknowns.get(&number).is_some_and(|(other, _)| *other != body) =>
                 {
@@ -167,7 +167,9 @@ impl Model {
             let found = usize::try_from(number).ok().and_then(|number| self.unknowns.get(&number));
             let Some((body, dof)) = found else {
                 let row = ptr.partition_point(|&start| start <= entry) - 1;
-                let error = Error::argument("dof", "no unknown has this number").row(row).entry(entry);
+                let error = Error::argument("dof", format!("no unknown has the number {INDEX}"))
+                    .row(row)
+                    .entry(entry);
                 return Err(error.index(number));
             };
             places.push((self.offsets[*body] + dof) as i64);

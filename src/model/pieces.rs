@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use crate::body::Form;
-use crate::error::{Error, Kind, Result};
+use crate::error::{Error, Kind, Result, INDEX};
 use crate::linalg::Symmetric;
 use crate::mesh::{Connectivity, Mesh, Piece};
 use crate::model::contents::{Change, Model};
@@ -59,7 +59,7 @@ impl PiecesInput {
             for &dof in dofs {
                 let unknown = usize::try_from(dof).ok().and_then(|dof| met.get_mut(dof));
                 let outside = || {
-                    let what = format!("the dof is outside the {order} unknowns of the body");
+                    let what = format!("unknown {INDEX} is outside the {order} unknowns of the body");
                     Error::new(Kind::Io, what).index(dof)
                 };
                 *unknown.ok_or_else(outside)? = true;

@@ -20,7 +20,7 @@ use crate::platform::threads;
 use crate::progress::{Log, LogLevel, Phase, SetupPart, Watch};
 use crate::setup::memory_limit::check_memory;
 use crate::setup::operators::Operators;
-use crate::setup::plans::{plans, weights};
+use crate::setup::plans::{of_coordinates, plans, weights};
 use crate::setup::prepared::{Inverse, Prepared};
 use crate::setup::rounding::may_be_rounded;
 
@@ -109,7 +109,7 @@ impl Prepared {
             let plan = own[k].2.lock().ok().and_then(|mut plan| plan.take());
             let plan = plan.ok_or_else(|| Error::new(Kind::Internal, "a body was factorised twice"))?;
             let (p, matrix) = (own[k].0, own[k].3.as_ref());
-            let mut made = plan.execute().map_err(|e| e.body(p))?;
+            let mut made = plan.execute().map_err(|e| of_coordinates(&model.bodies[p].body, e).body(p))?;
             if let Some(matrix) = matrix.filter(|_| rounded[p]) {
                 let k = Multiple { matrix: Arc::clone(matrix), by: 1.0 / model.bodies[p].body.unit() };
                 made.inverse = made.inverse.rounded(&k, &slabs).map_err(|e| e.body(p))?;

@@ -7,6 +7,7 @@ use crate::body::{Body, GeneralizedInverse, HostMultiple, Modes, NullSpaceInput,
 use crate::error::{Error, Kind, Result};
 use crate::model::Model;
 use crate::progress::{Phase, SetupPart, Watch};
+use crate::setup::plans::of_coordinates;
 use crate::setup::prepared::{Inverse, Prepared};
 
 /// Fraction of a setup that is done once the functions of the host have been tried.
@@ -30,7 +31,8 @@ impl Prepared {
         };
         let tolerance = model.settings.null_space_tolerance;
         let make = |k: usize| {
-            host_inverse(&model.bodies[pending[k]].body, tolerance).map_err(|e| e.body(pending[k]))
+            let body = &model.bodies[pending[k]].body;
+            host_inverse(body, tolerance).map_err(|e| of_coordinates(body, e).body(pending[k]))
         };
         let mut made: Vec<Option<GeneralizedInverse>> = pending.iter().map(|_| None).collect();
         let ended = watch.every_body(&part, make, |k, inverse| made[k] = Some(inverse));

@@ -17,11 +17,21 @@ pub(super) fn plans(model: &Model, pending: &[usize], watch: &mut Watch) -> Resu
     let part = SetupPart::of(model.threads(), weights(model, pending), NULL_SPACES);
     let find = |k: usize| {
         let (p, body) = (pending[k], &model.bodies[pending[k]].body);
-        plan(body, tolerance, model.is_piece(p)).map_err(|e| e.body(p))
+        plan(body, tolerance, model.is_piece(p)).map_err(|e| of_coordinates(body, e).body(p))
     };
     let mut plans: Vec<Option<Plan>> = pending.iter().map(|_| None).collect();
     watch.every_body(&part, find, |k, plan| plans[k] = Some(plan))?;
     Ok(plans.into_iter().flatten().collect())
+}
+
+/// An error of a null space that is that of coordinates says so: they may be what is wrong.
+pub(super) fn of_coordinates(body: &Body, mut error: Error) -> Error {
+    let only = body.null_space.is_none() && body.coordinates.is_some();
+    if only && error.kind == Kind::NullSpace && !error.what.contains("of these coordinates") {
+        error.what =
+            format!("the coordinates, from which the null space comes, may be wrong: {}", error.what);
+    }
+    error
 }
 
 /// Entries of K of these bodies.

@@ -121,7 +121,7 @@ impl Findings {
 }
 
 /// Rows of a group but its leader, with the factor from the leader, in the order of the stack.
-fn redundant(model: &Model, duals: &Duals) -> Vec<(usize, f64)> {
+pub fn redundant(model: &Model, duals: &Duals) -> Vec<(usize, f64)> {
     let mut all = Vec::new();
     for ready in &duals.islands {
         let (scale, grouping) = (&ready.rows.scaling.scale, &ready.rows.scaling.grouping);

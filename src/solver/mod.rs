@@ -8,6 +8,7 @@ mod friction;
 mod history;
 mod joints;
 mod known;
+mod noticed;
 mod problem;
 mod products;
 mod results;

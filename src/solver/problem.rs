@@ -15,8 +15,9 @@ use crate::progress::{Host, Listener, Log, LogLevel, LogListener, Phase, PhaseRe
 use crate::setup::{Prepared, Work};
 use crate::solve::{solve_islands, Answer, Report, Solved};
 use crate::solver::decomposed::{answer_of_host, findings_of_host, numbers, of_host, solved};
-use crate::solver::findings::Findings;
+use crate::solver::findings::{redundant, Findings};
 use crate::solver::history::{Current, History};
+use crate::solver::noticed;
 use crate::solver::told::{begin, method, result};
 
 /// Bodies, rows and options of one contact problem, its factors, and the answer of its last solve. All that the host gives goes to
@@ -73,6 +74,7 @@ impl Problem {
     pub fn solve(&mut self) -> Result<Report> {
         self.watched("solve", self.model.settings.time_limit, |problem, watch| {
             begin(&watch.log, &problem.model, "solve")?;
+            noticed::data(&watch.log, &problem.model)?;
             problem.solve_watched(watch)
         })
     }
@@ -91,6 +93,7 @@ impl Problem {
         prepared.set_up_preconditioner(model, watch).map_err(told)?;
         watch.log.phases(&prepared.phases(model, &watch.phases), Phase::DualSolve as usize)?;
         method(&watch.log, model, prepared, start.name())?;
+        noticed::repeated(&watch.log, host, &redundant(model, prepared.done(model)?))?;
         let solving = Instant::now();
         let ends = solve_islands(model, prepared, &start, watch).map_err(told)?;
         let sum = |time: fn(&Solved) -> Duration| ends.iter().flatten().map(time).sum::<Duration>();

@@ -1,7 +1,7 @@
 //! Start values of the host for the next solve; states of a problem to come back to when a load step is rejected.
 
 use crate::constraints::RowKind;
-use crate::error::{Error, Kind, Result};
+use crate::error::{Error, Kind, Result, INDEX};
 use crate::linalg::vector::first_non_finite;
 use crate::platform::memory::copied;
 use crate::solver::history::{Current, State};
@@ -81,5 +81,5 @@ fn copy_of(load: Option<&Vec<f64>>) -> Result<Option<Vec<f64>>> {
 }
 
 fn no_state(number: usize) -> Error {
-    Error::argument("id", "no state has this number").index(number as i64)
+    Error::argument("id", format!("no state has the number {INDEX}")).index(number as i64)
 }

@@ -25,13 +25,16 @@ def every_link_of_the_book_leads_somewhere():
     with tempfile.TemporaryDirectory() as folder:
         pages, book = Path(folder).resolve() / "pages", Path(folder).resolve() / "book"
         pages.mkdir()
-        for name in stage.REFERENCE + ["feti_solve"]:
+        for name in stage.REFERENCE + ["feti_solve", "feti_gaps"]:
             (pages / f"{name}.md").write_text(f"# Title of {name}\n", encoding="utf-8")
+        listed = "# Title of functions\n\n[feti_solve](feti_solve.md) [feti_gaps](feti_gaps.md)\n"
+        (pages / "functions.md").write_text(listed, encoding="utf-8")
         assert stage.main(pages, book) == 0
         errors, _ = check_links.check(book, sorted(book.rglob("*.md")))
         assert not errors, errors
         summary = (book / "SUMMARY.md").read_text(encoding="utf-8")
         assert "- [Start](index.md)" in summary and "  - [feti_solve](reference/feti_solve.md)" in summary
+        assert summary.index("feti_solve.md") < summary.index("feti_gaps.md"), "the order of functions.md"
         assert "- [Title of statuses](reference/statuses.md)" in summary
 
 

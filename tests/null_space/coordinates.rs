@@ -90,3 +90,17 @@ fn coordinates_of_a_body_on_supports_are_not_doubted() {
         assert_eq!((facts.origin, facts.factors.unwrap().null_space), (Origin::Coordinates, 0));
     }
 }
+
+/// Nodes in one place rotate about nothing: of three motions two are left, and both fit.
+#[test]
+fn coordinates_that_lack_a_motion_are_named_as_what_may_be_wrong() {
+    let block = quads(12);
+    let step: Vec<f64> = (0..2).map(|k| block.size[k] / block.elements[k] as f64).collect();
+    let mut problem = placed(&block.stiffness(), &block, |node, k| -(block.grid(node)[k] as f64 * step[k]));
+    let error = problem.setup().unwrap_err();
+    assert_eq!((error.kind, error.place.body), (feti_contact::error::Kind::NullSpace, Some(0)));
+    assert!(
+        error.what.starts_with("the coordinates, from which the null space comes, may be wrong"),
+        "{error}"
+    );
+}

@@ -98,6 +98,13 @@ class Stage:
         file.write_text(text, encoding="utf-8")
 
 
+def in_order(pages):
+    """The functions that have a page, as functions.md lists them."""
+    listed = re.findall(r"\((feti_\w+)\.md\)", (pages / "functions.md").read_text(encoding="utf-8"))
+    names = [page.stem for page in sorted(pages.glob("feti_*.md"))]
+    return sorted(names, key=lambda name: listed.index(name) if name in listed else len(listed))
+
+
 def title(page):
     return markdown.headings(page.read_text(encoding="utf-8"))[0]
 
@@ -109,7 +116,7 @@ def main(pages, out):
         return 1
     shutil.rmtree(out, ignore_errors=True)
     shutil.copytree(pages, out / "reference", ignore=shutil.ignore_patterns("man"))
-    names = [page.stem for page in sorted(pages.glob("feti_*.md"))]
+    names = in_order(pages)
     stage = Stage(out, listed, {name: f"reference/{name}.md" for name in names})
     for path in listed:
         stage.chapter(path)

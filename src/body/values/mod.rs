@@ -1,7 +1,7 @@
 //! New values for a matrix whose pattern is there: where each of them goes, and the checks of the first time.
 
 use crate::body::stiffness::check_finite;
-use crate::body::storage::{may_differ, unsymmetric, SparseInput, Storage};
+use crate::body::storage::{may_differ, unsymmetric, Shape, SparseInput, Storage};
 use crate::error::{Error, Result};
 use crate::linalg::vector::first_non_finite;
 use crate::linalg::Symmetric;
@@ -142,7 +142,8 @@ impl Places {
         })?;
         let Some((row, col, difference, limit)) = worst else { return Ok(()) };
         let lonely = self.lonely(k, val, row)? || self.lonely(k, val, col)?;
-        Err(unsymmetric(lonely, (row, col), difference, limit))
+        let shape = if lonely { Shape::Lonely } else { Shape::Neither };
+        Err(unsymmetric((shape, k.order()), (row, col), difference, limit))
     }
 
     /// Whether the host's row has nothing beside its diagonal.

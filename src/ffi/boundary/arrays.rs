@@ -5,7 +5,7 @@ use std::ffi::{c_char, CStr, OsStr};
 use std::path::Path;
 use std::ptr::NonNull;
 
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, INDEX};
 use crate::solver::Borrowed;
 
 /// A size: not negative, and an array of as many 8-byte numbers can exist.
@@ -14,16 +14,21 @@ pub fn count(value: i64, name: &'static str) -> Result<usize> {
     match usize::try_from(value) {
         Ok(count) if count <= largest => Ok(count),
         Ok(_) => {
-            Err(Error::argument(name, format!("{value}: no array has so many entries")).value(value as f64))
+            let text = format!("{name} is {value}, no array has so many entries");
+            Err(Error::argument(name, text).value(value as f64))
         }
-        Err(_) => Err(Error::argument(name, format!("{value}: negative")).value(value as f64)),
+        Err(_) => Err(negative(value, name)),
     }
+}
+
+fn negative(value: i64, name: &'static str) -> Error {
+    Error::argument(name, format!("{name} is {value}, and must not be negative")).value(value as f64)
 }
 
 /// A number of a body or row, counted from 0.
 pub fn id(value: i64, name: &'static str) -> Result<usize> {
     usize::try_from(value)
-        .map_err(|_| Error::argument(name, format!("{name} is below the first number")).index(value))
+        .map_err(|_| Error::argument(name, format!("{name} {INDEX} is below the first number")).index(value))
 }
 
 /// A size that is known: "n is 5, the body has 7".
@@ -38,13 +43,15 @@ pub fn same(value: i64, expected: usize, name: &'static str, what: &str) -> Resu
 /// What a number stands for that must be one of a few; of another one the text says that it is `not`.
 pub fn meaning<T: Copy>(value: i32, name: &'static str, known: &[(i32, T)], not: &str) -> Result<T> {
     let found = known.iter().find(|(number, _)| *number == value).map(|(_, meaning)| *meaning);
-    found.ok_or_else(|| Error::argument(name, format!("{value} is {not}")).value(f64::from(value)))
+    found.ok_or_else(|| Error::argument(name, format!("{name} is {value}, {not}")).value(f64::from(value)))
 }
 
 /// Entry `k` of a list of `what`.
 pub fn entry_at<'a, T>(list: &'a [T], k: i64, what: &str) -> Result<&'a T> {
     let found = usize::try_from(k).ok().and_then(|k| list.get(k));
-    found.ok_or_else(|| Error::argument("k", format!("there are {} {what}", list.len())).index(k))
+    found.ok_or_else(|| {
+        Error::argument("k", format!("number {INDEX} is not there: there are {} {what}", list.len())).index(k)
+    })
 }
 
 /// Entries of a column-major array of `rows` x `columns` with leading dimension `ld`: ld (columns - 1) + rows.
@@ -224,7 +231,7 @@ pub unsafe fn file_path<'a>(from: *const c_char, name: &'static str) -> Result<&
 /// Room for a text: `cap` >= 0 characters, NULL only with 0.
 pub fn check_text_room(buf: *const c_char, cap: i64) -> Result<()> {
     if cap < 0 {
-        return Err(Error::argument("cap", format!("{cap}: negative")).value(cap as f64));
+        return Err(negative(cap, "cap"));
     }
     if buf.is_null() && cap > 0 {
         return Err(Error::argument("buf", "NULL with room for characters"));
@@ -239,7 +246,8 @@ pub fn check_text_room(buf: *const c_char, cap: i64) -> Result<()> {
 pub unsafe fn copy_text(text: &str, buf: *mut c_char, cap: i64) -> i64 {
     let room = usize::try_from(cap).unwrap_or(0);
     if !buf.is_null() && room > 0 {
-        let len = text.floor_char_boundary(room - 1);
+        let fits = |len: &usize| text.is_char_boundary(*len);
+        let len = (0..=text.len().min(room - 1)).rev().find(fits).unwrap_or(0);
         // SAFETY: len < cap characters and the NUL fit.
         unsafe {
             std::ptr::copy_nonoverlapping(text.as_ptr(), buf.cast(), len);

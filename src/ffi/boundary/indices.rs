@@ -70,7 +70,7 @@ unsafe fn positions<I: Index>(
     let mut positions = reserved(rows + 1, "an index array")?;
     positions.push(0);
     if given.first().is_some_and(|first| first.wide() != base) {
-        let text = format!("{name} starts with {}, with base {base} it starts with {base}", given[0].wide());
+        let text = format!("{name} starts with {}, and has to start with {base}", given[0].wide());
         return Err(at(Error::argument(name, text), 0).value(given[0].wide() as f64).limit(base as f64));
     }
     for (row, pair) in given.windows(2).enumerate() {

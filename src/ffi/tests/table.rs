@@ -68,6 +68,7 @@ pub fn statuses(p: *mut feti_problem) -> Vec<(&'static str, i32)> {
         feti_body_numbering_i32(0, 0, null(), 0);
         feti_body_numbering_i64(0, 0, null(), 0);
         feti_body_null_space(0, 0, 0, null(), 0, 0);
+        feti_body_no_null_space(0);
         feti_body_null_space_get(0, 0, null_mut(), null_mut(), 0);
         feti_body_coordinates(0, 0, 0, null(), null(), null(), 0);
         feti_body_coordinates_flags(0, 0);
@@ -113,6 +114,7 @@ pub fn statuses(p: *mut feti_problem) -> Vec<(&'static str, i32)> {
         feti_gaps(0, null_mut());
         feti_active(0, null_mut());
         feti_counts(null_mut(), null_mut(), null_mut(), null_mut());
+        feti_friction_counts(null_mut(), null_mut());
         feti_body_fixing(0, 0, null_mut());
         feti_body_fixing_set(0, 0, null());
         feti_body_kplus(0, 0, 0, null(), 0, null_mut(), 0);

@@ -265,7 +265,7 @@ fn what_the_calls_refuse_is_refused_with_its_section_and_place() {
         (of_section(b"COOF", 0, &numbers(&[0])), "no kind of rigid motions"),
         (of_section(b"FIXD", 0, &numbers(&[1, 2])), "outside the 2 unknowns"),
         (of_section(b"NUMB", 0, &numbers(&[2, 4, 4])), "another unknown of the body has this number"),
-        (of_section(b"NUMB", 0, &numbers(&[2, 4, u64::MAX])), "no array has such an entry"),
+        (of_section(b"NUMB", 0, &numbers(&[2, 4, u64::MAX])), "no array has an entry"),
         (of_section(b"NUMB", 0, &numbers(&[1, 4])), "has 2 unknowns, not 1"),
         (of_section(b"ROWS", 0, &rows(2, 0.0)), "there are 1 bodies"),
         (of_section(b"ROWS", 0, &rows(u64::MAX, 0.0)), "there are 1 bodies"),

@@ -143,3 +143,45 @@ fn a_function_that_fails_ends_the_call_at_any_line_and_the_next_solve_is_as_ever
         assert_eq!(problem.solve().unwrap().outcome, Outcome::Solved);
     }
 }
+
+/// The lines of a solve that begin so.
+fn lines_of(problem: &mut Problem, most: LogLevel, start: &str) -> Vec<String> {
+    let lines = listen(problem, most, 0, 0);
+    problem.solve().unwrap();
+    told(&lines).into_iter().map(|line| line.1).filter(|line| line.starts_with(start)).collect()
+}
+
+#[test]
+fn no_load_is_a_warning_where_nothing_else_moves_the_bodies() {
+    let mut problem = spring(false);
+    assert_eq!(lines_of(&mut problem, LogLevel::Result, "warning: "), Vec::<String>::new());
+    problem.set_load(0, &[0.0]).unwrap();
+    let warned = lines_of(&mut problem, LogLevel::Result, "warning: ");
+    assert!(warned.len() == 1 && warned[0].starts_with("warning: no body has a load"), "{warned:?}");
+    problem.set_rhs(RowKind::Inequality, 0, &[-1.0]).unwrap();
+    assert_eq!(lines_of(&mut problem, LogLevel::Phase, "warning: "), Vec::<String>::new());
+    assert_eq!(lines_of(&mut problem, LogLevel::Phase, "note: no"), ["note: no body has a load"]);
+}
+
+#[test]
+fn rows_that_overlap_repeat_or_never_close_are_told_with_the_first_or_the_worst_of_them() {
+    let mut problem = spring(false);
+    problem.set_i64("index_base", 1).unwrap();
+    assert_eq!(lines_of(&mut problem, LogLevel::Phase, "note: "), Vec::<String>::new());
+    let rows = RowsInput {
+        ptr: &[0, 1, 2, 2, 3, 4],
+        body: None,
+        dof: &[0, 0, 0, 0],
+        val: &[-1.0, 2.0, 1.0, 1.0],
+        rhs: Some(&[-0.25, 6.0, 0.5, f64::INFINITY, f64::INFINITY]),
+    };
+    problem.add_rows(RowKind::Inequality, rows).unwrap();
+    let expected = [
+        "note: 1 contact row with overlap (c < 0) before anything moves, most in row 2: c = -2.5e-1",
+        "note: 2 contact rows that can never close, for a gap of +infinity; the first is row 5",
+        "note: 1 contact row that can never close, for want of an entry; the first is row 4",
+        "note: rows that are multiples of other rows, with which they share one force: 1; the first is contact row 3",
+    ];
+    assert_eq!(lines_of(&mut problem, LogLevel::Phase, "note: "), expected);
+    assert_eq!(lines_of(&mut problem, LogLevel::Result, "note: "), Vec::<String>::new());
+}

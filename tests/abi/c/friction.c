@@ -37,6 +37,15 @@ static feti_problem *block(void)
     return problem;
 }
 
+static void check_counts(feti_problem *problem, int64_t nodes, int32_t dim, const char *what)
+{
+    int64_t found = -1;
+    int32_t rows = -1;
+    OK(feti_friction_counts(problem, &found, &rows));
+    CHECK(found == nodes && rows == dim, "%s: %d nodes of %d rows, expected %d of %d", what, (int)found, (int)rows, (int)nodes, (int)dim);
+    OK(feti_friction_counts(problem, NULL, NULL));
+}
+
 static void check_answer(feti_problem *problem, const double force[2], const double slip[2], int32_t state, const char *what)
 {
     double u[3], lambda[1], tangential[ALONG], slips[ALONG], reaction[3], all[3];
@@ -126,7 +135,9 @@ static void laws_compliances_and_references_change(void)
     OK(feti_friction_reference(problem, 0, 1, ALONG, s_old));
     OK(feti_solve(problem, NULL));
     check_answer(problem, moved, none, FETI_FRICTION_STICK, "s_old");
+    check_counts(problem, 1, ALONG, "a node in space");
     OK(feti_friction_clear(problem));
+    check_counts(problem, 0, 0, "after feti_friction_clear");
     EXPECT(FETI_ARGUMENT - 2, feti_friction_law(problem, 0, 1, &large, NULL));
     OK(feti_solve(problem, NULL));
     OK(feti_problem_destroy(&problem));
@@ -148,6 +159,7 @@ static void a_bound_acts_alone(void)
     MUST(feti_body_load(problem, 0, 1, &load));
     EXPECT(FETI_ARGUMENT - 4, feti_friction_add_i64(problem, 1, 1, normal, ptr, body, dof, &one, 1, &one, &one, NULL));
     OK(feti_friction_add_i64(problem, 1, 1, normal, ptr, body, dof, &one, 1, NULL, &one, &first));
+    check_counts(problem, 1, 1, "a node in the plane");
     CHECK(first == 0, "the first node has number %d", (int)first);
     OK(feti_solve(problem, NULL));
     OK(feti_multipliers(problem, FETI_TANGENTIAL, 1, &force));
@@ -177,8 +189,10 @@ static void a_problem_with_friction_is_written_and_read(void)
     OK(feti_friction_reference(problem, 0, 1, ALONG, s_old));
     OK(feti_problem_write(problem, path));
     MUST(feti_problem_create(&back));
+    check_counts(back, 0, 0, "an empty problem");
     OK(feti_problem_read(back, path));
     remove(path);
+    check_counts(back, 1, ALONG, "a problem that was read");
     OK(feti_solve(back, NULL));
     check_answer(back, held, none, FETI_FRICTION_STICK, "read");
     OK(feti_rows_clear(back, FETI_INEQUALITY));

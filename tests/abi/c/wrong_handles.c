@@ -29,6 +29,7 @@ static void every_function(int32_t expected, feti_problem *h)
     EXPECT(expected, feti_body_stiffness_i64(h, BLOCK, 2, ptr64, col64, BLOCK_VAL, 0, FETI_LOWER, FETI_COPY));
     EXPECT(expected, feti_body_stiffness_dense(h, SPRING, 1, SPRING_VAL, 1, FETI_FULL, FETI_COPY));
     EXPECT(expected, give_block_mode(h));
+    EXPECT(expected, feti_body_no_null_space(h, SPRING));
     EXPECT(expected, feti_body_null_space_get(h, BLOCK, 2, &i, x, 2));
     EXPECT(expected, feti_body_coordinates(h, SPRING, 1, 1, (int32_t[1]){ 1 }, (int32_t[1]){ 1 }, x, 1));
     EXPECT(expected, feti_body_coordinates_flags(h, SPRING, FETI_SOFT));
@@ -49,6 +50,7 @@ static void every_function(int32_t expected, feti_problem *h)
     EXPECT(expected, feti_gaps(h, 1, x));
     EXPECT(expected, feti_active(h, 1, state));
     EXPECT(expected, feti_counts(h, &i, NULL, NULL, NULL));
+    EXPECT(expected, feti_friction_counts(h, &i, NULL));
     EXPECT(expected, feti_body_fixing(h, BLOCK, 1, dof));
     EXPECT(expected, feti_body_fixing_set(h, BLOCK, 0, dof));
     EXPECT(expected, feti_body_kplus(h, BLOCK, 2, 1, BLOCK_LOAD, 2, x, 2));

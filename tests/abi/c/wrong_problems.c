@@ -41,11 +41,17 @@ static void indefinite_stiffness(feti_problem *p)
 
 static void singular_without_null_space(feti_problem *p)
 {
-    const int32_t found = or_solve(p, feti_body_null_space(p, BLOCK, 0, 2, NULL, 2, FETI_EXACT));
-    CHECK(found == FETI_NULL_SPACE || found == FETI_INDEFINITE, "status %d for a singular K said to be regular", (int)found);
-    refused(p, found, BLOCK, found, "a singular K said to be regular");
-    OK(give_block_mode(p));
-    check_small_answer(p, "a missing null space");
+    for (int short_form = 0; short_form <= 1; short_form++) {
+        const int32_t given = short_form ? feti_body_no_null_space(p, BLOCK) : feti_body_null_space(p, BLOCK, 0, 2, NULL, 2, FETI_EXACT);
+        const int32_t found = or_solve(p, given);
+        CHECK(found == FETI_NULL_SPACE || found == FETI_INDEFINITE, "status %d for a singular K said to be regular", (int)found);
+        refused(p, found, BLOCK, found, "a singular K said to be regular");
+        OK(give_block_mode(p));
+        check_small_answer(p, "a missing null space");
+    }
+    EXPECT(FETI_ARGUMENT - 2, feti_body_no_null_space(p, 7));
+    OK(feti_body_no_null_space(p, SPRING));
+    check_small_answer(p, "a spring said to be held");
 }
 
 static void null_space_that_is_none(feti_problem *p)

@@ -5,7 +5,7 @@ C     slips by (.9, 1.2) under (1.2, 1.6); a bound of 10 holds it.
       INCLUDE 'feti_contact_f77.inc'
       INTEGER IP, IERR, IB, I, IWORD(2), IPTR(4), ICOL(3), IROW(2)
       INTEGER IDOFN(1), NROW(1), IT(3), IBODT(2), IDOFT(2), IST(1)
-      INTEGER INFO(FTNINF), ICERT(FTNIVE), IDET(FTNIDT)
+      INTEGER INFO(FTNINF), ICERT(FTNIVE), IDET(FTNIDT), ND, IDIM
       DOUBLE PRECISION DWORD(2), A(3), ONE(2), F(3), COEF(1), BND(1)
       DOUBLE PRECISION RINFO(FTNRIN), RCERT(FTNRVE), RDET(FTNRDT)
       DOUBLE PRECISION U(3), RLAM(1), RLT(2), S(2), R(3), SOLD(2), C(1)
@@ -105,8 +105,14 @@ C     slips by (.9, 1.2) under (1.2, 1.6); a bound of 10 holds it.
       CALL FTFCMP(IP, 1, 1, C, IERR)
       CALL OK(IERR, 'FTFCMP')
       CALL RUBBED(IP, 1.5D0, 2D0, 'held by a spring')
+      CALL FTFCNT(IP, ND, IDIM, IERR)
+      CALL OK(IERR, 'FTFCNT')
+      CALL HOLDS(ND .EQ. 1 .AND. IDIM .EQ. 2, 'FTFCNT')
       CALL FTFCLR(IP, IERR)
       CALL OK(IERR, 'FTFCLR')
+      CALL FTFCNT(IP, ND, IDIM, IERR)
+      CALL OK(IERR, 'FTFCNT')
+      CALL HOLDS(ND .EQ. 0 .AND. IDIM .EQ. 0, 'FTFCNT without nodes')
       CALL FTFADC(IP, 1, 2, NROW, IT, IDOFT, ONE, COEF, BND, I, IERR)
       CALL OK(IERR, 'FTFADC')
       CALL RUBBED(IP, 3D0, 4D0, 'held by another node')

@@ -29,6 +29,16 @@ contains
     call require(first == 1, 'nodes are not numbered from 1')
   end subroutine
 
+  subroutine count_nodes(p, nodes, dim, text)
+    type(feti_problem), intent(in) :: p
+    integer, intent(in) :: nodes, dim
+    character(len=*), intent(in) :: text
+    integer :: found(2)
+
+    call feti_friction_counts(p, found(1), found(2))
+    call require(all(found == [nodes, dim]), text//': another number of nodes or tangential rows')
+  end subroutine
+
   subroutine compare(p, force, slip, state, text)
     type(feti_problem), intent(in) :: p
     real(dp), intent(in) :: force(2), slip(2)
@@ -109,7 +119,9 @@ contains
     call feti_friction_reference(p, 1, reshape([0.5_dp, 1.0_dp], [2, 1]))
     call feti_solve(p)
     call compare(p, [2.0_dp, 2.0_dp], none, FETI_FRICTION_STICK, 's_old')
+    call count_nodes(p, 1, 2, 'in space')
     call feti_friction_clear(p)
+    call count_nodes(p, 0, 0, 'cleared')
     call feti_friction_law(p, 1, [0.5_dp], stat=status)
     call require(status == FETI_ARGUMENT - 2, 'a node that is not there')
     call feti_problem_destroy(p)
@@ -126,6 +138,7 @@ contains
     call feti_body_stiffness(p, 1, reshape([2.0_dp], [1, 1]), FETI_FULL)
     call feti_body_load(p, 1, [3.0_dp])
     call feti_friction_add(p, [0_int64], [1_int64, 2_int64], [1_int64], [1.0_dp], bound=[1.0_dp])
+    call count_nodes(p, 1, 1, 'in the plane')
     call feti_solve(p)
     call feti_displacement(p, 1, u)
     call feti_friction_slips(p, slip)

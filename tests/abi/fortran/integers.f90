@@ -11,7 +11,7 @@ program integers
   integer :: spring, block, first, stat, state(1), lines
   integer(int32) :: short(1)
   integer(int64) :: long(1)
-  real(dp) :: u(2), r(2), none(1, 0)
+  real(dp) :: u(2), r(2)
   character(len=200) :: text
 
   call feti_problem_create(p)
@@ -20,7 +20,7 @@ program integers
   call feti_body_add(p, 2, block)
   call feti_body_stiffness(p, spring, [1, 2], [1], [1000.0_dp], FETI_LOWER)
   call feti_body_stiffness(p, block, [1, 2, 4], [1, 1, 2], [4000.0_dp, -4000.0_dp, 4000.0_dp], FETI_LOWER)
-  call feti_body_null_space(p, spring, none, FETI_EXACT)
+  call feti_body_no_null_space(p, spring)
   call feti_body_coordinates(p, block, node, dir, x)
   call feti_body_load(p, block, [0.0_dp, -100.0_dp])
   call feti_rows_add(p, FETI_INEQUALITY, [1, 3], [spring, block], [1, 1], [1.0_dp, -1.0_dp], [0.5_dp], first)

@@ -18,6 +18,7 @@ use std::fmt::Write;
 
 use crate::doc::Doc;
 use crate::model::{Api, Argument, Callback, Constant, Function, Struct, Type};
+use crate::order::{self, Group};
 
 pub const MODULE: &str = "feti_contact_c";
 /// Lines of declarations and comments stay below Fortran's limit of 132.
@@ -34,26 +35,47 @@ pub fn print(api: &Api) -> String {
     for (name, value) in api.version_constants() {
         let _ = writeln!(out, "  integer(c_int32_t), parameter, public :: {name} = {value}_c_int32_t");
     }
-    out.push('\n');
-    for constant in &api.constants {
-        write_constant(&mut out, constant);
+    for group in order::groups(api) {
+        write_group(&mut out, api, &group);
     }
-    for structure in &api.structs {
-        write_type(&mut out, structure);
+    let _ = writeln!(out, "\nend module {MODULE}");
+    out
+}
+
+fn write_group(out: &mut String, api: &Api, group: &Group) {
+    let _ = writeln!(
+        out,
+        "\n  ! {}\n  ! {}\n  ! {}\n",
+        group.heading,
+        "=".repeat(group.heading.len()),
+        group.says
+    );
+    for constant in &group.constants {
+        write_constant(out, constant);
     }
-    out.push('\n');
-    for function in &api.functions {
+    for structure in &group.structs {
+        write_type(out, structure);
+    }
+    for callback in &group.callbacks {
+        write_callback(out, api, callback);
+    }
+    if group.functions.is_empty() {
+        return;
+    }
+    let others = group.constants.len()
+        + group.callbacks.len()
+        + group.structs.iter().filter(|s| s.fields.is_some()).count();
+    if others > 0 {
+        out.push('\n');
+    }
+    for function in &group.functions {
         let _ = writeln!(out, "  public :: {}", function.name);
     }
-    for callback in &api.callbacks {
-        write_callback(&mut out, api, callback);
-    }
     out.push_str("\n  interface\n");
-    for function in &api.functions {
-        write_function(&mut out, api, function);
+    for function in &group.functions {
+        write_function(out, api, function);
     }
-    let _ = writeln!(out, "\n  end interface\n\nend module {MODULE}");
-    out
+    out.push_str("\n  end interface\n");
 }
 
 fn write_constant(out: &mut String, constant: &Constant) {

@@ -5,6 +5,8 @@
 //! `--pages DIR` writes reference pages there ([`pages`], with the calls of FORTRAN 77, [`f77`]) and manual pages below DIR/man ([`man`]).
 //! `--root` is the folder of the library's Cargo.toml, `--source` defaults to its src/ffi.
 //!
+//! All of them have the order of the job ([`order`]).
+//!
 //! Every exported function carries a table `| argument | in/out | shape | rule |` in its documentation ([`doc`]).
 
 use std::fs;
@@ -22,6 +24,8 @@ mod faults;
 mod fortran;
 mod man;
 mod model;
+mod order;
+mod overview;
 mod pages;
 mod parse;
 mod statuses;
@@ -43,7 +47,7 @@ struct Options {
 }
 
 fn main() -> ExitCode {
-    let outcome = options(std::env::args().skip(1)).and_then(|options| run(&options));
+    let outcome = options(std::env::args().skip(1)).and_then(|options| run(&options, &order::SECTIONS));
     if let Err(message) = outcome {
         eprintln!("feti-bindgen: {message}");
         return ExitCode::FAILURE;
@@ -75,10 +79,12 @@ fn options(mut arguments: impl Iterator<Item = String>) -> Result<Options, Strin
     Ok(Options { check, calls, trace, pages, root, source })
 }
 
-fn run(options: &Options) -> Result<(), String> {
+/// `sections` have to list what the sources export.
+fn run(options: &Options, sections: &[order::Section]) -> Result<(), String> {
     let manifest = options.root.join("Cargo.toml");
     let version = package_version(&read(&manifest)?).ok_or(format!("{}: no version", manifest.display()))?;
     let sources = sources(&options.source)?;
+    order::check(&checked(&sources, version)?, sections)?;
     if let Some(path) = &options.calls {
         return write(path, &calls::print(&checked(&sources, version)?)?);
     }

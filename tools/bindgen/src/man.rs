@@ -4,7 +4,8 @@ use std::fmt::Write;
 
 use crate::c_types::prototype;
 use crate::model::{Api, Function};
-use crate::pages::{by_subject, direction, summary, Faces};
+use crate::order;
+use crate::pages::{direction, summary, Faces};
 use crate::statuses::{self, results};
 
 /// (file name, text) of every page, below `man3` and `man7`.
@@ -87,9 +88,9 @@ fn overview(api: &Api) -> String {
          Every function but those that never fail returns a status: 0 for success, above 0 for a usable but incomplete \
          answer, below 0 for a failure, whose text feti_last_error tells.\nLink with \\-lfeti_contact.\n.SH FUNCTIONS\n",
     );
-    for (subject, functions) in by_subject(api) {
-        let _ = writeln!(out, ".SS {}", text(&subject));
-        for function in functions {
+    for group in order::groups(api).iter().filter(|group| !group.functions.is_empty()) {
+        let _ = write!(out, ".SS {}\n{}\n", text(group.heading), text(group.says));
+        for function in &group.functions {
             let _ = write!(out, ".TP\n.BR {} (3)\n{}\n", function.name, text(&summary(&function.doc)));
         }
     }

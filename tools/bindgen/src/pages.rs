@@ -8,6 +8,7 @@ use crate::c_types::{declared, prototype};
 use crate::doc::{Direction, Doc};
 use crate::fortran;
 use crate::model::{Api, Argument, Function};
+use crate::order;
 use crate::statuses;
 use crate::typed::Signature;
 
@@ -31,56 +32,16 @@ pub fn print(api: &Api, faces: &Faces) -> Vec<(String, String)> {
     pages
 }
 
-/// Functions by subjects, with their first sentences.
+/// Functions by sections, with their first sentences.
 fn list(api: &Api) -> String {
     let mut out = "# Functions\n".to_string();
-    for (subject, functions) in by_subject(api) {
-        let _ = write!(out, "\n## {subject}\n\n| function | does |\n|---|---|\n");
-        for function in functions {
+    for group in order::groups(api).iter().filter(|group| !group.functions.is_empty()) {
+        let _ = write!(out, "\n## {}\n\n{}\n\n| function | does |\n|---|---|\n", group.heading, group.says);
+        for function in &group.functions {
             let _ = writeln!(out, "| [{0}]({0}.md) | {1} |", function.name, cell(&summary(&function.doc)));
         }
     }
     out
-}
-
-/// Source files with what their functions are about, in the order in which a host meets them.
-const SUBJECTS: [(&str, &str); 22] = [
-    ("problem", "Problems"),
-    ("body", "Bodies"),
-    ("stiffness", "Stiffness matrices"),
-    ("values", "New values of stiffness matrices"),
-    ("operator", "Bodies by functions of the host"),
-    ("null_space", "Null spaces"),
-    ("numbering", "Numbers of the host"),
-    ("rows", "Rows"),
-    ("friction", "Friction"),
-    ("options", "Options"),
-    ("solve", "Setup, solution, certificate"),
-    ("results", "Results"),
-    ("state", "Starts and saved states"),
-    ("diagnosis", "Diagnosis"),
-    ("error_store", "Errors"),
-    ("status", "Statuses and version"),
-    ("progress", "Progress and cancelling"),
-    ("log", "Log"),
-    ("file", "Files"),
-    ("body_info", "Facts on bodies"),
-    ("phases", "Time and memory"),
-    ("validation", "Operators of the method"),
-];
-
-/// Functions grouped by source file: the subjects above, then files that are not among them by their names.
-pub fn by_subject(api: &Api) -> Vec<(String, Vec<&Function>)> {
-    let stem = |function: &Function| {
-        function.source.rsplit('/').next().unwrap_or_default().trim_end_matches(".rs").to_string()
-    };
-    let place = |stem: &str| SUBJECTS.iter().position(|(file, _)| *file == stem).unwrap_or(SUBJECTS.len());
-    let mut groups: BTreeMap<(usize, String), Vec<&Function>> = BTreeMap::new();
-    for function in &api.functions {
-        groups.entry((place(&stem(function)), stem(function))).or_default().push(function);
-    }
-    let title = |k: usize, stem: String| SUBJECTS.get(k).map_or(stem, |(_, title)| title.to_string());
-    groups.into_iter().map(|((k, stem), functions)| (title(k, stem), functions)).collect()
 }
 
 /// The first paragraph.
@@ -205,7 +166,8 @@ fn cell(text: &str) -> String {
 
 fn types(api: &Api) -> String {
     let mut out = "# Structs, functions of the host, constants\n\n## Structs\n".to_string();
-    for structure in &api.structs {
+    let groups = order::groups(api);
+    for structure in groups.iter().flat_map(|group| &group.structs) {
         let _ = write!(out, "\n### {}\n\n{}\n", structure.name, summary(&structure.doc));
         let Some(fields) = &structure.fields else { continue };
         out.push_str("\n| member | meaning |\n|---|---|\n");
@@ -215,7 +177,7 @@ fn types(api: &Api) -> String {
         }
     }
     out.push_str("\n## Functions of the host\n");
-    for callback in &api.callbacks {
+    for callback in groups.iter().flat_map(|group| &group.callbacks) {
         let [before, _] = callback.doc.paragraphs();
         let arguments: Vec<_> = callback.arguments.iter().map(|a| declared(&a.ty, &a.name)).collect();
         let _ = write!(out, "\n### {}\n\n{}\n\n```c\n", callback.name, before.join("\n\n"));
@@ -223,7 +185,8 @@ fn types(api: &Api) -> String {
         write_table(&mut out, &callback.arguments, str::to_string);
     }
     out.push_str("\n## Constants\n\n| name | value | meaning |\n|---|---|---|\n");
-    for constant in api.constants.iter().filter(|constant| constant.source != statuses::FILE) {
+    let constants = groups.iter().flat_map(|group| &group.constants);
+    for constant in constants.filter(|constant| constant.source != statuses::FILE) {
         let meaning = cell(&summary(&constant.doc));
         let _ = writeln!(out, "| `{}` | {} | {meaning} |", constant.name, constant.value);
     }
@@ -292,10 +255,10 @@ mod tests {
     }
 
     #[test]
-    fn functions_are_listed_by_subject_and_constants_without_statuses() {
+    fn functions_are_listed_by_section_and_constants_without_statuses() {
         let pages = pages();
         assert!(
-            pages["functions.md"].contains("## Rows\n") && pages["functions.md"].contains("(feti_add.md)")
+            pages["functions.md"].contains("## Other\n") && pages["functions.md"].contains("(feti_add.md)")
         );
         assert!(pages["types.md"].contains("| `FETI_EXACT` | 0 | Nothing. |"));
         assert!(!pages["types.md"].contains("FETI_BUSY"));

@@ -1,6 +1,7 @@
 //! The rules of the generator, each on the smallest source that shows it.
 
 use crate::check::first_difference;
+use crate::order::Section;
 use crate::{generate, options, package_version, run};
 
 const VERSION: [u32; 3] = [1, 2, 3];
@@ -237,7 +238,9 @@ fn check_passes_after_writing_and_fails_after_an_edit() {
     std::fs::write(source.join("a.rs"), with_argument("i32", "in", "scalar", "")).unwrap();
     let call = |check: &[&str]| {
         let root = ["--root", root.to_str().unwrap()];
-        run(&options(root.iter().chain(check).map(|s| s.to_string())).unwrap())
+        let sections =
+            [Section { heading: "All", says: "", names: &["feti_problem", "feti_info", "feti_do"] }];
+        run(&options(root.iter().chain(check).map(|s| s.to_string())).unwrap(), &sections)
     };
     assert!(call(&["--check"]).unwrap_err().contains("include/feti_contact.h:1:"));
     call(&[]).unwrap();
@@ -247,4 +250,33 @@ fn check_passes_after_writing_and_fails_after_an_edit() {
     assert!(message.contains("include/feti_contact.h:") && message.contains("int64_t x"), "{message}");
     assert!(message.contains("include/fortran/feti_contact_c.f90:"), "{message}");
     std::fs::remove_dir_all(&root).unwrap();
+}
+
+#[test]
+fn the_header_shows_problem_rules_example_and_contents_before_the_declarations() {
+    let functions = ["feti_solve", "feti_body_stiffness_i64", "feti_body_stiffness_i32", "feti_body_add"]
+        .map(|name| format!("#[no_mangle] pub extern \"C\" fn {name}() -> i32 {{ 0 }}"));
+    let [header, module] = header_and_module(&(HANDLE.to_string() + &functions.join("\n"))).unwrap();
+    let (before, declarations) = header.split_once("#include <stdint.h>").unwrap();
+    for line in
+        [" * @code\n", " * int main(void)\n", " * @endcode\n", " * Bodies: Give each body", "B u <= c"]
+    {
+        assert!(before.contains(line), "no `{line}` in\n{before}");
+    }
+    for [text, call] in [[declarations, "("], [&module, "() bind(C"]] {
+        let places = [
+            "Problem\n",
+            "Bodies\n",
+            "feti_body_add",
+            "stiffness_i32",
+            "stiffness_i64",
+            "Solve\n",
+            "feti_solve",
+        ]
+        .map(|name| {
+            let wanted = if name.ends_with('\n') { name.to_string() } else { format!("{name}{call}") };
+            text.find(&wanted).unwrap_or_else(|| panic!("no `{wanted}` in\n{text}"))
+        });
+        assert!(places.is_sorted(), "{places:?} in\n{text}");
+    }
 }

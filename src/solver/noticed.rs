@@ -1,0 +1,81 @@
+//! What a log tells about the data of a solve that the host may not have meant.
+
+use crate::constraints::RowSet;
+use crate::error::Result;
+use crate::model::Model;
+use crate::progress::{Log, LogLevel};
+
+/// No load, contact rows that overlap where nothing has moved, contact rows that never close.
+pub fn data(log: &Log, model: &Model) -> Result<()> {
+    let number = |row: usize| row as i64 + model.settings.index_base;
+    let contact = &model.contact;
+    let overlap: Vec<usize> = (0..contact.len()).filter(|&i| contact.rhs[i] < 0.0).collect();
+    load(log, model, !overlap.is_empty())?;
+    if let Some(deepest) = overlap.iter().copied().min_by(|&i, &j| contact.rhs[i].total_cmp(&contact.rhs[j]))
+    {
+        let (gap, count) = (contact.rhs[deepest], counted(overlap.len()));
+        log.say(LogLevel::Phase, || {
+            format!(
+                "note: {count} with overlap (c < 0) before anything moves, most in row {}: c = {gap:.1e}",
+                number(deepest)
+            )
+        })?;
+    }
+    for (never, why) in [
+        (rows(contact, |i| !contact.is_finite(i)), "for a gap of +infinity"),
+        (rows(contact, |i| contact.is_finite(i) && has_no_entry(contact, i)), "for want of an entry"),
+    ] {
+        if let Some(first) = never.first() {
+            let count = counted(never.len());
+            log.say(LogLevel::Phase, || {
+                format!("note: {count} that can never close, {why}; the first is row {}", number(*first))
+            })?;
+        }
+    }
+    Ok(())
+}
+
+/// `redundant`: rows of the stack, contact rows first, that are multiples of other rows, with their multiples.
+pub fn repeated(log: &Log, model: &Model, redundant: &[(usize, f64)]) -> Result<()> {
+    let contact = model.contact.len();
+    let Some(&(first, _)) = redundant.iter().find(|(row, _)| *row < contact + model.equalities.len()) else {
+        return Ok(());
+    };
+    let (kind, row) = if first < contact { ("contact", first) } else { ("equality", first - contact) };
+    let count = redundant.iter().filter(|(row, _)| *row < contact + model.equalities.len()).count();
+    log.say(LogLevel::Phase, || {
+        format!(
+            "note: rows that are multiples of other rows, with which they share one force: {count}; the first is {kind} row {}",
+            row as i64 + model.settings.index_base
+        )
+    })
+}
+
+/// No load at all: a warning where nothing else moves the bodies either.
+fn load(log: &Log, model: &Model, overlaps: bool) -> Result<()> {
+    let is_zero = |values: &[f64]| values.iter().all(|value| *value == 0.0);
+    if model.bodies.iter().filter_map(|given| given.body.load.as_deref()).any(|load| !is_zero(load)) {
+        return Ok(());
+    }
+    if overlaps || !is_zero(&model.equalities.rhs) || !is_zero(&model.friction.rows.rhs) {
+        return log.say(LogLevel::Phase, || "note: no body has a load".to_owned());
+    }
+    let what = "warning: no body has a load, and neither gaps nor right-hand sides move the bodies: displacements are zero";
+    log.say(LogLevel::Result, || what.to_owned())
+}
+
+fn rows(contact: &RowSet, is_one: impl Fn(usize) -> bool) -> Vec<usize> {
+    (0..contact.len()).filter(|&i| is_one(i)).collect()
+}
+
+/// Nothing but zeros moves its gap, nor does its own force.
+fn has_no_entry(contact: &RowSet, i: usize) -> bool {
+    contact.rhs[i] >= 0.0 && contact.matrix.row(i).all(|(_, value)| value == 0.0)
+}
+
+fn counted(rows: usize) -> String {
+    match rows {
+        1 => "1 contact row".to_owned(),
+        _ => format!("{rows} contact rows"),
+    }
+}
