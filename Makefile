@@ -6,7 +6,8 @@
 # make coverage  lines of src/ffi that the tests run              make overhead  what the C ABI costs on the smallest problem
 # make mutants   wrong changes of src, one after the other, that the Rust tests have to notice (about half an hour);
 #                CHANGES="17 52" picks some, CHANGES=--places tells where they are
-# make counts    applications of F against a linear solve, deck by deck (some minutes); DECKS="slab two" picks some
+# make counts    applications of F against a linear solve, deck by deck (some minutes); DECKS="slab two" picks some,
+#                DECKS=sequence compares friction with sequences of problems of Tresca (5 minutes)
 # make bench     time and memory against CHOLMOD, faer, Clarabel and OSQP (some 20 minutes, 11 GB); DECKS="4k 40k" picks some
 # make scaling   time and memory as unknowns, contact rows, bodies, pieces, threads grow: pictures in docs (some minutes);
 #                SWEEPS="rows cut" picks some, a number among them leaves out decks of more unknowns
@@ -14,6 +15,7 @@
 # make paper     the paper's problems by its own method and by the default: table, pictures (seconds)
 # make docs      the book, manual pages, pages of the Fortran modules and of the crate: build/docs/index.html (some minutes)
 # make abi       writes the baseline of the binary interface (abi)        make uninstall  removes what install has put
+# make man       the manual pages alone                                make deb        Debian packages in build/deb (some minutes)
 # make packaging cargo cinstall against make install, and an installation without network (some minutes, the first time many)
 # bench, scaling, demo, docs and test install the Debian packages they miss (tools/setup.sh).
 PREFIX  ?= /usr/local
@@ -26,10 +28,11 @@ endif
 CFLAGS  ?= -O2 -Wall -Wextra
 FCFLAGS ?= -O2 -Wall
 
-RELEASE   := $(or $(CARGO_TARGET_DIR),target)/release
+RELEASE   := $(or $(CARGO_TARGET_DIR),target)/$(if $(CARGO_BUILD_TARGET),$(CARGO_BUILD_TARGET)/)release
 STAGE     := $(CURDIR)/build/stage
 
 .PHONY: all lib data setup demo battery bits test metis fuzz sanitize loom coverage mutants overhead counts bench growth scaling paper docs
+.PHONY: man deb
 .PHONY: abi licences packaging stage install uninstall lint fmt clean
 .DELETE_ON_ERROR:
 all: lib
@@ -85,7 +88,12 @@ build/tools/bin/cargo-cinstall:
 
 packaging: build/tools/bin/cargo-cinstall
 	sh tests/packaging/offline.sh $(CURDIR) $(CURDIR)/build/offline
+	sh tests/packaging/oldest.sh $(CURDIR) $(CURDIR)/build/oldest
 	sh tests/packaging/cargo_c.sh $(CURDIR) $(CURDIR)/build/tools $(CURDIR)/build/cargo_c
+
+# Debian packages in build/deb: the library, its development files, its documents.
+deb:
+	tools/deb.sh build/deb
 
 # The table of docs/licences.md and LICENSE-THIRD-PARTY, from Cargo.lock and the sources of the crates.
 licences:
@@ -194,6 +202,13 @@ $(TOOLS)/ford/installed: docs/book/requirements.txt
 	python3 -m venv --clear $(@D)
 	$(@D)/bin/pip install --quiet --requirement $<
 	touch $@
+
+# Manual pages alone, in build/docs/man; needs nothing but the crates.
+man:
+	rm -rf $(DOCS)/man
+	$(CARGO) run --release --locked --quiet -p feti-bindgen -- --pages $(DOCS)/reference
+	mv $(DOCS)/reference/man $(DOCS)/man
+	rm -rf $(DOCS)/reference
 
 docs: $(TOOLS)/mdbook-$(MDBOOK) $(TOOLS)/ford/installed
 	rm -rf $(DOCS)

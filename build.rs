@@ -1,13 +1,19 @@
-//! Names the shared library for the loader and marks it for safe use from a host that loads and unloads it.
+//! Sets the cfg `avx512` where the compiler knows these instructions (Rust 1.89), names the shared library for the loader and marks it
+//! for safe use from a host that loads and unloads it.
 //!
 //! soname libfeti_contact.so.0.MINOR before 1.0 (every minor version may change the interface), libfeti_contact.so.MAJOR
 //! from then on. `nodelete`: threads of the pool outlive a dlclose. `noexecstack`: the stack stays non-executable.
 
 use std::env;
+use std::process::Command;
 
 fn main() {
     println!("cargo:rerun-if-changed=build.rs");
     let variable = |name: &str| env::var(name).unwrap_or_default();
+    println!("cargo:rustc-check-cfg=cfg(avx512)");
+    if variable("CARGO_CFG_TARGET_ARCH") == "x86_64" && minor_version(&variable("RUSTC")) >= 89 {
+        println!("cargo:rustc-cfg=avx512");
+    }
     if variable("CARGO_CFG_TARGET_OS") != "linux" {
         return;
     }
@@ -22,4 +28,11 @@ fn main() {
     let major = variable("CARGO_PKG_VERSION_MAJOR");
     let version = if major == "0" { format!("0.{}", variable("CARGO_PKG_VERSION_MINOR")) } else { major };
     println!("cargo:rustc-cdylib-link-arg=-Wl,-soname,libfeti_contact.so.{version}");
+}
+
+/// 89 of `rustc 1.89.0 (...)`, 0 of what says no version.
+fn minor_version(rustc: &str) -> u32 {
+    let Ok(output) = Command::new(rustc).arg("--version").output() else { return 0 };
+    let text = String::from_utf8_lossy(&output.stdout);
+    text.split('.').nth(1).and_then(|minor| minor.parse().ok()).unwrap_or(0)
 }

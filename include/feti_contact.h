@@ -9,16 +9,18 @@
  *
  *   minimise 1/2 u'K u - f'u  over all u with  B u <= c  and  H u = h
  *
- * K is the stiffness of several bodies, floating ones included. The forces of the rows are lambda >= 0
- * of B u <= c and mu of H u = h: K u = f - B'lambda - H'mu.
+ * K is the stiffness of several bodies, which may float. The forces of the rows are lambda >= 0 for
+ * B u <= c and mu for H u = h: K u = f - B'lambda - H'mu.
  *
  * Functions return a status: 0 for success, above 0 for an answer that is usable but incomplete, below
- * 0 for a failure, whose text feti_last_error tells; exceptions are feti_version..., feti_status_...,
- * feti_option_count and feti_last_error. Bodies, unknowns and rows count from 0; arrays of indices
- * count from their argument base. Matrices by rows are compressed sparse rows, dense ones column-major.
- * What is handed over is copied, unless FETI_BORROW says otherwise. The library prints nothing. A
- * problem serves one call at a time, different problems may be used by different threads. Units are the
- * host's: any that fit together.
+ * 0 for a failure, whose text feti_last_error returns. Exceptions are feti_version..., feti_status_...,
+ * feti_option_count and feti_last_error. In the descriptions `FETI_STATE if ...` means that the function
+ * returns FETI_STATE in that case.
+ *
+ * Bodies, unknowns and rows count from 0; arrays of indices count from their argument `base`. Sparse
+ * matrices are stored as compressed sparse rows, dense matrices by columns. The library copies what it
+ * is given, except with FETI_BORROW. It prints nothing. Only one call at a time may use a problem;
+ * several threads may use different problems. Any consistent set of units will do.
  *
  * Example: a block of two unknowns and stiffness 4000 N/mm floats 0.5 mm before a wall, and a force of
  * 100 N on its rear pushes it there. It prints `force 100 N, rear 0.525 mm, front 0.5 mm`.
@@ -49,9 +51,9 @@
  * }
  * @endcode
  *
- * Contents, in the order of the job:
+ * Contents, in the order of use:
  *
- * Problem: Begin and end a problem, to which all else belongs.
+ * Problem: Create and destroy a problem, which owns all other data.
  *     feti_problem_create feti_problem_destroy
  *
  * Bodies: Give each body its stiffness matrix and its load.
@@ -59,11 +61,11 @@
  *     feti_body_stiffness_split_i64 feti_body_stiffness_dense feti_body_load feti_body_numbering_i32
  *     feti_body_numbering_i64
  *
- * Null spaces: Say which motions a matrix does not resist; never said, the library finds them.
+ * Null spaces: Give the motions that a matrix does not resist; otherwise the library finds them.
  *     feti_body_coordinates feti_body_coordinates_flags feti_body_null_space feti_body_no_null_space
  *     feti_body_null_space_get feti_body_fixing_set feti_body_fixing
  *
- * Bodies by elements: Give the elements of a large body; the library adds them up and cuts the body into pieces.
+ * Bodies by elements: Give the elements of a large body; the library assembles them and cuts the body into pieces.
  *     feti_body_mesh_i32 feti_body_mesh_i64 feti_body_element feti_body_elements
  *     feti_body_elements_size feti_body_held_forces feti_body_pieces
  *
@@ -81,43 +83,43 @@
  *     feti_set_f64 feti_set_i64 feti_set_str feti_set_text feti_get_f64 feti_get_i64 feti_get_str
  *     feti_option_count feti_option_at
  *
- * Solve: Compute the answer, and learn how exact it is.
+ * Solve: Compute the answer and its accuracy.
  *     feti_setup feti_solve feti_cancel
  *
  * Results: Read displacements, forces, gaps and states.
  *     feti_displacement feti_multipliers feti_gaps feti_active feti_reaction feti_amplitudes
  *     feti_friction_slips feti_friction_states
  *
- * Load steps: Go on with other loads and gaps; friction remembers where it slipped to.
+ * Load steps: Continue with other loads and gaps; friction starts from the slips of the last step.
  *     feti_rows_rhs feti_friction_commit feti_friction_reference feti_start_from
  *
- * Newton's method: Give new matrices and new rows to a problem that is there.
+ * Newton's method: Give new matrices and new rows to an existing problem.
  *     feti_body_values feti_body_values_split feti_body_values_dense feti_rows_clear
  *     feti_friction_clear
  *
- * Saved states: Go back to a step that is saved.
+ * Saved states: Save a step and go back to it.
  *     feti_state_save feti_state_restore feti_state_drop
  *
- * Diagnosis: Learn why there is no answer, and what is odd about the problem.
+ * Diagnosis: Find out why there is no answer, and what is unusual about the problem.
  *     feti_diagnosis feti_diagnosis_motion feti_diagnosis_rows feti_diagnosis_dependent
  *     feti_diagnosis_untouched feti_diagnosis_undetermined feti_diagnosis_undetermined_motion
  *
- * Facts on bodies: Learn what a body and its factor cost.
+ * Facts on bodies: Read size, memory and null space of a body, and the time of each phase.
  *     feti_body_info feti_body_components feti_phase_count feti_phase_at
  *
- * Progress and log: Hear of the course of a setup or a solve.
+ * Progress and log: Follow the progress of a setup or a solve.
  *     feti_on_progress feti_on_log
  *
- * Validation: Check an answer, also of another program; multiply by the operators of the method.
+ * Validation: Check an answer of this or another program; multiply by the operators of the method.
  *     feti_check feti_check_friction feti_body_kplus feti_dual_apply feti_dual_rhs
  *
  * Files: Write a problem to a file and read it.
  *     feti_problem_write feti_problem_read
  *
- * Errors: Learn what went wrong, where and by how much.
+ * Errors: Read what went wrong, where and by how much.
  *     feti_last_error feti_last_error_detail feti_problem_error
  *
- * Statuses and version: What functions return, in words; the version of the library.
+ * Statuses and version: Names and texts of return values; the version of the library.
  *     feti_status_name feti_status_text feti_version feti_version_number
  */
 
@@ -125,7 +127,7 @@
 
 /** Version of this header: MAJOR.MINOR.PATCH. */
 #define FETI_CONTACT_VERSION_MAJOR 0
-#define FETI_CONTACT_VERSION_MINOR 1
+#define FETI_CONTACT_VERSION_MINOR 2
 #define FETI_CONTACT_VERSION_PATCH 0
 
 #ifdef __cplusplus
@@ -135,7 +137,7 @@ extern "C" {
 /*
  * Problem
  * =======
- * Begin and end a problem, to which all else belongs.
+ * Create and destroy a problem, which owns all other data.
  */
 
 /**
@@ -148,7 +150,8 @@ typedef struct feti_problem feti_problem;
  * Creates a problem without bodies and rows.
  *
  * The handle is valid until feti_problem_destroy; its number is never used again. After a failure
- * `p` is as it was. FETI_MEMORY, without a text, where not even an empty problem finds room.
+ * `p` is unchanged. FETI_MEMORY, without an error text, if there is not enough memory for an empty
+ * problem.
  *
  * @param[out] p (scalar) the handle
  *
@@ -159,12 +162,12 @@ int32_t feti_problem_create(struct feti_problem **p);
 /**
  * Destroys a problem with all it holds and sets the caller's handle to NULL.
  *
- * FETI_BUSY while another call on the problem runs; the problem and the handle are as before then.
- * Every other copy of the handle gives FETI_HANDLE from now on.
+ * FETI_BUSY while another call on the problem runs; the problem and the handle are then unchanged.
+ * From then on calls with any other copy of the handle return FETI_HANDLE.
  *
  * @param[in,out] p (scalar) the handle
  *
- * Safety: `p` leads to a pointer.
+ * Safety: `p` points to a pointer.
  */
 int32_t feti_problem_destroy(struct feti_problem **p);
 
@@ -195,21 +198,21 @@ int32_t feti_problem_destroy(struct feti_problem **p);
 #define FETI_COPY 0
 
 /**
- * Stiffness flag: the values, and columns in 32 bits from 0, stay where the host has them, where
- * their form allows it.
+ * Stiffness flag: keep using the caller's arrays (values, and 32-bit 0-based columns) if the
+ * layout permits.
  */
 #define FETI_BORROW 1
 
 /**
- * In place of a body: all bodies, by the host's numbers of feti_body_numbering_i32 or _i64 where
- * they have some.
+ * In place of a body number: all bodies. If they have numbers of the host (feti_body_numbering_i32
+ * or _i64), arrays use these numbers.
  */
 #define FETI_ALL -1
 
 /**
  * Adds a body with `n` unknowns.
  *
- * Bodies are numbered from 0 in the order in which they are added. FETI_OVERFLOW where all bodies
+ * Bodies are numbered from 0 in the order in which they are added. FETI_OVERFLOW if all bodies
  * together would have more than 2^63 - 1 unknowns. After a failure nothing is added.
  *
  * @param[in]  p    (scalar) the handle
@@ -223,16 +226,18 @@ int32_t feti_body_add(struct feti_problem *p, int64_t n, int64_t *body);
 /**
  * Gives the stiffness matrix K of a body by rows, with 32-bit indices.
  *
- * The matrix is copied; calling again replaces pattern and values. Columns of a row may come in
- * any order, none twice. With FETI_FULL K must be symmetric within option symmetry_tolerance and
- * is averaged. FETI_INDEFINITE with the unknown of a diagonal entry that is negative, or 0 beside
- * others in its row. After a failure the body keeps the matrix it had.
+ * The library copies the matrix; another call replaces pattern and values. The columns of a row
+ * may come in any order, but none twice. With FETI_FULL, K must be symmetric within option
+ * symmetry_tolerance; the library averages K_ij and K_ji. FETI_INDEFINITE if a diagonal entry is
+ * negative, or is 0 in a row with other entries; the error detail names the unknown. After a
+ * failure the body keeps its previous matrix.
  *
- * With FETI_BORROW the values, and columns in 32 bits counted from 0, are not copied if storage is
- * FETI_LOWER, columns ascend and every row ends with its diagonal entry; otherwise all is copied
- * (`borrowed` of feti_body_info tells). Borrowed arrays stay readable until the matrix is replaced
- * or the problem destroyed, and unchanged but for this: between two calls the values may be
- * rewritten, and the next call then is feti_body_values with the same array.
+ * With FETI_BORROW the library does not copy the values, nor 32-bit columns counted from 0, if
+ * storage is FETI_LOWER, columns ascend and every row ends with its diagonal entry. Otherwise it
+ * copies everything (see `borrowed` of feti_body_info). Borrowed arrays must stay readable and
+ * unchanged until the matrix is replaced or the problem is destroyed. There is one exception: the
+ * host may rewrite the values between two calls if its next call is feti_body_values with the same
+ * array.
  *
  * @param[in] p       (scalar) the handle
  * @param[in] body    (scalar) number of the body, from 0
@@ -260,16 +265,18 @@ int32_t feti_body_stiffness_i32(struct feti_problem *p,
 /**
  * Gives the stiffness matrix K of a body by rows, with 64-bit indices.
  *
- * The matrix is copied; calling again replaces pattern and values. Columns of a row may come in
- * any order, none twice. With FETI_FULL K must be symmetric within option symmetry_tolerance and
- * is averaged. FETI_INDEFINITE with the unknown of a diagonal entry that is negative, or 0 beside
- * others in its row. After a failure the body keeps the matrix it had.
+ * The library copies the matrix; another call replaces pattern and values. The columns of a row
+ * may come in any order, but none twice. With FETI_FULL, K must be symmetric within option
+ * symmetry_tolerance; the library averages K_ij and K_ji. FETI_INDEFINITE if a diagonal entry is
+ * negative, or is 0 in a row with other entries; the error detail names the unknown. After a
+ * failure the body keeps its previous matrix.
  *
- * With FETI_BORROW the values, and columns in 32 bits counted from 0, are not copied if storage is
- * FETI_LOWER, columns ascend and every row ends with its diagonal entry; otherwise all is copied
- * (`borrowed` of feti_body_info tells). Borrowed arrays stay readable until the matrix is replaced
- * or the problem destroyed, and unchanged but for this: between two calls the values may be
- * rewritten, and the next call then is feti_body_values with the same array.
+ * With FETI_BORROW the library does not copy the values, nor 32-bit columns counted from 0, if
+ * storage is FETI_LOWER, columns ascend and every row ends with its diagonal entry. Otherwise it
+ * copies everything (see `borrowed` of feti_body_info). Borrowed arrays must stay readable and
+ * unchanged until the matrix is replaced or the problem is destroyed. There is one exception: the
+ * host may rewrite the values between two calls if its next call is feti_body_values with the same
+ * array.
  *
  * @param[in] p       (scalar) the handle
  * @param[in] body    (scalar) number of the body, from 0
@@ -295,13 +302,13 @@ int32_t feti_body_stiffness_i64(struct feti_problem *p,
                                 int32_t flags);
 
 /**
- * Gives the stiffness matrix K of a body by rows with a diagonal of its own, with 32-bit indices.
+ * Gives the stiffness matrix K of a body by rows with a separate diagonal, with 32-bit indices.
  *
- * For codes that keep the diagonal apart. The matrix is copied; calling again replaces pattern and
- * values. Columns of a row may come in any order, none twice. With FETI_FULL K must be symmetric
- * within option symmetry_tolerance and is averaged. FETI_INDEFINITE with the unknown of a diagonal
- * entry that is negative, or 0 beside others in its row. After a failure the body keeps the matrix
- * it had.
+ * For codes that store the diagonal in a separate array. The library copies the matrix; another
+ * call replaces pattern and values. The columns of a row may come in any order, but none twice.
+ * With FETI_FULL, K must be symmetric within option symmetry_tolerance; the library averages K_ij
+ * and K_ji. FETI_INDEFINITE if a diagonal entry is negative, or is 0 in a row with other entries;
+ * the error detail names the unknown. After a failure the body keeps its previous matrix.
  *
  * @param[in] p       (scalar) the handle
  * @param[in] body    (scalar) number of the body, from 0
@@ -309,12 +316,12 @@ int32_t feti_body_stiffness_i64(struct feti_problem *p,
  * @param[in] diag    (n) K_ii, force per length
  * @param[in] row_ptr (n + 1) row i holds the entries `row_ptr[i]` to `row_ptr[i + 1] - 1`; starts
  *                    with `base`
- * @param[in] col     (row_ptr[n] - base) columns, counted from `base`, none that of its row
- * @param[in] val     (row_ptr[n] - base) entries of K beside the diagonal, force per length
+ * @param[in] col     (row_ptr[n] - base) columns, counted from `base`; never the diagonal entry
+ * @param[in] val     (row_ptr[n] - base) off-diagonal entries of K, force per length
  * @param[in] base    (scalar) 0 or 1: what `row_ptr` and `col` count from
  * @param[in] storage (scalar) FETI_FULL, FETI_LOWER or FETI_UPPER
- * @param[in] flags   (scalar) FETI_COPY, or FETI_BORROW, which copies as well: no matrix is kept
- *                    in this form
+ * @param[in] flags   (scalar) FETI_COPY, or FETI_BORROW, which also copies: the library cannot use
+ *                    a matrix in this form directly
  *
  * Safety: The arrays have the given shapes.
  */
@@ -330,13 +337,13 @@ int32_t feti_body_stiffness_split_i32(struct feti_problem *p,
                                       int32_t flags);
 
 /**
- * Gives the stiffness matrix K of a body by rows with a diagonal of its own, with 64-bit indices.
+ * Gives the stiffness matrix K of a body by rows with a separate diagonal, with 64-bit indices.
  *
- * For codes that keep the diagonal apart. The matrix is copied; calling again replaces pattern and
- * values. Columns of a row may come in any order, none twice. With FETI_FULL K must be symmetric
- * within option symmetry_tolerance and is averaged. FETI_INDEFINITE with the unknown of a diagonal
- * entry that is negative, or 0 beside others in its row. After a failure the body keeps the matrix
- * it had.
+ * For codes that store the diagonal in a separate array. The library copies the matrix; another
+ * call replaces pattern and values. The columns of a row may come in any order, but none twice.
+ * With FETI_FULL, K must be symmetric within option symmetry_tolerance; the library averages K_ij
+ * and K_ji. FETI_INDEFINITE if a diagonal entry is negative, or is 0 in a row with other entries;
+ * the error detail names the unknown. After a failure the body keeps its previous matrix.
  *
  * @param[in] p       (scalar) the handle
  * @param[in] body    (scalar) number of the body, from 0
@@ -344,12 +351,12 @@ int32_t feti_body_stiffness_split_i32(struct feti_problem *p,
  * @param[in] diag    (n) K_ii, force per length
  * @param[in] row_ptr (n + 1) row i holds the entries `row_ptr[i]` to `row_ptr[i + 1] - 1`; starts
  *                    with `base`
- * @param[in] col     (row_ptr[n] - base) columns, counted from `base`, none that of its row
- * @param[in] val     (row_ptr[n] - base) entries of K beside the diagonal, force per length
+ * @param[in] col     (row_ptr[n] - base) columns, counted from `base`; never the diagonal entry
+ * @param[in] val     (row_ptr[n] - base) off-diagonal entries of K, force per length
  * @param[in] base    (scalar) 0 or 1: what `row_ptr` and `col` count from
  * @param[in] storage (scalar) FETI_FULL, FETI_LOWER or FETI_UPPER
- * @param[in] flags   (scalar) FETI_COPY, or FETI_BORROW, which copies as well: no matrix is kept
- *                    in this form
+ * @param[in] flags   (scalar) FETI_COPY, or FETI_BORROW, which also copies: the library cannot use
+ *                    a matrix in this form directly
  *
  * Safety: The arrays have the given shapes.
  */
@@ -368,9 +375,10 @@ int32_t feti_body_stiffness_split_i64(struct feti_problem *p,
  * Gives the stiffness matrix K of a body as a dense matrix, for boundary elements and condensed
  * bodies.
  *
- * The matrix is copied; calling again replaces it. With FETI_LOWER and FETI_UPPER the other
- * triangle is not read. FETI_INDEFINITE with the unknown of a diagonal entry that is negative, or
- * 0 beside others in its row. After a failure the body keeps the matrix it had.
+ * The library copies the matrix; another call replaces it. With FETI_LOWER and FETI_UPPER the
+ * other triangle is not read. FETI_INDEFINITE if a diagonal entry is negative, or is 0 in a row
+ * with other entries; the error detail names the unknown. After a failure the body keeps its
+ * previous matrix.
  *
  * @param[in] p       (scalar) the handle
  * @param[in] body    (scalar) number of the body, from 0
@@ -393,16 +401,17 @@ int32_t feti_body_stiffness_dense(struct feti_problem *p,
 /**
  * Gives the load of a body.
  *
- * The load is copied and holds until it is given again; a body without one has zero load. With
- * FETI_ALL the array holds the loads of all bodies: by the host's numbers where they have some,
- * entries of no unknown not looked at; else one body after the other. Of unknowns with one number
- * (option glue) that of the first body has the load. FETI_STATE with FETI_ALL where some bodies
- * have numbers of the host and others have none. After a failure the loads are as they were.
+ * The load is copied and stays valid until the next call replaces it; without a call the load of a
+ * body is zero. With FETI_ALL the array holds the loads of all bodies. If the bodies have numbers
+ * of the host, the array uses these numbers, and entries that belong to no unknown are ignored;
+ * otherwise it holds one body after the other. If several unknowns share one number (option glue),
+ * the load acts on the unknown of the first body. FETI_STATE with FETI_ALL if some bodies have
+ * numbers of the host and others have none. After a failure all loads are unchanged.
  *
  * @param[in] p    (scalar) the handle
  * @param[in] body (scalar) number of the body, from 0, or FETI_ALL
- * @param[in] n    (scalar) unknowns of the body; with FETI_ALL at least the largest number + 1,
- *                 without numbers all unknowns
+ * @param[in] n    (scalar) unknowns of the body; with FETI_ALL at least the largest number + 1, or
+ *                 without numbers the unknowns of all bodies
  * @param[in] f    (n) force
  *
  * Safety: The array has the given shape.
@@ -412,24 +421,25 @@ int32_t feti_body_load(struct feti_problem *p, int64_t body, int64_t n, const do
 /**
  * Gives the host's own numbers of the unknowns of a body, with 32-bit integers.
  *
- * A host that numbers all unknowns through gives every body its share; a number names one unknown
- * of all bodies. Then FETI_ALL as body in feti_body_load, feti_displacement and feti_reaction
- * means arrays in these numbers, and so do rows whose bodies are NULL in feti_rows_add_i32 and
- * _i64. All bodies have numbers then: FETI_STATE names one that has not. The numbers are copied;
- * calling again replaces them. Rows that are there stay on their unknowns. After a failure the
- * body keeps the numbers it had.
+ * Use this function if the host numbers the unknowns of all bodies consecutively; each number then
+ * names one unknown in the whole problem. Arrays with FETI_ALL in feti_body_load,
+ * feti_displacement and feti_reaction then use these numbers, and so do rows whose `body` is NULL
+ * in feti_rows_add_i32 and _i64. These calls need numbers for all bodies: otherwise they return
+ * FETI_STATE and name a body without numbers. The numbers are copied; another call replaces them.
+ * Existing rows stay on their unknowns. After a failure the body keeps its previous numbers.
  *
- * With option glue = 1, set before, unknowns of several bodies may have one number: they move
- * together, by equality rows that only the library sees. The host's rows, their multipliers and
- * the counts stay what they are. With FETI_ALL a load on such a number is that of its first body,
- * a displacement that of all of them, and a reaction the sum over them; rows whose bodies are NULL
- * act on the first. The last answer goes with a change of such numbers.
+ * If option glue = 1 was set before, unknowns of several bodies may share one number. These
+ * unknowns then move together; the library joins them by internal equality rows, which change
+ * neither the host's rows and multipliers nor the counts. With FETI_ALL a load on a shared number
+ * acts on its first body, the displacement is the one of all its bodies, and the reaction is the
+ * sum over them. Rows whose `body` is NULL act on the first body. A change of shared numbers drops
+ * the last answer.
  *
  * @param[in] p      (scalar) the handle
  * @param[in] body   (scalar) number of the body, from 0
  * @param[in] n      (scalar) unknowns of the body
- * @param[in] number (n) number of each unknown, counted from `base`, none that of another unknown
- *                   of the body, nor, without option glue, of another body
+ * @param[in] number (n) number of each unknown, counted from `base`; different for all unknowns of
+ *                   the body and, without option glue, of all bodies
  * @param[in] base   (scalar) 0 or 1: what the numbers count from
  *
  * Safety: The array has the given shape.
@@ -443,24 +453,25 @@ int32_t feti_body_numbering_i32(struct feti_problem *p,
 /**
  * Gives the host's own numbers of the unknowns of a body, with 64-bit integers.
  *
- * A host that numbers all unknowns through gives every body its share; a number names one unknown
- * of all bodies. Then FETI_ALL as body in feti_body_load, feti_displacement and feti_reaction
- * means arrays in these numbers, and so do rows whose bodies are NULL in feti_rows_add_i32 and
- * _i64. All bodies have numbers then: FETI_STATE names one that has not. The numbers are copied;
- * calling again replaces them. Rows that are there stay on their unknowns. After a failure the
- * body keeps the numbers it had.
+ * Use this function if the host numbers the unknowns of all bodies consecutively; each number then
+ * names one unknown in the whole problem. Arrays with FETI_ALL in feti_body_load,
+ * feti_displacement and feti_reaction then use these numbers, and so do rows whose `body` is NULL
+ * in feti_rows_add_i32 and _i64. These calls need numbers for all bodies: otherwise they return
+ * FETI_STATE and name a body without numbers. The numbers are copied; another call replaces them.
+ * Existing rows stay on their unknowns. After a failure the body keeps its previous numbers.
  *
- * With option glue = 1, set before, unknowns of several bodies may have one number: they move
- * together, by equality rows that only the library sees. The host's rows, their multipliers and
- * the counts stay what they are. With FETI_ALL a load on such a number is that of its first body,
- * a displacement that of all of them, and a reaction the sum over them; rows whose bodies are NULL
- * act on the first. The last answer goes with a change of such numbers.
+ * If option glue = 1 was set before, unknowns of several bodies may share one number. These
+ * unknowns then move together; the library joins them by internal equality rows, which change
+ * neither the host's rows and multipliers nor the counts. With FETI_ALL a load on a shared number
+ * acts on its first body, the displacement is the one of all its bodies, and the reaction is the
+ * sum over them. Rows whose `body` is NULL act on the first body. A change of shared numbers drops
+ * the last answer.
  *
  * @param[in] p      (scalar) the handle
  * @param[in] body   (scalar) number of the body, from 0
  * @param[in] n      (scalar) unknowns of the body
- * @param[in] number (n) number of each unknown, counted from `base`, none that of another unknown
- *                   of the body, nor, without option glue, of another body
+ * @param[in] number (n) number of each unknown, counted from `base`; different for all unknowns of
+ *                   the body and, without option glue, of all bodies
  * @param[in] base   (scalar) 0 or 1: what the numbers count from
  *
  * Safety: The array has the given shape.
@@ -474,7 +485,7 @@ int32_t feti_body_numbering_i64(struct feti_problem *p,
 /*
  * Null spaces
  * ===========
- * Say which motions a matrix does not resist; never said, the library finds them.
+ * Give the motions that a matrix does not resist; otherwise the library finds them.
  */
 
 /**
@@ -483,30 +494,32 @@ int32_t feti_body_numbering_i64(struct feti_problem *p,
 #define FETI_EXACT 0
 
 /**
- * Null-space flag: the null space lies in the span of the columns; the library selects.
+ * Null-space flag: the null space lies in the span of the columns, and the library selects it from
+ * there.
  */
 #define FETI_CANDIDATES 1
 
 /**
- * Null-space flag: motions that K resists softly, if at all; what they are and what resists them
- * is computed from K.
+ * Null-space flag: motions that K resists weakly or not at all; the library computes the exact
+ * motions and their stiffness from K.
  */
 #define FETI_SOFT 2
 
 /**
- * Gives position and direction of every unknown of a body, from which candidates for its null
- * space are made.
+ * Gives position and direction of every unknown of a body; the library computes candidates for the
+ * null space from them.
  *
- * The data is copied; calling again replaces it. Never called, and no null space given: the
- * library finds the null space from K. A null space that was given (feti_body_null_space) goes
- * before it. Where K resists or drives the rigid motions: feti_body_coordinates_flags. Shells and
- * beams repeat nodes with rotations. After a failure the body keeps what it had.
+ * The data are copied; another call replaces them. If you give neither coordinates nor a null
+ * space, the library finds the null space from K. A null space given by feti_body_null_space takes
+ * precedence over the coordinates. If K resists or drives the rigid body motions, see
+ * feti_body_coordinates_flags. Shells and beams list a node again for its rotations. After a
+ * failure the body keeps its previous data.
  *
  * @param[in] p    (scalar) the handle
  * @param[in] body (scalar) number of the body, from 0
  * @param[in] dim  (scalar) numbers per position, 1 to 3
  * @param[in] n    (scalar) unknowns of the body
- * @param[in] node (n) label of the node of each unknown, any number
+ * @param[in] node (n) label of the node of each unknown: any number
  * @param[in] dir  (n) 1 to 3: displacement along that axis; 4 to 6: rotation about axis 1 to 3
  * @param[in] xyz  (ld * n) coordinate k of unknown i is xyz[k + ld i], length
  * @param[in] ld   (scalar) >= dim: distance of the coordinates of one unknown from those of the
@@ -524,17 +537,18 @@ int32_t feti_body_coordinates(struct feti_problem *p,
                               int64_t ld);
 
 /**
- * Says what the rigid motions of the coordinates of a body are: candidates for its null space, or
- * motions that K resists softly.
+ * Says how to use the rigid body motions that the coordinates give: as candidates for the null
+ * space, or as motions that K resists weakly.
  *
- * Holds for all coordinates that the body gets (feti_body_coordinates), before this call or after
- * it; never called: FETI_CANDIDATES. With FETI_SOFT weak springs, rounding of the entries of K,
- * geometric stiffness and supports may resist or drive the motions, which need not be exact. What
- * the motions are, and the stiffness against them, is computed from K and taken into account
- * exactly, as of motions given to feti_body_null_space with that flag: see there, also for what
- * follows where K drives the body, or is singular beyond these motions. Nothing depends on it
- * where there are no coordinates, or a null space was given. FETI_UNSUPPORTED from feti_setup
- * where K+ is the host's (feti_body_operator). After a failure the body keeps what it had.
+ * The flag applies to all coordinates of the body (feti_body_coordinates), whether they are given
+ * before or after this call; the default is FETI_CANDIDATES. With FETI_SOFT, weak springs,
+ * rounding of the entries of K, geometric stiffness and supports may resist or drive the motions,
+ * and the motions need not be exact. The library computes the motions and their stiffness from K
+ * and takes them into account exactly, as it does for motions given to feti_body_null_space with
+ * FETI_SOFT. That function also describes what happens if K drives the body or has further null
+ * vectors. The flag has no effect without coordinates or if a null space was given.
+ * FETI_UNSUPPORTED from feti_setup if the host provides K+ (feti_body_operator). After a failure
+ * the body keeps its previous flag.
  *
  * @param[in] p     (scalar) the handle
  * @param[in] body  (scalar) number of the body, from 0
@@ -543,18 +557,20 @@ int32_t feti_body_coordinates(struct feti_problem *p,
 int32_t feti_body_coordinates_flags(struct feti_problem *p, int64_t body, int32_t flags);
 
 /**
- * Gives a basis of the null space of a body, candidates for it, or motions that K resists softly.
+ * Gives a basis of the null space of a body, candidates for the null space, or motions that K
+ * resists weakly.
  *
- * The basis is copied; calling again replaces it. Never called: the coordinates of the unknowns
- * give candidates (feti_body_coordinates), and without coordinates the library finds the null
- * space from K. That `K R = 0` holds is checked in feti_setup. With FETI_SOFT it need not hold:
- * weak springs, rounding of the entries of K and geometric stiffness may resist or drive the
- * motions. The columns then choose the fixing unknowns; the motions, and the stiffness against
- * them, are computed from K and taken into account exactly. Where K drives the body between these
- * unknowns, up to six more are fixed, each with a column of its own (feti_body_null_space_get).
- * FETI_UNSUPPORTED from feti_setup where K+ is the host's (feti_body_operator); FETI_INDEFINITE
- * from feti_setup where K drives more than that, from feti_solve where the contact leaves a motion
- * that is driven. After a failure the body keeps what it had.
+ * The basis is copied; another call replaces it. If you do not call this function, the coordinates
+ * of the unknowns give candidates (feti_body_coordinates); without coordinates the library finds
+ * the null space from K. feti_setup checks that `K R = 0` holds. With FETI_SOFT this equation need
+ * not hold: weak springs, rounding of the entries of K and geometric stiffness may resist or drive
+ * the motions. The columns then only choose the fixing unknowns; the library computes the motions
+ * and their stiffness from K and takes them into account exactly. If K is still indefinite with
+ * these unknowns fixed, the library fixes up to six more, each with its own column in
+ * feti_body_null_space_get. FETI_UNSUPPORTED from feti_setup if the host provides K+
+ * (feti_body_operator); FETI_INDEFINITE from feti_setup if K drives more motions than that, and
+ * from feti_solve if the contact does not restrain a driven motion. After a failure the body keeps
+ * its previous basis.
  *
  * @param[in] p     (scalar) the handle
  * @param[in] body  (scalar) number of the body, from 0
@@ -588,17 +604,17 @@ int32_t feti_body_null_space(struct feti_problem *p,
 int32_t feti_body_no_null_space(struct feti_problem *p, int64_t body);
 
 /**
- * Reads the null space of a body that the library works with.
+ * Reads the null space that the library uses for a body.
  *
  * Runs feti_setup when it is due. After a failure nothing is written.
  *
  * @param[in]     p     (scalar) the handle
  * @param[in]     body  (scalar) number of the body, from 0
  * @param[in]     n     (scalar) unknowns of the body
- * @param[in,out] r     (scalar) in: columns that fit in `basis`, not read without one; out:
+ * @param[in,out] r     (scalar) in: columns that fit in `basis`, ignored if `basis` is NULL; out:
  *                      dimension of the null space
- * @param[out]    basis (ldr * r) column-major; NULL: only the dimension is wanted
- * @param[in]     ldr   (scalar) >= n, not looked at without `basis`
+ * @param[out]    basis (ldr * r) column-major; NULL: only the dimension is returned
+ * @param[in]     ldr   (scalar) >= n; ignored without `basis`
  *
  * Safety: The arrays have the given shapes.
  */
@@ -610,12 +626,12 @@ int32_t feti_body_null_space_get(struct feti_problem *p,
                                  int64_t ldr);
 
 /**
- * Chooses the fixing unknowns of a body in place of the library.
+ * Chooses the fixing unknowns of a body; otherwise the library chooses them.
  *
- * They change the course of the methods of the paper in printed units, and neither forces nor
- * displacements. As many as the null space has dimensions, which feti_setup checks, and that they
- * hold every motion of it. Calling again replaces them. After a failure the body keeps what it
- * had.
+ * The choice affects the iterations of the paper's methods in printed units, but neither forces
+ * nor displacements. There must be as many fixing unknowns as the null space has dimensions, and
+ * they must hold every motion of the null space; feti_setup checks both. Another call replaces
+ * them. After a failure the body keeps its previous fixing unknowns.
  *
  * @param[in] p    (scalar) the handle
  * @param[in] body (scalar) number of the body, from 0
@@ -629,9 +645,9 @@ int32_t feti_body_fixing_set(struct feti_problem *p, int64_t body, int64_t r, co
 /**
  * Reads the fixing unknowns of a body: with them fixed, K has full rank.
  *
- * Runs feti_setup when it is due. FETI_UNSUPPORTED where K+ is the host's (feti_body_operator).
- * FETI_STATE for a body that is cut (feti_body_mesh_i32 or _i64). After a failure nothing is
- * written.
+ * Runs feti_setup when it is due. FETI_UNSUPPORTED if the host provides K+ (feti_body_operator).
+ * FETI_STATE if the body is cut into pieces (feti_body_mesh_i32 or _i64). After a failure nothing
+ * is written.
  *
  * @param[in]  p    (scalar) the handle
  * @param[in]  body (scalar) number of the body, from 0
@@ -645,42 +661,45 @@ int32_t feti_body_fixing(struct feti_problem *p, int64_t body, int64_t r, int64_
 /*
  * Bodies by elements
  * ==================
- * Give the elements of a large body; the library adds them up and cuts the body into pieces.
+ * Give the elements of a large body; the library assembles them and cuts the body into pieces.
  */
 
 /**
- * Says which unknowns the elements of a body join, with 32-bit indices: the first step of giving K
- * by elements.
+ * Gives the connectivity of the elements of a body, with 32-bit indices: the first step of giving
+ * K by elements.
  *
- * The matrices follow, by feti_body_element or feti_body_elements, each element once: all of K, in
- * elements of any size (springs to ground, penalties and multi-point constraints are small ones).
- * Nothing is kept of an element: its matrix is added to that of the body or, where the body is
- * cut, to that of its piece. Loads, rows, results, certificate and diagnosis are those of the
- * body; the pieces show in feti_body_info and feti_body_pieces alone.
+ * Then give the element matrices with feti_body_element or feti_body_elements, each element once.
+ * Together they must form all of K; elements may have any size (springs to ground, penalties and
+ * multi-point constraints are small elements). The library adds each element matrix to the matrix
+ * of the body or, if the body is cut, of its piece, and keeps nothing else of the element. Loads,
+ * rows, results, certificate and diagnosis refer to the body; only feti_body_info and
+ * feti_body_pieces show the pieces.
  *
- * What the cut depends on comes before the first matrix: option `pieces` and the coordinates
- * (feti_body_coordinates); without coordinates it goes by the elements that unknowns share. Null
- * spaces of pieces come from the coordinates or are sought in K; a given null space of the whole
- * body (feti_body_null_space) does not serve them. Of a body that is cut feti_body_kplus,
- * feti_body_fixing, feti_dual_apply and feti_dual_rhs are FETI_STATE.
+ * Before the first matrix, give what the cut depends on: option `pieces` and the coordinates
+ * (feti_body_coordinates). Without coordinates the library cuts the body by its connectivity. The
+ * null spaces of the pieces come from the coordinates or are computed from K; a null space of the
+ * whole body (feti_body_null_space) is not used for them. If a body is cut, feti_body_kplus,
+ * feti_body_fixing, feti_dual_apply and feti_dual_rhs return FETI_STATE.
  *
- * A number below `base` is a held unknown, as equation numbers of older codes have it: row and
- * column are left out of K, and `base` - 1 - k is the held unknown k (with base 0: -1, -2, ...;
- * with base 1: 0, -1, ...). All may have one number where nobody asks for feti_body_held_forces.
- * Where values are prescribed for them the host moves ke u0 to the load.
+ * A number below `base` means a held unknown, as in the equation numbers of older codes: its row
+ * and column are left out of K. The number `base` - 1 - k means held unknown k (with base 0: -1,
+ * -2, ...; with base 1: 0, -1, ...). If feti_body_held_forces is not used, all held unknowns may
+ * have the same number. If held unknowns have prescribed values u0, the host subtracts ke u0 from
+ * the load.
  *
- * A matrix or functions given before are replaced. The same connectivity again begins a new pass
- * on the old pattern and cut. FETI_OVERFLOW beyond 2^32 - 1 unknowns and held ones. FETI_STATE
- * from feti_setup and feti_solve where elements are missing, with the first of them. After a
- * failure the body keeps what it had.
+ * The call replaces a matrix or functions given before. Another call with the same connectivity
+ * begins a new pass with the same pattern and the same cut. FETI_OVERFLOW if there are more than
+ * 2^32 - 1 unknowns and held unknowns. FETI_STATE from feti_setup and feti_solve if elements are
+ * missing; the error detail names the first missing element. After a failure the body keeps its
+ * previous data.
  *
  * @param[in] p        (scalar) the handle
  * @param[in] body     (scalar) number of the body, from 0
  * @param[in] elements (scalar) number of elements, > 0
  * @param[in] ptr      (elements + 1) element e joins the entries `ptr[e]` to `ptr[e + 1] - 1` of
  *                     `dof`; starts with `base`
- * @param[in] dof      (ptr[elements] - base) unknowns in the order of the rows of the matrices,
- *                     counted from `base`; below it: held
+ * @param[in] dof      (ptr[elements] - base) unknowns in the order of the rows of the element
+ *                     matrices, counted from `base`; below `base`: held
  * @param[in] base     (scalar) 0 or 1: what `ptr` and `dof` count from
  *
  * Safety: The arrays have the given shapes.
@@ -693,38 +712,41 @@ int32_t feti_body_mesh_i32(struct feti_problem *p,
                            int32_t base);
 
 /**
- * Says which unknowns the elements of a body join, with 64-bit indices: the first step of giving K
- * by elements.
+ * Gives the connectivity of the elements of a body, with 64-bit indices: the first step of giving
+ * K by elements.
  *
- * The matrices follow, by feti_body_element or feti_body_elements, each element once: all of K, in
- * elements of any size (springs to ground, penalties and multi-point constraints are small ones).
- * Nothing is kept of an element: its matrix is added to that of the body or, where the body is
- * cut, to that of its piece. Loads, rows, results, certificate and diagnosis are those of the
- * body; the pieces show in feti_body_info and feti_body_pieces alone.
+ * Then give the element matrices with feti_body_element or feti_body_elements, each element once.
+ * Together they must form all of K; elements may have any size (springs to ground, penalties and
+ * multi-point constraints are small elements). The library adds each element matrix to the matrix
+ * of the body or, if the body is cut, of its piece, and keeps nothing else of the element. Loads,
+ * rows, results, certificate and diagnosis refer to the body; only feti_body_info and
+ * feti_body_pieces show the pieces.
  *
- * What the cut depends on comes before the first matrix: option `pieces` and the coordinates
- * (feti_body_coordinates); without coordinates it goes by the elements that unknowns share. Null
- * spaces of pieces come from the coordinates or are sought in K; a given null space of the whole
- * body (feti_body_null_space) does not serve them. Of a body that is cut feti_body_kplus,
- * feti_body_fixing, feti_dual_apply and feti_dual_rhs are FETI_STATE.
+ * Before the first matrix, give what the cut depends on: option `pieces` and the coordinates
+ * (feti_body_coordinates). Without coordinates the library cuts the body by its connectivity. The
+ * null spaces of the pieces come from the coordinates or are computed from K; a null space of the
+ * whole body (feti_body_null_space) is not used for them. If a body is cut, feti_body_kplus,
+ * feti_body_fixing, feti_dual_apply and feti_dual_rhs return FETI_STATE.
  *
- * A number below `base` is a held unknown, as equation numbers of older codes have it: row and
- * column are left out of K, and `base` - 1 - k is the held unknown k (with base 0: -1, -2, ...;
- * with base 1: 0, -1, ...). All may have one number where nobody asks for feti_body_held_forces.
- * Where values are prescribed for them the host moves ke u0 to the load.
+ * A number below `base` means a held unknown, as in the equation numbers of older codes: its row
+ * and column are left out of K. The number `base` - 1 - k means held unknown k (with base 0: -1,
+ * -2, ...; with base 1: 0, -1, ...). If feti_body_held_forces is not used, all held unknowns may
+ * have the same number. If held unknowns have prescribed values u0, the host subtracts ke u0 from
+ * the load.
  *
- * A matrix or functions given before are replaced. The same connectivity again begins a new pass
- * on the old pattern and cut. FETI_OVERFLOW beyond 2^32 - 1 unknowns and held ones. FETI_STATE
- * from feti_setup and feti_solve where elements are missing, with the first of them. After a
- * failure the body keeps what it had.
+ * The call replaces a matrix or functions given before. Another call with the same connectivity
+ * begins a new pass with the same pattern and the same cut. FETI_OVERFLOW if there are more than
+ * 2^32 - 1 unknowns and held unknowns. FETI_STATE from feti_setup and feti_solve if elements are
+ * missing; the error detail names the first missing element. After a failure the body keeps its
+ * previous data.
  *
  * @param[in] p        (scalar) the handle
  * @param[in] body     (scalar) number of the body, from 0
  * @param[in] elements (scalar) number of elements, > 0
  * @param[in] ptr      (elements + 1) element e joins the entries `ptr[e]` to `ptr[e + 1] - 1` of
  *                     `dof`; starts with `base`
- * @param[in] dof      (ptr[elements] - base) unknowns in the order of the rows of the matrices,
- *                     counted from `base`; below it: held
+ * @param[in] dof      (ptr[elements] - base) unknowns in the order of the rows of the element
+ *                     matrices, counted from `base`; below `base`: held
  * @param[in] base     (scalar) 0 or 1: what `ptr` and `dof` count from
  *
  * Safety: The arrays have the given shapes.
@@ -737,21 +759,22 @@ int32_t feti_body_mesh_i64(struct feti_problem *p,
                            int32_t base);
 
 /**
- * Adds the stiffness matrix of one element, from the host's own assembly loop.
+ * Adds the stiffness matrix of one element; call it from the host's assembly loop.
  *
- * The matrix is added at once and not kept. It must be symmetric within option symmetry_tolerance
- * and is averaged; it may be indefinite, only what has been added up is judged, by feti_setup.
- * Elements come in any order, each once: FETI_STATE for one that has come already, and before
- * feti_body_mesh. With the last one the matrix of the body is complete, and the next element
- * begins a new pass: new values on the old pattern and cut, with no analysis, as in a Newton loop.
- * Until that pass is complete the body has no matrix. Threads that assemble side by side meet
- * FETI_BUSY: they hand over blocks, by feti_body_elements. An error names the element. After a
- * failure nothing of the element is added.
+ * The library adds the matrix at once and does not keep it. The matrix must be symmetric within
+ * option symmetry_tolerance; the library averages ke_ij and ke_ji. An element matrix may be
+ * indefinite: feti_setup checks only the assembled matrix. Elements may come in any order, each
+ * once. FETI_STATE if the element was given already, and before feti_body_mesh. With the last
+ * element the matrix of the body is complete. The next element begins a new pass: new values with
+ * the same pattern and cut, without a new analysis, as in a Newton loop. Until this pass is
+ * complete the body has no matrix. If several threads assemble at the same time, such calls return
+ * FETI_BUSY: the threads should collect blocks for feti_body_elements. The error detail names the
+ * element. After a failure nothing of the element is added.
  *
  * @param[in] p    (scalar) the handle
  * @param[in] body (scalar) number of the body, from 0
  * @param[in] e    (scalar) number of the element, from 0
- * @param[in] n    (scalar) unknowns that the element joins, held ones included
+ * @param[in] n    (scalar) unknowns of the element, including held ones
  * @param[in] ke   (ld * n) column-major: ke_ij is ke[i + ld j], force per length
  * @param[in] ld   (scalar) >= n
  *
@@ -767,13 +790,13 @@ int32_t feti_body_element(struct feti_problem *p,
 /**
  * Adds the stiffness matrices of a block of elements, one after the other.
  *
- * As feti_body_element for each of them. With FETI_FULL every matrix is n x n, column-major. With
- * FETI_LOWER it is the lower triangle column by column, as in the elemental format of MUMPS (the
- * upper triangle row by row is the same), with FETI_UPPER the upper triangle column by column: n
- * (n + 1) / 2 numbers. The n of an element is that of feti_body_mesh; feti_body_elements_size
- * tells how many numbers a block has. FETI_STATE for an element that has come already, and before
- * feti_body_mesh. An error names the element; its entry counts within the matrix of that element.
- * After a failure none of the block is added.
+ * The call works like feti_body_element for each element. With FETI_FULL every matrix is n x n,
+ * column-major. With FETI_LOWER it is the lower triangle column by column, as in the elemental
+ * format of MUMPS (this equals the upper triangle row by row); with FETI_UPPER it is the upper
+ * triangle column by column. Each triangle has n (n + 1) / 2 numbers. The n of an element follows
+ * from feti_body_mesh; feti_body_elements_size returns how many numbers a block has. FETI_STATE if
+ * an element was given already, and before feti_body_mesh. The error detail names the element and
+ * the entry within its matrix. After a failure nothing of the block is added.
  *
  * @param[in] p       (scalar) the handle
  * @param[in] body    (scalar) number of the body, from 0
@@ -792,7 +815,7 @@ int32_t feti_body_elements(struct feti_problem *p,
                            int32_t storage);
 
 /**
- * Tells how many numbers the matrices of a block of elements take in feti_body_elements.
+ * Returns how many numbers feti_body_elements expects for a block of elements.
  *
  * FETI_STATE before feti_body_mesh. After a failure nothing is written.
  *
@@ -813,30 +836,31 @@ int32_t feti_body_elements_size(struct feti_problem *p,
                                 int64_t *nnz);
 
 /**
- * Reads what the held unknowns of a body take up in the last answer: K_hf u, their rows of K times
- * the displacement.
+ * Reads the forces on the held unknowns of a body in the last answer: K_hf u, their rows of K
+ * times the displacement.
  *
- * Held unknowns are those with numbers below `base` in feti_body_mesh_i32 or _i64, k for the
- * number `base` - 1 - k. The force is that with which the supports hold the body, but for what
- * prescribed values add (ke u0, which the host has moved to the load) and for loads on the held
- * unknowns themselves, which the host takes off. FETI_STATE for a body that was not given by its
- * elements, and before a solve has given an answer. After a failure nothing is written.
+ * Held unknowns have numbers below `base` in feti_body_mesh_i32 or _i64: held unknown k has the
+ * number `base` - 1 - k. The result is the support reaction without two parts, which the host
+ * accounts for: the part of prescribed values (the host moved ke u0 to the load), which must be
+ * added, and loads on the held unknowns themselves, which must be subtracted. FETI_STATE if the
+ * body was not given by its elements, and if no solve has given an answer yet. After a failure
+ * nothing is written.
  *
  * @param[in]  p    (scalar) the handle
  * @param[in]  body (scalar) number of the body, from 0
- * @param[in]  n    (scalar) held unknowns that are asked for: 0 to n - 1
- * @param[out] r    (n) force; 0 for a number that no element has
+ * @param[in]  n    (scalar) number of held unknowns to read: 0 to n - 1
+ * @param[out] r    (n) force; 0 for a held unknown that no element has
  *
  * Safety: The array has the given shape.
  */
 int32_t feti_body_held_forces(struct feti_problem *p, int64_t body, int64_t n, double *r);
 
 /**
- * Tells the piece of every unknown of a body, for pictures and for choosing option `pieces`.
+ * Reads the piece of every unknown of a body, for pictures and for choosing option `pieces`.
  *
- * Pieces count from 0; an unknown of several pieces has the first of them. All are 0 in a body
- * that is not cut. FETI_STATE before its matrix, or all of its elements, have been given. After a
- * failure nothing is written.
+ * Pieces count from 0. An unknown that belongs to several pieces gets the first one. If the body
+ * is not cut, all numbers are 0. FETI_STATE before the matrix of the body, or all of its elements,
+ * have been given. After a failure nothing is written.
  *
  * @param[in]  p     (scalar) the handle
  * @param[in]  body  (scalar) number of the body, from 0
@@ -854,17 +878,17 @@ int32_t feti_body_pieces(struct feti_problem *p, int64_t body, int64_t n, int64_
  */
 
 /**
- * A function of the host that multiplies by a matrix A it keeps: Y = A X.
+ * A function of the host that multiplies by a matrix A that the host keeps: Y = A X.
  *
- * It returns 0, or any other number for a failure of its own. X and Y never overlap.
+ * It returns 0 on success and any other number to report a failure. X and Y never overlap.
  *
- * @param[in]  user (scalar) the host's own, as given to feti_body_operator; may be NULL
+ * @param[in]  user (scalar) the host's own data, as given to feti_body_operator; may be NULL
  * @param[in]  body (scalar) number of the body, from 0
  * @param[in]  n    (scalar) unknowns of the body
  * @param[in]  nrhs (scalar) columns of X and Y, 1 to 32
  * @param[in]  x    (ldx * nrhs) X, column-major, finite
  * @param[in]  ldx  (scalar) >= n
- * @param[out] y    (ldy * nrhs) Y, column-major; holds zeros before
+ * @param[out] y    (ldy * nrhs) Y, column-major; contains zeros on entry
  * @param[in]  ldy  (scalar) >= n
  */
 typedef int32_t (*feti_operator_fn)(void *user,
@@ -877,38 +901,40 @@ typedef int32_t (*feti_operator_fn)(void *user,
                                     int64_t ldy);
 
 /**
- * Names the functions of the host that multiply by the stiffness K of a body and by a generalised
- * inverse K+ of it.
+ * Registers the functions of the host that multiply by the stiffness K of a body and by a
+ * generalised inverse K+ of K.
  *
- * The library sees no entry of K but the diagonal, which is copied, and factorises nothing. K+ is
- * any symmetric positive semidefinite matrix with K K+ K = K: where K is not singular its inverse,
- * else that of K with enough unknowns held (rows and columns of zeros in K+), or that of K plus a
- * regularisation that acts on the null space alone. The null space must be given, by
- * feti_body_null_space or feti_body_coordinates (the body then counts as connected). feti_setup
- * tries the functions with a few fixed vectors and refuses what is wrong by name: FETI_CALLBACK (K
- * or K+ not symmetric, K K+ K not K, a result that is no finite number), FETI_INDEFINITE,
- * FETI_NULL_SPACE (K R not 0, a mode missing in R), with the figure and its limit in the error
- * detail.
+ * The library sees only the diagonal of K, which it copies, and factorises nothing. K+ is any
+ * symmetric positive semidefinite matrix with K K+ K = K. If K is not singular, K+ is its inverse.
+ * Otherwise K+ may be the inverse of K with enough unknowns held (rows and columns of zeros in
+ * K+), or the inverse of K plus a regularisation that acts only on the null space. The null space
+ * must be given by feti_body_null_space or feti_body_coordinates; with coordinates the library
+ * treats the body as connected. feti_setup tests the functions with a few fixed vectors and
+ * refuses wrong functions with a specific status: FETI_CALLBACK (K or K+ is not symmetric, K K+ K
+ * is not K, or a result is not finite), FETI_INDEFINITE, or FETI_NULL_SPACE (K R is not 0, or R
+ * lacks a mode), with the measured value and its limit in the error detail.
  *
- * A function that returns anything but 0 ends the call that needed it with FETI_CALLBACK, the body
- * and that number in the error detail; the problem stays as it was. The functions run in the
- * host's floating-point environment; with `concurrent` 0 on the thread alone that has called the
- * library, with 1 also on threads of the library, several at once. Inside them calls on the same
- * problem return FETI_BUSY, except feti_cancel and feti_problem_error. They must not end by
- * longjmp or an exception, and must give the same bits for the same X.
+ * If a function returns a number other than 0, the call that needed it ends with FETI_CALLBACK,
+ * with the body and that number in the error detail; the problem is unchanged. The functions run
+ * in the host's floating-point environment. With `concurrent` = 0 they run only on the thread that
+ * called the library; with 1 several may run at once, also on threads of the library. Inside them,
+ * calls on the same problem return FETI_BUSY, except feti_cancel and feti_problem_error. The
+ * functions must not exit by longjmp or an exception, and must give bit-identical results for the
+ * same X.
  *
- * Calling again replaces the functions and what was computed with them: to be done whenever K has
- * changed. A stiffness matrix given later takes their place, and they that of a matrix. After a
- * failure the body keeps what it had.
+ * Another call replaces the functions and everything computed with them; make this call whenever K
+ * has changed. A stiffness matrix given later replaces the functions, and the functions replace a
+ * matrix given earlier. After a failure the body keeps its previous matrix or functions.
  *
  * @param[in] p          (scalar) the handle
  * @param[in] body       (scalar) number of the body, from 0
  * @param[in] n          (scalar) unknowns of the body
- * @param[in] diag       (n) diagonal of K, >= 0, force per length: what the body is measured by
+ * @param[in] diag       (n) diagonal of K, >= 0, force per length; the library measures the body
+ *                       by it
  * @param[in] kplus      (scalar) Y = K+ X, X force, Y length
  * @param[in] k          (scalar) Y = K X, X length, Y force
  * @param[in] concurrent (scalar) 0: only on the calling thread; 1: on any thread, several at once
- * @param[in] user       (scalar) handed to the functions unchanged; may be NULL
+ * @param[in] user       (scalar) passed to the functions unchanged; may be NULL
  *
  * Safety: `diag` has the given shape; the functions may be called with `user` until they are
  * replaced or the problem destroyed.
@@ -941,11 +967,11 @@ int32_t feti_body_operator(struct feti_problem *p,
 /**
  * Adds rows of `B u <= c` or `H u = h`, with 32-bit indices.
  *
- * The rows are copied and numbered behind those of the same kind that are there. A pair of body
- * and unknown that comes twice in a row is summed. A contact row with c = +infinity never closes:
- * it carries no force and joins no bodies, as if it were not there, and keeps its number;
- * feti_rows_rhs turns it on. FETI_STATE where `body` is NULL and some bodies have numbers of the
- * host, others have none. After a failure nothing is added.
+ * The rows are copied and numbered after the existing rows of the same kind. If a pair of body and
+ * unknown occurs twice in a row, the entries are summed. A contact row with c = +infinity never
+ * closes: it carries no force and joins no bodies, but it keeps its number, and feti_rows_rhs can
+ * turn it on. FETI_STATE if `body` is NULL and some bodies have numbers of the host while others
+ * have none. After a failure nothing is added.
  *
  * @param[in]  p       (scalar) the handle
  * @param[in]  kind    (scalar) FETI_INEQUALITY or FETI_EQUALITY
@@ -953,8 +979,8 @@ int32_t feti_body_operator(struct feti_problem *p,
  * @param[in]  row_ptr (rows + 1) row i holds the entries `row_ptr[i]` to `row_ptr[i + 1] - 1`;
  *                     starts with `base`
  * @param[in]  body    (row_ptr[rows] - base) body of each entry, counted from `base`; NULL: `dof`
- *                     is the host's number of the unknown (feti_body_numbering_i32), without
- *                     numbers it counts through all bodies
+ *                     is the host's number of the unknown (feti_body_numbering_i32) or, without
+ *                     such numbers, counts the unknowns of all bodies consecutively
  * @param[in]  dof     (row_ptr[rows] - base) unknown of each entry, counted from `base`
  * @param[in]  val     (row_ptr[rows] - base) entries of B or H
  * @param[in]  base    (scalar) 0 or 1: what `row_ptr`, `body` and `dof` count from
@@ -977,11 +1003,11 @@ int32_t feti_rows_add_i32(struct feti_problem *p,
 /**
  * Adds rows of `B u <= c` or `H u = h`, with 64-bit indices.
  *
- * The rows are copied and numbered behind those of the same kind that are there. A pair of body
- * and unknown that comes twice in a row is summed. A contact row with c = +infinity never closes:
- * it carries no force and joins no bodies, as if it were not there, and keeps its number;
- * feti_rows_rhs turns it on. FETI_STATE where `body` is NULL and some bodies have numbers of the
- * host, others have none. After a failure nothing is added.
+ * The rows are copied and numbered after the existing rows of the same kind. If a pair of body and
+ * unknown occurs twice in a row, the entries are summed. A contact row with c = +infinity never
+ * closes: it carries no force and joins no bodies, but it keeps its number, and feti_rows_rhs can
+ * turn it on. FETI_STATE if `body` is NULL and some bodies have numbers of the host while others
+ * have none. After a failure nothing is added.
  *
  * @param[in]  p       (scalar) the handle
  * @param[in]  kind    (scalar) FETI_INEQUALITY or FETI_EQUALITY
@@ -989,8 +1015,8 @@ int32_t feti_rows_add_i32(struct feti_problem *p,
  * @param[in]  row_ptr (rows + 1) row i holds the entries `row_ptr[i]` to `row_ptr[i + 1] - 1`;
  *                     starts with `base`
  * @param[in]  body    (row_ptr[rows] - base) body of each entry, counted from `base`; NULL: `dof`
- *                     is the host's number of the unknown (feti_body_numbering_i32), without
- *                     numbers it counts through all bodies
+ *                     is the host's number of the unknown (feti_body_numbering_i32) or, without
+ *                     such numbers, counts the unknowns of all bodies consecutively
  * @param[in]  dof     (row_ptr[rows] - base) unknown of each entry, counted from `base`
  * @param[in]  val     (row_ptr[rows] - base) entries of B or H
  * @param[in]  base    (scalar) 0 or 1: what `row_ptr`, `body` and `dof` count from
@@ -1011,13 +1037,14 @@ int32_t feti_rows_add_i64(struct feti_problem *p,
                           int64_t *first);
 
 /**
- * Makes rows compliant: each a spring, `B u - c <= lambda/k` or `H u - h = mu/k`.
+ * Makes rows compliant: each becomes a spring, `B u - c <= lambda/k` or `H u - h = mu/k`.
  *
- * A contact row then carries the force k (B u - c) where that is positive: a linear law of
- * pressure and overclosure; an equality row is an elastic support or a cohesive bond. Rows that
- * are added are rigid, 1/k = 0. A row times t has a compliance times t^2. The numbers are copied
- * and stay with their rows until they are replaced or the rows are cleared; factors of the bodies
- * stay, the last answer does not. After a failure all compliances are as they were.
+ * A contact row then carries the force k (B u - c) if this value is positive, which is a linear
+ * law of pressure and overclosure. A compliant equality row is an elastic support or a cohesive
+ * bond. Newly added rows are rigid, 1/k = 0. If a row is multiplied by t, its compliance is
+ * multiplied by t^2. The numbers are copied and stay with their rows until they are replaced or
+ * the rows are cleared. The factors of the bodies stay valid; the last answer is dropped. After a
+ * failure all compliances are unchanged.
  *
  * @param[in] p     (scalar) the handle
  * @param[in] kind  (scalar) FETI_INEQUALITY or FETI_EQUALITY
@@ -1034,7 +1061,7 @@ int32_t feti_rows_compliance(struct feti_problem *p,
                              const double *inv_k);
 
 /**
- * Reads the size of the problem as it is given now.
+ * Reads the current size of the problem.
  *
  * After a failure nothing is written.
  *
@@ -1063,40 +1090,44 @@ int32_t feti_counts(struct feti_problem *p, int64_t *bodies, int64_t *dofs, int6
 /**
  * Adds nodes with friction, with 32-bit indices.
  *
- * A node has a normal row b_n, which is a contact row that is there (feti_rows_add_i32,
- * feti_rows_add_i64), and dim tangential rows T, dim = 1 in the plane and 2 in space. Its
- * tangential force lambda_t acts on the bodies as -T'lambda_t, its slip is `s = T u - s_old - C_t
- * lambda_t`: the motion of the body with positive entries against the other one. |lambda_t| <= b
- * with b = bound + coefficient lambda_n; the node sticks, s = 0, or slips along the force,
- * `lambda_t = b s / |s|`: slip and force have one sign. Coefficient 0 is friction of Tresca, bound
- * 0 of Coulomb; `bound` acts at open nodes too.
+ * A node has a normal row b_n, which is an existing contact row (feti_rows_add_i32,
+ * feti_rows_add_i64), and dim tangential rows T, with dim = 1 in the plane and 2 in space. Its
+ * tangential force lambda_t acts on the bodies as -T'lambda_t. Its slip is `s = T u - s_old - C_t
+ * lambda_t`: the motion of the body with positive entries relative to the other body. The force is
+ * bounded by |lambda_t| <= b with b = bound + coefficient lambda_n. The node either sticks, s = 0,
+ * or slips in the direction of the force, `lambda_t = b s / |s|`, so that slip and force have the
+ * same sign. Coefficient 0 gives Tresca friction, bound 0 gives Coulomb friction; `bound` also
+ * acts at open nodes.
  *
- * Contact row and tangential rows of a node are to be multiplied by one factor (that of an area,
- * of a unit): lengths that differ by more than 1e3 are refused. Tangential rows may be oblique,
- * and may have no entries. `normal_row` is the number of a contact row, never of an equality row,
- * and of one node alone. A pair of body and unknown that comes twice in a row is summed. s_old and
- * C_t are zero (feti_friction_reference, feti_friction_compliance). The data are copied, the nodes
- * numbered behind those that are there; all nodes have the same dim. Factors of the bodies stay,
- * the last answer does not. FETI_STATE where `body` is NULL and some bodies have numbers of the
- * host, others have none. After a failure nothing is added.
+ * If you scale the rows of a node (by an area or a unit), scale its contact row and its tangential
+ * rows by the same factor: lengths that differ by more than a factor of 1e3 are refused.
+ * Tangential rows may be oblique, and may have no entries. `normal_row` is the number of a contact
+ * row, never of an equality row, and each contact row belongs to at most one node. If a pair of
+ * body and unknown occurs twice in a row, the entries are summed. s_old and C_t start at zero (see
+ * feti_friction_reference and feti_friction_compliance). The data are copied, and the nodes are
+ * numbered after the existing nodes; all nodes have the same dim. The factors of the bodies stay
+ * valid; the last answer is dropped. FETI_STATE if `body` is NULL and some bodies have numbers of
+ * the host while others have none. After a failure nothing is added.
  *
  * @param[in]  p           (scalar) the handle
  * @param[in]  nodes       (scalar) number of nodes, 0 adds none
  * @param[in]  dim         (scalar) tangential rows of a node, 1 or 2
- * @param[in]  normal_row  (nodes) contact row of each node, counted from `base`; `base` - 1: none,
- *                         the bound acts alone
- * @param[in]  row_ptr     (dim * nodes + 1) tangential row i, dim of them for each node, holds the
- *                         entries `row_ptr[i]` to `row_ptr[i + 1] - 1`; starts with `base`
+ * @param[in]  normal_row  (nodes) contact row of each node, counted from `base`; `base` - 1: no
+ *                         contact row, only the bound acts
+ * @param[in]  row_ptr     (dim * nodes + 1) tangential row i (dim rows per node) holds the entries
+ *                         `row_ptr[i]` to `row_ptr[i + 1] - 1`; starts with `base`
  * @param[in]  body        (row_ptr[dim * nodes] - base) body of each entry, counted from `base`;
  *                         NULL: `dof` is the host's number of the unknown
- *                         (feti_body_numbering_i32), without numbers it counts through all bodies
+ *                         (feti_body_numbering_i32) or, without such numbers, counts the unknowns
+ *                         of all bodies consecutively
  * @param[in]  dof         (row_ptr[dim * nodes] - base) unknown of each entry, counted from `base`
  * @param[in]  val         (row_ptr[dim * nodes] - base) entries of T
  * @param[in]  base        (scalar) 0 or 1: what `normal_row`, `row_ptr`, `body` and `dof` count
  *                         from
- * @param[in]  coefficient (nodes) coefficient of friction, >= 0, no unit; 0 without a contact row;
- *                         NULL: zeros
- * @param[in]  bound       (nodes) bound without contact force, >= 0, force; NULL: zeros
+ * @param[in]  coefficient (nodes) coefficient of friction, >= 0, no unit; must be 0 without a
+ *                         contact row; NULL: zeros
+ * @param[in]  bound       (nodes) part of the bound that does not depend on the contact force, >=
+ *                         0, force; NULL: zeros
  * @param[out] first       (scalar) number of the first node added, from 0; may be NULL
  *
  * Safety: The arrays have the given shapes.
@@ -1117,40 +1148,44 @@ int32_t feti_friction_add_i32(struct feti_problem *p,
 /**
  * Adds nodes with friction, with 64-bit indices.
  *
- * A node has a normal row b_n, which is a contact row that is there (feti_rows_add_i32,
- * feti_rows_add_i64), and dim tangential rows T, dim = 1 in the plane and 2 in space. Its
- * tangential force lambda_t acts on the bodies as -T'lambda_t, its slip is `s = T u - s_old - C_t
- * lambda_t`: the motion of the body with positive entries against the other one. |lambda_t| <= b
- * with b = bound + coefficient lambda_n; the node sticks, s = 0, or slips along the force,
- * `lambda_t = b s / |s|`: slip and force have one sign. Coefficient 0 is friction of Tresca, bound
- * 0 of Coulomb; `bound` acts at open nodes too.
+ * A node has a normal row b_n, which is an existing contact row (feti_rows_add_i32,
+ * feti_rows_add_i64), and dim tangential rows T, with dim = 1 in the plane and 2 in space. Its
+ * tangential force lambda_t acts on the bodies as -T'lambda_t. Its slip is `s = T u - s_old - C_t
+ * lambda_t`: the motion of the body with positive entries relative to the other body. The force is
+ * bounded by |lambda_t| <= b with b = bound + coefficient lambda_n. The node either sticks, s = 0,
+ * or slips in the direction of the force, `lambda_t = b s / |s|`, so that slip and force have the
+ * same sign. Coefficient 0 gives Tresca friction, bound 0 gives Coulomb friction; `bound` also
+ * acts at open nodes.
  *
- * Contact row and tangential rows of a node are to be multiplied by one factor (that of an area,
- * of a unit): lengths that differ by more than 1e3 are refused. Tangential rows may be oblique,
- * and may have no entries. `normal_row` is the number of a contact row, never of an equality row,
- * and of one node alone. A pair of body and unknown that comes twice in a row is summed. s_old and
- * C_t are zero (feti_friction_reference, feti_friction_compliance). The data are copied, the nodes
- * numbered behind those that are there; all nodes have the same dim. Factors of the bodies stay,
- * the last answer does not. FETI_STATE where `body` is NULL and some bodies have numbers of the
- * host, others have none. After a failure nothing is added.
+ * If you scale the rows of a node (by an area or a unit), scale its contact row and its tangential
+ * rows by the same factor: lengths that differ by more than a factor of 1e3 are refused.
+ * Tangential rows may be oblique, and may have no entries. `normal_row` is the number of a contact
+ * row, never of an equality row, and each contact row belongs to at most one node. If a pair of
+ * body and unknown occurs twice in a row, the entries are summed. s_old and C_t start at zero (see
+ * feti_friction_reference and feti_friction_compliance). The data are copied, and the nodes are
+ * numbered after the existing nodes; all nodes have the same dim. The factors of the bodies stay
+ * valid; the last answer is dropped. FETI_STATE if `body` is NULL and some bodies have numbers of
+ * the host while others have none. After a failure nothing is added.
  *
  * @param[in]  p           (scalar) the handle
  * @param[in]  nodes       (scalar) number of nodes, 0 adds none
  * @param[in]  dim         (scalar) tangential rows of a node, 1 or 2
- * @param[in]  normal_row  (nodes) contact row of each node, counted from `base`; `base` - 1: none,
- *                         the bound acts alone
- * @param[in]  row_ptr     (dim * nodes + 1) tangential row i, dim of them for each node, holds the
- *                         entries `row_ptr[i]` to `row_ptr[i + 1] - 1`; starts with `base`
+ * @param[in]  normal_row  (nodes) contact row of each node, counted from `base`; `base` - 1: no
+ *                         contact row, only the bound acts
+ * @param[in]  row_ptr     (dim * nodes + 1) tangential row i (dim rows per node) holds the entries
+ *                         `row_ptr[i]` to `row_ptr[i + 1] - 1`; starts with `base`
  * @param[in]  body        (row_ptr[dim * nodes] - base) body of each entry, counted from `base`;
  *                         NULL: `dof` is the host's number of the unknown
- *                         (feti_body_numbering_i32), without numbers it counts through all bodies
+ *                         (feti_body_numbering_i32) or, without such numbers, counts the unknowns
+ *                         of all bodies consecutively
  * @param[in]  dof         (row_ptr[dim * nodes] - base) unknown of each entry, counted from `base`
  * @param[in]  val         (row_ptr[dim * nodes] - base) entries of T
  * @param[in]  base        (scalar) 0 or 1: what `normal_row`, `row_ptr`, `body` and `dof` count
  *                         from
- * @param[in]  coefficient (nodes) coefficient of friction, >= 0, no unit; 0 without a contact row;
- *                         NULL: zeros
- * @param[in]  bound       (nodes) bound without contact force, >= 0, force; NULL: zeros
+ * @param[in]  coefficient (nodes) coefficient of friction, >= 0, no unit; must be 0 without a
+ *                         contact row; NULL: zeros
+ * @param[in]  bound       (nodes) part of the bound that does not depend on the contact force, >=
+ *                         0, force; NULL: zeros
  * @param[out] first       (scalar) number of the first node added, from 0; may be NULL
  *
  * Safety: The arrays have the given shapes.
@@ -1169,18 +1204,20 @@ int32_t feti_friction_add_i64(struct feti_problem *p,
                               int64_t *first);
 
 /**
- * Replaces the law of nodes: coefficients, bounds, or both.
+ * Replaces the friction law of nodes: coefficients, bounds, or both.
  *
- * What is NULL stays as it is. The numbers are copied; factors of the bodies and the last answer
- * stay, but for a node that may carry no force before and some after, or the reverse: that drops
- * the answer. After a failure all laws are as they were.
+ * An argument that is NULL leaves its values unchanged. The numbers are copied. The factors of the
+ * bodies and the last answer stay valid, with one exception: the answer is dropped if a node could
+ * not carry a tangential force before the call and can after it, or the reverse. After a failure
+ * all laws are unchanged.
  *
  * @param[in] p           (scalar) the handle
  * @param[in] first       (scalar) first node to change, from 0
  * @param[in] nodes       (scalar) number of nodes to change
- * @param[in] coefficient (nodes) coefficient of friction, >= 0, no unit; 0 without a contact row;
- *                        NULL: it stays
- * @param[in] bound       (nodes) bound without contact force, >= 0, force; NULL: it stays
+ * @param[in] coefficient (nodes) coefficient of friction, >= 0, no unit; must be 0 without a
+ *                        contact row; NULL: unchanged
+ * @param[in] bound       (nodes) part of the bound that does not depend on the contact force, >=
+ *                        0, force; NULL: unchanged
  *
  * Safety: The arrays have the given shapes.
  */
@@ -1191,12 +1228,12 @@ int32_t feti_friction_law(struct feti_problem *p,
                           const double *bound);
 
 /**
- * Makes the stick of nodes elastic, `s = T u - s_old - C_t lambda_t` with C_t = 1/k_t.
+ * Makes sticking nodes elastic: `s = T u - s_old - C_t lambda_t` with C_t = 1/k_t.
  *
- * A node that sticks then gives way by C_t lambda_t. Nodes that are added are rigid, C_t = 0; a
- * node whose rows are multiplied by t has a compliance times t^2. The numbers are copied and stay
- * until they are replaced or the nodes are cleared; factors of the bodies stay, the last answer
- * does not. After a failure all compliances are as they were.
+ * A sticking node then yields by C_t lambda_t. Newly added nodes are rigid, C_t = 0. If the rows
+ * of a node are multiplied by t, its compliance is multiplied by t^2. The numbers are copied and
+ * stay until they are replaced or the nodes are cleared. The factors of the bodies stay valid; the
+ * last answer is dropped. After a failure all compliances are unchanged.
  *
  * @param[in] p      (scalar) the handle
  * @param[in] first  (scalar) first node to change, from 0
@@ -1293,7 +1330,7 @@ typedef struct feti_option {
 /**
  * Sets an option that is a number.
  *
- * Holds until it is set again. After a failure the option is as it was.
+ * The value stays valid until it is set again. After a failure the option is unchanged.
  *
  * @param[in] p     (scalar) the handle
  * @param[in] name  (text) a name of feti_option_at with type FETI_OPTION_F64
@@ -1306,7 +1343,7 @@ int32_t feti_set_f64(struct feti_problem *p, const char *name, double value);
 /**
  * Sets an option that is an integer.
  *
- * Holds until it is set again. After a failure the option is as it was.
+ * The value stays valid until it is set again. After a failure the option is unchanged.
  *
  * @param[in] p     (scalar) the handle
  * @param[in] name  (text) a name of feti_option_at with type FETI_OPTION_I64
@@ -1319,23 +1356,24 @@ int32_t feti_set_i64(struct feti_problem *p, const char *name, int64_t value);
 /**
  * Sets an option that is a text.
  *
- * The text is copied and holds until it is set again. After a failure the option is as it was.
+ * The text is copied and stays valid until it is set again. After a failure the option is
+ * unchanged.
  *
  * @param[in] p     (scalar) the handle
  * @param[in] name  (text) a name of feti_option_at with type FETI_OPTION_STR
- * @param[in] value (text) one of the texts the option knows
+ * @param[in] value (text) one of the texts that the option accepts
  *
  * Safety: `name` and `value` are NUL terminated.
  */
 int32_t feti_set_str(struct feti_problem *p, const char *name, const char *value);
 
 /**
- * Sets several options by one text, such as "tolerance=1e-8 threads=4".
+ * Sets several options with one text, such as "tolerance=1e-8 threads=4".
  *
- * Items name = value of any type, separated by blanks, commas or ends of lines; a sign # begins a
- * comment that ends with the line. An option that comes twice has its last value. After a failure
- * all options are as they were; the error names the option, and `entry` of its detail is the byte
- * of the text, from 0.
+ * The text has items name = value of any type, separated by blanks, commas or line ends; a #
+ * begins a comment that ends with the line. If an option occurs twice, the last value counts.
+ * After a failure all options are unchanged; the error names the option, and `entry` of the error
+ * detail is the position of the byte in the text, from 0.
  *
  * @param[in] p    (scalar) the handle
  * @param[in] text (text) the options
@@ -1347,11 +1385,11 @@ int32_t feti_set_text(struct feti_problem *p, const char *text);
 /**
  * Reads an option that is a number.
  *
- * After a failure `value` is as it was.
+ * After a failure `value` is unchanged.
  *
  * @param[in]  p     (scalar) the handle
  * @param[in]  name  (text) a name of feti_option_at with type FETI_OPTION_F64
- * @param[out] value (scalar) the value that holds now
+ * @param[out] value (scalar) the current value
  *
  * Safety: `name` is NUL terminated, `value` has room for one number.
  */
@@ -1360,11 +1398,11 @@ int32_t feti_get_f64(struct feti_problem *p, const char *name, double *value);
 /**
  * Reads an option that is an integer.
  *
- * After a failure `value` is as it was.
+ * After a failure `value` is unchanged.
  *
  * @param[in]  p     (scalar) the handle
  * @param[in]  name  (text) a name of feti_option_at with type FETI_OPTION_I64
- * @param[out] value (scalar) the value that holds now
+ * @param[out] value (scalar) the current value
  *
  * Safety: `name` is NUL terminated, `value` has room for one number.
  */
@@ -1373,7 +1411,7 @@ int32_t feti_get_i64(struct feti_problem *p, const char *name, int64_t *value);
 /**
  * Reads an option that is a text.
  *
- * The text is cut to fit, always NUL terminated when `cap` > 0. After a failure nothing is
+ * The text is truncated to fit, and always NUL terminated if `cap` > 0. After a failure nothing is
  * written.
  *
  * @param[in]  p    (scalar) the handle
@@ -1396,26 +1434,26 @@ int64_t feti_option_count(void);
 /**
  * Describes an option: name, text, type, default and range.
  *
- * Texts are static. `struct_size` is set by the caller; no more than that is written. After a
- * failure nothing is written.
+ * The texts are static. The caller sets `struct_size`; the library writes no more bytes than that.
+ * After a failure nothing is written.
  *
  * @param[in]     k   (scalar) from 0, less than feti_option_count
  * @param[in,out] out (scalar) `struct_size` set, at least 16
  *
- * Safety: `out` leads to `struct_size` writable bytes.
+ * Safety: `out` points to `struct_size` writable bytes.
  */
 int32_t feti_option_at(int64_t k, struct feti_option *out);
 
 /*
  * Solve
  * =====
- * Compute the answer, and learn how exact it is.
+ * Compute the answer and its accuracy.
  */
 
 /**
- * How a solve went. Counts of a call that failed early are zero, figures NaN. Where some groups of
- * bodies have an answer and others have none, counts of work, energy and figures are those of the
- * groups that have one.
+ * Report of a solve. If the call failed early, counts are zero and measured figures are NaN. If
+ * some groups of bodies have an answer and others have none, the counts of work, the energy and
+ * the figures cover only the groups with an answer.
  */
 typedef struct feti_info {
   /**
@@ -1423,7 +1461,7 @@ typedef struct feti_info {
    */
   int64_t struct_size;
   /**
-   * What feti_solve returned: the worst of all groups of bodies.
+   * What feti_solve returned: the worst status of all groups of bodies.
    */
   int32_t status;
   /**
@@ -1455,7 +1493,8 @@ typedef struct feti_info {
    */
   int64_t active;
   /**
-   * Motions that neither loads nor rows determine: the answer has the least sum of `K_ii u_i^2`.
+   * Number of motions that neither loads nor rows determine; the answer is the one with the least
+   * sum of `K_ii u_i^2`.
    */
   int64_t undetermined;
   /**
@@ -1467,7 +1506,7 @@ typedef struct feti_info {
    */
   int64_t cg_steps;
   /**
-   * Steps that met a bound.
+   * Steps that reached a bound.
    */
   int64_t expansions;
   /**
@@ -1483,28 +1522,28 @@ typedef struct feti_info {
    */
   int64_t coarse_solves;
   /**
-   * Numeric factorisations for K+ since the problem was created; equal bodies share one.
+   * Numeric factorisations for K+ since the problem was created; equal bodies share a factorisation.
    */
   int64_t factorisations;
   /**
-   * Symbolic analyses since the problem was created; bodies with one pattern share one.
+   * Symbolic analyses since the problem was created; bodies with the same pattern share an analysis.
    */
   int64_t analyses;
   /**
-   * Largest entry of the certificate over what it is allowed, over all bodies and rows that have an
-   * answer: <= 1 passes.
+   * Largest ratio of an entry of the certificate to its limit, over all bodies and rows with an
+   * answer; <= 1 passes.
    */
   double worst;
   /**
-   * Relative error of equilibrium, as in feti_certificate: of the worst body.
+   * Relative error of equilibrium of the worst body, as in feti_certificate.
    */
   double equilibrium;
   /**
-   * Relative error of the balance, of the worst floating body.
+   * Relative error of the balance of forces on the worst floating body.
    */
   double balance;
   /**
-   * Relative penetration, of the worst row.
+   * Relative penetration of the worst row.
    */
   double penetration;
   /**
@@ -1512,20 +1551,20 @@ typedef struct feti_info {
    */
   double equality;
   /**
-   * Relative size of a force of the wrong sign, of the worst row.
+   * Relative size of a force with the wrong sign, for the worst row.
    */
   double negative_force;
   /**
-   * Relative error of complementarity, of the worst row.
+   * Relative error of complementarity of the worst row.
    */
   double complementarity;
   /**
-   * Relative gap between primal and dual energy, of the worst group of bodies.
+   * Relative gap between primal and dual energy of the worst group of bodies.
    */
   double duality_gap;
   /**
-   * Energy 1/2 u'Ku - f'u and that of the springs of compliant rows, 1/2 lambda'C lambda + 1/2 mu'C
-   * mu, force times length.
+   * Energy of the bodies, 1/2 u'Ku - f'u, plus energy of the springs of compliant rows, 1/2 lambda'C
+   * lambda + 1/2 mu'C mu; force times length.
    */
   double energy;
   /**
@@ -1537,50 +1576,50 @@ typedef struct feti_info {
    */
   double seconds_solve;
   /**
-   * Faces on which the dual was solved directly.
+   * Number of faces on which the dual problem was solved directly.
    */
   int64_t direct_solves;
   /**
-   * 1: the answer was finished directly (option finish); 0: that was not asked for or not needed, or
-   * brought nothing.
+   * 1: a direct solve finished the answer (option finish); 0: a direct solve was not requested, not
+   * needed, or brought no improvement.
    */
   int64_t finished;
   /**
-   * Columns of the dual operators of the bodies, one for each body that a row touches, computed
-   * since the problem was created.
+   * Columns of the dual operators of the bodies (one column for each body that a row touches)
+   * computed since the problem was created.
    */
   int64_t columns_computed;
   /**
-   * Columns kept through a change of rows or bodies since the problem was created.
+   * Columns that were reused after a change of rows or bodies since the problem was created.
    */
   int64_t columns_kept;
   /**
-   * Bodies whose dual operator has its entries (option dual_operator).
+   * Bodies whose dual operator is assembled (option dual_operator).
    */
   int64_t explicit_operators;
   /**
-   * Bodies whose dual operator is known by its products alone.
+   * Bodies whose dual operator is applied matrix-free.
    */
   int64_t implicit_operators;
   /**
-   * Bytes of the factors of all bodies and, at most, of the work arrays of their computation.
+   * Bytes of the factors of all bodies plus an upper bound for the work arrays of their computation.
    */
   int64_t factor_bytes;
   /**
-   * Bytes of the explicit dual operators.
+   * Bytes of the assembled dual operators.
    */
   int64_t operator_bytes;
   /**
-   * Relative size of a tangential force beyond its bound, of the worst node with friction.
+   * Relative excess of a tangential force over its bound, for the worst node with friction.
    */
   double friction_cone;
   /**
-   * Relative work that friction does not do: force that is missing or across where a node slips, of
-   * the worst node.
+   * Relative deficit of frictional work: where a node slips, its force is too small or has another
+   * direction than the slip; for the worst node.
    */
   double friction_work;
   /**
-   * Relative slip where the force is within its bound, of the worst node.
+   * Relative slip although the force is within its bound, for the worst node.
    */
   double friction_stick;
   /**
@@ -1600,7 +1639,7 @@ typedef struct feti_info {
    */
   int64_t friction_steps;
   /**
-   * Starts that they took, over all groups of bodies with friction.
+   * Number of starts of the Newton method of friction, over all groups of bodies with friction.
    */
   int64_t friction_starts;
 } feti_info;
@@ -1608,17 +1647,17 @@ typedef struct feti_info {
 /**
  * Prepares the solve: null spaces, factors of the bodies, the dual operator.
  *
- * feti_solve does it when it is due; called alone it shows errors in the bodies early. After a
- * failure all that was given is kept and can be corrected.
+ * feti_solve calls this function when necessary; called alone, it finds errors in the bodies
+ * early. After a failure all data that was given is kept and can be corrected.
  *
- * FETI_STATE where there is no body, or one without a matrix; FETI_NULL_SPACE where the null space
- * of a body is not what was claimed, or cannot be found; FETI_INDEFINITE where a matrix is
- * indefinite, with body, unknown and pivot; FETI_GAPS_CONTRADICT where a row without entries has a
- * right-hand side that 0 does not satisfy; FETI_CALLBACK where a function of the host fails or is
- * not what it must be (feti_body_operator); FETI_UNSUPPORTED where fixing unknowns were given for
- * a body whose matrix is functions of the host; FETI_OVERFLOW where the square of a row, or a
- * compliance times the largest K_ii, over- or underflows; FETI_CANCELLED where the host has
- * cancelled.
+ * FETI_STATE if there is no body, or a body without a matrix; FETI_NULL_SPACE if the null space of
+ * a body is not the one that was given, or cannot be found; FETI_INDEFINITE if a matrix is
+ * indefinite, with body, unknown and pivot in the error detail; FETI_GAPS_CONTRADICT if a row
+ * without entries has a right-hand side that 0 does not satisfy; FETI_CALLBACK if a function of
+ * the host fails or violates its requirements (feti_body_operator); FETI_UNSUPPORTED if fixing
+ * unknowns were given for a body with functions of the host instead of a matrix; FETI_OVERFLOW if
+ * the square of a row, or a compliance times the largest K_ii, overflows or underflows;
+ * FETI_CANCELLED if the host has cancelled.
  *
  * @param[in] p (scalar) the handle
  */
@@ -1627,49 +1666,50 @@ int32_t feti_setup(struct feti_problem *p);
 /**
  * Minimises 1/2 u'Ku - f'u subject to `B u <= c` and `H u = h`.
  *
- * The answer is kept until the next solve and read with feti_displacement, feti_multipliers and
- * the like; there is one when the status is not negative, unless the call was cancelled or its
- * time was over before the first step. `info` is written in any case, with NaN for figures that a
- * failure left unknown. After a failure all that was given is kept and can be corrected, except
- * after FETI_INTERNAL. Where rows and loads leave motions open (`undetermined`), the answer is the
- * one nearest to rest that keeps the rows: the least sum of `K_ii u_i^2`.
+ * The answer is kept until the next solve; read it with feti_displacement, feti_multipliers and
+ * the other functions for results. An answer exists if the status is not negative, unless the call
+ * was cancelled or ran out of time before the first step. `info` is written in any case, with NaN
+ * for figures that are unknown after a failure. After a failure all data that was given is kept
+ * and can be corrected, except after FETI_INTERNAL. If rows and loads leave motions undetermined
+ * (`undetermined`), the answer is the admissible one nearest to rest: the one with the least sum
+ * of `K_ii u_i^2`.
  *
- * Groups of bodies that no row with a finite gap joins are problems of their own, each solved to
- * its own accuracy and several at a time where there are threads. The worst status of all groups
- * is returned; counts and the energy are sums, every figure of the certificate is that of the
- * worst group. Where one group has no answer because its load is not held or its rows contradict
- * each other, the status, feti_last_error and feti_diagnosis are those of the first such group,
- * and the other groups keep their answers: `info` has what they came to. What is read for one body
- * of a group without an answer is FETI_STATE; what is read for all bodies or rows at once is NaN
- * there, in feti_active FETI_ROW_UNKNOWN.
+ * Groups of bodies that are not joined by a row with a finite gap are separate problems. Each
+ * group is solved to its own accuracy, several at a time if threads are available. The function
+ * returns the worst status of all groups; counts and energies are summed, and every figure of the
+ * certificate is the one of the worst group. If a group has no answer because its load is not held
+ * or its rows contradict each other, the status, feti_last_error and feti_diagnosis describe the
+ * first such group. The other groups keep their answers, and `info` describes them. Reading a
+ * result of one body in a group without an answer returns FETI_STATE; reading results of all
+ * bodies or rows at once gives NaN for such a group, and feti_active gives FETI_ROW_UNKNOWN.
  *
- * A status above 0 comes with an answer, but for such ends. FETI_ITERATIONS at the limit of option
- * max_steps; FETI_TIME at the limit of option time_limit, which counts from the call, with a setup
- * that is due; FETI_CANCELLED where the host has cancelled; FETI_STALLED where steps no longer
- * reduce the error; FETI_INACCURATE where the certificate does not pass; FETI_MARGINAL where a
- * part of the load, below 1e-7 of it, is not held. A status below 0 comes without one for the
- * group of bodies it is about. FETI_LOAD_NOT_HELD where no contact force balances the load;
- * FETI_SLIDES where friction holds only a part of it and no rest was found; FETI_GAPS_CONTRADICT
- * where rows contradict each other; FETI_INDEFINITE where K drives a soft motion further than
- * closed rows resist it; feti_diagnosis has the proof of each. It runs feti_setup when it is due,
- * and fails as that does.
+ * A status above 0 comes with an answer, unless the call ended before the first step.
+ * FETI_ITERATIONS at the limit of option max_steps; FETI_TIME at the limit of option time_limit,
+ * which counts from the call and includes a setup that is due; FETI_CANCELLED if the host has
+ * cancelled; FETI_STALLED if steps no longer reduce the error; FETI_INACCURATE if the certificate
+ * does not pass; FETI_MARGINAL if a part of the load, below 1e-7 of it, is not held. With a status
+ * below 0 the group of bodies concerned has no answer. FETI_LOAD_NOT_HELD if no contact force
+ * balances the load; FETI_SLIDES if friction holds only a part of the load and no equilibrium was
+ * found; FETI_GAPS_CONTRADICT if rows contradict each other; FETI_INDEFINITE if K drives a soft
+ * motion and the closed rows do not stop it. feti_diagnosis has the proof of each. The call runs
+ * feti_setup when it is due, and then fails for the same reasons.
  *
  * @param[in]     p    (scalar) the handle
  * @param[in,out] info (scalar) `struct_size` set, at least 16; may be NULL
  *
- * Safety: `info` is NULL or leads to `struct_size` writable bytes.
+ * Safety: `info` is NULL or points to `struct_size` writable bytes.
  */
 int32_t feti_solve(struct feti_problem *p, struct feti_info *info);
 
 /**
- * Cancels the setup or the solve that runs on the problem.
+ * Cancels the setup or the solve that is running on the problem.
  *
  * May be called from any thread and from a progress function, while another call on the problem
- * runs. That call returns FETI_CANCELLED before the next product with the dual operator (in the
- * setup: before the next body, and inside the assembly of its dual operator); the results are
- * those of the last step, and there are none when it was cancelled before the first one. Without a
- * running call it does nothing: every setup and every solve begins anew. In a signal handler set a
- * flag instead and let the progress function look at it.
+ * runs. The running call returns FETI_CANCELLED before the next product with the dual operator (in
+ * the setup: before the next body, and inside the assembly of its dual operator). The results are
+ * those of the last step; there are none if the call was cancelled before the first step. If no
+ * call is running, this function has no effect: it does not cancel later setups and solves. In a
+ * signal handler, set a flag instead and let the progress function check it.
  *
  * @param[in] p (scalar) the handle
  */
@@ -1682,64 +1722,66 @@ int32_t feti_cancel(struct feti_problem *p);
  */
 
 /**
- * State of a row: open, its force is zero.
+ * State of a row: open; its force is zero.
  */
 #define FETI_ROW_OPEN 0
 
 /**
- * State of a row: closed, it carries a force.
+ * State of a row: closed; it carries a force.
  */
 #define FETI_ROW_CLOSED 1
 
 /**
- * State of a row: closed with a force that is zero to rounding, or with a force without a clear
- * sign.
+ * State of a row: closed, with a force that is zero within rounding error or has no clear sign.
  */
 #define FETI_ROW_WEAK 2
 
 /**
- * State of a row: unknown, the bodies it touches are in a group that has no answer.
+ * State of a row: unknown, because the bodies that it touches are in a group without an answer.
  */
 #define FETI_ROW_UNKNOWN 3
 
 /**
- * State of a node with friction: its bound is zero, it carries no tangential force.
+ * State of a node with friction: open; the bound is zero and the node carries no tangential force.
  */
 #define FETI_FRICTION_OPEN 0
 
 /**
- * State of a node with friction: it sticks, its force is within its bound.
+ * State of a node with friction: it sticks; its force is within the bound.
  */
 #define FETI_FRICTION_STICK 1
 
 /**
- * State of a node with friction: it slips along a force that reaches its bound.
+ * State of a node with friction: it slips in the direction of its force, which reaches the bound.
  */
 #define FETI_FRICTION_SLIP 2
 
 /**
- * State of a node with friction: its force reaches its bound to rounding, and it does not slip.
+ * State of a node with friction: its force equals the bound within rounding error, and the node
+ * does not slip.
  */
 #define FETI_FRICTION_WEAK 3
 
 /**
- * State of a node with friction: unknown, the bodies it touches are in a group that has no answer.
+ * State of a node with friction: unknown, because the bodies that it touches are in a group
+ * without an answer.
  */
 #define FETI_FRICTION_UNKNOWN 4
 
 /**
  * Reads the displacement of a body.
  *
- * With FETI_ALL the displacement of all bodies: by the host's numbers where they have some,
- * entries of no unknown as they were; else one body after the other; NaN on bodies whose group has
- * no answer (feti_solve). FETI_STATE before a solve has given an answer, for a body whose group
- * has none, and with FETI_ALL where some bodies have numbers of the host and others have none.
- * After a failure nothing is written.
+ * FETI_ALL reads the displacements of all bodies. If the bodies have numbers of the host, the
+ * array uses these numbers, and entries that belong to no unknown are left unchanged; otherwise it
+ * gets one body after the other. Bodies in a group without an answer (feti_solve) get NaN.
+ * FETI_STATE if no solve has given an answer yet, if the group of the body has no answer, and with
+ * FETI_ALL if some bodies have numbers of the host and others have none. After a failure nothing
+ * is written.
  *
  * @param[in]  p    (scalar) the handle
  * @param[in]  body (scalar) number of the body, from 0, or FETI_ALL
  * @param[in]  n    (scalar) unknowns of the body; with FETI_ALL at least the largest number + 1,
- *                  without numbers all unknowns
+ *                  or without numbers the unknowns of all bodies
  * @param[out] u    (n) displacement, length
  *
  * Safety: The array has the given shape.
@@ -1750,12 +1792,13 @@ int32_t feti_displacement(struct feti_problem *p, int64_t body, int64_t n, doubl
  * Reads the multipliers: lambda of `B u <= c`, mu of `H u = h`, or lambda_t of the nodes with
  * friction, node after node.
  *
- * NaN for rows on bodies whose group has no answer (feti_solve), 0 for rows that never close.
- * FETI_STATE before a solve has given an answer. After a failure nothing is written.
+ * Rows on bodies in a group without an answer (feti_solve) get NaN; rows that never close get 0.
+ * FETI_STATE if no solve has given an answer yet. After a failure nothing is written.
  *
  * @param[in]  p      (scalar) the handle
  * @param[in]  kind   (scalar) FETI_INEQUALITY, FETI_EQUALITY or FETI_TANGENTIAL
- * @param[in]  rows   (scalar) number of rows of the kind; of tangential ones dim for each node
+ * @param[in]  rows   (scalar) number of rows of the kind; for tangential rows dim times the number
+ *                    of nodes
  * @param[out] lambda (rows) force, >= 0 for inequalities
  *
  * Safety: The array has the given shape.
@@ -1763,11 +1806,11 @@ int32_t feti_displacement(struct feti_problem *p, int64_t body, int64_t n, doubl
 int32_t feti_multipliers(struct feti_problem *p, int32_t kind, int64_t rows, double *lambda);
 
 /**
- * Reads what is left of the gaps, c - B u; of compliant rows c + lambda/k - B u, 0 where they
+ * Reads the remaining gaps, c - B u; for compliant rows c + lambda/k - B u, which is 0 if they
  * carry a force.
  *
- * NaN for rows on bodies whose group has no answer (feti_solve), +infinity for rows that never
- * close. FETI_STATE before a solve has given an answer. After a failure nothing is written.
+ * Rows on bodies in a group without an answer (feti_solve) get NaN; rows that never close get
+ * +infinity. FETI_STATE if no solve has given an answer yet. After a failure nothing is written.
  *
  * @param[in]  p     (scalar) the handle
  * @param[in]  rows  (scalar) number of inequality rows
@@ -1778,11 +1821,13 @@ int32_t feti_multipliers(struct feti_problem *p, int32_t kind, int64_t rows, dou
 int32_t feti_gaps(struct feti_problem *p, int64_t rows, double *slack);
 
 /**
- * Reads the state of the inequality rows: what the certificate takes for zero at a row decides.
+ * Reads the state of the inequality rows, decided by what the certificate regards as zero at each
+ * row.
  *
- * FETI_ROW_CLOSED with a force; FETI_ROW_OPEN with a gap and no force, and for rows that never
- * close; FETI_ROW_WEAK with neither; FETI_ROW_UNKNOWN for rows on bodies whose group has no answer
- * (feti_solve). FETI_STATE before a solve has given an answer. After a failure nothing is written.
+ * FETI_ROW_CLOSED means a force; FETI_ROW_OPEN means a gap and no force, or a row that never
+ * closes; FETI_ROW_WEAK means neither a gap nor a force; FETI_ROW_UNKNOWN means that the bodies of
+ * the row are in a group without an answer (feti_solve). FETI_STATE if no solve has given an
+ * answer yet. After a failure nothing is written.
  *
  * @param[in]  p     (scalar) the handle
  * @param[in]  rows  (scalar) number of inequality rows
@@ -1793,24 +1838,26 @@ int32_t feti_gaps(struct feti_problem *p, int64_t rows, double *slack);
 int32_t feti_active(struct feti_problem *p, int64_t rows, int32_t *state);
 
 /**
- * Reads the force of the rows on a body, -B'lambda, -H'mu, -T'lambda_t or all of them: `K u = f +
- * r`.
+ * Reads the force of the rows on a body: -B'lambda, -H'mu, -T'lambda_t, or the sum of all: `K u =
+ * f + r`.
  *
- * By kinds it is that of the host's rows. All together hold the force of the glue as well where
- * unknowns of several bodies have one number (option glue): what these bodies do to each other. It
- * cancels in the sum over them, which FETI_ALL gives.
+ * For a single kind the force comes from the host's rows only. If unknowns of several bodies share
+ * a number (option glue), the sum of all kinds also includes the glue force that these bodies
+ * exert on each other. With FETI_ALL the result is the sum over the bodies, in which the glue
+ * forces cancel.
  *
- * With FETI_ALL the forces on all bodies: by the host's numbers where they have some, entries of
- * no unknown as they were; else one body after the other; NaN where rows act on bodies whose group
- * has no answer (feti_solve). FETI_STATE before a solve has given an answer, for a body whose
- * group has none, and with FETI_ALL where some bodies have numbers of the host and others have
- * none. After a failure nothing is written.
+ * FETI_ALL reads the forces on all bodies. If the bodies have numbers of the host, the array uses
+ * these numbers, and entries that belong to no unknown are left unchanged; otherwise it gets one
+ * body after the other. Entries on which rows act get NaN if the group of the body has no answer
+ * (feti_solve). FETI_STATE if no solve has given an answer yet, if the group of the body has no
+ * answer, and with FETI_ALL if some bodies have numbers of the host and others have none. After a
+ * failure nothing is written.
  *
  * @param[in]  p    (scalar) the handle
  * @param[in]  kind (scalar) FETI_INEQUALITY, FETI_EQUALITY, FETI_TANGENTIAL, or 0 for all
  * @param[in]  body (scalar) number of the body, from 0, or FETI_ALL
  * @param[in]  n    (scalar) unknowns of the body; with FETI_ALL at least the largest number + 1,
- *                  without numbers all unknowns
+ *                  or without numbers the unknowns of all bodies
  * @param[out] r    (n) force
  *
  * Safety: The array has the given shape.
@@ -1821,8 +1868,8 @@ int32_t feti_reaction(struct feti_problem *p, int32_t kind, int64_t body, int64_
  * Reads the amplitudes alpha of the null space in the displacement of a body, `u = K+ (f + r) + R
  * alpha`.
  *
- * FETI_STATE before a solve has given an answer, and for a body whose group has none (feti_solve).
- * After a failure nothing is written.
+ * FETI_STATE if no solve has given an answer yet, and if the group of the body has no answer
+ * (feti_solve). After a failure nothing is written.
  *
  * @param[in]  p     (scalar) the handle
  * @param[in]  body  (scalar) number of the body, from 0
@@ -1834,16 +1881,16 @@ int32_t feti_reaction(struct feti_problem *p, int32_t kind, int64_t body, int64_
 int32_t feti_amplitudes(struct feti_problem *p, int64_t body, int64_t r, double *alpha);
 
 /**
- * Reads the slips of the last answer, `s = T u - s_old - C_t lambda_t` with the s_old of that
+ * Reads the slips of the last answer, `s = T u - s_old - C_t lambda_t`, with the s_old of that
  * solve.
  *
- * A slip has the sign of its force lambda_t (feti_multipliers with FETI_TANGENTIAL). NaN for nodes
- * on bodies whose group has no answer (feti_solve). FETI_STATE before a solve has given an answer.
- * After a failure nothing is written.
+ * A slip has the sign of its force lambda_t (feti_multipliers with FETI_TANGENTIAL). Nodes on
+ * bodies in a group without an answer (feti_solve) get NaN. FETI_STATE if no solve has given an
+ * answer yet. After a failure nothing is written.
  *
  * @param[in]  p     (scalar) the handle
  * @param[in]  nodes (scalar) number of nodes with friction
- * @param[in]  dim   (scalar) tangential rows of a node, 1 or 2; not looked at without nodes
+ * @param[in]  dim   (scalar) tangential rows of a node, 1 or 2; ignored if there are no nodes
  * @param[out] slip  (dim * nodes) node after node, length
  *
  * Safety: The array has the given shape.
@@ -1851,15 +1898,16 @@ int32_t feti_amplitudes(struct feti_problem *p, int64_t body, int64_t r, double 
 int32_t feti_friction_slips(struct feti_problem *p, int64_t nodes, int32_t dim, double *slip);
 
 /**
- * Reads the states of the nodes in the last answer: what the certificate takes for zero at a node
- * decides.
+ * Reads the states of the nodes in the last answer, decided by what the certificate regards as
+ * zero at each node.
  *
- * FETI_FRICTION_OPEN where the bound is zero, and nothing but that: a node with `bound` > 0 sticks
- * or slips though its contact is open; FETI_FRICTION_STICK with a force within its bound;
- * FETI_FRICTION_SLIP with a slip along a force that reaches its bound; FETI_FRICTION_WEAK with a
- * force that reaches its bound and no slip, to rounding; FETI_FRICTION_UNKNOWN for nodes on bodies
- * whose group has no answer (feti_solve). FETI_STATE before a solve has given an answer. After a
- * failure nothing is written.
+ * FETI_FRICTION_OPEN means only that the bound is zero: a node with `bound` > 0 sticks or slips
+ * even if its contact is open; FETI_FRICTION_STICK means a force within the bound;
+ * FETI_FRICTION_SLIP means a slip in the direction of a force that reaches the bound;
+ * FETI_FRICTION_WEAK means a force that reaches the bound without a slip, within rounding error;
+ * FETI_FRICTION_UNKNOWN means that the bodies of the node are in a group without an answer
+ * (feti_solve). FETI_STATE if no solve has given an answer yet. After a failure nothing is
+ * written.
  *
  * @param[in]  p     (scalar) the handle
  * @param[in]  nodes (scalar) number of nodes with friction
@@ -1873,15 +1921,15 @@ int32_t feti_friction_states(struct feti_problem *p, int64_t nodes, int32_t *sta
 /*
  * Load steps
  * ==========
- * Go on with other loads and gaps; friction remembers where it slipped to.
+ * Continue with other loads and gaps; friction starts from the slips of the last step.
  */
 
 /**
  * Replaces right-hand sides: c of `B u <= c` or h of `H u = h`.
  *
- * c = +infinity turns a contact row off, a finite c turns it on again: that drops the last answer,
- * the factors of the bodies stay. The numbers are copied. After a failure all right-hand sides are
- * as they were.
+ * c = +infinity turns a contact row off, and a finite c turns it on again. Either change drops the
+ * last answer; the factors of the bodies stay valid. The numbers are copied. After a failure all
+ * right-hand sides are unchanged.
  *
  * @param[in] p     (scalar) the handle
  * @param[in] kind  (scalar) FETI_INEQUALITY or FETI_EQUALITY
@@ -1894,33 +1942,33 @@ int32_t feti_friction_states(struct feti_problem *p, int64_t nodes, int32_t *sta
 int32_t feti_rows_rhs(struct feti_problem *p, int32_t kind, int64_t first, int64_t rows, const double *rhs);
 
 /**
- * Ends a load step: s_old becomes what the last answer has reached, `T u - C_t lambda_t`, at every
- * node, open ones too.
+ * Ends a load step: sets s_old to `T u - C_t lambda_t` of the last answer at every node, including
+ * open nodes.
  *
- * To be called once a step is accepted, before or after the loads of the next one are given. The
- * answer stays as it was, with the slips of its step; so does where the next solve starts. A
- * second call does what the first did. To take a step back, save the state before it
- * (feti_state_save). FETI_STATE before a solve has given an answer, where a group of bodies has
- * none, and where the answer is not certified (a status of feti_solve other than FETI_OK and
- * FETI_MARGINAL). After a failure s_old is as it was.
+ * Call this function when a load step is accepted, before or after you give the loads of the next
+ * step. The answer with its slips is unchanged, and so are the start values of the next solve. A
+ * second call has no further effect. To be able to return to an earlier step, save the state
+ * before the call (feti_state_save). FETI_STATE if no solve has given an answer yet, if a group of
+ * bodies has no answer, and if the answer is not certified (a status of feti_solve other than
+ * FETI_OK and FETI_MARGINAL). After a failure s_old is unchanged.
  *
  * @param[in] p (scalar) the handle
  */
 int32_t feti_friction_commit(struct feti_problem *p);
 
 /**
- * Gives s_old, what the slips of nodes are counted from: T u - C_t lambda_t at the beginning of
+ * Gives s_old, the reference from which slips are measured: T u - C_t lambda_t at the beginning of
  * the load step.
  *
- * Nodes that are added have zeros; feti_friction_commit takes s_old from the answer. A host that
- * solves for the increment of a Newton iteration gives T (u_begin - u_k). The numbers are copied;
- * factors of the bodies and the last answer stay, with the slips it had. After a failure all of
- * them are as they were.
+ * Newly added nodes have s_old = 0; feti_friction_commit takes s_old from the answer. A host that
+ * solves for the increment of a Newton iteration gives T (u_begin - u_k). The numbers are copied.
+ * The factors of the bodies stay valid, and the last answer keeps its slips. After a failure all
+ * s_old are unchanged.
  *
  * @param[in] p     (scalar) the handle
  * @param[in] first (scalar) first node to change, from 0
  * @param[in] nodes (scalar) number of nodes to change
- * @param[in] dim   (scalar) tangential rows of a node, 1 or 2; not looked at without nodes
+ * @param[in] dim   (scalar) tangential rows of a node, 1 or 2; ignored if there are no nodes
  * @param[in] s_old (dim * nodes) node after node, length; 0 for rows without entries
  *
  * Safety: The array has the given shape.
@@ -1934,15 +1982,17 @@ int32_t feti_friction_reference(struct feti_problem *p,
 /**
  * Gives start values for the next solve.
  *
- * That solve starts from these multipliers, whatever option start says, and uses them up, whatever
- * it comes to; every other solve starts as the option says. Rows with a zero start without force,
- * so that the contact state of an earlier answer is carried over. A kind that is not given starts
- * from zero. A change of rows or bodies drops the values. After a failure earlier values stay.
+ * The next solve starts from these multipliers, regardless of option start. They are used once,
+ * whatever the outcome; every other solve starts as the option says. Rows with a zero start
+ * without a force, so the multipliers also carry over the contact state of an earlier answer. A
+ * kind of rows without start values starts from zero. A change of rows or bodies drops the start
+ * values. After a failure the earlier start values stay valid.
  *
  * @param[in] p      (scalar) the handle
  * @param[in] kind   (scalar) FETI_INEQUALITY, FETI_EQUALITY or FETI_TANGENTIAL
- * @param[in] rows   (scalar) number of rows of the kind; of tangential ones dim for each node
- * @param[in] lambda (rows) force; a negative one of an inequality counts as zero
+ * @param[in] rows   (scalar) number of rows of the kind; for tangential rows dim times the number
+ *                   of nodes
+ * @param[in] lambda (rows) force; a negative value for an inequality counts as zero
  *
  * Safety: The array has the given shape.
  */
@@ -1951,27 +2001,28 @@ int32_t feti_start_from(struct feti_problem *p, int32_t kind, int64_t rows, cons
 /*
  * Newton's method
  * ===============
- * Give new matrices and new rows to a problem that is there.
+ * Give new matrices and new rows to an existing problem.
  */
 
 /**
- * Gives new values of a stiffness matrix on the pattern it was given with by
- * feti_body_stiffness_i32 or _i64.
+ * Gives new values for a stiffness matrix whose pattern was given by feti_body_stiffness_i32 or
+ * _i64.
  *
- * The values are copied and checked as the first were. The symbolic analysis is kept, and the next
- * setup costs a numeric factorisation of this body; values that are bit by bit those of before
- * cost nothing. Storage is that of the first call. FETI_STATE where the matrix has not been given,
- * or in another form. FETI_INDEFINITE with the unknown of a diagonal entry that is negative, or 0
- * beside others in its row. After a failure the body keeps the values it had.
+ * The values are copied and checked like the first ones. The library keeps the symbolic analysis,
+ * so the next setup costs only a numeric factorisation of this body; bit-identical values cost
+ * nothing. The storage is the one of the first call. FETI_STATE if the matrix has not been given,
+ * or was given in another form. FETI_INDEFINITE if a diagonal entry is negative, or is 0 in a row
+ * with other entries; the error detail names the unknown. After a failure the body keeps its
+ * previous values.
  *
- * Where the values are borrowed (FETI_BORROW) they are not copied: `val` is the array that was
- * borrowed, rewritten by the host, or another one in its place. They count as changed, also for
- * other bodies that borrow the same array. After a failure with the same array the body is without
- * a matrix until it gets other values.
+ * Borrowed values (FETI_BORROW) are not copied: `val` is either the borrowed array, which the host
+ * has rewritten, or another array that replaces it. The values count as changed, also for other
+ * bodies that borrow the same array. After a failure with the same array the body has no matrix
+ * until it gets other values.
  *
  * @param[in] p    (scalar) the handle
  * @param[in] body (scalar) number of the body, from 0
- * @param[in] nnz  (scalar) number of values, that of the first call
+ * @param[in] nnz  (scalar) number of values, as in the first call
  * @param[in] val  (nnz) entries of K in the order of the first call, force per length
  *
  * Safety: The array has the given shape.
@@ -1979,19 +2030,19 @@ int32_t feti_start_from(struct feti_problem *p, int32_t kind, int64_t rows, cons
 int32_t feti_body_values(struct feti_problem *p, int64_t body, int64_t nnz, const double *val);
 
 /**
- * Gives new values of a stiffness matrix that was given by feti_body_stiffness_split_i32 or _i64.
+ * Gives new values for a stiffness matrix that was given by feti_body_stiffness_split_i32 or _i64.
  *
- * As feti_body_values, for a matrix with a diagonal of its own. FETI_STATE where the matrix has
- * not been given, or in another form. FETI_INDEFINITE with the unknown of a diagonal entry that is
- * negative, or 0 beside others in its row. After a failure the body keeps the values it had.
+ * The call works like feti_body_values, for a matrix with a separate diagonal. FETI_STATE if the
+ * matrix has not been given, or was given in another form. FETI_INDEFINITE if a diagonal entry is
+ * negative, or is 0 in a row with other entries; the error detail names the unknown. After a
+ * failure the body keeps its previous values.
  *
  * @param[in] p    (scalar) the handle
  * @param[in] body (scalar) number of the body, from 0
  * @param[in] n    (scalar) unknowns of the body
  * @param[in] diag (n) K_ii, force per length
- * @param[in] nnz  (scalar) number of values beside the diagonal, that of the first call
- * @param[in] val  (nnz) entries of K beside the diagonal in the order of the first call, force per
- *                 length
+ * @param[in] nnz  (scalar) number of off-diagonal values, as in the first call
+ * @param[in] val  (nnz) off-diagonal entries of K in the order of the first call, force per length
  *
  * Safety: The arrays have the given shapes.
  */
@@ -2003,12 +2054,13 @@ int32_t feti_body_values_split(struct feti_problem *p,
                                const double *val);
 
 /**
- * Gives new values of a dense stiffness matrix.
+ * Gives new values for a dense stiffness matrix.
  *
- * The matrix is copied and checked as the first was, in the same storage. Where zeros stay zeros
- * the symbolic analysis is kept. FETI_STATE where the matrix has not been given, or in another
- * form. FETI_INDEFINITE with the unknown of a diagonal entry that is negative, or 0 beside others
- * in its row. After a failure the body keeps the matrix it had.
+ * The matrix is copied and checked like the first one, in the same storage. If all zeros stay
+ * zero, the library keeps the symbolic analysis. FETI_STATE if the matrix has not been given, or
+ * was given in another form. FETI_INDEFINITE if a diagonal entry is negative, or is 0 in a row
+ * with other entries; the error detail names the unknown. After a failure the body keeps its
+ * previous matrix.
  *
  * @param[in] p    (scalar) the handle
  * @param[in] body (scalar) number of the body, from 0
@@ -2023,8 +2075,9 @@ int32_t feti_body_values_dense(struct feti_problem *p, int64_t body, int64_t n, 
 /**
  * Removes all rows of a kind.
  *
- * Numbering of that kind starts again at 0. With the inequality rows go all nodes with friction
- * (feti_friction_clear), whose contact rows they are. Factors of the bodies stay.
+ * The numbering of that kind starts again at 0. Removing the inequality rows also removes all
+ * nodes with friction (feti_friction_clear), because they refer to contact rows. The factors of
+ * the bodies stay valid.
  *
  * @param[in] p    (scalar) the handle
  * @param[in] kind (scalar) FETI_INEQUALITY or FETI_EQUALITY
@@ -2034,8 +2087,9 @@ int32_t feti_rows_clear(struct feti_problem *p, int32_t kind);
 /**
  * Removes all nodes with friction; their contact rows stay.
  *
- * Numbering starts again at 0, and the next nodes may have another dim. feti_rows_clear with
- * FETI_INEQUALITY removes them too. Factors of the bodies stay, the last answer does not.
+ * The numbering starts again at 0, and new nodes may have another dim. feti_rows_clear with
+ * FETI_INEQUALITY also removes the nodes. The factors of the bodies stay valid; the last answer is
+ * dropped.
  *
  * @param[in] p (scalar) the handle
  */
@@ -2044,16 +2098,16 @@ int32_t feti_friction_clear(struct feti_problem *p);
 /*
  * Saved states
  * ============
- * Go back to a step that is saved.
+ * Save a step and go back to it.
  */
 
 /**
  * Saves loads, rows, friction, multipliers and the contact state under a number.
  *
- * Of nodes with friction the laws, the compliances and s_old. Factors are not copied and the
- * entries of the rows are shared, so that it costs no more than the vectors. States live until
- * they are dropped or the problem is destroyed; numbers are never used again. After a failure
- * nothing is saved.
+ * For nodes with friction the state has the laws, the compliances and s_old. Factors are not
+ * copied and the entries of the rows are shared, so a state costs no more memory than its vectors.
+ * A state exists until it is dropped or the problem is destroyed; its number is never used again.
+ * After a failure nothing is saved.
  *
  * @param[in]  p  (scalar) the handle
  * @param[out] id (scalar) number of the state, from 0
@@ -2063,14 +2117,15 @@ int32_t feti_friction_clear(struct feti_problem *p);
 int32_t feti_state_save(struct feti_problem *p, int64_t *id);
 
 /**
- * Goes back to a saved state: after a load step that was rejected.
+ * Goes back to a saved state, for example after a rejected load step.
  *
- * Loads and rows, with right-hand sides and compliances, and nodes with friction, with laws and
- * s_old, are as they were, and so is the answer unless a matrix or the rows have changed since;
- * with option start = previous the next solve continues from the saved multipliers, with start =
- * cold it gives the bits it would have given then. Matrices, null spaces and options stay as they
- * are now; start values that were not used yet are dropped. The state stays saved. FETI_STATE when
- * bodies were added since; after a failure nothing is changed.
+ * The call restores loads, rows with right-hand sides and compliances, and nodes with friction
+ * with laws and s_old. It also restores the answer unless a matrix or the rows have changed since
+ * the state was saved. With option start = previous the next solve continues from the saved
+ * multipliers; with start = cold it gives the same bits as it would have given at the time of
+ * saving. Matrices, null spaces and options keep their current values; unused start values are
+ * dropped. The state stays saved. FETI_STATE if bodies were added since the state was saved; after
+ * a failure nothing is changed.
  *
  * @param[in] p  (scalar) the handle
  * @param[in] id (scalar) number of the state
@@ -2088,12 +2143,12 @@ int32_t feti_state_drop(struct feti_problem *p, int64_t id);
 /*
  * Diagnosis
  * =========
- * Learn why there is no answer, and what is odd about the problem.
+ * Find out why there is no answer, and what is unusual about the problem.
  */
 
 /**
- * What the last solve, or the last setup that failed, has found out about the problem. Numbers
- * count from 0.
+ * What the last solve, or the last failed setup, found out about the problem. Numbers count from
+ * 0.
  */
 typedef struct feti_findings {
   /**
@@ -2101,29 +2156,29 @@ typedef struct feti_findings {
    */
   int64_t struct_size;
   /**
-   * Status it ended with.
+   * Status of that solve or setup.
    */
   int32_t status;
   /**
-   * FETI_INEQUALITY or FETI_EQUALITY: kind of the contradicting rows' `row`; 0: none.
+   * Kind of `row` after a contradiction, FETI_INEQUALITY or FETI_EQUALITY; 0: none.
    */
   int32_t kind;
   /**
-   * Body that escapes or was refused; of several groups of bodies the first of the one that ended
-   * with this status; -1: none.
+   * Body that escapes or was refused, in the first group of bodies that ended with this status; -1:
+   * none.
    */
   int64_t body;
   /**
-   * Connected part of the body that escapes, where it has several, -1: does not apply.
+   * Connected part that escapes, if the body has several parts; -1: does not apply.
    */
   int64_t component;
   /**
-   * Unknown of the body that moves fastest or was refused, -1: none.
+   * Unknown of the body that moves fastest or was refused; -1: none.
    */
   int64_t dof;
   /**
-   * After FETI_GAPS_CONTRADICT the row with the largest weight, else a row that was refused, -1:
-   * none.
+   * After FETI_GAPS_CONTRADICT the row with the largest weight, otherwise a row that was refused;
+   * -1: none.
    */
   int64_t row;
   /**
@@ -2131,7 +2186,7 @@ typedef struct feti_findings {
    */
   int64_t rows_involved;
   /**
-   * Rigid motions that neither loads nor rows determine.
+   * Number of rigid body motions that neither loads nor rows determine.
    */
   int64_t undetermined;
   /**
@@ -2143,76 +2198,77 @@ typedef struct feti_findings {
    */
   int64_t untouched_bodies;
   /**
-   * The first of them, -1: none.
+   * The first of these bodies; -1: none.
    */
   int64_t untouched_body;
   /**
-   * How clearly there is no solution, above 0 and at most 1: after FETI_INDEFINITE of a driven
-   * motion 1 - 1 / rho, rho what drives it over what resists it; after FETI_LOAD_NOT_HELD the share
-   * of the resultant of the load that nothing holds, after FETI_GAPS_CONTRADICT |w'c| over |w|'|c|
-   * for the weights w; else NaN.
+   * Margin by which there is no solution, above 0 and at most 1. After FETI_INDEFINITE of a driven
+   * motion: 1 - 1 / rho, where rho is the ratio of the driving to the resisting stiffness. After
+   * FETI_LOAD_NOT_HELD: the fraction of the resultant load that nothing holds. After
+   * FETI_GAPS_CONTRADICT: |w'c| over |w|'|c| for the weights w. Otherwise NaN.
    */
   double margin;
   /**
-   * Rigid motion of the body that escapes: velocity of the origin and rotation about the axes; NaN
-   * without coordinates. feti_diagnosis_motion has it for every unknown.
+   * Rigid body motion of the escaping body: velocity of the origin and rotation about the axes; NaN
+   * without coordinates. feti_diagnosis_motion gives the motion of every unknown.
    */
   double motion[6];
   /**
-   * The largest share of the load of bodies that move together which nothing holds, |resultant| /
-   * |load| in the metric of diag K: above 1e-7 after FETI_LOAD_NOT_HELD; with an answer rounding of
-   * the load, FETI_MARGINAL above 1e-10.
+   * Largest fraction of the load that nothing holds, over the sets of bodies that move together:
+   * |resultant| / |load| in the metric of diag K. After FETI_LOAD_NOT_HELD it is above 1e-7. With an
+   * answer it is rounding of the load; above 1e-10 the status is FETI_MARGINAL.
    */
   double unheld;
   /**
-   * Bodies with motions that only the rounding of the entries of K may resist; feti_body_info has
-   * their numbers.
+   * Bodies with motions that perhaps only the rounding of the entries of K resists; feti_body_info
+   * gives the number of such motions.
    */
   int64_t doubtful_bodies;
   /**
-   * The first of them, -1: none.
+   * The first of these bodies; -1: none.
    */
   int64_t doubtful_body;
   /**
-   * Bodies with rigid motions that K resists or drives softly: weak springs, rounding, geometric
-   * stiffness.
+   * Bodies with rigid body motions that K resists or drives weakly, because of weak springs,
+   * rounding or geometric stiffness.
    */
   int64_t soft_bodies;
   /**
-   * The first of them, -1: none.
+   * The first of these bodies; -1: none.
    */
   int64_t soft_body;
   /**
-   * After FETI_SLIDES what friction holds of the load along the motion, as a part of it; else NaN.
+   * After FETI_SLIDES the fraction of the load along the motion that friction holds; otherwise NaN.
    */
   double capacity;
 } feti_findings;
 
 /**
- * What the last solve, or the last setup that failed, has found out about the problem.
+ * Reads what the last solve, or the last failed setup, found out about the problem.
  *
  * After FETI_LOAD_NOT_HELD: the body that escapes, its motion and the margin. After FETI_SLIDES:
  * the body that slides, its motion and the capacity of friction. After FETI_GAPS_CONTRADICT: the
- * rows that contradict each other. Of several groups of bodies without an answer the first is told
- * of. After FETI_INDEFINITE, FETI_NULL_SPACE and the like: the body and the unknown. With an
- * answer: motions left undetermined, redundant rows, bodies that no row touches. Kept until the
- * next solve or the next setup that fails; FETI_STATE before the first. After a failure nothing is
- * written.
+ * rows that contradict each other. If several groups of bodies have no answer, the findings
+ * describe the first of them. After FETI_INDEFINITE, FETI_NULL_SPACE and similar statuses: the
+ * body and the unknown. With an answer: undetermined motions, redundant rows, and bodies that no
+ * row touches. The findings are kept until the next solve or the next failed setup. FETI_STATE
+ * before the first solve or failed setup. After a failure nothing is written.
  *
  * @param[in]     p   (scalar) the handle
  * @param[in,out] out (scalar) `struct_size` set, at least 16
  *
- * Safety: `out` leads to `struct_size` writable bytes.
+ * Safety: `out` points to `struct_size` writable bytes.
  */
 int32_t feti_diagnosis(struct feti_problem *p, struct feti_findings *out);
 
 /**
- * Reads the rigid motion with which a body escapes, unknown by unknown.
+ * Reads the motion of every unknown of a body in the rigid body motion that escapes.
  *
- * The load does work on it, and no row resists. It is scaled to largest entry 1 over all bodies;
- * bodies that stay have zeros. After FETI_SLIDES the motion that friction resists too little,
- * after FETI_INDEFINITE the one that K drives further than closed rows resist. FETI_STATE unless
- * the last solve ended with one of these and a motion. After a failure nothing is written.
+ * The load does work on this motion, and no row resists it. The motion is scaled so that its
+ * largest entry over all bodies is 1; bodies that do not move have zeros. After FETI_SLIDES it is
+ * the motion that friction does not hold, and after FETI_INDEFINITE the motion that K drives and
+ * closed rows do not stop. FETI_STATE unless the last solve ended with one of these statuses and
+ * found a motion. After a failure nothing is written.
  *
  * @param[in]  p    (scalar) the handle
  * @param[in]  body (scalar) number of the body, from 0
@@ -2224,19 +2280,20 @@ int32_t feti_diagnosis(struct feti_problem *p, struct feti_findings *out);
 int32_t feti_diagnosis_motion(struct feti_problem *p, int64_t body, int64_t n, double *v);
 
 /**
- * Lists the rows of one kind that contradict each other, with their weights; without a
+ * Lists the rows of one kind that contradict each other, with their weights, or without a
  * contradiction the redundant rows.
  *
- * Weights w, largest 1, prove a contradiction: with the rows of both kinds the sum of w b is 0 and
- * the sum of w c is negative, w > 0 for inequalities; where unknowns with one number are glued
- * (option glue) it is 0 over the numbers, and feti_last_error names some of them. The weight of a
- * redundant row is its multiple of the row that it repeats. FETI_STATE before the first solve.
- * After a failure nothing is written.
+ * The weights w, scaled to a largest weight of 1, prove a contradiction: over the rows b of both
+ * kinds the sum of w b is 0 and the sum of w c is negative, with w > 0 for inequalities. If
+ * unknowns with the same number are glued (option glue), the sum of w b is 0 for each number, and
+ * feti_last_error names some of these numbers. The weight of a redundant row is its factor
+ * relative to the row that it repeats. FETI_STATE before the first solve. After a failure nothing
+ * is written.
  *
  * @param[in]  p      (scalar) the handle
  * @param[in]  kind   (scalar) FETI_INEQUALITY or FETI_EQUALITY
- * @param[in]  cap    (scalar) rows that `row` and `weight` have room for
- * @param[out] count  (scalar) rows there are; those that fit are written
+ * @param[in]  cap    (scalar) capacity of `row` and `weight`
+ * @param[out] count  (scalar) number of rows found; as many as fit are written
  * @param[out] row    (cap) numbers from 0, ascending; may be NULL
  * @param[out] weight (cap) no unit; may be NULL
  *
@@ -2251,15 +2308,16 @@ int32_t feti_diagnosis_rows(struct feti_problem *p,
                             double *weight);
 
 /**
- * Lists the equality rows that are combinations of the other equality rows, found when asked for.
+ * Lists the equality rows that are linear combinations of the other equality rows; this call
+ * computes them.
  *
- * They constrain nothing, and which of them carry the forces is open. Rows that repeat another one
- * are with feti_diagnosis_rows. FETI_STATE before the first setup. After a failure nothing is
- * written.
+ * These rows add no constraint, and the distribution of forces among them is not unique.
+ * feti_diagnosis_rows lists the rows that repeat another row. FETI_STATE before the first setup.
+ * After a failure nothing is written.
  *
  * @param[in]  p     (scalar) the handle
- * @param[in]  cap   (scalar) rows that `row` has room for
- * @param[out] count (scalar) rows there are; those that fit are written
+ * @param[in]  cap   (scalar) capacity of `row`
+ * @param[out] count (scalar) number of rows found; as many as fit are written
  * @param[out] row   (cap) numbers from 0, ascending; may be NULL
  *
  * Safety: `count` has room for one number, `row` is NULL or has room for `cap` numbers.
@@ -2267,14 +2325,14 @@ int32_t feti_diagnosis_rows(struct feti_problem *p,
 int32_t feti_diagnosis_dependent(struct feti_problem *p, int64_t cap, int64_t *count, int64_t *row);
 
 /**
- * Lists the bodies that no row touched in the last solve, or in the last setup that failed.
+ * Lists the bodies that no row touched in the last solve, or in the last failed setup.
  *
  * Rows that never close, c = +infinity, do not count. FETI_STATE before the first solve. After a
  * failure nothing is written.
  *
  * @param[in]  p     (scalar) the handle
- * @param[in]  cap   (scalar) bodies that `body` has room for
- * @param[out] count (scalar) bodies there are; those that fit are written
+ * @param[in]  cap   (scalar) capacity of `body`
+ * @param[out] count (scalar) number of bodies found; as many as fit are written
  * @param[out] body  (cap) numbers from 0, ascending; may be NULL
  *
  * Safety: `count` has room for one number, `body` is NULL or has room for `cap` numbers.
@@ -2282,16 +2340,15 @@ int32_t feti_diagnosis_dependent(struct feti_problem *p, int64_t cap, int64_t *c
 int32_t feti_diagnosis_untouched(struct feti_problem *p, int64_t cap, int64_t *count, int64_t *body);
 
 /**
- * Reads a rigid motion that the last answer leaves undetermined: which body, and how it moves.
+ * Reads a rigid body motion that the last answer leaves undetermined: the body and its motion.
  *
- * `undetermined` of feti_findings says how many there are. Bodies that have nothing to do with
- * each other are in motions of their own. FETI_STATE without an answer. After a failure nothing is
- * written.
+ * `undetermined` of feti_findings is the number of these motions. Bodies that are not connected
+ * appear in separate motions. FETI_STATE without an answer. After a failure nothing is written.
  *
  * @param[in]  p      (scalar) the handle
  * @param[in]  k      (scalar) number of the motion, from 0
  * @param[out] body   (scalar) number of the body that moves fastest, from 0; may be NULL
- * @param[out] motion (6) of this body: velocity of the origin, rotation about the axes; NaN
+ * @param[out] motion (6) motion of this body: velocity of the origin, rotation about the axes; NaN
  *                    without coordinates; may be NULL
  *
  * Safety: The arrays have the given shapes.
@@ -2299,10 +2356,11 @@ int32_t feti_diagnosis_untouched(struct feti_problem *p, int64_t cap, int64_t *c
 int32_t feti_diagnosis_undetermined(struct feti_problem *p, int64_t k, int64_t *body, double *motion);
 
 /**
- * Reads a rigid motion that the last answer leaves undetermined, unknown by unknown.
+ * Reads the motion of every unknown of a body in a rigid body motion that the last answer leaves
+ * undetermined.
  *
- * It is scaled to largest entry 1 over all bodies; bodies that stay have zeros. FETI_STATE without
- * an answer. After a failure nothing is written.
+ * The motion is scaled so that its largest entry over all bodies is 1; bodies that do not move
+ * have zeros. FETI_STATE without an answer. After a failure nothing is written.
  *
  * @param[in]  p    (scalar) the handle
  * @param[in]  k    (scalar) number of the motion, from 0
@@ -2321,33 +2379,33 @@ int32_t feti_diagnosis_undetermined_motion(struct feti_problem *p,
 /*
  * Facts on bodies
  * ===============
- * Learn what a body and its factor cost.
+ * Read size, memory and null space of a body, and the time of each phase.
  */
 
 /**
- * Null space of a body: vectors of the host that span it (FETI_EXACT), or soft motions
+ * Source of a null space: vectors of the host that span it (FETI_EXACT), or soft motions
  * (FETI_SOFT).
  */
 #define FETI_ORIGIN_EXACT 1
 
 /**
- * Null space of a body: sought among vectors of the host (FETI_CANDIDATES).
+ * Source of a null space: selected from vectors of the host (FETI_CANDIDATES).
  */
 #define FETI_ORIGIN_CANDIDATES 2
 
 /**
- * Null space of a body: sought among rigid motions, from coordinates.
+ * Source of a null space: selected from the rigid body motions that the coordinates give.
  */
 #define FETI_ORIGIN_COORDINATES 3
 
 /**
- * Null space of a body: found from K alone.
+ * Source of a null space: computed from K alone.
  */
 #define FETI_ORIGIN_FOUND 4
 
 /**
- * A body as it is given, and what the last setup has made of it; what is not there yet is -1 or
- * NaN.
+ * Facts on the input of a body and on the results of its last setup; facts that are not known yet
+ * are -1 or NaN.
  */
 typedef struct feti_body_facts {
   /**
@@ -2359,7 +2417,8 @@ typedef struct feti_body_facts {
    */
   int64_t unknowns;
   /**
-   * Entries of K as the host gave them, a diagonal of its own counted; dense: all of the storage.
+   * Entries of K as the host gave them, including a separate diagonal; for a dense matrix all
+   * entries of the storage.
    */
   int64_t entries;
   /**
@@ -2371,11 +2430,12 @@ typedef struct feti_body_facts {
    */
   int64_t matrix_bytes;
   /**
-   * Arrays of K that stay with the host (FETI_BORROW): 0 none, 1 values, 2 values and columns.
+   * Arrays of K that are borrowed from the host (FETI_BORROW): 0 none, 1 values, 2 values and
+   * columns.
    */
   int64_t borrowed;
   /**
-   * What the null space comes from: FETI_ORIGIN_EXACT, _CANDIDATES, _COORDINATES or _FOUND.
+   * Source of the null space: FETI_ORIGIN_EXACT, _CANDIDATES, _COORDINATES or _FOUND.
    */
   int64_t origin;
   /**
@@ -2387,52 +2447,52 @@ typedef struct feti_body_facts {
    */
   int64_t factor_entries;
   /**
-   * Bytes of the factor and, at most, of the work arrays of its computation.
+   * Bytes of the factor plus an upper bound for the work arrays of its computation.
    */
   int64_t factor_bytes;
   /**
-   * The first other body that shares the factor, from 0, -1: none.
+   * The first other body that shares the factor, from 0; -1: none.
    */
   int64_t shared_with;
   /**
-   * 1: the dual operator has its entries, 0: it is known by its products.
+   * 1: the dual operator is assembled; 0: it is applied matrix-free.
    */
   int64_t explicit_operator;
   /**
-   * Bytes of the explicit dual operator.
+   * Bytes of the assembled dual operator.
    */
   int64_t operator_bytes;
   /**
-   * Of a null space that was found: stiffness of the softest other motion over that of the stiffest
-   * in it; else NaN.
+   * If the library found the null space: ratio of the stiffness of the softest motion outside it to
+   * the stiffness of the stiffest motion in it; otherwise NaN.
    */
   double gap;
   /**
-   * Estimated relative error of the forces on the body in the last answer; NaN without one, also of
-   * its group of bodies alone.
+   * Estimated relative error of the forces on the body in the last answer; NaN if its group of
+   * bodies has no answer.
    */
   double force_error;
   /**
-   * Motions taken as free that K resists by no more than the rounding of its entries may make, -1
-   * before a setup.
+   * Number of motions treated as free although K resists them, by no more than rounding of its
+   * entries can cause; -1 before a setup.
    */
   int64_t soft_free;
   /**
-   * Motions taken as supports though the rounding of the entries of K may be all that resists them:
-   * with a number above 0 give the null space, or K with more digits. -1 before a setup.
+   * Number of motions treated as supported although perhaps only rounding of the entries of K
+   * resists them. If it is above 0, give the null space, or K with more digits. -1 before a setup.
    */
   int64_t soft_held;
   /**
-   * How much K resists these motions, largest v'K v over v'diag(K) v; NaN where there are none.
+   * Stiffness of these motions: the largest v'K v over v'diag(K) v; NaN without such motions.
    */
   double softness;
   /**
-   * What the rounding of the entries may make of it; NaN where there are none.
+   * The stiffness that rounding of the entries can cause; NaN without such motions.
    */
   double softness_of_rounding;
   /**
-   * Pieces that the body is cut into, once all its elements have been given; 1 for one that is not
-   * cut.
+   * Number of pieces that the body is cut into, known when all elements have been given; 1 if the
+   * body is not cut.
    */
   int64_t pieces;
 } feti_body_facts;
@@ -2446,11 +2506,11 @@ typedef struct feti_phase {
    */
   int64_t struct_size;
   /**
-   * Bytes of what the phase has made and keeps; 0: they are not counted.
+   * Bytes of the data that the phase computed and keeps; 0: not counted.
    */
   int64_t bytes;
   /**
-   * Wall time in the last call that set up or solved, seconds.
+   * Wall time in the last setup or solve, seconds.
    */
   double seconds;
   /**
@@ -2460,24 +2520,24 @@ typedef struct feti_phase {
 } feti_phase;
 
 /**
- * Tells what is known about a body: its matrix, its null space, its factor, its dual operator.
+ * Reads what is known about a body: its matrix, its null space, its factor and its dual operator.
  *
- * Nothing is computed but the connected parts. After a failure nothing is written.
+ * This call computes nothing except the connected parts. After a failure nothing is written.
  *
  * @param[in]     p    (scalar) the handle
  * @param[in]     body (scalar) number of the body, from 0
  * @param[in,out] out  (scalar) `struct_size` set, at least 16
  *
- * Safety: `out` leads to `struct_size` writable bytes.
+ * Safety: `out` points to `struct_size` writable bytes.
  */
 int32_t feti_body_info(struct feti_problem *p, int64_t body, struct feti_body_facts *out);
 
 /**
- * Tells the connected part of every unknown of a body.
+ * Reads the connected part of every unknown of a body.
  *
- * A body may be in several parts that share no entry of K but zeros. They are numbered from 0 by
- * their first unknowns. FETI_STATE before the stiffness matrix is given. After a failure nothing
- * is written.
+ * A body may have several parts that no nonzero entry of K couples. The parts are numbered from 0
+ * in the order of their first unknowns. FETI_STATE before the stiffness matrix is given. After a
+ * failure nothing is written.
  *
  * @param[in]  p         (scalar) the handle
  * @param[in]  body      (scalar) number of the body, from 0
@@ -2501,34 +2561,33 @@ int32_t feti_body_components(struct feti_problem *p, int64_t body, int64_t n, in
 int32_t feti_phase_count(struct feti_problem *p, int64_t *count);
 
 /**
- * Tells time and memory of a phase: rows, null spaces, analysis, factorisation, dual operators,
- * preconditioner, dual solve, recovery, in this order.
+ * Reads time and memory of a phase. The phases are rows, null spaces, analysis, factorisation,
+ * dual operators, preconditioner, dual solve, recovery, in this order.
  *
- * Times are those of the last call that set up or solved, also of one that failed; a phase that
- * had nothing to do took none. What a setup keeps, later solves do not make again. After a failure
- * nothing is written.
+ * The times refer to the last setup or solve, even if it failed; a phase without work has time
+ * zero. Later solves do not repeat what a setup keeps. After a failure nothing is written.
  *
  * @param[in]     p   (scalar) the handle
  * @param[in]     k   (scalar) from 0, less than feti_phase_count
  * @param[in,out] out (scalar) `struct_size` set, at least 16
  *
- * Safety: `out` leads to `struct_size` writable bytes.
+ * Safety: `out` points to `struct_size` writable bytes.
  */
 int32_t feti_phase_at(struct feti_problem *p, int64_t k, struct feti_phase *out);
 
 /*
  * Progress and log
  * ================
- * Hear of the course of a setup or a solve.
+ * Follow the progress of a setup or a solve.
  */
 
 /**
- * Phase of a call that feti_on_progress tells of: a part of the setup is done.
+ * Phase that feti_on_progress reports: a part of the setup is done.
  */
 #define FETI_PHASE_SETUP 1
 
 /**
- * Phase of a call that feti_on_progress tells of: a step of the dual method is done.
+ * Phase that feti_on_progress reports: a step of the dual method is done.
  */
 #define FETI_PHASE_SOLVE 2
 
@@ -2538,12 +2597,12 @@ int32_t feti_phase_at(struct feti_problem *p, int64_t k, struct feti_phase *out)
 #define FETI_STEP_CONJUGATE_GRADIENT 1
 
 /**
- * Kind of a step: rows lost their force.
+ * Kind of a step: rows lost their force (expansion of the face).
  */
 #define FETI_STEP_EXPANSION 2
 
 /**
- * Kind of a step: rows got a force.
+ * Kind of a step: rows gained a force (release from the face).
  */
 #define FETI_STEP_RELEASE 3
 
@@ -2563,7 +2622,7 @@ int32_t feti_phase_at(struct feti_problem *p, int64_t k, struct feti_phase *out)
 #define FETI_LOG_RESULT 1
 
 /**
- * Level of a log: also what is solved and how, and a line for each phase.
+ * Level of a log: also the problem and the method, and a line for each phase.
  */
 #define FETI_LOG_PHASE 2
 
@@ -2573,7 +2632,7 @@ int32_t feti_phase_at(struct feti_problem *p, int64_t k, struct feti_phase *out)
 #define FETI_LOG_STEP 3
 
 /**
- * Where a setup or a solve stands.
+ * Progress of a setup or a solve.
  */
 typedef struct feti_progress {
   /**
@@ -2582,7 +2641,7 @@ typedef struct feti_progress {
   int64_t struct_size;
   /**
    * FETI_PHASE_SETUP (a body has been analysed or factorised, its dual operator or the
-   * preconditioner made, or half a second has passed) or FETI_PHASE_SOLVE.
+   * preconditioner has been computed, or half a second has passed) or FETI_PHASE_SOLVE.
    */
   int32_t phase;
   /**
@@ -2599,24 +2658,24 @@ typedef struct feti_progress {
    */
   int64_t products;
   /**
-   * Inequality rows with a force; parallel rows count once.
+   * Inequality rows with a force; a set of parallel rows counts once.
    */
   int64_t active;
   /**
-   * Norm of the projected gradient over the one that stops the solve; NaN in the setup, as all that
-   * follow.
+   * Norm of the projected gradient divided by the norm at which the solve stops; NaN in the setup,
+   * like the next three figures.
    */
   double residual;
   /**
-   * Its part on rows with a force, over the same.
+   * Norm of its part on rows with a force, divided by the same norm.
    */
   double residual_free;
   /**
-   * Its part on rows without a force that want one, over the same.
+   * Norm of its part on rows that have no force but need one, divided by the same norm.
    */
   double residual_chopped;
   /**
-   * Dual functional 1/2 lambda'F lambda - lambda'd, force times length: every step lowers it.
+   * Dual functional 1/2 lambda'F lambda - lambda'd, force times length; every step lowers it.
    */
   double theta;
   /**
@@ -2624,71 +2683,72 @@ typedef struct feti_progress {
    */
   double seconds;
   /**
-   * Part of the work of the setup that is done, from 0 to 1: an estimate that never falls; NaN in
-   * the solve.
+   * Estimated fraction of the setup that is done, from 0 to 1; it never decreases; NaN in the solve.
    */
   double fraction;
 } feti_progress;
 
 /**
- * A function of the host that hears of every body in every part of a setup and of every step of a
- * solve.
+ * A function of the host that is called for every body in every part of a setup and for every step
+ * of a solve.
  *
- * It returns 0 to go on, a number > 0 to cancel, a number < 0 to report a failure of its own.
+ * It returns 0 to continue, a number > 0 to cancel, or a number < 0 to report a failure.
  *
- * @param[in] user (scalar) the host's own, as given to feti_on_progress; may be NULL
+ * @param[in] user (scalar) the host's own data, as given to feti_on_progress; may be NULL
  * @param[in] now  (scalar) valid during the call
  */
 typedef int32_t (*feti_progress_fn)(void *user, const struct feti_progress *now);
 
 /**
- * A function of the host that gets a line of text.
+ * A function of the host that receives a line of text.
  *
- * It returns 0 to go on, any other number to report a failure of its own.
+ * It returns 0 to continue and any other number to report a failure.
  *
- * @param[in] user  (scalar) the host's own, as given to feti_on_log; may be NULL
+ * @param[in] user  (scalar) the host's own data, as given to feti_on_log; may be NULL
  * @param[in] level (scalar) FETI_LOG_RESULT, FETI_LOG_PHASE or FETI_LOG_STEP
- * @param[in] text  (text) one line in UTF-8 without its end, valid during the call
+ * @param[in] text  (text) one line in UTF-8 without a line end, valid during the call
  */
 typedef int32_t (*feti_log_fn)(void *user, int32_t level, const char *text);
 
 /**
- * Names the function that is told of every body in every part of a setup, and of every step of a
- * solve.
+ * Registers the function that is called for every body in every part of a setup, and for every
+ * step of a solve.
  *
- * During a setup on several threads it is also called when half a second has passed without such
- * news. It is called on the thread that called the library, in that thread's floating-point
- * environment, until another one or NULL is given. It returns 0 to go on; a number > 0 ends the
- * call with FETI_CANCELLED and the results of the last step; a number < 0 ends it with
- * FETI_CALLBACK, the number in the error detail, and no results. Calls on the same problem from
- * inside return FETI_BUSY, except feti_cancel and feti_problem_error; other problems may be used.
- * It must not end by longjmp or an exception.
+ * During a setup on several threads the function is also called when half a second has passed
+ * without such an event. It runs on the thread that called the library, in the floating-point
+ * environment of that thread, and stays registered until another function or NULL is given. It
+ * returns 0 to continue. A number > 0 ends the call with FETI_CANCELLED and the results of the
+ * last step; a number < 0 ends the call with FETI_CALLBACK, the number in the error detail, and no
+ * results. Inside the function, calls on the same problem return FETI_BUSY, except feti_cancel and
+ * feti_problem_error; other problems may be used. The function must not exit by longjmp or an
+ * exception.
  *
  * @param[in] p        (scalar) the handle
  * @param[in] callback (scalar) the function; NULL: none
- * @param[in] user     (scalar) handed to the function unchanged; may be NULL
+ * @param[in] user     (scalar) passed to the function unchanged; may be NULL
  *
  * Safety: `callback` may be called with `user` until it is replaced or the problem destroyed.
  */
 int32_t feti_on_progress(struct feti_problem *p, feti_progress_fn callback, void *user);
 
 /**
- * Names the function that gets what setups and solves tell in words.
+ * Registers the function that receives the log of setups and solves, line by line.
  *
- * Level FETI_LOG_RESULT: one line for each solve, and warnings; FETI_LOG_PHASE: also sizes,
- * options, method, fallbacks and a line for each phase with its time and bytes, and how far the
- * first feasible point, projections, nearest points and certificates are that take long: a line
- * after a second at most, and after a tenth of the time so far; FETI_LOG_STEP: also a line for
- * each step. The function is called on the thread that called the library, in that thread's
- * floating-point environment, until another one or NULL is given. It returns 0 to go on; any other
- * number ends the call with FETI_CALLBACK, the number in the error detail, and no results. Calls
- * on the same problem from inside return FETI_BUSY, except feti_cancel and feti_problem_error. It
- * must not end by longjmp or an exception.
+ * Level FETI_LOG_RESULT: one line for each solve, and warnings. FETI_LOG_PHASE: also sizes,
+ * options, method, fallbacks and a line for each phase with its time and bytes; also the progress
+ * of a long first feasible point, projection, nearest point or certificate, with the first line
+ * after a second at most and further lines whenever a tenth of the time so far has passed.
+ * FETI_LOG_STEP: also a line for each step. The function runs on the thread that called the
+ * library, in the floating-point environment of that thread, and stays registered until another
+ * function or NULL is given. It returns 0 to continue; any other number ends the call with
+ * FETI_CALLBACK, the number in the error detail, and no results. Inside the function, calls on the
+ * same problem return FETI_BUSY, except feti_cancel and feti_problem_error. The function must not
+ * exit by longjmp or an exception.
  *
  * @param[in] p        (scalar) the handle
  * @param[in] callback (scalar) the function; NULL: none
  * @param[in] level    (scalar) FETI_LOG_NONE, FETI_LOG_RESULT, FETI_LOG_PHASE or FETI_LOG_STEP
- * @param[in] user     (scalar) handed to the function unchanged; may be NULL
+ * @param[in] user     (scalar) passed to the function unchanged; may be NULL
  *
  * Safety: `callback` may be called with `user` until it is replaced or the problem destroyed.
  */
@@ -2697,13 +2757,13 @@ int32_t feti_on_log(struct feti_problem *p, feti_log_fn callback, int32_t level,
 /*
  * Validation
  * ==========
- * Check an answer, also of another program; multiply by the operators of the method.
+ * Check an answer of this or another program; multiply by the operators of the method.
  */
 
 /**
- * Verdict on an answer, by relative figures: each is `limit` times the ratio of what the worst
- * body or row violates to what it is allowed, rounding included, and passes when it is at most
- * `limit`.
+ * Verdict on an answer, by relative figures. Each figure is `limit` times the ratio of the
+ * violation at the worst body or row to the allowed violation, which includes rounding; a figure
+ * passes if it is at most `limit`.
  */
 typedef struct feti_certificate {
   /**
@@ -2723,103 +2783,105 @@ typedef struct feti_certificate {
    */
   double limit;
   /**
-   * Largest entry over what it is allowed: <= 1 passes.
+   * Largest ratio of a figure to its limit; <= 1 passes.
    */
   double worst;
   /**
-   * Relative error of equilibrium `K u + B'lambda + H'mu + T'lambda_t = f`, worst body.
+   * Relative error of equilibrium `K u + B'lambda + H'mu + T'lambda_t = f`, for the worst body.
    */
   double equilibrium;
   /**
-   * Relative error of the balance `R'(f - B'lambda - H'mu - T'lambda_t) = 0`, worst floating body.
+   * Relative error of the balance `R'(f - B'lambda - H'mu - T'lambda_t) = 0`, for the worst floating
+   * body.
    */
   double balance;
   /**
-   * Relative penetration: positive part of `B u - c - C lambda`, C = diag(1/k) being the compliance
-   * of the rows, worst row.
+   * Relative penetration: positive part of `B u - c - C lambda`, where C = diag(1/k) is the
+   * compliance of the rows; for the worst row.
    */
   double penetration;
   /**
-   * Relative error of `H u = h + C mu`, worst row.
+   * Relative error of `H u = h + C mu`, for the worst row.
    */
   double equality;
   /**
-   * Relative size of a negative contact force, worst row.
+   * Relative size of a negative contact force, for the worst row.
    */
   double negative_force;
   /**
-   * Relative size of the force or of the open gap `c + C lambda - B u`, whichever is less, worst
-   * row.
+   * Relative size of the force or of the open gap `c + C lambda - B u`, whichever is smaller; for
+   * the worst row.
    */
   double complementarity;
   /**
-   * Relative gap between primal and dual energy, worst group of bodies.
+   * Relative gap between primal and dual energy, for the worst group of bodies.
    */
   double duality_gap;
   /**
-   * Body of the worst equilibrium, from 0, -1: none.
+   * Body with the worst equilibrium, from 0; -1: none.
    */
   int64_t equilibrium_body;
   /**
-   * Body of the worst balance, from 0, -1: none.
+   * Body with the worst balance, from 0; -1: none.
    */
   int64_t balance_body;
   /**
-   * Row with the worst penetration, from 0, -1: none.
+   * Row with the worst penetration, from 0; -1: none.
    */
   int64_t penetration_row;
   /**
-   * Equality row with the worst error, from 0, -1: none, or glue of unknowns with one number (option
-   * glue).
+   * Equality row with the worst error, from 0; -1: none, or the worst error is in the glue of
+   * unknowns with the same number (option glue).
    */
   int64_t equality_row;
   /**
-   * Row with the worst negative force, from 0, -1: none.
+   * Row with the worst negative force, from 0; -1: none.
    */
   int64_t force_row;
   /**
-   * Row with the worst complementarity, from 0, -1: none.
+   * Row with the worst complementarity, from 0; -1: none.
    */
   int64_t complementarity_row;
   /**
-   * Relative size of a tangential force beyond its bound, `(|lambda_t| - b)_+` with b = bound +
-   * coefficient lambda_n, worst node with friction.
+   * Relative excess of a tangential force over its bound, `(|lambda_t| - b)_+` with b = bound +
+   * coefficient lambda_n, for the worst node with friction.
    */
   double friction_cone;
   /**
-   * Relative size of `b |s| - lambda_t's`, the work that friction does not do: zero only with a
-   * stick inside the bound and a slip s along the force; worst node.
+   * Relative size of `b |s| - lambda_t's`, the deficit of frictional work, for the worst node. It is
+   * zero only if the node sticks or slips in the direction of a force that reaches the bound.
    */
   double friction_work;
   /**
-   * Relative size of the slip where the force is within its bound, worst node.
+   * Relative size of a slip although the force is within its bound, for the worst node.
    */
   double friction_stick;
   /**
-   * Node with the worst force beyond its bound, from 0, -1: none.
+   * Node with the worst excess over its bound, from 0; -1: none.
    */
   int64_t friction_cone_node;
   /**
-   * Node with the worst work, from 0, -1: none.
+   * Node with the worst deficit of work, from 0; -1: none.
    */
   int64_t friction_work_node;
   /**
-   * Node with the worst slip, from 0, -1: none.
+   * Node with the worst slip, from 0; -1: none.
    */
   int64_t friction_stick_node;
 } feti_certificate;
 
 /**
- * Verifies an answer without tangential forces against the problem as it is given now: any answer,
- * also another code's.
+ * Verifies an answer without tangential forces against the current problem; the answer may come
+ * from another program.
  *
- * Every figure is that of the worst body or the worst row, measured against its own forces and
- * deformation, and is named with it. Glue (option glue) is judged as equality rows are; the forces
- * in it are not given: they are those that serve the answer best. Rows that never close, c =
- * +infinity, are left out: what is given for their lambda counts as 0. At nodes with friction
- * (feti_friction_add_i32 or _i64) the tangential force counts as 0: feti_check_friction takes it.
- * Keeps nothing of the answer: that of the last solve stays. Runs feti_setup when it is due, for
- * the null spaces. After a failure nothing is written.
+ * Every figure belongs to the worst body or the worst row, measured against its own forces and
+ * deformation; the certificate names this body or row. Glue (option glue) is judged like equality
+ * rows; its forces are not an argument, and the library uses the glue forces that fit the answer
+ * best. Rows that never close, c = +infinity, are left out, and their lambda counts as 0. At nodes
+ * with friction (feti_friction_add_i32 or _i64) the tangential force counts as 0;
+ * feti_check_friction takes tangential forces into account. The call does not store the answer;
+ * the answer of the last solve is kept. Runs feti_setup when it is due, because it needs the null
+ * spaces. After a failure nothing is written.
  *
  * @param[in]     p      (scalar) the handle
  * @param[in]     n      (scalar) unknowns of all bodies
@@ -2830,7 +2892,7 @@ typedef struct feti_certificate {
  * @param[in]     mu     (eqs) multipliers of `H u = h`, force
  * @param[in,out] out    (scalar) `struct_size` set, at least 16
  *
- * Safety: The arrays have the given shapes, `out` leads to `struct_size` writable bytes.
+ * Safety: The arrays have the given shapes, `out` points to `struct_size` writable bytes.
  */
 int32_t feti_check(struct feti_problem *p,
                    int64_t n,
@@ -2842,13 +2904,14 @@ int32_t feti_check(struct feti_problem *p,
                    struct feti_certificate *out);
 
 /**
- * Verifies an answer with tangential forces against the problem as it is given now: any answer,
- * also another code's.
+ * Verifies an answer with tangential forces against the current problem; the answer may come from
+ * another program.
  *
- * As feti_check; the figures of friction judge, node by node, the forces lambda_t by the law and
- * the slip `T u - s_old - C_t lambda_t` by the s_old that is there now: after feti_friction_commit
- * that of the next step. Nodes that may carry no force (bound 0, no contact row that may close)
- * are left out. After a failure nothing is written.
+ * The call works like feti_check. In addition, the figures of friction judge at every node the
+ * force lambda_t against the friction law and the slip `T u - s_old - C_t lambda_t` with the
+ * current s_old, which after feti_friction_commit is that of the next step. Nodes that cannot
+ * carry a tangential force (bound 0 and no contact row that may close) are left out. After a
+ * failure nothing is written.
  *
  * @param[in]     p        (scalar) the handle
  * @param[in]     n        (scalar) unknowns of all bodies
@@ -2858,11 +2921,12 @@ int32_t feti_check(struct feti_problem *p,
  * @param[in]     eqs      (scalar) number of equality rows
  * @param[in]     mu       (eqs) multipliers of `H u = h`, force
  * @param[in]     nodes    (scalar) number of nodes with friction
- * @param[in]     dim      (scalar) tangential rows of a node, 1 or 2; not looked at without nodes
+ * @param[in]     dim      (scalar) tangential rows of a node, 1 or 2; ignored if there are no
+ *                         nodes
  * @param[in]     lambda_t (dim * nodes) multipliers of the tangential rows, node after node, force
  * @param[in,out] out      (scalar) `struct_size` set, at least 16
  *
- * Safety: The arrays have the given shapes, `out` leads to `struct_size` writable bytes.
+ * Safety: The arrays have the given shapes, `out` points to `struct_size` writable bytes.
  */
 int32_t feti_check_friction(struct feti_problem *p,
                             int64_t n,
@@ -2879,8 +2943,8 @@ int32_t feti_check_friction(struct feti_problem *p,
 /**
  * Applies the generalised inverse of a body, `Y = K+ X`.
  *
- * Runs feti_setup when it is due. X and Y may be the same array. FETI_STATE for a body that is cut
- * (feti_body_mesh_i32 or _i64). After a failure nothing is written.
+ * Runs feti_setup when it is due. X and Y may be the same array. FETI_STATE if the body is cut
+ * into pieces (feti_body_mesh_i32 or _i64). After a failure nothing is written.
  *
  * @param[in]  p    (scalar) the handle
  * @param[in]  body (scalar) number of the body, from 0
@@ -2905,10 +2969,10 @@ int32_t feti_body_kplus(struct feti_problem *p,
 /**
  * Applies the dual operator, `y = F x` with `F = [B; H] K+ [B; H]' + C`.
  *
- * C = diag(1/k) is the compliance of the rows (feti_rows_compliance), 0 for rigid ones. Tangential
- * rows of nodes with friction are not in it. Runs feti_setup when it is due. `x` and `y` may be
- * the same array. FETI_STATE where a body is cut (feti_body_mesh_i32 or _i64) or unknowns are
- * glued (option glue). After a failure nothing is written.
+ * C = diag(1/k) is the compliance of the rows (feti_rows_compliance), 0 for rigid rows. F does not
+ * include the tangential rows of nodes with friction. Runs feti_setup when it is due. `x` and `y`
+ * may be the same array. FETI_STATE if a body is cut into pieces (feti_body_mesh_i32 or _i64) or
+ * unknowns are glued (option glue). After a failure nothing is written.
  *
  * @param[in]  p (scalar) the handle
  * @param[in]  m (scalar) inequality rows + equality rows
@@ -2922,8 +2986,8 @@ int32_t feti_dual_apply(struct feti_problem *p, int64_t m, const double *x, doub
 /**
  * Reads the right-hand side of the dual problem, `d = [B; H] K+ f - [c; h]`.
  *
- * Runs feti_setup when it is due. FETI_STATE where a body is cut (feti_body_mesh_i32 or _i64) or
- * unknowns are glued (option glue). After a failure nothing is written.
+ * Runs feti_setup when it is due. FETI_STATE if a body is cut into pieces (feti_body_mesh_i32 or
+ * _i64) or unknowns are glued (option glue). After a failure nothing is written.
  *
  * @param[in]  p (scalar) the handle
  * @param[in]  m (scalar) inequality rows + equality rows
@@ -2940,40 +3004,40 @@ int32_t feti_dual_rhs(struct feti_problem *p, int64_t m, double *d);
  */
 
 /**
- * Writes all that the host has registered to one file: a bug report is a file.
+ * Writes all input of the problem to one file, for example for a bug report.
  *
- * Bodies with their matrices, null spaces, coordinates, fixing unknowns, loads and numbers of the
- * host, rows of both kinds with right-hand sides and compliances, and the options that differ from
- * their defaults, bit by bit; not the answer, start values, saved states and functions of the
- * host. docs/file_format.md describes every byte. The file is written under another name in the
- * same folder and renamed when it is complete: after a failure an old file is as it was, and
- * nothing else is left. FETI_IO with path, operation and the words of the system; FETI_UNSUPPORTED
- * with the body where functions of the host stand for a matrix (feti_body_operator): no file holds
- * them. Borrowed matrices are written as they are at that moment. Of a body that is cut
- * (feti_body_mesh_i32) the pieces are written, not the elements; FETI_STATE where elements of a
- * body are missing.
+ * The file has the bodies with their matrices, null spaces, coordinates, fixing unknowns, loads
+ * and numbers of the host, rows of both kinds with right-hand sides and compliances, and the
+ * options that differ from their defaults, all bit by bit. It does not have the answer, start
+ * values, saved states and functions of the host. docs/file_format.md describes every byte. The
+ * library writes the file under another name in the same folder and renames it when it is
+ * complete: after a failure an old file is unchanged, and no other file is left. FETI_IO with
+ * path, operation and the message of the system; FETI_UNSUPPORTED if a body has functions of the
+ * host instead of a matrix (feti_body_operator), because no file can hold them. Borrowed matrices
+ * are written with their current values. For a body that is cut (feti_body_mesh_i32) the file has
+ * the pieces, not the elements; FETI_STATE if elements of a body are missing.
  *
  * @param[in] p    (scalar) the handle
- * @param[in] path (text) name of the file; an old one is replaced
+ * @param[in] path (text) name of the file; an existing file is replaced
  *
  * Safety: `path` is NUL terminated.
  */
 int32_t feti_problem_write(struct feti_problem *p, const char *path);
 
 /**
- * Reads what feti_problem_write has written into an empty problem.
+ * Reads a file of feti_problem_write into an empty problem.
  *
- * The same solve then gives the same bits. FETI_STATE when there are bodies or rows already.
- * Options become those of the file, all others their defaults, except index_base, which stays.
- * Everything goes through the checks of the calls it stands for. FETI_IO with path and the words
- * of the system, or with the byte where a file is damaged (`entry` of feti_last_error_detail);
- * FETI_UNSUPPORTED when it holds what a later version has written. After a failure the problem is
- * as it was.
+ * A solve then gives the same bits as in the original problem. FETI_STATE if there are bodies or
+ * rows already. Options get their values from the file and otherwise their defaults, except
+ * index_base, which is unchanged. All data pass the same checks as in the corresponding calls.
+ * FETI_IO with path and the message of the system, or with the position of the first wrong byte if
+ * the file is damaged (`entry` of feti_last_error_detail); FETI_UNSUPPORTED if the file has
+ * contents of a later version. After a failure the problem is unchanged.
  *
- * Matrices come back by the rows of their lower triangle, columns ascending, with every diagonal
- * entry, however they were given: feti_body_values then expects the values in this order, and
- * feti_body_values_split and feti_body_values_dense return FETI_STATE until the matrix has been
- * given again.
+ * Whatever their original form, matrices are read back as rows of the lower triangle, with
+ * ascending columns and every diagonal entry. feti_body_values then expects the values in this
+ * order, and feti_body_values_split and feti_body_values_dense return FETI_STATE until the matrix
+ * has been given again.
  *
  * @param[in] p    (scalar) the handle
  * @param[in] path (text) name of the file
@@ -2985,7 +3049,7 @@ int32_t feti_problem_read(struct feti_problem *p, const char *path);
 /*
  * Errors
  * ======
- * Learn what went wrong, where and by how much.
+ * Read what went wrong, where and by how much.
  */
 
 /**
@@ -2997,39 +3061,40 @@ typedef struct feti_error_detail {
    */
   int64_t struct_size;
   /**
-   * Status the function returned; 0: there was no error yet.
+   * Status that the function returned; 0: no error has occurred yet.
    */
   int32_t status;
   /**
-   * Position of the refused argument, from 1 with the handle as 1; 0: none.
+   * Position of the refused argument, where the handle is argument 1; 0: none.
    */
   int32_t argument;
   /**
-   * Body, -1: does not apply.
+   * Body; -1: does not apply.
    */
   int64_t body;
   /**
-   * Connected part of the body, -1: does not apply.
+   * Connected part of the body; -1: does not apply.
    */
   int64_t component;
   /**
-   * Degree of freedom of the body, -1: does not apply.
+   * Unknown of the body; -1: does not apply.
    */
   int64_t dof;
   /**
-   * Row of the matrix or of the constraints, -1: does not apply.
+   * Row of the matrix or of the constraints; -1: does not apply.
    */
   int64_t row;
   /**
-   * Position in the array; byte of a text or a file; -1: does not apply.
+   * Position in the array, or of the byte in a text or a file; -1: does not apply.
    */
   int64_t entry;
   /**
-   * The number found; an index as the host gave it, in the numbers of its call. NaN: does not apply.
+   * The number that was found; an index is as the host gave it, in the base of the call; NaN: does
+   * not apply.
    */
   double value;
   /**
-   * The number it had to stay within; NaN: does not apply.
+   * The limit for this number; NaN: does not apply.
    */
   double limit;
   /**
@@ -3037,20 +3102,21 @@ typedef struct feti_error_detail {
    */
   char function[40];
   /**
-   * Element of the body, -1: does not apply.
+   * Element of the body; -1: does not apply.
    */
   int64_t element;
   /**
-   * Node with friction, -1: does not apply.
+   * Node with friction; -1: does not apply.
    */
   int64_t node;
 } feti_error_detail;
 
 /**
- * Text of the calling thread's last error.
+ * Text of the last error in the calling thread.
  *
- * The text is cut to fit, always NUL terminated when `cap` > 0. Returns the full length without
- * the NUL, 0 when there was no error; a successful call does not clear the text. Never fails.
+ * The text is truncated to fit, and always NUL terminated if `cap` > 0. Returns the full length
+ * without the NUL, or 0 if no error has occurred; a successful call does not clear the text. Never
+ * fails.
  *
  * @param[out] buf (text) room for `cap` characters; NULL asks for the length
  * @param[in]  cap (scalar) characters in `buf`, 0 with NULL
@@ -3060,22 +3126,22 @@ typedef struct feti_error_detail {
 int64_t feti_last_error(char *buf, int64_t cap);
 
 /**
- * Facts of the calling thread's last error: function, argument, place, value and limit.
+ * Details of the last error in the calling thread: function, argument, place, value and limit.
  *
- * `struct_size` is set by the caller; no more than that is written. A refusal of `out` leaves the
- * last error as it is.
+ * The caller sets `struct_size`; the library writes no more bytes than that. A refusal of `out`
+ * leaves the last error unchanged.
  *
  * @param[in,out] out (scalar) `struct_size` set, at least 16
  *
- * Safety: `out` leads to `struct_size` writable bytes.
+ * Safety: `out` points to `struct_size` writable bytes.
  */
 int32_t feti_last_error_detail(struct feti_error_detail *out);
 
 /**
- * Text of the problem's last error.
+ * Text of the last error of the problem.
  *
- * May be called while another call on the problem runs. The text is cut to fit, always NUL
- * terminated when `cap` > 0; it is empty when there was no error, and a successful call does not
+ * May be called while another call on the problem runs. The text is truncated to fit, and always
+ * NUL terminated if `cap` > 0. It is empty if no error has occurred; a successful call does not
  * clear it.
  *
  * @param[in]  p   (scalar) the handle
@@ -3090,7 +3156,7 @@ int32_t feti_problem_error(struct feti_problem *p, char *buf, int64_t cap, int64
 /*
  * Statuses and version
  * ====================
- * What functions return, in words; the version of the library.
+ * Names and texts of return values; the version of the library.
  */
 
 /**
@@ -3109,7 +3175,7 @@ int32_t feti_problem_error(struct feti_problem *p, char *buf, int64_t cap, int64
 #define FETI_TIME 2
 
 /**
- * The host cancelled; the results are those of the last step, and none before the first.
+ * The host cancelled; the results are those of the last step, or none if there was no step yet.
  */
 #define FETI_CANCELLED 3
 
@@ -3134,7 +3200,7 @@ int32_t feti_problem_error(struct feti_problem *p, char *buf, int64_t cap, int64
 #define FETI_MEMORY -1
 
 /**
- * The handle is NULL, destroyed, or none of the library.
+ * The handle is NULL, was destroyed, or does not come from this library.
  */
 #define FETI_HANDLE -2
 
@@ -3149,7 +3215,7 @@ int32_t feti_problem_error(struct feti_problem *p, char *buf, int64_t cap, int64
 #define FETI_CALLBACK -4
 
 /**
- * Something this call needs has not been given yet.
+ * Something that this call needs has not been given yet.
  */
 #define FETI_STATE -5
 
@@ -3164,13 +3230,13 @@ int32_t feti_problem_error(struct feti_problem *p, char *buf, int64_t cap, int64
 #define FETI_GAPS_CONTRADICT -7
 
 /**
- * The null space of a body is not what was claimed, or was not found.
+ * The null space of a body is not the one that was given, or was not found.
  */
 #define FETI_NULL_SPACE -8
 
 /**
- * A stiffness matrix has a negative or a vanishing pivot outside its null space, or drives a soft
- * motion further than the contact resists it.
+ * A stiffness matrix has a negative or vanishing pivot outside its null space, or drives a soft
+ * motion that the contact does not stop.
  */
 #define FETI_INDEFINITE -9
 
@@ -3180,8 +3246,8 @@ int32_t feti_problem_error(struct feti_problem *p, char *buf, int64_t cap, int64
 #define FETI_IO -10
 
 /**
- * The library contradicts itself; only destroy and the error functions accept the problem
- * afterwards.
+ * An internal error of the library; afterwards only feti_problem_destroy and the error functions
+ * accept the problem.
  */
 #define FETI_INTERNAL -11
 
@@ -3191,33 +3257,33 @@ int32_t feti_problem_error(struct feti_problem *p, char *buf, int64_t cap, int64
 #define FETI_UNSUPPORTED -12
 
 /**
- * A number, or a product of numbers that were given, does not fit its type.
+ * A given number, or a product of given numbers, does not fit its type.
  */
 #define FETI_OVERFLOW -13
 
 /**
- * Bodies slide steadily: friction holds only a part of the load, and no rest was found.
+ * Bodies slide steadily: friction holds only a part of the load, and no equilibrium was found.
  */
 #define FETI_SLIDES -14
 
 /**
- * Argument k refused is FETI_ARGUMENT - k, k from 1 with the handle as 1; FETI_ARGUMENT itself:
- * data of an earlier call.
+ * FETI_ARGUMENT - k: argument k was refused, where the handle is argument 1. FETI_ARGUMENT itself:
+ * data of an earlier call was refused.
  */
 #define FETI_ARGUMENT -100
 
 /**
  * Name of a status, such as "FETI_LOAD_NOT_HELD".
  *
- * "FETI_ARGUMENT" for every refused argument, "FETI_UNKNOWN" for a number that is no status. The
- * text is static. Never fails.
+ * The name is "FETI_ARGUMENT" for every refused argument and "FETI_UNKNOWN" for a number that is
+ * not a status. The text is static. Never fails.
  *
  * @param[in] status (scalar) any number
  */
 const char *feti_status_name(int32_t status);
 
 /**
- * One English sentence on a status.
+ * One English sentence that explains a status.
  *
  * The text is static. Never fails.
  *
@@ -3226,14 +3292,14 @@ const char *feti_status_name(int32_t status);
 const char *feti_status_text(int32_t status);
 
 /**
- * Version of the library that runs, "MAJOR.MINOR.PATCH".
+ * Version of the loaded library, "MAJOR.MINOR.PATCH".
  *
  * The text is static. Never fails.
  */
 const char *feti_version(void);
 
 /**
- * Version of the library that runs as one number, 10000 MAJOR + 100 MINOR + PATCH.
+ * Version of the loaded library as one number, 10000 MAJOR + 100 MINOR + PATCH.
  *
  * Never fails.
  */

@@ -1,11 +1,18 @@
 #!/bin/sh
 # install.sh install|uninstall|list: puts what a host needs below $DESTDIR$PREFIX, removes exactly that, or lists it.
 # From the environment: PREFIX, DESTDIR; LIBDIR, INCLUDEDIR, DATADIR, DOCDIR, MANDIR (absolute or below PREFIX);
-# RELEASE, the folder of the built libraries.
+# RELEASE, the folder of the built libraries; STRIP, what takes symbols off them, nothing: they stay as built; LD, OBJCOPY, what makes
+# the static library one object.
 set -eu
-cd "$(dirname "$0")/.."
+# whole FOLDER: the folder from the root of the file system, nothing for nothing.
+whole() { case $1 in '' | /*) echo "$1" ;; *) echo "$PWD/$1" ;; esac; }
 PREFIX=${PREFIX-/usr/local}
-PREFIX=${PREFIX%/}
+PREFIX=$(whole "${PREFIX%/}")
+DESTDIR=$(whole "${DESTDIR-}")
+STRIP=${STRIP-strip}
+LD=${LD:-ld}
+OBJCOPY=${OBJCOPY:-objcopy}
+cd "$(dirname "$0")/.."
 # placed FOLDER DEFAULT: the folder, or the default, below PREFIX unless absolute.
 placed() { case ${1:-$2} in /*) echo "${1:-$2}" ;; *) echo "$PREFIX/${1:-$2}" ;; esac; }
 LIBDIR=$(placed "${LIBDIR-}" lib)
@@ -15,24 +22,25 @@ DOCDIR=$(placed "${DOCDIR-}" "$DATADIR/doc/feti-contact")
 MANDIR=$(placed "${MANDIR-}" "$DATADIR/man")
 CMAKEDIR=$LIBDIR/cmake/feti_contact
 FORTRANDIR=$DATADIR/feti_contact/fortran
-DESTDIR=${DESTDIR-}
-RELEASE=${RELEASE:-${CARGO_TARGET_DIR:-target}/release}
+RELEASE=${RELEASE:-${CARGO_TARGET_DIR:-target}/${CARGO_BUILD_TARGET:+$CARGO_BUILD_TARGET/}release}
 VERSION=$(sed -n 's/^version = "\(.*\)"/\1/p' Cargo.toml | head -n 1)
 # The name for the loader: 0.MINOR before 1.0, MAJOR from then on, as in build.rs.
 case $VERSION in 0.*) SOVERSION=${VERSION%.*} ;; *) SOVERSION=${VERSION%%.*} ;; esac
 
-# files: a line MODE|SOURCE|TARGET for every file; mode `link`: SOURCE is what the link says; `fill`: a template.
+# files: a line MODE|SOURCE|TARGET for every file; mode `link`: SOURCE is what the link says; `fill`: a template; `shared`, `static`: a
+# library.
 files() {
-    echo "755|$RELEASE/libfeti_contact.so|$LIBDIR/libfeti_contact.so.$VERSION"
+    echo "shared|$RELEASE/libfeti_contact.so|$LIBDIR/libfeti_contact.so.$VERSION"
     echo "link|libfeti_contact.so.$VERSION|$LIBDIR/libfeti_contact.so.$SOVERSION"
     echo "link|libfeti_contact.so.$SOVERSION|$LIBDIR/libfeti_contact.so"
-    echo "644|$RELEASE/libfeti_contact.a|$LIBDIR/libfeti_contact.a"
+    echo "static|$RELEASE/libfeti_contact.a|$LIBDIR/libfeti_contact.a"
     echo "644|include/feti_contact.h|$INCLUDEDIR/feti_contact.h"
     echo "fill|cmake/feti_contact.pc.in|$LIBDIR/pkgconfig/feti_contact.pc"
     echo "fill|cmake/feti_contact-config.cmake.in|$CMAKEDIR/feti_contact-config.cmake"
     echo "fill|cmake/feti_contact-config-version.cmake.in|$CMAKEDIR/feti_contact-config-version.cmake"
     echo "644|cmake/feti_contact-targets.cmake|$CMAKEDIR/feti_contact-targets.cmake"
     each "$FORTRANDIR" include/fortran/*.f90 include/fortran/*.inc include/fortran/fpm.toml
+    each "$DATADIR/feti_contact/suppressions" tools/suppressions/*
     each "$DOCDIR" README.md CHANGELOG.md LICENSE-MIT LICENSE-APACHE LICENSE-THIRD-PARTY
     each "$DOCDIR/docs" docs/*.md
     each "$DOCDIR/docs/pictures" docs/pictures/*
@@ -92,10 +100,34 @@ fill() {
         -e "s|@F77@|$(f77)|g" -e 's/ *$//' "$1"
 }
 
+# shared SOURCE TARGET: the shared library, without what only a debugger reads.
+shared() {
+    install -m 755 "$1" "$2"
+    [ -z "$STRIP" ] || "$STRIP" --strip-unneeded "$2" || echo "install.sh: $STRIP does not strip $2" >&2
+}
+
+# static SOURCE TARGET: the archive as one object whose only global symbols are those of the header, so that it clashes neither with the
+# host nor with the archive of another library in Rust; as it was built where the tools do not serve. Sections of bitcode, which no host
+# reads, go first: they cannot be joined.
+static() {
+    install -m 644 "$1" "$2"
+    [ -n "$STRIP" ] || return 0
+    work=$(mktemp -d)
+    if "$OBJCOPY" --strip-debug -R .llvmbc -R .llvmcmd "$1" "$work/members.a" &&
+        "$LD" -r --whole-archive "$work/members.a" -o "$work/members.o" &&
+        "$OBJCOPY" --wildcard --keep-global-symbol='feti_*' "$work/members.o" "$work/feti_contact.o" &&
+        ${AR:-ar} crsD "$work/libfeti_contact.a" "$work/feti_contact.o"
+    then install -m 644 "$work/libfeti_contact.a" "$2"
+    else echo "install.sh: $2 is installed as built: $OBJCOPY or $LD failed" >&2
+    fi
+    rm -rf "$work"
+}
+
 # put MODE SOURCE TARGET: one line of `files`.
 put() {
     mkdir -p "${3%/*}"
     case $1 in
+    shared | static) "$1" "$2" "$3" ;;
     link) ln -sf "$2" "$3" ;;
     fill) fill "$2" >"$3" && chmod 644 "$3" ;;
     *) install -m "$1" "$2" "$3" ;;

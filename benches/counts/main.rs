@@ -6,7 +6,7 @@
 //! ```
 //!
 //! then how F grows with the size and with the accuracy, the coarse solves per product, and a closing line with the number short. Arguments:
-//! parts of the names of the decks to run, none for all. Exit code 1 when a deck is not solved; a short one
+//! parts of the names of the decks to run, none for all; `sequence` asks for sequences of problems of Tresca besides. Exit code 1 when a deck is not solved; a short one
 //! alone leaves it 0.
 
 #[path = "../../tests/support/hand_over.rs"]
@@ -15,6 +15,7 @@ mod linear;
 mod load_steps;
 mod measure;
 mod rubbing;
+mod sequence;
 mod table;
 mod verdict;
 
@@ -39,6 +40,9 @@ struct Tally {
 
 /// Coarse solves per product with F, on the average of the decks that have a coarse problem.
 const COARSE_SOLVES: f64 = 3.0;
+
+/// The argument that asks for sequences of problems of Tresca, on the decks with friction that other arguments name, or on all of them.
+const SEQUENCE: &str = "sequence";
 
 /// Products of nine steps with friction, warm, against linear problems that start cold.
 const LOOP: f64 = 1.0;
@@ -69,6 +73,12 @@ fn main() -> ExitCode {
     rubbing::groups().into_iter().for_each(|group| tally.friction(&group, &wants));
     for (name, build) in rubbing::loops().into_iter().filter(|(name, _)| wants(name)) {
         tally.friction_loop(name, &*build);
+    }
+    if wanted.iter().any(|part| part == SEQUENCE) {
+        let all = rubbing::groups().into_iter().flat_map(|group| group.cases);
+        let names: Vec<&String> = wanted.iter().filter(|part| *part != SEQUENCE).collect();
+        let asked = |name: &str| names.is_empty() || names.iter().any(|part| name.contains(*part));
+        tally.sequences(all.filter(|case| asked(&case.name)));
     }
     let Tally { lines, short, failed, near, .. } = tally;
     println!(
@@ -213,6 +223,42 @@ impl Tally {
             Err(fault) => {
                 self.lines += 1;
                 self.fail(name, &fault);
+            }
+        }
+    }
+
+    /// Products of sequences of problems of Tresca against those of the method for Coulomb's law: told, without a goal.
+    fn sequences(&mut self, cases: impl Iterator<Item = rubbing::Case>) {
+        let mut ratios = [Vec::new(), Vec::new()];
+        for case in cases {
+            self.lines += 1;
+            match case.against_sequences() {
+                Ok((products, sequences)) => {
+                    print!("sequence {} F {products}", case.name);
+                    for (k, word) in ["exact", "inexact"].into_iter().enumerate() {
+                        match &sequences[k] {
+                            Ok(of) => {
+                                let ratio = of.products as f64 / products as f64;
+                                print!(
+                                    " {word} {} of {} problems ratio {ratio:.2}",
+                                    of.products, of.problems
+                                );
+                                ratios[k].push(ratio);
+                            }
+                            Err(fault) => print!(" {word} none ({fault})"),
+                        }
+                    }
+                    println!();
+                    flush();
+                }
+                Err(fault) => self.fail(&case.name, &fault),
+            }
+        }
+        for (mut ratios, word) in ratios.into_iter().zip(["exact", "inexact"]) {
+            ratios.sort_by(f64::total_cmp);
+            if let (Some(least), Some(most)) = (ratios.first(), ratios.last()) {
+                let (count, median) = (ratios.len(), ratios[ratios.len() / 2]);
+                println!("sequences {word} {count} decks ratio {least:.2} to {most:.2} median {median:.2}");
             }
         }
     }

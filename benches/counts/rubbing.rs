@@ -7,6 +7,7 @@ use decks::{Cube, Deck, Stack};
 use feti_contact::solver::{Problem, Report};
 
 use crate::measure::{prepared, solved, TOLERANCE};
+use crate::sequence::{self, Sequence};
 
 /// Decks that share their goals.
 pub struct Group {
@@ -123,6 +124,14 @@ impl Case {
         let linear = linear(&mut problem)?;
         let (products, nodes) = (report.counts.products, deck.friction.normal.len());
         Ok(Measurement { products, linear, report, nodes, seconds: started.elapsed().as_secs_f64() })
+    }
+
+    /// Products of the method and of sequences of problems of Tresca, exact ones and others, for Coulomb's law.
+    pub fn against_sequences(&self) -> Result<(usize, [Result<Sequence, String>; 2]), String> {
+        let deck = (self.build)();
+        let mut problem = prepared(&deck, TOLERANCE)?;
+        let products = solved(&mut problem, "friction")?.counts.products;
+        Ok((products, [true, false].map(|exact| sequence::measure(&deck, exact))))
     }
 }
 

@@ -257,7 +257,7 @@ contains
     text = f_text(c_status_text(int(status, c_int32_t)))
   end function
 
-  !> Version of the library, such as 0.1.0.
+  !> Version of the library, such as 0.2.0.
   recursive function version() result(text)
     character(len=version_length()) :: text
 

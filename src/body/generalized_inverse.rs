@@ -278,12 +278,12 @@ mod tests {
         let (mut ptr, mut col, mut val) = (vec![0], Vec::new(), Vec::new());
         for k in 0..parts * n * n {
             let i = k % (n * n);
-            let edges = [(i >= n).then(|| k - n), (!i.is_multiple_of(n)).then(|| k - 1)];
+            let edges = [(i >= n).then(|| k - n), (i % n > 0).then(|| k - 1)];
             for j in edges.into_iter().flatten() {
                 col.push(j as u32);
                 val.push(-1.0);
             }
-            let degree = [i >= n, !i.is_multiple_of(n), i + n < n * n, i % n + 1 < n];
+            let degree = [i >= n, i % n > 0, i + n < n * n, i % n + 1 < n];
             col.push(k as u32);
             val.push(degree.into_iter().filter(|d| *d).count() as f64);
             ptr.push(col.len());

@@ -7,13 +7,14 @@ use crate::ffi::header::types::{feti_findings, feti_problem, FETI_EQUALITY, FETI
 use crate::ffi::rows::row_kind;
 use crate::solver::{Findings, RowKind};
 
-/// What the last solve, or the last setup that failed, has found out about the problem.
+/// Reads what the last solve, or the last failed setup, found out about the problem.
 ///
-/// After FETI_LOAD_NOT_HELD: the body that escapes, its motion and the margin. After FETI_SLIDES: the body that slides, its motion and
-/// the capacity of friction. After FETI_GAPS_CONTRADICT: the rows that
-/// contradict each other. Of several groups of bodies without an answer the first is told of. After FETI_INDEFINITE, FETI_NULL_SPACE and the like: the body and the unknown. With an answer:
-/// motions left undetermined, redundant rows, bodies that no row touches. Kept until the next solve or the next setup that
-/// fails; FETI_STATE before the first. After a failure nothing is written.
+/// After FETI_LOAD_NOT_HELD: the body that escapes, its motion and the margin. After FETI_SLIDES: the body that slides,
+/// its motion and the capacity of friction. After FETI_GAPS_CONTRADICT: the rows that contradict each other. If several
+/// groups of bodies have no answer, the findings describe the first of them. After FETI_INDEFINITE, FETI_NULL_SPACE and
+/// similar statuses: the body and the unknown. With an answer: undetermined motions, redundant rows, and bodies that no
+/// row touches. The findings are kept until the next solve or the next failed setup. FETI_STATE before the first solve or
+/// failed setup. After a failure nothing is written.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|
@@ -21,7 +22,7 @@ use crate::solver::{Findings, RowKind};
 /// | `out` | in/out | scalar | `struct_size` set, at least 16 |
 ///
 /// # Safety
-/// `out` leads to `struct_size` writable bytes.
+/// `out` points to `struct_size` writable bytes.
 #[no_mangle]
 pub unsafe extern "C" fn feti_diagnosis(p: *mut feti_problem, out: *mut feti_findings) -> i32 {
     enter(p, call!(feti_diagnosis(p, out)), |problem| {
@@ -32,19 +33,21 @@ pub unsafe extern "C" fn feti_diagnosis(p: *mut feti_problem, out: *mut feti_fin
     })
 }
 
-/// Lists the rows of one kind that contradict each other, with their weights; without a contradiction the redundant rows.
+/// Lists the rows of one kind that contradict each other, with their weights, or without a contradiction the redundant
+/// rows.
 ///
-/// Weights w, largest 1, prove a contradiction: with the rows of both kinds the sum of w b is 0 and the sum of w c is
-/// negative, w > 0 for inequalities; where unknowns with one number are glued (option glue) it is 0 over the numbers, and
-/// feti_last_error names some of them. The weight of a redundant row is its multiple of the row that it repeats. FETI_STATE
-/// before the first solve. After a failure nothing is written.
+/// The weights w, scaled to a largest weight of 1, prove a contradiction: over the rows b of both kinds the sum of w b is
+/// 0 and the sum of w c is negative, with w > 0 for inequalities. If unknowns with the same number are glued (option
+/// glue), the sum of w b is 0 for each number, and feti_last_error names some of these numbers. The weight of a redundant
+/// row is its factor relative to the row that it repeats. FETI_STATE before the first solve. After a failure nothing is
+/// written.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|
 /// | `p` | in | scalar | the handle |
 /// | `kind` | in | scalar | FETI_INEQUALITY or FETI_EQUALITY |
-/// | `cap` | in | scalar | rows that `row` and `weight` have room for |
-/// | `count` | out | scalar | rows there are; those that fit are written |
+/// | `cap` | in | scalar | capacity of `row` and `weight` |
+/// | `count` | out | scalar | number of rows found; as many as fit are written |
 /// | `row` | out | cap | numbers from 0, ascending; may be NULL |
 /// | `weight` | out | cap | no unit; may be NULL |
 ///
@@ -80,16 +83,16 @@ pub unsafe extern "C" fn feti_diagnosis_rows(
     })
 }
 
-/// Lists the equality rows that are combinations of the other equality rows, found when asked for.
+/// Lists the equality rows that are linear combinations of the other equality rows; this call computes them.
 ///
-/// They constrain nothing, and which of them carry the forces is open. Rows that repeat another one are with
-/// feti_diagnosis_rows. FETI_STATE before the first setup. After a failure nothing is written.
+/// These rows add no constraint, and the distribution of forces among them is not unique. feti_diagnosis_rows lists the
+/// rows that repeat another row. FETI_STATE before the first setup. After a failure nothing is written.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|
 /// | `p` | in | scalar | the handle |
-/// | `cap` | in | scalar | rows that `row` has room for |
-/// | `count` | out | scalar | rows there are; those that fit are written |
+/// | `cap` | in | scalar | capacity of `row` |
+/// | `count` | out | scalar | number of rows found; as many as fit are written |
 /// | `row` | out | cap | numbers from 0, ascending; may be NULL |
 ///
 /// # Safety
@@ -110,15 +113,15 @@ pub unsafe extern "C" fn feti_diagnosis_dependent(
     })
 }
 
-/// Lists the bodies that no row touched in the last solve, or in the last setup that failed.
+/// Lists the bodies that no row touched in the last solve, or in the last failed setup.
 ///
 /// Rows that never close, c = +infinity, do not count. FETI_STATE before the first solve. After a failure nothing is written.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|
 /// | `p` | in | scalar | the handle |
-/// | `cap` | in | scalar | bodies that `body` has room for |
-/// | `count` | out | scalar | bodies there are; those that fit are written |
+/// | `cap` | in | scalar | capacity of `body` |
+/// | `count` | out | scalar | number of bodies found; as many as fit are written |
 /// | `body` | out | cap | numbers from 0, ascending; may be NULL |
 ///
 /// # Safety
@@ -145,17 +148,17 @@ fn write_list(numbers: &[usize], (count, list): (Output<i64>, Output<i64>)) {
     numbers.iter().enumerate().for_each(|(k, &number)| list.write_at(k, &[number as i64]));
 }
 
-/// Reads a rigid motion that the last answer leaves undetermined: which body, and how it moves.
+/// Reads a rigid body motion that the last answer leaves undetermined: the body and its motion.
 ///
-/// `undetermined` of feti_findings says how many there are. Bodies that have nothing to do with each other are in motions
-/// of their own. FETI_STATE without an answer. After a failure nothing is written.
+/// `undetermined` of feti_findings is the number of these motions. Bodies that are not connected appear in separate
+/// motions. FETI_STATE without an answer. After a failure nothing is written.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|
 /// | `p` | in | scalar | the handle |
 /// | `k` | in | scalar | number of the motion, from 0 |
 /// | `body` | out | scalar | number of the body that moves fastest, from 0; may be NULL |
-/// | `motion` | out | 6 | of this body: velocity of the origin, rotation about the axes; NaN without coordinates; may be NULL |
+/// | `motion` | out | 6 | motion of this body: velocity of the origin, rotation about the axes; NaN without coordinates; may be NULL |
 ///
 /// # Safety
 /// The arrays have the given shapes.
@@ -177,10 +180,10 @@ pub unsafe extern "C" fn feti_diagnosis_undetermined(
     })
 }
 
-/// Reads a rigid motion that the last answer leaves undetermined, unknown by unknown.
+/// Reads the motion of every unknown of a body in a rigid body motion that the last answer leaves undetermined.
 ///
-/// It is scaled to largest entry 1 over all bodies; bodies that stay have zeros. FETI_STATE without an answer. After a
-/// failure nothing is written.
+/// The motion is scaled so that its largest entry over all bodies is 1; bodies that do not move have zeros. FETI_STATE
+/// without an answer. After a failure nothing is written.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|
@@ -209,11 +212,12 @@ pub unsafe extern "C" fn feti_diagnosis_undetermined_motion(
     })
 }
 
-/// Reads the rigid motion with which a body escapes, unknown by unknown.
+/// Reads the motion of every unknown of a body in the rigid body motion that escapes.
 ///
-/// The load does work on it, and no row resists. It is scaled to largest entry 1 over all bodies; bodies that stay have
-/// zeros. After FETI_SLIDES the motion that friction resists too little, after FETI_INDEFINITE the one that K drives further than
-/// closed rows resist. FETI_STATE unless the last solve ended with one of these and a motion. After a failure nothing is written.
+/// The load does work on this motion, and no row resists it. The motion is scaled so that its largest entry over all
+/// bodies is 1; bodies that do not move have zeros. After FETI_SLIDES it is the motion that friction does not hold, and
+/// after FETI_INDEFINITE the motion that K drives and closed rows do not stop. FETI_STATE unless the last solve ended
+/// with one of these statuses and found a motion. After a failure nothing is written.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|

@@ -5,20 +5,21 @@ use std::ffi::c_char;
 use crate::ffi::boundary::{call, enter, file_path};
 use crate::ffi::header::types::feti_problem;
 
-/// Writes all that the host has registered to one file: a bug report is a file.
+/// Writes all input of the problem to one file, for example for a bug report.
 ///
-/// Bodies with their matrices, null spaces, coordinates, fixing unknowns, loads and numbers of the host, rows of both kinds with right-hand
-/// sides and compliances, and the options that differ from their defaults, bit by bit; not the answer, start values, saved states and
-/// functions of the host. docs/file_format.md describes every byte. The file is written under another name in the same folder and
-/// renamed when it is complete: after a failure an old file is as it was, and nothing else is left. FETI_IO with path,
-/// operation and the words of the system; FETI_UNSUPPORTED with the body where functions of the host stand for a matrix
-/// (feti_body_operator): no file holds them. Borrowed matrices are written as they are at that moment. Of a body that is cut
-/// (feti_body_mesh_i32) the pieces are written, not the elements; FETI_STATE where elements of a body are missing.
+/// The file has the bodies with their matrices, null spaces, coordinates, fixing unknowns, loads and numbers of the host,
+/// rows of both kinds with right-hand sides and compliances, and the options that differ from their defaults, all bit by
+/// bit. It does not have the answer, start values, saved states and functions of the host. docs/file_format.md describes
+/// every byte. The library writes the file under another name in the same folder and renames it when it is complete:
+/// after a failure an old file is unchanged, and no other file is left. FETI_IO with path, operation and the message of
+/// the system; FETI_UNSUPPORTED if a body has functions of the host instead of a matrix (feti_body_operator), because no
+/// file can hold them. Borrowed matrices are written with their current values. For a body that is cut
+/// (feti_body_mesh_i32) the file has the pieces, not the elements; FETI_STATE if elements of a body are missing.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|
 /// | `p` | in | scalar | the handle |
-/// | `path` | in | text | name of the file; an old one is replaced |
+/// | `path` | in | text | name of the file; an existing file is replaced |
 ///
 /// # Safety
 /// `path` is NUL terminated.
@@ -30,16 +31,17 @@ pub unsafe extern "C" fn feti_problem_write(p: *mut feti_problem, path: *const c
     })
 }
 
-/// Reads what feti_problem_write has written into an empty problem.
+/// Reads a file of feti_problem_write into an empty problem.
 ///
-/// The same solve then gives the same bits. FETI_STATE when there are bodies or rows already. Options become those of the
-/// file, all others their defaults, except index_base, which stays. Everything goes through the checks of the calls it stands
-/// for. FETI_IO with path and the words of the system, or with the byte where a file is damaged (`entry` of
-/// feti_last_error_detail); FETI_UNSUPPORTED when it holds what a later version has written. After a failure the problem is as it was.
+/// A solve then gives the same bits as in the original problem. FETI_STATE if there are bodies or rows already. Options
+/// get their values from the file and otherwise their defaults, except index_base, which is unchanged. All data pass the
+/// same checks as in the corresponding calls. FETI_IO with path and the message of the system, or with the position of
+/// the first wrong byte if the file is damaged (`entry` of feti_last_error_detail); FETI_UNSUPPORTED if the file has
+/// contents of a later version. After a failure the problem is unchanged.
 ///
-/// Matrices come back by the rows of their lower triangle, columns ascending, with every diagonal entry, however they were
-/// given: feti_body_values then expects the values in this order, and feti_body_values_split and feti_body_values_dense
-/// return FETI_STATE until the matrix has been given again.
+/// Whatever their original form, matrices are read back as rows of the lower triangle, with ascending columns and every
+/// diagonal entry. feti_body_values then expects the values in this order, and feti_body_values_split and
+/// feti_body_values_dense return FETI_STATE until the matrix has been given again.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|

@@ -9,32 +9,35 @@ use crate::solver::{FrictionInput, Problem, RowsInput};
 
 /// Adds nodes with friction, with 32-bit indices.
 ///
-/// A node has a normal row b_n, which is a contact row that is there (feti_rows_add_i32, feti_rows_add_i64), and dim tangential
-/// rows T, dim = 1 in the plane and 2 in space. Its tangential force lambda_t acts on the bodies as -T'lambda_t, its slip is
-/// `s = T u - s_old - C_t lambda_t`: the motion of the body with positive entries against the other one. |lambda_t| <= b with
-/// b = bound + coefficient lambda_n; the node sticks, s = 0, or slips along the force, `lambda_t = b s / |s|`: slip and force have one sign.
-/// Coefficient 0 is friction of Tresca, bound 0 of Coulomb; `bound` acts at open nodes too.
+/// A node has a normal row b_n, which is an existing contact row (feti_rows_add_i32, feti_rows_add_i64), and dim
+/// tangential rows T, with dim = 1 in the plane and 2 in space. Its tangential force lambda_t acts on the bodies as
+/// -T'lambda_t. Its slip is `s = T u - s_old - C_t lambda_t`: the motion of the body with positive entries relative to
+/// the other body. The force is bounded by |lambda_t| <= b with b = bound + coefficient lambda_n. The node either sticks,
+/// s = 0, or slips in the direction of the force, `lambda_t = b s / |s|`, so that slip and force have the same sign.
+/// Coefficient 0 gives Tresca friction, bound 0 gives Coulomb friction; `bound` also acts at open nodes.
 ///
-/// Contact row and tangential rows of a node are to be multiplied by one factor (that of an area, of a unit): lengths that differ by
-/// more than 1e3 are refused. Tangential rows may be oblique, and may have no entries. `normal_row` is the number of a contact row,
-/// never of an equality row, and of one node alone. A pair of body and unknown that comes twice in a row is summed. s_old and
-/// C_t are zero (feti_friction_reference, feti_friction_compliance). The data are copied, the nodes numbered behind those that are
-/// there; all nodes have the same dim. Factors of the bodies stay, the last answer does not. FETI_STATE where `body` is NULL
-/// and some bodies have numbers of the host, others have none. After a failure nothing is added.
+/// If you scale the rows of a node (by an area or a unit), scale its contact row and its tangential rows by the same
+/// factor: lengths that differ by more than a factor of 1e3 are refused. Tangential rows may be oblique, and may have no
+/// entries. `normal_row` is the number of a contact row, never of an equality row, and each contact row belongs to at
+/// most one node. If a pair of body and unknown occurs twice in a row, the entries are summed. s_old and C_t start at
+/// zero (see feti_friction_reference and feti_friction_compliance). The data are copied, and the nodes are numbered after
+/// the existing nodes; all nodes have the same dim. The factors of the bodies stay valid; the last answer is dropped.
+/// FETI_STATE if `body` is NULL and some bodies have numbers of the host while others have none. After a failure nothing
+/// is added.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|
 /// | `p` | in | scalar | the handle |
 /// | `nodes` | in | scalar | number of nodes, 0 adds none |
 /// | `dim` | in | scalar | tangential rows of a node, 1 or 2 |
-/// | `normal_row` | in | nodes | contact row of each node, counted from `base`; `base` - 1: none, the bound acts alone |
-/// | `row_ptr` | in | dim * nodes + 1 | tangential row i, dim of them for each node, holds the entries `row_ptr[i]` to `row_ptr[i + 1] - 1`; starts with `base` |
-/// | `body` | in | `row_ptr[dim * nodes] - base` | body of each entry, counted from `base`; NULL: `dof` is the host's number of the unknown (feti_body_numbering_i32), without numbers it counts through all bodies |
+/// | `normal_row` | in | nodes | contact row of each node, counted from `base`; `base` - 1: no contact row, only the bound acts |
+/// | `row_ptr` | in | dim * nodes + 1 | tangential row i (dim rows per node) holds the entries `row_ptr[i]` to `row_ptr[i + 1] - 1`; starts with `base` |
+/// | `body` | in | `row_ptr[dim * nodes] - base` | body of each entry, counted from `base`; NULL: `dof` is the host's number of the unknown (feti_body_numbering_i32) or, without such numbers, counts the unknowns of all bodies consecutively |
 /// | `dof` | in | `row_ptr[dim * nodes] - base` | unknown of each entry, counted from `base` |
 /// | `val` | in | `row_ptr[dim * nodes] - base` | entries of T |
 /// | `base` | in | scalar | 0 or 1: what `normal_row`, `row_ptr`, `body` and `dof` count from |
-/// | `coefficient` | in | nodes | coefficient of friction, >= 0, no unit; 0 without a contact row; NULL: zeros |
-/// | `bound` | in | nodes | bound without contact force, >= 0, force; NULL: zeros |
+/// | `coefficient` | in | nodes | coefficient of friction, >= 0, no unit; must be 0 without a contact row; NULL: zeros |
+/// | `bound` | in | nodes | part of the bound that does not depend on the contact force, >= 0, force; NULL: zeros |
 /// | `first` | out | scalar | number of the first node added, from 0; may be NULL |
 ///
 /// # Safety
@@ -76,32 +79,35 @@ pub unsafe extern "C" fn feti_friction_add_i32(
 
 /// Adds nodes with friction, with 64-bit indices.
 ///
-/// A node has a normal row b_n, which is a contact row that is there (feti_rows_add_i32, feti_rows_add_i64), and dim tangential
-/// rows T, dim = 1 in the plane and 2 in space. Its tangential force lambda_t acts on the bodies as -T'lambda_t, its slip is
-/// `s = T u - s_old - C_t lambda_t`: the motion of the body with positive entries against the other one. |lambda_t| <= b with
-/// b = bound + coefficient lambda_n; the node sticks, s = 0, or slips along the force, `lambda_t = b s / |s|`: slip and force have one sign.
-/// Coefficient 0 is friction of Tresca, bound 0 of Coulomb; `bound` acts at open nodes too.
+/// A node has a normal row b_n, which is an existing contact row (feti_rows_add_i32, feti_rows_add_i64), and dim
+/// tangential rows T, with dim = 1 in the plane and 2 in space. Its tangential force lambda_t acts on the bodies as
+/// -T'lambda_t. Its slip is `s = T u - s_old - C_t lambda_t`: the motion of the body with positive entries relative to
+/// the other body. The force is bounded by |lambda_t| <= b with b = bound + coefficient lambda_n. The node either sticks,
+/// s = 0, or slips in the direction of the force, `lambda_t = b s / |s|`, so that slip and force have the same sign.
+/// Coefficient 0 gives Tresca friction, bound 0 gives Coulomb friction; `bound` also acts at open nodes.
 ///
-/// Contact row and tangential rows of a node are to be multiplied by one factor (that of an area, of a unit): lengths that differ by
-/// more than 1e3 are refused. Tangential rows may be oblique, and may have no entries. `normal_row` is the number of a contact row,
-/// never of an equality row, and of one node alone. A pair of body and unknown that comes twice in a row is summed. s_old and
-/// C_t are zero (feti_friction_reference, feti_friction_compliance). The data are copied, the nodes numbered behind those that are
-/// there; all nodes have the same dim. Factors of the bodies stay, the last answer does not. FETI_STATE where `body` is NULL
-/// and some bodies have numbers of the host, others have none. After a failure nothing is added.
+/// If you scale the rows of a node (by an area or a unit), scale its contact row and its tangential rows by the same
+/// factor: lengths that differ by more than a factor of 1e3 are refused. Tangential rows may be oblique, and may have no
+/// entries. `normal_row` is the number of a contact row, never of an equality row, and each contact row belongs to at
+/// most one node. If a pair of body and unknown occurs twice in a row, the entries are summed. s_old and C_t start at
+/// zero (see feti_friction_reference and feti_friction_compliance). The data are copied, and the nodes are numbered after
+/// the existing nodes; all nodes have the same dim. The factors of the bodies stay valid; the last answer is dropped.
+/// FETI_STATE if `body` is NULL and some bodies have numbers of the host while others have none. After a failure nothing
+/// is added.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|
 /// | `p` | in | scalar | the handle |
 /// | `nodes` | in | scalar | number of nodes, 0 adds none |
 /// | `dim` | in | scalar | tangential rows of a node, 1 or 2 |
-/// | `normal_row` | in | nodes | contact row of each node, counted from `base`; `base` - 1: none, the bound acts alone |
-/// | `row_ptr` | in | dim * nodes + 1 | tangential row i, dim of them for each node, holds the entries `row_ptr[i]` to `row_ptr[i + 1] - 1`; starts with `base` |
-/// | `body` | in | `row_ptr[dim * nodes] - base` | body of each entry, counted from `base`; NULL: `dof` is the host's number of the unknown (feti_body_numbering_i32), without numbers it counts through all bodies |
+/// | `normal_row` | in | nodes | contact row of each node, counted from `base`; `base` - 1: no contact row, only the bound acts |
+/// | `row_ptr` | in | dim * nodes + 1 | tangential row i (dim rows per node) holds the entries `row_ptr[i]` to `row_ptr[i + 1] - 1`; starts with `base` |
+/// | `body` | in | `row_ptr[dim * nodes] - base` | body of each entry, counted from `base`; NULL: `dof` is the host's number of the unknown (feti_body_numbering_i32) or, without such numbers, counts the unknowns of all bodies consecutively |
 /// | `dof` | in | `row_ptr[dim * nodes] - base` | unknown of each entry, counted from `base` |
 /// | `val` | in | `row_ptr[dim * nodes] - base` | entries of T |
 /// | `base` | in | scalar | 0 or 1: what `normal_row`, `row_ptr`, `body` and `dof` count from |
-/// | `coefficient` | in | nodes | coefficient of friction, >= 0, no unit; 0 without a contact row; NULL: zeros |
-/// | `bound` | in | nodes | bound without contact force, >= 0, force; NULL: zeros |
+/// | `coefficient` | in | nodes | coefficient of friction, >= 0, no unit; must be 0 without a contact row; NULL: zeros |
+/// | `bound` | in | nodes | part of the bound that does not depend on the contact force, >= 0, force; NULL: zeros |
 /// | `first` | out | scalar | number of the first node added, from 0; may be NULL |
 ///
 /// # Safety
@@ -193,18 +199,19 @@ impl<I: Index> HostNodes<I> {
     }
 }
 
-/// Replaces the law of nodes: coefficients, bounds, or both.
+/// Replaces the friction law of nodes: coefficients, bounds, or both.
 ///
-/// What is NULL stays as it is. The numbers are copied; factors of the bodies and the last answer stay, but for a node that may carry
-/// no force before and some after, or the reverse: that drops the answer. After a failure all laws are as they were.
+/// An argument that is NULL leaves its values unchanged. The numbers are copied. The factors of the bodies and the last
+/// answer stay valid, with one exception: the answer is dropped if a node could not carry a tangential force before the
+/// call and can after it, or the reverse. After a failure all laws are unchanged.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|
 /// | `p` | in | scalar | the handle |
 /// | `first` | in | scalar | first node to change, from 0 |
 /// | `nodes` | in | scalar | number of nodes to change |
-/// | `coefficient` | in | nodes | coefficient of friction, >= 0, no unit; 0 without a contact row; NULL: it stays |
-/// | `bound` | in | nodes | bound without contact force, >= 0, force; NULL: it stays |
+/// | `coefficient` | in | nodes | coefficient of friction, >= 0, no unit; must be 0 without a contact row; NULL: unchanged |
+/// | `bound` | in | nodes | part of the bound that does not depend on the contact force, >= 0, force; NULL: unchanged |
 ///
 /// # Safety
 /// The arrays have the given shapes.
@@ -226,11 +233,12 @@ pub unsafe extern "C" fn feti_friction_law(
     })
 }
 
-/// Makes the stick of nodes elastic, `s = T u - s_old - C_t lambda_t` with C_t = 1/k_t.
+/// Makes sticking nodes elastic: `s = T u - s_old - C_t lambda_t` with C_t = 1/k_t.
 ///
-/// A node that sticks then gives way by C_t lambda_t. Nodes that are added are rigid, C_t = 0; a node whose rows are multiplied by t
-/// has a compliance times t^2. The numbers are copied and stay until they are replaced or the nodes are cleared; factors of the bodies
-/// stay, the last answer does not. After a failure all compliances are as they were.
+/// A sticking node then yields by C_t lambda_t. Newly added nodes are rigid, C_t = 0. If the rows of a node are
+/// multiplied by t, its compliance is multiplied by t^2. The numbers are copied and stay until they are replaced or the
+/// nodes are cleared. The factors of the bodies stay valid; the last answer is dropped. After a failure all compliances
+/// are unchanged.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|
@@ -255,18 +263,18 @@ pub unsafe extern "C" fn feti_friction_compliance(
     })
 }
 
-/// Gives s_old, what the slips of nodes are counted from: T u - C_t lambda_t at the beginning of the load step.
+/// Gives s_old, the reference from which slips are measured: T u - C_t lambda_t at the beginning of the load step.
 ///
-/// Nodes that are added have zeros; feti_friction_commit takes s_old from the answer. A host that solves for the increment of a Newton
-/// iteration gives T (u_begin - u_k). The numbers are copied; factors of the bodies and the last answer stay, with the slips
-/// it had. After a failure all of them are as they were.
+/// Newly added nodes have s_old = 0; feti_friction_commit takes s_old from the answer. A host that solves for the
+/// increment of a Newton iteration gives T (u_begin - u_k). The numbers are copied. The factors of the bodies stay valid,
+/// and the last answer keeps its slips. After a failure all s_old are unchanged.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|
 /// | `p` | in | scalar | the handle |
 /// | `first` | in | scalar | first node to change, from 0 |
 /// | `nodes` | in | scalar | number of nodes to change |
-/// | `dim` | in | scalar | tangential rows of a node, 1 or 2; not looked at without nodes |
+/// | `dim` | in | scalar | tangential rows of a node, 1 or 2; ignored if there are no nodes |
 /// | `s_old` | in | dim * nodes | node after node, length; 0 for rows without entries |
 ///
 /// # Safety
@@ -290,12 +298,13 @@ pub unsafe extern "C" fn feti_friction_reference(
     })
 }
 
-/// Ends a load step: s_old becomes what the last answer has reached, `T u - C_t lambda_t`, at every node, open ones too.
+/// Ends a load step: sets s_old to `T u - C_t lambda_t` of the last answer at every node, including open nodes.
 ///
-/// To be called once a step is accepted, before or after the loads of the next one are given. The answer stays as it was, with
-/// the slips of its step; so does where the next solve starts. A second call does what the first did. To take a step back, save the
-/// state before it (feti_state_save). FETI_STATE before a solve has given an answer, where a group of bodies has none, and where
-/// the answer is not certified (a status of feti_solve other than FETI_OK and FETI_MARGINAL). After a failure s_old is as it was.
+/// Call this function when a load step is accepted, before or after you give the loads of the next step. The answer with
+/// its slips is unchanged, and so are the start values of the next solve. A second call has no further effect. To be able
+/// to return to an earlier step, save the state before the call (feti_state_save). FETI_STATE if no solve has given an
+/// answer yet, if a group of bodies has no answer, and if the answer is not certified (a status of feti_solve other than
+/// FETI_OK and FETI_MARGINAL). After a failure s_old is unchanged.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|
@@ -307,8 +316,8 @@ pub extern "C" fn feti_friction_commit(p: *mut feti_problem) -> i32 {
 
 /// Removes all nodes with friction; their contact rows stay.
 ///
-/// Numbering starts again at 0, and the next nodes may have another dim. feti_rows_clear with FETI_INEQUALITY removes them too.
-/// Factors of the bodies stay, the last answer does not.
+/// The numbering starts again at 0, and new nodes may have another dim. feti_rows_clear with FETI_INEQUALITY also removes
+/// the nodes. The factors of the bodies stay valid; the last answer is dropped.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|

@@ -11,21 +11,23 @@ use crate::ffi::header::types::{
 use crate::ffi::progress::User;
 use crate::solver::{LogLevel, LogListener};
 
-/// Names the function that gets what setups and solves tell in words.
+/// Registers the function that receives the log of setups and solves, line by line.
 ///
-/// Level FETI_LOG_RESULT: one line for each solve, and warnings; FETI_LOG_PHASE: also sizes, options, method, fallbacks and a line for
-/// each phase with its time and bytes, and how far the first feasible point, projections, nearest points and certificates are that take
-/// long: a line after a second at most, and after a tenth of the time so far; FETI_LOG_STEP: also a line for each step. The function is called on the thread that called the
-/// library, in that thread's floating-point environment, until another one or NULL is given. It returns 0 to go on; any other number
-/// ends the call with FETI_CALLBACK, the number in the error detail, and no results. Calls on the same problem from inside return
-/// FETI_BUSY, except feti_cancel and feti_problem_error. It must not end by longjmp or an exception.
+/// Level FETI_LOG_RESULT: one line for each solve, and warnings. FETI_LOG_PHASE: also sizes, options, method, fallbacks
+/// and a line for each phase with its time and bytes; also the progress of a long first feasible point, projection,
+/// nearest point or certificate, with the first line after a second at most and further lines whenever a tenth of the
+/// time so far has passed. FETI_LOG_STEP: also a line for each step. The function runs on the thread that called the
+/// library, in the floating-point environment of that thread, and stays registered until another function or NULL is
+/// given. It returns 0 to continue; any other number ends the call with FETI_CALLBACK, the number in the error detail,
+/// and no results. Inside the function, calls on the same problem return FETI_BUSY, except feti_cancel and
+/// feti_problem_error. The function must not exit by longjmp or an exception.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|
 /// | `p` | in | scalar | the handle |
 /// | `callback` | in | scalar | the function; NULL: none |
 /// | `level` | in | scalar | FETI_LOG_NONE, FETI_LOG_RESULT, FETI_LOG_PHASE or FETI_LOG_STEP |
-/// | `user` | in | scalar | handed to the function unchanged; may be NULL |
+/// | `user` | in | scalar | passed to the function unchanged; may be NULL |
 ///
 /// # Safety
 /// `callback` may be called with `user` until it is replaced or the problem destroyed.

@@ -13,7 +13,7 @@ use crate::solver::{options, OptionInfo, OptionValue};
 
 /// Sets an option that is a number.
 ///
-/// Holds until it is set again. After a failure the option is as it was.
+/// The value stays valid until it is set again. After a failure the option is unchanged.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|
@@ -33,7 +33,7 @@ pub unsafe extern "C" fn feti_set_f64(p: *mut feti_problem, name: *const c_char,
 
 /// Sets an option that is an integer.
 ///
-/// Holds until it is set again. After a failure the option is as it was.
+/// The value stays valid until it is set again. After a failure the option is unchanged.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|
@@ -53,13 +53,13 @@ pub unsafe extern "C" fn feti_set_i64(p: *mut feti_problem, name: *const c_char,
 
 /// Sets an option that is a text.
 ///
-/// The text is copied and holds until it is set again. After a failure the option is as it was.
+/// The text is copied and stays valid until it is set again. After a failure the option is unchanged.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|
 /// | `p` | in | scalar | the handle |
 /// | `name` | in | text | a name of feti_option_at with type FETI_OPTION_STR |
-/// | `value` | in | text | one of the texts the option knows |
+/// | `value` | in | text | one of the texts that the option accepts |
 ///
 /// # Safety
 /// `name` and `value` are NUL terminated.
@@ -76,11 +76,11 @@ pub unsafe extern "C" fn feti_set_str(
     })
 }
 
-/// Sets several options by one text, such as "tolerance=1e-8 threads=4".
+/// Sets several options with one text, such as "tolerance=1e-8 threads=4".
 ///
-/// Items name = value of any type, separated by blanks, commas or ends of lines; a sign # begins a comment that ends with the
-/// line. An option that comes twice has its last value. After a failure all options are as they were; the error names
-/// the option, and `entry` of its detail is the byte of the text, from 0.
+/// The text has items name = value of any type, separated by blanks, commas or line ends; a # begins a comment that ends
+/// with the line. If an option occurs twice, the last value counts. After a failure all options are unchanged; the error
+/// names the option, and `entry` of the error detail is the position of the byte in the text, from 0.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|
@@ -99,13 +99,13 @@ pub unsafe extern "C" fn feti_set_text(p: *mut feti_problem, text: *const c_char
 
 /// Reads an option that is a number.
 ///
-/// After a failure `value` is as it was.
+/// After a failure `value` is unchanged.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|
 /// | `p` | in | scalar | the handle |
 /// | `name` | in | text | a name of feti_option_at with type FETI_OPTION_F64 |
-/// | `value` | out | scalar | the value that holds now |
+/// | `value` | out | scalar | the current value |
 ///
 /// # Safety
 /// `name` is NUL terminated, `value` has room for one number.
@@ -121,13 +121,13 @@ pub unsafe extern "C" fn feti_get_f64(p: *mut feti_problem, name: *const c_char,
 
 /// Reads an option that is an integer.
 ///
-/// After a failure `value` is as it was.
+/// After a failure `value` is unchanged.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|
 /// | `p` | in | scalar | the handle |
 /// | `name` | in | text | a name of feti_option_at with type FETI_OPTION_I64 |
-/// | `value` | out | scalar | the value that holds now |
+/// | `value` | out | scalar | the current value |
 ///
 /// # Safety
 /// `name` is NUL terminated, `value` has room for one number.
@@ -143,7 +143,7 @@ pub unsafe extern "C" fn feti_get_i64(p: *mut feti_problem, name: *const c_char,
 
 /// Reads an option that is a text.
 ///
-/// The text is cut to fit, always NUL terminated when `cap` > 0. After a failure nothing is written.
+/// The text is truncated to fit, and always NUL terminated if `cap` > 0. After a failure nothing is written.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|
@@ -184,7 +184,8 @@ pub extern "C" fn feti_option_count() -> i64 {
 
 /// Describes an option: name, text, type, default and range.
 ///
-/// Texts are static. `struct_size` is set by the caller; no more than that is written. After a failure nothing is written.
+/// The texts are static. The caller sets `struct_size`; the library writes no more bytes than that. After a failure
+/// nothing is written.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|
@@ -192,7 +193,7 @@ pub extern "C" fn feti_option_count() -> i64 {
 /// | `out` | in/out | scalar | `struct_size` set, at least 16 |
 ///
 /// # Safety
-/// `out` leads to `struct_size` writable bytes.
+/// `out` points to `struct_size` writable bytes.
 #[no_mangle]
 pub unsafe extern "C" fn feti_option_at(k: i64, out: *mut feti_option) -> i32 {
     without_problem(call!(feti_option_at(k, out)), || {

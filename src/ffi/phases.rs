@@ -23,11 +23,11 @@ pub unsafe extern "C" fn feti_phase_count(p: *mut feti_problem, count: *mut i64)
     })
 }
 
-/// Tells time and memory of a phase: rows, null spaces, analysis, factorisation, dual operators, preconditioner, dual
-/// solve, recovery, in this order.
+/// Reads time and memory of a phase. The phases are rows, null spaces, analysis, factorisation, dual operators,
+/// preconditioner, dual solve, recovery, in this order.
 ///
-/// Times are those of the last call that set up or solved, also of one that failed; a phase that had nothing to do took
-/// none. What a setup keeps, later solves do not make again. After a failure nothing is written.
+/// The times refer to the last setup or solve, even if it failed; a phase without work has time zero. Later solves do not
+/// repeat what a setup keeps. After a failure nothing is written.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|
@@ -36,7 +36,7 @@ pub unsafe extern "C" fn feti_phase_count(p: *mut feti_problem, count: *mut i64)
 /// | `out` | in/out | scalar | `struct_size` set, at least 16 |
 ///
 /// # Safety
-/// `out` leads to `struct_size` writable bytes.
+/// `out` points to `struct_size` writable bytes.
 #[no_mangle]
 pub unsafe extern "C" fn feti_phase_at(p: *mut feti_problem, k: i64, out: *mut feti_phase) -> i32 {
     enter(p, call!(feti_phase_at(p, k, out)), |problem| {

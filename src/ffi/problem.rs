@@ -15,8 +15,8 @@ const EMPTY: usize = 96 << 10;
 
 /// Creates a problem without bodies and rows.
 ///
-/// The handle is valid until feti_problem_destroy; its number is never used again. After a failure `p` is as it was.
-/// FETI_MEMORY, without a text, where not even an empty problem finds room.
+/// The handle is valid until feti_problem_destroy; its number is never used again. After a failure `p` is unchanged.
+/// FETI_MEMORY, without an error text, if there is not enough memory for an empty problem.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|
@@ -43,15 +43,15 @@ pub unsafe extern "C" fn feti_problem_create(p: *mut *mut feti_problem) -> i32 {
 
 /// Destroys a problem with all it holds and sets the caller's handle to NULL.
 ///
-/// FETI_BUSY while another call on the problem runs; the problem and the handle are as before then. Every other copy of
-/// the handle gives FETI_HANDLE from now on.
+/// FETI_BUSY while another call on the problem runs; the problem and the handle are then unchanged. From then on calls
+/// with any other copy of the handle return FETI_HANDLE.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|
 /// | `p` | in/out | scalar | the handle |
 ///
 /// # Safety
-/// `p` leads to a pointer.
+/// `p` points to a pointer.
 #[no_mangle]
 pub unsafe extern "C" fn feti_problem_destroy(p: *mut *mut feti_problem) -> i32 {
     let call = call!(feti_problem_destroy(p));
@@ -77,10 +77,10 @@ pub unsafe extern "C" fn feti_problem_destroy(p: *mut *mut feti_problem) -> i32 
     })
 }
 
-/// Text of the problem's last error.
+/// Text of the last error of the problem.
 ///
-/// May be called while another call on the problem runs. The text is cut to fit, always NUL terminated when `cap` > 0;
-/// it is empty when there was no error, and a successful call does not clear it.
+/// May be called while another call on the problem runs. The text is truncated to fit, and always NUL terminated if `cap`
+/// > 0. It is empty if no error has occurred; a successful call does not clear it.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|

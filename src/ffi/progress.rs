@@ -12,13 +12,13 @@ use crate::ffi::header::types::{
 };
 use crate::solver::{Listener, Progress, Reply, StepKind};
 
-/// Cancels the setup or the solve that runs on the problem.
+/// Cancels the setup or the solve that is running on the problem.
 ///
-/// May be called from any thread and from a progress function, while another call on the problem runs. That call returns
-/// FETI_CANCELLED before the next product with the dual operator (in the setup: before the next body, and inside the assembly of its dual operator); the results are
-/// those of the last step, and there are none when it was cancelled before the first one. Without a running call it does
-/// nothing: every setup and every solve begins anew. In a signal handler set a flag instead and let the progress function
-/// look at it.
+/// May be called from any thread and from a progress function, while another call on the problem runs. The running call
+/// returns FETI_CANCELLED before the next product with the dual operator (in the setup: before the next body, and inside
+/// the assembly of its dual operator). The results are those of the last step; there are none if the call was cancelled
+/// before the first step. If no call is running, this function has no effect: it does not cancel later setups and solves.
+/// In a signal handler, set a flag instead and let the progress function check it.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|
@@ -32,19 +32,20 @@ pub extern "C" fn feti_cancel(p: *mut feti_problem) -> i32 {
     }
 }
 
-/// Names the function that is told of every body in every part of a setup, and of every step of a solve.
+/// Registers the function that is called for every body in every part of a setup, and for every step of a solve.
 ///
-/// During a setup on several threads it is also called when half a second has passed without such news. It is called on the thread that called the library, in that thread's floating-point environment, until another one or
-/// NULL is given. It returns 0 to go on; a number > 0 ends the call with FETI_CANCELLED and the results of the last step; a
-/// number < 0 ends it with FETI_CALLBACK, the number in the error detail, and no results. Calls on the same problem from
-/// inside return FETI_BUSY, except feti_cancel and feti_problem_error; other problems may be used. It must not end by
-/// longjmp or an exception.
+/// During a setup on several threads the function is also called when half a second has passed without such an event. It
+/// runs on the thread that called the library, in the floating-point environment of that thread, and stays registered
+/// until another function or NULL is given. It returns 0 to continue. A number > 0 ends the call with FETI_CANCELLED and
+/// the results of the last step; a number < 0 ends the call with FETI_CALLBACK, the number in the error detail, and no
+/// results. Inside the function, calls on the same problem return FETI_BUSY, except feti_cancel and feti_problem_error;
+/// other problems may be used. The function must not exit by longjmp or an exception.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|
 /// | `p` | in | scalar | the handle |
 /// | `callback` | in | scalar | the function; NULL: none |
-/// | `user` | in | scalar | handed to the function unchanged; may be NULL |
+/// | `user` | in | scalar | passed to the function unchanged; may be NULL |
 ///
 /// # Safety
 /// `callback` may be called with `user` until it is replaced or the problem destroyed.

@@ -15,16 +15,17 @@ use crate::solver::{FrictionState, RowState};
 
 /// Reads the displacement of a body.
 ///
-/// With FETI_ALL the displacement of all bodies: by the host's numbers where they have some, entries of no unknown as they
-/// were; else one body after the other; NaN on bodies whose group has no answer (feti_solve). FETI_STATE before a solve has
-/// given an answer, for a body whose group has none, and with FETI_ALL where some bodies have numbers of the host and
-/// others have none. After a failure nothing is written.
+/// FETI_ALL reads the displacements of all bodies. If the bodies have numbers of the host, the array uses these numbers,
+/// and entries that belong to no unknown are left unchanged; otherwise it gets one body after the other. Bodies in a
+/// group without an answer (feti_solve) get NaN. FETI_STATE if no solve has given an answer yet, if the group of the body
+/// has no answer, and with FETI_ALL if some bodies have numbers of the host and others have none. After a failure nothing
+/// is written.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|
 /// | `p` | in | scalar | the handle |
 /// | `body` | in | scalar | number of the body, from 0, or FETI_ALL |
-/// | `n` | in | scalar | unknowns of the body; with FETI_ALL at least the largest number + 1, without numbers all unknowns |
+/// | `n` | in | scalar | unknowns of the body; with FETI_ALL at least the largest number + 1, or without numbers the unknowns of all bodies |
 /// | `u` | out | n | displacement, length |
 ///
 /// # Safety
@@ -44,22 +45,24 @@ pub unsafe extern "C" fn feti_displacement(p: *mut feti_problem, body: i64, n: i
     })
 }
 
-/// Reads the force of the rows on a body, -B'lambda, -H'mu, -T'lambda_t or all of them: `K u = f + r`.
+/// Reads the force of the rows on a body: -B'lambda, -H'mu, -T'lambda_t, or the sum of all: `K u = f + r`.
 ///
-/// By kinds it is that of the host's rows. All together hold the force of the glue as well where unknowns of several bodies
-/// have one number (option glue): what these bodies do to each other. It cancels in the sum over them, which FETI_ALL gives.
+/// For a single kind the force comes from the host's rows only. If unknowns of several bodies share a number (option
+/// glue), the sum of all kinds also includes the glue force that these bodies exert on each other. With FETI_ALL the
+/// result is the sum over the bodies, in which the glue forces cancel.
 ///
-/// With FETI_ALL the forces on all bodies: by the host's numbers where they have some, entries of no unknown as they were;
-/// else one body after the other; NaN where rows act on bodies whose group has no answer (feti_solve). FETI_STATE before a
-/// solve has given an answer, for a body whose group has none, and with FETI_ALL where some bodies have numbers of the host
-/// and others have none. After a failure nothing is written.
+/// FETI_ALL reads the forces on all bodies. If the bodies have numbers of the host, the array uses these numbers, and
+/// entries that belong to no unknown are left unchanged; otherwise it gets one body after the other. Entries on which
+/// rows act get NaN if the group of the body has no answer (feti_solve). FETI_STATE if no solve has given an answer yet,
+/// if the group of the body has no answer, and with FETI_ALL if some bodies have numbers of the host and others have
+/// none. After a failure nothing is written.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|
 /// | `p` | in | scalar | the handle |
 /// | `kind` | in | scalar | FETI_INEQUALITY, FETI_EQUALITY, FETI_TANGENTIAL, or 0 for all |
 /// | `body` | in | scalar | number of the body, from 0, or FETI_ALL |
-/// | `n` | in | scalar | unknowns of the body; with FETI_ALL at least the largest number + 1, without numbers all unknowns |
+/// | `n` | in | scalar | unknowns of the body; with FETI_ALL at least the largest number + 1, or without numbers the unknowns of all bodies |
 /// | `r` | out | n | force |
 ///
 /// # Safety
@@ -92,8 +95,8 @@ pub unsafe extern "C" fn feti_reaction(
 
 /// Reads the amplitudes alpha of the null space in the displacement of a body, `u = K+ (f + r) + R alpha`.
 ///
-/// FETI_STATE before a solve has given an answer, and for a body whose group has none (feti_solve). After a failure nothing
-/// is written.
+/// FETI_STATE if no solve has given an answer yet, and if the group of the body has no answer (feti_solve). After a
+/// failure nothing is written.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|
@@ -115,14 +118,14 @@ pub unsafe extern "C" fn feti_amplitudes(p: *mut feti_problem, body: i64, r: i64
 
 /// Reads the multipliers: lambda of `B u <= c`, mu of `H u = h`, or lambda_t of the nodes with friction, node after node.
 ///
-/// NaN for rows on bodies whose group has no answer (feti_solve), 0 for rows that never close. FETI_STATE before a solve has
-/// given an answer. After a failure nothing is written.
+/// Rows on bodies in a group without an answer (feti_solve) get NaN; rows that never close get 0. FETI_STATE if no solve
+/// has given an answer yet. After a failure nothing is written.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|
 /// | `p` | in | scalar | the handle |
 /// | `kind` | in | scalar | FETI_INEQUALITY, FETI_EQUALITY or FETI_TANGENTIAL |
-/// | `rows` | in | scalar | number of rows of the kind; of tangential ones dim for each node |
+/// | `rows` | in | scalar | number of rows of the kind; for tangential rows dim times the number of nodes |
 /// | `lambda` | out | rows | force, >= 0 for inequalities |
 ///
 /// # Safety
@@ -141,10 +144,10 @@ pub unsafe extern "C" fn feti_multipliers(
     })
 }
 
-/// Reads what is left of the gaps, c - B u; of compliant rows c + lambda/k - B u, 0 where they carry a force.
+/// Reads the remaining gaps, c - B u; for compliant rows c + lambda/k - B u, which is 0 if they carry a force.
 ///
-/// NaN for rows on bodies whose group has no answer (feti_solve), +infinity for rows that never close. FETI_STATE before a
-/// solve has given an answer. After a failure nothing is written.
+/// Rows on bodies in a group without an answer (feti_solve) get NaN; rows that never close get +infinity. FETI_STATE if
+/// no solve has given an answer yet. After a failure nothing is written.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|
@@ -162,11 +165,11 @@ pub unsafe extern "C" fn feti_gaps(p: *mut feti_problem, rows: i64, slack: *mut 
     })
 }
 
-/// Reads the state of the inequality rows: what the certificate takes for zero at a row decides.
+/// Reads the state of the inequality rows, decided by what the certificate regards as zero at each row.
 ///
-/// FETI_ROW_CLOSED with a force; FETI_ROW_OPEN with a gap and no force, and for rows that never close; FETI_ROW_WEAK with
-/// neither; FETI_ROW_UNKNOWN for rows on bodies whose group has no answer (feti_solve). FETI_STATE before a solve has given
-/// an answer. After a failure nothing is written.
+/// FETI_ROW_CLOSED means a force; FETI_ROW_OPEN means a gap and no force, or a row that never closes; FETI_ROW_WEAK means
+/// neither a gap nor a force; FETI_ROW_UNKNOWN means that the bodies of the row are in a group without an answer
+/// (feti_solve). FETI_STATE if no solve has given an answer yet. After a failure nothing is written.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|
@@ -192,16 +195,16 @@ pub unsafe extern "C" fn feti_active(p: *mut feti_problem, rows: i64, state: *mu
     })
 }
 
-/// Reads the slips of the last answer, `s = T u - s_old - C_t lambda_t` with the s_old of that solve.
+/// Reads the slips of the last answer, `s = T u - s_old - C_t lambda_t`, with the s_old of that solve.
 ///
-/// A slip has the sign of its force lambda_t (feti_multipliers with FETI_TANGENTIAL). NaN for nodes on bodies whose group has no answer
-/// (feti_solve). FETI_STATE before a solve has given an answer. After a failure nothing is written.
+/// A slip has the sign of its force lambda_t (feti_multipliers with FETI_TANGENTIAL). Nodes on bodies in a group without
+/// an answer (feti_solve) get NaN. FETI_STATE if no solve has given an answer yet. After a failure nothing is written.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|
 /// | `p` | in | scalar | the handle |
 /// | `nodes` | in | scalar | number of nodes with friction |
-/// | `dim` | in | scalar | tangential rows of a node, 1 or 2; not looked at without nodes |
+/// | `dim` | in | scalar | tangential rows of a node, 1 or 2; ignored if there are no nodes |
 /// | `slip` | out | dim * nodes | node after node, length |
 ///
 /// # Safety
@@ -221,12 +224,13 @@ pub unsafe extern "C" fn feti_friction_slips(
     })
 }
 
-/// Reads the states of the nodes in the last answer: what the certificate takes for zero at a node decides.
+/// Reads the states of the nodes in the last answer, decided by what the certificate regards as zero at each node.
 ///
-/// FETI_FRICTION_OPEN where the bound is zero, and nothing but that: a node with `bound` > 0 sticks or slips though its contact is open;
-/// FETI_FRICTION_STICK with a force within its bound; FETI_FRICTION_SLIP with a slip along a force that reaches its bound;
-/// FETI_FRICTION_WEAK with a force that reaches its bound and no slip, to rounding; FETI_FRICTION_UNKNOWN for nodes on bodies whose
-/// group has no answer (feti_solve). FETI_STATE before a solve has given an answer. After a failure nothing is written.
+/// FETI_FRICTION_OPEN means only that the bound is zero: a node with `bound` > 0 sticks or slips even if its contact is
+/// open; FETI_FRICTION_STICK means a force within the bound; FETI_FRICTION_SLIP means a slip in the direction of a force
+/// that reaches the bound; FETI_FRICTION_WEAK means a force that reaches the bound without a slip, within rounding error;
+/// FETI_FRICTION_UNKNOWN means that the bodies of the node are in a group without an answer (feti_solve). FETI_STATE if
+/// no solve has given an answer yet. After a failure nothing is written.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|
@@ -253,7 +257,7 @@ pub unsafe extern "C" fn feti_friction_states(p: *mut feti_problem, nodes: i64, 
     })
 }
 
-/// Reads the size of the problem as it is given now.
+/// Reads the current size of the problem.
 ///
 /// After a failure nothing is written.
 ///

@@ -9,10 +9,10 @@ use crate::solver::{RowKind, RowsInput};
 
 /// Adds rows of `B u <= c` or `H u = h`, with 32-bit indices.
 ///
-/// The rows are copied and numbered behind those of the same kind that are there. A pair of body and unknown that comes
-/// twice in a row is summed. A contact row with c = +infinity never closes: it carries no force and joins no bodies, as if
-/// it were not there, and keeps its number; feti_rows_rhs turns it on. FETI_STATE where `body` is NULL and some bodies have
-/// numbers of the host, others have none. After a failure nothing is added.
+/// The rows are copied and numbered after the existing rows of the same kind. If a pair of body and unknown occurs twice
+/// in a row, the entries are summed. A contact row with c = +infinity never closes: it carries no force and joins no
+/// bodies, but it keeps its number, and feti_rows_rhs can turn it on. FETI_STATE if `body` is NULL and some bodies have
+/// numbers of the host while others have none. After a failure nothing is added.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|
@@ -20,7 +20,7 @@ use crate::solver::{RowKind, RowsInput};
 /// | `kind` | in | scalar | FETI_INEQUALITY or FETI_EQUALITY |
 /// | `rows` | in | scalar | number of rows, 0 adds none |
 /// | `row_ptr` | in | rows + 1 | row i holds the entries `row_ptr[i]` to `row_ptr[i + 1] - 1`; starts with `base` |
-/// | `body` | in | `row_ptr[rows] - base` | body of each entry, counted from `base`; NULL: `dof` is the host's number of the unknown (feti_body_numbering_i32), without numbers it counts through all bodies |
+/// | `body` | in | `row_ptr[rows] - base` | body of each entry, counted from `base`; NULL: `dof` is the host's number of the unknown (feti_body_numbering_i32) or, without such numbers, counts the unknowns of all bodies consecutively |
 /// | `dof` | in | `row_ptr[rows] - base` | unknown of each entry, counted from `base` |
 /// | `val` | in | `row_ptr[rows] - base` | entries of B or H |
 /// | `base` | in | scalar | 0 or 1: what `row_ptr`, `body` and `dof` count from |
@@ -50,10 +50,10 @@ pub unsafe extern "C" fn feti_rows_add_i32(
 
 /// Adds rows of `B u <= c` or `H u = h`, with 64-bit indices.
 ///
-/// The rows are copied and numbered behind those of the same kind that are there. A pair of body and unknown that comes
-/// twice in a row is summed. A contact row with c = +infinity never closes: it carries no force and joins no bodies, as if
-/// it were not there, and keeps its number; feti_rows_rhs turns it on. FETI_STATE where `body` is NULL and some bodies have
-/// numbers of the host, others have none. After a failure nothing is added.
+/// The rows are copied and numbered after the existing rows of the same kind. If a pair of body and unknown occurs twice
+/// in a row, the entries are summed. A contact row with c = +infinity never closes: it carries no force and joins no
+/// bodies, but it keeps its number, and feti_rows_rhs can turn it on. FETI_STATE if `body` is NULL and some bodies have
+/// numbers of the host while others have none. After a failure nothing is added.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|
@@ -61,7 +61,7 @@ pub unsafe extern "C" fn feti_rows_add_i32(
 /// | `kind` | in | scalar | FETI_INEQUALITY or FETI_EQUALITY |
 /// | `rows` | in | scalar | number of rows, 0 adds none |
 /// | `row_ptr` | in | rows + 1 | row i holds the entries `row_ptr[i]` to `row_ptr[i + 1] - 1`; starts with `base` |
-/// | `body` | in | `row_ptr[rows] - base` | body of each entry, counted from `base`; NULL: `dof` is the host's number of the unknown (feti_body_numbering_i32), without numbers it counts through all bodies |
+/// | `body` | in | `row_ptr[rows] - base` | body of each entry, counted from `base`; NULL: `dof` is the host's number of the unknown (feti_body_numbering_i32) or, without such numbers, counts the unknowns of all bodies consecutively |
 /// | `dof` | in | `row_ptr[rows] - base` | unknown of each entry, counted from `base` |
 /// | `val` | in | `row_ptr[rows] - base` | entries of B or H |
 /// | `base` | in | scalar | 0 or 1: what `row_ptr`, `body` and `dof` count from |
@@ -132,8 +132,8 @@ impl<I: Index> HostRows<I> {
 
 /// Replaces right-hand sides: c of `B u <= c` or h of `H u = h`.
 ///
-/// c = +infinity turns a contact row off, a finite c turns it on again: that drops the last answer, the factors of the bodies
-/// stay. The numbers are copied. After a failure all right-hand sides are as they were.
+/// c = +infinity turns a contact row off, and a finite c turns it on again. Either change drops the last answer; the
+/// factors of the bodies stay valid. The numbers are copied. After a failure all right-hand sides are unchanged.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|
@@ -161,12 +161,13 @@ pub unsafe extern "C" fn feti_rows_rhs(
     })
 }
 
-/// Makes rows compliant: each a spring, `B u - c <= lambda/k` or `H u - h = mu/k`.
+/// Makes rows compliant: each becomes a spring, `B u - c <= lambda/k` or `H u - h = mu/k`.
 ///
-/// A contact row then carries the force k (B u - c) where that is positive: a linear law of pressure and overclosure; an
-/// equality row is an elastic support or a cohesive bond. Rows that are added are rigid, 1/k = 0. A row times t has a
-/// compliance times t^2. The numbers are copied and stay with their rows until they are replaced or the rows are cleared;
-/// factors of the bodies stay, the last answer does not. After a failure all compliances are as they were.
+/// A contact row then carries the force k (B u - c) if this value is positive, which is a linear law of pressure and
+/// overclosure. A compliant equality row is an elastic support or a cohesive bond. Newly added rows are rigid, 1/k = 0.
+/// If a row is multiplied by t, its compliance is multiplied by t^2. The numbers are copied and stay with their rows
+/// until they are replaced or the rows are cleared. The factors of the bodies stay valid; the last answer is dropped.
+/// After a failure all compliances are unchanged.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|
@@ -196,8 +197,8 @@ pub unsafe extern "C" fn feti_rows_compliance(
 
 /// Removes all rows of a kind.
 ///
-/// Numbering of that kind starts again at 0. With the inequality rows go all nodes with friction (feti_friction_clear), whose
-/// contact rows they are. Factors of the bodies stay.
+/// The numbering of that kind starts again at 0. Removing the inequality rows also removes all nodes with friction
+/// (feti_friction_clear), because they refer to contact rows. The factors of the bodies stay valid.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|

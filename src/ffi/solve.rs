@@ -9,15 +9,15 @@ use crate::solver::{Candidate, Certificate, Problem, Report, Sizes};
 
 /// Prepares the solve: null spaces, factors of the bodies, the dual operator.
 ///
-/// feti_solve does it when it is due; called alone it shows errors in the bodies early. After a failure all that was
-/// given is kept and can be corrected.
+/// feti_solve calls this function when necessary; called alone, it finds errors in the bodies early. After a failure all
+/// data that was given is kept and can be corrected.
 ///
-/// FETI_STATE where there is no body, or one without a matrix; FETI_NULL_SPACE where the null space of a body is not what
-/// was claimed, or cannot be found; FETI_INDEFINITE where a matrix is indefinite, with body, unknown and pivot;
-/// FETI_GAPS_CONTRADICT where a row without entries has a right-hand side that 0 does not satisfy; FETI_CALLBACK where a
-/// function of the host fails or is not what it must be (feti_body_operator); FETI_UNSUPPORTED where fixing unknowns were
-/// given for a body whose matrix is functions of the host; FETI_OVERFLOW where the square of a row, or a compliance times
-/// the largest K_ii, over- or underflows; FETI_CANCELLED where the host has cancelled.
+/// FETI_STATE if there is no body, or a body without a matrix; FETI_NULL_SPACE if the null space of a body is not the one
+/// that was given, or cannot be found; FETI_INDEFINITE if a matrix is indefinite, with body, unknown and pivot in the
+/// error detail; FETI_GAPS_CONTRADICT if a row without entries has a right-hand side that 0 does not satisfy;
+/// FETI_CALLBACK if a function of the host fails or violates its requirements (feti_body_operator); FETI_UNSUPPORTED if
+/// fixing unknowns were given for a body with functions of the host instead of a matrix; FETI_OVERFLOW if the square of a
+/// row, or a compliance times the largest K_ii, overflows or underflows; FETI_CANCELLED if the host has cancelled.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|
@@ -32,26 +32,29 @@ pub extern "C" fn feti_setup(p: *mut feti_problem) -> i32 {
 
 /// Minimises 1/2 u'Ku - f'u subject to `B u <= c` and `H u = h`.
 ///
-/// The answer is kept until the next solve and read with feti_displacement, feti_multipliers and the like; there is one
-/// when the status is not negative, unless the call was cancelled or its time was over before the first step. `info` is written in any case,
-/// with NaN for figures that a failure left unknown. After a failure all that was given is kept and can be corrected,
-/// except after FETI_INTERNAL. Where rows and loads leave motions open (`undetermined`), the answer is the one nearest to
-/// rest that keeps the rows: the least sum of `K_ii u_i^2`.
+/// The answer is kept until the next solve; read it with feti_displacement, feti_multipliers and the other functions for
+/// results. An answer exists if the status is not negative, unless the call was cancelled or ran out of time before the
+/// first step. `info` is written in any case, with NaN for figures that are unknown after a failure. After a failure all
+/// data that was given is kept and can be corrected, except after FETI_INTERNAL. If rows and loads leave motions
+/// undetermined (`undetermined`), the answer is the admissible one nearest to rest: the one with the least sum of `K_ii
+/// u_i^2`.
 ///
-/// Groups of bodies that no row with a finite gap joins are problems of their own, each solved to its own accuracy and
-/// several at a time where there are threads. The worst status of all groups is returned; counts and the energy are sums,
-/// every figure of the certificate is that of the worst group. Where one group has no answer because its load is not held
-/// or its rows contradict each other, the status, feti_last_error and feti_diagnosis are those of the first such group,
-/// and the other groups keep their answers: `info` has what they came to. What is read for one body of a group without an
-/// answer is FETI_STATE; what is read for all bodies or rows at once is NaN there, in feti_active FETI_ROW_UNKNOWN.
+/// Groups of bodies that are not joined by a row with a finite gap are separate problems. Each group is solved to its own
+/// accuracy, several at a time if threads are available. The function returns the worst status of all groups; counts and
+/// energies are summed, and every figure of the certificate is the one of the worst group. If a group has no answer
+/// because its load is not held or its rows contradict each other, the status, feti_last_error and feti_diagnosis
+/// describe the first such group. The other groups keep their answers, and `info` describes them. Reading a result of one
+/// body in a group without an answer returns FETI_STATE; reading results of all bodies or rows at once gives NaN for such
+/// a group, and feti_active gives FETI_ROW_UNKNOWN.
 ///
-/// A status above 0 comes with an answer, but for such ends. FETI_ITERATIONS at the limit of option max_steps; FETI_TIME at the limit
-/// of option time_limit, which counts from the call, with a setup that is due; FETI_CANCELLED where the host has cancelled; FETI_STALLED where steps no longer reduce the error;
-/// FETI_INACCURATE where the certificate does not pass; FETI_MARGINAL where a part of the load, below 1e-7 of it, is not
-/// held. A status below 0 comes without one for the group of bodies it is about. FETI_LOAD_NOT_HELD where no contact force
-/// balances the load; FETI_SLIDES where friction holds only a part of it and no rest was found; FETI_GAPS_CONTRADICT where rows contradict each other; FETI_INDEFINITE where K drives a soft motion
-/// further than closed rows resist it; feti_diagnosis has the proof of each. It runs feti_setup when it is due, and fails as
-/// that does.
+/// A status above 0 comes with an answer, unless the call ended before the first step. FETI_ITERATIONS at the limit of
+/// option max_steps; FETI_TIME at the limit of option time_limit, which counts from the call and includes a setup that is
+/// due; FETI_CANCELLED if the host has cancelled; FETI_STALLED if steps no longer reduce the error; FETI_INACCURATE if
+/// the certificate does not pass; FETI_MARGINAL if a part of the load, below 1e-7 of it, is not held. With a status below
+/// 0 the group of bodies concerned has no answer. FETI_LOAD_NOT_HELD if no contact force balances the load; FETI_SLIDES
+/// if friction holds only a part of the load and no equilibrium was found; FETI_GAPS_CONTRADICT if rows contradict each
+/// other; FETI_INDEFINITE if K drives a soft motion and the closed rows do not stop it. feti_diagnosis has the proof of
+/// each. The call runs feti_setup when it is due, and then fails for the same reasons.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|
@@ -59,7 +62,7 @@ pub extern "C" fn feti_setup(p: *mut feti_problem) -> i32 {
 /// | `info` | in/out | scalar | `struct_size` set, at least 16; may be NULL |
 ///
 /// # Safety
-/// `info` is NULL or leads to `struct_size` writable bytes.
+/// `info` is NULL or points to `struct_size` writable bytes.
 #[no_mangle]
 pub unsafe extern "C" fn feti_solve(p: *mut feti_problem, info: *mut feti_info) -> i32 {
     // SAFETY: NULL, or `struct_size` bytes by the caller's word.
@@ -83,13 +86,14 @@ pub unsafe extern "C" fn feti_solve(p: *mut feti_problem, info: *mut feti_info) 
     status
 }
 
-/// Verifies an answer without tangential forces against the problem as it is given now: any answer, also another code's.
+/// Verifies an answer without tangential forces against the current problem; the answer may come from another program.
 ///
-/// Every figure is that of the worst body or the worst row, measured against its own forces and deformation, and is named
-/// with it. Glue (option glue) is judged as equality rows are; the forces in it are not given: they are those that serve the
-/// answer best. Rows that never close, c = +infinity, are left out: what is given for their lambda counts as 0. At nodes with
-/// friction (feti_friction_add_i32 or _i64) the tangential force counts as 0: feti_check_friction takes it. Keeps nothing of
-/// the answer: that of the last solve stays. Runs feti_setup when it is due, for the null spaces. After a failure nothing is written.
+/// Every figure belongs to the worst body or the worst row, measured against its own forces and deformation; the
+/// certificate names this body or row. Glue (option glue) is judged like equality rows; its forces are not an argument,
+/// and the library uses the glue forces that fit the answer best. Rows that never close, c = +infinity, are left out, and
+/// their lambda counts as 0. At nodes with friction (feti_friction_add_i32 or _i64) the tangential force counts as 0;
+/// feti_check_friction takes tangential forces into account. The call does not store the answer; the answer of the last
+/// solve is kept. Runs feti_setup when it is due, because it needs the null spaces. After a failure nothing is written.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|
@@ -103,7 +107,7 @@ pub unsafe extern "C" fn feti_solve(p: *mut feti_problem, info: *mut feti_info) 
 /// | `out` | in/out | scalar | `struct_size` set, at least 16 |
 ///
 /// # Safety
-/// The arrays have the given shapes, `out` leads to `struct_size` writable bytes.
+/// The arrays have the given shapes, `out` points to `struct_size` writable bytes.
 #[no_mangle]
 pub unsafe extern "C" fn feti_check(
     p: *mut feti_problem,
@@ -126,11 +130,12 @@ pub unsafe extern "C" fn feti_check(
     })
 }
 
-/// Verifies an answer with tangential forces against the problem as it is given now: any answer, also another code's.
+/// Verifies an answer with tangential forces against the current problem; the answer may come from another program.
 ///
-/// As feti_check; the figures of friction judge, node by node, the forces lambda_t by the law and the slip
-/// `T u - s_old - C_t lambda_t` by the s_old that is there now: after feti_friction_commit that of the next step. Nodes that may
-/// carry no force (bound 0, no contact row that may close) are left out. After a failure nothing is written.
+/// The call works like feti_check. In addition, the figures of friction judge at every node the force lambda_t against
+/// the friction law and the slip `T u - s_old - C_t lambda_t` with the current s_old, which after feti_friction_commit is
+/// that of the next step. Nodes that cannot carry a tangential force (bound 0 and no contact row that may close) are left
+/// out. After a failure nothing is written.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|
@@ -142,12 +147,12 @@ pub unsafe extern "C" fn feti_check(
 /// | `eqs` | in | scalar | number of equality rows |
 /// | `mu` | in | eqs | multipliers of `H u = h`, force |
 /// | `nodes` | in | scalar | number of nodes with friction |
-/// | `dim` | in | scalar | tangential rows of a node, 1 or 2; not looked at without nodes |
+/// | `dim` | in | scalar | tangential rows of a node, 1 or 2; ignored if there are no nodes |
 /// | `lambda_t` | in | dim * nodes | multipliers of the tangential rows, node after node, force |
 /// | `out` | in/out | scalar | `struct_size` set, at least 16 |
 ///
 /// # Safety
-/// The arrays have the given shapes, `out` leads to `struct_size` writable bytes.
+/// The arrays have the given shapes, `out` points to `struct_size` writable bytes.
 #[no_mangle]
 pub unsafe extern "C" fn feti_check_friction(
     p: *mut feti_problem,

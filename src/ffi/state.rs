@@ -6,17 +6,17 @@ use crate::ffi::rows::multiplier_kind;
 
 /// Gives start values for the next solve.
 ///
-/// That solve starts from these multipliers, whatever option start says, and uses them up, whatever it comes to; every
-/// other solve starts as the option says. Rows with a zero start without force, so that the contact state of an earlier
-/// answer is carried over. A kind that is not given starts from zero. A change of rows or bodies drops the values. After a
-/// failure earlier values stay.
+/// The next solve starts from these multipliers, regardless of option start. They are used once, whatever the outcome;
+/// every other solve starts as the option says. Rows with a zero start without a force, so the multipliers also carry
+/// over the contact state of an earlier answer. A kind of rows without start values starts from zero. A change of rows or
+/// bodies drops the start values. After a failure the earlier start values stay valid.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|
 /// | `p` | in | scalar | the handle |
 /// | `kind` | in | scalar | FETI_INEQUALITY, FETI_EQUALITY or FETI_TANGENTIAL |
-/// | `rows` | in | scalar | number of rows of the kind; of tangential ones dim for each node |
-/// | `lambda` | in | rows | force; a negative one of an inequality counts as zero |
+/// | `rows` | in | scalar | number of rows of the kind; for tangential rows dim times the number of nodes |
+/// | `lambda` | in | rows | force; a negative value for an inequality counts as zero |
 ///
 /// # Safety
 /// The array has the given shape.
@@ -38,8 +38,9 @@ pub unsafe extern "C" fn feti_start_from(
 
 /// Saves loads, rows, friction, multipliers and the contact state under a number.
 ///
-/// Of nodes with friction the laws, the compliances and s_old. Factors are not copied and the entries of the rows are shared, so that it costs no more than the vectors. States live until they are dropped or the problem is
-/// destroyed; numbers are never used again. After a failure nothing is saved.
+/// For nodes with friction the state has the laws, the compliances and s_old. Factors are not copied and the entries of
+/// the rows are shared, so a state costs no more memory than its vectors. A state exists until it is dropped or the
+/// problem is destroyed; its number is never used again. After a failure nothing is saved.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|
@@ -58,13 +59,14 @@ pub unsafe extern "C" fn feti_state_save(p: *mut feti_problem, id: *mut i64) -> 
     })
 }
 
-/// Goes back to a saved state: after a load step that was rejected.
+/// Goes back to a saved state, for example after a rejected load step.
 ///
-/// Loads and rows, with right-hand sides and compliances, and nodes with friction, with laws and s_old, are as they were, and so is the answer unless a matrix or the
-/// rows have changed since; with option start = previous the next solve continues from the saved multipliers, with
-/// start = cold it gives the bits it would have given then. Matrices, null spaces and options stay as they are now; start
-/// values that were not used yet are dropped. The state stays saved. FETI_STATE when bodies were added since; after a
-/// failure nothing is changed.
+/// The call restores loads, rows with right-hand sides and compliances, and nodes with friction with laws and s_old. It
+/// also restores the answer unless a matrix or the rows have changed since the state was saved. With option start =
+/// previous the next solve continues from the saved multipliers; with start = cold it gives the same bits as it would
+/// have given at the time of saving. Matrices, null spaces and options keep their current values; unused start values are
+/// dropped. The state stays saved. FETI_STATE if bodies were added since the state was saved; after a failure nothing is
+/// changed.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|

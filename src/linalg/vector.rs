@@ -1,6 +1,8 @@
 //! Loops over vectors, always in the order of the entries, sums of long ones in a fixed number of parts: the same bits on any number
 //! of threads.
 
+use std::slice;
+
 use crate::platform::threads::{parts, parts_of};
 
 /// Entries from which a sum is formed in parts: one sum waits for every addition, parts go at the speed of the memory.
@@ -17,7 +19,7 @@ pub fn dot(x: &[f64], y: &[f64]) -> f64 {
 }
 
 fn dot_in_parts(x: &[f64], y: &[f64]) -> f64 {
-    let ((x, x_rest), (y, y_rest)) = (x.as_chunks::<PARTS>(), y.as_chunks::<PARTS>());
+    let ((x, x_rest), (y, y_rest)) = (as_arrays::<PARTS>(x), as_arrays::<PARTS>(y));
     let mut sums = [0.0; PARTS];
     for (x, y) in x.iter().zip(y) {
         (0..PARTS).for_each(|k| sums[k] += x[k] * y[k]);
@@ -73,6 +75,20 @@ pub fn weighted_norm(x: &[f64], weight: impl Fn(usize) -> f64) -> f64 {
     let size = power_of_two_below(norm_max(x).max(f64::MIN_POSITIVE));
     let square = |(i, v): (usize, &f64)| weight(i) * (v / size) * (v / size);
     size * x.iter().enumerate().map(square).sum::<f64>().sqrt()
+}
+
+/// x as arrays of N entries, and what is left: `as_chunks` of the standard library, which has it from Rust 1.88 on.
+pub fn as_arrays<const N: usize>(x: &[f64]) -> (&[[f64; N]], &[f64]) {
+    let (whole, rest) = x.split_at(x.len() / N * N);
+    // SAFETY: an array of N numbers lies in memory as N numbers of a slice do
+    (unsafe { slice::from_raw_parts(whole.as_ptr().cast(), whole.len() / N) }, rest)
+}
+
+/// `as_arrays` of a vector that is written to.
+pub fn as_arrays_mut<const N: usize>(x: &mut [f64]) -> (&mut [[f64; N]], &mut [f64]) {
+    let (whole, rest) = x.split_at_mut(x.len() / N * N);
+    // SAFETY: as in `as_arrays`; `whole` is not used any more
+    (unsafe { slice::from_raw_parts_mut(whole.as_mut_ptr().cast(), whole.len() / N) }, rest)
 }
 
 /// `part / whole`; nothing of nothing is 0.

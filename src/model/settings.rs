@@ -66,51 +66,51 @@ macro_rules! settings {
 
 settings! {
     tolerance: f64 = F64(1e-12), 1e-14..=1e-2,
-        c"The dual of each group of bodies is solved until its projected gradient, a gap, is this small against how far its bodies move along the rows and the gaps within that reach; then until the certificate passes.";
+        c"The dual problem of each group of bodies is solved until its projected gradient, which is a gap, is at most this fraction of the motion of the bodies along the rows and of the gaps within that range; then the solve goes on until the certificate passes.";
     certificate_tolerance: f64 = F64(1e-8), 1e-14..=1e-1,
-        c"Every entry of the certificate must be this small, for every body and row against its own forces and deformation, for the answer to count as solved.";
+        c"An answer counts as solved if every entry of the certificate is at most this value, for every body and row relative to its own forces and deformation.";
     gamma: f64 = F64(1.0), 1e-3..=1e3,
-        c"Gamma of the proportionality test: how much larger than the error on the current face the error of having chosen it may be.";
+        c"Gamma of the proportionality test: the largest ratio of the error of the choice of the face to the error on the current face.";
     time_limit: f64 = F64(NO_LIMIT), 0.0..=NO_LIMIT,
-        c"Seconds of wall time after which a solve, with the setup that it makes, ends with FETI_TIME and the best answer so far, if there is one yet.";
+        c"Wall time in seconds after which a solve, including its setup, ends with FETI_TIME and the best answer so far, if there is one.";
     symmetry_tolerance: f64 = F64(1e-10), 0.0..=1e-2,
-        c"Full storage: |K_ij - K_ji| may be this large against sqrt(K_ii K_jj); the two are averaged.";
+        c"Full storage: the largest |K_ij - K_ji| relative to sqrt(K_ii K_jj); the library averages the two entries.";
     null_space_tolerance: f64 = F64(1e-8), 1e-15..=1e-2,
-        c"A given null space R is accepted when |K R| is this small against |K||R| in the metric of diag K.";
+        c"A given null space R is accepted if |K R| is at most this fraction of |K||R| in the metric of diag K.";
     max_steps: i64 = I64(10_000), 1.0..=MANY,
-        c"Steps of the dual method after which a solve ends with FETI_ITERATIONS and the best answer so far, unless the direct method completes it (option direct_limit).";
+        c"Number of steps of the dual method after which a solve ends with FETI_ITERATIONS and the best answer so far, unless the direct method completes the answer (option direct_limit).";
     memory_limit: i64 = I64(0), 0.0..=MANY,
-        c"Bytes that factors and dual operators may take; 0: no limit. Dual operators that do not fit become implicit (option dual_operator); exceeding it nevertheless is FETI_MEMORY before anything is allocated.";
+        c"Largest number of bytes for factors and dual operators; 0: no limit. Dual operators that do not fit are applied matrix-free (option dual_operator); if the limit would still be exceeded, the call returns FETI_MEMORY before it allocates anything.";
     threads: i64 = I64(0), 0.0..=4096.0,
-        c"Threads of the setup and of costly products with the dual operator (at most one for 500 unknowns and four for a CPU); 0: as many as the CPUs this process may use. The answer has the same bits for any number.";
+        c"Number of threads for the setup and for expensive products with the dual operator (at most one thread for 500 unknowns and four for a CPU); 0: as many as the CPUs that this process may use. The answer has the same bits for any number.";
     pieces: i64 = I64(0), 0.0..=1e6,
-        c"Pieces that a body given by its elements is cut into, from the first element matrix on: 0: chosen by its size, one below 40000 unknowns; 1: none is cut; n: about n each.";
+        c"Number of pieces into which a body given by its elements is cut when its first element matrix arrives. 0: the library chooses by size, one piece below 40000 unknowns; 1: no body is cut; n: about n pieces for each body.";
     glue: i64 = I64(0), 0.0..=1.0,
-        c"What a number of the host (feti_body_numbering) is that unknowns of several bodies have, from the next call of that function on: 0: refused; 1: these unknowns move together, by equality rows that only the library sees.";
+        c"Effect of a number of the host (feti_body_numbering) that unknowns of several bodies share, from the next call of that function on. 0: the number is refused; 1: these unknowns move together, joined by internal equality rows.";
     index_base: i64 = I64(0), 0.0..=1.0,
-        c"What numbers in error texts count from: 0 for C, 1 for Fortran.";
+        c"Base of the numbers in error texts: 0 for C, 1 for Fortran.";
     fault_injection: i64 = I64(0), 0.0..=1.0,
-        c"1: the next feti_solve fails inside with FETI_INTERNAL, so that a host can test its own reaction.";
+        c"1: the next feti_solve fails with FETI_INTERNAL, so that a host can test its own error handling.";
     preconditioner: Preconditioning = Str(Preconditioning::WORDS[0]), NO_RANGE,
-        c"Preconditioner of the dual: automatic (lumped where products with F are dear, else none); none; lumped (stiffness of the constrained dofs, the others held); dirichlet (the others free: fewer steps, one more factorisation of each body). A body whose stiffness the host keeps enters with its diagonal.";
+        c"Preconditioner of the dual problem: automatic (lumped if products with F are expensive, otherwise none); none; lumped (stiffness of the constrained unknowns with all other unknowns held); dirichlet (all other unknowns free: fewer steps, but one more factorisation of each body). For a body with functions of the host, the preconditioner uses the diagonal.";
     dual_operator: OperatorForm = Str(OperatorForm::WORDS[0]), NO_RANGE,
-        c"How the dual operator of a body is kept: explicit (its entries: a product reads 4 m^2 bytes for m rows); implicit (a product takes two triangular solves: less memory, slower); automatic (by a model of the time, explicit for a body whose stiffness the host keeps, and implicit where memory_limit leaves no room).";
+        c"Form of the dual operator of a body: explicit (assembled: a product reads 4 m^2 bytes for m rows); implicit (matrix-free: a product takes two triangular solves, which needs less memory but is slower); automatic (chosen by a model of the time; explicit for a body with functions of the host; implicit if memory_limit leaves no room).";
     method: Method = Str(Method::WORDS[0]), NO_RANGE,
-        c"Method for the dual: proportioning on its feasible set, with smalbe to fall back on; smalbe, an augmented Lagrangian, for comparison; paper-..., Algorithm 3 of the paper with Algorithm 1 in one of its variants, without preconditioner and fallback.";
+        c"Method for the dual problem: proportioning on its feasible set, with smalbe as fallback; smalbe, an augmented Lagrangian method, for comparison; paper-..., Algorithm 3 of the paper with Algorithm 1 in one of its variants, without preconditioner and fallback.";
     start: StartFrom = Str(StartFrom::WORDS[0]), NO_RANGE,
-        c"Where a solve starts: cold (no forces: the same input gives the same bits) or previous (forces and active set of the last answer for these rows); feti_start_from comes before either.";
+        c"Start of a solve: cold (no forces; the same input gives the same bits) or previous (forces and active set of the last answer for these rows); values of feti_start_from take precedence.";
     direct_limit: i64 = I64(1000), 0.0..=MANY,
-        c"Forces and floating modes together up to which the dual may be solved by dense factors on the active set, where the iteration gives up or option finish asks for it; 0: never.";
+        c"Largest number of forces plus floating modes for which the dual problem may be solved by dense factors on the active set, if the iteration gives up or option finish requests a direct solve; 0: never.";
     finish: FinishBy = Str(FinishBy::WORDS[0]), NO_RANGE,
-        c"What follows a solve: direct (dense factors on the active set found and corrections from K, B, f, c: errors fall to rounding; kept only where the certificate is no worse); none; automatic (direct where a body is ill-conditioned or rows join bodies of very different stiffness or deformation, so that the certificate alone would leave errors that matter).";
+        c"What follows a solve: direct (dense factors on the active set found, with corrections from K, B, f, c: errors fall to rounding level; the result is kept only if the certificate is no worse); none; automatic (direct if a body is ill-conditioned or rows join bodies of very different stiffness or deformation, where errors that matter could remain although the certificate passes).";
     paper_units: PaperUnits = Str(PaperUnits::WORDS[0]), NO_RANGE,
-        c"Methods paper-...: what their parameters are relative to. relative: rho_0 in |A|/|D|^2, M in |A|/|D|, eta_0 in the size of d, for the scaled rows; printed: the units of the host, its basis R, tolerance relative to |b| and |d|.";
+        c"Methods paper-...: scaling of their parameters. relative: rho_0 in |A|/|D|^2, M in |A|/|D|, eta_0 in the size of d, for the scaled rows; printed: units of the host, its basis R, tolerance relative to |b| and |d|.";
     paper_step_1: PaperStep1 = Str(PaperStep1::WORDS[0]), NO_RANGE,
-        c"Methods paper-...: when Step 1 ends. printed: |g^P| <= M |D x - d|; corrected: not on this account once |D x - d| is as small as asked, |g^P| must be so too.";
+        c"Methods paper-...: end of Step 1. printed: |g^P| <= M |D x - d|; corrected: once |D x - d| is within its tolerance, this test no longer ends Step 1, and |g^P| must reach its tolerance too.";
     paper_alpha: f64 = F64(0.1), 1e-6..=0.999,
-        c"alpha of Algorithm 3: the bound eta on |D x - d| is multiplied by it where it was kept.";
+        c"alpha of Algorithm 3: factor for the bound eta on |D x - d| when the bound was kept.";
     paper_beta: f64 = F64(100.0), 1.001..=1e6,
-        c"beta of Algorithm 3: the penalty rho is multiplied by it where eta was exceeded.";
+        c"beta of Algorithm 3: factor for the penalty rho when eta was exceeded.";
     paper_rho_0: f64 = F64(100.0), 1e-30..=1e30,
         c"rho_0 of Algorithm 3: the first penalty.";
     paper_eta_0: f64 = F64(1e-3), 1e-30..=1e30,
@@ -120,9 +120,9 @@ settings! {
     paper_mu_0: f64 = F64(0.0), -1e30..=1e30,
         c"mu^0 of Algorithm 3: every entry of the first multiplier.";
     paper_extrapolation: f64 = F64(5.0), 1.01..=1e3,
-        c"Method paper-extrapolating: factor from one trial step beyond a bound to the next.";
+        c"Method paper-extrapolating: factor between successive trial steps beyond a bound.";
     paper_outer: i64 = I64(60), 1.0..=1e6,
-        c"Problems with bounds alone that the methods paper-... solve before they end with FETI_ITERATIONS.";
+        c"Number of problems with bounds only that the methods paper-... solve before they end with FETI_ITERATIONS.";
 }
 
 /// All options, in the order of their listing.

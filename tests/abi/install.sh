@@ -39,6 +39,19 @@ expected="./include/other.h ./lib/cmake/feti_contact/other.cmake ./share/feti_co
 [ ! -d share/doc/feti-contact ] || { echo "an empty folder of ours is left"; exit 1; }
 cd "$root"
 
+# Folders named from where make is called; libraries without what only a debugger reads, and STRIP= leaves it in; the archive has no
+# global symbols but the functions of the header.
+rm -rf "$stage"
+mkdir -p "$stage"
+(cd "$stage" && PREFIX=relative DESTDIR='' "$root/tools/install.sh" install >/dev/null && has relative/lib/libfeti_contact.so)
+make_it install PREFIX=/debug STRIP=
+debug() { readelf -SW "$1" | grep -q '\.debug_info'; }
+debug "$stage/debug/lib/libfeti_contact.so" || { echo "STRIP= strips all the same"; exit 1; }
+! debug "$stage/relative/lib/libfeti_contact.so" || { echo "the shared library is not stripped"; exit 1; }
+nm -D --defined-only "$stage/relative/lib/libfeti_contact.so" | awk '{ print $NF }' | sort >"$stage/exported"
+nm -g --defined-only "$stage/relative/lib/libfeti_contact.a" | awk 'NF == 3 { print $3 }' | sort >"$stage/archived"
+[ -s "$stage/exported" ] && diff "$stage/exported" "$stage/archived" || { echo "the archive has other symbols"; exit 1; }
+
 # Folders as distributions have them, below PREFIX or not.
 rm -rf "$stage"
 folders="PREFIX=/usr LIBDIR=lib/x86_64-linux-gnu INCLUDEDIR=/usr/include/feti DATADIR=/srv/data DOCDIR=/usr/doc/feti"

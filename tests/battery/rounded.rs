@@ -44,7 +44,7 @@ enum Change {
 
 impl Change {
     fn of(seed: u64) -> Self {
-        if seed.is_multiple_of(2) {
+        if seed % 2 == 0 {
             Self::Digits(8 + (seed / 2 % 5) as usize)
         } else {
             Self::Springs(-12 + (seed / 2 % 7) as i32)

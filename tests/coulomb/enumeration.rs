@@ -36,12 +36,12 @@ struct Place {
 }
 
 /// F, d and G of all rows, each in the unit of `(b D^-1 b' + C)^1/2`.
-struct Dual {
-    f: Vec<Vec<f64>>,
-    d: Vec<f64>,
-    g: Vec<Vec<f64>>,
-    e: Vec<f64>,
-    unit: Vec<f64>,
+pub struct Dual {
+    pub f: Vec<Vec<f64>>,
+    pub d: Vec<f64>,
+    pub g: Vec<Vec<f64>>,
+    pub e: Vec<f64>,
+    pub unit: Vec<f64>,
 }
 
 /// Of supports of all motions, where forces that move rows by 1 are 1, and the part of the load above which what they carry is a slide.
@@ -144,7 +144,7 @@ pub fn distance(deck: &Deck, answers: &[Vec<f64>], forces: &[f64]) -> f64 {
     answers.iter().map(from).fold(f64::INFINITY, f64::min)
 }
 
-fn size(x: &[f64]) -> f64 {
+pub fn size(x: &[f64]) -> f64 {
     x.iter().fold(0.0, |most: f64, v| most.max(v.abs()))
 }
 
@@ -211,7 +211,7 @@ fn units(deck: &Deck) -> Vec<f64> {
 }
 
 impl Dual {
-    fn new(deck: &Deck) -> Self {
+    pub fn new(deck: &Deck) -> Self {
         let (metric, unit) = (metric(deck), units(deck));
         let mut rows: Vec<Vec<f64>> = Vec::new();
         let (mut gaps, mut compliance) = (Vec::new(), Vec::new());
@@ -265,7 +265,7 @@ impl Dual {
     }
 
     /// gap of row i, minus its slip.
-    fn gap(&self, x: &[f64], i: usize) -> f64 {
+    pub fn gap(&self, x: &[f64], i: usize) -> f64 {
         let m = self.d.len();
         let by_forces: f64 = self.f[i].iter().zip(x).map(|(f, x)| f * x).sum();
         by_forces - self.d[i] - self.g.iter().zip(&x[m..]).map(|(g, a)| g[i] * a).sum::<f64>()
@@ -310,14 +310,14 @@ fn orthonormal(modes: &[Vec<f64>], metric: &[f64]) -> Vec<Vec<f64>> {
     basis
 }
 
-enum Ends {
+pub enum Ends {
     One(Vec<f64>),
     Many,
     None,
 }
 
 /// a x = b by elimination with the largest pivot of all.
-fn eliminated(mut a: Vec<Vec<f64>>, mut b: Vec<f64>) -> Ends {
+pub fn eliminated(mut a: Vec<Vec<f64>>, mut b: Vec<f64>) -> Ends {
     let n = b.len();
     let mut order: Vec<usize> = (0..n).collect();
     let largest = a.iter().map(|row| size(row)).fold(0.0, f64::max);

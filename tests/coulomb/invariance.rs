@@ -2,13 +2,13 @@
 
 use decks::{Deck, Friction, Rows};
 use feti_contact::error::Kind;
-use feti_contact::solver::Outcome;
+use feti_contact::solver::{Outcome, Problem};
 
 use crate::battery::answer;
 use crate::drawn::{case, Drawn, SIZES};
 use crate::enumeration;
 use crate::hand_over;
-use crate::judge::Answer;
+use crate::judge::{self, Answer};
 
 /// Problems of every class.
 const SEEDS: std::ops::Range<u64> = 20_000..20_170;
@@ -19,8 +19,12 @@ const ROUNDING: f64 = 1e-9;
 fn solved(deck: &Deck, options: &str) -> Result<Answer, String> {
     let mut problem = hand_over::problem(deck).map_err(|error| error.to_string())?;
     problem.set_text(options).unwrap();
+    ended(&mut problem)
+}
+
+fn ended(problem: &mut Problem) -> Result<Answer, String> {
     match problem.solve() {
-        Ok(report) if report.outcome == Outcome::Solved => Ok(answer(&problem)),
+        Ok(report) if report.outcome == Outcome::Solved => Ok(answer(problem)),
         Ok(report) => Err(format!("{:?}", report.outcome)),
         Err(error) if error.kind == Kind::LoadNotHeld => Err("not held".into()),
         Err(error) => Err(error.to_string()),
@@ -184,6 +188,17 @@ fn powers_of_ten_in_forces_and_lengths_change_little() {
     assert_the_same(|deck| in_units(deck, force, length), |_, found| scaled(found, by));
 }
 
+/// Node `node` of `old`, with the contact row `normal`, as the last one.
+fn push_again(nodes: &mut Friction, old: &Friction, node: usize, normal: Option<usize>) {
+    let rows = node * old.dim..(node + 1) * old.dim;
+    let entries: Vec<Vec<(usize, f64)>> = rows.clone().map(|k| old.rows.matrix.row(k).collect()).collect();
+    let views: Vec<&[(usize, f64)]> = entries.iter().map(Vec::as_slice).collect();
+    nodes.push(normal, &views, old.coefficient[node], old.bound[node]);
+    let first = nodes.rows.len() - old.dim;
+    nodes.rows.rhs[first..].copy_from_slice(&old.rows.rhs[rows.clone()]);
+    nodes.rows.compliance[first..].copy_from_slice(&old.rows.compliance[rows]);
+}
+
 #[test]
 fn the_order_of_nodes_changes_little() {
     let turned = |deck: &Deck| {
@@ -191,17 +206,7 @@ fn the_order_of_nodes_changes_little() {
         let none = Friction::none(deck.friction.dim, deck.dofs());
         let old = std::mem::replace(&mut deck.friction, none);
         for node in (0..old.normal.len()).rev() {
-            let rows = node * old.dim..(node + 1) * old.dim;
-            let entries: Vec<Vec<(usize, f64)>> =
-                rows.clone().map(|k| old.rows.matrix.row(k).collect()).collect();
-            let views: Vec<&[(usize, f64)]> = entries.iter().map(Vec::as_slice).collect();
-            let (mu, bound) = (old.coefficient[node], old.bound[node]);
-            deck.friction.push(old.normal[node], &views, mu, bound);
-            let first = deck.friction.rows.len() - old.dim;
-            for (k, row) in rows.enumerate() {
-                deck.friction.rows.rhs[first + k] = old.rows.rhs[row];
-                deck.friction.rows.compliance[first + k] = old.rows.compliance[row];
-            }
+            push_again(&mut deck.friction, &old, node, old.normal[node]);
         }
         deck
     };
@@ -237,4 +242,129 @@ fn nodes_without_mu_and_bound_give_the_answer_without_friction() {
         }
     }
     assert!(compared > 20, "{compared}");
+}
+
+/// However little is asked of the dual, an answer is one that the certificate accepts.
+#[test]
+fn a_loose_tolerance_of_the_dual_leaves_no_answer_inaccurate() {
+    let mut others = Vec::new();
+    for (seed, drawn) in drawn() {
+        let tight = solved(&drawn.deck, "");
+        for options in ["tolerance=1e-2", "tolerance=1e-5"] {
+            if let (Ok(_), Err(end)) = (&tight, solved(&drawn.deck, options)) {
+                others.push(format!("{seed} {}: {options}: {end}", drawn.class));
+            }
+        }
+    }
+    assert!(others.is_empty(), "{others:#?}");
+}
+
+/// After a solve entries of F are kept, which may change last bits.
+#[test]
+fn friction_that_is_cleared_leaves_the_answer_of_a_problem_without() {
+    for (seed, drawn) in drawn() {
+        let mut never = drawn.deck.clone();
+        never.friction = Friction::none(1, never.dofs());
+        let expected = solved(&never, "");
+        for after_a_solve in [false, true] {
+            let mut problem = hand_over::problem(&drawn.deck).unwrap();
+            if after_a_solve {
+                let _ = problem.solve();
+            }
+            problem.clear_friction();
+            let found = ended(&mut problem);
+            match (&found, &expected) {
+                (Ok(found), Ok(expected)) if after_a_solve => {
+                    let far = apart(found, expected);
+                    assert!(far <= ROUNDING, "{seed} {}: {far:e}", drawn.class);
+                }
+                _ => assert_eq!(bits(&found), bits(&expected), "{seed} {}", drawn.class),
+            }
+        }
+    }
+}
+
+/// Every node of friction with its contact row once more, with half of the bound and twice the compliance.
+fn twice(deck: &Deck) -> Deck {
+    let mut deck = deck.clone();
+    let old = deck.friction.clone();
+    deck.friction.bound.iter_mut().for_each(|bound| *bound *= 0.5);
+    deck.friction.rows.compliance.iter_mut().for_each(|inv_kt| *inv_kt *= 2.0);
+    for (node, &normal) in old.normal.iter().enumerate() {
+        let again = normal.map(|row| {
+            let (entries, gap) = (deck.contact.matrix.row(row).collect::<Vec<_>>(), deck.contact.rhs[row]);
+            deck.contact.compliance[row] *= 2.0;
+            deck.contact.push_compliant(&entries, gap, deck.contact.compliance[row]);
+            deck.contact.len() - 1
+        });
+        push_again(&mut deck.friction, &old, node, again);
+        deck.friction.bound[old.normal.len() + node] *= 0.5;
+        let first = deck.friction.rows.len() - old.dim;
+        deck.friction.rows.compliance[first..].iter_mut().for_each(|inv_kt| *inv_kt *= 2.0);
+    }
+    deck
+}
+
+#[test]
+fn nodes_that_are_given_twice_share_their_forces() {
+    assert_the_same(twice, |deck, mut found| {
+        let (rows, nodes) = (deck.contact.len(), deck.friction.normal.len() * deck.friction.dim);
+        let again = found.lambda.split_off(rows);
+        deck.friction.normal.iter().flatten().zip(again).for_each(|(&row, force)| found.lambda[row] += force);
+        let again = found.along.split_off(nodes);
+        found.along.iter_mut().zip(again).for_each(|(force, again)| *force += again);
+        found
+    });
+}
+
+/// Both tangential rows of node i, with their slips at the beginning, turned by the angle i + 1: row k is `turns[k]` of the old ones.
+fn turned(deck: &Deck) -> Deck {
+    let mut deck = deck.clone();
+    let none = Friction::none(2, deck.dofs());
+    let old = std::mem::replace(&mut deck.friction, none);
+    for node in 0..old.normal.len() {
+        let rows = [2 * node, 2 * node + 1];
+        let entries = turns(node).map(|by| {
+            let mut row = vec![0.0; deck.dofs()];
+            for (k, by) in rows.into_iter().zip(by) {
+                old.rows.matrix.row(k).for_each(|(j, t)| row[j] += by * t);
+            }
+            (0..row.len()).filter(|&j| row[j] != 0.0).map(|j| (j, row[j])).collect::<Vec<_>>()
+        });
+        let views: Vec<&[(usize, f64)]> = entries.iter().map(Vec::as_slice).collect();
+        deck.friction.push(old.normal[node], &views, old.coefficient[node], old.bound[node]);
+        for (k, [first, second]) in rows.into_iter().zip(turns(node)) {
+            deck.friction.rows.rhs[k] = first * old.rows.rhs[rows[0]] + second * old.rows.rhs[rows[1]];
+            deck.friction.rows.compliance[k] = old.rows.compliance[k];
+        }
+    }
+    deck
+}
+
+fn turns(node: usize) -> [[f64; 2]; 2] {
+    let (sine, cosine) = (node as f64 + 1.0).sin_cos();
+    [[cosine, sine], [-sine, cosine]]
+}
+
+/// There may be several answers: turned back it is one, and mostly the one found without turning.
+#[test]
+fn turned_tangents_turn_the_forces_along_them() {
+    let (mut compared, mut near) = (0, 0);
+    for (seed, drawn) in (20_000..20_500).map(|seed| (seed, case(seed, &SIZES))) {
+        if drawn.deck.friction.dim != 2 || !is_stiff(&drawn.deck) {
+            continue;
+        }
+        let (one, other) = (solved(&drawn.deck, ""), solved(&turned(&drawn.deck), ""));
+        assert_eq!(one.as_ref().err(), other.as_ref().err(), "{seed} {}", drawn.class);
+        let (Ok(one), Ok(mut other)) = (one, other) else { continue };
+        for (node, forces) in other.along.chunks_mut(2).enumerate() {
+            let ([[a, b], [c, d]], [first, second]) = (turns(node), [forces[0], forces[1]]);
+            forces.copy_from_slice(&[a * first + c * second, b * first + d * second]);
+        }
+        let (ratio, place) = judge::worst(&drawn.deck, &other);
+        assert!(ratio <= 1e-7, "{seed} {}: {ratio:e}, {place}", drawn.class);
+        compared += 1;
+        near += usize::from(apart(&one, &other) <= ROUNDING);
+    }
+    assert!(4 * near >= 3 * compared && compared > 100, "{near} of {compared}");
 }

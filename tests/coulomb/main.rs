@@ -8,3 +8,5 @@ mod enumeration;
 mod hand_over;
 mod invariance;
 mod judge;
+mod space;
+mod tresca;

@@ -9,5 +9,6 @@ mod enumeration;
 mod hostile;
 mod mindlin;
 mod problem;
+mod spheres;
 mod states;
 mod supports;

@@ -16,7 +16,7 @@ fn random(seed: u64) -> (Model, i64) {
         mesh.young.iter_mut().for_each(|young| *young = 1.0 + 1e-3 * random.between(0.0, 1.0));
         mesh
     };
-    let axis = if seed.is_multiple_of(2) { 0 } else { 2 };
+    let axis = if seed % 2 == 0 { 0 } else { 2 };
     (Model::stacked(block(0.0), block(1.0), |at| at[axis] == 0.0), pieces)
 }
 

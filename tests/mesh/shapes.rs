@@ -65,7 +65,7 @@ fn layered(n: usize, thick: usize, contrast: f64) -> Model {
         let mut mesh = cube(n, low);
         for (e, nodes) in mesh.elements.iter().enumerate() {
             let layer = (n as f64 * (mesh.nodes[nodes[0]][2] - low)).round() as usize / thick;
-            mesh.young[e] = if layer.is_multiple_of(2) { 1.0 } else { contrast };
+            mesh.young[e] = if layer % 2 == 0 { 1.0 } else { contrast };
         }
         mesh
     };

@@ -11,11 +11,11 @@ asks() {
 }
 prefix=$1
 says() { tr -s ' \n' ' ' <"$work/log" | grep -q "$1" || { echo "not said: $1"; cat "$work/log"; exit 1; }; }
-asks "0.1 REQUIRED" || { cat "$work/log"; exit 1; }
-asks "0.1 REQUIRED COMPONENTS C OPTIONAL_COMPONENTS Fortran" || { cat "$work/log"; exit 1; }
-! asks "0.1 REQUIRED COMPONENTS C Fortran" || { echo "Fortran without the language"; exit 1; }
+asks "0.2 REQUIRED" || { cat "$work/log"; exit 1; }
+asks "0.2 REQUIRED COMPONENTS C OPTIONAL_COMPONENTS Fortran" || { cat "$work/log"; exit 1; }
+! asks "0.2 REQUIRED COMPONENTS C Fortran" || { echo "Fortran without the language"; exit 1; }
 says "enable_language(Fortran) before find_package"
-! asks "0.1 REQUIRED COMPONENTS Ada" || { echo "there is no component Ada"; exit 1; }
+! asks "0.2 REQUIRED COMPONENTS Ada" || { echo "there is no component Ada"; exit 1; }
 says "no component Ada: there are C and Fortran"
 ! asks "0.9 REQUIRED" || { echo "0.9 is another interface"; exit 1; }
-says "version: 0.1"
+says "version: 0.2"

@@ -1,20 +1,19 @@
 #!/bin/sh
 # offline.sh ROOT WORK: a copy of the tree with the crates that cargo vendor has put into it is built and installed without
-# network and without what cargo has stored before; a host prints what is right. Optimisation is left out: it is the way that
-# counts.
+# network and without what cargo has stored before, for a target that CARGO_BUILD_TARGET names; a host prints what is right.
+# Optimisation is left out: it is the way that counts.
 set -eu
 root=$1 work=$2
 rm -rf "$work"
-mkdir -p "$work/tree/.cargo" "$work/home"
-(cd "$root" && git ls-files --cached --others --exclude-standard -z | xargs -0 sh -c 'for f; do [ ! -f "$f" ] || printf "%s\0" "$f"; done' sh \
-    | xargs -0 cp --parents -t "$work/tree")
+mkdir -p "$work/home"
+"$root/tools/vendored.sh" "$work/tree"
 cd "$work/tree"
-cargo vendor --locked vendor >.cargo/config.toml 2>../log || { cat ../log; exit 1; }
 # A network of its own, with nothing in it, where the system lets us have one.
 alone=
 ! unshare -n true 2>/dev/null || alone="unshare -n"
 export CARGO_HOME="$work/home" CARGO_TARGET_DIR="$work/target" CARGO_NET_OFFLINE=true
-export CARGO_PROFILE_RELEASE_OPT_LEVEL=0 CARGO_PROFILE_RELEASE_DEBUG=0 CARGO_PROFILE_RELEASE_INCREMENTAL=false
+CARGO_BUILD_TARGET=$(rustc -vV | sed -n 's/^host: //p')
+export CARGO_BUILD_TARGET CARGO_PROFILE_RELEASE_OPT_LEVEL=0 CARGO_PROFILE_RELEASE_DEBUG=0 CARGO_PROFILE_RELEASE_INCREMENTAL=false
 $alone make --no-print-directory install PREFIX="$work/installed" >/dev/null
 cd "$work"
 cc -I installed/include tree/tests/packaging/host.c -o host -Linstalled/lib -lfeti_contact "-Wl,-rpath,$work/installed/lib"

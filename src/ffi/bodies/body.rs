@@ -7,8 +7,8 @@ use crate::solver::Problem;
 
 /// Adds a body with `n` unknowns.
 ///
-/// Bodies are numbered from 0 in the order in which they are added. FETI_OVERFLOW where all bodies together would have
-/// more than 2^63 - 1 unknowns. After a failure nothing is added.
+/// Bodies are numbered from 0 in the order in which they are added. FETI_OVERFLOW if all bodies together would have more
+/// than 2^63 - 1 unknowns. After a failure nothing is added.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|
@@ -31,12 +31,12 @@ pub unsafe extern "C" fn feti_body_add(p: *mut feti_problem, n: i64, body: *mut 
 /// With more unknowns ld = n can only be meant for an array n x dim, beyond whose end would be read.
 const FEW: usize = 12;
 
-/// Gives position and direction of every unknown of a body, from which candidates for its null space are made.
+/// Gives position and direction of every unknown of a body; the library computes candidates for the null space from them.
 ///
-/// The data is copied; calling again replaces it. Never called, and no null space given: the library finds the null space
-/// from K. A null space that was given (feti_body_null_space) goes before it. Where K resists or drives the rigid motions:
-/// feti_body_coordinates_flags. Shells and beams repeat nodes with rotations.
-/// After a failure the body keeps what it had.
+/// The data are copied; another call replaces them. If you give neither coordinates nor a null space, the library finds
+/// the null space from K. A null space given by feti_body_null_space takes precedence over the coordinates. If K resists
+/// or drives the rigid body motions, see feti_body_coordinates_flags. Shells and beams list a node again for its
+/// rotations. After a failure the body keeps its previous data.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|
@@ -44,7 +44,7 @@ const FEW: usize = 12;
 /// | `body` | in | scalar | number of the body, from 0 |
 /// | `dim` | in | scalar | numbers per position, 1 to 3 |
 /// | `n` | in | scalar | unknowns of the body |
-/// | `node` | in | n | label of the node of each unknown, any number |
+/// | `node` | in | n | label of the node of each unknown: any number |
 /// | `dir` | in | n | 1 to 3: displacement along that axis; 4 to 6: rotation about axis 1 to 3 |
 /// | `xyz` | in | ld * n | coordinate k of unknown i is xyz[k + ld i], length |
 /// | `ld` | in | scalar | >= dim: distance of the coordinates of one unknown from those of the next, dim in an array without gaps; n, beyond 12 unknowns, is refused |
@@ -80,14 +80,16 @@ pub unsafe extern "C" fn feti_body_coordinates(
     })
 }
 
-/// Says what the rigid motions of the coordinates of a body are: candidates for its null space, or motions that K resists softly.
+/// Says how to use the rigid body motions that the coordinates give: as candidates for the null space, or as motions that
+/// K resists weakly.
 ///
-/// Holds for all coordinates that the body gets (feti_body_coordinates), before this call or after it; never called: FETI_CANDIDATES.
-/// With FETI_SOFT weak springs, rounding of the entries of K, geometric stiffness and supports may resist or drive the motions, which
-/// need not be exact. What the motions are, and the stiffness against them, is computed from K and
-/// taken into account exactly, as of motions given to feti_body_null_space with that flag: see there, also for what follows where K
-/// drives the body, or is singular beyond these motions. Nothing depends on it where there are no coordinates, or a null space was
-/// given. FETI_UNSUPPORTED from feti_setup where K+ is the host's (feti_body_operator). After a failure the body keeps what it had.
+/// The flag applies to all coordinates of the body (feti_body_coordinates), whether they are given before or after this
+/// call; the default is FETI_CANDIDATES. With FETI_SOFT, weak springs, rounding of the entries of K, geometric stiffness
+/// and supports may resist or drive the motions, and the motions need not be exact. The library computes the motions and
+/// their stiffness from K and takes them into account exactly, as it does for motions given to feti_body_null_space with
+/// FETI_SOFT. That function also describes what happens if K drives the body or has further null vectors. The flag has no
+/// effect without coordinates or if a null space was given. FETI_UNSUPPORTED from feti_setup if the host provides K+
+/// (feti_body_operator). After a failure the body keeps its previous flag.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|
@@ -105,16 +107,17 @@ pub extern "C" fn feti_body_coordinates_flags(p: *mut feti_problem, body: i64, f
 
 /// Gives the load of a body.
 ///
-/// The load is copied and holds until it is given again; a body without one has zero load. With FETI_ALL the array
-/// holds the loads of all bodies: by the host's numbers where they have some, entries of no unknown not looked at; else
-/// one body after the other. Of unknowns with one number (option glue) that of the first body has the load. FETI_STATE with
-/// FETI_ALL where some bodies have numbers of the host and others have none. After a failure the loads are as they were.
+/// The load is copied and stays valid until the next call replaces it; without a call the load of a body is zero. With
+/// FETI_ALL the array holds the loads of all bodies. If the bodies have numbers of the host, the array uses these
+/// numbers, and entries that belong to no unknown are ignored; otherwise it holds one body after the other. If several
+/// unknowns share one number (option glue), the load acts on the unknown of the first body. FETI_STATE with FETI_ALL if
+/// some bodies have numbers of the host and others have none. After a failure all loads are unchanged.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|
 /// | `p` | in | scalar | the handle |
 /// | `body` | in | scalar | number of the body, from 0, or FETI_ALL |
-/// | `n` | in | scalar | unknowns of the body; with FETI_ALL at least the largest number + 1, without numbers all unknowns |
+/// | `n` | in | scalar | unknowns of the body; with FETI_ALL at least the largest number + 1, or without numbers the unknowns of all bodies |
 /// | `f` | in | n | force |
 ///
 /// # Safety

@@ -8,10 +8,10 @@ use crate::ffi::header::types::{
 };
 use crate::solver::{BodyFacts, Doubt, Origin};
 
-/// Tells the connected part of every unknown of a body.
+/// Reads the connected part of every unknown of a body.
 ///
-/// A body may be in several parts that share no entry of K but zeros. They are numbered from 0 by their first unknowns.
-/// FETI_STATE before the stiffness matrix is given. After a failure nothing is written.
+/// A body may have several parts that no nonzero entry of K couples. The parts are numbered from 0 in the order of their
+/// first unknowns. FETI_STATE before the stiffness matrix is given. After a failure nothing is written.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|
@@ -39,9 +39,9 @@ pub unsafe extern "C" fn feti_body_components(
     })
 }
 
-/// Tells what is known about a body: its matrix, its null space, its factor, its dual operator.
+/// Reads what is known about a body: its matrix, its null space, its factor and its dual operator.
 ///
-/// Nothing is computed but the connected parts. After a failure nothing is written.
+/// This call computes nothing except the connected parts. After a failure nothing is written.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|
@@ -50,7 +50,7 @@ pub unsafe extern "C" fn feti_body_components(
 /// | `out` | in/out | scalar | `struct_size` set, at least 16 |
 ///
 /// # Safety
-/// `out` leads to `struct_size` writable bytes.
+/// `out` points to `struct_size` writable bytes.
 #[no_mangle]
 pub unsafe extern "C" fn feti_body_info(p: *mut feti_problem, body: i64, out: *mut feti_body_facts) -> i32 {
     enter(p, call!(feti_body_info(p, body, out)), |problem| {

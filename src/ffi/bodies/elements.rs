@@ -10,25 +10,28 @@ use crate::ffi::header::types::{feti_problem, FETI_FULL, FETI_LOWER, FETI_UPPER}
 use crate::platform::memory::zeros;
 use crate::solver::{ElementStorage, Problem};
 
-/// Says which unknowns the elements of a body join, with 32-bit indices: the first step of giving K by elements.
+/// Gives the connectivity of the elements of a body, with 32-bit indices: the first step of giving K by elements.
 ///
-/// The matrices follow, by feti_body_element or feti_body_elements, each element once: all of K, in elements of any size
-/// (springs to ground, penalties and multi-point constraints are small ones). Nothing is kept of an element: its matrix is
-/// added to that of the body or, where the body is cut, to that of its piece. Loads, rows, results, certificate and diagnosis
-/// are those of the body; the pieces show in feti_body_info and feti_body_pieces alone.
+/// Then give the element matrices with feti_body_element or feti_body_elements, each element once. Together they must
+/// form all of K; elements may have any size (springs to ground, penalties and multi-point constraints are small
+/// elements). The library adds each element matrix to the matrix of the body or, if the body is cut, of its piece, and
+/// keeps nothing else of the element. Loads, rows, results, certificate and diagnosis refer to the body; only
+/// feti_body_info and feti_body_pieces show the pieces.
 ///
-/// What the cut depends on comes before the first matrix: option `pieces` and the coordinates (feti_body_coordinates);
-/// without coordinates it goes by the elements that unknowns share. Null spaces of pieces come from the coordinates or are
-/// sought in K; a given null space of the whole body (feti_body_null_space) does not serve them. Of a body that is cut
-/// feti_body_kplus, feti_body_fixing, feti_dual_apply and feti_dual_rhs are FETI_STATE.
+/// Before the first matrix, give what the cut depends on: option `pieces` and the coordinates (feti_body_coordinates).
+/// Without coordinates the library cuts the body by its connectivity. The null spaces of the pieces come from the
+/// coordinates or are computed from K; a null space of the whole body (feti_body_null_space) is not used for them. If a
+/// body is cut, feti_body_kplus, feti_body_fixing, feti_dual_apply and feti_dual_rhs return FETI_STATE.
 ///
-/// A number below `base` is a held unknown, as equation numbers of older codes have it: row and column are left out of K, and
-/// `base` - 1 - k is the held unknown k (with base 0: -1, -2, ...; with base 1: 0, -1, ...). All may have one number where
-/// nobody asks for feti_body_held_forces. Where values are prescribed for them the host moves ke u0 to the load.
+/// A number below `base` means a held unknown, as in the equation numbers of older codes: its row and column are left out
+/// of K. The number `base` - 1 - k means held unknown k (with base 0: -1, -2, ...; with base 1: 0, -1, ...). If
+/// feti_body_held_forces is not used, all held unknowns may have the same number. If held unknowns have prescribed values
+/// u0, the host subtracts ke u0 from the load.
 ///
-/// A matrix or functions given before are replaced. The same connectivity again begins a new pass on the old pattern and
-/// cut. FETI_OVERFLOW beyond 2^32 - 1 unknowns and held ones. FETI_STATE from feti_setup and feti_solve where elements are
-/// missing, with the first of them. After a failure the body keeps what it had.
+/// The call replaces a matrix or functions given before. Another call with the same connectivity begins a new pass with
+/// the same pattern and the same cut. FETI_OVERFLOW if there are more than 2^32 - 1 unknowns and held unknowns.
+/// FETI_STATE from feti_setup and feti_solve if elements are missing; the error detail names the first missing element.
+/// After a failure the body keeps its previous data.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|
@@ -36,7 +39,7 @@ use crate::solver::{ElementStorage, Problem};
 /// | `body` | in | scalar | number of the body, from 0 |
 /// | `elements` | in | scalar | number of elements, > 0 |
 /// | `ptr` | in | elements + 1 | element e joins the entries `ptr[e]` to `ptr[e + 1] - 1` of `dof`; starts with `base` |
-/// | `dof` | in | `ptr[elements] - base` | unknowns in the order of the rows of the matrices, counted from `base`; below it: held |
+/// | `dof` | in | `ptr[elements] - base` | unknowns in the order of the rows of the element matrices, counted from `base`; below `base`: held |
 /// | `base` | in | scalar | 0 or 1: what `ptr` and `dof` count from |
 ///
 /// # Safety
@@ -55,25 +58,28 @@ pub unsafe extern "C" fn feti_body_mesh_i32(
     unsafe { give(p, call, body, (elements, ptr, dof, base)) }
 }
 
-/// Says which unknowns the elements of a body join, with 64-bit indices: the first step of giving K by elements.
+/// Gives the connectivity of the elements of a body, with 64-bit indices: the first step of giving K by elements.
 ///
-/// The matrices follow, by feti_body_element or feti_body_elements, each element once: all of K, in elements of any size
-/// (springs to ground, penalties and multi-point constraints are small ones). Nothing is kept of an element: its matrix is
-/// added to that of the body or, where the body is cut, to that of its piece. Loads, rows, results, certificate and diagnosis
-/// are those of the body; the pieces show in feti_body_info and feti_body_pieces alone.
+/// Then give the element matrices with feti_body_element or feti_body_elements, each element once. Together they must
+/// form all of K; elements may have any size (springs to ground, penalties and multi-point constraints are small
+/// elements). The library adds each element matrix to the matrix of the body or, if the body is cut, of its piece, and
+/// keeps nothing else of the element. Loads, rows, results, certificate and diagnosis refer to the body; only
+/// feti_body_info and feti_body_pieces show the pieces.
 ///
-/// What the cut depends on comes before the first matrix: option `pieces` and the coordinates (feti_body_coordinates);
-/// without coordinates it goes by the elements that unknowns share. Null spaces of pieces come from the coordinates or are
-/// sought in K; a given null space of the whole body (feti_body_null_space) does not serve them. Of a body that is cut
-/// feti_body_kplus, feti_body_fixing, feti_dual_apply and feti_dual_rhs are FETI_STATE.
+/// Before the first matrix, give what the cut depends on: option `pieces` and the coordinates (feti_body_coordinates).
+/// Without coordinates the library cuts the body by its connectivity. The null spaces of the pieces come from the
+/// coordinates or are computed from K; a null space of the whole body (feti_body_null_space) is not used for them. If a
+/// body is cut, feti_body_kplus, feti_body_fixing, feti_dual_apply and feti_dual_rhs return FETI_STATE.
 ///
-/// A number below `base` is a held unknown, as equation numbers of older codes have it: row and column are left out of K, and
-/// `base` - 1 - k is the held unknown k (with base 0: -1, -2, ...; with base 1: 0, -1, ...). All may have one number where
-/// nobody asks for feti_body_held_forces. Where values are prescribed for them the host moves ke u0 to the load.
+/// A number below `base` means a held unknown, as in the equation numbers of older codes: its row and column are left out
+/// of K. The number `base` - 1 - k means held unknown k (with base 0: -1, -2, ...; with base 1: 0, -1, ...). If
+/// feti_body_held_forces is not used, all held unknowns may have the same number. If held unknowns have prescribed values
+/// u0, the host subtracts ke u0 from the load.
 ///
-/// A matrix or functions given before are replaced. The same connectivity again begins a new pass on the old pattern and
-/// cut. FETI_OVERFLOW beyond 2^32 - 1 unknowns and held ones. FETI_STATE from feti_setup and feti_solve where elements are
-/// missing, with the first of them. After a failure the body keeps what it had.
+/// The call replaces a matrix or functions given before. Another call with the same connectivity begins a new pass with
+/// the same pattern and the same cut. FETI_OVERFLOW if there are more than 2^32 - 1 unknowns and held unknowns.
+/// FETI_STATE from feti_setup and feti_solve if elements are missing; the error detail names the first missing element.
+/// After a failure the body keeps its previous data.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|
@@ -81,7 +87,7 @@ pub unsafe extern "C" fn feti_body_mesh_i32(
 /// | `body` | in | scalar | number of the body, from 0 |
 /// | `elements` | in | scalar | number of elements, > 0 |
 /// | `ptr` | in | elements + 1 | element e joins the entries `ptr[e]` to `ptr[e + 1] - 1` of `dof`; starts with `base` |
-/// | `dof` | in | `ptr[elements] - base` | unknowns in the order of the rows of the matrices, counted from `base`; below it: held |
+/// | `dof` | in | `ptr[elements] - base` | unknowns in the order of the rows of the element matrices, counted from `base`; below `base`: held |
 /// | `base` | in | scalar | 0 or 1: what `ptr` and `dof` count from |
 ///
 /// # Safety
@@ -122,21 +128,23 @@ unsafe fn give<I: Index>(
     })
 }
 
-/// Adds the stiffness matrix of one element, from the host's own assembly loop.
+/// Adds the stiffness matrix of one element; call it from the host's assembly loop.
 ///
-/// The matrix is added at once and not kept. It must be symmetric within option symmetry_tolerance and is averaged; it may be
-/// indefinite, only what has been added up is judged, by feti_setup. Elements come in any order, each once: FETI_STATE for one
-/// that has come already, and before feti_body_mesh. With the last one the matrix of the body is complete, and the next
-/// element begins a new pass: new values on the old pattern and cut, with no analysis, as in a Newton loop. Until that pass
-/// is complete the body has no matrix. Threads that assemble side by side meet FETI_BUSY: they hand over blocks, by
-/// feti_body_elements. An error names the element. After a failure nothing of the element is added.
+/// The library adds the matrix at once and does not keep it. The matrix must be symmetric within option
+/// symmetry_tolerance; the library averages ke_ij and ke_ji. An element matrix may be indefinite: feti_setup checks only
+/// the assembled matrix. Elements may come in any order, each once. FETI_STATE if the element was given already, and
+/// before feti_body_mesh. With the last element the matrix of the body is complete. The next element begins a new pass:
+/// new values with the same pattern and cut, without a new analysis, as in a Newton loop. Until this pass is complete the
+/// body has no matrix. If several threads assemble at the same time, such calls return FETI_BUSY: the threads should
+/// collect blocks for feti_body_elements. The error detail names the element. After a failure nothing of the element is
+/// added.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|
 /// | `p` | in | scalar | the handle |
 /// | `body` | in | scalar | number of the body, from 0 |
 /// | `e` | in | scalar | number of the element, from 0 |
-/// | `n` | in | scalar | unknowns that the element joins, held ones included |
+/// | `n` | in | scalar | unknowns of the element, including held ones |
 /// | `ke` | in | ld * n | column-major: ke_ij is ke[i + ld j], force per length |
 /// | `ld` | in | scalar | >= n |
 ///
@@ -164,12 +172,12 @@ pub unsafe extern "C" fn feti_body_element(
 
 /// Adds the stiffness matrices of a block of elements, one after the other.
 ///
-/// As feti_body_element for each of them. With FETI_FULL every matrix is n x n, column-major. With FETI_LOWER it is the lower
-/// triangle column by column, as in the elemental format of MUMPS (the upper triangle row by row is the same), with FETI_UPPER
-/// the upper triangle column by column: n (n + 1) / 2 numbers. The n of an element is that of feti_body_mesh;
-/// feti_body_elements_size tells how many numbers a block has. FETI_STATE for an element that has come already, and before
-/// feti_body_mesh. An error names the element; its entry counts within the matrix of that element. After a failure none of the
-/// block is added.
+/// The call works like feti_body_element for each element. With FETI_FULL every matrix is n x n, column-major. With
+/// FETI_LOWER it is the lower triangle column by column, as in the elemental format of MUMPS (this equals the upper
+/// triangle row by row); with FETI_UPPER it is the upper triangle column by column. Each triangle has n (n + 1) / 2
+/// numbers. The n of an element follows from feti_body_mesh; feti_body_elements_size returns how many numbers a block
+/// has. FETI_STATE if an element was given already, and before feti_body_mesh. The error detail names the element and the
+/// entry within its matrix. After a failure nothing of the block is added.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|
@@ -199,7 +207,7 @@ pub unsafe extern "C" fn feti_body_elements(
     })
 }
 
-/// Tells how many numbers the matrices of a block of elements take in feti_body_elements.
+/// Returns how many numbers feti_body_elements expects for a block of elements.
 ///
 /// FETI_STATE before feti_body_mesh. After a failure nothing is written.
 ///
@@ -252,19 +260,20 @@ fn block(
     Ok((body, first, count, storage))
 }
 
-/// Reads what the held unknowns of a body take up in the last answer: K_hf u, their rows of K times the displacement.
+/// Reads the forces on the held unknowns of a body in the last answer: K_hf u, their rows of K times the displacement.
 ///
-/// Held unknowns are those with numbers below `base` in feti_body_mesh_i32 or _i64, k for the number `base` - 1 - k. The force
-/// is that with which the supports hold the body, but for what prescribed values add (ke u0, which the host has moved to the
-/// load) and for loads on the held unknowns themselves, which the host takes off. FETI_STATE for a body that was
-/// not given by its elements, and before a solve has given an answer. After a failure nothing is written.
+/// Held unknowns have numbers below `base` in feti_body_mesh_i32 or _i64: held unknown k has the number `base` - 1 - k.
+/// The result is the support reaction without two parts, which the host accounts for: the part of prescribed values (the
+/// host moved ke u0 to the load), which must be added, and loads on the held unknowns themselves, which must be
+/// subtracted. FETI_STATE if the body was not given by its elements, and if no solve has given an answer yet. After a
+/// failure nothing is written.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|
 /// | `p` | in | scalar | the handle |
 /// | `body` | in | scalar | number of the body, from 0 |
-/// | `n` | in | scalar | held unknowns that are asked for: 0 to n - 1 |
-/// | `r` | out | n | force; 0 for a number that no element has |
+/// | `n` | in | scalar | number of held unknowns to read: 0 to n - 1 |
+/// | `r` | out | n | force; 0 for a held unknown that no element has |
 ///
 /// # Safety
 /// The array has the given shape.
@@ -281,10 +290,11 @@ pub unsafe extern "C" fn feti_body_held_forces(p: *mut feti_problem, body: i64, 
     })
 }
 
-/// Tells the piece of every unknown of a body, for pictures and for choosing option `pieces`.
+/// Reads the piece of every unknown of a body, for pictures and for choosing option `pieces`.
 ///
-/// Pieces count from 0; an unknown of several pieces has the first of them. All are 0 in a body that is not cut. FETI_STATE
-/// before its matrix, or all of its elements, have been given. After a failure nothing is written.
+/// Pieces count from 0. An unknown that belongs to several pieces gets the first one. If the body is not cut, all numbers
+/// are 0. FETI_STATE before the matrix of the body, or all of its elements, have been given. After a failure nothing is
+/// written.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|

@@ -7,16 +7,17 @@ use crate::ffi::header::types::{feti_problem, FETI_CANDIDATES, FETI_EXACT, FETI_
 use crate::platform::memory::reserved;
 use crate::solver::Modes;
 
-/// Gives a basis of the null space of a body, candidates for it, or motions that K resists softly.
+/// Gives a basis of the null space of a body, candidates for the null space, or motions that K resists weakly.
 ///
-/// The basis is copied; calling again replaces it. Never called: the coordinates of the unknowns give candidates
-/// (feti_body_coordinates), and without coordinates the library finds the null space from K. That `K R = 0` holds is
-/// checked in feti_setup. With FETI_SOFT it need not hold: weak springs, rounding of the entries of K and geometric stiffness
-/// may resist or drive the motions. The columns then choose the fixing unknowns; the motions, and the stiffness against
-/// them, are computed from K and taken into account exactly. Where K drives the body between these unknowns, up to six more
-/// are fixed, each with a column of its own (feti_body_null_space_get). FETI_UNSUPPORTED from feti_setup where K+ is the
-/// host's (feti_body_operator); FETI_INDEFINITE from feti_setup where K drives more than that, from feti_solve where the
-/// contact leaves a motion that is driven. After a failure the body keeps what it had.
+/// The basis is copied; another call replaces it. If you do not call this function, the coordinates of the unknowns give
+/// candidates (feti_body_coordinates); without coordinates the library finds the null space from K. feti_setup checks
+/// that `K R = 0` holds. With FETI_SOFT this equation need not hold: weak springs, rounding of the entries of K and
+/// geometric stiffness may resist or drive the motions. The columns then only choose the fixing unknowns; the library
+/// computes the motions and their stiffness from K and takes them into account exactly. If K is still indefinite with
+/// these unknowns fixed, the library fixes up to six more, each with its own column in feti_body_null_space_get.
+/// FETI_UNSUPPORTED from feti_setup if the host provides K+ (feti_body_operator); FETI_INDEFINITE from feti_setup if K
+/// drives more motions than that, and from feti_solve if the contact does not restrain a driven motion. After a failure
+/// the body keeps its previous basis.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|
@@ -70,7 +71,7 @@ pub extern "C" fn feti_body_no_null_space(p: *mut feti_problem, body: i64) -> i3
     })
 }
 
-/// Reads the null space of a body that the library works with.
+/// Reads the null space that the library uses for a body.
 ///
 /// Runs feti_setup when it is due. After a failure nothing is written.
 ///
@@ -79,9 +80,9 @@ pub extern "C" fn feti_body_no_null_space(p: *mut feti_problem, body: i64) -> i3
 /// | `p` | in | scalar | the handle |
 /// | `body` | in | scalar | number of the body, from 0 |
 /// | `n` | in | scalar | unknowns of the body |
-/// | `r` | in/out | scalar | in: columns that fit in `basis`, not read without one; out: dimension of the null space |
-/// | `basis` | out | ldr * r | column-major; NULL: only the dimension is wanted |
-/// | `ldr` | in | scalar | >= n, not looked at without `basis` |
+/// | `r` | in/out | scalar | in: columns that fit in `basis`, ignored if `basis` is NULL; out: dimension of the null space |
+/// | `basis` | out | ldr * r | column-major; NULL: only the dimension is returned |
+/// | `ldr` | in | scalar | >= n; ignored without `basis` |
 ///
 /// # Safety
 /// The arrays have the given shapes.
@@ -121,8 +122,8 @@ pub unsafe extern "C" fn feti_body_null_space_get(
 
 /// Reads the fixing unknowns of a body: with them fixed, K has full rank.
 ///
-/// Runs feti_setup when it is due. FETI_UNSUPPORTED where K+ is the host's (feti_body_operator). FETI_STATE for a body that is
-/// cut (feti_body_mesh_i32 or _i64). After a failure nothing is written.
+/// Runs feti_setup when it is due. FETI_UNSUPPORTED if the host provides K+ (feti_body_operator). FETI_STATE if the body
+/// is cut into pieces (feti_body_mesh_i32 or _i64). After a failure nothing is written.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|
@@ -149,11 +150,11 @@ pub unsafe extern "C" fn feti_body_fixing(p: *mut feti_problem, body: i64, r: i6
     })
 }
 
-/// Chooses the fixing unknowns of a body in place of the library.
+/// Chooses the fixing unknowns of a body; otherwise the library chooses them.
 ///
-/// They change the course of the methods of the paper in printed units, and neither forces nor displacements. As many as the
-/// null space has dimensions, which feti_setup checks, and that they hold every motion of it. Calling again replaces them.
-/// After a failure the body keeps what it had.
+/// The choice affects the iterations of the paper's methods in printed units, but neither forces nor displacements. There
+/// must be as many fixing unknowns as the null space has dimensions, and they must hold every motion of the null space;
+/// feti_setup checks both. Another call replaces them. After a failure the body keeps its previous fixing unknowns.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|

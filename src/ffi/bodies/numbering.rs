@@ -6,23 +6,24 @@ use crate::ffi::header::types::feti_problem;
 
 /// Gives the host's own numbers of the unknowns of a body, with 32-bit integers.
 ///
-/// A host that numbers all unknowns through gives every body its share; a number names one unknown of all bodies. Then
-/// FETI_ALL as body in feti_body_load, feti_displacement and feti_reaction means arrays in these numbers, and so do rows
-/// whose bodies are NULL in feti_rows_add_i32 and _i64. All bodies have numbers then: FETI_STATE names one that has not.
-/// The numbers are copied; calling again replaces them. Rows that are there stay on their unknowns. After a failure the body
-/// keeps the numbers it had.
+/// Use this function if the host numbers the unknowns of all bodies consecutively; each number then names one unknown in
+/// the whole problem. Arrays with FETI_ALL in feti_body_load, feti_displacement and feti_reaction then use these numbers,
+/// and so do rows whose `body` is NULL in feti_rows_add_i32 and _i64. These calls need numbers for all bodies: otherwise
+/// they return FETI_STATE and name a body without numbers. The numbers are copied; another call replaces them. Existing
+/// rows stay on their unknowns. After a failure the body keeps its previous numbers.
 ///
-/// With option glue = 1, set before, unknowns of several bodies may have one number: they move together, by equality rows that
-/// only the library sees. The host's rows, their multipliers and the counts stay what they are. With FETI_ALL a load on such a
-/// number is that of its first body, a displacement that of all of them, and a reaction the sum over them; rows whose bodies are
-/// NULL act on the first. The last answer goes with a change of such numbers.
+/// If option glue = 1 was set before, unknowns of several bodies may share one number. These unknowns then move together;
+/// the library joins them by internal equality rows, which change neither the host's rows and multipliers nor the counts.
+/// With FETI_ALL a load on a shared number acts on its first body, the displacement is the one of all its bodies, and the
+/// reaction is the sum over them. Rows whose `body` is NULL act on the first body. A change of shared numbers drops the
+/// last answer.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|
 /// | `p` | in | scalar | the handle |
 /// | `body` | in | scalar | number of the body, from 0 |
 /// | `n` | in | scalar | unknowns of the body |
-/// | `number` | in | n | number of each unknown, counted from `base`, none that of another unknown of the body, nor, without option glue, of another body |
+/// | `number` | in | n | number of each unknown, counted from `base`; different for all unknowns of the body and, without option glue, of all bodies |
 /// | `base` | in | scalar | 0 or 1: what the numbers count from |
 ///
 /// # Safety
@@ -42,23 +43,24 @@ pub unsafe extern "C" fn feti_body_numbering_i32(
 
 /// Gives the host's own numbers of the unknowns of a body, with 64-bit integers.
 ///
-/// A host that numbers all unknowns through gives every body its share; a number names one unknown of all bodies. Then
-/// FETI_ALL as body in feti_body_load, feti_displacement and feti_reaction means arrays in these numbers, and so do rows
-/// whose bodies are NULL in feti_rows_add_i32 and _i64. All bodies have numbers then: FETI_STATE names one that has not.
-/// The numbers are copied; calling again replaces them. Rows that are there stay on their unknowns. After a failure the body
-/// keeps the numbers it had.
+/// Use this function if the host numbers the unknowns of all bodies consecutively; each number then names one unknown in
+/// the whole problem. Arrays with FETI_ALL in feti_body_load, feti_displacement and feti_reaction then use these numbers,
+/// and so do rows whose `body` is NULL in feti_rows_add_i32 and _i64. These calls need numbers for all bodies: otherwise
+/// they return FETI_STATE and name a body without numbers. The numbers are copied; another call replaces them. Existing
+/// rows stay on their unknowns. After a failure the body keeps its previous numbers.
 ///
-/// With option glue = 1, set before, unknowns of several bodies may have one number: they move together, by equality rows that
-/// only the library sees. The host's rows, their multipliers and the counts stay what they are. With FETI_ALL a load on such a
-/// number is that of its first body, a displacement that of all of them, and a reaction the sum over them; rows whose bodies are
-/// NULL act on the first. The last answer goes with a change of such numbers.
+/// If option glue = 1 was set before, unknowns of several bodies may share one number. These unknowns then move together;
+/// the library joins them by internal equality rows, which change neither the host's rows and multipliers nor the counts.
+/// With FETI_ALL a load on a shared number acts on its first body, the displacement is the one of all its bodies, and the
+/// reaction is the sum over them. Rows whose `body` is NULL act on the first body. A change of shared numbers drops the
+/// last answer.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|
 /// | `p` | in | scalar | the handle |
 /// | `body` | in | scalar | number of the body, from 0 |
 /// | `n` | in | scalar | unknowns of the body |
-/// | `number` | in | n | number of each unknown, counted from `base`, none that of another unknown of the body, nor, without option glue, of another body |
+/// | `number` | in | n | number of each unknown, counted from `base`; different for all unknowns of the body and, without option glue, of all bodies |
 /// | `base` | in | scalar | 0 or 1: what the numbers count from |
 ///
 /// # Safety

@@ -12,35 +12,37 @@ use crate::ffi::header::types::{feti_operator_fn, feti_problem};
 use crate::ffi::progress::User;
 use crate::solver::{HostFunctions, HostProduct};
 
-/// Names the functions of the host that multiply by the stiffness K of a body and by a generalised inverse K+ of it.
+/// Registers the functions of the host that multiply by the stiffness K of a body and by a generalised inverse K+ of K.
 ///
-/// The library sees no entry of K but the diagonal, which is copied, and factorises nothing. K+ is any symmetric positive
-/// semidefinite matrix with K K+ K = K: where K is not singular its inverse, else that of K with enough unknowns held (rows
-/// and columns of zeros in K+), or that of K plus a regularisation that acts on the null space alone. The null space must
-/// be given, by feti_body_null_space or feti_body_coordinates (the body then counts as connected). feti_setup tries the
-/// functions with a few fixed vectors and refuses what is wrong by name: FETI_CALLBACK (K or K+ not symmetric, K K+ K not
-/// K, a result that is no finite number), FETI_INDEFINITE, FETI_NULL_SPACE (K R not 0, a mode missing in R), with the
-/// figure and its limit in the error detail.
+/// The library sees only the diagonal of K, which it copies, and factorises nothing. K+ is any symmetric positive
+/// semidefinite matrix with K K+ K = K. If K is not singular, K+ is its inverse. Otherwise K+ may be the inverse of K
+/// with enough unknowns held (rows and columns of zeros in K+), or the inverse of K plus a regularisation that acts only
+/// on the null space. The null space must be given by feti_body_null_space or feti_body_coordinates; with coordinates the
+/// library treats the body as connected. feti_setup tests the functions with a few fixed vectors and refuses wrong
+/// functions with a specific status: FETI_CALLBACK (K or K+ is not symmetric, K K+ K is not K, or a result is not
+/// finite), FETI_INDEFINITE, or FETI_NULL_SPACE (K R is not 0, or R lacks a mode), with the measured value and its limit
+/// in the error detail.
 ///
-/// A function that returns anything but 0 ends the call that needed it with FETI_CALLBACK, the body and that number in
-/// the error detail; the problem stays as it was. The functions run in the host's floating-point environment; with
-/// `concurrent` 0 on the thread alone that has called the library, with 1 also on threads of the library, several at once.
-/// Inside them calls on the same problem return FETI_BUSY, except feti_cancel and feti_problem_error. They must not end by
-/// longjmp or an exception, and must give the same bits for the same X.
+/// If a function returns a number other than 0, the call that needed it ends with FETI_CALLBACK, with the body and that
+/// number in the error detail; the problem is unchanged. The functions run in the host's floating-point environment. With
+/// `concurrent` = 0 they run only on the thread that called the library; with 1 several may run at once, also on threads
+/// of the library. Inside them, calls on the same problem return FETI_BUSY, except feti_cancel and feti_problem_error.
+/// The functions must not exit by longjmp or an exception, and must give bit-identical results for the same X.
 ///
-/// Calling again replaces the functions and what was computed with them: to be done whenever K has changed. A stiffness
-/// matrix given later takes their place, and they that of a matrix. After a failure the body keeps what it had.
+/// Another call replaces the functions and everything computed with them; make this call whenever K has changed. A
+/// stiffness matrix given later replaces the functions, and the functions replace a matrix given earlier. After a failure
+/// the body keeps its previous matrix or functions.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|
 /// | `p` | in | scalar | the handle |
 /// | `body` | in | scalar | number of the body, from 0 |
 /// | `n` | in | scalar | unknowns of the body |
-/// | `diag` | in | n | diagonal of K, >= 0, force per length: what the body is measured by |
+/// | `diag` | in | n | diagonal of K, >= 0, force per length; the library measures the body by it |
 /// | `kplus` | in | scalar | Y = K+ X, X force, Y length |
 /// | `k` | in | scalar | Y = K X, X length, Y force |
 /// | `concurrent` | in | scalar | 0: only on the calling thread; 1: on any thread, several at once |
-/// | `user` | in | scalar | handed to the functions unchanged; may be NULL |
+/// | `user` | in | scalar | passed to the functions unchanged; may be NULL |
 ///
 /// # Safety
 /// `diag` has the given shape; the functions may be called with `user` until they are replaced or the problem destroyed.

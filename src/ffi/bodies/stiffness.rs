@@ -10,15 +10,16 @@ use crate::solver::{Columns, Problem, SparseInput, Storage};
 
 /// Gives the stiffness matrix K of a body by rows, with 32-bit indices.
 ///
-/// The matrix is copied; calling again replaces pattern and values. Columns of a row may come in any order, none twice.
-/// With FETI_FULL K must be symmetric within option symmetry_tolerance and is averaged. FETI_INDEFINITE with the
-/// unknown of a diagonal entry that is negative, or 0 beside others in its row. After a failure the body keeps the
-/// matrix it had.
+/// The library copies the matrix; another call replaces pattern and values. The columns of a row may come in any order,
+/// but none twice. With FETI_FULL, K must be symmetric within option symmetry_tolerance; the library averages K_ij and
+/// K_ji. FETI_INDEFINITE if a diagonal entry is negative, or is 0 in a row with other entries; the error detail names the
+/// unknown. After a failure the body keeps its previous matrix.
 ///
-/// With FETI_BORROW the values, and columns in 32 bits counted from 0, are not copied if storage is FETI_LOWER, columns
-/// ascend and every row ends with its diagonal entry; otherwise all is copied (`borrowed` of feti_body_info tells). Borrowed
-/// arrays stay readable until the matrix is replaced or the problem destroyed, and unchanged but for this: between two calls
-/// the values may be rewritten, and the next call then is feti_body_values with the same array.
+/// With FETI_BORROW the library does not copy the values, nor 32-bit columns counted from 0, if storage is FETI_LOWER,
+/// columns ascend and every row ends with its diagonal entry. Otherwise it copies everything (see `borrowed` of
+/// feti_body_info). Borrowed arrays must stay readable and unchanged until the matrix is replaced or the problem is
+/// destroyed. There is one exception: the host may rewrite the values between two calls if its next call is
+/// feti_body_values with the same array.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|
@@ -54,15 +55,16 @@ pub unsafe extern "C" fn feti_body_stiffness_i32(
 
 /// Gives the stiffness matrix K of a body by rows, with 64-bit indices.
 ///
-/// The matrix is copied; calling again replaces pattern and values. Columns of a row may come in any order, none twice.
-/// With FETI_FULL K must be symmetric within option symmetry_tolerance and is averaged. FETI_INDEFINITE with the
-/// unknown of a diagonal entry that is negative, or 0 beside others in its row. After a failure the body keeps the
-/// matrix it had.
+/// The library copies the matrix; another call replaces pattern and values. The columns of a row may come in any order,
+/// but none twice. With FETI_FULL, K must be symmetric within option symmetry_tolerance; the library averages K_ij and
+/// K_ji. FETI_INDEFINITE if a diagonal entry is negative, or is 0 in a row with other entries; the error detail names the
+/// unknown. After a failure the body keeps its previous matrix.
 ///
-/// With FETI_BORROW the values, and columns in 32 bits counted from 0, are not copied if storage is FETI_LOWER, columns
-/// ascend and every row ends with its diagonal entry; otherwise all is copied (`borrowed` of feti_body_info tells). Borrowed
-/// arrays stay readable until the matrix is replaced or the problem destroyed, and unchanged but for this: between two calls
-/// the values may be rewritten, and the next call then is feti_body_values with the same array.
+/// With FETI_BORROW the library does not copy the values, nor 32-bit columns counted from 0, if storage is FETI_LOWER,
+/// columns ascend and every row ends with its diagonal entry. Otherwise it copies everything (see `borrowed` of
+/// feti_body_info). Borrowed arrays must stay readable and unchanged until the matrix is replaced or the problem is
+/// destroyed. There is one exception: the host may rewrite the values between two calls if its next call is
+/// feti_body_values with the same array.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|
@@ -96,12 +98,12 @@ pub unsafe extern "C" fn feti_body_stiffness_i64(
     unsafe { matrix.give(p, call, body, None) }
 }
 
-/// Gives the stiffness matrix K of a body by rows with a diagonal of its own, with 32-bit indices.
+/// Gives the stiffness matrix K of a body by rows with a separate diagonal, with 32-bit indices.
 ///
-/// For codes that keep the diagonal apart. The matrix is copied; calling again replaces pattern and values. Columns of
-/// a row may come in any order, none twice. With FETI_FULL K must be symmetric within option symmetry_tolerance and is
-/// averaged. FETI_INDEFINITE with the unknown of a diagonal entry that is negative, or 0 beside others in its row.
-/// After a failure the body keeps the matrix it had.
+/// For codes that store the diagonal in a separate array. The library copies the matrix; another call replaces pattern
+/// and values. The columns of a row may come in any order, but none twice. With FETI_FULL, K must be symmetric within
+/// option symmetry_tolerance; the library averages K_ij and K_ji. FETI_INDEFINITE if a diagonal entry is negative, or is
+/// 0 in a row with other entries; the error detail names the unknown. After a failure the body keeps its previous matrix.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|
@@ -110,11 +112,11 @@ pub unsafe extern "C" fn feti_body_stiffness_i64(
 /// | `n` | in | scalar | unknowns of the body |
 /// | `diag` | in | n | K_ii, force per length |
 /// | `row_ptr` | in | n + 1 | row i holds the entries `row_ptr[i]` to `row_ptr[i + 1] - 1`; starts with `base` |
-/// | `col` | in | `row_ptr[n] - base` | columns, counted from `base`, none that of its row |
-/// | `val` | in | `row_ptr[n] - base` | entries of K beside the diagonal, force per length |
+/// | `col` | in | `row_ptr[n] - base` | columns, counted from `base`; never the diagonal entry |
+/// | `val` | in | `row_ptr[n] - base` | off-diagonal entries of K, force per length |
 /// | `base` | in | scalar | 0 or 1: what `row_ptr` and `col` count from |
 /// | `storage` | in | scalar | FETI_FULL, FETI_LOWER or FETI_UPPER |
-/// | `flags` | in | scalar | FETI_COPY, or FETI_BORROW, which copies as well: no matrix is kept in this form |
+/// | `flags` | in | scalar | FETI_COPY, or FETI_BORROW, which also copies: the library cannot use a matrix in this form directly |
 ///
 /// # Safety
 /// The arrays have the given shapes.
@@ -138,12 +140,12 @@ pub unsafe extern "C" fn feti_body_stiffness_split_i32(
     unsafe { matrix.give(p, call, body, Some(diag)) }
 }
 
-/// Gives the stiffness matrix K of a body by rows with a diagonal of its own, with 64-bit indices.
+/// Gives the stiffness matrix K of a body by rows with a separate diagonal, with 64-bit indices.
 ///
-/// For codes that keep the diagonal apart. The matrix is copied; calling again replaces pattern and values. Columns of
-/// a row may come in any order, none twice. With FETI_FULL K must be symmetric within option symmetry_tolerance and is
-/// averaged. FETI_INDEFINITE with the unknown of a diagonal entry that is negative, or 0 beside others in its row.
-/// After a failure the body keeps the matrix it had.
+/// For codes that store the diagonal in a separate array. The library copies the matrix; another call replaces pattern
+/// and values. The columns of a row may come in any order, but none twice. With FETI_FULL, K must be symmetric within
+/// option symmetry_tolerance; the library averages K_ij and K_ji. FETI_INDEFINITE if a diagonal entry is negative, or is
+/// 0 in a row with other entries; the error detail names the unknown. After a failure the body keeps its previous matrix.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|
@@ -152,11 +154,11 @@ pub unsafe extern "C" fn feti_body_stiffness_split_i32(
 /// | `n` | in | scalar | unknowns of the body |
 /// | `diag` | in | n | K_ii, force per length |
 /// | `row_ptr` | in | n + 1 | row i holds the entries `row_ptr[i]` to `row_ptr[i + 1] - 1`; starts with `base` |
-/// | `col` | in | `row_ptr[n] - base` | columns, counted from `base`, none that of its row |
-/// | `val` | in | `row_ptr[n] - base` | entries of K beside the diagonal, force per length |
+/// | `col` | in | `row_ptr[n] - base` | columns, counted from `base`; never the diagonal entry |
+/// | `val` | in | `row_ptr[n] - base` | off-diagonal entries of K, force per length |
 /// | `base` | in | scalar | 0 or 1: what `row_ptr` and `col` count from |
 /// | `storage` | in | scalar | FETI_FULL, FETI_LOWER or FETI_UPPER |
-/// | `flags` | in | scalar | FETI_COPY, or FETI_BORROW, which copies as well: no matrix is kept in this form |
+/// | `flags` | in | scalar | FETI_COPY, or FETI_BORROW, which also copies: the library cannot use a matrix in this form directly |
 ///
 /// # Safety
 /// The arrays have the given shapes.
@@ -245,9 +247,9 @@ impl<I: Index> SparseMatrix<I> {
 
 /// Gives the stiffness matrix K of a body as a dense matrix, for boundary elements and condensed bodies.
 ///
-/// The matrix is copied; calling again replaces it. With FETI_LOWER and FETI_UPPER the other triangle is not read.
-/// FETI_INDEFINITE with the unknown of a diagonal entry that is negative, or 0 beside others in its row. After a
-/// failure the body keeps the matrix it had.
+/// The library copies the matrix; another call replaces it. With FETI_LOWER and FETI_UPPER the other triangle is not
+/// read. FETI_INDEFINITE if a diagonal entry is negative, or is 0 in a row with other entries; the error detail names the
+/// unknown. After a failure the body keeps its previous matrix.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|

@@ -4,22 +4,23 @@ use crate::ffi::bodies::body::body_of_order;
 use crate::ffi::boundary::{borrowed, call, column_major, enter, id, input, same};
 use crate::ffi::header::types::feti_problem;
 
-/// Gives new values of a stiffness matrix on the pattern it was given with by feti_body_stiffness_i32 or _i64.
+/// Gives new values for a stiffness matrix whose pattern was given by feti_body_stiffness_i32 or _i64.
 ///
-/// The values are copied and checked as the first were. The symbolic analysis is kept, and the next setup costs a
-/// numeric factorisation of this body; values that are bit by bit those of before cost nothing. Storage is that of the
-/// first call. FETI_STATE where the matrix has not been given, or in another form. FETI_INDEFINITE with the unknown of
-/// a diagonal entry that is negative, or 0 beside others in its row. After a failure the body keeps the values it had.
+/// The values are copied and checked like the first ones. The library keeps the symbolic analysis, so the next setup
+/// costs only a numeric factorisation of this body; bit-identical values cost nothing. The storage is the one of the
+/// first call. FETI_STATE if the matrix has not been given, or was given in another form. FETI_INDEFINITE if a diagonal
+/// entry is negative, or is 0 in a row with other entries; the error detail names the unknown. After a failure the body
+/// keeps its previous values.
 ///
-/// Where the values are borrowed (FETI_BORROW) they are not copied: `val` is the array that was borrowed, rewritten by the
-/// host, or another one in its place. They count as changed, also for other bodies that borrow the same array. After a failure
-/// with the same array the body is without a matrix until it gets other values.
+/// Borrowed values (FETI_BORROW) are not copied: `val` is either the borrowed array, which the host has rewritten, or
+/// another array that replaces it. The values count as changed, also for other bodies that borrow the same array. After a
+/// failure with the same array the body has no matrix until it gets other values.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|
 /// | `p` | in | scalar | the handle |
 /// | `body` | in | scalar | number of the body, from 0 |
-/// | `nnz` | in | scalar | number of values, that of the first call |
+/// | `nnz` | in | scalar | number of values, as in the first call |
 /// | `val` | in | nnz | entries of K in the order of the first call, force per length |
 ///
 /// # Safety
@@ -39,11 +40,11 @@ pub unsafe extern "C" fn feti_body_values(p: *mut feti_problem, body: i64, nnz: 
     })
 }
 
-/// Gives new values of a stiffness matrix that was given by feti_body_stiffness_split_i32 or _i64.
+/// Gives new values for a stiffness matrix that was given by feti_body_stiffness_split_i32 or _i64.
 ///
-/// As feti_body_values, for a matrix with a diagonal of its own. FETI_STATE where the matrix has not been given, or in
-/// another form. FETI_INDEFINITE with the unknown of a diagonal entry that is negative, or 0 beside others in its row.
-/// After a failure the body keeps the values it had.
+/// The call works like feti_body_values, for a matrix with a separate diagonal. FETI_STATE if the matrix has not been
+/// given, or was given in another form. FETI_INDEFINITE if a diagonal entry is negative, or is 0 in a row with other
+/// entries; the error detail names the unknown. After a failure the body keeps its previous values.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|
@@ -51,8 +52,8 @@ pub unsafe extern "C" fn feti_body_values(p: *mut feti_problem, body: i64, nnz: 
 /// | `body` | in | scalar | number of the body, from 0 |
 /// | `n` | in | scalar | unknowns of the body |
 /// | `diag` | in | n | K_ii, force per length |
-/// | `nnz` | in | scalar | number of values beside the diagonal, that of the first call |
-/// | `val` | in | nnz | entries of K beside the diagonal in the order of the first call, force per length |
+/// | `nnz` | in | scalar | number of off-diagonal values, as in the first call |
+/// | `val` | in | nnz | off-diagonal entries of K in the order of the first call, force per length |
 ///
 /// # Safety
 /// The arrays have the given shapes.
@@ -74,11 +75,12 @@ pub unsafe extern "C" fn feti_body_values_split(
     })
 }
 
-/// Gives new values of a dense stiffness matrix.
+/// Gives new values for a dense stiffness matrix.
 ///
-/// The matrix is copied and checked as the first was, in the same storage. Where zeros stay zeros the symbolic analysis
-/// is kept. FETI_STATE where the matrix has not been given, or in another form. FETI_INDEFINITE with the unknown of a
-/// diagonal entry that is negative, or 0 beside others in its row. After a failure the body keeps the matrix it had.
+/// The matrix is copied and checked like the first one, in the same storage. If all zeros stay zero, the library keeps
+/// the symbolic analysis. FETI_STATE if the matrix has not been given, or was given in another form. FETI_INDEFINITE if a
+/// diagonal entry is negative, or is 0 in a row with other entries; the error detail names the unknown. After a failure
+/// the body keeps its previous matrix.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|

@@ -246,7 +246,8 @@ pub fn check_text_room(buf: *const c_char, cap: i64) -> Result<()> {
 pub unsafe fn copy_text(text: &str, buf: *mut c_char, cap: i64) -> i64 {
     let room = usize::try_from(cap).unwrap_or(0);
     if !buf.is_null() && room > 0 {
-        let len = text.floor_char_boundary(room - 1);
+        let fits = |len: &usize| text.is_char_boundary(*len);
+        let len = (0..=text.len().min(room - 1)).rev().find(fits).unwrap_or(0);
         // SAFETY: len < cap characters and the NUL fit.
         unsafe {
             std::ptr::copy_nonoverlapping(text.as_ptr(), buf.cast(), len);

@@ -74,10 +74,10 @@ fn detail(record: Option<&Record>) -> feti_error_detail {
     }
 }
 
-/// Text of the calling thread's last error.
+/// Text of the last error in the calling thread.
 ///
-/// The text is cut to fit, always NUL terminated when `cap` > 0. Returns the full length without the NUL, 0 when there
-/// was no error; a successful call does not clear the text. Never fails.
+/// The text is truncated to fit, and always NUL terminated if `cap` > 0. Returns the full length without the NUL, or 0 if
+/// no error has occurred; a successful call does not clear the text. Never fails.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|
@@ -97,16 +97,17 @@ pub unsafe extern "C" fn feti_last_error(buf: *mut c_char, cap: i64) -> i64 {
     LAST.try_with(read).unwrap_or(0)
 }
 
-/// Facts of the calling thread's last error: function, argument, place, value and limit.
+/// Details of the last error in the calling thread: function, argument, place, value and limit.
 ///
-/// `struct_size` is set by the caller; no more than that is written. A refusal of `out` leaves the last error as it is.
+/// The caller sets `struct_size`; the library writes no more bytes than that. A refusal of `out` leaves the last error
+/// unchanged.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|
 /// | `out` | in/out | scalar | `struct_size` set, at least 16 |
 ///
 /// # Safety
-/// `out` leads to `struct_size` writable bytes.
+/// `out` points to `struct_size` writable bytes.
 #[no_mangle]
 pub unsafe extern "C" fn feti_last_error_detail(out: *mut feti_error_detail) -> i32 {
     // SAFETY: the caller gives `struct_size` bytes.

@@ -7,7 +7,8 @@ pub const FETI_EQUALITY: i32 = 2;
 /// Kind of rows: tangential rows of nodes with friction (feti_friction_add_i32, feti_friction_add_i64).
 pub const FETI_TANGENTIAL: i32 = 3;
 
-/// In place of a body: all bodies, by the host's numbers of feti_body_numbering_i32 or _i64 where they have some.
+/// In place of a body number: all bodies. If they have numbers of the host (feti_body_numbering_i32 or _i64), arrays use
+/// these numbers.
 pub const FETI_ALL: i64 = -1;
 
 /// Storage: every entry of the symmetric matrix is given.
@@ -19,55 +20,56 @@ pub const FETI_UPPER: i32 = 2;
 
 /// Null-space flag: the columns span the null space.
 pub const FETI_EXACT: i32 = 0;
-/// Null-space flag: the null space lies in the span of the columns; the library selects.
+/// Null-space flag: the null space lies in the span of the columns, and the library selects it from there.
 pub const FETI_CANDIDATES: i32 = 1;
-/// Null-space flag: motions that K resists softly, if at all; what they are and what resists them is computed from K.
+/// Null-space flag: motions that K resists weakly or not at all; the library computes the exact motions and their
+/// stiffness from K.
 pub const FETI_SOFT: i32 = 2;
 
 /// Stiffness flag: the matrix is copied.
 pub const FETI_COPY: i32 = 0;
-/// Stiffness flag: the values, and columns in 32 bits from 0, stay where the host has them, where their form allows it.
+/// Stiffness flag: keep using the caller's arrays (values, and 32-bit 0-based columns) if the layout permits.
 pub const FETI_BORROW: i32 = 1;
 
-/// Null space of a body: vectors of the host that span it (FETI_EXACT), or soft motions (FETI_SOFT).
+/// Source of a null space: vectors of the host that span it (FETI_EXACT), or soft motions (FETI_SOFT).
 pub const FETI_ORIGIN_EXACT: i32 = 1;
-/// Null space of a body: sought among vectors of the host (FETI_CANDIDATES).
+/// Source of a null space: selected from vectors of the host (FETI_CANDIDATES).
 pub const FETI_ORIGIN_CANDIDATES: i32 = 2;
-/// Null space of a body: sought among rigid motions, from coordinates.
+/// Source of a null space: selected from the rigid body motions that the coordinates give.
 pub const FETI_ORIGIN_COORDINATES: i32 = 3;
-/// Null space of a body: found from K alone.
+/// Source of a null space: computed from K alone.
 pub const FETI_ORIGIN_FOUND: i32 = 4;
 
-/// State of a row: open, its force is zero.
+/// State of a row: open; its force is zero.
 pub const FETI_ROW_OPEN: i32 = 0;
-/// State of a row: closed, it carries a force.
+/// State of a row: closed; it carries a force.
 pub const FETI_ROW_CLOSED: i32 = 1;
-/// State of a row: closed with a force that is zero to rounding, or with a force without a clear sign.
+/// State of a row: closed, with a force that is zero within rounding error or has no clear sign.
 pub const FETI_ROW_WEAK: i32 = 2;
-/// State of a row: unknown, the bodies it touches are in a group that has no answer.
+/// State of a row: unknown, because the bodies that it touches are in a group without an answer.
 pub const FETI_ROW_UNKNOWN: i32 = 3;
 
-/// State of a node with friction: its bound is zero, it carries no tangential force.
+/// State of a node with friction: open; the bound is zero and the node carries no tangential force.
 pub const FETI_FRICTION_OPEN: i32 = 0;
-/// State of a node with friction: it sticks, its force is within its bound.
+/// State of a node with friction: it sticks; its force is within the bound.
 pub const FETI_FRICTION_STICK: i32 = 1;
-/// State of a node with friction: it slips along a force that reaches its bound.
+/// State of a node with friction: it slips in the direction of its force, which reaches the bound.
 pub const FETI_FRICTION_SLIP: i32 = 2;
-/// State of a node with friction: its force reaches its bound to rounding, and it does not slip.
+/// State of a node with friction: its force equals the bound within rounding error, and the node does not slip.
 pub const FETI_FRICTION_WEAK: i32 = 3;
-/// State of a node with friction: unknown, the bodies it touches are in a group that has no answer.
+/// State of a node with friction: unknown, because the bodies that it touches are in a group without an answer.
 pub const FETI_FRICTION_UNKNOWN: i32 = 4;
 
-/// Phase of a call that feti_on_progress tells of: a part of the setup is done.
+/// Phase that feti_on_progress reports: a part of the setup is done.
 pub const FETI_PHASE_SETUP: i32 = 1;
-/// Phase of a call that feti_on_progress tells of: a step of the dual method is done.
+/// Phase that feti_on_progress reports: a step of the dual method is done.
 pub const FETI_PHASE_SOLVE: i32 = 2;
 
 /// Kind of a step: conjugate gradients on the face.
 pub const FETI_STEP_CONJUGATE_GRADIENT: i32 = 1;
-/// Kind of a step: rows lost their force.
+/// Kind of a step: rows lost their force (expansion of the face).
 pub const FETI_STEP_EXPANSION: i32 = 2;
-/// Kind of a step: rows got a force.
+/// Kind of a step: rows gained a force (release from the face).
 pub const FETI_STEP_RELEASE: i32 = 3;
 /// Kind of a step: a direction of the Newton method for friction.
 pub const FETI_STEP_NEWTON: i32 = 4;
@@ -76,7 +78,7 @@ pub const FETI_STEP_NEWTON: i32 = 4;
 pub const FETI_LOG_NONE: i32 = 0;
 /// Level of a log: one line for each solve, and warnings.
 pub const FETI_LOG_RESULT: i32 = 1;
-/// Level of a log: also what is solved and how, and a line for each phase.
+/// Level of a log: also the problem and the method, and a line for each phase.
 pub const FETI_LOG_PHASE: i32 = 2;
 /// Level of a log: also a line for each step.
 pub const FETI_LOG_STEP: i32 = 3;

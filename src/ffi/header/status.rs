@@ -11,7 +11,7 @@ pub const FETI_OK: i32 = 0;
 pub const FETI_ITERATIONS: i32 = 1;
 /// The time limit was reached; the results are those of the last step.
 pub const FETI_TIME: i32 = 2;
-/// The host cancelled; the results are those of the last step, and none before the first.
+/// The host cancelled; the results are those of the last step, or none if there was no step yet.
 pub const FETI_CANCELLED: i32 = 3;
 /// Steps no longer reduce the error; the results are those of the last step.
 pub const FETI_STALLED: i32 = 4;
@@ -21,34 +21,35 @@ pub const FETI_INACCURATE: i32 = 5;
 pub const FETI_MARGINAL: i32 = 6;
 /// Memory could not be reserved, or option memory_limit would be exceeded.
 pub const FETI_MEMORY: i32 = -1;
-/// The handle is NULL, destroyed, or none of the library.
+/// The handle is NULL, was destroyed, or does not come from this library.
 pub const FETI_HANDLE: i32 = -2;
 /// Another call on this problem is running.
 pub const FETI_BUSY: i32 = -3;
 /// A function of the host reported a failure.
 pub const FETI_CALLBACK: i32 = -4;
-/// Something this call needs has not been given yet.
+/// Something that this call needs has not been given yet.
 pub const FETI_STATE: i32 = -5;
 /// No contact force can balance the load.
 pub const FETI_LOAD_NOT_HELD: i32 = -6;
 /// Rows contradict each other.
 pub const FETI_GAPS_CONTRADICT: i32 = -7;
-/// The null space of a body is not what was claimed, or was not found.
+/// The null space of a body is not the one that was given, or was not found.
 pub const FETI_NULL_SPACE: i32 = -8;
-/// A stiffness matrix has a negative or a vanishing pivot outside its null space, or drives a soft motion further than the contact
-/// resists it.
+/// A stiffness matrix has a negative or vanishing pivot outside its null space, or drives a soft motion that the contact
+/// does not stop.
 pub const FETI_INDEFINITE: i32 = -9;
 /// A file could not be read or written.
 pub const FETI_IO: i32 = -10;
-/// The library contradicts itself; only destroy and the error functions accept the problem afterwards.
+/// An internal error of the library; afterwards only feti_problem_destroy and the error functions accept the problem.
 pub const FETI_INTERNAL: i32 = -11;
 /// The request is valid but not available.
 pub const FETI_UNSUPPORTED: i32 = -12;
-/// A number, or a product of numbers that were given, does not fit its type.
+/// A given number, or a product of given numbers, does not fit its type.
 pub const FETI_OVERFLOW: i32 = -13;
-/// Bodies slide steadily: friction holds only a part of the load, and no rest was found.
+/// Bodies slide steadily: friction holds only a part of the load, and no equilibrium was found.
 pub const FETI_SLIDES: i32 = -14;
-/// Argument k refused is FETI_ARGUMENT - k, k from 1 with the handle as 1; FETI_ARGUMENT itself: data of an earlier call.
+/// FETI_ARGUMENT - k: argument k was refused, where the handle is argument 1. FETI_ARGUMENT itself: data of an earlier
+/// call was refused.
 pub const FETI_ARGUMENT: i32 = -100;
 
 /// Largest k of a status FETI_ARGUMENT - k.
@@ -129,8 +130,8 @@ pub(in crate::ffi) fn describe(status: i32) -> (&'static CStr, &'static CStr) {
 
 /// Name of a status, such as "FETI_LOAD_NOT_HELD".
 ///
-/// "FETI_ARGUMENT" for every refused argument, "FETI_UNKNOWN" for a number that is no status. The text is static. Never
-/// fails.
+/// The name is "FETI_ARGUMENT" for every refused argument and "FETI_UNKNOWN" for a number that is not a status. The text
+/// is static. Never fails.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|
@@ -140,7 +141,7 @@ pub extern "C" fn feti_status_name(status: i32) -> *const c_char {
     describe(status).0.as_ptr()
 }
 
-/// One English sentence on a status.
+/// One English sentence that explains a status.
 ///
 /// The text is static. Never fails.
 ///
@@ -152,7 +153,7 @@ pub extern "C" fn feti_status_text(status: i32) -> *const c_char {
     describe(status).1.as_ptr()
 }
 
-/// Version of the library that runs, "MAJOR.MINOR.PATCH".
+/// Version of the loaded library, "MAJOR.MINOR.PATCH".
 ///
 /// The text is static. Never fails.
 #[no_mangle]
@@ -160,7 +161,7 @@ pub extern "C" fn feti_version() -> *const c_char {
     concat!(env!("CARGO_PKG_VERSION"), "\0").as_ptr().cast()
 }
 
-/// Version of the library that runs as one number, 10000 MAJOR + 100 MINOR + PATCH.
+/// Version of the loaded library as one number, 10000 MAJOR + 100 MINOR + PATCH.
 ///
 /// Never fails.
 #[no_mangle]

@@ -18,29 +18,29 @@ pub struct feti_problem {
 pub struct feti_error_detail {
     /// Set by the caller: size of the struct in bytes.
     pub struct_size: i64,
-    /// Status the function returned; 0: there was no error yet.
+    /// Status that the function returned; 0: no error has occurred yet.
     pub status: i32,
-    /// Position of the refused argument, from 1 with the handle as 1; 0: none.
+    /// Position of the refused argument, where the handle is argument 1; 0: none.
     pub argument: i32,
-    /// Body, -1: does not apply.
+    /// Body; -1: does not apply.
     pub body: i64,
-    /// Connected part of the body, -1: does not apply.
+    /// Connected part of the body; -1: does not apply.
     pub component: i64,
-    /// Degree of freedom of the body, -1: does not apply.
+    /// Unknown of the body; -1: does not apply.
     pub dof: i64,
-    /// Row of the matrix or of the constraints, -1: does not apply.
+    /// Row of the matrix or of the constraints; -1: does not apply.
     pub row: i64,
-    /// Position in the array; byte of a text or a file; -1: does not apply.
+    /// Position in the array, or of the byte in a text or a file; -1: does not apply.
     pub entry: i64,
-    /// The number found; an index as the host gave it, in the numbers of its call. NaN: does not apply.
+    /// The number that was found; an index is as the host gave it, in the base of the call; NaN: does not apply.
     pub value: f64,
-    /// The number it had to stay within; NaN: does not apply.
+    /// The limit for this number; NaN: does not apply.
     pub limit: f64,
     /// Name of the function that failed, NUL terminated.
     pub function: [c_char; 40],
-    /// Element of the body, -1: does not apply.
+    /// Element of the body; -1: does not apply.
     pub element: i64,
-    /// Node with friction, -1: does not apply.
+    /// Node with friction; -1: does not apply.
     pub node: i64,
 }
 
@@ -70,14 +70,15 @@ pub struct feti_option {
     pub default_str: *const c_char,
 }
 
-/// How a solve went. Counts of a call that failed early are zero, figures NaN. Where some groups of bodies have an answer
-/// and others have none, counts of work, energy and figures are those of the groups that have one.
+/// Report of a solve. If the call failed early, counts are zero and measured figures are NaN. If some groups of bodies
+/// have an answer and others have none, the counts of work, the energy and the figures cover only the groups with an
+/// answer.
 #[repr(C)]
 #[derive(Debug, Clone, Copy)]
 pub struct feti_info {
     /// Set by the caller: size of the struct in bytes.
     pub struct_size: i64,
-    /// What feti_solve returned: the worst of all groups of bodies.
+    /// What feti_solve returned: the worst status of all groups of bodies.
     pub status: i32,
     /// Zero.
     pub reserved: i32,
@@ -93,13 +94,13 @@ pub struct feti_info {
     pub floating_modes: i64,
     /// Inequality rows that are closed in the answer.
     pub active: i64,
-    /// Motions that neither loads nor rows determine: the answer has the least sum of `K_ii u_i^2`.
+    /// Number of motions that neither loads nor rows determine; the answer is the one with the least sum of `K_ii u_i^2`.
     pub undetermined: i64,
     /// Steps of the active-set method.
     pub steps: i64,
     /// Steps of conjugate gradients on a face.
     pub cg_steps: i64,
-    /// Steps that met a bound.
+    /// Steps that reached a bound.
     pub expansions: i64,
     /// Steps that left a face.
     pub releases: i64,
@@ -107,55 +108,57 @@ pub struct feti_info {
     pub dual_applications: i64,
     /// Solutions of the coarse problem.
     pub coarse_solves: i64,
-    /// Numeric factorisations for K+ since the problem was created; equal bodies share one.
+    /// Numeric factorisations for K+ since the problem was created; equal bodies share a factorisation.
     pub factorisations: i64,
-    /// Symbolic analyses since the problem was created; bodies with one pattern share one.
+    /// Symbolic analyses since the problem was created; bodies with the same pattern share an analysis.
     pub analyses: i64,
-    /// Largest entry of the certificate over what it is allowed, over all bodies and rows that have an answer: <= 1 passes.
+    /// Largest ratio of an entry of the certificate to its limit, over all bodies and rows with an answer; <= 1 passes.
     pub worst: f64,
-    /// Relative error of equilibrium, as in feti_certificate: of the worst body.
+    /// Relative error of equilibrium of the worst body, as in feti_certificate.
     pub equilibrium: f64,
-    /// Relative error of the balance, of the worst floating body.
+    /// Relative error of the balance of forces on the worst floating body.
     pub balance: f64,
-    /// Relative penetration, of the worst row.
+    /// Relative penetration of the worst row.
     pub penetration: f64,
     /// Relative error of the worst equality row.
     pub equality: f64,
-    /// Relative size of a force of the wrong sign, of the worst row.
+    /// Relative size of a force with the wrong sign, for the worst row.
     pub negative_force: f64,
-    /// Relative error of complementarity, of the worst row.
+    /// Relative error of complementarity of the worst row.
     pub complementarity: f64,
-    /// Relative gap between primal and dual energy, of the worst group of bodies.
+    /// Relative gap between primal and dual energy of the worst group of bodies.
     pub duality_gap: f64,
-    /// Energy 1/2 u'Ku - f'u and that of the springs of compliant rows, 1/2 lambda'C lambda + 1/2 mu'C mu, force times
-    /// length.
+    /// Energy of the bodies, 1/2 u'Ku - f'u, plus energy of the springs of compliant rows, 1/2 lambda'C lambda + 1/2 mu'C
+    /// mu; force times length.
     pub energy: f64,
     /// Seconds for null spaces and factors.
     pub seconds_setup: f64,
     /// Seconds for the rest.
     pub seconds_solve: f64,
-    /// Faces on which the dual was solved directly.
+    /// Number of faces on which the dual problem was solved directly.
     pub direct_solves: i64,
-    /// 1: the answer was finished directly (option finish); 0: that was not asked for or not needed, or brought nothing.
+    /// 1: a direct solve finished the answer (option finish); 0: a direct solve was not requested, not needed, or brought
+    /// no improvement.
     pub finished: i64,
-    /// Columns of the dual operators of the bodies, one for each body that a row touches, computed since the problem was
-    /// created.
+    /// Columns of the dual operators of the bodies (one column for each body that a row touches) computed since the
+    /// problem was created.
     pub columns_computed: i64,
-    /// Columns kept through a change of rows or bodies since the problem was created.
+    /// Columns that were reused after a change of rows or bodies since the problem was created.
     pub columns_kept: i64,
-    /// Bodies whose dual operator has its entries (option dual_operator).
+    /// Bodies whose dual operator is assembled (option dual_operator).
     pub explicit_operators: i64,
-    /// Bodies whose dual operator is known by its products alone.
+    /// Bodies whose dual operator is applied matrix-free.
     pub implicit_operators: i64,
-    /// Bytes of the factors of all bodies and, at most, of the work arrays of their computation.
+    /// Bytes of the factors of all bodies plus an upper bound for the work arrays of their computation.
     pub factor_bytes: i64,
-    /// Bytes of the explicit dual operators.
+    /// Bytes of the assembled dual operators.
     pub operator_bytes: i64,
-    /// Relative size of a tangential force beyond its bound, of the worst node with friction.
+    /// Relative excess of a tangential force over its bound, for the worst node with friction.
     pub friction_cone: f64,
-    /// Relative work that friction does not do: force that is missing or across where a node slips, of the worst node.
+    /// Relative deficit of frictional work: where a node slips, its force is too small or has another direction than the
+    /// slip; for the worst node.
     pub friction_work: f64,
-    /// Relative slip where the force is within its bound, of the worst node.
+    /// Relative slip although the force is within its bound, for the worst node.
     pub friction_stick: f64,
     /// Nodes with friction.
     pub nodes: i64,
@@ -165,11 +168,11 @@ pub struct feti_info {
     pub slipping: i64,
     /// Newton steps of friction.
     pub friction_steps: i64,
-    /// Starts that they took, over all groups of bodies with friction.
+    /// Number of starts of the Newton method of friction, over all groups of bodies with friction.
     pub friction_starts: i64,
 }
 
-/// A body as it is given, and what the last setup has made of it; what is not there yet is -1 or NaN.
+/// Facts on the input of a body and on the results of its last setup; facts that are not known yet are -1 or NaN.
 #[repr(C)]
 #[derive(Debug, Clone, Copy)]
 pub struct feti_body_facts {
@@ -177,43 +180,44 @@ pub struct feti_body_facts {
     pub struct_size: i64,
     /// Unknowns.
     pub unknowns: i64,
-    /// Entries of K as the host gave them, a diagonal of its own counted; dense: all of the storage.
+    /// Entries of K as the host gave them, including a separate diagonal; for a dense matrix all entries of the storage.
     pub entries: i64,
     /// Connected parts of K.
     pub components: i64,
     /// Bytes that the library keeps for K.
     pub matrix_bytes: i64,
-    /// Arrays of K that stay with the host (FETI_BORROW): 0 none, 1 values, 2 values and columns.
+    /// Arrays of K that are borrowed from the host (FETI_BORROW): 0 none, 1 values, 2 values and columns.
     pub borrowed: i64,
-    /// What the null space comes from: FETI_ORIGIN_EXACT, _CANDIDATES, _COORDINATES or _FOUND.
+    /// Source of the null space: FETI_ORIGIN_EXACT, _CANDIDATES, _COORDINATES or _FOUND.
     pub origin: i64,
     /// Dimension of the null space.
     pub null_space: i64,
     /// Entries of the factor.
     pub factor_entries: i64,
-    /// Bytes of the factor and, at most, of the work arrays of its computation.
+    /// Bytes of the factor plus an upper bound for the work arrays of its computation.
     pub factor_bytes: i64,
-    /// The first other body that shares the factor, from 0, -1: none.
+    /// The first other body that shares the factor, from 0; -1: none.
     pub shared_with: i64,
-    /// 1: the dual operator has its entries, 0: it is known by its products.
+    /// 1: the dual operator is assembled; 0: it is applied matrix-free.
     pub explicit_operator: i64,
-    /// Bytes of the explicit dual operator.
+    /// Bytes of the assembled dual operator.
     pub operator_bytes: i64,
-    /// Of a null space that was found: stiffness of the softest other motion over that of the stiffest in it; else NaN.
+    /// If the library found the null space: ratio of the stiffness of the softest motion outside it to the stiffness of
+    /// the stiffest motion in it; otherwise NaN.
     pub gap: f64,
-    /// Estimated relative error of the forces on the body in the last answer; NaN without one, also of its group of bodies
-    /// alone.
+    /// Estimated relative error of the forces on the body in the last answer; NaN if its group of bodies has no answer.
     pub force_error: f64,
-    /// Motions taken as free that K resists by no more than the rounding of its entries may make, -1 before a setup.
+    /// Number of motions treated as free although K resists them, by no more than rounding of its entries can cause; -1
+    /// before a setup.
     pub soft_free: i64,
-    /// Motions taken as supports though the rounding of the entries of K may be all that resists them: with a number above 0
-    /// give the null space, or K with more digits. -1 before a setup.
+    /// Number of motions treated as supported although perhaps only rounding of the entries of K resists them. If it is
+    /// above 0, give the null space, or K with more digits. -1 before a setup.
     pub soft_held: i64,
-    /// How much K resists these motions, largest v'K v over v'diag(K) v; NaN where there are none.
+    /// Stiffness of these motions: the largest v'K v over v'diag(K) v; NaN without such motions.
     pub softness: f64,
-    /// What the rounding of the entries may make of it; NaN where there are none.
+    /// The stiffness that rounding of the entries can cause; NaN without such motions.
     pub softness_of_rounding: f64,
-    /// Pieces that the body is cut into, once all its elements have been given; 1 for one that is not cut.
+    /// Number of pieces that the body is cut into, known when all elements have been given; 1 if the body is not cut.
     pub pieces: i64,
 }
 
@@ -223,16 +227,16 @@ pub struct feti_body_facts {
 pub struct feti_phase {
     /// Set by the caller: size of the struct in bytes.
     pub struct_size: i64,
-    /// Bytes of what the phase has made and keeps; 0: they are not counted.
+    /// Bytes of the data that the phase computed and keeps; 0: not counted.
     pub bytes: i64,
-    /// Wall time in the last call that set up or solved, seconds.
+    /// Wall time in the last setup or solve, seconds.
     pub seconds: f64,
     /// Name, static.
     pub name: *const c_char,
 }
 
-/// Verdict on an answer, by relative figures: each is `limit` times the ratio of what the worst body or row violates to what
-/// it is allowed, rounding included, and passes when it is at most `limit`.
+/// Verdict on an answer, by relative figures. Each figure is `limit` times the ratio of the violation at the worst body
+/// or row to the allowed violation, which includes rounding; a figure passes if it is at most `limit`.
 #[repr(C)]
 #[derive(Debug, Clone, Copy)]
 pub struct feti_certificate {
@@ -244,58 +248,60 @@ pub struct feti_certificate {
     pub reserved: i32,
     /// Option certificate_tolerance.
     pub limit: f64,
-    /// Largest entry over what it is allowed: <= 1 passes.
+    /// Largest ratio of a figure to its limit; <= 1 passes.
     pub worst: f64,
-    /// Relative error of equilibrium `K u + B'lambda + H'mu + T'lambda_t = f`, worst body.
+    /// Relative error of equilibrium `K u + B'lambda + H'mu + T'lambda_t = f`, for the worst body.
     pub equilibrium: f64,
-    /// Relative error of the balance `R'(f - B'lambda - H'mu - T'lambda_t) = 0`, worst floating body.
+    /// Relative error of the balance `R'(f - B'lambda - H'mu - T'lambda_t) = 0`, for the worst floating body.
     pub balance: f64,
-    /// Relative penetration: positive part of `B u - c - C lambda`, C = diag(1/k) being the compliance of the rows, worst row.
+    /// Relative penetration: positive part of `B u - c - C lambda`, where C = diag(1/k) is the compliance of the rows;
+    /// for the worst row.
     pub penetration: f64,
-    /// Relative error of `H u = h + C mu`, worst row.
+    /// Relative error of `H u = h + C mu`, for the worst row.
     pub equality: f64,
-    /// Relative size of a negative contact force, worst row.
+    /// Relative size of a negative contact force, for the worst row.
     pub negative_force: f64,
-    /// Relative size of the force or of the open gap `c + C lambda - B u`, whichever is less, worst row.
+    /// Relative size of the force or of the open gap `c + C lambda - B u`, whichever is smaller; for the worst row.
     pub complementarity: f64,
-    /// Relative gap between primal and dual energy, worst group of bodies.
+    /// Relative gap between primal and dual energy, for the worst group of bodies.
     pub duality_gap: f64,
-    /// Body of the worst equilibrium, from 0, -1: none.
+    /// Body with the worst equilibrium, from 0; -1: none.
     pub equilibrium_body: i64,
-    /// Body of the worst balance, from 0, -1: none.
+    /// Body with the worst balance, from 0; -1: none.
     pub balance_body: i64,
-    /// Row with the worst penetration, from 0, -1: none.
+    /// Row with the worst penetration, from 0; -1: none.
     pub penetration_row: i64,
-    /// Equality row with the worst error, from 0, -1: none, or glue of unknowns with one number (option glue).
+    /// Equality row with the worst error, from 0; -1: none, or the worst error is in the glue of unknowns with the same
+    /// number (option glue).
     pub equality_row: i64,
-    /// Row with the worst negative force, from 0, -1: none.
+    /// Row with the worst negative force, from 0; -1: none.
     pub force_row: i64,
-    /// Row with the worst complementarity, from 0, -1: none.
+    /// Row with the worst complementarity, from 0; -1: none.
     pub complementarity_row: i64,
-    /// Relative size of a tangential force beyond its bound, `(|lambda_t| - b)_+` with b = bound + coefficient lambda_n, worst node
-    /// with friction.
+    /// Relative excess of a tangential force over its bound, `(|lambda_t| - b)_+` with b = bound + coefficient lambda_n,
+    /// for the worst node with friction.
     pub friction_cone: f64,
-    /// Relative size of `b |s| - lambda_t's`, the work that friction does not do: zero only with a stick inside the bound and a
-    /// slip s along the force; worst node.
+    /// Relative size of `b |s| - lambda_t's`, the deficit of frictional work, for the worst node. It is zero only if the
+    /// node sticks or slips in the direction of a force that reaches the bound.
     pub friction_work: f64,
-    /// Relative size of the slip where the force is within its bound, worst node.
+    /// Relative size of a slip although the force is within its bound, for the worst node.
     pub friction_stick: f64,
-    /// Node with the worst force beyond its bound, from 0, -1: none.
+    /// Node with the worst excess over its bound, from 0; -1: none.
     pub friction_cone_node: i64,
-    /// Node with the worst work, from 0, -1: none.
+    /// Node with the worst deficit of work, from 0; -1: none.
     pub friction_work_node: i64,
-    /// Node with the worst slip, from 0, -1: none.
+    /// Node with the worst slip, from 0; -1: none.
     pub friction_stick_node: i64,
 }
 
-/// Where a setup or a solve stands.
+/// Progress of a setup or a solve.
 #[repr(C)]
 #[derive(Debug, Clone, Copy)]
 pub struct feti_progress {
     /// Size of the struct in bytes, set by the library.
     pub struct_size: i64,
-    /// FETI_PHASE_SETUP (a body has been analysed or factorised, its dual operator or the preconditioner made, or half a
-    /// second has passed) or FETI_PHASE_SOLVE.
+    /// FETI_PHASE_SETUP (a body has been analysed or factorised, its dual operator or the preconditioner has been
+    /// computed, or half a second has passed) or FETI_PHASE_SOLVE.
     pub phase: i32,
     /// FETI_STEP_CONJUGATE_GRADIENT, FETI_STEP_EXPANSION, FETI_STEP_RELEASE or, with friction, FETI_STEP_NEWTON; 0 in the setup.
     pub step: i32,
@@ -303,56 +309,57 @@ pub struct feti_progress {
     pub steps: i64,
     /// Products with the dual operator F so far.
     pub products: i64,
-    /// Inequality rows with a force; parallel rows count once.
+    /// Inequality rows with a force; a set of parallel rows counts once.
     pub active: i64,
-    /// Norm of the projected gradient over the one that stops the solve; NaN in the setup, as all that follow.
+    /// Norm of the projected gradient divided by the norm at which the solve stops; NaN in the setup, like the next three
+    /// figures.
     pub residual: f64,
-    /// Its part on rows with a force, over the same.
+    /// Norm of its part on rows with a force, divided by the same norm.
     pub residual_free: f64,
-    /// Its part on rows without a force that want one, over the same.
+    /// Norm of its part on rows that have no force but need one, divided by the same norm.
     pub residual_chopped: f64,
-    /// Dual functional 1/2 lambda'F lambda - lambda'd, force times length: every step lowers it.
+    /// Dual functional 1/2 lambda'F lambda - lambda'd, force times length; every step lowers it.
     pub theta: f64,
     /// Seconds since the call began, also in the setup.
     pub seconds: f64,
-    /// Part of the work of the setup that is done, from 0 to 1: an estimate that never falls; NaN in the solve.
+    /// Estimated fraction of the setup that is done, from 0 to 1; it never decreases; NaN in the solve.
     pub fraction: f64,
 }
 
-/// A function of the host that hears of every body in every part of a setup and of every step of a solve.
+/// A function of the host that is called for every body in every part of a setup and for every step of a solve.
 ///
-/// It returns 0 to go on, a number > 0 to cancel, a number < 0 to report a failure of its own.
+/// It returns 0 to continue, a number > 0 to cancel, or a number < 0 to report a failure.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|
-/// | `user` | in | scalar | the host's own, as given to feti_on_progress; may be NULL |
+/// | `user` | in | scalar | the host's own data, as given to feti_on_progress; may be NULL |
 /// | `now` | in | scalar | valid during the call |
 pub type feti_progress_fn = Option<unsafe extern "C" fn(user: *mut c_void, now: *const feti_progress) -> i32>;
 
-/// A function of the host that gets a line of text.
+/// A function of the host that receives a line of text.
 ///
-/// It returns 0 to go on, any other number to report a failure of its own.
+/// It returns 0 to continue and any other number to report a failure.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|
-/// | `user` | in | scalar | the host's own, as given to feti_on_log; may be NULL |
+/// | `user` | in | scalar | the host's own data, as given to feti_on_log; may be NULL |
 /// | `level` | in | scalar | FETI_LOG_RESULT, FETI_LOG_PHASE or FETI_LOG_STEP |
-/// | `text` | in | text | one line in UTF-8 without its end, valid during the call |
+/// | `text` | in | text | one line in UTF-8 without a line end, valid during the call |
 pub type feti_log_fn =
     Option<unsafe extern "C" fn(user: *mut c_void, level: i32, text: *const c_char) -> i32>;
-/// A function of the host that multiplies by a matrix A it keeps: Y = A X.
+/// A function of the host that multiplies by a matrix A that the host keeps: Y = A X.
 ///
-/// It returns 0, or any other number for a failure of its own. X and Y never overlap.
+/// It returns 0 on success and any other number to report a failure. X and Y never overlap.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|
-/// | `user` | in | scalar | the host's own, as given to feti_body_operator; may be NULL |
+/// | `user` | in | scalar | the host's own data, as given to feti_body_operator; may be NULL |
 /// | `body` | in | scalar | number of the body, from 0 |
 /// | `n` | in | scalar | unknowns of the body |
 /// | `nrhs` | in | scalar | columns of X and Y, 1 to 32 |
 /// | `x` | in | ldx * nrhs | X, column-major, finite |
 /// | `ldx` | in | scalar | >= n |
-/// | `y` | out | ldy * nrhs | Y, column-major; holds zeros before |
+/// | `y` | out | ldy * nrhs | Y, column-major; contains zeros on entry |
 /// | `ldy` | in | scalar | >= n |
 pub type feti_operator_fn = Option<
     unsafe extern "C" fn(

@@ -44,6 +44,7 @@ impl<T: Entry> Cholesky<T> {
 
 /// Asks the memory for the lines of so many entries, of the next columns: these are too short to be foreseen by the processor.
 #[inline(always)]
+#[cfg_attr(not(target_arch = "x86_64"), allow(unused_variables))]
 fn ask_for<T>(entries: *const T) {
     #[cfg(target_arch = "x86_64")]
     for line in 0..AHEAD * size_of::<T>() / 64 {
@@ -87,7 +88,7 @@ fn by_vectors<T: Entry, S: Step>(panel: &[T], width: usize, x: &mut [f64]) {
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2")]
-fn by_avx2<T: Entry, S: Step>(panel: &[T], width: usize, x: &mut [f64]) {
+unsafe fn by_avx2<T: Entry, S: Step>(panel: &[T], width: usize, x: &mut [f64]) {
     S::take(panel, width, x);
 }
 
@@ -134,7 +135,7 @@ fn substitute<T: Entry>(panel: &[T], width: usize, x: &mut [f64]) {
     let height = x.len();
     let mut end = width;
     while end > 0 {
-        let count = if end.is_multiple_of(COLUMNS) { COLUMNS } else { end % COLUMNS };
+        let count = if end % COLUMNS == 0 { COLUMNS } else { end % COLUMNS };
         let j = end - count;
         let columns = &panel[j * height..end * height];
         let (own, below) = x.split_at_mut(end);

@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use crate::error::Result;
 use crate::linalg::twofold::Twofold;
+use crate::linalg::vector::{as_arrays, as_arrays_mut};
 use crate::linalg::{Array, Matrix, Operator};
 use crate::platform::memory::{copied, reserved};
 
@@ -119,7 +120,7 @@ impl Symmetric {
     fn accumulate_with_terms(&self, by: f64, x: &[f64], y: &mut [f64], terms: &mut [f64]) {
         y.fill(0.0);
         terms.fill(0.0);
-        self.accumulate_rows::<1>(by, x.as_chunks().0, y.as_chunks_mut().0, terms.as_chunks_mut().0);
+        self.accumulate_rows::<1>(by, as_arrays(x).0, as_arrays_mut(y).0, as_arrays_mut(terms).0);
     }
 
     /// The same for some columns at once, given and returned by rows; y and terms are zero. The same bits by the vector instructions that
@@ -141,7 +142,7 @@ impl Symmetric {
 
     #[cfg(target_arch = "x86_64")]
     #[target_feature(enable = "avx2")]
-    fn accumulate_rows_by_avx2<const N: usize>(
+    unsafe fn accumulate_rows_by_avx2<const N: usize>(
         &self,
         by: f64,
         x: &[[f64; N]],

@@ -204,7 +204,7 @@ fn counts(pieces: usize, lengths: &Point) -> Vec<usize> {
         let dimension = longer().count().max(1);
         length = (longer().product::<f64>() / pieces as f64).powf(1.0 / dimension as f64);
     }
-    let fits = |&slabs: &usize| pieces.is_multiple_of(slabs) && (slabs as f64) < 1.2 * lengths[0] / length;
+    let fits = |&slabs: &usize| pieces % slabs == 0 && (slabs as f64) < 1.2 * lengths[0] / length;
     let slabs = [2, 3, 5, 7].into_iter().find(fits);
     slabs.map_or_else(|| vec![pieces / 2, pieces - pieces / 2], |slabs| vec![pieces / slabs; slabs])
 }

@@ -51,7 +51,7 @@ pub fn library() -> u32 {
         + number(env!("CARGO_PKG_VERSION_PATCH"))
 }
 
-/// "feti-contact 0.1.0"
+/// "feti-contact 0.2.0"
 pub fn named(library: u32) -> String {
     format!("feti-contact {}.{}.{}", library / 10_000, library / 100 % 100, library % 100)
 }

@@ -15,8 +15,9 @@ use crate::qp::{AcceptanceTest, Counts, Verdict};
 const NEAR: f64 = 1e-7;
 /// Each time that the answer is not accepted the laws are to be met this much better, ...
 const TIGHTER: f64 = 0.1;
-/// ... so many times at most.
+/// ... so many times at most, and as often before as it takes from a looser tolerance to this one.
 const REFUSALS: usize = 3;
+const FINE: f64 = 1e-12;
 
 /// An answer of the laws of friction, or why there is none.
 pub fn friction(
@@ -93,7 +94,9 @@ impl<'a> Run<'a, '_> {
             return Ok(Verdict::Stalled);
         }
         let mut now = self.newton(laws, start.clone())?;
-        for _ in 0..=REFUSALS {
+        let looser = (limits.tolerance / FINE).log10().ceil().max(0.0);
+        let refusals = REFUSALS + looser as usize;
+        for refusal in 0..=refusals {
             // rounding may be all that is left
             let (near, met) = (now.merit <= NEAR * self.scale, self.is_met(&now));
             if near || met {
@@ -103,6 +106,9 @@ impl<'a> Run<'a, '_> {
                     return Ok(Verdict::Solved);
                 }
                 // g of steps that were far larger than what is left has their rounding, the last product has not
+                if met && refusal == refusals {
+                    break;
+                }
                 if met {
                     self.small *= TIGHTER;
                     now = self.newton(laws, answer)?;

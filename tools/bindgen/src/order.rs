@@ -21,7 +21,7 @@ macro_rules! section {
 
 #[rustfmt::skip]
 pub const SECTIONS: [Section; 20] = [
-    section!("Problem", "Begin and end a problem, to which all else belongs.", [
+    section!("Problem", "Create and destroy a problem, which owns all other data.", [
         feti_problem, feti_problem_create, feti_problem_destroy,
     ]),
     section!("Bodies", "Give each body its stiffness matrix and its load.", [
@@ -29,13 +29,13 @@ pub const SECTIONS: [Section; 20] = [
         feti_body_add, feti_body_stiffness_i32, feti_body_stiffness_i64, feti_body_stiffness_split_i32, feti_body_stiffness_split_i64,
         feti_body_stiffness_dense, feti_body_load, feti_body_numbering_i32, feti_body_numbering_i64,
     ]),
-    section!("Null spaces", "Say which motions a matrix does not resist; never said, the library finds them.", [
+    section!("Null spaces", "Give the motions that a matrix does not resist; otherwise the library finds them.", [
         FETI_EXACT, FETI_CANDIDATES, FETI_SOFT,
         feti_body_coordinates, feti_body_coordinates_flags, feti_body_null_space, feti_body_no_null_space,
         feti_body_null_space_get,
         feti_body_fixing_set, feti_body_fixing,
     ]),
-    section!("Bodies by elements", "Give the elements of a large body; the library adds them up and cuts the body into pieces.", [
+    section!("Bodies by elements", "Give the elements of a large body; the library assembles them and cuts the body into pieces.", [
         feti_body_mesh_i32, feti_body_mesh_i64, feti_body_element, feti_body_elements, feti_body_elements_size,
         feti_body_held_forces, feti_body_pieces,
     ]),
@@ -56,7 +56,7 @@ pub const SECTIONS: [Section; 20] = [
         feti_set_f64, feti_set_i64, feti_set_str, feti_set_text, feti_get_f64, feti_get_i64, feti_get_str,
         feti_option_count, feti_option_at,
     ]),
-    section!("Solve", "Compute the answer, and learn how exact it is.", [
+    section!("Solve", "Compute the answer and its accuracy.", [
         feti_info, feti_setup, feti_solve, feti_cancel,
     ]),
     section!("Results", "Read displacements, forces, gaps and states.", [
@@ -65,39 +65,39 @@ pub const SECTIONS: [Section; 20] = [
         feti_displacement, feti_multipliers, feti_gaps, feti_active, feti_reaction, feti_amplitudes,
         feti_friction_slips, feti_friction_states,
     ]),
-    section!("Load steps", "Go on with other loads and gaps; friction remembers where it slipped to.", [
+    section!("Load steps", "Continue with other loads and gaps; friction starts from the slips of the last step.", [
         feti_rows_rhs, feti_friction_commit, feti_friction_reference, feti_start_from,
     ]),
-    section!("Newton's method", "Give new matrices and new rows to a problem that is there.", [
+    section!("Newton's method", "Give new matrices and new rows to an existing problem.", [
         feti_body_values, feti_body_values_split, feti_body_values_dense, feti_rows_clear, feti_friction_clear,
     ]),
-    section!("Saved states", "Go back to a step that is saved.", [
+    section!("Saved states", "Save a step and go back to it.", [
         feti_state_save, feti_state_restore, feti_state_drop,
     ]),
-    section!("Diagnosis", "Learn why there is no answer, and what is odd about the problem.", [
+    section!("Diagnosis", "Find out why there is no answer, and what is unusual about the problem.", [
         feti_findings, feti_diagnosis, feti_diagnosis_motion, feti_diagnosis_rows, feti_diagnosis_dependent, feti_diagnosis_untouched,
         feti_diagnosis_undetermined, feti_diagnosis_undetermined_motion,
     ]),
-    section!("Facts on bodies", "Learn what a body and its factor cost.", [
+    section!("Facts on bodies", "Read size, memory and null space of a body, and the time of each phase.", [
         FETI_ORIGIN_EXACT, FETI_ORIGIN_CANDIDATES, FETI_ORIGIN_COORDINATES, FETI_ORIGIN_FOUND,
         feti_body_facts, feti_body_info, feti_body_components, feti_phase, feti_phase_count, feti_phase_at,
     ]),
-    section!("Progress and log", "Hear of the course of a setup or a solve.", [
+    section!("Progress and log", "Follow the progress of a setup or a solve.", [
         FETI_PHASE_SETUP, FETI_PHASE_SOLVE,
         FETI_STEP_CONJUGATE_GRADIENT, FETI_STEP_EXPANSION, FETI_STEP_RELEASE, FETI_STEP_NEWTON,
         FETI_LOG_NONE, FETI_LOG_RESULT, FETI_LOG_PHASE, FETI_LOG_STEP,
         feti_progress, feti_progress_fn, feti_log_fn, feti_on_progress, feti_on_log,
     ]),
-    section!("Validation", "Check an answer, also of another program; multiply by the operators of the method.", [
+    section!("Validation", "Check an answer of this or another program; multiply by the operators of the method.", [
         feti_certificate, feti_check, feti_check_friction, feti_body_kplus, feti_dual_apply, feti_dual_rhs,
     ]),
     section!("Files", "Write a problem to a file and read it.", [
         feti_problem_write, feti_problem_read,
     ]),
-    section!("Errors", "Learn what went wrong, where and by how much.", [
+    section!("Errors", "Read what went wrong, where and by how much.", [
         feti_error_detail, feti_last_error, feti_last_error_detail, feti_problem_error,
     ]),
-    section!("Statuses and version", "What functions return, in words; the version of the library.", [
+    section!("Statuses and version", "Names and texts of return values; the version of the library.", [
         FETI_OK, FETI_ITERATIONS, FETI_TIME, FETI_CANCELLED, FETI_STALLED, FETI_INACCURATE, FETI_MARGINAL,
         FETI_MEMORY, FETI_HANDLE, FETI_BUSY, FETI_CALLBACK, FETI_STATE, FETI_LOAD_NOT_HELD, FETI_GAPS_CONTRADICT,
         FETI_NULL_SPACE, FETI_INDEFINITE, FETI_IO, FETI_INTERNAL, FETI_UNSUPPORTED, FETI_OVERFLOW, FETI_SLIDES, FETI_ARGUMENT,

@@ -14,16 +14,18 @@ Contact problems of elastic bodies by FETI duality.
 
   minimise 1/2 u'K u - f'u  over all u with  B u <= c  and  H u = h
 
-K is the stiffness of several bodies, floating ones included. The forces of the rows are lambda >= 0
-of B u <= c and mu of H u = h: K u = f - B'lambda - H'mu.
+K is the stiffness of several bodies, which may float. The forces of the rows are lambda >= 0 for
+B u <= c and mu for H u = h: K u = f - B'lambda - H'mu.
 
 Functions return a status: 0 for success, above 0 for an answer that is usable but incomplete, below
-0 for a failure, whose text feti_last_error tells; exceptions are feti_version..., feti_status_...,
-feti_option_count and feti_last_error. Bodies, unknowns and rows count from 0; arrays of indices
-count from their argument base. Matrices by rows are compressed sparse rows, dense ones column-major.
-What is handed over is copied, unless FETI_BORROW says otherwise. The library prints nothing. A
-problem serves one call at a time, different problems may be used by different threads. Units are the
-host's: any that fit together.
+0 for a failure, whose text feti_last_error returns. Exceptions are feti_version..., feti_status_...,
+feti_option_count and feti_last_error. In the descriptions `FETI_STATE if ...` means that the function
+returns FETI_STATE in that case.
+
+Bodies, unknowns and rows count from 0; arrays of indices count from their argument `base`. Sparse
+matrices are stored as compressed sparse rows, dense matrices by columns. The library copies what it
+is given, except with FETI_BORROW. It prints nothing. Only one call at a time may use a problem;
+several threads may use different problems. Any consistent set of units will do.
 
 Example: a block of two unknowns and stiffness 4000 N/mm floats 0.5 mm before a wall, and a force of
 100 N on its rear pushes it there. It prints `force 100 N, rear 0.525 mm, front 0.5 mm`.
@@ -36,7 +38,7 @@ pub fn comment(groups: &[Group]) -> String {
         let functions: Vec<_> = group.functions.iter().map(|function| function.name.as_str()).collect();
         (group.heading, group.says, functions)
     });
-    let mut text = format!("{RULES}{EXAMPLE}@endcode\n\nContents, in the order of the job:\n");
+    let mut text = format!("{RULES}{EXAMPLE}@endcode\n\nContents, in the order of use:\n");
     for (heading, says, functions) in contents {
         let _ = write!(text, "\n{heading}: {says}\n{}", wrapped(&functions));
     }

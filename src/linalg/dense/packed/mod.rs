@@ -4,6 +4,8 @@
 //! below the diagonal follow each other, so that the product reads memory from one end to the other, in whole lines
 //! of the cache; the tiles on the diagonal hold both triangles.
 
+#[cfg(avx512)]
+mod avx512;
 mod kernel;
 mod product;
 #[cfg(target_arch = "x86_64")]
@@ -212,7 +214,8 @@ mod tests {
                 product::product_by(&avx2, &a.tiles, x, &mut y[sets]);
                 sets += 1;
             }
-            if let Some(avx512) = x86::Avx512::detect() {
+            #[cfg(avx512)]
+            if let Some(avx512) = avx512::Avx512::detect() {
                 product::product_by(&avx512, &a.tiles, x, &mut y[sets]);
                 sets += 1;
             }

@@ -3,6 +3,7 @@
 
 use crate::linalg::dense::packed::kernel::{Kernel, Portable};
 use crate::linalg::dense::packed::{Line, Tile, SIDE};
+use crate::linalg::vector::{as_arrays, as_arrays_mut};
 
 /// Columns of tiles at a time.
 const PANEL: usize = 4;
@@ -13,8 +14,9 @@ const AHEAD: usize = 2;
 pub fn product(tiles: &[Tile], x: &[f64], y: &mut [f64]) {
     #[cfg(target_arch = "x86_64")]
     {
-        use crate::linalg::dense::packed::x86::{Avx2, Avx512};
-        if let Some(avx512) = Avx512::detect() {
+        use crate::linalg::dense::packed::x86::Avx2;
+        #[cfg(avx512)]
+        if let Some(avx512) = crate::linalg::dense::packed::avx512::Avx512::detect() {
             return product_by(&avx512, tiles, x, y);
         }
         if let Some(avx2) = Avx2::detect() {
@@ -29,7 +31,7 @@ pub fn product_by(kernel: &impl Kernel, tiles: &[Tile], x: &[f64], y: &mut [f64]
     y.fill(0.0);
     let own = x.len() - SIDE * (x.len().div_ceil(SIDE).max(1) - 1);
     let ((x_first, x), (y_first, y)) = (x.split_at(own), y.split_at_mut(own));
-    let ((x, _), (y, _)) = (x.as_chunks::<SIDE>(), y.as_chunks_mut::<SIDE>());
+    let (x, y) = (as_arrays::<SIDE>(x).0, as_arrays_mut::<SIDE>(y).0);
     let Some((corner, tiles)) = tiles.split_first() else { return };
     let mut factors = [0.0; SIDE];
     factors[SIDE - own..].copy_from_slice(x_first);

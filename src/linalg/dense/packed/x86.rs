@@ -1,4 +1,4 @@
-//! The product by vector instructions of x86-64. A value of `Avx2` or `Avx512` is the proof that the processor has them.
+//! The product by vector instructions of x86-64. A value of `Avx2` is the proof that the processor has them.
 //! Products and sums are rounded one by one and in the order of the plain loops: the same bits on any processor.
 
 use std::arch::is_x86_feature_detected;
@@ -10,18 +10,9 @@ use crate::linalg::dense::packed::{Line, Tile, SIDE};
 /// AVX2: half a line at a time.
 pub struct Avx2(());
 
-/// AVX-512: a line at a time.
-pub struct Avx512(());
-
 impl Avx2 {
     pub fn detect() -> Option<Self> {
         is_x86_feature_detected!("avx2").then_some(Self(()))
-    }
-}
-
-impl Avx512 {
-    pub fn detect() -> Option<Self> {
-        is_x86_feature_detected!("avx512f").then_some(Self(()))
     }
 }
 
@@ -42,71 +33,15 @@ impl Kernel for Avx2 {
     }
 }
 
-impl Kernel for Avx512 {
-    fn columns<const P: usize>(
-        &self,
-        tiles: [&[Tile]; P],
-        x: &[Line],
-        y: &mut [Line],
-        factors: &[Line; P],
-    ) -> [Line; P] {
-        // SAFETY: `detect` alone makes a value of `Avx512`, where the processor has AVX-512F
-        unsafe { by_lines(tiles, x, y, factors) }
-    }
-
-    fn ask_for(&self, tiles: &[Tile]) {
-        prefetch(tiles);
-    }
-}
-
-fn prefetch(tiles: &[Tile]) {
+pub fn prefetch(tiles: &[Tile]) {
     for line in tiles.iter().flat_map(|tile| &tile.0) {
         // SAFETY: SSE is part of x86-64; nothing is read or written
         unsafe { _mm_prefetch::<_MM_HINT_T1>(line.as_ptr().cast()) };
     }
 }
 
-#[target_feature(enable = "avx512f")]
-fn by_lines<const P: usize>(
-    tiles: [&[Tile]; P],
-    x: &[Line],
-    y: &mut [Line],
-    factors: &[Line; P],
-) -> [Line; P] {
-    let mut terms = [[_mm512_setzero_pd(); SIDE]; P];
-    let tiles = tiles.map(|tiles| &tiles[..x.len()]);
-    for (at, (x, y)) in x.iter().zip(y).enumerate() {
-        let (x, mut image) = (load(x), load(y));
-        for p in 0..P {
-            for k in 0..SIDE {
-                let a = load(&tiles[p][at].0[k]);
-                terms[p][k] = _mm512_add_pd(terms[p][k], _mm512_mul_pd(a, x));
-                image = _mm512_add_pd(image, _mm512_mul_pd(a, _mm512_set1_pd(factors[p][k])));
-            }
-        }
-        // SAFETY: a line is as long as the vector; no alignment is asked for
-        unsafe { _mm512_storeu_pd(y.as_mut_ptr(), image) };
-    }
-    let mut products = [[0.0; SIDE]; P];
-    for (terms, products) in terms.iter().zip(&mut products) {
-        for (terms, product) in terms.iter().zip(products) {
-            let mut line = [0.0; SIDE];
-            // SAFETY: a line is as long as the vector; no alignment is asked for
-            unsafe { _mm512_storeu_pd(line.as_mut_ptr(), *terms) };
-            *product = sum(&line);
-        }
-    }
-    products
-}
-
-#[target_feature(enable = "avx512f")]
-fn load(line: &Line) -> __m512d {
-    // SAFETY: a line is as long as the vector; no alignment is asked for
-    unsafe { _mm512_loadu_pd(line.as_ptr()) }
-}
-
 #[target_feature(enable = "avx2")]
-fn by_halves<const P: usize>(
+unsafe fn by_halves<const P: usize>(
     tiles: [&[Tile]; P],
     x: &[Line],
     y: &mut [Line],
@@ -140,7 +75,7 @@ fn by_halves<const P: usize>(
 }
 
 #[target_feature(enable = "avx2")]
-fn store(low: __m256d, high: __m256d, line: &mut Line) {
+unsafe fn store(low: __m256d, high: __m256d, line: &mut Line) {
     // SAFETY: a line is as long as two vectors; no alignment is asked for
     unsafe {
         _mm256_storeu_pd(line.as_mut_ptr(), low);
@@ -149,7 +84,7 @@ fn store(low: __m256d, high: __m256d, line: &mut Line) {
 }
 
 #[target_feature(enable = "avx2")]
-fn halves(line: &Line) -> [__m256d; 2] {
+unsafe fn halves(line: &Line) -> [__m256d; 2] {
     // SAFETY: a line is as long as two vectors; no alignment is asked for
     unsafe { [_mm256_loadu_pd(line.as_ptr()), _mm256_loadu_pd(line.as_ptr().add(SIDE / 2))] }
 }

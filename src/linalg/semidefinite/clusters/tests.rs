@@ -13,7 +13,7 @@ fn stones(count: usize, weak: f64) -> Csr {
     g.push_row([(1, 0.9)]);
     for k in 1..count {
         let size = if k % 5 == 0 { weak } else { 1.0 + random[k] };
-        let turn = |k: usize| (0.6, if k.is_multiple_of(2) { 0.8 } else { -0.8 });
+        let turn = |k: usize| (0.6, if k % 2 == 0 { 0.8 } else { -0.8 });
         let ((a, b), (c, d)) = (turn(k - 1), turn(k));
         // up is (a, b) in the modes of a stone, across (-b, a)
         g.push_row([
