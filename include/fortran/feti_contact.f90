@@ -1,8 +1,8 @@
-!> Contact problems by FETI duality, for Fortran hosts: the typed face of libfeti_contact.
+!> Contact problems by FETI duality, for Fortran hosts: the typed Fortran interface of libfeti_contact.
 !>
 !>   minimise 1/2 u'Ku - f'u  over all u with  B u <= c  and  H u = h
 !>
-!> K is the stiffness of several bodies, floating ones included; lambda >= 0 are the forces of the contact rows.
+!> K is the stiffness of several bodies, which may float; lambda >= 0 are the forces of the contact rows.
 !>
 !>   use feti_contact
 !>   type(feti_problem) :: p
@@ -18,13 +18,12 @@
 !>   call feti_multipliers(p, FETI_INEQUALITY, lambda)
 !>   call feti_problem_destroy(p)
 !>
-!> Names and meaning are those of the C functions in feti_contact.h. Every number counts from 1: bodies, unknowns,
-!> rows, the indices inside the arrays, the places in errors. Sizes come from the arrays. Everything is copied.
-!> Index arrays are int32 or int64. A kind, a storage, a flag or a level is int32, as its constants are, also where the
-!> default INTEGER has 8 bytes.
-!> Every subroutine ends with the optional arguments stat and errmsg: with stat the host decides what a failure
-!> means (call feti_last_error_detail tells the place); without it a failure prints its text and stops the program.
-!> Where a procedure is described, with shapes and units: the module it comes from, named below.
+!> Names and meanings are the same as for the C functions in feti_contact.h. All numbers count from 1: bodies, unknowns,
+!> rows, the indices inside arrays and the places in errors. Sizes are taken from the arrays. The library copies all
+!> arrays. Index arrays are int32 or int64. A kind, a storage, a flag or a level is int32 like its constants, even if the
+!> default INTEGER has 8 bytes. The last arguments of every subroutine are the optional stat and errmsg. With stat the
+!> host decides how to react to a failure (feti_last_error_detail returns the place); without stat a failure prints its
+!> text and stops the program. The module of each procedure, named below, describes it with shapes and units.
 module feti_contact
   use feti_contact_c, only: &
     ! kinds of rows, storage of K, null spaces, states of contact rows, types of options
@@ -33,7 +32,7 @@ module feti_contact
     FETI_ROW_OPEN, FETI_ROW_CLOSED, FETI_ROW_WEAK, FETI_ROW_UNKNOWN, FETI_OPTION_F64, FETI_OPTION_I64, FETI_OPTION_STR, &
     ! states of nodes with friction
     FETI_FRICTION_OPEN, FETI_FRICTION_STICK, FETI_FRICTION_SLIP, FETI_FRICTION_WEAK, FETI_FRICTION_UNKNOWN, &
-    ! phases and kinds of steps that a progress function hears of
+    ! phases and kinds of steps that are reported to a progress function
     FETI_PHASE_SETUP, FETI_PHASE_SOLVE, FETI_STEP_CONJUGATE_GRADIENT, FETI_STEP_EXPANSION, FETI_STEP_RELEASE, &
     FETI_STEP_NEWTON, &
     ! levels of a log

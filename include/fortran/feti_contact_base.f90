@@ -1,13 +1,13 @@
 !> The handle, the errors and the texts of module feti_contact. A host uses feti_contact, not this module.
 !>
-!> Every procedure of the face is recursive: a function of the host may call the library, and threads call it side by side.
-!> Every procedure of the face ends with `stat` and `errmsg`, both optional:
-!>   stat present: it gets the status (0 is FETI_OK); a failed call changes nothing and can be repeated corrected.
-!>   stat absent:  any status but FETI_OK prints the text on error_unit and ends the program with error stop 1.
-!>   errmsg:       gets the text when the status is not FETI_OK, cut or padded to its length; untouched otherwise.
-!> No function has a result of deferred length: gfortran keeps it in static memory of the caller, where threads mix it up.
-!> Arrays that do not fit each other (a row pointer that points behind the entries) are refused by the face itself:
-!> status and errmsg tell it, feti_last_error and feti_last_error_detail do not.
+!> Every procedure of this interface is recursive, because a function of the host may call the library and several threads
+!> may call it at the same time. The last two arguments of every procedure are `stat` and `errmsg`, both optional:
+!>   stat present: it gets the status (0 is FETI_OK); a failed call changes nothing and can be repeated with corrected
+!>   data. stat absent:  any status but FETI_OK prints the text on error_unit and ends the program with error stop 1.
+!>   errmsg:       gets the text if the status is not FETI_OK, truncated or padded to its length; otherwise unchanged.
+!> No function has a result of deferred length, because gfortran keeps such a result in static memory of the caller, which
+!> is not thread-safe. If arrays do not match (for example a row pointer beyond the entries), this interface refuses them
+!> itself: stat and errmsg report the error, but feti_last_error and feti_last_error_detail do not.
 module feti_contact_base
   use, intrinsic :: iso_c_binding, only: c_char, c_double, c_f_pointer, c_int32_t, c_int64_t, c_loc, &
     c_null_char, c_null_ptr, c_ptr, c_size_t, c_sizeof, c_associated
@@ -35,24 +35,25 @@ module feti_contact_base
   public :: handle_of, body_index, address_of, finish, refuse, c_text, f_text
 
   abstract interface
-    !> A function of the host that hears of every step: 0 goes on, > 0 cancels, < 0 reports a failure of its own.
-    !> data: what was given to feti_on_progress.
+    !> A function of the host that is called for every step; it returns 0 to continue, > 0 to cancel, < 0 to report a
+    !> failure. data: the data given to feti_on_progress.
     integer function progress_procedure(now, data)
       import :: feti_progress
       type(feti_progress), intent(in) :: now
       class(*), intent(inout) :: data
     end function
 
-    !> A function of the host that gets a line of text: 0 goes on, any other number reports a failure of its own.
-    !> level: FETI_LOG_RESULT, FETI_LOG_PHASE or FETI_LOG_STEP. data: what was given to feti_on_log.
+    !> A function of the host that receives a line of text; it returns 0 to continue and any other number to report a
+    !> failure. level: FETI_LOG_RESULT, FETI_LOG_PHASE or FETI_LOG_STEP. data: the data given to feti_on_log.
     integer function log_procedure(level, text, data)
       integer, intent(in) :: level
       character(len=*), intent(in) :: text
       class(*), intent(inout) :: data
     end function
 
-    !> A function of the host that multiplies by a matrix A it keeps, y = A x: 0, or any other number for a failure.
-    !> body: from 1. x(n,nrhs), y(n,nrhs): nrhs is 1 to 32, y comes as zeros. data: what was given to feti_body_operator.
+    !> A function of the host that multiplies by a matrix A that the host keeps, y = A x; it returns 0, or any other
+    !> number to report a failure. body: from 1. x(n,nrhs), y(n,nrhs): nrhs is 1 to 32; y contains zeros on entry. data:
+    !> the data given to feti_body_operator.
     integer function operator_procedure(body, x, y, data)
       import :: c_double
       integer, intent(in) :: body
@@ -71,21 +72,21 @@ module feti_contact_base
     end function
   end interface
 
-  !> Stands for data that the host has not given: no type of a host matches it in select type.
+  !> Placeholder for data that the host has not given; no type of the host matches it in select type.
   type :: no_data
   end type
 
-  !> What feti_body_operator keeps of the host for one body.
+  !> The functions and data of the host that feti_body_operator keeps for one body.
   type :: host_operator
     integer :: body = 0
     procedure(operator_procedure), pointer, nopass :: kplus => null(), k => null()
     class(*), pointer :: data => null()
     type(no_data) :: nothing
-    !> That of another body.
+    !> The entry of the next body.
     type(host_operator), pointer :: next => null()
   end type
 
-  !> What is kept of the host: for feti_on_progress and feti_on_log, and a list for feti_body_operator.
+  !> Functions and data of the host: for feti_on_progress and feti_on_log, and a list for feti_body_operator.
   type :: listener
     procedure(progress_procedure), pointer, nopass :: hear => null()
     class(*), pointer :: data => null()
@@ -95,23 +96,23 @@ module feti_contact_base
     type(host_operator), pointer :: operators => null()
   end type
 
-  !> One contact problem. Copies are other names of the same problem; it lives until feti_problem_destroy.
+  !> One contact problem. Copies of the variable refer to the same problem, which exists until feti_problem_destroy.
   type :: feti_problem
     private
     type(c_ptr) :: handle = c_null_ptr
-    !> Of this problem and all its copies, as long as the handle lives.
+    !> Shared by this variable and all its copies while the handle is valid.
     type(listener), pointer :: listener => null()
   end type
 
-  !> What the last failed call of this thread found, and where. Everything counts from 1.
+  !> What the last failed call of this thread found, and where. All numbers count from 1.
   type :: feti_error_detail
     !> Status of that call.
     integer :: status = 0
-    !> Number of the refused argument in the C function of that name (the handle is 1), 0: none.
+    !> Number of the refused argument in the C function of that name (the handle is 1); 0: none.
     integer :: argument = 0
     !> Body, component of the body, unknown of the body, row, position in the array; 0: does not apply.
     integer(c_int64_t) :: body = 0, component = 0, dof = 0, row = 0, entry = 0
-    !> The figure found, an index from 1, too, and the figure allowed; NaN: does not apply.
+    !> The value that was found (an index counts from 1) and the allowed value; NaN: does not apply.
     real(c_double) :: value = 0, limit = 0
     !> Name of the C function, blank padded.
     character(len=40) :: function = ''
@@ -121,8 +122,8 @@ module feti_contact_base
 
 contains
 
-  !> Characters of a C string, 0 for NULL. Lengths come before the functions whose results have them: gfortran otherwise takes
-  !> them for procedures without interface.
+  !> Number of characters of a C string, 0 for NULL. The length functions stand before the functions whose results use
+  !> them, because gfortran otherwise treats them as procedures without an interface.
   recursive pure integer function length_of(address)
     type(c_ptr), intent(in) :: address
 
@@ -130,21 +131,21 @@ contains
     if (c_associated(address)) length_of = int(strlen(address))
   end function
 
-  !> Of the name of a status.
+  !> Length of the name of a status.
   recursive pure integer function name_length(status)
     integer, intent(in) :: status
 
     name_length = length_of(c_status_name(int(status, c_int32_t)))
   end function
 
-  !> Of the sentence on a status.
+  !> Length of the sentence on a status.
   recursive pure integer function sentence_length(status)
     integer, intent(in) :: status
 
     sentence_length = length_of(c_status_text(int(status, c_int32_t)))
   end function
 
-  !> Of the version.
+  !> Length of the version text.
   recursive pure integer function version_length()
     version_length = length_of(c_version())
   end function
@@ -164,7 +165,7 @@ contains
     call finish(status, stat, errmsg)
   end subroutine
 
-  !> Gives back everything the problem holds. p is no problem afterwards; its copies are refused with FETI_HANDLE.
+  !> Frees the problem. Afterwards p is not a problem, and calls with its copies return FETI_HANDLE.
   recursive subroutine problem_destroy(p, stat, errmsg)
     type(feti_problem), intent(inout) :: p
     integer, intent(out), optional :: stat
@@ -181,7 +182,7 @@ contains
     call finish(status, stat, errmsg)
   end subroutine
 
-  !> Text of the last failed call of this problem; empty when none failed. May be called while another thread solves.
+  !> Text of the last failed call of this problem; empty if no call failed. May be called while another thread solves.
   recursive subroutine problem_error(p, text, stat, errmsg)
     type(feti_problem), intent(in) :: p
     character(len=:), allocatable, intent(out) :: text
@@ -202,7 +203,7 @@ contains
     call finish(status, stat, errmsg)
   end subroutine
 
-  !> Text of the last failed call of this thread; empty when none failed.
+  !> Text of the last failed call of this thread; empty if no call failed.
   recursive subroutine last_error(text)
     character(len=:), allocatable, intent(out) :: text
     character(kind=c_char), allocatable, target :: buffer(:)
@@ -214,7 +215,7 @@ contains
     text = f_text(c_loc(buffer))
   end subroutine
 
-  !> Facts of the last failed call of this thread.
+  !> Details of the last failed call of this thread.
   recursive subroutine last_error_detail(detail, stat, errmsg)
     type(feti_error_detail), intent(out) :: detail
     integer, intent(out), optional :: stat
@@ -276,7 +277,7 @@ contains
     handle_of = p%handle
   end function
 
-  !> A body for a C function that takes FETI_ALL = -1: no number below 1 may stand for all bodies.
+  !> A body number for a C function that accepts FETI_ALL = -1; a number below 1 must not be taken for all bodies.
   recursive pure integer(c_int64_t) function body_index(body)
     integer, intent(in) :: body
 
@@ -284,7 +285,7 @@ contains
     if (body < 1) body_index = body_index - 1
   end function
 
-  !> Address of an array that may be absent, NULL then.
+  !> Address of an array, or NULL if the array is absent.
   recursive type(c_ptr) function address_of(values)
     real(c_double), intent(in), contiguous, optional, target :: values(:)
 
@@ -293,7 +294,7 @@ contains
     if (size(values) > 0) address_of = c_loc(values)
   end function
 
-  !> The listener of a problem whose handle has just been accepted by the library.
+  !> The progress and log functions of a problem whose handle the library has just accepted.
   recursive function listener_of(p) result(found)
     type(feti_problem), intent(in) :: p
     type(listener), pointer :: found
@@ -301,7 +302,7 @@ contains
     found => p%listener
   end function
 
-  !> Keeps the functions of a body, which the library has just accepted, in place of those before.
+  !> Keeps the functions of a body, which the library has just accepted, and replaces earlier ones.
   recursive subroutine keep_operator(p, new)
     type(feti_problem), intent(in) :: p
     type(host_operator), intent(inout), pointer :: new
@@ -333,7 +334,8 @@ contains
     deallocate (found)
   end subroutine
 
-  !> Reports a status as the head of this module says. text: what the face itself found; absent: the library's words.
+  !> Reports a status as described at the top of this module. text: the error that this interface found; absent: the error
+  !> text of the library.
   recursive subroutine finish(status, stat, errmsg, text)
     integer(c_int32_t), intent(in) :: status
     integer, intent(out), optional :: stat

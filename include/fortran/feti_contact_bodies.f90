@@ -1,8 +1,8 @@
 !> Bodies of module feti_contact. A host uses feti_contact, not this module.
 !>
-!> Everything is copied; the host's arrays are free after each call. Sizes come from the arrays and are compared with
-!> the n of feti_body_add. Bodies and unknowns count from 1. A refused call leaves the problem as it was.
-!> Arrays that are not contiguous are copied by the compiler. `stat` and `errmsg`: see feti_contact_base.
+!> The library copies all arrays, so the host may reuse them after each call. Sizes are taken from the arrays and compared
+!> with the n of feti_body_add. Bodies and unknowns count from 1. A refused call leaves the problem unchanged. The
+!> compiler copies arrays that are not contiguous. `stat` and `errmsg`: see feti_contact_base.
 module feti_contact_bodies
   use, intrinsic :: iso_c_binding, only: c_int32_t, c_int64_t, c_loc, c_null_ptr, c_ptr, c_sizeof
   use, intrinsic :: iso_fortran_env, only: int32, int64, real64
@@ -26,25 +26,26 @@ module feti_contact_bodies
   public :: body_coordinates, body_coordinates_flags, body_fixing_set, body_load
   public :: body_numbering, body_components, body_info, feti_body_facts
 
-  !> Load, force; without one f = 0. A second call replaces the first.
+  !> Load, force; without a call f = 0. A second call replaces the first.
   !>
-  !> call feti_body_load(p, body, f): f(n) of a body.
-  !> call feti_body_load(p, f): of all bodies, f(number) by the numbers of feti_body_numbering, entries of no unknown not
-  !>   looked at; without numbers one body after the other.
+  !> call feti_body_load(p, body, f): the load f(n) of one body.
+  !> call feti_body_load(p, f): the loads of all bodies, f(number) with the numbers of feti_body_numbering (entries that
+  !>   belong to no unknown are ignored); without numbers one body after the other.
   interface body_load
     module procedure load_one, load_all
   end interface
 
-  !> The host's own numbers of the unknowns of a body, number(n), from 1, each naming one unknown of all bodies; int32 or
-  !> int64. Then calls without a body (feti_body_load, feti_displacement, feti_reaction, feti_rows_add) go by these numbers;
-  !> all bodies have some, or none. With option glue = 1, set before, unknowns of several bodies that have one number move
-  !> together; a load on it is that of the first, a reaction the sum over all of them.
+  !> The host's own numbers of the unknowns of a body, number(n), from 1, int32 or int64; each number names one unknown in
+  !> the whole problem. Calls without a body (feti_body_load, feti_displacement, feti_reaction, feti_rows_add) then use
+  !> these numbers; either all bodies or none must have them. If option glue = 1 was set before, unknowns of several
+  !> bodies with the same number move together; a load on this number acts on the first body, and a reaction is the sum
+  !> over all these bodies.
   interface body_numbering
     module procedure numbering_int32, numbering_int64
   end interface
 
-  !> Instead of a null space: where the unknowns are. The library takes the rigid motions as candidates.
-  !> Without either the library finds the null space from K.
+  !> Positions of the unknowns, to be given instead of a null space: the library takes the rigid body motions as
+  !> candidates. If you give neither positions nor a null space, the library finds the null space from K.
   !>
   !> call feti_body_coordinates(p, body, node, dir, xyz): node(n): any label of 32 bits, equal for the unknowns of one node;
   !>   dir(n): 1 to 3 displacement, 4 to 6 rotation; both int32 or int64; xyz(dim,n): position, length, dim 1 to 3.
@@ -70,12 +71,13 @@ contains
     call finish(status, stat, errmsg)
   end subroutine
 
-  !> Motions that cost the body no energy, K R = 0: the columns of R(n,r), length per unit amplitude.
+  !> Motions without strain energy, K R = 0: the columns of R(n,r), length per unit amplitude.
   !>
-  !> flags: FETI_EXACT, R spans the whole null space (r = 0: K is not singular); FETI_CANDIDATES, the null space
-  !> lies inside the span of R and the library finds which part is left by the supports. Either is verified. FETI_SOFT,
-  !> weak springs, rounding or geometric stiffness resist or drive these motions: K decides what they are.
-  !> Never called for a body without coordinates: the library finds the null space from K.
+  !> flags: with FETI_EXACT, R spans the whole null space (r = 0: K is not singular). With FETI_CANDIDATES, the null space
+  !> lies in the span of R, and the library finds the part that the supports leave free. The library verifies both claims.
+  !> With FETI_SOFT, weak springs, rounding or geometric stiffness may resist or drive these motions; the library computes
+  !> the exact motions from K. If a body has neither a null space nor coordinates, the library finds the null space from
+  !> K.
   recursive subroutine body_null_space(p, body, R, flags, stat, errmsg)
     type(feti_problem), intent(in) :: p
     integer, intent(in) :: body
@@ -101,7 +103,7 @@ contains
     call finish(c_body_no_null_space(handle_of(p), int(body - 1, c_int64_t)), stat, errmsg)
   end subroutine
 
-  !> The null space of a body with n unknowns as the library uses it: R is allocated n x r.
+  !> The null space that the library uses for a body with n unknowns: R is allocated n x r.
   recursive subroutine body_null_space_get(p, body, n, R, stat, errmsg)
     type(feti_problem), intent(in) :: p
     integer, intent(in) :: body, n
@@ -141,7 +143,7 @@ contains
     end if
   end subroutine
 
-  !> int64 labels and directions; FETI_OVERFLOW, and the body keeps what it had, where one needs more than 32 bits.
+  !> int64 labels and directions. FETI_OVERFLOW if a value needs more than 32 bits; the body then keeps its previous data.
   recursive subroutine coordinates_int64(p, body, node, dir, xyz, stat, errmsg)
     type(feti_problem), intent(in) :: p
     integer, intent(in) :: body
@@ -158,8 +160,9 @@ contains
     end if
   end subroutine
 
-  !> What the rigid motions of the coordinates of a body are, of those that it has and of those to come. flags: FETI_CANDIDATES,
-  !> as without this call; FETI_SOFT, weak springs, rounding or geometric stiffness resist or drive them: K decides what they are.
+  !> How the library uses the rigid body motions that the coordinates of a body give, whether the coordinates come before
+  !> or after this call. flags: FETI_CANDIDATES is the default; with FETI_SOFT, weak springs, rounding or geometric
+  !> stiffness may resist or drive the motions, and the library computes the exact motions from K.
   recursive subroutine body_coordinates_flags(p, body, flags, stat, errmsg)
     type(feti_problem), intent(in) :: p
     integer, intent(in) :: body
@@ -170,8 +173,8 @@ contains
     call finish(c_body_coordinates_flags(handle_of(p), int(body - 1, c_int64_t), flags), stat, errmsg)
   end subroutine
 
-  !> The unknowns that K+ holds, dof(r), r the dimension of the null space; of size 0: those the library would choose. They
-  !> change the course of the methods of the paper in printed units, and neither forces nor displacements.
+  !> The unknowns that K+ holds, dof(r), where r is the dimension of the null space; with size 0 the library chooses them.
+  !> The choice affects the iterations of the paper's methods in printed units, but neither forces nor displacements.
   recursive subroutine body_fixing_set(p, body, dof, stat, errmsg)
     type(feti_problem), intent(in) :: p
     integer, intent(in) :: body
@@ -197,7 +200,7 @@ contains
     call finish(c_body_load(handle_of(p), body_index(body), size(f, kind=c_int64_t), f), stat, errmsg)
   end subroutine
 
-  !> Of all bodies, by the numbers of the host.
+  !> The values of all bodies, with the numbers of the host.
   recursive subroutine load_all(p, f, stat, errmsg)
     type(feti_problem), intent(in) :: p
     real(real64), intent(in), contiguous :: f(:)
@@ -231,8 +234,8 @@ contains
       1_c_int32_t), stat, errmsg)
   end subroutine
 
-  !> The connected part of every unknown of a body, component(n), numbered from 1 by their first unknowns. The stiffness
-  !> matrix has been given.
+  !> The connected part of every unknown of a body, component(n); the parts are numbered from 1 in the order of their
+  !> first unknowns. The stiffness matrix must have been given.
   recursive subroutine body_components(p, body, component, stat, errmsg)
     type(feti_problem), intent(in) :: p
     integer, intent(in) :: body
@@ -248,7 +251,7 @@ contains
     call finish(status, stat, errmsg)
   end subroutine
 
-  !> What is known about a body; shared_with counts from 1, 0: none.
+  !> What is known about a body; shared_with counts from 1; 0: none.
   recursive subroutine body_info(p, body, facts, stat, errmsg)
     type(feti_problem), intent(in) :: p
     integer, intent(in) :: body

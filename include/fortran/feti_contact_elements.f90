@@ -1,8 +1,8 @@
 !> Bodies by their elements, of module feti_contact. A host uses feti_contact, not this module.
 !>
-!> Everything is added up at once; the host's arrays are free after each call. Bodies, elements and unknowns count from 1. A
-!> refused call leaves the problem as it was. Arrays that are not contiguous are copied by the compiler. `stat` and `errmsg`:
-!> see feti_contact_base.
+!> The library adds up all matrices at once, so the host may reuse its arrays after each call. Bodies, elements and
+!> unknowns count from 1. A refused call leaves the problem unchanged. The compiler copies arrays that are not contiguous.
+!> `stat` and `errmsg`: see feti_contact_base.
 module feti_contact_elements
   use, intrinsic :: iso_c_binding, only: c_int32_t, c_int64_t
   use, intrinsic :: iso_fortran_env, only: int32, int64, real64
@@ -19,19 +19,21 @@ module feti_contact_elements
   private
   public :: body_mesh, body_element, body_elements, body_elements_size, body_held_forces, body_pieces
 
-  !> Which unknowns the elements of a body join: the first step of giving K by elements, in place of feti_body_stiffness.
+  !> The connectivity of the elements of a body: the first step of giving K by elements, instead of feti_body_stiffness.
   !>
   !> call feti_body_mesh(p, body, ptr, dof): element e joins the entries ptr(e) .. ptr(e+1)-1 of dof, in the order of the rows
   !>   of its matrix; ptr(elements+1); counted from 1, int32 or int64.
   !>
-  !> A number below 1 is a held unknown, whose row and column are left out: 0 is the held unknown 1, -1 the held unknown 2, and
-  !> so on; all may be 0 where nobody asks for feti_body_held_forces. Option pieces and feti_body_coordinates come before the
-  !> first matrix: the cut follows from them. The same connectivity again begins a new pass on the old pattern and cut.
+  !> A number below 1 means a held unknown, whose row and column are left out: 0 means held unknown 1, -1 means held
+  !> unknown 2, and so on. If feti_body_held_forces is not used, all of them may be 0. Give option pieces and
+  !> feti_body_coordinates before the first matrix, because the cut depends on them. Another call with the same
+  !> connectivity begins a new pass with the same pattern and the same cut.
   interface body_mesh
     module procedure mesh_int32, mesh_int64
   end interface
 
-  !> The matrices of a block of elements from `first` on, one after the other; every element comes once in a pass.
+  !> The matrices of a block of elements, beginning with element `first`, one after the other; give every element once in
+  !> a pass.
   !>
   !> call feti_body_elements(p, body, first, count, ke, storage): ke(:) has the matrices of `count` elements; FETI_FULL: n x n
   !>   each; FETI_LOWER or FETI_UPPER: that triangle column by column, n (n + 1) / 2 numbers each.
@@ -78,8 +80,9 @@ contains
     end if
   end subroutine
 
-  !> The matrix ke(n,n) of element e, from the host's own assembly loop: added up at once, nothing is kept of it. Every element
-  !> comes once in a pass; the first one after a complete pass begins the next: new values on the old pattern and cut.
+  !> The matrix ke(n,n) of element e, for a call in the host's assembly loop. The library adds the matrix at once and does
+  !> not keep it. Give every element once in a pass; the first element after a complete pass begins the next pass, with
+  !> new values for the same pattern and cut.
   recursive subroutine body_element(p, body, e, ke, stat, errmsg)
     type(feti_problem), intent(in) :: p
     integer, intent(in) :: body, e
@@ -122,7 +125,7 @@ contains
     end if
   end subroutine
 
-  !> Block(1): its first element, block(2): their number. The library says how many numbers they have.
+  !> block(1): the first element; block(2): the number of elements. The library returns how many values they have.
   recursive subroutine add_block(p, body, block, given, ke, storage, stat, errmsg)
     type(feti_problem), intent(in) :: p
     integer, intent(in) :: body, block(2)
@@ -145,7 +148,8 @@ contains
     end if
   end subroutine
 
-  !> How many numbers the matrices of `count` elements from `first` on take in feti_body_elements, in that storage.
+  !> How many values feti_body_elements expects for `count` elements, beginning with element `first`, in the given
+  !> storage.
   recursive subroutine body_elements_size(p, body, first, count, storage, nnz, stat, errmsg)
     type(feti_problem), intent(in) :: p
     integer, intent(in) :: body, first, count
@@ -158,8 +162,9 @@ contains
       int(count, c_int64_t), storage, nnz), stat, errmsg)
   end subroutine
 
-  !> What the held unknowns take up in the last answer, r(k) = K_hf u of the held unknown k, which feti_body_mesh has as 1 - k;
-  !> force. It is what holds the body, but for what prescribed values add and for loads on the held unknowns themselves.
+  !> Forces on the held unknowns in the last answer: r(k) = K_hf u of held unknown k, which has the number 1 - k in
+  !> feti_body_mesh; force. This is the support reaction without the part of prescribed values and without loads on the
+  !> held unknowns themselves.
   recursive subroutine body_held_forces(p, body, r, stat, errmsg)
     type(feti_problem), intent(in) :: p
     integer, intent(in) :: body
@@ -170,7 +175,8 @@ contains
     call finish(c_body_held_forces(handle_of(p), int(body - 1, c_int64_t), size(r, kind=c_int64_t), r), stat, errmsg)
   end subroutine
 
-  !> The piece of every unknown of a body, piece(n), from 1, of several the first; all 1 in a body that is not cut.
+  !> The piece of every unknown of a body, piece(n), from 1. An unknown of several pieces gets the first one; all are 1 if
+  !> the body is not cut.
   recursive subroutine body_pieces(p, body, piece, stat, errmsg)
     type(feti_problem), intent(in) :: p
     integer, intent(in) :: body

@@ -1,9 +1,10 @@
-!> What the FORTRAN 77 face is made of: conversions between the host's INTEGER and the library's integers, statuses, texts.
-!> A host calls the external subroutines FT... of the files feti_contact_f77_*.f90 and needs no module.
+!> Common parts of the FORTRAN 77 interface: conversions between the host's INTEGER and the library's integers, statuses,
+!> texts. A host calls the external subroutines FT... of the files feti_contact_f77_*.f90 and needs no module.
 !>
-!> The face is shipped as source: compiled with the host's flags its INTEGER is the host's, of 4 or 8 bytes. No number is
-!> cut silently: what a host gives is clamped to a number that the library refuses; what INTEGER, or a label of 32 bits,
-!> cannot hold gives status FTEFIT; in arrays of counts (INFO and the like) it is the largest INTEGER.
+!> This interface is shipped as source: compiled with the host's flags, its INTEGER is the host's INTEGER of 4 or 8 bytes.
+!> No number is truncated silently. A number from the host that is too large is replaced by a number that the library
+!> refuses. A result that does not fit INTEGER, or a 32-bit label, gives status FTEFIT; in arrays of counts (INFO and
+!> similar arrays) such a result becomes the largest INTEGER.
 module feti_contact_f77_base
   use, intrinsic :: iso_c_binding, only: c_char, c_double, c_funptr, c_int32_t, c_int64_t, c_intptr_t, c_loc, c_ptr, &
     c_f_pointer, c_f_procpointer, c_funloc, c_null_char, c_null_funptr, c_null_ptr
@@ -13,11 +14,11 @@ module feti_contact_f77_base
   public
   include 'feti_contact_f77.inc'
 
-  !> By rows, with the index arrays of the host.
+  !> A matrix by rows, with the index arrays of the host.
   interface stiffness_by_rows
     procedure feti_body_stiffness_i32, feti_body_stiffness_i64
   end interface
-  !> The same with a diagonal of its own.
+  !> A matrix by rows with a separate diagonal.
   interface stiffness_split
     procedure feti_body_stiffness_split_i32, feti_body_stiffness_split_i64
   end interface
@@ -38,7 +39,7 @@ module feti_contact_f77_base
     procedure feti_friction_add_i32, feti_friction_add_i64
   end interface
 
-  !> The face's own statuses in the order FTEISZ, FTEDSZ, FTEFIT.
+  !> Statuses of this interface itself, in the order FTEISZ, FTEDSZ, FTEFIT.
   character(len=*), parameter :: own_text(3) = [character(len=110) :: &
     'FTNEW: INTEGER of the host and of the FORTRAN 77 face differ in size: compile both with the same flags', &
     'FTNEW: DOUBLE PRECISION of the host has not 8 bytes: compile it without -fdefault-real-8 or the like', &
@@ -46,21 +47,21 @@ module feti_contact_f77_base
 
 contains
 
-  !> The library's handle: the host's INTEGER holds its number.
+  !> The handle of the library, from the number in the host's INTEGER.
   recursive type(c_ptr) function handle(ip)
     integer, intent(in) :: ip
 
     handle = transfer(int(ip, c_intptr_t), c_null_ptr)
   end function
 
-  !> Number of a body, row or state from 0: -2 for every number that is none, since -1 is FETI_ALL.
+  !> Number of a body, row or state, from 0; -2 for every invalid number, because -1 is FETI_ALL.
   recursive integer(c_int64_t) function from_zero(i)
     integer, intent(in) :: i
 
     from_zero = merge(int(i, c_int64_t) - 1, -2_c_int64_t, i >= 1)
   end function
 
-  !> A body, or all of them.
+  !> A body, or all bodies.
   recursive integer(c_int64_t) function body_or_all(i)
     integer, intent(in) :: i
 
@@ -75,7 +76,7 @@ contains
     wide = int(i, c_int64_t)
   end function
 
-  !> A number of 32 bits; one that does not fit becomes the largest of its sign, which no argument allows.
+  !> A number of 32 bits; a number that does not fit becomes the largest number of its sign, which no argument allows.
   recursive integer(c_int32_t) function narrow(i)
     integer, intent(in) :: i
     integer(c_int64_t), parameter :: largest = int(huge(1_c_int32_t), c_int64_t)
@@ -83,7 +84,7 @@ contains
     narrow = int(max(-largest, min(largest, int(i, c_int64_t))), c_int32_t)
   end function
 
-  !> n; 0 where it is more than the unknowns of all bodies: the library refuses that, and the host's arrays are not looked at.
+  !> n, or 0 if n exceeds the unknowns of all bodies: the library refuses 0 and does not read the host's arrays.
   recursive integer(c_int64_t) function readable(ip, n)
     integer, intent(in) :: ip, n
     integer(c_int64_t), target :: unknowns
@@ -93,14 +94,14 @@ contains
     if (wide(n) <= unknowns) readable = wide(n)
   end function
 
-  !> A count; one beyond the largest INTEGER is that INTEGER.
+  !> A count; a count beyond the largest INTEGER becomes the largest INTEGER.
   recursive elemental integer function clipped(found)
     integer(c_int64_t), intent(in) :: found
 
     clipped = int(max(-int(huge(1), c_int64_t), min(int(huge(1), c_int64_t), found)))
   end function
 
-  !> i becomes the number found, or ierr FTEFIT.
+  !> Sets i to the number found, or ierr to FTEFIT.
   recursive subroutine fit(found, i, ierr)
     integer(c_int64_t), intent(in) :: found
     integer, intent(inout) :: i, ierr
@@ -112,7 +113,7 @@ contains
     end if
   end subroutine
 
-  !> The same for the first n numbers, all or none.
+  !> Converts the first n numbers, all or none.
   recursive subroutine fit_all(found, n, i, ierr)
     integer(c_int64_t), intent(in) :: found(:)
     integer, intent(in) :: n
@@ -125,7 +126,8 @@ contains
     end if
   end subroutine
 
-  !> A list of which the library has written the first cap numbers, from 0: how many there are, and those, from 1.
+  !> A list of which the library has written the first cap numbers, from 0: returns how many numbers there are, and the
+  !> written ones from 1.
   recursive subroutine fit_list(count, cap, found, n, i, ierr)
     integer(c_int64_t), intent(in) :: count, found(:)
     integer, intent(in) :: cap
@@ -147,7 +149,7 @@ contains
     end do
   end subroutine
 
-  !> The numbers found, as many as fit into x(n).
+  !> Writes the numbers found, as many as fit into x(n).
   recursive subroutine give_reals(found, n, x)
     real(c_double), intent(in) :: found(:)
     integer, intent(in) :: n
@@ -174,7 +176,8 @@ contains
       nr, rcert)
   end subroutine
 
-  !> The host's status: argument k of the C function is argument place(k) of the subroutine; absent: the same one.
+  !> The status for the host: argument k of the C function is argument place(k) of the subroutine; if place is absent,
+  !> argument k.
   recursive integer function told(status, place)
     integer(c_int32_t), intent(in) :: status
     integer, intent(in), optional :: place(:)
@@ -186,7 +189,7 @@ contains
     if (k <= size(place)) told = int(FETI_ARGUMENT) - place(k)
   end function
 
-  !> Address of an array of the host, NULL where there is none.
+  !> Address of an array of the host, NULL if it is absent.
   recursive type(c_ptr) function reals(x, present)
     real(c_double), intent(in), target :: x(*)
     logical, intent(in) :: present
@@ -202,7 +205,8 @@ contains
     integers = c_loc(i(1))
   end function
 
-  !> Text of the thread's last error, blank padded or cut; none where another status is asked for: FTEMEM of the face itself.
+  !> Text of the last error of this thread, padded with blanks or truncated; blank if ierr is not its status, as for
+  !> FTEMEM of this interface itself.
   recursive subroutine give_last_error(status, text)
     integer, intent(in) :: status
     character(len=*), intent(inout) :: text

@@ -1,5 +1,5 @@
-!> FORTRAN 77 face: bodies. Everything is copied; bodies and unknowns count from 1. A refused call changes nothing.
-!> See docs/fortran77.md.
+!> FORTRAN 77 interface: bodies. The library copies all arrays; bodies and unknowns count from 1. A refused call changes
+!> nothing. See docs/fortran77.md.
 
 !> Adds a body with n unknowns; ibody: its number.
 recursive subroutine ftbadd(ip, n, ibody, ierr)
@@ -15,7 +15,7 @@ recursive subroutine ftbadd(ip, n, ibody, ierr)
 end subroutine
 
 !> Stiffness by rows, n x n, force / length: row i holds the entries iptr(i) to iptr(i+1)-1 of icol and val; iptr(n+1).
-!> istor: FTFULL, FTLOWR (columns <= row) or FTUPPR; a lower triangle by columns is FTUPPR.
+!> istor: FTFULL, FTLOWR (columns <= row) or FTUPPR; use FTUPPR for a lower triangle by columns.
 recursive subroutine ftbstf(ip, ibody, n, iptr, icol, val, istor, ierr)
   use feti_contact_f77_base
   implicit none
@@ -38,7 +38,7 @@ recursive subroutine ftbdns(ip, ibody, n, a, lda, istor, ierr)
   ierr = told(feti_body_stiffness_dense(handle(ip), from_zero(ibody), wide(n), a, wide(lda), narrow(istor), FETI_COPY))
 end subroutine
 
-!> The same with the diagonal apart, diag(n), and what is beside it in iptr, icol, val.
+!> Stiffness by rows with a separate diagonal diag(n), and the off-diagonal entries in iptr, icol, val.
 recursive subroutine ftbspl(ip, ibody, n, diag, iptr, icol, val, istor, ierr)
   use feti_contact_f77_base
   implicit none
@@ -50,7 +50,7 @@ recursive subroutine ftbspl(ip, ibody, n, diag, iptr, icol, val, istor, ierr)
     FETI_COPY), [1, 2, 3, 4, 5, 6, 7, 0, 8, 0])
 end subroutine
 
-!> New values on the pattern of ftbspl: diag(n), val(nnz).
+!> New values for the pattern of ftbspl: diag(n), val(nnz).
 recursive subroutine ftbvsp(ip, ibody, n, diag, nnz, val, ierr)
   use feti_contact_f77_base
   implicit none
@@ -77,7 +77,7 @@ recursive subroutine ftbcmp(ip, ibody, n, icomp, ierr)
   if (ierr == FETI_OK) call fit_all(found + 1, n, icomp, ierr)
 end subroutine
 
-!> The host's own numbers of the unknowns of a body, inum(n), from 1, each unknown of all bodies another one.
+!> The host's own numbers of the unknowns of a body, inum(n), from 1, different for all unknowns of all bodies.
 recursive subroutine ftbnum(ip, ibody, n, inum, ierr)
   use feti_contact_f77_base
   implicit none
@@ -87,7 +87,7 @@ recursive subroutine ftbnum(ip, ibody, n, inum, ierr)
   ierr = told(numbering(handle(ip), from_zero(ibody), wide(n), inum, 1_c_int32_t))
 end subroutine
 
-!> New values on the pattern of ftbstf, val(nnz) in its order: a numeric factorisation, no analysis.
+!> New values for the pattern of ftbstf, val(nnz) in the same order; they cost a numeric factorisation but no analysis.
 recursive subroutine ftbval(ip, ibody, nnz, val, ierr)
   use feti_contact_f77_base
   implicit none
@@ -98,7 +98,7 @@ recursive subroutine ftbval(ip, ibody, nnz, val, ierr)
   ierr = told(feti_body_values(handle(ip), from_zero(ibody), wide(nnz), val))
 end subroutine
 
-!> New values of a dense matrix, a(lda,n), in the storage of ftbdns.
+!> New values for a dense matrix, a(lda,n), in the storage of ftbdns.
 recursive subroutine ftbvdn(ip, ibody, n, a, lda, ierr)
   use feti_contact_f77_base
   implicit none
@@ -109,8 +109,8 @@ recursive subroutine ftbvdn(ip, ibody, n, a, lda, ierr)
   ierr = told(feti_body_values_dense(handle(ip), from_zero(ibody), wide(n), a, wide(lda)))
 end subroutine
 
-!> Null space r(ldr,nr) of a body. iflag: FTEXCT, the columns span it (nr = 0: none, r is not read), FTCAND, it lies in
-!> their span, or FTSOFT, they are motions that K resists softly.
+!> Null space r(ldr,nr) of a body. iflag: FTEXCT, the columns span the null space (nr = 0: K is not singular, r is not
+!> read); FTCAND, the null space lies in their span; FTSOFT, they are motions that K resists weakly.
 recursive subroutine ftbnul(ip, ibody, nr, n, r, ldr, iflag, ierr)
   use feti_contact_f77_base
   implicit none
@@ -132,8 +132,8 @@ recursive subroutine ftbreg(ip, ibody, ierr)
   ierr = told(feti_body_no_null_space(handle(ip), from_zero(ibody)))
 end subroutine
 
-!> Reads the null space that the library works with into r(ldr,nr). nr in: columns of r, 0: only the dimension is wanted, r
-!> is not touched; out: the dimension.
+!> Reads the null space that the library uses into r(ldr,nr). nr in: columns of r; 0: only the dimension is returned and r
+!> is unchanged; out: the dimension.
 recursive subroutine ftbnug(ip, ibody, n, nr, r, ldr, ierr)
   use feti_contact_f77_base
   implicit none
@@ -148,8 +148,8 @@ recursive subroutine ftbnug(ip, ibody, n, nr, r, ldr, ierr)
   if (ierr == FETI_OK) call fit(columns, nr, ierr)
 end subroutine
 
-!> Where the unknowns are: node(n), any label of 32 bits, equal for the unknowns of one node; idir(n), 1 to 3 displacement, 4
-!> to 6 rotation; xyz(ldx,n), the first idim numbers of a column, length.
+!> Positions of the unknowns: node(n), any label of 32 bits, equal for the unknowns of one node; idir(n), 1 to 3
+!> displacement, 4 to 6 rotation; xyz(ldx,n), the first idim numbers of a column, length.
 recursive subroutine ftbxyz(ip, ibody, idim, n, node, idir, xyz, ldx, ierr)
   use feti_contact_f77_base
   implicit none
@@ -174,8 +174,8 @@ recursive subroutine ftbxyz(ip, ibody, idim, n, node, idir, xyz, ldx, ierr)
     directions, xyz, wide(ldx)))
 end subroutine
 
-!> What the rigid motions of these places are. iflag: FTCAND, candidates for the null space, as without this call; FTSOFT,
-!> motions that K resists softly.
+!> How the library uses the rigid body motions of these positions. iflag: FTCAND, as candidates for the null space (the
+!> default); FTSOFT, as motions that K resists weakly.
 recursive subroutine ftbxyf(ip, ibody, iflag, ierr)
   use feti_contact_f77_base
   implicit none
@@ -185,7 +185,8 @@ recursive subroutine ftbxyf(ip, ibody, iflag, ierr)
   ierr = told(feti_body_coordinates_flags(handle(ip), from_zero(ibody), narrow(iflag)))
 end subroutine
 
-!> Load of a body, f(n), force; holds until it is given again. ibody = FTALL: of all, in the host's numbers.
+!> Load of a body, f(n), force; it stays valid until the next call. ibody = FTALL: load of all bodies, in the host's
+!> numbers.
 recursive subroutine ftblod(ip, ibody, n, f, ierr)
   use feti_contact_f77_base
   implicit none
@@ -196,7 +197,7 @@ recursive subroutine ftblod(ip, ibody, n, f, ierr)
   ierr = told(feti_body_load(handle(ip), body_or_all(ibody), wide(n), f))
 end subroutine
 
-!> Reads the unknowns that K+ holds, idof(nr), nr the dimension of the null space.
+!> Reads the unknowns that K+ holds, idof(nr), where nr is the dimension of the null space.
 recursive subroutine ftbfix(ip, ibody, nr, idof, ierr)
   use feti_contact_f77_base
   implicit none
@@ -212,7 +213,7 @@ recursive subroutine ftbfix(ip, ibody, nr, idof, ierr)
   if (ierr == FETI_OK) call fit_all(found + 1, nr, idof, ierr)
 end subroutine
 
-!> Chooses them in place of the library: idof(nr); nr = 0: the library chooses again.
+!> Chooses the unknowns that K+ holds: idof(nr); nr = 0: the library chooses them again.
 recursive subroutine ftbfxs(ip, ibody, nr, idof, ierr)
   use feti_contact_f77_base
   implicit none
@@ -241,8 +242,8 @@ recursive subroutine ftbkpl(ip, ibody, n, nrhs, x, ldx, y, ldy, ierr)
   ierr = told(feti_body_kplus(handle(ip), from_zero(ibody), wide(n), wide(nrhs), x, wide(ldx), y, wide(ldy)))
 end subroutine
 
-!> A body as it is given, and what the last setup has made of it: ifact(ni), rfact(nr), positions FTBUNK to FTBPCE, FTBENT to
-!> FTBSRN; -1 or NaN: not there yet.
+!> Input of a body and results of its last setup: ifact(ni), rfact(nr), positions FTBUNK to FTBPCE, FTBENT to FTBSRN; -1
+!> or NaN: not known yet.
 recursive subroutine ftbinf(ip, ibody, ni, ifact, nr, rfact, ierr)
   use feti_contact_f77_base
   implicit none

@@ -1,8 +1,9 @@
-!> FORTRAN 77 face: bodies by their elements. Bodies, elements and unknowns count from 1. A refused call changes nothing.
-!> See docs/fortran77.md.
+!> FORTRAN 77 interface: bodies by their elements. Bodies, elements and unknowns count from 1. A refused call changes
+!> nothing. See docs/fortran77.md.
 
-!> Which unknowns the ne elements join: element e the entries iptr(e) to iptr(e+1)-1 of idof; iptr(ne+1). A number below 1 is a
-!> held unknown, row and column are left out: 0 is the held unknown 1, -1 the held unknown 2. The matrices follow.
+!> Connectivity of the ne elements: element e has the entries iptr(e) to iptr(e+1)-1 of idof; iptr(ne+1). A number below 1
+!> means a held unknown, whose row and column are left out: 0 means held unknown 1, -1 means held unknown 2. Then give the
+!> matrices.
 recursive subroutine ftbmsh(ip, ibody, ne, iptr, idof, ierr)
   use feti_contact_f77_base
   implicit none
@@ -12,7 +13,8 @@ recursive subroutine ftbmsh(ip, ibody, ne, iptr, idof, ierr)
   ierr = told(mesh_of_body(handle(ip), from_zero(ibody), wide(ne), iptr, idof, 1_c_int32_t))
 end subroutine
 
-!> Adds the matrix ae(lda,n) of element ie. Each comes once in a pass, the first one after a complete pass begins the next.
+!> Adds the matrix ae(lda,n) of element ie. Give each element once in a pass; the first element after a complete pass
+!> begins the next pass.
 recursive subroutine ftbelm(ip, ibody, ie, n, ae, lda, ierr)
   use feti_contact_f77_base
   implicit none
@@ -23,8 +25,8 @@ recursive subroutine ftbelm(ip, ibody, ie, n, ae, lda, ierr)
   ierr = told(feti_body_element(handle(ip), from_zero(ibody), from_zero(ie), wide(n), ae, wide(lda)))
 end subroutine
 
-!> Adds those of ne elements from ifirst on, one after the other in ae. istor: FTFULL, n x n each; FTLOWR or FTUPPR, that
-!> triangle column by column.
+!> Adds the matrices of ne elements, beginning with element ifirst, one after the other in ae. istor: FTFULL, n x n each;
+!> FTLOWR or FTUPPR, this triangle column by column.
 recursive subroutine ftbels(ip, ibody, ifirst, ne, ae, istor, ierr)
   use feti_contact_f77_base
   implicit none
@@ -35,7 +37,7 @@ recursive subroutine ftbels(ip, ibody, ifirst, ne, ae, istor, ierr)
   ierr = told(feti_body_elements(handle(ip), from_zero(ibody), from_zero(ifirst), wide(ne), ae, narrow(istor)))
 end subroutine
 
-!> How many numbers ftbels reads from ae.
+!> Number of values that ftbels reads from ae.
 recursive subroutine ftbesz(ip, ibody, ifirst, ne, istor, nnz, ierr)
   use feti_contact_f77_base
   implicit none
@@ -48,7 +50,7 @@ recursive subroutine ftbesz(ip, ibody, ifirst, ne, istor, nnz, ierr)
   if (ierr == FETI_OK) call fit(found, nnz, ierr)
 end subroutine
 
-!> What the held unknowns 1 to nh take up in the last answer, r(nh), force.
+!> Forces on the held unknowns 1 to nh in the last answer, r(nh), force.
 recursive subroutine ftbhld(ip, ibody, nh, r, ierr)
   use feti_contact_f77_base
   implicit none
@@ -59,7 +61,8 @@ recursive subroutine ftbhld(ip, ibody, nh, r, ierr)
   ierr = told(feti_body_held_forces(handle(ip), from_zero(ibody), wide(nh), r))
 end subroutine
 
-!> Piece of each unknown, ipiece(n), from 1, of several the first; all 1 in a body that is not cut.
+!> Piece of each unknown, ipiece(n), from 1. An unknown of several pieces gets the first one; all are 1 if the body is not
+!> cut.
 recursive subroutine ftbpcs(ip, ibody, n, ipiece, ierr)
   use feti_contact_f77_base
   implicit none

@@ -1,6 +1,6 @@
-!> FORTRAN 77 face: a problem as a file. See docs/fortran77.md.
+!> FORTRAN 77 interface: a problem as a file. See docs/fortran77.md.
 
-!> Writes all that has been given to the problem to the file path; an old one is replaced.
+!> Writes all input of the problem to the file path; an existing file is replaced.
 recursive subroutine ftwrit(ip, path, ierr)
   use feti_contact_f77_base
   implicit none
@@ -11,7 +11,7 @@ recursive subroutine ftwrit(ip, path, ierr)
   ierr = told(feti_problem_write(handle(ip), c_text(path)))
 end subroutine
 
-!> Reads such a file into an empty problem.
+!> Reads a file of ftwrit into an empty problem.
 recursive subroutine ftread(ip, path, ierr)
   use feti_contact_f77_base
   implicit none

@@ -1,9 +1,10 @@
-!> FORTRAN 77 face: nodes with friction, numbered from 1; values of nodes are (idim, nd). Everything is copied. A refused call
-!> changes nothing. The force on the bodies is -T'lambda_t, the slip T u - s_old - C_t lambda_t. See docs/fortran77.md.
+!> FORTRAN 77 interface: nodes with friction, numbered from 1; values of nodes are (idim, nd). The library copies all
+!> arrays. A refused call changes nothing. The force on the bodies is -T'lambda_t; the slip is T u - s_old - C_t lambda_t.
+!> See docs/fortran77.md.
 
-!> Adds nd nodes behind those that are there. nrow(nd): contact row of each, 0: none. Tangential row i, idim for each node,
-!> holds the entries iptr(i) to iptr(i+1)-1 of ibody, idof and val; iptr(idim*nd+1). coef(nd), no unit, bnd(nd), force.
-!> ifirst: the first new node.
+!> Adds nd nodes after the existing nodes. nrow(nd): contact row of each node; 0: none. Tangential row i (idim rows per
+!> node) holds the entries iptr(i) to iptr(i+1)-1 of ibody, idof and val; iptr(idim*nd+1). coef(nd), no unit, bnd(nd),
+!> force. ifirst: the first new node.
 recursive subroutine ftfadd(ip, nd, idim, nrow, iptr, ibody, idof, val, coef, bnd, ifirst, ierr)
   use feti_contact_f77_base
   implicit none
@@ -20,7 +21,7 @@ recursive subroutine ftfadd(ip, nd, idim, nrow, iptr, ibody, idof, val, coef, bn
   if (ierr == FETI_OK) call fit(first + 1, ifirst, ierr)
 end subroutine
 
-!> The same, idof counting through the bodies one after the other.
+!> Like the subroutine above, with idof counted consecutively over all bodies.
 recursive subroutine ftfadc(ip, nd, idim, nrow, iptr, idof, val, coef, bnd, ifirst, ierr)
   use feti_contact_f77_base
   implicit none
@@ -58,7 +59,7 @@ recursive subroutine ftfbnd(ip, ifirst, nd, bnd, ierr)
   ierr = told(feti_friction_law(handle(ip), from_zero(ifirst), wide(nd), c_null_ptr, reals(bnd, .true.)), [1, 2, 3, 0, 4])
 end subroutine
 
-!> Makes the stick of the nd nodes from ifirst elastic: ct(nd) = C_t, length / force; 0: rigid.
+!> Makes sticking of the nd nodes from ifirst elastic: ct(nd) = C_t, length / force; 0: rigid.
 recursive subroutine ftfcmp(ip, ifirst, nd, ct, ierr)
   use feti_contact_f77_base
   implicit none
@@ -69,7 +70,7 @@ recursive subroutine ftfcmp(ip, ifirst, nd, ct, ierr)
   ierr = told(feti_friction_compliance(handle(ip), from_zero(ifirst), wide(nd), ct))
 end subroutine
 
-!> What the slips of the nd nodes from ifirst are counted from: sold(idim,nd), length.
+!> The reference from which slips of the nd nodes from ifirst are measured: sold(idim,nd), length.
 recursive subroutine ftfref(ip, ifirst, nd, idim, sold, ierr)
   use feti_contact_f77_base
   implicit none
@@ -80,7 +81,7 @@ recursive subroutine ftfref(ip, ifirst, nd, idim, sold, ierr)
   ierr = told(feti_friction_reference(handle(ip), from_zero(ifirst), wide(nd), narrow(idim), sold))
 end subroutine
 
-!> Ends a load step: what the slips are counted from becomes what the last answer has reached, T u - C_t lambda_t.
+!> Ends a load step: sets the reference of the slips to T u - C_t lambda_t of the last answer.
 recursive subroutine ftfcom(ip, ierr)
   use feti_contact_f77_base
   implicit none
@@ -105,7 +106,7 @@ recursive subroutine ftfcnt(ip, nd, idim, ierr)
   if (ierr == FETI_OK) idim = int(rows)
 end subroutine
 
-!> Slips of the nd nodes in the last answer, slip(idim,nd), length; of the sign of their forces.
+!> Slips of the nd nodes in the last answer, slip(idim,nd), length; they have the sign of their forces.
 recursive subroutine ftfslp(ip, nd, idim, slip, ierr)
   use feti_contact_f77_base
   implicit none

@@ -1,4 +1,4 @@
-!> FORTRAN 77 face: what setups and solves tell in words. The host's function shares its data with the rest of the host by
+!> FORTRAN 77 interface: the log of setups and solves. The host's function shares data with the rest of the host through
 !> COMMON. See docs/fortran77.md.
 module feti_contact_f77_log
   use feti_contact_f77_base
@@ -7,7 +7,7 @@ module feti_contact_f77_log
   public :: address_of, hand_on, host_listener
 
   abstract interface
-    !> level: FTLRES, FTLPHA or FTLSTP; text: one line. Result: 0 goes on, any other number is a failure of the host.
+    !> level: FTLRES, FTLPHA or FTLSTP; text: one line. Result: 0 to continue, any other number to report a failure.
     integer function host_listener(level, text)
       integer, intent(in) :: level
       character(len=*), intent(in) :: text
@@ -16,7 +16,7 @@ module feti_contact_f77_log
 
 contains
 
-  !> The host's function travels through the library as the data of hand_on.
+  !> The host's function is passed through the library as the data of hand_on.
   recursive type(c_ptr) function address_of(listen)
     procedure(host_listener) :: listen
     type(c_funptr) :: address
@@ -25,7 +25,7 @@ contains
     address_of = transfer(address, c_null_ptr)
   end function
 
-  !> What the library calls: hands a line on to the function of the host.
+  !> Called by the library; passes a line on to the function of the host.
   recursive function hand_on(user, level, text) result(reply) bind(C, name='')
     type(c_ptr), value :: user
     integer(c_int32_t), value :: level
@@ -39,8 +39,8 @@ contains
 
 end module
 
-!> Names the INTEGER FUNCTION listen(level, text) of the host, EXTERNAL there, that gets lines up to a level: FTLRES, FTLPHA or
-!> FTLSTP.
+!> Registers the INTEGER FUNCTION listen(level, text) of the host, declared EXTERNAL there, which receives lines up to a
+!> level: FTLRES, FTLPHA or FTLSTP.
 recursive subroutine ftonlg(ip, listen, level, ierr)
   use feti_contact_f77_base
   use feti_contact_f77_log
@@ -54,7 +54,7 @@ recursive subroutine ftonlg(ip, listen, level, ierr)
   ierr = told(feti_on_log(handle(ip), function_of_face, narrow(level), address_of(listen)))
 end subroutine
 
-!> Nothing is told any more.
+!> Removes the function of the host.
 recursive subroutine ftoflg(ip, ierr)
   use feti_contact_f77_base
   implicit none

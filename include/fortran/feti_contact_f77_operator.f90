@@ -1,5 +1,5 @@
-!> FORTRAN 77 face: bodies whose stiffness the host keeps. Its function shares its data with the rest of the host by COMMON.
-!> See docs/fortran77.md.
+!> FORTRAN 77 interface: bodies with functions of the host instead of a matrix. The function shares data with the rest of
+!> the host through COMMON. See docs/fortran77.md.
 module feti_contact_f77_operator
   use feti_contact_f77_base
   implicit none
@@ -7,8 +7,8 @@ module feti_contact_f77_operator
   public :: address_of, multiply_kplus, multiply_k, host_product
 
   abstract interface
-    !> y(ldy,nrhs) = K+ x(ldx,nrhs) where iwhat is FTKPLS, K x where it is FTKMUL, for body ibody. Result: 0, or any other
-    !> number for a failure of the host.
+    !> y(ldy,nrhs) = K+ x(ldx,nrhs) if iwhat is FTKPLS, or K x if iwhat is FTKMUL, for body ibody. Result: 0, or any other
+    !> number to report a failure.
     integer function host_product(iwhat, ibody, n, nrhs, x, ldx, y, ldy)
       import :: c_double
       integer, intent(in) :: iwhat, ibody, n, nrhs, ldx, ldy
@@ -19,7 +19,7 @@ module feti_contact_f77_operator
 
 contains
 
-  !> The host's function travels through the library as the data of multiply_kplus and multiply_k.
+  !> The host's function is passed through the library as the data of multiply_kplus and multiply_k.
   recursive type(c_ptr) function address_of(host)
     procedure(host_product) :: host
     type(c_funptr) :: address
@@ -28,7 +28,7 @@ contains
     address_of = transfer(address, c_null_ptr)
   end function
 
-  !> What the library calls: Y = K+ X by the function of the host.
+  !> Called by the library: Y = K+ X by the function of the host.
   recursive function multiply_kplus(user, body, n, nrhs, x, ldx, y, ldy) result(reply) bind(C, name='')
     type(c_ptr), value :: user
     integer(c_int64_t), value :: body, n, nrhs, ldx, ldy
@@ -41,7 +41,7 @@ contains
     reply = narrow(host(FTKPLS, clipped(body + 1), clipped(n), clipped(nrhs), x, clipped(ldx), y, clipped(ldy)))
   end function
 
-  !> What the library calls: Y = K X by the function of the host.
+  !> Called by the library: Y = K X by the function of the host.
   recursive function multiply_k(user, body, n, nrhs, x, ldx, y, ldy) result(reply) bind(C, name='')
     type(c_ptr), value :: user
     integer(c_int64_t), value :: body, n, nrhs, ldx, ldy
@@ -56,8 +56,9 @@ contains
 
 end module
 
-!> Names the INTEGER FUNCTION host(iwhat, ibody, n, nrhs, x, ldx, y, ldy) of the host, EXTERNAL there, that multiplies by K and
-!> by a generalised inverse K+ of body ibody; diag(n): diagonal of K. iconc: 0, it runs on the calling thread alone; 1, on any.
+!> Registers the INTEGER FUNCTION host(iwhat, ibody, n, nrhs, x, ldx, y, ldy) of the host, declared EXTERNAL there, which
+!> multiplies by K and by a generalised inverse K+ of body ibody; diag(n): diagonal of K. iconc: 0, it runs only on the
+!> calling thread; 1, on any thread.
 recursive subroutine ftbopr(ip, ibody, n, diag, host, iconc, ierr)
   use feti_contact_f77_base
   use feti_contact_f77_operator

@@ -1,6 +1,6 @@
-!> FORTRAN 77 face: options by name. A refused name or value leaves the option as it was. See docs/fortran77.md.
+!> FORTRAN 77 interface: options by name. A refused name or value leaves the option unchanged. See docs/fortran77.md.
 
-!> Sets the option name, a number: d.
+!> Sets the option name to a number: d.
 recursive subroutine ftsetd(ip, name, d, ierr)
   use feti_contact_f77_base
   implicit none
@@ -12,7 +12,7 @@ recursive subroutine ftsetd(ip, name, d, ierr)
   ierr = told(feti_set_f64(handle(ip), c_text(name), d))
 end subroutine
 
-!> Sets the option name, an integer: i.
+!> Sets the option name to an integer: i.
 recursive subroutine ftseti(ip, name, i, ierr)
   use feti_contact_f77_base
   implicit none
@@ -23,7 +23,7 @@ recursive subroutine ftseti(ip, name, i, ierr)
   ierr = told(feti_set_i64(handle(ip), c_text(name), wide(i)))
 end subroutine
 
-!> Sets the option name, a text: text without its trailing blanks.
+!> Sets the option name to a text: text without its trailing blanks.
 recursive subroutine ftsetc(ip, name, text, ierr)
   use feti_contact_f77_base
   implicit none
@@ -60,7 +60,7 @@ recursive subroutine ftgeti(ip, name, i, ierr)
   if (ierr == FETI_OK) call fit(found, i, ierr)
 end subroutine
 
-!> Reads the option name, a text: text, cut or blank padded, and its full length l.
+!> Reads the option name, a text: text, truncated or padded with blanks, and its full length l.
 recursive subroutine ftgetc(ip, name, text, l, ierr)
   use feti_contact_f77_base
   implicit none
@@ -86,8 +86,8 @@ recursive subroutine ftoptn(n)
   n = clipped(feti_option_count())
 end subroutine
 
-!> Option k, from 1: name, one sentence doc, type ityp (FTODBL, FTOINT, FTOCHR), range rmin to rmax of a number, its default
-!> in dflt, idflt or cdflt after its type.
+!> Option k, from 1: name, one sentence doc, type ityp (FTODBL, FTOINT, FTOCHR), range rmin to rmax of a number, and its
+!> default in dflt, idflt or cdflt, depending on the type.
 recursive subroutine ftopta(k, name, doc, ityp, rmin, rmax, dflt, idflt, cdflt, ierr)
   use feti_contact_f77_base
   implicit none
@@ -111,7 +111,7 @@ recursive subroutine ftopta(k, name, doc, ityp, rmin, rmax, dflt, idflt, cdflt, 
   idflt = clipped(found%default_i64)
 end subroutine
 
-!> Sets several options by one text, such as 'tolerance=1e-8 threads=4': all or none.
+!> Sets several options with one text, such as 'tolerance=1e-8 threads=4': all or none.
 recursive subroutine ftsett(ip, text, ierr)
   use feti_contact_f77_base
   implicit none

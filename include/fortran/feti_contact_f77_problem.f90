@@ -1,8 +1,9 @@
-!> FORTRAN 77 face: problems, errors, version. See docs/fortran77.md; ierr, the status, comes last everywhere.
+!> FORTRAN 77 interface: problems, errors, version. See docs/fortran77.md. The last argument of every subroutine is ierr,
+!> the status.
 
-!> Creates a problem: ip, its handle. Texts and positions count from 1.
-!> The check words iword = 1, 2 and dword = 1, 2 tell the sizes of the host's INTEGER and DOUBLE PRECISION: where they are
-!> not those of the face, ierr, written in the host's size, is FTEISZ or FTEDSZ, FTERR has the text, and ip is as it was.
+!> Creates a problem: ip, its handle. Texts and positions count from 1. The check words iword = 1, 2 and dword = 1, 2 show
+!> the sizes of the host's INTEGER and DOUBLE PRECISION. If they differ from the sizes of this interface, ierr, written in
+!> the host's size, is FTEISZ or FTEDSZ, FTERR returns the text, and ip is unchanged.
 recursive subroutine ftnew(iword, dword, ip, ierr)
   use feti_contact_f77_base
   implicit none
@@ -32,7 +33,7 @@ recursive subroutine ftnew(iword, dword, ip, ierr)
 
 contains
 
-  !> Makes the problem once the sizes are known to agree; numbers in texts count from 1.
+  !> Creates the problem after the sizes have been found to agree; numbers in texts count from 1.
   recursive subroutine create(status)
     integer, intent(out) :: status
     type(c_ptr) :: p
@@ -47,7 +48,7 @@ contains
 
 end subroutine
 
-!> Destroys a problem with all it holds; ip becomes 0. Every copy of ip gives FTEHDL from now on.
+!> Destroys a problem with all its data and sets ip to 0. From then on calls with a copy of ip return FTEHDL.
 recursive subroutine ftfree(ip, ierr)
   use feti_contact_f77_base
   implicit none
@@ -60,7 +61,7 @@ recursive subroutine ftfree(ip, ierr)
   if (ierr == FETI_OK) ip = 0
 end subroutine
 
-!> Text to the status ierr that a subroutine has just returned on this thread; blank for 0.
+!> Text for the status ierr that a subroutine has just returned on this thread; blank for 0.
 recursive subroutine fterr(ierr, text)
   use feti_contact_f77_base
   implicit none
@@ -69,8 +70,8 @@ recursive subroutine fterr(ierr, text)
   integer(c_int32_t), parameter :: first(2) = transfer(1_c_int64_t, [0_c_int32_t, 0_c_int32_t])
   integer :: status
 
-  ! The half of ierr that tells, whatever the size of the host's INTEGER; where the first half is the upper one, of the
-  ! face's INTEGER.
+  ! The half of ierr that has the status, whatever the size of the host's INTEGER; if the first half is the upper one, in
+  ! the INTEGER of this interface.
   status = int(ierr(merge(1, storage_size(status) / 32, first(1) == 1)))
   text = ' '
   if (status == FETI_OK) return
@@ -82,8 +83,8 @@ recursive subroutine fterr(ierr, text)
   end if
 end subroutine
 
-!> Text of the problem's last error and its full length l; blank when there was none. From any thread, also while another
-!> call on the problem runs.
+!> Text of the problem's last error and its full length l; blank if no error has occurred. May be called from any thread,
+!> also while another call on the problem runs.
 recursive subroutine ftperr(ip, text, l, ierr)
   use feti_contact_f77_base
   implicit none
@@ -99,8 +100,8 @@ recursive subroutine ftperr(ip, text, l, ierr)
   if (ierr == FETI_OK) text = f_text(c_loc(buffer))
 end subroutine
 
-!> Facts of the thread's last error: idet(ni) and rdet(nr), positions FTDSTA to FTDNOD, FTDVAL, FTDLIM; name: the C function,
-!> whose arguments idet(FTDARG) counts. Numbers count from 1, 0: does not apply.
+!> Details of the last error of this thread: idet(ni) and rdet(nr), positions FTDSTA to FTDNOD, FTDVAL, FTDLIM; name: the
+!> C function, to whose arguments idet(FTDARG) refers. Numbers count from 1; 0: does not apply.
 recursive subroutine ftedet(ni, idet, nr, rdet, name, ierr)
   use feti_contact_f77_base
   implicit none
@@ -121,7 +122,7 @@ recursive subroutine ftedet(ni, idet, nr, rdet, name, ierr)
   name = f_text(c_loc(found%function))
 end subroutine
 
-!> Name of a status, such as FETI_LOAD_NOT_HELD, which FTELNH is here.
+!> Name of a status, such as FETI_LOAD_NOT_HELD for FTELNH.
 recursive subroutine ftsnam(istat, text)
   use feti_contact_f77_base
   implicit none

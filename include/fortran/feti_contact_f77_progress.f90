@@ -1,5 +1,5 @@
-!> FORTRAN 77 face: watching and cancelling. The host's function shares its data with the rest of the host by COMMON.
-!> See docs/fortran77.md.
+!> FORTRAN 77 interface: progress and cancelling. The host's function shares data with the rest of the host through
+!> COMMON. See docs/fortran77.md.
 module feti_contact_f77_progress
   use feti_contact_f77_base
   implicit none
@@ -7,8 +7,8 @@ module feti_contact_f77_progress
   public :: address_of, hand_on, host_function
 
   abstract interface
-    !> now(5) and rnow(6), positions FTNPHA to FTNACT, FTNRES to FTNFRA. Result: 0 goes on, > 0 cancels, < 0 is a failure
-    !> of the host.
+    !> now(5) and rnow(6), positions FTNPHA to FTNACT, FTNRES to FTNFRA. Result: 0 to continue, > 0 to cancel, < 0 to
+    !> report a failure.
     integer function host_function(now, rnow)
       import :: c_double
       integer, intent(in) :: now(5)
@@ -18,8 +18,8 @@ module feti_contact_f77_progress
 
 contains
 
-  !> The host's function travels through the library as the data of hand_on: nothing is kept here, so that threads need not
-  !> agree.
+  !> The host's function is passed through the library as the data of hand_on. This module keeps no data, so threads need
+  !> no synchronisation.
   recursive type(c_ptr) function address_of(hear)
     procedure(host_function) :: hear
     type(c_funptr) :: address
@@ -28,7 +28,7 @@ contains
     address_of = transfer(address, c_null_ptr)
   end function
 
-  !> What the library calls: hands a step on to the function of the host.
+  !> Called by the library; passes a step on to the function of the host.
   recursive function hand_on(user, now) result(reply) bind(C, name='')
     type(c_ptr), value :: user
     type(feti_progress), intent(in) :: now
@@ -43,8 +43,8 @@ contains
 
 end module
 
-!> Names the INTEGER FUNCTION hear(now, rnow) of the host, EXTERNAL there, that hears of every body in every part of a setup
-!> and of every step of a solve.
+!> Registers the INTEGER FUNCTION hear(now, rnow) of the host, declared EXTERNAL there, which is called for every body in
+!> every part of a setup and for every step of a solve.
 recursive subroutine ftonpr(ip, hear, ierr)
   use feti_contact_f77_base
   use feti_contact_f77_progress
@@ -58,7 +58,7 @@ recursive subroutine ftonpr(ip, hear, ierr)
   ierr = told(feti_on_progress(handle(ip), function_of_face, address_of(hear)))
 end subroutine
 
-!> Nothing is told any more.
+!> Removes the function of the host.
 recursive subroutine ftofpr(ip, ierr)
   use feti_contact_f77_base
   implicit none
@@ -68,7 +68,7 @@ recursive subroutine ftofpr(ip, ierr)
   ierr = told(feti_on_progress(handle(ip), c_null_funptr, c_null_ptr))
 end subroutine
 
-!> Cancels the setup or the solve that runs on the problem, from another thread or from inside hear.
+!> Cancels the setup or solve that is running on the problem; call it from another thread or from inside hear.
 recursive subroutine ftcanc(ip, ierr)
   use feti_contact_f77_base
   implicit none

@@ -1,7 +1,7 @@
-!> FORTRAN 77 face: solution and answers. Answers are written when the status is not negative; a failed call leaves the
-!> host's arrays as they were. See docs/fortran77.md.
+!> FORTRAN 77 interface: solve and results. Results are written if the status is not negative; a failed call leaves the
+!> host's arrays unchanged. See docs/fortran77.md.
 
-!> Null spaces, factors and dual operator ahead of FTSOLV, which does it otherwise when it is due.
+!> Computes null spaces, factors and the dual operator in advance; otherwise FTSOLV does so when needed.
 recursive subroutine ftstup(ip, ierr)
   use feti_contact_f77_base
   implicit none
@@ -11,8 +11,8 @@ recursive subroutine ftstup(ip, ierr)
   ierr = told(feti_setup(handle(ip)))
 end subroutine
 
-!> Solves. info(ni), rinfo(nr): what was done, positions FTISTA to FTISTR, FTRWOR to FTRSTK, as many as there is room for,
-!> written whatever the status.
+!> Solves the problem. info(ni), rinfo(nr): the report, positions FTISTA to FTISTR, FTRWOR to FTRSTK, as many as fit; it
+!> is written for every status.
 recursive subroutine ftsolv(ip, ni, info, nr, rinfo, ierr)
   use feti_contact_f77_base
   implicit none
@@ -35,8 +35,9 @@ recursive subroutine ftsolv(ip, ni, info, nr, rinfo, ierr)
     found%friction_cone, found%friction_work, found%friction_stick], nr, rinfo)
 end subroutine
 
-!> Verifies any answer, also another code's: u(n) of all bodies, rlam(m), rmu(me). icert(ni), rcert(nr): positions FTVPAS to
-!> FTVSTK, FTRWOR to FTRGAP, FTRLIM and FTVRCO to FTVRST. The tangential forces of nodes with friction count as 0.
+!> Verifies any answer, also of another program: u(n) of all bodies, rlam(m), rmu(me). icert(ni), rcert(nr): positions
+!> FTVPAS to FTVSTK, FTRWOR to FTRGAP, FTRLIM and FTVRCO to FTVRST. The tangential forces of nodes with friction count as
+!> 0.
 recursive subroutine ftchk(ip, n, u, m, rlam, me, rmu, ni, icert, nr, rcert, ierr)
   use feti_contact_f77_base
   implicit none
@@ -52,7 +53,7 @@ recursive subroutine ftchk(ip, n, u, m, rlam, me, rmu, ni, icert, nr, rcert, ier
   if (ierr >= FETI_OK) call give_certificate(found, ni, icert, nr, rcert)
 end subroutine
 
-!> The same with the tangential forces rlt(idim,nd) of the nd nodes with friction.
+!> Works like ftchk, with the tangential forces rlt(idim,nd) of the nd nodes with friction.
 recursive subroutine ftchkf(ip, n, u, m, rlam, me, rmu, nd, idim, rlt, ni, icert, nr, rcert, ierr)
   use feti_contact_f77_base
   implicit none
@@ -87,7 +88,7 @@ recursive subroutine ftcnts(ip, nbody, n, m, me, ierr)
   me = numbers(4)
 end subroutine
 
-!> Displacement of a body, u(n), length; ibody = FTALL: of all, in the host's numbers. The same holds for ftreac.
+!> Displacement of a body, u(n), length; ibody = FTALL: of all bodies, in the host's numbers. ftreac also accepts FTALL.
 recursive subroutine ftdisp(ip, ibody, n, u, ierr)
   use feti_contact_f77_base
   implicit none
@@ -120,7 +121,7 @@ recursive subroutine ftampl(ip, ibody, nr, alpha, ierr)
   ierr = told(feti_amplitudes(handle(ip), from_zero(ibody), wide(nr), alpha))
 end subroutine
 
-!> Multipliers of the m rows of a kind, rlam(m), force; >= 0 for contact rows. Of kind FTKTAN idim for each node.
+!> Multipliers of the m rows of a kind, rlam(m), force; >= 0 for contact rows. Kind FTKTAN has idim rows per node.
 recursive subroutine ftmult(ip, kind, m, rlam, ierr)
   use feti_contact_f77_base
   implicit none
@@ -131,7 +132,7 @@ recursive subroutine ftmult(ip, kind, m, rlam, ierr)
   ierr = told(feti_multipliers(handle(ip), narrow(kind), wide(m), rlam))
 end subroutine
 
-!> Open gaps c - B u of the m contact rows, of compliant ones c + lambda/k - B u; gap(m), length.
+!> Remaining gaps c - B u of the m contact rows, or c + lambda/k - B u for compliant rows; gap(m), length.
 recursive subroutine ftgaps(ip, m, gap, ierr)
   use feti_contact_f77_base
   implicit none
@@ -194,7 +195,7 @@ recursive subroutine ftphsn(ip, n, ierr)
   if (ierr == FETI_OK) call fit(count, n, ierr)
 end subroutine
 
-!> Phase k, from 1: name, seconds in the last call that set up or solved, bytes of what it has made and keeps.
+!> Phase k, from 1: name, seconds in the last setup or solve, bytes of the data that the phase computed and keeps.
 recursive subroutine ftphas(ip, k, name, secs, bytes, ierr)
   use feti_contact_f77_base
   implicit none

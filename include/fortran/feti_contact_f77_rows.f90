@@ -1,8 +1,9 @@
-!> FORTRAN 77 face: contact rows B u <= c (kind FTKINE) and equality rows H u = h (FTKEQU), numbered from 1 per kind.
-!> Everything is copied. A refused call changes nothing. See docs/fortran77.md.
+!> FORTRAN 77 interface: contact rows B u <= c (kind FTKINE) and equality rows H u = h (FTKEQU), each kind numbered from
+!> 1. The library copies all arrays. A refused call changes nothing. See docs/fortran77.md.
 
-!> Adds m rows behind those of the kind: row i holds the entries iptr(i) to iptr(i+1)-1 of ibody, idof and val, coefficient
-!> val of unknown idof of body ibody; iptr(m+1). Repeated entries add up. rhs(m): c or h, length. ifirst: the first new row.
+!> Adds m rows after the existing rows of the kind: row i holds the entries iptr(i) to iptr(i+1)-1 of ibody, idof and val,
+!> coefficient val of unknown idof of body ibody; iptr(m+1). Repeated entries add up. rhs(m): c or h, length. ifirst: the
+!> first new row.
 recursive subroutine ftrows(ip, kind, m, iptr, ibody, idof, val, rhs, ifirst, ierr)
   use feti_contact_f77_base
   implicit none
@@ -19,7 +20,7 @@ recursive subroutine ftrows(ip, kind, m, iptr, ibody, idof, val, rhs, ifirst, ie
   if (ierr == FETI_OK) call fit(first + 1, ifirst, ierr)
 end subroutine
 
-!> The same, idof counting through the bodies one after the other.
+!> Like the subroutine above, with idof counted consecutively over all bodies.
 recursive subroutine ftrowc(ip, kind, m, iptr, idof, val, rhs, ifirst, ierr)
   use feti_contact_f77_base
   implicit none
@@ -57,7 +58,7 @@ recursive subroutine ftrcmp(ip, kind, ifirst, m, cinv, ierr)
   ierr = told(feti_rows_compliance(handle(ip), narrow(kind), from_zero(ifirst), wide(m), cinv))
 end subroutine
 
-!> Removes all rows of a kind, with the contact rows all nodes with friction.
+!> Removes all rows of a kind; removing the contact rows also removes all nodes with friction.
 recursive subroutine ftrclr(ip, kind, ierr)
   use feti_contact_f77_base
   implicit none

@@ -1,7 +1,8 @@
-!> FORTRAN 77 face: starts, saved states, diagnosis. Bodies, unknowns, rows, motions and states count from 1, 0: none.
-!> See docs/fortran77.md.
+!> FORTRAN 77 interface: start values, saved states, diagnosis. Bodies, unknowns, rows, motions and states count from 1;
+!> 0: none. See docs/fortran77.md.
 
-!> Start values of the next solve alone: multipliers of the m rows of a kind, rlam(m), force. Of kind FTKTAN idim for each node.
+!> Start values for the next solve only: multipliers of the m rows of a kind, rlam(m), force. Kind FTKTAN has idim rows
+!> per node.
 recursive subroutine ftstrt(ip, kind, m, rlam, ierr)
   use feti_contact_f77_base
   implicit none
@@ -45,8 +46,8 @@ recursive subroutine ftsdrp(ip, id, ierr)
   ierr = told(feti_state_drop(handle(ip), from_zero(id)))
 end subroutine
 
-!> What the last solve, or the last setup that failed, has found out: idiag(ni) and rdiag(nr), positions FTGSTA to FTGDBD,
-!> FTGMAR, FTGMOT to FTGMOT + 5, FTGUNH and FTGCAP.
+!> What the last solve, or the last failed setup, found out: idiag(ni) and rdiag(nr), positions FTGSTA to FTGDBD, FTGMAR,
+!> FTGMOT to FTGMOT + 5, FTGUNH and FTGCAP.
 recursive subroutine ftdiag(ip, ni, idiag, nr, rdiag, ierr)
   use feti_contact_f77_base
   implicit none
@@ -65,8 +66,8 @@ recursive subroutine ftdiag(ip, ni, idiag, nr, rdiag, ierr)
   call give_reals([found%margin, found%motion, found%unheld, found%capacity], nr, rdiag)
 end subroutine
 
-!> Rows of a kind that contradict each other with their weights, without a contradiction the redundant rows: n there are, the
-!> first icap of them in irow and w.
+!> Rows of a kind that contradict each other, with their weights, or without a contradiction the redundant rows: n is the
+!> number of rows; the first icap are in irow and w.
 recursive subroutine ftdrow(ip, kind, icap, n, irow, w, ierr)
   use feti_contact_f77_base
   implicit none
@@ -85,7 +86,8 @@ recursive subroutine ftdrow(ip, kind, icap, n, irow, w, ierr)
   if (ierr == FETI_OK) call fit_list(count, icap, found, n, irow, ierr)
 end subroutine
 
-!> Equality rows that are combinations of the other equality rows: n there are, the first icap of them in irow.
+!> Equality rows that are linear combinations of the other equality rows: n is the number of rows; the first icap are in
+!> irow.
 recursive subroutine ftddep(ip, icap, n, irow, ierr)
   use feti_contact_f77_base
   implicit none
@@ -102,7 +104,7 @@ recursive subroutine ftddep(ip, icap, n, irow, ierr)
   if (ierr == FETI_OK) call fit_list(count, icap, found, n, irow, ierr)
 end subroutine
 
-!> Bodies that no row touches: n there are, the first icap of them in ibody.
+!> Bodies that no row touches: n is the number of bodies; the first icap are in ibody.
 recursive subroutine ftdunt(ip, icap, n, ibody, ierr)
   use feti_contact_f77_base
   implicit none
@@ -119,8 +121,8 @@ recursive subroutine ftdunt(ip, icap, n, ibody, ierr)
   if (ierr == FETI_OK) call fit_list(count, icap, found, n, ibody, ierr)
 end subroutine
 
-!> Motion k that the last answer leaves undetermined: the body ibody that moves fastest, and rmotn(6), velocity of the origin
-!> and rotation about the axes, NaN without coordinates.
+!> Motion k that the last answer leaves undetermined: the body ibody that moves fastest, and rmotn(6), velocity of the
+!> origin and rotation about the axes; NaN without coordinates.
 recursive subroutine ftdund(ip, k, ibody, rmotn, ierr)
   use feti_contact_f77_base
   implicit none
@@ -134,7 +136,7 @@ recursive subroutine ftdund(ip, k, ibody, rmotn, ierr)
   if (ierr == FETI_OK) call fit(body + 1, ibody, ierr)
 end subroutine
 
-!> The same on one body, v(n), largest entry over all bodies 1.
+!> Motion k of the undetermined motions on one body, v(n), scaled to a largest entry of 1 over all bodies.
 recursive subroutine ftdunm(ip, k, ibody, n, v, ierr)
   use feti_contact_f77_base
   implicit none
@@ -145,7 +147,7 @@ recursive subroutine ftdunm(ip, k, ibody, n, v, ierr)
   ierr = told(feti_diagnosis_undetermined_motion(handle(ip), from_zero(k), from_zero(ibody), wide(n), v))
 end subroutine
 
-!> Motion with which a body escapes, v(n), largest entry over all bodies 1; after FTELNH.
+!> Motion with which a body escapes, v(n), scaled to a largest entry of 1 over all bodies; after FTELNH.
 recursive subroutine ftdmot(ip, ibody, n, v, ierr)
   use feti_contact_f77_base
   implicit none

@@ -12,8 +12,8 @@ module feti_contact_file
 
 contains
 
-  !> Writes all that the host has registered to the file `path`: bodies, rows, options that differ from their defaults;
-  !> no answer, start values or saved states. After a failure (FETI_IO) an old file is as it was.
+  !> Writes all input of the problem to the file `path`: bodies, rows and options that differ from their defaults, but no
+  !> answer, start values or saved states. After a failure (FETI_IO) an old file is unchanged.
   recursive subroutine problem_write(p, path, stat, errmsg)
     type(feti_problem), intent(in) :: p
     character(len=*), intent(in) :: path
@@ -23,8 +23,9 @@ contains
     call finish(c_problem_write(handle_of(p), c_text(path)), stat, errmsg)
   end subroutine
 
-  !> Reads such a file into a problem without bodies and rows (FETI_STATE otherwise); the same solve then gives the same
-  !> bits. Where a file is damaged the entry of feti_last_error_detail is its byte, from 1. After a failure p is as it was.
+  !> Reads a file of feti_problem_write into a problem without bodies and rows (FETI_STATE otherwise); a solve then gives
+  !> the same bits as in the original problem. If the file is damaged, the entry of feti_last_error_detail is the position
+  !> of the wrong byte, from 1. After a failure p is unchanged.
   recursive subroutine problem_read(p, path, stat, errmsg)
     type(feti_problem), intent(in) :: p
     character(len=*), intent(in) :: path

@@ -1,11 +1,12 @@
 !> Nodes with friction of module feti_contact. A host uses feti_contact, not this module.
 !>
 !> A node has a contact row and dim tangential rows T, dim = 1 in the plane and 2 in space. Its tangential force lambda_t
-!> acts on the bodies as -T'lambda_t, its slip is s = T u - s_old - C_t lambda_t: |lambda_t| <= b = bound + coefficient * lambda_n,
-!> and it sticks, s = 0, or slips along the force, lambda_t = b s / |s|. Values of nodes are (dim, nodes).
+!> acts on the bodies as -T'lambda_t, and its slip is s = T u - s_old - C_t lambda_t. The force is bounded by |lambda_t|
+!> <= b = bound + coefficient * lambda_n. The node sticks, s = 0, or slips in the direction of the force, lambda_t = b s /
+!> |s|. Values of nodes are (dim, nodes).
 !>
-!> Everything is copied. Nodes count from 1, as rows, bodies and unknowns do. A refused call leaves the problem as it was.
-!> `stat` and `errmsg`: see feti_contact_base.
+!> The library copies all arrays. Nodes, rows, bodies and unknowns count from 1. A refused call leaves the problem
+!> unchanged. `stat` and `errmsg`: see feti_contact_base.
 module feti_contact_friction
   use, intrinsic :: iso_c_binding, only: c_int32_t, c_int64_t, c_loc, c_null_ptr, c_ptr
   use, intrinsic :: iso_fortran_env, only: int32, int64, real64
@@ -26,24 +27,25 @@ module feti_contact_friction
   public :: friction_add, friction_law, friction_compliance, friction_reference
   public :: friction_counts, friction_commit, friction_slips, friction_states, friction_clear
 
-  !> Nodes with friction, added behind those of earlier calls.
+  !> Nodes with friction, added after the nodes of earlier calls.
   !>
   !> call feti_friction_add(p, normal_row, row_ptr, body, dof, val, coefficient, bound, first): node k has the contact row
-  !>   normal_row(k), 0: none, the bound acts alone. Its tangential rows are dim*(k-1)+1 to dim*k; row i holds the entries
-  !>   row_ptr(i) .. row_ptr(i+1)-1 of body, dof and val: coefficient val of unknown dof of that body. Repeated entries add up.
-  !> call feti_friction_add(p, normal_row, row_ptr, dof, val, coefficient, bound, first): dof is the number of the unknown
-  !>   (feti_body_numbering); without numbers it counts through the bodies one after the other.
+  !>   normal_row(k); 0: no contact row, only the bound acts. Its tangential rows are dim*(k-1)+1 to dim*k; row i holds
+  !>   the entries row_ptr(i) .. row_ptr(i+1)-1 of body, dof and val: coefficient val of unknown dof of that body.
+  !>   Repeated entries add up.
+  !> call feti_friction_add(p, normal_row, row_ptr, dof, val, coefficient, bound, first): dof is the host's number of the
+  !>   unknown (feti_body_numbering) or, without such numbers, counts the unknowns of all bodies consecutively.
   !>
-  !> row_ptr has dim*nodes + 1 entries, which tells dim, 1 or 2, the same for all nodes; normal_row, row_ptr, body and dof are
-  !> all int32 or all int64. coefficient (>= 0, no unit) and bound (>= 0, force), one per node; absent: zero. first: number of
-  !> the first new node. The rows of a node are multiplied by one factor.
+  !> row_ptr has dim*nodes + 1 entries, from which dim follows, 1 or 2 and equal for all nodes; normal_row, row_ptr, body
+  !> and dof are all int32 or all int64. coefficient (>= 0, no unit) and bound (>= 0, force), one per node; absent: zero.
+  !> first: number of the first new node. If the host scales the rows of a node, all of them must have the same factor.
   interface friction_add
     module procedure friction_int32, friction_int64, concatenated_int32, concatenated_int64
   end interface
 
   !> State of each node in the last answer, int32 or int64: FETI_FRICTION_OPEN (its bound is zero), FETI_FRICTION_STICK,
-  !> FETI_FRICTION_SLIP, FETI_FRICTION_WEAK (its force reaches the bound and it does not slip, to rounding) or
-  !> FETI_FRICTION_UNKNOWN (its bodies are in a group that has no answer).
+  !> FETI_FRICTION_SLIP, FETI_FRICTION_WEAK (its force reaches the bound and it does not slip, within rounding error) or
+  !> FETI_FRICTION_UNKNOWN (its bodies are in a group without an answer).
   interface friction_states
     module procedure states_int32, states_int64
   end interface
@@ -92,7 +94,7 @@ contains
     end if
   end subroutine
 
-  !> Unknowns counted through all bodies, or by the numbers of the host; int32.
+  !> Unknowns counted consecutively over all bodies, or given by the numbers of the host; int32.
   recursive subroutine concatenated_int32(p, normal_row, row_ptr, dof, val, coefficient, bound, first, stat, errmsg)
     type(feti_problem), intent(in) :: p
     integer(int32), intent(in), contiguous :: normal_row(:), row_ptr(:), dof(:)
@@ -105,7 +107,7 @@ contains
     call add_int32(p, normal_row, row_ptr, c_null_ptr, dof, val, coefficient, bound, first, stat, errmsg)
   end subroutine
 
-  !> The same, int64.
+  !> Like the procedure above, with int64.
   recursive subroutine concatenated_int64(p, normal_row, row_ptr, dof, val, coefficient, bound, first, stat, errmsg)
     type(feti_problem), intent(in) :: p
     integer(int64), intent(in), contiguous :: normal_row(:), row_ptr(:), dof(:)
@@ -147,7 +149,7 @@ contains
     if (present(first)) first = int(start) + 1
   end subroutine
 
-  !> The same for 8-byte integers.
+  !> Like the procedure above, for 8-byte integers.
   recursive subroutine add_int64(p, normal_row, row_ptr, bodies, dof, val, coefficient, bound, first, stat, errmsg)
     type(feti_problem), intent(in) :: p
     integer(int64), intent(in), contiguous :: normal_row(:), row_ptr(:), dof(:)
@@ -177,8 +179,8 @@ contains
     if (present(first)) first = int(start) + 1
   end subroutine
 
-  !> dim: tangential rows of a node. fault: what does not fit, empty when the arrays fit each other; k: number of that argument in
-  !> the C function.
+  !> dim: tangential rows of a node. fault: describes a mismatch, empty if the arrays match; k: number of the wrong
+  !> argument in the C function.
   recursive subroutine compare_sizes(nodes, rows, entries, dofs, vals, coefficient, bound, dim, k, fault)
     integer(int64), intent(in) :: nodes, rows, entries, dofs, vals
     real(real64), intent(in), optional :: coefficient(:), bound(:)
@@ -203,7 +205,8 @@ contains
     if (size(bound, kind=int64) /= nodes) fault = 'feti_friction_add: bound has not one entry per node'
   end subroutine
 
-  !> New coefficients(:), no unit, bounds(:), force, or both, of the nodes first, first+1, ...; what is absent stays. No new setup.
+  !> New coefficients(:), no unit, bounds(:), force, or both, of the nodes first, first+1, ...; an absent argument leaves
+  !> its values unchanged. No new setup is needed.
   recursive subroutine friction_law(p, first, coefficient, bound, stat, errmsg)
     type(feti_problem), intent(in) :: p
     integer, intent(in) :: first
@@ -225,8 +228,9 @@ contains
       stat, errmsg)
   end subroutine
 
-  !> Makes the stick of the nodes first, first+1, ... elastic, s = T u - s_old - C_t lambda_t: inv_kt(:) = C_t >= 0, length / force,
-  !> one per node, 0 for a rigid one. New nodes are rigid. Factors of the bodies stay, the last answer does not.
+  !> Makes sticking of the nodes first, first+1, ... elastic, s = T u - s_old - C_t lambda_t: inv_kt(:) = C_t >= 0, length
+  !> / force, one value per node, 0 for a rigid node. New nodes are rigid. The factors of the bodies stay valid; the last
+  !> answer is dropped.
   recursive subroutine friction_compliance(p, first, inv_kt, stat, errmsg)
     type(feti_problem), intent(in) :: p
     integer, intent(in) :: first
@@ -238,8 +242,9 @@ contains
       stat, errmsg)
   end subroutine
 
-  !> What the slips of the nodes first, first+1, ... are counted from: s_old(dim,nodes), length, T u - C_t lambda_t at the beginning
-  !> of the load step. New nodes have zeros; feti_friction_commit takes them from the answer.
+  !> The reference from which slips of the nodes first, first+1, ... are measured: s_old(dim,nodes), length, T u - C_t
+  !> lambda_t at the beginning of the load step. New nodes have s_old = 0; feti_friction_commit takes s_old from the
+  !> answer.
   recursive subroutine friction_reference(p, first, s_old, stat, errmsg)
     type(feti_problem), intent(in) :: p
     integer, intent(in) :: first
@@ -251,8 +256,8 @@ contains
       size(s_old, 1, c_int32_t), s_old), stat, errmsg)
   end subroutine
 
-  !> Ends a load step: s_old becomes T u - C_t lambda_t of the last answer at every node, open ones too. The answer stays, with the
-  !> slips of its step. FETI_STATE where the last answer is not certified, or there is none.
+  !> Ends a load step: sets s_old to T u - C_t lambda_t of the last answer at every node, including open nodes. The answer
+  !> with its slips is unchanged. FETI_STATE if the last answer is not certified, or if there is no answer.
   recursive subroutine friction_commit(p, stat, errmsg)
     type(feti_problem), intent(in) :: p
     integer, intent(out), optional :: stat
@@ -279,7 +284,7 @@ contains
     call finish(status, stat, errmsg)
   end subroutine
 
-  !> Slips s = T u - s_old - C_t lambda_t of the last answer, slip(dim,nodes), length; of the sign of lambda_t.
+  !> Slips s = T u - s_old - C_t lambda_t of the last answer, slip(dim,nodes), length; they have the sign of lambda_t.
   recursive subroutine friction_slips(p, slip, stat, errmsg)
     type(feti_problem), intent(in) :: p
     real(real64), intent(inout), contiguous :: slip(:, :)

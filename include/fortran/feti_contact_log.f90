@@ -1,5 +1,5 @@
-!> What calls tell in words, of module feti_contact. A host uses feti_contact, not this module.
-!> `stat` and `errmsg`: see feti_contact_base.
+!> The log of setups and solves, of module feti_contact. A host uses feti_contact, not this module. `stat` and `errmsg`:
+!> see feti_contact_base.
 module feti_contact_log
   use, intrinsic :: iso_c_binding, only: c_char, c_f_pointer, c_funloc, c_funptr, c_int32_t, c_loc, c_null_funptr, &
     c_null_ptr, c_ptr
@@ -11,12 +11,12 @@ module feti_contact_log
 
 contains
 
-  !> Names the function that gets what setups and solves tell in words; without tell none does.
-  !> level: FETI_LOG_RESULT (one line for each solve, and warnings), FETI_LOG_PHASE (also phases with time and bytes),
-  !> FETI_LOG_STEP (also every step); FETI_LOG_NONE when it is absent. tell: a module procedure (an internal one would need
-  !> an executable stack). data: anything with the attribute target that lives as long as p or until the next feti_on_log;
-  !> tell gets it back. tell returns 0 to go on, any other number for a failure of its own (FETI_CALLBACK). Inside tell p is
-  !> busy, except for feti_cancel and feti_problem_error.
+  !> Registers the function that receives the log of setups and solves; an absent tell removes it. level: FETI_LOG_RESULT
+  !> (one line for each solve, and warnings), FETI_LOG_PHASE (also phases with time and bytes), FETI_LOG_STEP (also every
+  !> step); if level is absent, FETI_LOG_NONE. tell: a module procedure (an internal one would need an executable stack).
+  !> data: anything with the attribute target that lives as long as p or until the next feti_on_log; tell receives it.
+  !> tell returns 0 to continue and any other number to report a failure (FETI_CALLBACK). Inside tell, p is busy except
+  !> for feti_cancel and feti_problem_error.
   recursive subroutine on_log(p, tell, level, data, stat, errmsg)
     type(feti_problem), intent(in) :: p
     procedure(log_procedure), optional :: tell

@@ -1,5 +1,5 @@
-!> Bodies whose stiffness the host keeps, of module feti_contact. A host uses feti_contact, not this module.
-!> `stat` and `errmsg`: see feti_contact_base.
+!> Bodies with functions of the host instead of a matrix, of module feti_contact. A host uses feti_contact, not this
+!> module. `stat` and `errmsg`: see feti_contact_base.
 module feti_contact_operators
   use, intrinsic :: iso_c_binding, only: c_double, c_f_pointer, c_funloc, c_funptr, c_int32_t, c_int64_t, c_loc, c_ptr
   use feti_contact_base, only: feti_problem, finish, handle_of, host_operator, keep_operator, operator_procedure
@@ -11,16 +11,16 @@ module feti_contact_operators
 
 contains
 
-  !> Names the functions of the host that multiply by K and by a generalised inverse K+ of a body.
+  !> Registers the functions of the host that multiply by K and by a generalised inverse K+ of a body.
   !>
-  !> diag(n): diagonal of K, >= 0, force / length. kplus, k: module procedures, y = K+ x (x force, y length) and y = K x (x
-  !> length, y force); they return 0, or any other number for a failure, which ends the call with FETI_CALLBACK. K+ is any
-  !> symmetric positive semidefinite matrix with K K+ K = K. The null space must be given.
-  !> concurrent: absent or .false., they are called on the thread alone that calls the library; .true., on any thread,
-  !> several at once: declare them recursive, as -fcheck=recursion of gfortran takes a second thread for a recursion.
-  !> data: anything declared with the attribute target that lives as long as p or until the functions of the body are
-  !> replaced; they get it back and look at it with select type. Inside them p is busy, except for feti_cancel and
-  !> feti_problem_error. A second call replaces the functions: to be done whenever K has changed.
+  !> diag(n): diagonal of K, >= 0, force / length. kplus, k: module procedures, y = K+ x (x force, y length) and y = K x
+  !> (x length, y force); they return 0 on success; any other number reports a failure and ends the call with
+  !> FETI_CALLBACK. K+ is any symmetric positive semidefinite matrix with K K+ K = K. The null space must be given.
+  !> concurrent: if absent or .false., the functions run only on the thread that calls the library; if .true., several run
+  !> at once, on any thread. Then declare them recursive, because -fcheck=recursion of gfortran mistakes a second thread
+  !> for a recursion. data: anything declared with the attribute target that lives as long as p or until the functions of
+  !> the body are replaced; they receive it and access it with select type. Inside them, p is busy except for feti_cancel
+  !> and feti_problem_error. A second call replaces the functions; make this call whenever K has changed.
   recursive subroutine body_operator(p, body, diag, kplus, k, concurrent, data, stat, errmsg)
     type(feti_problem), intent(in) :: p
     integer, intent(in) :: body

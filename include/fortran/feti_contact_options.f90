@@ -1,5 +1,5 @@
-!> Settings of module feti_contact: by name, typed, listed. A host uses feti_contact, not this module.
-!> A refused name or value leaves the setting as it was. `stat` and `errmsg`: see feti_contact_base.
+!> Settings of module feti_contact: by name, typed, listed. A host uses feti_contact, not this module. A refused name or
+!> value leaves the setting unchanged. `stat` and `errmsg`: see feti_contact_base.
 module feti_contact_options
   use, intrinsic :: iso_c_binding, only: c_char, c_int32_t, c_int64_t, c_loc, c_null_ptr, c_sizeof
   use, intrinsic :: iso_fortran_env, only: int32, int64, real64
@@ -24,8 +24,8 @@ module feti_contact_options
     module procedure set_real, set_int32, set_int64, set_text
   end interface
 
-  !> Value of the option `name`; the variable has the type of the option, character(len=:), allocatable for a text, and is
-  !> untouched by a failed call.
+  !> Value of the option `name`; the variable must have the type of the option (character(len=:), allocatable for a text).
+  !> A failed call leaves the variable unchanged.
   interface get_option
     module procedure get_real, get_int32, get_int64, get_text
   end interface
@@ -45,8 +45,9 @@ module feti_contact_options
 
 contains
 
-  !> Sets several options by one text: call feti_set_text(p, 'tolerance=1d-8 threads=4'). Blanks, commas or ends of lines
-  !> separate, # begins a comment. All or none are set; an error tells the position in the text.
+  !> Sets several options with one text: call feti_set_text(p, 'tolerance=1d-8 threads=4'). Blanks, commas or line ends
+  !> separate the options, and # begins a comment. Either all options are set or none; an error has the position in the
+  !> text.
   recursive subroutine set_options(p, text, stat, errmsg)
     type(feti_problem), intent(in) :: p
     character(len=*), intent(in) :: text
@@ -78,7 +79,7 @@ contains
     call set_int64(p, name, int(value, int64), stat, errmsg)
   end subroutine
 
-  !> The same, int64.
+  !> Like the procedure above, with int64.
   recursive subroutine set_int64(p, name, value, stat, errmsg)
     type(feti_problem), intent(in) :: p
     character(len=*), intent(in) :: name
@@ -114,7 +115,7 @@ contains
     call finish(status, stat, errmsg)
   end subroutine
 
-  !> FETI_OVERFLOW, and value untouched, when the setting needs a larger integer.
+  !> FETI_OVERFLOW, with value unchanged, if the setting needs a larger integer.
   recursive subroutine get_int32(p, name, value, stat, errmsg)
     type(feti_problem), intent(in) :: p
     character(len=*), intent(in) :: name

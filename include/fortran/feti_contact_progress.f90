@@ -12,8 +12,8 @@ module feti_contact_progress
 
 contains
 
-  !> Cancels the setup or the solve that another thread, or this one from inside its progress function, runs on p:
-  !> that call ends with FETI_CANCELLED. Without a running call it does nothing.
+  !> Cancels the setup or solve that is running on p, in another thread or in this thread from inside its progress
+  !> function: that call ends with FETI_CANCELLED. If no call is running, this procedure has no effect.
   recursive subroutine cancel(p, stat, errmsg)
     type(feti_problem), intent(in) :: p
     integer, intent(out), optional :: stat
@@ -22,12 +22,12 @@ contains
     call finish(c_cancel(handle_of(p)), stat, errmsg)
   end subroutine
 
-  !> Names the function that hears of every body in every part of a setup and of every step of a solve; without hear none
-  !> does.
-  !> hear: a module procedure (an internal one would need an executable stack). data: anything declared with the
-  !> attribute target that lives as long as p or until the next feti_on_progress; hear gets it back and looks at it with
-  !> select type. hear returns 0 to go on, > 0 to cancel (status FETI_CANCELLED, results of the last step), < 0 for a
-  !> failure of its own (FETI_CALLBACK). Inside hear p is busy, except for feti_cancel and feti_problem_error.
+  !> Registers the function that is called for every body in every part of a setup and for every step of a solve; an
+  !> absent hear removes it. hear: a module procedure (an internal one would need an executable stack). data: anything
+  !> declared with the attribute target that lives as long as p or until the next feti_on_progress; hear receives it and
+  !> accesses it with select type. hear returns 0 to continue, > 0 to cancel (status FETI_CANCELLED, results of the last
+  !> step), or < 0 to report a failure (FETI_CALLBACK). Inside hear, p is busy except for feti_cancel and
+  !> feti_problem_error.
   recursive subroutine on_progress(p, hear, data, stat, errmsg)
     type(feti_problem), intent(in) :: p
     procedure(progress_procedure), optional :: hear

@@ -1,8 +1,8 @@
-!> Solution and answers of module feti_contact. A host uses feti_contact, not this module.
+!> Solve and results of module feti_contact. A host uses feti_contact, not this module.
 !>
-!> Sizes come from the arrays and are compared with the problem. Bodies, unknowns and rows count from 1. Answers are
-!> written when the status is not negative; a failed call leaves the host's arrays as they were.
-!> `stat` and `errmsg`: see feti_contact_base.
+!> Sizes are taken from the arrays and compared with the problem. Bodies, unknowns and rows count from 1. Results are
+!> written if the status is not negative; a failed call leaves the host's arrays unchanged. `stat` and `errmsg`: see
+!> feti_contact_base.
 module feti_contact_results
   use, intrinsic :: iso_c_binding, only: c_int32_t, c_int64_t, c_loc, c_null_ptr, c_ptr, c_sizeof
   use, intrinsic :: iso_fortran_env, only: int64, real64
@@ -36,27 +36,27 @@ module feti_contact_results
   !> Time and memory of a phase of a setup or a solve.
   type :: feti_phase
     character(len=:), allocatable :: name
-    !> Wall time in the last call that set up or solved.
+    !> Wall time in the last setup or solve.
     real(real64) :: seconds = 0
-    !> Bytes of what it has made and keeps; 0: they are not counted.
+    !> Bytes of the data that the phase computed and keeps; 0: not counted.
     integer(int64) :: bytes = 0
   end type
 
   !> Displacement, length.
   !>
-  !> call feti_displacement(p, body, u): u(n) of a body.
-  !> call feti_displacement(p, u): of all bodies, u(number) by the numbers of feti_body_numbering, entries of no unknown as
-  !>   they were; without numbers one body after the other; NaN on bodies whose group has no answer, which
-  !>   are FETI_STATE when asked for one by one.
+  !> call feti_displacement(p, body, u): u(n) of one body.
+  !> call feti_displacement(p, u): u of all bodies, u(number) with the numbers of feti_body_numbering (entries that belong
+  !>   to no unknown are left unchanged); without numbers one body after the other. Bodies in a group without an answer
+  !>   get NaN; for such a body alone the call returns FETI_STATE.
   interface displacement
     module procedure displacement_one, displacement_all
   end interface
 
-  !> Force of the rows on a body, -B'lambda (kind FETI_INEQUALITY), -H'mu (FETI_EQUALITY), -T'lambda_t (FETI_TANGENTIAL) or all
-  !> of them (0): K u = f + r.
+  !> Force of the rows on a body, -B'lambda (kind FETI_INEQUALITY), -H'mu (FETI_EQUALITY), -T'lambda_t (FETI_TANGENTIAL)
+  !> or the sum of all (0): K u = f + r.
   !>
-  !> call feti_reaction(p, kind, body, r): r(n) on a body.
-  !> call feti_reaction(p, kind, r): on all bodies, as feti_displacement.
+  !> call feti_reaction(p, kind, body, r): r(n) on one body.
+  !> call feti_reaction(p, kind, r): r on all bodies, arranged as in feti_displacement.
   interface reaction
     module procedure reaction_one, reaction_all
   end interface
@@ -64,21 +64,21 @@ module feti_contact_results
   !> Contact forces lambda >= 0 (kind FETI_INEQUALITY), forces mu of the equality rows (FETI_EQUALITY) or lambda_t of the
   !> nodes with friction (FETI_TANGENTIAL), force.
   !>
-  !> call feti_multipliers(p, kind, lambda): lambda(rows); of nodes with friction lambda(dim * nodes), node after node.
+  !> call feti_multipliers(p, kind, lambda): lambda(rows); for nodes with friction lambda(dim * nodes), node after node.
   !> call feti_multipliers(p, kind, lambda): lambda(dim, nodes), with FETI_TANGENTIAL.
   interface multipliers
     module procedure multipliers_rows, multipliers_nodes
   end interface
 
-  !> State of each contact row, int32 or int64: FETI_ROW_OPEN, FETI_ROW_CLOSED, FETI_ROW_WEAK (closed without a clear force)
-  !> or FETI_ROW_UNKNOWN (the bodies it touches are in a group that has no answer).
+  !> State of each contact row, int32 or int64: FETI_ROW_OPEN, FETI_ROW_CLOSED, FETI_ROW_WEAK (closed without a clear
+  !> force) or FETI_ROW_UNKNOWN (the bodies that it touches are in a group without an answer).
   interface active
     module procedure active_int32, active_int64
   end interface
 
 contains
 
-  !> Null spaces, factors and dual operator ahead of feti_solve, which does it otherwise when needed.
+  !> Computes null spaces, factors and the dual operator in advance; otherwise feti_solve does so when needed.
   recursive subroutine setup(p, stat, errmsg)
     type(feti_problem), intent(in) :: p
     integer, intent(out), optional :: stat
@@ -87,8 +87,8 @@ contains
     call finish(c_setup(handle_of(p)), stat, errmsg)
   end subroutine
 
-  !> Solves the contact problem. info: what was done and how well the answer satisfies the conditions of contact;
-  !> it is written whatever the status. A positive status leaves a usable but incomplete answer.
+  !> Solves the contact problem. info: the work done, and how well the answer satisfies the contact conditions; it is
+  !> written for every status. With a positive status the answer is usable but incomplete.
   recursive subroutine solve(p, info, stat, errmsg)
     type(feti_problem), intent(in) :: p
     type(feti_info), intent(inout), optional, target :: info
@@ -119,7 +119,7 @@ contains
     call finish(status, stat, errmsg)
   end subroutine
 
-  !> Phase k, from 1 to the number of phases, in the last call that set up or solved.
+  !> Phase k, from 1 to the number of phases, in the last setup or solve.
   recursive subroutine phase_at(p, k, phase, stat, errmsg)
     type(feti_problem), intent(in) :: p
     integer, intent(in) :: k
@@ -139,9 +139,9 @@ contains
     call finish(status, stat, errmsg)
   end subroutine
 
-  !> Verifies any answer, also another code's: u (all bodies one after the other, length), lambda (force, one per
-  !> contact row), mu (force, one per equality row; may have size 0). Rows and bodies in the certificate count from
-  !> 1, 0: none. The tangential forces of nodes with friction count as 0: feti_check_friction takes them.
+  !> Verifies any answer, also of another program: u (all bodies one after the other, length), lambda (force, one per
+  !> contact row), mu (force, one per equality row; may have size 0). Rows and bodies in the certificate count from 1; 0:
+  !> none. The tangential forces of nodes with friction count as 0; feti_check_friction takes them into account.
   recursive subroutine check(p, u, lambda, mu, certificate, stat, errmsg)
     type(feti_problem), intent(in) :: p
     real(real64), intent(in), contiguous :: u(:), lambda(:), mu(:)
@@ -157,8 +157,8 @@ contains
     call finish(status, stat, errmsg)
   end subroutine
 
-  !> The same with the tangential forces lambda_t(dim,nodes) of the nodes with friction, which count from 1 in the
-  !> certificate as well.
+  !> Works like feti_check, with the tangential forces lambda_t(dim,nodes) of the nodes with friction. Nodes in the
+  !> certificate count from 1.
   recursive subroutine check_friction(p, u, lambda, mu, lambda_t, certificate, stat, errmsg)
     type(feti_problem), intent(in) :: p
     real(real64), intent(in), contiguous :: u(:), lambda(:), mu(:), lambda_t(:, :)
@@ -218,7 +218,7 @@ contains
     call finish(c_displacement(handle_of(p), body_index(body), size(u, kind=c_int64_t), u), stat, errmsg)
   end subroutine
 
-  !> Of all bodies, by the numbers of the host.
+  !> The values of all bodies, with the numbers of the host.
   recursive subroutine displacement_all(p, u, stat, errmsg)
     type(feti_problem), intent(in) :: p
     real(real64), intent(inout), contiguous :: u(:)
@@ -240,7 +240,7 @@ contains
     call finish(c_reaction(handle_of(p), kind, body_index(body), size(r, kind=c_int64_t), r), stat, errmsg)
   end subroutine
 
-  !> On all bodies, by the numbers of the host.
+  !> The forces on all bodies, with the numbers of the host.
   recursive subroutine reaction_all(p, kind, r, stat, errmsg)
     type(feti_problem), intent(in) :: p
     integer(c_int32_t), intent(in) :: kind
@@ -263,7 +263,7 @@ contains
       stat, errmsg)
   end subroutine
 
-  !> One after the other.
+  !> The values in one dimension, one after the other.
   recursive subroutine multipliers_rows(p, kind, lambda, stat, errmsg)
     type(feti_problem), intent(in) :: p
     integer(c_int32_t), intent(in) :: kind
@@ -275,7 +275,7 @@ contains
       stat, errmsg)
   end subroutine
 
-  !> Those of nodes with friction, (dim, nodes).
+  !> The values of nodes with friction, (dim, nodes).
   recursive subroutine multipliers_nodes(p, kind, lambda, stat, errmsg)
     type(feti_problem), intent(in) :: p
     integer(c_int32_t), intent(in) :: kind
@@ -286,7 +286,7 @@ contains
     call finish(c_multipliers(handle_of(p), kind, size(lambda, kind=c_int64_t), lambda), stat, errmsg)
   end subroutine
 
-  !> Open gaps c - B u of the contact rows, of compliant ones c + lambda/k - B u, length.
+  !> Remaining gaps c - B u of the contact rows, or c + lambda/k - B u for compliant rows, length.
   recursive subroutine gaps(p, slack, stat, errmsg)
     type(feti_problem), intent(in) :: p
     real(real64), intent(inout), contiguous :: slack(:)
@@ -321,7 +321,7 @@ contains
     call finish(status, stat, errmsg)
   end subroutine
 
-  !> The unknowns that K+ holds, dof(r), r the dimension of the null space. For validation.
+  !> The unknowns that K+ holds, dof(r), where r is the dimension of the null space. For validation.
   recursive subroutine body_fixing(p, body, dof, stat, errmsg)
     type(feti_problem), intent(in) :: p
     integer, intent(in) :: body

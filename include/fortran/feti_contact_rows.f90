@@ -1,7 +1,8 @@
 !> Contact rows and equality rows of module feti_contact. A host uses feti_contact, not this module.
 !>
-!> Everything is copied. Bodies, unknowns and rows count from 1, rows per kind: FETI_INEQUALITY (B u <= c) and
-!> FETI_EQUALITY (H u = h). A refused call leaves the problem as it was. `stat` and `errmsg`: see feti_contact_base.
+!> The library copies all arrays. Bodies, unknowns and rows count from 1; rows are numbered for each kind separately:
+!> FETI_INEQUALITY (B u <= c) and FETI_EQUALITY (H u = h). A refused call leaves the problem unchanged. `stat` and
+!> `errmsg`: see feti_contact_base.
 module feti_contact_rows
   use, intrinsic :: iso_c_binding, only: c_int32_t, c_int64_t, c_loc, c_null_ptr, c_ptr
   use, intrinsic :: iso_fortran_env, only: int32, int64, real64
@@ -16,15 +17,15 @@ module feti_contact_rows
   private
   public :: rows_add, rows_rhs, rows_compliance, rows_clear
 
-  !> Rows B u <= c (kind FETI_INEQUALITY) or H u = h (FETI_EQUALITY), added behind those of earlier calls.
+  !> Rows B u <= c (kind FETI_INEQUALITY) or H u = h (FETI_EQUALITY), added after the rows of earlier calls.
   !>
   !> call feti_rows_add(p, kind, row_ptr, body, dof, val, rhs, first): row i holds the entries row_ptr(i) ..
   !>   row_ptr(i+1)-1 of body, dof and val: coefficient val of unknown dof of that body. Repeated entries add up.
-  !> call feti_rows_add(p, kind, row_ptr, dof, val, rhs, first): dof is the number of the unknown (feti_body_numbering); without
-  !>   numbers it counts through the bodies one after the other.
+  !> call feti_rows_add(p, kind, row_ptr, dof, val, rhs, first): dof is the host's number of the unknown
+  !>   (feti_body_numbering) or, without such numbers, counts the unknowns of all bodies consecutively.
   !>
-  !> row_ptr has one entry more than there are rows; row_ptr, body and dof are all int32 or all int64.
-  !> rhs: gaps c or values h, one per row, length; absent: zero. first: number of the first new row of its kind.
+  !> row_ptr has one more entry than there are rows; row_ptr, body and dof are all int32 or all int64. rhs: gaps c or
+  !> values h, one per row, length; absent: zero. first: number of the first new row of its kind.
   interface rows_add
     module procedure rows_int32, rows_int64, concatenated_int32, concatenated_int64
   end interface
@@ -75,7 +76,7 @@ contains
     end if
   end subroutine
 
-  !> Unknowns counted through all bodies, or by the numbers of the host; int32.
+  !> Unknowns counted consecutively over all bodies, or given by the numbers of the host; int32.
   recursive subroutine concatenated_int32(p, kind, row_ptr, dof, val, rhs, first, stat, errmsg)
     type(feti_problem), intent(in) :: p
     integer(c_int32_t), intent(in) :: kind
@@ -89,7 +90,7 @@ contains
     call add_int32(p, kind, row_ptr, c_null_ptr, dof, val, rhs, first, stat, errmsg)
   end subroutine
 
-  !> The same, int64.
+  !> Like the procedure above, with int64.
   recursive subroutine concatenated_int64(p, kind, row_ptr, dof, val, rhs, first, stat, errmsg)
     type(feti_problem), intent(in) :: p
     integer(c_int32_t), intent(in) :: kind
@@ -133,7 +134,7 @@ contains
     if (present(first)) first = int(start) + 1
   end subroutine
 
-  !> The same for 8-byte integers.
+  !> Like the procedure above, for 8-byte integers.
   recursive subroutine add_int64(p, kind, row_ptr, bodies, dof, val, rhs, first, stat, errmsg)
     type(feti_problem), intent(in) :: p
     integer(c_int32_t), intent(in) :: kind
@@ -164,7 +165,7 @@ contains
     if (present(first)) first = int(start) + 1
   end subroutine
 
-  !> fault: what does not fit, empty when the arrays fit each other; k: number of that argument in the C function.
+  !> fault: describes a mismatch, empty if the arrays match; k: number of the wrong argument in the C function.
   recursive subroutine compare_sizes(rows, entries, dofs, vals, rhs, k, fault)
     integer(int64), intent(in) :: rows, entries, dofs, vals
     real(real64), intent(in), optional :: rhs(:)
@@ -197,8 +198,8 @@ contains
       size(rhs, kind=c_int64_t), rhs), stat, errmsg)
   end subroutine
 
-  !> Makes rows first, first+1, ... of a kind springs, B u - c <= lambda/k or H u - h = mu/k: inv_k(:) = 1/k >= 0,
-  !> length / force, 0 for a rigid row. New rows are rigid. Factors of the bodies stay, the last answer does not.
+  !> Makes rows first, first+1, ... of a kind springs, B u - c <= lambda/k or H u - h = mu/k: inv_k(:) = 1/k >= 0, length
+  !> / force, 0 for a rigid row. New rows are rigid. The factors of the bodies stay valid; the last answer is dropped.
   recursive subroutine rows_compliance(p, kind, first, inv_k, stat, errmsg)
     type(feti_problem), intent(in) :: p
     integer(c_int32_t), intent(in) :: kind
@@ -211,7 +212,7 @@ contains
       size(inv_k, kind=c_int64_t), inv_k), stat, errmsg)
   end subroutine
 
-  !> Removes all rows of a kind, with the contact rows all nodes with friction.
+  !> Removes all rows of a kind; removing the contact rows also removes all nodes with friction.
   recursive subroutine rows_clear(p, kind, stat, errmsg)
     type(feti_problem), intent(in) :: p
     integer(c_int32_t), intent(in) :: kind

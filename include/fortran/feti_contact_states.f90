@@ -23,10 +23,10 @@ module feti_contact_states
   public :: diagnosis, diagnosis_rows, diagnosis_motion
   public :: diagnosis_dependent, diagnosis_untouched, diagnosis_undetermined, diagnosis_undetermined_motion
 
-  !> Start values for the next solve alone: lambda of kind FETI_INEQUALITY, mu of FETI_EQUALITY or lambda_t of FETI_TANGENTIAL,
-  !> force. Rows with a zero start without force. A change of rows or bodies drops them.
+  !> Start values for the next solve only: lambda of kind FETI_INEQUALITY, mu of FETI_EQUALITY or lambda_t of
+  !> FETI_TANGENTIAL, force. Rows with a zero start without a force. A change of rows or bodies drops the start values.
   !>
-  !> call feti_start_from(p, kind, lambda): lambda(rows); of nodes with friction lambda(dim * nodes), node after node.
+  !> call feti_start_from(p, kind, lambda): lambda(rows); for nodes with friction lambda(dim * nodes), node after node.
   !> call feti_start_from(p, kind, lambda): lambda(dim, nodes), with FETI_TANGENTIAL.
   interface start_from
     module procedure start_from_rows, start_from_nodes
@@ -34,7 +34,7 @@ module feti_contact_states
 
 contains
 
-  !> Those of nodes with friction, (dim, nodes).
+  !> The values of nodes with friction, (dim, nodes).
   recursive subroutine start_from_nodes(p, kind, lambda, stat, errmsg)
     type(feti_problem), intent(in) :: p
     integer(c_int32_t), intent(in) :: kind
@@ -45,7 +45,7 @@ contains
     call finish(c_start_from(handle_of(p), kind, size(lambda, kind=c_int64_t), lambda), stat, errmsg)
   end subroutine
 
-  !> One after the other.
+  !> The values in one dimension, one after the other.
   recursive subroutine start_from_rows(p, kind, lambda, stat, errmsg)
     type(feti_problem), intent(in) :: p
     integer(c_int32_t), intent(in) :: kind
@@ -70,8 +70,8 @@ contains
     call finish(status, stat, errmsg)
   end subroutine
 
-  !> Goes back to a saved state, which stays saved: loads, rows with their gaps and compliances, friction with its laws and s_old.
-  !> FETI_STATE when bodies were added since.
+  !> Goes back to a saved state, which stays saved: loads, rows with their gaps and compliances, friction with its laws
+  !> and s_old. FETI_STATE if bodies were added since the state was saved.
   recursive subroutine state_restore(p, id, stat, errmsg)
     type(feti_problem), intent(in) :: p
     integer, intent(in) :: id
@@ -91,8 +91,8 @@ contains
     call finish(c_state_drop(handle_of(p), int(id - 1, c_int64_t)), stat, errmsg)
   end subroutine
 
-  !> What the last solve, or the last setup that failed, has found out: the body that escapes and its motion, rows that
-  !> contradict each other, motions left undetermined. Bodies, unknowns and rows count from 1, 0: none.
+  !> What the last solve, or the last failed setup, found out: the body that escapes and its motion, rows that contradict
+  !> each other, undetermined motions. Bodies, unknowns and rows count from 1; 0: none.
   recursive subroutine diagnosis(p, findings, stat, errmsg)
     type(feti_problem), intent(in) :: p
     type(feti_findings), intent(inout) :: findings
@@ -114,8 +114,8 @@ contains
     call finish(status, stat, errmsg)
   end subroutine
 
-  !> Rows of one kind that contradict each other with their weights w: over both kinds sum w b = 0, sum w c < 0. Without
-  !> a contradiction the redundant rows, each with its multiple of the row that it repeats.
+  !> Rows of one kind that contradict each other, with their weights w: over both kinds sum w b = 0 and sum w c < 0.
+  !> Without a contradiction the redundant rows, each with its factor relative to the row that it repeats.
   recursive subroutine diagnosis_rows(p, kind, row, weight, stat, errmsg)
     type(feti_problem), intent(in) :: p
     integer(c_int32_t), intent(in) :: kind
@@ -138,7 +138,7 @@ contains
     call finish(status, stat, errmsg)
   end subroutine
 
-  !> Equality rows that are combinations of the other equality rows.
+  !> Equality rows that are linear combinations of the other equality rows.
   recursive subroutine diagnosis_dependent(p, row, stat, errmsg)
     type(feti_problem), intent(in) :: p
     integer, allocatable, intent(out) :: row(:)
@@ -176,8 +176,8 @@ contains
     call finish(status, stat, errmsg)
   end subroutine
 
-  !> Rigid motion k of those that the last answer leaves undetermined: the body that moves fastest, and its motion(6), velocity
-  !> of the origin and rotation about the axes, NaN without coordinates.
+  !> Rigid body motion k among the motions that the last answer leaves undetermined: the body that moves fastest, and its
+  !> motion(6), velocity of the origin and rotation about the axes; NaN without coordinates.
   recursive subroutine diagnosis_undetermined(p, k, body, motion, stat, errmsg)
     type(feti_problem), intent(in) :: p
     integer, intent(in) :: k
@@ -197,7 +197,7 @@ contains
     call finish(status, stat, errmsg)
   end subroutine
 
-  !> The same on one body, v(n), largest entry over all bodies 1.
+  !> Rigid body motion k of the undetermined motions on one body, v(n), scaled to a largest entry of 1 over all bodies.
   recursive subroutine diagnosis_undetermined_motion(p, k, body, v, stat, errmsg)
     type(feti_problem), intent(in) :: p
     integer, intent(in) :: k, body
@@ -209,8 +209,8 @@ contains
       size(v, kind=c_int64_t), v), stat, errmsg)
   end subroutine
 
-  !> Rigid motion with which a body escapes, v(n), largest entry over all bodies 1; after FETI_LOAD_NOT_HELD, or
-  !> FETI_INDEFINITE of a motion that K drives.
+  !> Rigid body motion with which a body escapes, v(n), scaled to a largest entry of 1 over all bodies; after
+  !> FETI_LOAD_NOT_HELD, or after FETI_INDEFINITE because of a motion that K drives.
   recursive subroutine diagnosis_motion(p, body, v, stat, errmsg)
     type(feti_problem), intent(in) :: p
     integer, intent(in) :: body

@@ -1,8 +1,8 @@
 !> Stiffness matrices of module feti_contact. A host uses feti_contact, not this module.
 !>
-!> Everything but what feti_body_stiffness_borrow is given is copied; the host's arrays are free after each call. Sizes
-!> come from the arrays and are compared with the n of feti_body_add. Bodies and unknowns count from 1. A refused call
-!> leaves the problem as it was. Arrays that are not contiguous are copied by the compiler. `stat` and `errmsg`: see
+!> The library copies all arrays except those given to feti_body_stiffness_borrow, so the host may reuse them after each
+!> call. Sizes are taken from the arrays and compared with the n of feti_body_add. Bodies and unknowns count from 1. A
+!> refused call leaves the problem unchanged. The compiler copies arrays that are not contiguous. `stat` and `errmsg`: see
 !> feti_contact_base.
 module feti_contact_stiffness
   use, intrinsic :: iso_c_binding, only: c_int32_t, c_int64_t, c_sizeof
@@ -29,37 +29,40 @@ module feti_contact_stiffness
   !>   row_ptr(i) .. row_ptr(i+1)-1 of col and val; row_ptr(n+1); all counted from 1, int32 or int64.
   !> call feti_body_stiffness(p, body, k, storage): the whole matrix k(n,n).
   !>
-  !> storage: FETI_LOWER or FETI_UPPER (only that triangle is given, of k(n,n) only it is read) or FETI_FULL.
-  !> The columns of the lower triangle are the rows of the upper one: FETI_UPPER.
+  !> storage: FETI_FULL, or FETI_LOWER or FETI_UPPER (only this triangle is given; of k(n,n) only this triangle is read).
+  !> If the host stores the columns of the lower triangle, use FETI_UPPER, because they are the rows of the upper
+  !> triangle.
   interface body_stiffness
     module procedure stiffness_int32, stiffness_int64, stiffness_dense
   end interface
 
-  !> Stiffness of a body whose diagonal diag(n) is an array of its own; row_ptr, col and val as for feti_body_stiffness,
-  !> without entries on the diagonal.
+  !> Stiffness of a body whose diagonal diag(n) is a separate array; row_ptr, col and val are as for feti_body_stiffness,
+  !> but without diagonal entries.
   !>
   !> call feti_body_stiffness_split(p, body, diag, row_ptr, col, val, storage): row_ptr and col int32 or int64.
   interface body_stiffness_split
     module procedure split_int32, split_int64
   end interface
 
-  !> As feti_body_stiffness by rows, but the values stay in the array behind the pointer val, where FETI_LOWER is given,
-  !> columns ascend and every row ends with its diagonal entry (feti_body_info tells; otherwise all is copied).
+  !> Works like feti_body_stiffness by rows, but the library uses the values in the array of the pointer val without a
+  !> copy, if storage is FETI_LOWER, columns ascend and every row ends with its diagonal entry. Otherwise it copies
+  !> everything (see feti_body_info).
   !>
   !> call feti_body_stiffness_borrow(p, body, row_ptr, col, val, storage): row_ptr and col int32 or int64.
   !>
-  !> The array must live until the matrix is replaced or the problem destroyed: allocate it by the pointer, or give it the
-  !> target attribute in a main program, in a module or with save. Of a local variable without save, or of a dummy argument,
-  !> whose actual argument may be a copy, nothing is left when the procedure returns. Its values change only between two
-  !> calls, and the next call for the problem then is feti_body_values_borrow.
+  !> The array must exist until the matrix is replaced or the problem is destroyed: allocate it through the pointer, or
+  !> give it the target attribute in a main program, in a module or with save. Do not use a local variable without save,
+  !> which ends with its procedure, or a dummy argument, whose actual argument may be a copy. The host may change the
+  !> values only between two calls, and its next call for the problem must then be feti_body_values_borrow.
   interface body_stiffness_borrow
     module procedure borrow_int32, borrow_int64
   end interface
 
-  !> New values of a stiffness matrix on the pattern it has; the next setup costs one numeric factorisation of the body.
+  !> New values for a stiffness matrix with its existing pattern; the next setup costs one numeric factorisation of the
+  !> body.
   !>
-  !> call feti_body_values(p, body, val): of a matrix by rows, val as in the first call, in the same order.
-  !> call feti_body_values(p, body, k): of a matrix k(n,n), in the same storage.
+  !> call feti_body_values(p, body, val): for a matrix by rows, val in the same order as in the first call.
+  !> call feti_body_values(p, body, k): for a matrix k(n,n), in the same storage.
   interface body_values
     module procedure values_by_rows, values_dense
   end interface
@@ -213,7 +216,7 @@ contains
     end if
   end subroutine
 
-  !> Of a matrix by rows.
+  !> Values for a matrix by rows.
   recursive subroutine values_by_rows(p, body, val, stat, errmsg)
     type(feti_problem), intent(in) :: p
     integer, intent(in) :: body
@@ -228,8 +231,9 @@ contains
     end if
   end subroutine
 
-  !> A borrowed matrix whose values have been rewritten in the array of before, or are in another one from now on: for
-  !> val the rules of feti_body_stiffness_borrow. Of a matrix that is not borrowed the values are copied.
+  !> New values for a borrowed matrix: the host has rewritten the borrowed array, or val points to another array that
+  !> replaces it. The rules of feti_body_stiffness_borrow apply to val. If the matrix is not borrowed, the values are
+  !> copied.
   recursive subroutine body_values_borrow(p, body, val, stat, errmsg)
     type(feti_problem), intent(in) :: p
     integer, intent(in) :: body
@@ -244,7 +248,7 @@ contains
     end if
   end subroutine
 
-  !> feti_body_values may get a copy that the compiler has made: nothing that may be borrowed.
+  !> feti_body_values may receive a temporary copy made by the compiler, which the library must not borrow.
   recursive logical function is_borrowed(p, body)
     type(feti_problem), intent(in) :: p
     integer, intent(in) :: body
@@ -255,7 +259,7 @@ contains
     is_borrowed = c_body_info(handle_of(p), int(body - 1, c_int64_t), facts) == FETI_OK .and. facts%borrowed > 0
   end function
 
-  !> Of a matrix given as a whole.
+  !> Values for a matrix given as a whole.
   recursive subroutine values_dense(p, body, k, stat, errmsg)
     type(feti_problem), intent(in) :: p
     integer, intent(in) :: body
@@ -271,7 +275,7 @@ contains
     end if
   end subroutine
 
-  !> New values of a matrix with a diagonal of its own: diag(n), val as in the first call, in the same order.
+  !> New values for a matrix with a separate diagonal: diag(n), and val in the same order as in the first call.
   recursive subroutine body_values_split(p, body, diag, val, stat, errmsg)
     type(feti_problem), intent(in) :: p
     integer, intent(in) :: body
