@@ -92,11 +92,44 @@ static void draw_pressure(const char *folder, const hertz *theory, int64_t rows,
     if (picture_svg(folder, "hertz_pressure.svg", &plot) != 0) demo_stop("hertz_pressure.svg cannot be written");
 }
 
-/* Deformed mesh with displacements and contact forces. */
-static void draw_mesh(const char *folder, feti_problem *problem, const case_data *data, const double *u)
+enum { STEPS = 1000 };
+
+/* The steps of the solve, and what is left of the residual after each over the limit at which it ends. */
+typedef struct {
+    int64_t steps;
+    double step[STEPS], residual[STEPS];
+} steps_taken;
+
+/* Hears of every step: 0 goes on. */
+static int32_t note(void *user, const feti_progress *now)
+{
+    steps_taken *taken = user;
+    if (now->phase != FETI_PHASE_SOLVE || taken->steps == STEPS) return 0;
+    taken->residual[taken->steps++] = now->residual;
+    return 0;
+}
+
+/* Residual of every step, as powers of ten of the limit at which the solve ends. */
+static void draw_convergence(const char *folder, steps_taken *taken)
+{
+    const double ends_x[2] = { 0.0, (double)taken->steps }, ends_y[2] = { 0.0, 0.0 };
+
+    for (int64_t i = 0; i < taken->steps; i++)
+        taken->step[i] = (double)(i + 1), taken->residual[i] = log10(taken->residual[i]);
+    const picture plot = { .title = "Convergence: the residual of every step", .x_name = "step",
+                           .y_name = "log10(residual / limit)", .points_name = "computed", .curve_name = "the solve ends",
+                           .points = taken->steps, .x = taken->step, .y = taken->residual,
+                           .samples = 2, .curve_x = ends_x, .curve_y = ends_y };
+    if (picture_svg(folder, "hertz_convergence.svg", &plot) != 0) demo_stop("hertz_convergence.svg cannot be written");
+}
+
+/* The mesh with displacements, and what the contact does to its nodes. */
+static void draw_mesh(const char *folder, feti_problem *problem, const case_data *data, const double *u, const double *lambda,
+                      const int32_t *state)
 {
     picture_mesh mesh[2];
-    double *force = demo_array(data->unknowns, sizeof *force);
+    picture_contact contact;
+    double *force = demo_array(data->unknowns, sizeof *force), *slack = demo_array(data->rows, sizeof *slack);
 
     /* feti_reaction: what the rows of one kind do to a body, here -B'lambda. (N) */
     for (int64_t b = 0; b < 2; b++) {
@@ -104,11 +137,15 @@ static void draw_mesh(const char *folder, feti_problem *problem, const case_data
         CALL(feti_reaction(problem, FETI_INEQUALITY, b, body->n, force + body->first));
         if (picture_quads(data, body, 2, &mesh[b]) != 0) demo_stop("out of memory");
     }
-    if (picture_vtk(folder, "hertz_cylinder.vtk", data, 2, mesh, u, force) != 0)
-        demo_stop("hertz_cylinder.vtk cannot be written");
+    CALL(feti_gaps(problem, data->rows, slack)); /* what is left of the gaps. (mm) */
+    if (picture_contact_of(data, 2, lambda, slack, state, &contact) != 0) demo_stop("out of memory");
+    if (picture_case(folder, "hertz_cylinder.vtu", data, 2, mesh, u, force, &contact) != 0)
+        demo_stop("hertz_cylinder.vtu cannot be written");
     picture_mesh_free(&mesh[0]);
     picture_mesh_free(&mesh[1]);
+    picture_contact_free(&contact);
     free(force);
+    free(slack);
 }
 
 /* Prints the comparison with Hertz and draws it. Returns 1 when width and peak agree to 2 %, force to 1e-6. */
@@ -154,8 +191,14 @@ int main(int argc, char **argv)
     CALL(feti_problem_create(&problem));
     hand_over(problem, &data);
 
+    /* The library tells note of every step. */
     feti_info info = { .struct_size = sizeof info };
+    steps_taken *taken = demo_array(1, sizeof *taken);
+    CALL(feti_on_progress(problem, note, taken));
     CALL(feti_solve(problem, &info));
+    CALL(feti_on_progress(problem, NULL, NULL));
+    draw_convergence(pictures, taken);
+    free(taken);
 
     double *u = demo_array(data.unknowns, sizeof *u), *lambda = demo_array(data.rows, sizeof *lambda);
     int32_t *state = demo_array(data.rows, sizeof *state);
@@ -165,7 +208,7 @@ int main(int argc, char **argv)
     CALL(feti_active(problem, data.rows, state));
 
     const int agrees = compare(pictures, &data, lambda, state);
-    draw_mesh(pictures, problem, &data, u);
+    draw_mesh(pictures, problem, &data, u, lambda, state);
     CALL(feti_problem_destroy(&problem));
 
     const double error = fmax(demo_error(data.rows, lambda, data.lambda_ref), demo_error(data.unknowns, u, data.u_ref));

@@ -58,22 +58,30 @@ static void print_forces(const case_data *data, const double *lambda, const doub
     demo_value("lift of the top, largest", lift, "mm");
 }
 
-/* Deformed bodies: bricks where the nodes lie on a lattice, the tetrahedral mesh as points. */
-static void draw(const char *folder, feti_problem *problem, const case_data *data, const double *u)
+/* The bodies, bricks where the nodes lie on a lattice, the tetrahedral mesh as points, and what the contact does to their nodes. */
+static void draw(const char *folder, feti_problem *problem, const case_data *data, const double *u, const double *lambda)
 {
     static const int64_t stride[3] = { 1, 1, 2 }; /* the 20-node bricks have mid-side nodes between corners */
     picture_mesh mesh[3];
-    double *force = demo_array(data->unknowns, sizeof *force);
+    picture_contact contact;
+    double *force = demo_array(data->unknowns, sizeof *force), *slack = demo_array(data->rows, sizeof *slack);
+    int32_t *state = demo_array(data->rows, sizeof *state);
 
     for (int64_t b = 0; b < 3; b++) {
         const case_body *body = &data->body[b];
         CALL(feti_reaction(problem, FETI_INEQUALITY, b, body->n, force + body->first));
         if (picture_hexahedra(data, body, stride[b], &mesh[b]) != 0) demo_stop("out of memory");
     }
-    if (picture_vtk(folder, "three_bodies.vtk", data, 3, mesh, u, force) != 0)
-        demo_stop("three_bodies.vtk cannot be written");
+    CALL(feti_gaps(problem, data->rows, slack));
+    CALL(feti_active(problem, data->rows, state));
+    if (picture_contact_of(data, 3, lambda, slack, state, &contact) != 0) demo_stop("out of memory");
+    if (picture_case(folder, "three_bodies.vtu", data, 3, mesh, u, force, &contact) != 0)
+        demo_stop("three_bodies.vtu cannot be written");
     for (int b = 0; b < 3; b++) picture_mesh_free(&mesh[b]);
+    picture_contact_free(&contact);
     free(force);
+    free(slack);
+    free(state);
 }
 
 int main(int argc, char **argv)
@@ -99,7 +107,7 @@ int main(int argc, char **argv)
     CALL(feti_multipliers(problem, FETI_INEQUALITY, data.rows, lambda));
 
     print_forces(&data, lambda, u);
-    draw(pictures, problem, &data, u);
+    draw(pictures, problem, &data, u, lambda);
     CALL(feti_problem_destroy(&problem));
 
     const double error = fmax(demo_error(data.rows, lambda, data.lambda_ref), demo_error(data.unknowns, u, data.u_ref));

@@ -12,6 +12,7 @@
 #include <string.h>
 
 #include "demo.h"
+#include "picture.h"
 
 enum { N = 10 /* elements along 1 m */, L = N + 1, NODES = L * L * L, ELEMENTS = N * N * N, ALL = 3 * NODES, OWN = 24 };
 
@@ -154,39 +155,32 @@ static double at(const numbers *all, const double *u, int a, int d)
     return equation < 0 ? 0.0 : u[equation];
 }
 
-/* The deformed block as legacy VTK: displacement, contact force and piece of every node; the clamp is in no piece, -1. */
+/* The block as VTK XML: displacement, contact force and piece of every node; the clamp is in no piece, -1. */
 static void draw(const char *folder, const numbers *all, const answer *found)
 {
-    static const int corner[8] = { 0, 1, 3, 2, 4, 5, 7, 6 }; /* VTK goes around the bottom, then around the top */
-    char name[1024];
-    FILE *file;
+    static const int around[8] = { 0, 1, 3, 2, 4, 5, 7, 6 }; /* VTK goes around the bottom, then around the top */
+    double *values = demo_array(10 * NODES, sizeof *values);
+    double *xyz = values, *moved = values + 3 * NODES, *force = values + 6 * NODES, *piece = values + 9 * NODES;
+    int64_t *cells = demo_array(10 * ELEMENTS + 1, sizeof *cells);
+    int64_t *offset = cells, *number = cells + ELEMENTS + 1, *corner = cells + 2 * ELEMENTS + 1;
+    const picture_field field[] = { { "displacement", 3, 0, moved }, { "contact_force", 3, 0, force }, { "piece", 1, 1, piece } };
+    const picture_grid grid = { NODES, ELEMENTS, xyz, offset, corner, number, 3, field };
 
-    snprintf(name, sizeof name, "%s/block_in_pieces.vtk", folder);
-    file = fopen(name, "w");
-    if (!file) demo_stop("the picture cannot be written");
-    fprintf(file, "# vtk DataFile Version 3.0\na block in pieces\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS %d double\n", NODES);
-    for (int a = 0; a < NODES; a++)
-        fprintf(file, "%.9g %.9g %.9g\n", (double)(a % L) / N + at(all, found->u, a, 0),
-                (double)(a / L % L) / N + at(all, found->u, a, 1), (double)(a / L / L) / N + at(all, found->u, a, 2));
-    fprintf(file, "CELLS %d %d\n", ELEMENTS, 9 * ELEMENTS);
-    for (int e = 0; e < ELEMENTS; e++) {
-        fprintf(file, "8");
-        for (int c = 0; c < 8; c++)
-            fprintf(file, " %d", node(e % N + (corner[c] & 1), e / N % N + (corner[c] >> 1 & 1), e / N / N + (corner[c] >> 2)));
-        fprintf(file, "\n");
+    for (int a = 0; a < NODES; a++) {
+        const int place[3] = { a % L, a / L % L, a / L / L };
+        for (int d = 0; d < 3; d++) xyz[3 * a + d] = (double)place[d] / N, moved[3 * a + d] = at(all, found->u, a, d);
+        if (a < L * L && a % L > 0) force[3 * a + 2] = found->contact[a % L - 1 + N * (a / L)];
+        piece[a] = a % L == 0 ? -1.0 : (double)found->piece[all->equation[3 * a]];
     }
-    fprintf(file, "CELL_TYPES %d\n", ELEMENTS);
-    for (int e = 0; e < ELEMENTS; e++) fprintf(file, "12\n");
-    fprintf(file, "POINT_DATA %d\nVECTORS displacement double\n", NODES);
-    for (int a = 0; a < NODES; a++)
-        fprintf(file, "%.9g %.9g %.9g\n", at(all, found->u, a, 0), at(all, found->u, a, 1), at(all, found->u, a, 2));
-    fprintf(file, "VECTORS contact_force double\n");
-    for (int a = 0; a < NODES; a++)
-        fprintf(file, "0 0 %.9g\n", a < L * L && a % L > 0 ? found->contact[a % L - 1 + N * (a / L)] : 0.0);
-    fprintf(file, "SCALARS piece int 1\nLOOKUP_TABLE default\n");
-    for (int a = 0; a < NODES; a++) fprintf(file, "%d\n", a % L == 0 ? -1 : (int)found->piece[all->equation[3 * a]]);
-    if (fclose(file) != 0) demo_stop("the picture cannot be written");
-    printf("picture %s\n", name);
+    for (int e = 0; e < ELEMENTS; e++) {
+        number[e] = 1;
+        offset[e + 1] = 8 * (e + 1);
+        for (int c = 0; c < 8; c++)
+            corner[8 * e + c] = node(e % N + (around[c] & 1), e / N % N + (around[c] >> 1 & 1), e / N / N + (around[c] >> 2));
+    }
+    if (picture_vtu(folder, "block_in_pieces.vtu", &grid) != 0) demo_stop("the picture cannot be written");
+    free(values);
+    free(cells);
 }
 
 int main(int argc, char **argv)

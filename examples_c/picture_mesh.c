@@ -87,19 +87,21 @@ static int64_t plane_of(const axis *direction, double x)
     return low;
 }
 
-/* Takes every cell of the lattice whose eight corners are nodes; node[] holds -1 where there is none. */
+/* Takes every cell of the lattice whose nodes are all there; node[] holds -1 where there is none. The order is that of VTK: corners
+   around the bottom and the top; then, where every other plane has mid-side nodes alone, the edges around both and those between. */
 static void lattice_cells(const axis way[3], const int64_t *node, int64_t stride, picture_mesh *mesh)
 {
-    static const int corner[8][3] = { { 0, 0, 0 }, { 1, 0, 0 }, { 1, 1, 0 }, { 0, 1, 0 },
-                                      { 0, 0, 1 }, { 1, 0, 1 }, { 1, 1, 1 }, { 0, 1, 1 } };
+    static const int half[20][3] = { { 0, 0, 0 }, { 2, 0, 0 }, { 2, 2, 0 }, { 0, 2, 0 }, { 0, 0, 2 }, { 2, 0, 2 }, { 2, 2, 2 },
+                                     { 0, 2, 2 }, { 1, 0, 0 }, { 2, 1, 0 }, { 1, 2, 0 }, { 0, 1, 0 }, { 1, 0, 2 }, { 2, 1, 2 },
+                                     { 1, 2, 2 }, { 0, 1, 2 }, { 0, 0, 1 }, { 2, 0, 1 }, { 2, 2, 1 }, { 0, 2, 1 } };
     for (int64_t i = 0; i + stride < way[0].planes; i += stride)
         for (int64_t j = 0; j + stride < way[1].planes; j += stride)
             for (int64_t k = 0; k + stride < way[2].planes; k += stride) {
-                int64_t *cell = mesh->corner + 8 * mesh->cells;
+                int64_t *cell = mesh->corner + mesh->corners * mesh->cells;
                 int complete = 1;
-                for (int c = 0; c < 8; c++) {
-                    const int64_t x = i + stride * corner[c][0], y = j + stride * corner[c][1];
-                    cell[c] = node[(x * way[1].planes + y) * way[2].planes + k + stride * corner[c][2]];
+                for (int c = 0; c < mesh->corners; c++) {
+                    const int64_t x = i + stride * half[c][0] / 2, y = j + stride * half[c][1] / 2;
+                    cell[c] = node[(x * way[1].planes + y) * way[2].planes + k + stride * half[c][2] / 2];
                     complete = complete && cell[c] >= 0;
                 }
                 mesh->cells += complete;
@@ -115,7 +117,7 @@ static int lattice_mesh(const case_data *data, const case_body *body, const axis
 
     if (places > 8 * nodes) return points(body, 3, mesh);
     node = malloc((size_t)places * sizeof *node);
-    if (!node || mesh_begin(mesh, 8, places) != 0) {
+    if (!node || mesh_begin(mesh, stride == 2 ? 20 : 8, places) != 0) {
         free(node);
         return -1;
     }
@@ -139,68 +141,4 @@ int picture_hexahedra(const case_data *data, const case_body *body, int64_t stri
     if (status == 0) status = lattice_mesh(data, body, way, stride, mesh);
     for (int k = 0; k < 3; k++) free(way[k].at);
     return status;
-}
-
-/* VTK cell types by number of corners. */
-static int cell_type(int64_t corners)
-{
-    return corners == 8 ? 12 : corners == 4 ? 9 : 1;
-}
-
-static void write_cells(FILE *file, const case_data *data, int32_t dims, const picture_mesh *mesh)
-{
-    int64_t cells = 0, numbers = 0, b, c, k;
-
-    for (b = 0; b < data->bodies; b++) {
-        cells += mesh[b].cells;
-        numbers += mesh[b].cells * (mesh[b].corners + 1);
-    }
-    fprintf(file, "CELLS %lld %lld\n", (long long)cells, (long long)numbers);
-    for (b = 0; b < data->bodies; b++)
-        for (c = 0; c < mesh[b].cells; c++) {
-            fprintf(file, "%lld", (long long)mesh[b].corners);
-            for (k = 0; k < mesh[b].corners; k++)
-                fprintf(file, " %lld",
-                        (long long)(data->body[b].first / dims + mesh[b].corner[mesh[b].corners * c + k]));
-            fputc('\n', file);
-        }
-    fprintf(file, "CELL_TYPES %lld\n", (long long)cells);
-    for (b = 0; b < data->bodies; b++)
-        for (c = 0; c < mesh[b].cells; c++) fprintf(file, "%d\n", cell_type(mesh[b].corners));
-    fprintf(file, "CELL_DATA %lld\nSCALARS body int 1\nLOOKUP_TABLE default\n", (long long)cells);
-    for (b = 0; b < data->bodies; b++)
-        for (c = 0; c < mesh[b].cells; c++) fprintf(file, "%lld\n", (long long)b + 1);
-}
-
-/* Three components per node of `from`, the third 0 in the plane; plus the place of the node where wanted. */
-static void write_vectors(FILE *file, const case_data *data, int32_t dims, const double *from, int at_the_node)
-{
-    for (int64_t node = 0; node < data->unknowns / dims; node++) {
-        const double *x = data->xyz + 3 * dims * node, *v = from + dims * node;
-        for (int k = 0; k < 3; k++)
-            fprintf(file, "%.9g%c", (at_the_node ? x[k] : 0.0) + (k < dims ? v[k] : 0.0), k < 2 ? ' ' : '\n');
-    }
-}
-
-int picture_vtk(const char *folder, const char *name, const case_data *data, int32_t dims,
-                const picture_mesh *mesh, const double *u, const double *force)
-{
-    char path[1024];
-    FILE *file;
-    const long long nodes = (long long)(data->unknowns / dims);
-
-    snprintf(path, sizeof path, "%s/%s", folder, name);
-    file = fopen(path, "w");
-    if (!file) return -1;
-    fprintf(file, "# vtk DataFile Version 3.0\ndeformed bodies in contact\nASCII\nDATASET UNSTRUCTURED_GRID\n");
-    fprintf(file, "POINTS %lld double\n", nodes);
-    write_vectors(file, data, dims, u, 1);
-    write_cells(file, data, dims, mesh);
-    fprintf(file, "POINT_DATA %lld\nVECTORS displacement double\n", nodes);
-    write_vectors(file, data, dims, u, 0);
-    fprintf(file, "VECTORS contact_force double\n");
-    write_vectors(file, data, dims, force, 0);
-    if (fclose(file) != 0) return -1;
-    printf("picture %s\n", path);
-    return 0;
 }

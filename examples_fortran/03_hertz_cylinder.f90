@@ -12,18 +12,50 @@
 !>
 !> Hertz:  E* = E / (2 (1 - nu^2)),  half width b = sqrt(4 P R / (pi E*)),  peak p0 = 2 P / (pi b),
 !>         p(x) = p0 sqrt(1 - x^2/b^2).
+module hertz_steps
+  use case_reader, only: dp
+  use feti_contact, only: feti_progress, FETI_PHASE_SOLVE
+  implicit none
+
+  !> The steps of the solve, and what is left of the residual after each over the limit at which it ends.
+  type :: steps_taken
+    integer :: steps = 0
+    real(dp) :: residual(1000) = 0
+  end type
+
+contains
+
+  !> Hears of every step: 0 goes on.
+  integer function note(now, data)
+    type(feti_progress), intent(in) :: now
+    class(*), intent(inout) :: data
+
+    note = 0
+    select type (data)
+    type is (steps_taken)
+      if (now%phase /= FETI_PHASE_SOLVE .or. data%steps == size(data%residual)) return
+      data%steps = data%steps + 1
+      data%residual(data%steps) = now%residual
+    end select
+  end function
+
+end module
+
 program hertz_cylinder
   use case_reader
   use demo
   use feti_contact
+  use hertz_steps
   use picture
+  use vtu_picture
   implicit none
   real(dp), parameter :: pi = acos(-1.0_dp)
   real(dp), parameter :: radius = 10, young = 210000, poisson = 0.3_dp  ! mm, MPa, -
   type(feti_problem) :: problem
   type(feti_info) :: info
   type(contact_case) :: host
-  real(dp), allocatable :: u(:), lambda(:), force(:)
+  type(steps_taken), target :: taken
+  real(dp), allocatable :: u(:), lambda(:), slack(:), force(:)
   integer, allocatable :: state(:)
   real(dp) :: error
   logical :: agrees
@@ -35,10 +67,14 @@ program hertz_cylinder
   call feti_problem_create(problem)
   call hand_over
 
+  ! The library tells note of every step. A function of the host is a procedure of a module, not of a program.
+  call feti_on_progress(problem, note, taken)
   call feti_solve(problem, info)
+  call feti_on_progress(problem)
+  call draw_convergence
 
   ! Sections of an array may be handed over as they are: u holds the bodies one after the other.
-  allocate (u(host%n), force(host%n), lambda(size(host%c)), state(size(host%c)))
+  allocate (u(host%n), force(host%n), lambda(size(host%c)), slack(size(host%c)), state(size(host%c)))
   do b = 1, 2
     call feti_displacement(problem, b, u(first(b):last(b)))
   end do
@@ -51,11 +87,12 @@ program hertz_cylinder
   do b = 1, 2
     call feti_reaction(problem, FETI_INEQUALITY, b, force(first(b):last(b)))
   end do
-  call picture_vtk(picture_folder(), 'hertz_cylinder_fortran.vtk', host, u, force)
+  call feti_gaps(problem, slack)  ! what is left of the gaps. (mm)
+  call picture_case(picture_folder(), 'hertz_cylinder_fortran.vtu', host, [1, 1], u, force, lambda, slack, state)
   call feti_problem_destroy(problem)
 
   error = max(demo_error(lambda, host%lambda_ref), demo_error(u, host%u_ref))
-  deallocate (u, lambda, force, state)
+  deallocate (u, lambda, slack, force, state)
   call demo_line('03_hertz_cylinder', info, error, agrees)
 
 contains
@@ -137,6 +174,15 @@ contains
     do row = 1, size(x)
       length(row) = (x(min(row + 1, size(x))) - x(max(row - 1, 1))) / 2
     end do
+  end subroutine
+
+  !> Residual of every step, as powers of ten of the limit at which the solve ends.
+  subroutine draw_convergence
+    integer :: i
+
+    call picture_svg(picture_folder(), 'hertz_convergence_fortran.svg', 'Convergence: the residual of every step', 'step', &
+      'log10(residual / limit)', 'the solve ends', [(real(i, dp), i = 1, taken%steps)], log10(taken%residual(:taken%steps)), &
+      [0.0_dp, real(taken%steps, dp)], [0.0_dp, 0.0_dp])
   end subroutine
 
   !> Contact pressure of every node within 1.5 b against the ellipse of Hertz.

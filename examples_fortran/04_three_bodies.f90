@@ -10,12 +10,13 @@ program three_bodies
   use case_reader
   use demo
   use feti_contact
-  use picture
+  use vtu_picture
   implicit none
   type(feti_problem) :: problem
   type(feti_info) :: info
   type(contact_case) :: host
-  real(dp), allocatable :: u(:), lambda(:), force(:)
+  real(dp), allocatable :: u(:), lambda(:), slack(:), force(:)
+  integer, allocatable :: state(:)
   real(dp) :: error
   integer :: b
 
@@ -27,7 +28,7 @@ program three_bodies
 
   call feti_solve(problem, info)
 
-  allocate (u(host%n), force(host%n), lambda(size(host%c)))
+  allocate (u(host%n), force(host%n), lambda(size(host%c)), slack(size(host%c)), state(size(host%c)))
   do b = 1, 3
     call feti_displacement(problem, b, u(first(b):last(b)))
   end do
@@ -37,11 +38,14 @@ program three_bodies
   do b = 1, 3
     call feti_reaction(problem, FETI_INEQUALITY, b, force(first(b):last(b)))
   end do
-  call picture_vtk(picture_folder(), 'three_bodies_fortran.vtk', host, u, force)
+  call feti_gaps(problem, slack)
+  call feti_active(problem, state)
+  ! The 20-node bricks of the top have mid-side nodes between corners.
+  call picture_case(picture_folder(), 'three_bodies_fortran.vtu', host, [1, 1, 2], u, force, lambda, slack, state)
   call feti_problem_destroy(problem)
 
   error = max(demo_error(lambda, host%lambda_ref), demo_error(u, host%u_ref))
-  deallocate (u, lambda, force)
+  deallocate (u, lambda, slack, force, state)
   call demo_line('04_three_bodies', info, error, .true.)
 
 contains

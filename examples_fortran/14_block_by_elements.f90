@@ -8,6 +8,7 @@
 !> which feti_body_held_forces tells, and those of the obstacle balance the load.
 program block_by_elements
   use demo, only: demo_error, demo_line, demo_stop, demo_value, picture_folder
+  use vtu_picture, only: vtu_begin, vtu_cells, vtu_doubles, vtu_end, vtu_integers, vtu_next
   use feti_contact
   implicit none
   integer, parameter :: dp = kind(1.0d0)
@@ -203,48 +204,36 @@ contains
     if (equation(d, a) > 0) at = u(equation(d, a))
   end function
 
-  !> The deformed block as legacy VTK: displacement, contact force and piece of every node; the clamp is in no piece, 0.
+  !> The block as VTK XML: displacement, contact force and piece of every node; the clamp is in no piece, -1.
   subroutine draw(folder, found)
     character(len=*), intent(in) :: folder
     type(answer), intent(in) :: found
     integer, parameter :: around(8) = [0, 1, 3, 2, 4, 5, 7, 6] ! VTK goes around the bottom, then around the top
-    integer :: unit, status, a, c, d, e, piece, j
-    real(dp) :: force(0:n, nodes / line)
+    integer :: unit, a, c, d, e, j, piece(nodes), cell(8, elements)
+    real(dp) :: xyz(3, nodes), moved(3, nodes), force(3, nodes)
 
-    open (newunit=unit, file=folder // '/block_in_pieces_fortran.vtk', action='write', status='replace', iostat=status)
-    if (status /= 0) call demo_stop('the picture cannot be written')
-    write (unit, '(a)') '# vtk DataFile Version 3.0', 'a block in pieces', 'ASCII', 'DATASET UNSTRUCTURED_GRID'
-    write (unit, '(a, i0, a)') 'POINTS ', nodes, ' double'
-    do a = 1, nodes
-      write (unit, '(3es17.8e3)') place(a) + [(at(found%u, a, d), d = 1, 3)]
+    force = 0
+    do j = 1, line ! line by line of nodes, the first `line` of which are those of the bottom
+      force(3, line * (j - 1) + 2:line * j) = found%contact(n * (j - 1) + 1:n * j)
     end do
-    write (unit, '(a, 2(1x, i0))') 'CELLS', elements, 9 * elements
+    piece = -1
+    do a = 1, nodes
+      xyz(:, a) = place(a)
+      moved(:, a) = [(at(found%u, a, d), d = 1, 3)]
+      if (equation(1, a) > 0) piece(a) = found%piece(equation(1, a)) - 1
+    end do
     do e = 1, elements
-      write (unit, '(9(i0, 1x))') 8, (corner(e, around(c)) - 1, c = 1, 8)
+      cell(:, e) = [(corner(e, around(c)) - 1, c = 1, 8)]
     end do
-    write (unit, '(a, i0)') 'CELL_TYPES ', elements
-    write (unit, '(i0)') (12, e = 1, elements)
-    write (unit, '(a, i0)') 'POINT_DATA ', nodes
-    write (unit, '(a)') 'VECTORS displacement double'
-    do a = 1, nodes
-      write (unit, '(3es17.8e3)') (at(found%u, a, d), d = 1, 3)
-    end do
-    write (unit, '(a)') 'VECTORS contact_force double'
-    force = 0 ! line by line of nodes, the first `line` of which are those of the bottom
-    do j = 1, line
-      force(1:, j) = found%contact(n * (j - 1) + 1:n * j)
-    end do
-    do j = 1, size(force, 2)
-      write (unit, '(3es17.8e3)') (0.0_dp, 0.0_dp, force(d, j), d = 0, n)
-    end do
-    write (unit, '(a)') 'SCALARS piece int 1', 'LOOKUP_TABLE default'
-    do a = 1, nodes
-      piece = 0
-      if (equation(1, a) > 0) piece = found%piece(equation(1, a))
-      write (unit, '(i0)') piece
-    end do
-    close (unit)
-    print '(3a)', 'picture ', folder, '/block_in_pieces_fortran.vtk'
+    call vtu_begin(folder, 'block_in_pieces_fortran.vtu', nodes, elements, unit)
+    call vtu_doubles(unit, 'Points', 3, xyz)
+    call vtu_cells(unit, cell)
+    call vtu_doubles(unit, 'displacement', 3, moved)
+    call vtu_doubles(unit, 'contact_force', 3, force)
+    call vtu_integers(unit, 'piece', piece)
+    call vtu_next(unit)
+    call vtu_integers(unit, 'body', [(1, e = 1, elements)])
+    call vtu_end(unit)
   end subroutine
 
 end program

@@ -1,10 +1,10 @@
-!> Pictures of the answer: an SVG plot of points against a curve, and a VTK file that ParaView opens.
+!> Pictures of the answer: an SVG plot of points against a curve.
 module picture
-  use case_reader, only: contact_case, dp
+  use case_reader, only: dp
   use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
   implicit none
   private
-  public :: picture_svg, picture_vtk
+  public :: picture_svg, open_picture
 
   ! The sheet and its margins, in SVG units.
   real(dp), parameter :: width = 720, height = 480, left = 80, right = 20, top = 48, bottom = 64
@@ -56,94 +56,6 @@ contains
       '<text x="94" y="90" fill="#1f5fa8">curve: ' // theory // '</text>', '</svg>'
     close (unit)
   end subroutine
-
-  !> Writes folder/name as legacy VTK: nodes at xyz + u, displacement u (length) and force (force) as vectors.
-  !> A body whose nodes run line after line in the plane is drawn by quadrilaterals, any other by its nodes.
-  subroutine picture_vtk(folder, name, host, u, force)
-    character(len=*), intent(in) :: folder, name
-    type(contact_case), intent(in) :: host
-    real(dp), intent(in) :: u(:), force(:)
-    integer, allocatable :: cell(:, :)
-    integer :: unit, dims, nodes, i, b
-
-    dims = maxval(host%dir)
-    nodes = host%n / dims
-    allocate (cell(4, 0))
-    do b = 1, size(host%body)
-      call append_cells(host, b, dims, cell)
-    end do
-    call open_picture(folder, name, unit)
-    write (unit, '(a)') '# vtk DataFile Version 3.0', 'deformed bodies in contact', 'ASCII', &
-      'DATASET UNSTRUCTURED_GRID'
-    write (unit, '(a, i0, a)') 'POINTS ', nodes, ' double'
-    write (unit, '(3es17.8e3)') (host%xyz(:, dims * i) + vector(dims, i, u), i = 1, nodes)
-    write (unit, '(a, 2(1x, i0))') 'CELLS', size(cell, 2), sum(corners(cell) + 1)
-    do i = 1, size(cell, 2)
-      write (unit, '(5(i0, 1x))') corners(cell(:, i:i)), pack(cell(:, i), cell(:, i) >= 0)
-    end do
-    write (unit, '(a, i0)') 'CELL_TYPES ', size(cell, 2)
-    write (unit, '(i0)') merge(9, 1, corners(cell) == 4)
-    write (unit, '(a, i0)') 'POINT_DATA ', nodes
-    write (unit, '(a)') 'VECTORS displacement double'
-    write (unit, '(3es17.8e3)') (vector(dims, i, u), i = 1, nodes)
-    write (unit, '(a)') 'VECTORS contact_force double'
-    write (unit, '(3es17.8e3)') (vector(dims, i, force), i = 1, nodes)
-    close (unit)
-  end subroutine
-
-  !> Three components of node i, the third 0 in the plane.
-  pure function vector(dims, i, from) result(v)
-    integer, intent(in) :: dims, i
-    real(dp), intent(in) :: from(:)
-    real(dp) :: v(3)
-
-    v = 0
-    v(:dims) = from(dims * (i - 1) + 1:dims * i)
-  end function
-
-  !> Adds the cells of body b, nodes counted from 0 through all bodies as VTK does; -1: no more corners.
-  subroutine append_cells(host, b, dims, cell)
-    type(contact_case), intent(in) :: host
-    integer, intent(in) :: b, dims
-    integer, allocatable, intent(inout) :: cell(:, :)
-    integer, allocatable :: more(:, :)
-    integer :: before, nodes, line, i, j
-
-    before = host%body(b)%offset / dims
-    nodes = host%body(b)%n / dims
-    line = count_line(host%xyz(1, host%body(b)%offset + 1:host%body(b)%offset + host%body(b)%n:dims))
-    if (dims == 2 .and. line > 1 .and. mod(nodes, line) == 0) then
-      allocate (more(4, (nodes / line - 1) * (line - 1)))
-      do i = 1, nodes / line - 1
-        do j = 1, line - 1
-          more(:, (i - 1) * (line - 1) + j) = before + line * (i - 1) + j - 1 + [0, line, line + 1, 1]
-        end do
-      end do
-    else
-      allocate (more(4, nodes), source=-1)
-      more(1, :) = [(before + i - 1, i = 1, nodes)]
-    end if
-    cell = reshape([cell, more], [4, size(cell, 2) + size(more, 2)])
-  end subroutine
-
-  !> Nodes with the x of the first one, up to the first that differs.
-  pure integer function count_line(x)
-    real(dp), intent(in) :: x(:)
-
-    count_line = 1
-    do while (count_line < size(x))
-      if (abs(x(count_line + 1) - x(1)) > 0) exit
-      count_line = count_line + 1
-    end do
-  end function
-
-  !> Number of corners of each cell.
-  pure function corners(cell) result(number)
-    integer, intent(in) :: cell(:, :)
-    integer :: number(size(cell, 2))
-
-    number = count(cell >= 0, dim=1)
-  end function
 
   !> Grid lines at round steps, with their numbers.
   subroutine draw_axes(unit, range)

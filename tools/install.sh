@@ -46,6 +46,8 @@ files() {
     each "$DOCDIR/docs/pictures" docs/pictures/*
     each "$DOCDIR/examples_c" examples_c/*
     each "$DOCDIR/examples_fortran" examples_fortran/*
+    # What the examples read.
+    for case in hertz_cylinder p1_P3 p2_B1 three_bodies; do each "$DOCDIR/data/$case" tests/data/$case/*.gz; done
     pages
 }
 

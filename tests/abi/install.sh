@@ -14,7 +14,8 @@ cd "$stage/opt/feti"
 has lib/libfeti_contact.so lib/libfeti_contact.a include/feti_contact.h lib/pkgconfig/feti_contact.pc \
     lib/cmake/feti_contact/feti_contact-config.cmake share/feti_contact/fortran/feti_contact.f90 \
     share/feti_contact/fortran/fpm.toml share/doc/feti-contact/LICENSE-MIT share/doc/feti-contact/LICENSE-THIRD-PARTY \
-    share/doc/feti-contact/docs/licences.md
+    share/doc/feti-contact/docs/licences.md share/doc/feti-contact/examples_c/Makefile \
+    share/doc/feti-contact/data/three_bodies/K1.mtx.gz
 for file in "$root"/include/fortran/*.f90 "$root"/include/fortran/*.inc; do
     [ ! -f "$file" ] || has "share/feti_contact/fortran/$(basename "$file")"
 done
