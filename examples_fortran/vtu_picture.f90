@@ -77,16 +77,17 @@ contains
   !> Ends the points; cell(:,i): nodes of a cell from 0, behind them -1.
   subroutine vtu_cells(unit, cell)
     integer, intent(in) :: unit, cell(:, :)
-    integer :: corners(size(cell, 2)), offsets(size(cell, 2)), types(size(cell, 2)), i
+    integer :: corners(size(cell, 2)), offsets(size(cell, 2)), types(size(cell, 2)), i, total
 
     corners = count(cell >= 0, dim=1)
     types = 1
     where (corners == 4) types = 9
     where (corners == 8) types = 12
     where (corners == 20) types = 25
+    total = 0
     do i = 1, size(corners)
-      offsets(i) = corners(i)
-      if (i > 1) offsets(i) = offsets(i - 1) + corners(i)
+      total = total + corners(i)
+      offsets(i) = total
     end do
     write (unit, '(a)') '</Points>', '<Cells>'
     call begin_array(unit, 'Int64', 'connectivity', 1)

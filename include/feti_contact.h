@@ -611,7 +611,7 @@ int32_t feti_body_no_null_space(struct feti_problem *p, int64_t body);
  * @param[in]     p     (scalar) the handle
  * @param[in]     body  (scalar) number of the body, from 0
  * @param[in]     n     (scalar) unknowns of the body
- * @param[in,out] r     (scalar) in: columns that fit in `basis`, ignored if `basis` is NULL; out:
+ * @param[in,out] r     (scalar) in: columns that fit in `basis`, ignored without `basis`; out:
  *                      dimension of the null space
  * @param[out]    basis (ldr * r) column-major; NULL: only the dimension is returned
  * @param[in]     ldr   (scalar) >= n; ignored without `basis`

@@ -7,7 +7,7 @@ set -eu
 root=$(cd "$(dirname "$0")/.." && pwd)
 mkdir -p "$1"
 work=$(cd "$1" && pwd)
-rm -rf "$work/feti-contact" "$work"/*.deb "$work/root"
+rm -rf "${work:?}"/*
 rust="rustc cargo"
 dpkg --compare-versions "$(apt-cache policy rustc | sed -n 's/.*Candidate: //p')" ge 1.85 || rust="rustc-web cargo-web"
 # shellcheck disable=SC2086 # one word per package

@@ -509,8 +509,8 @@ module feti_contact_c
     !> @param[in]     p     (scalar) the handle
     !> @param[in]     body  (scalar) number of the body, from 0
     !> @param[in]     n     (scalar) unknowns of the body
-    !> @param[in,out] r     (scalar) in: columns that fit in `basis`, ignored if `basis` is NULL; out:
-    !>                      dimension of the null space
+    !> @param[in,out] r     (scalar) in: columns that fit in `basis`, ignored without `basis`; out: dimension
+    !>                      of the null space
     !> @param[out]    basis (ldr * r) column-major; NULL: only the dimension is returned
     !> @param[in]     ldr   (scalar) >= n; ignored without `basis`
     !>
@@ -520,7 +520,7 @@ module feti_contact_c
       type(c_ptr), value :: p
       integer(c_int64_t), value :: body
       integer(c_int64_t), value :: n
-      type(c_ptr), value :: r
+      integer(c_int64_t), intent(inout) :: r
       type(c_ptr), value :: basis
       integer(c_int64_t), value :: ldr
       integer(c_int32_t) :: feti_body_null_space_get

@@ -103,10 +103,10 @@ fn a_refused_index_is_told_as_the_host_counts() {
     for base in [0, 1] {
         assert_eq!(p.set(c"index_base", base), FETI_OK);
         assert_eq!(feti_state_drop(p.0, 4), -102);
-        assert_eq!(last_error(), format!("feti_state_drop: no state has the number {}", 4 + base));
+        assert_eq!(last_error(), "feti_state_drop: no state has this number");
         assert_eq!(last_detail().value, (4 + base) as f64);
         assert_eq!(feti_state_drop(p.0, -1), -102);
-        assert_eq!(last_error(), format!("feti_state_drop: id {} is below the first number", base - 1));
+        assert_eq!(last_error(), "feti_state_drop: id is below the first number");
         assert_eq!(last_detail().value, (base - 1) as f64);
         let (ptr, dof, val) = ([base as i32, base as i32 + 1], [base as i32 + 7], [1.0]);
         let added = add_row(p.0, &ptr, &dof, &val, base as i32);

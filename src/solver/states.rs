@@ -81,5 +81,5 @@ fn copy_of(load: Option<&Vec<f64>>) -> Result<Option<Vec<f64>>> {
 }
 
 fn no_state(number: usize) -> Error {
-    Error::argument("id", format!("no state has the number {INDEX}")).index(number as i64)
+    Error::argument("id", "no state has this number").index(number as i64)
 }

@@ -133,3 +133,31 @@ fn without_a_coefficient_there_is_no_tangential_force() {
     near(problem.displacements().unwrap(), &[0.4, 0.0]);
     assert_eq!(problem.friction_states().unwrap(), [FrictionState::Open]);
 }
+
+/// A wheel on a spring of 1e-3, a load on the car behind it: 900 far without the stop at 200, which is a hundred times beyond all that the
+/// load alone moves. Balance of the wheel: `1e-3 u + 0.1 = 2 (200 - u)`.
+#[test]
+fn a_far_row_that_the_answer_would_go_through_takes_part() {
+    let car = |k: f64| Body {
+        stiffness: [[(0, k), (1, -k)], [(0, -k), (1, k)]].iter().fold(Csr::empty(2), |mut own, row| {
+            own.push_row(row);
+            own
+        }),
+        null_space: Some(vec![vec![1.0, 1.0]]),
+        load: vec![0.0, 1.0],
+        coordinates: vec![[0.0; 3]; 2],
+        node: vec![1, 2],
+        direction: vec![1, 1],
+    };
+    let wheel = point([1e-3, 3.0], 1.0, 0.0, 0.1, 0.0).bodies.remove(0);
+    let mut deck = Deck::new("stop", vec![wheel, car(2.0)]);
+    deck.contact.push(&[(1, -1.0)], 0.0);
+    deck.contact.push(&[(3, 1.0)], 200.0);
+    deck.friction.push(Some(0), &[&[(0, 1.0)]], 0.1, 0.0);
+    deck.equalities.push(&[(0, 1.0), (2, -1.0)], 0.0);
+    let problem = solved(&deck);
+    let u = 399.9 / 2.001;
+    near(problem.displacements().unwrap(), &[u, 0.0, u, 200.0]);
+    near(problem.multipliers(RowKind::Inequality).unwrap(), &[1.0, 1.0 - 2.0 * (200.0 - u)]);
+    near(problem.multipliers(RowKind::Tangential).unwrap(), &[0.1]);
+}

@@ -279,7 +279,7 @@ impl Search {
 
     /// Forces of all answers, and whether there are states with many answers.
     fn answers(&self) -> (Vec<Vec<f64>>, bool) {
-        let choices: Vec<Vec<State>> = self.places.iter().map(|place| Self::choices(place)).collect();
+        let choices: Vec<Vec<State>> = self.places.iter().map(Self::choices).collect();
         let count: usize = choices.iter().map(Vec::len).product();
         let m = self.dual.d.len();
         let (mut found, mut doubtful): (Vec<Vec<f64>>, bool) = (Vec::new(), false);

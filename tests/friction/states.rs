@@ -1,7 +1,7 @@
 //! Answers against all combinations of states.
 
 use feti_contact::linalg::Matrix;
-use feti_contact::qp::friction::Node;
+use feti_contact::qp::friction::{FrictionStart, Node};
 use feti_contact::qp::Verdict;
 
 use crate::enumeration::answers;
@@ -113,6 +113,33 @@ fn answers_of_floating_nodes_in_the_plane_are_among_all_combinations_of_states()
     }
     println!("{count:?}");
     assert!(count[0] >= 80 && count[1] <= 2, "{count:?}");
+}
+
+/// Forces lie within the cones to rounding, not to the tolerance alone, and nodes that are open have none at all.
+#[test]
+fn forces_of_an_answer_are_within_the_cones_to_rounding() {
+    let mut random = Random::new(11);
+    let (mut open, mut slipping) = (0, 0);
+    for case in 0..60 {
+        let k = 3 + case % 4;
+        let (f, d) = (random.positive(2 * k, 0.1), random.vector(2 * k));
+        let given = Given::new(f, d, nodes(k, 0.5, [0.0, 0.1][case % 2]));
+        let found = given.from(FrictionStart::default(), 1e-4, 0);
+        assert_eq!(found.verdict, Verdict::Solved, "{case}");
+        let size = found.x.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
+        let r = given.gaps(&found);
+        for node in given.cones.nodes() {
+            let (n, t) = (found.x[node.normal.unwrap()], found.x[node.tangents()[0]]);
+            let limit = node.limit(n);
+            assert!(n >= 0.0 && t.abs() <= limit + 1e-15 * size, "{case}: {n:e} {t:e} {limit:e}");
+            if r[node.normal.unwrap()] > 0.01 {
+                assert_eq!(n, 0.0, "{case}");
+                open += 1;
+            }
+            slipping += usize::from(limit > 0.0 && t.abs() >= limit - 1e-15 * size);
+        }
+    }
+    assert!(open > 20 && slipping > 20, "{open} {slipping}");
 }
 
 /// Larger coefficients and as many as 8 nodes; what is not solved although there are answers is told.

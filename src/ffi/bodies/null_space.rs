@@ -80,7 +80,7 @@ pub extern "C" fn feti_body_no_null_space(p: *mut feti_problem, body: i64) -> i3
 /// | `p` | in | scalar | the handle |
 /// | `body` | in | scalar | number of the body, from 0 |
 /// | `n` | in | scalar | unknowns of the body |
-/// | `r` | in/out | scalar | in: columns that fit in `basis`, ignored if `basis` is NULL; out: dimension of the null space |
+/// | `r` | in/out | scalar | in: columns that fit in `basis`, ignored without `basis`; out: dimension of the null space |
 /// | `basis` | out | ldr * r | column-major; NULL: only the dimension is returned |
 /// | `ldr` | in | scalar | >= n; ignored without `basis` |
 ///

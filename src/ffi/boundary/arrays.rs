@@ -25,10 +25,11 @@ fn negative(value: i64, name: &'static str) -> Error {
     Error::argument(name, format!("{name} is {value}, and must not be negative")).value(value as f64)
 }
 
-/// A number of a body or row, counted from 0.
+/// A number of a body or row, counted from 0. The text has not the number: Fortran hands any number below 1 over as one below -1, which
+/// stands for all bodies.
 pub fn id(value: i64, name: &'static str) -> Result<usize> {
     usize::try_from(value)
-        .map_err(|_| Error::argument(name, format!("{name} {INDEX} is below the first number")).index(value))
+        .map_err(|_| Error::argument(name, format!("{name} is below the first number")).index(value))
 }
 
 /// A size that is known: "n is 5, the body has 7".

@@ -133,3 +133,20 @@ impl Pairs {
         Ok(Step { dx, dg, rest })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn pairs_serve_the_rows_that_they_are_of_and_no_others() {
+        let between = PairsBetween::default();
+        between.keep(&[0, 2], Pairs::default());
+        assert!(between.take(&[0, 2]).is_some() && between.take(&[0, 2]).is_none());
+        between.keep(&[0, 2], Pairs::default());
+        assert!(between.take(&[0, 1]).is_none() && between.take(&[0, 2]).is_none());
+        between.keep(&[0, 2], Pairs::default());
+        between.forget();
+        assert!(between.take(&[0, 2]).is_none());
+    }
+}

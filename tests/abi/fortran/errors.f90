@@ -113,7 +113,7 @@ contains
     call expect_refused(2, 'feti_body_load', ['33'])
     call expect_index(33)
     call feti_body_load(p, 0, [1.0_dp], stat, text)
-    call expect_refused(2, 'feti_body_load', ['body 0 is below the first number'])
+    call expect_refused(2, 'feti_body_load', ['body is below the first number'])
 
     call feti_body_stiffness(p, 2, [1, 2, 4], [1, 1, 77], [4000.0_dp, -4000.0_dp, 4000.0_dp], FETI_LOWER, stat, text)
     call expect_refused(5, 'feti_body_stiffness_i32', ['entry 3', 'body 2 ', 'row 2  '])

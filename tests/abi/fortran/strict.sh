@@ -11,7 +11,7 @@ face="$1/feti_contact_c.f90 $1/feti_contact_base.f90"
 for file in "$1"/feti_contact_*.f90; do
     case $file in *_c.f90 | *_base.f90 | *_f77_*) ;; *) face="$face $file" ;; esac
 done
-examples="$2/examples_fortran/case_reader.f90 $2/examples_fortran/demo.f90 $2/examples_fortran/picture.f90"
+examples="$2/examples_fortran/case_reader.f90 $2/examples_fortran/demo.f90 $2/examples_fortran/picture.f90 $2/examples_fortran/vtu_picture.f90"
 drivers="$2/tests/abi/fortran/support/case_problem.f90"
 
 $compiler -std=f2003 "$1/feti_contact_c.f90"
