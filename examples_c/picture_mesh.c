@@ -57,10 +57,11 @@ static int ascending(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-/* The lattice planes of one direction: sorted coordinates without repetition (to 1e-6 length units). */
+/* The lattice planes of one direction: sorted coordinates without repetition. Coordinates of one plane differ by at most
+   `tolerance`, 1e-6 of the body's length along the axis. */
 typedef struct {
     int64_t planes;
-    double *at;
+    double *at, tolerance;
 } axis;
 
 static int axis_planes(const case_data *data, const case_body *body, int k, axis *out)
@@ -71,8 +72,9 @@ static int axis_planes(const case_data *data, const case_body *body, int k, axis
     if (!out->at) return -1;
     for (int64_t i = 0; i < nodes; i++) out->at[i] = node_xyz(data, body, 3, i)[k];
     qsort(out->at, (size_t)nodes, sizeof *out->at, ascending);
+    out->tolerance = 1e-6 * (out->at[nodes - 1] - out->at[0]);
     for (int64_t i = 0; i < nodes; i++)
-        if (out->planes == 0 || out->at[i] > out->at[out->planes - 1] + 1e-6) out->at[out->planes++] = out->at[i];
+        if (out->planes == 0 || out->at[i] > out->at[out->planes - 1] + out->tolerance) out->at[out->planes++] = out->at[i];
     return 0;
 }
 
@@ -81,7 +83,7 @@ static int64_t plane_of(const axis *direction, double x)
     int64_t low = 0, high = direction->planes - 1;
     while (low < high) {
         const int64_t middle = (low + high) / 2;
-        if (x > direction->at[middle] + 1e-6) low = middle + 1;
+        if (x > direction->at[middle] + direction->tolerance) low = middle + 1;
         else high = middle;
     }
     return low;
@@ -134,7 +136,7 @@ static int lattice_mesh(const case_data *data, const case_body *body, const axis
 
 int picture_hexahedra(const case_data *data, const case_body *body, int64_t stride, picture_mesh *mesh)
 {
-    axis way[3] = { { 0, NULL }, { 0, NULL }, { 0, NULL } };
+    axis way[3] = { { 0, NULL, 0.0 }, { 0, NULL, 0.0 }, { 0, NULL, 0.0 } };
     int status = 0;
 
     for (int k = 0; k < 3 && status == 0; k++) status = axis_planes(data, body, k, &way[k]);

@@ -60,7 +60,7 @@ static void draw_axes(FILE *file, const picture *plot, const frame *range)
         fprintf(file, "<line x1=\"%.1f\" y1=\"%d\" x2=\"%.1f\" y2=\"%.1f\"/><text x=\"%.1f\" y=\"%.1f\" "
                 "text-anchor=\"middle\" stroke=\"none\">%g</text>\n", place_x(range, x), TOP, place_x(range, x), bottom,
                 place_x(range, x), bottom + 18.0, fabs(x) < 1e-9 * step_x ? 0.0 : x);
-    for (double y = range->bottom; y <= range->top + 1e-9 * step_y; y += step_y)
+    for (double y = step_y * ceil(range->bottom / step_y); y <= range->top + 1e-9 * step_y; y += step_y)
         fprintf(file, "<line x1=\"%d\" y1=\"%.1f\" x2=\"%d\" y2=\"%.1f\"/><text x=\"%d\" y=\"%.1f\" "
                 "text-anchor=\"end\" stroke=\"none\">%g</text>\n", LEFT, place_y(range, y), WIDTH - RIGHT,
                 place_y(range, y), LEFT - 6, place_y(range, y) + 4.0, fabs(y) < 1e-9 * step_y ? 0.0 : y);
@@ -89,14 +89,14 @@ static void draw_data(FILE *file, const picture *plot, const frame *range)
     fprintf(file, "</g>\n");
 }
 
+/* Below the axis, beside its name, where no point lies. */
 static void draw_legend(FILE *file, const picture *plot)
 {
-    const int x = LEFT + 14, y = TOP + 12;
-    fprintf(file, "<rect x=\"%d\" y=\"%d\" width=\"180\" height=\"44\" fill=\"#fff\" stroke=\"#999\"/>\n", x, y);
+    const int y = HEIGHT - 18, line = WIDTH - RIGHT - 170;
     fprintf(file, "<circle cx=\"%d\" cy=\"%d\" r=\"3.2\" fill=\"#c03a1d\"/><text x=\"%d\" y=\"%d\">%s</text>\n",
-            x + 18, y + 14, x + 38, y + 18, plot->points_name);
+            LEFT + 4, y - 4, LEFT + 14, y, plot->points_name);
     fprintf(file, "<line x1=\"%d\" y1=\"%d\" x2=\"%d\" y2=\"%d\" stroke=\"#1f5fa8\" stroke-width=\"2\"/>"
-            "<text x=\"%d\" y=\"%d\">%s</text>\n", x + 6, y + 32, x + 30, y + 32, x + 38, y + 36, plot->curve_name);
+            "<text x=\"%d\" y=\"%d\">%s</text>\n", line, y - 4, line + 24, y - 4, line + 32, y, plot->curve_name);
 }
 
 int picture_svg(const char *folder, const char *name, const picture *plot)

@@ -52,8 +52,8 @@ contains
       write (unit, '(a, f0.2, a, f0.2, a)') '<circle fill="#c03a1d" r="3.2" cx="', place_x(range, x(i)), &
         '" cy="', place_y(range, y(i)), '"/>'
     end do
-    write (unit, '(a)') '<text x="94" y="70" fill="#c03a1d">points: computed</text>', &
-      '<text x="94" y="90" fill="#1f5fa8">curve: ' // theory // '</text>', '</svg>'
+    write (unit, '(a)') '<text x="80" y="462" fill="#c03a1d">points: computed</text>', &
+      '<text x="700" y="462" text-anchor="end" fill="#1f5fa8">curve: ' // theory // '</text>', '</svg>'
     close (unit)
   end subroutine
 
@@ -70,7 +70,7 @@ contains
       call write_text(unit, place_x(range, i * step), height - bottom + 18, figure(i * step))
     end do
     step = round_step(range%ceiling - range%bottom)
-    do i = nint(range%bottom / step), nint(range%ceiling / step)
+    do i = ceiling(range%bottom / step), floor(range%ceiling / step)
       call draw_line(unit, left, place_y(range, i * step), width - right, place_y(range, i * step))
       call write_text(unit, left - 28, place_y(range, i * step) + 4, figure(i * step))
     end do

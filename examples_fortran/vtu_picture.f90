@@ -8,7 +8,7 @@ module vtu_picture
   public :: picture_case, contact_of_nodes, vtu_begin, vtu_cells, vtu_doubles, vtu_integers, vtu_next, vtu_end
 
   !> What the contact rows say of the nodes: every row belongs to one node, that of the body which has only one node in it.
-  type, public :: contact_of_nodes
+  type :: contact_of_nodes
     !> Force of the row over the area (in the plane: length) that belongs to the node; 0 without a row.
     real(dp), allocatable :: pressure(:)
     !> What is left of the gap, length; NaN without a row.
@@ -237,19 +237,21 @@ contains
     cell = cell(:, :cells)
   end subroutine
 
-  !> The number of the plane that each coordinate lies in, of all planes, to 1e-6 length units.
+  !> The number of the plane that each coordinate lies in, of all planes. Coordinates of one plane differ by at most 1e-6 of the
+  !> body's length along the axis.
   subroutine number_planes(x, plane, planes)
     real(dp), intent(in) :: x(:)
     integer, intent(out) :: plane(:), planes
-    real(dp) :: at
+    real(dp) :: at, tolerance
 
+    tolerance = 1e-6_dp * (maxval(x) - minval(x))
     planes = 0
     at = minval(x)
     do
       planes = planes + 1
-      where (x >= at - 1e-6_dp) plane = planes
-      if (all(x <= at + 1e-6_dp)) exit
-      at = minval(x, mask=x > at + 1e-6_dp)
+      where (x >= at - tolerance) plane = planes
+      if (all(x <= at + tolerance)) exit
+      at = minval(x, mask=x > at + tolerance)
     end do
   end subroutine
 

@@ -40,6 +40,7 @@ done
 examples=$root/examples_fortran
 # shellcheck disable=SC2086 # one word per file
 into typed -O1 $typed "$face/feti_contact.f90" "$examples/case_reader.f90" "$examples/demo.f90" "$examples/picture.f90" \
+    "$examples/vtu_picture.f90" \
     "$root/tests/abi/fortran/support/case_problem.f90"
 # shellcheck disable=SC2086
 into f77_4 -O1 "$face/feti_contact_c.f90" "$face/feti_contact_base.f90" $f77
