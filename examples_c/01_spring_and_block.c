@@ -1,17 +1,17 @@
-/* 01 Spring and block: the smallest contact problem, and the twelve calls that do a whole job.
+/* 01 Spring and block: the smallest contact problem, and the twelve calls of a complete program.
 
        wall |--/\/\/\--o u1      gap c      u2 [ block ] u3  <--- F
               spring k                        stiffness s
 
-   The spring is held by the wall. The block floats: nothing but the contact holds it. A force F
-   pushes it to the left, across the open gap, against the spring. By hand:
+   The wall holds the spring. The block floats: only the contact holds it. A force F pushes the block
+   to the left, across the open gap, against the spring. By hand:
 
        contact force  lambda = F                the block is in balance
        spring end     u1 = -F/k
        block, front   u2 = u1 - c               the gap is closed
-       block, rear    u3 = u2 - F/s             the block itself is squeezed
+       block, rear    u3 = u2 - F/s             the block itself is compressed
 
-   Units: N and mm. Everything counted from 0, as in C. */
+   Units: N and mm. Everything counts from 0, as in C. */
 #include <math.h>
 #include <stdio.h>
 

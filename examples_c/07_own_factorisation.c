@@ -1,20 +1,20 @@
-/* 07 A host with its own factorisation: banded Cholesky, as in a code of the seventies.
+/* 07 A host with its own factorisation: banded Cholesky, as in a code of the 1970s.
 
    A block of 12 mm x 4 mm is clamped to the ground, another one lies on it and floats (plane strain, E = 1e4 N/mm^2,
    nu = .3, 1 mm thick, squares of 1 mm). The bottom of the upper block is slightly convex; 10 N press on each of the
    five nodes at the left of its top, so that the contact opens on the right.
 
-   The host numbers the unknowns column by column and keeps each K as a band, in the storage of LAPACK. It hands over no
-   matrix but the diagonal and two functions:
+   The host numbers the unknowns column by column and stores each K as a band in LAPACK's format. Instead of a
+   matrix it passes the diagonal and two functions:
 
        Y = K X        the product with the band
        Y = K+ X       solve with the banded factor
 
-   The clamped block has K+ = K^-1. K of the floating one is singular: three of its unknowns are held, by rows and columns
+   The clamped block has K+ = K^-1. K of the floating block is singular: three of its unknowns are held, by rows and columns
    of the identity in the factor and zeros in X and Y; they are the lower corners, far apart.
 
-   Solved twice: with these functions, and with the same matrices handed over. The answers are the same, and with the
-   functions the library factorises nothing. Units: N and mm. */
+   The example solves the problem twice: with these functions, and with the matrices themselves. The answers are equal, and
+   with the functions the library factorises nothing. Units: N and mm. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

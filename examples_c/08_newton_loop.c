@@ -1,24 +1,24 @@
 /* 08 A Newton loop: a strip of bars is pressed down by a round die, with large displacements.
 
-   The strip is a lattice of 24 x 4 cells of 1 mm, its ends clamped; bars of stiffness EA follow their Green strain, so
+   The strip is a lattice of 24 x 4 cells of 1 mm with clamped ends. The bars have stiffness EA and Green strain, so
    that the tangent K(u) changes with the displacement. The die, a cylinder of radius 10 mm, comes from above: the
-   normals of the contact rows change with the displacement too. The host iterates, the library solves each linear
+   normals of the contact rows also change with the displacement. The host iterates, and the library solves each linear
    problem with contact:
 
        min 1/2 d'K d - f'd   with   -n_i'd <= g_i,   f = -internal forces(u),   then u := u + d
 
-   K holds the curvature of the die under the forces of the last iterate, -lambda (I - n n')/r: with it the iteration
+   K includes the curvature of the die under the forces of the last iterate, -lambda (I - n n')/r; with this term the iteration
    converges quadratically.
 
-   1. Small displacements: K stays, only normals change. One factorisation in all, whatever the number of iterations.
-   2. Large displacements: feti_body_values gives K on its old pattern. One factorisation per iteration, no analysis.
-   3. A load step that fails is rejected: feti_state_restore brings back rows, gaps and forces, the step is halved. A step
-      that would be less than LEAST ends the program: at a limit load no step is small enough.
-   4. The same with friction. The slip function of a node is s = RADIUS times its angle about the axis of the die, its tangential
-      row the gradient T = RADIUS/r t', t across n. What has slipped since the load step began, s_begin - s(u), goes to
-      feti_friction_reference in every iteration, and K holds how the tangential forces turn, -lambda_t RADIUS/r^2 (n t' + t n').
-      This part ends at 6 mm: near to 8 mm bars that friction presses together buckle, and K is indefinite however small the
-      step. */
+   1. Small displacements: K is constant, only normals change. All iterations together need one factorisation.
+   2. Large displacements: feti_body_values passes K on its old pattern. Each iteration needs one factorisation, no analysis.
+   3. A load step that fails is rejected: feti_state_restore restores rows, gaps and forces, and the step is halved. A step
+      smaller than LEAST ends the program: at a limit load no step is small enough.
+   4. Large displacements with friction. The slip function of a node is s = RADIUS times its angle about the axis of the die;
+      its tangential row is the gradient T = RADIUS/r t', t perpendicular to n. In every iteration the host passes s_begin -
+      s(u), minus the slip since the load step began, to feti_friction_reference. K includes the rotation of the tangential
+      forces, -lambda_t RADIUS/r^2 (n t' + t n'). This part ends at 6 mm: close to 8 mm bars that friction compresses buckle,
+      and K is indefinite however small the step. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,9 +1,9 @@
 /* 09 Write a problem, read it back, check the answer: what a bug report needs.
 
    The problem of example 04 (three blocks, two of them floating) goes into one file and from there into a second
-   problem, as it would on the desk of somebody else. The second solves to the same bits. feti_check needs no solve of
-   its own: it judges the answer of the first problem in the second, and refuses it once a contact force is one per
-   cent too large, or a node has moved by a micrometre. */
+   problem, as for a colleague who receives the file. The second problem solves to the same bits. feti_check needs no solve of
+   its own: it checks the answer of the first problem in the second problem, and refuses it if a contact force is one per
+   cent too large, or if a node has moved by a micrometre. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

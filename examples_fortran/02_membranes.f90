@@ -1,8 +1,8 @@
 !> 02 Two membranes (Problem 1 of the paper): a scalar contact problem, matrices built here.
 !>
 !> Two square membranes hang side by side, Omega_1 = (0,1) x (0,1) and Omega_2 = (1,2) x (0,1). Omega_1
-!> is held at x = 0, Omega_2 is held by nothing but the contact. Along x = 1 the left one must stay
-!> below the right one:
+!> is held at x = 0; only the contact holds Omega_2. Along x = 1 the left membrane must stay below the
+!> right membrane:
 !>
 !>     u1(1,y) - u2(1,y) <= 0   on the 21 nodes with x = 1
 !>

@@ -1,11 +1,11 @@
 !> 04 Three stacked blocks in space: meshes that do not match, two bodies that float.
 !>
-!> A base of 8-node bricks stands on the ground, on it lies a block of 10-node tetrahedra, on that a block
+!> A base of 8-node bricks stands on the ground. On it lies a block of 10-node tetrahedra, and on that a block
 !> of 20-node bricks; 100 MPa press on the part x > .4 mm of the top. CalculiX wrote the matrices, without
-!> supports: each body comes with its six rigid motions. The supports are equality rows H u = 0 (base
-!> clamped below; of the others only the three motions in the plane are held: lift and tilt are resisted
-!> by contact alone). Rows B u <= 0 join the nodes of one surface with the faces of the other; all gaps
-!> are 0. Half of the top would lift off: how much of each interface stays closed is the question.
+!> supports: each body comes with its six rigid motions. The supports are equality rows H u = 0 (the base is
+!> clamped at its bottom; of the other bodies only the three motions in the plane are held: only contact resists
+!> lift and tilt). Rows B u <= 0 join the nodes of one surface with the faces of the other; all gaps
+!> are 0. Half of the top would lift off: the example computes how much of each interface stays closed.
 program three_bodies
   use case_reader
   use demo

@@ -1,11 +1,11 @@
 !> 05 Two cylinders (Problem 2 of the paper): dense bodies, as boundary elements give them.
 !>
-!> Two discs of radius 1 mm (E = 2.1e5 N/mm^2, nu = .3, plane stress, 1 mm thick) lie one on the other on
-!> rigid ground. Each is known by its 72 boundary nodes alone: a full symmetric matrix. They are held
-!> sideways; up and down both may move as a whole. A load presses on the top. Rows 1 to 7 join the
-!> discs, rows 8 to 14 the lower disc and the ground; the gaps are those of the circles.
+!> Two discs of radius 1 mm (E = 2.1e5 N/mm^2, nu = .3, plane stress, 1 mm thick) are stacked on
+!> rigid ground. Each disc has only its 72 boundary nodes and a dense symmetric matrix. The discs are held
+!> sideways; vertically both may move as rigid bodies. A load presses on the top. Rows 1 to 7 join the
+!> discs, rows 8 to 14 the lower disc and the ground; the gaps follow from the circles.
 !>
-!> First by the method of the paper to four digits, then by the default.
+!> The problem is solved first by the method of the paper to four digits, then by the default.
 program two_cylinders
   use case_reader
   use demo

@@ -2,13 +2,13 @@
 !>
 !> A block of 2 m x 1 m is clamped to the ground, a block of 2 m x 2 m lies on it and floats (plane strain,
 !> E = 1e4 MN/m^2, nu = .25, 1 m thick); the top of the lower block is slightly hollow. 1 MN/m presses on the
-!> left part of the upper one, so that the contact opens on the right.
+!> left part of the upper block, so that the contact opens on the right.
 !>
-!> Solved twice: as two bodies, and as six squares that all have the same matrix. Equality rows H u = 0 join the
-!> copies of a node; their multipliers may have any sign. Where four squares meet all six pairs are joined, more
-!> than needed: redundant rows are allowed. The contact forces are the same.
+!> The example solves the problem twice: as two bodies, and as six squares with equal matrices. Equality rows H u = 0 join the
+!> copies of a node; their multipliers may have any sign. At a node where four squares meet, all six pairs are joined, more
+!> than needed: redundant rows are allowed. Both solutions have equal contact forces.
 !>
-!> The clamp, and one node that keeps the upper block from sliding, are equality rows too.
+!> The clamp is also given by equality rows, and so is one node that keeps the upper block from sliding.
 program blocks_in_subdomains
   use demo
   use feti_contact

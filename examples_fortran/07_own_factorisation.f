@@ -1,5 +1,5 @@
 C     07 A host with its own factorisation: banded Cholesky, in a code
-C     of the seventies. FORTRAN 77, fixed form, data in COMMON.
+C     of the 1970s. FORTRAN 77, fixed form, data in COMMON.
 C
 C     A block of 12 mm x 4 mm is clamped to the ground (body 1), another
 C     one lies on it and floats (body 2): plane strain, E = 1D4 N/mm**2
@@ -7,25 +7,25 @@ C     and nu = .3, 1 mm thick, squares of 1 mm. The bottom of the upper
 C     block is slightly convex; 10 N press on each of the five nodes at
 C     the left of its top, so that the contact opens on the right.
 C
-C     The host numbers the unknowns column by column and keeps each K as
-C     a band, in the storage of LAPACK. It hands over no matrix but the
+C     The host numbers the unknowns column by column and stores each K
+C     as a band in LAPACK's format. Instead of a matrix it passes the
 C     diagonal and one function for
 C
 C         Y = K X      the product with the band
 C         Y = K+ X     solve with the banded factor
 C
-C     The clamped block has K+ = K**-1. K of the floating one is
+C     The clamped block has K+ = K**-1. K of the floating block is
 C     singular: three of its unknowns are held, by rows and columns of
 C     the identity in the factor and zeros in X and Y; they lie at the
 C     lower corners, far apart.
 C
-C     Solved twice: with this function, and with the same matrices
-C     handed over. The answers are the same, and with the function the
-C     library factorises nothing. Units: N and mm.
+C     The example solves twice: with this function, and with the
+C     matrices themselves. The answers are equal, and the function lets
+C     the library factorise nothing. Units: N and mm.
 C
-C     AK(1+i-j, j, IB) is K(i, j), AL likewise the factor; N(IB)
-C     unknowns, JLOW(IB) the first line of nodes that has some,
-C     NHELD(IB) of them held: IHELD(1..NHELD, IB).
+C     AK(1+i-j, j, IB) is K(i, j), AL likewise the factor; N(IB) is the
+C     number of unknowns, JLOW(IB) the first line of nodes that has
+C     unknowns, NHELD(IB) unknowns are held: IHELD(1..NHELD, IB).
       PROGRAM OWNFAC
       INCLUDE 'feti_contact_f77.inc'
       INTEGER NX, NY, MOST, KD

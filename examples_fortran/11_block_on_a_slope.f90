@@ -6,17 +6,18 @@
 !>      |  +----------------+     v          plane strain, 1 m thick
 !>      +----------------------------- x, down the slope
 !>
-!> The block is elastic and floats: no support, no spring. The slope presses it with the sum of lambda_n = W cos(angle), friction
-!> holds it by the sum of lambda_t = W sin(angle). |lambda_t| <= mu lambda_n at every node, so that it rests where
-!> tan(angle) <= mu = 0.5, up to 26.565 degrees. Near to that some nodes slip a little, and the others hold.
+!> The block is elastic and floats: it has no support and no spring. The slope presses it with the sum of lambda_n = W
+!> cos(angle), friction holds it by the sum of lambda_t = W sin(angle). Since |lambda_t| <= mu lambda_n at every node, the
+!> block stays at rest if tan(angle) <= mu = 0.5, up to 26.565 degrees. Close to this angle some nodes slip a little, and the
+!> others stick.
 !>
-!> 1. Angles below: both sums, and how many nodes stick and slip.
-!> 2. Angles above: no contact force can balance the weight. feti_solve says so, FETI_LOAD_NOT_HELD, and feti_diagnosis has the
-!>    body and a motion that the weight drives and no force of the slope resists: down, and away from the slope by mu. (Any
-!>    slower lift would let friction act.)
-!> 3. The same with a spring between the block and a rail above it. The spring could press the block onto the slope, and then
-!>    friction would hold it: forces that balance the weight do exist. But nothing tightens the spring, and the block slides all
-!>    the same: FETI_SLIDES, with the part of the load that friction does hold, mu / tan(angle).
+!> 1. Smaller angles: the program prints both sums and the number of nodes that stick and slip.
+!> 2. Larger angles: no contact force can balance the weight. feti_solve returns FETI_LOAD_NOT_HELD, and feti_diagnosis
+!>    returns the body and a motion that the weight causes and no force of the slope resists: down, and away from the slope
+!>    by mu. (With any slower lift friction could act.)
+!> 3. Larger angles with a spring between the block and a rail above it. The spring could press the block onto the slope, and
+!>    then friction would hold it: forces that balance the weight exist. But nothing tightens the spring, and the block still
+!>    slides: FETI_SLIDES, with the part of the load that friction holds, mu / tan(angle).
 !>
 !> Units: kN and m.
 program block_on_a_slope

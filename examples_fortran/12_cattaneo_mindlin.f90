@@ -1,25 +1,25 @@
-!> 12 Cattaneo and Mindlin: two cylinders are pressed together, pushed along, and pushed to and fro, against the closed forms.
+!> 12 Cattaneo and Mindlin: two cylinders are pressed together and pushed back and forth; comparison with the closed forms.
 !>
 !>     Q -->  ( upper cylinder )            pressure    p = p0 sqrt(1 - x^2/a^2),           P = pi/2 p0 a
 !>             ------ 2a ------             push Q:     q = mu p(x) less mu p0 c/a sqrt(1 - x^2/c^2) where |x| < c,
 !>            ( lower cylinder )  <-- Q                 c = a sqrt(1 - Q/(mu P)): it sticks within c, slips between c and a
 !>                                          back to Q:  q = q(Q1) - 2 q((Q1 - Q)/2), Q1 being where the push has turned (Mindlin)
 !>
-!> Near to the contact both are elastic half planes. The host knows influence matrices, as of boundary elements: A f are the
-!> displacements of n = 400 cells over 3a by the forces f on them, along either direction. They are counted from a far point of the
-!> body, which moves as well. Along one direction the energy of a body is (u - w)'A^-1 (u - w) / 2, w being the motion of the far
+!> Close to the contact both bodies are elastic half planes. The host has influence matrices, as from boundary elements: A f
+!> are the displacements of n = 400 cells over 3a by the forces f on them, in either direction, relative to a far point of the
+!> body, which also moves. In one direction the energy of a body is (u - w)'A^-1 (u - w) / 2, where w is the motion of the far
 !> point on every cell:
 !>
 !>         [  A^-1       -A^-1 1 ]                  n cells and the far point; K 1 = 0:
 !>     K = [                     ]                  the body floats
 !>         [ -1'A^-1    1'A^-1 1 ]
 !>
-!> The loads P and Q act at the far point of the upper cylinder: nothing but contact and friction holds it. The far point of the
-!> lower one is held by two equality rows. How a force along one direction moves the surface along the other is left out: it
-!> moves both surfaces alike, and no row sees it.
+!> The loads P and Q act at the far point of the upper cylinder, which only contact and friction hold. Two equality rows hold
+!> the far point of the lower cylinder. The displacement that a force causes perpendicular to its direction is left out: it
+!> is equal on both surfaces, so it affects no row.
 !>
-!> Steps of the push, in parts of mu P: 0 (pressed alone), .3, .6, .9, back by steps of .45 to -.9, and to .9 again. After each step
-!> feti_friction_commit, so that the next counts its slips from there.
+!> Steps of the push, relative to mu P: 0 (pressed only), .3, .6, .9, back by steps of .45 to -.9, and to .9 again. After
+!> each step feti_friction_commit makes the current slips the reference of the next step.
 !>
 !> Units: N, mm, MPa; 1 mm thick.
 program cattaneo_and_mindlin

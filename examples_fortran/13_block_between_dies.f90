@@ -1,23 +1,24 @@
-!> 13 A block between two dies: nothing but contact holds it, and it turns by 60 degrees.
+!> 13 A block between two dies: only contact holds the block, and it turns by 60 degrees.
 !>
 !> The block, 20 x 10 mm with a round groove along its top and its bottom, is pressed by two round dies that lie in the
 !> grooves and then turn together about its middle. It is a mesh of quadrilaterals of St. Venant and Kirchhoff's material
-!> (Green's strain); the dies are rigid. As in example 08 the host iterates and the library solves each linear problem:
+!> (Green's strain); the dies are rigid. As in example 08, the host iterates and the library solves each linear problem:
 !>
 !>     min 1/2 d'K d - f'd   with   -n_i'd <= g_i,   f = -internal forces(u),   then u := u + d
 !>
-!> K is the whole second derivative, so that the iteration converges quadratically: stiffness of the material, stress term
+!> K is the complete second derivative, so that the iteration converges quadratically: stiffness of the material, stress term
 !> (geometric stiffness), and curvature of the dies under the forces of the last iterate, -lambda (I - n n')/r. The block
-!> is pressed: the last two drive its rigid motions and make K indefinite. The rigid motions of the position where K was
-!> assembled are therefore given as soft ones, FETI_SOFT: the library takes what K makes of them from K itself, and says
-!> FETI_INDEFINITE where the closed rows do not hold them.
+!> is compressed, so the last two terms are negative on its rigid motions and make K indefinite. The rigid motions of the
+!> position where K was assembled are therefore given as soft motions, FETI_SOFT: the library computes their stiffness from K
+!> itself, and returns FETI_INDEFINITE if the closed rows do not hold them.
 !>
-!> A load step that meets FETI_INDEFINITE or takes more than `most` iterations is rejected: displacement and forces are put
-!> back, the step is halved. The first step of each stage is all of it, for the turn too large on purpose.
+!> A load step that returns FETI_INDEFINITE or takes more than `most` iterations is rejected: displacement and forces are
+!> restored and the step is halved. The first step of each stage is the whole stage; for the rotation it is deliberately too
+!> large.
 !>
-!> Known by hand: without friction the force of a round die goes through its axis. The block is in balance, so that both
-!> forces lie in the line of the axes, equal and opposite. And as the dies have turned as one, the block has the form and
-!> the forces that it had when it was pressed, turned by the same angle.
+!> Known by hand: without friction the force of a round die passes through its axis. The block is in balance, so both
+!> forces lie on the line of the axes, equal and opposite. Because the dies turn together, the block has the shape and
+!> the forces that it had before the rotation, rotated by the angle of the dies.
 program block_between_dies
   use demo
   use feti_contact

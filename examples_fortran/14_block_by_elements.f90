@@ -1,11 +1,11 @@
-!> 14 A block by its elements, cut into pieces by the library.
+!> 14 A block given by its elements, which the library cuts into pieces.
 !>
 !> A block of 1 m x 1 m x 1 m (E = 2.1e5 MN/m^2, nu = .3) is clamped on its face x = 0; 10 MN on its top press it onto a rigid,
 !> slightly curved obstacle below it. The host has an assembly loop and equation numbers, in which held unknowns are 0, -1, ...,
-!> and no sparse matrix: it hands over one element after the other.
+!> but no sparse matrix: it passes one element after the other.
 !>
-!> Solved twice: cut into eight pieces (option pieces), and as a whole. Displacements are the same; the forces of the clamp,
-!> which feti_body_held_forces tells, and those of the obstacle balance the load.
+!> The example solves the problem twice: cut into eight pieces (option pieces), and as a whole, with equal displacements. The
+!> forces of the clamp, which feti_body_held_forces returns, and the forces of the obstacle balance the load.
 program block_by_elements
   use demo, only: demo_error, demo_line, demo_stop, demo_value, picture_folder
   use vtu_picture, only: vtu_begin, vtu_cells, vtu_doubles, vtu_end, vtu_integers, vtu_next

@@ -1,4 +1,4 @@
-//! What of a displacement is deformation: all but the rigid motions of the bodies that the rows leave them.
+//! Which part of a displacement is deformation: everything except the rigid motions that the rows leave to the bodies.
 
 use std::sync::Arc;
 

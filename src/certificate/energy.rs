@@ -1,4 +1,4 @@
-//! The energies of an island: the duality gap, and what is minimised.
+//! The energies of an island: the duality gap, and the functional that is minimised.
 
 use crate::certificate::field::Field;
 use crate::certificate::{share, Entry, NOISE};

@@ -1,8 +1,8 @@
-//! What rounding of the loads explains in gaps and energies.
+//! Errors in gaps and energies that rounding of the loads explains.
 //!
-//! f - B'lambda - H'mu is known to rounding of its terms, and u to rounding of what they would move. Where loads and
-//! forces of the rows all but cancel, as in the last increments of Newton's method or where loads act on held dofs alone,
-//! that is far more than u itself: its gaps and energies are lost, although every force is right to rounding.
+//! f - B'lambda - H'mu is known to rounding of its terms, and u to rounding of the displacement that each term would cause. If loads and
+//! forces of the rows nearly cancel, as in the last increments of Newton's method or if loads act on held dofs alone,
+//! this rounding is far more than u itself: gaps and energies of u are lost, although every force is correct to rounding.
 
 use std::collections::HashSet;
 

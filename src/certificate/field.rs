@@ -1,4 +1,4 @@
-//! What all entries need, over all unknowns and rows of the island.
+//! Quantities that all entries need, over all unknowns and rows of the island.
 
 use std::collections::HashSet;
 use std::ops::Range;

@@ -1,4 +1,4 @@
-//! Nodes with friction, every node for itself. `b = bound + mu lambda_n`, `s = T u - s_old - C_t lambda_t`; a node sticks, `s = 0`
+//! Nodes with friction, each node separately. `b = bound + mu lambda_n`, `s = T u - s_old - C_t lambda_t`; a node sticks, `s = 0`
 //! and `|lambda_t| <= b`, or slips along its force, `lambda_t = b s / |s|`.
 
 use std::ops::Range;

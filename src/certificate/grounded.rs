@@ -1,4 +1,4 @@
-//! Unknowns held so stiffly that their neighbours count for nothing, such as those of penalty supports.
+//! Unknowns that are held so stiffly that their neighbours do not matter, such as those of penalty supports.
 
 use crate::body::Stiffness;
 use crate::error::Result;

@@ -1,11 +1,11 @@
 //! The certificate: how well an answer (u, lambda, mu, lambda_t) of one island satisfies the optimality conditions of (10)-(11),
 //! computed from the host's own matrices. An island is a set of bodies with all the rows among them. Every measure is
-//! local, of one body, of one row or of one node with friction: what is large elsewhere excuses nothing here. The same in any units and for any scaling
-//! of the rows.
+//! local, of one body, one row or one node with friction: large values elsewhere excuse nothing. The result does not depend on units
+//! or on the scaling of the rows.
 //!
 //! C = diag(1/k) is the compliance of the rows, D = diag K, r = B'lambda + H'mu + T'lambda_t, `s_i = (b_i D^-1 b_i' + C_i)^-1/2`, tol the
 //! limit. Forces are measured by `|f|_{D^-1}`, lengths by `|u|_D`. All three are kept in units of U, the power of two below
-//! max D: `(sum U/D f^2)^1/2` is a force, `(sum D/U u^2)^1/2` a length, `s_i / U^1/2` a number that is the same to the last
+//! max D: `(sum U/D f^2)^1/2` is a force, `(sum D/U u^2)^1/2` a length, `s_i / U^1/2` a number that keeps every
 //! bit in units that differ by powers of two.
 
 mod deformation;

@@ -1,4 +1,4 @@
-//! One row with what its gap and its force are measured against.
+//! One row with the quantities against which its gap and its force are measured.
 
 use crate::certificate::deformation::Deformation;
 use crate::certificate::field::Field;

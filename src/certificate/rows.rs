@@ -1,4 +1,4 @@
-//! Penetration, equality, sign and complementarity, every row for itself, and friction, every node.
+//! Penetration, equality, sign and complementarity of each row, and friction of each node.
 
 use std::ops::Range;
 

@@ -1,4 +1,4 @@
-//! A sparse sum of rows that knows what is rounding in it.
+//! A sparse sum of rows that tracks its rounding.
 
 use crate::error::Result;
 use crate::platform::memory::zeros;

@@ -1,7 +1,7 @@
-//! The same rows in another choice, `B = L B'`: equality rows that share unknowns are orthonormal in the metric `D^-1`,
-//! and contact rows are orthogonal to them and of unit length. With `c = L c'` and `lambda' = L'lambda` the problem is the
-//! same; forces of contact rows keep their sign, for no row is combined with a contact row. A contact row on one of
-//! several glued dofs so weighs as all of them together, however soft its own is.
+//! The rows in another basis, `B = L B'`: equality rows that share unknowns are orthonormal in the metric `D^-1`,
+//! and contact rows are orthogonal to them and of unit length. With `c = L c'` and `lambda' = L'lambda` the problem is equivalent;
+//! forces of contact rows keep their sign, because no row is combined with a contact row. A contact row on one of
+//! several glued dofs therefore has the weight of all of them together, however soft its own dof is.
 
 use std::ops::Range;
 

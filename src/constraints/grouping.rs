@@ -1,4 +1,4 @@
-//! Rows in the same direction: one multiplier is enough for all of them.
+//! Rows in one direction: a single multiplier is enough for all of them.
 
 use std::collections::HashMap;
 

@@ -1,4 +1,4 @@
-//! What a row asks.
+//! The kinds of rows.
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum RowKind {

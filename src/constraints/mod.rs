@@ -1,8 +1,8 @@
 //! Contact rows `B u <= c` and equality rows `H u = h`: the host's entries over the unknowns of all bodies
-//! one after the other, and the scaling of the rows.
+//! in sequence, and the scaling of the rows.
 //!
-//! A compliant row gives way in proportion to its force, as if a spring k sat in it: `B u - c <= lambda/k`,
-//! `H u - h = mu/k`. It is the row `[b, -1]` of a problem with one more unknown of stiffness k, so that
+//! A compliant row yields in proportion to its force, as if it contained a spring k: `B u - c <= lambda/k`,
+//! `H u - h = mu/k`. It is equivalent to the row `[b, -1]` of a problem with one more unknown of stiffness k, so that
 //! C = diag(1/k) is added to `B D^-1 B'` and to F wherever they appear.
 
 mod accumulator;

@@ -1,4 +1,4 @@
-//! From the pieces back to the bodies of the host: why there is no answer, and where.
+//! Translates the reason why there is no answer, and its place, from the pieces to the bodies of the host.
 
 use crate::error::{Error, Kind, Proof};
 use crate::mesh::Mesh;

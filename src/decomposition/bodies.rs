@@ -1,4 +1,4 @@
-//! The bodies that are solved: pieces, with what the host has said of the body that fits them.
+//! The bodies that are solved: pieces, with the data of the host's body restricted to them.
 
 use std::sync::Arc;
 

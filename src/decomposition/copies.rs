@@ -1,4 +1,4 @@
-//! The copies that the pieces of a body have of its unknowns.
+//! The copies of a body's unknowns in its pieces.
 
 use crate::error::Result;
 use crate::model::{Model, Parts};

@@ -1,6 +1,6 @@
 //! The secondary decomposition of the paper (Section 2): bodies given by elements are cut into pieces, which equality rows glue
-//! together. A host sees its bodies; all that is solved is a model whose bodies are the pieces. In the same way unknowns of several
-//! bodies are glued to which the host gave one number; these rows join bodies of the host, and answers are judged by them.
+//! together. The host sees only its bodies; everything that is solved is a model whose bodies are the pieces. Unknowns of several
+//! bodies to which the host gave one number are glued likewise; their rows join bodies of the host, and the certificate includes them.
 
 mod back;
 mod bodies;

@@ -1,4 +1,4 @@
-//! Rows of the host over the unknowns of the pieces, and the rows that glue the copies of an unknown together.
+//! The host's rows over the unknowns of the pieces, and the rows that glue the copies of an unknown together.
 
 use std::sync::Arc;
 

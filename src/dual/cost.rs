@@ -1,5 +1,5 @@
 //! Which local dual operators are assembled, by a model of time and memory: m distinct rows of B_p, n unknowns, l entries of L_p,
-//! N products expected. Time counts bytes from memory, of which a product reads
+//! N products expected. Time is measured in bytes read from memory; a product reads
 //!
 //! ```text
 //! explicit:  4 m^2      F_p packed, after an assembly of A operations, RATE of them in the time of a byte
@@ -7,9 +7,9 @@
 //! A = s (2 m l + n m^2 / 2)        Y = L^-1 P B', then Y'Y; a supernode sees the share s = min(1, REACH m / n^2/3) of m
 //! ```
 //!
-//! so that F_p is assembled where `A / RATE + 4 m^2 N` is no more than N times what L takes. REACH and RATE are fitted to the assembly of
-//! one face and of all faces of cubes of 375 to 20000 unknowns and agree with it to a factor of 2. All that enters are counts: the
-//! choice is the same on any machine.
+//! so that F_p is assembled if `A / RATE + 4 m^2 N` is no more than N times the cost of L. REACH and RATE are fitted to the assembly of
+//! one face and of all faces of cubes of 375 to 20000 unknowns and agree with it to a factor of 2. The model uses only counts: the
+//! choice does not depend on the machine.
 
 use crate::linalg::Packed;
 

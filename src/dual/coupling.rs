@@ -1,6 +1,6 @@
-//! How the rows of a face feel each other, `W_F = B_F D^-1 B_F' + C_F` (1 on the diagonal), and its inverse block by block.
-//! A block is a connected part of W_F: the rows on one node, or those that chain over a whole surface. Rows that feel no
-//! other, most of them where rows have been decoupled, take no part: the diagonal is 1.
+//! The coupling matrix of the rows of a face, `W_F = B_F D^-1 B_F' + C_F` (1 on the diagonal), and its inverse block by block.
+//! A block is a connected part of W_F: the rows on one node, or rows that are chained over a whole surface. Rows without coupling,
+//! which are most rows after decoupling, need no block: their diagonal is 1.
 
 use std::sync::Arc;
 

@@ -1,5 +1,5 @@
-//! Rows of a body that are multiples of each other, `B_p = T B`: the rows that glue one unknown to its copies are all
-//! multiples of the same unit vector here. F_p = T (B K_p+ B') T' is formed and applied by the rows of B alone.
+//! Rows of a body that are multiples of each other, `B_p = T B`: for example, all rows that glue one unknown to its copies are
+//! multiples of one unit vector in this body. F_p = T (B K_p+ B') T' is assembled and applied with the rows of B alone.
 
 use crate::linalg::Csr;
 

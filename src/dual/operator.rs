@@ -1,5 +1,5 @@
-//! Products with F, body by body: with the entries of `F_p = B_p K_p+ B_p'` where they are there (explicit), else by
-//! two triangular solves, `F_p x = B_p (K_p+ (B_p'x))` (implicit). And entries of F, gathered from the operators of the bodies
+//! Products with F, body by body: with an assembled `F_p = B_p K_p+ B_p'` (explicit), or by
+//! two triangular solves, `F_p x = B_p (K_p+ (B_p'x))` (implicit). Also entries of F, gathered from the operators of the bodies
 //! and the compliance of the rows.
 
 use crate::dual::{Dual, InParallel, Subdomain};

@@ -1,4 +1,4 @@
-//! Dual operators for new rows from those of the rows before: entries F_p(i, j) of two rows that body p has known stay.
+//! Dual operators for new rows, made from the previous ones: entries F_p(i, j) of two rows that body p already had are kept.
 
 use std::iter::Sum;
 use std::sync::Mutex;

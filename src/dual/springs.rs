@@ -1,4 +1,4 @@
-//! What K does to soft motions: springs that resist some, and forces that drive others.
+//! The stiffness of K against soft motions: springs with positive or negative stiffness.
 
 use crate::dual::{Dual, Subdomain};
 use crate::linalg::Csr;

@@ -1,4 +1,4 @@
-//! Why there is no solution, and what an answer leaves open.
+//! Why there is no solution, and what an answer leaves undetermined.
 
 use crate::ffi::bodies::body_of_order;
 use crate::ffi::boundary::{call, count, enter, known, OutStruct, Output};

@@ -1,4 +1,4 @@
-//! What a host hears: info, details, texts, the list of options.
+//! What a host reads: info, details, texts, the list of options.
 
 use std::ptr::null_mut;
 

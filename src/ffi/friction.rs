@@ -1,4 +1,4 @@
-//! Nodes with friction: a contact row, tangential rows, a law, and where a load step begins.
+//! Nodes with friction: a contact row, tangential rows, a law, and the reference slip of a load step.
 
 use crate::error::{Error, Result};
 use crate::ffi::boundary::{

@@ -1,6 +1,6 @@
-//! Nodes with friction through the C interface: arguments, what is refused and where, what is read.
+//! Nodes with friction through the C interface: arguments, refused values and their places, results.
 //!
-//! A block of two unknowns on springs of stiffness 2, K = diag(2, 2): pressed by 4 against a wall that row 0 is, pushed along it
+//! A block of two unknowns on springs of stiffness 2, K = diag(2, 2), is pressed by 4 against a wall, row 0, and pushed along it
 //! by 1. With a coefficient of 0.5 it sticks: u = 0, lambda = 4, lambda_t = 1.
 
 use std::ptr::{null, null_mut};

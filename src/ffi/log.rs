@@ -1,4 +1,4 @@
-//! What a call tells in words.
+//! The log of a call.
 
 use std::ffi::{c_void, CString};
 

@@ -1,4 +1,4 @@
-//! Settings by name, and their table.
+//! Options by name, and their table.
 
 use std::ffi::c_char;
 use std::ptr;

@@ -1,4 +1,4 @@
-//! Panics of the library, at every place where a call may be: each becomes FETI_INTERNAL, on this problem alone, in silence.
+//! Panics of the library, at every possible place of a call: each becomes FETI_INTERNAL, affects this problem alone, and prints nothing.
 
 use std::ptr::{null, null_mut};
 

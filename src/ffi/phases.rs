@@ -1,4 +1,4 @@
-//! Where the time of a call went, and the memory that is kept.
+//! The time and the memory of the phases of a call.
 
 use crate::ffi::boundary::{call, enter, entry_at, OutStruct, Output};
 use crate::ffi::header::types::{feti_phase, feti_problem};

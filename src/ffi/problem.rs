@@ -1,4 +1,4 @@
-//! A problem's life: created, its errors read, destroyed.
+//! The life of a problem: creation, errors, destruction.
 
 use std::ffi::c_char;
 use std::ptr;

@@ -1,4 +1,4 @@
-//! Watching a call and ending it.
+//! Progress and cancellation of a call.
 
 use std::ffi::c_void;
 

@@ -1,4 +1,4 @@
-//! Start values, and states of a problem to come back to.
+//! Start values, and saved states of a problem.
 
 use crate::ffi::boundary::{call, enter, id, input, same, Output};
 use crate::ffi::header::types::feti_problem;

@@ -1,4 +1,4 @@
-//! The surroundings of the calls: handles, busy, panics, error records. No solve is needed for it.
+//! The frame of the calls: handles, busy, panics, error records. These tests need no solve.
 
 use std::collections::BTreeSet;
 use std::ffi::{c_char, CStr};

@@ -1,6 +1,6 @@
-//! K+ of the bodies. Nothing is computed twice: equal bodies share one K+, bodies with one matrix whose null spaces are
-//! given in other words one factor, bodies of one pattern one symbolic analysis; a body with new values on its old pattern
-//! takes the analysis it has.
+//! K+ of the bodies. Nothing is computed twice: equal bodies share one K+; bodies with one matrix whose null spaces are
+//! given in different form share one factor; bodies with one pattern share one symbolic analysis; a body with new values on its old
+//! pattern keeps its analysis.
 
 use std::collections::{HashMap, HashSet};
 use std::hash::Hash;

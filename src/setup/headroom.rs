@@ -1,5 +1,5 @@
-//! Room for the vectors that a call makes over unknowns, rows and modes. Factors and dual operators are not among them:
-//! each is reserved when its size is known.
+//! Checks that there is room for the vectors over unknowns, rows and modes that a call allocates. Factors and dual operators are not
+//! included: each is reserved when its size is known.
 
 use crate::error::Result;
 use crate::model::{Model, PER_ENTRY};

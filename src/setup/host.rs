@@ -1,4 +1,4 @@
-//! Bodies whose stiffness the host keeps, K and K+ by its functions.
+//! Bodies whose stiffness matrix stays with the host, which applies K and K+ by its functions.
 
 use std::sync::Arc;
 use std::time::Instant;

@@ -1,5 +1,5 @@
-//! Bodies that have nothing to do with each other are problems of their own. An island is a set of bodies joined by
-//! rows, directly or through others, with all its rows; it has the bits that it would have alone.
+//! Bodies that do not interact are solved as separate problems. An island is a set of bodies joined by
+//! rows, directly or through other bodies, with all its rows; its answer has the bits that it would have if solved alone.
 
 use std::ops::Range;
 use std::sync::Arc;

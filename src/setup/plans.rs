@@ -1,4 +1,4 @@
-//! How K+ of the bodies is going to be made: null spaces and fixing dofs, found before anything is factorised.
+//! How K+ of each body will be computed: null spaces and fixing dofs, found before any factorisation.
 
 use std::sync::Arc;
 

@@ -1,4 +1,4 @@
-//! Preconditioners of the dual problems, as the options ask for them.
+//! Preconditioners of the dual problems, according to the options.
 
 use std::time::Instant;
 

@@ -1,4 +1,4 @@
-//! What has been computed from a model, and of which revisions of it.
+//! What has been computed from a model, and from which revisions of the model.
 
 use std::collections::HashSet;
 use std::sync::Arc;

@@ -1,5 +1,5 @@
-//! Which factors are rounded to single precision: those of the pieces of a body that is cut, wherever they serve products alone, whose
-//! time is that of reading them.
+//! Which factors are rounded to single precision: those of the pieces of a body that is cut, if they are only used for products, whose
+//! time is the time to read them.
 
 use crate::model::Model;
 use crate::setup::operators::Operators;

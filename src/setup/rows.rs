@@ -1,4 +1,4 @@
-//! The rows of the dual problem of an island from those of the host: scaled, one for each group of parallel ones, decoupled.
+//! The rows of the dual problem of an island, made from the host's rows: scaled, one for each group of parallel rows, decoupled.
 
 use crate::constraints::{row_scales, Decoupling, Grouping, RowKind, UnitRows};
 use crate::error::Result;

@@ -1,4 +1,4 @@
-//! Between rows of the host and those of the dual: groups of parallel rows, S, L, 2^p.
+//! Conversion between the host's rows and the rows of the dual problem: groups of parallel rows, S, L, 2^p.
 
 use crate::constraints::{Decoupling, Grouping};
 use crate::error::Result;

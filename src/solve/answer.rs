@@ -1,4 +1,4 @@
-//! The answers of all islands put together.
+//! Combines the answers of all islands.
 
 use crate::certificate::{Certificate, FrictionState, RowJudgement};
 use crate::constraints::{RowKind, RowSet};

@@ -1,4 +1,4 @@
-//! The acceptance test of the methods: a point of the dual of one island is judged by the certificate of the answer that it gives.
+//! The acceptance test of the methods: a point of the dual problem of one island is judged by the certificate of the recovered answer.
 
 use std::time::{Duration, Instant};
 

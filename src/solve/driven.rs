@@ -1,16 +1,16 @@
-//! Motions that K drives, S = S+ - S-: geometric stiffness of pressed bodies, rounding of K. The dual of K itself is not concave.
-//! That of K + S- is, with `e + S- a` for e, and its answer has the amplitudes a of the next round. On one face F the way from a to the
-//! next is affine,
+//! Motions with negative stiffness, S = S+ - S-: geometric stiffness of compressed bodies, rounding of K. The dual problem of K is not
+//! concave. The dual problem of K + S-, with `e + S- a` in place of e, is concave, and its answer has the amplitudes a of the next round. On
+//! one face F the map from a to the next a is affine,
 //!
 //! ```text
 //! b -> P b + p,   b = S-^1/2 a,   P = S-^1/2 (S+ + G_F F_FF^-1 G_F')^-1 S-^1/2
 //! ```
 //!
-//! over the driven motions alone, so that one step of Newton ends it: `b + (I - P)^-1 (P b + p - b)`. The largest eigenvalue rho of P
-//! is below 1 exactly where K is positive definite along the rows F. Where it is not, the energy falls along a motion that keeps F
-//! closed: the next round begins where another row ends that motion, and where none does the energy has no least value. The energy of
-//! the answers falls from round to round but for the step of Newton, which looks at no row; where it has led up, the same way is gone as
-//! far as rows let it. Where the face is too large for dense factors the rounds go on by themselves, and rho is their rate.
+//! over the motions with negative stiffness alone, so that one Newton step finds its fixed point: `b + (I - P)^-1 (P b + p - b)`. The largest
+//! eigenvalue rho of P is below 1 exactly if K is positive definite along the rows F. Otherwise the energy falls along a motion that keeps F
+//! closed: the next round begins where another row stops that motion; if no row stops it, the energy has no minimum. The energy of
+//! the answers falls from round to round, except in the Newton step, which ignores open rows; if the energy has risen, the previous answer
+//! moves along that step only as far as open rows allow. If the face is too large for dense factors, the rounds continue without Newton steps and converge at the rate rho.
 
 use crate::error::{Error, Kind, Proof, Result};
 use crate::linalg::vector::{axpy, dot, norm_max};

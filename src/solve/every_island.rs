@@ -1,4 +1,4 @@
-//! Every island is solved by itself, several at a time where there are threads.
+//! Solves every island separately, several at a time if there are threads.
 
 use std::cmp::Reverse;
 use std::sync::mpsc::channel;

@@ -1,4 +1,4 @@
-//! The method the options ask for; and where it gives up, others, before the answer counts as incomplete.
+//! The method that the options ask for and, if it gives up, other methods before the answer counts as incomplete.
 
 use crate::error::Result;
 use crate::model::{Method, Settings};

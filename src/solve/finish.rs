@@ -1,5 +1,5 @@
-//! Option `finish`: after a solve, forces and displacements together are corrected by the residuals of the host's own data,
-//! each time on the rows that these data show to be in contact, until rounding is all that is left.
+//! Option `finish`: after a solve, forces and displacements together are corrected by the residuals of the host's data,
+//! each time on the rows that these data show to be in contact, until only rounding is left.
 
 use std::ops::Range;
 

@@ -1,4 +1,4 @@
-//! The gaps of an island as its dual takes them.
+//! The gaps of an island, scaled for its dual problem.
 
 /// The right-hand sides of the dual rows: of one for every group of rows, then of the springs of bodies.
 pub struct Gaps {

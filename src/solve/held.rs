@@ -1,4 +1,4 @@
-//! Which rows carry a force that holds a motion, and which none but rounding.
+//! Which rows carry a force that holds a motion, and which rows carry only rounding.
 
 use std::ops::Range;
 

@@ -1,4 +1,4 @@
-//! Products with F, which end where the host wants to.
+//! Products with F, which stop when the host cancels the call.
 
 use crate::dual::{Accuracy, Dual};
 use crate::error::Result;

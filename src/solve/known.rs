@@ -1,4 +1,4 @@
-//! What the linear problem on the states of the last answer costs.
+//! The cost of the linear problem for the states of the last answer.
 
 use crate::error::Result;
 use crate::platform::threads;

@@ -1,4 +1,4 @@
-//! From a model that is set up to its answer: presolve, the methods on the dual, recovery of displacements, diagnosis.
+//! From a prepared model to its answer: presolve, the methods on the dual problem, recovery of displacements, diagnosis.
 
 mod answer;
 mod case;

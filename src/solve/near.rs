@@ -1,5 +1,5 @@
-//! Rows whose gaps are far beyond all that loads and rows move are left out of the dual, and join it only where bodies
-//! travel that far: where nothing else holds a load, where the answer without them goes through them, or where there is none
+//! Rows whose gaps are far larger than all motions caused by loads and rows are left out of the dual problem. They join it only if bodies
+//! travel that far: if nothing else holds a load, if the answer without these rows violates them, or if there is no answer
 //! without them.
 
 use crate::error::Result;

@@ -1,5 +1,5 @@
-//! Option `method` = paper-...: Algorithm 3 on the dual as the library scales it, or, with option `paper_units` =
-//! printed, as the paper has it: in the units of the host and with the host's basis of the null spaces,
+//! Option `method` = paper-...: Algorithm 3 on the dual problem as the library scales it, or, with option `paper_units` =
+//! printed, in the form of the paper: in the units of the host and with the host's basis of the null spaces,
 //!
 //! ```text
 //! A = B K+ B',  b = B K+ f - c,  D = R'B',  d = R'f   (corrected: printed d = R'c),   lambda >= 0 in forces

@@ -1,4 +1,4 @@
-//! The gaps that the rows of the dual have.
+//! The gaps of the rows of the dual problem.
 
 use crate::constraints::RowKind;
 use crate::error::Result;

@@ -1,5 +1,5 @@
-//! From a point of the dual of one island to the answer in the units of the host (17), what that answer leaves of loads and gaps, and
-//! the judgement of its certificate.
+//! From a point of the dual problem of one island to the answer in the units of the host (17), its residuals in loads and gaps, and
+//! the verdict of its certificate.
 
 use std::cell::{Cell, RefCell};
 

@@ -1,4 +1,4 @@
-//! What a solve tells the host.
+//! The report of a solve to the host.
 
 use crate::certificate::Certificate;
 use crate::dual::Dual;

@@ -1,4 +1,4 @@
-//! What loads and forces of rows move, by K+: for what rounding of the loads explains in an answer.
+//! Displacements that loads and forces of rows cause through K+: how much rounding of the loads explains in an answer.
 
 use std::cell::Cell;
 

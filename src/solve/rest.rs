@@ -1,4 +1,4 @@
-//! Answers whose forces leave motions open are brought to rest: of them all the one of least travel is told.
+//! If the forces of an answer leave motions free, the library returns the answer of least travel.
 
 use crate::certificate::BodyData;
 use crate::error::{Kind, Result};

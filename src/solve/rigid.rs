@@ -1,4 +1,4 @@
-//! Rigid motions to the accuracy of K: what a null space given with fewer digits makes K resist is no strain.
+//! Rigid motions to the accuracy of K: if a null space is given with fewer digits, the resistance of K to it is not strain.
 
 use std::sync::Arc;
 

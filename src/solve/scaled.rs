@@ -1,4 +1,4 @@
-//! Loads and gaps of an island as its dual takes them.
+//! Loads and gaps of an island, scaled for its dual problem.
 
 use crate::dual::Preconditioner;
 use crate::error::Result;

@@ -1,4 +1,4 @@
-//! Where a solve starts.
+//! The start point of a solve.
 
 use std::sync::Arc;
 

@@ -1,11 +1,11 @@
-//! Of the answers that differ by motions which nothing resists, the one of least travel:
+//! The answer of least travel, among all answers that differ by motions which nothing resists:
 //!
 //! ```text
 //! u = u0 + N a,   a = argmin |u0 + N a|_D   subject to   B (u0 + N a) <= c + C lambda
 //! ```
 //!
-//! N = R A: the motions that rows with lambda > 0 and equality rows do not resist, exactly 0 on grounded unknowns. It is
-//! unique, and does not depend on the choice of K+. No matrix over all unknowns is formed.
+//! N = R A are the motions that rows with lambda > 0 and equality rows do not resist, exactly 0 on grounded unknowns. The answer is
+//! unique and does not depend on the choice of K+. No matrix over all unknowns is formed.
 
 use std::borrow::Cow;
 use std::ops::Range;

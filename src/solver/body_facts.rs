@@ -1,4 +1,4 @@
-//! What is known about one body.
+//! Information about one body.
 
 use std::ops::Range;
 

@@ -1,4 +1,4 @@
-//! The certificate of an answer that is there.
+//! The certificate of an existing answer.
 
 use std::cell::Cell;
 

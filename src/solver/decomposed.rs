@@ -1,4 +1,4 @@
-//! Between the problem of the host and the one that is solved, in which pieces stand for the bodies that are cut.
+//! Translates between the host's problem and the problem that is solved, in which pieces replace the bodies that are cut.
 
 use crate::decomposition::{self, Decomposition};
 use crate::error::{Error, Result};

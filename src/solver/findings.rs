@@ -1,4 +1,4 @@
-//! What the last solve, or the last setup that failed, has found out about the problem: more than a text says.
+//! Facts about the problem that the last solve, or the last setup that failed, has found, in more detail than a text.
 
 use crate::constraints::RowKind;
 use crate::error::{Error, Kind, Place, Proof};

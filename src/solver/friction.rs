@@ -1,4 +1,4 @@
-//! From one load step to the next: the slip that was reached is where the next step begins.
+//! From one load step to the next: the slip at the end of a step is the reference of the next step.
 
 use crate::error::{Error, Kind, Result};
 use crate::solve::Outcome;

@@ -1,4 +1,4 @@
-//! What a problem remembers besides its data: the last answer, where the next solve starts, saved states.
+//! What a problem keeps besides its data: the last answer, the start of the next solve, saved states.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;

@@ -1,4 +1,4 @@
-//! The forces of the glue between bodies of the host, which has no rows for them.
+//! The forces that glue bodies of the host together. The host has no rows for them.
 
 use crate::certificate::Candidate;
 use crate::constraints::RowKind;

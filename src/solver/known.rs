@@ -1,4 +1,4 @@
-//! What the linear problem on the states of the last answer with friction would have cost: for measurements.
+//! The cost of the linear problem for the states of the last answer with friction: for measurements.
 
 use crate::error::{Error, Kind, Result};
 use crate::solve::{products_of_known_states, Case};

@@ -1,4 +1,4 @@
-//! The problem of a host: what it has given, what is computed of it, what it gets.
+//! The problem of a host: its input, what is computed from the input, its results.
 
 mod body_facts;
 mod check;

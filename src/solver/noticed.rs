@@ -1,4 +1,4 @@
-//! What a log tells about the data of a solve that the host may not have meant.
+//! Log lines about properties of the data that the host may not have intended.
 
 use crate::constraints::RowSet;
 use crate::error::Result;

@@ -1,4 +1,4 @@
-//! One contact problem: what the host has given, what has been computed of it, what it remembers.
+//! One contact problem: the input of the host, what has been computed from it, and what is kept between calls.
 
 use std::ops::{Deref, DerefMut};
 use std::sync::atomic::AtomicBool;

@@ -1,4 +1,4 @@
-//! What the host reads after a solve.
+//! Results that the host reads after a solve.
 
 use crate::certificate::FrictionState;
 use crate::constraints::RowKind;

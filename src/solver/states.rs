@@ -1,4 +1,4 @@
-//! Start values of the host for the next solve; states of a problem to come back to when a load step is rejected.
+//! Start values of the host for the next solve; saved states of a problem, which are restored when a load step is rejected.
 
 use crate::constraints::RowKind;
 use crate::error::{Error, Kind, Result, INDEX};

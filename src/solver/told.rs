@@ -1,4 +1,4 @@
-//! What a call tells in words: what is solved and how, its result, its warnings.
+//! The log lines of a call: what is solved and how, the result, warnings.
 
 use std::fmt::Write;
 

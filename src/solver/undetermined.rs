@@ -1,4 +1,4 @@
-//! What an answer leaves open: rigid motions that no closed row and no equality resists, and on which the load does no
+//! What an answer leaves undetermined: rigid motions that no closed row and no equality row resists, and on which the load does no
 //! work; equality rows that depend on each other and share their forces.
 
 use crate::certificate::Candidate;

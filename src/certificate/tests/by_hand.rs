@@ -1,4 +1,4 @@
-//! By hand: single springs, units, what over- or underflows, what is not known.
+//! Solved by hand: single springs, units, overflow and underflow, unknown values.
 
 use super::model::{chain, DenseAnswer, DenseModel, LIMIT};
 

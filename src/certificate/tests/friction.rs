@@ -1,4 +1,4 @@
-//! Friction by hand: one node on springs, each unknown one of them.
+//! Friction by hand: one node, each of its unknowns on a spring.
 
 use super::model::{chain, DenseAnswer, DenseModel, LIMIT};
 use super::nodes::DenseNode;

@@ -1,4 +1,4 @@
-//! Right answers with friction pass, and what is wrong with a force or a slip is found by the entries of friction alone.
+//! Correct answers with friction pass, and the entries of friction alone find a wrong force or slip.
 
 use super::friction::entries;
 use super::model::{DenseAnswer, DenseBody, DenseModel};

@@ -1,4 +1,4 @@
-//! Right answers pass and wrong ones do not, in models that hold things of different size.
+//! Correct answers pass and wrong answers do not, in models with very different sizes.
 
 use super::model::{chain, truss, DenseAnswer, DenseModel};
 

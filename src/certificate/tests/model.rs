@@ -1,4 +1,4 @@
-//! Small dense models: their right answers by elimination, and the certificate of any other.
+//! Small dense models: their correct answers by elimination, and the certificate of any other answer.
 
 use super::nodes::DenseNode;
 use super::*;

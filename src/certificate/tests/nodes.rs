@@ -1,4 +1,4 @@
-//! Right answers of the dense models by elimination, with friction by the states of its nodes.
+//! Correct answers of the dense models by elimination, with friction by the states of its nodes.
 
 use super::model::{solve, DenseAnswer, DenseModel, DenseRows};
 use crate::constraints::FrictionNode;

@@ -1,4 +1,4 @@
-//! What the library knows about a body.
+//! Information about a body.
 
 use crate::ffi::bodies::body::body_of_order;
 use crate::ffi::boundary::{call, enter, id, known, OutStruct, Output};

@@ -1,4 +1,4 @@
-//! Bodies by their elements: connectivity first, then the matrix of every element, pass by pass.
+//! Bodies given by elements: connectivity first, then the matrix of every element, pass by pass.
 
 use crate::error::Result;
 use crate::ffi::bodies::body::body_of_order;

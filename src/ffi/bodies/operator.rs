@@ -1,4 +1,4 @@
-//! Bodies whose stiffness the host keeps, with a factorisation of its own.
+//! Bodies whose stiffness matrix and factorisation stay with the host.
 
 use std::ffi::c_void;
 use std::sync::Arc;

@@ -1,4 +1,4 @@
-//! Stiffness matrices of bodies: by rows, with a diagonal of their own, dense.
+//! Stiffness matrices of bodies: by rows, with a separate diagonal, dense.
 
 use crate::error::{Error, Result};
 use crate::ffi::bodies::body::body_of_order;

@@ -1,4 +1,4 @@
-//! New values of stiffness matrices whose pattern stays.
+//! New values of stiffness matrices with an unchanged pattern.
 
 use crate::ffi::bodies::body::body_of_order;
 use crate::ffi::boundary::{borrowed, call, column_major, enter, id, input, same};

@@ -1,5 +1,5 @@
-//! Host pointers to slices and back, checked: sizes, NULL, alignment, texts. Results are written at the end of a call, by
-//! copying, so that a failure leaves the host's arrays as they are and arrays that overlap do no harm.
+//! Host pointers to slices and back, checked: sizes, NULL, alignment, texts. Results are copied to the host at the end of a call,
+//! so that a failure leaves the host's arrays unchanged and overlapping arrays do no harm.
 
 use std::ffi::{c_char, CStr, OsStr};
 use std::path::Path;

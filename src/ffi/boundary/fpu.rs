@@ -1,6 +1,6 @@
-//! The floating-point environment: hosts trap (`-ffpe-trap`) or flush denormal numbers (`-Ofast`); the library computes in
-//! the default environment and gives the host's back, also after a panic. Threads started inside inherit the default;
-//! functions of the host run in the host's.
+//! The floating-point environment: hosts trap (`-ffpe-trap`) or flush denormal numbers (`-Ofast`). The library computes in
+//! the default environment and restores the host's, also after a panic. Threads started inside inherit the default;
+//! functions of the host run in the host's environment.
 
 use std::cell::Cell;
 use std::sync::atomic::{AtomicU32, Ordering};

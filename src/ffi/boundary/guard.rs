@@ -1,5 +1,5 @@
-//! What surrounds every call: the host's floating-point environment is put aside, the handle looked up, the problem taken
-//! (or BUSY), panics caught and kept silent, and a failure recorded for the thread and for the problem.
+//! The frame of every call: it saves the host's floating-point environment, looks up the handle, locks the problem
+//! (or returns BUSY), catches and silences panics, and records a failure for the thread and for the problem.
 
 use std::any::Any;
 use std::cell::{Cell, RefCell};

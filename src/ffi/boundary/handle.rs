@@ -1,5 +1,5 @@
 //! The registry of problems. A handle is a counter from 1, cast to a pointer: never an address, never reused, and looked
-//! up at every call, so that a NULL, dead or foreign handle is found out without touching memory.
+//! up at every call, so that a NULL, dead or foreign handle is detected without touching memory.
 
 use std::collections::BTreeMap;
 use std::ptr;

@@ -1,5 +1,5 @@
-//! Problems by number, each with its lock, its wish to end and its last error; knows nothing of what a problem is. All
-//! orders of its steps on two threads are tried in `tests/loom`.
+//! Problems by number, each with its lock, its request to end and its last error; the registry does not depend on the type of a problem.
+//! `tests/loom` tries all orders of its steps on two threads.
 
 use std::collections::BTreeMap;
 

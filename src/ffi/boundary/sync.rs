@@ -1,4 +1,4 @@
-//! What [`super::registry`] is made of; `tests/loom` puts loom's in its place.
+//! The synchronisation types of [`super::registry`]; `tests/loom` replaces them by loom's.
 
 pub(super) use crate::platform::instant;
 pub(super) use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};

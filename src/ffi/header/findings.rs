@@ -1,4 +1,4 @@
-//! What a solve has found out, as a struct of the header without padding.
+//! The findings of a solve, as a struct of the header without padding.
 #![allow(non_camel_case_types)]
 
 /// What the last solve, or the last failed setup, found out about the problem. Numbers count from 0.

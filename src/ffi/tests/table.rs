@@ -1,4 +1,4 @@
-//! Every function with a handle, and the sources they are written in.
+//! Every function with a handle, and its source file.
 
 use std::ptr::{null, null_mut};
 

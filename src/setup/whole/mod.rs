@@ -1,4 +1,4 @@
-//! An island whose bodies are cut, as the host knows it: its answers are judged by the bodies and the rows of the host.
+//! An island whose bodies are cut, in terms of the host's bodies: its answers are certified with the bodies and rows of the host.
 
 mod null_space;
 

@@ -1,4 +1,4 @@
-//! The null space of a body that is cut: motions of its pieces that move all copies of every unknown alike.
+//! The null space of a body that is cut: motions of its pieces that move all copies of an unknown equally.
 
 use crate::error::Result;
 use crate::linalg::vector::power_of_two_below;

@@ -1,4 +1,4 @@
-//! Rows whose gaps no displacement satisfies: combinations of them are tried on the data of the host.
+//! Rows whose gaps no displacement satisfies: combinations of rows are tested on the data of the host.
 
 use std::cell::Cell;
 use std::collections::HashMap;

@@ -1,4 +1,4 @@
-//! Loads that no forces of the rows hold: how much of them, on which bodies, and whether that is proved.
+//! Loads that no forces of the rows hold: how large their share is, on which bodies they act, and whether this is proved.
 
 use crate::certificate::Data;
 use crate::constraints::{FrictionNode, RowKind};

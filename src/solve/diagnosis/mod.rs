@@ -1,8 +1,8 @@
-//! The one place that says why there is no answer: a load that nothing holds, rows that contradict each other. It takes a
-//! candidate for the proof from whoever found it and tries it on the data of the host. What is not proved is not said: the
+//! The only place that states why there is no answer: a load that nothing holds, or rows that contradict each other. It receives a
+//! candidate for the proof and tests it on the data of the host. Without a proof it makes no statement, and the
 //! next method follows.
 //!
-//! | module | claims |
+//! | module | claim and its proof |
 //! |---|---|
 //! | `loads` | no forces of the rows hold the load: a rigid motion |
 //! | `gaps` | no displacement satisfies the rows: weights of rows |

@@ -1,4 +1,4 @@
-//! The linear problem on the states that a solve with friction has ended with: a measurement, no part of a solve.
+//! The linear problem for the states in which a solve with friction has ended: used for measurements, not part of a solve.
 
 use crate::error::Result;
 use crate::model::Settings;

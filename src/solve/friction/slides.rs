@@ -1,5 +1,5 @@
-//! What friction does not hold though forces within the cones balance the load: weak elastic supports of all motions show it. What they
-//! carry falls with their stiffness kappa where there is a rest, and stays where the bodies slide.
+//! Loads that friction does not hold, although forces within the cones balance them: weak elastic supports of all motions detect them. The
+//! forces of the supports fall with their stiffness kappa if there is a state of rest, and remain if the bodies slide.
 
 use crate::error::{Error, Kind, Proof, Result};
 use crate::linalg::vector::{axpy, dot, norm, norm_max};

@@ -1,4 +1,4 @@
-//! What is known about one body.
+//! Information about one body.
 
 use crate::error::Kind;
 use crate::solver::{Modes, Origin, Problem, SparseInput, Storage};

@@ -1,4 +1,4 @@
-//! What is still done once a solve has to end: by a clock that runs out, or a host that cancels, right after a chosen look at it.
+//! Work that is still done after a solve has to end, because the time limit is reached or the host cancels, right after a chosen check of the interrupt.
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex};

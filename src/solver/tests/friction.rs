@@ -1,7 +1,7 @@
 //! Nodes with friction from one load step to the next: commit, saved states, starts.
 //!
-//! A block on springs, K = diag(2, 2), pressed by 4 against a wall, row 0, and pushed along it by 1: it sticks. Node 1 has a
-//! contact row that never closes, and goes wherever its unknown does.
+//! A block on springs, K = diag(2, 2), is pressed by 4 against a wall, row 0, and pushed along it by 1: it sticks. Node 1 has a
+//! contact row that never closes, and follows its unknown.
 
 use std::sync::Arc;
 

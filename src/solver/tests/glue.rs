@@ -1,4 +1,4 @@
-//! Unknowns of several bodies that have one number, by hand.
+//! Unknowns of several bodies that share one number, solved by hand.
 
 use crate::error::{Kind, Proof};
 use crate::solver::{Problem, RowKind, RowsInput, SparseInput, Storage};

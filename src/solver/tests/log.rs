@@ -1,4 +1,4 @@
-//! What a call tells in words.
+//! The lines of the log of a call.
 
 use std::sync::{Arc, Mutex};
 

@@ -1,4 +1,4 @@
-//! Tests of whole problems, where they need to see inside.
+//! Tests of whole problems that need access to internals.
 
 mod body_facts;
 mod clock;

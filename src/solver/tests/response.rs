@@ -1,4 +1,4 @@
-//! Answers that pass to the rounding of their loads.
+//! Answers that pass within the rounding of their loads.
 
 use crate::solver::{Modes, Outcome, Problem, RowKind, RowsInput, SparseInput, Storage};
 

@@ -1,4 +1,4 @@
-//! What is read after a solve.
+//! Results that are read after a solve.
 
 use crate::error::Kind;
 use crate::solver::{Problem, RowKind, RowState, RowsInput, SparseInput, Storage};

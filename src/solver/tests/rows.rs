@@ -1,4 +1,4 @@
-//! Rows that no scale brings to unit length.
+//! Rows that no scaling brings to unit length.
 
 use crate::error::Kind;
 use crate::solver::{Modes, Problem, RowKind, RowsInput, SparseInput, Storage};

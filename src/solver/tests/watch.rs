@@ -1,4 +1,4 @@
-//! Who watches a setup or a solve.
+//! Progress functions and cancellation of a setup or a solve.
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex};

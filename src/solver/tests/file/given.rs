@@ -1,4 +1,4 @@
-//! How the host has given a body: numbers of its own, functions, borrowed arrays, other forms of a matrix.
+//! The forms in which the host gives a body: its own numbers, functions, borrowed arrays, other forms of a matrix.
 
 use super::*;
 use crate::solver::{Borrowed, Columns, HostFunctions};
