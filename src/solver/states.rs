@@ -1,7 +1,7 @@
 //! Start values of the host for the next solve; saved states of a problem, which are restored when a load step is rejected.
 
 use crate::constraints::RowKind;
-use crate::error::{Error, Kind, Result, INDEX};
+use crate::error::{Error, Kind, Result};
 use crate::linalg::vector::first_non_finite;
 use crate::platform::memory::copied;
 use crate::solver::history::{Current, State};
