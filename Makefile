@@ -13,7 +13,8 @@
 #                SWEEPS="rows cut" picks some, a number among them leaves out decks of more unknowns
 # make growth    how time grows with the number of loose or glued bodies (some minutes); DECKS="tower wall" picks some
 # make paper     the paper's problems by its own method and by the default: table, pictures (seconds)
-# make docs      the book, manual pages, pages of the Fortran modules and of the crate: build/docs/index.html (some minutes)
+# make docs      the book, manual pages, pages of the Fortran modules and of the crate: build/docs/index.html, which Chromium
+#                opens page by page without network (some minutes)
 # make abi       writes the baseline of the binary interface (abi)        make uninstall  removes what install has put
 # make man       the manual pages alone                                make deb        Debian packages in build/deb (some minutes)
 # make packaging cargo cinstall against make install, and an installation without network (some minutes, the first time many)
@@ -216,17 +217,20 @@ docs: $(TOOLS)/mdbook-$(MDBOOK) $(TOOLS)/ford/installed
 	$(CARGO) run --release --locked --quiet -p feti-reference -- $(DOCS)/reference
 	mv $(DOCS)/reference/man $(DOCS)/man
 	python3 tools/docs/stage.py $(DOCS)/reference $(DOCS)/source
-	cp docs/book/book.toml docs/book/index.html $(DOCS)
+	cp docs/book/book.toml docs/book/book.css docs/book/index.html $(DOCS)
 	$(TOOLS)/bin/mdbook build $(DOCS)
+	python3 tools/docs/fortran.py sources $(DOCS)/fortran_sources
 	$(TOOLS)/ford/bin/ford --quiet docs/book/ford.md
-	sed -i -e 's/#moduleprocedure-\([a-z0-9_]*\)~[0-9]*"/#interface-\1"/' -e 's/#moduleprocedure-/#proc-/' \
-	    $(DOCS)/fortran/interface/*.html # ford names the anchors otherwise where they lead to
+	python3 tools/docs/fortran.py pages $(DOCS)/fortran
 	RUSTDOCFLAGS='-D warnings' $(CARGO) doc --no-deps --locked
 	cp -R $(RELEASE)/../doc $(DOCS)/rust
 	echo '<meta http-equiv="refresh" content="0; url=feti_contact/index.html">' > $(DOCS)/rust/index.html
 	$(CHECK_LINKS) markdown .
 	$(CHECK_LINKS) html $(DOCS)
 	! grep -rlF '|---' --include='*.html' $(DOCS)/book # a table that is none
+	@tools/setup.sh chromium
+	python3 tests/docs/browser.py chromium
+	python3 tools/docs/browser.py $(DOCS) chromium
 
 # ---- measurements
 counts:

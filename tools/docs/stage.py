@@ -19,6 +19,8 @@ ROOT = Path(__file__).resolve().parents[2]
 SUMMARY = ROOT / "docs/book/SUMMARY.md"
 ENTRY = re.compile(r"(?P<before>\s*- \[.*\]\()(?P<target>[^)]+)(?P<after>\).*)")
 PICTURES = {".svg", ".png"}
+# The script that colours programs in the book does not know these languages and says so on the console.
+UNCOLOURED = re.compile(r"^( *```)(fortran|cmake)$", re.M)
 REFERENCE = ["functions", "types", "options", "statuses"]
 
 
@@ -95,7 +97,7 @@ class Stage:
     def write(self, place, text):
         file = self.out / place
         file.parent.mkdir(parents=True, exist_ok=True)
-        file.write_text(text, encoding="utf-8")
+        file.write_text(UNCOLOURED.sub(r"\1text", text), encoding="utf-8")
 
 
 def in_order(pages):
@@ -117,6 +119,8 @@ def main(pages, out):
     shutil.rmtree(out, ignore_errors=True)
     shutil.copytree(pages, out / "reference", ignore=shutil.ignore_patterns("man"))
     names = in_order(pages)
+    for page in (out / "reference").glob("*.md"):
+        page.write_text(UNCOLOURED.sub(r"\1text", page.read_text(encoding="utf-8")), encoding="utf-8")
     stage = Stage(out, listed, {name: f"reference/{name}.md" for name in names})
     for path in listed:
         stage.chapter(path)
