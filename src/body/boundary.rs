@@ -1,4 +1,4 @@
-//! The stiffness of a body as its constrained dofs b feel it: what the preconditioners of the dual are made of.
+//! The stiffness of a body at its constrained dofs b, which the preconditioners of the dual problem use.
 
 use std::sync::Arc;
 

@@ -1,5 +1,5 @@
-//! How many digits the entries of K have. A host that prints K, or keeps it in single precision, hands over another K: the
-//! motions of its null space are resisted by what rounding has left. What that can be is estimated from K itself.
+//! Number of digits of the entries of K. If a host prints K, or stores it in single precision, it passes a perturbed K: the
+//! rounding errors resist the motions of the null space. Their size is estimated from K itself.
 
 use std::collections::HashMap;
 use std::fmt;

@@ -1,5 +1,5 @@
 //! Matrices by rows of ascending columns, those in full with entries on both sides of the diagonal: the lower triangle
-//! straight from the arrays of the host. Whatever else it gives, right or wrong, is for [`stiffness`](super::stiffness).
+//! directly from the arrays of the host. [`stiffness`](super::stiffness) handles all other input, right or wrong.
 
 use crate::body::storage::{may_differ, SparseInput, Storage};
 use crate::error::Result;

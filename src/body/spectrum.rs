@@ -1,5 +1,5 @@
-//! Which of the softest motions of a part are its null space. Seen from the few dofs t of the search a motion that K resists
-//! by the rounding of its entries looks stiffer by (dofs of the part) / (dofs t); what tells it from a support is
+//! Which of the softest motions of a part are its null space. On the few dofs t of the search, a motion that only the rounding of K
+//! resists appears stiffer by (dofs of the part) / (dofs t). It differs from a support by
 //! `theta = v'K v / v'D v` over the whole part, against what rounding makes of it.
 
 use std::fmt;

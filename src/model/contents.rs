@@ -1,5 +1,5 @@
-//! All that the host has given: bodies, rows, options. Nothing is computed here; what has been computed elsewhere remembers the
-//! revisions of what it was computed from.
+//! All data that the host has given: bodies, rows, options. Nothing is computed here; computed data elsewhere store the
+//! revisions of the data they were computed from.
 
 use std::collections::HashMap;
 use std::ops::Range;

@@ -1,4 +1,4 @@
-//! Stiffness matrices: given once with their pattern, then by their values alone.
+//! Stiffness matrices: first given with their pattern, later by their values alone.
 
 use std::sync::Arc;
 

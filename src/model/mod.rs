@@ -1,4 +1,4 @@
-//! What the host has given: bodies, rows, options, as a file too. It is checked here, and nothing is computed.
+//! Data that the host has given: bodies, rows, options; also as a file. The data are checked here, and nothing is computed.
 
 mod bodies;
 mod contents;

@@ -1,4 +1,4 @@
-//! Which bodies of the host the bodies of a model are pieces of.
+//! Maps the bodies of a model to the bodies of the host whose pieces they are.
 
 use std::ops::Range;
 use std::sync::Arc;

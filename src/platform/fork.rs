@@ -1,8 +1,8 @@
-//! What a child of fork finds: none of the locks that all threads share, held by a thread that it does not have.
+//! Fork: in the child no lock that all threads share may be held by a thread that the child does not have.
 //!
-//! Those locks are held for instants, in which nothing is waited for and no function of the host runs. `fork` waits until
-//! none of them goes on, and none begins before parent and child are apart. What lasts longer, such as a call on a problem,
-//! is not waited for: in the child that problem stays busy.
+//! Those locks are held only for short moments, without waiting and without calling functions of the host. `fork` waits until
+//! they are released, and no thread takes one before parent and child have separated. `fork` does not wait for longer
+//! operations, such as a call on a problem: in the child that problem stays busy.
 
 #[cfg(target_os = "linux")]
 pub(crate) use watched::instant;

@@ -1,5 +1,5 @@
-//! Arrays that lie side by side in large pages. What is read from memory again and again, such as the factors of many pieces in every
-//! product, comes from there at up to twice the speed that pages of 4 KiB have.
+//! Arrays that are packed into large pages. Data that are read from memory repeatedly, such as the factors of many pieces in every
+//! product, are read from large pages at up to twice the speed of 4 KiB pages.
 
 use std::sync::{Arc, Mutex, PoisonError};
 

@@ -1,4 +1,4 @@
-//! Counts the costly work of a thread for tests: they see what is still done once a call has to end.
+//! Counts the expensive work of a thread, so that tests see how much is still done after a call was asked to end.
 
 #[cfg(test)]
 thread_local! {

@@ -1,4 +1,4 @@
-//! What the host hears of a step, and what it answers.
+//! The report of a step to the host's progress function, and the function's answer.
 
 use crate::qp::StepKind;
 

@@ -1,4 +1,4 @@
-//! What the host hears of a call, and how it ends one: steps, lines of text, times, its wish to cancel, its time limit.
+//! Progress of a call: steps, lines of text and times for the host, cancelling, time limit.
 
 mod listener;
 mod log;

@@ -1,4 +1,4 @@
-//! Where the time of a call goes, and the memory that is kept.
+//! Time of each phase of a call, and memory that is kept.
 
 use std::ffi::CStr;
 use std::time::{Duration, Instant};

@@ -1,4 +1,4 @@
-//! The steps of one island, told to whoever listens.
+//! Reports of the steps of one island to all listeners.
 
 use crate::error::Result;
 use crate::progress::listener::Progress;

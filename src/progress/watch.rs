@@ -1,4 +1,4 @@
-//! One call under watch: the host hears of every body of a setup and of every step, and may end it.
+//! One call with progress reports: the host's function is called for every body of a setup and for every step, and may end the call.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::Arc;

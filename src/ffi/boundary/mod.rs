@@ -1,4 +1,4 @@
-//! What surrounds the exported functions.
+//! Handles, guards and argument checks around the exported functions.
 //!
 //! | file | holds |
 //! |---|---|

@@ -1,5 +1,5 @@
-//! The bytes of a file that may be damaged or made to do harm: every length is compared with what the file still holds
-//! before anything is reserved.
+//! The bytes of a file that may be damaged or malicious: every length is compared with the remaining bytes of the file
+//! before memory is reserved.
 
 use std::io::Read;
 

@@ -1,4 +1,4 @@
-//! A problem from a file: what its sections say, and the calls of a host that they stand for.
+//! Reads a problem from a file: decodes the sections and makes the corresponding calls.
 
 use std::io::Read;
 
