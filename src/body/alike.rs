@@ -1,4 +1,4 @@
-//! Equal bodies, and matrices with equal patterns: found by hash keys, verified entry by entry.
+//! Equal bodies, and matrices with equal patterns: found by keys, confirmed entry by entry.
 
 use crate::body::null_space::NullSpaceInput;
 use crate::body::rigid_modes::Coordinates;

@@ -1,4 +1,4 @@
-//! Matrices whose arrays stay in the host's memory.
+//! Matrices whose numbers remain in the host's arrays.
 
 use crate::body::stiffness::{check_diagonal, check_order};
 use crate::error::Result;

@@ -1,4 +1,4 @@
-//! The stiffness of a body at its constrained dofs b, which the preconditioners of the dual problem use.
+//! The stiffness of a body for its constrained dofs b, from which the preconditioners of the dual problem are built.
 
 use std::sync::Arc;
 

@@ -1,5 +1,5 @@
-//! Number of digits of the entries of K. If a host prints K, or stores it in single precision, it passes a perturbed K: the
-//! rounding errors resist the motions of the null space. Their size is estimated from K itself.
+//! How many digits the entries of K have. If a host prints K, or stores it in single precision, the library gets a different K: its
+//! rounding resists the motions of the null space. The possible size of this resistance is estimated from K itself.
 
 use std::collections::HashMap;
 use std::fmt;

@@ -1,7 +1,7 @@
 //! Null spaces and soft motions from coordinates.
 //!
 //! Coordinates are hints: if all their rigid motions fit K, the null space is known before the factorisation. If K
-//! resists some of them but is still singular (coordinates of another state, a body of revolution), the null space is found from K.
+//! resists some of them and is nevertheless singular (coordinates of another state, a body of revolution), the null space is searched in K.
 
 use crate::body::digits::Digits;
 use crate::body::fixing::{fixing_dofs, given_dofs};

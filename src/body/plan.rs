@@ -1,4 +1,4 @@
-//! The plan for K+, whose cost is known before it is carried out.
+//! The part of the setup of K+ whose cost is known before it is done.
 
 use std::sync::Arc;
 

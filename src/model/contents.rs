@@ -1,5 +1,5 @@
-//! All data that the host has given: bodies, rows, options. Nothing is computed here; computed data elsewhere store the
-//! revisions of the data they were computed from.
+//! Everything that the host has given: bodies, rows, options. Nothing is computed here; results stored elsewhere keep the
+//! revisions of the data from which they were computed.
 
 use std::collections::HashMap;
 use std::ops::Range;

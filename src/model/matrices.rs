@@ -1,4 +1,4 @@
-//! Stiffness matrices: first given with their pattern, later by their values alone.
+//! Stiffness matrices: given first with their pattern, then by new values only.
 
 use std::sync::Arc;
 

@@ -1,4 +1,4 @@
-//! Data that the host has given: bodies, rows, options; also as a file. The data are checked here, and nothing is computed.
+//! What the host has given: bodies, rows, options, also read from a file. The input is checked here; nothing is computed.
 
 mod bodies;
 mod contents;

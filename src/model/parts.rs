@@ -1,4 +1,4 @@
-//! Maps the bodies of a model to the bodies of the host whose pieces they are.
+//! The bodies of the host to which the bodies of a model belong as pieces.
 
 use std::ops::Range;
 use std::sync::Arc;

@@ -1,4 +1,4 @@
-//! A body that is cut, given by its pieces, as in a problem file.
+//! A body that is cut, given by its pieces, as stored in a problem file.
 
 use std::sync::Arc;
 

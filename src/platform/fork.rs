@@ -1,8 +1,8 @@
-//! Fork: in the child no lock that all threads share may be held by a thread that the child does not have.
+//! A child of fork must not find a shared lock held by a thread that it does not have.
 //!
-//! Those locks are held only for short moments, without waiting and without calling functions of the host. `fork` waits until
-//! they are released, and no thread takes one before parent and child have separated. `fork` does not wait for longer
-//! operations, such as a call on a problem: in the child that problem stays busy.
+//! The locks that all threads share are held only for instants, in which no thread waits and no function of the host runs. `fork` waits until
+//! no such instant is in progress, and prevents new ones until parent and child are separate. It does not wait for anything longer, such as a call on a
+//! problem: in the child that problem stays busy.
 
 #[cfg(target_os = "linux")]
 pub(crate) use watched::instant;

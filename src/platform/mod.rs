@@ -1,4 +1,4 @@
-//! Services of the machine: memory, threads, locks, interrupts.
+//! Services of the machine: memory, threads, locks, interruption.
 
 mod fork;
 pub mod interrupt;

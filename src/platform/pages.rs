@@ -1,5 +1,5 @@
-//! Large arrays in their own pages, initially zero, which are returned to the system when the array is dropped. Memory that the
-//! allocator kept after a drop would add to the peak of later allocations.
+//! Large arrays in separate pages, initially zero, that are returned to the system when they are dropped. Memory that the allocator
+//! would keep of a freed array would add to the peak of later allocations.
 
 use std::alloc::{alloc_zeroed, dealloc, Layout};
 use std::ops::{Deref, DerefMut};

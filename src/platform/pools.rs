@@ -1,5 +1,5 @@
-//! Existing thread pools, by process and size, each created when first needed. `tests/loom` tries all orders of its steps on
-//! two threads.
+//! The existing pools of threads, by process and size, created when first needed. `tests/loom` tries all orders of its steps on two
+//! threads.
 
 use super::sync::{instant, Arc, Mutex, PoisonError};
 

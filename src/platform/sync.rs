@@ -1,4 +1,4 @@
-//! The locks and atomics of [`super::pools`]; `tests/loom` replaces them by loom's.
+//! The synchronisation types of [`super::pools`]; `tests/loom` replaces them by loom's.
 
 pub(super) use crate::platform::fork::instant;
 pub use std::sync::{Arc, Mutex, PoisonError};

@@ -1,4 +1,4 @@
-//! Counts the expensive work of a thread, so that tests see how much is still done after a call was asked to end.
+//! Counts the expensive work of a thread for tests, which check how much is still done once a call has to end.
 
 #[cfg(test)]
 thread_local! {

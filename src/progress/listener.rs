@@ -1,4 +1,4 @@
-//! The report of a step to the host's progress function, and the function's answer.
+//! The progress function of the host: what it receives for a step, and what it returns.
 
 use crate::qp::StepKind;
 

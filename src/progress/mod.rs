@@ -1,4 +1,4 @@
-//! Progress of a call: steps, lines of text and times for the host, cancelling, time limit.
+//! What a call reports to the host, and how the host ends it: steps, lines of text, times, cancellation, time limit.
 
 mod listener;
 mod log;

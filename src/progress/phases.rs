@@ -1,4 +1,4 @@
-//! Time of each phase of a call, and memory that is kept.
+//! The time and the memory of the phases of a call.
 
 use std::ffi::CStr;
 use std::time::{Duration, Instant};

@@ -1,4 +1,4 @@
-//! Reports of the steps of one island to all listeners.
+//! Reports the steps of one island.
 
 use crate::error::Result;
 use crate::progress::listener::Progress;

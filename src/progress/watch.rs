@@ -1,4 +1,4 @@
-//! One call with progress reports: the host's function is called for every body of a setup and for every step, and may end the call.
+//! One call under observation: reports every body of a setup and every step to the host, which may end the call.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::Arc;

@@ -1,4 +1,4 @@
-//! New values for a matrix with an existing pattern: the position of each value, and the checks made for the first values.
+//! New values for a matrix whose pattern is known: the place of each value, and the checks of the first input.
 
 use crate::body::stiffness::check_finite;
 use crate::body::storage::{may_differ, unsymmetric, Shape, SparseInput, Storage};

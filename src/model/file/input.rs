@@ -1,5 +1,5 @@
-//! The bytes of a file that may be damaged or malicious: every length is compared with the remaining bytes of the file
-//! before memory is reserved.
+//! The bytes of a file that may be damaged or hostile: every length is compared with the remaining length of the file
+//! before anything is reserved.
 
 use std::io::Read;
 

@@ -1,4 +1,4 @@
-//! A problem as one file: all data that the host has registered, so that a reader gets equal bits from equal
+//! A problem as one file: everything that the host has registered, so that any reader gets equal bits from equal
 //! calls. The file contains no answers, start values, saved states or factors.
 
 pub mod format;

@@ -1,4 +1,4 @@
-//! Reads a problem from a file: decodes the sections and makes the corresponding calls.
+//! Reads a problem from a file: the content of its sections, and the calls of a host that they replace.
 
 use std::io::Read;
 
