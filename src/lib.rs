@@ -20,8 +20,8 @@
 //! (force), lambda and mu multipliers of contact and equality rows (force), alpha amplitudes of the null
 //! space R of K, D = diag K.
 //!
-//! A problem in Rust: a spring k at a wall, a gap c, a block of two unknowns that nothing else holds, a force that pushes
-//! it against the spring.
+//! A problem in Rust: a spring k at a wall, a gap c, a floating block of two unknowns, and a force that pushes
+//! the block against the spring.
 //!
 //! ```
 //! use feti_contact::error::Result;
@@ -50,22 +50,22 @@
 //! }
 //! ```
 //!
-//! The C interface is a face of [`solver::Problem`]. For C, Fortran and FORTRAN 77 see README.md.
+//! The C interface wraps [`solver::Problem`]. For C, Fortran and FORTRAN 77 see README.md.
 //!
-//! | module | what it holds |
+//! | module | contents |
 //! |---|---|
 //! | [`error`] | the one error type |
 //! | [`linalg`] | vectors, matrices, ordering, sparse Cholesky |
 //! | [`body`] | one body: K_p, R_p, fixing dofs, K_p+ |
 //! | [`constraints`] | B u <= c, H u = h: rows, their compliance and scaling |
-//! | [`dual`] | F, d, G, e and the way back |
+//! | [`dual`] | F, d, G, e, and the recovery of u |
 //! | [`qp`] | Sections 4 and 5: knows no bodies |
-//! | [`certificate`] | how right an answer is, by matrices and rows alone |
-//! | `progress` | what the host hears of a call, and how it ends one |
-//! | `model` | what the host has given; nothing is computed |
-//! | `setup` | what is computed of it once, for any load and gap |
+//! | [`certificate`] | accuracy of an answer, computed from matrices and rows alone |
+//! | `progress` | progress reports, log, cancelling, time limit |
+//! | `model` | data given by the host; nothing is computed |
+//! | `setup` | data computed once from the model, for any load and gap |
 //! | `solve` | presolve, methods, recovery, diagnosis: the answer |
-//! | [`solver`] | the problem of a host: one of each of these |
+//! | [`solver`] | the problem of a host, which owns one of each |
 //! | [`ffi`] | the C interface |
 
 pub mod body;

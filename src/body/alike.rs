@@ -1,4 +1,4 @@
-//! Bodies that are the same, and matrices with the same pattern: found by keys, proved entry by entry.
+//! Equal bodies, and matrices with equal patterns: found by keys, confirmed entry by entry.
 
 use crate::body::null_space::NullSpaceInput;
 use crate::body::rigid_modes::Coordinates;

@@ -1,4 +1,4 @@
-//! K of a body that is cut: the sum of the matrices of its pieces, known by its products.
+//! K of a body that is cut: the sum of the matrices of its pieces, applied matrix-free.
 
 use std::sync::Arc;
 

@@ -1,4 +1,4 @@
-//! Matrices whose numbers stay where the host has them.
+//! Matrices whose numbers remain in the host's arrays.
 
 use crate::body::stiffness::{check_diagonal, check_order};
 use crate::error::Result;

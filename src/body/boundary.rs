@@ -1,4 +1,4 @@
-//! The stiffness of a body as its constrained dofs b feel it: what the preconditioners of the dual are made of.
+//! The stiffness of a body for its constrained dofs b, from which the preconditioners of the dual problem are built.
 
 use std::sync::Arc;
 

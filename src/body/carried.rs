@@ -1,13 +1,13 @@
-//! Rigid motions that K resists firmly, taken into the coarse problem all the same. A piece whose supports are eliminated has no null
-//! space, and its softest motions, nearly rigid ones, would be left to the iteration, which takes two to three times the
-//! products then. With the rigid motions Z that are no null vectors, D-orthogonal to R_0 that are, and L = D Z,
+//! Rigid motions that K resists firmly but that nevertheless enter the coarse problem. A piece whose supports are eliminated has no null
+//! space; without this treatment the iteration has to find its softest motions, which are nearly rigid, and takes two to three times the
+//! products. With the rigid motions Z that are not null vectors, D-orthogonal to the null vectors R_0, and L = D Z,
 //!
 //! ```text
 //! T = K+ L,  S = (L'T)^-1,  R_c = T S,   K_c+ = K+ - T S T',   L'K_c+ = 0,   R_c'K R_c = S
 //! u = K_c+ (f - B'l) + R_0 a_0 + R_c a_c,   R_0'(f - B'l) = 0,   S a_c = R_c'(f - B'l)
 //! ```
 //!
-//! exactly: S are springs as those of [`soft`](crate::body::soft) motions, with the functionals L in the place of unknowns held.
+//! exactly: S are springs like those of [`soft`](crate::body::soft) motions, with the functionals L in place of held unknowns.
 
 use crate::body::probe::Factor;
 use crate::body::spectrum::symmetric;

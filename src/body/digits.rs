@@ -1,5 +1,5 @@
-//! How many digits the entries of K have. A host that prints K, or keeps it in single precision, hands over another K: the
-//! motions of its null space are resisted by what rounding has left. What that can be is estimated from K itself.
+//! How many digits the entries of K have. If a host prints K, or stores it in single precision, the library gets a different K: its
+//! rounding resists the motions of the null space. The possible size of this resistance is estimated from K itself.
 
 use std::collections::HashMap;
 use std::fmt;

@@ -1,4 +1,4 @@
-//! K as the host has given it: by its entries, by elements, or by its products.
+//! K in the form that the host has given: by its entries, by elements, or by products.
 
 use crate::body::assembled::Assembled;
 use crate::body::host::HostOperator;

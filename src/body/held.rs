@@ -1,6 +1,6 @@
-//! The dofs held for soft motions. One for each motion given keeps F of (14) definite while K drives these motions weakly. Where K
-//! drives them more, F is indefinite or nearly so, and other dofs are held, or more of them: what follows one more is one more soft
-//! motion, and K is taken as exactly as before.
+//! The dofs that are held for soft motions. One dof for each given motion keeps F of (14) definite while K has only small negative stiffness
+//! along these motions. If the negative stiffness is larger, F is indefinite or nearly so, and other or more dofs are held: each
+//! additional dof adds one soft motion, and K is still represented exactly.
 
 use std::sync::Arc;
 

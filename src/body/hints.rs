@@ -1,7 +1,7 @@
 //! Null spaces and soft motions from coordinates.
 //!
-//! Coordinates are hints: where all their rigid motions fit K, the null space is known before the factorisation. Where K
-//! resists some of them and yet is singular without these (places of another state, a body of revolution), it is sought in K.
+//! Coordinates are hints: if all their rigid motions fit K, the null space is known before the factorisation. If K
+//! resists some of them and is nevertheless singular (coordinates of another state, a body of revolution), the null space is searched in K.
 
 use crate::body::digits::Digits;
 use crate::body::fixing::{fixing_dofs, given_dofs};

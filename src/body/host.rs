@@ -1,4 +1,4 @@
-//! A body whose stiffness the host keeps: K and K+ are known by their products alone, Y = K X and Y = K+ X.
+//! A body whose stiffness matrix stays with the host: K and K+ are applied matrix-free, Y = K X and Y = K+ X.
 
 use std::fmt;
 use std::sync::Arc;

@@ -1,5 +1,5 @@
-//! Whether the functions of the host are what they must be: K symmetric, `K R = 0` for the whole null space, K+ symmetric,
-//! both positive semidefinite, `K K+ K = K`. Looked at with a few fixed vectors: what is wrong for most is found. Forces are
+//! Checks the functions of the host: K symmetric, `K R = 0` for the whole null space, K+ symmetric,
+//! both positive semidefinite, `K K+ K = K`. A few fixed vectors are tested: they find every error that affects most vectors. Forces are
 //! measured in the metric `D^-1`, displacements in D, so that no figure has a unit.
 
 use crate::body::generalized_inverse::GeneralizedInverse;

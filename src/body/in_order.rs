@@ -1,5 +1,5 @@
-//! Matrices by rows of ascending columns, those in full with entries on both sides of the diagonal: the lower triangle
-//! straight from the arrays of the host. Whatever else it gives, right or wrong, is for [`stiffness`](super::stiffness).
+//! Matrices by rows of ascending columns, full ones with entries on both sides of the diagonal: the lower triangle
+//! directly from the arrays of the host. All other input, valid or not, goes to [`stiffness`](super::stiffness).
 
 use crate::body::storage::{may_differ, SparseInput, Storage};
 use crate::error::Result;

@@ -1,5 +1,5 @@
-//! The null space `R_p` of a stiffness matrix: given and verified, or picked out of candidates.
-//! All tests act on `A = D^-1/2 K D^-1/2`, D = diag K: no unit, and supports written as 1e30 on the
+//! The null space `R_p` of a stiffness matrix: given and verified, or selected from candidates.
+//! All tests use `A = D^-1/2 K D^-1/2`, D = diag K: they have no unit, and supports given as 1e30 on the
 //! diagonal count as supports. K is scaled to a largest diagonal entry in [1, 2); a dof without any
 //! stiffness has `D_ii = 1`.
 

@@ -1,5 +1,5 @@
-//! One connected part at the end of its elimination: which of its softest motions are its null space, and which of the others
-//! weak springs hold.
+//! One connected part at the end of its elimination: which of its softest motions form its null space, and which are
+//! held by weak springs.
 
 use crate::body::digits::Digits;
 use crate::body::null_space::largest;

@@ -1,4 +1,4 @@
-//! The part of the setup of K+ that can be costed before it is done.
+//! The part of the setup of K+ whose cost is known before it is done.
 
 use std::sync::Arc;
 

@@ -1,4 +1,4 @@
-//! What K+ is made of, a factor of the library or the host's own, and what a factor and a null space are worth, tried out after
+//! The components of K+, a factor of the library or the host's own, and how accurate a factor and a null space are, tested after
 //! every factorisation.
 
 use std::sync::Arc;

@@ -1,4 +1,4 @@
-//! Rigid-body modes from the places of the dofs: candidates for the null space.
+//! Rigid-body modes from the coordinates of the dofs: candidates for the null space.
 
 use crate::error::{Error, Result};
 use crate::linalg::graph::components;

@@ -1,11 +1,11 @@
-//! K+ by a factor in single precision, which takes half the memory and, read from memory in every product, half the time. With L~ the
-//! rounded L and all sums in double precision,
+//! K+ from a factor in single precision, which takes half the memory and half the time to read in every product. With the
+//! rounded factor L~ and all sums in double precision,
 //!
 //! ```text
 //! K~+ = L~^-T L~^-1        x_0 = K~+ b,   x <- x + K~+ (b - K x)
 //! ```
 //!
-//! K~+ is symmetric and positive definite, an operator as good as K+ for the directions of an iteration; the refined x is as good as
+//! K~+ is symmetric and positive definite, and as good as K+ for the directions of an iteration. The refined x is as good as
 //! that of K+ after one to four corrections, each of which leaves a share of 2^-24 / softness of the error.
 
 use crate::error::Result;

@@ -1,8 +1,8 @@
-//! The null space `R_p` found from the stiffness alone, and `K_p+` from the same factor.
+//! The null space `R_p` found from the stiffness matrix alone, and `K_p+` from the same factor.
 //!
-//! In every connected part some dofs t, spread over it, are eliminated last, each on a spring of the stiffness it has
-//! already: `K + E D_tt E'` is regular as soon as t resists every motion of the null space. The end of its factor is
-//! `S + D_tt`, S the Schur complement of K on t. With the diagonal scaled to 1 the null vectors of S are those of K at t.
+//! In every connected part some dofs t, spread over it, are eliminated last, each with an added spring of its own diagonal
+//! stiffness: `K + E D_tt E'` is regular as soon as t resists every motion of the null space. The last block of its factor is
+//! `S + D_tt`, where S is the Schur complement of K on t. With the diagonal scaled to 1 the null vectors of S are those of K at t.
 //! Then some dofs of t are held in place of all springs: only the dense block of t changes.
 
 use std::sync::Arc;

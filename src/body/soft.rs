@@ -1,12 +1,12 @@
-//! Rigid motions that K resists softly: weak springs, rounding of its entries, geometric stiffness. With the unknowns x held
+//! Rigid motions with small stiffness: weak springs, rounding of the entries, geometric stiffness. With the unknowns x held
 //! and k free, as in (14)-(15),
 //!
 //! ```text
 //! R = [-K_kk^-1 K_kx; I] R_x,   K = K_0 + E_x S_x E_x',   K_0 R = 0,   R_x'S_x R_x = R'K R = diag(lambda)
 //! ```
 //!
-//! exactly, for the K given. K_0 floats, K+ of (15) is one of its generalised inverses, and S_x are springs at the unknowns that
-//! are held, where K+ is 0: beside `u = K+ (f - B'l) + R a` they resist a with the forces `lambda_j a_j`, and nothing else.
+//! exactly, for the given K. K_0 floats, K+ of (15) is one of its generalised inverses, and S_x are springs at the held
+//! unknowns, where K+ is 0: for `u = K+ (f - B'l) + R a` they resist a with the forces `lambda_j a_j`, and resist nothing else.
 
 use crate::body::null_space::{orthonormal_by_parts, FreePart, ROUNDING};
 use crate::body::probe::{Factor, MOST_ERROR, SAMPLE};

@@ -1,6 +1,6 @@
-//! Which of the softest motions of a part are its null space. Seen from the few dofs t of the search a motion that K resists
-//! by the rounding of its entries looks stiffer by (dofs of the part) / (dofs t); what tells it from a support is
-//! `theta = v'K v / v'D v` over the whole part, against what rounding makes of it.
+//! Which of the softest motions of a part form its null space. For the few dofs t of the search, a motion that K resists only
+//! by the rounding of its entries seems stiffer by (dofs of the part) / (dofs t). The measure that distinguishes it from a support is
+//! `theta = v'K v / v'D v` over the whole part, compared with the possible effect of rounding.
 
 use std::fmt;
 

@@ -1,4 +1,4 @@
-//! The host's stiffness matrix, checked and brought into one form: the lower triangle by sorted rows.
+//! The host's stiffness matrix, checked and converted to one form: the lower triangle by sorted rows.
 
 use crate::body::in_order::lower_triangle;
 use crate::body::storage::{may_differ, unsymmetric, Shape, SparseInput, Storage};

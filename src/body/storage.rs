@@ -1,4 +1,4 @@
-//! How a host stores the entries of a stiffness matrix, and how far that may be from symmetric.
+//! The storage formats of a stiffness matrix, and how far its entries may differ from symmetry.
 
 use crate::error::Error;
 

@@ -3,7 +3,7 @@
 //!
 //! ```text
 //! explicit:  4 m^2      F_p packed, after an assembly of A operations, RATE of them in the time of a byte
-//! implicit:  16 l       L_p twice; 10 l where the cache keeps it for the second time, half of both in single precision
+//! implicit:  16 l       L_p twice; 10 l if the cache keeps it for the second time, half of both in single precision
 //! A = s (2 m l + n m^2 / 2)        Y = L^-1 P B', then Y'Y; a supernode sees the share s = min(1, REACH m / n^2/3) of m
 //! ```
 //!

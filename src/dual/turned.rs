@@ -1,4 +1,4 @@
-//! The preconditioner of a face with friction, whose rows are combinations of two rows of a node, with a damping that slip adds to F:
+//! The preconditioner of a face with friction. Its rows are combinations of two rows of a node, and slip adds a damping to F:
 //!
 //! ```text
 //! M = H^-1 (W'(B D^-1 S_b D^-1 B' + C)W + N) H^-1,   H = W'(B D^-1 B' + C)W + N,   N diagonal

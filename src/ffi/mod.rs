@@ -3,7 +3,7 @@
 //! | file | holds |
 //! |---|---|
 //! | `header/` | structs, constants and status numbers of the header |
-//! | `boundary/` | what surrounds the functions: handles, panics, errors, arrays of the host |
+//! | `boundary/` | frame of every call: handles, panics, errors, arrays of the host |
 //! | `bodies/` | the functions of bodies |
 //! | `problem`, `file`, `options`, `rows`, `friction`, `solve`, `phases`, `progress`, `log`, `state`, `diagnosis`, `results`, `validation` | the other functions |
 //!

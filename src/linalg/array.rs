@@ -1,4 +1,4 @@
-//! Numbers of a matrix: the library's own, or left where the host has them.
+//! Numbers of a matrix: stored by the library, or in the host's arrays.
 
 use std::ops::{Deref, DerefMut};
 use std::ptr::NonNull;

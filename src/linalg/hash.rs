@@ -1,4 +1,4 @@
-//! Keys of lists of numbers: equal for equal lists, seldom equal for others.
+//! Keys of lists of numbers: equal for equal lists, rarely equal for different lists.
 
 pub const START: u64 = 0xcbf2_9ce4_8422_2325;
 

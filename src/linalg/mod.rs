@@ -1,12 +1,12 @@
-//! Vectors, matrices, ordering and factorisation. The only layer that knows faer.
+//! Vectors, matrices, ordering and factorisation. The only layer that uses faer.
 //!
 //! | module | holds |
 //! |---|---|
-//! | `vector`, `twofold`, `array` | loops over vectors, sums in twice the digits, numbers that are left with the host |
+//! | `vector`, `twofold`, `array` | loops over vectors, sums in twice the digits, numbers stored by the library or the host |
 //! | `random`, `hash` | fixed random numbers, keys of lists |
 //! | `dense` | columns; packed symmetric matrices; pivoted Cholesky, eigenvalues, singular values |
 //! | `sparse` | by rows; symmetric; graphs; Gram matrices |
-//! | `cholesky` | the sparse factorisation and what is made from the factor |
+//! | `cholesky` | the sparse factorisation and operations with the factor |
 //! | `semidefinite` | systems that may be singular, dense and sparse |
 
 pub mod array;

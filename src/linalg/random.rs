@@ -1,4 +1,4 @@
-//! Random numbers, the same in every run: Marsaglia's xorshift of 64 bits.
+//! Random numbers, equal in every run: Marsaglia's xorshift of 64 bits.
 
 use crate::error::Result;
 use crate::platform::memory::zeros;

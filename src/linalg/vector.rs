@@ -1,4 +1,4 @@
-//! Loops over vectors, always in the order of the entries, sums of long ones in a fixed number of parts: the same bits on any number
+//! Loops over vectors, always in the order of the entries, sums of long ones in a fixed number of parts: equal bits on any number
 //! of threads.
 
 use std::slice;

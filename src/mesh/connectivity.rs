@@ -1,4 +1,4 @@
-//! Which unknowns the elements of a body join, as the host has numbered them.
+//! The unknowns that the elements of a body join, in the numbering of the host.
 
 use std::ops::Range;
 

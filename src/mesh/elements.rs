@@ -1,4 +1,4 @@
-//! Element matrices as they come: each once in a pass, checked, added to its piece, and forgotten.
+//! Element matrices as they arrive: each once per pass, checked, added to its piece, and not stored.
 
 use crate::error::{Error, Kind, Result};
 use crate::mesh::connectivity::{Connectivity, Place};

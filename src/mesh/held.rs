@@ -1,4 +1,4 @@
-//! What holds the held unknowns: their rows of the stiffness matrix over those that move.
+//! The forces on held unknowns: their rows of the stiffness matrix over the free unknowns.
 
 use crate::error::Result;
 use crate::mesh::connectivity::{Connectivity, Place};

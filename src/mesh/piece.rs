@@ -1,4 +1,4 @@
-//! The stiffness matrix of a piece of a body, added up from its elements.
+//! The stiffness matrix of a piece of a body, assembled from its elements.
 
 use std::sync::Arc;
 

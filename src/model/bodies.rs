@@ -1,4 +1,4 @@
-//! Bodies: their null spaces, coordinates, loads, and functions in place of a matrix.
+//! Bodies: their null spaces, coordinates, loads, and functions instead of a matrix.
 
 use std::sync::Arc;
 

@@ -1,5 +1,5 @@
-//! All that the host has given: bodies, rows, options. Nothing is computed here; what has been computed elsewhere remembers the
-//! revisions of what it was computed from.
+//! Everything that the host has given: bodies, rows, options. Nothing is computed here; results stored elsewhere keep the
+//! revisions of the data from which they were computed.
 
 use std::collections::HashMap;
 use std::ops::Range;

@@ -1,4 +1,4 @@
-//! Stiffness matrices: given once with their pattern, then by their values alone.
+//! Stiffness matrices: given first with their pattern, then by new values only.
 
 use std::sync::Arc;
 

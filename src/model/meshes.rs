@@ -1,4 +1,4 @@
-//! Bodies by their elements: connectivity first, then the matrices, pass by pass.
+//! Bodies given by elements: connectivity first, then the matrices, pass by pass.
 
 use std::sync::Arc;
 

@@ -1,4 +1,4 @@
-//! What the host has given: bodies, rows, options, as a file too. It is checked here, and nothing is computed.
+//! What the host has given: bodies, rows, options, also read from a file. The input is checked here; nothing is computed.
 
 mod bodies;
 mod contents;

@@ -1,4 +1,4 @@
-//! The host's own numbers of the unknowns, over all bodies; without them the bodies count one after the other.
+//! The host's own numbers of the unknowns, over all bodies; without them unknowns count through the bodies in order.
 
 use crate::error::{Error, Kind, Result, INDEX};
 use crate::linalg::vector::first_non_finite;

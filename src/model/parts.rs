@@ -1,4 +1,4 @@
-//! Which bodies of the host the bodies of a model are pieces of.
+//! The bodies of the host to which the bodies of a model belong as pieces.
 
 use std::ops::Range;
 use std::sync::Arc;

@@ -1,4 +1,4 @@
-//! A body that is cut, by its pieces: as a problem file has it.
+//! A body that is cut, given by its pieces, as stored in a problem file.
 
 use std::sync::Arc;
 

@@ -1,4 +1,4 @@
-//! Contact rows and equality rows: given, changed, dropped.
+//! Contact rows and equality rows: added, changed, removed.
 
 use crate::constraints::{Friction, FrictionInput, RowKind, RowSet, RowsInput};
 use crate::error::{Error, Proof, Result};

@@ -1,4 +1,4 @@
-//! Options that take one of a few words.
+//! Options whose value is one of a few words.
 
 use std::ffi::CStr;
 

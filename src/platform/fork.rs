@@ -1,8 +1,8 @@
-//! What a child of fork finds: none of the locks that all threads share, held by a thread that it does not have.
+//! A child of fork must not find a shared lock held by a thread that it does not have.
 //!
-//! Those locks are held for instants, in which nothing is waited for and no function of the host runs. `fork` waits until
-//! none of them goes on, and none begins before parent and child are apart. What lasts longer, such as a call on a problem,
-//! is not waited for: in the child that problem stays busy.
+//! The locks that all threads share are held only for instants, in which no thread waits and no function of the host runs. `fork` waits until
+//! no such instant is in progress, and prevents new ones until parent and child are separate. It does not wait for anything longer, such as a call on a
+//! problem: in the child that problem stays busy.
 
 #[cfg(target_os = "linux")]
 pub(crate) use watched::instant;

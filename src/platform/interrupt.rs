@@ -1,4 +1,4 @@
-//! When a long computation has to end: another thread wishes it, or its time is over. Set for a task, looked at inside its loops.
+//! Ends a long computation if another thread requests it or its time is over. An interrupt is set for a task and checked in its loops.
 
 use std::cell::{Cell, RefCell};
 use std::sync::atomic::{AtomicBool, Ordering};

@@ -1,8 +1,8 @@
-//! Memory is reserved before it is used: Rust ends the process on a failed allocation, a host must not.
+//! Memory is reserved before it is used: Rust ends the process on a failed allocation, but a host must survive it.
 //!
 //! Large arrays are reserved one by one, with [`zeros`], [`reserved`] and [`copied`], the largest with
-//! [`Pages`](super::pages::Pages). Where many small pieces or foreign
-//! code allocate, [`headroom`] proves beforehand that there is enough, and keeps the large arrays of other threads from taking it.
+//! [`Pages`](super::pages::Pages). If many small pieces or foreign
+//! code allocate, [`headroom`] checks beforehand that there is enough, and keeps it free from the large arrays of other threads.
 
 use std::cell::Cell;
 use std::marker::PhantomData;

@@ -1,4 +1,4 @@
-//! What the library asks of the machine: memory, threads, locks, the wish to end.
+//! Services of the machine: memory, threads, locks, interruption.
 
 mod fork;
 pub mod interrupt;

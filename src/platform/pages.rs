@@ -1,5 +1,5 @@
-//! Large arrays in pages of their own, zero at first, that go back to the system when they are dropped. What the allocator
-//! keeps of an array that is gone would add to the peak of what comes after it.
+//! Large arrays in separate pages, initially zero, that are returned to the system when they are dropped. Memory that the allocator
+//! would keep of a freed array would add to the peak of later allocations.
 
 use std::alloc::{alloc_zeroed, dealloc, Layout};
 use std::ops::{Deref, DerefMut};

@@ -1,5 +1,5 @@
-//! Pools of threads that are there, by process and size: made when first needed. All orders of its steps on two threads
-//! are tried in `tests/loom`.
+//! The existing pools of threads, by process and size, created when first needed. `tests/loom` tries all orders of its steps on two
+//! threads.
 
 use super::sync::{instant, Arc, Mutex, PoisonError};
 

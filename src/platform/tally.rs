@@ -1,4 +1,4 @@
-//! Counts the costly work of a thread for tests: they see what is still done once a call has to end.
+//! Counts the expensive work of a thread for tests, which check how much is still done once a call has to end.
 
 #[cfg(test)]
 thread_local! {

@@ -1,4 +1,4 @@
-//! The library's own threads: as many as the host asks for, made when first needed, never rayon's global pool.
+//! The library's own threads: as many as the host asks for, created when first needed, never rayon's global pool.
 
 use std::cell::Cell;
 use std::hint::black_box;

@@ -1,4 +1,4 @@
-//! What the host hears of a step, and what it answers.
+//! The progress function of the host: what it receives for a step, and what it returns.
 
 use crate::qp::StepKind;
 

@@ -1,4 +1,4 @@
-//! Lines of text for the host: phases, steps, and whatever others have to say.
+//! Lines of text for the host: phases, steps, and lines of other modules.
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};

@@ -1,4 +1,4 @@
-//! What the host hears of a call, and how it ends one: steps, lines of text, times, its wish to cancel, its time limit.
+//! What a call reports to the host, and how the host ends it: steps, lines of text, times, cancellation, time limit.
 
 mod listener;
 mod log;

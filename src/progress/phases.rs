@@ -1,4 +1,4 @@
-//! Where the time of a call goes, and the memory that is kept.
+//! The time and the memory of the phases of a call.
 
 use std::ffi::CStr;
 use std::time::{Duration, Instant};

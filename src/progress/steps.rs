@@ -1,4 +1,4 @@
-//! The steps of one island, told to whoever listens.
+//! Reports the steps of one island.
 
 use crate::error::Result;
 use crate::progress::listener::Progress;

@@ -1,4 +1,4 @@
-//! When a call has to end: the host's wish to cancel it, its time limit.
+//! When a call has to end: the host cancels it, or its time limit is reached.
 
 use std::sync::atomic::AtomicBool;
 use std::sync::{Arc, Mutex, PoisonError};

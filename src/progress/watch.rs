@@ -1,4 +1,4 @@
-//! One call under watch: the host hears of every body of a setup and of every step, and may end it.
+//! One call under observation: reports every body of a setup and every step to the host, which may end the call.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::Arc;

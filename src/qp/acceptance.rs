@@ -1,4 +1,4 @@
-//! The acceptance test, which has the last word on a point, and what a run tells: its steps, its end.
+//! The acceptance test, which makes the final decision about a point, and the reports of a run: its steps, its end.
 
 use crate::error::{Error, Kind, Result};
 use crate::linalg::vector::norm;

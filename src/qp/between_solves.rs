@@ -1,4 +1,4 @@
-//! What one solve leaves to the next, with other loads and gaps: what the coarse problems of all faces of one G share, and the
+//! Data that one solve passes to the next, with other loads and gaps: the part of the coarse problems that all faces of one G share, and the
 //! directions of its steps with their images.
 
 use std::sync::{Mutex, MutexGuard, PoisonError};

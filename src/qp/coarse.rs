@@ -1,5 +1,5 @@
 //! The coarse space of a face: `W_F = G_F G_F'` over the rows F that are not held at their bound, r x r and
-//! sparse. Its pattern is analysed once for all faces, and what they share is factorised once.
+//! sparse. Its pattern is analysed once for all faces, and the part that they share is factorised once.
 
 use std::sync::Arc;
 

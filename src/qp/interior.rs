@@ -1,6 +1,6 @@
-//! A primal-dual interior point method (Mehrotra 1992) on `min delta/2 |l - y|^2 + rho/2 |a|^2` over `l_i >= 0 (i bounded)`,
-//! `G l + rho a = e`: some twenty factors of `G D G' + rho I`, D > 0 a diagonal matrix, whatever the number of rows. Its a tells other
-//! methods which rows have a force; they give the answer its last digits.
+//! A primal-dual interior point method (Mehrotra 1992) for `min delta/2 |l - y|^2 + rho/2 |a|^2` over `l_i >= 0 (i bounded)`,
+//! `G l + rho a = e`: about twenty factors of `G D G' + rho I`, D > 0 a diagonal matrix, for any number of rows. Its a shows
+//! which rows have a force; other methods then compute the last digits of the answer.
 
 use crate::error::Result;
 use crate::linalg::vector::{axpy, norm};

@@ -4,7 +4,7 @@
 //! theta(x) = 1/2 x'A x - b'x -> min   subject to   x_i >= 0 (i bounded)   and   G x = e
 //! ```
 //!
-//! Knows A by its products only, and no bodies.
+//! A is only applied matrix-free; this layer does not know bodies.
 
 mod acceptance;
 mod active_set;

@@ -1,6 +1,6 @@
 //! `PROJ(y) = argmin |l - y|` over `l_i >= 0 (i bounded), G l = e`: a semismooth Newton method in the
-//! coarse space, `l(beta) = clip(y + G'beta)`, on the convex `phi(beta) = 1/2 |l|^2 - e'beta`, with an exact line search. Where
-//! thousands of loose bodies let one row after the other stop its steps, an interior point method shows the face.
+//! coarse space, `l(beta) = clip(y + G'beta)`, on the convex `phi(beta) = 1/2 |l|^2 - e'beta`, with an exact line search. If
+//! its steps stop at one row after another, as with thousands of loose bodies, an interior point method finds the face.
 
 use crate::error::Result;
 use crate::linalg::vector::{axpy, dot, norm, ratio};

@@ -1,12 +1,12 @@
-//! The minimum of theta on few rows by a method that ends whatever rows depend on each other, on the problem whose dual it is:
+//! The minimum of theta on few rows by a method that ends even if rows depend on each other. It solves the problem of which (12) is the dual:
 //!
 //! ```text
 //! 1/2 |w|^2 - e'alpha -> min   subject to   v_i'w + G_i'alpha <= -b_i (= where x_i is free),   A = V'V, v_i column i of V
 //! ```
 //!
-//! x are its multipliers. With the proximal term `1/2 (alpha - alpha_k)'Q (alpha - alpha_k)`, Q > 0 diagonal and small beside A, w and
+//! x are its multipliers. With the proximal term `1/2 (alpha - alpha_k)'Q (alpha - alpha_k)`, Q > 0 diagonal and small compared with A, w and
 //! `Q^1/2 alpha` are the point of a polyhedron nearest to `(0, Q^1/2 alpha_k + Q^-1/2 e)`, which Goldfarb and Idnani's method finds;
-//! then `e - G x = Q (alpha - alpha_k)`, which the next search makes smaller, with alpha_k = alpha.
+//! then `e - G x = Q (alpha - alpha_k)`, which the next search reduces, with alpha_k = alpha.
 
 use crate::error::{Error, Kind, Result};
 use crate::linalg::vector::{norm, ratio};

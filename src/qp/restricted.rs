@@ -1,5 +1,5 @@
-//! The problem on some of its rows: the others stay at 0 and are not looked at, neither is their gradient. Rows whose gap
-//! is far beyond all that moves so change nothing, not even rounding.
+//! The problem restricted to some of its rows: the others stay at 0, and neither they nor their gradient are computed. Rows whose gap
+//! is far larger than all motions therefore change nothing, not even rounding.
 
 use crate::error::Result;
 use crate::linalg::{Csr, Entries, Matrix, Operator};

@@ -1,4 +1,4 @@
-//! The operators that the host may validate: null spaces, K+, F, d.
+//! Operators that the host can validate: null spaces, K+, F, d.
 
 use crate::constraints::RowKind;
 use crate::error::{Error, Kind, Result};

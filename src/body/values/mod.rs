@@ -1,4 +1,4 @@
-//! New values for a matrix whose pattern is there: where each of them goes, and the checks of the first time.
+//! New values for a matrix whose pattern is known: the place of each value, and the checks of the first input.
 
 use crate::body::stiffness::check_finite;
 use crate::body::storage::{may_differ, unsymmetric, Shape, SparseInput, Storage};

@@ -1,10 +1,10 @@
-//! What surrounds the exported functions.
+//! Handles, guards and argument checks around the exported functions.
 //!
 //! | file | holds |
 //! |---|---|
 //! | `handle`, `registry`, `sync` | the registry: handles are counters, never addresses, never reused |
 //! | `call` | which exported function was called, and the names of its arguments |
-//! | `guard` | what surrounds every call: registry, busy, `catch_unwind`, error records |
+//! | `guard` | frame of every call: registry, busy, `catch_unwind`, error records |
 //! | `fpu` | the floating-point environment of the host, saved and restored |
 //! | `error_store` | the last error, per thread and per problem |
 //! | `arrays`, `indices`, `record` | host arrays, index arrays and structs with a `struct_size`, checked |

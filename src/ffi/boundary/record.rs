@@ -1,4 +1,4 @@
-//! Result structs that start with `struct_size`: a host compiled against an older header has a shorter one.
+//! Result structs that start with `struct_size`: a host compiled with an older header has shorter structs.
 
 use std::mem::MaybeUninit;
 

@@ -1,4 +1,4 @@
-//! Some columns of `B K_ff^-1 B'`: L and L' solved for some rows of B at a time, on the elimination paths of B alone.
+//! Some columns of `B K_ff^-1 B'`: solutions with L and L' for a few rows of B at a time, restricted to the elimination paths of B.
 
 use faer::linalg::matmul::matmul;
 use faer::linalg::triangular_solve::{solve_lower_triangular_in_place, solve_upper_triangular_in_place};

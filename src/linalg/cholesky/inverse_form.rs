@@ -1,9 +1,9 @@
-//! `B K_ff^-1 B'` by supernode reach: each supernode of L sees only the rows of B whose elimination path
+//! `B K_ff^-1 B'` by supernode reach: each supernode of L processes only the rows of B whose elimination path
 //! meets it. With `Y = L^-1 P B'` the result is `Y'Y`: exactly symmetric and positive semidefinite.
 //!
-//! As in the factorisation, a supernode takes from its children what they leave for the rows below them, in the columns
-//! of Y they have; tiles of columns are independent of each other. Subtrees add up their products apart: the same sums,
-//! and the same bits, on any number of threads.
+//! As in the factorisation, a supernode receives from its children their contributions to the rows below them, in the columns
+//! of Y that they have; tiles of columns are independent of each other. Subtrees add up their products separately: equal sums,
+//! and equal bits, on any number of threads.
 
 use std::ops::Range;
 

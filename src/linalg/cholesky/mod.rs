@@ -1,5 +1,5 @@
 //! Sparse Cholesky factorisation `P K_ff P' = L L'` of the free part of a stiffness matrix: supernodes in nested
-//! dissection, dense kernels of faer; and what is made from the factor.
+//! dissection, dense kernels of faer; and operations with the factor.
 //!
 //! | module | does |
 //! |---|---|

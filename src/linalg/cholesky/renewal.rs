@@ -1,5 +1,5 @@
-//! Factors of matrices of one pattern that differ in some columns only: supernodes of these columns and above are done anew, all
-//! others stay, with the updates that they leave.
+//! Factors of matrices with one pattern that differ only in some columns: the supernodes of these columns and their ancestors are factorised
+//! again; all others are kept, with their updates.
 
 use std::sync::Arc;
 

@@ -1,5 +1,5 @@
 //! The end of an elimination: the Schur complement of the dofs eliminated last, read from the factor, and dofs among
-//! them that are held afterwards. Only their dense block is computed anew.
+//! them that are held afterwards. Only their dense block is recomputed.
 
 use crate::error::Result;
 use crate::linalg::{Cholesky, Matrix};

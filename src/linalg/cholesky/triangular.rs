@@ -1,4 +1,4 @@
-//! Solutions with L and L' for one right-hand side: L is read once each, at the speed of the memory.
+//! Solutions with L and L' for one right-hand side: each reads L once, at the speed of the memory.
 
 use std::ops::Range;
 

@@ -1,4 +1,4 @@
-//! `argmin |A c - b|` of a dense matrix that may be short of rank, by QR with pivots.
+//! `argmin |A c - b|` of a dense matrix that may be rank-deficient, by QR with pivots.
 
 use faer::linalg::solvers::ColPivQr;
 use faer::Mat;

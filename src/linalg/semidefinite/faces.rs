@@ -1,4 +1,4 @@
-//! Factors of `W_F = sum g_i g_i'` over the rows i of one face after the other, most columns of which all faces share.
+//! Factors of `W_F = sum g_i g_i'` over the rows i of successive faces, which share most columns.
 
 use std::sync::Arc;
 

@@ -1,4 +1,4 @@
-//! Systems `W x = b` that may be singular, as those of the coarse space: W positive semidefinite, x of minimum norm.
+//! Systems `W x = b` that may be singular, such as those of the coarse space: W positive semidefinite, x of minimum norm.
 
 pub mod clusters;
 pub mod dense;

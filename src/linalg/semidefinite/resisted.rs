@@ -1,5 +1,5 @@
-//! Which motions the rows of G_F resist, and how well, on a connected part of `W = G_F G_F'`, r x r: eigenvectors of W where
-//! its eigenvalues can tell, and where they are rounding (they are squares) the singular values of `G_F N` themselves.
+//! Which motions the rows of G_F resist, and how well, on a connected part of `W = G_F G_F'`, r x r: by eigenvectors of W if
+//! its eigenvalues are accurate enough, and by the singular values of `G_F N` if they are rounding (eigenvalues are squares).
 
 use crate::error::Result;
 use crate::linalg::dense::spectrum::{right_singular, symmetric_eigen};

@@ -1,5 +1,5 @@
-//! Sparse positive semidefinite systems that may be singular, `x = W+ b`: dense, with eigenvectors, is only what must be.
-//! Connected parts of W do not know of each other: one sparse factor serves those that are safely of full rank.
+//! Sparse positive semidefinite systems that may be singular, `x = W+ b`: only parts that need it are solved densely, with eigenvectors.
+//! Connected parts of W are independent: one sparse factor is used for all parts that certainly have full rank.
 
 use std::sync::Arc;
 

@@ -1,4 +1,4 @@
-//! The adjacency graph of a stiffness matrix: connected parts, and dofs of one node.
+//! The adjacency graph of a stiffness matrix: connected parts, and the dofs of each node.
 
 use crate::error::{Error, Kind, Result};
 use crate::linalg::hash::{hash, START};

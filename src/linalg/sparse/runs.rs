@@ -1,5 +1,5 @@
-//! Sparse matrices by rows whose columns come in runs, as those of G' do: the motions of a body stand side by side. A column is named
-//! once for a run, and long loops are done in parts.
+//! Sparse matrices by rows whose columns form runs, as in G', where the motions of a body are consecutive. A run stores its first column
+//! only, and long loops are divided into parts.
 
 use std::ops::Range;
 

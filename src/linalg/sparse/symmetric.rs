@@ -1,4 +1,4 @@
-//! Symmetric sparse matrices: the lower triangle by rows; and a multiple of one without a copy.
+//! Symmetric sparse matrices: the lower triangle by rows; and a multiple of such a matrix without a copy.
 
 use std::array;
 use std::sync::Arc;

@@ -1,4 +1,4 @@
-//! Coarser graphs: each vertex together with the neighbour that it shares most with.
+//! Coarser graphs: each vertex is merged with the neighbour with which it shares most.
 
 use super::graph::Graph;
 use super::incidence::{NONE, WHAT};

@@ -1,4 +1,4 @@
-//! In which direction a set of elements is cut by planes: the one in which fewest unknowns are cut through.
+//! The direction in which planes cut a set of elements: the one that cuts through fewest unknowns.
 
 use super::graph::Graph;
 use super::incidence::{mixed, WHAT};

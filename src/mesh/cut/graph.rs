@@ -1,4 +1,4 @@
-//! The graph of what is cut: elements, or groups of them, that are neighbours by a face.
+//! The graph that is cut: its vertices are elements, or groups of elements; its edges join neighbours across a face.
 
 use std::cmp::{Ordering, Reverse};
 use std::collections::BinaryHeap;

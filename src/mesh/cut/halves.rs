@@ -1,4 +1,4 @@
-//! A graph into two connected parts of given weights with few unknowns shared between them: coarsened by matching, cut where it is
+//! Cuts a graph into two connected parts of given weights with few shared unknowns: coarsened by matching, cut when it is
 //! small, refined on the way back (Karypis and Kumar 1998).
 
 use std::collections::BinaryHeap;

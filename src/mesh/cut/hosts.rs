@@ -1,4 +1,4 @@
-//! Elements that go with another one: springs, penalties, constraints, and those that lie in another.
+//! Elements that join the piece of another element: springs, penalties, constraints, and elements that lie inside another.
 
 use super::incidence::{Incidence, Neighbours, NONE, WHAT};
 use crate::error::Result;

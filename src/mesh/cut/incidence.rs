@@ -1,4 +1,4 @@
-//! Which elements have which nodes. A node is a set of unknowns that belong to the same elements: found from the unknowns alone.
+//! Which elements have which nodes. A node is a set of unknowns that belong to the same elements; it is found from the unknowns alone.
 
 use super::Elements;
 use crate::error::{Error, Kind, Result};

@@ -1,8 +1,8 @@
-//! The cut of one body into pieces that hang together by faces, of about equal size, with few unknowns in more than one of them.
+//! The cut of one body into pieces that are connected by faces, of nearly equal size, with few shared unknowns.
 //!
-//! Elements that lie in others go with them (`hosts`). What is left is cut into slabs by planes where the centres are known, or
-//! through the graph of its faces (`sections`, `halves`); then scraps are given to neighbours (`scraps`), and single elements are
-//! moved while that makes fewer unknowns common (`refine`).
+//! Elements that lie inside others join their pieces (`hosts`). The remaining elements are cut into slabs by planes if their centres are known, otherwise
+//! through the graph of their faces (`sections`, `halves`). Then scraps are given to neighbours (`scraps`), and single elements are
+//! moved as long as this reduces the number of shared unknowns (`refine`).
 
 mod coarse;
 mod directions;

@@ -1,4 +1,4 @@
-//! Single elements go to a neighbouring piece while that makes fewer unknowns common to pieces, or the pieces more equal.
+//! Moves single elements to a neighbouring piece as long as this reduces the shared unknowns, or makes the pieces more equal.
 
 use super::graph::Graph;
 use super::incidence::{Incidence, NONE, WHAT};

@@ -1,4 +1,4 @@
-//! Pieces that do not hang together: all but the heaviest part of each goes to neighbours.
+//! Pieces that are not connected: all parts of a piece except the heaviest are given to neighbours.
 
 use super::graph::Graph;
 use super::incidence::{NONE, WHAT};

@@ -1,4 +1,4 @@
-//! The cut by planes: a set of elements into slabs, each of these again, until every set is a piece.
+//! The cut by planes: a set of elements is cut into slabs, and each slab again, until every set is a piece.
 
 use super::coarse::{coarsen, projected};
 use super::directions::{dot, of_mesh, Choice, Frame, Point, Set};

@@ -1,4 +1,4 @@
-//! Vertices of a graph, groups of elements, go to the neighbouring piece that they share more with.
+//! Moves vertices of a graph, which are groups of elements, to the neighbouring piece with which they share more.
 
 use super::graph::Graph;
 use super::incidence::WHAT;

@@ -1,4 +1,4 @@
-//! The bytes of a file that may be damaged or made to do harm: every length is compared with what the file still holds
+//! The bytes of a file that may be damaged or hostile: every length is compared with the remaining length of the file
 //! before anything is reserved.
 
 use std::io::Read;

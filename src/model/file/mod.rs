@@ -1,5 +1,5 @@
-//! A problem as one file: all that the host has registered, so that whoever reads it gets the same bits from the same
-//! calls. Answers, start values, saved states and factors are not in it.
+//! A problem as one file: everything that the host has registered, so that any reader gets equal bits from equal
+//! calls. The file contains no answers, start values, saved states or factors.
 
 pub mod format;
 mod input;

@@ -1,4 +1,4 @@
-//! A problem from a file: what its sections say, and the calls of a host that they stand for.
+//! Reads a problem from a file: the content of its sections, and the calls of a host that they replace.
 
 use std::io::Read;
 

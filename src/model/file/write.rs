@@ -1,4 +1,4 @@
-//! What goes into a problem file, section by section.
+//! Writes a problem file, section by section.
 
 use std::io::{self, Write};
 

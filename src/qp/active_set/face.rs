@@ -5,8 +5,8 @@
 //! ```
 //!
 //! With `H = A_FF + G_F'Q G_F`, Q > 0 diagonal, `H x = b_F + G_F'(alpha + Q e)` has the same solutions, and H
-//! is positive definite where x is unique; then `S alpha = e - G_F H^-1 (b_F + G_F'Q e)`, `S = G_F H^-1 G_F'`. Where some
-//! motions are free or held weakly, T'G_F with orthonormal rows stands for G_F, and T'e for e: `alpha = T beta`.
+//! is positive definite if x is unique; then `S alpha = e - G_F H^-1 (b_F + G_F'Q e)`, `S = G_F H^-1 G_F'`. If some
+//! motions are free or held weakly, T'G_F with orthonormal rows replaces G_F, and T'e replaces e: `alpha = T beta`.
 
 use crate::error::Result;
 use crate::linalg::{Entries, Matrix, PivotedCholesky, SpdSolver};

@@ -1,6 +1,6 @@
 //! Primal-dual active sets: the minimum on a face by a direct method, then rows with `x_i < 0` join the
-//! active set and active rows with `r_i < 0` leave it, until nothing changes. Fast and as accurate as rounding
-//! allows where it ends; it need not end (rows may swap for ever, a face may have no minimum), and gives up then. Steps A1 to A5
+//! active set and active rows with `r_i < 0` leave it, until nothing changes. The method is fast, and as accurate as rounding
+//! allows if it ends. It need not end (rows may be exchanged for ever, a face may have no minimum), and then gives up. Steps A1 to A5
 //! of docs/method.md.
 
 mod face;

@@ -1,4 +1,4 @@
-//! Faces that hold all motions, some, or some of them weakly.
+//! Faces that hold all motions, some of them, or some of them weakly.
 
 use super::*;
 use crate::linalg::random::scattered;

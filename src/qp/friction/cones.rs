@@ -1,4 +1,4 @@
-//! The sets that forces lie in: free rows, half lines, and nodes with a disc or a cone of friction, with their projections.
+//! The sets to which forces are restricted: free rows, half lines, and nodes with a disc or a cone of friction, with their projections.
 
 use crate::error::{Error, Kind, Result};
 

@@ -1,5 +1,5 @@
-//! Coordinates of the forces of a node: the normal one, then those along and across the slip. In each the linear model of the laws
-//! holds a value of x or is an equation of gaps and slips.
+//! Coordinates of the forces of a node: normal, along the slip, across the slip. In each coordinate the linear model of the laws
+//! either holds a value of x or is an equation for gaps and slips.
 
 use crate::linalg::Csr;
 use crate::qp::friction::cones::Cones;

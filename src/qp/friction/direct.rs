@@ -1,4 +1,4 @@
-//! The linear model of a face solved exactly by a dense matrix, (m + r) x (m + r), where rows and modes are not too many.
+//! Solves the linear model of a face exactly with a dense matrix, (m + r) x (m + r), if there are not too many rows and modes.
 
 use crate::error::Result;
 use crate::linalg::dense::least_squares::least_squares;

@@ -1,4 +1,4 @@
-//! The method from start to verdict, and the linear problem that it is measured against.
+//! The method from start to verdict, and the linear problem with which it is compared.
 
 use crate::error::Result;
 use crate::linalg::vector::{axpy, norm, ratio};

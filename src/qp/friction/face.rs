@@ -1,4 +1,4 @@
-//! A face: the states of all nodes and the linear model of the laws there, `L x = ...` where values are held, `W'r + D s = ...`
+//! A face: the states of all nodes and the linear model of the laws on it, `L x = ...` for held values, `W'r + D s = ...`
 //! elsewhere, with the coarse spaces G W and G Z.
 
 use crate::error::Result;

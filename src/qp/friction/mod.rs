@@ -1,12 +1,12 @@
-//! Contact with friction, Tresca's and Coulomb's: a semismooth Newton method on kept images, one product with F a step.
+//! Contact with friction, Tresca's and Coulomb's: a semismooth Newton method on kept images, with one product with F per step.
 //!
 //! ```text
 //! r = F x - d - G'a,   G x = e,   r = 0 on free rows,   x = NAT(x - rho r) on the nodes
 //! NAT(n, t) = (n+, min(|t|, b) t/|t|),   b = bound + mu n+
 //! ```
 //!
-//! r has the gap g in normal rows and minus the slip in tangential ones. F never changes, so every pair (v, F v) stays valid whatever
-//! the states, slip directions, coefficients, bounds and loads.
+//! r has the gap g in normal rows and minus the slip in tangential ones. F never changes, so every pair (v, F v) stays valid for all
+//! states, slip directions, coefficients, bounds and loads.
 
 mod cones;
 mod coordinates;

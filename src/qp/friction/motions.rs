@@ -1,5 +1,5 @@
-//! The coarse space on a face with friction: `A w^2 A'`, r x r and sparse, A = G W or G Z over the coordinates of the face. Its pattern
-//! is that of all faces and analysed once.
+//! The coarse space on a face with friction: `A w^2 A'`, r x r and sparse, A = G W or G Z over the coordinates of the face. All faces
+//! share its pattern, which is analysed once.
 
 use std::sync::Arc;
 

@@ -1,4 +1,4 @@
-//! The semismooth Newton method: the linear model of a face is minimised over all pairs kept, each step adds one.
+//! The semismooth Newton method: the linear model of a face is minimised over all kept pairs, and each step adds one pair.
 
 use crate::error::Result;
 use crate::linalg::vector::{axpy, dot, norm};

@@ -1,4 +1,4 @@
-//! What is tried where Newton's method does not end well: other rho, the smoothed laws, other starts, dense systems.
+//! Alternatives if Newton's method does not end well: other rho, the smoothed laws, other starts, dense systems.
 
 use crate::error::{Kind, Result};
 use crate::linalg::vector::axpy;

@@ -1,4 +1,4 @@
-//! Directions kept with their images under F, which serve all states of the nodes, coefficients, bounds and loads.
+//! Directions kept with their images under F. They stay valid for all states of the nodes, coefficients, bounds and loads.
 
 use std::collections::VecDeque;
 use std::sync::{Mutex, MutexGuard, PoisonError};

@@ -1,5 +1,4 @@
-//! Newton's method along the smoothed laws, eps from large to small: what is left where the laws themselves make Newton's method go round
-//! in circles.
+//! Newton's method along the smoothed laws, eps from large to small: used if Newton's method cycles with the laws themselves.
 
 use crate::error::Result;
 use crate::linalg::vector::{axpy, norm_max};

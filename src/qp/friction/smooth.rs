@@ -1,11 +1,11 @@
-//! The laws, smoothed: `phi(z) = (z + sqrt(z^2 + 4 eps^2))/2` stands for z+. Every coordinate is then an equation with a damping of its
-//! own, and no state is decided before eps is small.
+//! The smoothed laws: `phi(z) = (z + sqrt(z^2 + 4 eps^2))/2` replaces z+. Every coordinate is then an equation with its own
+//! damping, and no state is decided before eps is small.
 //!
 //! ```text
 //! x_n = phi(xi_n),   x_t = c(|xi_t|) xi_t/|xi_t|,   c(s) = s + phi(-s - b) - phi(s - b),   b = bound + mu phi(xi_n) + relaxed eps
 //! ```
 //!
-//! c < b: a load near to sliding would ask for endless slip, or for more than there is, without the last part of b.
+//! c < b: without the last term of b, a load close to sliding would require endless slip, or a larger force than b allows.
 
 use crate::linalg::vector::dot;
 use crate::qp::friction::cones::{direction, length, Cones, Node};

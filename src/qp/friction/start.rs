@@ -1,4 +1,4 @@
-//! Where the method begins: x within the cones, a that fits its face, the length that gaps are measured against.
+//! The start of the method: x within the cones, a that fits its face, the length against which gaps are measured.
 
 use crate::error::Result;
 use crate::linalg::vector::{dot, norm};

@@ -1,5 +1,5 @@
-//! Weak elastic supports of all motions: `G x + x_s = e`, `x_s = kappa a`. They hold what friction does not, and what they carry says
-//! what that is. Each is one more free row, so nothing else knows of them.
+//! Weak elastic supports of all motions: `G x + x_s = e`, `x_s = kappa a`. They hold what friction does not hold, and their forces
+//! show how much that is. Each support is one more free row, so no other module needs to know about them.
 
 use crate::error::Result;
 use crate::linalg::{Csr, Operator};

@@ -1,12 +1,12 @@
-//! The forces within the cones that come nearest to a load which none of them balances, `min |e - G l|`, and what they leave:
+//! The forces within the cones that are nearest to a load that no such forces balance, `min |e - G l|`, and the remainder:
 //!
 //! ```text
 //! beta + G PI(G'beta / delta) = e,   delta -> 0,   beta = e - G l
 //! ```
 //!
-//! with `G'beta` in the polar cone but for delta times the forces: a motion that no force within the cones resists by more than that.
-//! Coefficients are a little larger than they are, so that friction as it is does not resist the motion at all; what is left of
-//! delta is taken from the motion. G and e are weighted, mode by mode.
+//! `G'beta` is in the polar cone up to delta times the forces: no force within the cones resists this motion by more than that.
+//! Coefficients are slightly increased, so that the actual friction does not resist the motion at all; the remaining effect of
+//! delta is subtracted from the motion. G and e are weighted, mode by mode.
 
 use crate::error::Result;
 use crate::linalg::vector::{axpy, dot, norm};

@@ -1,5 +1,5 @@
 //! `a = argmin |a - a0|` subject to `A a <= g`: the dual active-set method of Goldfarb and Idnani (1983) with unit Hessian.
-//! It ends after finitely many steps, also where rows depend on each other, and shows which rows no a satisfies.
+//! It ends after finitely many steps, even if rows depend on each other, and shows which rows no a satisfies.
 
 use crate::error::{Error, Kind, Result};
 use crate::linalg::graph::joined;

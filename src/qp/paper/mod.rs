@@ -1,5 +1,5 @@
 //! The paper's own methods, in its notation: Algorithm 1 for bounds alone and Algorithm 3 for bounds and
-//! equalities. Kept as the paper has them, for its readers and as a baseline; the default is
+//! equalities. They are kept in the form of the paper, for its readers and as a baseline; the default is
 //! `qp/proportioning/`.
 //!
 //! | paper | file |
@@ -10,7 +10,7 @@
 //! | conjugate gradients for min theta(y), y in W_I | `face.rs` |
 //! | feasible, monotone and extrapolating proportioning | `variants.rs` |
 //! | (24)-(25), Algorithm 3 | `augmented_lagrangian.rs` |
-//! | what rho_0, M and eta_0 are relative to | `sizes.rs` |
+//! | reference values of rho_0, M and eta_0 | `sizes.rs` |
 
 mod augmented_lagrangian;
 mod bound;

@@ -1,5 +1,5 @@
-//! What rho_0, M, eta_0 and Step 2 of Algorithm 3 are relative to. The printed numbers are absolute: at
-//! E = 2.1e11 every run with them fails. In units of |A| / |D|^2 the course depends on no unit, and on no basis R.
+//! Reference values of rho_0, M, eta_0 and Step 2 of Algorithm 3. The printed numbers are absolute: at
+//! E = 2.1e11 every run with them fails. In units of |A| / |D|^2 the iteration depends on no unit, and on no basis R.
 
 use crate::error::Result;
 use crate::linalg::random::scattered;

@@ -1,4 +1,4 @@
-//! What Algorithm 1 does where a conjugate gradient step leaves the bounds (end of Section 4): three variants.
+//! The three variants of Algorithm 1 if a conjugate gradient step leaves the bounds (end of Section 4).
 
 use crate::error::Result;
 use crate::linalg::vector::axpy;

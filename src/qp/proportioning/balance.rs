@@ -1,6 +1,6 @@
-//! `min |e - G l|` over `l_i >= 0 (i bounded)`. Its residual `a` decides whether the equalities can be met at all: `G_i'a <= 0` on
-//! bounded rows, `= 0` on free ones, `e'a = |a|^2`. Where G has few columns a is found as the point of the cone of those that
-//! is nearest to e, which ends and loses no digits to `G G'`; else on the rows that an interior point method shows to have a force.
+//! `min |e - G l|` over `l_i >= 0 (i bounded)`. Its residual `a` decides whether the equalities can be satisfied: `G_i'a <= 0` on
+//! bounded rows, `= 0` on free ones, `e'a = |a|^2`. If G has few columns, a is the point of the cone of these vectors that
+//! is nearest to e; this method ends, and loses no digits to `G G'`. Otherwise a is computed on the rows for which an interior point method finds a force.
 
 use crate::error::{Kind, Result};
 use crate::linalg::vector::{norm, norm_max, ratio};

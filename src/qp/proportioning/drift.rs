@@ -1,5 +1,5 @@
-//! How far a gradient may be from `A x - b` that is updated by products with an operator near to A: the share of all updates that it was
-//! found to be wrong by when it was computed anew.
+//! How far a gradient that is updated by products with an approximate operator may differ from `A x - b`: the relative error of all updates
+//! that was found when the gradient was last recomputed.
 
 use crate::linalg::vector::norm;
 

@@ -4,9 +4,9 @@
 //!
 //! | module | does |
 //! |---|---|
-//! | `balance` | first point where none is near: can `G l = e` hold? |
+//! | `balance` | first point if the projection finds none: can `G l = e` be satisfied? |
 //! | `iterate` | point, gradient, face |
-//! | `drift` | when the gradient is computed anew, where products are approximate |
+//! | `drift` | when the gradient is recomputed, if products are approximate |
 //! | `steps` | conjugate gradients, expansion, proportioning step |
 //! | `stop` | when the residual is small enough |
 

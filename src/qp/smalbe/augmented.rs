@@ -1,5 +1,5 @@
-//! The Hessian `H = P A P + rho Q` of the augmented Lagrangian by its products, with `Q = G'W+G`, `P = I - Q`,
-//! `W = G G'` over all rows, and how far a point is from `G x = e`.
+//! The Hessian `H = P A P + rho Q` of the augmented Lagrangian, applied matrix-free, with `Q = G'W+G`, `P = I - Q`,
+//! `W = G G'` over all rows, and the distance of a point from `G x = e`.
 
 use crate::error::Result;
 use crate::linalg::random::scattered;

@@ -4,8 +4,8 @@
 //! q(x) = 1/2 x'H x - c'x -> min   subject to   x_i >= 0 (i bounded)
 //! ```
 //!
-//! An expansion first tries the projected conjugate gradient step; the step of fixed length follows where q
-//! does not fall.
+//! An expansion first tries the projected conjugate gradient step; if q does not fall, the step of fixed length
+//! follows.
 
 use crate::error::Result;
 use crate::linalg::vector::{axpy, dot};

@@ -1,4 +1,4 @@
-//! Dofs that are eliminated together: those of a node.
+//! Dofs that are eliminated together: the dofs of a node.
 
 use std::ops::Range;
 

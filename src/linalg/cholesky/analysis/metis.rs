@@ -1,9 +1,9 @@
 //! Nested dissection by METIS 5, the library of the system (feature `metis`).
 //!
-//! What METIS 5.1 does to the host during a call, which the library itself never does: it handles SIGABRT and SIGTERM and
-//! jumps out of itself when one comes, so none must come; both handlers are put back at the end. It seeds `rand` of the C
-//! library and draws from it: a host that draws at the same time changes the order, though not the solution but for
-//! rounding. Where memory is short it prints a line on stderr. One call at a time in the process: handlers and random
+//! During a call METIS 5.1 does things to the host that the library itself never does. It handles SIGABRT and SIGTERM and
+//! jumps out of its code when one arrives, so none must arrive; both handlers are restored at the end. It seeds `rand` of the C
+//! library and draws from it: a host that draws at that time changes the order, but changes the solution only by
+//! rounding. If memory is short, METIS prints a line on stderr. The process runs one call at a time, so that handlers and random
 //! numbers are not mixed up among the threads of this library.
 
 use std::ffi::c_void;

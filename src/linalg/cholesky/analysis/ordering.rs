@@ -1,4 +1,4 @@
-//! Fill-reducing order of the unknowns: nested dissection of the graph of nodes, every connected part by itself.
+//! Fill-reducing order of the unknowns: nested dissection of the graph of nodes, each connected part separately.
 
 use crate::error::{Error, Kind, Result};
 #[cfg(any(test, not(feature = "metis")))]

@@ -1,4 +1,4 @@
-//! Independent subtrees of an elimination tree, and what threads of a pool share.
+//! Independent subtrees of an elimination tree, and the work above them that the threads of a pool share.
 
 use std::ops::Range;
 

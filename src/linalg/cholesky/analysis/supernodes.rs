@@ -1,7 +1,7 @@
-//! The pattern of L: supernodes, neighbouring columns with the same rows below them, and the tree they form.
+//! The pattern of L: supernodes, which are neighbouring columns with equal rows below them, and the tree that they form.
 //!
-//! Everything is done on blocks of dofs with the same neighbours (the dofs of a node), of which a body in space has a
-//! third of its dofs, with a ninth of their couplings.
+//! All work is done on blocks of dofs with equal neighbours (the dofs of a node). A body in space has one block for three
+//! dofs, and a ninth of the couplings.
 
 use std::ops::Range;
 

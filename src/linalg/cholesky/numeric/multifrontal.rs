@@ -1,8 +1,8 @@
-//! The numeric factorisation, multifrontal: supernode by supernode up the tree, each adds the updates of its children to
+//! The numeric factorisation, multifrontal: each supernode, from the leaves of the tree upwards, adds the updates of its children to
 //! its own entries of K, factorises its panel, and leaves an update for its parent.
 //!
-//! Subtrees are independent: on a pool of threads they are done side by side, then the supernodes above them one after
-//! the other, each by tiles side by side. Every sum has its fixed order: the same bits on any number of threads.
+//! Subtrees are independent: a pool of threads factorises them in parallel, then the supernodes above them one after
+//! the other, each by parallel tiles. Every sum has a fixed order: equal bits on any number of threads.
 
 use std::ops::Range;
 

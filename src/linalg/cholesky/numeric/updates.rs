@@ -1,4 +1,4 @@
-//! What supernodes leave for their parents, from when it is formed until it is used.
+//! The updates that supernodes leave for their parents, stored until they are used.
 
 use std::ops::Range;
 use std::vec::IntoIter;

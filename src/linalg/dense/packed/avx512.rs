@@ -1,5 +1,5 @@
-//! The product by AVX-512, a line at a time. Its instructions are in Rust from 1.89 on, where `build.rs` sets the cfg `avx512`; an older
-//! compiler leaves the product to AVX2, with the same bits.
+//! The product by AVX-512, one cache line at a time. Rust has these instructions from 1.89 on; `build.rs` then sets the cfg `avx512`. With an
+//! older compiler the product uses AVX2, with equal bits.
 #![allow(clippy::incompatible_msrv)]
 
 use std::arch::is_x86_feature_detected;

@@ -1,4 +1,4 @@
-//! The loop over columns of tiles that the product is made of.
+//! The loop over columns of tiles from which the product is built.
 
 use crate::linalg::dense::packed::{Line, Tile, SIDE};
 

@@ -1,8 +1,8 @@
 //! Dense symmetric matrices, the lower triangle in square tiles: local dual operators F_p.
 //!
-//! Zeros before the first row and column fill the order up to a multiple of 8. Of every column of tiles those on and
-//! below the diagonal follow each other, so that the product reads memory from one end to the other, in whole lines
-//! of the cache; the tiles on the diagonal hold both triangles.
+//! Zeros before the first row and column fill the order up to a multiple of 8. In every column of tiles, those on and
+//! below the diagonal follow each other, so that the product reads memory sequentially in whole cache
+//! lines; the tiles on the diagonal contain both triangles.
 
 #[cfg(avx512)]
 mod avx512;

@@ -1,5 +1,5 @@
-//! `y = A x` with the tiles of a packed matrix: each is read once, for its place below the diagonal and for the one
-//! above. Four columns of tiles are read side by side: one stream of memory alone waits at the end of every page.
+//! `y = A x` with the tiles of a packed matrix: each is read once, and used below the diagonal and, transposed,
+//! above it. Four columns of tiles are read in parallel, because a single stream of memory waits at the end of every page.
 
 use crate::linalg::dense::packed::kernel::{Kernel, Portable};
 use crate::linalg::dense::packed::{Line, Tile, SIDE};

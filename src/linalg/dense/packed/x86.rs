@@ -1,5 +1,5 @@
-//! The product by vector instructions of x86-64. A value of `Avx2` is the proof that the processor has them.
-//! Products and sums are rounded one by one and in the order of the plain loops: the same bits on any processor.
+//! The product by vector instructions of x86-64. A value of `Avx2` proves that the processor has them.
+//! Products and sums are rounded separately and in the order of the plain loops: equal bits on any processor.
 
 use std::arch::is_x86_feature_detected;
 use std::arch::x86_64::*;

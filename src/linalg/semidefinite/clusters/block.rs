@@ -1,4 +1,4 @@
-//! One block of columns of G: what the rows that meet it resist, and what they leave free.
+//! One block of columns of G: the motions that its rows resist, and those that they leave free.
 
 use crate::error::Result;
 use crate::linalg::semidefinite::resisted::{parts, Parts};

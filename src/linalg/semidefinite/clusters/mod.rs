@@ -1,10 +1,10 @@
-//! Sparse positive semidefinite systems `W x = b`, W = G_F G_F', with motions that nothing resists all over: x of minimum norm,
+//! Sparse positive semidefinite systems `W x = b`, W = G_F G_F', with free motions in many places: x of minimum norm,
 //! without any dense matrix over all of W.
 //!
-//! Columns of G come in blocks, those of a body. What the rows of a block alone leave free, Z, is found in the block, and
-//! `T'W_pp T = I` makes the rest of one size. The sparse factor of T'W T then holds the unknowns whose pivots are rounding; each
-//! stands for one motion of a cluster of blocks, `T n`, `W n = 0` but for the unknowns held. Which of them are free, G_F says
-//! itself: their images are far more accurate than the pivots.
+//! The columns of G form blocks, one for each body. The motions Z that the rows of a block alone leave free are found in the block, and
+//! `T'W_pp T = I` scales the others to equal size. The sparse factor of T'W T then holds the unknowns whose pivots are rounding; each
+//! stands for one motion of a cluster of blocks, `T n`, where `W n = 0` except at the held unknowns. The images of these motions under G_F
+//! show which of them are free: they are far more accurate than the pivots.
 
 mod block;
 mod inverse;

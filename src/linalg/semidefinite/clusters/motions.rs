@@ -1,4 +1,4 @@
-//! The motions that the unknowns held stand for, and what rows have along them.
+//! The motions that belong to the held unknowns, and the entries of rows along them.
 
 use crate::error::Result;
 use crate::linalg::semidefinite::clusters::inverse::ClusterInverse;

@@ -1,4 +1,4 @@
-//! Stones that slide, in a chain.
+//! Sliding blocks in a chain.
 
 use super::*;
 use crate::linalg::random::scattered;

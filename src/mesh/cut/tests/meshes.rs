@@ -1,4 +1,4 @@
-//! Meshes, and what is said of a cut of them: from nodes and faces as they were made, not as the library finds them.
+//! Meshes, and properties of their cuts, computed from nodes and faces as they were generated, not as the library finds them.
 
 use std::collections::{BTreeMap, BTreeSet};
 

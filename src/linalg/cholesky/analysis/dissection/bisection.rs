@@ -1,4 +1,4 @@
-//! Two halves of a small graph with few edges between them: grown from a node, improved by Fiduccia and Mattheyses.
+//! Two halves of a small graph with few edges between them: grown from a node, improved by the method of Fiduccia and Mattheyses.
 
 use std::collections::BinaryHeap;
 

@@ -1,4 +1,4 @@
-//! The order of a few nodes by minimum degree, in which the neighbours that come later count.
+//! The order of a few nodes by minimum degree, which also counts the neighbours that are eliminated later.
 
 /// Neighbours outside the nodes that count at most.
 const OUTSIDE: usize = 1024;

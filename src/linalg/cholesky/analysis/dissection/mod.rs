@@ -1,5 +1,5 @@
-//! Nested dissection of large graphs: a separator comes last, after the two parts that it leaves, each ordered in the same
-//! way; small parts by minimum degree.
+//! Nested dissection of large graphs: a separator is ordered last, after the two parts that it leaves, each of which is ordered
+//! likewise; small parts are ordered by minimum degree.
 
 mod bisection;
 mod coarsening;

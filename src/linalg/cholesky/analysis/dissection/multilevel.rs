@@ -1,4 +1,4 @@
-//! A small separator of a graph, by way of coarser and coarser graphs (Karypis-Kumar (METIS)).
+//! A small separator of a graph, found on coarser and coarser graphs (Karypis-Kumar (METIS)).
 
 use super::bisection::Bisection;
 use super::coarsening::{levels, Level};

@@ -1,8 +1,8 @@
-//! Nodes between two sides of a graph, made fewer by sweeps: one side advances, node by node, over the other.
+//! Nodes between two sides of a graph, reduced by sweeps: one side advances, node by node, over the other.
 //!
-//! A separator of a solid is no local affair: a plane that is tilted, or one layer off, becomes better only when all of it has
-//! moved. So a sweep goes one way (Karypis-Kumar (METIS), the refinement of METIS_NodeND), and on for as many moves as a
-//! whole layer takes; where both sides advance in turns, every node goes back and forth.
+//! A separator of a solid is not a local matter: a plane that is tilted, or one layer off, becomes better only when all of it has
+//! moved. Therefore a sweep goes in one direction (Karypis-Kumar (METIS), the refinement of METIS_NodeND), for as many moves as a
+//! whole layer takes; if both sides advanced in turns, every node would move back and forth.
 
 use std::collections::BinaryHeap;
 

@@ -1,4 +1,4 @@
-//! A graph whose nodes and edges have weights: how many nodes and edges of a finer graph they stand for.
+//! A graph whose nodes and edges have weights: the numbers of nodes and edges of a finer graph that they represent.
 
 use std::ops::Range;
 
