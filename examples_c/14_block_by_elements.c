@@ -108,7 +108,7 @@ static void give_elements(feti_problem *problem, int64_t body, const numbers *al
     free(dof);
 }
 
-/* 10 MN down, on the nodes of the top that are free; rows -u_z <= gap on those of the bottom. Held nodes have neither. */
+/* 10 MN down on the free nodes of the top, rows -u_z <= gap on the free nodes of the bottom; held nodes have no load and no row. */
 static void give_load_and_obstacle(feti_problem *problem, int64_t body, const numbers *all)
 {
     const int32_t ptr[2] = { 0, 1 }, whose[1] = { (int32_t)body };

@@ -153,7 +153,7 @@ contains
     end do
   end subroutine
 
-  !> 10 MN down, on the nodes of the top that are free; rows -u_z <= gap on those of the bottom. Held nodes have neither.
+  !> 10 MN down on the free nodes of the top, rows -u_z <= gap on the free nodes of the bottom; held nodes have no load and no row.
   subroutine give_load_and_obstacle(problem, body)
     type(feti_problem), intent(in) :: problem
     integer, intent(in) :: body

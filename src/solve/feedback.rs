@@ -1,4 +1,4 @@
-//! The motions of an island with negative stiffness, and how those of one face affect each other: P of `driven.rs`.
+//! The motions of an island with negative stiffness, and how they affect each other on one face: P of `driven.rs`.
 
 use crate::error::Result;
 use crate::linalg::dense::spectrum::symmetric_eigen;

@@ -6,7 +6,7 @@
 //! ```
 //!
 //! the lower triangle of U stored by tiles: block columns, each from its diagonal down. Tiles are independent of each
-//! other; the sums within one are the same whoever forms it.
+//! other; the sums within a tile do not depend on the thread that forms it.
 
 use std::ops::Range;
 
