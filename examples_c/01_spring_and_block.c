@@ -1,4 +1,4 @@
-/* 01 Spring and block: the smallest contact problem, and the twelve calls of a complete program.
+/* 01 Spring and block: the smallest contact problem, and the fifteen calls of a complete program.
 
        wall |--/\/\/\--o u1      gap c      u2 [ block ] u3  <--- F
               spring k                        stiffness s

@@ -96,7 +96,7 @@ impl AcceptanceTest for Certifier<'_> {
     /// `|sum_p |B'_p u_p|| + |c'|`: lengths, whatever the choice of K+. Gaps count up to how far bodies move, and are moved
     /// by rows that demand it: no gap that is never closed makes others seem small, and rows left out do not count.
     fn scale(&mut self, x: &[f64], alpha: &[f64]) -> Result<f64> {
-        // as dear as a product
+        // as expensive as a product with F
         interrupt::check()?;
         let recovery = &self.recovery;
         let mut distances = recovery.ready.distances(recovery.threads, &recovery.scaled.moved, x, alpha)?;

@@ -163,7 +163,7 @@ fn far_rows_excuse_nothing() {
     }
 }
 
-/// Springs between a stiff free chain and its load, and its obstacle: their ends hardly feel each other, yet nothing grounds
+/// Springs between a stiff free chain and its load, and its obstacle: their ends are hardly coupled, yet nothing grounds
 /// them.
 #[test]
 fn the_soft_end_of_a_stiff_body() {
