@@ -7,9 +7,12 @@ use crate::progress::{Log, LogLevel};
 
 /// No load, contact rows that overlap where nothing has moved, contact rows that never close.
 pub fn data(log: &Log, model: &Model) -> Result<()> {
+    if !log.is_heard(LogLevel::Result) {
+        return Ok(());
+    }
     let number = |row: usize| row as i64 + model.settings.index_base;
     let contact = &model.contact;
-    let overlap: Vec<usize> = (0..contact.len()).filter(|&i| contact.rhs[i] < 0.0).collect();
+    let overlap = rows(contact, |i| contact.rhs[i] < 0.0);
     load(log, model, !overlap.is_empty())?;
     if let Some(deepest) = overlap.iter().copied().min_by(|&i, &j| contact.rhs[i].total_cmp(&contact.rhs[j]))
     {
@@ -35,14 +38,22 @@ pub fn data(log: &Log, model: &Model) -> Result<()> {
     Ok(())
 }
 
-/// `redundant`: rows of the stack, contact rows first, that are multiples of other rows, with their multiples.
-pub fn repeated(log: &Log, model: &Model, redundant: &[(usize, f64)]) -> Result<()> {
-    let contact = model.contact.len();
-    let Some(&(first, _)) = redundant.iter().find(|(row, _)| *row < contact + model.equalities.len()) else {
+/// `redundant`: rows of the stack, contact rows first, that are multiples of other rows, with their multiples; asked for only if somebody
+/// hears of them.
+pub fn repeated(
+    log: &Log,
+    model: &Model,
+    redundant: impl FnOnce() -> Result<Vec<(usize, f64)>>,
+) -> Result<()> {
+    if !log.is_heard(LogLevel::Phase) {
         return Ok(());
-    };
+    }
+    let contact = model.contact.len();
+    let mut of_host = redundant()?;
+    of_host.retain(|(row, _)| *row < contact + model.equalities.len());
+    let Some(&(first, _)) = of_host.first() else { return Ok(()) };
     let (kind, row) = if first < contact { ("contact", first) } else { ("equality", first - contact) };
-    let count = redundant.iter().filter(|(row, _)| *row < contact + model.equalities.len()).count();
+    let count = of_host.len();
     log.say(LogLevel::Phase, || {
         format!(
             "note: rows that are multiples of other rows, with which they share one force: {count}; the first is {kind} row {}",

@@ -93,7 +93,7 @@ impl Problem {
         prepared.set_up_preconditioner(model, watch).map_err(told)?;
         watch.log.phases(&prepared.phases(model, &watch.phases), Phase::DualSolve as usize)?;
         method(&watch.log, model, prepared, start.name())?;
-        noticed::repeated(&watch.log, host, &redundant(model, prepared.done(model)?))?;
+        noticed::repeated(&watch.log, host, || Ok(redundant(model, prepared.done(model)?)))?;
         let solving = Instant::now();
         let ends = solve_islands(model, prepared, &start, watch).map_err(told)?;
         let sum = |time: fn(&Solved) -> Duration| ends.iter().flatten().map(time).sum::<Duration>();
