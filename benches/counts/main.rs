@@ -6,8 +6,8 @@
 //! ```
 //!
 //! then how F grows with the size and with the accuracy, the coarse solves per product, and a closing line with the number short. Arguments:
-//! parts of the names of the decks to run, none for all; `sequence` asks for sequences of problems of Tresca besides. Exit code 1 when a deck is not solved; a short one
-//! alone leaves it 0.
+//! parts of the names of the decks to run, none for all; `sequence` asks for sequences of problems of Tresca besides. Exit code 1 when a
+//! deck is not solved; a short one alone leaves it 0.
 
 #[path = "../../tests/support/hand_over.rs"]
 mod hand_over;
@@ -76,9 +76,8 @@ fn main() -> ExitCode {
     }
     if wanted.iter().any(|part| part == SEQUENCE) {
         let all = rubbing::groups().into_iter().flat_map(|group| group.cases);
-        let names: Vec<&String> = wanted.iter().filter(|part| *part != SEQUENCE).collect();
-        let asked = |name: &str| names.is_empty() || names.iter().any(|part| name.contains(*part));
-        tally.sequences(all.filter(|case| asked(&case.name)));
+        let of_all = wanted.iter().all(|part| part == SEQUENCE);
+        tally.sequences(all.filter(|case| of_all || wants(&case.name)));
     }
     let Tally { lines, short, failed, near, .. } = tally;
     println!(

@@ -44,9 +44,6 @@ pub(super) fn unsymmetric(
     difference: f64,
     limit: f64,
 ) -> Error {
-    let triangle = |side: &str, storage: &str| {
-        format!("all entries beside the diagonal are {side} it: give this triangle with {storage}, not with FETI_FULL")
-    };
     let what = match shape {
         (Shape::Triangle(storage), n) => {
             let (side, name) = match storage {
@@ -54,7 +51,7 @@ pub(super) fn unsymmetric(
                 Storage::Lower | Storage::Full => ("below", "FETI_LOWER"),
             };
             let or = if n > 2 { String::new() } else { format!("; or {SUPPORT}") };
-            triangle(side, name) + &or
+            format!("all entries beside the diagonal are {side} it: give this triangle with {name}, not with FETI_FULL{or}")
         }
         (Shape::Lonely, _) => SUPPORT.to_owned(),
         (Shape::Neither, _) => {

@@ -19,7 +19,7 @@ impl Model {
             (self.settings.glue == 1, reserved(numbers.len(), "the numbers of a body")?);
         for (dof, &number) in numbers.iter().enumerate() {
             match usize::try_from(number).ok().filter(|number| *number < TOO_LARGE) {
-                None => return refused(dof, "no array has an entry {index}"),
+                None => return refused(dof, &format!("no array has an entry {INDEX}")),
                 Some(number)
                     if !glued && self.unknowns.get(&number).is_some_and(|(other, _)| *other != body) =>
                 {
