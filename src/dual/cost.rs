@@ -4,9 +4,10 @@
 //! ```text
 //! explicit:  4 m^2      F_p packed, after an assembly of A operations, RATE of them in the time of a byte
 //! implicit:  16 l       L_p twice; 10 l if the cache keeps it for the second time, half of both in single precision
-//! A = s (2 m l + n m^2 / 2)        Y = L^-1 P B', then Y'Y; a supernode sees the share s = min(1, REACH m / n^2/3) of m
+//! A = s (2 m l + n m^2 / 2)        Y = L^-1 P B', then Y'Y; a supernode sees the share s = min(1, REACH p / n^2/3) of m
 //! ```
 //!
+//! Here p is the number of places that the rows touch: m without the tangential rows, which touch the nodes of their normal rows.
 //! so that F_p is assembled if `A / RATE + 4 m^2 N` is no more than N times the cost of L. REACH and RATE are fitted to the assembly of
 //! one face and of all faces of cubes of 375 to 20000 unknowns and agree with it to a factor of 2. The model uses only counts: the
 //! choice does not depend on the machine.
@@ -26,6 +27,8 @@ const AGAIN: f64 = 0.25;
 pub struct Size {
     /// Distinct rows of B that touch the body: multiples of each other count once.
     pub rows: usize,
+    /// Those of them that are not tangential rows.
+    pub places: usize,
     /// Unknowns of the body.
     pub unknowns: usize,
     /// Entries of the factor; 0 where the host has it.
@@ -48,8 +51,8 @@ impl Size {
 
     /// Operations of the assembly of F_p.
     pub fn assembly(&self) -> f64 {
-        let [m, n, l] = [self.rows, self.unknowns, self.entries].map(|count| count as f64);
-        let share = (REACH * m / n.max(1.0).powf(2.0 / 3.0)).min(1.0);
+        let [m, p, n, l] = [self.rows, self.places, self.unknowns, self.entries].map(|count| count as f64);
+        let share = (REACH * p / n.max(1.0).powf(2.0 / 3.0)).min(1.0);
         share * (2.0 * m * l + 0.5 * n * m * m)
     }
 
@@ -108,20 +111,31 @@ mod tests {
 
     /// A cube of 20000 unknowns with so many rows.
     fn body(rows: usize) -> Size {
-        Size { rows, unknowns: 20_000, entries: 7_000_000, ..Size::default() }
+        Size { rows, places: rows, unknowns: 20_000, entries: 7_000_000, ..Size::default() }
     }
 
     #[test]
     fn one_face_is_assembled_and_all_faces_of_a_small_cube_are_not() {
-        let small = Size { rows: 1116, unknowns: 2187, entries: 507_000, ..Size::default() };
+        let small = Size { rows: 1116, places: 1116, unknowns: 2187, entries: 507_000, ..Size::default() };
         assert_eq!(implicit_bodies(&[body(0), body(361), small], None), [false, false, true]);
     }
 
     /// Blocks of rows: `A = s (2 m l + n m^2 / 2)` with s = min(1, 0.4 m / n^(2/3)).
     #[test]
     fn the_work_of_the_assembly_is_the_one_of_the_model() {
-        let size = Size { rows: 10, unknowns: 1000, entries: 2000, ..Size::default() };
+        let size = Size { rows: 10, places: 10, unknowns: 1000, entries: 2000, ..Size::default() };
         assert!((size.assembly() - 0.04 * (40_000.0 + 50_000.0)).abs() < 1e-9);
+    }
+
+    /// A cube of 72000 unknowns whose face has 841 nodes, as measured.
+    #[test]
+    fn three_rows_of_a_node_with_friction_reach_what_its_normal_row_reaches() {
+        let normal =
+            Size { rows: 841, places: 841, unknowns: 72_000, entries: 45_000_000, ..Size::default() };
+        let friction = Size { rows: 3 * 841, ..normal };
+        assert_eq!(implicit_bodies(&[normal, friction], None), [false, false]);
+        let apart = Size { places: 3 * 841, ..friction };
+        assert_eq!(implicit_bodies(&[apart], None), [true]);
     }
 
     #[test]
@@ -138,7 +152,7 @@ mod tests {
     /// K+ of the host: no entries are known.
     #[test]
     fn an_operator_of_the_host_is_assembled_as_long_as_there_is_room() {
-        let host = Size { rows: 5000, unknowns: 20_000, ..Size::default() };
+        let host = Size { rows: 5000, places: 5000, unknowns: 20_000, ..Size::default() };
         let explicit = all_bytes(&[host], &[false]);
         assert_eq!(implicit_bodies(&[host], None), [false]);
         assert_eq!(implicit_bodies(&[host], Some(explicit)), [false]);

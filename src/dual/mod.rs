@@ -93,6 +93,13 @@ pub struct BodyShare {
     pub implicit: bool,
 }
 
+/// Numbers of distinct rows of a body: all, and those that are not tangential.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct DistinctRows {
+    pub rows: usize,
+    pub places: usize,
+}
+
 /// A dual problem whose operators `F_p` are yet to be assembled, body by body, in any order.
 pub struct Draft {
     /// Without operators.
@@ -162,10 +169,15 @@ impl Dual {
         self.subdomains.into_iter().map(kept).collect()
     }
 
-    /// Distinct rows of B over each of these ranges of all unknowns, ascending: those that are multiples of each other count
-    /// once.
-    pub fn distinct_rows(ranges: Vec<Range<usize>>, matrix: &Csr) -> Vec<usize> {
-        cut(ranges, matrix).iter().map(|(_, local)| Multiples::of(local).0.count).collect()
+    /// Numbers of distinct rows of B over each of these ranges of all unknowns, ascending; rows that are multiples of each other
+    /// count once. Row `tangential` is the first tangential row.
+    pub fn distinct_rows(ranges: Vec<Range<usize>>, matrix: &Csr, tangential: usize) -> Vec<DistinctRows> {
+        let count = |(rows, local): &(Vec<usize>, Csr)| {
+            let multiples = Multiples::of(local).0;
+            let others = rows.partition_point(|row| *row < tangential);
+            DistinctRows { rows: multiples.count, places: multiples.count_of_first(others) }
+        };
+        cut(ranges, matrix).iter().map(count).collect()
     }
 
     /// Dimension r of the null space of all bodies.

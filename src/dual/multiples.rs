@@ -44,6 +44,11 @@ impl Multiples {
         (Self { count: distinct.rows(), multiples }, distinct)
     }
 
+    /// Rows of B that the first rows of B_p, so many, are multiples of.
+    pub fn count_of_first(&self, rows: usize) -> usize {
+        self.multiples[..rows].iter().map(|m| m.of + 1).max().unwrap_or(0)
+    }
+
     /// `T' x_p` of the entries `rows` of x.
     pub fn gather(&self, rows: &[usize], x: &[f64]) -> Vec<f64> {
         let mut sums = vec![0.0; self.count];
@@ -92,6 +97,7 @@ mod tests {
         let expected = expected.map(|(of, factor)| RowMultiple { of, factor });
         assert_eq!(multiples.multiples, expected);
         assert_eq!((multiples.count, distinct.rows()), (4, 4));
+        assert_eq!([0, 1, 3, 4].map(|rows| multiples.count_of_first(rows)), [0, 1, 2, 3]);
         for i in 0..6 {
             let RowMultiple { of, factor } = multiples.multiples[i];
             let made = distinct.row(of).map(|(j, v)| (j, factor * v));

@@ -4,7 +4,7 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use crate::constraints::RowKind;
-use crate::dual::{self, Draft, Dual};
+use crate::dual::{self, DistinctRows, Draft, Dual};
 use crate::error::{Error, Kind, Result};
 use crate::model::{Method, Model, Preconditioning, Settings};
 use crate::platform::memory::reserved;
@@ -39,11 +39,11 @@ impl Prepared {
         self.release();
         let islands = islands(model)?;
         let mut rows = reserved(islands.len(), "groups of bodies")?;
-        let mut distinct = vec![0; model.bodies.len()];
+        let mut distinct = vec![DistinctRows::default(); model.bodies.len()];
         for island in &islands {
             check_compliance(island)?;
             let own = DualRows::of(island, metric(model, island), coupled(&model.settings))?;
-            let counts = Dual::distinct_rows(island.ranges.clone(), &own.matrix);
+            let counts = Dual::distinct_rows(island.ranges.clone(), &own.matrix, own.first_tangential());
             island.bodies.iter().zip(counts).for_each(|(&p, count)| distinct[p] = count);
             rows.push(own);
         }

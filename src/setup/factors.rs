@@ -11,7 +11,7 @@ use crate::body::{
     input_key, pattern_key, same_body, same_matrix, same_pattern, value_key, Layout, Plan, Symbolic,
 };
 use crate::certificate::grounded;
-use crate::dual::{Kept, Size};
+use crate::dual::{DistinctRows, Kept, Size};
 use crate::error::{Error, Kind, Result};
 use crate::linalg::{Multiple, Symmetric};
 use crate::model::Model;
@@ -37,7 +37,7 @@ impl Prepared {
     pub(super) fn factorize(
         &mut self,
         model: &Model,
-        rows: &[usize],
+        rows: &[DistinctRows],
         watch: &mut Watch,
     ) -> Result<Operators> {
         if self.bodies.iter().all(|own| own.inverse.is_some()) {
@@ -263,7 +263,7 @@ impl Prepared {
     fn operators(
         &mut self,
         model: &Model,
-        rows: &[usize],
+        rows: &[DistinctRows],
         entries: &[usize],
         more: usize,
     ) -> Result<Operators> {
@@ -272,7 +272,9 @@ impl Prepared {
             let there = self.bodies[p].inverse.as_ref();
             let rounded = there.is_some_and(|inverse| inverse.kplus.is_rounded());
             let single = model.is_piece(p) && there.is_none();
-            Size { rows: rows[p], unknowns: model.bodies[p].body.order, entries: entries[p], single, rounded }
+            let DistinctRows { rows, places } = rows[p];
+            let unknowns = model.bodies[p].body.order;
+            Size { rows, places, unknowns, entries: entries[p], single, rounded }
         };
         let sizes: Vec<Size> = (0..rows.len()).map(size).collect();
         let operators = Operators::new(settings, sizes, there.saturating_add(more));

@@ -94,6 +94,11 @@ impl DualRows {
         Ok(Self { scaled, matrix, compliance, metric, scaling, coupled, contact, tangential, uneven })
     }
 
+    /// The first group that is a tangential row; all groups after it are tangential rows.
+    pub fn first_tangential(&self) -> usize {
+        self.scaling.grouping.leaders.partition_point(|&leader| leader < self.tangential)
+    }
+
     pub fn groups(&self) -> usize {
         self.scaling.grouping.leaders.len()
     }
