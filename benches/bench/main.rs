@@ -8,6 +8,7 @@
 //! with details below, and a closing line with the number short. Arguments: names of decks, none for all; `scaling` runs
 //! series of decks and draws them instead. Every run is a process of its own; raw figures go to benches/runs. Exit code 1 when a run fails; a short figure alone leaves it 0.
 
+mod backing;
 mod clock;
 #[path = "../../tests/support/compiler.rs"]
 mod compiler;

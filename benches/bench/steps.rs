@@ -4,6 +4,7 @@ use decks::Deck;
 use feti_contact::error::Result as Solver;
 use feti_contact::solver::{Outcome, Problem, Report, RowKind};
 
+use crate::backing::back_memory;
 use crate::clock::{peak, restart_peak, Clock, Lap};
 
 /// Every entry of the certificate is as small as this; all other options but the threads have their defaults.
@@ -29,6 +30,7 @@ impl Steps {
 
     /// Prints lines `name value`: times, peak of memory, what the report says. Gives the time as well.
     pub fn first(&mut self) -> Result<(Report, Lap), String> {
+        back_memory(self.loads.iter().map(Vec::len).sum());
         restart_peak();
         let (report, lap) = timed("first", &mut self.problem)?;
         println!("peak {:.0}", peak());
