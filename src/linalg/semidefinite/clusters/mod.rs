@@ -20,6 +20,7 @@ use crate::linalg::semidefinite::faces::FaceFactors;
 use crate::linalg::semidefinite::resisted::sorted;
 use crate::linalg::semidefinite::sparse::WEAK;
 use crate::linalg::semidefinite::{is_regular_factor, DOUBTFUL};
+use crate::linalg::vector::dot;
 use crate::linalg::{Cholesky, Csr, Matrix, Symmetric};
 use crate::platform::memory::{headroom, headroom_with, SMALL_MATRICES};
 use block::Block;
@@ -218,20 +219,37 @@ impl Blocks {
         for &at in members {
             together.push_col(&motions[at].on(&columns));
         }
-        let mut rows: Vec<usize> =
-            blocks.iter().flat_map(|&k| self.met.row(k)).map(|(i, _)| i).filter(|&i| !held[i]).collect();
-        rows.sort_unstable();
-        rows.dedup();
-        let mut own = Csr::empty(columns.len());
+        let mut meets = vec![false; held.len()];
+        blocks.iter().flat_map(|&k| self.met.row(k)).for_each(|(i, _)| meets[i] = !held[i]);
+        let rows: Vec<usize> = (0..held.len()).filter(|&i| meets[i]).collect();
         columns.iter().enumerate().for_each(|(at, &column)| local[column] = Some(at));
-        for i in rows {
-            own.push_row(self.rows.row(i).filter_map(|(column, v)| Some((local[column]?, v))));
-        }
-        columns.iter().for_each(|&column| local[column] = None);
+        let own = |i: usize| self.rows.row(i).filter_map(|(column, v)| Some((local[column]?, v)));
         let size = columns.iter().map(|&column| self.whole[column]).sum::<f64>().sqrt();
-        let (free, weak) = sorted(&together.orthonormalised(0.0), &own, self.rounding * size)?;
+        let (limit, motions) = (self.rounding * size, together.orthonormalised(0.0));
+        let (free, weak) = if image_length(&motions, rows.iter().map(|&i| own(i))) <= limit {
+            let none = Matrix { rows: columns.len(), ..Matrix::default() };
+            (motions, none)
+        } else {
+            let mut given = Csr::empty(columns.len());
+            rows.iter().for_each(|&i| given.push_row(own(i)));
+            sorted(&motions, &given, limit)?
+        };
+        columns.iter().for_each(|&column| local[column] = None);
         Ok(Cluster { columns, free, weak })
     }
+}
+
+/// `|G_F'N|` of motions N and the rows of `G_F'`.
+fn image_length<R: Iterator<Item = (usize, f64)>>(motions: &Matrix, rows: impl Iterator<Item = R>) -> f64 {
+    let (mut sum, mut image) = (0.0, vec![0.0; motions.cols]);
+    for row in rows {
+        image.fill(0.0);
+        for (at, v) in row {
+            image.iter_mut().enumerate().for_each(|(j, image)| *image += v * motions.get(at, j));
+        }
+        sum += dot(&image, &image);
+    }
+    sum.sqrt()
 }
 
 /// The entries of some rows in the columns of one block, which begin and end there.
