@@ -7,7 +7,9 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use crate::dual::coupling::{Coupling, FaceCoupling};
 use crate::error::Result;
+use crate::linalg::vector::LONG;
 use crate::linalg::{Csr, Operator};
+use crate::platform::threads::parts_of;
 use crate::platform::{interrupt, tally};
 
 /// The constrained dofs of one body.
@@ -82,11 +84,17 @@ impl Preconditioner {
         moved.iter_mut().zip(&self.weight).for_each(|(v, weight)| *v *= weight);
         let mut force = vec![0.0; moved.len()];
         let (mut from, mut to) = (&moved[..], &mut force[..]);
+        let mut bodies = Vec::with_capacity(self.stiffness.len());
         for stiffness in &self.stiffness {
             let (own, rest) = from.split_at(stiffness.order());
             let (image, others) = to.split_at_mut(stiffness.order());
-            stiffness.apply(own, image);
+            bodies.push((stiffness, own, image));
             (from, to) = (rest, others);
+        }
+        if moved.len() < LONG {
+            bodies.into_iter().for_each(|(stiffness, own, image)| stiffness.apply(own, image));
+        } else {
+            parts_of(bodies, |_, (stiffness, own, image)| stiffness.apply(own, image));
         }
         force.iter_mut().zip(&self.weight).for_each(|(v, weight)| *v *= weight);
         force

@@ -99,6 +99,20 @@ pub fn parts_of<P: Send, T: Send>(pieces: Vec<P>, part: impl Fn(usize, P) -> T +
     }
 }
 
+/// Does some work that may share its own parts among the team.
+pub fn in_team<T: Send>(work: impl FnOnce() -> T + Send) -> T {
+    match pool_for(TEAM.get()) {
+        Some(pool) => {
+            let present = Interrupt::present().unheard();
+            pool.install(|| {
+                let _present = present.enter();
+                work()
+            })
+        }
+        None => work(),
+    }
+}
+
 /// The same where the calling thread runs the tasks `on_caller` itself.
 pub fn run_apart<T: Send>(
     threads: usize,

@@ -25,7 +25,7 @@ use crate::linalg::{Cholesky, Csr, Matrix, Symmetric};
 use crate::platform::memory::{headroom, headroom_with, SMALL_MATRICES};
 use block::Block;
 use inverse::{Cluster, ClusterInverse};
-use motions::{ByColumn, Images, Motion};
+use motions::{ByColumn, Motion};
 
 /// Pivots of T'W T, with unit diagonal, up to the first of these are held, or up to the second where that leaves a free motion: the
 /// factor of the rest is accurate, motions resisted by little are told from free ones afterwards.
@@ -154,8 +154,8 @@ impl Blocks {
             factor,
             clusters: Vec::new(),
         };
-        let images = Images::new(&self.turned, &self.by_column);
-        let motions = inverse.motions(images, (&self.whole, self.rounding), &self.motions)?;
+        let rows = (&self.turned, &self.by_column);
+        let motions = inverse.motions(rows, (&self.whole, self.rounding), &self.motions)?;
         let mut local = vec![None; self.rows.cols];
         for members in inverse.clusters_of(&motions, held.len()) {
             let cluster = self.cluster(&members, &motions, held, &mut local)?;

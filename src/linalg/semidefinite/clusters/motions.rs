@@ -1,10 +1,13 @@
 //! The motions that belong to the held unknowns, and the entries of rows along them.
 
+use std::ops::Range;
+
 use crate::error::Result;
 use crate::linalg::semidefinite::clusters::inverse::ClusterInverse;
 use crate::linalg::sparse::csr::by_columns;
-use crate::linalg::vector::{norm, norm_max};
+use crate::linalg::vector::{norm, norm_max, LONG};
 use crate::linalg::Csr;
+use crate::platform::threads::parts;
 
 /// A cluster moves with a motion when it has more than this part of its largest entry.
 const MOVES: f64 = 1e-9;
@@ -14,6 +17,8 @@ const CORRECTIONS: usize = 8;
 const BELOW: usize = 2;
 /// What moves one unknown in so many is seen row by row.
 const MANY: usize = 8;
+/// Motions that involve many rows are found in so many parts at most, each with vectors over all rows.
+const PARTS: usize = 4;
 /// Entries of a motion below this part of its largest are rounding.
 const ROUNDING: f64 = 0.25 * f64::EPSILON;
 
@@ -35,20 +40,39 @@ impl ClusterInverse {
     /// `before` on another face are so here where they have none.
     pub fn motions(
         &self,
+        (turned, by_column): (&Csr, &ByColumn),
+        limits: (&[f64], f64),
+        before: &[Motion],
+    ) -> Result<Vec<Motion>> {
+        let as_before = before.iter().map(|motion| motion.at).eq(self.held.iter().copied());
+        let before = if as_before { before } else { &[] };
+        let count = if turned.rows() < LONG { 1 } else { PARTS.min(self.held.len()) };
+        let each = self.held.len().div_ceil(count.max(1));
+        let some = parts(count, |k| {
+            let own = (k * each).min(self.held.len())..((k + 1) * each).min(self.held.len());
+            self.some_motions(own, Images::new(turned, by_column), limits, before)
+        });
+        Ok(some.into_iter().collect::<Result<Vec<_>>>()?.into_iter().flatten().collect())
+    }
+
+    /// The motions of some of the unknowns held; none or all have one `before`.
+    fn some_motions(
+        &self,
+        own: Range<usize>,
         mut images: Images,
         (whole, rounding): (&[f64], f64),
         before: &[Motion],
     ) -> Result<Vec<Motion>> {
-        let mut motions = Vec::with_capacity(self.held.len());
-        let as_before = before.iter().map(|motion| motion.at).eq(self.held.iter().copied());
+        let mut motions = Vec::with_capacity(own.len());
         let mut n = vec![0.0; images.turned.cols];
-        for (j, &at) in self.held.iter().enumerate() {
+        for j in own {
+            let at = self.held[j];
             let mut moved = Vec::new();
-            if as_before {
-                moved.extend(before[j].n.iter().map(|(k, _)| *k));
-                before[j].n.iter().for_each(|&(k, v)| n[k] = v);
+            if let Some(before) = before.get(j) {
+                moved.extend(before.n.iter().map(|(k, _)| *k));
+                before.n.iter().for_each(|&(k, v)| n[k] = v);
             }
-            if !as_before || images.of(&n, &moved) > rounding * length(&n, &moved) {
+            if before.is_empty() || images.of(&n, &moved) > rounding * length(&n, &moved) {
                 moved.iter().for_each(|&k| n[k] = 0.0);
                 moved = self.corrected(at, &mut n, &mut images, rounding)?;
             }
