@@ -195,8 +195,8 @@ impl Blocks {
             let k = self.starts.partition_point(|start| *start <= self.rows.col[at]) - 1;
             let own = at..at + self.columns(k).len();
             if let Some(Block { resisted, .. }) = blocks.get(k).or(self.fixed[k].as_ref()).map(Arc::as_ref) {
-                let values = resisted.mul_transposed(&self.rows.val[own.clone()]);
-                self.turned.val[own.start..own.start + resisted.cols].copy_from_slice(&values);
+                let (values, turned) = (&self.rows.val[own.clone()], &mut self.turned.val[own.clone()]);
+                (0..resisted.cols).for_each(|j| turned[j] = dot(resisted.col(j), values));
             }
             at = own.end;
         }
