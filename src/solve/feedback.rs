@@ -7,22 +7,22 @@ use crate::linalg::Matrix;
 use crate::qp::{AnswerFace, Direct, Face, Qp};
 use crate::setup::Ready;
 
-/// A part of a free motion that is more than rounding.
+/// A part of a free motion is more than rounding if it exceeds this.
 const PART: f64 = 1e-6;
 
-/// The driven motions of an island: modes, and the roots of what drives them.
+/// The motions of an island with negative stiffness: modes, and square roots of the negative stiffness.
 pub struct Driven {
     pub modes: Vec<usize>,
     roots: Vec<f64>,
 }
 
-/// What the driven motions of one face do to each other.
+/// How these motions affect each other on one face.
 pub struct Feedback<'a> {
     pub face: Face<'a>,
     /// Eigenvalues of P, ascending, and its eigenvectors.
     rates: Vec<f64>,
     vectors: Matrix,
-    /// `(S+ + G_F F_FF^-1 G_F')^-1 S-^1/2`, r x d, and the forces on F of these motions.
+    /// `(S+ + G_F F_FF^-1 G_F')^-1 S-^1/2`, r x d, and the forces of these motions on the rows F.
     motions: Matrix,
     forces: Matrix,
 }
@@ -51,7 +51,7 @@ impl Driven {
         all
     }
 
-    /// A driven motion that the rows of a face do not resist.
+    /// A motion with negative stiffness that the rows of a face do not resist.
     pub fn free(&self, qp: Qp, held: &[bool]) -> Result<Option<Vec<f64>>> {
         let free = AnswerFace::of(&qp, held)?.undetermined()?;
         let is_driven = |v: &[f64]| self.modes.iter().any(|&mode| v[mode].abs() > PART * norm_max(v));
@@ -60,7 +60,7 @@ impl Driven {
 }
 
 impl<'a> Feedback<'a> {
-    /// None where the face is too large for dense factors.
+    /// None if the face is too large for dense factors.
     pub fn of(direct: Direct<'a>, qp: Qp<'a>, held: &[bool], driven: &Driven) -> Result<Option<Self>> {
         let rows: Vec<usize> = (0..held.len()).filter(|&i| !held[i]).collect();
         if rows.len() + qp.e.len() > direct.limit {
@@ -90,7 +90,7 @@ impl<'a> Feedback<'a> {
         self.rates.last().copied().unwrap_or(0.0)
     }
 
-    /// The motion of rho: its forces on `rows` rows, its amplitudes, rho.
+    /// The motion of the eigenvalue rho: its forces on `rows` rows, its amplitudes, rho.
     pub fn motion(&self, rows: usize) -> (Vec<f64>, Vec<f64>, f64) {
         let v = self.vectors.col(self.vectors.cols - 1);
         let (mut alpha, mut on_face) = (vec![0.0; self.motions.rows], vec![0.0; self.forces.rows]);
@@ -99,8 +99,8 @@ impl<'a> Feedback<'a> {
         (self.on_all(rows, &on_face), alpha, self.rate())
     }
 
-    /// x on the face and alpha for these forces and resultants, with what the driven motions add to both; as it is without them where
-    /// rho >= 1.
+    /// x on the face and alpha for these forces and resultants, including the feedback of the motions with negative
+    /// stiffness; without the feedback if rho >= 1.
     pub fn solve(&self, driven: &Driven, force: Vec<f64>, e: &[f64]) -> Result<(Vec<f64>, Vec<f64>)> {
         let (mut x, mut alpha) = self.face.solve(force, e)?;
         if !driven.modes.is_empty() && self.rate() < 1.0 {
@@ -135,7 +135,7 @@ impl<'a> Feedback<'a> {
         self.vectors.mul_add(1.0, &parts, sum);
     }
 
-    /// x and alpha of the face for these resultants.
+    /// x and alpha on the face for these resultants.
     pub fn point(&self, qp: Qp, e: &[f64]) -> Result<(Vec<f64>, Vec<f64>)> {
         let force = self.face.rows().iter().map(|&i| qp.b[i]).collect();
         let (on_face, alpha) = self.face.solve(force, e)?;
