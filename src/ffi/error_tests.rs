@@ -144,7 +144,7 @@ fn an_index_of_an_array_is_told_with_the_base_of_its_call_and_with_its_body() {
         }
     };
     assert_eq!(of_body(4, 1), -105);
-    let text = "feti_rows_add_i32: row 0, entry 0: body 4 is not there: there are 1 bodies";
+    let text = "feti_rows_add_i32: row 0, entry 0: body 4 does not exist: there are 1 bodies";
     assert_eq!((last_error().as_str(), last_detail().value), (text, 4.0));
     assert_eq!(of_body(1, 3), -106);
     let text = "feti_rows_add_i32: body 0, row 0, entry 0: unknown 3 is outside the 2 unknowns of the body";

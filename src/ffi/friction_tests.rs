@@ -178,7 +178,7 @@ fn what_is_wrong_with_a_node_is_named_and_nothing_is_added() {
     assert_eq!(info_of(&p).1.nodes, 0);
     assert_eq!(TWO.add(&p), (FETI_OK, 0));
     assert_eq!(ONE.add(&p).0, FETI_ARGUMENT - 4);
-    assert!(last_error().contains("has a node of friction already"), "{}", last_error());
+    assert!(last_error().contains("already has a node of friction"), "{}", last_error());
     let other = Nodes { dim: 2, normal: &[0], coefficient: &[], ptr: &[1, 2, 3], ..ONE };
     assert_eq!(other.add(&p).0, FETI_ARGUMENT - 3);
 }

@@ -51,7 +51,8 @@ pub fn meaning<T: Copy>(value: i32, name: &'static str, known: &[(i32, T)], not:
 pub fn entry_at<'a, T>(list: &'a [T], k: i64, what: &str) -> Result<&'a T> {
     let found = usize::try_from(k).ok().and_then(|k| list.get(k));
     found.ok_or_else(|| {
-        Error::argument("k", format!("number {INDEX} is not there: there are {} {what}", list.len())).index(k)
+        Error::argument("k", format!("number {INDEX} does not exist: there are {} {what}", list.len()))
+            .index(k)
     })
 }
 
