@@ -80,7 +80,7 @@ impl Decoupling {
         (Self { rows }, matrix.clone())
     }
 
-    /// 1 / l_ii: `lambda_i = x_i / l_ii` if no later row is combined with row i.
+    /// l_ii: `lambda_i = x_i / l_ii` if no later row is combined with row i.
     pub fn factor(&self, i: usize) -> f64 {
         self.diagonal(i)
     }
