@@ -210,8 +210,8 @@ impl Mesh {
             }
             let size = self.connectivity.size(e);
             if ke.n != size {
-                let what = format!("the element joins {size} unknowns, its matrix has {} rows", ke.n);
                 let what = format!("the element joins {size} unknowns, but its matrix has {} rows", ke.n);
+                return Err(Error::argument("n", what).element(e).value(ke.n as f64).limit(size as f64));
             }
             if cut.given[e] && !again {
                 return Err(Error::new(Kind::State, "the element has already been given").element(e));
