@@ -8,7 +8,7 @@ use std::ptr::{null, null_mut};
 use super::tests::{last_detail, last_error, Owned};
 use super::*;
 
-/// Rows u_1 <= 0 and, never closed, u_0 <= infinity; an equality row without entries.
+/// Rows u_1 <= 0 and u_0 <= infinity, which never closes; an equality row without entries.
 fn block() -> Owned {
     let p = Owned::with_body();
     let (ptr, col, k) = ([0, 1, 2], [0, 1], [2.0, 2.0]);
@@ -245,7 +245,7 @@ fn functions_of_rows_say_which_one_is_for_tangential_ones() {
     assert_eq!(info_of(&p).1.nodes, 1);
 }
 
-/// All by hand: u = 0, lambda = 4, lambda_t = 1.
+/// By hand: u = 0, lambda = 4, lambda_t = 1.
 #[test]
 fn a_block_that_sticks_has_its_forces_and_no_slip() {
     let p = block();

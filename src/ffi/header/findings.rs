@@ -29,7 +29,7 @@ pub struct feti_findings {
     pub untouched_bodies: i64,
     /// The first of these bodies; -1: none.
     pub untouched_body: i64,
-    /// Margin by which there is no solution, above 0 and at most 1. After FETI_INDEFINITE of a driven motion: 1 - 1 /
+    /// Margin by which there is no solution, above 0 and at most 1. After FETI_INDEFINITE of a motion with negative stiffness: 1 - 1 /
     /// rho, where rho is the ratio of the driving to the resisting stiffness. After FETI_LOAD_NOT_HELD: the fraction of
     /// the resultant load that nothing holds. After FETI_GAPS_CONTRADICT: |w'c| over |w|'|c| for the weights w. Otherwise
     /// NaN.
@@ -46,8 +46,8 @@ pub struct feti_findings {
     pub doubtful_bodies: i64,
     /// The first of these bodies; -1: none.
     pub doubtful_body: i64,
-    /// Bodies with rigid body motions that K resists or drives weakly, because of weak springs, rounding or geometric
-    /// stiffness.
+    /// Bodies with rigid body motions of small positive or negative stiffness, because of weak springs, rounding or
+    /// geometric stiffness.
     pub soft_bodies: i64,
     /// The first of these bodies; -1: none.
     pub soft_body: i64,
