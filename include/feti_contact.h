@@ -2202,10 +2202,10 @@ typedef struct feti_findings {
    */
   int64_t untouched_body;
   /**
-   * Margin by which there is no solution, above 0 and at most 1. After FETI_INDEFINITE of a motion
-   * with negative stiffness: 1 - 1 / rho, where rho is the ratio of the driving to the resisting
-   * stiffness. After FETI_LOAD_NOT_HELD: the fraction of the resultant load that nothing holds.
-   * After FETI_GAPS_CONTRADICT: |w'c| over |w|'|c| for the weights w. Otherwise NaN.
+   * Margin by which there is no solution, above 0 and at most 1. After FETI_INDEFINITE with a motion
+   * of negative stiffness: 1 - 1 / rho, where rho is the ratio of the negative stiffness to the
+   * stiffness of the closed rows. After FETI_LOAD_NOT_HELD: the fraction of the resultant load that
+   * nothing holds. After FETI_GAPS_CONTRADICT: |w'c| over |w|'|c| for the weights w. Otherwise NaN.
    */
   double margin;
   /**
