@@ -233,7 +233,7 @@ mod tests {
     /// A spring of -0.3 at one end exceeds the stiffness 0.2 of five links to the dof held for one motion: F is
     /// indefinite with this dof alone.
     #[test]
-    fn where_a_driven_body_bends_between_the_dofs_held_another_is_held() {
+    fn where_a_body_of_negative_stiffness_bends_between_the_dofs_held_another_is_held() {
         let k = chain(7, [-0.3, 0.0]);
         let inverse = soft(&k);
         assert_eq!((inverse.null_space.cols, inverse.fixing.len()), (2, 2));
@@ -243,7 +243,7 @@ mod tests {
 
     /// A spring of nearly -0.2: F is nearly singular with this dof, and regular with another.
     #[test]
-    fn a_dof_that_leaves_a_driven_body_all_but_loose_is_exchanged() {
+    fn a_dof_that_leaves_a_body_of_negative_stiffness_nearly_loose_is_exchanged() {
         for less in [1e-3, 1e-6, 1e-9] {
             let k = chain(7, [-0.2 * (1.0 - less), 0.0]);
             let inverse = soft(&k);

@@ -30,7 +30,7 @@ use std::sync::Arc;
 use crate::body::GeneralizedInverse;
 use crate::dual::multiples::Multiples;
 use crate::dual::reuse::Reuse;
-use crate::dual::springs::{add_springs, driven};
+use crate::dual::springs::{add_springs, negative_modes};
 use crate::error::Result;
 use crate::linalg::vector::{dot, norm_max, power_of_two_below, weighted_norm};
 use crate::linalg::{Csr, Packed};
@@ -74,7 +74,7 @@ pub struct Dual {
     /// Number of springs of the bodies: the last rows, without entries on unknowns and not known to the host.
     pub springs: usize,
     /// Modes with negative stiffness, with this stiffness < 0 in the scaling of G and alpha.
-    pub driven: Vec<(usize, f64)>,
+    pub negative: Vec<(usize, f64)>,
     /// Counts of computed and reused columns of all `F_p`.
     pub columns: ColumnCounts,
 }
@@ -149,9 +149,9 @@ impl Draft {
         if balanced {
             scale_by_body(&mut subdomains, &mut coarse);
         }
-        let driven = driven(&subdomains);
+        let negative = negative_modes(&subdomains);
         let blocks = subdomains.iter().map(|own| own.modes.start).collect();
-        Dual { subdomains, compliance, coarse, blocks, springs, driven, columns }
+        Dual { subdomains, compliance, coarse, blocks, springs, negative, columns }
     }
 }
 

@@ -16,10 +16,10 @@ pub fn add_springs(subdomains: &[Subdomain], coarse: &mut Csr) -> usize {
 }
 
 /// Modes with negative stiffness, with this stiffness for amplitudes divided by the size of their body.
-pub fn driven(subdomains: &[Subdomain]) -> Vec<(usize, f64)> {
+pub fn negative_modes(subdomains: &[Subdomain]) -> Vec<(usize, f64)> {
     let of = |s: &Subdomain| {
-        let driven = s.soft_modes().filter(|(_, stiffness)| *stiffness < 0.0);
-        driven.map(|(mode, stiffness)| (mode, stiffness / (s.size * s.size))).collect::<Vec<_>>()
+        let negative = s.soft_modes().filter(|(_, stiffness)| *stiffness < 0.0);
+        negative.map(|(mode, stiffness)| (mode, stiffness / (s.size * s.size))).collect::<Vec<_>>()
     };
     subdomains.iter().flat_map(of).collect()
 }

@@ -114,12 +114,12 @@ fn read<T: Copy>(start: T, len: usize, call: impl Fn(*mut T) -> i32) -> (i32, Ve
 }
 
 fn multipliers(p: &Owned, kind: i32, rows: usize) -> (i32, Vec<f64>) {
-    // SAFETY: room for so many numbers.
+    // SAFETY: room for this number of values.
     read(-1.0, rows, |to| unsafe { feti_multipliers(p.0, kind, rows as i64, to) })
 }
 
 fn slips(p: &Owned, nodes: usize) -> (i32, Vec<f64>) {
-    // SAFETY: room for so many numbers.
+    // SAFETY: room for this number of values.
     read(-1.0, nodes, |to| unsafe { feti_friction_slips(p.0, nodes as i64, 1, to) })
 }
 

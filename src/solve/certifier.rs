@@ -24,9 +24,9 @@ pub struct Certifier<'a> {
     pub far: Vec<bool>,
     pub reached: Vec<usize>,
     /// Amplitudes of the motions with negative stiffness from which e was computed; those of the last point differ.
-    pub drive: Vec<f64>,
-    pub astray: bool,
-    /// The point only serves as the start of another run.
+    pub assumed: Vec<f64>,
+    pub unsettled: bool,
+    /// The point is only the start of another run.
     pub is_rough: bool,
     /// An accepted point must also have settled amplitudes.
     pub is_strict: bool,
@@ -50,15 +50,15 @@ struct Accepted {
 impl<'a> Certifier<'a> {
     pub fn new(recovery: Recovery<'a>) -> Self {
         let (far, reached, spent) = (Vec::new(), Vec::new(), Duration::ZERO);
-        let (drive, astray, is_rough, is_strict) = (Vec::new(), false, false, false);
+        let (assumed, unsettled, is_rough, is_strict) = (Vec::new(), false, false, false);
         Self {
             recovery,
             accepted: None,
             spent,
             far,
             reached,
-            drive,
-            astray,
+            assumed,
+            unsettled,
             is_rough,
             is_strict,
             missed: None,
@@ -77,10 +77,10 @@ impl<'a> Certifier<'a> {
     }
 
     /// Whether the amplitudes of motions with negative stiffness differ from those from which e was computed.
-    fn is_astray(&self, alpha: &[f64]) -> bool {
-        let driven = &self.recovery.ready.dual.driven;
+    fn differ(&self, alpha: &[f64]) -> bool {
+        let negative = &self.recovery.ready.dual.negative;
         let (mut change, mut size) = (0.0, 0.0);
-        for ((mode, stiffness), was) in driven.iter().zip(&self.drive) {
+        for ((mode, stiffness), was) in negative.iter().zip(&self.assumed) {
             change -= stiffness * (alpha[*mode] - was).powi(2);
             size -= stiffness * alpha[*mode].powi(2);
         }
@@ -114,7 +114,7 @@ impl AcceptanceTest for Certifier<'_> {
     }
 
     fn accepts(&mut self, x: &[f64], alpha: &[f64]) -> Result<bool> {
-        self.astray = self.is_rough;
+        self.unsettled = self.is_rough;
         if self.is_rough {
             self.accepted = None;
             return Ok(true);
@@ -151,9 +151,9 @@ impl AcceptanceTest for Certifier<'_> {
             self.accepted = Some(Accepted { point, alpha_at_rest, deformed, recovered, judgement });
         }
         self.reached = reached;
-        self.astray = (!passed || self.is_strict) && self.is_astray(alpha);
+        self.unsettled = (!passed || self.is_strict) && self.differ(alpha);
         // violated rows join first: without them no other improvement helps
-        Ok(passed || !self.reached.is_empty() || self.astray)
+        Ok(passed || !self.reached.is_empty() || self.unsettled)
     }
 
     fn missed(&self) -> Option<f64> {

@@ -1,4 +1,4 @@
-//! The motions of an island with negative stiffness, and how they affect each other on one face: P of `driven.rs`.
+//! The motions of an island with negative stiffness, and how they affect each other on one face: P of `negative.rs`.
 
 use crate::error::Result;
 use crate::linalg::dense::spectrum::symmetric_eigen;
@@ -11,7 +11,7 @@ use crate::setup::Ready;
 const PART: f64 = 1e-6;
 
 /// The motions of an island with negative stiffness: modes, and square roots of the negative stiffness.
-pub struct Driven {
+pub struct NegativeMotions {
     pub modes: Vec<usize>,
     roots: Vec<f64>,
 }
@@ -27,11 +27,11 @@ pub struct Feedback<'a> {
     forces: Matrix,
 }
 
-impl Driven {
+impl NegativeMotions {
     pub fn of(ready: &Ready) -> Self {
-        let driven = &ready.dual.driven;
-        let modes = driven.iter().map(|(mode, _)| *mode).collect();
-        Self { modes, roots: driven.iter().map(|(_, stiffness)| (-stiffness).sqrt()).collect() }
+        let negative = &ready.dual.negative;
+        let modes = negative.iter().map(|(mode, _)| *mode).collect();
+        Self { modes, roots: negative.iter().map(|(_, stiffness)| (-stiffness).sqrt()).collect() }
     }
 
     /// `S-^1/2 a`
@@ -54,33 +54,38 @@ impl Driven {
     /// A motion with negative stiffness that the rows of a face do not resist.
     pub fn free(&self, qp: Qp, held: &[bool]) -> Result<Option<Vec<f64>>> {
         let free = AnswerFace::of(&qp, held)?.undetermined()?;
-        let is_driven = |v: &[f64]| self.modes.iter().any(|&mode| v[mode].abs() > PART * norm_max(v));
-        Ok((0..free.cols).map(|j| free.col(j)).find(|v| is_driven(v)).map(<[f64]>::to_vec))
+        let is_negative = |v: &[f64]| self.modes.iter().any(|&mode| v[mode].abs() > PART * norm_max(v));
+        Ok((0..free.cols).map(|j| free.col(j)).find(|v| is_negative(v)).map(<[f64]>::to_vec))
     }
 }
 
 impl<'a> Feedback<'a> {
     /// None if the face is too large for dense factors.
-    pub fn of(direct: Direct<'a>, qp: Qp<'a>, held: &[bool], driven: &Driven) -> Result<Option<Self>> {
+    pub fn of(
+        direct: Direct<'a>,
+        qp: Qp<'a>,
+        held: &[bool],
+        negative: &NegativeMotions,
+    ) -> Result<Option<Self>> {
         let rows: Vec<usize> = (0..held.len()).filter(|&i| !held[i]).collect();
         if rows.len() + qp.e.len() > direct.limit {
             return Ok(None);
         }
         let face = Face::new(qp, direct.entries, rows)?;
-        face.map(|face| Self::on(face, qp.e.len(), driven)).transpose()
+        face.map(|face| Self::on(face, qp.e.len(), negative)).transpose()
     }
 
-    pub fn on(face: Face<'a>, modes: usize, driven: &Driven) -> Result<Self> {
-        let (n, d) = (face.rows().len(), driven.modes.len());
+    pub fn on(face: Face<'a>, modes: usize, negative: &NegativeMotions) -> Result<Self> {
+        let (n, d) = (face.rows().len(), negative.modes.len());
         let (mut motions, mut forces) = (Matrix::zeros(modes, d)?, Matrix::zeros(n, d)?);
-        for (j, (&mode, root)) in driven.modes.iter().zip(&driven.roots).enumerate() {
+        for (j, (&mode, root)) in negative.modes.iter().zip(&negative.roots).enumerate() {
             let mut e = vec![0.0; modes];
             e[mode] = *root;
             let (x, alpha) = face.solve(vec![0.0; n], &e)?;
             motions.col_mut(j).copy_from_slice(&alpha);
             forces.col_mut(j).copy_from_slice(&x);
         }
-        let p = |i: usize, j: usize| driven.roots[i] * motions.get(driven.modes[i], j);
+        let p = |i: usize, j: usize| negative.roots[i] * motions.get(negative.modes[i], j);
         let (rates, vectors) = symmetric_eigen(&Matrix::from_fn(d, d, |i, j| 0.5 * (p(i, j) + p(j, i)))?)?;
         Ok(Self { face, rates, vectors, motions, forces })
     }
@@ -101,10 +106,15 @@ impl<'a> Feedback<'a> {
 
     /// x on the face and alpha for these forces and resultants, including the feedback of the motions with negative
     /// stiffness; without the feedback if rho >= 1.
-    pub fn solve(&self, driven: &Driven, force: Vec<f64>, e: &[f64]) -> Result<(Vec<f64>, Vec<f64>)> {
+    pub fn solve(
+        &self,
+        negative: &NegativeMotions,
+        force: Vec<f64>,
+        e: &[f64],
+    ) -> Result<(Vec<f64>, Vec<f64>)> {
         let (mut x, mut alpha) = self.face.solve(force, e)?;
-        if !driven.modes.is_empty() && self.rate() < 1.0 {
-            let b = driven.forced(&alpha);
+        if !negative.modes.is_empty() && self.rate() < 1.0 {
+            let b = negative.forced(&alpha);
             let mut more = b.clone();
             self.add_feedback(&b, &mut more);
             self.forces.mul_add(1.0, &more, &mut x);

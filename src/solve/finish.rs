@@ -9,7 +9,7 @@ use crate::linalg::vector::{axpy, weighted_norm};
 use crate::model::{FinishBy, Method, Settings};
 use crate::platform::interrupt;
 use crate::qp::{Face, Verdict};
-use crate::solve::feedback::{Driven, Feedback};
+use crate::solve::feedback::{Feedback, NegativeMotions};
 use crate::solve::gaps::Gaps;
 use crate::solve::recovery::{Ending, Faces, Recovery};
 
@@ -49,8 +49,8 @@ fn is_delicate(recovery: &Recovery, ending: &Ending) -> bool {
 /// or a lack of memory stops the finish, `ending` stays solved.
 pub fn finish(recovery: &Recovery, ending: &mut Ending) -> Result<bool> {
     let delicate = is_delicate(recovery, ending);
-    let driven = Driven::of(recovery.ready);
-    let mut finish = Finish { recovery, ending, delicate, replaced: false, driven };
+    let negative = NegativeMotions::of(recovery.ready);
+    let mut finish = Finish { recovery, ending, delicate, replaced: false, negative };
     match finish.run() {
         Ok(()) => {}
         Err(error) if error.kind == Kind::Memory => {}
@@ -69,7 +69,7 @@ struct Finish<'a, 'b> {
     /// Resistance of K to rigid motions is rounding, not strain; for other bodies K is used unchanged.
     delicate: bool,
     replaced: bool,
-    driven: Driven,
+    negative: NegativeMotions,
 }
 
 impl Finish<'_, '_> {
@@ -85,12 +85,12 @@ impl Finish<'_, '_> {
                 break;
             }
             let Some(face) = Face::new(*qp, direct.entries, rows)? else { break };
-            let mut face = Feedback::on(face, point.alpha.len(), &self.driven)?;
+            let mut face = Feedback::on(face, point.alpha.len(), &self.negative)?;
             self.ending.solution.counts.direct += 1;
             point.hold(&active);
             self.correct(&mut point, &face)?;
             if face.face.is_truncated() {
-                face = Feedback::on(face.face.in_full()?, point.alpha.len(), &self.driven)?;
+                face = Feedback::on(face.face.in_full()?, point.alpha.len(), &self.negative)?;
                 self.correct(&mut point, &face)?;
             }
             if !self.delicate && self.ending.judgement.certificate.worst() <= ROUNDING {
@@ -107,7 +107,7 @@ impl Finish<'_, '_> {
         let mut last = f64::INFINITY;
         for _ in 0..CORRECTIONS {
             interrupt::check()?;
-            let size = point.correct(self.recovery, &self.driven, face)?;
+            let size = point.correct(self.recovery, &self.negative, face)?;
             self.keep(point, &face.face)?;
             if size >= 0.5 * last {
                 break;
@@ -220,7 +220,12 @@ impl SplitPoint {
 
     /// Solves (10)-(11) on the face for the residual loads and gaps, `f - K u - B'x` and `c + C x - B u`: every
     /// correction reduces the errors of F and K+. Returns the length of the correction, `|.|_D`.
-    fn correct(&mut self, recovery: &Recovery, driven: &Driven, feedback: &Feedback) -> Result<f64> {
+    fn correct(
+        &mut self,
+        recovery: &Recovery,
+        negative: &NegativeMotions,
+        feedback: &Feedback,
+    ) -> Result<f64> {
         let face = &feedback.face;
         let (dual, rows) = (&recovery.ready.dual, &recovery.ready.rows);
         let mut load = recovery.load_left(&self.v, &self.x)?;
@@ -229,7 +234,7 @@ impl SplitPoint {
         face.rows().iter().for_each(|&i| gaps[i] = left[i]);
         let d = dual.rhs(&recovery.ready.moved(recovery.threads, &load)?, &gaps);
         let force = face.rows().iter().map(|&i| d[i]).collect();
-        let (step, turn) = feedback.solve(driven, force, &dual.resultants(&load))?;
+        let (step, turn) = feedback.solve(negative, force, &dual.resultants(&load))?;
         let mut forces = vec![0.0; self.x.len()];
         face.rows().iter().zip(step).for_each(|(&i, step)| forces[i] = step);
         rows.take_forces(&forces, &mut load);
@@ -288,10 +293,10 @@ mod tests {
                 point.hold(&[0, 1].map(|i| !rows.contains(&i)));
                 let Faces { qp, direct, .. } = &recovery.faces;
                 let face = Face::new(*qp, direct.entries, rows.clone()).unwrap().unwrap();
-                let driven = Driven::of(recovery.ready);
-                let face = Feedback::on(face, 0, &driven).unwrap();
+                let negative = NegativeMotions::of(recovery.ready);
+                let face = Feedback::on(face, 0, &negative).unwrap();
                 let mut finish =
-                    Finish { recovery, ending: &mut ending, delicate: false, replaced: false, driven };
+                    Finish { recovery, ending: &mut ending, delicate: false, replaced: false, negative };
                 finish.correct(&mut point, &face).unwrap();
                 assert_eq!(finish.replaced, right, "{rows:?}");
                 assert_eq!(ending.recovered.lambda == [2.0, 0.0], right, "{rows:?}");

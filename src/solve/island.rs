@@ -13,11 +13,11 @@ use crate::qp::{Direct, Solution, Verdict};
 use crate::solve::case::Case;
 use crate::solve::certifier::Certifier;
 use crate::solve::diagnosis::{Contradictions, Unheld, MARGINAL, ROUNDING};
-use crate::solve::driven::solve_driven;
 use crate::solve::fallback::MethodOptions;
 use crate::solve::finish::{finish, is_to_finish};
 use crate::solve::friction::{nearest_forces, solve_with_friction};
 use crate::solve::interruptible::Interruptible;
+use crate::solve::negative::solve_with_negative_motions;
 use crate::solve::paper::{parameters, HostUnits};
 use crate::solve::presolve::presolve;
 use crate::solve::recovery::{Ending, Faces, Recovery};
@@ -140,7 +140,14 @@ fn attempt(
         _ if case.has_friction() => {
             solve_with_friction(case, &MethodOptions { settings, direct }, qp, start, &mut judge, steps)?
         }
-        _ => solve_driven(case, &MethodOptions { settings, direct }, qp, start, &mut judge, steps)?,
+        _ => solve_with_negative_motions(
+            case,
+            &MethodOptions { settings, direct },
+            qp,
+            start,
+            &mut judge,
+            steps,
+        )?,
     };
     let solution = match solution {
         Solution { verdict: Verdict::Infeasible { .. }, .. } if dual.unheld.is_none() => {

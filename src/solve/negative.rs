@@ -22,7 +22,7 @@ use crate::qp::{AcceptanceTest, Counts, Qp, Solution, Verdict};
 use crate::solve::case::Case;
 use crate::solve::certifier::Certifier;
 use crate::solve::fallback::MethodOptions;
-use crate::solve::feedback::{Driven, Feedback};
+use crate::solve::feedback::{Feedback, NegativeMotions};
 use crate::solve::near::{or_last, solve_near};
 use crate::solve::recovery::Recovery;
 use crate::solve::sliding::Sliding;
@@ -89,12 +89,12 @@ struct Search<'a, 'b> {
     case: Case<'a>,
     means: &'b MethodOptions<'a>,
     qp: Qp<'a>,
-    driven: &'b Driven,
+    negative: &'b NegativeMotions,
     recovery: &'b Recovery<'a>,
 }
 
 /// Solves the dual of (10)-(11), with rounds if there are motions with negative stiffness.
-pub fn solve_driven<'a>(
+pub fn solve_with_negative_motions<'a>(
     case: Case<'a>,
     means: &MethodOptions<'a>,
     qp: Qp<'a>,
@@ -102,19 +102,19 @@ pub fn solve_driven<'a>(
     judge: &mut Certifier<'a>,
     steps: &mut Steps,
 ) -> Result<Solution> {
-    let driven = Driven::of(case.ready);
-    if driven.modes.is_empty() {
+    let negative = NegativeMotions::of(case.ready);
+    if negative.modes.is_empty() {
         return solve_near(means, qp, start, judge, steps);
     }
     let rough = Settings { tolerance: means.settings.tolerance.max(ROUGH), ..means.settings.clone() };
-    let (mut step, mut counts) = (Step::first(&driven, start.to_vec()), Counts::default());
+    let (mut step, mut counts) = (Step::first(&negative, start.to_vec()), Counts::default());
     let (mut known, mut before) = (Known::default(), None);
     loop {
         judge.is_rough = known.rounds == 0 && means.direct.limit > 0;
         judge.is_strict = known.is_strict();
-        judge.drive = driven.amplitudes(&step.b);
+        judge.assumed = negative.amplitudes(&step.b);
         let settings = if judge.is_rough { &rough } else { means.settings };
-        let e = driven.resultants(qp.e, &step.b);
+        let e = negative.resultants(qp.e, &step.b);
         let with = MethodOptions { settings, ..*means };
         let found = solve_near(&with, Qp { e: &e, ..qp }, &step.x, judge, steps);
         let mut solution = or_last(found, before.take())?;
@@ -123,9 +123,9 @@ pub fn solve_driven<'a>(
         if let Verdict::StepLimit | Verdict::TimeLimit | Verdict::Cancelled = solution.verdict {
             return Ok(solution);
         }
-        let search = Search { case, means, qp, driven: &driven, recovery: &judge.recovery };
+        let search = Search { case, means, qp, negative: &negative, recovery: &judge.recovery };
         let next = match &solution.verdict {
-            Verdict::Solved => search.after(&mut known, &step, &solution, (judge.astray, judge.is_rough)),
+            Verdict::Solved => search.after(&mut known, &step, &solution, (judge.unsettled, judge.is_rough)),
             _ => search.without_answer(&mut known, &step, &solution),
         };
         match next {
@@ -144,8 +144,8 @@ pub fn solve_driven<'a>(
 
 impl Step {
     /// a = 0
-    fn first(driven: &Driven, x: Vec<f64>) -> Self {
-        Self { b: vec![0.0; driven.modes.len()], x, is_trial: false }
+    fn first(negative: &NegativeMotions, x: Vec<f64>) -> Self {
+        Self { b: vec![0.0; negative.modes.len()], x, is_trial: false }
     }
 }
 
@@ -173,7 +173,7 @@ impl<'a> Search<'a, '_> {
         known: &mut Known<'a>,
         step: &Step,
         solution: &Solution,
-        (astray, is_rough): (bool, bool),
+        (unsettled, is_rough): (bool, bool),
     ) -> Result<Next> {
         let round = Round { is_rough, ..self.round(step, solution)? };
         known.rounds += 1;
@@ -181,8 +181,8 @@ impl<'a> Search<'a, '_> {
         known.same = if is_same { known.same + 1 } else { 0 };
         let falling = self.falling(&round, known.last.as_ref().filter(|_| is_same))?;
         match &falling {
-            Some((motion, rate)) if !astray => return Err(indefinite(self.case, &motion.v, *rate)),
-            _ if !astray => return Ok(Next::End(Verdict::Solved)),
+            Some((motion, rate)) if !unsettled => return Err(indefinite(self.case, &motion.v, *rate)),
+            _ if !unsettled => return Ok(Next::End(Verdict::Solved)),
             None if known.same > MENDED && round.feedback.is_some() => {
                 return Ok(Next::End(Verdict::Stalled))
             }
@@ -208,7 +208,7 @@ impl<'a> Search<'a, '_> {
         }
         known.rounds += 1;
         if let Verdict::Infeasible { .. } = solution.verdict {
-            let e = self.driven.resultants(self.qp.e, &step.b);
+            let e = self.negative.resultants(self.qp.e, &step.b);
             let left = Qp { e: &e, ..self.qp }.left(&solution.x);
             let motion = Sliding::of(self.recovery, vec![0.0; solution.x.len()], left)?;
             let bounded = self.qp.bounded;
@@ -221,20 +221,20 @@ impl<'a> Search<'a, '_> {
         match &known.last {
             _ if known.rounds >= ROUNDS || !step.is_trial => Ok(Next::End(Verdict::Stalled)),
             Some(last) if !last.is_rough => Ok(Next::Step(self.back(last)?)),
-            _ => Ok(Next::Step(Step::first(self.driven, solution.x.clone()))),
+            _ => Ok(Next::Step(Step::first(self.negative, solution.x.clone()))),
         }
     }
 
     fn round(&self, step: &Step, solution: &Solution) -> Result<Round<'a>> {
         let Solution { x, alpha, .. } = solution;
         let held = self.qp.at_bound(x);
-        let next = self.driven.forced(alpha);
+        let next = self.negative.forced(alpha);
         let change = next.iter().zip(&step.b).map(|(next, b)| next - b).collect();
         let parts = [0.5 * dot(self.qp.b, x), -0.5 * dot(self.qp.e, alpha), 0.5 * dot(&next, &step.b)];
-        let driven = -0.5 * dot(&next, &next);
-        let energy = parts.iter().sum::<f64>() + driven;
-        let terms = parts.iter().map(|part| part.abs()).sum::<f64>() - driven;
-        let feedback = Feedback::of(self.means.direct, self.qp, &held, self.driven)?;
+        let negative = -0.5 * dot(&next, &next);
+        let energy = parts.iter().sum::<f64>() + negative;
+        let terms = parts.iter().map(|part| part.abs()).sum::<f64>() - negative;
+        let feedback = Feedback::of(self.means.direct, self.qp, &held, self.negative)?;
         Ok(Round {
             x: x.clone(),
             alpha: alpha.clone(),
@@ -251,7 +251,7 @@ impl<'a> Search<'a, '_> {
     /// A motion along which the energy falls while the rows of the face stay closed, and its rate; `last` had the same
     /// face.
     fn falling(&self, round: &Round, last: Option<&Round>) -> Result<Option<(Sliding, f64)>> {
-        let found = match self.driven.free(self.qp, &round.held)? {
+        let found = match self.negative.free(self.qp, &round.held)? {
             Some(alpha) => Some((vec![0.0; round.x.len()], alpha, f64::INFINITY)),
             None => match (&round.feedback, last) {
                 (Some(feedback), _) => (feedback.rate() >= 1.0).then(|| feedback.motion(round.x.len())),
@@ -265,7 +265,7 @@ impl<'a> Search<'a, '_> {
         };
         let Some((x, alpha, rate)) = found else { return Ok(None) };
         let mut motion = Sliding::of(self.recovery, x, alpha)?;
-        if dot(&round.change, &self.driven.forced(&motion.alpha)) < 0.0 {
+        if dot(&round.change, &self.negative.forced(&motion.alpha)) < 0.0 {
             motion.turn();
         }
         Ok(motion.falls(self.recovery, &round.held)?.then_some((motion, rate)))
@@ -286,7 +286,7 @@ impl<'a> Search<'a, '_> {
             return Ok(Step { b: round.next.clone(), x: round.x.clone(), is_trial: false });
         };
         let b = feedback.settled(&round.next, &round.change);
-        let (x, _) = feedback.point(self.qp, &self.driven.resultants(self.qp.e, &b))?;
+        let (x, _) = feedback.point(self.qp, &self.negative.resultants(self.qp.e, &b))?;
         let x = (0..x.len()).map(|i| if self.qp.bounded[i] { x[i].max(0.0) } else { x[i] }).collect();
         Ok(Step { b, x, is_trial: true })
     }
@@ -296,7 +296,7 @@ impl<'a> Search<'a, '_> {
         let plain = Step { b: round.next.clone(), x: round.x.clone(), is_trial: false };
         let Some(feedback) = &round.feedback else { return Ok(plain) };
         let b = feedback.settled(&round.next, &round.change);
-        let (mut x, mut alpha) = feedback.point(self.qp, &self.driven.resultants(self.qp.e, &b))?;
+        let (mut x, mut alpha) = feedback.point(self.qp, &self.negative.resultants(self.qp.e, &b))?;
         axpy(-1.0, &round.x, &mut x);
         axpy(-1.0, &round.alpha, &mut alpha);
         let motion = Sliding::of(self.recovery, x, alpha)?;
@@ -306,7 +306,7 @@ impl<'a> Search<'a, '_> {
 
     fn moved(&self, round: &Round, motion: &Sliding, by: f64) -> Step {
         let mut b = round.next.clone();
-        axpy(by, &self.driven.forced(&motion.alpha), &mut b);
+        axpy(by, &self.negative.forced(&motion.alpha), &mut b);
         Step { b, x: round.x.clone(), is_trial: false }
     }
 
