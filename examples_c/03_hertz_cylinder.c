@@ -36,7 +36,7 @@ static hertz hertz_of(double force)
     return theory;
 }
 
-/* Hands the case over. Bodies are numbered as the case numbers them, because they are added in turn. */
+/* Passes the case to the library. Bodies are added in the order of the case, so they have its numbers. */
 static void hand_over(feti_problem *problem, const case_data *data)
 {
     for (int64_t b = 0; b < data->bodies; b++) {
@@ -94,13 +94,13 @@ static void draw_pressure(const char *folder, const hertz *theory, int64_t rows,
 
 enum { STEPS = 1000 };
 
-/* The steps of the solve, and what is left of the residual after each over the limit at which it ends. */
+/* The steps of the solve, and the residual after each step relative to the limit that ends the solve. */
 typedef struct {
     int64_t steps;
     double step[STEPS], residual[STEPS];
 } steps_taken;
 
-/* Hears of every step: 0 goes on. */
+/* The library calls it at every step; 0: the solve continues. */
 static int32_t note(void *user, const feti_progress *now)
 {
     steps_taken *taken = user;
@@ -109,21 +109,22 @@ static int32_t note(void *user, const feti_progress *now)
     return 0;
 }
 
-/* Residual of every step, as powers of ten of the limit at which the solve ends. */
+/* Logarithm of the residual of every step, relative to the limit that ends the solve. */
 static void draw_convergence(const char *folder, steps_taken *taken)
 {
-    const double ends_x[2] = { 0.0, (double)taken->steps }, ends_y[2] = { 0.0, 0.0 };
+    /* The line of the limit ends one step behind the last point, which thus lies inside the axes. */
+    const double limit_x[2] = { 0.0, (double)(taken->steps + 1) }, limit_y[2] = { 0.0, 0.0 };
 
     for (int64_t i = 0; i < taken->steps; i++)
         taken->step[i] = (double)(i + 1), taken->residual[i] = log10(taken->residual[i]);
     const picture plot = { .title = "Convergence: the residual of every step", .x_name = "step",
-                           .y_name = "log10(residual / limit)", .points_name = "computed", .curve_name = "the solve ends",
+                           .y_name = "log10(residual / limit)", .points_name = "computed", .curve_name = "limit",
                            .points = taken->steps, .x = taken->step, .y = taken->residual,
-                           .samples = 2, .curve_x = ends_x, .curve_y = ends_y };
+                           .samples = 2, .curve_x = limit_x, .curve_y = limit_y };
     if (picture_svg(folder, "hertz_convergence.svg", &plot) != 0) demo_stop("hertz_convergence.svg cannot be written");
 }
 
-/* The mesh with displacements, and what the contact does to its nodes. */
+/* The mesh with displacements, contact forces and contact states. */
 static void draw_mesh(const char *folder, feti_problem *problem, const case_data *data, const double *u, const double *lambda,
                       const int32_t *state)
 {
@@ -131,13 +132,13 @@ static void draw_mesh(const char *folder, feti_problem *problem, const case_data
     picture_contact contact;
     double *force = demo_array(data->unknowns, sizeof *force), *slack = demo_array(data->rows, sizeof *slack);
 
-    /* feti_reaction: what the rows of one kind do to a body, here -B'lambda. (N) */
+    /* feti_reaction: force of the rows of one kind on a body, here -B'lambda. (N) */
     for (int64_t b = 0; b < 2; b++) {
         const case_body *body = &data->body[b];
         CALL(feti_reaction(problem, FETI_INEQUALITY, b, body->n, force + body->first));
         if (picture_quads(data, body, 2, &mesh[b]) != 0) demo_stop("out of memory");
     }
-    CALL(feti_gaps(problem, data->rows, slack)); /* what is left of the gaps. (mm) */
+    CALL(feti_gaps(problem, data->rows, slack)); /* open gaps (mm) */
     if (picture_contact_of(data, 2, lambda, slack, state, &contact) != 0) demo_stop("out of memory");
     if (picture_case(folder, "hertz_cylinder.vtu", data, 2, mesh, u, force, &contact) != 0)
         demo_stop("hertz_cylinder.vtu cannot be written");
@@ -191,7 +192,7 @@ int main(int argc, char **argv)
     CALL(feti_problem_create(&problem));
     hand_over(problem, &data);
 
-    /* The library tells note of every step. */
+    /* The library calls note at every step. */
     feti_info info = { .struct_size = sizeof info };
     steps_taken *taken = demo_array(1, sizeof *taken);
     CALL(feti_on_progress(problem, note, taken));

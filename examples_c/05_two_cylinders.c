@@ -79,8 +79,8 @@ static void print_forces(const double *lambda, const double *by_paper)
     const double half_width = sqrt(4.0 * load * 0.5 / (pi * 0.5 * 2.1e5));
     demo_value("force between the discs", load, "N");
     demo_value("largest nodal force", largest, "N");
-    demo_value("the same after Hertz", angle * 2.0 * load / (pi * half_width), "N");
-    demo_value("the same by the paper", paper, "N");
+    demo_value("nodal force after Hertz", angle * 2.0 * load / (pi * half_width), "N");
+    demo_value("nodal force, paper's method", paper, "N");
 }
 
 int main(int argc, char **argv)

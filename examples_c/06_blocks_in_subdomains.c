@@ -34,7 +34,7 @@ static int64_t unknown(const rectangle *r, int i, int j)
     return k < 0 || l < 0 || k > r->nx || l > r->ny ? -1 : 2 * (k * (r->ny + 1) + l);
 }
 
-/* Stiffness of a square element, plane strain, 8 x 8, 2 x 2 Gauss points: the same for every size. Corners (0,0),
+/* Stiffness of a square element, plane strain, 8 x 8, 2 x 2 Gauss points, independent of the size. Corners (0,0),
    (1,0), (0,1), (1,1). */
 static void element(double k[8][8])
 {

@@ -260,7 +260,7 @@ int main(void)
     demo_value("top, left corner", 1e3 * u[unknown(&blocks[1], 0, NY) + 1], "um");
     demo_value("top, right corner", 1e3 * u[unknown(&blocks[1], NX, NY) + 1], "um");
     demo_value("factorisations by the library", (double)own.factorisations, "-");
-    demo_value("the same with matrices", (double)reference.factorisations, "-");
+    demo_value("factorisations with matrices", (double)reference.factorisations, "-");
 
     const double error = fmax(demo_error(ROWS, lambda, by_matrix), demo_error(blocks[1].n, u, u_by_matrix));
     const int ok = own.factorisations == 0 && reference.status == FETI_OK && fabs(sum - 5.0 * FORCE) < 1e-6;

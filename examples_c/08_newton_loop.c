@@ -30,7 +30,7 @@ enum { NX = 24, NY = 4, LINE = NY + 1, NODES = (NX - 1) * LINE, N = 2 * NODES, R
 static const double EA = 1000.0 /* N */, RADIUS = 10.0 /* mm */, DEPTH = 8.0 /* mm */, LEAST = 0.01 /* mm */;
 static const double MU = 0.3 /* - */, LESS = 6.0 /* mm, the depth with friction */;
 
-/* Lower triangle of K by rows: node (i, j) knows the nodes left of it, below it, and itself. */
+/* Lower triangle of K by rows: node (i, j) has entries with the nodes left of it and below it, and with itself. */
 typedef struct {
     int32_t ptr[N + 1], col[10 * N];
     double val[10 * N];
@@ -117,7 +117,7 @@ static double from_axis(const double *u, double depth, int i, double n[2])
     return r;
 }
 
-/* What the loop knows of friction: without it mu is 0 and so are the forces. Slips are RADIUS times an angle, mm. */
+/* Friction data of the loop: without friction mu and the forces are 0. Slips are RADIUS times an angle, mm. */
 typedef struct {
     double mu, lambda_t[ROWS], s_begin[ROWS];
 } friction;
@@ -226,7 +226,7 @@ static cost with_fixed_tangent(feti_problem *problem, double depth, double *u, f
     return sum;
 }
 
-/* Newton's method at a depth of the die. Returns FETI_OK, or what the library says to a step that is too large, or
+/* Newton's method at a depth of the die. Returns FETI_OK, the status of the library for a step that is too large, or
    FETI_ITERATIONS. `quadratic`: no change was more than its predecessor squared, once that was small. */
 static int32_t newton(feti_problem *problem, matrix *k, double depth, double *u, double *lambda, friction *rub, cost *sum,
                       feti_info *info, int *quadratic)

@@ -36,7 +36,8 @@ static int unknown(int i, int j)
     return 2 * (i + SIDE * j);
 }
 
-/* Stiffness of a square element, plane strain, 2 x 2 Gauss points: the same for every edge. Corners (0,0), (1,0), (0,1), (1,1). */
+/* Stiffness of a square element, plane strain, 2 x 2 Gauss points, independent of the edge length. Corners (0,0), (1,0),
+   (0,1), (1,1). */
 static void element(double k[8][8])
 {
     const double mu = YOUNG / (2.0 * (1.0 + POISSON)), la = 2.0 * mu * POISSON / (1.0 - 2.0 * POISSON);

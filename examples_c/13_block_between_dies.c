@@ -34,7 +34,7 @@ static const double DEPTH = 1.0, TURN = 60.0;                   /* mm, degrees: 
 static const double LEAST = 0.01;                               /* of a stage: no step is smaller */
 static const double DEGREE = 3.14159265358979323846 / 180.0;    /* rad */
 
-/* Lower triangle of K by rows: node (i, j) knows the nodes left of it, below it, and itself. */
+/* Lower triangle of K by rows: node (i, j) has entries with the nodes left of it and below it, and with itself. */
 typedef struct {
     int32_t ptr[N + 1], col[10 * N];
     double val[10 * N];
@@ -243,7 +243,7 @@ typedef struct {
     int steps, rejected, most, quadratic;
 } tally;
 
-/* Newton's method for a place of the dies; prints a line per iteration. Returns FETI_OK, or what the library says to a step
+/* Newton's method for a place of the dies; prints a line per iteration. Returns FETI_OK, or the status of the library for a step
    that is too large, or FETI_ITERATIONS. Cleared: `quadratic`, where a change is more than twice its predecessor squared (mm),
    once that is below 1 mm. Less than 1e-9 is printed as 1e-9. */
 static int32_t newton(feti_problem *problem, matrix *k, const place *at, double *u, double *lambda, feti_info *info,

@@ -12,7 +12,7 @@ typedef struct {
     const char *title, *x_name, *y_name, *points_name, *curve_name;
     int64_t points, samples;
     const double *x, *y;             /* points */
-    const double *curve_x, *curve_y; /* samples; NaN: another curve begins behind it */
+    const double *curve_x, *curve_y; /* samples; NaN: the next curve begins after it */
 } picture;
 
 /* Writes folder/name and prints "picture folder/name". Returns 0, or -1 when the file cannot be written. */
@@ -33,14 +33,14 @@ int picture_hexahedra(const case_data *data, const case_body *body, int64_t stri
 
 void picture_mesh_free(picture_mesh *mesh);
 
-/* What the contact rows say of the nodes: every row belongs to one node, that of the body which has only one node in it. */
+/* Contact results at the nodes: every row belongs to one node, that of the body which has only one node in it. */
 typedef struct {
     double *pressure; /* force of the row over the area (in the plane: length) that belongs to the node; 0 without a row */
-    double *gap;      /* what is left of the gap, length; NaN without a row */
+    double *gap;      /* open gap, length; NaN without a row */
     double *state;    /* FETI_ROW_OPEN, _CLOSED, _WEAK, _UNKNOWN; -1 without a row */
 } picture_contact;
 
-/* Of the answer: lambda (force), slack (gap, length) and state of every contact row. Returns 0, or -1 on failure. */
+/* From the answer: lambda (force), slack (gap, length) and state of every contact row. Returns 0, or -1 on failure. */
 int picture_contact_of(const case_data *data, int32_t dims, const double *lambda, const double *slack, const int32_t *state,
                        picture_contact *out);
 void picture_contact_free(picture_contact *contact);
@@ -66,8 +66,8 @@ typedef struct {
    "picture folder/name". Returns 0, or -1 on failure. */
 int picture_vtu(const char *folder, const char *name, const picture_grid *grid);
 
-/* The same for the bodies of a case: cells, displacement u and contact force on every node as vectors (dims unknowns a node, node
-   by node), pressure, gap and contact state. */
+/* Writes the bodies of a case as picture_vtu does: cells, displacement u and contact force on every node as vectors (dims unknowns
+   per node, node by node), pressure, gap and contact state. */
 int picture_case(const char *folder, const char *name, const case_data *data, int32_t dims, const picture_mesh *mesh,
                  const double *u, const double *force, const picture_contact *contact);
 

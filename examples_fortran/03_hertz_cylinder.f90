@@ -17,7 +17,7 @@ module hertz_steps
   use feti_contact, only: feti_progress, FETI_PHASE_SOLVE
   implicit none
 
-  !> The steps of the solve, and what is left of the residual after each over the limit at which it ends.
+  !> The steps of the solve, and the residual after each step relative to the limit that ends the solve.
   type :: steps_taken
     integer :: steps = 0
     real(dp) :: residual(1000) = 0
@@ -25,7 +25,7 @@ module hertz_steps
 
 contains
 
-  !> Hears of every step: 0 goes on.
+  !> The library calls it at every step; 0: the solve continues.
   integer function note(now, data)
     type(feti_progress), intent(in) :: now
     class(*), intent(inout) :: data
@@ -67,7 +67,7 @@ program hertz_cylinder
   call feti_problem_create(problem)
   call hand_over
 
-  ! The library tells note of every step. A function of the host is a procedure of a module, not of a program.
+  ! The library calls note at every step. A function of the host is a procedure of a module, not of a program.
   call feti_on_progress(problem, note, taken)
   call feti_solve(problem, info)
   call feti_on_progress(problem)
@@ -87,7 +87,7 @@ program hertz_cylinder
   do b = 1, 2
     call feti_reaction(problem, FETI_INEQUALITY, b, force(first(b):last(b)))
   end do
-  call feti_gaps(problem, slack)  ! what is left of the gaps. (mm)
+  call feti_gaps(problem, slack)  ! open gaps (mm)
   call picture_case(picture_folder(), 'hertz_cylinder_fortran.vtu', host, [1, 1], u, force, lambda, slack, state)
   call feti_problem_destroy(problem)
 
@@ -176,13 +176,14 @@ contains
     end do
   end subroutine
 
-  !> Residual of every step, as powers of ten of the limit at which the solve ends.
+  !> Logarithm of the residual of every step, relative to the limit that ends the solve; the line of the limit ends one step
+  !> behind the last point, which thus lies inside the axes.
   subroutine draw_convergence
     integer :: i
 
     call picture_svg(picture_folder(), 'hertz_convergence_fortran.svg', 'Convergence: the residual of every step', 'step', &
-      'log10(residual / limit)', 'the solve ends', [(real(i, dp), i = 1, taken%steps)], log10(taken%residual(:taken%steps)), &
-      [0.0_dp, real(taken%steps, dp)], [0.0_dp, 0.0_dp])
+      'log10(residual / limit)', 'limit', [(real(i, dp), i = 1, taken%steps)], log10(taken%residual(:taken%steps)), &
+      [0.0_dp, real(taken%steps + 1, dp)], [0.0_dp, 0.0_dp])
   end subroutine
 
   !> Contact pressure of every node within 1.5 b against the ellipse of Hertz.

@@ -106,8 +106,8 @@ contains
     half_width = sqrt(4 * load * 0.5_dp / (pi * 0.5_dp * 2.1e5_dp))
     call demo_value('force between the discs', load, 'N')
     call demo_value('largest nodal force', maxval(lambda(:between)), 'N')
-    call demo_value('the same after Hertz', angle * 2 * load / (pi * half_width), 'N')
-    call demo_value('the same by the paper', maxval(by_paper(:between)), 'N')
+    call demo_value('nodal force after Hertz', angle * 2 * load / (pi * half_width), 'N')
+    call demo_value('nodal force, paper''s method', maxval(by_paper(:between)), 'N')
   end subroutine
 
 end program

@@ -76,7 +76,7 @@ contains
     if (k >= 0 .and. l >= 0 .and. k <= r%nx .and. l <= r%ny) unknown = 2 * (k * (r%ny + 1) + l) + 1
   end function
 
-  !> Stiffness of a square element, plane strain, 2 x 2 Gauss points: the same for every size. Corners (0,0), (1,0),
+  !> Stiffness of a square element, plane strain, 2 x 2 Gauss points, independent of the size. Corners (0,0), (1,0),
   !> (0,1), (1,1).
   function element() result(k)
     real(dp), parameter :: young = 1e4_dp, nu = 0.25_dp

@@ -65,7 +65,8 @@ C     unknowns, NHELD(IB) unknowns are held: IHELD(1..NHELD, IB).
      &          'um')
       CALL SHOW('factorisations by the library', DBLE(INFO(FTIFAC)),
      &          '-')
-      CALL SHOW('the same with matrices', DBLE(INFOM(FTIFAC)), '-')
+      CALL SHOW('factorisations with matrices', DBLE(INFOM(FTIFAC)),
+     &          '-')
       ERR = MAX(ERROR(NX + 1, RLAM, RLAMM), ERROR(N(2), U, UM))
       OK = INFO(FTIFAC) .EQ. 0 .AND. INFOM(FTISTA) .EQ. FTOK
       CALL DEMO(INFO, RINFO, ERR, OK .AND. ABS(SUM - 5D1) .LT. 1D-6)

@@ -28,7 +28,7 @@ program newton_loop
   real(dp), parameter :: ea = 1000, radius = 10, full_depth = 8, least = 0.01_dp   ! N, mm, mm, mm
   real(dp), parameter :: with_friction = 0.3_dp, less_depth = 6   ! -, mm: coefficient, the depth with friction
 
-  !> Lower triangle of K by rows: node (i, j) knows the nodes left of it, below it, and itself.
+  !> Lower triangle of K by rows: node (i, j) has entries with the nodes left of it and below it, and with itself.
   integer :: ptr(n + 1), col(10 * n), entries
   real(dp) :: val(10 * n)
 
@@ -44,7 +44,7 @@ program newton_loop
   integer :: body
   logical :: right
 
-  ! What the loop knows of friction: without it mu is 0 and so are the forces. Slips are radius times an angle, mm.
+  ! Friction data of the loop: without friction mu and the forces are 0. Slips are radius times an angle, mm.
   real(dp) :: mu, lambda_t(rows), s_begin(rows)
 
   u = 0
@@ -145,7 +145,7 @@ contains
     call unbalanced(force, error)
   end subroutine
 
-  !> Newton's method at a depth of the die. stat: FETI_OK, or what the library says to a step that is too large, or
+  !> Newton's method at a depth of the die. stat: FETI_OK, the status of the library for a step that is too large, or
   !> FETI_ITERATIONS. fast: no change was more than its predecessor squared, once that was small.
   subroutine newton(at_depth, stat, fast)
     real(dp), intent(in) :: at_depth

@@ -69,7 +69,7 @@ contains
     unknown = 2 * (i + side * j) + 1
   end function
 
-  !> Stiffness of a square element, plane strain, 2 x 2 Gauss points: the same for every edge. Corners (0,0), (1,0),
+  !> Stiffness of a square element, plane strain, 2 x 2 Gauss points, independent of the edge length. Corners (0,0), (1,0),
   !> (0,1), (1,1).
   function element() result(k)
     real(dp), parameter :: mu = young / (2 * (1 + poisson)), la = 2 * mu * poisson / (1 - 2 * poisson)

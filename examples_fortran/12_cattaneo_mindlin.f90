@@ -203,7 +203,7 @@ contains
     cattaneo = ellipse(at, half) - half_width(q) / half * ellipse(at, half_width(q))
   end function
 
-  !> The same on the path: to .9, back to -.9, to .9.
+  !> Shear on the path: to .9, back to -.9, to .9.
   pure real(dp) function mindlin(step, at)
     integer, intent(in) :: step
     real(dp), intent(in) :: at

@@ -37,7 +37,7 @@ program block_between_dies
     real(dp) :: depth = 0, angle = 0
   end type
 
-  !> Lower triangle of K by rows: node (i, j) knows the nodes left of it, below it, and itself.
+  !> Lower triangle of K by rows: node (i, j) has entries with the nodes left of it and below it, and with itself.
   integer :: ptr(n + 1), col(10 * n), entries
   real(dp) :: val(10 * n)
 
@@ -111,7 +111,7 @@ contains
     there = done >= 1
   end subroutine
 
-  !> Newton's method for the place of the dies; prints a line per iteration. stat: FETI_OK, or what the library says to a step
+  !> Newton's method for the place of the dies; prints a line per iteration. stat: FETI_OK, or the status of the library for a step
   !> that is too large, or FETI_ITERATIONS. fast: no change is more than twice its predecessor squared (mm), once that is
   !> below 1 mm. Less than 1e-9 is printed as 1e-9.
   subroutine newton(stat, iterations, fast)

@@ -7,11 +7,11 @@ module vtu_picture
   private
   public :: picture_case, contact_of_nodes, vtu_begin, vtu_cells, vtu_doubles, vtu_integers, vtu_next, vtu_end
 
-  !> What the contact rows say of the nodes: every row belongs to one node, that of the body which has only one node in it.
+  !> Contact results at the nodes: every row belongs to one node, that of the body which has only one node in it.
   type :: contact_of_nodes
     !> Force of the row over the area (in the plane: length) that belongs to the node; 0 without a row.
     real(dp), allocatable :: pressure(:)
-    !> What is left of the gap, length; NaN without a row.
+    !> Open gap, length; NaN without a row.
     real(dp), allocatable :: gap(:)
     !> FETI_ROW_OPEN, FETI_ROW_CLOSED, FETI_ROW_WEAK or FETI_ROW_UNKNOWN; -1 without a row.
     integer, allocatable :: state(:)

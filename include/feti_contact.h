@@ -511,9 +511,9 @@ int32_t feti_body_numbering_i64(struct feti_problem *p,
  *
  * The data are copied; another call replaces them. If you give neither coordinates nor a null
  * space, the library finds the null space from K. A null space given by feti_body_null_space takes
- * precedence over the coordinates. If K resists or drives the rigid body motions, see
- * feti_body_coordinates_flags. Shells and beams list a node again for its rotations. After a
- * failure the body keeps its previous data.
+ * precedence over the coordinates. If K has a small positive or negative stiffness along the rigid
+ * body motions, see feti_body_coordinates_flags. Shells and beams list a node again for its
+ * rotations. After a failure the body keeps its previous data.
  *
  * @param[in] p    (scalar) the handle
  * @param[in] body (scalar) number of the body, from 0
@@ -542,13 +542,13 @@ int32_t feti_body_coordinates(struct feti_problem *p,
  *
  * The flag applies to all coordinates of the body (feti_body_coordinates), whether they are given
  * before or after this call; the default is FETI_CANDIDATES. With FETI_SOFT, weak springs,
- * rounding of the entries of K, geometric stiffness and supports may resist or drive the motions,
- * and the motions need not be exact. The library computes the motions and their stiffness from K
- * and takes them into account exactly, as it does for motions given to feti_body_null_space with
- * FETI_SOFT. That function also describes what happens if K drives the body or has further null
- * vectors. The flag has no effect without coordinates or if a null space was given.
- * FETI_UNSUPPORTED from feti_setup if the host provides K+ (feti_body_operator). After a failure
- * the body keeps its previous flag.
+ * rounding of the entries of K, geometric stiffness and supports may give the motions a positive
+ * or negative stiffness, and the motions need not be exact. The library computes the motions and
+ * their stiffness from K and takes them into account exactly, as it does for motions given to
+ * feti_body_null_space with FETI_SOFT. That function also describes what happens if K is
+ * indefinite or has further null vectors. The flag has no effect without coordinates or if a null
+ * space was given. FETI_UNSUPPORTED from feti_setup if the host provides K+ (feti_body_operator).
+ * After a failure the body keeps its previous flag.
  *
  * @param[in] p     (scalar) the handle
  * @param[in] body  (scalar) number of the body, from 0
@@ -563,14 +563,14 @@ int32_t feti_body_coordinates_flags(struct feti_problem *p, int64_t body, int32_
  * The basis is copied; another call replaces it. If you do not call this function, the coordinates
  * of the unknowns give candidates (feti_body_coordinates); without coordinates the library finds
  * the null space from K. feti_setup checks that `K R = 0` holds. With FETI_SOFT this equation need
- * not hold: weak springs, rounding of the entries of K and geometric stiffness may resist or drive
- * the motions. The columns then only choose the fixing unknowns; the library computes the motions
- * and their stiffness from K and takes them into account exactly. If K is still indefinite with
- * these unknowns fixed, the library fixes up to six more, each with its own column in
- * feti_body_null_space_get. FETI_UNSUPPORTED from feti_setup if the host provides K+
- * (feti_body_operator); FETI_INDEFINITE from feti_setup if K drives more motions than that, and
- * from feti_solve if the contact does not restrain a driven motion. After a failure the body keeps
- * its previous basis.
+ * not hold: weak springs, rounding of the entries of K and geometric stiffness may give the
+ * motions a positive or negative stiffness. The columns then only choose the fixing unknowns; the
+ * library computes the motions and their stiffness from K and takes them into account exactly. If
+ * K is still indefinite with these unknowns fixed, the library fixes up to six more, each with its
+ * own column in feti_body_null_space_get. FETI_UNSUPPORTED from feti_setup if the host provides K+
+ * (feti_body_operator); FETI_INDEFINITE from feti_setup if K has negative stiffness along more
+ * motions than that, and from feti_solve if the contact does not restrain a motion with negative
+ * stiffness. After a failure the body keeps its previous basis.
  *
  * @param[in] p     (scalar) the handle
  * @param[in] body  (scalar) number of the body, from 0
@@ -1690,9 +1690,9 @@ int32_t feti_setup(struct feti_problem *p);
  * does not pass; FETI_MARGINAL if a part of the load, below 1e-7 of it, is not held. With a status
  * below 0 the group of bodies concerned has no answer. FETI_LOAD_NOT_HELD if no contact force
  * balances the load; FETI_SLIDES if friction holds only a part of the load and no equilibrium was
- * found; FETI_GAPS_CONTRADICT if rows contradict each other; FETI_INDEFINITE if K drives a soft
- * motion and the closed rows do not stop it. feti_diagnosis has the proof of each. The call runs
- * feti_setup when it is due, and then fails for the same reasons.
+ * found; FETI_GAPS_CONTRADICT if rows contradict each other; FETI_INDEFINITE if K has negative
+ * stiffness along a motion that closed rows do not stop. feti_diagnosis has the proof of each. The
+ * call runs feti_setup when it is due, and then fails for the same reasons.
  *
  * @param[in]     p    (scalar) the handle
  * @param[in,out] info (scalar) `struct_size` set, at least 16; may be NULL
@@ -2202,10 +2202,10 @@ typedef struct feti_findings {
    */
   int64_t untouched_body;
   /**
-   * Margin by which there is no solution, above 0 and at most 1. After FETI_INDEFINITE of a driven
-   * motion: 1 - 1 / rho, where rho is the ratio of the driving to the resisting stiffness. After
-   * FETI_LOAD_NOT_HELD: the fraction of the resultant load that nothing holds. After
-   * FETI_GAPS_CONTRADICT: |w'c| over |w|'|c| for the weights w. Otherwise NaN.
+   * Margin by which there is no solution, above 0 and at most 1. After FETI_INDEFINITE with a motion
+   * of negative stiffness: 1 - 1 / rho, where rho is the ratio of the negative stiffness to the
+   * stiffness of the closed rows. After FETI_LOAD_NOT_HELD: the fraction of the resultant load that
+   * nothing holds. After FETI_GAPS_CONTRADICT: |w'c| over |w|'|c| for the weights w. Otherwise NaN.
    */
   double margin;
   /**
@@ -2229,7 +2229,7 @@ typedef struct feti_findings {
    */
   int64_t doubtful_body;
   /**
-   * Bodies with rigid body motions that K resists or drives weakly, because of weak springs,
+   * Bodies with rigid body motions of small positive or negative stiffness, because of weak springs,
    * rounding or geometric stiffness.
    */
   int64_t soft_bodies;
@@ -2266,9 +2266,9 @@ int32_t feti_diagnosis(struct feti_problem *p, struct feti_findings *out);
  *
  * The load does work on this motion, and no row resists it. The motion is scaled so that its
  * largest entry over all bodies is 1; bodies that do not move have zeros. After FETI_SLIDES it is
- * the motion that friction does not hold, and after FETI_INDEFINITE the motion that K drives and
- * closed rows do not stop. FETI_STATE unless the last solve ended with one of these statuses and
- * found a motion. After a failure nothing is written.
+ * the motion that friction does not hold, and after FETI_INDEFINITE the motion with negative
+ * stiffness that closed rows do not stop. FETI_STATE unless the last solve ended with one of these
+ * statuses and found a motion. After a failure nothing is written.
  *
  * @param[in]  p    (scalar) the handle
  * @param[in]  body (scalar) number of the body, from 0
@@ -3235,8 +3235,8 @@ int32_t feti_problem_error(struct feti_problem *p, char *buf, int64_t cap, int64
 #define FETI_NULL_SPACE -8
 
 /**
- * A stiffness matrix has a negative or vanishing pivot outside its null space, or drives a soft
- * motion that the contact does not stop.
+ * A stiffness matrix has a negative or vanishing pivot outside its null space, or negative
+ * stiffness along a motion that the contact does not stop.
  */
 #define FETI_INDEFINITE -9
 

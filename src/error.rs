@@ -62,9 +62,9 @@ pub struct Place {
     pub entry: Option<usize>,
     /// Position in a text or a file.
     pub byte: Option<usize>,
-    /// The number found where it is an index, from 0; texts ([`INDEX`]) and details have it as the host gave it.
+    /// The number found if it is an index, from 0; texts ([`INDEX`]) and details show it in the host's counting.
     pub index: Option<i64>,
-    /// What `index` counts from where the arrays of the call have said so; else `base`.
+    /// The base of `index` if the arrays of the call define it; otherwise `base` of the texts.
     pub index_base: Option<i64>,
     /// The number found ...
     pub value: Option<f64>,
@@ -72,11 +72,11 @@ pub struct Place {
     pub limit: Option<f64>,
 }
 
-/// Stands in a text for the index that was found.
+/// Placeholder in a text for the index that was found.
 pub const INDEX: &str = "{index}";
 
 impl Place {
-    /// The index found, as the host gave it.
+    /// The index found, in the host's counting.
     pub fn given_index(&self) -> Option<i64> {
         self.index.map(|index| index.saturating_add(self.index_base.unwrap_or(self.base)))
     }
@@ -115,7 +115,7 @@ pub struct Error {
     pub proof: Option<Box<Proof>>,
 }
 
-/// A method for each of these fields of [`Place`]: the same error with it.
+/// A method for each of these fields of [`Place`] that sets it in an error.
 macro_rules! with_places {
     ($($(#[$doc:meta])* $field:ident: $number:ty),+ $(,)?) => {$(
         $(#[$doc])*
@@ -153,13 +153,13 @@ impl Error {
         limit: f64,
     }
 
-    /// Indices of the call count from `base`, those of an array of the host.
+    /// Sets the base of index arrays of this call.
     pub fn index_from(mut self, base: i64) -> Self {
         self.place.index_base = Some(base);
         self
     }
 
-    /// What was wrong, with the index as the host gave it.
+    /// The text with the index in the host's counting.
     fn told(&self) -> String {
         match self.place.given_index() {
             Some(index) => self.what.replace(INDEX, &index.to_string()),
@@ -172,7 +172,7 @@ impl Error {
         self
     }
 
-    /// The same error with its text counting from `base` (1 for Fortran hosts).
+    /// The error with a text that counts from `base` (1 for Fortran hosts).
     pub fn counted_from(mut self, base: i64) -> Self {
         self.place.base = base;
         self

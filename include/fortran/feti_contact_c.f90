@@ -401,8 +401,9 @@ module feti_contact_c
     !>
     !> The data are copied; another call replaces them. If you give neither coordinates nor a null space, the
     !> library finds the null space from K. A null space given by feti_body_null_space takes precedence over
-    !> the coordinates. If K resists or drives the rigid body motions, see feti_body_coordinates_flags. Shells
-    !> and beams list a node again for its rotations. After a failure the body keeps its previous data.
+    !> the coordinates. If K has a small positive or negative stiffness along the rigid body motions, see
+    !> feti_body_coordinates_flags. Shells and beams list a node again for its rotations. After a failure the
+    !> body keeps its previous data.
     !>
     !> @param[in] p    (scalar) the handle
     !> @param[in] body (scalar) number of the body, from 0
@@ -433,12 +434,12 @@ module feti_contact_c
     !>
     !> The flag applies to all coordinates of the body (feti_body_coordinates), whether they are given before
     !> or after this call; the default is FETI_CANDIDATES. With FETI_SOFT, weak springs, rounding of the
-    !> entries of K, geometric stiffness and supports may resist or drive the motions, and the motions need
-    !> not be exact. The library computes the motions and their stiffness from K and takes them into account
-    !> exactly, as it does for motions given to feti_body_null_space with FETI_SOFT. That function also
-    !> describes what happens if K drives the body or has further null vectors. The flag has no effect without
-    !> coordinates or if a null space was given. FETI_UNSUPPORTED from feti_setup if the host provides K+
-    !> (feti_body_operator). After a failure the body keeps its previous flag.
+    !> entries of K, geometric stiffness and supports may give the motions a positive or negative stiffness,
+    !> and the motions need not be exact. The library computes the motions and their stiffness from K and
+    !> takes them into account exactly, as it does for motions given to feti_body_null_space with FETI_SOFT.
+    !> That function also describes what happens if K is indefinite or has further null vectors. The flag has
+    !> no effect without coordinates or if a null space was given. FETI_UNSUPPORTED from feti_setup if the
+    !> host provides K+ (feti_body_operator). After a failure the body keeps its previous flag.
     !>
     !> @param[in] p     (scalar) the handle
     !> @param[in] body  (scalar) number of the body, from 0
@@ -457,13 +458,13 @@ module feti_contact_c
     !> The basis is copied; another call replaces it. If you do not call this function, the coordinates of the
     !> unknowns give candidates (feti_body_coordinates); without coordinates the library finds the null space
     !> from K. feti_setup checks that `K R = 0` holds. With FETI_SOFT this equation need not hold: weak
-    !> springs, rounding of the entries of K and geometric stiffness may resist or drive the motions. The
-    !> columns then only choose the fixing unknowns; the library computes the motions and their stiffness from
-    !> K and takes them into account exactly. If K is still indefinite with these unknowns fixed, the library
-    !> fixes up to six more, each with its own column in feti_body_null_space_get. FETI_UNSUPPORTED from
-    !> feti_setup if the host provides K+ (feti_body_operator); FETI_INDEFINITE from feti_setup if K drives
-    !> more motions than that, and from feti_solve if the contact does not restrain a driven motion. After a
-    !> failure the body keeps its previous basis.
+    !> springs, rounding of the entries of K and geometric stiffness may give the motions a positive or
+    !> negative stiffness. The columns then only choose the fixing unknowns; the library computes the motions
+    !> and their stiffness from K and takes them into account exactly. If K is still indefinite with these
+    !> unknowns fixed, the library fixes up to six more, each with its own column in feti_body_null_space_get.
+    !> FETI_UNSUPPORTED from feti_setup if the host provides K+ (feti_body_operator); FETI_INDEFINITE from
+    !> feti_setup if K has negative stiffness along more motions than that, and from feti_solve if the contact
+    !> does not restrain a motion with negative stiffness. After a failure the body keeps its previous basis.
     !>
     !> @param[in] p     (scalar) the handle
     !> @param[in] body  (scalar) number of the body, from 0
@@ -1596,8 +1597,8 @@ module feti_contact_c
     !> the load, below 1e-7 of it, is not held. With a status below 0 the group of bodies concerned has no
     !> answer. FETI_LOAD_NOT_HELD if no contact force balances the load; FETI_SLIDES if friction holds only a
     !> part of the load and no equilibrium was found; FETI_GAPS_CONTRADICT if rows contradict each other;
-    !> FETI_INDEFINITE if K drives a soft motion and the closed rows do not stop it. feti_diagnosis has the
-    !> proof of each. The call runs feti_setup when it is due, and then fails for the same reasons.
+    !> FETI_INDEFINITE if K has negative stiffness along a motion that closed rows do not stop. feti_diagnosis
+    !> has the proof of each. The call runs feti_setup when it is due, and then fails for the same reasons.
     !>
     !> @param[in]     p    (scalar) the handle
     !> @param[in,out] info (scalar) `struct_size` set, at least 16; may be NULL
@@ -2158,10 +2159,10 @@ module feti_contact_c
     integer(c_int64_t) :: untouched_bodies
     !> The first of these bodies; -1: none.
     integer(c_int64_t) :: untouched_body
-    !> Margin by which there is no solution, above 0 and at most 1. After FETI_INDEFINITE of a driven motion:
-    !> 1 - 1 / rho, where rho is the ratio of the driving to the resisting stiffness. After
-    !> FETI_LOAD_NOT_HELD: the fraction of the resultant load that nothing holds. After FETI_GAPS_CONTRADICT:
-    !> |w'c| over |w|'|c| for the weights w. Otherwise NaN.
+    !> Margin by which there is no solution, above 0 and at most 1. After FETI_INDEFINITE with a motion of
+    !> negative stiffness: 1 - 1 / rho, where rho is the ratio of the negative stiffness to the stiffness of
+    !> the closed rows. After FETI_LOAD_NOT_HELD: the fraction of the resultant load that nothing holds. After
+    !> FETI_GAPS_CONTRADICT: |w'c| over |w|'|c| for the weights w. Otherwise NaN.
     real(c_double) :: margin
     !> Rigid body motion of the escaping body: velocity of the origin and rotation about the axes; NaN without
     !> coordinates. feti_diagnosis_motion gives the motion of every unknown.
@@ -2175,8 +2176,8 @@ module feti_contact_c
     integer(c_int64_t) :: doubtful_bodies
     !> The first of these bodies; -1: none.
     integer(c_int64_t) :: doubtful_body
-    !> Bodies with rigid body motions that K resists or drives weakly, because of weak springs, rounding or
-    !> geometric stiffness.
+    !> Bodies with rigid body motions of small positive or negative stiffness, because of weak springs,
+    !> rounding or geometric stiffness.
     integer(c_int64_t) :: soft_bodies
     !> The first of these bodies; -1: none.
     integer(c_int64_t) :: soft_body
@@ -2219,9 +2220,9 @@ module feti_contact_c
     !>
     !> The load does work on this motion, and no row resists it. The motion is scaled so that its largest
     !> entry over all bodies is 1; bodies that do not move have zeros. After FETI_SLIDES it is the motion that
-    !> friction does not hold, and after FETI_INDEFINITE the motion that K drives and closed rows do not stop.
-    !> FETI_STATE unless the last solve ended with one of these statuses and found a motion. After a failure
-    !> nothing is written.
+    !> friction does not hold, and after FETI_INDEFINITE the motion with negative stiffness that closed rows
+    !> do not stop. FETI_STATE unless the last solve ended with one of these statuses and found a motion.
+    !> After a failure nothing is written.
     !>
     !> @param[in]  p    (scalar) the handle
     !> @param[in]  body (scalar) number of the body, from 0
@@ -3067,8 +3068,8 @@ module feti_contact_c
   integer(c_int32_t), parameter, public :: FETI_GAPS_CONTRADICT = -7_c_int32_t
   !> The null space of a body is not the one that was given, or was not found.
   integer(c_int32_t), parameter, public :: FETI_NULL_SPACE = -8_c_int32_t
-  !> A stiffness matrix has a negative or vanishing pivot outside its null space, or drives a soft motion that
-  !> the contact does not stop.
+  !> A stiffness matrix has a negative or vanishing pivot outside its null space, or negative stiffness along
+  !> a motion that the contact does not stop.
   integer(c_int32_t), parameter, public :: FETI_INDEFINITE = -9_c_int32_t
   !> A file could not be read or written.
   integer(c_int32_t), parameter, public :: FETI_IO = -10_c_int32_t

@@ -210,7 +210,7 @@ contains
   end subroutine
 
   !> Rigid body motion with which a body escapes, v(n), scaled to a largest entry of 1 over all bodies; after
-  !> FETI_LOAD_NOT_HELD, or after FETI_INDEFINITE because of a motion that K drives.
+  !> FETI_LOAD_NOT_HELD, or after FETI_INDEFINITE because of a motion with negative stiffness.
   recursive subroutine diagnosis_motion(p, body, v, stat, errmsg)
     type(feti_problem), intent(in) :: p
     integer, intent(in) :: body

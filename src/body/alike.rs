@@ -1,4 +1,4 @@
-//! Equal bodies, and matrices with equal patterns: found by keys, confirmed entry by entry.
+//! Equal bodies, and matrices with equal patterns: found by hash keys and confirmed entry by entry.
 
 use crate::body::null_space::NullSpaceInput;
 use crate::body::rigid_modes::Coordinates;
@@ -6,7 +6,7 @@ use crate::body::Body;
 use crate::linalg::hash::{hash, START};
 use crate::linalg::Symmetric;
 
-/// Equal bit by bit: also the sign of zero counts.
+/// Equal bit by bit, including the sign of zero.
 pub fn same_bits(a: &[f64], b: &[f64]) -> bool {
     a.len() == b.len() && a.iter().zip(b).all(|(a, b)| a.to_bits() == b.to_bits())
 }
@@ -24,7 +24,7 @@ pub fn same_matrix(a: &Symmetric, b: &Symmetric) -> bool {
     same_pattern(a, b) && same_bits(&a.val, &b.val)
 }
 
-/// Whether the host has said the same about both besides the matrix and the load.
+/// Whether the input for both bodies is equal, apart from matrix and load.
 fn same_input(a: &Body, b: &Body) -> bool {
     a.fixing == b.fixing
         && a.soft_coordinates == b.soft_coordinates
@@ -44,19 +44,19 @@ pub fn same_vectors(a: &NullSpaceInput, b: &NullSpaceInput) -> bool {
     a.modes == b.modes && a.vectors.rows == b.vectors.rows && same_bits(&a.vectors.data, &b.vectors.data)
 }
 
-/// Equal for equal patterns; seldom equal for others.
+/// Hash key of the pattern: equal for equal patterns, rarely equal for different ones.
 pub fn pattern_key(k: &Symmetric) -> u64 {
     let words = k.ptr.iter().map(|&at| at as u64).chain(k.col.iter().map(|&col| u64::from(col)));
     hash(START, words)
 }
 
-/// The same for the values; the pattern has its own.
+/// Hash key of the values, without the pattern.
 pub fn value_key(k: &Symmetric) -> u64 {
     hash(START, k.val.iter().map(|v| v.to_bits()))
 }
 
-/// The same for what [`same_body`] compares besides the matrix, by some of its numbers: equal meshes in different places have
-/// one matrix and each its own motions.
+/// Hash key of the input that [`same_body`] compares besides the matrix, from a sample of its numbers: equal meshes at
+/// different places have equal matrices but different rigid motions.
 pub fn input_key(body: &Body) -> u64 {
     const SOME: usize = 64;
     let some = |key: u64, values: &[f64]| {

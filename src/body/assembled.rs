@@ -1,4 +1,4 @@
-//! K of a body that is cut: the sum of the matrices of its pieces, applied matrix-free.
+//! K of a body that is cut: the sum of the matrices of its pieces, applied without assembly.
 
 use std::sync::Arc;
 
@@ -20,7 +20,7 @@ pub struct Assembled {
 }
 
 impl Assembled {
-    /// Each unknown belongs to some piece; `diagonal` is as many zeros as there are unknowns, `room_for` them.
+    /// Each unknown must belong to a piece; `diagonal`: one zero per unknown, from `room_for`.
     pub fn new(mut diagonal: Vec<f64>, pieces: impl Iterator<Item = (Arc<[u32]>, Arc<Symmetric>)>) -> Self {
         let pieces: Vec<_> = pieces.collect();
         for (dofs, k) in &pieces {
@@ -29,7 +29,7 @@ impl Assembled {
         Self { pieces, diagonal }
     }
 
-    /// What a body of n unknowns takes besides its pieces.
+    /// Memory for a body of n unknowns in addition to its pieces.
     pub fn room_for(n: usize) -> Result<Vec<f64>> {
         zeros(n, "a stiffness matrix")
     }
@@ -42,7 +42,7 @@ impl Assembled {
         self.diagonal[i]
     }
 
-    /// `D_ii` of the metric in which all of K is measured: `K_ii`, or `without` for a dof that has no stiffness.
+    /// `D_ii` of the metric for K: `K_ii`, or `without` for a dof without stiffness.
     pub fn metric(&self, i: usize, without: f64) -> f64 {
         Some(self.diagonal[i]).filter(|diagonal| *diagonal > 0.0).unwrap_or(without)
     }
@@ -84,7 +84,7 @@ impl Assembled {
         Ok(())
     }
 
-    /// `y += by K x` in twice the digits, by a power of two.
+    /// `y += by K x` in double-double arithmetic; `by` is a power of two.
     pub fn add_twofold(&self, by: f64, x: &[f64], y: &mut [Twofold]) -> Result<()> {
         let largest = self.largest();
         let (mut own, mut sums) = (zeros(largest, WHAT)?, filled(largest, Twofold::default(), WHAT)?);
@@ -104,7 +104,8 @@ impl Assembled {
         self.pieces.iter().map(|(dofs, _)| dofs.len())
     }
 
-    /// The connected part of every unknown, numbered by their first unknowns, and their number. Entries that are 0 connect nothing.
+    /// The connected component of every unknown, numbered by first unknowns, and the number of components. Entries that
+    /// are 0 connect nothing.
     pub fn components(&self) -> (Vec<usize>, usize) {
         let rows = self.pieces.iter().flat_map(|(dofs, k)| {
             let joined =
@@ -114,7 +115,7 @@ impl Assembled {
         graph::joined(self.order(), rows)
     }
 
-    /// Bytes that the library keeps for it.
+    /// Bytes that the library keeps for this matrix.
     pub fn bytes(&self) -> usize {
         let of_pieces = self.pieces.iter().map(|(dofs, k)| size_of_val(&dofs[..]) + k.bytes()).sum::<usize>();
         of_pieces + size_of_val(&self.diagonal[..])
@@ -129,7 +130,7 @@ impl Assembled {
         }
     }
 
-    /// `work(K_s, A_s'x)` of every piece, in their order.
+    /// `work(K_s, A_s'x)` of every piece, in the order of the pieces.
     fn of_pieces<T: Send>(
         &self,
         x: &[f64],

@@ -10,14 +10,14 @@ const WHAT: &str = "the pattern of a stiffness matrix";
 
 /// The columns of a matrix, counted from 0.
 pub enum Columns<'a> {
-    /// As the matrix keeps them.
+    /// In the form that the matrix stores.
     Kept(Borrowed<u32>),
-    /// By their position, to be copied.
+    /// As a function of the position, to be copied.
     Given(&'a dyn Fn(usize) -> i64),
 }
 
-/// The matrix of these rows without a copy of its values, if they are in the form in which it is kept: the lower triangle,
-/// columns ascending, the diagonal at the end of every row. `None` where they are not, or a value is not finite.
+/// The matrix of these rows without a copy of its values, if they have the stored form: lower triangle, ascending
+/// columns, the diagonal at the end of every row. `None` if they do not, or if a value is not finite.
 pub fn from_borrowed(ptr: &[usize], col: Columns<'_>, val: Borrowed<f64>) -> Result<Option<Symmetric>> {
     check_order(ptr.len() - 1)?;
     let col: Array<u32> = match col {
@@ -47,7 +47,7 @@ mod tests {
     use super::*;
 
     fn borrowed<T>(numbers: &[T]) -> Borrowed<T> {
-        // SAFETY: the tests keep their arrays.
+        // SAFETY: the tests keep their arrays alive.
         unsafe { Borrowed::new(NonNull::from(numbers).cast(), numbers.len()) }
     }
 

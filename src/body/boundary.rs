@@ -7,7 +7,7 @@ use crate::error::Result;
 use crate::linalg::cholesky::inverse_form;
 use crate::linalg::{Analysis, Csr, Operator, Packed, Symmetric};
 
-/// `scale K_bb`: the other dofs held.
+/// `scale K_bb`: the other dofs are held.
 pub fn lumped(k: &Symmetric, scale: f64, boundary: &[usize]) -> Result<Box<dyn Operator + Send>> {
     let local = positions(k.order(), boundary);
     let mut part = Symmetric::empty();
@@ -17,14 +17,14 @@ pub fn lumped(k: &Symmetric, scale: f64, boundary: &[usize]) -> Result<Box<dyn O
     Ok(Box::new(part))
 }
 
-/// `scale D_bb` of a body whose stiffness the host keeps.
+/// `scale D_bb` of a body whose stiffness matrix stays with the host.
 pub fn diagonal(k: &HostOperator, scale: f64, boundary: &[usize]) -> Result<Box<dyn Operator + Send>> {
     let mut part = Symmetric::empty();
     boundary.iter().enumerate().for_each(|(row, &dof)| part.push_row([(row, scale * k.diagonal(dof))]));
     Ok(Box::new(part))
 }
 
-/// `S = scale (K_bb - K_bi K_ii^-1 K_ib)`: the other dofs free.
+/// `S = scale (K_bb - K_bi K_ii^-1 K_ib)`: the other dofs are free.
 pub fn dirichlet(k: &Symmetric, scale: f64, boundary: &[usize]) -> Result<Box<dyn Operator + Send>> {
     let local = positions(k.order(), boundary);
     let held: Vec<bool> = local.iter().map(Option::is_some).collect();
@@ -32,7 +32,7 @@ pub fn dirichlet(k: &Symmetric, scale: f64, boundary: &[usize]) -> Result<Box<dy
         return lumped(k, scale, boundary);
     }
     let Ok(interior) = Arc::new(Analysis::new(k, &held)?).attempt(k, scale)? else {
-        return lumped(k, scale, boundary); // a part of the body hangs on no constrained dof
+        return lumped(k, scale, boundary); // some component of the body has no constrained dof
     };
     let mut schur = inverse_form(&interior, &coupling(k, scale, boundary, &local))?;
     schur.negate();
@@ -70,7 +70,7 @@ fn coupling(k: &Symmetric, scale: f64, boundary: &[usize], local: &[Option<usize
     coupling
 }
 
-/// Bytes of the Schur complement of so many dofs.
+/// Bytes of the Schur complement for `boundary` dofs.
 pub fn dirichlet_bytes(boundary: usize) -> usize {
     Packed::bytes(boundary)
 }

@@ -17,12 +17,12 @@ use crate::linalg::vector::{axpy, dot, norm};
 use crate::linalg::{Csr, Matrix, Multiple, Packed};
 use crate::platform::memory::zeros;
 
-/// Motions of which null vectors leave less of their length are null vectors.
+/// A motion is a null vector if less than this part of its length is left beside the null vectors.
 const DEPENDENT: f64 = 1e-6;
-/// Motions with a compliance L'T below this, against 1 / K_ii, are not among the softest: of a cube of 4^3 elements all have more than
-/// 8, of a thin layer that is held all over its face none has more than 2.
+/// Motions with a compliance L'T below this, relative to 1 / K_ii, stay in K+: all motions of a cube of 4^3 elements have
+/// more than 8, no motion of a thin layer held on a whole face has more than 2.
 const SOFT: f64 = 4.0;
-/// Compliances L'T so far apart are not told from rounding: supports of 1e12 K_ii, say.
+/// Compliances L'T with a ratio below this are not distinguished from rounding: for example supports of 1e12 K_ii.
 const APART: f64 = 1e-8;
 
 /// C with `C C' = T S T'`, n x q.
@@ -38,7 +38,8 @@ pub struct Motions {
     pub stiffness: Vec<f64>,
 }
 
-/// Of the rigid motions, in columns of their own; none where none is left, K drives one, or rounding hides them.
+/// Selected from the rigid motions, one per column; none if none is left, K has negative stiffness along one, or rounding
+/// hides them.
 pub(super) fn motions(
     factor: &Factor,
     k: &Multiple,
@@ -69,7 +70,7 @@ pub(super) fn motions(
     for (j, value) in compliance[first..].iter().enumerate() {
         c.col_mut(j).iter_mut().for_each(|c| *c /= value.sqrt());
     }
-    // R_c = C Q, Q'C'D C Q = I and Q'Q = diag(stiffness), but for null vectors
+    // R_c = C Q, Q'C'D C Q = I and Q'Q = diag(stiffness), up to null vectors
     let y = without(scaled(&c, |i| root[i])?, &null)?;
     let (square, turn) = symmetric_eigen(&symmetric(y.cols, |a, b| dot(y.col(a), y.col(b)))?)?;
     if square.iter().any(|value| value.is_nan() || *value <= 0.0) {
@@ -90,8 +91,8 @@ impl Carried {
         self.c.cols
     }
 
-    /// C~ for a K~+ near to K+, so that `K~+ - C~ C~'` is semidefinite as `K+ - C C'` is: with `L = K C`, whose `L'C = 1`,
-    /// `C~ C~' = T (L'T)^-1 T'`, `T = K~+ L`. None where K~+ is not near enough.
+    /// C~ for an approximation K~+ of K+, so that `K~+ - C~ C~'` is semidefinite like `K+ - C C'`: with `L = K C`, `L'C =
+    /// 1`, `C~ C~' = T (L'T)^-1 T'`, `T = K~+ L`. None if K~+ is not close enough.
     pub fn near(&self, k: &Multiple, solve: impl Fn(&mut [f64]) -> Result<()>) -> Result<Option<Self>> {
         let mut l = Matrix::zeros(self.c.rows, self.c.cols)?;
         (0..l.cols).for_each(|j| k.mul(self.c.col(j), l.col_mut(j)));
@@ -118,7 +119,7 @@ impl Carried {
         Ok(motions)
     }
 
-    /// `x <- K+ x - C C'x`, by solutions with K+.
+    /// `x <- K+ x - C C'x`, by solves with K+.
     pub fn apply_in_place(&self, x: &mut [f64], solve: impl FnOnce(&mut [f64]) -> Result<()>) -> Result<()> {
         let shares = self.c.mul_transposed(x);
         solve(x)?;
@@ -131,7 +132,7 @@ impl Carried {
         Matrix::from_fn(rows.rows(), self.c.cols, |i, j| rows.row_dot(i, self.c.col(j)))
     }
 
-    /// Takes `B C C'B'` from `B K+ B'`.
+    /// Subtracts `B C C'B'` from `B K+ B'`.
     pub fn take_from_form(&self, rows: &Csr, form: &mut Packed) -> Result<()> {
         let images = self.images(rows)?;
         let m = images.rows;
@@ -144,7 +145,7 @@ impl Carried {
         Ok(())
     }
 
-    /// The same from the columns `which` of it.
+    /// Subtracts the columns `which` of `B C C'B'` from those of `B K+ B'`.
     pub fn take_from_columns(&self, rows: &Csr, which: &[usize], columns: &mut Matrix) -> Result<()> {
         let images = self.images(rows)?;
         for (at, &j) in which.iter().enumerate() {
@@ -154,12 +155,12 @@ impl Carried {
     }
 }
 
-/// Rows times numbers.
+/// Multiplies row i by `by(i)`.
 fn scaled(matrix: &Matrix, by: impl Fn(usize) -> f64) -> Result<Matrix> {
     Matrix::from_fn(matrix.rows, matrix.cols, |i, j| by(i) * matrix.get(i, j))
 }
 
-/// The part of y that is orthogonal to orthonormal columns.
+/// The part of y orthogonal to orthonormal columns.
 fn without(mut y: Matrix, basis: &Matrix) -> Result<Matrix> {
     for _ in 0..2 {
         for j in 0..y.cols {
@@ -179,7 +180,7 @@ mod tests {
     use crate::platform::slabs::Slabs;
     use std::sync::Arc;
 
-    /// Two chains of n unit springs, each with a spring to the ground at its first dof, or none.
+    /// Two chains of n unit springs; a nonzero `ground` is a spring from the first dof to the ground.
     fn chains(n: usize, ground: [f64; 2]) -> Multiple {
         let mut k = Symmetric::empty();
         for (chain, ground) in ground.into_iter().enumerate() {
@@ -203,7 +204,8 @@ mod tests {
         GeneralizedInverse::plan(k.clone(), &input, 1e-8).unwrap().execute().unwrap().inverse
     }
 
-    /// `L'(K~+ - C~ C~')L = 0` as it is for K+, whatever the compliance L'K+ L; else the dual operator might not be semidefinite.
+    /// `L'(K~+ - C~ C~')L = 0` as for K+, whatever the compliance L'K+ L; otherwise the dual operator might not be
+    /// semidefinite.
     #[test]
     fn a_rounded_k_plus_has_no_force_against_the_motions_that_are_carried() {
         let (n, k) = (20, chains(20, [0.002, 0.0]));
@@ -236,7 +238,7 @@ mod tests {
         assert_eq!((inverse.null_space.cols, inverse.stiffness.len()), (2, 2));
         assert!(inverse.stiffness[0] == 0.0 && inverse.stiffness[1] > 0.0 && !inverse.is_soft());
         assert_eq!(inverse.free_motions().cols, 1);
-        // a load that the second chain has in balance
+        // a load in equilibrium on the second chain
         let mut f: Vec<f64> = (0..2 * n).map(|i| (i as f64).sin()).collect();
         let unheld = f[n..].iter().sum::<f64>() / n as f64;
         f[n..].iter_mut().for_each(|f| *f -= unheld);
@@ -247,7 +249,7 @@ mod tests {
         let mut image = vec![0.0; 2 * n];
         k.mul(&u, &mut image);
         assert!(image.iter().zip(&f).all(|(a, b)| (a - b).abs() < 1e-13), "{image:?}");
-        // the springs hold what has no part along L, the translation of the first chain in the metric D
+        // the springs carry nothing of a load without part along L, the translation of the first chain in the metric D
         inverse.apply(&f, &mut u).unwrap();
         let (mut moved, mut terms) = (0.0, 0.0);
         for i in 0..n {
@@ -282,7 +284,7 @@ mod tests {
         }
     }
 
-    /// Every dof of the first chain has a spring of its own.
+    /// Every dof of the first chain has a spring to the ground.
     #[test]
     fn motions_that_are_not_soft_are_left_to_k_plus() {
         let (n, mut k) = (20, chains(20, [0.5, 0.5]));
@@ -301,7 +303,7 @@ mod tests {
         assert_eq!((inverse.null_space.cols, inverse.stiffness.len()), (2, 0));
     }
 
-    /// `K^-1 = K_c+ + R S^-1 R'`, also where a support is all that the metric sees of a motion.
+    /// `K^-1 = K_c+ + R S^-1 R'`, even if the metric is dominated by a support.
     #[test]
     fn supports_of_any_stiffness_leave_k_plus_as_exact_as_it_was() {
         let n = 20;

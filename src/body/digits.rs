@@ -8,24 +8,25 @@ use crate::error::Result;
 use crate::linalg::Symmetric;
 use crate::platform::memory::{reserved, zeros};
 
-/// Rows that are looked at, and entries of each.
+/// Number of rows in the sample, and of entries per row.
 const ROWS: usize = 64;
 const ENTRIES: usize = 16;
-/// Fewer digits are those of tidy numbers, ...
+/// Fewer digits mean round numbers, ...
 const FEWEST: usize = 7;
-/// ... and a number of double precision that has no more than these is one of a hundred.
+/// ... and about one in a hundred double precision numbers needs no more than `MOST` digits.
 const MOST: usize = 15;
-/// Part of the entries beside the diagonal that need the last digit or the last but one: 99 of 100 that were rounded, but
-/// entries of regular meshes and frames may be tidy. Springs to the ground lie on the diagonal alone.
+/// Required part of the off-diagonal entries that need the last digit or the last but one: 99 of 100 rounded numbers do,
+/// but entries of regular meshes and frames may be round numbers. Springs to the ground affect the diagonal only.
 const USED: f64 = 0.4;
-/// Of the 24 bits of a number in single precision the last ones may be 0: all but 1 of 32 need so many.
+/// The last of the 24 bits of a number in single precision may be 0: all but 1 of 32 numbers need at least this many
+/// bits.
 const BITS: u32 = 20;
-/// Rows whose entries sum to 0 in all these parts of a body are exact.
+/// The entries of a body are exact if at least this part of its rows sums to 0.
 const EXACT: f64 = 0.9;
-/// What a sum of the entries of a row may be but for the rounding of its terms.
+/// Bound of a row sum that is 0 up to rounding of its terms.
 const SUM: f64 = 2.0 * f64::EPSILON;
 
-/// What the entries of a matrix were rounded to.
+/// The precision to which the entries of a matrix were rounded.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Digits {
     /// Significant decimal digits, 7 to 15.
@@ -44,8 +45,8 @@ impl fmt::Display for Digits {
 }
 
 impl Digits {
-    /// `None` where the entries have those of double precision, or few because they are exact: numbers that do not need the
-    /// digits of the longest of them, or that sum to 0 in nearly every row, as those of springs between dofs do.
+    /// `None` if the entries have double precision, or few digits because they are exact: most entries need fewer digits
+    /// than the longest, or nearly every row sums to 0, as for springs between dofs.
     pub fn of(k: &Symmetric) -> Result<Option<Self>> {
         let sampled = sampled(k);
         let used = |uses: &dyn Fn(f64) -> bool| {
@@ -57,7 +58,7 @@ impl Digits {
         Ok(if found.is_some() && sums_are_exact(k)? { None } else { found })
     }
 
-    /// The same of entries that are not exact, whatever speaks for it: K drives a motion.
+    /// The digits without these two exceptions: K has negative stiffness along a motion, so its entries cannot be exact.
     pub fn of_rounded(k: &Symmetric) -> Option<Self> {
         Self::among(&sampled(k), |_| true)
     }
@@ -66,14 +67,14 @@ impl Digits {
         let digits = decimal(sampled);
         let digits = digits.filter(|&digits| digits >= FEWEST && used(&|v| !has(v, digits - 2)));
         let single = sampled.iter().all(|&(v, _)| f64::from(v as f32) == v) && used(&|v| bits(v) >= BITS);
-        // large numbers in single precision are whole ones, of few digits
+        // large numbers in single precision are integers with few digits
         match digits {
             Some(digits) if digits == FEWEST || !single => Some(Self::Decimal(digits)),
             _ => single.then_some(Self::Single),
         }
     }
 
-    /// The distance between numbers with these digits next to `v`, in units of v; the largest error is half of it.
+    /// The spacing of numbers with these digits at `v`, in units of v; the largest rounding error is half of it.
     fn unit(self, v: f64) -> f64 {
         match self {
             Self::Decimal(digits) => 10f64.powi(v.abs().log10().floor() as i32 + 1 - digits as i32),
@@ -81,14 +82,13 @@ impl Digits {
         }
     }
 
-    /// The largest distance between numbers with these digits, against the smaller of them.
+    /// The largest spacing of numbers with these digits, relative to the number.
     pub fn relative(self) -> f64 {
         self.unit(1.0)
     }
 
-    /// Standard deviation of `v'E v` for each of `count` motions v, E the rounding of the entries in the rows of one part:
-    /// equal entries have equal errors, different ones errors that know nothing of each other. `v(i, c)` is motion c at
-    /// dof i.
+    /// Standard deviation of `v'E v` for each of `count` motions v, E the rounding of the entries in the rows of one
+    /// part: equal entries have equal errors, different entries independent errors. `v(i, c)` is motion c at dof i.
     pub fn noise(
         self,
         k: &Symmetric,
@@ -114,7 +114,7 @@ impl Digits {
         Ok((0..count).map(|c| (0..units.len()).map(|slot| square(c, slot)).sum::<f64>().sqrt()).collect())
     }
 
-    /// The most that rounding of the entries makes of `K v`, row by row.
+    /// Upper bound of the change of `K v` by rounding of the entries, row by row.
     pub fn most(self, k: &Symmetric, v: &[f64]) -> Result<Vec<f64>> {
         let mut most = zeros(k.order(), "the rounding of a stiffness matrix")?;
         for i in 0..k.order() {
@@ -130,7 +130,7 @@ impl Digits {
     }
 }
 
-/// Entries other than 0 of rows spread over the matrix, from both ends of each, and whether they lie beside the diagonal.
+/// Nonzero entries of rows spread over the matrix, from both ends of each row, and whether they are off-diagonal.
 fn sampled(k: &Symmetric) -> Vec<(f64, bool)> {
     let n = k.order();
     let rows = (0..ROWS.min(n)).map(|r| if n <= ROWS { r } else { (2 * r + 1) * n / (2 * ROWS) });
@@ -142,24 +142,24 @@ fn sampled(k: &Symmetric) -> Vec<(f64, bool)> {
     entries.filter(|entry| entry.0 != 0.0).collect()
 }
 
-/// The digits that all numbers have; `None` where one has more than `MOST`.
+/// The digits that suffice for all numbers; `None` if one needs more than `MOST`.
 fn decimal(numbers: &[(f64, bool)]) -> Option<usize> {
     numbers.iter().try_fold(1, |digits, &(v, _)| (digits..=MOST).find(|&digits| has(v, digits)))
 }
 
-/// Whether `v` printed with so many significant digits and read again is `v`.
+/// Whether `v` printed with this many significant digits and read again is `v`.
 fn has(v: f64, digits: usize) -> bool {
     format!("{v:.*e}", digits.saturating_sub(1)).parse() == Ok(v)
 }
 
-/// Bits from the first to the last that is 1, of a normal number.
+/// Number of bits from the first to the last 1, of a normal number.
 fn bits(v: f64) -> u32 {
     let mantissa = v.to_bits() & ((1 << 52) - 1);
     53 - mantissa.trailing_zeros().min(52)
 }
 
-/// Whether `K (1, .., 1)' = 0` in nearly all rows, and above 0 in the others, springs to the ground. Rounding leaves sums of
-/// both signs.
+/// Whether `K (1, .., 1)' = 0` in nearly all rows and positive in the others, which have springs to the ground. Rounding
+/// leaves sums of both signs.
 fn sums_are_exact(k: &Symmetric) -> Result<bool> {
     const WHAT: &str = "the sums of the rows of a stiffness matrix";
     let (mut ones, mut sums, mut terms) =
@@ -218,7 +218,7 @@ mod tests {
     fn entries_that_are_exact_with_few_digits_are_not_taken_for_rounded_ones() {
         let of = |k: Symmetric| Digits::of(&k).unwrap();
         assert_eq!(of(chain(100, |_| 1.0, 1e-8)), None);
-        // every dof on a spring of its own: half of the entries need nine digits
+        // every dof has a spring to the ground: half of the entries need nine digits
         let mut springs = chain(100, |_| 1.0, 0.0);
         (0..100).for_each(|i| springs.val[2 * i] += 1e-8);
         assert_eq!(of(springs), None);
@@ -227,7 +227,7 @@ mod tests {
         assert_eq!(of(chain(100, |i| (0.1 + 0.01 * i as f64) as f32 as f64, 0.0)), None);
     }
 
-    /// Of many matrices rounded in the same way `v'E v` has the deviation foretold.
+    /// For many matrices rounded in this way, `v'E v` has the predicted deviation.
     #[test]
     fn the_noise_foretold_is_that_of_rounding() {
         let digits = Digits::Decimal(8);

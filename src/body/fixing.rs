@@ -1,12 +1,12 @@
-//! Fixing dofs: the r dofs whose rows of R are most independent, so that `K_ff` is as regular as it can be.
+//! Fixing dofs: the r dofs whose rows of R are most independent, so that `K_ff` is as well conditioned as possible.
 
 use crate::error::{Error, Kind, Result};
 use crate::linalg::dense::spectrum::right_singular;
 use crate::linalg::Matrix;
 use crate::platform::memory::zeros;
 
-/// Smallest against largest singular value of the rows of `D^1/2 R` of the dofs held: below this they hold
-/// the body no better than rounding does.
+/// Limit of the ratio of the smallest to the largest singular value of the rows of `D^1/2 R` at the dofs held: below it
+/// these dofs do not hold the body.
 const REGULAR: f64 = 1e-10;
 
 /// Dofs given by the host, which must hold every motion of the null space.
@@ -27,16 +27,16 @@ pub fn given_dofs(null_space: &Matrix, root: &[f64], given: &[usize]) -> Result<
     Ok(given.to_vec())
 }
 
-/// Other dofs serve when their smallest singular value is at least this part of that of the dofs chosen: the largest entry
-/// of K+ grows with its inverse square, so that rounding costs no more than one digit.
+/// Other dofs are accepted if their smallest singular value is at least this part of that of the dofs chosen: the largest
+/// entry of K+ grows with its inverse square, so that rounding costs at most one digit.
 const AS_WELL: f64 = 0.3;
 
-/// Whether `dofs`, found for other values of K, hold the null space nearly as well as `chosen`, found for these.
+/// Whether `dofs`, found for other values of K, hold the null space nearly as well as `chosen`, found for these values.
 pub fn hold_as_well(null_space: &Matrix, root: &[f64], dofs: &[usize], chosen: &[usize]) -> Result<bool> {
     Ok(held_against(null_space, root, dofs, chosen)? >= AS_WELL)
 }
 
-/// How well `dofs` hold the null space against `chosen`: the smallest singular values of the rows of `D^1/2 R` of both.
+/// Ratio of the smallest singular values of the rows of `D^1/2 R` at `dofs` and at `chosen`.
 pub fn held_against(null_space: &Matrix, root: &[f64], dofs: &[usize], chosen: &[usize]) -> Result<f64> {
     if dofs.len() != chosen.len() {
         return Ok(0.0);
@@ -46,17 +46,17 @@ pub fn held_against(null_space: &Matrix, root: &[f64], dofs: &[usize], chosen: &
     Ok(if dofs.is_empty() { 1.0 } else { softest(own) / softest(best) })
 }
 
-/// Of the rows `dofs` of `D^1/2 R`, as many as R has columns; descending.
+/// Singular values, descending, of the rows `dofs` of `D^1/2 R`; there are as many dofs as columns of R.
 fn singular_values(null_space: &Matrix, root: &[f64], dofs: &[usize]) -> Result<Vec<f64>> {
     let entry = |at: usize, j: usize| root[dofs[at]] * null_space.get(dofs[at], j);
     Ok(right_singular(&Matrix::from_fn(dofs.len(), dofs.len(), entry)?)?.0)
 }
 
-/// Pivoted QR of `(D^1/2 R)'` (r x n): dof by dof the column with the largest part orthogonal to those
-/// chosen before; the first of equals. `root[i] = sqrt(D_ii)`.
+/// Pivoted QR of `(D^1/2 R)'` (r x n): repeatedly chooses the column with the largest part orthogonal to the columns
+/// chosen before; the first if several are equal. `root[i] = sqrt(D_ii)`.
 pub fn fixing_dofs(null_space: &Matrix, root: &[f64]) -> Result<Vec<usize>> {
     let (n, r) = (null_space.rows, null_space.cols);
-    // row i: what is left of column i
+    // row i: the remainder of column i
     let mut left = zeros(n * r, "the fixing dofs")?;
     for j in 0..r {
         let motion = null_space.col(j).iter().zip(root);

@@ -20,42 +20,43 @@ use crate::platform::slabs::Slabs;
 pub struct GeneralizedInverse {
     /// `R_p`, n x r, with `R'DR = I`.
     pub null_space: Matrix,
-    /// `lambda_j = r_j'K r_j` of motions that K resists softly or that are carried, 0 of the others; none where it resists none. K+ is
-    /// that of a K without it: see `soft` and `carried`.
+    /// `lambda_j = r_j'K r_j` for soft or carried motions, 0 for the others; empty if K resists no motion. K+ is that of
+    /// a K without this stiffness: see `soft` and `carried`.
     pub stiffness: Vec<f64>,
-    /// Rounding of its vectors, against the fastest dof of each, no unit: what a row or a load has less of is nothing.
+    /// Rounding of the vectors, relative to the fastest dof of each, no unit: a smaller part of a row or a load counts as
+    /// 0.
     pub rounding: f64,
-    /// How far they are known, at least `rounding`: a motion that rows resist by less than this may be none.
+    /// Accuracy of the vectors, at least `rounding`: a motion that rows resist by less than this may be unresisted.
     pub error: f64,
-    /// The r dofs held; none where K+ is the host's.
+    /// The r dofs held; empty if K+ is the host's.
     pub fixing: Vec<usize>,
-    /// Of a null space that was found: the softest other motion against the stiffest of it, no unit.
+    /// If the null space was found by the library: ratio of the softest other motion to its stiffest, no unit.
     pub gap: Option<f64>,
-    /// `|f| / | |K||K+ f| |` of a random load, no unit: its inverse is what rounding of K+ grows by.
+    /// `|f| / | |K||K+ f| |` for a random load, no unit: K+ amplifies rounding by its inverse.
     pub softness: f64,
-    /// Motions that rounding of the entries of K may be all that resists, of its parts one by one.
+    /// Motions, part by part, whose resistance may be only rounding of the entries of K.
     pub doubts: Vec<Doubt>,
-    /// Coordinates that did not fit: the null space was sought in K.
+    /// Coordinates that did not fit: the library searched the null space in K.
     pub misfit: Option<Misfit>,
     pub(super) factor: Factor,
-    /// What is taken from K+ for the motions that are carried, the last ones.
+    /// The correction of K+ for the carried motions, which are the last.
     pub(super) carried: Option<Arc<Carried>>,
-    /// The same for K~+ of a rounded factor.
+    /// The correction for K~+ of a rounded factor.
     pub(super) near: Option<Arc<Carried>>,
 }
 
-/// `K_p+` of a body and what it took.
+/// `K_p+` of a body and the work to make it.
 pub struct Factorised {
     pub inverse: GeneralizedInverse,
     /// The analysis its factor belongs to.
     pub symbolic: Arc<Symbolic>,
-    /// Analyses beyond the first, where the search for the null space had to begin anew.
+    /// Analyses after the first, if the search for the null space had to begin again.
     pub further_analyses: usize,
-    /// Numeric factorisations, also those that missed a motion of the null space.
+    /// Numeric factorisations, including those that missed a motion of the null space.
     pub factorisations: usize,
 }
 
-/// Rigid motions that do not all fit K.
+/// Rigid motions of coordinates of which not all fit K.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Misfit {
     pub fit: usize,
@@ -71,18 +72,17 @@ impl fmt::Display for Misfit {
     }
 }
 
-/// The symbolic side of a factorisation, done once for all bodies and all values of one pattern: what the analysis of a body
-/// depends on besides the pattern of K.
+/// The input of a symbolic analysis besides the pattern of K. Bodies with the same pattern and layout share one analysis.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Layout {
-    /// Dofs that are held.
+    /// The dofs held.
     Held(Vec<usize>),
-    /// Dofs of every connected part that are eliminated last, and the entries of K between parts, which are 0 and left
+    /// Dofs of every connected part that are eliminated last, and the zero entries of K between parts, which are left
     /// out.
     Last { dofs: Vec<Vec<usize>>, between: Vec<usize> },
 }
 
-/// A symbolic analysis with what it was made for.
+/// A symbolic analysis and its layout.
 pub struct Symbolic {
     pub layout: Arc<Layout>,
     pub analysis: Arc<Analysis>,
@@ -99,7 +99,7 @@ impl GeneralizedInverse {
     pub fn apply_in_place(&self, x: &mut [f64]) -> Result<()> {
         match (&self.carried, &self.near, &self.factor) {
             (Some(carried), Some(near), Factor::Rounded(rounded)) => {
-                // the motions that are carried, which K may hardly resist, are never made and taken back
+                // the carried motions, which K may hardly resist, are not added and then subtracted
                 let motions = carried.motions_under(x)?;
                 rounded.solve_without(&motions, x, |x| near.apply_in_place(x, |x| rounded.approximate(x)))
             }
@@ -108,7 +108,7 @@ impl GeneralizedInverse {
         }
     }
 
-    /// `x <- K~+ x` by a rounded factor without corrections, else `K+ x`.
+    /// `x <- K~+ x` by a rounded factor without refinement, otherwise `K+ x`.
     pub fn approximate_in_place(&self, x: &mut [f64]) -> Result<()> {
         match &self.near {
             Some(carried) => carried.apply_in_place(x, |x| self.factor.approximate(x)),
@@ -122,7 +122,7 @@ impl GeneralizedInverse {
         matches!(&self.factor, Factor::Rounded(_))
     }
 
-    /// Bytes that rounding has spared.
+    /// Bytes saved by the rounded factor.
     pub fn bytes_saved(&self) -> usize {
         match &self.factor {
             Factor::Rounded(rounded) => rounded.factor.value_bytes(),
@@ -130,7 +130,7 @@ impl GeneralizedInverse {
         }
     }
 
-    /// With its factor rounded to single precision, in `slabs`, where K allows it.
+    /// Rounds its factor to single precision, in `slabs`, if K allows it.
     pub fn rounded(mut self, k: &Multiple, slabs: &Slabs) -> Result<Self> {
         let rounded = match &self.factor {
             Factor::Own(factor) => Rounded::of(factor, k, &self.fixing, self.softness, slabs)?,
@@ -146,7 +146,7 @@ impl GeneralizedInverse {
         Ok(self)
     }
 
-    /// What K~+ has to do with the motions that are carried.
+    /// Computes the correction of K~+ for the carried motions.
     pub(super) fn find_near(&mut self, k: &Multiple) -> Result<()> {
         let near = |carried: &Arc<Carried>| carried.near(k, |x| self.factor.approximate(x));
         self.near = match &self.carried {
@@ -156,27 +156,27 @@ impl GeneralizedInverse {
         Ok(())
     }
 
-    /// K resists or drives some motion of the null space.
+    /// K has positive or negative stiffness along some motion of the null space.
     pub fn is_soft(&self) -> bool {
         self.stiffness.iter().take(self.own_motions()).any(|stiffness| *stiffness != 0.0)
     }
 
-    /// Motions that are carried, the last ones.
+    /// Number of carried motions, which are the last.
     pub fn carried_motions(&self) -> usize {
         self.carried.as_ref().map_or(0, |carried| carried.count())
     }
 
-    /// Motions that are not.
+    /// Number of motions that are not carried.
     pub(super) fn own_motions(&self) -> usize {
         self.null_space.cols - self.carried_motions()
     }
 
-    /// The null space without the motions that are carried.
+    /// The null space without the carried motions.
     pub fn free_motions(&self) -> Matrix {
         self.null_space.columns(0..self.own_motions())
     }
 
-    /// Entries of the factor; 0 where the host has it.
+    /// Entries of the factor; 0 if the host has the factor.
     pub fn entries(&self) -> usize {
         match &self.factor {
             Factor::Own(factor) => factor.analysis.entries(),
@@ -185,12 +185,12 @@ impl GeneralizedInverse {
         }
     }
 
-    /// It must be applied on the thread alone that calls the library.
+    /// It must be applied on the thread that calls the library.
     pub fn on_caller(&self) -> bool {
         matches!(&self.factor, Factor::Host(host) if host.operator.on_caller())
     }
 
-    /// Where its factor lies: the same for all that share it.
+    /// Address of its factor: equal for all bodies that share the factor.
     pub fn factor_address(&self) -> usize {
         match &self.factor {
             Factor::Own(factor) => Arc::as_ptr(factor) as usize,
@@ -221,7 +221,8 @@ impl GeneralizedInverse {
         Ok(form)
     }
 
-    /// What K makes of the vectors: `soft` motions, or a null space; `rigid` motions are carried.
+    /// Measures the stiffness of the vectors if they are `soft`, otherwise the error of the null space; `rigid` motions
+    /// are carried.
     pub(super) fn judged_by(self, k: &Multiple, soft: bool, rigid: Option<&Matrix>) -> Result<Self> {
         let judged = if soft { self.softened(k)? } else { self.measured(k)? };
         match rigid {
@@ -230,7 +231,7 @@ impl GeneralizedInverse {
         }
     }
 
-    /// The rigid motions that K resists are carried: [`carried`](crate::body::carried).
+    /// Carries the rigid motions that K resists: [`carried`](crate::body::carried).
     pub(super) fn with_carried(mut self, k: &Multiple, rigid: &Matrix) -> Result<Self> {
         if self.null_space.cols == rigid.cols || self.is_soft() {
             return Ok(self);
@@ -246,7 +247,7 @@ impl GeneralizedInverse {
         Ok(self)
     }
 
-    /// The motions of the vectors that it has, and what K resists of them.
+    /// Replaces the vectors by soft motions and their stiffness.
     fn softened(mut self, k: &Multiple) -> Result<Self> {
         let Apart { vectors, parts } = Apart::of(k, &self.null_space)?;
         let parts: Vec<_> = parts.iter().map(|(dofs, count)| (&dofs[..], *count)).collect();
@@ -256,7 +257,7 @@ impl GeneralizedInverse {
         Ok(self)
     }
 
-    /// The error of a null space that K does not map to zero but for rounding, as far as the factor enlarges it.
+    /// Measures the error of a null space that K maps to more than rounding, as amplified by the factor.
     fn measured(mut self, k: &Multiple) -> Result<Self> {
         if self.error > KNOWN {
             let dofs: Vec<usize> = (0..k.order()).collect();
@@ -273,7 +274,7 @@ mod tests {
     use crate::error::Kind;
     use crate::linalg::Symmetric;
 
-    /// Plane grid of springs, n x n dofs, free: null space = constants, on each of `parts` copies.
+    /// Plane grid of springs, n x n dofs, free: the null space is the constants, on each of `parts` copies.
     fn grids(n: usize, parts: usize) -> Symmetric {
         let (mut ptr, mut col, mut val) = (vec![0], Vec::new(), Vec::new());
         for k in 0..parts * n * n {
@@ -324,7 +325,7 @@ mod tests {
         assert!(error.what.contains("a mode is missing"), "{error}");
     }
 
-    /// Two dofs joined by a spring, wherever they stand among those that are held.
+    /// Two dofs joined by a spring, at any position among dofs that are held.
     #[test]
     fn a_missing_mode_of_two_dofs_is_noticed_wherever_they_are() {
         let none =
@@ -342,7 +343,7 @@ mod tests {
                 k.val.push(if pair { 0.7 } else { 1.3 });
                 k.ptr.push(k.col.len());
             }
-            // 0.7 - 0.7 is 0, which the factorisation would refuse; what rounding leaves must be found by the probe
+            // 0.7 - 0.7 is 0, which the factorisation would refuse; the probe must find a rounded zero
             *k.val.iter_mut().filter(|v| **v == 0.7).last().unwrap() *= 1.0 + 4.0 * f64::EPSILON;
             let error = GeneralizedInverse::plan(k.into(), &none(n), 1e-8).unwrap().execute().err().unwrap();
             assert!(error.what.contains("a mode is missing"), "{before}: {error}");

@@ -1,4 +1,4 @@
-//! K in the form that the host has given: by its entries, by elements, or by products.
+//! K in the form given by the host: entries, elements, or functions for the products.
 
 use crate::body::assembled::Assembled;
 use crate::body::host::HostOperator;
@@ -23,7 +23,7 @@ impl Stiffness<'_> {
         }
     }
 
-    /// `D_ii` of the metric in which all of K is measured: `K_ii`, or `without` for a dof that has no stiffness.
+    /// `D_ii` of the metric for K: `K_ii`, or `without` for a dof without stiffness.
     pub fn metric(&self, i: usize, without: f64) -> f64 {
         match self {
             Self::Matrix(k) => k.metric(i, without),
@@ -51,8 +51,8 @@ impl Stiffness<'_> {
         Ok(())
     }
 
-    /// `y = K x`, and the terms that its rounding errors are measured against: `|K| |x|`, or `D |x| + |K x|` where the
-    /// entries are not known.
+    /// `y = K x`, and the terms to which its rounding errors are relative: `|K| |x|`, or `D |x| + |K x|` if the entries
+    /// are not known.
     pub fn mul_with_terms(&self, x: &[f64], y: &mut [f64], terms: &mut [f64]) -> Result<()> {
         match self {
             Self::Matrix(k) => k.mul_with_terms(x, y, terms),
@@ -62,7 +62,8 @@ impl Stiffness<'_> {
         Ok(())
     }
 
-    /// `y += by K x` in twice the digits, by a power of two; in those of the host where it has the products.
+    /// `y += by K x` in double-double arithmetic, `by` a power of two; in the host's precision if the host computes the
+    /// products.
     pub fn add_twofold(&self, by: f64, x: &[f64], y: &mut [Twofold]) -> Result<()> {
         match self {
             Self::Matrix(k) => k.add_twofold(by, x, y),
@@ -76,7 +77,7 @@ impl Stiffness<'_> {
         Ok(())
     }
 
-    /// Its products are taken on the thread alone that calls the library.
+    /// Its products must be computed on the thread that calls the library.
     pub fn on_caller(&self) -> bool {
         matches!(self, Self::Host(k) if k.on_caller())
     }

@@ -1,6 +1,6 @@
-//! The dofs that are held for soft motions. One dof for each given motion keeps F of (14) definite while K has only small negative stiffness
-//! along these motions. If the negative stiffness is larger, F is indefinite or nearly so, and other or more dofs are held: each
-//! additional dof adds one soft motion, and K is still represented exactly.
+//! The dofs held for soft motions. One dof for each given motion keeps F of (14) definite while K has only small negative
+//! stiffness along these motions. If the negative stiffness is larger, F is indefinite or nearly so, and the library
+//! holds other or more dofs: each additional dof adds one soft motion, and K is still represented exactly.
 
 use std::sync::Arc;
 
@@ -12,14 +12,14 @@ use crate::error::{Error, Kind, Result};
 use crate::linalg::{Cholesky, Matrix};
 use crate::platform::memory::zeros;
 
-/// Most dofs that are held beyond one for each motion given: as many as a body has rigid motions.
+/// Limit of dofs held in addition to one per given motion: the number of rigid motions of a body.
 const FURTHER: usize = 6;
-/// Others are held where these hold the motions that follow them by less than this part of what the best dofs do: K+ grows by the
-/// inverse square.
+/// Other dofs are chosen if the present ones hold their motions by less than this part of what the best dofs would: K+
+/// grows with the inverse square.
 const LOOSE: f64 = 0.03;
 
 impl Known {
-    /// The factor of F, its analysis, and how often further dofs had to be held.
+    /// The factor of F, its analysis, and how many times further dofs had to be held.
     pub(super) fn factorised(&mut self, most: usize) -> Result<(Arc<Symbolic>, Cholesky, usize)> {
         let missing = || Error::new(Kind::Internal, "a body was not analysed");
         let mut further = 0;
@@ -39,7 +39,7 @@ impl Known {
         }
     }
 
-    /// Motions that this body may have in all.
+    /// Largest number of motions that this body may have.
     pub(super) fn most_motions(&self) -> usize {
         self.null_space.cols + if self.is_free_to_choose() { FURTHER } else { 0 }
     }
@@ -48,7 +48,7 @@ impl Known {
         self.soft && !self.given
     }
 
-    /// The dofs that hold the motions of this K+ best, where those that they follow are loose.
+    /// The dofs that hold the motions of this K+ best, if the present dofs hold them badly.
     pub(super) fn better(&self, made: &GeneralizedInverse) -> Result<Option<Vec<usize>>> {
         if !self.is_free_to_choose() || made.stiffness.iter().all(|stiffness| *stiffness >= 0.0) {
             return Ok(None);
@@ -59,7 +59,7 @@ impl Known {
         Ok(is_loose.then_some(best))
     }
 
-    /// Holds these dofs, for motions that they hold.
+    /// Holds these dofs, and takes `null_space` as the motions that they hold.
     pub(super) fn hold(&mut self, null_space: Matrix, fixing: Vec<usize>) -> Result<()> {
         (self.null_space, self.fixing) = (null_space, fixing);
         let layout = Arc::new(Layout::Held(self.fixing.clone()));
@@ -67,7 +67,7 @@ impl Known {
         Ok(())
     }
 
-    /// Holds one dof more.
+    /// Holds one more dof.
     fn hold_also(&mut self, dof: usize) -> Result<()> {
         let mut unit = zeros(self.null_space.rows, "a soft motion")?;
         unit[dof] = 1.0;

@@ -19,11 +19,11 @@ use crate::error::{Error, Kind, Result};
 use crate::linalg::{Matrix, Multiple};
 use crate::platform::memory::{headroom, PRODUCTS};
 
-/// Where rigid motions are mixed, their terms may cancel to this part of them.
+/// Factor on the tolerance of rigid motions: the terms of their combinations may cancel.
 const MIXED: f64 = 16.0;
 
 impl GeneralizedInverse {
-    /// Null space and fixing dofs of `k` from the rigid motions of coordinates, as far as they fit.
+    /// Null space and fixing dofs of `k` from the rigid motions of coordinates, as far as these fit K.
     pub fn plan_near(
         k: Multiple,
         rigid: &RigidModes,
@@ -62,8 +62,8 @@ impl GeneralizedInverse {
         }
     }
 
-    /// The rigid motions of coordinates as soft ones. Supports of 1e30 on the diagonal are all that is seen of motions that move them
-    /// in the metric D: those that do not are told apart before.
+    /// Takes the rigid motions of coordinates as soft motions. In the metric D, supports of 1e30 on the diagonal hide
+    /// everything else of the motions that move them: motions that do not move supports are separated first.
     pub fn plan_soft(k: Multiple, rigid: &RigidModes, fixing: Option<&[usize]>) -> Result<Plan> {
         let _room = headroom(64 * k.order() * size_of::<f64>() + PRODUCTS, "the soft motions of a body")?;
         let KernelByParts { kernel, counts, .. } =
@@ -74,7 +74,7 @@ impl GeneralizedInverse {
         }
     }
 
-    /// The plan for vectors j of all parts in column j, so many of each part.
+    /// The plan for vectors j of all parts in column j, with the number of vectors of each part.
     fn known(
         k: Multiple,
         vectors: &Matrix,
@@ -103,7 +103,7 @@ impl GeneralizedInverse {
     }
 }
 
-/// Whether K resists every rigid motion by no more than rounding of its entries may have left, at each dof.
+/// Whether rounding of the entries explains the resistance of K to every rigid motion, at each dof.
 fn explained(k: &Multiple, digits: Digits, rigid: &RigidModes) -> Result<Option<Doubt>> {
     let (image, terms) = k.mul_columns(&rigid.modes)?;
     let (mut resisted, mut rounding): (f64, f64) = (0.0, 0.0);

@@ -10,13 +10,13 @@ use crate::linalg::{Csr, Matrix, Packed};
 use crate::platform::interrupt;
 use crate::platform::memory::{copied, zeros};
 
-/// Right-hand sides of one call.
+/// Limit of right-hand sides per call.
 pub const TOGETHER: usize = 32;
 
 const WHAT: &str = "products of the host";
 
-/// A function of the host: X and Y are n x nrhs, column-major without gaps, and nrhs is at most [`TOGETHER`]. It returns 0,
-/// or the host's number for a failure. Y comes as zeros.
+/// A function of the host: X and Y are n x nrhs, column-major without gaps, and nrhs is at most [`TOGETHER`]. It returns
+/// 0, or a number of the host for a failure. Y contains zeros on entry.
 pub type HostProduct = Box<dyn Fn(&[f64], usize, &mut [f64]) -> i32 + Send + Sync>;
 
 /// The functions of the host for one body.
@@ -25,7 +25,7 @@ pub struct HostFunctions {
     pub kplus: HostProduct,
     /// `Y = K X`, X length, Y force.
     pub k: HostProduct,
-    /// They may be called on any thread, several at once; else on the thread alone that calls the library.
+    /// The functions may be called on several threads at once; otherwise only on the thread that calls the library.
     pub concurrent: bool,
 }
 
@@ -43,7 +43,7 @@ impl fmt::Debug for HostOperator {
 }
 
 impl HostOperator {
-    /// `body` is the number that errors name.
+    /// `body`: number of the body for errors.
     pub fn new(body: usize, diagonal: Vec<f64>, functions: HostFunctions) -> Self {
         Self { body, diagonal, functions }
     }
@@ -52,7 +52,7 @@ impl HostOperator {
         self.diagonal.len()
     }
 
-    /// Must run on the thread that calls the library.
+    /// The functions must run on the thread that calls the library.
     pub fn on_caller(&self) -> bool {
         !self.functions.concurrent
     }
@@ -62,7 +62,7 @@ impl HostOperator {
         self.diagonal[i]
     }
 
-    /// `K_ii`, or `without` for a dof that has no stiffness.
+    /// `K_ii`, or `without` for a dof without stiffness.
     pub fn metric(&self, i: usize, without: f64) -> f64 {
         Some(self.diagonal[i]).filter(|d| *d > 0.0).unwrap_or(without)
     }
@@ -72,7 +72,8 @@ impl HostOperator {
         self.call("K", &self.functions.k, x, y)
     }
 
-    /// `y = K x` and, for want of `|K| |x|`, `terms = D |x| + |K x|`: what rounding errors of `K x` are measured against.
+    /// `y = K x` and `terms = D |x| + |K x|`, to which rounding errors of `K x` are relative, since `|K| |x|` is not
+    /// known.
     pub fn mul_with_terms(&self, x: &[f64], y: &mut [f64], terms: &mut [f64]) -> Result<()> {
         self.mul(x, y)?;
         for (i, terms) in terms.iter_mut().enumerate() {
@@ -86,7 +87,7 @@ impl HostOperator {
         self.call("K+", &self.functions.kplus, x, y)
     }
 
-    /// Some columns at a time. The image of what is not finite is not asked for: it is no number.
+    /// Calls the function in blocks of columns. Columns that are not finite are not passed: their image is NaN.
     fn call(&self, name: &str, function: &HostProduct, x: &[f64], y: &mut [f64]) -> Result<()> {
         let n = self.order();
         if first_non_finite(x).is_some() {
@@ -111,7 +112,7 @@ impl HostOperator {
     }
 }
 
-/// `K / 2^p` and `2^p K+`: the bits of both but for their exponents.
+/// `K / 2^p` and `2^p K+`: only the exponents change.
 #[derive(Debug, Clone)]
 pub struct HostMultiple {
     pub operator: Arc<HostOperator>,
@@ -160,7 +161,7 @@ impl HostMultiple {
         Ok(columns)
     }
 
-    /// Hands `2^p K+ b_j'` to `keep` with the place of j in `which`, for every j there.
+    /// Calls `keep` with the index of j in `which` and `2^p K+ b_j'`, for every j in `which`.
     fn columns(&self, rows: &Csr, which: &[usize], mut keep: impl FnMut(usize, &[f64])) -> Result<()> {
         let n = self.operator.order();
         let room = n * which.len().min(TOGETHER);
@@ -178,7 +179,7 @@ impl HostMultiple {
     }
 }
 
-/// Measured by `D |X|`, as the entries of K are not known.
+/// Relative to `D |X|`, since the entries of K are not known.
 impl Products for HostMultiple {
     const TERMS: &'static str = "D |R|";
 

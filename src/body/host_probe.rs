@@ -1,6 +1,6 @@
-//! Checks the functions of the host: K symmetric, `K R = 0` for the whole null space, K+ symmetric,
-//! both positive semidefinite, `K K+ K = K`. A few fixed vectors are tested: they find every error that affects most vectors. Forces are
-//! measured in the metric `D^-1`, displacements in D, so that no figure has a unit.
+//! Checks the functions of the host: K symmetric, `K R = 0` for the whole null space, K+ symmetric, both positive
+//! semidefinite, `K K+ K = K`. A few fixed vectors are tested: they find every error that affects most vectors. Forces
+//! are measured in the metric `D^-1` and displacements in D, so that no number has a unit.
 
 use crate::body::generalized_inverse::GeneralizedInverse;
 use crate::body::host::HostMultiple;
@@ -11,19 +11,19 @@ use crate::linalg::random::Random;
 use crate::linalg::vector::{axpy, dot, ratio, weighted_norm};
 use crate::linalg::Matrix;
 
-/// Displacements x and forces b that are tried.
+/// Number of test displacements x and of test forces b.
 const DISPLACEMENTS: usize = 3;
 const FORCES: usize = 2;
-/// Largest part of K that may be skew or negative.
+/// Limit of the skew or negative part of K and K+.
 const SKEW: f64 = 1e-10;
-/// Rounding errors of a product, against D-norms.
+/// Rounding errors of a product, relative to D-norms.
 const NOISE: f64 = 64.0 * f64::EPSILON;
-/// A motion v that R does not have belongs to the null space when `|K v|` is below this against `|v|`: K+ reproduces K x no
-/// better, so that a K+ that is wrong along a softer motion cannot be told from one without it.
+/// A motion v outside R belongs to the null space if `|K v| < MISSING |v|`. K+ reproduces K x no better than this, so an
+/// error of K+ along a softer motion could not be detected.
 const MISSING: f64 = 10.0 * PROBE;
 
 impl GeneralizedInverse {
-    /// K+ of the host, once K, K+ and the null space have passed.
+    /// K+ of the host, after checks of K, K+ and the null space.
     pub fn of_host(k: HostMultiple, given: &NullSpaceInput, tolerance: f64) -> Result<Self> {
         let Verified { basis: null_space, error } = verified(&k, given, tolerance)?;
         Probe::new(&k, &null_space)?.judge()?;
@@ -157,7 +157,7 @@ impl<'a> Probe<'a> {
             let found = ratio(found, size);
             if found.is_nan() || found > limit {
                 let what =
-                    format!("the host's K+ is no inverse of its K: |K K+ K v - K v| = {found:.1e} |K v|");
+                    format!("the host's K+ is not a generalised inverse of its K: |K K+ K v - K v| = {found:.1e} |K v|");
                 let dof = largest(left, |i| 1.0 / self.k.metric(i, 1.0));
                 return Err(Error::new(Kind::Callback, what).dof(dof).value(found).limit(limit));
             }
@@ -165,8 +165,8 @@ impl<'a> Probe<'a> {
         Ok(())
     }
 
-    /// `(I - K+ K) x` is a motion of the null space, and of all its motions one that has parts of each: R must span it. What
-    /// K resists nevertheless is rounding, magnified by K+.
+    /// `(I - K+ K) x` is a null vector with parts of all null vectors: R must span it. If it is not a null vector, its
+    /// resistance is rounding amplified by K+, which is no error.
     fn complete(&self, j: usize) -> Result<()> {
         let n = self.x.rows;
         let mut left = self.x.col(j).to_vec();

@@ -1,5 +1,5 @@
-//! Matrices by rows of ascending columns, full ones with entries on both sides of the diagonal: the lower triangle
-//! directly from the arrays of the host. All other input, valid or not, goes to [`stiffness`](super::stiffness).
+//! Matrices by rows of ascending columns; in full storage with entries on both sides of the diagonal. The lower triangle
+//! is taken directly from the arrays of the host. All other input, valid or not, goes to [`stiffness`](super::stiffness).
 
 use crate::body::storage::{may_differ, SparseInput, Storage};
 use crate::error::Result;
@@ -8,8 +8,8 @@ use crate::platform::memory::{copied, filled, reserved, zeros};
 
 const WHAT: &str = "a stiffness matrix";
 
-/// The lower triangle with every diagonal entry stored; `None` where the input is not of this form. `diag`: a diagonal of
-/// its own.
+/// The lower triangle with every diagonal entry stored; `None` if the input does not have this form. `diag`: a separate
+/// array of the diagonal.
 pub fn lower_triangle(input: SparseInput, diag: Option<&[f64]>, tolerance: f64) -> Result<Option<Symmetric>> {
     match input.storage {
         Storage::Upper => by_columns(input, diag),
@@ -17,7 +17,7 @@ pub fn lower_triangle(input: SparseInput, diag: Option<&[f64]>, tolerance: f64) 
     }
 }
 
-/// Row i as it was given.
+/// Row i of the input.
 struct InOrderRow<'a> {
     col: &'a [i64],
     val: &'a [f64],
@@ -25,11 +25,11 @@ struct InOrderRow<'a> {
     left: usize,
     /// The diagonal is among the entries.
     given: bool,
-    /// 0 where it is not given at all.
+    /// 0 if the diagonal entry is not given.
     diagonal: f64,
 }
 
-/// `None` where columns do not ascend, a number is out of its range or a diagonal entry is there twice.
+/// `None` if columns do not ascend, a number is out of range, or a diagonal entry occurs twice.
 fn row<'a>(input: &SparseInput<'a>, diag: Option<&[f64]>, i: usize) -> Option<InOrderRow<'a>> {
     let (n, range) = (input.ptr.len() - 1, input.ptr[i]..input.ptr[i + 1]);
     let (col, val) = (input.col.get(range.clone())?, input.val.get(range)?);
@@ -43,7 +43,7 @@ fn row<'a>(input: &SparseInput<'a>, diag: Option<&[f64]>, i: usize) -> Option<In
     of_this_form.then_some(InOrderRow { col, val, left, given, diagonal })
 }
 
-/// Storage in full, or of the lower triangle.
+/// Full or lower storage.
 fn by_rows(input: SparseInput, diag: Option<&[f64]>, tolerance: f64) -> Result<Option<Symmetric>> {
     let (n, entries) = (input.ptr.len() - 1, input.val.len());
     let full = input.storage == Storage::Full;
@@ -66,9 +66,9 @@ struct LowerRows<'a> {
     diag: Option<&'a [f64]>,
     tolerance: f64,
     lower: Symmetric,
-    /// Of each row taken: its first entry right of the diagonal that has not met its mate.
+    /// For each row processed: its first entry right of the diagonal that has not been compared with its transpose.
     next: Vec<usize>,
-    /// `|K_ii|^1/2` of each row taken.
+    /// `|K_ii|^1/2` of each row processed.
     root: Vec<f64>,
 }
 
@@ -88,7 +88,8 @@ impl LowerRows<'_> {
         Some(())
     }
 
-    /// The values left of the diagonal, each with its mate: that of column i in the rows taken.
+    /// Adds the values left of the diagonal, each averaged with its transpose, which is in column i of the rows processed
+    /// before.
     fn take_with_mates(&mut self, i: usize, row: &InOrderRow) -> Option<()> {
         for (&j, &k_ij) in row.col[..row.left].iter().zip(row.val) {
             let j = j as usize;
@@ -107,7 +108,7 @@ impl LowerRows<'_> {
     }
 }
 
-/// Storage of the upper triangle: its columns are the rows of the lower one.
+/// Upper storage: its columns are the rows of the lower triangle.
 fn by_columns(input: SparseInput, diag: Option<&[f64]>) -> Result<Option<Symmetric>> {
     let n = input.ptr.len() - 1;
     let mut ptr = filled(n + 1, 0_usize, WHAT)?;
@@ -136,8 +137,8 @@ mod tests {
     use super::*;
     use crate::body::from_sparse;
 
-    /// Rows of a matrix of order 40 with about 6 entries left of the diagonal, those above 1 + 1e-13 times those below,
-    /// some diagonal entries not stored, entries of the row in descending order where `turned`.
+    /// Rows of a matrix of order 40 with about 6 entries left of the diagonal; entries above are 1 + 1e-13 times those
+    /// below, some diagonal entries are not stored, and rows in `turned` have descending columns.
     fn rows(storage: Storage, turned: impl Fn(usize) -> bool) -> (Vec<usize>, Vec<i64>, Vec<f64>) {
         let coupled = |i: usize, j: usize| (3 * i + 7 * j) % 6 == 1 && i % 9 != 4 && j % 9 != 4;
         let (mut ptr, mut col, mut val) = (vec![0], Vec::new(), Vec::new());
@@ -183,7 +184,7 @@ mod tests {
         }
     }
 
-    /// An entry whose mate is not stored, or too far from it, and entries on the wrong side.
+    /// An entry whose transpose is not stored or too different, and entries on the wrong side.
     #[test]
     fn what_is_not_symmetric_is_left_to_the_check_of_it() {
         let (ptr, col, val) = rows(Storage::Full, |_| false);

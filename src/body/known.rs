@@ -10,26 +10,26 @@ use crate::body::spectrum::Doubt;
 use crate::error::Result;
 use crate::linalg::{Analysis, Cholesky, Matrix, Multiple};
 
-/// The null space is known before the factorisation.
+/// The plan if the null space is known before the factorisation.
 pub struct Known {
     pub(super) k: Multiple,
     pub(super) null_space: Matrix,
     pub(super) error: f64,
     pub(super) fixing: Vec<usize>,
-    /// The fixing dofs are those of the host.
+    /// The host gave the fixing dofs.
     pub(super) given: bool,
-    /// K may resist or drive the vectors, which need not be exact.
+    /// K may have positive or negative stiffness along the vectors, which need not be exact.
     pub(super) soft: bool,
-    /// Rigid motions that the coarse problem gets whether K resists them or not.
+    /// Rigid motions for the coarse problem, whether K resists them or not.
     pub(super) rigid: Option<Matrix>,
     pub(super) symbolic: Option<Arc<Symbolic>>,
-    /// What rounding of the entries resists of it.
+    /// The resistance to the null space that may be rounding of the entries.
     pub(super) doubt: Option<Doubt>,
-    /// Where it may lack a vector.
+    /// The search to fall back to if a null vector may be missing.
     pub(super) retry: Option<Retry>,
 }
 
-/// How the null space is sought in K where K turns out to have more null vectors than rigid motions that fit.
+/// How to search the null space in K if K has more null vectors than the rigid motions that fit.
 pub(super) struct Retry {
     pub misfit: Option<Misfit>,
     pub tolerance: f64,
@@ -37,13 +37,14 @@ pub(super) struct Retry {
 }
 
 impl Known {
-    /// `given`: the fixing dofs are those of the host.
+    /// `given`: the host gave the fixing dofs.
     pub(super) fn of(k: Multiple, null_space: Matrix, error: f64, fixing: Vec<usize>, given: bool) -> Self {
         let (soft, rigid, symbolic, doubt, retry) = (false, None, None, None, None);
         Self { k, null_space, error, fixing, given, soft, rigid, symbolic, doubt, retry }
     }
 
-    /// Dofs chosen for other values hold this body, too, unless much worse than its own would.
+    /// Takes over dofs chosen for other values, unless they hold this body much worse than its own dofs. Returns whether
+    /// it did.
     pub(super) fn follow(&mut self, dofs: &[usize]) -> Result<bool> {
         let sorted = |dofs: &[usize]| {
             let mut dofs = dofs.to_vec();
@@ -65,8 +66,8 @@ impl Known {
         Ok(Arc::new(Analysis::new(&self.k.matrix, &held)?))
     }
 
-    /// Factorises F of (14) and probes; refuses a K that is indefinite, against (4), or more singular than its null
-    /// space says. Soft motions are given other dofs to follow, or more, where K asks for them.
+    /// Factorises F of (14) and probes; refuses a K that is indefinite, against (4), or has further null vectors. For
+    /// soft motions it holds other dofs, or more, if K requires them.
     pub fn execute(mut self) -> Result<Factorised> {
         let most = self.most_motions();
         let (symbolic, factor, mut further) = self.factorised(most)?;

@@ -4,7 +4,7 @@ use crate::error::Result;
 use crate::linalg::{Multiple, Symmetric};
 use crate::platform::memory::{filled, reserved};
 
-/// One of the dofs from each of `count` stretches of equal length, at random with a fixed seed; all when there are no more.
+/// One dof from each of `count` intervals of equal length, at random with a fixed seed; all dofs if there are no more.
 pub fn spread(dofs: &[usize], count: usize) -> Vec<usize> {
     let (n, mut state) = (dofs.len(), 0x9e37_79b9_7f4a_7c15_u64);
     if n <= count {
@@ -19,7 +19,7 @@ pub fn spread(dofs: &[usize], count: usize) -> Vec<usize> {
         .collect()
 }
 
-/// Positions of the entries of K between different parts: all of them are 0.
+/// Positions of the entries of K between different parts; all these entries are 0.
 pub fn between_parts(k: &Symmetric, part_of: &[usize]) -> Result<Vec<usize>> {
     let row =
         |i: usize| (k.ptr[i]..k.ptr[i + 1]).filter(move |&at| part_of[k.col[at] as usize] != part_of[i]);
@@ -28,7 +28,7 @@ pub fn between_parts(k: &Symmetric, part_of: &[usize]) -> Result<Vec<usize>> {
     Ok(found)
 }
 
-/// `K + E D_tt E'` without the entries between parts, all dofs t of one part coupled.
+/// `K + E D_tt E'` without the entries between parts; all dofs t of one part are coupled.
 pub fn supported(k: &Multiple, last: &[Vec<usize>], between: &[usize]) -> Result<Symmetric> {
     const WHAT: &str = "a supported stiffness matrix";
     let mut mates = filled::<&[usize]>(k.order(), &[], WHAT)?;

@@ -53,38 +53,38 @@ use std::sync::Arc;
 use crate::linalg::vector::power_of_two_below;
 use crate::linalg::Symmetric;
 
-/// What the host has said about one body; units are the host's own.
+/// The input of the host for one body, in the host's units.
 #[derive(Debug, Default)]
 pub struct Body {
     /// Number of unknowns n.
     pub order: usize,
     /// `K_p`, n x n, force / length.
     pub stiffness: Option<Arc<Symmetric>>,
-    /// Instead of it: a `K_p` that the host keeps.
+    /// Alternative: products with a `K_p` that stays with the host.
     pub operator: Option<Arc<HostOperator>>,
-    /// Instead of either: a `K_p` that is the sum of the matrices of pieces.
+    /// Alternative: `K_p` as the sum of the matrices of pieces.
     pub assembled: Option<Arc<Assembled>>,
-    /// `R_p` or vectors that may span it; found by the library without them and without coordinates.
+    /// `R_p` or vectors that may span it; if neither vectors nor coordinates are given, the library finds it.
     pub null_space: Option<NullSpaceInput>,
-    /// Places of the dofs: candidates for the null space when none is given.
+    /// Positions of the dofs: candidates for the null space if none is given.
     pub coordinates: Option<Coordinates>,
-    /// Their rigid motions are soft ones, not candidates.
+    /// The rigid motions of the coordinates are soft motions, not candidates.
     pub soft_coordinates: bool,
-    /// Dofs held in `K_p+`; chosen by the library when not given.
+    /// Dofs held in `K_p+`; chosen by the library if not given.
     pub fixing: Option<Vec<usize>>,
     /// `f_p`, length n, force; zero until given.
     pub load: Option<Vec<f64>>,
 }
 
 impl Body {
-    /// `K_p` in the form the host has given it, once it has.
+    /// `K_p` in the form given by the host, if given.
     pub fn k(&self) -> Option<Stiffness<'_>> {
         let matrix = self.stiffness.as_deref().map(Stiffness::Matrix);
         let host = || self.operator.as_deref().map(Stiffness::Host);
         matrix.or_else(host).or_else(|| self.assembled.as_deref().map(Stiffness::Assembled))
     }
 
-    /// The host tells of motions that K resists softly.
+    /// The host has given soft motions.
     pub fn has_soft_motions(&self) -> bool {
         match &self.null_space {
             Some(given) => given.modes == Modes::Soft,
@@ -92,13 +92,13 @@ impl Body {
         }
     }
 
-    /// The power of two below the largest `K_ii`, 1 where there is none, force / length: dividing by it is exact, so powers
-    /// of two in the host's units do not change a bit of what follows.
+    /// The largest power of two that does not exceed the largest `K_ii`, 1 if there is no stiffness, force / length:
+    /// division by it is exact, so powers of two in the host's units do not change any bit of the results.
     pub fn unit(&self) -> f64 {
         power_of_two_below(self.k().map_or(0.0, |k| k.largest_diagonal()))
     }
 
-    /// What stands for `K_ii` in the metric where it is 0: the unit, or that of the `others` where there is no stiffness.
+    /// The value used in the metric where `K_ii` is 0: the unit, or `others` if the body has no stiffness.
     pub fn without(&self, others: f64) -> f64 {
         let stiff = self.k().is_some_and(|k| k.largest_diagonal() > 0.0);
         if stiff {

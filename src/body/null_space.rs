@@ -9,14 +9,14 @@ use crate::linalg::vector::{norm, norm_max, ratio, weighted_norm};
 use crate::linalg::{Matrix, Multiple};
 use crate::platform::memory::{reserved, zeros};
 
-/// What the host says about the vectors it hands over.
+/// The meaning of the vectors given by the host.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Modes {
     /// They span the null space.
     Exact,
     /// The null space lies in their span.
     Candidates,
-    /// Motions that K resists softly, if at all: they need not be exact, and choose the unknowns held.
+    /// Motions of small stiffness, which need not be exact; they determine the dofs held.
     Soft,
 }
 
@@ -27,28 +27,28 @@ pub struct NullSpaceInput {
     pub modes: Modes,
 }
 
-/// Columns that keep less of their length than this after orthogonalisation are dependent.
+/// Columns are dependent if less than this part of their length is left after orthogonalisation.
 const DEPENDENT: f64 = 1e-10;
-/// A candidate motion belongs to the null space when `|D^-1 K v|` is this small against `|v|`.
+/// A candidate motion belongs to the null space if `|D^-1 K v|` does not exceed this part of `|v|`.
 pub(super) const CANDIDATE: f64 = 1e-11;
-/// `|A z|` of a unit vector z that is zero but for rounding, also where its terms are no more than that: z of dofs
-/// without stiffness.
+/// Bound of `|A z|` of a unit vector z that is 0 up to rounding, even if its terms are not larger: z of dofs without
+/// stiffness.
 pub(super) const ROUNDING: f64 = 64.0 * f64::EPSILON;
-/// The largest error of a null vector against the mean.
+/// Ratio of the largest to the mean error of a null vector.
 const PEAK: f64 = 8.0;
-/// Entries that cancelled to this fraction of their terms are zero (supports of 1e30 would multiply them).
+/// Entries that cancelled to this part of their terms are zero (supports of 1e30 would multiply them).
 const CANCELLED: f64 = 1e-12;
 
 /// Squares of larger numbers overflow. In the metric of its diagonal no entry of a semidefinite matrix exceeds 1.
 const LARGEST: f64 = 1e150;
 
-/// What the tests of a null space take of K.
+/// What the tests of a null space need of K.
 pub trait Products {
-    /// What the products with R are measured against, in words.
+    /// The terms to which products with R are relative, in words.
     const TERMS: &'static str;
-    /// `K_ii`, or `without` for a dof that has no stiffness.
+    /// `K_ii`, or `without` for a dof without stiffness.
     fn metric(&self, i: usize, without: f64) -> f64;
-    /// `K X`, and the terms that its rounding errors are measured against.
+    /// `K X`, and the terms to which its rounding errors are relative.
     fn mul_columns(&self, x: &Matrix) -> Result<(Matrix, Matrix)>;
 }
 
@@ -64,14 +64,14 @@ impl Products for Multiple {
     }
 }
 
-/// A null space and how far it is known, against the fastest dof.
+/// A null space and its accuracy, relative to the fastest dof.
 pub struct Verified {
     /// `R'DR = I`
     pub basis: Matrix,
     pub error: f64,
 }
 
-/// Basis of the null space with `R'DR = I`: one part of all dofs.
+/// Basis of the null space with `R'DR = I`; all dofs form one part.
 pub fn verified<K: Products>(k: &K, input: &NullSpaceInput, tolerance: f64) -> Result<Verified> {
     let dofs: Vec<usize> = (0..input.vectors.rows).collect();
     let exact = |vectors: &Matrix| {
@@ -90,16 +90,16 @@ pub fn verified<K: Products>(k: &K, input: &NullSpaceInput, tolerance: f64) -> R
     }
 }
 
-/// Dofs that share no stiffness with the others.
+/// Dofs without coupling stiffness to the others.
 pub struct FreePart<'a> {
     pub dofs: &'a [usize],
-    /// Null vectors of the part, in the first columns.
+    /// Number of null vectors of the part, which are in the first columns.
     pub count: usize,
     pub tolerance: f64,
 }
 
-/// `|A z| <= tolerance | |A| |z| |`, or rounding, for an orthonormal basis z of the span of `D^1/2 R`, part by part: column
-/// j of `vectors` has the null vectors j of all parts. The cost grows with the number of parts, not with its square.
+/// Checks `|A z| <= tolerance | |A| |z| |`, or rounding, for an orthonormal basis z of the span of `D^1/2 R`, part by
+/// part: column j of `vectors` has the null vectors j of all parts. The cost is linear in the number of parts.
 pub fn verified_by_parts<K: Products>(k: &K, vectors: &Matrix, parts: &[FreePart<'_>]) -> Result<Verified> {
     let basis = orthonormal_by_parts(k, vectors, parts)?;
     let (image, terms) = k.mul_columns(&basis)?;
@@ -119,7 +119,7 @@ pub fn verified_by_parts<K: Products>(k: &K, vectors: &Matrix, parts: &[FreePart
                     .value(found)
                     .limit(tolerance));
             }
-            // what A resists of z is no null vector: single dofs have more of it than the mean
+            // the resistance of A to z measures the error; at single dofs the error is larger than the mean
             error = error.max(PEAK * found.min(left));
         }
     }
@@ -134,7 +134,7 @@ pub fn orthonormal_by_parts<K: Products>(k: &K, vectors: &Matrix, parts: &[FreeP
         let own = Matrix::from_fn(dofs.len(), count, |at, j| root(dofs[at]) * vectors.get(dofs[at], j))?;
         let own = own.orthonormalised(DEPENDENT);
         if own.cols < count {
-            let what = format!("the {count} vectors span {} dimensions only", own.cols);
+            let what = format!("the {count} vectors span only {} dimensions", own.cols);
             return Err(Error::new(Kind::NullSpace, what).value(own.cols as f64).limit(count as f64));
         }
         for j in 0..count {
@@ -144,7 +144,7 @@ pub fn orthonormal_by_parts<K: Products>(k: &K, vectors: &Matrix, parts: &[FreeP
     Ok(basis)
 }
 
-/// The null vectors of all parts, n x r, from those in common columns. `parts`: dofs and number of null vectors.
+/// The null vectors of all parts, one per column, n x r. `parts`: dofs and number of null vectors of each part.
 pub fn one_column_each(vectors: &Matrix, parts: &[(&[usize], usize)]) -> Result<Matrix> {
     let (mut all, mut at) = (Matrix::zeros(vectors.rows, parts.iter().map(|part| part.1).sum())?, 0);
     for &(dofs, count) in parts {
@@ -156,15 +156,15 @@ pub fn one_column_each(vectors: &Matrix, parts: &[(&[usize], usize)]) -> Result<
     Ok(all)
 }
 
-/// What K does to candidates.
+/// The null space within candidates.
 pub struct KernelByParts {
     /// Motions j of all parts in column j.
     pub kernel: Matrix,
-    /// Of every part.
+    /// Dimension of the null space of every part.
     pub counts: Vec<usize>,
     /// Dimension of the span of the candidates of all parts.
     pub candidates: usize,
-    /// The least `|D^-1 K v|` of a unit vector v among the others.
+    /// The least `|D^-1 K v|` of a unit vector v among the other candidates.
     pub next: f64,
 }
 
@@ -213,7 +213,7 @@ pub fn kernel_by_parts<K: Products>(
     Ok(found)
 }
 
-/// `Q x` with zeros where only rounding is left.
+/// `Q x`, with zeros for entries that are rounding.
 fn combined(span: &Matrix, x: &[f64]) -> Result<Vec<f64>> {
     let n = span.rows;
     let (mut motion, mut terms) = (zeros(n, "a null space")?, zeros(n, "a null space")?);
@@ -242,8 +242,8 @@ pub fn largest(x: &[f64], weight: impl Fn(usize) -> f64) -> usize {
     })
 }
 
-/// The matrix is refused at the unknown of the first value that is no number or has no square; `dof` tells it from the
-/// position.
+/// Refuses the matrix at the unknown of the first value that is NaN or whose square overflows; `dof` gives the unknown of
+/// a position.
 pub(super) fn refuse_overflow(values: &[f64], dof: impl Fn(usize) -> usize) -> Result<()> {
     let fits = |value: &f64| value.abs() <= LARGEST;
     match values.iter().position(|value| !fits(value)) {
@@ -296,7 +296,7 @@ mod tests {
         assert!((length - 1.0).abs() < 1e-14);
     }
 
-    /// What orthonormalisation leaves of the second vector lies on the dof without stiffness, but for rounding.
+    /// Orthonormalisation leaves of the second vector only the entry on the dof without stiffness, up to rounding.
     #[test]
     fn a_dof_without_stiffness_may_take_part_in_several_vectors() {
         let val = [12.0, 0.0, 4.0, 0.0, 12.0, -8.0, 6.0].map(|v| v / 64.0);
@@ -340,7 +340,7 @@ mod tests {
         plan.and_then(Plan::execute).err().unwrap()
     }
 
-    /// K = [a b; b d] with finite entries of which products are not.
+    /// K = [a b; b d] with finite entries whose products overflow.
     #[test]
     fn finite_entries_whose_products_overflow_are_refused_however_the_null_space_is_given() {
         for [a, b, d] in [[1.0, 1e300, 1.0], [1.0, -1e200, 1e-3], [1.0, 1.5e308, 1e-300]] {
@@ -355,7 +355,7 @@ mod tests {
         }
     }
 
-    /// K = diag(1, 1e-310): its factor is right, but 1e-310 has no reciprocal to measure forces by.
+    /// K = diag(1, 1e-310): its factor is correct, but 1e-310 has no finite reciprocal to measure forces with.
     #[test]
     fn a_diagonal_entry_without_a_reciprocal_is_refused_by_the_probe() {
         let k = Multiple::from(Symmetric::new(vec![0, 1, 2], vec![0, 1], vec![1.0, 1e-310]));

@@ -1,5 +1,5 @@
-//! One connected part at the end of its elimination: which of its softest motions form its null space, and which are
-//! held by weak springs.
+//! The end of the elimination of one connected part: which of its softest motions form its null space, and which are held
+//! by weak springs.
 
 use crate::body::digits::Digits;
 use crate::body::null_space::largest;
@@ -7,28 +7,28 @@ use crate::body::spectrum::{cut, unclear, Doubt, MotionVerdict, Ritz};
 use crate::error::Result;
 use crate::linalg::{Breakdown, Matrix};
 
-/// The end of the elimination of one part, and the eigenvalues of `D_tt^-1/2 S D_tt^-1/2` with their vectors, m x m.
+/// The Schur complement S of one part, and eigenvalues and eigenvectors of `D_tt^-1/2 S D_tt^-1/2`, m x m.
 pub struct End {
     pub schur: Matrix,
     pub values: Vec<f64>,
     pub vectors: Matrix,
 }
 
-/// What one part moves like without stiffness.
+/// The softest motions of one part.
 pub struct Soft {
     pub schur: Matrix,
-    /// m x r, the null vectors at t times D^1/2.
+    /// m x r, the null vectors at t multiplied by D^1/2.
     pub vectors: Matrix,
     pub gap: f64,
-    /// Weak springs hold the last ones.
+    /// Weak springs hold this number of the last vectors.
     pub weak: usize,
-    /// What rounding of the entries may have left of `v'K v / v'D v`, no unit.
+    /// The value of `v'K v / v'D v` that rounding of the entries may cause, no unit.
     pub rounding: f64,
     pub doubt: Option<Doubt>,
 }
 
 impl End {
-    /// `ritz`: the softest motions measured, none where no question is left. `last`: the dofs t.
+    /// `ritz`: the softest motions measured over the part, empty if the eigenvalues at t suffice. `last`: the dofs t.
     pub fn decided(self, digits: Option<Digits>, last: &[usize], ritz: &Ritz) -> Result<Soft> {
         let measured = self.vectors.columns(0..ritz.values.len());
         let mut soft = self.null_vectors(digits, &measured, last, ritz)?;
@@ -52,7 +52,7 @@ impl End {
         let Self { schur, values, vectors } = self;
         let dof = last[largest(vectors.col(0), |_| 1.0)];
         let soft = |vectors, gap, rounding, doubt| Ok(Soft { schur, vectors, weak: 0, gap, rounding, doubt });
-        // nothing is soft, or the eigenvalues at t have told
+        // nothing is soft, or the eigenvalues at t suffice
         let told = cut(&values).filter(|_| digits.is_none() || ritz.values.is_empty());
         if let Some((dimension, gap)) = told {
             return soft(vectors.columns(0..dimension), gap, 0.0, None);

@@ -1,4 +1,4 @@
-//! The part of the setup of K+ whose cost is known before it is done.
+//! The part of the setup of K+ before the factorisation, from which the cost of the factorisation is known.
 
 use std::sync::Arc;
 
@@ -15,19 +15,19 @@ use crate::linalg::Multiple;
 use crate::platform::memory::{headroom, PRODUCTS};
 use crate::platform::tally;
 
-/// How K+ will be made.
+/// How K+ will be computed.
 pub enum Plan {
     Known(Known),
     Search(Search),
 }
 
 impl GeneralizedInverse {
-    /// Null space and fixing dofs of `k` (a multiple with its largest diagonal entry in [1, 2)).
+    /// Plan for the null space `input` of `k` (a multiple with its largest diagonal entry in [1, 2)).
     pub fn plan(k: Multiple, input: &NullSpaceInput, tolerance: f64) -> Result<Plan> {
         Self::plan_with(k, input, tolerance, None)
     }
 
-    /// The same with the dofs to hold in K+, where the host has given them.
+    /// As `plan`, with the dofs to hold in K+ if the host has given them.
     pub fn plan_with(
         k: Multiple,
         input: &NullSpaceInput,
@@ -46,14 +46,14 @@ impl GeneralizedInverse {
         Ok(Plan::Known(Known { soft, ..Known::of(k, null_space, error, fixing, given) }))
     }
 
-    /// The same where nothing is known about the null space.
+    /// The plan if nothing is known about the null space.
     pub fn search(k: Multiple, tolerance: f64, fixing: Option<&[usize]>) -> Result<Plan> {
         Search::new(k, tolerance, fixing).map(Plan::Search)
     }
 }
 
 impl Plan {
-    /// The null space is sought in K where it turns out to have more motions than were planned with, as in a piece with a hinge.
+    /// Searches the null space in K if K turns out to have more null vectors than planned, as in a piece with a hinge.
     pub fn or_search(self, tolerance: f64) -> Self {
         match self {
             Self::Known(known) if known.retry.is_none() => {
@@ -63,7 +63,7 @@ impl Plan {
         }
     }
 
-    /// Rigid motions that the coarse problem is to have, whether K resists them or not.
+    /// Adds rigid motions that the coarse problem shall have, whether K resists them or not.
     pub fn carrying(self, rigid: &RigidModes) -> Result<Self> {
         Ok(match self {
             Self::Known(known) => {
@@ -73,8 +73,8 @@ impl Plan {
         })
     }
 
-    /// Takes over the way of elimination of another body with the same pattern, or of this one with other values, where
-    /// it serves here as well. Its analysis is wanted from whoever has it, by `set_analysis`.
+    /// Takes over the layout of another body with the same pattern, or of this body with other values, if it is suitable.
+    /// Returns whether it did; `set_analysis` must then provide the analysis.
     pub fn follow(&mut self, layout: &Layout) -> Result<bool> {
         match (self, layout) {
             (Self::Known(known), Layout::Held(dofs)) => known.follow(dofs),
@@ -83,7 +83,7 @@ impl Plan {
         }
     }
 
-    /// What the analysis depends on besides the pattern of K.
+    /// The input of the analysis besides the pattern of K.
     pub fn layout(&self) -> Arc<Layout> {
         match self {
             Self::Known(known) => Arc::new(Layout::Held(known.fixing.clone())),
@@ -100,7 +100,7 @@ impl Plan {
         Ok(Arc::new(Symbolic { layout: self.layout(), analysis }))
     }
 
-    /// The analysis for the layout, made here or elsewhere.
+    /// Sets the analysis for the layout, made here or for another body.
     pub fn set_analysis(&mut self, symbolic: Arc<Symbolic>) {
         match self {
             Self::Known(known) => known.symbolic = Some(symbolic),
@@ -108,7 +108,7 @@ impl Plan {
         }
     }
 
-    /// The analysis, once there is one.
+    /// The analysis, if already made.
     pub fn symbolic(&self) -> Option<&Arc<Symbolic>> {
         match self {
             Self::Known(known) => known.symbolic.as_ref(),
@@ -116,13 +116,13 @@ impl Plan {
         }
     }
 
-    /// Bytes the factorisation is going to take, once it is analysed.
+    /// Bytes of the factorisation; known after the analysis.
     pub fn bytes(&self) -> usize {
         self.symbolic().map_or(0, |symbolic| symbolic.analysis.bytes())
     }
 
-    /// K+ with the factor, already probed, of the same matrix with the same dofs held. The null space is that of the
-    /// plan, where it has one and the other did not have to be sought, or holds further dofs.
+    /// K+ with the already probed factor of an equal matrix with the same dofs held. Uses the null space of the plan,
+    /// unless the null space of `other` was found in K or includes further motions.
     pub fn with_factor_of(self, other: &GeneralizedInverse) -> Result<GeneralizedInverse> {
         match self {
             Self::Known(Known { k, null_space, error, doubt, soft, rigid, .. })
@@ -141,7 +141,7 @@ impl Plan {
         }
     }
 
-    /// Factorises and probes. Where coordinates have promised fewer null vectors than K has, these are sought in K.
+    /// Factorises and probes. If K has more null vectors than the coordinates gave, searches them in K.
     pub fn execute(mut self) -> Result<Factorised> {
         tally::costly();
         if self.symbolic().is_none() {
@@ -161,7 +161,7 @@ impl Plan {
     }
 }
 
-/// The null space sought in K, after `error`.
+/// Searches the null space in K after `error`.
 fn sought(k: Multiple, retry: Retry, error: Error) -> Result<Factorised> {
     if !matches!(error.kind, Kind::NullSpace | Kind::Indefinite | Kind::Internal) {
         return Err(error);

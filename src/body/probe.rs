@@ -1,5 +1,5 @@
-//! The components of K+, a factor of the library or the host's own, and how accurate a factor and a null space are, tested after
-//! every factorisation.
+//! The forms of K+, a factor of the library or functions of the host, and the accuracy of a factor and a null space,
+//! which is tested after every factorisation.
 
 use std::sync::Arc;
 
@@ -14,26 +14,27 @@ use crate::platform::memory::zeros;
 
 /// A pivot below minus this, relative to its diagonal entry, is no rounding error: a(u, u) >= 0 of (4) is violated.
 const NEGATIVE_PIVOT: f64 = 1e-10;
-/// K with the dofs held is singular when some v has `|A v|` below this against `| |A| |v| |`.
+/// K with the dofs held is singular if some v has `|A v|` below this, relative to `| |A| |v| |`.
 pub(super) const SINGULAR: f64 = 1e-13;
-/// Random numbers have `n^-1/2` of their length along a given direction; this many times less is not expected. (A mode
-/// that is missing is left with 1e-16 by rounding, far below `SINGULAR`: there it would take a thousand times less still.)
+/// The part of a random vector along a given direction is `n^-1/2` of its length, and not smaller by this factor.
+/// (Rounding leaves 1e-16 of a missing mode, far below `SINGULAR`: to miss it, its part would have to be 1e3 times
+/// smaller still.)
 pub(super) const UNLIKELY: f64 = 1e3;
 /// Largest residual of a solve with the factor, relative to its terms.
 pub(super) const PROBE: f64 = 1e-8;
-/// Rounding errors of R may be so many times those of the sample that is taken of them, ...
+/// Rounding errors of R may exceed those of the sample by this factor, ...
 pub(super) const SAMPLE: f64 = 16.0;
-/// ... and what is more against the fastest dof is none.
+/// ... but not this value, relative to the fastest dof.
 pub(super) const MOST_ERROR: f64 = 1e-7;
-/// More than this of a row or a load is no rounding, however little is known of R: it is told as marginal.
+/// A larger part of a row or a load is never rounding, however inaccurate R is: the answer is marginal.
 pub(super) const MOST_ROUNDING: f64 = 1e-9;
 
 #[derive(Clone)]
 pub(super) enum Factor {
-    /// Of K without the dofs held; bodies with the same matrix and the same dofs held share it.
+    /// Factor of K without the dofs held, shared by bodies with equal matrices and equal dofs held.
     Own(Arc<Cholesky>),
     Rounded(Arc<Rounded>),
-    /// Known by its products.
+    /// Functions of the host for the products.
     Host(HostMultiple),
 }
 
@@ -47,7 +48,7 @@ impl Factor {
         }
     }
 
-    /// The same, but for rounding of the factor.
+    /// As `solve`, without the correction of rounding in the factor.
     pub fn approximate(&self, x: &mut [f64]) -> Result<()> {
         match self {
             Self::Rounded(rounded) => rounded.approximate(x),
@@ -57,7 +58,7 @@ impl Factor {
 }
 
 impl Breakdown {
-    /// The error for a pivot so negative that K is indefinite.
+    /// The error if the pivot is so negative that K is indefinite.
     pub(super) fn refused(&self) -> Option<Error> {
         (self.relative_pivot < -NEGATIVE_PIVOT).then(|| self.indefinite())
     }
@@ -68,12 +69,12 @@ impl Breakdown {
     }
 }
 
-/// A factorisation that ends without complaint proves nothing: solve for a known right-hand side b, and look for a
-/// null vector v that vanishes on the fixing dofs by inverse iteration on A. The first step finds v by the part of b
-/// along it; a second step is taken unless that part would have to be unlikely small.
+/// A factorisation that ends without error may still be wrong: solve for a known right-hand side b, and look for a null
+/// vector v that is zero at the fixing dofs by inverse iteration on A. The first step finds v by the part of b along v; a
+/// second step follows unless this part would have to be improbably small.
 ///
-/// `fixing`: dofs held; `modes`: dimension of the null space. Returns `|b| / | |K||x| |`: the part of a load that rounding
-/// would be, were it 1.
+/// `fixing`: dofs held; `modes`: dimension of the null space. Returns `|b| / | |K||x| |`: by its inverse K+ amplifies
+/// rounding.
 pub(super) fn probe(factor: &Factor, k: &Multiple, fixing: &[usize], modes: usize) -> Result<f64> {
     let n = k.order();
     if fixing.len() == n {
@@ -114,8 +115,8 @@ pub(super) fn probe(factor: &Factor, k: &Multiple, fixing: &[usize], modes: usiz
     Ok(found)
 }
 
-/// `|K+ K R|`, zero but for errors of R: the factor enlarges what K makes of them as it has those of rounding. `parts`: dofs
-/// of each and its null vectors, in the first columns of R.
+/// `|K+ K R|`, zero except for errors of R: the factor amplifies the residual K R as it amplifies rounding. `parts`: dofs
+/// of each part and its number of null vectors, which are in the first columns of R.
 pub(super) fn known_to(
     factor: &Factor,
     k: &Multiple,

@@ -6,7 +6,7 @@ use crate::linalg::vector::{first_non_finite, norm};
 use crate::linalg::{Matrix, SpdSolver, Symmetric};
 use crate::platform::memory::{copied, headroom, reserved, zeros};
 
-/// Per dof: what it moves and where it sits.
+/// Direction and position of each dof.
 #[derive(Debug, Clone)]
 pub struct Coordinates {
     /// 1-3: displacement along axis x, y, z; 4-6: rotation about it.
@@ -31,10 +31,10 @@ impl RigidModes {
     }
 }
 
-/// What may be left of a rigid motion that is taken apart.
+/// Bound of the remainder after a rigid motion is decomposed.
 const RIGID: f64 = 1e-6;
 
-/// Bytes that the parts of a body and their members take, per dof.
+/// Bytes for the parts of a body and their members, per dof.
 const PER_DOF: usize = 128;
 
 impl Coordinates {
@@ -59,7 +59,7 @@ impl Coordinates {
         self.direction.len()
     }
 
-    /// Those of some dofs.
+    /// The coordinates of some dofs.
     pub fn of(&self, dofs: &[u32]) -> Result<Self> {
         let (mut direction, mut place) = (
             reserved(dofs.len(), "the coordinates of a body")?,
@@ -88,7 +88,7 @@ impl Coordinates {
         self.direction == other.direction && bits(&self.place)
     }
 
-    /// The six rigid modes of every connected part that is no single spring at a wall, those that move nothing left out:
+    /// The six rigid modes of every connected part except single springs to the ground, without modes that move nothing:
     /// modes j of all parts in column j, n x (up to 6).
     pub fn rigid_modes(&self, stiffness: &Symmetric) -> Result<RigidModes> {
         let _room = headroom(self.len() * PER_DOF, "the rigid modes of a body")?;
@@ -98,13 +98,13 @@ impl Coordinates {
         self.motions(members, |dof| stiffness.diagonal(dof) > 0.0)
     }
 
-    /// The same for a body whose parts are not known: it counts as one.
+    /// The rigid modes of a body whose parts are not known: it counts as one part.
     pub fn rigid_modes_of_one(&self, stiff: impl Fn(usize) -> bool) -> Result<Matrix> {
         let _room = headroom(self.len() * PER_DOF, "the rigid modes of a body")?;
         Ok(self.motions(vec![(0..self.len()).collect()], stiff)?.modes)
     }
 
-    /// Those of all parts but single dofs that have a stiffness.
+    /// The rigid modes of all parts, except single dofs with stiffness.
     fn motions(&self, members: Vec<Vec<usize>>, stiff: impl Fn(usize) -> bool) -> Result<RigidModes> {
         let (mut modes, mut counts) = (Matrix::zeros(self.len(), 0)?, vec![0; members.len()]);
         modes.data = reserved(self.len() * 6, "the rigid modes of a body")?;
@@ -127,8 +127,8 @@ impl Coordinates {
         Ok(RigidModes { modes, members, counts })
     }
 
-    /// The rigid motion of v, one entry per dof: velocity of the origin (length) and rotation about the axes, of
-    /// least size where v does not determine it. `None` where v is no rigid motion of the whole body.
+    /// The rigid motion of v, one entry per dof: velocity of the origin (length) and rotation about the axes, of least
+    /// size if v does not determine it. `None` if v is not a rigid motion of the whole body.
     pub fn rigid_motion(&self, v: &[f64]) -> Option<[f64; 6]> {
         let all: Vec<usize> = (0..self.len()).collect();
         let (centre, size) = self.extent(&all);
@@ -160,8 +160,8 @@ impl Coordinates {
         (std::array::from_fn(|k| 0.5 * (low[k] + high[k])), if size > 0.0 { size } else { 1.0 })
     }
 
-    /// Movement of dof `i` in mode 0-2 (translation along an axis) or 3-5 (rotation about it by `1 / size`,
-    /// so that translations and rotations move points of the boundary equally far).
+    /// Movement of dof `i` in mode 0-2 (translation along an axis) or 3-5 (rotation about it by `1 / size`, so that
+    /// translations and rotations move points of the boundary equally far).
     fn motion(&self, i: usize, mode: usize, centre: [f64; 3], size: f64) -> f64 {
         let direction = self.direction[i] as usize - 1;
         if mode < 3 {

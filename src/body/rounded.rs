@@ -1,12 +1,12 @@
-//! K+ from a factor in single precision, which takes half the memory and half the time to read in every product. With the
-//! rounded factor L~ and all sums in double precision,
+//! K+ from a factor in single precision, which halves the memory and the time to read the factor in every product. With
+//! the rounded factor L~ and all sums in double precision,
 //!
 //! ```text
 //! K~+ = L~^-T L~^-1        x_0 = K~+ b,   x <- x + K~+ (b - K x)
 //! ```
 //!
-//! K~+ is symmetric and positive definite, and as good as K+ for the directions of an iteration. The refined x is as good as
-//! that of K+ after one to four corrections, each of which leaves a share of 2^-24 / softness of the error.
+//! K~+ is symmetric and positive definite, and suffices for the directions of an iteration. The refined x is as accurate
+//! as that of K+ after one to four corrections, each of which reduces the error to a part 2^-24 / softness.
 
 use crate::error::Result;
 use crate::linalg::vector::{axpy, weighted_norm};
@@ -15,30 +15,30 @@ use crate::platform::interrupt;
 use crate::platform::memory::{copied, zeros};
 use crate::platform::slabs::Slabs;
 
-/// Rounding of L, as a part of its entries.
+/// Rounding of L, relative to its entries.
 const SINGLE: f64 = f32::EPSILON as f64 / 2.0;
-/// A correction that would leave more than this share of the error is not worth it: L stays as it is.
+/// L is not rounded if a correction would leave more than this part of the error.
 const SHARE: f64 = 1e-3;
-/// Corrections that leave more than this share of a residual have come down to rounding.
+/// A correction that leaves more than this part of the residual has reached rounding.
 const ROUNDED: f64 = 0.25;
-/// More corrections than this a factor that was accepted never needs.
+/// Limit of corrections, which an accepted factor never reaches.
 const CORRECTIONS: usize = 8;
-/// Pivots below this, squared, would lose digits in single precision.
+/// Squared pivots below this would lose digits in single precision.
 const TINY: f64 = 1e-60;
 
-/// The rounded factor with the matrix that it is refined by.
+/// The rounded factor and the matrix for its refinement.
 pub struct Rounded {
     pub factor: Cholesky<f32>,
     k: Multiple,
     /// Dofs at which K+ is 0.
     held: Vec<usize>,
-    /// A residual of this part of the load is rounding.
+    /// A residual below this part of the load is rounding.
     rounding: f64,
 }
 
 impl Rounded {
-    /// None where rounding of L would be felt: matrices of stiffness too different. `softness`: `|f| / | |K||K+ f| |` of a random load.
-    /// The rounded L lies in `slabs`.
+    /// None if rounding of L would be too large, as for matrices of very different stiffnesses. `softness`: `|f| / |
+    /// |K||K+ f| |` of a random load. The rounded L is stored in `slabs`.
     pub fn of(
         factor: &Cholesky,
         k: &Multiple,
@@ -51,7 +51,7 @@ impl Rounded {
         }
         let rounding = f64::EPSILON * (1.0 / softness).max(4.0);
         let rounded = Self { factor: factor.rounded(slabs)?, k: k.clone(), held: held.to_vec(), rounding };
-        // a load that stretches all dofs alike
+        // a load that strains all dofs equally
         let load: Vec<f64> = (0..k.order()).map(|i| k.metric(i, 1.0).sqrt()).collect();
         let mut x = copied(&load, WHAT)?;
         rounded.approximate(&mut x)?;
@@ -69,7 +69,7 @@ impl Rounded {
         self.refined(x, |x| self.approximate(x))
     }
 
-    /// The x for which `K x = b - K v`, from b in its place, refined by solutions near to those with K.
+    /// Solves `K x = b - K v` for x, b in x on entry, refined by solves close to those with K.
     pub fn solve_without(
         &self,
         motion: &[f64],
@@ -81,7 +81,7 @@ impl Rounded {
         self.refined(x, near)
     }
 
-    /// `x <- x + near(b - K x)`, from 0, as long as that corrects it.
+    /// `x <- x + near(b - K x)`, from 0, while this reduces the residual.
     fn refined(&self, x: &mut [f64], near: impl Fn(&mut [f64]) -> Result<()>) -> Result<()> {
         let load = copied(x, WHAT)?;
         let size = self.size(&load);
@@ -90,7 +90,7 @@ impl Rounded {
         for _ in 0..CORRECTIONS {
             let mut left = self.left(&load, x)?;
             let now = self.size(&left);
-            // also where it is not a number
+            // true also for NaN
             if !(now > self.rounding * size && now < ROUNDED * before) {
                 break;
             }
@@ -131,7 +131,7 @@ impl Rounded {
         Ok(x)
     }
 
-    /// `b - K x` where no dof is held, else 0.
+    /// `b - K x` at free dofs, 0 at held dofs.
     fn left(&self, load: &[f64], x: &[f64]) -> Result<Vec<f64>> {
         let mut left = zeros(x.len(), WHAT)?;
         self.k.mul(x, &mut left);

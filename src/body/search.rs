@@ -26,11 +26,11 @@ use crate::linalg::vector::ratio;
 use crate::linalg::{Analysis, Breakdown, Cholesky, Matrix, Multiple};
 use crate::platform::memory::{copied, headroom, reserved, PRODUCTS};
 
-/// Dofs eliminated last in each part, at first.
+/// Number of dofs eliminated last in each part, in the first attempt.
 const LAST: usize = 24;
-/// More than this in one part are not tried.
+/// Limit of this number.
 const MOST: usize = 400;
-/// Rounding of entries in a pivot that cancels, against that of one of them.
+/// Rounding of a pivot that cancels, relative to rounding of a single entry.
 const PIVOT: f64 = 10.0;
 /// Bytes of labels, lists and vectors, per dof.
 const PER_DOF: usize = 256;
@@ -39,30 +39,30 @@ pub struct Search {
     k: Multiple,
     tolerance: f64,
     fixing: Option<Vec<usize>>,
-    /// The dofs t of every part, and all dofs of it.
+    /// The dofs t of every part, and all dofs of every part.
     last: Vec<Vec<usize>>,
     members: Vec<Vec<usize>>,
     /// Entries of K between the parts.
     between: Vec<usize>,
-    /// Dofs wanted in t of each part.
+    /// Number of dofs in t per part.
     count: usize,
-    /// Of the entries of K, where they are fewer than those of double precision.
+    /// Precision of the entries of K, if less than double precision.
     digits: Option<Digits>,
-    /// Coordinates that were tried before.
+    /// Coordinates that did not fit K.
     misfit: Option<Misfit>,
-    /// What the analysis depends on besides the pattern of K.
+    /// The input of the analysis besides the pattern of K.
     pub(super) layout: Arc<Layout>,
     pub(super) symbolic: Option<Arc<Symbolic>>,
 }
 
-/// An attempt ends with K+, or at a dof that t must have.
+/// An attempt ends with K+, or with a dof that t must include.
 enum Attempt {
     Done(Box<GeneralizedInverse>),
     Missed(usize),
 }
 
 impl Search {
-    /// `fixing`: the dofs to hold in K+, where the host has given them.
+    /// `fixing`: the dofs to hold in K+, if the host has given them.
     pub fn new(k: Multiple, tolerance: f64, fixing: Option<&[usize]>) -> Result<Self> {
         let _room = headroom(k.order() * PER_DOF, "the connected parts of a body")?;
         let (part_of, parts) = components(&k.matrix);
@@ -74,7 +74,7 @@ impl Search {
         Self::with(k, tolerance, fixing.map(<[usize]>::to_vec), (members, last, between), LAST)
     }
 
-    /// `last`: the dofs that t has in any case.
+    /// `last`: dofs that t must include.
     fn with(
         k: Multiple,
         tolerance: f64,
@@ -105,7 +105,7 @@ impl Search {
         })
     }
 
-    /// Coordinates were given that do not fit.
+    /// Notes that coordinates were given that do not fit.
     pub(super) fn instead_of(self, misfit: Misfit) -> Self {
         Self { misfit: Some(misfit), ..self }
     }
@@ -115,7 +115,7 @@ impl Search {
         Ok(Arc::new(Analysis::ending(&self.k.matrix, &supported, &self.last.concat())?))
     }
 
-    /// Tries with more dofs t until none is missed.
+    /// Repeats with more dofs t until t resists every motion.
     pub fn execute(self) -> Result<Factorised> {
         let misfit = self.misfit;
         let mut made = self.attempted().map_err(|mut error| {
@@ -192,7 +192,7 @@ impl Search {
         }
     }
 
-    /// Whether t does not have this dof yet.
+    /// Whether t can be extended by this dof.
     fn may_take(&self, dof: usize) -> bool {
         self.last.iter().all(|last| last.binary_search(&dof).is_err())
     }
@@ -208,7 +208,8 @@ impl Search {
         Ok(End { schur, values, vectors })
     }
 
-    /// The same. Entries that drive a motion are not exact, whatever speaks for it: it is judged once more by their digits.
+    /// As `soft`. If K has negative stiffness along a motion, its entries are not exact: the motion is judged again with
+    /// their digits.
     fn soft_as_written(&mut self, factor: &Cholesky) -> Result<Vec<Soft>> {
         match self.soft(factor) {
             Err(Error { kind: Kind::Indefinite, .. }) if self.digits.is_none() => {
@@ -219,8 +220,8 @@ impl Search {
         }
     }
 
-    /// The null space of every part at t: from the eigenvalues at t where they leave no question, else from the softest
-    /// motions, measured over the whole part.
+    /// The null space of every part at t: from the eigenvalues at t if these decide it, otherwise from the softest
+    /// motions measured over the whole part.
     fn soft(&self, factor: &Cholesky) -> Result<Vec<Soft>> {
         const WHAT: &str = "the null space of a body";
         let (mut ends, mut candidates) = (reserved(self.last.len(), WHAT)?, reserved(self.last.len(), WHAT)?);
@@ -237,7 +238,7 @@ impl Search {
         parts.map(|((end, last), ritz)| end.decided(self.digits, last, &ritz)).collect()
     }
 
-    /// Number of the motions to be measured.
+    /// Number of motions to be measured over the whole part.
     fn candidates(&self, end: &End, last: &[usize]) -> Result<usize> {
         let (values, cut) = (&end.values, cut(&end.values));
         if self.digits.is_some() || cut.is_none() {
@@ -248,13 +249,14 @@ impl Search {
         Ok(if weak { to_measure(values) } else { 0 })
     }
 
-    /// An error where the softest motion of a part is resisted by so much less than nothing.
+    /// The error if the stiffness of the softest motion of a part is negative beyond rounding.
     fn definite(&self, relative_pivot: f64, end: &End, last: &[usize]) -> Result<()> {
         let dof = last[largest(end.vectors.col(0), |_| 1.0)];
         (Breakdown { dof, relative_pivot }).refused().map_or(Ok(()), Err)
     }
 
-    /// Motions at t times D^1/2, extended without forces at the other dofs: column c has motion c of every part.
+    /// Motions at t multiplied by D^1/2, extended to the other dofs without forces there: column c has motion c of every
+    /// part.
     fn extended(&self, factor: &Cholesky, motions: impl Iterator<Item = Matrix>) -> Result<Matrix> {
         let mut ends = reserved(self.last.len(), "a null space")?;
         let root = |dof: usize| self.k.metric(dof, 1.0).sqrt();
@@ -268,7 +270,8 @@ impl Search {
         factor.extended(&parts)
     }
 
-    /// K+ from the same factor: r of the dofs t held, the others without springs. `vectors`: null vectors j of all parts in column j.
+    /// K+ from this factor: r of the dofs t held, the others without springs. `vectors`: null vectors j of all parts in
+    /// column j.
     fn inverse(&self, factor: Cholesky, soft: &[Soft], vectors: Matrix) -> Result<GeneralizedInverse> {
         let (n, r) = (self.k.order(), soft.iter().map(|part| part.vectors.cols).sum::<usize>());
         let _room =
@@ -315,7 +318,8 @@ impl Search {
         })
     }
 
-    /// The motions that weak springs hold, and what these are: those that no gap tells from a null space are among its vectors.
+    /// Soft motions and their stiffness, if weak springs hold some of the vectors or no gap separates these from a null
+    /// space.
     fn resisted_softly(
         &self,
         factor: &Factor,
@@ -328,13 +332,13 @@ impl Search {
             return Ok((basis, Vec::new()));
         }
         let (motions, mut stiffness) = soft_motions(factor, &self.k, basis, parts)?;
-        // what drives a motion by so little is rounding, unless the host knows better
+        // negative stiffness this small is rounding, since the host has given no soft motions
         stiffness.iter_mut().for_each(|stiffness| *stiffness = stiffness.max(0.0));
         Ok((motions, stiffness))
     }
 
-    /// Where rounding of the entries resists the null vectors r, all of it acts at the dofs t. What it is at the least lies
-    /// on all dofs like the forces of inertia: `r - K+ (K r - theta D r)`, `theta = r'K r / r'D r`.
+    /// If rounding of the entries resists the null vectors r, the elimination concentrates this resistance at the dofs t.
+    /// Spread over all dofs like inertia forces it deforms least: `r - K+ (K r - theta D r)`, `theta = r'K r / r'D r`.
     fn resisted_evenly(&self, factor: &Factor, mut vectors: Matrix) -> Result<Matrix> {
         if self.digits.is_none() {
             return Ok(vectors);
@@ -353,7 +357,7 @@ impl Search {
         Ok(vectors)
     }
 
-    /// The fixing dofs of every part.
+    /// The dofs to hold in every part.
     fn fixing_of(&self, soft: &[Soft], vectors: &Matrix, root: &[f64]) -> Result<Vec<Vec<usize>>> {
         if let Some(given) = &self.fixing {
             let counts = soft.iter().map(|part| part.vectors.cols);
@@ -370,8 +374,8 @@ impl Search {
         soft.iter().zip(&self.last).map(chosen).collect()
     }
 
-    /// A pivot of `K + E D_tt E'` that is not positive: K is indefinite, or t does not resist a motion of the null space,
-    /// which it does where it has all dofs of the part.
+    /// A pivot of `K + E D_tt E'` that is not positive: K is indefinite, or t does not resist some null vector. The
+    /// latter is excluded if t has all dofs of the part.
     fn missed_or_indefinite(&mut self, Breakdown { dof, relative_pivot }: Breakdown) -> Result<Attempt> {
         let mut parts = self.members.iter().zip(&self.last);
         let whole =
@@ -387,7 +391,7 @@ impl Search {
         Ok(Attempt::Missed(dof))
     }
 
-    /// What rounding of the entries may make of a relative pivot that is 0: such a motion belongs to t.
+    /// The relative pivot that rounding of the entries may leave in place of 0: then the dof must be in t.
     fn rounded_pivot(&self) -> f64 {
         self.digits.map_or(SINGULAR, |digits| PIVOT * digits.relative())
     }

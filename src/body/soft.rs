@@ -6,7 +6,8 @@
 //! ```
 //!
 //! exactly, for the given K. K_0 floats, K+ of (15) is one of its generalised inverses, and S_x are springs at the held
-//! unknowns, where K+ is 0: for `u = K+ (f - B'l) + R a` they resist a with the forces `lambda_j a_j`, and resist nothing else.
+//! unknowns, where K+ is 0: for `u = K+ (f - B'l) + R a` they resist a with the forces `lambda_j a_j`, and no other
+//! motion.
 
 use crate::body::null_space::{orthonormal_by_parts, FreePart, ROUNDING};
 use crate::body::probe::{Factor, MOST_ERROR, SAMPLE};
@@ -22,18 +23,19 @@ use crate::platform::memory::{filled, zeros};
 
 const WHAT: &str = "the soft motions of a body";
 
-/// Dofs of every part and the number of its motions, which are in the first columns.
+/// Dofs of every part and its number of motions, which are in the first columns.
 type Parts<'a> = [(&'a [usize], usize)];
 
-/// Motions in common columns, those of parts that no stiffness and no motion joins: the motions of one resist none of another.
+/// Motions of parts that neither stiffness nor motions connect, in shared columns: K couples no motions of different
+/// parts.
 pub struct Apart {
     pub vectors: Matrix,
-    /// Dofs and number of motions, part after part.
+    /// Dofs and number of motions of each part.
     pub parts: Vec<(Vec<usize>, usize)>,
 }
 
 impl Apart {
-    /// `motions`: n x r, each in a column of its own.
+    /// `motions`: n x r, one per column.
     pub fn of(k: &Multiple, motions: &Matrix) -> Result<Self> {
         let (part_of, count) = components(&k.matrix);
         let moved =
@@ -55,11 +57,11 @@ impl Apart {
     }
 }
 
-/// What K does to motions.
+/// The resistance of K to motions.
 struct Resistance {
     /// `K R`, rounded once.
     image: Matrix,
-    /// `64 eps |r|'|K||r|`, part after part: less of `r'K r` is rounding.
+    /// `64 eps |r|'|K||r|`, part after part: smaller values of `r'K r` are rounding.
     noise: Vec<f64>,
 }
 
@@ -69,8 +71,8 @@ pub fn are_resisted(k: &Multiple, r: &Matrix, parts: &Parts) -> Result<bool> {
     Ok(found.diagonal(r, parts).iter().zip(&found.noise).any(|(stiffness, noise)| *stiffness > *noise))
 }
 
-/// R of the span of `vectors` at the unknowns held, `R'DR = I` and R'K R diagonal in every part; and lambda, part after part, 0
-/// where it is rounding.
+/// R with the span of `vectors` at the held unknowns, `R'DR = I` and R'K R diagonal in every part; and lambda, part after
+/// part, 0 if it is rounding.
 pub fn soft_motions(
     factor: &Factor,
     k: &Multiple,
@@ -90,7 +92,7 @@ pub fn soft_motions(
     Ok((r, lambda.collect()))
 }
 
-/// `R - K+ K R`, which is `[-K_kk^-1 K_kx; I] R_x` whatever R has at the other unknowns.
+/// `R - K+ K R`, which is `[-K_kk^-1 K_kx; I] R_x` for any values of R at the other unknowns.
 fn corrected(factor: &Factor, k: &Multiple, mut r: Matrix) -> Result<Matrix> {
     for j in 0..r.cols {
         let mut image = product(k, r.col(j))?;
@@ -100,7 +102,8 @@ fn corrected(factor: &Factor, k: &Multiple, mut r: Matrix) -> Result<Matrix> {
     Ok(r)
 }
 
-/// How far R of [`soft_motions`] is known, against the fastest dof: what K+ makes of rounding of the entries of K, by a sample.
+/// Accuracy of R of [`soft_motions`], relative to the fastest dof: effect of rounding in the entries of K through K+, by
+/// a sample.
 pub fn known_to_entries(factor: &Factor, k: &Multiple, r: &Matrix) -> Result<f64> {
     let (_, terms) = k.mul_columns(r)?;
     let (mut random, mut worst) = (Random::default(), ROUNDING);
@@ -118,7 +121,7 @@ fn orthonormal(k: &Multiple, r: &Matrix, parts: &Parts) -> Result<Matrix> {
     orthonormal_by_parts(k, r, &parts.iter().map(part).collect::<Vec<_>>())
 }
 
-/// `K v` in twice the digits: what is left of a soft motion is far below its terms.
+/// `K v` in double-double arithmetic: for a soft motion the result is far smaller than its terms.
 fn product(k: &Multiple, v: &[f64]) -> Result<Vec<f64>> {
     let mut image = filled(v.len(), Twofold::default(), WHAT)?;
     k.matrix.add_twofold(k.by, v, &mut image);
@@ -183,12 +186,12 @@ mod tests {
         GeneralizedInverse::plan(k.clone(), &input, 1e-8).unwrap().execute().unwrap().inverse
     }
 
-    /// K_0 = K - E_x S_x E_x' maps R to zero, with S_x = lambda / R_x^2 and R'DR = 1; R of a chain with a force at x alone is
-    /// linear on either side of it.
+    /// K_0 = K - E_x S_x E_x' maps R to zero, with S_x = lambda / R_x^2 and R'DR = 1; R of a chain with a force at x
+    /// alone is linear on each side of x.
     #[test]
     fn motion_and_stiffness_are_those_of_dense_arithmetic() {
         for ground in [1e-12, 1e-9, 1e-6, 1e-3, -1e-6] {
-            // as the diagonal has them
+            // with the rounding of the diagonal
             let springs = [ground, 3.0 * ground].map(|spring| (1.0 + spring) - 1.0);
             let (n, k) = (7, chain(7, springs));
             let inverse = soft(&k);
@@ -199,7 +202,7 @@ mod tests {
             assert!((length - 1.0).abs() < 1e-13);
             image[x] = 0.0;
             assert!(image.iter().all(|v| v.abs() < 1e-15), "{ground:e}: {image:?}");
-            // springs in series with the chain on either side of x
+            // springs in series with the chain on each side of x
             let series = |spring: f64, links: usize| 1.0 / (1.0 / spring + links as f64);
             let held = series(springs[0], x) + series(springs[1], n - 1 - x);
             let expected = held * r[x] * r[x];
@@ -208,7 +211,7 @@ mod tests {
         }
     }
 
-    /// `R'DR = I`, `R'K R = diag(lambda)`, and `K R` is 0 but at the dofs held.
+    /// `R'DR = I`, `R'K R = diag(lambda)`, and `K R` is 0 except at the held dofs.
     fn assert_soft(k: &Multiple, inverse: &GeneralizedInverse) {
         let (n, r) = (k.order(), &inverse.null_space);
         for a in 0..r.cols {
@@ -227,9 +230,10 @@ mod tests {
         }
     }
 
-    /// A spring of -0.3 drives one end against the 0.2 of five links to the dof held for one motion: F is indefinite with it alone.
+    /// A spring of -0.3 at one end exceeds the stiffness 0.2 of five links to the dof held for one motion: F is
+    /// indefinite with this dof alone.
     #[test]
-    fn where_a_driven_body_bends_between_the_dofs_held_another_is_held() {
+    fn where_a_body_of_negative_stiffness_bends_between_the_dofs_held_another_is_held() {
         let k = chain(7, [-0.3, 0.0]);
         let inverse = soft(&k);
         assert_eq!((inverse.null_space.cols, inverse.fixing.len()), (2, 2));
@@ -237,9 +241,9 @@ mod tests {
         assert!(inverse.stiffness.iter().any(|v| *v < 0.0) && inverse.stiffness.iter().any(|v| *v > 0.0));
     }
 
-    /// The same with all but 0.2: F is all but singular with that dof, and regular with another.
+    /// A spring of nearly -0.2: F is nearly singular with this dof, and regular with another.
     #[test]
-    fn a_dof_that_leaves_a_driven_body_all_but_loose_is_exchanged() {
+    fn a_dof_that_leaves_a_body_of_negative_stiffness_nearly_loose_is_exchanged() {
         for less in [1e-3, 1e-6, 1e-9] {
             let k = chain(7, [-0.2 * (1.0 - less), 0.0]);
             let inverse = soft(&k);

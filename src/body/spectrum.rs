@@ -1,6 +1,6 @@
-//! Which of the softest motions of a part form its null space. For the few dofs t of the search, a motion that K resists only
-//! by the rounding of its entries seems stiffer by (dofs of the part) / (dofs t). The measure that distinguishes it from a support is
-//! `theta = v'K v / v'D v` over the whole part, compared with the possible effect of rounding.
+//! Which of the softest motions of a part form its null space. At the few dofs t of the search, a motion that K resists
+//! only by rounding of its entries seems stiffer by (dofs of the part) / (dofs t). The measure that distinguishes it from
+//! a support is `theta = v'K v / v'D v` over the whole part, compared with the possible effect of rounding.
 
 use std::fmt;
 
@@ -12,37 +12,38 @@ use crate::linalg::vector::dot;
 use crate::linalg::{Matrix, Multiple};
 use crate::platform::memory::reserved;
 
-/// An eigenvalue of the scaled S below this against the largest may belong to the null space.
+/// An eigenvalue of the scaled S may belong to the null space if it is below this part of the largest.
 const SOFT: f64 = 1e-11;
-/// Motions softer than this, and the next one, are measured over the whole part where they must be.
+/// Motions softer than this, and the next one, are measured over the whole part if necessary.
 const MEASURED: f64 = 1e-3;
 /// Least ratio between the stiffest motion of the null space and the softest of the others.
 pub const GAP: f64 = 1e3;
-/// Eigenvalues below this against the largest are rounding.
+/// Eigenvalues below this part of the largest are rounding.
 const ROUNDING: f64 = 1e-14;
-/// Rounding is less than so many standard deviations.
+/// Bound of rounding in standard deviations.
 const DEVIATIONS: f64 = 5.0;
-/// A support is known where rounding of the entries is less than this part of it.
+/// A support is certain if rounding of the entries is less than this part of it.
 const UNKNOWN: f64 = 1e-3;
-/// Rounding of so much of the softest other motion changes forces no more than the certificate lets them be wrong.
+/// If rounding is below this part of the softest other motion, its effect on forces is within the certificate's
+/// tolerance.
 const TRIFLE: f64 = 1e-6;
-/// Weak springs of a host hold the six rigid motions of a part, ...
+/// Weak springs of a host hold up to six rigid motions of a part, ...
 const RIGID: usize = 6;
-/// ... and resist them by less than this: 1e-6 of K at every unknown.
+/// ... with a stiffness below this: 1e-6 of K at every unknown.
 const WEAK: f64 = 1e-5;
-/// theta below minus this is no rounding of products, whatever digits the entries have.
+/// theta below minus this is negative stiffness, whatever digits the entries have.
 const NEGATIVE: f64 = 1e-10;
 
-/// Motions that K resists by no more than the rounding of its entries may have left.
+/// Motions with a resistance in K that may be rounding of its entries.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Doubt {
     pub digits: Digits,
     pub motions: usize,
-    /// Largest v'K v / v'D v of them, ...
+    /// Their largest v'K v / v'D v, ...
     pub resisted: f64,
-    /// ... and what rounding of the entries may make of it.
+    /// ... and the value that rounding of the entries may cause.
     pub rounding: f64,
-    /// They are taken as free; as supports where no gap tells them from the others.
+    /// They are treated as free; as supports if no gap separates them from the other motions.
     pub free: bool,
 }
 
@@ -70,23 +71,23 @@ impl fmt::Display for Doubt {
 pub struct Ritz {
     /// theta
     pub values: Vec<f64>,
-    /// What rounding may have made of theta.
+    /// Rounding of theta: of the entries and of the products.
     pub noise: Vec<f64>,
-    /// The same of the products alone.
+    /// Rounding of theta by the products alone.
     products: Vec<f64>,
-    /// Ritz vectors by the motions that were measured, q x q.
+    /// Coefficients of the Ritz vectors in the motions measured, q x q.
     pub turn: Matrix,
 }
 
-/// What the softest motions of a part are.
+/// The classification of the softest motions of a part.
 #[derive(Debug, PartialEq)]
 pub enum MotionVerdict {
-    /// The first `dimension`.
+    /// The first `dimension` motions are free.
     Free {
         dimension: usize,
         gap: f64,
     },
-    /// None; rounding of the entries may be all that resists the first ones.
+    /// No motion is free; the resistance to the first `doubtful` may be rounding of the entries.
     Held {
         doubtful: usize,
         gap: f64,
@@ -96,7 +97,7 @@ pub enum MotionVerdict {
 }
 
 /// Dimension of the null space and the ratio of the stiffness beyond it to that within, from ascending eigenvalues of a
-/// matrix of unit diagonal or a Schur complement of it; `None` where some are soft and none stands apart.
+/// matrix of unit diagonal or a Schur complement of it; `None` if some are soft but no gap separates them.
 pub fn cut(values: &[f64]) -> Option<(usize, f64)> {
     let m = values.len();
     let stiffest = values[m - 1];
@@ -111,12 +112,12 @@ pub fn cut(values: &[f64]) -> Option<(usize, f64)> {
     gaps.reduce(|best, gap| if gap.1 > best.1 { gap } else { best }).filter(|(_, gap)| *gap >= GAP)
 }
 
-/// Whether motions beyond the softest `dimension` at t may be held by weak springs alone.
+/// Whether weak springs alone may hold motions beyond the softest `dimension` at t.
 pub fn may_be_weak(values: &[f64], dimension: usize) -> bool {
     values.get(dimension).is_some_and(|value| *value < MEASURED * values[values.len() - 1])
 }
 
-/// How many of the softest motions at t are to be measured; none where none is soft.
+/// How many of the softest motions at t are to be measured; 0 if none is soft.
 pub fn to_measure(values: &[f64]) -> usize {
     let stiffest = values[values.len() - 1];
     match values.partition_point(|value| *value < MEASURED * stiffest) {
@@ -125,8 +126,8 @@ pub fn to_measure(values: &[f64]) -> usize {
     }
 }
 
-/// The motions of some parts, in the columns of `x` from the first on, measured. `parts`: dofs and number of motions of
-/// each; no two share an entry of K.
+/// Measures the motions of some parts, in the first columns of `x`. `parts`: dofs and number of motions of each part; no
+/// entry of K couples two parts.
 pub fn measured(
     k: &Multiple,
     digits: Option<Digits>,
@@ -193,7 +194,7 @@ fn turned(m: &Matrix, a: &Matrix) -> Result<Matrix> {
 }
 
 impl Ritz {
-    /// Motions that rounding explains are free where the next one stands apart from them.
+    /// Motions that rounding explains are free if a gap separates them from the next motion.
     pub fn judged(&self, digits: Option<Digits>) -> MotionVerdict {
         let (values, noise) = (&self.values, &self.noise);
         if values[0] < -noise[0].max(NEGATIVE) {
@@ -222,14 +223,14 @@ impl Ritz {
         MotionVerdict::Held { doubtful, gap: values[0] / noise[0] }
     }
 
-    /// The first motions, by those that were measured.
+    /// The first `count` Ritz vectors, from the motions measured.
     pub fn turned(&self, measured: &Matrix, count: usize) -> Result<Matrix> {
         let mut turned = Matrix::zeros(measured.rows, count)?;
         (0..count).for_each(|j| measured.mul_add(1.0, self.turn.col(j), turned.col_mut(j)));
         Ok(turned)
     }
 
-    /// Motions that springs alone hold, so weak that they stand apart from the next one, beyond the first `free` ones.
+    /// Number of motions, beyond the first `free`, that only springs hold which are so weak that a gap follows.
     pub fn weak(&self, free: usize) -> usize {
         let values = &self.values;
         let apart = |q: &usize| values[q - 1] <= WEAK && values[*q] >= GAP * values[q - 1].max(ROUNDING);
@@ -237,8 +238,8 @@ impl Ritz {
         most.map_or(0, |q| q - free)
     }
 
-    /// What is said of the first motions: of free ones where entries of all digits would make them supports, or where
-    /// rounding is no trifle against the next one.
+    /// The doubt about the first motions: if they are free but would be supports with exact entries, or if rounding is
+    /// not negligible against the next motion.
     pub fn doubt(&self, digits: Option<Digits>, motions: usize, free: bool) -> Option<Doubt> {
         let resisted = self.values[..motions].iter().fold(0.0f64, |most, v| most.max(v.abs()));
         let rounding = self.noise[..motions].iter().fold(0.0f64, |most, v| most.max(*v));
@@ -248,15 +249,16 @@ impl Ritz {
     }
 }
 
-/// No motion stands apart.
+/// The error if no gap separates the soft motions.
 pub fn unclear(digits: Option<Digits>) -> Error {
     let gap = match digits {
         Some(digits) => {
-            format!("no gap of {GAP:.0e} above what rounding of K, whose entries have {digits}, may be")
+            format!("no gap of {GAP:.0e} above the possible rounding of K, whose entries have {digits}")
         }
         None => format!("no gap of {GAP:.0e} below {SOFT:.0e} of the largest stiffness"),
     };
-    let what = format!("the null space cannot be told from soft motions: {gap}; give it, or coordinates");
+    let what =
+        format!("the null space cannot be distinguished from soft motions: {gap}; give it, or coordinates");
     Error::new(Kind::NullSpace, what)
 }
 
@@ -306,7 +308,7 @@ mod tests {
         assert!(matches!(slender, MotionVerdict::Held { doubtful: 4, .. }), "{slender:?}");
         assert_eq!(verdict(&[-2e-8, 1e-3], 1e-9, nine), MotionVerdict::Indefinite);
         assert_eq!(verdict(&[-2e-10, 1e-7], 1e-9, nine), MotionVerdict::Unclear);
-        // springs that rounding does not explain
+        // springs stiffer than rounding explains
         let springs = verdict(&[1e-7, 2e-7, 1e-3], 1e-11, nine);
         assert!(matches!(springs, MotionVerdict::Held { doubtful: 0, .. }), "{springs:?}");
     }

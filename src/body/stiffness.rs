@@ -7,7 +7,7 @@ use crate::linalg::vector::first_non_finite;
 use crate::linalg::{Csr, Symmetric};
 use crate::platform::memory::{headroom, reserved};
 
-/// Bytes of row pointers and diagonals that come and go in the conversion of a matrix, per row.
+/// Bytes of temporary row pointers and diagonals in the conversion of a matrix, per row.
 const PER_ROW: usize = 96;
 
 /// Checks and converts a sparse matrix. Full storage is accepted when
@@ -16,7 +16,8 @@ pub fn from_sparse(input: SparseInput<'_>, tolerance: f64) -> Result<Symmetric> 
     from_rows(input, None, tolerance)
 }
 
-/// The same for a matrix whose diagonal `diag`, length n, is an array of its own; `input` has what lies beside it.
+/// As `from_sparse`, for a matrix with a separate array `diag` of the diagonal, length n; `input` has the off-diagonal
+/// entries.
 pub fn from_split(input: SparseInput<'_>, diag: &[f64], tolerance: f64) -> Result<Symmetric> {
     from_rows(input, Some(diag), tolerance)
 }
@@ -71,7 +72,7 @@ pub fn from_dense(n: usize, k: &[f64], ld: usize, storage: Storage, tolerance: f
     Ok(k)
 }
 
-/// Columns are kept in 32 bits.
+/// Checks that columns fit into 32 bits.
 pub(super) fn check_order(n: usize) -> Result<()> {
     let limit = u32::MAX as usize;
     if n <= limit {
@@ -81,7 +82,7 @@ pub(super) fn check_order(n: usize) -> Result<()> {
     Err(Error::new(Kind::Overflow, what).value(n as f64).limit(limit as f64))
 }
 
-/// Room for the entries of a matrix that has none yet.
+/// Reserves room for the entries of an empty matrix.
 fn reserve(rows: &mut Csr, entries: usize) -> Result<()> {
     rows.col = reserved(entries, "a stiffness matrix")?;
     rows.val = reserved(entries, "a stiffness matrix")?;
@@ -112,14 +113,14 @@ fn sorted(input: SparseInput<'_>, diag: Option<&[f64]>) -> Result<Csr> {
         row.sort_unstable_by_key(|entry| entry.0);
         if let Some(pair) = row.windows(2).find(|pair| pair[0].0 == pair[1].0) {
             let at = pair[0].2.max(pair[1].2);
-            return Err(Error::argument("col", "the row holds this column twice").row(i).entry(at));
+            return Err(Error::argument("col", "the row contains this column twice").row(i).entry(at));
         }
         rows.push_row(row.iter().map(|entry| (entry.0, entry.1)));
     }
     Ok(rows)
 }
 
-/// `row_of` tells the row of an entry.
+/// `row_of` gives the row of an entry.
 pub fn check_finite(values: &[f64], name: &'static str, row_of: impl FnOnce(usize) -> usize) -> Result<()> {
     match first_non_finite(values) {
         None => Ok(()),
@@ -127,7 +128,7 @@ pub fn check_finite(values: &[f64], name: &'static str, row_of: impl FnOnce(usiz
     }
 }
 
-/// The column of entry `at`, which is in row `i`; `split`: none lies on the diagonal.
+/// The column of entry `at` of row `i`; `split`: no entry may be on the diagonal.
 fn column(input: &SparseInput<'_>, split: bool, i: usize, at: usize) -> Result<usize> {
     let n = input.ptr.len() - 1;
     let col = usize::try_from(input.col[at]).ok().filter(|&col| col < n).ok_or_else(|| {
@@ -140,13 +141,13 @@ fn column(input: &SparseInput<'_>, split: bool, i: usize, at: usize) -> Result<u
     match outside(input.storage, i, col) {
         Some(side) => refused(format!("the column lies {side}")),
         None if split && col == i => {
-            refused("the entry lies on the diagonal, which is an array of its own".to_owned())
+            refused("the entry lies on the diagonal, which is given by a separate array".to_owned())
         }
         None => Ok(col),
     }
 }
 
-/// On which wrong side of the diagonal an entry lies.
+/// The side of the diagonal, if the entry is on the wrong side.
 fn outside(storage: Storage, row: usize, col: usize) -> Option<&'static str> {
     match storage {
         Storage::Lower if col > row => Some("right of the diagonal, in a matrix announced as lower"),
@@ -155,7 +156,7 @@ fn outside(storage: Storage, row: usize, col: usize) -> Option<&'static str> {
     }
 }
 
-/// Lower triangle of `(K + K') / 2`, after the check of symmetry.
+/// Lower triangle of `(K + K') / 2`, after a check of symmetry.
 fn averaged(rows: &Csr, tolerance: f64) -> Result<Csr> {
     let transposed = rows.transposed()?;
     let n = rows.rows();
@@ -184,7 +185,7 @@ fn averaged(rows: &Csr, tolerance: f64) -> Result<Csr> {
     Ok(lower)
 }
 
-/// What rows that are not symmetric in (i, j) are instead.
+/// What the rows may be if (i, j) is not symmetric.
 fn shape(rows: &Csr, i: usize, j: usize) -> Shape {
     let none = |row: usize, is_there: fn(usize, usize) -> bool| {
         rows.row(row).all(|(col, v)| v == 0.0 || !is_there(row, col))
@@ -216,8 +217,8 @@ fn with_diagonal(lower: Csr) -> Result<Symmetric> {
     Ok(k)
 }
 
-/// A dof may have no stiffness at all (a rigid body); a diagonal entry that is negative, or zero in a row that is not,
-/// makes K indefinite.
+/// A dof may have no stiffness at all (a rigid body); a diagonal entry that is negative, or that is zero in a row with
+/// other entries, makes K indefinite.
 pub fn check_diagonal(k: &Symmetric) -> Result<()> {
     let n = k.order();
     if (0..n).all(|i| k.diagonal(i) > 0.0) {
@@ -280,7 +281,7 @@ mod tests {
     fn an_identity_row_with_a_full_column_gets_its_own_advice() {
         let error = full(&[-1.0, 2.0, 0.0, 1.0]).unwrap_err();
         assert!(error.what.contains("eliminate supports symmetrically"), "{error}");
-        let chain = [1.0, -2.0, 0.0, 0.0, 4.0, -2.0, 0.0, -2.0, 4.0]; // by columns, unknown 0 supported in its row alone
+        let chain = [1.0, -2.0, 0.0, 0.0, 4.0, -2.0, 0.0, -2.0, 4.0]; // by columns, unknown 0 supported in its row only
         let error = from_dense(3, &chain, 3, Storage::Full, 1e-10).unwrap_err();
         assert!(error.what.starts_with("an identity row"), "{error}");
     }

@@ -1,8 +1,8 @@
-//! The storage formats of a stiffness matrix, and how far its entries may differ from symmetry.
+//! The storage formats of a stiffness matrix, and the permitted difference of its transposed entries.
 
 use crate::error::Error;
 
-/// Which entries the host hands over.
+/// Which entries the host gives.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Storage {
     Full,
@@ -10,8 +10,8 @@ pub enum Storage {
     Upper,
 }
 
-/// A matrix by rows as it arrived: `ptr` has n + 1 nondecreasing entries from 0, columns count from 0 in any
-/// order within a row.
+/// A matrix by rows as given: `ptr` has n + 1 nondecreasing entries from 0, columns count from 0 in any order within a
+/// row.
 #[derive(Debug, Clone, Copy)]
 pub struct SparseInput<'a> {
     pub ptr: &'a [usize],
@@ -20,24 +20,24 @@ pub struct SparseInput<'a> {
     pub storage: Storage,
 }
 
-/// How far `K_ij` and `K_ji` may be apart, given the square roots of their diagonal entries.
+/// The permitted difference of `K_ij` and `K_ji`, from the square roots of their diagonal entries.
 pub(super) fn may_differ(tolerance: f64, root_i: f64, root_j: f64) -> f64 {
     tolerance * root_i * root_j
 }
 
-/// What a matrix given with all its entries is instead of symmetric.
+/// What a matrix in full storage may be if it is not symmetric.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Shape {
-    /// All entries beside the diagonal are on one side of it: the triangle of that storage.
+    /// All off-diagonal entries are on one side of the diagonal: the triangle of that storage.
     Triangle(Storage),
-    /// One of two rows that meet has nothing beside its diagonal.
+    /// One of the two rows has only a diagonal entry.
     Lonely,
     Neither,
 }
 
 const SUPPORT: &str = "an identity row meets a full column: eliminate supports symmetrically";
 
-/// In a triangle of two unknowns a support may not have been eliminated in the other row.
+/// In a triangle of two unknowns, the other possible reason is a support that was not eliminated in the other row.
 pub(super) fn unsymmetric(
     shape: (Shape, usize),
     (i, j): (usize, usize),

@@ -1,4 +1,4 @@
-//! Which part of a displacement is deformation: everything except the rigid motions that the rows leave to the bodies.
+//! Which part of a displacement is deformation: everything except the rigid motions that the rows leave free.
 
 use std::sync::Arc;
 
@@ -10,19 +10,20 @@ use crate::linalg::vector::{axpy, norm, norm_max};
 use crate::linalg::{Analysis, Csr, Matrix};
 use crate::platform::interrupt;
 
-/// delta against the largest entry of A'A, and solutions with each. A joint resists motions by more than the root of the last.
+/// Values of delta relative to the largest entry of A'A; `PASSES` solutions with each. A joint resists motions by more
+/// than the root of the last.
 const RESISTED: [f64; 5] = [0.3, 1e-3, 1e-6, 1e-9, 1e-13];
 const PASSES: usize = 4;
-/// Less than this of `|A||b|` is left of `A b` by rounding.
+/// `A b` is rounding if it is below this part of `|A||b|`.
 const ROUNDING: f64 = 4.0 * f64::EPSILON;
-/// What neighbours count for beside an unknown itself.
+/// Weight of the deformation of neighbours.
 const NEIGHBOURS: f64 = 0.5;
 
 /// delta, n, length.
 pub(super) struct Deformation {
-    /// What an unknown is deformed by.
+    /// Deformation at each unknown.
     pub own: Vec<f64>,
-    /// The same together with those it is joined to.
+    /// Deformation at each unknown including its neighbours.
     pub joined: Vec<f64>,
 }
 
@@ -34,7 +35,7 @@ impl Deformation {
     }
 }
 
-/// `|r_j| / K_jj` of grounded unknowns, `|u - R a|` of the others.
+/// `|r_j| / K_jj` of grounded unknowns, r the forces of the rows; `|u - R a|` of the others.
 fn own(field: &Field) -> Result<Vec<f64>> {
     let mut own = without_motions(field)?;
     for j in (0..own.len()).filter(|j| field.grounded[*j]) {
@@ -43,8 +44,8 @@ fn own(field: &Field) -> Result<Vec<f64>> {
     Ok(own)
 }
 
-/// `max(delta_j, 1/2 sum_k |K_jk| delta_k / K_jj)`, for a single unknown may be at rest by symmetry; of grounded unknowns
-/// their own.
+/// `max(delta_j, 1/2 sum_k |K_jk| delta_k / K_jj)`, since a single unknown may be at rest by symmetry; delta_j for
+/// grounded unknowns.
 fn with_neighbours(field: &Field, own: &[f64]) -> Result<Vec<f64>> {
     let mut all = own.to_vec();
     for (p, body) in field.data.bodies.iter().enumerate() {
@@ -59,8 +60,8 @@ fn with_neighbours(field: &Field, own: &[f64]) -> Result<Vec<f64>> {
     Ok(all)
 }
 
-/// `|u - R a|`, n, length. a is the fit by the rigid motions, least squares in D without the grounded unknowns, that rigid
-/// equality rows which join bodies do not resist, `H R a = 0`; rows that hold one body alone do not count. `|u|` on bodies
+/// `|u - R a|`, n, length. a is the least-squares fit, in D without the grounded unknowns, of the rigid motions that the
+/// rigid equality rows between bodies do not resist, `H R a = 0`; rows on one body alone are ignored. `|u|` on bodies
 /// without a null space.
 fn without_motions(field: &Field) -> Result<Vec<f64>> {
     let data = field.data;
@@ -88,14 +89,14 @@ fn without_motions(field: &Field) -> Result<Vec<f64>> {
     Ok(left)
 }
 
-/// `(unit_p / unit_0)^1/2`, no unit: what an amplitude of body p counts for, `|R_p a_p|_D = unit_p^1/2 |a_p|`.
+/// `(unit_p / unit_0)^1/2`, no unit: the weight of an amplitude of body p, `|R_p a_p|_D = unit_p^1/2 |a_p|`.
 fn weights(data: &Data) -> Vec<f64> {
     let unit = data.bodies.first().map_or(1.0, |body| body.unit);
     data.bodies.iter().map(|body| (body.unit / unit).sqrt()).collect()
 }
 
-/// `a = R'D u / unit` of body p, r, length, without grounded unknowns; once more of what is left, where rounding of a far
-/// travel has been.
+/// `a = R'D u / unit` of body p, r, length, without grounded unknowns; a second fit of the remainder removes rounding of
+/// a long travel.
 fn fitted(field: &Field, p: usize) -> Vec<f64> {
     let (body, range) = (&field.data.bodies[p], field.range(p));
     let mut all = vec![0.0; body.null_space.cols];
@@ -114,7 +115,7 @@ fn fitted(field: &Field, p: usize) -> Vec<f64> {
     all
 }
 
-/// `H R` of the rigid equality rows that join two or more bodies, each of length 1, m x (modes of all bodies).
+/// `H R` of the rigid equality rows that join two or more bodies, each scaled to length 1, m x (modes of all bodies).
 fn joints(field: &Field, first: &[usize], weights: &[f64]) -> Csr {
     let rows = field.data.equalities;
     let mut joints = Csr::empty(first[field.data.bodies.len()]);
@@ -139,7 +140,7 @@ fn joints(field: &Field, first: &[usize], weights: &[f64]) -> Csr {
     joints
 }
 
-/// `h R`, r, of the entries of a row on one body; 0 where it is rounding.
+/// `h R`, r, of the entries of a row on one body; 0 if it is rounding.
 fn resisted(entries: &[(usize, f64)], motions: &Matrix) -> Vec<f64> {
     let of = |k: usize| {
         let terms = entries.iter().map(|&(j, v)| v * motions.get(j, k));
@@ -153,14 +154,14 @@ fn resisted(entries: &[(usize, f64)], motions: &Matrix) -> Vec<f64> {
     (0..motions.cols).map(of).collect()
 }
 
-/// `b - A^+ A b`, the part of b in the kernel of A: `b <- b - (A'A + delta I)^-1 A'A b` with falling delta, each as small as what
-/// the one before has left of `A b` allows. What A hardly resists, because R is not exact, is no joint.
+/// `b - A^+ A b`, the part of b in the kernel of A: `b <- b - (A'A + delta I)^-1 A'A b` with decreasing delta, while `A
+/// b` is more than rounding. Very small resistance, which comes from errors of R, does not count as a joint.
 fn project(a: &Csr, mut b: Vec<f64>) -> Result<Vec<f64>> {
     let joined = Gram::of(a)?;
     let mut w = joined.sum(a, &vec![false; a.rows()])?;
     let diagonal: Vec<f64> = (0..a.cols).map(|k| w.diagonal(k)).collect();
     let largest = norm_max(&diagonal);
-    // also where it is no number
+    // true also for NaN
     if !(largest > 0.0) {
         return Ok(b);
     }
@@ -201,7 +202,7 @@ mod tests {
         assert!(kept.iter().zip([3.0, 3.0, 3.0, 7.0]).all(|(b, e)| (b - e).abs() < 1e-14), "{kept:?}");
     }
 
-    /// The second row resists the motion of both by rounding of R alone.
+    /// The second row resists the common motion only by rounding of R.
     #[test]
     fn what_is_hardly_resisted_is_no_joint() {
         let mut a = Csr::empty(2);

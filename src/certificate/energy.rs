@@ -10,32 +10,32 @@ use crate::linalg::twofold::Twofold;
 pub(super) struct Energies {
     /// `u'K u`
     strain: f64,
-    /// That of bodies without grounded unknowns.
+    /// `u'K u` of bodies without grounded unknowns.
     pub deforming: f64,
     /// `f'u`
     work: f64,
     /// `|u|'(|K||u| + |f| + |B'||lambda| + |H'||mu|)`
     terms: f64,
-    /// `||f| + |B'||lambda| + |H'||mu||_{D^-1}^2`: f - r is known to rounding of its terms, so u is known to rounding of what
-    /// each of them would move.
+    /// `||f| + |B'||lambda| + |H'||mu||_{D^-1}^2`: f - r is known up to rounding of its terms, so u is known up to the
+    /// effect of this rounding.
     forces: f64,
     /// `lambda'C lambda + mu'C mu + lambda_t'C_t lambda_t`, twice the energy of the compliant rows.
     stored: f64,
-    /// `c'lambda + h'mu + s_old'lambda_t`, twice the energy of the compliant rows and `b |s|` of the nodes with friction, and the same
-    /// of absolute values.
+    /// `c'lambda + h'mu + s_old'lambda_t`, twice the energy of the compliant rows and `b |s|` of the nodes with friction;
+    /// and the sum of the absolute values of these terms.
     constrained: f64,
     constrained_size: f64,
-    /// There are forces.
+    /// Some force is not 0.
     acting: bool,
 }
 
 impl Energies {
-    /// Adds body p, of which `K u` and `|K||u|` are given, n_p, force.
+    /// Adds body p, with its `K u` and `|K||u|`, n_p, force.
     pub fn add_body(&mut self, field: &Field, p: usize, (strain, terms): (&[f64], &[f64])) {
         let range = field.range(p);
         let u = &field.answer.u[range.clone()];
         let given: Vec<f64> = range.clone().map(|j| field.load(p, j).abs() + field.push_terms[j]).collect();
-        // rounding of long sums would be many times that of their terms
+        // rounding of a long sum would be many times that of its terms
         let strain = Twofold::dot(u, strain);
         self.strain += strain;
         if field.data.bodies[p].grounded.is_empty() {
@@ -49,7 +49,7 @@ impl Energies {
         self.acting |= size > 0.0;
     }
 
-    /// Adds the rows. A row without force does no work, however far it is: 0 x infinity is 0.
+    /// Adds the rows. A row without force does no work even if its gap is infinite: 0 x infinity counts as 0.
     pub fn add_rows(&mut self, field: &Field) {
         for (kind, forces) in RowKind::ALL.map(|kind| (kind, field.answer.forces(kind))) {
             let rows = field.rows(kind);
@@ -62,7 +62,7 @@ impl Energies {
         }
     }
 
-    /// Adds what nodes with friction dissipate, force x length.
+    /// Adds the dissipation of the nodes with friction, force x length.
     pub fn add_slips(&mut self, dissipated: impl Iterator<Item = f64>) {
         for work in dissipated {
             self.constrained += work;
@@ -70,18 +70,20 @@ impl Energies {
         }
     }
 
-    /// `|u'K u - f'u + c'lambda + h'mu + lambda'C lambda + mu'C mu|`, with friction and `s_old'lambda_t + lambda_t'C_t lambda_t + b |s|` of
-    /// every node, against `tol` of the sum of their sizes and rounding; V is the work of the loads, as far as it is known.
+    /// `|u'K u - f'u + c'lambda + h'mu + lambda'C lambda + mu'C mu|`, with friction and `s_old'lambda_t + lambda_t'C_t
+    /// lambda_t + b |s|` of every node, relative to `tol` times the sum of the sizes of its terms plus rounding; V is the
+    /// work of the loads, if known.
     pub fn entry(&self, limit: f64, work_of_loads: f64) -> Entry {
         let noise = NOISE * (self.terms + self.forces.max(work_of_loads) + self.stored);
-        // energies of forces whose squares underflow are not known
+        // if the squares of forces underflow, the energies are not known
         let noise = if self.acting && !noise.is_normal() { f64::NAN } else { noise };
         let size = self.strain.abs() + self.work.abs() + self.constrained_size;
         let gap = self.strain - self.work + self.constrained;
         Entry::new(share(gap.abs(), limit * size + noise), limit, None)
     }
 
-    /// `1/2 u'K u - f'u + 1/2 lambda'C lambda + 1/2 mu'C mu + 1/2 lambda_t'C_t lambda_t`, without what friction dissipates.
+    /// `1/2 u'K u - f'u + 1/2 lambda'C lambda + 1/2 mu'C mu + 1/2 lambda_t'C_t lambda_t`, without the dissipation of
+    /// friction.
     pub fn minimised(&self) -> f64 {
         0.5 * self.strain - self.work + 0.5 * self.stored
     }

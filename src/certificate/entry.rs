@@ -1,24 +1,24 @@
-//! The figures of a certificate.
+//! The entries of a certificate.
 
-/// One condition: where it is worst, and by how much.
+/// One condition: its worst place and its violation there.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Entry {
-    /// `limit x ratio`, no unit: relative to what the condition is measured against, rounding included.
+    /// `limit x ratio`, no unit: the violation relative to the measure of the condition, including rounding.
     pub figure: f64,
-    /// What is violated over what is allowed, no unit: the condition holds when this is at most 1.
+    /// Violation divided by the allowed violation, no unit: the condition holds if this is at most 1.
     pub ratio: f64,
-    /// Body, row or node with friction; none where nothing is violated, and none of the duality gap.
+    /// Body, row or node with friction; none if nothing is violated, and for the duality gap.
     pub place: Option<usize>,
 }
 
 impl Entry {
     /// `limit`: no unit.
     pub(super) fn new(ratio: f64, limit: f64, place: Option<usize>) -> Self {
-        // of nothing at all there is no place; of what is no number there is
+        // a ratio of 0 has no place; NaN has one
         Self { figure: limit * ratio, ratio, place: place.filter(|_| ratio != 0.0) }
     }
 
-    /// The worse of the two, the first of equals.
+    /// Replaces this entry if `other` is worse; if both are equal, it stays.
     pub(super) fn replace_if_worse(&mut self, other: Entry) {
         let not_known = other.ratio.is_nan() && !self.ratio.is_nan();
         if other.ratio > self.ratio || not_known {
@@ -41,19 +41,19 @@ pub struct Certificate {
     pub equality: Entry,
     /// `(lambda_i)_-`, worst row.
     pub negative_force: Entry,
-    /// Open gap or force, whichever is less of what it may be, worst row.
+    /// The smaller of open gap and force, each relative to its limit, worst row.
     pub complementarity: Entry,
     /// `(|lambda_t| - b)_+`, `b = bound + mu lambda_n`, worst node with friction.
     pub friction_cone: Entry,
-    /// `|lambda_t - P_b(lambda_t + k s)|`: force that is missing or across where a node slips, slip where it sticks, worst node
-    /// with friction.
+    /// `|lambda_t - P_b(lambda_t + k s)|`: error of a force that is too small or not along the slip, or slip at a node
+    /// that sticks, worst node with friction.
     pub friction_work: Entry,
-    /// `|s| (b - |lambda_t|)_+ / b`: slip where the force is within its bound, worst node with friction.
+    /// `|s| (b - |lambda_t|)_+ / b`: slip although the force is below its bound, worst node with friction.
     pub friction_stick: Entry,
     /// `|u'K u - f'u + c'lambda + h'mu + s_old'lambda_t + lambda'C lambda + mu'C mu + lambda_t'C_t lambda_t + sum b |s||`
     pub duality_gap: Entry,
-    /// `1/2 u'K u - f'u + 1/2 lambda'C lambda + 1/2 mu'C mu + 1/2 lambda_t'C_t lambda_t`, force x length: springs of compliant rows
-    /// included, without what friction dissipates. What is minimised where there is no friction.
+    /// `1/2 u'K u - f'u + 1/2 lambda'C lambda + 1/2 mu'C mu + 1/2 lambda_t'C_t lambda_t`, force x length: including the
+    /// springs of compliant rows, without the dissipation of friction. Without friction this is the minimum.
     pub energy: f64,
 }
 
@@ -73,25 +73,26 @@ impl Certificate {
         ]
     }
 
-    /// Largest ratio of an entry to what is allowed.
+    /// Largest ratio of all entries.
     pub fn worst(&self) -> f64 {
         let mut worst = Entry::default();
         self.entries().into_iter().for_each(|entry| worst.replace_if_worse(entry));
         worst.ratio
     }
 
-    /// A figure that is not a number fails.
+    /// All ratios are at most 1; NaN fails.
     pub fn passed(&self) -> bool {
         self.entries().iter().all(|entry| entry.ratio <= 1.0)
     }
 
-    /// Forces and equilibrium pass, a gap, a slip or an energy does not: rounding of the loads may have moved it.
+    /// Entries of forces and equilibrium pass, but a gap, a slip or an energy fails: rounding of the loads may be the
+    /// cause.
     pub(super) fn only_motions_fail(&self) -> bool {
         let forces = [self.equilibrium, self.balance, self.negative_force, self.friction_cone];
         !self.passed() && forces.iter().all(|entry| entry.ratio <= 1.0)
     }
 
-    /// The certificate of several islands: the worst of each entry, energies added.
+    /// Merges the certificate of another island: the worst of each entry, and the sum of the energies.
     pub fn merge(&mut self, other: &Certificate) {
         self.limit = self.limit.max(other.limit);
         self.equilibrium.replace_if_worse(other.equilibrium);

@@ -14,9 +14,9 @@ use crate::certificate::{Certificate, Response, NOISE};
 use crate::constraints::RowKind;
 use crate::error::Result;
 
-/// Judges once more with `64 eps (V phi_i)^1/2`, length, added to what the gaps and slips that fail may be, `64 eps A phi_i^1/2` where
-/// the row touches a body without load or forces, and `64 eps V` to the rounding of the energies. The worst row or node comes
-/// first, and the first that still fails is the last.
+/// Judges again with larger limits: `64 eps (V phi_i)^1/2`, length, is added to the limits of gaps and slips that fail,
+/// `64 eps A phi_i^1/2` if the row touches a body without load or forces, and `64 eps V` to the rounding of the energies.
+/// The worst row or node comes first; the first that still fails ends the loop.
 pub(super) fn by_rounding(
     field: &Field,
     forces: &Forces,
@@ -27,7 +27,7 @@ pub(super) fn by_rounding(
 ) -> Result<()> {
     let (limit, work) = (field.data.limit, response.work_of_loads()?);
     certificate.duality_gap = energies.entry(limit, work);
-    // what rows prescribe moves bodies as loads do
+    // motions prescribed by rows act like loads
     let work = work.max(energies.deforming);
     let mut failing = failing(rows);
     let mut asked = 0;
@@ -42,13 +42,13 @@ pub(super) fn by_rounding(
             break;
         }
     }
-    // those that come after one that fails are not known
+    // the limits after the first failure were not computed
     let skipped: HashSet<(RowKind, usize)> = failing.drain(asked..).map(|(kind, i, _)| (kind, i)).collect();
     rows.judge_gaps(limit, certificate, |kind, i| !skipped.contains(&(kind, i)));
     Ok(())
 }
 
-/// Rows whose gaps and nodes whose slips fail, with their ratios, the worst first.
+/// Rows whose gaps fail and nodes whose slips fail, with their ratios, the worst first.
 fn failing(rows: &Measured) -> Vec<(RowKind, usize, f64)> {
     let ratios = rows.all().map(|(kind, i)| (kind, i, rows.gap_ratio(kind, i)));
     let mut failing: Vec<_> = ratios.filter(|(_, _, ratio)| !(*ratio <= 1.0)).collect();

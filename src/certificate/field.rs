@@ -1,4 +1,4 @@
-//! Quantities that all entries need, over all unknowns and rows of the island.
+//! Quantities needed for all entries, over all unknowns and rows of the island.
 
 use std::collections::HashSet;
 use std::ops::Range;
@@ -51,7 +51,7 @@ impl<'a> Field<'a> {
         self.data.rows(kind)
     }
 
-    /// Unknowns of body p among all.
+    /// Range of the unknowns of body p among all unknowns.
     pub fn range(&self, p: usize) -> Range<usize> {
         self.data.bodies[p].range()
     }
@@ -62,7 +62,7 @@ impl<'a> Field<'a> {
         body.load.map_or(0.0, |f| f[j - body.start])
     }
 
-    /// `values` over the unknowns of body p, 0 where they are grounded.
+    /// `value` over the unknowns of body p, 0 if they are grounded.
     pub fn free(&self, p: usize, value: impl Fn(usize) -> f64) -> Vec<f64> {
         self.range(p).map(|j| if self.grounded[j] { 0.0 } else { value(j) }).collect()
     }
@@ -87,8 +87,8 @@ impl<'a> Field<'a> {
     }
 }
 
-/// Grounded unknowns j of a body that its null space moves all the same, `|K_jj R_j| > 1/4 sum_k |K_jk||R_k|`: no ground holds
-/// them but a stiff neighbour that may move itself.
+/// Grounded unknowns j of a body that its null space moves nevertheless, `|K_jj R_j| > 1/4 sum_k |K_jk||R_k|`: they are
+/// held only by a stiff neighbour, which may itself move.
 fn moving(body: &BodyData) -> Result<HashSet<u32>> {
     let (n, motions) = (body.null_space.rows, body.null_space);
     let (mut image, mut terms, mut moving) = (vec![0.0; n], vec![0.0; n], HashSet::new());

@@ -11,25 +11,26 @@ use crate::linalg::vector::{ratio, weighted_norm};
 use crate::linalg::Matrix;
 use crate::platform::memory::filled;
 
-/// The part of the forces of the island that rounding may excuse in the equilibrium of one body: where a body has moved so
-/// far that its strain is lost, the answer is not known.
+/// Limit of the residual that rounding may excuse in the equilibrium of one body, relative to the forces of the island:
+/// if a body has moved so far that its strain is lost, the answer is not known.
 const EXCUSED: f64 = 1e-2;
 
-/// How large the forces are.
+/// Measures of the forces.
 pub(super) struct Forces {
-    /// `|f|_{D^-1} + |r|_{D^-1}` of every body without its grounded unknowns, force; none of a body that has no others.
+    /// `|f|_{D^-1} + |r|_{D^-1}` of every body without its grounded unknowns, force; none if all its unknowns are
+    /// grounded.
     sizes: Vec<Option<f64>>,
-    /// Bodies without load, but for grounded unknowns.
+    /// Bodies without load, except on grounded unknowns.
     unloaded: Vec<bool>,
-    /// `(|f|^2 + |r|^2)^1/2` of all bodies without loads on grounded unknowns, force. Without any such load the forces that the
-    /// motion asked for would take belong to it.
+    /// `(|f|^2 + |r|^2)^1/2` of all bodies without loads on grounded unknowns, force. If there is no such load, the
+    /// forces for the prescribed motion (`asked`) are added.
     everywhere: f64,
     /// Deformation of every body, `U |delta|_D` without grounded unknowns, and of the island, force.
     strains: Vec<f64>,
     strain: f64,
     /// The largest `(|f| + |r|)_{D^-1} / |delta|_D` of a body, no unit.
     pub leverage: f64,
-    /// There are forces.
+    /// Some force is not 0.
     acting: bool,
 }
 
@@ -60,7 +61,7 @@ impl Forces {
         Self { sizes, unloaded, everywhere: forces + moved, strains, strain, leverage, acting: forces > 0.0 }
     }
 
-    /// Rounding of the largest forces, where body p has neither a load nor any other forces: force.
+    /// Rounding of the largest forces of the island, force, if body p has neither a load nor other forces; otherwise 0.
     fn idle(&self, p: usize, size: f64) -> f64 {
         if self.unloaded[p] && size <= NOISE * self.everywhere {
             NOISE * self.everywhere
@@ -69,21 +70,21 @@ impl Forces {
         }
     }
 
-    /// The same for the bodies that a row touches, (force x length)^1/2.
+    /// The largest `idle` of the bodies that a row touches, (force x length)^1/2.
     pub fn idle_at(&self, field: &Field, kind: RowKind, i: usize) -> f64 {
         let of = |p: usize| self.idle(p, self.sizes[p].unwrap_or(0.0));
         field.touched(field.rows(kind), i).map(of).fold(0.0, f64::max) / field.unit.sqrt()
     }
 
-    /// `|delta|_D`, or what its forces would deform if that is more, of the body that is deformed least of those that a row touches,
-    /// length with the metric D / U; infinite where all their unknowns are grounded.
+    /// The smallest deformation among the bodies that a row touches: `|delta|_D`, or the deformation by the body's forces
+    /// if that is larger; length with the metric D / U. Infinite if all their unknowns are grounded.
     pub fn least_deformation(&self, field: &Field, kind: RowKind, i: usize) -> f64 {
         let of = |p: usize| Some(self.strains[p].max(self.sizes[p]?) / field.unit);
         field.touched(field.rows(kind), i).filter_map(of).fold(f64::INFINITY, f64::min)
     }
 
-    /// What the force of a row may differ from zero by, `tol Lambda_i` with `Lambda_i = s_i min (|f| + |r|)_{D^-1}` over the
-    /// bodies it touches, force. Where it touches grounded unknowns alone, those on them belong to it.
+    /// Below this a force of a row counts as zero: `tol Lambda_i` with `Lambda_i = s_i min (|f| + |r|)_{D^-1}` over the
+    /// bodies it touches, force. If it touches only grounded unknowns of a body, the forces on these are added.
     pub fn limit_of(&self, field: &Field, kind: RowKind, i: usize) -> f64 {
         let rows = field.rows(kind);
         let allowed = |p: usize| {
@@ -97,12 +98,12 @@ impl Forces {
     }
 }
 
-/// A spring without entries, `-c_i <= C_i lambda_i`, has the force `(-c_i)_+ / C_i`.
+/// The force `(-c_i)_+ / C_i` of a spring without entries, `-c_i <= C_i lambda_i`.
 fn alone(rows: &RowSet, i: usize) -> f64 {
     share(positive(-rows.rhs[i]), rows.compliance[i])
 }
 
-/// The smaller of the two; what is no number stays none.
+/// The smaller of the two; NaN stays NaN.
 fn smaller(a: f64, b: f64) -> f64 {
     if b >= a {
         a
@@ -111,7 +112,7 @@ fn smaller(a: f64, b: f64) -> f64 {
     }
 }
 
-/// `|f|_{D^-1} + |r|_{D^-1}` over the unknowns of body p in row i, force; 0 unless all of them are grounded.
+/// `|f|_{D^-1} + |r|_{D^-1}` over the unknowns of body p in row i, force; 0 unless all of these unknowns are grounded.
 fn at_grounded(field: &Field, rows: &RowSet, i: usize, p: usize) -> f64 {
     let range = field.range(p);
     let own: Vec<usize> = rows.matrix.row(i).map(|(j, _)| j).filter(|j| range.contains(j)).collect();
@@ -125,9 +126,9 @@ fn at_grounded(field: &Field, rows: &RowSet, i: usize, p: usize) -> f64 {
     size(&|j| field.load(p, j)) + size(&|j| field.push[j])
 }
 
-/// The forces that the motion asked for by the rows and by grounded unknowns would take where it is asked for, force:
-/// `|S c_-| + |S_H h|`, `|S_T s_old|` of nodes with friction that may hold, and `|D^1/2 f_j / K_jj|` with the largest D of the body that is not grounded. A body that is moved, not
-/// loaded, has no other measure of its strain.
+/// The forces that would cause the motion prescribed by rows and grounded unknowns, force: `|S c_-| + |S_H h|`, `|S_T
+/// s_old|` of nodes with friction that may hold, and `|D^1/2 f_j / K_jj|` with the largest D of the body's unknowns that
+/// are not grounded. For a body that is moved and not loaded there is no other measure of its strain.
 fn asked(field: &Field) -> f64 {
     let by_rows = |kind: RowKind, motion: fn(f64) -> f64| {
         let (rows, scale) = (field.rows(kind), &field.scales[kind as usize]);
@@ -152,12 +153,12 @@ fn by_friction(field: &Field) -> f64 {
     field.unit * norm_of(holding.flat_map(|node| node.rows()).map(|i| scale[i] * rows.rhs[i]).collect())
 }
 
-/// `|x|`, however small or large.
+/// `|x|` without overflow or underflow.
 fn norm_of(x: Vec<f64>) -> f64 {
     weighted_norm(&x, |_| 1.0)
 }
 
-/// Equilibrium and balance of body p, and its part of the energies.
+/// Equilibrium and balance of body p; adds its part of the energies.
 pub(super) fn judge(
     field: &Field,
     forces: &Forces,
@@ -182,13 +183,14 @@ pub(super) fn judge(
     Ok(())
 }
 
-/// `res_j`, force, and 64 eps of its terms `t = |K||u| + |f| + |B'||lambda| + |H'||mu|`, from `K u` and `|K||u|` of body p.
+/// `res_j`, force, and 64 eps times its terms `t = |K||u| + |f| + |B'||lambda| + |H'||mu|`, from `K u` and `|K||u|` of
+/// body p.
 fn residual(field: &Field, p: usize, (strain, terms): (&[f64], &[f64]), j: usize) -> (f64, f64) {
     let (i, f) = (j - field.range(p).start, field.load(p, j));
     (strain[i] - f + field.push[j], NOISE * (terms[i] + f.abs() + field.push_terms[j]))
 }
 
-/// `|(|res_j| - 64 eps t_j)_+|_{D^-1}` against `tol (|f| + |r| + |K u|)_{D^-1}`, without grounded unknowns; no unit.
+/// `|(|res_j| - 64 eps t_j)_+|_{D^-1}` relative to `tol (|f| + |r| + |K u|)_{D^-1}`, without grounded unknowns; no unit.
 fn equilibrium(field: &Field, forces: &Forces, p: usize, products: (&[f64], &[f64])) -> f64 {
     let Some(size) = forces.sizes[p] else { return 0.0 };
     let start = field.range(p).start;
@@ -200,7 +202,7 @@ fn equilibrium(field: &Field, forces: &Forces, p: usize, products: (&[f64], &[f6
     share(field.size(p, &left), field.data.limit * (size + strain) + forces.idle(p, size))
 }
 
-/// What rounding has excused there against the most it may excuse; no unit.
+/// The residual excused by rounding in `equilibrium`, relative to the largest that may be excused; no unit.
 fn excused(field: &Field, forces: &Forces, p: usize, products: (&[f64], &[f64])) -> f64 {
     if !forces.acting {
         return 0.0;
@@ -212,8 +214,8 @@ fn excused(field: &Field, forces: &Forces, p: usize, products: (&[f64], &[f64]))
     share(field.size(p, &left), EXCUSED * (forces.everywhere + forces.strain))
 }
 
-/// What rounding of forces of rows that cancel has excused, against `tol` of the forces of the island; no unit. Redundant rows may
-/// share a force as they like, but not so that it is lost between them.
+/// The residual excused by rounding of row forces that cancel, relative to `tol` times the forces of the island; no unit.
+/// Redundant rows may distribute a force arbitrarily, but these forces must not be so large that their sum is lost.
 fn cancelled(field: &Field, forces: &Forces, p: usize, products: (&[f64], &[f64])) -> f64 {
     let left = |j: usize| residual(field, p, products, j).0.abs().min(NOISE * field.push_terms[j]);
     let left: Vec<f64> = field.range(p).map(left).collect();
@@ -221,7 +223,7 @@ fn cancelled(field: &Field, forces: &Forces, p: usize, products: (&[f64], &[f64]
     share(field.size(p, &left), allowed)
 }
 
-/// `(|res_j| - 64 eps t_j)_+` against `tol (|r_j| + sum_k |K_jk||u_k|)`, the worst grounded unknown; no unit.
+/// `(|res_j| - 64 eps t_j)_+` relative to `tol (|r_j| + sum_k |K_jk||u_k|)`, the worst grounded unknown; no unit.
 fn grounded(field: &Field, p: usize, products: (&[f64], &[f64])) -> f64 {
     let start = field.range(p).start;
     let of = |j: usize| {
@@ -233,9 +235,9 @@ fn grounded(field: &Field, p: usize, products: (&[f64], &[f64])) -> f64 {
     field.range(p).filter(|j| field.grounded[*j]).map(of).fold(0.0, worse)
 }
 
-/// `|R'(f - r)|` against `tol (|f| + |r|)_{D^-1} + 64 eps ||f| + |B'||lambda| + |H'||mu||_{D^-1}`, without grounded unknowns; no
-/// unit. u takes no part in it: however far a body has moved, its forces must balance. Soft motions balance them by
-/// `(K R)'u`.
+/// `|R'(f - r)|` relative to `tol (|f| + |r|)_{D^-1} + 64 eps ||f| + |B'||lambda| + |H'||mu||_{D^-1}`, without grounded
+/// unknowns; no unit. u has no influence: the forces of a body must balance however far it has moved. For soft motions
+/// `(K R)'u` is part of the balance.
 fn balance(field: &Field, forces: &Forces, p: usize) -> Result<f64> {
     let body = &field.data.bodies[p];
     let Some(size) = forces.sizes[p].filter(|_| body.null_space.cols > 0) else { return Ok(0.0) };
@@ -254,8 +256,8 @@ fn balance(field: &Field, forces: &Forces, p: usize) -> Result<f64> {
     Ok(share(weighted_norm(&resultants, |_| weight), allowed))
 }
 
-/// `(K R)'u` of a body, r, in twice the digits: of a weak spring its terms leave little, and where K R is rounding of R it adds up
-/// to nothing, however far u is.
+/// `(K R)'u` of a body, r, in double-double arithmetic: for a weak spring the terms nearly cancel, and if K R is rounding
+/// of R the sum is 0 for any u.
 fn held_softly(body: &BodyData, u: &[f64]) -> Result<Vec<f64>> {
     let by_motion = |k: usize| {
         let mut image = filled(u.len(), Twofold::default(), "the balance of a body")?;
@@ -266,7 +268,7 @@ fn held_softly(body: &BodyData, u: &[f64]) -> Result<Vec<f64>> {
     (0..body.null_space.cols).map(by_motion).collect()
 }
 
-/// `K R` of body p, n_p x r, force / length; 0 where it is rounding.
+/// `K R` of body p, n_p x r, force / length; 0 if it is rounding.
 fn resisted(field: &Field, p: usize) -> Result<Matrix> {
     let body = &field.data.bodies[p];
     let (n, r) = (body.null_space.rows, body.null_space.cols);

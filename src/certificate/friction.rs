@@ -9,10 +9,10 @@ use crate::certificate::{positive, share, worse, FrictionState, NOISE};
 use crate::constraints::{FrictionNode, RowKind};
 use crate::linalg::vector::weighted_norm;
 
-/// A slip of so many times its limit is far beyond any bound: more would overflow.
+/// Limit of the slip relative to its tolerance, to avoid overflow: it is far beyond any bound.
 const FAR: f64 = 1e100;
 
-/// A node with what it is measured against. One tangential row is the first of two, the second is 0.
+/// A node and its limits. With one tangential row, the second component is 0.
 pub(super) struct JudgedNode {
     rows: Range<usize>,
     /// lambda_t, force.
@@ -21,24 +21,24 @@ pub(super) struct JudgedNode {
     slip: [f64; 2],
     /// b, force.
     bound: f64,
-    /// The largest `b / s_i` of the nodes on the bodies that this one touches, times its own s_i, force.
+    /// The largest `b / s_i` of the nodes on the bodies that this node touches, multiplied by its s_i, force.
     largest: f64,
-    /// s_i of the row that weighs most, `/ U^1/2`, no unit.
+    /// The smallest s_i of its tangential rows, `/ U^1/2`, no unit.
     scale: f64,
-    /// What its force may be off by: the largest `tol Lambda_i` of its rows and rounding of lambda_t, force.
+    /// Permitted error of its force: the largest `tol Lambda_i` of its rows plus rounding of lambda_t, force.
     force_limit: f64,
-    /// What b may be off by: mu x what the normal force may, force.
+    /// Permitted error of b: mu times that of the normal force, force.
     bound_limit: f64,
     /// tol, no unit.
     limit: f64,
 }
 
-/// All nodes of the island, with their rows.
+/// All nodes of the island with the limits of their rows.
 pub(super) fn judged(field: &Field, rows: &[Vec<JudgedRow>; 3]) -> Vec<JudgedNode> {
     let (nodes, lambda) = (field.data.nodes, field.answer.lambda);
     let mut largest = vec![0.0; field.data.bodies.len()];
     for node in nodes {
-        // factors of nodes differ: by what their rows weigh bounds are comparable
+        // rows of nodes may have different factors: bounds divided by the row scale are comparable
         let bound = node.limit(lambda) / scale(field, node);
         bodies(field, node).for_each(|p| largest[p] = f64::max(largest[p], bound));
     }
@@ -63,13 +63,13 @@ pub(super) fn judged(field: &Field, rows: &[Vec<JudgedRow>; 3]) -> Vec<JudgedNod
     nodes.iter().map(of).collect()
 }
 
-/// `s_i / U^1/2` of its row that weighs most, no unit.
+/// The smallest `s_i / U^1/2` of its tangential rows, no unit.
 fn scale(field: &Field, node: &FrictionNode) -> f64 {
     let scales = &field.scales[RowKind::Tangential as usize][node.rows()];
     scales.iter().copied().fold(f64::INFINITY, f64::min)
 }
 
-/// Bodies that the rows of a node touch, some of them more than once.
+/// Bodies that the rows of a node touch, with repetitions.
 fn bodies<'a>(field: &'a Field, node: &'a FrictionNode) -> impl Iterator<Item = usize> + 'a {
     let of = |kind: RowKind, i: usize| field.touched(field.rows(kind), i);
     let tangential = node.rows().flat_map(move |i| of(RowKind::Tangential, i));
@@ -82,22 +82,22 @@ impl JudgedNode {
         self.rows.clone()
     }
 
-    /// `(|lambda_t| - b)_+` of what the force may be off by; no unit.
+    /// `(|lambda_t| - b)_+` relative to the permitted error of the force; no unit.
     pub fn outside(&self) -> f64 {
         share(positive(length(self.force) - self.bound), self.force_limit)
     }
 
-    /// `|lambda_t - P_b(lambda_t + k s)|` of what the force may be off by, no unit; P_b projects on the disc of radius b, and k takes
-    /// `gap_limit`, what the slip may be off by, length, to what the force may. 0 where `b |s| = lambda_t.s` and `|lambda_t| <= b`
-    /// alone, and linear in what is wrong: `|s| / gap_limit` of a slip that is small, of a large one
-    /// `|lambda_t - b s / |s||` of what the force may be off by.
+    /// `|lambda_t - P_b(lambda_t + k s)|` relative to the permitted error of the force, no unit. P_b projects on the disc
+    /// of radius b; k is the ratio of the permitted errors of force and slip (`gap_limit`, length). It is 0 only if `b
+    /// |s| = lambda_t.s` and `|lambda_t| <= b`, and linear in the error: `|s| / gap_limit` for a small slip, `|lambda_t -
+    /// b s / |s||` relative to the permitted error of the force for a large one.
     pub fn unlawful(&self, gap_limit: f64) -> f64 {
         let force = self.force.map(|part| share(part, self.force_limit));
         let lawful = self.lawful(gap_limit);
         length([force[0] - lawful[0], force[1] - lawful[1]])
     }
 
-    /// `P_b(lambda_t + k s)` in units of what the force may be off by.
+    /// `P_b(lambda_t + k s)` in units of the permitted error of the force.
     fn lawful(&self, gap_limit: f64) -> [f64; 2] {
         let unit = self.force_limit;
         let far = share(length(self.slip), gap_limit);
@@ -106,14 +106,14 @@ impl JudgedNode {
         held(self.force.map(|part| share(part, unit)), along, share(self.bound, unit))
     }
 
-    /// `P_b(lambda_t + k s).s`, force x length: `b |s|` of a slip, nothing but rounding of a stick, however large b is.
+    /// `P_b(lambda_t + k s).s`, force x length: `b |s|` of a slip; for a stick only rounding, however large b is.
     pub fn dissipated(&self, gap_limit: f64) -> f64 {
         let lawful = self.lawful(gap_limit);
         (lawful[0] * self.slip[0] + lawful[1] * self.slip[1]) * self.force_limit
     }
 
-    /// `|s| (b - |lambda_t|)_+ / (b + tol x the largest b around)` of what the slip may be off by, no unit. b is known to tol of
-    /// itself and to mu x what the normal force may be off by.
+    /// `|s| (b - |lambda_t|)_+ / (b + tol x the largest b nearby)` relative to the permitted error of the slip, no unit.
+    /// The error of b is tol b plus mu times the permitted error of the normal force.
     pub fn loose(&self, gap_limit: f64) -> f64 {
         let known = (self.limit + NOISE) * self.bound + self.bound_limit;
         let missing = positive(self.bound - length(self.force) - known);
@@ -123,7 +123,7 @@ impl JudgedNode {
         share(length(self.slip), gap_limit) * share(missing, self.bound + self.limit * self.largest)
     }
 
-    /// The worse of what a slip that is off may violate.
+    /// The larger ratio of the two conditions on the slip.
     pub fn gap_ratio(&self, gap_limit: f64) -> f64 {
         worse(self.unlawful(gap_limit), self.loose(gap_limit))
     }
@@ -142,8 +142,8 @@ impl JudgedNode {
         }
     }
 
-    /// `(lambda_t - P_b(lambda_t + s_i^2 s)) / s_i^2`, length: what tells the error of the force, as `min(g_i, lambda_i / s_i^2)` of a
-    /// contact row. `unit`: U, force / length.
+    /// `(lambda_t - P_b(lambda_t + s_i^2 s)) / s_i^2`, length: the estimate of the force error, like `min(g_i, lambda_i /
+    /// s_i^2)` of a contact row. `unit`: U, force / length.
     pub fn natural(&self, unit: f64) -> [f64; 2] {
         let moved = 1.0 / self.scale / self.scale / unit;
         let lawful = held(self.force, self.slip.map(|part| part / moved), self.bound);
@@ -151,7 +151,7 @@ impl JudgedNode {
     }
 }
 
-/// `P_b(force + step)`, all in one unit.
+/// `P_b(force + step)`, all in the same unit.
 fn held(force: [f64; 2], step: [f64; 2], bound: f64) -> [f64; 2] {
     let all = [force[0] + step[0], force[1] + step[1]];
     let size = length(all);
@@ -162,7 +162,7 @@ fn held(force: [f64; 2], step: [f64; 2], bound: f64) -> [f64; 2] {
     }
 }
 
-/// `|v|`, however small or large.
+/// `|v|` without overflow or underflow.
 fn length(v: [f64; 2]) -> f64 {
     weighted_norm(&v, |_| 1.0)
 }

@@ -5,13 +5,13 @@ use crate::error::Result;
 use crate::linalg::Symmetric;
 use crate::platform::memory::zeros;
 
-/// K_jj against T_j. Chains, trusses, beams and solids, also where they are a million times as stiff as what they stand on,
-/// have no more than 4.5.
+/// Limit of K_jj / T_j. For chains, trusses, beams and solids, even a million times as stiff as their support, the ratio
+/// is at most 4.5.
 const GROUNDED: f64 = 1e3;
 
-/// The unknowns with `K_jj > 1000 T_j`, `T_j = sum_{i != j} K_ij^2 / K_ii`: what the neighbours add to the stiffness at j, and
-/// K_jj is force / length. One without neighbours is grounded when it has a stiffness at all. Ascending; none of a body that
-/// is known by its products only. Belongs to the matrix: once for all answers.
+/// The unknowns with `K_jj > 1000 T_j`, force / length, with the stiffness contribution of the neighbours `T_j = sum_{i
+/// != j} K_ij^2 / K_ii`. An unknown without neighbours is grounded if it has stiffness. Ascending; empty for a body with
+/// products only. They depend on the matrix alone and are found once for all answers.
 pub fn grounded(k: Stiffness) -> Result<Vec<u32>> {
     let (order, mut neighbours) = (k.order(), zeros(k.order(), "the stiffness of neighbours")?);
     let diagonal = |i: usize| match k {
@@ -27,7 +27,7 @@ pub fn grounded(k: Stiffness) -> Result<Vec<u32>> {
     };
     match k {
         Stiffness::Matrix(k) => each_entry(k, couple),
-        // what two pieces add to one entry counts as two neighbours
+        // contributions of two pieces to one entry count as two neighbours
         Stiffness::Assembled(k) => k.each_entry(couple),
         Stiffness::Host(_) => return Ok(Vec::new()),
     }
@@ -40,7 +40,7 @@ fn each_entry(k: &Symmetric, mut visit: impl FnMut(usize, usize, f64)) {
     (0..k.order()).for_each(|i| k.lower_row(i).for_each(|(j, v)| visit(i, j, v)));
 }
 
-/// `k_ij^2 / k_ii`, force / length; the square alone might overflow.
+/// `k_ij^2 / k_ii`, force / length; `k_ij^2` alone might overflow.
 fn through(k_ij: f64, k_ii: f64) -> f64 {
     if k_ii > 0.0 {
         (k_ij / k_ii) * k_ij
@@ -53,7 +53,7 @@ fn through(k_ij: f64, k_ii: f64) -> f64 {
 mod tests {
     use super::*;
 
-    /// Springs between n unknowns, and what holds single ones.
+    /// Springs between n unknowns, and springs to the ground at single unknowns.
     fn chain(springs: &[f64], held: &[(usize, f64)]) -> Symmetric {
         let n = springs.len() + 1;
         let (mut ptr, mut col, mut val) = (vec![0], Vec::new(), Vec::new());

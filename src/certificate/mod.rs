@@ -1,7 +1,7 @@
 //! The certificate: how well an answer (u, lambda, mu, lambda_t) of one island satisfies the optimality conditions of (10)-(11),
 //! computed from the host's own matrices. An island is a set of bodies with all the rows among them. Every measure is
-//! local, of one body, one row or one node with friction: large values elsewhere excuse nothing. The result does not depend on units
-//! or on the scaling of the rows.
+//! local, of one body, one row or one node with friction: large values elsewhere do not hide an error. The result does
+//! not depend on units or on the scaling of the rows.
 //!
 //! C = diag(1/k) is the compliance of the rows, D = diag K, r = B'lambda + H'mu + T'lambda_t, `s_i = (b_i D^-1 b_i' + C_i)^-1/2`, tol the
 //! limit. Forces are measured by `|f|_{D^-1}`, lengths by `|u|_D`. All three are kept in units of U, the power of two below
@@ -37,7 +37,7 @@ use rows::Measured;
 /// Rounding errors of a sum, relative to its terms.
 pub const NOISE: f64 = 64.0 * f64::EPSILON;
 
-/// One island as the host gave it: its unknowns are those of its bodies one after the other.
+/// One island in terms of the host's data; its unknowns are those of its bodies one after the other.
 #[derive(Clone)]
 pub struct Data<'a> {
     /// Bodies in the order of their unknowns.
@@ -48,9 +48,9 @@ pub struct Data<'a> {
     pub equalities: &'a RowSet,
     /// T of nodes with friction, with s_old as right-hand sides, t x n.
     pub tangential: &'a RowSet,
-    /// Their laws, with the numbers that contact rows and tangential rows have here.
+    /// Their laws, with row numbers of this island.
     pub nodes: &'a [FrictionNode],
-    /// tol, no unit: what every figure may be.
+    /// tol, no unit: limit of every entry.
     pub limit: f64,
 }
 
@@ -72,24 +72,24 @@ impl<'a> Data<'a> {
 /// One body of the island, n_p unknowns.
 #[derive(Clone)]
 pub struct BodyData<'a> {
-    /// First of its unknowns among those of the island.
+    /// Number of its first unknown in the island.
     pub start: usize,
     /// K_p, n_p x n_p, force / length.
     pub stiffness: Stiffness<'a>,
-    /// f_p, n_p, force; zero when absent.
+    /// f_p, n_p, force; zero if absent.
     pub load: Option<&'a [f64]>,
     /// R_p, n_p x r, no unit, with `R'DR = unit`.
     pub null_space: &'a Matrix,
-    /// K resists or drives motions of R, which are exact: `(K R)'u` is part of their balance.
+    /// K has positive or negative stiffness along motions of R, which are exact: `(K R)'u` is part of their balance.
     pub soft: bool,
     /// Force / length, also the metric of dofs without stiffness.
     pub unit: f64,
-    /// Unknowns of the body held so stiffly that their neighbours count for nothing, ascending: see [`grounded`].
+    /// Unknowns of the body held so stiffly that neighbours are negligible, ascending: see [`grounded`].
     pub grounded: &'a [u32],
 }
 
 impl BodyData<'_> {
-    /// Its unknowns among those of the island.
+    /// Range of its unknowns in the island.
     pub fn range(&self) -> Range<usize> {
         self.start..self.start + self.stiffness.order()
     }
@@ -118,16 +118,17 @@ impl<'a> Candidate<'a> {
     }
 }
 
-/// What loads and unit forces of rows move, by K+: asked for only where rounding of the loads may excuse a gap.
+/// Displacements caused by loads and by unit forces of rows through K+: needed only if rounding of the loads may excuse a
+/// gap.
 pub trait Response {
-    /// V, force x length: sum over the bodies of `g'K+ g`, g being the part of the load that balances itself, without the
+    /// V, force x length: sum over the bodies of `g'K+ g`, g being the self-equilibrated part of the load without the
     /// grounded unknowns.
     fn work_of_loads(&mut self) -> Result<f64>;
-    /// `phi_i = b_i K+ b_i'`, length / force, of a row made to balance itself on each body.
+    /// `phi_i = b_i K+ b_i'`, length / force, of a row whose part on each body is made self-equilibrated.
     fn compliance_of(&mut self, kind: RowKind, row: usize) -> Result<f64>;
 }
 
-/// No motion is known: rounding of the loads excuses nothing.
+/// No products with K+: rounding of the loads excuses nothing.
 pub struct Unasked;
 
 impl Response for Unasked {
@@ -140,23 +141,24 @@ impl Response for Unasked {
     }
 }
 
-/// What is known about an answer.
+/// The result of the certificate for one answer.
 #[derive(Debug, Clone, Default)]
 pub struct Judgement {
     pub certificate: Certificate,
-    /// Of every body.
+    /// One per body.
     pub bodies: Vec<BodyJudgement>,
-    /// Of every contact row.
+    /// One per contact row.
     pub contact: Vec<RowJudgement>,
-    /// Of every node with friction.
+    /// One per node with friction.
     pub nodes: Vec<FrictionState>,
-    /// `|S L|` over all rows, (force x length)^1/2: the lengths that gaps are measured against, without any travel.
+    /// `|S L|` over all rows, (force x length)^1/2: the lengths to which gaps are relative, without rigid travel.
     pub length: f64,
-    /// The largest `(|f| + |r|)_{D^-1} / |delta|_D` of a body, no unit: the certificate overlooks errors of a deformation that are
-    /// so many times tol of it.
+    /// The largest `(|f| + |r|)_{D^-1} / |delta|_D` of a body, no unit: the certificate cannot detect relative errors of
+    /// a deformation below this multiple of tol.
     pub leverage: f64,
-    /// The largest `s_i (|b_i| delta + ..)` of a row with a force over `max(|delta|_D, (|f| + |r|)_{D^-1})` of a body that it
-    /// touches, no unit: the certificate overlooks errors of the deformation of this body that are so many times tol of it.
+    /// The largest `s_i (|b_i| delta + ..)` of a row with a force, relative to `max(|delta|_D, (|f| + |r|)_{D^-1})` of a
+    /// body that it touches, no unit: the certificate cannot detect relative errors of the deformation of this body below
+    /// this multiple of tol.
     pub unevenness: f64,
 }
 
@@ -169,31 +171,31 @@ pub struct BodyJudgement {
     pub force_error: f64,
 }
 
-/// What counts as zero at one row.
+/// The values that count as zero at one row.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct RowJudgement {
-    /// What its gap may differ from zero by: `tol L_i` and rounding, length.
+    /// Gaps below this count as zero: `tol L_i` plus rounding, length.
     pub gap: f64,
-    /// What its force may differ from zero by: `tol Lambda_i`, force.
+    /// Forces below this count as zero: `tol Lambda_i`, force.
     pub force: f64,
 }
 
-/// What a node with friction does.
+/// The state of a node with friction.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum FrictionState {
-    /// It may carry no tangential force.
+    /// Its bound is 0: it carries no tangential force.
     Open,
-    /// It carries a force within its bound and does not slip.
+    /// Its force is below its bound and it does not slip.
     Stick,
-    /// It slips along a force that reaches its bound.
+    /// It slips, and its force is at its bound.
     Slip,
-    /// It does not slip and its force reaches its bound, to rounding.
+    /// It does not slip and its force is at its bound, up to rounding.
     Weak,
     /// The bodies of the node are in a group that has no answer.
     Unknown,
 }
 
-/// The judgement of an answer. Fails where the host does, that has the products with K.
+/// The judgement of an answer. Fails if the host's products with K fail.
 pub fn certify(data: &Data, answer: Candidate, response: &mut dyn Response) -> Result<Judgement> {
     let field = Field::new(data, answer)?;
     let deformation = Deformation::new(&field)?;
@@ -228,7 +230,7 @@ pub fn metric(data: &Data, unknowns: usize) -> Vec<f64> {
     metric
 }
 
-/// `(x)_+`; what is no number stays none.
+/// `(x)_+`; NaN stays NaN.
 fn positive(x: f64) -> f64 {
     if x <= 0.0 {
         0.0
@@ -237,7 +239,7 @@ fn positive(x: f64) -> f64 {
     }
 }
 
-/// The larger of the two; what is no number stays none.
+/// The larger of the two; NaN wins.
 fn worse(a: f64, b: f64) -> f64 {
     if a >= b || a.is_nan() {
         a
@@ -246,7 +248,7 @@ fn worse(a: f64, b: f64) -> f64 {
     }
 }
 
-/// What a part is of what is allowed; nothing of nothing is 0, and what is measured against infinity is not known.
+/// `part / allowed`; 0 / 0 counts as 0, and an infinite limit gives NaN.
 fn share(part: f64, allowed: f64) -> f64 {
     if part == 0.0 && !allowed.is_nan() {
         0.0

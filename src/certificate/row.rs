@@ -1,4 +1,4 @@
-//! One row with the quantities against which its gap and its force are measured.
+//! One row and the quantities to which its gap and its force are relative.
 
 use crate::certificate::deformation::Deformation;
 use crate::certificate::field::Field;
@@ -7,24 +7,24 @@ use crate::certificate::{positive, share, worse, NOISE};
 use crate::constraints::RowKind;
 use crate::linalg::vector::ratio;
 
-/// A row with what it is measured against.
+/// A row and its limits.
 pub(super) struct JudgedRow {
     pub kind: RowKind,
     /// lambda_i or mu_i, force.
     pub force: f64,
     /// `c_i + C_i lambda_i - b_i u`, length; of a tangential row minus the slip.
     pub open: f64,
-    /// What tells the error of the force of a tangential row, length: that of its node along it.
+    /// Estimate of the force error of a tangential row, length: the component of its node's error.
     pub slipping: f64,
-    /// `|lambda_i| / s_i^2`, length: what an error of the force as large as itself would do to the gap.
+    /// `|lambda_i| / s_i^2`, length: the gap that an error as large as the force would cause.
     given_way: f64,
     /// `s_i (|b_i| delta + |lambda_i| / s_i^2) / U^1/2` with the deformation of its own unknowns alone, length.
     pub weighed: f64,
-    /// What a gap may differ from zero by, length; not known of a row without scale.
+    /// Gaps below this count as zero, length; NaN for a row without scale.
     pub gap_limit: f64,
-    /// What a force may, force.
+    /// Forces below this count as zero, force.
     pub force_limit: f64,
-    /// `weighed` as a multiple of the deformation of the body deformed least that the row touches, no unit; 0 without force.
+    /// `weighed` divided by the smallest deformation among the bodies that the row touches, no unit; 0 without force.
     pub unevenness: f64,
 }
 
@@ -35,7 +35,7 @@ impl JudgedRow {
         let force = field.answer.forces(kind)[i];
         let empty = rows.matrix.row(i).next().is_none();
         let given_way = if scale > 0.0 { (force.abs() / scale) / scale / field.unit } else { 0.0 };
-        // what all forces on its unknowns together would move there: those that cancel do nothing but by their rounding
+        // the motion caused there by all forces on its unknowns together: forces that cancel contribute only rounding
         let moves = |forces: &[f64]| -> f64 {
             let at = |(j, b): (usize, f64)| (b / field.metric[j] * (forces[j] / field.unit)).abs();
             rows.matrix.row(i).map(at).sum()
@@ -46,10 +46,10 @@ impl JudgedRow {
         let size = rows.matrix.row_dot_abs(i, &deformation.joined) + felt;
         let given = rows.rhs[i].abs() + rows.compliance[i] * force.abs();
         let rounding = NOISE * (moved + given + cancelled);
-        // a row that weighs nothing is not known to hold
+        // without a scale the row cannot be checked
         let known = scale > 0.0 || empty;
         let force_limit = forces.limit_of(field, kind, i);
-        // tol C_i Lambda_i: what an error of the force that is allowed moves a soft row by
+        // tol C_i Lambda_i: motion of a soft row by a permitted error of its force
         let by_spring = if rows.compliance[i] > 0.0 { rows.compliance[i] * force_limit } else { 0.0 };
         let allowed = field.data.limit * size + rounding + by_spring;
         let gap_limit = if known { allowed } else { f64::NAN };
@@ -61,7 +61,7 @@ impl JudgedRow {
         Self { kind, force, open, slipping, given_way, weighed, gap_limit, force_limit, unevenness }
     }
 
-    /// `(b_i u - c_i - C_i lambda_i)_+`, or the error of an equality row, against what it may be; no unit.
+    /// `(b_i u - c_i - C_i lambda_i)_+`, or the error of an equality row, relative to its limit; no unit.
     pub fn violation(&self) -> f64 {
         let violation = match self.kind {
             RowKind::Inequality => positive(-self.open),
@@ -87,8 +87,8 @@ impl JudgedRow {
         closed.min(idle)
     }
 
-    /// The violation that tells the error of its force: `min(g_i, lambda_i / s_i^2)`, the error of an equality row, or the part
-    /// of a node with friction along its row, length.
+    /// The violation that estimates the error of its force: `min(g_i, lambda_i / s_i^2)`, the error of an equality row,
+    /// or the component along its row for a node with friction, length.
     pub fn natural(&self) -> f64 {
         match self.kind {
             RowKind::Inequality => self.open.min(self.given_way * self.force.signum()).abs(),
@@ -97,7 +97,7 @@ impl JudgedRow {
         }
     }
 
-    /// The worse of what is violated in its gap, no unit; that of tangential rows is known of their node alone.
+    /// The worst ratio of the conditions on its gap, no unit; 0 for tangential rows, which are judged by node.
     pub fn gap_ratio(&self) -> f64 {
         match self.kind {
             RowKind::Inequality => worse(self.violation(), self.complementarity()),

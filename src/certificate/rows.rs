@@ -1,4 +1,4 @@
-//! Penetration, equality, sign and complementarity of each row, and friction of each node.
+//! Penetration, equality, sign and complementarity of each row, and the laws of friction at each node.
 
 use std::ops::Range;
 
@@ -13,7 +13,7 @@ use crate::linalg::vector::{ratio, weighted_norm};
 
 /// All rows of the island, contact rows, equality rows, tangential rows, and its nodes with friction.
 ///
-/// What is judged for itself is named by kind and number: that of a row, with `Tangential` that of a node.
+/// What is judged separately has a kind and a number: those of a row, or `Tangential` and the number of a node.
 pub(super) struct Measured {
     pub rows: [Vec<JudgedRow>; 3],
     nodes: Vec<JudgedNode>,
@@ -32,14 +32,14 @@ impl Measured {
         Self { rows, nodes }
     }
 
-    /// What is judged for itself.
+    /// All rows and nodes that are judged separately.
     pub fn all(&self) -> impl Iterator<Item = (RowKind, usize)> + '_ {
         let [contact, equalities, _] = &self.rows;
         let counts = [contact.len(), equalities.len(), self.nodes.len()];
         RowKind::ALL.into_iter().zip(counts).flat_map(|(kind, count)| (0..count).map(move |i| (kind, i)))
     }
 
-    /// Its rows among those of its kind.
+    /// Its rows among the rows of this kind.
     pub fn rows_of(&self, kind: RowKind, i: usize) -> Range<usize> {
         match kind {
             RowKind::Tangential => self.nodes[i].rows(),
@@ -47,7 +47,7 @@ impl Measured {
         }
     }
 
-    /// The worse of what its gap or its slip violates; no unit.
+    /// The worst ratio of the conditions on its gap or slip; no unit.
     pub fn gap_ratio(&self, kind: RowKind, i: usize) -> f64 {
         match kind {
             RowKind::Tangential => self.nodes[i].gap_ratio(self.slip_limit(&self.nodes[i])),
@@ -55,7 +55,7 @@ impl Measured {
         }
     }
 
-    /// What the slip of a node may differ from zero by, length: the most that one of its rows may.
+    /// Slips of a node below this count as zero, length: the largest gap limit of its rows.
     fn slip_limit(&self, node: &JudgedNode) -> f64 {
         self.rows[RowKind::Tangential as usize][node.rows()].iter().map(|row| row.gap_limit).fold(0.0, worse)
     }
@@ -69,14 +69,14 @@ impl Measured {
         self.nodes.iter().map(|node| node.state(self.slip_limit(node))).collect()
     }
 
-    /// The entries of the rows and nodes.
+    /// Evaluates the entries of rows and nodes.
     pub fn judge(&mut self, limit: f64, certificate: &mut Certificate) {
         self.judge_gaps(limit, certificate, |_, _| true);
         certificate.negative_force = worst(&self.rows[0], limit, JudgedRow::sign, |_| true);
         certificate.friction_cone = worst(&self.nodes, limit, JudgedNode::outside, |_| true);
     }
 
-    /// The entries of gaps and slips, by the rows and nodes `counts` names.
+    /// Evaluates the entries of gaps and slips for the rows and nodes selected by `counts`.
     pub fn judge_gaps(
         &self,
         limit: f64,
@@ -101,7 +101,7 @@ impl Measured {
         self.rows.iter().flatten().map(|row| row.unevenness).fold(0.0, f64::max)
     }
 
-    /// What counts as zero at every contact row.
+    /// The values that count as zero at every contact row.
     pub fn limits(&self) -> Vec<RowJudgement> {
         self.rows[0].iter().map(|row| RowJudgement { gap: row.gap_limit, force: row.force_limit }).collect()
     }

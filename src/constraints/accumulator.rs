@@ -3,15 +3,15 @@
 use crate::error::Result;
 use crate::platform::memory::zeros;
 
-/// A sum that is this small against its terms is rounding.
+/// A sum is rounding if it is below this part of its terms.
 const ROUNDING: f64 = 8.0 * f64::EPSILON;
 
-/// Rows added up, entry by entry.
+/// A sum of rows, entry by entry.
 pub struct Accumulator {
     value: Vec<f64>,
-    /// Sums of the sizes of the terms.
+    /// Sums of the absolute values of the terms.
     terms: Vec<f64>,
-    /// Where there are terms.
+    /// Columns that have terms.
     columns: Vec<usize>,
 }
 
@@ -24,7 +24,7 @@ impl Accumulator {
         })
     }
 
-    /// Back to zero.
+    /// Resets the sum to zero.
     pub fn reset(&mut self) {
         for j in self.columns.drain(..) {
             (self.value[j], self.terms[j]) = (0.0, 0.0);
@@ -39,7 +39,7 @@ impl Accumulator {
         self.terms[j] += v.abs();
     }
 
-    /// Takes away the part along a unit row and returns it; 0 where it is rounding.
+    /// Subtracts the part along a unit row and returns its coefficient; 0 if it is rounding.
     pub fn clear(&mut self, row: impl Iterator<Item = (usize, f64)> + Clone, metric: &[f64]) -> f64 {
         let (mut part, mut terms) = (0.0, 0.0);
         for (j, v) in row.clone() {
@@ -59,7 +59,7 @@ impl Accumulator {
         self.columns.iter().map(|&j| self.value[j] * self.value[j] / metric[j]).sum()
     }
 
-    /// The entries over `length`, ascending, without those that are rounding.
+    /// The entries divided by `length`, ascending, without those that are rounding.
     pub fn divided(&mut self, length: f64) -> Vec<(usize, f64)> {
         self.columns.sort_unstable();
         let kept = self.columns.iter().filter(|&&j| self.value[j].abs() > ROUNDING * self.terms[j]);

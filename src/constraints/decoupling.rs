@@ -11,11 +11,11 @@ use crate::linalg::graph::components;
 use crate::linalg::{Csr, Symmetric};
 use crate::platform::memory::{filled, headroom};
 
-/// Rows of a cluster at most; mortar rows chain over a whole surface.
+/// Limit of rows per cluster; mortar rows can connect a whole surface.
 const LARGEST: usize = 32;
-/// A cluster may be redundant when the square of what is left of one of its unit rows is not above this.
+/// A cluster may be redundant if the squared remainder of one of its unit rows does not exceed this.
 const DEPENDENT: f64 = 1e-8;
-/// A contact row stays as it is when not more than this part of it is left.
+/// A contact row is not changed if its remainder does not exceed this part of it.
 const REMAINDER: f64 = 1e-4;
 
 const WHAT: &str = "the decoupling of rows";
@@ -26,7 +26,8 @@ pub struct Decoupling {
     rows: Csr,
 }
 
-/// Rows for which `B D^-1 B' + C` has the diagonal 1, in the mean of those of a node: equality rows, contact rows, tangential rows.
+/// Rows scaled so that `B D^-1 B' + C` has the diagonal 1 (mean over the rows of a node): equality rows, contact rows,
+/// tangential rows.
 #[derive(Debug, Clone, Copy)]
 pub struct UnitRows<'a> {
     /// B, m x n.
@@ -42,8 +43,8 @@ pub struct UnitRows<'a> {
 }
 
 impl Decoupling {
-    /// L and `B'`. Compliant equality rows, clusters of equality rows that are large or redundant, and contact rows that
-    /// hardly differ from combinations of equality rows stay as they are.
+    /// L and `B'`. Compliant equality rows, large or redundant clusters of equality rows, and contact rows that are
+    /// nearly combinations of equality rows are not changed.
     pub fn of(given: UnitRows) -> Result<(Self, Csr)> {
         let (matrix, m) = (given.matrix, given.matrix.rows());
         let _room = headroom(64 * (matrix.val.len() + m + matrix.cols), WHAT)?;
@@ -72,14 +73,14 @@ impl Decoupling {
         Ok(work.finish())
     }
 
-    /// L = I and B itself.
+    /// L = I and B.
     pub fn none(matrix: &Csr) -> (Self, Csr) {
         let mut rows = Csr::empty(matrix.rows());
         (0..matrix.rows()).for_each(|i| rows.push_row([(i, 1.0)]));
         (Self { rows }, matrix.clone())
     }
 
-    /// What the force of row i is a part of, `lambda_i = x_i / l_ii`, where no row after it is combined with it.
+    /// l_ii: `lambda_i = x_i / l_ii` if no later row is combined with row i.
     pub fn factor(&self, i: usize) -> f64 {
         self.diagonal(i)
     }
@@ -93,7 +94,7 @@ impl Decoupling {
         c
     }
 
-    /// `lambda = L'^-1 lambda'`, without what follows the rows.
+    /// `lambda = L'^-1 lambda'`; entries beyond the rows are dropped.
     pub fn solve_transposed(&self, mut x: Vec<f64>) -> Vec<f64> {
         x.truncate(self.rows.rows());
         for i in (0..x.len()).rev() {
@@ -104,7 +105,7 @@ impl Decoupling {
         x
     }
 
-    /// `c = L c'`, without what follows the rows.
+    /// `c = L c'`; entries beyond the rows are ignored.
     pub fn apply(&self, c: &[f64]) -> Vec<f64> {
         (0..self.rows.rows()).map(|i| self.rows.row_dot(i, c)).collect()
     }
@@ -116,7 +117,7 @@ impl Decoupling {
         y
     }
 
-    /// The diagonal of C' in `C = L C'L'`: no row is combined with a compliant one.
+    /// The diagonal of C' in `C = L C'L'`: compliant rows are not combined with others.
     pub fn compliance(&self, c: &[f64]) -> Vec<f64> {
         (0..c.len()).map(|i| c[i] / self.diagonal(i).powi(2)).collect()
     }
@@ -130,7 +131,7 @@ impl Decoupling {
     }
 }
 
-/// Rigid equality rows that share unknowns, up to `LARGEST` of them, each group ascending.
+/// Groups of rigid equality rows that share unknowns, at most `LARGEST` rows each, ascending.
 fn clusters(given: UnitRows) -> Result<Vec<Vec<usize>>> {
     let mut last = filled(given.matrix.cols, None, WHAT)?;
     let mut joined = Symmetric::empty();
@@ -166,7 +167,7 @@ impl<'a> Orthogonalisation<'a> {
         Ok(Self { given, changed, sum: Accumulator::new(given.matrix.cols)? })
     }
 
-    /// False where the cluster may be redundant: it stays as it was.
+    /// False if the cluster may be redundant: then it is not changed.
     fn orthonormalise(&mut self, cluster: &[usize]) -> bool {
         for (at, &i) in cluster.iter().enumerate() {
             let parts = self.cleared(i, &cluster[..at]);
@@ -189,7 +190,8 @@ impl<'a> Orthogonalisation<'a> {
         }
     }
 
-    /// One factor for both rows of a node, so that a disc of forces stays one; both rows or none.
+    /// One scale factor for both rows of a node, so that the disc of admissible forces remains a disc; both rows change
+    /// or none.
     fn clear_node(&mut self, node: Range<usize>, equalities_at: impl Fn(usize) -> Vec<usize>) {
         let mut squares = 0.0;
         for i in node.clone() {
@@ -209,7 +211,7 @@ impl<'a> Orthogonalisation<'a> {
         }
     }
 
-    /// Leaves `b_i - sum l_k b'_k` in the sum and gives the l_k that are not zero: Gram-Schmidt, twice.
+    /// Leaves `b_i - sum l_k b'_k` in the sum and returns the l_k that are not zero: Gram-Schmidt, twice.
     fn cleared(&mut self, i: usize, against: &[usize]) -> Combination {
         let matrix = self.given.matrix;
         self.sum.reset();
@@ -227,7 +229,7 @@ impl<'a> Orthogonalisation<'a> {
         against.iter().copied().zip(parts).filter(|(_, part)| *part != 0.0).collect()
     }
 
-    /// `b_i = sum l_k b'_k + length b'_i`; a row that nothing was taken from has its length already.
+    /// `b_i = sum l_k b'_k + length b'_i`; a row without changes already has its length.
     fn store(&mut self, i: usize, mut parts: Combination, length: f64) {
         if !parts.is_empty() {
             parts.sort_unstable_by_key(|(k, _)| *k);
@@ -258,7 +260,7 @@ impl<'a> Orthogonalisation<'a> {
 mod tests {
     use super::*;
 
-    /// Rows over the metric, scaled to `b D^-1 b' + 1/k = 1`; those without compliance are rigid.
+    /// Rows over the metric, scaled to `b D^-1 b' + 1/k = 1`; rows without compliance are rigid.
     fn rows(metric: &[f64], rows: &[&[(usize, f64)]], compliance: &[f64]) -> (Csr, Vec<f64>) {
         let (mut matrix, mut scaled) = (Csr::empty(metric.len()), Vec::new());
         for (i, row) in rows.iter().enumerate() {
@@ -298,7 +300,7 @@ mod tests {
         Decoupling::of(UnitRows { matrix, equalities, nodes: &[], compliance, metric }).unwrap()
     }
 
-    /// Four copies of a node in a chain, a contact row on the softest: it pushes all of them.
+    /// Four copies of a node joined in a chain, a contact row on the softest: the contact row acts on all of them.
     #[test]
     fn rows_of_a_cluster_become_orthonormal_and_contact_weighs_as_the_whole_node() {
         let metric = [1.0, 1e6, 1e3, 7.0, 5.0];
@@ -335,8 +337,8 @@ mod tests {
         assert!((new[1] - 0.75).abs() < 1e-14 && new[0] == 0.0);
     }
 
-    /// Redundant, too large, or with a spring: such equality rows stay, and contact rows on them as well. So does a
-    /// contact row of which the glue leaves a millionth.
+    /// Redundant clusters, clusters too large and compliant equality rows are not changed, nor are contact rows on them.
+    /// A contact row with a remainder of a millionth beside the glue is not changed either.
     #[test]
     fn rows_that_are_to_stay_are_the_same_bits() {
         let ring = vec![vec![(0, 1.0), (1, -1.0)], vec![(1, 1.0), (2, -1.0)], vec![(0, -1.0), (2, 1.0)]];
@@ -368,7 +370,7 @@ mod tests {
         let near = |y: &[f64]| y.iter().zip(&x).all(|(y, x)| (y - x).abs() < 1e-13);
         assert!(near(&decoupling.solve(decoupling.apply(&x))));
         assert!(near(&decoupling.solve_transposed(decoupling.apply_transposed(&x))));
-        // c'(L'^-1 x) = (L^-1 c)'x: work is the same in both
+        // c'(L'^-1 x) = (L^-1 c)'x: both forms give the same work
         let c = vec![0.3, 0.7, -0.2];
         let work = |a: &[f64], b: &[f64]| crate::linalg::vector::dot(a, b);
         let difference =

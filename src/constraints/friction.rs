@@ -9,14 +9,14 @@ use crate::platform::memory::filled;
 /// The law of one node: `|lambda_t| <= bound + coefficient x lambda_n`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FrictionNode {
-    /// Its contact row; none: the bound acts alone.
+    /// Its contact row; without one, only the bound limits the force.
     pub normal: Option<usize>,
-    /// The first of its tangential rows, and how many there are.
+    /// The first of its tangential rows, and their number.
     pub first: usize,
     pub count: usize,
     /// mu >= 0, no unit.
     pub coefficient: f64,
-    /// Force >= 0.
+    /// Constant part of the limit, force >= 0.
     pub bound: f64,
 }
 
@@ -26,7 +26,7 @@ impl FrictionNode {
         self.first..self.first + self.count
     }
 
-    /// A bound, or a coefficient with a contact row, as they are now.
+    /// Whether the node has a positive bound, or a positive coefficient and a contact row.
     pub fn has_friction(&self) -> bool {
         self.bound > 0.0 || (self.coefficient > 0.0 && self.normal.is_some())
     }
@@ -44,12 +44,12 @@ pub struct Friction {
     /// Tangential rows of a node: 1 in the plane, 2 in space; 0 without nodes.
     pub dim: usize,
     pub nodes: Vec<FrictionNode>,
-    /// T, with s_old as right-hand sides and C_t as compliances, one for all rows of a node. What is left of a gap
-    /// (`open_gap`) is minus the slip: `-s = s_old + C_t lambda_t - T u`.
+    /// T, with s_old as right-hand sides and C_t as compliances, equal for all rows of a node. `open_gap` is minus the
+    /// slip: `-s = s_old + C_t lambda_t - T u`.
     pub rows: RowSet,
 }
 
-/// Nodes as they arrived; `rows` are the tangential ones, dim for each node, without right-hand sides.
+/// Nodes as given; `rows`: the tangential rows, dim per node, without right-hand sides.
 #[derive(Debug, Clone, Copy)]
 pub struct FrictionInput<'a> {
     pub dim: usize,
@@ -62,7 +62,7 @@ pub struct FrictionInput<'a> {
     pub bound: Option<&'a [f64]>,
 }
 
-/// Rows of one node whose lengths differ by more than this have different factors of the host.
+/// Limit of the ratio of row lengths at one node: beyond it the host has multiplied them by different factors.
 const FACTORS: f64 = 1e3;
 
 impl Friction {
@@ -70,13 +70,13 @@ impl Friction {
         self.nodes.len()
     }
 
-    /// The node may carry a tangential force some time: a bound holds it, or its contact row may close.
+    /// The node may carry a tangential force: it has a bound, or its contact row may close.
     pub fn acts(&self, node: usize, contact: &RowSet) -> bool {
         let FrictionNode { normal, bound, .. } = self.nodes[node];
         bound > 0.0 || normal.is_some_and(|row| contact.is_finite(row))
     }
 
-    /// Rows and compliances are those of the other, and the same nodes may carry a force, each with its contact row.
+    /// Rows and compliances equal those of the other, and the same nodes, with the same contact rows, may carry a force.
     pub fn same_but_law(&self, contact: &RowSet, other: &Self, other_contact: &RowSet) -> bool {
         let node = |k: usize| {
             self.nodes[k].normal == other.nodes[k].normal
@@ -86,8 +86,8 @@ impl Friction {
         counts && self.rows.same_but_rhs(&other.rows) && (0..self.len()).all(node)
     }
 
-    /// `T u - C_t lambda_t`, length, (dim, nodes): the slips s_old with which the answer would be one without slip; 0 for rows
-    /// without entries.
+    /// `T u - C_t lambda_t`, length, (dim, nodes): the s_old for which the answer has no slip; 0 for rows without
+    /// entries.
     pub fn reached(&self, u: &[f64], tangential: &[f64]) -> Result<Vec<f64>> {
         let mut rows = self.rows.copied("friction")?;
         rows.rhs.fill(0.0);
@@ -95,18 +95,18 @@ impl Friction {
         Ok((0..rows.len()).map(slip).collect())
     }
 
-    /// The same nodes, their entries shared, for `what`.
+    /// A copy that shares the entries of the rows; `what` names it in errors.
     pub fn copied(&self, what: &str) -> Result<Self> {
         Ok(Self { dim: self.dim, nodes: self.nodes.clone(), rows: self.rows.copied(what)? })
     }
 
-    /// Appends nodes; returns the number of the first. Nothing is kept on an error.
+    /// Appends nodes; returns the number of the first. An error changes nothing.
     pub fn add(&mut self, input: FrictionInput, contact: &RowSet, offsets: &[usize]) -> Result<usize> {
         let (first, count) = (self.len(), input.normal.len());
         if !(1..=2).contains(&input.dim) || (first > 0 && input.dim != self.dim) {
             let what = match first {
                 0 => "a node has one or two tangential rows".to_owned(),
-                _ => format!("the nodes that are there have {} tangential rows each", self.dim),
+                _ => format!("the existing nodes have {} tangential rows each", self.dim),
             };
             return Err(Error::argument("dim", what).value(input.dim as f64));
         }
@@ -140,7 +140,7 @@ impl Friction {
         Ok(first)
     }
 
-    /// Contact rows of new nodes, each of one node alone.
+    /// Contact rows of new nodes; each may belong to one node only.
     fn normals(&self, given: &[i64], contact: &RowSet) -> Result<Vec<Option<usize>>> {
         let mut taken = filled(contact.len(), false, "friction")?;
         self.nodes.iter().filter_map(|node| node.normal).for_each(|row| taken[row] = true);
@@ -153,11 +153,11 @@ impl Friction {
             let known = usize::try_from(row).ok().filter(|&row| row < contact.len());
             let number = known.ok_or_else(|| {
                 let what =
-                    format!("contact row {INDEX} is not there: there are {} contact rows", contact.len());
+                    format!("contact row {INDEX} does not exist: there are {} contact rows", contact.len());
                 Error::argument("normal_row", what).node(k).entry(k).index(row)
             })?;
             if std::mem::replace(&mut taken[number], true) {
-                let what = "this contact row has a node of friction already";
+                let what = "this contact row already has a node of friction";
                 return Err(Error::argument("normal_row", what).node(k).row(number).entry(k));
             }
             normals.push(Some(number));
@@ -165,7 +165,7 @@ impl Friction {
         Ok(normals)
     }
 
-    /// New coefficients, bounds, or both, of the nodes from `first` on. True where a node begins or ends to act.
+    /// Sets coefficients, bounds, or both, of the nodes from `first` on. True if some node begins or ceases to act.
     pub fn set_law(
         &mut self,
         first: usize,
@@ -194,7 +194,7 @@ impl Friction {
         Ok(acted.iter().enumerate().any(|(k, acted)| *acted != self.acts(first + k, contact)))
     }
 
-    /// C_t >= 0, length / force, of the nodes from `first` on.
+    /// Sets C_t >= 0, length / force, of the nodes from `first` on.
     pub fn set_compliance(&mut self, first: usize, inv_kt: &[f64]) -> Result<()> {
         self.check_nodes(first, inv_kt.len())?;
         if let Some(at) = inv_kt.iter().position(|v| !(v.is_finite() && *v >= 0.0)) {
@@ -207,7 +207,7 @@ impl Friction {
         Ok(())
     }
 
-    /// s_old, length, (dim, nodes): of the nodes from `first` on.
+    /// Sets s_old, length, (dim, nodes), of the nodes from `first` on.
     pub fn set_reference(&mut self, first: usize, count: usize, dim: usize, s_old: &[f64]) -> Result<()> {
         self.check_nodes(first, count)?;
         self.check_dim(dim, count)?;
@@ -226,7 +226,7 @@ impl Friction {
         Ok(())
     }
 
-    /// `dim` of a call about so many nodes is theirs.
+    /// Checks that `dim` is that of the nodes; a call with no node may have any `dim`.
     pub fn check_dim(&self, dim: usize, count: usize) -> Result<()> {
         if count == 0 || dim == self.dim {
             return Ok(());
@@ -235,7 +235,7 @@ impl Friction {
         Err(Error::argument("dim", what).value(dim as f64).limit(self.dim as f64))
     }
 
-    /// So many nodes from `first` on are there.
+    /// Checks that `count` nodes exist from `first` on.
     pub fn check_nodes(&self, first: usize, count: usize) -> Result<()> {
         let (nodes, end) = (self.len(), first.saturating_add(count));
         if end <= nodes {
@@ -252,18 +252,18 @@ fn length(rows: &RowSet, i: usize) -> f64 {
     rows.matrix.row(i).map(|(_, v)| v * v).sum::<f64>().sqrt()
 }
 
-/// Rows without entries have no factor.
+/// Rows without entries have no length to compare.
 fn check_factors(lengths: impl Iterator<Item = f64>, node: usize) -> Result<()> {
     let (mut least, mut most) = (f64::INFINITY, 0.0f64);
     lengths.filter(|length| *length > 0.0).for_each(|v| (least, most) = (least.min(v), most.max(v)));
     if most <= FACTORS * least {
         return Ok(());
     }
-    let what = "rows of this node have different factors: the contact row and the tangential rows of a node are to be multiplied by one number";
+    let what = "rows of this node have different factors: multiply the contact row and the tangential rows of a node by the same number";
     Err(Error::argument("val", what).node(node).value(most / least).limit(FACTORS))
 }
 
-/// An error of one of the tangential rows of nodes that are added.
+/// The error of a tangential row among the nodes to be added.
 fn of_node(error: Error, dim: usize) -> Error {
     match error.place.row {
         Some(row) => error.node(row / dim),
@@ -271,7 +271,7 @@ fn of_node(error: Error, dim: usize) -> Error {
     }
 }
 
-/// One value >= 0 of each node; zeros when absent.
+/// One value >= 0 per node; zeros if absent.
 fn values_of(given: Option<&[f64]>, name: &'static str, count: usize, first: usize) -> Result<Vec<f64>> {
     let Some(values) = given else { return filled(count, 0.0, "friction") };
     match values.iter().position(|v| !(v.is_finite() && *v >= 0.0)) {

@@ -1,27 +1,27 @@
-//! Rows in one direction: a single multiplier is enough for all of them.
+//! Parallel rows: one multiplier is enough for all of them.
 
 use std::collections::HashMap;
 
 use crate::constraints::RowKind;
 use crate::linalg::Csr;
 
-/// Two rows are parallel when their unit vectors differ by less than this.
+/// Two rows are parallel if their unit vectors differ by less than this.
 const PARALLEL: f64 = 1e-12;
 
-/// Rows stacked, contact rows, equality rows, tangential rows, and which of them share a direction.
+/// The stack of contact rows, equality rows and tangential rows, and which of them are parallel.
 #[derive(Debug, Clone, Default)]
 pub struct Grouping {
-    /// First row of every group; an equality row where the group has one.
+    /// First row of every group; the first equality row if the group has one.
     pub leaders: Vec<usize>,
-    /// Group of every row and the sign of its direction against that of the leader; none for empty rows.
+    /// Group of every row and the sign of its direction relative to that of the leader; none for empty rows.
     pub member: Vec<Option<(usize, f64)>>,
 }
 
 impl Grouping {
-    /// `matrix` holds rows that are rigid of unit length in the metric `D^-1`, D = `metric`, and others; the
-    /// first `contact` are contact rows, those from `tangential` on tangential rows. Opposite contact rows are two groups: they
-    /// bound the same gap from two sides. A row that stays `alone` is a group of its own: parallel springs share a gap, not a
-    /// force, and so do tangential rows, whose nodes have laws of their own.
+    /// `matrix`: rigid rows of unit length in the metric `D^-1`, D = `metric`, and compliant rows; the first `contact`
+    /// rows are contact rows, those from `tangential` on tangential rows. Opposite contact rows form two groups: they
+    /// bound one gap from two sides. A row marked in `alone` forms its own group: parallel springs share a gap but not a
+    /// force, and nodes with friction have separate laws.
     pub fn of(
         matrix: &Csr,
         (contact, tangential): (usize, usize),
@@ -60,7 +60,7 @@ impl Grouping {
         self.member.iter().enumerate().filter_map(|(i, member)| member.map(|member| (i, member)))
     }
 
-    /// Kind of the multiplier of a group, whose leader is a contact row, a tangential row, or neither.
+    /// Kind of the multiplier of a group, by its leader: a contact row, a tangential row, or an equality row.
     pub fn kind(&self, group: usize, contact: usize, tangential: usize) -> RowKind {
         match self.leaders[group] {
             leader if leader < contact => RowKind::Inequality,
@@ -70,7 +70,7 @@ impl Grouping {
     }
 }
 
-/// +1 or -1 where unit rows i and j (same columns) are equal or opposite.
+/// +1 if unit rows i and j (same columns) are equal, -1 if they are opposite.
 fn parallel(matrix: &Csr, i: usize, j: usize, metric: &[f64]) -> Option<f64> {
     let distance = |sign: f64| {
         let terms =
@@ -126,7 +126,7 @@ mod tests {
         assert_eq!(grouping.kind(1, 1, 2), RowKind::Tangential);
     }
 
-    /// Unit rows turned against each other by so much: 1e-13 is rounding, 1e-11 and 1e-10 are two directions.
+    /// Unit rows rotated against each other by these angles: 1e-13 is rounding, 1e-11 and 1e-10 are two directions.
     #[test]
     fn rows_are_parallel_to_rounding_alone() {
         for (turned, groups) in [(0.0, 1), (1e-13, 1), (1e-11, 2), (1e-10, 2)] {

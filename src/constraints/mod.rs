@@ -24,14 +24,14 @@ use crate::linalg::vector::first_non_finite;
 use crate::linalg::Csr;
 use crate::platform::memory::{copied, zeros};
 
-/// Rows as they arrived, counting from 0; without `body` the dofs count through all bodies.
+/// Rows as given, counting from 0; without `body` the dofs count through all bodies.
 #[derive(Debug, Clone, Copy)]
 pub struct RowsInput<'a> {
     pub ptr: &'a [usize],
     pub body: Option<&'a [i64]>,
     pub dof: &'a [i64],
     pub val: &'a [f64],
-    /// c or h, length; zeros when absent.
+    /// c or h, length; zeros if absent.
     pub rhs: Option<&'a [f64]>,
 }
 
@@ -57,26 +57,26 @@ impl RowSet {
         self.rhs.len()
     }
 
-    /// The same rows, their entries shared, for `what`.
+    /// A copy that shares the entries of the rows; `what` names it in errors.
     pub fn copied(&self, what: &str) -> Result<Self> {
         let (rhs, compliance) = (copied(&self.rhs, what)?, copied(&self.compliance, what)?);
         Ok(Self { matrix: Arc::clone(&self.matrix), rhs, compliance })
     }
 
-    /// The entries and compliances of these rows are those of the other, and the same rows may close.
+    /// Entries and compliances equal those of the other, and the same rows may close.
     pub fn same_but_rhs(&self, other: &Self) -> bool {
         let same = Arc::ptr_eq(&self.matrix, &other.matrix) || self.matrix == other.matrix;
         let finite = |rows: &Self| (0..rows.len()).map(|i| rows.is_finite(i)).collect::<Vec<_>>();
         same && self.compliance == other.compliance && finite(self) == finite(other)
     }
 
-    /// Row i is one that may close: an infinite gap never does.
+    /// Row i may close: a row with an infinite gap never does.
     pub fn is_finite(&self, i: usize) -> bool {
         self.rhs[i] < f64::INFINITY
     }
 
-    /// Appends rows to those of bodies that begin at `offsets` (one more than bodies: the last is their end);
-    /// repeated entries of a row are added up. Returns the number of the first. Nothing is kept on an error.
+    /// Appends rows over bodies that begin at `offsets` (one entry more than bodies: the last is the end); repeated
+    /// entries of a row are summed. Returns the number of the first row. An error changes nothing.
     pub fn add(&mut self, kind: RowKind, input: RowsInput<'_>, offsets: &[usize]) -> Result<usize> {
         let rows = input.ptr.len() - 1;
         if let Some(at) = first_non_finite(input.val) {
@@ -101,7 +101,7 @@ impl RowSet {
                 same
             });
             if entries.iter().any(|entry| !entry.1.is_finite()) {
-                let what = "entries of one unknown add up to what is no finite number";
+                let what = "the sum of entries of one unknown is not a finite number";
                 return Err(Error::argument("val", what).row(i));
             }
             entries.retain(|entry| entry.1 != 0.0);
@@ -122,7 +122,7 @@ impl RowSet {
         Ok(first)
     }
 
-    /// True where some row has become one that may close, or one that never does.
+    /// Sets right-hand sides. True if some row changes between rows that may close and rows that never close.
     pub fn set_rhs(&mut self, kind: RowKind, first: usize, rhs: &[f64]) -> Result<bool> {
         let target = values_from(&mut self.rhs, first, rhs.len())?;
         check_rhs(kind, rhs, first)?;
@@ -142,7 +142,7 @@ impl RowSet {
         Ok(())
     }
 
-    /// Refuses rows with entries that have no scale: it is 0.
+    /// Refuses rows with entries whose scale is 0.
     pub fn check_scales(&self, kind: RowKind, scales: &[f64]) -> Result<()> {
         match (0..self.len()).find(|&i| scales[i] == 0.0 && !self.is_empty_row(i)) {
             Some(i) => {
@@ -163,7 +163,7 @@ impl RowSet {
         (0..self.len()).map(move |i| self.force_without_entries(kind, i))
     }
 
-    /// That of row i.
+    /// The force of row i in `forces_without_entries`.
     pub fn force_without_entries(&self, kind: RowKind, i: usize) -> f64 {
         let alone = self.is_empty_row(i) && self.compliance[i] > 0.0;
         let force = if alone { -self.rhs[i] / self.compliance[i] } else { 0.0 };
@@ -174,8 +174,8 @@ impl RowSet {
         }
     }
 
-    /// `c_i + C_i lambda_i - b_i u`: what is left of the gap when the row gives way to its force. In twice the digits: the
-    /// rounding of a long sum, of equal terms above all, is many times that of its terms.
+    /// `c_i + C_i lambda_i - b_i u`: the open gap, including the compliance of the row. In double-double arithmetic: the
+    /// rounding of a long sum, in particular of equal terms, is many times that of its terms.
     pub fn open_gap(&self, i: usize, u: &[f64], multiplier: f64) -> f64 {
         let mut left = Twofold::from(self.rhs[i]);
         left.add_product(self.compliance[i], multiplier);
@@ -188,7 +188,7 @@ impl RowSet {
         multipliers.iter().zip(&self.compliance).map(|(l, c)| c * l * l).sum()
     }
 
-    /// A rigid row without entries constrains nothing: it must hold by itself. Its multiplier is 0.
+    /// A rigid row without entries constrains nothing: its right-hand side must satisfy it. Its multiplier is 0.
     pub fn check_empty_rows(&self, kind: RowKind) -> Result<()> {
         let empty = |i: usize| self.is_empty_row(i) && self.compliance[i] == 0.0;
         let fails = |i: usize| match kind {
@@ -206,7 +206,7 @@ impl RowSet {
     }
 }
 
-/// `rhs` are those of the rows from `first` on. A gap may be +infinity.
+/// Checks right-hand sides of the rows from `first` on. A gap may be +infinity.
 fn check_rhs(kind: RowKind, rhs: &[f64], first: usize) -> Result<()> {
     let never = |c: f64| kind == RowKind::Inequality && c == f64::INFINITY;
     let what = match kind {
@@ -219,7 +219,8 @@ fn check_rhs(kind: RowKind, rhs: &[f64], first: usize) -> Result<()> {
     }
 }
 
-/// So many values from `first` on. Refused as `first` where there is no such row, as `rows` where they are too many.
+/// The values `first` to `first + count`. An error names `first` if there is no such row, `rows` if the count is too
+/// large.
 fn values_from(values: &mut [f64], first: usize, count: usize) -> Result<&mut [f64]> {
     let rows = values.len();
     let end = first.saturating_add(count);
@@ -229,12 +230,12 @@ fn values_from(values: &mut [f64], first: usize, count: usize) -> Result<&mut [f
     })
 }
 
-/// Number among all unknowns of entry `at`.
+/// Number of the unknown of entry `at` among all unknowns.
 fn unknown(input: RowsInput<'_>, at: usize, offsets: &[usize]) -> Result<usize> {
     let bodies = offsets.len() - 1;
     let body = input.body.map(|body| {
         usize::try_from(body[at]).ok().filter(|&b| b < bodies).ok_or_else(|| {
-            let what = format!("body {INDEX} is not there: there are {bodies} bodies");
+            let what = format!("body {INDEX} does not exist: there are {bodies} bodies");
             Error::argument("body", what).index(body[at])
         })
     });
@@ -252,9 +253,9 @@ fn unknown(input: RowsInput<'_>, at: usize, offsets: &[usize]) -> Result<usize> 
     Ok(start + dof)
 }
 
-/// `s_i = (b_i D^-1 b_i' + 1/k_i)^-1/2`: with lambda = S mu every row of the dual has the same weight, whatever
-/// the stiffness of the bodies it joins and of its own spring. `metric` is D / `unit`, and s_i in that unit.
-/// 0 for a rigid row without entries, and for one whose square is no normal number.
+/// `s_i = (b_i D^-1 b_i' + 1/k_i)^-1/2`: with lambda = S mu every row of the dual has the same weight, whatever the
+/// stiffness of the bodies it joins and of its own spring. `metric` is D / `unit`, and s_i in that unit. 0 for a rigid
+/// row without entries, and for a row whose square is not a normal number.
 pub fn row_scales(rows: &RowSet, metric: &[f64], unit: f64) -> Vec<f64> {
     (0..rows.len())
         .map(|i| rows.matrix.row(i).map(|(j, v)| v * v / metric[j]).sum::<f64>() + unit * rows.compliance[i])

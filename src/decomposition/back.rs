@@ -4,13 +4,13 @@ use crate::error::{Error, Kind, Proof};
 use crate::mesh::Mesh;
 use crate::model::{contradiction, kind_and_row, Model, Parts};
 
-/// An error about pieces as one about bodies of the host.
+/// Converts an error about pieces to one about bodies of the host.
 pub fn of_host(host: &Model, parts: &Parts, mut error: Error) -> Error {
     if let Some(part) = error.place.body.filter(|part| *part < parts.parts.len()) {
         let body = parts.parts[part].body;
         error.place.body = Some(body);
         if error.kind == Kind::Memory && parts.is_cut(body) {
-            // a piece is known to the host by its elements
+            // the host knows a piece only by its elements
             let mesh: Option<&Mesh> = host.bodies[body].mesh.as_ref();
             error.place.element = mesh.and_then(|mesh| mesh.first_of(part - parts.first[body]));
         }
@@ -38,7 +38,7 @@ pub fn of_host(host: &Model, parts: &Parts, mut error: Error) -> Error {
     error
 }
 
-/// The numbers whose joints take part in a combination of rows, each once, that with the largest weight first.
+/// The numbers whose joints occur in a combination of rows, each once, the one with the largest weight first.
 fn glued(parts: &Parts, rows: usize, weights: &[(usize, f64)]) -> Vec<usize> {
     let of_joint = |(row, weight): &(usize, f64)| {
         let number = row.checked_sub(rows).and_then(|k| parts.joints.get(k));
@@ -55,8 +55,8 @@ fn glued(parts: &Parts, rows: usize, weights: &[(usize, f64)]) -> Vec<usize> {
     numbers
 }
 
-/// A motion of the pieces moves all copies alike; their glue adds nothing to a combination of rows that is 0, for it is 0 on a body.
-/// That of joints has no number of the host: its weights follow from those of the other rows.
+/// A motion is equal at all copies. The glue of pieces is dropped from a combination of rows: summed over the copies it
+/// is 0 on each body. Joints have no number of the host: their weights follow from those of the other rows.
 fn proof_of_host(parts: &Parts, rows: usize, proof: Proof) -> Proof {
     match proof {
         Proof::Motion { margin, v } => match parts.mean(&v) {

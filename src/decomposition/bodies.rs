@@ -12,7 +12,7 @@ use super::copies::Copies;
 
 const WHAT: &str = "the pieces of bodies";
 
-/// The parts of all bodies, without loads, and what they are parts of.
+/// The parts of all bodies, without loads, and their relation to the bodies.
 pub fn parts(host: &Model) -> Result<(Vec<GivenBody>, Parts)> {
     let (mut bodies, mut all) = (Vec::new(), Parts::default());
     all.offsets.clone_from(&host.offsets);
@@ -35,7 +35,7 @@ pub fn parts(host: &Model) -> Result<(Vec<GivenBody>, Parts)> {
     Ok((bodies, all))
 }
 
-/// A body that is not cut: matrix and functions stay where they are.
+/// A body that is not cut: its matrix and functions are shared, not copied.
 fn whole(given: &GivenBody) -> Result<Body> {
     let Body { order, stiffness, operator, null_space, coordinates, soft_coordinates, fixing, .. } =
         &given.body;
@@ -65,8 +65,9 @@ fn pieces_of(given: &GivenBody, body: usize, pieces: &[Piece]) -> Result<Vec<(Bo
     made.map(|(k, piece)| piece_of(given, body, piece, &copies).map_err(|e| named(k, e))).collect()
 }
 
-/// A piece: its null space comes from the coordinates of its unknowns, or from its matrix; that of the body does not serve it.
-/// A copy has a share of the unknown as large as its part of the stiffness there; where there is none all of them have the same.
+/// A piece: its null space comes from the coordinates of its unknowns, or from its matrix; the null space of the body is
+/// not used. The weight of a copy is its part of the stiffness at the unknown; without stiffness all copies have equal
+/// weights.
 fn piece_of(given: &GivenBody, body: usize, piece: &Piece, copies: &[u32]) -> Result<(Body, Part)> {
     let Piece { dofs, stiffness } = piece;
     check_diagonal(stiffness).map_err(|e| match e.place.dof {
@@ -91,7 +92,7 @@ fn piece_of(given: &GivenBody, body: usize, piece: &Piece, copies: &[u32]) -> Re
     Ok((own, Part { body, piece: Some((Arc::clone(dofs), shares)) }))
 }
 
-/// Gives the parts the loads of the host: each copy its share, the last one what is left.
+/// Distributes the loads of the host to the parts: each copy gets its weight, the last copy the rest.
 pub fn loads(host: &Model, parts: &Parts, copies: &[Option<Copies>], model: &mut Model) -> Result<()> {
     for (body, given) in host.bodies.iter().enumerate() {
         let Some(load) = &given.body.load else {

@@ -5,18 +5,18 @@ use crate::model::{Model, Parts};
 use crate::platform::memory::filled;
 
 const WHAT: &str = "the copies of unknowns";
-/// A copy with less than this part of the stiffness of the stiffest one takes no row of the host.
+/// Rows of the host do not act on a copy with less than this part of the stiffness of the stiffest copy.
 const SLACK: f64 = 1e-3;
 
-/// For every unknown of a body that is cut its copies.
+/// The copies of every unknown of a body that is cut.
 pub struct Copies {
     ptr: Vec<usize>,
-    /// The part, and the unknown among all unknowns of all parts; by parts.
+    /// The part, and the unknown's number among all unknowns of all parts; in the order of the parts.
     copies: Vec<(u32, usize)>,
 }
 
 impl Copies {
-    /// None of a body that is whole.
+    /// None for a body that is not cut.
     pub fn of(host: &Model, parts: &Parts, body: usize) -> Result<Option<Self>> {
         if !parts.is_cut(body) {
             return Ok(None);
@@ -36,7 +36,7 @@ impl Copies {
         Ok(Some(Self { ptr, copies }))
     }
 
-    /// Parts and places of the copies of an unknown.
+    /// Parts and unknowns of the copies of an unknown.
     pub fn all(&self, dof: usize) -> &[(u32, usize)] {
         &self.copies[self.ptr[dof]..self.ptr[dof + 1]]
     }
@@ -46,7 +46,8 @@ impl Copies {
         self.ptr.len() - 1
     }
 
-    /// The place that rows of the host act on: the first copy that is not much softer than another. One node has one part then.
+    /// The copy on which rows of the host act: the first that is not much softer than another, so all unknowns of a node
+    /// get the same part.
     pub fn first_stiff(&self, parts: &Parts, dof: usize) -> usize {
         let share =
             |(part, place): (u32, usize)| parts.place(part as usize, place - parts.starts[part as usize]).1;

@@ -1,6 +1,7 @@
-//! The secondary decomposition of the paper (Section 2): bodies given by elements are cut into pieces, which equality rows glue
-//! together. The host sees only its bodies; everything that is solved is a model whose bodies are the pieces. Unknowns of several
-//! bodies to which the host gave one number are glued likewise; their rows join bodies of the host, and the certificate includes them.
+//! The secondary decomposition of the paper (Section 2): bodies given by elements are cut into pieces, which equality
+//! rows glue together. The host sees only its bodies; everything that is solved is a model whose bodies are the pieces.
+//! Unknowns of several bodies to which the host gave the same number are also glued; their rows join bodies of the host,
+//! and the certificate includes them.
 
 mod back;
 mod bodies;
@@ -19,19 +20,19 @@ use rows::rows;
 
 /// The problem of a host with pieces in place of the bodies that are cut.
 pub struct Decomposition {
-    /// What is solved. Its revisions are those of the host's model.
+    /// The model that is solved. Its revisions are those of the host's model.
     pub model: Model,
     copies: Vec<Option<Copies>>,
     of: Revisions,
 }
 
 impl Decomposition {
-    /// Some body is cut, or unknowns of several bodies are glued; else the host's model is solved as it is.
+    /// Some body is cut, or unknowns of several bodies are glued; otherwise the host's model itself is solved.
     pub fn is_due(host: &Model) -> bool {
         host.shares_numbers() || host.bodies.iter().any(|given| given.body.assembled.is_some())
     }
 
-    /// None where it is not due.
+    /// None if it is not due.
     pub fn of(host: &Model) -> Result<Option<Self>> {
         if !Self::is_due(host) {
             return Ok(None);
@@ -53,12 +54,12 @@ impl Decomposition {
         Ok(Some(made))
     }
 
-    /// Bodies and rows are those of the host as they are now.
+    /// Whether bodies and rows are still those of the host.
     pub fn is_of(&self, host: &Model) -> bool {
         self.of == host.revisions
     }
 
-    /// Takes over what may change without a new setup: options, loads, right-hand sides, laws of friction.
+    /// Takes over data that may change without a new setup: options, loads, right-hand sides, laws of friction.
     pub fn refresh(&mut self, host: &Model) -> Result<()> {
         let Some(parts) = self.model.parts.clone() else { return Ok(()) };
         self.model.settings = host.settings.clone();

@@ -11,7 +11,8 @@ use super::copies::Copies;
 
 const WHAT: &str = "the rows of pieces";
 
-/// Contact rows of the host; its equality rows, after these the glue: that of joints, that of pieces; its nodes with friction.
+/// Contact rows of the host; its equality rows, followed by the glue of joints and the glue of pieces; its nodes with
+/// friction.
 pub fn rows(
     host: &Model,
     joints: &[Joint],
@@ -45,7 +46,7 @@ pub fn rows(
     Ok((contact, equalities, friction))
 }
 
-/// The same rows over unknowns at other places.
+/// The rows with every unknown replaced by `place` of it.
 fn moved(rows: &RowSet, parts: &Parts, place: impl Fn(usize) -> usize) -> Result<RowSet> {
     let mut moved = rows.copied(WHAT)?;
     let mut matrix = Csr::empty(parts.starts.last().copied().unwrap_or(0));

@@ -1,5 +1,5 @@
-//! Which local dual operators are assembled, by a model of time and memory: m distinct rows of B_p, n unknowns, l entries of L_p,
-//! N products expected. Time is measured in bytes read from memory; a product reads
+//! Which local dual operators are assembled, by a model of time and memory: m distinct rows of B_p, n unknowns, l entries
+//! of L_p, N products expected. Time is measured in bytes read from memory; a product reads
 //!
 //! ```text
 //! explicit:  4 m^2      F_p packed, after an assembly of A operations, RATE of them in the time of a byte
@@ -7,35 +7,43 @@
 //! A = s (2 m l + n m^2 / 2)        Y = L^-1 P B', then Y'Y; a supernode sees the share s = min(1, REACH p / n^2/3) of m
 //! ```
 //!
-//! Here p is the number of places that the rows touch: m without the tangential rows, which touch the nodes of their normal rows.
-//! so that F_p is assembled if `A / RATE + 4 m^2 N` is no more than N times the cost of L. REACH and RATE are fitted to the assembly of
-//! one face and of all faces of cubes of 375 to 20000 unknowns and agree with it to a factor of 2. The model uses only counts: the
-//! choice does not depend on the machine.
+//! where p is the number of places that the rows touch: m without the tangential rows, which touch the nodes of their
+//! normal rows. F_p is assembled if `A / RATE + 4 m^2 N` is at most N times the cost of L. REACH and RATE are fitted to the
+//! assembly for one face and for all faces of cubes of 375 to 20000 unknowns and agree with it to a factor of 2. The
+//! model uses only counts: the choice does not depend on the machine.
 
 use crate::linalg::Packed;
 
-/// Products with F of a solve and some load steps.
+/// Expected products with F of a solve and some load steps.
 const PRODUCTS: f64 = 50.0;
 const REACH: f64 = 0.4;
 const RATE: f64 = 5.0;
-/// Bytes of a factor that the cache keeps from its solution forwards to that backwards, and the share of them that counts again.
+/// Bytes of a factor that the cache keeps between forward and backward substitution, and the part of them that is read
+/// again.
 const CACHE: f64 = 8e6;
 const AGAIN: f64 = 0.25;
 
-/// What a body and its F_p are measured by.
+/// Numbers of distinct rows of a body: all, and those that are not tangential.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct DistinctRows {
+    pub rows: usize,
+    pub places: usize,
+}
+
+/// The sizes of a body and its F_p.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Size {
-    /// Distinct rows of B that touch the body: multiples of each other count once.
+    /// Distinct rows of B that touch the body: rows that are multiples of each other count once.
     pub rows: usize,
-    /// Those of them that are not tangential rows.
+    /// Distinct rows without the tangential rows.
     pub places: usize,
     /// Unknowns of the body.
     pub unknowns: usize,
-    /// Entries of the factor; 0 where the host has it.
+    /// Entries of the factor; 0 if the host has the factor.
     pub entries: usize,
-    /// Its entries are going to be rounded to single precision, unless the operator is assembled.
+    /// The factor will be rounded to single precision, unless the operator is assembled.
     pub single: bool,
-    /// They have been.
+    /// The factor has been rounded.
     pub rounded: bool,
 }
 
@@ -56,7 +64,7 @@ impl Size {
         share * (2.0 * m * l + 0.5 * n * m * m)
     }
 
-    /// Bytes of F_p; without entries those of the two vectors over the body that a product takes.
+    /// Bytes of F_p; if it is applied matrix-free, bytes of the two vectors over the body that a product takes.
     pub fn bytes(&self, implicit: bool) -> usize {
         if implicit {
             2 * self.unknowns * size_of::<f64>()
@@ -65,8 +73,8 @@ impl Size {
         }
     }
 
-    /// Of the host's K+ the cost is not known: F_p is assembled, so that the calls of a setup can be told beforehand and
-    /// load steps need few.
+    /// The cost of the host's K+ is not known: F_p is assembled, so that the number of calls in a setup is known in
+    /// advance, and load steps need few calls.
     fn prefers_implicit(&self) -> bool {
         if self.entries == 0 {
             return false;
@@ -82,8 +90,8 @@ impl Size {
     }
 }
 
-/// True for the bodies whose operator is better known by its products alone: those for which this is faster, and, as
-/// long as all together take more than `room` bytes, those whose F_p is largest.
+/// True for the bodies whose operator is applied matrix-free: those for which this is faster, and, while all operators
+/// together take more than `room` bytes, those with the largest F_p.
 pub fn implicit_bodies(sizes: &[Size], room: Option<usize>) -> Vec<bool> {
     let mut implicit: Vec<bool> = sizes.iter().map(Size::prefers_implicit).collect();
     let mut bytes = all_bytes(sizes, &implicit);
@@ -109,7 +117,7 @@ pub fn all_bytes(sizes: &[Size], implicit: &[bool]) -> usize {
 mod tests {
     use super::*;
 
-    /// A cube of 20000 unknowns with so many rows.
+    /// A cube of 20000 unknowns with this number of rows.
     fn body(rows: usize) -> Size {
         Size { rows, places: rows, unknowns: 20_000, entries: 7_000_000, ..Size::default() }
     }
@@ -149,7 +157,7 @@ mod tests {
         assert_eq!(implicit_bodies(&sizes, Some(0)), [true; 4]);
     }
 
-    /// K+ of the host: no entries are known.
+    /// K+ of the host: the entries of its factor are not known.
     #[test]
     fn an_operator_of_the_host_is_assembled_as_long_as_there_is_room() {
         let host = Size { rows: 5000, places: 5000, unknowns: 20_000, ..Size::default() };

@@ -1,6 +1,6 @@
-//! The coupling matrix of the rows of a face, `W_F = B_F D^-1 B_F' + C_F` (1 on the diagonal), and its inverse block by block.
-//! A block is a connected part of W_F: the rows on one node, or rows that are chained over a whole surface. Rows without coupling,
-//! which are most rows after decoupling, need no block: their diagonal is 1.
+//! The coupling matrix of the rows of a face, `W_F = B_F D^-1 B_F' + C_F` (1 on the diagonal), and its inverse block by
+//! block. A block is a connected part of W_F: the rows on one node, or rows that are chained over a whole surface. Rows
+//! without coupling, which are most rows after decoupling, need no block: their diagonal is 1.
 
 use std::sync::Arc;
 
@@ -11,21 +11,22 @@ use crate::linalg::sparse::gram::Gram;
 use crate::linalg::{Analysis, Cholesky, Csr, SpdSolver, Symmetric};
 use crate::platform::memory::{copied, headroom};
 
-/// A pivot below this means that the rows of its block may depend on each other.
+/// A pivot below this means that the rows of its block may be linearly dependent.
 const SINGULAR: f64 = 1e-8;
-/// Added to the diagonal to find such blocks, the first that Cholesky gets through with: a dependent row keeps it
-/// divided by the square of its share of the dependence, which is far below `SINGULAR`.
+/// Values added to the diagonal to find such blocks; the first with which Cholesky succeeds is used. The pivot of a
+/// dependent row is this value divided by the square of the row's coefficient in the dependence, which is far below
+/// `SINGULAR`.
 const PROBES: [f64; 4] = [0.0, 1e-13, 1e-12, 1e-11];
-/// Entries of W below this are rounding of rows that are orthogonal.
+/// Entries of W below this are rounding: the rows are orthogonal.
 const ROUNDING: f64 = 64.0 * f64::EPSILON;
-/// Rows of a block up to which its pseudo-inverse is formed.
+/// Limit of rows in a block whose pseudo-inverse is formed.
 const DENSE: usize = 200;
-/// Added to the diagonal of larger blocks: what this makes of the kernel of W, B' maps to zero again, up to rounding of
-/// 1e-16 / 1e-10.
+/// Added to the diagonal of larger blocks: it affects the kernel of W, which B' maps to zero, up to rounding of 1e-16 /
+/// 1e-10.
 const SHIFT: f64 = 1e-10;
 
-/// Rows that are combinations of those that are not named, by the pivots of `B D^-1 B' + C`; `columns` is `D^-1/2 B'`,
-/// `compliance` the diagonal of C.
+/// Rows that are combinations of the remaining rows, by the pivots of `B D^-1 B' + C`; `columns`: `D^-1/2 B'`,
+/// `compliance`: the diagonal of C.
 pub fn dependent_rows(columns: &Csr, compliance: &[f64]) -> Result<Vec<usize>> {
     let coupling = Coupling::uncut(columns, compliance)?;
     let mut rows: Vec<usize> = coupling.weak_rows()?.into_iter().map(|i| coupling.rows[i]).collect();
@@ -33,26 +34,26 @@ pub fn dependent_rows(columns: &Csr, compliance: &[f64]) -> Result<Vec<usize>> {
     Ok(rows)
 }
 
-/// W of the rows that feel another one.
+/// W of the rows that are coupled to another row.
 pub struct Coupling {
-    /// Those rows, ascending. All that follows counts among them.
+    /// These rows, ascending. All other data are numbered within them.
     rows: Arc<Vec<usize>>,
     whole: Symmetric,
     analysis: Arc<Analysis>,
-    /// Rows in blocks of W that are not safely of full rank. On a face they depend on each other or they do not; the
-    /// others never do.
+    /// Rows in blocks of W that may be rank-deficient. On a face they may be linearly dependent; the other rows never
+    /// are.
     suspect: Vec<bool>,
 }
 
 /// `W_F+` of one face.
 pub struct FaceCoupling {
-    /// Of all rows.
+    /// Held rows among all rows.
     held: Vec<bool>,
-    /// The rows that feel another one, ascending.
+    /// The rows that are coupled to another row, ascending.
     rows: Arc<Vec<usize>>,
-    /// Blocks of full rank and large ones; 1 for all other rows.
+    /// Factor of blocks of full rank and large blocks; 1 for all other rows.
     sparse: Cholesky,
-    /// Small suspect blocks, by their first rows.
+    /// Small blocks of suspect rows, by their first rows.
     dense: Vec<DependentRows>,
 }
 
@@ -63,7 +64,7 @@ struct DependentRows {
 }
 
 impl Coupling {
-    /// `columns` is `D^-1/2 B'`, `compliance` the diagonal of C; the diagonal of W is 1.
+    /// `columns`: `D^-1/2 B'`, `compliance`: the diagonal of C; the diagonal of W is 1.
     pub fn new(columns: &Csr, compliance: &[f64]) -> Result<Self> {
         let mut coupling = Self::uncut(columns, compliance)?;
         let weak = coupling.weak_rows()?;
@@ -84,7 +85,7 @@ impl Coupling {
         Ok(Self { rows: Arc::new(rows), suspect: none, whole, analysis })
     }
 
-    /// Rows with a pivot that may be zero; all, where no factor tells.
+    /// Rows with a pivot that may be zero; all rows if no factor exists.
     fn weak_rows(&self) -> Result<Vec<usize>> {
         for probe in PROBES {
             let mut w = self.on(&vec![false; self.whole.order()])?;
@@ -97,8 +98,8 @@ impl Coupling {
         Ok((0..self.whole.order()).collect())
     }
 
-    /// The inverse on the rows that are not held; blocks that `last` has as well are taken from it. `None` where rounding
-    /// leaves none.
+    /// The inverse on the rows that are not held; blocks that also occur in `last` are reused. `None` if rounding
+    /// prevents the factorisation.
     pub fn face(&self, held: &[bool], last: Option<&FaceCoupling>) -> Result<Option<FaceCoupling>> {
         let own: Vec<bool> = self.rows.iter().map(|&i| held[i]).collect();
         let mut w = self.on(&own)?;
@@ -122,7 +123,7 @@ impl Coupling {
         Ok(factor.ok().map(|sparse| FaceCoupling { held, rows, sparse, dense }))
     }
 
-    /// W with 1 for the held rows.
+    /// W with the unit matrix for the held rows.
     fn on(&self, held: &[bool]) -> Result<Symmetric> {
         let mut w = self.whole.copied("the coupling of rows")?;
         uncouple(&mut w, |i| held[i]);
@@ -172,7 +173,7 @@ impl FaceCoupling {
     }
 }
 
-/// The rows with an entry of W beside the diagonal that is more than rounding, and W among them without the others.
+/// The rows with an off-diagonal entry of W above rounding, and W restricted to these rows, without smaller entries.
 fn coupled(w: &Symmetric) -> Result<(Vec<usize>, Symmetric)> {
     let entries = |i: usize| w.lower_row(i).filter(move |(j, v)| *j == i || v.abs() > ROUNDING);
     let mut feels = vec![false; w.order()];
@@ -235,7 +236,7 @@ mod tests {
         assert_projects(&b, &coupling, &[true, false, false], 1e-15);
     }
 
-    /// All pairs of four copies of one unknown: six rows of rank 3. A fifth and sixth unknown are glued once.
+    /// All pairs of four copies of one unknown: six rows of rank 3. A fifth and a sixth unknown are joined by one row.
     fn cross_point() -> Vec<Vec<(usize, f64)>> {
         let pairs = (0..4).flat_map(|a| (a + 1..4).map(move |b| vec![(a, 1.0), (b, -1.0)]));
         pairs.chain([vec![(4, 1.0), (5, -1.0)]]).collect()
@@ -246,7 +247,7 @@ mod tests {
         let (b, coupling) = coupling(6, &cross_point());
         assert_eq!((&coupling.rows[..], &coupling.suspect[..]), (&[0, 1, 2, 3, 4, 5][..], &[true; 6][..]));
         assert_projects(&b, &coupling, &[false; 7], 1e-14);
-        // W has the eigenvalue 2 three times on the pairs: W+ = W / 4
+        // on the pairs W has the eigenvalue 2 three times: W+ = W / 4
         let face = coupling.face(&[false; 7], None).unwrap().unwrap();
         let mut z = [1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0];
         face.solve(&mut z).unwrap();
@@ -257,7 +258,7 @@ mod tests {
     #[test]
     fn a_block_falls_apart_where_the_rows_that_join_it_are_held() {
         let (b, coupling) = coupling(6, &cross_point());
-        // rows 0 = (0, 1) and 5 = (2, 3) are left: regular, and no longer coupled
+        // rows 0 = (0, 1) and 5 = (2, 3) remain: regular, and no longer coupled
         let held = [false, true, true, true, true, false, false];
         let face = coupling.face(&held, None).unwrap().unwrap();
         assert!(face.dense.is_empty());
@@ -287,7 +288,7 @@ mod tests {
         assert_eq!(dependent_rows(&b.transposed().unwrap(), &vec![0.0; b.rows()]).unwrap().len(), 1);
     }
 
-    /// Differences of neighbours round a ring: n rows of rank n - 1, each with a share of 1/sqrt(n) in the dependence.
+    /// Differences of neighbours on a ring: n rows of rank n - 1, each with a coefficient of 1/sqrt(n) in the dependence.
     fn ring(n: usize) -> Vec<Vec<(usize, f64)>> {
         let neighbours = |i: usize| vec![(i, 1.0), ((i + 1) % n, -1.0)];
         (0..n).map(|i| if i + 1 < n { neighbours(i) } else { vec![(0, -1.0), (i, 1.0)] }).collect()

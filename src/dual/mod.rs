@@ -17,7 +17,7 @@ mod reuse;
 mod springs;
 mod turned;
 
-pub use cost::{all_bytes, implicit_bodies, Size};
+pub use cost::{all_bytes, implicit_bodies, DistinctRows, Size};
 pub use coupling::dependent_rows;
 pub use operator::Accuracy;
 pub use preconditioner::{constrained, Boundary, Preconditioner};
@@ -30,24 +30,24 @@ use std::sync::Arc;
 use crate::body::GeneralizedInverse;
 use crate::dual::multiples::Multiples;
 use crate::dual::reuse::Reuse;
-use crate::dual::springs::{add_springs, driven};
+use crate::dual::springs::{add_springs, negative_modes};
 use crate::error::Result;
 use crate::linalg::vector::{dot, norm_max, power_of_two_below, weighted_norm};
 use crate::linalg::{Csr, Packed};
 use crate::platform::memory::zeros;
 use crate::platform::tally;
 
-/// G is not known better than this.
+/// Accuracy of G.
 const ROUNDING: f64 = 64.0 * f64::EPSILON;
 
-/// One body as the dual sees it.
+/// One body in the dual problem.
 struct Subdomain {
     /// Unknowns of the body among all unknowns.
     range: Range<usize>,
     /// Rigid modes of the body among all modes.
     modes: Range<usize>,
     kplus: Arc<GeneralizedInverse>,
-    /// The power of two that R_p is divided by in G and e, and alpha with it: `|G_p|` is in [1, 2) then.
+    /// The power of two by which R_p is divided in G and e, and correspondingly alpha, so that `|G_p|` is in [1, 2).
     size: f64,
     /// Rows of B that touch the body, ascending.
     rows: Vec<usize>,
@@ -55,9 +55,9 @@ struct Subdomain {
     matrix: Csr,
     /// `B_p = T B`
     multiples: Multiples,
-    /// `B K_p+ B'`: F_p between T and T'; none: every product with F_p takes one with K_p+.
+    /// `B K_p+ B'`, the part of F_p between T and T'; none: F_p is applied through K_p+.
     operator: Option<Packed>,
-    /// Power of two by which `K_p+` and what is made of it are multiplied: forces of all bodies have one unit.
+    /// Power of two by which `K_p+` and its products are multiplied, so that forces of all bodies have one unit.
     by: f64,
     /// Multiplications of a product with F_p.
     work: usize,
@@ -71,40 +71,33 @@ pub struct Dual {
     pub coarse: Csr,
     /// First mode of each body.
     pub blocks: Vec<usize>,
-    /// Springs of the bodies: the last rows, of no unknown, which the host does not know.
+    /// Number of springs of the bodies: the last rows, without entries on unknowns and not known to the host.
     pub springs: usize,
-    /// Modes that K drives, with the stiffness against them, < 0, for G lambda and alpha as they are here.
-    pub driven: Vec<(usize, f64)>,
-    /// What became of the columns of all `F_p`.
+    /// Modes with negative stiffness, with this stiffness < 0 in the scaling of G and alpha.
+    pub negative: Vec<(usize, f64)>,
+    /// Counts of computed and reused columns of all `F_p`.
     pub columns: ColumnCounts,
 }
 
-/// A body and its place among all unknowns.
+/// A body and the range of its unknowns.
 pub struct BodyShare {
     pub range: Range<usize>,
     pub kplus: Arc<GeneralizedInverse>,
-    /// Unit of forces over the unit of K in `K_p+`, a power of two.
+    /// Ratio of the unit of forces to the unit of K in `K_p+`, a power of two.
     pub by: f64,
-    /// `F_p` of other rows.
+    /// `F_p` of previous rows.
     pub kept: Option<Kept>,
-    /// What the body and its F_p are measured by.
+    /// Sizes of the body and its F_p.
     pub size: Size,
-    /// F_p is known by its products alone.
+    /// F_p is applied matrix-free.
     pub implicit: bool,
 }
 
-/// Numbers of distinct rows of a body: all, and those that are not tangential.
-#[derive(Debug, Clone, Copy, Default)]
-pub struct DistinctRows {
-    pub rows: usize,
-    pub places: usize,
-}
-
-/// A dual problem whose operators `F_p` are yet to be assembled, body by body, in any order.
+/// A dual problem whose operators `F_p` are still to be assembled, body by body, in any order.
 pub struct Draft {
     /// Without operators.
     subdomains: Vec<Subdomain>,
-    /// The rows B of each body, and what the operators of other rows serve for; none where the operator is implicit.
+    /// The rows B of each body, and the operator of previous rows for reuse; none if the operator is matrix-free.
     distinct: Vec<(Csr, Option<Reuse>)>,
 }
 
@@ -137,14 +130,14 @@ impl Draft {
         Self { subdomains, distinct }
     }
 
-    /// `B K_p+ B'` of body p, none where it is implicit; asked for once.
+    /// `B K_p+ B'` of body p, none if it is matrix-free; must be called only once per body.
     pub fn assemble(&self, p: usize) -> Result<Option<Packed>> {
         let (rows, reuse) = &self.distinct[p];
         reuse.as_ref().map(|reuse| reuse.operator(&self.subdomains[p].kplus, rows)).transpose()
     }
 
-    /// The dual problem with the operators that have been assembled; `compliance` is the diagonal of C, m entries. `balanced`:
-    /// `|G_p|` is in [1, 2) for every body that rows touch; else it is that of R_p as it is.
+    /// The dual problem with the assembled operators; `compliance`: the diagonal of C, m entries. `balanced`: scales R_p
+    /// so that `|G_p|` is in [1, 2) for every body that rows touch; otherwise R_p is not scaled.
     pub fn finish(self, operators: Vec<Option<Packed>>, mut compliance: Vec<f64>, balanced: bool) -> Dual {
         let columns = self.distinct.iter().filter_map(|(_, reuse)| reuse.as_ref()).map(Reuse::columns).sum();
         let mut subdomains = self.subdomains;
@@ -156,14 +149,14 @@ impl Draft {
         if balanced {
             scale_by_body(&mut subdomains, &mut coarse);
         }
-        let driven = driven(&subdomains);
+        let negative = negative_modes(&subdomains);
         let blocks = subdomains.iter().map(|own| own.modes.start).collect();
-        Dual { subdomains, compliance, coarse, blocks, springs, driven, columns }
+        Dual { subdomains, compliance, coarse, blocks, springs, negative, columns }
     }
 }
 
 impl Dual {
-    /// The explicit operators of the bodies with their rows, for a dual problem of other rows.
+    /// The assembled operators of the bodies with their rows, for a dual problem with other rows.
     pub fn into_operators(self) -> Vec<Option<Kept>> {
         let kept = |s: Subdomain| Some(Kept::new(Multiples::of(&s.matrix).1, s.operator?));
         self.subdomains.into_iter().map(kept).collect()
@@ -185,23 +178,23 @@ impl Dual {
         self.coarse.cols
     }
 
-    /// Amplitudes of the null spaces `R_p` of those of the dual problem.
+    /// Converts amplitudes of the dual problem to amplitudes of the null spaces `R_p`.
     pub fn amplitudes(&self, alpha: &[f64]) -> Vec<f64> {
         let sizes = self.subdomains.iter().flat_map(|s| s.modes.clone().map(|_| s.size));
         alpha.iter().zip(sizes).map(|(a, size)| a / size).collect()
     }
 
-    /// The number that R_p is divided by in G and e.
+    /// The number by which R_p is divided in G and e.
     pub fn size_of(&self, p: usize) -> f64 {
         self.subdomains[p].size
     }
 
-    /// How far G is known: the part of `|G_p|` that is nothing.
+    /// Accuracy of G: parts of `|G_p|` below this are zero.
     pub fn rounding(&self) -> f64 {
         self.subdomains.iter().fold(ROUNDING, |most, s| most.max(s.kplus.error))
     }
 
-    /// Modes of body p among all modes.
+    /// Range of the modes of body p among all modes.
     pub fn modes_of(&self, p: usize) -> Range<usize> {
         self.subdomains[p].modes.clone()
     }
@@ -210,7 +203,7 @@ impl Dual {
         self.subdomains.len()
     }
 
-    /// `B_p K_p+ f_p` over the rows that touch body p: what its load alone moves.
+    /// `B_p K_p+ f_p` over the rows that touch body p: the motion caused by its load alone.
     pub fn moved(&self, p: usize, f: &[f64]) -> Result<Vec<f64>> {
         let s = &self.subdomains[p];
         let mut x = zeros(s.range.len(), "a displacement")?;
@@ -218,7 +211,7 @@ impl Dual {
         Ok((0..s.rows.len()).map(|k| s.by * s.matrix.row_dot(k, &x)).collect())
     }
 
-    /// `d = B K+ f - c` of (13), from what the loads move, body by body.
+    /// `d = B K+ f - c` of (13), from `moved` of each body.
     pub fn rhs(&self, moved: &[Vec<f64>], c: &[f64]) -> Vec<f64> {
         let mut d: Vec<f64> = c.iter().map(|c| -c).collect();
         for (s, moved) in self.subdomains.iter().zip(moved) {
@@ -227,8 +220,8 @@ impl Dual {
         d
     }
 
-    /// `sum_p |B_p u_p|`, row by row: how far the bodies move along the rows at (x, alpha), by
-    /// `B_p u_p = B_p K_p+ f_p - F_p x + G_p'alpha`. The same for every choice of K+, and known as the factors are.
+    /// `sum_p |B_p u_p|`, row by row: how far the bodies move along the rows at (x, alpha), by `B_p u_p = B_p K_p+ f_p -
+    /// F_p x + G_p'alpha`. Independent of the choice of K+, and as accurate as the factors.
     pub fn distances(
         &self,
         moved: &[Vec<f64>],
@@ -250,7 +243,7 @@ impl Dual {
         Ok(distances)
     }
 
-    /// The right-hand side of `G lambda = e` in (12), `e = R'f`; what rounding alone would leave of a load in balance is zero.
+    /// The right-hand side of `G lambda = e` in (12), `e = R'f`; 0 if it is rounding of a self-equilibrated load.
     pub fn resultants(&self, f: &[f64]) -> Vec<f64> {
         let mut e = vec![0.0; self.modes()];
         for s in &self.subdomains {
@@ -264,7 +257,8 @@ impl Dual {
         e
     }
 
-    /// What the resultants of each mode are a part of, `|f|_{D^-1}` of its body, in their units; `metric` is D over the unknowns.
+    /// For each mode the reference of its resultant: `|f|_{D^-1}` of its body, in the unit of the resultants; `metric`: D
+    /// over the unknowns.
     pub fn sizes_of_loads(&self, f: &[f64], metric: &[f64]) -> Vec<f64> {
         let of = |s: &Subdomain| {
             let start = s.range.start;
@@ -274,14 +268,14 @@ impl Dual {
         self.subdomains.iter().flat_map(of).collect()
     }
 
-    /// For each mode what its resultants e have to be multiplied by, so that their norm is `|D R c|_{D^-1}` of the loads
-    /// [`Self::load_of`] them.
+    /// For each mode the factor for its resultants e for which their norm is `|D R c|_{D^-1}` of the load given by
+    /// [`Self::load_of`].
     pub fn sizes_of_modes(&self) -> Vec<f64> {
         let of = |s: &Subdomain| vec![s.size * s.by.sqrt(); s.modes.len()];
         self.subdomains.iter().flat_map(of).collect()
     }
 
-    /// `D R c`, n, the load of least |f|_{D^-1} whose resultants are `e`; `metric` is D over the unknowns.
+    /// `D R c`, n, the load of least |f|_{D^-1} with the resultants `e`; `metric`: D over the unknowns.
     pub fn load_of(&self, e: &[f64], unknowns: usize, metric: &[f64]) -> Vec<f64> {
         let mut load = vec![0.0; unknowns];
         for s in &self.subdomains {
@@ -292,8 +286,8 @@ impl Dual {
         load
     }
 
-    /// `u_p = K_p+ f_p` of body p, (17) but for its rigid motion, for the load f that the forces of the rows leave; (16) where it is
-    /// held, K+ = K^-1. The load is that of all bodies.
+    /// `u_p = K_p+ f_p` of body p, (17) without its rigid motion, for the load f left by the forces of the rows; (16) if
+    /// it is held, K+ = K^-1. The load covers all bodies.
     pub fn displacement(&self, p: usize, f: &[f64]) -> Result<Vec<f64>> {
         let s = &self.subdomains[p];
         let mut u = zeros(s.range.len(), "a displacement")?;
@@ -315,8 +309,8 @@ impl Dual {
 /// Runs tasks 0..count and collects their results in order, or the first error in order.
 pub type InParallel<'a, T> = dyn Fn(usize, &(dyn Fn(usize) -> Result<T> + Sync)) -> Result<Vec<T>> + 'a;
 
-/// For the bodies in these ranges, which are those of all unknowns, ascending: the rows of B that touch the body, and their
-/// entries over its own unknowns.
+/// For bodies with these ranges, which cover all unknowns in ascending order: the rows of B that touch the body, and
+/// their entries over its unknowns.
 fn cut(ranges: Vec<Range<usize>>, matrix: &Csr) -> Vec<(Vec<usize>, Csr)> {
     let mut bodies: Vec<_> = ranges.iter().map(|range| (Vec::new(), Csr::empty(range.len()))).collect();
     for i in 0..matrix.rows() {
@@ -332,8 +326,8 @@ fn cut(ranges: Vec<Range<usize>>, matrix: &Csr) -> Vec<(Vec<usize>, Csr)> {
     bodies
 }
 
-/// `G' = B R`, m x r; entries that are nothing but rounding are left out, and all of a body whose rows resist its motions by no more
-/// than errors of R: struts within a body far from the origin of its rotations.
+/// `G' = B R`, m x r, without entries that are rounding. All entries of a body are left out if its rows resist its
+/// motions by no more than errors of R, as for struts within a body far from the origin of its rotations.
 fn coarse(subdomains: &[Subdomain], m: usize, modes: usize) -> Csr {
     let mut rows: Vec<Vec<(usize, f64)>> = vec![Vec::new(); m];
     for s in subdomains {
@@ -361,7 +355,7 @@ fn coarse(subdomains: &[Subdomain], m: usize, modes: usize) -> Csr {
     coarse
 }
 
-/// `|G_p|` is in [1, 2) for every body that rows touch.
+/// Scales each body so that `|G_p|` is in [1, 2), for every body that rows touch.
 fn scale_by_body(subdomains: &mut [Subdomain], coarse: &mut Csr) {
     let mut square = vec![0.0; coarse.cols];
     coarse.col.iter().zip(&coarse.val).for_each(|(&mode, v)| square[mode] += v * v);

@@ -1,5 +1,6 @@
-//! Rows of a body that are multiples of each other, `B_p = T B`: for example, all rows that glue one unknown to its copies are
-//! multiples of one unit vector in this body. F_p = T (B K_p+ B') T' is assembled and applied with the rows of B alone.
+//! Rows of a body that are multiples of each other, `B_p = T B`: for example, all rows that glue one unknown to its
+//! copies are multiples of one unit vector in this body. F_p = T (B K_p+ B') T' is assembled and applied with the rows of
+//! B alone.
 
 use crate::linalg::Csr;
 
@@ -17,8 +18,8 @@ struct RowMultiple {
 }
 
 impl Multiples {
-    /// Of B_p; and B, one row of each direction, by their first appearance. Rows count as multiples where their entries,
-    /// divided by the largest, are equal to the last bit.
+    /// T of B_p; and B, one row per direction, in the order of first appearance. Rows count as multiples if their
+    /// entries, divided by the largest, are equal bit by bit.
     pub fn of(matrix: &Csr) -> (Self, Csr) {
         let scale: Vec<f64> = (0..matrix.rows()).map(|i| largest(matrix, i)).collect();
         let key = |i: usize| {
@@ -61,14 +62,14 @@ impl Multiples {
         self.multiples.iter().map(|m| m.factor * v[m.of])
     }
 
-    /// Entry (i, j) of `T A T'` from those of A.
+    /// Entry (i, j) of `T A T'` from the entries of A.
     pub fn entry(&self, i: usize, j: usize, of: impl Fn(usize, usize) -> f64) -> f64 {
         let (i, j) = (self.multiples[i], self.multiples[j]);
         i.factor * j.factor * of(i.of, j.of)
     }
 }
 
-/// The entry of row i that is largest in size; 1 for a row of zeros.
+/// The entry of row i with the largest absolute value; 1 for a row of zeros.
 fn largest(matrix: &Csr, i: usize) -> f64 {
     let largest =
         matrix.row(i).fold(0.0, |largest: f64, (_, v)| if v.abs() > largest.abs() { v } else { largest });
@@ -110,7 +111,7 @@ mod tests {
         let mut rows = Csr::empty(2);
         [(0, 1.0), (1, 3.0), (0, -2.0)].into_iter().for_each(|entry| rows.push_row([entry]));
         let (multiples, _) = Multiples::of(&rows);
-        // A = [[5, 7], [7, 11]] between rows 0 and 1; rows 4, 2, 0 of x are those of the body
+        // A = [[5, 7], [7, 11]] between rows 0 and 1; the rows of the body are rows 4, 2, 0 of x
         let a = |i: usize, j: usize| [[5.0, 7.0], [7.0, 11.0]][i][j];
         let full = [[5.0, 7.0, -10.0], [7.0, 11.0, -14.0], [-10.0, -14.0, 20.0]];
         let (list, x) = ([4, 2, 0], [1.0, 9.0, 2.0, 9.0, 3.0]);

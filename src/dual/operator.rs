@@ -1,6 +1,6 @@
-//! Products with F, body by body: with an assembled `F_p = B_p K_p+ B_p'` (explicit), or by
-//! two triangular solves, `F_p x = B_p (K_p+ (B_p'x))` (implicit). Also entries of F, gathered from the operators of the bodies
-//! and the compliance of the rows.
+//! Products with F, body by body: with an assembled `F_p = B_p K_p+ B_p'` (explicit), or by two triangular solves, `F_p x
+//! = B_p (K_p+ (B_p'x))` (implicit). Also entries of F, gathered from the operators of the bodies and the compliance of
+//! the rows.
 
 use crate::dual::{Dual, InParallel, Subdomain};
 use crate::error::Result;
@@ -10,16 +10,16 @@ use crate::platform::tally;
 
 const WHAT: &str = "a product with the dual operator";
 
-/// Of products with F.
+/// Accuracy of products with F.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Accuracy {
     Full,
-    /// That of the factors, which may be rounded.
+    /// Accuracy of the factors, which may be rounded to single precision.
     OfFactors,
 }
 
 impl Subdomain {
-    /// `F_p x`, x over all rows of B, the product over those of the body.
+    /// `F_p x`, x over all rows of B, the product over the rows of the body.
     pub(super) fn product(&self, x: &[f64], by: Accuracy) -> Result<Vec<f64>> {
         if let Some(explicit) = &self.operator {
             let local = self.multiples.gather(&self.rows, x);
@@ -42,8 +42,8 @@ impl Subdomain {
 }
 
 impl Dual {
-    /// The operator of (12)-(13): `y = F x = C x + sum_p B_p K_p+ B_p' x`. The products of the bodies run in any order,
-    /// their sum is formed body after body. An error leaves y as it was.
+    /// The operator of (12)-(13): `y = F x = C x + sum_p B_p K_p+ B_p' x`. The products of the bodies are computed in any
+    /// order, and summed in the order of the bodies. After an error y is unchanged.
     pub fn product(
         &self,
         x: &[f64],
@@ -60,12 +60,12 @@ impl Dual {
         Ok(())
     }
 
-    /// Products of body p with F_p run on the thread alone that calls the library.
+    /// Products of body p with F_p must be computed on the thread that calls the library.
     pub fn multiplies_on_caller(&self, p: usize) -> bool {
         self.subdomains[p].operator.is_none() && self.solves_on_caller(p)
     }
 
-    /// So do solutions with K_p+.
+    /// Solves with K_p+ must run on the thread that calls the library.
     pub fn solves_on_caller(&self, p: usize) -> bool {
         self.subdomains[p].kplus.on_caller()
     }
@@ -75,12 +75,12 @@ impl Dual {
         self.subdomains.iter().map(|s| s.work).sum()
     }
 
-    /// Bodies whose operator has its entries.
+    /// Number of bodies with an assembled operator.
     pub fn explicit_bodies(&self) -> usize {
         self.subdomains.iter().filter(|s| s.operator.is_some()).count()
     }
 
-    /// Bodies whose operator is known by its products alone.
+    /// Number of bodies with a matrix-free operator.
     pub fn implicit_bodies(&self) -> usize {
         self.subdomains.len() - self.explicit_bodies()
     }
@@ -91,7 +91,7 @@ impl Operator for Dual {
         self.compliance.len()
     }
 
-    /// y is not a number where memory refused the product.
+    /// y is NaN if there was no memory for the product.
     fn apply(&self, x: &[f64], y: &mut [f64]) {
         if self.try_apply(x, y).is_err() {
             y.fill(f64::NAN);
@@ -116,10 +116,10 @@ impl Operator for Dual {
 }
 
 impl Entries for Dual {
-    /// Entries that an implicit operator does not have are assembled for these rows alone.
+    /// For matrix-free operators, the entries of these rows are computed.
     fn add_block(&self, rows: &[usize], block: &mut Matrix) -> Result<()> {
         for s in &self.subdomains {
-            // (number in the block, number in the body) of the rows both have
+            // (number in the block, number in the body) of common rows
             let common = rows.iter().enumerate();
             let common: Vec<(usize, usize)> =
                 common.filter_map(|(k, i)| Some((k, s.rows.binary_search(i).ok()?))).collect();
@@ -165,7 +165,7 @@ mod tests {
     use crate::linalg::{Operator, Symmetric};
     use std::sync::Arc;
 
-    /// Two chains of 8 springs, held at one end, with rows of their own and between them.
+    /// Two chains of 8 springs, held at one end, with rows on each chain and between them.
     fn dual(implicit: bool) -> Dual {
         let n = 8;
         let ptr = (0..=n).map(|i| (2 * i as usize).saturating_sub(1)).collect();

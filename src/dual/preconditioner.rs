@@ -1,6 +1,6 @@
-//! Preconditioners of F on a face: `M_F = B_D S_b B_D'` with `B_D = (B_F D^-1 B_F')^-1 B_F D^-1`, rebuilt for
-//! the rows F that are not held. S_b is the stiffness of the constrained dofs: lumped or Dirichlet. Compliant rows
-//! add C to both, `M_F = W^-1 (B_F D^-1 S_b D^-1 B_F' + C_F) W^-1`, `W = B_F D^-1 B_F' + C_F`.
+//! Preconditioners of F on a face: `M_F = B_D S_b B_D'` with `B_D = (B_F D^-1 B_F')^-1 B_F D^-1`, rebuilt for the rows F
+//! that are not held. S_b is the stiffness of the constrained dofs: lumped or Dirichlet. Compliant rows add C to both,
+//! `M_F = W^-1 (B_F D^-1 S_b D^-1 B_F' + C_F) W^-1`, `W = B_F D^-1 B_F' + C_F`.
 
 use std::ops::Range;
 use std::sync::{Mutex, MutexGuard, PoisonError};
@@ -14,13 +14,13 @@ use crate::platform::{interrupt, tally};
 
 /// The constrained dofs of one body.
 pub struct Boundary {
-    /// Among all unknowns, ascending.
+    /// Numbers among all unknowns, ascending.
     pub dofs: Vec<usize>,
     pub stiffness: Box<dyn Operator + Send>,
 }
 
 pub struct Preconditioner {
-    /// `B D^-1/2` over the constrained unknowns, those of one body after those of the other.
+    /// `B D^-1/2` over the constrained unknowns, body after body.
     rows: Csr,
     /// C, no unit.
     compliance: Vec<f64>,
@@ -34,8 +34,8 @@ pub struct Preconditioner {
 }
 
 impl Preconditioner {
-    /// `matrix` is B, `compliance` the diagonal of C; `B D^-1 B' + C` has the diagonal 1. Every unknown with an entry in B is
-    /// in one of `boundaries`.
+    /// `matrix`: B, `compliance`: the diagonal of C; `B D^-1 B' + C` has the diagonal 1. Every unknown with an entry in B
+    /// must be in one of `boundaries`.
     pub fn new(
         matrix: &Csr,
         compliance: Vec<f64>,
@@ -56,9 +56,9 @@ impl Preconditioner {
         Ok(Self { rows, compliance, weight, stiffness, coupling, face: Mutex::new(None) })
     }
 
-    /// `z = M_F r` on the rows that are not held, 0 on the others. On springs of bodies, the last rows, F is 1 and so is M_F.
+    /// `z = M_F r` on the rows that are not held, 0 on the others. On springs of bodies, the last rows, F and M_F are 1.
     pub fn apply(&self, held: &[bool], r: &[f64], z: &mut [f64]) -> Result<()> {
-        // a face that is new has factors of its own
+        // a new face needs new factors
         interrupt::check()?;
         tally::costly();
         let rows = self.compliance.len();
@@ -114,7 +114,7 @@ impl Preconditioner {
         self.stiffness.iter().map(|boundary| boundary.bytes_kept()).sum()
     }
 
-    /// Inverts W, unless that has just been done.
+    /// Inverts W for this face, unless it is the last face.
     fn select(&self, held: &[bool]) -> Result<MutexGuard<'_, Option<FaceCoupling>>> {
         let mut face = self.face.lock().unwrap_or_else(PoisonError::into_inner);
         if !face.as_ref().is_some_and(|known| known.is_of(held)) {
@@ -124,7 +124,7 @@ impl Preconditioner {
     }
 }
 
-/// Unknowns in each of the ranges that some row constrains, counted from its start.
+/// For each range the unknowns that some row constrains, counted from the start of the range.
 pub fn constrained(matrix: &Csr, ranges: &[Range<usize>]) -> Vec<Vec<usize>> {
     let mut touched = vec![false; matrix.cols];
     matrix.col.iter().for_each(|&j| touched[j] = true);

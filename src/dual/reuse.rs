@@ -1,4 +1,4 @@
-//! Dual operators for new rows, made from the previous ones: entries F_p(i, j) of two rows that body p already had are kept.
+//! Dual operators for new rows, made from previous ones: entries F_p(i, j) of two rows that body p already had are kept.
 
 use std::iter::Sum;
 use std::sync::Mutex;
@@ -8,34 +8,34 @@ use crate::error::{Error, Kind, Result};
 use crate::linalg::hash::{hash, START};
 use crate::linalg::{Csr, Operator, Packed};
 
-/// New columns are computed by themselves where they are less than one in so many of all. Each takes solutions with L
-/// and with L' on the elimination paths of all rows, 2 (w^2 + 2 w h) operations for a supernode of w columns and h rows
-/// below. A column of the assembly takes half of that, only where its own path goes, and w operations for every other
-/// column there. On faces of cubes of 6k to 20k unknowns both take the same time where one column in six is new.
+/// New columns are computed separately if they are less than one in this number of columns. Each takes solves with L and
+/// L' on the elimination paths of all rows, 2 (w^2 + 2 w h) operations for a supernode of w columns and h rows below. A
+/// column of a complete assembly takes half of that, only on its own path, and w operations for every other column there.
+/// On faces of cubes of 6k to 20k unknowns both take equal time if one column in six is new.
 const ONE_IN: usize = 6;
 
-/// `F_p` and the rows of B over body p it was made of.
+/// `F_p` and the rows of B over body p for which it was made.
 pub struct Kept {
     rows: Csr,
     operator: Packed,
-    /// Of use for exactly these rows only.
+    /// It can be reused only for exactly these rows.
     whole: bool,
 }
 
-/// What became of the columns of dual operators, one for each row and body it touches.
+/// Counts of the columns of dual operators, one for each row and body that it touches.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct ColumnCounts {
     pub computed: usize,
     pub kept: usize,
 }
 
-/// What the new rows of a body have in common with the old ones.
+/// What the new rows of a body have in common with the previous ones.
 pub(super) enum Reuse {
-    /// All of it, in the same order.
+    /// All rows, in the same order.
     All(Mutex<Option<Packed>>, usize),
-    /// Some rows: for every new row its number among the old ones.
+    /// Some rows: for every new row its number among the previous ones.
     Some { operator: Packed, old: Vec<Option<usize>> },
-    /// So little that the whole operator is assembled, of so many rows.
+    /// Too few rows: the whole operator, with this number of rows, is assembled.
     Nothing(usize),
 }
 
@@ -44,8 +44,8 @@ impl Kept {
         Self { rows, operator, whole: false }
     }
 
-    /// From now on of use for exactly the same rows only: columns that are computed one by one differ by rounding from
-    /// those of a whole assembly, and a matrix that comes back must give the bits it gave before.
+    /// Restricts the reuse to exactly these rows: columns computed one by one differ by rounding from those of a complete
+    /// assembly, and if a matrix is given again, the results must have the previous bits.
     pub fn only_whole(&mut self) {
         self.whole = true;
     }
@@ -87,7 +87,7 @@ impl Reuse {
         }
     }
 
-    /// `F_p = B_p K_p+ B_p'` of the new rows; asked for once.
+    /// `F_p = B_p K_p+ B_p'` of the new rows; must be called only once.
     pub fn operator(&self, kplus: &GeneralizedInverse, rows: &Csr) -> Result<Packed> {
         match self {
             Self::All(operator, _) => operator
@@ -101,7 +101,7 @@ impl Reuse {
     }
 }
 
-/// The entries of two old rows, and `F_p(i, j) = b_i K+ b_j'` of all others.
+/// Copies the entries of two previous rows, and computes `F_p(i, j) = b_i K+ b_j'` for all others.
 fn extended(from: &Packed, old: &[Option<usize>], kplus: &GeneralizedInverse, rows: &Csr) -> Result<Packed> {
     let m = old.len();
     let mut operator = Packed::zeros(m)?;
@@ -119,7 +119,7 @@ fn extended(from: &Packed, old: &[Option<usize>], kplus: &GeneralizedInverse, ro
     Ok(operator)
 }
 
-/// For every row of `new` its number in `old`, where it is there bit by bit; of several equal rows each finds another.
+/// For every row of `new` its number in `old`, if it occurs there bit by bit; equal rows get different numbers.
 fn matched(old: &Csr, new: &Csr) -> Vec<Option<usize>> {
     let mut known: Vec<(u64, usize)> = (0..old.rows()).map(|i| (key(old, i), i)).collect();
     known.sort_unstable();
@@ -140,7 +140,7 @@ fn same_row((a, i): (&Csr, usize), (b, j): (&Csr, usize)) -> bool {
     a.row(i).map(bits).eq(b.row(j).map(bits))
 }
 
-/// Of dofs and values.
+/// Hash key of dofs and values.
 fn key(rows: &Csr, i: usize) -> u64 {
     let words = rows.row(i).flat_map(|(dof, value)| [dof as u64, value.to_bits()]);
     hash(START, words)

@@ -3,8 +3,9 @@
 use crate::dual::{Dual, Subdomain};
 use crate::linalg::Csr;
 
-/// The springs at the unknowns held of K+ that resist soft motions, `lambda_j a_j^2 / 2` with the amplitude a_j: compliant rows
-/// `a_j = mu / lambda_j` of no unknown, of which F has the diagonal alone and G one entry. Scaled by `lambda_j^1/2`.
+/// Adds springs at the held unknowns of K+ that resist soft motions, with energy `lambda_j a_j^2 / 2` for the amplitude
+/// a_j: compliant rows `a_j = mu / lambda_j` without unknowns, for which F has only a diagonal entry and G one entry.
+/// Scaled by `lambda_j^1/2`.
 pub fn add_springs(subdomains: &[Subdomain], coarse: &mut Csr) -> usize {
     let before = coarse.rows();
     for s in subdomains {
@@ -14,25 +15,25 @@ pub fn add_springs(subdomains: &[Subdomain], coarse: &mut Csr) -> usize {
     coarse.rows() - before
 }
 
-/// Modes that K drives, with the stiffness against them for amplitudes as they are divided by the size of their body.
-pub fn driven(subdomains: &[Subdomain]) -> Vec<(usize, f64)> {
+/// Modes with negative stiffness, with this stiffness for amplitudes divided by the size of their body.
+pub fn negative_modes(subdomains: &[Subdomain]) -> Vec<(usize, f64)> {
     let of = |s: &Subdomain| {
-        let driven = s.soft_modes().filter(|(_, stiffness)| *stiffness < 0.0);
-        driven.map(|(mode, stiffness)| (mode, stiffness / (s.size * s.size))).collect::<Vec<_>>()
+        let negative = s.soft_modes().filter(|(_, stiffness)| *stiffness < 0.0);
+        negative.map(|(mode, stiffness)| (mode, stiffness / (s.size * s.size))).collect::<Vec<_>>()
     };
     subdomains.iter().flat_map(of).collect()
 }
 
 impl Dual {
-    /// Amplitudes with those of carried motions as the forces x of their springs have them: the forces on these bodies are in balance
-    /// then whatever is left of the multiplier alpha.
+    /// Replaces the amplitudes of carried motions by those from the forces x of their springs: then the forces on these
+    /// bodies balance whatever error the multiplier alpha has.
     pub fn balanced(&self, x: &[f64], alpha: &[f64]) -> Vec<f64> {
         let mut alpha = alpha.to_vec();
         self.carried().for_each(|(row, mode, entry)| alpha[mode] = x[row] / entry);
         alpha
     }
 
-    /// Gives the springs of carried motions the forces that balance those of the other rows, `G x = e`.
+    /// Sets the springs of carried motions to the forces that balance the other rows, `G x = e`.
     pub fn load_springs(&self, e: &[f64], x: &mut [f64]) {
         self.carried().for_each(|(row, ..)| x[row] = 0.0);
         let mut left = e.to_vec();
@@ -52,7 +53,7 @@ impl Dual {
 }
 
 impl Subdomain {
-    /// Modes with the stiffness against them, in the unit of forces of all bodies.
+    /// Modes of soft motions with their stiffness, in the unit of forces of all bodies.
     fn soft_modes(&self) -> impl Iterator<Item = (usize, f64)> + '_ {
         let stiffness = self.kplus.stiffness.iter().map(|stiffness| stiffness / self.by);
         self.modes.clone().zip(stiffness)

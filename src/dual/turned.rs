@@ -1,4 +1,5 @@
-//! The preconditioner of a face with friction. Its rows are combinations of two rows of a node, and slip adds a damping to F:
+//! The preconditioner of a face with friction. Its rows are combinations of two rows of a node, and slip adds damping to
+//! F:
 //!
 //! ```text
 //! M = H^-1 (W'(B D^-1 S_b D^-1 B' + C)W + N) H^-1,   H = W'(B D^-1 B' + C)W + N,   N diagonal
@@ -20,7 +21,7 @@ pub struct TurnedRow {
     pub damping: f64,
 }
 
-/// Added to H, of its largest entry: rows without entries.
+/// Added to the diagonal of H, relative to its largest entry, for rows without entries.
 const SHIFT: f64 = 1e-12;
 
 /// M of one face.
@@ -32,14 +33,15 @@ pub struct TurnedFace<'a> {
     added: Vec<f64>,
     /// `diag(H)^-1/2`
     scale: Vec<f64>,
-    /// Of `H`, scaled to unit diagonal; none where rounding leaves none: then H is its diagonal.
+    /// Inverse of `H`, scaled to unit diagonal; none if rounding prevents the factorisation: then H is replaced by its
+    /// diagonal.
     coupling: Option<FaceCoupling>,
-    /// Rows that are springs of bodies: F is 1 there.
+    /// Rows that are springs of bodies, on which F is 1.
     springs: Vec<bool>,
 }
 
 impl Preconditioner {
-    /// The combinations of each node are orthonormal, the compliance of its tangential rows is one number.
+    /// The combinations of each node must be orthonormal, and its tangential rows have equal compliances.
     pub fn turned(&self, face: &[TurnedRow]) -> Result<TurnedFace<'_>> {
         interrupt::check()?;
         tally::costly();
@@ -70,7 +72,7 @@ impl Preconditioner {
     }
 }
 
-/// The sum of multiples of rows with ascending columns.
+/// A sum of multiples of rows with ascending columns.
 fn joined(rows: impl Iterator<Item = (f64, impl Iterator<Item = (usize, f64)>)>) -> Vec<(usize, f64)> {
     let mut entries: Vec<(usize, f64)> =
         rows.flat_map(|(by, row)| row.map(move |(j, v)| (j, by * v))).collect();

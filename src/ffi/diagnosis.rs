@@ -142,7 +142,7 @@ pub unsafe extern "C" fn feti_diagnosis_untouched(
     })
 }
 
-/// Writes how many there are, and those that there is room for.
+/// Writes the number of entries, and as many entries as fit.
 fn write_list(numbers: &[usize], (count, list): (Output<i64>, Output<i64>)) {
     count.set(numbers.len() as i64);
     numbers.iter().enumerate().for_each(|(k, &number)| list.write_at(k, &[number as i64]));
@@ -170,7 +170,7 @@ pub unsafe extern "C" fn feti_diagnosis_undetermined(
     motion: *mut f64,
 ) -> i32 {
     enter(p, call!(feti_diagnosis_undetermined(p, k, body, motion)), |problem| {
-        // SAFETY: room by the caller's word.
+        // SAFETY: room guaranteed by the caller.
         let (fastest, motion) =
             unsafe { (Output::optional(body, 1, "body")?, Output::optional(motion, 6, "motion")?) };
         let open = problem.open_motion(count(k, "k")?)?;
@@ -205,7 +205,7 @@ pub unsafe extern "C" fn feti_diagnosis_undetermined_motion(
 ) -> i32 {
     enter(p, call!(feti_diagnosis_undetermined_motion(p, k, body, n, v)), |problem| {
         let (body, n) = body_of_order(problem, body, n)?;
-        // SAFETY: room for n numbers by the caller's word.
+        // SAFETY: room for n numbers guaranteed by the caller.
         let to = unsafe { Output::new(v, n, "v") }?;
         to.write(&problem.open_motion_of(count(k, "k")?, body)?);
         Ok(())
@@ -216,7 +216,7 @@ pub unsafe extern "C" fn feti_diagnosis_undetermined_motion(
 ///
 /// The load does work on this motion, and no row resists it. The motion is scaled so that its largest entry over all
 /// bodies is 1; bodies that do not move have zeros. After FETI_SLIDES it is the motion that friction does not hold, and
-/// after FETI_INDEFINITE the motion that K drives and closed rows do not stop. FETI_STATE unless the last solve ended
+/// after FETI_INDEFINITE the motion with negative stiffness that closed rows do not stop. FETI_STATE unless the last solve ended
 /// with one of these statuses and found a motion. After a failure nothing is written.
 ///
 /// | argument | in/out | shape | rule |
@@ -232,7 +232,7 @@ pub unsafe extern "C" fn feti_diagnosis_undetermined_motion(
 pub unsafe extern "C" fn feti_diagnosis_motion(p: *mut feti_problem, body: i64, n: i64, v: *mut f64) -> i32 {
     enter(p, call!(feti_diagnosis_motion(p, body, n, v)), |problem| {
         let (body, n) = body_of_order(problem, body, n)?;
-        // SAFETY: room for n numbers by the caller's word.
+        // SAFETY: room for n numbers guaranteed by the caller.
         unsafe { Output::new(v, n, "v") }?.write(problem.escaping_motion(body)?);
         Ok(())
     })

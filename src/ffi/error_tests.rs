@@ -1,4 +1,4 @@
-//! What a host reads: info, details, texts, the list of options.
+//! Results read by a host: info, details, texts, the list of options.
 
 use std::ptr::null_mut;
 
@@ -87,7 +87,7 @@ fn texts_count_from_the_base_of_the_host_and_details_from_zero() {
     assert_eq!((last_detail().body, last_detail().entry), (0, 0));
 }
 
-/// One equality row of one entry.
+/// Adds one equality row with one entry.
 fn add_row(p: *mut feti_problem, ptr: &[i32; 2], dof: &[i32; 1], val: &[f64; 1], base: i32) -> i32 {
     let (body, rhs, first) = (null_mut(), null_mut(), null_mut());
     // SAFETY: the arrays of one row with one entry.
@@ -114,7 +114,7 @@ fn a_refused_index_is_told_as_the_host_counts() {
     }
 }
 
-/// A matrix of two rows and three entries with these positions and columns.
+/// Sets a matrix of two rows and three entries with these positions and columns.
 fn stiffness(p: *mut feti_problem, ptr: &[i32; 3], col: &[i32; 3], base: i32, storage: i32) -> i32 {
     let val = [4.0, -4.0, 4.0];
     // SAFETY: three positions and entries.
@@ -124,7 +124,7 @@ fn stiffness(p: *mut feti_problem, ptr: &[i32; 3], col: &[i32; 3], base: i32, st
     }
 }
 
-/// The base of the call and that of texts differ: C hosts whose arrays count from 1.
+/// The bases of the call and of the texts differ: C hosts whose arrays count from 1.
 #[test]
 fn an_index_of_an_array_is_told_with_the_base_of_its_call_and_with_its_body() {
     let p = Owned::with_body();
@@ -144,7 +144,7 @@ fn an_index_of_an_array_is_told_with_the_base_of_its_call_and_with_its_body() {
         }
     };
     assert_eq!(of_body(4, 1), -105);
-    let text = "feti_rows_add_i32: row 0, entry 0: body 4 is not there: there are 1 bodies";
+    let text = "feti_rows_add_i32: row 0, entry 0: body 4 does not exist: there are 1 bodies";
     assert_eq!((last_error().as_str(), last_detail().value), (text, 4.0));
     assert_eq!(of_body(1, 3), -106);
     let text = "feti_rows_add_i32: body 0, row 0, entry 0: unknown 3 is outside the 2 unknowns of the body";
@@ -168,7 +168,7 @@ fn texts_name_what_is_wrong_and_no_base() {
     assert!(last_error().contains("with FETI_LOWER, not with FETI_FULL"), "{}", last_error());
 }
 
-/// 13 unknowns, dim = 2: an array n x dim ends before what ld = n would read.
+/// 13 unknowns, dim = 2: an array n x dim is shorter than an array with ld = n.
 #[test]
 fn coordinates_with_the_leading_dimension_of_the_other_layout_are_refused_before_they_are_read() {
     let p = Owned::new();

@@ -26,7 +26,7 @@ use crate::ffi::header::types::feti_problem;
 #[no_mangle]
 pub unsafe extern "C" fn feti_problem_write(p: *mut feti_problem, path: *const c_char) -> i32 {
     enter(p, call!(feti_problem_write(p, path)), |problem| {
-        // SAFETY: NUL terminated by the caller's word.
+        // SAFETY: NUL terminated guaranteed by the caller.
         problem.write_file(unsafe { file_path(path, "path") }?)
     })
 }
@@ -53,7 +53,7 @@ pub unsafe extern "C" fn feti_problem_write(p: *mut feti_problem, path: *const c
 #[no_mangle]
 pub unsafe extern "C" fn feti_problem_read(p: *mut feti_problem, path: *const c_char) -> i32 {
     enter(p, call!(feti_problem_read(p, path)), |problem| {
-        // SAFETY: NUL terminated by the caller's word.
+        // SAFETY: NUL terminated guaranteed by the caller.
         problem.read_file(unsafe { file_path(path, "path") }?)
     })
 }

@@ -73,7 +73,7 @@ pub unsafe extern "C" fn feti_friction_add_i32(
     ));
     let given =
         HostNodes { nodes, dim, normal_row, row_ptr, body, dof, val, base, coefficient, bound, first };
-    // SAFETY: shapes by the caller's word.
+    // SAFETY: shapes guaranteed by the caller.
     unsafe { given.add(p, call) }
 }
 
@@ -143,11 +143,11 @@ pub unsafe extern "C" fn feti_friction_add_i64(
     ));
     let given =
         HostNodes { nodes, dim, normal_row, row_ptr, body, dof, val, base, coefficient, bound, first };
-    // SAFETY: shapes by the caller's word.
+    // SAFETY: shapes guaranteed by the caller.
     unsafe { given.add(p, call) }
 }
 
-/// Nodes as the host gives them.
+/// Nodes as given by the host.
 struct HostNodes<I> {
     nodes: i64,
     dim: i32,
@@ -170,11 +170,11 @@ impl<I: Index> HostNodes<I> {
             let (nodes, dim) = (count(self.nodes, "nodes")?, dimension(self.dim)?);
             let rows = tangential_rows(nodes, dim)?;
             let base = base(self.base)?;
-            // SAFETY: NULL or room for one number by the caller's word.
+            // SAFETY: NULL or room for one number guaranteed by the caller.
             let first = unsafe { Output::optional(self.first, 1, "first") }?;
-            // SAFETY: one number per node by the caller's word.
+            // SAFETY: one number per node guaranteed by the caller.
             let normal = unsafe { numbers(self.normal_row, nodes, base, "normal_row") }?;
-            // SAFETY: rows + 1 positions by the caller's word.
+            // SAFETY: rows + 1 positions guaranteed by the caller.
             let ptr = unsafe { pointers(self.row_ptr, rows, base) }.map_err(|error| at_node(error, dim))?;
             let entries = ptr.last().copied().unwrap_or(0);
             let _room = problem.headroom_for_rows(rows, entries)?;
@@ -184,7 +184,7 @@ impl<I: Index> HostNodes<I> {
             // SAFETY: the last position is the number of entries.
             let (dof, val) =
                 unsafe { (numbers(self.dof, entries, base, "dof")?, input(self.val, entries, "val")?) };
-            // SAFETY: NULL or one number per node by the caller's word.
+            // SAFETY: NULL or one number per node guaranteed by the caller.
             let (coefficient, bound) = unsafe {
                 (
                     input_or_none(self.coefficient, nodes, "coefficient")?,
@@ -225,7 +225,7 @@ pub unsafe extern "C" fn feti_friction_law(
 ) -> i32 {
     enter(p, call!(feti_friction_law(p, first, nodes, coefficient, bound)), |problem| {
         let (first, nodes) = (id(first, "first")?, count(nodes, "nodes")?);
-        // SAFETY: NULL or one number per node by the caller's word.
+        // SAFETY: NULL or one number per node guaranteed by the caller.
         let (coefficient, bound) = unsafe {
             (input_or_none(coefficient, nodes, "coefficient")?, input_or_none(bound, nodes, "bound")?)
         };
@@ -258,7 +258,7 @@ pub unsafe extern "C" fn feti_friction_compliance(
 ) -> i32 {
     enter(p, call!(feti_friction_compliance(p, first, nodes, inv_kt)), |problem| {
         let (first, nodes) = (id(first, "first")?, count(nodes, "nodes")?);
-        // SAFETY: one number per node by the caller's word.
+        // SAFETY: one number per node guaranteed by the caller.
         problem.set_friction_compliance(first, unsafe { input(inv_kt, nodes, "inv_kt") }?)
     })
 }
@@ -290,9 +290,9 @@ pub unsafe extern "C" fn feti_friction_reference(
     enter(p, call!(feti_friction_reference(p, first, nodes, dim, s_old)), |problem| {
         let (first, nodes) = (id(first, "first")?, count(nodes, "nodes")?);
         let dim = if nodes == 0 { 0 } else { dimension(dim)? };
-        // the nodes come first: no array is read for such as are not there
+        // the nodes are checked first: no array is read for nodes that do not exist
         problem.check_friction_nodes(first, nodes, dim)?;
-        // SAFETY: dim numbers for each node by the caller's word.
+        // SAFETY: dim numbers for each node guaranteed by the caller.
         let s_old = unsafe { input(s_old, tangential_rows(nodes, dim)?, "s_old") }?;
         problem.set_friction_reference(first, nodes, dim, s_old)
     })
@@ -332,7 +332,7 @@ pub extern "C" fn feti_friction_clear(p: *mut feti_problem) -> i32 {
 
 pub(super) const NODES: &str = "the number of nodes with friction is";
 
-/// Tangential rows of a node.
+/// Number of tangential rows of a node.
 fn dimension(dim: i32) -> Result<usize> {
     usize::try_from(dim).ok().filter(|dim| (1..=2).contains(dim)).ok_or_else(|| {
         let what = format!("{dim} is neither 1 nor 2, the tangential rows of a node");
@@ -340,12 +340,12 @@ fn dimension(dim: i32) -> Result<usize> {
     })
 }
 
-/// `dim` rows for each node; an array can have as many entries.
+/// `dim` rows per node; checks that an array can have this number of entries.
 fn tangential_rows(nodes: usize, dim: usize) -> Result<usize> {
     count((nodes as i64).saturating_mul(dim as i64), "nodes")
 }
 
-/// Tangential rows of all nodes, whose number and dim must be those given.
+/// Number of tangential rows of all nodes; `nodes` and `dim` must be those of the problem.
 pub(super) fn all_nodes(problem: &Problem, nodes: i64, dim: i32) -> Result<usize> {
     let nodes = same(nodes, problem.sizes().nodes, "nodes", NODES)?;
     let dim = if nodes == 0 { 0 } else { dimension(dim)? };
@@ -353,7 +353,7 @@ pub(super) fn all_nodes(problem: &Problem, nodes: i64, dim: i32) -> Result<usize
     tangential_rows(nodes, dim)
 }
 
-/// An error about a tangential row, with its node.
+/// Adds the node to an error about a tangential row.
 fn at_node(error: Error, dim: usize) -> Error {
     match error.place.row {
         Some(row) => error.node(row / dim),

@@ -8,7 +8,7 @@ use std::ptr::{null, null_mut};
 use super::tests::{last_detail, last_error, Owned};
 use super::*;
 
-/// Rows u_1 <= 0 and, never closed, u_0 <= infinity; an equality row without entries.
+/// Rows u_1 <= 0 and u_0 <= infinity, which never closes; an equality row without entries.
 fn block() -> Owned {
     let p = Owned::with_body();
     let (ptr, col, k) = ([0, 1, 2], [0, 1], [2.0, 2.0]);
@@ -114,12 +114,12 @@ fn read<T: Copy>(start: T, len: usize, call: impl Fn(*mut T) -> i32) -> (i32, Ve
 }
 
 fn multipliers(p: &Owned, kind: i32, rows: usize) -> (i32, Vec<f64>) {
-    // SAFETY: room for so many numbers.
+    // SAFETY: room for this number of values.
     read(-1.0, rows, |to| unsafe { feti_multipliers(p.0, kind, rows as i64, to) })
 }
 
 fn slips(p: &Owned, nodes: usize) -> (i32, Vec<f64>) {
-    // SAFETY: room for so many numbers.
+    // SAFETY: room for this number of values.
     read(-1.0, nodes, |to| unsafe { feti_friction_slips(p.0, nodes as i64, 1, to) })
 }
 
@@ -178,7 +178,7 @@ fn what_is_wrong_with_a_node_is_named_and_nothing_is_added() {
     assert_eq!(info_of(&p).1.nodes, 0);
     assert_eq!(TWO.add(&p), (FETI_OK, 0));
     assert_eq!(ONE.add(&p).0, FETI_ARGUMENT - 4);
-    assert!(last_error().contains("has a node of friction already"), "{}", last_error());
+    assert!(last_error().contains("already has a node of friction"), "{}", last_error());
     let other = Nodes { dim: 2, normal: &[0], coefficient: &[], ptr: &[1, 2, 3], ..ONE };
     assert_eq!(other.add(&p).0, FETI_ARGUMENT - 3);
 }
@@ -245,7 +245,7 @@ fn functions_of_rows_say_which_one_is_for_tangential_ones() {
     assert_eq!(info_of(&p).1.nodes, 1);
 }
 
-/// All by hand: u = 0, lambda = 4, lambda_t = 1.
+/// By hand: u = 0, lambda = 4, lambda_t = 1.
 #[test]
 fn a_block_that_sticks_has_its_forces_and_no_slip() {
     let p = block();

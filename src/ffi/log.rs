@@ -44,7 +44,7 @@ pub unsafe extern "C" fn feti_on_log(
         let listener = level.zip(callback).map(|(most, callback)| -> (LogLevel, LogListener) {
             let tell = move |level: LogLevel, text: &str| {
                 let text = CString::new(text).unwrap_or_default();
-                // SAFETY: by the caller's word the function may be called with `user`; the text ends with NUL.
+                // SAFETY: the caller guarantees that the function may be called with `user`; the text ends with NUL.
                 fpu::in_host_environment(|| unsafe { callback(user.get(), level as i32, text.as_ptr()) })
             };
             (most, Box::new(tell))

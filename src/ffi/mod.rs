@@ -7,8 +7,8 @@
 //! | `bodies/` | the functions of bodies |
 //! | `problem`, `file`, `options`, `rows`, `friction`, `solve`, `phases`, `progress`, `log`, `state`, `diagnosis`, `results`, `validation` | the other functions |
 //!
-//! The generator of the header and of the Fortran interfaces reads these files: each exported function has a table of
-//! its arguments, in which the word NULL in the rule says that the pointer may be NULL.
+//! The generator of the header and of the Fortran interfaces reads these files: each exported function has a table of its
+//! arguments; if a rule contains the word NULL, the pointer may be NULL.
 #![deny(unsafe_op_in_unsafe_fn)]
 #![warn(clippy::undocumented_unsafe_blocks)]
 #![allow(clippy::too_many_arguments)]

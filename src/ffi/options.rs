@@ -26,7 +26,7 @@ use crate::solver::{options, OptionInfo, OptionValue};
 #[no_mangle]
 pub unsafe extern "C" fn feti_set_f64(p: *mut feti_problem, name: *const c_char, value: f64) -> i32 {
     enter(p, call!(feti_set_f64(p, name, value)), |problem| {
-        // SAFETY: NUL terminated by the caller's word.
+        // SAFETY: NUL terminated guaranteed by the caller.
         problem.set_f64(unsafe { text(name, "name") }?, value)
     })
 }
@@ -46,7 +46,7 @@ pub unsafe extern "C" fn feti_set_f64(p: *mut feti_problem, name: *const c_char,
 #[no_mangle]
 pub unsafe extern "C" fn feti_set_i64(p: *mut feti_problem, name: *const c_char, value: i64) -> i32 {
     enter(p, call!(feti_set_i64(p, name, value)), |problem| {
-        // SAFETY: NUL terminated by the caller's word.
+        // SAFETY: NUL terminated guaranteed by the caller.
         problem.set_i64(unsafe { text(name, "name") }?, value)
     })
 }
@@ -70,7 +70,7 @@ pub unsafe extern "C" fn feti_set_str(
     value: *const c_char,
 ) -> i32 {
     enter(p, call!(feti_set_str(p, name, value)), |problem| {
-        // SAFETY: NUL terminated by the caller's word.
+        // SAFETY: NUL terminated guaranteed by the caller.
         let (name, value) = unsafe { (text(name, "name")?, text(value, "value")?) };
         problem.set_str(name, value)
     })
@@ -92,7 +92,7 @@ pub unsafe extern "C" fn feti_set_str(
 #[no_mangle]
 pub unsafe extern "C" fn feti_set_text(p: *mut feti_problem, text: *const c_char) -> i32 {
     enter(p, call!(feti_set_text(p, text)), |problem| {
-        // SAFETY: NUL terminated by the caller's word.
+        // SAFETY: NUL terminated guaranteed by the caller.
         problem.set_text(unsafe { self::text(text, "text") }?)
     })
 }
@@ -112,7 +112,7 @@ pub unsafe extern "C" fn feti_set_text(p: *mut feti_problem, text: *const c_char
 #[no_mangle]
 pub unsafe extern "C" fn feti_get_f64(p: *mut feti_problem, name: *const c_char, value: *mut f64) -> i32 {
     enter(p, call!(feti_get_f64(p, name, value)), |problem| {
-        // SAFETY: NUL terminated, and room for one number, by the caller's word.
+        // SAFETY: NUL terminated, and room for one number, guaranteed by the caller.
         let (name, value) = unsafe { (text(name, "name")?, Output::new(value, 1, "value")?) };
         value.set(problem.get_f64(name)?);
         Ok(())
@@ -134,7 +134,7 @@ pub unsafe extern "C" fn feti_get_f64(p: *mut feti_problem, name: *const c_char,
 #[no_mangle]
 pub unsafe extern "C" fn feti_get_i64(p: *mut feti_problem, name: *const c_char, value: *mut i64) -> i32 {
     enter(p, call!(feti_get_i64(p, name, value)), |problem| {
-        // SAFETY: NUL terminated, and room for one number, by the caller's word.
+        // SAFETY: NUL terminated, and room for one number, guaranteed by the caller.
         let (name, value) = unsafe { (text(name, "name")?, Output::new(value, 1, "value")?) };
         value.set(problem.get_i64(name)?);
         Ok(())
@@ -165,7 +165,7 @@ pub unsafe extern "C" fn feti_get_str(
 ) -> i32 {
     enter(p, call!(feti_get_str(p, name, buf, cap, len)), |problem| {
         check_text_room(buf, cap)?;
-        // SAFETY: NUL terminated, and room for one number, by the caller's word.
+        // SAFETY: NUL terminated, and room for one number, guaranteed by the caller.
         let (name, len) = unsafe { (text(name, "name")?, Output::new(len, 1, "len")?) };
         let value = problem.get_str(name)?;
         // SAFETY: the caller gives room for `cap` characters.

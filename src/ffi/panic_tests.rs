@@ -1,4 +1,5 @@
-//! Panics of the library, at every possible place of a call: each becomes FETI_INTERNAL, affects this problem alone, and prints nothing.
+//! Panics of the library, at every possible place of a call: each becomes FETI_INTERNAL, affects only this problem, and
+//! prints nothing.
 
 use std::ptr::{null, null_mut};
 
@@ -42,12 +43,12 @@ fn assert_solves(p: &Owned) {
     assert!((u[0] - 0.1).abs() + (u[1] - 0.05).abs() + (lambda[0] - 0.85).abs() < 1e-12, "{u:?} {lambda:?}");
 }
 
-/// A call of the given name whose inside is `work`.
+/// A call of the given name that runs `work`.
 fn inside(p: *mut feti_problem, work: impl FnOnce() -> Result<()>) -> i32 {
     enter(p, call!(feti_setup(p)), |_| work())
 }
 
-/// A function of the host's side of the boundary that panics in the given phase.
+/// A progress function that panics in the given phase.
 fn listener(phase_of_setup: bool) -> Listener {
     Box::new(
         move |now| if now.step.is_none() == phase_of_setup { panic!("{INJECTED}") } else { Reply::Continue },
@@ -124,7 +125,7 @@ fn problems_on_other_threads_solve_on_while_one_panics() {
     solving.join().unwrap();
 }
 
-/// Run by the test below, in a process of its own.
+/// Run by the test below, in a separate process.
 #[test]
 #[ignore = "run by the test below, in a process of its own"]
 fn every_panic_once() {

@@ -10,7 +10,8 @@ use crate::ffi::header::status::{FETI_MEMORY, FETI_OK};
 use crate::ffi::header::types::feti_problem;
 use crate::solver::Problem;
 
-/// Bytes of a problem without bodies, its place in the registry, and what the library keeps from its first call on, and more.
+/// Bytes of a problem without bodies, its entry in the registry, and data that the library keeps from its first call on,
+/// rounded up.
 const EMPTY: usize = 96 << 10;
 
 /// Creates a problem without bodies and rows.
@@ -66,7 +67,7 @@ pub unsafe extern "C" fn feti_problem_destroy(p: *mut *mut feti_problem) -> i32 
             Ok(problem) => {
                 // SAFETY: as above.
                 unsafe { p.write_unaligned(ptr::null_mut()) };
-                // The problem is gone for the host, whatever giving its memory back may say.
+                // for the host the problem is destroyed, even if freeing its memory fails
                 let _ = caught(|| {
                     drop(problem);
                     Ok(())

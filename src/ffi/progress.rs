@@ -60,7 +60,7 @@ pub unsafe extern "C" fn feti_on_progress(
         let listener = callback.map(|callback| -> Listener {
             Box::new(move |now| {
                 let now = told(now);
-                // SAFETY: by the caller's word the function may be called with `user`.
+                // SAFETY: the caller guarantees that the function may be called with `user`.
                 match fpu::in_host_environment(|| unsafe { callback(user.get(), &now) }) {
                     0 => Reply::Continue,
                     1.. => Reply::Cancel,
@@ -73,12 +73,12 @@ pub unsafe extern "C" fn feti_on_progress(
     })
 }
 
-/// The host's pointer, which the library only hands back.
+/// The host's pointer, which the library only passes back.
 #[derive(Clone, Copy)]
 pub(super) struct User(pub(super) *mut c_void);
 
-// SAFETY: never followed here; the host's function gets it on the thread on which the host calls the library, or, by the
-// host's word (`concurrent` of feti_body_operator), on any.
+// SAFETY: never dereferenced here; the host's function gets it on the thread on which the host calls the library, or, if
+// the host permits it (`concurrent` of feti_body_operator), on any thread.
 unsafe impl Send for User {}
 // SAFETY: as above.
 unsafe impl Sync for User {}

@@ -34,12 +34,12 @@ use crate::solver::{FrictionState, RowState};
 pub unsafe extern "C" fn feti_displacement(p: *mut feti_problem, body: i64, n: i64, u: *mut f64) -> i32 {
     enter(p, call!(feti_displacement(p, body, n, u)), |problem| {
         if body == FETI_ALL {
-            // SAFETY: room for n numbers by the caller's word.
+            // SAFETY: room for n numbers guaranteed by the caller.
             let output = unsafe { Output::new(u, whole(problem, n)?, "u") }?;
             return problem.spread(problem.displacements()?, |at, value| output.write_at(at, &[value]));
         }
         let (body, n) = body_of_order(problem, body, n)?;
-        // SAFETY: room for n numbers by the caller's word.
+        // SAFETY: room for n numbers guaranteed by the caller.
         unsafe { Output::new(u, n, "u") }?.write(problem.displacement(body)?);
         Ok(())
     })
@@ -78,13 +78,13 @@ pub unsafe extern "C" fn feti_reaction(
     enter(p, call!(feti_reaction(p, kind, body, n, r)), |problem| {
         let kind = if kind == 0 { None } else { Some(multiplier_kind(kind)?) };
         if body == FETI_ALL {
-            // SAFETY: room for n numbers by the caller's word.
+            // SAFETY: room for n numbers guaranteed by the caller.
             let output = unsafe { Output::new(r, whole(problem, n)?, "r") }?;
             let all = problem.summed(problem.reactions(kind)?)?;
             return problem.spread(&all, |at, value| output.write_at(at, &[value]));
         }
         let (body, n) = body_of_order(problem, body, n)?;
-        // SAFETY: room for n numbers by the caller's word.
+        // SAFETY: room for n numbers guaranteed by the caller.
         let output = unsafe { Output::new(r, n, "r") }?;
         let mut reaction = zeros(n, "a result")?;
         problem.reaction(kind, body, &mut reaction)?;
@@ -111,7 +111,7 @@ pub unsafe extern "C" fn feti_reaction(
 pub unsafe extern "C" fn feti_amplitudes(p: *mut feti_problem, body: i64, r: i64, alpha: *mut f64) -> i32 {
     enter(p, call!(feti_amplitudes(p, body, r, alpha)), |problem| {
         let amplitudes = problem.amplitudes(id(body, "body")?)?;
-        // SAFETY: room for r numbers by the caller's word.
+        // SAFETY: room for r numbers guaranteed by the caller.
         unsafe { copy(amplitudes, r, ("r", "the dimension of the null space is"), alpha, "alpha") }
     })
 }
@@ -139,7 +139,7 @@ pub unsafe extern "C" fn feti_multipliers(
 ) -> i32 {
     enter(p, call!(feti_multipliers(p, kind, rows, lambda)), |problem| {
         let multipliers = problem.multipliers(multiplier_kind(kind)?)?;
-        // SAFETY: room for one number per row by the caller's word.
+        // SAFETY: room for one number per row guaranteed by the caller.
         unsafe { copy(multipliers, rows, ("rows", ROWS), lambda, "lambda") }
     })
 }
@@ -160,7 +160,7 @@ pub unsafe extern "C" fn feti_multipliers(
 #[no_mangle]
 pub unsafe extern "C" fn feti_gaps(p: *mut feti_problem, rows: i64, slack: *mut f64) -> i32 {
     enter(p, call!(feti_gaps(p, rows, slack)), |problem| {
-        // SAFETY: room for one number per row by the caller's word.
+        // SAFETY: room for one number per row guaranteed by the caller.
         unsafe { copy(problem.gaps()?, rows, ("rows", ROWS), slack, "slack") }
     })
 }
@@ -190,7 +190,7 @@ pub unsafe extern "C" fn feti_active(p: *mut feti_problem, rows: i64, state: *mu
             RowState::Weak => FETI_ROW_WEAK,
             RowState::Unknown => FETI_ROW_UNKNOWN,
         }));
-        // SAFETY: room for one number per row by the caller's word.
+        // SAFETY: room for one number per row guaranteed by the caller.
         unsafe { copy(&numbers, rows, ("rows", ROWS), state, "state") }
     })
 }
@@ -218,7 +218,7 @@ pub unsafe extern "C" fn feti_friction_slips(
 ) -> i32 {
     enter(p, call!(feti_friction_slips(p, nodes, dim, slip)), |problem| {
         let (slips, len) = (problem.slips()?, all_nodes(problem, nodes, dim)?);
-        // SAFETY: room for dim numbers for each node by the caller's word.
+        // SAFETY: room for dim numbers for each node guaranteed by the caller.
         unsafe { Output::new(slip, len, "slip") }?.write(slips);
         Ok(())
     })
@@ -252,7 +252,7 @@ pub unsafe extern "C" fn feti_friction_states(p: *mut feti_problem, nodes: i64, 
             FrictionState::Weak => FETI_FRICTION_WEAK,
             FrictionState::Unknown => FETI_FRICTION_UNKNOWN,
         }));
-        // SAFETY: room for one number per node by the caller's word.
+        // SAFETY: room for one number per node guaranteed by the caller.
         unsafe { copy(&numbers, nodes, ("nodes", NODES), state, "state") }
     })
 }
@@ -280,7 +280,7 @@ pub unsafe extern "C" fn feti_counts(
     eqs: *mut i64,
 ) -> i32 {
     enter(p, call!(feti_counts(p, bodies, dofs, rows, eqs)), |problem| {
-        // SAFETY: NULL or room for one number by the caller's word.
+        // SAFETY: NULL or room for one number guaranteed by the caller.
         let outputs = unsafe {
             [
                 Output::optional(bodies, 1, "bodies")?,
@@ -314,7 +314,7 @@ pub unsafe extern "C" fn feti_counts(
 #[no_mangle]
 pub unsafe extern "C" fn feti_friction_counts(p: *mut feti_problem, nodes: *mut i64, dim: *mut i32) -> i32 {
     enter(p, call!(feti_friction_counts(p, nodes, dim)), |problem| {
-        // SAFETY: NULL or room for one number by the caller's word.
+        // SAFETY: NULL or room for one number guaranteed by the caller.
         let (nodes, dim) =
             unsafe { (Output::optional(nodes, 1, "nodes")?, Output::optional(dim, 1, "dim")?) };
         let counts = problem.sizes();
@@ -326,7 +326,7 @@ pub unsafe extern "C" fn feti_friction_counts(p: *mut feti_problem, nodes: *mut 
 
 const ROWS: &str = "the number of rows is";
 
-/// Copies `values` to the host, whose `size` = (name, text) must be their number.
+/// Copies `values` to the host; `size` = (name, text): the number given by the host, which must be their number.
 ///
 /// # Safety
 /// `to` has room for `given` numbers.
@@ -338,7 +338,7 @@ unsafe fn copy<T: Copy>(
     name: &'static str,
 ) -> Result<()> {
     let len = same(given, values.len(), size.0, size.1)?;
-    // SAFETY: by the caller's word.
+    // SAFETY: guaranteed by the caller.
     unsafe { Output::new(to, len, name) }?.write(values);
     Ok(())
 }

@@ -44,7 +44,7 @@ pub unsafe extern "C" fn feti_rows_add_i32(
 ) -> i32 {
     let call = call!(feti_rows_add_i32(p, kind, rows, row_ptr, body, dof, val, base, rhs, first));
     let given = HostRows { kind, rows, row_ptr, body, dof, val, base, rhs, first };
-    // SAFETY: shapes by the caller's word.
+    // SAFETY: shapes guaranteed by the caller.
     unsafe { given.add(p, call) }
 }
 
@@ -85,7 +85,7 @@ pub unsafe extern "C" fn feti_rows_add_i64(
 ) -> i32 {
     let call = call!(feti_rows_add_i64(p, kind, rows, row_ptr, body, dof, val, base, rhs, first));
     let given = HostRows { kind, rows, row_ptr, body, dof, val, base, rhs, first };
-    // SAFETY: shapes by the caller's word.
+    // SAFETY: shapes guaranteed by the caller.
     unsafe { given.add(p, call) }
 }
 
@@ -109,9 +109,9 @@ impl<I: Index> HostRows<I> {
         enter(p, call, |problem| {
             let kind = row_kind(self.kind, "feti_friction_add_i32 or _i64 adds them with these")?;
             let (rows, base) = (count(self.rows, "rows")?, base(self.base)?);
-            // SAFETY: NULL or room for one number by the caller's word.
+            // SAFETY: NULL or room for one number guaranteed by the caller.
             let first = unsafe { Output::optional(self.first, 1, "first") }?;
-            // SAFETY: rows + 1 positions by the caller's word.
+            // SAFETY: rows + 1 positions guaranteed by the caller.
             let ptr = unsafe { pointers(self.row_ptr, rows, base) }?;
             let entries = ptr.last().copied().unwrap_or(0);
             let _room = problem.headroom_for_rows(rows, entries)?;
@@ -121,7 +121,7 @@ impl<I: Index> HostRows<I> {
             // SAFETY: the last position is the number of entries.
             let (dof, val) =
                 unsafe { (numbers(self.dof, entries, base, "dof")?, input(self.val, entries, "val")?) };
-            // SAFETY: NULL or one number per row by the caller's word.
+            // SAFETY: NULL or one number per row guaranteed by the caller.
             let rhs = unsafe { input_or_none(self.rhs, rows, "rhs") }?;
             let given = RowsInput { ptr: &ptr, body: body.as_deref(), dof: &dof, val, rhs };
             first.set(problem.add_rows(kind, given).map_err(|error| error.index_from(base))? as i64);
@@ -156,7 +156,7 @@ pub unsafe extern "C" fn feti_rows_rhs(
     enter(p, call!(feti_rows_rhs(p, kind, first, rows, rhs)), |problem| {
         let kind = row_kind(kind, "their s_old is given by feti_friction_reference")?;
         let (first, rows) = (id(first, "first")?, count(rows, "rows")?);
-        // SAFETY: one number per row by the caller's word.
+        // SAFETY: one number per row guaranteed by the caller.
         problem.set_rhs(kind, first, unsafe { input(rhs, rows, "rhs") }?)
     })
 }
@@ -190,7 +190,7 @@ pub unsafe extern "C" fn feti_rows_compliance(
     enter(p, call!(feti_rows_compliance(p, kind, first, rows, inv_k)), |problem| {
         let kind = row_kind(kind, "theirs are given by feti_friction_compliance")?;
         let (first, rows) = (id(first, "first")?, count(rows, "rows")?);
-        // SAFETY: one number per row by the caller's word.
+        // SAFETY: one number per row guaranteed by the caller.
         problem.set_compliance(kind, first, unsafe { input(inv_k, rows, "inv_k") }?)
     })
 }
@@ -212,7 +212,7 @@ pub extern "C" fn feti_rows_clear(p: *mut feti_problem, kind: i32) -> i32 {
     })
 }
 
-/// A kind of rows that are given by rows; of tangential ones the text says what is to be called `instead`.
+/// A kind of rows that can be set by row number; for tangential rows, the text names the function to call `instead`.
 pub(super) fn row_kind(kind: i32, instead: &str) -> Result<RowKind> {
     if kind == FETI_TANGENTIAL {
         let what = format!("FETI_TANGENTIAL: tangential rows belong to nodes with friction, {instead}");

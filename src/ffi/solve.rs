@@ -53,7 +53,7 @@ pub extern "C" fn feti_setup(p: *mut feti_problem) -> i32 {
 /// the certificate does not pass; FETI_MARGINAL if a part of the load, below 1e-7 of it, is not held. With a status below
 /// 0 the group of bodies concerned has no answer. FETI_LOAD_NOT_HELD if no contact force balances the load; FETI_SLIDES
 /// if friction holds only a part of the load and no equilibrium was found; FETI_GAPS_CONTRADICT if rows contradict each
-/// other; FETI_INDEFINITE if K drives a soft motion and the closed rows do not stop it. feti_diagnosis has the proof of
+/// other; FETI_INDEFINITE if K has negative stiffness along a motion that closed rows do not stop. feti_diagnosis has the proof of
 /// each. The call runs feti_setup when it is due, and then fails for the same reasons.
 ///
 /// | argument | in/out | shape | rule |
@@ -65,7 +65,7 @@ pub extern "C" fn feti_setup(p: *mut feti_problem) -> i32 {
 /// `info` is NULL or points to `struct_size` writable bytes.
 #[no_mangle]
 pub unsafe extern "C" fn feti_solve(p: *mut feti_problem, info: *mut feti_info) -> i32 {
-    // SAFETY: NULL, or `struct_size` bytes by the caller's word.
+    // SAFETY: NULL, or `struct_size` bytes guaranteed by the caller.
     let target = (!info.is_null()).then(|| unsafe { OutStruct::new(info, "info") }).transpose();
     let (mut sizes, mut found) = (Sizes::default(), None);
     let status = enter_with_status(p, call!(feti_solve(p, info)), |problem| {
@@ -76,7 +76,7 @@ pub unsafe extern "C" fn feti_solve(p: *mut feti_problem, info: *mut feti_info) 
         }
         let _room = problem.working_headroom()?;
         let solved = problem.solve();
-        // groups of bodies may have an answer where another has none
+        // if one group of bodies has no answer, others may have one
         found = problem.report().cloned();
         solved.map(|report| of_outcome(&report.outcome))
     });
@@ -120,9 +120,9 @@ pub unsafe extern "C" fn feti_check(
     out: *mut feti_certificate,
 ) -> i32 {
     enter(p, call!(feti_check(p, n, u, rows, lambda, eqs, mu, out)), |problem| {
-        // SAFETY: shapes by the caller's word.
+        // SAFETY: shapes guaranteed by the caller.
         let (u, lambda, mu) = unsafe { answer_to_check(problem, (n, u), (rows, lambda), (eqs, mu)) }?;
-        // SAFETY: `struct_size` bytes by the caller's word.
+        // SAFETY: `struct_size` bytes guaranteed by the caller.
         let target = unsafe { OutStruct::new(out, "out") }?;
         let _room = problem.working_headroom()?;
         target.write(&certificate(&problem.check(u, lambda, mu)?));
@@ -169,12 +169,12 @@ pub unsafe extern "C" fn feti_check_friction(
 ) -> i32 {
     let call = call!(feti_check_friction(p, n, u, rows, lambda, eqs, mu, nodes, dim, lambda_t, out));
     enter(p, call, |problem| {
-        // SAFETY: shapes by the caller's word.
+        // SAFETY: shapes guaranteed by the caller.
         let (u, lambda, mu) = unsafe { answer_to_check(problem, (n, u), (rows, lambda), (eqs, mu)) }?;
         let len = all_nodes(problem, nodes, dim)?;
-        // SAFETY: dim numbers for each node by the caller's word.
+        // SAFETY: dim numbers for each node guaranteed by the caller.
         let tangential = unsafe { finite_input(lambda_t, len, "lambda_t") }?;
-        // SAFETY: `struct_size` bytes by the caller's word.
+        // SAFETY: `struct_size` bytes guaranteed by the caller.
         let target = unsafe { OutStruct::new(out, "out") }?;
         let _room = problem.working_headroom()?;
         target.write(&certificate(&problem.check_with_friction(Candidate { u, lambda, mu, tangential })?));
@@ -196,13 +196,13 @@ unsafe fn answer_to_check<'a>(
     let n = same(n, counts.dofs, "n", "the number of unknowns of all bodies is")?;
     let rows = same(rows, counts.rows, "rows", "the number of inequality rows is")?;
     let eqs = same(eqs, counts.equalities, "eqs", "the number of equality rows is")?;
-    // SAFETY: shapes by the caller's word.
+    // SAFETY: shapes guaranteed by the caller.
     unsafe {
         Ok((finite_input(u, n, "u")?, finite_input(lambda, rows, "lambda")?, finite_input(mu, eqs, "mu")?))
     }
 }
 
-/// How a solve went by its report; without one counts are zero, figures NaN.
+/// The result of a solve from its report; without a report counts are zero and values NaN.
 fn info_of(status: i32, sizes: Sizes, report: Option<&Report>) -> feti_info {
     let count = |of: fn(&Report) -> usize| report.map_or(0, |report| of(report) as i64);
     let figure = |of: fn(&Report) -> f64| report.map_or(f64::NAN, of);

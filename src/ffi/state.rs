@@ -31,7 +31,7 @@ pub unsafe extern "C" fn feti_start_from(
         let kind = multiplier_kind(kind)?;
         let expected = problem.rows(kind).len();
         let rows = same(rows, expected, "rows", "the number of rows of this kind is")?;
-        // SAFETY: one number per row by the caller's word.
+        // SAFETY: one number per row guaranteed by the caller.
         problem.start_from(kind, unsafe { input(lambda, rows, "lambda") }?)
     })
 }

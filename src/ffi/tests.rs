@@ -23,7 +23,7 @@ impl Owned {
         Self(p)
     }
 
-    /// With one body of two unknowns.
+    /// A problem with one body of two unknowns.
     pub(super) fn with_body() -> Self {
         let owned = Self::new();
         let mut body = -1;

@@ -44,7 +44,7 @@ pub unsafe extern "C" fn feti_body_kplus(
         let nrhs = count(nrhs, "nrhs")?;
         let (x_entries, ldx) = column_major(n, nrhs, ldx, "ldx")?;
         let (y_entries, ldy) = column_major(n, nrhs, ldy, "ldy")?;
-        // SAFETY: shapes by the caller's word.
+        // SAFETY: shapes guaranteed by the caller.
         let (x, output) = unsafe { (input(x, x_entries, "x")?, Output::new(y, y_entries, "y")?) };
         (0..nrhs).try_for_each(|k| check_finite(&x[k * ldx..k * ldx + n], k * ldx, "x"))?;
         let _room = problem.setup_headroom()?;
@@ -80,7 +80,7 @@ pub unsafe extern "C" fn feti_body_kplus(
 pub unsafe extern "C" fn feti_dual_apply(p: *mut feti_problem, m: i64, x: *const f64, y: *mut f64) -> i32 {
     enter(p, call!(feti_dual_apply(p, m, x, y)), |problem| {
         let m = all_rows(problem, m)?;
-        // SAFETY: shapes by the caller's word.
+        // SAFETY: shapes guaranteed by the caller.
         let (x, output) = unsafe { (finite_input(x, m, "x")?, Output::new(y, m, "y")?) };
         let _room = problem.working_headroom()?;
         let mut product = zeros(m, "a result")?;
@@ -107,7 +107,7 @@ pub unsafe extern "C" fn feti_dual_apply(p: *mut feti_problem, m: i64, x: *const
 pub unsafe extern "C" fn feti_dual_rhs(p: *mut feti_problem, m: i64, d: *mut f64) -> i32 {
     enter(p, call!(feti_dual_rhs(p, m, d)), |problem| {
         let m = all_rows(problem, m)?;
-        // SAFETY: room for m numbers by the caller's word.
+        // SAFETY: room for m numbers guaranteed by the caller.
         let output = unsafe { Output::new(d, m, "d") }?;
         let _room = problem.working_headroom()?;
         let mut rhs = zeros(m, "a result")?;
@@ -117,7 +117,7 @@ pub unsafe extern "C" fn feti_dual_rhs(p: *mut feti_problem, m: i64, d: *mut f64
     })
 }
 
-/// Rows of both kinds, which `m` must be.
+/// Number of rows of both kinds; `m` must be equal.
 fn all_rows(problem: &Problem, m: i64) -> Result<usize> {
     let counts = problem.sizes();
     same(m, counts.rows + counts.equalities, "m", "the number of rows of both kinds is")

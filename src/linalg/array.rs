@@ -4,23 +4,23 @@ use std::ops::{Deref, DerefMut};
 use std::ptr::NonNull;
 use std::slice;
 
-/// Reads as a slice. Before numbers of the host are written to, they are copied: the host's own never change.
+/// Reads as a slice. Numbers of the host are copied before a change: the host's array never changes.
 #[derive(Debug, Clone)]
 pub struct Array<T> {
     own: Vec<T>,
-    /// Instead of those of its own, where `left`.
+    /// The host's numbers, used instead of `own` if `left`.
     host: Borrowed<T>,
     left: bool,
 }
 
-/// Numbers in the memory of the host, who may exchange them for others between two calls.
+/// Numbers in the memory of the host, which may change them between two calls.
 #[derive(Debug, Clone, Copy)]
 pub struct Borrowed<T> {
     start: NonNull<T>,
     len: usize,
 }
 
-// SAFETY: whoever made it has promised that every thread may read the numbers.
+// SAFETY: the creator guarantees that every thread may read the numbers.
 unsafe impl<T: Sync> Send for Borrowed<T> {}
 // SAFETY: as above.
 unsafe impl<T: Sync> Sync for Borrowed<T> {}
@@ -28,7 +28,7 @@ unsafe impl<T: Sync> Sync for Borrowed<T> {}
 impl<T> Borrowed<T> {
     /// # Safety
     /// `start` is aligned and leads to `len` numbers, which every thread may read until the result and all its copies are
-    /// dropped, and which nobody changes while a call of the library runs.
+    /// dropped, and which do not change while a call of the library runs.
     pub unsafe fn new(start: NonNull<T>, len: usize) -> Self {
         Self { start, len }
     }
@@ -42,7 +42,7 @@ impl<T> Deref for Borrowed<T> {
     type Target = [T];
 
     fn deref(&self) -> &[T] {
-        // SAFETY: by the promise of `new`; a new reference each time, since the numbers may have changed since the last.
+        // SAFETY: guaranteed by `new`; a new reference each time, since the numbers may have changed.
         unsafe { slice::from_raw_parts(self.start.as_ptr(), self.len) }
     }
 }
@@ -59,7 +59,7 @@ impl<T> Array<T> {
 }
 
 impl<T: Clone> Array<T> {
-    /// The library's own numbers.
+    /// The numbers in the library's own memory.
     pub fn to_mut(&mut self) -> &mut Vec<T> {
         if self.left {
             self.own = self.host.to_vec();
@@ -123,7 +123,7 @@ mod tests {
     fn numbers_of_the_host_are_read_where_they_are_and_as_they_are() {
         let mut host = [1.0, 2.0, 3.0];
         let start = host.as_mut_ptr();
-        // SAFETY: three numbers, written to between two reads.
+        // SAFETY: three numbers, changed between two reads.
         let array = Array::from(unsafe { Borrowed::new(NonNull::new_unchecked(start), 3) });
         assert!(array.is_of_host() && array.bytes() == 0 && array == [1.0, 2.0, 3.0]);
         // SAFETY: as above.
@@ -135,7 +135,7 @@ mod tests {
     #[test]
     fn numbers_of_the_host_are_copied_before_they_are_written_to() {
         let host = [1.0, 2.0, 3.0];
-        // SAFETY: three numbers that stay.
+        // SAFETY: three numbers that stay valid.
         let mut array = Array::from(unsafe { Borrowed::new(NonNull::from(&host).cast(), 3) });
         array[0] = 9.0;
         array.push(4.0);

@@ -2,7 +2,7 @@
 //!
 //! | module | holds |
 //! |---|---|
-//! | `vector`, `twofold`, `array` | loops over vectors, sums in twice the digits, numbers stored by the library or the host |
+//! | `vector`, `twofold`, `array` | loops over vectors, double-double sums, numbers stored by the library or the host |
 //! | `random`, `hash` | fixed random numbers, keys of lists |
 //! | `dense` | columns; packed symmetric matrices; pivoted Cholesky, eigenvalues, singular values |
 //! | `sparse` | by rows; symmetric; graphs; Gram matrices |
@@ -32,33 +32,34 @@ pub use sparse::symmetric::{Multiple, Symmetric};
 
 use crate::error::Result;
 
-/// A symmetric linear map `R^m -> R^m` known by its products only.
+/// A symmetric linear map `R^m -> R^m`, given by its products.
 pub trait Operator: Sync {
     /// Number of unknowns m.
     fn order(&self) -> usize;
     /// `y = A x`, both of length m.
     fn apply(&self, x: &[f64], y: &mut [f64]);
-    /// The same for operators that may be told to stop working: an error leaves y as it was.
+    /// As `apply`, for operators that can be interrupted: after an error y is unchanged.
     fn try_apply(&self, x: &[f64], y: &mut [f64]) -> Result<()> {
         self.apply(x, y);
         Ok(())
     }
-    /// A cheaper product with an operator near to A, symmetric and as definite: that with A itself where there is none.
+    /// A cheaper product with an approximation of A, symmetric and definite like A; without an approximation, with A
+    /// itself.
     fn approximate(&self, x: &[f64], y: &mut [f64]) -> Result<()> {
         self.try_apply(x, y)
     }
-    /// There is one.
+    /// Whether there is an approximation.
     fn has_approximation(&self) -> bool {
         false
     }
-    /// Bytes of its entries; 0 for an operator that keeps none.
+    /// Bytes of its entries; 0 for an operator applied matrix-free.
     fn bytes_kept(&self) -> usize {
         0
     }
 }
 
-/// A symmetric matrix that can hand out a block of its entries.
+/// A symmetric matrix with access to blocks of its entries.
 pub trait Entries {
-    /// Adds the lower triangle of `A_FF` to `block`, n x n; F = `rows`, n of them, ascending.
+    /// Adds the lower triangle of `A_FF` to `block`, n x n; F = `rows`, n rows, ascending.
     fn add_block(&self, rows: &[usize], block: &mut Matrix) -> Result<()>;
 }

@@ -26,7 +26,7 @@ impl Random {
         (((self.bits() >> 32) * n as u64) >> 32) as usize
     }
 
-    /// Of size 1/2 to 3/2 and either sign. Mere signs would cancel along many motions of few dofs.
+    /// A number of size 1/2 to 3/2 and either sign. Signs alone would cancel along many motions of few dofs.
     fn number(&mut self) -> f64 {
         const UNIT: f64 = 1.0 / (1_u64 << 52) as f64;
         let bits = self.bits();
@@ -35,7 +35,7 @@ impl Random {
         sign * size
     }
 
-    /// The next n numbers, each times `scale` of its position.
+    /// The next n numbers, each multiplied by `scale` of its position.
     pub fn vector(&mut self, n: usize, scale: impl Fn(usize) -> f64) -> Result<Vec<f64>> {
         let mut values = zeros(n, "a probe")?;
         values.iter_mut().enumerate().for_each(|(i, v)| *v = self.number() * scale(i));

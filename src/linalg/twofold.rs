@@ -1,10 +1,10 @@
-//! Sums of products in twice the digits of f64: Dot2 of Ogita, Rump, Oishi, "Accurate sum and dot product" (2005).
+//! Sums of products in double-double arithmetic: Dot2 of Ogita, Rump, Oishi, "Accurate sum and dot product" (2005).
 
-/// A sum that is right as if computed with 106 bits and rounded once, but for terms that over- or underflow.
+/// A sum as accurate as if computed with 106 bits and rounded once, except if terms over- or underflow.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Twofold {
     sum: f64,
-    /// What roundings of `sum` and of products have lost.
+    /// Sum of the rounding errors of `sum` and of the products.
     lost: f64,
 }
 
@@ -29,7 +29,7 @@ impl Twofold {
         sum.value()
     }
 
-    /// The sum in f64; what is not finite stays what f64 makes of it.
+    /// The sum in f64; if it is not finite, the value of f64 arithmetic.
     pub fn value(self) -> f64 {
         if self.sum.is_finite() {
             self.sum + self.lost

@@ -1,11 +1,12 @@
-//! Loops over vectors, always in the order of the entries, sums of long ones in a fixed number of parts: equal bits on any number
-//! of threads.
+//! Loops over vectors in the order of the entries; long sums in a fixed number of parts. The result has the same bits for
+//! any number of threads.
 
 use std::slice;
 
 use crate::platform::threads::{parts, parts_of};
 
-/// Entries from which a sum is formed in parts: one sum waits for every addition, parts go at the speed of the memory.
+/// Length from which a sum is formed in parts: a single sum waits for every addition, parts reach the speed of the
+/// memory.
 pub const LONG: usize = 16384;
 /// Parts of a long sum.
 const PARTS: usize = 16;
@@ -27,7 +28,7 @@ fn dot_in_parts(x: &[f64], y: &[f64]) -> f64 {
     sums.iter().sum::<f64>() + x_rest.iter().zip(y_rest).map(|(a, b)| a * b).sum::<f64>()
 }
 
-/// Rows of a part of a loop over several long vectors.
+/// Rows per part of a loop over several long vectors.
 const PART: usize = LONG;
 
 /// `x_k'y` of several vectors.
@@ -69,29 +70,29 @@ pub fn axpy(a: f64, x: &[f64], y: &mut [f64]) {
     }
 }
 
-/// `sqrt(sum w_i x_i^2)`: the norm of `x` in the metric `diag(w)`, of x however small or large.
+/// `sqrt(sum w_i x_i^2)`: the norm of `x` in the metric `diag(w)`, without overflow or underflow.
 pub fn weighted_norm(x: &[f64], weight: impl Fn(usize) -> f64) -> f64 {
-    // exact: the bits are those without it, but where squares over- or underflow
+    // scaling by a power of two is exact: it changes the result only if squares would over- or underflow
     let size = power_of_two_below(norm_max(x).max(f64::MIN_POSITIVE));
     let square = |(i, v): (usize, &f64)| weight(i) * (v / size) * (v / size);
     size * x.iter().enumerate().map(square).sum::<f64>().sqrt()
 }
 
-/// x as arrays of N entries, and what is left: `as_chunks` of the standard library, which has it from Rust 1.88 on.
+/// x as arrays of N entries, and the rest: `as_chunks` of the standard library, which exists from Rust 1.88 on.
 pub fn as_arrays<const N: usize>(x: &[f64]) -> (&[[f64; N]], &[f64]) {
     let (whole, rest) = x.split_at(x.len() / N * N);
-    // SAFETY: an array of N numbers lies in memory as N numbers of a slice do
+    // SAFETY: an array of N numbers has the layout of N consecutive numbers of a slice
     (unsafe { slice::from_raw_parts(whole.as_ptr().cast(), whole.len() / N) }, rest)
 }
 
-/// `as_arrays` of a vector that is written to.
+/// `as_arrays` of a mutable vector.
 pub fn as_arrays_mut<const N: usize>(x: &mut [f64]) -> (&mut [[f64; N]], &mut [f64]) {
     let (whole, rest) = x.split_at_mut(x.len() / N * N);
-    // SAFETY: as in `as_arrays`; `whole` is not used any more
+    // SAFETY: as in `as_arrays`; `whole` is not used afterwards
     (unsafe { slice::from_raw_parts_mut(whole.as_mut_ptr().cast(), whole.len() / N) }, rest)
 }
 
-/// `part / whole`; nothing of nothing is 0.
+/// `part / whole`; 0 / 0 counts as 0.
 pub fn ratio(part: f64, whole: f64) -> f64 {
     if part == 0.0 {
         0.0
@@ -105,7 +106,7 @@ pub fn first_non_finite(x: &[f64]) -> Option<usize> {
     x.iter().position(|v| !v.is_finite())
 }
 
-/// The power of two below x > 0, 1 where x is no normal number: to divide by it is exact.
+/// The largest power of two that does not exceed x > 0, 1 if x is not a normal number: division by it is exact.
 pub fn power_of_two_below(x: f64) -> f64 {
     const EXPONENT: u64 = 0x7ff0_0000_0000_0000;
     if x.is_normal() {

@@ -1,4 +1,4 @@
-//! The unknowns that the elements of a body join, in the numbering of the host.
+//! The unknowns joined by the elements of a body, in the numbering of the host.
 
 use std::ops::Range;
 
@@ -7,30 +7,31 @@ use crate::platform::memory::reserved;
 
 const WHAT: &str = "the elements of a body";
 
-/// What an element has at one of its places.
+/// One row and column of an element matrix.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Place {
     /// An unknown of the body.
     Free(usize),
-    /// A held unknown: its place among the held ones.
+    /// A held unknown: its position among the held unknowns.
     Held(usize),
 }
 
-/// Elements by the unknowns that they join.
+/// The elements and the unknowns that they join.
 #[derive(Debug, Default)]
 pub struct Connectivity {
-    /// First entry of every element, and their end.
+    /// First entry of every element, and the end.
     ptr: Vec<usize>,
-    /// Unknowns from 0, held ones counted down from the largest number.
+    /// Unknowns from 0, held unknowns from the largest number downwards.
     entries: Vec<u32>,
     /// Number of unknowns n that are not held.
     unknowns: usize,
-    /// Numbers of the held unknowns, from 0, ascending: the host has -1 - number for them.
+    /// Numbers k of the held unknowns, from 0, ascending; the host gives them as -1 - k.
     held: Vec<u64>,
 }
 
 impl Connectivity {
-    /// Element e has the entries `ptr[e]..ptr[e + 1]` of `dof`, from 0 to n - 1; a negative one, -1 - k, is the held unknown k.
+    /// Element e has the entries `ptr[e]..ptr[e + 1]` of `dof`, from 0 to n - 1; a negative entry -1 - k is the held
+    /// unknown k.
     pub fn new(unknowns: usize, ptr: &[usize], dof: &[i64]) -> Result<Self> {
         let mut held: Vec<u64> = reserved(dof.iter().filter(|dof| **dof < 0).count(), WHAT)?;
         held.extend(dof.iter().filter(|dof| **dof < 0).map(|dof| !*dof as u64));
@@ -75,12 +76,12 @@ impl Connectivity {
         &self.held
     }
 
-    /// Number of unknowns of an element, those that are held included.
+    /// Number of unknowns of an element, including held unknowns.
     pub fn size(&self, element: usize) -> usize {
         self.range(element).len()
     }
 
-    /// What an element joins, in the order of the rows and columns of its matrix.
+    /// The unknowns of an element, in the order of the rows and columns of its matrix.
     pub fn places(&self, element: usize) -> impl DoubleEndedIterator<Item = Place> + '_ {
         let free = |entry: u32| (entry as usize) < self.unknowns;
         self.entries[self.range(element)].iter().map(move |&entry| match free(entry) {
@@ -95,7 +96,7 @@ impl Connectivity {
         self.entries[self.range(element)].iter().copied().filter(move |entry| (*entry as usize) < unknowns)
     }
 
-    /// Equal entry by entry.
+    /// Whether the input is equal, entry by entry.
     pub fn is(&self, unknowns: usize, ptr: &[usize], dof: &[i64]) -> bool {
         let host = |entry: u32| match (entry as usize) < self.unknowns {
             true => i64::from(entry),

@@ -1,4 +1,4 @@
-//! Element matrices as they arrive: each once per pass, checked, added to its piece, and not stored.
+//! Element matrices: each is given once per pass, checked, added to its piece, and not stored.
 
 use crate::error::{Error, Kind, Result};
 use crate::mesh::connectivity::{Connectivity, Place};
@@ -6,19 +6,19 @@ use crate::mesh::held::HeldRows;
 use crate::mesh::piece::{pieces, Piece};
 use crate::platform::memory::{filled, reserved};
 
-/// How the host stores the matrices of a block of elements.
+/// How the host stores the matrices of several elements.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ElementStorage {
     /// n x n column-major, n^2 numbers each.
     Full,
-    /// The lower triangle column by column, n (n + 1) / 2 numbers each; the upper triangle row by row is the same.
+    /// The lower triangle column by column, n (n + 1) / 2 numbers each; equal to the upper triangle row by row.
     Lower,
     /// The upper triangle column by column, n (n + 1) / 2 numbers each.
     Upper,
 }
 
 impl ElementStorage {
-    /// Numbers for an element of n unknowns.
+    /// Number of values of an element with n unknowns.
     pub fn len(self, n: usize) -> usize {
         match self {
             Self::Full => n * n,
@@ -26,7 +26,7 @@ impl ElementStorage {
         }
     }
 
-    /// Where entry (i, j) is.
+    /// Position of entry (i, j).
     fn at(self, n: usize, i: usize, j: usize) -> usize {
         match self {
             Self::Full => i + n * j,
@@ -47,7 +47,7 @@ impl ElementStorage {
 pub struct ElementMatrix<'a> {
     pub values: &'a [f64],
     pub n: usize,
-    /// Of a full matrix: from one column to the next.
+    /// Leading dimension of a full matrix.
     pub ld: usize,
     pub storage: ElementStorage,
 }
@@ -64,7 +64,7 @@ impl ElementMatrix<'_> {
         self.values[self.position(i, j)]
     }
 
-    /// Finite, and symmetric as far as `|k_ij - k_ji| <= tolerance max((|k_ii| |k_jj|)^1/2, |k_ij|, |k_ji|)`.
+    /// Checks that entries are finite and `|k_ij - k_ji| <= tolerance max((|k_ii| |k_jj|)^1/2, |k_ij|, |k_ji|)`.
     fn check(&self, tolerance: f64) -> Result<()> {
         for j in 0..self.n {
             for i in j..self.n {
@@ -95,24 +95,24 @@ impl ElementMatrix<'_> {
     }
 }
 
-/// A body by its elements.
+/// A body given by elements.
 #[derive(Debug, Default)]
 pub struct Mesh {
     connectivity: Connectivity,
-    /// Once the first matrix has come.
+    /// The pieces, after the first matrix.
     cut: Option<Cut>,
-    /// The elements are those of the host; not so of a body that came from a file.
+    /// The elements of the host are known; false for a body read from a file.
     elements_known: bool,
 }
 
-/// The pieces with what has been added to them.
+/// The pieces and the elements added to them.
 #[derive(Debug)]
 struct Cut {
     wanted: i64,
     piece_of: Vec<u32>,
     pieces: Vec<Piece>,
     held: HeldRows,
-    /// Elements of this pass.
+    /// Elements given in this pass.
     given: Vec<bool>,
     missing: usize,
 }
@@ -122,7 +122,7 @@ impl Mesh {
         Self { connectivity, cut: None, elements_known: true }
     }
 
-    /// A body of which nothing but its pieces is known, one element of the connectivity for each.
+    /// A body of which only the pieces are known; the connectivity has one element per piece.
     pub fn of_pieces(connectivity: Connectivity, pieces: Vec<Piece>) -> Result<Self> {
         const WHAT: &str = "the pieces of a body";
         let mut piece_of = reserved(pieces.len(), WHAT)?;
@@ -132,7 +132,7 @@ impl Mesh {
         Ok(Self { connectivity, cut: Some(cut), elements_known: false })
     }
 
-    /// False where nothing but the pieces is known: no element can be added.
+    /// False if only the pieces are known: then no element can be added.
     pub fn has_elements(&self) -> bool {
         self.elements_known
     }
@@ -141,12 +141,12 @@ impl Mesh {
         &self.connectivity
     }
 
-    /// For how many pieces the body has been cut, or left whole; none before the first matrix.
+    /// The number of pieces requested when the body was cut; none before the first matrix.
     pub fn wanted(&self) -> Option<i64> {
         self.cut.as_ref().map(|cut| cut.wanted)
     }
 
-    /// The piece of every element, from now on; `wanted`: the option that they follow.
+    /// Sets the piece of every element; `wanted`: the option `pieces` at this time.
     pub fn cut(&mut self, piece_of: Vec<u32>, wanted: i64) -> Result<()> {
         let pieces = pieces(&self.connectivity, &piece_of)?;
         let elements = self.connectivity.elements();
@@ -156,34 +156,34 @@ impl Mesh {
         Ok(())
     }
 
-    /// Begins another pass: what has come is forgotten.
+    /// Begins another pass: all matrices must be given again.
     pub fn begin(&mut self) -> Result<()> {
         self.cut.as_mut().map_or(Ok(()), Cut::begin)
     }
 
-    /// The pieces, once every element has come.
+    /// The pieces, if every element has been given.
     pub fn pieces(&self) -> Option<&[Piece]> {
         self.cut.as_ref().filter(|cut| cut.missing == 0).map(|cut| &cut.pieces[..])
     }
 
-    /// So many elements, none of which has come in this pass, complete it; after a complete one they begin the next.
+    /// Whether this number of further elements completes the pass; after a complete pass they begin the next.
     pub fn is_complete_with(&self, elements: usize) -> bool {
         let left = |cut: &Cut| if cut.missing == 0 { cut.given.len() } else { cut.missing };
         self.cut.as_ref().is_some_and(|cut| left(cut) == elements)
     }
 
-    /// The first element of a piece; none of a body of which nothing but its pieces is known.
+    /// The first element of a piece; none if only the pieces are known.
     pub fn first_of(&self, piece: usize) -> Option<usize> {
         let cut = self.cut.as_ref().filter(|_| self.elements_known)?;
         cut.piece_of.iter().position(|of| *of as usize == piece)
     }
 
-    /// The body is cut into several pieces.
+    /// Whether the body is cut into several pieces.
     pub fn is_cut(&self) -> bool {
         self.cut.as_ref().is_some_and(|cut| cut.pieces.len() > 1)
     }
 
-    /// The first element that has not come in this pass.
+    /// The first element that is missing in this pass.
     pub fn first_missing(&self) -> Option<usize> {
         match &self.cut {
             None => (self.connectivity.elements() > 0).then_some(0),
@@ -191,8 +191,8 @@ impl Mesh {
         }
     }
 
-    /// The matrices of the elements from `first` on: all of them, or none where one is refused. The first one after a complete
-    /// pass begins the next.
+    /// Adds the matrices of the elements from `first` on: all, or none if one is refused. The first element after a
+    /// complete pass begins the next pass.
     pub fn add<'a>(
         &mut self,
         first: usize,
@@ -210,11 +210,11 @@ impl Mesh {
             }
             let size = self.connectivity.size(e);
             if ke.n != size {
-                let what = format!("the element joins {size} unknowns, its matrix has {} rows", ke.n);
+                let what = format!("the element joins {size} unknowns, but its matrix has {} rows", ke.n);
                 return Err(Error::argument("n", what).element(e).value(ke.n as f64).limit(size as f64));
             }
             if cut.given[e] && !again {
-                return Err(Error::new(Kind::State, "the element has been given already").element(e));
+                return Err(Error::new(Kind::State, "the element has already been given").element(e));
             }
             ke.check(tolerance).map_err(|error| error.element(e))?;
         }
@@ -228,7 +228,7 @@ impl Mesh {
         Ok(())
     }
 
-    /// `K_hf u` of the held unknowns 0, 1, ..., force; 0 for one that no element has.
+    /// `K_hf u` of the held unknowns 0, 1, ..., force; 0 for a held unknown without element.
     pub fn held_forces(&self, u: &[f64], forces: &mut [f64]) {
         forces.fill(0.0);
         let Some(cut) = &self.cut else { return };
@@ -241,7 +241,7 @@ impl Mesh {
 }
 
 impl Cut {
-    /// Begins another pass, or leaves all as it is where there is no memory for it.
+    /// Begins another pass; without memory for it, nothing changes.
     fn begin(&mut self) -> Result<()> {
         let mut cleared = reserved(self.pieces.len(), "the pieces of a body")?;
         for piece in &self.pieces {

@@ -15,7 +15,7 @@ pub struct HeldRows {
 }
 
 impl HeldRows {
-    /// All zero.
+    /// The matrix with the pattern of the held rows, all zero.
     pub fn new(all: &Connectivity) -> Result<Self> {
         let touching = (0..all.elements()).filter(|&e| all.free(e).count() < all.size(e));
         let held = |e: usize| all.size(e) - all.free(e).count();
@@ -38,7 +38,7 @@ impl HeldRows {
         Ok(Self { ptr, val: filled(col.len(), 0.0, WHAT)?, col })
     }
 
-    /// Adds those of `(ke + ke') / 2`, `ke(i, j)` over the places of the element.
+    /// Adds the held rows of `(ke + ke') / 2`, `ke(i, j)` over the rows and columns of the element.
     pub fn add(&mut self, places: &[Place], ke: impl Fn(usize, usize) -> f64) {
         for (i, k) in places.iter().enumerate() {
             let Place::Held(k) = *k else { continue };

@@ -1,4 +1,4 @@
-//! Bodies given by elements: which unknowns an element joins, how a body is cut into pieces, the matrices of the pieces.
+//! Bodies given by elements: the unknowns of the elements, the cut of a body into pieces, the matrices of the pieces.
 
 mod connectivity;
 mod cut;

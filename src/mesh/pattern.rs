@@ -1,4 +1,4 @@
-//! Where the matrices of elements have entries: the pattern of their sum.
+//! The sparsity pattern of a sum of element matrices.
 
 use crate::error::Result;
 use crate::linalg::Symmetric;
@@ -6,16 +6,16 @@ use crate::platform::memory::{filled, reserved};
 
 const WHAT: &str = "the pattern of a stiffness matrix";
 
-/// Elements of one piece over its own unknowns.
+/// The elements of one piece, over the unknowns of the piece.
 pub struct Local {
-    /// First entry of every element, and their end.
+    /// First entry of every element, and the end.
     ptr: Vec<usize>,
     dof: Vec<u32>,
     unknowns: usize,
 }
 
 impl Local {
-    /// `elements`: how many; `entries`: how many unknowns they have together.
+    /// `elements`: their number; `entries`: the total number of their unknowns.
     pub fn with_room(elements: usize, entries: usize, unknowns: usize) -> Result<Self> {
         let mut ptr = reserved(elements + 1, WHAT)?;
         ptr.push(0);
@@ -27,7 +27,7 @@ impl Local {
         self.ptr.push(self.dof.len());
     }
 
-    /// The matrix with an entry wherever two unknowns share an element and on the whole diagonal, all zero.
+    /// The zero matrix with an entry for every two unknowns that share an element, and for the diagonal.
     pub fn pattern(&self) -> Result<Symmetric> {
         let by_dof = self.by_dof()?;
         let mut columns = Columns::new(self, &by_dof)?;
@@ -45,7 +45,7 @@ impl Local {
         Ok(Symmetric::new(ptr, col, filled(entries, 0.0, WHAT)?))
     }
 
-    /// For every unknown its elements, ascending.
+    /// The elements of every unknown, ascending.
     fn by_dof(&self) -> Result<(Vec<usize>, Vec<u32>)> {
         let mut ptr = filled(self.unknowns + 1, 0, WHAT)?;
         self.dof.iter().for_each(|&dof| ptr[dof as usize + 1] += 1);
@@ -62,12 +62,12 @@ impl Local {
     }
 }
 
-/// The neighbours of one unknown after the other; those of one node have the same.
+/// Finds the neighbours of one unknown after the other; those of the unknowns of one node are equal.
 struct Columns<'a> {
     local: &'a Local,
     ptr: &'a [usize],
     elements: &'a [u32],
-    /// The last unknown for which each one was listed, + 1.
+    /// For each unknown: 1 + the last unknown as whose neighbour it was listed.
     seen: Vec<usize>,
     list: Vec<u32>,
 }
@@ -81,7 +81,7 @@ impl<'a> Columns<'a> {
         &self.elements[self.ptr[dof]..self.ptr[dof + 1]]
     }
 
-    /// Hands out the columns of every row of the lower triangle, ascending.
+    /// Calls `take` with the columns of every row of the lower triangle, ascending.
     fn each_row(&mut self, mut take: impl FnMut(&[u32])) {
         self.seen.fill(0);
         for dof in 0..self.local.unknowns {

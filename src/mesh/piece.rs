@@ -10,17 +10,17 @@ use crate::platform::memory::{copied, filled, reserved};
 
 const WHAT: &str = "the pieces of a body";
 
-/// A part of a body with a stiffness matrix of its own.
+/// A part of a body with a separate stiffness matrix.
 #[derive(Debug, Clone)]
 pub struct Piece {
-    /// Its unknowns among those of the body, ascending.
+    /// Its unknowns within the body, ascending.
     pub dofs: Arc<[u32]>,
     /// Its K over them, force / length.
     pub stiffness: Arc<Symmetric>,
 }
 
 impl Piece {
-    /// Adds the lower triangle of `(ke + ke') / 2`, `ke(i, j)` over the places of the element.
+    /// Adds the lower triangle of `(ke + ke') / 2`, `ke(i, j)` over the rows and columns of the element.
     pub fn add(&mut self, places: &[Place], ke: impl Fn(usize, usize) -> f64) {
         let found = |dof: usize| self.dofs.binary_search(&(dof as u32)).ok();
         let mut own: Vec<(usize, usize)> = Vec::with_capacity(places.len());
@@ -37,13 +37,13 @@ impl Piece {
                 at += col[at..ptr[row + 1]].iter().take_while(|c| (**c as usize) < column).count();
                 let (one, other) = (ke(i, j), ke(j, i));
                 let mean = if one == other { one } else { 0.5 * one + 0.5 * other };
-                // an unknown that stands twice in an element meets itself in both triangles
+                // an unknown that occurs twice in an element gets both triangles
                 val[at] += if column == row && i != j { 2.0 * mean } else { mean };
             }
         }
     }
 
-    /// A matrix of this pattern, all zero; others may keep the one that is there.
+    /// A zero matrix with this pattern; the present matrix may still be in use elsewhere.
     pub fn cleared(&self) -> Result<Arc<Symmetric>> {
         let Symmetric { ptr, col, val } = &*self.stiffness;
         let (ptr, col) = (copied(ptr, WHAT)?, copied(col, WHAT)?);
@@ -51,7 +51,8 @@ impl Piece {
     }
 }
 
-/// The pieces of a body, without values; `piece_of` tells that of every element. Unknowns of no element belong to the first one.
+/// The pieces of a body, without values; `piece_of`: the piece of every element. Unknowns without element belong to the
+/// first piece.
 pub fn pieces(all: &Connectivity, piece_of: &[u32]) -> Result<Vec<Piece>> {
     let count = piece_of.iter().max().map_or(1, |last| *last as usize + 1);
     let (ptr, members) = by_piece(piece_of, count)?;
@@ -74,7 +75,7 @@ pub fn pieces(all: &Connectivity, piece_of: &[u32]) -> Result<Vec<Piece>> {
     Ok(made)
 }
 
-/// Unknowns that no element has, ascending.
+/// Unknowns without element, ascending.
 fn in_no_element(all: &Connectivity) -> Result<Vec<u32>> {
     let mut met = filled(all.unknowns(), false, WHAT)?;
     (0..all.elements()).flat_map(|e| all.free(e)).for_each(|dof| met[dof as usize] = true);

@@ -13,7 +13,7 @@ use crate::model::contents::{Change, GivenBody, Model};
 use crate::platform::memory::copied;
 
 impl Change {
-    /// This one, unless what is given is what the body has.
+    /// `change`, or `Nothing` if the input is unchanged.
     pub fn unless(unchanged: bool, change: Self) -> Self {
         if unchanged {
             Self::Nothing
@@ -42,7 +42,7 @@ impl Model {
         Ok(self.bodies.len() - 1)
     }
 
-    /// R, n x r column-major with leading dimension `ldr`; r = 0 and exact claims that K is not singular.
+    /// R, n x r column-major with leading dimension `ldr`; r = 0 with exact vectors means that K is not singular.
     pub fn set_null_space(
         &mut self,
         body: usize,
@@ -76,8 +76,8 @@ impl Model {
         Ok(())
     }
 
-    /// The dofs held in K+ of (15) instead of those the library would choose; none: its own choice again. They
-    /// change neither forces nor displacements, only the course of the methods in paper units.
+    /// The dofs held in K+ of (15); none: the library chooses them. They change neither forces nor displacements, only
+    /// the course of the methods in paper units.
     pub fn set_fixing(&mut self, body: usize, dofs: Option<&[usize]>) -> Result<()> {
         let order = self.order(body)?;
         let beyond = dofs.into_iter().flatten().enumerate().find(|(_, dof)| **dof >= order);
@@ -115,7 +115,8 @@ impl Model {
         Ok(())
     }
 
-    /// Whether the rigid motions of the coordinates, given before or after, are soft ones; else they are candidates.
+    /// Whether the rigid motions of the coordinates, given before or later, are soft motions; otherwise they are
+    /// candidates.
     pub fn set_soft_coordinates(&mut self, body: usize, soft: bool) -> Result<()> {
         let unchanged = self.given(body)?.body.soft_coordinates == soft;
         self.change(body, Change::unless(unchanged, Change::Motions))?.body.soft_coordinates = soft;
@@ -136,7 +137,7 @@ impl Model {
     pub fn set_operator(&mut self, body: usize, diagonal: &[f64], functions: HostFunctions) -> Result<()> {
         self.check_length(body, "n", diagonal.len())?;
         if let Some(dof) = diagonal.iter().position(|d| !(d.is_finite() && *d >= 0.0)) {
-            let what = "the diagonal entry of K is no finite number >= 0";
+            let what = "the diagonal entry of K is not a finite number >= 0";
             return Err(Error::argument("diag", what).body(body).dof(dof).entry(dof).value(diagonal[dof]));
         }
         let operator = HostOperator::new(body, copied(diagonal, "the diagonal of a body")?, functions);
@@ -148,7 +149,7 @@ impl Model {
         Ok(())
     }
 
-    /// Every body has what a setup needs.
+    /// Checks that every body has the input that a setup needs.
     pub fn check_complete(&self) -> Result<()> {
         let refused = |p: usize, what: &str| Err(Error::new(Kind::State, what).body(p));
         if self.bodies.is_empty() {
@@ -178,9 +179,9 @@ impl Model {
     }
 }
 
-/// The values of a matrix were refused where the host keeps them.
+/// The host has changed borrowed values of a matrix in place, and these were refused.
 pub const SPOILED: &str =
-    "the values of the stiffness matrix were rewritten in place and refused: give others";
+    "the values of the stiffness matrix were rewritten in place and refused: give valid values";
 
 pub fn check_ld(name: &'static str, ld: usize, least: usize) -> Result<()> {
     if ld >= least {

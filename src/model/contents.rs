@@ -1,5 +1,5 @@
-//! Everything that the host has given: bodies, rows, options. Nothing is computed here; results stored elsewhere keep the
-//! revisions of the data from which they were computed.
+//! All input of the host: bodies, rows, options. Nothing is computed here; results stored elsewhere keep the revisions of
+//! the data from which they were computed.
 
 use std::collections::HashMap;
 use std::ops::Range;
@@ -13,38 +13,38 @@ use crate::model::parts::Parts;
 use crate::model::settings::Settings;
 use crate::platform::threads;
 
-/// Bodies, rows and options of one contact problem. Every call checks first and keeps all or nothing.
+/// Bodies, rows and options of one contact problem. Every call checks its input first and stores all of it or nothing.
 pub struct Model {
     pub settings: Settings,
     pub bodies: Vec<GivenBody>,
-    /// First unknown of every body among all, and their end, at most i64::MAX.
+    /// First unknown of every body among all unknowns, and their end, at most i64::MAX.
     pub offsets: Vec<usize>,
     pub contact: RowSet,
     pub equalities: RowSet,
     /// Nodes of contact rows with friction, and their tangential rows.
     pub friction: Friction,
-    /// The unknown behind every number of the host: body and dof.
+    /// Body and dof of every unknown number of the host.
     pub unknowns: HashMap<usize, (usize, usize)>,
     pub revisions: Revisions,
-    /// Where the bodies are pieces of those of the host: of which.
+    /// If the bodies are pieces: the bodies of the host to which they belong.
     pub parts: Option<Arc<Parts>>,
 }
 
-/// Counted up with every call that gives anew what they name, be it what it was.
+/// Increased by every call that sets the named data, even if the data do not change.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Revisions {
     /// Matrices, null spaces, coordinates and fixing dofs of any body.
     pub bodies: u64,
-    /// Which bodies and rows there are: multipliers belong to them.
+    /// Set of bodies and rows: multipliers belong to it.
     pub rows: u64,
     /// Compliances of rows, and which of them may close.
     pub laws: u64,
 }
 
-/// Counted up where what they name is no longer, bit by bit, what it was.
+/// Increased if the named data change in any bit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct BodyRevisions {
-    /// The pattern of K, and the dofs held: what an analysis is made of.
+    /// The pattern of K, and the dofs held: the input of the analysis.
     pub analysed: u64,
     /// K itself.
     pub stiffness: u64,
@@ -52,10 +52,10 @@ pub struct BodyRevisions {
     pub motions: u64,
 }
 
-/// What a call gives a body anew.
+/// What a call changes in a body.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Change {
-    /// What it has already.
+    /// The data are unchanged.
     Nothing,
     Motions,
     Fixing,
@@ -67,11 +67,11 @@ pub enum Change {
 #[derive(Default)]
 pub struct GivenBody {
     pub body: Body,
-    /// Its elements, where it was given by them.
+    /// Its elements, if given by elements.
     pub mesh: Option<Mesh>,
-    /// How its matrix was given.
+    /// How the host gave its matrix.
     pub form: Option<Form>,
-    /// The host has rewritten the values it keeps, and they were refused: there is no matrix.
+    /// The host has overwritten borrowed values, and they were refused: there is no valid matrix.
     pub spoiled: bool,
     /// The host's numbers of its unknowns.
     pub numbers: Option<Vec<usize>>,
@@ -88,7 +88,7 @@ pub struct Sizes {
     pub equalities: usize,
     /// Nodes with friction.
     pub nodes: usize,
-    /// Their tangential rows.
+    /// Tangential rows of all nodes.
     pub tangential: usize,
     /// Tangential rows of a node, 0 without nodes.
     pub dim: usize,
@@ -183,7 +183,7 @@ impl Model {
         self.bodies.get(body).ok_or_else(|| no_body(body, self.bodies.len()))
     }
 
-    /// The body, about to get new data.
+    /// The body, to be given new data.
     pub fn change(&mut self, body: usize, change: Change) -> Result<&mut GivenBody> {
         let bodies = self.bodies.len();
         let given = self.bodies.get_mut(body).ok_or_else(|| no_body(body, bodies))?;
@@ -206,28 +206,29 @@ impl Model {
             .limit(order as f64))
     }
 
-    /// The host's number of a body, which may be a piece of one.
+    /// The host's number of a body or of the body to which a piece belongs.
     pub fn name(&self, body: usize) -> usize {
         self.parts.as_ref().map_or(body, |parts| parts.parts[body].body)
     }
 
-    /// A body is a piece of one of the host.
+    /// Whether the body is a piece of one of the host.
     pub fn is_piece(&self, body: usize) -> bool {
         self.parts.as_ref().is_some_and(|parts| parts.parts[body].piece.is_some())
     }
 
-    /// Unknowns of a body among all.
+    /// Range of the unknowns of a body among all unknowns.
     pub fn range(&self, body: usize) -> Range<usize> {
         self.offsets[body]..self.offsets[body + 1]
     }
 
-    /// Threads for work on all bodies: fewer unknowns for each cost less than to wake it.
+    /// Threads for work on all bodies, limited by the number of unknowns: waking a thread for a few unknowns costs more
+    /// than it saves.
     pub fn threads(&self) -> usize {
         const FOR_EACH: usize = 500;
         threads::count(self.settings.threads, self.sizes().dofs / FOR_EACH)
     }
 
-    /// Which of these bodies are worked on by the thread alone that calls the library.
+    /// Which of these bodies must be processed on the thread that calls the library.
     pub fn on_caller(&self, bodies: &[usize]) -> Vec<bool> {
         let on_caller = |p: &usize| self.bodies[*p].body.k().is_some_and(|k| k.on_caller());
         bodies.iter().map(on_caller).collect()

@@ -13,12 +13,12 @@ const WHAT: &str = "unknowns with one number";
 pub struct Joint {
     /// Their number.
     pub number: usize,
-    /// Their places among the unknowns of all bodies one after the other, ascending.
+    /// Their positions among the unknowns of all bodies one after the other, ascending.
     pub ends: [usize; 2],
 }
 
 impl Model {
-    /// One joint less for every number than unknowns have it: each with that of the body before, by bodies.
+    /// For every number one joint fewer than unknowns that have it: each joins the unknown to that of the previous body.
     pub fn joints(&self) -> Result<Vec<Joint>> {
         let numbered = self.bodies.iter().filter_map(|given| given.numbers.as_ref());
         let count = numbered.map(Vec::len).sum::<usize>() - self.unknowns.len();
@@ -41,7 +41,7 @@ impl Model {
         Ok(joints)
     }
 
-    /// Values over all unknowns, where several have one number their sum at the first of them.
+    /// Values over all unknowns; the values of unknowns with the same number are summed at the first of them.
     pub fn summed(&self, mut values: Vec<f64>) -> Result<Vec<f64>> {
         for Joint { ends: [before, place], .. } in self.joints()?.into_iter().rev() {
             values[before] += values[place];
@@ -49,12 +49,12 @@ impl Model {
         Ok(values)
     }
 
-    /// Unknowns that have one number are glued: the option stays while there are some.
+    /// Refuses to change the option while unknowns of several bodies share a number.
     pub(super) fn check_glue(&self, argument: &'static str) -> Result<()> {
         if self.settings.glue == 1 || !self.shares_numbers() {
             return Ok(());
         }
-        let what = "option \"glue\" stays 1 while unknowns of several bodies have one number";
+        let what = "option \"glue\" stays 1 while unknowns of several bodies have the same number";
         Err(Error::new(Kind::Argument(argument), what))
     }
 }

@@ -1,4 +1,4 @@
-//! Stiffness matrices: given first with their pattern, then by new values only.
+//! Stiffness matrices: first with their pattern, then new values only.
 
 use std::sync::Arc;
 
@@ -46,8 +46,8 @@ impl Model {
         self.keep_stiffness(body, stiffness, Form::Dense(storage))
     }
 
-    /// `K_p` by the rows of its lower triangle, the values left where the host has them; false, and nothing is done, where
-    /// the rows are not in the form in which the matrix is kept.
+    /// `K_p` by the rows of its lower triangle; the values remain in the array of the host. Returns false without any
+    /// change if the rows do not have the form in which the matrix is stored.
     pub fn borrow_stiffness(
         &mut self,
         body: usize,
@@ -64,7 +64,7 @@ impl Model {
 
     fn keep_stiffness(&mut self, body: usize, stiffness: Symmetric, form: Form) -> Result<()> {
         let old = self.given(body)?.body.stiffness.as_ref();
-        // what lies with the host may be what is given now
+        // borrowed columns may be the array given now, so they cannot be compared
         let old = old.filter(|old| !old.col.is_of_host());
         let change = match old {
             Some(old) if !old.val.is_of_host() && same_matrix(old, &stiffness) => Change::Nothing,
@@ -80,17 +80,17 @@ impl Model {
         Ok(())
     }
 
-    /// Number of values of a matrix by rows, those of a diagonal of its own (`split`) not counted.
+    /// Number of values of a matrix by rows, without those of a separate diagonal (`split`).
     pub fn values(&self, body: usize, split: bool) -> Result<usize> {
         self.places(body, split).map(Places::entries)
     }
 
-    /// New values for the pattern given last, in the order of the host; the analysis is kept.
+    /// New values for the pattern given last, in the host's order; the analysis is kept.
     pub fn set_values(&mut self, body: usize, val: &[f64]) -> Result<()> {
         self.give_values(body, None, val)
     }
 
-    /// The same for a matrix without its diagonal `diag`, length n.
+    /// As `set_values`, for a matrix without its diagonal `diag`, length n.
     pub fn set_values_split(&mut self, body: usize, diag: &[f64], val: &[f64]) -> Result<()> {
         self.give_values(body, Some(diag), val)
     }
@@ -105,14 +105,14 @@ impl Model {
         places.values(self.stiffness(body)?, diag, val, self.settings.symmetry_tolerance)
     }
 
-    /// A new matrix in the storage of the one given last. What was zero and no longer is, or the other way round, changes
-    /// the pattern, and the analysis with it.
+    /// A new matrix in the storage of the previous one. If entries change between zero and nonzero, the pattern changes,
+    /// and the analysis with it.
     pub fn set_values_dense(&mut self, body: usize, n: usize, k: &[f64], ld: usize) -> Result<()> {
         let storage = self.dense_storage(body)?;
         self.set_stiffness_dense(body, n, k, ld, storage)
     }
 
-    /// The storage of a matrix that was given dense.
+    /// The storage of a dense matrix.
     pub fn dense_storage(&self, body: usize) -> Result<Storage> {
         match self.form(body)? {
             Form::Dense(storage) => Ok(*storage),
@@ -133,14 +133,14 @@ impl Model {
         self.change(body, Change::unless(unchanged, Change::Values)).map(drop)
     }
 
-    /// Whether the values of the matrix lie with the host.
+    /// Whether the values of the matrix remain in an array of the host.
     pub fn is_borrowed(&self, body: usize) -> bool {
         self.stiffness(body).is_ok_and(|k| k.val.is_of_host())
     }
 
-    /// New values for a matrix whose values lie with the host, in this array from now on. They count as changed, also for
-    /// other bodies that borrow the same array. Where they are refused and the array is that of before, there is no matrix
-    /// until they are given again.
+    /// New values for a matrix with borrowed values, in this array from now on. They count as changed, also for other
+    /// bodies that borrow the array. If they are refused and the array is the previous one, there is no matrix until
+    /// values are given again.
     pub fn borrow_values(&mut self, body: usize, val: Borrowed<f64>) -> Result<()> {
         self.places(body, false)?.check_number(val.len()).map_err(|e| e.body(body))?;
         let stiffness = self.bodies[body].body.stiffness.as_mut();
@@ -180,8 +180,7 @@ impl Model {
 }
 
 fn not_given(body: usize) -> Error {
-    let what =
-        "the stiffness matrix has not been given: a call of feti_body_stiffness comes before its values";
+    let what = "the stiffness matrix has not been given: call feti_body_stiffness before its values";
     Error::new(Kind::State, what).body(body)
 }
 
@@ -189,9 +188,9 @@ fn another_call(body: usize, form: &Form) -> Error {
     let (given, call) = match form {
         Form::Dense(_) => ("dense", "feti_body_values_dense"),
         Form::Elements(_) => ("by elements", "feti_body_element"),
-        Form::Sparse(places) if places.is_split() => ("with a diagonal of its own", "feti_body_values_split"),
+        Form::Sparse(places) if places.is_split() => ("with a separate diagonal", "feti_body_values_split"),
         Form::Sparse(_) => ("by rows", "feti_body_values"),
     };
-    let what = format!("the stiffness matrix was given {given}: its values come by {call}");
+    let what = format!("the stiffness matrix was given {given}: give new values by {call}");
     Error::new(Kind::State, what).body(body)
 }

@@ -1,4 +1,4 @@
-//! Bodies given by elements: connectivity first, then the matrices, pass by pass.
+//! Bodies given by elements: first the connectivity, then the element matrices in passes.
 
 use std::sync::Arc;
 
@@ -12,8 +12,9 @@ use crate::platform::memory::{filled, reserved};
 const WHAT: &str = "the elements of a body";
 
 impl Model {
-    /// The elements of a body: e joins `dof[ptr[e]..ptr[e + 1]]`, from 0; -1 - k is the held unknown k, whose row and column
-    /// are left out. A matrix or functions given before are replaced. What the body has already stays, and a new pass begins.
+    /// The elements of a body: element e joins `dof[ptr[e]..ptr[e + 1]]`, from 0; -1 - k is the held unknown k, whose row
+    /// and column are left out. A matrix or functions given before are replaced. If the elements are unchanged they are
+    /// kept, and a new pass begins.
     pub fn set_mesh(&mut self, body: usize, ptr: &[usize], dof: &[i64]) -> Result<()> {
         let order = self.order(body)?;
         if ptr.len() < 2 {
@@ -73,7 +74,7 @@ impl Model {
         self.add(body, first, matrices)
     }
 
-    /// Numbers that the matrices of so many elements take.
+    /// Number of values of the matrices of `count` elements.
     pub fn values_of_elements(
         &self,
         body: usize,
@@ -85,13 +86,13 @@ impl Model {
         Ok(sizes.iter().map(|n| storage.len(*n)).sum())
     }
 
-    /// Number of unknowns of an element, those that are held included.
+    /// Number of unknowns of an element, including held unknowns.
     pub fn size_of_element(&self, body: usize, e: usize) -> Result<usize> {
         self.check_element(body, e, "e")?;
         Ok(self.mesh(body)?.connectivity().size(e))
     }
 
-    /// The body has an element with this number, the first of a block.
+    /// Checks that the body has an element with this number, the first of a block.
     pub fn check_first_element(&self, body: usize, first: usize) -> Result<()> {
         self.check_element(body, first, "first")
     }
@@ -107,8 +108,7 @@ impl Model {
 
     fn mesh(&self, body: usize) -> Result<&Mesh> {
         let missing = || {
-            let what =
-                "the elements have not been given: a call of feti_body_mesh comes before their matrices";
+            let what = "the elements have not been given: call feti_body_mesh before their matrices";
             Error::new(Kind::State, what).body(body)
         };
         self.given(body)?.mesh.as_ref().filter(|mesh| mesh.has_elements()).ok_or_else(missing)
@@ -130,7 +130,7 @@ impl Model {
         if let Some(piece_of) = cut {
             mesh.cut(piece_of, wanted).map_err(named)?;
         }
-        // before the pass is complete, so that an element that is refused may come again
+        // checked before the pass is complete, so that a refused element may be given again
         let completes = mesh.is_complete_with(matrices.clone().count());
         let room = if completes { self.bodies[body].room_for_matrix().map_err(named)? } else { Vec::new() };
         let Some(mesh) = self.bodies[body].mesh.as_mut() else { return Ok(()) };
@@ -143,7 +143,7 @@ impl Model {
         Ok(())
     }
 
-    /// The piece of every element, as the options and the coordinates that are there have it.
+    /// The piece of every element, by the options and coordinates at this time.
     fn cut_of(&self, body: usize) -> Result<Vec<u32>> {
         let mesh = self.mesh(body)?.connectivity();
         let pieces = match usize::try_from(self.settings.pieces) {
@@ -168,12 +168,12 @@ impl Model {
 }
 
 impl GivenBody {
-    /// Its matrix is not known, or no longer.
+    /// Drops the matrix of the body.
     fn without_matrix(&mut self) {
         (self.body.stiffness, self.body.assembled) = (None, None);
     }
 
-    /// What its matrix takes besides those of its pieces.
+    /// Memory for the matrix of a body in addition to those of its pieces.
     pub fn room_for_matrix(&self) -> Result<Vec<f64>> {
         if self.mesh.as_ref().is_some_and(Mesh::is_cut) {
             return Assembled::room_for(self.body.order);
@@ -181,7 +181,7 @@ impl GivenBody {
         Ok(Vec::new())
     }
 
-    /// All elements have come: the matrix of the body is that of its only piece, or the sum of those of all, with the room for it.
+    /// Completes a pass: the matrix of the body is that of its only piece, or the sum over all pieces, stored in `room`.
     pub fn assemble(&mut self, room: Vec<f64>) {
         self.without_matrix();
         match self.mesh.as_ref().and_then(Mesh::pieces) {
@@ -196,7 +196,7 @@ impl GivenBody {
     }
 }
 
-/// Sizes of so many elements, which the mesh must have.
+/// Sizes of `count` elements, which must exist.
 fn sizes(mesh: &Mesh, first: usize, count: usize) -> Result<Vec<usize>> {
     let all = mesh.connectivity();
     if first.checked_add(count).is_none_or(|end| end > all.elements()) {
@@ -208,7 +208,7 @@ fn sizes(mesh: &Mesh, first: usize, count: usize) -> Result<Vec<usize>> {
     Ok(sizes)
 }
 
-/// Means of the places of the unknowns of each element, length.
+/// Mean position of the unknowns of each element, length.
 fn centres(elements: &Elements, places: &[[f64; 3]]) -> Result<Vec<[f64; 3]>> {
     let mut centres = reserved(elements.ptr.len() - 1, WHAT)?;
     for range in elements.ptr.windows(2) {

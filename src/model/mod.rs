@@ -1,4 +1,4 @@
-//! What the host has given: bodies, rows, options, also read from a file. The input is checked here; nothing is computed.
+//! The input of the host: bodies, rows, options, also read from a file. It is checked here; nothing is computed.
 
 mod bodies;
 mod contents;

@@ -1,15 +1,16 @@
-//! The host's own numbers of the unknowns, over all bodies; without them unknowns count through the bodies in order.
+//! The host's own numbers of the unknowns, over all bodies; without them unknowns are numbered consecutively through the
+//! bodies.
 
 use crate::error::{Error, Kind, Result, INDEX};
 use crate::linalg::vector::first_non_finite;
 use crate::model::contents::Model;
 use crate::platform::memory::{refusal, reserved};
 
-/// Numbers from which on no array has so many entries.
+/// The smallest number that is too large for an index of an array.
 const TOO_LARGE: usize = isize::MAX as usize / size_of::<f64>();
 
 impl Model {
-    /// The numbers of a body, each used once in all bodies; once in each where unknowns with one number are glued.
+    /// The numbers of a body, distinct over all bodies; if glue is allowed, distinct within each body.
     fn checked_numbers(&self, body: usize, numbers: &[i64]) -> Result<Vec<usize>> {
         let refused = |dof: usize, what: &str| {
             let error = Error::argument("number", what).body(body).dof(dof).entry(dof);
@@ -23,8 +24,9 @@ impl Model {
                 Some(number)
                     if !glued && self.unknowns.get(&number).is_some_and(|(other, _)| *other != body) =>
                 {
-                    let what = "the number is that of an unknown of another body; with option glue = 1, set before, \
-                                the two move together";
+                    let what =
+                        "an unknown of another body has this number; if you set option glue = 1 first, \
+                                the two unknowns move together";
                     return refused(dof, what);
                 }
                 Some(number) => checked.push(number),
@@ -37,8 +39,8 @@ impl Model {
         again.min().map_or(Ok(checked), |dof| refused(dof, "another unknown of the body has this number"))
     }
 
-    /// The host's numbers of the unknowns of a body, from 0, distinct within the body, and over all bodies where none are glued.
-    /// Calling again replaces them.
+    /// Sets the host's numbers of the unknowns of a body, from 0, distinct within the body, and over all bodies without
+    /// glue. A second call replaces them.
     pub fn set_numbering(&mut self, body: usize, numbers: &[i64]) -> Result<()> {
         self.check_length(body, "n", numbers.len())?;
         let numbers = self.checked_numbers(body, numbers)?;
@@ -54,7 +56,7 @@ impl Model {
             }
         }
         self.bodies[body].numbers = Some(numbers);
-        // what the body gives up may be a number of others
+        // a number that the body no longer uses may belong to other bodies
         let claiming = if was_shared { 0..self.bodies.len() } else { body..body + 1 };
         for p in claiming {
             for (dof, &number) in self.bodies[p].numbers.iter().flatten().enumerate() {
@@ -69,13 +71,13 @@ impl Model {
         Ok(())
     }
 
-    /// Unknowns of several bodies have one number.
+    /// Whether unknowns of several bodies share a number.
     pub fn shares_numbers(&self) -> bool {
         let all = self.bodies.iter().filter_map(|given| given.numbers.as_ref());
         all.map(Vec::len).sum::<usize>() > self.unknowns.len()
     }
 
-    /// Whether the bodies have numbers: all or none.
+    /// Whether the bodies have numbers: either all or none must have.
     fn is_numbered(&self) -> Result<bool> {
         let numbers = self.unknowns.len();
         if numbers == 0 || numbers == self.sizes().dofs {
@@ -85,13 +87,14 @@ impl Model {
             None => Ok(true),
             Some(body) => {
                 let what =
-                    "other bodies have numbers of the host, this one has not: feti_body_numbering gives them";
+                    "other bodies have numbers of the host, this body has none: give them by feti_body_numbering";
                 Err(Error::new(Kind::State, what).body(body))
             }
         }
     }
 
-    /// The length of an array over all unknowns: at least the largest number + 1, without numbers that of all bodies.
+    /// Checks the length of an array over all unknowns: at least the largest number + 1; without numbers, the sum over
+    /// all bodies.
     pub fn check_whole(&self, n: usize) -> Result<()> {
         let numbered = self.is_numbered()?;
         let largest = self.bodies.iter().filter_map(|given| given.numbers.as_deref()?.iter().max());
@@ -100,14 +103,14 @@ impl Model {
             return Ok(());
         }
         let what = match numbered {
-            true => format!("the largest number of an unknown needs {end} entries, there are {n}"),
+            true => format!("the largest number of an unknown needs {end} entries, not {n}"),
             false => format!("the bodies have {end} unknowns, not {n}"),
         };
         Err(Error::argument("n", what).value(n as f64).limit(end as f64))
     }
 
-    /// `work` on every unknown: its body, its dof, its place in an array over all unknowns, which is none where an unknown of a
-    /// body before has the same number.
+    /// Calls `work` for every unknown with its body, its dof and its position in an array over all unknowns; the position
+    /// is none if an unknown of an earlier body has the same number.
     fn each_unknown(&self, mut work: impl FnMut(usize, usize, Option<usize>)) -> Result<()> {
         let (numbered, shared, mut place) = (self.is_numbered()?, self.shares_numbers(), 0);
         for (body, given) in self.bodies.iter().enumerate() {
@@ -122,8 +125,8 @@ impl Model {
         Ok(())
     }
 
-    /// Gives the values of all bodies, one after the other, with their places in an array over all unknowns; where several
-    /// have one number the first of them.
+    /// Passes the values of all bodies, one after the other, with their positions in an array over all unknowns; if
+    /// several unknowns share a number, only the first.
     pub fn spread(&self, values: &[f64], mut to: impl FnMut(usize, f64)) -> Result<()> {
         let mut values = values.iter();
         self.each_unknown(|_, _, place| {
@@ -131,8 +134,8 @@ impl Model {
         })
     }
 
-    /// The loads of all bodies, force; entries of `f` that belong to no unknown are not looked at. Of several unknowns with one
-    /// number the first has the load.
+    /// Sets the loads of all bodies, force; entries of `f` without unknown are ignored. If several unknowns share a
+    /// number, the first gets the load.
     pub fn set_all_loads(&mut self, f: &[f64]) -> Result<()> {
         self.check_whole(f.len())?;
         let mut loads = reserved(self.bodies.len(), "the loads")?;
@@ -156,8 +159,8 @@ impl Model {
         Ok(())
     }
 
-    /// Unknowns of rows, which begin at `ptr`, as places among those of all bodies one after the other; none where the host
-    /// has no numbers but these.
+    /// Positions of the unknowns of rows, which begin at `ptr`, among the unknowns of all bodies one after the other;
+    /// none if the host has not given numbers.
     pub fn places_of(&self, ptr: &[usize], numbers: &[i64]) -> Result<Option<Vec<i64>>> {
         if !self.is_numbered()? {
             return Ok(None);

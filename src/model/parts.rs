@@ -1,4 +1,4 @@
-//! The bodies of the host to which the bodies of a model belong as pieces.
+//! The bodies of the host to which the parts of a model belong.
 
 use std::ops::Range;
 use std::sync::Arc;
@@ -9,10 +9,10 @@ use crate::platform::memory::{reserved, zeros};
 
 const WHAT: &str = "the pieces of bodies";
 
-/// The bodies of the host, the parts that stand for each of them, and what these have of its unknowns.
+/// The bodies of the host, the parts that represent them, and the unknowns of the parts.
 #[derive(Debug, Default)]
 pub struct Parts {
-    /// First part of every body of the host, and the number of all parts.
+    /// First part of every body of the host, and the total number of parts.
     pub first: Vec<usize>,
     /// First unknown of every body of the host, and their end.
     pub offsets: Vec<usize>,
@@ -21,9 +21,9 @@ pub struct Parts {
     pub parts: Vec<Part>,
     /// K of the bodies that are cut.
     pub assembled: Vec<Option<Arc<Assembled>>>,
-    /// Number of the host's equality rows: those that follow are glue, first that of the joints.
+    /// Number of the host's equality rows: later rows are glue, those of joints first.
     pub equalities: usize,
-    /// Numbers of the host that unknowns of several bodies have, one for each row that glues two of these.
+    /// For each row that glues two bodies of the host: the number of the host that their unknowns share.
     pub joints: Vec<usize>,
 }
 
@@ -32,7 +32,8 @@ pub struct Parts {
 pub struct Part {
     /// Body of the host.
     pub body: usize,
-    /// Its unknowns among those of the body, ascending, and its share of each, the shares of all copies together 1; none: all.
+    /// Its unknowns within the body, ascending, and its weight at each (the weights of all copies sum to 1); none: all
+    /// unknowns.
     pub piece: Option<(Arc<[u32]>, Vec<f64>)>,
 }
 
@@ -42,17 +43,17 @@ impl Parts {
         self.first[body]..self.first[body + 1]
     }
 
-    /// Number of equality rows between bodies of the host, by which answers are judged: those that follow glue pieces.
+    /// Number of equality rows by which answers are judged, including joints: later rows glue pieces.
     pub fn judged(&self) -> usize {
         self.equalities + self.joints.len()
     }
 
-    /// The body of the host is cut.
+    /// Whether the body of the host is cut.
     pub fn is_cut(&self, body: usize) -> bool {
         self.assembled[body].is_some()
     }
 
-    /// Unknown i of a part among those of its body, and the part's share of it.
+    /// Number of unknown i of a part within its body, and the weight of the part there.
     pub fn place(&self, part: usize, i: usize) -> (usize, f64) {
         match &self.parts[part].piece {
             Some((dofs, shares)) => (dofs[i] as usize, shares[i]),
@@ -60,7 +61,7 @@ impl Parts {
         }
     }
 
-    /// Values over the unknowns of all parts for those of the host's bodies: every copy has the value.
+    /// Copies values over the unknowns of the host's bodies to all parts.
     pub fn spread(&self, of_host: &[f64]) -> Result<Vec<f64>> {
         let mut all = reserved(self.starts.last().copied().unwrap_or(0), WHAT)?;
         for part in 0..self.parts.len() {
@@ -71,7 +72,7 @@ impl Parts {
         Ok(all)
     }
 
-    /// The other way round: the mean of the copies by their shares.
+    /// The weighted mean of the copies, over the unknowns of the host's bodies.
     pub fn mean(&self, of_parts: &[f64]) -> Result<Vec<f64>> {
         let mut all = zeros(self.offsets.last().copied().unwrap_or(0), WHAT)?;
         for part in 0..self.parts.len() {

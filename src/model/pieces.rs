@@ -11,22 +11,22 @@ use crate::platform::memory::{filled, reserved};
 
 const WHAT: &str = "the pieces of a body";
 
-/// Pieces one after the other.
+/// The pieces one after the other.
 pub struct PiecesInput {
-    /// First unknown of every piece in `dof`, and their end.
+    /// First unknown of every piece in `dof`, and the end.
     pub first: Vec<usize>,
     /// Unknowns of each piece, ascending, from 0.
     pub dof: Vec<i64>,
-    /// First entry of every row of the lower triangles, those of the pieces one after the other, and their end.
+    /// First entry of every row of the lower triangles, piece after piece, and the end.
     pub ptr: Vec<usize>,
-    /// Columns from 0 within the piece, ascending, the last of every row its diagonal entry.
+    /// Columns from 0 within the piece, ascending; the last entry of every row is the diagonal.
     pub col: Vec<u32>,
     /// force / length
     pub val: Vec<f64>,
 }
 
 impl Model {
-    /// The pieces of a body, which have all its unknowns.
+    /// Sets the pieces of a body, which must cover all its unknowns.
     pub fn set_pieces(&mut self, body: usize, given: &PiecesInput) -> Result<()> {
         let order = self.order(body)?;
         given.check(order).map_err(|error| error.body(body))?;
@@ -48,7 +48,7 @@ impl Model {
 }
 
 impl PiecesInput {
-    /// Unknowns ascend and none is left out; rows are those of lower triangles with a diagonal; entries are finite.
+    /// Checks that unknowns ascend and cover the body, rows are lower triangles with a diagonal, and entries are finite.
     fn check(&self, order: usize) -> Result<()> {
         let mut met = filled(order, false, WHAT)?;
         for range in self.first.windows(2) {
@@ -74,7 +74,7 @@ impl PiecesInput {
         }
     }
 
-    /// Row `at` of all is row `row` of its piece.
+    /// Checks row `at` of all rows, which is row `row` of its piece.
     fn check_row(&self, at: usize, row: usize) -> Result<()> {
         let entries = self.ptr[at]..self.ptr[at + 1];
         let col = &self.col[entries.clone()];
@@ -92,7 +92,7 @@ impl PiecesInput {
         }
     }
 
-    /// The piece with the rows `from` to `to` - 1 of all.
+    /// The piece with the rows `from` to `to` - 1 of all rows.
     fn piece(&self, from: usize, to: usize) -> Result<Piece> {
         let (begin, end) = (self.ptr[from], self.ptr[to]);
         let mut dofs = reserved(to - from, WHAT)?;

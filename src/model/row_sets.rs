@@ -5,12 +5,12 @@ use crate::error::{Error, Proof, Result};
 use crate::model::contents::Model;
 use crate::platform::memory::{self, Headroom};
 
-/// Bytes per entry of B and H: the host's rows, the scaled ones and those by bodies, each while it grows.
+/// Bytes per entry of B and H: the host's rows, the scaled rows and the rows by bodies, with room for growth.
 pub const PER_ENTRY: usize = 128;
 
 impl Model {
-    /// Adds rows and returns the number of the first among those of its kind. Without `body` they go by the host's numbers
-    /// of the unknowns, where there are some.
+    /// Adds rows and returns the number of the first among those of its kind. Without `body`, their unknowns are the
+    /// host's numbers if there are any.
     pub fn add_rows(&mut self, kind: RowKind, rows: RowsInput<'_>) -> Result<usize> {
         let places = match rows.body {
             Some(_) => None,
@@ -33,15 +33,15 @@ impl Model {
         Ok(())
     }
 
-    /// Rows from `first` on as springs, `B u - c <= lambda/k`, `H u - h = mu/k`: 1/k >= 0, length / force, 0 for
-    /// rigid ones. The multipliers of the last solve still fit as a start.
+    /// Makes rows from `first` on compliant, `B u - c <= lambda/k`, `H u - h = mu/k`: 1/k >= 0, length / force, 0 for
+    /// rigid rows. The multipliers of the last solve remain valid as a start.
     pub fn set_compliance(&mut self, kind: RowKind, first: usize, inv_k: &[f64]) -> Result<()> {
         self.rows_mut(kind).set_compliance(first, inv_k)?;
         self.revisions.laws += 1;
         Ok(())
     }
 
-    /// Drops all rows of one kind, with contact rows all nodes with friction.
+    /// Drops all rows of one kind; with contact rows also all nodes with friction.
     pub fn clear_rows(&mut self, kind: RowKind) {
         *self.rows_mut(kind) = RowSet::default();
         if kind != RowKind::Equality {
@@ -50,8 +50,8 @@ impl Model {
         self.revisions.rows += 1;
     }
 
-    /// Adds nodes with friction and returns the number of the first. Without `body` their tangential rows go by the host's
-    /// numbers of the unknowns, where there are some.
+    /// Adds nodes with friction and returns the number of the first. Without `body`, the unknowns of their tangential
+    /// rows are the host's numbers if there are any.
     pub fn add_friction(&mut self, input: FrictionInput) -> Result<usize> {
         let places = match input.rows.body {
             Some(_) => None,
@@ -63,7 +63,7 @@ impl Model {
         Ok(first)
     }
 
-    /// New coefficients (no unit), bounds (force) or both of so many nodes; what is absent stays.
+    /// Sets coefficients (no unit), bounds (force) or both of `count` nodes; absent values do not change.
     pub fn set_friction_law(
         &mut self,
         first: usize,
@@ -77,14 +77,14 @@ impl Model {
         Ok(())
     }
 
-    /// Elastic stick, `s = T u - s_old - C_t lambda_t`: C_t >= 0, length / force, one of each node; 0 for rigid ones.
+    /// Elastic stick, `s = T u - s_old - C_t lambda_t`: C_t >= 0, length / force, one per node; 0 for rigid nodes.
     pub fn set_friction_compliance(&mut self, first: usize, inv_kt: &[f64]) -> Result<()> {
         self.friction.set_compliance(first, inv_kt)?;
         self.revisions.laws += 1;
         Ok(())
     }
 
-    /// s_old of so many nodes, (dim, nodes), length: the slip at which the step begins.
+    /// Sets s_old of `count` nodes, (dim, nodes), length: the slip at the start of the step.
     pub fn set_friction_reference(
         &mut self,
         first: usize,
@@ -95,26 +95,26 @@ impl Model {
         self.friction.set_reference(first, count, dim, s_old)
     }
 
-    /// So many nodes are there, and have `dim` tangential rows each.
+    /// Checks that `count` nodes exist and have `dim` tangential rows each.
     pub fn check_friction_nodes(&self, first: usize, count: usize, dim: usize) -> Result<()> {
         self.friction.check_nodes(first, count)?;
         self.friction.check_dim(dim, count)
     }
 
-    /// Drops all nodes with friction; their contact rows stay.
+    /// Drops all nodes with friction; their contact rows remain.
     pub fn clear_friction(&mut self) {
         self.friction = Friction::default();
         self.revisions.rows += 1;
     }
 
-    /// Room for so many more rows: those that are there may move while their arrays grow.
+    /// Reserves memory for further rows: existing rows may be copied while their arrays grow.
     pub fn headroom_for_rows(&self, rows: usize, entries: usize) -> Result<Headroom> {
         let present = RowKind::ALL.iter().map(|kind| self.rows(*kind).matrix.col.len()).max().unwrap_or(0);
         let bytes = present.saturating_add(entries).saturating_mul(PER_ENTRY);
         memory::headroom(bytes.saturating_add(rows.saturating_mul(PER_ENTRY)), "constraint rows")
     }
 
-    /// Rows without entries must hold by themselves.
+    /// Refuses rows without entries whose right-hand side does not satisfy them.
     pub fn check_empty_rows(&self) -> Result<()> {
         let contact = self.contact.check_empty_rows(RowKind::Inequality);
         contact.map_err(|error| empty_row_contradicts(error, 0))?;
@@ -123,13 +123,14 @@ impl Model {
     }
 }
 
-/// The error of a row without entries, which contradicts itself; `first` is the place of its kind in the stack.
+/// Turns the error of a row without entries into a proof of contradiction; `first` is the position of its kind in the
+/// stack.
 fn empty_row_contradicts(error: Error, first: usize) -> Error {
     let (Some(row), Some(gap)) = (error.place.row, error.place.value) else { return error };
     error.proved_by(proof_of_rows(1.0, vec![(first + row, -gap)], first + row))
 }
 
-/// Weights in the scaling of the host, the largest 1, in the order of the rows.
+/// A proof with weights in the scaling of the host, largest weight 1, in the order of the rows.
 pub fn proof_of_rows(margin: f64, mut weights: Vec<(usize, f64)>, heaviest: usize) -> Proof {
     let largest = weights.iter().fold(0.0, |largest: f64, (_, w)| largest.max(w.abs()));
     weights.iter_mut().for_each(|(_, w)| *w /= largest);
@@ -137,7 +138,7 @@ pub fn proof_of_rows(margin: f64, mut weights: Vec<(usize, f64)>, heaviest: usiz
     Proof::Rows { margin, weights, heaviest }
 }
 
-/// What a proof says in words: a row of this kind contradicts so many others and the glue of unknowns with these numbers.
+/// The text of a proof: a row of this kind contradicts `others` other rows and the glue of unknowns with these numbers.
 pub fn contradiction(kind: RowKind, others: usize, glued: &[i64]) -> String {
     let mut all = vec![format!("this {}", kind.name())];
     match others {
@@ -159,7 +160,7 @@ pub fn contradiction(kind: RowKind, others: usize, glued: &[i64]) -> String {
     format!("{} and {last} contradict each other: no displacement satisfies them", all.join(", "))
 }
 
-/// Kind of a row of the stack of all contact rows and all equality rows, and its number among those.
+/// Kind and number of row i in the stack of all contact rows and all equality rows.
 pub fn kind_and_row(i: usize, contact: usize) -> (RowKind, usize) {
     if i < contact {
         (RowKind::Inequality, i)

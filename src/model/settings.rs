@@ -14,7 +14,7 @@ pub enum OptionValue {
     Str(&'static CStr),
 }
 
-/// One option as the host may list it. `minimum` and `maximum` bound numbers.
+/// One option in the list for the host. `minimum` and `maximum` bound numbers.
 pub struct OptionInfo {
     pub name: &'static CStr,
     pub doc: &'static CStr,
@@ -24,7 +24,7 @@ pub struct OptionInfo {
     field: Location,
 }
 
-/// Where the value of an option lives.
+/// The field with the value of an option.
 enum Location {
     F64(fn(&mut Settings) -> &mut f64),
     I64(fn(&mut Settings) -> &mut i64),
@@ -32,9 +32,9 @@ enum Location {
 }
 
 const NO_LIMIT: f64 = 1e300;
-/// 2^53: every whole number up to here is a double.
+/// 2^53: every integer up to this value is exact in double precision.
 const MANY: f64 = 9_007_199_254_740_992.0;
-/// Of words.
+/// The range of an option with words.
 const NO_RANGE: std::ops::RangeInclusive<f64> = 0.0..=0.0;
 
 const fn c_text(terminated: &'static str) -> &'static CStr {
@@ -44,10 +44,10 @@ const fn c_text(terminated: &'static str) -> &'static CStr {
     }
 }
 
-/// From one line for each option: [`Settings`] with a field for it, and its place in the list [`OPTIONS`].
+/// Makes from one line per option a field in [`Settings`] and an entry of the list [`OPTIONS`].
 macro_rules! settings {
     ($($field:ident: $kind:ty = $value:ident($default:expr), $range:expr, $doc:literal;)+) => {
-        /// Values of all options; the table says what they mean. `Settings::new` has the defaults.
+        /// Values of all options; the table has their meaning. `Settings::new` gives the defaults.
         #[derive(Debug, Clone, PartialEq, Default)]
         pub struct Settings {
             $(pub $field: $kind,)+
@@ -125,7 +125,7 @@ settings! {
         c"Number of problems with bounds only that the methods paper-... solve before they end with FETI_ITERATIONS.";
 }
 
-/// All options, in the order of their listing.
+/// All options, in the order of the table.
 pub fn options() -> &'static [OptionInfo] {
     OPTIONS
 }
@@ -202,7 +202,7 @@ impl OptionInfo {
     }
 }
 
-/// The option of this name.
+/// The option with this name.
 pub fn find(name: &str) -> Result<&'static OptionInfo> {
     options().iter().find(|option| option.name.to_bytes() == name.as_bytes()).ok_or_else(|| {
         let names: Vec<_> = options().iter().map(|o| o.name.to_string_lossy()).collect();

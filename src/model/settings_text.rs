@@ -3,22 +3,22 @@
 use crate::error::{Error, Kind, Result};
 use crate::model::settings::{find, options, OptionInfo, OptionValue, Settings};
 
-/// One `name = value` of a text, with the bytes at which they begin.
+/// One `name = value` of a text, and the bytes at which name and value begin.
 #[derive(Debug, PartialEq)]
 struct Item<'a> {
     name: (usize, &'a str),
     value: (usize, &'a str),
 }
 
-/// The part of a text that has not been read.
+/// The rest of a text that has not been read.
 struct Rest<'a> {
     text: &'a str,
     at: usize,
 }
 
 impl Settings {
-    /// Sets all options that the text names, in its order, or none of them. Items `name = value` are separated by
-    /// blanks, commas or ends of lines; `#` begins a comment that ends with the line.
+    /// Sets all options in the text, in its order, or none of them. Items `name = value` are separated by blanks, commas
+    /// or line ends; `#` begins a comment up to the end of the line.
     pub fn set_text(&mut self, text: &str) -> Result<()> {
         let mut changed = self.clone();
         let mut rest = Rest { text, at: 0 };
@@ -34,7 +34,7 @@ impl Settings {
         Ok(())
     }
 
-    /// The value as a text, of whatever type the option is.
+    /// Sets an option of any type from a text.
     fn set_by_type(&mut self, name: &str, value: &str) -> Result<()> {
         let wrong = |kind: &str| {
             Error::argument("value", format!("option \"{name}\" is {kind}, which \"{value}\" is not"))
@@ -50,8 +50,8 @@ impl Settings {
         }
     }
 
-    /// The options that differ from their defaults, as a text for `set_text`. What texts count from is not among them:
-    /// it belongs to the host.
+    /// The options that differ from their defaults, as a text for `set_text`, without `index_base`, which belongs to the
+    /// host.
     pub fn changes(&self) -> String {
         let of_host = |option: &OptionInfo| option.name == c"index_base";
         let changed = |option: &&OptionInfo| !of_host(option) && option.value(self) != option.default;
@@ -112,7 +112,7 @@ impl<'a> Rest<'a> {
         }
     }
 
-    /// What ends at a separator, a sign = or a comment, with the byte where it begins.
+    /// The text up to a separator, a sign = or a comment, and the byte at which it begins.
     fn word(&mut self) -> (usize, &'a str) {
         let start = self.at;
         self.pass(|c| !is_blank(c) && !matches!(c, ',' | '=' | '#'));

@@ -2,10 +2,10 @@
 
 use std::ffi::CStr;
 
-/// An option that is one of its words; the first is the default.
+/// An option with a fixed set of words; the first is the default.
 pub trait Word {
     fn word(&self) -> &'static CStr;
-    /// Takes the value with this word, where there is one.
+    /// Takes the value for this word, if there is one.
     fn take(&mut self, word: &[u8]) -> bool;
     fn words(&self) -> &'static [&'static CStr];
 }

@@ -1,8 +1,8 @@
-//! A child of fork must not find a shared lock held by a thread that it does not have.
+//! A child process of fork must not find a shared lock held by a thread that does not exist there.
 //!
-//! The locks that all threads share are held only for instants, in which no thread waits and no function of the host runs. `fork` waits until
-//! no such instant is in progress, and prevents new ones until parent and child are separate. It does not wait for anything longer, such as a call on a
-//! problem: in the child that problem stays busy.
+//! The locks that all threads share are held only briefly, while no thread waits and no function of the host runs. `fork`
+//! waits until no such lock is held, and prevents new ones until parent and child are separate. It does not wait for
+//! anything longer, such as a call on a problem: in the child that problem stays busy.
 
 #[cfg(target_os = "linux")]
 pub(crate) use watched::instant;
@@ -21,11 +21,11 @@ mod watched {
 
     use crate::platform::memory;
 
-    /// Instants that go on are its readers, a fork is its writer.
+    /// Work in progress holds it as a reader, a fork as its writer.
     static INSTANTS: RwLock<()> = RwLock::new(());
 
     thread_local! {
-        /// Taken before the fork of this thread, given back after it in both processes.
+        /// Taken before the fork of this thread, released after it in both processes.
         static FORKING: RefCell<Option<RwLockWriteGuard<'static, ()>>> = const { RefCell::new(None) };
     }
 
@@ -36,19 +36,20 @@ mod watched {
         work()
     }
 
-    /// Once in a process, and its children hear of theirs too. No thread waits for the one that does it: a child might have to.
+    /// Registers the handlers once per process; child processes inherit them. No thread waits for the registration, since
+    /// a child might have to.
     fn hear_of_forks() {
         static HEARD: AtomicBool = AtomicBool::new(false);
         if !HEARD.load(Ordering::Relaxed) && !HEARD.swap(true, Ordering::Relaxed) {
-            // SAFETY: functions that the library, which is never unloaded, has as long as the process lives. Short of
-            // memory the system takes none; then forks are not heard of.
+            // SAFETY: functions of the library, which is never unloaded. If the system has no memory to register them,
+            // forks are not handled.
             unsafe { libc::pthread_atfork(Some(before), Some(after), Some(in_child)) };
         }
     }
 
     extern "C" fn before() {
         let none_goes_on = INSTANTS.write().unwrap_or_else(PoisonError::into_inner);
-        // A thread that is being torn down gives it back at once.
+        // A thread that is being destroyed releases it at once.
         let _ = FORKING.try_with(|forking| forking.replace(Some(none_goes_on)));
     }
 

@@ -1,4 +1,5 @@
-//! Ends a long computation if another thread requests it or its time is over. An interrupt is set for a task and checked in its loops.
+//! Ends a long computation if another thread requests it or its time is over. An interrupt is set for a task and checked
+//! in its loops.
 
 use std::cell::{Cell, RefCell};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -11,14 +12,14 @@ thread_local! {
     static PART: Cell<&'static str> = const { Cell::new("") };
 }
 
-/// Seconds since a call has begun.
+/// Seconds since a call began.
 pub type Clock = Arc<dyn Fn() -> f64 + Send + Sync>;
 
-/// Hears how far a loop is: the part of the call that it belongs to, what it counts, and how many of those are done.
+/// Receives the progress of a loop: the part of the call, what the loop counts, and how many are done.
 pub type Hearer = Arc<dyn Fn(&'static str, &'static str, usize) -> Result<()> + Send + Sync>;
 
-/// Ends the computations that look at it once its flag is true or its clock shows more than its limit; without either
-/// none. A computation that goes on on several threads takes the one of the thread it began on with it.
+/// Ends the computations that check it when its flag is true or its clock is past its limit; without flag and clock it
+/// ends none. A computation on several threads passes it on from the thread on which it began.
 #[derive(Clone, Default)]
 pub struct Interrupt {
     flag: Option<Arc<AtomicBool>>,
@@ -32,22 +33,22 @@ impl Interrupt {
         Self { flag: Some(flag), ..Self::default() }
     }
 
-    /// The same, which also ends what looks at it after `limit` seconds.
+    /// Adds a limit: it also ends computations after `limit` seconds.
     pub fn after(self, limit: f64, clock: Clock) -> Self {
         Self { time: Some((clock, limit)), ..self }
     }
 
-    /// The same, with somebody who hears how far the loops are; an error of his ends them.
+    /// Adds a function that receives the progress of loops; an error of this function ends them.
     pub fn heard_by(self, hearer: Hearer) -> Self {
         Self { hearer: Some(hearer), ..self }
     }
 
-    /// The same for other threads, where nobody hears how far the loops are.
+    /// A copy for other threads, without progress of loops.
     pub fn unheard(self) -> Self {
         Self { hearer: None, ..self }
     }
 
-    /// That of the task on this thread.
+    /// The interrupt of the task on this thread.
     pub fn present() -> Self {
         PRESENT.with_borrow(Self::clone)
     }
@@ -58,12 +59,12 @@ impl Interrupt {
         work()
     }
 
-    /// That of the task on this thread from now on, until what is returned is dropped.
+    /// Sets it as the interrupt of this thread until the result is dropped.
     pub fn enter(&self) -> Entered {
         Entered(PRESENT.replace(self.clone()))
     }
 
-    /// Ends what looks at it from now on.
+    /// Ends all computations that check it from now on.
     pub fn set(&self) {
         self.flag.iter().for_each(|flag| flag.store(true, Ordering::Relaxed));
     }
@@ -81,28 +82,28 @@ impl Interrupt {
     }
 }
 
-/// Refuses what the task on this thread is about to do, once it has to end. Asked before every costly part of a loop: a product, a
-/// factorisation, a system solved with its factor.
+/// Returns an error if the task on this thread has to end. Called before every expensive part of a loop: a product, a
+/// factorisation, a solve with a factor.
 pub fn check() -> Result<()> {
     PRESENT.with_borrow(Interrupt::check)
 }
 
-/// The same in a loop that may take long: it says that `count` of `what` are done.
+/// As `check`, in a loop that may take long: also reports that `count` of `what` are done.
 pub fn reached(what: &'static str, count: usize) -> Result<()> {
     check()?;
-    // who hears it may run other tasks on this thread
+    // the function may run other tasks on this thread
     let hearer = PRESENT.with_borrow(|present| present.hearer.clone());
     hearer.map_or(Ok(()), |hearer| hearer(PART.get(), what, count))
 }
 
-/// Runs `work` as the part of the call that `name` names.
+/// Runs `work` as the part `name` of the call.
 pub fn part<T>(name: &'static str, work: impl FnOnce() -> T) -> T {
     let _before = RestorePart(PART.replace(name));
     work()
 }
 
-/// Runs what is done also where there is no time for more: what an answer is told by, and functions of the host, which may use other
-/// problems.
+/// Runs `work` without interrupt: the output of an answer after the time limit, and functions of the host, which may use
+/// other problems.
 pub fn never<T>(work: impl FnOnce() -> T) -> T {
     Interrupt::default().during(work)
 }
@@ -111,7 +112,7 @@ pub fn cancelled() -> Error {
     Error::new(Kind::Cancelled, "cancelled by the host")
 }
 
-/// Of one that is present: dropped, also by a panic, it sets the interrupt that was there before.
+/// When dropped, also after a panic, it restores the previous interrupt.
 pub struct Entered(Interrupt);
 
 impl Drop for Entered {
@@ -120,7 +121,7 @@ impl Drop for Entered {
     }
 }
 
-/// The same for the part.
+/// Restores the previous part.
 struct RestorePart(&'static str);
 
 impl Drop for RestorePart {

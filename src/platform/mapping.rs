@@ -1,12 +1,12 @@
-//! Pages that the system maps on request.
+//! Memory pages mapped directly from the system.
 
 use std::ptr::NonNull;
 
-/// A multiple of the pages of all systems: those of Linux have 4, 16 or 64 KiB.
+/// A multiple of the page size of all systems: Linux uses 4, 16 or 64 KiB.
 pub const PAGE: usize = 64 << 10;
 
-/// Fresh pages of so many bytes. For those to be `used` large pages are asked for, where the system has them on request: clearing small
-/// ones when they are touched first takes a sixth of a factorisation.
+/// Fresh pages of this size. If they will be `used`, large pages are requested where the system has them: clearing small
+/// pages at the first access takes a sixth of the time of a factorisation.
 #[cfg(target_os = "linux")]
 pub fn map(bytes: usize, used: bool) -> Option<NonNull<f64>> {
     let access = libc::PROT_READ | libc::PROT_WRITE;
@@ -17,14 +17,14 @@ pub fn map(bytes: usize, used: bool) -> Option<NonNull<f64>> {
         return None;
     }
     if used {
-        // SAFETY: the pages just mapped; the advice does not change what they hold. Where it is refused nothing happens.
+        // SAFETY: the pages just mapped; the advice does not change their content. If it is refused, nothing changes.
         unsafe { libc::madvise(start, bytes, libc::MADV_HUGEPAGE) };
     }
     NonNull::new(start.cast())
 }
 
 /// # Safety
-/// Whole pages of a block that `map` gave, used by nobody.
+/// Whole pages of a block from `map`, not in use.
 #[cfg(target_os = "linux")]
 pub unsafe fn unmap(start: NonNull<f64>, bytes: usize) {
     libc::munmap(start.as_ptr().cast(), bytes);
@@ -38,7 +38,7 @@ pub fn map(_: usize, _: bool) -> Option<NonNull<f64>> {
 #[cfg(not(target_os = "linux"))]
 pub unsafe fn unmap(_: NonNull<f64>, _: usize) {}
 
-/// True when the system would give so many bytes now.
+/// True if the system could give this memory now.
 #[cfg(target_os = "linux")]
 pub fn could_have(bytes: usize) -> bool {
     let Some(bytes) = bytes.checked_next_multiple_of(PAGE) else { return false };
@@ -46,8 +46,8 @@ pub fn could_have(bytes: usize) -> bool {
     map(bytes, false).map(|start| unsafe { unmap(start, bytes) }).is_some()
 }
 
-/// True when the allocator would give so many bytes now. The optimiser must see a use: it may leave out an allocation that
-/// has none, and count it as successful.
+/// True if the allocator could give this memory now. The memory must be used, otherwise the optimiser may remove the
+/// allocation and treat it as successful.
 #[cfg(not(target_os = "linux"))]
 pub fn could_have(bytes: usize) -> bool {
     let mut block: Vec<u8> = Vec::new();

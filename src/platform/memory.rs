@@ -1,8 +1,8 @@
 //! Memory is reserved before it is used: Rust ends the process on a failed allocation, but a host must survive it.
 //!
 //! Large arrays are reserved one by one, with [`zeros`], [`reserved`] and [`copied`], the largest with
-//! [`Pages`](super::pages::Pages). If many small pieces or foreign
-//! code allocate, [`headroom`] checks beforehand that there is enough, and keeps it free from the large arrays of other threads.
+//! [`Pages`](super::pages::Pages). If many small objects or other code allocate, [`headroom`] checks beforehand that
+//! there is enough memory, and keeps it free from the large arrays of other threads.
 
 use std::cell::Cell;
 use std::marker::PhantomData;
@@ -11,38 +11,39 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use crate::error::{Error, Kind, Result};
 use crate::platform::mapping::could_have;
 
-/// Bytes that are always left for small pieces: texts, maps, the growth of the heap by the allocator.
+/// Bytes kept free for small objects: texts, maps, the growth of the heap by the allocator.
 const SPARE: usize = 2 << 20;
-/// Reservations from this size on must leave what is spare: to find out takes two calls of the system, as long as it takes to fill a
+/// Reservations of at least this size must leave the spare memory: the check takes two system calls, as long as filling a
 /// smaller array.
 pub const LARGE: usize = 32 << 10;
-/// Work arrays of faer's products, made on the first product of every thread.
+/// Work arrays of faer's products, allocated at the first product of every thread.
 pub const PRODUCTS: usize = 5 << 20;
-/// For the rooms inside one that many small matrices are made in, one after the other.
+/// For an outer room within which many small matrices are made one after the other.
 pub const SMALL_MATRICES: usize = PRODUCTS + (1 << 20);
 
 /// Sum of all rooms in use.
 static PROMISED: AtomicUsize = AtomicUsize::new(0);
 
 thread_local! {
-    /// What rooms of this thread may take of one that was proved for them too: each proof costs two calls of the system.
+    /// Bytes of an outer room of this thread that inner rooms may use without another check, which costs two system
+    /// calls.
     static INSIDE: Cell<usize> = const { Cell::new(0) };
-    /// Sum of the rooms of this thread that were proved.
+    /// Sum of the rooms of this thread that were checked.
     static PROVED: Cell<usize> = const { Cell::new(0) };
 }
 
-/// A part of the memory kept free for small pieces, until dropped, on the thread that asked for it.
+/// Memory kept free for small objects of this thread, until dropped.
 #[derive(Debug)]
 pub struct Headroom {
     bytes: usize,
-    /// It is a part of another room of this thread.
+    /// It is part of an outer room of this thread.
     inner: bool,
-    /// Bytes for rooms inside.
+    /// Bytes for inner rooms.
     inside: usize,
     thread: PhantomData<*const ()>,
 }
 
-/// Room for `bytes` in small pieces, or `Kind::Memory` naming `what` they were for.
+/// Room for `bytes` in small objects, or `Kind::Memory` with their purpose `what`.
 pub fn headroom(bytes: usize, what: &str) -> Result<Headroom> {
     if let Some(left) = INSIDE.get().checked_sub(bytes) {
         INSIDE.set(left);
@@ -51,7 +52,7 @@ pub fn headroom(bytes: usize, what: &str) -> Result<Headroom> {
     proved(bytes, what)
 }
 
-/// The same with as much again as `inside` says, for the rooms that this thread asks for while it lasts.
+/// A room with `inside` further bytes for inner rooms of this thread.
 pub fn headroom_with(bytes: usize, inside: usize, what: &str) -> Result<Headroom> {
     let mut room = headroom(bytes.saturating_add(inside), what)?;
     room.inside = inside;
@@ -88,17 +89,17 @@ impl Drop for Headroom {
     }
 }
 
-/// In a child of fork, whose only thread this is: what was promised to others is nobody's.
+/// In a child process of fork with this thread only: the rooms of other threads no longer exist.
 pub fn keep_own_promises() {
     PROMISED.store(PROVED.try_with(Cell::get).unwrap_or(0), Ordering::Relaxed);
 }
 
-/// True when so many bytes could be had now besides what is spare.
+/// True if this memory is available in addition to the spare memory.
 fn is_free(bytes: usize) -> bool {
     could_have(bytes.saturating_add(SPARE))
 }
 
-/// Checks that what was promised and what is spare could still be had after `bytes` were taken.
+/// Checks that all rooms and the spare memory would still be available after `bytes` are taken.
 pub fn ensure_spare(bytes: usize, what: &str) -> Result<()> {
     if is_free(PROMISED.load(Ordering::Relaxed)) {
         return Ok(());
@@ -106,12 +107,12 @@ pub fn ensure_spare(bytes: usize, what: &str) -> Result<()> {
     Err(refusal(bytes, what))
 }
 
-/// `len` zeros, or `Kind::Memory` naming `what` they were for.
+/// `len` zeros, or `Kind::Memory` with their purpose `what`.
 pub fn zeros(len: usize, what: &str) -> Result<Vec<f64>> {
     filled(len, 0.0, what)
 }
 
-/// So many times one value.
+/// `len` copies of one value.
 pub fn filled<T: Clone>(len: usize, value: T, what: &str) -> Result<Vec<T>> {
     let mut values = reserved(len, what)?;
     values.resize(len, value);
@@ -136,7 +137,7 @@ pub fn copied<T: Copy>(values: &[T], what: &str) -> Result<Vec<T>> {
     Ok(copy)
 }
 
-/// Checks that `bytes` could be had now, without keeping them.
+/// Checks that `bytes` are available now, without keeping them.
 pub fn available(bytes: usize, what: &str) -> Result<()> {
     headroom(bytes, what).map(drop)
 }

@@ -1,5 +1,5 @@
-//! Large arrays in separate pages, initially zero, that are returned to the system when they are dropped. Memory that the allocator
-//! would keep of a freed array would add to the peak of later allocations.
+//! Large arrays in separate pages, initially zero, that are returned to the system when they are dropped. Memory of freed
+//! arrays that the allocator keeps would add to the peak of later allocations.
 
 use std::alloc::{alloc_zeroed, dealloc, Layout};
 use std::ops::{Deref, DerefMut};
@@ -11,27 +11,27 @@ use crate::error::Result;
 use crate::platform::mapping::{map, unmap, PAGE};
 use crate::platform::memory::{ensure_spare, refusal, LARGE};
 
-/// Smaller arrays come from the allocator, which has memory at hand that is used already: faster than fresh pages, by a fifth of the
-/// factorisation of pieces.
+/// Smaller arrays come from the allocator, which reuses memory: this is faster than fresh pages, by a fifth of the time
+/// of the factorisation of pieces.
 const SMALL: usize = 8 << 20;
-/// Less than that is not given back before an array is dropped.
+/// Fewer bytes are not returned before the array is dropped.
 const FEW: usize = 256 << 10;
 
-/// A number of which all bits zero are 0.
+/// A number that is 0 if all its bits are 0.
 pub trait Number: Copy + Send + Sync + 'static {}
 
 impl Number for f64 {}
 impl Number for f32 {}
 
-/// An array of numbers, doubles where nothing else is said.
+/// An array of numbers, by default doubles.
 pub struct Pages<T: Number = f64> {
     start: NonNull<T>,
     len: usize,
-    /// Bytes of the pages, 0 where the allocator gave the array.
+    /// Bytes of the pages, 0 if the array comes from the allocator.
     mapped: usize,
-    /// What the allocator gave.
+    /// Layout for the allocator.
     layout: Layout,
-    /// The array that it is a part of.
+    /// The array of which it is a part.
     whole: Option<Arc<Pages>>,
 }
 
@@ -41,7 +41,7 @@ unsafe impl<T: Number> Send for Pages<T> {}
 unsafe impl<T: Number> Sync for Pages<T> {}
 
 impl<T: Number> Pages<T> {
-    /// `len` zeros, or `Kind::Memory` naming `what` they were for.
+    /// `len` zeros, or `Kind::Memory` with their purpose `what`.
     pub fn zeros(len: usize, what: &str) -> Result<Self> {
         let bytes = len.saturating_mul(size_of::<T>());
         let refused = || refusal(bytes, what);
@@ -51,7 +51,7 @@ impl<T: Number> Pages<T> {
         let start = match bytes {
             0 => NonNull::dangling(),
             _ if apart => map(mapped, true).ok_or_else(refused)?.cast(),
-            // SAFETY: there are more bytes than none. All bits zero is the number 0.
+            // SAFETY: the size is not 0. All bits zero is the number 0.
             _ => NonNull::new(unsafe { alloc_zeroed(layout) }.cast()).ok_or_else(refused)?,
         };
         let pages = Self { start, len, mapped, layout, whole: None };
@@ -61,22 +61,22 @@ impl<T: Number> Pages<T> {
         Ok(pages)
     }
 
-    /// `len` numbers of `whole`, which lives as long as they do, from the byte `at` on.
+    /// `len` numbers of `whole` from byte `at` on; `whole` lives at least as long as they do.
     ///
     /// # Safety
-    /// They lie in `whole`, in their alignment, and nobody else sees them.
+    /// They lie in `whole`, are aligned, and are not used elsewhere.
     pub(super) unsafe fn part_of(whole: &Arc<Pages>, at: usize, len: usize) -> Self {
         // SAFETY: within `whole`, as the caller promises
         let start = unsafe { whole.start.byte_add(at) }.cast();
         Self { start, len, mapped: 0, layout: Layout::new::<()>(), whole: Some(Arc::clone(whole)) }
     }
 
-    /// Keeps the first `len` values; pages that they do not need go back to the system, where they are many.
+    /// Keeps the first `len` values; if many pages become free, they are returned to the system.
     pub fn truncate(&mut self, len: usize) {
         self.len = len.min(self.len);
         let kept = (self.len * size_of::<T>()).next_multiple_of(PAGE).max(PAGE);
         if kept + FEW <= self.mapped {
-            // SAFETY: whole pages of this array behind those that are kept.
+            // SAFETY: whole pages of this array after those that are kept.
             unsafe { unmap(self.start.cast::<f64>().byte_add(kept), self.mapped - kept) };
             self.mapped = kept;
         }
@@ -94,7 +94,7 @@ impl<T: Number> Deref for Pages<T> {
 
 impl<T: Number> DerefMut for Pages<T> {
     fn deref_mut(&mut self) -> &mut [T] {
-        // SAFETY: as for `deref`, and nobody else sees them.
+        // SAFETY: as for `deref`, with exclusive access.
         unsafe { from_raw_parts_mut(self.start.as_ptr(), self.len) }
     }
 }
@@ -108,7 +108,7 @@ impl<T: Number> Drop for Pages<T> {
             // SAFETY: the pages of this array, mapped by `map`.
             unsafe { unmap(self.start.cast(), self.mapped) };
         } else if self.layout.size() > 0 {
-            // SAFETY: the allocator gave it with this layout.
+            // SAFETY: allocated with this layout.
             unsafe { dealloc(self.start.as_ptr().cast(), self.layout) };
         }
     }

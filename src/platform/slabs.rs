@@ -1,5 +1,5 @@
-//! Arrays that lie side by side in large pages. Data that is read from memory repeatedly, such as the factors of many pieces in every
-//! product, is read from large pages up to twice as fast as from pages of 4 KiB.
+//! Arrays side by side in large pages. Data that is read from memory repeatedly, such as the factors of many pieces in
+//! every product, is read up to twice as fast from large pages as from pages of 4 KiB.
 
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -8,32 +8,32 @@ use crate::platform::pages::{Number, Pages};
 
 /// Bytes of a slab.
 const SLAB: usize = 32 << 20;
-/// Larger arrays have large pages of their own.
+/// Larger arrays get separate large pages.
 const APART: usize = SLAB / 4;
-/// Arrays begin at lines of the cache.
+/// Arrays begin at cache lines.
 const LINE: usize = 64;
 
-/// Where such arrays come from; a slab is given back when the last of its arrays is dropped.
+/// The source of such arrays; a slab is returned when the last of its arrays is dropped.
 pub struct Slabs(Mutex<Open>);
 
 struct Open {
     /// Never read as a whole: its parts belong to the arrays.
     slab: Arc<Pages>,
-    /// Bytes of it that are left, the last ones.
+    /// Bytes not used yet, at its end.
     left: usize,
-    /// Bytes of it.
+    /// Size in bytes.
     size: usize,
-    /// Bytes that are still going to be asked for.
+    /// Bytes still expected to be requested.
     expected: usize,
 }
 
 impl Slabs {
-    /// For arrays of so many bytes together, or more.
+    /// For arrays of at least this total size.
     pub fn of(expected: usize) -> Result<Self> {
         Ok(Self(Mutex::new(Open { slab: Arc::new(Pages::zeros(0, "a slab")?), left: 0, size: 0, expected })))
     }
 
-    /// `len` zeros, or `Kind::Memory` naming `what` they were for.
+    /// `len` zeros, or `Kind::Memory` with their purpose `what`.
     pub fn zeros<T: Number>(&self, len: usize, what: &str) -> Result<Pages<T>> {
         let bytes = len.saturating_mul(size_of::<T>());
         if bytes > APART {
@@ -46,7 +46,7 @@ impl Slabs {
             open.slab = Arc::new(Pages::zeros(size / size_of::<f64>(), what)?);
             (open.size, open.left) = (size, size);
         }
-        // SAFETY: bytes that are left, and are not any more
+        // SAFETY: unused bytes, given out only once
         let part = unsafe { Pages::part_of(&open.slab, open.size - open.left, len) };
         open.left -= bytes;
         open.expected = open.expected.saturating_sub(bytes);

@@ -16,37 +16,37 @@ use crate::platform::pools::Pools;
 
 static POOLS: Pools<ThreadPool> = Pools { made: Mutex::new(Vec::new()) };
 
-/// Stack of a thread. Said, or the standard library takes it from the environment (RUST_MIN_STACK).
+/// Stack of a thread. Set explicitly, or the standard library would use the environment variable RUST_MIN_STACK.
 const STACK: usize = 2 << 20;
-/// Address space of a thread: its stack, and the heap of 64 MiB that the GNU allocator sets apart for it. Without one
-/// every small piece takes a page.
+/// Address space of a thread: its stack, and the heap of 64 MiB that the GNU allocator reserves for it. Without this heap
+/// every small object takes a page.
 const STARTED: usize = STACK + (65 << 20);
-/// The heap is cut out of twice its size.
+/// The allocator reserves twice the heap size and keeps an aligned half.
 const STARTING: usize = 64 << 20;
 
 /// Name of every thread of a pool.
 pub const THREAD_NAME: &str = "feti-contact";
 
-/// Threads for each CPU at most: more of them wait for each other.
+/// Limit of threads per CPU: more threads would wait for each other.
 const PER_CPU: usize = 4;
 
-/// Threads to use: those asked for, or one for every CPU this process may run on; no more than the work can occupy. That
-/// counts as the power of two below it: problems of about the same size share a pool.
+/// Number of threads: as requested, or one per CPU of this process; at most as many as the work can occupy, rounded down
+/// to a power of two, so that problems of similar size share a pool.
 pub fn count(asked: i64, occupied: usize) -> usize {
     let cpus = || std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
     let occupied = 1 << occupied.max(1).ilog2();
     match usize::try_from(asked).unwrap_or(0).min(occupied) {
         0 if occupied == 1 => 1,
         0 => cpus().min(occupied),
-        // the system is asked only where it matters
+        // the system is asked only if it matters
         asked if asked <= PER_CPU => asked,
         asked => asked.min(PER_CPU * cpus()),
     }
 }
 
-/// Runs tasks `0..count`, which may share their own work among the threads, under the interrupt of this thread, and returns their results
-/// in order; the first error in order wins. Where the system does not
-/// give so many threads, fewer do the same.
+/// Runs tasks `0..count`, which may share their own work among the threads, under the interrupt of this thread, and
+/// returns their results in order; the first error in order wins. If the system gives fewer threads, these do all the
+/// work.
 pub fn run<T: Send>(
     threads: usize,
     count: usize,
@@ -64,11 +64,11 @@ pub fn run<T: Send>(
 }
 
 thread_local! {
-    /// Threads that loops over long vectors may use.
+    /// Number of threads for loops over long vectors.
     static TEAM: Cell<usize> = const { Cell::new(1) };
 }
 
-/// Does some work in which [`parts`] may share loops among so many threads.
+/// Runs `work`, in which [`parts`] may share loops among this number of threads.
 pub fn with_team<T>(threads: usize, work: impl FnOnce() -> T) -> T {
     struct Before(usize);
     impl Drop for Before {
@@ -80,7 +80,7 @@ pub fn with_team<T>(threads: usize, work: impl FnOnce() -> T) -> T {
     work()
 }
 
-/// Results of the parts `0..count` of a loop, in order. Which parts there are must not depend on the number of threads, and none may
+/// Results of the parts `0..count` of a loop, in order. The parts must not depend on the number of threads, and none may
 /// wait or fail.
 pub fn parts<T: Send>(count: usize, part: impl Fn(usize) -> T + Sync) -> Vec<T> {
     match if count > 1 { pool_for(TEAM.get()) } else { None } {
@@ -89,7 +89,7 @@ pub fn parts<T: Send>(count: usize, part: impl Fn(usize) -> T + Sync) -> Vec<T> 
     }
 }
 
-/// The same where every part works on a piece of its own: piece k of `pieces` goes to part k.
+/// As `parts`, with a piece of data for every part: piece k of `pieces` goes to part k.
 pub fn parts_of<P: Send, T: Send>(pieces: Vec<P>, part: impl Fn(usize, P) -> T + Sync) -> Vec<T> {
     match if pieces.len() > 1 { pool_for(TEAM.get()) } else { None } {
         Some(pool) => {
@@ -113,7 +113,7 @@ pub fn in_team<T: Send>(work: impl FnOnce() -> T + Send) -> T {
     }
 }
 
-/// The same where the calling thread runs the tasks `on_caller` itself.
+/// As `run`, but the calling thread itself runs the tasks `on_caller`.
 pub fn run_apart<T: Send>(
     threads: usize,
     count: usize,
@@ -133,7 +133,7 @@ pub fn run_apart<T: Send>(
     Ok(results.into_iter().flatten().collect())
 }
 
-/// Tasks to begin in the order `order`, a permutation of `0..order.len()`, and those that must run on the calling thread.
+/// The order in which tasks begin, a permutation of `0..order.len()`, and which tasks must run on the calling thread.
 #[derive(Clone, Copy)]
 pub struct Tasks<'a> {
     pub threads: usize,
@@ -141,21 +141,21 @@ pub struct Tasks<'a> {
     pub on_caller: &'a dyn Fn(usize) -> bool,
 }
 
-/// What the calling thread hears while tasks run.
+/// What the calling thread receives while tasks run.
 pub enum TaskEvent<T, M = ()> {
     /// A task is done, with its result.
     Done(usize, T),
-    /// A task that is not done yet has something to say.
+    /// A message of a task that is still running.
     Said(M),
-    /// None has been heard of for some time.
+    /// Nothing has arrived for some time.
     Nothing,
 }
 
-/// The calling thread hears of itself after this time.
+/// The calling thread receives `Nothing` after this time.
 const PATIENCE: Duration = Duration::from_millis(500);
 
-/// Begins tasks in their order while the calling thread hears of every result as it comes, in any order, between those it
-/// runs itself. All tasks are run; returns the error of the first by number.
+/// Starts tasks in their order; the calling thread receives every result when it is complete, between the tasks that it
+/// runs itself. All tasks are run; returns the error with the lowest task number.
 pub fn run_heard<T: Send>(
     tasks: Tasks,
     task: impl Fn(usize) -> Result<T> + Sync,
@@ -164,7 +164,7 @@ pub fn run_heard<T: Send>(
     run_telling(tasks, |k, _| task(k), hear)
 }
 
-/// The same where tasks say something before they are done.
+/// As `run_heard`, for tasks that send messages while they run.
 pub fn run_telling<T: Send, M: Send>(
     tasks: Tasks,
     task: impl Fn(usize, &dyn Fn(M)) -> Result<T> + Sync,
@@ -195,7 +195,7 @@ pub fn run_telling<T: Send, M: Send>(
         Some(pool) => pool.in_place_scope(|scope| {
             for k in others {
                 let (sender, run, present) = (sender.clone(), &run, &present);
-                // The calling thread listens until the last sender is gone: it is never sent into the void.
+                // The calling thread receives until the last sender is dropped, so no message is lost.
                 scope.spawn(move |_| present.during(|| run(k, &sender)));
             }
             for k in own {
@@ -215,13 +215,13 @@ pub fn run_telling<T: Send, M: Send>(
     first.map_or(Ok(()), |(_, error)| Err(error))
 }
 
-/// None on a thread of a pool, where a function of the host has called for another problem: to wait there could take the
-/// last thread that works.
+/// None on a thread of a pool, where a function of the host has called the library for another problem: waiting there
+/// could block the last working thread.
 fn pool_for(threads: usize) -> Option<Arc<ThreadPool>> {
     largest_pool(if rayon::current_thread_index().is_some() { 1 } else { threads })
 }
 
-/// A pool of so many threads, or of half as many, and so on; none of a single thread.
+/// A pool of this size, or half of it, and so on; none for a single thread.
 fn largest_pool(threads: usize) -> Option<Arc<ThreadPool>> {
     std::iter::successors(Some(threads), |threads| Some(threads / 2)).take_while(|t| *t > 1).find_map(pool)
 }
@@ -231,7 +231,7 @@ fn pool(threads: usize) -> Option<Arc<ThreadPool>> {
         let starting = headroom(threads * STARTED + STARTING, "threads").ok()?;
         let builder = ThreadPoolBuilder::new().num_threads(threads).stack_size(STACK);
         let pool = builder.thread_name(|_| THREAD_NAME.to_owned()).build().ok()?;
-        // Every thread takes its heap now, while there is room for it.
+        // every thread allocates its heap now, while there is room for it
         pool.broadcast(|_| drop(black_box(Box::new(0_u64))));
         drop(starting);
         Some(pool)
@@ -307,7 +307,7 @@ mod tests {
         assert_eq!(there, [(1, 2), (7, 27), (7, 28), (7, 2), (7, 29)]);
     }
 
-    /// Whatever else the threads of a pool run meanwhile.
+    /// Independently of other tasks that the threads of a pool run at that time.
     #[test]
     fn tasks_on_other_threads_are_those_of_the_call_that_began_them() {
         use crate::platform::interrupt::check;

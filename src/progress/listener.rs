@@ -2,31 +2,30 @@
 
 use crate::qp::StepKind;
 
-/// What the host hears.
+/// What the host's function receives.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Progress {
-    /// The step of the dual method that has just been done; none: a part of the setup, with counts of 0 and
-    /// figures that are not numbers.
+    /// The step of the dual method just completed; none: a part of the setup, with counts of 0 and values that are NaN.
     pub step: Option<StepKind>,
-    /// Part of the work of a setup that is done, an estimate that never falls; not a number in steps of the method.
+    /// Completed part of the work of a setup, an estimate that never decreases; NaN in steps of the method.
     pub fraction: f64,
     pub steps: usize,
     /// Products with F.
     pub products: usize,
     /// Contact rows with a force; parallel rows count once.
     pub active: usize,
-    /// Norm of the projected gradient against the one that stops the solve, and the same of its parts: on the
-    /// rows with a force (22), and of the rows that want one (23).
+    /// Norm of the projected gradient relative to the value that ends the solve; then the norms of its parts: on rows
+    /// with a force (22), and on rows that must get a force (23).
     pub residual: f64,
     pub free: f64,
     pub chopped: f64,
     /// `1/2 l'F l - l'd`, force x length.
     pub theta: f64,
-    /// Since the call began.
+    /// Time since the call began.
     pub seconds: f64,
 }
 
-/// What the host answers.
+/// The answer of the host.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Reply {
     Continue,

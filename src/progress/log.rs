@@ -9,25 +9,25 @@ use crate::progress::listener::Progress;
 use crate::progress::phases::PhaseReport;
 use crate::qp::StepKind;
 
-/// How much is told; each level tells what those before it tell.
+/// Amount of output; each level includes the previous ones.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum LogLevel {
-    /// One line for each solve, and warnings.
+    /// One line per solve, and warnings.
     Result = 1,
-    /// What is solved and how, and a line for each phase.
+    /// What is solved and how, and one line per phase.
     Phase = 2,
-    /// A line for each step.
+    /// One line per step.
     Step = 3,
 }
 
-/// Gets the level and the text of a line, without its end; 0 goes on, any other number ends the call.
+/// Receives the level and the text of a line, without line end; a result other than 0 ends the call.
 pub type LogListener = Box<dyn FnMut(LogLevel, &str) -> i32 + Send + Sync>;
 
-/// The host's function, for all who have something to say; clones are the same log.
+/// The host's log function; clones share it.
 #[derive(Clone, Default)]
 pub struct Log {
     host: Arc<Mutex<Option<(LogLevel, LogListener)>>>,
-    /// Phases that have been told.
+    /// Number of phases already reported.
     told: Arc<AtomicUsize>,
 }
 
@@ -36,12 +36,12 @@ impl Log {
         Self { host: Arc::new(Mutex::new(host)), ..Self::default() }
     }
 
-    /// No phase of the call that begins has been told.
+    /// Begins a call: no phase has been reported.
     pub fn begin(&self) {
         self.told.store(0, Ordering::Relaxed);
     }
 
-    /// Whether somebody hears lines of this level.
+    /// Whether the host wants lines of this level.
     pub fn is_heard(&self, level: LogLevel) -> bool {
         self.host.lock().is_ok_and(|host| host.as_ref().is_some_and(|(most, _)| level <= *most))
     }
@@ -60,7 +60,7 @@ impl Log {
         }
     }
 
-    /// The first `until` phases, each once; those that had nothing to do are left out.
+    /// Reports the first `until` phases, each once, without phases that had no work.
     pub fn phases(&self, phases: &[PhaseReport], until: usize) -> Result<()> {
         let until = until.min(phases.len());
         for phase in &phases[self.told.fetch_max(until, Ordering::Relaxed).min(until)..until] {
@@ -91,7 +91,7 @@ impl Log {
         })
     }
 
-    /// One line on a call that gave no answer. What the function says to this changes nothing.
+    /// One line about a call that gave no answer. The result of the host's function is ignored.
     pub fn failure(&self, call: &str, error: &Error, base: i64) {
         if error.kind != Kind::Callback {
             let error = error.clone().counted_from(base);

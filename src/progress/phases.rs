@@ -3,7 +3,7 @@
 use std::ffi::CStr;
 use std::time::{Duration, Instant};
 
-/// What a setup and a solve consist of, in this order.
+/// The phases of a setup and a solve, in this order.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Phase {
     Rows,
@@ -27,13 +27,13 @@ const NAMES: [&CStr; 8] = [
     c"recovery",
 ];
 
-/// One phase as the host reads it.
+/// One phase as reported to the host.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PhaseReport {
     pub name: &'static CStr,
-    /// Wall time in the last setup or solve that had something to do.
+    /// Wall time in the last setup or solve that had work in this phase.
     pub seconds: f64,
-    /// Bytes of what it made and keeps; 0 where they are not counted.
+    /// Bytes that the phase has made and keeps; 0 if not counted.
     pub bytes: usize,
 }
 
@@ -45,7 +45,7 @@ pub struct Phases {
 }
 
 impl Phases {
-    /// The phase has ended now; gives when.
+    /// Notes that the phase ends now; returns the time.
     pub fn ended(&mut self, phase: Phase, begun: Instant) -> Instant {
         let now = Instant::now();
         self.add(phase, now - begun);
@@ -56,7 +56,7 @@ impl Phases {
         self.spent[phase as usize] += time;
     }
 
-    /// Moves time from one phase to another whose work was done inside it.
+    /// Moves time from one phase to another whose work was done within it.
     pub fn move_time(&mut self, from: Phase, to: Phase, time: Duration) {
         let time = time.min(self.spent[from as usize]);
         self.spent[from as usize] -= time;

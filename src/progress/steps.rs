@@ -11,14 +11,15 @@ use crate::qp::{self, Counts, Observer, StepKind};
 pub struct Told {
     pub island: usize,
     pub counts: Counts,
-    /// Of this island alone.
+    /// Progress of this island only.
     pub progress: Progress,
 }
 
-/// What the solution of an island has to say, and whom it says it to: the host, or the thread that listens to many.
+/// Receives steps and log lines of the solution of an island: the host, or the thread that collects those of many
+/// islands.
 pub trait Voice {
     fn step(&mut self, told: Told) -> Result<()>;
-    /// A line of the log at level `LogLevel::Phase`.
+    /// Receives a log line at level `LogLevel::Phase`.
     fn line(&mut self, text: String) -> Result<()>;
 }
 
@@ -27,24 +28,24 @@ pub struct Steps<'a> {
     island: usize,
     stops: Stops,
     voice: &'a mut dyn Voice,
-    /// 2^p: what forces are divided by.
+    /// 2^p: forces are divided by it.
     unit: f64,
     /// Number of multipliers >= 0.
     bounded: usize,
-    /// Work of the methods that gave up, and of the present one up to its last step.
+    /// Work of methods that gave up, and of the present method up to its last step.
     before: Counts,
     last: Counts,
 }
 
 impl<'a> Steps<'a> {
-    /// Of island number `island`; forces inside are in units of 2^p = `unit`, multipliers of `bounded` groups are >= 0.
+    /// For island number `island`; forces are in units of 2^p = `unit`, multipliers of `bounded` groups are >= 0.
     pub fn new(island: usize, unit: f64, bounded: &[bool], stops: Stops, voice: &'a mut dyn Voice) -> Self {
         let bounded = bounded.iter().filter(|bounded| **bounded).count();
         let (before, last) = (Counts::default(), Counts::default());
         Self { island, stops, voice, unit, bounded, before, last }
     }
 
-    /// The multipliers that follow.
+    /// Sets which multipliers are bounded from now on.
     pub fn set_bounded(&mut self, bounded: &[bool]) {
         self.bounded = bounded.iter().filter(|bounded| **bounded).count();
     }
@@ -55,7 +56,7 @@ impl<'a> Steps<'a> {
 }
 
 impl Steps<'_> {
-    /// The work so far, with that of the methods before.
+    /// The work so far, including that of previous methods.
     fn counted(&mut self, now: Counts) -> Counts {
         if now.steps() < self.last.steps() || now.products < self.last.products {
             self.before = self.before + self.last;

@@ -7,28 +7,28 @@ use std::time::Instant;
 use crate::error::Result;
 use crate::platform::interrupt::{Clock, Interrupt};
 
-/// When to end, and the time so far.
+/// Conditions that end a call, and the time since it began.
 #[derive(Clone)]
 pub struct Stops {
-    /// What the tasks of the call run under: set by any thread, or after the limit, it ends them.
+    /// The interrupt of the tasks of the call: it ends them when a thread sets it or the limit is reached.
     pub interrupt: Interrupt,
     clock: Clock,
 }
 
 impl Stops {
-    /// Of a call that ends after `limit` seconds by `clock`.
+    /// For a call that ends after `limit` seconds by `clock`.
     pub fn new(cancelled: Arc<AtomicBool>, limit: f64, clock: Clock) -> Self {
         Self { interrupt: Interrupt::new(cancelled).after(limit, Arc::clone(&clock)), clock }
     }
 
-    /// Of nobody.
+    /// For tests: never ends.
     #[cfg(test)]
     pub fn never() -> Self {
         Self::new(Arc::default(), f64::INFINITY, from_now())
     }
 
-    /// What the tasks of the call run under where `say` gets lines on how far their loops are: one after a second at most, and after
-    /// a tenth of the time so far.
+    /// The interrupt of the tasks of the call, with progress lines of loops to `say`: one per second at most, and at
+    /// intervals of at least a tenth of the time so far.
     pub fn heard(&self, say: impl Fn(String) -> Result<()> + Send + Sync + 'static) -> Interrupt {
         let (clock, last) = (Arc::clone(&self.clock), Mutex::new(self.seconds()));
         let hearer = move |part: &'static str, what: &'static str, count: usize| {
@@ -43,7 +43,7 @@ impl Stops {
         self.interrupt.clone().heard_by(Arc::new(hearer))
     }
 
-    /// Ends whatever runs.
+    /// Ends all running tasks.
     pub fn cancel(&self) {
         self.interrupt.set();
     }
@@ -57,7 +57,7 @@ impl Stops {
     }
 }
 
-/// Wall time since now.
+/// Wall time from now on.
 pub fn from_now() -> Clock {
     let begun = Instant::now();
     Arc::new(move || begun.elapsed().as_secs_f64())

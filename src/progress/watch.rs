@@ -13,23 +13,23 @@ use crate::progress::steps::{Told, Voice};
 use crate::progress::stops::{from_now, Stops};
 use crate::qp::Counts;
 
-/// The host's functions and its wish to cancel, kept between calls.
+/// The host's functions and its request to cancel, kept between calls.
 #[derive(Default)]
 pub struct Host {
     cancelled: Arc<AtomicBool>,
     pub listener: Option<Listener>,
     pub log: Log,
-    /// What shows the seconds of a call; none: wall time from its beginning.
+    /// The clock of a call, in seconds; none: wall time since its beginning.
     pub clock: Option<Clock>,
 }
 
 impl Host {
-    /// Set to true by any thread, it ends the setup or the solve that runs; the next one begins by clearing it.
+    /// If any thread sets it to true, the running setup or solve ends; the next call clears it first.
     pub fn canceller(&self) -> Arc<AtomicBool> {
         Arc::clone(&self.cancelled)
     }
 
-    /// Begins a call, which ends after `limit` seconds; `phases` are those of the calls before.
+    /// Begins a call, which ends after `limit` seconds; `phases` are those of previous calls.
     pub fn watch(&mut self, limit: f64, phases: Phases) -> Watch {
         self.cancelled.store(false, Ordering::Relaxed);
         let clock = self.clock.clone().unwrap_or_else(from_now);
@@ -38,14 +38,14 @@ impl Host {
         Watch { stops, listener, log, phases, fraction: 0.0, islands: Vec::new() }
     }
 
-    /// The call has ended: takes back what it was watched with, and gives its phases.
+    /// Ends the call: takes back its listeners and returns its phases.
     pub fn ended(&mut self, watch: Watch) -> Phases {
         (self.listener, self.log) = (watch.listener, watch.log);
         watch.phases
     }
 }
 
-/// A part of the setup that has a task for every body.
+/// A part of the setup with one task per body.
 pub struct SetupPart {
     pub threads: usize,
     /// Work of each body, in any unit, > 0.
@@ -69,9 +69,9 @@ pub struct Watch {
     listener: Option<Listener>,
     pub log: Log,
     pub phases: Phases,
-    /// Of the setup.
+    /// Completed part of the setup.
     fraction: f64,
-    /// Work of every island so far, and its rows with a force.
+    /// Work of every island so far, and number of its rows with a force.
     islands: Vec<(Counts, usize)>,
 }
 
@@ -97,9 +97,9 @@ impl Voice for Watch {
 }
 
 impl Watch {
-    /// Runs a task for every body of a part of the setup; `keep` gets the results as they come, on this thread, which
-    /// tells the host of each. The body with most work comes first: what it needs besides its result is gone when the
-    /// results of the others are there. Once the host wants to end, tasks that have begun end where they can.
+    /// Runs a task for every body in a part of the setup; `keep` receives the results in any order on this thread, which
+    /// reports each to the host. The body with most work comes first, so that its temporary memory is freed before all
+    /// results are stored. If the host wants to end, tasks that have begun end as soon as possible.
     pub fn every_body<T: Send>(
         &mut self,
         part: &SetupPart,
@@ -131,13 +131,13 @@ impl Watch {
         told.and(ended)
     }
 
-    /// Tells the host that all of the setup is done.
+    /// Reports to the host that the setup is complete.
     pub fn setup_done(&mut self) -> Result<()> {
         self.fraction = 1.0;
         self.part_done()
     }
 
-    /// Tells the host how much of the setup is done.
+    /// Reports to the host the completed part of the setup.
     fn part_done(&mut self) -> Result<()> {
         self.tell(&Progress {
             step: None,
@@ -172,7 +172,7 @@ mod tests {
     use super::*;
     use std::sync::atomic::AtomicUsize;
 
-    /// One task after the other; the first one is where another thread cancels.
+    /// One task after the other; the first is running when another thread cancels.
     #[test]
     fn no_body_is_begun_after_a_cancel() {
         let (begun, mut watch) = (AtomicUsize::new(0), Host::default().watch(1e300, Phases::default()));

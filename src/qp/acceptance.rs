@@ -5,41 +5,42 @@ use crate::linalg::vector::norm;
 use crate::qp::gradient::Split;
 use crate::qp::Counts;
 
-/// When to stop.
+/// Limits of a run.
 #[derive(Debug, Clone, Copy)]
 pub struct Limits {
-    /// The projected gradient is small at `tolerance` x the scale of the judge.
+    /// The projected gradient is small at `tolerance` times the scale of the acceptance test.
     pub tolerance: f64,
     /// Gamma > 0 of the proportionality test, no unit.
     pub gamma: f64,
     pub steps: usize,
 }
 
-/// The acceptance test. Knows what the numbers mean: gives the length the residual is measured against, and the last word.
+/// The acceptance test. It knows the physical meaning of the problem: it gives the length to which the residual is
+/// relative, and decides about a point.
 pub trait AcceptanceTest {
     /// Scale of the gaps at the point x with multiplier alpha.
     fn scale(&mut self, x: &[f64], alpha: &[f64]) -> Result<f64>;
     /// Whether the answer recovered from (x, alpha) passes its certificate.
     fn accepts(&mut self, x: &[f64], alpha: &[f64]) -> Result<bool>;
-    /// How many times too large what the last point was refused for is; not known to one who does not ask.
+    /// Ratio of the violation to its limit for the last point refused; not known if the test does not compute it.
     fn missed(&self) -> Option<f64> {
         None
     }
-    /// It judges by better data than A and b: a residual of zero might be refused.
+    /// It uses better data than A and b: a point with zero residual may be refused.
     fn has_better_data(&self) -> bool {
         false
     }
-    /// A solution that was not accepted, mended by better data than A and b until it is; none where that fails.
+    /// Corrects a solution that was not accepted with better data than A and b until it passes; none if that fails.
     fn mended(&mut self, _: &Solution) -> Result<Option<Solution>> {
         Ok(None)
     }
-    /// The scale without any travel, at the point accepted last; not known before, or to one who does not ask.
+    /// The scale without rigid travel, at the last accepted point; none before, or if the test does not compute it.
     fn length(&self) -> Option<f64> {
         None
     }
 }
 
-/// Sees every step; an error ends the run, with the point reached where it says `Cancelled` or `TimeOver`.
+/// Receives every step; an error ends the run, with the point reached if the error is `Cancelled` or `TimeOver`.
 pub trait Observer {
     fn step(&mut self, now: &StepReport) -> Result<()>;
 }
@@ -54,13 +55,13 @@ pub enum StepKind {
     Newton,
 }
 
-/// Where the method stands after a step.
+/// The state of the method after a step.
 pub struct StepReport<'a> {
     pub kind: StepKind,
     pub counts: &'a Counts,
     pub active: &'a [bool],
     pub theta: f64,
-    /// Norms of `g^P`, of its parts `g^I` (22) and `g^C` (23), and the norm that counts as zero.
+    /// Norms of `g^P`, of its parts `g^I` (22) and `g^C` (23), and the norm below which `g^P` counts as zero.
     pub residual: f64,
     pub free: f64,
     pub chopped: f64,
@@ -76,29 +77,30 @@ impl<'a> StepReport<'a> {
 
 #[derive(Debug, Clone, PartialEq)]
 pub enum Verdict {
-    /// The judge accepted the answer.
+    /// The answer was accepted.
     Solved,
     StepLimit,
     TimeLimit,
     Cancelled,
-    /// theta no longer decreases, and the judge does not accept.
+    /// theta no longer decreases, and the answer is not accepted.
     Stalled,
-    /// The residual is as small as asked, eight times over, and the judge does not accept.
+    /// The residual is below a target tightened eight times, and the answer is not accepted.
     Inaccurate,
-    /// No x >= 0 was found with `G x = e`; that of the solution comes nearest, `direction = e - G x`. Where G resists it
-    /// nowhere, `G_i'direction <= 0` (`= 0` where x_i is free), it proves that there is none; `margin = |direction| / |e|`.
+    /// No x >= 0 with `G x = e` was found; x of the solution is nearest to it, `direction = e - G x`. If no row of G
+    /// resists it, `G_i'direction <= 0` (`= 0` if x_i is free), it proves that there is none; `margin = |direction| /
+    /// |e|`.
     Infeasible {
         direction: Vec<f64>,
         margin: f64,
     },
-    /// theta falls without end along `-p`.
+    /// theta decreases without end along `-p`.
     Unbounded {
         p: Vec<f64>,
     },
 }
 
 impl Verdict {
-    /// How a run ends that observer or operator would not let go on.
+    /// The verdict if an observer or operator has stopped the run.
     pub fn of_refusal(error: Error) -> Result<Self> {
         match error.kind {
             Kind::Cancelled => Ok(Self::Cancelled),
@@ -107,7 +109,8 @@ impl Verdict {
         }
     }
 
-    /// What was found for a solution that ends so; where the host or the time has refused it, `otherwise` and the verdict of that.
+    /// The result with this verdict; if the host or the time limit has stopped its computation, `otherwise` with the
+    /// verdict for that.
     pub fn with<T>(self, found: Result<T>, otherwise: T) -> Result<(T, Self)> {
         match found {
             Ok(found) => Ok((found, self)),
@@ -120,16 +123,17 @@ impl Verdict {
 pub struct Solution {
     pub x: Vec<f64>,
     pub alpha: Vec<f64>,
-    /// Dimension of the part of alpha that the free rows leave undetermined.
+    /// Dimension of the part of alpha that the free rows do not determine.
     pub undetermined: usize,
-    /// What the judge measured the residual against.
+    /// The scale to which the acceptance test relates the residual.
     pub scale: f64,
     pub verdict: Verdict,
     pub counts: Counts,
 }
 
 impl Solution {
-    /// What another method found, or, where the host or the time has refused it, this solution with the verdict of that.
+    /// The result of another method; if the host or the time limit has stopped it, this solution with the verdict for
+    /// that.
     pub fn unless(self, found: Result<Self>) -> Result<Self> {
         match found {
             Ok(found) => Ok(found),
@@ -142,7 +146,7 @@ impl Solution {
 pub mod tests {
     use super::*;
 
-    /// Accepts every point whose residual is as small as asked; sees `allowed` steps.
+    /// Accepts every point whose residual is below the target; permits `allowed` steps.
     pub struct Lenient {
         pub allowed: usize,
     }

@@ -1,5 +1,5 @@
-//! Data that one solve passes to the next, with other loads and gaps: the part of the coarse problems that all faces of one G share, and the
-//! directions of its steps with their images.
+//! Data that one solve passes to the next, with other loads and gaps: the part of the coarse problems that all faces of
+//! one G share, and the directions of its steps with their images.
 
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
@@ -15,19 +15,19 @@ use crate::qp::conjugate::Conjugate;
 pub struct Space {
     /// `G'`, m x r.
     pub rows: Runs,
-    /// The power of two s that W is divided by twice.
+    /// The power of two s for which W is divided by s^2.
     pub unit: f64,
-    /// Diagonal of the whole `G G' / s^2`: the largest entry in [1, 4).
+    /// Diagonal of `G G' / s^2` with all rows: its largest entry is in [1, 4).
     pub whole: Vec<f64>,
     /// Rows that faces may hold.
     pub bounded: Vec<bool>,
-    /// None where there are no modes.
+    /// None without modes.
     pub factors: Option<FaceFactors>,
-    /// Made for the first face that leaves much of the space free.
+    /// Made for the first face that leaves many motions free.
     pub by_blocks: Option<Blocks>,
 }
 
-/// While no method uses them. What they are given for, A, the blocks of G and its rounding, must not change.
+/// Storage while no method uses the data. A, the blocks of G and the rounding of G must not change.
 #[derive(Default)]
 pub struct BetweenSolves {
     space: Mutex<Option<Space>>,
@@ -58,7 +58,7 @@ impl Space {
 }
 
 impl BetweenSolves {
-    /// Takes the space that is kept, if it is that of these rows.
+    /// Takes the stored space if it belongs to these rows.
     pub fn take_space(&self, g_transposed: &Csr, bounded: &[bool]) -> Option<Space> {
         locked(&self.space).take_if(|space| space.bounded == bounded && space.rows.is_of(g_transposed))
     }

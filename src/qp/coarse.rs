@@ -1,5 +1,5 @@
-//! The coarse space of a face: `W_F = G_F G_F'` over the rows F that are not held at their bound, r x r and
-//! sparse. Its pattern is analysed once for all faces, and the part that they share is factorised once.
+//! The coarse space of a face: `W_F = G_F G_F'` over the rows F that are not held at their bound, r x r and sparse. Its
+//! pattern is analysed once for all faces, and the part that they share is factorised once.
 
 use std::sync::Arc;
 
@@ -18,16 +18,16 @@ pub struct Coarse<'a> {
     /// `G'`, m x r.
     g_transposed: &'a Csr,
     blocks: &'a [usize],
-    /// A motion a is free when `|G_F a| <= rounding |G| |a|`.
+    /// A motion a is free if `|G_F a| <= rounding |G| |a|`.
     rounding: f64,
     space: Space,
-    /// Where the space goes in the end.
+    /// Receives the space when this is dropped.
     kept: Option<&'a BetweenSolves>,
-    /// The last face that left much of the space free left motions free: the next one is likely to.
+    /// The last face solved by blocks had free motions: the next face is likely to have some.
     left_free: bool,
-    /// The face of all rows, and the last other one.
+    /// The face of all rows, and the last other face.
     faces: [Option<CoarseFace>; 2],
-    /// Of `G l = e` in the last projection on the polyhedron.
+    /// Multiplier of `G l = e` in the last projection on the polyhedron.
     pub last_multiplier: Option<Vec<f64>>,
     pub solves: usize,
     pub factorisations: usize,
@@ -41,15 +41,15 @@ struct CoarseFace {
 enum Solver {
     Cholesky {
         factor: Arc<Cholesky>,
-        /// Of some motion: see `WEAK`.
+        /// Some motion is resisted weakly: see `WEAK`.
         weak: bool,
     },
-    /// Minimum norm.
+    /// Solution of minimum norm.
     Singular(Box<dyn GeneralInverse>),
 }
 
 impl<'a> Coarse<'a> {
-    /// That of a problem; the rows of G of stiff and of soft bodies are of one size.
+    /// The space of a problem; the rows of G of stiff and soft bodies have similar size.
     pub fn of(qp: &Qp<'a>) -> Result<Self> {
         let kept = qp.kept.and_then(|kept| kept.take_space(qp.g_transposed, qp.bounded));
         let space = kept.map_or_else(|| Space::new(qp.g_transposed, qp.bounded), Ok)?;
@@ -58,7 +58,7 @@ impl<'a> Coarse<'a> {
         Ok(coarse)
     }
 
-    /// `rounding` is how far rows of G are known against their size.
+    /// `rounding`: accuracy of the rows of G relative to their size.
     fn on_space(space: Space, g_transposed: &'a Csr, blocks: &'a [usize], rounding: f64) -> Self {
         Self {
             g_transposed,
@@ -89,7 +89,8 @@ impl<'a> Coarse<'a> {
         self.space.unit * self.space.unit * norm_max(&self.space.whole)
     }
 
-    /// The space on the rows that are not held: `W_F` is factorised, unless that has just been done or the host or the time forbids it.
+    /// The space on the rows that are not held: factorises `W_F` if it is not the last face, unless the host or the time
+    /// limit forbids it.
     pub fn on(&mut self, held: &[bool]) -> Result<OnFace<'_>> {
         let selected = usize::from(held.contains(&true));
         if self.space.factors.is_some() && self.faces[selected].as_ref().is_none_or(|face| face.held != held)
@@ -104,9 +105,9 @@ impl<'a> Coarse<'a> {
         Ok(OnFace { unit: self.space.unit, solver, solves: &mut self.solves })
     }
 
-    /// `G D G' + rho I`, D = diag(`weights`) >= 0; none where there are no modes, or D leaves one of them to nothing.
+    /// `G D G' + rho I`, D = diag(`weights`) >= 0; none if there are no modes or the weights resist some mode too little.
     pub fn weighted(&mut self, weights: &[f64], rho: f64) -> Result<Option<Weighted>> {
-        /// Of its diagonal entry in `G G'`: what weights that vanish do not resist is held by this part.
+        /// Added part of the diagonal entry in `G G'`, for motions that only rows with vanishing weights resist.
         const HELD: f64 = 1e-10;
         let Space { factors: Some(factors), unit, whole, .. } = &self.space else { return Ok(None) };
         interrupt::check()?;
@@ -122,7 +123,7 @@ impl<'a> Coarse<'a> {
         Ok(factor.map(|factor| Weighted { factor, unit: *unit }))
     }
 
-    /// `W_F^-1`, or W_F+ where some motions are free or held weakly: by dense parts where these are small.
+    /// `W_F^-1`, or W_F+ if some motions are free or resisted weakly: by dense parts if these are small.
     fn solver(&mut self, held: &[bool]) -> Result<Solver> {
         let (g_transposed, rounding) = (self.g_transposed, self.rounding);
         let Space { unit, whole, factors, bounded, by_blocks, .. } = &mut self.space;
@@ -157,12 +158,13 @@ impl<'a> Coarse<'a> {
         Ok(self.fitted(held, v)?.0)
     }
 
-    /// `alpha = argmin |v_F - G_F'alpha|` of minimum norm, and what is left of v on F, 0 on the rows that are held.
+    /// `alpha = argmin |v_F - G_F'alpha|` of minimum norm, and the remainder of v on F, 0 on the rows that are held.
     pub fn fitted(&mut self, held: &[bool], v: &[f64]) -> Result<(Vec<f64>, Vec<f64>)> {
-        /// Rounding of `G_F v` is large against what weakly held motions have of it; of what is left of v it is not.
+        /// The rounding of `G_F v` is large relative to the part of weakly resisted motions; that of the remainder is
+        /// not.
         const PASSES: usize = 3;
-        /// Rest of `G_F (v - G'alpha)` times the inverse root of the smallest eigenvalue of W_F to be expected, r in a chain of r
-        /// motions, against what is left of v: more would be error.
+        /// Limit of the error: the residual `G_F (v - G'alpha)` times the inverse root of the smallest expected
+        /// eigenvalue of W_F (the factor is r for a chain of r motions), relative to the remainder of v.
         const ERROR: f64 = 0.1;
         let amplified = self.dimension() as f64;
         let mut rest: Vec<f64> = v.iter().zip(held).map(|(v, held)| if *held { 0.0 } else { *v }).collect();
@@ -196,7 +198,7 @@ impl<'a> Coarse<'a> {
         self.space.rows.mul_transposed_abs(x)
     }
 
-    /// `v <- P_F v`: held entries to zero, then `v_F - G_F' W_F+ G_F v_F`.
+    /// `v <- P_F v`: sets held entries to zero, then `v_F - G_F' W_F+ G_F v_F`.
     pub fn project(&mut self, held: &[bool], v: &mut [f64]) -> Result<()> {
         if self.dimension() == 0 {
             v.iter_mut().zip(held).filter(|(_, held)| **held).for_each(|(v, _)| *v = 0.0);
@@ -216,7 +218,7 @@ impl Drop for Coarse<'_> {
     }
 }
 
-/// `G D G' + rho I` of all rows.
+/// `G D G' + rho I` over all rows.
 pub struct Weighted {
     factor: Cholesky,
     unit: f64,
@@ -236,7 +238,7 @@ impl Weighted {
 /// The coarse space on one face.
 pub struct OnFace<'c> {
     unit: f64,
-    /// None where there are no modes.
+    /// None without modes.
     solver: Option<&'c Solver>,
     solves: &'c mut usize,
 }
@@ -256,7 +258,7 @@ impl OnFace<'_> {
         Ok(self.in_units(&x))
     }
 
-    /// `W_F^-1 rhs`, or `(W_F + 1e-8 N N')^-1 rhs` where W_F has the kernel N.
+    /// `W_F^-1 rhs`, or `(W_F + 1e-8 N N')^-1 rhs` if W_F has the kernel N.
     pub fn solve_regularised(&mut self, rhs: &[f64]) -> Result<Vec<f64>> {
         const WEIGHT: f64 = 1e-8;
         let mut x = self.solve(rhs)?;
@@ -266,7 +268,7 @@ impl OnFace<'_> {
         Ok(x)
     }
 
-    /// `x += N N'b`, N the kernel of `W_F`: the part of b along motions that the face leaves free.
+    /// `x += N N'b`, N the kernel of `W_F`: the part of b along free motions.
     pub fn add_free_part(&self, b: &[f64], x: &mut [f64]) {
         if let Some(solver) = self.singular() {
             solver.add_kernel_part(1.0, b, x);
@@ -278,14 +280,14 @@ impl OnFace<'_> {
         self.singular().map_or(0, GeneralInverse::deficiency)
     }
 
-    /// T with `T'W_F T = I` on all that the face resists, r x rank, where it does not resist all motions well.
+    /// T with `T'W_F T = I` for all motions that the face resists, r x rank; none if it resists all motions well.
     pub fn basis(&self) -> Option<Matrix> {
         let mut basis = self.singular()?.basis();
         basis.data.iter_mut().for_each(|v| *v /= self.unit);
         Some(basis)
     }
 
-    /// Some motions are held so weakly that rounding of `G_F v` matters in `W_F+ G_F v`.
+    /// Some motions are resisted so weakly that rounding of `G_F v` matters in `W_F+ G_F v`.
     fn is_weak(&self) -> bool {
         match self.solver {
             Some(Solver::Cholesky { weak, .. }) => *weak,
@@ -314,19 +316,20 @@ pub struct AnswerFace<'a> {
 }
 
 impl<'a> AnswerFace<'a> {
-    /// `rounding`: how far rows of G are known.
+    /// `rounding`: accuracy of the rows of G.
     pub fn new(g_transposed: &'a Csr, blocks: &'a [usize], held: &'a [bool], rounding: f64) -> Result<Self> {
-        // no other face will follow
+        // there will be no other face
         let space = Space::new(g_transposed, &vec![true; held.len()])?;
         Ok(Self { coarse: Coarse::on_space(space, g_transposed, blocks, rounding), held })
     }
 
-    /// Of a problem, with what its methods know of the space.
+    /// The face of a problem, with the data that methods have stored about the space.
     pub fn of(qp: &Qp<'a>, held: &'a [bool]) -> Result<Self> {
         Ok(Self { coarse: Coarse::of(qp)?, held })
     }
 
-    /// Basis of the free motions, `|G_F a| <= rounding |G| |a|`, r x deficiency: what the rows that are not held do not resist.
+    /// Basis of the free motions, `|G_F a| <= rounding |G| |a|`, r x deficiency, which the rows that are not held do not
+    /// resist.
     pub fn undetermined(&mut self) -> Result<Matrix> {
         /// Entries of a basis vector below this, in units of `rounding`, are rounding.
         const DROP: f64 = 16.0;

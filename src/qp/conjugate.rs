@@ -1,16 +1,16 @@
-//! Directions kept with their images, conjugate to each other: `p_i'A p_j = sigma` for i = j, else 0. They lie
-//! on the present face and in the kernel of G, so that theta is minimised over their span without any product: P8 and P13 of
+//! Directions stored with their images, conjugate to each other: `p_i'A p_j = sigma` for i = j, else 0. They lie on the
+//! present face and in the kernel of G, so that theta is minimised over their span without a product: P8 and P13 of
 //! docs/method.md.
 
 use crate::linalg::vector::{add_multiples, axpy, dot, dots, norm, norm_max, power_of_two_below, LONG};
 
 /// More directions than this cost more than the products they save.
 pub const MOST: usize = 100;
-/// A direction whose curvature is all but in the span of the others tells nothing new.
+/// A direction is not added if less than this part of its curvature is outside the span of the others.
 const NEW: f64 = 1e-10;
-/// Directions whose energy product is below this part of their energies are conjugate but for rounding.
+/// Directions are conjugate up to rounding if their energy product is below this part of their energies.
 const ROUNDED: f64 = 1e-12;
-/// Entries of a row below this part of the largest are nothing but rounding: the row depends on others that are held.
+/// Entries of a row below this part of the largest are rounding: the row depends on others that are held.
 const ROUNDING: f64 = 1e-13;
 
 /// A direction and its image.
@@ -20,8 +20,8 @@ type Pair = (Vec<f64>, Vec<f64>);
 pub struct Conjugate {
     /// Pairs (p, A p), oldest first.
     pairs: Vec<Pair>,
-    /// sigma: the power of two below the Rayleigh quotient of the first direction, so that powers of two in A
-    /// change no bit of the rest.
+    /// sigma: the largest power of two that does not exceed the Rayleigh quotient of the first direction, so that powers
+    /// of two in A change no other bit.
     curvature: f64,
 }
 
@@ -34,7 +34,7 @@ impl Conjugate {
         }
     }
 
-    /// Takes (p, A p) in; a part that is not conjugate to the others is removed.
+    /// Adds (p, A p) after removing the part that is not conjugate to the others.
     pub fn push(&mut self, p: &[f64], image: &[f64]) {
         let (mut p, mut image) = (p.to_vec(), image.to_vec());
         let whole = dot(&p, &image);
@@ -69,8 +69,8 @@ impl Conjugate {
         (!self.pairs.is_empty()).then_some((d, image))
     }
 
-    /// Directions that are taken from a vector at a time: all from a long one, which is read once for them; one after the other from a
-    /// short one, where rounding of the one before is seen by the next.
+    /// Directions that are subtracted from a vector together: all of them from a long vector, which is read once; one
+    /// after the other from a short vector, so that each removes the rounding of the previous one.
     fn groups(&self, length: usize) -> std::slice::Chunks<'_, Pair> {
         self.pairs.chunks(if length < LONG { 1 } else { MOST })
     }
@@ -93,8 +93,8 @@ impl Conjugate {
         self.pairs.clear();
     }
 
-    /// Keeps the directions of the span that vanish on row i: one less than before, by a reflection that turns
-    /// the row into (0, ..., 0, length).
+    /// Keeps the directions of the span that are zero on row i: one fewer than before, by a reflection that maps the row
+    /// to (0, ..., 0, length).
     pub fn hold(&mut self, i: usize) {
         let mut w: Vec<f64> = self.pairs.iter().map(|(p, _)| p[i]).collect();
         let Some(&last) = w.last() else { return };

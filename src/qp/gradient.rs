@@ -1,8 +1,8 @@
-//! The projected gradient `g^P = g^I + g^C` of Section 4, and how far a direction leads within the bounds.
+//! The projected gradient `g^P = g^I + g^C` of Section 4, and the largest feasible step along a direction.
 
 use crate::linalg::vector::{dot, norm};
 
-/// Of the gradient g at a point x >= 0, m entries each.
+/// Parts of the gradient g at a point x >= 0, m entries each.
 #[derive(Clone)]
 pub struct Split {
     /// A(x) of (21): bounded rows at zero. The others are F(x).
@@ -14,13 +14,13 @@ pub struct Split {
 }
 
 impl Split {
-    /// Of no gradient yet.
+    /// Without a gradient.
     pub fn of(active: Vec<bool>) -> Self {
         let (free, chopped) = (vec![0.0; active.len()], vec![0.0; active.len()]);
         Self { active, free, chopped }
     }
 
-    /// (21), (22), (23); whether the active set is still the same.
+    /// (21), (22), (23); returns whether the active set is unchanged.
     pub fn update(&mut self, active: Vec<bool>, g: &[f64]) -> bool {
         let same = active == self.active;
         self.active = active;
@@ -28,7 +28,7 @@ impl Split {
         same
     }
 
-    /// (22), (23) on the active set as it stands: rows at zero may count as free.
+    /// (22), (23) on the present active set: rows at zero may count as free.
     pub fn update_on_face(&mut self, g: &[f64]) {
         for (i, active) in self.active.iter().enumerate() {
             let (free, chopped) = if *active { (0.0, g[i].min(0.0)) } else { (g[i], 0.0) };
@@ -41,8 +41,8 @@ impl Split {
         (dot(&self.free, &self.free) + dot(&self.chopped, &self.chopped)).sqrt()
     }
 
-    /// x is *proportional* when `|g^C| <= Gamma |g^I|` (Section 4): the error left on the current face still
-    /// outweighs the error of having chosen that face.
+    /// x is *proportional* if `|g^C| <= Gamma |g^I|` (Section 4): the error on the current face exceeds the error of the
+    /// choice of this face.
     pub fn is_proportional(&self, gamma: f64) -> bool {
         norm(&self.chopped) <= gamma * norm(&self.free)
     }

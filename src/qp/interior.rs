@@ -1,6 +1,6 @@
 //! A primal-dual interior point method (Mehrotra 1992) for `min delta/2 |l - y|^2 + rho/2 |a|^2` over `l_i >= 0 (i bounded)`,
-//! `G l + rho a = e`: about twenty factors of `G D G' + rho I`, D > 0 a diagonal matrix, for any number of rows. Its a shows
-//! which rows have a force; other methods then compute the last digits of the answer.
+//! `G l + rho a = e`: about twenty factorisations of `G D G' + rho I`, D > 0 a diagonal matrix, for any number of rows.
+//! Its a shows which rows have a force; other methods then compute the last digits of the answer.
 
 use crate::error::Result;
 use crate::linalg::vector::{axpy, norm};
@@ -9,10 +9,10 @@ use crate::qp::coarse::{Coarse, Weighted};
 use crate::qp::Qp;
 
 const STEPS: usize = 40;
-/// Equations, and products of forces and their multipliers against squared forces, are met as well as this.
+/// Accuracy of the equations, and of products of forces and their multipliers relative to squared forces.
 const ACCURACY: f64 = 1e-7;
 const COMPLEMENTARITY: f64 = 1e-12;
-/// Part of the way to the next bound.
+/// Part of the step to the next bound.
 const CLOSE: f64 = 0.995;
 
 /// The problem: rows in `held` have no force.
@@ -36,7 +36,7 @@ pub struct Point {
 }
 
 impl Interior<'_> {
-    /// Near the minimum, as far as the steps and rounding allow.
+    /// A point close to the minimum, within the limits of steps and rounding.
     pub fn minimise(&self, coarse: &mut Coarse, multiplier: Vec<f64>) -> Result<Point> {
         let mut at = self.start(multiplier);
         for step in 0..STEPS {
@@ -79,12 +79,12 @@ impl Interior<'_> {
         Ok(at)
     }
 
-    /// Forces of rows with a bound.
+    /// Whether row i may have a force and has a bound.
     fn is_inside(&self, i: usize) -> bool {
         self.qp.bounded[i] && !self.held[i]
     }
 
-    /// The point on the central path of these multipliers where forces are as large as those of v = delta y + G'a, or e, make them.
+    /// The point on the central path for this multiplier, with forces as large as v = delta y + G'a or e causes.
     fn start(&self, multiplier: Vec<f64>) -> Point {
         let m = self.y.len();
         let v: Vec<f64> =
@@ -122,7 +122,7 @@ impl Interior<'_> {
         left
     }
 
-    /// The largest step that leaves forces and slacks >= 0.
+    /// The largest step for which forces and slacks stay >= 0.
     fn longest(&self, at: &Point, step: &Point) -> f64 {
         let bound = |x: f64, dx: f64| if dx < 0.0 { -x / dx } else { f64::INFINITY };
         (0..self.y.len()).filter(|&i| self.is_inside(i)).fold(f64::INFINITY, |t, i| {
@@ -131,7 +131,7 @@ impl Interior<'_> {
     }
 }
 
-/// Newton's method at one point, whose `delta (l - y) - G'a - s` is 0 and stays so.
+/// Newton's method at one point, where `delta (l - y) - G'a - s` is 0 and remains 0.
 struct Newton<'a> {
     of: &'a Interior<'a>,
     at: &'a Point,
@@ -173,7 +173,7 @@ mod tests {
     use super::*;
     use crate::linalg::{Csr, Packed};
 
-    /// Near the answers known by hand: on the simplex, and of a cone that e is not in.
+    /// Close to the answers known by hand: on the simplex, and for a cone that does not contain e.
     #[test]
     fn the_minimum_is_the_known_one_with_and_without_a_rest() {
         let mut g_transposed = Csr::empty(2);

@@ -36,20 +36,21 @@ pub use smalbe::smalbe;
 use crate::error::Result;
 use crate::linalg::{Csr, Operator};
 
-/// The problem; `G` is given as `G'`, m x r, the modes of each body divided by one number so that `|G_p|` = 1.
+/// The problem; `G` is given as `G'`, m x r; the modes of each body are divided by one number so that `|G_p|` = 1.
 #[derive(Clone, Copy)]
 pub struct Qp<'a> {
     pub a: &'a dyn Operator,
     pub b: &'a [f64],
     pub g_transposed: &'a Csr,
-    /// First columns of the blocks of G, ascending: modes that belong together. Empty: each column by itself.
+    /// First columns of the blocks of G, ascending: modes that belong together. Empty: each column is a block.
     pub blocks: &'a [usize],
-    /// A motion a is free when `|G_F a| <= rounding |G| |a|`: how far G is known, at least 64 eps.
+    /// A motion a is free if `|G_F a| <= rounding |G| |a|`: accuracy of G, at least 64 eps.
     pub rounding: f64,
     pub e: &'a [f64],
     pub bounded: &'a [bool],
     pub preconditioner: Option<&'a dyn Preconditioner>,
-    /// Where one method and one solve leave to the next what faces of this G share, and directions with their images.
+    /// Data passed to the next method and the next solve: the common part of the faces of this G, and directions with
+    /// their images.
     pub kept: Option<&'a BetweenSolves>,
 }
 
@@ -73,7 +74,7 @@ pub trait Preconditioner: Sync {
     fn apply(&self, held: &[bool], r: &[f64], z: &mut [f64]) -> Result<()>;
 }
 
-/// What the method did, counted.
+/// Counts of the work of the method.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Counts {
     /// Products with A.
@@ -90,9 +91,9 @@ pub struct Counts {
     pub preconditioned: usize,
     /// Faces solved directly.
     pub direct: usize,
-    /// Problems with bounds alone: outer iterations of an augmented Lagrangian.
+    /// Problems with bounds only: outer iterations of an augmented Lagrangian method.
     pub outer: usize,
-    /// Newton steps for friction, and the starts that they took.
+    /// Newton steps for friction, and number of starts.
     pub newton: usize,
     pub starts: usize,
 }

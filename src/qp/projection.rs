@@ -16,20 +16,22 @@ pub struct Projected {
 }
 
 const NEWTON_STEPS: usize = 100;
-/// Newton steps that rows cut to less than this part of them, so many of which are followed by a look into the interior.
+/// A Newton step counts as cut if rows shorten it below this part; after `PATIENCE` cut steps an interior point method
+/// follows.
 const CUT: f64 = 0.9;
 const PATIENCE: usize = 4;
-/// Newton steps after it, from a multiplier that is near the right one if there is any.
+/// Newton steps after it, from a multiplier close to the solution if there is one.
 const FURTHER_STEPS: usize = 30;
-/// `|e - G l| <= ACCURACY (|e| + |G||l|)` is accepted; `STAGNATED` where no step improves it any more.
+/// `|e - G l| <= ACCURACY (|e| + |G||l|)` is accepted; `STAGNATED` if no step improves it any more.
 const ACCURACY: f64 = 1e-12;
 const STAGNATED: f64 = 1e-10;
-/// Against `|e| + |G||y|` it is at most this: forces of an e that nothing balances grow until their own rounding hides it.
+/// Limit of the residual relative to `|e| + |G||y|`: if nothing balances e, forces grow until their rounding hides the
+/// residual.
 const MET: f64 = 1e-6;
-/// Where `|e - G l|` is more of `|e| + |G||l|` the start is worth a solution without bounds.
+/// If `|e - G l|` exceeds this part of `|e| + |G||l|`, the start without bounds is also tried.
 const FAR: f64 = 0.5;
 
-/// A sum this small against its terms is zero: where the bounds leave one point only, all rows must reach them.
+/// A sum is zero if it is below this part of its terms: if the bounds leave only one point, all rows must reach them.
 const ROUNDING: f64 = 8.0 * f64::EPSILON;
 
 /// The point y that is projected; entries in `held` stay zero.
@@ -65,7 +67,7 @@ impl Trial {
         Self { beta, residual: coarse.left(qp.e, &point), point }
     }
 
-    /// `|e - G l|` against `|e| + |G||l|`
+    /// `|e - G l|` relative to `|e| + |G||l|`
     fn error(&self, qp: &Qp, coarse: &Coarse) -> f64 {
         ratio(norm(&self.residual), norm(qp.e) + norm(&coarse.terms(&self.point)))
     }
@@ -75,7 +77,7 @@ impl Trial {
         0.5 * dot(&self.point, &self.point) - dot(qp.e, &self.beta)
     }
 
-    /// J4: without what rounding has left of `e - G l`, where the bounds allow that.
+    /// J4: removes the rounding in `e - G l` if the bounds permit it.
     fn done(self, qp: &Qp, coarse: &mut Coarse) -> Result<Projected> {
         let mut point = self.point.clone();
         let held: Vec<bool> = point.iter().map(|l| *l == 0.0).collect();
@@ -149,8 +151,8 @@ pub fn project(qp: &Qp, coarse: &mut Coarse, y: &[f64], held: &[bool]) -> Result
 }
 
 impl Target<'_> {
-    /// J1: other multipliers to begin with than 0: that of the last projection and, where 0 meets little of e, that without any bound,
-    /// for forces that add up over many bodies enter one row after the other from 0.
+    /// J1: start multipliers other than 0: that of the last projection and, if 0 is far from e, that without bounds,
+    /// since forces that add up over many bodies would enter one row after the other from 0.
     fn starts(&self, coarse: &mut Coarse, error: f64) -> Result<Vec<Vec<f64>>> {
         let mut starts = Vec::new();
         if error > FAR {
@@ -162,8 +164,8 @@ impl Target<'_> {
         Ok(starts)
     }
 
-    /// J3: exact minimum of phi over `beta + t step`, t > 0: phi' is piecewise linear and does not fall, its slope is
-    /// the sum of `(G'step)_i^2` over the rows that are not at their bound. `None`: phi falls without end.
+    /// J3: exact minimum of phi over `beta + t step`, t > 0: phi' is piecewise linear and nondecreasing, with the slope
+    /// `sum (G'step)_i^2` over the rows that are not at their bound. `None`: phi decreases without end.
     fn minimum_along(&self, coarse: &Coarse, now: &Trial, step: &[f64]) -> Option<f64> {
         let Target { qp, y, held } = self;
         let rows = coarse.rows();

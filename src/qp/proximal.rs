@@ -1,12 +1,14 @@
-//! The minimum of theta on few rows by a method that ends even if rows depend on each other. It solves the problem of which (12) is the dual:
+//! The minimum of theta on few rows by a finite method, even for linearly dependent rows. It solves the problem whose
+//! dual is (12):
 //!
 //! ```text
 //! 1/2 |w|^2 - e'alpha -> min   subject to   v_i'w + G_i'alpha <= -b_i (= where x_i is free),   A = V'V, v_i column i of V
 //! ```
 //!
-//! x are its multipliers. With the proximal term `1/2 (alpha - alpha_k)'Q (alpha - alpha_k)`, Q > 0 diagonal and small compared with A, w and
-//! `Q^1/2 alpha` are the point of a polyhedron nearest to `(0, Q^1/2 alpha_k + Q^-1/2 e)`, which Goldfarb and Idnani's method finds;
-//! then `e - G x = Q (alpha - alpha_k)`, which the next search reduces, with alpha_k = alpha.
+//! x are its multipliers. With the proximal term `1/2 (alpha - alpha_k)'Q (alpha - alpha_k)`, Q > 0 diagonal and small
+//! compared with A, w and `Q^1/2 alpha` are the point of a polyhedron nearest to `(0, Q^1/2 alpha_k + Q^-1/2 e)`, which
+//! the method of Goldfarb and Idnani finds; then `e - G x = Q (alpha - alpha_k)`, which the next search, with alpha_k =
+//! alpha, reduces.
 
 use crate::error::{Error, Kind, Result};
 use crate::linalg::vector::{norm, ratio};
@@ -14,20 +16,21 @@ use crate::linalg::{Csr, Matrix, PivotedCholesky};
 use crate::platform::{interrupt, tally};
 use crate::qp::{nearest_point, Direct, Polyhedron, Qp, Solution, Verdict};
 
-/// Searches at most.
+/// Limit of searches.
 const SEARCHES: usize = 20;
-/// `Q / (G G')`, as a part of 1 / A: so much farther than A gives way motions go in one search.
+/// `Q / (G G')` in units of 1 / A: the inverse ratio limits the motions of one search relative to the compliance A.
 const WEAK: f64 = 1e-8;
-/// `|e - G x|` against `|e| + |G||x|` at the end.
+/// Final limit of `|e - G x|` relative to `|e| + |G||x|`.
 const BALANCED: f64 = 1e-13;
-/// A motion that leaves what the search before has left, but for this part, has met no other row.
+/// If the residual differs from the previous one by less than this part, the motion has met no further row.
 const UNCHANGED: f64 = 0.01;
-/// b is known to this part of itself.
+/// Accuracy of b, relative to b.
 const NOISE: f64 = 64.0 * f64::EPSILON;
-/// Multiplications of one search.
+/// Limit of multiplications per search.
 const WORK: usize = 10_000_000_000;
 
-/// The minimum, not judged yet, with what else is known of `from`; none where there are too many rows, or rounding leaves no way.
+/// The minimum, not yet judged, with the other data of `from`; none if there are too many rows, or rounding prevents a
+/// solution.
 pub fn proximal(qp: Qp, direct: Direct, from: &Solution) -> Result<Option<Solution>> {
     let (n, r) = (qp.b.len(), qp.e.len());
     if n + r > direct.limit || 4usize.saturating_mul(n + r).saturating_mul(n * n) > WORK {
@@ -46,11 +49,11 @@ pub fn proximal(qp: Qp, direct: Direct, from: &Solution) -> Result<Option<Soluti
 
 struct Searches<'a> {
     qp: Qp<'a>,
-    /// Rows `v_i', G_i' Q^-1/2`, those of free x once more with the opposite sign, and their gaps.
+    /// Rows `v_i', G_i' Q^-1/2`, those of free x also with the opposite sign, and their gaps.
     rows: Csr,
     gap: Vec<f64>,
     noise: Vec<f64>,
-    /// Free x, in the order of their second rows.
+    /// Rows of free x, in the order of their second rows.
     free: Vec<usize>,
     rank: usize,
     /// `Q^1/2`
@@ -91,8 +94,8 @@ impl<'a> Searches<'a> {
         Ok(Some(Self { qp, rows, gap, noise, free, rank, root }))
     }
 
-    /// x, alpha, and products with A, in each of which the host may end the method. Where a motion has met no row that resists it,
-    /// the next search begins ten times as far.
+    /// x, alpha, and the number of products with A, in which the host may end the method. If a motion has met no row that
+    /// resists it, the next search starts ten times as far away.
     fn run(self) -> Result<Option<(Vec<f64>, Vec<f64>, usize)>> {
         let (mut best, mut least, mut last, mut stride) = (None, f64::INFINITY, 0.0, 1.0);
         let mut before = vec![0.0; self.qp.e.len()];
@@ -114,7 +117,7 @@ impl<'a> Searches<'a> {
         Ok(best)
     }
 
-    /// x and alpha of the search that begins with alpha_k = `before`.
+    /// x and alpha of the search that starts with alpha_k = `before`.
     fn search(&self, before: &[f64]) -> Result<(Vec<f64>, Vec<f64>)> {
         let Self { qp, rows, gap, noise, free, rank, root } = self;
         let mut target = vec![0.0; *rank];

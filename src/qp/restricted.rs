@@ -1,5 +1,5 @@
-//! The problem restricted to some of its rows: the others stay at 0, and neither they nor their gradient are computed. Rows whose gap
-//! is far larger than all motions therefore change nothing, not even rounding.
+//! The problem restricted to some of its rows: the others stay at 0, and neither they nor their gradient are computed.
+//! Rows whose gap is far larger than all motions therefore change nothing, not even rounding.
 
 use crate::error::Result;
 use crate::linalg::{Csr, Entries, Matrix, Operator};
@@ -33,12 +33,12 @@ impl<'a> Restricted<'a> {
         Qp { a: self, b, g_transposed, bounded, preconditioner, kept: None, ..self.whole }
     }
 
-    /// The entries of x on the rows.
+    /// The entries of x on these rows.
     pub fn start(&self, x: &[f64]) -> Vec<f64> {
         gather(self.rows, x)
     }
 
-    /// A solution, or a direction without end, over all rows.
+    /// Extends a solution, or an unbounded direction, to all rows.
     pub fn whole(&self, solution: Solution) -> Solution {
         let verdict = match solution.verdict {
             Verdict::Unbounded { p } => Verdict::Unbounded { p: self.spread(&p) },
@@ -47,13 +47,13 @@ impl<'a> Restricted<'a> {
         Solution { x: self.spread(&solution.x), verdict, ..solution }
     }
 
-    /// A solution without forces on the other rows, on these; none where it has some.
+    /// Restricts a solution to these rows; none if other rows have forces.
     fn part(&self, solution: Solution) -> Option<Solution> {
         let x = self.start(&solution.x);
         (self.spread(&x) == solution.x).then_some(Solution { x, ..solution })
     }
 
-    /// The part on the rows of a product over all of them; an error leaves y as it was.
+    /// The entries on these rows of a product over all rows; after an error y is unchanged.
     fn product(
         &self,
         x: &[f64],
@@ -66,7 +66,7 @@ impl<'a> Restricted<'a> {
         Ok(())
     }
 
-    /// Entries on the rows, and 0 on the others.
+    /// Entries on these rows, and 0 on the others.
     pub fn spread(&self, own: &[f64]) -> Vec<f64> {
         let mut all = vec![0.0; self.whole.b.len()];
         self.rows.iter().zip(own).for_each(|(&i, v)| all[i] = *v);
@@ -115,7 +115,7 @@ impl Preconditioner for Restricted<'_> {
     }
 }
 
-/// The entries of A on the rows.
+/// The entries of A on these rows.
 pub struct DirectOnRows<'a> {
     pub whole: Direct<'a>,
     pub rows: &'a [usize],
@@ -134,7 +134,7 @@ impl Entries for DirectOnRows<'_> {
     }
 }
 
-/// Judges points on some rows as one who knows them all.
+/// Passes points on some rows to an acceptance test for all rows.
 pub struct Judged<'a> {
     pub whole: &'a mut dyn AcceptanceTest,
     pub on: &'a Restricted<'a>,

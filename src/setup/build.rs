@@ -19,14 +19,14 @@ use crate::setup::rows::DualRows;
 use crate::setup::whole::Whole;
 
 impl Prepared {
-    /// True where factors and dual operators are as the options want them.
+    /// True if factors and dual operators are up to date and as the options require.
     pub fn is_up_to_date(&self, model: &Model) -> bool {
         let suits = |ready: &Ready| ready.rows.coupled == coupled(&model.settings);
         self.duals(model)
             .is_some_and(|duals| duals.islands.iter().all(suits) && duals.operators.suit(&model.settings))
     }
 
-    /// Null spaces, factors and dual operators, as far as they are not there yet.
+    /// Makes null spaces, factors and dual operators that are missing or out of date.
     pub fn set_up(&mut self, model: &Model, watch: &mut Watch) -> Result<()> {
         let begun = Instant::now();
         self.follow(model);
@@ -56,7 +56,7 @@ impl Prepared {
         Ok(())
     }
 
-    /// Gives the islands the gaps as they are now.
+    /// Updates the gaps of the islands.
     pub fn refresh_gaps(&mut self, model: &Model) {
         let islands = self.duals.iter_mut().flat_map(|duals| &mut duals.islands);
         for ready in islands {
@@ -100,7 +100,7 @@ impl Prepared {
         watch.every_body(&part, assemble, |p, operator| made[island_of[p]][number_in[p]] = operator)?;
         let mut ready = reserved(islands.len(), "groups of bodies")?;
         for (((island, rows), draft), made) in islands.into_iter().zip(drafts).zip(made) {
-            // Algorithm 3 weighs the rigid modes as the paper has them
+            // Algorithm 3 uses the rigid modes without scaling, as in the paper
             let dual = draft.finish(made, rows.compliance.clone(), !rows.coupled);
             self.work.columns_computed += dual.columns.computed;
             self.work.columns_kept += dual.columns.kept;
@@ -121,12 +121,12 @@ impl Prepared {
     }
 }
 
-/// The methods of the paper have the rows of the host, scaled but not decoupled.
+/// The methods of the paper use the rows of the host, scaled but not decoupled.
 fn coupled(settings: &Settings) -> bool {
     !matches!(settings.method, Method::Proportioning | Method::Smalbe)
 }
 
-/// `D / 2^p` over the unknowns of an island, for dofs without stiffness D of the stiffest dof of their body.
+/// `D / 2^p` over the unknowns of an island; for dofs without stiffness D is that of the stiffest dof of their body.
 fn metric(model: &Model, island: &Island) -> Vec<f64> {
     let of_body = |&p: &usize| {
         let body = &model.bodies[p].body;
@@ -138,7 +138,7 @@ fn metric(model: &Model, island: &Island) -> Vec<f64> {
     island.bodies.iter().flat_map(of_body).collect()
 }
 
-/// Fraction of the setup that is done with the dual operators: what is left is for the preconditioner.
+/// Fraction of the setup completed after the dual operators: the rest is for the preconditioner.
 fn assembled(settings: &Settings) -> f64 {
     match settings.preconditioner {
         Preconditioning::None => 1.0,
@@ -147,7 +147,7 @@ fn assembled(settings: &Settings) -> f64 {
     }
 }
 
-/// A compliance times the stiffness of the bodies must be a number.
+/// Checks that a compliance times the stiffness of the bodies does not overflow.
 fn check_compliance(island: &Island) -> Result<()> {
     for kind in RowKind::ALL {
         let Members { numbers, rows } = island.members(kind);

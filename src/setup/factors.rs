@@ -1,6 +1,6 @@
-//! K+ of the bodies. Nothing is computed twice: equal bodies share one K+; bodies with one matrix whose null spaces are
-//! given in different form share one factor; bodies with one pattern share one symbolic analysis; a body with new values on its old
-//! pattern keeps its analysis.
+//! K+ of the bodies. Nothing is computed twice: equal bodies share one K+; bodies with equal matrices whose null spaces
+//! are given in different form share one factor; bodies with equal patterns share one symbolic analysis; a body with new
+//! values on its old pattern keeps its analysis.
 
 use std::collections::{HashMap, HashSet};
 use std::hash::Hash;
@@ -24,16 +24,16 @@ use crate::setup::plans::{of_coordinates, plans, weights};
 use crate::setup::prepared::{Inverse, Prepared};
 use crate::setup::rounding::may_be_rounded;
 
-/// Analyses of one pattern that a body looks at before it makes one of its own.
+/// Number of analyses for a pattern that a body tries before it makes a new one.
 const TRIED: usize = 8;
 
-/// Fractions of a setup that are done with the analyses and the factorisations, on the average of many.
+/// Mean fractions of a setup completed after the analyses and after the factorisations.
 const ANALYSED: f64 = 0.3;
 const FACTORISED: f64 = 0.9;
 
 impl Prepared {
-    /// K+ of the bodies that have none; `rows` is the number of distinct rows on each. Gives the operators that they and
-    /// the memory suggest.
+    /// Makes K+ of the bodies that have none; `rows`: number of distinct rows on each. Returns the dual operators suited
+    /// to these numbers and to the memory.
     pub(super) fn factorize(
         &mut self,
         model: &Model,
@@ -71,7 +71,7 @@ impl Prepared {
         Ok(operators)
     }
 
-    /// Entries of the factor of every body: of K+ that is there, or planned for it or the body that it is equal to.
+    /// Entries of the factor of every body: of its K+, of its plan, or of the body that represents it.
     fn entries(&self, representatives: &[usize], pending: &[usize], plans: &[Plan]) -> Vec<usize> {
         let planned = plans.iter().map(|plan| plan.symbolic().map_or(0, |of| of.analysis.entries()));
         let planned: HashMap<usize, usize> = pending.iter().copied().zip(planned).collect();
@@ -82,7 +82,7 @@ impl Prepared {
         (0..self.bodies.len()).map(|p| of(p).or_else(|| of(*representatives.get(p)?)).unwrap_or(0)).collect()
     }
 
-    /// Factorises the bodies for which no factor is known, then gives theirs to those like them.
+    /// Factorises the bodies without a known factor, then shares the factors with equal bodies.
     fn execute(
         &mut self,
         model: &Model,
@@ -100,7 +100,7 @@ impl Prepared {
                 Some(q) => others.push((p, plan, q)),
             }
         }
-        // operations grow with the power 3/2 of the entries
+        // operations grow like the power 3/2 of the entries
         let weights = own.iter().map(|(_, bytes, ..)| (*bytes as f64).powf(1.5)).collect();
         let part = SetupPart::of(model.threads(), weights, FACTORISED);
         let slabs =
@@ -138,8 +138,8 @@ impl Prepared {
         Ok(())
     }
 
-    /// For every plan the body that has, or is going to have, the factor of the same matrix with the same dofs held; none
-    /// where the plan must factorise itself.
+    /// For every plan the body with the factor, present or planned, of an equal matrix with equal dofs held; none if the
+    /// plan must factorise itself.
     fn factors_for(&self, model: &Model, pending: &[usize], plans: &[Plan]) -> Vec<Option<usize>> {
         let mut known: HashMap<_, Vec<usize>> = HashMap::new();
         for (q, own) in self.bodies.iter().enumerate().filter(|(_, own)| own.inverse.is_some()) {
@@ -156,7 +156,8 @@ impl Prepared {
         pending.iter().zip(plans).map(&mut find).collect()
     }
 
-    /// For every body the one whose K+ serves it: the first equal one that has K+ already, else the first.
+    /// For every body the body whose K+ it uses: the first equal body that already has K+, otherwise the first equal
+    /// body.
     fn representatives(&mut self, model: &Model) -> Result<Vec<usize>> {
         self.find_keys(model)?;
         let same = |p: usize, q: usize| same_body(&model.bodies[p].body, &model.bodies[q].body);
@@ -171,7 +172,7 @@ impl Prepared {
         Ok((0..first.len()).map(of).collect())
     }
 
-    /// Keys of the matrices; a single body needs none.
+    /// Computes the keys of the matrices; a single body needs none.
     fn find_keys(&mut self, model: &Model) -> Result<()> {
         if self.bodies.len() < 2 {
             return Ok(());
@@ -185,7 +186,8 @@ impl Prepared {
         Ok(())
     }
 
-    /// An analysis for every plan: that of its body before, of another body of the same pattern, or a new one.
+    /// The analysis of every plan: the previous one of its body, that of another body with an equal pattern, or a new
+    /// one.
     fn analyse(
         &mut self,
         model: &Model,
@@ -217,7 +219,7 @@ impl Prepared {
         Ok(())
     }
 
-    /// The analyses that bodies have, each once.
+    /// The existing analyses, each once.
     fn offers(&self) -> Vec<SharedAnalysis> {
         let mut offers: Vec<SharedAnalysis> = Vec::new();
         let mut seen = HashSet::new();
@@ -241,7 +243,7 @@ impl Prepared {
         p == q || keys[0] == keys[1] && a.zip(b).is_some_and(|(a, b)| same_pattern(a, b))
     }
 
-    /// Equal bodies without K+ get that of the one that represents them.
+    /// Gives bodies without K+ the K+ of the body that represents them.
     fn share(&mut self, representatives: &[usize]) {
         for (p, &representative) in
             representatives.iter().enumerate().filter(|(p, representative)| p != *representative)
@@ -257,9 +259,8 @@ impl Prepared {
         }
     }
 
-    /// Operators for so many distinct rows on each body where the factors of the bodies have so many entries; refused where they
-    /// do not fit. Operators kept from the rows before are dropped if that helps. `more`: bytes of the factors that are not there
-    /// yet.
+    /// Dual operators for these numbers of distinct rows and factor entries of the bodies; an error if they do not fit
+    /// into memory. Operators kept from previous rows are dropped if that helps. `more`: bytes of factors not made yet.
     fn operators(
         &mut self,
         model: &Model,
@@ -288,13 +289,14 @@ impl Prepared {
         Ok(operators)
     }
 
-    /// What rounding of the entries leaves open about the null spaces of these bodies.
+    /// Logs what rounding of the entries leaves uncertain about the null spaces of these bodies.
     fn tell_doubts(&self, model: &Model, bodies: &[usize], log: &Log) -> Result<()> {
         for &p in bodies {
             let number = model.name(p) as i64 + model.settings.index_base;
             let Some(kplus) = self.bodies[p].inverse.as_ref().map(|of| &of.kplus) else { continue };
             if let Some(misfit) = kplus.misfit {
-                let text = || format!("warning: body {number}: {misfit}; its null space was sought in K");
+                let text =
+                    || format!("warning: body {number}: {misfit}; the library searched its null space in K");
                 log.say(LogLevel::Result, text)?;
             }
             if kplus.is_soft() {
@@ -302,7 +304,7 @@ impl Prepared {
                 let least = soft.clone().fold(f64::INFINITY, |least: f64, stiffness| least.min(*stiffness));
                 let text = || {
                     format!(
-                        "body {number}: K resists {} motions softly, by {least:.1e} of its stiffness or more",
+                        "body {number}: K has small stiffness along {} motions, at least {least:.1e} of its stiffness",
                         soft.count()
                     )
                 };
@@ -321,24 +323,24 @@ fn same_stiffness(model: &Model, p: usize, q: usize) -> bool {
     a.zip(b).is_some_and(|(a, b)| same_matrix(a, b))
 }
 
-/// Unknowns of a matrix that are held so stiffly that their neighbours count for nothing.
+/// Unknowns of a matrix that are held so stiffly that neighbours are negligible.
 fn grounded_in(matrix: Option<&Arc<Symmetric>>) -> Result<Arc<[u32]>> {
     matrix.map_or(Ok(Arc::from([])), |k| grounded((&**k).into()).map(Arc::from))
 }
 
-/// Bodies, their plans, and the bodies whose factors serve them.
+/// Bodies, their plans, and the bodies whose factors they use.
 type Planned<'a> = (&'a [usize], Vec<Plan>, Vec<Option<usize>>);
 
-/// A symbolic analysis that is there or, by the plan of this number, going to be made.
+/// A symbolic analysis that exists or will be made by the plan of this number.
 struct SharedAnalysis {
-    /// A body with its pattern.
+    /// A body with this pattern.
     body: usize,
     layout: Arc<Layout>,
     symbolic: Option<Arc<Symbolic>>,
     plan: usize,
 }
 
-/// The first of the offers that serves the plan of a body; its own, if it has one, before those of others.
+/// The first analysis that fits the plan of a body; the body's own analysis comes before those of others.
 fn choose(
     plan: &mut Plan,
     own: Option<&Arc<Symbolic>>,
@@ -357,7 +359,7 @@ fn choose(
     Ok(None)
 }
 
-/// The first member of every one's class: those that are the same as it.
+/// The first equal member for every member.
 fn classes<K: Eq + Hash>(
     count: usize,
     key: impl Fn(usize) -> K,

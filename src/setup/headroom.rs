@@ -1,5 +1,5 @@
-//! Checks that there is room for the vectors over unknowns, rows and modes that a call allocates. Factors and dual operators are not
-//! included: each is reserved when its size is known.
+//! Checks that there is memory for the vectors over unknowns, rows and modes that a call allocates. Factors and dual
+//! operators are not included: each is reserved when its size is known.
 
 use crate::error::Result;
 use crate::model::{Model, PER_ENTRY};
@@ -8,20 +8,20 @@ use crate::setup::prepared::Prepared;
 
 /// Bytes per unknown: loads, displacements, reactions and the certificate, about 16 vectors at a time.
 const PER_DOF: usize = 160;
-/// Bytes per row: multipliers, gradients, directions kept with their images, and the certificate.
+/// Bytes per row: multipliers, gradients, stored directions with their images, and the certificate.
 const PER_ROW: usize = 640 + 2 * size_of::<f64>() * crate::qp::KEPT;
-/// Bytes per entry of `G' = B R`, while it grows.
+/// Bytes per entry of `G' = B R`, with room for growth.
 const PER_COARSE_ENTRY: usize = 64;
-/// Bytes for the rooms that parts of a call ask for on the thread that called.
+/// Bytes for rooms requested within the call on its own thread.
 const INSIDE: usize = SMALL_MATRICES;
-/// Bytes per rigid mode: vectors of the coarse problem. Its matrices, sparse or dense, have rooms of their own.
+/// Bytes per rigid mode: vectors of the coarse problem. Its matrices, sparse or dense, have separate rooms.
 const PER_MODE: usize = 320;
 
 impl Prepared {
-    /// Room for setup, solve and check, for as long as the result is kept.
+    /// Room for setup, solve and check while the result is kept.
     pub fn working_headroom(&self, model: &Model) -> Result<Headroom> {
         let rows = model.contact.len() + model.equalities.len();
-        // A body without stiffness is refused before anything is made of its size.
+        // a body without stiffness will be refused, so its size does not matter
         let dofs: usize = model.bodies.iter().filter_map(|given| given.body.k()).map(|k| k.order()).sum();
         let entries = model.contact.matrix.col.len() + model.equalities.matrix.col.len();
         let modes_of = |p: usize| self.modes(model, p);
@@ -33,7 +33,7 @@ impl Prepared {
         memory::headroom_with(bytes, INSIDE, "the vectors of a solve")
     }
 
-    /// The same for a call that needs the setup alone: none where it is there.
+    /// As `working_headroom`, for a call that only needs the setup: none if the setup exists.
     pub fn setup_headroom(&self, model: &Model) -> Result<Option<Headroom>> {
         if self.is_up_to_date(model) {
             return Ok(None);
@@ -41,7 +41,7 @@ impl Prepared {
         self.working_headroom(model).map(Some)
     }
 
-    /// Dimension of the null space of a body; six rigid motions where it has not been found yet.
+    /// Dimension of the null space of a body; six if it is not known yet.
     fn modes(&self, model: &Model, body: usize) -> usize {
         let found = self.inverse(model, body).map(|inverse| inverse.kplus.null_space.cols);
         let given = model.bodies[body].body.null_space.as_ref().map(|given| given.vectors.cols);

@@ -10,11 +10,11 @@ use crate::progress::{Phase, SetupPart, Watch};
 use crate::setup::plans::of_coordinates;
 use crate::setup::prepared::{Inverse, Prepared};
 
-/// Fraction of a setup that is done once the functions of the host have been tried.
+/// Fraction of a setup completed after the functions of the host are checked.
 const TRIED: f64 = 0.03;
 
 impl Prepared {
-    /// K+ of those bodies of the host that have none: their functions are tried.
+    /// Makes K+ of the host's bodies that have none, and checks their functions.
     pub(super) fn try_hosts(&mut self, model: &Model, watch: &mut Watch) -> Result<()> {
         let pending =
             |&p: &usize| self.bodies[p].inverse.is_none() && model.bodies[p].body.operator.is_some();
@@ -51,15 +51,15 @@ impl Prepared {
 }
 
 fn host_inverse(body: &Body, tolerance: f64) -> Result<GeneralizedInverse> {
-    let missing = || Error::new(Kind::Internal, "a body without functions of the host was tried");
+    let missing = || Error::new(Kind::Internal, "a body without functions of the host was checked");
     let operator = Arc::clone(body.operator.as_ref().ok_or_else(missing)?);
     if body.fixing.is_some() {
-        let what = "fixing dofs were given, and K+ of this body is the host's";
+        let what = "fixing dofs were given, but the host provides K+ of this body";
         return Err(Error::new(Kind::Unsupported, what));
     }
     let k = HostMultiple { operator, unit: body.unit() };
     if body.has_soft_motions() {
-        let what = "soft motions were given, and K+ of this body is the host's";
+        let what = "soft motions were given, but the host provides K+ of this body";
         return Err(Error::new(Kind::Unsupported, what));
     }
     if let Some(given) = &body.null_space {

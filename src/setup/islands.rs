@@ -1,5 +1,5 @@
-//! Bodies that do not interact are solved as separate problems. An island is a set of bodies joined by
-//! rows, directly or through other bodies, with all its rows; its answer has the bits that it would have if solved alone.
+//! Bodies that do not interact are solved as separate problems. An island is a set of bodies joined by rows, directly or
+//! through other bodies, with all its rows; its answer has the bits that it would have if solved alone.
 
 use std::ops::Range;
 use std::sync::Arc;
@@ -15,7 +15,7 @@ use crate::platform::memory::{copied, headroom, reserved, zeros};
 
 const WHAT: &str = "groups of bodies";
 
-/// Bodies joined by rows, counted by themselves: unknowns body after body, rows in the order of the host.
+/// Bodies joined by rows, with their own numbering: unknowns body after body, rows in the order of the host.
 pub struct Island {
     /// Numbers of the bodies, ascending.
     pub bodies: Vec<usize>,
@@ -31,20 +31,20 @@ pub struct Island {
 /// Rows of one kind in an island.
 #[derive(Default)]
 pub struct Members {
-    /// Their numbers among all rows of the kind, ascending.
+    /// Their numbers among all rows of this kind, ascending.
     pub numbers: Vec<usize>,
     /// Over the unknowns of the island.
     pub rows: RowSet,
 }
 
-/// Nodes with friction in an island, those that may carry a tangential force some time.
+/// Nodes with friction in an island that may carry a tangential force.
 #[derive(Default)]
 pub struct Nodes {
     /// Their numbers among all nodes, ascending.
     pub numbers: Vec<usize>,
-    /// With the contact rows and tangential rows of the island.
+    /// Laws with the contact rows and tangential rows of the island.
     pub nodes: Vec<FrictionNode>,
-    /// Tangential rows, those without entries left out.
+    /// Tangential rows, without those that have no entries.
     pub tangential: Members,
 }
 
@@ -58,7 +58,7 @@ impl Island {
         self.ranges.last().map_or(0, |range| range.end)
     }
 
-    /// Place among its bodies of the one that has unknown j of the island.
+    /// Place in the island of the body with unknown j.
     pub fn body_of(&self, j: usize) -> usize {
         self.ranges.partition_point(|range| range.end <= j)
     }
@@ -71,7 +71,7 @@ impl Island {
         }
     }
 
-    /// Kind of row i of the stack, contact rows, equality rows, tangential rows, and its place among those of its kind.
+    /// Kind of row i of the stack, contact rows, equality rows, tangential rows, and its number within this kind.
     pub fn kind_and_place(&self, i: usize) -> (RowKind, usize) {
         let (contact, equalities) = (self.contact.numbers.len(), self.equalities.numbers.len());
         match (i.checked_sub(contact), i.checked_sub(contact + equalities)) {
@@ -81,14 +81,14 @@ impl Island {
         }
     }
 
-    /// Kind and number among all rows of its kind of row i of the stack.
+    /// Kind of row i of the stack, and its number among all rows of this kind.
     pub fn kind_and_row(&self, i: usize) -> (RowKind, usize) {
         let (kind, place) = self.kind_and_place(i);
         (kind, self.members(kind).numbers[place])
     }
 
-    /// Number of row i of the stack among all contact rows of the host, `contact` of them, and all equality rows; tangential
-    /// rows are not in it.
+    /// Number of row i of the stack among the `contact` contact rows of the host followed by its equality rows;
+    /// tangential rows are not included.
     pub fn in_stack(&self, contact: usize, i: usize) -> usize {
         match self.kind_and_row(i) {
             (RowKind::Inequality, row) => row,
@@ -96,7 +96,7 @@ impl Island {
         }
     }
 
-    /// The set of row i of the stack, and its place there.
+    /// The set of row i of the stack, and its number in this set.
     pub fn row(&self, i: usize) -> (&RowSet, usize) {
         let (kind, place) = self.kind_and_place(i);
         (&self.members(kind).rows, place)
@@ -113,21 +113,21 @@ impl Island {
         Ok(all)
     }
 
-    /// Values over all unknowns for those of the island.
+    /// Copies the values of the island from values over all unknowns.
     pub fn gather(&self, model: &Model, all: &[f64]) -> Result<Vec<f64>> {
         let mut own = reserved(self.unknowns(), WHAT)?;
         self.bodies.iter().for_each(|&p| own.extend_from_slice(&all[model.range(p)]));
         Ok(own)
     }
 
-    /// Puts values over the unknowns of the island where they belong among all.
+    /// Copies values over the unknowns of the island to values over all unknowns.
     pub fn scatter(&self, model: &Model, own: &[f64], all: &mut [f64]) {
         for (&p, range) in self.bodies.iter().zip(&self.ranges) {
             all[model.range(p)].copy_from_slice(&own[range.clone()]);
         }
     }
 
-    /// A certificate with the numbers that bodies and rows have among all.
+    /// Replaces the numbers of bodies and rows of the island in a certificate by those of the model.
     pub fn named(&self, own: Certificate) -> Certificate {
         let at = |entry: Entry, numbers: &[usize]| Entry { place: entry.place.map(|k| numbers[k]), ..entry };
         let (contact, equalities) = (&self.contact.numbers, &self.equalities.numbers);
@@ -162,7 +162,7 @@ impl Island {
     }
 }
 
-/// Coefficient and bound of a node; the constant force of a contact row without entries is part of the bound.
+/// Coefficient and bound of a node; a contact row without entries has a constant force, which is added to the bound.
 fn law(model: &Model, number: usize) -> (f64, f64) {
     let FrictionNode { normal, coefficient, bound, .. } = model.friction.nodes[number];
     let alone = normal.map_or(0.0, |row| model.contact.force_without_entries(RowKind::Inequality, row));
@@ -170,7 +170,7 @@ fn law(model: &Model, number: usize) -> (f64, f64) {
 }
 
 impl Members {
-    /// Values over all rows of the kind for those of the island.
+    /// Copies the values of the island from values over all rows of the kind.
     pub fn gather(&self, all: &[f64]) -> Vec<f64> {
         self.numbers.iter().map(|&i| all[i]).collect()
     }
@@ -200,7 +200,7 @@ pub fn islands(model: &Model) -> Result<Vec<Island>> {
         count = all;
     }
     if let Some(parts) = &model.parts {
-        // the pieces of one body belong together, also where nothing glues them
+        // the pieces of one body belong together, even if no row glues them
         let pieces = parts.first.windows(2).map(|range| (range[0]..range[1]).map(|part| of_body[part]));
         let (joint, all) = joined(count, pieces);
         of_body.iter_mut().for_each(|island| *island = joint[*island]);
@@ -236,7 +236,7 @@ pub fn islands(model: &Model) -> Result<Vec<Island>> {
     Ok(islands)
 }
 
-/// Nodes with friction that may carry a tangential force, and have a tangential row with entries.
+/// Nodes with friction that may carry a tangential force and have a tangential row with entries.
 fn acting(model: &Model) -> Vec<usize> {
     let Friction { nodes, rows, .. } = &model.friction;
     let is_felt = |node: &usize| nodes[*node].rows().any(|row| !rows.is_empty_row(row));
@@ -251,7 +251,7 @@ fn unknowns_of(model: &Model, node: usize) -> impl Iterator<Item = usize> + '_ {
     own.chain(normal.into_iter().flat_map(|row| model.contact.matrix.row(row))).map(|(j, _)| j)
 }
 
-/// Gives the islands the nodes that act.
+/// Gives the islands their acting nodes.
 fn nodes(
     model: &Model,
     acting: &[usize],
@@ -281,7 +281,7 @@ fn nodes(
     Ok(())
 }
 
-/// These rows over the unknowns of an island; all rows share their entries with those of the host.
+/// These rows over the unknowns of an island; if the island has all rows, the entries are shared with the host's rows.
 fn restricted(
     rows: &RowSet,
     numbers: &[usize],

@@ -9,11 +9,11 @@ pub fn memory_limit(settings: &Settings) -> Option<usize> {
     usize::try_from(settings.memory_limit).ok().filter(|limit| *limit > 0)
 }
 
-/// Bytes that are there and more against the limit of the host, and those to come against what the system would give.
+/// Checks existing bytes plus `more` against the limit of the host, and `more` against the memory of the system.
 pub fn check_memory(settings: &Settings, kept: usize, more: usize) -> Result<()> {
     let needed = kept.saturating_add(more);
     if let Some(limit) = memory_limit(settings).filter(|limit| needed > *limit) {
-        let what = format!("factors and dual operators take {needed} bytes, memory_limit is {limit}");
+        let what = format!("factors and dual operators take {needed} bytes, but memory_limit is {limit}");
         return Err(Error::new(Kind::Memory, what).value(needed as f64).limit(limit as f64));
     }
     available(more, "factors and dual operators")

@@ -1,4 +1,4 @@
-//! What is computed once from a model, for any load and gap: null spaces, factors, scaled rows, dual operators.
+//! Data computed once from a model, for any load and gap: null spaces, factors, scaled rows, dual operators.
 
 mod build;
 mod factors;

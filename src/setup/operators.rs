@@ -1,25 +1,25 @@
-//! Which bodies get an explicit dual operator.
+//! Which bodies get an assembled (explicit) dual operator.
 
 use crate::dual::{all_bytes, implicit_bodies, Size};
 use crate::error::{Error, Result};
 use crate::model::{OperatorForm, Settings};
 use crate::setup::memory_limit::{check_memory, memory_limit};
 
-/// The local dual operators as they are to be made.
+/// The choice of the local dual operators.
 pub struct Operators {
-    /// Options they were chosen by.
+    /// Options by which they were chosen.
     options: Options,
     pub sizes: Vec<Size>,
     pub implicit: Vec<bool>,
-    /// Bytes of all factors, those that bodies share once, and at most of the work arrays of their computation.
+    /// Bytes of all factors, shared factors counted once, plus the largest work arrays of their computation.
     pub factor_bytes: usize,
 }
 
-/// Option dual_operator and the limit of memory.
+/// Option dual_operator and the memory limit.
 type Options = (OperatorForm, Option<usize>);
 
 impl Operators {
-    /// As the options and the memory that factors of so many bytes leave suggest.
+    /// The choice by the options and the memory left by factors of this size.
     pub fn new(settings: &Settings, sizes: Vec<Size>, factor_bytes: usize) -> Self {
         let implicit = implicit(settings, &sizes, factor_bytes);
         Self { options: options(settings), sizes, implicit, factor_bytes }
@@ -35,13 +35,13 @@ impl Operators {
         sizes.map(|(size, implicit)| 1.0 + if *implicit { 0.0 } else { size.assembly() }).collect()
     }
 
-    /// True where these options would have the operators as they are.
+    /// Whether these options lead to the present choice.
     pub fn suit(&self, settings: &Settings) -> bool {
         options(settings) == self.options
             || implicit(settings, &self.sizes, self.factor_bytes) == self.implicit
     }
 
-    /// The error that there is too little memory for them and the factors, with the body that takes most.
+    /// Extends the error of insufficient memory by the body that takes most.
     pub fn named(&self, mut error: Error) -> Error {
         let bytes =
             |p: usize| self.sizes[p].entries * size_of::<f64>() + self.sizes[p].bytes(self.implicit[p]);
@@ -50,14 +50,14 @@ impl Operators {
         error.body(largest)
     }
 
-    /// `more` bytes besides factors and operators that are there, against the limit of the host.
+    /// Checks `more` bytes, in addition to factors and operators, against the limit of the host.
     pub fn check_more(&self, settings: &Settings, more: usize) -> Result<()> {
         check_memory(settings, self.factor_bytes.saturating_add(self.bytes()), more)
             .map_err(|e| self.named(e))
     }
 }
 
-/// True where the options want the operator of a body to be implicit.
+/// Whether the options lead to a matrix-free (implicit) operator, for each body.
 fn implicit(settings: &Settings, sizes: &[Size], factor_bytes: usize) -> Vec<bool> {
     match settings.dual_operator {
         OperatorForm::Explicit => vec![false; sizes.len()],

@@ -8,7 +8,7 @@ use crate::linalg::Multiple;
 use crate::model::Model;
 use crate::progress::{SetupPart, Watch};
 
-/// Fraction of a setup that is done with the null spaces, on the average of many.
+/// Mean fraction of a setup completed after the null spaces.
 const NULL_SPACES: f64 = 0.05;
 
 /// Null spaces and fixing dofs of the pending bodies.
@@ -24,7 +24,7 @@ pub(super) fn plans(model: &Model, pending: &[usize], watch: &mut Watch) -> Resu
     Ok(plans.into_iter().flatten().collect())
 }
 
-/// An error of a null space that is that of coordinates says so: they may be what is wrong.
+/// If a null space comes from coordinates, its error says so: the coordinates may be wrong.
 pub(super) fn of_coordinates(body: &Body, mut error: Error) -> Error {
     let only = body.null_space.is_none() && body.coordinates.is_some();
     if only && error.kind == Kind::NullSpace && !error.what.contains("of these coordinates") {
@@ -34,13 +34,13 @@ pub(super) fn of_coordinates(body: &Body, mut error: Error) -> Error {
     error
 }
 
-/// Entries of K of these bodies.
+/// Numbers of entries of K of these bodies.
 pub(super) fn weights(model: &Model, bodies: &[usize]) -> Vec<f64> {
     let entries = |&p: &usize| model.bodies[p].body.stiffness.as_ref().map_or(1, |k| k.col.len());
     bodies.iter().map(|p| entries(p) as f64).collect()
 }
 
-/// Null space and fixing dofs of a body, found before anything is factorised.
+/// Null space and fixing dofs of a body, found before any factorisation.
 fn plan(body: &Body, tolerance: f64, is_piece: bool) -> Result<Plan> {
     let missing = || Error::new(Kind::Internal, "a body without stiffness was set up");
     let matrix = Arc::clone(body.stiffness.as_ref().ok_or_else(missing)?);

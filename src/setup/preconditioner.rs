@@ -14,19 +14,19 @@ use crate::setup::islands::Island;
 use crate::setup::prepared::Prepared;
 use crate::setup::ready::Ready;
 
-/// `automatic` takes the lumped preconditioner where a product with F costs this many operations for each row. On glued
-/// subdomains it saves a hundred products and takes the time of 3e4 operations for each row to set up; on two bodies in
+/// `automatic` chooses the lumped preconditioner if a product with F costs at least this number of operations per row. On
+/// glued subdomains it saves a hundred products, and its setup takes the time of 3e4 operations per row; on two bodies in
 /// contact it saves few.
 const LUMPED_PAYS: usize = 300;
-/// The same where most rows are glue: a step costs some 2000 operations for each row beside the product, in the coarse problem and
-/// the vectors, and half of the steps are saved.
+/// This limit if most rows are glue: a step costs about 2000 operations per row in addition to the product, for the
+/// coarse problem and vectors, and half of the steps are saved.
 const LUMPED_PAYS_ON_GLUE: usize = 50;
 
 /// `scale` times the stiffness of the constrained dofs of a body.
 type BoundaryStiffness = fn(&Symmetric, f64, &[usize]) -> Result<Box<dyn Operator + Send>>;
 
 impl Prepared {
-    /// The preconditioners the options ask for, kept until they ask for others.
+    /// The preconditioners for the options, kept until the options change.
     pub fn set_up_preconditioner(&mut self, model: &Model, watch: &mut Watch) -> Result<()> {
         let Some(duals) = &self.duals else { return Ok(()) };
         let asked: Vec<Preconditioning> = duals.islands.iter().map(|ready| wanted(model, ready)).collect();

@@ -1,4 +1,4 @@
-//! What has been computed from a model, and from which revisions of the model.
+//! Data computed from a model, and the revisions of the model from which they were computed.
 
 use std::collections::HashSet;
 use std::sync::Arc;
@@ -12,36 +12,36 @@ use crate::progress::{Phase, PhaseReport, Phases};
 use crate::setup::operators::Operators;
 use crate::setup::ready::Ready;
 
-/// Factors of the bodies and dual problems of the islands. What does not belong to the model as it is now is not handed out.
+/// Factors of the bodies and dual problems of the islands. Data that do not belong to the present model are not returned.
 #[derive(Default)]
 pub struct Prepared {
     pub(super) bodies: Vec<PreparedBody>,
     pub(super) duals: Option<Duals>,
     pub work: Work,
-    /// Number of times that the dual problems have been made.
+    /// How many times the dual problems have been made.
     pub made: usize,
 }
 
-/// What has been computed of a body.
+/// Data computed for a body.
 #[derive(Default)]
 pub struct PreparedBody {
     of: BodyRevisions,
     pub inverse: Option<Inverse>,
-    /// The last analysis of a matrix with the pattern of this one.
+    /// The last analysis of a matrix with this pattern.
     pub symbolic: Option<Arc<Symbolic>>,
-    /// Keys of pattern and values, once they have been asked for.
+    /// Keys of pattern and values, if already computed.
     pub keys: Option<[u64; 2]>,
 }
 
-/// `K_p+` of the matrix divided by `unit`, the power of two below its largest diagonal entry, and the bytes it takes;
-/// equal bodies have one.
+/// `K_p+` of the matrix divided by `unit`, the largest power of two that does not exceed its largest diagonal entry, and
+/// its bytes; equal bodies share it.
 pub struct Inverse {
     pub unit: f64,
     pub kplus: Arc<GeneralizedInverse>,
-    /// Unknowns of the matrix that the certificate measures by themselves, ascending.
+    /// Grounded unknowns of the matrix, which the certificate judges separately, ascending.
     pub grounded: Arc<[u32]>,
     pub bytes: usize,
-    /// `F_p` of the rows before the present ones, while there is no dual problem.
+    /// `F_p` of the previous rows, while there is no dual problem.
     pub operator: Option<Kept>,
 }
 
@@ -49,58 +49,58 @@ pub struct Inverse {
 pub struct Duals {
     pub(super) of: Revisions,
     pub islands: Vec<Ready>,
-    /// Of all bodies.
+    /// Choice of the operators of all bodies.
     pub operators: Operators,
     /// Island of every body.
     pub island_of: Vec<usize>,
 }
 
-/// Work of all setups since the problem was created: what a change of the data costs shows in the difference.
+/// Work of all setups since the problem was created: differences show the cost of a change of the data.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Work {
     /// Symbolic analyses: ordering and pattern of a factor.
     pub analyses: usize,
     /// Numeric factorisations for K+.
     pub factorisations: usize,
-    /// Columns of the dual operators F_p, one for each body that a row of the dual touches: computed, and kept from the
-    /// rows before.
+    /// Columns of the dual operators F_p, one for each body touched by a row of the dual: computed columns, and columns
+    /// kept from previous rows.
     pub columns_computed: usize,
     pub columns_kept: usize,
 }
 
 impl Prepared {
-    /// The dual problems of the model as it is, where they have been made.
+    /// The dual problems of the present model, if made.
     pub fn duals(&self, model: &Model) -> Option<&Duals> {
         self.duals.as_ref().filter(|duals| duals.of == model.revisions)
     }
 
-    /// The dual problems made last, of whatever revision.
+    /// The dual problems made last, for any revision.
     pub fn made_last(&self) -> Option<&Duals> {
         self.duals.as_ref()
     }
 
-    /// Drops the pairs of friction that solves have left: the next one depends on none of them.
+    /// Drops the data that solves with friction have left for the next solve.
     pub fn forget_pairs(&mut self) {
         self.duals.iter().flat_map(|duals| &duals.islands).for_each(|ready| ready.pairs.forget());
     }
 
-    /// Drops all that has been computed: the bodies have other numbers.
+    /// Drops all data: the numbers of the bodies have changed.
     pub fn forget(&mut self) {
         (self.bodies, self.duals) = (Vec::new(), None);
     }
 
-    /// The same where a setup has just been done.
+    /// As `duals`, after a setup.
     pub fn done(&self, model: &Model) -> Result<&Duals> {
         self.duals(model).ok_or_else(|| Error::new(Kind::Internal, "the setup left nothing"))
     }
 
-    /// K+ of a body as it is, where it has been made.
+    /// K+ of the present body, if made.
     pub fn inverse(&self, model: &Model, body: usize) -> Option<&Inverse> {
         let own = self.bodies.get(body).filter(|own| own.of == model.bodies[body].revisions);
         own?.inverse.as_ref()
     }
 
-    /// Drops what was computed of revisions that are no longer: all but what serves those to come.
+    /// Drops data of old revisions, except data that can be reused.
     pub fn follow(&mut self, model: &Model) {
         if self.duals(model).is_none() {
             self.release();
@@ -121,7 +121,7 @@ impl Prepared {
         }
     }
 
-    /// Gives up the dual problems; their operators are kept for rows to come.
+    /// Drops the dual problems; their operators are kept for later rows.
     pub(super) fn release(&mut self) {
         for ready in self.duals.take().into_iter().flat_map(|duals| duals.islands) {
             for (p, operator) in ready.island.bodies.into_iter().zip(ready.dual.into_operators()) {
@@ -132,14 +132,14 @@ impl Prepared {
         }
     }
 
-    /// Bytes of all factors, those that bodies share once.
+    /// Bytes of all factors, shared factors counted once.
     pub(super) fn bytes_of_factors(&self) -> usize {
         let inverses = self.bodies.iter().filter_map(|own| own.inverse.as_ref());
         let mut seen = HashSet::new();
         inverses.filter(|of| seen.insert(of.kplus.factor_address())).map(|of| of.bytes).sum()
     }
 
-    /// These times with the memory that is kept.
+    /// The times of the phases, with the memory that is kept.
     pub fn phases(&self, model: &Model, phases: &Phases) -> Vec<PhaseReport> {
         let mut phases = *phases;
         if let Some(duals) = self.duals(model) {
@@ -152,7 +152,7 @@ impl Prepared {
         phases.report()
     }
 
-    /// Keys of all bodies, whatever their matrices.
+    /// Sets the keys of all bodies independently of their matrices.
     #[cfg(test)]
     pub fn set_keys(&mut self, model: &Model, keys: impl Fn(usize) -> [u64; 2]) {
         self.follow(model);

@@ -11,7 +11,7 @@ use crate::setup::islands::Island;
 use crate::setup::rows::DualRows;
 use crate::setup::whole::Whole;
 
-/// Multiplications of a product with F, a tenth of a millisecond, from which on several threads save time.
+/// Multiplications of a product with F, a tenth of a millisecond, above which several threads save time.
 const PARALLEL_PAYS: usize = 1 << 18;
 
 /// The dual problem of an island.
@@ -19,23 +19,23 @@ pub struct Ready {
     pub island: Island,
     pub dual: Dual,
     pub rows: DualRows,
-    /// The island with the bodies of the host, where its own are pieces of them.
+    /// The island in terms of the host's bodies, if its own bodies are pieces of them.
     pub whole: Option<Whole>,
-    /// The preconditioner and which one of the options it is.
+    /// The preconditioner and its option.
     pub preconditioner: Option<(Preconditioning, Preconditioner)>,
-    /// What one solve leaves to the next.
+    /// Data that a solve leaves for the next one.
     pub kept: BetweenSolves,
-    /// The same for friction.
+    /// Data that a solve with friction leaves for the next one.
     pub pairs: PairsBetween,
 }
 
 impl Ready {
-    /// Which preconditioner is there.
+    /// The option of the present preconditioner.
     pub fn preconditioning(&self) -> Preconditioning {
         self.preconditioner.as_ref().map_or(Preconditioning::None, |(kind, _)| *kind)
     }
 
-    /// Threads for its products with F, of so many: one where they cost less than waking others.
+    /// Threads for products with F, at most `threads`: one if a product costs less than waking others.
     pub fn product_threads(&self, threads: usize) -> usize {
         if self.dual.product_work() < PARALLEL_PAYS {
             1

@@ -6,31 +6,32 @@ use crate::linalg::Csr;
 use crate::setup::islands::{Island, Members};
 use crate::setup::scaling::Scaling;
 
-/// Rows of the dual, and the way to them.
+/// Rows of the dual, and their relation to the host's rows.
 pub struct DualRows {
-    /// One row for each group of parallel rows of `S [B; H]`.
+    /// One row per group of parallel rows of `S [B; H]`.
     pub scaled: Csr,
-    /// B' of `scaled = L B'`: what F and G are formed of.
+    /// B' of `scaled = L B'`, from which F and G are formed.
     pub matrix: Csr,
-    /// Diagonal of C' with `2^p S C S = L C'L'`: 1/k without unit, 0 where rigid.
+    /// Diagonal of C' with `2^p S C S = L C'L'`: 1/k without unit, 0 for rigid rows.
     pub compliance: Vec<f64>,
     /// `D / 2^p` over the unknowns of the island.
     pub metric: Vec<f64>,
     pub scaling: Scaling,
-    /// L = I, whatever the rows.
+    /// L = I: the rows are not decoupled.
     pub coupled: bool,
     /// Number of contact rows.
     pub contact: usize,
     /// The first tangential row of the stack.
     pub tangential: usize,
-    /// A row joins bodies whose stiffnesses there are far apart.
+    /// Some row joins bodies with very different stiffnesses at the row.
     pub uneven: bool,
 }
 
-/// Shares of `b D^-1 b'` that differ by more than this are far apart: rounding of the one is much to the other.
+/// Limit of the ratio of the bodies' parts of `b D^-1 b'`: beyond it, rounding of one part is large relative to the
+/// other.
 const UNEVEN: f64 = 1e4;
 
-/// A row joins bodies whose shares of `b D^-1 b'` are far apart.
+/// Some row joins bodies whose parts of `b D^-1 b'` have a ratio above `UNEVEN`.
 fn is_uneven(rows: &Csr, metric: &[f64], island: &Island) -> bool {
     (0..rows.rows()).any(|i| {
         let mut shares: Vec<(usize, f64)> = Vec::new();
@@ -47,14 +48,14 @@ fn is_uneven(rows: &Csr, metric: &[f64], island: &Island) -> bool {
     })
 }
 
-/// `s_t = 1/rms(1/s_k)` for all rows of a node: discs of forces stay discs.
+/// `s_t = 1/rms(1/s_k)` for all rows of a node, so that discs of forces remain discs.
 fn one_scale(scales: &mut [f64]) {
     let square = scales.iter().map(|s| s.powi(-2)).sum::<f64>() / scales.len() as f64;
     scales.fill(square.sqrt().recip());
 }
 
 impl DualRows {
-    /// Of an island; `metric` is D / 2^p over its unknowns. `coupled` rows are those of the host but for their scales.
+    /// The rows of an island; `metric`: D / 2^p over its unknowns. `coupled` rows are those of the host, only scaled.
     pub fn of(island: &Island, metric: Vec<f64>, coupled: bool) -> Result<Self> {
         let mut all = Csr::empty(metric.len());
         let (mut scale, mut compliances) = (Vec::new(), Vec::new());
@@ -103,7 +104,7 @@ impl DualRows {
         self.scaling.grouping.leaders.len()
     }
 
-    /// Takes `B'x` from a load, by way of the rows and the forces of the host: where these cancel nothing is left.
+    /// Subtracts `B'x` from a load, through the rows and forces of the host: if these cancel, the result is exactly 0.
     pub fn take_forces(&self, x: &[f64], load: &mut [f64]) {
         self.scaled.mul_transposed_add(-1.0, &self.scaling.decoupling.solve_transposed(x.to_vec()), load);
     }

@@ -4,13 +4,14 @@ use crate::constraints::{Decoupling, Grouping};
 use crate::error::Result;
 use crate::platform::memory::zeros;
 
-/// The way between the stack of an island, contact rows first, and its dual,
+/// The transformation between the stack of an island, contact rows first, and its dual,
 ///
 /// ```text
 /// lambda = 2^p S L'^-1 x,   c' = L^-1 S c
 /// ```
 ///
-/// where the rows of a group, multiples of each other, have one x and one c'. Of a group one row, its holder, carries the force.
+/// where the rows of a group, multiples of each other, have one x and one c'. One row of a group, its holder, carries the
+/// force.
 pub struct Scaling {
     /// 2^p, force / length.
     pub unit: f64,
@@ -21,12 +22,12 @@ pub struct Scaling {
 }
 
 impl Scaling {
-    /// Force of a holder over the x of its group, a contact row or a tangential one.
+    /// Ratio of the force of a holder, a contact row or a tangential row, to the x of its group.
     pub fn force_of(&self, group: usize, holder: usize) -> f64 {
         self.scale[holder] * self.unit / self.decoupling.factor(group)
     }
 
-    /// x of forces lambda of the rows of the stack.
+    /// x for forces lambda of the rows of the stack.
     pub fn forces_to_dual(&self, lambda: impl Fn(usize) -> f64) -> Result<Vec<f64>> {
         let mut x = zeros(self.grouping.leaders.len(), "multipliers")?;
         for (i, (group, sign)) in self.grouping.members() {
@@ -35,7 +36,7 @@ impl Scaling {
         Ok(self.decoupling.apply_transposed(&x))
     }
 
-    /// lambda over the stack, on these holders.
+    /// lambda over the stack; only these holders carry forces.
     pub fn forces_to_host(&self, x: &[f64], holders: &[usize]) -> Vec<f64> {
         let mut lambda = vec![0.0; self.scale.len()];
         let x = self.decoupling.solve_transposed(x.to_vec());
@@ -45,12 +46,12 @@ impl Scaling {
         lambda
     }
 
-    /// c' of lengths c along these holders.
+    /// c' for lengths c along these holders.
     pub fn lengths_to_dual(&self, holders: &[usize], c: impl Fn(usize) -> f64) -> Vec<f64> {
         self.decoupling.solve(holders.iter().map(|&holder| c(holder) * self.scale[holder]).collect())
     }
 
-    /// Lengths along all rows of the stack that are in a group, by those of the dual.
+    /// Lengths along all rows of the stack that are in a group, from lengths along the rows of the dual.
     pub fn lengths_to_host(&self, y: &[f64]) -> impl Iterator<Item = (usize, f64)> + '_ {
         let y = self.decoupling.apply(y);
         self.grouping.members().map(move |(i, (group, sign))| (i, sign * y[group] / self.scale[i]))

@@ -10,13 +10,13 @@ use crate::solve::island::{Ends, Solved};
 use crate::solve::recovery::{Ending, Recovered};
 use crate::solve::report::{Report, RowState};
 
-/// The answer of the last solve, in the units of the host. Not a number where a group of bodies has none.
+/// The answer of the last solve, in the units of the host. Entries are NaN for bodies of an island without an answer.
 pub struct Answer {
     pub report: Report,
     pub u: Vec<f64>,
     pub lambda: Vec<f64>,
     pub mu: Vec<f64>,
-    /// Of tangential rows, (dim, nodes).
+    /// Tangential forces, (dim, nodes).
     pub tangential: Vec<f64>,
     /// Slips `T u - s_old - C_t lambda_t`, length, (dim, nodes).
     pub slips: Vec<f64>,
@@ -33,7 +33,7 @@ pub struct Answer {
 }
 
 impl Answer {
-    /// None where no island has an answer.
+    /// None if no island has an answer.
     pub fn new(model: &Model, prepared: &Prepared, ends: Ends) -> Result<Option<Self>> {
         if ends.iter().all(std::result::Result::is_err) {
             return Ok(None);
@@ -96,7 +96,7 @@ impl Answer {
         }
     }
 
-    /// The answer of an island, and what it took.
+    /// Adds the answer of an island and its work counts.
     fn take_in(&mut self, model: &Model, ready: &Ready, solved: Solved) {
         let Solved { ending, outcome, finished, unheld, .. } = solved;
         let Ending { solution, recovered, judgement, .. } = ending;
@@ -131,7 +131,7 @@ impl Answer {
         report.gap_scale = report.gap_scale.hypot(scale);
     }
 
-    /// States of contact rows without entries; gives the energy of the springs among the rows of both kinds.
+    /// States of contact rows without entries. Returns the energy of the springs of such contact and equality rows.
     fn take_in_rows_alone(&mut self, model: &Model) -> f64 {
         let contact = &model.contact;
         for i in (0..contact.len()).filter(|&i| contact.is_empty_row(i)) {
@@ -148,7 +148,7 @@ impl Answer {
         stored(contact, &self.lambda) + stored(&model.equalities, &self.mu)
     }
 
-    /// `T u - s_old - C_t lambda_t` of all tangential rows, of the displacements there are.
+    /// `T u - s_old - C_t lambda_t` of all tangential rows, for the current displacements.
     pub fn slips_of(&self, model: &Model) -> Vec<f64> {
         let rows = &model.friction.rows;
         (0..rows.len()).map(|i| -rows.open_gap(i, &self.u, self.tangential[i])).collect()
@@ -169,7 +169,7 @@ impl Answer {
     }
 }
 
-/// A certificate with the numbers of the host; glue has none.
+/// Replaces the numbers of the island in a certificate by those of the host; rows that join pieces have no number.
 pub fn named(model: &Model, ready: &Ready, own: Certificate) -> Certificate {
     let mut named = match &ready.whole {
         Some(whole) => whole.island.named(own),
@@ -186,7 +186,8 @@ pub fn named(model: &Model, ready: &Ready, own: Certificate) -> Certificate {
     named
 }
 
-/// By what the certificate takes for zero at every row: closed with a force, open with a gap, weak with neither.
+/// States by the zero tolerances of the certificate: closed if the force exceeds it, open if the gap does, weak if
+/// neither does.
 fn states(ready: &Ready, answer: &Recovered, zero: &[RowJudgement]) -> Vec<RowState> {
     let (Recovered { u, lambda, .. }, rows) = (answer, &ready.island.contact.rows);
     let state = |(i, zero): (usize, &RowJudgement)| {

@@ -6,7 +6,7 @@ use crate::error::{Error, Kind, Result};
 use crate::model::Model;
 use crate::setup::{Island, Prepared, Ready};
 
-/// What the solution of one island goes by: what the host has given, and what has been computed of it.
+/// All inputs for the solution of one island: the data of the host and the results of setup.
 #[derive(Clone, Copy)]
 pub struct Case<'a> {
     pub model: &'a Model,
@@ -28,7 +28,7 @@ impl<'a> Case<'a> {
         self.island().has_friction()
     }
 
-    /// The island as the certificate sees it.
+    /// The data of the island for the certificate.
     pub fn data(&self) -> Result<Data<'a>> {
         let missing = || Error::new(Kind::State, "a body has not been set up");
         let (model, island) = (self.model, self.island());

@@ -1,4 +1,5 @@
-//! The acceptance test of the methods: a point of the dual problem of one island is judged by the certificate of the recovered answer.
+//! The acceptance test of the methods: recovers the answer for a point of the dual problem of one island and evaluates
+//! its certificate.
 
 use std::time::{Duration, Instant};
 
@@ -17,26 +18,27 @@ pub struct Certifier<'a> {
     pub recovery: Recovery<'a>,
     /// The last point accepted, with its answer.
     accepted: Option<Accepted>,
-    /// Time for answers recovered and certified.
+    /// Time spent on recovery and certification.
     pub spent: Duration,
-    /// Rows of the dual that are left out, and those of them that the last point goes through.
+    /// Rows left out of the dual problem, and those of them that the answer of the last point violates.
     pub far: Vec<bool>,
     pub reached: Vec<usize>,
-    /// Amplitudes of the motions that K drives, as e has them; those of the last point are others.
-    pub drive: Vec<f64>,
-    pub astray: bool,
-    /// The point is to be one from which another run starts.
+    /// Amplitudes of the motions with negative stiffness from which e was computed; those of the last point differ.
+    pub assumed: Vec<f64>,
+    pub unsettled: bool,
+    /// The point is only the start of another run.
     pub is_rough: bool,
-    /// One that passes is to be settled as well.
+    /// An accepted point must also have settled amplitudes.
     pub is_strict: bool,
-    /// Ratio of the worst entry of the point refused last.
+    /// Ratio of the worst entry of the certificate of the last point that was refused.
     missed: Option<f64>,
 }
 
-/// Driven amplitudes that differ by less have settled.
+/// Amplitudes of motions with negative stiffness have settled if they differ by less.
 const SETTLED: f64 = 1e-11;
 
-/// A point (x, alpha) of the dual whose answer has passed, and its amplitudes where it had to be brought to rest.
+/// A point (x, alpha) of the dual problem whose answer has passed, and the amplitudes of that answer if it was brought to
+/// rest.
 struct Accepted {
     point: (Vec<f64>, Vec<f64>),
     alpha_at_rest: Option<Vec<f64>>,
@@ -48,22 +50,22 @@ struct Accepted {
 impl<'a> Certifier<'a> {
     pub fn new(recovery: Recovery<'a>) -> Self {
         let (far, reached, spent) = (Vec::new(), Vec::new(), Duration::ZERO);
-        let (drive, astray, is_rough, is_strict) = (Vec::new(), false, false, false);
+        let (assumed, unsettled, is_rough, is_strict) = (Vec::new(), false, false, false);
         Self {
             recovery,
             accepted: None,
             spent,
             far,
             reached,
-            drive,
-            astray,
+            assumed,
+            unsettled,
             is_rough,
             is_strict,
             missed: None,
         }
     }
 
-    /// The answer of a solution; that of the point just accepted is there already.
+    /// The answer of a solution; the answer of the point accepted last is not computed again.
     pub fn ending(&mut self, mut solution: Solution) -> Result<Ending> {
         let known = self.accepted.take();
         let known = known.filter(|known| known.point.0 == solution.x && known.point.1 == solution.alpha);
@@ -74,18 +76,18 @@ impl<'a> Certifier<'a> {
         self.recovery.ending(solution)
     }
 
-    /// Whether the motions that K drives are not those by which e was made.
-    fn is_astray(&self, alpha: &[f64]) -> bool {
-        let driven = &self.recovery.ready.dual.driven;
+    /// Whether the amplitudes of motions with negative stiffness differ from those from which e was computed.
+    fn differ(&self, alpha: &[f64]) -> bool {
+        let negative = &self.recovery.ready.dual.negative;
         let (mut change, mut size) = (0.0, 0.0);
-        for ((mode, stiffness), was) in driven.iter().zip(&self.drive) {
+        for ((mode, stiffness), was) in negative.iter().zip(&self.assumed) {
             change -= stiffness * (alpha[*mode] - was).powi(2);
             size -= stiffness * alpha[*mode].powi(2);
         }
         change > SETTLED * SETTLED * size
     }
 
-    /// The rows left out that a displacement goes through.
+    /// The rows left out that the displacement u violates.
     fn beyond(&self, u: &[f64]) -> Vec<usize> {
         let (rows, gaps) = (&self.recovery.ready.rows.scaled, &self.recovery.scaled.gaps.value);
         (0..self.far.len()).filter(|&i| self.far[i] && rows.row_dot(i, u) > gaps[i]).collect()
@@ -93,8 +95,9 @@ impl<'a> Certifier<'a> {
 }
 
 impl AcceptanceTest for Certifier<'_> {
-    /// `|sum_p |B'_p u_p|| + |c'|`: lengths, whatever the choice of K+. Gaps count up to how far bodies move, and are moved
-    /// by rows that demand it: no gap that is never closed makes others seem small, and rows left out do not count.
+    /// `|sum_p |B'_p u_p|| + |c'|`: lengths, independent of the choice of K+. Gaps count only up to the motion of the
+    /// bodies, which includes the motion that rows demand: so a gap that never closes does not enlarge the scale. Rows
+    /// left out do not count.
     fn scale(&mut self, x: &[f64], alpha: &[f64]) -> Result<f64> {
         // as expensive as a product with F
         interrupt::check()?;
@@ -111,7 +114,7 @@ impl AcceptanceTest for Certifier<'_> {
     }
 
     fn accepts(&mut self, x: &[f64], alpha: &[f64]) -> Result<bool> {
-        self.astray = self.is_rough;
+        self.unsettled = self.is_rough;
         if self.is_rough {
             self.accepted = None;
             return Ok(true);
@@ -120,7 +123,7 @@ impl AcceptanceTest for Certifier<'_> {
         let (begun, recovery) = (Instant::now(), &self.recovery);
         let deformed = recovery.deformed(x)?;
         let mut recovered = recovery.recover(&deformed, x, alpha);
-        // more steps may do what K+ would have to explain
+        // more steps may remove an error that the certificate can otherwise excuse only by products with K+
         let first = self.missed.is_none();
         let mut judgement = match first {
             true => recovery.judged_strictly(&recovered)?,
@@ -128,7 +131,7 @@ impl AcceptanceTest for Certifier<'_> {
         };
         let (mut alpha_at_rest, mut reached) = (None, Vec::new());
         if !judgement.certificate.passed() {
-            // a travel that nothing resists may hide the rest
+            // a large motion that nothing resists may hide the other errors
             if let Some((rested, amplitudes)) = recovery.at_rest(&recovered, x, &deformed, false)? {
                 let at_rest = recovery.judged(&rested)?;
                 if at_rest.certificate.passed() {
@@ -148,16 +151,16 @@ impl AcceptanceTest for Certifier<'_> {
             self.accepted = Some(Accepted { point, alpha_at_rest, deformed, recovered, judgement });
         }
         self.reached = reached;
-        self.astray = (!passed || self.is_strict) && self.is_astray(alpha);
-        // those rows come first: without them there is nothing to make better
-        Ok(passed || !self.reached.is_empty() || self.astray)
+        self.unsettled = (!passed || self.is_strict) && self.differ(alpha);
+        // violated rows join first: without them no other improvement helps
+        Ok(passed || !self.reached.is_empty() || self.unsettled)
     }
 
     fn missed(&self) -> Option<f64> {
         self.missed
     }
 
-    /// The certificate of whole bodies sees what pieces with soft and stiff parts lose, and the dual does not.
+    /// The certificate of whole bodies detects losses in pieces with soft and stiff parts; the dual problem does not.
     fn has_better_data(&self) -> bool {
         self.recovery.ready.whole.is_some()
     }
@@ -198,8 +201,8 @@ pub(super) mod tests {
     use crate::solve::island::{direct, scaled};
     use crate::solve::recovery::Faces;
 
-    /// Springs 1 and 1 pushed by 3 and 1 against walls at 1 and 2, one body; `work` gets an answer whose first
-    /// force, 2, is wrong by the factor 1 + `error`.
+    /// Springs 1 and 1 pushed by 3 and 1 against walls at 1 and 2, one body; `work` receives an answer whose first force,
+    /// 2, has the relative error `error`.
     pub fn two_springs(error: f64, work: impl Fn(&mut Certifier, &Solution)) {
         let mut model = Model::new();
         let body = model.add_body(2).unwrap();
@@ -217,7 +220,7 @@ pub(super) mod tests {
         judging(&model, |judge| work(judge, &solved));
     }
 
-    /// `work` with the judge of the first island.
+    /// Runs `work` with the certifier of the first island.
     fn judging(model: &Model, work: impl Fn(&mut Certifier)) {
         let (mut prepared, mut watch) =
             (Prepared::default(), Host::default().watch(1e300, Phases::default()));
@@ -241,7 +244,7 @@ pub(super) mod tests {
         });
     }
 
-    /// Springs 1 and 1 at walls: u = (3 - 2, 1 - 0), all scales 1; gaps (1, 2) are farther than that.
+    /// Springs 1 and 1 at walls: u = (3 - 2, 1 - 0), all scales 1; the gaps (1, 2) are larger than these motions.
     #[test]
     fn the_scale_is_how_far_bodies_move_along_the_rows_and_their_gaps() {
         two_springs(0.0, |judge, solved| {
@@ -250,7 +253,7 @@ pub(super) mod tests {
         });
     }
 
-    /// A free spring between dofs 0 and 1, rows on both: against the displacements that (17) gives.
+    /// A free spring between dofs 0 and 1, rows on both: compared with the displacements of (17).
     #[test]
     fn the_scale_counts_the_rigid_motion() {
         let mut model = Model::new();

@@ -10,19 +10,19 @@ use crate::solve::case::Case;
 use crate::solve::diagnosis::Contradictions;
 use crate::solve::gaps::Gaps;
 
-/// A gap so many times as large as all motion that rows demand takes part in no contradiction that could be proved.
+/// A gap that exceeds all motion demanded by rows by this factor takes part in no contradiction that could be proved.
 const BEYOND: f64 = 1e6;
-/// What the search leaves of 1 where rows that contradict each other are worth a closer look: some displacement 1e3 times as
-/// large as the largest gap would leave as much.
+/// Rows are tested further for a contradiction if the minimum of the search, relative to 1, is below this value: a
+/// displacement 1e3 times the largest gap leaves a minimum of this size.
 const UNCERTAIN: f64 = 1e-6;
-/// Multiplications that a method which ends may take before the one for many rows.
+/// Limit of multiplications for the finite method; above it, the method for many rows comes first.
 const SMALL: usize = 100_000_000;
-/// Multiplications the search for contradictions may take.
+/// Limit of multiplications of the search for contradictions.
 const WORK: usize = 200_000_000;
 
-/// `min |D^-1/2 B'w|^2 + (1 + c'w)^2` over w >= 0 on contact rows is zero exactly where rows contradict each
-/// other (c scaled to largest entry 1, far rows left out); B has unit rows, and no compliant ones: they give way to any other row.
-/// No product with F is needed.
+/// `min |D^-1/2 B'w|^2 + (1 + c'w)^2` over w >= 0 on contact rows is zero exactly if rows contradict each other (c scaled
+/// to largest entry 1, far rows left out). B has unit rows without the compliant rows, which contradict no other row. The
+/// search needs no product with F.
 pub fn contradiction(case: Case, gaps: &Gaps) -> Result<Option<Error>> {
     let rows = &case.ready.rows;
     let demand =
@@ -104,7 +104,7 @@ fn left(a: &Alternative, w: &[f64]) -> f64 {
     dot(w, &image) + 2.0 * dot(a.c, w) + 1.0
 }
 
-/// The combination found is examined afterwards.
+/// Accepts no point: the combination found is tested afterwards.
 struct Unjudged {
     scale: f64,
 }
@@ -119,7 +119,7 @@ impl AcceptanceTest for Unjudged {
     }
 }
 
-/// The host hears no step of this search, only how far it is.
+/// Reports no steps of this search to the host, only its progress.
 struct Unheard;
 
 impl Observer for Unheard {

@@ -1,4 +1,4 @@
-//! Solves every island separately, several at a time if there are threads.
+//! Solves every island separately, and in parallel if there are threads.
 
 use std::cmp::Reverse;
 use std::sync::mpsc::channel;
@@ -13,7 +13,7 @@ use crate::solve::case::Case;
 use crate::solve::island::{solve_island, Ends, Solved};
 use crate::solve::start::Start;
 
-/// Every island by itself: several at a time where there are threads, each with the bits it has alone.
+/// Solves every island, in parallel if there are threads; the number of threads does not change any bit of the answers.
 pub fn solve_islands(model: &Model, prepared: &Prepared, start: &Start, watch: &mut Watch) -> Result<Ends> {
     let islands = &prepared.done(model)?.islands;
     let (stops, threads) = (watch.stops.clone(), model.threads());
@@ -72,10 +72,10 @@ pub fn solve_islands(model: &Model, prepared: &Prepared, start: &Start, watch: &
     ends.into_iter().flatten().map(of_itself).collect()
 }
 
-/// Takes a line on how far the loops of an island are.
+/// Receives lines on the progress of the loops of an island.
 type Say = Arc<dyn Fn(String) -> Result<()> + Send + Sync>;
 
-/// A reason why one island has no answer leaves the others theirs; any other failure is one of the whole call.
+/// Errors that concern one island leave the answers of the others; any other error is an error of the call.
 fn of_itself(end: Result<Solved>) -> Result<std::result::Result<Solved, Error>> {
     match end {
         Err(error) if !is_of_itself(&error) => Err(error),
@@ -88,7 +88,7 @@ fn is_of_itself(error: &Error) -> bool {
     matches!(error.kind, LoadNotHeld | Slides | GapsContradict | Indefinite | Cancelled | TimeOver)
 }
 
-/// What an island says to the thread that listens to all.
+/// A message of an island to the thread that reports to the host.
 enum Message {
     Step(Told),
     Line(String),
@@ -103,7 +103,7 @@ impl Message {
     }
 }
 
-/// The voice of an island on a thread of its own: the host's answer comes by way of `Stops`.
+/// The progress messages of an island on its own thread; the answer of the host arrives through `Stops`.
 struct Apart<'a> {
     say: &'a dyn Fn(Message),
 }

@@ -16,8 +16,9 @@ pub struct MethodOptions<'a> {
     pub direct: Direct<'a>,
 }
 
-/// S10 of docs/method.md: solves the dual. After proportioning: proportioning without preconditioner, then SMALBE-M, each from where
-/// the first has ended, and after each of them the direct method; where there are few rows, at last a method that always ends.
+/// S10 of docs/method.md: solves the dual. After proportioning follow proportioning without preconditioner and SMALBE-M,
+/// each from the end point of the first run and each followed by the direct method; if there are few rows, a finite
+/// method is last.
 pub fn solve_dual(
     means: &MethodOptions,
     qp: Qp,
@@ -59,7 +60,7 @@ pub fn solve_dual(
     Ok(best)
 }
 
-/// Tells that another method takes over.
+/// Logs that another method follows.
 fn follows(ended: &Solution, next: &str, steps: &mut Steps) -> Result<()> {
     let why = match ended.verdict {
         Verdict::StepLimit => "the limit of steps is reached",
@@ -70,7 +71,7 @@ fn follows(ended: &Solution, next: &str, steps: &mut Steps) -> Result<()> {
     steps.line(format!("fallback after {} steps: {why}; {next} follows", ended.counts.steps()))
 }
 
-/// The same, or what the direct method makes of it where it is incomplete, by F and then by the data of the host.
+/// The given solution; if it is incomplete, that of the direct method with F, then that with the data of the host.
 fn or_directly(
     solution: Solution,
     qp: Qp,
@@ -97,13 +98,13 @@ fn is_incomplete(solution: &Solution) -> bool {
     gave_up(solution) || solution.verdict == Verdict::StepLimit
 }
 
-/// Contradictory rows are known before the dual is solved: a direction along which theta seems to fall without
-/// end is rounding, as a rule.
+/// Contradictory rows were excluded before the dual is solved: a direction along which theta seems to fall without end is
+/// usually rounding.
 pub fn gave_up(solution: &Solution) -> bool {
     matches!(solution.verdict, Verdict::Stalled | Verdict::Inaccurate | Verdict::Unbounded { .. })
 }
 
-/// The accepted one of two, with the work of both; the first one when the host or the time ended the second.
+/// The accepted solution of the two, with the work of both; the first if the host or the time limit ended the second.
 fn better(first: Solution, second: Result<Solution>) -> Result<Solution> {
     let second = match second {
         Ok(second) => second,
@@ -153,7 +154,7 @@ mod tests {
         assert_eq!(refused(Kind::Callback).unwrap_err().kind, Kind::Callback);
     }
 
-    /// Keeps what is said.
+    /// Keeps the lines.
     #[derive(Default)]
     struct Lines(Vec<String>);
 

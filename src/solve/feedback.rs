@@ -1,4 +1,4 @@
-//! The motions of an island with negative stiffness, and how they affect each other on one face: P of `driven.rs`.
+//! The motions of an island with negative stiffness, and how they affect each other on one face: P of `negative.rs`.
 
 use crate::error::Result;
 use crate::linalg::dense::spectrum::symmetric_eigen;
@@ -7,31 +7,31 @@ use crate::linalg::Matrix;
 use crate::qp::{AnswerFace, Direct, Face, Qp};
 use crate::setup::Ready;
 
-/// A part of a free motion that is more than rounding.
+/// A part of a free motion is more than rounding if it exceeds this.
 const PART: f64 = 1e-6;
 
-/// The driven motions of an island: modes, and the roots of what drives them.
-pub struct Driven {
+/// The motions of an island with negative stiffness: modes, and square roots of the negative stiffness.
+pub struct NegativeMotions {
     pub modes: Vec<usize>,
     roots: Vec<f64>,
 }
 
-/// What the driven motions of one face do to each other.
+/// How these motions affect each other on one face.
 pub struct Feedback<'a> {
     pub face: Face<'a>,
     /// Eigenvalues of P, ascending, and its eigenvectors.
     rates: Vec<f64>,
     vectors: Matrix,
-    /// `(S+ + G_F F_FF^-1 G_F')^-1 S-^1/2`, r x d, and the forces on F of these motions.
+    /// `(S+ + G_F F_FF^-1 G_F')^-1 S-^1/2`, r x d, and the forces of these motions on the rows F.
     motions: Matrix,
     forces: Matrix,
 }
 
-impl Driven {
+impl NegativeMotions {
     pub fn of(ready: &Ready) -> Self {
-        let driven = &ready.dual.driven;
-        let modes = driven.iter().map(|(mode, _)| *mode).collect();
-        Self { modes, roots: driven.iter().map(|(_, stiffness)| (-stiffness).sqrt()).collect() }
+        let negative = &ready.dual.negative;
+        let modes = negative.iter().map(|(mode, _)| *mode).collect();
+        Self { modes, roots: negative.iter().map(|(_, stiffness)| (-stiffness).sqrt()).collect() }
     }
 
     /// `S-^1/2 a`
@@ -51,36 +51,41 @@ impl Driven {
         all
     }
 
-    /// A driven motion that the rows of a face do not resist.
+    /// A motion with negative stiffness that the rows of a face do not resist.
     pub fn free(&self, qp: Qp, held: &[bool]) -> Result<Option<Vec<f64>>> {
         let free = AnswerFace::of(&qp, held)?.undetermined()?;
-        let is_driven = |v: &[f64]| self.modes.iter().any(|&mode| v[mode].abs() > PART * norm_max(v));
-        Ok((0..free.cols).map(|j| free.col(j)).find(|v| is_driven(v)).map(<[f64]>::to_vec))
+        let is_negative = |v: &[f64]| self.modes.iter().any(|&mode| v[mode].abs() > PART * norm_max(v));
+        Ok((0..free.cols).map(|j| free.col(j)).find(|v| is_negative(v)).map(<[f64]>::to_vec))
     }
 }
 
 impl<'a> Feedback<'a> {
-    /// None where the face is too large for dense factors.
-    pub fn of(direct: Direct<'a>, qp: Qp<'a>, held: &[bool], driven: &Driven) -> Result<Option<Self>> {
+    /// None if the face is too large for dense factors.
+    pub fn of(
+        direct: Direct<'a>,
+        qp: Qp<'a>,
+        held: &[bool],
+        negative: &NegativeMotions,
+    ) -> Result<Option<Self>> {
         let rows: Vec<usize> = (0..held.len()).filter(|&i| !held[i]).collect();
         if rows.len() + qp.e.len() > direct.limit {
             return Ok(None);
         }
         let face = Face::new(qp, direct.entries, rows)?;
-        face.map(|face| Self::on(face, qp.e.len(), driven)).transpose()
+        face.map(|face| Self::on(face, qp.e.len(), negative)).transpose()
     }
 
-    pub fn on(face: Face<'a>, modes: usize, driven: &Driven) -> Result<Self> {
-        let (n, d) = (face.rows().len(), driven.modes.len());
+    pub fn on(face: Face<'a>, modes: usize, negative: &NegativeMotions) -> Result<Self> {
+        let (n, d) = (face.rows().len(), negative.modes.len());
         let (mut motions, mut forces) = (Matrix::zeros(modes, d)?, Matrix::zeros(n, d)?);
-        for (j, (&mode, root)) in driven.modes.iter().zip(&driven.roots).enumerate() {
+        for (j, (&mode, root)) in negative.modes.iter().zip(&negative.roots).enumerate() {
             let mut e = vec![0.0; modes];
             e[mode] = *root;
             let (x, alpha) = face.solve(vec![0.0; n], &e)?;
             motions.col_mut(j).copy_from_slice(&alpha);
             forces.col_mut(j).copy_from_slice(&x);
         }
-        let p = |i: usize, j: usize| driven.roots[i] * motions.get(driven.modes[i], j);
+        let p = |i: usize, j: usize| negative.roots[i] * motions.get(negative.modes[i], j);
         let (rates, vectors) = symmetric_eigen(&Matrix::from_fn(d, d, |i, j| 0.5 * (p(i, j) + p(j, i)))?)?;
         Ok(Self { face, rates, vectors, motions, forces })
     }
@@ -90,7 +95,7 @@ impl<'a> Feedback<'a> {
         self.rates.last().copied().unwrap_or(0.0)
     }
 
-    /// The motion of rho: its forces on `rows` rows, its amplitudes, rho.
+    /// The motion of the eigenvalue rho: its forces on `rows` rows, its amplitudes, rho.
     pub fn motion(&self, rows: usize) -> (Vec<f64>, Vec<f64>, f64) {
         let v = self.vectors.col(self.vectors.cols - 1);
         let (mut alpha, mut on_face) = (vec![0.0; self.motions.rows], vec![0.0; self.forces.rows]);
@@ -99,12 +104,17 @@ impl<'a> Feedback<'a> {
         (self.on_all(rows, &on_face), alpha, self.rate())
     }
 
-    /// x on the face and alpha for these forces and resultants, with what the driven motions add to both; as it is without them where
-    /// rho >= 1.
-    pub fn solve(&self, driven: &Driven, force: Vec<f64>, e: &[f64]) -> Result<(Vec<f64>, Vec<f64>)> {
+    /// x on the face and alpha for these forces and resultants, including the feedback of the motions with negative
+    /// stiffness; without the feedback if rho >= 1.
+    pub fn solve(
+        &self,
+        negative: &NegativeMotions,
+        force: Vec<f64>,
+        e: &[f64],
+    ) -> Result<(Vec<f64>, Vec<f64>)> {
         let (mut x, mut alpha) = self.face.solve(force, e)?;
-        if !driven.modes.is_empty() && self.rate() < 1.0 {
-            let b = driven.forced(&alpha);
+        if !negative.modes.is_empty() && self.rate() < 1.0 {
+            let b = negative.forced(&alpha);
             let mut more = b.clone();
             self.add_feedback(&b, &mut more);
             self.forces.mul_add(1.0, &more, &mut x);
@@ -135,7 +145,7 @@ impl<'a> Feedback<'a> {
         self.vectors.mul_add(1.0, &parts, sum);
     }
 
-    /// x and alpha of the face for these resultants.
+    /// x and alpha on the face for these resultants.
     pub fn point(&self, qp: Qp, e: &[f64]) -> Result<(Vec<f64>, Vec<f64>)> {
         let force = self.face.rows().iter().map(|&i| qp.b[i]).collect();
         let (on_face, alpha) = self.face.solve(force, e)?;

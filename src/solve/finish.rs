@@ -1,5 +1,5 @@
-//! Option `finish`: after a solve, forces and displacements together are corrected by the residuals of the host's data,
-//! each time on the rows that these data show to be in contact, until only rounding is left.
+//! Option `finish`: after a solve, the residuals of the host's data correct forces and displacements together, each time
+//! on the rows that these data show to be in contact, until only rounding is left.
 
 use std::ops::Range;
 
@@ -9,29 +9,29 @@ use crate::linalg::vector::{axpy, weighted_norm};
 use crate::model::{FinishBy, Method, Settings};
 use crate::platform::interrupt;
 use crate::qp::{Face, Verdict};
-use crate::solve::feedback::{Driven, Feedback};
+use crate::solve::feedback::{Feedback, NegativeMotions};
 use crate::solve::gaps::Gaps;
 use crate::solve::recovery::{Ending, Faces, Recovery};
 
-/// Active sets at most.
+/// Limit of active sets.
 const FACES: usize = 8;
-/// Corrections on one of them at most.
+/// Limit of corrections on one active set.
 const CORRECTIONS: usize = 4;
 /// Ratios of the certificate below this are rounding.
 const ROUNDING: f64 = 1e-4;
-/// A ratio so many times another one is much better, or no worse.
+/// A ratio below `MUCH_BETTER` times another is much better; below `NO_WORSE` times another it is no worse.
 const MUCH_BETTER: f64 = 0.5;
 const NO_WORSE: f64 = 1.1;
 
-/// Beside soft bodies and rows that join uneven ones, forces that are so many times what they deform make errors of an answer much
-/// larger than its certificate. Beyond that rounding of the loads decides.
+/// Range of the ratio of forces to deforming forces for which, beside soft bodies and rows that join uneven bodies, the
+/// error of an answer may be much larger than its certificate. Above this range, rounding of the loads is larger.
 const CANCELLING: Range<f64> = 1e4..1e9;
 
-/// So are errors of bodies beside others that are deformed so many times as much.
+/// Errors may also be large on bodies beside others that are deformed more by this factor.
 const UNEVEN: f64 = 100.0;
 
-/// Whether the answer of an island is to be finished, as option `finish` has it. `automatic`: where an error that passes the
-/// certificate may be large elsewhere. Answers with friction end with exact forces on exact states as they are.
+/// Whether option `finish` asks for the finish of an island's answer. `automatic`: if an error that passes the
+/// certificate may be large on some body. Not with friction: those answers already have exact forces for their states.
 pub fn is_to_finish(settings: &Settings, recovery: &Recovery, ending: &Ending) -> bool {
     if recovery.friction {
         return false;
@@ -45,12 +45,12 @@ fn is_delicate(recovery: &Recovery, ending: &Ending) -> bool {
     CANCELLING.contains(&ending.judgement.leverage) || recovery.soft || recovery.ready.rows.uneven
 }
 
-/// True where `ending` was replaced by a corrected answer, which passes and whose certificate is no worse. Ended by the host or
-/// the time, or short of memory, it leaves what there was: that is solved.
+/// True if a corrected answer replaced `ending`: it passes and its certificate is no worse. If the host, the time limit
+/// or a lack of memory stops the finish, `ending` stays solved.
 pub fn finish(recovery: &Recovery, ending: &mut Ending) -> Result<bool> {
     let delicate = is_delicate(recovery, ending);
-    let driven = Driven::of(recovery.ready);
-    let mut finish = Finish { recovery, ending, delicate, replaced: false, driven };
+    let negative = NegativeMotions::of(recovery.ready);
+    let mut finish = Finish { recovery, ending, delicate, replaced: false, negative };
     match finish.run() {
         Ok(()) => {}
         Err(error) if error.kind == Kind::Memory => {}
@@ -66,14 +66,14 @@ pub fn finish(recovery: &Recovery, ending: &mut Ending) -> Result<bool> {
 struct Finish<'a, 'b> {
     recovery: &'b Recovery<'a>,
     ending: &'b mut Ending,
-    /// Rounding of K on rigid motions is no strain; elsewhere K is taken as it stands.
+    /// Resistance of K to rigid motions is rounding, not strain; for other bodies K is used unchanged.
     delicate: bool,
     replaced: bool,
-    driven: Driven,
+    negative: NegativeMotions,
 }
 
 impl Finish<'_, '_> {
-    /// Active sets one after the other, until one confirms itself or comes again.
+    /// Active sets one after the other, until one confirms itself or occurs again.
     fn run(&mut self) -> Result<()> {
         let Faces { qp, direct } = &self.recovery.faces;
         let mut active = qp.at_bound(&self.ending.solution.x);
@@ -85,12 +85,12 @@ impl Finish<'_, '_> {
                 break;
             }
             let Some(face) = Face::new(*qp, direct.entries, rows)? else { break };
-            let mut face = Feedback::on(face, point.alpha.len(), &self.driven)?;
+            let mut face = Feedback::on(face, point.alpha.len(), &self.negative)?;
             self.ending.solution.counts.direct += 1;
             point.hold(&active);
             self.correct(&mut point, &face)?;
             if face.face.is_truncated() {
-                face = Feedback::on(face.face.in_full()?, point.alpha.len(), &self.driven)?;
+                face = Feedback::on(face.face.in_full()?, point.alpha.len(), &self.negative)?;
                 self.correct(&mut point, &face)?;
             }
             if !self.delicate && self.ending.judgement.certificate.worst() <= ROUNDING {
@@ -101,13 +101,13 @@ impl Finish<'_, '_> {
         Ok(())
     }
 
-    /// Corrections on one face as long as each is less than half the one before; every answer on the way that is no worse
-    /// than the one there is takes its place.
+    /// Corrections on one face while each is less than half the previous one; every intermediate answer that is no worse
+    /// replaces the current one.
     fn correct(&mut self, point: &mut SplitPoint, face: &Feedback) -> Result<()> {
         let mut last = f64::INFINITY;
         for _ in 0..CORRECTIONS {
             interrupt::check()?;
-            let size = point.correct(self.recovery, &self.driven, face)?;
+            let size = point.correct(self.recovery, &self.negative, face)?;
             self.keep(point, &face.face)?;
             if size >= 0.5 * last {
                 break;
@@ -133,19 +133,19 @@ impl Finish<'_, '_> {
     }
 }
 
-/// It passes, and is much better or in no entry worse but for rounding. Bodies that carry little beside others may lose their
-/// balance by what is rounding elsewhere.
+/// It passes, and it is much better or, up to rounding, worse in no entry. On bodies that carry little, rounding of other
+/// bodies may be a loss of balance.
 fn is_better(new: &Certificate, old: &Certificate) -> bool {
     let mut entries = new.entries().into_iter().zip(old.entries());
     let much = new.worst() <= MUCH_BETTER * old.worst();
     new.passed() && (much || entries.all(|(new, old)| new.ratio <= (NO_WORSE * old.ratio).max(ROUNDING)))
 }
 
-/// Forces x and amplitudes alpha with u = v + w: w are motions that K does not resist, so large that v would lose its digits
-/// in them.
+/// Forces x and amplitudes alpha with u = v + w: w are motions that K does not resist; in a sum with large w, v would
+/// lose its digits.
 struct SplitPoint {
     v: Vec<f64>,
-    /// Amplitudes of the motions that v has.
+    /// Amplitudes of the motions that v contains.
     beta: Vec<f64>,
     w: Vec<f64>,
     x: Vec<f64>,
@@ -155,7 +155,7 @@ struct SplitPoint {
 }
 
 impl SplitPoint {
-    /// The answer there is, or nothing where that does not pass: its forces may be lost in redundant rows.
+    /// The current answer, or zero if it does not pass: redundant rows may have spoilt its forces.
     fn of(recovery: &Recovery, ending: &Ending, apart: bool) -> Result<Self> {
         let Ending { solution, judgement, .. } = ending;
         let known = |v: &[f64]| if judgement.certificate.passed() { v.to_vec() } else { vec![0.0; v.len()] };
@@ -169,7 +169,7 @@ impl SplitPoint {
         Self { w: vec![0.0; v.len()], v, x, alpha: vec![0.0; modes], beta: vec![0.0; modes], apart }
     }
 
-    /// Adds R a, and returns it.
+    /// Adds R a and returns R a.
     fn turn(&mut self, recovery: &Recovery, a: &[f64]) -> Result<Vec<f64>> {
         let dual = &recovery.ready.dual;
         let whole = dual.rigid_motion(a, self.v.len());
@@ -207,20 +207,25 @@ impl SplitPoint {
         recovery.gaps_left(&[&self.v, &self.w], &self.x)
     }
 
-    /// No force on the rows of an active set.
+    /// Sets the forces to 0 on rows outside the active set.
     fn hold(&mut self, active: &[bool]) {
         self.x.iter_mut().zip(active).filter(|(_, held)| **held).for_each(|(x, _)| *x = 0.0);
     }
 
-    /// x without what rounding has made of a force that is zero.
+    /// x without the rounding of forces that are zero.
     fn forces(&self, bounded: &[bool]) -> Vec<f64> {
         let bounded = self.x.iter().zip(bounded);
         bounded.map(|(x, bounded)| if *bounded { x.max(0.0) } else { *x }).collect()
     }
 
-    /// Solves (10)-(11) on the face for the loads and gaps that are left, `f - K u - B'x` and `c + C x - B u`: errors of
-    /// F and of K+ fall with every correction. Its length, `|.|_D`.
-    fn correct(&mut self, recovery: &Recovery, driven: &Driven, feedback: &Feedback) -> Result<f64> {
+    /// Solves (10)-(11) on the face for the residual loads and gaps, `f - K u - B'x` and `c + C x - B u`: every
+    /// correction reduces the errors of F and K+. Returns the length of the correction, `|.|_D`.
+    fn correct(
+        &mut self,
+        recovery: &Recovery,
+        negative: &NegativeMotions,
+        feedback: &Feedback,
+    ) -> Result<f64> {
         let face = &feedback.face;
         let (dual, rows) = (&recovery.ready.dual, &recovery.ready.rows);
         let mut load = recovery.load_left(&self.v, &self.x)?;
@@ -229,7 +234,7 @@ impl SplitPoint {
         face.rows().iter().for_each(|&i| gaps[i] = left[i]);
         let d = dual.rhs(&recovery.ready.moved(recovery.threads, &load)?, &gaps);
         let force = face.rows().iter().map(|&i| d[i]).collect();
-        let (step, turn) = feedback.solve(driven, force, &dual.resultants(&load))?;
+        let (step, turn) = feedback.solve(negative, force, &dual.resultants(&load))?;
         let mut forces = vec![0.0; self.x.len()];
         face.rows().iter().zip(step).for_each(|(&i, step)| forces[i] = step);
         rows.take_forces(&forces, &mut load);
@@ -240,14 +245,14 @@ impl SplitPoint {
         Ok(weighted_norm(&moved, |i| rows.metric[i]))
     }
 
-    /// The active set that signs of forces and gaps ask for.
+    /// The active set by the signs of forces and gaps.
     fn active(&self, recovery: &Recovery) -> Vec<bool> {
         let (left, rows) = (self.gaps_left(recovery), &recovery.ready.rows.scaled);
         let u = self.displacement();
         let Gaps { value, bounded, .. } = &recovery.scaled.gaps;
         let terms = |i: usize| rows.row(i).map(|(j, v)| (v * u[j]).abs()).sum::<f64>();
         let noise = |i: usize| NOISE * (value[i].abs() + terms(i));
-        // a gap that corrections leave open depends on others, which carry its force as well
+        // a gap that corrections cannot close depends on other rows, which also carry its force
         let leaves = |i: usize| self.x[i] < 0.0 || left[i] > noise(i);
         let stays = |i: usize| if self.x[i] == 0.0 { left[i] >= -noise(i) } else { leaves(i) };
         (0..self.x.len()).map(|i| bounded[i] && stays(i)).collect()
@@ -288,10 +293,10 @@ mod tests {
                 point.hold(&[0, 1].map(|i| !rows.contains(&i)));
                 let Faces { qp, direct, .. } = &recovery.faces;
                 let face = Face::new(*qp, direct.entries, rows.clone()).unwrap().unwrap();
-                let driven = Driven::of(recovery.ready);
-                let face = Feedback::on(face, 0, &driven).unwrap();
+                let negative = NegativeMotions::of(recovery.ready);
+                let face = Feedback::on(face, 0, &negative).unwrap();
                 let mut finish =
-                    Finish { recovery, ending: &mut ending, delicate: false, replaced: false, driven };
+                    Finish { recovery, ending: &mut ending, delicate: false, replaced: false, negative };
                 finish.correct(&mut point, &face).unwrap();
                 assert_eq!(finish.replaced, right, "{rows:?}");
                 assert_eq!(ending.recovered.lambda == [2.0, 0.0], right, "{rows:?}");
@@ -321,10 +326,10 @@ mod tests {
         };
         for (new, old, better) in [
             (with(0.09, 0.09), with(0.2, 0.2), true),    // much better
-            (with(0.2, 0.21), with(0.2, 0.2), true),     // as good but for rounding
-            (with(0.0, 0.3), with(0.2, 0.2), false),     // worse in its balance alone
-            (with(0.3, 0.0), with(0.2, 0.2), false),     // worse but for its balance
-            (with(0.15, 0.15), with(0.2, 0.1), false),   // better at its worst, but not by much
+            (with(0.2, 0.21), with(0.2, 0.2), true),     // equally good up to rounding
+            (with(0.0, 0.3), with(0.2, 0.2), false),     // worse in its balance
+            (with(0.3, 0.0), with(0.2, 0.2), false),     // worse except in its balance
+            (with(0.15, 0.15), with(0.2, 0.1), false),   // its worst entry is better, but not by much
             (with(9e-5, 9e-5), with(0.0, 1e-9), true),   // both are rounding
             (with(2.0, 2.0), with(100.0, 100.0), false), // much better, and does not pass
         ] {

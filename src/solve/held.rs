@@ -8,13 +8,13 @@ use crate::linalg::vector::weighted_norm;
 use crate::linalg::Operator;
 use crate::setup::Ready;
 
-/// A force below this part of all forces on each of the bodies that its row touches is rounding, and holds no motion; ...
+/// A force is rounding, and holds no motion, if it is below this part of the forces on each body that its row touches ...
 const ROUNDING: f64 = 1e-12;
-/// ... on bodies without load, whose forces may be nothing but rounding of those of others, so is one below this part of all forces.
+/// ... or, on bodies without load, below this part of all forces: it may be rounding of the forces of other bodies.
 const IDLE: f64 = 64.0 * f64::EPSILON;
 
-/// Rows of the dual: groups of contact rows of which none carries a force, but for rounding, and tangential rows of nodes whose friction
-/// has no bound; `load` is that of all unknowns, force.
+/// Rows of the dual that hold nothing: groups of contact rows whose forces are all rounding, and tangential rows of nodes
+/// whose friction bound is 0. `load`: loads of all unknowns, force.
 pub fn without_force(ready: &Ready, load: &[f64], answer: Candidate) -> Vec<bool> {
     let lambda = answer.lambda;
     let (rows, island) = (&ready.rows, &ready.island);
@@ -39,7 +39,7 @@ pub fn without_force(ready: &Ready, load: &[f64], answer: Candidate) -> Vec<bool
             held[group] = false;
         }
     }
-    // friction resists where its bound is more than nothing
+    // friction resists if its bound is positive
     for node in island.friction.nodes.iter().filter(|node| node.limit(lambda) > 0.0) {
         for row in node.rows().map(|row| rows.tangential + row) {
             if let Some((group, _)) = rows.scaling.grouping.member[row] {

@@ -5,14 +5,14 @@ use crate::error::Result;
 use crate::linalg::Operator;
 use crate::platform::{interrupt, threads};
 
-/// F, which refuses products once the host has cancelled or the time is over.
+/// F, which refuses products after the host has cancelled or the time is over.
 pub struct Interruptible<'a> {
     operator: &'a Dual,
     threads: usize,
 }
 
 impl<'a> Interruptible<'a> {
-    /// The products of the bodies on so many threads.
+    /// F with the products of the bodies on `threads` threads.
     pub fn new(operator: &'a Dual, threads: usize) -> Self {
         Self { operator, threads }
     }

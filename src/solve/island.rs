@@ -13,11 +13,11 @@ use crate::qp::{Direct, Solution, Verdict};
 use crate::solve::case::Case;
 use crate::solve::certifier::Certifier;
 use crate::solve::diagnosis::{Contradictions, Unheld, MARGINAL, ROUNDING};
-use crate::solve::driven::solve_driven;
 use crate::solve::fallback::MethodOptions;
 use crate::solve::finish::{finish, is_to_finish};
 use crate::solve::friction::{nearest_forces, solve_with_friction};
 use crate::solve::interruptible::Interruptible;
+use crate::solve::negative::solve_with_negative_motions;
 use crate::solve::paper::{parameters, HostUnits};
 use crate::solve::presolve::presolve;
 use crate::solve::recovery::{Ending, Faces, Recovery};
@@ -30,9 +30,9 @@ pub struct Solved {
     pub outcome: Outcome,
     /// The direct finish has replaced the answer.
     pub finished: bool,
-    /// The largest share of the load of bodies that move together which nothing holds.
+    /// The largest share of the load that nothing holds, over the groups of bodies that move together.
     pub unheld: f64,
-    /// Time for answers recovered and certified, and for the recovery of the last.
+    /// Time for recovery and certification of answers, including the last.
     pub judging: Duration,
     pub recovering: Duration,
 }
@@ -40,24 +40,24 @@ pub struct Solved {
 /// How every island ended: with an answer, or with the named reason why it has none.
 pub type Ends = Vec<std::result::Result<Solved, Error>>;
 
-/// What the log calls S11.
+/// Name of S11 in the log.
 const DIAGNOSIS: &str = "forces nearest to the load";
 
-/// One try at an island.
+/// Result of one attempt at an island.
 enum Tried {
     Ended(Box<Solved>),
-    /// No forces were found that hold the load, but for rows that are too far off to hold so little.
+    /// No forces were found that hold the load, with the rows marked in `far` left out.
     NotHeld {
         far: Vec<bool>,
     },
-    /// The same with friction.
+    /// As `NotHeld`, with friction.
     NotHeldByFriction {
         far: Vec<bool>,
     },
 }
 
-/// Solves (10)-(11) on one island, number `number`: the dual from x = `start`, the displacements, the certificate. The named reason
-/// why there is no answer is an error. What rounding has made of a load that nothing holds is taken from it.
+/// Solves (10)-(11) on island `number`: the dual from x = `start`, the displacements, the certificate. If there is no
+/// answer, the error names the reason. A part of the load that nothing holds is removed if it may be rounding.
 pub fn solve_island(
     case: Case,
     number: usize,
@@ -108,7 +108,7 @@ fn solve_held(
     }
 }
 
-/// The loads and gaps of the host as the dual takes them; refuses rows whose gaps no displacement satisfies.
+/// Scaled loads and gaps for the dual; refuses rows whose gaps no displacement satisfies.
 pub fn scaled(case: Case) -> Result<Scaled> {
     let ready = case.ready;
     let mut load = ready.island.loads(case.model)?;
@@ -140,7 +140,14 @@ fn attempt(
         _ if case.has_friction() => {
             solve_with_friction(case, &MethodOptions { settings, direct }, qp, start, &mut judge, steps)?
         }
-        _ => solve_driven(case, &MethodOptions { settings, direct }, qp, start, &mut judge, steps)?,
+        _ => solve_with_negative_motions(
+            case,
+            &MethodOptions { settings, direct },
+            qp,
+            start,
+            &mut judge,
+            steps,
+        )?,
     };
     let solution = match solution {
         Solution { verdict: Verdict::Infeasible { .. }, .. } if dual.unheld.is_none() => {
@@ -152,7 +159,7 @@ fn attempt(
         solution => solution,
     };
     let (judging, recovering) = (judge.spent, Instant::now());
-    // an answer there is comes with its displacements and its certificate
+    // an accepted answer is returned with its displacements and its certificate
     let mut ending = interrupt::never(|| judge.ending(solution))?;
     let recovery = &judge.recovery;
     recovery.bring_to_rest(&mut ending, false)?;
@@ -163,7 +170,7 @@ fn attempt(
         outcome = Outcome::Inaccurate;
     }
     if let Some(taken) = dual.unheld.as_ref().filter(|taken| taken.load.is_some()) {
-        // what the host is told is about its own load
+        // the certificate for the host uses the host's own load
         ending.judgement = interrupt::never(|| recovery.judged_on(&case.data()?, &ending.recovered))?;
         let is_marginal = taken.share > ROUNDING || !ending.judgement.certificate.passed();
         outcome = match outcome {
@@ -177,7 +184,7 @@ fn attempt(
     Ok(Tried::Ended(Box::new(Solved { ending, outcome, finished, unheld, judging, recovering })))
 }
 
-/// F for the direct method, which stays within the memory limit.
+/// F for the direct method, which observes the memory limit.
 pub fn direct(case: Case<'_>) -> Result<Direct<'_>> {
     let Case { model: Model { settings, .. }, prepared, ready } = case;
     let asked = usize::try_from(settings.direct_limit).unwrap_or(usize::MAX);
@@ -186,7 +193,7 @@ pub fn direct(case: Case<'_>) -> Result<Direct<'_>> {
     Ok(Direct { entries: &ready.dual, limit: if fits { most } else { 0 } })
 }
 
-/// How the solution ended, or the named reason why there is none.
+/// The outcome of the solution, or the error that names why there is no answer.
 fn outcome(case: Case, dual: &Scaled, solution: &Solution) -> Result<Outcome> {
     match &solution.verdict {
         Verdict::Solved => Ok(Outcome::Solved),

@@ -7,7 +7,7 @@ use crate::solve::friction::on_known_states;
 use crate::solve::interruptible::Interruptible;
 use crate::solve::island::scaled;
 
-/// Products with F where all states of the last answer of an island with friction are known; none without such an answer.
+/// Products with F if all states of the last answer of an island with friction are known; none without such an answer.
 pub fn products_of_known_states(case: Case) -> Result<Option<usize>> {
     let ready = case.ready;
     threads::with_team(case.threads(), || {

@@ -10,7 +10,7 @@ use crate::solve::diagnosis::Unheld;
 use crate::solve::fallback::{gave_up, solve_dual, MethodOptions};
 use crate::solve::presolve::FAR;
 
-/// Solves the dual for the rows that matter; the forces of the others are 0.
+/// Solves the dual for the rows that matter; the forces of the rows left out are 0.
 pub fn solve_near(
     means: &MethodOptions,
     qp: Qp,
@@ -66,7 +66,8 @@ pub fn solve_near(
     Ok(Solution { counts, ..solution })
 }
 
-/// What was found, or, where the host or the time has refused it, the solution of the round before: its work has been counted.
+/// The new solution or, if the host or the time limit has stopped it, the solution of the previous round: its work is
+/// already counted.
 pub fn or_last(found: Result<Solution>, last: Option<Solution>) -> Result<Solution> {
     match last {
         Some(last) => Solution { counts: Counts::default(), ..last }.unless(found),
@@ -74,7 +75,7 @@ pub fn or_last(found: Result<Solution>, last: Option<Solution>) -> Result<Soluti
     }
 }
 
-/// Of the rows that are far the nearest, and those up to `FAR` times as far, are so no longer; rows that never close stay out.
+/// Takes in the nearest far row and all rows up to `FAR` times as far; rows with infinite gaps stay out.
 pub fn take_in_nearest(far: &mut [bool], gaps: &[f64]) {
     let nearest = (0..far.len()).filter(|&i| far[i]).map(|i| gaps[i]).fold(f64::INFINITY, f64::min);
     far.iter_mut().zip(gaps).for_each(|(far, gap)| *far &= !(*gap <= FAR * nearest && *gap < f64::INFINITY));

@@ -15,7 +15,7 @@ use crate::setup::Island;
 use crate::solve::case::Case;
 use crate::solve::gaps::Gaps;
 
-/// Of Algorithm 1; none where `method` is not one of the paper.
+/// The variant of Algorithm 1; none if `method` is not one of the paper.
 fn variant(settings: &Settings) -> Option<Variant> {
     match settings.method {
         Method::Proportioning | Method::Smalbe => None,
@@ -25,7 +25,7 @@ fn variant(settings: &Settings) -> Option<Variant> {
     }
 }
 
-/// Options of the paper's methods; none where `method` is another one.
+/// Options of the paper's methods; none if `method` is not one of them.
 pub fn parameters(settings: &Settings) -> Option<Parameters> {
     let whole = |n: i64| usize::try_from(n).unwrap_or(usize::MAX);
     Some(Parameters {
@@ -54,14 +54,14 @@ pub fn parameters(settings: &Settings) -> Option<Parameters> {
     })
 }
 
-/// What stands between the dual of the library and that of the host.
+/// The transformation between the dual of the library and that of the host.
 pub struct HostUnits {
     parameters: Parameters,
     /// 2^p
     unit: f64,
     /// s_i of every group, 1 of springs of bodies.
     scale: Vec<f64>,
-    /// T with `R_host = R T` of every body, and its place among all modes.
+    /// T with `R_host = R T` of every body, and the range of its modes.
     basis: Vec<(std::ops::Range<usize>, Matrix)>,
 }
 
@@ -82,7 +82,7 @@ impl HostUnits {
         Ok(Self { parameters, unit: *unit, scale, basis })
     }
 
-    /// Algorithm 3 on the dual in the units of the host; the solution in those of the library.
+    /// Algorithm 3 on the dual in the units of the host; the solution is in the units of the library.
     pub fn solve(
         &self,
         qp: Qp,
@@ -109,7 +109,7 @@ impl HostUnits {
         lambda.iter().zip(&self.scale).map(|(lambda, s)| lambda / (s * self.unit)).collect()
     }
 
-    /// D' of the host: (G T)' by rows, undone the scaling of the rows.
+    /// D' of the host: (G T)' by rows, without the scaling of the rows.
     fn equalities(&self, g_transposed: &Csr) -> Csr {
         let mut d_transposed = Csr::empty(g_transposed.cols);
         for (i, s) in self.scale.iter().enumerate() {
@@ -140,7 +140,7 @@ impl HostUnits {
     }
 }
 
-/// T with `R_host = R T`: R'D R_host, as R'DR = I; the identity where the library has found R itself.
+/// T with `R_host = R T`: R'D R_host, as R'DR = I; the identity if the library has found R itself.
 fn change_of_basis(case: Case, p: usize, metric: &[f64]) -> Result<Matrix> {
     let inverse = case.prepared.inverse(case.model, p);
     let cols = inverse.map_or(0, |inverse| inverse.kplus.null_space.cols);
@@ -179,7 +179,7 @@ impl Operator for Rescaled<'_> {
     }
 }
 
-/// The judge knows the dual of the library.
+/// Passes points in units of the library to the acceptance test.
 struct InHostUnits<'a> {
     units: &'a HostUnits,
     inner: &'a mut dyn AcceptanceTest,

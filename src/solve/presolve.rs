@@ -9,16 +9,17 @@ use crate::solve::contradiction::contradiction;
 use crate::solve::diagnosis::Contradictions;
 use crate::solve::gaps::Gaps;
 
-/// Gaps of two rows that differ by less than this fraction of them are equal ...
+/// Gaps of two rows are equal if they differ by less than this fraction of them ...
 const EQUAL: f64 = 1e-10;
-/// ... and so are those that differ by rounding of how far loads and rows move the bodies.
+/// ... or by rounding of the distance by which loads and rows move the bodies.
 const ROUNDING: f64 = 64.0 * f64::EPSILON;
-/// A gap so many times as large as all motion that loads make and rows demand is far.
+/// A gap is far if it exceeds all motion caused by loads and demanded by rows by this factor.
 pub const FAR: f64 = 1e4;
-/// With friction, where gaps of open rows are part of what the laws are measured against.
+/// The factor with friction, where gaps of open rows enter the scale of the laws.
 const FAR_WITH_FRICTION: f64 = 1e2;
 
-/// Gaps of all groups; refuses rows whose gaps no displacement satisfies. `moved` is how far the loads move a row at most.
+/// Gaps of all groups; refuses rows whose gaps no displacement satisfies. `moved`: the largest motion of a row by the
+/// loads.
 pub fn presolve(case: Case, moved: f64) -> Result<Gaps> {
     let Ready { rows, island, dual, .. } = case.ready;
     let rhs = RowKind::ALL.into_iter().flat_map(|kind| &island.members(kind).rows.rhs);
@@ -48,7 +49,7 @@ pub fn presolve(case: Case, moved: f64) -> Result<Gaps> {
         let contradicts = if i >= rows.contact {
             (gap - scaled[i]).abs() > slack
         } else if gaps.bounded[group] {
-            // of equal gaps that of a node with friction carries the force
+            // if gaps are equal, a node with friction carries the force
             let is_tighter = scaled[i] < gap || (scaled[i] == gap && rubs[i] && !rubs[gaps.holder[group]]);
             if is_tighter {
                 (gaps.value[group], gaps.holder[group]) = (scaled[i], i);
@@ -77,7 +78,7 @@ pub fn presolve(case: Case, moved: f64) -> Result<Gaps> {
     Ok(gaps)
 }
 
-/// Rows of the stack that are tangential ones of a node without friction: they never carry a force, as if their gaps were infinite.
+/// Tangential rows of nodes without friction: they never carry a force, as if their gaps were infinite.
 fn idle(case: Case) -> Vec<bool> {
     let (rows, island) = (&case.ready.rows, case.island());
     let mut idle = vec![false; rows.scaling.scale.len()];

@@ -1,5 +1,5 @@
-//! From a point of the dual problem of one island to the answer in the units of the host (17), its residuals in loads and gaps, and
-//! the verdict of its certificate.
+//! From a point of the dual problem of one island to the answer in the units of the host (17), the residuals of loads and
+//! gaps, and the certificate.
 
 use std::cell::{Cell, RefCell};
 
@@ -24,7 +24,7 @@ pub struct Recovered {
     pub u: Vec<f64>,
     pub lambda: Vec<f64>,
     pub mu: Vec<f64>,
-    /// Of tangential rows.
+    /// Tangential forces.
     pub tangential: Vec<f64>,
 }
 
@@ -34,16 +34,16 @@ impl Recovered {
     }
 }
 
-/// What solutions on faces of the dual are made with.
+/// What solutions on faces of the dual need.
 pub struct Faces<'a> {
     pub qp: Qp<'a>,
     pub direct: Direct<'a>,
 }
 
-/// What a solve ends with.
+/// The end of a solve.
 pub struct Ending {
     pub solution: Solution,
-    /// u but for a motion by R, length.
+    /// u without its motion by R, length.
     pub deformed: Vec<f64>,
     pub recovered: Recovered,
     pub judgement: Judgement,
@@ -57,20 +57,20 @@ pub struct Recovery<'a> {
     pub data: Data<'a>,
     pub threads: usize,
     pub faces: Faces<'a>,
-    /// V of the loads, once it has been asked for.
+    /// V of the loads, if already computed.
     work: Cell<Option<f64>>,
-    /// What cleans the motions of every body, once it has been asked for.
+    /// Cleaners of the rigid motions of the bodies, if already made.
     cleaners: RefCell<Vec<Option<Cleaner>>>,
-    /// Rounding grows by more than 1 / `SOFT` in K+ of a body.
+    /// K+ of some body amplifies rounding by more than 1 / `SOFT`.
     pub soft: bool,
-    /// Some node has friction: slips tell one answer from another.
+    /// Some node has friction: slips distinguish one answer from another.
     pub friction: bool,
 }
 
-/// What the log calls the judgement of an answer.
+/// Name of the certificate in the log.
 const CERTIFICATE: &str = "certificate";
 
-/// Least `softness` of a K+ whose losses do not matter.
+/// K+ loses too much precision if its `softness` is below this.
 const SOFT: f64 = 1e-4;
 
 impl<'a> Recovery<'a> {
@@ -99,7 +99,8 @@ impl<'a> Recovery<'a> {
         })
     }
 
-    /// (17) and lambda = 2^p S L'^-1 x on the rows that carry the multipliers of their groups, for u but for its motion.
+    /// (17) and lambda = 2^p S L'^-1 x on the rows that carry the multipliers of their groups. `deformed`: u without its
+    /// rigid motion.
     pub fn recover(&self, deformed: &[f64], x: &[f64], alpha: &[f64]) -> Recovered {
         let dual = &self.ready.dual;
         let mut u = dual.rigid_motion(&dual.balanced(x, alpha), deformed.len());
@@ -107,7 +108,7 @@ impl<'a> Recovery<'a> {
         self.with_forces(u, x)
     }
 
-    /// `K+ (f - B'x)`; where K+ is soft what it has lost is added, lest it be taken for a motion.
+    /// `K+ (f - B'x)`; if K+ is soft, the motion that K+ has lost is added, so that it does not count as a rigid motion.
     pub fn deformed(&self, x: &[f64]) -> Result<Vec<f64>> {
         let mut load = copied(&self.scaled.load, "a displacement")?;
         self.ready.rows.take_forces(x, &mut load);
@@ -124,7 +125,7 @@ impl<'a> Recovery<'a> {
         self.ready.displacement(self.threads, load)
     }
 
-    /// An answer of u and x.
+    /// The answer with displacements u and forces of x.
     pub fn with_forces(&self, u: Vec<f64>, x: &[f64]) -> Recovered {
         let [lambda, mu, tangential] = self.forces_of_host(x);
         Recovered { u, lambda, mu, tangential }
@@ -155,7 +156,7 @@ impl<'a> Recovery<'a> {
         Ok(left.into_iter().map(Twofold::value).collect())
     }
 
-    /// `c + C x - B u` of the rows of the dual, u being the sum of `parts`; 0 of springs of bodies, which are part of K.
+    /// `c + C x - B u` of the rows of the dual, u being the sum of `parts`; 0 for springs of bodies, which are part of K.
     pub fn gaps_left(&self, parts: &[&[f64]], x: &[f64]) -> Vec<f64> {
         let rows = &self.ready.rows;
         let forces = self.forces_of_host(x);
@@ -173,7 +174,8 @@ impl<'a> Recovery<'a> {
         left
     }
 
-    /// Of every body, whether the motion is larger than v and K resists it by rounding alone, if need be once it is cleaned.
+    /// Cleans a motion where it is larger than v. Per body: whether it is larger than v and K resists it by rounding
+    /// alone.
     pub fn clean(&self, motion: &mut [f64], v: &[f64]) -> Result<Vec<bool>> {
         let length =
             |body: &BodyData, u: &[f64]| weighted_norm(u, |i| self.ready.rows.metric[body.start + i]);
@@ -190,14 +192,15 @@ impl<'a> Recovery<'a> {
         self.judged_on(&self.data, answer)
     }
 
-    /// The same by data with other loads, but for rounding of those.
+    /// The judgement by data with other loads; only rounding of the loads may differ.
     pub fn judged_on(&self, data: &Data, answer: &Recovered) -> Result<Judgement> {
         let Self { ready, threads, work, .. } = self;
         let mut response = ByInverse { data, ready, threads: *threads, work };
         self.certified(data, answer, &mut response)
     }
 
-    /// Where bodies are cut the answer of the host is judged: K+ of its bodies, which rounding might be excused by, is not known.
+    /// If bodies are cut, the answer of the uncut bodies is judged: K+ of these bodies, by which rounding might be
+    /// excused, is not known.
     fn certified(&self, data: &Data, answer: &Recovered, response: &mut dyn Response) -> Result<Judgement> {
         interrupt::part(CERTIFICATE, || match &self.ready.whole {
             Some(whole) => whole.judged(self.model, data, answer.view()),
@@ -205,7 +208,7 @@ impl<'a> Recovery<'a> {
         })
     }
 
-    /// The same where rounding of the loads excuses nothing, and K+ is not asked.
+    /// The judgement without excuses by rounding of the loads; it needs no product with K+.
     pub fn judged_strictly(&self, answer: &Recovered) -> Result<Judgement> {
         self.certified(&self.data, answer, &mut Unasked)
     }

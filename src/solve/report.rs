@@ -9,16 +9,16 @@ use crate::progress::PhaseReport;
 use crate::qp;
 use crate::setup::{Prepared, Work};
 
-/// How a solve ended with an answer; of several groups of bodies the last of these.
+/// How a solve ended with an answer; with several groups of bodies, the outcome that comes last in this list.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Outcome {
     /// The certificate holds.
     Solved,
-    /// The load is held only up to a part below 1e-7 of itself.
+    /// Nothing holds a part of the load below 1e-7 of the load.
     Marginal,
-    /// The dual is solved as well as rounding allows, and the certificate does not hold.
+    /// The dual is solved up to rounding, but the certificate does not hold.
     Inaccurate,
-    /// The method found no way to improve an answer whose certificate does not hold.
+    /// The method could not improve an answer whose certificate does not hold.
     Stalled,
     /// The limit of steps was reached first.
     Iterations,
@@ -29,11 +29,11 @@ pub enum Outcome {
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum RowState {
-    /// The bodies are apart here, no force.
+    /// The gap is open, no force.
     Open,
     /// In contact, with a force.
     Closed,
-    /// Touching without a force, to rounding.
+    /// The gap is closed without a force, up to rounding.
     Weak,
     /// The bodies of the row are in a group that has no answer.
     Unknown,
@@ -42,7 +42,7 @@ pub enum RowState {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Report {
     pub outcome: Outcome,
-    /// Where there are several groups of bodies and not all are solved, the first body of the one that ended so.
+    /// If there are several groups of bodies and not all are solved: the first body of the group with this outcome.
     pub body: Option<usize>,
     pub certificate: Certificate,
     pub sizes: Sizes,
@@ -50,22 +50,23 @@ pub struct Report {
     pub floating_modes: usize,
     /// Contact rows that are closed.
     pub active: usize,
-    /// Nodes with friction that stick, and that slip.
+    /// Nodes with friction that stick, and nodes that slip.
     pub sticking: usize,
     pub slipping: usize,
-    /// Newton steps for friction, and starts that they took: 0 without friction.
+    /// Newton steps for friction, and the number of starts; 0 without friction.
     pub newton: usize,
     pub starts: usize,
     /// Rigid motions that no closed row resists: u is one of many.
     pub undetermined: usize,
-    /// The largest share of the load of bodies that move together which nothing holds: |resultant| / |load|, no unit.
+    /// The largest share of the load that nothing holds, over the groups of bodies that move together: |resultant| /
+    /// |load|, no unit.
     pub unheld: f64,
     /// Work of the methods on all islands.
     pub counts: qp::Counts,
-    /// The direct finish followed (option `finish`), and its answer is kept.
+    /// The direct finish (option `finish`) ran and its answer was kept.
     pub finished: bool,
-    /// `|S|B||u|| + |S c|` at the first feasible forces: what the tolerance of the dual is relative to,
-    /// `(force x length)^1/2`.
+    /// `|S|B||u|| + |S c|` at the first feasible forces, to which the tolerance of the dual is relative, `(force x
+    /// length)^1/2`.
     pub gap_scale: f64,
     /// Work of all setups so far.
     pub work: Work,
@@ -73,18 +74,18 @@ pub struct Report {
     pub energy: f64,
     pub seconds_setup: f64,
     pub seconds_solve: f64,
-    /// Bodies whose dual operator has its entries, and those whose operator is known by its products alone.
+    /// Bodies whose dual operator is assembled, and bodies whose dual operator is applied matrix-free.
     pub explicit_operators: usize,
     pub implicit_operators: usize,
-    /// Bytes of the factors and, at most, of the work arrays of their computation; of the explicit operators.
+    /// Bytes of the factors, largest size of the work arrays of their computation, bytes of the assembled operators.
     pub factor_bytes: usize,
     pub operator_bytes: usize,
-    /// Time and memory of every phase, in their order.
+    /// Time and memory of every phase, in order.
     pub phases: Vec<PhaseReport>,
 }
 
 impl Report {
-    /// Before any island has been solved.
+    /// The report before any island is solved.
     pub fn new(model: &Model, prepared: &Prepared) -> Result<Self> {
         let duals = prepared.done(model)?;
         let sum = |of: fn(&Dual) -> usize| duals.islands.iter().map(|ready| of(&ready.dual)).sum();

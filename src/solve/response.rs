@@ -1,4 +1,5 @@
-//! Displacements that loads and forces of rows cause through K+: how much rounding of the loads explains in an answer.
+//! Displacements that loads and forces of rows cause through K+, to find how much of an answer's error rounding of the
+//! loads explains.
 
 use std::cell::Cell;
 
@@ -14,7 +15,7 @@ pub struct ByInverse<'a> {
     pub data: &'a Data<'a>,
     pub ready: &'a Ready,
     pub threads: usize,
-    /// V of these loads, force x length, once it has been asked for.
+    /// V of these loads, force x length, if already computed.
     pub work: &'a Cell<Option<f64>>,
 }
 
@@ -47,8 +48,9 @@ impl ByInverse<'_> {
         self.data.bodies.last().map_or(0, |body| body.start + body.stiffness.order())
     }
 
-    /// `sum_p (g'v)^2 / v'K v` of the part `g = f - D R R'f / unit` of a load f, n, that balances itself. For any motion v that is
-    /// no more than `g'K+ g`, the work of the load on the body alone: v = K+ g makes it large, but cannot make it wrong.
+    /// `sum_p (g'v)^2 / v'K v` of the self-equilibrated part `g = f - D R R'f / unit` of a load f, n. For any motion v
+    /// this is at most `g'K+ g`, the work of the load on the body alone: v = K+ g makes it large, and an inexact K+
+    /// cannot make it too large.
     fn work_of(&self, mut load: Vec<f64>) -> Result<f64> {
         let metric = metric(self.data, load.len());
         for body in &self.data.bodies {

@@ -12,9 +12,9 @@ use crate::solve::recovery::{Ending, Recovered, Recovery};
 use crate::solve::travel::{travel, Moving, OpenMotions, Shift};
 
 impl<'a> Recovery<'a> {
-    /// Of the answers that differ by motions which nothing resists the one of least travel takes the place of this one,
-    /// unless this one alone passes. `exact`: motions are cleaned of the errors of R. Ended by the host or the time, it leaves what
-    /// there was, and says so in the verdict.
+    /// Replaces the answer by that of least travel among the answers that differ by motions which nothing resists, unless
+    /// only the original answer passes. `exact`: errors of R are removed from the motions. If the host or the time limit
+    /// stops it, the answer is unchanged and the verdict names the reason.
     pub fn bring_to_rest(&self, ending: &mut Ending, exact: bool) -> Result<()> {
         if ending.solution.undetermined == 0 {
             return Ok(());
@@ -40,8 +40,8 @@ impl<'a> Recovery<'a> {
         Ok(())
     }
 
-    /// The answer of least travel with its amplitudes, for the forces x; none where rows resist every motion. How far that
-    /// of the method has travelled plays no part, not even by its rounding.
+    /// The answer of least travel with its amplitudes, for the forces x; none if rows resist every motion. The distance
+    /// that the method has travelled has no influence, not even through rounding.
     pub fn at_rest(
         &self,
         answer: &Recovered,
@@ -90,7 +90,7 @@ impl<'a> Recovery<'a> {
         Ok(Some((Recovered { u, ..answer.clone() }, alpha)))
     }
 
-    /// What brings u to rest by the free motions; none where rounding leaves no way.
+    /// The motion that brings u to rest along the free motions; none if rounding leaves no such motion.
     fn way_to_rest(&self, u: &[f64], lambda: &[f64], mut free: Matrix) -> Result<Option<Shift>> {
         let (dual, Island { ranges, .. }) = (&self.ready.dual, &self.ready.island);
         for j in 0..free.cols {

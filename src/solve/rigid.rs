@@ -1,4 +1,4 @@
-//! Rigid motions to the accuracy of K: if a null space is given with fewer digits, the resistance of K to it is not strain.
+//! Rigid motions to the accuracy of K: if a null space is given with few digits, the resistance of K to it is not strain.
 
 use std::sync::Arc;
 
@@ -13,11 +13,11 @@ use crate::platform::{interrupt, tally};
 
 const WHAT: &str = "a rigid motion";
 
-/// Takes from a motion of a body what its null space has by errors: `w - (K + theta D)^-1 K w`, with theta rounding over the error
-/// of w. Parts so soft that rounding of K would move them more keep what they have.
+/// Removes the errors of the null space from a rigid motion w of a body: `w - (K + theta D)^-1 K w`, with theta rounding
+/// over the error of w. Parts so soft that rounding of K would move them more are left unchanged.
 pub enum Cleaner {
     Of(Box<Cholesky>),
-    /// K is not known by its entries, or K + theta D not positive definite.
+    /// K is not given by its entries, or K + theta D is not positive definite.
     Impossible,
 }
 
@@ -44,8 +44,8 @@ impl Cleaner {
     }
 }
 
-/// True where K resists the motion w of a body by rounding alone, once it is cleaned where it does not; the cleaner of the body is
-/// made where it is not there.
+/// True if K resists the motion w of a body by rounding alone, after w is cleaned if necessary; makes the cleaner of the
+/// body if there is none.
 pub fn unresisted(body: &BodyData, w: &mut [f64], cleaner: &mut Option<Cleaner>) -> Result<bool> {
     let error = resistance(body, w)?;
     if error <= NOISE {
@@ -85,7 +85,7 @@ mod tests {
     use super::*;
     use crate::linalg::Matrix;
 
-    /// A free chain of springs, and one of stiffness `ground` to the ground.
+    /// A free chain of springs, and one connected to the ground with stiffness `ground`.
     fn with_chain(springs: &[f64], ground: f64, work: impl Fn(&BodyData)) {
         let (mut ptr, mut col, mut val) = (vec![0, 1], vec![0], vec![springs[0] + ground]);
         for (i, s) in springs.iter().enumerate() {
@@ -111,7 +111,7 @@ mod tests {
         (0..5).map(|i| 1e6 * (1.0 + error * f64::from(3 * i % 5))).collect()
     }
 
-    /// The part behind the soft spring moves as it did, but for its noise.
+    /// Except for noise, the part behind the soft spring moves as before.
     #[test]
     fn a_motion_with_noise_becomes_one_that_only_rounding_resists() {
         for springs in [[1.0, 2.0, 3.0, 1.0], [1.0, 2.0, 1e-9, 3.0]] {

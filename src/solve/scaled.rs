@@ -9,7 +9,7 @@ use crate::setup::Ready;
 use crate::solve::case::Case;
 use crate::solve::gaps::Gaps;
 
-/// Loads and gaps as the dual takes them.
+/// Loads and gaps in the scaling of the dual.
 pub struct Scaled {
     /// f / 2^p
     pub load: Vec<f64>,
@@ -19,28 +19,29 @@ pub struct Scaled {
     d: Vec<f64>,
     /// `e = R'f`
     pub resultants: Vec<f64>,
-    /// What has been taken from the loads because nothing holds it.
+    /// The part removed from the loads because nothing holds it.
     pub unheld: Option<Taken>,
 }
 
-/// Loads without what nothing holds of them.
+/// Loads without the part that nothing holds.
 pub struct Taken {
-    /// The loads without it, force; none where it is so little of each body that only their resultants are without it.
+    /// The loads without this part, force; none if the part is so small on each body that it is removed from the
+    /// resultants alone.
     pub load: Option<Vec<f64>>,
-    /// The largest |resultant| / |load| of bodies that move together.
+    /// The largest |resultant| / |load| over the groups of bodies that move together.
     pub share: f64,
 }
 
 impl Scaled {
-    /// `load` is f / 2^p, `moved` what it moves.
+    /// `load`: f / 2^p; `moved`: `B_p K_p+ f_p`.
     pub fn new(ready: &Ready, load: Vec<f64>, moved: Vec<Vec<f64>>, gaps: Gaps) -> Self {
         let d = ready.dual.rhs(&moved, &gaps.dual);
         let resultants = ready.dual.resultants(&load);
         Self { load, gaps, moved, d, resultants, unheld: None }
     }
 
-    /// Takes from the loads what forces x of the dual leave of them, of which nothing holds a `share`: from the loads themselves
-    /// those in units of 2^p that are given, else from their resultants alone.
+    /// Removes the part of the loads that forces x of the dual leave and of which nothing holds a `share`: `left`, in
+    /// units of 2^p, from the loads if given, otherwise from the resultants alone.
     pub fn take(&mut self, case: Case, x: &[f64], left: Option<&[f64]>, share: f64) -> Result<()> {
         let ready = case.ready;
         self.resultants.fill(0.0);

@@ -1,4 +1,5 @@
-//! Motions of an answer that keep its closed rows closed: whether the energy falls along them, and how far open rows let them go.
+//! Motions of an answer that keep its closed rows closed: whether the energy falls along them, and how far open rows
+//! allow them.
 
 use crate::error::Result;
 use crate::linalg::twofold::Twofold;
@@ -8,9 +9,10 @@ use crate::platform::memory::{filled, zeros};
 use crate::solve::recovery::Recovery;
 
 const WHAT: &str = "a motion along closed rows";
-/// A row that moves by less than this part of what the fastest unknown could make of it does not move.
+/// A row moves only if its motion exceeds this part of the most that the fastest unknown could cause.
 const STILL: f64 = 1e-9;
-/// The same of a closed row, which may be known by a method's tolerance alone: what it makes of the energy is counted.
+/// This limit for a closed row, whose state may be known only to the tolerance of a method: its contribution to the
+/// energy counts.
 const CLOSED: f64 = 1e-5;
 
 /// `v = R alpha - K+ B'x`, x on the rows F alone.
@@ -30,14 +32,14 @@ impl Sliding {
         Ok(Self { v, x, alpha })
     }
 
-    /// The other way.
+    /// Reverses the motion.
     pub fn turn(&mut self) {
         for part in [&mut self.v, &mut self.x, &mut self.alpha] {
             part.iter_mut().for_each(|v| *v = -*v);
         }
     }
 
-    /// `v'K v + x'C x < 0` by the matrices of the host, and by more than what the rows F have moved makes of it.
+    /// `v'K v + x'C x < 0` by the matrices of the host, and by more than the energy from the motion of the rows F.
     pub fn falls(&self, recovery: &Recovery, held: &[bool]) -> Result<bool> {
         let (rows, unit) = (&recovery.ready.rows, recovery.ready.island.unit);
         let mut image = filled(self.v.len(), Twofold::default(), WHAT)?;
@@ -59,7 +61,7 @@ impl Sliding {
         Ok(energy.value() < -2.0 * moved)
     }
 
-    /// The largest t with `u + t v` within the rows that are held; infinite where none of them ends the motion.
+    /// The largest t for which `u + t v` violates no row marked in `held`; infinite if no such row stops the motion.
     pub fn reach(&self, recovery: &Recovery, u: &[f64], held: &[bool]) -> f64 {
         let (rows, gaps) = (&recovery.ready.rows.scaled, &recovery.scaled.gaps.value);
         let mut reach = f64::INFINITY;
@@ -71,7 +73,7 @@ impl Sliding {
         }
         reach
     }
-    /// The most that the row could move.
+    /// The largest motion that the row could have.
     fn size(&self, rows: &Csr, i: usize) -> f64 {
         norm_max(&self.v) * rows.row(i).map(|(_, b)| b.abs()).sum::<f64>()
     }

@@ -12,12 +12,12 @@ use crate::solve::answer::Answer;
 pub struct Start {
     /// Multipliers of contact, equality and tangential rows, force.
     pub given: [Option<Vec<f64>>; 3],
-    /// The last answer for the rows.
+    /// The last answer for these rows.
     pub previous: Option<Arc<Answer>>,
 }
 
 impl Start {
-    /// What it comes from.
+    /// The origin of the start point.
     pub fn name(&self) -> &'static str {
         match (&self.given, &self.previous) {
             ([None, None, None], None) => "cold",
@@ -26,7 +26,7 @@ impl Start {
         }
     }
 
-    /// `x = L'lambda / (S 2^p)` of an island, parallel rows together; multipliers that are not there are zero.
+    /// `x = L'lambda / (S 2^p)` of an island, with parallel rows combined; missing multipliers are zero.
     pub fn scaled(&self, ready: &Ready) -> Result<Vec<f64>> {
         let mut multipliers = RowKind::ALL.map(|kind| self.given[kind as usize].as_deref());
         if multipliers == [None; 3] {
@@ -35,7 +35,7 @@ impl Start {
         }
         let mut x = ready.rows.scaling.forces_to_dual(|i| {
             let (kind, row) = ready.island.kind_and_row(i);
-            // where the last solve has left none
+            // if the last solve has left no multipliers
             let known =
                 multipliers[kind as usize].and_then(|all| all.get(row).copied()).filter(|v| v.is_finite());
             known.unwrap_or(0.0)

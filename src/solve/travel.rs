@@ -16,11 +16,11 @@ use crate::linalg::vector::{axpy, dot, norm_max};
 use crate::linalg::{Csr, Matrix};
 use crate::qp::{nearest_point, Polyhedron};
 
-/// A motion that keeps less than this of its length beside others depends on them.
+/// A motion depends on others if less than this part of its length is left beside them.
 const DEPENDENT: f64 = 1e-10;
 /// Rounding of a gap, relative to its terms.
 const NOISE: f64 = 64.0 * f64::EPSILON;
-/// The second takes what the first, far travelled, has left by rounding.
+/// The second pass removes the rounding of a long first travel.
 const PASSES: usize = 2;
 
 /// The null space of one body.
@@ -31,13 +31,13 @@ pub struct Moving<'a> {
     pub modes: Range<usize>,
     /// `R_p`
     pub null_space: &'a Matrix,
-    /// How far it is known, against the fastest dof of each vector.
+    /// Its accuracy, relative to the fastest dof of each vector.
     pub rounding: f64,
 }
 
-/// Motions left open, and what restricts them.
+/// Free motions, and the rows that restrict them.
 pub struct OpenMotions<'a> {
-    /// Ascending, all modes and all unknowns.
+    /// Bodies in ascending order of unknowns and modes.
     pub bodies: &'a [Moving<'a>],
     /// A: amplitudes of the null spaces, r x d.
     pub amplitudes: &'a Matrix,
@@ -45,23 +45,23 @@ pub struct OpenMotions<'a> {
     pub metric: &'a [f64],
     /// Unknowns that do not move.
     pub grounded: &'a [bool],
-    /// Contact rows B over all unknowns, their gaps c (infinite: never), compliance C and forces lambda. Those with
-    /// lambda > 0 resist no motion of N, and are not looked at.
+    /// Contact rows B over all unknowns, their gaps c (infinite: never closed), compliance C and forces lambda. Rows with
+    /// lambda > 0 resist no motion of N and are ignored.
     pub rows: &'a Csr,
     pub gaps: &'a [f64],
     pub compliance: &'a [f64],
     pub lambda: &'a [f64],
 }
 
-/// What the answer changes by.
+/// The change of the answer.
 pub struct Shift {
     /// `N a`
     pub u: Vec<f64>,
-    /// `A a` over all modes, D-orthonormalisation undone.
+    /// `A a` over all modes, without the D-orthonormalisation.
     pub amplitudes: Vec<f64>,
 }
 
-/// The way from `u` to the answer of least travel.
+/// The change from `u` to the answer of least travel.
 pub fn travel(open: &OpenMotions, u: &[f64]) -> Result<Shift> {
     let null_spaces: Vec<Cow<Matrix>> = open.bodies.iter().map(|body| open.grounded_out(body)).collect();
     let groups = open.orthonormal(&null_spaces)?;
@@ -90,13 +90,13 @@ pub fn travel(open: &OpenMotions, u: &[f64]) -> Result<Shift> {
     Ok(change)
 }
 
-/// D-orthonormal motions of bodies that do not move alone.
+/// D-orthonormal motions of bodies that move together.
 struct MotionGroup {
     /// Modes of these bodies, ascending.
     modes: Vec<usize>,
     /// Amplitudes of `modes`, one column per motion.
     motions: Matrix,
-    /// Of all motions, the first of the group.
+    /// Number of the first motion of the group among all motions.
     first: usize,
 }
 
@@ -137,7 +137,7 @@ impl OpenMotions<'_> {
         all
     }
 
-    /// The motions that share bodies, by groups, `A'R'D R A = I`.
+    /// Motions in groups that share bodies, `A'R'D R A = I`.
     fn orthonormal(&self, null_spaces: &[Cow<Matrix>]) -> Result<Vec<MotionGroup>> {
         let (a, mut moved_by) = (self.amplitudes, vec![Vec::new(); self.bodies.len()]);
         for j in 0..a.cols {
@@ -216,7 +216,7 @@ impl OpenMotions<'_> {
         Ok(gram)
     }
 
-    /// `B N`, entries that are nothing but rounding left out, rows with lambda > 0 empty.
+    /// `B N` without entries that are rounding; rows with lambda > 0 are empty.
     fn along_rows(&self, null_spaces: &[Cow<Matrix>], groups: &[MotionGroup]) -> Csr {
         let modes = self.amplitudes.rows;
         let (mut at, mut fastest) = (vec![None; modes], vec![0.0; modes]);
@@ -228,7 +228,7 @@ impl OpenMotions<'_> {
         }
         let mut all = Csr::empty(groups.iter().map(|group| group.motions.cols).sum());
         for i in 0..self.rows.rows() {
-            // terms of `b_i R`: mode, value, what it is known to
+            // terms of `b_i R`: mode, value, accuracy
             let mut terms: Vec<(usize, f64, f64)> = Vec::new();
             for (unknown, b) in self.rows.row(i).filter(|_| self.lambda[i] <= 0.0) {
                 let p = self.bodies.partition_point(|body| body.unknowns.end <= unknown);
@@ -247,7 +247,7 @@ impl OpenMotions<'_> {
         all
     }
 
-    /// `c + C lambda - B u` and its rounding; rows with lambda > 0 and infinite gaps restrict nothing.
+    /// `c + C lambda - B u` and its rounding; rows with lambda > 0 and infinite gaps do not restrict.
     fn left(&self, u: &[f64]) -> (Vec<f64>, Vec<f64>) {
         let (mut gaps, mut noise) = (vec![f64::INFINITY; self.rows.rows()], vec![0.0; self.rows.rows()]);
         let restricts = |i: &usize| self.lambda[*i] <= 0.0 && self.gaps[*i] < f64::INFINITY;

@@ -12,38 +12,38 @@ use crate::setup::{Duals, Inverse};
 use crate::solver::decomposed::null_space_of;
 use crate::solver::problem::Problem;
 
-/// What the null space of a body comes from.
+/// Where the null space of a body comes from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Origin {
-    /// Vectors of the host that span it.
+    /// Vectors of the host that span the null space.
     Given,
-    /// Vectors of the host among which it was sought.
+    /// Selected by the library from vectors of the host.
     Candidates,
     /// Rigid motions from the coordinates of the host.
     Coordinates,
-    /// The matrix alone.
+    /// Found from the matrix alone.
     Found,
 }
 
-/// A body as it is given, and what the last setup made of it.
+/// A body as given by the host, and what the last setup computed for it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BodyFacts {
     pub unknowns: usize,
     /// Entries of K as the host gave them.
     pub entries: Option<usize>,
-    /// Connected parts of K.
+    /// Connected components of K.
     pub components: Option<usize>,
-    /// Pieces that it is cut into, 1 for a body that is not.
+    /// Pieces into which the body is cut; 1 if it is not cut.
     pub pieces: usize,
     /// Bytes that the library keeps for K.
     pub matrix_bytes: usize,
-    /// Values and columns of K lie with the host.
+    /// Values and columns of K remain in arrays of the host.
     pub borrowed: [bool; 2],
     pub origin: Origin,
     pub factors: Option<Factors>,
-    /// Bytes of the dual operator; none of one that is known by its products.
+    /// Bytes of the assembled dual operator; none if it is applied matrix-free.
     pub operator: Option<Option<usize>>,
-    /// Estimated relative error of the forces on the body in the last answer, no unit; none without one.
+    /// Estimated relative error of the forces on the body in the last answer, no unit; none without an answer.
     pub force_error: Option<f64>,
 }
 
@@ -52,9 +52,9 @@ pub struct BodyFacts {
 pub struct Factors {
     /// Dimension of the null space.
     pub null_space: usize,
-    /// Of a null space that was found: the softest other motion against the stiffest of it.
+    /// If the null space was found by the library: ratio of the softest other motion to its stiffest.
     pub gap: Option<f64>,
-    /// Motions that may be resisted by nothing but the rounding of the entries of K.
+    /// Motions whose resistance may be only rounding of the entries of K.
     pub doubts: Vec<Doubt>,
     pub entries: usize,
     pub bytes: usize,
@@ -63,15 +63,15 @@ pub struct Factors {
 }
 
 impl Factors {
-    /// Motions that may be resisted by nothing but the rounding of the entries of K, taken as free or as supports.
+    /// Number of motions whose resistance may be only rounding of the entries of K, treated as free or as supports.
     pub fn soft(&self, free: bool) -> usize {
         self.doubts.iter().filter(|doubt| doubt.free == free).map(|doubt| doubt.motions).sum()
     }
 }
 
 impl Problem {
-    /// The connected part of every unknown of a body, numbered by their first unknowns, and their number. Entries that
-    /// are 0 connect nothing.
+    /// The connected component of every unknown of a body, numbered by first unknowns, and the number of components.
+    /// Entries that are 0 connect nothing.
     pub fn components(&self, body: usize) -> Result<(Vec<usize>, usize)> {
         const PER_DOF: usize = 2 * size_of::<usize>();
         let missing = || Error::new(Kind::State, "the stiffness matrix has not been given").body(body);
@@ -94,7 +94,7 @@ impl Problem {
         let origin = match (&given.body.null_space, &given.body.coordinates) {
             (Some(r), _) if r.modes == Modes::Candidates => Origin::Candidates,
             (Some(_), _) => Origin::Given,
-            // where coordinates did not fit
+            // coordinates were given that do not fit K
             (None, _) if self.inverses(body).any(|of| of.kplus.misfit.is_some()) => Origin::Found,
             (None, Some(_)) => Origin::Coordinates,
             (None, None) => Origin::Found,
@@ -137,12 +137,12 @@ impl Problem {
         })
     }
 
-    /// The parts that stand for a body.
+    /// The parts that represent a body.
     fn parts_of(&self, body: usize) -> Range<usize> {
         self.parts().map_or(body..body + 1, |parts| parts.of(body))
     }
 
-    /// K+ of the parts of a body, as it is now.
+    /// K+ of the parts of a body, if already made.
     fn inverses(&self, body: usize) -> impl Iterator<Item = &Inverse> + '_ {
         let solved = self.solved();
         let now = solved.bodies.get(self.parts_of(body).start).map(|given| given.revisions);
@@ -151,7 +151,7 @@ impl Problem {
         parts.filter_map(|part| self.prepared.inverse(self.solved(), part))
     }
 
-    /// The piece of every unknown of a body, of several the first; 0 in a body that is not cut.
+    /// The piece of every unknown of a body, the first if there are several; 0 in a body that is not cut.
     pub fn pieces(&self, body: usize) -> Result<Vec<u32>> {
         const WHAT: &str = "the pieces of unknowns";
         let missing = || Error::new(Kind::State, "the stiffness matrix has not been given").body(body);
@@ -167,8 +167,8 @@ impl Problem {
         Ok(piece_of)
     }
 
-    /// Forces that hold the held unknowns 0, 1, ... of a body given by elements, `K_hf u`, force; 0 for one that no element has.
-    /// What prescribed values of held unknowns and loads on them add is for the host to say.
+    /// Forces that hold the held unknowns 0, 1, ... of a body given by elements, `K_hf u`, force; 0 for an unknown
+    /// without element. The host has to add the contributions of prescribed values and of loads on held unknowns.
     pub fn held_forces(&self, body: usize, forces: &mut [f64]) -> Result<()> {
         let given = self.model.given(body)?;
         let missing = || Error::new(Kind::State, "the body was not given by its elements").body(body);

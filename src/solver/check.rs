@@ -12,13 +12,15 @@ use crate::solver::joints::with_glue;
 use crate::solver::problem::Problem;
 
 impl Problem {
-    /// The certificate of any answer without friction, also another code's.
+    /// The certificate of any answer without friction, for example the answer of another code.
     pub fn check(&mut self, u: &[f64], lambda: &[f64], mu: &[f64]) -> Result<Certificate> {
         let tangential = vec![0.0; self.model.friction.rows.len()];
         self.check_with_friction(Candidate { u, lambda, mu, tangential: &tangential })
     }
 
-    /// The certificate of any answer: u over all unknowns, multipliers of contact, equality and tangential rows; the forces of glue are those that serve it best. A setup that is there serves, whatever the options have become: the last answer stays.
+    /// The certificate of any answer: u over all unknowns, multipliers of contact, equality and tangential rows; the
+    /// forces of glue are chosen for the best equilibrium. An existing setup is used even if the options have changed:
+    /// the last answer stays valid.
     pub fn check_with_friction(&mut self, answer: Candidate) -> Result<Certificate> {
         let Candidate { u, lambda, mu, tangential } = answer;
         if self.prepared.duals(&self.model).is_none() {
@@ -73,8 +75,8 @@ impl Problem {
     }
 }
 
-/// No force is allowed on a contact row that never closes, and none but its own, `max(0, -k c)`, on one without entries
-/// that does.
+/// A contact row that never closes must have no force; a contact row without entries must have its own force, `max(0, -k
+/// c)`.
 fn without_force(model: &Model, lambda: &[f64], worst: Entry) -> Entry {
     let rows = &model.contact;
     let wrong = |(i, force): (usize, f64)| {

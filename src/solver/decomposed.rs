@@ -1,4 +1,4 @@
-//! Translates between the host's problem and the problem that is solved, in which pieces replace the bodies that are cut.
+//! Translates between the host's problem and the problem that is solved, in which pieces replace bodies that are cut.
 
 use crate::decomposition::{self, Decomposition};
 use crate::error::{Error, Result};
@@ -8,7 +8,7 @@ use crate::setup::{Prepared, Whole};
 use crate::solve::Answer;
 use crate::solver::findings::Findings;
 
-/// First parts of all bodies.
+/// The first part of every body.
 pub fn numbers(decomposition: &Option<Decomposition>, host: &Model) -> Vec<usize> {
     match decomposition.as_ref().and_then(|of| of.model.parts.as_deref()) {
         Some(parts) => parts.first.clone(),
@@ -27,8 +27,8 @@ pub fn of_host(host: &Model, decomposition: &Option<Decomposition>, error: Error
     }
 }
 
-/// The answer of the pieces as one of the host's bodies. Forces of the glue stay behind those of the host's equality rows: first those
-/// of joints.
+/// Converts the answer for the pieces to an answer for the host's bodies. Forces of glue follow those of the host's
+/// equality rows: first the forces of joints.
 pub fn answer_of_host(
     host: &Model,
     solved: &Model,
@@ -56,7 +56,7 @@ pub fn answer_of_host(
     Ok(answer)
 }
 
-/// The island of a body as the host knows it, where it holds pieces.
+/// The island of a body in terms of the host's bodies, if it contains pieces.
 fn whole_of<'a>(prepared: &'a Prepared, parts: &Parts, body: usize) -> Option<&'a Whole> {
     let duals = prepared.made_last()?;
     duals.islands[duals.island_of[parts.first[body]]].whole.as_ref()

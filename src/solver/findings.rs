@@ -1,4 +1,4 @@
-//! Facts about the problem that the last solve, or the last setup that failed, has found, in more detail than a text.
+//! What the last solve, or the last failed setup, has found about the problem, in more detail than the text of the error.
 
 use crate::constraints::RowKind;
 use crate::error::{Error, Kind, Place, Proof};
@@ -8,11 +8,11 @@ use crate::solve::{Outcome, Report};
 
 #[derive(Debug, Clone, PartialEq)]
 pub struct Findings {
-    /// How it ended: with an answer, or with none.
+    /// The outcome with an answer, or the error kind without one.
     pub end: std::result::Result<Outcome, Kind>,
-    /// Where a failure happened.
+    /// Place of the failure.
     pub place: Place,
-    /// Kind of the row of `place`, when a proof names it.
+    /// Kind of the row of `place`, if a proof names it.
     pub kind: Option<RowKind>,
     /// Why there is no solution.
     pub proof: Option<Proof>,
@@ -21,19 +21,19 @@ pub struct Findings {
     pub motion: Option<[f64; 6]>,
     /// Rigid motions that no closed row resists.
     pub undetermined: usize,
-    /// The largest share of the load of bodies that move together which nothing holds: |resultant| / |load|, no unit. With an
-    /// answer it has been taken for rounding of the load.
+    /// The largest share of the load that nothing holds, over the groups of bodies that move together: |resultant| /
+    /// |load|, no unit. If there is an answer, this share was treated as rounding of the load.
     pub unheld: f64,
-    /// What friction holds of the load along the motion of a slide, as a part, no unit.
+    /// Part of the load along the motion of a slide that friction holds, no unit.
     pub capacity: Option<f64>,
-    /// Rows that repeat the direction of another one, contact rows before equality rows, each with its multiple
-    /// of that one.
+    /// Rows that repeat the direction of another row, contact rows before equality rows, each with the factor from that
+    /// row.
     pub redundant: Vec<(usize, f64)>,
     /// Bodies that no row touches.
     pub untouched: Vec<usize>,
-    /// Bodies with motions that may be resisted by nothing but the rounding of the entries of K: `doubts` of their facts.
+    /// Bodies with motions whose resistance may be only rounding of the entries of K: `doubts` of their facts.
     pub doubtful: Vec<usize>,
-    /// Bodies with motions that K resists or drives softly.
+    /// Bodies with motions of small positive or negative stiffness.
     pub soft: Vec<usize>,
     /// Number of contact rows.
     contact: usize,
@@ -47,7 +47,7 @@ impl Findings {
         findings
     }
 
-    /// `model` is what was solved; the error is about the bodies of the host.
+    /// `model` is the problem that was solved; `error` refers to the bodies of the host.
     pub fn of_error(host: &Model, model: &Model, prepared: &Prepared, error: &Error) -> Self {
         let mut findings = Self::new(host, model, prepared, Err(error.kind));
         findings.place = *error.place;
@@ -98,8 +98,7 @@ impl Findings {
         })
     }
 
-    /// Rows that contradict each other with their weights; of a problem without contradiction its redundant rows
-    /// with their multiples.
+    /// Contradictory rows with their weights; if there is no contradiction, the redundant rows with their factors.
     pub fn rows(&self, kind: RowKind) -> impl Iterator<Item = (usize, f64)> + '_ {
         let listed = match &self.proof {
             Some(Proof::Rows { weights, .. }) => weights,
@@ -120,7 +119,7 @@ impl Findings {
     }
 }
 
-/// Rows of a group but its leader, with the factor from the leader, in the order of the stack.
+/// All rows of a group except the leader, with the factor from the leader, in the order of the stack.
 pub fn redundant(model: &Model, duals: &Duals) -> Vec<(usize, f64)> {
     let mut all = Vec::new();
     for ready in &duals.islands {
@@ -146,7 +145,7 @@ fn soft(model: &Model, prepared: &Prepared) -> Vec<usize> {
     (0..model.bodies.len()).filter(soft).collect()
 }
 
-/// Bodies of the host that no glue and none of its rows touches, or only such as never close.
+/// Bodies of the host without glue that no row touches, or only rows that never close.
 fn untouched(host: &Model) -> Vec<usize> {
     let mut touched = vec![false; host.bodies.len()];
     for rows in [&host.contact, &host.equalities] {
@@ -165,7 +164,7 @@ fn untouched(host: &Model) -> Vec<usize> {
     (0..touched.len()).filter(|&body| !touched[body]).collect()
 }
 
-/// A motion of all unknowns on one body, where it has coordinates: velocity of the origin (length) and rotation about the axes.
+/// A motion of all unknowns on one body with coordinates: velocity of the origin (length) and rotation about the axes.
 pub fn rigid_motion(model: &Model, body: usize, v: &[f64]) -> Option<[f64; 6]> {
     let coordinates = model.bodies.get(body)?.body.coordinates.as_ref()?;
     coordinates.rigid_motion(v.get(model.range(body))?)

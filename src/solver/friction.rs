@@ -5,16 +5,17 @@ use crate::solve::Outcome;
 use crate::solver::problem::Problem;
 
 impl Problem {
-    /// `s_old := T u - C_t lambda_t` at every node, open ones too, of the last answer, which must be certified. The answer stays,
-    /// with the slips it had; a second time does what the first did.
+    /// `s_old := T u - C_t lambda_t` of the last answer at every node, also at open nodes; the answer must be certified.
+    /// The answer is unchanged, including its slips; a second call has no further effect.
     pub fn commit_friction(&mut self) -> Result<()> {
         let answer = self.answer()?;
         if answer.failed.contains(&true) {
-            let what = "a group of bodies has no answer: no step has ended that friction could go on from";
+            let what =
+                "a group of bodies has no answer: there are no slips from which the next step could start";
             return Err(Error::new(Kind::State, what));
         }
         if !matches!(answer.report.outcome, Outcome::Solved | Outcome::Marginal) {
-            let what = "the last answer is not certified: no step has ended that friction could go on from";
+            let what = "the last answer is not certified: its slips cannot be the start of the next step";
             return Err(Error::new(Kind::State, what));
         }
         let reached = self.model.friction.reached(&answer.u, &answer.tangential)?;

@@ -1,4 +1,4 @@
-//! What a problem keeps besides its data: the last answer, the start of the next solve, saved states.
+//! What a problem keeps in addition to its data: the last answer, the start of the next solve, saved states.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -8,27 +8,27 @@ use crate::solve::{Answer, Start};
 
 #[derive(Default)]
 pub struct History {
-    /// The answer of the last solve, where it gave one.
+    /// The answer of the last solve, if it gave one.
     pub current: Option<Current>,
-    /// Which rows it is about: their revision.
+    /// Revision of the rows to which these values belong.
     rows: u64,
     /// Start of the next solve, given by the host: multipliers of contact, equality and tangential rows, force.
     pub start: [Option<Vec<f64>>; 3],
-    /// The last answer for the present rows; it outlives a change of a matrix.
+    /// The last answer for the present rows; it remains after a change of a matrix.
     pub previous: Option<Arc<Answer>>,
     pub states: BTreeMap<usize, State>,
     /// Number of states saved so far.
     pub saved: usize,
 }
 
-/// An answer, by which dual problems it was found, and what was made of it once somebody has asked.
+/// An answer, the dual problems it belongs to, and results computed from it on request.
 pub struct Current {
     pub answer: Arc<Answer>,
-    /// Number of times that the dual problems had been made.
+    /// How many times the dual problems had been made at that time.
     pub made: usize,
-    /// Motions that it leaves open, over the modes of one island each.
+    /// Motions that the answer leaves undetermined, each over the modes of one island.
     pub open_motions: Option<Vec<(usize, Vec<f64>)>>,
-    /// Forces of the rows of one kind, or of both, on all bodies.
+    /// Reactions on all bodies, of the rows of one kind or of both kinds.
     pub reactions: Option<(Option<RowKind>, Vec<f64>)>,
 }
 
@@ -36,7 +36,7 @@ pub struct Current {
 pub struct State {
     /// Revision of the matrices.
     pub bodies: u64,
-    /// Of every body, where it has one.
+    /// Loads of the bodies that have one.
     pub loads: Vec<Option<Vec<f64>>>,
     /// Contact and equality rows, with c, h and 1/k.
     pub rows: [RowSet; 2],
@@ -54,7 +54,7 @@ impl Current {
 }
 
 impl History {
-    /// Of these rows, by their revision: multipliers of others are none of theirs.
+    /// The history for rows of this revision: multipliers of other rows are dropped.
     pub fn of(&mut self, rows: u64) -> &mut Self {
         if self.rows != rows {
             (self.rows, self.start, self.previous) = (rows, [None, None, None], None);
@@ -68,7 +68,7 @@ impl History {
         self.current = Some(Current::new(answer, made));
     }
 
-    /// Where the next solve starts: given values, which are used up, or else the last answer, if that is wanted.
+    /// The start of the next solve: the given values, which are used only once, otherwise the last answer if `previous`.
     pub fn take_start(&mut self, previous: bool) -> Start {
         let given = std::mem::take(&mut self.start);
         Start { given, previous: self.previous.clone().filter(|_| previous) }

@@ -8,8 +8,9 @@ use crate::platform::memory::{copied, filled, zeros};
 
 const WHAT: &str = "forces of glue";
 
-/// Multipliers of equality rows of the host with those of the joints after them, by which the answer comes nearest to equilibrium:
-/// what loads, K u and rows leave of an unknown goes on to the next one with its number, and at the last of them it stays.
+/// Multipliers of the host's equality rows, then of the joints, with the joint forces that bring the answer closest to
+/// equilibrium: the residual `f - K u - B'lambda` of an unknown is passed to the next unknown with its number and remains
+/// at the last one.
 pub fn with_glue(host: &Model, answer: Candidate) -> Result<Vec<f64>> {
     let u = answer.u;
     let (mut all, joints) = (copied(answer.mu, WHAT)?, host.joints()?);
@@ -37,7 +38,7 @@ pub fn with_glue(host: &Model, answer: Candidate) -> Result<Vec<f64>> {
     Ok(all)
 }
 
-/// Adds the forces of the joints on all bodies, `mu` one for each.
+/// Adds the forces of the joints on all bodies; `mu`: one multiplier per joint.
 pub fn add_glue(host: &Model, mu: &[f64], forces: &mut [f64]) -> Result<()> {
     for (Joint { ends: [before, after], .. }, mu) in host.joints()?.into_iter().zip(mu) {
         forces[before] -= mu;

@@ -1,4 +1,4 @@
-//! The cost of the linear problem for the states of the last answer with friction: for measurements.
+//! The cost of the linear problem for the states of the last answer with friction; used for measurements.
 
 use crate::error::{Error, Kind, Result};
 use crate::solve::{products_of_known_states, Case};
@@ -6,7 +6,8 @@ use crate::solver::decomposed::solved;
 use crate::solver::problem::Problem;
 
 impl Problem {
-    /// Products with F of the linear problems whose states are those of the last solve, of all groups of bodies with friction together.
+    /// Products with F for the linear problems with the states of the last solve, summed over all groups of bodies with
+    /// friction.
     #[doc(hidden)]
     pub fn products_of_known_states(&self) -> Result<usize> {
         let Self { model: host, decomposition, prepared, .. } = self;

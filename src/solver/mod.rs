@@ -1,4 +1,4 @@
-//! The problem of a host: its input, what is computed from the input, its results.
+//! The problem of a host: its input, what is computed from it, its results.
 
 mod body_facts;
 mod check;

@@ -5,7 +5,7 @@ use crate::error::Result;
 use crate::model::Model;
 use crate::progress::{Log, LogLevel};
 
-/// No load, contact rows that overlap where nothing has moved, contact rows that never close.
+/// Notes: no load, contact rows that overlap before anything moves, contact rows that never close.
 pub fn data(log: &Log, model: &Model) -> Result<()> {
     if !log.is_heard(LogLevel::Result) {
         return Ok(());
@@ -25,8 +25,8 @@ pub fn data(log: &Log, model: &Model) -> Result<()> {
         })?;
     }
     for (never, why) in [
-        (rows(contact, |i| !contact.is_finite(i)), "for a gap of +infinity"),
-        (rows(contact, |i| contact.is_finite(i) && has_no_entry(contact, i)), "for want of an entry"),
+        (rows(contact, |i| !contact.is_finite(i)), "because the gap is +infinity"),
+        (rows(contact, |i| contact.is_finite(i) && has_no_entry(contact, i)), "because the row has no entry"),
     ] {
         if let Some(first) = never.first() {
             let count = counted(never.len());
@@ -38,8 +38,8 @@ pub fn data(log: &Log, model: &Model) -> Result<()> {
     Ok(())
 }
 
-/// `redundant`: rows of the stack, contact rows first, that are multiples of other rows, with their multiples; asked for only if somebody
-/// hears of them.
+/// `redundant` returns the rows of the stack, contact rows first, that are multiples of other rows, with their factors;
+/// it is called only if the host has a log function.
 pub fn repeated(
     log: &Log,
     model: &Model,
@@ -62,7 +62,7 @@ pub fn repeated(
     })
 }
 
-/// No load at all: a warning where nothing else moves the bodies either.
+/// No load at all: a warning if nothing else moves the bodies.
 fn load(log: &Log, model: &Model, overlaps: bool) -> Result<()> {
     let is_zero = |values: &[f64]| values.iter().all(|value| *value == 0.0);
     if model.bodies.iter().filter_map(|given| given.body.load.as_deref()).any(|load| !is_zero(load)) {
@@ -79,7 +79,7 @@ fn rows(contact: &RowSet, is_one: impl Fn(usize) -> bool) -> Vec<usize> {
     (0..contact.len()).filter(|&i| is_one(i)).collect()
 }
 
-/// Nothing but zeros moves its gap, nor does its own force.
+/// The row has only zero entries, and no compliance by which its own force could move it.
 fn has_no_entry(contact: &RowSet, i: usize) -> bool {
     contact.rhs[i] >= 0.0 && contact.matrix.row(i).all(|(_, value)| value == 0.0)
 }

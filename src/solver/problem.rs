@@ -20,12 +20,12 @@ use crate::solver::history::{Current, History};
 use crate::solver::noticed;
 use crate::solver::told::{begin, method, result};
 
-/// Bodies, rows and options of one contact problem, its factors, and the answer of its last solve. All that the host gives goes to
-/// the [`Model`], which it is as well.
+/// Bodies, rows and options of one contact problem, its factors, and the answer of its last solve. It dereferences to the
+/// [`Model`], which stores all input of the host.
 #[derive(Default)]
 pub struct Problem {
     pub(super) model: Model,
-    /// What is solved in place of bodies that are cut, and with the glue of joints.
+    /// The problem solved in place of the host's if bodies are cut or glued by joints.
     pub(super) decomposition: Option<Decomposition>,
     pub(super) prepared: Prepared,
     pub(super) history: History,
@@ -42,7 +42,7 @@ impl Deref for Problem {
     }
 }
 
-/// Whatever is changed counts up its revision: what was computed of it before is not used again.
+/// Every change of the model increases a revision, so that results of older data are not used.
 impl DerefMut for Problem {
     fn deref_mut(&mut self) -> &mut Model {
         &mut self.model
@@ -54,9 +54,9 @@ impl Problem {
         Self::default()
     }
 
-    /// Null spaces, factors and dual operators, as far as they are not there yet.
+    /// Makes null spaces, factors and dual operators that are missing or out of date.
     pub fn setup(&mut self) -> Result<()> {
-        // the limit is that of a solve, which may follow
+        // the memory limit includes a solve, which may follow
         self.watched("setup", f64::INFINITY, |problem, watch| {
             problem.decompose()?;
             let Self { model, decomposition, prepared, .. } = problem;
@@ -69,8 +69,8 @@ impl Problem {
         })
     }
 
-    /// Solves (10)-(11) for the present loads and gaps. An answer is kept even when it is incomplete; the
-    /// report says how good it is. Where a group of bodies has none, the error says why and those of the others are kept.
+    /// Solves (10)-(11) for the present loads and gaps. An incomplete answer is kept; the report says how good it is. If
+    /// a group of bodies has no answer, the error says why, and the answers of the other groups are kept.
     pub fn solve(&mut self) -> Result<Report> {
         self.watched("solve", self.model.settings.time_limit, |problem, watch| {
             begin(&watch.log, &problem.model, "solve")?;
@@ -127,7 +127,7 @@ impl Problem {
         }
     }
 
-    /// The answer of the last solve, if it is one for the problem as it is now.
+    /// The answer of the last solve, if it is valid for the present data.
     pub(super) fn current(&self) -> Option<&Current> {
         let is_set_up = self.prepared.duals(&self.model).is_some();
         self.history.current.as_ref().filter(|current| is_set_up && current.made == self.prepared.made)
@@ -137,8 +137,8 @@ impl Problem {
         self.history.of(self.model.revisions.rows)
     }
 
-    /// Runs `work` under watch, for `limit` seconds. Its outcome is told: the phases that are left, or the failure, which is kept as
-    /// well.
+    /// Runs `work` under watch, for at most `limit` seconds. Reports the remaining phases, or the failure, which is also
+    /// kept.
     fn watched<T>(
         &mut self,
         call: &str,
@@ -159,28 +159,28 @@ impl Problem {
         outcome
     }
 
-    /// The function that hears of every body in every part of a setup and of every step of a solve from now on.
+    /// The function that receives the progress of setups and solves from now on.
     pub fn on_progress(&mut self, listener: Option<Listener>) {
         self.host.listener = listener;
     }
 
-    /// What shows the seconds of the calls to come.
+    /// The clock of the following calls.
     #[cfg(test)]
     pub(super) fn set_clock(&mut self, clock: Option<Clock>) {
         self.host.clock = clock;
     }
 
-    /// The function that gets lines of text up to a level from now on.
+    /// The function that receives log lines up to a level from now on.
     pub fn on_log(&mut self, listener: Option<(LogLevel, LogListener)>) {
         self.host.log = Log::new(listener);
     }
 
-    /// Set to true by any thread, it ends the setup or the solve that runs; the next one begins by clearing it.
+    /// If any thread sets it to true, the running setup or solve ends; the next call clears it first.
     pub fn canceller(&self) -> Arc<AtomicBool> {
         self.host.canceller()
     }
 
-    /// Time and memory of the phases of the last setup or solve, also of one that failed.
+    /// Time and memory of the phases of the last setup or solve, also if it failed.
     pub fn phases(&self) -> Vec<PhaseReport> {
         self.prepared.phases(&self.model, &self.phases)
     }
@@ -190,38 +190,38 @@ impl Problem {
         self.prepared.work
     }
 
-    /// Room for setup, solve and check, for as long as the result is kept; what no longer holds makes room first.
+    /// Reserves memory for setup, solve and check while the result is kept; data out of date are dropped first.
     pub fn working_headroom(&mut self) -> Result<Headroom> {
         self.follow();
         self.prepared.working_headroom(solved(&self.model, &self.decomposition))
     }
 
-    /// The same for a call that needs the setup alone: none where it is there.
+    /// As `working_headroom`, for a call that only needs the setup; none if the setup exists.
     pub fn setup_headroom(&mut self) -> Result<Option<Headroom>> {
         self.follow();
         self.prepared.setup_headroom(solved(&self.model, &self.decomposition))
     }
 
-    /// What is no longer true of the bodies makes room. What is missing is told by the call that needs it.
+    /// Drops data that are out of date. The call that needs missing input reports it.
     fn follow(&mut self) {
         drop(self.decompose());
         self.prepared.follow(solved(&self.model, &self.decomposition));
     }
 }
 
-/// Between the bodies of the host and the pieces that are solved in place of those that are cut.
+/// Translation between the bodies of the host and the pieces of bodies that are cut.
 impl Problem {
-    /// What is solved: the model of the host, or that of the pieces as they were at the last call that used them.
+    /// The model that is solved: that of the host, or that of the pieces at the last call that used them.
     pub(super) fn solved(&self) -> &Model {
         solved(&self.model, &self.decomposition)
     }
 
-    /// The parts of the bodies, where some body is cut.
+    /// The parts of the bodies, if some body is cut.
     pub(super) fn parts(&self) -> Option<&Parts> {
         self.decomposition.as_ref().and_then(|of| of.model.parts.as_deref())
     }
 
-    /// The number of the only part of a body, by which its factors are known; none of one that is cut.
+    /// The number of the only part of a body, to which its factors belong; none if the body is cut.
     pub(super) fn only_part(&self, body: usize) -> Option<usize> {
         match self.parts() {
             None => Some(body),
@@ -230,7 +230,7 @@ impl Problem {
         }
     }
 
-    /// Pieces, rows, loads and options as the host has them now.
+    /// Updates pieces, rows, loads and options to those of the host.
     pub(super) fn decompose(&mut self) -> Result<()> {
         self.model.check_complete()?;
         match &mut self.decomposition {
@@ -247,12 +247,12 @@ impl Problem {
         }
     }
 
-    /// An error about pieces as one about bodies.
+    /// Converts an error about pieces to one about bodies.
     pub(super) fn of_host(&self, error: Error) -> Error {
         of_host(&self.model, &self.decomposition, error)
     }
 
-    /// What was found about pieces as what is known of bodies.
+    /// Converts findings about pieces to findings about bodies.
     pub(super) fn found(&self, findings: Findings) -> Findings {
         match self.parts() {
             Some(_) => findings_of_host(&self.model, self.solved(), findings),
@@ -260,12 +260,12 @@ impl Problem {
         }
     }
 
-    /// A body that is cut has no factor of its own.
+    /// Refuses a body that is cut: it has no factor of its own.
     pub(super) fn check_whole_body(&self, body: usize) -> Result<()> {
         if self.model.given(body)?.body.assembled.is_none() {
             return Ok(());
         }
-        let what = "the body is cut into pieces and has no K+ of its own: option pieces = 1, set before its elements, leaves it whole";
+        let what = "the body is cut into pieces and has no K+ of its own: set option pieces = 1 before its elements to keep it whole";
         Err(Error::new(Kind::State, what).body(body))
     }
 }

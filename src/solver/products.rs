@@ -1,4 +1,4 @@
-//! Operators that the host can validate: null spaces, K+, F, d.
+//! Operators that the host can verify: null spaces, K+, F, d.
 
 use crate::constraints::RowKind;
 use crate::error::{Error, Kind, Result};
@@ -34,8 +34,8 @@ impl Problem {
         Ok((basis.cols, &basis.data))
     }
 
-    /// How far the null space the library found stands apart: softest other motion against the stiffest of it, in the
-    /// metric of diag K, both at least 1e-14 of the largest; none where the host gave vectors or coordinates.
+    /// Gap of a null space that the library found: ratio of the softest other motion to its stiffest in the metric of
+    /// diag K, both at least 1e-14 of the largest; none if the host gave vectors or coordinates.
     pub fn null_space_gap(&mut self, body: usize) -> Result<Option<f64>> {
         if self.model.given(body)?.body.assembled.is_some() {
             return Ok(None);
@@ -43,10 +43,10 @@ impl Problem {
         Ok(self.inverse(body)?.kplus.gap)
     }
 
-    /// The r dofs held in K+ of (14)-(15); in that of the host it is not for the library to know.
+    /// The r dofs held in K+ of (14)-(15); not known for a K+ of the host.
     pub fn fixing_dofs(&mut self, body: usize) -> Result<&[usize]> {
         if self.model.given(body)?.body.operator.is_some() {
-            let what = "K+ of this body is the host's: the library holds no dofs in it";
+            let what = "K+ of this body is given by the host: its fixing dofs are not known";
             return Err(Error::new(Kind::Unsupported, what).body(body));
         }
         Ok(&self.inverse(body)?.kplus.fixing)
@@ -62,8 +62,8 @@ impl Problem {
         Ok(())
     }
 
-    /// `y = F x` of (12), compliance of the rows included, contact rows first; x force, y length. Rows that never close
-    /// carry no force and move nothing: 0. Tangential rows are not in it.
+    /// `y = F x` of (12), including the compliance of the rows, contact rows first; x force, y length. y = 0 for rows
+    /// that never close, and their x is ignored. Tangential rows are not included.
     pub fn dual_apply(&mut self, x: &[f64], y: &mut [f64]) -> Result<()> {
         self.check_rows(x.len())?;
         self.check_rows(y.len())?;
@@ -104,11 +104,11 @@ impl Problem {
         Ok(())
     }
 
-    /// F of bodies that are cut or glued is not known: it would be that of the pieces, and on the glue.
+    /// F is not available if bodies are cut or glued: it would be F of the pieces, including rows of the glue.
     fn check_nothing_cut(&self) -> Result<()> {
         (0..self.model.bodies.len()).try_for_each(|body| self.check_whole_body(body))?;
         if self.model.shares_numbers() {
-            let what = "unknowns with one number are glued by rows that only the library sees: F is that of these as well";
+            let what = "unknowns with the same number are glued by internal rows: F would include these rows";
             return Err(Error::new(Kind::State, what));
         }
         Ok(())
@@ -124,7 +124,7 @@ impl Problem {
     }
 }
 
-/// Place of row i of an island among all contact rows and all equality rows of the host; none of a tangential row.
+/// Index of row i of an island among all contact rows, then all equality rows of the host; none for a tangential row.
 fn in_stack(island: &Island, contact: usize, i: usize) -> Option<usize> {
     (island.kind_and_row(i).0 != RowKind::Tangential).then(|| island.in_stack(contact, i))
 }

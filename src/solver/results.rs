@@ -20,7 +20,7 @@ impl Problem {
         self.current().map(|current| &current.answer.report)
     }
 
-    /// The same for what belongs to one body, whose group must have an answer.
+    /// As `answer`, for results of one body: its group of bodies must have an answer.
     fn answer_on(&self, body: usize) -> Result<&Answer> {
         self.model.given(body)?;
         let answer = self.answer()?;
@@ -42,8 +42,8 @@ impl Problem {
         Ok(&self.answer()?.u)
     }
 
-    /// Force of the rows on the body: `-B'lambda`, `-H'mu`, or both with that of the glue, so that `K u = f + r`.
-    /// Those on all bodies are kept for the next body.
+    /// Force of the rows on the body: `-B'lambda`, `-H'mu`, or both including the glue, so that `K u = f + r`. The forces
+    /// on all bodies are kept for later calls.
     pub fn reaction(&mut self, kind: Option<RowKind>, body: usize, r: &mut [f64]) -> Result<()> {
         self.model.check_length(body, "n", r.len())?;
         self.answer_on(body)?;
@@ -57,7 +57,7 @@ impl Problem {
         Ok(())
     }
 
-    /// The same on all bodies one after the other.
+    /// The forces of `reaction` on all bodies one after the other.
     pub fn reactions(&self, kind: Option<RowKind>) -> Result<Vec<f64>> {
         let answer = self.answer()?;
         let mut all = zeros(answer.u.len(), "a reaction")?;
@@ -120,7 +120,7 @@ impl Problem {
         .ok_or_else(|| {
             Error::new(
                 Kind::State,
-                "the last solve has found neither a load that nothing holds nor a motion that K drives",
+                "the last solve has found neither a load that nothing holds nor a motion with negative stiffness",
             )
         })
     }

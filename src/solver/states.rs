@@ -8,7 +8,7 @@ use crate::solver::history::{Current, State};
 use crate::solver::problem::Problem;
 
 impl Problem {
-    /// Start values for the next solve alone, whatever that comes to. Rows whose multiplier is zero start open.
+    /// Start values for the next solve only, also if that fails. Rows whose multiplier is zero start open.
     pub fn start_from(&mut self, kind: RowKind, multipliers: &[f64]) -> Result<()> {
         let expected = self.model.rows(kind).len();
         if multipliers.len() != expected {
@@ -40,8 +40,8 @@ impl Problem {
         Ok(history.saved - 1)
     }
 
-    /// Loads, rows, friction and multipliers as they were; matrices stay as they are now. The state is kept. The answer
-    /// comes back as well unless matrices, rows or compliances differ, or what they were set up to is gone.
+    /// Restores loads, rows, friction and multipliers; the matrices keep their present values. The saved state is kept.
+    /// The answer is also restored, unless matrices, rows or compliances differ or its setup no longer exists.
     pub fn restore_state(&mut self, number: usize) -> Result<()> {
         let Self { model, prepared, history, .. } = self;
         let state = history.states.get(&number).ok_or_else(|| no_state(number))?;

@@ -8,7 +8,7 @@ use crate::progress::{Log, LogLevel};
 use crate::setup::{Duals, Prepared, Ready};
 use crate::solve::{Outcome, Report};
 
-/// Sizes and options, before anything is done.
+/// Sizes and options at the start of a call.
 pub fn begin(log: &Log, model: &Model, call: &str) -> Result<()> {
     log.begin();
     let (sizes, version) = (model.sizes(), env!("CARGO_PKG_VERSION"));
@@ -26,7 +26,7 @@ pub fn begin(log: &Log, model: &Model, call: &str) -> Result<()> {
     })
 }
 
-/// One line on an answer, and warnings.
+/// One line on the answer, and warnings.
 pub fn result(log: &Log, report: &Report) -> Result<()> {
     log.say(LogLevel::Result, || result_line(report))?;
     if report.outcome == Outcome::Marginal {
@@ -85,7 +85,7 @@ fn result_line(report: &Report) -> String {
     line
 }
 
-/// What the nodes with friction do, and what it took to find out.
+/// States of the nodes with friction, and the work to find them.
 fn friction(report: &Report) -> String {
     match (report.sizes.nodes, report.starts) {
         (0, _) => String::new(),
@@ -97,7 +97,7 @@ fn friction(report: &Report) -> String {
     }
 }
 
-/// How the dual is going to be solved.
+/// The method for the dual problem.
 pub fn method(log: &Log, model: &Model, prepared: &Prepared, started: &str) -> Result<()> {
     let Duals { islands, operators, .. } = prepared.done(model)?;
     let of_island = |ready: &Ready| ready.preconditioning().word().to_string_lossy();
@@ -108,7 +108,7 @@ pub fn method(log: &Log, model: &Model, prepared: &Prepared, started: &str) -> R
         let implicit = operators.implicit.iter().filter(|implicit| **implicit).count();
         let groups = match islands.len() {
             1 => String::new(),
-            count => format!("{count} groups of bodies apart from each other, "),
+            count => format!("{count} independent groups of bodies, "),
         };
         let rubbing = islands.iter().filter(|ready| ready.island.has_friction()).count();
         let mut methods = Vec::new();

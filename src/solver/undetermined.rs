@@ -1,5 +1,5 @@
-//! What an answer leaves undetermined: rigid motions that no closed row and no equality row resists, and on which the load does no
-//! work; equality rows that depend on each other and share their forces.
+//! What an answer leaves undetermined: rigid motions that no closed row and no equality row resists and on which the load
+//! does no work; equality rows that depend on each other and share their forces.
 
 use crate::certificate::Candidate;
 use crate::constraints::RowKind;
@@ -12,19 +12,19 @@ use crate::solve::without_force;
 use crate::solver::findings::rigid_motion;
 use crate::solver::problem::Problem;
 
-/// One of them.
+/// One undetermined motion.
 #[derive(Debug, Clone, PartialEq)]
 pub struct OpenMotion {
     /// Over all unknowns, largest entry 1.
     pub v: Vec<f64>,
     /// The body that moves fastest.
     pub body: usize,
-    /// v on this body, where it has coordinates: velocity of the origin (length) and rotation about the axes.
+    /// v on this body, if it has coordinates: velocity of the origin (length) and rotation about the axes.
     pub motion: Option<[f64; 6]>,
 }
 
 impl Problem {
-    /// Motion k of those that the last answer leaves open.
+    /// Motion k of the motions that the last answer leaves undetermined.
     pub fn open_motion(&mut self, k: usize) -> Result<OpenMotion> {
         if self.current().is_none_or(|current| current.open_motions.is_none()) {
             let found = Some(self.find_open_motions()?);
@@ -76,7 +76,8 @@ impl Problem {
         Ok(all)
     }
 
-    /// Equality rows that are combinations of others: they constrain nothing, and which of them carry the forces is open.
+    /// Equality rows that are combinations of others: they add no constraint, and the distribution of forces among them
+    /// is undetermined.
     pub fn dependent_equalities(&self) -> Result<Vec<usize>> {
         let missing = || Error::new(Kind::State, "the problem has not been set up yet");
         let mut dependent = Vec::new();

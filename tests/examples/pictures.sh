@@ -15,7 +15,7 @@ find "$1" -name '*.svg' | sort >"$list"
 while read -r picture; do
     case $picture in
     */hertz_pressure*) set -- "$1" "$2" 'pressure / MPa' 'x / mm' 'Hertz' ;;
-    */hertz_convergence*) set -- "$1" "$2" 'log10(residual / limit)' 'step' 'the solve ends' ;;
+    */hertz_convergence*) set -- "$1" "$2" 'log10(residual / limit)' 'step' 'limit' ;;
     */cattaneo_mindlin_shear*) set -- "$1" "$2" 'shear / (mu p0)' 'x / mm' 'Cattaneo, Mindlin' ;;
     */cattaneo_mindlin_loop*) set -- "$1" "$2" 'push / (mu P)' 'shift / um' 'Cattaneo, Mindlin' ;;
     *) echo "$picture is not expected"; exit 1 ;;

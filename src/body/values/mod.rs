@@ -1,4 +1,4 @@
-//! New values for a matrix whose pattern is known: the place of each value, and the checks of the first input.
+//! New values for a matrix whose pattern is known: the position of each value, and the checks of the first input.
 
 use crate::body::stiffness::check_finite;
 use crate::body::storage::{may_differ, unsymmetric, Shape, SparseInput, Storage};
@@ -11,17 +11,17 @@ const WHAT: &str = "new values of a stiffness matrix";
 /// Position of an entry that the host does not give.
 const NONE: usize = usize::MAX;
 
-/// How the host gave a matrix: in which form its values come again.
+/// The form in which the host gave a matrix and will give new values.
 #[derive(Debug, PartialEq)]
 pub enum Form {
     Sparse(Places),
     Dense(Storage),
-    /// By elements, with so many entries together.
+    /// By elements, with this total number of entries.
     Elements(usize),
 }
 
 impl Form {
-    /// Entries that the host gives for n unknowns.
+    /// Number of entries that the host gives for n unknowns.
     pub fn entries(&self, n: usize) -> usize {
         match self {
             Self::Sparse(places) if places.apart => n + places.entries,
@@ -33,26 +33,26 @@ impl Form {
     }
 }
 
-/// Where the values of the host belong in the lower triangle. For rows of ascending columns, those in full with entries
-/// on both sides of the diagonal, the triangle itself tells.
+/// Positions of the host's values in the lower triangle. If rows have ascending columns, with both sides of the diagonal
+/// in full storage, the triangle itself determines the positions.
 #[derive(Debug, PartialEq)]
 pub struct Places {
     storage: Storage,
     /// Number of values.
     entries: usize,
-    /// The diagonal is an array of its own.
+    /// The diagonal is a separate array.
     apart: bool,
     /// Rows whose diagonal entry is not given, ascending.
     without: Vec<usize>,
-    /// For rows in any order.
+    /// Positions for rows in any order.
     listed: Option<Listed>,
 }
 
-/// For every entry of the lower triangle its position among the values.
+/// For every entry of the lower triangle, the position of its value.
 #[derive(Debug, PartialEq)]
 struct Listed {
     own: Vec<usize>,
-    /// In storage in full: position of its mate on the other side of the diagonal; of the diagonal none.
+    /// In full storage: position of the transposed entry; `NONE` for the diagonal.
     mate: Vec<usize>,
 }
 
@@ -66,7 +66,7 @@ struct GivenEntry {
 }
 
 impl Places {
-    /// For the matrix `k` that was made of `input`, with a diagonal `apart` or in its rows.
+    /// The positions for the matrix `k` made from `input`, with the diagonal `apart` or in its rows.
     pub fn of(input: SparseInput<'_>, apart: bool, k: &Symmetric) -> Result<Self> {
         let row = |i: usize| &input.col[input.ptr[i]..input.ptr[i + 1]];
         let (n, storage, entries) = (k.order(), input.storage, input.col.len());
@@ -80,13 +80,13 @@ impl Places {
         Ok(Self { storage, entries, apart, without, listed })
     }
 
-    /// For rows that are those of the lower triangle `k`.
+    /// The positions for rows that are those of the lower triangle `k`.
     pub fn of_lower(k: &Symmetric) -> Self {
         let (storage, entries) = (Storage::Lower, k.col.len());
         Self { storage, entries, apart: false, without: Vec::new(), listed: None }
     }
 
-    /// Number of values, those of a diagonal of its own not counted.
+    /// Number of values, without those of a separate diagonal.
     pub fn entries(&self) -> usize {
         self.entries
     }
@@ -100,13 +100,13 @@ impl Places {
         Err(error.value(values as f64).limit(entries as f64))
     }
 
-    /// True where the diagonal is an array of its own.
+    /// True if the diagonal is a separate array.
     pub fn is_split(&self) -> bool {
         self.apart
     }
 
-    /// The values of `k` anew from those of the host, in storage in full checked for symmetry and averaged. `diag`: the
-    /// diagonal, where it is an array of its own.
+    /// The new values of `k` from those of the host; in full storage they are checked for symmetry and averaged. `diag`:
+    /// the diagonal, if it is a separate array.
     pub fn values(&self, k: &Symmetric, diag: &[f64], val: &[f64], tolerance: f64) -> Result<Vec<f64>> {
         check_finite(diag, "diag", |at| at)?;
         if let Some(at) = first_non_finite(val) {
@@ -125,7 +125,7 @@ impl Places {
         Ok(new)
     }
 
-    /// `(K + K')/2` for `new`, which holds the diagonal and what is left of it.
+    /// `(K + K')/2` for `new`, which contains the diagonal and the entries left of it.
     fn average(&self, k: &Symmetric, val: &[f64], tolerance: f64, new: &mut [f64]) -> Result<()> {
         let mut worst = None;
         self.visit(k, |GivenEntry { row, col, at, mate, .. }| {
@@ -146,7 +146,7 @@ impl Places {
         Err(unsymmetric((shape, k.order()), (row, col), difference, limit))
     }
 
-    /// Whether the host's row has nothing beside its diagonal.
+    /// Whether the host's row has only its diagonal entry.
     fn lonely(&self, k: &Symmetric, val: &[f64], row: usize) -> Result<bool> {
         let mut lonely = true;
         self.visit(k, |entry| {
@@ -158,7 +158,7 @@ impl Places {
         Ok(lonely)
     }
 
-    /// The host's row that holds value number `at`.
+    /// The host's row of value number `at`.
     fn row_of(&self, k: &Symmetric, at: usize) -> Result<Option<usize>> {
         let mut found = None;
         self.visit(k, |entry| {
@@ -171,7 +171,7 @@ impl Places {
         Ok(found)
     }
 
-    /// Every entry of the lower triangle, row by row.
+    /// Calls `visit` for every entry of the lower triangle, row by row.
     fn visit(&self, k: &Symmetric, mut visit: impl FnMut(GivenEntry)) -> Result<()> {
         if let Some(Listed { own, mate }) = &self.listed {
             for row in 0..k.order() {
@@ -182,7 +182,8 @@ impl Places {
             }
             return Ok(());
         }
-        // Row i of the triangle is read before any later one: row j < i of the host has come to its entry i.
+        // Row i of the triangle is read before later rows: the next value of row j < i of the host belongs to its entry
+        // i.
         let mut next = self.starts(k)?;
         let mut take = |row: usize| {
             next[row] += 1;
@@ -207,7 +208,7 @@ impl Places {
         Ok(())
     }
 
-    /// First value of every row of the host, where columns ascend.
+    /// Position of the first value of every row of the host, for ascending columns.
     fn starts(&self, k: &Symmetric) -> Result<Vec<usize>> {
         let mut starts = filled(k.order() + 1, 0, WHAT)?;
         for i in 0..k.order() {

@@ -18,7 +18,7 @@ impl Given {
 }
 
 impl Given {
-    /// The diagonal, 0 where it is not given, and what lies beside it.
+    /// The diagonal, 0 if not given, and the off-diagonal entries.
     fn split(&self) -> (Vec<f64>, Given) {
         let (mut diag, mut beside) =
             (vec![0.0; N], Given { ptr: vec![0], col: Vec::new(), val: Vec::new(), storage: self.storage });
@@ -37,8 +37,8 @@ impl Given {
     }
 }
 
-/// About 5 entries beside the diagonal of every row, some diagonal entries not given. `turned`: some rows in
-/// descending order; `lost`: some entries that are zero on both sides are given on one side only.
+/// About 5 off-diagonal entries per row, some diagonal entries not given. `turned`: some rows have descending columns;
+/// `lost`: some entries that are zero on both sides are given on one side only.
 fn given(storage: Storage, turned: bool, lost: bool, seed: f64) -> Given {
     let (mut ptr, mut col, mut val) = (vec![0], Vec::new(), Vec::new());
     for i in 0..N {
@@ -113,7 +113,7 @@ fn a_diagonal_of_its_own_changes_nothing() {
     }
 }
 
-/// Every single value out of order: the same error as for a matrix given anew.
+/// Every single value out of order: the error is that of a new matrix.
 #[test]
 fn new_values_are_refused_as_a_matrix_given_anew_is() {
     for (storage, turned, lost) in forms() {

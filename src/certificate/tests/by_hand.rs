@@ -24,20 +24,20 @@ fn the_exact_answer_passes_in_any_unit_and_each_fault_is_named() {
         assert!(with(0.25, 1.0).passed());
         let unbalanced = with(0.25, 0.9);
         assert!(unbalanced.equilibrium.ratio > 1.0 && unbalanced.equilibrium.place == Some(0));
-        // |res| = .1 of |r| + |K u| = .9 + 1, by itself: the spring has no neighbours
+        // |res| = .1 relative to |r| + |K u| = .9 + 1; the spring has no neighbours
         assert!((unbalanced.equilibrium.figure - 0.1 / 1.9).abs() < 1e-12, "{unbalanced:?}");
         let through = with(0.5, 0.0);
         assert!(through.equilibrium.ratio <= 1.0 && through.penetration.ratio > 1.0);
         assert_eq!(through.penetration.place, Some(0));
         assert!(with(0.0, 2.0).complementarity.ratio > 1.0);
         assert!(with(0.75, -1.0).negative_force.ratio > 1.0);
-        // s = 2, |f| + |r| = (2 + 1) / 2: -lambda = 1 of s (|f| + |r|) = 3
+        // s = 2, |f| + |r| = (2 + 1) / 2: -lambda = 1 relative to s (|f| + |r|) = 3
         assert!((with(0.75, -1.0).negative_force.figure - 1.0 / 3.0).abs() < 1e-12);
         assert!(!with(f64::NAN, 1.0).passed() && !with(0.25, f64::NAN).passed());
     }
 }
 
-/// Spring 4 loaded by 2 and tied to .25: mu = 1. Without its force the spring stands at .5, and all but the tie holds there.
+/// Spring 4 loaded by 2 and tied to .25: mu = 1. Without this force u = .5, and all conditions except the tie hold.
 #[test]
 fn a_tie_that_is_left_open_is_seen_by_its_own_entry_alone() {
     for unit in [1.0, 1e-20, 2.1e11] {
@@ -96,7 +96,7 @@ fn unevenness_is_how_many_times_a_row_is_deformed_more_than_a_body_that_it_touch
     }
 }
 
-/// The spring is one grounded unknown, which has no deformation.
+/// The single unknown of the spring is grounded and has no deformation.
 #[test]
 fn a_spring_of_one_unknown_makes_no_row_uneven() {
     let parts = vec![chain(&[], &[(0, 4.0)]), chain(&[4.0], &[(0, 4.0)])];
@@ -121,11 +121,12 @@ fn the_answer_on_a_compliant_row_passes_in_any_unit_and_each_fault_is_named() {
         assert!(exact.entries().iter().all(|entry| entry.figure <= 1e-15), "{exact:?}");
         let rigid = with(0.25, 1.0);
         assert!(rigid.equilibrium.ratio <= 1.0 && rigid.penetration.ratio <= 1.0);
-        // lambda = 1 of Lambda = sqrt 2 (2 + 1) / 2; g = .25 of L = |r| / K + lambda (1/4 + 1/4) + Lambda / 4 = .25 + .5 + ..
+        // lambda = 1 relative to Lambda = sqrt 2 (2 + 1) / 2; g = .25 relative to L = |r| / K + lambda (1/4 + 1/4) +
+        // Lambda / 4 = .25 + .5 + ..
         let force = 1.5 * 2f64.sqrt();
         let share = (0.25 / (0.75 + force / 4.0)).min(1.0 / force);
         assert!((rigid.complementarity.figure - share).abs() < 1e-5 && rigid.complementarity.ratio > 1.0);
-        // u K u - f u + c lambda + lambda C lambda = .25 - .5 + .25 + .25, of .25 + .5 + .25 + .25
+        // u K u - f u + c lambda + lambda C lambda = .25 - .5 + .25 + .25, relative to .25 + .5 + .25 + .25
         assert!((rigid.duality_gap.figure - 0.25 / 1.25).abs() < 1e-5 && rigid.duality_gap.ratio > 1.0);
         assert!(with(0.5, 0.0).penetration.ratio > 1.0);
     }
@@ -165,7 +166,7 @@ fn no_distance_excuses_a_strain_that_is_missing() {
     }
 }
 
-/// The load and the force of the obstacle cancel to `1e-12` of themselves: what is left moves the spring.
+/// The load and the force of the obstacle cancel to `1e-12` of their size: the difference moves the spring.
 #[test]
 fn the_energies_of_forces_that_all_but_cancel_are_known_to_their_rounding() {
     let mut model = spring(1.0, 0.0);
@@ -178,7 +179,7 @@ fn the_energies_of_forces_that_all_but_cancel_are_known_to_their_rounding() {
     assert!(moved(-1e-12).duality_gap.ratio > 1.0, "a force across an open gap");
 }
 
-/// A spring 1e-300 pushed by 2 against a wall at 1: squares of the displacement that it alone would have overflow.
+/// A spring 1e-300 pushed by 2 against a wall at 1: squares of its free displacement overflow.
 #[test]
 fn an_answer_whose_sizes_overflow_does_not_pass() {
     let parts = vec![chain(&[], &[(0, 1e-300)]).loaded(&[(0, 2.0)])];
@@ -187,7 +188,7 @@ fn an_answer_whose_sizes_overflow_does_not_pass() {
     assert!(!beyond.passed(), "{beyond:?}");
 }
 
-/// A spring 1 pushed by 2 against a wall at 1, all `size` times as large: what is judged is the same, or not known.
+/// A spring 1 pushed by 2 against a wall at 1, all values times `size`: the judgement does not change, or is not known.
 #[test]
 fn no_answer_is_so_small_or_large_that_a_wrong_one_passes() {
     for size in [1e-310, 1e-200, 1e-160, 1e-100, 1.0, 1e100, 1e160, 1e200] {
@@ -249,7 +250,7 @@ fn units_that_differ_by_powers_of_two_change_no_bit() {
 #[test]
 fn the_error_of_the_forces_on_a_body_is_estimated() {
     let (model, error) = (spring(1.0, 0.0), 1e-6);
-    // the force is off by 1e-6, the spring is where it is with this force
+    // the force has an error of 1e-6; the spring is in equilibrium with this force
     let lambda = 1.0 + error;
     let judged = model.judged(&point((2.0 - lambda) / 4.0, lambda)).0;
     let estimated = judged.bodies[0].force_error;

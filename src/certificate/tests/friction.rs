@@ -1,10 +1,11 @@
-//! Friction by hand: one node, each of its unknowns on a spring.
+//! Friction by hand: one node with a spring on each of its unknowns.
 
 use super::model::{chain, DenseAnswer, DenseModel, LIMIT};
 use super::nodes::DenseNode;
 use crate::certificate::{Certificate, Entry, FrictionState};
 
-/// Springs 4 in every direction, loaded by these forces in units of `unit`; a bound 1 on one node, rows times `factor`.
+/// Springs 4 in every direction, loaded by these forces in units of `unit`; one node with a bound 1, its rows times
+/// `factor`.
 fn springs(unit: f64, loads: &[f64], factor: f64) -> DenseModel {
     let spring = |load: &f64| chain(&[], &[(0, 4.0 * unit)]).loaded(&[(0, load * unit)]);
     let rows = (0..loads.len()).map(|j| vec![(j, factor)]).collect();
@@ -33,26 +34,26 @@ fn a_slip_in_the_plane_passes_in_any_unit_and_each_fault_is_named() {
         let right = with(0.5, 1.0);
         assert!(right.certificate.worst() <= 0.1, "{:?}", right.certificate);
         assert_eq!(right.nodes, [FrictionState::Slip]);
-        // outside by .1 of Lambda = 2 (3 + 1.1) / 2
+        // outside by .1 relative to Lambda = 2 (3 + 1.1) / 2
         let outside = with(0.475, 1.1).certificate;
         assert!(near(outside.friction_cone.figure, 0.1 / 4.1), "{outside:?}");
         assert_eq!(outside.friction_cone.place, Some(0));
-        // half the force: .5 of Lambda = 2 (3 + .5) / 2; s = .625, (b - |lambda_t|) / b = 1/2, L = .25
+        // half the force: .5 relative to Lambda = 2 (3 + .5) / 2; s = .625, (b - |lambda_t|) / b = 1/2, L = .25
         let halved = with(0.625, 0.5).certificate;
         assert!(near(halved.friction_work.figure, 0.5 / 3.5), "{halved:?}");
         assert!(near(halved.friction_stick.figure, 0.625 * 0.5 / 0.25), "{halved:?}");
         assert_eq!(halved.friction_cone.ratio, 0.0);
-        // against the slip: 2 of Lambda = 2 (3 + 1) / 2
+        // force against the slip: error 2 relative to Lambda = 2 (3 + 1) / 2
         let against = with(1.0, -1.0).certificate;
         assert!(near(against.friction_work.figure, 2.0 / 4.0), "{against:?}");
         assert_eq!((against.friction_cone.ratio, against.friction_stick.ratio), (0.0, 0.0));
-        // u'K u - f u + b |s| = 4 - 3 + 1 with s = 1, of 4 + 3 + 1
+        // u'K u - f u + b |s| = 4 - 3 + 1 with s = 1, relative to 4 + 3 + 1
         assert!(near(against.duality_gap.figure, 2.0 / 8.0), "{against:?}");
         assert!(!with(f64::NAN, 1.0).certificate.passed() && !with(0.5, f64::NAN).certificate.passed());
     }
 }
 
-/// Loaded by (3, 4) and so by 5: lambda_t = (.6, .8), s = (.6, .8). The force turned by t, s by -t/4.
+/// Loaded by (3, 4), a force of 5: lambda_t = (.6, .8), s = (.6, .8). The force is rotated by t, s moves by -t/4.
 #[test]
 fn a_force_turned_in_space_is_seen_by_the_angle_itself() {
     for angle in [1e-3f64, 1e-4] {
@@ -63,16 +64,16 @@ fn a_force_turned_in_space_is_seen_by_the_angle_itself() {
             model.certificate(&point(&[(3.0 - force[0]) / 4.0, (4.0 - force[1]) / 4.0], &force))
         };
         assert!(turned(0.0).worst() <= 0.1, "{:?}", turned(0.0));
-        // Lambda = 2 x the least of (3 + .6) / 2 and (4 + .8) / 2, the largest of its rows
+        // Lambda = 2 x the smaller of (3 + .6) / 2 and (4 + .8) / 2, the largest of its rows
         let wrong = turned(angle);
-        // L = (.8 + .8) / 4, so that k s = 4.8 / .4 is added to lambda_t: 12 parts of 13 point along s
+        // L = (.8 + .8) / 4, so k s = 4.8 / .4 is added to lambda_t: 12 parts of 13 are along s
         let turned = 1.25 * angle * 12.0 / 13.0;
         assert!((wrong.friction_work.figure / (turned / 4.8) - 1.0).abs() < 2e-3, "{wrong:?}");
         assert!(wrong.friction_cone.ratio <= 1.0 && wrong.friction_stick.ratio <= 1.0, "{wrong:?}");
     }
 }
 
-/// Loaded by .75 the node sticks: u = 0, lambda_t = .75. L = 0 + .75 / 4 by its force, and half of what it is joined to.
+/// Loaded by .75 the node sticks: u = 0, lambda_t = .75. L = 0 + .75 / 4 by its force, plus half of its neighbours.
 #[test]
 fn a_stick_passes_and_a_slip_of_it_is_measured_as_a_length() {
     let model = springs(1.0, &[0.75], 1.0);
@@ -85,13 +86,13 @@ fn a_stick_passes_and_a_slip_of_it_is_measured_as_a_length() {
         assert!((slips.friction_work.ratio / ratio - 1.0).abs() < 1e-3, "{slips:?} {ratio}");
         assert!((slips.friction_stick.ratio / (slip / limit * 0.25) - 1.0).abs() < 1e-3, "{slips:?}");
     }
-    // the load is the bound: it sticks with all that it can
+    // the load equals the bound: the node sticks with the largest possible force
     let weak = springs(1.0, &[1.0], 1.0).judged(&point(&[0.0], &[1.0])).0;
     assert!(weak.certificate.worst() <= 0.1 && weak.nodes == [FrictionState::Weak]);
 }
 
-/// Loaded by .75 with a spring 1/C_t = 4 in the stick and an earlier slip .125: 4 u = .75 - lambda_t, u - .125 = lambda_t / 4, so that
-/// lambda_t = 1/8, u = 5/32.
+/// Loaded by .75 with elastic stick, a spring 1/C_t = 4, and an earlier slip .125: 4 u = .75 - lambda_t, u - .125 =
+/// lambda_t / 4, so lambda_t = 1/8, u = 5/32.
 #[test]
 fn elastic_stick_and_earlier_slips_belong_to_the_slip() {
     for (unit, factor) in [(1.0, 1.0), (1e-20, 1.0), (1.0, 1e5)] {
@@ -115,7 +116,7 @@ fn elastic_stick_and_earlier_slips_belong_to_the_slip() {
     }
 }
 
-/// A contact row of another body, pressed by 2 or pulling; mu = .5 and no bound.
+/// A contact row of another body, with a pressure of 2 or a pull; mu = .5 and no bound.
 #[test]
 fn the_normal_force_bounds_the_tangential_one_and_a_pull_does_not() {
     let mut model = springs(1.0, &[3.0, 2.0], 1.0);
@@ -141,7 +142,7 @@ fn the_normal_force_bounds_the_tangential_one_and_a_pull_does_not() {
     }
 }
 
-/// The bound holds where the contact is open; without it nothing may.
+/// The bound holds at an open contact; without a bound the force must be 0.
 #[test]
 fn a_bound_acts_at_an_open_node() {
     let mut model = springs(1.0, &[3.0, -2.0], 1.0);
@@ -164,7 +165,7 @@ fn a_bound_acts_at_an_open_node() {
     assert!(model.certificate(&with(0.5, 1.0)).friction_cone.ratio > 1.0);
 }
 
-/// A bound so large that no force reaches it is glue: rounding of the slip makes no work.
+/// A bound so large that no force reaches it acts as glue: rounding of the slip does no work.
 #[test]
 fn a_bound_without_end_is_glue() {
     for bound in [1e6, 1e30, 1e300] {
@@ -179,7 +180,7 @@ fn a_bound_without_end_is_glue() {
     }
 }
 
-/// Nothing is loaded, and the node has slipped all the same; or its row weighs nothing, or is not known.
+/// The node has slipped without load; or its row is too small to have a scale; or s_old is NaN.
 #[test]
 fn what_has_no_measure_does_not_pass() {
     let mut model = springs(1.0, &[0.0], 1.0);
@@ -195,7 +196,7 @@ fn what_has_no_measure_does_not_pass() {
     assert!(!(model.certificate(&point(&[0.5], &[1.0])).friction_work.ratio <= 1.0));
 }
 
-/// The force is off by 1e-6 where the node slips, the spring is where it is with this force.
+/// The node slips with a force error of 1e-6; the spring is in equilibrium with this force.
 #[test]
 fn the_error_of_a_tangential_force_is_estimated() {
     let (model, error) = (springs(1.0, &[3.0], 1.0), 1e-6);

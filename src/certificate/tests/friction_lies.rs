@@ -1,11 +1,11 @@
-//! Correct answers with friction pass, and the entries of friction alone find a wrong force or slip.
+//! Correct answers with friction pass, and the entries of friction alone detect a wrong force or slip.
 
 use super::friction::entries;
 use super::model::{DenseAnswer, DenseBody, DenseModel};
 use super::nodes::DenseNode;
 use crate::certificate::{Certificate, FrictionState};
 
-/// Nodes of `dim` unknowns, all joined to each other in all directions; the last is held by springs `ground`.
+/// Nodes of `dim` unknowns, all joined to each other in all directions; springs `ground` hold the last.
 fn cluster(count: usize, dim: usize, ground: f64) -> DenseBody {
     let n = count * dim;
     let mut k = vec![vec![0.0; n]; n];
@@ -28,11 +28,11 @@ fn cluster(count: usize, dim: usize, ground: f64) -> DenseBody {
     DenseBody { k, load: vec![0.0; n], motions }
 }
 
-/// Nodes of a body in contact with those of the ground; of the last one the gap is open.
+/// Number of nodes in contact with nodes of the ground; the gap of the last one is open.
 const PAIRS: usize = 4;
 
-/// A free body of six nodes pressed on a held one at four of them, for each of `sizes`: loads and bounds are so large. It begins after
-/// a slip `far`; mu = .3 to .6, and the third node has a bound.
+/// A free body of six nodes pressed on a held body at four of them, once for each of `sizes`, which scales loads and
+/// bounds. It starts after a slip `far`; mu = .3 to .6, and the third node has a bound.
 fn pressed(dim: usize, sizes: &[f64], far: f64) -> DenseModel {
     let mut model = DenseModel::default();
     for size in sizes {
@@ -82,12 +82,12 @@ fn models() -> Vec<(String, DenseModel)> {
     all
 }
 
-/// The worst of the entries of friction.
+/// The worst of the three entries of friction.
 fn friction(certificate: &Certificate) -> f64 {
     entries(certificate).iter().map(|entry| entry.ratio).fold(0.0, f64::max)
 }
 
-/// All values off by rounding, those that are 0 by rounding of the largest.
+/// All values with rounding errors; values that are 0 get the rounding of the largest.
 fn rounded(answer: &DenseAnswer, seed: usize) -> DenseAnswer {
     let of = |values: &[f64], shift: usize| {
         let largest = values.iter().fold(0.0, |max: f64, v| max.max(v.abs()));
@@ -124,7 +124,7 @@ fn right_answers_pass_also_to_rounding() {
     println!("right answers, rounded: worst {:.1e}, friction {:.1e}", largest[0], largest[1]);
 }
 
-/// A right answer in which something is wrong, seen by the entries of friction.
+/// A correct answer in which one value is changed; the entries of friction must detect it.
 struct Liar<'a> {
     name: &'a str,
     model: &'a DenseModel,
@@ -133,7 +133,7 @@ struct Liar<'a> {
 }
 
 impl Liar<'_> {
-    /// cone, work, stick: those that find it. The others must pass where `alone`.
+    /// cone, work, stick: the entries that detect the change. If `alone`, the others must pass.
     fn found(&mut self, what: &str, by: [bool; 3], wrong: &DenseAnswer) {
         let certificate = self.model.certificate(wrong);
         let found = entries(&certificate).map(|entry| entry.ratio > 1.0);
@@ -142,7 +142,7 @@ impl Liar<'_> {
         *self.least = self.least.min(friction(&certificate));
     }
 
-    /// The force of a node by another one.
+    /// Replaces the force of a node.
     fn forced(&mut self, what: &str, by: [bool; 3], node: usize, force: impl Fn([f64; 2]) -> [f64; 2]) {
         let (mut wrong, rows) = (self.right.clone(), self.model.laws()[node].rows());
         let mut own = [0.0; 2];
@@ -191,7 +191,7 @@ fn wrong_forces_and_slips_are_found_by_the_entries_of_friction() {
     println!("least ratio of a wrong force: {all:?}");
 }
 
-/// Answers of another law or an earlier slip, in equilibrium: nothing but friction can tell them.
+/// Answers for another law or another earlier slip, in equilibrium: only the entries of friction can detect them.
 #[test]
 fn answers_of_another_law_are_found() {
     let mut all = Vec::new();
@@ -275,7 +275,7 @@ fn units_that_differ_by_powers_of_two_change_no_bit_of_friction() {
     }
 }
 
-/// Rows of a node times any factor, its law divided by it; nodes in another order.
+/// Rows of a node times any factor, with its law divided by the factor; nodes in another order.
 #[test]
 fn neither_factors_of_nodes_nor_their_order_change_what_is_judged() {
     let model = pressed(3, &[1.0], 0.1);

@@ -1,8 +1,8 @@
-//! Correct answers pass and wrong answers do not, in models with very different sizes.
+//! Correct answers pass and wrong answers fail, in models with very different sizes.
 
 use super::model::{chain, truss, DenseAnswer, DenseModel};
 
-/// Two chains that stand on the ground, the first pushed by 1 at its end against the second across a gap of .1.
+/// Two chains on the ground, the first pushed by 1 at its end against the second across a gap of .1.
 fn held() -> DenseModel {
     let parts = vec![
         chain(&[2.0, 3.1, 1.7], &[(0, 4.3)]).loaded(&[(3, 1.0), (1, 0.3)]),
@@ -55,7 +55,7 @@ fn a_stiff_part_hides_no_error_of_a_soft_one() {
     }
 }
 
-/// A body that a spring of 1e-8 holds and an obstacle stops.
+/// A spring of 1e-8 holds the body, and an obstacle stops it.
 #[test]
 fn a_body_on_a_weak_spring() {
     let parts = vec![chain(&[2.0, 3.1, 1.7], &[(0, 1e-8)]).loaded(&[(0, 1.0)]), chain(&[1.9], &[(1, 3.7)])];
@@ -65,7 +65,7 @@ fn a_body_on_a_weak_spring() {
     model.refuses_wrong_motions("weak", 1.0);
 }
 
-/// The end of a chain is moved by .4 through a stiff spring, the other pushes a chain on the ground.
+/// A stiff spring moves one end of a chain by .4; its other end pushes a chain on the ground.
 #[test]
 fn displacements_prescribed_by_penalty_hide_nothing() {
     for penalty in [1e8, 1e10, 1e12, 1e16, 1e20] {
@@ -81,7 +81,7 @@ fn displacements_prescribed_by_penalty_hide_nothing() {
     }
 }
 
-/// Load and force of the obstacle cancel to this part of themselves.
+/// Load and force of the obstacle cancel to the part `left` of their size.
 #[test]
 fn loads_that_all_but_cancel_pass_by_their_rounding_and_forces_are_right() {
     for left in [1e-6, 1e-9, 1e-12] {
@@ -142,7 +142,7 @@ fn a_truss_that_is_free_to_turn() {
     }
 }
 
-/// Gaps of rows that never close change no verdict, however far, and no force has to bear them.
+/// Gaps of rows that never close do not change the verdict, however large they are, and need no force.
 #[test]
 fn far_rows_excuse_nothing() {
     let gaps = [1e6, 1e12, 1e20, 1e30, 1e300, f64::INFINITY];
@@ -163,8 +163,8 @@ fn far_rows_excuse_nothing() {
     }
 }
 
-/// Springs between a stiff free chain and its load, and its obstacle: their ends are hardly coupled, yet nothing grounds
-/// them.
+/// Springs between a stiff free chain and its load, and its obstacle: the ends are weakly coupled to the chain, but not
+/// grounded.
 #[test]
 fn the_soft_end_of_a_stiff_body() {
     for stiff in [1e2, 1e4, 1e8] {
@@ -185,7 +185,7 @@ fn the_soft_end_of_a_stiff_body() {
     }
 }
 
-/// A penalty support, a single spring, a free chain and a far row, all in one.
+/// A penalty support, a single spring, a free chain and a far row in one model.
 #[test]
 fn what_is_light_is_judged_by_itself() {
     for heavy in [1.0, 1e5, 1e9] {
@@ -201,7 +201,7 @@ fn what_is_light_is_judged_by_itself() {
     }
 }
 
-/// Single springs against each other, each of them a body that nothing of its own surrounds.
+/// Single springs in contact, each a body of one unknown.
 #[test]
 fn single_springs_are_judged_by_the_forces_on_them() {
     for stiffness in [1e-8, 1.0, 1e8] {
@@ -213,7 +213,7 @@ fn single_springs_are_judged_by_the_forces_on_them() {
     }
 }
 
-/// The same tie twice shares its force as it likes, as long as it is not lost between the two.
+/// A tie given twice may distribute its force arbitrarily, unless the forces are so large that their sum is lost.
 #[test]
 fn forces_that_are_lost_between_redundant_rows_are_refused() {
     for (load, excess, right) in [(1.0, 1e3, true), (1.0, 1e12, false), (1e-6, 1e6, false), (1e6, 1e9, true)]

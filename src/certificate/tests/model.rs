@@ -14,7 +14,7 @@ pub type Dense = Vec<Vec<f64>>;
 pub struct DenseBody {
     pub k: Dense,
     pub load: Vec<f64>,
-    /// Columns, before they are made orthonormal.
+    /// Columns, before orthonormalisation.
     pub motions: Vec<Vec<f64>>,
 }
 
@@ -28,9 +28,9 @@ pub struct DenseModel {
     pub equalities: DenseRows,
     /// Contact rows that carry a force.
     pub active: Vec<usize>,
-    /// A rigid motion that is part of the answer, n or nothing, length: exact where elimination would lose digits.
+    /// A rigid motion that is part of the answer, n or empty, length: given exactly, since elimination would lose digits.
     pub travel: Vec<f64>,
-    /// Nodes with friction; their tangential rows are numbered through.
+    /// Nodes with friction; their tangential rows are numbered consecutively.
     pub nodes: Vec<DenseNode>,
 }
 
@@ -57,7 +57,7 @@ pub fn chain(springs: &[f64], held: &[(usize, f64)]) -> DenseBody {
     DenseBody { k, load: vec![0.0; n], motions }
 }
 
-/// A plane truss, two unknowns of every node; bars as (node, node, stiffness).
+/// A plane truss, two unknowns per node; bars as (node, node, stiffness).
 pub fn truss(nodes: &[[f64; 2]], bars: &[(usize, usize, f64)]) -> DenseBody {
     let n = 2 * nodes.len();
     let mut k = vec![vec![0.0; n]; n];
@@ -159,7 +159,7 @@ pub fn solve(a: &Dense, b: &[f64]) -> Vec<f64> {
     x
 }
 
-/// K+ by elimination of the bordered matrix.
+/// K+ by elimination in the bordered matrix.
 pub struct ByElimination<'a>(pub &'a DenseModel, pub usize);
 
 impl ByElimination<'_> {
@@ -226,7 +226,7 @@ impl DenseModel {
         }
     }
 
-    /// The judgement, and how often K+ has been asked for.
+    /// The judgement, and the number of products with K+.
     pub fn judged(&self, point: &DenseAnswer) -> (Judgement, usize) {
         let n = self.unknowns();
         let (contact, equalities) = (Self::rows(&self.contact, n), Self::rows(&self.equalities, n));
@@ -267,7 +267,7 @@ impl DenseModel {
         self.judged(point).0.certificate
     }
 
-    /// The right answer passes, also rounded to 15 digits, and so do its parts only where they are known.
+    /// The correct answer passes, also rounded to 15 digits.
     pub fn accepted(&self, name: &str) -> DenseAnswer {
         let right = self.answer();
         let certificate = self.certificate(&right);
@@ -289,7 +289,7 @@ impl DenseModel {
         assert!(!certificate.passed(), "{name}: {certificate:#?} {point:?}");
     }
 
-    /// Everything that may be wrong with the forces of an answer is refused.
+    /// All wrong forces of an answer must be refused.
     pub fn refuses_wrong_forces(&self, name: &str) {
         let right = self.accepted(name);
         let times = |by: f64| {
@@ -313,7 +313,7 @@ impl DenseModel {
         }
     }
 
-    /// ... and any unknown that is moved by 1e-5 of `deformation`.
+    /// Any unknown moved by 1e-5 of `deformation` must be refused.
     pub fn refuses_wrong_motions(&self, name: &str, deformation: f64) {
         let right = self.accepted(name);
         for j in 0..right.u.len() {

@@ -22,7 +22,7 @@ pub struct DenseNode {
 type Along = Option<[f64; 2]>;
 
 impl DenseModel {
-    /// With s_old as right-hand sides.
+    /// Tangential rows with s_old as right-hand sides.
     pub fn tangential(&self) -> DenseRows {
         let of = |node: &DenseNode| {
             let rows = node.rows.iter().zip(&node.old);
@@ -55,8 +55,8 @@ impl DenseModel {
         self.laws().into_iter().map(of).collect()
     }
 
-    /// With the forces of the active rows, and the states of the nodes that the law of friction asks for: `lambda_t + k s` in its
-    /// disc sticks, else it is the direction of the slip.
+    /// The answer with the forces of the active rows and the states by the law of friction: a node sticks if `lambda_t +
+    /// k s` is in its disc; otherwise this vector is the direction of its slip.
     pub fn answer(&self) -> DenseAnswer {
         let mut along: Vec<Along> = vec![None; self.nodes.len()];
         let k = self.parts.iter().map(|part| part.k[0][0]).fold(f64::INFINITY, f64::min) / 4.0;
@@ -67,7 +67,8 @@ impl DenseModel {
                 let mut moved = slip.map(|s| k * s);
                 law.rows().zip(&mut moved).for_each(|(i, x)| *x += answer.tangential[i]);
                 let (size, bound) = (moved[0].hypot(moved[1]), law.limit(&answer.lambda));
-                // a node that slips has its force from this direction: exactly on the disc it goes on
+                // the force of a slipping node comes from this direction: it continues to slip if the force is exactly at
+                // the bound
                 let next = (size > bound * (1.0 + 1e-14)).then(|| moved.map(|x| x / size));
                 change = f64::max(
                     change,
@@ -86,7 +87,7 @@ impl DenseModel {
         panic!("no states of the nodes: {along:?}");
     }
 
-    /// The answer whose nodes slip along these directions or stick.
+    /// The answer for given slip directions; none: the node sticks.
     fn with_states(&self, along: &[Along]) -> DenseAnswer {
         let (n, tangential, laws) = (self.unknowns(), self.tangential(), self.laws());
         let sticking: Vec<usize> = laws

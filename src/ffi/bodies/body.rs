@@ -28,15 +28,15 @@ pub unsafe extern "C" fn feti_body_add(p: *mut feti_problem, n: i64, body: *mut 
     })
 }
 
-/// With more unknowns ld = n can only be meant for an array n x dim, beyond whose end would be read.
+/// Above this number of unknowns, ld = n means that the array is n x dim, and would be read beyond its end.
 const FEW: usize = 12;
 
 /// Gives position and direction of every unknown of a body; the library computes candidates for the null space from them.
 ///
 /// The data are copied; another call replaces them. If you give neither coordinates nor a null space, the library finds
-/// the null space from K. A null space given by feti_body_null_space takes precedence over the coordinates. If K resists
-/// or drives the rigid body motions, see feti_body_coordinates_flags. Shells and beams list a node again for its
-/// rotations. After a failure the body keeps its previous data.
+/// the null space from K. A null space given by feti_body_null_space takes precedence over the coordinates. If K has a
+/// small positive or negative stiffness along the rigid body motions, see feti_body_coordinates_flags. Shells and beams
+/// list a node again for its rotations. After a failure the body keeps its previous data.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|
@@ -73,9 +73,9 @@ pub unsafe extern "C" fn feti_body_coordinates(
             );
             return Err(Error::argument("ld", text).body(body).value(ld as f64).limit(dim as f64));
         }
-        // SAFETY: shapes by the caller's word.
+        // SAFETY: shapes guaranteed by the caller.
         let (node, dir) = unsafe { (input(node, n, "node")?, input(dir, n, "dir")?) };
-        // SAFETY: ld (n - 1) + dim coordinates by the caller's word.
+        // SAFETY: ld (n - 1) + dim coordinates guaranteed by the caller.
         problem.set_coordinates(body, dim, node, dir, unsafe { input(xyz, entries, "xyz") }?, ld)
     })
 }
@@ -85,10 +85,10 @@ pub unsafe extern "C" fn feti_body_coordinates(
 ///
 /// The flag applies to all coordinates of the body (feti_body_coordinates), whether they are given before or after this
 /// call; the default is FETI_CANDIDATES. With FETI_SOFT, weak springs, rounding of the entries of K, geometric stiffness
-/// and supports may resist or drive the motions, and the motions need not be exact. The library computes the motions and
-/// their stiffness from K and takes them into account exactly, as it does for motions given to feti_body_null_space with
-/// FETI_SOFT. That function also describes what happens if K drives the body or has further null vectors. The flag has no
-/// effect without coordinates or if a null space was given. FETI_UNSUPPORTED from feti_setup if the host provides K+
+/// and supports may give the motions a positive or negative stiffness, and the motions need not be exact. The library
+/// computes the motions and their stiffness from K and takes them into account exactly, as it does for motions given to
+/// feti_body_null_space with FETI_SOFT. That function also describes what happens if K is indefinite or has further null
+/// vectors. The flag has no effect without coordinates or if a null space was given. FETI_UNSUPPORTED from feti_setup if the host provides K+
 /// (feti_body_operator). After a failure the body keeps its previous flag.
 ///
 /// | argument | in/out | shape | rule |
@@ -127,23 +127,23 @@ pub unsafe extern "C" fn feti_body_load(p: *mut feti_problem, body: i64, n: i64,
     enter(p, call!(feti_body_load(p, body, n, f)), |problem| {
         if body == FETI_ALL {
             let n = whole(problem, n)?;
-            // SAFETY: n numbers by the caller's word.
+            // SAFETY: n numbers guaranteed by the caller.
             return problem.set_all_loads(unsafe { input(f, n, "f") }?);
         }
         let (body, n) = body_of_order(problem, body, n)?;
-        // SAFETY: n numbers by the caller's word.
+        // SAFETY: n numbers guaranteed by the caller.
         problem.set_load(body, unsafe { input(f, n, "f") }?)
     })
 }
 
-/// The length of an array over the unknowns of all bodies.
+/// The length of an array over the unknowns of all bodies, after a check of `n`.
 pub(in crate::ffi) fn whole(problem: &Problem, n: i64) -> Result<usize> {
     let n = count(n, "n")?;
     problem.check_whole(n)?;
     Ok(n)
 }
 
-/// The body and its number of unknowns, which `n` must be: no array is read with a wrong length.
+/// The body and its number of unknowns; `n` must be equal, so that no array is read with a wrong length.
 pub(in crate::ffi) fn body_of_order(problem: &Problem, body: i64, n: i64) -> Result<(usize, usize)> {
     let body = id(body, "body")?;
     let order = problem.order(body)?;

@@ -31,7 +31,7 @@ pub unsafe extern "C" fn feti_body_components(
 ) -> i32 {
     enter(p, call!(feti_body_components(p, body, n, component)), |problem| {
         let (body, n) = body_of_order(problem, body, n)?;
-        // SAFETY: room for n numbers by the caller's word.
+        // SAFETY: room for n numbers guaranteed by the caller.
         let output = unsafe { Output::new(component, n, "component") }?;
         let (parts, _) = problem.components(body)?;
         parts.iter().enumerate().for_each(|(dof, part)| output.write_at(dof, &[*part as i64]));
@@ -63,7 +63,7 @@ pub unsafe extern "C" fn feti_body_info(p: *mut feti_problem, body: i64, out: *m
 
 fn record(facts: &BodyFacts) -> feti_body_facts {
     let factors = facts.factors.as_ref();
-    // NaN where there are no doubts
+    // NaN if there are no doubts
     let largest = |of: fn(&Doubt) -> f64| {
         factors.iter().flat_map(|factors| &factors.doubts).map(of).fold(f64::NAN, f64::max)
     };

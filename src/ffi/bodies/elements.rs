@@ -1,4 +1,4 @@
-//! Bodies given by elements: connectivity first, then the matrix of every element, pass by pass.
+//! Bodies given by elements: first the connectivity, then the matrices of all elements, in passes.
 
 use crate::error::Result;
 use crate::ffi::bodies::body::body_of_order;
@@ -54,7 +54,7 @@ pub unsafe extern "C" fn feti_body_mesh_i32(
     base: i32,
 ) -> i32 {
     let call = call!(feti_body_mesh_i32(p, body, elements, ptr, dof, base));
-    // SAFETY: shapes by the caller's word.
+    // SAFETY: shapes guaranteed by the caller.
     unsafe { give(p, call, body, (elements, ptr, dof, base)) }
 }
 
@@ -102,7 +102,7 @@ pub unsafe extern "C" fn feti_body_mesh_i64(
     base: i32,
 ) -> i32 {
     let call = call!(feti_body_mesh_i64(p, body, elements, ptr, dof, base));
-    // SAFETY: shapes by the caller's word.
+    // SAFETY: shapes guaranteed by the caller.
     unsafe { give(p, call, body, (elements, ptr, dof, base)) }
 }
 
@@ -119,7 +119,7 @@ unsafe fn give<I: Index>(
         let body = id(body, "body")?;
         problem.order(body)?;
         let (elements, base) = (count(elements, "elements")?, base(from)?);
-        // SAFETY: elements + 1 positions by the caller's word.
+        // SAFETY: elements + 1 positions guaranteed by the caller.
         let ptr = unsafe { element_pointers(ptr, elements, base) }?;
         let entries = ptr.last().copied().unwrap_or(0);
         // SAFETY: the last position is the number of entries.
@@ -165,7 +165,7 @@ pub unsafe extern "C" fn feti_body_element(
         let n = same(n, size, "n", "the number of unknowns of the element is")
             .map_err(|error| error.body(body).element(e))?;
         let (entries, ld) = column_major(n, n, ld, "ld").map_err(|error| error.body(body).element(e))?;
-        // SAFETY: ld (n - 1) + n entries by the caller's word.
+        // SAFETY: ld (n - 1) + n entries guaranteed by the caller.
         problem.add_element(body, e, n, unsafe { input(ke, entries, "ke") }?, ld)
     })
 }
@@ -202,7 +202,7 @@ pub unsafe extern "C" fn feti_body_elements(
     enter(p, call!(feti_body_elements(p, body, first, count, ke, storage)), |problem| {
         let (body, first, count, storage) = block(problem, body, first, count, storage)?;
         let entries = problem.values_of_elements(body, first, count, storage)?;
-        // SAFETY: as many entries by the caller's word.
+        // SAFETY: as many entries guaranteed by the caller.
         problem.add_elements(body, first, count, unsafe { input(ke, entries, "ke") }?, storage)
     })
 }
@@ -240,7 +240,7 @@ pub unsafe extern "C" fn feti_body_elements_size(
     })
 }
 
-/// Body, first element, number and storage of a block, all of them there.
+/// Body, first element, number and storage of a block of existing elements.
 fn block(
     problem: &Problem,
     body: i64,
@@ -281,7 +281,7 @@ fn block(
 pub unsafe extern "C" fn feti_body_held_forces(p: *mut feti_problem, body: i64, n: i64, r: *mut f64) -> i32 {
     enter(p, call!(feti_body_held_forces(p, body, n, r)), |problem| {
         let (body, n) = (id(body, "body")?, count(n, "n")?);
-        // SAFETY: room for n numbers by the caller's word.
+        // SAFETY: room for n numbers guaranteed by the caller.
         let output = unsafe { Output::new(r, n, "r") }?;
         let mut forces = zeros(n, "the forces of held unknowns")?;
         problem.held_forces(body, &mut forces)?;
@@ -309,7 +309,7 @@ pub unsafe extern "C" fn feti_body_held_forces(p: *mut feti_problem, body: i64, 
 pub unsafe extern "C" fn feti_body_pieces(p: *mut feti_problem, body: i64, n: i64, piece: *mut i64) -> i32 {
     enter(p, call!(feti_body_pieces(p, body, n, piece)), |problem| {
         let (body, n) = body_of_order(problem, body, n)?;
-        // SAFETY: room for n numbers by the caller's word.
+        // SAFETY: room for n numbers guaranteed by the caller.
         let output = unsafe { Output::new(piece, n, "piece") }?;
         let pieces = problem.pieces(body)?;
         pieces.iter().enumerate().for_each(|(dof, piece)| output.write_at(dof, &[i64::from(*piece)]));

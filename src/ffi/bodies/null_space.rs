@@ -12,11 +12,12 @@ use crate::solver::Modes;
 /// The basis is copied; another call replaces it. If you do not call this function, the coordinates of the unknowns give
 /// candidates (feti_body_coordinates); without coordinates the library finds the null space from K. feti_setup checks
 /// that `K R = 0` holds. With FETI_SOFT this equation need not hold: weak springs, rounding of the entries of K and
-/// geometric stiffness may resist or drive the motions. The columns then only choose the fixing unknowns; the library
+/// geometric stiffness may give the motions a positive or negative stiffness. The columns then only choose the fixing unknowns; the library
 /// computes the motions and their stiffness from K and takes them into account exactly. If K is still indefinite with
 /// these unknowns fixed, the library fixes up to six more, each with its own column in feti_body_null_space_get.
-/// FETI_UNSUPPORTED from feti_setup if the host provides K+ (feti_body_operator); FETI_INDEFINITE from feti_setup if K
-/// drives more motions than that, and from feti_solve if the contact does not restrain a driven motion. After a failure
+/// FETI_UNSUPPORTED from feti_setup if the host provides K+ (feti_body_operator); FETI_INDEFINITE from feti_setup if K has
+/// negative stiffness along more motions than that, and from feti_solve if the contact does not restrain a motion with
+/// negative stiffness. After a failure
 /// the body keeps its previous basis.
 ///
 /// | argument | in/out | shape | rule |
@@ -48,7 +49,7 @@ pub unsafe extern "C" fn feti_body_null_space(
             [(FETI_EXACT, Modes::Exact), (FETI_CANDIDATES, Modes::Candidates), (FETI_SOFT, Modes::Soft)];
         let modes = meaning(flags, "flags", &known, "none of FETI_EXACT, FETI_CANDIDATES, FETI_SOFT")?;
         let (entries, ldr) = column_major(n, r, ldr, "ldr")?;
-        // SAFETY: ldr (r - 1) + n entries by the caller's word.
+        // SAFETY: ldr (r - 1) + n entries guaranteed by the caller.
         problem.set_null_space(body, n, r, unsafe { input(basis, entries, "basis") }?, ldr, modes)
     })
 }
@@ -97,7 +98,7 @@ pub unsafe extern "C" fn feti_body_null_space_get(
 ) -> i32 {
     enter(p, call!(feti_body_null_space_get(p, body, n, r, basis, ldr)), |problem| {
         let (body, n) = body_of_order(problem, body, n)?;
-        // SAFETY: `r` leads to one number by the caller's word.
+        // SAFETY: `r` leads to one number guaranteed by the caller.
         let dimension = unsafe { Output::new(r, 1, "r") }?;
         let _room = problem.setup_headroom()?;
         let (found, columns) = problem.null_space(body)?;
@@ -141,7 +142,7 @@ pub unsafe extern "C" fn feti_body_fixing(p: *mut feti_problem, body: i64, r: i6
         let _room = problem.setup_headroom()?;
         let fixing = problem.fixing_dofs(body)?;
         same(r, fixing.len(), "r", "the dimension of the null space is").map_err(|error| error.body(body))?;
-        // SAFETY: r numbers by the caller's word.
+        // SAFETY: r numbers guaranteed by the caller.
         let output = unsafe { Output::new(dof, fixing.len(), "dof") }?;
         for (k, number) in fixing.iter().enumerate() {
             output.write_at(k, &[*number as i64]);
@@ -174,7 +175,7 @@ pub unsafe extern "C" fn feti_body_fixing_set(
 ) -> i32 {
     enter(p, call!(feti_body_fixing_set(p, body, r, dof)), |problem| {
         let (body, r) = (id(body, "body")?, count(r, "r")?);
-        // SAFETY: r numbers by the caller's word.
+        // SAFETY: r numbers guaranteed by the caller.
         let given = unsafe { numbers(dof, r, 0, "dof") }?;
         let mut dofs = reserved(r, "an index array")?;
         for (entry, &number) in given.iter().enumerate() {

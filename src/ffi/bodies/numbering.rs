@@ -37,7 +37,7 @@ pub unsafe extern "C" fn feti_body_numbering_i32(
     base: i32,
 ) -> i32 {
     let call = call!(feti_body_numbering_i32(p, body, n, number, base));
-    // SAFETY: n numbers by the caller's word.
+    // SAFETY: n numbers guaranteed by the caller.
     unsafe { give(p, call, body, (n, number, base)) }
 }
 
@@ -74,7 +74,7 @@ pub unsafe extern "C" fn feti_body_numbering_i64(
     base: i32,
 ) -> i32 {
     let call = call!(feti_body_numbering_i64(p, body, n, number, base));
-    // SAFETY: n numbers by the caller's word.
+    // SAFETY: n numbers guaranteed by the caller.
     unsafe { give(p, call, body, (n, number, base)) }
 }
 
@@ -85,7 +85,7 @@ unsafe fn give<I: Index>(p: *mut feti_problem, call: Call, body: i64, given: (i6
         let (n, number, from) = given;
         let (body, n) = body_of_order(problem, body, n)?;
         let from = base(from)?;
-        // SAFETY: n numbers by the caller's word.
+        // SAFETY: n numbers guaranteed by the caller.
         let numbers = unsafe { numbers(number, n, from, "number") }?;
         problem.set_numbering(body, &numbers).map_err(|error| error.index_from(from))
     })

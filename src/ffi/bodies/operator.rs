@@ -59,7 +59,7 @@ pub unsafe extern "C" fn feti_body_operator(
 ) -> i32 {
     enter(p, call!(feti_body_operator(p, body, n, diag, kplus, k, concurrent, user)), |problem| {
         let (number, order) = body_of_order(problem, body, n)?;
-        // SAFETY: the shape by the caller's word.
+        // SAFETY: the shape guaranteed by the caller.
         let diagonal = unsafe { input(diag, order, "diag") }?;
         let slot = handle::find(p).ok_or_else(|| Error::new(Kind::Internal, "a problem without handle"))?;
         let product = |function: feti_operator_fn, name| -> Result<HostProduct> {
@@ -76,7 +76,7 @@ pub unsafe extern "C" fn feti_body_operator(
 
 type Plain = unsafe extern "C" fn(*mut c_void, i64, i64, i64, *const f64, i64, *mut f64, i64) -> i32;
 
-/// A function of the host with what it gets besides X and Y.
+/// A function of the host and its arguments besides X and Y.
 struct Function {
     function: Plain,
     user: User,
@@ -89,7 +89,7 @@ impl Function {
         Box::new(move |x, nrhs, y| {
             let Self { function, user, body, n } = &self;
             let (x, y) = (x.as_ptr(), y.as_mut_ptr());
-            // SAFETY: by the caller's word the function may be called with `user`; X and Y are n x nrhs and apart.
+            // SAFETY: the caller guarantees that the function may be called with `user`; X and Y are n x nrhs and apart.
             environment.within(|| unsafe { function(user.get(), *body, *n, nrhs as i64, x, *n, y, *n) })
         })
     }

@@ -49,7 +49,7 @@ pub unsafe extern "C" fn feti_body_stiffness_i32(
 ) -> i32 {
     let call = call!(feti_body_stiffness_i32(p, body, n, row_ptr, col, val, base, storage, flags));
     let matrix = SparseMatrix { n, row_ptr, col, val, base, storage, flags };
-    // SAFETY: shapes by the caller's word.
+    // SAFETY: shapes guaranteed by the caller.
     unsafe { matrix.give(p, call, body, None) }
 }
 
@@ -94,7 +94,7 @@ pub unsafe extern "C" fn feti_body_stiffness_i64(
 ) -> i32 {
     let call = call!(feti_body_stiffness_i64(p, body, n, row_ptr, col, val, base, storage, flags));
     let matrix = SparseMatrix { n, row_ptr, col, val, base, storage, flags };
-    // SAFETY: shapes by the caller's word.
+    // SAFETY: shapes guaranteed by the caller.
     unsafe { matrix.give(p, call, body, None) }
 }
 
@@ -136,7 +136,7 @@ pub unsafe extern "C" fn feti_body_stiffness_split_i32(
     let call =
         call!(feti_body_stiffness_split_i32(p, body, n, diag, row_ptr, col, val, base, storage, flags));
     let matrix = SparseMatrix { n, row_ptr, col, val, base, storage, flags };
-    // SAFETY: shapes by the caller's word.
+    // SAFETY: shapes guaranteed by the caller.
     unsafe { matrix.give(p, call, body, Some(diag)) }
 }
 
@@ -178,7 +178,7 @@ pub unsafe extern "C" fn feti_body_stiffness_split_i64(
     let call =
         call!(feti_body_stiffness_split_i64(p, body, n, diag, row_ptr, col, val, base, storage, flags));
     let matrix = SparseMatrix { n, row_ptr, col, val, base, storage, flags };
-    // SAFETY: shapes by the caller's word.
+    // SAFETY: shapes guaranteed by the caller.
     unsafe { matrix.give(p, call, body, Some(diag)) }
 }
 
@@ -194,7 +194,7 @@ struct SparseMatrix<I> {
 }
 
 impl<I: Index> SparseMatrix<I> {
-    /// `diag`: a diagonal of its own.
+    /// `diag`: a separate array of the diagonal.
     ///
     /// # Safety
     /// The arrays have the documented shapes.
@@ -206,12 +206,12 @@ impl<I: Index> SparseMatrix<I> {
             let flags = [(FETI_COPY, false), (FETI_BORROW, true)];
             let borrow = meaning(self.flags, "flags", &flags, "neither FETI_COPY nor FETI_BORROW")?;
             let borrow = borrow && diag.is_none() && storage == Storage::Lower;
-            // SAFETY: n numbers by the caller's word.
+            // SAFETY: n numbers guaranteed by the caller.
             let diag = diag.map(|diag| unsafe { input(diag, n, "diag") }).transpose()?;
-            // SAFETY: n + 1 positions by the caller's word.
+            // SAFETY: n + 1 positions guaranteed by the caller.
             let ptr = unsafe { pointers(self.row_ptr, n, base) }?;
             let entries = ptr.last().copied().unwrap_or(0);
-            // SAFETY: the last position is the number of entries; the arrays stay, by the caller's word.
+            // SAFETY: the last position is the number of entries; the arrays stay, guaranteed by the caller.
             if borrow && entries > 0 && unsafe { self.borrow(problem, body, &ptr, base) }.map_err(of_call)? {
                 return Ok(());
             }
@@ -227,17 +227,17 @@ impl<I: Index> SparseMatrix<I> {
         })
     }
 
-    /// False where the form does not allow it.
+    /// Returns false if the matrix does not have the stored form.
     ///
     /// # Safety
     /// The arrays have as many entries as `ptr` says, and stay as documented.
     unsafe fn borrow(&self, problem: &mut Problem, body: usize, ptr: &[usize], base: i64) -> Result<bool> {
         let entries = ptr.last().copied().unwrap_or(0);
-        // SAFETY: by the caller's word.
+        // SAFETY: guaranteed by the caller.
         let (val, col) = unsafe { (borrowed(self.val, entries, "val")?, input(self.col, entries, "col")?) };
         let column = |at: usize| col[at].wide().saturating_sub(base);
         let columns = match I::unsigned(self.col).filter(|_| base == 0) {
-            // SAFETY: by the caller's word.
+            // SAFETY: guaranteed by the caller.
             Some(col) => Columns::Kept(unsafe { borrowed(col, entries, "col") }?),
             None => Columns::Given(&column),
         };
@@ -278,7 +278,7 @@ pub unsafe extern "C" fn feti_body_stiffness_dense(
         let storage = storage_of(storage)?;
         meaning(flags, "flags", &[(FETI_COPY, ())], "not FETI_COPY")?;
         let (entries, ld) = column_major(n, n, ld, "ld")?;
-        // SAFETY: ld (n - 1) + n entries by the caller's word.
+        // SAFETY: ld (n - 1) + n entries guaranteed by the caller.
         problem.set_stiffness_dense(body, n, unsafe { input(k, entries, "k") }?, ld, storage)
     })
 }

@@ -32,10 +32,10 @@ pub unsafe extern "C" fn feti_body_values(p: *mut feti_problem, body: i64, nnz: 
         let nnz =
             same(nnz, problem.values(body, false)?, "nnz", ENTRIES).map_err(|error| error.body(body))?;
         if problem.is_borrowed(body) {
-            // SAFETY: nnz numbers that stay, by the caller's word.
+            // SAFETY: nnz numbers that stay, guaranteed by the caller.
             return problem.borrow_values(body, unsafe { borrowed(val, nnz, "val") }?);
         }
-        // SAFETY: nnz numbers by the caller's word.
+        // SAFETY: nnz numbers guaranteed by the caller.
         problem.set_values(body, unsafe { input(val, nnz, "val") }?)
     })
 }
@@ -69,7 +69,7 @@ pub unsafe extern "C" fn feti_body_values_split(
     enter(p, call!(feti_body_values_split(p, body, n, diag, nnz, val)), |problem| {
         let (body, n) = body_of_order(problem, body, n)?;
         let nnz = same(nnz, problem.values(body, true)?, "nnz", ENTRIES).map_err(|error| error.body(body))?;
-        // SAFETY: n and nnz numbers by the caller's word.
+        // SAFETY: n and nnz numbers guaranteed by the caller.
         let (diag, val) = unsafe { (input(diag, n, "diag")?, input(val, nnz, "val")?) };
         problem.set_values_split(body, diag, val)
     })
@@ -104,7 +104,7 @@ pub unsafe extern "C" fn feti_body_values_dense(
         let (body, n) = body_of_order(problem, body, n)?;
         problem.dense_storage(body)?;
         let (entries, ld) = column_major(n, n, ld, "ld")?;
-        // SAFETY: ld (n - 1) + n entries by the caller's word.
+        // SAFETY: ld (n - 1) + n entries guaranteed by the caller.
         problem.set_values_dense(body, n, unsafe { input(k, entries, "k") }?, ld)
     })
 }

@@ -8,7 +8,7 @@ use std::ptr::NonNull;
 use crate::error::{Error, Result, INDEX};
 use crate::solver::Borrowed;
 
-/// A size: not negative, and an array of as many 8-byte numbers can exist.
+/// A size: not negative, and small enough for an array of 8-byte numbers.
 pub fn count(value: i64, name: &'static str) -> Result<usize> {
     let largest = isize::MAX as usize / 8;
     match usize::try_from(value) {
@@ -25,14 +25,14 @@ fn negative(value: i64, name: &'static str) -> Error {
     Error::argument(name, format!("{name} is {value}, and must not be negative")).value(value as f64)
 }
 
-/// A number of a body or row, counted from 0. The text has not the number: Fortran hands any number below 1 over as one below -1, which
-/// stands for all bodies.
+/// A number of a body or row, counted from 0. The text omits the number: Fortran passes every number below 1 as a number
+/// below -1, since -1 means all bodies.
 pub fn id(value: i64, name: &'static str) -> Result<usize> {
     usize::try_from(value)
         .map_err(|_| Error::argument(name, format!("{name} is below the first number")).index(value))
 }
 
-/// A size that is known: "n is 5, the body has 7".
+/// A size that must have a known value: "n is 5, the body has 7".
 pub fn same(value: i64, expected: usize, name: &'static str, what: &str) -> Result<usize> {
     if usize::try_from(value) == Ok(expected) {
         return Ok(expected);
@@ -41,7 +41,8 @@ pub fn same(value: i64, expected: usize, name: &'static str, what: &str) -> Resu
     Err(Error::argument(name, text).value(value as f64).limit(expected as f64))
 }
 
-/// What a number stands for that must be one of a few; of another one the text says that it is `not`.
+/// The meaning of an argument with a few permitted values; for another value, the error says that it is `not` one of
+/// them.
 pub fn meaning<T: Copy>(value: i32, name: &'static str, known: &[(i32, T)], not: &str) -> Result<T> {
     let found = known.iter().find(|(number, _)| *number == value).map(|(_, meaning)| *meaning);
     found.ok_or_else(|| Error::argument(name, format!("{name} is {value}, {not}")).value(f64::from(value)))
@@ -51,7 +52,8 @@ pub fn meaning<T: Copy>(value: i32, name: &'static str, known: &[(i32, T)], not:
 pub fn entry_at<'a, T>(list: &'a [T], k: i64, what: &str) -> Result<&'a T> {
     let found = usize::try_from(k).ok().and_then(|k| list.get(k));
     found.ok_or_else(|| {
-        Error::argument("k", format!("number {INDEX} is not there: there are {} {what}", list.len())).index(k)
+        Error::argument("k", format!("number {INDEX} does not exist: there are {} {what}", list.len()))
+            .index(k)
     })
 }
 
@@ -72,7 +74,7 @@ pub fn column_major(rows: usize, columns: usize, ld: i64, name: &'static str) ->
     Ok((entries, ld))
 }
 
-/// True when so many bytes are left: for small things, at whose failed allocation Rust would end the process.
+/// True if this memory is available: for small allocations, at whose failure Rust would end the process.
 pub fn left(bytes: usize) -> bool {
     let mut room = Vec::<u8>::new();
     let left = room.try_reserve_exact(bytes).is_ok();
@@ -90,7 +92,7 @@ fn check_pointer<T>(from: *const T, name: &'static str) -> Result<()> {
     Ok(())
 }
 
-/// The host's array of `len` numbers; with `len` = 0 the pointer is not looked at.
+/// The host's array of `len` numbers; with `len` = 0 the pointer is ignored.
 ///
 /// # Safety
 /// `from` leads to `len` numbers that nobody writes to during the call.
@@ -99,7 +101,7 @@ pub unsafe fn input<'a, T>(from: *const T, len: usize, name: &'static str) -> Re
         return Ok(&[]);
     }
     check_pointer(from, name)?;
-    // SAFETY: not NULL, aligned, and `len` numbers by the caller's word; `count` has bounded the bytes.
+    // SAFETY: not NULL, aligned, and `len` numbers guaranteed by the caller; `count` has bounded the bytes.
     Ok(unsafe { std::slice::from_raw_parts(from, len) })
 }
 
@@ -108,13 +110,13 @@ pub unsafe fn input<'a, T>(from: *const T, len: usize, name: &'static str) -> Re
 /// # Safety
 /// As for [`input`].
 pub unsafe fn finite_input<'a>(from: *const f64, len: usize, name: &'static str) -> Result<&'a [f64]> {
-    // SAFETY: by the caller's word.
+    // SAFETY: guaranteed by the caller.
     let values = unsafe { input(from, len, name) }?;
     check_finite(values, 0, name)?;
     Ok(values)
 }
 
-/// `values` are the entries from `start` on of the array `name`.
+/// Checks `values`, the entries from `start` on of the array `name`.
 pub fn check_finite(values: &[f64], start: usize, name: &'static str) -> Result<()> {
     match values.iter().position(|value| !value.is_finite()) {
         None => Ok(()),
@@ -122,7 +124,7 @@ pub fn check_finite(values: &[f64], start: usize, name: &'static str) -> Result<
     }
 }
 
-/// As [`input`]; NULL stands for an array that is not given.
+/// As [`input`]; NULL means that the array is not given.
 ///
 /// # Safety
 /// As for [`input`].
@@ -134,22 +136,22 @@ pub unsafe fn input_or_none<'a, T>(
     if from.is_null() {
         return Ok(None);
     }
-    // SAFETY: by the caller's word.
+    // SAFETY: guaranteed by the caller.
     unsafe { input(from, len, name) }.map(Some)
 }
 
-/// The host's array of `len` numbers, to be read beyond the call.
+/// The host's array of `len` numbers, which is read beyond the call.
 ///
 /// # Safety
 /// `from` leads to `len` numbers that stay as long as the result and its copies, and that nobody writes to during a call.
 pub unsafe fn borrowed<T>(from: *const T, len: usize, name: &'static str) -> Result<Borrowed<T>> {
     check_pointer(from, name)?;
     let start = NonNull::new(from.cast_mut()).ok_or_else(|| Error::argument(name, "NULL"))?;
-    // SAFETY: not NULL, aligned, and `len` numbers by the caller's word.
+    // SAFETY: not NULL, aligned, and `len` numbers guaranteed by the caller.
     Ok(unsafe { Borrowed::new(start, len) })
 }
 
-/// Where the host wants a result; NULL-able outputs drop it.
+/// The destination of a result; an optional output may be NULL.
 pub struct Output<T> {
     to: *mut T,
     len: usize,
@@ -168,11 +170,11 @@ impl<T: Copy> Output<T> {
     /// # Safety
     /// `to` is NULL or has room for `len` numbers until the call returns.
     pub unsafe fn optional(to: *mut T, len: usize, name: &'static str) -> Result<Self> {
-        // SAFETY: by the caller's word; NULL has room for none.
+        // SAFETY: guaranteed by the caller; NULL has no room.
         unsafe { Self::new(to, if to.is_null() { 0 } else { len }, name) }
     }
 
-    /// Writes from `values` what there is room for, from entry `at` on.
+    /// Writes as many of `values` as fit, from entry `at` on.
     pub fn write_at(&self, at: usize, values: &[T]) {
         let len = values.len().min(self.len.saturating_sub(at));
         if len > 0 {
@@ -198,7 +200,7 @@ pub unsafe fn text<'a>(from: *const c_char, name: &'static str) -> Result<&'a st
     if from.is_null() {
         return Err(Error::argument(name, "NULL"));
     }
-    // SAFETY: NUL terminated by the caller's word.
+    // SAFETY: NUL terminated guaranteed by the caller.
     let bytes = unsafe { CStr::from_ptr(from) };
     bytes.to_str().map_err(|error| {
         let at = error.valid_up_to();
@@ -206,7 +208,7 @@ pub unsafe fn text<'a>(from: *const c_char, name: &'static str) -> Result<&'a st
     })
 }
 
-/// The name of a file: on Unix any bytes.
+/// The name of a file: any bytes on Unix.
 ///
 /// # Safety
 /// `from` is NULL or NUL terminated.
@@ -217,11 +219,11 @@ pub unsafe fn file_path<'a>(from: *const c_char, name: &'static str) -> Result<&
     #[cfg(unix)]
     let path = {
         use std::os::unix::ffi::OsStrExt;
-        // SAFETY: NUL terminated by the caller's word.
+        // SAFETY: NUL terminated guaranteed by the caller.
         OsStr::from_bytes(unsafe { CStr::from_ptr(from) }.to_bytes())
     };
     #[cfg(not(unix))]
-    // SAFETY: NUL terminated by the caller's word.
+    // SAFETY: NUL terminated guaranteed by the caller.
     let path = OsStr::new(unsafe { text(from, name) }?);
     if path.is_empty() {
         return Err(Error::argument(name, "the name of the file is empty"));
@@ -229,7 +231,7 @@ pub unsafe fn file_path<'a>(from: *const c_char, name: &'static str) -> Result<&
     Ok(Path::new(path))
 }
 
-/// Room for a text: `cap` >= 0 characters, NULL only with 0.
+/// Checks room for a text: `cap` >= 0 characters, NULL only with 0.
 pub fn check_text_room(buf: *const c_char, cap: i64) -> Result<()> {
     if cap < 0 {
         return Err(negative(cap, "cap"));
@@ -240,7 +242,7 @@ pub fn check_text_room(buf: *const c_char, cap: i64) -> Result<()> {
     Ok(())
 }
 
-/// Copies what fits of `text`, whole characters, and a NUL; returns the full length. Nothing is written without room.
+/// Copies as many whole characters of `text` as fit, and a NUL; returns the full length. Writes nothing without room.
 ///
 /// # Safety
 /// `buf` is NULL or has room for `cap` characters.

@@ -1,4 +1,4 @@
-//! The last error, per thread; each problem keeps its own in its slot. A call that succeeds clears nothing.
+//! The last error, per thread; each problem keeps its own error in its slot. A successful call clears nothing.
 
 use std::cell::RefCell;
 use std::ffi::c_char;
@@ -14,7 +14,7 @@ use crate::ffi::header::types::feti_error_detail;
 #[derive(Debug, Clone)]
 pub struct Record {
     pub status: i32,
-    /// Position of the refused argument from 1, 0: none.
+    /// Position of the refused argument, from 1; 0: none.
     argument: i32,
     function: &'static str,
     place: Place,
@@ -33,22 +33,22 @@ impl Record {
         Self { status, argument, function: call.function, place: *error.place, text }
     }
 
-    /// A status that no [`Error`] stands for, with its own text.
+    /// A record of a status that no [`Error`] has, with its own text.
     pub fn of_status(call: Call, status: i32) -> Self {
         let text = format!("{}: {}", call.function, describe(status).1.to_string_lossy());
         Self { status, argument: 0, function: call.function, place: Place::default(), text }
     }
 
-    /// Makes this the last error of the thread; gives its status.
+    /// Makes this the last error of the thread; returns its status.
     pub fn publish(self) -> i32 {
         let status = self.status;
-        // A thread that is being torn down has no last error to keep.
+        // a thread that is being destroyed keeps no last error
         let _ = LAST.try_with(|last| last.replace(Some(self)));
         status
     }
 }
 
-/// The struct of the header; without a record its status is FETI_OK and no number applies.
+/// The struct of the header; without a record its status is FETI_OK and its numbers mean none.
 fn detail(record: Option<&Record>) -> feti_error_detail {
     let place = record.map(|record| record.place).unwrap_or_default();
     let index = place.given_index().map(|index| index as f64);

@@ -11,14 +11,14 @@ pub fn in_default_environment<T>(work: impl FnOnce() -> T) -> T {
     apart(work)
 }
 
-/// Inside [`in_default_environment`]: runs a function of the host in the environment of the host. What it changes there
-/// is the host's from then on.
+/// Within [`in_default_environment`]: runs a function of the host in the environment of the host. Changes that the
+/// function makes to the environment remain.
 pub fn in_host_environment<T>(work: impl FnOnce() -> T) -> T {
     let _ours = DefaultEnvironment::suspend();
     apart(work)
 }
 
-/// Keeps the compiler from moving arithmetic of `work` over the switch of the environment.
+/// Prevents the compiler from moving arithmetic of `work` across the change of the environment.
 #[inline(never)]
 fn apart<T>(work: impl FnOnce() -> T) -> T {
     work()
@@ -29,7 +29,7 @@ thread_local! {
     static HOST: Cell<Option<u32>> = const { Cell::new(None) };
 }
 
-/// The environment of the host in the call that runs on a problem, for its functions on threads of the library.
+/// The environment of the host in the call on a problem, for the host's functions on threads of the library.
 pub struct Environment {
     mxcsr: AtomicU32,
 }
@@ -39,7 +39,7 @@ impl Environment {
         Self { mxcsr: AtomicU32::new(mxcsr::DEFAULT) }
     }
 
-    /// Takes over that of the call on this thread.
+    /// Stores the environment of the call on this thread.
     pub fn note(&self) {
         self.mxcsr.store(HOST.get().unwrap_or(mxcsr::DEFAULT), Ordering::Relaxed);
     }
@@ -56,9 +56,9 @@ impl Environment {
     }
 }
 
-/// The host's word is put back when this is dropped; calls may be nested through functions of the host.
+/// Restores the host's word when dropped; calls may be nested through functions of the host.
 struct HostEnvironment {
-    /// What HOST held before.
+    /// The previous value of HOST.
     outer: Option<u32>,
 }
 
@@ -76,7 +76,7 @@ impl Drop for HostEnvironment {
     }
 }
 
-/// The library's word is put back when this is dropped.
+/// Restores the library's word when dropped.
 struct DefaultEnvironment {
     mxcsr: u32,
 }
@@ -96,7 +96,7 @@ impl Drop for DefaultEnvironment {
     }
 }
 
-/// Processors whose environment is left as it is.
+/// Processors whose environment is not changed.
 #[cfg(not(target_arch = "x86_64"))]
 mod mxcsr {
     pub const DEFAULT: u32 = 0;

@@ -22,7 +22,7 @@ pub fn enter(p: *mut feti_problem, call: Call, work: impl FnOnce(&mut Problem) -
     enter_with_status(p, call, |problem| work(problem).map(|()| FETI_OK))
 }
 
-/// As [`enter`] for work that has a status of its own; one that is not FETI_OK is recorded like a failure.
+/// As [`enter`], for work that returns a status; a status other than FETI_OK is recorded like a failure.
 pub fn enter_with_status(
     p: *mut feti_problem,
     call: Call,
@@ -62,7 +62,7 @@ pub fn without_problem(call: Call, work: impl FnOnce() -> Result<()>) -> i32 {
     })
 }
 
-/// The status of a problem that could not be taken. The problem's own last error stays: it belongs to another call.
+/// The status of a problem that is not available. The last error of the problem is unchanged: it belongs to another call.
 pub fn refuse(call: Call, refusal: &Refusal) -> i32 {
     let status = match refusal {
         Refusal::Gone => FETI_HANDLE,
@@ -73,13 +73,13 @@ pub fn refuse(call: Call, refusal: &Refusal) -> i32 {
 }
 
 thread_local! {
-    /// Depth of [`caught`] on this thread.
+    /// Nesting depth of [`caught`] on this thread.
     static DEPTH: Cell<i32> = const { Cell::new(0) };
-    /// Where the last silenced panic of this thread happened.
+    /// Place of the last silenced panic of this thread.
     static PANIC_PLACE: RefCell<String> = const { RefCell::new(String::new()) };
 }
 
-/// Runs `work`; a panic becomes an error of kind Internal. What `work` had under its hands must not be used afterwards.
+/// Runs `work`; a panic becomes an error of kind Internal. Data that `work` was changing must not be used afterwards.
 pub fn caught<T>(work: impl FnOnce() -> Result<T>) -> Result<T> {
     install_hook();
     let go_deeper = |by: i32| DEPTH.try_with(|depth| depth.set(depth.get() + by));
@@ -97,17 +97,17 @@ fn panic_text(payload: &(dyn Any + Send)) -> String {
     format!("the library contradicts itself, please report this: {message}{place}")
 }
 
-/// True while a panic of this thread is the library's: inside [`caught`], or on one of its own threads, which all
-/// bear [`THREAD_NAME`].
+/// True if a panic of this thread belongs to the library: within [`caught`], or on one of its own threads, which are all
+/// named [`THREAD_NAME`].
 fn is_ours() -> bool {
     let inside = DEPTH.try_with(|depth| depth.get() > 0).unwrap_or(false);
     inside || std::thread::current().name().is_some_and(|name| name.starts_with(THREAD_NAME))
 }
 
-/// Once: panics of the library print nothing, those of a host written in Rust reach the hook that was there before.
+/// Installs the hook once: panics of the library print nothing, panics of a host written in Rust reach the previous hook.
 fn install_hook() {
     static HOOK: Once = Once::new();
-    // The hook cannot be exchanged during a panic; the next call does it.
+    // the hook cannot be exchanged during a panic; the next call installs it
     if HOOK.is_completed() || std::thread::panicking() {
         return;
     }
@@ -150,7 +150,7 @@ mod tests {
         assert!(!on("host").unwrap().join().unwrap());
     }
 
-    /// What the process prints for a panic of the library and for one of its host.
+    /// The output of the process for a panic of the library and for a panic of its host.
     #[test]
     #[ignore = "run by the test below, in a process of its own"]
     fn panics_of_library_and_host() {

@@ -19,7 +19,7 @@ pub type Slot = registry::Slot<Problem, Record, Arc<Environment>>;
 static PROBLEMS: Registry<Problem, Record, Arc<Environment>> =
     Registry { slots: RwLock::new(BTreeMap::new()), last: AtomicUsize::new(0) };
 
-/// Enters a problem under a new handle.
+/// Registers a problem under a new handle.
 pub fn register(problem: Problem) -> Result<*mut feti_problem> {
     let cancelled = problem.canceller();
     let number = PROBLEMS
@@ -32,7 +32,7 @@ pub fn find(handle: *mut feti_problem) -> Option<Arc<Slot>> {
     PROBLEMS.find(handle.addr())
 }
 
-/// Takes the problem out of the registry; a call that found the slot before meets [`Refusal::Gone`].
+/// Removes the problem from the registry; a call that already found the slot gets [`Refusal::Gone`].
 pub fn remove(handle: *mut feti_problem) -> std::result::Result<Problem, Refusal> {
     PROBLEMS.remove(handle.addr())
 }

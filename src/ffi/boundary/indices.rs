@@ -7,7 +7,7 @@ use crate::platform::memory::reserved;
 /// The integer types of index arrays.
 pub trait Index: Copy {
     fn wide(self) -> i64;
-    /// Numbers in the 32 bits of a matrix, in which those below 0 are far too large.
+    /// The numbers as the 32-bit columns of a matrix; negative numbers become far too large.
     fn unsigned(from: *const Self) -> Option<*const u32>;
 }
 
@@ -31,30 +31,30 @@ impl Index for i64 {
     }
 }
 
-/// What the index arrays of a call count from: 0 or 1.
+/// The base of the index arrays of a call: 0 or 1.
 pub fn base(value: i32) -> Result<i64> {
     meaning(value, "base", &[(0, 0), (1, 1)], "neither 0 nor 1")
 }
 
-/// Argument `row_ptr`: `rows` + 1 positions, the first one `base`, not decreasing; from 0 in the result.
+/// Argument `row_ptr`: `rows` + 1 nondecreasing positions, the first is `base`; from 0 in the result.
 ///
 /// # Safety
 /// `from` leads to `rows` + 1 numbers that nobody writes to during the call.
 pub unsafe fn pointers<I: Index>(from: *const I, rows: usize, base: i64) -> Result<Vec<usize>> {
-    // SAFETY: by the caller's word.
+    // SAFETY: guaranteed by the caller.
     unsafe { positions(from, rows, base, ("row_ptr", Error::row)) }
 }
 
-/// Argument `ptr`: the same of elements.
+/// Argument `ptr` of elements, like `row_ptr`.
 ///
 /// # Safety
 /// As for [`pointers`].
 pub unsafe fn element_pointers<I: Index>(from: *const I, elements: usize, base: i64) -> Result<Vec<usize>> {
-    // SAFETY: by the caller's word.
+    // SAFETY: guaranteed by the caller.
     unsafe { positions(from, elements, base, ("ptr", Error::element)) }
 }
 
-/// `named`: the argument, and where its error is.
+/// `named`: the argument, and the setter for the place of its error.
 ///
 /// # Safety
 /// As for [`pointers`].
@@ -65,7 +65,7 @@ unsafe fn positions<I: Index>(
     named: (&'static str, fn(Error, usize) -> Error),
 ) -> Result<Vec<usize>> {
     let (name, at) = named;
-    // SAFETY: by the caller's word; without rows the array is not looked at.
+    // SAFETY: guaranteed by the caller; without rows the array is not looked at.
     let given = unsafe { input(from, if rows == 0 { 0 } else { rows + 1 }, name) }?;
     let mut positions = reserved(rows + 1, "an index array")?;
     positions.push(0);
@@ -87,7 +87,7 @@ unsafe fn positions<I: Index>(
     Ok(positions)
 }
 
-/// `len` numbers from 0; the layer below checks their range, so those below `base` come out negative.
+/// `len` numbers, converted to count from 0; numbers below `base` become negative, and the range check refuses them.
 ///
 /// # Safety
 /// `from` leads to `len` numbers that nobody writes to during the call.
@@ -97,7 +97,7 @@ pub unsafe fn numbers<I: Index>(
     base: i64,
     name: &'static str,
 ) -> Result<Vec<i64>> {
-    // SAFETY: by the caller's word.
+    // SAFETY: guaranteed by the caller.
     let given = unsafe { input(from, len, name) }?;
     let mut numbers = reserved(len, "an index array")?;
     numbers.extend(given.iter().map(|number| number.wide().saturating_sub(base)));

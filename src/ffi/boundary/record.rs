@@ -7,9 +7,9 @@ use crate::ffi::header::types::{
     feti_body_facts, feti_certificate, feti_error_detail, feti_findings, feti_info, feti_option, feti_phase,
 };
 
-/// The least a struct can hold: `struct_size` and the eight bytes after it.
+/// The smallest struct: `struct_size` and the next eight bytes.
 const LEAST_BYTES: usize = 16;
-/// Bytes of `struct_size`, which stays as the caller set it.
+/// Bytes of `struct_size`, which is not changed.
 const SIZE_BYTES: usize = size_of::<i64>();
 
 /// A `repr(C)` struct whose first field is `struct_size: i64`.
@@ -40,7 +40,7 @@ pub struct OutStruct<T> {
 
 impl<T: StructSize> OutStruct<T> {
     /// # Safety
-    /// `to` is NULL or leads to an i64 that says how many bytes may be written from `to` on.
+    /// `to` is NULL or leads to an i64 with the number of bytes that may be written from `to` on.
     pub unsafe fn new(to: *mut T, name: &'static str) -> Result<Self> {
         if to.is_null() {
             return Err(Error::argument(name, "NULL"));
@@ -58,7 +58,7 @@ impl<T: StructSize> OutStruct<T> {
         }
     }
 
-    /// Writes as much of `value` as the caller's struct holds.
+    /// Writes as much of `value` as fits the caller's struct.
     pub fn write(&self, value: &T) {
         let from: *const MaybeUninit<u8> = std::ptr::from_ref(value).cast();
         // SAFETY: `bytes` is at least SIZE_BYTES, at most the size of T, and the caller's struct has that many.
@@ -69,7 +69,7 @@ impl<T: StructSize> OutStruct<T> {
     }
 }
 
-/// A number of a result struct: -1 where there is none.
+/// A number of a result struct; -1 if there is none.
 pub fn known(number: Option<usize>) -> i64 {
     number.map_or(-1, |number| number as i64)
 }
@@ -81,7 +81,7 @@ mod tests {
 
     const FULL: usize = size_of::<feti_certificate>();
 
-    /// A struct full of ones, 64 bytes longer than ours; returns its bytes after a write with `struct_size`.
+    /// Writes to a struct filled with ones, 64 bytes longer than ours, with this `struct_size`; returns its bytes.
     fn written(struct_size: i64) -> Result<Vec<u8>> {
         let mut bytes = vec![1_u8; FULL + 64];
         bytes[..8].copy_from_slice(&struct_size.to_ne_bytes());

@@ -1,5 +1,5 @@
-//! Problems by number, each with its lock, its request to end and its last error; the registry does not depend on the type of a problem.
-//! `tests/loom` tries all orders of its steps on two threads.
+//! Problems by number, each with its lock, its cancellation flag and its last error; the registry does not depend on the
+//! type of a problem. `tests/loom` tries all orders of its steps on two threads.
 
 use std::collections::BTreeMap;
 
@@ -7,7 +7,7 @@ use super::sync::{
     instant, Arc, AtomicBool, AtomicUsize, Mutex, MutexGuard, Ordering, PoisonError, RwLock, TryLockError,
 };
 
-/// Numbers count from 1 and are never used again.
+/// Numbers count from 1 and are never reused.
 pub struct Registry<P, R, E> {
     pub slots: RwLock<BTreeMap<usize, Arc<Slot<P, R, E>>>>,
     pub last: AtomicUsize,
@@ -15,17 +15,17 @@ pub struct Registry<P, R, E> {
 
 /// A problem with its busy flag, which is the lock, and its last error, which can be read while a call runs.
 pub struct Slot<P, R, E> {
-    /// None once destroyed.
+    /// None after the problem is destroyed.
     problem: Mutex<Option<P>>,
     /// Shared with the problem, so that it can be set while a call runs.
     cancelled: Arc<AtomicBool>,
     broken: AtomicBool,
     error: Mutex<Option<R>>,
-    /// What every thread may use while a call runs.
+    /// Data that every thread may use while a call runs.
     pub shared: E,
 }
 
-/// Why a problem could not be taken.
+/// Why a problem is not available.
 #[derive(Debug, PartialEq)]
 pub enum Refusal {
     Busy,
@@ -34,7 +34,7 @@ pub enum Refusal {
 }
 
 impl<P, R: Clone, E> Slot<P, R, E> {
-    /// The problem, for one call; None inside when it is destroyed.
+    /// Locks the problem for one call; the content is None if it is destroyed.
     fn claim(&self) -> Result<MutexGuard<'_, Option<P>>, Refusal> {
         match self.problem.try_lock() {
             Ok(problem) => Ok(problem),
@@ -46,7 +46,8 @@ impl<P, R: Clone, E> Slot<P, R, E> {
         }
     }
 
-    /// Runs `work` on the problem unless another call runs, or it is destroyed, or an internal error left it unusable.
+    /// Runs `work` on the problem unless another call runs, the problem is destroyed, or an internal error has made it
+    /// unusable.
     pub fn with<T>(&self, work: impl FnOnce(&mut P) -> T) -> Result<T, Refusal> {
         let mut claimed = self.claim()?;
         let problem = claimed.as_mut().ok_or(Refusal::Gone)?;
@@ -56,7 +57,7 @@ impl<P, R: Clone, E> Slot<P, R, E> {
         Ok(work(problem))
     }
 
-    /// Ends the setup or the solve that runs.
+    /// Ends the running setup or solve.
     pub fn cancel(&self) -> Result<(), Refusal> {
         if self.broken.load(Ordering::Acquire) {
             return Err(Refusal::Broken);
@@ -81,7 +82,7 @@ impl<P, R: Clone, E> Slot<P, R, E> {
 }
 
 impl<P, R: Clone, E> Registry<P, R, E> {
-    /// Enters a problem with its flag `cancelled` under a new number; None when all are used up.
+    /// Registers a problem with its flag `cancelled` under a new number; None if all numbers are used.
     pub fn register(&self, problem: P, cancelled: Arc<AtomicBool>, shared: E) -> Option<usize> {
         let next = self.last.fetch_update(Ordering::Relaxed, Ordering::Relaxed, |last| last.checked_add(1));
         let number = next.ok()? + 1;
@@ -101,7 +102,7 @@ impl<P, R: Clone, E> Registry<P, R, E> {
         instant(|| self.slots.read().unwrap_or_else(PoisonError::into_inner).get(&number).cloned())
     }
 
-    /// Takes the problem out; a call that found the slot before meets [`Refusal::Gone`].
+    /// Removes the problem; a call that already found the slot gets [`Refusal::Gone`].
     pub fn remove(&self, number: usize) -> Result<P, Refusal> {
         let slot = self.find(number).ok_or(Refusal::Gone)?;
         let problem = slot.claim()?.take().ok_or(Refusal::Gone)?;

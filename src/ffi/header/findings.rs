@@ -29,10 +29,10 @@ pub struct feti_findings {
     pub untouched_bodies: i64,
     /// The first of these bodies; -1: none.
     pub untouched_body: i64,
-    /// Margin by which there is no solution, above 0 and at most 1. After FETI_INDEFINITE of a driven motion: 1 - 1 /
-    /// rho, where rho is the ratio of the driving to the resisting stiffness. After FETI_LOAD_NOT_HELD: the fraction of
-    /// the resultant load that nothing holds. After FETI_GAPS_CONTRADICT: |w'c| over |w|'|c| for the weights w. Otherwise
-    /// NaN.
+    /// Margin by which there is no solution, above 0 and at most 1. After FETI_INDEFINITE with a motion of negative
+    /// stiffness: 1 - 1 / rho, where rho is the ratio of the negative stiffness to the stiffness of the closed rows. After
+    /// FETI_LOAD_NOT_HELD: the fraction of the resultant load that nothing holds. After FETI_GAPS_CONTRADICT: |w'c| over
+    /// |w|'|c| for the weights w. Otherwise NaN.
     pub margin: f64,
     /// Rigid body motion of the escaping body: velocity of the origin and rotation about the axes; NaN without
     /// coordinates. feti_diagnosis_motion gives the motion of every unknown.
@@ -46,8 +46,8 @@ pub struct feti_findings {
     pub doubtful_bodies: i64,
     /// The first of these bodies; -1: none.
     pub doubtful_body: i64,
-    /// Bodies with rigid body motions that K resists or drives weakly, because of weak springs, rounding or geometric
-    /// stiffness.
+    /// Bodies with rigid body motions of small positive or negative stiffness, because of weak springs, rounding or
+    /// geometric stiffness.
     pub soft_bodies: i64,
     /// The first of these bodies; -1: none.
     pub soft_body: i64,

@@ -35,8 +35,8 @@ pub const FETI_LOAD_NOT_HELD: i32 = -6;
 pub const FETI_GAPS_CONTRADICT: i32 = -7;
 /// The null space of a body is not the one that was given, or was not found.
 pub const FETI_NULL_SPACE: i32 = -8;
-/// A stiffness matrix has a negative or vanishing pivot outside its null space, or drives a soft motion that the contact
-/// does not stop.
+/// A stiffness matrix has a negative or vanishing pivot outside its null space, or negative stiffness along a motion that
+/// the contact does not stop.
 pub const FETI_INDEFINITE: i32 = -9;
 /// A file could not be read or written.
 pub const FETI_IO: i32 = -10;
@@ -65,9 +65,9 @@ const TABLE: [(i32, &CStr, &CStr); 22] = [
     (FETI_INACCURATE, c"FETI_INACCURATE", c"solved, but the certificate does not pass"),
     (FETI_MARGINAL, c"FETI_MARGINAL", c"solved, but a small part of the load is not held by the contact"),
     (FETI_MEMORY, c"FETI_MEMORY", c"memory could not be reserved, or the memory limit would be exceeded"),
-    (FETI_HANDLE, c"FETI_HANDLE", c"the handle is NULL, destroyed, or none of this library"),
+    (FETI_HANDLE, c"FETI_HANDLE", c"the handle is NULL, destroyed, or not from this library"),
     (FETI_BUSY, c"FETI_BUSY", c"another call on this problem is running"),
-    (FETI_CALLBACK, c"FETI_CALLBACK", c"a function of the host reported a failure, or gave what cannot be right"),
+    (FETI_CALLBACK, c"FETI_CALLBACK", c"a function of the host reported a failure, or gave an invalid result"),
     (FETI_STATE, c"FETI_STATE", c"something this call needs has not been given yet"),
     (FETI_LOAD_NOT_HELD, c"FETI_LOAD_NOT_HELD", c"the load has a component that no contact force can balance"),
     (FETI_GAPS_CONTRADICT, c"FETI_GAPS_CONTRADICT", c"the rows contradict each other: no displacement satisfies them"),

@@ -29,7 +29,7 @@ pub const SOURCES: [&str; 22] = [
     include_str!("../bodies/values.rs"),
 ];
 
-/// Status of every function with handle `p` and otherwise NULL and zero; the handle is looked at first.
+/// Status of every function with handle `p` and otherwise NULL and zero; the handle is checked first.
 pub fn statuses(p: *mut feti_problem) -> Vec<(&'static str, i32)> {
     macro_rules! table {
         ($($function:ident($($argument:expr),*);)*) => {

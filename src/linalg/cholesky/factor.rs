@@ -1,4 +1,4 @@
-//! The factor L of the free part of a stiffness matrix, and solutions with it.
+//! The factor L of the free part of a stiffness matrix, and solves with it.
 
 use std::sync::Arc;
 
@@ -13,18 +13,18 @@ use crate::platform::memory::{headroom, reserved, zeros, Headroom, PRODUCTS};
 use crate::platform::pages::{Number, Pages};
 use crate::platform::slabs::Slabs;
 
-/// An entry of L as it is kept. All sums are doubles.
+/// The type of the entries of L. All sums are in double precision.
 pub trait Entry: Number + Into<f64> {}
 
 impl Entry for f64 {}
 impl Entry for f32 {}
 
-/// The factor L with its analysis; its entries are doubles where nothing else is said.
+/// The factor L with its analysis; its entries are doubles by default.
 pub struct Cholesky<T: Entry = f64> {
     pub analysis: Arc<Analysis>,
     /// The panels of all supernodes.
     pub(super) values: Pages<T>,
-    /// Dofs in the order of elimination whose rows and columns of L are those of the identity, ascending.
+    /// Positions in the order of elimination whose rows and columns of L are those of the identity, ascending.
     pub(super) held: Vec<usize>,
 }
 
@@ -37,12 +37,12 @@ pub struct Breakdown {
 }
 
 impl Analysis {
-    /// Bytes of L and of the workspace its computation needs.
+    /// Bytes of L and of the workspace for its computation.
     pub fn bytes(&self) -> usize {
         self.nodes.values() * size_of::<f64>() + self.nodes.bytes() + multifrontal::bytes(&self.nodes)
     }
 
-    /// L of `by` times a matrix with the pattern that was analysed; `Ok(Err(_))` where it is not positive definite.
+    /// L of `by` times a matrix with the analysed pattern; `Ok(Err(_))` if it is not positive definite.
     pub fn factorize(
         self: &Arc<Self>,
         matrix: &Symmetric,
@@ -54,7 +54,7 @@ impl Analysis {
         }
     }
 
-    /// As `factorize`, but for a matrix that may well be singular; gives the position where it broke down.
+    /// As `factorize`, for a matrix that may be singular; returns the position of a pivot that is not positive.
     pub fn attempt(
         self: &Arc<Self>,
         matrix: &Symmetric,
@@ -63,7 +63,7 @@ impl Analysis {
         self.pivoted(matrix, by, 0.0)
     }
 
-    /// As `attempt`; pivots up to `hold` are held, where it is positive.
+    /// As `attempt`; if `hold` is positive, pivots up to `hold` are held.
     pub fn pivoted(
         self: &Arc<Self>,
         matrix: &Symmetric,
@@ -81,7 +81,7 @@ impl Analysis {
         headroom(lists + PRODUCTS, "a factorisation")
     }
 
-    /// The lower triangle of `by` times the matrix in the order of elimination, of the columns at some positions.
+    /// The lower triangle of `by` times the matrix in the order of elimination, for the columns at some positions.
     pub(super) fn columns(
         &self,
         matrix: &Symmetric,
@@ -101,7 +101,7 @@ impl Analysis {
         Ok(LowerColumns { ptr, row, val })
     }
 
-    /// The pivot at position `at`: the Schur complement of the leading block, computed afresh.
+    /// The pivot at position `at`: the Schur complement of the leading block, computed again.
     fn breakdown(&self, matrix: &Symmetric, by: f64, at: usize) -> Result<Breakdown> {
         let dof = self.order[at];
         let diagonal = by * matrix.diagonal(dof);
@@ -115,7 +115,8 @@ impl Analysis {
         })
     }
 
-    /// The dof that moves furthest, in the metric of the diagonal, in the motion v with v'K v = its pivot that ends at `dof`.
+    /// The dof that moves most, in the metric of the diagonal, in the motion v that ends at `dof` and has v'K v = its
+    /// pivot.
     pub fn fastest(&self, matrix: &Symmetric, by: f64, dof: usize) -> Result<usize> {
         let Ok((_, mut x)) = self.before(matrix, by, self.position[dof])? else { return Ok(dof) };
         x[dof] = 1.0;
@@ -123,7 +124,7 @@ impl Analysis {
         Ok((0..x.len()).fold(dof, |best, i| if far(i) > far(best) { i } else { best }))
     }
 
-    /// `K_:a` and `K_ll^-1 K_la`, a the dof at position `at` and l those before it.
+    /// `K_:a` and `K_ll^-1 K_la`, with a the dof at position `at` and l the dofs before it.
     fn before(&self, matrix: &Symmetric, by: f64, at: usize) -> Result<Before> {
         let leading = Arc::new(Self::of_leading(matrix, &self.order[..at])?);
         let mut column = vec![0.0; matrix.order()];
@@ -141,7 +142,7 @@ impl Analysis {
     }
 }
 
-/// A column and what the dofs before it make of it, or where these break down.
+/// A column and its product with the inverse of the leading block, or the breakdown of that block.
 type Before = std::result::Result<(Vec<f64>, Vec<f64>), Breakdown>;
 
 impl Cholesky {
@@ -172,7 +173,7 @@ impl Cholesky {
         self.analysis.order.iter().copied().zip(pivots)
     }
 
-    /// The unknowns whose pivots have been held, ascending: they are 0 in every solution, as if they were not there.
+    /// The unknowns whose pivots are held, ascending: they are 0 in every solution, as if they did not exist.
     pub fn at_rest(&self) -> Vec<usize> {
         let held = self.pivots().filter(|(_, pivot)| *pivot >= 0.5 * HELD);
         let mut held: Vec<usize> = held.map(|(dof, _)| dof).collect();
@@ -185,7 +186,7 @@ impl Cholesky {
         self.pivots().fold(f64::INFINITY, |smallest, (_, pivot)| smallest.min(pivot))
     }
 
-    /// L rounded to half the bytes, which come from `slabs`.
+    /// L rounded to single precision, stored in `slabs`.
     pub fn rounded(&self, slabs: &Slabs) -> Result<Cholesky<f32>> {
         let mut values = slabs.zeros(self.values.len(), "a rounded Cholesky factor")?;
         values.iter_mut().zip(&*self.values).for_each(|(rounded, value)| *rounded = *value as f32);
@@ -199,8 +200,8 @@ impl Cholesky {
         self.analysis.order[self.analysis.nodes.node(nodes.start).begin..at].to_vec()
     }
 
-    /// `x <- K_ss^-1 x_s` on the dofs s below `dof` in the elimination tree, 0 on all others: what a motion that stands for a pivot
-    /// of 0 moves.
+    /// `x <- K_ss^-1 x_s` on the dofs s below `dof` in the elimination tree, 0 on all others: the part that the motion of
+    /// a zero pivot moves.
     pub fn solve_below(&self, dof: usize, x: &mut [f64]) -> Result<()> {
         let (order, at) = (&self.analysis.order, self.analysis.position[dof]);
         let nodes = self.analysis.nodes.subtree(self.analysis.nodes.of_column(at));

@@ -1,4 +1,5 @@
-//! Some columns of `B K_ff^-1 B'`: solutions with L and L' for a few rows of B at a time, restricted to the elimination paths of B.
+//! Some columns of `B K_ff^-1 B'`: solves with L and L' for a few rows of B at a time, restricted to the elimination
+//! paths of B.
 
 use faer::linalg::matmul::matmul;
 use faer::linalg::triangular_solve::{solve_lower_triangular_in_place, solve_upper_triangular_in_place};
@@ -10,7 +11,7 @@ use crate::linalg::cholesky::analysis::supernodes::Node;
 use crate::linalg::{Cholesky, Csr, Matrix};
 use crate::platform::memory::{filled, headroom, zeros, PRODUCTS};
 
-/// Right-hand sides solved for at a time: L is read twice for all of them.
+/// Number of right-hand sides per block: L is read twice for each block.
 const TOGETHER: usize = 32;
 
 const WHAT: &str = "columns of a dual operator";
@@ -31,7 +32,7 @@ pub fn inverse_columns(cholesky: &Cholesky, rows: &Csr, which: &[usize]) -> Resu
     Ok(columns)
 }
 
-/// L at one supernode: the rows of its columns, then those below.
+/// L at one supernode: the rows of its columns, then the rows below.
 struct Panel<'a> {
     node: Node<'a>,
     top: MatRef<'a, f64>,
@@ -78,7 +79,7 @@ impl<'a> Panel<'a> {
     }
 }
 
-/// True for the supernodes on the way from the entries of these rows of B to the root.
+/// True for the supernodes on the paths from the entries of these rows of B to the root.
 fn paths(cholesky: &Cholesky, rows: &Csr, which: impl Iterator<Item = usize>) -> Result<Vec<bool>> {
     let nodes = &cholesky.analysis.nodes;
     let mut meets = filled(nodes.count(), false, WHAT)?;
@@ -92,7 +93,7 @@ fn paths(cholesky: &Cholesky, rows: &Csr, which: impl Iterator<Item = usize>) ->
     Ok(meets)
 }
 
-/// `K_ff^-1 b_j'` in the order of elimination, right on the paths in `met`.
+/// `K_ff^-1 b_j'` in the order of elimination, valid on the paths in `met`.
 fn solutions(cholesky: &Cholesky, rows: &Csr, which: &[usize], met: &[bool]) -> Result<Matrix> {
     let (n, r) = (cholesky.analysis.order.len(), which.len());
     let _room = headroom(PRODUCTS, WHAT)?;
@@ -117,7 +118,7 @@ mod tests {
     use crate::linalg::{Analysis, Symmetric};
     use std::sync::Arc;
 
-    /// Grid of springs, two rows of B on every third dof of its edge, more than are solved for at a time.
+    /// Grid of springs, two rows of B at every third dof of its edge, more than one block.
     #[test]
     fn columns_are_those_of_the_whole_form() {
         let (side, mut ptr, mut col, mut val) = (60_usize, vec![0], Vec::new(), Vec::new());

@@ -1,9 +1,9 @@
 //! `B K_ff^-1 B'` by supernode reach: each supernode of L processes only the rows of B whose elimination path
 //! meets it. With `Y = L^-1 P B'` the result is `Y'Y`: exactly symmetric and positive semidefinite.
 //!
-//! As in the factorisation, a supernode receives from its children their contributions to the rows below them, in the columns
-//! of Y that they have; tiles of columns are independent of each other. Subtrees add up their products separately: equal sums,
-//! and equal bits, on any number of threads.
+//! As in the factorisation, a supernode receives from its children their contributions to the rows below them, in the
+//! columns of Y that the children have; tiles of columns are independent of each other. Subtrees add up their products
+//! separately: equal sums, and equal bits, for any number of threads.
 
 use std::ops::Range;
 
@@ -24,16 +24,17 @@ use crate::platform::Interrupt;
 
 const WHAT: &str = "the dual operator of a body";
 
-/// Columns of Y in a tile, and of those that are multiplied with each other: half of a product with itself is not needed.
+/// Columns of Y per tile, also for their products with each other: only half of the product of a tile with itself is
+/// needed.
 const TILE: usize = 384;
 const SQUARE: usize = 160;
-/// Rows of Y solved for at a time.
+/// Rows of Y per block of a solve.
 const BLOCK: usize = 192;
 
-/// `rows` (m x n, over all dofs of the body) gives the m x m matrix.
+/// The m x m matrix for `rows` (m x n, over all dofs of the body).
 pub fn inverse_form(cholesky: &Cholesky, rows: &Csr) -> Result<Packed> {
     let nodes = &cholesky.analysis.nodes;
-    // lists by supernode, by dof and by entry of B, which grow piece by piece
+    // lists by supernode, by dof and by entry of B, which grow in small allocations
     let small_pieces = 96 * nodes.count() + 8 * nodes.order() + 96 * rows.col.len();
     let _room = headroom(small_pieces + PRODUCTS, WHAT)?;
     let reach = Reach::of(cholesky, rows)?;
@@ -62,19 +63,19 @@ pub fn inverse_form(cholesky: &Cholesky, rows: &Csr) -> Result<Packed> {
     Ok(form)
 }
 
-/// Which supernodes see which rows of B.
+/// The rows of B that reach each supernode.
 struct Reach<'a> {
     cholesky: &'a Cholesky,
     nodes: &'a Supernodes,
     /// Entries of P B' by supernode: row of B, position, value.
     own: Vec<Vec<(u32, u32, f64)>>,
-    /// Rows of B by supernode, ascending: columns of Y.
+    /// Rows of B that reach each supernode, ascending: its columns of Y.
     columns: Vec<Vec<u32>>,
-    /// That of the task which asks for the form.
+    /// The interrupt of the task that computes the form.
     interrupt: Interrupt,
 }
 
-/// What a subtree adds to the form, and leaves for the rows above.
+/// The contribution of a subtree to the form, and its update for the rows above.
 struct FormShare {
     form: Packed,
     update: Pages,
@@ -102,7 +103,7 @@ impl<'a> Reach<'a> {
         Ok(Self { cholesky, nodes, own, columns, interrupt: Interrupt::present() })
     }
 
-    /// Values that s leaves for the rows below its columns.
+    /// Number of values in the update of s for the rows below its columns.
     fn update_len(&self, s: usize) -> usize {
         self.nodes.node(s).rows.len() * self.columns[s].len()
     }
@@ -119,10 +120,10 @@ impl<'a> Reach<'a> {
     }
 }
 
-/// Supernodes one after the other.
+/// Processes supernodes one after the other.
 struct FormTask<'a> {
     reach: &'a Reach<'a>,
-    /// Row of a position within the present front.
+    /// Row in the present front by position.
     local: Vec<u32>,
     updates: Updates<'a>,
     /// Rows of Y of the present supernode: width x columns.
@@ -143,8 +144,8 @@ impl<'a> FormTask<'a> {
         Ok(Self { reach, local, updates, y, product })
     }
 
-    /// `Y_s <- L_ss^-1 (Y_s)` with what the children leave, its products, and what is left for the rows below; `place`
-    /// is where a row of B stands in the form.
+    /// `Y_s <- L_ss^-1 (Y_s)` with the updates of the children, its products, and the update for the rows below; `place`:
+    /// position of a row of B in the form.
     fn eliminate(&mut self, s: usize, form: &mut Packed, place: impl Fn(u32) -> usize) -> Result<()> {
         let columns = &self.reach.columns[s];
         if columns.is_empty() {
@@ -189,7 +190,7 @@ impl<'a> FormTask<'a> {
 
 /// Some columns of Y at a supernode.
 struct FormTile<'a> {
-    /// Among those of the supernode.
+    /// Range among the columns of the supernode.
     columns: Range<usize>,
     /// width x columns
     above: &'a mut [f64],
@@ -232,16 +233,16 @@ impl FormTile<'_> {
     }
 }
 
-/// What a child leaves, as its parent sees it.
+/// The update of a child, in terms of its parent.
 struct FormBelow<'a> {
     values: &'a [f64],
     rows: RowMap,
-    /// Its columns among those of the parent, ascending.
+    /// Position of its columns among those of the parent, ascending.
     columns: Vec<usize>,
 }
 
 impl FormBelow<'_> {
-    /// Rows of the parent's columns.
+    /// Adds to the rows of the parent's columns.
     fn add_above(&self, tile: &mut FormTile<'_>) {
         let rows = 0..self.rows.inside;
         let width = tile.above.len() / tile.columns.len();
@@ -251,7 +252,7 @@ impl FormBelow<'_> {
         }
     }
 
-    /// Rows below them.
+    /// Adds to the rows below them.
     fn add_below(&self, tile: &mut FormTile<'_>) {
         let rows = self.rows.inside..self.rows.to.len();
         let (width, below) = (tile.above.len(), tile.below.len());
@@ -262,7 +263,7 @@ impl FormBelow<'_> {
         }
     }
 
-    /// Columns of the child with their places in a tile of the parent.
+    /// Columns of the child and their positions in a tile of the parent.
     fn columns_of(&self, tile: &Range<usize>) -> impl Iterator<Item = (&[f64], usize)> {
         let rows = self.rows.to.len();
         let place = |column: usize| self.columns.partition_point(|&other| other < column);
@@ -272,7 +273,7 @@ impl FormBelow<'_> {
     }
 }
 
-/// `form += Y'Y`, entry (i, j) at (`places[i]`, `places[j]`); `product` holds a tile of it.
+/// `form += Y'Y`, entry (i, j) at (`places[i]`, `places[j]`); `product`: workspace for a tile.
 fn add_products(y: MatRef<'_, f64>, places: &[usize], product: &mut [f64], form: &mut Packed) {
     let tile = |first: usize| first..places.len().min(first + SQUARE);
     for right in (0..places.len()).step_by(SQUARE).map(tile) {

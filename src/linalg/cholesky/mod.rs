@@ -6,7 +6,7 @@
 //! | `analysis` | order of elimination, pattern of L |
 //! | `numeric` | the entries of L, multifrontal |
 //! | `factor` | L with its analysis, `K_ff^-1 x` |
-//! | `triangular` | solutions with L and L' |
+//! | `triangular` | solves with L and L' |
 //! | `inverse_form`, `inverse_columns` | `B K_ff^-1 B'`, some columns of it |
 //! | `renewal` | L of matrices that differ in some columns |
 //! | `schur` | the Schur complement of the dofs eliminated last |

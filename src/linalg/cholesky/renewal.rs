@@ -1,5 +1,5 @@
-//! Factors of matrices with one pattern that differ only in some columns: the supernodes of these columns and their ancestors are factorised
-//! again; all others are kept, with their updates.
+//! Factors of matrices with equal patterns that differ only in some columns: the supernodes of these columns and their
+//! ancestors are factorised again; all others are kept, with their updates.
 
 use std::sync::Arc;
 
@@ -8,14 +8,14 @@ use crate::linalg::cholesky::analysis::elimination::NONE;
 use crate::linalg::cholesky::numeric::multifrontal::{self, Kept};
 use crate::linalg::{Analysis, Cholesky, Symmetric};
 
-/// Multiplications of a factorisation that take as long as an entry of L in a solution: L is read twice from memory.
+/// Multiplications of a factorisation in the time of one entry of L in a solve, which reads L twice from memory.
 const READ: f64 = 20.0;
-/// Solutions with a factor before the next one.
+/// Number of solves between two factorisations.
 const SOLUTIONS: f64 = 8.0;
 
 pub struct Renewal {
     pub analysis: Arc<Analysis>,
-    /// Supernodes that are done anew, ascending: with each all above it.
+    /// Supernodes that are factorised again, ascending, including all their ancestors.
     renewed: Vec<usize>,
     /// Positions of their columns.
     is_renewed: Vec<bool>,
@@ -23,7 +23,8 @@ pub struct Renewal {
 }
 
 impl Renewal {
-    /// `varying`: the unknowns whose columns differ. They come last where that makes factors with their solutions cheaper.
+    /// `varying`: the unknowns whose columns differ. They are ordered last if that makes factorisations and solves
+    /// together cheaper.
     pub fn new(pattern: &Symmetric, varying: &[bool]) -> Result<Self> {
         let natural = Self::of(Analysis::new(pattern, &vec![false; varying.len()])?, varying);
         let (mut order, last): (Vec<usize>, Vec<usize>) =
@@ -50,20 +51,20 @@ impl Renewal {
         Self { analysis: Arc::new(analysis), renewed, is_renewed, kept: None }
     }
 
-    /// Multiplications.
+    /// Multiplications of a factorisation with its solves.
     fn cost(&self) -> f64 {
         let nodes = &self.analysis.nodes;
         let work: f64 = self.renewed.iter().map(|&s| nodes.node(s).work()).sum();
         work + READ * SOLUTIONS * nodes.values() as f64
     }
 
-    /// Whether entries in the row or column of an unknown may be asked for when a factor is renewed.
+    /// Whether renewing a factor reads entries in the row or column of an unknown.
     pub fn reads(&self, unknown: usize) -> bool {
         self.is_renewed[self.analysis.position[unknown]]
     }
 
-    /// L of `by` times a matrix, pivots up to `hold` held where it is positive: `factor`, of another such matrix, renewed, or from
-    /// nothing. `Err`: the position of a pivot that is not positive.
+    /// L of `by` times a matrix; if `hold` is positive, pivots up to `hold` are held. Renews `factor`, of another such
+    /// matrix, or factorises completely. `Err`: the position of a pivot that is not positive.
     pub fn factorize(
         &mut self,
         factor: Option<Cholesky>,
@@ -99,7 +100,7 @@ mod tests {
     use super::*;
     use crate::linalg::random::scattered;
 
-    /// A grid of n x n unknowns; the columns of its first row of unknowns differ by `shift` on the diagonal.
+    /// A grid of n x n unknowns; the diagonal of its first row of unknowns differs by `shift`.
     fn grid(n: usize, shift: f64) -> Symmetric {
         let (mut ptr, mut col, mut val) = (vec![0], Vec::new(), Vec::new());
         for i in 0..n * n {

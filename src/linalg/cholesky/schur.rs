@@ -1,5 +1,5 @@
-//! The end of an elimination: the Schur complement of the dofs eliminated last, read from the factor, and dofs among
-//! them that are held afterwards. Only their dense block is recomputed.
+//! The end of an elimination: the Schur complement of the dofs eliminated last, read from the factor, and a factor in
+//! which some of them are held. Only their dense block is recomputed.
 
 use crate::error::Result;
 use crate::linalg::{Cholesky, Matrix};
@@ -7,17 +7,17 @@ use crate::platform::memory::{copied, zeros};
 
 const WHAT: &str = "the end of an elimination";
 
-/// Dofs of one connected part, the last to be eliminated, in this order; all coupled with each other in the pattern.
+/// Dofs of one connected part, eliminated last in this order; the pattern couples all of them.
 pub struct Trailing<'a> {
     pub dofs: &'a [usize],
-    /// Their Schur complement, m x m, to be factorised anew.
+    /// Their Schur complement, m x m, to be factorised again.
     pub schur: &'a Matrix,
-    /// Those to be held.
+    /// The dofs to be held.
     pub held: &'a [usize],
 }
 
 impl Cholesky {
-    /// `L_tt L_tt'` of the dofs t (m x m): the Schur complement of the matrix that was factorised.
+    /// `L_tt L_tt'` of the dofs t (m x m): the Schur complement of the factorised matrix.
     pub fn trailing(&self, dofs: &[usize]) -> Result<Matrix> {
         let m = dofs.len();
         let lower = |j: usize, k: usize| if j < k { None } else { self.entry(dofs[j], dofs[k]) };
@@ -25,8 +25,8 @@ impl Cholesky {
         Matrix::from_fn(m, m, |j, k| (0..=j.min(k)).map(|q| l.get(j, q) * l.get(k, q)).sum())
     }
 
-    /// The factor with the trailing dofs of every part factorised anew and some of them held. `Err` names a dof at
-    /// which what is left is not positive definite.
+    /// The factor with the trailing dofs of every part factorised again and some of them held. `Err`: a dof at which the
+    /// remaining block is not positive definite.
     pub fn holding(mut self, parts: &[Trailing<'_>]) -> Result<std::result::Result<Self, usize>> {
         let mut held: Vec<usize> = parts.iter().flat_map(|part| part.held.iter().copied()).collect();
         held.sort_unstable();
@@ -56,8 +56,8 @@ impl Cholesky {
         Ok(Ok(self))
     }
 
-    /// Displacements without forces outside the trailing dofs: `x_t` given (m x r), `x_i = -K_ii^-1 K_it x_t`. Parts share
-    /// no entry of K: column c has the motions c of all of them.
+    /// Displacements without forces outside the trailing dofs: given `x_t` (m x r), `x_i = -K_ii^-1 K_it x_t`. Parts
+    /// share no entry of K: column c has motion c of all parts.
     pub fn extended(&self, parts: &[(&[usize], &Matrix)]) -> Result<Matrix> {
         let order = &self.analysis.order;
         let (n, columns) = (order.len(), parts.iter().map(|part| part.1.cols).max().unwrap_or(0));
@@ -81,7 +81,7 @@ impl Cholesky {
         Ok(x)
     }
 
-    /// Where `values` has L at the row of dof i and the column of dof j.
+    /// Position in `values` of the entry of L in the row of dof i and the column of dof j.
     fn entry(&self, i: usize, j: usize) -> Option<usize> {
         let nodes = &self.analysis.nodes;
         let (row, column) = (self.analysis.position[i], self.analysis.position[j]);
@@ -94,7 +94,7 @@ impl Cholesky {
         Some(node.panel.start + (column - node.begin) * node.height() + local)
     }
 
-    /// Zeros in the rows of these dofs, in all columns but those of the trailing dofs, which are written later.
+    /// Sets the rows of these dofs to zero, in all columns except those of the trailing dofs, which are written later.
     fn clear_rows(&mut self, held: &[usize]) -> Result<()> {
         let nodes = &self.analysis.nodes;
         let mut marked = zeros(nodes.order(), WHAT)?;

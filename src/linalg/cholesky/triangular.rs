@@ -1,4 +1,4 @@
-//! Solutions with L and L' for one right-hand side: each reads L once, at the speed of the memory.
+//! Solves with L and L' for one right-hand side: each reads L once, at the speed of the memory.
 
 use std::ops::Range;
 
@@ -6,19 +6,19 @@ use crate::error::Result;
 use crate::linalg::cholesky::factor::{Cholesky, Entry};
 use crate::platform::memory::zeros;
 
-/// Columns taken at a time: the vector is read once for all of them.
+/// Columns per block: the vector is read once for each block.
 const COLUMNS: usize = 4;
-/// Entries of a column that are asked for at a time.
+/// Entries of a column that are prefetched together.
 const AHEAD: usize = 32;
 
 impl<T: Entry> Cholesky<T> {
-    /// Values that a solution works in.
+    /// Workspace of a solve.
     pub(super) fn workspace(&self) -> Result<Vec<f64>> {
         let highest = self.analysis.nodes.nodes().map(|node| node.height()).max().unwrap_or(0);
         zeros(highest, "a solution")
     }
 
-    /// `y <- L^-1 y`, in the order of elimination, for the columns of some supernodes that no others come before.
+    /// `y <- L^-1 y`, in the order of elimination, for the columns of some supernodes, which no other supernodes precede.
     pub(super) fn forward(&self, nodes: Range<usize>, y: &mut [f64], workspace: &mut [f64]) {
         for node in nodes.map(|s| self.analysis.nodes.node(s)) {
             let front = &mut workspace[..node.height()];
@@ -42,19 +42,19 @@ impl<T: Entry> Cholesky<T> {
     }
 }
 
-/// Asks the memory for the lines of so many entries, of the next columns: these are too short to be foreseen by the processor.
+/// Prefetches the cache lines of the next columns: these are too short for the processor's own prefetch.
 #[inline(always)]
 #[cfg_attr(not(target_arch = "x86_64"), allow(unused_variables))]
 fn ask_for<T>(entries: *const T) {
     #[cfg(target_arch = "x86_64")]
     for line in 0..AHEAD * size_of::<T>() / 64 {
         use std::arch::x86_64::{_mm_prefetch, _MM_HINT_T0};
-        // SAFETY: SSE is part of x86-64; nothing is read or written, wherever it points
+        // SAFETY: SSE is part of x86-64; nothing is read or written, for any address
         unsafe { _mm_prefetch::<_MM_HINT_T0>(entries.cast::<i8>().wrapping_add(64 * line)) };
     }
 }
 
-/// What is done with a panel, height x width.
+/// An operation on a panel, height x width.
 trait Step {
     fn take<T: Entry>(panel: &[T], width: usize, x: &mut [f64]);
 }
@@ -76,7 +76,8 @@ impl Step for Backward {
     }
 }
 
-/// The same bits by the vector instructions that the processor has: single precision has to be converted as fast as it is read.
+/// Uses the vector instructions of the processor, with equal bits: single precision must be converted as fast as it is
+/// read.
 fn by_vectors<T: Entry, S: Step>(panel: &[T], width: usize, x: &mut [f64]) {
     #[cfg(target_arch = "x86_64")]
     if std::arch::is_x86_feature_detected!("avx2") {

@@ -8,10 +8,10 @@ use crate::linalg::vector::{axpy, dot, norm};
 use crate::linalg::Matrix;
 use crate::platform::memory::{headroom, zeros, PRODUCTS};
 
-/// Matrices of the size of A at a time: A, its reflectors, Q, R.
+/// Number of matrices of the size of A in memory: A, its reflectors, Q, R.
 const MATRICES: usize = 5;
 
-/// c with zeros for columns that depend on others: a pivot of A with columns of unit length below `cut` times the first is none.
+/// c, with zeros for dependent columns: a pivot of A with columns of unit length counts as 0 below `cut` times the first.
 pub fn least_squares(a: &Matrix, b: &[f64], cut: f64) -> Result<Vec<f64>> {
     let _room = headroom(PRODUCTS + MATRICES * a.data.len() * size_of::<f64>(), "a least squares problem")?;
     let mut c = zeros(a.cols, "a least squares problem")?;
@@ -48,7 +48,7 @@ mod tests {
 
     #[test]
     fn a_column_that_depends_on_others_is_not_used_and_the_rest_is_orthogonal() {
-        // the third is the first and a millionth of the second
+        // the third is the first plus a millionth of the second
         let columns = [[1.0, 0.0, 2.0, 1.0], [2e6, 0.0, 0.0, 1e6], [3.0, 0.0, 2.0, 2.0], [0.0; 4]];
         let data = columns.concat();
         let a = Matrix { rows: 4, cols: 4, data };

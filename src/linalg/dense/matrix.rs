@@ -28,7 +28,7 @@ impl Matrix {
         Ok(matrix)
     }
 
-    /// Some neighbouring columns.
+    /// A range of consecutive columns.
     pub fn columns(&self, range: Range<usize>) -> Self {
         let data = self.data[range.start * self.rows..range.end * self.rows].to_vec();
         Self { rows: self.rows, cols: range.len(), data }
@@ -57,7 +57,7 @@ impl Matrix {
         self.cols += 1;
     }
 
-    /// Appends the columns of a part, which has these rows; 0 elsewhere.
+    /// Appends the columns of a matrix with these rows; other rows are 0.
     pub fn push_part(&mut self, part: &Matrix, rows: &[usize]) {
         for j in 0..part.cols {
             let mut column = vec![0.0; self.rows];
@@ -88,8 +88,8 @@ impl Matrix {
         (0..self.cols).map(|j| dot(self.col(j), x)).collect()
     }
 
-    /// Basis of the column space in which every vector has a 1 where all others have 0: parts that have nothing to do with
-    /// each other get vectors of their own. Entries below `drop` of the largest are rounding. For independent columns.
+    /// Basis of the column space in which every vector has a 1 in a row where all others have 0: unconnected parts get
+    /// separate vectors. Entries below `drop` times the largest are rounding. The columns must be independent.
     pub fn reduced(mut self, drop: f64) -> Self {
         let mut pivots = Vec::with_capacity(self.cols);
         for j in 0..self.cols {
@@ -119,8 +119,8 @@ impl Matrix {
         sorted
     }
 
-    /// Orthonormal basis of the column space: Gram-Schmidt, twice, the longest remaining column first.
-    /// Columns that keep less than `drop` of their length depend on the others and are left out.
+    /// Orthonormal basis of the column space: Gram-Schmidt, twice, the longest remaining column first. Columns are left
+    /// out if less than `drop` of their length is left.
     pub fn orthonormalised(mut self, drop: f64) -> Self {
         let lengths: Vec<f64> = (0..self.cols).map(|j| norm(self.col(j))).collect();
         for (j, &length) in lengths.iter().enumerate().filter(|(_, length)| **length > 0.0) {
@@ -150,7 +150,7 @@ impl Matrix {
     }
 }
 
-/// Position in `among` of the longest column; the first of equals.
+/// Position in `among` of the longest column; the first if several are equal.
 fn longest(matrix: &Matrix, among: &[usize]) -> Option<usize> {
     let mut best = None;
     for (at, &j) in among.iter().enumerate() {
@@ -181,7 +181,7 @@ mod tests {
 
     #[test]
     fn a_reduced_basis_takes_apart_what_was_mixed() {
-        // the span of (1, 1, 0, 0) and (0, 0, 1, -2), mixed
+        // the span of (1, 1, 0, 0) and (0, 0, 1, -2), combined
         let mixed = Matrix { rows: 4, cols: 2, data: vec![1.0, 1.0, 3.0, -6.0, -2.0, -2.0, 0.1, -0.2] };
         let reduced = mixed.reduced(1e-12);
         assert_eq!(reduced.data, [1.0, 1.0, 0.0, 0.0, 0.0, 0.0, -0.5, 1.0]);

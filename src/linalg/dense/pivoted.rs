@@ -1,5 +1,5 @@
-//! `P'A P = L L'` of a dense positive semidefinite matrix, the largest pivot first: shows the rank.
-//! Kernels of faer, sequential.
+//! `P'A P = L L'` of a dense positive semidefinite matrix, the largest pivot first, which gives the rank. Kernels of
+//! faer, sequential.
 
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::cholesky::llt_pivoting::factor::{
@@ -12,24 +12,24 @@ use crate::error::Result;
 use crate::linalg::Matrix;
 use crate::platform::memory::{headroom, refusal, reserved, zeros, PRODUCTS};
 
-/// A pivot of the matrix scaled to unit diagonal below this is none, as far as the entries are known, which may be little, ...
+/// A pivot of the matrix scaled to unit diagonal counts as 0 below this, since the entries may be inaccurate ...
 const SINGULAR: f64 = 1e-11;
-/// ... and below this rounding in any case.
+/// ... and is certainly rounding below this.
 const ROUNDING: f64 = 1e-14;
 
 pub struct PivotedCholesky {
     /// Row at each position.
     order: Vec<usize>,
-    /// n x n, its leading rank x rank lower triangle is that of `P'D^-1/2 A D^-1/2 P`, D = diag A.
+    /// n x n; its leading rank x rank lower triangle is the factor of `P'D^-1/2 A D^-1/2 P`, D = diag A.
     factor: Matrix,
     inverse_root: Vec<f64>,
     rank: usize,
-    /// Rank where no pivot but rounding is left out.
+    /// Rank if only pivots that are rounding are left out.
     full_rank: usize,
 }
 
 impl PivotedCholesky {
-    /// `a` is n x n, its lower triangle is read. `None`: it has a negative or no finite diagonal.
+    /// `a` is n x n, its lower triangle is read. `None`: a diagonal entry is negative or not finite.
     pub fn new(mut a: Matrix) -> Result<Option<Self>> {
         let n = a.rows;
         let mut inverse_root = zeros(n, "a dense factor")?;
@@ -69,17 +69,17 @@ impl PivotedCholesky {
         self.rank
     }
 
-    /// Pivots that are more than rounding are left out.
+    /// Some pivots left out are more than rounding.
     pub fn is_truncated(&self) -> bool {
         self.rank < self.full_rank
     }
 
-    /// With these pivots.
+    /// The factor including these pivots.
     pub fn in_full(self) -> Self {
         Self { rank: self.full_rank, ..self }
     }
 
-    /// V, rank x n, with `A = V'V` but for the pivots left out.
+    /// V, rank x n, with `A = V'V` up to the pivots left out.
     pub fn root(&self) -> Result<Matrix> {
         let mut root = Matrix::zeros(self.rank, self.order.len())?;
         for (k, &i) in self.order.iter().enumerate() {
@@ -90,7 +90,7 @@ impl PivotedCholesky {
         Ok(root)
     }
 
-    /// One solution of `A X = B` (n x k) where there is one, that which is 0 on the rows beyond the rank.
+    /// A solution of `A X = B` (n x k) if there is one: the one that is 0 on the rows beyond the rank.
     pub fn solve(&self, b: &Matrix) -> Result<Matrix> {
         let scaled = |i: usize, j: usize| b.get(i, j) * self.inverse_root[i];
         let mut y = Matrix::from_fn(self.rank, b.cols, |k, j| scaled(self.order[k], j))?;
@@ -115,7 +115,7 @@ impl PivotedCholesky {
 mod tests {
     use super::*;
 
-    /// `C'C` with C = k x n of a fixed sequence, column i times `scale[i]`.
+    /// `C'C` with a k x n matrix C of fixed numbers, column i multiplied by `scale[i]`.
     fn gram(k: usize, scale: &[f64]) -> Matrix {
         let n = scale.len();
         let c = |l: usize, i: usize| scale[i] * (((7 * l + 3) * (3 * i + 1)) as f64).sin();

@@ -8,11 +8,11 @@ use crate::linalg::semidefinite::{is_regular, SINGULAR};
 use crate::linalg::Matrix;
 use crate::platform::memory::{headroom, PRODUCTS};
 
-/// Matrices of the size of W at a time, the eigenvectors while they grow among them.
+/// Number of matrices of the size of W in memory, including the eigenvectors while they are computed.
 const MATRICES: usize = 8;
 
-/// Solves `W x = b`: Cholesky where W is safely regular, else the solution of minimum norm. Both act on
-/// `D^-1/2 W D^-1/2` with D = `scale`, so that modes of stiff and of soft bodies count alike.
+/// Solves `W x = b`: by Cholesky if W is safely regular, otherwise with minimum norm. Both act on `D^-1/2 W D^-1/2` with
+/// D = `scale`, so that modes of stiff and soft bodies have equal weight.
 pub struct SpdSolver {
     /// `D^-1/2`
     inverse_root: Vec<f64>,
@@ -21,7 +21,7 @@ pub struct SpdSolver {
 
 enum SpdFactor {
     Cholesky(Llt<f64>),
-    /// Columns `v / sqrt(eigenvalue)` of the eigenvectors kept, `W+ = T T'`, and the eigenvectors cut off.
+    /// Columns `v / sqrt(eigenvalue)` of the eigenvectors kept, `W+ = T T'`, and the eigenvectors of the kernel.
     Pseudo {
         kept: Matrix,
         kernel: Matrix,
@@ -29,7 +29,7 @@ enum SpdFactor {
 }
 
 impl SpdSolver {
-    /// `scale[i]` > 0 is what W_ii is large or small against.
+    /// `scale[i]` > 0: the reference for the size of W_ii.
     pub fn new(w: &Matrix, scale: &[f64]) -> Result<Self> {
         let _room = headroom(PRODUCTS + MATRICES * w.data.len() * size_of::<f64>(), "a dense coarse matrix")?;
         let inverse_root: Vec<f64> = scale.iter().map(|s| s.sqrt().recip()).collect();
@@ -41,7 +41,7 @@ impl SpdSolver {
         Ok(Self { inverse_root, factor })
     }
 
-    /// By Cholesky, where W, with its largest diagonal entry about 1, is safely regular.
+    /// Cholesky factor, if W, with its largest diagonal entry about 1, is safely regular.
     pub fn regular(w: &Matrix) -> Result<Option<Self>> {
         let _room = headroom(PRODUCTS + MATRICES * w.data.len() * size_of::<f64>(), "a dense coarse matrix")?;
         let view = MatRef::from_column_major_slice(&w.data, w.rows, w.cols);
@@ -55,12 +55,12 @@ impl SpdSolver {
         Ok(is_regular.then_some(solver))
     }
 
-    /// `W+ = T T'`, T = `kept`, of a matrix with that kernel.
+    /// `W+ = T T'`, T = `kept`, of a matrix with this kernel.
     pub fn of_parts(kept: Matrix, kernel: Matrix) -> Self {
         Self { inverse_root: vec![1.0; kept.rows], factor: SpdFactor::Pseudo { kept, kernel } }
     }
 
-    /// T of `W+ = T T'`, where it is no Cholesky factor; scales of 1.
+    /// T of `W+ = T T'`, if there is no Cholesky factor; the scales must be 1.
     pub fn kept(&self) -> Option<&Matrix> {
         match &self.factor {
             SpdFactor::Cholesky(_) => None,
@@ -68,7 +68,7 @@ impl SpdSolver {
         }
     }
 
-    /// Dimension of the kernel that was cut off.
+    /// Dimension of the kernel.
     pub fn deficiency(&self) -> usize {
         match &self.factor {
             SpdFactor::Cholesky(_) => 0,
@@ -76,7 +76,7 @@ impl SpdSolver {
         }
     }
 
-    /// Basis of the kernel that was cut off, n x deficiency.
+    /// Basis of the kernel, n x deficiency.
     pub fn kernel(&self) -> Matrix {
         let SpdFactor::Pseudo { kernel, .. } = &self.factor else {
             return Matrix { rows: self.inverse_root.len(), ..Matrix::default() };

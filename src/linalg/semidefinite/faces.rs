@@ -11,11 +11,11 @@ use crate::platform::threads::in_team;
 pub struct FaceFactors {
     gram: Gram,
     renewal: Renewal,
-    /// Rows that may change, or not belong to a face.
+    /// Rows that may change, or that may be outside a face.
     varying: Vec<bool>,
-    /// Rows that meet what is done anew for every face.
+    /// Rows with entries that are read when a factor is renewed.
     needed: Vec<usize>,
-    /// Made so far; those that nobody uses any more are renewed.
+    /// Factors made so far; those no longer in use are renewed.
     factors: Vec<Arc<Cholesky>>,
 }
 
@@ -44,8 +44,8 @@ impl FaceFactors {
         &self.renewal.analysis
     }
 
-    /// L of `by` times W_F after `complete`, which changes all matrices alike, with pivots up to `hold` held where it is positive.
-    /// `Err`: W_F is singular.
+    /// L of `by` times W_F after `complete`, which changes all matrices equally; if `hold` is positive, pivots up to
+    /// `hold` are held. `Err`: W_F is singular.
     pub fn factor(
         &mut self,
         rows: &Csr,

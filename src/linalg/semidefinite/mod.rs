@@ -11,15 +11,16 @@ use crate::linalg::random::scattered;
 use crate::linalg::vector::norm;
 use crate::linalg::{Cholesky, Matrix};
 
-/// A pivot of a matrix with its largest diagonal entry about 1 up to this means that it is singular.
+/// A matrix with its largest diagonal entry about 1 is singular if a pivot does not exceed this.
 pub const SINGULAR: f64 = 1e-11;
-/// One up to this leaves the doubt that `is_regular` resolves: a free motion may move the last unknowns by the part t of the others only. The
-/// pivot before these is about t^2, and the last one, which ought to be 0, is rounding of 1e-16 / t^2 of either sign, or of 1e-16 / t^4
-/// where the very last moves by t^2. That is below t^2 while t^2 is above the cube root of 1e-16.
+/// Up to this value a pivot is doubtful, and `is_regular` decides: a free motion may move the last unknowns by only the
+/// part t of the others. Then the pivot before them is about t^2, and the last pivot, which should be 0, is rounding of
+/// 1e-16 / t^2 of either sign, or 1e-16 / t^4 if the very last unknown moves by t^2. This is below t^2 while t^2 is above
+/// the cube root of 1e-16.
 pub const DOUBTFUL: f64 = 1e-5;
 
-/// No motion is free: L L', the factor computed of W, is W but for some 1e-16 of each, so along a free motion it has no more. Its
-/// smallest eigenvalue is found by inverse iteration, where pivots leave a doubt.
+/// Whether no motion is free. The computed factor L L' equals W up to about 1e-16 per entry, so it has no larger value
+/// along a free motion. If the pivots are doubtful, inverse iteration finds its smallest eigenvalue.
 fn is_regular(
     order: usize,
     smallest_pivot: f64,
@@ -40,12 +41,12 @@ fn is_regular(
     Ok(eigenvalue > FREE)
 }
 
-/// The same of a sparse factor.
+/// As `is_regular`, for a sparse factor.
 pub fn is_regular_factor(factor: &Cholesky) -> Result<bool> {
     is_regular(factor.analysis.position.len(), factor.smallest_pivot(), |x| factor.solve(x))
 }
 
-/// `W+` of a matrix that is singular or all but so.
+/// `W+` of a singular or nearly singular matrix.
 pub trait GeneralInverse {
     /// The solution of minimum norm.
     fn solve(&self, b: &[f64]) -> Result<Vec<f64>>;
@@ -56,12 +57,12 @@ pub trait GeneralInverse {
     /// Dimension of the kernel.
     fn deficiency(&self) -> usize;
 
-    /// Basis of all but the kernel, n x rank.
+    /// Basis of a complement of the kernel, n x rank.
     fn basis(&self) -> Matrix;
 
     /// Basis of the kernel, n x deficiency.
     fn kernel(&self) -> Matrix;
 
-    /// Some motions are held so weakly that rounding of `G_F v` matters in `W+ G_F v`.
+    /// Some motions are resisted so weakly that rounding of `G_F v` matters in `W+ G_F v`.
     fn is_weak(&self) -> bool;
 }

@@ -1,19 +1,21 @@
-//! Which motions the rows of G_F resist, and how well, on a connected part of `W = G_F G_F'`, r x r: by eigenvectors of W if
-//! its eigenvalues are accurate enough, and by the singular values of `G_F N` if they are rounding (eigenvalues are squares).
+//! Which motions the rows of G_F resist, and how well, on a connected part of `W = G_F G_F'`, r x r: by eigenvectors of W
+//! if its eigenvalues are accurate enough, otherwise by the singular values of `G_F N` (eigenvalues of W are their
+//! squares).
 
 use crate::error::Result;
 use crate::linalg::dense::spectrum::{right_singular, symmetric_eigen};
 use crate::linalg::vector::norm;
 use crate::linalg::{Csr, Matrix, SpdSolver};
 
-/// Eigenvalues of W below this, W with its largest diagonal entry in [1, 2), are looked at again.
+/// Eigenvalues of W below this, with its largest diagonal entry in [1, 2), are not accurate enough.
 const UNCERTAIN: f64 = 1e-8;
-/// Each makes `|G_F n|` of a motion n accurate to rounding, whatever the eigenvectors have left of well resisted ones in it.
+/// Each makes `|G_F n|` of a motion n accurate to rounding, even if the eigenvectors contain parts of well resisted
+/// motions.
 const REFINEMENTS: usize = 2;
-/// Rows reduced at a time, in addition to as many as there are motions, and in units of their number.
+/// Rows reduced together, in addition to 4 times the number of motions.
 const ROWS: usize = 64;
 
-/// What the rows resist, `T'W T = I`, the kernel of the rest, and whether some of T is held weakly.
+/// The motions that the rows resist, `T'W T = I`, the kernel, and whether some motions of T are resisted weakly.
 pub struct Parts {
     /// T, r x rank.
     pub kept: Matrix,
@@ -22,8 +24,8 @@ pub struct Parts {
     pub weak: bool,
 }
 
-/// Inverse of `w`, and whether it has motions that are held weakly; `g_transposed` is `G_F'` of the same scale. A motion
-/// a is free when `|G_F a| <= limit |a|`: the kernel of the inverse.
+/// Inverse of `w`, and whether it has weakly resisted motions; `g_transposed`: `G_F'` in the same scale. A motion a is
+/// free if `|G_F a| <= limit |a|`: it is in the kernel.
 pub fn inverse(w: &Matrix, g_transposed: &Csr, limit: f64) -> Result<(SpdSolver, bool)> {
     if let Some(regular) = SpdSolver::regular(w)? {
         return Ok((regular, false));
@@ -48,7 +50,7 @@ pub fn parts(w: &Matrix, g_transposed: &Csr, limit: f64) -> Result<Parts> {
     Ok(Parts { kept, kernel, weak: weak.cols > 0 })
 }
 
-/// Of orthonormal motions those that are free, and a basis V of the others, `V'W V = I`.
+/// Splits orthonormal motions into those that are free and a basis V of the others, `V'W V = I`.
 pub fn sorted(motions: &Matrix, g_transposed: &Csr, limit: f64) -> Result<(Matrix, Matrix)> {
     let (resistance, turned) = singular(motions, g_transposed, limit)?;
     let none = Matrix { rows: motions.rows, ..Matrix::default() };
@@ -66,14 +68,14 @@ pub fn sorted(motions: &Matrix, g_transposed: &Csr, limit: f64) -> Result<(Matri
     Ok((free, weak))
 }
 
-/// `n <- n - T T'W n`: then `T'W n = 0`, where `T'W T = I`.
+/// `n <- n - T T'W n`: then `T'W n = 0`, since `T'W T = I`.
 fn conjugate(n: &mut [f64], kept: &Matrix, g_transposed: &Csr) {
     let image = g_transposed.mul_transposed(&product(g_transposed, n));
     let part = kept.mul_transposed(&image);
     kept.mul_add(-1.0, &part, n);
 }
 
-/// Singular values of `G_F N` with its right singular vectors; 0 where all are below the limit.
+/// Singular values of `G_F N` with its right singular vectors; 0 if all are below the limit.
 fn singular(motions: &Matrix, g_transposed: &Csr, limit: f64) -> Result<(Vec<f64>, Matrix)> {
     let d = motions.cols;
     let mut turned = Matrix::from_fn(d, d, |i, j| f64::from(u8::from(i == j)))?;
@@ -84,7 +86,7 @@ fn singular(motions: &Matrix, g_transposed: &Csr, limit: f64) -> Result<(Vec<f64
     }
     let (mut values, mut done) = (vec![0.0; d], 0);
     while done < g_transposed.rows() {
-        // values and vectors of the rows so far, in place of these rows
+        // replaces the rows so far by their singular values and vectors
         let some = (g_transposed.rows() - done).min(4 * d + ROWS);
         let entry =
             |i: usize, j: usize| if i < d { values[i] * turned.get(j, i) } else { images[j][done + i - d] };
@@ -107,7 +109,7 @@ mod tests {
     use super::*;
     use crate::linalg::vector::{axpy, dot};
 
-    /// Rows that resist three motions by 1, `weak` and nothing, mixed.
+    /// Rows that resist three combined motions by 1, `weak` and 0.
     fn mixed(weak: f64) -> (Matrix, Csr) {
         let third = 1.0 / 3.0;
         let turn = [
@@ -137,7 +139,7 @@ mod tests {
             assert!(weakly && inverse.deficiency() == 1, "{weak}");
             let kernel = inverse.kernel();
             assert!(norm(&product(&g_transposed, kernel.col(0))) <= 2e-15, "{weak}");
-            // g in the range of G_F': nothing is left of it
+            // g in the range of G_F': its remainder is 0
             let g = product(&g_transposed, &[1.0, -0.5, 0.25]);
             let mut image = vec![0.0; 3];
             g_transposed.mul_transposed_add(1.0, &g, &mut image);

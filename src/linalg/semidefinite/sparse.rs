@@ -1,5 +1,6 @@
-//! Sparse positive semidefinite systems that may be singular, `x = W+ b`: only parts that need it are solved densely, with eigenvectors.
-//! Connected parts of W are independent: one sparse factor is used for all parts that certainly have full rank.
+//! Sparse positive semidefinite systems that may be singular, `x = W+ b`: only parts that need it are solved densely,
+//! with eigenvectors. Connected parts of W are independent: one sparse factor is used for all parts that certainly have
+//! full rank.
 
 use std::sync::Arc;
 
@@ -9,15 +10,15 @@ use crate::linalg::sparse::graph::components;
 use crate::linalg::{Analysis, Cholesky, Csr, Matrix, SpdSolver, Symmetric};
 use crate::platform::memory::{headroom_with, SMALL_MATRICES};
 
-/// A pivot of a matrix with its largest diagonal entry about 1 below this means that a motion is held weakly.
+/// A matrix with its largest diagonal entry about 1 has weakly resisted motions if a pivot is below this.
 pub const WEAK: f64 = 1e-4;
-/// Parts up to this order are dense from the start.
+/// Parts up to this order are always dense.
 const SMALL: usize = 64;
-/// Bytes of the lists of the parts and of small parts, per row and per entry.
+/// Bytes for the lists of parts and for small parts, per row and per entry.
 const PER_ROW: usize = 512;
 const PER_ENTRY: usize = 16;
 
-/// `G'`, and which of its rows make up `s^2 W = G_F G_F'`.
+/// `G'`, and which of its rows form `s^2 W = G_F G_F'`.
 pub struct FaceRows<'a> {
     pub g_transposed: &'a Csr,
     pub held: &'a [bool],
@@ -25,13 +26,13 @@ pub struct FaceRows<'a> {
     pub unit: f64,
     /// Diagonal of `G G'` of all rows, in units of s^2.
     pub whole: &'a [f64],
-    /// A motion a is free when `|G_F a| <= rounding |G| |a|`.
+    /// A motion a is free if `|G_F a| <= rounding |G| |a|`.
     pub rounding: f64,
 }
 
 pub struct PseudoInverse {
     order: usize,
-    /// Of all parts that are not dense, with the unit matrix in place of those.
+    /// Factor of all parts that are not dense, with the unit matrix in place of the dense parts.
     regular: Option<Cholesky>,
     dense: Vec<SingularPart>,
     weak: bool,
@@ -43,8 +44,8 @@ struct SingularPart {
 }
 
 impl PseudoInverse {
-    /// `w` has the pattern that was analysed; its largest diagonal entry is about 1 where no row is held. None where a part that is
-    /// not small is singular.
+    /// `w` has the analysed pattern; its largest diagonal entry is about 1 if no row is held. None if a part that is not
+    /// small is singular.
     pub fn new(w: &Symmetric, analysis: &Arc<Analysis>, rows_of_g: &FaceRows) -> Result<Option<Self>> {
         let lists = PER_ROW * w.order() + PER_ENTRY * w.val.len();
         let _room = headroom_with(lists, SMALL_MATRICES, "the parts of a matrix")?;
@@ -101,7 +102,8 @@ impl GeneralInverse for PseudoInverse {
         self.dense.iter().map(|part| part.inverse.deficiency()).sum()
     }
 
-    /// Basis of all but the kernel, n x rank: `T'W T = I` on the parts with a kernel or weakly held, units elsewhere.
+    /// Basis of a complement of the kernel, n x rank: `T'W T = I` on parts with a kernel or weakly resisted motions, unit
+    /// vectors elsewhere.
     fn basis(&self) -> Matrix {
         let mut apart = vec![false; self.order];
         let mut basis = Matrix { rows: self.order, ..Matrix::default() };
@@ -130,7 +132,7 @@ impl GeneralInverse for PseudoInverse {
 }
 
 impl FaceRows<'_> {
-    /// `G_F'` over the columns of each part that is wanted, in units of s.
+    /// `G_F'` restricted to the columns of each part in `wanted`, in units of s.
     fn by_part(&self, part_of: &[usize], wanted: &[bool]) -> Vec<Csr> {
         let (mut local, mut parts) = (vec![0; part_of.len()], vec![Csr::empty(0); wanted.len()]);
         for (local, &part) in local.iter_mut().zip(part_of) {
@@ -151,7 +153,7 @@ impl FaceRows<'_> {
     }
 }
 
-/// The rows apart get the unit matrix.
+/// Replaces the rows and columns in `apart` by those of the unit matrix.
 pub fn uncouple(w: &mut Symmetric, apart: impl Fn(usize) -> bool) {
     for i in 0..w.order() {
         for at in w.ptr[i]..w.ptr[i + 1] {
@@ -163,12 +165,12 @@ pub fn uncouple(w: &mut Symmetric, apart: impl Fn(usize) -> bool) {
     }
 }
 
-/// Of some rows of a matrix with unit diagonal, ascending: all of a connected part, or of one without some of its rows.
+/// Inverse for some rows of a matrix with unit diagonal, ascending: a connected part, or such a part without some rows.
 pub fn dense_inverse(w: &Symmetric, rows: &[usize]) -> Result<SpdSolver> {
     SpdSolver::new(&block(w, rows)?, &vec![1.0; rows.len()])
 }
 
-/// Some rows and columns, ascending.
+/// The block of some rows and columns, ascending.
 fn block(w: &Symmetric, rows: &[usize]) -> Result<Matrix> {
     let n = rows.len();
     let mut part = Matrix::zeros(n, n)?;
@@ -188,8 +190,8 @@ mod tests {
     use super::*;
     use crate::linalg::sparse::gram::Gram;
 
-    /// Chains of springs between so many masses each, springs by rows: free ones, `held` ones with a spring to the ground;
-    /// a mass alone, without a spring.
+    /// Chains of springs between these numbers of masses, one row per spring: free chains, and `held` chains with a
+    /// spring to the ground; a single mass has no spring.
     fn chains(lengths: &[(usize, bool)]) -> Csr {
         let mut springs = Csr::empty(lengths.iter().map(|(length, _)| length).sum());
         let mut first = 0;

@@ -13,7 +13,7 @@ pub struct Csr {
 }
 
 impl Csr {
-    /// No rows yet.
+    /// A matrix without rows.
     pub fn empty(cols: usize) -> Self {
         Self { cols, ptr: vec![0], col: Vec::new(), val: Vec::new() }
     }
@@ -89,8 +89,8 @@ impl Csr {
     }
 }
 
-/// Entries (row, column, value) sorted by their n columns, those of one in the order in which they come: where each column
-/// starts, rows, values.
+/// Sorts entries (row, column, value) by their n columns, in their given order within each column: start of each column,
+/// rows, values.
 pub fn by_columns<R: Copy + Default, I: Iterator<Item = (R, usize, f64)>>(
     n: usize,
     entries: impl Fn() -> I,
@@ -105,7 +105,7 @@ pub fn by_columns<R: Copy + Default, I: Iterator<Item = (R, usize, f64)>>(
         val[ptr[j]] = v;
         ptr[j] += 1;
     }
-    // Every start has moved to the next one.
+    // every start was advanced to the next one
     ptr.copy_within(0..n, 1);
     ptr[0] = 0;
     Ok((ptr, row, val))

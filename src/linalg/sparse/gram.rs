@@ -10,18 +10,18 @@ use crate::platform::memory::{copied, filled, headroom, reserved, zeros};
 const PER_PRODUCT: usize = 24;
 const PER_ROW: usize = 24;
 
-/// Where the products of the entries of each row go: the pattern is found once, the values follow the weights.
+/// Positions of the products of the entries of each row: the pattern is found once, values are computed for any weights.
 pub struct Gram {
     pattern: Symmetric,
-    /// Kind of each row: rows of one kind have entries in the same columns, as those that glue two pieces have.
+    /// Kind of each row: rows of one kind have entries in the same columns, like the rows that glue two pieces.
     kind: Vec<u32>,
-    /// Per kind: positions in the values of the pattern of its products (k, l), l <= k.
+    /// Per kind: positions in the pattern of its products (k, l), l <= k.
     ptr: Vec<usize>,
     position: Vec<u32>,
 }
 
 impl Gram {
-    /// `rows` is m x r; the Gram matrix is r x r with its whole diagonal stored.
+    /// `rows`: m x r; the Gram matrix is r x r with a complete diagonal.
     pub fn of(rows: &Csr) -> Result<Self> {
         let (kind, kinds) = kinds(rows)?;
         let products = kinds.ptr.windows(2).map(|row| (row[1] - row[0]).pow(2)).sum::<usize>();
@@ -42,7 +42,7 @@ impl Gram {
         &self.pattern
     }
 
-    /// The sum over the rows that are not left out, each with weight 1.
+    /// The sum over the rows not in `leave_out`, each with weight 1.
     pub fn sum(&self, rows: &Csr, leave_out: &[bool]) -> Result<Symmetric> {
         self.sum_of(rows, (0..rows.rows()).filter(|&i| !leave_out[i]))
     }
@@ -74,7 +74,7 @@ impl Gram {
     }
 }
 
-/// The kind of every row, and one row of each kind, by their first appearance; of these the columns alone are meant.
+/// The kind of every row, and the columns of one row of each kind, in the order of first appearance.
 fn kinds(rows: &Csr) -> Result<(Vec<u32>, Csr)> {
     const WHAT: &str = "a Gram matrix";
     let columns = |i: usize| &rows.col[rows.ptr[i]..rows.ptr[i + 1]];
@@ -83,7 +83,7 @@ fn kinds(rows: &Csr) -> Result<(Vec<u32>, Csr)> {
     let mut first = Vec::new();
     let mut known: HashMap<&[usize], u32> = HashMap::new();
     for i in 0..rows.rows() {
-        // those of one face of a piece follow each other
+        // rows of one face of a piece are often consecutive
         let before = i.checked_sub(1).filter(|&before| columns(before) == columns(i)).map(|at| kind[at]);
         kind.push(before.unwrap_or_else(|| {
             *known.entry(columns(i)).or_insert_with(|| {
@@ -102,7 +102,7 @@ fn kinds(rows: &Csr) -> Result<(Vec<u32>, Csr)> {
     Ok((kind, Csr { cols: rows.cols, ptr, val: zeros(col.len(), WHAT)?, col }))
 }
 
-/// Lower triangle of the columns that meet in some row, with zeros.
+/// Lower triangle of the columns that occur together in some row, with zeros.
 fn pattern(rows: &Csr, by_column: &Csr) -> Result<Symmetric> {
     let (mut ptr, mut col, mut seen) = (vec![0], Vec::new(), vec![usize::MAX; rows.cols]);
     for k in 0..rows.cols {
@@ -124,11 +124,11 @@ fn pattern(rows: &Csr, by_column: &Csr) -> Result<Symmetric> {
     Ok(Symmetric::new(ptr, col, val))
 }
 
-/// Where the products of the entries of each row go, column by column: the row of the pattern is spread out once for all rows that
-/// meet it.
+/// Positions of the products of the entries of each row, column by column: the row of the pattern is expanded once for
+/// all rows with an entry in the column.
 fn positions(rows: &Csr, by_column: &Csr, pattern: &Symmetric, ptr: &[usize]) -> Result<Vec<u32>> {
     let mut position = filled(ptr[rows.rows()], 0, "a Gram matrix")?;
-    // place of a column in the present row of the pattern, entries of each row that are done
+    // position of a column in the present row of the pattern; number of processed entries of each row
     let (mut place, mut done) = (vec![0; rows.cols], vec![0; rows.rows()]);
     for k in 0..rows.cols {
         (pattern.ptr[k]..pattern.ptr[k + 1]).for_each(|at| place[pattern.col[at] as usize] = at as u32);

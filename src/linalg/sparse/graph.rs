@@ -7,7 +7,7 @@ use crate::platform::memory::{filled, reserved};
 
 const WHAT: &str = "the graph of a body";
 
-/// Both triangles with the diagonal: the neighbours of `i` are `adj[ptr[i]..ptr[i+1]]`, ascending.
+/// Both triangles and the diagonal: the neighbours of `i` are `adj[ptr[i]..ptr[i+1]]`, ascending.
 pub struct Graph {
     pub ptr: Vec<usize>,
     pub adj: Vec<u32>,
@@ -28,7 +28,7 @@ impl Graph {
         }
         (0..n).for_each(|i| ptr[i + 1] += ptr[i]);
         let (mut next, mut adj) = (ptr.clone(), filled(ptr[n], 0, WHAT)?);
-        // Row i writes its lower part before any later row appends to it: ascending without a sort.
+        // row i writes its lower part before any later row appends to it: so it is ascending without a sort
         for i in 0..n {
             for (j, _) in matrix.lower_row(i) {
                 adj[next[i]] = j as u32;
@@ -78,21 +78,22 @@ impl Graph {
         Ok((group, first))
     }
 
-    /// Of the neighbours of `i`.
+    /// Hash key of the neighbours of `i`.
     fn key(&self, i: usize) -> u64 {
         hash(START, self.neighbours(i).iter().map(|&j| u64::from(j)))
     }
 }
 
-/// Connected parts of the matrix: the part of every dof, numbered by their first dof, and their count. Entries that are
-/// 0 connect nothing.
+/// Connected parts of the matrix: the part of every dof, numbered by first dofs, and their count. Entries that are 0
+/// connect nothing.
 pub fn components(matrix: &Symmetric) -> (Vec<usize>, usize) {
     let row =
         |i| std::iter::once(i).chain(matrix.lower_row(i).filter(|(_, v)| *v != 0.0).map(|entry| entry.0));
     joined(matrix.order(), (0..matrix.order()).map(row))
 }
 
-/// Parts of 0..n where the members of each set are in one part: the part of each, numbered by their first, and their count.
+/// Parts of 0..n in which the members of each set are together: the part of each, numbered by first members, and their
+/// count.
 pub fn joined(n: usize, sets: impl Iterator<Item = impl Iterator<Item = usize>>) -> (Vec<usize>, usize) {
     let mut root: Vec<usize> = (0..n).collect();
     for mut set in sets {
@@ -115,7 +116,7 @@ pub fn joined(n: usize, sets: impl Iterator<Item = impl Iterator<Item = usize>>)
     (label, count)
 }
 
-/// The smallest dof of the part of `i`, with paths halved on the way.
+/// The smallest dof of the part of `i`; halves paths on the way.
 fn find(root: &mut [usize], mut i: usize) -> usize {
     while root[i] != i {
         root[i] = root[root[i]];
@@ -128,7 +129,7 @@ fn find(root: &mut [usize], mut i: usize) -> usize {
 mod tests {
     use super::*;
 
-    /// Dofs 0, 1 form one node coupled to dof 2; dof 3 stands alone.
+    /// Dofs 0, 1 form one node coupled to dof 2; dof 3 is not coupled.
     fn sample() -> Symmetric {
         let val = vec![4.0, 1.0, 4.0, 1.0, 1.0, 4.0, 1.0];
         Symmetric::new(vec![0, 1, 3, 6, 7], vec![0, 0, 1, 0, 1, 2, 3], val)

@@ -1,5 +1,5 @@
-//! Sparse matrices by rows whose columns form runs, as in G', where the motions of a body are consecutive. A run stores its first column
-//! only, and long loops are divided into parts.
+//! Sparse matrices by rows whose columns form runs, as in G', where the motions of a body are consecutive. A run stores
+//! only its first column, and long loops are divided into parts.
 
 use std::ops::Range;
 
@@ -9,11 +9,11 @@ use crate::linalg::Csr;
 use crate::platform::memory::reserved;
 use crate::platform::threads::{parts, parts_of};
 
-/// Rows of a part of a loop at least: shorter loops are one part, in the order of the rows.
+/// Least number of rows in a part of a loop: shorter loops are one part, in the order of the rows.
 const PART: usize = LONG;
-/// Columns of a run at most: the motions of a body in space.
+/// Limit of columns in a run: the number of motions of a body in 3D.
 const WIDTH: usize = 6;
-/// Parts at most: each keeps a sum over all columns of its own.
+/// Limit of parts: each keeps a separate sum over all columns.
 const PARTS: usize = 16;
 
 #[derive(Default)]
@@ -50,7 +50,7 @@ impl Runs {
         self.ptr.len() - 1
     }
 
-    /// Whether these are the entries of a matrix, bit by bit.
+    /// Whether the matrix has these entries, bit by bit.
     pub fn is_of(&self, matrix: &Csr) -> bool {
         let columns = (0..self.rows()).map(|i| {
             let of = |k: usize| (self.column[k] as usize..).take(self.start[k + 1] - self.start[k]);
@@ -61,7 +61,7 @@ impl Runs {
             && columns.enumerate().all(|(i, own)| own.eq(matrix.row(i).map(|(j, _)| j)))
     }
 
-    /// Values of row i with the columns that they belong to.
+    /// Values of the runs of row i, each with its first column.
     #[inline]
     fn row(&self, i: usize) -> impl Iterator<Item = (&[f64], usize)> {
         (self.ptr[i]..self.ptr[i + 1])
@@ -102,7 +102,7 @@ impl Runs {
         }
     }
 
-    /// Rows of each part of a loop over all of them: the same for any number of threads.
+    /// Row ranges of the parts of a loop over all rows: equal for any number of threads.
     fn cut(&self) -> Vec<Range<usize>> {
         let rows = self.rows();
         let each = rows.div_ceil(PARTS).max(PART);
@@ -147,7 +147,7 @@ impl Runs {
         }))
     }
 
-    /// A vector over the rows, entry by entry.
+    /// Computes a vector over the rows, entry by entry.
     pub fn each_row(&self, of: impl Fn(usize) -> f64 + Sync) -> Vec<f64> {
         let mut y = vec![0.0; self.rows()];
         self.change_rows(&mut y, |i, y| *y = of(i));
@@ -159,8 +159,8 @@ impl Runs {
         parts_of(self.pieces(y), |_, (rows, y)| rows.zip(y).for_each(|(i, y)| change(i, y)));
     }
 
-    /// `rest = v - A x` on the rows that are not held, others stay as they are; gives `A' rest` of those rows: every row is read once
-    /// for both.
+    /// `rest = v - A x` on rows that are not held, other rows do not change; returns `A' rest` of these rows. Every row
+    /// is read once for both.
     pub fn residual(&self, held: &[bool], v: &[f64], x: &[f64], rest: &mut [f64]) -> Vec<f64> {
         self.sum(parts_of(self.pieces(rest), |_, (rows, rest)| {
             let mut image = vec![0.0; self.cols];
@@ -172,7 +172,7 @@ impl Runs {
         }))
     }
 
-    /// A vector over the rows in its parts.
+    /// A vector over the rows, divided into the parts.
     fn pieces<'a>(&self, mut y: &'a mut [f64]) -> Vec<(Range<usize>, &'a mut [f64])> {
         let piece = |rows: Range<usize>| {
             let (own, rest) = std::mem::take(&mut y).split_at_mut(rows.len());
@@ -210,7 +210,7 @@ mod tests {
     use super::*;
     use crate::platform::threads::with_team;
 
-    /// Rows of two runs, of one, and without entries, over and over.
+    /// Rows with two runs, with one run, and without entries, repeated.
     fn matrix(rows: usize) -> Csr {
         let mut a = Csr::empty(9);
         for i in 0..rows {

@@ -9,7 +9,7 @@ use crate::linalg::vector::{as_arrays, as_arrays_mut};
 use crate::linalg::{Array, Matrix, Operator};
 use crate::platform::memory::{copied, reserved};
 
-/// Columns that take one pass over the matrix.
+/// Number of columns processed in one pass over the matrix.
 const TOGETHER: usize = 8;
 
 /// Symmetric `n x n`; row i holds the entries with column <= i, ascending, the diagonal last.
@@ -26,12 +26,12 @@ impl Symmetric {
         Self { ptr, col: col.into(), val: val.into() }
     }
 
-    /// No rows yet.
+    /// A matrix without rows.
     pub fn empty() -> Self {
         Self::new(vec![0], Vec::new(), Vec::new())
     }
 
-    /// The same with room for so many.
+    /// An empty matrix with this capacity.
     pub fn with_room(rows: usize, entries: usize, what: &str) -> Result<Self> {
         let mut ptr = reserved(rows + 1, what)?;
         ptr.push(0);
@@ -63,17 +63,17 @@ impl Symmetric {
         self.val[self.ptr[i + 1] - 1]
     }
 
-    /// `D_ii` of the metric in which all of K is measured: `K_ii`, or `without` for a dof that has no stiffness.
+    /// `D_ii` of the metric for K: `K_ii`, or `without` for a dof without stiffness.
     pub fn metric(&self, i: usize, without: f64) -> f64 {
         Some(self.diagonal(i)).filter(|diagonal| *diagonal > 0.0).unwrap_or(without)
     }
 
-    /// Bytes that the library keeps for it.
+    /// Bytes that the library keeps for the matrix.
     pub fn bytes(&self) -> usize {
         self.ptr.capacity() * size_of::<usize>() + self.col.bytes() + self.val.bytes()
     }
 
-    /// A copy for `what`.
+    /// A copy; `what` names it in errors.
     pub fn copied(&self, what: &str) -> Result<Self> {
         Ok(Self::new(copied(&self.ptr, what)?, copied(&self.col, what)?, copied(&self.val, what)?))
     }
@@ -83,7 +83,7 @@ impl Symmetric {
         self.accumulate(1.0, x, y);
     }
 
-    /// `y = K x` and `terms = |K| |x|`, what rounding errors of `K x` are measured against.
+    /// `y = K x` and `terms = |K| |x|`, to which rounding errors of `K x` are relative.
     pub fn mul_with_terms(&self, x: &[f64], y: &mut [f64], terms: &mut [f64]) {
         self.accumulate_with_terms(1.0, x, y, terms);
     }
@@ -103,7 +103,7 @@ impl Symmetric {
         }
     }
 
-    /// `y += by K x` in twice the digits, by a power of two.
+    /// `y += by K x` in double-double arithmetic; `by` is a power of two.
     pub fn add_twofold(&self, by: f64, x: &[f64], y: &mut [Twofold]) {
         for i in 0..self.order() {
             let last = self.ptr[i + 1] - 1;
@@ -123,8 +123,8 @@ impl Symmetric {
         self.accumulate_rows::<1>(by, as_arrays(x).0, as_arrays_mut(y).0, as_arrays_mut(terms).0);
     }
 
-    /// The same for some columns at once, given and returned by rows; y and terms are zero. The same bits by the vector instructions that
-    /// the processor has.
+    /// As `accumulate_with_terms`, for several columns, given and returned by rows; y and terms are zero on entry. The
+    /// vector instructions of the processor give equal bits.
     fn accumulate_rows<const N: usize>(
         &self,
         by: f64,
@@ -203,7 +203,8 @@ impl Operator for Symmetric {
     }
 }
 
-/// `by K`: the bits of a copy of K with every entry multiplied, without the copy. A power of two, `by` changes none.
+/// `by K`: gives the bits of a copy with every entry multiplied, without a copy. A power of two `by` changes only
+/// exponents.
 #[derive(Debug, Clone)]
 pub struct Multiple {
     pub matrix: Arc<Symmetric>,
@@ -226,24 +227,24 @@ impl Multiple {
         self.matrix.lower_row(i).map(|(j, v)| (j, self.by * v))
     }
 
-    /// As that of the matrix; `without` is not multiplied.
+    /// The metric of the multiple; `without` is not multiplied.
     pub fn metric(&self, i: usize, without: f64) -> f64 {
         Some(self.by * self.matrix.diagonal(i)).filter(|diagonal| *diagonal > 0.0).unwrap_or(without)
     }
 
-    /// Square roots of the metric, 1 for a dof that has no stiffness.
+    /// Square roots of the metric, 1 for a dof without stiffness.
     pub fn roots(&self) -> Result<Vec<f64>> {
         let mut roots = reserved(self.order(), "the metric of a body")?;
         roots.extend((0..self.order()).map(|i| self.metric(i, 1.0).sqrt()));
         Ok(roots)
     }
 
-    /// As that of the matrix.
+    /// `y = by K x`
     pub fn mul(&self, x: &[f64], y: &mut [f64]) {
         self.matrix.accumulate(self.by, x, y);
     }
 
-    /// As that of the matrix.
+    /// `y = by K x`, `terms = |by K| |x|`
     pub fn mul_with_terms(&self, x: &[f64], y: &mut [f64], terms: &mut [f64]) {
         self.matrix.accumulate_with_terms(self.by, x, y, terms);
     }
@@ -300,7 +301,7 @@ mod tests {
         assert_eq!(left.map(Twofold::value), [0.5, -1e16 / 2.0 - 1.0, 0.5]);
     }
 
-    /// Also where a number too small for a double appears in the copy.
+    /// Also if a value of the copy underflows.
     #[test]
     fn a_multiple_has_the_bits_of_a_copy() {
         for by in [0.5_f64.powi(37), 0.5_f64.powi(1070), 3.0] {

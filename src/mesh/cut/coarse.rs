@@ -1,4 +1,4 @@
-//! Coarser graphs: each vertex is merged with the neighbour with which it shares most.
+//! Coarser graphs: each vertex is merged with the neighbour that shares the most unknowns with it.
 
 use super::graph::Graph;
 use super::incidence::{NONE, WHAT};
@@ -6,13 +6,13 @@ use crate::error::Result;
 use crate::platform::interrupt;
 use crate::platform::memory::{filled, reserved};
 
-/// A graph, and the vertex of the next coarser one that each vertex is a part of; empty for the coarsest.
+/// A graph, and for each vertex its vertex in the next coarser graph; empty for the coarsest.
 pub struct Level {
     pub graph: Graph,
     pub coarse: Vec<u32>,
 }
 
-/// Graphs from the given one to one of at most `enough` vertices, or of as few as there can be.
+/// Coarsens a graph until at most `enough` vertices are left, or no further merging is possible.
 pub fn coarsen(graph: Graph, enough: usize) -> Result<Vec<Level>> {
     let most = 1.5 * graph.weight.iter().sum::<f64>() / enough as f64;
     let mut levels = vec![Level { graph, coarse: Vec::new() }];
@@ -29,15 +29,15 @@ pub fn coarsen(graph: Graph, enough: usize) -> Result<Vec<Level>> {
     Ok(levels)
 }
 
-/// What the vertices of the coarser graph have, for the vertices of this one.
+/// Copies values of the vertices of the coarser graph to the vertices of this graph.
 pub fn projected<T: Copy>(values: &[T], coarse: &[u32]) -> Result<Vec<T>> {
     let mut fine = reserved(coarse.len(), WHAT)?;
     fine.extend(coarse.iter().map(|&c| values[c as usize]));
     Ok(fine)
 }
 
-/// Pairs of neighbours, those first that share most of what they have, lighter before heavier, in the order of the
-/// host, whose neighbours tend to follow each other; the number of each pair.
+/// The pair of every vertex, and the number of pairs. First come neighbours that share the largest part of their
+/// unknowns, light before heavy, in the order of the host, whose neighbours tend to be consecutive.
 fn matched(graph: &Graph, most: f64) -> Result<(Vec<u32>, usize)> {
     let mut coarse: Vec<u32> = filled(graph.count(), NONE, WHAT)?;
     let mut count = 0;

@@ -1,4 +1,4 @@
-//! The direction in which planes cut a set of elements: the one that cuts through fewest unknowns.
+//! The direction in which planes cut a set of elements: the one that cuts through the fewest unknowns.
 
 use super::graph::Graph;
 use super::incidence::{mixed, WHAT};
@@ -7,7 +7,7 @@ use crate::linalg::dense::spectrum::symmetric_eigen;
 use crate::linalg::Matrix;
 use crate::platform::memory::reserved;
 
-/// Directions are judged by so many elements of a set, taken evenly from all.
+/// Number of elements in the sample for the choice of a direction, evenly from the set.
 const SAMPLE: usize = 8192;
 
 pub type Point = [f64; 3];
@@ -15,7 +15,7 @@ pub type Frame = [Point; 3];
 
 pub const AXES: Frame = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
 
-/// What a set of elements is judged by: the whole graph, the centre of each vertex, and the label of those in the set.
+/// A set of elements: the whole graph, the centre of each vertex, and the label of the vertices in the set.
 pub struct Set<'a> {
     pub graph: &'a Graph,
     pub centres: &'a [Point],
@@ -23,19 +23,20 @@ pub struct Set<'a> {
     pub members: &'a [u32],
 }
 
-/// Lengths are in elements: 1 is one layer.
+/// Lengths are counted in elements: 1 is one layer.
 pub struct Choice {
     pub direction: Point,
-    /// In the direction, and in two others normal to it.
+    /// Along the direction, and along two others normal to it.
     pub lengths: Point,
 }
 
 impl Set<'_> {
-    /// The best of the axes of the coordinates, of the mesh (`of_mesh`) and of inertia; none where every plane has nearly all on one side.
+    /// The best of the axes of coordinates, of the mesh (`of_mesh`) and of inertia; none if every plane has nearly all
+    /// elements on one side.
     pub fn direction(&self, of_mesh: &Frame) -> Result<Option<Choice>> {
         let step = self.members.len().div_ceil(SAMPLE).max(1);
         let mut sample = reserved(self.members.len() / step + 1, WHAT)?;
-        // one of every few: not each time the same one, which could miss every other layer
+        // one of every few, not always at the same position, which could miss every other layer
         let one = |(at, few): (usize, &[u32])| few[(mixed(at as u64) % few.len() as u64) as usize];
         sample.extend(self.members.chunks(step).enumerate().map(one));
         let mut keys = reserved(sample.len(), WHAT)?;
@@ -56,8 +57,8 @@ impl Set<'_> {
         Ok(Some(Choice { direction, lengths }))
     }
 
-    /// Unknowns shared across the plane through the middle of the sample, infinite where less than a quarter lies on one side; and
-    /// the mean distance of the neighbours there.
+    /// Unknowns shared across the plane through the middle of the sample, infinite if less than a quarter is on one side;
+    /// and the mean distance of neighbours across it.
     fn crossing(&self, sample: &[u32], axis: &Point, keys: &mut Vec<f64>) -> (f64, f64) {
         let key = |i: usize| dot(axis, &self.centres[i]);
         keys.clear();
@@ -79,7 +80,7 @@ impl Set<'_> {
         (across, distance / f64::max(count, 1.0))
     }
 
-    /// The sample times the unknowns that neighbours in the set share on the average.
+    /// Size of the sample times the mean number of unknowns shared by neighbours in the set.
     fn inside(&self, sample: &[u32]) -> f64 {
         let (mut sum, mut count) = (0.0, 0.0);
         for (_, share) in sample.iter().flat_map(|&i| self.within(i as usize)) {
@@ -118,7 +119,7 @@ impl Set<'_> {
     }
 }
 
-/// The three directions in which most neighbours of a mesh of bricks lie, however it is turned.
+/// The three main directions of neighbours in a mesh of bricks, in any orientation.
 pub fn of_mesh(graph: &Graph, centres: &[Point]) -> Result<Frame> {
     const EDGES: usize = 300;
     let step = graph.count().div_ceil(EDGES / 3).max(1);
@@ -143,13 +144,13 @@ pub fn of_mesh(graph: &Graph, centres: &[Point]) -> Result<Frame> {
     Ok([first, cross(&third, &first), third])
 }
 
-/// The axis of the coordinates that is farthest from being along `a`.
+/// The coordinate axis with the largest angle to `a`.
 fn smallest_axis(a: &Point) -> Point {
     let least = (0..3).min_by(|&i, &j| a[i].abs().total_cmp(&a[j].abs())).unwrap_or(0);
     AXES[least]
 }
 
-/// The first direction, so little inclined that a layer cut through is cut through by rows, and a row between two elements.
+/// The first direction with a small tilt, so that a plane cuts a layer between its rows and a row between two elements.
 /// `step` is the distance of two layers.
 fn tilted(frame: Frame, mut step: f64, extents: Point, lengths: Point) -> Point {
     const SLOPE: f64 = 0.05;

@@ -1,4 +1,4 @@
-//! The graph that is cut: its vertices are elements, or groups of elements; its edges join neighbours across a face.
+//! The graph to be cut: vertices are elements, or groups of elements; edges join neighbours across a face.
 
 use std::cmp::{Ordering, Reverse};
 use std::collections::BinaryHeap;
@@ -8,16 +8,17 @@ use crate::error::Result;
 use crate::platform::interrupt;
 use crate::platform::memory::{copied, ensure_spare, filled, refusal, reserved};
 
-/// The part of the most unknowns that an element shares with a neighbour from which on it has a face with another. An edge has
-/// at most 2/3 of those of a face (linear tetrahedra), a triangle 3/4 of those of a quadrangle (pyramids, wedges).
+/// Two elements have a common face if they share at least this part of the largest number of unknowns that either shares
+/// with a neighbour. A common edge has at most 2/3 of the unknowns of a face (linear tetrahedra), a triangle 3/4 of those
+/// of a quadrangle (pyramids, wedges).
 const FACE: (u32, u32) = (3, 4);
 
-/// The neighbours of `i` are `to[ptr[i]..ptr[i+1]]`, with how many unknowns they share in `edge`.
+/// The neighbours of `i` are `to[ptr[i]..ptr[i+1]]`; `edge` has the numbers of unknowns shared with them.
 pub struct Graph {
     pub ptr: Vec<usize>,
     pub to: Vec<u32>,
     pub edge: Vec<u32>,
-    /// Of the pieces the sums of these are to be equal.
+    /// Weights whose sums over the pieces shall be equal.
     pub weight: Vec<f64>,
 }
 
@@ -65,13 +66,14 @@ impl Graph {
         Ok(Self { ptr, to, edge: copied(&self.edge, WHAT)?, weight: copied(&self.weight, WHAT)? })
     }
 
-    /// Neighbours with the unknowns shared.
+    /// Neighbours and the numbers of unknowns shared with them.
     pub fn around(&self, i: usize) -> impl Iterator<Item = (usize, u32)> + '_ {
         let range = self.ptr[i]..self.ptr[i + 1];
         self.to[range.clone()].iter().map(|&j| j as usize).zip(self.edge[range].iter().copied())
     }
 
-    /// Connected parts of those with one label: the part of each, numbered by their first, and the weights of the parts.
+    /// Connected parts of the vertices with equal labels: the part of each vertex, numbered by first vertices, and the
+    /// weights of the parts.
     pub fn parts(&self, label: &[u32]) -> Result<(Vec<u32>, Vec<f64>)> {
         let mut part: Vec<u32> = filled(self.count(), NONE, WHAT)?;
         let (mut weights, mut queue) = (Vec::new(), reserved(self.count(), WHAT)?);
@@ -96,7 +98,7 @@ impl Graph {
         Ok((part, weights))
     }
 
-    /// The graph of the vertices `some` alone, numbered in their order. `place` is room for a number of every vertex, all `NONE`
+    /// The graph of the vertices `some`, numbered in their order. `place`: work array with an entry per vertex, `NONE`
     /// before and after.
     pub fn of_some(&self, some: &[u32], place: &mut [u32]) -> Result<Self> {
         some.iter().enumerate().for_each(|(at, &i)| place[i as usize] = at as u32);
@@ -117,7 +119,7 @@ impl Graph {
     }
 }
 
-/// Room for `more` entries; half as many again as there are where it has to be made.
+/// Reserves room for `more` entries; if it must grow, by half of the length.
 fn enlarge(list: &mut Vec<u32>, more: usize) -> Result<()> {
     if list.capacity() - list.len() >= more {
         return Ok(());
@@ -127,8 +129,8 @@ fn enlarge(list: &mut Vec<u32>, more: usize) -> Result<()> {
     list.try_reserve_exact(list.len() / 2 + more + 1024).map_err(|_| refusal(bytes, WHAT))
 }
 
-/// The unknowns of an element over the most elements that one of its nodes has: equal for equal elements, at the surface of the
-/// body as inside.
+/// The number of unknowns of an element, divided by the largest number of elements at one of its nodes: equal elements
+/// have equal weights, at the surface of the body as inside.
 fn weights(incidence: &Incidence) -> Result<Vec<f64>> {
     let mut weights = reserved(incidence.count(), WHAT)?;
     for e in 0..incidence.count() {
@@ -138,12 +140,12 @@ fn weights(incidence: &Incidence) -> Result<Vec<f64>> {
     Ok(weights)
 }
 
-/// How many of `pieces` each part gets: in proportion to its weight, at least one, at most as many as it has vertices.
+/// The number of pieces of each part: in proportion to its weight, at least one, at most its number of vertices.
 pub fn shares(weights: &[f64], vertices: &[usize], pieces: usize) -> Result<Vec<usize>> {
     let total: f64 = weights.iter().sum();
     let mut shares = filled(weights.len(), 1, WHAT)?;
     let mut left = pieces.saturating_sub(weights.len());
-    // whole pieces first, then one by one to the part whose pieces are the largest
+    // integer parts first, then one by one to the part with the heaviest pieces
     for part in 0..shares.len() {
         let wish = (pieces as f64 * weights[part] / total) as usize;
         let more = wish.min(vertices[part]).saturating_sub(1).min(left);

@@ -1,5 +1,5 @@
-//! Cuts a graph into two connected parts of given weights with few shared unknowns: coarsened by matching, cut when it is
-//! small, refined on the way back (Karypis and Kumar 1998).
+//! Cuts a graph into two connected parts of given weights with few shared unknowns: it is coarsened by matching, cut when
+//! it is small, and the cut is refined on each finer graph (Karypis and Kumar 1998).
 
 use std::collections::BinaryHeap;
 
@@ -10,17 +10,17 @@ use crate::error::Result;
 use crate::platform::interrupt;
 use crate::platform::memory::filled;
 
-/// Vertices of the graph that is cut from scratch.
+/// A graph with at most this number of vertices is cut directly.
 const SMALL: usize = 100;
-/// Starts that are tried there.
+/// Number of start vertices tried.
 const TRIALS: usize = 12;
-/// A side may leave its weight by this part of the smaller one.
+/// Permitted deviation of the weight of a side, as a part of the smaller side.
 const SLACK: f64 = 0.01;
-/// Moves without a better cut after which a round ends.
+/// A round ends after this number of moves without a better cut.
 const PATIENCE: usize = 100;
 const ROUNDS: usize = 4;
 
-/// Whether each vertex lies in the second part; the first has about `fraction` of the weight.
+/// For each vertex whether it is in the second part; the first part has about `fraction` of the weight.
 pub fn halves(graph: Graph, fraction: f64) -> Result<Vec<bool>> {
     let levels = coarsen(graph, SMALL)?;
     let mut side = Vec::new();
@@ -51,7 +51,7 @@ fn from_scratch(graph: &Graph, fraction: f64) -> Result<Vec<bool>> {
     Ok(best)
 }
 
-/// Grows the first part from a start, each time by the vertex that adds least to what is cut.
+/// Grows the first part from a start vertex, each time by the vertex that increases the cut least.
 fn grown(graph: &Graph, start: usize, fraction: f64) -> Result<Vec<bool>> {
     let mut side = filled(graph.count(), true, WHAT)?;
     let mut gain: Vec<i64> = filled(graph.count(), 0, WHAT)?;
@@ -74,13 +74,14 @@ fn grown(graph: &Graph, start: usize, fraction: f64) -> Result<Vec<bool>> {
     Ok(side)
 }
 
-/// Moves of single vertices, the best first, also to worse cuts on the way to better ones (Fiduccia and Mattheyses 1982).
+/// Moves of single vertices, the best first, including moves that make the cut worse for a time (Fiduccia and Mattheyses
+/// 1982).
 struct Refinement<'a> {
     graph: &'a Graph,
     side: &'a mut [bool],
     gain: Vec<i64>,
     moved: Vec<bool>,
-    /// Of the first part, and the wish.
+    /// Weight of the first part, and its target.
     weight: f64,
     goal: f64,
     slack: f64,
@@ -104,7 +105,7 @@ impl<'a> Refinement<'a> {
         }
     }
 
-    /// How much the weights are farther from the wish than they may be.
+    /// By how much the deviation from the target weight exceeds the permitted deviation.
     fn excess(&self) -> f64 {
         ((self.weight - self.goal).abs() - self.slack).max(0.0)
     }
@@ -129,9 +130,9 @@ impl<'a> Refinement<'a> {
         self.side[i] = !self.side[i];
     }
 
-    /// Whether the cut or the weights got better.
+    /// Whether the cut or the weights improved.
     fn round(&mut self) -> bool {
-        // of equal gains the last one: moves go on where one was made
+        // among equal gains the latest is first: moves continue near the previous one
         let mut heap = BinaryHeap::new();
         let mut pushed = self.graph.count();
         for i in 0..self.graph.count() {
@@ -172,7 +173,7 @@ impl<'a> Refinement<'a> {
         kept > 0
     }
 
-    /// From the side that has too much, or from either where both are near the wish.
+    /// From the side that is too heavy, or from either side if the weights are near the target.
     fn may_move(&self, i: usize) -> bool {
         let weight = if self.side[i] { self.graph.weight[i] } else { -self.graph.weight[i] };
         let (before, after) = ((self.weight - self.goal).abs(), (self.weight + weight - self.goal).abs());

@@ -1,15 +1,16 @@
-//! Elements that join the piece of another element: springs, penalties, constraints, and elements that lie inside another.
+//! Elements that follow the piece of another element: springs, penalties, constraints, and elements inside another
+//! element.
 
 use super::incidence::{Incidence, Neighbours, NONE, WHAT};
 use crate::error::Result;
 use crate::platform::interrupt;
 use crate::platform::memory::reserved;
 
-/// The element that each goes with, `NONE` for those that are cut; `e` itself where it has no unknowns and goes with anyone.
+/// The host of each element, whose piece it gets; `NONE` for elements that are cut; `e` itself if it has no unknowns.
 ///
-/// An element goes with one that has all its unknowns; of those that it shares with any, with one of at least twice its size that
-/// has more than half, or of four times its size that has half. The host is larger, or has a smaller number where both have the
-/// same unknowns: no circles.
+/// The host has all unknowns of the element; or, if it shares only some, it is at least twice as large and has more than
+/// half of them, or four times as large and has half. The host is larger, or has a smaller number if both have the same
+/// unknowns: so there are no circles.
 pub fn hosts(incidence: &Incidence) -> Result<Vec<u32>> {
     let count = incidence.count();
     let mut room = Neighbours::room(count)?;

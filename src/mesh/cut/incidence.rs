@@ -1,4 +1,5 @@
-//! Which elements have which nodes. A node is a set of unknowns that belong to the same elements; it is found from the unknowns alone.
+//! The nodes of the elements. A node is a set of unknowns that belong to the same elements; it is found from the unknowns
+//! alone.
 
 use super::Elements;
 use crate::error::{Error, Kind, Result};
@@ -6,10 +7,11 @@ use crate::platform::memory::{filled, reserved};
 
 pub const WHAT: &str = "the cut of a body";
 pub const NONE: u32 = u32::MAX;
-/// An unknown of more elements (one that a whole surface shares) lies in every piece anyway, and says nothing about faces.
+/// An unknown of more elements than this (shared by a whole surface) is in every piece, and does not identify faces.
 const MOST_AT_A_NODE: usize = 500;
 
-/// The nodes of element `e` are `node[ptr[e]..ptr[e+1]]`, the elements of node `n` are `element[by[n]..by[n+1]]`, ascending.
+/// The nodes of element `e` are `node[ptr[e]..ptr[e+1]]`, the elements of node `n` are `element[by[n]..by[n+1]]`,
+/// ascending.
 pub struct Incidence {
     ptr: Vec<usize>,
     node: Vec<u32>,
@@ -19,7 +21,7 @@ pub struct Incidence {
     pub weight: Vec<u32>,
 }
 
-/// Room for the neighbours of one element: those that have a node with it, and how many unknowns they share.
+/// Work array for the neighbours of one element: those that share a node with it, and how many unknowns they share.
 pub struct Neighbours {
     pub met: Vec<u32>,
     pub share: Vec<u32>,
@@ -64,7 +66,7 @@ impl Incidence {
         Self::with(ptr, node, weight)
     }
 
-    /// The same of the elements `kept` alone, numbered in their order, without nodes that very many of them have.
+    /// The incidence of the elements `kept`, numbered in their order, without nodes that very many of them share.
     pub fn of_some(&self, kept: &[u32]) -> Result<Self> {
         let mut degree: Vec<u32> = filled(self.weight.len(), 0, WHAT)?;
         let each = |e: &u32| self.nodes(*e as usize).iter();
@@ -114,7 +116,8 @@ impl Incidence {
         self.nodes(e).iter().map(|&n| self.weight[n as usize]).sum()
     }
 
-    /// Calls `see` with every other element that has a node with `e`, ascending by their first common node, and the unknowns shared.
+    /// Calls `see` with every other element that shares a node with `e`, in the order of their first common node, and the
+    /// number of unknowns shared.
     pub fn neighbours(&self, e: usize, room: &mut Neighbours, mut see: impl FnMut(u32, u32)) {
         for &n in self.nodes(e).iter().filter(|&&n| self.elements(n).len() <= MOST_AT_A_NODE) {
             for &f in self.elements(n).iter().filter(|&&f| f as usize != e) {
@@ -134,19 +137,19 @@ fn check(elements: &Elements) -> Result<()> {
     let refused = |text: &str| Err(Error::new(Kind::Argument("elements"), text));
     let (ptr, dof) = (elements.ptr, elements.dof);
     if ptr.first() != Some(&0) || ptr.last() != Some(&dof.len()) || ptr.windows(2).any(|p| p[0] > p[1]) {
-        return refused("the lists of unknowns of the elements do not follow each other from 0 to the end");
+        return refused("the lists of unknowns of the elements are not consecutive from 0 to the end");
     }
     if ptr.len() > NONE as usize || elements.unknowns > NONE as usize {
         return Err(Error::new(Kind::Overflow, "a body has more than 2^32 elements or unknowns"));
     }
     if dof.iter().any(|&d| d as usize >= elements.unknowns) {
-        return refused("an element has an unknown that the body has not");
+        return refused("an element has an unknown outside the body");
     }
     Ok(())
 }
 
-/// A number for the set of elements of each unknown: equal for those of one node, different else but by an accident of 2^-64 that
-/// would cost quality only.
+/// A hash of the elements of each unknown: equal for the unknowns of a node, different otherwise, except for an accident
+/// of probability 2^-64, which would only make the cut worse.
 fn keys(elements: &Elements) -> Result<Vec<u64>> {
     let mut key: Vec<u64> = filled(elements.unknowns, 0, WHAT)?;
     let mut last: Vec<u32> = filled(elements.unknowns, NONE, WHAT)?;
@@ -162,7 +165,7 @@ fn keys(elements: &Elements) -> Result<Vec<u64>> {
     Ok(key)
 }
 
-/// The finaliser of splitmix64: a number without pattern for each.
+/// The finaliser of splitmix64: a pseudo-random number for each x.
 pub fn mixed(x: u64) -> u64 {
     let x = x.wrapping_mul(0x9e37_79b9_7f4a_7c15);
     let x = (x ^ (x >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);

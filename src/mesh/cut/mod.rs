@@ -1,8 +1,8 @@
 //! The cut of one body into pieces that are connected by faces, of nearly equal size, with few shared unknowns.
 //!
-//! Elements that lie inside others join their pieces (`hosts`). The remaining elements are cut into slabs by planes if their centres are known, otherwise
-//! through the graph of their faces (`sections`, `halves`). Then scraps are given to neighbours (`scraps`), and single elements are
-//! moved as long as this reduces the number of shared unknowns (`refine`).
+//! Elements that lie inside others join their pieces (`hosts`). The remaining elements are cut into slabs by planes if
+//! their centres are known, otherwise through the graph of their faces (`sections`, `halves`). Then scraps are given to
+//! neighbours (`scraps`), and single elements are moved while this reduces the number of shared unknowns (`refine`).
 
 mod coarse;
 mod directions;
@@ -23,7 +23,7 @@ use crate::platform::memory::{filled, reserved};
 use graph::{shares, Graph};
 use incidence::{Incidence, NONE, WHAT};
 
-/// Elements by the unknowns they join (held unknowns left out): those of element `e` are `dof[ptr[e]..ptr[e+1]]`, each less than
+/// The unknowns of the elements, without held unknowns: element `e` has `dof[ptr[e]..ptr[e+1]]`, each less than
 /// `unknowns`.
 pub struct Elements<'a> {
     pub ptr: &'a [usize],
@@ -31,12 +31,12 @@ pub struct Elements<'a> {
     pub unknowns: usize,
 }
 
-/// Bodies below this are faster whole.
+/// Smaller bodies are solved faster without a cut.
 const WHOLE: usize = 40_000;
-/// Unknowns of a piece.
+/// Mean number of unknowns of a piece.
 const PIECE: f64 = 1200.0;
 
-/// How many pieces a body of so many unknowns is cut into. A cube is cut as often along each edge.
+/// The number of pieces for a body with this number of unknowns. A cube is cut equally often along each edge.
 pub fn pieces_for(unknowns: usize) -> usize {
     if unknowns < WHOLE {
         1
@@ -45,14 +45,14 @@ pub fn pieces_for(unknowns: usize) -> usize {
     }
 }
 
-/// The piece of every element, numbered from 0 without gaps: `pieces` of them, fewer where there are not so many elements, more
-/// where the body has more parts that share no face (one piece each); 1 leaves it whole.
+/// The piece of every element, numbered from 0 without gaps. There are `pieces` pieces, fewer if there are fewer
+/// elements, more if the body has more parts that share no face (one piece each); 1 leaves the body whole.
 ///
-/// `centres`: of the elements in any unit, where they are known; entries that are no numbers count as not known.
+/// `centres`: of the elements in any unit, if known; if an entry is NaN, they count as not known.
 pub fn cut(elements: &Elements, centres: Option<&[[f64; 3]]>, pieces: usize) -> Result<Vec<u32>> {
     let all = Incidence::of(elements)?;
     if centres.is_some_and(|centres| centres.len() != all.count()) {
-        return Err(Error::new(Kind::Argument("centres"), "there is not one centre for each element"));
+        return Err(Error::new(Kind::Argument("centres"), "there must be one centre per element"));
     }
     if pieces <= 1 {
         return filled(all.count(), 0, WHAT);
@@ -67,7 +67,7 @@ pub fn cut(elements: &Elements, centres: Option<&[[f64; 3]]>, pieces: usize) -> 
     with_guests(&host, &kept, &piece)
 }
 
-/// The pieces of elements none of which goes with another.
+/// The pieces of elements without hosts.
 fn cut_all(incidence: &Incidence, centres: Option<&[[f64; 3]]>, pieces: usize) -> Result<Vec<u32>> {
     let graph = Graph::of(incidence)?;
     let (mut piece, weights) = graph.parts(&filled(graph.count(), 0, WHAT)?)?;
@@ -86,8 +86,8 @@ fn cut_all(incidence: &Incidence, centres: Option<&[[f64; 3]]>, pieces: usize) -
     Ok(piece)
 }
 
-/// Centres of the elements `kept`, moved and scaled by a power of two so that the largest entry is about 1; none where one is no
-/// number.
+/// Centres of the elements `kept`, moved and scaled by a power of two so that the largest entry is about 1; none if an
+/// entry is NaN.
 fn scaled(centres: &[[f64; 3]], kept: &[u32]) -> Result<Option<Vec<[f64; 3]>>> {
     let mut points = reserved(kept.len(), WHAT)?;
     points.extend(kept.iter().map(|&e| centres[e as usize]));
@@ -102,7 +102,7 @@ fn scaled(centres: &[[f64; 3]], kept: &[u32]) -> Result<Option<Vec<[f64; 3]>>> {
     if !(largest > f64::MIN_POSITIVE) {
         return Ok(None);
     }
-    // the exponent alone: scaling changes no digit
+    // only the exponent: the scaling changes no digit
     let unit = f64::from_bits(largest.to_bits() & !((1_u64 << 52) - 1));
     for x in &mut points {
         (0..3).for_each(|k| x[k] = (x[k] - (0.5 * low[k] + 0.5 * high[k])) / unit);
@@ -110,7 +110,8 @@ fn scaled(centres: &[[f64; 3]], kept: &[u32]) -> Result<Option<Vec<[f64; 3]>>> {
     Ok(Some(points))
 }
 
-/// Elements that go with others get their pieces, by way of hosts that have hosts; those without unknowns the first.
+/// Elements with hosts get the pieces of these, through several hosts if necessary; elements without unknowns get the
+/// first piece.
 fn with_guests(host: &[u32], kept: &[u32], piece: &[u32]) -> Result<Vec<u32>> {
     let mut all = filled(host.len(), NONE, WHAT)?;
     kept.iter().zip(piece).for_each(|(&e, &p)| all[e as usize] = p);
@@ -129,7 +130,7 @@ fn with_guests(host: &[u32], kept: &[u32], piece: &[u32]) -> Result<Vec<u32>> {
     Ok(all)
 }
 
-/// Numbers without gaps, in their order.
+/// Renumbers the pieces without gaps, in their order.
 fn numbered(piece: &mut [u32], count: usize) -> Result<()> {
     interrupt::check()?;
     let mut number: Vec<u32> = filled(count, NONE, WHAT)?;

@@ -1,4 +1,4 @@
-//! Moves single elements to a neighbouring piece as long as this reduces the shared unknowns, or makes the pieces more equal.
+//! Moves single elements to a neighbouring piece while this reduces the shared unknowns, or makes the pieces more equal.
 
 use super::graph::Graph;
 use super::incidence::{Incidence, NONE, WHAT};
@@ -6,9 +6,9 @@ use crate::error::Result;
 use crate::platform::interrupt;
 use crate::platform::memory::filled;
 
-/// No element goes to a piece that would then have more unknowns than this times the mean.
+/// No element moves to a piece that would then exceed this multiple of the mean number of unknowns.
 const FULL: f64 = 1.06;
-/// A piece with more than this times the mean gives elements away at a loss.
+/// A piece above this multiple of the mean gives elements away even if that increases the shared unknowns.
 const OVERFULL: f64 = 1.07;
 const ROUNDS: usize = 8;
 
@@ -19,9 +19,9 @@ struct Refinement<'a> {
     /// Unknowns of each piece.
     size: Vec<i64>,
     mean: f64,
-    /// Nothing around has changed since it was found to be well where it is.
+    /// The element need not be examined: nothing around it has changed since it was found to be in the best piece.
     settled: Vec<bool>,
-    /// Room of `stays_connected`: the number of the question that each element was met in.
+    /// Work array of `stays_connected`: the number of the search that last reached each element.
     met: Vec<u32>,
     question: u32,
     around: Vec<u32>,
@@ -53,7 +53,7 @@ pub fn refine(incidence: &Incidence, graph: &Graph, piece: &mut [u32], count: us
 }
 
 impl Refinement<'_> {
-    /// Unknowns of the pieces.
+    /// Computes the unknowns of the pieces.
     fn measure(&mut self) {
         let mut pieces: Vec<u32> = Vec::new();
         for n in 0..self.incidence.weight.len() as u32 {
@@ -67,7 +67,7 @@ impl Refinement<'_> {
         self.mean = self.size.iter().sum::<i64>() as f64 / self.size.len().max(1) as f64;
     }
 
-    /// Moves the element to the best other piece that it has a face with, if there is one; true when it went.
+    /// Moves the element to the best other piece with which it shares a face, if there is one; returns whether it moved.
     fn improve(&mut self, e: usize) -> bool {
         let from = self.piece[e];
         let overfull = self.size[from as usize] as f64 > OVERFULL * self.mean;
@@ -85,7 +85,7 @@ impl Refinement<'_> {
                 (after as f64) < FULL * self.mean || overfull && after < self.size[from as usize] - leaves;
             let evens = after < self.size[from as usize];
             let gain = leaves - comes;
-            // half of its unknowns: one that stands on a face of the other piece, no spike
+            // at most half of its unknowns: the element stands on a face of the other piece and forms no spike
             let overfull = overfull && -2 * gain <= i64::from(self.incidence.size(e));
             if room && (gain > 0 || gain == 0 && evens || overfull) && best.is_none_or(|b| gain > b.0) {
                 best = Some((gain, to, leaves, comes));
@@ -109,7 +109,7 @@ impl Refinement<'_> {
         }
     }
 
-    /// Unknowns that the piece of `e` would lose, and that `to` would gain.
+    /// Number of unknowns that the piece of `e` would lose, and number that `to` would gain.
     fn changes(&self, e: usize, to: u32) -> (i64, i64) {
         let (mut leaves, mut comes) = (0, 0);
         for &n in self.incidence.nodes(e) {
@@ -126,10 +126,11 @@ impl Refinement<'_> {
         (leaves, comes)
     }
 
-    /// Whether the neighbours of `e` in its piece hang together without it, by elements that have a node with it.
+    /// Whether the neighbours of `e` in its piece remain connected without `e`, through elements that share a node with
+    /// it.
     fn stays_connected(&mut self, e: usize) -> bool {
         let own = self.piece[e];
-        // 2 numbers a question: near `e`, and reached
+        // 2 numbers per search: near `e`, and reached
         self.question += 2;
         let (near, reached) = (self.question - 1, self.question);
         for &n in self.incidence.nodes(e) {

@@ -6,7 +6,8 @@ use crate::error::Result;
 use crate::platform::interrupt;
 use crate::platform::memory::{filled, reserved};
 
-/// Gives every part of a piece but its heaviest one to the piece that shares most unknowns with it, until each hangs together.
+/// Gives every part of a piece except its heaviest to the piece that shares most unknowns with it, until every piece is
+/// connected.
 pub fn give(graph: &Graph, piece: &mut [u32], count: usize) -> Result<()> {
     loop {
         interrupt::check()?;
@@ -17,7 +18,7 @@ pub fn give(graph: &Graph, piece: &mut [u32], count: usize) -> Result<()> {
     }
 }
 
-/// One round; whether any part went elsewhere.
+/// One round; returns whether any part was given away.
 fn given(graph: &Graph, piece: &mut [u32], count: usize, parts: (&[u32], &[f64])) -> Result<bool> {
     let (part, weights) = parts;
     let mut heaviest: Vec<u32> = filled(count, NONE, WHAT)?;
@@ -27,11 +28,11 @@ fn given(graph: &Graph, piece: &mut [u32], count: usize, parts: (&[u32], &[f64])
             *best = part[i];
         }
     }
-    // shares between each scrap and the pieces around it
+    // unknowns shared by each scrap and the pieces around it
     let mut touching: Vec<(u32, u32, u32)> = Vec::new();
     for i in (0..graph.count()).filter(|&i| heaviest[piece[i] as usize] != part[i]) {
         for (j, share) in graph.around(i).filter(|&(j, _)| piece[j] != piece[i]) {
-            // only parts that stay
+            // only parts that stay in their piece
             if heaviest[piece[j] as usize] == part[j] {
                 touching.push((part[i], piece[j], share));
             }

@@ -11,15 +11,15 @@ use crate::error::Result;
 use crate::platform::interrupt;
 use crate::platform::memory::{filled, reserved};
 
-/// A plane may leave its place by this part of a slab where it then goes between two layers.
+/// A plane may shift by this part of a slab to pass between two layers.
 const SNAP: f64 = 0.015;
-/// A slab may have this part of its weight apart from the rest of it, which neighbours take over later.
+/// This part of the weight of a slab may be disconnected; neighbours take it over later.
 const APART: f64 = 0.02;
 
-/// Groups of elements to a piece where the graph alone is cut.
+/// Number of groups of elements per piece if the graph alone is cut.
 const GROUPS: usize = 150;
 
-/// Vertices `from..to` of the order, to be the pieces from `first` on, `pieces` of them.
+/// Vertices `from..to` of the order, which become `pieces` pieces, numbered from `first`.
 struct Task {
     from: usize,
     to: usize,
@@ -37,8 +37,8 @@ struct Sections<'a> {
     keys: Vec<(f64, u32)>,
 }
 
-/// Cuts each part, the vertices with its number in `piece`, into its share of pieces: by planes where there are centres, else by
-/// the graph.
+/// Cuts each part, the vertices with its number in `piece`, into its share of pieces: by planes if centres are given,
+/// otherwise through the graph.
 pub fn sections(graph: &Graph, centres: Option<&[Point]>, piece: &mut [u32], shares: &[usize]) -> Result<()> {
     let frame = centres.map_or(Ok(super::directions::AXES), |centres| of_mesh(graph, centres))?;
     let count = graph.count();
@@ -67,11 +67,12 @@ pub fn sections(graph: &Graph, centres: Option<&[Point]>, piece: &mut [u32], sha
     Ok(())
 }
 
-/// The same without centres: groups of elements are cut, then each finer group and at last element goes where it shares most.
+/// The cut without centres: groups of elements are cut, then each finer group and finally each element moves to the piece
+/// with which it shares most.
 pub fn by_levels(graph: &Graph, piece: &mut [u32], shares: &[usize]) -> Result<()> {
     let enough = GROUPS * shares.iter().sum::<usize>();
     let levels = coarsen(graph.copy()?, enough.max(2000))?;
-    // a group lies in one part: it was made along faces
+    // a group lies in one part, since it was formed across faces
     let mut label = filled(graph.count(), 0, WHAT)?;
     label.copy_from_slice(piece);
     for level in levels.iter().filter(|level| !level.coarse.is_empty()) {
@@ -131,7 +132,7 @@ impl Sections<'_> {
             if slab + 1 < counts.len() {
                 let slack = SNAP * total * pieces as f64 / task.pieces as f64;
                 end = between_layers(&self.keys, &self.graph.weight, (&mut at, &mut weight), goal, slack);
-                // every piece keeps a vertex, so many as there are
+                // every remaining piece keeps at least one vertex
                 let left = self.keys.len() - (task.pieces - done);
                 end = end.clamp((from + pieces).min(left), left);
             }
@@ -141,7 +142,7 @@ impl Sections<'_> {
         }
     }
 
-    /// Whether nearly all of each of these sets hangs together by faces.
+    /// Whether nearly all of each of these sets is connected by faces.
     fn are_connected(&mut self, sets: &[Task]) -> bool {
         let mut queue = Vec::new();
         let mut connected = true;
@@ -195,9 +196,10 @@ impl Sections<'_> {
     }
 }
 
-/// How many pieces each slab is to be: equal ones where the number has a small divisor that such a length takes, else two.
+/// The number of pieces of each slab: equal numbers if the number has a small divisor that fits the lengths, otherwise
+/// two slabs.
 fn counts(pieces: usize, lengths: &Point) -> Vec<usize> {
-    // length of a piece: lengths shorter than it are not cut
+    // edge length of a piece: shorter edges are not cut
     let mut length = (lengths.iter().product::<f64>() / pieces as f64).cbrt();
     for _ in 0..3 {
         let longer = || lengths.iter().filter(|&&l| l > length);
@@ -209,8 +211,8 @@ fn counts(pieces: usize, lengths: &Point) -> Vec<usize> {
     slabs.map_or_else(|| vec![pieces / 2, pieces - pieces / 2], |slabs| vec![pieces / slabs; slabs])
 }
 
-/// The place in the order of the keys where the weight before it is about `goal`: where the next key is farthest among those
-/// with no more than `slack` too much or too little. `passed` is a place before it with the weight before that.
+/// The position in the order of the keys where the preceding weight is about `goal`: at the largest gap between keys
+/// among the positions that deviate by at most `slack`. `passed`: an earlier position and its preceding weight.
 fn between_layers(
     keys: &[(f64, u32)],
     weights: &[f64],

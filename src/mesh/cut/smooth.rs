@@ -6,7 +6,7 @@ use crate::error::Result;
 use crate::platform::interrupt;
 use crate::platform::memory::filled;
 
-/// No vertex goes to a piece that would then be heavier than this times the mean.
+/// No vertex moves to a piece that would then exceed this multiple of the mean weight.
 const FULL: f64 = 1.05;
 const ROUNDS: usize = 6;
 
@@ -31,7 +31,7 @@ pub fn smooth(graph: &Graph, piece: &mut [u32], count: usize) -> Result<()> {
                     && (share > here || lighter && (share == here || heavy))
             };
             let best = near.iter().filter(better).max_by_key(|n| (n.1, std::cmp::Reverse(n.0)));
-            // a vertex that its piece has nothing else of would leave it empty
+            // the only vertex of a piece must stay, or the piece would be empty
             if let Some(&(to, _)) = best.filter(|_| here > 0) {
                 piece[i] = to;
                 weight[from as usize] -= own;
@@ -46,7 +46,7 @@ pub fn smooth(graph: &Graph, piece: &mut [u32], count: usize) -> Result<()> {
     Ok(())
 }
 
-/// What a vertex shares with each piece around it.
+/// Number of unknowns that a vertex shares with each piece around it.
 fn shared(graph: &Graph, piece: &[u32], i: usize, near: &mut Vec<(u32, i64)>) {
     near.clear();
     for (j, share) in graph.around(i) {

@@ -1,21 +1,21 @@
-//! Layout of a problem file; docs/file_format.md has it byte by byte.
+//! Layout of a problem file; docs/file_format.md describes it byte by byte.
 //!
 //! ```text
 //! header 32 bytes | section | section | ...
 //! section: tag 4, flags 4, length 8 | payload | 0 to 7 zero bytes | CRC-32 4      (a multiple of 8 bytes)
 //! ```
 
-/// A byte that no text begins with, the name, and line ends that a transfer as text would change.
+/// A byte that no text begins with, the name, and line ends that a transfer in text mode would change.
 pub const MAGIC: [u8; 8] = *b"\x89FETI\r\n\x1a";
-/// Format that is written; the only one so far.
+/// The format that is written; it is the only one.
 pub const FORMAT: u32 = 1;
-/// Bytes of the header: magic, format, library, length of the file, zero, CRC-32 of all this.
+/// Bytes of the header: magic, format, library, length of the file, zero, CRC-32 of these.
 pub const HEADER: u64 = 32;
 /// Bytes of the head of a section.
 pub const HEAD: u64 = 16;
 /// Bytes of a checksum.
 pub const CHECKSUM: u64 = 4;
-/// Flag of a section: a reader that does not know it may go on without it.
+/// Flag of a section: a reader that does not know the section may skip it.
 pub const MAY_BE_SKIPPED: u32 = 1;
 
 pub type Tag = [u8; 4];
@@ -33,12 +33,12 @@ pub const NUMBERING: Tag = *b"NUMB";
 pub const ROWS: Tag = *b"ROWS";
 pub const FRICTION: Tag = *b"FRIC";
 
-/// Zero bytes between a payload of so many bytes and its checksum.
+/// Zero bytes between a payload of this length and its checksum.
 pub fn padding(length: u64) -> u64 {
     (8 - (length % 8 + CHECKSUM) % 8) % 8
 }
 
-/// Bytes of a whole section; none where the sum overflows.
+/// Bytes of a whole section; none if the sum overflows.
 pub fn section_length(payload: u64) -> Option<u64> {
     payload.checked_add(HEAD + CHECKSUM + padding(payload))
 }
@@ -65,7 +65,7 @@ impl Crc {
         Self(!0)
     }
 
-    /// Eight bytes at a time: the table of a byte that has k more behind it is `TABLE[k]`.
+    /// Processes eight bytes at a time: `TABLE[k]` is for a byte followed by k more bytes.
     pub fn add(&mut self, bytes: &[u8]) {
         let mut crc = self.0;
         let mut words = bytes.chunks_exact(8);
@@ -119,7 +119,7 @@ const fn tables() -> [[u32; 256]; 8] {
 mod tests {
     use super::*;
 
-    /// The check value of the catalogue of CRCs, and the sum bit by bit.
+    /// The check value from the catalogue of CRCs, and the sum computed bit by bit.
     #[test]
     fn the_checksum_is_the_one_of_gzip() {
         let mut crc = Crc::new();

@@ -1,5 +1,5 @@
 //! The bytes of a file that may be damaged or hostile: every length is compared with the remaining length of the file
-//! before anything is reserved.
+//! before any memory is reserved.
 
 use std::io::Read;
 
@@ -9,28 +9,28 @@ use crate::model::file::format::{
 };
 use crate::platform::memory::reserved;
 
-/// Bytes that are converted at a time.
+/// Bytes converted in one block.
 const BLOCK: usize = 8192;
 
-/// A file that is read from its start to its end.
+/// A file that is read sequentially.
 pub struct Input<R> {
     source: R,
-    /// Byte that is read next.
+    /// Position of the next byte.
     at: u64,
     /// Bytes of the whole file.
     length: u64,
-    /// Library that wrote it.
+    /// Version of the library that wrote the file.
     library: u32,
     crc: Crc,
 }
 
-/// The section that is read.
+/// The section being read.
 pub struct OpenSection {
     pub tag: Tag,
     flags: u32,
     /// Byte at which it begins.
     start: u64,
-    /// Bytes of its payload, and those that have not been read.
+    /// Bytes of its payload, and bytes not read yet.
     payload: u64,
     left: u64,
 }
@@ -43,14 +43,14 @@ impl OpenSection {
 }
 
 impl<R: Read> Input<R> {
-    /// A file of `length` bytes, whose header is read.
+    /// Opens a file of `length` bytes and reads its header.
     pub fn new(source: R, length: u64) -> Result<Self> {
         let mut input = Self { source, at: 0, length, library: 0, crc: Crc::new() };
         input.header()?;
         Ok(input)
     }
 
-    /// All of it has been read.
+    /// The whole file has been read.
     pub fn is_at_its_end(&self) -> bool {
         self.at >= self.length
     }
@@ -62,7 +62,7 @@ impl<R: Read> Input<R> {
         }
         let magic: [u8; 8] = self.bytes()?;
         if magic != MAGIC {
-            return Err(damaged(0, "this is no problem file of feti-contact"));
+            return Err(damaged(0, "this is not a problem file of feti-contact"));
         }
         let (format, library) = (u32::from_le_bytes(self.bytes()?), u32::from_le_bytes(self.bytes()?));
         let written = u64::from_le_bytes(self.bytes()?);
@@ -75,13 +75,13 @@ impl<R: Read> Input<R> {
             return Err(Error::new(Kind::Unsupported, what).byte(8));
         }
         if written != self.length {
-            let what = format!("the file has {} bytes, {written} were written", self.length);
+            let what = format!("the file has {} bytes, but {written} were written", self.length);
             return Err(damaged(self.length.min(written), what));
         }
         Ok(())
     }
 
-    /// The head of a section, whose length is proved to fit the file.
+    /// Reads the head of a section and checks that its length fits the file.
     pub fn open(&mut self) -> Result<OpenSection> {
         let start = self.at;
         if self.length - start < HEAD {
@@ -92,13 +92,13 @@ impl<R: Read> Input<R> {
         let payload = u64::from_le_bytes(self.bytes()?);
         let open = OpenSection { tag, flags, start, payload, left: payload };
         if section_length(payload).is_none_or(|whole| whole > self.length - start) {
-            let what = format!("{} has {payload} bytes, the file ends before", open.name());
+            let what = format!("{} has {payload} bytes, but the file ends before", open.name());
             return Err(damaged(start, what));
         }
         Ok(open)
     }
 
-    /// Nothing is left of the section but its zeros and its checksum, which is right.
+    /// Checks that the payload is fully read, and the padding and the checksum.
     pub fn close(&mut self, open: &mut OpenSection) -> Result<()> {
         if open.left > 0 {
             return Err(damaged(self.at, format!("{} bytes too many in {}", open.left, open.name())));
@@ -118,7 +118,7 @@ impl<R: Read> Input<R> {
         Ok(())
     }
 
-    /// Passes over a section that this library does not know, if that may be done.
+    /// Skips a section that this library does not know, if its flag permits.
     pub fn skip(&mut self, open: &mut OpenSection) -> Result<()> {
         let mut block = [0; BLOCK];
         while open.left > 0 {
@@ -141,7 +141,7 @@ impl<R: Read> Input<R> {
         if found == written {
             return Ok(());
         }
-        let what = format!("{what} is damaged: its checksum is {found:08x}, {written:08x} was written");
+        let what = format!("{what} is damaged: its checksum is {found:08x}, but {written:08x} was written");
         Err(damaged(start, what))
     }
 
@@ -164,7 +164,7 @@ impl<R: Read> Input<R> {
         Ok(u64::from_le_bytes(self.bytes()?))
     }
 
-    /// A number that must be an index or a size of this machine.
+    /// A number that must be valid as an index or a size on this machine.
     pub fn size(&mut self, open: &mut OpenSection) -> Result<usize> {
         let at = self.at;
         let number = self.number(open)?;
@@ -192,7 +192,7 @@ impl<R: Read> Input<R> {
         Ok(values)
     }
 
-    /// Their number, and as many numbers of N bytes each.
+    /// A count, followed by this many numbers of N bytes each.
     pub fn counted<T, const N: usize>(
         &mut self,
         open: &mut OpenSection,
@@ -206,7 +206,7 @@ impl<R: Read> Input<R> {
         self.array(open, len, f64::from_le_bytes)
     }
 
-    /// Row pointers: `rows` + 1 numbers from 0 to `entries`, not decreasing.
+    /// Row pointers: `rows` + 1 nondecreasing numbers from 0 to `entries`.
     pub fn pointers(&mut self, open: &mut OpenSection, rows: usize, entries: usize) -> Result<Vec<usize>> {
         let at = self.at;
         let pointers = self.array(open, rows + 1, saturated)?;
@@ -222,7 +222,7 @@ impl<R: Read> Input<R> {
         }
     }
 
-    /// All that is left of the section, as text.
+    /// The rest of the section as text.
     pub fn text(&mut self, open: &mut OpenSection) -> Result<String> {
         let at = self.at;
         let left = usize::try_from(open.left).unwrap_or(usize::MAX);
@@ -230,23 +230,23 @@ impl<R: Read> Input<R> {
         String::from_utf8(bytes).map_err(|_| damaged(at, format!("{} is not UTF-8", open.name())))
     }
 
-    /// An error of what a section says, at a number that has just been read.
+    /// An error about the content of a section, at the number read last.
     pub fn wrong(&self, open: &OpenSection, what: &str) -> Error {
         damaged(self.at.saturating_sub(8), format!("{}: {what}", open.name()))
     }
 
-    /// So many numbers are still there.
+    /// Checks that the section still has `len` numbers.
     fn take(&self, open: &mut OpenSection, len: u64, each: u64) -> Result<()> {
         let wanted = len.checked_mul(each).filter(|wanted| *wanted <= open.left);
         open.left -= wanted.ok_or_else(|| {
             let what =
-                format!("{} announces {len} numbers of {each} bytes and has {}", open.name(), open.left);
+                format!("{} needs {len} numbers of {each} bytes, but has {} bytes", open.name(), open.left);
             damaged(self.at, what)
         })?;
         Ok(())
     }
 
-    /// What a call has refused, as a fault of the file.
+    /// Converts an error of a call to an error about the file.
     pub fn refused(&self, mut error: Error, open: &OpenSection) -> Error {
         if error.kind == Kind::Memory {
             return error;
@@ -258,7 +258,7 @@ impl<R: Read> Input<R> {
     }
 }
 
-/// An index or a size; one that this machine has not is the largest, which no call takes.
+/// An index or a size; if it is too large for this machine, the largest value, which every call refuses.
 pub fn saturated(bytes: [u8; 8]) -> usize {
     usize::try_from(u64::from_le_bytes(bytes)).unwrap_or(usize::MAX)
 }

@@ -1,5 +1,5 @@
-//! A problem as one file: everything that the host has registered, so that any reader gets equal bits from equal
-//! calls. The file contains no answers, start values, saved states or factors.
+//! A problem as one file: all input of the host, so that any reader makes the same calls with the same bits. The file
+//! contains no answers, start values, saved states or factors.
 
 pub mod format;
 mod input;
@@ -18,28 +18,28 @@ use crate::model::bodies::SPOILED;
 use crate::model::contents::Model;
 use crate::platform::memory::reserved;
 
-/// Bytes that are handed to the system at a time.
+/// Bytes per write to the system.
 const BUFFER: usize = 1 << 17;
 
 impl Model {
-    /// Writes all that was registered to a new file that takes the place of an old one when it is complete.
+    /// Writes all input to a new file, which replaces an old one when it is complete.
     pub fn write_file(&self, path: &Path) -> Result<()> {
         self.check_kept()?;
         regular(path)?;
-        // a link stays one: what it leads to is replaced
+        // if the path is a link, its target is replaced
         let target = fs::canonicalize(path).unwrap_or_else(|_| path.to_path_buf());
         let (temporary, file) = create_beside(&target).map_err(|e| failed(path, "create", &e))?;
         let written = self.fill(file, &target).map_err(|e| failed(path, "write", &e));
         let renamed =
             written.and_then(|()| fs::rename(&temporary, &target).map_err(|e| failed(path, "rename", &e)));
         if renamed.is_err() {
-            // nothing is left to do when even this fails
+            // a failure here needs no further action
             let _ = fs::remove_file(&temporary);
         }
         renamed
     }
 
-    /// The bytes of that file.
+    /// The bytes that `write_file` writes.
     pub fn write_bytes(&self) -> Result<Vec<u8>> {
         self.check_kept()?;
         let length = usize::try_from(write::length(self)).unwrap_or(usize::MAX);
@@ -48,8 +48,8 @@ impl Model {
         Ok(bytes)
     }
 
-    /// Takes over what a file holds. The problem must be empty; on an error it stays so. Options become those of the
-    /// file, all others their defaults; what texts count from (`index_base`) stays.
+    /// Takes over the content of a file. The problem must be empty; after an error it is still empty. Options are those
+    /// of the file, all others have their defaults; `index_base` is unchanged.
     pub fn read_file(&mut self, path: &Path) -> Result<()> {
         self.check_empty()?;
         regular(path)?;
@@ -60,14 +60,14 @@ impl Model {
         Ok(())
     }
 
-    /// As `read_file`, from the bytes of a file.
+    /// As `read_file`, from bytes in memory.
     pub fn read_bytes(&mut self, bytes: &[u8]) -> Result<()> {
         self.check_empty()?;
         self.adopt(read::read(bytes, bytes.len() as u64)?);
         Ok(())
     }
 
-    /// Takes over the bodies with their numbers, rows and options of another model; texts count from what they did.
+    /// Takes over bodies with their numbers, rows and options of another model; `index_base` is unchanged.
     fn adopt(&mut self, other: Self) {
         let (rows, index_base) = (self.revisions.rows, self.settings.index_base);
         *self = other;
@@ -75,17 +75,18 @@ impl Model {
         self.revisions.rows += rows + 1;
     }
 
-    /// The library has all that it was given: no functions in place of a matrix, no values that were refused, no
-    /// pass over elements that has just begun.
+    /// Checks that the library has all input: no functions in place of a matrix, no refused values, no incomplete first
+    /// pass over elements.
     fn check_kept(&self) -> Result<()> {
         for (p, given) in self.bodies.iter().enumerate() {
             if given.body.operator.is_some() {
                 let what =
-                    "the body is given by functions of the host (feti_body_operator): no file holds them";
+                    "the body is given by functions of the host (feti_body_operator), which a file cannot contain";
                 return Err(Error::new(Kind::Unsupported, what).body(p));
             }
             if let Some(element) = given.mesh.as_ref().and_then(Mesh::first_missing) {
-                let what = "the matrix of this element has not been given: no file holds a part of a body";
+                let what =
+                    "the matrix of this element has not been given: a file cannot contain an incomplete body";
                 return Err(Error::new(Kind::State, what).body(p).element(element));
             }
             if given.spoiled {
@@ -115,17 +116,17 @@ impl Model {
     }
 }
 
-/// A name with a device or a folder behind it is left alone; one with nothing behind it is not.
+/// Refuses a path to a device or a folder; a file that does not exist is accepted.
 fn regular(path: &Path) -> Result<()> {
     match fs::metadata(path) {
         Ok(found) if !found.is_file() => {
-            Err(Error::new(Kind::Io, format!("{}: open: this is no file", path.display())))
+            Err(Error::new(Kind::Io, format!("{}: open: this is not a regular file", path.display())))
         }
         _ => Ok(()),
     }
 }
 
-/// A new file in the folder of `target`.
+/// Creates a new file in the folder of `target`.
 fn create_beside(target: &Path) -> io::Result<(PathBuf, File)> {
     static NUMBER: AtomicUsize = AtomicUsize::new(0);
     loop {
@@ -143,7 +144,7 @@ fn failed(path: &Path, operation: &str, error: &io::Error) -> Error {
     Error::new(Kind::Io, format!("{}: {operation}: {error}", path.display()))
 }
 
-/// The same error with the name of the file.
+/// Adds the name of the file to an error.
 fn at(path: &Path, mut error: Error) -> Error {
     error.what = format!("{}: {}", path.display(), error.what);
     error

@@ -1,4 +1,4 @@
-//! Reads a problem from a file: the content of its sections, and the calls of a host that they replace.
+//! Reads a problem from a file: the content of its sections, which replace the calls of a host.
 
 use std::io::Read;
 
@@ -33,7 +33,7 @@ pub fn read(source: impl Read, length: u64) -> Result<Model> {
     Ok(model)
 }
 
-/// A section that has been read.
+/// The content of a section.
 enum SectionContent {
     Options(String),
     Body { n: usize },
@@ -49,7 +49,7 @@ enum SectionContent {
     Friction(Nodes),
 }
 
-/// Nodes with friction, as a section has them.
+/// The nodes with friction of a section.
 struct Nodes {
     dim: usize,
     normal: Vec<i64>,
@@ -62,7 +62,7 @@ struct Nodes {
     s_old: Vec<f64>,
 }
 
-/// First unknown of every body among all and their end, and which sections of the last body have come.
+/// First unknown of every body among all unknowns, their end, and the sections of the last body read so far.
 #[derive(Default)]
 struct Offsets {
     ends: Vec<u64>,
@@ -73,7 +73,7 @@ struct Offsets {
 }
 
 impl SectionContent {
-    /// None of a section that this library does not know.
+    /// None for a section that this library does not know.
     fn read<R: Read>(input: &mut Input<R>, open: &mut OpenSection) -> Result<Option<Self>> {
         Ok(Some(match open.tag {
             OPTIONS => Self::Options(input.text(open)?),
@@ -164,7 +164,7 @@ impl SectionContent {
         }))
     }
 
-    /// Makes the call of a host.
+    /// Makes the call of a host for this section.
     fn hand_over(self, tag: Tag, model: &mut Model, known: &mut Offsets) -> Result<()> {
         if ![OPTIONS, BODY, ROWS, FRICTION].contains(&tag) {
             known.once(tag)?;
@@ -189,7 +189,7 @@ impl SectionContent {
                 model.set_pieces(body, &given)
             }
             Self::NullSpace { n, r, modes, basis } => model.set_null_space(body, n, r, &basis, n, modes),
-            // of the labels of the nodes nothing is kept
+            // labels of the nodes are not kept
             Self::Coordinates { places, directions } => {
                 model.set_coordinates(body, 3, &directions, &directions, &places, 3)
             }
@@ -236,28 +236,30 @@ impl Nodes {
 
 fn once(seen: &mut bool) -> Result<()> {
     if std::mem::replace(seen, true) {
-        return Err(Error::new(Kind::Io, "this comes twice"));
+        return Err(Error::new(Kind::Io, "this section occurs twice"));
     }
     Ok(())
 }
 
 impl Offsets {
-    /// A section of the last body.
+    /// Notes a section of the last body, which must not occur twice.
     fn once(&mut self, tag: Tag) -> Result<()> {
         if self.ends.is_empty() {
             return Err(Error::new(Kind::Io, "there is no body before it"));
         }
         if self.seen.contains(&tag) {
-            return Err(Error::new(Kind::Io, "this comes twice").body(self.ends.len() - 1));
+            return Err(Error::new(Kind::Io, "this section occurs twice").body(self.ends.len() - 1));
         }
         self.seen.push(tag);
         Ok(())
     }
 
-    /// K has come in one way alone.
+    /// Refuses a body with K in two forms.
     fn not_with(&self, other: Tag) -> Result<()> {
         if self.seen.contains(&other) {
-            return Err(Error::new(Kind::Io, "the body has a matrix and pieces").body(self.ends.len() - 1));
+            return Err(
+                Error::new(Kind::Io, "the body has both a matrix and pieces").body(self.ends.len() - 1)
+            );
         }
         Ok(())
     }
@@ -268,14 +270,14 @@ impl Offsets {
         }
         let end = self.ends.last().copied().unwrap_or(0).saturating_add(n as u64);
         if end > isize::MAX as u64 / 8 {
-            return Err(Error::new(Kind::Io, "the bodies have more unknowns than an array entries"));
+            return Err(Error::new(Kind::Io, "the bodies have more unknowns than an array can have entries"));
         }
         self.ends.push(end);
         self.seen.clear();
         Ok(())
     }
 
-    /// Body and dof of unknowns that count through all bodies; one beyond the last body is left to the call to refuse.
+    /// Body and dof of unknowns counted through all bodies; the call refuses an unknown beyond the last body.
     fn places(&self, unknown: &[u64]) -> Result<(Vec<i64>, Vec<i64>)> {
         let what = "the rows of a problem file";
         let (mut body, mut dof) = (reserved(unknown.len(), what)?, reserved(unknown.len(), what)?);

@@ -11,30 +11,30 @@ use crate::model::file::format::{
     HEADER, LOAD, MAGIC, NULL_SPACE, NUMBERING, OPTIONS, PIECES, ROWS, STIFFNESS,
 };
 
-/// Numbers of the format.
+/// Numbers defined by the format.
 pub const EXACT: u64 = 0;
 pub const CANDIDATES: u64 = 1;
 pub const SOFT: u64 = 2;
 pub const INEQUALITY: u64 = 1;
 pub const EQUALITY: u64 = 2;
 
-/// Bytes that are converted at a time.
+/// Bytes converted in one block.
 const BLOCK: usize = 8192;
 
-/// A part of a payload, as it lies in memory.
+/// A part of a payload as stored in memory.
 enum Piece<'a> {
     Number(u64),
     Numbers(&'a [usize]),
-    /// Numbers, some of them -1.
+    /// Numbers of which some may be -1.
     Signed(Vec<i64>),
-    /// These numbers with another one added to each.
+    /// The numbers with a constant added.
     Shifted(&'a [usize], usize),
     Columns(&'a [u32]),
     /// Unknowns, 8 bytes each.
     Dofs(&'a [u32]),
     Directions(&'a [i32]),
     Reals(&'a [f64]),
-    /// Numbers that are gathered.
+    /// Numbers collected for the file.
     Gathered(Vec<f64>),
     Text(String),
 }
@@ -107,7 +107,7 @@ impl Section<'_> {
     }
 }
 
-/// Passes bytes on and adds them to a checksum.
+/// A writer that also computes a checksum.
 struct Summed<'a, W> {
     out: &'a mut W,
     crc: Crc,
@@ -149,7 +149,7 @@ pub fn write(model: &Model, out: &mut impl Write) -> io::Result<()> {
     sections(model).try_for_each(|section| section.write(out))
 }
 
-/// The sections of a body follow its BODY; then come rows, at last nodes with friction.
+/// The sections of a body follow its BODY section; then come rows, and finally nodes with friction.
 fn sections(model: &Model) -> impl Iterator<Item = Section<'_>> {
     let options = Section { tag: OPTIONS, pieces: vec![Piece::Text(model.settings.changes())] };
     let bodies = model.bodies.iter().flat_map(of_body);
@@ -191,7 +191,8 @@ fn of_body(given: &GivenBody) -> impl Iterator<Item = Section<'_>> {
     [order, stiffness, pieces, null_space, coordinates, flags, fixing, load, numbering].into_iter().flatten()
 }
 
-/// Numbers of unknowns, pieces, their unknowns, their entries; first unknown of each; unknowns; rows; values; columns.
+/// Number of unknowns, pieces, total unknowns, total entries; first unknown of each piece; unknowns; rows; values;
+/// columns.
 fn of_pieces(of: &[MeshPiece]) -> Section<'_> {
     use Piece::{Columns, Dofs, Number, Reals, Shifted};
     let ends = |size: fn(&MeshPiece) -> usize| {

@@ -1,12 +1,12 @@
-//! The minimum of theta on a face, rows F not held at their bound, by a direct method:
+//! The minimum of theta on a face, with rows F not held at their bound, by a direct method:
 //!
 //! ```text
 //! A_FF x - G_F'alpha = b_F,   G_F x = e
 //! ```
 //!
-//! With `H = A_FF + G_F'Q G_F`, Q > 0 diagonal, `H x = b_F + G_F'(alpha + Q e)` has the same solutions, and H
-//! is positive definite if x is unique; then `S alpha = e - G_F H^-1 (b_F + G_F'Q e)`, `S = G_F H^-1 G_F'`. If some
-//! motions are free or held weakly, T'G_F with orthonormal rows replaces G_F, and T'e replaces e: `alpha = T beta`.
+//! With `H = A_FF + G_F'Q G_F`, Q > 0 diagonal, `H x = b_F + G_F'(alpha + Q e)` has the same solutions, and H is positive
+//! definite if x is unique; then `S alpha = e - G_F H^-1 (b_F + G_F'Q e)`, `S = G_F H^-1 G_F'`. If some motions are free
+//! or resisted weakly, T'G_F with orthonormal rows replaces G_F, and T'e replaces e: `alpha = T beta`.
 
 use crate::error::Result;
 use crate::linalg::{Entries, Matrix, PivotedCholesky, SpdSolver};
@@ -16,16 +16,16 @@ use crate::qp::Qp;
 
 pub struct Face<'a> {
     qp: Qp<'a>,
-    /// F, ascending, n of them.
+    /// F, n rows, ascending.
     rows: Vec<usize>,
     factor: PivotedCholesky,
     /// `H^-1 G_F'T`, n x rank.
     spread: Matrix,
     /// Q, stiffness of A per unit of `G G'`.
     penalty: Vec<f64>,
-    /// T, r x rank; none where all motions are held well.
+    /// T, r x rank; none if all motions are resisted well.
     basis: Option<Matrix>,
-    /// Dimension of the part of alpha that the rows leave open.
+    /// Dimension of the part of alpha that the rows do not determine.
     undetermined: usize,
     /// S, rank x rank; none without modes.
     coarse: Option<SpdSolver>,
@@ -57,7 +57,7 @@ impl<'a> Face<'a> {
         Ok(Some(Self { qp, rows, factor, spread, penalty, basis, undetermined, coarse }))
     }
 
-    /// The face where no row depends on others but for rounding: for those who correct its solutions by better data than A.
+    /// The face with all rows except those that depend on others up to rounding: for corrections by better data than A.
     pub fn in_full(self) -> Result<Self> {
         let modes = modes(&self.qp, &self.rows, self.basis.as_ref())?;
         let factor = self.factor.in_full();
@@ -65,7 +65,7 @@ impl<'a> Face<'a> {
         Ok(Self { factor, spread, coarse, ..self })
     }
 
-    /// x on F and alpha with `A_FF x - G_F'alpha = force`, `G_F x = rest`: where there are many, one of them.
+    /// x on F and alpha with `A_FF x - G_F'alpha = force`, `G_F x = rest`; one of the solutions if there are several.
     pub fn solve(&self, mut force: Vec<f64>, rest: &[f64]) -> Result<(Vec<f64>, Vec<f64>)> {
         let g_transposed = self.qp.g_transposed;
         let weighted = self.in_basis(rest).iter().zip(&self.penalty).map(|(rest, q)| rest * q).collect();
@@ -102,12 +102,12 @@ impl<'a> Face<'a> {
         &self.rows
     }
 
-    /// Rows were left out that do not quite depend on others.
+    /// Rows were left out although they are not exactly dependent.
     pub fn is_truncated(&self) -> bool {
         self.factor.is_truncated()
     }
 
-    /// Dimension of the part of alpha that the face leaves open.
+    /// Dimension of the part of alpha that the face does not determine.
     pub fn undetermined(&self) -> usize {
         self.undetermined
     }
@@ -125,7 +125,7 @@ fn modes(qp: &Qp, rows: &[usize], basis: Option<&Matrix>) -> Result<Matrix> {
     }
 }
 
-/// T, where the rows F do not resist all motions well, and how many are free.
+/// T, if the rows F do not resist all motions well, and the number of free motions.
 fn resisted(qp: &Qp, rows: &[usize]) -> Result<(Option<Matrix>, usize)> {
     let mut held = vec![true; qp.g_transposed.rows()];
     rows.iter().for_each(|&i| held[i] = false);
@@ -141,7 +141,7 @@ fn product(a: &Matrix, b: &Matrix) -> Result<Matrix> {
     Ok(product)
 }
 
-/// `q_k = (sum A_ii / n) / |g_k|^2`: both parts of H weigh alike, in any units; 1 where A or the mode vanishes.
+/// `q_k = (sum A_ii / n) / |g_k|^2`: both parts of H have equal weight, in any units; 1 if A or the mode is zero.
 fn penalty(h: &Matrix, modes: &Matrix) -> Vec<f64> {
     let stiffness = (0..h.rows).map(|i| h.get(i, i)).sum::<f64>() / h.rows.max(1) as f64;
     let positive = |v: f64| if v > 0.0 { v } else { 1.0 };

@@ -1,7 +1,7 @@
-//! Primal-dual active sets: the minimum on a face by a direct method, then rows with `x_i < 0` join the
-//! active set and active rows with `r_i < 0` leave it, until nothing changes. The method is fast, and as accurate as rounding
-//! allows if it ends. It need not end (rows may be exchanged for ever, a face may have no minimum), and then gives up. Steps A1 to A5
-//! of docs/method.md.
+//! Primal-dual active sets: the minimum on a face by a direct method, then rows with `x_i < 0` join the active set and
+//! active rows with `r_i < 0` leave it, until nothing changes. The method is fast, and as accurate as rounding allows if
+//! it ends. It need not end (rows may be exchanged for ever, a face may have no minimum), and then gives up. Steps A1 to
+//! A5 of docs/method.md.
 
 mod face;
 
@@ -14,34 +14,34 @@ use crate::qp::{AcceptanceTest, Counts, Qp, Solution, Verdict};
 
 pub use face::Face;
 
-/// Faces at most.
+/// Limit of faces.
 const FACES: usize = 30;
-/// Corrections of the solution on a face by the residual of A itself, at most.
+/// Limit of corrections of the solution on a face by the residual of A itself.
 const REFINEMENTS: usize = 5;
-/// The conditions of a face count as met when they hold to this fraction of their terms.
+/// The conditions of a face are met if they hold to this part of their terms.
 const MET: f64 = 1e-10;
-/// A projected gradient below this fraction of the scale of the judge is zero.
+/// A projected gradient is zero if it is below this part of the scale of the acceptance test.
 const ZERO: f64 = 1e-12;
 
-/// Square matrices of all free rows and modes at a time, here and in `proximal`.
+/// Number of square matrices over all free rows and modes in memory, here and in `proximal`.
 const MATRICES: usize = 8;
 
-/// What the direct method needs besides the problem.
+/// Data for the direct method in addition to the problem.
 #[derive(Clone, Copy)]
 pub struct Direct<'a> {
     pub entries: &'a dyn Entries,
-    /// Largest number of free rows and modes together: memory and work grow with its second and third power.
+    /// Limit of the total number of free rows and modes: memory and work grow with its second and third power.
     pub limit: usize,
 }
 
 impl Direct<'_> {
-    /// Bytes taken at most where free rows and modes are so many together.
+    /// Largest number of bytes for this total number of free rows and modes.
     pub fn bytes(order: usize) -> usize {
         order.saturating_mul(order).saturating_mul(MATRICES * size_of::<f64>())
     }
 }
 
-/// Goes on from `from` and its active set: solved when the judge accepts, else stalled with the point given.
+/// Continues from `from` and its active set: solved if the point is accepted, otherwise stalled with the given point.
 pub fn active_set(
     qp: Qp,
     direct: Direct,
@@ -79,7 +79,7 @@ struct Run<'a> {
     r: Vec<f64>,
     /// `|A x| + |b| + |G'alpha|`, row by row.
     terms: Vec<f64>,
-    /// A length that counts as zero, before rounding.
+    /// A length that counts as zero, without rounding.
     small: f64,
     counts: Counts,
 }
@@ -100,7 +100,7 @@ impl<'a> Run<'a> {
         })
     }
 
-    /// A1: goes from face to face; false where none is confirmed by its own solution.
+    /// A1: goes from face to face; false if no face is confirmed by its own solution.
     fn settle(&mut self) -> Result<bool> {
         let mut visited: Vec<Vec<bool>> = Vec::new();
         while visited.len() < FACES && !visited.contains(&self.active) {
@@ -118,8 +118,8 @@ impl<'a> Run<'a> {
         Ok(false)
     }
 
-    /// A2 and A3: moves x and alpha to the minimum on the face; `None`: there is none. Its first product asks the host
-    /// before the factorisation begins.
+    /// A2 and A3: moves x and alpha to the minimum on the face; `None`: there is none. Its first product checks for a
+    /// cancellation before the factorisation begins.
     fn solve_on(&mut self, rows: Vec<usize>) -> Result<Option<Face<'a>>> {
         self.x.iter_mut().zip(&self.active).filter(|(_, held)| **held).for_each(|(x, _)| *x = 0.0);
         self.refresh()?;
@@ -146,7 +146,7 @@ impl<'a> Run<'a> {
         Ok((balanced && force <= MET * size).then_some(face))
     }
 
-    /// r of x and alpha.
+    /// Recomputes r of x and alpha.
     fn refresh(&mut self) -> Result<()> {
         let mut image = self.product(&self.x.clone())?;
         let coarse: Vec<f64> =
@@ -167,12 +167,12 @@ impl<'a> Run<'a> {
         Ok(image)
     }
 
-    /// What rounding leaves of row i of r.
+    /// Rounding of row i of r.
     fn noise(&self, i: usize) -> f64 {
         64.0 * f64::EPSILON * self.terms[i]
     }
 
-    /// A4: the active set that the signs of x and r ask for.
+    /// A4: the active set by the signs of x and r.
     fn next_set(&mut self, face: &Face) -> Result<Vec<bool>> {
         let stays = |i: usize| if self.active[i] { self.r[i] >= -self.noise(i) } else { self.x[i] < 0.0 };
         let next: Vec<bool> = (0..self.x.len()).map(|i| self.qp.bounded[i] && stays(i)).collect();
@@ -183,10 +183,10 @@ impl<'a> Run<'a> {
         Ok(next)
     }
 
-    /// Where free rows leave a part of alpha open, gradient projection chooses: it gives the multiplier that
-    /// confirms the point, or shows which rows to free.
+    /// If the free rows do not determine alpha, gradient projection determines it: its multiplier confirms the point or
+    /// shows which rows to free.
     fn projected(&mut self) -> Result<Option<Vec<bool>>> {
-        // what an open row has of r tells of its gap, not of A
+        // r of an open row is its gap and says nothing about A
         let pulls = |i: usize| !self.active[i] || self.r[i] < 0.0;
         let way: Vec<f64> = (0..self.r.len()).map(|i| if pulls(i) { self.r[i] } else { 0.0 }).collect();
         let image = self.product(&way)?;

@@ -1,10 +1,10 @@
-//! Faces that hold all motions, some of them, or some of them weakly.
+//! Faces that resist all motions, some of them, or some of them weakly.
 
 use super::*;
 use crate::linalg::random::scattered;
 use crate::linalg::vector::{dot, norm};
 
-/// The coarse space of single columns.
+/// The coarse space with single columns as blocks.
 fn coarse<'a>(g_transposed: &'a Csr, bounded: &[bool], rounding: f64) -> Coarse<'a> {
     Coarse::on_space(Space::new(g_transposed, bounded).unwrap(), g_transposed, &[], rounding)
 }
@@ -67,12 +67,12 @@ fn turned(rows: &[[f64; 6]], t: &Matrix) -> Csr {
     g_transposed
 }
 
-/// A flat contact resists one translation and two rotations; the others by `weak` of that.
+/// A flat contact resists one translation and two rotations; it resists the others by the factors `weak`.
 fn flat(weak: [f64; 3], next: &mut impl FnMut() -> f64) -> Vec<[f64; 6]> {
     (0..300).map(|_| [next(), 1.0, next(), weak[0] * next(), weak[1] * next(), weak[2] * next()]).collect()
 }
 
-/// As many columns of T' are free as `weak` has zeros, and `free` spans them to `accuracy`.
+/// Checks that as many columns of T' are free as `weak` has zeros, and that `free` spans them to `accuracy`.
 fn assert_free(g_transposed: &Csr, rounding: f64, t: &Matrix, expected: &[usize], accuracy: f64) {
     let held = vec![false; g_transposed.rows()];
     let free = undetermined(g_transposed, &held, rounding).unwrap();
@@ -117,7 +117,7 @@ fn a_motion_that_is_resisted_by_little_is_resisted_and_its_forces_are_found() {
         let t = orthogonal(6, &mut next);
         let g_transposed = turned(&rows, &t);
         assert_free(&g_transposed, 1.5e-14, &t, &[4], 1e-3 * 1e-12 / weak);
-        // nothing is left of G'alpha, though rounding of G G'alpha is large against the weak part of it
+        // the remainder of G'alpha is 0, although the rounding of G G'alpha is large relative to its weak part
         let mut coarse = coarse(&g_transposed, &[false; 300], 1.5e-14);
         let alpha = [1.0, -2.0, 0.5, 3.0, 1.0, 0.1];
         let mut v: Vec<f64> = (0..300).map(|i| g_transposed.row_dot(i, &alpha)).collect();
@@ -139,7 +139,8 @@ fn rows_that_are_rounding_alone_hold_nothing() {
     assert_eq!(undetermined(&g_transposed, &held, 1.5e-14).unwrap().cols, 6);
 }
 
-/// In a chain of single columns the motion that all rows leave free moves one column by 1e-3 or 1e-4 of the others, another by the square of it.
+/// In a chain of single columns the free motion moves one column by 1e-3 or 1e-4 of the others, and another by the square
+/// of that.
 #[test]
 fn a_motion_that_is_free_is_found_however_little_it_moves_some_columns() {
     let mut next = random();
@@ -164,7 +165,8 @@ fn a_motion_that_is_free_is_found_however_little_it_moves_some_columns() {
     }
 }
 
-/// Two blocks in a flat contact, the lower one on the ground by few rows; modes of the stiff one divided by one number.
+/// Two blocks in a flat contact, few rows between the lower block and the ground; the modes of the stiff block are
+/// divided by one number.
 #[test]
 fn a_body_a_million_times_stiffer_counts_alike() {
     let mut next = random();

@@ -1,11 +1,12 @@
-//! The sets to which forces are restricted: free rows, half lines, and nodes with a disc or a cone of friction, with their projections.
+//! The admissible sets of forces: free rows, half lines, and nodes with a disc or a cone of friction, with their
+//! projections.
 
 use crate::error::{Error, Kind, Result};
 
-/// One contact node. A half line, contact without friction, is one without tangential rows.
+/// One contact node. Without tangential rows it is a half line: contact without friction.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Node {
-    /// Its normal row, n >= 0; none: the bound acts alone.
+    /// Its normal row, n >= 0; none: only the bound limits the tangential force.
     pub normal: Option<usize>,
     tangents: [usize; 2],
     /// Number of tangential rows: 0, 1 or 2.
@@ -15,21 +16,21 @@ pub struct Node {
     pub bound: f64,
 }
 
-/// Forces of one node: n, 0 without a normal row, and t, 0 where there is no row.
+/// Forces of one node: n, 0 without a normal row, and t, 0 without a tangential row.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Force {
     pub normal: f64,
     pub tangential: [f64; 2],
 }
 
-/// Where the orthogonal projection on a cone has ended.
+/// Where the orthogonal projection on a cone ends.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Place {
-    /// The force is in the set.
+    /// The force is in the set and does not change.
     Inside,
-    /// On the surface `|t| = bound + mu n`, n > 0: along the force, `ratio` the length of t now and before.
+    /// On the surface `|t| = bound + mu n`, n > 0: direction of t, and `ratio` of the new to the old length of t.
     Surface { along: [f64; 2], ratio: f64 },
-    /// n = 0, |t| < bound as it was.
+    /// n = 0, |t| < bound, t unchanged.
     Open,
     /// n = 0, |t| = bound.
     Rim { along: [f64; 2], ratio: f64 },
@@ -42,7 +43,7 @@ impl Node {
             return wrong("a node of friction has at most two tangential rows");
         }
         if !((0.0..f64::INFINITY).contains(&mu) && bound >= 0.0) {
-            return wrong("a coefficient or bound of friction is negative or no number");
+            return wrong("a coefficient or bound of friction is negative or not a number");
         }
         if mu > 0.0 && normal.is_none() && !tangents.is_empty() {
             return wrong("a coefficient of friction needs a normal row");
@@ -113,7 +114,7 @@ pub fn length(tangential: [f64; 2]) -> f64 {
     tangential[0].hypot(tangential[1])
 }
 
-/// `t / |t|`; the first direction where t = 0.
+/// `t / |t|`; the first direction if t = 0.
 pub fn direction(tangential: [f64; 2]) -> [f64; 2] {
     let length = length(tangential);
     if length > 0.0 {
@@ -128,7 +129,7 @@ pub fn direction(tangential: [f64; 2]) -> [f64; 2] {
 pub struct Cones {
     order: usize,
     nodes: Vec<Node>,
-    /// Rows of no node: free.
+    /// Rows that belong to no node: free.
     free: Vec<usize>,
 }
 
@@ -141,13 +142,13 @@ impl Cones {
                 Some(_) => {
                     return Err(Error::new(
                         Kind::Argument("nodes"),
-                        format!("row {row} is in two places of nodes"),
+                        format!("row {row} occurs more than once among the nodes"),
                     ))
                 }
                 None => {
                     return Err(Error::new(
                         Kind::Argument("nodes"),
-                        format!("row {row} of a node is beyond all rows"),
+                        format!("row {row} of a node does not exist"),
                     ))
                 }
             }
@@ -169,19 +170,19 @@ impl Cones {
         &self.free
     }
 
-    /// The same rows without friction: tangential rows carry nothing.
+    /// These rows without friction: tangential rows carry no force.
     pub fn frictionless(&self) -> Self {
         let without = |node: &Node| Node { mu: 0.0, bound: 0.0, ..*node };
         Self { nodes: self.nodes.iter().map(without).collect(), free: self.free.clone(), order: self.order }
     }
 
-    /// The same with coefficients so many times as large.
+    /// These sets with all coefficients multiplied by `by`.
     pub fn wider(&self, by: f64) -> Self {
         let nodes = self.nodes.iter().map(|node| Node { mu: by * node.mu, ..*node }).collect();
         Self { nodes, free: self.free.clone(), order: self.order }
     }
 
-    /// `x - NAT(x - rho r)` on the nodes, `rho r` on free rows: zero exactly where the laws hold.
+    /// `x - NAT(x - rho r)` on the nodes, `rho r` on free rows: zero exactly if the laws hold.
     pub fn law(&self, x: &[f64], r: &[f64], rho: f64) -> Vec<f64> {
         let trial: Vec<f64> = x.iter().zip(r).map(|(x, r)| x - rho * r).collect();
         let mut law: Vec<f64> = r.iter().map(|r| rho * r).collect();

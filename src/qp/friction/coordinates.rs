@@ -1,10 +1,10 @@
-//! Coordinates of the forces of a node: normal, along the slip, across the slip. In each coordinate the linear model of the laws
-//! either holds a value of x or is an equation for gaps and slips.
+//! Coordinates of the forces of a node: normal, along the slip, across the slip. In each coordinate the linear model of
+//! the laws either prescribes a value of x or is an equation for gaps and slips.
 
 use crate::linalg::Csr;
 use crate::qp::friction::cones::Cones;
 
-/// What the linear model asks in one coordinate; `s = w'x - coupling x_n`.
+/// The linear model in one coordinate; `s = w'x - coupling x_n`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Law {
     /// `s = value`
@@ -13,13 +13,14 @@ pub enum Law {
     Free { damping: f64, shift: f64 },
 }
 
-/// One vector w of an orthonormal basis of the forces, that of one row or of two tangential rows of a node.
+/// One vector w of an orthonormal basis of the forces: a single row, or a combination of two tangential rows of a node.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Coordinate {
     /// Rows with their entries in w.
     pub rows: [usize; 2],
     pub along: [f64; 2],
-    /// How much of the normal coordinate of the node, so many places before this one, is in s.
+    /// Coefficient of the normal coordinate of the node in s, and the number of places by which that coordinate comes
+    /// before this one.
     pub coupling: Option<(usize, f64)>,
     pub law: Law,
 }
@@ -44,7 +45,7 @@ impl Coordinate {
         matches!(self.law, Law::Free { .. })
     }
 
-    /// `1 / (1 + rho damping)`, 0 where a value is held: what an equation weighs, as a force.
+    /// Weight of an equation, as a force: `1 / (1 + rho damping)`, 0 if a value is held.
     pub fn weight(&self, rho: f64) -> f64 {
         match self.law {
             Law::Held { .. } => 0.0,
@@ -53,15 +54,15 @@ impl Coordinate {
     }
 }
 
-/// Every row by itself, in the order of the coordinates of a face: those of nodes by node, then free rows.
+/// Every row as a coordinate, in the order of the coordinates of a face: rows of nodes, node by node, then free rows.
 pub fn of_rows(cones: &Cones) -> Vec<Coordinate> {
     let of_nodes = cones.nodes().iter().flat_map(|node| node.normal.iter().chain(node.tangents()));
     let equation = Law::Free { damping: 0.0, shift: 0.0 };
     of_nodes.chain(cones.free()).map(|&row| Coordinate::row(row, equation)).collect()
 }
 
-/// Rows of G' of every coordinate, the pattern that all faces share: for a normal coordinate with the columns of the whole node, as
-/// friction couples it with the others.
+/// Rows of G' of every coordinate, with a pattern common to all faces: a normal coordinate has the columns of the whole
+/// node, since friction couples it to the others.
 pub fn pattern(cones: &Cones, g_transposed: &Csr) -> Csr {
     let mut pattern = Csr::empty(g_transposed.cols);
     let columns_of = |rows: &mut dyn Iterator<Item = usize>| {

@@ -1,4 +1,5 @@
-//! Solves the linear model of a face exactly with a dense matrix, (m + r) x (m + r), if there are not too many rows and modes.
+//! Solves the linear model of a face exactly with a dense matrix, (m + r) x (m + r), if there are not too many rows and
+//! modes.
 
 use crate::error::Result;
 use crate::linalg::dense::least_squares::least_squares;
@@ -12,7 +13,7 @@ use crate::qp::friction::pairs::Step;
 use crate::qp::friction::FrictionProblem;
 use crate::qp::Direct;
 
-/// A pivot of the matrix with columns of unit length below this is rounding.
+/// A pivot of the matrix with columns of unit length is rounding if it is below this.
 const CUT: f64 = 1e-13;
 
 /// F, m x m.
@@ -21,7 +22,7 @@ pub struct Dense {
 }
 
 impl Dense {
-    /// None where rows and modes are too many.
+    /// None if there are too many rows and modes.
     pub fn new(problem: &FrictionProblem, direct: Direct) -> Result<Option<Self>> {
         let (m, r) = (problem.b.len(), problem.e.len());
         if m + r > direct.limit {

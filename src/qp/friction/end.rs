@@ -11,15 +11,15 @@ use crate::qp::friction::{
 };
 use crate::qp::{AcceptanceTest, Counts, Verdict};
 
-/// One below it may be as good as rounding allows.
+/// Below this merit the answer may be as accurate as rounding allows.
 const NEAR: f64 = 1e-7;
-/// Each time that the answer is not accepted the laws are to be met this much better, ...
+/// Factor on the tolerance of the laws each time the answer is not accepted, ...
 const TIGHTER: f64 = 0.1;
-/// ... so many times at most, and as often before as it takes from a looser tolerance to this one.
+/// ... at most this many times, in addition to the steps from a looser tolerance to the present one.
 const REFUSALS: usize = 3;
 const FINE: f64 = 1e-12;
 
-/// An answer of the laws of friction, or why there is none.
+/// An answer for the laws of friction, or the reason why there is none.
 pub fn friction(
     problem: FrictionProblem,
     limits: FrictionLimits,
@@ -42,8 +42,8 @@ pub fn friction(
     Ok(run.solution(verdict))
 }
 
-/// Products of the linear problem in which the states of an answer (x, alpha), its slip directions and slips are known: what
-/// friction is measured against.
+/// Products in the linear problem in which the states of an answer (x, alpha), its slip directions and slips are known:
+/// the reference for the cost of friction.
 pub fn known_face(
     problem: FrictionProblem,
     limits: FrictionLimits,
@@ -97,7 +97,7 @@ impl<'a> Run<'a, '_> {
         let looser = (limits.tolerance / FINE).log10().ceil().max(0.0);
         let refusals = REFUSALS + looser as usize;
         for refusal in 0..=refusals {
-            // rounding may be all that is left
+            // only rounding may be left
             let (near, met) = (now.merit <= NEAR * self.scale, self.is_met(&now));
             if near || met {
                 let answer = self.finished(&now)?;
@@ -105,7 +105,7 @@ impl<'a> Run<'a, '_> {
                     self.last = answer;
                     return Ok(Verdict::Solved);
                 }
-                // g of steps that were far larger than what is left has their rounding, the last product has not
+                // g has the rounding of earlier, far larger steps; the last product has not
                 if met && refusal == refusals {
                     break;
                 }
@@ -124,11 +124,11 @@ impl<'a> Run<'a, '_> {
         Ok(Verdict::Inaccurate)
     }
 
-    /// The answer: exact zeros, forces exactly within the cones, gaps by a product of their own.
+    /// The answer: exact zeros, forces exactly within the cones, gaps from a separate product.
     fn finished(&mut self, now: &Point) -> Result<Point> {
         let laws = Laws { cones: self.problem.cones, rho: RHO };
         let mut y = now.x.clone();
-        // open nodes by their gaps: exactly 0 in the end
+        // open nodes, by their gaps: finally exactly 0
         for row in laws.cones.nodes().iter().filter_map(|node| node.normal) {
             let trial = now.x[row] - RHO * now.r[row];
             y[row] = if trial <= 0.0 { trial.min(y[row]) } else { y[row] };

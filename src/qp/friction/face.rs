@@ -6,29 +6,29 @@ use crate::qp::friction::cones::{direction, length, Cones};
 use crate::qp::friction::coordinates::{Coordinate, Law};
 use crate::qp::friction::motions::{Inverse, Motions};
 
-/// A bound below this part of the largest force is none.
+/// A bound is zero if it is below this part of the largest force.
 const NOTHING: f64 = 1e-14;
 
-/// How a node of friction is.
+/// The state of a node with friction.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum State {
-    /// No bound, no tangential force.
+    /// The bound is 0: no tangential force.
     Open,
     Stick,
     Slip,
 }
 
-/// All m coordinates and their laws; what a preconditioner needs to know of a face.
+/// All m coordinates and their laws, which is what a preconditioner needs of a face.
 pub struct Face {
     pub coordinates: Vec<Coordinate>,
-    /// Of each node.
+    /// One state per node.
     pub states: Vec<State>,
     pub closed: Vec<bool>,
     pub rho: f64,
 }
 
 impl Face {
-    /// That of `xi = x - rho r`.
+    /// The face of `xi = x - rho r`.
     pub fn at(cones: &Cones, x: &[f64], r: &[f64], rho: f64) -> Self {
         let xi: Vec<f64> = x.iter().zip(r).map(|(x, r)| x - rho * r).collect();
         let nothing = NOTHING * crate::linalg::vector::norm_max(x);
@@ -69,7 +69,7 @@ impl Face {
         Self { coordinates: Vec::with_capacity(cones.order()), states, closed, rho }
     }
 
-    /// The coordinates along `along`, with this coupling, and across.
+    /// Adds the coordinates along `along`, with this coupling, and across.
     pub fn push_tangents(
         &mut self,
         tangents: &[usize],
@@ -108,7 +108,7 @@ impl Face {
         coordinate.of(x) - of_normal
     }
 
-    /// In free coordinates `W'(g - G'a) + D s - shift`, in held ones `(s - value) / rho`; `r = g - G'a`.
+    /// In free coordinates `W'(g - G'a) + D s - shift`, in held coordinates `(s - value) / rho`; `r = g - G'a`.
     pub fn residual(&self, x: &[f64], r: &[f64]) -> Vec<f64> {
         let of = |k: usize| match self.coordinates[k].law {
             Law::Held { value } => (self.slack(k, x) - value) / self.rho,
@@ -118,7 +118,7 @@ impl Face {
         (0..self.coordinates.len()).map(of).collect()
     }
 
-    /// The part of it that is linear: of `(v, F v)`.
+    /// The linear part of `residual`, of `(v, F v)`.
     pub fn image(&self, v: &[f64], fv: &[f64]) -> Vec<f64> {
         let of = |k: usize| match self.coordinates[k].law {
             Law::Held { .. } => self.slack(k, v) / self.rho,
@@ -128,7 +128,7 @@ impl Face {
         (0..self.coordinates.len()).map(of).collect()
     }
 
-    /// `x += Z y` over the free coordinates: what is held follows the normal forces.
+    /// `x += Z y` over the free coordinates; held coordinates follow the normal forces.
     pub fn add(&self, y: &[f64], x: &mut [f64]) {
         for (k, coordinate) in self.coordinates.iter().enumerate() {
             let own = if coordinate.is_free() { y[k] } else { 0.0 };
@@ -144,7 +144,7 @@ const EQUATION: Law = Law::Free { damping: 0.0, shift: 0.0 };
 pub struct Model {
     pub face: Face,
     weights: Vec<f64>,
-    /// `(A w^2 A')^+`, A = G W, and the same with G Z; none without modes.
+    /// `(A w^2 A')^+` for A = G W and for A = G Z; none without modes.
     coarse: Option<(Inverse, Inverse)>,
 }
 
@@ -167,7 +167,7 @@ impl Model {
         plain.solve(&plain.weighted_image(residual))
     }
 
-    /// Free coordinates of a residual less `A'da`.
+    /// Subtracts `A'da` from the free coordinates of a residual.
     pub fn turned(&self, residual: &mut [f64]) -> Result<()> {
         let Some((plain, _)) = &self.coarse else { return Ok(()) };
         let turn = self.turn(residual)?;
@@ -177,7 +177,7 @@ impl Model {
         Ok(())
     }
 
-    /// `[first; P w q]`: what is left of a residual whatever a is, all as lengths.
+    /// `[first; P w q]`: the part of a residual that no a can remove, all entries as lengths.
     pub fn reduced(&self, mut residual: Vec<f64>) -> Result<Vec<f64>> {
         self.turned(&mut residual)?;
         for (k, q) in residual.iter_mut().enumerate().filter(|(k, _)| self.weights[*k] != 0.0) {

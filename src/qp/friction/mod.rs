@@ -1,12 +1,13 @@
-//! Contact with friction, Tresca's and Coulomb's: a semismooth Newton method on kept images, with one product with F per step.
+//! Contact with Tresca or Coulomb friction: a semismooth Newton method on stored images, with one product with F per
+//! step.
 //!
 //! ```text
 //! r = F x - d - G'a,   G x = e,   r = 0 on free rows,   x = NAT(x - rho r) on the nodes
 //! NAT(n, t) = (n+, min(|t|, b) t/|t|),   b = bound + mu n+
 //! ```
 //!
-//! r has the gap g in normal rows and minus the slip in tangential ones. F never changes, so every pair (v, F v) stays valid for all
-//! states, slip directions, coefficients, bounds and loads.
+//! r is the gap g in normal rows and minus the slip in tangential rows. F does not change, so every pair (v, F v) stays
+//! valid for all states, slip directions, coefficients, bounds and loads.
 
 mod cones;
 mod coordinates;
@@ -39,14 +40,14 @@ use crate::qp::{Counts, Direct, Verdict};
 /// The problem in scaled quantities; `G` is given as `G'`, m x r, as in `Qp`.
 #[derive(Clone, Copy)]
 pub struct FrictionProblem<'a> {
-    /// F, with the compliance of all rows.
+    /// F, including the compliance of all rows.
     pub a: &'a dyn Operator,
     /// d
     pub b: &'a [f64],
     pub g_transposed: &'a Csr,
-    /// First columns of the blocks of G, ascending. Empty: each column by itself.
+    /// First columns of the blocks of G, ascending. Empty: each column is a block.
     pub blocks: &'a [usize],
-    /// A motion a is free when `|G a| <= rounding |G| |a|`.
+    /// A motion a is free if `|G a| <= rounding |G| |a|`.
     pub rounding: f64,
     pub e: &'a [f64],
     pub cones: &'a Cones,
@@ -65,18 +66,18 @@ pub trait OnFace {
     fn apply(&self, q: &[f64], z: &mut [f64]) -> Result<()>;
 }
 
-/// When to end, and what may be tried before.
+/// Limits, and alternatives that may be tried.
 #[derive(Clone, Copy)]
 pub struct FrictionLimits<'a> {
-    /// Of `|P d|`, the gaps of all rows without any force.
+    /// Relative to `|P d|`, the gaps of all rows without forces.
     pub tolerance: f64,
-    /// Products with F at most.
+    /// Limit of products with F.
     pub products: usize,
-    /// Dense systems of all rows and modes, where they are not more than its limit.
+    /// Permits dense systems of all rows and modes, up to their limit.
     pub direct: Option<Direct<'a>>,
 }
 
-/// Where to begin. Pairs of other F, G or rows must not be handed on.
+/// The start. Pairs of another F, G or set of rows must not be passed.
 #[derive(Default)]
 pub struct FrictionStart<'a> {
     pub x: Option<&'a [f64]>,
@@ -84,17 +85,18 @@ pub struct FrictionStart<'a> {
     pub pairs: Pairs,
 }
 
-/// Sees the method after every product; an error ends it, with the point reached where it says `Cancelled` or `TimeOver`.
+/// Receives the state after every product; an error ends the method, with the point reached if the error is `Cancelled`
+/// or `TimeOver`.
 pub trait FrictionObserver {
     fn step(&mut self, now: &FrictionReport) -> Result<()>;
 }
 
-/// Where the method stands.
+/// The state of the method.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FrictionReport {
     pub products: usize,
     pub newton: usize,
-    /// How far the laws are from being met, and the norm that counts as zero: lengths.
+    /// Violation of the laws, and the value below which it counts as zero: lengths.
     pub merit: f64,
     pub small: f64,
     pub closed: usize,
@@ -102,38 +104,38 @@ pub struct FrictionReport {
     pub slipping: usize,
 }
 
-/// What has been tried.
+/// The attempts made.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Tried {
-    /// Newton steps, each with its face.
+    /// Newton steps, each with a new face.
     pub newton: usize,
     /// Starts with another rho.
     pub restarts: usize,
-    /// Paths along smoothed laws, by pairs and by dense matrices.
+    /// Paths along smoothed laws, with pairs and with dense matrices.
     pub paths: usize,
     pub dense_paths: usize,
-    /// Starts from the answer without friction, and from that with all closed nodes sticking.
+    /// Starts from the answer without friction, and from the answer with all closed nodes sticking.
     pub frictionless: bool,
     pub sticking: bool,
 }
 
 impl Tried {
-    /// Ways that were begun, the first one included.
+    /// Number of starts, including the first.
     pub fn starts(&self) -> usize {
         let others = self.restarts + self.paths + self.dense_paths;
         1 + others + usize::from(self.frictionless) + usize::from(self.sticking)
     }
 }
 
-/// A verdict of `Infeasible` means here: PROJ_C found no force within the cones that balances the load; no proof.
+/// Here a verdict `Infeasible` means that PROJ_C found no forces within the cones that balance the load; it is no proof.
 pub struct FrictionSolution {
     pub x: Vec<f64>,
     pub alpha: Vec<f64>,
-    /// Of each node.
+    /// One state per node.
     pub states: Vec<State>,
-    /// `|P d|`, what lengths are measured against.
+    /// `|P d|`, to which lengths are relative.
     pub scale: f64,
-    /// How far x is from the laws, of `scale`.
+    /// Violation of the laws by x, relative to `scale`.
     pub merit: f64,
     pub verdict: Verdict,
     pub counts: Counts,

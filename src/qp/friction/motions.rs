@@ -15,25 +15,26 @@ use crate::platform::{interrupt, tally};
 use crate::qp::friction::coordinates::{self, Coordinate};
 use crate::qp::friction::FrictionProblem;
 
-/// Motions that weighted rows resist by less than this part of |G| are free: its square is a cut of 1e-11 for `A w^2 A'`.
+/// Motions that weighted rows resist by less than this part of |G| are free: for `A w^2 A'` the limit is its square,
+/// 1e-11.
 const CUT: f64 = 3e-6;
 
-/// What all faces of one G share; none without modes.
+/// Data common to all faces of one G; none without modes.
 pub struct Motions<'a> {
     g_transposed: &'a Csr,
     blocks: &'a [usize],
     rounding: f64,
-    /// A' of the last face asked for has this pattern, m x r.
+    /// Pattern of A' of the last face, m x r.
     pattern: Csr,
     gram: Gram,
     analysis: Arc<Analysis>,
-    /// The power of two that W is divided by twice, and the diagonal of `G G'` in units of its square.
+    /// The power of two s for which W is divided by s^2, and the diagonal of `G G' / s^2`.
     unit: f64,
     whole: Vec<f64>,
     nothing_held: Vec<bool>,
 }
 
-/// Rows of A' with their weights and `(A w^2 A')^+`.
+/// Rows of A' with their weights, and `(A w^2 A')^+`.
 pub struct Inverse {
     /// m x r
     rows: Csr,
@@ -67,17 +68,18 @@ impl<'a> Motions<'a> {
         Ok(Some(Self { g_transposed, blocks, rounding, pattern, gram, analysis, unit, whole, nothing_held }))
     }
 
-    /// `(G G')^+` of all rows, in any coordinates.
+    /// `(G G')^+` over all rows, for any coordinates.
     pub fn of_all_rows(&self, coordinates: &[Coordinate]) -> Result<Inverse> {
         self.inverse(self.in_coordinates(coordinates, false), vec![1.0; coordinates.len()], self.rounding)
     }
 
-    /// Of A = G W, or of A = G Z where the normal coordinates draw those along the slip after them (`through`).
+    /// For A = G W, or, if `through`, for A = G Z, in which normal coordinates also move those along the slip that follow
+    /// them.
     pub fn on(&self, coordinates: &[Coordinate], weights: Vec<f64>, through: bool) -> Result<Inverse> {
         self.inverse(self.in_coordinates(coordinates, through), weights, CUT.max(self.rounding))
     }
 
-    /// Factor of `A w^2 A' + shift max diag(G G') I`; none where it is not positive definite.
+    /// Factor of `A w^2 A' + shift max diag(G G') I`; none if it is not positive definite.
     pub fn shifted(
         &self,
         coordinates: &[Coordinate],
@@ -101,7 +103,7 @@ impl<'a> Motions<'a> {
         norm_max(&self.whole) * self.unit * self.unit
     }
 
-    /// Of the rows of a face, as they are and weighted.
+    /// Bytes of the rows of a face, with and without weights.
     fn bytes(&self) -> usize {
         2 * (self.pattern.val.len() * (size_of::<f64>() + size_of::<usize>())
             + self.pattern.ptr.len() * size_of::<usize>())
@@ -152,7 +154,7 @@ impl<'a> Motions<'a> {
         rows
     }
 
-    /// Adds the row of a coordinate to row k.
+    /// Adds the row of a coordinate, times `by`, to row k.
     fn add_row(&self, rows: &mut Csr, k: usize, coordinate: &Coordinate, by: f64) {
         let own = rows.ptr[k]..rows.ptr[k + 1];
         for (&row, along) in coordinate.rows.iter().zip(coordinate.along).filter(|(_, along)| *along != 0.0) {

@@ -13,31 +13,31 @@ use crate::qp::friction::face::Face;
 use crate::qp::friction::motions::Motions;
 use crate::qp::friction::FrictionProblem;
 
-/// `|e - G l|` of `|e| + |G||y|` that is none, and what is accepted where the method ends before.
+/// Limit of `|e - G l|` relative to `|e| + |G||y|`, and the limit that is accepted if the method ends earlier.
 const ACCURACY: f64 = 1e-12;
 const ACCEPTED: f64 = 1e-8;
 const STEPS: usize = 100;
-/// Of the largest diagonal entry of `G G'`: what the cones leave of the matrix may be singular. At first; less after every whole
-/// step, more after short ones.
+/// Shift relative to the largest diagonal entry of `G G'`, since the part of the matrix left by the cones may be
+/// singular: the first value, reduced after every full step and increased after short ones.
 const SHIFT: f64 = 1e-6;
 const LESS: f64 = 0.1;
 const MORE: f64 = 10.0;
 const SHORT: f64 = 0.1;
 const SHIFTS: (f64, f64) = (1e-14, 1e-2);
-/// The same for the last steps.
+/// The shift of the last steps.
 const ROUNDING: f64 = 1e-13;
 const POLISHES: usize = 2;
-/// Armijo's part of the slope, and the shortest step.
+/// Armijo's factor on the slope, and the shortest step.
 const SLOPE: f64 = 1e-4;
 const SHORTEST: f64 = 1e-10;
-/// Multipliers so much larger than all that is given: phi falls without end.
+/// Bound of the multipliers relative to the data: beyond it phi decreases without end.
 const ENDLESS: f64 = 1e14;
 
 pub struct Projected {
     pub point: Vec<f64>,
     /// `e - G point`
     pub left: Vec<f64>,
-    /// It is met.
+    /// `G x = e` is satisfied.
     pub met: bool,
 }
 
@@ -72,7 +72,8 @@ pub fn project(
     Ok(if error <= ACCEPTED * scale { end.done(true) } else { nearest })
 }
 
-/// Where Newton's method ends, and the point that has come nearest to `G x = e`: where nothing does, phi falls without end.
+/// The end point of Newton's method, and the point closest to `G x = e`: if no point satisfies it, phi decreases without
+/// end.
 fn descended(
     problem: &FrictionProblem,
     motions: &Motions,
@@ -115,7 +116,7 @@ fn direction(
     matrix.map(|matrix| matrix.solve(&now.left)).transpose()
 }
 
-/// Without what rounding leaves of `e - G l`: what motions that are held weakly make of it is not small.
+/// Removes the rounding in `e - G l`, which weakly resisted motions would amplify.
 fn polished(problem: &FrictionProblem, motions: &Motions, y: &[f64], mut now: Trial) -> Result<Trial> {
     for _ in 0..POLISHES {
         let error = norm(&now.left);
@@ -150,7 +151,7 @@ fn trial(problem: &FrictionProblem, y: &[f64], beta: Vec<f64>) -> Trial {
     Trial { beta, point, places, left, phi }
 }
 
-/// The first of the steps 1, 1/2, ... after which phi has fallen.
+/// The first of the steps 1, 1/2, ... that reduces phi sufficiently.
 fn armijo(problem: &FrictionProblem, y: &[f64], now: &Trial, direction: &[f64]) -> Option<(Trial, f64)> {
     let (slope, mut t) = (-dot(&now.left, direction), 1.0);
     while t > SHORTEST {
@@ -165,7 +166,8 @@ fn armijo(problem: &FrictionProblem, y: &[f64], now: &Trial, direction: &[f64]) 
     None
 }
 
-/// PI' as a sum of `weight^2 v v'`: v is a coordinate, drawing the one along the force with it on the surface of a cone.
+/// PI' as a sum of `weight^2 v v'`: v is a coordinate; on the surface of a cone, the normal coordinate includes the one
+/// along the force.
 pub fn derivative(cones: &Cones, places: &[Place]) -> (Vec<Coordinate>, Vec<f64>) {
     let held = Law::Held { value: 0.0 };
     let (mut face, mut weights) = (Face::empty(cones, 1.0), Vec::with_capacity(cones.order()));

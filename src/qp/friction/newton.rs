@@ -1,4 +1,5 @@
-//! The semismooth Newton method: the linear model of a face is minimised over all kept pairs, and each step adds one pair.
+//! The semismooth Newton method: the linear model of a face is minimised over all stored pairs, and each step adds one
+//! pair.
 
 use crate::error::Result;
 use crate::linalg::vector::{axpy, dot, norm};
@@ -10,32 +11,33 @@ use crate::qp::friction::pairs::{Pair, Pairs, Step};
 use crate::qp::friction::{FrictionObserver, FrictionProblem, FrictionReport, OnFace, Tried};
 use crate::qp::Counts;
 
-/// rho at first: rows have the compliance `b K_d^-1 b' + C = 1`.
+/// The first rho: rows have the compliance `b K_d^-1 b' + C = 1`.
 pub const RHO: f64 = 0.2;
-/// Directions on one face at most.
+/// Limit of directions on one face.
 const DIRECTIONS: usize = 10;
-/// What is left of the linear residual where the model counts as solved: then it goes uphill rather than on.
+/// The model is solved if less than this part of the linear residual is left: then a step is taken even if the merit
+/// rises.
 const SOLVED: f64 = 1e-2;
-/// Lengths of the trials of a step, and of one without a product.
+/// Lengths of the trial steps, and of trial steps without a product.
 const TRIALS: [f64; 4] = [1.0, 0.5, 0.25, 0.1];
 const INNER_TRIALS: [f64; 2] = [1.0, 0.3];
 const INNER_STEPS: usize = 3;
-/// A step of length t takes off the merit at least this part of t.
+/// A step of length t must reduce the merit by at least this part of t.
 const FALLS: f64 = 0.01;
-/// The merit is to fall to this part of the best one before so many more steps, or so many more products, have been made: what takes
-/// longer goes round in circles.
+/// The merit must fall to this part of its best value within a limited number of further steps and products; otherwise
+/// the method is cycling.
 const ENOUGH: f64 = 0.8;
 const STEPS: usize = 4;
 const PRODUCTS: usize = 8;
 
-/// The laws that hold, and the number by which forces and lengths are compared: rho > 0, no unit.
+/// The laws, and the number by which forces and lengths are compared: rho > 0, no unit.
 #[derive(Clone, Copy)]
 pub struct Laws<'c> {
     pub cones: &'c Cones,
     pub rho: f64,
 }
 
-/// x with `G x = e`, `g = F x - d`, `r = g - G'alpha` and how far the laws are from being met.
+/// x with `G x = e`, `g = F x - d`, `r = g - G'alpha`, and the violation of the laws.
 #[derive(Clone, Default)]
 pub struct Point {
     pub x: Vec<f64>,
@@ -53,18 +55,18 @@ pub struct Run<'a, 'w> {
     pub pairs: Pairs,
     pub counts: Counts,
     pub tried: Tried,
-    /// Products at most.
+    /// Limit of products.
     pub limit: usize,
-    /// `|P d|`, what gaps are measured against, and the merit that counts as zero.
+    /// `|P d|`, to which gaps are relative, and the merit that counts as zero.
     pub scale: f64,
     pub small: f64,
-    /// The best point that was reached.
+    /// The best point so far.
     pub last: Point,
     pub observer: &'w mut dyn FrictionObserver,
 }
 
 impl Run<'_, '_> {
-    /// From `now` until the laws are met, or their merit falls too slowly.
+    /// Continues from `now` until the laws are satisfied, or the merit falls too slowly.
     pub fn newton(&mut self, laws: Laws, mut now: Point) -> Result<Point> {
         let mut best = (now.merit, self.tried.newton, self.counts.products);
         if self.pairs.count() > 0 {
@@ -86,7 +88,8 @@ impl Run<'_, '_> {
         Ok(now)
     }
 
-    /// One direction after the other joins the pairs, until a trial makes the merit fall or the model is solved; whether it fell.
+    /// Adds directions to the pairs until a trial reduces the merit or the model is solved; returns whether the merit
+    /// fell.
     fn step(&mut self, laws: Laws, model: &Model, now: &Point) -> Result<Option<(Point, bool)>> {
         let preconditioner = self.problem.preconditioner.map(|m| m.on(&model.face)).transpose()?;
         let mut there = (now.x.clone(), now.r.clone());
@@ -107,7 +110,7 @@ impl Run<'_, '_> {
         Ok(None)
     }
 
-    /// Steps to new faces by the pairs there are, as long as the merit falls.
+    /// Steps to new faces with the existing pairs, while the merit falls.
     fn without_products(&mut self, laws: Laws, mut now: Point) -> Result<Point> {
         for _ in 0..INNER_STEPS {
             if self.is_met(&now) {
@@ -124,7 +127,8 @@ impl Run<'_, '_> {
         Ok(now)
     }
 
-    /// The first trial whose merit falls enough, else the best one; a comes from the old face at the new point.
+    /// The first trial that reduces the merit sufficiently, otherwise the best trial; a is that of the old face at the
+    /// new point.
     fn best_trial(
         &mut self,
         laws: Laws,
@@ -147,17 +151,17 @@ impl Run<'_, '_> {
                 best = next;
             }
         }
-        // a step that is no number goes nowhere
+        // a step that is NaN is not taken
         let best = if best.merit < f64::INFINITY { best } else { now.clone() };
         Ok((best, false))
     }
 
-    /// The laws are met; never by what is no number.
+    /// The laws are satisfied; false for NaN.
     pub fn is_met(&self, now: &Point) -> bool {
         now.merit <= self.small
     }
 
-    /// The best point is kept for the case that nothing leads to an answer.
+    /// Stores the best point, for the case that no answer is found.
     pub fn reached(&mut self, now: &Point) {
         if !(self.last.merit <= now.merit) {
             self.last.clone_from(now);
@@ -215,14 +219,15 @@ impl Run<'_, '_> {
         Ok(())
     }
 
-    /// The pair of a direction, of length 1, and its image: the only product of a step. False: there is no direction.
+    /// Adds the pair of a direction, normalised to length 1, and its image: the only product of a step. False: there is
+    /// no direction.
     pub fn keep(&mut self, mut v: Vec<f64>, now: &Point, model: &Model) -> Result<bool> {
         let size = norm(&v);
         if !(size > 0.0 && size < f64::INFINITY) {
             return Ok(false);
         }
         v.iter_mut().for_each(|v| *v /= size);
-        // of a direction that was much longer more was left
+        // normalisation of a long direction leaves a larger error
         self.without_motions(&mut v)?;
         let none = vec![0.0; self.problem.e.len()];
         let unbalanced = self.imbalance(&v, &none)?.sqrt();
@@ -252,7 +257,7 @@ impl Run<'_, '_> {
         Ok(image)
     }
 
-    /// `a + da` of a face at x and g.
+    /// `a + da` for a face at x and g.
     pub fn turned(&mut self, model: &Model, x: &[f64], g: &[f64], alpha: &[f64]) -> Result<Vec<f64>> {
         let turn = model.turn(&model.face.residual(x, &self.gaps(g, alpha)))?;
         self.counts.coarse_solves += 1;
@@ -278,13 +283,13 @@ impl Run<'_, '_> {
         self.imbalance(x, self.problem.e)
     }
 
-    /// The same for any e.
+    /// As `balance_missed`, for any e.
     fn imbalance(&mut self, x: &[f64], e: &[f64]) -> Result<f64> {
         let Some(all_rows) = &self.all_rows else { return Ok(0.0) };
         let mut left = e.to_vec();
         self.problem.g_transposed.mul_transposed_add(-1.0, x, &mut left);
         self.counts.coarse_solves += 1;
-        // what is no number stays so
+        // NaN stays NaN
         let square = dot(&left, &all_rows.solve(&left)?);
         Ok(if square < 0.0 { 0.0 } else { square })
     }

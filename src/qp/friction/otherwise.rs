@@ -10,23 +10,24 @@ use crate::qp::friction::newton::{Laws, Point, Run, RHO};
 use crate::qp::friction::path::{Solves, Way};
 use crate::qp::Direct;
 
-/// rho in these multiples where the merit falls too slowly; with the first two comes a path along smoothed laws, before
-/// them where the merit is far from zero.
+/// Multiples of rho tried if the merit falls too slowly; the first two are combined with a path along smoothed laws,
+/// which comes first if the merit is far from zero.
 const MULTIPLES: [f64; 5] = [5.0, 0.2, 25.0, 0.04, 1.0];
-/// A merit above this part of the scale is no better than the start.
+/// A merit above this part of the scale is no better than that of the start.
 const FAR: f64 = 1e-3;
-/// The first path ends where states are known, the second goes on near to sliding.
+/// The first path ends when the states are known, the second continues close to sliding.
 const PATHS: [Way; 2] = [
     Way { relaxed: 0.0, last: 1e-3, solves: Solves::Pairs { products: 60 } },
     Way { relaxed: 1.0, last: LAST, solves: Solves::Pairs { products: 100 } },
 ];
-/// eps of the first that is rounding.
+/// Smallest eps relative to the first eps: rounding.
 const LAST: f64 = 1e-14;
-/// rho of the paths with dense matrices, and by how much bounds are relaxed.
+/// rho of the paths with dense matrices, and the relaxation of bounds.
 const DENSE: [(f64, f64); 4] = [(RHO, 0.0), (RHO, 1.0), (5.0 * RHO, 1.0), (RHO, 3.0)];
 
 impl Run<'_, '_> {
-    /// Where Newton's method has not ended well: other rho, the smoothed laws, other starts, dense systems; until one does.
+    /// Called if Newton's method has not ended well: tries other rho, the smoothed laws, other starts, dense systems,
+    /// until one succeeds.
     pub fn otherwise(&mut self, direct: Option<Direct>, start: &Point, stalled: Point) -> Result<Point> {
         let mut now = stalled;
         for (count, multiple) in MULTIPLES.into_iter().enumerate() {
@@ -53,7 +54,7 @@ impl Run<'_, '_> {
         self.by_dense_systems(direct, start, now)
     }
 
-    /// Paths whose systems are solved exactly, where rows and modes are not too many for the limit and the memory.
+    /// Paths with exactly solved systems, if rows and modes are within the limit and the memory.
     fn by_dense_systems(&mut self, direct: Option<Direct>, start: &Point, stalled: Point) -> Result<Point> {
         let dense = direct.map(|direct| Dense::new(&self.problem, direct)).transpose();
         let dense = dense.or_else(|error| if error.kind == Kind::Memory { Ok(None) } else { Err(error) })?;
@@ -71,7 +72,7 @@ impl Run<'_, '_> {
         self.is_met(now) || self.counts.products >= self.limit
     }
 
-    /// With another rho, from where it stands or, if that is far from an answer, from the start.
+    /// Another rho, from the present point or, if this is far from an answer, from the start.
     fn again(&mut self, start: &Point, now: Point, rho: f64) -> Result<Point> {
         self.tried.restarts += 1;
         let laws = Laws { cones: self.problem.cones, rho };
@@ -81,7 +82,7 @@ impl Run<'_, '_> {
         self.newton(laws, begun)
     }
 
-    /// Newton's method from the end of a path that begins at the start.
+    /// Newton's method from the end point of a path that begins at the start.
     fn along_path(&mut self, start: &Point, rho: f64, way: Way) -> Result<Point> {
         match way.solves {
             Solves::Pairs { .. } => self.tried.paths += 1,
@@ -96,7 +97,7 @@ impl Run<'_, '_> {
         self.newton(laws, end)
     }
 
-    /// The start that the answer without friction is, where there is one.
+    /// The answer without friction as a start, if there is one.
     fn without_friction(&mut self, start: &Point) -> Result<Option<Point>> {
         self.tried.frictionless = true;
         let cones = self.problem.cones.frictionless();
@@ -107,14 +108,14 @@ impl Run<'_, '_> {
         let laws = Laws { cones: &cones, rho: RHO };
         let g = self.gradient(&first.point)?;
         let begun = self.begin(laws, &first.point, &g, &start.alpha)?;
-        // it is no answer of the laws with friction
+        // it is not an answer for the laws with friction
         let best = std::mem::take(&mut self.last);
         let found = self.newton(laws, begun);
         self.last = best;
         self.within(&found?)
     }
 
-    /// The start that the answer is where all nodes that the start has closed stick.
+    /// As a start, the answer for which all nodes that are closed at the start stick.
     fn sticking(&mut self, start: &Point) -> Result<Option<Point>> {
         self.tried.sticking = true;
         let mut face = Face::at(self.problem.cones, &start.x, &start.r, RHO);
@@ -140,7 +141,7 @@ impl Run<'_, '_> {
         self.within(&found)
     }
 
-    /// The nearest point within the cones, with its product.
+    /// The nearest point within the cones, and its product.
     fn within(&mut self, found: &Point) -> Result<Option<Point>> {
         let laws = Laws { cones: self.problem.cones, rho: RHO };
         let inside = project(&self.problem, laws.cones, self.motions.as_ref(), &found.x)?;

@@ -1,4 +1,5 @@
-//! Directions kept with their images under F. They stay valid for all states of the nodes, coefficients, bounds and loads.
+//! Directions stored with their images under F. They stay valid for all states of the nodes, coefficients, bounds and
+//! loads.
 
 use std::collections::VecDeque;
 use std::sync::{Mutex, MutexGuard, PoisonError};
@@ -10,14 +11,14 @@ use crate::linalg::Matrix;
 use crate::platform::{interrupt, tally};
 use crate::qp::friction::face::Model;
 
-/// Pairs kept; the oldest goes first.
+/// Limit of pairs; the oldest pair is dropped first.
 const MOST: usize = 200;
-/// Columns of unit length that keep less than this beside the others depend on them.
+/// Columns of unit length are dependent if less than this part is left beside the others.
 const CUT: f64 = 1e-12;
-/// Rounding of a product, of its size.
+/// Rounding of a product, relative to its size.
 const NOISE: f64 = 16.0 * f64::EPSILON;
 
-/// What earlier solves leave to later ones with the same F, G and rows.
+/// Data that solves pass to later solves with equal F, G and rows.
 #[derive(Debug, Default)]
 pub struct Pairs {
     kept: VecDeque<Pair>,
@@ -29,11 +30,11 @@ pub struct Pair {
     pub v: Vec<f64>,
     /// `F v`
     pub image: Vec<f64>,
-    /// `|G'(G G')^+ G v|`, what rounding has left of it.
+    /// `|G'(G G')^+ G v|`, the imbalance due to rounding.
     pub unbalanced: f64,
 }
 
-/// Pairs of some rows of a problem, while no solve uses them.
+/// Pairs for some rows of a problem, while no solve uses them.
 #[derive(Default)]
 pub struct PairsBetween {
     kept: Mutex<Option<(Vec<usize>, Pairs)>>,
@@ -42,14 +43,14 @@ pub struct PairsBetween {
 
 /// The last answer with friction, for measurements.
 pub struct DualAnswer {
-    /// Those that took part.
+    /// The rows that took part.
     pub rows: Vec<usize>,
     pub x: Vec<f64>,
     pub alpha: Vec<f64>,
 }
 
 impl PairsBetween {
-    /// Those of these rows; those of others are dropped.
+    /// The pairs for these rows; pairs for other rows are dropped.
     pub fn take(&self, rows: &[usize]) -> Option<Pairs> {
         locked(&self.kept).take().filter(|(of, _)| of == rows).map(|(_, pairs)| pairs)
     }
@@ -58,7 +59,7 @@ impl PairsBetween {
         *locked(&self.kept) = Some((rows.to_vec(), pairs));
     }
 
-    /// The next solve is to be as if none had been before.
+    /// Drops the pairs, so that earlier solves do not affect the next one.
     pub fn forget(&self) {
         *locked(&self.kept) = None;
     }
@@ -76,11 +77,11 @@ fn locked<T>(kept: &Mutex<T>) -> MutexGuard<'_, T> {
     kept.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// The combination of all pairs that the linear model likes best.
+/// The combination of all pairs that minimises the residual of the linear model.
 pub struct Step {
     pub dx: Vec<f64>,
     pub dg: Vec<f64>,
-    /// What it leaves of the residual, as a part.
+    /// Remaining part of the residual.
     pub rest: f64,
 }
 
@@ -89,7 +90,7 @@ impl Pairs {
         self.kept.len()
     }
 
-    /// Those of m rows; none of others.
+    /// The pairs if they have m rows; otherwise none.
     pub fn of_order(self, order: usize) -> Self {
         if self.kept.iter().all(|pair| pair.v.len() == order) {
             self
@@ -105,8 +106,8 @@ impl Pairs {
         self.kept.push_back(pair);
     }
 
-    /// `dx = V c`, `c = argmin | [L V; P w (W'F V + D S V); N] c + [first; P w q; 0] |`, N = diag what rounding has
-    /// made of `G v` and `F v`: pairs of other steps, far larger than this one, would promise what they cannot keep.
+    /// `dx = V c`, `c = argmin | [L V; P w (W'F V + D S V); N] c + [first; P w q; 0] |`, with N = diag of the rounding of
+    /// `G v` and `F v`: without N, pairs of far larger steps would seem to reduce the residual by their rounding.
     pub fn minimise(&self, model: &Model, residual: Vec<f64>) -> Result<Step> {
         interrupt::check()?;
         tally::costly();

@@ -1,4 +1,5 @@
-//! Newton's method along the smoothed laws, eps from large to small: used if Newton's method cycles with the laws themselves.
+//! Newton's method along the smoothed laws, eps from large to small: used if Newton's method cycles with the laws
+//! themselves.
 
 use crate::error::Result;
 use crate::linalg::vector::{axpy, norm_max};
@@ -8,22 +9,23 @@ use crate::qp::friction::newton::{Laws, Point, Run};
 use crate::qp::friction::pairs::Step;
 use crate::qp::friction::smooth::{face, missed, Smoothing};
 
-/// The first eps, of the largest force there is or is to be expected.
+/// The first eps, relative to the largest present or expected force.
 const FIRST: f64 = 0.3;
-/// eps becomes so much of what it was after a full step, and after a shorter one.
+/// Factors on eps after a full step, and after a shorter one.
 const SHRINKS: f64 = 0.5;
 const SHRINKS_LESS: f64 = 0.6;
-/// Systems solved at most.
+/// Limit of systems solved.
 const SYSTEMS: usize = 120;
-/// Directions of one system at most, and what they may leave of its residual.
+/// Limit of directions per system, and the part of its residual that may remain.
 const DIRECTIONS: usize = 10;
 const LEFT: f64 = 0.3;
-/// A step of length t takes off the residual at least this part of t.
+/// A step of length t must reduce the residual by at least this part of t.
 const FALLS: f64 = 0.1;
 const SHORTEST: f64 = 1e-4;
 
 impl Run<'_, '_> {
-    /// From `now` until the laws are met or eps has ended; by pairs, at most `products` more, or by dense systems.
+    /// Continues from `now` until the laws are satisfied or eps is at its end; with at most `products` further pairs, or
+    /// with dense systems.
     pub fn path(&mut self, laws: Laws, mut now: Point, way: Way) -> Result<Point> {
         let Laws { cones, rho } = laws;
         let root = (now.x.len() as f64).sqrt();
@@ -56,7 +58,7 @@ impl Run<'_, '_> {
         Ok(now)
     }
 
-    /// Directions join the pairs until they leave little of the residual.
+    /// Adds directions to the pairs until little of the residual is left.
     pub fn enough(&mut self, model: &Model, now: &Point) -> Result<Step> {
         let preconditioner = self.problem.preconditioner.map(|m| m.on(&model.face)).transpose()?;
         let mut step = self.pairs.minimise(model, model.face.residual(&now.x, &now.r))?;
@@ -76,7 +78,8 @@ impl Run<'_, '_> {
         Ok(step)
     }
 
-    /// The first of the steps 1, 1/2, ... that takes enough off the residual, or the shortest; with its length and residual.
+    /// The first of the steps 1, 1/2, ... that reduces the residual sufficiently, or the shortest; with its length and
+    /// residual.
     fn shortened(
         &mut self,
         laws: Laws,
@@ -111,7 +114,7 @@ impl Run<'_, '_> {
     }
 }
 
-/// A path: by how much bounds are relaxed, in units of eps, and the part of the first eps where it ends.
+/// A path: the relaxation of bounds in units of eps, and the last eps relative to the first.
 #[derive(Clone, Copy)]
 pub struct Way<'d> {
     pub relaxed: f64,

@@ -1,11 +1,12 @@
-//! The smoothed laws: `phi(z) = (z + sqrt(z^2 + 4 eps^2))/2` replaces z+. Every coordinate is then an equation with its own
-//! damping, and no state is decided before eps is small.
+//! The smoothed laws: `phi(z) = (z + sqrt(z^2 + 4 eps^2))/2` replaces z+. Every coordinate is then an equation with its
+//! own damping, and no state is decided before eps is small.
 //!
 //! ```text
 //! x_n = phi(xi_n),   x_t = c(|xi_t|) xi_t/|xi_t|,   c(s) = s + phi(-s - b) - phi(s - b),   b = bound + mu phi(xi_n) + relaxed eps
 //! ```
 //!
-//! c < b: without the last term of b, a load close to sliding would require endless slip, or a larger force than b allows.
+//! c < b: without the last term of b, a load close to sliding would require unlimited slip, or a larger force than b
+//! allows.
 
 use crate::linalg::vector::dot;
 use crate::qp::friction::cones::{direction, length, Cones, Node};
@@ -19,9 +20,9 @@ pub struct Smoothing {
     pub relaxed: f64,
 }
 
-/// Weights below are those of held values; it keeps dampings finite.
+/// Smaller weights are those of held values; the limit keeps dampings finite.
 const SMALLEST: f64 = 1e-100;
-/// Below this part of eps the direction of a tangential force plays no part.
+/// Below this part of eps the direction of a tangential force has no effect.
 const SHORT: f64 = 1e-8;
 
 /// `phi(z)`, positive, without cancellation.
@@ -39,7 +40,7 @@ fn slope(z: f64, eps: f64) -> f64 {
     phi(z, eps) / z.hypot(2.0 * eps)
 }
 
-/// c of a length s under the limit b with its derivatives, and what they lack to 1, each without cancellation.
+/// c of a length s with the limit b, its derivatives, and their differences from 1, each without cancellation.
 struct Disc {
     /// `c/s` and `1 - c/s`
     ratio: f64,
@@ -47,7 +48,7 @@ struct Disc {
     /// `c'(s)` and `1 - c'(s)`
     slope: f64,
     drop: f64,
-    /// `dc/db`, which over `1 - c'(s)` is the part of mu that couples x_t with x_n.
+    /// `dc/db`; divided by `1 - c'(s)` and multiplied by mu it is the coupling of x_t with x_n.
     by_limit: f64,
 }
 

@@ -1,4 +1,4 @@
-//! The start of the method: x within the cones, a that fits its face, the length against which gaps are measured.
+//! The start of the method: x within the cones, a that fits its face, the length to which gaps are relative.
 
 use crate::error::Result;
 use crate::linalg::vector::{dot, norm};
@@ -10,11 +10,11 @@ use crate::qp::friction::newton::{Laws, Point, Run};
 use crate::qp::friction::{FrictionLimits, FrictionObserver, FrictionProblem, FrictionStart, Tried};
 use crate::qp::Counts;
 
-/// `|P d|` below this part of `|d|` is none.
+/// `|P d|` is zero if it is below this part of `|d|`.
 const NOTHING: f64 = 1e-14;
 
 impl<'a, 'w> Run<'a, 'w> {
-    /// The method and the first x; none where no force within the cones balances the load, with what is left of it.
+    /// The method and the first x; if no forces within the cones balance the load, none with the remaining load.
     pub fn new(
         problem: FrictionProblem<'a>,
         limits: FrictionLimits,
@@ -50,14 +50,14 @@ impl<'a, 'w> Run<'a, 'w> {
         Ok(g)
     }
 
-    /// The length that gaps are measured against, and the merit that counts as zero: rounding of d counts as such.
+    /// Sets the length to which gaps are relative, and the merit that counts as zero, which includes rounding of d.
     pub fn measure(&mut self, g: &[f64], tolerance: f64) -> Result<()> {
         self.scale = self.size_of_gaps(g)?;
         self.small = (tolerance * self.scale).max(64.0 * f64::EPSILON * norm(self.problem.b).max(norm(g)));
         Ok(())
     }
 
-    /// The merit that rounding of `G x = e` leaves: directions keep it as it is at the start.
+    /// Increases that merit by the rounding of `G x = e` at the start, which later directions do not change.
     pub fn allow_for_balance(&mut self, laws: Laws, x: &[f64]) -> Result<()> {
         const TIMES: f64 = 4.0;
         let floor = TIMES * self.balance_missed(x)?.sqrt() / laws.rho;
@@ -65,7 +65,7 @@ impl<'a, 'w> Run<'a, 'w> {
         Ok(())
     }
 
-    /// N, `|P d|`, or `|P (F x - d)|` where that is 0.
+    /// N, `|P d|`, or `|P (F x - d)|` if that is 0.
     fn size_of_gaps(&mut self, g: &[f64]) -> Result<f64> {
         let mut d = self.problem.b.to_vec();
         let whole = norm(&d);
@@ -79,7 +79,7 @@ impl<'a, 'w> Run<'a, 'w> {
         Ok(if norm(&g) > NOTHING * whole { norm(&g) } else { 0.0 })
     }
 
-    /// x and g with a in two passes, `a += da` with the face of (x, 0), then with that of (x, r).
+    /// The start point with x and g; a in two passes, `a += da` with the face of (x, 0), then with that of (x, r).
     pub fn begin(&mut self, laws: Laws, x: &[f64], g: &[f64], alpha: &[f64]) -> Result<Point> {
         let none = vec![0.0; x.len()];
         let first = self.model(Face::at(laws.cones, x, &none, laws.rho))?;

@@ -1,12 +1,13 @@
-//! Weak elastic supports of all motions: `G x + x_s = e`, `x_s = kappa a`. They hold what friction does not hold, and their forces
-//! show how much that is. Each support is one more free row, so no other module needs to know about them.
+//! Weak elastic supports of all motions: `G x + x_s = e`, `x_s = kappa a`. They hold what friction does not hold, and
+//! their forces show how much that is. Each support is an additional free row, so no other module needs to know about
+//! supports.
 
 use crate::error::Result;
 use crate::linalg::{Csr, Operator};
 use crate::platform::memory::copied;
 use crate::qp::friction::{Cones, Face, FacePreconditioner, FrictionProblem, OnFace};
 
-/// A problem with a support of each motion; the last r of its m + r rows are x_s.
+/// A problem with a support for each motion; the last r of its m + r rows are x_s.
 pub struct Supported<'a> {
     of: FrictionProblem<'a>,
     kappa: f64,
@@ -16,7 +17,7 @@ pub struct Supported<'a> {
     preconditioner: Option<OfRows<'a>>,
 }
 
-/// M of the rows, and kappa for the supports.
+/// M for the rows, and kappa for the supports.
 struct OfRows<'a> {
     rows: &'a dyn FacePreconditioner,
     kappa: f64,
@@ -47,7 +48,7 @@ impl<'a> Supported<'a> {
         }
     }
 
-    /// What the supports carry of e, r entries: 0 where friction and contact hold the load.
+    /// The part of e that the supports carry, r entries: 0 if friction and contact hold the load.
     pub fn unheld<'x>(&self, x: &'x [f64]) -> &'x [f64] {
         &x[self.of.b.len()..]
     }
@@ -58,7 +59,7 @@ impl Operator for Supported<'_> {
         self.b.len()
     }
 
-    /// y is not a number where memory refused the product.
+    /// y is NaN if there was no memory for the product.
     fn apply(&self, x: &[f64], y: &mut [f64]) {
         if self.try_apply(x, y).is_err() {
             y.fill(f64::NAN);

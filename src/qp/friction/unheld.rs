@@ -1,12 +1,13 @@
-//! The forces within the cones that are nearest to a load that no such forces balance, `min |e - G l|`, and the remainder:
+//! The forces within the cones that come closest to balancing a load if none balance it, `min |e - G l|`, and the
+//! remainder:
 //!
 //! ```text
 //! beta + G PI(G'beta / delta) = e,   delta -> 0,   beta = e - G l
 //! ```
 //!
-//! `G'beta` is in the polar cone up to delta times the forces: no force within the cones resists this motion by more than that.
-//! Coefficients are slightly increased, so that the actual friction does not resist the motion at all; the remaining effect of
-//! delta is subtracted from the motion. G and e are weighted, mode by mode.
+//! `G'beta` is in the polar cone up to delta times the forces: no force within the cones resists this motion by more than
+//! that. Coefficients are slightly increased, so that the actual friction does not resist the motion at all; the
+//! remaining effect of delta is subtracted from the motion. G and e are weighted, mode by mode.
 
 use crate::error::Result;
 use crate::linalg::vector::{axpy, dot, norm};
@@ -16,23 +17,24 @@ use crate::qp::friction::motions::Motions;
 use crate::qp::friction::nearest::derivative;
 use crate::qp::friction::FrictionProblem;
 
-/// delta of the largest diagonal entry of `G G'`, at first, from one to the next, and at last.
+/// delta relative to the largest diagonal entry of `G G'`: the first value, the factor, and the last value.
 const FIRST: f64 = 1.0;
 const LESS: f64 = 0.1;
 const LAST: f64 = 1e-13;
 const STEPS: usize = 30;
-/// What is added to coefficients, of them.
+/// Relative increase of the coefficients.
 const WIDER: f64 = 1e-6;
-/// Of |e|: what is solved as well as may be, and what is solved.
+/// Residuals relative to |e|: of an accurate solution, and of an accepted one.
 const ACCURACY: f64 = 1e-14;
 const ACCEPTED: f64 = 1e-5;
-/// Armijo's part of the slope, and the shortest step.
+/// Armijo's factor on the slope, and the shortest step.
 const SLOPE: f64 = 1e-4;
 const SHORTEST: f64 = 1e-6;
-/// Rounds that take what rows resist from the motion, and the shift of their matrices.
+/// Rounds that remove the part of the motion that rows resist, and the shift of their matrices.
 const ROUNDS: usize = 4;
 const SHIFT: f64 = 1e-13;
-/// Rows that give way by less than so many times what others resist are to stay as they are, nodes that slip by less are not to slip.
+/// Rows that open, and nodes that slip, by less than this multiple of the resistance of other rows are treated as closed
+/// and sticking.
 const NEAR: f64 = 10.0;
 
 struct Trial {
@@ -44,7 +46,7 @@ struct Trial {
     phi: f64,
 }
 
-/// The forces, and `e - G l`, that are nearest in the norm of `weights`, one for each mode.
+/// The forces for which `e - G l` is smallest in the norm of `weights`, one weight per mode; and `e - G l`.
 pub fn unheld(problem: &FrictionProblem, weights: &[f64]) -> Result<(Vec<f64>, Vec<f64>)> {
     let mut g_transposed = problem.g_transposed.clone();
     g_transposed.col.iter().zip(&mut g_transposed.val).for_each(|(&mode, v)| *v *= weights[mode]);
@@ -56,7 +58,7 @@ pub fn unheld(problem: &FrictionProblem, weights: &[f64]) -> Result<(Vec<f64>, V
     let mut before = best.beta.clone();
     let is_solved = |now: &Trial| norm(&now.slope) <= ACCEPTED * norm(&e);
     while shift >= LAST {
-        // where forces stay as they are, beta changes with delta
+        // while the states of the nodes do not change, beta is a linear function of delta
         let mut beta = best.beta.clone();
         beta.iter_mut().zip(&before).for_each(|(beta, before)| *beta += LESS * (*beta - before));
         let mut now = nearest(problem, &motions, beta, shift)?;
@@ -74,13 +76,13 @@ pub fn unheld(problem: &FrictionProblem, weights: &[f64]) -> Result<(Vec<f64>, V
     Ok((best.forces, left.iter().zip(weights).map(|(beta, w)| beta / w).collect()))
 }
 
-/// What a node makes of a motion.
+/// The resistance of a node to a motion.
 struct Resisted {
     force: Force,
-    /// Where it slips, and how far.
+    /// Direction and size of the slip.
     along: [f64; 2],
     slip: f64,
-    /// What its normal row resists together with friction; below 0 it gives way.
+    /// Resistance of its normal row together with friction; below 0 the row opens.
     by: f64,
 }
 
@@ -94,7 +96,7 @@ impl Resisted {
     }
 }
 
-/// Newton's method for one delta, of the largest diagonal entry of `G G'`.
+/// Newton's method for one delta, given relative to the largest diagonal entry of `G G'`.
 fn nearest(problem: &FrictionProblem, motions: &Motions, beta: Vec<f64>, shift: f64) -> Result<Trial> {
     let delta = shift * motions.size();
     let mut now = trial(problem, beta, delta);
@@ -112,7 +114,7 @@ fn nearest(problem: &FrictionProblem, motions: &Motions, beta: Vec<f64>, shift: 
     Ok(now)
 }
 
-/// The motion without what normal rows with their friction, and free rows, resist of it: delta times their forces.
+/// Removes from the motion what normal rows with their friction, and free rows, resist: delta times their forces.
 fn settled(problem: &FrictionProblem, motions: &Motions, mut beta: Vec<f64>) -> Result<Vec<f64>> {
     let mut near = None;
     for _ in 0..ROUNDS {
@@ -142,8 +144,8 @@ fn settled(problem: &FrictionProblem, motions: &Motions, mut beta: Vec<f64>) -> 
     Ok(beta)
 }
 
-/// `phi(beta) = |beta|^2/2 + delta |PI(G'beta / delta)|^2/2 - e'beta`, with PI on cones that hold their bounds as well:
-/// `delta (v'l - l'l/2)` in place of the second term.
+/// `phi(beta) = |beta|^2/2 + delta |PI(G'beta / delta)|^2/2 - e'beta`, where PI projects on cones that include the
+/// bounds: `delta (v'l - l'l/2)` replaces the second term.
 fn trial(problem: &FrictionProblem, beta: Vec<f64>, delta: f64) -> Trial {
     let g_transposed = problem.g_transposed;
     let v: Vec<f64> = (0..problem.b.len()).map(|i| g_transposed.row_dot(i, &beta) / delta).collect();
@@ -161,7 +163,7 @@ fn trial(problem: &FrictionProblem, beta: Vec<f64>, delta: f64) -> Trial {
     Trial { beta, forces, places, slope, phi }
 }
 
-/// The first of the steps 1, 1/2, ... after which phi has fallen.
+/// The first of the steps 1, 1/2, ... that reduces phi sufficiently.
 fn armijo(problem: &FrictionProblem, now: &Trial, direction: &[f64], delta: f64) -> Option<Trial> {
     let (slope, mut t) = (dot(&now.slope, direction), 1.0);
     while t > SHORTEST {

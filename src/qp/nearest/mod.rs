@@ -1,5 +1,6 @@
-//! `a = argmin |a - a0|` subject to `A a <= g`: the dual active-set method of Goldfarb and Idnani (1983) with unit Hessian.
-//! It ends after finitely many steps, even if rows depend on each other, and shows which rows no a satisfies.
+//! `a = argmin |a - a0|` subject to `A a <= g`: the dual active-set method of Goldfarb and Idnani (1983) with unit
+//! Hessian. It ends after finitely many steps, even for linearly dependent rows, and shows which rows cannot be satisfied
+//! together.
 
 use crate::error::{Error, Kind, Result};
 use crate::linalg::graph::joined;
@@ -7,18 +8,19 @@ use crate::linalg::vector::{axpy, dot, norm, norm_max, power_of_two_below};
 use crate::linalg::{Csr, Matrix};
 use crate::platform::interrupt;
 
-/// A unit row with less than this outside of the span of active rows depends on them.
+/// A unit row is dependent if less than this part of it is outside the span of the active rows.
 const DEPENDENT: f64 = 1e-11;
-/// A row is violated by more than this part of `|a|`, by more than its noise and that of a0.
+/// A row is violated if the violation exceeds this part of `|a|`, its noise and the noise of a0.
 const ROUNDING: f64 = 64.0 * f64::EPSILON;
 
-/// The distance from a0 has fallen where it is less than this part of what it was.
+/// The distance from a0 has decreased if it is below this part of its previous value.
 const FALLS: f64 = 0.999;
 
-/// Each takes out of a what rounding of the one before has left of rows.
+/// Each pass removes from the rows the rounding of the previous one.
 const PASSES: usize = 2;
 
-/// The problem: A, m x d, its gaps g, +infinity where nothing restricts, known to `noise`, and a0, known to `rounding` |a0|.
+/// The problem: A, m x d, its gaps g, +infinity for no restriction, with the error `noise`, and a0, with the error
+/// `rounding` |a0|.
 #[derive(Clone, Copy)]
 pub struct Polyhedron<'a> {
     pub rows: &'a Csr,
@@ -28,17 +30,17 @@ pub struct Polyhedron<'a> {
     pub rounding: f64,
 }
 
-/// Its solution.
+/// The solution of the problem.
 pub struct Nearest {
     /// a, d entries.
     pub point: Vec<f64>,
     /// Forces l >= 0 of the rows with `a = a0 - A'l`, m entries.
     pub forces: Vec<f64>,
-    /// Weights w >= 0 of rows with `A'w = 0` and `g'w < 0`, each but for rounding: they were left out.
+    /// Weights w >= 0 of rows with `A'w = 0` and `g'w < 0`, up to rounding: these rows were left out.
     pub contradictions: Vec<Vec<(usize, f64)>>,
 }
 
-/// Columns that no row connects do not know of each other; those that no row restricts are those of a0.
+/// Columns that no row connects are solved separately; columns without rows keep their values of a0.
 pub fn nearest_point(of: Polyhedron) -> Result<Nearest> {
     let Polyhedron { rows: matrix, gap, target, noise, rounding } = of;
     let length = |i: usize| matrix.row(i).map(|(_, v)| v * v).sum::<f64>().sqrt();
@@ -79,7 +81,7 @@ pub fn nearest_point(of: Polyhedron) -> Result<Nearest> {
     Ok(found)
 }
 
-/// Columns that rows connect, with rows of unit length.
+/// Columns connected by rows, with rows of unit length.
 #[derive(Clone)]
 struct ConnectedColumns {
     rows: Csr,
@@ -113,14 +115,14 @@ impl ConnectedColumns {
                 contradictions.push(weights);
                 left_out[p] = true;
             }
-            // |a - a0| grows from row to row; where it still falls at last, they change places for rounding
+            // |a - a0| increases from row to row; if it decreases, rows are exchanged because of rounding
             let distance = active.distance();
             if round > enough && distance < FALLS * farthest {
                 return Ok((active, contradictions));
             }
             farthest = distance;
         }
-        Err(Error::new(Kind::Internal, "the active set of a nearest point does not settle"))
+        Err(Error::new(Kind::Internal, "the active set of a nearest point does not converge"))
     }
 
     /// `n_i'a - g_i`
@@ -128,7 +130,7 @@ impl ConnectedColumns {
         self.rows.row_dot(i, a) - self.gap[i]
     }
 
-    /// Active rows are met as well as rounding allows.
+    /// The row with the largest violation; active rows are satisfied up to rounding and do not count.
     fn most_violated(&self, active: &Active, known: f64, left_out: &[bool]) -> Option<usize> {
         let (mut worst, zero) = ((None, 0.0), known + ROUNDING * norm(&active.a));
         let mut asked: Vec<bool> = left_out.iter().map(|out| !out).collect();
@@ -143,7 +145,7 @@ impl ConnectedColumns {
     }
 }
 
-/// Rows met, `N = Q R` the matrix of their normals, their forces >= 0 and `a = a0 - N force`.
+/// Active rows, `N = Q R` the matrix of their normals, their forces >= 0 and `a = a0 - N force`.
 struct Active<'a> {
     of: &'a ConnectedColumns,
     rows: Vec<usize>,
@@ -165,8 +167,8 @@ impl<'a> Active<'a> {
         self.a.iter().zip(&self.of.target).map(|(a, target)| (a - target) * (a - target)).sum::<f64>().sqrt()
     }
 
-    /// Makes the violated row p active; rows whose force would turn negative on the way leave. Where it cannot be met: its
-    /// weight and those of the active rows that contradict it.
+    /// Makes the violated row p active; rows whose forces would become negative leave. If the row cannot be satisfied,
+    /// returns its weight and the weights of the active rows that contradict it.
     fn admit(&mut self, p: usize) -> Result<Option<Vec<(usize, f64)>>> {
         let mut own = 0.0;
         loop {
@@ -228,7 +230,7 @@ impl<'a> Active<'a> {
         self.force.push(force);
     }
 
-    /// Rotations of neighbouring columns of Q make R triangular again.
+    /// Rotations of adjacent columns of Q make R triangular again.
     fn remove(&mut self, j: usize) {
         self.rows.remove(j);
         self.force.remove(j);
@@ -262,8 +264,8 @@ impl<'a> Active<'a> {
         x
     }
 
-    /// a and the forces of the active rows, without the rounding errors of the way: `a = a0 - Q y`, `R'y = N'a0 - g`; then again
-    /// for what is left, so that rows are met to rounding of a, not of a0.
+    /// Recomputes a and the forces of the active rows without accumulated rounding: `a = a0 - Q y`, `R'y = N'a0 - g`;
+    /// then again for the remainder, so that rows are satisfied up to rounding of a, not of a0.
     fn settle(&mut self) {
         let mut all = vec![0.0; self.rows.len()];
         self.a.clone_from(&self.of.target);

@@ -12,7 +12,7 @@ fn solve(a: &[Vec<f64>], gap: &[f64], target: &[f64]) -> Vec<f64> {
     noisy(a, gap, target, 0.0).point
 }
 
-/// The solution where gaps are known to `noise`; forces lead to the point.
+/// The solution for gaps with the error `noise`; checks that the forces lead to the point.
 fn noisy(a: &[Vec<f64>], gap: &[f64], target: &[f64], noise: f64) -> Nearest {
     let (rows, noise) = (rows(a), vec![noise; gap.len()]);
     let found =
@@ -37,7 +37,7 @@ fn one_and_two_motions_stop_where_they_must() {
     // the corner x <= 1, y <= 1; then the edge x + y <= 1 from (2, 0)
     assert_near(&solve(&[vec![1.0, 0.0], vec![0.0, 1.0]], &[1.0, 1.0], &[3.0, 2.0]), &[1.0, 1.0], 1e-15);
     assert_near(&solve(&[vec![1.0, 1.0]], &[1.0], &[2.0, 0.0]), &[1.5, -0.5], 1e-15);
-    // a row that is met first is left again: x + y <= 1, then x <= 0 from (4, 1)
+    // a row that is active first leaves again: x + y <= 1, then x <= 0 from (4, 1)
     assert_near(&solve(&[vec![1.0, 1.0], vec![1.0, 0.0]], &[1.0, 0.0], &[4.0, 0.5]), &[0.0, 0.5], 1e-15);
 }
 
@@ -52,7 +52,7 @@ fn a_target_that_violates_nothing_is_the_answer_bit_for_bit() {
     assert_eq!(noisy.point, [0.1, -0.3, 0.0], "nothing is violated by more than its noise");
 }
 
-/// x <= 0, -x - y <= -3, y <= 1 and z <= 5, met by none.
+/// x <= 0, -x - y <= -3, y <= 1 and z <= 5, which no point satisfies.
 #[test]
 fn rows_that_contradict_each_other_are_told_with_their_weights() {
     let a = [vec![1.0, 0.0, 0.0], vec![-2.0, -2.0, 0.0], vec![0.0, 1.0, 0.0], vec![0.0, 0.0, 1.0]];
@@ -65,7 +65,7 @@ fn rows_that_contradict_each_other_are_told_with_their_weights() {
     assert_eq!(found.point[2], 5.0);
 }
 
-/// Of all sets of rows met that give a feasible point, the nearest.
+/// The nearest of the feasible points given by all sets of active rows.
 fn by_enumeration(a: &[Vec<f64>], gap: &[f64], target: &[f64]) -> Vec<f64> {
     let (mut best, mut nearest) = (f64::INFINITY, vec![0.0; target.len()]);
     for set in 0..1usize << a.len() {
@@ -136,7 +136,7 @@ fn units_change_nothing_but_the_unit() {
     assert_near(&solve(&a, &times(&gap, 1e10), &times(&target, 1e10)), &times(&expected, 1e10), 1e-13);
 }
 
-/// Conditions of Karush, Kuhn and Tucker by the nearest point: (a0 - a)'(b - a) <= 0 for feasible b.
+/// Karush-Kuhn-Tucker conditions at the nearest point: (a0 - a)'(b - a) <= 0 for feasible b.
 #[test]
 fn hundreds_of_motions_and_rows_with_copies_that_differ_by_rounding() {
     let mut numbers = scattered(4_000_000).into_iter();
@@ -153,14 +153,14 @@ fn hundreds_of_motions_and_rows_with_copies_that_differ_by_rounding() {
     assert!((0..m).all(|i| dot(&a[i], &found) <= gap[i] + 1e-12));
     let way: Vec<f64> = target.iter().zip(&found).map(|(t, f)| t - f).collect();
     assert!(dot(&way, &found) >= -1e-11, "0 is feasible");
-    // the way back is a combination of rows that are met
+    // a - a0 is a combination of active rows
     let met: Vec<usize> = (0..m / 2).filter(|&i| dot(&a[i], &found) > gap[i] - 1e-10).collect();
     let normals: Vec<f64> = met.iter().flat_map(|&i| a[i].clone()).collect();
     let basis = Matrix { rows: d, cols: met.len(), data: normals }.orthonormalised(1e-9);
     let mut left = way.clone();
     basis.mul_add(-1.0, &basis.mul_transposed(&way), &mut left);
     assert!(met.len() > 5 && norm(&left) <= 1e-10, "{} {:e}", met.len(), norm(&left));
-    // motions apart from these change no bit
+    // motions without connection to these change no bit
     let mut both: Vec<Vec<f64>> = a.iter().map(|row| [row.clone(), vec![0.0]].concat()).collect();
     both.push([vec![0.0; d], vec![1.0]].concat());
     let gaps = [gap.clone(), vec![0.25]].concat();

@@ -9,7 +9,7 @@ use crate::qp::paper::sizes::PaperSizes;
 use crate::qp::paper::{Parameters, Quadratic, StepOne};
 use crate::qp::{AcceptanceTest, Counts, Observer, Qp, Solution, StepReport, Verdict};
 
-/// How often Step 2 is tightened when the judge does not accept.
+/// How many times Step 2 is tightened if the answer is not accepted.
 const TIGHTENINGS: usize = 6;
 
 /// Solves (24) from `start`.
@@ -40,14 +40,14 @@ struct Outer<'a> {
     x: Vec<f64>,
     mu: Vec<f64>,
     rho: f64,
-    /// From here on A + rho D'D holds nothing of A in double precision.
+    /// For a larger rho, A is lost in A + rho D'D in double precision.
     largest_rho: f64,
     eta: f64,
     m: f64,
     /// Sufficiently small (Step 2): |g^P| and |D x - d|.
     small: f64,
     small_violation: f64,
-    /// |g^P(x^k)|, and what rounding alone leaves of it.
+    /// |g^P(x^k)|, and its rounding.
     gradient: f64,
     noise: f64,
     counts: Counts,
@@ -121,8 +121,8 @@ impl<'a> Outer<'a> {
         Ok(Verdict::StepLimit)
     }
 
-    /// Step 1, (25) inexactly: Algorithm 1 on `L(., mu^k, rho_k)` until `|g^P| <= M |D x - d|`, or both are sufficiently small.
-    /// Corrected: the first one counts only while `|D x - d|` is not small yet.
+    /// Step 1, (25) inexactly: Algorithm 1 on `L(., mu^k, rho_k)` until `|g^P| <= M |D x - d|`, or both are sufficiently
+    /// small. Corrected: the first condition counts only while `|D x - d|` is not yet small.
     fn inner(&mut self, observer: &mut dyn Observer) -> Result<Inner> {
         self.q.augment(&self.mu, self.rho);
         let (m, small, small_violation) = (self.m, self.small, self.small_violation);
@@ -152,7 +152,7 @@ impl<'a> Outer<'a> {
         })
     }
 
-    /// Step 2; a violation that rounding explains is none.
+    /// Step 2; a violation that is rounding counts as zero.
     fn is_small(&self, violation: f64) -> bool {
         let mut terms = vec![0.0; self.mu.len()];
         self.q.qp.g_transposed.mul_transposed_abs_add(&self.x, &mut terms);
@@ -160,7 +160,7 @@ impl<'a> Outer<'a> {
         violation <= self.small_violation.max(rounding) && self.gradient <= self.small.max(self.noise)
     }
 
-    /// alpha = -(mu + rho (D x - d)): what (18) gives too, without a threshold for nonzero lambda.
+    /// alpha = -(mu + rho (D x - d)): equal to that of (18), without a threshold for nonzero lambda.
     fn alpha(&self) -> Vec<f64> {
         let h = self.q.violation(&self.x);
         self.mu.iter().zip(&h).map(|(mu, h)| -(mu + self.rho * h)).collect()

@@ -8,10 +8,10 @@ use crate::qp::paper::variants::{extrapolate, feasible, monotone, Moved};
 use crate::qp::paper::{Quadratic, Variant};
 use crate::qp::{Counts, StepKind};
 
-/// Curvature below this part of the largest one met counts as none.
+/// Curvature counts as zero below this part of the largest curvature so far.
 const FLAT: f64 = 1e-15;
 
-/// A point x >= 0 with its gradient in the two parts of (22) and (23).
+/// A point x >= 0 with its gradient and the two parts (22) and (23).
 pub struct Point<'a> {
     bounded: &'a [bool],
     pub x: Vec<f64>,
@@ -37,28 +37,28 @@ impl<'a> Point<'a> {
         self.split.update(at_bound(self.bounded, &self.x), &self.g);
     }
 
-    /// Conjugate gradients that start here, on the face I = A(x).
+    /// Conjugate gradients from this point, on the face I = A(x).
     fn face(&self) -> PaperFace {
         PaperFace::new(self.x.clone(), self.g.clone(), self.split.active.clone(), self.split.free.clone())
     }
 }
 
-/// How Algorithm 1 is carried out.
+/// Parameters of Algorithm 1.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PaperRule {
     /// Gamma > 0 of the proportionality test.
     pub gamma: f64,
     pub variant: Variant,
-    /// Factor > 1 from one trial step of the extrapolating variant to the next.
+    /// Factor > 1 between successive trial steps of the extrapolating variant.
     pub extrapolation: f64,
 }
 
-/// What a step came to.
+/// The result of a step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum BoundStep {
-    /// A conjugate gradient step, one that met a bound, or a proportioning step.
+    /// A conjugate gradient step, a step that met a bound, or a proportioning step.
     Done(StepKind),
-    /// theta does not curve along the direction.
+    /// theta has no curvature along the direction.
     Flat,
 }
 
@@ -75,7 +75,7 @@ pub struct Proportioning<'a, 'q> {
 }
 
 impl<'a, 'q> Proportioning<'a, 'q> {
-    /// Starts at the point nearest to `start`, with one product for its gradient.
+    /// Starts at the feasible point nearest to `start`, with one product for its gradient.
     pub fn new(q: &'q mut Quadratic<'a>, start: Vec<f64>, rule: PaperRule) -> Result<Self> {
         let x = q.projection(start);
         let g = q.gradient(&x)?;
@@ -84,8 +84,8 @@ impl<'a, 'q> Proportioning<'a, 'q> {
         Ok(Self { q, point, rule, counts, last, face: None, largest_curvature: 0.0 })
     }
 
-    /// Algorithm 1 on (19) until `enough` says so: (i) proportioning where the point is not proportional, (ii) else a
-    /// step towards the minimum on the face. Whether it came so far; not where theta does not curve.
+    /// Algorithm 1 on (19) until `enough` returns true: (i) proportioning if the point is not proportional, (ii)
+    /// otherwise a step towards the minimum on the face. False if it ended because theta has no curvature.
     pub fn run(&mut self, enough: &mut dyn FnMut(&Self) -> Result<bool>) -> Result<bool> {
         while !enough(self)? {
             let step = if self.explores() { self.explore()? } else { self.proportion()? };
@@ -97,13 +97,13 @@ impl<'a, 'q> Proportioning<'a, 'q> {
         Ok(true)
     }
 
-    /// Infeasible conjugate gradients of the monotone variant go on until theta(Py) rises.
+    /// Infeasible conjugate gradients of the monotone variant continue until theta(Py) rises.
     fn explores(&self) -> bool {
         self.face.as_ref().is_some_and(|face| !face.feasible)
             || self.point.split.is_proportional(self.rule.gamma)
     }
 
-    /// Proportioning: the exact minimum along `d = -g^C` frees indices of the active set.
+    /// Proportioning: the exact minimum along `d = -g^C` removes indices from the active set.
     fn proportion(&mut self) -> Result<BoundStep> {
         self.face = None;
         let image = self.q.product(&self.point.split.chopped)?;
@@ -117,7 +117,7 @@ impl<'a, 'q> Proportioning<'a, 'q> {
         Ok(BoundStep::Done(StepKind::Proportioning))
     }
 
-    /// One conjugate gradient step on the face; the variant says what happens at its bounds.
+    /// One conjugate gradient step on the face; the variant determines what happens at its bounds.
     fn explore(&mut self) -> Result<BoundStep> {
         let mut face = self.face.take().unwrap_or_else(|| self.point.face());
         let image = self.q.product(&face.p)?;
@@ -136,7 +136,7 @@ impl<'a, 'q> Proportioning<'a, 'q> {
         Ok(BoundStep::Done(StepKind::ConjugateGradient))
     }
 
-    /// The step to `y = y^i - a p` from y^i leaves the bounds; `image` = H p.
+    /// Handles a step from y^i to `y = y^i - a p` that leaves the bounds; `image` = H p.
     fn beyond_a_bound(&mut self, face: PaperFace, a: f64, y: Vec<f64>, image: &[f64]) -> Result<()> {
         let bounded = self.q.qp.bounded;
         match self.rule.variant {
@@ -144,7 +144,7 @@ impl<'a, 'q> Proportioning<'a, 'q> {
             Variant::Extrapolating => {
                 let (mut moved, step) = feasible(bounded, &face, image);
                 let outcome = extrapolate(self.q, &face, step, self.rule.extrapolation, &mut moved);
-                // where a product failed what came before it stays
+                // if a product fails, the points before it remain valid
                 self.take(moved);
                 outcome?;
             }
@@ -167,7 +167,7 @@ impl<'a, 'q> Proportioning<'a, 'q> {
         self.curvature(p, image).map(|curvature| dot(&self.point.g, p) / curvature)
     }
 
-    /// `p'H p`, none where it vanishes.
+    /// `p'H p`, none if it counts as zero.
     fn curvature(&mut self, p: &[f64], image: &[f64]) -> Option<f64> {
         let (curvature, square) = (dot(p, image), dot(p, p));
         let relative = curvature / square;

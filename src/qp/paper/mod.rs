@@ -1,6 +1,5 @@
-//! The paper's own methods, in its notation: Algorithm 1 for bounds alone and Algorithm 3 for bounds and
-//! equalities. They are kept in the form of the paper, for its readers and as a baseline; the default is
-//! `qp/proportioning/`.
+//! The paper's own methods, in its notation: Algorithm 1 for bounds only and Algorithm 3 for bounds and equalities. They
+//! keep the form of the paper, for its readers and as a baseline; the default is `qp/proportioning/`.
 //!
 //! | paper | file |
 //! |---|---|
@@ -39,31 +38,32 @@ pub struct Parameters {
     pub m: Option<f64>,
     /// Every entry of mu^0.
     pub mu_0: f64,
-    /// Problems with bounds alone that are solved at most.
+    /// Limit of problems with bounds only.
     pub outer: usize,
     pub rule: PaperRule,
     pub units: Units,
     pub step_1: StepOne,
-    /// Projected gradient and `|D x - d|` are sufficiently small (Step 2) at this part of what `units` say.
+    /// Projected gradient and `|D x - d|` are sufficiently small (Step 2) below this part of the reference chosen by
+    /// `units`.
     pub tolerance: f64,
-    /// Steps of Algorithm 1 at most, over all problems.
+    /// Limit of steps of Algorithm 1, over all problems.
     pub steps: usize,
 }
 
-/// When Step 1 of Algorithm 3 ends.
+/// Condition for the end of Step 1 of Algorithm 3.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum StepOne {
     /// `|g^P| <= M |D x - d|`.
     Printed,
-    /// The same, but not once `|D x - d|` is sufficiently small: then `|g^P|` must be so too.
+    /// As printed, but after `|D x - d|` is sufficiently small, `|g^P|` must also be.
     Corrected,
 }
 
-/// What the numbers in `Parameters` are relative to.
+/// Units of the numbers in `Parameters`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Units {
-    /// rho_0 in |A| / |D|^2, M in |A| / |D|, eta_0 in the size of d, mu^0 in the size of b / |D|: the same
-    /// course in any unit of force and length and for any basis R.
+    /// rho_0 in |A| / |D|^2, M in |A| / |D|, eta_0 in the size of d, mu^0 in the size of b / |D|: the iteration does not
+    /// depend on the units of force and length or on the basis R.
     Relative,
     /// As printed: absolute numbers, and Step 2 relative to |b| and |d|.
     Printed,

@@ -27,7 +27,7 @@ impl<'a> Quadratic<'a> {
         Self { qp, rho: 0.0, c: qp.b.to_vec(), products: 0 }
     }
 
-    /// Turns it into `L(., mu, rho)`.
+    /// Changes the function to `L(., mu, rho)`.
     pub fn augment(&mut self, mu: &[f64], rho: f64) {
         self.rho = rho;
         self.c.copy_from_slice(self.qp.b);
@@ -68,7 +68,7 @@ impl<'a> Quadratic<'a> {
         Ok(g)
     }
 
-    /// `1/2 x'H x - c'x` from the gradient at x: (20), and L but for a constant.
+    /// `1/2 x'H x - c'x` from the gradient at x: (20), and L up to a constant.
     pub fn value(&self, x: &[f64], g: &[f64]) -> f64 {
         0.5 * (dot(x, g) - dot(x, &self.c))
     }
@@ -93,7 +93,7 @@ impl<'a> Quadratic<'a> {
         violation
     }
 
-    /// What rounding alone leaves of the gradient at x: 4 eps (|H x| + |c|).
+    /// Rounding of the gradient at x: 4 eps (|H x| + |c|).
     pub fn noise(&self, g: &[f64]) -> f64 {
         4.0 * f64::EPSILON * (norm(g) + 2.0 * norm(&self.c))
     }

@@ -1,5 +1,5 @@
-//! Reference values of rho_0, M, eta_0 and Step 2 of Algorithm 3. The printed numbers are absolute: at
-//! E = 2.1e11 every run with them fails. In units of |A| / |D|^2 the iteration depends on no unit, and on no basis R.
+//! Reference values of rho_0, M, eta_0 and Step 2 of Algorithm 3. The printed numbers are absolute: at E = 2.1e11 every
+//! run with them fails. In units of |A| / |D|^2 the iteration does not depend on units or on the basis R.
 
 use crate::error::Result;
 use crate::linalg::random::scattered;
@@ -17,12 +17,12 @@ pub struct PaperSizes {
     pub violation: f64,
     /// Unit of mu^0.
     pub multiplier: f64,
-    /// Step 2: what `|g^P|` and `|D x - d|` are small against.
+    /// Step 2: references of `|g^P|` and `|D x - d|`.
     pub gradient: f64,
     pub equality: f64,
 }
 
-/// Power iterations at most, and the change at which they end: sizes, not bounds.
+/// Limit of power iterations, and the change at which they end: they estimate sizes and give no bounds.
 const ITERATIONS: usize = 10;
 const CHANGE: f64 = 0.1;
 
@@ -39,8 +39,8 @@ impl PaperSizes {
         Self { penalty: 1.0, balance: 1.0, violation: 1.0, multiplier: 1.0, gradient, equality }
     }
 
-    /// |A| and |D| by power iteration. The gradient is measured against the gaps at l = D'(D D')+ d, the reference
-    /// that depends on no choice of K+; d against itself, at least against the forces such gaps stand for.
+    /// |A| and |D| by power iteration. The reference of the gradient is the scale of the gaps at l = D'(D D')+ d, which
+    /// does not depend on K+; that of d is |d|, but at least the forces equivalent to such gaps.
     fn relative(q: &mut Quadratic, judge: &mut dyn AcceptanceTest) -> Result<Self> {
         let m = q.qp.b.len();
         let a = largest(m, &mut |v| q.product(v))?;
@@ -74,7 +74,7 @@ fn reference(q: &mut Quadratic, judge: &mut dyn AcceptanceTest) -> Result<f64> {
     judge.scale(&l, &coarse.on(&all)?.solve(&image)?)
 }
 
-/// Norm of a symmetric semidefinite map, from below; 1 where it is 0.
+/// Lower estimate of the norm of a symmetric semidefinite map; 1 if it is 0.
 fn largest(order: usize, map: &mut dyn FnMut(&[f64]) -> Result<Vec<f64>>) -> Result<f64> {
     let (mut x, mut estimate) = (scattered(order), 0.0);
     for _ in 0..ITERATIONS {

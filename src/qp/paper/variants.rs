@@ -1,4 +1,4 @@
-//! The three variants of Algorithm 1 if a conjugate gradient step leaves the bounds (end of Section 4).
+//! The three variants of Algorithm 1 for a conjugate gradient step that leaves the bounds (end of Section 4).
 
 use crate::error::Result;
 use crate::linalg::vector::axpy;
@@ -6,27 +6,27 @@ use crate::qp::gradient::feasible_step;
 use crate::qp::paper::face::PaperFace;
 use crate::qp::paper::Quadratic;
 
-/// Trial steps of the extrapolating variant at most.
+/// Limit of trial steps of the extrapolating variant.
 const TRIALS: usize = 20;
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Variant {
     /// Feasible proportioning: stop at the first bound.
     Feasible,
-    /// Monotone proportioning: go on while theta(Py) does not rise, many indices join at once.
+    /// Monotone proportioning: continue while theta(Py) does not rise; many indices join the active set at once.
     Monotone,
-    /// Projected extrapolation, as in box-QUACAN: steps ever longer beyond the first bound, projected.
+    /// Projected extrapolation, as in box-QUACAN: increasing steps beyond the first bound, projected.
     Extrapolating,
 }
 
-/// x^{k+1} with its gradient, and conjugate gradients that go on.
+/// x^{k+1} with its gradient, and the conjugate gradients if they continue.
 pub(super) struct Moved {
     pub x: Vec<f64>,
     pub g: Vec<f64>,
     pub face: Option<PaperFace>,
 }
 
-/// `x^{k+1} = y^{i-1} - a~ p`, a~ the largest feasible step (corrected index): the active set grows. Gives a~, too;
+/// `x^{k+1} = y^{i-1} - a~ p`, a~ the largest feasible step (corrected index): the active set grows. Also returns a~;
 /// `image` = H p.
 pub(super) fn feasible(bounded: &[bool], face: &PaperFace, image: &[f64]) -> (Moved, f64) {
     let hits = |i: &usize| bounded[*i] && face.p[*i] > 0.0;
@@ -40,7 +40,7 @@ pub(super) fn feasible(bounded: &[bool], face: &PaperFace, image: &[f64]) -> (Mo
     (Moved { x, g, face: None }, step)
 }
 
-/// From the first bound on, which `step` has led to, trials at `extrapolation`, `extrapolation^2`, ... times this step,
+/// From the first bound, reached with `step`, trial steps `extrapolation`, `extrapolation^2`, ... times as long,
 /// projected, until theta rises; every trial takes a product.
 pub(super) fn extrapolate(
     q: &mut Quadratic,
@@ -69,9 +69,9 @@ pub(super) fn extrapolate(
     Ok(())
 }
 
-/// `Py^{i+1}` while theta does not rise, and conjugate gradients go on from `y^{i+1} = y^i - a p` outside the bounds. Where it
-/// rises, x^{k+1} = Py^i, where the point with the gradient g is already; at the very first step of a face, which would leave
-/// x^k as it is, the feasible step.
+/// `Py^{i+1}` while theta does not rise, and conjugate gradients continue from `y^{i+1} = y^i - a p` outside the bounds.
+/// If theta rises, x^{k+1} = Py^i, which is the present point with the gradient g; at the first step of a face, where
+/// this would not change x^k, the feasible step.
 pub(super) fn monotone(
     q: &mut Quadratic,
     (x, g): (&[f64], &[f64]),

@@ -1,6 +1,7 @@
-//! `min |e - G l|` over `l_i >= 0 (i bounded)`. Its residual `a` decides whether the equalities can be satisfied: `G_i'a <= 0` on
-//! bounded rows, `= 0` on free ones, `e'a = |a|^2`. If G has few columns, a is the point of the cone of these vectors that
-//! is nearest to e; this method ends, and loses no digits to `G G'`. Otherwise a is computed on the rows for which an interior point method finds a force.
+//! `min |e - G l|` over `l_i >= 0 (i bounded)`. Its residual `a` decides whether the equalities can be satisfied: `G_i'a
+//! <= 0` on bounded rows, `= 0` on free ones, `e'a = |a|^2`. If G has few columns, a is the point of the cone of these
+//! vectors that is nearest to e; this method is finite, and loses no digits to `G G'`. Otherwise a is computed on the
+//! rows for which an interior point method finds a force.
 
 use crate::error::{Kind, Result};
 use crate::linalg::vector::{norm, norm_max, ratio};
@@ -10,20 +11,21 @@ use crate::qp::coarse::Coarse;
 use crate::qp::interior::{Interior, Point};
 use crate::qp::{nearest_point, Polyhedron, Qp};
 
-/// A correlation with the residual below this fraction of its terms counts as zero.
+/// A correlation with the residual is zero if it is below this part of its terms.
 const ZERO: f64 = 1e-12;
-/// What makes forces unique in a look into the interior: for the rows with a force, and where these do not tell, for a itself.
+/// Regularisation of the interior point method, which makes forces unique: first to find the rows with a force, then to
+/// find a itself.
 const UNIQUE: f64 = 1e-8;
 const HARDLY_UNIQUE: f64 = 1e-12;
-/// A row that the residual meets by more than this part of their lengths is pressed.
+/// The residual presses a row if their product exceeds this part of their lengths.
 const PRESSED: f64 = 1e-9;
-/// Modes of a problem for which a square matrix of them, and one rotation of it per row and mode, are cheap.
+/// Limit of modes for which a square matrix over the modes, and one rotation of it per row and mode, are inexpensive.
 const FEW: usize = 1500;
 
 pub struct Balance {
     pub point: Vec<f64>,
-    /// `a = e - G l`: `G_i'a <= 0` on bounded rows, `= 0` on free ones, `e'a = |a|^2`; only nearly so where these rows have
-    /// not been found.
+    /// `a = e - G l`: `G_i'a <= 0` on bounded rows, `= 0` on free ones, `e'a = |a|^2`; only approximately if the rows
+    /// with a force were not found.
     pub residual: Vec<f64>,
     /// `|a| / |e|`
     pub margin: f64,
@@ -37,7 +39,7 @@ pub fn balance(qp: &Qp, coarse: &mut Coarse) -> Result<Balance> {
     Ok(Balance { margin: margin(qp, &residual), point, residual })
 }
 
-/// Forces l and what they leave, `a = e - G l` of least `|W a|`, W = diag(`weights`) > 0.
+/// Forces l and their residual `a = e - G l` of least `|W a|`, W = diag(`weights`) > 0.
 pub fn weighted(qp: &Qp, weights: &[f64]) -> Result<(Vec<f64>, Vec<f64>)> {
     let mut g_transposed = qp.g_transposed.clone();
     for (mode, v) in g_transposed.col.iter().zip(&mut g_transposed.val) {
@@ -54,8 +56,8 @@ pub fn weighted(qp: &Qp, weights: &[f64]) -> Result<(Vec<f64>, Vec<f64>)> {
     Ok((point, a.iter().zip(weights).map(|(a, w)| a / w).collect()))
 }
 
-/// l, the forces that keep a in its cone, and a, orthogonal to rows with a force to its own rounding; none where rounding keeps the
-/// method from ending.
+/// The forces l for which a is in its cone, and a, orthogonal to rows with a force up to rounding of a; none if rounding
+/// prevents the method from ending.
 fn in_cone(g_transposed: &Csr, bounded: &[bool], e: &[f64]) -> Result<Option<(Vec<f64>, Vec<f64>)>> {
     if e.len() > FEW {
         return Ok(None);
@@ -76,8 +78,8 @@ fn in_cone(g_transposed: &Csr, bounded: &[bool], e: &[f64]) -> Result<Option<(Ve
     Ok(Some((forces, a)))
 }
 
-/// l and a of many modes: a look into the interior shows the rows with a force; a is what these leave of e, orthogonal to them.
-/// Rows that it presses on join them, all at a time.
+/// l and a for many modes: an interior point method shows the rows with a force; a is the least-squares residual of e on
+/// these rows. Rows pressed by a join them, all at once.
 fn identified(qp: &Qp, coarse: &mut Coarse) -> Result<(Vec<f64>, Vec<f64>)> {
     const ROUNDS: usize = 30;
     let Point { force, slack, .. } = inside(qp, coarse, UNIQUE)?;
@@ -90,13 +92,13 @@ fn identified(qp: &Qp, coarse: &mut Coarse) -> Result<(Vec<f64>, Vec<f64>)> {
         let a = qp.left(&point);
         let pressed = pressed(qp, &held, &a);
         let is_balanced = norm(&a) <= ZERO * norm(qp.e);
-        // least squares leave no more than there is, but where the face is all but singular
+        // least squares cannot increase the residual, unless the face is nearly singular
         if norm(&a) > norm(qp.e) {
             break;
         }
         if is_balanced || pressed.is_empty() {
             let pulls: Vec<usize> = (0..point.len()).filter(|&i| qp.bounded[i] && point[i] < 0.0).collect();
-            // where nothing is left forces that pull prove nothing
+            // without a residual, negative forces prove nothing
             if is_balanced && !pulls.is_empty() {
                 break;
             }
@@ -109,15 +111,15 @@ fn identified(qp: &Qp, coarse: &mut Coarse) -> Result<(Vec<f64>, Vec<f64>)> {
     Ok((force, multiplier))
 }
 
-/// The interior point of `|e - G l|^2 + delta |l|^2`, delta in units of the largest diagonal entry of `G G'`: its a has
-/// `G_i'a <= delta l_i`.
+/// The interior point solution of `|e - G l|^2 + delta |l|^2`, delta in units of the largest diagonal entry of `G G'`:
+/// its a satisfies `G_i'a <= delta l_i`.
 fn inside(qp: &Qp, coarse: &mut Coarse, delta: f64) -> Result<Point> {
     let (y, none) = (vec![0.0; qp.b.len()], vec![false; qp.b.len()]);
     let interior = Interior { qp, y: &y, held: &none, delta: delta * coarse.largest(), rho: 1.0 };
     interior.minimise(coarse, vec![0.0; qp.e.len()])
 }
 
-/// The held rows that a presses on, `G_i'a > 0` by more than rounding.
+/// The held rows that a presses: `G_i'a > 0` by more than rounding.
 fn pressed(qp: &Qp, held: &[bool], a: &[f64]) -> Vec<usize> {
     let size = norm(a);
     let presses = |i: &usize| {
@@ -127,9 +129,10 @@ fn pressed(qp: &Qp, held: &[bool], a: &[f64]) -> Vec<usize> {
     (0..held.len()).filter(|&i| held[i]).filter(presses).collect()
 }
 
-/// Of the forces of least |e - G l| on the rows that are not held, zero elsewhere, those nearest to `start`.
+/// The forces nearest to `start` among those of least |e - G l| on the rows that are not held; zero on held rows.
 fn least_squares(qp: &Qp, coarse: &mut Coarse, held: &[bool], start: &[f64]) -> Result<Vec<f64>> {
-    /// The second one takes out the rounding of the first, of weakly held motions the third that of the second.
+    /// The second pass removes the rounding of the first; for weakly resisted motions the third removes that of the
+    /// second.
     const PASSES: usize = 3;
     let mut point: Vec<f64> =
         start.iter().zip(held).map(|(force, held)| if *held { 0.0 } else { *force }).collect();
@@ -143,7 +146,7 @@ fn least_squares(qp: &Qp, coarse: &mut Coarse, held: &[bool], start: &[f64]) -> 
     Ok(point)
 }
 
-/// `|a| / |e|`: how far the equalities are from being met.
+/// `|a| / |e|`: relative violation of the equalities.
 fn margin(qp: &Qp, residual: &[f64]) -> f64 {
     ratio(norm(residual), norm(qp.e))
 }
@@ -153,7 +156,7 @@ mod tests {
     use super::*;
     use crate::linalg::{Csr, Packed};
 
-    /// By the cone, and the same by the rows that have a force.
+    /// By the cone, and by the rows with a force, with equal results.
     fn solve(columns: &[[f64; 2]], e: [f64; 2]) -> Balance {
         let mut g_transposed = Csr::empty(2);
         columns.iter().for_each(|c| g_transposed.push_row([(0, c[0]), (1, c[1])]));

@@ -8,7 +8,7 @@ use crate::qp::gradient::{feasible_step, Split};
 use crate::qp::proportioning::drift::Drift;
 use crate::qp::{Counts, Qp};
 
-/// Free motions that go so many times as far as all others follow from a load that is all but not held.
+/// If free motions are larger than all others by this factor, they result from a load that is held only by rounding.
 const FAR_AWAY: f64 = 1e6;
 
 pub struct Iterate<'a> {
@@ -20,7 +20,7 @@ pub struct Iterate<'a> {
     pub g: Vec<f64>,
     /// Least-squares multiplier of `G x = e` on the face: `argmin |g_F - G_F'alpha|`.
     pub alpha: Vec<f64>,
-    /// A multiplier of the last gradient projection: alpha has its part along motions that the face leaves free.
+    /// A multiplier of the last gradient projection, which gives the part of alpha along free motions.
     pub reference: Option<Vec<f64>>,
     /// Gradient projections so far.
     pub projections: usize,
@@ -30,17 +30,17 @@ pub struct Iterate<'a> {
     pub split: Split,
     /// Directions of the steps so far that lie on this face.
     pub kept: Conjugate,
-    /// Nothing is left to gain along the kept directions.
+    /// theta is minimal along the stored directions.
     pub settled: bool,
-    /// Length that the next step along a preconditioned gradient is expected to have: that of the last one.
+    /// Expected length of the next step along a preconditioned gradient: that of the previous step.
     pub expected: Option<f64>,
-    /// How many projected steps in a row had to be cut short.
+    /// Number of consecutive projected steps that were cut short.
     pub cuts: usize,
-    /// L: running bound of the curvature of theta.
+    /// L: running upper estimate of the curvature of theta.
     pub curvature: f64,
-    /// `p'A p` and A p of the last product that L has been taken from.
+    /// `p'A p` and A p of the last product that was used for L.
     pub observed: Option<(f64, Vec<f64>)>,
-    /// How far the updates of g may have left A x - b.
+    /// Possible error of the updates of g relative to A x - b.
     pub drift: Drift,
     pub counts: Counts,
 }
@@ -76,7 +76,8 @@ impl<'a> Iterate<'a> {
         Ok(iterate)
     }
 
-    /// `A v`, or what is near to it, counted. Where A refuses it, the iterate is as before: every caller asks for its product first.
+    /// `A v`, or an approximation, counted. If A refuses the product, the iterate is unchanged: callers compute the
+    /// product first.
     pub fn product(&mut self, v: &[f64]) -> Result<Vec<f64>> {
         let mut image = vec![0.0; v.len()];
         self.qp.a.approximate(v, &mut image)?;
@@ -84,8 +85,8 @@ impl<'a> Iterate<'a> {
         Ok(image)
     }
 
-    /// Recomputes the gradient from x, without the errors of its updates. Where products are near to those with A only, these have left
-    /// something to gain along the kept directions, which later directions have no part of.
+    /// Recomputes the gradient from x, without the errors of its updates. If products were approximate, theta is then not
+    /// minimal along the stored directions, to which later directions are conjugate.
     pub fn refresh(&mut self) -> Result<()> {
         let mut g = vec![0.0; self.x.len()];
         self.qp.a.try_apply(&self.x, &mut g)?;
@@ -100,7 +101,7 @@ impl<'a> Iterate<'a> {
         self.settle()
     }
 
-    /// Directions of an earlier solve on this face, along which there is something left to gain.
+    /// Uses directions of an earlier solve on this face, if theta is not minimal along them.
     pub fn go_on_with(&mut self, mut directions: Conjugate) -> Result<()> {
         let held = (0..self.x.len()).filter(|&i| self.split.active[i] && directions.moves(i));
         held.collect::<Vec<_>>().into_iter().for_each(|i| directions.hold(i));
@@ -108,7 +109,7 @@ impl<'a> Iterate<'a> {
         self.settle()
     }
 
-    /// P0: the gradient anew, where its updates by products near to those with A may have left as much of it as counts.
+    /// P0: recomputes the gradient if the error of its updates by approximate products may matter.
     pub fn refresh_if_stale(&mut self, small: f64) -> Result<()> {
         let counts = self.split.norm().max(small);
         if self.qp.a.has_approximation() && self.drift.is_felt(counts, self.counts.steps()) {
@@ -117,7 +118,7 @@ impl<'a> Iterate<'a> {
         Ok(())
     }
 
-    /// Takes the point `x` with its gradient; directions that leave the new face are not kept.
+    /// Moves to the point `x` with its gradient; directions that leave the new face are dropped.
     pub fn move_to(&mut self, x: Vec<f64>, g: Vec<f64>) -> Result<()> {
         (self.x, self.g) = (x, g);
         let before = self.split.active.clone();
@@ -129,7 +130,7 @@ impl<'a> Iterate<'a> {
         Ok(())
     }
 
-    /// Takes out of x what rounding of many steps has left of `e - G x`, on the free rows; too little to change the gradient.
+    /// Removes the accumulated rounding of `e - G x` on the free rows; the change is too small to affect the gradient.
     pub fn rebalance(&mut self) -> Result<()> {
         if self.alpha.is_empty() {
             return Ok(());
@@ -154,12 +155,12 @@ impl<'a> Iterate<'a> {
         self.update_on_face()
     }
 
-    /// The same on the active set as it stands: rows at zero may count as free.
+    /// As `update`, for the present active set: rows at zero may count as free.
     pub fn update_on_face(&mut self) -> Result<()> {
         if self.alpha.is_empty() {
             self.r.copy_from_slice(&self.g);
         } else {
-            // free rows see nothing of free motions, and shall see nothing of their rounding errors
+            // free rows do not depend on free motions, and must not get their rounding errors
             let (fitted, rest) = self.coarse.fitted(&self.split.active, &self.g)?;
             (self.alpha, self.r) = (fitted.clone(), rest);
             if let Some(reference) = &self.reference {
@@ -182,8 +183,8 @@ impl<'a> Iterate<'a> {
         self.coarse.project(&self.split.active, v)
     }
 
-    /// What rounding alone leaves of the residual: 64 eps (|b| + |A x| + |G'alpha|) on the rows that it counts. An open row
-    /// is not among them, however far its gap.
+    /// Rounding of the residual: 64 eps (|b| + |A x| + |G'alpha|) on the rows that it includes. Open rows are not
+    /// included, however large their gaps are.
     pub fn noise(&self) -> f64 {
         let counts = |i: &usize| !self.split.active[*i] || self.split.chopped[*i] < 0.0;
         let (mut given, mut image, mut coarse) = (0.0, 0.0, 0.0);
@@ -200,7 +201,7 @@ impl<'a> Iterate<'a> {
         0.5 * self.x.iter().zip(self.g.iter().zip(self.qp.b)).map(|(x, (g, b))| x * (g - b)).sum::<f64>()
     }
 
-    /// Largest t with `x - t p` feasible in the bounds, entries of p up to `rounding` |p| taken for zero.
+    /// Largest t with `x - t p` feasible in the bounds; entries of p up to `rounding` |p| count as zero.
     pub fn feasible_step(&self, p: &[f64], rounding: f64) -> f64 {
         let zero = rounding * norm_max(p);
         feasible_step(&self.x, p, |i| self.qp.bounded[i] && !self.split.active[i] && p[i] > zero)

@@ -1,6 +1,6 @@
-//! Proportioning on the dual polyhedron: Algorithm 1 kept on the true feasible set of (12) instead of behind
-//! an augmented Lagrangian. No penalty, no estimate of a norm, no parameter with a unit. Step by step: docs/method.md, whose tags
-//! the comments here and in `steps` name.
+//! Proportioning on the dual polyhedron: Algorithm 1 on the true feasible set of (12), without an augmented Lagrangian.
+//! No penalty, no estimate of a norm, no parameter with a unit. docs/method.md describes the steps; comments here and in
+//! `steps` name its tags.
 //!
 //! | module | does |
 //! |---|---|
@@ -30,14 +30,14 @@ use steps::Step;
 pub use balance::weighted;
 pub use stop::Stop;
 
-/// What no x balances of e is rounding of e where it is less than this part of it.
+/// If no x balances e, a residual below this part of e is rounding of e.
 const ROUNDING: f64 = 1e-12;
 /// An entry of x below this part of the largest holds no motion.
 const NO_FORCE: f64 = 1e-15;
-/// Forces of a start that move so many times as far as loads and gaps are not worth while.
+/// A start is not used if its forces cause motions larger than those of loads and gaps by this factor.
 const FAR_OFF: f64 = 1e3;
 
-/// What the log calls S6.
+/// Name of S6 in the log.
 const FIRST_POINT: &str = "first feasible point";
 
 pub fn minimise(
@@ -48,7 +48,7 @@ pub fn minimise(
     observer: &mut dyn Observer,
 ) -> Result<Solution> {
     let is_warm = start.iter().any(|x| *x != 0.0);
-    // a cold start has the same bits whatever was solved before it
+    // a cold start gives equal bits independently of earlier solves
     let directions = qp.kept.and_then(BetweenSolves::take_directions).filter(|_| is_warm);
     let mut coarse = Coarse::of(&qp)?;
     let first = match interrupt::part(FIRST_POINT, || first_point(&qp, &mut coarse, start))? {
@@ -75,7 +75,7 @@ pub fn minimise(
     proportioning(it, limits, judge, observer)
 }
 
-/// The verdict where no x balances e, for a method that does not ask.
+/// The verdict if no x balances e, for a method that does not test this.
 pub fn not_held(qp: &Qp, start: &[f64]) -> Result<Option<Solution>> {
     let mut coarse = Coarse::of(qp)?;
     if interrupt::part(FIRST_POINT, || first_point(qp, &mut coarse, start))?.is_some() {
@@ -92,8 +92,8 @@ fn infeasible(qp: &Qp, coarse: &Coarse, found: Balance) -> Solution {
     Solution { x: found.point, alpha: vec![0.0; qp.e.len()], undetermined: 0, scale: 0.0, verdict, counts }
 }
 
-/// S6.1: the feasible point nearest to `start`: on the face of its zeros, the active set it brings along, where that
-/// face has one.
+/// S6.1: the feasible point nearest to `start`, on the face of the zeros of `start` (its active set) if this face has
+/// one.
 fn first_point(qp: &Qp, coarse: &mut Coarse, start: &[f64]) -> Result<Option<Vec<f64>>> {
     if start.iter().any(|x| *x != 0.0) {
         let zeros = qp.at_bound(start);
@@ -190,8 +190,8 @@ fn run(
 mod tests;
 
 impl Iterate<'_> {
-    /// The forces move everything so much farther than loads and gaps do that they belong to other loads: what they would leave
-    /// by rounding is much for these.
+    /// The forces cause motions so much larger than those of loads and gaps that they belong to other loads: their
+    /// rounding is large relative to the present loads.
     fn is_far_off(&self) -> bool {
         let image: Vec<f64> = self.g.iter().zip(self.qp.b).map(|(g, b)| g + b).collect();
         norm(&image) > FAR_OFF * norm(self.qp.b)

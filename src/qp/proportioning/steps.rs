@@ -6,38 +6,40 @@ use crate::qp::gradient::feasible_step;
 use crate::qp::projection::project;
 use crate::qp::proportioning::iterate::Iterate;
 
-/// Curvature below this fraction of L counts as none.
+/// Curvature counts as zero below this part of L.
 const SINGULAR: f64 = 1e-11;
-/// An entry of a direction without curvature below this fraction of the largest is rounding: without it, such
-/// a direction would always seem to end somewhere far away.
+/// An entry of a direction without curvature is rounding below this part of the largest: otherwise such a direction would
+/// always seem to end at a distant bound.
 const ROUNDING: f64 = 1e-10;
-/// A step that its bound cuts to less than this part of it is worth a projection and another product.
+/// If the bound cuts a step below this part, a projection and another product are worthwhile.
 const FAR: f64 = 0.1;
-/// A direction of which the kept ones leave less than this part is lost to rounding.
+/// A direction is lost to rounding if less than this part is left beside the stored directions.
 const LOST: f64 = 1e-7;
-/// What the kept directions leave less of than this part is projected once more: rounding of the first projection counts in it.
+/// If less than this part is left beside the stored directions, it is projected again, since the rounding of the first
+/// projection matters.
 const CANCELLED: f64 = 0.1;
-/// So many projected steps in a row that had to be cut short are followed by one to the bound.
+/// After this number of consecutive projected steps that were cut short, a step ends at the bound.
 const CUTS: usize = 3;
-/// Steps shorter than this against x are not kept.
+/// Steps shorter than this part of x are not stored.
 const SHORT: f64 = 1e-6;
-/// After so many gradient projections free motions are those of the last one: it alone would go on without.
+/// After this number of gradient projections, free motions are those of the last projection: otherwise projections alone
+/// would continue.
 const PROJECTIONS: usize = 3;
-/// Of L above the largest curvature met.
+/// Ratio of L to the largest curvature so far.
 const MARGIN: f64 = 1.1;
 /// Step of gradient projection in units of 1 / L.
 const GRADIENT_STEP: f64 = 1.5;
 
-/// What a step came to.
+/// The result of a step.
 pub enum Step {
     ConjugateGradient,
     Expansion,
     Proportioning,
-    /// The point is optimal with this multiplier of `G x = e`, where the least-squares one is not.
+    /// The point is optimal with this multiplier of `G x = e`, although it is not with the least-squares multiplier.
     Vertex {
         alpha: Vec<f64>,
     },
-    /// theta falls without end along `-p`: no x satisfies the constraints of the primal problem.
+    /// theta decreases without end along `-p`: no x satisfies the constraints of the primal problem.
     Unbounded {
         p: Vec<f64>,
     },
@@ -46,8 +48,9 @@ pub enum Step {
 }
 
 impl Iterate<'_> {
-    /// P3 to P8 of docs/method.md: explores the current face, a conjugate gradient step where it stays feasible, else an expansion. A step
-    /// expected to leave the bounds is projected before its product, which then tells how far to go.
+    /// P3 to P8 of docs/method.md: explores the current face by a conjugate gradient step if it is feasible, otherwise by
+    /// an expansion. A step expected to leave the bounds is projected before its product, which then determines its
+    /// length.
     pub fn explore(&mut self) -> Result<Step> {
         let p = self.direction()?;
         let to_bound = self.cuts == CUTS;
@@ -64,8 +67,8 @@ impl Iterate<'_> {
         Ok(step)
     }
 
-    /// P8: minimises theta over the kept directions, without any product: rows that meet their bound join the
-    /// active set one by one.
+    /// P8: minimises theta over the stored directions, without a product: rows that meet their bound join the active set
+    /// one by one.
     pub fn settle(&mut self) -> Result<()> {
         while !self.settled {
             let Some((d, image)) = self.kept.minimiser(&self.r) else { break };
@@ -76,9 +79,9 @@ impl Iterate<'_> {
         Ok(())
     }
 
-    /// P3: `z = P_F M_F P_F phi`, conjugate to the kept directions; z itself, and none kept, where rounding is all
-    /// that they leave of it. One projection of what is nearly cancelled leaves components that make conjugate gradients diverge
-    /// below 1e-8: that is projected once more.
+    /// P3: `z = P_F M_F P_F phi`, conjugate to the stored directions; if only rounding is left, z itself, without stored
+    /// directions. A nearly cancelled direction is projected again, since the remaining components would make conjugate
+    /// gradients diverge below 1e-8.
     fn direction(&mut self) -> Result<Vec<f64>> {
         let mut z = self.split.free.clone();
         self.precondition(&mut z)?;
@@ -98,8 +101,8 @@ impl Iterate<'_> {
         Ok(z)
     }
 
-    /// P5 and P6: the exact step `x - t p` where the bounds allow it. Where they do not, an expansion: projected, where the
-    /// bounds leave too little of it, or just `to_bound`.
+    /// P5 and P6: the exact step `x - t p` if the bounds allow it. Otherwise an expansion: projected if the bounds leave
+    /// too little of the step, or up to the bound if `to_bound`.
     fn step_along(&mut self, p: Vec<f64>, to_bound: bool) -> Result<Step> {
         if norm(&p) == 0.0 {
             return Ok(Step::Stuck);
@@ -132,8 +135,8 @@ impl Iterate<'_> {
         Ok(Step::Expansion)
     }
 
-    /// P7: the projected step towards `y = PROJ_face(x - t p)`, one product: all of it where theta falls that far,
-    /// else as much of it as lowers theta most. False, and nothing done, where it does not lead downwards.
+    /// P7: the projected step towards `y = PROJ_face(x - t p)`, with one product: the full step if theta falls that far,
+    /// otherwise the part that minimises theta. Returns false without a change if it does not lead downwards.
     fn expand(&mut self, p: &[f64], t: f64) -> Result<bool> {
         let mut y = self.x.clone();
         axpy(-t, p, &mut y);
@@ -167,7 +170,7 @@ impl Iterate<'_> {
         Ok(true)
     }
 
-    /// P7.3: keeps the direction of a projected step, unless it is so short that rounding has turned it out of the
+    /// P7.3: stores the direction of a projected step, unless the step is so short that rounding has moved it out of the
     /// kernel of G.
     fn keep(&mut self, s: &[f64], image: &[f64]) {
         if norm(s) > SHORT * norm(&self.x) {
@@ -175,7 +178,7 @@ impl Iterate<'_> {
         }
     }
 
-    /// P3: `p <- M_F p`, as long as that is a direction of descent.
+    /// P3: `p <- M_F p`, if that is a descent direction.
     fn precondition(&mut self, p: &mut [f64]) -> Result<()> {
         let Some(preconditioner) = self.qp.preconditioner else { return Ok(()) };
         let mut z = vec![0.0; p.len()];
@@ -187,7 +190,7 @@ impl Iterate<'_> {
         Ok(())
     }
 
-    /// `L = max(L, 1.1 p'A p / p'p)`, p in the kernel of G, while the gradient is more than rounding.
+    /// `L = max(L, 1.1 p'A p / p'p)`, p in the kernel of G, while the gradient is above rounding.
     fn observe_curvature(&mut self, p: &[f64], image: &[f64]) {
         let energy = dot(p, image);
         if self.split.norm() > self.noise() && energy > 0.0 {
@@ -196,7 +199,8 @@ impl Iterate<'_> {
         }
     }
 
-    /// `L = max(L, 1.1 |P A p|^2 / p'A p)` of the last p observed: nearer to the largest curvature, for one coarse solve.
+    /// `L = max(L, 1.1 |P A p|^2 / p'A p)` for the last p observed: closer to the largest curvature, at the cost of one
+    /// coarse solve.
     fn sharpen_curvature(&mut self) -> Result<()> {
         if let Some((energy, mut image)) = self.observed.take().filter(|(energy, _)| *energy > 0.0) {
             self.coarse.project(&vec![false; image.len()], &mut image)?;
@@ -219,8 +223,8 @@ impl Iterate<'_> {
         self.move_to(x, g)
     }
 
-    /// P9, and P10 after a cut or where P9 does not lead down: the active rows that pull leave the active set. `small` is the length of a projected gradient that counts
-    /// as zero.
+    /// P9, and P10 after a cut or if P9 does not lead downwards: active rows with a negative multiplier leave the active
+    /// set. `small`: length below which a projected gradient counts as zero.
     pub fn proportion(&mut self, small: f64) -> Result<Step> {
         let step = if std::mem::take(&mut self.cuts) > 0 { None } else { self.free_pulling(small)? };
         let step = step.map_or_else(|| self.project_gradient(small), Ok)?;
@@ -229,9 +233,9 @@ impl Iterate<'_> {
         Ok(step)
     }
 
-    /// P9: all rows with a negative multiplier leave the active set, and the face is explored with them: where the
-    /// direction presses some of them on, it is projected. `None`, and nothing done, where it does not lead down:
-    /// always where `G x = e` leaves no motion on that face, whose gradient is `small` then.
+    /// P9: all rows with a negative multiplier leave the active set, and the face is explored with them: if the direction
+    /// presses some of them against the bound, it is projected. `None` without a change if it does not lead downwards,
+    /// which is always so if `G x = e` permits no motion on that face, whose gradient is then `small`.
     fn free_pulling(&mut self, small: f64) -> Result<Option<Step>> {
         let before = (self.split.clone(), self.alpha.clone(), self.r.clone());
         (0..self.x.len()).for_each(|i| self.split.active[i] &= self.split.chopped[i] == 0.0);
@@ -243,7 +247,7 @@ impl Iterate<'_> {
         let p = self.direction()?;
         let pressed = (0..p.len()).any(|i| before.0.active[i] && !self.split.active[i] && p[i] > 0.0);
         let length = self.expected.filter(|t| pressed || self.feasible_step(&p, 0.0) < *t);
-        // a preconditioned direction has its length, any other must have been measured
+        // a preconditioned direction has a natural length; any other length must have been measured
         let own = (pressed && self.qp.preconditioner.is_some()).then_some(1.0);
         let step = match length.or(own) {
             Some(t) if self.expand(&p, t)? => Step::Proportioning,
@@ -263,14 +267,14 @@ impl Iterate<'_> {
     /// P10: gradient projection on the whole feasible set, with an exact line search.
     fn project_gradient(&mut self, small: f64) -> Result<Step> {
         if self.curvature == 0.0 {
-            // what an open row has of r tells of its gap, not of A
+            // r of an open row is its gap and says nothing about A
             let projected: Vec<f64> =
                 self.split.free.iter().zip(&self.split.chopped).map(|(f, c)| f + c).collect();
             let image = self.product(&projected)?;
             self.observed = Some((dot(&projected, &image), image));
         }
         self.sharpen_curvature()?;
-        // without curvature any length will do
+        // without curvature the length is arbitrary
         let step = if self.curvature > 0.0 { GRADIENT_STEP / self.curvature } else { 1.0 };
         let mut y = self.x.clone();
         axpy(-step, &self.r, &mut y);
@@ -285,7 +289,7 @@ impl Iterate<'_> {
         }
         if norm(&s) <= small * step {
             let g = std::mem::take(&mut self.g);
-            self.move_to(projected.point, g)?; // rows that are zero but for rounding become active
+            self.move_to(projected.point, g)?; // rows that are zero up to rounding become active
             return Ok(Step::Vertex { alpha });
         }
         self.search_along(s)
@@ -306,7 +310,7 @@ impl Iterate<'_> {
             return Ok(Step::Unbounded { p });
         }
         let minimum = if flat { f64::INFINITY } else { -slope / curvature };
-        // all of it where theta falls that far and projections go on: rows come to their bound
+        // the full step if theta falls that far and projections continue: rows then reach their bound
         let t = if self.reference.is_some() && (0.5..1.0).contains(&minimum) {
             1.0
         } else {

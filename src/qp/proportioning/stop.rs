@@ -4,25 +4,25 @@ use crate::linalg::vector::norm;
 use crate::qp::proportioning::iterate::Iterate;
 use crate::qp::Verdict;
 
-/// A scale so many times the one without travel is travel.
+/// The scale is dominated by rigid travel if it exceeds the scale without travel by this factor.
 const TRAVEL: f64 = 10.0;
-/// A point refused for less than this much is mended by some more steps.
+/// A point refused by less than this factor is corrected by some more steps.
 const MISSED: f64 = 1e3;
-/// How often the tolerance is tightened when the judge does not accept.
+/// How many times the tolerance is tightened if the point is not accepted.
 const TIGHTENINGS: usize = 8;
-/// A refusal that is still so large against the one before does not follow the residual.
+/// A refusal does not depend on the residual if its violation is still above this part of the previous one.
 const STAYS: f64 = 0.5;
 
-/// When the residual is small enough, or no longer worth reducing.
+/// Decides whether the residual is small enough, or cannot be reduced further.
 pub struct Stop {
     pub residual: f64,
-    /// Share of the allowance for rounding that counts.
+    /// Factor on the allowance for rounding.
     pub noise: f64,
     tightenings: usize,
     refined: bool,
-    /// What the last refusal told.
+    /// Violation reported by the last refusal.
     missed: Option<f64>,
-    /// Smallest residual of the current face, the count of steps when it was met, and that face.
+    /// Smallest residual on the current face, the number of steps at that time, and the face.
     best: f64,
     met: usize,
     face: Vec<bool>,
@@ -42,8 +42,8 @@ impl Stop {
         }
     }
 
-    /// P1, the plateau: no conjugate gradient step has halved the residual of this face for longer than exact arithmetic
-    /// would need to solve it: rounding errors have taken over.
+    /// P1, the plateau: the residual of this face has not been halved during more conjugate gradient steps than exact
+    /// arithmetic would need to solve it, so rounding dominates.
     pub fn plateau(&mut self, it: &Iterate) -> bool {
         let (steps, residual) = (it.counts.steps(), norm(&it.split.free));
         if self.face != it.split.active || residual < 0.5 * self.best {
@@ -54,7 +54,8 @@ impl Stop {
         steps - self.met > 2 * unknowns + 20
     }
 
-    /// P1.2: once, where all that the residual was measured against is travel: from now on it is measured against the rest.
+    /// P1.2: once, if the scale is dominated by rigid travel: from now on the residual is relative to the scale without
+    /// travel.
     pub fn refine(&mut self, tolerance: f64, length: Option<f64>) -> bool {
         let target = length.map_or(f64::INFINITY, |length| tolerance * length);
         let refines = !self.refined && TRAVEL * target < self.residual;
@@ -65,13 +66,14 @@ impl Stop {
         refines
     }
 
-    /// P1.3: what the point is refused for is about as large as at the refusal before, when the residual was larger.
+    /// P1.3: the violation is about as large as at the previous refusal, when the residual was larger.
     pub fn stays(&mut self, missed: Option<f64>) -> bool {
         let before = std::mem::replace(&mut self.missed, missed);
         missed.zip(before).is_some_and(|(now, before)| now > STAYS * before)
     }
 
-    /// P1.4: at the first two refusals, by as much as they tell; false where that is more than steps without rounding could mend.
+    /// P1.4: tightens by the reported violation at the first two refusals; false if steps cannot correct a violation of
+    /// this size.
     pub fn tighten_by(&mut self, missed: Option<f64>) -> bool {
         let missed = missed.filter(|missed| *missed < MISSED && self.tightenings < 2);
         if let Some(missed) = missed {
@@ -81,7 +83,8 @@ impl Stop {
         missed.is_some()
     }
 
-    /// P1.5: the verdict; none where target and allowance for rounding have become a tenth, and the run goes on.
+    /// P1.5: the verdict; none if the target and the allowance for rounding were reduced to a tenth and the run
+    /// continues.
     pub fn tighten(&mut self, accepted: bool) -> Option<Verdict> {
         if accepted {
             return Some(Verdict::Solved);

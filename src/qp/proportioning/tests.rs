@@ -2,7 +2,7 @@ use super::*;
 use crate::linalg::{Csr, Operator, Packed};
 use crate::qp::acceptance::tests::Lenient;
 
-/// Solved by A, with directions from A (1 + 1e-5 E), both symmetric and definite.
+/// Gradients by A, directions by A (1 + 1e-5 E), both symmetric and definite.
 struct Near {
     own: Packed,
     near: Packed,

@@ -10,18 +10,18 @@ use crate::qp::{Counts, Qp};
 
 /// rho in units of lambda_max(P A P).
 const PENALTY: f64 = 3.0;
-/// Power iterations at most, and the change at which they end.
+/// Limit of power iterations, and the change at which they end.
 const ITERATIONS: usize = 100;
 const CHANGE: f64 = 1e-3;
-/// The power iteration comes from below.
+/// Safety factor: the power iteration converges from below.
 const MARGIN: f64 = 1.05;
-/// P leaves nothing of A where it leaves less than this part.
+/// P A P counts as zero if P leaves less than this part of A.
 const NOTHING: f64 = 1e-8;
 
 pub struct Augmented<'a> {
     pub qp: Qp<'a>,
     pub coarse: Coarse<'a>,
-    /// No row is held: P and Q act on all of them.
+    /// No row is held: P and Q act on all rows.
     none: Vec<bool>,
     pub rho: f64,
     /// lambda_max(P A P)
@@ -46,7 +46,7 @@ impl<'a> Augmented<'a> {
         Ok(new)
     }
 
-    /// lambda_max(P A P) by power iteration; |A| where P leaves nothing of A, 1 where A is 0.
+    /// lambda_max(P A P) by power iteration; |A| if P A P counts as zero, 1 if A is 0.
     fn largest_eigenvalue(&mut self) -> Result<f64> {
         let mut x = scattered(self.none.len());
         self.project(&mut x)?;
@@ -140,7 +140,7 @@ mod tests {
 
     #[test]
     fn the_largest_eigenvalue_is_that_on_the_kernel_of_g() {
-        // A = diag(1 ... 6) and one large entry that the mode takes away
+        // A = diag(1 ... 6) and a large entry that P removes
         let (m, mut g_transposed) = (7, Csr::empty(1));
         let mut a = Packed::zeros(m).unwrap();
         for i in 0..m {
@@ -164,7 +164,8 @@ mod tests {
         assert!(augmented.counts.products < ITERATIONS);
     }
 
-    /// Eigenvalues 1 ... 30: after three steps the estimate is a tenth too small, and steps of fixed length diverge.
+    /// Eigenvalues 1 ... 30: after three power iterations the estimate is a tenth too small, and steps of fixed length
+    /// diverge.
     #[test]
     fn three_power_iterations_are_not_enough_and_not_the_last() {
         let (m, mut g_transposed) = (30, Csr::empty(0));

@@ -24,19 +24,20 @@ use crate::qp::{AcceptanceTest, Counts, Limits, Observer, Qp, Solution, StepKind
 
 /// Step of gradient projection in units of 1 / |H|.
 const GRADIENT_STEP: f64 = 1.5;
-/// M is divided by this where L does not increase enough.
+/// Divisor of M if L does not increase enough.
 const BETA: f64 = 2.0;
 /// The inner problem is solved at least to this part of `|P (A x - b)|` at the first point.
 const ETA: f64 = 0.1;
-/// Curvature below this fraction of lambda_max counts as none.
+/// Curvature counts as zero below this part of lambda_max.
 const SINGULAR: f64 = 1e-11;
-/// Outer iterations allowed.
+/// Limit of outer iterations.
 const OUTER: usize = 2000;
-/// rho is increased tenfold, at most this often, ...
+/// rho is multiplied by ten, at most this many times, ...
 const INCREASES: usize = 4;
-/// ... when this many outer iterations have not halved the violation.
+/// ... if this number of outer iterations have not halved the violation.
 const PATIENCE: usize = 30;
-/// The judge decides after this many residuals that were small only until recomputed.
+/// The acceptance test decides after this number of residuals that were small before, but not after, the gradient was
+/// recomputed.
 const RECOMPUTED: usize = 10;
 
 pub fn smalbe(
@@ -53,28 +54,28 @@ pub fn smalbe(
 
 struct Lagrangian<'a> {
     map: Augmented<'a>,
-    /// x, and behind its gradient alpha.
+    /// x; its gradient is followed by alpha.
     point: Bounded<'a>,
     /// m
     multiplier: Vec<f64>,
-    /// 64 eps (|b| + |A v| + |G'alpha|) on the rows not at rest where the gradient was last computed: its rounding.
+    /// 64 eps (|b| + |A v| + |G'alpha|) on the rows not at rest when the gradient was last computed: its rounding.
     noise: f64,
-    /// Of x.
+    /// Violation of `G x = e` by x.
     violation: Violation,
     /// M of the inner precision `|g^P| <= M |G's|`.
     precision: f64,
     /// eta |P (A x - b)|
     enough: f64,
-    /// What the judge measures the residual against.
+    /// The scale to which the acceptance test relates the residual.
     scale: f64,
     outer: usize,
-    /// rho |G's|^2: what the last update of the multiplier has added to L.
+    /// rho |G's|^2: the increase of L by the last update of the multiplier.
     raised: Option<f64>,
     halving: Halving,
 }
 
 impl<'a> Lagrangian<'a> {
-    /// At the feasible point nearest to `start`.
+    /// Starts at the feasible point nearest to `start`.
     fn new(qp: Qp<'a>, start: &[f64]) -> Result<Self> {
         let mut coarse = Coarse::of(&qp)?;
         let none = vec![false; start.len()];
@@ -129,7 +130,7 @@ impl<'a> Lagrangian<'a> {
         Ok(Verdict::StepLimit)
     }
 
-    /// Gradient and alpha at x, without the rounding errors of their updates.
+    /// Recomputes gradient and alpha at x, without the rounding of their updates.
     fn recompute(&mut self) -> Result<()> {
         self.violation = self.map.violation(&self.point.x)?;
         let mut v = self.point.x.clone();
@@ -152,7 +153,7 @@ impl<'a> Lagrangian<'a> {
         Ok(())
     }
 
-    /// MPRGP until `|g^P| <= min(M |G's|, eta |P (A x - b)|)`, or as small as asked.
+    /// MPRGP until `|g^P| <= min(M |G's|, eta |P (A x - b)|)`, or below `small`.
     fn inner(&mut self, small: f64, limits: &Limits, observer: &mut dyn Observer) -> Result<Option<Verdict>> {
         let (largest, rho) = (self.map.largest, self.map.rho);
         let (step, flat) = (GRADIENT_STEP / largest.max(rho), SINGULAR * largest);
@@ -182,19 +183,19 @@ impl<'a> Lagrangian<'a> {
         }
     }
 
-    /// The projected gradient is small, and so is its change on the way to `G x = e`.
+    /// The projected gradient is small, and its change on the way to `G x = e` is also small.
     fn is_optimal(&self, small: f64) -> bool {
         self.point.split.norm() <= small
             && (self.is_balanced() || self.map.largest * self.violation.length <= small)
     }
 
-    /// `G x = e` holds up to rounding.
+    /// `G x = e` is satisfied up to rounding.
     fn is_balanced(&self) -> bool {
         self.violation.length <= 64.0 * f64::EPSILON * norm(&self.point.x)
     }
 
-    /// An outer iteration that began at `(x, g)` ends: the multiplier takes up the violation, M and rho are
-    /// adapted. L is compared by the gradients, free of the cancellation between its two values.
+    /// Ends an outer iteration that began at `(x, g)`: adds the violation to the multiplier, and adapts M and rho. Values
+    /// of L are compared through the gradients, which avoids the cancellation in their difference.
     fn update(&mut self, (x, g): (Vec<f64>, Vec<f64>)) {
         let (rho, length) = (self.map.rho, self.violation.length);
         let (y, mut g_y) = (&self.point.x, self.point.g.clone());
@@ -217,7 +218,8 @@ impl<'a> Lagrangian<'a> {
         self.outer += 1;
     }
 
-    /// What `rho` more of the penalty, or of the multiplier, adds to the gradient and takes from alpha.
+    /// Adds the effect of an increase `rho` of the penalty, or of the multiplier, to the gradient and subtracts it from
+    /// alpha.
     fn add_violation(&self, rho: f64, g: &mut [f64]) {
         let (g, alpha) = g.split_at_mut(self.point.x.len());
         axpy(rho, &self.violation.way, g);
@@ -240,7 +242,7 @@ impl<'a> Lagrangian<'a> {
         0.5 * (dot(&v, self.gradient()) + dot(e, self.alpha()) - dot(b, &v))
     }
 
-    /// Counts the step and describes the point it led to.
+    /// Counts the step and describes the resulting point.
     fn progress(&mut self, kind: StepKind, small: f64) -> StepReport<'_> {
         let counts = &mut self.map.counts;
         match kind {
@@ -252,7 +254,7 @@ impl<'a> Lagrangian<'a> {
         StepReport::new(kind, &self.map.counts, &self.point.split, self.theta(), small)
     }
 
-    /// The nearest point on `G x = e` with the same active rows; x itself where there is none.
+    /// The nearest point on `G x = e` with the active rows unchanged; x itself if there is none.
     fn on_equalities(&mut self) -> Result<Vec<f64>> {
         let found = project(&self.map.qp, &mut self.map.coarse, &self.point.x, &self.point.split.active)?;
         Ok(found.map_or_else(|| self.point.x.clone(), |found| found.point))
@@ -271,7 +273,7 @@ impl<'a> Lagrangian<'a> {
     }
 }
 
-/// Watches the violation from one outer iteration to the next.
+/// Compares the violation of successive outer iterations.
 struct Halving {
     to_halve: f64,
     since: usize,
@@ -283,7 +285,7 @@ impl Halving {
         Self { to_halve: f64::INFINITY, since: 0, increases: 0 }
     }
 
-    /// Whether the penalty must grow.
+    /// Whether the penalty must be increased.
     fn stalls(&mut self, violation: f64) -> bool {
         self.since += 1;
         if violation <= 0.5 * self.to_halve {

@@ -4,27 +4,27 @@
 //! q(x) = 1/2 x'H x - c'x -> min   subject to   x_i >= 0 (i bounded)
 //! ```
 //!
-//! An expansion first tries the projected conjugate gradient step; if q does not fall, the step of fixed length
+//! An expansion first tries the projected conjugate gradient step; if q does not decrease, the step of fixed length
 //! follows.
 
 use crate::error::Result;
 use crate::linalg::vector::{axpy, dot};
 use crate::qp::gradient::{at_bound, feasible_step, Split};
 
-/// H by its products.
+/// H, given by its products.
 pub trait Hessian {
-    /// `H p`, and what else is linear in p.
+    /// `H p`, followed by further entries that are linear in p.
     fn product(&mut self, p: &[f64]) -> Result<Vec<f64>>;
-    /// An approximation of `H^-1 r` on the face of the rows that are not held; 0 on the others, as r.
+    /// An approximation of `H^-1 r` on the face of the rows that are not held; 0 on the others, where r is also 0.
     fn precondition(&mut self, held: &[bool], r: &[f64]) -> Result<Vec<f64>>;
 }
 
-/// What a step came to.
+/// The result of a step.
 pub enum Move {
     ConjugateGradient,
     Expansion,
     Proportioning,
-    /// q falls without end along `-p`.
+    /// q decreases without end along `-p`.
     Unbounded {
         p: Vec<f64>,
     },
@@ -36,12 +36,12 @@ pub struct Rule {
     pub gamma: f64,
     /// Fixed length of a gradient projection, below 2 / |H|.
     pub step: f64,
-    /// `p'H p` below this times `p'p` counts as none.
+    /// `p'H p` counts as zero below this multiple of `p'p`.
     pub flat: f64,
 }
 
-/// x >= 0 with its gradient `g = H x - c`, and its parts on the face. Products and with them g may hold further
-/// entries, linear in x, that follow all steps.
+/// x >= 0 with its gradient `g = H x - c`, and its parts on the face. Products, and so g, may have further entries,
+/// linear in x, which are updated in all steps.
 pub struct Bounded<'a> {
     bounded: &'a [bool],
     pub x: Vec<f64>,
@@ -52,21 +52,21 @@ pub struct Bounded<'a> {
 }
 
 impl<'a> Bounded<'a> {
-    /// The nearest x within the bounds; its gradient is still unknown.
+    /// The nearest x within the bounds; its gradient is not yet known.
     pub fn new(bounded: &'a [bool], mut x: Vec<f64>) -> Self {
         clip(bounded, &mut x);
         let (g, split) = (vec![0.0; x.len()], Split::of(at_bound(bounded, &x)));
         Self { bounded, x, g, split, conjugate: None }
     }
 
-    /// Takes another gradient at the same x: q itself has changed, or g is free of rounding again.
+    /// Sets another gradient at this x: q itself has changed, or g was recomputed.
     pub fn set_gradient(&mut self, g: Vec<f64>) {
         self.g = g;
         self.conjugate = None;
         self.update();
     }
 
-    /// One step: towards the minimum on the face while x is proportional, else off the face.
+    /// One step: towards the minimum on the face if x is proportional, otherwise off the face.
     pub fn step(&mut self, hessian: &mut dyn Hessian, rule: &Rule) -> Result<Move> {
         if self.is_proportional(rule) {
             self.explore(hessian, rule)
@@ -75,8 +75,8 @@ impl<'a> Bounded<'a> {
         }
     }
 
-    /// `|g^C|^2 <= Gamma^2 (g^R)'g^F` with the reduced free gradient `g^R = min(x / step, g^F)`: what the fixed
-    /// step can still move on the face.
+    /// `|g^C|^2 <= Gamma^2 (g^R)'g^F` with the reduced free gradient `g^R = min(x / step, g^F)`: the part that a step of
+    /// fixed length can still move on the face.
     fn is_proportional(&self, rule: &Rule) -> bool {
         let reduced = |i: usize| match self.bounded[i] {
             true => self.split.free[i].min(self.x[i] / rule.step),
@@ -86,7 +86,7 @@ impl<'a> Bounded<'a> {
         dot(&self.split.chopped, &self.split.chopped) <= rule.gamma * rule.gamma * face
     }
 
-    /// A conjugate gradient step where it stays within the bounds, else an expansion of the active set.
+    /// A conjugate gradient step if it stays within the bounds, otherwise an expansion of the active set.
     fn explore(&mut self, hessian: &mut dyn Hessian, rule: &Rule) -> Result<Move> {
         let p = self.direction(hessian)?;
         let image = hessian.product(&p)?;
@@ -131,7 +131,7 @@ impl<'a> Bounded<'a> {
         Ok(p)
     }
 
-    /// t of the minimum of `q(x - t p)`; infinite where q does not curve.
+    /// t of the minimum of `q(x - t p)`; infinite if q has no curvature.
     fn minimum_along(&self, p: &[f64], image: &[f64], rule: &Rule) -> f64 {
         let curvature = dot(p, image);
         if curvature <= rule.flat * dot(p, p) {
@@ -141,8 +141,8 @@ impl<'a> Bounded<'a> {
         }
     }
 
-    /// `x - t p` for a t within the bounds; rows that meet their bound there are set to exactly 0. Whether the
-    /// face is still the same.
+    /// `x - t p` for a t within the bounds; rows that meet their bound there are set to exactly 0. Returns whether the
+    /// face is unchanged.
     fn advance(&mut self, t: f64, p: &[f64], image: &[f64]) -> bool {
         for ((x, p), bounded) in self.x.iter_mut().zip(p).zip(self.bounded) {
             let hits = *bounded && *p > 0.0 && *x <= t * p;
@@ -152,7 +152,7 @@ impl<'a> Bounded<'a> {
         self.update()
     }
 
-    /// The point nearest to `x - t p` within the bounds, as the way there with its image: (s, H s).
+    /// The step to the point within the bounds nearest to `x - t p`, with its image: (s, H s).
     fn way(&self, hessian: &mut dyn Hessian, t: f64, p: &[f64]) -> Result<(Vec<f64>, Vec<f64>)> {
         let mut s = self.x.clone();
         axpy(-t, p, &mut s);
@@ -162,7 +162,7 @@ impl<'a> Bounded<'a> {
         Ok((s, image))
     }
 
-    /// Moves to the point nearest to `x - t p` where q falls.
+    /// Moves to the point nearest to `x - t p` if q decreases.
     fn project_if_lower(&mut self, hessian: &mut dyn Hessian, t: f64, p: &[f64]) -> Result<bool> {
         let (s, image) = self.way(hessian, t, p)?;
         let lower = dot(&self.g, &s) + 0.5 * dot(&s, &image) < 0.0;
@@ -186,13 +186,13 @@ impl<'a> Bounded<'a> {
         self.update();
     }
 
-    /// Whether the active set is still the same.
+    /// Returns whether the active set is unchanged.
     fn update(&mut self) -> bool {
         self.split.update(at_bound(self.bounded, &self.x), &self.g)
     }
 }
 
-/// Bounded entries below zero to zero.
+/// Sets bounded entries below zero to zero.
 fn clip(bounded: &[bool], x: &mut [f64]) {
     x.iter_mut().zip(bounded).filter(|(x, bounded)| **bounded && **x < 0.0).for_each(|(x, _)| *x = 0.0);
 }
@@ -267,7 +267,7 @@ mod tests {
             let mut point = start(&mut h, &bounded, vec![0.0, x], &[1.0, c]);
             point.step(&mut h, &RULE).unwrap()
         };
-        // g^F = 2 on a row that is free to move, on one with x / step = 0.01 / 0.375, on one without a bound
+        // g^F = 2 on a row that is free to move, on a row with x / step = 0.01 / 0.375, on a row without a bound
         assert!(matches!(kind(3.0, 1.0, [true, true]), Move::ConjugateGradient));
         assert!(matches!(kind(0.01, -1.99, [true, true]), Move::Proportioning));
         assert!(matches!(kind(0.01, -1.99, [true, false]), Move::ConjugateGradient));

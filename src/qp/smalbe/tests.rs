@@ -4,8 +4,8 @@ use crate::qp::acceptance::tests::Lenient;
 
 const LIMITS: Limits = Limits { tolerance: 1e-10, gamma: 1.0, steps: 10_000 };
 
-/// `sum x_i = 1`, A = I, b = (0, -3, ..., -3): only the first row is free at the answer (1, 0, ..., 0), and
-/// it carries 1 / m of the mode: an outer iteration divides the violation by 1 + 3 / m.
+/// `sum x_i = 1`, A = I, b = (0, -3, ..., -3): only the first row is free at the answer (1, 0, ..., 0), and it has 1 / m
+/// of the mode: an outer iteration divides the violation by 1 + 3 / m.
 #[test]
 fn far_more_than_a_hundred_outer_iterations_are_taken_where_they_are_needed() {
     let m = 60;

@@ -18,26 +18,26 @@ use null_space::null_space;
 
 const WHAT: &str = "bodies that are cut";
 
-/// The bodies of an island with all their pieces.
+/// The bodies of an island, each with all its pieces.
 pub struct Whole {
-    /// Bodies and rows by the numbers of the host, over the unknowns of the host's bodies.
+    /// Bodies and rows with the numbers of the host, over the unknowns of the host's bodies.
     pub island: Island,
     bodies: Vec<WholeBody>,
-    /// Of every unknown of the pieces: the unknown here, and its share of it.
+    /// For every unknown of the pieces: its unknown in `island`, and its weight there.
     place: Vec<(usize, f64)>,
 }
 
-/// What the certificate has to know of a body.
+/// Data of a body for the certificate.
 struct WholeBody {
     null_space: Basis,
     grounded: Arc<[u32]>,
     soft: bool,
-    /// Its only part, where it is not cut.
+    /// Its only part, if it is not cut.
     part: Option<usize>,
 }
 
 enum Basis {
-    /// Of a body that is not cut.
+    /// K+ of a body that is not cut.
     Known(Arc<GeneralizedInverse>),
     Found(Matrix),
 }
@@ -55,7 +55,7 @@ impl Basis {
 pub type OfPart<'a> = dyn Fn(usize) -> Option<(&'a Arc<GeneralizedInverse>, &'a Arc<[u32]>)> + Sync + 'a;
 
 impl Whole {
-    /// None of an island without pieces.
+    /// None for an island without pieces.
     pub fn of(model: &Model, cut: &Island, of_part: &OfPart) -> Result<Option<Self>> {
         let Some(parts) = model.parts.as_ref() else { return Ok(None) };
         if cut.bodies.iter().all(|&part| parts.parts[part].piece.is_none()) {
@@ -97,15 +97,15 @@ impl Whole {
         Ok(Some(Self { island, bodies, place }))
     }
 
-    /// The judgement of an answer of the pieces by bodies and rows of the host; `data`: the pieces with their loads. What rounding might
-    /// be excused by, K+ of the bodies, is not known.
+    /// The judgement of an answer of the pieces by bodies and rows of the host; `data`: the pieces with their loads. K+
+    /// of cut bodies, by which rounding might be excused, is not known.
     pub fn judged(&self, model: &Model, data: &Data, answer: Candidate) -> Result<Judgement> {
         let (u, loads) = (self.mean(answer.u)?, self.loads(data)?);
         let mu = &answer.mu[..self.island.equalities.numbers.len()];
         certify(&self.data(model, &loads)?, Candidate { u: &u, mu, ..answer }, &mut Unasked)
     }
 
-    /// The mean of the copies of every unknown, by their shares.
+    /// The weighted mean of the copies of every unknown.
     fn mean(&self, of_pieces: &[f64]) -> Result<Vec<f64>> {
         self.gathered(of_pieces, |share| share)
     }
@@ -125,7 +125,7 @@ impl Whole {
         Ok(all)
     }
 
-    /// The island as the certificate sees it; `loads` over its unknowns.
+    /// The data of the island for the certificate; `loads` over its unknowns.
     fn data<'a>(&'a self, model: &'a Model, loads: &'a [f64]) -> Result<Data<'a>> {
         let missing = || Error::new(Kind::State, "a body has not been set up");
         let parts = model.parts.as_ref().ok_or_else(missing)?;
@@ -165,7 +165,7 @@ impl Whole {
         Some(self.bodies[at].null_space.vectors())
     }
 
-    /// `alpha = R'D u / unit` of a body of the host, r: u is `R alpha` but for a motion that is normal to R.
+    /// `alpha = R'D u / unit` of a body of the host, r: u is `R alpha` plus a motion normal to R.
     pub fn amplitudes(&self, model: &Model, body: usize, u: &[f64]) -> Vec<f64> {
         let (Some(vectors), Some(parts)) = (self.null_space(body), &model.parts) else { return Vec::new() };
         let Some(k) = &parts.assembled[body] else { return Vec::new() };
@@ -175,7 +175,7 @@ impl Whole {
     }
 }
 
-/// The rows between bodies of the host over their unknowns.
+/// The rows between bodies of the host, over the unknowns of these bodies.
 fn members(
     cut: &Members,
     unknowns: usize,

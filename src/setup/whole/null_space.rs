@@ -8,12 +8,13 @@ use crate::platform::memory::{filled, reserved, zeros};
 use crate::qp::AnswerFace;
 
 const WHAT: &str = "the null space of a body that is cut";
-/// How far motions of pieces are known.
+/// Accuracy of the motions of pieces.
 const ROUNDING: f64 = 1e-12;
-/// Motions of the whole that keep less of their length depend on others.
+/// Motions of the body depend on others if less than this part of their length is left beside them.
 const DEPENDENT: f64 = 1e-8;
 
-/// R of a body, n x r, `R'DR = unit`, unit the power of two below its largest `K_ii`, by the null spaces of its pieces.
+/// R of a body from the null spaces of its pieces, n x r, `R'DR = unit`, unit the largest power of two that does not
+/// exceed its largest `K_ii`.
 pub fn null_space(model: &Model, parts: &Parts, body: usize, bases: &[Matrix]) -> Result<Matrix> {
     let order = parts.offsets[body + 1] - parts.offsets[body];
     let mut blocks = reserved(bases.len(), WHAT)?;
@@ -26,7 +27,7 @@ pub fn null_space(model: &Model, parts: &Parts, body: usize, bases: &[Matrix]) -
         return Matrix::zeros(order, 0);
     }
     let units: Vec<f64> = parts.of(body).map(|part| model.bodies[part].body.unit()).collect();
-    // motions are divided by it, so that those of stiff and of soft pieces weigh alike
+    // motions are divided by these sizes, so that those of stiff and soft pieces have equal weight
     let sizes: Vec<f64> = units.iter().map(|unit| unit.sqrt()).collect();
     let glue = glued(model, parts, body, &Motions { bases, blocks: &blocks, units: &units, sizes: &sizes })?;
     let held = filled(glue.rows(), false, WHAT)?;
@@ -62,17 +63,18 @@ fn orthonormal(parts: &Parts, body: usize, mut vectors: Matrix) -> Matrix {
     basis
 }
 
-/// Of the pieces of a body.
+/// The null spaces of the pieces of a body.
 struct Motions<'a> {
     bases: &'a [Matrix],
     /// First column of each basis among all modes.
     blocks: &'a [usize],
-    /// Unit of K, and what motions are divided by.
+    /// Unit of K, and divisors of the motions.
     units: &'a [f64],
     sizes: &'a [f64],
 }
 
-/// `G'` of the glue of the body alone, rows by modes: `s (R_c - R_d)` for copies c and d of an unknown, `s^-2 = 1/K_cc + 1/K_dd`.
+/// `G'` of the glue of the body alone, rows x modes: `s (R_c - R_d)` for copies c and d of an unknown, `s^-2 = 1/K_cc +
+/// 1/K_dd`.
 fn glued(model: &Model, parts: &Parts, body: usize, own: &Motions) -> Result<Csr> {
     let Motions { bases, blocks, units, sizes } = own;
     let range = parts.of(body);

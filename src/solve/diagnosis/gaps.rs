@@ -14,13 +14,13 @@ use crate::solve::case::Case;
 use crate::solve::gaps::Gaps;
 use crate::solve::response::ByInverse;
 
-/// A displacement so many times as large as all that rows demand and loads make is none that could satisfy the rows.
+/// A displacement that exceeds all motion demanded by rows and caused by loads by this factor cannot satisfy the rows.
 const BEYOND: f64 = 1e6;
-/// Gaps may be differences of displacements so many times as large: their rounding is that of those.
+/// Gaps may be differences of displacements larger by this factor, with the rounding of these displacements.
 const TRAVELLED: f64 = 1e3;
-/// A weight below this part of the largest is none.
+/// A weight below this part of the largest counts as 0.
 const NEGLIGIBLE: f64 = 1e-8;
-/// Multiplications that a search which ends may take.
+/// Limit of multiplications of a finite search.
 const WORK: usize = 10_000_000_000;
 
 /// A combination of rows of the island, contact rows first, each with its weight times the scaled row `s_i b_i u <= s_i c_i`.
@@ -30,14 +30,14 @@ pub type Weights = Vec<(usize, f64)>;
 pub struct Contradictions<'a> {
     case: Case<'a>,
     gaps: &'a Gaps,
-    /// V of the loads, once it has been asked for, force x length.
+    /// V of the loads, force x length, if already computed.
     work: Cell<Option<f64>>,
 }
 
 /// Groups of rows that may contradict each other.
 pub struct Among {
     pub groups: Vec<usize>,
-    /// The unknowns that they touch, each with a number from 0.
+    /// The unknowns that these groups touch, numbered from 0.
     place: HashMap<usize, usize>,
 }
 
@@ -46,8 +46,8 @@ impl<'a> Contradictions<'a> {
         Self { case, gaps, work: Cell::new(None) }
     }
 
-    /// The error that names the rows, where a combination w of the groups of the dual, or what rows that take part in it
-    /// demand of each other, proves it. Compliant rows contradict nothing.
+    /// The error that names contradictory rows, if a combination w of the groups of the dual, or a search among its rows,
+    /// proves the contradiction. Compliant rows contradict nothing.
     pub fn proved(&self, w: &[f64]) -> Result<Option<Error>> {
         let rows = &self.case.ready.rows;
         let negligible = NEGLIGIBLE * norm_max(w);
@@ -60,8 +60,8 @@ impl<'a> Contradictions<'a> {
         }
     }
 
-    /// The same by a method that ends for all of these groups, where they touch few unknowns: the displacement of least |u|_D
-    /// that satisfies them, or rows that none does.
+    /// As `proved`, by a finite method for all of these groups, if they touch few unknowns: it finds the displacement of
+    /// least |u|_D that satisfies the rows, or rows that no displacement satisfies.
     pub fn proved_among(&self, among: &Among) -> Result<Option<Error>> {
         let (rows, Among { groups, place }) = (&self.case.ready.rows, among);
         if among.work() > WORK {
@@ -92,7 +92,7 @@ impl<'a> Contradictions<'a> {
             Err(error) => return Err(error),
         };
         let of_rows = |w: Vec<(usize, f64)>| w.into_iter().map(|(k, w)| (of[k].0, of[k].1 * w)).collect();
-        // the forces l of the nearest point u prove best how far it is: B'l = -u, c'l = -|u|^2
+        // the forces l of the nearest point u prove its distance best: B'l = -u, c'l = -|u|^2
         let far = norm(&found.point) > BEYOND * self.demand();
         let forces = found.forces.into_iter().enumerate().filter(|(_, force)| *force > 0.0);
         let forces = far.then(|| forces.collect());
@@ -100,7 +100,7 @@ impl<'a> Contradictions<'a> {
         proofs.find_map(Result::transpose).transpose()
     }
 
-    /// These groups with the unknowns that they touch.
+    /// These groups and the unknowns that they touch.
     pub fn among(&self, groups: Vec<usize>) -> Among {
         let mut place = HashMap::new();
         for (j, _) in groups.iter().flat_map(|&group| self.case.ready.rows.scaled.row(group)) {
@@ -110,9 +110,9 @@ impl<'a> Contradictions<'a> {
         Among { groups, place }
     }
 
-    /// `w'c + X |B'w|_{D^-1} + 64 eps (|w|'|c| + Y ||B|'|w||_{D^-1}) < 0` by the rows of the host: no displacement u of less than
-    /// X in the metric D satisfies them, nor if c is B u rounded for one of less than Y; X and Y are 10^6 and 10^3 times what the rows
-    /// demand and the loads make.
+    /// `w'c + X |B'w|_{D^-1} + 64 eps (|w|'|c| + Y ||B|'|w||_{D^-1}) < 0` by the rows of the host: no displacement u with
+    /// |u|_D < X satisfies them, even if c is the rounded B u of a displacement of size Y; X and Y are 10^6 and 10^3
+    /// times the motion that rows demand and loads cause.
     pub fn proof(&self, mut weights: Weights) -> Result<Option<Error>> {
         let rows = &self.case.ready.rows;
         merge(&mut weights);
@@ -138,7 +138,7 @@ impl<'a> Contradictions<'a> {
         let (left, terms, excess) = (size(&left), size(&terms), -demanded.value());
         let proves =
             |moved: f64| excess > BEYOND * moved * left + NOISE * (demands + TRAVELLED * moved * terms);
-        // what the loads move costs a product with K+
+        // the motion caused by the loads costs a product with K+
         let proved = proves(self.demand()) && proves(self.moved()?);
         Ok(proved.then(|| self.named(&weights, excess, demands)))
     }
@@ -152,7 +152,7 @@ impl<'a> Contradictions<'a> {
         Ok((work / ready.island.unit).sqrt())
     }
 
-    /// |S c_-, S_H h|: a length that the rows demand.
+    /// |S c_-, S_H h|: the motion that the rows demand, a length.
     fn demand(&self) -> f64 {
         let rows = &self.case.ready.rows;
         let of = |i: usize| {
@@ -183,15 +183,15 @@ impl<'a> Contradictions<'a> {
 }
 
 impl Among {
-    /// Multiplications of a search among them that ends: a rotation of the unknowns for every active row, for each row that joins
-    /// or leaves.
+    /// Multiplications of a finite search among them: for each row that joins or leaves, one rotation of the unknowns per
+    /// active row.
     pub fn work(&self) -> usize {
         let (unknowns, active) = (self.place.len(), self.place.len().min(self.groups.len()));
         4usize.saturating_mul(unknowns).saturating_mul(active).saturating_mul(active)
     }
 }
 
-/// One weight for each row, none of zero.
+/// One weight per row, without zeros.
 fn merge(weights: &mut Weights) {
     weights.sort_by_key(|(i, _)| *i);
     weights.dedup_by(|next, first| {

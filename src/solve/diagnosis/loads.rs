@@ -12,47 +12,48 @@ use crate::setup::Ready;
 use crate::solve::case::Case;
 use crate::solve::scaled::Scaled;
 
-/// Up to this share of the load what is not held may be rounding of the load: there is an answer without it.
+/// A part of the load that nothing holds may be rounding up to this share of the load: the answer without it is complete.
 pub const ROUNDING: f64 = 1e-10;
-/// Up to this share the answer without it is told, as marginal; beyond it there is none, where that is proved.
+/// Up to this share the answer without it is marginal; above it there is no answer, if that is proved.
 pub const MARGINAL: f64 = 1e-7;
-/// Loads are told apart as far as this; those of a body without any are of that size.
+/// Ratio of the smallest to the largest load that is distinguished; a body without load counts as having the smallest.
 const RANGE: f64 = 1e-7;
-/// Rows and K resist a motion that so many times the load, and what that moves, could not hold.
+/// Rows and K resist a motion if this multiple of the load, and of the forces that it causes, could not move them.
 const BEYOND: f64 = 1e6;
 
-/// The part of a load that the forces which come nearest to it leave. Bodies with such a part that rows with a force or equality
-/// rows join are free to move together, a cluster; shares are of its load, |f|_{D^-1} without grounded unknowns.
+/// The part of a load that the nearest forces of the rows do not hold. Bodies with such a part that are joined by
+/// equality rows or by rows with a force move together: a cluster. Shares are relative to the cluster's load, |f|_{D^-1}
+/// without grounded unknowns.
 pub struct Unheld {
-    /// D R c over the unknowns of the island, in units of 2^p: what is left, as a load.
+    /// D R c over the unknowns of the island, in units of 2^p: the part not held, as a load.
     pub load: Vec<f64>,
-    /// R c, the motion that it drives.
+    /// R c, the motion that this part causes.
     motion: Vec<f64>,
-    /// The forces of the dual that leave it.
+    /// The forces of the dual that leave this part.
     pub x: Vec<f64>,
     /// The largest |D R c|_{D^-1} / |f|_{D^-1} of a cluster.
     pub share: f64,
-    /// The largest of a body with a load, by itself.
+    /// The largest ratio of this kind of a single body with a load.
     pub of_body: f64,
     /// |D R c| / |D R R'f| of this cluster.
     margin: f64,
-    /// Body by body the cluster, |f|_{D^-1} of the body, and the share of the cluster; this is 0 for a body that is left nothing.
+    /// Per body: its cluster, |f|_{D^-1} of the body, and the share of its cluster, 0 for a body without a part not held.
     cluster: Vec<usize>,
     loads: Vec<f64>,
     shares: Vec<f64>,
-    /// Place in the island of the body that is left most, of the cluster with the largest share.
+    /// Place in the island of the body with the largest part not held, in the cluster with the largest share.
     body: usize,
 }
 
 impl Unheld {
-    /// Of the forces that leave least of the load, |D R c|_{D^-1}; those of rows that are `far`, by number, are 0 (none where it is
-    /// empty).
+    /// For the forces that leave the least of the load, |D R c|_{D^-1}; the forces of rows marked in `far` are 0 (empty:
+    /// no far rows).
     pub fn least(data: &Data, ready: &Ready, scaled: &Scaled, far: &[bool]) -> Result<Self> {
         Self::nearest(data, ready, scaled, far, &ready.dual.sizes_of_modes())
     }
 
-    /// Of those that leave of each body as small a part of its own load as may be, so that what is rounding of a large load does
-    /// not press on a body with a small one; `None` without loads.
+    /// For the forces that leave the smallest part of each body's own load, so that rounding of a large load does not act
+    /// on a body with a small one; `None` without loads.
     pub fn relative(data: &Data, ready: &Ready, scaled: &Scaled, far: &[bool]) -> Result<Option<Self>> {
         let sizes = ready.dual.sizes_of_loads(&free(data, scaled.load.clone()), &ready.rows.metric);
         let most = norm_max(&sizes);
@@ -60,7 +61,7 @@ impl Unheld {
         (most > 0.0).then(|| Self::nearest(data, ready, scaled, far, &weights)).transpose()
     }
 
-    /// Of those that leave least of the resultants, each times its weight.
+    /// For the forces that leave the least of the resultants, each multiplied by its weight.
     fn nearest(data: &Data, ready: &Ready, scaled: &Scaled, far: &[bool], weights: &[f64]) -> Result<Self> {
         let qp = scaled.qp(ready, &ready.dual);
         let is_far = |i: &usize| far.get(*i).copied().unwrap_or(false);
@@ -70,7 +71,7 @@ impl Unheld {
         Ok(Self::of(data, ready, scaled, near.spread(&x), &rest))
     }
 
-    /// Of the forces x of the dual, which leave `rest` = e - G x.
+    /// For the forces x of the dual, which leave `rest` = e - G x.
     pub fn of(data: &Data, ready: &Ready, scaled: &Scaled, x: Vec<f64>, rest: &[f64]) -> Self {
         let (island, metric) = (&ready.island, &ready.rows.metric);
         let as_load = |resultants: &[f64]| ready.dual.load_of(resultants, island.unknowns(), metric);
@@ -111,20 +112,21 @@ impl Unheld {
         Self { load, motion, x, share, of_body, margin, cluster, loads, shares, body }
     }
 
-    /// What is to be taken from the loads themselves; none where it is so little of each body, with a `share` of all, that it is
-    /// taken from their resultants alone.
+    /// The load to subtract from the loads; none if neither `share` nor the share of a single body exceeds rounding:
+    /// then only the resultants change.
     pub fn load_to_take(&self, share: f64) -> Option<&[f64]> {
         (share.max(self.of_body) > ROUNDING).then_some(&self.load)
     }
 
-    /// So little that it may be rounding, or be told as marginal.
+    /// Small enough to be rounding or marginal.
     pub fn is_little(&self) -> bool {
         self.share <= MARGINAL
     }
 
-    /// The error that names a motion v = R c which proves that nothing holds the load: on the data of the host K does not
-    /// strain by it, and f'v is more than forces of `BEYOND` the load could do against the rows that resist. It moves the
-    /// cluster with the largest share, or all that are left more than a little, or all: loads of other bodies play no part.
+    /// The error with a motion v = R c which proves that nothing holds the load: by the data of the host K does not
+    /// strain by v, and f'v is more than the work of forces `BEYOND` times the load against the rows that resist. v moves
+    /// the cluster with the largest share, or all bodies with more than a small share, or all: loads of other bodies do
+    /// not count.
     pub fn proof(&self, case: Case, scaled: &Scaled) -> Result<Option<Error>> {
         if self.is_little() {
             return Ok(None);
@@ -159,8 +161,8 @@ impl Unheld {
             range.clone().fold(range.start, |best, i| if v[i].abs() > v[best].abs() { i } else { best });
         let sense = if v[fastest] > 0.0 { "positive" } else { "negative" };
         let what = format!(
-            "the load moves the body and no contact force can hold it (|resultant| / |load| = {:.1e} of what moves with \
-             it); the motion is fastest at this dof, in the {sense} sense",
+            "the load moves the body and no contact force can hold it (|resultant| / |load| = {:.1e} of the bodies that move \
+             together); the motion is fastest at this dof, in the {sense} direction",
             self.share
         );
         let largest = norm_max(&v);
@@ -176,13 +178,13 @@ impl Unheld {
     }
 }
 
-/// A load without what acts on grounded unknowns, which no rigid motion moves.
+/// A load without the part on grounded unknowns, which no rigid motion moves.
 pub fn free(data: &Data, mut load: Vec<f64>) -> Vec<f64> {
     data.grounded().for_each(|j| load[j] = 0.0);
     load
 }
 
-/// Label of the bodies that move together, and how many labels there are.
+/// Cluster of each body, and the number of clusters.
 fn clusters(ready: &Ready, x: &[f64], left: &[f64]) -> (Vec<usize>, usize) {
     let (rows, island) = (&ready.rows, &ready.island);
     let forces = rows.scaling.decoupling.solve_transposed(x.to_vec());
@@ -206,7 +208,7 @@ fn resistance(ready: &Ready, v: &[f64]) -> f64 {
     weighted_norm(&all, |_| 1.0)
 }
 
-/// `sum bound |T v|` in units of 2^p: the work that bounds of friction may do.
+/// `sum bound |T v|` in units of 2^p: the largest work of the friction bounds.
 fn bounded(ready: &Ready, v: &[f64]) -> f64 {
     let nodes = ready.island.friction.nodes.iter();
     let work = nodes.map(|node| if node.bound > 0.0 { node.bound * slip(ready, node, v) } else { 0.0 });

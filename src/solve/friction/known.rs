@@ -21,7 +21,7 @@ pub fn on_known_states(ready: &Ready, settings: &Settings, qp: Qp, gaps: &Gaps) 
     known_face(problem, limits, (&answer.x, &answer.alpha), &mut Silent).map(Some)
 }
 
-/// Hears of the products and does not end them.
+/// Does not report products and never stops them.
 struct Silent;
 
 impl FrictionObserver for Silent {

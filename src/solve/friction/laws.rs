@@ -9,7 +9,7 @@ use crate::qp::Qp;
 use crate::setup::Ready;
 use crate::solve::gaps::Gaps;
 
-/// A node over the rows of the dual: its normal row, where that carries the force of its group, tangential rows, mu' and bound'.
+/// A node in the rows of the dual: its normal row, if it carries the force of its group, tangential rows, mu' and bound'.
 struct DualNode {
     normal: Option<usize>,
     tangents: Vec<usize>,
@@ -31,7 +31,8 @@ fn dual_node(ready: &Ready, gaps: &Gaps, node: &FrictionNode) -> DualNode {
     DualNode { normal, tangents, coefficient, bound: node.bound / by }
 }
 
-/// All laws on some rows of the dual, numbered among these: nodes with friction, and half lines of the other bounded rows.
+/// All laws on a subset of the rows of the dual, numbered within the subset: nodes with friction, half lines of other
+/// bounded rows.
 pub fn cones(ready: &Ready, gaps: &Gaps, rows: &[usize]) -> Result<Cones> {
     let mut place = filled(gaps.bounded.len(), None, "friction")?;
     rows.iter().enumerate().for_each(|(k, &row)| place[row] = Some(k));
@@ -52,7 +53,7 @@ pub fn cones(ready: &Ready, gaps: &Gaps, rows: &[usize]) -> Result<Cones> {
     Cones::new(rows.len(), nodes)
 }
 
-/// Tangential rows of nodes that may carry no tangential force at x.
+/// Tangential rows of nodes whose friction bound at x is 0.
 pub fn open_rows(ready: &Ready, gaps: &Gaps, x: &[f64]) -> Vec<usize> {
     let mut open = Vec::new();
     for node in &ready.island.friction.nodes {
@@ -65,7 +66,7 @@ pub fn open_rows(ready: &Ready, gaps: &Gaps, x: &[f64]) -> Vec<usize> {
     open
 }
 
-/// The preconditioner of the bodies on some rows of the dual.
+/// The preconditioner of the bodies on a subset of the rows of the dual.
 pub struct OfBodies<'a> {
     pub of: &'a Preconditioner,
     pub rows: &'a [usize],

@@ -22,7 +22,7 @@ use crate::solve::scaled::Scaled;
 
 pub use known::on_known_states;
 
-/// Solves the dual with the laws of friction for the rows that matter; the forces of the others are 0.
+/// Solves the dual with the laws of friction for the rows that matter; the forces of the rows left out are 0.
 pub fn solve_with_friction(
     case: Case,
     means: &MethodOptions,
@@ -55,7 +55,8 @@ pub fn solve_with_friction(
     }
 }
 
-/// The forces of rows that are not `far`, within their cones, that leave least of the load, `|D R c|_{D^-1}`, and `e - G x`.
+/// The forces within their cones, on rows that are not `far`, that leave the least of the load, `|D R c|_{D^-1}`; and `e
+/// - G x`.
 pub fn nearest_forces(ready: &Ready, scaled: &Scaled, far: &[bool]) -> Result<(Vec<f64>, Vec<f64>)> {
     let rows: Vec<usize> = (0..far.len()).filter(|&i| !far[i]).collect();
     let near = Restricted::new(scaled.qp(ready, &ready.dual), &rows);
@@ -64,7 +65,7 @@ pub fn nearest_forces(ready: &Ready, scaled: &Scaled, far: &[bool]) -> Result<(V
     Ok((near.spread(&x), rest))
 }
 
-/// The method on some of the rows. Pairs of earlier solves serve where the start is not 0.
+/// The method on a subset of the rows. It reuses the pairs of earlier solves if the start is not 0.
 fn on_rows(
     case: Case,
     means: &MethodOptions,
@@ -121,7 +122,8 @@ fn on_rows(
     Ok((found, counts))
 }
 
-/// The same as the solution of any method; motions that neither closed rows nor nodes with a bound resist are undetermined.
+/// Converts the result to a `Solution`; motions that neither closed rows nor nodes with a friction bound resist are
+/// undetermined.
 fn solution(
     ready: &Ready,
     qp: &Qp,

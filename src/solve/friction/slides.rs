@@ -11,17 +11,18 @@ use crate::solve::case::Case;
 
 /// Stiffness of the supports, no unit: rows have the compliance 1, the modes of a body `|G_p| = 1`.
 const WEAK: [f64; 2] = [1e-3, 1e-5];
-/// What the supports carry has stayed where it differs by less than this part.
+/// The forces of the supports are constant if they differ by less than this part.
 const STAYS: f64 = 0.05;
-/// Less than this part of the load is nothing.
+/// Parts of the load below this are zero.
 const NOTHING: f64 = 1e-6;
-/// A slide is steady where rates of rows that carry forces, and forces that are not along the slip, are below this part of the largest.
+/// A slide is steady if the gap rates of rows with forces, and forces not along the slip, are below this part of the
+/// largest.
 const STEADY: f64 = 1e-2;
 
-/// What weak supports have shown.
+/// The result of the weak supports.
 pub enum Shown {
     Slides(Slide),
-    /// Forces and amplitudes near to those of a rest.
+    /// Forces and amplitudes close to a state of rest.
     Rest {
         x: Vec<f64>,
         alpha: Vec<f64>,
@@ -29,15 +30,15 @@ pub enum Shown {
     Nothing,
 }
 
-/// A steady slide: forces at their bounds hold a part of the load.
+/// A steady slide: the forces at their bounds hold only a part of the load.
 pub struct Slide {
     /// Amplitudes of its motion.
     alpha: Vec<f64>,
-    /// What friction holds of the load along the motion, as a part, no unit.
+    /// Part of the load along the motion that friction holds, no unit.
     capacity: f64,
 }
 
-/// What the supports show of a problem of which the method has found no answer; their work is added to `counts`.
+/// The result of weak supports for a problem without an answer of the method; their work is added to `counts`.
 pub fn shown(
     problem: FrictionProblem,
     limits: FrictionLimits,
@@ -75,21 +76,21 @@ pub fn shown(
         let alpha = last.iter().map(|left| left / WEAK[1]).collect();
         return Ok(Shown::Rest { x, alpha });
     }
-    // the bodies' own deformation is of order kappa beside the slide
+    // relative to the slide, the deformation of the bodies is of order kappa
     let mut motion = last.clone();
     axpy(WEAK[1] / (WEAK[0] - WEAK[1]), &change, &mut motion);
     if !is_steady(&problem, &x, &motion) {
         return Ok(Shown::Nothing);
     }
     let capacity = 1.0 - dot(&motion, &motion) / dot(problem.e, &motion);
-    // forces that drive the motion themselves are no friction that gives way
+    // forces that drive the motion are not friction at its bound
     if !(0.0..1.0).contains(&capacity) {
         return Ok(Shown::Nothing);
     }
     Ok(Shown::Slides(Slide { alpha: motion, capacity }))
 }
 
-/// Nodes that carry forces stay closed or open no gap, and their tangential forces are at their bounds along the slip.
+/// Nodes that carry forces do not open, and their tangential forces are at their bounds along the slip.
 fn is_steady(problem: &FrictionProblem, x: &[f64], alpha: &[f64]) -> bool {
     let rate = |row: usize| problem.g_transposed.row_dot(row, alpha);
     let rates: Vec<f64> = (0..x.len()).map(rate).collect();
@@ -112,7 +113,7 @@ fn is_steady(problem: &FrictionProblem, x: &[f64], alpha: &[f64]) -> bool {
 }
 
 impl Slide {
-    /// The error that names the body that slides fastest, its motion, and what friction holds.
+    /// The error with the body that slides fastest, its motion, and the part that friction holds.
     pub fn named(&self, case: Case, starts: usize) -> Result<Error> {
         let (ready, island) = (case.ready, case.island());
         let own = ready.dual.rigid_motion(&self.alpha, island.unknowns());
@@ -125,7 +126,7 @@ impl Slide {
         let largest = v[fastest].abs();
         v.iter_mut().for_each(|v| *v /= largest);
         let what = format!(
-            "the body slides: friction holds {:.6} of the load along this motion, fastest at this dof, in the {sense} sense; \
+            "the body slides: friction holds {:.6} of the load along this motion, fastest at this dof, in the {sense} direction; \
              no rest was found from {starts} starts",
             self.capacity
         );
@@ -134,7 +135,7 @@ impl Slide {
     }
 }
 
-/// The supported problem is judged by its laws alone.
+/// Accepts every point: only the laws judge the supported problem.
 struct Content;
 
 impl AcceptanceTest for Content {

@@ -1,7 +1,8 @@
 use super::*;
 use crate::qp::AnswerFace;
 
-/// Blocks of four unknowns, (x, y) of two points, that slide along x, y and turn; unknowns of unequal weight.
+/// Blocks of four unknowns, (x, y) of two points, which slide along x and y and rotate; the unknowns have different
+/// weights.
 struct FreeBlocks {
     null_space: Matrix,
     count: usize,
@@ -16,7 +17,7 @@ impl FreeBlocks {
         Self { null_space, count, metric }
     }
 
-    /// Change and kernel; `closed` rows resist.
+    /// Change and dimension of the kernel; `closed` rows resist.
     fn solve(&self, rows: &Csr, gaps: &[f64], lambda: &[f64], u: &[f64]) -> (Shift, usize) {
         let bodies: Vec<Moving> = (0..self.count)
             .map(|p| Moving {
@@ -76,7 +77,7 @@ fn a_block_slides_back_as_far_as_the_wall_allows_whatever_the_start() {
     }
 }
 
-/// Loose blocks: each goes back by itself, and the second answer is where the first is.
+/// Loose blocks: each returns separately, and a second solve changes nothing.
 #[test]
 fn three_hundred_loose_blocks_go_back_and_stay() {
     let blocks = FreeBlocks::new(300);
@@ -99,7 +100,7 @@ fn three_hundred_loose_blocks_go_back_and_stay() {
     for travelled in [0.0, 1.0, 1e5] {
         let mut u = elastic.clone();
         (0..300).for_each(|p| [4 * p, 4 * p + 2].iter().for_each(|&i| u[i] += travelled * (p as f64).cos()));
-        // rows that the start violates are none: the gap that it leaves is the one to keep
+        // gaps at rows that the start violates: the row keeps its violation
         let open: Vec<f64> = (0..rows.rows())
             .map(|i| if lambda[i] > 0.0 { gaps[i] } else { gaps[i].max(rows.row_dot(i, &u)) })
             .collect();
@@ -118,7 +119,7 @@ fn three_hundred_loose_blocks_go_back_and_stay() {
     assert!(far < 1.0, "{far}");
 }
 
-/// A motion is exactly 0 on a grounded unknown, and its rows there are not moved.
+/// A motion is exactly 0 on a grounded unknown, and grounded unknowns do not change its rows.
 #[test]
 fn grounded_unknowns_stay_to_the_last_bit() {
     let null_space = Matrix { rows: 3, cols: 1, data: vec![1.0, 1.0, 1e-20] };

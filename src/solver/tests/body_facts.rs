@@ -3,7 +3,7 @@
 use crate::error::Kind;
 use crate::solver::{Modes, Origin, Problem, SparseInput, Storage};
 
-/// Two springs that share nothing, one on the ground; the same again; a dense body.
+/// Two springs that are not connected, one on the ground; a second such body; a dense body.
 #[test]
 fn facts_tell_what_was_given_and_what_was_made_of_it() {
     let mut problem = Problem::new();

@@ -1,4 +1,5 @@
-//! Work that is still done after a solve has to end, because the time limit is reached or the host cancels, right after a chosen check of the interrupt.
+//! After the time limit or a cancellation a solve must end. Measures the work it still does after the interrupt falls at
+//! a chosen check.
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex};
@@ -9,19 +10,19 @@ use crate::error::{Error, Kind};
 use crate::platform::tally;
 use crate::solver::{LogLevel, Modes, Outcome, Problem, Report, RowKind, RowsInput, SparseInput, Storage};
 
-/// Who ends the solve.
+/// The reason why the solve ends.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Stop {
     Time,
     Host,
 }
 
-/// A solve that has been ended.
+/// A solve that was ended.
 struct Ended {
     outcome: Result<Report, Error>,
-    /// Products, coarse solves and factorisations since then.
+    /// Products, coarse solves and factorisations after the interrupt.
     more: usize,
-    /// How often it has looked at the clock.
+    /// Number of checks of the clock.
     looks: usize,
 }
 
@@ -47,7 +48,7 @@ fn problem(deck: &Deck, options: &str) -> Problem {
     problem
 }
 
-/// Solves on this thread, until `stop` comes right after look `when`.
+/// Solves on this thread; `stop` occurs directly after check `when`.
 fn ended(problem: &mut Problem, stop: Stop, when: usize) -> Ended {
     let (looks, before) = (Arc::new(AtomicUsize::new(0)), Arc::new(AtomicUsize::new(usize::MAX)));
     let (counted, noted, canceller) = (Arc::clone(&looks), Arc::clone(&before), problem.canceller());
@@ -68,8 +69,8 @@ fn ended(problem: &mut Problem, stop: Stop, when: usize) -> Ended {
     Ended { outcome, more, looks: looks.load(Ordering::Relaxed) }
 }
 
-/// Ends solves of the deck after 1, 2, 4, ... looks, or after every one where there are few, until one is completed. None of them does
-/// more than `most` of the costly work after that, and what it leaves is an answer or says that there is none.
+/// Ends solves of the deck after 1, 2, 4, ... checks, or after every check if `every`, until a solve is complete. No
+/// solve does more than one further expensive operation, and each leaves an answer or the status that there is none.
 fn all_ended(deck: &Deck, options: &str, stop: Stop, every: bool) {
     let whole = ended(&mut problem(deck, options), stop, usize::MAX);
     let completed = |outcome: &Result<Report, Error>| match (outcome, &whole.outcome) {
@@ -134,7 +135,7 @@ fn at_most_one_of_them_follows_on_many_loose_bodies() {
     }
 }
 
-/// Above 1500 modes the forces that come nearest to the load are found row by row with coarse factors.
+/// Above 1500 modes the forces nearest to the load are found row by row with coarse factors.
 #[test]
 fn at_most_one_of_them_follows_where_the_modes_are_many() {
     for stop in [Stop::Time, Stop::Host] {
@@ -142,7 +143,7 @@ fn at_most_one_of_them_follows_where_the_modes_are_many() {
     }
 }
 
-/// The clock goes on by half a second with every look.
+/// The clock advances by half a second at every check.
 #[test]
 fn parts_that_take_long_say_how_far_they_are_and_the_longer_they_take_the_more_seldom() {
     for (deck, part, of) in [

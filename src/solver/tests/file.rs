@@ -10,8 +10,7 @@ use crate::solver::{Modes, Outcome, Problem, RowKind, RowsInput, SparseInput, St
 use std::fs;
 use std::path::PathBuf;
 
-/// A spring and a block of two dofs with everything that can be registered: -0 and numbers that are not normal among
-/// them.
+/// A spring and a block of two dofs with all kinds of input, including -0 and subnormal numbers.
 fn small() -> Problem {
     let mut problem = Problem::new();
     problem.set_text("tolerance=1e-11 threads=2 preconditioner=lumped index_base=1").unwrap();
@@ -39,7 +38,7 @@ fn read(bytes: &[u8]) -> Result<Problem, Error> {
     problem.read_bytes(bytes).map(|()| problem)
 }
 
-/// What a failed reading leaves is as good as new.
+/// A failed reading leaves an empty problem.
 fn refused(bytes: &[u8]) -> Error {
     let mut problem = Problem::new();
     let error = problem.read_bytes(bytes).unwrap_err();
@@ -104,7 +103,7 @@ fn all_that_is_registered_comes_back_bit_by_bit() {
     assert_eq!(back.write_bytes().unwrap(), bytes, "written again it is the same file");
 }
 
-/// A gap of +infinity is a row that never closes; every other number that is not finite is refused.
+/// A gap of +infinity means a row that never closes; every other number that is not finite is refused.
 #[test]
 fn rows_that_never_close_come_back_and_other_gaps_without_end_are_refused() {
     let mut problem = small();
@@ -235,7 +234,7 @@ fn lengths_that_the_file_does_not_hold_are_refused_before_anything_is_reserved()
         section[8..16].copy_from_slice(&(huge + u64::from(huge == 3)).to_le_bytes());
         refused(&of_sections(FORMAT, &[body(2), section]));
     }
-    // bodies whose unknowns, added up, no array could hold
+    // the total number of unknowns is too large for any array
     let many = vec![body(1 << 59); 3];
     assert!(refused(&of_sections(FORMAT, &many)).what.contains("more unknowns"));
 }
@@ -289,7 +288,7 @@ fn what_the_calls_refuse_is_refused_with_its_section_and_place() {
     assert!(refused(&of_sections(FORMAT, &[body.clone(), row, body])).what.contains("after the rows"));
 }
 
-/// 2e5 bodies with a matrix each: a scan of the bodies for every section would take minutes.
+/// 2e5 bodies with a matrix each: a search through all bodies for every section would take minutes.
 #[test]
 fn many_small_bodies_are_read_in_a_time_that_grows_with_the_file() {
     let payload = [numbers(&[1, 1, 0, 1, 1.0_f64.to_bits()]), vec![0; 4]].concat();

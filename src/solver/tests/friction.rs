@@ -92,7 +92,7 @@ fn only_a_certified_answer_is_committed() {
     }
 }
 
-/// A body of its own that nothing holds: its group has no answer, the block has one.
+/// A separate body that nothing holds: its group has no answer, the block has one.
 #[test]
 fn nothing_is_committed_where_a_group_has_no_answer() {
     let mut problem = block();
@@ -143,7 +143,7 @@ fn an_answer_for_other_nodes_is_not_restored_and_the_nodes_are() {
     assert_eq!((problem.sizes().nodes, problem.sizes().tangential), (2, 2));
     problem.solve().unwrap();
     near(problem.displacement(0).unwrap(), &[0.0, 0.0]);
-    // a bound at the node without contact: it acts, and belongs to what was set up
+    // a friction bound at the node without contact: it acts, and was included in the setup
     let state = problem.save_state().unwrap();
     problem.set_friction_law(1, 1, None, Some(&[8.0])).unwrap();
     assert_eq!(problem.slips().unwrap_err().kind, Kind::State);

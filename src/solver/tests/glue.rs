@@ -3,9 +3,11 @@
 use crate::error::{Kind, Proof};
 use crate::solver::{Problem, RowKind, RowsInput, SparseInput, Storage};
 
-/// Springs s from the ground, each with an end coupled by 1 to its unknown 0; body p has the numbers `[10 + p, 5]`.
+/// Springs s to the ground, each coupled by a spring 1 from its unknown 0 to an end; body p has the numbers `[10 + p,
+/// 5]`.
 ///
-/// An end pulled to u gives way by u / (s + 1) below, and takes the force u - u / (s + 1): 2/3 u, 4/5 u, 8/9 u for s = 2, 4, 8.
+/// An end pulled to u moves unknown 0 by u / (s + 1) and needs the force u - u / (s + 1): 2/3 u, 4/5 u, 8/9 u for s = 2,
+/// 4, 8.
 fn chains(stiffness: &[f64]) -> Problem {
     let mut problem = Problem::new();
     problem.set_i64("glue", 1).unwrap();
@@ -28,7 +30,7 @@ fn close(found: &[f64], by_hand: &[f64]) {
     assert!(found.len() == by_hand.len() && near, "{found:?} {by_hand:?}");
 }
 
-/// Three ends at u = 45 take 30, 36, 40 of a load of 106 on the number 5, which the first copy has.
+/// Three ends at u = 45 need 30, 36, 40 of the load 106 on number 5, which acts on the first copy.
 #[test]
 fn the_first_copy_has_the_load_and_the_glue_hands_on_what_the_others_take() {
     let mut problem = chains(&[2.0, 4.0, 8.0]);
@@ -52,7 +54,8 @@ fn the_first_copy_has_the_load_and_the_glue_hands_on_what_the_others_take() {
     assert_eq!(problem.dual_apply(&[], &mut []).unwrap_err().kind, Kind::State);
 }
 
-/// A wall stops all ends at u = 9, where they take 6, 7.2 and 8 of the 106 with which the last one is pushed; the wall has the rest.
+/// A wall stops all ends at u = 9, where they need 6, 7.2 and 8 of the load 106 on the last one; the wall carries the
+/// rest.
 #[test]
 fn a_row_by_number_acts_on_the_first_copy() {
     let mut problem = chains(&[2.0, 4.0, 8.0]);
@@ -86,7 +89,7 @@ fn numbers_are_shared_on_request_alone_and_the_request_stays_while_they_are() {
     assert!(error.what.contains("option glue = 1"), "{error}");
 }
 
-/// Numbers come and go in any order: the first body that has one names it.
+/// Numbers are set and removed in any order: the first body with a number represents it.
 #[test]
 fn a_number_that_a_body_gives_up_is_that_of_the_next_one() {
     let mut problem = chains(&[2.0, 4.0, 8.0]);

@@ -2,7 +2,7 @@
 
 use crate::solver::{Problem, SparseInput, Storage};
 
-/// Six dense matrices over the modes of all bodies, of which so many have not been found yet, would take 700 GB.
+/// Six dense matrices over the modes of all bodies would take 700 GB, if no null space is known yet.
 #[test]
 fn the_room_of_many_bodies_grows_with_their_number() {
     let mut problem = Problem::new();

@@ -6,7 +6,7 @@ use crate::constraints::FrictionInput;
 use crate::error::Kind;
 use crate::solver::{LogLevel, Modes, Outcome, Problem, RowKind, RowsInput, SparseInput, Storage};
 
-/// A spring 2 pushed by 6 against a wall at 1, and a mass that nothing holds or pushes where `floats`.
+/// A spring 2 pushed by 6 against a wall at 1, and, if `floats`, a mass that nothing holds or pushes.
 fn spring(floats: bool) -> Problem {
     let mut problem = Problem::new();
     let body = problem.add_body(1).unwrap();
@@ -26,7 +26,7 @@ fn spring(floats: bool) -> Problem {
 
 type Book = Arc<Mutex<Vec<(LogLevel, String)>>>;
 
-/// Keeps the lines, and answers `reply` to line `when`.
+/// Keeps the lines and returns `reply` at line `when`.
 fn listen(problem: &mut Problem, most: LogLevel, when: usize, reply: i32) -> Book {
     let lines = Book::default();
     let book = Arc::clone(&lines);
@@ -144,7 +144,7 @@ fn a_function_that_fails_ends_the_call_at_any_line_and_the_next_solve_is_as_ever
     }
 }
 
-/// The lines of a solve that begin so.
+/// The lines of a solve with this beginning.
 fn lines_of(problem: &mut Problem, most: LogLevel, start: &str) -> Vec<String> {
     let lines = listen(problem, most, 0, 0);
     problem.solve().unwrap();
@@ -178,8 +178,8 @@ fn rows_that_overlap_repeat_or_never_close_are_told_with_the_first_or_the_worst_
     problem.add_rows(RowKind::Inequality, rows).unwrap();
     let expected = [
         "note: 1 contact row with overlap (c < 0) before anything moves, most in row 2: c = -2.5e-1",
-        "note: 2 contact rows that can never close, for a gap of +infinity; the first is row 5",
-        "note: 1 contact row that can never close, for want of an entry; the first is row 4",
+        "note: 2 contact rows that can never close, because the gap is +infinity; the first is row 5",
+        "note: 1 contact row that can never close, because the row has no entry; the first is row 4",
         "note: rows that are multiples of other rows, with which they share one force: 1; the first is contact row 3",
     ];
     assert_eq!(lines_of(&mut problem, LogLevel::Phase, "note: "), expected);

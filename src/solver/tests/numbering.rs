@@ -35,7 +35,7 @@ fn a_number_names_one_unknown_of_all_bodies() {
         assert_eq!((error.kind, error.place.body), (Kind::Argument("number"), Some(1)));
         assert_eq!((error.place.dof, error.place.entry), (Some(dof), Some(dof)), "{numbers:?}");
     }
-    // its own numbers may change places, and those it gives up are free
+    // a body may permute its own numbers, and numbers it no longer uses are free
     problem.set_numbering(0, &[3, 7]).unwrap();
     problem.set_numbering(0, &[3, 1]).unwrap();
     problem.set_numbering(1, &[7, 0]).unwrap();
@@ -57,7 +57,7 @@ fn all_bodies_have_numbers_or_none_when_they_are_used() {
     assert_eq!(problem.check_whole(6).unwrap_err().place.body, Some(2));
 }
 
-/// The end of the first pair pushed by 1: u = 1/2, 3/2; of the second by 2: u = 1/2, 5/2.
+/// The end of the first pair is pushed by 1: u = 1/2, 3/2; that of the second by 2: u = 1/2, 5/2.
 #[test]
 fn loads_rows_and_displacements_go_by_the_numbers() {
     for (numbers, f) in [

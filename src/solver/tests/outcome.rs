@@ -3,7 +3,7 @@
 use crate::error::Kind;
 use crate::solver::{Modes, Outcome, Problem, RowKind, RowState, RowsInput, SparseInput, Storage};
 
-/// Two springs pushed against walls, each with nothing to do with the other; the second is stopped by its limit of steps.
+/// Two independent springs pushed against walls; the limit of steps stops the second.
 #[test]
 fn the_group_that_ended_worst_is_named_where_there_are_several() {
     for bodies in [1, 2] {
@@ -93,7 +93,7 @@ fn rows_that_a_displacement_of_1e4_times_their_gaps_satisfies_contradict_nothing
     assert!(u[0].abs() < 1e-6 && (u[1] - 1e4).abs() < 1e-3, "{u:?}");
 }
 
-/// A mass without stiffness is pushed against a wall by 1e-10 of the load on the spring beside it.
+/// A mass without stiffness is pushed against a wall by 1e-10 of the load on the adjacent spring.
 #[test]
 fn a_force_of_1e_10_of_those_on_its_body_holds_a_motion() {
     let mut problem = Problem::new();

@@ -2,9 +2,9 @@
 
 use crate::solver::{Modes, Outcome, Problem, RowKind, RowsInput, SparseInput, Storage};
 
-/// A chain of n springs 1, its first end held, pushed by 1 at the other against an obstacle `1e-12` away: the load alone
-/// would move it by n, so that rounding of load and contact force moves it by n eps, far more than what the last
-/// unknown alone gives way, eps / 2.
+/// A chain of n springs 1, its first end held, pushed by 1 at the other end against an obstacle `1e-12` away: the load
+/// alone would move it by n, so rounding of load and contact force moves it by n eps, far more than the displacement eps
+/// / 2 of the last unknown alone.
 #[test]
 fn a_soft_body_between_load_and_obstacle_is_certified_to_the_rounding_of_their_forces() {
     let n = 4000;
@@ -64,7 +64,7 @@ fn chains(n: usize) -> Problem {
     problem
 }
 
-/// The answer and whether it passes; nothing passes that is moved by `1e-6` of the motion.
+/// The answer and whether it passes; no answer passes that is moved by `1e-6` of the motion.
 fn forces_of_a_certified_answer(problem: &mut Problem, motion: f64) -> (Vec<f64>, Vec<f64>) {
     let report = problem.solve().unwrap();
     assert!(matches!(report.outcome, Outcome::Solved), "{:?}", report.certificate);
@@ -77,7 +77,8 @@ fn forces_of_a_certified_answer(problem: &mut Problem, motion: f64) -> (Vec<f64>
     (lambda, mu)
 }
 
-/// The load acts on the first dof of the first chain, which a row holds: nothing moves, no row but that carries a force.
+/// The load acts on the first dof of the first chain, which a row holds: nothing moves, and only that row carries a
+/// force.
 #[test]
 fn a_load_on_held_dofs_alone_is_certified() {
     for n in [2, 3, 9, 40, 1000] {
@@ -94,7 +95,7 @@ fn a_load_on_held_dofs_alone_is_certified() {
     }
 }
 
-/// Two obstacles overlap with the chains at rest, or their end is moved: they move as one, without a force.
+/// Two obstacles overlap with the chains at rest, or their end is moved: the chains move together, without a force.
 #[test]
 fn bodies_that_are_moved_without_load_are_certified() {
     for n in [2, 3, 9, 40, 200] {

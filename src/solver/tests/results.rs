@@ -16,7 +16,7 @@ fn two_springs() -> Problem {
     problem
 }
 
-/// The options ask for another setup, or for one that the memory does not allow.
+/// The options require another setup, or one that exceeds the memory limit.
 #[test]
 fn an_answer_outlives_the_check_of_another_under_other_options() {
     let mut problem = two_springs();

@@ -3,7 +3,7 @@
 use crate::error::Kind;
 use crate::solver::{Modes, Problem, RowKind, RowsInput, SparseInput, Storage};
 
-/// A spring 1 pushed by 2 against a wall at 1, the row times t: u = 1 for every t whose square is a number.
+/// A spring 1 pushed by 2 against a wall at 1, the row times t: u = 1 for every t whose square is finite and positive.
 #[test]
 fn rows_that_no_scale_brings_to_unit_length_are_refused_and_never_left_out() {
     for (t, fits) in [(1e150, true), (1e-150, true), (1e160, false), (1e-160, false), (1e-300, false)] {

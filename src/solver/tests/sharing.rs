@@ -2,8 +2,8 @@
 
 use crate::solver::{Problem, RowKind, RowsInput, Storage};
 
-/// Six free chains of springs of 1, 2 and 3 times `stiffness`, their middles tied to each other in a row, the
-/// first end of all on the ground.
+/// Six free chains of springs of 1, 2 and 3 times `stiffness`; rows tie the middle dofs together in sequence and hold the
+/// first end of each chain.
 fn chains(stiffness: [f64; 6]) -> Problem {
     let mut problem = Problem::new();
     for s in stiffness {
@@ -31,7 +31,7 @@ fn answer(problem: &mut Problem) -> Vec<f64> {
     all
 }
 
-/// Bodies whose keys differ are compared with no other.
+/// Bodies with different keys are never compared.
 #[test]
 fn answers_have_the_same_bits_whether_bodies_share_or_not() {
     for (stiffness, expected) in [([1.0; 6], [1, 1]), ([1.0, 1.3, 1.0, 1.3, 1.7, 1.0], [1, 3])] {

@@ -12,7 +12,7 @@ fn set_spring(problem: &mut Problem, stiffness: f64) {
     problem.set_stiffness(0, k).unwrap();
 }
 
-/// Two unknowns with a spring between them, pushed against a wall, and the state of the answer.
+/// Two unknowns with a spring between them, pushed against a wall, and the saved state of the answer.
 fn pushed() -> (Problem, usize) {
     let mut problem = Problem::new();
     problem.add_body(2).unwrap();
@@ -47,7 +47,7 @@ fn an_answer_for_another_matrix_is_not_restored() {
     assert!(problem.report().is_none());
 }
 
-/// What is the same bit by bit needs no new factor, and a call that brings it drops the answer all the same.
+/// Data that are equal bit by bit need no new factor, but the call that sets them still drops the answer.
 #[test]
 fn what_a_call_brings_is_new_to_the_answer_and_only_what_differs_to_the_factor() {
     let (mut problem, _) = pushed();

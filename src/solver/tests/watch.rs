@@ -30,14 +30,14 @@ fn chains(threads: i64) -> Problem {
         RowsInput { ptr: &ptr, body: None, dof: &last, val: &[1.0; BODIES], rhs: Some(&[1.0; BODIES]) };
     problem.add_rows(RowKind::Inequality, rows).unwrap();
     problem.set_i64("threads", threads).unwrap();
-    // by their keys no two are alike: each has a part of its own in everything
+    // all keys differ: no body shares factors with another
     problem.prepared.set_keys(&problem.model, |p| [p as u64; 2]);
     problem
 }
 
 type Diary = Arc<Mutex<Vec<(ThreadId, Progress)>>>;
 
-/// Keeps what is heard, and cancels at call `when`.
+/// Keeps the progress messages, and cancels at call `when`.
 fn listen(problem: &mut Problem, when: usize) -> Diary {
     let heard = Diary::default();
     let book = Arc::clone(&heard);
@@ -78,11 +78,11 @@ fn what_a_cancelled_setup_has_factorised_is_kept() {
         let mut problem = chains(threads);
         for when in 0..4 * BODIES {
             let heard = listen(&mut problem, when);
-            problem.model.revisions.laws += 1; // no dual problem is left
+            problem.model.revisions.laws += 1; // no dual problem remains
             let ended = problem.setup();
             let calls = heard.lock().unwrap().len();
             if calls <= when {
-                break; // fewer parts are left than that
+                break; // fewer parts remain
             }
             assert_eq!((ended.unwrap_err().kind, calls), (Kind::Cancelled, when + 1));
         }
@@ -92,8 +92,8 @@ fn what_a_cancelled_setup_has_factorised_is_kept() {
     }
 }
 
-/// The host takes longer over the first step than the whole call may take: the group of bodies whose step that is has an answer, and
-/// no other one has begun.
+/// The host's function for the first step takes longer than the time limit: the group of bodies of that step has an
+/// answer, and no other group has begun.
 #[test]
 fn a_solve_ends_with_the_step_in_which_the_time_is_over() {
     let mut problem = chains(1);

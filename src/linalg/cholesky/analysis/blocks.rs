@@ -8,9 +8,9 @@ use crate::platform::memory::{filled, reserved};
 
 const WHAT: &str = "the pattern of a Cholesky factor";
 
-/// Dofs that follow each other in the order and have the same neighbours, each other among them.
+/// Consecutive dofs in the order that have equal neighbours, including each other.
 pub struct Blocks {
-    /// Their places in the order that was given.
+    /// Their range in the given order.
     pub range: Vec<Range<usize>>,
     /// Position of the first column of every block, then n.
     pub start: Vec<usize>,
@@ -65,7 +65,7 @@ impl Blocks {
         self.position(block).len()
     }
 
-    /// The blocks in another sequence.
+    /// The blocks in another order.
     pub fn permuted(&self, sequence: &[usize]) -> Result<Self> {
         let mut new: Vec<u32> = filled(sequence.len(), 0, WHAT)?;
         sequence.iter().enumerate().for_each(|(at, &block)| new[block] = at as u32);

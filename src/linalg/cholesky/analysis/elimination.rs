@@ -3,8 +3,8 @@
 /// No parent: a root of the forest.
 pub const NONE: usize = usize::MAX;
 
-/// Parent of every column; `neighbours(j)` gives the rows i < j of column j, perhaps others too (Liu's algorithm with
-/// path compression).
+/// Parent of every column; `neighbours(j)` gives the rows i < j of column j, and possibly other rows (Liu's algorithm
+/// with path compression).
 pub fn elimination_tree<'a, I>(n: usize, neighbours: impl Fn(usize) -> I) -> Vec<usize>
 where
     I: Iterator<Item = &'a u32>,
@@ -60,7 +60,7 @@ mod tests {
 
     #[test]
     fn the_tree_of_an_arrow_matrix_is_a_star_and_children_precede_parents() {
-        // columns 0, 1, 2 couple to column 3 only
+        // columns 0, 1, 2 are coupled only to column 3
         let columns: [&[u32]; 4] = [&[3], &[3], &[3], &[0, 1, 2]];
         let parent = elimination_tree(4, |j| columns[j].iter());
         assert_eq!(parent, [3, 3, 3, NONE]);

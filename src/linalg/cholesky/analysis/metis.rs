@@ -1,10 +1,10 @@
 //! Nested dissection by METIS 5, the library of the system (feature `metis`).
 //!
-//! During a call METIS 5.1 does things to the host that the library itself never does. It handles SIGABRT and SIGTERM and
-//! jumps out of its code when one arrives, so none must arrive; both handlers are restored at the end. It seeds `rand` of the C
-//! library and draws from it: a host that draws at that time changes the order, but changes the solution only by
-//! rounding. If memory is short, METIS prints a line on stderr. The process runs one call at a time, so that handlers and random
-//! numbers are not mixed up among the threads of this library.
+//! During a call METIS 5.1 affects the host in ways that the library itself never does. It handles SIGABRT and SIGTERM
+//! and leaves its code by a jump when one arrives, so none must arrive; both handlers are restored at the end. It seeds
+//! `rand` of the C library and uses it: if the host calls `rand` at that time, the order changes, but the solution only
+//! by rounding. If memory is short, METIS prints a line on stderr. A process runs one call at a time, so that threads of
+//! this library do not mix up handlers and random numbers.
 
 use std::ffi::c_void;
 use std::ptr::null_mut;
@@ -36,8 +36,8 @@ extern "C" {
     ) -> i32;
 }
 
-/// Nodes in the order of their elimination; the neighbours of node i, without itself, are `adj[ptr[i]..ptr[i + 1]]`, and some
-/// node has one.
+/// Nodes in the order of their elimination; the neighbours of node i, without itself, are `adj[ptr[i]..ptr[i + 1]]`; at
+/// least one node has a neighbour.
 pub fn dissect(ptr: &[i32], adj: &[i32]) -> Result<Vec<usize>> {
     let _alone = ONE_AT_A_TIME.lock().unwrap_or_else(PoisonError::into_inner);
     let (mut options, wide) = default_options();
@@ -48,8 +48,8 @@ pub fn dissect(ptr: &[i32], adj: &[i32]) -> Result<Vec<usize>> {
     }
 }
 
-/// The default options, and whether `idx_t` has 64 bits. The options, a fixed seed among them, are the number -1: all bits
-/// set, in as many bytes as `idx_t` has.
+/// The default options, and whether `idx_t` has 64 bits. The options, including a fixed seed, are -1: all bits are set,
+/// in all bytes of `idx_t`.
 fn default_options() -> ([i64; OPTIONS], bool) {
     let mut options = [0; OPTIONS];
     // SAFETY: METIS writes 40 numbers of at most 8 bytes.
@@ -70,13 +70,13 @@ where
     };
     let (mut ptr, mut adj) = (as_given(ptr)?, as_given(adj)?);
     let nodes = ptr.len() - 1;
-    // fewer than the edges, which 31 bits count
+    // less than the number of edges, which fits 31 bits
     let mut count = T::from(nodes as i32);
     let mut order: Vec<T> = reserved(nodes, WHAT)?;
     order.resize(nodes, T::from(0));
     let mut rank = order.clone();
-    // SAFETY: all arrays have the type and the length that METIS asks for; it writes to none but the last two, and keeps
-    // no pointer.
+    // SAFETY: all arrays have the type and the length required by METIS; it writes only to the last two, and keeps no
+    // pointer.
     let status = unsafe {
         METIS_NodeND(
             (&raw mut count).cast(),
@@ -106,7 +106,7 @@ mod tests {
     use crate::linalg::cholesky::analysis::supernodes::Supernodes;
     use crate::linalg::sparse::graph::Graph;
 
-    /// A cube of n^3 nodes, all of an element coupled.
+    /// A cube of n^3 nodes; all nodes of an element are coupled.
     fn cube(n: i32) -> (Vec<i32>, Vec<i32>) {
         let (mut ptr, mut adj) = (vec![0], Vec::new());
         for i in 0..n * n * n {

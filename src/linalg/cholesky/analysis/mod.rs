@@ -18,12 +18,12 @@ use elimination::NONE;
 use ordering::nested_dissection;
 use supernodes::Supernodes;
 
-/// Bytes that ordering and symbolic analysis take at most, per dof and per entry of the lower triangle: grids of all
+/// Upper bound of the bytes for ordering and symbolic analysis, per dof and per entry of the lower triangle: grids of all
 /// dimensions, chains, stars and diagonal matrices take up to 4/5 of it.
 const ANALYSIS_PER_DOF: usize = 256;
 const ANALYSIS_PER_ENTRY: usize = 128;
 
-/// Order of elimination and pattern of L: depends on the pattern of K and the held dofs only.
+/// Order of elimination and pattern of L, which depend only on the pattern of K and the held dofs.
 pub struct Analysis {
     /// Dof eliminated at each position.
     pub order: Vec<usize>,
@@ -40,8 +40,8 @@ impl Analysis {
         Self::in_order(&graph, &order)
     }
 
-    /// For `matrix` with the dofs `last` eliminated last, in this order; `graph`, which it may have more couplings
-    /// than among those dofs, decides on the order of the others.
+    /// Analysis of `matrix` with the dofs `last` eliminated last, in this order. `graph` determines the order of the
+    /// others; `matrix` may only have further couplings among `last`.
     pub fn ending(graph: &Symmetric, matrix: &Symmetric, last: &[usize]) -> Result<Self> {
         let _room = analysis_headroom(matrix)?;
         let mut is_last = vec![false; matrix.order()];
@@ -51,13 +51,13 @@ impl Analysis {
         Self::in_order(&Graph::of(matrix)?, &order)
     }
 
-    /// Of the block of the dofs in `order`, eliminated in this order.
+    /// Analysis of the block of the dofs in `order`, eliminated in this order.
     pub fn of_leading(matrix: &Symmetric, order: &[usize]) -> Result<Self> {
         let _room = analysis_headroom(matrix)?;
         Self::in_order(&Graph::of(matrix)?, order)
     }
 
-    /// `order` lists the dofs to eliminate.
+    /// Analysis for the dofs to eliminate in `order`.
     fn in_order(graph: &Graph, order: &[usize]) -> Result<Self> {
         let (order, nodes) = Supernodes::of(graph, order)?;
         let mut position = filled(graph.order(), NONE, "the order of a body")?;

@@ -10,8 +10,8 @@ use crate::platform::memory::{filled, reserved};
 #[cfg(not(feature = "metis"))]
 use built_in as dissect;
 
-/// The dofs that are not held, in the order of their elimination. The graph of nodes (dofs with
-/// identical neighbours) is dissected instead of that of dofs: 3 x smaller in 3D, and supernodes stay whole.
+/// The free dofs in the order of their elimination. The graph of nodes (dofs with identical neighbours) is dissected
+/// instead of that of dofs: it is 3 x smaller in 3D, and supernodes are not split.
 pub fn nested_dissection(graph: &Graph, held: &[bool]) -> Result<Vec<usize>> {
     let (node, first) = graph.nodes()?;
     let order = order_nodes(graph, &node, &first)?;
@@ -38,12 +38,12 @@ fn order_nodes(graph: &Graph, node: &[u32], first: &[usize]) -> Result<Vec<usize
     dissect_sparse(&ptr, &adj)
 }
 
-/// Nodes with more neighbours come last, as in AMD: to dissect around one takes the square of their number.
+/// Nodes with more neighbours come last, as in AMD: dissection around such a node costs the square of their number.
 fn most_neighbours(nodes: usize) -> usize {
     (10 * nodes.isqrt()).max(1000)
 }
 
-/// Dissects the graph without the nodes of too many neighbours, which follow.
+/// Dissects the graph without the nodes that have too many neighbours, and appends these.
 fn dissect_sparse(ptr: &[i32], adj: &[i32]) -> Result<Vec<usize>> {
     let nodes = ptr.len() - 1;
     let is_dense = |&i: &usize| (ptr[i + 1] - ptr[i]) as usize > most_neighbours(nodes);
@@ -55,8 +55,8 @@ fn dissect_sparse(ptr: &[i32], adj: &[i32]) -> Result<Vec<usize>> {
     Ok(dissect_parts(&from, &to)?.into_iter().map(|k| sparse[k]).chain(dense).collect())
 }
 
-/// Dissects every connected part by itself: what looks for the parts below a separator takes the product of their number
-/// and their nodes. Of lone nodes, and of nodes that are all neighbours, any order is right.
+/// Dissects every connected part separately: the search for parts below a separator costs the product of the numbers of
+/// parts and nodes. For single nodes, and for complete graphs, the order does not matter.
 fn dissect_parts(ptr: &[i32], adj: &[i32]) -> Result<Vec<usize>> {
     let nodes = ptr.len() - 1;
     let around = |i: usize| adj[ptr[i] as usize..ptr[i + 1] as usize].iter().map(|&j| j as usize);
@@ -78,12 +78,12 @@ fn dissect_parts(ptr: &[i32], adj: &[i32]) -> Result<Vec<usize>> {
     Ok(order)
 }
 
-/// Every node is a neighbour of every other.
+/// Whether all nodes are neighbours of each other.
 fn is_complete(nodes: usize, adj: &[i32]) -> bool {
     adj.len() == nodes * nodes.saturating_sub(1)
 }
 
-/// The graph of some nodes alone; of `number`, one for each node of the whole graph, none is set before and after.
+/// The graph of some nodes; `number`: work array with an entry per node of the whole graph, none is set before and after.
 fn among(
     own: &[usize],
     ptr: &[i32],
@@ -103,12 +103,12 @@ fn among(
     Ok((from, to))
 }
 
-/// From so many nodes on the separators of feral-metis become too large: 1.2 times the work of those of METIS at 50 thousand
-/// nodes of a cube, 1.5 times at 100 thousand.
+/// From this number of nodes on, the separators of feral-metis become too large: 1.2 times the work with METIS for a cube
+/// of 50 thousand nodes, 1.5 times for 100 thousand.
 #[cfg(any(test, not(feature = "metis")))]
 const LARGE: usize = 10_000;
 
-/// The order without METIS: small graphs by the crate feral-metis, large ones by our own separators.
+/// The order without METIS: small graphs by the crate feral-metis, large graphs by the library's own separators.
 #[cfg(any(test, not(feature = "metis")))]
 pub fn built_in(ptr: &[i32], adj: &[i32]) -> Result<Vec<usize>> {
     if ptr.len() <= LARGE {
@@ -152,7 +152,7 @@ mod tests {
         assert_eq!(order, (0..n).filter(|&i| i != 7).collect::<Vec<_>>());
     }
 
-    /// n x n nodes of a grid, each joined to its neighbours, and so many lone unknowns behind every one of them.
+    /// A grid of n x n nodes, each joined to its neighbours and to `lone` further unknowns.
     fn grid(n: usize, lone: usize) -> Graph {
         let (mut ptr, mut col) = (vec![0], Vec::new());
         let (by, numbered) = (1 + lone, |i: usize| (i * (1 + lone)) as u32);
@@ -175,7 +175,7 @@ mod tests {
         nested_dissection(graph, &vec![false; graph.order()]).unwrap()
     }
 
-    /// Ratios of times, each the least of three, in turns: what else the machine does meets both.
+    /// Ratios of times, each the least of three, measured alternately: other load of the machine affects both.
     #[test]
     fn lone_unknowns_cost_the_order_little_more_than_their_share() {
         let (with, without) = (grid(150, 2), grid(150, 0));
@@ -195,7 +195,7 @@ mod tests {
     fn every_part_has_the_order_that_it_has_alone() {
         let (alone, n) = (grid(40, 0), 1600);
         let order = order_of(&alone);
-        // parts that take turns: unknown i of part p is 3 i + p, those of part 1 are lone
+        // interleaved parts: unknown i of part p is 3 i + p; the unknowns of part 1 have no neighbours
         let (mut ptr, mut adj) = (vec![0], Vec::new());
         for k in 0..3 * n as u32 {
             let (i, p) = (k as usize / 3, k % 3);
@@ -216,7 +216,7 @@ mod tests {
 
     #[test]
     fn nodes_tied_to_all_others_are_eliminated_last() {
-        let n = 60_000; // a chain; its first and its middle node have a spring to each of the others
+        let n = 60_000; // a chain; a spring joins its first and its middle node to each of the others
         let (mut ptr, mut col) = (vec![0], Vec::new());
         for i in 0..n as u32 {
             let mut row = vec![0, i.saturating_sub(1), i];

@@ -7,19 +7,19 @@ use rayon::prelude::*;
 use crate::linalg::cholesky::analysis::elimination::NONE;
 use crate::linalg::cholesky::analysis::supernodes::Supernodes;
 
-/// Less work than so many multiplications is not shared among threads.
+/// Less work than this number of multiplications is not shared among threads.
 const SHARED: f64 = 2e7;
-/// Subtrees for every thread: enough that all of them have as much to do.
+/// Subtrees per thread, for an even distribution of work.
 const SUBTREES: usize = 4;
-/// Subtrees where their number must not depend on the threads.
+/// Number of subtrees if it must not depend on the threads.
 const PARTS: usize = 16;
 
-/// Whether threads of the present pool are to share so much work.
+/// Whether the threads of the present pool shall share this work.
 pub fn shared(work: f64) -> bool {
     work > SHARED && rayon::current_thread_index().is_some()
 }
 
-/// Does all tasks, side by side in the present pool or one after the other.
+/// Runs all tasks, in parallel in the present pool or one after the other.
 pub fn each<T: Send>(parallel: bool, tasks: Vec<T>, work: impl Fn(T) + Send + Sync) {
     if parallel && tasks.len() > 1 {
         tasks.into_par_iter().for_each(work);
@@ -28,15 +28,15 @@ pub fn each<T: Send>(parallel: bool, tasks: Vec<T>, work: impl Fn(T) + Send + Sy
     }
 }
 
-/// Ranges of supernodes in ascending order, without those above, which all threads share afterwards; the whole forest
-/// outside a pool.
+/// Ranges of supernodes in ascending order, without the supernodes above them, which all threads share afterwards; the
+/// whole forest outside a pool.
 pub fn subtrees(nodes: &Supernodes) -> Vec<Range<usize>> {
     let threads = if rayon::current_thread_index().is_some() { rayon::current_num_threads() } else { 1 };
     let several = if threads > 1 { of_equal_work(nodes, SUBTREES * threads) } else { None };
     several.unwrap_or_else(|| std::iter::once(0..nodes.count()).filter(|all| !all.is_empty()).collect())
 }
 
-/// The same whatever the threads: none where there is little work.
+/// Subtrees independent of the number of threads; none if there is little work.
 pub fn parts(nodes: &Supernodes) -> Vec<Range<usize>> {
     of_equal_work(nodes, PARTS).unwrap_or_default()
 }
@@ -51,7 +51,7 @@ pub fn outside<'a>(
     ends.zip(starts).flat_map(|(end, start)| end..start)
 }
 
-/// About `count` subtrees, the largest with so little work; `None` where they are too small to be worth it.
+/// About `count` subtrees: the largest with no more work than their share; `None` if they are too small.
 fn of_equal_work(nodes: &Supernodes, count: usize) -> Option<Vec<Range<usize>>> {
     let mut work: Vec<f64> = nodes.nodes().map(|node| node.work()).collect();
     let most = work.iter().sum::<f64>() / count as f64;

@@ -1,6 +1,6 @@
-//! The pattern of L: supernodes, which are neighbouring columns with equal rows below them, and the tree that they form.
+//! The pattern of L: supernodes, which are consecutive columns with equal rows below them, and their tree.
 //!
-//! All work is done on blocks of dofs with equal neighbours (the dofs of a node). A body in space has one block for three
+//! All work is done on blocks of dofs with equal neighbours (the dofs of a node). A body in 3D has one block for three
 //! dofs, and a ninth of the couplings.
 
 use std::ops::Range;
@@ -13,20 +13,20 @@ use crate::platform::memory::reserved;
 
 const WHAT: &str = "the pattern of a Cholesky factor";
 
-/// A supernode joins its parent when this share of the panel they form is zero at most, by the columns it has.
-/// Larger panels make faster products; the zeros cost memory and work.
+/// A supernode is merged with its parent if at most this part of their common panel is zero, depending on its number of
+/// columns. Larger panels make faster products; the zeros cost memory and work.
 const RELAXED: [(usize, f64); 3] = [(12, 0.9), (48, 0.25), (usize::MAX, 0.05)];
 
-/// Supernodes in postorder. The panel of one holds L at its columns: height x width, column-major, first the rows of the
-/// columns themselves, then `rows`.
+/// Supernodes in postorder. The panel of a supernode has the entries of L in its columns: height x width, column-major,
+/// first the rows of the columns themselves, then `rows`.
 pub struct Supernodes {
-    /// First column of every supernode, then n.
+    /// First column of every supernode, and n.
     begin: Vec<usize>,
     row_ptr: Vec<usize>,
     row: Vec<u32>,
     parent: Vec<usize>,
     level: Vec<u32>,
-    /// Where the panel of every supernode starts, then the end.
+    /// Start of the panel of every supernode, and the end.
     panel: Vec<usize>,
 }
 
@@ -39,7 +39,7 @@ pub struct Node<'a> {
     pub width: usize,
     /// Positions of the rows below the columns, ascending.
     pub rows: &'a [u32],
-    /// The panel among the values of L.
+    /// Range of the panel in the values of L.
     pub panel: Range<usize>,
 }
 
@@ -48,17 +48,17 @@ impl Node<'_> {
         self.begin + self.width
     }
 
-    /// Rows of the panel.
+    /// Number of rows of the panel.
     pub fn height(&self) -> usize {
         self.width + self.rows.len()
     }
 
-    /// Position of every row of the panel.
+    /// Position in the elimination of every row of the panel.
     pub fn front_rows(&self) -> impl Iterator<Item = usize> + '_ {
         (self.begin..self.end()).chain(self.rows.iter().map(|&row| row as usize))
     }
 
-    /// Multiplications to factorise the panel and to form its update, about.
+    /// Approximate multiplications to factorise the panel and to form its update.
     pub fn work(&self) -> f64 {
         let (w, b) = (self.width as f64, self.rows.len() as f64);
         w * (w * w / 3.0 + b * (w + b))
@@ -66,8 +66,8 @@ impl Node<'_> {
 }
 
 impl Supernodes {
-    /// For the columns of `order` (dofs of `graph`; others are held). Gives the order too, rearranged into a postorder of
-    /// the tree: the same fill, far fewer supernodes.
+    /// Supernodes for the columns of `order` (dofs of `graph`; others are held). Also returns the order, rearranged into
+    /// a postorder of the tree: the fill is unchanged, with far fewer supernodes.
     pub fn of(graph: &Graph, order: &[usize]) -> Result<(Vec<usize>, Self)> {
         let blocks = Blocks::of(graph, order)?;
         let parent = elimination_tree(blocks.count(), |b| blocks.neighbours(b).iter());
@@ -89,12 +89,12 @@ impl Supernodes {
         self.begin[self.count()]
     }
 
-    /// Values that all panels hold.
+    /// Number of values in all panels.
     pub fn values(&self) -> usize {
         self.panel[self.count()]
     }
 
-    /// Where the panel of supernode s starts among the values; their number for s = count.
+    /// Start of the panel of supernode s in the values; their number for s = count.
     pub fn first_value(&self, s: usize) -> usize {
         self.panel[s]
     }
@@ -112,7 +112,7 @@ impl Supernodes {
         (0..self.count()).map(|s| self.node(s))
     }
 
-    /// The supernode that takes the update of s, `NONE` for a root.
+    /// The supernode that receives the update of s, `NONE` for a root.
     pub fn parent(&self, s: usize) -> usize {
         self.parent[s]
     }
@@ -122,7 +122,7 @@ impl Supernodes {
         self.level[s] as usize
     }
 
-    /// Supernode s and all below it: in postorder, those just before it that lie deeper.
+    /// Supernode s and its descendants: in postorder the deeper supernodes directly before it.
     pub fn subtree(&self, s: usize) -> Range<usize> {
         let deeper = (0..s).rev().take_while(|&below| self.level[below] > self.level[s]).count();
         s - deeper..s + 1
@@ -138,7 +138,7 @@ impl Supernodes {
         self.row.len() * size_of::<u32>() + 4 * self.begin.len() * size_of::<usize>()
     }
 
-    /// Joins supernodes with their parents where few zeros come in; rows and columns of dofs in place of blocks.
+    /// Merges supernodes with their parents if this adds few zeros; converts blocks to dofs.
     fn relaxed(blocks: &Blocks, chains: &Chains) -> Result<Self> {
         let groups = chains.groups(blocks)?;
         let mut group_of_block = reserved(blocks.count(), WHAT)?;
@@ -179,7 +179,7 @@ impl Supernodes {
     }
 }
 
-/// Maximal chains of blocks with the same rows below: supernodes without any zeros.
+/// Maximal chains of blocks with equal rows below: supernodes without zeros.
 struct Chains {
     first_block: Vec<usize>,
     /// Rows below, in blocks, ascending: `row[start[s]..end[s]]`.
@@ -188,7 +188,7 @@ struct Chains {
     row: Vec<u32>,
 }
 
-/// Some chains joined: those up to `last`, whose rows they have.
+/// Merged chains; the rows below them are those of the last chain, `last`.
 struct Group {
     first_block: usize,
     last: usize,
@@ -205,7 +205,7 @@ impl Chains {
         let mut chains =
             Self { first_block: Vec::new(), start: Vec::new(), end: Vec::new(), row: Vec::new() };
         let mut children = Children { head: vec![NONE; n], next: Vec::new() };
-        // mark[r] is the last mark for the rows of the chain that is open.
+        // mark[r]: the chain whose rows r was last found among
         let (mut mark, mut current) = (vec![u32::MAX; n], 0_u32);
         for j in 0..n {
             let later = || blocks.neighbours(j).iter().copied().filter(|&r| r as usize > j);
@@ -252,7 +252,7 @@ impl Chains {
         &self.row[self.start[chain]..self.end[chain]]
     }
 
-    /// Every chain joins the group of its parent as long as few zeros come in.
+    /// Merges every chain with the group of its parent while this adds few zeros.
     fn groups(&self, blocks: &Blocks) -> Result<Vec<Group>> {
         let count = self.first_block.len();
         let mut groups: Vec<Group> = reserved(count, WHAT)?;
@@ -276,7 +276,7 @@ impl Chains {
 }
 
 impl Group {
-    /// The group with `child`, whose columns come just before, where few entries are zero.
+    /// The group merged with `child`, whose columns come directly before, if few entries are zero.
     fn joined(&self, child: &Group) -> Option<Group> {
         let width = self.width + child.width;
         let zeros = self.zeros + child.zeros + child.width * (self.width + self.below - child.below);
@@ -293,7 +293,7 @@ impl Group {
     }
 }
 
-/// Chains that are closed, by the block they pass their update to.
+/// Completed chains, by the block that receives their update.
 struct Children {
     head: Vec<usize>,
     next: Vec<usize>,
@@ -312,7 +312,7 @@ mod tests {
     use super::*;
     use crate::linalg::Symmetric;
 
-    /// Columns of L below the diagonal by elimination of one dof after the other: pairs (column, row) of positions.
+    /// Columns of L below the diagonal by elimination dof by dof: pairs (column, row) of positions.
     fn filled(k: &Symmetric, order: &[usize]) -> Vec<(usize, usize)> {
         let n = order.len();
         let mut position = vec![NONE; k.order()];
@@ -330,7 +330,7 @@ mod tests {
         (0..n * n).filter(|&at| full[at] && at / n < at % n).map(|at| (at / n, at % n)).collect()
     }
 
-    /// Random graphs of nodes of two dofs, some dofs held.
+    /// Random graphs of nodes with two dofs, some dofs held.
     #[test]
     fn panels_hold_all_of_l_and_little_else_and_updates_go_to_the_first_row_below() {
         let mut state = 7_u64;

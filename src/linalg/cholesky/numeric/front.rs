@@ -21,15 +21,15 @@ use crate::linalg::cholesky::analysis::subtrees::each;
 
 /// Columns of a tile.
 pub const TILE: usize = 256;
-/// Columns of a panel factorised at a time.
+/// Columns of a panel factorised together.
 const BLOCK: usize = 128;
 
-/// Values of the lower triangle of an update of order b.
+/// Number of values in the lower triangle of an update of order b.
 pub fn update_len(b: usize) -> usize {
     tile_start(b, b.div_ceil(TILE))
 }
 
-/// Where tile t of an update of order b starts: before it come t tiles of b, b - TILE, ... rows.
+/// Start of tile t in an update of order b: before it are t tiles of b, b - TILE, ... rows.
 fn tile_start(b: usize, t: usize) -> usize {
     let before = t.min(b / TILE);
     let whole = before * TILE * b - TILE * TILE * (before * before.saturating_sub(1) / 2);
@@ -48,7 +48,7 @@ pub fn update_column(b: usize, j: usize) -> Range<usize> {
     column + (j - t * TILE)..column + height
 }
 
-/// What a pivot becomes that is held: the unknown of its row is 0 in every solution, as if row and column were not there.
+/// The value of a held pivot: the unknown of its row is 0 in every solution, as if row and column did not exist.
 pub const HELD: f64 = 1e200;
 
 /// Workspace of the dense kernels.
@@ -56,8 +56,8 @@ pub fn scratch() -> StackReq {
     cholesky_in_place_scratch::<f64>(BLOCK, Par::Seq, Default::default())
 }
 
-/// Factorises the panel, height x width, column-major. `parallel`: tiles are shared among the threads of the present
-/// pool. Pivots up to `hold` are held, where it is positive. `Err`: the column whose pivot is not positive.
+/// Factorises the panel, height x width, column-major. `parallel`: the threads of the present pool share the tiles. If
+/// `hold` is positive, pivots up to `hold` are held. `Err`: the column whose pivot is not positive.
 pub fn factorize(
     panel: &mut [f64],
     width: usize,
@@ -84,8 +84,8 @@ pub fn factorize(
     Ok(())
 }
 
-/// The update that a factorised panel leaves. `complete` adds to some of its columns what the children left, on and
-/// below the diagonal.
+/// The update from a factorised panel. `complete` adds the updates of the children to some of its columns, on and below
+/// the diagonal.
 pub fn update(
     panel: &[f64],
     width: usize,
@@ -104,7 +104,7 @@ pub fn update(
     });
 }
 
-/// Some columns of an update, from the diagonal of the first down.
+/// Some columns of an update, from the diagonal of the first column down.
 pub struct Tile<'a> {
     pub columns: Range<usize>,
     values: &'a mut [f64],
@@ -131,7 +131,7 @@ fn tiles(mut update: &mut [f64], b: usize) -> Vec<Tile<'_>> {
     tiles
 }
 
-/// One block of columns, `height` x a few, from row `first` on: the triangle, then the rows below.
+/// One block of columns of this height, from row `first` on: the triangle, then the rows below.
 fn factorize_block(
     columns: &mut [f64],
     (height, first): (usize, usize),
@@ -159,7 +159,7 @@ fn factorize_block(
         rest = next;
     }
     parts.push(rest);
-    // X L' = A is L X' = A'
+    // X L' = A is equivalent to L X' = A'
     each(parallel, parts, |part| solve_lower_triangular_in_place(top, part.transpose_mut(), Par::Seq));
     Ok(())
 }
@@ -183,8 +183,8 @@ fn factorize_holding(mut a: MatMut<'_, f64>, hold: f64) -> Result<(), usize> {
     Ok(())
 }
 
-/// `tile <- tile - a a_1'` or `- a a_1'`, on and below the diagonal of the first rows; a_1 are as many rows of a as the
-/// tile has columns.
+/// `tile <- tile - a a_1'` or `- a a_1'`, on and below the diagonal of the first rows; a_1 are the first rows of a, one
+/// per column of the tile.
 fn subtract_product(tile: MatMut<'_, f64>, a: MatRef<'_, f64>, to: Accum) {
     let columns = tile.ncols();
     let first = a.subrows(0, columns);

@@ -1,8 +1,8 @@
-//! The numeric factorisation, multifrontal: each supernode, from the leaves of the tree upwards, adds the updates of its children to
-//! its own entries of K, factorises its panel, and leaves an update for its parent.
+//! The numeric factorisation, multifrontal: each supernode, from the leaves of the tree upwards, adds the updates of its
+//! children to its own entries of K, factorises its panel, and forms an update for its parent.
 //!
-//! Subtrees are independent: a pool of threads factorises them in parallel, then the supernodes above them one after
-//! the other, each by parallel tiles. Every sum has a fixed order: equal bits on any number of threads.
+//! Subtrees are independent: a pool of threads factorises them in parallel, then the supernodes above them one after the
+//! other, each by parallel tiles. Every sum has a fixed order: the result has equal bits for any number of threads.
 
 use std::ops::Range;
 
@@ -30,7 +30,7 @@ pub struct LowerColumns {
 /// A factor, or the position of a pivot that is not positive.
 type Pivoted<T> = std::result::Result<T, usize>;
 
-/// L by panels; pivots up to `hold` are held, where it is positive.
+/// L by panels; if `hold` is positive, pivots up to `hold` are held.
 pub fn factorize(nodes: &Supernodes, matrix: &LowerColumns, hold: f64) -> Result<Pivoted<Pages>> {
     let mut values = Pages::zeros(nodes.values(), "a Cholesky factor")?;
     let subtrees = subtrees(nodes);
@@ -58,10 +58,11 @@ pub fn factorize(nodes: &Supernodes, matrix: &LowerColumns, hold: f64) -> Result
     Ok(task.eliminate_shared(above..nodes.count(), &mut values)?.map(|()| values))
 }
 
-/// Updates that supernodes leave for those which other factorisations do anew, in the order of these.
+/// Updates of supernodes that are not renewed for supernodes that are, in the order of the latter.
 pub struct Kept(Vec<(usize, Vec<f64>)>);
 
-/// As `factorize`, on one thread; keeps the updates of supernodes outside `renewed` for those in it: with each these are all above it.
+/// As `factorize`, on one thread; keeps the updates of supernodes outside `renewed` for those in `renewed`, which
+/// includes all ancestors of its supernodes.
 pub fn factorize_keeping(
     nodes: &Supernodes,
     matrix: &LowerColumns,
@@ -85,7 +86,7 @@ pub fn factorize_keeping(
     Ok(Ok((values, Kept(kept))))
 }
 
-/// The panels of some supernodes, and of all above each, anew.
+/// Factorises the panels of some supernodes, including all their ancestors, again.
 pub fn renew(
     nodes: &Supernodes,
     matrix: &LowerColumns,
@@ -107,7 +108,7 @@ pub fn renew(
     Ok(Ok(()))
 }
 
-/// Bytes that the factorisation takes on one thread besides L and the matrix.
+/// Bytes for the factorisation on one thread in addition to L and the matrix.
 pub fn bytes(nodes: &Supernodes) -> usize {
     let waiting: usize = updates::most(nodes, 0..nodes.count(), |s| update_len(nodes, s)).iter().sum();
     waiting * size_of::<f64>() + nodes.order() * size_of::<u32>()
@@ -117,7 +118,7 @@ fn update_len(nodes: &Supernodes, s: usize) -> usize {
     front::update_len(nodes.node(s).rows.len())
 }
 
-/// Every subtree with its own panels.
+/// Splits the values into the panels of every subtree.
 fn split<'a>(
     nodes: &Supernodes,
     subtrees: &[Range<usize>],
@@ -135,12 +136,12 @@ fn split<'a>(
     tasks
 }
 
-/// Supernodes eliminated one after the other.
+/// Eliminates supernodes one after the other.
 struct Task<'a> {
     nodes: &'a Supernodes,
     matrix: &'a LowerColumns,
     hold: f64,
-    /// Row of a position within the present front.
+    /// Row in the present front by position.
     local: Vec<u32>,
     updates: Updates<'a>,
     workspace: MemBuffer,
@@ -161,7 +162,7 @@ impl<'a> Task<'a> {
         Ok(Self { nodes, matrix, hold, local, updates, workspace, interrupt })
     }
 
-    /// All supernodes of a subtree, whose panels these are; gives the update of its root.
+    /// Eliminates all supernodes of a subtree, with their panels; returns the update of its root.
     fn eliminate_subtree(mut self, subtree: Range<usize>, panels: &mut [f64]) -> Result<Pivoted<Pages>> {
         let first = self.nodes.first_value(subtree.start);
         for s in subtree.clone() {
@@ -175,7 +176,7 @@ impl<'a> Task<'a> {
         Ok(Ok(self.updates.into_last(subtree.end - 1)))
     }
 
-    /// Supernodes above all subtrees.
+    /// Eliminates the supernodes above all subtrees.
     fn eliminate_shared(&mut self, range: Range<usize>, values: &mut [f64]) -> Result<Pivoted<()>> {
         for s in range {
             self.interrupt.check()?;
@@ -210,7 +211,7 @@ impl<'a> Task<'a> {
         Ok(())
     }
 
-    /// The entries of K in the columns of a supernode.
+    /// Copies the entries of K in the columns of a supernode to its panel.
     fn scatter(&mut self, node: &Node<'_>, panel: &mut [f64]) {
         node.front_rows().enumerate().for_each(|(at, row)| self.local[row] = at as u32);
         let columns = node.begin..node.end();
@@ -223,7 +224,7 @@ impl<'a> Task<'a> {
     }
 }
 
-/// The update of a child as its parent sees it.
+/// The update of a child, in terms of its parent.
 struct Child<'a> {
     values: &'a [f64],
     rows: RowMap,
@@ -237,7 +238,7 @@ impl Child<'_> {
         }
     }
 
-    /// To a tile of the update of a parent with so many columns.
+    /// Adds it to a tile of the update of a parent with this number of columns.
     fn add_to_tile(&self, tile: &mut Tile<'_>, width: usize) {
         let place = |row: usize| self.rows.to.partition_point(|&to| (to as usize) < row);
         for j in place(width + tile.columns.start)..place(width + tile.columns.end) {
@@ -246,7 +247,7 @@ impl Child<'_> {
         }
     }
 
-    /// Column j, to a column that starts at row `first` of the parent's front.
+    /// Adds column j to a column that starts at row `first` of the parent's front.
     fn add_column(&self, j: usize, to: &mut [f64], first: usize) {
         let order = self.rows.to.len();
         self.rows.add(j..order, &self.values[front::update_column(order, j)], to, first);
@@ -259,7 +260,7 @@ mod tests {
 
     use crate::linalg::{Analysis, Cholesky, Symmetric};
 
-    /// Two dense parts of 330 dofs, both coupled with 400 others: fronts of several tiles, updates that are added up.
+    /// Two dense parts of 330 dofs, both coupled to 400 others: fronts of several tiles, and sums of updates.
     fn two_parts() -> Symmetric {
         let (mut ptr, mut col, mut val) = (vec![0], Vec::new(), Vec::new());
         for i in 0..1060_usize {

@@ -8,14 +8,14 @@ use crate::linalg::cholesky::analysis::supernodes::Supernodes;
 use crate::platform::memory::reserved;
 use crate::platform::pages::Pages;
 
-/// Updates that wait, in the order of their supernodes. A supernode finds those of its children on one stack and puts its
-/// own on the other, that of its level, even or odd: nothing is moved.
+/// Updates that are not used yet, in the order of their supernodes. A supernode finds the updates of its children on one
+/// stack and puts its own on the other: the stack depends on whether its level is even or odd, so that nothing is moved.
 pub struct Updates<'a> {
     nodes: &'a Supernodes,
     waiting: Vec<(usize, KeptUpdate<'a>)>,
     stacks: [Pages; 2],
     tops: [usize; 2],
-    /// Values that the stacks still need, for every supernode to come.
+    /// Number of values that each stack still needs, for every further supernode.
     needs: IntoIter<[usize; 2]>,
 }
 
@@ -23,12 +23,12 @@ enum KeptUpdate<'a> {
     Stack(Range<usize>),
     /// Formed by another task.
     Apart(Pages),
-    /// Kept since another factorisation.
+    /// Kept from another factorisation.
     Lent(&'a [f64]),
 }
 
 impl<'a> Updates<'a> {
-    /// For supernodes in this sequence, s of which leaves `len(s)` values; `what` they are for.
+    /// For supernodes in this sequence; supernode s has an update of `len(s)` values. `what`: its purpose, for errors.
     pub fn new(
         nodes: &'a Supernodes,
         sequence: impl Iterator<Item = usize>,
@@ -46,19 +46,19 @@ impl<'a> Updates<'a> {
         Ok(Self { nodes, waiting: Vec::new(), stacks, tops: [0, 0], needs: needs.into_iter() })
     }
 
-    /// Takes over what another task has left for the parent of s.
+    /// Adds an update of another task for the parent of s.
     pub fn push(&mut self, s: usize, update: Pages) {
         self.waiting.push((s, KeptUpdate::Apart(update)));
     }
 
-    /// Takes what another factorisation has left of a child of the supernode that comes next, among the others in their order: the
-    /// same sums whatever is lent.
+    /// Adds an update, kept from another factorisation, of a child of the next supernode, in the order of the children,
+    /// so that sums do not depend on which updates are lent.
     pub fn lend(&mut self, child: usize, update: &'a [f64]) {
         let before = self.waiting.iter().rposition(|(other, _)| *other < child);
         self.waiting.insert(before.map_or(0, |at| at + 1), (child, KeptUpdate::Lent(update)));
     }
 
-    /// The update that waits last.
+    /// The last update on the stacks.
     pub fn last(&self) -> &[f64] {
         match self.waiting.last() {
             Some((s, KeptUpdate::Stack(range))) => &self.stacks[self.nodes.level(*s) % 2][range.clone()],
@@ -68,7 +68,7 @@ impl<'a> Updates<'a> {
         }
     }
 
-    /// Room for the update of s, the next of the sequence, and the children of s with theirs.
+    /// Room for the update of s, the next of the sequence, and the children of s with their updates.
     pub fn open(&mut self, s: usize, len: usize) -> (&mut [f64], Vec<(usize, &[f64])>) {
         for (stack, need) in self.stacks.iter_mut().zip(self.needs.next().into_iter().flatten()) {
             stack.truncate(need);
@@ -85,7 +85,7 @@ impl<'a> Updates<'a> {
         (&mut own[self.tops[level]..self.tops[level] + len], children.collect())
     }
 
-    /// The update of s, of `len` values, waits; those of its children are gone.
+    /// Stores the update of s, of `len` values, and removes those of its children.
     pub fn close(&mut self, s: usize, len: usize) {
         let first = self.first_child(s);
         let level = self.nodes.level(s) % 2;
@@ -99,7 +99,7 @@ impl<'a> Updates<'a> {
         self.waiting.push((s, KeptUpdate::Stack(place)));
     }
 
-    /// The update of the root of a subtree, the last that waits.
+    /// The update of the root of a subtree, which is the last one.
     pub fn into_last(self, root: usize) -> Pages {
         let [even, odd] = self.stacks;
         let level = self.nodes.level(root) % 2;
@@ -114,7 +114,7 @@ impl<'a> Updates<'a> {
     }
 }
 
-/// Most values that wait on each of the two stacks at a time.
+/// Largest number of values on each of the two stacks.
 pub fn most(
     nodes: &Supernodes,
     sequence: impl Iterator<Item = usize>,
@@ -129,7 +129,8 @@ fn larger(a: [usize; 2], b: [usize; 2]) -> [usize; 2] {
     [a[0].max(b[0]), a[1].max(b[1])]
 }
 
-/// Tells the tops of both stacks while every supernode is done: its update is there, those of its children too.
+/// Calls `tell` with the sizes of both stacks during every supernode, when its update and those of its children are
+/// stored.
 fn for_each_step(
     nodes: &Supernodes,
     sequence: impl Iterator<Item = usize>,
@@ -149,13 +150,13 @@ fn for_each_step(
     }
 }
 
-/// Where the rows of a child are in the front of its parent.
+/// Positions of the rows of a child in the front of its parent.
 pub struct RowMap {
     /// Row of the parent's front.
     pub to: Vec<u32>,
-    /// So many of them, the first, are columns of the parent.
+    /// The first `inside` rows are columns of the parent.
     pub inside: usize,
-    /// Rows that are neighbours in both.
+    /// Ranges of rows that are consecutive in both.
     runs: Vec<Range<usize>>,
 }
 

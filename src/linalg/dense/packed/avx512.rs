@@ -1,5 +1,5 @@
-//! The product by AVX-512, one cache line at a time. Rust has these instructions from 1.89 on; `build.rs` then sets the cfg `avx512`. With an
-//! older compiler the product uses AVX2, with equal bits.
+//! The product by AVX-512, one cache line at a time. Rust has these instructions from 1.89 on; `build.rs` then sets the
+//! cfg `avx512`. With an older compiler the product uses AVX2, with equal bits.
 #![allow(clippy::incompatible_msrv)]
 
 use std::arch::is_x86_feature_detected;
@@ -9,7 +9,7 @@ use crate::linalg::dense::packed::kernel::{sum, Kernel};
 use crate::linalg::dense::packed::x86::prefetch;
 use crate::linalg::dense::packed::{Line, Tile, SIDE};
 
-/// Proof that the processor has AVX-512F.
+/// A value of this type proves that the processor has AVX-512F.
 pub struct Avx512(());
 
 impl Avx512 {
@@ -26,7 +26,7 @@ impl Kernel for Avx512 {
         y: &mut [Line],
         factors: &[Line; P],
     ) -> [Line; P] {
-        // SAFETY: `detect` alone makes a value of `Avx512`, where the processor has AVX-512F
+        // SAFETY: only `detect` makes a value of `Avx512`, if the processor has AVX-512F
         unsafe { by_lines(tiles, x, y, factors) }
     }
 
@@ -53,14 +53,14 @@ fn by_lines<const P: usize>(
                 image = _mm512_add_pd(image, _mm512_mul_pd(a, _mm512_set1_pd(factors[p][k])));
             }
         }
-        // SAFETY: a line is as long as the vector; no alignment is asked for
+        // SAFETY: a line is as long as the vector; no alignment is required
         unsafe { _mm512_storeu_pd(y.as_mut_ptr(), image) };
     }
     let mut products = [[0.0; SIDE]; P];
     for (terms, products) in terms.iter().zip(&mut products) {
         for (terms, product) in terms.iter().zip(products) {
             let mut line = [0.0; SIDE];
-            // SAFETY: a line is as long as the vector; no alignment is asked for
+            // SAFETY: a line is as long as the vector; no alignment is required
             unsafe { _mm512_storeu_pd(line.as_mut_ptr(), *terms) };
             *product = sum(&line);
         }
@@ -70,6 +70,6 @@ fn by_lines<const P: usize>(
 
 #[target_feature(enable = "avx512f")]
 fn load(line: &Line) -> __m512d {
-    // SAFETY: a line is as long as the vector; no alignment is asked for
+    // SAFETY: a line is as long as the vector; no alignment is required
     unsafe { _mm512_loadu_pd(line.as_ptr()) }
 }

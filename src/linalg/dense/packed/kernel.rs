@@ -1,10 +1,10 @@
-//! The loop over columns of tiles from which the product is built.
+//! The loop over columns of tiles, of which the product consists.
 
 use crate::linalg::dense::packed::{Line, Tile, SIDE};
 
-/// One set of instructions of the processor; all give the same bits.
+/// A set of instructions of the processor; all sets give the same bits.
 pub trait Kernel {
-    /// P columns of tiles A_p of the same rows: `y += sum_p A_p factor_p`; gives the P products `A_p' x`.
+    /// P columns of tiles A_p in the same rows: `y += sum_p A_p factor_p`; returns the P products `A_p' x`.
     fn columns<const P: usize>(
         &self,
         tiles: [&[Tile]; P],
@@ -13,7 +13,7 @@ pub trait Kernel {
         factors: &[Line; P],
     ) -> [Line; P];
 
-    /// Tells memory that these tiles will be asked for.
+    /// Prefetches these tiles.
     fn ask_for(&self, _: &[Tile]) {}
 }
 
@@ -43,7 +43,7 @@ impl Kernel for Portable {
     }
 }
 
-/// Sum of a line, in the one order of all kernels.
+/// Sum of a line, in an order common to all kernels.
 pub fn sum(t: &Line) -> f64 {
     ((t[0] + t[4]) + (t[2] + t[6])) + ((t[1] + t[5]) + (t[3] + t[7]))
 }

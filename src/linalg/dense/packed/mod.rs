@@ -1,8 +1,8 @@
 //! Dense symmetric matrices, the lower triangle in square tiles: local dual operators F_p.
 //!
-//! Zeros before the first row and column fill the order up to a multiple of 8. In every column of tiles, those on and
-//! below the diagonal follow each other, so that the product reads memory sequentially in whole cache
-//! lines; the tiles on the diagonal contain both triangles.
+//! Zeros before the first row and column fill the order up to a multiple of 8. In every column of tiles, the tiles on and
+//! below the diagonal are consecutive, so that the product reads memory sequentially in whole cache lines; the tiles on
+//! the diagonal contain both triangles.
 
 #[cfg(avx512)]
 mod avx512;
@@ -15,10 +15,10 @@ use crate::error::Result;
 use crate::linalg::{Entries, Matrix, Operator};
 use crate::platform::memory::filled;
 
-/// Rows and columns of a tile: a line of the cache.
+/// Rows and columns of a tile: one cache line.
 const SIDE: usize = 8;
 
-/// Matrices of fewer rows are mostly tiles on the diagonal: their entries are taken one by one.
+/// Smaller matrices mostly consist of diagonal tiles: their entries are processed one by one.
 const SMALL: usize = 128;
 
 /// Consecutive entries of a column, or of a vector.
@@ -33,13 +33,13 @@ struct Tile([Line; SIDE]);
 #[derive(Debug, Clone, PartialEq)]
 pub struct Packed {
     order: usize,
-    /// Columns of tiles: order / 8, rounded up.
+    /// Number of columns of tiles: order / 8, rounded up.
     columns: usize,
     tiles: Vec<Tile>,
 }
 
 impl Packed {
-    /// Bytes a packed matrix of this order takes.
+    /// Bytes of a packed matrix of this order.
     pub fn bytes(order: usize) -> usize {
         tiles(order.div_ceil(SIDE)).saturating_mul(size_of::<Tile>())
     }
@@ -50,7 +50,7 @@ impl Packed {
         Ok(Self { order, columns, tiles })
     }
 
-    /// `A_ij += value`, any order of i and j.
+    /// `A_ij += value`, for i and j in any order.
     pub fn add(&mut self, i: usize, j: usize, value: f64) {
         let (i, j) = (self.padded(i.max(j)), self.padded(i.min(j)));
         let tile = self.tile(i / SIDE, j / SIDE);
@@ -60,8 +60,8 @@ impl Packed {
         }
     }
 
-    /// `A_ij += gram_kl` for i = `indices[k]`, j = `indices[l]`, k >= l: `indices` ascending, n of them, `gram` n x n by
-    /// columns, of which the lower triangle is read.
+    /// `A_ij += gram_kl` for i = `indices[k]`, j = `indices[l]`, k >= l: n ascending `indices`, `gram` n x n by columns,
+    /// of which the lower triangle is read.
     pub fn add_lower(&mut self, indices: &[usize], gram: &[f64]) {
         let (n, pad) = (indices.len(), self.padded(0));
         let mut start = 0;
@@ -71,7 +71,8 @@ impl Packed {
         }
     }
 
-    /// The first `width` columns of `add_lower`, all of one column of tiles; `stride` between the columns of `gram`.
+    /// The first `width` columns of `add_lower`, all within one column of tiles; `stride`: distance of the columns of
+    /// `gram`.
     fn add_columns(&mut self, indices: &[usize], width: usize, gram: &[f64], stride: usize) {
         let (own, below) = indices.split_at(width);
         for (l, &j) in own.iter().enumerate() {
@@ -99,7 +100,7 @@ impl Packed {
         self.tiles[self.tile(i / SIDE, j / SIDE)].0[j % SIDE][i % SIDE]
     }
 
-    /// `y = A x`, row after row of the lower triangle.
+    /// `y = A x`, row by row of the lower triangle.
     fn apply_by_entries(&self, x: &[f64], y: &mut [f64]) {
         y.fill(0.0);
         for i in 0..self.order {
@@ -113,7 +114,7 @@ impl Packed {
         }
     }
 
-    /// Number of a row with the zeros before the first.
+    /// Number of a row including the zeros before the first row.
     fn padded(&self, i: usize) -> usize {
         self.columns * SIDE - self.order + i
     }
@@ -124,7 +125,7 @@ impl Packed {
     }
 }
 
-/// Tiles of so many columns.
+/// Number of tiles for this number of columns.
 fn tiles(columns: usize) -> usize {
     columns.saturating_mul(columns + 1) / 2
 }
@@ -134,7 +135,7 @@ impl Operator for Packed {
         self.order
     }
 
-    /// `y = A x`, every entry read once.
+    /// `y = A x`; every entry is read once.
     fn apply(&self, x: &[f64], y: &mut [f64]) {
         if self.order < SMALL {
             self.apply_by_entries(x, y);
@@ -174,7 +175,7 @@ mod tests {
         assert_eq!(a.get(0, 2), 5.0);
     }
 
-    /// Whole numbers up to 50 in size: products and sums are exact in any order.
+    /// Integers of size up to 50: products and sums are exact in any order.
     fn entry(i: usize, j: usize) -> f64 {
         ((i.max(j) * 31 + i.min(j) * 17) % 101) as f64 - 50.0
     }
@@ -203,7 +204,7 @@ mod tests {
         }
     }
 
-    /// Every set of instructions that this processor has; says how many they are.
+    /// The products by every set of instructions of this processor; prints their number.
     fn products(a: &Packed, x: &[f64]) -> Vec<Vec<f64>> {
         let mut y = vec![vec![f64::NAN; a.order]; 3];
         product::product_by(&kernel::Portable, &a.tiles, x, &mut y[0]);

@@ -1,16 +1,17 @@
-//! `y = A x` with the tiles of a packed matrix: each is read once, and used below the diagonal and, transposed,
-//! above it. Four columns of tiles are read in parallel, because a single stream of memory waits at the end of every page.
+//! `y = A x` with the tiles of a packed matrix: each is read once, and used both below the diagonal and, transposed,
+//! above it. Four columns of tiles are read in parallel, because a single stream of memory waits at the end of every
+//! page.
 
 use crate::linalg::dense::packed::kernel::{Kernel, Portable};
 use crate::linalg::dense::packed::{Line, Tile, SIDE};
 use crate::linalg::vector::{as_arrays, as_arrays_mut};
 
-/// Columns of tiles at a time.
+/// Number of columns of tiles in a panel.
 const PANEL: usize = 4;
-/// Tiles below a panel's own ones that are asked for while the panel before is read.
+/// Tiles below the diagonal tiles of a panel that are prefetched while the previous panel is read.
 const AHEAD: usize = 2;
 
-/// `y = A x` by the fastest instructions that this processor has.
+/// `y = A x` by the fastest instructions of this processor.
 pub fn product(tiles: &[Tile], x: &[f64], y: &mut [f64]) {
     #[cfg(target_arch = "x86_64")]
     {
@@ -26,7 +27,8 @@ pub fn product(tiles: &[Tile], x: &[f64], y: &mut [f64]) {
     product_by(&Portable, tiles, x, y);
 }
 
-/// The first column of tiles has zeros before the first row of A: it is taken by itself, all others have whole lines.
+/// The first column of tiles contains the zeros before the first row of A, so it is separate; all others have whole
+/// lines.
 pub fn product_by(kernel: &impl Kernel, tiles: &[Tile], x: &[f64], y: &mut [f64]) {
     y.fill(0.0);
     let own = x.len() - SIDE * (x.len().div_ceil(SIDE).max(1) - 1);
@@ -62,7 +64,7 @@ fn whole_lines(kernel: &impl Kernel, mut tiles: &[Tile], mut x: &[Line], mut y: 
     }
 }
 
-/// The processor foresees the next tiles of a column, not the first of another: these are asked for ahead.
+/// The processor prefetches the next tiles of a column, but not the first tiles of another column.
 fn ask_for_panel(kernel: &impl Kernel, mut tiles: &[Tile], n: usize) {
     for p in 0..PANEL.min(n) {
         let (column, rest) = tiles.split_at(n - p);
@@ -71,7 +73,7 @@ fn ask_for_panel(kernel: &impl Kernel, mut tiles: &[Tile], n: usize) {
     }
 }
 
-/// The tiles on and between the diagonal ones of a panel.
+/// The diagonal tiles of a panel and the tiles between them.
 fn triangle(kernel: &impl Kernel, columns: &[&[Tile]], x: &[Line], y: &mut [Line]) {
     let width = x.len();
     for (p, column) in columns.iter().enumerate() {
@@ -81,7 +83,7 @@ fn triangle(kernel: &impl Kernel, columns: &[&[Tile]], x: &[Line], y: &mut [Line
     }
 }
 
-/// `y += A_pp x + sums`, the whole of A_pp.
+/// `y += A_pp x + sums`, with the whole tile A_pp.
 fn add_diagonal(tile: &Tile, x: &Line, sums: &Line, y: &mut Line) {
     for (a, x) in tile.0.iter().zip(x) {
         (0..SIDE).for_each(|k| y[k] += a[k] * x);

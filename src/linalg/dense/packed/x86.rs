@@ -1,5 +1,5 @@
-//! The product by vector instructions of x86-64. A value of `Avx2` proves that the processor has them.
-//! Products and sums are rounded separately and in the order of the plain loops: equal bits on any processor.
+//! The product by vector instructions of x86-64. A value of `Avx2` proves that the processor has them. Products and sums
+//! are rounded separately and in the order of the plain loops: equal bits on any processor.
 
 use std::arch::is_x86_feature_detected;
 use std::arch::x86_64::*;
@@ -7,7 +7,7 @@ use std::arch::x86_64::*;
 use crate::linalg::dense::packed::kernel::{sum, Kernel};
 use crate::linalg::dense::packed::{Line, Tile, SIDE};
 
-/// AVX2: half a line at a time.
+/// AVX2, which processes half a line at a time.
 pub struct Avx2(());
 
 impl Avx2 {
@@ -24,7 +24,7 @@ impl Kernel for Avx2 {
         y: &mut [Line],
         factors: &[Line; P],
     ) -> [Line; P] {
-        // SAFETY: `detect` alone makes a value of `Avx2`, where the processor has AVX2
+        // SAFETY: only `detect` makes a value of `Avx2`, if the processor has AVX2
         unsafe { by_halves(tiles, x, y, factors) }
     }
 
@@ -76,7 +76,7 @@ unsafe fn by_halves<const P: usize>(
 
 #[target_feature(enable = "avx2")]
 unsafe fn store(low: __m256d, high: __m256d, line: &mut Line) {
-    // SAFETY: a line is as long as two vectors; no alignment is asked for
+    // SAFETY: a line is as long as two vectors; no alignment is required
     unsafe {
         _mm256_storeu_pd(line.as_mut_ptr(), low);
         _mm256_storeu_pd(line.as_mut_ptr().add(SIDE / 2), high);
@@ -85,6 +85,6 @@ unsafe fn store(low: __m256d, high: __m256d, line: &mut Line) {
 
 #[target_feature(enable = "avx2")]
 unsafe fn halves(line: &Line) -> [__m256d; 2] {
-    // SAFETY: a line is as long as two vectors; no alignment is asked for
+    // SAFETY: a line is as long as two vectors; no alignment is required
     unsafe { [_mm256_loadu_pd(line.as_ptr()), _mm256_loadu_pd(line.as_ptr().add(SIDE / 2))] }
 }

@@ -1,11 +1,12 @@
-//! One block of columns of G: the motions that its rows resist, and those that they leave free.
+//! One block of columns of G: the motions that its rows resist, and the motions that they leave free.
 
 use crate::error::Result;
 use crate::linalg::semidefinite::resisted::{parts, Parts};
 use crate::linalg::vector::dot;
 use crate::linalg::{Csr, Matrix};
 
-/// What the rows resist of the motions of one block, `T'W_pp T = I`, and what they leave free: r_p x rank and the rest.
+/// The motions of one block that the rows resist, `T'W_pp T = I`, and the free motions: r_p x rank and r_p x (r_p -
+/// rank).
 pub struct Block {
     pub resisted: Matrix,
     pub free: Matrix,
@@ -13,11 +14,11 @@ pub struct Block {
 }
 
 impl Block {
-    /// So much of `T'W_pp T = I` may rows add that faces hold or not.
+    /// Limit of the part that rows outside some faces may add to `T'W_pp T = I`.
     const ADDED: f64 = 1e3;
 
-    /// By the rows that all faces have, where these resist all motions of the block well, and other rows, which faces may hold, do not
-    /// resist them far better; none where every face has its own. All columns of the block are stored.
+    /// For the rows that all faces have, if they resist all motions of the block well, and the other rows, which faces
+    /// may hold, do not resist them far better; none if every face needs its own. All columns of the block are stored.
     pub fn for_all_faces(common: Csr, others: &Csr, limit: f64) -> Result<Option<Self>> {
         let block = Self::new(common, limit)?;
         let added = |i: usize| {
@@ -30,7 +31,7 @@ impl Block {
         Ok(serves.then_some(block))
     }
 
-    /// Of `G_F'` on the columns of the block.
+    /// For `G_F'` on the columns of the block.
     pub fn new(own: Csr, limit: f64) -> Result<Self> {
         let r = own.cols;
         let mut w = Matrix::zeros(r, r)?;

@@ -11,7 +11,7 @@ use crate::linalg::{Cholesky, Matrix};
 pub struct ClusterInverse {
     pub starts: Vec<usize>,
     pub blocks: Vec<Arc<Block>>,
-    /// Of T'W T, with units where T has no column.
+    /// Factor of T'W T, with units where T has no column.
     pub factor: Arc<Cholesky>,
     pub held: Vec<usize>,
     pub clusters: Vec<Cluster>,
@@ -23,7 +23,7 @@ pub struct Cluster {
     pub columns: Vec<usize>,
     /// Orthonormal.
     pub free: Matrix,
-    /// V of those resisted by little, `V'W V = I`.
+    /// V of the weakly resisted motions, `V'W V = I`.
     pub weak: Matrix,
 }
 
@@ -69,7 +69,7 @@ impl GeneralInverse for ClusterInverse {
         basis
     }
 
-    /// T but for the unknowns held, and V.
+    /// T without the held unknowns, and V.
     fn basis(&self) -> Matrix {
         let mut basis = self.none();
         for (k, block) in self.blocks.iter().enumerate() {

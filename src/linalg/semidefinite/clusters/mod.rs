@@ -1,10 +1,11 @@
 //! Sparse positive semidefinite systems `W x = b`, W = G_F G_F', with free motions in many places: x of minimum norm,
 //! without any dense matrix over all of W.
 //!
-//! The columns of G form blocks, one for each body. The motions Z that the rows of a block alone leave free are found in the block, and
-//! `T'W_pp T = I` scales the others to equal size. The sparse factor of T'W T then holds the unknowns whose pivots are rounding; each
-//! stands for one motion of a cluster of blocks, `T n`, where `W n = 0` except at the held unknowns. The images of these motions under G_F
-//! show which of them are free: they are far more accurate than the pivots.
+//! The columns of G form blocks, one for each body. The motions Z that the rows of a block alone leave free are found in
+//! the block, and `T'W_pp T = I` scales the others to equal size. The sparse factor of T'W T then holds the unknowns
+//! whose pivots are rounding; each represents one motion of a cluster of blocks, `T n`, where `W n = 0` except at the
+//! held unknowns. The images of these motions under G_F show which of them are free: they are far more accurate than the
+//! pivots.
 
 mod block;
 mod inverse;
@@ -27,39 +28,40 @@ use block::Block;
 use inverse::{Cluster, ClusterInverse};
 use motions::{ByColumn, Motion};
 
-/// Pivots of T'W T, with unit diagonal, up to the first of these are held, or up to the second where that leaves a free motion: the
-/// factor of the rest is accurate, motions resisted by little are told from free ones afterwards.
+/// Pivots of T'W T, with unit diagonal, are held up to the first of these, or up to the second if that leaves a free
+/// motion: then the factor of the rest is accurate, and weakly resisted motions are separated from free ones afterwards.
 const HOLD: [f64; 2] = [1e-8, DOUBTFUL];
 const WHAT: &str = "the coarse space";
 
-/// G' by blocks, with the pattern of T'W T and what is known of single blocks.
+/// G' by blocks, with the pattern of T'W T and the results for single blocks.
 pub struct Blocks {
-    /// First column of each block, then the number of all columns.
+    /// First column of each block, and the number of all columns.
     starts: Vec<usize>,
-    /// G' with an entry for every column of a block that a row meets, m x r, in units of s.
+    /// G' with an entry for every column of a block that a row touches, m x r, in units of s.
     rows: Csr,
     by_column: ByColumn,
-    /// The rows that meet each block.
+    /// The rows that touch each block.
     met: Csr,
     /// Diagonal of `G G' / s^2`.
     whole: Vec<f64>,
     rounding: f64,
-    /// Blocks with a T for all faces.
+    /// Blocks with one T for all faces.
     fixed: Vec<Option<Arc<Block>>>,
-    /// Other blocks as they were for the rows that they met last.
+    /// The other blocks, with the rows for which they were last computed.
     known: Vec<Option<(Vec<usize>, Arc<Block>)>>,
-    /// Rows that faces may hold, and those that meet a block without a T for all faces.
+    /// Rows that faces may hold, and rows that touch a block without a common T.
     varying: Vec<usize>,
     /// `G_F'T` of the last face, with the pattern of all rows.
     turned: Csr,
     factors: FaceFactors,
-    /// Those of the last face.
+    /// The motions of the last face.
     motions: Vec<Motion>,
 }
 
 impl Blocks {
-    /// `starts`: first columns of the blocks, ascending; none where every column is one. Faces hold rows that are `bounded`. `unit`: s;
-    /// `whole`: diagonal of `G G' / s^2`. A motion a is free when `|G_F a| <= rounding |G| |a|`, |G| of all rows.
+    /// `starts`: first columns of the blocks, ascending; empty if every column is a block. Faces hold rows that are
+    /// `bounded`. `unit`: s; `whole`: diagonal of `G G' / s^2`. A motion a is free if `|G_F a| <= rounding |G| |a|`, with
+    /// G of all rows.
     pub fn new(
         g_transposed: &Csr,
         starts: &[usize],
@@ -139,7 +141,7 @@ impl Blocks {
         self.by_factor(Arc::new(factor), &blocks, held)
     }
 
-    /// W+ by the factor of T'W T with the motions of the unknowns that it holds.
+    /// W+ by the factor of T'W T and the motions of its held unknowns.
     fn by_factor(
         &mut self,
         factor: Arc<Cholesky>,
@@ -170,7 +172,7 @@ impl Blocks {
         self.starts[k]..self.starts[k + 1]
     }
 
-    /// T and Z of one block; as before where the same rows are left.
+    /// T and Z of one block; reused if its rows are unchanged.
     fn block(&mut self, k: usize, held: &[bool]) -> Result<Arc<Block>> {
         if let Some(fixed) = &self.fixed[k] {
             return Ok(Arc::clone(fixed));
@@ -186,7 +188,7 @@ impl Blocks {
         Ok(block)
     }
 
-    /// Row i of `G_F'T`, 0 where it is held; with no blocks, as far as T is that of all faces.
+    /// Row i of `G_F'T`, 0 if it is held; without blocks, only the columns with a common T.
     fn turn(&mut self, i: usize, blocks: &[Arc<Block>], held: bool) {
         let range = self.rows.ptr[i]..self.rows.ptr[i + 1];
         self.turned.val[range.clone()].fill(0.0);
@@ -202,7 +204,7 @@ impl Blocks {
         }
     }
 
-    /// The motions that some unknowns held stand for. `local`: none, and none afterwards.
+    /// The motions of some held unknowns. `local`: work array, none before and after.
     fn cluster(
         &self,
         members: &[usize],
@@ -252,7 +254,7 @@ fn image_length<R: Iterator<Item = (usize, f64)>>(motions: &Matrix, rows: impl I
     sum.sqrt()
 }
 
-/// The entries of some rows in the columns of one block, which begin and end there.
+/// The entries of some rows in the columns of one block, from the first to the last of `columns`.
 fn of_block(rows: &Csr, some: impl Iterator<Item = usize>, columns: &[usize]) -> Csr {
     let mut own = Csr::empty(columns[1] - columns[0]);
     for i in some {

@@ -1,4 +1,4 @@
-//! The motions that belong to the held unknowns, and the entries of rows along them.
+//! The motions of the held unknowns, and the entries of rows along them.
 
 use std::ops::Range;
 
@@ -9,26 +9,27 @@ use crate::linalg::vector::{norm, norm_max, LONG};
 use crate::linalg::Csr;
 use crate::platform::threads::parts;
 
-/// A cluster moves with a motion when it has more than this part of its largest entry.
+/// A block moves if its motion exceeds this part of the largest entry.
 const MOVES: f64 = 1e-9;
-/// The images of the motions held become accurate to rounding in a few corrections; at most so many.
+/// Limit of corrections; after a few, the images of the motions are accurate to rounding.
 const CORRECTIONS: usize = 8;
-/// The first ones are made on what is eliminated before the unknown held: a free motion moves nothing else.
+/// The first corrections are restricted to the unknowns below the held one in the elimination: a free motion moves no
+/// others.
 const BELOW: usize = 2;
-/// What moves one unknown in so many is seen row by row.
+/// If more than one in this number of unknowns moves, images are computed row by row.
 const MANY: usize = 8;
 /// Motions that involve many rows are found in so many parts at most, each with vectors over all rows.
 const PARTS: usize = 4;
 /// Entries of a motion below this part of its largest are rounding.
 const ROUNDING: f64 = 0.25 * f64::EPSILON;
 
-/// The motion that one unknown held stands for, the blocks that it moves and the rows that resist it.
+/// The motion of one held unknown, the blocks that it moves and the rows that resist it.
 pub struct Motion {
     /// The unknown held.
     at: usize,
-    /// What moves with it: n.
+    /// The unknowns that move with it: n.
     n: Vec<(usize, f64)>,
-    /// Of the blocks that move at all, ascending.
+    /// Columns of the blocks that move, ascending.
     columns: Vec<usize>,
     amplitudes: Vec<f64>,
     pub blocks: Vec<usize>,
@@ -36,8 +37,8 @@ pub struct Motion {
 }
 
 impl ClusterInverse {
-    /// `T n` for each unknown held: n is 1 there, 0 where others are held, and has no image elsewhere: `G_F'T n = 0`. Those found
-    /// `before` on another face are so here where they have none.
+    /// `T n` for each held unknown: n is 1 there, 0 at other held unknowns, and `G_F'T n = 0` at all others. Motions
+    /// found `before` on another face are reused if they have no image on this face.
     pub fn motions(
         &self,
         (turned, by_column): (&Csr, &ByColumn),
@@ -82,8 +83,9 @@ impl ClusterInverse {
         Ok(motions)
     }
 
-    /// Corrects n, 1 where an unknown is held, until it has no image; the unknowns that it moves, ascending. Against that 1, and not
-    /// against the largest entries: these may be common to several motions, whose difference is what the cluster has.
+    /// Corrects n, which is 1 at a held unknown, until its image is 0 relative to this 1; returns the unknowns that it
+    /// moves, ascending. The largest entries are no measure: they may be common to several motions, and the cluster has
+    /// the difference of these.
     fn corrected(&self, at: usize, n: &mut [f64], images: &mut Images, rounding: f64) -> Result<Vec<usize>> {
         let below = self.factor.below(at);
         n[at] = 1.0;
@@ -117,7 +119,7 @@ impl ClusterInverse {
         Ok(moved)
     }
 
-    /// The motion `T n` of n, 0 but on the unknowns `moved`, and of what the rows have `along` it.
+    /// The motion `T n` of n, which is 0 except on the unknowns `moved`, with the entries of rows `along` it.
     fn motion(
         &self,
         at: usize,
@@ -150,7 +152,8 @@ impl ClusterInverse {
         Motion { at, n, columns, amplitudes, blocks, rows }
     }
 
-    /// Motions that move one block, or that one of so many rows resists, belong together: their numbers, cluster by cluster.
+    /// Motions that move a common block, or that a common row resists, form a cluster: the motion numbers of each
+    /// cluster.
     pub fn clusters_of(&self, motions: &[Motion], rows: usize) -> Vec<Vec<usize>> {
         let mut first = vec![None; self.blocks.len() + rows];
         let mut cluster: Vec<usize> = (0..motions.len()).collect();
@@ -175,17 +178,17 @@ impl ClusterInverse {
 }
 
 impl Motion {
-    /// On some columns.
+    /// The motion restricted to some columns.
     pub fn on(&self, columns: &[usize]) -> Vec<f64> {
         let amplitude = |column| self.columns.binary_search(column).map_or(0.0, |at| self.amplitudes[at]);
         columns.iter().map(amplitude).collect()
     }
 }
 
-/// Where the entries of a matrix by rows are, by columns.
+/// Positions of the entries of a matrix by rows, sorted by columns.
 pub struct ByColumn {
     ptr: Vec<usize>,
-    /// Row of an entry, and its place among the values.
+    /// Row of an entry, and its position in the values.
     entry: Vec<(u32, u32)>,
 }
 
@@ -202,13 +205,13 @@ impl ByColumn {
     }
 }
 
-/// What rows have along a motion.
+/// The entries of the rows along a motion.
 pub struct Images<'a> {
     /// `G_F'T`
     turned: &'a Csr,
     by_column: &'a ByColumn,
     along: Vec<f64>,
-    /// The rows with an entry along it at all, ascending.
+    /// The rows with a nonzero entry along it, ascending.
     resisting: Vec<usize>,
     seen: Vec<bool>,
 }
@@ -219,12 +222,12 @@ impl<'a> Images<'a> {
         Self { turned, by_column, along: vec![0.0; m], resisting: Vec::new(), seen: vec![false; m] }
     }
 
-    /// `G_F'T n`, n on some unknowns; its length.
+    /// Computes `G_F'T n`, n on some unknowns; returns its length.
     fn of(&mut self, n: &[f64], unknowns: &[usize]) -> f64 {
         let Self { turned, by_column, along, resisting, seen } = self;
         resisting.drain(..).for_each(|i| along[i] = 0.0);
         if MANY * unknowns.len() > n.len() {
-            // row by row G_F'T is read in the order in which it lies
+            // row by row, in the order of G_F'T in memory
             for i in 0..along.len() {
                 let mut entries = turned.row(i).filter(|(k, v)| *v != 0.0 && n[*k] != 0.0).peekable();
                 if entries.peek().is_some() {
@@ -247,7 +250,7 @@ impl<'a> Images<'a> {
         length(along, resisting)
     }
 
-    /// `y += T'G_F` of the last images.
+    /// `y += T'G_F` times the last images.
     fn back(&self, y: &mut [f64]) {
         for &i in &self.resisting {
             self.turned.row(i).for_each(|(k, v)| y[k] += self.along[i] * v);
@@ -255,7 +258,7 @@ impl<'a> Images<'a> {
     }
 }
 
-/// |x| of some entries.
+/// |x| over some entries.
 fn length(x: &[f64], entries: &[usize]) -> f64 {
     entries.iter().map(|&i| x[i] * x[i]).sum::<f64>().sqrt()
 }

@@ -5,8 +5,8 @@ use crate::linalg::random::scattered;
 use crate::linalg::semidefinite::GeneralInverse;
 use crate::linalg::vector::{axpy, dot, norm};
 
-/// Stones of two modes (across, up) in a chain: rows hold neighbours together upwards, every third pair across; the
-/// first to the ground upwards, every fifth row by `weak`.
+/// Stones with two modes (across, up) in a chain: rows join neighbours in the direction up, every third pair also across;
+/// the first stone is joined to the ground in the direction up, every fifth row with the factor `weak`.
 fn stones(count: usize, weak: f64) -> Csr {
     let mut g = Csr::empty(2 * count);
     let random = scattered(4 * count);
@@ -65,7 +65,7 @@ fn a_chain_of_stones_that_slide_is_solved_with_minimum_norm() {
     }
 }
 
-/// Rows that leave one motion of n unknowns free, which moves i by `little` of the others and j by the square of it.
+/// Rows that leave one motion of n unknowns free, which moves i by `little` times the others and j by its square.
 fn all_but_ending(n: usize, (i, j): (usize, usize), little: f64) -> Csr {
     let mut motion = vec![1.0; n];
     (motion[i], motion[j]) = (little, little * little);
@@ -77,7 +77,8 @@ fn all_but_ending(n: usize, (i, j): (usize, usize), little: f64) -> Csr {
     g
 }
 
-/// Where i and j come last in the elimination, the pivot before them is the square of `little`, and the last one rounding over its fourth power.
+/// If i and j are eliminated last, the pivot before them is the square of `little`, and the last pivot is rounding over
+/// its fourth power.
 #[test]
 fn a_motion_that_all_but_ends_before_its_last_unknown_is_free() {
     let n = 8;

@@ -9,8 +9,8 @@ fn quality(mesh: &Mesh, pieces: usize, with_centres: bool) -> Quality {
     quality
 }
 
-/// Both ways give as many pieces as asked for, each connected by faces and none 10 % too large; with at most these copies, with
-/// centres and without.
+/// With and without centres the cut has the requested number of pieces, each connected by faces and at most 10 % too
+/// large, with at most these numbers of copies.
 fn is_well_cut(mesh: &Mesh, pieces: usize, most: [f64; 2]) {
     for (with_centres, most) in [(true, most[0]), (false, most[1])] {
         let quality = quality(mesh, pieces, with_centres);
@@ -33,7 +33,7 @@ fn other_numbers_of_pieces_and_cuts_without_centres_need_little_more_than_blocks
     is_well_cut(&Mesh::cube(28), 64, [1.01, 1.2].map(|more| more * ideal(28, 4) as f64));
     is_well_cut(&Mesh::cube(28), 216, [1.1, 1.2].map(|more| more * ideal(28, 6) as f64));
     is_well_cut(&Mesh::cube(28).shuffled(), 216, [1.1, 1.2].map(|more| more * ideal(28, 6) as f64));
-    // planes of blocks of equal volume, as if the cube could be cut into such
+    // planes of blocks of equal volume, as if the cube could be cut into these numbers
     for pieces in [7, 11, 50] {
         let planes = 3.0 * 3.0 * 21.0 * 21.0 * ((pieces as f64).cbrt() - 1.0);
         is_well_cut(&Mesh::cube(20), pieces, [1.3 * planes, 1.35 * planes]);
@@ -45,7 +45,7 @@ fn tetrahedra_of_both_orders_are_cut_like_the_boxes_they_fill() {
     for mesh in [Mesh::tetrahedra(12, false), Mesh::tetrahedra(12, false).shuffled().turned(5.0, 2.0)] {
         is_well_cut(&mesh, 27, [1.15, 1.2].map(|more| more * ideal(12, 3) as f64));
     }
-    // half the edge: twice the nodes on every line
+    // half the edge: twice as many nodes on every line
     is_well_cut(&Mesh::tetrahedra(8, true), 8, [1.05, 1.15].map(|more| more * ideal(16, 2) as f64));
 }
 
@@ -90,14 +90,14 @@ fn layers_of_very_different_thickness_are_cut_by_the_number_of_their_elements() 
 #[test]
 fn an_angle_is_cut_into_connected_pieces() {
     let angle = Mesh::bricks([18, 18, 6], |c| c[0] < 6 || c[1] < 6, |x| x);
-    // blocks of 6 x 6 x 6 cut by half again along two of three directions
+    // blocks of 6 x 6 x 6, halved along two of three directions
     is_well_cut(&angle, 20, [2500.0; 2]);
     is_well_cut(&angle.turned(2.0, 1.0), 20, [2500.0; 2]);
 }
 
 #[test]
 fn pieces_do_not_hang_together_by_an_edge() {
-    // two cubes with one edge in common, and a third that touches the second with a corner
+    // two cubes with a common edge, and a third that shares a corner with the second
     let keep = |c: [usize; 3]| match c[2] / 6 {
         0 => c[0] / 6 == c[1] / 6 && c[0] < 12,
         _ => c[0] >= 12 && c[1] >= 12,
@@ -107,7 +107,7 @@ fn pieces_do_not_hang_together_by_an_edge() {
         for pieces in [3, 6, 12] {
             quality(&mesh, pieces, with_centres);
         }
-        // fewer than there are parts: one for each
+        // fewer than there are parts: one piece per part
         assert_eq!(mesh.quality(&mesh.cut(2, with_centres)).pieces, 3);
     }
 }

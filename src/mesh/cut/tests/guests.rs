@@ -12,11 +12,11 @@ fn springs_go_with_an_element_that_has_their_unknowns() {
     let cube = Mesh::cube(12);
     let mut mesh = cube.clone();
     let nodes: Vec<u32> = (0..13_u32.pow(3)).step_by(7).collect();
-    // to the ground
+    // springs to the ground
     for &n in &nodes {
         mesh = mesh.with(&[n]);
     }
-    // with an unknown that nobody else has, and on an edge of one element
+    // springs to a further unknown each, then springs on an edge of one element
     let new = 13_u32.pow(3);
     for (k, &n) in nodes.iter().enumerate() {
         mesh = mesh.with(&[n, new + k as u32]);

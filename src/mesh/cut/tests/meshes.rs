@@ -1,4 +1,5 @@
-//! Meshes, and properties of their cuts, computed from nodes and faces as they were generated, not as the library finds them.
+//! Meshes, and properties of their cuts, computed from the generated nodes and faces, not from those found by the
+//! library.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -10,21 +11,21 @@ pub type Point = [f64; 3];
 pub struct Mesh {
     pub nodes: Vec<Vec<u32>>,
     pub centres: Vec<Point>,
-    /// Unknowns of a node.
+    /// Unknowns per node.
     pub each: u32,
-    /// Nodes that two elements with a common face share, at least.
+    /// Least number of nodes that two elements with a common face share.
     pub face: usize,
     /// Nodes without unknowns.
     pub held: BTreeSet<u32>,
 }
 
-/// What is good or bad about a cut.
+/// The quality of a cut.
 #[derive(Debug)]
 pub struct Quality {
     pub pieces: usize,
-    /// Pieces that do not hang together by faces.
+    /// Pieces that are not connected by faces.
     pub apart: usize,
-    /// Unknowns of all pieces less those of the body.
+    /// Sum of the unknowns of all pieces minus the unknowns of the body.
     pub copies: usize,
     /// Unknowns of the largest piece over the mean.
     pub largest: f64,
@@ -33,7 +34,7 @@ pub struct Quality {
 const KUHN: [[usize; 3]; 6] = [[0, 1, 2], [0, 2, 1], [1, 0, 2], [1, 2, 0], [2, 0, 1], [2, 1, 0]];
 
 impl Mesh {
-    /// Boxes by their numbers along three directions, `place` their corners.
+    /// Boxes: `n` along three directions, with corners at `place`.
     pub fn bricks(n: [usize; 3], keep: impl Fn([usize; 3]) -> bool, place: impl Fn(Point) -> Point) -> Self {
         let mut mesh = Self { each: 3, face: 4, ..Self::default() };
         for c in cells(n).filter(|&c| keep(c)) {
@@ -48,7 +49,7 @@ impl Mesh {
         Self::bricks([n; 3], |_| true, |x| x)
     }
 
-    /// Six linear tetrahedra for each box of a cube; quadratic ones have a node on each edge too.
+    /// Six linear tetrahedra per box of a cube; quadratic ones also have a node on each edge.
     pub fn tetrahedra(n: usize, quadratic: bool) -> Self {
         let mut mesh = Self { each: 3, face: if quadratic { 6 } else { 3 }, ..Self::default() };
         let mut middle = BTreeMap::new();
@@ -75,7 +76,7 @@ impl Mesh {
         mesh
     }
 
-    /// A plane mesh of quadrangles with so many unknowns at a node.
+    /// A plane mesh of quadrangles with `each` unknowns per node.
     pub fn quadrangles(n: [usize; 2], each: u32, place: impl Fn(Point) -> Point) -> Self {
         let mut mesh = Self { each, face: 2, ..Self::default() };
         for j in 0..n[1] {
@@ -96,7 +97,7 @@ impl Mesh {
         };
         let mut mesh = Self::bricks(n, |_| true, place);
         for node in mesh.nodes.iter_mut().flatten() {
-            // the last nodes around are the first
+            // the last nodes around the ring are the first
             if *node as usize % (n[0] + 1) == n[0] {
                 *node -= n[0] as u32;
             }
@@ -104,7 +105,7 @@ impl Mesh {
         mesh
     }
 
-    /// The elements in another order, numbers of nodes changed too.
+    /// Permutes the elements and the node numbers.
     pub fn shuffled(mut self) -> Self {
         let key = |x: u64| {
             (x + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15).rotate_left(29).wrapping_mul(0xd6e8_feb8_6659_fd93)
@@ -119,7 +120,7 @@ impl Mesh {
         self
     }
 
-    /// Turned about two axes, moved and scaled.
+    /// Rotated about two axes, moved and scaled.
     pub fn turned(mut self, shift: f64, scale: f64) -> Self {
         let ((s, c), (t, d)) = (0.5_f64.sin_cos(), 0.8_f64.sin_cos());
         for x in &mut self.centres {
@@ -172,7 +173,7 @@ impl Mesh {
         }
     }
 
-    /// The first element of what each element hangs together with in its piece, by faces.
+    /// For each element, the first element connected to it by faces within its piece.
     fn parts(&self, piece: &[u32]) -> Vec<usize> {
         let mut at_node: BTreeMap<u32, Vec<usize>> = BTreeMap::new();
         for (e, nodes) in self.nodes.iter().enumerate() {
@@ -208,7 +209,7 @@ fn cells(n: [usize; 3]) -> impl Iterator<Item = [usize; 3]> {
     (0..n[2]).flat_map(move |k| (0..n[1]).flat_map(move |j| (0..n[0]).map(move |i| [i, j, k])))
 }
 
-/// Copies where a cube of `n` elements an edge is cut into `k` to the third blocks of equal size.
+/// Number of copies if a cube with `n` elements per edge is cut into `k`^3 blocks of equal size.
 pub fn ideal(n: usize, k: usize) -> usize {
     3 * ((n + k).pow(3) - (n + 1).pow(3))
 }

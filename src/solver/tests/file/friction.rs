@@ -3,7 +3,7 @@
 use super::*;
 use crate::solver::FrictionInput;
 
-/// The small problem with a node on its contact row and one whose bound acts alone, dim = 2; a row without entries among them.
+/// The small problem with a node on its contact row and a node with a bound alone, dim = 2; one row has no entries.
 fn with_nodes() -> Problem {
     let mut problem = small();
     let rows = RowsInput {
@@ -20,7 +20,7 @@ fn with_nodes() -> Problem {
     problem
 }
 
-/// The payload of a node of one tangential row on unknown 0, with the contact row given.
+/// The payload of a node with one tangential row on unknown 0 and the given contact row.
 fn node(dim: u64, normal: i64, coefficient: f64, s_old: f64) -> Vec<u8> {
     let law = [1.0, coefficient, 0.5, 0.0, s_old].map(f64::to_bits);
     let sizes = numbers(&[dim, 1, 1, normal as u64, 0, 1, 0]);
@@ -58,7 +58,7 @@ fn a_problem_without_friction_has_no_section_and_who_does_not_know_it_refuses_it
     let mut problem = with_nodes();
     let with = problem.write_bytes().unwrap();
     assert!(has(&with));
-    // as a library that does not know the tag sees it: the flag that it may be skipped is not set
+    // a library that does not know the tag must refuse the section: the flag to skip it is not set
     let at = with.windows(4).position(|tag| tag == b"FRIC").unwrap();
     let mut section = with[at..with.len() - 4].to_vec();
     section[3] = b'X';

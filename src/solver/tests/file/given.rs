@@ -19,7 +19,7 @@ fn numbers_of_the_host_come_back_and_rows_go_by_them() {
         assert_eq!(problem.contact.matrix.row(0).collect::<Vec<_>>(), [(0, 1.0), (1, -1.0)]);
         assert_eq!(problem.contact.matrix.row(1).collect::<Vec<_>>(), [(0, -2.0), (2, 1.0)]);
     }
-    // who does not know the section must not go on without it
+    // a library that does not know the section must refuse the file
     let at = bytes.windows(4).position(|tag| tag == b"NUMB").unwrap();
     let end = at + 16 + 16 + padding(16) as usize;
     let mut section = bytes[at..end].to_vec();
@@ -81,7 +81,7 @@ fn a_borrowed_matrix_is_written_like_a_copied_one_and_one_that_was_refused_is_no
     assert_eq!((error.kind, error.place.body), (Kind::State, Some(1)), "{error}");
 }
 
-/// K = [4 -1; -1 3] as diagonal and rest, and dense: in the file both are the lower triangle by rows.
+/// K = [4 -1; -1 3] as diagonal and rest, and dense: the file stores the lower triangle by rows for both.
 #[test]
 fn new_values_of_a_matrix_that_was_read_come_in_the_order_of_its_lower_triangle() {
     let mut problem = Problem::new();

@@ -1,4 +1,4 @@
-//! A body that is cut is written as its pieces.
+//! The file contains the pieces of a body that is cut.
 
 use super::*;
 use crate::solver::ElementStorage;
@@ -37,7 +37,7 @@ fn a_body_that_is_cut_comes_back_as_its_pieces_and_solves_to_the_same_bits() {
     assert_eq!(answer(&mut back), answer(&mut problem));
     assert_eq!(back.write_bytes().unwrap(), bytes, "written again it is the same file");
     assert_eq!(back.pieces(0).unwrap(), problem.pieces(0).unwrap());
-    // its elements are not there: the host gives them anew
+    // the file does not contain the elements: the host gives them again
     let error = back.add_element(0, 0, 2, &[1.0; 4], 2).unwrap_err();
     assert_eq!(error.kind, Kind::State);
     assert_eq!(back.held_forces(0, &mut [0.0]).unwrap_err().kind, Kind::State);
@@ -58,7 +58,7 @@ fn a_body_by_elements_that_is_not_cut_is_written_as_a_matrix_and_a_part_of_one_n
     assert!(bytes.windows(4).any(|tag| tag == b"STIF") && !bytes.windows(4).any(|tag| tag == b"PIEC"));
 }
 
-/// Two unknowns that two pieces share: numbers of the payload, with one of them changed.
+/// Two unknowns that two pieces share: the payload with one number changed.
 #[test]
 fn pieces_that_contradict_themselves_are_refused() {
     let payload = |change: fn(&mut Vec<u64>, &mut Vec<f64>, &mut Vec<u32>)| {

@@ -1,11 +1,12 @@
-//! Two halves of a small graph with few edges between them: grown from a node, improved by the method of Fiduccia and Mattheyses.
+//! Two halves of a small graph with few edges between them: grown from a node, improved by the method of Fiduccia and
+//! Mattheyses.
 
 use std::collections::BinaryHeap;
 
 use super::weighted::Weighted;
 use crate::linalg::random::Random;
 
-/// So many moves are made beyond the best state.
+/// Number of moves continued beyond the best state.
 const CLIMB: usize = 300;
 const PASSES: usize = 8;
 
@@ -16,15 +17,15 @@ pub struct Bisection<'a> {
     weight: [i32; 2],
     /// Weight of the edges between the sides.
     pub cut: i32,
-    /// What the cut loses when a node changes its side.
+    /// Reduction of the cut if a node changes sides.
     gain: Vec<i32>,
-    /// Nodes that may leave each side, by a gain that was theirs once; it may have become less.
+    /// Candidates to leave each side, by an earlier gain; the present gain may be smaller.
     queue: [BinaryHeap<(i32, u32)>; 2],
     moved: Vec<bool>,
 }
 
 impl<'a> Bisection<'a> {
-    /// Side 0 grows from a node by chance until it has half of the weight; no side gets more than `most`.
+    /// Side 0 grows from a random node until it has half of the weight; no side exceeds `most`.
     pub fn grown(graph: &'a Weighted, most: i32, random: &mut Random) -> Self {
         let n = graph.count();
         let mut bisection = Self {
@@ -50,7 +51,7 @@ impl<'a> Bisection<'a> {
         (start..self.side.len()).chain(0..start).find(|&v| self.side[v] == 1)
     }
 
-    /// The node of a side with the greatest gain.
+    /// The node of a side with the largest gain.
     fn first(&mut self, side: usize) -> Option<usize> {
         while let Some(&(gain, v)) = self.queue[side].peek() {
             let own = v as usize;
@@ -66,7 +67,7 @@ impl<'a> Bisection<'a> {
         None
     }
 
-    /// A node goes to the other side; with `queued` the nodes that it leaves behind may follow.
+    /// Moves a node to the other side; if `queued`, its former neighbours become candidates.
     fn change(&mut self, v: usize, queued: bool) {
         let (graph, from) = (self.graph, self.side[v] as usize);
         self.side[v] = 1 - from as u8;
@@ -87,7 +88,8 @@ impl<'a> Bisection<'a> {
         }
     }
 
-    /// One pass: every node changes its side once at most; the best state on the way stays. False without success.
+    /// One pass: every node changes sides at most once; keeps the best state. Returns whether it is better than the
+    /// first.
     fn improves(&mut self, most: i32) -> bool {
         let graph = self.graph;
         self.queue.iter_mut().for_each(BinaryHeap::clear);
@@ -113,7 +115,8 @@ impl<'a> Bisection<'a> {
         best < before
     }
 
-    /// The node to move: the greatest gain that leaves both sides light enough, or makes the heavier one lighter.
+    /// The node to move: with the largest gain for which both sides stay light enough, or the heavier side becomes
+    /// lighter.
     fn next(&mut self, most: i32) -> Option<usize> {
         let [a, b] = [0, 1].map(|side| {
             let v = self.first(side)?;
@@ -130,7 +133,7 @@ impl<'a> Bisection<'a> {
         Some([a, b][side])
     }
 
-    /// Less is better: weight above `most`, the cut, what the sides differ by.
+    /// Smaller is better: weight above `most`, the cut, the difference of the sides.
     fn quality(&self, most: i32) -> (i32, i32, i32) {
         let [a, b] = self.weight;
         ((a.max(b) - most).max(0), self.cut, (a - b).abs())
@@ -140,7 +143,7 @@ impl<'a> Bisection<'a> {
         self.graph.around(v).any(|u| self.side[u] != self.side[v])
     }
 
-    /// The sides, where the lighter of both rows of nodes along the cut is given `between` instead.
+    /// The sides; the lighter of the two rows of nodes along the cut gets the label `between`.
     pub fn with_separator(mut self, between: u8) -> Vec<u8> {
         let row: Vec<usize> = (0..self.graph.count()).filter(|&v| self.is_at_the_cut(v)).collect();
         let mut weight = [0; 2];

@@ -1,17 +1,17 @@
-//! Coarser graphs: pairs of neighbours that share heavy edges become one node (Karypis-Kumar (METIS), Section 3.1).
+//! Coarser graphs: pairs of neighbours with heavy edges are merged to one node (Karypis-Kumar (METIS), Section 3.1).
 
 use super::weighted::Weighted;
 use crate::linalg::random::Random;
 
 const NONE: u32 = u32::MAX;
 
-/// A coarser graph, and the node in it of every node of the finer one.
+/// A coarser graph, and the coarse node of every node of the finer graph.
 pub struct Level {
     pub graph: Weighted,
     pub node: Vec<u32>,
 }
 
-/// Ever coarser graphs, until one has `few` nodes at most, or pairs have become rare. No node is joined to more than
+/// Successively coarser graphs, until one has at most `few` nodes, or pairs become rare. No merged node is heavier than
 /// `heaviest`.
 pub fn levels(graph: &Weighted, few: usize, heaviest: i32, random: &mut Random) -> Vec<Level> {
     let mut levels: Vec<Level> = Vec::new();
@@ -28,8 +28,8 @@ pub fn levels(graph: &Weighted, few: usize, heaviest: i32, random: &mut Random) 
     }
 }
 
-/// The partner of every node, itself where none is left for it: of its neighbours the one with the greatest weight of
-/// the edge against that of the node.
+/// The partner of every node, itself if none is available: the neighbour with the largest weight of the edge relative to
+/// that of the node.
 fn pairs(graph: &Weighted, heaviest: i32, random: &mut Random) -> Vec<u32> {
     let n = graph.count();
     let mut partner = vec![NONE; n];
@@ -38,7 +38,7 @@ fn pairs(graph: &Weighted, heaviest: i32, random: &mut Random) -> Vec<u32> {
         if partner[v] != NONE {
             continue;
         }
-        // The partner so far, the weight of its edge and its own.
+        // the best partner so far, the weight of its edge, and its own weight
         let (mut best, mut edge, mut node) = (v as u32, -1, 1);
         for k in graph.range(v) {
             let u = graph.adj[k] as usize;
@@ -63,7 +63,7 @@ fn product((a, b): (i32, i32)) -> i64 {
     i64::from(a) * i64::from(b)
 }
 
-/// All nodes by chance, those with few neighbours before those with more: they have fewer partners to choose from.
+/// All nodes in random order, nodes with few neighbours first, since they have fewer possible partners.
 fn visited(graph: &Weighted, random: &mut Random) -> Vec<u32> {
     let n = graph.count();
     let mut order: Vec<u32> = (0..n as u32).collect();
@@ -72,7 +72,7 @@ fn visited(graph: &Weighted, random: &mut Random) -> Vec<u32> {
     order
 }
 
-/// Nodes that are left alone become pairs where they have a neighbour in common, as those around a hub.
+/// Pairs nodes without partner if they have a common neighbour, as around a hub.
 fn pair_neighbours_of_one(graph: &Weighted, heaviest: i32, partner: &mut [u32]) {
     for hub in 0..graph.count() {
         let mut open: Option<usize> = None;
@@ -103,7 +103,7 @@ fn contracted(fine: &Weighted, partner: &[u32]) -> Level {
         }
     }
     let mut graph = Weighted::with_room(first.len(), fine.adj.len());
-    // Where the edge to a coarse node was put last, plus 1.
+    // 1 + the position of the last edge to each coarse node
     let mut put = vec![0_u32; first.len()];
     for (own, &v) in first.iter().enumerate() {
         let (v, other) = (v as usize, partner[v as usize] as usize);
@@ -124,7 +124,7 @@ fn contracted(fine: &Weighted, partner: &[u32]) -> Level {
 }
 
 impl Weighted {
-    /// Adds an edge to the node `own`, which is the last one.
+    /// Adds an edge to the node `own`, which is the last node.
     fn join(&mut self, own: usize, to: u32, weight: i32, put: &mut [u32]) {
         if to as usize == own {
             return;

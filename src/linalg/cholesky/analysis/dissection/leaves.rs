@@ -1,10 +1,11 @@
-//! The order of a few nodes by minimum degree, which also counts the neighbours that are eliminated later.
+//! The order of a few nodes by minimum degree, which also counts neighbours that are eliminated later.
 
-/// Neighbours outside the nodes that count at most.
+/// Limit of outside neighbours that are counted.
 const OUTSIDE: usize = 1024;
 const NONE: u32 = u32::MAX;
 
-/// The elimination graph of a few nodes: a row of bits for each, its neighbours, those outside after all nodes.
+/// The elimination graph of a few nodes: for each node a row of bits, one per neighbour, with outside neighbours after
+/// all nodes.
 struct Rows {
     nodes: usize,
     /// Numbers of 64 bits in a row.
@@ -12,13 +13,13 @@ struct Rows {
     bits: Vec<u64>,
 }
 
-/// Puts the nodes `own` in the order of their elimination; what is around them otherwise is eliminated later. Of `number`,
-/// one for each node of the graph, all are `u32::MAX` before and after.
+/// Sorts the nodes `own` into the order of their elimination; their other neighbours are eliminated later. `number`: work
+/// array with an entry per node of the graph, all `u32::MAX` before and after.
 pub fn minimum_degree(ptr: &[i32], adj: &[i32], own: &mut [u32], number: &mut [u32]) {
     let mut rows = Rows::of(ptr, adj, own, number);
     let mut degree: Vec<u32> = (0..own.len()).map(|v| rows.degree(v)).collect();
     let mut order = Vec::with_capacity(own.len());
-    // None left: all are eliminated.
+    // repeats until all nodes are eliminated
     while let Some(v) = (0..own.len()).filter(|&v| degree[v] != NONE).min_by_key(|&v| degree[v]) {
         order.push(own[v]);
         degree[v] = NONE;
@@ -52,7 +53,7 @@ impl Rows {
         self.bits[v * self.words..(v + 1) * self.words].iter().map(|word| word.count_ones()).sum()
     }
 
-    /// The neighbours of v become neighbours of each other, and v of none.
+    /// Makes all neighbours of v neighbours of each other, and removes v.
     fn eliminate(&mut self, v: usize, degree: &mut [u32]) {
         let (at, bit) = (v / 64, 1_u64 << (v % 64));
         let pivot = self.bits[v * self.words..(v + 1) * self.words].to_vec();

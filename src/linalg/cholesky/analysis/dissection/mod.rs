@@ -1,5 +1,5 @@
-//! Nested dissection of large graphs: a separator is ordered last, after the two parts that it leaves, each of which is ordered
-//! likewise; small parts are ordered by minimum degree.
+//! Nested dissection of large graphs: a separator is ordered last, after the two parts that it separates, which are
+//! ordered recursively; small parts are ordered by minimum degree.
 
 mod bisection;
 mod coarsening;
@@ -15,18 +15,18 @@ use crate::error::Result;
 use crate::platform::memory::filled;
 
 const WHAT: &str = "the ordering of a body";
-/// Nodes that are not dissected.
+/// Parts of up to this number of nodes are not dissected.
 const LEAF: usize = 120;
 
-/// A part of the graph: its nodes, and where they begin in the order.
+/// A part of the graph: its nodes, and its start in the order.
 struct Part {
     graph: Weighted,
     own: Vec<u32>,
     begin: usize,
 }
 
-/// Nodes in the order of their elimination; the neighbours of node i, without itself, are `adj[ptr[i]..ptr[i + 1]]`. Parts
-/// that no separator divides are left to `undivided`, which takes and gives the same.
+/// Nodes in the order of their elimination; the neighbours of node i, without itself, are `adj[ptr[i]..ptr[i + 1]]`.
+/// Parts without a separator are ordered by `undivided`, which has equal arguments and results.
 pub fn dissect(
     ptr: &[i32],
     adj: &[i32],
@@ -54,7 +54,7 @@ pub fn dissect(
 }
 
 impl Part {
-    /// Both sides; what is between them is put at the end of the order of the part.
+    /// Both sides; the separator is put at the end of the order of the part.
     fn divided(self, side: &[u8], order: &mut [usize]) -> [Part; 2] {
         let mut at = self.begin;
         let parts = [0, 1].map(|which| {
@@ -73,7 +73,7 @@ fn put(nodes: impl Iterator<Item = u32>, order: &mut [usize]) {
     order.iter_mut().zip(nodes).for_each(|(at, v)| *at = v as usize);
 }
 
-/// No part is empty, or nearly the whole.
+/// Whether no part is empty or nearly the whole graph.
 fn divides(found: &Separator) -> bool {
     let [a, b, between] = found.weight.map(i64::from);
     a.min(b) > 0 && 20 * a.max(b) <= 19 * (a + b + between)
@@ -88,7 +88,7 @@ fn signed(graph: &Weighted) -> (Vec<i32>, Vec<i32>) {
 mod tests {
     use super::*;
 
-    /// A grid of so many nodes in each direction, all of an element coupled.
+    /// A grid with this number of nodes in each direction; all nodes of an element are coupled.
     fn grid(size: [i32; 3]) -> (Vec<i32>, Vec<i32>) {
         let [nx, ny, nz] = size;
         let (mut ptr, mut adj) = (vec![0], Vec::new());
@@ -109,7 +109,7 @@ mod tests {
         panic!("a part was not divided")
     }
 
-    /// By hand: no fewer nodes than those of a plane divide a box in halves.
+    /// By hand: the separator of a box is at least the number of nodes of a plane.
     #[test]
     fn separators_of_boxes_are_planes() {
         for (size, plane) in [([20, 20, 20], 400), ([60, 11, 11], 121), ([50, 50, 2], 100)] {
@@ -133,7 +133,7 @@ mod tests {
     fn every_node_is_ordered_once_also_in_parts_and_around_hubs() {
         let (ptr, adj) = grid([14, 12, 9]);
         let n = ptr.len() as i32 - 1;
-        // the same twice, not connected
+        // two copies that are not connected
         let twice = |values: &[i32], by: i32| -> Vec<i32> {
             values.iter().copied().chain(values.iter().map(|value| value + by)).collect()
         };
@@ -160,7 +160,7 @@ mod tests {
         assert!(dissect(&ptr, &adj, backwards).unwrap().into_iter().eq((0..n as usize).rev()));
     }
 
-    /// Nodes 0 to 2 of a path; node 0 has three neighbours more, outside.
+    /// Nodes 0 to 2 of a path; node 0 has three further neighbours, outside.
     #[test]
     fn neighbours_that_come_later_count_in_the_degree() {
         let ptr = [0, 4, 6, 7, 8, 9, 10];

@@ -1,4 +1,4 @@
-//! A small separator of a graph, found on coarser and coarser graphs (Karypis-Kumar (METIS)).
+//! A small separator of a graph, found on successively coarser graphs (Karypis-Kumar (METIS)).
 
 use super::bisection::Bisection;
 use super::coarsening::{levels, Level};
@@ -6,17 +6,17 @@ use super::separator::{Separator, BETWEEN};
 use super::weighted::Weighted;
 use crate::linalg::random::Random;
 
-/// Nodes of the coarsest graph: an eighth of those given, within these bounds.
+/// Nodes of the coarsest graph: an eighth of those of the graph, within these bounds.
 const COARSEST: (usize, usize) = (40, 100);
-/// Bisections that are tried on the coarsest graph; fewer below so many nodes.
+/// Number of bisections tried on the coarsest graph; fewer if it has fewer nodes.
 const TRIALS: usize = 5;
 const TRIALS_OF_FEW: usize = 3;
 const FEW: usize = 2000;
-/// Graphs of more nodes are coarsened to an eighth; from there several runs, each with pairs of its own, are tried.
+/// Larger graphs are first coarsened to an eighth; from there several runs with different pairs are tried.
 const LARGE: usize = 3000;
 const RUNS: usize = 4;
 
-/// The best separator that was found: a function of the graph alone.
+/// The best separator found; it depends only on the graph.
 pub fn separator(graph: &Weighted) -> Option<Separator> {
     let random = &mut Random::default();
     if graph.count() < LARGE {
@@ -28,7 +28,7 @@ pub fn separator(graph: &Weighted) -> Option<Separator> {
     Some(refined(graph, &levels, found.min_by(|a, b| a.cost().total_cmp(&b.cost()))?))
 }
 
-/// Nodes of a coarse graph that get much heavier than the others leave it no good halves.
+/// Limit of the node weights: a coarse graph with much heavier nodes has no good halves.
 fn heaviest(graph: &Weighted) -> i32 {
     (1.5 * f64::from(graph.total()) / COARSEST.1 as f64).ceil() as i32
 }
@@ -44,7 +44,7 @@ fn from_the_coarsest(graph: &Weighted, random: &mut Random) -> Option<Separator>
     Some(refined(graph, &levels, coarsest))
 }
 
-/// From the last level to the graph itself, improved on each.
+/// Projects the separator from the coarsest level to the graph and improves it on each level.
 fn refined(graph: &Weighted, levels: &[Level], coarsest: Separator) -> Separator {
     let finer = |k: usize| if k == 0 { graph } else { &levels[k - 1].graph };
     (0..levels.len())

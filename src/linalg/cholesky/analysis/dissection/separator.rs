@@ -1,23 +1,23 @@
-//! Nodes between two sides of a graph, reduced by sweeps: one side advances, node by node, over the other.
+//! A separator between two sides of a graph, reduced by sweeps: one side advances, node by node, into the other.
 //!
-//! A separator of a solid is not a local matter: a plane that is tilted, or one layer off, becomes better only when all of it has
-//! moved. Therefore a sweep goes in one direction (Karypis-Kumar (METIS), the refinement of METIS_NodeND), for as many moves as a
-//! whole layer takes; if both sides advanced in turns, every node would move back and forth.
+//! A separator of a solid cannot be improved locally: a plane that is tilted, or one layer off, becomes better only after
+//! all of it has moved. Therefore a sweep goes in one direction (Karypis-Kumar (METIS), the refinement of METIS_NodeND),
+//! for as many moves as a whole layer has nodes; if both sides advanced in turns, every node would move back and forth.
 
 use std::collections::BinaryHeap;
 
 use super::weighted::Weighted;
 
-/// The side of a node of the separator.
+/// The label of a node of the separator.
 pub const BETWEEN: u8 = 2;
-/// Sides that get heavier than half of all by this factor are not kept.
+/// A side must not exceed half of the total weight by more than this factor.
 const IMBALANCE: f64 = 1.2;
 const SWEEPS: usize = 16;
 
 pub struct Separator {
     /// 0, 1 or `BETWEEN` for every node.
     pub side: Vec<u8>,
-    /// Of both sides and of what is between them.
+    /// Weights of both sides and of the separator.
     pub weight: [i32; 3],
 }
 
@@ -28,24 +28,24 @@ impl Separator {
         Self { side, weight }
     }
 
-    /// Less is better: the weight between the sides, somewhat more where these differ.
+    /// Smaller is better: the weight of the separator, slightly increased by the difference of the sides.
     pub fn cost(&self) -> f64 {
         let [a, b, between] = self.weight.map(f64::from);
         let difference = (a - b) / (a + b + 1.0);
         between * (1.0 + difference * difference)
     }
 
-    /// Of the same nodes on a finer graph.
+    /// The separator on a finer graph.
     pub fn on_finer(&self, finer: &Weighted, coarse: &[u32]) -> Self {
         Self::new(finer, coarse.iter().map(|&v| self.side[v as usize]).collect())
     }
 
-    /// What a side of `graph` may weigh.
+    /// Limit of the weight of a side of `graph`.
     pub fn most(graph: &Weighted) -> i32 {
         (IMBALANCE * f64::from(graph.total()) / 2.0).ceil() as i32
     }
 
-    /// Sweeps to either side in turns, until none is of use.
+    /// Sweeps alternately to either side, until none improves the separator.
     pub fn improved(self, graph: &Weighted) -> Self {
         let between = (0..graph.count() as u32).filter(|&v| self.side[v as usize] == BETWEEN).collect();
         let mut sweeps = Sweeps {
@@ -78,19 +78,19 @@ struct Sweeps<'a> {
     found: Separator,
     /// Nodes of the separator.
     between: Vec<u32>,
-    /// Of a node of the separator, the weight of its neighbours on the side that retreats.
+    /// For each node of the separator, the weight of its neighbours on the side that retreats.
     beyond: Vec<i32>,
     moved: Vec<bool>,
-    /// Nodes of the separator by what it loses when they leave it; what is no longer true is skipped.
+    /// Nodes of the separator by its reduction when they leave it; outdated entries are skipped.
     queue: BinaryHeap<(i32, u32)>,
-    /// Nodes that left the separator, with the number of those in `joined` before.
+    /// Nodes that left the separator, each with the previous length of `joined`.
     moves: Vec<(u32, usize)>,
-    /// Nodes that joined it.
+    /// Nodes that joined the separator.
     joined: Vec<u32>,
 }
 
 impl Sweeps<'_> {
-    /// One sweep: side `to` advances; the best state on the way stays. False without success.
+    /// One sweep: side `to` advances; keeps the best state. Returns whether it is better than the first.
     fn improves(&mut self, to: usize) -> bool {
         self.queue.clear();
         self.moves.clear();
@@ -121,7 +121,7 @@ impl Sweeps<'_> {
         best < before
     }
 
-    /// Less is better.
+    /// Smaller is better.
     fn quality(&self) -> (i32, f64) {
         let [a, b, _] = self.found.weight;
         ((a.max(b) - self.most).max(0), self.found.cost())
@@ -137,7 +137,7 @@ impl Sweeps<'_> {
         None
     }
 
-    /// What the separator loses when a node leaves it.
+    /// Reduction of the separator if a node leaves it.
     fn gain(&self, v: usize) -> i32 {
         self.graph.node[v].wrapping_sub(self.beyond[v])
     }
@@ -148,7 +148,7 @@ impl Sweeps<'_> {
         }
     }
 
-    /// What is beyond a node of the separator, anew.
+    /// Recomputes `beyond` of a node of the separator.
     fn measure(&mut self, v: usize, to: usize) {
         let (graph, retreating) = (self.graph, 1 - to as u8);
         let neighbours = graph.around(v).filter(|&u| self.found.side[u] == retreating);
@@ -156,7 +156,7 @@ impl Sweeps<'_> {
         self.enqueue(v);
     }
 
-    /// A node of the separator goes to side `to`; its neighbours on the other side join the separator.
+    /// Moves a node of the separator to side `to`; its neighbours on the other side join the separator.
     fn advance(&mut self, v: usize, to: usize) {
         let (graph, retreating) = (self.graph, 1 - to);
         let begin = self.joined.len();
@@ -180,13 +180,13 @@ impl Sweeps<'_> {
                 }
             }
         }
-        // Nodes that have joined were not measured before: what the loop above has made of them has no meaning.
+        // nodes that have just joined had no valid `beyond`: the updates of the loop above do not apply to them
         for k in begin..self.joined.len() {
             self.measure(self.joined[k] as usize, to);
         }
     }
 
-    /// Takes all moves back but the first `kept`.
+    /// Undoes all moves except the first `kept`.
     fn take_back(&mut self, kept: usize, to: usize) {
         let graph = self.graph;
         for (v, begin) in self.moves.drain(kept..).rev() {

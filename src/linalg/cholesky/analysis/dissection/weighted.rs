@@ -1,4 +1,4 @@
-//! A graph whose nodes and edges have weights: the numbers of nodes and edges of a finer graph that they represent.
+//! A graph with weights of nodes and edges: the numbers of nodes and edges of a finer graph that they represent.
 
 use std::ops::Range;
 
@@ -12,7 +12,7 @@ pub struct Weighted {
 }
 
 impl Weighted {
-    /// All weights are 1; the neighbours of node i, without itself, are `adj[ptr[i]..ptr[i + 1]]`.
+    /// The graph with all weights 1; the neighbours of node i, without itself, are `adj[ptr[i]..ptr[i + 1]]`.
     pub fn of(ptr: &[i32], adj: &[i32]) -> Self {
         let unsigned = |values: &[i32]| values.iter().map(|&value| value as u32).collect();
         Self {
@@ -23,7 +23,7 @@ impl Weighted {
         }
     }
 
-    /// A graph without nodes, with room for so many nodes and entries of `adj`.
+    /// A graph without nodes, with room for this number of nodes and entries of `adj`.
     pub fn with_room(nodes: usize, entries: usize) -> Self {
         let mut ptr = Vec::with_capacity(nodes + 1);
         ptr.push(0);
@@ -39,7 +39,7 @@ impl Weighted {
         self.node.len()
     }
 
-    /// Where the neighbours of a node are in `adj` and `edge`.
+    /// Range of the neighbours of a node in `adj` and `edge`.
     pub fn range(&self, v: usize) -> Range<usize> {
         self.ptr[v] as usize..self.ptr[v + 1] as usize
     }
@@ -48,7 +48,7 @@ impl Weighted {
         self.adj[self.range(v)].iter().map(|&u| u as usize)
     }
 
-    /// Weight of all nodes.
+    /// Total weight of all nodes.
     pub fn total(&self) -> i32 {
         self.node.iter().sum()
     }
