@@ -75,6 +75,17 @@ fn a_point_on_a_spring_across_the_wall_slides_beyond_mu() {
     assert!((capacity - 0.8).abs() < 1e-10, "{capacity}");
 }
 
+/// Lifted off the wall, and held by no spring along it: friction of an open node holds no motion.
+#[test]
+fn a_point_is_free_along_a_wall_that_it_does_not_touch() {
+    for (press, state, free) in [(-1.0, FrictionState::Open, 1), (1.0, FrictionState::Stick, 0)] {
+        let problem = solved(&point([0.0, 3.0], press, 0.0, 0.5, 0.0));
+        assert_eq!(problem.friction_states().unwrap(), [state]);
+        assert_eq!(problem.report().unwrap().undetermined, free, "{press}");
+        near(problem.displacements().unwrap(), &[0.0, (-press).max(0.0) / 3.0]);
+    }
+}
+
 /// A train of two cars: springs within them, a joint between them, the load on the second, the brake on the first.
 #[test]
 fn the_motion_of_a_slide_keeps_joints_and_its_capacity_is_right() {
