@@ -29,7 +29,7 @@ GOAL = 0.9
 # Programs that see the sources, not the library, or build their own.
 LEFT_OUT = {"layering", "licences", "cholmod"}
 # Sizes of the long tests, where nothing else is asked for; one thread for each change that runs.
-SIZES = {"BATTERY": "200", "LIARS": "130", "RUST_TEST_THREADS": "1", "RUST_BACKTRACE": "0"}
+SIZES = {"BATTERY": "300", "LIARS": "130", "RUST_TEST_THREADS": "1", "RUST_BACKTRACE": "0"}
 # A program hangs after so many times the processor time it takes without any change, and some seconds; one that waits after
 # so many times this by the clock, for the machine may have other work.
 PATIENCE, AT_LEAST, WAITING = 5, 10, 10
