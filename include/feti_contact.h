@@ -1451,9 +1451,9 @@ int32_t feti_option_at(int64_t k, struct feti_option *out);
  */
 
 /**
- * Report of a solve. If the call failed early, counts are zero and measured figures are NaN. If
+ * Report of a solve. If the call failed early, counts are zero and measured values are NaN. If
  * some groups of bodies have an answer and others have none, the counts of work, the energy and
- * the figures cover only the groups with an answer.
+ * the certificate cover only the groups with an answer.
  */
 typedef struct feti_info {
   /**
@@ -1669,14 +1669,14 @@ int32_t feti_setup(struct feti_problem *p);
  * The answer is kept until the next solve; read it with feti_displacement, feti_multipliers and
  * the other functions for results. An answer exists if the status is not negative, unless the call
  * was cancelled or ran out of time before the first step. `info` is written in any case, with NaN
- * for figures that are unknown after a failure. After a failure all data that was given is kept
- * and can be corrected, except after FETI_INTERNAL. If rows and loads leave motions undetermined
+ * for values that are unknown after a failure. After a failure all data that was given is kept and
+ * can be corrected, except after FETI_INTERNAL. If rows and loads leave motions undetermined
  * (`undetermined`), the answer is the admissible one nearest to rest: the one with the least sum
  * of `K_ii u_i^2`.
  *
  * Groups of bodies that are not joined by a row with a finite gap are separate problems. Each
  * group is solved to its own accuracy, several at a time if threads are available. The function
- * returns the worst status of all groups; counts and energies are summed, and every figure of the
+ * returns the worst status of all groups; counts and energies are summed, and every entry of the
  * certificate is the one of the worst group. If a group has no answer because its load is not held
  * or its rows contradict each other, the status, feti_last_error and feti_diagnosis describe the
  * first such group. The other groups keep their answers, and `info` describes them. Reading a
@@ -2663,7 +2663,7 @@ typedef struct feti_progress {
   int64_t active;
   /**
    * Norm of the projected gradient divided by the norm at which the solve stops; NaN in the setup,
-   * like the next three figures.
+   * like the next three values.
    */
   double residual;
   /**
@@ -2761,8 +2761,8 @@ int32_t feti_on_log(struct feti_problem *p, feti_log_fn callback, int32_t level,
  */
 
 /**
- * Verdict on an answer, by relative figures. Each figure is `limit` times the ratio of the
- * violation at the worst body or row to the allowed violation, which includes rounding; a figure
+ * Verdict on an answer, by relative entries. Each entry is `limit` times the ratio of the
+ * violation at the worst body or row to the allowed violation, which includes rounding; an entry
  * passes if it is at most `limit`.
  */
 typedef struct feti_certificate {
@@ -2783,7 +2783,7 @@ typedef struct feti_certificate {
    */
   double limit;
   /**
-   * Largest ratio of a figure to its limit; <= 1 passes.
+   * Largest ratio of an entry to its limit; <= 1 passes.
    */
   double worst;
   /**
@@ -2874,7 +2874,7 @@ typedef struct feti_certificate {
  * Verifies an answer without tangential forces against the current problem; the answer may come
  * from another program.
  *
- * Every figure belongs to the worst body or the worst row, measured against its own forces and
+ * Every entry belongs to the worst body or the worst row, measured against its own forces and
  * deformation; the certificate names this body or row. Glue (option glue) is judged like equality
  * rows; its forces are not an argument, and the library uses the glue forces that fit the answer
  * best. Rows that never close, c = +infinity, are left out, and their lambda counts as 0. At nodes
@@ -2907,7 +2907,7 @@ int32_t feti_check(struct feti_problem *p,
  * Verifies an answer with tangential forces against the current problem; the answer may come from
  * another program.
  *
- * The call works like feti_check. In addition, the figures of friction judge at every node the
+ * The call works like feti_check. In addition, the entries of friction judge at every node the
  * force lambda_t against the friction law and the slip `T u - s_old - C_t lambda_t` with the
  * current s_old, which after feti_friction_commit is that of the next step. Nodes that cannot
  * carry a tangential force (bound 0 and no contact row that may close) are left out. After a

@@ -1444,9 +1444,9 @@ module feti_contact_c
   ! Compute the answer and its accuracy.
 
 
-  !> Report of a solve. If the call failed early, counts are zero and measured figures are NaN. If some groups
-  !> of bodies have an answer and others have none, the counts of work, the energy and the figures cover only
-  !> the groups with an answer.
+  !> Report of a solve. If the call failed early, counts are zero and measured values are NaN. If some groups
+  !> of bodies have an answer and others have none, the counts of work, the energy and the certificate cover
+  !> only the groups with an answer.
   type, bind(C), public :: feti_info
     !> Set by the caller: size of the struct in bytes.
     integer(c_int64_t) :: struct_size
@@ -1576,14 +1576,14 @@ module feti_contact_c
     !>
     !> The answer is kept until the next solve; read it with feti_displacement, feti_multipliers and the other
     !> functions for results. An answer exists if the status is not negative, unless the call was cancelled or
-    !> ran out of time before the first step. `info` is written in any case, with NaN for figures that are
+    !> ran out of time before the first step. `info` is written in any case, with NaN for values that are
     !> unknown after a failure. After a failure all data that was given is kept and can be corrected, except
     !> after FETI_INTERNAL. If rows and loads leave motions undetermined (`undetermined`), the answer is the
     !> admissible one nearest to rest: the one with the least sum of `K_ii u_i^2`.
     !>
     !> Groups of bodies that are not joined by a row with a finite gap are separate problems. Each group is
     !> solved to its own accuracy, several at a time if threads are available. The function returns the worst
-    !> status of all groups; counts and energies are summed, and every figure of the certificate is the one of
+    !> status of all groups; counts and energies are summed, and every entry of the certificate is the one of
     !> the worst group. If a group has no answer because its load is not held or its rows contradict each
     !> other, the status, feti_last_error and feti_diagnosis describe the first such group. The other groups
     !> keep their answers, and `info` describes them. Reading a result of one body in a group without an
@@ -2555,7 +2555,7 @@ module feti_contact_c
     !> Inequality rows with a force; a set of parallel rows counts once.
     integer(c_int64_t) :: active
     !> Norm of the projected gradient divided by the norm at which the solve stops; NaN in the setup, like the
-    !> next three figures.
+    !> next three values.
     real(c_double) :: residual
     !> Norm of its part on rows with a force, divided by the same norm.
     real(c_double) :: residual_free
@@ -2671,8 +2671,8 @@ module feti_contact_c
   ! Check an answer of this or another program; multiply by the operators of the method.
 
 
-  !> Verdict on an answer, by relative figures. Each figure is `limit` times the ratio of the violation at the
-  !> worst body or row to the allowed violation, which includes rounding; a figure passes if it is at most
+  !> Verdict on an answer, by relative entries. Each entry is `limit` times the ratio of the violation at the
+  !> worst body or row to the allowed violation, which includes rounding; an entry passes if it is at most
   !> `limit`.
   type, bind(C), public :: feti_certificate
     !> Set by the caller: size of the struct in bytes.
@@ -2683,7 +2683,7 @@ module feti_contact_c
     integer(c_int32_t) :: reserved
     !> Option certificate_tolerance.
     real(c_double) :: limit
-    !> Largest ratio of a figure to its limit; <= 1 passes.
+    !> Largest ratio of an entry to its limit; <= 1 passes.
     real(c_double) :: worst
     !> Relative error of equilibrium `K u + B'lambda + H'mu + T'lambda_t = f`, for the worst body.
     real(c_double) :: equilibrium
@@ -2741,7 +2741,7 @@ module feti_contact_c
     !> Verifies an answer without tangential forces against the current problem; the answer may come from
     !> another program.
     !>
-    !> Every figure belongs to the worst body or the worst row, measured against its own forces and
+    !> Every entry belongs to the worst body or the worst row, measured against its own forces and
     !> deformation; the certificate names this body or row. Glue (option glue) is judged like equality rows;
     !> its forces are not an argument, and the library uses the glue forces that fit the answer best. Rows
     !> that never close, c = +infinity, are left out, and their lambda counts as 0. At nodes with friction
@@ -2775,7 +2775,7 @@ module feti_contact_c
     !> Verifies an answer with tangential forces against the current problem; the answer may come from another
     !> program.
     !>
-    !> The call works like feti_check. In addition, the figures of friction judge at every node the force
+    !> The call works like feti_check. In addition, the entries of friction judge at every node the force
     !> lambda_t against the friction law and the slip `T u - s_old - C_t lambda_t` with the current s_old,
     !> which after feti_friction_commit is that of the next step. Nodes that cannot carry a tangential force
     !> (bound 0 and no contact row that may close) are left out. After a failure nothing is written.

@@ -34,14 +34,14 @@ pub extern "C" fn feti_setup(p: *mut feti_problem) -> i32 {
 ///
 /// The answer is kept until the next solve; read it with feti_displacement, feti_multipliers and the other functions for
 /// results. An answer exists if the status is not negative, unless the call was cancelled or ran out of time before the
-/// first step. `info` is written in any case, with NaN for figures that are unknown after a failure. After a failure all
+/// first step. `info` is written in any case, with NaN for values that are unknown after a failure. After a failure all
 /// data that was given is kept and can be corrected, except after FETI_INTERNAL. If rows and loads leave motions
 /// undetermined (`undetermined`), the answer is the admissible one nearest to rest: the one with the least sum of `K_ii
 /// u_i^2`.
 ///
 /// Groups of bodies that are not joined by a row with a finite gap are separate problems. Each group is solved to its own
 /// accuracy, several at a time if threads are available. The function returns the worst status of all groups; counts and
-/// energies are summed, and every figure of the certificate is the one of the worst group. If a group has no answer
+/// energies are summed, and every entry of the certificate is the one of the worst group. If a group has no answer
 /// because its load is not held or its rows contradict each other, the status, feti_last_error and feti_diagnosis
 /// describe the first such group. The other groups keep their answers, and `info` describes them. Reading a result of one
 /// body in a group without an answer returns FETI_STATE; reading results of all bodies or rows at once gives NaN for such
@@ -88,7 +88,7 @@ pub unsafe extern "C" fn feti_solve(p: *mut feti_problem, info: *mut feti_info) 
 
 /// Verifies an answer without tangential forces against the current problem; the answer may come from another program.
 ///
-/// Every figure belongs to the worst body or the worst row, measured against its own forces and deformation; the
+/// Every entry belongs to the worst body or the worst row, measured against its own forces and deformation; the
 /// certificate names this body or row. Glue (option glue) is judged like equality rows; its forces are not an argument,
 /// and the library uses the glue forces that fit the answer best. Rows that never close, c = +infinity, are left out, and
 /// their lambda counts as 0. At nodes with friction (feti_friction_add_i32 or _i64) the tangential force counts as 0;
@@ -132,7 +132,7 @@ pub unsafe extern "C" fn feti_check(
 
 /// Verifies an answer with tangential forces against the current problem; the answer may come from another program.
 ///
-/// The call works like feti_check. In addition, the figures of friction judge at every node the force lambda_t against
+/// The call works like feti_check. In addition, the entries of friction judge at every node the force lambda_t against
 /// the friction law and the slip `T u - s_old - C_t lambda_t` with the current s_old, which after feti_friction_commit is
 /// that of the next step. Nodes that cannot carry a tangential force (bound 0 and no contact row that may close) are left
 /// out. After a failure nothing is written.

@@ -70,8 +70,8 @@ pub struct feti_option {
     pub default_str: *const c_char,
 }
 
-/// Report of a solve. If the call failed early, counts are zero and measured figures are NaN. If some groups of bodies
-/// have an answer and others have none, the counts of work, the energy and the figures cover only the groups with an
+/// Report of a solve. If the call failed early, counts are zero and measured values are NaN. If some groups of bodies
+/// have an answer and others have none, the counts of work, the energy and the certificate cover only the groups with an
 /// answer.
 #[repr(C)]
 #[derive(Debug, Clone, Copy)]
@@ -235,8 +235,8 @@ pub struct feti_phase {
     pub name: *const c_char,
 }
 
-/// Verdict on an answer, by relative figures. Each figure is `limit` times the ratio of the violation at the worst body
-/// or row to the allowed violation, which includes rounding; a figure passes if it is at most `limit`.
+/// Verdict on an answer, by relative entries. Each entry is `limit` times the ratio of the violation at the worst body
+/// or row to the allowed violation, which includes rounding; an entry passes if it is at most `limit`.
 #[repr(C)]
 #[derive(Debug, Clone, Copy)]
 pub struct feti_certificate {
@@ -248,7 +248,7 @@ pub struct feti_certificate {
     pub reserved: i32,
     /// Option certificate_tolerance.
     pub limit: f64,
-    /// Largest ratio of a figure to its limit; <= 1 passes.
+    /// Largest ratio of an entry to its limit; <= 1 passes.
     pub worst: f64,
     /// Relative error of equilibrium `K u + B'lambda + H'mu + T'lambda_t = f`, for the worst body.
     pub equilibrium: f64,
@@ -312,7 +312,7 @@ pub struct feti_progress {
     /// Inequality rows with a force; a set of parallel rows counts once.
     pub active: i64,
     /// Norm of the projected gradient divided by the norm at which the solve stops; NaN in the setup, like the next three
-    /// figures.
+    /// values.
     pub residual: f64,
     /// Norm of its part on rows with a force, divided by the same norm.
     pub residual_free: f64,
