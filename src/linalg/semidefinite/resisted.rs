@@ -45,14 +45,15 @@ pub fn parts(w: &Matrix, g_transposed: &Csr, limit: f64) -> Result<Parts> {
     for _ in 0..REFINEMENTS {
         (0..motions.cols).for_each(|j| conjugate(motions.col_mut(j), &kept, g_transposed));
     }
-    let (kernel, weak) = sorted(&motions, g_transposed, limit)?;
+    let images = (0..motions.cols).map(|j| product(g_transposed, motions.col(j))).collect();
+    let (kernel, weak) = sorted(&motions, images, limit)?;
     (0..weak.cols).for_each(|j| kept.push_col(weak.col(j)));
     Ok(Parts { kept, kernel, weak: weak.cols > 0 })
 }
 
-/// Splits orthonormal motions into those that are free and a basis V of the others, `V'W V = I`.
-pub fn sorted(motions: &Matrix, g_transposed: &Csr, limit: f64) -> Result<(Matrix, Matrix)> {
-    let (resistance, turned) = singular(motions, g_transposed, limit)?;
+/// Splits orthonormal motions n with the `images` `G_F'n` into those that are free and a basis V of the others, `V'W V = I`.
+pub fn sorted(motions: &Matrix, images: Vec<Vec<f64>>, limit: f64) -> Result<(Matrix, Matrix)> {
+    let (resistance, turned) = singular(images, limit)?;
     let none = Matrix { rows: motions.rows, ..Matrix::default() };
     let (mut free, mut weak) = (none.clone(), none);
     for (j, resistance) in resistance.iter().enumerate() {
@@ -75,19 +76,18 @@ fn conjugate(n: &mut [f64], kept: &Matrix, g_transposed: &Csr) {
     kept.mul_add(-1.0, &part, n);
 }
 
-/// Singular values of `G_F N` with its right singular vectors; 0 if all are below the limit.
-fn singular(motions: &Matrix, g_transposed: &Csr, limit: f64) -> Result<(Vec<f64>, Matrix)> {
-    let d = motions.cols;
+/// Singular values of a matrix with these columns, and its right singular vectors; 0 if all are below the limit.
+fn singular(images: Vec<Vec<f64>>, limit: f64) -> Result<(Vec<f64>, Matrix)> {
+    let (d, rows) = (images.len(), images.first().map_or(0, Vec::len));
     let mut turned = Matrix::from_fn(d, d, |i, j| f64::from(u8::from(i == j)))?;
-    let images: Vec<Vec<f64>> = (0..d).map(|j| product(g_transposed, motions.col(j))).collect();
     let lengths: Vec<f64> = images.iter().map(|image| norm(image)).collect();
     if norm(&lengths) <= limit {
         return Ok((vec![0.0; d], turned));
     }
     let (mut values, mut done) = (vec![0.0; d], 0);
-    while done < g_transposed.rows() {
+    while done < rows {
         // replaces the rows so far by their singular values and vectors
-        let some = (g_transposed.rows() - done).min(4 * d + ROWS);
+        let some = (rows - done).min(4 * d + ROWS);
         let entry =
             |i: usize, j: usize| if i < d { values[i] * turned.get(j, i) } else { images[j][done + i - d] };
         let stacked = Matrix::from_fn(d + some, d, entry)?;

@@ -225,33 +225,18 @@ impl Blocks {
         blocks.iter().flat_map(|&k| self.met.row(k)).for_each(|(i, _)| meets[i] = !held[i]);
         let rows: Vec<usize> = (0..held.len()).filter(|&i| meets[i]).collect();
         columns.iter().enumerate().for_each(|(at, &column)| local[column] = Some(at));
-        let own = |i: usize| self.rows.row(i).filter_map(|(column, v)| Some((local[column]?, v)));
-        let size = columns.iter().map(|&column| self.whole[column]).sum::<f64>().sqrt();
-        let (limit, motions) = (self.rounding * size, together.orthonormalised(0.0));
-        let (free, weak) = if image_length(&motions, rows.iter().map(|&i| own(i))) <= limit {
-            let none = Matrix { rows: columns.len(), ..Matrix::default() };
-            (motions, none)
-        } else {
-            let mut given = Csr::empty(columns.len());
-            rows.iter().for_each(|&i| given.push_row(own(i)));
-            sorted(&motions, &given, limit)?
-        };
+        let motions = together.orthonormalised(0.0);
+        let mut images = vec![vec![0.0; rows.len()]; motions.cols];
+        for (row, &i) in rows.iter().enumerate() {
+            for (at, v) in self.rows.row(i).filter_map(|(column, v)| Some((local[column]?, v))) {
+                images.iter_mut().enumerate().for_each(|(j, image)| image[row] += v * motions.get(at, j));
+            }
+        }
         columns.iter().for_each(|&column| local[column] = None);
+        let size = columns.iter().map(|&column| self.whole[column]).sum::<f64>().sqrt();
+        let (free, weak) = sorted(&motions, images, self.rounding * size)?;
         Ok(Cluster { columns, free, weak })
     }
-}
-
-/// `|G_F'N|` of motions N and the rows of `G_F'`.
-fn image_length<R: Iterator<Item = (usize, f64)>>(motions: &Matrix, rows: impl Iterator<Item = R>) -> f64 {
-    let (mut sum, mut image) = (0.0, vec![0.0; motions.cols]);
-    for row in rows {
-        image.fill(0.0);
-        for (at, v) in row {
-            image.iter_mut().enumerate().for_each(|(j, image)| *image += v * motions.get(at, j));
-        }
-        sum += dot(&image, &image);
-    }
-    sum.sqrt()
 }
 
 /// The entries of some rows in the columns of one block, from the first to the last of `columns`.
