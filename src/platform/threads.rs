@@ -99,20 +99,6 @@ pub fn parts_of<P: Send, T: Send>(pieces: Vec<P>, part: impl Fn(usize, P) -> T +
     }
 }
 
-/// Does some work on a thread of the team's pool, where parallel factorisations share it among all threads of the pool.
-pub fn in_team<T: Send>(work: impl FnOnce() -> T + Send) -> T {
-    match pool_for(TEAM.get()) {
-        Some(pool) => {
-            let present = Interrupt::present().unheard();
-            pool.install(|| {
-                let _present = present.enter();
-                work()
-            })
-        }
-        None => work(),
-    }
-}
-
 /// As `run`, but the calling thread itself runs the tasks `on_caller`.
 pub fn run_apart<T: Send>(
     threads: usize,
@@ -320,18 +306,6 @@ mod tests {
             let ended = cancelled.during(|| run_heard(tasks, |_| check(), &mut |_| {}));
             assert_eq!(ended.unwrap_err().kind, Kind::Cancelled);
             assert!(run(threads, 8, |_| check()).is_ok());
-        }
-    }
-
-    #[test]
-    fn work_of_a_team_is_on_a_thread_of_its_pool_under_the_interrupt_of_the_caller() {
-        let cancelled = Interrupt::new(std::sync::Arc::new(AtomicBool::new(true)));
-        for threads in [1, 2] {
-            let in_pool = with_team(threads, || in_team(|| rayon::current_thread_index().is_some()));
-            assert_eq!(in_pool, threads > 1);
-            let ended =
-                cancelled.during(|| with_team(threads, || in_team(crate::platform::interrupt::check)));
-            assert_eq!(ended.unwrap_err().kind, Kind::Cancelled);
         }
     }
 

@@ -6,7 +6,6 @@ use crate::error::Result;
 use crate::linalg::cholesky::Renewal;
 use crate::linalg::sparse::gram::Gram;
 use crate::linalg::{Analysis, Cholesky, Csr, Symmetric};
-use crate::platform::threads::in_team;
 
 pub struct FaceFactors {
     gram: Gram,
@@ -64,7 +63,7 @@ impl FaceFactors {
         if !is_common {
             return Ok(self.renewal.analysis.pivoted(&w, by, hold)?.map(Arc::new));
         }
-        let found = in_team(|| self.renewal.factorize(before, &w, (by, hold)))?.map(Arc::new);
+        let found = self.renewal.factorize(before, &w, (by, hold))?.map(Arc::new);
         self.factors.extend(found.iter().cloned());
         Ok(found)
     }
