@@ -47,16 +47,16 @@ impl ClusterInverse {
     ) -> Result<Vec<Motion>> {
         let as_before = before.iter().map(|motion| motion.at).eq(self.held.iter().copied());
         let before = if as_before { before } else { &[] };
-        let count = if turned.rows() < LONG { 1 } else { PARTS.min(self.held.len()) };
-        let each = self.held.len().div_ceil(count.max(1));
-        let some = parts(count, |k| {
-            let own = (k * each).min(self.held.len())..((k + 1) * each).min(self.held.len());
+        let count = self.held.len();
+        let each = if turned.rows() < LONG { count } else { count.div_ceil(PARTS) }.max(1);
+        let some = parts(count.div_ceil(each), |k| {
+            let own = k * each..count.min((k + 1) * each);
             self.some_motions(own, Images::new(turned, by_column), limits, before)
         });
         Ok(some.into_iter().collect::<Result<Vec<_>>>()?.into_iter().flatten().collect())
     }
 
-    /// The motions of some of the unknowns held; none or all have one `before`.
+    /// The motions of some of the held unknowns; either each of them has a motion `before` or none has.
     fn some_motions(
         &self,
         own: Range<usize>,
@@ -69,11 +69,12 @@ impl ClusterInverse {
         for j in own {
             let at = self.held[j];
             let mut moved = Vec::new();
-            if let Some(before) = before.get(j) {
-                moved.extend(before.n.iter().map(|(k, _)| *k));
-                before.n.iter().for_each(|&(k, v)| n[k] = v);
+            let known = before.get(j);
+            for &(k, v) in known.into_iter().flat_map(|motion| &motion.n) {
+                moved.push(k);
+                n[k] = v;
             }
-            if before.is_empty() || images.of(&n, &moved) > rounding * length(&n, &moved) {
+            if known.is_none() || images.of(&n, &moved) > rounding * length(&n, &moved) {
                 moved.iter().for_each(|&k| n[k] = 0.0);
                 moved = self.corrected(at, &mut n, &mut images, rounding)?;
             }
@@ -206,7 +207,7 @@ impl ByColumn {
 }
 
 /// The entries of the rows along a motion.
-pub struct Images<'a> {
+struct Images<'a> {
     /// `G_F'T`
     turned: &'a Csr,
     by_column: &'a ByColumn,
@@ -217,7 +218,7 @@ pub struct Images<'a> {
 }
 
 impl<'a> Images<'a> {
-    pub fn new(turned: &'a Csr, by_column: &'a ByColumn) -> Self {
+    fn new(turned: &'a Csr, by_column: &'a ByColumn) -> Self {
         let m = turned.rows();
         Self { turned, by_column, along: vec![0.0; m], resisting: Vec::new(), seen: vec![false; m] }
     }
