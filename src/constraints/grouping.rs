@@ -60,6 +60,11 @@ impl Grouping {
         self.member.iter().enumerate().filter_map(|(i, member)| member.map(|member| (i, member)))
     }
 
+    /// Number of groups with leaders before a row.
+    pub fn led_before(&self, row: usize) -> usize {
+        self.leaders.iter().filter(|&&leader| leader < row).count()
+    }
+
     /// Kind of the multiplier of a group, by its leader: a contact row, a tangential row, or an equality row.
     pub fn kind(&self, group: usize, contact: usize, tangential: usize) -> RowKind {
         match self.leaders[group] {

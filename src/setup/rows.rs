@@ -81,9 +81,8 @@ impl DualRows {
         let mut scaled = Csr::empty(metric.len());
         grouping.leaders.iter().for_each(|&leader| scaled.push_row(all.row(leader)));
         let compliance: Vec<f64> = grouping.leaders.iter().map(|&leader| compliances[leader]).collect();
-        let equalities =
-            grouping.leaders.iter().filter(|leader| (contact..tangential).contains(leader)).count();
-        let first = grouping.leaders.iter().filter(|&&leader| leader < tangential).count();
+        let first = grouping.led_before(tangential);
+        let equalities = first - grouping.led_before(contact);
         let nodes = island.friction.nodes.iter().map(|node| first + node.first..first + node.rows().end);
         let nodes: Vec<_> = nodes.collect();
         let given =
@@ -97,7 +96,7 @@ impl DualRows {
 
     /// The first group that is a tangential row; all groups after it are tangential rows.
     pub fn first_tangential(&self) -> usize {
-        self.scaling.grouping.leaders.partition_point(|&leader| leader < self.tangential)
+        self.scaling.grouping.led_before(self.tangential)
     }
 
     pub fn groups(&self) -> usize {
