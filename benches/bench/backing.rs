@@ -1,15 +1,17 @@
 //! Memory that the machine has at hand. A virtual machine gives memory that has been free for some seconds back to its host, and the
 //! program that touches it next pays up to 4 ms for 2 MB. All programs that are compared begin with as much memory at hand.
 
-use std::fs;
 use std::ptr::null_mut;
 
+use crate::clock;
+
 /// Bytes for each unknown: what CHOLMOD takes for the largest deck.
-const BYTES: usize = 16_000;
+pub const BYTES: usize = 16_000;
 
 /// Touches as much memory as a solve with so many unknowns may take, at most half of what is available, and gives it back.
 pub fn back_memory(unknowns: usize) {
-    let bytes = (BYTES * unknowns).min(available() / 2);
+    let available = clock::bytes("/proc/meminfo", "MemAvailable:").unwrap_or(0);
+    let bytes = (BYTES * unknowns).min(available / 2);
     let access = libc::PROT_READ | libc::PROT_WRITE;
     // SAFETY: new pages, written within their bounds, given back at the end.
     unsafe {
@@ -20,12 +22,4 @@ pub fn back_memory(unknowns: usize) {
             libc::munmap(start, bytes);
         }
     }
-}
-
-/// MemAvailable, bytes.
-fn available() -> usize {
-    let memory = fs::read_to_string("/proc/meminfo").unwrap_or_default();
-    let line = memory.lines().find_map(|line| line.strip_prefix("MemAvailable:"));
-    let kilobytes = line.and_then(|line| line.trim().trim_end_matches(" kB").parse::<usize>().ok());
-    1024 * kilobytes.unwrap_or(0)
 }

@@ -1,5 +1,6 @@
 /* The unit of the benchmark: CHOLMOD analyses and factorises a positive definite matrix, once.
-   cholmod <matrix>   prints lines `name value`; the matrix is written by matrix.rs: int64 n, int64 entries, then the
+   cholmod <matrix> <bytes>   prints lines `name value`, after it has touched so much memory for each unknown, as backing.rs does
+   for the other programs; the matrix is written by matrix.rs: int64 n, int64 entries, then the
    lower triangle by columns: int32 pointers (n + 1), int32 rows, double values. */
 #define _GNU_SOURCE
 #include <dlfcn.h>
@@ -65,40 +66,33 @@ static double residual(cholmod_sparse *a, cholmod_factor *factor, cholmod_common
     return error / size;
 }
 
-/* Touches memory as backing.rs does for the other programs; a child does, so that it does not count in the peak. */
-static void back_memory(size_t unknowns)
-{
-    char line[256];
-    size_t bytes = 16000 * unknowns, half = 0, at;
-    FILE *file = fopen("/proc/meminfo", "r");
-    const pid_t child = fork();
-
-    while (!child && file && fgets(line, sizeof line, file))
-        if (!strncmp(line, "MemAvailable:", 13)) half = 512 * (size_t)strtoull(line + 13, NULL, 10);
-    if (!child) {
-        char *start;
-        if (bytes > half) bytes = half;
-        start = mmap(NULL, bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
-        if (start == MAP_FAILED) _exit(1);
-        madvise(start, bytes, MADV_HUGEPAGE);
-        for (at = 0; at < bytes; at += 4096) ((volatile char *)start)[at] = 1;
-        _exit(0);
-    }
-    if (file) fclose(file);
-    if (child > 0) waitpid(child, NULL, 0);
-}
-
-/* VmHWM, bytes: the peak of the resident memory. */
-static double peak(void)
+/* Bytes that a line `key` of a file of the system gives in kB; 0 if it does not. */
+static double bytes(const char *path, const char *key)
 {
     char line[256];
     double kilobytes = 0.0;
-    FILE *file = fopen("/proc/self/status", "r");
+    FILE *file = fopen(path, "r");
 
     while (file && fgets(line, sizeof line, file))
-        if (!strncmp(line, "VmHWM:", 6)) kilobytes = strtod(line + 6, NULL);
+        if (!strncmp(line, key, strlen(key))) kilobytes = strtod(line + strlen(key), NULL);
     if (file) fclose(file);
     return 1024.0 * kilobytes;
+}
+
+/* Touches so much memory, at most half of what is available; a child does, so that it does not count in the peak. */
+static void back_memory(size_t wanted)
+{
+    const size_t half = (size_t)bytes("/proc/meminfo", "MemAvailable:") / 2, size = wanted < half ? wanted : half;
+    const pid_t child = fork();
+
+    if (!child) {
+        char *start = mmap(NULL, size, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+        if (start == MAP_FAILED) _exit(1);
+        madvise(start, size, MADV_HUGEPAGE);
+        for (size_t at = 0; at < size; at += 4096) ((volatile char *)start)[at] = 1;
+        _exit(0);
+    }
+    if (child > 0) waitpid(child, NULL, 0);
 }
 
 /* The file that a function of the BLAS or LAPACK comes from, links followed. */
@@ -134,15 +128,15 @@ int main(int arguments, char **argument)
     common.nmethods = 1;
     common.method[0].ordering = CHOLMOD_METIS;
     common.postorder = 1;
-    a = arguments == 2 ? read_matrix(argument[1], &common) : NULL;
+    a = arguments == 3 ? read_matrix(argument[1], &common) : NULL;
     if (!a) return fail("no matrix");
-    back_memory(a->nrow);
+    back_memory(a->nrow * strtoull(argument[2], NULL, 10));
     at[0] = seconds(wall), processor[0] = seconds(cpu);
     factor = cholmod_analyze(a, &common);
     at[1] = seconds(wall), processor[1] = seconds(cpu);
     if (!factor || !cholmod_factorize(a, factor, &common) || common.status != CHOLMOD_OK) return fail("no factor");
     at[2] = seconds(wall), processor[2] = seconds(cpu);
-    printf("peak %.0f\n", peak());
+    printf("peak %.0f\n", bytes("/proc/self/status", "VmHWM:"));
     if (factor->ordering != CHOLMOD_METIS || !factor->is_super) return fail("neither METIS nor supernodes");
     printf("wall %.6f\ncpu %.6f\n", at[2] - at[0], processor[2] - processor[0]);
     printf("analyse_wall %.6f\nanalyse_cpu %.6f\n", at[1] - at[0], processor[1] - processor[0]);

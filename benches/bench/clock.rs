@@ -66,8 +66,12 @@ pub fn restart_peak() {
 
 /// VmHWM: peak of the resident memory, bytes.
 pub fn peak() -> f64 {
-    let status = fs::read_to_string("/proc/self/status").unwrap_or_default();
-    let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"));
-    let kilobytes = line.and_then(|line| line.trim().trim_end_matches(" kB").parse::<f64>().ok());
-    1024.0 * kilobytes.unwrap_or(f64::NAN)
+    bytes("/proc/self/status", "VmHWM:").map_or(f64::NAN, |bytes| bytes as f64)
+}
+
+/// Bytes that a line `key` of a file of the system gives in kB.
+pub fn bytes(path: &str, key: &str) -> Option<usize> {
+    let text = fs::read_to_string(path).ok()?;
+    let value = text.lines().find_map(|line| line.strip_prefix(key))?;
+    Some(1024 * value.trim().trim_end_matches(" kB").parse::<usize>().ok()?)
 }

@@ -4,6 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
+use crate::backing::BYTES;
 use crate::compiler::compiler;
 use crate::factors;
 use crate::matrix;
@@ -111,7 +112,7 @@ impl Peers {
             Program::Factor(threads) => own("factor", threads),
             Program::Cholmod(_) => {
                 let mut command = Command::new(&self.cholmod);
-                command.arg(self.matrix(deck));
+                command.arg(self.matrix(deck)).arg(BYTES.to_string());
                 Ok(command)
             }
             Program::Faer(threads) => {
