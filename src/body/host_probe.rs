@@ -157,7 +157,7 @@ impl<'a> Probe<'a> {
             let found = ratio(found, size);
             if found.is_nan() || found > limit {
                 let what =
-                    format!("the host's K+ is not a generalised inverse of its K: |K K+ K v - K v| = {found:.1e} |K v|");
+                    format!("the host's K+ is no inverse of its K: |K K+ K v - K v| = {found:.1e} |K v|");
                 let dof = largest(left, |i| 1.0 / self.k.metric(i, 1.0));
                 return Err(Error::new(Kind::Callback, what).dof(dof).value(found).limit(limit));
             }

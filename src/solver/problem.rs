@@ -265,7 +265,7 @@ impl Problem {
         if self.model.given(body)?.body.assembled.is_none() {
             return Ok(());
         }
-        let what = "the body is cut into pieces and has no K+ of its own: set option pieces = 1 before its elements to keep it whole";
+        let what = "the body is cut into pieces and has no K+ of its own: option pieces = 1, set before its elements, leaves it whole";
         Err(Error::new(Kind::State, what).body(body))
     }
 }

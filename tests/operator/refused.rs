@@ -51,7 +51,7 @@ fn what_is_not_symmetric_is_named_with_its_figure_and_limit() {
 fn an_inverse_of_another_matrix_is_no_inverse_of_k() {
     for factor in [2.0, 1.0 + 1e-6, 0.0] {
         let error = refused(|host| host.kplus.iter_mut().for_each(|v| *v *= factor), as_given);
-        assert_says(&error, Kind::Callback, "inverse of its K");
+        assert_says(&error, Kind::Callback, "no inverse of its K");
         assert!(error.place.value > error.place.limit && error.place.dof.is_some(), "{error}");
     }
 }

@@ -286,7 +286,7 @@ static void not_of_a_cut_body(void)
     feti_problem *p = by_elements(PIECES, 1, FULL, 0, 0);
 
     EXPECT(FETI_STATE, feti_body_kplus(p, BAR, BAR_N, 1, x, BAR_N, y, BAR_N));
-    check_named(-1, "cut into pieces and has no K+ of its own: set option pieces = 1 before its elements to keep it whole");
+    check_named(-1, "cut into pieces and has no K+ of its own: option pieces = 1, set before its elements, leaves it whole");
     EXPECT(FETI_STATE, feti_body_fixing(p, BAR, 1, dof));
     EXPECT(FETI_STATE, feti_dual_apply(p, 1, x, y));
     EXPECT(FETI_STATE, feti_dual_rhs(p, 1, y));

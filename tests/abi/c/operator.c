@@ -256,7 +256,7 @@ static void wrong_arguments_and_functions(void)
     spring.kplus = 0.25;
     OK(GIVE(p, SPRING, 1, diag, spring_kplus, spring_k, 0));
     EXPECT(FETI_CALLBACK, feti_solve(p, NULL));
-    check_last_error(p, &(expectation){ FETI_CALLBACK, SPRING, 0, -1, -1, "feti_solve", "inverse of its K" });
+    check_last_error(p, &(expectation){ FETI_CALLBACK, SPRING, 0, -1, -1, "feti_solve", "no inverse of its K" });
     spring = (one_spring){ 2.0, NAN };
     EXPECT(FETI_CALLBACK, feti_solve(p, NULL));
     check_last_error(p, &(expectation){ FETI_CALLBACK, SPRING, 0, -1, -1, "feti_solve", "not a finite number" });
