@@ -230,7 +230,10 @@ impl Mesh {
 
     /// One more than the largest number of a held unknown.
     pub fn held_numbers(&self) -> usize {
-        self.connectivity.held().last().map_or(0, |last| usize::try_from(*last).unwrap_or(usize::MAX).saturating_add(1))
+        self.connectivity
+            .held()
+            .last()
+            .map_or(0, |last| usize::try_from(*last).unwrap_or(usize::MAX).saturating_add(1))
     }
 
     /// Sets the entries of the held unknowns 0, 1, ... that have elements to `K_hf u`, force.

@@ -176,7 +176,10 @@ impl Problem {
         let mesh = given.mesh.as_ref().filter(|mesh| mesh.has_elements()).ok_or_else(missing)?;
         let (u, most) = (self.displacement(body)?, mesh.held_numbers().max(given.body.order));
         if n > most {
-            let what = format!("n is {n}, but the held unknowns of the body have numbers below {}", mesh.held_numbers());
+            let what = format!(
+                "n is {n}, but the held unknowns of the body have numbers below {}",
+                mesh.held_numbers()
+            );
             return Err(Error::argument("n", what).body(body).value(n as f64).limit(most as f64));
         }
         let mut forces = zeros(n, "the forces of held unknowns")?;
