@@ -279,7 +279,7 @@ impl Prepared {
         };
         let sizes: Vec<Size> = (0..rows.len()).map(size).collect();
         let operators = Operators::new(settings, sizes, there.saturating_add(more));
-        let more = more.saturating_add(operators.bytes());
+        let more = more.saturating_add(operators.bytes);
         let inverses = self.bodies.iter().filter_map(|own| own.inverse.as_ref());
         let kept: usize = inverses.filter_map(|inverse| inverse.operator.as_ref()).map(Kept::bytes).sum();
         if kept > 0 && check_memory(settings, there, more.saturating_add(kept)).is_err() {

@@ -11,6 +11,8 @@ pub struct Operators {
     options: Options,
     pub sizes: Vec<Size>,
     pub implicit: Vec<bool>,
+    /// Bytes of all operators.
+    pub bytes: usize,
     /// Bytes of all factors, shared factors counted once, plus the largest work arrays of their computation.
     pub factor_bytes: usize,
 }
@@ -22,11 +24,8 @@ impl Operators {
     /// The choice by the options and the memory left by factors of this size.
     pub fn new(settings: &Settings, sizes: Vec<Size>, factor_bytes: usize) -> Self {
         let implicit = implicit(settings, &sizes, factor_bytes);
-        Self { options: options(settings), sizes, implicit, factor_bytes }
-    }
-
-    pub fn bytes(&self) -> usize {
-        all_bytes(&self.sizes, &self.implicit)
+        let bytes = all_bytes(&sizes, &implicit);
+        Self { options: options(settings), sizes, implicit, bytes, factor_bytes }
     }
 
     /// Work of the assembly of each, in operations.
@@ -52,8 +51,7 @@ impl Operators {
 
     /// Checks `more` bytes, in addition to factors and operators, against the limit of the host.
     pub fn check_more(&self, settings: &Settings, more: usize) -> Result<()> {
-        check_memory(settings, self.factor_bytes.saturating_add(self.bytes()), more)
-            .map_err(|e| self.named(e))
+        check_memory(settings, self.factor_bytes.saturating_add(self.bytes), more).map_err(|e| self.named(e))
     }
 }
 
