@@ -1,4 +1,4 @@
-//! Translates the reason why there is no answer, and its place, from the pieces to the bodies of the host.
+//! Translates the reason why there is no answer, and its place, from the parts to the bodies of the host.
 
 use crate::error::{Error, Kind, Proof};
 use crate::mesh::Mesh;
@@ -12,7 +12,7 @@ pub fn of_host(host: &Model, parts: &Parts, mut error: Error) -> Error {
         if error.kind == Kind::Memory && parts.is_cut(body) {
             // the host knows a piece only by its elements
             let mesh: Option<&Mesh> = host.bodies[body].mesh.as_ref();
-            error.place.element = mesh.and_then(|mesh| mesh.first_of(part - parts.first[body]));
+            error.place.element = mesh.and_then(|mesh| mesh.first_of(parts.parts[part].piece));
         }
         let unknowns = parts.starts[part + 1] - parts.starts[part];
         let dof = error.place.dof.filter(|dof| *dof < unknowns);

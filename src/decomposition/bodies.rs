@@ -1,29 +1,41 @@
-//! The bodies that are solved: pieces, with the data of the host's body restricted to them.
+//! The bodies that are solved: connected components and pieces, with the data of the host's body restricted to them.
 
 use std::sync::Arc;
 
-use crate::body::{check_diagonal, Body};
+use crate::body::{check_diagonal, Body, Modes, NullSpaceInput};
 use crate::error::{Error, Kind, Result};
+use crate::linalg::vector::norm_max;
+use crate::linalg::{Matrix, Symmetric};
 use crate::mesh::{Mesh, Piece};
-use crate::model::{GivenBody, Model, Part, Parts};
+use crate::model::{GivenBody, Joint, Model, Part, Parts};
 use crate::platform::memory::{copied, filled, reserved, zeros};
 
+use super::components::{Component, Components, Connected};
 use super::copies::Copies;
 
-const WHAT: &str = "the pieces of bodies";
+const WHAT: &str = "the parts of bodies";
+/// A null vector of a body whose entries on a part are below this part of its largest entry is rounding there; and null
+/// vectors of a part depend on others if less than this part of their length is left beside them.
+const ROUNDED: f64 = 1e-10;
 
 /// The parts of all bodies, without loads, and their relation to the bodies.
-pub fn parts(host: &Model) -> Result<(Vec<GivenBody>, Parts)> {
+pub fn parts(
+    host: &Model,
+    connected: &Connected,
+    held: &dyn Fn(usize) -> bool,
+) -> Result<(Vec<GivenBody>, Parts)> {
     let (mut bodies, mut all) = (Vec::new(), Parts::default());
     all.offsets.clone_from(&host.offsets);
     all.starts.push(0);
     for (body, given) in host.bodies.iter().enumerate() {
         all.first.push(bodies.len());
         all.assembled.push(given.body.assembled.clone());
+        let mut split = Split { given, body, held, first: host.offsets[body], loose: &mut all.loose };
         let pieces = given.mesh.as_ref().and_then(Mesh::pieces).filter(|_| given.body.assembled.is_some());
-        let made = match pieces {
-            Some(pieces) => pieces_of(given, body, pieces).map_err(|e| e.body(body))?,
-            None => vec![(whole(given)?, Part { body, piece: None })],
+        let made = match (pieces, connected.components(body), given.body.stiffness.as_deref()) {
+            (Some(pieces), ..) => split.pieces(pieces).map_err(|e| e.body(body))?,
+            (None, Some(components), Some(k)) => split.components(components, k).map_err(|e| e.body(body))?,
+            _ => vec![(whole(given), Part { body, piece: 0, dofs: None, shares: Vec::new() })],
         };
         for (own, part) in made {
             all.starts.push(all.starts.last().copied().unwrap_or(0) + own.order);
@@ -35,11 +47,25 @@ pub fn parts(host: &Model) -> Result<(Vec<GivenBody>, Parts)> {
     Ok((bodies, all))
 }
 
-/// A body that is not cut: its matrix and functions are shared, not copied.
-fn whole(given: &GivenBody) -> Result<Body> {
+/// The unknowns, among all unknowns of the host, that rows, joints or loads touch.
+pub fn touched(host: &Model, joints: &[Joint]) -> Result<Vec<bool>> {
+    let mut touched = filled(host.sizes().dofs, false, WHAT)?;
+    for rows in [&host.contact, &host.equalities, &host.friction.rows] {
+        (0..rows.len()).flat_map(|i| rows.matrix.row(i)).for_each(|(j, _)| touched[j] = true);
+    }
+    joints.iter().flat_map(|joint| joint.ends).for_each(|j| touched[j] = true);
+    for (given, first) in host.bodies.iter().zip(&host.offsets) {
+        let loads = given.body.load.iter().flatten().enumerate();
+        loads.filter(|(_, f)| **f != 0.0).for_each(|(i, _)| touched[first + i] = true);
+    }
+    Ok(touched)
+}
+
+/// A body that is its only part: its matrix and functions are shared, not copied.
+fn whole(given: &GivenBody) -> Body {
     let Body { order, stiffness, operator, null_space, coordinates, soft_coordinates, fixing, .. } =
         &given.body;
-    Ok(Body {
+    Body {
         order: *order,
         stiffness: stiffness.clone(),
         operator: operator.clone(),
@@ -48,48 +74,140 @@ fn whole(given: &GivenBody) -> Result<Body> {
         soft_coordinates: *soft_coordinates,
         fixing: fixing.clone(),
         ..Body::default()
-    })
+    }
 }
 
-fn pieces_of(given: &GivenBody, body: usize, pieces: &[Piece]) -> Result<Vec<(Body, Part)>> {
-    let mut copies = filled(given.body.order, 0u32, WHAT)?;
-    pieces.iter().flat_map(|piece| piece.dofs.iter()).for_each(|&dof| copies[dof as usize] += 1);
-    let first_of = |number| given.mesh.as_ref().and_then(|mesh| mesh.first_of(number));
-    let named = |number, mut error: Error| {
-        if error.kind == Kind::Memory {
-            error.place.element = first_of(number);
+/// A body of the host that is split into parts.
+struct Split<'a> {
+    given: &'a GivenBody,
+    body: usize,
+    /// Rows, joints or loads touch this unknown of the host.
+    held: &'a dyn Fn(usize) -> bool,
+    /// First unknown of the body among all unknowns of the host.
+    first: usize,
+    /// Unknowns that are left out of all parts.
+    loose: &'a mut Vec<usize>,
+}
+
+impl Split<'_> {
+    /// A body of several components. At least one part remains.
+    fn components(&mut self, components: &Components, k: &Symmetric) -> Result<Vec<(Body, Part)>> {
+        let first_loose = self.loose.len();
+        let empty = components.empty(k)?.filter(|&i| !(self.held)(self.first + i));
+        let mut loose: Vec<usize> = empty.collect();
+        loose.truncate(components.count - 1);
+        self.loose.extend(loose.iter().map(|i| self.first + i));
+        let left_out = &self.loose[first_loose..];
+        let blocks = components.blocks(k, |i| left_out.binary_search(&(self.first + i)).is_ok())?;
+        let mut made = reserved(blocks.len(), WHAT)?;
+        for Component { dofs, stiffness } in blocks {
+            let null_space = self.given.body.null_space.as_ref();
+            let null_space = null_space.map(|given| restricted(given, &dofs, &stiffness)).transpose()?;
+            let own = Body { null_space, ..self.part_of(&dofs, Arc::new(stiffness))? };
+            made.push((own, Part { body: self.body, piece: 0, dofs: Some(dofs), shares: Vec::new() }));
         }
-        error
-    };
-    let made = pieces.iter().enumerate();
-    made.map(|(k, piece)| piece_of(given, body, piece, &copies).map_err(|e| named(k, e))).collect()
+        Ok(made)
+    }
+
+    /// The body with these unknowns alone: coordinates and dofs held are those of the body.
+    fn part_of(&self, dofs: &[u32], stiffness: Arc<Symmetric>) -> Result<Body> {
+        let Body { coordinates, soft_coordinates, fixing, .. } = &self.given.body;
+        let own = |dof: &usize| dofs.binary_search(&(*dof as u32)).ok();
+        Ok(Body {
+            order: dofs.len(),
+            stiffness: Some(stiffness),
+            coordinates: coordinates.as_ref().map(|all| all.of(dofs)).transpose()?,
+            soft_coordinates: *soft_coordinates,
+            fixing: fixing.as_ref().map(|fixing| fixing.iter().filter_map(own).collect()),
+            ..Body::default()
+        })
+    }
+
+    fn pieces(&mut self, pieces: &[Piece]) -> Result<Vec<(Body, Part)>> {
+        let given = self.given;
+        let mut copies = filled(given.body.order, 0u32, WHAT)?;
+        pieces.iter().flat_map(|piece| piece.dofs.iter()).for_each(|&dof| copies[dof as usize] += 1);
+        let first_of = |number| given.mesh.as_ref().and_then(|mesh| mesh.first_of(number));
+        let mut made = reserved(pieces.len(), WHAT)?;
+        for (number, piece) in pieces.iter().enumerate() {
+            let own = self.piece(number, piece, &copies).map_err(|mut error: Error| {
+                if error.kind == Kind::Memory {
+                    error.place.element = first_of(number);
+                }
+                error
+            })?;
+            made.extend(own);
+        }
+        Ok(made)
+    }
+
+    /// The parts of a piece: their null spaces come from the coordinates of their unknowns, or from their matrices; the
+    /// null space of the body is not used. The weight of a copy is its part of the stiffness at the unknown; without
+    /// stiffness all copies have equal weights.
+    fn piece(&mut self, number: usize, piece: &Piece, copies: &[u32]) -> Result<Vec<(Body, Part)>> {
+        let Piece { dofs, stiffness } = piece;
+        check_diagonal(stiffness).map_err(|e| match e.place.dof {
+            Some(i) => e.dof(dofs[i] as usize),
+            None => e,
+        })?;
+        let Some(components) = Components::of(stiffness)? else {
+            return Ok(vec![self.of_piece(number, Arc::clone(dofs), Arc::clone(stiffness), copies)?]);
+        };
+        let mut loose = reserved(components.count, WHAT)?;
+        let is_loose =
+            |i: &usize| copies[dofs[*i] as usize] == 1 && !(self.held)(self.first + dofs[*i] as usize);
+        loose.extend(components.empty(stiffness)?.filter(is_loose));
+        loose.truncate(components.count - 1);
+        self.loose.extend(loose.iter().map(|&i| self.first + dofs[i] as usize));
+        let mut made = reserved(components.count, WHAT)?;
+        for block in components.blocks(stiffness, |i| loose.binary_search(&i).is_ok())? {
+            let own: Arc<[u32]> = block.dofs.iter().map(|&i| dofs[i as usize]).collect();
+            made.push(self.of_piece(number, own, Arc::new(block.stiffness), copies)?);
+        }
+        Ok(made)
+    }
+
+    fn of_piece(
+        &self,
+        piece: usize,
+        dofs: Arc<[u32]>,
+        stiffness: Arc<Symmetric>,
+        copies: &[u32],
+    ) -> Result<(Body, Part)> {
+        let mut shares = reserved(dofs.len(), WHAT)?;
+        let all = |dof: u32| self.given.body.assembled.as_ref().map_or(0.0, |all| all.diagonal(dof as usize));
+        let share = |(i, &dof): (usize, &u32)| match (stiffness.diagonal(i), all(dof)) {
+            (own, all) if all > 0.0 => own / all,
+            _ => 1.0 / f64::from(copies[dof as usize]),
+        };
+        shares.extend(dofs.iter().enumerate().map(share));
+        let own = Body { fixing: None, ..self.part_of(&dofs, stiffness)? };
+        Ok((own, Part { body: self.body, piece, dofs: Some(dofs), shares }))
+    }
 }
 
-/// A piece: its null space comes from the coordinates of its unknowns, or from its matrix; the null space of the body is
-/// not used. The weight of a copy is its part of the stiffness at the unknown; without stiffness all copies have equal
-/// weights.
-fn piece_of(given: &GivenBody, body: usize, piece: &Piece, copies: &[u32]) -> Result<(Body, Part)> {
-    let Piece { dofs, stiffness } = piece;
-    check_diagonal(stiffness).map_err(|e| match e.place.dof {
-        Some(i) => e.dof(dofs[i] as usize),
-        None => e,
-    })?;
-    let coordinates = given.body.coordinates.as_ref().map(|all| all.of(dofs)).transpose()?;
-    let own = Body {
-        order: dofs.len(),
-        stiffness: Some(Arc::clone(stiffness)),
-        coordinates,
-        soft_coordinates: given.body.soft_coordinates,
-        ..Body::default()
-    };
-    let mut shares = reserved(dofs.len(), WHAT)?;
-    let all = |dof: u32| given.body.assembled.as_ref().map_or(0.0, |all| all.diagonal(dof as usize));
-    let share = |(i, &dof): (usize, &u32)| match (stiffness.diagonal(i), all(dof)) {
-        (own, all) if all > 0.0 => own / all,
-        _ => 1.0 / f64::from(copies[dof as usize]),
-    };
-    shares.extend(dofs.iter().enumerate().map(share));
-    Ok((own, Part { body, piece: Some((Arc::clone(dofs), shares)) }))
+/// The vectors on one component: K has no entry between components, so vectors of the null space are in the null space of
+/// every component.
+fn restricted(given: &NullSpaceInput, dofs: &[u32], k: &Symmetric) -> Result<NullSpaceInput> {
+    let NullSpaceInput { vectors, modes } = given;
+    let mut own = Matrix::zeros(dofs.len(), 0)?;
+    for j in 0..vectors.cols {
+        let all = vectors.col(j);
+        let mut column = zeros(dofs.len(), WHAT)?;
+        column.iter_mut().zip(dofs).for_each(|(v, &dof)| *v = all[dof as usize]);
+        if norm_max(&column) > ROUNDED * norm_max(all) {
+            own.push_col(&column);
+        }
+    }
+    if *modes != Modes::Candidates {
+        let root = |i: usize| k.metric(i, 1.0).sqrt();
+        let scaled = Matrix::from_fn(dofs.len(), own.cols, |i, j| root(i) * own.get(i, j))?;
+        let basis = scaled.orthonormalised(ROUNDED);
+        if basis.cols < own.cols {
+            own = Matrix::from_fn(dofs.len(), basis.cols, |i, j| basis.get(i, j) / root(i))?;
+        }
+    }
+    Ok(NullSpaceInput { vectors: own, modes: *modes })
 }
 
 /// Distributes the loads of the host to the parts: each copy gets its weight, the last copy the rest.

@@ -1,4 +1,4 @@
-//! The copies of a body's unknowns in its pieces.
+//! The copies of a body's unknowns in its parts.
 
 use crate::error::Result;
 use crate::model::{Model, Parts};
@@ -8,7 +8,7 @@ const WHAT: &str = "the copies of unknowns";
 /// Rows of the host do not act on a copy with less than this part of the stiffness of the stiffest copy.
 const SLACK: f64 = 1e-3;
 
-/// The copies of every unknown of a body that is cut.
+/// The copies of every unknown of a body with several parts.
 pub struct Copies {
     ptr: Vec<usize>,
     /// The part, and the unknown's number among all unknowns of all parts; in the order of the parts.
@@ -16,14 +16,14 @@ pub struct Copies {
 }
 
 impl Copies {
-    /// None for a body that is not cut.
+    /// None for a body that is its only part.
     pub fn of(host: &Model, parts: &Parts, body: usize) -> Result<Option<Self>> {
-        if !parts.is_cut(body) {
+        if parts.only(body).is_some() {
             return Ok(None);
         }
         let order = host.bodies[body].body.order;
         let mut ptr = filled(order + 1, 0, WHAT)?;
-        let dofs = |part: usize| parts.parts[part].piece.iter().flat_map(|(dofs, _)| dofs.iter());
+        let dofs = |part: usize| parts.parts[part].dofs.iter().flat_map(|dofs| dofs.iter());
         parts.of(body).flat_map(dofs).for_each(|&dof| ptr[dof as usize + 1] += 1);
         (0..order).for_each(|dof| ptr[dof + 1] += ptr[dof]);
         let (mut next, mut copies) = (ptr.clone(), filled(ptr[order], (0, 0), WHAT)?);

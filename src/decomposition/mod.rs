@@ -1,24 +1,26 @@
-//! The secondary decomposition of the paper (Section 2): bodies given by elements are cut into pieces, which equality
-//! rows glue together. The host sees only its bodies; everything that is solved is a model whose bodies are the pieces.
-//! Unknowns of several bodies to which the host gave the same number are also glued; their rows join bodies of the host,
-//! and the certificate includes them.
+//! The bodies that are solved in place of the host's. A connected component of the K of a body is a body of its own: a
+//! body of the host is a numbering and a name. Bodies given by elements are cut into pieces, which equality rows glue together (the
+//! secondary decomposition of the paper, Section 2). The host sees only its bodies. Unknowns of several bodies to which the
+//! host gave the same number are also glued; their rows join bodies of the host, and the certificate includes them.
 
 mod back;
 mod bodies;
+mod components;
 mod copies;
 mod rows;
 
 use std::sync::Arc;
 
 use crate::error::Result;
-use crate::model::{Model, Revisions};
+use crate::model::{GivenBody, Model, Revisions};
 
 pub use back::of_host;
-use bodies::{loads, parts};
+use bodies::{loads, parts, touched};
+pub use components::Connected;
 use copies::Copies;
 use rows::rows;
 
-/// The problem of a host with pieces in place of the bodies that are cut.
+/// The problem of a host with parts in place of its bodies.
 pub struct Decomposition {
     /// The model that is solved. Its revisions are those of the host's model.
     pub model: Model,
@@ -27,17 +29,20 @@ pub struct Decomposition {
 }
 
 impl Decomposition {
-    /// Some body is cut, or unknowns of several bodies are glued; otherwise the host's model itself is solved.
-    pub fn is_due(host: &Model) -> bool {
-        host.shares_numbers() || host.bodies.iter().any(|given| given.body.assembled.is_some())
+    /// Some body has several parts, or unknowns of several bodies are glued; otherwise the host's model itself is solved.
+    pub fn is_due(host: &Model, connected: &Connected) -> bool {
+        let is_cut = |given: &GivenBody| given.body.assembled.is_some();
+        host.shares_numbers() || !connected.all_connected() || host.bodies.iter().any(is_cut)
     }
 
     /// None if it is not due.
-    pub fn of(host: &Model) -> Result<Option<Self>> {
-        if !Self::is_due(host) {
+    pub fn of(host: &Model, connected: &Connected) -> Result<Option<Self>> {
+        if !Self::is_due(host, connected) {
             return Ok(None);
         }
-        let ((bodies, mut all), joints) = (parts(host)?, host.joints()?);
+        let joints = host.joints()?;
+        let touched = touched(host, &joints)?;
+        let (bodies, mut all) = parts(host, connected, &|j| touched[j])?;
         all.equalities = host.equalities.len();
         all.joints = joints.iter().map(|joint| joint.number).collect();
         let copies =
@@ -54,9 +59,10 @@ impl Decomposition {
         Ok(Some(made))
     }
 
-    /// Whether bodies and rows are still those of the host.
+    /// Whether bodies and rows are still those of the host, and no load acts on an unknown that is in no part.
     pub fn is_of(&self, host: &Model) -> bool {
-        self.of == host.revisions
+        let loose = self.model.parts.iter().flat_map(|parts| &parts.loose);
+        self.of == host.revisions && loose.into_iter().all(|&j| host.load(j) == 0.0)
     }
 
     /// Takes over data that may change without a new setup: options, loads, right-hand sides, laws of friction.

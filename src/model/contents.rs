@@ -213,7 +213,13 @@ impl Model {
 
     /// Whether the body is a piece of one of the host.
     pub fn is_piece(&self, body: usize) -> bool {
-        self.parts.as_ref().is_some_and(|parts| parts.parts[body].piece.is_some())
+        self.parts.as_ref().is_some_and(|parts| parts.is_cut(parts.parts[body].body))
+    }
+
+    /// The load at unknown j among all unknowns, force.
+    pub fn load(&self, j: usize) -> f64 {
+        let body = self.offsets[1..].partition_point(|end| *end <= j);
+        self.bodies[body].body.load.as_ref().map_or(0.0, |load| load[j - self.offsets[body]])
     }
 
     /// Range of the unknowns of a body among all unknowns.

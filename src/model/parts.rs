@@ -1,4 +1,5 @@
-//! The bodies of the host to which the parts of a model belong.
+//! The bodies of the host to which the parts of a model belong. A part is a connected component of the K of a body, or a
+//! piece of a body that is cut.
 
 use std::ops::Range;
 use std::sync::Arc;
@@ -7,7 +8,7 @@ use crate::body::Assembled;
 use crate::error::Result;
 use crate::platform::memory::{reserved, zeros};
 
-const WHAT: &str = "the pieces of bodies";
+const WHAT: &str = "the parts of bodies";
 
 /// The bodies of the host, the parts that represent them, and the unknowns of the parts.
 #[derive(Debug, Default)]
@@ -21,6 +22,8 @@ pub struct Parts {
     pub parts: Vec<Part>,
     /// K of the bodies that are cut.
     pub assembled: Vec<Option<Arc<Assembled>>>,
+    /// Unknowns without stiffness, row and load, in no part, among all unknowns of the host: their displacement is 0.
+    pub loose: Vec<usize>,
     /// Number of the host's equality rows: later rows are glue, those of joints first.
     pub equalities: usize,
     /// For each row that glues two bodies of the host: the number of the host that their unknowns share.
@@ -32,9 +35,12 @@ pub struct Parts {
 pub struct Part {
     /// Body of the host.
     pub body: usize,
-    /// Its unknowns within the body, ascending, and its weight at each (the weights of all copies sum to 1); none: all
-    /// unknowns.
-    pub piece: Option<(Arc<[u32]>, Vec<f64>)>,
+    /// Number of the piece of the body that it belongs to, if the body is cut.
+    pub piece: usize,
+    /// Its unknowns within the body, ascending; none: all unknowns.
+    pub dofs: Option<Arc<[u32]>>,
+    /// Its weight at each unknown (the weights of all copies sum to 1); empty: it has the only copies.
+    pub shares: Vec<f64>,
 }
 
 impl Parts {
@@ -55,19 +61,33 @@ impl Parts {
 
     /// Number of unknown i of a part within its body, and the weight of the part there.
     pub fn place(&self, part: usize, i: usize) -> (usize, f64) {
-        match &self.parts[part].piece {
-            Some((dofs, shares)) => (dofs[i] as usize, shares[i]),
-            None => (i, 1.0),
-        }
+        let Part { dofs, shares, .. } = &self.parts[part];
+        (dofs.as_ref().map_or(i, |dofs| dofs[i] as usize), shares.get(i).copied().unwrap_or(1.0))
+    }
+
+    /// The only part of a body, if it has all unknowns of the body.
+    pub fn only(&self, body: usize) -> Option<usize> {
+        let first = self.first[body];
+        self.parts[first].dofs.is_none().then_some(first)
+    }
+
+    /// Whether the parts of both models are the same unknowns.
+    pub fn same(&self, other: &Self) -> bool {
+        let dofs = |parts: &Self| parts.parts.iter().map(|part| part.dofs.clone()).collect::<Vec<_>>();
+        self.first == other.first && dofs(self) == dofs(other)
+    }
+
+    /// The values of a part from values over the unknowns of its body.
+    pub fn gather<'a>(&'a self, part: usize, of_body: &'a [f64]) -> impl Iterator<Item = f64> + 'a {
+        let unknowns = self.starts[part + 1] - self.starts[part];
+        (0..unknowns).map(move |i| of_body[self.place(part, i).0])
     }
 
     /// Copies values over the unknowns of the host's bodies to all parts.
     pub fn spread(&self, of_host: &[f64]) -> Result<Vec<f64>> {
         let mut all = reserved(self.starts.last().copied().unwrap_or(0), WHAT)?;
         for part in 0..self.parts.len() {
-            let offset = self.offsets[self.parts[part].body];
-            let unknowns = self.starts[part + 1] - self.starts[part];
-            all.extend((0..unknowns).map(|i| of_host[offset + self.place(part, i).0]));
+            all.extend(self.gather(part, &of_host[self.offsets[self.parts[part].body]..]));
         }
         Ok(all)
     }

@@ -201,7 +201,8 @@ pub fn islands(model: &Model) -> Result<Vec<Island>> {
     }
     if let Some(parts) = &model.parts {
         // the pieces of one body belong together, even if no row glues them
-        let pieces = parts.first.windows(2).map(|range| (range[0]..range[1]).map(|part| of_body[part]));
+        let cut = (0..parts.assembled.len()).filter(|body| parts.is_cut(*body));
+        let pieces = cut.map(|body| parts.of(body).map(|part| of_body[part]));
         let (joint, all) = joined(count, pieces);
         of_body.iter_mut().for_each(|island| *island = joint[*island]);
         count = all;

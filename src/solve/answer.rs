@@ -113,10 +113,7 @@ impl Answer {
         let alpha = ready.dual.amplitudes(&solution.alpha);
         for (k, &p) in island.bodies.iter().enumerate() {
             self.alpha[p] = alpha[ready.dual.modes_of(k)].to_vec();
-            let judged = match &ready.whole {
-                Some(whole) => whole.island.bodies.binary_search(&model.name(p)).unwrap_or(k),
-                None => k,
-            };
+            let judged = ready.whole.as_ref().map_or(k, |whole| whole.body_of[k]);
             self.force_errors[p] = judgement.bodies[judged].force_error;
         }
         let report = &mut self.report;

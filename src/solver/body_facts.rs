@@ -1,13 +1,11 @@
 //! Information about one body.
 
-use std::ops::Range;
-
 use crate::body::{Assembled, Doubt, Modes};
 use crate::error::{Error, Kind, Result};
 use crate::linalg::graph;
 use crate::linalg::Symmetric;
 use crate::mesh::Mesh;
-use crate::platform::memory::{filled, headroom, zeros};
+use crate::platform::memory::{filled, headroom};
 use crate::setup::{Duals, Inverse};
 use crate::solver::decomposed::null_space_of;
 use crate::solver::problem::Problem;
@@ -119,31 +117,28 @@ impl Problem {
     }
 
     fn factors_of(&self, body: usize) -> Option<Factors> {
-        let first = self.inverses(body).next()?;
-        let address = |p: usize| self.inverses(p).next().map(|of| of.kplus.factor_address());
-        let own = self.only_part(body);
-        let null_space = match own {
-            Some(_) => first.kplus.null_space.cols,
-            None => null_space_of(&self.prepared, self.parts()?, body)?.cols,
+        let address = |p: usize| self.inverses(p).map(|of| of.kplus.factor_address()).collect::<Vec<_>>();
+        let (is_cut, own) = (self.model.bodies[body].body.assembled.is_some(), address(body));
+        if own.is_empty() {
+            return None;
+        }
+        let null_space = match is_cut {
+            false => self.inverses(body).map(|of| of.kplus.null_space.cols).sum(),
+            true => null_space_of(&self.prepared, self.parts()?, body)?.cols,
         };
         let others = 0..self.model.bodies.len();
         Some(Factors {
             null_space,
-            gap: first.kplus.gap.filter(|_| own.is_some()),
+            gap: self.inverses(body).filter_map(|of| of.kplus.gap.filter(|_| !is_cut)).reduce(f64::min),
             doubts: self.inverses(body).flat_map(|of| of.kplus.doubts.iter().cloned()).collect(),
             entries: self.inverses(body).map(|of| of.kplus.entries()).sum(),
             bytes: self.inverses(body).map(|of| of.bytes).sum(),
-            shared_with: others.clone().find(|&p| own.is_some() && p != body && address(p) == address(body)),
+            shared_with: others.clone().find(|&p| !is_cut && p != body && address(p) == own),
         })
     }
 
-    /// The parts that represent a body.
-    fn parts_of(&self, body: usize) -> Range<usize> {
-        self.parts().map_or(body..body + 1, |parts| parts.of(body))
-    }
-
     /// K+ of the parts of a body, if already made.
-    fn inverses(&self, body: usize) -> impl Iterator<Item = &Inverse> + '_ {
+    pub(super) fn inverses(&self, body: usize) -> impl Iterator<Item = &Inverse> + '_ {
         let solved = self.solved();
         let now = solved.bodies.get(self.parts_of(body).start).map(|given| given.revisions);
         let current = now == Some(self.model.bodies[body].revisions);
@@ -168,22 +163,12 @@ impl Problem {
     }
 
     /// Forces that hold the held unknowns 0, 1, ... of a body given by elements, `K_hf u`, force; 0 for an unknown
-    /// without element. The host has to add the contributions of prescribed values and of loads on held unknowns. More
-    /// forces than the body has unknowns, free or held, are refused: they would be written beyond the host's array.
-    pub fn held_forces(&self, body: usize, n: usize) -> Result<Vec<f64>> {
+    /// without element. The host has to add the contributions of prescribed values and of loads on held unknowns.
+    pub fn held_forces(&self, body: usize, forces: &mut [f64]) -> Result<()> {
         let given = self.model.given(body)?;
         let missing = || Error::new(Kind::State, "the body was not given by its elements").body(body);
         let mesh = given.mesh.as_ref().filter(|mesh| mesh.has_elements()).ok_or_else(missing)?;
-        let (u, most) = (self.displacement(body)?, mesh.held_numbers().max(given.body.order));
-        if n > most {
-            let what = format!(
-                "n is {n}, but the held unknowns of the body have numbers below {}",
-                mesh.held_numbers()
-            );
-            return Err(Error::argument("n", what).body(body).value(n as f64).limit(most as f64));
-        }
-        let mut forces = zeros(n, "the forces of held unknowns")?;
-        mesh.held_forces(u, &mut forces);
-        Ok(forces)
+        mesh.held_forces(self.displacement(body)?, forces);
+        Ok(())
     }
 }

@@ -1,4 +1,4 @@
-//! Translates between the host's problem and the problem that is solved, in which pieces replace bodies that are cut.
+//! Translates between the host's problem and the problem that is solved, in which parts replace bodies.
 
 use crate::decomposition::{self, Decomposition};
 use crate::error::{Error, Result};
@@ -8,11 +8,13 @@ use crate::setup::{Prepared, Whole};
 use crate::solve::Answer;
 use crate::solver::findings::Findings;
 
-/// The first part of every body.
-pub fn numbers(decomposition: &Option<Decomposition>, host: &Model) -> Vec<usize> {
-    match decomposition.as_ref().and_then(|of| of.model.parts.as_deref()) {
-        Some(parts) => parts.first.clone(),
-        None => (0..=host.bodies.len()).collect(),
+/// Whether the bodies that are solved are the same unknowns of the host.
+pub fn same_bodies(a: &Option<Decomposition>, b: &Option<Decomposition>) -> bool {
+    let parts = |of: &Option<Decomposition>| of.as_ref().and_then(|of| of.model.parts.clone());
+    match (parts(a), parts(b)) {
+        (Some(a), Some(b)) => a.same(&b),
+        (Some(parts), None) | (None, Some(parts)) => parts.parts.iter().all(|part| part.dofs.is_none()),
+        (None, None) => true,
     }
 }
 
@@ -42,11 +44,12 @@ pub fn answer_of_host(
     answer.gaps = gaps;
     answer.slips = answer.slips_of(host);
     let bodies = 0..host.bodies.len();
-    let of_first = |body: usize| answer.force_errors[parts.first[body]];
-    answer.force_errors = bodies.clone().map(of_first).collect();
+    let worst =
+        |body: usize| parts.of(body).fold(0.0, |worst: f64, part| worst.max(answer.force_errors[part]));
+    answer.force_errors = bodies.clone().map(worst).collect();
     let amplitudes = |body: usize| match whole_of(prepared, parts, body).filter(|_| parts.is_cut(body)) {
         Some(whole) => whole.amplitudes(solved, body, &answer.u[host.range(body)]),
-        None => answer.alpha[parts.first[body]].clone(),
+        None => parts.of(body).flat_map(|part| answer.alpha[part].iter().copied()).collect(),
     };
     answer.alpha = bodies.map(amplitudes).collect();
     let report = &mut answer.report;

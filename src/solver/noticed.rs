@@ -2,7 +2,7 @@
 
 use crate::constraints::RowSet;
 use crate::error::Result;
-use crate::model::Model;
+use crate::model::{Model, Parts};
 use crate::progress::{Log, LogLevel};
 
 /// Notes: no load, contact rows that overlap before anything moves, contact rows that never close.
@@ -34,6 +34,27 @@ pub fn data(log: &Log, model: &Model) -> Result<()> {
                 format!("note: {count} that can never close, {why}; the first is row {}", number(*first))
             })?;
         }
+    }
+    Ok(())
+}
+
+/// Unknowns without stiffness, which belong to no part.
+pub fn loose(log: &Log, host: &Model, parts: Option<&Parts>) -> Result<()> {
+    let loose = parts.map(|parts| &parts.loose[..]).unwrap_or_default();
+    let mut left = loose.iter().peekable();
+    while let Some(&first) = left.next() {
+        let body = host.offsets[1..].partition_point(|end| *end <= first);
+        let (dof, mut count) = (first - host.offsets[body], 1);
+        while left.next_if(|j| **j < host.offsets[body + 1]).is_some() {
+            count += 1;
+        }
+        let base = host.settings.index_base;
+        let [body, dof] = [body, dof].map(|k| k as i64 + base);
+        let unknowns = if count == 1 { "1 unknown has".to_owned() } else { format!("{count} unknowns have") };
+        let what = || {
+            format!("note: body {body}: {unknowns} no stiffness, no row and no load, and do not move; the first is {dof}")
+        };
+        log.say(LogLevel::Result, what)?;
     }
     Ok(())
 }

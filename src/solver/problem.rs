@@ -1,11 +1,11 @@
 //! One contact problem: the input of the host, what has been computed from it, and what is kept between calls.
 
-use std::ops::{Deref, DerefMut};
+use std::ops::{Deref, DerefMut, Range};
 use std::sync::atomic::AtomicBool;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use crate::decomposition::Decomposition;
+use crate::decomposition::{Connected, Decomposition};
 use crate::error::{Error, Kind, Result};
 use crate::model::{Model, Parts, StartFrom};
 #[cfg(test)]
@@ -14,7 +14,7 @@ use crate::platform::memory::Headroom;
 use crate::progress::{Host, Listener, Log, LogLevel, LogListener, Phase, PhaseReport, Phases, Watch};
 use crate::setup::{Prepared, Work};
 use crate::solve::{solve_islands, Answer, Report, Solved};
-use crate::solver::decomposed::{answer_of_host, findings_of_host, numbers, of_host, solved};
+use crate::solver::decomposed::{answer_of_host, findings_of_host, of_host, same_bodies, solved};
 use crate::solver::findings::{redundant, Findings};
 use crate::solver::history::{Current, History};
 use crate::solver::noticed;
@@ -25,8 +25,10 @@ use crate::solver::told::{begin, method, result};
 #[derive(Default)]
 pub struct Problem {
     pub(super) model: Model,
-    /// The problem solved in place of the host's if bodies are cut or glued by joints.
+    /// The problem solved in place of the host's if bodies have several parts or are glued by joints.
     pub(super) decomposition: Option<Decomposition>,
+    /// The connected components of the host's matrices.
+    connected: Connected,
     pub(super) prepared: Prepared,
     pub(super) history: History,
     pub(super) findings: Option<Findings>,
@@ -86,6 +88,7 @@ impl Problem {
         let start = self.history().take_start(previous);
         watch.phases = Phases::default();
         self.decompose()?;
+        noticed::loose(&watch.log, &self.model, self.parts())?;
         let Self { model, decomposition, prepared, history, .. } = self;
         let (host, model) = (&*model, solved(model, decomposition));
         let told = |error| of_host(host, decomposition, error);
@@ -209,36 +212,33 @@ impl Problem {
     }
 }
 
-/// Translation between the bodies of the host and the pieces of bodies that are cut.
+/// Translation between the bodies of the host and their parts.
 impl Problem {
     /// The model that is solved: that of the host, or that of the pieces at the last call that used them.
     pub(super) fn solved(&self) -> &Model {
         solved(&self.model, &self.decomposition)
     }
 
-    /// The parts of the bodies, if some body is cut.
+    /// The parts of the bodies, if some body has several.
     pub(super) fn parts(&self) -> Option<&Parts> {
         self.decomposition.as_ref().and_then(|of| of.model.parts.as_deref())
     }
 
-    /// The number of the only part of a body, to which its factors belong; none if the body is cut.
-    pub(super) fn only_part(&self, body: usize) -> Option<usize> {
-        match self.parts() {
-            None => Some(body),
-            Some(parts) if parts.is_cut(body) => None,
-            Some(parts) => Some(parts.first[body]),
-        }
+    /// The bodies that are solved for a body of the host.
+    pub(super) fn parts_of(&self, body: usize) -> Range<usize> {
+        self.parts().map_or(body..body + 1, |parts| parts.of(body))
     }
 
-    /// Updates pieces, rows, loads and options to those of the host.
+    /// Updates parts, rows, loads and options to those of the host.
     pub(super) fn decompose(&mut self) -> Result<()> {
         self.model.check_complete()?;
+        self.connected.follow(&self.model)?;
         match &mut self.decomposition {
             Some(known) if known.is_of(&self.model) => known.refresh(&self.model),
-            None if !Decomposition::is_due(&self.model) => Ok(()),
+            None if !Decomposition::is_due(&self.model, &self.connected) => Ok(()),
             _ => {
-                let made = Decomposition::of(&self.model)?;
-                if numbers(&made, &self.model) != numbers(&self.decomposition, &self.model) {
+                let made = Decomposition::of(&self.model, &self.connected)?;
+                if !same_bodies(&made, &self.decomposition) {
                     self.prepared.forget();
                 }
                 self.decomposition = made;
@@ -247,12 +247,12 @@ impl Problem {
         }
     }
 
-    /// Converts an error about pieces to one about bodies.
+    /// Converts an error about parts to one about bodies.
     pub(super) fn of_host(&self, error: Error) -> Error {
         of_host(&self.model, &self.decomposition, error)
     }
 
-    /// Converts findings about pieces to findings about bodies.
+    /// Converts findings about parts to findings about bodies.
     pub(super) fn found(&self, findings: Findings) -> Findings {
         match self.parts() {
             Some(_) => findings_of_host(&self.model, self.solved(), findings),

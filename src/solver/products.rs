@@ -1,64 +1,91 @@
 //! Operators that the host can verify: null spaces, K+, F, d.
 
+use std::borrow::Cow;
+
 use crate::constraints::RowKind;
 use crate::error::{Error, Kind, Result};
-use crate::linalg::Operator;
+use crate::linalg::{Matrix, Operator};
 use crate::platform::memory::zeros;
 use crate::setup::{Inverse, Island};
 use crate::solver::decomposed::null_space_of;
 use crate::solver::problem::Problem;
 
 impl Problem {
-    fn inverse(&mut self, body: usize) -> Result<&Inverse> {
+    /// The parts of a body and their K+, after a setup; a body that is cut is refused.
+    fn set_up_parts(&mut self, body: usize) -> Result<Vec<(usize, &Inverse)>> {
         self.check_whole_body(body)?;
         self.setup()?;
-        let missing = || Error::new(Kind::Internal, "the setup left a body without factors");
-        let part = self.only_part(body).ok_or_else(missing)?;
-        self.prepared.inverse(self.solved(), part).ok_or_else(missing)
+        Ok(self.parts_of(body).zip(self.inverses(body)).collect())
     }
 
-    /// Dimension r of the null space of a body and its basis as the library uses it: n x r column-major,
-    /// orthonormal in the metric of diag K / 2^p.
-    pub fn null_space(&mut self, body: usize) -> Result<(usize, &[f64])> {
-        if self.check_whole_body(body).is_err() {
-            self.model.given(body)?;
+    /// Unknown i of a part within its body.
+    fn place(&self, part: usize, i: usize) -> usize {
+        self.parts().map_or(i, |parts| parts.place(part, i).0)
+    }
+
+    /// Dimension r of the null space of a body and its basis as the library uses it: n x r column-major, part after part,
+    /// and orthonormal in the metric of diag K / 2^p of each part.
+    pub fn null_space(&mut self, body: usize) -> Result<(usize, Cow<'_, [f64]>)> {
+        let order = self.model.order(body)?;
+        if self.model.bodies[body].body.assembled.is_some() {
             self.setup()?;
+            let basis = self.parts().and_then(|parts| null_space_of(&self.prepared, parts, body));
             let missing = || Error::new(Kind::Internal, "the setup left a body without null space");
-            let basis = self
-                .parts()
-                .and_then(|parts| null_space_of(&self.prepared, parts, body))
-                .ok_or_else(missing)?;
-            return Ok((basis.cols, &basis.data));
+            return basis.map(|basis| (basis.cols, Cow::from(&basis.data))).ok_or_else(missing);
         }
-        let basis = &self.inverse(body)?.kplus.null_space;
-        Ok((basis.cols, &basis.data))
+        self.set_up_parts(body)?;
+        let mut all = Matrix::zeros(order, 0)?;
+        for (part, inverse) in self.parts_of(body).zip(self.inverses(body)) {
+            let own = &inverse.kplus.null_space;
+            if own.rows == order {
+                return Ok((own.cols, Cow::from(&own.data)));
+            }
+            for j in 0..own.cols {
+                let mut column = zeros(order, "a null space")?;
+                own.col(j).iter().enumerate().for_each(|(i, v)| column[self.place(part, i)] = *v);
+                all.push_col(&column);
+            }
+        }
+        Ok((all.cols, Cow::from(all.data)))
     }
 
     /// Gap of a null space that the library found: ratio of the softest other motion to its stiffest in the metric of
-    /// diag K, both at least 1e-14 of the largest; none if the host gave vectors or coordinates.
+    /// diag K, both at least 1e-14 of the largest, the least of all parts; none if the host gave vectors or coordinates.
     pub fn null_space_gap(&mut self, body: usize) -> Result<Option<f64>> {
         if self.model.given(body)?.body.assembled.is_some() {
             return Ok(None);
         }
-        Ok(self.inverse(body)?.kplus.gap)
+        let parts = self.set_up_parts(body)?;
+        Ok(parts.into_iter().filter_map(|(_, inverse)| inverse.kplus.gap).reduce(f64::min))
     }
 
-    /// The r dofs held in K+ of (14)-(15); not known for a K+ of the host.
-    pub fn fixing_dofs(&mut self, body: usize) -> Result<&[usize]> {
+    /// The r dofs held in K+ of (14)-(15), part after part; not known for a K+ of the host.
+    pub fn fixing_dofs(&mut self, body: usize) -> Result<Vec<usize>> {
         if self.model.given(body)?.body.operator.is_some() {
             let what = "K+ of this body is given by the host: its fixing dofs are not known";
             return Err(Error::new(Kind::Unsupported, what).body(body));
         }
-        Ok(&self.inverse(body)?.kplus.fixing)
+        self.set_up_parts(body)?;
+        let parts = self.parts_of(body).zip(self.inverses(body));
+        let held = |(part, of): (usize, &Inverse)| -> Vec<usize> {
+            of.kplus.fixing.iter().map(|&i| self.place(part, i)).collect()
+        };
+        Ok(parts.flat_map(held).collect())
     }
 
-    /// `y = K_p+ x`, x force, y length.
+    /// `y = K_p+ x`, x force, y length; 0 at unknowns without stiffness that belong to no part.
     pub fn kplus(&mut self, body: usize, x: &[f64], y: &mut [f64]) -> Result<()> {
         self.model.check_length(body, "n", x.len())?;
         self.model.check_length(body, "n", y.len())?;
-        let inverse = self.inverse(body)?;
-        inverse.kplus.apply(x, y)?;
-        y.iter_mut().for_each(|y| *y /= inverse.unit);
+        self.set_up_parts(body)?;
+        let mut all = zeros(y.len(), "a product with K+")?;
+        for (part, inverse) in self.parts_of(body).zip(self.inverses(body)) {
+            let places = || (0..inverse.kplus.null_space.rows).map(|i| self.place(part, i));
+            let mut own: Vec<f64> = places().map(|i| x[i]).collect();
+            inverse.kplus.apply_in_place(&mut own)?;
+            places().zip(&own).for_each(|(i, v)| all[i] = v / inverse.unit);
+        }
+        y.copy_from_slice(&all);
         Ok(())
     }
 
@@ -93,7 +120,7 @@ impl Problem {
         d.iter_mut().zip(gaps).for_each(|(d, c)| *d = -c);
         let contact = self.model.contact.len();
         for ready in &self.prepared.done(&self.model)?.islands {
-            let mut load = ready.island.loads(&self.model)?;
+            let mut load = ready.island.loads(self.solved())?;
             load.iter_mut().for_each(|f| *f /= ready.island.unit);
             let moved = ready.moved(self.model.threads(), &load)?;
             let moved = ready.dual.rhs(&moved, &vec![0.0; ready.rows.groups()]);

@@ -24,8 +24,8 @@ impl Problem {
     fn answer_on(&self, body: usize) -> Result<&Answer> {
         self.model.given(body)?;
         let answer = self.answer()?;
-        let part = self.parts().map_or(body, |parts| parts.first[body]);
-        if answer.failed[self.prepared.done(&self.model)?.island_of[part]] {
+        let island_of = &self.prepared.done(&self.model)?.island_of;
+        if self.parts_of(body).any(|part| answer.failed[island_of[part]]) {
             let what = "the group of bodies that this one belongs to has no answer";
             return Err(Error::new(Kind::State, what).body(body));
         }

@@ -10,7 +10,7 @@ use crate::varied::rows::{contact, strut};
 use crate::varied::{inner, orthonormal};
 use crate::vector::axpy;
 use crate::yardstick::{all_grounded, reaction};
-use crate::Deck;
+use crate::{Csr, Deck};
 
 /// A resultant of this part of a load is rounding; up to the second one it is told.
 const ROUNDING: f64 = 1e-10;
@@ -200,8 +200,39 @@ fn own(deck: &Deck, p: usize) -> Vec<Vec<f64>> {
     orthonormal(body.modes(), &body.stiffness.diagonal()).into_iter().map(long).collect()
 }
 
-/// By the share of the resultant in the load of its cluster, but for what acts on grounded unknowns, and in all loads: where the
-/// two differ both ends are right. Products may leave the other bodies a resultant as well.
+/// The shares of the resultants on the connected parts of a body in the loads of each: a part of a body that nothing joins to the
+/// others is a body of its own.
+fn share_of_parts(
+    deck: &Deck,
+    diagonal: &[f64],
+    p: usize,
+    motions: &[Vec<f64>],
+    grounded: &[bool],
+) -> Vec<f64> {
+    let (first, load) = (deck.offset(p), deck.load());
+    let share = |part: Vec<usize>| {
+        let felt = |mode: &Vec<f64>| dd::dot(part.iter().map(|i| (load[first + i], mode[first + i]))).value();
+        let resultant = motions.iter().map(felt).map(|v| v * v).sum::<f64>().sqrt();
+        let moving = part.iter().map(|i| first + i).filter(|&j| !grounded[j]);
+        resultant / moving.map(|j| load[j] * load[j] / diagonal[j]).sum::<f64>().sqrt()
+    };
+    connected(&deck.bodies[p].stiffness).into_iter().map(share).collect()
+}
+
+/// Unknowns of the connected parts of a matrix.
+fn connected(k: &Csr) -> Vec<Vec<usize>> {
+    let mut part: Vec<usize> = (0..k.rows).collect();
+    // a part has the number of its first unknown as soon as nothing changes
+    while (0..k.rows).any(|i| {
+        let least = k.row(i).filter(|(_, v)| *v != 0.0).map(|(j, _)| part[j]).fold(part[i], usize::min);
+        std::mem::replace(&mut part[i], least) != least
+    }) {}
+    let firsts = (0..k.rows).filter(|&i| part[i] == i);
+    firsts.map(|first| (0..k.rows).filter(|&i| part[i] == first).collect()).collect()
+}
+
+/// By the share of the resultant in the load of its cluster and of each part of it, but for what acts on grounded unknowns, and in
+/// all loads: where these differ both ends are right. Products may leave the other bodies a resultant as well.
 fn ends(
     deck: &Deck,
     diagonal: &[f64],
@@ -215,10 +246,14 @@ fn ends(
         let moving = unknowns.filter(|&j| !grounded[j]).map(|j| load[j] * load[j] / diagonal[j]);
         resultant(deck, motions) / moving.sum::<f64>().sqrt()
     };
-    let most = NEAR * share(cluster, motions);
+    let worst = |bodies: &[usize], motions: &[Vec<f64>]| {
+        let parts = bodies.iter().flat_map(|&p| share_of_parts(deck, diagonal, p, motions, &grounded));
+        NEAR * parts.fold(share(bodies, motions), f64::max)
+    };
+    let most = worst(cluster, motions);
     let everything: Vec<usize> = (0..deck.bodies.len()).collect();
     let least = resultant(deck, motions) / loads(deck, &everything, diagonal) / NEAR;
-    let elsewhere = others.iter().map(|(body, motions)| NEAR * share(body, motions)).fold(0.0, f64::max);
+    let elsewhere = others.iter().map(|(body, motions)| worst(body, motions)).fold(0.0, f64::max);
     Ends {
         solved: least <= ROUNDING || most.is_nan(),
         marginal: most.max(elsewhere) > ROUNDING && least <= MARGINAL,

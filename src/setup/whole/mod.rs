@@ -1,7 +1,9 @@
-//! An island whose bodies are cut, in terms of the host's bodies: its answers are certified with the bodies and rows of the host.
+//! An island with bodies that are cut, in terms of the host's bodies: its answers are certified with the bodies and rows of
+//! the host. Parts of other bodies are judged each for itself, as in all islands.
 
 mod null_space;
 
+use std::ops::Range;
 use std::sync::Arc;
 
 use crate::body::GeneralizedInverse;
@@ -20,9 +22,11 @@ const WHAT: &str = "bodies that are cut";
 
 /// The bodies of an island, each with all its pieces.
 pub struct Whole {
-    /// Bodies and rows with the numbers of the host, over the unknowns of the host's bodies.
+    /// Bodies and rows with the numbers of the host, over the unknowns of the bodies that are cut and of the other parts.
     pub island: Island,
     bodies: Vec<WholeBody>,
+    /// For every part of the cut island: its body in `island`.
+    pub body_of: Vec<usize>,
     /// For every unknown of the pieces: its unknown in `island`, and its weight there.
     place: Vec<(usize, f64)>,
 }
@@ -32,7 +36,7 @@ struct WholeBody {
     null_space: Basis,
     grounded: Arc<[u32]>,
     soft: bool,
-    /// Its only part, if it is not cut.
+    /// The part that it is, if it is not cut.
     part: Option<usize>,
 }
 
@@ -58,31 +62,37 @@ impl Whole {
     /// None for an island without pieces.
     pub fn of(model: &Model, cut: &Island, of_part: &OfPart) -> Result<Option<Self>> {
         let Some(parts) = model.parts.as_ref() else { return Ok(None) };
-        if cut.bodies.iter().all(|&part| parts.parts[part].piece.is_none()) {
+        if !cut.bodies.iter().any(|&part| model.is_piece(part)) {
             return Ok(None);
         }
-        let mut bodies: Vec<usize> = cut.bodies.iter().map(|&part| parts.parts[part].body).collect();
-        bodies.dedup();
-        let (mut ranges, mut end) = (reserved(bodies.len(), WHAT)?, 0);
-        for &body in &bodies {
-            ranges.push(end..end + parts.offsets[body + 1] - parts.offsets[body]);
-            end = ranges.last().map_or(0, |range: &std::ops::Range<usize>| range.end);
-        }
-        let mut place = reserved(cut.unknowns(), WHAT)?;
-        for (&part, range) in cut.bodies.iter().zip(&cut.ranges) {
-            let start = bodies.binary_search(&parts.parts[part].body).map_or(0, |at| ranges[at].start);
-            place.extend((0..range.len()).map(|i| {
-                let (dof, share) = parts.place(part, i);
+        let (mut bodies, mut ranges): (Vec<usize>, Vec<Range<usize>>) = Default::default();
+        let (mut body_of, mut place) = (reserved(cut.bodies.len(), WHAT)?, reserved(cut.unknowns(), WHAT)?);
+        let (mut part_of, mut end) = (Vec::new(), 0);
+        for (&part, own) in cut.bodies.iter().zip(&cut.ranges) {
+            let (body, is_cut) = (parts.parts[part].body, model.is_piece(part));
+            if !is_cut || bodies.last() != Some(&body) {
+                let unknowns = if is_cut { parts.offsets[body + 1] - parts.offsets[body] } else { own.len() };
+                (
+                    bodies.push(body),
+                    part_of.push((!is_cut).then_some(part)),
+                    ranges.push(end..end + unknowns),
+                );
+                end += unknowns;
+            }
+            let start = ranges.last().map_or(0, |range| range.start);
+            body_of.push(bodies.len() - 1);
+            place.extend((0..own.len()).map(|i| {
+                let (dof, share) = if is_cut { parts.place(part, i) } else { (i, 1.0) };
                 (start + dof, share)
             }));
         }
         let of_host = |kind| members(cut.members(kind), end, kind, parts, &place);
         let (contact, equalities) = (of_host(RowKind::Inequality)?, of_host(RowKind::Equality)?);
-        let stiffness = |body: &usize| match &parts.assembled[*body] {
-            Some(k) => k.largest_diagonal(),
-            None => model.bodies[parts.first[*body]].body.k().map_or(0.0, |k| k.largest_diagonal()),
+        let stiffness = |(body, part): (&usize, &Option<usize>)| match (&parts.assembled[*body], part) {
+            (Some(k), _) => k.largest_diagonal(),
+            (None, part) => part.and_then(|p| model.bodies[p].body.k()).map_or(0.0, |k| k.largest_diagonal()),
         };
-        let unit = power_of_two_below(bodies.iter().map(stiffness).fold(0.0, f64::max));
+        let unit = power_of_two_below(bodies.iter().zip(&part_of).map(stiffness).fold(0.0, f64::max));
         let Nodes { numbers, nodes, .. } = &cut.friction;
         let friction = Nodes {
             numbers: numbers.clone(),
@@ -91,10 +101,11 @@ impl Whole {
         };
         let island = Island { bodies, ranges, contact, equalities, friction, unit };
         let bodies = threads::run(model.threads(), island.bodies.len(), |k| {
-            let body = island.bodies[k];
-            whole_body(model, parts, body, of_part).map_err(|e| e.body(parts.first[body]))
+            let (body, part) = (island.bodies[k], part_of[k]);
+            let made = whole_body(model, parts, (body, part), of_part);
+            made.map_err(|e| e.body(part.unwrap_or(parts.first[body])))
         })?;
-        Ok(Some(Self { island, bodies, place }))
+        Ok(Some(Self { island, bodies, body_of, place }))
     }
 
     /// The judgement of an answer of the pieces by bodies and rows of the host; `data`: the pieces with their loads. K+
@@ -196,10 +207,15 @@ fn members(
     Ok(Members { rows: RowSet { matrix: Arc::new(matrix), rhs, compliance }, numbers })
 }
 
-fn whole_body(model: &Model, parts: &Parts, body: usize, of_part: &OfPart) -> Result<WholeBody> {
+fn whole_body(
+    model: &Model,
+    parts: &Parts,
+    (body, part): (usize, Option<usize>),
+    of_part: &OfPart,
+) -> Result<WholeBody> {
     let missing = || Error::new(Kind::State, "a body has not been set up");
     let Some(k) = &parts.assembled[body] else {
-        let part = parts.first[body];
+        let part = part.ok_or_else(missing)?;
         let (kplus, grounded) = of_part(part).ok_or_else(missing)?;
         let (soft, grounded) = (kplus.is_soft(), Arc::clone(grounded));
         return Ok(WholeBody {

@@ -1,0 +1,95 @@
+//! One K for several bodies: every connected component of a matrix is solved as a body of its own.
+
+#[path = "../support/hand_over.rs"]
+mod hand_over;
+mod loose;
+mod queries;
+
+use decks::{battery, masonry, varied, Body, Csr, Deck};
+use feti_contact::error::Result;
+use feti_contact::solver::{Problem, RowKind};
+
+/// The deck with one body, whose K has the matrices of all bodies as blocks. Column j of its null space has the vectors j
+/// of all bodies.
+pub fn one_k(deck: &Deck) -> Deck {
+    let n = deck.dofs();
+    let mut stiffness = Csr { rows: n, ..Csr::empty(n) };
+    let modes = deck.bodies.iter().map(|body| body.modes().len()).max().unwrap_or(0);
+    let mut all = Body {
+        stiffness: Csr::empty(n),
+        null_space: Some(vec![vec![0.0; n]; modes]),
+        load: deck.load(),
+        coordinates: Vec::new(),
+        node: Vec::new(),
+        direction: Vec::new(),
+    };
+    for (p, body) in deck.bodies.iter().enumerate() {
+        let first = deck.offset(p);
+        for i in 0..body.dofs() {
+            // with the entries that are 0, so that both have one pattern
+            stiffness.col.extend(body.stiffness.row(i).map(|(j, _)| first + j));
+            stiffness.val.extend(body.stiffness.row(i).map(|(_, v)| v));
+            stiffness.ptr.push(stiffness.col.len());
+        }
+        for (own, of_all) in body.modes().iter().zip(all.null_space.iter_mut().flatten()) {
+            of_all[first..first + body.dofs()].copy_from_slice(own);
+        }
+        all.coordinates.extend_from_slice(&body.coordinates);
+        all.node.extend_from_slice(&body.node);
+        all.direction.extend_from_slice(&body.direction);
+    }
+    all.stiffness = stiffness;
+    Deck { bodies: vec![all], ..deck.clone() }
+}
+
+/// How a solve ended, with the bits of its answer, and its products.
+fn end(problem: Result<Problem>) -> (String, Vec<u64>) {
+    let mut problem = match problem {
+        Ok(problem) => problem,
+        Err(error) => return (format!("{:?}", error.kind), Vec::new()),
+    };
+    let report = match problem.solve() {
+        Ok(report) => report,
+        Err(error) => return (format!("{:?} {:?}", error.kind, error.place.row), Vec::new()),
+    };
+    let kinds = [RowKind::Inequality, RowKind::Equality, RowKind::Tangential];
+    let forces = kinds.into_iter().flat_map(|kind| problem.multipliers(kind).unwrap().to_vec());
+    let bits = forces.chain(problem.displacements().unwrap().to_vec()).map(f64::to_bits).collect();
+    (format!("{:?} {:?}", report.outcome, report.counts), bits)
+}
+
+#[track_caller]
+fn assert_same(name: &str, deck: &Deck) {
+    let twin = one_k(deck);
+    assert_eq!(end(hand_over::problem(deck)), end(hand_over::problem(&twin)), "{name}, null space given");
+    let found = [deck, &twin].map(|deck| end(hand_over::without_null_spaces(deck)));
+    assert_eq!(found[0], found[1], "{name}, nothing given");
+}
+
+#[test]
+fn blocks_in_one_matrix_have_the_bits_of_separate_bodies() {
+    assert_same("tower", &masonry::tower(12));
+    assert_same("apart", &masonry::apart(9));
+    assert_same("heap", &masonry::heap(15, 7));
+    assert_same("chain", &masonry::chain(10));
+    assert_same("wall", &masonry::wall(3, 0.01));
+}
+
+#[test]
+fn random_problems_in_one_matrix_end_as_those_of_separate_bodies() {
+    let seeds = std::env::var("PARTS").ok().and_then(|n| n.parse().ok()).unwrap_or(150);
+    for seed in 0..seeds {
+        assert_same(&format!("battery {seed}"), &battery::case(910_000 + seed).deck);
+        assert_same(&format!("varied {seed}"), &varied::case(920_000 + seed).deck);
+    }
+}
+
+/// Equal blocks in one matrix share one analysis and one factor.
+#[test]
+fn equal_components_share_their_factor() {
+    let deck = masonry::apart(20);
+    let mut problem = hand_over::problem(&one_k(&deck)).unwrap();
+    problem.solve().unwrap();
+    let work = problem.work();
+    assert_eq!((work.analyses, work.factorisations), (1, 1));
+}

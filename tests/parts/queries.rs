@@ -1,0 +1,125 @@
+//! What the host asks about a body of several components, and what it changes.
+
+use decks::{masonry, Deck};
+use feti_contact::error::Kind;
+use feti_contact::solver::{Modes, Outcome, Problem, RowKind, SparseInput, Storage};
+
+use crate::{hand_over, one_k};
+
+/// Separate bodies, and the same bodies in one matrix.
+fn both(deck: &Deck) -> [Problem; 2] {
+    [hand_over::problem(deck).unwrap(), hand_over::problem(&one_k(deck)).unwrap()]
+}
+
+#[test]
+fn validation_calls_answer_part_by_part() {
+    let deck = masonry::tower(4);
+    let [mut apart, mut whole] = both(&deck);
+    let (n, m) = (deck.dofs(), deck.contact.len() + deck.equalities.len());
+    let x: Vec<f64> = (0..n).map(|i| ((7 * i % 11) as f64 - 5.0) / 8.0).collect();
+    let (mut separate, mut y) = (vec![0.0; n], vec![0.0; n]);
+    for p in 0..deck.bodies.len() {
+        let range = deck.offset(p)..deck.offset(p + 1);
+        apart.kplus(p, &x[range.clone()], &mut separate[range]).unwrap();
+    }
+    whole.kplus(0, &x, &mut y).unwrap();
+    assert_eq!(y, separate);
+    let held: Vec<usize> = (0..deck.bodies.len())
+        .flat_map(|p| apart.fixing_dofs(p).unwrap().into_iter().map(move |i| (p, i)).collect::<Vec<_>>())
+        .map(|(p, i)| deck.offset(p) + i)
+        .collect();
+    assert_eq!(whole.fixing_dofs(0).unwrap(), held);
+    let lambda: Vec<f64> = (0..m).map(|i| 1.0 + i as f64 / 16.0).collect();
+    let [mut fx, mut d] = [[vec![0.0; m], vec![0.0; m]], [vec![0.0; m], vec![0.0; m]]];
+    for (k, problem) in [&mut apart, &mut whole].into_iter().enumerate() {
+        problem.dual_apply(&lambda, &mut fx[k]).unwrap();
+        problem.dual_rhs(&mut d[k]).unwrap();
+    }
+    assert_eq!((&fx[0], &d[0]), (&fx[1], &d[1]));
+    let modes: usize = deck.bodies.iter().map(|body| body.modes().len()).sum();
+    let (r, basis) = whole.null_space(0).map(|(r, basis)| (r, basis.into_owned())).unwrap();
+    assert_eq!((r, basis.len()), (modes, modes * n));
+    // u = K+ (f - B'lambda) + R alpha
+    assert_eq!(whole.solve().unwrap().outcome, Outcome::Solved);
+    let (u, alpha) = (whole.displacement(0).unwrap().to_vec(), whole.amplitudes(0).unwrap().to_vec());
+    let mut forces = vec![0.0; n];
+    whole.reaction(None, 0, &mut forces).unwrap();
+    let total: Vec<f64> = deck.load().iter().zip(&forces).map(|(f, r)| f + r).collect();
+    whole.kplus(0, &total, &mut y).unwrap();
+    (0..r).for_each(|j| (0..n).for_each(|i| y[i] += alpha[j] * basis[j * n + i]));
+    let size = u.iter().fold(0.0, |m: f64, v| m.max(v.abs()));
+    assert!(u.iter().zip(&y).all(|(u, y)| (u - y).abs() < 1e-11 * size));
+    let facts = whole.body_facts(0).unwrap();
+    assert_eq!((facts.components, facts.factors.unwrap().null_space), (Some(deck.bodies.len()), modes));
+}
+
+#[test]
+fn too_few_vectors_on_one_part_are_refused_with_an_unknown_of_this_part() {
+    let deck = masonry::apart(3);
+    let mut whole = one_k(&deck);
+    let second = deck.offset(1)..deck.offset(2);
+    let modes = whole.bodies[0].null_space.as_mut().unwrap();
+    second.clone().for_each(|i| modes[0][i] = 0.0);
+    let error = hand_over::problem(&whole).unwrap().solve().unwrap_err();
+    assert_eq!((error.kind, error.place.body), (Kind::NullSpace, Some(0)));
+    assert!(error.place.dof.is_some_and(|dof| second.contains(&dof)), "{error}");
+}
+
+/// An entry that joins two parts, or leaves one in two, in the same pattern: the factors are those of the new parts.
+#[test]
+fn new_values_may_join_parts_and_divide_them() {
+    let k = |joined: f64| [2.0, -joined, 2.0, -joined, 2.0, -joined, 2.0];
+    let (ptr, col) = ([0, 1, 3, 5, 7], [0, 0, 1, 1, 2, 2, 3]);
+    let mut problem = Problem::new();
+    problem.add_body(4).unwrap();
+    problem.set_load(0, &[1.0, 0.0, 0.0, 2.0]).unwrap();
+    for joined in [1.0, 0.0, 1.0, 0.5, 0.0] {
+        let val = k(joined);
+        problem
+            .set_stiffness(0, SparseInput { ptr: &ptr, col: &col, val: &val, storage: Storage::Lower })
+            .unwrap();
+        assert_eq!(problem.solve().unwrap().outcome, Outcome::Solved);
+        let u = problem.displacement(0).unwrap();
+        let next = |i: usize| if i < 3 { u[i + 1] } else { 0.0 } + if i > 0 { u[i - 1] } else { 0.0 };
+        let f = |i: usize| 2.0 * u[i] - joined * next(i);
+        assert!((0..4).all(|i| (f(i) - [1.0, 0.0, 0.0, 2.0][i]).abs() < 1e-14), "{joined}: {u:?}");
+    }
+}
+
+#[test]
+fn candidates_and_soft_motions_of_the_whole_model_are_those_of_every_part() {
+    let deck = masonry::tower(5);
+    let whole = one_k(&deck);
+    let (n, modes) = (deck.dofs(), whole.bodies[0].modes().concat());
+    let mut right = hand_over::problem(&whole).unwrap();
+    right.solve().unwrap();
+    let right = right.multipliers(RowKind::Inequality).unwrap().to_vec();
+    for kind in [Modes::Candidates, Modes::Soft] {
+        let mut problem = hand_over::without_null_spaces(&whole).unwrap();
+        problem.set_null_space(0, n, modes.len() / n, &modes, n, kind).unwrap();
+        assert_eq!(problem.solve().unwrap().outcome, Outcome::Solved, "{kind:?}");
+        let found = problem.multipliers(RowKind::Inequality).unwrap();
+        let largest = right.iter().fold(0.0, |m: f64, v| m.max(v.abs()));
+        assert!(found.iter().zip(&right).all(|(a, b)| (a - b).abs() < 1e-11 * largest), "{kind:?}");
+    }
+}
+
+/// A heavy part and one of 1e-6 of its forces: a wrong force on the light one does not pass.
+#[test]
+fn a_light_part_is_judged_as_alone() {
+    let mut deck = masonry::apart(2);
+    let light = 1;
+    deck.bodies[light].load.iter_mut().for_each(|f| *f *= 1e-9);
+    let mut problem = hand_over::problem(&one_k(&deck)).unwrap();
+    assert_eq!(problem.solve().unwrap().outcome, Outcome::Solved);
+    let (u, lambda) = (
+        problem.displacements().unwrap().to_vec(),
+        problem.multipliers(RowKind::Inequality).unwrap().to_vec(),
+    );
+    let mu = problem.multipliers(RowKind::Equality).unwrap().to_vec();
+    assert!(problem.check(&u, &lambda, &mu).unwrap().worst() <= 1.0);
+    let (first, mut lie) = (deck.offset(light), lambda);
+    let on_light = |i: &usize| deck.contact.matrix.row(*i).any(|(j, _)| j >= first);
+    (0..lie.len()).filter(on_light).for_each(|i| lie[i] *= 1.0 + 1e-4);
+    assert!(problem.check(&u, &lie, &mu).unwrap().worst() > 1.0);
+}
