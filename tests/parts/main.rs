@@ -5,7 +5,10 @@ mod hand_over;
 mod loose;
 mod queries;
 
-use decks::{battery, masonry, varied, Body, Csr, Deck};
+use std::time::Instant;
+
+use decks::rubbing::{self, Rubbing};
+use decks::{battery, hard, masonry, varied, Blocks, Body, Csr, Cube, Deck, Stack};
 use feti_contact::error::Result;
 use feti_contact::solver::{Problem, RowKind};
 
@@ -81,6 +84,41 @@ fn random_problems_in_one_matrix_end_as_those_of_separate_bodies() {
     for seed in 0..seeds {
         assert_same(&format!("battery {seed}"), &battery::case(910_000 + seed).deck);
         assert_same(&format!("varied {seed}"), &varied::case(920_000 + seed).deck);
+        assert_same(&format!("hard {seed}"), &hard::case(930_000 + seed).deck);
+    }
+}
+
+#[test]
+fn counts_decks_in_one_matrix_have_the_bits_and_products_of_separate_bodies() {
+    for rubbing in Rubbing::floating_36().iter().filter(|rubbing| rubbing.name().contains("2d")) {
+        assert_same(&rubbing.name(), &rubbing.build());
+    }
+    assert_same("stack", &Stack::default().build());
+    assert_same("cube", &Cube::default().build());
+    assert_same("cube with friction", &rubbing::cube(&Cube::default(), 0.5, 0.3));
+}
+
+/// `cargo test --release --test parts -- --ignored --nocapture`
+#[test]
+#[ignore = "prints times"]
+fn times_of_one_matrix_against_those_of_separate_bodies() {
+    for (name, deck) in [
+        ("blocks 13k", Blocks { elements: 12, ..Blocks::default() }.build()),
+        ("blocks 40k", Blocks { elements: 18, ..Blocks::default() }.build()),
+        ("tower of 400", masonry::tower(400)),
+        ("heap of 400", masonry::heap(400, 3)),
+    ] {
+        let twins = [deck.clone(), one_k(&deck)];
+        let time = |deck: &Deck| {
+            let mut problem = hand_over::problem(deck).unwrap();
+            problem.set_i64("threads", 1).unwrap();
+            let begun = Instant::now();
+            problem.solve().unwrap();
+            begun.elapsed().as_secs_f64()
+        };
+        let mut ratios: Vec<f64> = (0..7).map(|_| time(&twins[1]) / time(&twins[0])).collect();
+        ratios.sort_by(f64::total_cmp);
+        println!("{name}: one K / bodies {:.2} ({:.2} to {:.2})", ratios[3], ratios[0], ratios[6]);
     }
 }
 

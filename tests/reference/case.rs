@@ -99,6 +99,27 @@ impl Case {
         }
     }
 
+    /// The case with one body, whose K has the matrices of all bodies as blocks.
+    pub fn one_k(self) -> Self {
+        let unknowns = |(k, _): &(Sparse, Vec<f64>)| k.ptr.len() - 1;
+        let n: usize = self.bodies.iter().map(unknowns).sum();
+        let modes = self.bodies.iter().map(|body| body.1.len() / unknowns(body)).max().unwrap_or(0);
+        let (mut all, mut basis, mut first) =
+            (Sparse { ptr: vec![0], ..Sparse::default() }, vec![0.0; n * modes], 0);
+        for body in &self.bodies {
+            let (k, r) = body;
+            let (own, before) = (unknowns(body), all.col.len());
+            all.ptr.extend(k.ptr[1..].iter().map(|at| before + at));
+            all.col.extend(k.col.iter().map(|j| first as i64 + j));
+            all.val.extend(&k.val);
+            for (j, mode) in r.chunks_exact(own).enumerate() {
+                basis[j * n + first..j * n + first + own].copy_from_slice(mode);
+            }
+            first += own;
+        }
+        Self { bodies: vec![(all, basis)], ..self }
+    }
+
     /// Registers everything; null spaces as exact, or coordinates in their place.
     pub fn problem(&self, coordinates: bool) -> Problem {
         self.problem_with(if coordinates { Hint::Coordinates } else { Hint::NullSpaces })

@@ -30,6 +30,22 @@ fn every_reference_case_is_solved_to_its_known_answer() {
     CASES.iter().for_each(|name| assert_reference(name, Hint::NullSpaces));
 }
 
+/// A host that has one K for the whole model gets the bits of separate bodies.
+#[test]
+fn every_reference_case_in_one_matrix_has_the_bits_of_separate_bodies() {
+    for name in CASES {
+        let solve = |case: Case| {
+            let mut problem = case.problem(false);
+            let counts = problem.solve().unwrap_or_else(|e| panic!("{name}: {e}")).counts;
+            let forces =
+                [RowKind::Inequality, RowKind::Equality].map(|kind| problem.multipliers(kind).unwrap());
+            let all = forces.concat().into_iter().chain(case.displacement(&problem));
+            (format!("{counts:?}"), all.map(f64::to_bits).collect::<Vec<_>>())
+        };
+        assert_eq!(solve(Case::read(name)), solve(Case::read(name).one_k()), "{name}");
+    }
+}
+
 /// Whatever the order of elimination: `make metis` runs it with that of METIS.
 #[test]
 fn a_tighter_tolerance_brings_the_known_answers_within_1e_9() {
