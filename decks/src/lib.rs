@@ -194,6 +194,39 @@ impl Deck {
         let loads = self.bodies.iter().flat_map(|body| &body.load);
         loads.copied().collect()
     }
+
+    /// The deck with one body, whose K has the matrices of all bodies as blocks. Column j of its null space has the vectors j
+    /// of all bodies.
+    pub fn one_k(&self) -> Deck {
+        let n = self.dofs();
+        let mut stiffness = Csr { rows: n, ..Csr::empty(n) };
+        let modes = self.bodies.iter().map(|body| body.modes().len()).max().unwrap_or(0);
+        let mut all = Body {
+            stiffness: Csr::empty(n),
+            null_space: Some(vec![vec![0.0; n]; modes]),
+            load: self.load(),
+            coordinates: Vec::new(),
+            node: Vec::new(),
+            direction: Vec::new(),
+        };
+        for (p, body) in self.bodies.iter().enumerate() {
+            let first = self.offset(p);
+            for i in 0..body.dofs() {
+                // with the entries that are 0, so that both have one pattern
+                stiffness.col.extend(body.stiffness.row(i).map(|(j, _)| first + j));
+                stiffness.val.extend(body.stiffness.row(i).map(|(_, v)| v));
+                stiffness.ptr.push(stiffness.col.len());
+            }
+            for (own, of_all) in body.modes().iter().zip(all.null_space.iter_mut().flatten()) {
+                of_all[first..first + body.dofs()].copy_from_slice(own);
+            }
+            all.coordinates.extend_from_slice(&body.coordinates);
+            all.node.extend_from_slice(&body.node);
+            all.direction.extend_from_slice(&body.direction);
+        }
+        all.stiffness = stiffness;
+        Deck { bodies: vec![all], ..self.clone() }
+    }
 }
 
 #[cfg(test)]

@@ -8,42 +8,9 @@ mod queries;
 use std::time::Instant;
 
 use decks::rubbing::{self, Rubbing};
-use decks::{battery, hard, masonry, varied, Blocks, Body, Csr, Cube, Deck, Stack};
+use decks::{battery, hard, masonry, varied, Blocks, Cube, Deck, Stack};
 use feti_contact::error::Result;
 use feti_contact::solver::{Problem, RowKind};
-
-/// The deck with one body, whose K has the matrices of all bodies as blocks. Column j of its null space has the vectors j
-/// of all bodies.
-pub fn one_k(deck: &Deck) -> Deck {
-    let n = deck.dofs();
-    let mut stiffness = Csr { rows: n, ..Csr::empty(n) };
-    let modes = deck.bodies.iter().map(|body| body.modes().len()).max().unwrap_or(0);
-    let mut all = Body {
-        stiffness: Csr::empty(n),
-        null_space: Some(vec![vec![0.0; n]; modes]),
-        load: deck.load(),
-        coordinates: Vec::new(),
-        node: Vec::new(),
-        direction: Vec::new(),
-    };
-    for (p, body) in deck.bodies.iter().enumerate() {
-        let first = deck.offset(p);
-        for i in 0..body.dofs() {
-            // with the entries that are 0, so that both have one pattern
-            stiffness.col.extend(body.stiffness.row(i).map(|(j, _)| first + j));
-            stiffness.val.extend(body.stiffness.row(i).map(|(_, v)| v));
-            stiffness.ptr.push(stiffness.col.len());
-        }
-        for (own, of_all) in body.modes().iter().zip(all.null_space.iter_mut().flatten()) {
-            of_all[first..first + body.dofs()].copy_from_slice(own);
-        }
-        all.coordinates.extend_from_slice(&body.coordinates);
-        all.node.extend_from_slice(&body.node);
-        all.direction.extend_from_slice(&body.direction);
-    }
-    all.stiffness = stiffness;
-    Deck { bodies: vec![all], ..deck.clone() }
-}
 
 /// How a solve ended, with the bits of its answer, and its products.
 fn end(problem: Result<Problem>) -> (String, Vec<u64>) {
@@ -63,7 +30,7 @@ fn end(problem: Result<Problem>) -> (String, Vec<u64>) {
 
 #[track_caller]
 fn assert_same(name: &str, deck: &Deck) {
-    let twin = one_k(deck);
+    let twin = deck.one_k();
     assert_eq!(end(hand_over::problem(deck)), end(hand_over::problem(&twin)), "{name}, null space given");
     let found = [deck, &twin].map(|deck| end(hand_over::without_null_spaces(deck)));
     assert_eq!(found[0], found[1], "{name}, nothing given");
@@ -108,7 +75,7 @@ fn times_of_one_matrix_against_those_of_separate_bodies() {
         ("tower of 400", masonry::tower(400)),
         ("heap of 400", masonry::heap(400, 3)),
     ] {
-        let twins = [deck.clone(), one_k(&deck)];
+        let twins = [deck.clone(), deck.one_k()];
         let time = |deck: &Deck| {
             let mut problem = hand_over::problem(deck).unwrap();
             problem.set_i64("threads", 1).unwrap();
@@ -126,7 +93,7 @@ fn times_of_one_matrix_against_those_of_separate_bodies() {
 #[test]
 fn equal_components_share_their_factor() {
     let deck = masonry::apart(20);
-    let mut problem = hand_over::problem(&one_k(&deck)).unwrap();
+    let mut problem = hand_over::problem(&deck.one_k()).unwrap();
     problem.solve().unwrap();
     let work = problem.work();
     assert_eq!((work.analyses, work.factorisations), (1, 1));

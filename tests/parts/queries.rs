@@ -4,11 +4,11 @@ use decks::{masonry, Deck};
 use feti_contact::error::Kind;
 use feti_contact::solver::{Modes, Outcome, Problem, RowKind, SparseInput, Storage};
 
-use crate::{hand_over, one_k};
+use crate::hand_over;
 
 /// Separate bodies, and the same bodies in one matrix.
 fn both(deck: &Deck) -> [Problem; 2] {
-    [hand_over::problem(deck).unwrap(), hand_over::problem(&one_k(deck)).unwrap()]
+    [hand_over::problem(deck).unwrap(), hand_over::problem(&deck.one_k()).unwrap()]
 }
 
 #[test]
@@ -56,7 +56,7 @@ fn validation_calls_answer_part_by_part() {
 #[test]
 fn too_few_vectors_on_one_part_are_refused_with_an_unknown_of_this_part() {
     let deck = masonry::apart(3);
-    let mut whole = one_k(&deck);
+    let mut whole = deck.one_k();
     let second = deck.offset(1)..deck.offset(2);
     let modes = whole.bodies[0].null_space.as_mut().unwrap();
     second.clone().for_each(|i| modes[0][i] = 0.0);
@@ -89,7 +89,7 @@ fn new_values_may_join_parts_and_divide_them() {
 #[test]
 fn candidates_and_soft_motions_of_the_whole_model_are_those_of_every_part() {
     let deck = masonry::tower(5);
-    let whole = one_k(&deck);
+    let whole = deck.one_k();
     let (n, modes) = (deck.dofs(), whole.bodies[0].modes().concat());
     let mut right = hand_over::problem(&whole).unwrap();
     right.solve().unwrap();
@@ -110,7 +110,7 @@ fn a_light_part_is_judged_as_alone() {
     let mut deck = masonry::apart(2);
     let light = 1;
     deck.bodies[light].load.iter_mut().for_each(|f| *f *= 1e-9);
-    let mut problem = hand_over::problem(&one_k(&deck)).unwrap();
+    let mut problem = hand_over::problem(&deck.one_k()).unwrap();
     assert_eq!(problem.solve().unwrap().outcome, Outcome::Solved);
     let (u, lambda) = (
         problem.displacements().unwrap().to_vec(),
