@@ -2,7 +2,7 @@
 
 use decks::{masonry, Deck};
 use feti_contact::error::Kind;
-use feti_contact::solver::{Modes, Outcome, Problem, RowKind, SparseInput, Storage};
+use feti_contact::solver::{Modes, Outcome, Problem, RowKind, RowsInput, SparseInput, Storage};
 
 use crate::hand_over;
 
@@ -122,4 +122,86 @@ fn a_light_part_is_judged_as_alone() {
     let on_light = |i: &usize| deck.contact.matrix.row(*i).any(|(j, _)| j >= first);
     (0..lie.len()).filter(on_light).for_each(|i| lie[i] *= 1.0 + 1e-4);
     assert!(problem.check(&u, &lie, &mu).unwrap().worst() > 1.0);
+}
+
+/// A chain given by elements and cut, and two springs in one matrix or as two bodies, joined by rows.
+#[test]
+fn parts_beside_a_body_that_is_cut_are_judged_as_separate_bodies() {
+    let solve = |apart: bool| {
+        let mut problem = Problem::new();
+        problem.set_i64("pieces", 3).unwrap();
+        let chain = problem.add_body(12).unwrap();
+        let ptr: Vec<usize> = (0..12).map(|e| 2 * e).chain([23]).collect();
+        let dof: Vec<i64> = (0..11).flat_map(|e| [e, e + 1]).chain([0]).collect();
+        problem.set_mesh(chain, &ptr, &dof).unwrap();
+        (0..11).for_each(|e| problem.add_element(chain, e, 2, &[1.0, -1.0, -1.0, 1.0], 2).unwrap());
+        problem.add_element(chain, 11, 1, &[4.0], 1).unwrap();
+        problem.set_load(chain, &[0.125; 12]).unwrap();
+        let springs = if apart { vec![vec![2.0], vec![5e-6]] } else { vec![vec![2.0, 5e-6]] };
+        for k in &springs {
+            let body = problem.add_body(k.len()).unwrap();
+            let (ptr, col): (Vec<usize>, Vec<i64>) = ((0..=k.len()).collect(), (0..k.len() as i64).collect());
+            let input = SparseInput { ptr: &ptr, col: &col, val: k, storage: Storage::Lower };
+            problem.set_stiffness(body, input).unwrap();
+        }
+        let rows = RowsInput {
+            ptr: &[0, 2, 4],
+            body: None,
+            dof: &[11, 12, 5, 13],
+            val: &[1.0, -1.0, 1.0, -1.0],
+            rhs: Some(&[0.5, 0.25]),
+        };
+        problem.add_rows(RowKind::Inequality, rows).unwrap();
+        let report = problem.solve().unwrap();
+        assert_eq!(report.outcome, Outcome::Solved);
+        assert!(problem.body_facts(chain).unwrap().pieces > 1);
+        let (u, lambda) = (
+            problem.displacements().unwrap().to_vec(),
+            problem.multipliers(RowKind::Inequality).unwrap().to_vec(),
+        );
+        let mut lie = lambda.clone();
+        lie[1] *= 1.0 + 1e-5;
+        assert!(problem.check(&u, &lambda, &[]).unwrap().passed());
+        assert!(!problem.check(&u, &lie, &[]).unwrap().passed(), "the light spring, apart: {apart}");
+        (u, lambda)
+    };
+    assert_eq!(solve(true), solve(false));
+}
+
+/// A file has the matrix of the host, a restored state its loads.
+#[test]
+fn files_states_and_starts_do_not_see_the_parts() {
+    let deck = masonry::tower(4);
+    let mut problem = hand_over::problem(&deck.one_k()).unwrap();
+    let first = problem.solve().unwrap();
+    let lambda = problem.multipliers(RowKind::Inequality).unwrap().to_vec();
+    let state = problem.save_state().unwrap();
+    let load: Vec<f64> = deck.load().iter().map(|f| 2.0 * f).collect();
+    problem.set_load(0, &load).unwrap();
+    problem.solve().unwrap();
+    problem.restore_state(state).unwrap();
+    assert_eq!(problem.multipliers(RowKind::Inequality).unwrap(), lambda);
+    problem.set_str("start", "previous").unwrap();
+    let again = problem.solve().unwrap();
+    assert!(again.counts.products <= first.counts.products);
+    assert_eq!(problem.sizes().bodies, 1);
+}
+
+/// Bodies that share a number, one of several components.
+#[test]
+fn glue_joins_a_part_of_a_body() {
+    let mut problem = Problem::new();
+    for k in [vec![1.0, 2.0], vec![3.0]] {
+        let body = problem.add_body(k.len()).unwrap();
+        let (ptr, col): (Vec<usize>, Vec<i64>) = ((0..=k.len()).collect(), (0..k.len() as i64).collect());
+        let input = SparseInput { ptr: &ptr, col: &col, val: &k, storage: Storage::Lower };
+        problem.set_stiffness(body, input).unwrap();
+        problem.set_load(body, &vec![10.0; k.len()]).unwrap();
+    }
+    problem.set_i64("glue", 1).unwrap();
+    problem.set_numbering(0, &[7, 8]).unwrap();
+    problem.set_numbering(1, &[8]).unwrap();
+    problem.solve().unwrap();
+    let u = problem.displacements().unwrap();
+    assert!(u.iter().zip([10.0, 4.0, 4.0]).all(|(u, right)| (u - right).abs() < 1e-13), "{u:?}");
 }
