@@ -228,9 +228,16 @@ impl Mesh {
         Ok(())
     }
 
-    /// `K_hf u` of the held unknowns 0, 1, ..., force; 0 for a held unknown without element.
+    /// One more than the largest number of a held unknown.
+    pub fn held_numbers(&self) -> usize {
+        self.connectivity
+            .held()
+            .last()
+            .map_or(0, |last| usize::try_from(*last).unwrap_or(usize::MAX).saturating_add(1))
+    }
+
+    /// Sets the entries of the held unknowns 0, 1, ... that have elements to `K_hf u`, force.
     pub fn held_forces(&self, u: &[f64], forces: &mut [f64]) {
-        forces.fill(0.0);
         let Some(cut) = &self.cut else { return };
         for (k, number) in self.connectivity.held().iter().enumerate() {
             if let Some(force) = usize::try_from(*number).ok().and_then(|number| forces.get_mut(number)) {

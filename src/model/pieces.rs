@@ -50,19 +50,22 @@ impl Model {
 impl PiecesInput {
     /// Checks that unknowns ascend and cover the body, rows are lower triangles with a diagonal, and entries are finite.
     fn check(&self, order: usize) -> Result<()> {
-        let mut met = filled(order, false, WHAT)?;
+        // a larger body has an unknown up to this number that no piece has
+        let mut met = filled(order.min(self.dof.len() + 1), false, WHAT)?;
         for range in self.first.windows(2) {
             let dofs = &self.dof[range[0]..range[1]];
             if dofs.is_empty() || dofs.windows(2).any(|pair| pair[0] >= pair[1]) {
                 return Err(Error::new(Kind::Io, "the unknowns of a piece do not ascend"));
             }
             for &dof in dofs {
-                let unknown = usize::try_from(dof).ok().and_then(|dof| met.get_mut(dof));
                 let outside = || {
                     let what = format!("unknown {INDEX} is outside the {order} unknowns of the body");
                     Error::new(Kind::Io, what).index(dof)
                 };
-                *unknown.ok_or_else(outside)? = true;
+                let unknown = usize::try_from(dof).ok().filter(|dof| *dof < order).ok_or_else(outside)?;
+                if let Some(met) = met.get_mut(unknown) {
+                    *met = true;
+                }
             }
             for row in 0..dofs.len() {
                 self.check_row(range[0] + row, row)?;

@@ -5,7 +5,7 @@ use crate::error::{Error, Kind, Result};
 use crate::linalg::graph;
 use crate::linalg::Symmetric;
 use crate::mesh::Mesh;
-use crate::platform::memory::{filled, headroom};
+use crate::platform::memory::{filled, headroom, zeros};
 use crate::setup::{Duals, Inverse};
 use crate::solver::decomposed::null_space_of;
 use crate::solver::problem::Problem;
@@ -163,12 +163,22 @@ impl Problem {
     }
 
     /// Forces that hold the held unknowns 0, 1, ... of a body given by elements, `K_hf u`, force; 0 for an unknown
-    /// without element. The host has to add the contributions of prescribed values and of loads on held unknowns.
-    pub fn held_forces(&self, body: usize, forces: &mut [f64]) -> Result<()> {
+    /// without element. The host has to add the contributions of prescribed values and of loads on held unknowns. More
+    /// forces than the body has unknowns, free or held, are refused: they would be written beyond the host's array.
+    pub fn held_forces(&self, body: usize, n: usize) -> Result<Vec<f64>> {
         let given = self.model.given(body)?;
         let missing = || Error::new(Kind::State, "the body was not given by its elements").body(body);
         let mesh = given.mesh.as_ref().filter(|mesh| mesh.has_elements()).ok_or_else(missing)?;
-        mesh.held_forces(self.displacement(body)?, forces);
-        Ok(())
+        let (u, most) = (self.displacement(body)?, mesh.held_numbers().max(given.body.order));
+        if n > most {
+            let what = format!(
+                "n is {n}, but the held unknowns of the body have numbers below {}",
+                mesh.held_numbers()
+            );
+            return Err(Error::argument("n", what).body(body).value(n as f64).limit(most as f64));
+        }
+        let mut forces = zeros(n, "the forces of held unknowns")?;
+        mesh.held_forces(u, &mut forces);
+        Ok(forces)
     }
 }

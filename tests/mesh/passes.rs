@@ -27,9 +27,12 @@ fn held_unknowns_are_left_out_and_their_forces_read_back() {
         for (u, known) in u.iter().zip([6.0, 9.0, 11.0]) {
             assert!((u - known).abs() < 1e-9, "{u} {known}");
         }
-        let mut forces = [7.0; 3];
-        problem.held_forces(0, &mut forces).unwrap();
+        let forces = problem.held_forces(0, 3).unwrap();
         assert!((forces[0] + 6.0).abs() < 1e-9 && forces[1..] == [0.0; 2]);
+        for n in [4, 1000, usize::MAX / 8] {
+            let error = problem.held_forces(0, n).unwrap_err();
+            assert_eq!((error.kind, error.place.limit), (Kind::Argument("n"), Some(3.0)), "{error}");
+        }
     }
 }
 

@@ -7,7 +7,6 @@ use crate::ffi::boundary::{
     Output,
 };
 use crate::ffi::header::types::{feti_problem, FETI_FULL, FETI_LOWER, FETI_UPPER};
-use crate::platform::memory::zeros;
 use crate::solver::{ElementStorage, Problem};
 
 /// Gives the connectivity of the elements of a body, with 32-bit indices: the first step of giving K by elements.
@@ -272,7 +271,7 @@ fn block(
 /// |---|---|---|---|
 /// | `p` | in | scalar | the handle |
 /// | `body` | in | scalar | number of the body, from 0 |
-/// | `n` | in | scalar | number of held unknowns to read: 0 to n - 1 |
+/// | `n` | in | scalar | number of held unknowns to read: 0 to n - 1; at most the number of unknowns of the body, or of its held ones |
 /// | `r` | out | n | force; 0 for a held unknown that no element has |
 ///
 /// # Safety
@@ -283,9 +282,7 @@ pub unsafe extern "C" fn feti_body_held_forces(p: *mut feti_problem, body: i64, 
         let (body, n) = (id(body, "body")?, count(n, "n")?);
         // SAFETY: room for n numbers guaranteed by the caller.
         let output = unsafe { Output::new(r, n, "r") }?;
-        let mut forces = zeros(n, "the forces of held unknowns")?;
-        problem.held_forces(body, &mut forces)?;
-        output.write(&forces);
+        output.write(&problem.held_forces(body, n)?);
         Ok(())
     })
 }

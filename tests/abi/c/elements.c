@@ -297,6 +297,9 @@ static void not_of_a_cut_body(void)
     OK(feti_body_held_forces(p, BAR, 0, NULL));
     EXPECT(FETI_ARGUMENT - 3, feti_body_held_forces(p, POST, -1, y));
     EXPECT(FETI_ARGUMENT - 4, feti_body_held_forces(p, POST, 1, NULL));
+    y[POST_N] = 7.0;
+    EXPECT(FETI_ARGUMENT - 3, feti_body_held_forces(p, POST, POST_N + 1, y));
+    CHECK(y[POST_N] == 7.0, "a number beyond the array was written");
     OK(feti_problem_destroy(&p));
     p = by_matrix();
     (void)solved(p, 0);
