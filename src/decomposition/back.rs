@@ -1,6 +1,7 @@
 //! Translates the reason why there is no answer, and its place, from the parts to the bodies of the host.
 
 use crate::error::{Error, Kind, Proof};
+use crate::linalg::graph::components;
 use crate::mesh::Mesh;
 use crate::model::{contradiction, kind_and_row, Model, Parts};
 
@@ -17,6 +18,12 @@ pub fn of_host(host: &Model, parts: &Parts, mut error: Error) -> Error {
         let unknowns = parts.starts[part + 1] - parts.starts[part];
         let dof = error.place.dof.filter(|dof| *dof < unknowns);
         error.place.dof = dof.map(|dof| parts.place(part, dof).0).or(error.place.dof);
+        if let (Some(Proof::Motion { .. }), Some(k)) =
+            (error.proof.as_deref(), host.bodies[body].body.stiffness.as_deref())
+        {
+            let (component_of, count) = components(k);
+            error.place.component = error.place.dof.filter(|_| count > 1).map(|dof| component_of[dof]);
+        }
     }
     let contact = host.contact.len();
     let rows = contact + parts.equalities;

@@ -3,7 +3,7 @@
 use crate::certificate::Data;
 use crate::constraints::{FrictionNode, RowKind};
 use crate::error::{Error, Kind, Proof, Result};
-use crate::linalg::graph::{components, joined};
+use crate::linalg::graph::joined;
 use crate::linalg::twofold::Twofold;
 use crate::linalg::vector::{norm_max, ratio, weighted_norm};
 use crate::platform::memory::zeros;
@@ -169,11 +169,6 @@ impl Unheld {
         v.iter_mut().for_each(|v| *v /= largest);
         let dof = fastest - range.start;
         let error = Error::new(Kind::LoadNotHeld, what).body(body).dof(dof).value(self.share).limit(MARGINAL);
-        let parts = case.model.bodies[body].body.stiffness.as_deref().map(components);
-        let error = match parts {
-            Some((part_of, 2..)) => error.component(part_of[dof]),
-            _ => error,
-        };
         error.proved_by(Proof::Motion { margin: self.margin, v })
     }
 }
