@@ -606,7 +606,9 @@ int32_t feti_body_no_null_space(struct feti_problem *p, int64_t body);
 /**
  * Reads the null space that the library uses for a body.
  *
- * Runs feti_setup when it is due. After a failure nothing is written.
+ * Runs feti_setup when it is due. After a failure nothing is written. If K is not connected, the
+ * columns are those of one connected part after the other, zero on all other parts. Unknowns
+ * without stiffness that no row and no load touches have no column.
  *
  * @param[in]     p     (scalar) the handle
  * @param[in]     body  (scalar) number of the body, from 0

@@ -6,7 +6,7 @@
 use crate::error::{Error, Kind, Result};
 use crate::linalg::dense::spectrum::right_singular;
 use crate::linalg::vector::{norm, norm_max, ratio, weighted_norm};
-use crate::linalg::{Matrix, Multiple};
+use crate::linalg::{Matrix, Multiple, Symmetric};
 use crate::platform::memory::{reserved, zeros};
 
 /// The meaning of the vectors given by the host.
@@ -25,6 +25,29 @@ pub enum Modes {
 pub struct NullSpaceInput {
     pub vectors: Matrix,
     pub modes: Modes,
+}
+
+impl NullSpaceInput {
+    /// The vectors on one component of K, whose matrix is `k`: K has no entry between components, so that null vectors of
+    /// K are null vectors of each. A vector is none on a component if it is rounding of its largest entry there.
+    pub fn on(&self, dofs: &[u32], k: &Symmetric) -> Result<Self> {
+        let mut vectors = Matrix::zeros(dofs.len(), 0)?;
+        for j in 0..self.vectors.cols {
+            let all = self.vectors.col(j);
+            let mut own = zeros(dofs.len(), "a null space")?;
+            own.iter_mut().zip(dofs).for_each(|(v, &dof)| *v = all[dof as usize]);
+            if norm_max(&own) > DEPENDENT * norm_max(all) {
+                vectors.push_col(&own);
+            }
+        }
+        let root = |i: usize| k.metric(i, 1.0).sqrt();
+        let scaled = Matrix::from_fn(dofs.len(), vectors.cols, |i, j| root(i) * vectors.get(i, j))?;
+        let basis = scaled.orthonormalised(DEPENDENT);
+        if basis.cols < vectors.cols {
+            vectors = Matrix::from_fn(dofs.len(), basis.cols, |i, j| basis.get(i, j) / root(i))?;
+        }
+        Ok(Self { vectors, modes: self.modes })
+    }
 }
 
 /// Columns are dependent if less than this part of their length is left after orthogonalisation.
@@ -262,7 +285,6 @@ pub(super) fn overflow() -> Error {
 mod tests {
     use super::*;
     use crate::body::{GeneralizedInverse, Plan};
-    use crate::linalg::Symmetric;
 
     /// Chain of `n` unit springs, free at both ends, `support` added at dof 0.
     fn chain(n: usize, support: f64) -> Multiple {

@@ -2,10 +2,9 @@
 
 use std::sync::Arc;
 
-use crate::body::{check_diagonal, Body, Modes, NullSpaceInput};
+use crate::body::{check_diagonal, Body};
 use crate::error::{Error, Kind, Result};
-use crate::linalg::vector::norm_max;
-use crate::linalg::{Matrix, Symmetric};
+use crate::linalg::Symmetric;
 use crate::mesh::{Mesh, Piece};
 use crate::model::{GivenBody, Joint, Model, Part, Parts};
 use crate::platform::memory::{copied, filled, reserved, zeros};
@@ -14,9 +13,6 @@ use super::components::{Component, Components, Connected};
 use super::copies::Copies;
 
 const WHAT: &str = "the parts of bodies";
-/// A null vector of a body whose entries on a part are below this part of its largest entry is rounding there; and null
-/// vectors of a part depend on others if less than this part of their length is left beside them.
-const ROUNDED: f64 = 1e-10;
 
 /// The parts of all bodies, without loads, and their relation to the bodies.
 pub fn parts(
@@ -102,7 +98,7 @@ impl Split<'_> {
         let mut made = reserved(blocks.len(), WHAT)?;
         for Component { dofs, stiffness } in blocks {
             let null_space = self.given.body.null_space.as_ref();
-            let null_space = null_space.map(|given| restricted(given, &dofs, &stiffness)).transpose()?;
+            let null_space = null_space.map(|given| given.on(&dofs, &stiffness)).transpose()?;
             let own = Body { null_space, ..self.part_of(&dofs, Arc::new(stiffness))? };
             made.push((own, Part { body: self.body, piece: 0, dofs: Some(dofs), shares: Vec::new() }));
         }
@@ -184,30 +180,6 @@ impl Split<'_> {
         let own = Body { fixing: None, ..self.part_of(&dofs, stiffness)? };
         Ok((own, Part { body: self.body, piece, dofs: Some(dofs), shares }))
     }
-}
-
-/// The vectors on one component: K has no entry between components, so vectors of the null space are in the null space of
-/// every component.
-fn restricted(given: &NullSpaceInput, dofs: &[u32], k: &Symmetric) -> Result<NullSpaceInput> {
-    let NullSpaceInput { vectors, modes } = given;
-    let mut own = Matrix::zeros(dofs.len(), 0)?;
-    for j in 0..vectors.cols {
-        let all = vectors.col(j);
-        let mut column = zeros(dofs.len(), WHAT)?;
-        column.iter_mut().zip(dofs).for_each(|(v, &dof)| *v = all[dof as usize]);
-        if norm_max(&column) > ROUNDED * norm_max(all) {
-            own.push_col(&column);
-        }
-    }
-    if *modes != Modes::Candidates {
-        let root = |i: usize| k.metric(i, 1.0).sqrt();
-        let scaled = Matrix::from_fn(dofs.len(), own.cols, |i, j| root(i) * own.get(i, j))?;
-        let basis = scaled.orthonormalised(ROUNDED);
-        if basis.cols < own.cols {
-            own = Matrix::from_fn(dofs.len(), basis.cols, |i, j| basis.get(i, j) / root(i))?;
-        }
-    }
-    Ok(NullSpaceInput { vectors: own, modes: *modes })
 }
 
 /// Distributes the loads of the host to the parts: each copy gets its weight, the last copy the rest.

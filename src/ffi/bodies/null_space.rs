@@ -75,6 +75,8 @@ pub extern "C" fn feti_body_no_null_space(p: *mut feti_problem, body: i64) -> i3
 /// Reads the null space that the library uses for a body.
 ///
 /// Runs feti_setup when it is due. After a failure nothing is written.
+/// If K is not connected, the columns are those of one connected part after the other, zero on all other parts. Unknowns
+/// without stiffness that no row and no load touches have no column.
 ///
 /// | argument | in/out | shape | rule |
 /// |---|---|---|---|
