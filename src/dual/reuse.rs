@@ -13,6 +13,9 @@ use crate::linalg::{Csr, Operator, Packed};
 /// column of a complete assembly takes half of that, only on its own path, and w operations for every other column there.
 /// On faces of cubes of 6k to 20k unknowns both take equal time if one column in six is new.
 const ONE_IN: usize = 6;
+/// Operators of up to this number of rows are assembled again for new rows, so that they have the bits of a new problem:
+/// L is read twice at most, as for the new columns alone.
+const SMALL: usize = 64;
 
 /// `F_p` and the rows of B over body p for which it was made.
 pub struct Kept {
@@ -95,8 +98,8 @@ impl Reuse {
                 .ok()
                 .and_then(|mut operator| operator.take())
                 .ok_or_else(|| Error::new(Kind::Internal, "a dual operator was asked for twice")),
-            Self::Some { operator, old } => extended(operator, old, kplus, rows),
-            Self::Nothing(_) => kplus.inverse_form(rows),
+            Self::Some { operator, old } if old.len() > SMALL => extended(operator, old, kplus, rows),
+            Self::Some { .. } | Self::Nothing(_) => kplus.inverse_form(rows),
         }
     }
 }

@@ -1,5 +1,6 @@
 //! Threads and earlier solves: the same bits every time.
 
+use decks::rubbing::Rubbing;
 use decks::{Blocks, Cube, Deck, Glue};
 use feti_contact::error::Kind;
 use feti_contact::solver::{Problem, RowKind, RowState};
@@ -112,4 +113,41 @@ fn right_hand_sides_of_rows_without_entries_are_looked_at_in_every_solve() {
         problem.solve().unwrap();
     }
     assert_eq!(problem.active().unwrap()[row], RowState::Weak);
+}
+
+/// Bits of an answer.
+fn bits(problem: &mut Problem) -> Vec<u64> {
+    problem.solve().unwrap();
+    let lambda = problem.multipliers(RowKind::Inequality).unwrap();
+    problem.displacements().unwrap().iter().chain(lambda).map(|v| v.to_bits()).collect()
+}
+
+/// The columns of F of rows that stay were made beside other rows than those of a new problem.
+#[test]
+fn friction_and_rows_that_go_and_come_back_leave_the_bits_of_a_new_problem() {
+    for rubbing in Rubbing::floating_36().into_iter().step_by(4) {
+        let (deck, name) = (rubbing.build(), rubbing.name());
+        let mut problem = hand_over::problem(&deck).unwrap();
+        let state = problem.save_state().unwrap();
+        let first = bits(&mut problem);
+        problem.clear_friction();
+        let _ = problem.solve();
+        problem.restore_state(state).unwrap();
+        assert!(bits(&mut problem) == first, "{name}: state restored");
+        problem.clear_friction();
+        let _ = problem.solve();
+        hand_over::add_friction(&mut problem, &deck.friction).unwrap();
+        assert!(bits(&mut problem) == first, "{name}: friction added again");
+        let mut problem = hand_over::problem(&deck).unwrap();
+        problem.clear_friction();
+        let _ = problem.solve();
+        hand_over::add_friction(&mut problem, &deck.friction).unwrap();
+        assert!(bits(&mut problem) == first, "{name}: friction added to a problem solved without");
+        let bytes = problem.write_bytes().unwrap();
+        let mut back = Problem::new();
+        back.read_bytes(&bytes).unwrap();
+        let modes_found = bits(&mut back);
+        let _ = problem.solve();
+        assert!(bits(&mut problem) == first && modes_found == first, "{name}: written and read");
+    }
 }

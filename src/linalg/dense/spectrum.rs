@@ -10,6 +10,9 @@ use crate::platform::memory::{headroom, PRODUCTS};
 /// Eigenvalues of the symmetric matrix `a`, ascending, with the eigenvectors as columns.
 pub fn symmetric_eigen(a: &Matrix) -> Result<(Vec<f64>, Matrix)> {
     let _room = headroom(PRODUCTS + 8 * a.data.len() * size_of::<f64>(), "the eigenvalues of a matrix")?;
+    if a.cols == 0 {
+        return Ok((Vec::new(), Matrix::zeros(0, 0)?));
+    }
     let view = MatRef::from_column_major_slice(&a.data, a.rows, a.cols);
     let eigen = SelfAdjointEigen::new(view, Side::Lower)
         .map_err(|_| Error::new(Kind::Internal, "the eigenvalues of a Schur complement did not converge"))?;
