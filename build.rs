@@ -1,5 +1,5 @@
 //! Sets the cfg `avx512` where the compiler knows these instructions (Rust 1.89), names the shared library for the loader and marks it
-//! for safe use from a host that loads and unloads it.
+//! for safe use from a host that loads and unloads it, and whose malloc may fail (src/platform/shortage.rs).
 //!
 //! soname libfeti_contact.so.0.MINOR before 1.0 (every minor version may change the interface), libfeti_contact.so.MAJOR
 //! from then on. `nodelete`: threads of the pool outlive a dlclose. `noexecstack`: the stack stays non-executable.
@@ -19,6 +19,11 @@ fn main() {
     }
     for option in ["-z,nodelete", "-z,noexecstack"] {
         println!("cargo:rustc-cdylib-link-arg=-Wl,{option}");
+    }
+    if ["x86_64", "aarch64"].contains(&&*variable("CARGO_CFG_TARGET_ARCH")) {
+        for name in ["malloc", "calloc", "realloc", "posix_memalign", "free", "__cxa_thread_atexit_impl"] {
+            println!("cargo:rustc-cdylib-link-arg=-Wl,--wrap={name}");
+        }
     }
     // cargo-c sets this variable, and the soname itself.
     println!("cargo:rerun-if-env-changed=CARGO_FEATURE_CAPI");

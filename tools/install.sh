@@ -113,8 +113,14 @@ static() {
     install -m 644 "$1" "$2"
     [ -n "$STRIP" ] || return 0
     work=$(mktemp -d)
+    # as build.rs does for the shared library
+    wrap=
+    case $(uname -sm) in
+    Linux\ x86_64 | Linux\ aarch64)
+        for name in malloc calloc realloc posix_memalign free __cxa_thread_atexit_impl; do wrap="$wrap --wrap=$name"; done ;;
+    esac
     if "$OBJCOPY" --strip-debug -R .llvmbc -R .llvmcmd "$1" "$work/members.a" &&
-        "$LD" -r --whole-archive "$work/members.a" -o "$work/members.o" &&
+        "$LD" -r $wrap --whole-archive "$work/members.a" -o "$work/members.o" &&
         "$OBJCOPY" --wildcard --keep-global-symbol='feti_*' "$work/members.o" "$work/feti_contact.o" &&
         ${AR:-ar} crsD "$work/libfeti_contact.a" "$work/feti_contact.o"
     then install -m 644 "$work/libfeti_contact.a" "$2"

@@ -6,6 +6,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::Arc;
 
 use crate::error::{Error, Kind, Result};
+use crate::platform::shortage::is_short;
 
 thread_local! {
     static PRESENT: RefCell<Interrupt> = const { RefCell::new(Interrupt { flag: None, time: None, hearer: None }) };
@@ -70,6 +71,9 @@ impl Interrupt {
     }
 
     pub fn check(&self) -> Result<()> {
+        if is_short() {
+            return Err(Error::new(Kind::Memory, "memory for a small block could not be reserved"));
+        }
         if self.flag.as_ref().is_some_and(|flag| flag.load(Ordering::Relaxed)) {
             return Err(cancelled());
         }

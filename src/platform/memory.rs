@@ -10,6 +10,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use crate::error::{Error, Kind, Result};
 use crate::platform::mapping::could_have;
+use crate::platform::shortage::is_short;
 
 /// Bytes kept free for small objects: texts, maps, the growth of the heap by the allocator.
 const SPARE: usize = 2 << 20;
@@ -96,7 +97,7 @@ pub fn keep_own_promises() {
 
 /// True if this memory is available in addition to the spare memory.
 fn is_free(bytes: usize) -> bool {
-    could_have(bytes.saturating_add(SPARE))
+    !is_short() && could_have(bytes.saturating_add(SPARE))
 }
 
 /// Checks that all rooms and the spare memory would still be available after `bytes` are taken.
@@ -123,7 +124,10 @@ pub fn filled<T: Clone>(len: usize, value: T, what: &str) -> Result<Vec<T>> {
 pub fn reserved<T>(len: usize, what: &str) -> Result<Vec<T>> {
     let bytes = len.saturating_mul(size_of::<T>());
     let mut values = Vec::new();
-    values.try_reserve_exact(len).map_err(|_| refusal(bytes, what))?;
+    let had = values.try_reserve_exact(len).is_ok();
+    if !had || is_short() {
+        return Err(refusal(bytes, what));
+    }
     if bytes >= LARGE {
         ensure_spare(bytes, what)?;
     }

@@ -6,6 +6,7 @@ mod mapping;
 pub mod memory;
 pub mod pages;
 mod pools;
+pub mod shortage;
 pub mod slabs;
 mod sync;
 pub mod tally;

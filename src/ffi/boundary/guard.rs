@@ -14,6 +14,7 @@ use crate::ffi::boundary::handle::{self, Refusal};
 use crate::ffi::header::status::{FETI_BUSY, FETI_HANDLE, FETI_INTERNAL, FETI_OK};
 use crate::ffi::header::types::feti_problem;
 use crate::platform::instant;
+use crate::platform::shortage::RunningCall;
 use crate::platform::threads::THREAD_NAME;
 use crate::solver::Problem;
 
@@ -28,6 +29,7 @@ pub fn enter_with_status(
     call: Call,
     work: impl FnOnce(&mut Problem) -> Result<i32>,
 ) -> i32 {
+    let _running = RunningCall::begin();
     fpu::in_default_environment(|| {
         let Some(slot) = handle::find(p) else {
             return refuse(call, &Refusal::Gone);
@@ -56,6 +58,7 @@ pub fn enter_with_status(
 
 /// Runs `work`, which needs no problem, and returns the status of the call.
 pub fn without_problem(call: Call, work: impl FnOnce() -> Result<()>) -> i32 {
+    let _running = RunningCall::begin();
     fpu::in_default_environment(|| match caught(work) {
         Ok(()) => FETI_OK,
         Err(error) => Record::of_error(call, &error).publish(),
