@@ -229,8 +229,14 @@ pub fn check_diagonal(k: &Symmetric) -> Result<()> {
         let lost = k.lower_row(i).find(|&(j, v)| coupled(i, j, v) && k.diagonal(i).min(k.diagonal(j)) <= 0.0);
         let dof = lost.map_or(i, |(j, _)| if k.diagonal(i) <= 0.0 { i } else { j });
         if lost.is_some() || k.diagonal(i) < 0.0 {
-            let what =
+            let mut what =
                 format!("the diagonal entry is {:.3e}: the stiffness matrix is indefinite", k.diagonal(dof));
+            if k.diagonal(dof) == 0.0 {
+                what.push_str(
+                    "; a row with other entries than its diagonal is that of a Lagrange multiplier: its constraint is \
+                     to be given as an equality row, without this unknown",
+                );
+            }
             return Err(Error::new(Kind::Indefinite, what).dof(dof).value(k.diagonal(dof)).limit(0.0));
         }
     }

@@ -73,6 +73,20 @@ impl Certificate {
         ]
     }
 
+    /// Name of every entry and of its place, in the order of `entries`.
+    pub const NAMES: [(&'static str, &'static str); 10] = [
+        ("equilibrium", "body"),
+        ("balance", "body"),
+        ("penetration", "contact row"),
+        ("equality", "equality row"),
+        ("negative force", "contact row"),
+        ("complementarity", "contact row"),
+        ("friction cone", "node"),
+        ("friction work", "node"),
+        ("friction stick", "node"),
+        ("duality gap", ""),
+    ];
+
     /// Largest ratio of all entries.
     pub fn worst(&self) -> f64 {
         let mut worst = Entry::default();

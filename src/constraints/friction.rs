@@ -198,7 +198,7 @@ impl Friction {
     pub fn set_compliance(&mut self, first: usize, inv_kt: &[f64]) -> Result<()> {
         self.check_nodes(first, inv_kt.len())?;
         if let Some(at) = inv_kt.iter().position(|v| !(v.is_finite() && *v >= 0.0)) {
-            let what = "the compliance 1/k is not a finite number >= 0";
+            let what = format!("the compliance 1/k is not a finite number >= 0: {}", inv_kt[at]);
             return Err(Error::argument("inv_kt", what).node(first + at).entry(at).value(inv_kt[at]));
         }
         let dim = self.dim;
@@ -276,7 +276,7 @@ fn values_of(given: Option<&[f64]>, name: &'static str, count: usize, first: usi
     let Some(values) = given else { return filled(count, 0.0, "friction") };
     match values.iter().position(|v| !(v.is_finite() && *v >= 0.0)) {
         Some(at) => {
-            let what = format!("the {name} of friction is not a finite number >= 0");
+            let what = format!("the {name} of friction is not a finite number >= 0: {}", values[at]);
             Err(Error::argument(name, what).node(first + at).entry(at).value(values[at]))
         }
         None => Ok(values.to_vec()),

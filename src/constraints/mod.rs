@@ -135,7 +135,7 @@ impl RowSet {
     pub fn set_compliance(&mut self, first: usize, inv_k: &[f64]) -> Result<()> {
         let target = values_from(&mut self.compliance, first, inv_k.len())?;
         if let Some(at) = inv_k.iter().position(|v| !(v.is_finite() && *v >= 0.0)) {
-            let what = "the compliance 1/k is not a finite number >= 0";
+            let what = format!("the compliance 1/k is not a finite number >= 0: {}", inv_k[at]);
             return Err(Error::argument("inv_k", what).row(first + at).entry(at).value(inv_k[at]));
         }
         target.copy_from_slice(inv_k);

@@ -35,10 +35,13 @@ pub fn of_host(host: &Model, parts: &Parts, mut error: Error) -> Error {
     if let Some(Proof::Rows { heaviest, weights, .. }) = error.proof.as_deref() {
         let (kind, row) = kind_and_row(*heaviest, contact);
         error.place.row = Some(row);
-        if weights.len() < all {
+        // the heaviest row of the host may be another one than that of the parts
+        if weights.len() < all || weights.len() > 1 {
             let base = host.settings.index_base;
             let numbers: Vec<i64> = glued.iter().map(|number| *number as i64 + base).collect();
-            error.what = contradiction(kind, weights.len().saturating_sub(1), &numbers);
+            let others = weights.iter().map(|(i, _)| *i).filter(|i| i != heaviest);
+            let others: Vec<_> = others.map(|i| kind_and_row(i, contact)).collect();
+            error.what = contradiction(kind, &others, base, &numbers);
             error.place.index = glued.first().map(|number| *number as i64);
         }
     }

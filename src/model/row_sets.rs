@@ -138,13 +138,19 @@ pub fn proof_of_rows(margin: f64, mut weights: Vec<(usize, f64)>, heaviest: usiz
     Proof::Rows { margin, weights, heaviest }
 }
 
-/// The text of a proof: a row of this kind contradicts `others` other rows and the glue of unknowns with these numbers.
-pub fn contradiction(kind: RowKind, others: usize, glued: &[i64]) -> String {
+/// The text of a proof: a row of this kind contradicts `others`, counted from `base`, and the glue of unknowns with these
+/// numbers.
+pub fn contradiction(kind: RowKind, others: &[(RowKind, usize)], base: i64, glued: &[i64]) -> String {
     let mut all = vec![format!("this {}", kind.name())];
+    let name = |(kind, row): &(RowKind, usize)| format!("{} {}", kind.name(), *row as i64 + base);
     match others {
-        0 if !glued.is_empty() => {}
-        1 => all.push("another row".to_owned()),
-        _ => all.push(format!("{others} others")),
+        [] if !glued.is_empty() => {}
+        [other] if glued.is_empty() => all.push(name(other)),
+        [_] => all.push("another row".to_owned()),
+        [first, .., last] if glued.is_empty() => {
+            all.push(format!("{} others ({} and {} among them)", others.len(), name(first), name(last)));
+        }
+        _ => all.push(format!("{} others", others.len())),
     }
     match glued {
         [] => {}

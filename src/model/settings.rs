@@ -205,9 +205,24 @@ impl OptionInfo {
 /// The option with this name.
 pub fn find(name: &str) -> Result<&'static OptionInfo> {
     options().iter().find(|option| option.name.to_bytes() == name.as_bytes()).ok_or_else(|| {
-        let names: Vec<_> = options().iter().map(|o| o.name.to_string_lossy()).collect();
+        let mut names: Vec<_> = options().iter().map(|o| o.name.to_string_lossy()).collect();
+        names.sort_by_cached_key(|known| edits(name, known));
         Error::argument("name", format!("there is no option \"{name}\"; there are {}", names.join(", ")))
     })
+}
+
+/// Letters to insert, delete or replace to get from one name to another.
+fn edits(from: &str, to: &str) -> usize {
+    let mut line: Vec<usize> = (0..=to.len()).collect();
+    for (i, a) in from.bytes().enumerate() {
+        let mut diagonal = std::mem::replace(&mut line[0], i + 1);
+        for (j, b) in to.bytes().enumerate() {
+            let replaced = diagonal + usize::from(a != b);
+            diagonal = line[j + 1];
+            line[j + 1] = replaced.min(diagonal + 1).min(line[j] + 1);
+        }
+    }
+    line[to.len()]
 }
 
 fn wrong_type(option: &OptionInfo) -> Error {
@@ -259,7 +274,10 @@ mod tests {
     #[test]
     fn unknown_names_wrong_types_and_values_out_of_range_change_nothing() {
         let mut settings = Settings::new();
-        assert_eq!(settings.set_f64("tolerence", 1e-6).unwrap_err().kind, Kind::Argument("name"));
+        let misspelt = settings.set_f64("tolerence", 1e-6).unwrap_err();
+        assert_eq!(misspelt.kind, Kind::Argument("name"));
+        assert!(misspelt.what.contains("\"tolerence\"; there are tolerance, "), "nearest first: {misspelt}");
+        assert!(settings.set_i64("tread", 1).unwrap_err().what.contains("there are threads, "));
         assert_eq!(settings.set_i64("tolerance", 1).unwrap_err().kind, Kind::Argument("name"));
         assert_eq!(settings.set_f64("tolerance", f64::NAN).unwrap_err().kind, Kind::Argument("value"));
         assert_eq!(settings.set_i64("threads", -1).unwrap_err().kind, Kind::Argument("value"));

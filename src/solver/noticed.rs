@@ -1,7 +1,8 @@
 //! Log lines about properties of the data that the host may not have intended.
 
-use crate::constraints::RowSet;
+use crate::constraints::{FrictionNode, RowSet};
 use crate::error::Result;
+use crate::linalg::Csr;
 use crate::model::{Model, Parts};
 use crate::progress::{Log, LogLevel};
 
@@ -35,6 +36,34 @@ pub fn data(log: &Log, model: &Model) -> Result<()> {
             })?;
         }
     }
+    friction(log, model)
+}
+
+/// Notes: a coefficient of friction that is rather a percentage or an angle, a tangential row that is the normal row.
+fn friction(log: &Log, model: &Model) -> Result<()> {
+    let (rows, base) = (&model.friction.rows, model.settings.index_base);
+    let number = |node: usize| node as i64 + base;
+    let nodes = || model.friction.nodes.iter().enumerate();
+    // steel on rubber has 1 to 2
+    if let Some((k, node)) = nodes().find(|(_, node)| node.coefficient > 5.0) {
+        let coefficient = node.coefficient;
+        log.say(LogLevel::Phase, || {
+            format!(
+                "note: node {} has a coefficient of friction of {coefficient}, a number and no percentage",
+                number(k)
+            )
+        })?;
+    }
+    let along = |node: &FrictionNode| {
+        let normal = node.normal?;
+        node.rows().find(|&row| parallel(&rows.matrix, row, &model.contact.matrix, normal))
+    };
+    if let Some((k, node)) = nodes().find(|(_, node)| along(node).is_some()) {
+        let normal = node.normal.map_or(base, number);
+        log.say(LogLevel::Phase, || {
+            format!("note: a tangential row of node {} is a multiple of its contact row {normal}", number(k))
+        })?;
+    }
     Ok(())
 }
 
@@ -59,6 +88,19 @@ pub fn loose(log: &Log, host: &Model, parts: Option<&Parts>) -> Result<()> {
     Ok(())
 }
 
+/// Whether two rows are multiples of each other, to rounding.
+fn parallel(a: &Csr, i: usize, b: &Csr, j: usize) -> bool {
+    let (a, b) = (entries(a, i), entries(b, j));
+    let largest = (0..a.len()).max_by(|&k, &l| a[k].1.abs().total_cmp(&a[l].1.abs()));
+    let Some(k) = largest.filter(|_| a.len() == b.len()) else { return false };
+    let by = b[k].1 / a[k].1;
+    a.iter().zip(&b).all(|(a, b)| a.0 == b.0 && (b.1 - by * a.1).abs() <= 4.0 * f64::EPSILON * b.1.abs())
+}
+
+fn entries(rows: &Csr, i: usize) -> Vec<(usize, f64)> {
+    rows.row(i).filter(|(_, value)| *value != 0.0).collect()
+}
+
 /// `redundant` returns the rows of the stack, contact rows first, that are multiples of other rows, with their factors;
 /// it is called only if the host has a log function.
 pub fn repeated(
@@ -74,11 +116,16 @@ pub fn repeated(
     of_host.retain(|(row, _)| *row < contact + model.equalities.len());
     let Some(&(first, _)) = of_host.first() else { return Ok(()) };
     let (kind, row) = if first < contact { ("contact", first) } else { ("equality", first - contact) };
-    let count = of_host.len();
+    let (count, base) = (of_host.len(), model.settings.index_base);
+    let rows = if first < contact { &model.contact } else { &model.equalities };
+    let twice = (0..rows.len()).find(|&other| {
+        other != row && rows.matrix.row(other).eq(rows.matrix.row(row)) && rows.rhs[other] == rows.rhs[row]
+    });
     log.say(LogLevel::Phase, || {
         format!(
-            "note: rows that are multiples of other rows, with which they share one force: {count}; the first is {kind} row {}",
-            row as i64 + model.settings.index_base
+            "note: rows that are multiples of other rows, with which they share one force: {count}; the first is {kind} row {}{}",
+            row as i64 + base,
+            twice.map_or(String::new(), |other| format!(": it is row {} given twice", other as i64 + base))
         )
     })
 }

@@ -1,6 +1,6 @@
 //! Results that the host reads after a solve.
 
-use crate::certificate::FrictionState;
+use crate::certificate::{Certificate, FrictionState};
 use crate::constraints::RowKind;
 use crate::error::{Error, Kind, Proof, Result};
 use crate::platform::memory::zeros;
@@ -18,6 +18,23 @@ impl Problem {
     /// Report of the last solve that gave an answer.
     pub fn report(&self) -> Option<&Report> {
         self.current().map(|current| &current.answer.report)
+    }
+
+    /// Which entry of the certificate of the last answer is the worst above its limit, and where.
+    pub fn shortfall(&self) -> Option<Error> {
+        let certificate = &self.report()?.certificate;
+        let named = Certificate::NAMES.iter().zip(certificate.entries());
+        let fails = named.filter(|(_, entry)| !(entry.ratio <= 1.0));
+        let ((name, of), entry) = fails.max_by(|(_, a), (_, b)| a.ratio.total_cmp(&b.ratio))?;
+        let kind = if of.ends_with("row") { format!(" of this {of}") } else { String::new() };
+        let what = format!("{name}{kind} is {:.1e}, the limit {:.1e}", entry.figure, certificate.limit);
+        let error = Error::new(Kind::State, what).value(entry.figure).limit(certificate.limit);
+        Some(match (entry.place, *of) {
+            (None, _) => error,
+            (Some(body), "body") => error.body(body),
+            (Some(node), "node") => error.node(node),
+            (Some(row), _) => error.row(row),
+        })
     }
 
     /// As `answer`, for results of one body: its group of bodies must have an answer.

@@ -2,6 +2,7 @@
 
 use std::fmt::Write;
 
+use crate::certificate::Certificate;
 use crate::error::Result;
 use crate::model::{Model, Sizes, Word};
 use crate::progress::{Log, LogLevel};
@@ -53,18 +54,6 @@ fn result_line(report: &Report) -> String {
         Outcome::Marginal => "marginal",
     };
     let certificate = &report.certificate;
-    let figures = [
-        ("equilibrium", &certificate.equilibrium),
-        ("balance", &certificate.balance),
-        ("penetration", &certificate.penetration),
-        ("equality", &certificate.equality),
-        ("negative force", &certificate.negative_force),
-        ("complementarity", &certificate.complementarity),
-        ("friction cone", &certificate.friction_cone),
-        ("friction work", &certificate.friction_work),
-        ("friction stick", &certificate.friction_stick),
-        ("duality gap", &certificate.duality_gap),
-    ];
     let mut line = format!(
         "{ended}: {} steps, {} products, {} of {} contact rows closed{}; certificate",
         report.counts.steps(),
@@ -74,7 +63,8 @@ fn result_line(report: &Report) -> String {
         friction(report)
     );
     let told = |name: &str| report.sizes.nodes > 0 || !name.starts_with("friction");
-    for (name, entry) in figures.into_iter().filter(|(name, _)| told(name)) {
+    let figures = Certificate::NAMES.iter().zip(certificate.entries());
+    for ((name, _), entry) in figures.filter(|((name, _), _)| told(name)) {
         let _ = write!(line, " {name} {:.1e},", entry.figure);
     }
     let _ = write!(

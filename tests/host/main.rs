@@ -1,9 +1,9 @@
-//! The library does no harm to the process of its host: memory for files, stack.
+//! The library does no harm to the process of its host (memory for files, stack), and says what it knows.
 
 mod counted;
 mod files;
-#[cfg(target_os = "linux")]
 #[path = "../support/hand_over.rs"]
 mod hand_over;
 #[cfg(target_os = "linux")]
 mod stack;
+mod texts;

@@ -7,7 +7,7 @@ use crate::error::{Error, Kind, Result};
 use crate::ffi::bodies::body::body_of_order;
 use crate::ffi::boundary::fpu::Environment;
 use crate::ffi::boundary::handle;
-use crate::ffi::boundary::{call, enter, input, meaning};
+use crate::ffi::boundary::{call, enter, input, meaning, null};
 use crate::ffi::header::types::{feti_operator_fn, feti_problem};
 use crate::ffi::progress::User;
 use crate::solver::{HostFunctions, HostProduct};
@@ -63,7 +63,7 @@ pub unsafe extern "C" fn feti_body_operator(
         let diagonal = unsafe { input(diag, order, "diag") }?;
         let slot = handle::find(p).ok_or_else(|| Error::new(Kind::Internal, "a problem without handle"))?;
         let product = |function: feti_operator_fn, name| -> Result<HostProduct> {
-            let function = function.ok_or_else(|| Error::argument(name, "NULL").body(number))?;
+            let function = function.ok_or_else(|| null(name).body(number))?;
             let host = Function { function, user: User(user), body, n };
             Ok(host.product(Arc::clone(&slot.shared)))
         };

@@ -82,12 +82,17 @@ pub fn left(bytes: usize) -> bool {
     left
 }
 
+pub fn null(name: &'static str) -> Error {
+    Error::argument(name, format!("{name} is NULL"))
+}
+
 fn check_pointer<T>(from: *const T, name: &'static str) -> Result<()> {
     if from.is_null() {
-        return Err(Error::argument(name, "NULL"));
+        return Err(null(name));
     }
     if !from.is_aligned() {
-        return Err(Error::argument(name, format!("not aligned to {} bytes", align_of::<T>())));
+        let what = format!("{name} is not aligned to {} bytes", align_of::<T>());
+        return Err(Error::argument(name, what));
     }
     Ok(())
 }
@@ -146,7 +151,7 @@ pub unsafe fn input_or_none<'a, T>(
 /// `from` leads to `len` numbers that stay as long as the result and its copies, and that nobody writes to during a call.
 pub unsafe fn borrowed<T>(from: *const T, len: usize, name: &'static str) -> Result<Borrowed<T>> {
     check_pointer(from, name)?;
-    let start = NonNull::new(from.cast_mut()).ok_or_else(|| Error::argument(name, "NULL"))?;
+    let start = NonNull::new(from.cast_mut()).ok_or_else(|| null(name))?;
     // SAFETY: not NULL, aligned, and `len` numbers guaranteed by the caller.
     Ok(unsafe { Borrowed::new(start, len) })
 }
@@ -198,7 +203,7 @@ impl<T: Copy> Output<T> {
 /// `from` is NULL or NUL terminated.
 pub unsafe fn text<'a>(from: *const c_char, name: &'static str) -> Result<&'a str> {
     if from.is_null() {
-        return Err(Error::argument(name, "NULL"));
+        return Err(null(name));
     }
     // SAFETY: NUL terminated guaranteed by the caller.
     let bytes = unsafe { CStr::from_ptr(from) };
@@ -214,7 +219,7 @@ pub unsafe fn text<'a>(from: *const c_char, name: &'static str) -> Result<&'a st
 /// `from` is NULL or NUL terminated.
 pub unsafe fn file_path<'a>(from: *const c_char, name: &'static str) -> Result<&'a Path> {
     if from.is_null() {
-        return Err(Error::argument(name, "NULL"));
+        return Err(null(name));
     }
     #[cfg(unix)]
     let path = {

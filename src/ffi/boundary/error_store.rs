@@ -39,6 +39,14 @@ impl Record {
         Self { status, argument: 0, function: call.function, place: Place::default(), text }
     }
 
+    /// The record with the place and the text of a reason.
+    pub fn because(self, why: Option<Error>) -> Self {
+        match why {
+            Some(why) => Self { text: format!("{}: {why}", self.text), place: *why.place, ..self },
+            None => self,
+        }
+    }
+
     /// Makes this the last error of the thread; returns its status.
     pub fn publish(self) -> i32 {
         let status = self.status;

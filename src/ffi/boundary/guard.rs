@@ -11,7 +11,7 @@ use crate::ffi::boundary::call::Call;
 use crate::ffi::boundary::error_store::Record;
 use crate::ffi::boundary::fpu;
 use crate::ffi::boundary::handle::{self, Refusal};
-use crate::ffi::header::status::{FETI_BUSY, FETI_HANDLE, FETI_INTERNAL, FETI_OK};
+use crate::ffi::header::status::{FETI_BUSY, FETI_HANDLE, FETI_INACCURATE, FETI_INTERNAL, FETI_OK};
 use crate::ffi::header::types::feti_problem;
 use crate::platform::instant;
 use crate::platform::shortage::RunningCall;
@@ -37,18 +37,20 @@ pub fn enter_with_status(
         let outcome = slot.with(|problem| {
             slot.shared.note();
             let outcome = caught(|| work(problem));
-            outcome.map_err(|error| match error.kind {
-                Kind::Internal => {
+            let base = problem.settings().index_base;
+            let why = |status| problem.shortfall().filter(|_| status == FETI_INACCURATE);
+            outcome.map(|status| (status, why(status).map(|why| why.counted_from(base)))).map_err(|error| {
+                if error.kind == Kind::Internal {
                     slot.mark_broken();
-                    error
+                    return error;
                 }
-                _ => error.counted_from(problem.settings().index_base),
+                error.counted_from(base)
             })
         });
         let record = match outcome {
             Err(refusal) => return refuse(call, &refusal),
-            Ok(Ok(FETI_OK)) => return FETI_OK,
-            Ok(Ok(status)) => Record::of_status(call, status),
+            Ok(Ok((FETI_OK, _))) => return FETI_OK,
+            Ok(Ok((status, why))) => Record::of_status(call, status).because(why),
             Ok(Err(error)) => Record::of_error(call, &error),
         };
         slot.keep_error(record.clone());

@@ -3,6 +3,7 @@
 use std::mem::MaybeUninit;
 
 use crate::error::{Error, Result};
+use crate::ffi::boundary::arrays::null;
 use crate::ffi::header::types::{
     feti_body_facts, feti_certificate, feti_error_detail, feti_findings, feti_info, feti_option, feti_phase,
 };
@@ -43,7 +44,7 @@ impl<T: StructSize> OutStruct<T> {
     /// `to` is NULL or leads to an i64 with the number of bytes that may be written from `to` on.
     pub unsafe fn new(to: *mut T, name: &'static str) -> Result<Self> {
         if to.is_null() {
-            return Err(Error::argument(name, "NULL"));
+            return Err(null(name));
         }
         // SAFETY: the first field is readable; it may be anywhere, so it is read unaligned.
         let size = unsafe { to.cast::<i64>().read_unaligned() };

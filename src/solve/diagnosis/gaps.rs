@@ -174,7 +174,10 @@ impl<'a> Contradictions<'a> {
         let heavier = |best, at| if weight(at) >= weight(best) { at } else { best };
         let heaviest = weights.iter().fold(&weights[0], heavier).0;
         let (kind, row) = ready.island.kind_and_row(heaviest);
-        let what = contradiction(kind, weights.len() - 1, &[]);
+        let mut others: Vec<_> = weights.iter().map(|(i, _)| *i).filter(|i| *i != heaviest).collect();
+        others.sort_unstable();
+        let others: Vec<_> = others.into_iter().map(|i| ready.island.kind_and_row(i)).collect();
+        let what = contradiction(kind, &others, model.settings.index_base, &[]);
         let error = Error::new(Kind::GapsContradict, what).row(row).value(-excess).limit(0.0);
         let place = |i: usize| ready.island.in_stack(model.contact.len(), i);
         let of_host = weights.iter().map(|&(i, w)| (place(i), w * ready.rows.scaling.scale[i])).collect();

@@ -148,22 +148,57 @@ impl Unheld {
             if work.value() - bounded(ready, &own) > size * resisted {
                 let mut v = zeros(case.model.sizes().dofs, "a motion")?;
                 island.scatter(case.model, &own, &mut v);
-                return Ok(Some(self.named(case, v)));
+                let why = self.why(case, &own, work.value());
+                return Ok(Some(self.named(case, v, &why)));
             }
         }
         Ok(None)
     }
 
-    fn named(&self, case: Case, mut v: Vec<f64>) -> Error {
+    /// What the rows on the bodies that move by v (`own`) do about it; `work`: f'v in units of 2^p.
+    fn why(&self, case: Case, own: &[f64], work: f64) -> String {
+        let (ready, island) = (case.ready, case.island());
+        let moves = |range: &std::ops::Range<usize>| own[range.clone()].iter().any(|v| *v != 0.0);
+        let moved: Vec<bool> = island.ranges.iter().map(moves).collect();
+        let touching: Vec<usize> = (0..ready.rows.tangential)
+            .filter(|&i| {
+                let (rows, k) = island.row(i);
+                rows.matrix.row(k).any(|(j, b)| b != 0.0 && moved[island.body_of(j)])
+            })
+            .collect();
+        let rubs = |node: &&FrictionNode| node.has_friction() && slip(ready, node, own) > 0.0;
+        let rubbing = island.friction.nodes.iter().filter(rubs).count();
+        let opened =
+            touching.iter().filter(|&&i| i < ready.rows.contact && along(ready, i, own) < 0.0).count();
+        if rubbing > 0 {
+            let held = 100.0 * bounded(ready, own) / work;
+            return format!(
+                "; the friction of {rubbing} nodes gives way: it can hold {held:.3} % of the load along the motion"
+            );
+        }
+        match touching.len() {
+            0 => "; no row with a finite gap touches what moves".to_owned(),
+            rows if rows == opened => format!(
+                "; the motion opens every contact row that touches what moves ({rows}): if the load is to press there, \
+                 the signs of these rows (their normals) are the wrong way round"
+            ),
+            _ => String::new(),
+        }
+    }
+
+    fn named(&self, case: Case, mut v: Vec<f64>, why: &str) -> Error {
         let body = case.island().bodies[self.body];
         let range = case.model.range(body);
         let fastest =
             range.clone().fold(range.start, |best, i| if v[i].abs() > v[best].abs() { i } else { best });
         let sense = if v[fastest] > 0.0 { "positive" } else { "negative" };
+        let k = case.model.bodies[body].body.k();
+        let stiff = k.is_none_or(|k| k.metric(fastest - range.start, 0.0) > 0.0);
         let what = format!(
             "the load moves the body and no contact force can hold it (|resultant| / |load| = {:.1e} of the bodies that move \
-             together); the motion is fastest at this dof, in the {sense} direction",
-            self.share
+             together); the motion is fastest at this dof, in the {sense} direction{why}{}",
+            self.share,
+            if stiff { "" } else { "; this unknown has no stiffness: no element resists it" }
         );
         let largest = norm_max(&v);
         v.iter_mut().for_each(|v| *v /= largest);
